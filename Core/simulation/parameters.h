@@ -1,0 +1,40 @@
+#pragma once
+
+/// @file
+/// Every number that rules a run, in one struct.
+
+#include "base/types.h"
+
+namespace rockfall
+{
+
+/// How a rock loses energy at an impact (METHOD 4).
+enum class RestitutionModel
+{
+  Velocity = 0,         ///< The paper's: (Vx, Vy, Vz) ← Rv (Vx, Vy, Vz).
+  NormalTangential = 1, ///< Rv on the normal component only; friction does the rest.
+};
+
+struct SimulationParameters
+{
+  double timeStep = 0.005;      ///< Δt of lasting contact, s, > 0. Impacts are resolved finer by themselves.
+  double endTime = 60.0;        ///< s, > 0.
+  double outputInterval = 0.05; ///< Between samples, s, > 0. Does not change the motion.
+  double gravity = 9.81;        ///< m/s², ≥ 0.
+
+  double normalPenalty = 1e9; ///< pₙ, N/m, > 0. METHOD 9.1: ≥ 1e9 is accurate enough.
+  double shearRatio = 1.0;    ///< pₛ / pₙ, dimensionless, > 0.
+  bool rigid = false;         ///< Infinite stiffness: 6 unknowns per block.
+  RestitutionModel restitutionModel = RestitutionModel::Velocity;
+
+  int iterations = 1;     ///< Independent realisations of roughness, Rv and φ, ≥ 1.
+  std::uint64_t seed = 1; ///< With iteration and rock it determines every random number.
+  int threads = 0;        ///< 0 = all.
+
+  int maxOpenClose = 12; ///< Open–close iterations before a step is cut, ≥ 2.
+  int maxCuts = 10;      ///< Halvings of a step before it is taken unsettled, ≥ 0.
+
+  void validate() const; ///< Throws ParameterError naming field and value.
+};
+
+} // namespace rockfall

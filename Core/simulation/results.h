@@ -1,0 +1,98 @@
+#pragma once
+
+/// @file
+/// What a run hands out: samples, impact events and one summary per rock and iteration.
+/// Positions are in the terrain's local frame.
+
+#include "base/types.h"
+
+#include <string>
+#include <vector>
+
+namespace rockfall
+{
+
+/// The state of a rock at one time (METHOD 8).
+struct Sample
+{
+  double time = 0.0;                       ///< s
+  Vec3 position = Vec3::Zero();            ///< Centroid, m.
+  Quat orientation = Quat::Identity();     ///< Body to world.
+  Vec3 velocity = Vec3::Zero();            ///< Vx, Vy, Vz, m/s.
+  Vec3 angularVelocity = Vec3::Zero();     ///< Ryz, Rzx, Rxy: about x, y, z, rad/s.
+  double kineticEnergy = 0.0;              ///< Translation and rotation, J.
+  double heightOverGround = 0.0;           ///< Lowest point over the surface below the centroid, m.
+  bool contact = false;                    ///< Touching the slope.
+};
+
+/// One impact: the rock came from flight, touched, and left or settled.
+struct ImpactEvent
+{
+  double time = 0.0;            ///< Of the first touch, s.
+  Vec3 position = Vec3::Zero(); ///< Of the contact, m.
+  Vec3 normal = Vec3::Zero();   ///< Of the slope there.
+  std::int64_t cfe = 0;         ///< Number of the CFE that took most of the impulse.
+  double impulse = 0.0;         ///< Normal, N s.
+  double approachSpeed = 0.0;   ///< Of the contact point along the normal, m/s.
+  Vec3 velocityBefore = Vec3::Zero();
+  Vec3 velocityAfter = Vec3::Zero();
+  double energyLoss = 0.0;      ///< By friction and restitution, J.
+  double restitution = 1.0;     ///< The coefficient that was applied.
+};
+
+enum class Fate
+{
+  Rested = 0,     ///< Lies still on the slope.
+  LeftDomain = 1, ///< Went beyond the slope's edge or over a nodata hole.
+  Moving = 2,     ///< Still moving at the end time.
+};
+std::string fateName(Fate fate);
+
+/// Where the energy went, J. Their sum is what the numerics kept; `numerical` is the remainder:
+/// released = kinetic + strain + friction + restitution + vibration + damping + numerical.
+struct EnergyAudit
+{
+  double released = 0.0;    ///< Start's kinetic energy plus potential energy given up.
+  double kinetic = 0.0;     ///< At the end.
+  double strain = 0.0;      ///< Block strain and contact springs at the end.
+  double friction = 0.0;    ///< Dissipated by sliding.
+  double restitution = 0.0; ///< Taken by Rv.
+  double vibration = 0.0;   ///< Strain energy left in a block when it took off.
+  double damping = 0.0;     ///< Dissipated by the damped step of lasting contact.
+  double numerical = 0.0;   ///< Gained (−) or lost (+) by the numerics.
+};
+
+/// One row per rock and iteration.
+struct TrajectorySummary
+{
+  int rock = 0;      ///< Index in the list of rocks.
+  int iteration = 0; ///< From 0.
+  std::int64_t blockId = 0;
+  Fate fate = Fate::Moving;
+  double endTime = 0.0; ///< When it rested, left or was cut off, s.
+  Vec3 start = Vec3::Zero();
+  Vec3 stop = Vec3::Zero();
+  double runOut = 0.0;            ///< Horizontal distance from start to stop, m.
+  double pathLength = 0.0;        ///< m
+  double maxSpeed = 0.0;          ///< m/s
+  double maxKineticEnergy = 0.0;  ///< J
+  double maxHeightOverGround = 0.0; ///< m
+  double mass = 0.0;              ///< kg
+  double volume = 0.0;            ///< m³
+  int impacts = 0;
+  std::int64_t contactSteps = 0;  ///< Steps solved in contact.
+  std::int64_t openCloseIterations = 0;
+  std::int64_t cutSteps = 0;      ///< Steps redone with a smaller Δt.
+  std::int64_t unsettledSteps = 0; ///< Steps taken although open–close had not settled.
+  EnergyAudit energy;
+};
+
+/// All of one rock in one iteration.
+struct Trajectory
+{
+  TrajectorySummary summary;
+  std::vector<Sample> samples;     ///< At multiples of the output interval, then the end.
+  std::vector<ImpactEvent> impacts;
+};
+
+} // namespace rockfall

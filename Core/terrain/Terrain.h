@@ -1,0 +1,134 @@
+#pragma once
+
+/// @file
+/// The implicit slope: node heights of a north-up raster of square cells, whose contact face elements
+/// (CFEs) are arithmetic, never a list (METHOD 5; paper 2.3.1).
+///
+/// Local frame: x east and y north from the lower left (south-west) node, z the elevation. Storage is
+/// the raster's: row 0 is the northernmost, so node (row, column) stands at
+/// x = column · cellSize, y = (rows − 1 − row) · cellSize.
+
+#include "base/types.h"
+
+#include <array>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace rockfall
+{
+
+/// Where a raster stands in the world.
+struct GridGeometry
+{
+  int columns = 0;       ///< Nodes from west to east, ≥ 2.
+  int rows = 0;          ///< Nodes from north to south, ≥ 2.
+  double cellSize = 0.0; ///< m
+  double xOrigin = 0.0;  ///< Real easting of the lower left node, m.
+  double yOrigin = 0.0;  ///< Real northing of the lower left node, m.
+  std::string crs;       ///< WKT; empty for a local system.
+
+  std::int64_t nodeCount() const { return std::int64_t(columns) * rows; }
+  std::int64_t cellCount() const { return std::int64_t(columns - 1) * (rows - 1); }
+  /// The local origin: world = local + origin().
+  Vec3 origin() const { return { xOrigin, yOrigin, 0.0 }; }
+};
+
+/// What a CFE is made of.
+struct SurfaceMaterial
+{
+  double restitution = 0.8;             ///< Rv, dimensionless, 0 … 1.
+  double restitutionDeviation = 0.0;    ///< Standard deviation of Rv, ≥ 0.
+  double frictionAngle = radians(15.0); ///< φ, rad, 0 … <π/2.
+  double frictionAngleDeviation = 0.0;  ///< Standard deviation of φ, rad, ≥ 0.
+  double cohesion = 0.0;                ///< c, N per contact point, ≥ 0.
+
+  void validate() const; ///< Throws ParameterError naming field and value.
+};
+
+/// Random elevation added to every node, drawn per iteration (METHOD 7).
+struct Roughness
+{
+  double mean = 0.0;      ///< m
+  double deviation = 0.0; ///< m, ≥ 0.
+  bool any() const { return this->mean != 0.0 || this->deviation != 0.0; }
+  void validate() const;
+};
+
+/// One triangle, as looked up by its number.
+struct Cfe
+{
+  std::array<Vec3, 3> nodes; ///< Counter-clockwise seen from above, local frame.
+  Vec3 normal;               ///< Unit, upward.
+};
+
+/// The slope as read: heights shared, never copied; thread-safe because it never changes.
+class Terrain
+{
+public:
+  Terrain() = default;
+  /// `heights`: rows × columns in storage order, NaN for nodata. `owner` keeps them alive. Throws
+  /// DataError for fewer than 2 rows or columns, a non-positive cell, infinite heights or no CFE at
+  /// all.
+  Terrain(GridGeometry geometry, std::span<const double> heights,
+    std::shared_ptr<const void> owner, SurfaceMaterial material = {}, Roughness roughness = {});
+  Terrain(GridGeometry geometry, std::vector<double> heights, SurfaceMaterial material = {},
+    Roughness roughness = {});
+
+  const GridGeometry& geometry() const { return geometry_; }
+  std::span<const double> heights() const { return heights_; }
+  const SurfaceMaterial& material() const { return material_; }
+  const Roughness& roughness() const { return roughness_; }
+  double width() const { return (geometry_.columns - 1) * geometry_.cellSize; }  ///< Extent in x, m.
+  double height() const { return (geometry_.rows - 1) * geometry_.cellSize; }    ///< Extent in y, m.
+
+  double nodeHeight(int row, int column) const
+  {
+    return heights_[std::size_t(row) * geometry_.columns + column];
+  }
+  Vec3 node(int row, int column) const
+  {
+    return { column * geometry_.cellSize, (geometry_.rows - 1 - row) * geometry_.cellSize,
+      this->nodeHeight(row, column) };
+  }
+
+  /// CFEs are numbered from 1: in cell (row, column) the lower triangle has number
+  /// 2 (row (columns−1) + column) + 1, the upper one the next. Numbers of CFEs that touch nodata are
+  /// left out, not reused.
+  std::int64_t cfeCapacity() const { return 2 * geometry_.cellCount(); }
+  bool hasCfe(std::int64_t id) const;
+  /// Node indices (row · columns + column), counter-clockwise seen from above.
+  std::array<std::int64_t, 3> cfeNodes(std::int64_t id) const;
+  Cfe cfe(std::int64_t id) const;
+  /// The CFE above or below a place in the local frame, 0 if there is none.
+  std::int64_t cfeAt(double x, double y) const;
+  /// Elevation of the surface (without roughness), NaN outside it, m.
+  double elevation(double x, double y) const;
+
+  /// Upper bound of the node heights (without roughness) of all cells that a box in x–y touches, from
+  /// a max-pyramid; −∞ if it touches none. Cost independent of the box.
+  double maxHeight(double xMin, double xMax, double yMin, double yMax) const;
+
+private:
+  void buildPyramid();
+
+  GridGeometry geometry_;
+  std::span<const double> heights_;
+  std::shared_ptr<const void> owner_;
+  SurfaceMaterial material_;
+  Roughness roughness_;
+
+  struct Level
+  {
+    int columns = 0, rows = 0;
+    std::vector<float> maximum; ///< Rounded up.
+  };
+  std::shared_ptr<const std::vector<Level>> pyramid_;
+};
+
+/// The paper's bi-planar test slope (METHOD 9.3): 57.7 m high, 100 m long incline at 30°, then 150 m of
+/// flat, 100 m wide, falling along +x. Nodes at `cellSize` (m).
+Terrain makeBiplanarSlope(double cellSize = 5.0);
+
+} // namespace rockfall
