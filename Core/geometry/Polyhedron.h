@@ -5,6 +5,7 @@
 /// integrals.
 
 #include "base/types.h"
+#include "geometry/simplexIntegration.h"
 
 #include <array>
 #include <span>
@@ -14,13 +15,7 @@
 namespace rockfall
 {
 
-/// Volume integrals of a polyhedron, exact from its faces (Shi's simplex integration).
-struct VolumeIntegrals
-{
-  double volume = 0.0;            ///< m³
-  Vec3 centroid = Vec3::Zero();   ///< m
-  Mat3 second = Mat3::Zero();     ///< ∫ X Xᵀ dV about the centroid, m⁵
-};
+struct Shell;
 
 /// A convex polyhedron. Immutable once made; the makers validate and throw GeometryError.
 ///
@@ -37,19 +32,29 @@ public:
 
   Polyhedron() = default;
 
-  /// From polygon loops, counter-clockwise seen from outside. Points closer than a relative 1e-9 are
-  /// one vertex. Checked: finite points, planar faces, closed surface (every edge used once in each
-  /// direction), outward orientation, convexity, positive volume. `name` begins every message.
-  static Polyhedron fromFaces(std::span<const Vec3> points,
-    std::span<const std::vector<int>> faces, const std::string& name = "polyhedron");
+  /// From polygon loops, counter-clockwise seen from outside. Points closer than a relative 1e-9
+  /// are one vertex, and what lies within a relative 1e-6 of a plane is planar, so that single
+  /// precision will do. Checked: finite points, planar faces, closed surface (every edge used once
+  /// in each direction), outward orientation, convexity, positive volume, no sliver. `name` begins
+  /// every message, which counts points and faces as they were given, from 0.
+  static Polyhedron fromFaces(std::span<const Vec3> points, std::span<const std::vector<int>> faces,
+    const std::string& name = "polyhedron");
 
-  /// The convex hull of a point set (Qhull), at least four points not in one plane.
-  static Polyhedron convexHull(std::span<const Vec3> points, const std::string& name = "polyhedron");
+  /// The convex hull of a point set (Qhull), at least four points not in one plane. Nothing is
+  /// printed; points inside the hull or, within a relative 1e-6, on its faces are left out.
+  static Polyhedron convexHull(
+    std::span<const Vec3> points, const std::string& name = "polyhedron");
 
   const std::vector<Vec3>& vertices() const { return vertices_; }
-  const std::vector<std::vector<int>>& faces() const { return faces_; } ///< Loops, CCW from outside.
-  const std::vector<Vec3>& normals() const { return normals_; }         ///< Per face, outward, unit.
-  const std::vector<double>& offsets() const { return offsets_; } ///< Per face, normal · x on it, m.
+  const std::vector<std::vector<int>>& faces() const
+  {
+    return faces_;
+  }                                                             ///< Loops, CCW from outside.
+  const std::vector<Vec3>& normals() const { return normals_; } ///< Per face, outward, unit.
+  const std::vector<double>& offsets() const
+  {
+    return offsets_;
+  } ///< Per face, normal · x on it, m.
   const std::vector<Edge>& edges() const { return edges_; }
   /// Vertices joined to vertex v by an edge.
   const std::vector<int>& neighbours(int v) const { return neighbours_[v]; }
@@ -57,14 +62,20 @@ public:
   /// Largest distance of a vertex from the centroid, m.
   double radius() const { return radius_; }
 
-  /// The same shape with x ↦ scale·(R x) + shift.
+  /// The same shape with x ↦ scale·(R x) + shift; scale > 0 (ParameterError).
   Polyhedron transformed(double scale, const Quat& rotation, const Vec3& shift) const;
   /// The same shape with its centroid at the origin.
   Polyhedron centred() const;
-  /// The same shape scaled about its centroid to this volume (m³).
+  /// The same shape scaled about its centroid to this volume (m³, > 0 or ParameterError).
   Polyhedron withVolume(double volume) const;
 
 private:
+  /// From a shell that has passed every check.
+  static Polyhedron fromShell(
+    const Shell& shell, std::span<const Vec3> points, const std::string& name);
+  /// Offsets and radius, from vertices, normals and integrals.
+  void updateDistances();
+
   std::vector<Vec3> vertices_;
   std::vector<std::vector<int>> faces_;
   std::vector<Vec3> normals_;

@@ -16,21 +16,29 @@ namespace rockfall
 /// One row of a source layer. What the layer does not say stays empty; the caller has the defaults.
 struct SourceRow
 {
-  std::int64_t row = 0;          ///< Number in the file, from 1, for messages.
-  Vec3 position = Vec3::Zero();  ///< World coordinates of the block's centre, m.
+  std::int64_t row = 0;         ///< In the file, from 1 (not counting a header).
+  Vec3 position = Vec3::Zero(); ///< World coordinates of the block's centre, m.
   std::optional<Shape> shape;
-  std::optional<double> volume;                    ///< m³
-  std::optional<double> density;                   ///< kg/m³
-  std::optional<Vec3> velocity;                    ///< m/s
-  std::optional<Vec3> angularVelocity;             ///< rad/s
-  std::optional<Vec3> orientation;                 ///< Degrees, as the source's `Orientation`.
-  std::optional<Vec3> lengths;                     ///< Box edges, m.
+  std::optional<double> volume;        ///< m³
+  std::optional<double> density;       ///< kg/m³
+  std::optional<Vec3> velocity;        ///< m/s
+  std::optional<Vec3> angularVelocity; ///< rad/s
+  std::optional<Vec3> orientation;     ///< Degrees, as the source's `Orientation`.
+  std::optional<Vec3> lengths;         ///< Box edges, m.
 };
 
 /// Reads the first layer of anything OGR opens. Columns, case-insensitive: x, y, z (for a table
-/// without geometry), shape, volume, density, vx, vy, vz, wx, wy, wz (rad/s), rx, ry, rz (degrees),
-/// lx, ly, lz (m).
-/// Throws FileError / DataError naming file, row, field and value.
-std::vector<SourceRow> readSources(const std::string& fileName);
+/// without geometry; z also for 2D points), shape, volume, density, vx, vy, vz, wx, wy, wz (rad/s),
+/// rx, ry, rz (degrees), lx, ly, lz (m). Of a vector with some components the others are 0; of
+/// lengths all three are needed. Empty cells are as good as no column; other columns are ignored.
+/// Where points have their own z, that is used.
+///
+/// Points of a layer with a CRS are brought to `targetCrs` (WKT or "EPSG:n") if that is given;
+/// else, and in a table without geometry, the coordinates are taken as they are. z keeps its datum
+/// and becomes metres.
+///
+/// Throws FileError (missing, a folder, a raster, unreadable) or DataError naming file, row, field
+/// and value. Prints nothing; safe on several threads at once.
+std::vector<SourceRow> readSources(const std::string& fileName, const std::string& targetCrs = {});
 
 } // namespace rockfall

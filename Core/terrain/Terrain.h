@@ -110,6 +110,9 @@ public:
   /// a max-pyramid; −∞ if it touches none. Cost independent of the box.
   double maxHeight(double xMin, double xMax, double yMin, double yMax) const;
 
+  /// Lowest node height (without roughness), m.
+  double lowest() const { return lowest_; }
+
 private:
   void buildPyramid();
 
@@ -125,6 +128,7 @@ private:
     std::vector<float> maximum; ///< Rounded up.
   };
   std::shared_ptr<const std::vector<Level>> pyramid_;
+  double lowest_ = 0.0;
 };
 
 /// The paper's bi-planar test slope (METHOD 9.3): 57.7 m high, 100 m long incline at 30°, then 150 m of

@@ -1,0 +1,129 @@
+#include "block/Block.h"
+
+#include "base/errors.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include <array>
+
+namespace rockfall
+{
+
+namespace
+{
+
+/// ρ ∫ Tᵀ T dV. T is linear in X, T = T₀ + Σ Xₖ Tₖ, and first moments vanish about the centroid:
+/// ∫ Tᵀ T dV = V T₀ᵀ T₀ + Σₖₗ (∫ Xₖ Xₗ dV) Tₖᵀ Tₗ.
+Mat12 integrateMass(double density, double volume, const Mat3& second)
+{
+  using Mat3x12 = Eigen::Matrix<double, 3, 12>;
+  const auto matrixT = [](const Vec3& x)
+  {
+    Mat3x12 t;
+    for (int axis = 0; axis < 3; ++axis)
+    {
+      t.row(axis) = displacementRow(Vec3::Unit(axis), x, x).transpose();
+    }
+    return t;
+  };
+  const Mat3x12 constant = matrixT(Vec3::Zero());
+  std::array<Mat3x12, 3> linear;
+  for (int k = 0; k < 3; ++k)
+  {
+    linear[k] = matrixT(Vec3::Unit(k)) - constant;
+  }
+  Mat12 integral = volume * constant.transpose() * constant;
+  for (int k = 0; k < 3; ++k)
+  {
+    for (int l = 0; l < 3; ++l)
+    {
+      integral += second(k, l) * linear[k].transpose() * linear[l];
+    }
+  }
+  return density * integral;
+}
+
+/// Isotropic elasticity with engineering shear strains, Pa.
+Mat6 isotropicElasticity(double youngModulus, double poissonRatio)
+{
+  const double factor = youngModulus / ((1.0 + poissonRatio) * (1.0 - 2.0 * poissonRatio));
+  Mat6 e = Mat6::Zero();
+  e.topLeftCorner<3, 3>().setConstant(factor * poissonRatio);
+  e.diagonal().head<3>().setConstant(factor * (1.0 - poissonRatio));
+  e.diagonal().tail<3>().setConstant(0.5 * youngModulus / (1.0 + poissonRatio));
+  return e;
+}
+
+Vec12 bodyVelocity(const BlockState& state)
+{
+  Vec12 v;
+  v << state.orientation.conjugate() * state.velocity, state.spin, state.strainRate;
+  return v;
+}
+
+} // namespace
+
+Block::Block(Polyhedron shape, double density, double youngModulus, double poissonRatio)
+  : shape_(std::move(shape))
+  , density_(density)
+{
+  const VolumeIntegrals& integrals = shape_.integrals();
+  mass_ = density * integrals.volume;
+  massMatrix_ = integrateMass(density, integrals.volume, integrals.second);
+  elasticity_ = integrals.volume * isotropicElasticity(youngModulus, poissonRatio);
+  inertia_ = density * (integrals.second.trace() * Mat3::Identity() - integrals.second);
+  inverseInertia_ = inertia_.inverse();
+  const Vec3 principal = Eigen::SelfAdjointEigenSolver<Mat3>(inertia_).eigenvalues();
+  if (!(principal[0] > 0.0))
+  {
+    throw GeometryError("a block has the principal moment of inertia " +
+      std::to_string(principal[0]) + " kg m², it must be positive");
+  }
+  isotropic_ = principal[2] - principal[0] < 1e-9 * principal[2];
+  largestMobility_ = 1.0 / mass_ + shape_.radius() * shape_.radius() / principal[0];
+}
+
+Mat3 strainTensor(const Vec6& e)
+{
+  Mat3 t;
+  t << e[0], 0.5 * e[5], 0.5 * e[4], //
+    0.5 * e[5], e[1], 0.5 * e[3],    //
+    0.5 * e[4], 0.5 * e[3], e[2];
+  return t;
+}
+
+double rigidKineticEnergy(const Block& block, const BlockState& state)
+{
+  return 0.5 * block.mass() * state.velocity.squaredNorm() +
+    0.5 * state.spin.dot(block.inertia() * state.spin);
+}
+
+double kineticEnergy(const Block& block, const BlockState& state)
+{
+  const Vec12 v = bodyVelocity(state);
+  return 0.5 * v.dot(block.massMatrix() * v);
+}
+
+double strainEnergy(const Block& block, const BlockState& state)
+{
+  return 0.5 * state.strain.dot(block.elasticity() * state.strain);
+}
+
+Vec3 angularMomentum(const Block& block, const BlockState& state)
+{
+  const Vec12 p = block.massMatrix() * bodyVelocity(state);
+  return state.orientation * Vec3(p.segment<3>(kRotation));
+}
+
+double relaxStrain(const Block& block, BlockState& state)
+{
+  const double before = kineticEnergy(block, state) + strainEnergy(block, state);
+  const Vec12 p = block.massMatrix() * bodyVelocity(state);
+  state.spin = block.inverseInertia() * Vec3(p.segment<3>(kRotation));
+  state.strain.setZero();
+  state.strainRate.setZero();
+  return before - rigidKineticEnergy(block, state);
+}
+
+} // namespace rockfall

@@ -1,0 +1,99 @@
+#pragma once
+
+/// @file
+/// The 3D DDA block with its 12 first-order displacement variables (METHOD 1; Shi 2001).
+///
+/// Every matrix here is written in body axes about the centroid, where inertia and elasticity are
+/// constant: the block turns exactly, and strain and stress turn with it, so that no volume is made by
+/// rotation (METHOD 10.3).
+
+#include "base/types.h"
+#include "geometry/Polyhedron.h"
+
+namespace rockfall
+{
+
+/// Order of the unknowns: D = (u, v, w, rx, ry, rz, εx, εy, εz, γyz, γzx, γxy).
+constexpr int kRotation = 3;
+constexpr int kStrain = 6;
+
+/// What of a block never changes.
+class Block
+{
+public:
+  Block() = default;
+  /// `shape` has its centroid at the origin; density kg/m³, Young's modulus Pa, Poisson's ratio.
+  Block(Polyhedron shape, double density, double youngModulus, double poissonRatio);
+
+  const Polyhedron& shape() const { return shape_; }
+  double mass() const { return mass_; }              ///< kg
+  double volume() const { return shape_.integrals().volume; } ///< m³
+  double density() const { return density_; }        ///< kg/m³
+  double radius() const { return shape_.radius(); }  ///< Of the bounding sphere about the centroid, m.
+  /// M = ρ ∫ Tᵀ T dV, 12 × 12, body axes.
+  const Mat12& massMatrix() const { return massMatrix_; }
+  /// V E, 6 × 6: strain energy ½ εᵀ (V E) ε with engineering shear strains, J.
+  const Mat6& elasticity() const { return elasticity_; }
+  const Mat3& inertia() const { return inertia_; }               ///< kg m², body axes.
+  const Mat3& inverseInertia() const { return inverseInertia_; } ///< 1/(kg m²)
+  /// All three principal moments equal (to 1e-9): free rotation is then steady.
+  bool isotropic() const { return isotropic_; }
+  /// Largest 1/(effective mass) that a contact at a vertex can see: 1/m + r²/Imin, 1/kg.
+  double largestMobility() const { return largestMobility_; }
+
+private:
+  Polyhedron shape_;
+  double density_ = 0.0;
+  double mass_ = 0.0;
+  Mat12 massMatrix_ = Mat12::Zero();
+  Mat6 elasticity_ = Mat6::Zero();
+  Mat3 inertia_ = Mat3::Zero();
+  Mat3 inverseInertia_ = Mat3::Zero();
+  bool isotropic_ = true;
+  double largestMobility_ = 0.0;
+};
+
+/// What of a block moves. Translation in world axes, strain in body axes.
+struct BlockState
+{
+  double time = 0.0;                   ///< s
+  Vec3 position = Vec3::Zero();        ///< Centroid, m.
+  Quat orientation = Quat::Identity(); ///< Body to world.
+  Vec3 velocity = Vec3::Zero();        ///< m/s
+  Vec3 spin = Vec3::Zero();            ///< Angular velocity in body axes, rad/s.
+  Vec6 strain = Vec6::Zero();          ///< εx εy εz γyz γzx γxy
+  Vec6 strainRate = Vec6::Zero();      ///< 1/s
+
+  Vec3 angularVelocity() const { return orientation * spin; } ///< World axes, rad/s.
+};
+
+/// The symmetric tensor of a strain vector with engineering shears.
+Mat3 strainTensor(const Vec6& strain);
+
+/// The row nᵀT of METHOD 1 for a direction n: J·D = n · (displacement). The lever of the rotation may
+/// differ from that of the strain (see the step solver). All in body axes.
+inline Vec12 displacementRow(const Vec3& n, const Vec3& rotationLever, const Vec3& x)
+{
+  Vec12 row;
+  row.head<3>() = n;
+  row.segment<3>(kRotation) = rotationLever.cross(n);
+  row.segment<6>(kStrain) << n.x() * x.x(), n.y() * x.y(), n.z() * x.z(),
+    0.5 * (n.y() * x.z() + n.z() * x.y()), 0.5 * (n.z() * x.x() + n.x() * x.z()),
+    0.5 * (n.x() * x.y() + n.y() * x.x());
+  return row;
+}
+
+/// Kinetic energy of translation and rotation, J.
+double rigidKineticEnergy(const Block& block, const BlockState& state);
+/// Kinetic energy of all 12 variables, J.
+double kineticEnergy(const Block& block, const BlockState& state);
+/// Elastic energy of the block, J.
+double strainEnergy(const Block& block, const BlockState& state);
+/// Angular momentum about the centroid, world axes, kg m²/s.
+Vec3 angularMomentum(const Block& block, const BlockState& state);
+
+/// Drops strain and strain rate, keeping momentum and angular momentum: what a block does when it
+/// takes off, its vibration dying out long before the next impact. Returns the energy dropped, J.
+double relaxStrain(const Block& block, BlockState& state);
+
+} // namespace rockfall

@@ -1,0 +1,123 @@
+#pragma once
+
+/// @file
+/// A contact between a rock and the slope (METHOD 3), and the rock's geometry as it stands.
+
+#include "block/Block.h"
+#include "terrain/Surface.h"
+
+#include <vector>
+
+namespace rockfall
+{
+
+/// The fundamental contacts. All others reduce to these.
+enum class ContactKind : std::uint8_t
+{
+  VertexFace, ///< A vertex of the rock on a CFE.
+  FaceVertex, ///< A face of the rock on a node of the slope.
+  EdgeEdge,   ///< An edge of the rock on a ridge of the slope.
+};
+
+/// Shi's contact states.
+enum class ContactState : std::uint8_t
+{
+  Open,
+  Sliding,
+  Locked,
+};
+
+struct Contact
+{
+  ContactKind kind = ContactKind::VertexFace;
+  ContactState state = ContactState::Open;
+  int rockFeature = -1;            ///< Vertex, face or edge of the rock.
+  int patchFeature = -1;           ///< Triangle, node or ridge in the patch at hand.
+  std::int64_t surfaceFeature = 0; ///< The same across patches: CFE number, node key, ridge key.
+  std::int64_t cfe = 0;            ///< A CFE that the contact is on, for material and output.
+  Vec3 normal = Vec3::UnitZ();     ///< Out of the slope, world, unit.
+  Vec3 point = Vec3::Zero();       ///< Where the rock touches, world, m.
+  double distance = 0.0;           ///< Signed geometric gap along the normal, m; < 0 penetrates.
+  /// A pair that is found already overlapping carries no force at the overlap it was found with (≤ 0),
+  /// so that finding it makes no energy; m.
+  double offset = 0.0;
+  Vec3 slip = Vec3::Zero(); ///< s₀, elongation of the shear spring, world, m.
+  double normalForce = 0.0; ///< Mean over the last step, N.
+  double shearForce = 0.0;  ///< Magnitude, mean over the last step, N.
+
+  bool closed() const { return state != ContactState::Open; }
+  double gap() const { return distance - offset; } ///< d₀, m.
+};
+
+/// A block as it stands in the world: what contact detection reads.
+class PlacedBlock
+{
+public:
+  void place(const Block& block, const BlockState& state);
+
+  const Block& block() const { return *block_; }
+  const Vec3& position() const { return position_; }
+  const Mat3& rotation() const { return rotation_; }
+  const std::vector<Vec3>& vertices() const { return vertices_; } ///< World, m.
+  const std::vector<Vec3>& normals() const { return normals_; }   ///< Of faces, world, outward.
+  Vec3 lower() const { return lower_; } ///< Corners of the bounding box, m.
+  Vec3 upper() const { return upper_; }
+
+  /// Signed distance of a world point over a face; the strain of the block is undone first.
+  double faceDistance(int face, const Vec3& world) const
+  {
+    const Vec3 x = this->materialPoint(world);
+    return block_->shape().normals()[face].dot(x) - block_->shape().offsets()[face];
+  }
+  /// The undeformed body coordinates of a world point.
+  Vec3 materialPoint(const Vec3& world) const
+  {
+    return undeform_ * (rotation_.transpose() * (world - position_));
+  }
+
+private:
+  const Block* block_ = nullptr;
+  Vec3 position_ = Vec3::Zero();
+  Mat3 rotation_ = Mat3::Identity();
+  Mat3 undeform_ = Mat3::Identity(); ///< (I + ε)⁻¹
+  std::vector<Vec3> vertices_;
+  std::vector<Vec3> normals_;
+  Vec3 lower_ = Vec3::Zero();
+  Vec3 upper_ = Vec3::Zero();
+};
+
+/// Brings the closed contacts of the last step to where the rock stands now, hands them over between
+/// neighbouring features, and adds every pair that can close within `reach` (m).
+///
+/// A pair enters only through a valid configuration, with the normal inside both features' normal
+/// cones and the projection inside both features, at a gap of about zero; once closed it stays, whatever the
+/// cones say, until it opens: the entrance is the physically first one and does not flip (METHOD
+/// 10.6). Flat and concave edges of the slope are no features, so a smooth plane cut into many CFEs
+/// gives the contacts of one (METHOD 10.5).
+void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch, double reach,
+  std::vector<Contact>& contacts);
+
+/// The net under the entrance rules: every vertex of the rock that is under the slope, and every peak
+/// inside the rock, gets a contact that carries no force at the overlap it is found with and resists any
+/// further one. For a rock that carries on nothing else.
+void holdOverlap(const PlacedBlock& rock, const SurfacePatch& patch, std::vector<Contact>& contacts);
+
+/// The same entrance rules by brute force over all pairs, without pruning: the oracle of the tests.
+void findEntrancesBruteForce(const PlacedBlock& rock, const SurfacePatch& patch, double reach,
+  std::vector<Contact>& contacts);
+
+/// How far a rock is from touching.
+struct Clearance
+{
+  double distance = 0.0; ///< Lower bound of the distance to the patch, m; ≤ 0: may touch.
+  double time = 0.0;     ///< Lower bound of the time to the first touch in free flight, s.
+};
+
+/// Conservative: from separating planes along the normals of CFEs and of the rock's faces.
+Clearance clearance(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
+  double gravity);
+
+/// Deepest penetration of the rock's vertices under the patch and of its peaks into the rock, m, ≥ 0.
+double penetration(const PlacedBlock& rock, const SurfacePatch& patch);
+
+} // namespace rockfall

@@ -1,0 +1,191 @@
+#include "contact/features.h"
+
+#include <cmath>
+
+namespace rockfall
+{
+
+bool projectsInside(
+  const SurfacePatch& patch, int triangle, const Vec3& point, double reach, double tolerance)
+{
+  const SurfacePatch::Triangle& t = patch.triangles[triangle];
+  for (int k = 0; k < 3; ++k)
+  {
+    const Vec3& a = patch.nodes[t.nodes[k]].position;
+    const Vec3& b = patch.nodes[t.nodes[(k + 1) % 3]].position;
+    const Vec3 along = b - a;
+    const Vec3 inward = t.normal.cross(along);
+    const double side = inward.dot(point - a); // distance from the edge times its length
+    const double length = along.norm();
+    if (side < -tolerance * length && !(t.bends[k] < 0 && side > -reach * length))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+std::optional<Contact> vertexFace(
+  const PlacedBlock& rock, int vertex, const SurfacePatch& patch, int triangle, double reach)
+{
+  const SurfacePatch::Triangle& t = patch.triangles[triangle];
+  const Vec3& p = rock.vertices()[vertex];
+  const double distance = t.normal.dot(p) - t.offset;
+  const double depth = 0.1 * rock.block().radius();
+  if (distance > reach || distance < -depth ||
+    !projectsInside(patch, triangle, p, reach, 1e-9 * rock.block().radius()))
+  {
+    return std::nullopt;
+  }
+  // The vertex must be the lowest of its surroundings along the normal.
+  for (int n : rock.block().shape().neighbours(vertex))
+  {
+    const Vec3 arm = rock.vertices()[n] - p;
+    if (t.normal.dot(arm) < -kConeSlack * arm.norm())
+    {
+      return std::nullopt;
+    }
+  }
+  Contact c;
+  c.kind = ContactKind::VertexFace;
+  c.rockFeature = vertex;
+  c.patchFeature = triangle;
+  c.surfaceFeature = t.cfe;
+  c.cfe = t.cfe;
+  c.normal = t.normal;
+  c.point = p;
+  c.distance = distance;
+  return c;
+}
+
+bool insideRockFace(const PlacedBlock& rock, int face, const Vec3& world, double tolerance)
+{
+  const Polyhedron& shape = rock.block().shape();
+  const Vec3 x = rock.materialPoint(world);
+  const Vec3& n = shape.normals()[face];
+  const std::vector<int>& loop = shape.faces()[face];
+  for (std::size_t k = 0; k < loop.size(); ++k)
+  {
+    const Vec3& a = shape.vertices()[loop[k]];
+    const Vec3 along = shape.vertices()[loop[(k + 1) % loop.size()]] - a;
+    if (n.cross(along).dot(x - a) < -tolerance * along.norm())
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+std::optional<Contact> faceVertex(
+  const PlacedBlock& rock, int face, const SurfacePatch& patch, int node, double reach)
+{
+  const SurfacePatch::Node& q = patch.nodes[node];
+  if (!q.peak)
+  {
+    return std::nullopt;
+  }
+  const double distance = rock.faceDistance(face, q.position);
+  const double depth = 0.1 * rock.block().radius();
+  if (distance > reach || distance < -depth ||
+    !insideRockFace(rock, face, q.position, 1e-9 * rock.block().radius()))
+  {
+    return std::nullopt;
+  }
+  // All of the slope around the node must fall away from the plane of the face.
+  const Vec3 normal = -rock.normals()[face];
+  for (int n : q.neighbours)
+  {
+    const Vec3 arm = patch.nodes[n].position - q.position;
+    if (normal.dot(arm) > kConeSlack * arm.norm())
+    {
+      return std::nullopt;
+    }
+  }
+  Contact c;
+  c.kind = ContactKind::FaceVertex;
+  c.rockFeature = face;
+  c.patchFeature = node;
+  c.surfaceFeature = q.key;
+  c.cfe = q.cfe;
+  c.normal = normal;
+  c.point = q.position;
+  c.distance = distance;
+  return c;
+}
+
+bool closestOnLines(const Vec3& p, const Vec3& u, const Vec3& q, const Vec3& w, double& s, double& t)
+{
+  const double a = u.squaredNorm(), b = u.dot(w), c = w.squaredNorm();
+  const double determinant = a * c - b * b;
+  if (determinant < 1e-8 * a * c)
+  {
+    return false;
+  }
+  const Vec3 r = p - q;
+  const double d = u.dot(r), e = w.dot(r);
+  s = (b * e - c * d) / determinant;
+  t = (a * e - b * d) / determinant;
+  return true;
+}
+
+std::optional<Contact> edgeEdge(
+  const PlacedBlock& rock, int edge, const SurfacePatch& patch, int ridge, double reach)
+{
+  const Polyhedron& shape = rock.block().shape();
+  const Polyhedron::Edge& e = shape.edges()[edge];
+  const SurfacePatch::Ridge& g = patch.ridges[ridge];
+  const Vec3& p = rock.vertices()[e.vertices[0]];
+  const Vec3& q = patch.nodes[g.nodes[0]].position;
+  const Vec3 u = rock.vertices()[e.vertices[1]] - p;
+  const Vec3 w = patch.nodes[g.nodes[1]].position - q;
+  double s, t;
+  if (!closestOnLines(p, u, q, w, s, t) || s < 0.0 || s > 1.0 || t < 0.0 || t > 1.0)
+  {
+    return std::nullopt;
+  }
+  Vec3 n = u.cross(w).normalized();
+  const Vec3& n0 = patch.triangles[g.triangles[0]].normal;
+  const Vec3& n1 = patch.triangles[g.triangles[1]].normal;
+  if (n.dot(n0 + n1) < 0.0)
+  {
+    n = -n;
+  }
+  const Vec3 onRock = p + s * u;
+  const double distance = n.dot(onRock - (q + t * w));
+  const double depth = 0.1 * rock.block().radius();
+  if (distance > reach || distance < -depth)
+  {
+    return std::nullopt;
+  }
+  // Cone of the ridge: both triangles fall away. Cone of the rock's edge: both faces rise.
+  for (int wing : g.wings)
+  {
+    const Vec3 arm = patch.nodes[wing].position - q;
+    if (n.dot(arm) > kConeSlack * arm.norm())
+    {
+      return std::nullopt;
+    }
+  }
+  const Vec3 direction = u.normalized();
+  for (int k = 0; k < 2; ++k)
+  {
+    // In-face direction away from the edge; the edge runs as in the loop of faces[0].
+    const Vec3 inward = rock.normals()[e.faces[k]].cross(direction) * (k == 0 ? 1.0 : -1.0);
+    if (n.dot(inward) < -kConeSlack)
+    {
+      return std::nullopt;
+    }
+  }
+  Contact c;
+  c.kind = ContactKind::EdgeEdge;
+  c.rockFeature = edge;
+  c.patchFeature = ridge;
+  c.surfaceFeature = g.key;
+  c.cfe = patch.triangles[g.triangles[0]].cfe;
+  c.normal = n;
+  c.point = onRock;
+  c.distance = distance;
+  return c;
+}
+
+} // namespace rockfall

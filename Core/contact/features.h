@@ -1,0 +1,42 @@
+#pragma once
+
+/// @file
+/// The geometric tests of single pairs, shared by the pruned and the brute-force search.
+
+#include "contact/Contact.h"
+
+#include <optional>
+
+namespace rockfall
+{
+
+/// Slack of the normal cones, sine of an angle: a normal that leaves a cone by less than a degree is
+/// still a good direction, and pairs do not get lost between two cones by rounding or by the small
+/// penetration of the pairs that already carry.
+constexpr double kConeSlack = 0.02;
+
+/// Whether the projection of a point on the triangle's plane lies inside it. Beyond a concave edge the
+/// plane is still a valid constraint and is extended by `reach`; so a vertex that runs into a valley
+/// meets the other side in the step in which it gets there.
+bool projectsInside(
+  const SurfacePatch& patch, int triangle, const Vec3& point, double reach, double tolerance);
+
+/// Entrance of a rock vertex into a CFE, if the pair is valid.
+std::optional<Contact> vertexFace(
+  const PlacedBlock& rock, int vertex, const SurfacePatch& patch, int triangle, double reach);
+
+/// Entrance of a peak of the slope into a face of the rock.
+std::optional<Contact> faceVertex(
+  const PlacedBlock& rock, int face, const SurfacePatch& patch, int node, double reach);
+
+/// Entrance of an edge of the rock on a ridge.
+std::optional<Contact> edgeEdge(
+  const PlacedBlock& rock, int edge, const SurfacePatch& patch, int ridge, double reach);
+
+/// Closest points of two lines p + s u, q + t w; false if they are nearly parallel (sine < 1e-4).
+bool closestOnLines(const Vec3& p, const Vec3& u, const Vec3& q, const Vec3& w, double& s, double& t);
+
+/// Whether a world point over or under a face of the rock projects inside its polygon.
+bool insideRockFace(const PlacedBlock& rock, int face, const Vec3& world, double tolerance);
+
+} // namespace rockfall

@@ -1,0 +1,169 @@
+#include "geometry/shapes.h"
+
+#include "base/errors.h"
+#include "geometry/shell.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace rockfall
+{
+
+namespace
+{
+
+struct NamedShape
+{
+  Shape shape;
+  const char* name;
+};
+
+constexpr std::array<NamedShape, 9> names = { {
+  { Shape::Cube, "cube" },
+  { Shape::Tetrahedron, "tetrahedron" },
+  { Shape::Octahedron, "octahedron" },
+  { Shape::Dodecahedron, "dodecahedron" },
+  { Shape::Icosahedron, "icosahedron" },
+  { Shape::Box, "box" },
+  { Shape::Eota111, "eota111" },
+  { Shape::Eota221, "eota221" },
+  { Shape::File, "file" },
+} };
+
+/// All sign changes of the non-zero coordinates, in the three cyclic orders of the axes.
+void addCyclic(std::vector<Vec3>& points, const Vec3& point)
+{
+  for (int turn = 0; turn < 3; ++turn)
+  {
+    for (int signs = 0; signs < 8; ++signs)
+    {
+      Vec3 p;
+      bool wanted = true;
+      for (int k = 0; k < 3; ++k)
+      {
+        const bool negative = signs >> k & 1;
+        wanted = wanted && !(negative && point[k] == 0.0);
+        p[(k + turn) % 3] = negative ? -point[k] : point[k];
+      }
+      if (wanted)
+      {
+        points.push_back(p);
+      }
+    }
+  }
+}
+
+/// The vertices, about the origin, at any size.
+std::vector<Vec3> corners(Shape shape)
+{
+  const double golden = std::numbers::phi;
+  std::vector<Vec3> points;
+  switch (shape)
+  {
+    case Shape::Tetrahedron: // every other corner of a cube
+      return { { 1, 1, 1 }, { 1, -1, -1 }, { -1, 1, -1 }, { -1, -1, 1 } };
+    case Shape::Octahedron:
+      addCyclic(points, { 1, 0, 0 });
+      break;
+    case Shape::Dodecahedron: // a cube with a roof on each face
+      for (int signs = 0; signs < 8; ++signs)
+      {
+        points.emplace_back(signs & 1 ? -1 : 1, signs & 2 ? -1 : 1, signs & 4 ? -1 : 1);
+      }
+      addCyclic(points, { 0, 1 / golden, golden });
+      break;
+    case Shape::Icosahedron: // three golden rectangles
+      addCyclic(points, { 0, 1, golden });
+      break;
+    case Shape::Eota111: // METHOD 11 with L = 2
+    case Shape::Eota221:
+      addCyclic(points, { 1, 0.5, 0.5 });
+      for (Vec3& point : points)
+      {
+        point.z() *= shape == Shape::Eota221 ? 0.5 : 1.0;
+      }
+      break;
+    default:
+      break;
+  }
+  return points;
+}
+
+} // namespace
+
+Polyhedron makeShape(Shape shape, double volume)
+{
+  const std::string name = shapeName(shape);
+  if (!(volume > 0.0) || !std::isfinite(volume))
+  {
+    throw ParameterError("Volume of the " + name + " is " + numberText(volume) +
+      " m³, it must be positive and finite");
+  }
+  if (shape == Shape::Cube)
+  {
+    return makeBox(Vec3::Constant(std::cbrt(volume)));
+  }
+  if (shape == Shape::Box || shape == Shape::File)
+  {
+    throw ParameterError("Shape " + name +
+      " is not made from a volume alone: a box needs its lengths, a file its name");
+  }
+  return Polyhedron::convexHull(corners(shape), name).centred().withVolume(volume);
+}
+
+Polyhedron makeBox(const Vec3& lengths)
+{
+  for (int k = 0; k < 3; ++k)
+  {
+    if (!(lengths[k] > 0.0) || !std::isfinite(lengths[k]))
+    {
+      throw ParameterError(std::string("the ") + "xyz"[k] + " length of the box is " +
+        numberText(lengths[k]) + " m, it must be positive and finite");
+    }
+  }
+  // Corner i has the bits of i for its sides: 1 = east, 2 = north, 4 = up.
+  std::vector<Vec3> points;
+  for (int i = 0; i < 8; ++i)
+  {
+    points.emplace_back(0.5 * lengths.x() * (i & 1 ? 1 : -1), 0.5 * lengths.y() * (i & 2 ? 1 : -1),
+      0.5 * lengths.z() * (i & 4 ? 1 : -1));
+  }
+  const std::vector<std::vector<int>> faces = { { 0, 4, 6, 2 }, { 1, 3, 7, 5 }, { 0, 1, 5, 4 },
+    { 2, 6, 7, 3 }, { 0, 2, 3, 1 }, { 4, 5, 7, 6 } };
+  return Polyhedron::fromFaces(points, faces, "box");
+}
+
+std::string shapeName(Shape shape)
+{
+  for (const NamedShape& named : names)
+  {
+    if (named.shape == shape)
+    {
+      return named.name;
+    }
+  }
+  throw ParameterError("Shape is " + std::to_string(int(shape)) + ", it must be 0 to " +
+    std::to_string(names.size() - 1));
+}
+
+Shape shapeFromName(const std::string& name)
+{
+  // ASCII only: what a locale makes of capitals must not matter.
+  std::string lower = name;
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+    [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+  std::string choices;
+  for (const NamedShape& named : names)
+  {
+    if (lower == named.name)
+    {
+      return named.shape;
+    }
+    choices += (choices.empty() ? "" : ", ") + std::string(named.name);
+  }
+  throw ParameterError("Shape is \"" + name + "\", it must be one of " + choices);
+}
+
+} // namespace rockfall

@@ -1,0 +1,56 @@
+#pragma once
+
+/// @file
+/// Coordinate reference systems: only their horizontal part, always in the order easting, northing
+/// (or longitude, latitude), whatever the order of the CRS's own axes.
+
+#include <memory>
+#include <string>
+
+class OGRSpatialReference;
+
+namespace rockfall::gis
+{
+
+/// Null for a local system.
+using CrsPtr = std::shared_ptr<const OGRSpatialReference>;
+
+/// A copy without its vertical part; null stays null.
+CrsPtr horizontalCrs(const OGRSpatialReference* crs);
+CrsPtr crsFromEpsg(int code);
+/// From WKT of either version, "EPSG:2056", a PROJ string. Throws DataError naming `text`.
+CrsPtr crsFromText(const std::string& text);
+
+/// "EPSG:32632 (WGS 84 / UTM zone 32N)", or the bare name if it has no code.
+std::string crsLabel(const OGRSpatialReference& crs);
+/// WKT2:2019 on one line.
+std::string crsWkt(const OGRSpatialReference& crs);
+
+/// The EPSG code of the WGS 84 UTM zone of a place (degrees), with the exceptions for Norway and
+/// Svalbard; beyond 84° N and 80° S polar stereographic (UPS), where UTM is not defined.
+int utmCode(double longitude, double latitude);
+
+/// Metres per unit of the vertical part, 1 if there is none.
+double verticalUnit(const OGRSpatialReference* crs);
+
+/// The way from one CRS to another and back; between equal or null ones it changes nothing.
+class CrsChange
+{
+public:
+  CrsChange() = default;
+  /// `tolerance` > 0 allows points along a line to be interpolated with at most this error, in
+  /// units of `from` (so it rules `back`). Throws DataError if there is no way.
+  CrsChange(const CrsPtr& from, const CrsPtr& to, double tolerance = 0.0);
+
+  /// In place; false if any point could not be changed, which then is not finite.
+  bool forth(int count, double* x, double* y) const { return this->apply(false, count, x, y); }
+  bool back(int count, double* x, double* y) const { return this->apply(true, count, x, y); }
+
+private:
+  bool apply(bool inverse, int count, double* x, double* y) const;
+
+  std::shared_ptr<void> exact_;
+  std::shared_ptr<void> interpolated_;
+};
+
+} // namespace rockfall::gis

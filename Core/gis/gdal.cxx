@@ -1,0 +1,134 @@
+#include "gis/gdal.h"
+
+#include "base/errors.h"
+
+#include <cpl_conv.h>
+#include <cpl_error.h>
+#include <cpl_string.h>
+#include <cpl_vsi.h>
+#include <gdal_priv.h>
+
+#include <charconv>
+#include <mutex>
+
+namespace rockfall::gis
+{
+
+namespace
+{
+
+void CPL_STDCALL keep(CPLErr level, CPLErrorNum, const char* text)
+{
+  auto& kept = *static_cast<Messages::Kept*>(CPLGetErrorHandlerUserData());
+  if (level >= CE_Failure && kept.failure.empty())
+  {
+    kept.failure = text;
+  }
+  else if (level == CE_Warning && kept.warning.empty())
+  {
+    kept.warning = text;
+  }
+}
+
+void registerDrivers()
+{
+  static std::once_flag once;
+  std::call_once(once, [] { GDALAllRegister(); });
+}
+
+enum class Kind
+{
+  Raster,
+  Vector
+};
+
+DatasetPtr tryOpen(const std::string& fileName, Kind kind)
+{
+  // Tables: every column as text. A column that GDAL took for numbers would turn words into zeros.
+  // Drivers other than CSV do not know the option and say so in a warning that nobody sees.
+  const char* const tableOptions[] = { "AUTODETECT_TYPE=NO", nullptr };
+  const unsigned flags = GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR |
+    (kind == Kind::Raster ? GDAL_OF_RASTER : GDAL_OF_VECTOR);
+  return DatasetPtr(GDALDataset::Open(
+    fileName.c_str(), flags, nullptr, kind == Kind::Vector ? tableOptions : nullptr));
+}
+
+DatasetPtr open(const std::string& fileName, Kind kind, Messages& messages)
+{
+  registerDrivers();
+  if (fileName.empty())
+  {
+    throw FileError("No file name was given");
+  }
+  messages.clear();
+  DatasetPtr dataset = tryOpen(fileName, kind);
+  if (dataset)
+  {
+    messages.clear();
+    return dataset;
+  }
+
+  // Only now: names like NETCDF:"a.nc":z and /vsizip/ are no files, and some formats are folders.
+  const std::string reason = messages.failure();
+  VSIStatBufL status;
+  if (VSIStatExL(fileName.c_str(), &status, VSI_STAT_EXISTS_FLAG | VSI_STAT_NATURE_FLAG) != 0)
+  {
+    throw FileError(fileName + ": no such file");
+  }
+  if (VSI_ISDIR(status.st_mode))
+  {
+    throw FileError(fileName + ": is a folder, not a file");
+  }
+  const Kind other = kind == Kind::Raster ? Kind::Vector : Kind::Raster;
+  if (tryOpen(fileName, other))
+  {
+    throw FileError(fileName +
+      (kind == Kind::Raster ? ": is a vector layer, a raster is needed"
+                            : ": is a raster, a layer of points or a table is needed"));
+  }
+  throw FileError(fileName +
+    (kind == Kind::Raster ? ": is not a raster that GDAL can read"
+                          : ": is not a vector layer or table that GDAL can read") +
+    (reason.empty() ? "" : " (" + reason + ")"));
+}
+
+} // namespace
+
+Messages::Messages()
+{
+  CPLPushErrorHandlerEx(keep, &kept_);
+}
+
+Messages::~Messages()
+{
+  CPLPopErrorHandler();
+}
+
+void CloseDataset::operator()(GDALDataset* dataset) const
+{
+  GDALClose(dataset);
+}
+
+DatasetPtr openRaster(const std::string& fileName, Messages& messages)
+{
+  return open(fileName, Kind::Raster, messages);
+}
+
+DatasetPtr openVector(const std::string& fileName, Messages& messages)
+{
+  return open(fileName, Kind::Vector, messages);
+}
+
+std::string number(double value)
+{
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof(text), value, std::chars_format::general, 10);
+  return { text, end.ptr };
+}
+
+std::string sizeText(std::int64_t columns, std::int64_t rows)
+{
+  return std::to_string(columns) + " x " + std::to_string(rows);
+}
+
+} // namespace rockfall::gis

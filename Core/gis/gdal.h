@@ -1,0 +1,60 @@
+#pragma once
+
+/// @file
+/// What the readers of this folder share. GDAL's own headers stay in the sources: whoever includes
+/// this header needs GDAL's library, not its headers.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+class GDALDataset;
+
+namespace rockfall::gis
+{
+
+/// While it lives, what GDAL has to say on this thread is kept here instead of printed. One per
+/// public call, declared before any dataset, so that closing is silent, too.
+class Messages
+{
+public:
+  Messages();
+  ~Messages();
+  Messages(const Messages&) = delete;
+  Messages& operator=(const Messages&) = delete;
+
+  /// The first error since the last `clear`; the first, because later ones only repeat that
+  /// something went wrong. Empty if there was none.
+  const std::string& failure() const { return kept_.failure; }
+  /// The first warning since the last `clear`.
+  const std::string& warning() const { return kept_.warning; }
+  void clear() { kept_ = {}; }
+
+  struct Kept
+  {
+    std::string failure;
+    std::string warning;
+  };
+
+private:
+  Kept kept_;
+};
+
+struct CloseDataset
+{
+  void operator()(GDALDataset* dataset) const;
+};
+using DatasetPtr = std::unique_ptr<GDALDataset, CloseDataset>;
+
+/// Opens for reading. Throws FileError that says which of the usual mistakes it is: no name, no
+/// such file, a folder, the other kind of data, or nothing that GDAL knows.
+DatasetPtr openRaster(const std::string& fileName, Messages& messages);
+DatasetPtr openVector(const std::string& fileName, Messages& messages);
+
+/// A number for a message, with a decimal point in every locale.
+std::string number(double value);
+
+/// "120 x 80": columns first, as GDAL prints sizes.
+std::string sizeText(std::int64_t columns, std::int64_t rows);
+
+} // namespace rockfall::gis

@@ -1,0 +1,372 @@
+#include "gis/rasterFile.h"
+
+#include "base/errors.h"
+#include "gis/asciiGrid.h"
+
+#include <cpl_string.h>
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace rockfall::gis
+{
+
+namespace
+{
+
+/// Higher than any mountain and deeper than any sea: what lies beyond is a forgotten nodata value.
+constexpr double largestHeight = 20000.0; // m
+
+constexpr double foot = 0.3048;                // m, international
+constexpr double surveyFoot = 1200.0 / 3937.0; // m, United States
+
+/// Metres per unit of height by the unit's name; nothing for a name that is not known.
+std::optional<double> metresPer(const std::string& unit)
+{
+  const auto is = [&unit](std::initializer_list<const char*> names)
+  {
+    return std::any_of(
+      names.begin(), names.end(), [&unit](const char* name) { return EQUAL(unit.c_str(), name); });
+  };
+  if (is({ "m", "metre", "metres", "meter", "meters" }))
+  {
+    return 1.0;
+  }
+  if (is({ "ft", "foot", "feet", "international foot", "international feet" }))
+  {
+    return foot;
+  }
+  if (is({ "us survey foot", "us survey feet", "us_survey_foot", "us-ft", "ftus", "sft", "foot_us",
+        "us foot", "u.s. survey foot", "survey foot" }))
+  {
+    return surveyFoot;
+  }
+  if (is({ "cm", "centimetre", "centimeter", "centimetres", "centimeters" }))
+  {
+    return 0.01;
+  }
+  if (is({ "dm", "decimetre", "decimeter" }))
+  {
+    return 0.1;
+  }
+  if (is({ "mm", "millimetre", "millimeter" }))
+  {
+    return 0.001;
+  }
+  return std::nullopt;
+}
+
+/// The band's own nodata value, met in raw values.
+class Nodata
+{
+public:
+  explicit Nodata(GDALRasterBand& band)
+    : single_(band.GetRasterDataType() == GDT_Float32)
+  {
+    int has = 0;
+    const double value = band.GetNoDataValue(&has);
+    if (has)
+    {
+      value_ = value;
+    }
+  }
+
+  bool operator()(double raw) const
+  {
+    if (!value_)
+    {
+      return false;
+    }
+    if (std::isnan(raw))
+    {
+      return std::isnan(*value_);
+    }
+    if (raw == *value_)
+    {
+      return true;
+    }
+    // Single precision: the value was written as a decimal number, −9999.9 or the famous
+    // −3.4028235e38, which do not come back as the float that stands in the cells.
+    return single_ && std::abs(raw - *value_) <= 2.0 * FLT_EPSILON * std::abs(*value_);
+  }
+
+private:
+  bool single_;
+  std::optional<double> value_;
+};
+
+} // namespace
+
+RasterFile::RasterFile(
+  const std::string& fileName, int band, Messages& messages, std::vector<std::string>& notes)
+  : fileName_(fileName)
+  , messages_(messages)
+  , notes_(notes)
+  , dataset_(openRaster(fileName, messages))
+  , bandNumber_(band)
+{
+  const int bands = dataset_->GetRasterCount();
+  if (bands == 0)
+  {
+    // netCDF, HDF5: the file is a container, and the rasters have names of their own.
+    const char* inside =
+      CSLFetchNameValue(dataset_->GetMetadata("SUBDATASETS"), "SUBDATASET_1_NAME");
+    throw FileError(fileName + ": has no raster band" +
+      (inside
+          ? std::string("; it is a container, give one of its rasters as the file name, e.g. ") +
+            inside
+          : ""));
+  }
+  if (band < 1 || band > bands)
+  {
+    throw DataError(fileName + ": band " + std::to_string(band) + " was asked for, the file has " +
+      (bands == 1 ? "1 band" : std::to_string(bands) + " bands"));
+  }
+  band_ = dataset_->GetRasterBand(band);
+  const GDALDataType type = band_->GetRasterDataType();
+  if (GDALDataTypeIsComplex(type))
+  {
+    throw DataError(fileName + ": band " + std::to_string(band) + " is of complex type " +
+      GDALGetDataTypeName(type) + ", heights are real numbers");
+  }
+  columns_ = dataset_->GetRasterXSize();
+  rows_ = dataset_->GetRasterYSize();
+  if (columns_ < 2 || rows_ < 2)
+  {
+    throw DataError(fileName + ": has " + std::to_string(columns_) + " columns and " +
+      std::to_string(rows_) + " rows, at least 2 of each are needed");
+  }
+  if (dataset_->GetDriver() && EQUAL(dataset_->GetDriver()->GetDescription(), "AAIGrid"))
+  {
+    checkAsciiGrid(fileName, columns_, rows_);
+  }
+  this->findPlace();
+  this->findUnits();
+}
+
+void RasterFile::findPlace()
+{
+  crs_ = horizontalCrs(dataset_->GetSpatialRef());
+  if (dataset_->GetGeoTransform(affine_.data()) != CE_None)
+  {
+    if (dataset_->GetGCPCount() > 0)
+    {
+      if (!GDALGCPsToGeoTransform(
+            dataset_->GetGCPCount(), dataset_->GetGCPs(), affine_.data(), FALSE))
+      {
+        throw DataError(fileName_ + ": its " + std::to_string(dataset_->GetGCPCount()) +
+          " ground control points fit no straight grid; warp it first, e.g. with gdalwarp -tps");
+      }
+      crs_ = horizontalCrs(dataset_->GetGCPSpatialRef());
+    }
+    else if (dataset_->GetMetadata("GEOLOCATION") || dataset_->GetMetadata("RPC"))
+    {
+      throw DataError(fileName_ + ": is placed by a geolocation array or RPCs and not by a grid; " +
+        "warp it first with gdalwarp");
+    }
+    else
+    {
+      georeferenced_ = false;
+      affine_ = { 0.0, 1.0, 0.0, double(rows_), 0.0, -1.0 };
+    }
+  }
+  double unused[6];
+  if (!std::all_of(affine_.begin(), affine_.end(), [](double a) { return std::isfinite(a); }) ||
+    !GDALInvGeoTransform(affine_.data(), unused))
+  {
+    throw DataError(fileName_ + ": its cells have no area: geotransform " + number(affine_[0]) +
+      ", " + number(affine_[1]) + ", " + number(affine_[2]) + ", " + number(affine_[3]) + ", " +
+      number(affine_[4]) + ", " + number(affine_[5]));
+  }
+  if (!crs_)
+  {
+    return;
+  }
+  if (crs_->IsGeocentric())
+  {
+    throw DataError(fileName_ + ": its CRS " + crsLabel(*crs_) + " is geocentric, not a map");
+  }
+  if (crs_->IsLocal())
+  {
+    const char* unit = nullptr;
+    const double metres = crs_->GetLinearUnits(&unit);
+    if (metres > 0.0 && std::abs(metres - 1.0) > 1e-9)
+    {
+      std::for_each(affine_.begin(), affine_.end(), [metres](double& a) { a *= metres; });
+      notes_.push_back("The local coordinates in " + std::string(unit ? unit : "unnamed units") +
+        " were multiplied by " + number(metres) + " to be metres.");
+    }
+    crs_.reset();
+  }
+}
+
+void RasterFile::findUnits()
+{
+  int has = 0;
+  const double scale = band_->GetScale(&has);
+  scale_ = has ? scale : 1.0;
+  const double offset = band_->GetOffset(&has);
+  offset_ = has ? offset : 0.0;
+  if (!std::isfinite(scale_) || scale_ == 0.0 || !std::isfinite(offset_))
+  {
+    throw DataError(fileName_ + ": band " + std::to_string(bandNumber_) + " has scale " +
+      number(scale_) + " and offset " + number(offset_));
+  }
+  if (scale_ != 1.0 || offset_ != 0.0)
+  {
+    notes_.push_back(
+      "The band's scale " + number(scale_) + " and offset " + number(offset_) + " were applied.");
+  }
+
+  const std::string unit = band_->GetUnitType() ? band_->GetUnitType() : "";
+  double metres = 1.0;
+  if (unit.empty())
+  {
+    metres = verticalUnit(dataset_->GetSpatialRef());
+    if (metres != 1.0)
+    {
+      notes_.push_back(
+        "Heights were multiplied by " + number(metres) + ", the unit of the vertical CRS.");
+    }
+  }
+  else if (const auto known = metresPer(unit))
+  {
+    metres = *known;
+    if (metres != 1.0)
+    {
+      notes_.push_back(
+        "Heights in \"" + unit + "\" were multiplied by " + number(metres) + " to be metres.");
+    }
+  }
+  else
+  {
+    notes_.push_back("Heights have the unit \"" + unit +
+      "\", which is not known; they were taken "
+      "as metres.");
+  }
+  if (metres != 1.0)
+  {
+    scale_ *= metres;
+    offset_ *= metres;
+  }
+
+  const GDALColorInterp colour = band_->GetColorInterpretation();
+  if (colour == GCI_PaletteIndex || (colour >= GCI_RedBand && colour <= GCI_BlueBand))
+  {
+    notes_.push_back("Band " + std::to_string(bandNumber_) + " is a picture's colour (" +
+      GDALGetColorInterpretationName(colour) + "); its numbers were taken as heights in metres.");
+  }
+}
+
+SourceGrid RasterFile::read()
+{
+  requireMemory(double(columns_) * rows_, fileName_);
+  SourceGrid grid;
+  grid.columns = columns_;
+  grid.rows = rows_;
+  grid.affine = affine_;
+  grid.heights.resize(std::size_t(columns_) * rows_);
+
+  // Whole blocks of the file, of about 4 million nodes.
+  int blockColumns = 1, blockRows = 1;
+  band_->GetBlockSize(&blockColumns, &blockRows);
+  blockRows = std::clamp(blockRows, 1, rows_);
+  const int blocks = std::max(1, (1 << 22) / columns_ / blockRows);
+  const int step = int(std::min<std::int64_t>(std::int64_t(blocks) * blockRows, rows_));
+  for (std::int64_t first = 0; first < rows_; first += step)
+  {
+    const int count = int(std::min<std::int64_t>(step, rows_ - first));
+    this->readRows(int(first), count, grid.heights.data() + first * columns_);
+  }
+  if (std::all_of(
+        grid.heights.begin(), grid.heights.end(), [](double height) { return std::isnan(height); }))
+  {
+    throw DataError(fileName_ + ": all " + sizeText(columns_, rows_) + " nodes of band " +
+      std::to_string(bandNumber_) + " are nodata");
+  }
+
+  if (affine_[2] == 0.0 && affine_[4] == 0.0 && affine_[5] > 0.0)
+  {
+    for (int row = 0; row < rows_ / 2; ++row)
+    {
+      const auto upper = grid.heights.begin() + std::ptrdiff_t(row) * columns_;
+      const auto lower = grid.heights.begin() + std::ptrdiff_t(rows_ - 1 - row) * columns_;
+      std::swap_ranges(upper, upper + columns_, lower);
+    }
+    grid.affine[3] += rows_ * grid.affine[5];
+    grid.affine[5] = -grid.affine[5];
+    notes_.push_back("The file's " + std::to_string(rows_) +
+      " rows run from south to north; they were turned over.");
+  }
+  return grid;
+}
+
+void RasterFile::readRows(int first, int count, double* values)
+{
+  const auto fail = [&]
+  {
+    throw FileError(fileName_ + ": rows " + std::to_string(first + 1) + " to " +
+      std::to_string(first + count) + " of band " + std::to_string(bandNumber_) +
+      " cannot be read: " + messages_.failure());
+  };
+  messages_.clear();
+  if (band_->RasterIO(GF_Read, 0, first, columns_, count, values, columns_, count, GDT_Float64, 0,
+        0, nullptr) != CE_None ||
+    !messages_.failure().empty())
+  {
+    fail();
+  }
+
+  // A mask made from the nodata value says nothing new, unless the value has 64 bits and is not a
+  // double. Real masks and alpha bands do.
+  const int flags = band_->GetMaskFlags();
+  const GDALDataType type = band_->GetRasterDataType();
+  const bool wide = type == GDT_Int64 || type == GDT_UInt64;
+  std::vector<GByte> mask;
+  if (!(flags & GMF_ALL_VALID) && (!(flags & GMF_NODATA) || wide))
+  {
+    mask.resize(std::size_t(count) * columns_);
+    if (band_->GetMaskBand()->RasterIO(GF_Read, 0, first, columns_, count, mask.data(), columns_,
+          count, GDT_Byte, 0, 0, nullptr) != CE_None)
+    {
+      fail();
+    }
+  }
+
+  const Nodata nodata(*band_);
+  for (std::size_t i = 0; i < std::size_t(count) * columns_; ++i)
+  {
+    const double raw = values[i];
+    if ((!mask.empty() && mask[i] == 0) || nodata(raw))
+    {
+      values[i] = std::numeric_limits<double>::quiet_NaN();
+      continue;
+    }
+    values[i] = raw * scale_ + offset_;
+    if (!(std::abs(values[i]) <= largestHeight))
+    {
+      this->check(first + int(i / columns_), int(i % columns_), raw, values[i]);
+    }
+  }
+}
+
+void RasterFile::check(int row, int column, double raw, double height) const
+{
+  const std::string where = " in row " + std::to_string(row + 1) + ", column " +
+    std::to_string(column + 1) + " of band " + std::to_string(bandNumber_);
+  if (!std::isfinite(raw))
+  {
+    throw DataError(fileName_ + ": the height" + where + " is " + number(raw) +
+      " and that is not the file's nodata value");
+  }
+  throw DataError(fileName_ + ": the height" + where + " is " + number(height) +
+    " m; a nodata value that the file does not declare? (gdal_edit.py -a_nodata " + number(raw) +
+    " declares it)");
+}
+
+} // namespace rockfall::gis

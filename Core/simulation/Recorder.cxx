@@ -1,0 +1,93 @@
+#include "simulation/Recorder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rockfall
+{
+
+double heightOverGround(const Surface& surface, const Block& block, const BlockState& state)
+{
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Vec3& x : block.shape().vertices())
+  {
+    const Vec3 p = state.position + state.orientation * x;
+    const double ground = surface.elevation(p.x(), p.y());
+    if (!std::isnan(ground))
+    {
+      lowest = std::min(lowest, p.z() - ground);
+    }
+  }
+  return std::isinf(lowest) ? std::numeric_limits<double>::quiet_NaN() : lowest;
+}
+
+Sample Recorder::makeSample(const BlockState& state, bool contact)
+{
+  Sample s;
+  s.time = state.time;
+  s.position = state.position;
+  s.orientation = state.orientation;
+  s.velocity = state.velocity;
+  s.angularVelocity = state.angularVelocity();
+  s.kineticEnergy = rigidKineticEnergy(block_, state);
+  s.heightOverGround = heightOverGround(surface_, block_, state);
+  s.contact = contact;
+  TrajectorySummary& summary = trajectory_.summary;
+  if (s.heightOverGround > summary.maxHeightOverGround)
+  {
+    summary.maxHeightOverGround = s.heightOverGround;
+  }
+  return s;
+}
+
+void Recorder::begin(const BlockState& state)
+{
+  last_ = state.position;
+  trajectory_.summary.start = state.position;
+  this->follow(state);
+  this->record(state, false);
+}
+
+void Recorder::record(const BlockState& state, bool contact)
+{
+  trajectory_.samples.push_back(this->makeSample(state, contact));
+  ++next_;
+}
+
+void Recorder::recordBetween(const BlockState& from, const BlockState& to, bool contact)
+{
+  const double h = to.time - from.time;
+  while (this->nextTime() <= to.time && h > 0.0)
+  {
+    const double s = std::clamp((this->nextTime() - from.time) / h, 0.0, 1.0);
+    const double s2 = s * s, s3 = s2 * s;
+    BlockState between = to;
+    between.time = this->nextTime();
+    between.position = (2 * s3 - 3 * s2 + 1) * from.position + (s3 - 2 * s2 + s) * h * from.velocity +
+      (3 * s2 - 2 * s3) * to.position + (s3 - s2) * h * to.velocity;
+    between.velocity = (1.0 - s) * from.velocity + s * to.velocity;
+    between.spin = (1.0 - s) * from.spin + s * to.spin;
+    between.orientation = from.orientation.slerp(s, to.orientation);
+    this->record(between, contact);
+  }
+}
+
+void Recorder::follow(const BlockState& state)
+{
+  TrajectorySummary& s = trajectory_.summary;
+  s.pathLength += (state.position - last_).norm();
+  last_ = state.position;
+  s.maxSpeed = std::max(s.maxSpeed, state.velocity.norm());
+  s.maxKineticEnergy = std::max(s.maxKineticEnergy, rigidKineticEnergy(block_, state));
+}
+
+void Recorder::end(const BlockState& state, bool contact)
+{
+  if (trajectory_.samples.empty() || trajectory_.samples.back().time < state.time)
+  {
+    trajectory_.samples.push_back(this->makeSample(state, contact));
+  }
+}
+
+} // namespace rockfall

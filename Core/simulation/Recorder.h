@@ -1,0 +1,52 @@
+#pragma once
+
+/// @file
+/// Turns the states that a rock passes through into samples at even times and a summary.
+
+#include "block/Block.h"
+#include "simulation/results.h"
+#include "terrain/Surface.h"
+
+namespace rockfall
+{
+
+class Recorder
+{
+public:
+  Recorder(const Surface& surface, const Block& block, double interval)
+    : surface_(surface)
+    , block_(block)
+    , interval_(interval)
+  {
+  }
+
+  /// The first sample.
+  void begin(const BlockState& state);
+  /// Time of the next sample, s.
+  double nextTime() const { return double(next_) * interval_; }
+  /// Records a sample at exactly this state and moves on to the next time.
+  void record(const BlockState& state, bool contact);
+  /// Records all samples that fall into a step, interpolated (cubic in place, slerp in attitude).
+  void recordBetween(const BlockState& from, const BlockState& to, bool contact);
+  /// Follows maxima and path length; call for every state that is reached.
+  void follow(const BlockState& state);
+  /// Adds the last state if it is not at an even time.
+  void end(const BlockState& state, bool contact);
+
+  Trajectory& trajectory() { return trajectory_; }
+
+private:
+  Sample makeSample(const BlockState& state, bool contact);
+
+  const Surface& surface_;
+  const Block& block_;
+  double interval_;
+  std::int64_t next_ = 0;
+  Vec3 last_ = Vec3::Zero();
+  Trajectory trajectory_;
+};
+
+/// Lowest point of a block over the surface straight below it, m; NaN beyond the slope.
+double heightOverGround(const Surface& surface, const Block& block, const BlockState& state);
+
+} // namespace rockfall

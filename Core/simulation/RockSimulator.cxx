@@ -1,0 +1,224 @@
+#include "simulation/RockSimulator.h"
+
+#include "block/flight.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace rockfall
+{
+
+namespace
+{
+
+/// Steps per half period of a vertex on its penalty spring: the impact is then resolved well enough for
+/// the order in which several vertices touch, and energy does not depend on it at all.
+constexpr double kStepsPerImpact = 10.0;
+/// Largest part of the rock's radius, and largest angle (rad), covered in a step of contact.
+constexpr double kTravelPerStep = 0.1;
+/// A rock lies still when it has been slower than this share of √(g r) for this long (s).
+constexpr double kStillSpeed = 1e-3;
+constexpr double kStillTime = 0.5;
+/// A touch slower than this share of √(g r) is no impact: r is the rock's radius.
+constexpr double kRestingSpeed = 1e-2;
+
+} // namespace
+
+RockSimulator::RockSimulator(
+  const Surface& surface, const Rock& rock, const Block& block, const SimulationParameters& p)
+  : surface_(surface)
+  , rock_(rock)
+  , block_(block)
+  , parameters_(p)
+  , recorder_(surface, block, p.outputInterval)
+{
+  state_.position = rock.position;
+  state_.orientation = rock.orientation.normalized();
+  state_.velocity = rock.velocity;
+  state_.spin = state_.orientation.conjugate() * rock.angularVelocity;
+  const double g = std::max(p.gravity, 1e-3);
+  restingSpeed_ = kRestingSpeed * std::sqrt(g * block.radius());
+}
+
+double RockSimulator::travelLimit() const
+{
+  const double rim = state_.spin.norm() * block_.radius();
+  const double speed = state_.velocity.norm() + rim + parameters_.gravity * parameters_.timeStep;
+  return speed > 0.0 ? kTravelPerStep * block_.radius() / speed : parameters_.timeStep;
+}
+
+double RockSimulator::impactStep() const
+{
+  const double frequency = std::sqrt(parameters_.normalPenalty * block_.largestMobility());
+  const double resolved = std::numbers::pi / (kStepsPerImpact * frequency);
+  return std::min({ parameters_.timeStep, resolved, this->travelLimit() });
+}
+
+double RockSimulator::mechanicalEnergy() const
+{
+  return kineticEnergy(block_, state_) + strainEnergy(block_, state_) +
+    block_.mass() * parameters_.gravity * state_.position.z();
+}
+
+void RockSimulator::ensurePatch(double margin)
+{
+  const Vec3 lower = placed_.lower(), upper = placed_.upper();
+  if (!patch_.covers(
+        lower.x() - margin, upper.x() + margin, lower.y() - margin, upper.y() + margin))
+  {
+    // A little more than needed, so that it serves for a while.
+    const double more = margin + 0.25 * block_.radius();
+    gatherPatch(
+      surface_, lower.x() - more, upper.x() + more, lower.y() - more, upper.y() + more, patch_);
+  }
+}
+
+bool RockSimulator::clearFor(double duration) const
+{
+  const double r = block_.radius();
+  const Vec3& p = state_.position;
+  const Vec3 end = p + duration * state_.velocity;
+  const double zEnd = end.z() - 0.5 * parameters_.gravity * duration * duration;
+  // The parabola is concave: its lowest point is at one of its ends.
+  const double lowest = std::min(p.z(), zEnd) - r;
+  return surface_.maxHeight(std::min(p.x(), end.x()) - r, std::max(p.x(), end.x()) + r,
+           std::min(p.y(), end.y()) - r, std::max(p.y(), end.y()) + r) < lowest;
+}
+
+void RockSimulator::advanceInFlight(double duration)
+{
+  const BlockState start = state_;
+  const double end = start.time + duration;
+  while (recorder_.nextTime() <= end)
+  {
+    const BlockState at =
+      fly(block_, start, parameters_.gravity, std::max(0.0, recorder_.nextTime() - start.time));
+    recorder_.follow(at);
+    recorder_.record(at, false);
+  }
+  state_ = fly(block_, start, parameters_.gravity, duration);
+  state_.time = end;
+  recorder_.follow(state_);
+}
+
+void RockSimulator::flyUntilNear()
+{
+  while (!done_)
+  {
+    // Up to the edge of the slope, where the rock is let go.
+    double remaining = parameters_.endTime - state_.time;
+    const double extent[2] = { surface_.terrain().width(), surface_.terrain().height() };
+    for (int axis = 0; axis < 2; ++axis)
+    {
+      const double v = state_.velocity[axis];
+      const double way = v > 0.0 ? extent[axis] - state_.position[axis] : state_.position[axis];
+      if (v != 0.0)
+      {
+        // A hair beyond, so that the edge is passed and not met for ever.
+        remaining = std::min(remaining, way / std::abs(v) + 1e-9);
+      }
+    }
+    const double speed =
+      state_.velocity.norm() + state_.spin.norm() * block_.radius() + parameters_.gravity * 0.01;
+    const double shortest = std::max(0.25 * block_.radius() / speed, 4.0 * this->impactStep());
+    double duration = std::min(1.0, remaining);
+    bool clear = this->clearFor(duration);
+    while (!clear && duration > shortest)
+    {
+      duration *= 0.5;
+      clear = this->clearFor(duration);
+    }
+    if (!clear)
+    {
+      duration = std::min(shortest, remaining);
+      placed_.place(block_, state_);
+      this->ensurePatch(speed * duration + parameters_.gravity * duration * duration);
+      const Clearance gap = clearance(placed_, state_, patch_, parameters_.gravity);
+      if (gap.time < 4.0 * this->impactStep())
+      {
+        return;
+      }
+      duration = std::min(duration, gap.time);
+    }
+    this->advanceInFlight(duration);
+    this->checkEnd(0.0);
+  }
+}
+
+void RockSimulator::checkEnd(double h)
+{
+  TrajectorySummary& summary = recorder_.trajectory().summary;
+  const Terrain& terrain = surface_.terrain();
+  const Vec3& p = state_.position;
+  const double r = block_.radius();
+  bool left = !(p.x() >= 0.0 && p.y() >= 0.0 && p.x() <= terrain.width() && p.y() <= terrain.height());
+  if (!left && terrain.cfeAt(p.x(), p.y()) == 0)
+  {
+    // Over a hole it has left once it is below everything around.
+    const double around = surface_.maxHeight(p.x() - r, p.x() + r, p.y() - r, p.y() + r);
+    left = p.z() + r < around || p.z() < terrain.lowest() - 2.0 * r;
+  }
+  if (left)
+  {
+    summary.fate = Fate::LeftDomain;
+    done_ = true;
+    return;
+  }
+  bool touching = false;
+  for (const Contact& c : contacts_)
+  {
+    touching = touching || c.closed();
+  }
+  const double speed = state_.velocity.norm() + state_.spin.norm() * r;
+  const double still = kStillSpeed * std::sqrt(std::max(parameters_.gravity, 1e-3) * r);
+  quietTime_ = touching && speed < still ? quietTime_ + h : 0.0;
+  if (quietTime_ >= kStillTime)
+  {
+    summary.fate = Fate::Rested;
+    done_ = true;
+  }
+  else if (state_.time >= parameters_.endTime - 1e-9)
+  {
+    summary.fate = Fate::Moving;
+    done_ = true;
+  }
+}
+
+Trajectory RockSimulator::run()
+{
+  TrajectorySummary& summary = recorder_.trajectory().summary;
+  summary.blockId = rock_.blockId;
+  summary.mass = block_.mass();
+  summary.volume = block_.volume();
+  const double before = this->mechanicalEnergy();
+  recorder_.begin(state_);
+  this->checkEnd(0.0);
+  while (!done_)
+  {
+    this->flyUntilNear();
+    if (!done_)
+    {
+      this->stayInContact();
+    }
+  }
+  this->finishImpact();
+  const bool touching =
+    std::any_of(contacts_.begin(), contacts_.end(), [](const Contact& c) { return c.closed(); });
+  recorder_.end(state_, touching);
+  summary.stop = state_.position;
+  summary.endTime = state_.time;
+  summary.runOut = (state_.position - summary.start).head<2>().norm();
+  const double potential =
+    block_.mass() * parameters_.gravity * state_.position.z();
+  energy_.kinetic = kineticEnergy(block_, state_);
+  energy_.strain = strainEnergy(block_, state_) + springEnergy_;
+  energy_.released = before - potential;
+  energy_.numerical = energy_.released -
+    (energy_.kinetic + energy_.strain + energy_.friction + energy_.restitution +
+      energy_.vibration + energy_.damping);
+  summary.energy = energy_;
+  return std::move(recorder_.trajectory());
+}
+
+} // namespace rockfall

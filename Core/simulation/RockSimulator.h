@@ -1,0 +1,80 @@
+#pragma once
+
+/// @file
+/// One rock on one realisation of the slope, from release to rest: flight in closed form, contact in
+/// steps, restitution as events.
+
+#include "contact/Contact.h"
+#include "simulation/ensemble.h"
+#include "simulation/Recorder.h"
+#include "solver/StepSolver.h"
+
+#include <vector>
+
+namespace rockfall
+{
+
+class RockSimulator
+{
+public:
+  RockSimulator(
+    const Surface& surface, const Rock& rock, const Block& block, const SimulationParameters& p);
+
+  /// Runs to rest, to the edge of the slope or to the end time.
+  Trajectory run();
+
+  const BlockState& state() const { return state_; }
+
+private:
+  /// What is under way between the first touch and the take-off or settling.
+  struct Impact
+  {
+    bool pending = false;
+    ImpactEvent event;
+    Vec3 normalImpulse = Vec3::Zero(); ///< N s, world.
+    double largestForce = 0.0;         ///< N
+    double frictionBefore = 0.0;       ///< Friction work when it began, J.
+  };
+
+  // Flight, RockSimulator.cxx
+  void flyUntilNear(); ///< Returns when a touch is possible within a few steps, or at the end.
+  void advanceInFlight(double duration);
+  bool clearFor(double duration) const;
+  void checkEnd(double h); ///< Rested, left, or out of time? `h`: time since the last call, s.
+
+  // Contact, contactPhase.cxx
+  void stayInContact(); ///< Returns after take-off, or at the end.
+  void takeStep(double h, StepKind kind);
+  bool mayLast(double h) const;
+  void pressOut(double h);
+  void followImpact(const BlockState& start, double h);
+  void finishImpact();
+
+  void ensurePatch(double margin);
+  double impactStep() const;
+  double travelLimit() const;
+  double mechanicalEnergy() const; ///< Without contact springs, J.
+
+  const Surface& surface_;
+  const Rock& rock_;
+  const Block& block_;
+  const SimulationParameters& parameters_;
+  BlockState state_;
+  PlacedBlock placed_;
+  SurfacePatch patch_;
+  StepSolver solver_;
+  std::vector<Contact> contacts_;
+  std::vector<Contact> contactsBefore_;
+  BlockState before_; ///< At the start of the last step of contact.
+  Recorder recorder_;
+  Impact impact_;
+  EnergyAudit energy_;
+  double springEnergy_ = 0.0;
+  double restingSpeed_ = 0.0; ///< Below it a touch is no impact, m/s.
+  double quietTime_ = 0.0;    ///< For how long it has been lying still, s.
+  Vec3 acceleration_ = Vec3::Zero();
+  Vec3 spinAcceleration_ = Vec3::Zero();
+  bool done_ = false;
+};
+
+} // namespace rockfall

@@ -1,0 +1,261 @@
+#include "simulation/RockSimulator.h"
+
+#include "block/flight.h"
+#include "simulation/restitution.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rockfall
+{
+
+namespace
+{
+
+/// Speed at which an overlap that was found, not made, is pressed out of a lasting contact, m/s.
+constexpr double kPressOut = 0.05;
+/// An overlap beyond this share of the radius that nothing carries is held where it is.
+constexpr double kLooseOverlap = 1e-4;
+
+bool anyClosed(const std::vector<Contact>& contacts)
+{
+  return std::any_of(
+    contacts.begin(), contacts.end(), [](const Contact& c) { return c.closed(); });
+}
+
+} // namespace
+
+bool RockSimulator::mayLast(double h) const
+{
+  bool any = false;
+  const Vec3 spin = state_.angularVelocity();
+  for (const Contact& c : contacts_)
+  {
+    const Vec3 v = state_.velocity + spin.cross(c.point - state_.position);
+    const double approach = -c.normal.dot(v);
+    if (c.closed())
+    {
+      any = true;
+      if (std::abs(approach) > restingSpeed_)
+      {
+        return false;
+      }
+    }
+    else if (approach > restingSpeed_)
+    {
+      if (c.gap() < approach * h)
+      {
+        return false;
+      }
+    }
+    else if (c.gap() <= 0.5 * parameters_.gravity * h * h && approach > -restingSpeed_)
+    {
+      any = true; // laid down, not thrown
+    }
+  }
+  return any;
+}
+
+void RockSimulator::stayInContact()
+{
+  while (!done_)
+  {
+    const double small = this->impactStep();
+    const double large = std::min(parameters_.timeStep, this->travelLimit());
+    placed_.place(block_, state_);
+    const double speed = state_.velocity.norm() + state_.spin.norm() * block_.radius();
+    const auto reachOf = [&](double h)
+    { return 1.5 * speed * h + parameters_.gravity * h * h + 1e-6 * block_.radius(); };
+    const double reach = reachOf(large);
+    this->ensurePatch(reach);
+    updateContacts(placed_, patch_, reach, contacts_);
+
+    double h = std::min(large, parameters_.endTime - state_.time);
+    StepKind kind = StepKind::Lasting;
+    if (!this->mayLast(h))
+    {
+      kind = StepKind::Impact;
+      h = std::min(h, small);
+      const double near = reachOf(h);
+      std::erase_if(contacts_, [&](const Contact& c) { return !c.closed() && c.gap() > near; });
+    }
+    if (contacts_.empty())
+    {
+      const Clearance gap = clearance(placed_, state_, patch_, parameters_.gravity);
+      if (gap.time > 4.0 * small)
+      {
+        return;
+      }
+      if (penetration(placed_, patch_) > kLooseOverlap * block_.radius())
+      {
+        holdOverlap(placed_, patch_, contacts_);
+      }
+    }
+    this->takeStep(std::max(h, 1e-12), kind);
+    this->checkEnd(state_.time - before_.time);
+  }
+}
+
+void RockSimulator::takeStep(double h, StepKind kind)
+{
+  before_ = state_;
+  TrajectorySummary& summary = recorder_.trajectory().summary;
+  StepRequest request;
+  request.duration = h;
+  request.kind = kind;
+  request.gravity = parameters_.gravity;
+  request.normalPenalty = parameters_.normalPenalty;
+  request.shearPenalty = parameters_.normalPenalty * parameters_.shearRatio;
+  request.friction = surface_.friction();
+  request.cohesion = surface_.cohesion();
+  request.rigid = parameters_.rigid;
+  request.maxOpenClose = parameters_.maxOpenClose;
+  request.acceleration = acceleration_;
+  request.spinAcceleration = spinAcceleration_;
+  contactsBefore_ = contacts_;
+  const double energyBefore = this->mechanicalEnergy() + springEnergy_;
+
+  StepOutcome outcome;
+  for (int cut = 0;; ++cut)
+  {
+    const bool last = cut >= parameters_.maxCuts;
+    outcome = solver_.step(block_, request, contacts_, state_, last);
+    summary.openCloseIterations += outcome.iterations;
+    if (outcome.settled || last)
+    {
+      break;
+    }
+    ++summary.cutSteps;
+    request.duration *= 0.5;
+  }
+  ++summary.contactSteps;
+  if (!outcome.settled)
+  {
+    ++summary.unsettledSteps;
+    if (state_.time <= before_.time)
+    {
+      // Not even a finite displacement: the contacts are let go for this step.
+      state_ = fly(block_, state_, parameters_.gravity, request.duration);
+      contacts_.clear();
+      contactsBefore_.clear();
+    }
+  }
+  const double taken = state_.time - before_.time;
+  energy_.friction += outcome.frictionWork;
+  springEnergy_ = outcome.springEnergy;
+  if (kind == StepKind::Lasting)
+  {
+    energy_.damping +=
+      energyBefore - this->mechanicalEnergy() - springEnergy_ - outcome.frictionWork;
+    // The lag of the next lasting step. What an impact left is no acceleration to go on with.
+    const double bound = 3.0 * parameters_.gravity;
+    acceleration_ = (state_.velocity - before_.velocity) / taken;
+    spinAcceleration_ = (state_.spin - before_.spin) / taken;
+    if (acceleration_.norm() > bound || spinAcceleration_.norm() * block_.radius() > bound)
+    {
+      acceleration_.setZero();
+      spinAcceleration_.setZero();
+    }
+    this->pressOut(taken);
+  }
+  else
+  {
+    acceleration_.setZero();
+    spinAcceleration_.setZero();
+  }
+  const bool touching = anyClosed(contacts_);
+  recorder_.recordBetween(before_, state_, touching);
+  recorder_.follow(state_);
+  this->followImpact(before_, taken);
+  if (!touching)
+  {
+    energy_.vibration += relaxStrain(block_, state_);
+  }
+  if (!touching || kind == StepKind::Lasting)
+  {
+    this->finishImpact();
+  }
+}
+
+void RockSimulator::pressOut(double h)
+{
+  for (Contact& c : contacts_)
+  {
+    c.offset = std::min(0.0, c.offset + kPressOut * h);
+  }
+}
+
+void RockSimulator::followImpact(const BlockState& start, double h)
+{
+  const Vec3 spin = start.angularVelocity();
+  for (std::size_t i = 0; i < contacts_.size(); ++i)
+  {
+    const Contact& now = contacts_[i];
+    const Contact& was = contactsBefore_[i];
+    if (now.normalForce <= 0.0)
+    {
+      continue;
+    }
+    if (!was.closed())
+    {
+      const double approach =
+        -was.normal.dot(start.velocity + spin.cross(was.point - start.position));
+      if (approach > restingSpeed_)
+      {
+        ImpactEvent& event = impact_.event;
+        if (!impact_.pending)
+        {
+          impact_ = Impact();
+          impact_.pending = true;
+          impact_.frictionBefore = energy_.friction;
+          event.time = start.time;
+          event.velocityBefore = start.velocity;
+        }
+        event.approachSpeed = std::max(event.approachSpeed, approach);
+      }
+    }
+    if (impact_.pending)
+    {
+      impact_.normalImpulse += (h * now.normalForce) * now.normal;
+      if (now.normalForce > impact_.largestForce)
+      {
+        impact_.largestForce = now.normalForce;
+        impact_.event.cfe = now.cfe;
+        impact_.event.position = was.point;
+      }
+    }
+  }
+}
+
+void RockSimulator::finishImpact()
+{
+  if (!impact_.pending)
+  {
+    return;
+  }
+  impact_.pending = false;
+  ImpactEvent& event = impact_.event;
+  if (!isImpact(event.approachSpeed, event.velocityBefore.norm(), restingSpeed_,
+        parameters_.gravity, block_.radius()))
+  {
+    return;
+  }
+  event.impulse = impact_.normalImpulse.norm();
+  event.normal = event.impulse > 0.0 ? Vec3(impact_.normalImpulse / event.impulse)
+                                     : Vec3(Vec3::UnitZ());
+  event.restitution = surface_.restitution();
+  const double before = kineticEnergy(block_, state_);
+  state_.velocity = applyRestitution(
+    parameters_.restitutionModel, event.restitution, state_.velocity, event.normal);
+  const double taken = before - kineticEnergy(block_, state_);
+  energy_.restitution += taken;
+  event.velocityAfter = state_.velocity;
+  event.energyLoss = taken + energy_.friction - impact_.frictionBefore;
+  acceleration_.setZero();
+  spinAcceleration_.setZero();
+  Trajectory& trajectory = recorder_.trajectory();
+  trajectory.impacts.push_back(event);
+  ++trajectory.summary.impacts;
+}
+
+} // namespace rockfall

@@ -1,0 +1,103 @@
+#pragma once
+
+/// @file
+/// One step of one block on CFEs: assemble K D = F, solve, open–close (METHOD 2 and 3).
+///
+/// Departures from the paper, each for a reason of METHOD 10:
+/// - The rotation r is applied as a Cayley map, so that a material point moves by exactly
+///   u + r × Z + Δε X with the lever Z = ½ (X₁ + cay(r) X₁) at mid-step: the gap of a vertex–face contact
+///   at the end of the step is linear in D without remainder, and the volume does not grow.
+/// - The force of a spring over a step is either its discrete gradient, −(V(d₁) − V(d₀)) / (d₁ − d₀)
+///   with V(d) = ½ p min(d, 0)², which conserves energy to the last digit for any Δt and any phase of
+///   the impact in the step (Impact), or its value at the end of the step (Lasting), as Shi's.
+/// - Velocities: Impact takes Shi's Ḋ¹ = 2 D/Δt − Ḋ⁰. With a stiff contact that leaves the velocity
+///   ringing at ±v for ever, so Lasting takes Ḋ¹ = D/Δt + ½ Δt D̈⁰, second-order too and damped at high
+///   frequency (|λ| = 0.71 as Δt → ∞).
+
+#include "contact/Contact.h"
+
+#include <vector>
+
+namespace rockfall
+{
+
+enum class StepKind : std::uint8_t
+{
+  Impact,  ///< Conserves energy.
+  Lasting, ///< Damps what the step does not resolve.
+};
+
+struct StepRequest
+{
+  double duration = 0.0; ///< h, s.
+  StepKind kind = StepKind::Impact;
+  double gravity = 9.81;
+  double normalPenalty = 1e9; ///< pₙ, N/m.
+  double shearPenalty = 1e9;  ///< pₛ, N/m.
+  double friction = 0.0;      ///< tan φ.
+  double cohesion = 0.0;      ///< N per closed contact.
+  bool rigid = false;         ///< Strain rows left out: 6 unknowns.
+  int maxOpenClose = 12;
+  /// Acceleration of translation (world) and of the spin (body), lagged, for Lasting.
+  Vec3 acceleration = Vec3::Zero();
+  Vec3 spinAcceleration = Vec3::Zero();
+};
+
+struct StepOutcome
+{
+  bool settled = false;
+  int iterations = 0;
+  double frictionWork = 0.0; ///< Dissipated by sliding, J, ≥ 0.
+  double springEnergy = 0.0; ///< In the contact springs at the end, J.
+  bool anyClosed = false;
+};
+
+/// Holds the work space, so that a step allocates nothing once it has grown.
+class StepSolver
+{
+public:
+  /// Advances `state` and the contacts' springs by one step. Contacts come with distance, normal and
+  /// point as of the start of the step; they leave with state, forces, slip and the gap predicted for
+  /// its end in `distance`. If open–close does not settle, nothing is changed unless `takeAnyway`.
+  StepOutcome step(const Block& block, const StepRequest& request, std::vector<Contact>& contacts,
+    BlockState& state, bool takeAnyway = false);
+
+  /// The dense system of the last iteration, for the tests.
+  const Mat12& matrix() const { return matrix_; }
+  const Vec12& load() const { return load_; }
+
+private:
+  struct Row
+  {
+    Vec12 normal;                ///< nᵀT
+    std::array<Vec12, 2> shear;  ///< lᵀT for two directions in the contact's plane.
+    std::array<Vec3, 2> tangent; ///< Body axes.
+    Vec3 n;                      ///< Body axes of the step's start.
+    Vec3 x;                      ///< Material point.
+    Vec3 y0;                     ///< Its place about the centroid at the start, body axes.
+    Eigen::Vector2d slip0;
+    double gap0 = 0.0;
+    // As of the last evaluation:
+    double gap1 = 0.0;
+    double force = 0.0;
+    double stiffness = 0.0;
+    double share = 1.0; ///< Part of the step in which it is closed.
+    Eigen::Vector2d shearForce = Eigen::Vector2d::Zero();
+    Eigen::Matrix2d shearStiffness = Eigen::Matrix2d::Zero();
+    Eigen::Vector2d shearCoupling = Eigen::Vector2d::Zero(); ///< −∂(shear)/∂(gap1)
+    Eigen::Vector2d slip1 = Eigen::Vector2d::Zero();
+    ContactState state = ContactState::Open;
+  };
+
+  void prepareRows(const Block& block, const BlockState& state, const std::vector<Contact>& contacts);
+  void levers(const std::vector<Contact>& contacts, const Vec12& d);
+  /// Springs for the displacement D; returns whether any contact changed its state.
+  bool evaluate(const StepRequest& request, const Vec12& d);
+
+  std::vector<Row> rows_;
+  Mat12 matrix_;
+  Vec12 load_;
+  Mat3 rotation_; ///< Body to world at the start of the step.
+};
+
+} // namespace rockfall

@@ -1,0 +1,294 @@
+#include "terrain/Terrain.h"
+
+#include "base/errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rockfall
+{
+
+namespace
+{
+
+void requireRange(double value, double low, double high, const char* field, const char* range)
+{
+  if (!(value >= low && value <= high))
+  {
+    throw ParameterError(
+      std::string(field) + " is " + std::to_string(value) + ", it must be " + range);
+  }
+}
+
+} // namespace
+
+void SurfaceMaterial::validate() const
+{
+  requireRange(this->restitution, 0.0, 1.0, "RestitutionCoefficient", "0 to 1");
+  requireRange(this->restitutionDeviation, 0.0, 1.0, "RestitutionDeviation", "0 to 1");
+  if (!(this->frictionAngle >= 0.0 && this->frictionAngle < radians(90.0)))
+  {
+    throw ParameterError("FrictionAngle is " + std::to_string(degrees(this->frictionAngle)) +
+      " degrees, it must be at least 0 and below 90");
+  }
+  if (!(this->frictionAngleDeviation >= 0.0 && this->frictionAngleDeviation < radians(90.0)))
+  {
+    throw ParameterError("FrictionAngleDeviation is " +
+      std::to_string(degrees(this->frictionAngleDeviation)) +
+      " degrees, it must be at least 0 and below 90");
+  }
+  requireRange(this->cohesion, 0.0, std::numeric_limits<double>::max(), "Cohesion",
+    "a finite number of newtons, not negative");
+}
+
+void Roughness::validate() const
+{
+  if (!std::isfinite(this->mean))
+  {
+    throw ParameterError("RoughnessMean is " + std::to_string(this->mean) + ", it must be finite");
+  }
+  requireRange(this->deviation, 0.0, std::numeric_limits<double>::max(), "RoughnessDeviation",
+    "a finite number of metres, not negative");
+}
+
+Terrain::Terrain(GridGeometry geometry, std::span<const double> heights,
+  std::shared_ptr<const void> owner, SurfaceMaterial material, Roughness roughness)
+  : geometry_(std::move(geometry))
+  , heights_(heights)
+  , owner_(std::move(owner))
+  , material_(material)
+  , roughness_(roughness)
+{
+  if (geometry_.rows < 2 || geometry_.columns < 2)
+  {
+    throw DataError("the raster has " + std::to_string(geometry_.columns) + " columns and " +
+      std::to_string(geometry_.rows) + " rows; a slope needs at least 2 of each");
+  }
+  if (!(geometry_.cellSize > 0.0) || !std::isfinite(geometry_.cellSize))
+  {
+    throw DataError("the cell size is " + std::to_string(geometry_.cellSize) +
+      " m; it must be positive and finite");
+  }
+  if (std::int64_t(heights_.size()) != geometry_.nodeCount())
+  {
+    throw DataError("the raster has " + std::to_string(heights_.size()) + " heights for " +
+      std::to_string(geometry_.nodeCount()) + " nodes");
+  }
+  material_.validate();
+  roughness_.validate();
+  this->buildPyramid();
+}
+
+Terrain::Terrain(GridGeometry geometry, std::vector<double> heights, SurfaceMaterial material,
+  Roughness roughness)
+{
+  auto kept = std::make_shared<std::vector<double>>(std::move(heights));
+  std::span<const double> view(*kept);
+  *this = Terrain(std::move(geometry), view, std::move(kept), material, roughness);
+}
+
+void Terrain::buildPyramid()
+{
+  // Level 0 stands for blocks of 4×4 cells, so that it costs 1/32 of the heights' memory.
+  auto levels = std::make_shared<std::vector<Level>>();
+  const int cellColumns = geometry_.columns - 1;
+  const int cellRows = geometry_.rows - 1;
+  Level base;
+  base.columns = (cellColumns + 3) / 4;
+  base.rows = (cellRows + 3) / 4;
+  base.maximum.assign(
+    std::size_t(base.columns) * base.rows, -std::numeric_limits<float>::infinity());
+  bool any = false;
+  lowest_ = std::numeric_limits<double>::infinity();
+  for (int row = 0; row < geometry_.rows; ++row)
+  {
+    for (int column = 0; column < geometry_.columns; ++column)
+    {
+      const double z = this->nodeHeight(row, column);
+      if (std::isinf(z))
+      {
+        throw DataError("the height of row " + std::to_string(row + 1) + ", column " +
+          std::to_string(column + 1) + " is infinite");
+      }
+      if (std::isnan(z))
+      {
+        continue;
+      }
+      lowest_ = std::min(lowest_, z);
+      const float up = std::nextafter(float(z), std::numeric_limits<float>::infinity());
+      // A node bounds the cells on all its sides.
+      for (int r = std::max(row - 1, 0) / 4; r <= std::min(row, cellRows - 1) / 4; ++r)
+      {
+        for (int c = std::max(column - 1, 0) / 4; c <= std::min(column, cellColumns - 1) / 4; ++c)
+        {
+          float& m = base.maximum[std::size_t(r) * base.columns + c];
+          m = std::max(m, up);
+        }
+      }
+    }
+  }
+  for (std::int64_t id = 1; id <= this->cfeCapacity() && !any; ++id)
+  {
+    any = this->hasCfe(id);
+  }
+  if (!any)
+  {
+    throw DataError("the raster has no cell whose nodes all have a height: nothing but nodata");
+  }
+  levels->push_back(std::move(base));
+  while (levels->back().columns > 1 || levels->back().rows > 1)
+  {
+    const Level& fine = levels->back();
+    Level coarse;
+    coarse.columns = (fine.columns + 1) / 2;
+    coarse.rows = (fine.rows + 1) / 2;
+    coarse.maximum.assign(
+      std::size_t(coarse.columns) * coarse.rows, -std::numeric_limits<float>::infinity());
+    for (int r = 0; r < fine.rows; ++r)
+    {
+      for (int c = 0; c < fine.columns; ++c)
+      {
+        float& m = coarse.maximum[std::size_t(r / 2) * coarse.columns + c / 2];
+        m = std::max(m, fine.maximum[std::size_t(r) * fine.columns + c]);
+      }
+    }
+    levels->push_back(std::move(coarse));
+  }
+  pyramid_ = std::move(levels);
+}
+
+double Terrain::maxHeight(double xMin, double xMax, double yMin, double yMax) const
+{
+  const double none = -std::numeric_limits<double>::infinity();
+  if (xMax < 0.0 || yMax < 0.0 || xMin > this->width() || yMin > this->height())
+  {
+    return none;
+  }
+  const double inverse = 1.0 / geometry_.cellSize;
+  const int cellColumns = geometry_.columns - 1;
+  const int cellRows = geometry_.rows - 1;
+  const auto clampCell = [](double v, int n) { return int(std::clamp(v, 0.0, double(n - 1))); };
+  int c0 = clampCell(std::floor(xMin * inverse), cellColumns) / 4;
+  int c1 = clampCell(std::floor(xMax * inverse), cellColumns) / 4;
+  // Rows run south, y runs north.
+  int r0 = clampCell(std::floor((this->height() - yMax) * inverse), cellRows) / 4;
+  int r1 = clampCell(std::floor((this->height() - yMin) * inverse), cellRows) / 4;
+  std::size_t level = 0;
+  while ((c1 - c0 > 1 || r1 - r0 > 1) && level + 1 < pyramid_->size())
+  {
+    c0 /= 2, c1 /= 2, r0 /= 2, r1 /= 2;
+    ++level;
+  }
+  const Level& l = (*pyramid_)[level];
+  double highest = none;
+  for (int r = r0; r <= r1; ++r)
+  {
+    for (int c = c0; c <= c1; ++c)
+    {
+      highest = std::max(highest, double(l.maximum[std::size_t(r) * l.columns + c]));
+    }
+  }
+  return highest;
+}
+
+std::array<std::int64_t, 3> Terrain::cfeNodes(std::int64_t id) const
+{
+  const std::int64_t cell = (id - 1) / 2;
+  const std::int64_t row = cell / (geometry_.columns - 1);
+  const std::int64_t column = cell % (geometry_.columns - 1);
+  const std::int64_t upperLeft = row * geometry_.columns + column;
+  const std::int64_t lowerRight = upperLeft + geometry_.columns + 1;
+  if (id % 2 == 1)
+  {
+    return { upperLeft, lowerRight - 1, lowerRight };
+  }
+  return { upperLeft, lowerRight, upperLeft + 1 };
+}
+
+bool Terrain::hasCfe(std::int64_t id) const
+{
+  if (id < 1 || id > this->cfeCapacity())
+  {
+    return false;
+  }
+  for (std::int64_t n : this->cfeNodes(id))
+  {
+    if (std::isnan(heights_[std::size_t(n)]))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+Cfe Terrain::cfe(std::int64_t id) const
+{
+  Cfe result;
+  const auto nodes = this->cfeNodes(id);
+  for (int k = 0; k < 3; ++k)
+  {
+    result.nodes[k] =
+      this->node(int(nodes[k] / geometry_.columns), int(nodes[k] % geometry_.columns));
+  }
+  result.normal =
+    (result.nodes[1] - result.nodes[0]).cross(result.nodes[2] - result.nodes[0]).normalized();
+  return result;
+}
+
+std::int64_t Terrain::cfeAt(double x, double y) const
+{
+  if (!(x >= 0.0 && y >= 0.0 && x <= this->width() && y <= this->height()))
+  {
+    return 0;
+  }
+  const double s = x / geometry_.cellSize;
+  const double t = (this->height() - y) / geometry_.cellSize; // grows with the row
+  const int column = std::clamp(int(s), 0, geometry_.columns - 2);
+  const int row = std::clamp(int(t), 0, geometry_.rows - 2);
+  // The diagonal runs from upper left to lower right: below it the row part is the larger one.
+  const std::int64_t lower = 2 * (std::int64_t(row) * (geometry_.columns - 1) + column) + 1;
+  const std::int64_t id = (t - row > s - column) ? lower : lower + 1;
+  return this->hasCfe(id) ? id : 0;
+}
+
+double Terrain::elevation(double x, double y) const
+{
+  const std::int64_t id = this->cfeAt(x, y);
+  if (id == 0)
+  {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  const Cfe face = this->cfe(id);
+  const Vec3& n = face.normal;
+  const Vec3& a = face.nodes[0];
+  return a.z() - (n.x() * (x - a.x()) + n.y() * (y - a.y())) / n.z();
+}
+
+Terrain makeBiplanarSlope(double cellSize)
+{
+  if (!(cellSize > 0.0) || !(cellSize <= 50.0))
+  {
+    throw ParameterError("CellSize is " + std::to_string(cellSize) +
+      " m, the test slope takes more than 0 and at most 50");
+  }
+  const double incline = 100.0;
+  const double rise = 57.7;
+  GridGeometry geometry;
+  geometry.cellSize = cellSize;
+  geometry.columns = int(std::lround(250.0 / cellSize)) + 1;
+  geometry.rows = int(std::lround(100.0 / cellSize)) + 1;
+  std::vector<double> heights(std::size_t(geometry.nodeCount()));
+  for (int row = 0; row < geometry.rows; ++row)
+  {
+    for (int column = 0; column < geometry.columns; ++column)
+    {
+      const double x = column * cellSize;
+      heights[std::size_t(row) * geometry.columns + column] =
+        std::max(0.0, rise * (1.0 - x / incline));
+    }
+  }
+  return Terrain(std::move(geometry), std::move(heights));
+}
+
+} // namespace rockfall
