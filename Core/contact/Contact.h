@@ -113,9 +113,12 @@ struct Clearance
   double time = 0.0;     ///< Lower bound of the time to the first touch in free flight, s.
 };
 
-/// Conservative: from separating planes along the normals of CFEs and of the rock's faces.
+/// Conservative: per CFE the best of the separating axes (its normal, the world axes, the faces of the rock, the
+/// cross products of edges: complete for convex bodies). A fixed axis n is approached no faster than
+/// |ω| r − n·v plus gravity. Times beyond `horizon` (s) are not told apart, which spares most of the
+/// axes.
 Clearance clearance(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
-  double gravity);
+  double gravity, double horizon);
 
 /// Deepest penetration of the rock's vertices under the patch and of its peaks into the rock, m, ≥ 0.
 double penetration(const PlacedBlock& rock, const SurfacePatch& patch);

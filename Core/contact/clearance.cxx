@@ -27,67 +27,141 @@ double timeToCover(double distance, double rate, double acceleration)
 
 } // namespace
 
+namespace
+{
+
+/// How fast the rock can come nearer along an axis.
+struct Approach
+{
+  Vec3 velocity;
+  double rim; ///< |ω| r, m/s.
+  double gravity;
+
+  double time(const Vec3& axis, double distance) const
+  {
+    return timeToCover(
+      distance, this->rim - axis.dot(this->velocity), this->gravity * std::max(0.0, axis.z()));
+  }
+};
+
+/// The best separating axis of one triangle so far.
+struct Separation
+{
+  double distance = -std::numeric_limits<double>::infinity();
+  double time = 0.0;
+
+  void improve(const Approach& approach, const Vec3& axis, double along)
+  {
+    this->distance = std::max(this->distance, along);
+    this->time = std::max(this->time, approach.time(axis, along));
+  }
+};
+
+Separation separate(const PlacedBlock& rock, const std::array<Vec3, 3>& q,
+  const SurfacePatch::Triangle& t, const Approach& approach, double horizon)
+{
+  Separation best;
+  const auto low = [&](int axis) { return std::min({ q[0][axis], q[1][axis], q[2][axis] }); };
+  const auto high = [&](int axis) { return std::max({ q[0][axis], q[1][axis], q[2][axis] }); };
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    best.improve(approach, Vec3::Unit(axis), rock.lower()[axis] - high(axis));
+    best.improve(approach, -Vec3::Unit(axis), low(axis) - rock.upper()[axis]);
+  }
+  if (best.time >= horizon)
+  {
+    return best;
+  }
+  const auto lowestAlong = [&](const Vec3& n)
+  {
+    double d = std::numeric_limits<double>::infinity();
+    for (const Vec3& p : rock.vertices())
+    {
+      d = std::min(d, n.dot(p));
+    }
+    return d;
+  };
+  const auto highestAlong = [&](const Vec3& n)
+  { return std::max({ n.dot(q[0]), n.dot(q[1]), n.dot(q[2]) }); };
+  best.improve(approach, t.normal, lowestAlong(t.normal) - t.offset);
+  if (best.time >= horizon)
+  {
+    return best;
+  }
+  const Polyhedron& shape = rock.block().shape();
+  for (std::size_t f = 0; f < rock.normals().size(); ++f)
+  {
+    const Vec3 n = -rock.normals()[f];
+    const double face = n.dot(rock.vertices()[shape.faces()[f][0]]);
+    best.improve(approach, n, face - highestAlong(n));
+  }
+  if (best.time >= horizon)
+  {
+    return best;
+  }
+  for (const Polyhedron::Edge& e : shape.edges())
+  {
+    const Vec3 u = rock.vertices()[e.vertices[1]] - rock.vertices()[e.vertices[0]];
+    for (int k = 0; k < 3; ++k)
+    {
+      Vec3 n = u.cross(q[(k + 1) % 3] - q[k]);
+      const double length = n.norm();
+      if (length < 1e-12)
+      {
+        continue;
+      }
+      n /= length;
+      if (n.dot(rock.position() - q[k]) < 0.0)
+      {
+        n = -n;
+      }
+      // The axis separates best between the two edges themselves; else another one does.
+      const double bound = n.dot(rock.vertices()[e.vertices[0]]) - n.dot(q[k]);
+      if (bound > best.distance)
+      {
+        best.improve(approach, n, lowestAlong(n) - highestAlong(n));
+        if (best.time >= horizon)
+        {
+          return best;
+        }
+      }
+    }
+  }
+  return best;
+}
+
+} // namespace
+
 Clearance clearance(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
-  double gravity)
+  double gravity, double horizon)
 {
   Clearance result;
   result.distance = std::numeric_limits<double>::infinity();
-  result.time = std::numeric_limits<double>::infinity();
-  const Vec3& v = state.velocity;
-  const double speed = v.norm();
+  result.time = horizon;
   // |ω| is not constant for unequal moments, but bounded by |L| / Imin.
-  const double spin = rock.block().isotropic()
+  const Block& block = rock.block();
+  const double spin = block.isotropic()
     ? state.spin.norm()
-    : (rock.block().inertia() * state.spin).norm() * rock.block().inverseInertia().norm();
-  const double rim = spin * rock.block().radius();
-  const Polyhedron& shape = rock.block().shape();
+    : (block.inertia() * state.spin).norm() * block.inverseInertia().norm();
+  const Approach approach{ state.velocity, spin * block.radius(), gravity };
+  const Approach ball{ state.velocity, 0.0, gravity }; // the bounding sphere does not turn
   for (const SurfacePatch::Triangle& t : patch.triangles)
   {
     if (t.cfe == 0)
     {
       continue;
     }
-    double distance = std::numeric_limits<double>::infinity();
-    for (const Vec3& p : rock.vertices())
+    const double under = t.normal.dot(rock.position()) - t.offset - block.radius();
+    if (under > 0.0 && ball.time(t.normal, under) >= result.time)
     {
-      distance = std::min(distance, t.normal.dot(p) - t.offset);
+      result.distance = std::min(result.distance, under);
+      continue;
     }
-    double time =
-      timeToCover(distance, rim - t.normal.dot(v), gravity * std::max(0.0, t.normal.z()));
-    if (distance <= 0.0 || time < 1.0)
-    {
-      // Perhaps a face of the rock, or its bounding box, separates better.
-      Vec3 nodes[3];
-      double farthest = 0.0;
-      for (int k = 0; k < 3; ++k)
-      {
-        nodes[k] = patch.nodes[t.nodes[k]].position;
-        farthest = std::max(farthest, (nodes[k] - rock.position()).norm());
-      }
-      for (int f = 0; f < int(shape.faces().size()); ++f)
-      {
-        double nearest = std::numeric_limits<double>::infinity();
-        for (const Vec3& q : nodes)
-        {
-          nearest = std::min(nearest, rock.faceDistance(f, q));
-        }
-        // Seen from the rock a node moves with −v and the rock's rotation.
-        const double other = timeToCover(nearest, speed + spin * farthest, gravity);
-        time = std::max(time, other);
-        distance = std::max(distance, nearest);
-      }
-      for (int axis = 0; axis < 3; ++axis)
-      {
-        const double low = std::min({ nodes[0][axis], nodes[1][axis], nodes[2][axis] });
-        const double high = std::max({ nodes[0][axis], nodes[1][axis], nodes[2][axis] });
-        const double pull = axis == 2 ? gravity : 0.0;
-        time = std::max(time, timeToCover(rock.lower()[axis] - high, rim - v[axis], pull));
-        time = std::max(time, timeToCover(low - rock.upper()[axis], rim + v[axis], 0.0));
-        distance = std::max({ distance, rock.lower()[axis] - high, low - rock.upper()[axis] });
-      }
-    }
-    result.distance = std::min(result.distance, distance);
-    result.time = std::min(result.time, time);
+    const std::array<Vec3, 3> nodes = { patch.nodes[t.nodes[0]].position,
+      patch.nodes[t.nodes[1]].position, patch.nodes[t.nodes[2]].position };
+    const Separation s = separate(rock, nodes, t, approach, result.time);
+    result.distance = std::min(result.distance, s.distance);
+    result.time = std::min(result.time, s.time);
   }
   return result;
 }
@@ -111,6 +185,12 @@ void visitOverlaps(
     const Vec3& a = patch.nodes[t.nodes[0]].position;
     const Vec3& b = patch.nodes[t.nodes[1]].position;
     const Vec3& c = patch.nodes[t.nodes[2]].position;
+    const Vec3 most = a.cwiseMax(b).cwiseMax(c), least = a.cwiseMin(b).cwiseMin(c);
+    if ((most.head<2>().array() < rock.lower().head<2>().array()).any() ||
+      (least.head<2>().array() > rock.upper().head<2>().array()).any())
+    {
+      continue;
+    }
     for (int v = 0; v < int(rock.vertices().size()); ++v)
     {
       const Vec3& p = rock.vertices()[v];
@@ -124,7 +204,9 @@ void visitOverlaps(
   }
   for (int n = 0; n < int(patch.nodes.size()); ++n)
   {
-    if (!patch.nodes[n].peak)
+    const Vec3& q = patch.nodes[n].position;
+    if (!patch.nodes[n].peak || (q.array() < rock.lower().array()).any() ||
+      (q.array() > rock.upper().array()).any())
     {
       continue;
     }
@@ -132,7 +214,7 @@ void visitOverlaps(
     int face = 0;
     for (int f = 0; f < int(rock.normals().size()); ++f)
     {
-      const double d = rock.faceDistance(f, patch.nodes[n].position);
+      const double d = rock.faceDistance(f, q);
       if (d > outside)
       {
         outside = d;

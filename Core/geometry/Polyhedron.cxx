@@ -34,7 +34,7 @@ double thickness(const std::vector<Vec3>& points)
 /// but for the rounding of doubles.
 Shell mergedShell(const Shell& shell, const std::string& name)
 {
-  std::string fault = "has a face without area";
+  std::string fault = "its coplanar faces do not merge into simple polygons";
   for (const double tolerance : { planeTolerance, 1e-9, 1e-12 })
   {
     if (std::optional<Shell> merged = mergeCoplanar(shell, tolerance * shell.extent))

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// The rock shapes that a user picks by name. Every maker gives a polyhedron with its centroid at the
-/// origin and the volume asked for.
+/// The rock shapes that a user picks by name. Every maker gives a polyhedron with its centroid at
+/// the origin and the volume asked for.
 
 #include "geometry/Polyhedron.h"
 

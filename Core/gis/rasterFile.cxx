@@ -282,6 +282,8 @@ SourceGrid RasterFile::read()
   {
     const int count = int(std::min<std::int64_t>(step, rows_ - first));
     this->readRows(int(first), count, grid.heights.data() + first * columns_);
+    // No block is asked for twice: GDAL's cache would only be a second copy.
+    band_->FlushCache();
   }
   if (std::all_of(
         grid.heights.begin(), grid.heights.end(), [](double height) { return std::isnan(height); }))

@@ -134,8 +134,9 @@ void RockSimulator::flyUntilNear()
       duration = std::min(shortest, remaining);
       placed_.place(block_, state_);
       this->ensurePatch(speed * duration + parameters_.gravity * duration * duration);
-      const Clearance gap = clearance(placed_, state_, patch_, parameters_.gravity);
-      if (gap.time < 4.0 * this->impactStep())
+      const Clearance gap =
+        clearance(placed_, state_, patch_, parameters_.gravity, duration);
+      if (gap.time < std::min(duration, this->impactStep()))
       {
         return;
       }

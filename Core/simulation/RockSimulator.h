@@ -45,7 +45,8 @@ private:
   // Contact, contactPhase.cxx
   void stayInContact(); ///< Returns after take-off, or at the end.
   void takeStep(double h, StepKind kind);
-  bool mayLast(double h) const;
+  bool isCalm() const; ///< What carries neither comes nor goes.
+  bool mayLast(double h) const; ///< A long, damped step is right.
   void pressOut(double h);
   void followImpact(const BlockState& start, double h);
   void finishImpact();

@@ -56,6 +56,17 @@ bool RockSimulator::mayLast(double h) const
   return any;
 }
 
+bool RockSimulator::isCalm() const
+{
+  const Vec3 spin = state_.angularVelocity();
+  return std::all_of(contacts_.begin(), contacts_.end(),
+    [&](const Contact& c)
+    {
+      const Vec3 v = state_.velocity + spin.cross(c.point - state_.position);
+      return !c.closed() || std::abs(c.normal.dot(v)) <= restingSpeed_;
+    });
+}
+
 void RockSimulator::stayInContact()
 {
   while (!done_)
@@ -66,13 +77,15 @@ void RockSimulator::stayInContact()
     const double speed = state_.velocity.norm() + state_.spin.norm() * block_.radius();
     const auto reachOf = [&](double h)
     { return 1.5 * speed * h + parameters_.gravity * h * h + 1e-6 * block_.radius(); };
-    const double reach = reachOf(large);
+    // A long step is worth a look only when what carries is at rest along its normal.
+    const bool calm = this->isCalm();
+    const double reach = reachOf(calm ? large : small);
     this->ensurePatch(reach);
     updateContacts(placed_, patch_, reach, contacts_);
 
     double h = std::min(large, parameters_.endTime - state_.time);
     StepKind kind = StepKind::Lasting;
-    if (!this->mayLast(h))
+    if (!calm || !this->mayLast(h))
     {
       kind = StepKind::Impact;
       h = std::min(h, small);
@@ -81,12 +94,14 @@ void RockSimulator::stayInContact()
     }
     if (contacts_.empty())
     {
-      const Clearance gap = clearance(placed_, state_, patch_, parameters_.gravity);
-      if (gap.time > 4.0 * small)
+      const Clearance gap =
+        clearance(placed_, state_, patch_, parameters_.gravity, 2.0 * small);
+      if (gap.time > small)
       {
         return;
       }
-      if (penetration(placed_, patch_) > kLooseOverlap * block_.radius())
+      if (gap.distance <= 0.0 &&
+        penetration(placed_, patch_) > kLooseOverlap * block_.radius())
       {
         holdOverlap(placed_, patch_, contacts_);
       }

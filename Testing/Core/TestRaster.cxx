@@ -1,0 +1,256 @@
+/// @file
+/// What a raster's numbers become where nothing has to be resampled, and the notes about it.
+
+#include "gis/raster.h"
+#include "gisFiles.h"
+
+#include <cmath>
+#include <limits>
+
+namespace rockfall
+{
+
+namespace
+{
+
+using namespace rockfall::testing;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+/// 3 columns, 2 rows, cells of 10 m, in UTM zone 32.
+RawRaster small()
+{
+  RawRaster raster;
+  raster.columns = 3;
+  raster.rows = 2;
+  raster.affine = { 600000.0, 10.0, 0.0, 5100020.0, 0.0, -10.0 };
+  raster.crs = "EPSG:32632";
+  raster.values = { 1.0, 2.0, 3.0, 4.0, 5.0, 6.0 };
+  return raster;
+}
+
+std::string joined(const RasterSurface& surface)
+{
+  std::string text;
+  for (const std::string& note : surface.notes)
+  {
+    text += note + "\n";
+  }
+  return text;
+}
+
+TEST(Raster, nodesArePixelCentresNorthFirst)
+{
+  const RasterSurface surface = readRaster(small().write());
+  EXPECT_EQ(surface.geometry.columns, 3);
+  EXPECT_EQ(surface.geometry.rows, 2);
+  EXPECT_EQ(surface.geometry.cellSize, 10.0);
+  EXPECT_EQ(surface.geometry.xOrigin, 600005.0);
+  EXPECT_EQ(surface.geometry.yOrigin, 5100005.0);
+  EXPECT_EQ(surface.heights, small().values);
+  EXPECT_TRUE(surface.notes.empty()) << joined(surface);
+  EXPECT_TRUE(holds(surface.geometry.crs, { "PROJCRS[", "zone 32N", "32632" }));
+}
+
+TEST(Raster, twoByTwoNodesAreOneCell)
+{
+  RawRaster raster = small();
+  raster.columns = 2;
+  raster.values = { 1.0, 2.0, 3.0, 4.0 };
+  const RasterSurface surface = readRaster(raster.write());
+  EXPECT_EQ(surface.geometry.cellCount(), 1);
+  EXPECT_EQ(surface.heights, raster.values);
+}
+
+TEST(Raster, asciiGridWithoutCrsIsLocal)
+{
+  const std::string path = writeAscii({ "1.5 2.25 -9999", "4 5 6" }, 3);
+  const RasterSurface surface = readRaster(path);
+  EXPECT_EQ(surface.heights[0], 1.5);
+  EXPECT_EQ(surface.heights[1], 2.25);
+  EXPECT_TRUE(std::isnan(surface.heights[2]));
+  EXPECT_EQ(surface.heights[5], 6.0);
+  EXPECT_EQ(surface.geometry.crs, "");
+  EXPECT_TRUE(holds(joined(surface), { "no CRS", "1 of 6 nodes have no data" }));
+}
+
+TEST(Raster, smallLocalSlopeIsNoLongitude)
+{
+  // 50 m from the origin: fits the globe, but its cells and slopes are those of metres.
+  const RasterSurface surface =
+    readRaster(writeAscii({ "50 40 30", "50 40 30" }, 3, "xllcorner 0\nyllcorner 0\n"));
+  EXPECT_EQ(surface.geometry.cellSize, 10.0);
+}
+
+TEST(Raster, doublesAreNotRounded)
+{
+  RawRaster raster = small();
+  raster.values[4] = 1234.0 + 0x1p-40;
+  EXPECT_EQ(readRaster(raster.write()).heights[4], 1234.0 + 0x1p-40);
+}
+
+TEST(Raster, southUpIsTurnedOver)
+{
+  RawRaster raster = small();
+  raster.affine = { 600000.0, 10.0, 0.0, 5100000.0, 0.0, 10.0 };
+  const RasterSurface surface = readRaster(raster.write());
+  EXPECT_EQ(surface.heights, (std::vector<double>{ 4.0, 5.0, 6.0, 1.0, 2.0, 3.0 }));
+  EXPECT_EQ(surface.geometry.yOrigin, 5100005.0);
+  EXPECT_TRUE(holds(joined(surface), { "2 rows", "south to north" }));
+}
+
+TEST(Raster, pictureWithoutPlaceKeepsItsOrder)
+{
+  RawRaster raster = small();
+  raster.georeferenced = false;
+  raster.crs = "";
+  raster.type = "Byte";
+  raster.band = "<ColorInterp>Red</ColorInterp>";
+  const RasterSurface surface = readRaster(raster.write());
+  EXPECT_EQ(surface.heights, small().values);
+  EXPECT_EQ(surface.geometry.cellSize, 1.0);
+  EXPECT_TRUE(holds(joined(surface), { "no georeferencing", "picture's colour (Red)" }));
+}
+
+TEST(Raster, scaleAndOffsetAreApplied)
+{
+  RawRaster raster = small();
+  raster.type = "Int16";
+  raster.values[0] = -32768;
+  raster.band = "<NoDataValue>-32768</NoDataValue><Offset>1000</Offset><Scale>0.5</Scale>";
+  const RasterSurface surface = readRaster(raster.write());
+  EXPECT_TRUE(std::isnan(surface.heights[0])); // nodata is met before the scale
+  EXPECT_EQ(surface.heights[1], 1001.0);
+  EXPECT_EQ(surface.heights[5], 1003.0);
+  EXPECT_TRUE(holds(joined(surface), { "scale 0.5", "offset 1000" }));
+}
+
+TEST(Raster, feetBecomeMetres)
+{
+  struct Case
+  {
+    const char* unit;
+    double metres;
+  };
+  for (const Case& feet : { Case{ "ft", 0.3048 }, Case{ "Foot", 0.3048 },
+         Case{ "US survey foot", 1200.0 / 3937.0 }, Case{ "m", 1.0 }, Case{ "metre", 1.0 } })
+  {
+    RawRaster raster = small();
+    raster.band = std::string("<UnitType>") + feet.unit + "</UnitType>";
+    const RasterSurface surface = readRaster(raster.write());
+    EXPECT_DOUBLE_EQ(surface.heights[5], 6.0 * feet.metres) << feet.unit;
+    EXPECT_EQ(surface.notes.size(), feet.metres == 1.0 ? 0u : 1u) << joined(surface);
+  }
+  RawRaster raster = small();
+  raster.band = "<UnitType>fathom</UnitType>";
+  const RasterSurface surface = readRaster(raster.write());
+  EXPECT_EQ(surface.heights[5], 6.0);
+  EXPECT_TRUE(holds(joined(surface), { "\"fathom\"", "not known" }));
+}
+
+TEST(Raster, verticalCrsInFeet)
+{
+  RawRaster raster = small();
+  raster.crs = "EPSG:32632+6360"; // NAVD88 height (ftUS)
+  const RasterSurface surface = readRaster(raster.write());
+  EXPECT_NEAR(surface.heights[5], 6.0 * 1200.0 / 3937.0, 1e-11); // PROJ rounds its unit
+  EXPECT_TRUE(holds(joined(surface), { "0.3048006096", "vertical CRS" }));
+  EXPECT_EQ(surface.geometry.crs.find("VERT"), std::string::npos) << surface.geometry.crs;
+}
+
+TEST(Raster, nodataAsNan)
+{
+  RawRaster raster = small();
+  raster.values[1] = nan;
+  raster.band = "<NoDataValue>nan</NoDataValue>";
+  const RasterSurface surface = readRaster(raster.write());
+  EXPECT_TRUE(std::isnan(surface.heights[1]));
+  EXPECT_EQ(surface.heights[2], 3.0);
+}
+
+TEST(Raster, nodataOfSinglePrecisionWrittenAsDecimal)
+{
+  for (const char* text : { "-9999.9", "-3.4028235e+38", "-3.4028234663852886e+38", "1e-30" })
+  {
+    RawRaster raster = small();
+    raster.type = "Float32";
+    raster.values[1] = double(float(std::stof(text)));
+    raster.band = std::string("<NoDataValue>") + text + "</NoDataValue>";
+    const RasterSurface surface = readRaster(raster.write());
+    EXPECT_TRUE(std::isnan(surface.heights[1])) << text;
+    EXPECT_EQ(surface.heights[2], 3.0);
+  }
+}
+
+TEST(Raster, maskBandIsNodata)
+{
+  RawRaster mask = small();
+  mask.type = "Byte";
+  mask.values = { 255, 255, 0, 255, 255, 255 };
+  mask.write("mask");
+  const std::string maskFile = pathOf("mask.raw");
+  RawRaster raster = small();
+  raster.values[0] = -9999.0; // beside the mask, a nodata value of its own
+  raster.band = "<NoDataValue>-9999</NoDataValue>";
+  raster.dataset = "<MaskBand><VRTRasterBand dataType=\"Byte\" subClass=\"VRTRawRasterBand\">"
+                   "<SourceFilename relativetoVRT=\"1\">" +
+    maskFile.substr(maskFile.find_last_of('/') + 1) +
+    "</SourceFilename><PixelOffset>1</PixelOffset><LineOffset>3</LineOffset></VRTRasterBand>"
+    "</MaskBand>";
+  const RasterSurface surface = readRaster(raster.write());
+  EXPECT_TRUE(std::isnan(surface.heights[0]));
+  EXPECT_TRUE(std::isnan(surface.heights[2]));
+  EXPECT_EQ(surface.heights[1], 2.0);
+  EXPECT_EQ(surface.heights[5], 6.0);
+}
+
+TEST(Raster, localUnitsAreMultiplied)
+{
+  RawRaster raster = small();
+  raster.crs = "LOCAL_CS[\"mine\",UNIT[\"foot\",0.3048]]";
+  const RasterSurface surface = readRaster(raster.write());
+  EXPECT_DOUBLE_EQ(surface.geometry.cellSize, 3.048);
+  EXPECT_EQ(surface.geometry.crs, "");
+  EXPECT_TRUE(holds(joined(surface), { "foot", "0.3048" }));
+}
+
+TEST(Raster, manyRowsAreReadInBlocks)
+{
+  // More nodes than one block of rows holds.
+  RawRaster raster;
+  raster.columns = 3000;
+  raster.rows = 3001;
+  raster.affine = { 0.0, 1.0, 0.0, 3001.0, 0.0, -1.0 };
+  raster.crs = "EPSG:32632";
+  raster.type = "Float32";
+  raster.fill([](double x, double y) { return 2.0 * std::floor(x) + 3.0 * std::floor(y); });
+  const RasterSurface surface = readRaster(raster.write());
+  EXPECT_EQ(surface.heights, raster.values);
+}
+
+TEST(Raster, decimalCommaOfTheLocaleChangesNothing)
+{
+  const std::string path = small().write();
+  const std::string ascii =
+    writeAscii({ "1.5 2.25 3", "4 5 6" }, 3, "xllcorner 600000.5\nyllcorner 5100000.5\n", "2.5");
+  const CommaLocale comma;
+  const RasterSurface surface = readRaster(path);
+  EXPECT_EQ(surface.geometry.xOrigin, 600005.0);
+  EXPECT_EQ(surface.heights, small().values);
+  const RasterSurface text = readRaster(ascii);
+  EXPECT_EQ(text.heights, (std::vector<double>{ 1.5, 2.25, 3.0, 4.0, 5.0, 6.0 }));
+  EXPECT_EQ(text.geometry.cellSize, 2.5);
+  EXPECT_EQ(text.geometry.xOrigin, 600001.75);
+  const RasterSurface finer = readRaster(path, { .cellSize = 2.5 });
+  EXPECT_TRUE(holds(joined(finer), { "2.5 m was asked for" }));
+}
+
+TEST(Raster, decimalCommasInAnAsciiGrid)
+{
+  const RasterSurface surface = readRaster(writeAscii({ "1,5 2,25", "4,0 5,125" }, 2));
+  EXPECT_EQ(surface.heights, (std::vector<double>{ 1.5, 2.25, 4.0, 5.125 }));
+}
+
+} // namespace
+
+} // namespace rockfall

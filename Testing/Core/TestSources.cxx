@@ -1,0 +1,300 @@
+/// @file
+/// Rockfall sources as tables and point layers: what each cell becomes, and every way in which one
+/// can be wrong.
+
+#include "base/errors.h"
+#include "gis/sources.h"
+#include "gisFiles.h"
+
+#include <algorithm>
+
+namespace rockfall
+{
+
+namespace
+{
+
+using namespace rockfall::testing;
+
+template <class Expected>
+std::string failure(const std::string& path, const std::string& crs = {})
+{
+  return messageOf<Expected>([&] { readSources(path, crs); });
+}
+
+std::string table(const std::string& text)
+{
+  return writeFile("rocks.csv", text);
+}
+
+/// A GeoJSON layer of one feature. Without a crs member its coordinates are longitude and latitude.
+std::string feature(
+  const std::string& geometry, const std::string& properties = "", const std::string& crs = "")
+{
+  return writeFile("rocks.geojson",
+    "{\"type\":\"FeatureCollection\"," +
+      (crs.empty() ? ""
+                   : "\"crs\":{\"type\":\"name\",\"properties\":{\"name\":\"" + crs + "\"}},") +
+      "\"features\":[{\"type\":\"Feature\",\"properties\":{" + properties +
+      "},\"geometry\":" + geometry + "}]}");
+}
+
+TEST(Sources, everyColumnOfATable)
+{
+  const auto rows = readSources(table("X,y,Z,Shape,VOLUME,density,vx,vy,vz,wx,wy,wz,rx,ry,rz,lx,ly,"
+                                      "lz,remark\n"
+                                      "600000.25,5100000.5,1234.125,cube,1.5,2700,1,-2,3e0,.1,.2,"
+                                      "+.3,10,20,30,1,2,3,by the road\n"));
+  ASSERT_EQ(rows.size(), 1u);
+  const SourceRow& row = rows[0];
+  EXPECT_EQ(row.row, 1);
+  EXPECT_EQ(row.position, Vec3(600000.25, 5100000.5, 1234.125));
+  EXPECT_EQ(row.shape, Shape::Cube);
+  EXPECT_EQ(row.volume, 1.5);
+  EXPECT_EQ(row.density, 2700.0);
+  EXPECT_EQ(row.velocity, Vec3(1.0, -2.0, 3.0));
+  EXPECT_EQ(row.angularVelocity, Vec3(0.1, 0.2, 0.3));
+  EXPECT_EQ(row.orientation, Vec3(10.0, 20.0, 30.0));
+  EXPECT_EQ(row.lengths, Vec3(1.0, 2.0, 3.0));
+}
+
+TEST(Sources, whatIsNotSaidStaysEmpty)
+{
+  const auto rows = readSources(table("x,y,z,volume,shape,vz\n1,2,3,,,\n4,5,6,2,,-1\n7,8,9\n"));
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_FALSE(rows[0].volume || rows[0].shape || rows[0].density || rows[0].velocity ||
+    rows[0].angularVelocity || rows[0].orientation || rows[0].lengths);
+  EXPECT_EQ(rows[1].row, 2);
+  EXPECT_EQ(rows[1].volume, 2.0);
+  EXPECT_EQ(rows[1].velocity, Vec3(0.0, 0.0, -1.0));
+  EXPECT_EQ(rows[2].position, Vec3(7.0, 8.0, 9.0));
+}
+
+TEST(Sources, separatorsBlanksAndDigits)
+{
+  for (const char separator : { ';', '\t' })
+  {
+    std::string text = "x; y; z\n 1.5 ; 2 ;0.1234567890123456\n";
+    std::replace(text.begin(), text.end(), ';', separator);
+    const auto rows = readSources(table(text));
+    ASSERT_EQ(rows.size(), 1u);
+    EXPECT_EQ(rows[0].position, Vec3(1.5, 2.0, 0.1234567890123456));
+  }
+}
+
+TEST(Sources, decimalCommaOfTheLocaleChangesNothing)
+{
+  const std::string path = table("x,y,z,volume\n600000.25,5100000.5,1234.5,0.75\n");
+  const std::string points =
+    feature(R"({"type":"Point","coordinates":[10.25,20.5,30.75]})", "\"volume\":0.75");
+  const CommaLocale comma;
+  EXPECT_EQ(readSources(path)[0].position, Vec3(600000.25, 5100000.5, 1234.5));
+  EXPECT_EQ(readSources(path)[0].volume, 0.75);
+  EXPECT_EQ(readSources(points)[0].position, Vec3(10.25, 20.5, 30.75));
+  EXPECT_EQ(readSources(points)[0].volume, 0.75);
+}
+
+TEST(Sources, pointsWithAndWithoutHeight)
+{
+  const std::string properties = R"("z":99.5,"Volume":2,"shape":"cube","density":2600.5)";
+  const std::string three = feature(R"({"type":"Point","coordinates":[10,20,30]})", properties);
+  EXPECT_EQ(readSources(three)[0].position, Vec3(10.0, 20.0, 30.0)); // its own before the column
+  EXPECT_EQ(readSources(three)[0].volume, 2.0);
+  EXPECT_EQ(readSources(three)[0].density, 2600.5);
+  EXPECT_EQ(readSources(three)[0].shape, Shape::Cube);
+  const std::string two = feature(R"({"type":"Point","coordinates":[10,20]})", properties);
+  EXPECT_EQ(readSources(two)[0].position, Vec3(10.0, 20.0, 99.5));
+  const std::string one =
+    feature(R"({"type":"MultiPoint","coordinates":[[10,20,30]]})", properties);
+  EXPECT_EQ(readSources(one)[0].position, Vec3(10.0, 20.0, 30.0));
+  const std::string none = feature("null", R"("x":1,"y":2,"z":3)");
+  EXPECT_EQ(readSources(none)[0].position, Vec3(1.0, 2.0, 3.0));
+}
+
+TEST(Sources, shapefile)
+{
+  // One PointZ and its table with a number and a word, byte by byte.
+  std::string shp, shx, dbf;
+  const auto big = [](std::string& to, int word) {
+    to += { char(word >> 24), char(word >> 16), char(word >> 8), char(word) };
+  };
+  const auto raw = [](std::string& to, auto value)
+  { to.append(reinterpret_cast<const char*>(&value), sizeof(value)); };
+  const auto header = [&](std::string& to, int words)
+  {
+    for (const int word : { 9994, 0, 0, 0, 0, 0, words })
+    {
+      big(to, word);
+    }
+    raw(to, 1000);
+    raw(to, 11);
+    for (const double bound : { 600000.5, 5100000.5, 600000.5, 5100000.5, 321.5, 321.5, 0.0, 0.0 })
+    {
+      raw(to, bound);
+    }
+  };
+  header(shp, 50 + 4 + 18);
+  header(shx, 50 + 4);
+  for (std::string* to : { &shp, &shx })
+  {
+    big(*to, to == &shp ? 1 : 50);
+    big(*to, 18);
+  }
+  raw(shp, 11);
+  for (const double value : { 600000.5, 5100000.5, 321.5, 0.0 })
+  {
+    raw(shp, value);
+  }
+  dbf += { 3, 123, 1, 1 };
+  raw(dbf, 1);
+  raw(dbf, std::int16_t(32 + 2 * 32 + 1));
+  raw(dbf, std::int16_t(1 + 8 + 4));
+  dbf.resize(32);
+  const auto field = [&dbf](const std::string& name, char type, char width, char decimals)
+  {
+    std::string text = name;
+    text.resize(11);
+    text += type;
+    text.resize(16);
+    text += { width, decimals };
+    text.resize(32);
+    dbf += text;
+  };
+  field("VOLUME", 'N', 8, 3);
+  field("SHAPE", 'C', 4, 0);
+  dbf += "\r    1.125cube\x1a";
+  const std::string path = writeFile("rocks.shp", shp);
+  writeFile("rocks.shx", shx);
+  writeFile("rocks.dbf", dbf);
+
+  const auto rows = readSources(path);
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].position, Vec3(600000.5, 5100000.5, 321.5));
+  EXPECT_EQ(rows[0].volume, 1.125);
+  EXPECT_EQ(rows[0].shape, Shape::Cube);
+}
+
+TEST(Sources, pointsAreBroughtToTheTerrain)
+{
+  // On the central meridian of zone 32: 0.9996 times the meridian arc to 45° (WGS 84).
+  const std::string lonLat = feature(R"({"type":"Point","coordinates":[9,45,700]})");
+  const Vec3 there = readSources(lonLat, "EPSG:32632")[0].position;
+  EXPECT_NEAR(there.x(), 500000.0, 1e-6);
+  EXPECT_NEAR(there.y(), 0.9996 * 4984944.378, 1e-3);
+  EXPECT_EQ(there.z(), 700.0);
+  EXPECT_EQ(readSources(lonLat)[0].position, Vec3(9.0, 45.0, 700.0)); // no target: as written
+
+  // The same CRS: not a bit changes.
+  const std::string same = feature(R"({"type":"Point","coordinates":[600000.5,5100000.25,700]})",
+    "", "urn:ogc:def:crs:EPSG::32632");
+  EXPECT_EQ(readSources(same, "EPSG:32632")[0].position, Vec3(600000.5, 5100000.25, 700.0));
+  // A table without geometry is in the terrain's CRS by definition.
+  EXPECT_EQ(readSources(table("x,y,z\n1,2,3\n"), "EPSG:32632")[0].position, Vec3(1.0, 2.0, 3.0));
+}
+
+TEST(SourceErrors, files)
+{
+  const std::string nowhere = pathOf("nowhere.csv");
+  EXPECT_TRUE(holds(failure<FileError>(nowhere), { nowhere, "no such file" }));
+  EXPECT_TRUE(holds(failure<FileError>(""), { "No file name" }));
+  const std::string text = writeFile("letter.shp", "Dear reader");
+  EXPECT_TRUE(holds(failure<FileError>(text), { text, "not a vector layer" }));
+  const std::string raster = writeAscii({ "1 2", "3 4" }, 2);
+  EXPECT_TRUE(holds(failure<FileError>(raster), { raster, "is a raster", "points" }));
+}
+
+TEST(SourceErrors, empty)
+{
+  const std::string path = table("x,y,z\n");
+  EXPECT_TRUE(holds(failure<DataError>(path), { path, "no row" }));
+  const std::string layer =
+    writeFile("none.geojson", R"({"type":"FeatureCollection","features":[]})");
+  EXPECT_TRUE(holds(failure<DataError>(layer), { layer, "no row" }));
+}
+
+TEST(SourceErrors, numbersThatAreNone)
+{
+  struct Case
+  {
+    const char* text;
+    std::vector<std::string> message;
+  };
+  for (const Case& wrong : {
+         Case{ "x;y;z\n1;2;3\n1,5;2;3\n", { "row 2", "\"x\"", "\"1,5\"", "point" } },
+         Case{ "x,y,z\n1,2,high\n", { "row 1", "\"z\"", "\"high\"", "not a number" } },
+         Case{ "x,y,z,volume\n1,2,3,1m3\n", { "row 1", "\"volume\"", "\"1m3\"" } },
+         Case{ "x,y,z,volume\n1,2,3,nan\n", { "\"volume\"", "nan", "finite" } },
+         Case{ "x,y,z\n1,inf,3\n", { "\"y\"", "inf", "finite" } },
+         Case{ "x,y,z,volume\n1,2,3,0\n", { "\"volume\"", "is 0", "above 0" } },
+         Case{ "x,y,z,density\n1,2,3,-2500\n", { "\"density\"", "is -2500", "above 0" } },
+         Case{ "x,y,z,vy\n1,2,3,1e999\n", { "\"vy\"", "\"1e999\"" } },
+         Case{ "x,y,z,lx,ly,lz\n1,2,3,1,-1,1\n", { "\"ly\"", "is -1" } },
+         Case{ "x,y,z,lx,ly,lz\n1,2,3,1,,1\n", { "\"ly\"", "empty", "lx, ly and lz" } },
+         // Decimal commas that split numbers in two: too many fields.
+         Case{ "x,y,z\n1,2,3\n1,5,2,5,3,5\n", { "row 2", "6 fields", "header 3", "\"5\"" } },
+       })
+  {
+    const std::string path = table(wrong.text);
+    const std::string message = failure<DataError>(path);
+    EXPECT_TRUE(holds(message, wrong.message)) << wrong.text;
+    EXPECT_TRUE(holds(message, { path }));
+  }
+}
+
+TEST(SourceErrors, numbersInAJsonLayer)
+{
+  const std::string point = R"({"type":"Point","coordinates":[1,2,3]})";
+  EXPECT_TRUE(holds(
+    failure<DataError>(feature(point, "\"volume\":-0.5")), { "row 1", "\"volume\"", "-0.5" }));
+  EXPECT_TRUE(holds(failure<DataError>(feature(point, "\"volume\":\"big\"")),
+    { "row 1", "\"volume\"", "\"big\"" }));
+}
+
+TEST(SourceErrors, textInATypedTable)
+{
+  // A .csvt beside the table makes OGR turn words into zeros.
+  const std::string path = table("x,y,z\n1,2,3\n1,2,high\n");
+  writeFile("rocks.csvt", "\"Real\",\"Real\",\"Real\"\n");
+  EXPECT_TRUE(holds(failure<DataError>(path), { path, "row 2", "z" }));
+}
+
+TEST(SourceErrors, noPosition)
+{
+  const std::string flat = table("x,y\n1,2\n");
+  EXPECT_TRUE(holds(failure<DataError>(flat), { flat, "row 1", "\"z\"", "no such column" }));
+  const std::string cell = table("x,y,z\n1,2,3\n,2,3\n");
+  EXPECT_TRUE(holds(failure<DataError>(cell), { cell, "row 2", "\"x\"", "empty" }));
+  const std::string bare = table("1,2,3\n4,5,6\n");
+  EXPECT_TRUE(holds(failure<DataError>(bare), { bare, "\"x\"", "no such column" }));
+  const std::string point = feature(R"({"type":"Point","coordinates":[1,2]})");
+  EXPECT_TRUE(holds(failure<DataError>(point), { point, "row 1", "\"z\"", "elevation" }));
+}
+
+TEST(SourceErrors, unknownShape)
+{
+  const std::string path = table("x,y,z,shape\n1,2,3,banana\n");
+  EXPECT_TRUE(
+    holds(failure<DataError>(path), { path, "row 1", "\"shape\"", "banana", "cube", "eota111" }));
+}
+
+TEST(SourceErrors, wrongGeometry)
+{
+  const std::string line = feature(R"({"type":"LineString","coordinates":[[1,2,3],[4,5,6]]})");
+  EXPECT_TRUE(holds(failure<DataError>(line), { line, "row 1", "LINESTRING", "POINT" }));
+  const std::string two = feature(R"({"type":"MultiPoint","coordinates":[[1,2,3],[4,5,6]]})");
+  EXPECT_TRUE(holds(failure<DataError>(two), { two, "row 1", "MULTIPOINT", "2 points" }));
+}
+
+TEST(SourceErrors, crs)
+{
+  const std::string point = feature(R"({"type":"Point","coordinates":[9,45,700]})");
+  EXPECT_TRUE(holds(failure<DataError>(point, "EPSG:nothing"), { "\"EPSG:nothing\"" }));
+  // Metres in a file that says degrees.
+  const std::string metres = feature(R"({"type":"Point","coordinates":[600000,5100000,700]})");
+  EXPECT_TRUE(holds(failure<DataError>(metres, "EPSG:32632"),
+    { metres, "row 1", "600000, 5100000", "EPSG:32632" }));
+}
+
+} // namespace
+
+} // namespace rockfall
