@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 namespace rockfall
 {
@@ -19,12 +20,60 @@ bool samePlace(const Contact& a, const Contact& b)
     a.surfaceFeature == b.surfaceFeature;
 }
 
+/// Whether two pairs share a vertex of the rock and a node of the slope: their normals then belong to
+/// one corner of the Minkowski difference.
+bool sameCorner(
+  const PlacedBlock& rock, const SurfacePatch& patch, const Contact& a, const Contact& b)
+{
+  const Polyhedron& shape = rock.block().shape();
+  const auto onRock = [&](const Contact& c) -> std::span<const int>
+  {
+    switch (c.kind)
+    {
+      case ContactKind::VertexFace:
+        return { &c.rockFeature, 1 };
+      case ContactKind::FaceVertex:
+        return shape.faces()[c.rockFeature];
+      case ContactKind::EdgeEdge:
+        break;
+    }
+    return shape.edges()[c.rockFeature].vertices;
+  };
+  const auto onSlope = [&](const Contact& c) -> std::span<const int>
+  {
+    switch (c.kind)
+    {
+      case ContactKind::VertexFace:
+        return patch.triangles[c.patchFeature].nodes;
+      case ContactKind::FaceVertex:
+        return { &c.patchFeature, 1 };
+      case ContactKind::EdgeEdge:
+        break;
+    }
+    return patch.ridges[c.patchFeature].nodes;
+  };
+  const auto share = [](std::span<const int> x, std::span<const int> y)
+  { return std::find_first_of(x.begin(), x.end(), y.begin(), y.end()) != x.end(); };
+  return share(onRock(a), onRock(b)) && share(onSlope(a), onSlope(b));
+}
+
 /// Adds an entrance unless the contacts that are already there stand for it.
-void admit(const SurfacePatch& patch, Contact candidate, std::vector<Contact>& contacts)
+void admit(const PlacedBlock& rock, const SurfacePatch& patch, Contact candidate,
+  std::vector<Contact>& contacts)
 {
   for (const Contact& c : contacts)
   {
     if (samePlace(c, candidate))
+    {
+      return;
+    }
+    // Around an edge–edge contact that carries, the pair with the shortest way out stands for all.
+    const bool crossing =
+      c.kind == ContactKind::EdgeEdge || candidate.kind == ContactKind::EdgeEdge;
+    const bool found = candidate.distance < -1e-9 * rock.block().radius();
+    const bool sameEdge = c.kind == candidate.kind && c.rockFeature == candidate.rockFeature;
+    if (crossing && c.closed() && (found || sameEdge) && c.normal.dot(candidate.normal) > 0.5 &&
+      sameCorner(rock, patch, c, candidate))
     {
       return;
     }
@@ -123,7 +172,7 @@ void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch, double r
       {
         if (auto c = vertexFace(rock, v, patch, i, reach))
         {
-          admit(patch, *c, contacts);
+          admit(rock, patch, *c, contacts);
         }
       }
     }
@@ -151,7 +200,7 @@ void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch, double r
     {
       if (auto c = faceVertex(rock, face, patch, i, reach))
       {
-        admit(patch, *c, contacts);
+        admit(rock, patch, *c, contacts);
       }
     }
   }
@@ -174,7 +223,7 @@ void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch, double r
     {
       if (auto c = edgeEdge(rock, e, patch, i, reach))
       {
-        admit(patch, *c, contacts);
+        admit(rock, patch, *c, contacts);
       }
     }
   }
@@ -190,7 +239,7 @@ void findEntrancesBruteForce(const PlacedBlock& rock, const SurfacePatch& patch,
     {
       if (auto c = vertexFace(rock, v, patch, i, reach))
       {
-        admit(patch, *c, contacts);
+        admit(rock, patch, *c, contacts);
       }
     }
   }
@@ -200,7 +249,7 @@ void findEntrancesBruteForce(const PlacedBlock& rock, const SurfacePatch& patch,
     {
       if (auto c = faceVertex(rock, f, patch, i, reach))
       {
-        admit(patch, *c, contacts);
+        admit(rock, patch, *c, contacts);
       }
     }
   }
@@ -210,7 +259,7 @@ void findEntrancesBruteForce(const PlacedBlock& rock, const SurfacePatch& patch,
     {
       if (auto c = edgeEdge(rock, e, patch, i, reach))
       {
-        admit(patch, *c, contacts);
+        admit(rock, patch, *c, contacts);
       }
     }
   }

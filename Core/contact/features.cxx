@@ -25,6 +25,65 @@ bool projectsInside(
   return true;
 }
 
+bool inVertexCone(const PlacedBlock& rock, int vertex, const Vec3& normal, double slack)
+{
+  // The vertex must be the lowest of its surroundings along the normal.
+  const Vec3& p = rock.vertices()[vertex];
+  for (int n : rock.block().shape().neighbours(vertex))
+  {
+    const Vec3 arm = rock.vertices()[n] - p;
+    if (normal.dot(arm) < -slack * arm.norm())
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool inPeakCone(const SurfacePatch& patch, int node, const Vec3& normal, double slack)
+{
+  // All of the slope around the node must fall away from the plane of the face.
+  const SurfacePatch::Node& q = patch.nodes[node];
+  for (int n : q.neighbours)
+  {
+    const Vec3 arm = patch.nodes[n].position - q.position;
+    if (normal.dot(arm) > slack * arm.norm())
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool inEdgeCones(const PlacedBlock& rock, int edge, const SurfacePatch& patch, int ridge,
+  const Vec3& normal, double slack)
+{
+  const Polyhedron::Edge& e = rock.block().shape().edges()[edge];
+  const SurfacePatch::Ridge& g = patch.ridges[ridge];
+  const Vec3& q = patch.nodes[g.nodes[0]].position;
+  // Cone of the ridge: both triangles fall away. Cone of the rock's edge: both faces rise.
+  for (int wing : g.wings)
+  {
+    const Vec3 arm = patch.nodes[wing].position - q;
+    if (normal.dot(arm) > slack * arm.norm())
+    {
+      return false;
+    }
+  }
+  const Vec3 direction =
+    (rock.vertices()[e.vertices[1]] - rock.vertices()[e.vertices[0]]).normalized();
+  for (int k = 0; k < 2; ++k)
+  {
+    // In-face direction away from the edge; the edge runs as in the loop of faces[0].
+    const Vec3 inward = rock.normals()[e.faces[k]].cross(direction) * (k == 0 ? 1.0 : -1.0);
+    if (normal.dot(inward) < -slack)
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
 std::optional<Contact> vertexFace(
   const PlacedBlock& rock, int vertex, const SurfacePatch& patch, int triangle, double reach)
 {
@@ -37,14 +96,9 @@ std::optional<Contact> vertexFace(
   {
     return std::nullopt;
   }
-  // The vertex must be the lowest of its surroundings along the normal.
-  for (int n : rock.block().shape().neighbours(vertex))
+  if (!inVertexCone(rock, vertex, t.normal, kConeSlack))
   {
-    const Vec3 arm = rock.vertices()[n] - p;
-    if (t.normal.dot(arm) < -kConeSlack * arm.norm())
-    {
-      return std::nullopt;
-    }
+    return std::nullopt;
   }
   Contact c;
   c.kind = ContactKind::VertexFace;
@@ -91,15 +145,10 @@ std::optional<Contact> faceVertex(
   {
     return std::nullopt;
   }
-  // All of the slope around the node must fall away from the plane of the face.
   const Vec3 normal = -rock.normals()[face];
-  for (int n : q.neighbours)
+  if (!inPeakCone(patch, node, normal, kConeSlack))
   {
-    const Vec3 arm = patch.nodes[n].position - q.position;
-    if (normal.dot(arm) > kConeSlack * arm.norm())
-    {
-      return std::nullopt;
-    }
+    return std::nullopt;
   }
   Contact c;
   c.kind = ContactKind::FaceVertex;
@@ -157,24 +206,9 @@ std::optional<Contact> edgeEdge(
   {
     return std::nullopt;
   }
-  // Cone of the ridge: both triangles fall away. Cone of the rock's edge: both faces rise.
-  for (int wing : g.wings)
+  if (!inEdgeCones(rock, edge, patch, ridge, n, kConeSlack))
   {
-    const Vec3 arm = patch.nodes[wing].position - q;
-    if (n.dot(arm) > kConeSlack * arm.norm())
-    {
-      return std::nullopt;
-    }
-  }
-  const Vec3 direction = u.normalized();
-  for (int k = 0; k < 2; ++k)
-  {
-    // In-face direction away from the edge; the edge runs as in the loop of faces[0].
-    const Vec3 inward = rock.normals()[e.faces[k]].cross(direction) * (k == 0 ? 1.0 : -1.0);
-    if (n.dot(inward) < -kConeSlack)
-    {
-      return std::nullopt;
-    }
+    return std::nullopt;
   }
   Contact c;
   c.kind = ContactKind::EdgeEdge;
@@ -185,7 +219,15 @@ std::optional<Contact> edgeEdge(
   c.normal = n;
   c.point = onRock;
   c.distance = distance;
+  setRidge(patch, ridge, c);
   return c;
+}
+
+void setRidge(const SurfacePatch& patch, int ridge, Contact& contact)
+{
+  const SurfacePatch::Ridge& g = patch.ridges[ridge];
+  const Vec3& q = patch.nodes[g.nodes[0]].position;
+  contact.ridge = { q, patch.nodes[g.nodes[1]].position - q };
 }
 
 } // namespace rockfall

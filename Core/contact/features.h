@@ -33,6 +33,16 @@ std::optional<Contact> faceVertex(
 std::optional<Contact> edgeEdge(
   const PlacedBlock& rock, int edge, const SurfacePatch& patch, int ridge, double reach);
 
+/// Whether a direction out of the slope lies in the normal cones of both features of a pair, with a
+/// slack (sine): the pair is then a face of the Minkowski difference of rock and slope.
+bool inVertexCone(const PlacedBlock& rock, int vertex, const Vec3& normal, double slack);
+bool inPeakCone(const SurfacePatch& patch, int node, const Vec3& normal, double slack);
+bool inEdgeCones(const PlacedBlock& rock, int edge, const SurfacePatch& patch, int ridge,
+  const Vec3& normal, double slack);
+
+/// Puts the ridge's line into an edge–edge contact, for the step solver.
+void setRidge(const SurfacePatch& patch, int ridge, Contact& contact);
+
 /// Closest points of two lines p + s u, q + t w; false if they are nearly parallel (sine < 1e-4).
 bool closestOnLines(const Vec3& p, const Vec3& u, const Vec3& q, const Vec3& w, double& s, double& t);
 

@@ -16,6 +16,9 @@ namespace
 /// then continuous when a vertex crosses the edge. Across a sharper edge the exit stays the entrance.
 constexpr double kSmoothTurn = 0.5; // cosine
 
+/// How far past its end, as a share of its length, an edge may serve.
+constexpr double kExtension = 0.3;
+
 /// Keeps the force continuous when a contact goes over to a neighbouring feature where it would be
 /// deeper; where it would be less deep the spring just gives way.
 void handOver(Contact& contact, double newDistance)
@@ -146,9 +149,10 @@ struct Crossing
   Vec3 point = Vec3::Zero();
   double distance = 0.0;
 
-  bool within() const
+  /// How far the crossing is past an end, as a share of the length; ≤ 0 within both.
+  double beyond() const
   {
-    return this->skew && this->s >= 0.0 && this->s <= 1.0 && this->t >= 0.0 && this->t <= 1.0;
+    return std::max({ -this->s, this->s - 1.0, -this->t, this->t - 1.0 });
   }
 };
 
@@ -176,27 +180,32 @@ Crossing crossing(const PlacedBlock& rock, int edge, const SurfacePatch& patch, 
   return c;
 }
 
-/// A crossing that has run off the end of the rock's edge or of the ridge goes on along the features
-/// that meet there: the next ridge, the next edge, the vertex in a CFE, the node in a face. The one
-/// whose depth is nearest takes the load over.
-bool continueEdgeEdge(const PlacedBlock& rock, const SurfacePatch& patch, const Crossing& at,
+/// The way out of an overlap at an edge–edge contact. The pairs around it, the next ridges, the next edges,
+/// the vertices in the CFEs, the nodes in the faces, are faces of the same Minkowski difference; the one
+/// that is least deep is the shortest exit and takes the load over as soon as it is no deeper than
+/// the old one, so that the depth is continuous. Until then the old crossing serves, even somewhat past
+/// the end of its edge.
+bool leaveBest(const PlacedBlock& rock, const SurfacePatch& patch, const Crossing& at,
   Contact& contact)
 {
   const Polyhedron& shape = rock.block().shape();
   const Polyhedron::Edge& e = shape.edges()[contact.rockFeature];
   const SurfacePatch::Ridge& g = patch.ridges[contact.patchFeature];
-  const double before = contact.distance;
+  const double same = 1e-9 * rock.block().radius(); // depths that differ by rounding only
   Contact best = contact;
-  double nearest = std::numeric_limits<double>::infinity();
+  double highest = -std::numeric_limits<double>::infinity();
+  double bestBeyond = 0.0;
   const auto offer = [&](ContactKind kind, int onRock, int onPatch, std::int64_t key,
-                       std::int64_t cfe, const Vec3& normal, const Vec3& point, double distance)
+                       std::int64_t cfe, const Vec3& normal, const Vec3& point, double distance,
+                       double beyond)
   {
-    const double miss = std::abs(distance - before);
-    if (distance > 0.0 || normal.dot(contact.normal) < kSmoothTurn || miss >= nearest)
+    const bool tie = std::abs(distance - highest) <= same && beyond < bestBeyond;
+    if (normal.dot(contact.normal) < kSmoothTurn || !(distance > highest + same || tie))
     {
       return;
     }
-    nearest = miss;
+    highest = distance;
+    bestBeyond = beyond;
     best = contact;
     best.kind = kind;
     best.rockFeature = onRock;
@@ -205,63 +214,78 @@ bool continueEdgeEdge(const PlacedBlock& rock, const SurfacePatch& patch, const 
     best.cfe = cfe;
     best.normal = normal;
     best.point = point;
+    if (kind == ContactKind::EdgeEdge)
+    {
+      setRidge(patch, onPatch, best);
+    }
     handOver(best, distance);
   };
   const auto offerCrossing = [&](int edge, int ridge)
   {
     const Crossing c = crossing(rock, edge, patch, ridge, contact.normal);
-    if (c.within())
+    if (c.skew && c.beyond() < kExtension && inEdgeCones(rock, edge, patch, ridge, c.normal, 0.0))
     {
       const SurfacePatch::Ridge& r = patch.ridges[ridge];
       offer(ContactKind::EdgeEdge, edge, ridge, r.key, patch.triangles[r.triangles[0]].cfe,
-        c.normal, c.point, c.distance);
+        c.normal, c.point, c.distance, c.beyond());
     }
   };
-  if (at.t < 0.0 || at.t > 1.0)
+  for (int i = 0; i < int(patch.ridges.size()); ++i)
   {
-    const int node = g.nodes[at.t < 0.0 ? 0 : 1];
-    for (int i = 0; i < int(patch.ridges.size()); ++i)
+    const std::array<int, 2>& n = patch.ridges[i].nodes;
+    if (i != contact.patchFeature &&
+      (n[0] == g.nodes[0] || n[1] == g.nodes[0] || n[0] == g.nodes[1] || n[1] == g.nodes[1]))
     {
-      const SurfacePatch::Ridge& other = patch.ridges[i];
-      if (i != contact.patchFeature && (other.nodes[0] == node || other.nodes[1] == node))
-      {
-        offerCrossing(contact.rockFeature, i);
-      }
+      offerCrossing(contact.rockFeature, i);
     }
+  }
+  for (int i = 0; i < int(shape.edges().size()); ++i)
+  {
+    const std::array<int, 2>& v = shape.edges()[i].vertices;
+    if (i != contact.rockFeature &&
+      (v[0] == e.vertices[0] || v[1] == e.vertices[0] || v[0] == e.vertices[1] ||
+        v[1] == e.vertices[1]))
+    {
+      offerCrossing(i, contact.patchFeature);
+    }
+  }
+  for (int node : g.nodes)
+  {
     const SurfacePatch::Node& q = patch.nodes[node];
     for (int f : e.faces)
     {
-      if (insideRockFace(rock, f, q.position, 0.0))
+      if (q.peak && inPeakCone(patch, node, -rock.normals()[f], 0.0) &&
+        insideRockFace(rock, f, q.position, 0.0))
       {
         offer(ContactKind::FaceVertex, f, node, q.key, q.cfe, -rock.normals()[f], q.position,
-          rock.faceDistance(f, q.position));
+          rock.faceDistance(f, q.position), 0.0);
       }
     }
   }
-  if (at.s < 0.0 || at.s > 1.0)
+  for (int vertex : e.vertices)
   {
-    const int vertex = e.vertices[at.s < 0.0 ? 0 : 1];
-    for (int i = 0; i < int(shape.edges().size()); ++i)
-    {
-      const Polyhedron::Edge& other = shape.edges()[i];
-      if (i != contact.rockFeature && (other.vertices[0] == vertex || other.vertices[1] == vertex))
-      {
-        offerCrossing(i, contact.patchFeature);
-      }
-    }
     const Vec3& p = rock.vertices()[vertex];
     for (int i : g.triangles)
     {
       const SurfacePatch::Triangle& t = patch.triangles[i];
-      if (projectsInside(patch, i, p, 0.0, 1e-9 * rock.block().radius()))
+      if (inVertexCone(rock, vertex, t.normal, 0.0) &&
+        projectsInside(patch, i, p, 0.0, 1e-9 * rock.block().radius()))
       {
         offer(ContactKind::VertexFace, vertex, i, t.cfe, t.cfe, t.normal, p,
-          t.normal.dot(p) - t.offset);
+          t.normal.dot(p) - t.offset, 0.0);
       }
     }
   }
+  const bool better = highest > contact.distance + same;
+  const bool goesOn = highest > contact.distance - same && bestBeyond < at.beyond();
+  if (!better && !goesOn && at.beyond() < kExtension)
+  {
+    contact.normal = at.normal;
+    contact.point = at.point;
+    return true;
+  }
   contact = best;
-  return !std::isinf(nearest);
+  return highest > -std::numeric_limits<double>::infinity() && highest <= 0.0;
 }
 
 bool refreshEdgeEdge(const PlacedBlock& rock, const SurfacePatch& patch, Contact& contact)
@@ -278,13 +302,13 @@ bool refreshEdgeEdge(const PlacedBlock& rock, const SurfacePatch& patch, Contact
     return std::abs(contact.normal.dot(u)) < 0.1 * u.norm();
   }
   contact.distance = c.distance;
-  if (!c.within())
+  if (c.distance < 0.0)
   {
-    return continueEdgeEdge(rock, patch, c, contact);
+    return leaveBest(rock, patch, c, contact);
   }
   contact.normal = c.normal;
   contact.point = c.point;
-  return true;
+  return c.beyond() <= 0.0;
 }
 
 } // namespace

@@ -70,7 +70,8 @@ private:
   Recorder recorder_;
   Impact impact_;
   EnergyAudit energy_;
-  double springEnergy_ = 0.0;
+  double springEnergy_ = 0.0; ///< In the contact springs, J.
+  double normalEnergy_ = 0.0; ///< In the normal ones, J.
   double restingSpeed_ = 0.0; ///< Below it a touch is no impact, m/s.
   double quietTime_ = 0.0;    ///< For how long it has been lying still, s.
   Vec3 acceleration_ = Vec3::Zero();

@@ -58,6 +58,14 @@ bool RockSimulator::mayLast(double h) const
 
 bool RockSimulator::isCalm() const
 {
+  // At the turning point of an impact nothing moves either, but the springs hold its energy; at rest
+  // they hold the weight's, ½ m v² with v = g √(m/p), several times that when the rock rolls.
+  const double settled = restingSpeed_ +
+    4.0 * parameters_.gravity * std::sqrt(block_.mass() / parameters_.normalPenalty);
+  if (normalEnergy_ > 0.5 * block_.mass() * settled * settled)
+  {
+    return false;
+  }
   const Vec3 spin = state_.angularVelocity();
   return std::all_of(contacts_.begin(), contacts_.end(),
     [&](const Contact& c)
@@ -158,6 +166,7 @@ void RockSimulator::takeStep(double h, StepKind kind)
   const double taken = state_.time - before_.time;
   energy_.friction += outcome.frictionWork;
   springEnergy_ = outcome.springEnergy;
+  normalEnergy_ = outcome.normalEnergy;
   if (kind == StepKind::Lasting)
   {
     energy_.damping +=

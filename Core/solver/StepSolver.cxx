@@ -1,5 +1,6 @@
 #include "solver/StepSolver.h"
 
+#include "contact/features.h"
 #include "solver/springs.h"
 
 #include <Eigen/LU>
@@ -29,8 +30,8 @@ void StepSolver::prepareRows(
   const Block& block, const BlockState& state, const std::vector<Contact>& contacts)
 {
   rotation_ = state.orientation.toRotationMatrix();
-  const Mat3 deform = Mat3::Identity() + strainTensor(state.strain);
-  const Mat3 undeform = deform.inverse();
+  deform_ = Mat3::Identity() + strainTensor(state.strain);
+  const Mat3 undeform = deform_.inverse();
   rows_.resize(contacts.size());
   for (std::size_t i = 0; i < contacts.size(); ++i)
   {
@@ -40,12 +41,17 @@ void StepSolver::prepareRows(
     if (c.kind == ContactKind::VertexFace)
     {
       row.x = block.shape().vertices()[c.rockFeature];
-      row.y0 = deform * row.x;
+      row.y0 = deform_ * row.x;
     }
     else
     {
       row.y0 = rotation_.transpose() * (c.point - state.position);
       row.x = undeform * row.y0;
+    }
+    if (c.kind == ContactKind::EdgeEdge)
+    {
+      row.ridge = { rotation_.transpose() * (c.ridge[0] - state.position),
+        rotation_.transpose() * c.ridge[1] };
     }
     row.tangent[0] = row.n.unitOrthogonal();
     row.tangent[1] = row.n.cross(row.tangent[0]);
@@ -57,7 +63,8 @@ void StepSolver::prepareRows(
   }
 }
 
-void StepSolver::levers(const std::vector<Contact>& contacts, const Vec12& d)
+void StepSolver::levers(
+  const Block& block, const std::vector<Contact>& contacts, const Vec12& d)
 {
   const Vec3 u = d.head<3>();
   const Vec3 r = d.segment<3>(kRotation);
@@ -79,12 +86,35 @@ void StepSolver::levers(const std::vector<Contact>& contacts, const Vec12& d)
       }
       continue;
     }
-    const Vec3 y1 = row.y0 + strain * row.x;
+    Vec3 n = row.n, x = row.x, y0 = row.y0;
+    if (contacts[i].kind == ContactKind::EdgeEdge)
+    {
+      // The normal turns with the rock's edge and the crossing moves along it: both as of mid-step,
+      // which leaves an error of third order.
+      const std::array<int, 2>& ends = block.shape().edges()[contacts[i].rockFeature].vertices;
+      const Vec3& x0 = block.shape().vertices()[ends[0]];
+      const Vec3& x1 = block.shape().vertices()[ends[1]];
+      const auto middle = [&](const Vec3& point)
+      {
+        const Vec3 start = deform_ * point;
+        return Vec3(0.5 * (start + turn * (start + strain * point) + u));
+      };
+      const Vec3 p0 = middle(x0), along = middle(x1) - p0;
+      double s, t;
+      if (closestOnLines(p0, along, row.ridge[0], row.ridge[1], s, t))
+      {
+        const Vec3 cross = along.cross(row.ridge[1]).normalized();
+        n = cross.dot(row.n) < 0.0 ? Vec3(-cross) : cross;
+        x = x0 + s * (x1 - x0);
+        y0 = deform_ * x;
+      }
+    }
+    const Vec3 y1 = y0 + strain * x;
     const Vec3 z = 0.5 * (y1 + turn * y1);
-    row.normal = displacementRow(row.n, z, row.x);
+    row.normal = displacementRow(n, z, x);
     for (int k = 0; k < 2; ++k)
     {
-      row.shear[k] = displacementRow(row.tangent[k], z, row.x);
+      row.shear[k] = displacementRow(row.tangent[k], z, x);
     }
   }
 }
@@ -168,7 +198,7 @@ StepOutcome StepSolver::step(const Block& block, const StepRequest& request,
   Vec12 d = Vec12::Zero();
   d.head<6>() = h * velocity0.head<6>();
   d.head<3>() -= (0.5 * h * h * request.gravity) * Vec3(rotation_.transpose() * Vec3::UnitZ());
-  this->levers(contacts, d);
+  this->levers(block, contacts, d);
   this->evaluate(request, d);
   Quat turn = cayley(d.segment<3>(kRotation));
   bool settled = false;
@@ -224,7 +254,7 @@ StepOutcome StepSolver::step(const Block& block, const StepRequest& request,
     const Vec3 turnChange = next.segment<3>(kRotation) - d.segment<3>(kRotation);
     d = next;
     turn = cayley(d.segment<3>(kRotation));
-    this->levers(contacts, d);
+    this->levers(block, contacts, d);
     double change = 0.0, scale = 0.0;
     for (const Row& row : rows_)
     {
@@ -268,8 +298,9 @@ StepOutcome StepSolver::step(const Block& block, const StepRequest& request,
       outcome.anyClosed = true;
       c.state = row.state;
       c.slip = rotation_ * slip1;
-      outcome.springEnergy += 0.5 * request.normalPenalty * row.gap1 * row.gap1 +
-        0.5 * request.shearPenalty * row.slip1.squaredNorm();
+      const double normal = 0.5 * request.normalPenalty * row.gap1 * row.gap1;
+      outcome.normalEnergy += normal;
+      outcome.springEnergy += normal + 0.5 * request.shearPenalty * row.slip1.squaredNorm();
     }
     else
     {

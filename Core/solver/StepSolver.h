@@ -49,6 +49,7 @@ struct StepOutcome
   int iterations = 0;
   double frictionWork = 0.0; ///< Dissipated by sliding, J, ≥ 0.
   double springEnergy = 0.0; ///< In the contact springs at the end, J.
+  double normalEnergy = 0.0; ///< The part of it in the normal springs, J.
   bool anyClosed = false;
 };
 
@@ -75,6 +76,7 @@ private:
     Vec3 n;                      ///< Body axes of the step's start.
     Vec3 x;                      ///< Material point.
     Vec3 y0;                     ///< Its place about the centroid at the start, body axes.
+    std::array<Vec3, 2> ridge;   ///< EdgeEdge: point and direction about the centroid, body axes.
     Eigen::Vector2d slip0;
     double gap0 = 0.0;
     // As of the last evaluation:
@@ -90,7 +92,7 @@ private:
   };
 
   void prepareRows(const Block& block, const BlockState& state, const std::vector<Contact>& contacts);
-  void levers(const std::vector<Contact>& contacts, const Vec12& d);
+  void levers(const Block& block, const std::vector<Contact>& contacts, const Vec12& d);
   /// Springs for the displacement D; returns whether any contact changed its state.
   bool evaluate(const StepRequest& request, const Vec12& d);
 
@@ -98,6 +100,7 @@ private:
   Mat12 matrix_;
   Vec12 load_;
   Mat3 rotation_; ///< Body to world at the start of the step.
+  Mat3 deform_;   ///< I + ε at the start of the step.
 };
 
 } // namespace rockfall
