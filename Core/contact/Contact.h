@@ -98,10 +98,11 @@ private:
 void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch, double reach,
   std::vector<Contact>& contacts);
 
-/// The net under the entrance rules: every vertex of the rock that is under the slope, and every peak
-/// inside the rock, gets a contact that carries no force at the overlap it is found with and resists any
-/// further one. For a rock that carries on nothing else.
-void holdOverlap(const PlacedBlock& rock, const SurfacePatch& patch, std::vector<Contact>& contacts);
+/// The net under the entrance rules: every vertex of the rock that is under the slope by more than
+/// `allowed` (m), and every peak as deep inside the rock, gets a contact that carries no force at the
+/// overlap it is found with and resists any further one, unless it has a contact already.
+void holdOverlap(const PlacedBlock& rock, const SurfacePatch& patch, double allowed,
+  std::vector<Contact>& contacts);
 
 /// The same entrance rules by brute force over all pairs, without pruning: the oracle of the tests.
 void findEntrancesBruteForce(const PlacedBlock& rock, const SurfacePatch& patch, double reach,

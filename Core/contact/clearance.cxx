@@ -235,12 +235,12 @@ double penetration(const PlacedBlock& rock, const SurfacePatch& patch)
   return deepest;
 }
 
-void holdOverlap(
-  const PlacedBlock& rock, const SurfacePatch& patch, std::vector<Contact>& contacts)
+void holdOverlap(const PlacedBlock& rock, const SurfacePatch& patch, double allowed,
+  std::vector<Contact>& contacts)
 {
   const auto add = [&](ContactKind kind, int onRock, int onPatch, double distance)
   {
-    if (distance >= 0.0)
+    if (distance >= -allowed)
     {
       return;
     }
@@ -265,7 +265,11 @@ void holdOverlap(
       c.point = patch.nodes[onPatch].position;
     }
     const bool known = std::any_of(contacts.begin(), contacts.end(), [&](const Contact& o)
-      { return o.kind == c.kind && o.rockFeature == c.rockFeature; });
+      {
+        return o.kind == c.kind &&
+          (c.kind == ContactKind::VertexFace ? o.rockFeature == c.rockFeature
+                                             : o.surfaceFeature == c.surfaceFeature);
+      });
     if (!known)
     {
       contacts.push_back(c);

@@ -16,8 +16,9 @@ namespace
 /// then continuous when a vertex crosses the edge. Across a sharper edge the exit stays the entrance.
 constexpr double kSmoothTurn = 0.5; // cosine
 
-/// How far past its end, as a share of its length, an edge may serve.
-constexpr double kExtension = 0.3;
+/// How far past its end an edge may serve, in depths of the overlap: where two exits that meet under
+/// 60° are equally deep lies within this of their common end.
+constexpr double kExtension = 2.0;
 
 /// Keeps the force continuous when a contact goes over to a neighbouring feature where it would be
 /// deeper; where it would be less deep the spring just gives way.
@@ -148,11 +149,13 @@ struct Crossing
   Vec3 normal = Vec3::UnitZ();
   Vec3 point = Vec3::Zero();
   double distance = 0.0;
+  double lengths[2] = { 0.0, 0.0 }; ///< Of the edge and of the ridge, m.
 
-  /// How far the crossing is past an end, as a share of the length; ≤ 0 within both.
+  /// How far the crossing is past an end, m; ≤ 0 within both.
   double beyond() const
   {
-    return std::max({ -this->s, this->s - 1.0, -this->t, this->t - 1.0 });
+    return std::max(std::max(-this->s, this->s - 1.0) * this->lengths[0],
+      std::max(-this->t, this->t - 1.0) * this->lengths[1]);
   }
 };
 
@@ -166,6 +169,8 @@ Crossing crossing(const PlacedBlock& rock, int edge, const SurfacePatch& patch, 
   const Vec3 u = rock.vertices()[e.vertices[1]] - p;
   const Vec3 w = patch.nodes[g.nodes[1]].position - q;
   Crossing c;
+  c.lengths[0] = u.norm();
+  c.lengths[1] = w.norm();
   c.skew = closestOnLines(p, u, q, w, c.s, c.t);
   if (c.skew)
   {
@@ -192,6 +197,7 @@ bool leaveBest(const PlacedBlock& rock, const SurfacePatch& patch, const Crossin
   const Polyhedron::Edge& e = shape.edges()[contact.rockFeature];
   const SurfacePatch::Ridge& g = patch.ridges[contact.patchFeature];
   const double same = 1e-9 * rock.block().radius(); // depths that differ by rounding only
+  const double reach = -kExtension * contact.distance;
   Contact best = contact;
   double highest = -std::numeric_limits<double>::infinity();
   double bestBeyond = 0.0;
@@ -223,7 +229,7 @@ bool leaveBest(const PlacedBlock& rock, const SurfacePatch& patch, const Crossin
   const auto offerCrossing = [&](int edge, int ridge)
   {
     const Crossing c = crossing(rock, edge, patch, ridge, contact.normal);
-    if (c.skew && c.beyond() < kExtension && inEdgeCones(rock, edge, patch, ridge, c.normal, 0.0))
+    if (c.skew && c.beyond() <= reach && inEdgeCones(rock, edge, patch, ridge, c.normal, 0.0))
     {
       const SurfacePatch::Ridge& r = patch.ridges[ridge];
       offer(ContactKind::EdgeEdge, edge, ridge, r.key, patch.triangles[r.triangles[0]].cfe,
@@ -278,7 +284,7 @@ bool leaveBest(const PlacedBlock& rock, const SurfacePatch& patch, const Crossin
   }
   const bool better = highest > contact.distance + same;
   const bool goesOn = highest > contact.distance - same && bestBeyond < at.beyond();
-  if (!better && !goesOn && at.beyond() < kExtension)
+  if (!better && !goesOn && at.beyond() <= reach)
   {
     contact.normal = at.normal;
     contact.point = at.point;

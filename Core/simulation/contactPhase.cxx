@@ -15,7 +15,7 @@ namespace
 /// Speed at which an overlap that was found, not made, is pressed out of a lasting contact, m/s.
 constexpr double kPressOut = 0.05;
 /// An overlap beyond this share of the radius that nothing carries is held where it is.
-constexpr double kLooseOverlap = 1e-4;
+constexpr double kLooseOverlap = 1e-3;
 
 bool anyClosed(const std::vector<Contact>& contacts)
 {
@@ -108,12 +108,15 @@ void RockSimulator::stayInContact()
       {
         return;
       }
-      if (gap.distance <= 0.0 &&
-        penetration(placed_, patch_) > kLooseOverlap * block_.radius())
-      {
-        holdOverlap(placed_, patch_, contacts_);
-      }
     }
+    // What carries may be pressed in, and its neighbourhood with it; anything deeper slipped through.
+    double pressed = 0.0;
+    for (const Contact& c : contacts_)
+    {
+      pressed = std::max(pressed, -c.distance);
+    }
+    holdOverlap(
+      placed_, patch_, kLooseOverlap * block_.radius() + 2.0 * pressed, contacts_);
     this->takeStep(std::max(h, 1e-12), kind);
     this->checkEnd(state_.time - before_.time);
   }
