@@ -37,7 +37,8 @@ struct Contact
   std::int64_t cfe = 0;            ///< A CFE that the contact is on, for material and output.
   Vec3 normal = Vec3::UnitZ();     ///< Out of the slope, world, unit.
   Vec3 point = Vec3::Zero();       ///< Where the rock touches, world, m.
-  std::array<Vec3, 2> ridge;       ///< EdgeEdge: a point of the ridge and its direction, world.
+  /// EdgeEdge: a point of the ridge and its direction, world.
+  std::array<Vec3, 2> ridge = { Vec3::Zero(), Vec3::Zero() };
   double distance = 0.0;           ///< Signed geometric gap along the normal, m; < 0 penetrates.
   /// A pair that is found already overlapping carries no force at the overlap it was found with (≤ 0),
   /// so that finding it makes no energy; m.

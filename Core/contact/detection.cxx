@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <span>
 
 namespace rockfall
 {
@@ -20,46 +19,20 @@ bool samePlace(const Contact& a, const Contact& b)
     a.surfaceFeature == b.surfaceFeature;
 }
 
-/// Whether two pairs share a vertex of the rock and a node of the slope: their normals then belong to
-/// one corner of the Minkowski difference.
-bool sameCorner(
-  const PlacedBlock& rock, const SurfacePatch& patch, const Contact& a, const Contact& b)
+/// Whether two ridges are pieces of one straight one.
+bool onOneLine(const SurfacePatch& patch, int a, int b)
 {
-  const Polyhedron& shape = rock.block().shape();
-  const auto onRock = [&](const Contact& c) -> std::span<const int>
-  {
-    switch (c.kind)
-    {
-      case ContactKind::VertexFace:
-        return { &c.rockFeature, 1 };
-      case ContactKind::FaceVertex:
-        return shape.faces()[c.rockFeature];
-      case ContactKind::EdgeEdge:
-        break;
-    }
-    return shape.edges()[c.rockFeature].vertices;
-  };
-  const auto onSlope = [&](const Contact& c) -> std::span<const int>
-  {
-    switch (c.kind)
-    {
-      case ContactKind::VertexFace:
-        return patch.triangles[c.patchFeature].nodes;
-      case ContactKind::FaceVertex:
-        return { &c.patchFeature, 1 };
-      case ContactKind::EdgeEdge:
-        break;
-    }
-    return patch.ridges[c.patchFeature].nodes;
-  };
-  const auto share = [](std::span<const int> x, std::span<const int> y)
-  { return std::find_first_of(x.begin(), x.end(), y.begin(), y.end()) != x.end(); };
-  return share(onRock(a), onRock(b)) && share(onSlope(a), onSlope(b));
+  const SurfacePatch::Ridge& x = patch.ridges[a];
+  const SurfacePatch::Ridge& y = patch.ridges[b];
+  const bool joined = x.nodes[0] == y.nodes[0] || x.nodes[0] == y.nodes[1] ||
+    x.nodes[1] == y.nodes[0] || x.nodes[1] == y.nodes[1];
+  const auto direction = [&](const SurfacePatch::Ridge& r) -> Vec3
+  { return (patch.nodes[r.nodes[1]].position - patch.nodes[r.nodes[0]].position).normalized(); };
+  return joined && std::abs(direction(x).dot(direction(y))) > 0.999;
 }
 
 /// Adds an entrance unless the contacts that are already there stand for it.
-void admit(const PlacedBlock& rock, const SurfacePatch& patch, Contact candidate,
-  std::vector<Contact>& contacts)
+void admit(const SurfacePatch& patch, Contact candidate, std::vector<Contact>& contacts)
 {
   for (const Contact& c : contacts)
   {
@@ -67,15 +40,11 @@ void admit(const PlacedBlock& rock, const SurfacePatch& patch, Contact candidate
     {
       return;
     }
-    // Around an edge–edge contact that carries, the pair with the shortest way out stands for all.
-    const bool crossing =
-      c.kind == ContactKind::EdgeEdge || candidate.kind == ContactKind::EdgeEdge;
-    const bool found = candidate.distance < -1e-9 * rock.block().radius();
-    const bool sameEdge = c.kind == candidate.kind && c.rockFeature == candidate.rockFeature;
-    if (crossing && c.closed() && (found || sameEdge) && c.normal.dot(candidate.normal) > 0.5 &&
-      sameCorner(rock, patch, c, candidate))
+    if (candidate.kind == ContactKind::EdgeEdge && c.kind == ContactKind::EdgeEdge &&
+      c.rockFeature == candidate.rockFeature &&
+      onOneLine(patch, c.patchFeature, candidate.patchFeature))
     {
-      return;
+      return; // the crossing that carries already, at the joint of two pieces
     }
     if (candidate.kind != ContactKind::VertexFace || c.kind != ContactKind::VertexFace ||
       c.rockFeature != candidate.rockFeature)
@@ -172,7 +141,7 @@ void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch, double r
       {
         if (auto c = vertexFace(rock, v, patch, i, reach))
         {
-          admit(rock, patch, *c, contacts);
+          admit(patch, *c, contacts);
         }
       }
     }
@@ -200,7 +169,7 @@ void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch, double r
     {
       if (auto c = faceVertex(rock, face, patch, i, reach))
       {
-        admit(rock, patch, *c, contacts);
+        admit(patch, *c, contacts);
       }
     }
   }
@@ -223,7 +192,7 @@ void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch, double r
     {
       if (auto c = edgeEdge(rock, e, patch, i, reach))
       {
-        admit(rock, patch, *c, contacts);
+        admit(patch, *c, contacts);
       }
     }
   }
@@ -239,7 +208,7 @@ void findEntrancesBruteForce(const PlacedBlock& rock, const SurfacePatch& patch,
     {
       if (auto c = vertexFace(rock, v, patch, i, reach))
       {
-        admit(rock, patch, *c, contacts);
+        admit(patch, *c, contacts);
       }
     }
   }
@@ -249,7 +218,7 @@ void findEntrancesBruteForce(const PlacedBlock& rock, const SurfacePatch& patch,
     {
       if (auto c = faceVertex(rock, f, patch, i, reach))
       {
-        admit(rock, patch, *c, contacts);
+        admit(patch, *c, contacts);
       }
     }
   }
@@ -259,7 +228,7 @@ void findEntrancesBruteForce(const PlacedBlock& rock, const SurfacePatch& patch,
     {
       if (auto c = edgeEdge(rock, e, patch, i, reach))
       {
-        admit(rock, patch, *c, contacts);
+        admit(patch, *c, contacts);
       }
     }
   }

@@ -185,9 +185,9 @@ Crossing crossing(const PlacedBlock& rock, int edge, const SurfacePatch& patch, 
   return c;
 }
 
-/// The way out of an overlap at an edge–edge contact. The pairs around it, the next ridges, the next edges,
-/// the vertices in the CFEs, the nodes in the faces, are faces of the same Minkowski difference; the one
-/// that is least deep is the shortest exit and takes the load over as soon as it is no deeper than
+/// The way out of an overlap at an edge–edge contact. The pairs of the ridge's wedge with the edges and
+/// vertices of the rock around it are faces of one Minkowski difference of convex bodies; the one that
+/// is least deep is the shortest exit and takes the load over as soon as it is no deeper than
 /// the old one, so that the depth is continuous. Until then the old crossing serves, even somewhat past
 /// the end of its edge.
 bool leaveBest(const PlacedBlock& rock, const SurfacePatch& patch, const Crossing& at,
@@ -236,15 +236,6 @@ bool leaveBest(const PlacedBlock& rock, const SurfacePatch& patch, const Crossin
         c.normal, c.point, c.distance, c.beyond());
     }
   };
-  for (int i = 0; i < int(patch.ridges.size()); ++i)
-  {
-    const std::array<int, 2>& n = patch.ridges[i].nodes;
-    if (i != contact.patchFeature &&
-      (n[0] == g.nodes[0] || n[1] == g.nodes[0] || n[0] == g.nodes[1] || n[1] == g.nodes[1]))
-    {
-      offerCrossing(contact.rockFeature, i);
-    }
-  }
   for (int i = 0; i < int(shape.edges().size()); ++i)
   {
     const std::array<int, 2>& v = shape.edges()[i].vertices;
@@ -253,19 +244,6 @@ bool leaveBest(const PlacedBlock& rock, const SurfacePatch& patch, const Crossin
         v[1] == e.vertices[1]))
     {
       offerCrossing(i, contact.patchFeature);
-    }
-  }
-  for (int node : g.nodes)
-  {
-    const SurfacePatch::Node& q = patch.nodes[node];
-    for (int f : e.faces)
-    {
-      if (q.peak && inPeakCone(patch, node, -rock.normals()[f], 0.0) &&
-        insideRockFace(rock, f, q.position, 0.0))
-      {
-        offer(ContactKind::FaceVertex, f, node, q.key, q.cfe, -rock.normals()[f], q.position,
-          rock.faceDistance(f, q.position), 0.0);
-      }
     }
   }
   for (int vertex : e.vertices)
@@ -279,6 +257,30 @@ bool leaveBest(const PlacedBlock& rock, const SurfacePatch& patch, const Crossin
       {
         offer(ContactKind::VertexFace, vertex, i, t.cfe, t.cfe, t.normal, p,
           t.normal.dot(p) - t.offset, 0.0);
+      }
+    }
+  }
+  if (at.t < 0.0 || at.t > 1.0)
+  {
+    // Other features of the slope only where this one ends: around a saddle a ridge that is clear of
+    // the rock says nothing of its neighbour.
+    const int node = g.nodes[at.t < 0.0 ? 0 : 1];
+    for (int i = 0; i < int(patch.ridges.size()); ++i)
+    {
+      const std::array<int, 2>& n = patch.ridges[i].nodes;
+      if (i != contact.patchFeature && (n[0] == node || n[1] == node))
+      {
+        offerCrossing(contact.rockFeature, i);
+      }
+    }
+    const SurfacePatch::Node& q = patch.nodes[node];
+    for (int f : e.faces)
+    {
+      if (q.peak && inPeakCone(patch, node, -rock.normals()[f], 0.0) &&
+        insideRockFace(rock, f, q.position, 0.0))
+      {
+        offer(ContactKind::FaceVertex, f, node, q.key, q.cfe, -rock.normals()[f], q.position,
+          rock.faceDistance(f, q.position), 0.0);
       }
     }
   }

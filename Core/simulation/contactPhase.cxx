@@ -13,7 +13,7 @@ namespace
 {
 
 /// Speed at which an overlap that was found, not made, is pressed out of a lasting contact, m/s.
-constexpr double kPressOut = 0.05;
+constexpr double kPressOut = 0.005;
 /// An overlap beyond this share of the radius that nothing carries is held where it is.
 constexpr double kLooseOverlap = 1e-3;
 
