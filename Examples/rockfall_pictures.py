@@ -1,0 +1,525 @@
+"""The pictures and the movie of the main job, rendered by ParaView.
+
+Rocks of 1 m can hardly be seen on a slope of 1 km. So the views from afar show where rocks went, as
+tubes, and the movie's rocks there are enlarged, which its caption says; the near views have the real
+polyhedra in their real size.
+"""
+import numpy as np
+from paraview.simple import *
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+from rockfall_ground import add_array, cells, hillshade, make_polydata
+
+ENLARGED = 8.0  # Size of the movie's rocks seen from afar over their real one.
+INK = [0.1, 0.1, 0.1]
+RELEASED = [0.0, 0.62, 1.0]
+SANDSTONE = [0.93, 0.62, 0.32]
+
+
+# --- Pieces of a picture ----------------------------------------------------------------------------
+
+def produce(polydata):
+    """A source that gives this polydata."""
+    source = TrivialProducer()
+    source.GetClientSideObject().SetOutput(polydata)
+    source.UpdatePipeline()
+    return source
+
+
+def new_view(size, background=(1.0, 1.0, 1.0)):
+    view = CreateRenderView()
+    view.ViewSize = list(size)
+    view.OrientationAxesVisibility = 0
+    view.UseColorPaletteForBackground = 0
+    view.Background = list(background)
+    view.UseFXAA = 1
+    return view
+
+
+def plain(source, view, colour, **properties):
+    display = Show(source, view)
+    display.ColorArrayName = ["POINTS", ""]
+    display.AmbientColor = display.DiffuseColor = list(colour)
+    for name, value in properties.items():
+        setattr(display, name, value)
+    return display
+
+
+def flat(source, view, colour, **properties):
+    """In one colour whatever the light."""
+    return plain(source, view, colour, Ambient=1.0, Diffuse=0.0, **properties)
+
+
+def show_slope(source, view):
+    display = Show(source, view)
+    ColorBy(display, ("POINTS", "Shade"))
+    display.MapScalars = 0
+    display.Ambient, display.Diffuse = 1.0, 0.0
+    return display
+
+
+def show_speed(source, view, top):
+    display = Show(source, view)
+    ColorBy(display, ("POINTS", "Speed"))
+    colours = GetColorTransferFunction("Speed")
+    colours.ApplyPreset("Plasma (matplotlib)", True)
+    colours.RescaleTransferFunction(0.0, top)
+    display.Ambient, display.Diffuse = 0.55, 0.5
+    return display
+
+
+def speed_bar(view, position, length, size=20):
+    bar = GetScalarBar(GetColorTransferFunction("Speed"), view)
+    bar.Title, bar.ComponentTitle = "Speed (m/s)", ""
+    bar.TitleColor = bar.LabelColor = INK
+    bar.TitleFontSize = bar.LabelFontSize = size
+    bar.AutoOrient, bar.Orientation = 0, "Vertical"
+    bar.WindowLocation = "Any Location"
+    bar.Position, bar.ScalarBarLength, bar.ScalarBarThickness = list(position), length, size
+    bar.LabelFormat = bar.RangeLabelFormat = "%.0f"
+    bar.Visibility = 1
+
+
+def write(view, text, position, size=22, colour=INK, bold=False, centred=False):
+    """Text with its lower left corner, or about the middle of its lower edge, at a share of the
+    picture's width and height. Returns the text's source."""
+    source = Text(Text=str(text))
+    display = Show(source, view)
+    shift = 0.26 * size * len(str(text)) / view.ViewSize[0] if centred else 0.0
+    display.WindowLocation, display.Position = "Any Location", [position[0] - shift, position[1]]
+    display.FontSize, display.Color, display.Bold = size, list(colour), int(bold)
+    return source
+
+
+def seen_at(view, point):
+    """Share of the picture's width and height at which a point of the world is seen."""
+    x, y, _, w = projection(view) @ [*point, 1.0]
+    return [0.5 + 0.5 * x / w, 0.5 + 0.5 * y / w]
+
+
+def projection(view):
+    width, height = view.ViewSize
+    matrix = view.GetActiveCamera().GetCompositeProjectionTransformMatrix(width / height, -1, 1)
+    return np.array([[matrix.GetElement(i, k) for k in range(4)] for i in range(4)])
+
+
+def points_source(points, radius):
+    """Little spheres."""
+    polydata = make_polydata(points)
+    polydata.SetVerts(cells(np.arange(len(points))[:, None]))
+    glyph = Glyph(Input=produce(polydata), GlyphType="Sphere", GlyphMode="All Points", ScaleFactor=2 * radius)
+    glyph.OrientationArray = ["POINTS", "No orientation array"]
+    glyph.ScaleArray = ["POINTS", "No scale array"]
+    return glyph
+
+
+def round_length(most):
+    """The largest of 1, 2, 5 times a power of ten that is not more."""
+    power = 10.0 ** np.floor(np.log10(most))
+    return max(step * power for step in (1, 2, 5) if step * power <= most)
+
+
+def length_text(metres):
+    return f"{metres / 1000:g} km" if metres >= 1000 else f"{metres:g} m"
+
+
+def quads(corners):
+    """Polygons of four corners each, (n, 4, 3)."""
+    polydata = make_polydata(corners.reshape(-1, 3))
+    polydata.SetPolys(cells(np.arange(4 * len(corners)).reshape(-1, 4)))
+    return produce(polydata)
+
+
+# --- Rocks -----------------------------------------------------------------------------------------
+
+def rock_points(polydata):
+    """Points of the rocks and the number of the rock that each belongs to."""
+    points = vtk_to_numpy(polydata.GetPoints().GetData()).copy()
+    polygons = polydata.GetPolys()
+    sizes = np.diff(vtk_to_numpy(polygons.GetOffsetsArray()))
+    owner = np.empty(len(points), int)
+    owner[vtk_to_numpy(polygons.GetConnectivityArray())] = \
+        np.repeat(vtk_to_numpy(polydata.GetCellData().GetArray("RockId")), sizes)
+    return points, owner
+
+
+def enlarge(polydata, times):
+    """Points of rocks that are bigger by a factor, each about its lowest point."""
+    points, owner = rock_points(polydata)
+    for rock in np.unique(owner):
+        own = points[owner == rock]
+        foot = np.append(own[:, :2].mean(axis=0), own[:, 2].min())
+        points[owner == rock] = foot + times * (own - foot)
+    return points
+
+
+def cast_shadows(polydata, ground, light=(-0.35, 0.25, 1.0)):
+    """Points of rocks moved along the light onto the ground, a little over it."""
+    points, _ = rock_points(polydata)
+    fallen = points.copy()
+    for _ in range(4):
+        drop = points[:, 2] - ground.height(fallen[:, 0], fallen[:, 1])
+        fallen[:, 0] = points[:, 0] - light[0] / light[2] * drop
+        fallen[:, 1] = points[:, 1] - light[1] / light[2] * drop
+    fallen[:, 2] = ground.height(fallen[:, 0], fallen[:, 1]) + 0.03
+    return fallen
+
+
+kept = {}  # What the pipeline's Python filters and the animation call, by name.
+
+
+def python_filter(source, name, points_of):
+    """A filter that moves the points of the rocks at any time."""
+    def run(given, made):
+        made.ShallowCopy(given)
+        if given.GetNumberOfPoints():
+            made.SetPoints(make_polydata(points_of(given)).GetPoints())
+    kept[name] = run
+    return ProgrammableFilter(Input=source, CopyArrays=0, Script=(
+        "import rockfall_pictures\n"
+        f"rockfall_pictures.kept[{name!r}](self.GetPolyDataInput(), self.GetPolyDataOutput())"))
+
+
+# --- The scene -------------------------------------------------------------------------------------
+
+class Scene:
+    """Everything that the pictures show."""
+
+    def __init__(self, ground, simulation, paths, summary):
+        self.ground, self.paths, self.summary = ground, paths, summary
+        self.rocks = OutputPort(simulation, 0)
+        self.trajectories = OutputPort(simulation, 1)
+        self.low, self.high = paths.points.min(axis=0), paths.points.max(axis=0)
+        self.starts = paths.points[paths.starts[:-1]]
+        self.stops = paths.points[paths.starts[1:] - 1]
+        self.top = float(np.ceil(paths.speed.max() / 5.0) * 5.0)
+        self.count = len(paths.block)
+        west, south = self.low[:2] - 1000.0
+        east, north = self.high[:2] + 1000.0
+        # Light from the upper left, as maps have it, or from the upper right if the slope is better seen.
+        self.down = (self.stops - self.starts)[:, :2].sum(axis=0)
+        self.down /= np.linalg.norm(self.down) or 1.0
+        self.light = 315.0 if self.down[0] < 0 else 45.0
+        self.slope = produce(ground.patch(west, east, south, north, hillshade(self.light)))
+
+    def save_slope(self, path):
+        SaveData(path, proxy=self.slope)
+
+    def thinned(self, spacing):
+        """Numbers of samples per rock that are some way apart: closer ones, of rocks that hardly
+        move, would swell a tube."""
+        kept_samples = []
+        for rock in range(self.count):
+            own = self.paths.of(rock)
+            places, taken = self.paths.points[own].tolist(), [0]
+            for k, place in enumerate(places):
+                last = places[taken[-1]]
+                if abs(place[0] - last[0]) + abs(place[1] - last[1]) + abs(place[2] - last[2]) > spacing:
+                    taken.append(k)
+            if taken[-1] != len(places) - 1:
+                taken.append(len(places) - 1)
+            kept_samples.append(own.start + np.array(taken))
+        return kept_samples
+
+    def tubes(self, radius):
+        """The trajectories as tubes with the point array Speed."""
+        taken = self.thinned(2 * radius)
+        ends = np.cumsum([len(t) for t in taken])
+        polydata = make_polydata(self.paths.points[np.concatenate(taken)])
+        polydata.SetLines(cells(np.split(np.arange(ends[-1]), ends[:-1])))
+        add_array(polydata.GetPointData(), "Speed", self.paths.speed[np.concatenate(taken)])
+        return Tube(Input=produce(polydata), Radius=radius, NumberofSides=8)
+
+    def trails(self, spacing):
+        """The trajectories as pieces with the point array Speed and the cell array Time, of the piece's
+        end."""
+        pieces = np.concatenate([np.column_stack([t[:-1], t[1:]]) for t in self.thinned(spacing)])
+        polydata = make_polydata(self.paths.points[pieces].reshape(-1, 3) + [0.0, 0.0, 1.0])
+        polydata.SetLines(cells(np.arange(2 * len(pieces)).reshape(-1, 2)))
+        add_array(polydata.GetPointData(), "Speed", self.paths.speed[pieces].ravel())
+        add_array(polydata.GetCellData(), "Time", self.paths.time[pieces[:, 1]])
+        return produce(polydata)
+
+    # --- From above
+
+    def map_view(self, centre, width, title, stride=1, size=(1500, 1100)):
+        """A map of `width` m of ground, north up, with title, scale bar and north arrow; its legend's
+        column is right of it. Returns the view, the ground, and the metres of a pixel."""
+        share = (0.80, 0.90)  # of the picture that the map takes, from its lower left corner
+        margin = 0.02
+        metres = width / (share[0] * size[0])  # per pixel
+        height = metres * share[1] * size[1]
+        west, south = centre[0] - width / 2, centre[1] - height / 2
+        bounds = (west, west + width, south, south + height)
+        shade = hillshade(self.light) if stride == 1 else hillshade(smooth=0)
+        ground = produce(self.ground.patch(*bounds, shade, stride))
+
+        view = new_view(size)
+        show_slope(ground, view)
+        focus = [west + (0.5 - margin) * size[0] * metres, south + (0.5 - margin) * size[1] * metres]
+        view.CameraParallelProjection = 1
+        view.CameraParallelScale = 0.5 * size[1] * metres
+        view.CameraFocalPoint = focus + [0.0]
+        view.CameraPosition = focus + [20000.0]
+        view.CameraViewUp = [0.0, 1.0, 0.0]
+
+        write(view, title, (margin, 0.945), 28, bold=True)
+        # Scale bar: four fields, in the legend's column.
+        left, up = west + (share[0] + 0.02) * size[0] * metres, south + 0.03 * size[1] * metres
+        length = round_length(0.11 * size[0] * metres)
+        for first, colour in ((0, INK), (1, [0.8] * 3)):
+            x = left + length / 4 * (np.array([[first], [first + 2]]) + [0, 1, 1, 0])
+            y = up + 0.01 * size[1] * metres * np.array([[0, 0, 1, 1]] * 2)
+            flat(quads(np.stack([x, y, np.full((2, 4), 3000.0)], -1)), view, colour)
+        write(view, "0", (margin + share[0] + 0.02, 0.065), 20, centred=True)
+        write(view, length_text(length), (margin + share[0] + 0.02 + length / metres / size[0], 0.065), 20, centred=True)
+        # North arrow.
+        across, tall = 0.018 * size[0] * metres, 0.05 * size[0] * metres
+        x, y = left + 2 * across, south + 0.12 * size[1] * metres
+        arrow = np.array([[x, y + tall, 3000], [x - across, y, 3000], [x, y + tall / 4, 3000],
+                          [x + across, y, 3000]])
+        flat(quads(arrow[None]), view, INK)
+        write(view, "N", seen_at(view, (x, y + 1.1 * tall, 0)), 26, bold=True, centred=True)
+        return view, ground, metres
+
+    def overview(self, path):
+        ground = self.ground
+        centre = [ground.west + 0.5 * ground.columns * ground.cell, ground.south + 0.5 * ground.rows * ground.cell]
+        view, _, _ = self.map_view(
+            centre, 1.02 * ground.cell * max(ground.columns, 1.2122 * ground.rows),
+            "The Jacksboro fault, Tennessee: DEM and place of the rockfall", stride=8)
+        west, east = self.low[0] - 500, self.high[0] + 500
+        south, north = self.low[1] - 500, self.high[1] + 500
+        corners = np.array([[west, south, 2500], [east, south, 2500], [east, north, 2500], [west, north, 2500]])
+        frame = make_polydata(corners)
+        frame.SetLines(cells(np.array([[0, 1], [1, 2], [2, 3], [3, 0]])))
+        flat(produce(frame), view, [0.85, 0.1, 0.1], LineWidth=4)
+        place = seen_at(view, (0.5 * (west + east), north, 0))
+        write(view, "rockfall", (place[0], place[1] + 0.008), 24, [0.85, 0.1, 0.1], True, True)
+        self.save(view, path)
+
+    def map(self, path):
+        span = self.high[:2] - self.low[:2]
+        view, ground, metres = self.map_view(
+            0.5 * (self.low + self.high)[:2], 1.25 * max(span[0], span[1] / 0.82),
+            f"{self.count} rocks fall from an escarpment at the Jacksboro fault")
+        self.contours(view, ground, 10.0)
+        show_speed(self.tubes(1.5 * metres), view, self.top)
+        speed_bar(view, (0.845, 0.5), 0.4)
+        lift = np.array([0.0, 0.0, 60.0])  # over all else
+        dot = 4.0 * metres
+        flat(points_source(self.stops + lift, dot), view, INK)
+        flat(points_source(self.starts + 2 * lift, 0.7 * dot), view, RELEASED)
+        write(view, "blue: released\nblack: stopped\ncontours: 10 m", (0.845, 0.33), 20)
+        self.save(view, path)
+
+    def contours(self, view, ground, step):
+        low, high = ground.PointData["Elevation"].GetRange()
+        levels = np.arange(np.ceil(low / step), np.floor(high / step) + 1) * step
+        for every, width in ((levels, 1.0), (levels[levels % (5 * step) == 0], 2.5)):
+            lines = Contour(Input=ground, ContourBy=["POINTS", "Elevation"], Isosurfaces=every.tolist())
+            flat(lines, view, [0.42, 0.38, 0.28], LineWidth=width, Position=[0, 0, 0.5])
+
+    # --- From the side
+
+    def look_from_below(self, view, distance=2.0, raised=23.0, turned=25.0, lift=0.07):
+        """Puts the camera in front of the run-out, looking uphill."""
+        span = np.linalg.norm((self.high - self.low)[:2])
+        focus = 0.5 * (self.low + self.high) + [0.0, 0.0, lift * span]
+        reach = distance * span
+        angle = np.arctan2(self.down[1], self.down[0]) + np.radians(turned)
+        tilt = np.radians(raised)
+        view.CameraFocalPoint = focus.tolist()
+        view.CameraPosition = (focus + reach * np.array([
+            np.cos(angle) * np.cos(tilt), np.sin(angle) * np.cos(tilt), np.sin(tilt)])).tolist()
+        view.CameraViewUp = [0.0, 0.0, 1.0]
+        view.CameraViewAngle = 30.0
+
+    def oblique(self, path, size=(1600, 1000)):
+        view = new_view(size, (0.86, 0.91, 0.97))
+        show_slope(self.slope, view)
+        self.contours(view, self.slope, 10.0)
+        span = np.linalg.norm((self.high - self.low)[:2])
+        show_speed(self.tubes(0.0016 * span), view, self.top)
+        self.look_from_below(view)
+        plain(points_source(self.stops, 0.004 * span), view, INK)
+        plain(points_source(self.starts, 0.004 * span), view, RELEASED)
+        self.ground_scale(view)
+        speed_bar(view, (0.9, 0.55), 0.36)
+        write(view, f"{self.count} rocks fall from an escarpment at the Jacksboro fault, Tennessee",
+              (0.02, 0.945), 28, bold=True)
+        write(view, "Tubes: trajectories. Blue: released. Black: stopped. Contours: 10 m.", (0.02, 0.905), 20)
+        self.save(view, path)
+
+    def ground_scale(self, view):
+        """A scale bar and a north arrow on the ground, in the foreground."""
+        span = np.linalg.norm((self.high - self.low)[:2])
+        length = round_length(0.3 * span)
+        begin = self.ground_at(view, 0.07, 0.09)
+        right = self.ground_at(view, 0.5, 0.09) - begin
+        right /= np.linalg.norm(right)
+
+        def strip(start, end, wide):
+            along = np.linspace(start, end, 30)
+            side = np.array([start[1] - end[1], end[0] - start[0]])
+            side *= 0.5 * wide / np.linalg.norm(side)
+            edge = [np.column_stack([e, self.ground.height(*e.T) + 1.5]) for e in (along + side, along - side)]
+            return np.stack([edge[0][:-1], edge[0][1:], edge[1][1:], edge[1][:-1]], 1)
+
+        fields = [strip(begin + right * length * k / 4, begin + right * length * (k + 1) / 4, 0.02 * span)
+                  for k in range(4)]
+        tail = begin + right * 1.3 * length
+        tip = tail + np.array([0.0, 0.1 * span])
+        arrow = [strip(tail, tip, 0.008 * span)]
+        arrow += [strip(tip, tip + span * np.array([wing, -0.035]), 0.008 * span) for wing in (-0.02, 0.02)]
+        flat(quads(np.concatenate(fields[::2] + arrow)), view, INK)
+        flat(quads(np.concatenate(fields[1::2])), view, [1.0] * 3)
+        on_ground = lambda p: (*p, float(self.ground.height(*p)))
+        for at, text in ((0.0, "0"), (length, length_text(length))):
+            u, v = seen_at(view, on_ground(begin + right * at))
+            write(view, text, (u, v - 0.05), 22, bold=True, centred=True)
+        u, v = seen_at(view, on_ground(tip + np.array([0.0, 0.02 * span])))
+        write(view, "N", (u, v), 26, bold=True, centred=True)
+
+    def ground_at(self, view, u, v):
+        """Easting and northing of the ground that is seen at a share of the picture."""
+        back = np.linalg.inv(projection(view))
+        near, far = (p[:3] / p[3] for p in (back @ [2 * u - 1, 2 * v - 1, depth, 1] for depth in (-1, 1)))
+        way = far - near
+        # The renderer's clipping planes are not known yet; 4 km before the camera are enough.
+        points = near + np.linspace(0.0, 4000.0, 8000)[:, None] * way / np.linalg.norm(way)
+        below = points[:, 2] < self.ground.height(points[:, 0], points[:, 1])
+        return points[np.argmax(below), :2]
+
+    # --- Near
+
+    def near_slope(self, view, centre, reach=120.0):
+        """The CFEs around a place, with their edges."""
+        grey = hillshade(self.light, smooth=1, low=(196, 204, 160), high=(214, 218, 180))
+        patch = produce(self.ground.patch(centre[0] - reach, centre[0] + reach, centre[1] - reach,
+                                          centre[1] + reach, grey))
+        display = show_slope(patch, view)
+        display.Representation, display.EdgeColor, display.LineWidth = "Surface With Edges", [0.35, 0.38, 0.26], 1.5
+
+    def show_rocks(self, view, name):
+        plain(self.rocks, view, SANDSTONE, Representation="Surface With Edges", EdgeColor=[0.25, 0.13, 0.05],
+              LineWidth=1.5, Ambient=0.3, Diffuse=0.8, Interpolation="Flat")
+        shadow = python_filter(self.rocks, name, lambda data: cast_shadows(data, self.ground))
+        flat(shadow, view, [0.3, 0.32, 0.22])
+
+    def close_up(self, path, size=(1600, 1000)):
+        """Rocks at rest: the place where the most different shapes lie together."""
+        shapes = np.array(self.summary["Shape"])
+        rested = np.array(self.summary["Fate"]) == "rested"
+        apart = np.linalg.norm(self.stops[:, None] - self.stops, axis=-1)
+        near = (apart < 9.0) & rested
+        middle = max(range(self.count), key=lambda k: (len(set(shapes[near[k]])), -apart[k][near[k]].sum()))
+        shown = np.nonzero(near[middle])[0]
+        centre = self.stops[shown].mean(axis=0)
+        view = new_view(size, (0.86, 0.91, 0.97))
+        self.near_slope(view, centre)
+        self.show_rocks(view, "close-up")
+        view.ViewTime = float(self.paths.time.max())
+        eye = self.standing(centre, 14.0, 3.5, 65.0)
+        view.CameraPosition, view.CameraFocalPoint = eye.tolist(), centre.tolist()
+        view.CameraViewUp, view.CameraViewAngle = [0.0, 0.0, 1.0], 40.0
+        for rock in shown:
+            u, v = seen_at(view, self.stops[rock] + [0.0, 0.0, 0.95])
+            write(view, shapes[rock], (u, v), 24, bold=True, centred=True)
+        write(view, "Rocks at rest, in their real size", (0.02, 0.945), 28, bold=True)
+        write(view, "Lines: edges of the contact\nface elements, 10 m apart", (0.02, 0.87), 20)
+        self.save(view, path)
+
+    def standing(self, centre, away, over, turned):
+        """Where somebody stands downhill of a place, `over` m above the ground."""
+        x, y = centre[:2]
+        step = 5.0
+        fall = np.array([self.ground.height(x - step, y) - self.ground.height(x + step, y),
+                         self.ground.height(x, y - step) - self.ground.height(x, y + step)])
+        angle = np.arctan2(fall[1], fall[0]) + np.radians(turned)
+        place = centre[:2] + away * np.array([np.cos(angle), np.sin(angle)])
+        return np.append(place, max(float(self.ground.height(*place)) + over, centre[2] + over / 2))
+
+    def save(self, view, path):
+        SaveScreenshot(path, view, ImageResolution=list(view.ViewSize))
+        Delete(view)
+
+    # --- Moving
+
+    def movie(self, path, times, say, size=(1280, 640), share=0.62, rate=12):
+        """On the left the whole slope with enlarged rocks, on the right one rock in its real size."""
+        layout = CreateLayout("Movie")
+        layout.SplitHorizontal(0, share)
+        layout.SetSize(*size)
+        far = new_view((int(share * size[0]), size[1]), (0.86, 0.91, 0.97))
+        near = new_view((size[0] - int(share * size[0]), size[1]), (0.86, 0.91, 0.97))
+        for view, place in ((far, 1), (near, 2)):
+            AssignViewToLayout(view=view, layout=layout, hint=place)
+            view.UseFXAA = 0
+
+        show_slope(self.slope, far)
+        self.contours(far, self.slope, 50.0)
+        trails = Threshold(Input=self.trails(4.0), Scalars=["CELLS", "Time"], ThresholdMethod="Between",
+                           LowerThreshold=0.0, UpperThreshold=0.0)
+        show_speed(trails, far, self.top).LineWidth = 2.0
+        big = python_filter(self.rocks, "enlarged", lambda data: enlarge(data, ENLARGED))
+        plain(big, far, SANDSTONE, Representation="Surface With Edges", EdgeColor=[0.25, 0.13, 0.05],
+              Ambient=0.3, Diffuse=0.8, Interpolation="Flat")
+        self.look_from_below(far, distance=1.85)
+        self.ground_scale(far)
+        speed_bar(far, (0.87, 0.5), 0.36, 14)
+        write(far, f"{self.count} rocks at the Jacksboro fault", (0.02, 0.93), 20, bold=True)
+        write(far, f"Rocks are shown {ENLARGED:g} times their size.", (0.02, 0.885), 14)
+        clock = write(far, "0.0 s", (0.02, 0.82), 20, bold=True)
+
+        rock = int(np.argmax(self.summary["RunOut"]))
+        eyes, targets = self.follow(rock, times)
+        self.near_slope(near, 0.5 * (self.starts[rock] + self.stops[rock]),
+                        0.5 * np.abs(self.stops[rock] - self.starts[rock])[:2].max() + 250.0)
+        self.show_rocks(near, "followed")
+        near.CameraViewUp, near.CameraViewAngle = [0.0, 0.0, 1.0], 40.0
+        write(near, f"Rock {self.summary['BlockId'][rock]} ({self.summary['Shape'][rock]})", (0.03, 0.93), 20,
+              bold=True)
+        speed = write(near, "in its real size", (0.03, 0.885), 14)
+
+        animation = GetAnimationScene()
+        own = self.paths.of(rock)
+
+        def tick(now):
+            frame = int(np.abs(times - now).argmin())
+            trails.UpperThreshold = max(now, 1e-3)
+            clock.Text = f"{now:.1f} s"
+            at = np.interp(now, self.paths.time[own], self.paths.speed[own])
+            speed.Text = f"in its real size, {at:.1f} m/s"
+            near.CameraPosition, near.CameraFocalPoint = eyes[frame].tolist(), targets[frame].tolist()
+            if frame and frame % max(len(times) // 6, 1) == 0:
+                say(f"  frame {frame} of {len(times)}")
+
+        kept["tick"] = tick
+        cue = PythonAnimationCue()
+        cue.Script = ("import rockfall_pictures\n"
+                      "def start_cue(self): pass\n"
+                      "def tick(self): rockfall_pictures.kept['tick'](self.GetAnimationTime())\n"
+                      "def end_cue(self): pass\n")
+        animation.Cues.append(cue)
+        animation.PlayMode = "Sequence"
+        animation.StartTime, animation.EndTime = float(times[0]), float(times[-1])
+        animation.NumberOfFrames = len(times)
+        tick(times[0])
+        SaveAnimation(path, layout, ImageResolution=list(size), FrameRate=rate, FrameWindow=[0, len(times) - 1])
+
+    def follow(self, rock, times):
+        """Where a camera stands and looks that moves along with a rock, without its bounces."""
+        own = self.paths.of(rock)
+        even = np.arange(-3.0, times[-1] + 3.0, 0.1)
+        weights = np.hanning(41) / np.hanning(41).sum()
+        path = self.paths.places(rock, even)
+        calm = np.stack([np.convolve(np.pad(path[:, k], 20, mode="edge"), weights, mode="valid")
+                         for k in range(3)], -1)
+        targets = np.stack([np.interp(times, even, calm[:, k]) for k in range(3)], -1)
+        side = np.radians(50.0)
+        ahead = np.array([self.down[0] * np.cos(side) - self.down[1] * np.sin(side),
+                          self.down[0] * np.sin(side) + self.down[1] * np.cos(side)])
+        eyes = targets + np.append(14.0 * ahead, 4.0)
+        eyes[:, 2] = np.maximum(eyes[:, 2], self.ground.height(eyes[:, 0], eyes[:, 1]) + 3.0)
+        return eyes, targets

@@ -1,0 +1,32 @@
+#pragma once
+
+/// @file
+/// How a filter tells its user what is wrong, and what was done.
+
+#include <string>
+
+class vtkAlgorithm;
+class vtkDataObject;
+
+namespace rockfall::filters
+{
+
+/// Reports `message` as the one error of this execution, empties every output and returns 0, to be
+/// returned from RequestData. The executive's own report that the request failed is dropped: it
+/// says nothing that the message does not, and a user would have two errors to read for one cause.
+/// The message stays in the field array "Error" of the outputs.
+int fail(vtkAlgorithm* algorithm, const std::string& message);
+
+/// Empties the outputs but for the message, without a report.
+void leaveError(vtkAlgorithm* algorithm, const std::string& message);
+
+/// True if `input` is what a failed filter left, and then passes its "Error" on to the outputs.
+/// ParaView updates a pipeline more than once, and the second time a failed source counts as up to
+/// date: whoever comes after it must not report its emptiness as another error.
+bool inheritFailure(vtkDataObject* input, vtkAlgorithm* algorithm);
+
+/// Shows a line that is neither an error nor a warning, in ParaView's output messages and on the
+/// terminal of a batch run.
+void showNote(const std::string& note);
+
+} // namespace rockfall::filters

@@ -1,0 +1,53 @@
+#include "motion.h"
+
+#include <algorithm>
+
+namespace rockfall::filters
+{
+
+Sample sampleAt(const Trajectory& trajectory, double time)
+{
+  const std::vector<Sample>& samples = trajectory.samples;
+  const auto after = std::upper_bound(samples.begin(), samples.end(), time,
+    [](double t, const Sample& sample) { return t < sample.time; });
+  if (after == samples.begin())
+  {
+    return samples.front();
+  }
+  if (after == samples.end())
+  {
+    return samples.back();
+  }
+  const Sample& a = *(after - 1);
+  const Sample& b = *after;
+  const double s = (time - a.time) / (b.time - a.time);
+  const auto mix = [s](const auto& from, const auto& to) { return (1.0 - s) * from + s * to; };
+  Sample result;
+  result.time = time;
+  result.position = mix(a.position, b.position);
+  result.orientation = a.orientation.slerp(s, b.orientation);
+  result.velocity = mix(a.velocity, b.velocity);
+  result.angularVelocity = mix(a.angularVelocity, b.angularVelocity);
+  result.kineticEnergy = mix(a.kineticEnergy, b.kineticEnergy);
+  result.heightOverGround = mix(a.heightOverGround, b.heightOverGround);
+  result.contact = s < 0.5 ? a.contact : b.contact;
+  return result;
+}
+
+MotionState stateAt(const Trajectory& trajectory, double time)
+{
+  if (time >= trajectory.samples.back().time)
+  {
+    if (trajectory.summary.fate == Fate::Rested)
+    {
+      return MotionState::Stopped;
+    }
+    if (trajectory.summary.fate == Fate::LeftDomain)
+    {
+      return MotionState::LeftDomain;
+    }
+  }
+  return sampleAt(trajectory, time).contact ? MotionState::InContact : MotionState::Flying;
+}
+
+} // namespace rockfall::filters

@@ -1,0 +1,53 @@
+#pragma once
+
+/// @file
+/// How rocks travel through the pipeline: polygons with the block's properties beside them.
+///
+/// | array           | on    | what                                                    |
+/// |-----------------|-------|---------------------------------------------------------|
+/// | BlockId         | cells | the polygons of one block have one number               |
+/// | Density         | cells | kg/m³                                                   |
+/// | Volume          | cells | m³                                                      |
+/// | YoungModulus    | cells | Pa                                                      |
+/// | PoissonRatio    | cells |                                                         |
+/// | Velocity        | cells | at release, m/s                                         |
+/// | AngularVelocity | cells | at release, about the world's axes, rad/s               |
+/// | Shape           | cells | number of the shape as in the rock source               |
+/// | ShapeName       | field | name of the shape, one per block in order of appearance |
+///
+/// Every cell of a block repeats the block's values, so that any of VTK's filters can cut, move and
+/// append rocks and they stay whole.
+
+#include "geometry/shapes.h"
+#include "simulation/ensemble.h"
+
+#include <span>
+#include <vector>
+
+class vtkCellArray;
+class vtkPoints;
+class vtkPolyData;
+
+namespace rockfall::filters
+{
+
+/// A rock to be released, with the name of what it is like.
+struct ReleasedRock
+{
+  Rock rock;
+  Shape shape = Shape::File;
+};
+
+/// Appends the faces of a block, placed with x ↦ rotation · x + shift.
+void appendFaces(const Polyhedron& shape, const Mat3& rotation, const Vec3& shift,
+  vtkPoints* points, vtkCellArray* polygons);
+
+/// Writes rocks, their positions being world coordinates.
+void writeRocks(std::span<const ReleasedRock> rocks, vtkPolyData* output);
+
+/// Reads rocks from polygons; `origin` is taken off the world coordinates first. Polydata without
+/// BlockId is one block; properties without an array have their defaults. Throws DataError or
+/// GeometryError, naming the block.
+std::vector<ReleasedRock> readRocks(vtkPolyData* input, const Vec3& origin);
+
+} // namespace rockfall::filters

@@ -1,0 +1,223 @@
+#include "terrainFieldData.h"
+
+#include "base/errors.h"
+#include "geometry/shell.h"
+#include "terrainMesh.h"
+
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+#include "vtkStringArray.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rockfall::filters
+{
+
+namespace
+{
+
+constexpr char heightsName[] = "TerrainHeights";
+constexpr char gridName[] = "TerrainGrid";
+constexpr char crsName[] = "TerrainCRS";
+constexpr char materialName[] = "TerrainMaterial";
+constexpr char originName[] = "LocalOrigin";
+
+/// A double array over memory that somebody else owns and that it keeps alive. Deep copies and
+/// NewInstance give a plain vtkDoubleArray.
+class SharedHeights : public vtkDoubleArray
+{
+public:
+  static SharedHeights* New() { VTK_STANDARD_NEW_BODY(SharedHeights); }
+  void Share(std::shared_ptr<const Terrain> terrain)
+  {
+    const std::span<const double> heights = terrain->heights();
+    // VTK knows no array over constant memory; nothing in a pipeline writes into its input.
+    this->SetArray(const_cast<double*>(heights.data()), vtkIdType(heights.size()), 1);
+    this->Owner = std::move(terrain);
+  }
+
+protected:
+  SharedHeights() = default;
+  ~SharedHeights() override = default;
+
+private:
+  std::shared_ptr<const Terrain> Owner;
+};
+
+void addNumbers(vtkFieldData* fieldData, const char* name, std::initializer_list<double> values)
+{
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(name);
+  array->SetNumberOfComponents(int(values.size()));
+  array->InsertNextTuple(values.begin());
+  fieldData->AddArray(array);
+}
+
+/// The numbers of a small array, however they are arranged in tuples.
+std::vector<double> numbers(vtkFieldData* fieldData, const char* name, int count)
+{
+  vtkDataArray* array = fieldData->GetArray(name);
+  if (!array || array->GetNumberOfValues() != count)
+  {
+    throw DataError(
+      "The Terrain input must come from DEM to CFE Mesh, directly or from a file saved "
+      "from it: its field data has no array " +
+      std::string(name) + " of " + std::to_string(count) + " numbers");
+  }
+  std::vector<double> values;
+  for (vtkIdType tuple = 0; tuple < array->GetNumberOfTuples(); ++tuple)
+  {
+    for (int component = 0; component < array->GetNumberOfComponents(); ++component)
+    {
+      values.push_back(array->GetComponent(tuple, component));
+    }
+  }
+  return values;
+}
+
+int gridCount(double value, const char* what)
+{
+  if (!(value >= 1.0 && value <= std::numeric_limits<int>::max()))
+  {
+    throw DataError("The Terrain input's field array TerrainGrid says " + numberText(value) + " " +
+      what + ", it must be a count");
+  }
+  return int(std::lround(value));
+}
+
+/// Throws unless the mesh is the one that belongs to the slope: all of its triangles, and a sample
+/// of its points where the slope's nodes are.
+void checkMesh(vtkPolyData* mesh, const Terrain& terrain, int stride)
+{
+  const std::string remedy =
+    ". The rocks would not fall on what is shown. Connect the output of DEM "
+    "to CFE Mesh itself; crop or move the raster, not the mesh";
+  const std::int64_t expected = countTriangles(terrain, stride);
+  if (mesh->GetNumberOfPolys() != expected || mesh->GetNumberOfCells() != expected)
+  {
+    throw DataError("The Terrain input has " + std::to_string(mesh->GetNumberOfCells()) +
+      " cells but its heights make " + std::to_string(expected) +
+      " triangles: it was clipped or otherwise changed" + remedy);
+  }
+  const GridGeometry& grid = terrain.geometry();
+  const vtkIdType points = mesh->GetNumberOfPoints();
+  const vtkIdType samples = std::min<vtkIdType>(points, 1000);
+  // Loose enough for a mesh that went through single precision: 500 km in a float is good to 3 cm.
+  const double tolerance =
+    std::max(1e-3 * grid.cellSize, std::max(std::abs(grid.xOrigin), std::abs(grid.yOrigin)) * 1e-7);
+  for (vtkIdType k = 0; k < samples; ++k)
+  {
+    double p[3];
+    mesh->GetPoint(samples > 1 ? k * (points - 1) / (samples - 1) : 0, p);
+    const double column = (p[0] - grid.xOrigin) / grid.cellSize;
+    const double row = (grid.rows - 1) - (p[1] - grid.yOrigin) / grid.cellSize;
+    const double nearColumn = std::round(column);
+    const double nearRow = std::round(row);
+    bool fits = nearColumn >= 0 && nearColumn < grid.columns && nearRow >= 0 &&
+      nearRow < grid.rows && std::abs(column - nearColumn) * grid.cellSize <= tolerance &&
+      std::abs(row - nearRow) * grid.cellSize <= tolerance;
+    if (fits)
+    {
+      const double height = terrain.nodeHeight(int(nearRow), int(nearColumn));
+      fits = std::abs(p[2] - height) <= 1e-3 + 1e-6 * std::abs(height);
+    }
+    if (!fits)
+    {
+      throw DataError("The Terrain input has a point at (" + numberText(p[0]) + ", " +
+        numberText(p[1]) + ", " + numberText(p[2]) +
+        ") where the slope has no node: it was moved or otherwise changed" + remedy);
+    }
+  }
+}
+
+} // namespace
+
+void writeTerrain(std::shared_ptr<const Terrain> terrain, int stride, vtkFieldData* fieldData)
+{
+  const GridGeometry& grid = terrain->geometry();
+  const SurfaceMaterial& material = terrain->material();
+  const Roughness& roughness = terrain->roughness();
+  addNumbers(fieldData, gridName,
+    { double(grid.columns), double(grid.rows), grid.cellSize, grid.xOrigin, grid.yOrigin,
+      double(stride) });
+  addNumbers(fieldData, materialName,
+    { material.restitution, material.restitutionDeviation, material.frictionAngle,
+      material.frictionAngleDeviation, material.cohesion, roughness.mean, roughness.deviation });
+  const Vec3 origin = grid.origin();
+  addNumbers(fieldData, originName, { origin.x(), origin.y(), origin.z() });
+  vtkNew<vtkStringArray> crs;
+  crs->SetName(crsName);
+  crs->InsertNextValue(grid.crs);
+  fieldData->AddArray(crs);
+  vtkNew<SharedHeights> heights;
+  heights->SetName(heightsName);
+  heights->Share(std::move(terrain));
+  fieldData->AddArray(heights);
+}
+
+Terrain readTerrain(vtkPolyData* mesh)
+{
+  vtkFieldData* fieldData = mesh->GetFieldData();
+  if (mesh->GetNumberOfCells() == 0 && !fieldData->GetArray(heightsName))
+  {
+    throw DataError("The Terrain input is empty: its source made nothing");
+  }
+  const std::vector<double> g = numbers(fieldData, gridName, 6);
+  const std::vector<double> m = numbers(fieldData, materialName, 7);
+  GridGeometry grid;
+  grid.columns = gridCount(g[0], "columns");
+  grid.rows = gridCount(g[1], "rows");
+  grid.cellSize = g[2];
+  grid.xOrigin = g[3];
+  grid.yOrigin = g[4];
+  const int stride = gridCount(g[5], "as its stride");
+  if (auto* crs = vtkStringArray::SafeDownCast(fieldData->GetAbstractArray(crsName)))
+  {
+    grid.crs = crs->GetNumberOfValues() > 0 ? std::string(crs->GetValue(0)) : std::string();
+  }
+  SurfaceMaterial material;
+  material.restitution = m[0];
+  material.restitutionDeviation = m[1];
+  material.frictionAngle = m[2];
+  material.frictionAngleDeviation = m[3];
+  material.cohesion = m[4];
+  Roughness roughness;
+  roughness.mean = m[5];
+  roughness.deviation = m[6];
+
+  vtkSmartPointer<vtkDoubleArray> heights =
+    vtkDoubleArray::SafeDownCast(fieldData->GetArray(heightsName));
+  if (!heights)
+  {
+    throw DataError(
+      "The Terrain input must come from DEM to CFE Mesh, directly or from a file saved "
+      "from it: its field data has no array " +
+      std::string(heightsName) + " of double precision");
+  }
+  const std::span<const double> view(
+    heights->GetPointer(0), std::size_t(heights->GetNumberOfValues()));
+  // The smart pointer lives in the deleter: the terrain keeps the array, not a copy of it.
+  std::shared_ptr<const void> owner(view.data(), [heights](const void*) {});
+  Terrain terrain(std::move(grid), view, std::move(owner), material, roughness);
+  checkMesh(mesh, terrain, stride);
+  return terrain;
+}
+
+void copyCoordinateSystem(vtkFieldData* from, vtkFieldData* to)
+{
+  for (const char* name : { crsName, originName })
+  {
+    if (vtkAbstractArray* array = from->GetAbstractArray(name))
+    {
+      to->AddArray(array);
+    }
+  }
+}
+
+} // namespace rockfall::filters

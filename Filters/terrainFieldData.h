@@ -1,0 +1,42 @@
+#pragma once
+
+/// @file
+/// How the implicit slope travels through the pipeline: as field data of the polydata that shows
+/// it.
+///
+/// | array            | what                                                                      |
+/// |------------------|---------------------------------------------------------------------------|
+/// | TerrainHeights   | rows × columns node heights, north row first, NaN for nodata, m           |
+/// | TerrainGrid      | columns, rows, cell size (m), easting and northing of the south-west node |
+/// |                  | (m), stride of the shown mesh (1 = every CFE is shown)                    |
+/// | TerrainCRS       | WKT of the coordinate system, empty for a local one                       |
+/// | TerrainMaterial  | Rv, its deviation, φ (rad), its deviation, cohesion (N), roughness mean   |
+/// |                  | and deviation (m)                                                         |
+/// | LocalOrigin      | world = local + origin, m                                                 |
+///
+/// Arrays, so that it survives shallow copies and saving and reopening as .vtp. The heights are
+/// never copied: the array shares the Core's memory on the way out, the Core the array's on the way
+/// in.
+
+#include "terrain/Terrain.h"
+
+#include <memory>
+
+class vtkFieldData;
+class vtkPolyData;
+
+namespace rockfall::filters
+{
+
+/// Puts the slope into `fieldData`; the arrays keep `terrain` alive.
+void writeTerrain(std::shared_ptr<const Terrain> terrain, int stride, vtkFieldData* fieldData);
+
+/// Takes the slope out of a polydata's field data. Throws DataError if there is none, or if the
+/// mesh was moved, clipped or otherwise changed since it was made, so that what the user sees is
+/// not what the rocks would fall on.
+Terrain readTerrain(vtkPolyData* mesh);
+
+/// Copies TerrainCRS and LocalOrigin, for the outputs that stand in the same coordinates.
+void copyCoordinateSystem(vtkFieldData* from, vtkFieldData* to);
+
+} // namespace rockfall::filters

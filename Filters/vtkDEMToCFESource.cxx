@@ -1,0 +1,153 @@
+#include "vtkDEMToCFESource.h"
+
+#include "base/errors.h"
+#include "failure.h"
+#include "geometry/shell.h"
+#include "gis/raster.h"
+#include "terrain/Terrain.h"
+#include "terrainFieldData.h"
+#include "terrainMesh.h"
+
+#include "vtkFieldData.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
+#include "vtkStringArray.h"
+
+#include <new>
+
+vtkStandardNewMacro(vtkDEMToCFESource);
+
+namespace
+{
+
+constexpr double testSlopeCellSize = 5.0; // m
+
+/// The bi-planar slope with another material; the first one keeps the heights that both share.
+std::shared_ptr<const rockfall::Terrain> makeTestSlope(
+  double cellSize, const rockfall::SurfaceMaterial& material, const rockfall::Roughness& roughness)
+{
+  auto slope = std::make_shared<const rockfall::Terrain>(rockfall::makeBiplanarSlope(cellSize));
+  return std::make_shared<const rockfall::Terrain>(
+    slope->geometry(), slope->heights(), slope, material, roughness);
+}
+
+} // namespace
+
+//------------------------------------------------------------------------------
+vtkDEMToCFESource::vtkDEMToCFESource()
+{
+  this->SetNumberOfInputPorts(0);
+}
+
+//------------------------------------------------------------------------------
+vtkDEMToCFESource::~vtkDEMToCFESource() = default;
+
+//------------------------------------------------------------------------------
+int vtkDEMToCFESource::RequestData(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
+{
+  vtkPolyData* output = vtkPolyData::GetData(outputVector);
+  try
+  {
+    rockfall::SurfaceMaterial material;
+    material.restitution = this->RestitutionCoefficient;
+    material.restitutionDeviation = this->RestitutionDeviation;
+    material.frictionAngle = rockfall::radians(this->FrictionAngle);
+    material.frictionAngleDeviation = rockfall::radians(this->FrictionAngleDeviation);
+    material.cohesion = this->Cohesion;
+    material.validate();
+    rockfall::Roughness roughness;
+    roughness.mean = this->RoughnessMean;
+    roughness.deviation = this->RoughnessDeviation;
+    roughness.validate();
+    if (!(this->CellSize >= 0.0))
+    {
+      throw rockfall::ParameterError(
+        "CellSize is " + rockfall::numberText(this->CellSize) + " m, it must be 0 or positive");
+    }
+    if (this->MaximumDisplayCells < 2)
+    {
+      throw rockfall::ParameterError("MaximumDisplayCells is " +
+        std::to_string(this->MaximumDisplayCells) + ", it must be at least 2");
+    }
+
+    std::shared_ptr<const rockfall::Terrain> terrain;
+    std::vector<std::string> notes;
+    if (this->FileName.empty())
+    {
+      terrain = makeTestSlope(
+        this->CellSize > 0.0 ? this->CellSize : testSlopeCellSize, material, roughness);
+    }
+    else
+    {
+      rockfall::RasterOptions options;
+      options.cellSize = this->CellSize;
+      options.band = this->Band;
+      rockfall::RasterSurface surface = rockfall::readRaster(this->FileName, options);
+      notes = std::move(surface.notes);
+      this->UpdateProgress(0.6);
+      terrain = std::make_shared<const rockfall::Terrain>(
+        std::move(surface.geometry), std::move(surface.heights), material, roughness);
+    }
+    if (this->CheckAbort())
+    {
+      return 1;
+    }
+
+    const int stride = rockfall::filters::displayStride(*terrain, this->MaximumDisplayCells);
+    if (stride > 1)
+    {
+      notes.push_back("The mesh shows one node in " + std::to_string(stride) +
+        " each way, because all " + std::to_string(terrain->cfeCapacity()) +
+        " CFEs would be more than Maximum Display Cells; the simulation uses every node");
+    }
+    vtkNew<vtkPolyData> mesh;
+    rockfall::filters::makeTerrainMesh(*terrain, stride, mesh);
+    rockfall::filters::writeTerrain(terrain, stride, mesh->GetFieldData());
+    vtkNew<vtkStringArray> kept;
+    kept->SetName("Notes");
+    for (const std::string& note : notes)
+    {
+      rockfall::filters::showNote(
+        (this->FileName.empty() ? "DEM to CFE Mesh" : this->FileName) + ": " + note);
+      kept->InsertNextValue(note);
+    }
+    mesh->GetFieldData()->AddArray(kept);
+    output->ShallowCopy(mesh);
+    return 1;
+  }
+  catch (const rockfall::Error& error)
+  {
+    // What the terrain itself says does not know the file.
+    std::string message = error.what();
+    if (!this->FileName.empty() && message.find(this->FileName) == std::string::npos)
+    {
+      message = this->FileName + ": " + message;
+    }
+    return rockfall::filters::fail(this, message);
+  }
+  catch (const std::bad_alloc&)
+  {
+    return rockfall::filters::fail(this,
+      (this->FileName.empty() ? "The test slope" : this->FileName) + " at a cell size of " +
+        rockfall::numberText(this->CellSize) + " m (0: its own) does not fit in memory");
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkDEMToCFESource::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "FileName: " << (this->FileName.empty() ? "(none)" : this->FileName) << "\n";
+  os << indent << "CellSize: " << this->CellSize << "\n";
+  os << indent << "Band: " << this->Band << "\n";
+  os << indent << "RestitutionCoefficient: " << this->RestitutionCoefficient << "\n";
+  os << indent << "RestitutionDeviation: " << this->RestitutionDeviation << "\n";
+  os << indent << "FrictionAngle: " << this->FrictionAngle << "\n";
+  os << indent << "FrictionAngleDeviation: " << this->FrictionAngleDeviation << "\n";
+  os << indent << "Cohesion: " << this->Cohesion << "\n";
+  os << indent << "RoughnessMean: " << this->RoughnessMean << "\n";
+  os << indent << "RoughnessDeviation: " << this->RoughnessDeviation << "\n";
+  os << indent << "MaximumDisplayCells: " << this->MaximumDisplayCells << "\n";
+}

@@ -1,0 +1,206 @@
+/**
+ * @class   vtkRockfallSimulation
+ * @brief   lets rock blocks fall on a slope, by 3D discontinuous deformation analysis
+ *
+ * Input port 0 is the terrain, from vtkDEMToCFESource; input port 1 the rocks, closed convex
+ * polygonal blocks told apart by the cell array BlockId, as from vtkRockBlockSource.
+ *
+ * Output ports:
+ *  - 0: the blocks of iteration ShownIteration at the requested time. Cell arrays BlockId, RockId,
+ *    Iteration, Velocity, Speed, RotationRate, KineticEnergy, HeightOverGround, State (0 flying,
+ *    1 in contact, 2 stopped, 3 has left the domain: shown where and as it left), Shape, Volume.
+ *  - 1: one polyline of centroids per rock and iteration. Point arrays Time, Velocity, Speed,
+ *    RotationRate (about x, y, z), KineticEnergy, HeightOverGround; cell arrays BlockId, RockId,
+ *    Iteration, Shape, Volume, Fate (0 rested, 1 left the domain, 2 still moving at the end).
+ *  - 2: one vertex per impact. Point arrays BlockId, RockId, Iteration, Time, Normal, CFEId,
+ * Impulse, ApproachSpeed, VelocityBefore, VelocityAfter, EnergyLoss, Restitution.
+ *  - 3: a table, one row per rock and iteration.
+ *
+ * The run is simulated once; any time is then served from it until a property or an input changes.
+ * The time steps are those from 0 to EndTime at OutputInterval, whenever the last rock stops: this
+ * is known only after the run, and a time range that changes then would move an animation's end.
+ *
+ * All values are taken as they come and checked when the filter runs, so that a bad one gives one
+ * error that names it instead of being changed silently.
+ */
+#ifndef vtkRockfallSimulation_h
+#define vtkRockfallSimulation_h
+
+#include "RockfallFiltersModule.h"
+#include "vtkPolyDataAlgorithm.h"
+
+#include <memory> // for the run that is kept
+#include <string> // for messages
+
+class ROCKFALLFILTERS_EXPORT vtkRockfallSimulation : public vtkPolyDataAlgorithm
+{
+public:
+  static vtkRockfallSimulation* New();
+  vtkTypeMacro(vtkRockfallSimulation, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * Time step of lasting contact in seconds, positive. Impacts are resolved finer by themselves.
+   * Default 0.005.
+   */
+  vtkSetMacro(TimeStep, double);
+  vtkGetMacro(TimeStep, double);
+  ///@}
+
+  ///@{
+  /**
+   * End of the simulation in seconds, positive. Default 60.
+   */
+  vtkSetMacro(EndTime, double);
+  vtkGetMacro(EndTime, double);
+  ///@}
+
+  ///@{
+  /**
+   * Time between samples, and so between time steps of the output, in seconds, positive. Does not
+   * change the motion. Default 0.05.
+   */
+  vtkSetMacro(OutputInterval, double);
+  vtkGetMacro(OutputInterval, double);
+  ///@}
+
+  ///@{
+  /**
+   * Gravity in m/s², not negative. Default 9.81.
+   */
+  vtkSetMacro(Gravity, double);
+  vtkGetMacro(Gravity, double);
+  ///@}
+
+  ///@{
+  /**
+   * Stiffness of the normal contact springs in N/m, positive. Default 1e9.
+   */
+  vtkSetMacro(NormalPenalty, double);
+  vtkGetMacro(NormalPenalty, double);
+  ///@}
+
+  ///@{
+  /**
+   * Stiffness of the shear springs over that of the normal ones, positive, dimensionless.
+   * Default 1.
+   */
+  vtkSetMacro(ShearPenaltyRatio, double);
+  vtkGetMacro(ShearPenaltyRatio, double);
+  ///@}
+
+  ///@{
+  /**
+   * Number of independent realisations of roughness, restitution and friction, at least 1.
+   * Default 1.
+   */
+  vtkSetMacro(Iterations, int);
+  vtkGetMacro(Iterations, int);
+  ///@}
+
+  ///@{
+  /**
+   * With iteration and rock it determines every random number. Default 1.
+   */
+  vtkSetMacro(Seed, int);
+  vtkGetMacro(Seed, int);
+  ///@}
+
+  ///@{
+  /**
+   * Whether rocks collide with each other. They do not in this version: switching it on is an
+   * error.
+   */
+  vtkSetMacro(RockRockContact, bool);
+  vtkGetMacro(RockRockContact, bool);
+  vtkBooleanMacro(RockRockContact, bool);
+  ///@}
+
+  enum RestitutionModelType
+  {
+    VELOCITY = 0,
+    NORMAL_TANGENTIAL = 1
+  };
+
+  ///@{
+  /**
+   * How the coefficient of restitution Rv is applied at an impact: to the whole velocity (VELOCITY,
+   * the default) or to its normal component, friction doing the rest (NORMAL_TANGENTIAL).
+   */
+  vtkSetMacro(RestitutionModel, int);
+  vtkGetMacro(RestitutionModel, int);
+  ///@}
+
+  ///@{
+  /**
+   * Whether blocks are rigid (6 unknowns) instead of deformable (12). Default off.
+   */
+  vtkSetMacro(Rigid, bool);
+  vtkGetMacro(Rigid, bool);
+  vtkBooleanMacro(Rigid, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Number of threads; 0 (the default) takes all. Results do not depend on it.
+   */
+  vtkSetMacro(NumberOfThreads, int);
+  vtkGetMacro(NumberOfThreads, int);
+  ///@}
+
+  ///@{
+  /**
+   * The iteration that port 0 shows, from 0 (the default). The other ports hold all of them.
+   * Changing it does not simulate again.
+   */
+  vtkSetMacro(ShownIteration, int);
+  vtkGetMacro(ShownIteration, int);
+  ///@}
+
+  /**
+   * How often this filter has simulated since it was made.
+   */
+  vtkGetMacro(NumberOfRuns, int);
+
+  vtkRockfallSimulation(const vtkRockfallSimulation&) = delete;
+  void operator=(const vtkRockfallSimulation&) = delete;
+
+protected:
+  vtkRockfallSimulation();
+  ~vtkRockfallSimulation() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+private:
+  struct Cache;
+  struct Failure;
+
+  /// Reports an error of this execution and remembers of what it is the error.
+  int Fail(vtkPolyData* terrain, vtkPolyData* rocks, const std::string& message);
+  /// Simulates unless the kept run is that of these inputs and properties. False if aborted.
+  bool Simulate(vtkPolyData* terrain, vtkPolyData* rocks);
+
+  double TimeStep = 0.005;
+  double EndTime = 60.0;
+  double OutputInterval = 0.05;
+  double Gravity = 9.81;
+  double NormalPenalty = 1e9;
+  double ShearPenaltyRatio = 1.0;
+  int Iterations = 1;
+  int Seed = 1;
+  bool RockRockContact = false;
+  int RestitutionModel = VELOCITY;
+  bool Rigid = false;
+  int NumberOfThreads = 0;
+  int ShownIteration = 0;
+  int NumberOfRuns = 0;
+  std::unique_ptr<Cache> Kept;
+  std::unique_ptr<Failure> Failed;
+};
+
+#endif

@@ -1,0 +1,213 @@
+#include "helpers.h"
+
+#include "vtkCellData.h"
+#include "vtkDEMToCFESource.h"
+#include "vtkDoubleArray.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkStringArray.h"
+#include "vtkXMLPolyDataReader.h"
+#include "vtkXMLPolyDataWriter.h"
+
+namespace
+{
+
+/// 4 columns × 3 rows of 10 m, far from the coordinates' origin, with one node of nodata.
+constexpr char grid[] = "ncols 4\nnrows 3\nxllcorner 500000\nyllcorner 4000000\ncellsize 10\n"
+                        "NODATA_value -9999\n"
+                        "9 8 7 6\n"
+                        "5 4 3 -9999\n"
+                        "2 1.5 1.25 1\n";
+
+class TestDEMToCFESource : public FilterTest
+{
+protected:
+  vtkPolyData* Update()
+  {
+    this->Source->Update();
+    return this->Source->GetOutput();
+  }
+  vtkNew<vtkDEMToCFESource> Source;
+};
+
+} // namespace
+
+TEST_F(TestDEMToCFESource, DefaultIsTheBiplanarSlope)
+{
+  vtkPolyData* mesh = this->Update();
+  EXPECT_EQ(mesh->GetNumberOfCells(), 2 * 50 * 20); // 250 m × 100 m of 5 m cells
+  EXPECT_EQ(mesh->GetNumberOfPoints(), 51 * 21);
+  double bounds[6];
+  mesh->GetBounds(bounds);
+  const double expected[6] = { 0, 250, 0, 100, 0, 57.7 };
+  for (int k = 0; k < 6; ++k)
+  {
+    EXPECT_DOUBLE_EQ(bounds[k], expected[k]);
+  }
+  EXPECT_EQ(value(mesh->GetCellData(), "RestitutionCoefficient"), 0.8);
+  EXPECT_NEAR(value(mesh->GetCellData(), "FrictionAngle"), 15.0, 1e-12);
+  EXPECT_EQ(value(mesh->GetPointData(), "Elevation"), 57.7); // the first node is the north-west one
+}
+
+TEST_F(TestDEMToCFESource, TrianglesAreInTheOrderOfTheNumberingAndFaceUp)
+{
+  this->Source->SetFileName(this->WriteFile("grid.asc", grid).c_str());
+  vtkPolyData* mesh = this->Update();
+  // 3 × 2 cells have 12 CFEs. The node without height is a corner of both triangles of the upper
+  // right cell, and of the upper one of the cell below: 5, 6 and 12.
+  const std::vector<int> numbers = { 1, 2, 3, 4, 7, 8, 9, 10, 11 };
+  ASSERT_EQ(mesh->GetNumberOfCells(), vtkIdType(numbers.size()));
+  for (vtkIdType cell = 0; cell < mesh->GetNumberOfCells(); ++cell)
+  {
+    EXPECT_EQ(value(mesh->GetCellData(), "CFEId", cell), numbers[std::size_t(cell)]);
+    vtkIdType size = 0;
+    const vtkIdType* ids = nullptr;
+    mesh->GetCellPoints(cell, size, ids);
+    ASSERT_EQ(size, 3);
+    double a[3], b[3], c[3];
+    mesh->GetPoint(ids[0], a);
+    mesh->GetPoint(ids[1], b);
+    mesh->GetPoint(ids[2], c);
+    const double twiceArea =
+      (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]); // of the horizontal projection
+    EXPECT_NEAR(twiceArea, 100.0, 1e-6);
+    // Upper left, lower left, lower right; and upper left, lower right, upper right.
+    if (numbers[std::size_t(cell)] % 2 == 1)
+    {
+      EXPECT_DOUBLE_EQ(a[0], b[0]);
+      EXPECT_DOUBLE_EQ(b[1], c[1]);
+    }
+    else
+    {
+      EXPECT_DOUBLE_EQ(b[0], c[0]);
+      EXPECT_DOUBLE_EQ(a[1], c[1]);
+    }
+  }
+}
+
+TEST_F(TestDEMToCFESource, CoordinatesAreRealAndDouble)
+{
+  this->Source->SetFileName(this->WriteFile("grid.asc", grid).c_str());
+  vtkPolyData* mesh = this->Update();
+  EXPECT_EQ(mesh->GetPoints()->GetDataType(), VTK_DOUBLE);
+  // None for the node without height, nor for the corner whose only CFE would touch it.
+  EXPECT_EQ(mesh->GetNumberOfPoints(), 10);
+  double p[3];
+  mesh->GetPoint(0, p); // the pixel's centre is the node
+  EXPECT_EQ(p[0], 500005.0);
+  EXPECT_EQ(p[1], 4000025.0);
+  EXPECT_EQ(p[2], 9.0);
+  EXPECT_EQ(value(mesh->GetFieldData(), "LocalOrigin", 0, 0), 500005.0);
+  EXPECT_EQ(value(mesh->GetFieldData(), "LocalOrigin", 0, 1), 4000005.0);
+}
+
+TEST_F(TestDEMToCFESource, FieldDataSurviveAFile)
+{
+  this->Source->SetFileName(this->WriteFile("grid.asc", grid).c_str());
+  this->Source->SetRoughnessDeviation(0.25);
+  this->Source->SetFrictionAngle(30.0);
+  vtkPolyData* mesh = this->Update();
+  const std::string file = this->WriteFile("mesh.vtp", "");
+  vtkNew<vtkXMLPolyDataWriter> writer;
+  writer->SetInputData(mesh);
+  writer->SetFileName(file.c_str());
+  ASSERT_EQ(writer->Write(), 1);
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  vtkFieldData* before = mesh->GetFieldData();
+  vtkFieldData* after = reader->GetOutput()->GetFieldData();
+  for (const char* name : { "TerrainHeights", "TerrainGrid", "TerrainMaterial", "LocalOrigin" })
+  {
+    vtkDataArray* a = before->GetArray(name);
+    vtkDataArray* b = after->GetArray(name);
+    ASSERT_TRUE(a && b) << name;
+    ASSERT_EQ(a->GetNumberOfValues(), b->GetNumberOfValues()) << name;
+    for (vtkIdType k = 0; k < a->GetNumberOfValues(); ++k)
+    {
+      const double x = a->GetVariantValue(k).ToDouble();
+      const double y = b->GetVariantValue(k).ToDouble();
+      EXPECT_TRUE(x == y || (std::isnan(x) && std::isnan(y))) << name << " " << k;
+    }
+  }
+  EXPECT_TRUE(after->GetAbstractArray("TerrainCRS"));
+}
+
+TEST_F(TestDEMToCFESource, HeightsOutliveTheSource)
+{
+  vtkNew<vtkPolyData> copy;
+  {
+    vtkNew<vtkDEMToCFESource> source;
+    source->Update();
+    copy->ShallowCopy(source->GetOutput());
+  }
+  auto* heights = vtkDoubleArray::SafeDownCast(copy->GetFieldData()->GetArray("TerrainHeights"));
+  ASSERT_TRUE(heights);
+  ASSERT_EQ(heights->GetNumberOfValues(), 51 * 21);
+  EXPECT_EQ(heights->GetValue(0), 57.7);
+  EXPECT_EQ(heights->GetValue(50), 0.0);
+}
+
+TEST_F(TestDEMToCFESource, BigSlopesAreShownCoarser)
+{
+  this->Source->SetMaximumDisplayCells(600);
+  vtkPolyData* mesh = this->Update();
+  // Every second node: 25 × 10 cells.
+  EXPECT_EQ(mesh->GetNumberOfCells(), 500);
+  EXPECT_EQ(mesh->GetFieldData()->GetArray("TerrainHeights")->GetNumberOfValues(), 51 * 21);
+  ASSERT_EQ(this->Heard->Notes.size(), 1u);
+  EXPECT_NE(this->Heard->Notes[0].find("Maximum Display Cells"), std::string::npos);
+  // The second cell of the second row is that of node (2, 2): 2 · (2 · 50 + 2) + 1.
+  EXPECT_EQ(value(mesh->GetCellData(), "CFEId", 2 * 26), 205);
+}
+
+TEST_F(TestDEMToCFESource, NotesAreShownAndKept)
+{
+  this->Source->SetFileName(this->WriteFile("grid.asc", grid).c_str());
+  this->Source->SetCellSize(5.0);
+  vtkPolyData* mesh = this->Update();
+  auto* notes = vtkStringArray::SafeDownCast(mesh->GetFieldData()->GetAbstractArray("Notes"));
+  ASSERT_TRUE(notes);
+  ASSERT_GE(notes->GetNumberOfValues(), 1);
+  EXPECT_EQ(vtkIdType(this->Heard->Notes.size()), notes->GetNumberOfValues());
+}
+
+TEST_F(TestDEMToCFESource, BadValuesAreOneErrorAndNothingElse)
+{
+  const std::string missing = "/no/such/file.tif";
+  this->Source->SetFileName(missing.c_str());
+  EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
+  this->ExpectOneError({ missing });
+  this->Update(); // nothing has changed
+  EXPECT_TRUE(this->Heard->Errors.empty());
+
+  this->Source->SetFileName("");
+  this->Source->SetRestitutionCoefficient(1.5);
+  EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
+  this->ExpectOneError({ "RestitutionCoefficient", "1.5" });
+  this->Source->SetRestitutionCoefficient(0.8);
+
+  this->Source->SetFrictionAngle(90.0);
+  EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
+  this->ExpectOneError({ "FrictionAngle", "90" });
+  this->Source->SetFrictionAngle(15.0);
+
+  this->Source->SetCellSize(-2.0);
+  EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
+  this->ExpectOneError({ "CellSize", "-2" });
+  this->Source->SetCellSize(0.0);
+
+  EXPECT_EQ(this->Update()->GetNumberOfCells(), 2000); // and it recovers
+}
+
+TEST_F(TestDEMToCFESource, PrintSelfNamesEveryProperty)
+{
+  std::ostringstream text;
+  this->Source->Print(text);
+  for (const char* name : { "FileName", "CellSize", "Band", "RestitutionCoefficient",
+         "RestitutionDeviation", "FrictionAngle", "FrictionAngleDeviation", "Cohesion",
+         "RoughnessMean", "RoughnessDeviation", "MaximumDisplayCells" })
+  {
+    EXPECT_NE(text.str().find(std::string(name) + ":"), std::string::npos) << name;
+  }
+}

@@ -1,0 +1,306 @@
+#include "helpers.h"
+
+#include "vtkCellData.h"
+#include "vtkMassProperties.h"
+#include "vtkPolyData.h"
+#include "vtkRockBlockSource.h"
+#include "vtkStringArray.h"
+#include "vtkTransform.h"
+#include "vtkTriangleFilter.h"
+
+#include <cmath>
+
+namespace
+{
+
+class TestRockBlockSource : public FilterTest
+{
+protected:
+  vtkPolyData* Update()
+  {
+    this->Source->Update();
+    return this->Source->GetOutput();
+  }
+
+  /// Volume that the polygons enclose, m³.
+  double EnclosedVolume(vtkPolyData* mesh)
+  {
+    vtkNew<vtkTriangleFilter> triangles;
+    triangles->SetInputData(mesh);
+    vtkNew<vtkMassProperties> mass;
+    mass->SetInputConnection(triangles->GetOutputPort());
+    return mass->GetVolume();
+  }
+
+  vtkNew<vtkRockBlockSource> Source;
+};
+
+/// An ASCII STL cube of edge 2 m, whole or without its last facet, with its faces out- or inward.
+std::string stlCube(bool whole, bool outward)
+{
+  const int quads[6][4] = { { 0, 4, 6, 2 }, { 1, 3, 7, 5 }, { 0, 1, 5, 4 }, { 2, 6, 7, 3 },
+    { 0, 2, 3, 1 }, { 4, 5, 7, 6 } };
+  std::ostringstream stl;
+  stl << "solid cube\n";
+  for (int face = 0; face < 6; ++face)
+  {
+    for (int half = 0; half < (whole || face < 5 ? 2 : 1); ++half)
+    {
+      const int* q = quads[face];
+      int corners[3] = { q[0], q[1 + half], q[2 + half] };
+      if (!outward)
+      {
+        std::swap(corners[1], corners[2]);
+      }
+      stl << "facet normal 0 0 0\nouter loop\n";
+      for (int c : corners)
+      {
+        stl << "vertex " << (c & 1 ? 2 : 0) << " " << (c & 2 ? 2 : 0) << " " << (c & 4 ? 2 : 0)
+            << "\n";
+      }
+      stl << "endloop\nendfacet\n";
+    }
+  }
+  stl << "endsolid\n";
+  return stl.str();
+}
+
+} // namespace
+
+TEST_F(TestRockBlockSource, ShapesHaveTheirFacesAndVolume)
+{
+  const struct
+  {
+    int shape;
+    int points, faces;
+  } shapes[] = { { vtkRockBlockSource::CUBE, 8, 6 }, { vtkRockBlockSource::TETRAHEDRON, 4, 4 },
+    { vtkRockBlockSource::OCTAHEDRON, 6, 8 }, { vtkRockBlockSource::DODECAHEDRON, 20, 12 },
+    { vtkRockBlockSource::ICOSAHEDRON, 12, 20 }, { vtkRockBlockSource::EOTA_111, 24, 26 },
+    { vtkRockBlockSource::EOTA_221, 24, 26 } };
+  for (const auto& expected : shapes)
+  {
+    this->Source->SetShape(expected.shape);
+    this->Source->SetVolume(0.7);
+    vtkPolyData* block = this->Update();
+    EXPECT_EQ(block->GetNumberOfPoints(), expected.points) << expected.shape;
+    EXPECT_EQ(block->GetNumberOfCells(), expected.faces) << expected.shape;
+    EXPECT_EQ(block->GetPoints()->GetDataType(), VTK_DOUBLE);
+    EXPECT_NEAR(this->EnclosedVolume(block), 0.7, 1e-9) << expected.shape;
+    EXPECT_NEAR(value(block->GetCellData(), "Volume"), 0.7, 1e-12);
+    EXPECT_EQ(value(block->GetCellData(), "Shape"), expected.shape);
+  }
+}
+
+TEST_F(TestRockBlockSource, CubeStandsAlongTheAxes)
+{
+  this->Source->SetVolume(8.0);
+  this->Source->SetCenter(10, 20, 30);
+  double bounds[6];
+  this->Update()->GetBounds(bounds);
+  const double expected[6] = { 9, 11, 19, 21, 29, 31 };
+  for (int k = 0; k < 6; ++k)
+  {
+    EXPECT_NEAR(bounds[k], expected[k], 1e-12);
+  }
+}
+
+TEST_F(TestRockBlockSource, OrientationIsThatOfVtkTransform)
+{
+  this->Source->SetShape(vtkRockBlockSource::BOX);
+  this->Source->SetLengths(1, 2, 3);
+  this->Source->SetCenter(0, 0, 0);
+  vtkNew<vtkPolyData> straight;
+  straight->DeepCopy(this->Update());
+  this->Source->SetOrientation(20, -50, 110);
+  vtkPolyData* turned = this->Update();
+  vtkNew<vtkTransform> transform;
+  transform->RotateZ(110);
+  transform->RotateX(20);
+  transform->RotateY(-50);
+  for (vtkIdType id = 0; id < 8; ++id)
+  {
+    double expected[3];
+    transform->TransformPoint(straight->GetPoint(id), expected);
+    for (int k = 0; k < 3; ++k)
+    {
+      EXPECT_NEAR(turned->GetPoint(id)[k], expected[k], 1e-12);
+    }
+  }
+}
+
+TEST_F(TestRockBlockSource, BoxHasTheVolumeOfItsLengths)
+{
+  this->Source->SetShape(vtkRockBlockSource::BOX);
+  this->Source->SetLengths(1, 2, 3);
+  this->Source->SetVolume(0.0); // not a box's
+  EXPECT_NEAR(this->EnclosedVolume(this->Update()), 6.0, 1e-12);
+}
+
+TEST_F(TestRockBlockSource, EveryCellHasTheBlocksProperties)
+{
+  this->Source->SetDensity(2700);
+  this->Source->SetYoungModulus(2e9);
+  this->Source->SetPoissonRatio(0.2);
+  this->Source->SetVelocity(1, 2, 3);
+  this->Source->SetAngularVelocity(4, 5, 6);
+  this->Source->SetFirstBlockId(7);
+  vtkPolyData* block = this->Update();
+  for (vtkIdType cell = 0; cell < block->GetNumberOfCells(); ++cell)
+  {
+    vtkCellData* data = block->GetCellData();
+    EXPECT_EQ(value(data, "BlockId", cell), 7);
+    EXPECT_EQ(value(data, "Density", cell), 2700);
+    EXPECT_EQ(value(data, "YoungModulus", cell), 2e9);
+    EXPECT_EQ(value(data, "PoissonRatio", cell), 0.2);
+    EXPECT_EQ(value(data, "Velocity", cell, 1), 2);
+    EXPECT_EQ(value(data, "AngularVelocity", cell, 2), 6);
+  }
+}
+
+TEST_F(TestRockBlockSource, TableRowsOverrideProperties)
+{
+  this->Source->SetDensity(2600);
+  this->Source->SetFileName(this
+                              ->WriteFile("sources.csv",
+                                "x,y,z,shape,volume,density\n"
+                                "1,2,3,octahedron,0.5,\n"
+                                "4,5,6,,,3000\n")
+                              .c_str());
+  vtkPolyData* blocks = this->Update();
+  ASSERT_EQ(blocks->GetNumberOfCells(), 8 + 6);
+  vtkCellData* data = blocks->GetCellData();
+  EXPECT_EQ(value(data, "BlockId", 0), 1);
+  EXPECT_NEAR(value(data, "Volume", 0), 0.5, 1e-12);
+  EXPECT_EQ(value(data, "Density", 0), 2600);
+  EXPECT_EQ(value(data, "BlockId", 8), 2);
+  EXPECT_NEAR(value(data, "Volume", 8), 1.0, 1e-12);
+  EXPECT_EQ(value(data, "Density", 8), 3000);
+  auto* names = vtkStringArray::SafeDownCast(blocks->GetFieldData()->GetAbstractArray("ShapeName"));
+  ASSERT_TRUE(names);
+  ASSERT_EQ(names->GetNumberOfValues(), 2);
+  EXPECT_EQ(names->GetValue(0), "octahedron");
+  EXPECT_EQ(names->GetValue(1), "cube");
+}
+
+TEST_F(TestRockBlockSource, ShapeFromPointsIsTheirHull)
+{
+  this->Source->SetShape(vtkRockBlockSource::FROM_FILE);
+  this->Source->SetScaleToVolume(false);
+  // A cube of edge 2 and its middle; a header, and both kinds of separators.
+  this->Source->SetShapeFileName(this
+                                   ->WriteFile("points.csv",
+                                     "x,y,z\n0,0,0\n2;0;0\n0 2 0\n2,2,0\n0,0,2\n2,0,2\n0,2,2\n"
+                                     "2,2,2\n1,1,1\n")
+                                   .c_str());
+  vtkPolyData* block = this->Update();
+  EXPECT_EQ(block->GetNumberOfPoints(), 8);
+  EXPECT_EQ(block->GetNumberOfCells(), 6);
+  EXPECT_NEAR(this->EnclosedVolume(block), 8.0, 1e-9);
+  this->Source->SetScaleToVolume(true);
+  EXPECT_NEAR(this->EnclosedVolume(this->Update()), 1.0, 1e-9);
+}
+
+TEST_F(TestRockBlockSource, ShapeFromMesh)
+{
+  this->Source->SetShape(vtkRockBlockSource::FROM_FILE);
+  this->Source->SetScaleToVolume(false);
+  this->Source->SetShapeFileName(this->WriteFile("cube.stl", stlCube(true, true)).c_str());
+  for (int mode : { vtkRockBlockSource::CONVEX_HULL, vtkRockBlockSource::AS_IT_IS })
+  {
+    this->Source->SetShapeFileMode(mode);
+    vtkPolyData* block = this->Update();
+    EXPECT_EQ(block->GetNumberOfCells(), 6); // its triangles make squares
+    EXPECT_NEAR(this->EnclosedVolume(block), 8.0, 1e-6);
+  }
+}
+
+TEST_F(TestRockBlockSource, BrokenMeshesAreErrorsInEitherMode)
+{
+  this->Source->SetShape(vtkRockBlockSource::FROM_FILE);
+  for (int mode : { vtkRockBlockSource::CONVEX_HULL, vtkRockBlockSource::AS_IT_IS })
+  {
+    this->Source->SetShapeFileMode(mode);
+    this->Source->SetShapeFileName(this->WriteFile("open.stl", stlCube(false, true)).c_str());
+    EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
+    this->ExpectOneError({ "open.stl", "open" });
+    this->Source->SetShapeFileName(this->WriteFile("inverted.stl", stlCube(true, false)).c_str());
+    EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
+    this->ExpectOneError({ "inverted.stl", "inward" });
+  }
+}
+
+TEST_F(TestRockBlockSource, BadShapeFiles)
+{
+  this->Source->SetShape(vtkRockBlockSource::FROM_FILE);
+  EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
+  this->ExpectOneError({ "Shape File Name", "empty" });
+  const std::string ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\n"
+                          "property float y\nproperty float z\nelement face 1\n"
+                          "property list uchar int vertex_indices\nend_header\n";
+  const std::pair<std::string, std::string> files[] = {
+    { "flat.csv", "0,0,0\n1,0,0\n0,1,0\n1,1,0\n" },
+    { "words.csv", "x,y,z\n0,0,0\n1,two,3\n" },
+    { "none.xyz", "" },
+    { "rock.doc", "0 0 0\n" },
+    { "not.vtp", "this is no XML" },
+    { "empty.stl", "solid s\nendsolid s\n" },
+    { "words.obj", "v a b c\nf x y z\n" },
+    { "range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 9\n" },
+    { "header.ply", ply.substr(0, 60) },
+    { "truncated.ply", ply + "0 0 0\n1 0 0\n" },
+    { "binary.ply",
+      std::string(ply).replace(ply.find("ascii"), 5, "binary_little_endian") + "abc" },
+  };
+  for (const auto& [name, content] : files)
+  {
+    SCOPED_TRACE(name);
+    this->Source->SetShapeFileName(this->WriteFile(name, content).c_str());
+    EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
+    this->ExpectOneError({ name });
+  }
+  this->Source->SetShapeFileName("/no/such/rock.stl");
+  EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
+  this->ExpectOneError({ "/no/such/rock.stl" });
+}
+
+TEST_F(TestRockBlockSource, BadValuesAreOneErrorAndNothingElse)
+{
+  for (double volume : { 0.0, -1.0, std::nan("") })
+  {
+    this->Source->SetVolume(volume);
+    EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
+    this->ExpectOneError({ "Volume" });
+  }
+  this->Source->SetVolume(1.0);
+  this->Source->SetDensity(0.0);
+  EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
+  this->ExpectOneError({ "Density", "0" });
+  this->Source->SetDensity(2500.0);
+  this->Source->SetPoissonRatio(0.5);
+  EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
+  this->ExpectOneError({ "PoissonRatio", "0.5" });
+  this->Source->SetPoissonRatio(0.1);
+  this->Source->SetShape(17);
+  EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
+  this->ExpectOneError({ "Shape", "17" });
+  this->Source->SetShape(0);
+  this->Source->SetFileName("/no/such/sources.csv");
+  EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
+  this->ExpectOneError({ "/no/such/sources.csv" });
+  const std::string table = this->WriteFile("bad.csv", "x,y,z,volume\n1,2,3,1\n4,5,6,-2\n");
+  this->Source->SetFileName(table.c_str());
+  EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
+  this->ExpectOneError({ table, "row 2", "-2" });
+}
+
+TEST_F(TestRockBlockSource, PrintSelfNamesEveryProperty)
+{
+  std::ostringstream text;
+  this->Source->Print(text);
+  for (const char* name : { "Shape", "Volume", "Lengths", "ShapeFileName", "ShapeFileMode",
+         "ScaleToVolume", "Center", "Orientation", "Velocity", "AngularVelocity", "Density",
+         "YoungModulus", "PoissonRatio", "FileName", "TargetCRS", "FirstBlockId" })
+  {
+    EXPECT_NE(text.str().find(std::string(name) + ":"), std::string::npos) << name;
+  }
+}

@@ -1,0 +1,358 @@
+#include "simulationTest.h"
+
+#include "vtkAppendPolyData.h"
+#include "vtkCallbackCommand.h"
+#include "vtkCellData.h"
+#include "vtkCubeSource.h"
+#include "vtkInformation.h"
+#include "vtkPointData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkXMLPolyDataReader.h"
+#include "vtkXMLPolyDataWriter.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace
+{
+
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+constexpr double gravity = 9.81;       // m/s², the filter's default
+constexpr double releaseHeight = 58.0; // m, the rock source's default
+
+class TestRockfallSimulation : public SimulationTest
+{
+};
+
+double middle(vtkPolyData* mesh, int axis)
+{
+  double bounds[6];
+  mesh->GetBounds(bounds);
+  return 0.5 * (bounds[2 * axis] + bounds[2 * axis + 1]);
+}
+
+/// All numbers of a polydata's points and arrays, to compare runs bit by bit.
+std::vector<double> numbersOf(vtkPolyData* data)
+{
+  std::vector<double> numbers;
+  const auto append = [&](vtkDataArray* array)
+  {
+    for (vtkIdType k = 0; array && k < array->GetNumberOfValues(); ++k)
+    {
+      const double v = array->GetVariantValue(k).ToDouble();
+      numbers.push_back(std::isnan(v) ? -1e300 : v);
+    }
+  };
+  append(data->GetPoints()->GetData());
+  for (int k = 0; k < data->GetPointData()->GetNumberOfArrays(); ++k)
+  {
+    append(data->GetPointData()->GetArray(k));
+  }
+  return numbers;
+}
+
+} // namespace
+
+TEST_F(TestRockfallSimulation, PublishesItsTimes)
+{
+  this->Simulation->SetEndTime(1.02);
+  this->Simulation->SetOutputInterval(0.1);
+  this->Simulation->UpdateInformation();
+  vtkInformation* info = this->Simulation->GetOutputInformation(0);
+  ASSERT_EQ(info->Length(Pipeline::TIME_STEPS()), 12); // 0, 0.1 ... 1.0, 1.02
+  EXPECT_EQ(info->Get(Pipeline::TIME_STEPS())[0], 0.0);
+  EXPECT_NEAR(info->Get(Pipeline::TIME_STEPS())[10], 1.0, 1e-12);
+  EXPECT_EQ(info->Get(Pipeline::TIME_STEPS())[11], 1.02);
+  EXPECT_EQ(info->Get(Pipeline::TIME_RANGE())[1], 1.02);
+  // What does not move has no times.
+  EXPECT_FALSE(this->Simulation->GetOutputInformation(1)->Has(Pipeline::TIME_STEPS()));
+  // 0.3 / 0.1 is not quite 3, and there is no step between the third and the end.
+  this->Simulation->SetEndTime(0.3);
+  this->Simulation->UpdateInformation();
+  EXPECT_EQ(info->Length(Pipeline::TIME_STEPS()), 4);
+}
+
+TEST_F(TestRockfallSimulation, FallsFreely)
+{
+  // Between samples the position is linear: off by at most g h² / 8 = 3 mm for h = 0.05 s.
+  for (double time : { 0.0, 0.1, 0.225, 0.4 })
+  {
+    vtkPolyData* rock = this->RocksAt(time);
+    ASSERT_EQ(rock->GetNumberOfCells(), 6);
+    EXPECT_EQ(rock->GetPoints()->GetDataType(), VTK_DOUBLE);
+    EXPECT_NEAR(middle(rock, 2), releaseHeight - 0.5 * gravity * time * time, 3.1e-3);
+    EXPECT_NEAR(middle(rock, 0), 5.0, 1e-9);
+    EXPECT_NEAR(value(rock->GetCellData(), "Velocity", 3, 2), -gravity * time, 1e-9);
+    EXPECT_NEAR(value(rock->GetCellData(), "Speed"), gravity * time, 1e-9);
+    EXPECT_EQ(value(rock->GetCellData(), "State"), 0);
+    EXPECT_EQ(value(rock->GetCellData(), "BlockId"), 1);
+  }
+  EXPECT_EQ(this->Simulation->GetNumberOfRuns(), 1);
+}
+
+TEST_F(TestRockfallSimulation, RequestsBeyondTheEndsAreClamped)
+{
+  const double end = middle(this->RocksAt(3.0), 0);
+  EXPECT_EQ(middle(this->RocksAt(100.0), 0), end);
+  EXPECT_EQ(this->Simulation->GetOutputDataObject(0)->GetInformation()->Get(
+              vtkDataObject::DATA_TIME_STEP()),
+    3.0);
+  EXPECT_NEAR(middle(this->RocksAt(-5.0), 2), releaseHeight, 1e-9);
+}
+
+TEST_F(TestRockfallSimulation, SimulatesOnceUntilSomethingChanges)
+{
+  this->RocksAt(0.0);
+  this->RocksAt(1.0);
+  this->RocksAt(2.5);
+  EXPECT_EQ(this->Simulation->GetNumberOfRuns(), 1);
+  this->Simulation->SetIterations(2);
+  this->RocksAt(2.5);
+  EXPECT_EQ(this->Simulation->GetNumberOfRuns(), 2);
+  this->Simulation->SetShownIteration(1);
+  this->RocksAt(2.5);
+  this->Simulation->SetNumberOfThreads(1);
+  this->RocksAt(1.0);
+  EXPECT_EQ(this->Simulation->GetNumberOfRuns(), 2);
+  this->Rocks->SetVelocity(1, 0, 0);
+  this->RocksAt(1.0);
+  EXPECT_EQ(this->Simulation->GetNumberOfRuns(), 3);
+  this->Terrain->SetFrictionAngle(20);
+  this->RocksAt(1.0);
+  EXPECT_EQ(this->Simulation->GetNumberOfRuns(), 4);
+  this->Simulation->SetNormalPenalty(2e9);
+  this->RocksAt(1.0);
+  EXPECT_EQ(this->Simulation->GetNumberOfRuns(), 5);
+}
+
+TEST_F(TestRockfallSimulation, OutputsTellOneStory)
+{
+  this->Rocks->SetFileName(this
+                             ->WriteFile("sources.csv",
+                               "x,y,z,shape\n5,40,58,cube\n"
+                               "6,60,58,icosahedron\n")
+                             .c_str());
+  this->Terrain->SetRoughnessDeviation(0.1);
+  this->Simulation->SetIterations(3);
+  this->Simulation->SetShownIteration(2);
+  vtkPolyData* lines = this->Output(1);
+  vtkPolyData* impacts = this->Output(2);
+  vtkTable* summary = this->Summary();
+  ASSERT_EQ(lines->GetNumberOfLines(), 6);
+  ASSERT_EQ(summary->GetNumberOfRows(), 6);
+  int impactCount = 0;
+  for (int row = 0; row < 6; ++row)
+  {
+    const int rock = row % 2;
+    const auto number = [&](const char* column)
+    { return summary->GetValueByName(row, column).ToDouble(); };
+    EXPECT_EQ(number("Iteration"), row / 2);
+    EXPECT_EQ(number("BlockId"), rock + 1);
+    EXPECT_EQ(summary->GetValueByName(row, "Shape").ToString(), rock ? "icosahedron" : "cube");
+    EXPECT_EQ(value(lines->GetCellData(), "Iteration", row), row / 2);
+    EXPECT_EQ(value(lines->GetCellData(), "BlockId", row), rock + 1);
+    EXPECT_EQ(value(lines->GetCellData(), "Fate", row), number("FateCode"));
+    EXPECT_EQ(summary->GetValueByName(row, "Fate").ToString(), "moving"); // after 3 s
+    vtkIdType size = 0;
+    const vtkIdType* ids = nullptr;
+    lines->GetCellPoints(row, size, ids);
+    ASSERT_EQ(size, 61); // 3 s at 0.05 s
+    EXPECT_EQ(value(lines->GetPointData(), "Time", ids[0]), 0.0);
+    EXPECT_NEAR(value(lines->GetPointData(), "Time", ids[60]), 3.0, 1e-9);
+    const double* first = lines->GetPoint(ids[0]);
+    EXPECT_NEAR(first[1], rock ? 60 : 40, 1e-9);
+    EXPECT_NEAR(number("StartZ"), 58, 1e-9);
+    const double* last = lines->GetPoint(ids[60]);
+    EXPECT_NEAR(number("StopX"), last[0], 1e-9);
+    impactCount += int(number("Impacts"));
+    // The rocks that are shown are those of iteration 2, where their lines end.
+    if (row >= 4)
+    {
+      vtkPolyData* shown = this->RocksAt(3.0);
+      ASSERT_EQ(shown->GetNumberOfCells(), 6 + 20);
+      EXPECT_EQ(value(shown->GetCellData(), "Iteration"), 2);
+      double centre[3] = { 0, 0, 0 };
+      const vtkIdType from = rock ? 8 : 0, to = rock ? 20 : 8;
+      for (vtkIdType id = from; id < to; ++id)
+      {
+        for (int k = 0; k < 3; ++k)
+        {
+          centre[k] += shown->GetPoint(id)[k] / double(to - from);
+        }
+      }
+      lines->GetCellPoints(row, size, ids);
+      for (int k = 0; k < 3; ++k)
+      {
+        EXPECT_NEAR(centre[k], lines->GetPoint(ids[60])[k], 1e-9);
+      }
+    }
+  }
+  EXPECT_GT(impactCount, 0);
+  ASSERT_EQ(impacts->GetNumberOfVerts(), impactCount);
+  for (const char* name : { "BlockId", "RockId", "Iteration", "Time", "Normal", "CFEId", "Impulse",
+         "ApproachSpeed", "VelocityBefore", "VelocityAfter", "EnergyLoss", "Restitution" })
+  {
+    EXPECT_TRUE(impacts->GetPointData()->GetArray(name)) << name;
+  }
+  for (vtkIdType k = 0; k < impactCount; ++k)
+  {
+    EXPECT_GT(value(impacts->GetPointData(), "Impulse", k), 0.0);
+    EXPECT_GE(value(impacts->GetPointData(), "CFEId", k), 1.0);
+    EXPECT_EQ(value(impacts->GetPointData(), "Restitution", k), 0.8);
+  }
+}
+
+TEST_F(TestRockfallSimulation, ResultsDoNotDependOnThreads)
+{
+  this->Terrain->SetRoughnessDeviation(0.1);
+  this->Simulation->SetIterations(4);
+  this->Simulation->SetNumberOfThreads(1);
+  const auto one = numbersOf(this->Output(1));
+  vtkNew<vtkRockfallSimulation> other;
+  other->SetInputConnection(0, this->Terrain->GetOutputPort());
+  other->SetInputConnection(1, this->Rocks->GetOutputPort());
+  other->SetEndTime(3.0);
+  other->SetIterations(4);
+  other->SetNumberOfThreads(3);
+  other->Update();
+  EXPECT_EQ(one, numbersOf(vtkPolyData::SafeDownCast(other->GetOutputDataObject(1))));
+  this->Simulation->SetSeed(2);
+  EXPECT_NE(one, numbersOf(this->Output(1)));
+}
+
+TEST_F(TestRockfallSimulation, SavedInputsGiveTheSameRun)
+{
+  const auto direct = numbersOf(this->Output(1));
+  vtkNew<vtkXMLPolyDataReader> readers[2];
+  vtkAlgorithm* sources[2] = { this->Terrain, this->Rocks };
+  for (int port = 0; port < 2; ++port)
+  {
+    const std::string file = this->WriteFile(port ? "rocks.vtp" : "terrain.vtp", "");
+    vtkNew<vtkXMLPolyDataWriter> writer;
+    writer->SetInputConnection(sources[port]->GetOutputPort());
+    writer->SetFileName(file.c_str());
+    ASSERT_EQ(writer->Write(), 1);
+    readers[port]->SetFileName(file.c_str());
+    this->Simulation->SetInputConnection(port, readers[port]->GetOutputPort());
+  }
+  EXPECT_EQ(direct, numbersOf(this->Output(1)));
+}
+
+TEST_F(TestRockfallSimulation, CoarselyShownTerrainIsUsedInFull)
+{
+  this->Terrain->SetRoughnessDeviation(0.1); // makes every node matter
+  const auto full = numbersOf(this->Output(1));
+  this->Terrain->SetMaximumDisplayCells(600);
+  EXPECT_EQ(full, numbersOf(this->Output(1)));
+  EXPECT_EQ(this->Simulation->GetNumberOfRuns(), 2);
+}
+
+TEST_F(TestRockfallSimulation, RealCoordinatesOnlyShiftTheResult)
+{
+  // The same incline at the origin and in a UTM zone. 4e6 m leave a double 5e-10 m.
+  const auto grid = [](const char* corner)
+  {
+    std::ostringstream text;
+    text << "ncols 21\nnrows 11\n" << corner << "\ncellsize 5\nNODATA_value -9999\n";
+    for (int row = 0; row < 11; ++row)
+    {
+      for (int column = 0; column < 21; ++column)
+      {
+        text << 50.0 - 2.5 * column << " ";
+      }
+      text << "\n";
+    }
+    return text.str();
+  };
+  this->Rocks->SetCenter(10, 25, 50);
+  this->Terrain->SetFileName(
+    this->WriteFile("near.asc", grid("xllcorner 1000\nyllcorner 2000")).c_str());
+  this->Rocks->SetCenter(1010, 2025, 50);
+  vtkNew<vtkPolyData> nearLines;
+  nearLines->DeepCopy(this->Output(1));
+  this->Terrain->SetFileName(
+    this->WriteFile("far.asc", grid("xllcorner 500000\nyllcorner 4000000")).c_str());
+  this->Rocks->SetCenter(500010, 4000025, 50);
+  vtkPolyData* farLines = this->Output(1);
+  // Until the first bounces have amplified the rounding of the block's corners.
+  for (vtkIdType id = 0; id < 20; ++id)
+  {
+    EXPECT_NEAR(farLines->GetPoint(id)[0] - 499000, nearLines->GetPoint(id)[0], 1e-5);
+    EXPECT_NEAR(farLines->GetPoint(id)[1] - 3998000, nearLines->GetPoint(id)[1], 1e-5);
+    EXPECT_NEAR(farLines->GetPoint(id)[2], nearLines->GetPoint(id)[2], 1e-5);
+  }
+  EXPECT_EQ(value(farLines->GetFieldData(), "LocalOrigin", 0, 0), 500002.5);
+}
+
+TEST_F(TestRockfallSimulation, TakesAnyClosedSurface)
+{
+  vtkNew<vtkCubeSource> cube; // 24 points, single precision, no arrays
+  cube->SetCenter(5, 50, 58);
+  this->Simulation->SetInputConnection(1, cube->GetOutputPort());
+  vtkPolyData* rock = this->RocksAt(0.4);
+  EXPECT_EQ(rock->GetNumberOfCells(), 6);
+  EXPECT_EQ(rock->GetNumberOfPoints(), 8);
+  EXPECT_NEAR(middle(rock, 2), releaseHeight - 0.5 * gravity * 0.16, 1e-5);
+}
+
+TEST_F(TestRockfallSimulation, TakesAppendedSources)
+{
+  vtkNew<vtkRockBlockSource> other;
+  other->SetShape(vtkRockBlockSource::OCTAHEDRON);
+  other->SetCenter(5, 60, 58);
+  other->SetFirstBlockId(2);
+  vtkNew<vtkAppendPolyData> append;
+  append->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+  append->AddInputConnection(this->Rocks->GetOutputPort());
+  append->AddInputConnection(other->GetOutputPort());
+  this->Simulation->SetInputConnection(1, append->GetOutputPort());
+  EXPECT_EQ(this->Summary()->GetNumberOfRows(), 2);
+  other->SetFirstBlockId(1);
+  this->ExpectEmpty();
+  this->ExpectOneError({ "block 1", "First Block Id" });
+}
+
+TEST_F(TestRockfallSimulation, AbortLeavesNothing)
+{
+  this->Terrain->SetRoughnessDeviation(0.1);
+  this->Simulation->SetIterations(100000); // far more than are done before the first progress
+  vtkNew<vtkCallbackCommand> stop;
+  stop->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
+    { vtkAlgorithm::SafeDownCast(caller)->SetAbortExecute(1); });
+  const unsigned long tag = this->Simulation->AddObserver(vtkCommand::ProgressEvent, stop);
+  this->ExpectEmpty();
+  this->Simulation->RemoveObserver(tag);
+  EXPECT_EQ(this->Simulation->GetNumberOfRuns(), 1);
+  this->Simulation->SetAbortExecute(0);
+  this->Simulation->SetIterations(2);
+  EXPECT_EQ(this->Summary()->GetNumberOfRows(), 2);
+}
+
+TEST_F(TestRockfallSimulation, ReportsProgress)
+{
+  this->Terrain->SetRoughnessDeviation(0.1);
+  this->Simulation->SetEndTime(20.0);
+  this->Simulation->SetIterations(10);
+  std::vector<double> shares;
+  vtkNew<vtkCallbackCommand> listen;
+  listen->SetClientData(&shares);
+  listen->SetCallback([](vtkObject*, unsigned long, void* clientData, void* share)
+    { static_cast<std::vector<double>*>(clientData)->push_back(*static_cast<double*>(share)); });
+  this->Simulation->AddObserver(vtkCommand::ProgressEvent, listen);
+  this->Simulation->Update();
+  EXPECT_GT(shares.size(), 2u);
+  EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
+}
+
+TEST_F(TestRockfallSimulation, PrintSelfNamesEveryProperty)
+{
+  std::ostringstream text;
+  this->Simulation->Print(text);
+  for (const char* name : { "TimeStep", "EndTime", "OutputInterval", "Gravity", "NormalPenalty",
+         "ShearPenaltyRatio", "Iterations", "Seed", "RockRockContact", "RestitutionModel", "Rigid",
+         "NumberOfThreads", "ShownIteration", "NumberOfRuns" })
+  {
+    EXPECT_NE(text.str().find(std::string(name) + ":"), std::string::npos) << name;
+  }
+}

@@ -1,0 +1,123 @@
+#include "simulationTest.h"
+
+#include "vtkClipPolyData.h"
+#include "vtkPlane.h"
+#include "vtkPlaneSource.h"
+#include "vtkTransform.h"
+#include "vtkTransformPolyDataFilter.h"
+
+#include <cmath>
+
+namespace
+{
+
+constexpr double cubeRadius = 0.8660254037844386; // m, half of the diagonal of 1 m³
+
+class TestRockfallSimulationErrors : public SimulationTest
+{
+};
+
+} // namespace
+
+TEST_F(TestRockfallSimulationErrors, TerrainMustBeWhatItWas)
+{
+  vtkNew<vtkPlaneSource> plane;
+  this->Simulation->SetInputConnection(0, plane->GetOutputPort());
+  this->ExpectEmpty();
+  this->ExpectOneError({ "Terrain", "DEM to CFE Mesh" });
+
+  vtkNew<vtkTransform> transform;
+  transform->Translate(0, 0, 1);
+  vtkNew<vtkTransformPolyDataFilter> moved;
+  moved->SetTransform(transform);
+  moved->SetInputConnection(this->Terrain->GetOutputPort());
+  this->Simulation->SetInputConnection(0, moved->GetOutputPort());
+  this->ExpectEmpty();
+  this->ExpectOneError({ "Terrain", "moved" });
+
+  vtkNew<vtkPlane> half;
+  half->SetOrigin(120, 0, 0);
+  half->SetNormal(-1, 0, 0);
+  vtkNew<vtkClipPolyData> clipped;
+  clipped->SetClipFunction(half);
+  clipped->SetInputConnection(this->Terrain->GetOutputPort());
+  this->Simulation->SetInputConnection(0, clipped->GetOutputPort());
+  this->ExpectEmpty();
+  this->ExpectOneError({ "Terrain", "clipped" });
+}
+
+TEST_F(TestRockfallSimulationErrors, BadValuesAreOneErrorAndNothingElse)
+{
+  const struct
+  {
+    void (vtkRockfallSimulation::*set)(double);
+    const char* name;
+    double good;
+  } values[] = { { &vtkRockfallSimulation::SetTimeStep, "TimeStep", 0.005 },
+    { &vtkRockfallSimulation::SetEndTime, "EndTime", 3.0 },
+    { &vtkRockfallSimulation::SetOutputInterval, "OutputInterval", 0.05 },
+    { &vtkRockfallSimulation::SetNormalPenalty, "NormalPenalty", 1e9 },
+    { &vtkRockfallSimulation::SetShearPenaltyRatio, "ShearPenaltyRatio", 1.0 } };
+  for (const auto& entry : values)
+  {
+    for (double bad : { 0.0, -1.0, std::nan("") })
+    {
+      (this->Simulation->*entry.set)(bad);
+      this->ExpectEmpty();
+      this->ExpectOneError({ entry.name });
+      this->RocksAt(1.0); // another time of the same failure is no other error
+      EXPECT_TRUE(this->Heard->Errors.empty());
+    }
+    (this->Simulation->*entry.set)(entry.good);
+  }
+  this->Simulation->SetIterations(0);
+  this->ExpectEmpty();
+  this->ExpectOneError({ "Iterations", "0" });
+  this->Simulation->SetIterations(2);
+  this->Simulation->SetShownIteration(2);
+  this->ExpectEmpty();
+  this->ExpectOneError({ "ShownIteration", "2" });
+  this->Simulation->SetShownIteration(0);
+  this->Simulation->RockRockContactOn();
+  this->ExpectEmpty();
+  this->ExpectOneError({ "RockRockContact", "not available" });
+  this->Simulation->RockRockContactOff();
+  this->Simulation->SetRestitutionModel(5);
+  this->ExpectEmpty();
+  this->ExpectOneError({ "RestitutionModel", "5" });
+  this->Simulation->SetRestitutionModel(0);
+  EXPECT_EQ(this->Summary()->GetNumberOfRows(), 2); // and it recovers
+}
+
+TEST_F(TestRockfallSimulationErrors, BadPlacesAreErrorsOfTheBlock)
+{
+  this->Rocks->SetFirstBlockId(5);
+  this->Rocks->SetCenter(-20, 50, 58);
+  this->ExpectEmpty();
+  this->ExpectOneError({ "block 5", "outside the slope", "-20" });
+  this->Rocks->SetCenter(50, 50, 28.85); // on the surface: half of it in the ground
+  this->ExpectEmpty();
+  this->ExpectOneError({ "block 5", "inside the slope" });
+  this->Rocks->SetCenter(50, 50, 28.85 + cubeRadius);
+  EXPECT_EQ(this->Summary()->GetNumberOfRows(), 1);
+}
+
+TEST_F(TestRockfallSimulationErrors, AFailedInputIsNotAnotherError)
+{
+  this->Rocks->SetVolume(-1.0);
+  this->ExpectEmpty();
+  this->ExpectOneError({ "Volume", "-1" });
+  this->ExpectEmpty(); // now the source counts as up to date
+  this->RocksAt(1.0);
+  EXPECT_TRUE(this->Heard->Errors.empty());
+  this->Rocks->SetVolume(1.0);
+  EXPECT_EQ(this->Summary()->GetNumberOfRows(), 1);
+}
+
+TEST_F(TestRockfallSimulationErrors, EmptyRocksAreAnError)
+{
+  vtkNew<vtkPolyData> nothing;
+  this->Simulation->SetInputData(1, nothing);
+  this->ExpectEmpty();
+  this->ExpectOneError({ "Rocks", "no polygons" });
+}

@@ -1,0 +1,94 @@
+"""Bad input gives one error that names the file or block and the value, and no result."""
+
+from helpers import errors_of, incline, is_empty, write_grid, write_text
+
+from paraview.simple import DEMtoCFEMesh, Delete, Plane, RockBlocks, RockfallSimulation
+
+failures = []
+
+
+def expect(what, errors, words, empty):
+    if len(errors) != 1:
+        failures.append(f"{what}: {len(errors)} errors instead of one: {errors}")
+    elif any(word not in errors[0] for word in words):
+        failures.append(f"{what}: not all of {words} are in: {errors[0]}")
+    if not empty:
+        failures.append(f"{what}: there is a result all the same")
+    print(f"{what}: {errors[0] if errors else 'no error'}")
+
+
+def bad_dem(what, words, **properties):
+    dem = DEMtoCFEMesh(**properties)
+    expect(what, errors_of(dem), words, is_empty(dem))
+    # The simulation after it adds no error of its own.
+    simulation = RockfallSimulation(Terrain=dem, Rocks=RockBlocks(), EndTime=0.1)
+    further = errors_of(simulation, 0, 3)
+    if further or not is_empty(simulation):
+        failures.append(f"{what}: the simulation after it: {further}")
+    Delete(simulation)
+    Delete(dem)
+
+
+def bad_rocks(what, words, **properties):
+    rocks = RockBlocks(**properties)
+    expect(what, errors_of(rocks), words, is_empty(rocks))
+    Delete(rocks)
+
+
+def bad_run(what, words, rocks=None, terrain=None, **properties):
+    simulation = RockfallSimulation(
+        Terrain=terrain or DEMtoCFEMesh(), Rocks=RockBlocks(**(rocks or {})), EndTime=0.1)
+    for name, value in properties.items():
+        setattr(simulation, name, value)
+    errors = errors_of(simulation, 0, 1, 2, 3)
+    expect(what, errors, words, all(is_empty(simulation, port) for port in range(4)))
+    Delete(simulation)
+
+
+# Rasters.
+bad_dem("missing file", ["/no/such/dem.tif"], FileName="/no/such/dem.tif")
+text = write_text("notes.txt", "no raster at all\n")
+bad_dem("not a raster", [text], FileName=text)
+name = write_grid("degrees.asc", incline(5, 5), corner=(-84.5, 36.5), cell=0.001, crs=None)
+bad_dem("no CRS with a geographic-looking extent", [name, "-84.4995"], FileName=name)
+name = write_grid("nodata.asc", [[-9999] * 4] * 4)
+bad_dem("all nodata", [name, "nodata"], FileName=name)
+name = write_grid("nan.asc", [[1.5, 2, 3], [4, "nan", 6], [7, 8, 9]])
+bad_dem("NaN height", [name, "nan"], FileName=name)
+name = write_grid("inf.asc", [[1.5, 2, 3], [4, "inf", 6], [7, 8, 9]])
+bad_dem("infinite height", [name, "inf"], FileName=name)
+name = write_grid("row.asc", [[1, 2, 3, 4]])
+bad_dem("one-row raster", [name, "1 row"], FileName=name)
+name = write_grid("good.asc", incline(5, 5))
+bad_dem("band", [name, "3"], FileName=name, Band=3)
+bad_dem("cell size", ["CellSize", "-1"], CellSize=-1.0)
+bad_dem("restitution", ["RestitutionCoefficient", "2"], RestitutionCoefficient=2.0)
+
+# Rocks.
+bad_rocks("zero volume", ["Volume", "0"], Volume=0.0)
+bad_rocks("negative volume", ["Volume", "-1"], Volume=-1.0)
+bad_rocks("zero density", ["Density", "0"], Density=0.0)
+bad_rocks("negative density", ["Density", "-2500"], Density=-2500.0)
+bad_rocks("missing sources", ["/no/such/rocks.csv"], FileName="/no/such/rocks.csv")
+name = write_text("sources.csv", "x,y,z,density\n1,2,3,2500\n4,5,6,heavy\n")
+bad_rocks("sources", [name, "row 2", "heavy"], FileName=name)
+corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+name = write_text("open.obj", corners + "f 1 3 2\nf 1 2 4\nf 1 4 3\n")
+bad_rocks("open mesh", [name, "open"], Shape="From File", ShapeFileName=name)
+name = write_text("inverted.obj", corners + "f 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n")
+bad_rocks("inverted mesh", [name, "inward"], Shape="From File", ShapeFileName=name)
+
+# The run.
+bad_run("zero time step", ["TimeStep", "0"], TimeStep=0.0)
+bad_run("negative time step", ["TimeStep", "-0.01"], TimeStep=-0.01)
+bad_run("zero penalty", ["NormalPenalty", "0"], NormalPenalty=0.0)
+bad_run("negative penalty", ["NormalPenalty", "-1"], NormalPenalty=-1e9)
+bad_run("no end time", ["EndTime", "0"], EndTime=0.0)
+bad_run("rock-rock contact", ["RockRockContact", "not available"], RockRockContact=1)
+bad_run("rock outside the slope", ["block 1", "-20", "outside"], rocks={"Center": [-20, 50, 58]})
+bad_run("rock inside the slope", ["block 1", "40", "inside"], rocks={"Center": [40, 50, 34]})
+bad_run("terrain from elsewhere", ["Terrain", "DEM to CFE Mesh"], terrain=Plane())
+bad_run("rock of no volume", ["Volume", "0"], rocks={"Volume": 0.0})
+
+if failures:
+    raise SystemExit("\n".join(failures))

@@ -1,0 +1,53 @@
+"""The plugin loads, and has the names that scripts rely on."""
+
+from paraview import servermanager, simple
+
+# label, name in Python, group, properties that scripts rely on
+PROXIES = [
+    ("DEM to CFE Mesh", "DEMtoCFEMesh", "sources",
+     "FileName CellSize RestitutionCoefficient RestitutionDeviation FrictionAngle "
+     "FrictionAngleDeviation Cohesion RoughnessMean RoughnessDeviation"),
+    ("Rock Blocks", "RockBlocks", "sources",
+     "Shape Volume Center Orientation Velocity AngularVelocity Density YoungModulus PoissonRatio "
+     "FileName"),
+    ("Rockfall Simulation", "RockfallSimulation", "filters",
+     "Terrain Rocks TimeStep EndTime NormalPenalty Iterations Seed OutputInterval RockRockContact"),
+    ("Dispersion Angle", "DispersionAngle", "filters", "Input Direction Length GroupBy"),
+]
+
+dem = simple.DEMtoCFEMesh()
+rocks = simple.RockBlocks()
+simulation = simple.RockfallSimulation(Terrain=dem, Rocks=rocks)
+simulation.EndTime = 1.0
+dispersion = simple.DispersionAngle(Input=simple.OutputPort(simulation, 1))
+
+for (label, name, group, properties), proxy in zip(PROXIES, (dem, rocks, simulation, dispersion)):
+    assert hasattr(simple, name), name
+    assert proxy.GetXMLGroup() == group, (name, proxy.GetXMLGroup())
+    assert proxy.GetXMLLabel() == label, (name, proxy.GetXMLLabel())
+    have = proxy.ListProperties()
+    for wanted in properties.split():
+        assert wanted in have, f"{name} has no property {wanted}, only {have}"
+    # Every proxy and every property explains itself.
+    documentation = proxy.SMProxy.GetDocumentation()
+    for text in (documentation.GetShortHelp(), documentation.GetLongHelp(),
+                 documentation.GetDescription()):
+        assert text and text.strip(), f"{name} has no documentation"
+    menu = proxy.GetHints().FindNestedElementByName("ShowInMenu")
+    assert menu.GetAttribute("category") == "Rockfall", name
+    for wanted in have:
+        text = proxy.GetProperty(wanted).SMProperty.GetDocumentation()
+        assert text and text.GetDescription().strip(), f"{name}.{wanted} has no documentation"
+        # A name in Python comes from the label, one in a state file from the XML: they are one.
+        assert proxy.SMProxy.GetProperty(wanted), f"{name}.{wanted} bears another name in the XML"
+
+# Defaults run as they stand.
+assert rocks.Shape == "Cube" and rocks.Volume == 1.0 and list(rocks.Orientation) == [0, 0, 0]
+assert dispersion.GroupBy == "Shape", dispersion.GroupBy
+dispersion.UpdatePipeline()
+table = servermanager.Fetch(dispersion)
+assert table.GetNumberOfRows() == 1 and table.GetValueByName(0, "Group").ToString() == "cube"
+
+names = [simulation.SMProxy.GetOutputPortName(k) for k in range(4)]
+assert names == ["Rocks", "Trajectories", "Impacts", "Summary"], names
+print("names and defaults are as they should be")

@@ -1,0 +1,85 @@
+"""What the plugin's tests share."""
+
+import os
+import re
+import sys
+import tempfile
+
+from paraview.simple import UpdatePipeline
+
+UTM16 = ('PROJCS["WGS 84 / UTM zone 16N",GEOGCS["WGS 84",DATUM["WGS_1984",'
+         'SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],'
+         'UNIT["degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],'
+         'PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",-87],'
+         'PARAMETER["scale_factor",0.9996],PARAMETER["false_easting",500000],'
+         'PARAMETER["false_northing",0],UNIT["metre",1]]')
+WGS84 = ('GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],'
+         'PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]]')
+
+
+def write_text(name, text):
+    """Writes a file into the test's folder; returns its full name."""
+    with open(name, "w") as file:
+        file.write(text)
+    return os.path.abspath(name)
+
+
+def write_grid(name, rows, corner=(700000, 4000000), cell=10, crs=UTM16):
+    """An ESRI ASCII grid of these rows of words, north row first, with its CRS beside it."""
+    head = (f"ncols {len(rows[0])}\nnrows {len(rows)}\nxllcorner {corner[0]}\n"
+            f"yllcorner {corner[1]}\ncellsize {cell}\nNODATA_value -9999\n")
+    if crs:
+        write_text(os.path.splitext(name)[0] + ".prj", crs)
+    return write_text(name, head + "\n".join(" ".join(map(str, row)) for row in rows) + "\n")
+
+
+def incline(columns=31, rows=21, drop=5.0):
+    """Heights that fall along +x."""
+    return [[round(drop * (columns - 1 - c), 3) for c in range(columns)] for _ in range(rows)]
+
+
+def messages_of(action):
+    """Runs action() and returns all that the process wrote meanwhile."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    with tempfile.TemporaryFile() as caught:
+        kept = [os.dup(1), os.dup(2)]
+        os.dup2(caught.fileno(), 1)
+        os.dup2(caught.fileno(), 2)
+        try:
+            action()
+        finally:
+            sys.stdout.flush()
+            sys.stderr.flush()
+            for number, old in enumerate(kept, start=1):
+                os.dup2(old, number)
+                os.close(old)
+        caught.seek(0)
+        return caught.read().decode()
+
+
+def errors_of(proxy, *ports):
+    """Updates the proxy, and whatever of it ports name, and returns the errors this makes."""
+    def update():
+        UpdatePipeline(proxy=proxy)
+        for port in ports or [0]:
+            proxy.GetDataInformation(port).GetNumberOfPoints()
+        UpdatePipeline(proxy=proxy)
+    text = messages_of(update)
+    return re.findall(r"ERR\| (.*?)(?:\x1b|$)", text, re.MULTILINE)
+
+
+def is_empty(proxy, port=0):
+    info = proxy.GetDataInformation(port)
+    return info.GetNumberOfPoints() == 0 and info.GetNumberOfCells() == 0 and \
+        info.GetNumberOfRows() == 0
+
+
+def columns_of(table):
+    """A fetched vtkTable as {column name: [values]}."""
+    result = {}
+    for c in range(table.GetNumberOfColumns()):
+        result[table.GetColumnName(c)] = [
+            table.GetValue(r, c).ToString() if not table.GetValue(r, c).IsNumeric()
+            else table.GetValue(r, c).ToDouble() for r in range(table.GetNumberOfRows())]
+    return result

@@ -1,0 +1,101 @@
+# shellcheck shell=bash
+# Sourced by Examples/run.sh and Testing/run.sh: whatever is still missing of packages, configuration
+# and build. Quick when nothing is. Defines rockfall_root, rockfall_build and the functions below.
+
+set -euo pipefail
+
+rockfall_root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")/.." && pwd -P)
+rockfall_build=$rockfall_root/build
+rockfall_log=$rockfall_build/setup.log
+
+rockfall_packages=(
+  g++ cmake ninja-build
+  paraview paraview-dev python3-paraview libopenmpi-dev libdouble-conversion-dev
+  libeigen3-dev libgdal-dev libtbb-dev librandom123-dev libqhull-dev
+  libgtest-dev libbenchmark-dev
+  xvfb xauth python3-matplotlib python-matplotlib-data)
+
+fail() {
+  echo "RockfallDDA: $*" >&2
+  exit 1
+}
+
+# Runs a command with its output in the log, whose end is shown if it fails.
+logged() {
+  mkdir -p -- "$rockfall_build"
+  if ! "$@" >"$rockfall_log" 2>&1 </dev/null; then
+    tail -n 40 -- "$rockfall_log" >&2
+    return 1
+  fi
+}
+
+# install_packages <package>...: those of them that are missing.
+install_packages() {
+  local missing=() package
+  for package in "$@"; do
+    if [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" != installed ]; then
+      missing+=("$package")
+    fi
+  done
+  [ ${#missing[@]} -gt 0 ] || return 0
+
+  command -v apt-get >/dev/null ||
+    fail "these packages of Debian 12 are missing and there is no apt-get to install them: ${missing[*]}"
+  local as_root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    as_root=(sudo -n)
+    { command -v sudo && sudo -n true; } >/dev/null 2>&1 ||
+      fail "these packages are missing and installing them takes root or passwordless sudo: ${missing[*]}"
+  fi
+  local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y
+    -o DPkg::Lock::Timeout=600)
+  local install=("${apt[@]}" install --no-install-recommends "${missing[@]}")
+
+  echo "Installing ${#missing[@]} packages: ${missing[*]}"
+  local known=yes
+  for package in "${missing[@]}"; do
+    apt-cache show "$package" >/dev/null 2>&1 || known=no
+  done
+  # Package lists that lack something or are too old to install from are fetched again.
+  if [ $known = no ] || ! logged "${install[@]}" 2>/dev/null; then
+    logged "${apt[@]}" update || fail "apt-get update failed; the packages ${missing[*]} are needed"
+    logged "${install[@]}" || fail "installing these packages failed: ${missing[*]}"
+  fi
+}
+
+# What the cache of a configured build says of a variable.
+cached() {
+  sed -n "s/^$1:[A-Z]*=//p" "$rockfall_build/CMakeCache.txt" 2>/dev/null || true
+}
+
+# Configures (with ROCKFALL_CMAKE_ARGS, if any) and builds.
+build_all() {
+  local fresh=()
+  if [ -n "$(cached CMAKE_HOME_DIRECTORY)" ] &&
+    [ "$(cached CMAKE_HOME_DIRECTORY)" != "$rockfall_root" ]; then
+    fresh=(--fresh) # the folder was moved or copied
+  fi
+  # shellcheck disable=SC2206
+  local arguments=(${ROCKFALL_CMAKE_ARGS:-})
+  if [ ! -f "$rockfall_build/build.ninja" ] || [ ${#fresh[@]} -gt 0 ] ||
+    [ ${#arguments[@]} -gt 0 ] || [ "$(cached ROCKFALL_PLUGIN)" != ON ] ||
+    [ "$(cached ROCKFALL_TESTING)" != ON ]; then
+    echo "Configuring in $rockfall_build"
+    logged cmake -S "$rockfall_root" -B "$rockfall_build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+      -DROCKFALL_PLUGIN=ON -DROCKFALL_TESTING=ON "${fresh[@]}" "${arguments[@]}" ||
+      fail "configuring failed; all of it is in $rockfall_log"
+  fi
+  echo "Building"
+  logged cmake --build "$rockfall_build" --parallel "$(nproc)" ||
+    fail "the build failed; all of it is in $rockfall_log"
+}
+
+# Packages and build, and where ParaView finds the plugin.
+setup() {
+  install_packages "${rockfall_packages[@]}"
+  build_all
+  local plugin
+  plugin=$(find "$rockfall_build/lib" -name RockfallDDA.so -print -quit)
+  [ -n "$plugin" ] || fail "the build made no RockfallDDA.so in $rockfall_build/lib"
+  export PV_PLUGIN_PATH="${plugin%/*}${PV_PLUGIN_PATH:+:$PV_PLUGIN_PATH}"
+}
