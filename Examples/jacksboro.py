@@ -7,7 +7,7 @@ its steepest escarpment and simulated until they rest or leave. Run it with
     bash Examples/run.sh [jacksboro.py --output FOLDER --rocks N --frames N]
 
 and find everything in output/jacksboro, the pictures in overview.png, map.png, oblique.png, rocks.png
-and the movie rockfall.avi. rocks.pvd, slope.vtp and trajectories.vtp open in ParaView.
+and the movie rockfall.ogv. rocks.pvd, slope.vtp and trajectories.vtp open in ParaView.
 """
 import argparse
 import os
@@ -62,6 +62,8 @@ def arguments():
         os.makedirs(chosen.output, exist_ok=True)
     except OSError as error:
         parser.error(f"--output {chosen.output}: {error.strerror}")
+    if not os.access(chosen.output, os.W_OK):
+        parser.error(f"--output {chosen.output}: nothing can be written there")
     return chosen
 
 
@@ -82,7 +84,7 @@ def simulate(slope, rocks):
         share = filter.GetProgress()
         if share >= said[0] + 0.1:
             said[0] = share
-            say(f"  {100 * share:.0f} % of the rocks have stopped")
+            say(f"  {100 * share:.0f} % of the rocks came to their end")
 
     observer = simulation.GetClientSideObject().AddObserver("ProgressEvent", tell)
     simulation.UpdatePipeline(0.0)
@@ -139,7 +141,9 @@ def main():
     angle = DispersionAngle(Input=OutputPort(simulation, 1), GroupBy="Shape")
     angle.UpdatePipeline()
     dispersion = tables.columns_of(result(angle))
-    say(f"The last rock stopped after {summary['EndTime'].max():.0f} s")
+    moving = int((np.array(summary["FateCode"]) == 2).sum())
+    say(f"{moving} rocks still move after {END:g} s" if moving else
+        f"The last rock came to its end after {summary['EndTime'].max():.0f} s")
 
     samples = tables.write_trajectories(paths, summary["Shape"], in_folder("trajectories.csv"))
     tables.write_summary(summary, in_folder("summary.csv"))
@@ -160,7 +164,7 @@ def main():
         say(f"Picture: {name}")
     if chosen.frames:
         say(f"Movie: {chosen.frames} frames of {shown[-1]:.0f} s")
-        scene.movie(in_folder("rockfall.avi"), shown, say)
+        scene.movie(in_folder("rockfall.ogv"), shown, say)
 
     print()
     tables.print_tables(summary, dispersion)

@@ -190,9 +190,11 @@ class Scene:
         self.rocks = OutputPort(simulation, 0)
         self.trajectories = OutputPort(simulation, 1)
         self.low, self.high = paths.points.min(axis=0), paths.points.max(axis=0)
+        pad = np.maximum(0.0, 50.0 - (self.high - self.low)) / 2  # if hardly anything moves
+        self.low, self.high = self.low - pad, self.high + pad
         self.starts = paths.points[paths.starts[:-1]]
         self.stops = paths.points[paths.starts[1:] - 1]
-        self.top = float(np.ceil(paths.speed.max() / 5.0) * 5.0)
+        self.top = max(5.0, float(np.ceil(paths.speed.max() / 5.0) * 5.0))
         self.count = len(paths.block)
         west, south = self.low[:2] - 1000.0
         east, north = self.high[:2] + 1000.0
@@ -427,7 +429,8 @@ class Scene:
             u, v = seen_at(view, self.stops[rock] + [0.0, 0.0, 0.95])
             write(view, shapes[rock], (u, v), 24, bold=True, centred=True)
         write(view, "Rocks at rest, in their real size", (0.02, 0.945), 28, bold=True)
-        write(view, "Lines: edges of the contact\nface elements, 10 m apart", (0.02, 0.87), 20)
+        write(view, "Lines: edges of the contact", (0.02, 0.905), 20)
+        write(view, "face elements, 10 m apart", (0.02, 0.875), 20)
         self.save(view, path)
 
     def standing(self, centre, away, over, turned):
@@ -470,7 +473,7 @@ class Scene:
         speed_bar(far, (0.87, 0.5), 0.36, 14)
         write(far, f"{self.count} rocks at the Jacksboro fault", (0.02, 0.93), 20, bold=True)
         write(far, f"Rocks are shown {ENLARGED:g} times their size.", (0.02, 0.885), 14)
-        clock = write(far, "0.0 s", (0.02, 0.82), 20, bold=True)
+        clock = write(far, "0.0 s", (0.5, 0.93), 20, bold=True)
 
         rock = int(np.argmax(self.summary["RunOut"]))
         eyes, targets = self.follow(rock, times)
@@ -485,7 +488,8 @@ class Scene:
         animation = GetAnimationScene()
         own = self.paths.of(rock)
 
-        def tick(now):
+        def tick(share):
+            now = times[0] + share * (times[-1] - times[0])
             frame = int(np.abs(times - now).argmin())
             trails.UpperThreshold = max(now, 1e-3)
             clock.Text = f"{now:.1f} s"
@@ -505,7 +509,7 @@ class Scene:
         animation.PlayMode = "Sequence"
         animation.StartTime, animation.EndTime = float(times[0]), float(times[-1])
         animation.NumberOfFrames = len(times)
-        tick(times[0])
+        tick(0.0)
         SaveAnimation(path, layout, ImageResolution=list(size), FrameRate=rate, FrameWindow=[0, len(times) - 1])
 
     def follow(self, rock, times):
