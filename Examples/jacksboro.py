@@ -51,8 +51,8 @@ def arguments():
     parser.add_argument("--output", default=os.path.join(os.path.dirname(here), "output", "jacksboro"),
                         help="folder for the results (output/jacksboro of this project)")
     parser.add_argument("--rocks", type=int, default=120, help="how many rocks are released (120)")
-    parser.add_argument("--frames", type=int, default=120,
-                        help="frames of the movie and steps of the time series (120); 0 makes no movie")
+    parser.add_argument("--frames", type=int, default=100,
+                        help="frames of the movie and steps of the time series (100); 0 makes no movie")
     chosen = parser.parse_args()
     if chosen.rocks < 1:
         parser.error(f"--rocks is {chosen.rocks}, it must be at least 1")
@@ -126,15 +126,15 @@ def main():
 
     area_rows, area_columns, angles = release.steepest_escarpment(ground, STEEP)
     heights = ground.height(*ground.centre(area_rows, area_columns))
-    say(f"Steepest escarpment: {len(angles)} connected cells over {STEEP:g}°, {angles.mean():.1f}° on "
-        f"average, {angles.max():.1f}° at most, {heights.min():.0f} to {heights.max():.0f} m")
+    say(f"Steepest escarpment: {len(angles)} connected cells over {STEEP:g}°, {angles.mean():.1f}° "
+        f"on average, {angles.max():.1f}° at most, {heights.min():.0f} to {heights.max():.0f} m")
     sources = release.place_rocks(ground, area_rows, area_columns, chosen.rocks, SEED)
     release.write_sources(sources, in_folder("sources.csv"))
     rocks = RockBlocks(FileName=in_folder("sources.csv"))
     rocks.UpdatePipeline()
     result(rocks)
 
-    say(f"Simulating {chosen.rocks} rocks until they rest or leave")
+    say(f"Simulating {chosen.rocks} rocks until they rest or leave; they do not touch each other")
     simulation = simulate(slope, rocks)
     paths = tables.Trajectories(result(simulation, 1))
     summary = tables.columns_of(result(simulation, 3))

@@ -25,7 +25,8 @@ class Ground:
         """Slope angle in degrees per cell: that of the flatter one of the cell's two CFEs, so that a
         cell counts as steep only as a whole. NaN where there is no CFE."""
         z = self.heights
-        upper_left, upper_right, lower_left, lower_right = z[:-1, :-1], z[:-1, 1:], z[1:, :-1], z[1:, 1:]
+        upper_left, upper_right = z[:-1, :-1], z[:-1, 1:]
+        lower_left, lower_right = z[1:, :-1], z[1:, 1:]
         lower = np.hypot(lower_right - lower_left, upper_left - lower_left)
         upper = np.hypot(upper_right - upper_left, upper_right - lower_right)
         return np.degrees(np.arctan(np.minimum(lower, upper) / self.cell))
@@ -51,11 +52,10 @@ class Ground:
 
     def window(self, west, east, south, north):
         """Slices of rows and columns that cover these bounds."""
-        row = np.clip([int((self.north - north) / self.cell), int((self.north - south) / self.cell) + 2],
-                      0, self.rows)
-        column = np.clip([int((west - self.west) / self.cell), int((east - self.west) / self.cell) + 2],
-                         0, self.columns)
-        return slice(*row), slice(*column)
+        first_row, last_row = (int((self.north - y) / self.cell) for y in (north, south))
+        first_column, last_column = (int((x - self.west) / self.cell) for x in (west, east))
+        return (slice(*np.clip([first_row, last_row + 2], 0, self.rows)),
+                slice(*np.clip([first_column, last_column + 2], 0, self.columns)))
 
     def patch(self, west, east, south, north, shade, stride=1):
         """The CFEs of a window as a polydata with the point arrays Elevation and Shade (colours).
@@ -84,8 +84,8 @@ class Ground:
 
 
 def hillshade(azimuth=315.0, altitude=42.0, smooth=4, low=(150, 168, 128), high=(236, 228, 204)):
-    """Colours of a slope: a tint that goes from low to high ground, under a light from `azimuth` (0 is north) and `altitude`, in
-    degrees.
+    """Colours of a slope: a tint that goes from low to high ground, under a light from `azimuth`
+    (0 is north) and `altitude`, in degrees.
 
     The angles that the light sees are averaged over 2 `smooth` + 1 nodes, because a DEM that was
     resampled to a finer grid has a crease at each of its original nodes."""

@@ -6,181 +6,12 @@ polyhedra in their real size.
 """
 import numpy as np
 from paraview.simple import *
-from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from rockfall_ground import add_array, cells, hillshade, make_polydata
+from rockfall_view import *
 
 ENLARGED = 8.0  # Size of the movie's rocks seen from afar over their real one.
-INK = [0.1, 0.1, 0.1]
-RELEASED = [0.0, 0.62, 1.0]
-SANDSTONE = [0.93, 0.62, 0.32]
 
-
-# --- Pieces of a picture ----------------------------------------------------------------------------
-
-def produce(polydata):
-    """A source that gives this polydata."""
-    source = TrivialProducer()
-    source.GetClientSideObject().SetOutput(polydata)
-    source.UpdatePipeline()
-    return source
-
-
-def new_view(size, background=(1.0, 1.0, 1.0)):
-    view = CreateRenderView()
-    view.ViewSize = list(size)
-    view.OrientationAxesVisibility = 0
-    view.UseColorPaletteForBackground = 0
-    view.Background = list(background)
-    view.UseFXAA = 1
-    return view
-
-
-def plain(source, view, colour, **properties):
-    display = Show(source, view)
-    display.ColorArrayName = ["POINTS", ""]
-    display.AmbientColor = display.DiffuseColor = list(colour)
-    for name, value in properties.items():
-        setattr(display, name, value)
-    return display
-
-
-def flat(source, view, colour, **properties):
-    """In one colour whatever the light."""
-    return plain(source, view, colour, Ambient=1.0, Diffuse=0.0, **properties)
-
-
-def show_slope(source, view):
-    display = Show(source, view)
-    ColorBy(display, ("POINTS", "Shade"))
-    display.MapScalars = 0
-    display.Ambient, display.Diffuse = 1.0, 0.0
-    return display
-
-
-def show_speed(source, view, top):
-    display = Show(source, view)
-    ColorBy(display, ("POINTS", "Speed"))
-    colours = GetColorTransferFunction("Speed")
-    colours.ApplyPreset("Plasma (matplotlib)", True)
-    colours.RescaleTransferFunction(0.0, top)
-    display.Ambient, display.Diffuse = 0.55, 0.5
-    return display
-
-
-def speed_bar(view, position, length, size=20):
-    bar = GetScalarBar(GetColorTransferFunction("Speed"), view)
-    bar.Title, bar.ComponentTitle = "Speed (m/s)", ""
-    bar.TitleColor = bar.LabelColor = INK
-    bar.TitleFontSize = bar.LabelFontSize = size
-    bar.AutoOrient, bar.Orientation = 0, "Vertical"
-    bar.WindowLocation = "Any Location"
-    bar.Position, bar.ScalarBarLength, bar.ScalarBarThickness = list(position), length, size
-    bar.LabelFormat = bar.RangeLabelFormat = "%.0f"
-    bar.Visibility = 1
-
-
-def write(view, text, position, size=22, colour=INK, bold=False, centred=False):
-    """Text with its lower left corner, or about the middle of its lower edge, at a share of the
-    picture's width and height. Returns the text's source."""
-    source = Text(Text=str(text))
-    display = Show(source, view)
-    shift = 0.26 * size * len(str(text)) / view.ViewSize[0] if centred else 0.0
-    display.WindowLocation, display.Position = "Any Location", [position[0] - shift, position[1]]
-    display.FontSize, display.Color, display.Bold = size, list(colour), int(bold)
-    return source
-
-
-def seen_at(view, point):
-    """Share of the picture's width and height at which a point of the world is seen."""
-    x, y, _, w = projection(view) @ [*point, 1.0]
-    return [0.5 + 0.5 * x / w, 0.5 + 0.5 * y / w]
-
-
-def projection(view):
-    width, height = view.ViewSize
-    matrix = view.GetActiveCamera().GetCompositeProjectionTransformMatrix(width / height, -1, 1)
-    return np.array([[matrix.GetElement(i, k) for k in range(4)] for i in range(4)])
-
-
-def points_source(points, radius):
-    """Little spheres."""
-    polydata = make_polydata(points)
-    polydata.SetVerts(cells(np.arange(len(points))[:, None]))
-    glyph = Glyph(Input=produce(polydata), GlyphType="Sphere", GlyphMode="All Points", ScaleFactor=2 * radius)
-    glyph.OrientationArray = ["POINTS", "No orientation array"]
-    glyph.ScaleArray = ["POINTS", "No scale array"]
-    return glyph
-
-
-def round_length(most):
-    """The largest of 1, 2, 5 times a power of ten that is not more."""
-    power = 10.0 ** np.floor(np.log10(most))
-    return max(step * power for step in (1, 2, 5) if step * power <= most)
-
-
-def length_text(metres):
-    return f"{metres / 1000:g} km" if metres >= 1000 else f"{metres:g} m"
-
-
-def quads(corners):
-    """Polygons of four corners each, (n, 4, 3)."""
-    polydata = make_polydata(corners.reshape(-1, 3))
-    polydata.SetPolys(cells(np.arange(4 * len(corners)).reshape(-1, 4)))
-    return produce(polydata)
-
-
-# --- Rocks -----------------------------------------------------------------------------------------
-
-def rock_points(polydata):
-    """Points of the rocks and the number of the rock that each belongs to."""
-    points = vtk_to_numpy(polydata.GetPoints().GetData()).copy()
-    polygons = polydata.GetPolys()
-    sizes = np.diff(vtk_to_numpy(polygons.GetOffsetsArray()))
-    owner = np.empty(len(points), int)
-    owner[vtk_to_numpy(polygons.GetConnectivityArray())] = \
-        np.repeat(vtk_to_numpy(polydata.GetCellData().GetArray("RockId")), sizes)
-    return points, owner
-
-
-def enlarge(polydata, times):
-    """Points of rocks that are bigger by a factor, each about its lowest point."""
-    points, owner = rock_points(polydata)
-    for rock in np.unique(owner):
-        own = points[owner == rock]
-        foot = np.append(own[:, :2].mean(axis=0), own[:, 2].min())
-        points[owner == rock] = foot + times * (own - foot)
-    return points
-
-
-def cast_shadows(polydata, ground, light=(-0.35, 0.25, 1.0)):
-    """Points of rocks moved along the light onto the ground, a little over it."""
-    points, _ = rock_points(polydata)
-    fallen = points.copy()
-    for _ in range(4):
-        drop = points[:, 2] - ground.height(fallen[:, 0], fallen[:, 1])
-        fallen[:, 0] = points[:, 0] - light[0] / light[2] * drop
-        fallen[:, 1] = points[:, 1] - light[1] / light[2] * drop
-    fallen[:, 2] = ground.height(fallen[:, 0], fallen[:, 1]) + 0.03
-    return fallen
-
-
-kept = {}  # What the pipeline's Python filters and the animation call, by name.
-
-
-def python_filter(source, name, points_of):
-    """A filter that moves the points of the rocks at any time."""
-    def run(given, made):
-        made.ShallowCopy(given)
-        if given.GetNumberOfPoints():
-            made.SetPoints(make_polydata(points_of(given)).GetPoints())
-    kept[name] = run
-    return ProgrammableFilter(Input=source, CopyArrays=0, Script=(
-        "import rockfall_pictures\n"
-        f"rockfall_pictures.kept[{name!r}](self.GetPolyDataInput(), self.GetPolyDataOutput())"))
-
-
-# --- The scene -------------------------------------------------------------------------------------
 
 class Scene:
     """Everything that the pictures show."""
@@ -198,11 +29,12 @@ class Scene:
         self.count = len(paths.block)
         west, south = self.low[:2] - 1000.0
         east, north = self.high[:2] + 1000.0
-        # Light from the upper left, as maps have it, or from the upper right if the slope is better seen.
+        # Light from the upper left, as maps have it, or right if that slope lies in the shade.
         self.down = (self.stops - self.starts)[:, :2].sum(axis=0)
         self.down /= np.linalg.norm(self.down) or 1.0
         self.light = 315.0 if self.down[0] < 0 else 45.0
-        self.slope = produce(ground.patch(west, east, south, north, hillshade(self.light)))
+        self.bounds = west, east, south, north
+        self.slope = produce(ground.patch(*self.bounds, hillshade(self.light)))
 
     def save_slope(self, path):
         SaveData(path, proxy=self.slope)
@@ -216,7 +48,7 @@ class Scene:
             places, taken = self.paths.points[own].tolist(), [0]
             for k, place in enumerate(places):
                 last = places[taken[-1]]
-                if abs(place[0] - last[0]) + abs(place[1] - last[1]) + abs(place[2] - last[2]) > spacing:
+                if sum(abs(a - b) for a, b in zip(place, last)) > spacing:
                     taken.append(k)
             if taken[-1] != len(places) - 1:
                 taken.append(len(places) - 1)
@@ -274,7 +106,8 @@ class Scene:
             y = up + 0.01 * size[1] * metres * np.array([[0, 0, 1, 1]] * 2)
             flat(quads(np.stack([x, y, np.full((2, 4), 3000.0)], -1)), view, colour)
         write(view, "0", (margin + share[0] + 0.02, 0.065), 20, centred=True)
-        write(view, length_text(length), (margin + share[0] + 0.02 + length / metres / size[0], 0.065), 20, centred=True)
+        write(view, length_text(length),
+              (margin + share[0] + 0.02 + length / metres / size[0], 0.065), 20, centred=True)
         # North arrow.
         across, tall = 0.018 * size[0] * metres, 0.05 * size[0] * metres
         x, y = left + 2 * across, south + 0.12 * size[1] * metres
@@ -286,13 +119,15 @@ class Scene:
 
     def overview(self, path):
         ground = self.ground
-        centre = [ground.west + 0.5 * ground.columns * ground.cell, ground.south + 0.5 * ground.rows * ground.cell]
+        centre = [ground.west + 0.5 * ground.columns * ground.cell,
+                  ground.south + 0.5 * ground.rows * ground.cell]
         view, _, _ = self.map_view(
             centre, 1.02 * ground.cell * max(ground.columns, 1.2122 * ground.rows),
             "The Jacksboro fault, Tennessee: DEM and place of the rockfall", stride=8)
         west, east = self.low[0] - 500, self.high[0] + 500
         south, north = self.low[1] - 500, self.high[1] + 500
-        corners = np.array([[west, south, 2500], [east, south, 2500], [east, north, 2500], [west, north, 2500]])
+        corners = np.array([[x, y, 2500.0] for x, y in (
+            (west, south), (east, south), (east, north), (west, north))])
         frame = make_polydata(corners)
         frame.SetLines(cells(np.array([[0, 1], [1, 2], [2, 3], [3, 0]])))
         flat(produce(frame), view, [0.85, 0.1, 0.1], LineWidth=4)
@@ -324,18 +159,25 @@ class Scene:
 
     # --- From the side
 
-    def look_from_below(self, view, distance=2.0, raised=23.0, turned=25.0, lift=0.07):
-        """Puts the camera in front of the run-out, looking uphill."""
-        span = np.linalg.norm((self.high - self.low)[:2])
-        focus = 0.5 * (self.low + self.high) + [0.0, 0.0, lift * span]
-        reach = distance * span
-        angle = np.arctan2(self.down[1], self.down[0]) + np.radians(turned)
-        tilt = np.radians(raised)
-        view.CameraFocalPoint = focus.tolist()
-        view.CameraPosition = (focus + reach * np.array([
-            np.cos(angle) * np.cos(tilt), np.sin(angle) * np.cos(tilt), np.sin(tilt)])).tolist()
-        view.CameraViewUp = [0.0, 0.0, 1.0]
-        view.CameraViewAngle = 30.0
+    def look_from_below(self, view, ends, raised=25.0, turned=25.0):
+        """Puts the camera in front of the run-out, looking uphill, as near as leaves every rock's start
+        and these ends in the picture, below the title."""
+        points = np.concatenate([self.starts, ends])
+        focus, away = points.mean(axis=0), np.linalg.norm(np.ptp(points, axis=0))
+        angle, tilt = np.arctan2(self.down[1], self.down[0]) + np.radians(turned), np.radians(raised)
+        way = np.array([np.cos(angle) * np.cos(tilt), np.sin(angle) * np.cos(tilt), np.sin(tilt)])
+        right = np.array([-np.sin(angle), np.cos(angle), 0.0])
+        up = np.cross(way, right)
+        view.CameraViewUp, view.CameraViewAngle = [0.0, 0.0, 1.0], 30.0
+        middle, room = np.array([0.48, 0.44]), np.array([0.8, 0.58])  # of the picture
+        for _ in range(8):
+            view.CameraFocalPoint, view.CameraPosition = focus.tolist(), (focus + away * way).tolist()
+            seen = np.array([seen_at(view, p) for p in points])
+            height = 2 * away * np.tan(np.radians(15.0))  # of the picture at the focus, m
+            shift = 0.5 * (seen.min(axis=0) + seen.max(axis=0)) - middle
+            shift[0] *= view.ViewSize[0] / view.ViewSize[1]
+            focus = focus + height * (shift[0] * right + shift[1] * up)
+            away *= np.clip((np.ptp(seen, axis=0) / room).max(), 0.7, 1.5)
 
     def oblique(self, path, size=(1600, 1000)):
         view = new_view(size, (0.86, 0.91, 0.97))
@@ -343,50 +185,54 @@ class Scene:
         self.contours(view, self.slope, 10.0)
         span = np.linalg.norm((self.high - self.low)[:2])
         show_speed(self.tubes(0.0016 * span), view, self.top)
-        self.look_from_below(view)
+        self.look_from_below(view, self.stops)
         plain(points_source(self.stops, 0.004 * span), view, INK)
         plain(points_source(self.starts, 0.004 * span), view, RELEASED)
-        self.ground_scale(view)
+        self.ground_scale(view, 0.64)
         speed_bar(view, (0.9, 0.55), 0.36)
         write(view, f"{self.count} rocks fall from an escarpment at the Jacksboro fault, Tennessee",
               (0.02, 0.945), 28, bold=True)
-        write(view, "Tubes: trajectories. Blue: released. Black: stopped. Contours: 10 m.", (0.02, 0.905), 20)
+        write(view, "Tubes: trajectories. Blue: released. Black: stopped. Contours: 10 m.",
+              (0.02, 0.905), 20)
         self.save(view, path)
 
-    def ground_scale(self, view):
-        """A scale bar and a north arrow on the ground, in the foreground."""
-        span = np.linalg.norm((self.high - self.low)[:2])
-        length = round_length(0.3 * span)
-        begin = self.ground_at(view, 0.07, 0.09)
-        right = self.ground_at(view, 0.5, 0.09) - begin
-        right /= np.linalg.norm(right)
+    def ground_scale(self, view, u):
+        """A scale bar and a north arrow on the ground, from a share of the picture's width on."""
+        begin = self.ground_at(view, u, 0.09)
+        right = self.ground_at(view, u + 0.2, 0.09) - begin
+        wide = np.linalg.norm(right)  # a fifth of the picture, m
+        right /= wide
+        length = round_length(wide)
 
-        def strip(start, end, wide):
+        def strip(start, end, thick):
             along = np.linspace(start, end, 30)
             side = np.array([start[1] - end[1], end[0] - start[0]])
-            side *= 0.5 * wide / np.linalg.norm(side)
-            edge = [np.column_stack([e, self.ground.height(*e.T) + 1.5]) for e in (along + side, along - side)]
+            side *= 0.5 * thick / np.linalg.norm(side)
+            edge = [np.column_stack([line, self.ground.height(*line.T) + 1.5])
+                    for line in (along + side, along - side)]
             return np.stack([edge[0][:-1], edge[0][1:], edge[1][1:], edge[1][:-1]], 1)
 
-        fields = [strip(begin + right * length * k / 4, begin + right * length * (k + 1) / 4, 0.02 * span)
+        fields = [strip(begin + right * length * k / 4, begin + right * length * (k + 1) / 4, 0.065 * wide)
                   for k in range(4)]
-        tail = begin + right * 1.3 * length
-        tip = tail + np.array([0.0, 0.1 * span])
-        arrow = [strip(tail, tip, 0.008 * span)]
-        arrow += [strip(tip, tip + span * np.array([wing, -0.035]), 0.008 * span) for wing in (-0.02, 0.02)]
+        tail = begin + right * (length + 0.25 * wide)
+        tip = tail + np.array([0.0, 0.35 * wide])
+        arrow = [strip(tail, tip, 0.03 * wide)]
+        arrow += [strip(tip, tip + wide * np.array([wing, -0.12]), 0.03 * wide)
+                  for wing in (-0.07, 0.07)]
         flat(quads(np.concatenate(fields[::2] + arrow)), view, INK)
         flat(quads(np.concatenate(fields[1::2])), view, [1.0] * 3)
         on_ground = lambda p: (*p, float(self.ground.height(*p)))
         for at, text in ((0.0, "0"), (length, length_text(length))):
             u, v = seen_at(view, on_ground(begin + right * at))
             write(view, text, (u, v - 0.05), 22, bold=True, centred=True)
-        u, v = seen_at(view, on_ground(tip + np.array([0.0, 0.02 * span])))
+        u, v = seen_at(view, on_ground(tip + np.array([0.0, 0.07 * wide])))
         write(view, "N", (u, v), 26, bold=True, centred=True)
 
     def ground_at(self, view, u, v):
         """Easting and northing of the ground that is seen at a share of the picture."""
         back = np.linalg.inv(projection(view))
-        near, far = (p[:3] / p[3] for p in (back @ [2 * u - 1, 2 * v - 1, depth, 1] for depth in (-1, 1)))
+        near, far = (back @ [2 * u - 1, 2 * v - 1, depth, 1] for depth in (-1, 1))
+        near, far = near[:3] / near[3], far[:3] / far[3]
         way = far - near
         # The renderer's clipping planes are not known yet; 4 km before the camera are enough.
         points = near + np.linspace(0.0, 4000.0, 8000)[:, None] * way / np.linalg.norm(way)
@@ -401,10 +247,12 @@ class Scene:
         patch = produce(self.ground.patch(centre[0] - reach, centre[0] + reach, centre[1] - reach,
                                           centre[1] + reach, grey))
         display = show_slope(patch, view)
-        display.Representation, display.EdgeColor, display.LineWidth = "Surface With Edges", [0.35, 0.38, 0.26], 1.5
+        display.Representation = "Surface With Edges"
+        display.EdgeColor, display.LineWidth = [0.35, 0.38, 0.26], 1.5
 
     def show_rocks(self, view, name):
-        plain(self.rocks, view, SANDSTONE, Representation="Surface With Edges", EdgeColor=[0.25, 0.13, 0.05],
+        plain(self.rocks, view, SANDSTONE, Representation="Surface With Edges",
+              EdgeColor=[0.25, 0.13, 0.05],
               LineWidth=1.5, Ambient=0.3, Diffuse=0.8, Interpolation="Flat")
         shadow = python_filter(self.rocks, name, lambda data: cast_shadows(data, self.ground))
         flat(shadow, view, [0.3, 0.32, 0.22])
@@ -415,7 +263,8 @@ class Scene:
         rested = np.array(self.summary["Fate"]) == "rested"
         apart = np.linalg.norm(self.stops[:, None] - self.stops, axis=-1)
         near = (apart < 9.0) & rested
-        middle = max(range(self.count), key=lambda k: (len(set(shapes[near[k]])), -apart[k][near[k]].sum()))
+        middle = max(range(self.count), key=lambda k: (
+            len(set(shapes[near[k]])), -apart[k][near[k]].sum()))
         shown = np.nonzero(near[middle])[0]
         centre = self.stops[shown].mean(axis=0)
         view = new_view(size, (0.86, 0.91, 0.97))
@@ -425,9 +274,10 @@ class Scene:
         eye = self.standing(centre, 14.0, 3.5, 65.0)
         view.CameraPosition, view.CameraFocalPoint = eye.tolist(), centre.tolist()
         view.CameraViewUp, view.CameraViewAngle = [0.0, 0.0, 1.0], 40.0
-        for rock in shown:
+        for rock in np.nonzero(rested & (np.linalg.norm(self.stops - eye, axis=1) < 30.0))[0]:
             u, v = seen_at(view, self.stops[rock] + [0.0, 0.0, 0.95])
-            write(view, shapes[rock], (u, v), 24, bold=True, centred=True)
+            if 0.05 < u < 0.95 and 0.0 < v < (0.85 if u < 0.35 else 0.94):  # not in the title
+                write(view, shapes[rock], (u, v), 24, bold=True, centred=True)
         write(view, "Rocks at rest, in their real size", (0.02, 0.945), 28, bold=True)
         write(view, "Lines: edges of the contact", (0.02, 0.905), 20)
         write(view, "face elements, 10 m apart", (0.02, 0.875), 20)
@@ -460,16 +310,20 @@ class Scene:
             AssignViewToLayout(view=view, layout=layout, hint=place)
             view.UseFXAA = 0
 
-        show_slope(self.slope, far)
-        self.contours(far, self.slope, 50.0)
+        # Every second node is enough from afar, and a frame takes half the time.
+        coarse = produce(self.ground.patch(*self.bounds, hillshade(self.light, smooth=2), stride=2))
+        show_slope(coarse, far)
+        self.contours(far, coarse, 50.0)
         trails = Threshold(Input=self.trails(4.0), Scalars=["CELLS", "Time"], ThresholdMethod="Between",
                            LowerThreshold=0.0, UpperThreshold=0.0)
         show_speed(trails, far, self.top).LineWidth = 2.0
         big = python_filter(self.rocks, "enlarged", lambda data: enlarge(data, ENLARGED))
-        plain(big, far, SANDSTONE, Representation="Surface With Edges", EdgeColor=[0.25, 0.13, 0.05],
+        plain(big, far, SANDSTONE, Representation="Surface With Edges",
+              EdgeColor=[0.25, 0.13, 0.05],
               Ambient=0.3, Diffuse=0.8, Interpolation="Flat")
-        self.look_from_below(far, distance=1.85)
-        self.ground_scale(far)
+        self.look_from_below(
+            far, np.concatenate([self.paths.places(rock, times[-1:]) for rock in range(self.count)]))
+        self.ground_scale(far, 0.45)
         speed_bar(far, (0.87, 0.5), 0.36, 14)
         write(far, f"{self.count} rocks at the Jacksboro fault", (0.02, 0.93), 20, bold=True)
         write(far, f"Rocks are shown {ENLARGED:g} times their size.", (0.02, 0.885), 14)
@@ -478,11 +332,11 @@ class Scene:
         rock = int(np.argmax(self.summary["RunOut"]))
         eyes, targets = self.follow(rock, times)
         self.near_slope(near, 0.5 * (self.starts[rock] + self.stops[rock]),
-                        0.5 * np.abs(self.stops[rock] - self.starts[rock])[:2].max() + 250.0)
+                        0.5 * np.abs(self.stops[rock] - self.starts[rock])[:2].max() + 150.0)
         self.show_rocks(near, "followed")
         near.CameraViewUp, near.CameraViewAngle = [0.0, 0.0, 1.0], 40.0
-        write(near, f"Rock {self.summary['BlockId'][rock]} ({self.summary['Shape'][rock]})", (0.03, 0.93), 20,
-              bold=True)
+        write(near, f"Rock {self.summary['BlockId'][rock]} ({self.summary['Shape'][rock]})",
+              (0.03, 0.93), 20, bold=True)
         speed = write(near, "in its real size", (0.03, 0.885), 14)
 
         animation = GetAnimationScene()
@@ -501,16 +355,17 @@ class Scene:
 
         kept["tick"] = tick
         cue = PythonAnimationCue()
-        cue.Script = ("import rockfall_pictures\n"
+        cue.Script = ("import rockfall_view\n"
                       "def start_cue(self): pass\n"
-                      "def tick(self): rockfall_pictures.kept['tick'](self.GetAnimationTime())\n"
+                      "def tick(self): rockfall_view.kept['tick'](self.GetAnimationTime())\n"
                       "def end_cue(self): pass\n")
         animation.Cues.append(cue)
         animation.PlayMode = "Sequence"
         animation.StartTime, animation.EndTime = float(times[0]), float(times[-1])
         animation.NumberOfFrames = len(times)
         tick(0.0)
-        SaveAnimation(path, layout, ImageResolution=list(size), FrameRate=rate, FrameWindow=[0, len(times) - 1])
+        SaveAnimation(path, layout, ImageResolution=list(size), FrameRate=rate,
+                      FrameWindow=[0, len(times) - 1])
 
     def follow(self, rock, times):
         """Where a camera stands and looks that moves along with a rock, without its bounces."""

@@ -4,11 +4,10 @@ import os
 
 import numpy as np
 
-SHAPES = ("cube", "tetrahedron", "octahedron", "dodecahedron", "icosahedron", "box", "eota111", "eota221")
-
 # Radius of the sphere around each shape of 1 m³. A box is 1.5 : 1 : 0.67 here.
 REACH = {"cube": 0.866, "tetrahedron": 1.249, "octahedron": 0.909, "dodecahedron": 0.711,
          "icosahedron": 0.733, "box": 0.964, "eota111": 0.688, "eota221": 0.868}
+SHAPES = tuple(REACH)
 BOX = np.array([1.5, 1.0, 1 / 1.5])
 
 
@@ -91,7 +90,7 @@ def place_rocks(ground, rows, columns, count, seed):
     attitude. The sphere around the rock is 1 m over the highest ground beneath it.
     """
     if count > len(rows):
-        raise SystemExit(f"The escarpment has {len(rows)} cells, too few for {count} rocks of one cell each.")
+        raise SystemExit(f"The escarpment has {len(rows)} cells, one for each rock: {count} are too many.")
     random = np.random.default_rng(seed)
     x, y = ground.centre(rows, columns)
     highest = np.argsort(-ground.height(x, y), kind="stable")[:max(count, min(len(rows), 150))]
@@ -113,7 +112,8 @@ def place_rocks(ground, rows, columns, count, seed):
 
 
 def write_sources(sources, path):
+    """As a CSV table that Rock Blocks reads."""
     with open(path, "w", newline="") as file:
-        table = csv.DictWriter(file, ["x", "y", "z", "shape", "volume", "rx", "ry", "rz", "lx", "ly", "lz"])
+        table = csv.DictWriter(file, "x y z shape volume rx ry rz lx ly lz".split())
         table.writeheader()
         table.writerows(sources)

@@ -77,7 +77,7 @@ def write_summary(summary, path):
 
 
 def write_dispersion(dispersion, path):
-    names = ["Group", "Trajectories", "L", "W", "Theta", "LateralMin", "LateralMax", "LateralDeviation"]
+    names = "Group Trajectories L W Theta LateralMin LateralMax LateralDeviation".split()
     with open(path, "w", newline="") as file:
         writer = csv.writer(file)
         writer.writerow(["Shape", "Trajectories", "L_m", "W_m", "Theta_degrees", "LateralMin_m",

@@ -23,7 +23,7 @@ enum class Shape
   Box = 5,     ///< Three lengths, scaled to the volume.
   Eota111 = 6, ///< METHOD 11.
   Eota221 = 7,
-  File = 8 ///< The convex hull of a file's points.
+  File = 8 ///< From a file's points or mesh.
 };
 
 /// A regular or EOTA shape of this volume (m³). Not for Box and File (ParameterError).

@@ -76,6 +76,7 @@ private:
   double quietTime_ = 0.0;    ///< For how long it has been lying still, s.
   Vec3 acceleration_ = Vec3::Zero();
   Vec3 spinAcceleration_ = Vec3::Zero();
+  std::uint64_t carrying_ = 0; ///< What carried in the last lasting step.
   bool done_ = false;
 };
 

@@ -17,6 +17,21 @@ constexpr double kPressOut = 0.005;
 /// An overlap beyond this share of the radius that nothing carries is held where it is.
 constexpr double kLooseOverlap = 1e-3;
 
+/// Which features of the rock carry, as a number that any change changes.
+std::uint64_t carriers(const std::vector<Contact>& contacts)
+{
+  std::uint64_t sum = 0;
+  for (const Contact& c : contacts)
+  {
+    if (c.closed())
+    {
+      const std::uint64_t feature = 4 * std::uint64_t(c.rockFeature) + std::uint64_t(c.kind) + 1;
+      sum += feature * 0x9e3779b97f4a7c15ull;
+    }
+  }
+  return sum;
+}
+
 bool anyClosed(const std::vector<Contact>& contacts)
 {
   return std::any_of(
@@ -174,11 +189,15 @@ void RockSimulator::takeStep(double h, StepKind kind)
   {
     energy_.damping +=
       energyBefore - this->mechanicalEnergy() - springEnergy_ - outcome.frictionWork;
-    // The lag of the next lasting step. What an impact left is no acceleration to go on with.
+    // The lag of the next lasting step. What an impact left is no acceleration to go on with, nor is
+    // that under other contacts: a rock that rattles would be fed by it.
     const double bound = 3.0 * parameters_.gravity;
+    const std::uint64_t carrying = carriers(contacts_);
+    const bool same = carrying == carrying_;
+    carrying_ = carrying;
     acceleration_ = (state_.velocity - before_.velocity) / taken;
     spinAcceleration_ = (state_.spin - before_.spin) / taken;
-    if (acceleration_.norm() > bound || spinAcceleration_.norm() * block_.radius() > bound)
+    if (!same || acceleration_.norm() > bound || spinAcceleration_.norm() * block_.radius() > bound)
     {
       acceleration_.setZero();
       spinAcceleration_.setZero();
@@ -189,6 +208,7 @@ void RockSimulator::takeStep(double h, StepKind kind)
   {
     acceleration_.setZero();
     spinAcceleration_.setZero();
+    carrying_ = 0;
   }
   const bool touching = anyClosed(contacts_);
   recorder_.recordBetween(before_, state_, touching);

@@ -28,7 +28,7 @@ struct SimulationParameters
   RestitutionModel restitutionModel = RestitutionModel::Velocity;
 
   int iterations = 1;     ///< Independent realisations of roughness, Rv and φ, ≥ 1.
-  std::uint64_t seed = 1; ///< With iteration and rock it determines every random number.
+  std::uint64_t seed = 1; ///< With the iteration it determines every random number.
   int threads = 0;        ///< 0 = all.
 
   int maxOpenClose = 12; ///< Open–close iterations before a step is cut, ≥ 2.

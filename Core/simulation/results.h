@@ -21,7 +21,7 @@ struct Sample
   Vec3 velocity = Vec3::Zero();            ///< Vx, Vy, Vz, m/s.
   Vec3 angularVelocity = Vec3::Zero();     ///< Ryz, Rzx, Rxy: about x, y, z, rad/s.
   double kineticEnergy = 0.0;              ///< Translation and rotation, J.
-  double heightOverGround = 0.0;           ///< Lowest point over the surface below the centroid, m.
+  double heightOverGround = 0.0;           ///< Least height of a vertex over the ground under it, m.
   bool contact = false;                    ///< Touching the slope.
 };
 
@@ -31,7 +31,7 @@ struct ImpactEvent
   double time = 0.0;            ///< Of the first touch, s.
   Vec3 position = Vec3::Zero(); ///< Of the contact, m.
   Vec3 normal = Vec3::Zero();   ///< Of the slope there.
-  std::int64_t cfe = 0;         ///< Number of the CFE that took most of the impulse.
+  std::int64_t cfe = 0;         ///< Number of the CFE with the largest force.
   double impulse = 0.0;         ///< Normal, N s.
   double approachSpeed = 0.0;   ///< Of the contact point along the normal, m/s.
   Vec3 velocityBefore = Vec3::Zero();

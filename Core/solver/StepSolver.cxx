@@ -201,6 +201,8 @@ StepOutcome StepSolver::step(const Block& block, const StepRequest& request,
   this->levers(block, contacts, d);
   this->evaluate(request, d);
   Quat turn = cayley(d.segment<3>(kRotation));
+  Vec12 last = Vec12::Zero();
+  double share = 1.0; // of the correction that is taken
   bool settled = false;
   int iteration = 0;
   for (; iteration < request.maxOpenClose && !settled; ++iteration)
@@ -251,8 +253,21 @@ StepOutcome StepSolver::step(const Block& block, const StepRequest& request,
     {
       break;
     }
-    const Vec3 turnChange = next.segment<3>(kRotation) - d.segment<3>(kRotation);
-    d = next;
+    // A contact that hardly slips can throw the iteration from one side of the friction cone's tip to
+    // the other for ever: when a correction turns back, only part of it is taken.
+    const Vec12 correction = next - d;
+    const double back = correction.head<6>().dot(last.head<6>());
+    if (iteration > 1 && back < -0.25 * last.head<6>().squaredNorm())
+    {
+      share = std::max(0.5 * share, 0.125);
+    }
+    else
+    {
+      share = std::min(1.0, 2.0 * share);
+    }
+    last = correction;
+    const Vec3 turnChange = correction.segment<3>(kRotation);
+    d += share * correction;
     turn = cayley(d.segment<3>(kRotation));
     this->levers(block, contacts, d);
     double change = 0.0, scale = 0.0;
@@ -265,7 +280,7 @@ StepOutcome StepSolver::step(const Block& block, const StepRequest& request,
     // The rotation itself, for the gyroscopic term, converges with the gaps; without contacts it
     // alone decides.
     const double turned = turnChange.norm();
-    settled = !changed && change <= kGapTolerance * scale + 1e-15 &&
+    settled = share == 1.0 && !changed && change <= kGapTolerance * scale + 1e-15 &&
       turned <= 1e-10 * (1.0 + d.segment<3>(kRotation).norm());
   }
   outcome.iterations = iteration;

@@ -57,7 +57,7 @@ Dispersion measureDispersion(
   {
     for (const Vec3& p : path)
     {
-      farthest = std::max(farthest, along.dot(p - path.front()));
+      farthest = std::max(farthest, along.dot(p - (fromOwnStart ? path.front() : result.apex)));
     }
   }
   result.length = length > 0.0 ? length : farthest;

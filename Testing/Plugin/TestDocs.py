@@ -1,0 +1,176 @@
+"""The pages of docs/ say what the plugin has: properties and defaults as in its XML, scripts that run,
+the arrays and columns that come out of them, names that are in the code, links that lead somewhere."""
+
+import glob
+import os
+import re
+import xml.etree.ElementTree as ElementTree
+
+import paraview.simple
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+DOCS = os.path.join(ROOT, "docs")
+
+# page, name of its proxy in the XML, the script's variable that has the proxy
+PAGES = [
+    ("DEMtoCFEMesh", "DEMToCFEMesh", "slope"),
+    ("RockBlocks", "RockBlocks", "rocks"),
+    ("RockfallSimulation", "RockfallSimulation", "fall"),
+    ("DispersionAngle", "DispersionAngle", "angle"),
+]
+TYPES = {"vtkDoubleArray": "double", "vtkIntArray": "int", "vtkIdTypeArray": "id",
+         "vtkStringArray": "text"}
+
+failures = []
+
+
+def expect(truth, message):
+    if not truth:
+        failures.append(message)
+
+
+def read(path):
+    with open(path, encoding="utf-8") as file:
+        return file.read()
+
+
+def rows_of(text, *header):
+    """Rows of all tables whose head begins with these words, as lists of cells."""
+    rows, inside = [], False
+    for line in text.splitlines():
+        if not line.startswith("|"):
+            inside = False
+            continue
+        cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
+        if cells[:len(header)] == list(header):
+            inside = True
+        elif inside and not set(line) <= set("|-: "):
+            rows.append(cells)
+    return rows
+
+
+def name_in(cell):
+    return cell.strip("`")
+
+
+def same(default, documented):
+    """Defaults as written, numbers by value."""
+    numbers = r"[-+]?\d[\d.]*(?:[eE][-+]?\d+)?"
+    if re.fullmatch(rf"{numbers}( {numbers})*", default):
+        return re.fullmatch(rf"{numbers}( {numbers})*", documented) and \
+            [float(n) for n in default.split()] == [float(n) for n in documented.split()]
+    return default == documented
+
+
+def properties_of(proxy):
+    """{name: default as a page writes it} of a proxy's XML."""
+    result = {}
+    for item in proxy:
+        if not item.tag.endswith("Property"):
+            continue
+        default = item.get("default_values")
+        entries = {e.get("value"): e.get("text") for e in item.iterfind("EnumerationDomain/Entry")}
+        if default is None:
+            default = "–"
+        elif item.find("BooleanDomain") is not None:
+            default = "on" if default == "1" else "off"
+        elif default in entries:
+            default = entries[default]
+        result[item.get("name")] = default or "empty"
+    return result
+
+
+def arrays_of(data):
+    """{(where, name): type} of all arrays of a data object."""
+    result = {}
+    for where, method in (("point", "GetPointData"), ("cell", "GetCellData"),
+                          ("row", "GetRowData"), ("field", "GetFieldData")):
+        arrays = getattr(data, method)() if hasattr(data, method) else None
+        for k in range(arrays.GetNumberOfArrays() if arrays else 0):
+            array = arrays.GetAbstractArray(k)
+            parts = array.GetNumberOfComponents()
+            kind = TYPES.get(array.GetClassName(), array.GetClassName())
+            result[where, array.GetName()] = kind + (f" ×{parts}" if parts > 1 else "")
+    return result
+
+
+def documented_arrays(section):
+    result = {(row[1], name_in(row[0])): row[2]
+              for row in rows_of(section, "Array", "On", "Type", "Unit")}
+    result.update({("row", name_in(row[0])): row[1]
+                   for row in rows_of(section, "Column", "Type", "Unit")})
+    return result
+
+
+proxies = {}
+for path in glob.glob(os.path.join(ROOT, "Plugin", "xml", "*.xml")):
+    for found in ElementTree.parse(path).getroot().iter("SourceProxy"):
+        proxies[found.get("name")] = found
+expect(set(proxies) == {proxy for _, proxy, _ in PAGES},
+       f"the XML has the proxies {sorted(proxies)}, there are pages for {[p[1] for p in PAGES]}")
+
+known = set()  # every property, array and column
+for page, proxy, variable in PAGES:
+    text = read(os.path.join(DOCS, page + ".md"))
+
+    rows = rows_of(text, "Property", "Unit", "Default", "Meaning")
+    documented = {name_in(row[0]): row[2] for row in rows}
+    expect(len(documented) == len(rows), f"{page}.md names a property twice")
+    expected = properties_of(proxies[proxy])
+    known |= set(expected)
+    for name in sorted(set(expected) - set(documented)):
+        expect(False, f"{page}.md does not name the property {name}")
+    for name in sorted(set(documented) - set(expected)):
+        expect(False, f"{page}.md names the property {name}, which the XML does not have")
+    for name in sorted(set(documented) & set(expected)):
+        expect(same(expected[name], documented[name]),
+               f"{page}.md: default of {name} is {documented[name]}, in the XML {expected[name]}")
+    advanced = {item.get("name") for item in proxies[proxy]
+                if item.get("panel_visibility") == "advanced"}
+    told = {name_in(row[0]) for row in rows if row[3].endswith("*Advanced.*")}
+    expect(told == advanced, f"{page}.md: advanced are {sorted(told)}, in the XML {sorted(advanced)}")
+
+    scripts = re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    expect(scripts, f"{page}.md has no script")
+    scope = {}
+    for script in scripts:
+        exec(compile(script, page + ".md", "exec"), scope)
+    result = scope[variable].GetClientSideObject()
+    sections = re.split(r"^### Port (\d+)", text.split("\n## Output")[1].split("\n## ")[0],
+                        flags=re.MULTILINE)[1:]
+    expect([int(n) for n in sections[::2]] == list(range(result.GetNumberOfOutputPorts())),
+           f"{page}.md describes the ports {sections[::2]}")
+    for number, section in zip(sections[::2], sections[1::2]):
+        data = result.GetOutputDataObject(int(number))
+        expect(data.GetNumberOfElements(6 if data.IsA("vtkTable") else 1) > 0,
+               f"{page}.md: its script leaves port {number} empty")
+        made, told = arrays_of(data), documented_arrays(section)
+        known |= {name for _, name in made}
+        for key in sorted(set(made) | set(told)):
+            expect(made.get(key) == told.get(key),
+                   f"{page}.md, port {number}: {' array '.join(key)} is {told.get(key)}, "
+                   f"the filter makes {made.get(key)}")
+    for source in list(paraview.simple.GetSources().values()):
+        paraview.simple.Delete(source)
+
+# Notation: its names are in the code and in ParaView.
+code = set(re.findall(r"\w+", "\n".join(
+    read(path) for path in glob.glob(os.path.join(ROOT, "Core", "**", "*.h"), recursive=True))))
+symbols = rows_of(read(os.path.join(DOCS, "notation.md")), "Symbol", "In the code", "In ParaView")
+expect(len(symbols) > 30, f"notation.md has {len(symbols)} symbols only")
+for row in symbols:
+    expect(len(row) == 6, f"notation.md: {row} has {len(row)} cells")
+    for name in re.findall(r"`(\w+)`", row[1]):
+        expect(name in code or name + "_" in code, f"notation.md: {name} is not in the Core")
+    for name in re.findall(r"`(\w+)`", row[2]):
+        expect(name in known, f"notation.md: {name} is no property, array or column")
+
+# Links between the pages.
+for path in sorted(glob.glob(os.path.join(DOCS, "*.md"))):
+    for target in re.findall(r"\]\(([^)#:]+)\)", read(path)):
+        expect(os.path.exists(os.path.join(DOCS, target)),
+               f"{os.path.basename(path)} links to {target}, which is not there")
+
+if failures:
+    raise SystemExit("\n".join(failures))
+print("the pages say what there is")
