@@ -5,7 +5,9 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace rockfall
 {
@@ -74,14 +76,56 @@ Block::Block(Polyhedron shape, double density, double youngModulus, double poiss
   elasticity_ = integrals.volume * isotropicElasticity(youngModulus, poissonRatio);
   inertia_ = density * (integrals.second.trace() * Mat3::Identity() - integrals.second);
   inverseInertia_ = inertia_.inverse();
-  const Vec3 principal = Eigen::SelfAdjointEigenSolver<Mat3>(inertia_).eigenvalues();
+  const Eigen::SelfAdjointEigenSolver<Mat3> axes(inertia_);
+  const Vec3 principal = axes.eigenvalues();
+  principal_ = principal;
   if (!(principal[0] > 0.0))
   {
     throw GeometryError("a block has the principal moment of inertia " +
       std::to_string(principal[0]) + " kg m², it must be positive");
   }
   isotropic_ = principal[2] - principal[0] < 1e-9 * principal[2];
-  largestMobility_ = 1.0 / mass_ + shape_.radius() * shape_.radius() / principal[0];
+  largestMobility_ = 0.0;
+  for (const Vec3& x : shape_.vertices())
+  {
+    // δ = n/m + I⁻¹(x × f) × x for f = n: the mobility is I/m − [x] I⁻¹ [x].
+    Mat3 cross;
+    cross << 0.0, -x.z(), x.y(), x.z(), 0.0, -x.x(), -x.y(), x.x(), 0.0;
+    const Mat3 turning = cross.transpose() * inverseInertia_ * cross;
+    const double largest = Eigen::SelfAdjointEigenSolver<Mat3>(turning).eigenvalues()[2];
+    largestMobility_ = std::max(largestMobility_, 1.0 / mass_ + largest);
+    for (int k = 0; k < 3; ++k)
+    {
+      reach_[k] = std::max(reach_[k], axes.eigenvectors().col(k).cross(x).norm());
+    }
+  }
+}
+
+Vec3 Block::largestSpin(const Vec3& spin) const
+{
+  const Vec3 momentum = inertia_ * spin;
+  const double l2 = momentum.squaredNorm(), twice = spin.dot(momentum);
+  const Vec3 inverse = principal_.cwiseInverse(); // falling
+  // Lᵢ² ≤ excess / difference, by elimination of the largest or the smallest moment.
+  const double overLargest = std::max(0.0, twice - l2 * inverse[2]) + 1e-12 * twice;
+  const double underSmallest = std::max(0.0, l2 * inverse[0] - twice) + 1e-12 * l2 * inverse[0];
+  const auto least = [&](double excess, double difference)
+  { return excess < l2 * difference ? excess / difference : l2; };
+  const double l0 = least(overLargest, inverse[0] - inverse[2]);
+  const double l1 = std::min(
+    least(overLargest, inverse[1] - inverse[2]), least(underSmallest, inverse[0] - inverse[1]));
+  const double l3 = least(underSmallest, inverse[0] - inverse[2]);
+  return Vec3(std::sqrt(l0), std::sqrt(l1), std::sqrt(l3)).cwiseProduct(inverse);
+}
+
+double Block::largestRimSpeed(const Vec3& spin) const
+{
+  if (isotropic_)
+  {
+    return spin.norm() * shape_.radius();
+  }
+  const Vec3 bound = this->largestSpin(spin);
+  return std::min(bound.dot(reach_), bound.norm() * shape_.radius());
 }
 
 Mat3 strainTensor(const Vec6& e)

@@ -38,8 +38,13 @@ public:
   const Mat3& inverseInertia() const { return inverseInertia_; } ///< 1/(kg m²)
   /// All three principal moments equal (to 1e-9): free rotation is then steady.
   bool isotropic() const { return isotropic_; }
-  /// Largest 1/(effective mass) that a contact at a vertex can see: 1/m + r²/Imin, 1/kg.
+  /// Largest 1/(effective mass) that a contact at a vertex can see, 1/kg.
   double largestMobility() const { return largestMobility_; }
+  /// Bounds of |ωᵢ| about the principal axes, for ever in free rotation from `spin` (body axes), rad/s:
+  /// L² = Σ Lᵢ² and 2T = Σ Lᵢ² / Iᵢ are kept, and what the other two axes hold is not negative.
+  Vec3 largestSpin(const Vec3& spin) const;
+  /// No point of the block ever moves faster about the centroid than this in free rotation, m/s.
+  double largestRimSpeed(const Vec3& spin) const;
 
 private:
   Polyhedron shape_;
@@ -51,6 +56,8 @@ private:
   Mat3 inverseInertia_ = Mat3::Zero();
   bool isotropic_ = true;
   double largestMobility_ = 0.0;
+  Vec3 principal_ = Vec3::Ones(); ///< Principal moments, kg m².
+  Vec3 reach_ = Vec3::Zero();     ///< Largest distance of a vertex from each principal axis, m.
 };
 
 /// What of a block moves. Translation in world axes, strain in body axes.

@@ -31,8 +31,7 @@ void rotateFreely(const Block& block, BlockState& state, double duration)
     const Vec3 w = spinOf(q.normalized());
     return 0.5 * (q * Quat(0.0, w.x(), w.y(), w.z())).coeffs();
   };
-  // |W| can grow up to |L| / Imin on the way, so the step goes by that.
-  const double fastest = momentum.norm() * block.inverseInertia().norm();
+  const double fastest = block.largestSpin(state.spin).norm();
   const int steps = std::max(1, int(std::ceil(fastest * duration / 0.02)));
   const double h = duration / steps;
   Eigen::Vector4d q = state.orientation.coeffs();

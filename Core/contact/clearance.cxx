@@ -138,12 +138,8 @@ Clearance clearance(const PlacedBlock& rock, const BlockState& state, const Surf
   Clearance result;
   result.distance = std::numeric_limits<double>::infinity();
   result.time = horizon;
-  // |ω| is not constant for unequal moments, but bounded by |L| / Imin.
   const Block& block = rock.block();
-  const double spin = block.isotropic()
-    ? state.spin.norm()
-    : (block.inertia() * state.spin).norm() * block.inverseInertia().norm();
-  const Approach approach{ state.velocity, spin * block.radius(), gravity };
+  const Approach approach{ state.velocity, block.largestRimSpeed(state.spin), gravity };
   const Approach ball{ state.velocity, 0.0, gravity }; // the bounding sphere does not turn
   for (const SurfacePatch::Triangle& t : patch.triangles)
   {

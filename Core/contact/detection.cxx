@@ -100,15 +100,25 @@ void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch, double r
   for (std::size_t i = 0; i < contacts.size(); ++i)
   {
     Contact c = contacts[i];
-    if (!c.closed() || !refreshContact(rock, patch, c))
+    if (!c.closed())
     {
       continue;
     }
-    const bool twin = std::any_of(contacts.begin(), contacts.begin() + kept,
+    if (!refreshContact(rock, patch, c))
+    {
+      continue;
+    }
+    const auto twin = std::find_if(contacts.begin(), contacts.begin() + kept,
       [&](const Contact& other) { return samePlace(other, c); });
-    if (!twin)
+    if (twin == contacts.begin() + kept)
     {
       contacts[kept++] = c;
+    }
+    else
+    {
+      // Two have come to the same place: one spring with the energy of both.
+      twin->offset = twin->distance +
+        std::hypot(std::min(0.0, twin->gap()), std::min(0.0, c.gap()));
     }
   }
   contacts.resize(kept);

@@ -20,13 +20,18 @@ constexpr double kSmoothTurn = 0.5; // cosine
 /// 60° are equally deep lies within this of their common end.
 constexpr double kExtension = 2.0;
 
-/// Keeps the force continuous when a contact goes over to a neighbouring feature where it would be
-/// deeper; where it would be less deep the spring just gives way.
+/// A contact that has run off its feature with nothing there to take over lives on, on the feature's
+/// plane or line produced, while it has run off by less than this many times its compression: a spring
+/// that is dropped would take its energy with it.
+constexpr double kRunOff = 10.0;
+
+/// The spring keeps its compression, and so its force and energy, when a contact goes over to a
+/// neighbouring feature.
 void handOver(Contact& contact, double newDistance)
 {
   const double gap = contact.gap();
   contact.distance = newDistance;
-  contact.offset = std::min(0.0, newDistance - std::min(gap, 0.0));
+  contact.offset = newDistance - gap;
 }
 
 /// The same feature in the patch at hand; false if it is not in it.
@@ -117,6 +122,7 @@ bool refreshFaceVertex(const PlacedBlock& rock, const SurfacePatch& patch, Conta
 {
   const Polyhedron& shape = rock.block().shape();
   const Vec3& q = patch.nodes[contact.patchFeature].position;
+  const double compression = std::max(0.0, -contact.gap());
   contact.point = q;
   contact.distance = rock.faceDistance(contact.rockFeature, q);
   for (std::size_t f = 0; f < rock.normals().size(); ++f)
@@ -132,7 +138,7 @@ bool refreshFaceVertex(const PlacedBlock& rock, const SurfacePatch& patch, Conta
       contact.rockFeature = int(f);
       handOver(contact, d);
     }
-    else if (d > 0.0)
+    else if (d > kRunOff * compression)
     {
       return false; // left the rock through its side
     }
@@ -206,7 +212,7 @@ bool leaveBest(const PlacedBlock& rock, const SurfacePatch& patch, const Crossin
                        double beyond)
   {
     const bool tie = std::abs(distance - highest) <= same && beyond < bestBeyond;
-    if (normal.dot(contact.normal) < kSmoothTurn || !(distance > highest + same || tie))
+    if (normal.z() <= 0.0 || normal.dot(contact.normal) < kSmoothTurn || !(distance > highest + same || tie))
     {
       return;
     }
@@ -292,8 +298,15 @@ bool leaveBest(const PlacedBlock& rock, const SurfacePatch& patch, const Crossin
     contact.point = at.point;
     return true;
   }
+  if (std::isinf(highest) || highest > 0.0)
+  {
+    // Nothing takes it over: it goes on along the lines produced until its spring has given way.
+    contact.normal = at.normal;
+    contact.point = at.point;
+    return at.beyond() <= kRunOff * std::max(0.0, -contact.gap());
+  }
   contact = best;
-  return highest > -std::numeric_limits<double>::infinity() && highest <= 0.0;
+  return true;
 }
 
 bool refreshEdgeEdge(const PlacedBlock& rock, const SurfacePatch& patch, Contact& contact)
@@ -327,16 +340,24 @@ bool refreshContact(const PlacedBlock& rock, const SurfacePatch& patch, Contact&
   {
     return false;
   }
+  // The step has conserved energy with the gap that it predicted; what the turning of edges and faces
+  // makes different from it must not change the spring.
+  const double gap = contact.gap();
+  bool there = false;
   switch (contact.kind)
   {
     case ContactKind::VertexFace:
-      return refreshVertexFace(rock, patch, contact);
+      there = refreshVertexFace(rock, patch, contact);
+      break;
     case ContactKind::FaceVertex:
-      return refreshFaceVertex(rock, patch, contact);
+      there = refreshFaceVertex(rock, patch, contact);
+      break;
     case ContactKind::EdgeEdge:
-      return refreshEdgeEdge(rock, patch, contact);
+      there = refreshEdgeEdge(rock, patch, contact);
+      break;
   }
-  return false;
+  contact.offset = contact.distance - gap;
+  return there;
 }
 
 } // namespace rockfall

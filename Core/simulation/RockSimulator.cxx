@@ -90,10 +90,10 @@ void RockSimulator::advanceInFlight(double duration)
 {
   const BlockState start = state_;
   const double end = start.time + duration;
+  BlockState at = start;
   while (recorder_.nextTime() <= end)
   {
-    const BlockState at =
-      fly(block_, start, parameters_.gravity, std::max(0.0, recorder_.nextTime() - start.time));
+    at = fly(block_, at, parameters_.gravity, std::max(0.0, recorder_.nextTime() - at.time));
     recorder_.follow(at);
     recorder_.record(at, false);
   }
@@ -116,11 +116,11 @@ void RockSimulator::flyUntilNear()
       if (v != 0.0)
       {
         // A hair beyond, so that the edge is passed and not met for ever.
-        remaining = std::min(remaining, way / std::abs(v) + 1e-9);
+        remaining = std::min(remaining, (way + 1e-9 * block_.radius() + 1e-15 * extent[axis]) / std::abs(v));
       }
     }
-    const double speed =
-      state_.velocity.norm() + state_.spin.norm() * block_.radius() + parameters_.gravity * 0.01;
+    const double speed = state_.velocity.norm() + block_.largestRimSpeed(state_.spin) +
+      parameters_.gravity * 0.01;
     const double shortest = std::max(0.25 * block_.radius() / speed, 4.0 * this->impactStep());
     double duration = std::min(1.0, remaining);
     bool clear = this->clearFor(duration);

@@ -226,9 +226,12 @@ void RockSimulator::takeStep(double h, StepKind kind)
 
 void RockSimulator::pressOut(double h)
 {
+  // No more per step than half the weight's compression, or a stiff spring would throw the rock off.
+  const double way = std::min(
+    kPressOut * h, 0.5 * block_.mass() * parameters_.gravity / parameters_.normalPenalty);
   for (Contact& c : contacts_)
   {
-    c.offset = std::min(0.0, c.offset + kPressOut * h);
+    c.offset = c.offset < 0.0 ? std::min(0.0, c.offset + way) : std::max(0.0, c.offset - way);
   }
 }
 

@@ -60,6 +60,7 @@ void StepSolver::prepareRows(
     row.gap0 = c.gap();
     row.state = c.state;
     row.share = 1.0;
+    row.direction.setZero();
   }
 }
 
@@ -141,8 +142,13 @@ bool StepSolver::evaluate(const StepRequest& request, const Vec12& d)
       const double weight = (0.5 + 0.5 * damped) * row.share;
       const Eigen::Vector2d stretch = row.slip0 + weight * travel;
       const double length = stretch.norm();
-      if (request.shearPenalty * length <= limit)
+      // A slip that has reversed from one iteration to the next has passed through rest: it locks
+      // and is judged again, or the two directions would alternate for ever.
+      const bool reversed = row.direction.dot(stretch) < 0.0;
+      row.direction.setZero();
+      if (reversed || request.shearPenalty * length <= limit)
       {
+        changed = changed || reversed;
         state = ContactState::Locked;
         row.shearForce = -request.shearPenalty * stretch;
         row.shearStiffness = request.shearPenalty * weight * Eigen::Matrix2d::Identity();
@@ -153,6 +159,7 @@ bool StepSolver::evaluate(const StepRequest& request, const Vec12& d)
         // Radial return onto the Coulomb cone.
         state = ContactState::Sliding;
         const Eigen::Vector2d direction = stretch / length;
+        row.direction = direction;
         row.shearForce = -limit * direction;
         row.shearStiffness = (limit * weight / length) *
           (Eigen::Matrix2d::Identity() - direction * direction.transpose());

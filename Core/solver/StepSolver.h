@@ -88,6 +88,7 @@ private:
     Eigen::Matrix2d shearStiffness = Eigen::Matrix2d::Zero();
     Eigen::Vector2d shearCoupling = Eigen::Vector2d::Zero(); ///< −∂(shear)/∂(gap1)
     Eigen::Vector2d slip1 = Eigen::Vector2d::Zero();
+    Eigen::Vector2d direction = Eigen::Vector2d::Zero(); ///< Of the slip while it slides, else zero.
     ContactState state = ContactState::Open;
   };
 
