@@ -101,7 +101,7 @@ def save_series(simulation, times, path):
     for old in os.listdir(folder) if os.path.isdir(folder) else []:
         if old.endswith(".vtp"):
             os.remove(os.path.join(folder, old))
-    SaveData(path, proxy=series, WriteTimeSteps=1)
+    SaveData(path, proxy=series, WriteTimeSteps=1, DataMode="Binary")
     Delete(series)
 
 
@@ -153,7 +153,7 @@ def main():
     # The movie shows the time in which three of four rocks stop; the series ends with the last one.
     shown = np.linspace(0.0, np.percentile(summary["EndTime"], 75), max(chosen.frames, 2))
     save_series(simulation, np.append(shown, summary["EndTime"].max()), in_folder("rocks.pvd"))
-    SaveData(in_folder("trajectories.vtp"), proxy=OutputPort(simulation, 1))
+    SaveData(in_folder("trajectories.vtp"), proxy=OutputPort(simulation, 1), DataMode="Binary")
     scene = pictures.Scene(ground, simulation, paths, summary)
     scene.save_slope(in_folder("slope.vtp"))
     say(f"Time series: {len(shown) + 1} steps")

@@ -37,7 +37,7 @@ class Scene:
         self.slope = produce(ground.patch(*self.bounds, hillshade(self.light)))
 
     def save_slope(self, path):
-        SaveData(path, proxy=self.slope)
+        SaveData(path, proxy=self.slope, DataMode="Binary")
 
     def thinned(self, spacing):
         """Numbers of samples per rock that are some way apart: closer ones, of rocks that hardly

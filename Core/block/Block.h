@@ -4,8 +4,8 @@
 /// The 3D DDA block with its 12 first-order displacement variables (METHOD 1; Shi 2001).
 ///
 /// Every matrix here is written in body axes about the centroid, where inertia and elasticity are
-/// constant: the block turns exactly, and strain and stress turn with it, so that no volume is made by
-/// rotation (METHOD 10.3).
+/// constant: the block turns exactly, and strain and stress turn with it, so that no volume is made
+/// by rotation (METHOD 10.3).
 
 #include "base/types.h"
 #include "geometry/Polyhedron.h"
@@ -26,10 +26,13 @@ public:
   Block(Polyhedron shape, double density, double youngModulus, double poissonRatio);
 
   const Polyhedron& shape() const { return shape_; }
-  double mass() const { return mass_; }              ///< kg
+  double mass() const { return mass_; }                       ///< kg
   double volume() const { return shape_.integrals().volume; } ///< m³
-  double density() const { return density_; }        ///< kg/m³
-  double radius() const { return shape_.radius(); }  ///< Of the bounding sphere about the centroid, m.
+  double density() const { return density_; }                 ///< kg/m³
+  double radius() const
+  {
+    return shape_.radius();
+  } ///< Of the bounding sphere about the centroid, m.
   /// M = ρ ∫ Tᵀ T dV, 12 × 12, body axes.
   const Mat12& massMatrix() const { return massMatrix_; }
   /// V E, 6 × 6: strain energy ½ εᵀ (V E) ε with engineering shear strains, J.
@@ -40,8 +43,9 @@ public:
   bool isotropic() const { return isotropic_; }
   /// Largest 1/(effective mass) that a contact at a vertex can see, 1/kg.
   double largestMobility() const { return largestMobility_; }
-  /// Bounds of |ωᵢ| about the principal axes, for ever in free rotation from `spin` (body axes), rad/s:
-  /// L² = Σ Lᵢ² and 2T = Σ Lᵢ² / Iᵢ are kept, and what the other two axes hold is not negative.
+  /// Bounds of |ωᵢ| about the principal axes, for ever in free rotation from `spin` (body axes),
+  /// rad/s: L² = Σ Lᵢ² and 2T = Σ Lᵢ² / Iᵢ are kept, and what the other two axes hold is not
+  /// negative.
   Vec3 largestSpin(const Vec3& spin) const;
   /// No point of the block ever moves faster about the centroid than this in free rotation, m/s.
   double largestRimSpeed(const Vec3& spin) const;
@@ -77,8 +81,8 @@ struct BlockState
 /// The symmetric tensor of a strain vector with engineering shears.
 Mat3 strainTensor(const Vec6& strain);
 
-/// The row nᵀT of METHOD 1 for a direction n: J·D = n · (displacement). The lever of the rotation may
-/// differ from that of the strain (see the step solver). All in body axes.
+/// The row nᵀT of METHOD 1 for a direction n: J·D = n · (displacement). The lever of the rotation
+/// may differ from that of the strain (see the step solver). All in body axes.
 inline Vec12 displacementRow(const Vec3& n, const Vec3& rotationLever, const Vec3& x)
 {
   Vec12 row;

@@ -39,9 +39,9 @@ struct Contact
   Vec3 point = Vec3::Zero();       ///< Where the rock touches, world, m.
   /// EdgeEdge: a point of the ridge and its direction, world.
   std::array<Vec3, 2> ridge = { Vec3::Zero(), Vec3::Zero() };
-  double distance = 0.0;           ///< Signed geometric gap along the normal, m; < 0 penetrates.
-  /// A pair that is found already overlapping carries no force at the overlap it was found with (≤ 0),
-  /// so that finding it makes no energy; m.
+  double distance = 0.0; ///< Signed geometric gap along the normal, m; < 0 penetrates.
+  /// A pair that is found already overlapping carries no force at the overlap it was found with (≤
+  /// 0), so that finding it makes no energy; m.
   double offset = 0.0;
   Vec3 slip = Vec3::Zero(); ///< s₀, elongation of the shear spring, world, m.
   double normalForce = 0.0; ///< Mean over the last step, N.
@@ -88,26 +88,26 @@ private:
   Vec3 upper_ = Vec3::Zero();
 };
 
-/// Brings the closed contacts of the last step to where the rock stands now, hands them over between
-/// neighbouring features, and adds every pair that can close within `reach` (m).
+/// Brings the closed contacts of the last step to where the rock stands now, hands them over
+/// between neighbouring features, and adds every pair that can close within `reach` (m).
 ///
 /// A pair enters only through a valid configuration, with the normal inside both features' normal
-/// cones and the projection inside both features, at a gap of about zero; once closed it stays, whatever the
-/// cones say, until it opens: the entrance is the physically first one and does not flip (METHOD
-/// 10.6). Flat and concave edges of the slope are no features, so a smooth plane cut into many CFEs
-/// gives the contacts of one (METHOD 10.5).
-void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch, double reach,
-  std::vector<Contact>& contacts);
+/// cones and the projection inside both features, at a gap of about zero; once closed it stays,
+/// whatever the cones say, until it opens: the entrance is the physically first one and does not
+/// flip (METHOD 10.6). Flat and concave edges of the slope are no features, so a smooth plane cut
+/// into many CFEs gives the contacts of one (METHOD 10.5).
+void updateContacts(
+  const PlacedBlock& rock, const SurfacePatch& patch, double reach, std::vector<Contact>& contacts);
 
 /// The net under the entrance rules: every vertex of the rock that is under the slope by more than
-/// `allowed` (m), and every peak as deep inside the rock, gets a contact that carries no force at the
-/// overlap it is found with and resists any further one, unless it has a contact already.
+/// `allowed` (m), and every peak as deep inside the rock, gets a contact that carries no force at
+/// the overlap it is found with and resists any further one, unless it has a contact already.
 void holdOverlap(const PlacedBlock& rock, const SurfacePatch& patch, double allowed,
   std::vector<Contact>& contacts);
 
 /// The same entrance rules by brute force over all pairs, without pruning: the oracle of the tests.
-void findEntrancesBruteForce(const PlacedBlock& rock, const SurfacePatch& patch, double reach,
-  std::vector<Contact>& contacts);
+void findEntrancesBruteForce(
+  const PlacedBlock& rock, const SurfacePatch& patch, double reach, std::vector<Contact>& contacts);
 
 /// How far a rock is from touching.
 struct Clearance
@@ -116,14 +116,15 @@ struct Clearance
   double time = 0.0;     ///< Lower bound of the time to the first touch in free flight, s.
 };
 
-/// Conservative: per CFE the best of the separating axes (its normal, the world axes, the faces of the rock, the
-/// cross products of edges: complete for convex bodies). A fixed axis n is approached no faster than
-/// |ω| r − n·v plus gravity. Times beyond `horizon` (s) are not told apart, which spares most of the
-/// axes.
+/// Conservative: per CFE the best of the separating axes (its normal, the world axes, the faces of
+/// the rock, the cross products of edges: complete for convex bodies). A fixed axis n is approached
+/// no faster than |ω| r − n·v plus gravity. Times beyond `horizon` (s) are not told apart, which
+/// spares most of the axes.
 Clearance clearance(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
   double gravity, double horizon);
 
-/// Deepest penetration of the rock's vertices under the patch and of its peaks into the rock, m, ≥ 0.
+/// Deepest penetration of the rock's vertices under the patch and of its peaks into the rock, m, ≥
+/// 0.
 double penetration(const PlacedBlock& rock, const SurfacePatch& patch);
 
 } // namespace rockfall

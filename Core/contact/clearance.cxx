@@ -81,8 +81,9 @@ Separation separate(const PlacedBlock& rock, const std::array<Vec3, 3>& q,
     }
     return d;
   };
-  const auto highestAlong = [&](const Vec3& n)
-  { return std::max({ n.dot(q[0]), n.dot(q[1]), n.dot(q[2]) }); };
+  const auto highestAlong = [&](const Vec3& n) {
+    return std::max({ n.dot(q[0]), n.dot(q[1]), n.dot(q[2]) });
+  };
   best.improve(approach, t.normal, lowestAlong(t.normal) - t.offset);
   if (best.time >= horizon)
   {
@@ -165,8 +166,8 @@ Clearance clearance(const PlacedBlock& rock, const BlockState& state, const Surf
 namespace
 {
 
-/// Calls visit(vertex, triangle, distance) for every rock vertex straight above or below a triangle,
-/// and visit of a peak with the face of the rock that it is least deep under.
+/// Calls visit(vertex, triangle, distance) for every rock vertex straight above or below a
+/// triangle, and visit of a peak with the face of the rock that it is least deep under.
 template <typename Vertex, typename Peak>
 void visitOverlaps(
   const PlacedBlock& rock, const SurfacePatch& patch, Vertex&& onVertex, Peak&& onPeak)
@@ -260,7 +261,8 @@ void holdOverlap(const PlacedBlock& rock, const SurfacePatch& patch, double allo
       c.normal = -rock.normals()[onRock];
       c.point = patch.nodes[onPatch].position;
     }
-    const bool known = std::any_of(contacts.begin(), contacts.end(), [&](const Contact& o)
+    const bool known = std::any_of(contacts.begin(), contacts.end(),
+      [&](const Contact& o)
       {
         return o.kind == c.kind &&
           (c.kind == ContactKind::VertexFace ? o.rockFeature == c.rockFeature

@@ -15,8 +15,7 @@ namespace
 
 bool samePlace(const Contact& a, const Contact& b)
 {
-  return a.kind == b.kind && a.rockFeature == b.rockFeature &&
-    a.surfaceFeature == b.surfaceFeature;
+  return a.kind == b.kind && a.rockFeature == b.rockFeature && a.surfaceFeature == b.surfaceFeature;
 }
 
 /// Whether two ridges are pieces of one straight one.
@@ -51,7 +50,8 @@ void admit(const SurfacePatch& patch, Contact candidate, std::vector<Contact>& c
     {
       continue;
     }
-    // The same vertex on two triangles: both count across a valley, one across a ridge or a flat edge.
+    // The same vertex on two triangles: both count across a valley, one across a ridge or a flat
+    // edge.
     const SurfacePatch::Triangle& t = patch.triangles[candidate.patchFeature];
     bool valley = false, adjacent = false;
     for (int k = 0; k < 3; ++k)
@@ -92,8 +92,8 @@ bool boxesMeet(const Vec3& lower, const Vec3& upper, const Vec3& a, const Vec3& 
 
 } // namespace
 
-void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch, double reach,
-  std::vector<Contact>& contacts)
+void updateContacts(
+  const PlacedBlock& rock, const SurfacePatch& patch, double reach, std::vector<Contact>& contacts)
 {
   // What carries stays, as long as it is somewhere.
   std::size_t kept = 0;
@@ -117,8 +117,8 @@ void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch, double r
     else
     {
       // Two have come to the same place: one spring with the energy of both.
-      twin->offset = twin->distance +
-        std::hypot(std::min(0.0, twin->gap()), std::min(0.0, c.gap()));
+      twin->offset =
+        twin->distance + std::hypot(std::min(0.0, twin->gap()), std::min(0.0, c.gap()));
     }
   }
   contacts.resize(kept);
@@ -208,8 +208,8 @@ void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch, double r
   }
 }
 
-void findEntrancesBruteForce(const PlacedBlock& rock, const SurfacePatch& patch, double reach,
-  std::vector<Contact>& contacts)
+void findEntrancesBruteForce(
+  const PlacedBlock& rock, const SurfacePatch& patch, double reach, std::vector<Contact>& contacts)
 {
   const Polyhedron& shape = rock.block().shape();
   for (int i = 0; i < int(patch.triangles.size()); ++i)

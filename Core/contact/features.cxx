@@ -162,7 +162,8 @@ std::optional<Contact> faceVertex(
   return c;
 }
 
-bool closestOnLines(const Vec3& p, const Vec3& u, const Vec3& q, const Vec3& w, double& s, double& t)
+bool closestOnLines(
+  const Vec3& p, const Vec3& u, const Vec3& q, const Vec3& w, double& s, double& t)
 {
   const double a = u.squaredNorm(), b = u.dot(w), c = w.squaredNorm();
   const double determinant = a * c - b * b;

@@ -10,14 +10,14 @@
 namespace rockfall
 {
 
-/// Slack of the normal cones, sine of an angle: a normal that leaves a cone by less than a degree is
-/// still a good direction, and pairs do not get lost between two cones by rounding or by the small
-/// penetration of the pairs that already carry.
+/// Slack of the normal cones, sine of an angle: a normal that leaves a cone by less than a degree
+/// is still a good direction, and pairs do not get lost between two cones by rounding or by the
+/// small penetration of the pairs that already carry.
 constexpr double kConeSlack = 0.02;
 
-/// Whether the projection of a point on the triangle's plane lies inside it. Beyond a concave edge the
-/// plane is still a valid constraint and is extended by `reach`; so a vertex that runs into a valley
-/// meets the other side in the step in which it gets there.
+/// Whether the projection of a point on the triangle's plane lies inside it. Beyond a concave edge
+/// the plane is still a valid constraint and is extended by `reach`; so a vertex that runs into a
+/// valley meets the other side in the step in which it gets there.
 bool projectsInside(
   const SurfacePatch& patch, int triangle, const Vec3& point, double reach, double tolerance);
 
@@ -44,7 +44,8 @@ bool inEdgeCones(const PlacedBlock& rock, int edge, const SurfacePatch& patch, i
 void setRidge(const SurfacePatch& patch, int ridge, Contact& contact);
 
 /// Closest points of two lines p + s u, q + t w; false if they are nearly parallel (sine < 1e-4).
-bool closestOnLines(const Vec3& p, const Vec3& u, const Vec3& q, const Vec3& w, double& s, double& t);
+bool closestOnLines(
+  const Vec3& p, const Vec3& u, const Vec3& q, const Vec3& w, double& s, double& t);
 
 /// Whether a world point over or under a face of the rock projects inside its polygon.
 bool insideRockFace(const PlacedBlock& rock, int face, const Vec3& world, double tolerance);

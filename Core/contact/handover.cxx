@@ -12,17 +12,18 @@ namespace rockfall
 namespace
 {
 
-/// Across an edge that bends by less than this the nearer of the two planes is the exit: the depth is
-/// then continuous when a vertex crosses the edge. Across a sharper edge the exit stays the entrance.
+/// Across an edge that bends by less than this the nearer of the two planes is the exit: the depth
+/// is then continuous when a vertex crosses the edge. Across a sharper edge the exit stays the
+/// entrance.
 constexpr double kSmoothTurn = 0.5; // cosine
 
-/// How far past its end an edge may serve, in depths of the overlap: where two exits that meet under
-/// 60° are equally deep lies within this of their common end.
+/// How far past its end an edge may serve, in depths of the overlap: where two exits that meet
+/// under 60° are equally deep lies within this of their common end.
 constexpr double kExtension = 2.0;
 
-/// A contact that has run off its feature with nothing there to take over lives on, on the feature's
-/// plane or line produced, while it has run off by less than this many times its compression: a spring
-/// that is dropped would take its energy with it.
+/// A contact that has run off its feature with nothing there to take over lives on, on the
+/// feature's plane or line produced, while it has run off by less than this many times its
+/// compression: a spring that is dropped would take its energy with it.
 constexpr double kRunOff = 10.0;
 
 /// The spring keeps its compression, and so its force and energy, when a contact goes over to a
@@ -165,8 +166,8 @@ struct Crossing
   }
 };
 
-Crossing crossing(const PlacedBlock& rock, int edge, const SurfacePatch& patch, int ridge,
-  const Vec3& towards)
+Crossing crossing(
+  const PlacedBlock& rock, int edge, const SurfacePatch& patch, int ridge, const Vec3& towards)
 {
   const Polyhedron::Edge& e = rock.block().shape().edges()[edge];
   const SurfacePatch::Ridge& g = patch.ridges[ridge];
@@ -191,13 +192,13 @@ Crossing crossing(const PlacedBlock& rock, int edge, const SurfacePatch& patch, 
   return c;
 }
 
-/// The way out of an overlap at an edge–edge contact. The pairs of the ridge's wedge with the edges and
-/// vertices of the rock around it are faces of one Minkowski difference of convex bodies; the one that
-/// is least deep is the shortest exit and takes the load over as soon as it is no deeper than
-/// the old one, so that the depth is continuous. Until then the old crossing serves, even somewhat past
-/// the end of its edge.
-bool leaveBest(const PlacedBlock& rock, const SurfacePatch& patch, const Crossing& at,
-  Contact& contact)
+/// The way out of an overlap at an edge–edge contact. The pairs of the ridge's wedge with the edges
+/// and vertices of the rock around it are faces of one Minkowski difference of convex bodies; the
+/// one that is least deep is the shortest exit and takes the load over as soon as it is no deeper
+/// than the old one, so that the depth is continuous. Until then the old crossing serves, even
+/// somewhat past the end of its edge.
+bool leaveBest(
+  const PlacedBlock& rock, const SurfacePatch& patch, const Crossing& at, Contact& contact)
 {
   const Polyhedron& shape = rock.block().shape();
   const Polyhedron::Edge& e = shape.edges()[contact.rockFeature];
@@ -212,7 +213,8 @@ bool leaveBest(const PlacedBlock& rock, const SurfacePatch& patch, const Crossin
                        double beyond)
   {
     const bool tie = std::abs(distance - highest) <= same && beyond < bestBeyond;
-    if (normal.z() <= 0.0 || normal.dot(contact.normal) < kSmoothTurn || !(distance > highest + same || tie))
+    if (normal.z() <= 0.0 || normal.dot(contact.normal) < kSmoothTurn ||
+      !(distance > highest + same || tie))
     {
       return;
     }
@@ -268,8 +270,8 @@ bool leaveBest(const PlacedBlock& rock, const SurfacePatch& patch, const Crossin
   }
   if (at.t < 0.0 || at.t > 1.0)
   {
-    // Other features of the slope only where this one ends: around a saddle a ridge that is clear of
-    // the rock says nothing of its neighbour.
+    // Other features of the slope only where this one ends: around a saddle a ridge that is clear
+    // of the rock says nothing of its neighbour.
     const int node = g.nodes[at.t < 0.0 ? 0 : 1];
     for (int i = 0; i < int(patch.ridges.size()); ++i)
     {
@@ -340,8 +342,8 @@ bool refreshContact(const PlacedBlock& rock, const SurfacePatch& patch, Contact&
   {
     return false;
   }
-  // The step has conserved energy with the gap that it predicted; what the turning of edges and faces
-  // makes different from it must not change the spring.
+  // The step has conserved energy with the gap that it predicted; what the turning of edges and
+  // faces makes different from it must not change the spring.
   const double gap = contact.gap();
   bool there = false;
   switch (contact.kind)

@@ -9,9 +9,9 @@ namespace rockfall
 {
 
 /// Brings a closed contact to where the rock stands now: distance, normal, point. Where it has come
-/// to the end of its feature it goes over to the neighbouring one, with its slip and without a jump of
-/// force towards more. Returns false if it is gone: over the edge of the slope, or past its feature with
-/// nothing there to take over.
+/// to the end of its feature it goes over to the neighbouring one, with its slip and without a jump
+/// of force towards more. Returns false if it is gone: over the edge of the slope, or past its
+/// feature with nothing there to take over.
 bool refreshContact(const PlacedBlock& rock, const SurfacePatch& patch, Contact& contact);
 
 } // namespace rockfall

@@ -64,8 +64,9 @@ void Recorder::recordBetween(const BlockState& from, const BlockState& to, bool 
     const double s2 = s * s, s3 = s2 * s;
     BlockState between = to;
     between.time = this->nextTime();
-    between.position = (2 * s3 - 3 * s2 + 1) * from.position + (s3 - 2 * s2 + s) * h * from.velocity +
-      (3 * s2 - 2 * s3) * to.position + (s3 - s2) * h * to.velocity;
+    between.position = (2 * s3 - 3 * s2 + 1) * from.position +
+      (s3 - 2 * s2 + s) * h * from.velocity + (3 * s2 - 2 * s3) * to.position +
+      (s3 - s2) * h * to.velocity;
     between.velocity = (1.0 - s) * from.velocity + s * to.velocity;
     between.spin = (1.0 - s) * from.spin + s * to.spin;
     between.orientation = from.orientation.slerp(s, to.orientation);

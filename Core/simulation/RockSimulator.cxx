@@ -12,8 +12,8 @@ namespace rockfall
 namespace
 {
 
-/// Steps per half period of a vertex on its penalty spring: the impact is then resolved well enough for
-/// the order in which several vertices touch, and energy does not depend on it at all.
+/// Steps per half period of a vertex on its penalty spring: the impact is then resolved well enough
+/// for the order in which several vertices touch, and energy does not depend on it at all.
 constexpr double kStepsPerImpact = 10.0;
 /// Largest part of the rock's radius, and largest angle (rad), covered in a step of contact.
 constexpr double kTravelPerStep = 0.1;
@@ -116,11 +116,12 @@ void RockSimulator::flyUntilNear()
       if (v != 0.0)
       {
         // A hair beyond, so that the edge is passed and not met for ever.
-        remaining = std::min(remaining, (way + 1e-9 * block_.radius() + 1e-15 * extent[axis]) / std::abs(v));
+        remaining =
+          std::min(remaining, (way + 1e-9 * block_.radius() + 1e-15 * extent[axis]) / std::abs(v));
       }
     }
-    const double speed = state_.velocity.norm() + block_.largestRimSpeed(state_.spin) +
-      parameters_.gravity * 0.01;
+    const double speed =
+      state_.velocity.norm() + block_.largestRimSpeed(state_.spin) + parameters_.gravity * 0.01;
     const double shortest = std::max(0.25 * block_.radius() / speed, 4.0 * this->impactStep());
     double duration = std::min(1.0, remaining);
     bool clear = this->clearFor(duration);
@@ -134,8 +135,7 @@ void RockSimulator::flyUntilNear()
       duration = std::min(shortest, remaining);
       placed_.place(block_, state_);
       this->ensurePatch(speed * duration + parameters_.gravity * duration * duration);
-      const Clearance gap =
-        clearance(placed_, state_, patch_, parameters_.gravity, duration);
+      const Clearance gap = clearance(placed_, state_, patch_, parameters_.gravity, duration);
       if (gap.time < std::min(duration, this->impactStep()))
       {
         return;
@@ -153,7 +153,8 @@ void RockSimulator::checkEnd(double h)
   const Terrain& terrain = surface_.terrain();
   const Vec3& p = state_.position;
   const double r = block_.radius();
-  bool left = !(p.x() >= 0.0 && p.y() >= 0.0 && p.x() <= terrain.width() && p.y() <= terrain.height());
+  bool left =
+    !(p.x() >= 0.0 && p.y() >= 0.0 && p.x() <= terrain.width() && p.y() <= terrain.height());
   if (!left && terrain.cfeAt(p.x(), p.y()) == 0)
   {
     // Over a hole it has left once it is below everything around.
@@ -210,14 +211,13 @@ Trajectory RockSimulator::run()
   summary.stop = state_.position;
   summary.endTime = state_.time;
   summary.runOut = (state_.position - summary.start).head<2>().norm();
-  const double potential =
-    block_.mass() * parameters_.gravity * state_.position.z();
+  const double potential = block_.mass() * parameters_.gravity * state_.position.z();
   energy_.kinetic = kineticEnergy(block_, state_);
   energy_.strain = strainEnergy(block_, state_) + springEnergy_;
   energy_.released = before - potential;
   energy_.numerical = energy_.released -
-    (energy_.kinetic + energy_.strain + energy_.friction + energy_.restitution +
-      energy_.vibration + energy_.damping);
+    (energy_.kinetic + energy_.strain + energy_.friction + energy_.restitution + energy_.vibration +
+      energy_.damping);
   summary.energy = energy_;
   return std::move(recorder_.trajectory());
 }

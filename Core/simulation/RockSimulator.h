@@ -1,12 +1,12 @@
 #pragma once
 
 /// @file
-/// One rock on one realisation of the slope, from release to rest: flight in closed form, contact in
-/// steps, restitution as events.
+/// One rock on one realisation of the slope, from release to rest: flight in closed form, contact
+/// in steps, restitution as events.
 
 #include "contact/Contact.h"
-#include "simulation/ensemble.h"
 #include "simulation/Recorder.h"
+#include "simulation/ensemble.h"
 #include "solver/StepSolver.h"
 
 #include <vector>
@@ -45,7 +45,7 @@ private:
   // Contact, contactPhase.cxx
   void stayInContact(); ///< Returns after take-off, or at the end.
   void takeStep(double h, StepKind kind);
-  bool isCalm() const; ///< What carries neither comes nor goes.
+  bool isCalm() const;          ///< What carries neither comes nor goes.
   bool mayLast(double h) const; ///< A long, damped step is right.
   void pressOut(double h);
   void followImpact(const BlockState& start, double h);

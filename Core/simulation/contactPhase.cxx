@@ -34,8 +34,7 @@ std::uint64_t carriers(const std::vector<Contact>& contacts)
 
 bool anyClosed(const std::vector<Contact>& contacts)
 {
-  return std::any_of(
-    contacts.begin(), contacts.end(), [](const Contact& c) { return c.closed(); });
+  return std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.closed(); });
 }
 
 } // namespace
@@ -73,8 +72,8 @@ bool RockSimulator::mayLast(double h) const
 
 bool RockSimulator::isCalm() const
 {
-  // At the turning point of an impact nothing moves either, but the springs hold its energy; at rest
-  // they hold the weight's, ½ m v² with v = g √(m/p), several times that when the rock rolls.
+  // At the turning point of an impact nothing moves either, but the springs hold its energy; at
+  // rest they hold the weight's, ½ m v² with v = g √(m/p), several times that when the rock rolls.
   const double settled = restingSpeed_ +
     4.0 * parameters_.gravity * std::sqrt(block_.mass() / parameters_.normalPenalty);
   if (normalEnergy_ > 0.5 * block_.mass() * settled * settled)
@@ -117,21 +116,20 @@ void RockSimulator::stayInContact()
     }
     if (contacts_.empty())
     {
-      const Clearance gap =
-        clearance(placed_, state_, patch_, parameters_.gravity, 2.0 * small);
+      const Clearance gap = clearance(placed_, state_, patch_, parameters_.gravity, 2.0 * small);
       if (gap.time > small)
       {
         return;
       }
     }
-    // What carries may be pressed in, and its neighbourhood with it; anything deeper slipped through.
+    // What carries may be pressed in, and its neighbourhood with it; anything deeper slipped
+    // through.
     double pressed = 0.0;
     for (const Contact& c : contacts_)
     {
       pressed = std::max(pressed, -c.distance);
     }
-    holdOverlap(
-      placed_, patch_, kLooseOverlap * block_.radius() + 2.0 * pressed, contacts_);
+    holdOverlap(placed_, patch_, kLooseOverlap * block_.radius() + 2.0 * pressed, contacts_);
     this->takeStep(std::max(h, 1e-12), kind);
     this->checkEnd(state_.time - before_.time);
   }
@@ -189,8 +187,8 @@ void RockSimulator::takeStep(double h, StepKind kind)
   {
     energy_.damping +=
       energyBefore - this->mechanicalEnergy() - springEnergy_ - outcome.frictionWork;
-    // The lag of the next lasting step. What an impact left is no acceleration to go on with, nor is
-    // that under other contacts: a rock that rattles would be fed by it.
+    // The lag of the next lasting step. What an impact left is no acceleration to go on with, nor
+    // is that under other contacts: a rock that rattles would be fed by it.
     const double bound = 3.0 * parameters_.gravity;
     const std::uint64_t carrying = carriers(contacts_);
     const bool same = carrying == carrying_;
@@ -226,9 +224,10 @@ void RockSimulator::takeStep(double h, StepKind kind)
 
 void RockSimulator::pressOut(double h)
 {
-  // No more per step than half the weight's compression, or a stiff spring would throw the rock off.
-  const double way = std::min(
-    kPressOut * h, 0.5 * block_.mass() * parameters_.gravity / parameters_.normalPenalty);
+  // No more per step than half the weight's compression, or a stiff spring would throw the rock
+  // off.
+  const double way =
+    std::min(kPressOut * h, 0.5 * block_.mass() * parameters_.gravity / parameters_.normalPenalty);
   for (Contact& c : contacts_)
   {
     c.offset = c.offset < 0.0 ? std::min(0.0, c.offset + way) : std::max(0.0, c.offset - way);
@@ -291,8 +290,8 @@ void RockSimulator::finishImpact()
     return;
   }
   event.impulse = impact_.normalImpulse.norm();
-  event.normal = event.impulse > 0.0 ? Vec3(impact_.normalImpulse / event.impulse)
-                                     : Vec3(Vec3::UnitZ());
+  event.normal =
+    event.impulse > 0.0 ? Vec3(impact_.normalImpulse / event.impulse) : Vec3(Vec3::UnitZ());
   event.restitution = surface_.restitution();
   const double before = kineticEnergy(block_, state_);
   state_.velocity = applyRestitution(

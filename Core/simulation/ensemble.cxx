@@ -38,7 +38,8 @@ void checkPlacement(const Terrain& terrain, const Rock& rock, const Block& block
   if (terrain.cfeAt(rock.position.x(), rock.position.y()) == 0)
   {
     const GridGeometry& g = terrain.geometry();
-    throw PlacementError(name + " is outside the slope: there is no CFE under it (the slope spans x " +
+    throw PlacementError(name +
+      " is outside the slope: there is no CFE under it (the slope spans x " +
       std::to_string(g.xOrigin) + " to " + std::to_string(g.xOrigin + terrain.width()) + ", y " +
       std::to_string(g.yOrigin) + " to " + std::to_string(g.yOrigin + terrain.height()) + ")");
   }
@@ -54,8 +55,8 @@ void checkPlacement(const Terrain& terrain, const Rock& rock, const Block& block
   const double depth = penetration(placed, patch);
   if (depth > kLaidDown * block.radius())
   {
-    throw PlacementError(name + " starts inside the slope, by " + std::to_string(depth) +
-      " m; raise its centre");
+    throw PlacementError(
+      name + " starts inside the slope, by " + std::to_string(depth) + " m; raise its centre");
   }
 }
 

@@ -18,9 +18,9 @@ namespace rockfall
 struct Rock
 {
   std::int64_t blockId = 0;
-  Polyhedron shape;                    ///< Centroid at the origin, body axes = world axes at release
-                                       ///< when `orientation` is the identity, m.
-  Vec3 position = Vec3::Zero();        ///< Centroid in the terrain's local frame, m.
+  Polyhedron shape;             ///< Centroid at the origin, body axes = world axes at release
+                                ///< when `orientation` is the identity, m.
+  Vec3 position = Vec3::Zero(); ///< Centroid in the terrain's local frame, m.
   Quat orientation = Quat::Identity(); ///< Body to world.
   Vec3 velocity = Vec3::Zero();        ///< m/s
   Vec3 angularVelocity = Vec3::Zero(); ///< World axes, rad/s.
@@ -31,8 +31,8 @@ struct Rock
   void validate() const; ///< Throws ParameterError naming block, field and value.
 };
 
-/// Receives finished trajectories. `consume` is called once per rock and iteration, from one thread at
-/// a time but in any order.
+/// Receives finished trajectories. `consume` is called once per rock and iteration, from one thread
+/// at a time but in any order.
 class TrajectorySink
 {
 public:

@@ -17,7 +17,8 @@ enum class RestitutionModel
 
 struct SimulationParameters
 {
-  double timeStep = 0.005;      ///< Δt of lasting contact, s, > 0. Impacts are resolved finer by themselves.
+  double timeStep =
+    0.005; ///< Δt of lasting contact, s, > 0. Impacts are resolved finer by themselves.
   double endTime = 60.0;        ///< s, > 0.
   double outputInterval = 0.05; ///< Between samples, s, > 0. Does not change the motion.
   double gravity = 9.81;        ///< m/s², ≥ 0.

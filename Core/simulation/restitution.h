@@ -10,10 +10,11 @@
 namespace rockfall
 {
 
-/// Whether a touch is an impact, to be slowed by Rv, or part of sliding, rolling and lying, which are
-/// not: it is one if the contact point came in faster than `restingSpeed` and either as fast as from
-/// a drop of 5 % of the rock's radius or at more than 11.5° (one fifth of the rock's speed). A
-/// sphere-like polyhedron with 1280 faces that rolls sets its next vertex down at 0.14 of its speed.
+/// Whether a touch is an impact, to be slowed by Rv, or part of sliding, rolling and lying, which
+/// are not: it is one if the contact point came in faster than `restingSpeed` and either as fast as
+/// from a drop of 5 % of the rock's radius or at more than 11.5° (one fifth of the rock's speed). A
+/// sphere-like polyhedron with 1280 faces that rolls sets its next vertex down at 0.14 of its
+/// speed.
 inline bool isImpact(
   double approachSpeed, double speed, double restingSpeed, double gravity, double radius)
 {

@@ -15,14 +15,14 @@ namespace rockfall
 /// The state of a rock at one time (METHOD 8).
 struct Sample
 {
-  double time = 0.0;                       ///< s
-  Vec3 position = Vec3::Zero();            ///< Centroid, m.
-  Quat orientation = Quat::Identity();     ///< Body to world.
-  Vec3 velocity = Vec3::Zero();            ///< Vx, Vy, Vz, m/s.
-  Vec3 angularVelocity = Vec3::Zero();     ///< Ryz, Rzx, Rxy: about x, y, z, rad/s.
-  double kineticEnergy = 0.0;              ///< Translation and rotation, J.
-  double heightOverGround = 0.0;           ///< Least height of a vertex over the ground under it, m.
-  bool contact = false;                    ///< Touching the slope.
+  double time = 0.0;                   ///< s
+  Vec3 position = Vec3::Zero();        ///< Centroid, m.
+  Quat orientation = Quat::Identity(); ///< Body to world.
+  Vec3 velocity = Vec3::Zero();        ///< Vx, Vy, Vz, m/s.
+  Vec3 angularVelocity = Vec3::Zero(); ///< Ryz, Rzx, Rxy: about x, y, z, rad/s.
+  double kineticEnergy = 0.0;          ///< Translation and rotation, J.
+  double heightOverGround = 0.0;       ///< Least height of a vertex over the ground under it, m.
+  bool contact = false;                ///< Touching the slope.
 };
 
 /// One impact: the rock came from flight, touched, and left or settled.
@@ -36,8 +36,8 @@ struct ImpactEvent
   double approachSpeed = 0.0;   ///< Of the contact point along the normal, m/s.
   Vec3 velocityBefore = Vec3::Zero();
   Vec3 velocityAfter = Vec3::Zero();
-  double energyLoss = 0.0;      ///< By friction and restitution, J.
-  double restitution = 1.0;     ///< The coefficient that was applied.
+  double energyLoss = 0.0;  ///< By friction and restitution, J.
+  double restitution = 1.0; ///< The coefficient that was applied.
 };
 
 enum class Fate
@@ -72,17 +72,17 @@ struct TrajectorySummary
   double endTime = 0.0; ///< When it rested, left or was cut off, s.
   Vec3 start = Vec3::Zero();
   Vec3 stop = Vec3::Zero();
-  double runOut = 0.0;            ///< Horizontal distance from start to stop, m.
-  double pathLength = 0.0;        ///< m
-  double maxSpeed = 0.0;          ///< m/s
-  double maxKineticEnergy = 0.0;  ///< J
+  double runOut = 0.0;              ///< Horizontal distance from start to stop, m.
+  double pathLength = 0.0;          ///< m
+  double maxSpeed = 0.0;            ///< m/s
+  double maxKineticEnergy = 0.0;    ///< J
   double maxHeightOverGround = 0.0; ///< m
-  double mass = 0.0;              ///< kg
-  double volume = 0.0;            ///< m³
+  double mass = 0.0;                ///< kg
+  double volume = 0.0;              ///< m³
   int impacts = 0;
-  std::int64_t contactSteps = 0;  ///< Steps solved in contact.
+  std::int64_t contactSteps = 0; ///< Steps solved in contact.
   std::int64_t openCloseIterations = 0;
-  std::int64_t cutSteps = 0;      ///< Steps redone with a smaller Δt.
+  std::int64_t cutSteps = 0;       ///< Steps redone with a smaller Δt.
   std::int64_t unsettledSteps = 0; ///< Steps taken although open–close had not settled.
   EnergyAudit energy;
 };
@@ -91,7 +91,7 @@ struct TrajectorySummary
 struct Trajectory
 {
   TrajectorySummary summary;
-  std::vector<Sample> samples;     ///< At multiples of the output interval, then the end.
+  std::vector<Sample> samples; ///< At multiples of the output interval, then the end.
   std::vector<ImpactEvent> impacts;
 };
 

@@ -64,8 +64,7 @@ void StepSolver::prepareRows(
   }
 }
 
-void StepSolver::levers(
-  const Block& block, const std::vector<Contact>& contacts, const Vec12& d)
+void StepSolver::levers(const Block& block, const std::vector<Contact>& contacts, const Vec12& d)
 {
   const Vec3 u = d.head<3>();
   const Vec3 r = d.segment<3>(kRotation);
@@ -197,8 +196,7 @@ StepOutcome StepSolver::step(const Block& block, const StepRequest& request,
   Mat12 inert = (rate / h) * mass;
   inert.block<6, 6>(kStrain, kStrain) += stress * block.elasticity();
   Vec12 force = mass * (velocity0 - offset) / h;
-  force.head<3>() -=
-    (block.mass() * request.gravity) * Vec3(rotation_.transpose() * Vec3::UnitZ());
+  force.head<3>() -= (block.mass() * request.gravity) * Vec3(rotation_.transpose() * Vec3::UnitZ());
   force.segment<6>(kStrain) -= block.elasticity() * state.strain;
 
   // First guess: free flight.
@@ -216,7 +214,8 @@ StepOutcome StepSolver::step(const Block& block, const StepRequest& request,
   {
     matrix_ = inert;
     load_ = force;
-    // The momentum of rotation is carried to the end of the step: R₁ p₁ − R₀ p₀ = h τ (METHOD 10.4).
+    // The momentum of rotation is carried to the end of the step: R₁ p₁ − R₀ p₀ = h τ
+    // (METHOD 10.4).
     const Vec12 velocity1 = rate * d + offset;
     const Vec3 spinMomentum = (mass * velocity1).segment<3>(kRotation);
     load_.segment<3>(kRotation) -= (turn * spinMomentum - spinMomentum) / h;
@@ -260,8 +259,8 @@ StepOutcome StepSolver::step(const Block& block, const StepRequest& request,
     {
       break;
     }
-    // A contact that hardly slips can throw the iteration from one side of the friction cone's tip to
-    // the other for ever: when a correction turns back, only part of it is taken.
+    // A contact that hardly slips can throw the iteration from one side of the friction cone's tip
+    // to the other for ever: when a correction turns back, only part of it is taken.
     const Vec12 correction = next - d;
     const double back = correction.head<6>().dot(last.head<6>());
     if (iteration > 1 && back < -0.25 * last.head<6>().squaredNorm())
@@ -311,8 +310,7 @@ StepOutcome StepSolver::step(const Block& block, const StepRequest& request,
     {
       const Eigen::Vector2d travel(row.shear[0].dot(d), row.shear[1].dot(d));
       const double before = 0.5 * request.shearPenalty * row.slip0.squaredNorm();
-      const double after =
-        closedAtEnd ? 0.5 * request.shearPenalty * row.slip1.squaredNorm() : 0.0;
+      const double after = closedAtEnd ? 0.5 * request.shearPenalty * row.slip1.squaredNorm() : 0.0;
       outcome.frictionWork += -row.shearForce.dot(travel) - (after - before);
     }
     if (closedAtEnd)

@@ -5,14 +5,15 @@
 ///
 /// Departures from the paper, each for a reason of METHOD 10:
 /// - The rotation r is applied as a Cayley map, so that a material point moves by exactly
-///   u + r × Z + Δε X with the lever Z = ½ (X₁ + cay(r) X₁) at mid-step: the gap of a vertex–face contact
-///   at the end of the step is linear in D without remainder, and the volume does not grow.
-/// - The force of a spring over a step is either its discrete gradient, −(V(d₁) − V(d₀)) / (d₁ − d₀)
-///   with V(d) = ½ p min(d, 0)², which conserves energy to the last digit for any Δt and any phase of
-///   the impact in the step (Impact), or its value at the end of the step (Lasting), as Shi's.
+///   u + r × Z + Δε X with the lever Z = ½ (X₁ + cay(r) X₁) at mid-step: the gap of a vertex–face
+///   contact at the end of the step is linear in D without remainder, and the volume does not grow.
+/// - The force of a spring over a step is either its discrete gradient, −(V(d₁) − V(d₀)) / (d₁ −
+/// d₀)
+///   with V(d) = ½ p min(d, 0)², which conserves energy to the last digit for any Δt and any phase
+///   of the impact in the step (Impact), or its value at the end of the step (Lasting), as Shi's.
 /// - Velocities: Impact takes Shi's Ḋ¹ = 2 D/Δt − Ḋ⁰. With a stiff contact that leaves the velocity
-///   ringing at ±v for ever, so Lasting takes Ḋ¹ = D/Δt + ½ Δt D̈⁰, second-order too and damped at high
-///   frequency (|λ| = 0.71 as Δt → ∞).
+///   ringing at ±v for ever, so Lasting takes Ḋ¹ = D/Δt + ½ Δt D̈⁰, second-order too and damped at
+///   high frequency (|λ| = 0.71 as Δt → ∞).
 
 #include "contact/Contact.h"
 
@@ -57,9 +58,10 @@ struct StepOutcome
 class StepSolver
 {
 public:
-  /// Advances `state` and the contacts' springs by one step. Contacts come with distance, normal and
-  /// point as of the start of the step; they leave with state, forces, slip and the gap predicted for
-  /// its end in `distance`. If open–close does not settle, nothing is changed unless `takeAnyway`.
+  /// Advances `state` and the contacts' springs by one step. Contacts come with distance, normal
+  /// and point as of the start of the step; they leave with state, forces, slip and the gap
+  /// predicted for its end in `distance`. If open–close does not settle, nothing is changed unless
+  /// `takeAnyway`.
   StepOutcome step(const Block& block, const StepRequest& request, std::vector<Contact>& contacts,
     BlockState& state, bool takeAnyway = false);
 
@@ -88,11 +90,13 @@ private:
     Eigen::Matrix2d shearStiffness = Eigen::Matrix2d::Zero();
     Eigen::Vector2d shearCoupling = Eigen::Vector2d::Zero(); ///< −∂(shear)/∂(gap1)
     Eigen::Vector2d slip1 = Eigen::Vector2d::Zero();
-    Eigen::Vector2d direction = Eigen::Vector2d::Zero(); ///< Of the slip while it slides, else zero.
+    Eigen::Vector2d direction =
+      Eigen::Vector2d::Zero(); ///< Of the slip while it slides, else zero.
     ContactState state = ContactState::Open;
   };
 
-  void prepareRows(const Block& block, const BlockState& state, const std::vector<Contact>& contacts);
+  void prepareRows(
+    const Block& block, const BlockState& state, const std::vector<Contact>& contacts);
   void levers(const Block& block, const std::vector<Contact>& contacts, const Vec12& d);
   /// Springs for the displacement D; returns whether any contact changed its state.
   bool evaluate(const StepRequest& request, const Vec12& d);

@@ -17,8 +17,8 @@ struct NormalSpring
   double share = 1.0;     ///< Dimensionless, 0 … 1.
 };
 
-/// The discrete gradient of V(d) = ½ p min(d, 0)²: force · (d₁ − d₀) = V(d₀) − V(d₁) to the last digit,
-/// whether the spring closes, opens or stays closed (Gonzalez 1996 for the idea).
+/// The discrete gradient of V(d) = ½ p min(d, 0)²: force · (d₁ − d₀) = V(d₀) − V(d₁) to the last
+/// digit, whether the spring closes, opens or stays closed (Gonzalez 1996 for the idea).
 inline NormalSpring conservingSpring(double p, double d0, double d1)
 {
   NormalSpring s;

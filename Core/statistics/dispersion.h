@@ -14,21 +14,22 @@ namespace rockfall
 /// The dispersion of one group of trajectories.
 struct Dispersion
 {
-  int trajectories = 0;      ///< How many counted.
-  double length = 0.0;       ///< L, falling length along the cross-section, m.
-  double width = 0.0;        ///< W, m.
-  double angle = 0.0;        ///< θ, rad.
-  double lateralMin = 0.0;   ///< Extreme lateral deviations: W = lateralMax − lateralMin, m.
+  int trajectories = 0;    ///< How many counted.
+  double length = 0.0;     ///< L, falling length along the cross-section, m.
+  double width = 0.0;      ///< W, m.
+  double angle = 0.0;      ///< θ, rad.
+  double lateralMin = 0.0; ///< Extreme lateral deviations: W = lateralMax − lateralMin, m.
   double lateralMax = 0.0;
   double lateralDeviation = 0.0; ///< Standard deviation of the lateral stop/exit positions, m.
-  Vec3 apex = Vec3::Zero();  ///< Mean start, where the wedge begins.
+  Vec3 apex = Vec3::Zero();      ///< Mean start, where the wedge begins.
 };
 
 /// `paths`: one polyline per trajectory (world or local points, m). `azimuth`: direction of the
 /// cross-section in the x–y plane from +x counter-clockwise, rad. `length`: L, m; 0 = up to the
-/// farthest that any path of the group got. Lateral deviation is measured across the direction from each
-/// path's own start if `fromOwnStart`, else from the mean start; only points with a run of at most L
-/// count (paths are cut at L exactly). Throws ParameterError for a negative or non-finite length.
+/// farthest that any path of the group got. Lateral deviation is measured across the direction from
+/// each path's own start if `fromOwnStart`, else from the mean start; only points with a run of at
+/// most L count (paths are cut at L exactly). Throws ParameterError for a negative or non-finite
+/// length.
 Dispersion measureDispersion(std::span<const std::vector<Vec3>> paths, double azimuth,
   double length = 0.0, bool fromOwnStart = true);
 

@@ -41,8 +41,7 @@ Surface::Surface(const Terrain& terrain, std::uint64_t seed, int iteration)
   roughnessBound_ = rough_ ? std::max(0.0, r.mean + largestDeviate * r.deviation) : 0.0;
   if (m.restitutionDeviation > 0.0)
   {
-    restitution_ +=
-      m.restitutionDeviation * normalDeviate(seed_, iteration_, Draw::Restitution, 0);
+    restitution_ += m.restitutionDeviation * normalDeviate(seed_, iteration_, Draw::Restitution, 0);
     restitution_ = std::clamp(restitution_, 0.0, 1.0);
   }
   double angle = m.frictionAngle;
@@ -91,8 +90,8 @@ double Surface::elevation(double x, double y) const
   return p[0].z() - (n.x() * (x - p[0].x()) + n.y() * (y - p[0].y())) / n.z();
 }
 
-void gatherPatch(const Surface& surface, double xMin, double xMax, double yMin, double yMax,
-  SurfacePatch& patch)
+void gatherPatch(
+  const Surface& surface, double xMin, double xMax, double yMin, double yMax, SurfacePatch& patch)
 {
   const Terrain& terrain = surface.terrain();
   const GridGeometry& g = terrain.geometry();
@@ -109,7 +108,8 @@ void gatherPatch(const Surface& surface, double xMin, double xMax, double yMin, 
   patch.yMax = north - wantRow0 * g.cellSize;
   patch.yMin = north - (wantRow1 + 1) * g.cellSize;
   // The ring makes the neighbours of every edge and node under the rock known.
-  const int column0 = std::max(wantColumn0 - 1, 0), column1 = std::min(wantColumn1 + 1, g.columns - 2);
+  const int column0 = std::max(wantColumn0 - 1, 0),
+            column1 = std::min(wantColumn1 + 1, g.columns - 2);
   const int row0 = std::max(wantRow0 - 1, 0), row1 = std::min(wantRow1 + 1, g.rows - 2);
   patch.row0 = row0, patch.row1 = row1, patch.column0 = column0, patch.column1 = column1;
   if (column1 < column0 || row1 < row0)
@@ -202,8 +202,8 @@ void gatherPatch(const Surface& surface, double xMin, double xMax, double yMin, 
       {
         const int n0 = t.nodes[k], n1 = t.nodes[(k + 1) % 3];
         // Three edges belong to a cell: told apart by which triangle and side they are.
-        patch.ridges.push_back({ { n0, n1 }, { i, j }, { t.nodes[(k + 2) % 3], wing },
-          3 * t.cfe + k });
+        patch.ridges.push_back(
+          { { n0, n1 }, { i, j }, { t.nodes[(k + 2) % 3], wing }, 3 * t.cfe + k });
       }
     }
   }

@@ -11,8 +11,8 @@
 namespace rockfall
 {
 
-/// A terrain with the random numbers of one iteration put on it (METHOD 7). A value: two surfaces of
-/// the same terrain, seed and iteration are the same.
+/// A terrain with the random numbers of one iteration put on it (METHOD 7). A value: two surfaces
+/// of the same terrain, seed and iteration are the same.
 class Surface
 {
 public:
@@ -71,8 +71,8 @@ struct SurfacePatch
   {
     Vec3 position;
     std::int64_t key;
-    std::int64_t cfe;             ///< One of the CFEs here, 0 if there is none.
-    bool peak;                    ///< On a ridge, all neighbours known: a rock's face can touch it.
+    std::int64_t cfe; ///< One of the CFEs here, 0 if there is none.
+    bool peak;        ///< On a ridge, all neighbours known: a rock's face can touch it.
     std::array<int, 6> neighbours; ///< Of a peak; −1 where there are fewer.
   };
 
@@ -93,7 +93,7 @@ struct SurfacePatch
 
 /// Gathers the cells under a box (local frame, m) with a ring of one cell around them, by index
 /// arithmetic [paper eq. 1]. Reuses the memory of `patch`.
-void gatherPatch(const Surface& surface, double xMin, double xMax, double yMin, double yMax,
-  SurfacePatch& patch);
+void gatherPatch(
+  const Surface& surface, double xMin, double xMax, double yMin, double yMax, SurfacePatch& patch);
 
 } // namespace rockfall

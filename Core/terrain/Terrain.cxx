@@ -80,8 +80,8 @@ Terrain::Terrain(GridGeometry geometry, std::span<const double> heights,
   this->buildPyramid();
 }
 
-Terrain::Terrain(GridGeometry geometry, std::vector<double> heights, SurfaceMaterial material,
-  Roughness roughness)
+Terrain::Terrain(
+  GridGeometry geometry, std::vector<double> heights, SurfaceMaterial material, Roughness roughness)
 {
   auto kept = std::make_shared<std::vector<double>>(std::move(heights));
   std::span<const double> view(*kept);

@@ -1,12 +1,12 @@
 #pragma once
 
 /// @file
-/// The implicit slope: node heights of a north-up raster of square cells, whose contact face elements
-/// (CFEs) are arithmetic, never a list (METHOD 5; paper 2.3.1).
+/// The implicit slope: node heights of a north-up raster of square cells, whose contact face
+/// elements (CFEs) are arithmetic, never a list (METHOD 5; paper 2.3.1).
 ///
-/// Local frame: x east and y north from the lower left (south-west) node, z the elevation. Storage is
-/// the raster's: row 0 is the northernmost, so node (row, column) stands at
-/// x = column · cellSize, y = (rows − 1 − row) · cellSize.
+/// Local frame: x east and y north from the lower left (south-west) node, z the elevation. Storage
+/// is the raster's: row 0 is the northernmost, so node (row, column) stands at x = column ·
+/// cellSize, y = (rows − 1 − row) · cellSize.
 
 #include "base/types.h"
 
@@ -71,8 +71,8 @@ public:
   /// `heights`: rows × columns in storage order, NaN for nodata. `owner` keeps them alive. Throws
   /// DataError for fewer than 2 rows or columns, a non-positive cell, infinite heights or no CFE at
   /// all.
-  Terrain(GridGeometry geometry, std::span<const double> heights,
-    std::shared_ptr<const void> owner, SurfaceMaterial material = {}, Roughness roughness = {});
+  Terrain(GridGeometry geometry, std::span<const double> heights, std::shared_ptr<const void> owner,
+    SurfaceMaterial material = {}, Roughness roughness = {});
   Terrain(GridGeometry geometry, std::vector<double> heights, SurfaceMaterial material = {},
     Roughness roughness = {});
 
@@ -80,8 +80,8 @@ public:
   std::span<const double> heights() const { return heights_; }
   const SurfaceMaterial& material() const { return material_; }
   const Roughness& roughness() const { return roughness_; }
-  double width() const { return (geometry_.columns - 1) * geometry_.cellSize; }  ///< Extent in x, m.
-  double height() const { return (geometry_.rows - 1) * geometry_.cellSize; }    ///< Extent in y, m.
+  double width() const { return (geometry_.columns - 1) * geometry_.cellSize; } ///< Extent in x, m.
+  double height() const { return (geometry_.rows - 1) * geometry_.cellSize; }   ///< Extent in y, m.
 
   double nodeHeight(int row, int column) const
   {
@@ -94,8 +94,8 @@ public:
   }
 
   /// CFEs are numbered from 1: in cell (row, column) the lower triangle has number
-  /// 2 (row (columns−1) + column) + 1, the upper one the next. Numbers of CFEs that touch nodata are
-  /// left out, not reused.
+  /// 2 (row (columns−1) + column) + 1, the upper one the next. Numbers of CFEs that touch nodata
+  /// are left out, not reused.
   std::int64_t cfeCapacity() const { return 2 * geometry_.cellCount(); }
   bool hasCfe(std::int64_t id) const;
   /// Node indices (row · columns + column), counter-clockwise seen from above.
@@ -106,8 +106,8 @@ public:
   /// Elevation of the surface (without roughness), NaN outside it, m.
   double elevation(double x, double y) const;
 
-  /// Upper bound of the node heights (without roughness) of all cells that a box in x–y touches, from
-  /// a max-pyramid; −∞ if it touches none. Cost independent of the box.
+  /// Upper bound of the node heights (without roughness) of all cells that a box in x–y touches,
+  /// from a max-pyramid; −∞ if it touches none. Cost independent of the box.
   double maxHeight(double xMin, double xMax, double yMin, double yMax) const;
 
   /// Lowest node height (without roughness), m.
@@ -131,8 +131,8 @@ private:
   double lowest_ = 0.0;
 };
 
-/// The paper's bi-planar test slope (METHOD 9.3): 57.7 m high, 100 m long incline at 30°, then 150 m of
-/// flat, 100 m wide, falling along +x. Nodes at `cellSize` (m).
+/// The paper's bi-planar test slope (METHOD 9.3): 57.7 m high, 100 m long incline at 30°, then 150
+/// m of flat, 100 m wide, falling along +x. Nodes at `cellSize` (m).
 Terrain makeBiplanarSlope(double cellSize = 5.0);
 
 } // namespace rockfall

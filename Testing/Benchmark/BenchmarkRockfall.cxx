@@ -1,8 +1,9 @@
 // Many single rocks down a rough slope, the work on which rigid-body engines are compared:
-// terrain of 201 × 201 nodes and 1 m cells, 30° down along x for 100 m, then flat; Gaussian roughness of
-// 0.1 m on each node; 256 rocks of 1 m³, cube or icosahedron, density 2500, random attitudes, lowest point
-// about 2 m over the slope's top, 1 m/s along x; φ 15°; 10 s of motion; one thread.
-// Counters: rock-steps per second (rocks × duration / Δt / wall time) and trajectories per second.
+// terrain of 201 × 201 nodes and 1 m cells, 30° down along x for 100 m, then flat; Gaussian
+// roughness of 0.1 m on each node; 256 rocks of 1 m³, cube or icosahedron, density 2500, random
+// attitudes, lowest point about 2 m over the slope's top, 1 m/s along x; φ 15°; 10 s of motion; one
+// thread. Counters: rock-steps per second (rocks × duration / Δt / wall time) and trajectories per
+// second.
 //
 // Run: BenchmarkRockfall [--benchmark_repetitions=5 --benchmark_report_aggregates_only=true]
 
@@ -67,8 +68,8 @@ std::vector<Rock> benchRocks(Shape shape, const Terrain& slope)
   return rocks;
 }
 
-void singleRocks(benchmark::State& state, Shape shape, double timeStep, double restitution,
-  RestitutionModel model)
+void singleRocks(
+  benchmark::State& state, Shape shape, double timeStep, double restitution, RestitutionModel model)
 {
   const Terrain slope = benchSlope(restitution);
   const std::vector<Rock> rocks = benchRocks(shape, slope);

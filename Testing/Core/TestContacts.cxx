@@ -1,4 +1,5 @@
-// Contact detection (METHOD 3, 5, 10.5): the indexed, pruned search against brute force, flat edges, clearance.
+// Contact detection (METHOD 3, 5, 10.5): the indexed, pruned search against brute force, flat
+// edges, clearance.
 
 #include "contact/Contact.h"
 #include "slopes.h"
@@ -43,7 +44,8 @@ Terrain roughTerrain(unsigned seed, double relief)
 }
 
 /// Lowers a rock until it is `gap` over the surface along the vertical, at its lowest.
-double restingHeight(const Terrain& terrain, const Polyhedron& shape, const Quat& q, double x, double y)
+double restingHeight(
+  const Terrain& terrain, const Polyhedron& shape, const Quat& q, double x, double y)
 {
   // Bisection; a rock under the surface is apart from it as well, so the side counts.
   double low = -5.0, high = 10.0;
@@ -80,8 +82,8 @@ TEST(Contacts, PrunedSearchFindsWhatBruteForceFinds)
     SurfacePatch local, whole;
     const Vec3 lower = p.rock.lower(), upper = p.rock.upper();
     const double reach = 0.05; // m
-    gatherPatch(surface, lower.x() - reach, upper.x() + reach, lower.y() - reach,
-      upper.y() + reach, local);
+    gatherPatch(
+      surface, lower.x() - reach, upper.x() + reach, lower.y() - reach, upper.y() + reach, local);
     gatherPatch(surface, 0.0, terrain.width(), 0.0, terrain.height(), whole);
     std::vector<Contact> indexed, brute;
     updateContacts(p.rock, local, reach, indexed);

@@ -1,5 +1,5 @@
-// Many rocks on rough ground: every one is accounted for, none ends under the slope, and the result does not depend
-// on threads. Bad input is one clear error.
+// Many rocks on rough ground: every one is accounted for, none ends under the slope, and the result
+// does not depend on threads. Bad input is one clear error.
 
 #include "base/errors.h"
 #include "simulation/Recorder.h"
@@ -32,8 +32,8 @@ std::vector<Rock> mixedRocks(int count)
   std::mt19937 random(21);
   std::uniform_real_distribution<double> u(0.0, 1.0);
   std::normal_distribution<double> n(0.0, 1.0);
-  const Shape shapes[] = { Shape::Cube, Shape::Tetrahedron, Shape::Octahedron,
-    Shape::Dodecahedron, Shape::Icosahedron, Shape::Eota111, Shape::Eota221 };
+  const Shape shapes[] = { Shape::Cube, Shape::Tetrahedron, Shape::Octahedron, Shape::Dodecahedron,
+    Shape::Icosahedron, Shape::Eota111, Shape::Eota221 };
   std::vector<Rock> rocks(count);
   for (int k = 0; k < count; ++k)
   {

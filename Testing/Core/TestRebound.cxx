@@ -69,12 +69,13 @@ TEST(Rebound, FiveMetreDropLosesWhatRvSays)
       EXPECT_NEAR(next * next / (v * v), rv * rv, 0.01 * rv * rv) << rv << ", bounce " << k;
     }
     // At rest when the geometric series ends, t = t₁ (1 + Rv) / (1 − Rv), and recognised as such
-    // after half a second of stillness. The last hops, below 0.1 m/s, are not made (0.1 s of the series).
-    // After some twenty bounces on four corners the cube wobbles, which shortens its hops.
+    // after half a second of stillness. The last hops, below 0.1 m/s, are not made (0.1 s of the
+    // series). After some twenty bounces on four corners the cube wobbles, as rounding grows from
+    // bounce to bounce, which shortens its last hops; how much is chance.
     const double fall = std::sqrt(2.0 * 5.0 / kGravity);
     const double series = fall * (1.0 + rv) / (1.0 - rv);
     EXPECT_EQ(t.summary.fate, Fate::Rested);
-    EXPECT_NEAR(t.summary.endTime, series + 0.5, 0.25);
+    EXPECT_NEAR(t.summary.endTime, series + 0.5, 0.6);
     // It stands on the floor, 6e-6 m into the penalty springs.
     EXPECT_NEAR(t.summary.stop.z(), 100.5, 2e-5);
     EXPECT_LT(std::abs(t.summary.energy.numerical), 0.005 * t.summary.energy.released);
@@ -92,8 +93,8 @@ TEST(Rebound, ElasticDropInAnyAttitudeKeepsEnergy)
     makeSlope(
       9, 2.0, [](double x, double) { return 100.0 - 0.5 * std::abs(x - 8.0); }, smooth),
     makeSlope(
-      9, 2.0,
-      [](double x, double y) { return 100.0 - 0.4 * std::hypot(x - 8.0, y - 8.0); }, smooth) };
+      9, 2.0, [](double x, double y) { return 100.0 - 0.4 * std::hypot(x - 8.0, y - 8.0); },
+      smooth) };
   std::srand(1); // UnitRandom
   double worst = 0.0;
   int total = 0, within = 0;
@@ -117,17 +118,17 @@ TEST(Rebound, ElasticDropInAnyAttitudeKeepsEnergy)
         worst = std::max(worst, std::abs(e.numerical) / scale);
         ++total;
         within += std::abs(e.numerical) < 0.01 * scale;
-        // A vertex that slips off a peak while it is pressed in loses its spring's energy.
-        EXPECT_LT(std::abs(e.numerical), 0.05 * scale)
+        // Every spring keeps its energy when it goes over to another feature: rounding.
+        EXPECT_LT(std::abs(e.numerical), 1e-6 * scale)
           << shapeName(shape) << ", attitude " << k << ", slope " << &slope - slopes;
         EXPECT_LT(std::abs(e.friction), 1e-9 * scale);
         EXPECT_EQ(e.restitution, 0.0);
       }
     }
   }
-  EXPECT_GE(within, total * 98 / 100);
-  std::printf("%d of %d within 1 %%; largest numerical energy error: %.2e of the fall\n", within, total,
-    worst);
+  EXPECT_EQ(within, total);
+  std::printf("%d of %d within 1 %%; largest numerical energy error: %.2e of the fall\n", within,
+    total, worst);
 }
 
 TEST(Rebound, RollingAndSlidingAreNoImpacts)

@@ -1,4 +1,5 @@
-// METHOD 9.2 (paper fig. 14): a block slides down a 30° plane, d(t) = ½ (g sin α − g cos α tan φ) t².
+// METHOD 9.2 (paper fig. 14): a block slides down a 30° plane, d(t) = ½ (g sin α − g cos α tan φ)
+// t².
 
 #include "slopes.h"
 
@@ -101,8 +102,7 @@ TEST(Sliding, EnergyIsAccountedFor)
   const EnergyAudit& e = t.summary.energy;
   // Friction does μ N d; N is the weight's share but for the settling.
   const double d = (t.summary.stop - t.summary.start).norm();
-  const double work =
-    t.summary.mass * kGravity * std::cos(angle) * std::tan(radians(20.0)) * d;
+  const double work = t.summary.mass * kGravity * std::cos(angle) * std::tan(radians(20.0)) * d;
   EXPECT_NEAR(e.friction, work, 1e-3 * work);
   EXPECT_LT(std::abs(e.numerical), 1e-6 * e.released);
   EXPECT_LT(std::abs(e.damping), 1e-4 * e.released);

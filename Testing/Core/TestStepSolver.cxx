@@ -22,8 +22,8 @@ TEST(Springs, ConserveEnergyWhateverThePhase)
       const NormalSpring s = conservingSpring(p, d0, d1);
       EXPECT_GE(s.force, 0.0);
       EXPECT_GE(s.stiffness, 0.0);
-      EXPECT_NEAR(s.force * (d1 - d0), stored(d0) - stored(d1),
-        1e-12 * (stored(d0) + stored(d1)) + 1e-20);
+      EXPECT_NEAR(
+        s.force * (d1 - d0), stored(d0) - stored(d1), 1e-12 * (stored(d0) + stored(d1)) + 1e-20);
       // The tangent is the derivative.
       const double step = 1e-9;
       const NormalSpring up = conservingSpring(p, d0, d1 + step);
@@ -118,8 +118,8 @@ TEST(StepSolver, ConservesEnergyAndAngularMomentumWithoutFriction)
       contacts[0].distance = height;
     }
     EXPECT_NEAR(energy(), before, 1e-7 * before);
-    // Vertical forces have no moment about any vertical axis: the angular momentum about that of the
-    // origin stays.
+    // Vertical forces have no moment about any vertical axis: the angular momentum about that of
+    // the origin stays.
     const auto aboutVertical = [&](const Vec3& own, const Vec3& x, const Vec3& v)
     { return own.z() + block.mass() * x.cross(v).z(); };
     EXPECT_NEAR(aboutVertical(angularMomentum(block, state), state.position, state.velocity),

@@ -1,4 +1,5 @@
-// The implicit slope: numbering and geometry of CFEs (METHOD 5), lookup, bounds, patches, roughness.
+// The implicit slope: numbering and geometry of CFEs (METHOD 5), lookup, bounds, patches,
+// roughness.
 
 #include "base/errors.h"
 #include "base/random.h"

@@ -43,8 +43,7 @@ inline Terrain makePlane(
     [=](double x, double y)
     {
       return 100.0 -
-        fall *
-        ((x - 0.5 * size) * std::cos(azimuth) + (y - 0.5 * size) * std::sin(azimuth));
+        fall * ((x - 0.5 * size) * std::cos(azimuth) + (y - 0.5 * size) * std::sin(azimuth));
     },
     material);
 }

@@ -109,6 +109,7 @@ TEST_F(TestDEMToCFESource, FieldDataSurviveAFile)
   vtkPolyData* mesh = this->Update();
   const std::string file = this->WriteFile("mesh.vtp", "");
   vtkNew<vtkXMLPolyDataWriter> writer;
+  writer->SetDataModeToBinary();
   writer->SetInputData(mesh);
   writer->SetFileName(file.c_str());
   ASSERT_EQ(writer->Write(), 1);

@@ -230,6 +230,7 @@ TEST_F(TestRockfallSimulation, SavedInputsGiveTheSameRun)
   {
     const std::string file = this->WriteFile(port ? "rocks.vtp" : "terrain.vtp", "");
     vtkNew<vtkXMLPolyDataWriter> writer;
+    writer->SetDataModeToBinary();
     writer->SetInputConnection(sources[port]->GetOutputPort());
     writer->SetFileName(file.c_str());
     ASSERT_EQ(writer->Write(), 1);

@@ -71,7 +71,7 @@ angles = columns_of(servermanager.Fetch(dispersion))
 assert len(angles["Group"]) == 4 and all(0 < theta < 45 for theta in angles["Theta"]), angles
 
 # Into files and back.
-SaveData("rocks.pvd", proxy=OutputPort(simulation, 0), WriteTimeSteps=1)
+SaveData("rocks.pvd", proxy=OutputPort(simulation, 0), WriteTimeSteps=1, DataMode="Binary")
 again = OpenDataFile(os.path.abspath("rocks.pvd"))
 assert len(again.TimestepValues) == 41, len(again.TimestepValues)
 UpdatePipeline(4.0, again)
@@ -81,7 +81,7 @@ with open("trajectories.csv") as file:
     header = file.readline()
 for name in ("Time", "Velocity:0", "RotationRate:2", "Points:0"):
     assert f'"{name}"' in header, header
-SaveData("terrain.vtp", proxy=dem)
+SaveData("terrain.vtp", proxy=dem, DataMode="Binary")
 reopened = OpenDataFile(os.path.abspath("terrain.vtp"))
 second = RockfallSimulation(Terrain=reopened, Rocks=rocks)
 second.EndTime, second.OutputInterval, second.Iterations = 4.0, 0.1, 2
