@@ -187,12 +187,29 @@ void RockSimulator::checkEnd(double h)
   }
 }
 
+void RockSimulator::liftOntoRoughness()
+{
+  // The placement was checked on the slope as surveyed; roughness can raise the ground into the
+  // rock.
+  const double step = 0.01 * block_.radius();
+  placed_.place(block_, state_);
+  this->ensurePatch(step);
+  double depth = penetration(placed_, patch_);
+  for (int k = 0; k < 1000 && depth > 1e-6 * block_.radius(); ++k)
+  {
+    state_.position.z() += std::max(depth, step);
+    placed_.place(block_, state_);
+    depth = penetration(placed_, patch_);
+  }
+}
+
 Trajectory RockSimulator::run()
 {
   TrajectorySummary& summary = recorder_.trajectory().summary;
   summary.blockId = rock_.blockId;
   summary.mass = block_.mass();
   summary.volume = block_.volume();
+  this->liftOntoRoughness();
   const double before = this->mechanicalEnergy();
   recorder_.begin(state_);
   this->checkEnd(0.0);
@@ -204,7 +221,6 @@ Trajectory RockSimulator::run()
       this->stayInContact();
     }
   }
-  this->finishImpact();
   const bool touching =
     std::any_of(contacts_.begin(), contacts_.end(), [](const Contact& c) { return c.closed(); });
   recorder_.end(state_, touching);

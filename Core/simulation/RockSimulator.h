@@ -36,6 +36,8 @@ private:
     double frictionBefore = 0.0;       ///< Friction work when it began, J.
   };
 
+  void liftOntoRoughness(); ///< Straight up, at the start, as far as roughness makes it needed.
+
   // Flight, RockSimulator.cxx
   void flyUntilNear(); ///< Returns when a touch is possible within a few steps, or at the end.
   void advanceInFlight(double duration);

@@ -120,6 +120,27 @@ TEST(Ensemble, AccountsForEveryRockAndNoneEndsUnderTheSlope)
     fates[1], fates[2], worst);
 }
 
+TEST(Ensemble, RoughnessThatRisesIntoARockLiftsIt)
+{
+  // A small rock laid on the surveyed slope, which roughness of its own size raises or lowers.
+  const Terrain slope = makeSlope(
+    21, 0.5, [](double, double) { return 50.0; }, material(0.6, 35.0), Roughness{ 0.0, 0.1 });
+  Rock rock;
+  rock.shape = makeShape(Shape::Cube, 0.001);
+  rock.position = Vec3(5.1, 5.2, 50.051);
+  SimulationParameters p;
+  p.iterations = 40;
+  p.endTime = 5.0;
+  TrajectoryStore store(1, p.iterations);
+  runEnsemble(slope, std::span<const Rock>(&rock, 1), p, store);
+  for (const Trajectory& t : store.trajectories())
+  {
+    EXPECT_GT(t.samples.front().heightOverGround, -1e-5) << t.summary.iteration;
+    EXPECT_GT(t.samples.back().heightOverGround, -1e-3) << t.summary.iteration;
+    EXPECT_EQ(t.summary.fate, Fate::Rested) << t.summary.iteration;
+  }
+}
+
 TEST(Ensemble, SameBitsForAnyNumberOfThreads)
 {
   const Terrain slope = roughSlope();
