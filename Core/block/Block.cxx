@@ -69,6 +69,8 @@ Vec12 bodyVelocity(const BlockState& state)
 Block::Block(Polyhedron shape, double density, double youngModulus, double poissonRatio)
   : shape_(std::move(shape))
   , density_(density)
+  , youngModulus_(youngModulus)
+  , poissonRatio_(poissonRatio)
 {
   const VolumeIntegrals& integrals = shape_.integrals();
   mass_ = density * integrals.volume;
@@ -84,6 +86,9 @@ Block::Block(Polyhedron shape, double density, double youngModulus, double poiss
     throw GeometryError("a block has the principal moment of inertia " +
       std::to_string(principal[0]) + " kg m², it must be positive");
   }
+  const Mat6 strainMass = massMatrix_.block<6, 6>(kStrain, kStrain);
+  strainFrequency_ = std::sqrt(
+    Eigen::GeneralizedSelfAdjointEigenSolver<Mat6>(elasticity_, strainMass).eigenvalues()[0]);
   isotropic_ = principal[2] - principal[0] < 1e-9 * principal[2];
   largestMobility_ = 0.0;
   for (const Vec3& x : shape_.vertices())

@@ -75,7 +75,7 @@ bool inEdgeCones(const PlacedBlock& rock, int edge, const SurfacePatch& patch, i
   for (int k = 0; k < 2; ++k)
   {
     // In-face direction away from the edge; the edge runs as in the loop of faces[0].
-    const Vec3 inward = rock.normals()[e.faces[k]].cross(direction) * (k == 0 ? 1.0 : -1.0);
+    const Vec3 inward = rock.normal(e.faces[k]).cross(direction) * (k == 0 ? 1.0 : -1.0);
     if (normal.dot(inward) < -slack)
     {
       return false;
@@ -145,7 +145,7 @@ std::optional<Contact> faceVertex(
   {
     return std::nullopt;
   }
-  const Vec3 normal = -rock.normals()[face];
+  const Vec3 normal = -rock.normal(face);
   if (!inPeakCone(patch, node, normal, kConeSlack))
   {
     return std::nullopt;

@@ -1,6 +1,7 @@
 #include "simulation/RockSimulator.h"
 
 #include "block/flight.h"
+#include "solver/springs.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +23,14 @@ constexpr double kStillSpeed = 1e-3;
 constexpr double kStillTime = 0.5;
 /// A touch slower than this share of √(g r) is no impact: r is the rock's radius.
 constexpr double kRestingSpeed = 1e-2;
+/// How far, in radii, the rock may go on until the pairs that can touch are looked for again.
+constexpr double kCandidateSlack = 0.05;
+/// Strain that vibrates faster than this many times the contacts' springs, or than this many radians
+/// per Δt, follows the contact forces as at rest.
+constexpr double kStiffBesideContacts = 4.0;
+constexpr double kStiffBesideStep = 10.0;
+/// However fast a rock comes in, a contact is stiff enough to stop it in this part of its radius.
+constexpr double kDeepestImpact = 0.1;
 
 } // namespace
 
@@ -39,6 +48,12 @@ RockSimulator::RockSimulator(
   state_.spin = state_.orientation.conjugate() * rock.angularVelocity;
   const double g = std::max(p.gravity, 1e-3);
   restingSpeed_ = kRestingSpeed * std::sqrt(g * block.radius());
+  penalty_ = p.normalPenalty;
+  const double contacts = std::sqrt(p.normalPenalty * block.largestMobility());
+  stiff_ = p.rigid ||
+    block.strainFrequency() >=
+      std::min(kStiffBesideContacts * contacts, kStiffBesideStep / p.timeStep);
+  dampingRatio_ = dampingRatio(surface.restitution());
 }
 
 double RockSimulator::travelLimit() const
@@ -50,7 +65,7 @@ double RockSimulator::travelLimit() const
 
 double RockSimulator::impactStep() const
 {
-  const double frequency = std::sqrt(parameters_.normalPenalty * block_.largestMobility());
+  const double frequency = std::sqrt(penalty_ * block_.largestMobility());
   const double resolved = std::numbers::pi / (kStepsPerImpact * frequency);
   return std::min({ parameters_.timeStep, resolved, this->travelLimit() });
 }
@@ -71,6 +86,17 @@ void RockSimulator::ensurePatch(double margin)
     const double more = margin + 0.25 * block_.radius();
     gatherPatch(
       surface_, lower.x() - more, upper.x() + more, lower.y() - more, upper.y() + more, patch_);
+    candidates_.distance = -1.0;
+  }
+}
+
+void RockSimulator::ensureCandidates(double reach)
+{
+  if (!candidates_.serve(state_, block_.radius(), reach))
+  {
+    const double distance = std::max(2.0 * reach, reach + kCandidateSlack * block_.radius());
+    this->ensurePatch(distance);
+    gatherCandidates(placed_, state_, patch_, distance, candidates_);
   }
 }
 
@@ -135,12 +161,13 @@ void RockSimulator::flyUntilNear()
       duration = std::min(shortest, remaining);
       placed_.place(block_, state_);
       this->ensurePatch(speed * duration + parameters_.gravity * duration * duration);
-      const Clearance gap = clearance(placed_, state_, patch_, parameters_.gravity, duration);
-      if (gap.time < std::min(duration, this->impactStep()))
+      const double touch =
+        timeToTouch(placed_, state_, patch_, parameters_.gravity, duration);
+      if (touch < std::min(duration, this->impactStep()))
       {
         return;
       }
-      duration = std::min(duration, gap.time);
+      duration = std::min(duration, touch);
     }
     this->advanceInFlight(duration);
     this->checkEnd(0.0);
@@ -218,6 +245,9 @@ Trajectory RockSimulator::run()
     this->flyUntilNear();
     if (!done_)
     {
+      const double depth = kDeepestImpact * block_.radius();
+      penalty_ = std::max(parameters_.normalPenalty,
+        block_.mass() * state_.velocity.squaredNorm() / (depth * depth));
       this->stayInContact();
     }
   }

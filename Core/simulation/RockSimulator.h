@@ -34,6 +34,7 @@ private:
     Vec3 normalImpulse = Vec3::Zero(); ///< N s, world.
     double largestForce = 0.0;         ///< N
     double frictionBefore = 0.0;       ///< Friction work when it began, J.
+    double restitutionBefore = 0.0;    ///< What restitution had taken by then, J.
   };
 
   void liftOntoRoughness(); ///< Straight up, at the start, as far as roughness makes it needed.
@@ -54,6 +55,8 @@ private:
   void finishImpact();
 
   void ensurePatch(double margin);
+  void ensureCandidates(double reach);
+  void armContacts(); ///< Gives new contacts their springs and dashpots.
   double impactStep() const;
   double travelLimit() const;
   double mechanicalEnergy() const; ///< Without contact springs, J.
@@ -65,6 +68,7 @@ private:
   BlockState state_;
   PlacedBlock placed_;
   SurfacePatch patch_;
+  CandidatePairs candidates_;
   StepSolver solver_;
   std::vector<Contact> contacts_;
   std::vector<Contact> contactsBefore_;
@@ -74,6 +78,9 @@ private:
   EnergyAudit energy_;
   double springEnergy_ = 0.0; ///< In the contact springs, J.
   double normalEnergy_ = 0.0; ///< In the normal ones, J.
+  double penalty_ = 0.0;       ///< pₙ of the contacts that are made now, N/m.
+  bool stiff_ = false;         ///< The block's strain follows its contacts without inertia.
+  double dampingRatio_ = 0.0;  ///< ζ for the surface's restitution.
   double restingSpeed_ = 0.0; ///< Below it a touch is no impact, m/s.
   double quietTime_ = 0.0;    ///< For how long it has been lying still, s.
   Vec3 acceleration_ = Vec3::Zero();

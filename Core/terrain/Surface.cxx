@@ -135,6 +135,9 @@ void gatherPatch(
   }
   const int cellColumns = column1 - column0 + 1;
   const int cellRows = row1 - row0 + 1;
+  patch.nodeColumns = nodeColumns;
+  patch.nodeRows = nodeRows;
+  patch.cellSize = g.cellSize;
   // Two slots per cell; a slot whose triangle touches nodata is marked by cfe = 0.
   patch.triangles.resize(2 * std::size_t(cellColumns) * cellRows);
   for (int r = 0; r < cellRows; ++r)
@@ -169,6 +172,33 @@ void gatherPatch(
       }
     }
   }
+  // The spread of the gradients.
+  patch.highest = -std::numeric_limits<double>::infinity();
+  for (const SurfacePatch::Node& node : patch.nodes)
+  {
+    patch.highest = std::fmax(patch.highest, node.position.z());
+  }
+  const auto gradient = [](const Vec3& n) { return Eigen::Vector2d(-n.head<2>() / n.z()); };
+  patch.tilt.setZero();
+  int known = 0;
+  for (const SurfacePatch::Triangle& t : patch.triangles)
+  {
+    if (t.cfe != 0)
+    {
+      patch.tilt += gradient(t.normal);
+      ++known;
+    }
+  }
+  patch.tilt /= std::max(known, 1);
+  double relief = 0.0;
+  for (const SurfacePatch::Triangle& t : patch.triangles)
+  {
+    if (t.cfe != 0)
+    {
+      relief = std::max(relief, (gradient(t.normal) - patch.tilt).squaredNorm());
+    }
+  }
+  patch.relief = std::sqrt(relief);
   // Bends and ridges; each inner edge is met twice, taken from the triangle with the smaller index.
   for (int i = 0; i < int(patch.triangles.size()); ++i)
   {

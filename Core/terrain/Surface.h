@@ -6,6 +6,8 @@
 #include "terrain/Terrain.h"
 
 #include <array>
+#include <cmath>
+#include <limits>
 #include <vector>
 
 namespace rockfall
@@ -82,9 +84,36 @@ struct SurfacePatch
 
   /// Cells gathered: rows [row0, row1], columns [column0, column1]; empty if row1 < row0.
   int row0 = 0, row1 = -1, column0 = 0, column1 = -1;
+  /// Nodes are rows of `nodeColumns` from the north, `cellSize` (m) apart.
+  int nodeColumns = 0, nodeRows = 0;
+  double cellSize = 0.0;
+  double highest = 0.0; ///< Of its nodes, m.
+  /// Mean of its CFEs' gradients (∂z/∂x, ∂z/∂y), and the farthest that one of them is from it.
+  Eigen::Vector2d tilt = Eigen::Vector2d::Zero();
+  double relief = 0.0;
+
   /// x–y box in which a rock may stand for this patch to be enough, m.
   double xMin = 0.0, xMax = -1.0, yMin = 0.0, yMax = -1.0;
 
+  /// Elevation of the surface, −∞ where there is none in the patch, m.
+  double elevation(double x, double y) const
+  {
+    const double c = (x - nodes[0].position.x()) / cellSize;
+    const double r = (nodes[0].position.y() - y) / cellSize;
+    if (!(c >= 0.0 && r >= 0.0 && c <= nodeColumns - 1 && r <= nodeRows - 1))
+    {
+      return -std::numeric_limits<double>::infinity();
+    }
+    const int column = std::min(int(c), nodeColumns - 2), row = std::min(int(r), nodeRows - 2);
+    const double s = c - column, t = r - row;
+    const Node* upper = &nodes[std::size_t(row) * nodeColumns + column];
+    const Node* lower = upper + nodeColumns;
+    const double z0 = upper[0].position.z(), z2 = lower[1].position.z();
+    const double z = t >= s
+      ? z0 + t * (lower[0].position.z() - z0) + s * (z2 - lower[0].position.z())
+      : z0 + s * (upper[1].position.z() - z0) + t * (z2 - upper[1].position.z());
+    return std::isnan(z) ? -std::numeric_limits<double>::infinity() : z;
+  }
   bool covers(double x0, double x1, double y0, double y1) const
   {
     return x0 >= xMin && x1 <= xMax && y0 >= yMin && y1 <= yMax;

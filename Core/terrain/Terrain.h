@@ -35,9 +35,20 @@ struct GridGeometry
   Vec3 origin() const { return { xOrigin, yOrigin, 0.0 }; }
 };
 
+/// How a rock loses energy at an impact (METHOD 4).
+enum class RestitutionModel
+{
+  Velocity = 0,
+  NormalTangential = 1,
+  SpeedDependent = 2,
+};
+
 /// What a CFE is made of.
 struct SurfaceMaterial
 {
+  RestitutionModel restitutionModel = RestitutionModel::Velocity;
+  double tangentialRestitution = 1.0;
+  double restitutionSpeed = 9.144;
   double restitution = 0.8;             ///< Rv, dimensionless, 0 … 1.
   double restitutionDeviation = 0.0;    ///< Standard deviation of Rv, ≥ 0.
   double frictionAngle = radians(15.0); ///< φ, rad, 0 … <π/2.
