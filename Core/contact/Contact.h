@@ -48,9 +48,10 @@ struct Contact
   double shearStiffness = 0.0; ///< pₛ, N/m.
   double dashpot = 0.0;        ///< Along the normal, during impacts, N s/m.
   double shearDashpot = 0.0;   ///< In its plane, during impacts, N s/m.
-  Vec3 slip = Vec3::Zero(); ///< s₀, elongation of the shear spring, world, m.
-  double normalForce = 0.0; ///< Mean over the last step, N.
-  double shearForce = 0.0;  ///< Magnitude, mean over the last step, N.
+  double frequency2 = 0.0;     ///< Of the block on this spring alone, squared, 1/s².
+  Vec3 slip = Vec3::Zero();    ///< s₀, elongation of the shear spring, world, m.
+  double normalForce = 0.0;    ///< Mean over the last step, N.
+  double shearForce = 0.0;     ///< Magnitude, mean over the last step, N.
 
   bool closed() const { return state != ContactState::Open; }
   double gap() const { return distance - offset; } ///< d₀, m.
@@ -108,8 +109,8 @@ struct CandidatePairs
   };
   std::vector<Pair> vertexFace;
   std::vector<Pair> edgeEdge;
-  std::vector<int> peaks;  ///< Nodes of the patch.
-  double distance = -1.0;  ///< Within which they were gathered, m; < 0: not at all.
+  std::vector<int> peaks;       ///< Nodes of the patch.
+  double distance = -1.0;       ///< Within which they were gathered, m; < 0: not at all.
   Vec3 position = Vec3::Zero(); ///< Of the rock then.
   Quat orientation = Quat::Identity();
 
@@ -133,9 +134,10 @@ void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const Su
 void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch,
   const CandidatePairs& candidates, double reach, std::vector<Contact>& contacts);
 
-/// The net under the entrance rules: every candidate vertex of the rock that is under the slope by more than
-/// `allowed` (m), and every peak as deep inside the rock, gets a contact that carries no force at
-/// the overlap it is found with and resists any further one, unless it has a contact already.
+/// The net under the entrance rules: every candidate vertex of the rock that is under the slope by
+/// more than `allowed` (m), and every peak as deep inside the rock, gets a contact that carries no
+/// force at the overlap it is found with and resists any further one, unless it has a contact
+/// already.
 void holdOverlap(const PlacedBlock& rock, const SurfacePatch& patch,
   const CandidatePairs& candidates, double allowed, std::vector<Contact>& contacts);
 
@@ -143,11 +145,15 @@ void holdOverlap(const PlacedBlock& rock, const SurfacePatch& patch,
 void findEntrancesBruteForce(
   const PlacedBlock& rock, const SurfacePatch& patch, double reach, std::vector<Contact>& contacts);
 
-/// Lower bound of the time (s, at most `horizon`) to the first touch in free flight over a patch that
-/// is a height field. For every place where the gap along the vertical can be least, it is covered at
-/// the speed that this point of the rock has, towards a slope that may differ from the patch's mean
-/// by as much as any of its CFEs does. 0 where the two overlap.
-double timeToTouch(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
+/// Lower bound of the time (s, at most `horizon`) to the first touch in free flight over the
+/// window, which must hold all that the rock can come over until then. For every place where the
+/// gap along the vertical can be least, it is covered at the speed that this point of the rock has,
+/// towards a slope that may differ from the window's mean by as much as any of its CFEs does. 0
+/// where the two overlap.
+double timeToTouch(const PlacedBlock& rock, const BlockState& state, const HeightWindow& window,
+  double gravity, double horizon);
+/// The same for the bounding sphere over the plane that no node of the window is above.
+double timeToNear(const BlockState& state, double radius, const HeightWindow& window,
   double gravity, double horizon);
 
 /// How far a rock is from touching.

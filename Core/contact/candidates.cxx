@@ -1,4 +1,4 @@
-#include "contact/Contact.h"
+#include "contact/features.h"
 
 #include <cmath>
 
@@ -37,6 +37,8 @@ void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const Su
   const Polyhedron& shape = rock.block().shape();
   const std::vector<Vec3>& vertices = rock.vertices();
   const Vec3 lower = rock.lower(), upper = rock.upper();
+  // As far as the rock may turn while the candidates serve, sine.
+  const double turn = kConeSlack + distance / rock.block().radius();
   for (int i = 0; i < int(patch.triangles.size()); ++i)
   {
     const SurfacePatch::Triangle& t = patch.triangles[i];
@@ -65,8 +67,9 @@ void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const Su
       const Vec3& p = vertices[v];
       // No bound below: what has slipped under the slope must be found (holdOverlap).
       const Vec3 raised(p.x(), p.y(), std::max(p.z(), least.z()));
-      if (t.normal.dot(p) - t.offset <= distance &&
-        boxesMeet(least, most, raised, raised, 2.0 * distance))
+      const double over = t.normal.dot(p) - t.offset;
+      if (over <= distance && boxesMeet(least, most, raised, raised, 2.0 * distance) &&
+        (over < 0.0 || inVertexCone(rock, v, t.normal, turn)))
       {
         candidates.vertexFace.push_back({ v, i });
       }
@@ -94,15 +97,22 @@ void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const Su
     const SurfacePatch::Triangle& t0 = patch.triangles[g.triangles[0]];
     const SurfacePatch::Triangle& t1 = patch.triangles[g.triangles[1]];
     const auto above = [&](const Vec3& p)
-    {
-      return std::min(t0.normal.dot(p) - t0.offset, t1.normal.dot(p) - t1.offset) > distance;
-    };
+    { return std::min(t0.normal.dot(p) - t0.offset, t1.normal.dot(p) - t1.offset) > distance; };
     const Vec3 least = q0.cwiseMin(q1), most = q0.cwiseMax(q1);
     for (int e = 0; e < int(shape.edges().size()); ++e)
     {
       const Vec3& p0 = vertices[shape.edges()[e].vertices[0]];
       const Vec3& p1 = vertices[shape.edges()[e].vertices[1]];
-      if (boxesMeet(least, most, p0, p1, distance) && !(above(p0) && above(p1)))
+      if (!boxesMeet(least, most, p0, p1, distance) || (above(p0) && above(p1)))
+      {
+        continue;
+      }
+      // The normal of the crossing turns faster than the edge, the more so the nearer to parallel.
+      Vec3 n = (p1 - p0).cross(q1 - q0);
+      const double size = n.norm(), all = (p1 - p0).norm() * (q1 - q0).norm();
+      const double slack = turn * all / size;
+      n *= (n.dot(t0.normal + t1.normal) < 0.0 ? -1.0 : 1.0) / size;
+      if (!(slack < 0.5) || inEdgeCones(rock, e, patch, i, n, slack))
       {
         candidates.edgeEdge.push_back({ e, i });
       }

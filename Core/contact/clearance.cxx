@@ -192,8 +192,7 @@ double penetration(const PlacedBlock& rock, const SurfacePatch& patch)
     if (n.peak && (n.position.array() >= lower.array()).all() &&
       (n.position.array() <= upper.array()).all())
     {
-      deepest =
-        std::max(deepest, -rock.faceDistance(rock.outermostFace(n.position), n.position));
+      deepest = std::max(deepest, -rock.faceDistance(rock.outermostFace(n.position), n.position));
     }
   }
   return deepest;

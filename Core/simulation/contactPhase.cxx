@@ -91,6 +91,7 @@ bool RockSimulator::isCalm() const
 
 void RockSimulator::stayInContact()
 {
+  steppedAs_ = StepKind::Lasting; // no impact's step to go by yet
   while (!done_)
   {
     const double small = this->impactStep();
@@ -114,10 +115,14 @@ void RockSimulator::stayInContact()
       const double near = reachOf(h);
       std::erase_if(contacts_, [&](const Contact& c) { return !c.closed() && c.gap() > near; });
     }
-    if (contacts_.empty())
+    if (kind == StepKind::Impact && !anyClosed(contacts_))
     {
-      if (timeToTouch(placed_, state_, patch_, parameters_.gravity, 2.0 * small) > small)
+      this->ensureWindow(2.0 * small);
+      const double free = timeToTouch(placed_, state_, window_, parameters_.gravity, 2.0 * small);
+      if (free > small)
       {
+        contacts_.clear();
+        freeFor_ = free;
         return;
       }
     }
@@ -156,10 +161,11 @@ void RockSimulator::armContacts()
     c.stiffness = penalty_ / (1.0 + (strains ? penalty_ * block_.compliance(n, y) : 0.0));
     c.shearStiffness = shear / (1.0 + (strains ? shear * block_.compliance(t, y) : 0.0));
     const double approach = -c.normal.dot(state_.velocity + spin.cross(lever));
-    const double damped =
-      contactDamping(material, surface_.restitution(), dampingRatio_, approach, speed, restingSpeed_);
-    c.dashpot =
-      damped > 0.0 ? 2.0 * damped * std::sqrt(c.stiffness / block_.mobility(n, y)) : 0.0;
+    const double damped = contactDamping(
+      material, surface_.restitution(), dampingRatio_, approach, speed, restingSpeed_);
+    const double mobility = block_.mobility(n, y);
+    c.frequency2 = c.stiffness * mobility;
+    c.dashpot = damped > 0.0 ? 2.0 * damped * std::sqrt(c.stiffness / mobility) : 0.0;
     c.shearDashpot = 2.0 * std::sqrt(c.shearStiffness / block_.mobility(t, y));
   }
 }
@@ -167,6 +173,7 @@ void RockSimulator::armContacts()
 void RockSimulator::takeStep(double h, StepKind kind)
 {
   before_ = state_;
+  const bool lasting = kind == StepKind::Lasting;
   TrajectorySummary& summary = recorder_.trajectory().summary;
   StepRequest request;
   request.duration = h;
@@ -178,10 +185,16 @@ void RockSimulator::takeStep(double h, StepKind kind)
   request.cohesion = surface_.cohesion();
   request.rigid = stiff_;
   request.maxOpenClose = parameters_.maxOpenClose;
-  request.acceleration = acceleration_;
-  request.spinAcceleration = spinAcceleration_;
+  if (steppedAs_ == kind)
+  {
+    request.acceleration = acceleration_;
+    request.spinAcceleration = spinAcceleration_;
+  }
+  else if (!lasting)
+  {
+    request.acceleration.z() = -parameters_.gravity;
+  }
   contactsBefore_ = contacts_;
-  const bool lasting = kind == StepKind::Lasting;
   const double energyBefore = lasting ? this->mechanicalEnergy() + springEnergy_ : 0.0;
 
   StepOutcome outcome;
@@ -235,10 +248,11 @@ void RockSimulator::takeStep(double h, StepKind kind)
   }
   else
   {
-    acceleration_.setZero();
-    spinAcceleration_.setZero();
+    acceleration_ = (state_.velocity - before_.velocity) / taken;
+    spinAcceleration_ = (state_.spin - before_.spin) / taken;
     carrying_ = 0;
   }
+  steppedAs_ = kind;
   const bool touching = anyClosed(contacts_);
   recorder_.recordBetween(before_, state_, touching);
   recorder_.follow(state_);
@@ -329,8 +343,8 @@ void RockSimulator::finishImpact()
   state_.velocity = adjustVelocity(surface_.terrain().material(), event, state_.velocity);
   energy_.restitution += before - kineticEnergy(block_, state_);
   event.velocityAfter = state_.velocity;
-  event.energyLoss = energy_.restitution - impact_.restitutionBefore + energy_.friction -
-    impact_.frictionBefore;
+  event.energyLoss =
+    energy_.restitution - impact_.restitutionBefore + energy_.friction - impact_.frictionBefore;
   acceleration_.setZero();
   spinAcceleration_.setZero();
   Trajectory& trajectory = recorder_.trajectory();

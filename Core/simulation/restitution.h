@@ -3,9 +3,10 @@
 /// @file
 /// What an impact is, and what it takes (METHOD 4; paper 3.1).
 ///
-/// The paper's way, (Vx, Vy, Vz) ← Rv (Vx, Vy, Vz) after an impact that was elastic, is kept for what
-/// comes down on the slope. Whatever glances, rolls or rattles has Rv on the normal velocity at the
-/// contact only: a dashpot beside the contact's spring. So have all touches in the other models.
+/// The paper's way, (Vx, Vy, Vz) ← Rv (Vx, Vy, Vz) after an impact that was elastic, is kept for
+/// what comes down on the slope. Whatever glances, rolls or rattles has Rv on the normal velocity
+/// at the contact only: a dashpot beside the contact's spring. So have all touches in the other
+/// models.
 
 #include "simulation/results.h"
 #include "solver/springs.h"
@@ -17,13 +18,13 @@ namespace rockfall
 {
 
 /// A touch in which the contact point comes in at more than this share of the rock's speed (20.5°)
-/// comes down; below, it glances. A sphere-like polyhedron of 1280 faces that rolls hops from vertex
-/// to vertex and sets down at up to 0.24 of its speed.
+/// comes down; below, it glances. A sphere-like polyhedron of 1280 faces that rolls hops from
+/// vertex to vertex and sets down at up to 0.24 of its speed.
 constexpr double kComesDown = 0.35;
 
-/// Whether a touch is worth an event: the contact point came in faster than `restingSpeed` and either
-/// as fast as from a drop of 5 % of the rock's radius or at more than 11.5° (one fifth of the rock's
-/// speed).
+/// Whether a touch is worth an event: the contact point came in faster than `restingSpeed` and
+/// either as fast as from a drop of 5 % of the rock's radius or at more than 11.5° (one fifth of
+/// the rock's speed).
 inline bool isImpact(
   double approachSpeed, double speed, double restingSpeed, double gravity, double radius)
 {
@@ -39,7 +40,8 @@ inline double restitutionAtSpeed(double restitution, double approachSpeed, doubl
   return restitution / (1.0 + ratio * ratio);
 }
 
-/// Damping ratio ζ of the dashpot of a contact that is about to close. `usual`: that of `restitution`.
+/// Damping ratio ζ of the dashpot of a contact that is about to close. `usual`: that of
+/// `restitution`.
 inline double contactDamping(const SurfaceMaterial& material, double restitution, double usual,
   double approachSpeed, double speed, double restingSpeed)
 {
@@ -56,8 +58,8 @@ inline double contactDamping(const SurfaceMaterial& material, double restitution
   return usual;
 }
 
-/// The velocity of the centroid after an impact, whose `normal` is the mean direction of its impulse,
-/// unit, out of the slope. Never gains energy.
+/// The velocity of the centroid after an impact, whose `normal` is the mean direction of its
+/// impulse, unit, out of the slope. Never gains energy.
 inline Vec3 adjustVelocity(
   const SurfaceMaterial& material, const ImpactEvent& event, const Vec3& velocity)
 {

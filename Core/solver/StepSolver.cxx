@@ -23,8 +23,9 @@ Quat cayley(const Vec3& r)
 }
 
 /// Open–close has settled when no state changes and the gaps move by less than this share of their
-/// change over the step: the energy error of a step is then below 1e-7 of the work done in it.
-constexpr double kGapTolerance = 1e-8;
+/// change over the step: the energy error of a step is then of the order of 1e-7 of the work done
+/// in it.
+constexpr double kGapTolerance = 1e-7;
 
 template <int N>
 Eigen::Matrix<double, N, 1> rowOf(const Vec3& n, const Vec3& lever, const Vec3& x)
@@ -204,8 +205,7 @@ bool BlockStep<N>::evaluate(const StepRequest& request, const VecN& d)
     {
       const Eigen::Vector2d travel(row.shear[0].dot(d), row.shear[1].dot(d));
       const double limit = request.friction * row.force + request.cohesion;
-      const double weight =
-        row.share * ((lasting ? 1.0 : 0.5) + row.shearLag / request.duration);
+      const double weight = row.share * ((lasting ? 1.0 : 0.5) + row.shearLag / request.duration);
       const Eigen::Vector2d stretch = row.slip0 + weight * travel;
       const double length = stretch.norm();
       // A slip that has reversed from one iteration to the next has passed through rest: it locks
@@ -222,7 +222,8 @@ bool BlockStep<N>::evaluate(const StepRequest& request, const VecN& d)
       }
       else
       {
-        // Radial return onto the Coulomb cone; the spring stretches no further than what carries it.
+        // Radial return onto the Coulomb cone; the spring stretches no further than what carries
+        // it.
         state = ContactState::Sliding;
         const Eigen::Vector2d direction = stretch / length;
         row.direction = direction;
@@ -347,10 +348,15 @@ StepOutcome BlockStep<N>::step(const Block& block, const StepRequest& request,
   }
   force += mass_ * ((velocity0 - offset) / h);
 
-  // First guess: free flight.
+  // First guess: free flight, or as the last step went.
   VecN d = VecN::Zero();
-  d.template head<3>() = h * velocity0.template head<3>() + (0.5 * h * h) * down;
+  const Vec3 going = lasting ? down : Vec3(rotation_.transpose() * request.acceleration);
+  d.template head<3>() = h * velocity0.template head<3>() + (0.5 * h * h) * going;
   d.template segment<3>(kRotation) = h * state.spin;
+  if (!lasting)
+  {
+    d.template segment<3>(kRotation) += (0.5 * h * h) * request.spinAcceleration;
+  }
   this->levers(block, contacts, d);
   this->evaluate(request, d);
   Quat turn = cayley(d.template segment<3>(kRotation));
@@ -437,14 +443,14 @@ void BlockStep<N>::write(const StepRequest& request, const VecN& d, std::vector<
     const bool closedAtEnd = row.gap1 < 0.0;
     const double shear = closedAtEnd ? 0.5 * row.shearPenalty * row.slip1.squaredNorm() : 0.0;
     const Eigen::Vector2d travel(row.shear[0].dot(d), row.shear[1].dot(d));
-    outcome.frictionWork += 0.5 * row.shearPenalty * row.slip0.squaredNorm() - shear -
-      row.shearForce.dot(travel);
+    outcome.frictionWork +=
+      0.5 * row.shearPenalty * row.slip0.squaredNorm() - shear - row.shearForce.dot(travel);
     const double compressed0 = std::min(row.gap0, 0.0), compressed1 = std::min(row.gap1, 0.0);
     const double normal = 0.5 * row.penalty * compressed1 * compressed1;
     if (row.dashpot > 0.0)
     {
-      outcome.dampedWork += 0.5 * row.penalty * compressed0 * compressed0 - normal -
-        row.force * (row.gap1 - row.gap0);
+      outcome.dampedWork +=
+        0.5 * row.penalty * compressed0 * compressed0 - normal - row.force * (row.gap1 - row.gap0);
     }
     if (closedAtEnd)
     {

@@ -14,7 +14,8 @@
 /// - Velocities: Impact takes Shi's Ḋ¹ = 2 D/Δt − Ḋ⁰. With a stiff contact that leaves the velocity
 ///   ringing at ±v for ever, so Lasting takes Ḋ¹ = D/Δt + ½ Δt D̈⁰, second-order too and damped at
 ///   high frequency (|λ| = 0.71 as Δt → ∞).
-/// - With 6 unknowns the strain has no inertia: what a contact force strains at its point is part of
+/// - With 6 unknowns the strain has no inertia: what a contact force strains at its point is part
+/// of
 ///   that contact's spring (springs.h).
 /// - One contact is solved in its own three directions, W = J A⁻¹ Jᵀ; several in D.
 
@@ -42,7 +43,8 @@ struct StepRequest
   double cohesion = 0.0;      ///< N per closed contact.
   bool rigid = false;         ///< Strain rows left out: 6 unknowns.
   int maxOpenClose = 12;
-  /// Acceleration of translation (world) and of the spin (body), lagged, for Lasting.
+  /// Acceleration of translation (world) and of the spin (body) in the last step: the lag of
+  /// Lasting, a first guess for Impact.
   Vec3 acceleration = Vec3::Zero();
   Vec3 spinAcceleration = Vec3::Zero();
 };
@@ -119,10 +121,10 @@ private:
 
   std::vector<Row> rows_;
   MatN mass_ = MatN::Zero();
-  MatN inert_ = MatN::Zero(); ///< A: inertia, and elasticity of the strains.
+  MatN inert_ = MatN::Zero();   ///< A: inertia, and elasticity of the strains.
   MatN inverse_ = MatN::Zero(); ///< A⁻¹
-  Mat3 rotation_; ///< Body to world at the start of the step.
-  Mat3 deform_;   ///< I + ε at the start of the step.
+  Mat3 rotation_;               ///< Body to world at the start of the step.
+  Mat3 deform_;                 ///< I + ε at the start of the step.
 };
 
 extern template class BlockStep<6>;

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// The one-sided normal spring of a contact over a step, with the dashpot that makes a coefficient of
-/// restitution of it.
+/// The one-sided normal spring of a contact over a step, with the dashpot that makes a coefficient
+/// of restitution of it.
 
 #include <algorithm>
 #include <cmath>
@@ -74,10 +74,10 @@ inline NormalSpring endSpring(double p, double d1)
   return d1 < 0.0 ? NormalSpring{ -p * d1, p, 1.0 } : NormalSpring{ 0.0, 0.0, 0.0 };
 }
 
-/// Damping ratio ζ of a mass on a spring and a dashpot, c = 2 ζ √(p m), that comes back with e times
-/// its speed when it may leave as soon as the force is no longer a push:
-/// e = exp(−2 ζ acos ζ / √(1 − ζ²)), for ζ > 1 with acosh and √(ζ² − 1) (Schwager & Pöschel 2007,
-/// Granular Matter 9, 465, for the condition of no tension). Between 0.01 and 1; below, as for 0.01.
+/// Damping ratio ζ of a mass on a spring and a dashpot, c = 2 ζ √(p m), that comes back with e
+/// times its speed when it may leave as soon as the force is no longer a push: e = exp(−2 ζ acos ζ
+/// / √(1 − ζ²)), for ζ > 1 with acosh and √(ζ² − 1) (Schwager & Pöschel 2007, Granular Matter 9,
+/// 465, for the condition of no tension). Between 0.01 and 1; below, as for 0.01.
 inline double dampingRatio(double restitution)
 {
   const auto exponent = [](double z)
