@@ -79,6 +79,11 @@ Block::Block(Polyhedron shape, double density, double youngModulus, double poiss
   const Eigen::SelfAdjointEigenSolver<Mat3> axes(inertia_);
   const Vec3 principal = axes.eigenvalues();
   principal_ = principal;
+  axes_ = axes.eigenvectors();
+  if (axes_.determinant() < 0.0)
+  {
+    axes_.col(1) *= -1.0;
+  }
   if (!(principal[0] > 0.0))
   {
     throw GeometryError("a block has the principal moment of inertia " +

@@ -39,6 +39,10 @@ public:
   const Mat6& elasticity() const { return elasticity_; }
   const Mat3& inertia() const { return inertia_; }               ///< kg m², body axes.
   const Mat3& inverseInertia() const { return inverseInertia_; } ///< 1/(kg m²)
+  /// Principal moments of inertia, rising, kg m².
+  const Vec3& principalMoments() const { return principal_; }
+  /// Their axes as columns, right-handed: from principal to body axes.
+  const Mat3& principalAxes() const { return axes_; }
   /// All three principal moments equal (to 1e-9): free rotation is then steady.
   bool isotropic() const { return isotropic_; }
   /// Largest 1/(effective mass) that a contact at a vertex can see, 1/kg.
@@ -61,6 +65,7 @@ private:
   bool isotropic_ = true;
   double largestMobility_ = 0.0;
   Vec3 principal_ = Vec3::Ones(); ///< Principal moments, kg m².
+  Mat3 axes_ = Mat3::Identity();  ///< Principal axes.
   Vec3 reach_ = Vec3::Zero();     ///< Largest distance of a vertex from each principal axis, m.
 };
 
