@@ -99,6 +99,12 @@ inline Vec12 displacementRow(const Vec3& n, const Vec3& rotationLever, const Vec
   return row;
 }
 
+/// M = ρ ∫ Tᵀ T dV of a body with these integrals (density kg/m³, volume m³, second moments about
+/// the centroid m⁵), 12 × 12.
+Mat12 integrateMass(double density, double volume, const Mat3& second);
+/// Isotropic elasticity with engineering shear strains, Pa, 6 × 6.
+Mat6 isotropicElasticity(double youngModulus, double poissonRatio);
+
 /// Kinetic energy of translation and rotation, J.
 double rigidKineticEnergy(const Block& block, const BlockState& state);
 /// Kinetic energy of all 12 variables, J.
