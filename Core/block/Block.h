@@ -39,6 +39,10 @@ public:
   const Mat6& elasticity() const { return elasticity_; }
   const Mat3& inertia() const { return inertia_; }               ///< kg m², body axes.
   const Mat3& inverseInertia() const { return inverseInertia_; } ///< 1/(kg m²)
+  /// Principal moments of inertia, rising, kg m².
+  const Vec3& principalMoments() const { return principal_; }
+  /// Their axes as columns, right-handed: from principal to body axes.
+  const Mat3& principalAxes() const { return axes_; }
   /// All three principal moments equal (to 1e-9): free rotation is then steady.
   bool isotropic() const { return isotropic_; }
   /// Largest 1/(effective mass) that a contact at a vertex can see, 1/kg.
@@ -81,6 +85,7 @@ private:
   bool isotropic_ = true;
   double largestMobility_ = 0.0;
   Vec3 principal_ = Vec3::Ones(); ///< Principal moments, kg m².
+  Mat3 axes_ = Mat3::Identity();  ///< Principal axes.
   Vec3 reach_ = Vec3::Zero();     ///< Largest distance of a vertex from each principal axis, m.
 };
 
@@ -120,6 +125,12 @@ inline Vec12 displacementRow(const Vec3& n, const Vec3& rotationLever, const Vec
   row.segment<6>(kStrain) = strainRow(n, x);
   return row;
 }
+
+/// M = ρ ∫ Tᵀ T dV of a body with these integrals (density kg/m³, volume m³, second moments about
+/// the centroid m⁵), 12 × 12.
+Mat12 integrateMass(double density, double volume, const Mat3& second);
+/// Isotropic elasticity with engineering shear strains, Pa, 6 × 6.
+Mat6 isotropicElasticity(double youngModulus, double poissonRatio);
 
 /// Kinetic energy of translation and rotation, J.
 double rigidKineticEnergy(const Block& block, const BlockState& state);
