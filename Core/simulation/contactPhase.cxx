@@ -294,8 +294,8 @@ void RockSimulator::finishImpact()
     event.impulse > 0.0 ? Vec3(impact_.normalImpulse / event.impulse) : Vec3(Vec3::UnitZ());
   event.restitution = surface_.restitution();
   const double before = kineticEnergy(block_, state_);
-  state_.velocity = applyRestitution(
-    parameters_.restitutionModel, event.restitution, state_.velocity, event.normal);
+  state_.velocity = applyRestitution(surface_.terrain().material().restitutionModel,
+    event.restitution, state_.velocity, event.normal);
   const double taken = before - kineticEnergy(block_, state_);
   energy_.restitution += taken;
   event.velocityAfter = state_.velocity;

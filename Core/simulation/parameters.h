@@ -8,13 +8,6 @@
 namespace rockfall
 {
 
-/// How a rock loses energy at an impact (METHOD 4).
-enum class RestitutionModel
-{
-  Velocity = 0,         ///< The paper's: (Vx, Vy, Vz) ← Rv (Vx, Vy, Vz).
-  NormalTangential = 1, ///< Rv on the normal component only; friction does the rest.
-};
-
 struct SimulationParameters
 {
   double timeStep =
@@ -26,7 +19,6 @@ struct SimulationParameters
   double normalPenalty = 1e9; ///< pₙ, N/m, > 0. METHOD 9.1: ≥ 1e9 is accurate enough.
   double shearRatio = 1.0;    ///< pₛ / pₙ, dimensionless, > 0.
   bool rigid = false;         ///< Infinite stiffness: 6 unknowns per block.
-  RestitutionModel restitutionModel = RestitutionModel::Velocity;
 
   int iterations = 1;     ///< Independent realisations of roughness, Rv and φ, ≥ 1.
   std::uint64_t seed = 1; ///< With the iteration it determines every random number.

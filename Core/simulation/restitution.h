@@ -3,7 +3,7 @@
 /// @file
 /// What an impact is, and what it takes (METHOD 4; paper 3.1).
 
-#include "simulation/parameters.h"
+#include "terrain/Terrain.h"
 
 #include <cmath>
 

@@ -24,7 +24,7 @@ constexpr int kNodes = 201;
 constexpr int kRocks = 256;
 constexpr double kDuration = 10.0; // s
 
-Terrain benchSlope(double restitution)
+Terrain benchSlope(double restitution, RestitutionModel model)
 {
   GridGeometry g;
   g.columns = g.rows = kNodes;
@@ -43,6 +43,7 @@ Terrain benchSlope(double restitution)
   }
   SurfaceMaterial m;
   m.restitution = restitution;
+  m.restitutionModel = model;
   m.frictionAngle = radians(15.0);
   return Terrain(g, std::move(heights), m);
 }
@@ -71,14 +72,13 @@ std::vector<Rock> benchRocks(Shape shape, const Terrain& slope)
 void singleRocks(
   benchmark::State& state, Shape shape, double timeStep, double restitution, RestitutionModel model)
 {
-  const Terrain slope = benchSlope(restitution);
+  const Terrain slope = benchSlope(restitution, model);
   const std::vector<Rock> rocks = benchRocks(shape, slope);
   SimulationParameters p;
   p.timeStep = timeStep;
   p.endTime = kDuration;
   p.outputInterval = kDuration;
   p.threads = 1;
-  p.restitutionModel = model;
   double meanX = 0.0, steps = 0.0;
   for (auto _ : state)
   {

@@ -351,8 +351,8 @@ TEST_F(TestRockfallSimulation, PrintSelfNamesEveryProperty)
   std::ostringstream text;
   this->Simulation->Print(text);
   for (const char* name : { "TimeStep", "EndTime", "OutputInterval", "Gravity", "NormalPenalty",
-         "ShearPenaltyRatio", "Iterations", "Seed", "RockRockContact", "RestitutionModel", "Rigid",
-         "NumberOfThreads", "ShownIteration", "NumberOfRuns" })
+         "ShearPenaltyRatio", "Iterations", "Seed", "RockRockContact", "Rigid", "NumberOfThreads",
+         "ShownIteration", "NumberOfRuns" })
   {
     EXPECT_NE(text.str().find(std::string(name) + ":"), std::string::npos) << name;
   }

@@ -82,10 +82,6 @@ TEST_F(TestRockfallSimulationErrors, BadValuesAreOneErrorAndNothingElse)
   this->ExpectEmpty();
   this->ExpectOneError({ "RockRockContact", "not available" });
   this->Simulation->RockRockContactOff();
-  this->Simulation->SetRestitutionModel(5);
-  this->ExpectEmpty();
-  this->ExpectOneError({ "RestitutionModel", "5" });
-  this->Simulation->SetRestitutionModel(0);
   EXPECT_EQ(this->Summary()->GetNumberOfRows(), 2); // and it recovers
 }
 
