@@ -59,11 +59,15 @@ void addNumbers(vtkFieldData* fieldData, const char* name, std::initializer_list
   fieldData->AddArray(array);
 }
 
-/// The numbers of a small array, however they are arranged in tuples.
-std::vector<double> numbers(vtkFieldData* fieldData, const char* name, int count)
+constexpr int materialNumbers = 10;
+constexpr int materialNumbersOnce = 7; ///< Before there was a choice of restitution models.
+
+/// The numbers of a small array, however they are arranged in tuples. `count` is how many it has,
+/// `orCount` how many it may have instead.
+std::vector<double> numbers(vtkFieldData* fieldData, const char* name, int count, int orCount = -1)
 {
   vtkDataArray* array = fieldData->GetArray(name);
-  if (!array || array->GetNumberOfValues() != count)
+  if (!array || (array->GetNumberOfValues() != count && array->GetNumberOfValues() != orCount))
   {
     throw DataError(
       "The Terrain input must come from DEM to CFE Mesh, directly or from a file saved "
@@ -89,6 +93,30 @@ int gridCount(double value, const char* what)
       what + ", it must be a count");
   }
   return int(std::lround(value));
+}
+
+SurfaceMaterial materialOf(const std::vector<double>& numbers)
+{
+  SurfaceMaterial material;
+  material.restitution = numbers[0];
+  material.restitutionDeviation = numbers[1];
+  material.frictionAngle = numbers[2];
+  material.frictionAngleDeviation = numbers[3];
+  material.cohesion = numbers[4];
+  if (numbers.size() == materialNumbers)
+  {
+    const double model = numbers[7];
+    if (!(model >= double(RestitutionModel::Velocity) &&
+          model <= double(RestitutionModel::SpeedDependent) && model == std::floor(model)))
+    {
+      throw DataError("The Terrain input's field array " + std::string(materialName) +
+        " says RestitutionModel " + numberText(model) + ", this version knows 0, 1 and 2");
+    }
+    material.restitutionModel = RestitutionModel(int(model));
+    material.tangentialRestitution = numbers[8];
+    material.restitutionSpeed = numbers[9];
+  }
+  return material;
 }
 
 /// Throws unless the mesh is the one that belongs to the slope: all of its triangles, and a sample
@@ -148,7 +176,9 @@ void writeTerrain(std::shared_ptr<const Terrain> terrain, int stride, vtkFieldDa
       double(stride) });
   addNumbers(fieldData, materialName,
     { material.restitution, material.restitutionDeviation, material.frictionAngle,
-      material.frictionAngleDeviation, material.cohesion, roughness.mean, roughness.deviation });
+      material.frictionAngleDeviation, material.cohesion, roughness.mean, roughness.deviation,
+      double(material.restitutionModel), material.tangentialRestitution,
+      material.restitutionSpeed });
   const Vec3 origin = grid.origin();
   addNumbers(fieldData, originName, { origin.x(), origin.y(), origin.z() });
   vtkNew<vtkStringArray> crs;
@@ -169,7 +199,8 @@ Terrain readTerrain(vtkPolyData* mesh)
     throw DataError("The Terrain input is empty: its source made nothing");
   }
   const std::vector<double> g = numbers(fieldData, gridName, 6);
-  const std::vector<double> m = numbers(fieldData, materialName, 7);
+  const std::vector<double> m =
+    numbers(fieldData, materialName, materialNumbers, materialNumbersOnce);
   GridGeometry grid;
   grid.columns = gridCount(g[0], "columns");
   grid.rows = gridCount(g[1], "rows");
@@ -181,12 +212,6 @@ Terrain readTerrain(vtkPolyData* mesh)
   {
     grid.crs = crs->GetNumberOfValues() > 0 ? std::string(crs->GetValue(0)) : std::string();
   }
-  SurfaceMaterial material;
-  material.restitution = m[0];
-  material.restitutionDeviation = m[1];
-  material.frictionAngle = m[2];
-  material.frictionAngleDeviation = m[3];
-  material.cohesion = m[4];
   Roughness roughness;
   roughness.mean = m[5];
   roughness.deviation = m[6];
@@ -204,7 +229,7 @@ Terrain readTerrain(vtkPolyData* mesh)
     heights->GetPointer(0), std::size_t(heights->GetNumberOfValues()));
   // The smart pointer lives in the deleter: the terrain keeps the array, not a copy of it.
   std::shared_ptr<const void> owner(view.data(), [heights](const void*) {});
-  Terrain terrain(std::move(grid), view, std::move(owner), material, roughness);
+  Terrain terrain(std::move(grid), view, std::move(owner), materialOf(m), roughness);
   checkMesh(mesh, terrain, stride);
   return terrain;
 }

@@ -10,8 +10,10 @@
 /// | TerrainGrid      | columns, rows, cell size (m), easting and northing of the south-west node |
 /// |                  | (m), stride of the shown mesh (1 = every CFE is shown)                    |
 /// | TerrainCRS       | WKT of the coordinate system, empty for a local one                       |
-/// | TerrainMaterial  | Rv, its deviation, φ (rad), its deviation, cohesion (N), roughness mean   |
-/// |                  | and deviation (m)                                                         |
+/// | TerrainMaterial  | restitution, its deviation, φ (rad), its deviation, cohesion (N),         |
+/// |                  | roughness mean and deviation (m), number of the restitution model,        |
+/// |                  | tangential restitution, speed of the speed-dependent model (m/s). Files   |
+/// |                  | of before there were models end with the roughness: whole velocity        |
 /// | LocalOrigin      | world = local + origin, m                                                 |
 ///
 /// Arrays, so that it survives shallow copies and saving and reopening as .vtp. The heights are

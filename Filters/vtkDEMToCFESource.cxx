@@ -53,6 +53,9 @@ int vtkDEMToCFESource::RequestData(
     rockfall::SurfaceMaterial material;
     material.restitution = this->RestitutionCoefficient;
     material.restitutionDeviation = this->RestitutionDeviation;
+    material.restitutionModel = rockfall::RestitutionModel(this->RestitutionModel);
+    material.tangentialRestitution = this->TangentialRestitution;
+    material.restitutionSpeed = this->RestitutionSpeed;
     material.frictionAngle = rockfall::radians(this->FrictionAngle);
     material.frictionAngleDeviation = rockfall::radians(this->FrictionAngleDeviation);
     material.cohesion = this->Cohesion;
@@ -142,8 +145,11 @@ void vtkDEMToCFESource::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "FileName: " << (this->FileName.empty() ? "(none)" : this->FileName) << "\n";
   os << indent << "CellSize: " << this->CellSize << "\n";
   os << indent << "Band: " << this->Band << "\n";
+  os << indent << "RestitutionModel: " << this->RestitutionModel << "\n";
   os << indent << "RestitutionCoefficient: " << this->RestitutionCoefficient << "\n";
   os << indent << "RestitutionDeviation: " << this->RestitutionDeviation << "\n";
+  os << indent << "TangentialRestitution: " << this->TangentialRestitution << "\n";
+  os << indent << "RestitutionSpeed: " << this->RestitutionSpeed << "\n";
   os << indent << "FrictionAngle: " << this->FrictionAngle << "\n";
   os << indent << "FrictionAngleDeviation: " << this->FrictionAngleDeviation << "\n";
   os << indent << "Cohesion: " << this->Cohesion << "\n";

@@ -58,9 +58,27 @@ public:
   vtkGetMacro(Band, int);
   ///@}
 
+  enum RestitutionModelType
+  {
+    WHOLE_VELOCITY = 0,
+    NORMAL_TANGENTIAL = 1,
+    SPEED_DEPENDENT = 2
+  };
+
   ///@{
   /**
-   * Coefficient of restitution Rv of the slope, 0 to 1, dimensionless. Default 0.8.
+   * What an impact takes: a part of the whole velocity (WHOLE_VELOCITY, the default), parts of its
+   * normal and its tangential component (NORMAL_TANGENTIAL), or the same with a normal coefficient
+   * that falls with the speed of the impact (SPEED_DEPENDENT; Pfeiffer & Bowen 1989, CRSP).
+   */
+  vtkSetMacro(RestitutionModel, int);
+  vtkGetMacro(RestitutionModel, int);
+  ///@}
+
+  ///@{
+  /**
+   * Coefficient of restitution of the slope, 0 to 1, dimensionless: Rv of the whole velocity, or Rn
+   * of its normal component, as RestitutionModel has it. Default 0.8.
    */
   vtkSetMacro(RestitutionCoefficient, double);
   vtkGetMacro(RestitutionCoefficient, double);
@@ -68,10 +86,28 @@ public:
 
   ///@{
   /**
-   * Standard deviation of Rv between iterations, 0 to 1. Default 0.
+   * Standard deviation of RestitutionCoefficient between iterations, 0 to 1. Default 0.
    */
   vtkSetMacro(RestitutionDeviation, double);
   vtkGetMacro(RestitutionDeviation, double);
+  ///@}
+
+  ///@{
+  /**
+   * Tangential coefficient of restitution Rt, 0 to 1, dimensionless: the part that an impact leaves
+   * of what friction left of the tangential velocity. Not used by WHOLE_VELOCITY. Default 1.
+   */
+  vtkSetMacro(TangentialRestitution, double);
+  vtkGetMacro(TangentialRestitution, double);
+  ///@}
+
+  ///@{
+  /**
+   * K of SPEED_DEPENDENT, Rn(v) = Rn / (1 + (v/K)²): the normal speed of impact that halves the
+   * normal coefficient, in m/s, positive. Default 9.144, which is 30 ft/s.
+   */
+  vtkSetMacro(RestitutionSpeed, double);
+  vtkGetMacro(RestitutionSpeed, double);
   ///@}
 
   ///@{
@@ -139,8 +175,11 @@ private:
   std::string FileName;
   double CellSize = 0.0;
   int Band = 1;
+  int RestitutionModel = WHOLE_VELOCITY;
   double RestitutionCoefficient = 0.8;
   double RestitutionDeviation = 0.0;
+  double TangentialRestitution = 1.0;
+  double RestitutionSpeed = 9.144;
   double FrictionAngle = 15.0;
   double FrictionAngleDeviation = 0.0;
   double Cohesion = 0.0;

@@ -43,7 +43,7 @@ constexpr double mostTimeSteps = 1e6;
 auto runKey(const rockfall::SimulationParameters& p)
 {
   return std::make_tuple(p.timeStep, p.endTime, p.outputInterval, p.gravity, p.normalPenalty,
-    p.shearRatio, p.rigid, p.restitutionModel, p.iterations, p.seed);
+    p.shearRatio, p.rigid, p.iterations, p.seed);
 }
 
 /// A data object as it is now.
@@ -170,16 +170,10 @@ bool vtkRockfallSimulation::Simulate(vtkPolyData* terrainInput, vtkPolyData* roc
   parameters.normalPenalty = this->NormalPenalty;
   parameters.shearRatio = this->ShearPenaltyRatio;
   parameters.rigid = this->Rigid;
-  parameters.restitutionModel = rockfall::RestitutionModel(this->RestitutionModel);
   parameters.iterations = this->Iterations;
   parameters.seed = std::uint64_t(this->Seed);
   parameters.threads = this->NumberOfThreads;
   parameters.validate();
-  if (this->RestitutionModel != VELOCITY && this->RestitutionModel != NORMAL_TANGENTIAL)
-  {
-    throw rockfall::ParameterError(
-      "RestitutionModel is " + std::to_string(this->RestitutionModel) + ", it must be 0 or 1");
-  }
   if (this->RockRockContact)
   {
     throw rockfall::ParameterError(
@@ -317,7 +311,6 @@ void vtkRockfallSimulation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Iterations: " << this->Iterations << "\n";
   os << indent << "Seed: " << this->Seed << "\n";
   os << indent << "RockRockContact: " << this->RockRockContact << "\n";
-  os << indent << "RestitutionModel: " << this->RestitutionModel << "\n";
   os << indent << "Rigid: " << this->Rigid << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "ShownIteration: " << this->ShownIteration << "\n";

@@ -117,21 +117,6 @@ public:
   vtkBooleanMacro(RockRockContact, bool);
   ///@}
 
-  enum RestitutionModelType
-  {
-    VELOCITY = 0,
-    NORMAL_TANGENTIAL = 1
-  };
-
-  ///@{
-  /**
-   * How the coefficient of restitution Rv is applied at an impact: to the whole velocity (VELOCITY,
-   * the default) or to its normal component, friction doing the rest (NORMAL_TANGENTIAL).
-   */
-  vtkSetMacro(RestitutionModel, int);
-  vtkGetMacro(RestitutionModel, int);
-  ///@}
-
   ///@{
   /**
    * Whether blocks are rigid (6 unknowns) instead of deformable (12). Default off.
@@ -194,7 +179,6 @@ private:
   int Iterations = 1;
   int Seed = 1;
   bool RockRockContact = false;
-  int RestitutionModel = VELOCITY;
   bool Rigid = false;
   int NumberOfThreads = 0;
   int ShownIteration = 0;

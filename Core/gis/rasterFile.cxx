@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "gis/asciiGrid.h"
+#include "gis/rawSize.h"
 
 #include <cpl_string.h>
 #include <gdal_priv.h>
@@ -145,6 +146,7 @@ RasterFile::RasterFile(
   {
     checkAsciiGrid(fileName, columns_, rows_);
   }
+  checkRawSize(*dataset_, fileName);
   this->findPlace();
   this->findUnits();
 }

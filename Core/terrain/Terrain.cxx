@@ -27,6 +27,18 @@ void SurfaceMaterial::validate() const
 {
   requireRange(this->restitution, 0.0, 1.0, "RestitutionCoefficient", "0 to 1");
   requireRange(this->restitutionDeviation, 0.0, 1.0, "RestitutionDeviation", "0 to 1");
+  const int model = int(this->restitutionModel);
+  if (model < int(RestitutionModel::Velocity) || model > int(RestitutionModel::SpeedDependent))
+  {
+    throw ParameterError("RestitutionModel is " + std::to_string(model) +
+      ", it must be 0 (whole velocity), 1 (normal and tangential) or 2 (speed-dependent)");
+  }
+  requireRange(this->tangentialRestitution, 0.0, 1.0, "TangentialRestitution", "0 to 1");
+  if (!(this->restitutionSpeed > 0.0 && std::isfinite(this->restitutionSpeed)))
+  {
+    throw ParameterError("RestitutionSpeed is " + std::to_string(this->restitutionSpeed) +
+      ", it must be a positive, finite number of metres per second");
+  }
   if (!(this->frictionAngle >= 0.0 && this->frictionAngle < radians(90.0)))
   {
     throw ParameterError("FrictionAngle is " + std::to_string(degrees(this->frictionAngle)) +

@@ -35,22 +35,30 @@ struct GridGeometry
   Vec3 origin() const { return { xOrigin, yOrigin, 0.0 }; }
 };
 
-/// How a rock loses energy at an impact (METHOD 4).
+/// What the slope's coefficient of restitution acts on after an impact (METHOD 4).
 enum class RestitutionModel
 {
+  /// The paper's: (Vx, Vy, Vz) ← Rv (Vx, Vy, Vz), Rv = `restitution`.
   Velocity = 0,
+  /// Rn = `restitution` on the normal velocity of the contact, Rt = `tangentialRestitution` on what
+  /// friction left of the tangential one.
   NormalTangential = 1,
+  /// The same with Rn(v) = Rn / (1 + (v/K)²), v the normal speed of approach, K =
+  /// `restitutionSpeed`: hard impacts crush and lose more. Pfeiffer & Bowen (1989), Computer
+  /// simulation of rockfalls, Bulletin of the Association of Engineering Geologists 26(1), 135–146;
+  /// the model of the Colorado Rockfall Simulation Program (CRSP).
   SpeedDependent = 2,
 };
 
 /// What a CFE is made of.
 struct SurfaceMaterial
 {
+  double restitution = 0.8;          ///< Rv, or Rn, as the model has it; dimensionless, 0 … 1.
+  double restitutionDeviation = 0.0; ///< Standard deviation of `restitution`, 0 … 1.
   RestitutionModel restitutionModel = RestitutionModel::Velocity;
-  double tangentialRestitution = 1.0;
+  double tangentialRestitution = 1.0; ///< Rt, dimensionless, 0 … 1. Not used by Velocity.
+  /// K, normal speed at which half of Rn is left, m/s, > 0: 30 ft/s. Used by SpeedDependent only.
   double restitutionSpeed = 9.144;
-  double restitution = 0.8;             ///< Rv, dimensionless, 0 … 1.
-  double restitutionDeviation = 0.0;    ///< Standard deviation of Rv, ≥ 0.
   double frictionAngle = radians(15.0); ///< φ, rad, 0 … <π/2.
   double frictionAngleDeviation = 0.0;  ///< Standard deviation of φ, rad, ≥ 0.
   double cohesion = 0.0;                ///< c, N per contact point, ≥ 0.

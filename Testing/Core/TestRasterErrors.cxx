@@ -128,6 +128,92 @@ TEST(RasterErrors, truncated)
     failure<FileError>(raw), { raw, "rows 1 to 100 of band 1", "cannot be read", "scanline 50" }));
 }
 
+/// An ENVI raster of 3 × 4 numbers of 4 bytes in each of two bands, after 8 bytes of something
+/// else: 104 bytes, of which this many are written.
+std::string writeEnvi(std::size_t bytes, const std::string& interleave = "bsq")
+{
+  writeFile("envi.hdr",
+    "ENVI\nsamples = 3\nlines = 4\nbands = 2\nheader offset = 8\nfile type = ENVI Standard\n"
+    "data type = 4\ninterleave = " +
+      interleave +
+      "\nbyte order = 0\nmap info = {UTM, 1, 1, 600000, 5100000, 10, 10, 32, North, WGS-84}\n");
+  return writeFile("envi.dat", std::string(bytes, '\1'));
+}
+
+TEST(RasterErrors, truncatedEnvi)
+{
+  for (const char* interleave : { "bsq", "bil", "bip" })
+  {
+    EXPECT_EQ(readRaster(writeEnvi(104, interleave)).geometry.rows, 4) << interleave;
+    EXPECT_EQ(readRaster(writeEnvi(200, interleave)).geometry.rows, 4) << interleave;
+    const std::string path = writeEnvi(103, interleave);
+    EXPECT_TRUE(holds(failure<FileError>(path),
+      { path, "truncated", "band 2", "3 x 4", "needs 104 bytes", "has 103" }))
+      << interleave;
+  }
+  const std::string path = writeEnvi(40); // the first band is cut off, too
+  EXPECT_TRUE(
+    holds(failure<FileError>(path), { path, "band 1", "needs 56 bytes", "the file has 40" }));
+  const std::string empty = writeEnvi(0);
+  EXPECT_TRUE(holds(failure<FileError>(empty), { empty }));
+}
+
+TEST(RasterErrors, truncatedRawBandOfAVrt)
+{
+  const std::string path = small().write();
+  EXPECT_EQ(readRaster(path).geometry.columns, 3);
+  const std::string raw = writeFile("raster.raw", std::string(47, '\0'));
+  EXPECT_TRUE(holds(failure<FileError>(path),
+    { path, raw, "truncated", "band 1", "3 x 2", "needs 48 bytes", "has 47" }));
+
+  // Rows that run backwards through the file begin at its last one.
+  const auto backwards = [](const std::string& numbers)
+  {
+    return writeFile("backwards.vrt",
+      "<VRTDataset rasterXSize=\"3\" rasterYSize=\"2\"><GeoTransform>0, 10, 0, 20, 0, -10"
+      "</GeoTransform><VRTRasterBand dataType=\"Float64\" band=\"1\" "
+      "subClass=\"VRTRawRasterBand\"><SourceFilename>" +
+        numbers +
+        "</SourceFilename><ImageOffset>24</ImageOffset><PixelOffset>8</PixelOffset>"
+        "<LineOffset>-24</LineOffset></VRTRasterBand></VRTDataset>");
+  };
+  EXPECT_EQ(readRaster(backwards(writeFile("whole", std::string(48, '\0')))).geometry.rows, 2);
+  const std::string cut = writeFile("cut", std::string(40, '\0'));
+  EXPECT_TRUE(
+    holds(failure<FileError>(backwards(cut)), { cut, "needs 48 bytes", "the file has 40" }));
+}
+
+TEST(RasterErrors, truncatedMaskOfAVrt)
+{
+  RawRaster raster = small();
+  const std::string mask = writeFile("mask.raw", std::string(5, '\1'));
+  raster.dataset = "<MaskBand><VRTRasterBand dataType=\"Byte\" subClass=\"VRTRawRasterBand\">"
+                   "<SourceFilename relativeToVRT=\"0\">" +
+    mask +
+    "</SourceFilename><PixelOffset>1</PixelOffset><LineOffset>3</LineOffset></VRTRasterBand>"
+    "</MaskBand>";
+  const std::string path = raster.write();
+  EXPECT_TRUE(holds(failure<FileError>(path), { path, mask, "needs 6 bytes", "has 5" }));
+}
+
+TEST(RasterErrors, truncatedSourceOfAVrt)
+{
+  const auto over = [](const std::string& envi)
+  {
+    return writeFile("over.vrt",
+      "<VRTDataset rasterXSize=\"3\" rasterYSize=\"4\"><GeoTransform>0, 10, 0, 40, 0, -10"
+      "</GeoTransform><VRTRasterBand dataType=\"Float32\" band=\"1\"><SimpleSource>"
+      "<SourceFilename>" +
+        envi +
+        "</SourceFilename><SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>");
+  };
+  EXPECT_EQ(readRaster(over(writeEnvi(104))).geometry.rows, 4);
+  const std::string envi = writeEnvi(60);
+  const std::string path = over(envi);
+  EXPECT_TRUE(
+    holds(failure<FileError>(path), { path, envi, "truncated", "needs 104 bytes", "has 60" }));
+}
+
 TEST(RasterErrors, asciiGridOfTheWrongLength)
 {
   const std::string less = writeAscii({ "1 2 3", "4 5" }, 3);

@@ -165,6 +165,42 @@ TEST(Terrain, RefusesWhatIsNoSlope)
   }
 }
 
+TEST(Terrain, RefusesARestitutionThatIsNone)
+{
+  const double nan = std::nan("");
+  const struct
+  {
+    SurfaceMaterial material;
+    const char* message; ///< Empty where the material is fine.
+  } cases[] = {
+    { { .restitutionModel = RestitutionModel::NormalTangential, .tangentialRestitution = 0.0 },
+      "" },
+    { { .restitutionModel = RestitutionModel::SpeedDependent, .restitutionSpeed = 0.1 }, "" },
+    { { .restitutionModel = RestitutionModel(3) }, "RestitutionModel is 3" },
+    { { .restitutionModel = RestitutionModel(-1) }, "RestitutionModel is -1" },
+    { { .tangentialRestitution = 1.01 }, "TangentialRestitution is 1.01" },
+    { { .tangentialRestitution = -0.1 }, "TangentialRestitution is -0.1" },
+    { { .tangentialRestitution = nan }, "TangentialRestitution is nan" },
+    { { .restitutionSpeed = 0.0 }, "RestitutionSpeed is 0" },
+    { { .restitutionSpeed = -2.0 }, "RestitutionSpeed is -2" },
+    { { .restitutionSpeed = INFINITY }, "RestitutionSpeed is inf" },
+  };
+  for (const auto& [material, message] : cases)
+  {
+    std::string said;
+    try
+    {
+      material.validate();
+    }
+    catch (const ParameterError& e)
+    {
+      said = e.what();
+    }
+    EXPECT_EQ(said.empty(), std::string(message).empty()) << said;
+    EXPECT_NE(said.find(message), std::string::npos) << said << " without " << message;
+  }
+}
+
 TEST(Surface, DrawsRoughnessByRealisation)
 {
   const Roughness rough{ 0.1, 0.2 };

@@ -134,6 +134,19 @@ TEST_F(TestDEMToCFESource, FieldDataSurviveAFile)
   EXPECT_TRUE(after->GetAbstractArray("TerrainCRS"));
 }
 
+TEST_F(TestDEMToCFESource, RestitutionTravelsInTheFieldData)
+{
+  this->Source->SetRestitutionModel(vtkDEMToCFESource::SPEED_DEPENDENT);
+  this->Source->SetRestitutionCoefficient(0.4);
+  this->Source->SetTangentialRestitution(0.9);
+  this->Source->SetRestitutionSpeed(5.0);
+  vtkFieldData* data = this->Update()->GetFieldData();
+  EXPECT_EQ(value(data, "TerrainMaterial", 0, 0), 0.4);
+  EXPECT_EQ(value(data, "TerrainMaterial", 0, 7), 2.0);
+  EXPECT_EQ(value(data, "TerrainMaterial", 0, 8), 0.9);
+  EXPECT_EQ(value(data, "TerrainMaterial", 0, 9), 5.0);
+}
+
 TEST_F(TestDEMToCFESource, HeightsOutliveTheSource)
 {
   vtkNew<vtkPolyData> copy;
@@ -188,6 +201,21 @@ TEST_F(TestDEMToCFESource, BadValuesAreOneErrorAndNothingElse)
   this->ExpectOneError({ "RestitutionCoefficient", "1.5" });
   this->Source->SetRestitutionCoefficient(0.8);
 
+  this->Source->SetRestitutionModel(3);
+  EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
+  this->ExpectOneError({ "RestitutionModel", "3" });
+  this->Source->SetRestitutionModel(vtkDEMToCFESource::NORMAL_TANGENTIAL);
+
+  this->Source->SetTangentialRestitution(-0.5);
+  EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
+  this->ExpectOneError({ "TangentialRestitution", "-0.5" });
+  this->Source->SetTangentialRestitution(1.0);
+
+  this->Source->SetRestitutionSpeed(0.0);
+  EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
+  this->ExpectOneError({ "RestitutionSpeed", "0" });
+  this->Source->SetRestitutionSpeed(9.144);
+
   this->Source->SetFrictionAngle(90.0);
   EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
   this->ExpectOneError({ "FrictionAngle", "90" });
@@ -205,9 +233,10 @@ TEST_F(TestDEMToCFESource, PrintSelfNamesEveryProperty)
 {
   std::ostringstream text;
   this->Source->Print(text);
-  for (const char* name : { "FileName", "CellSize", "Band", "RestitutionCoefficient",
-         "RestitutionDeviation", "FrictionAngle", "FrictionAngleDeviation", "Cohesion",
-         "RoughnessMean", "RoughnessDeviation", "MaximumDisplayCells" })
+  for (const char* name : { "FileName", "CellSize", "Band", "RestitutionModel",
+         "RestitutionCoefficient", "RestitutionDeviation", "TangentialRestitution",
+         "RestitutionSpeed", "FrictionAngle", "FrictionAngleDeviation", "Cohesion", "RoughnessMean",
+         "RoughnessDeviation", "MaximumDisplayCells" })
   {
     EXPECT_NE(text.str().find(std::string(name) + ":"), std::string::npos) << name;
   }

@@ -4,6 +4,7 @@
 #include "vtkCallbackCommand.h"
 #include "vtkCellData.h"
 #include "vtkCubeSource.h"
+#include "vtkDoubleArray.h"
 #include "vtkInformation.h"
 #include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -223,6 +224,7 @@ TEST_F(TestRockfallSimulation, ResultsDoNotDependOnThreads)
 
 TEST_F(TestRockfallSimulation, SavedInputsGiveTheSameRun)
 {
+  this->Terrain->SetRestitutionModel(vtkDEMToCFESource::NORMAL_TANGENTIAL); // not the default
   const auto direct = numbersOf(this->Output(1));
   vtkNew<vtkXMLPolyDataReader> readers[2];
   vtkAlgorithm* sources[2] = { this->Terrain, this->Rocks };
@@ -238,6 +240,32 @@ TEST_F(TestRockfallSimulation, SavedInputsGiveTheSameRun)
     this->Simulation->SetInputConnection(port, readers[port]->GetOutputPort());
   }
   EXPECT_EQ(direct, numbersOf(this->Output(1)));
+}
+
+TEST_F(TestRockfallSimulation, TerrainsOfBeforeThereWereModelsFallAsEver)
+{
+  const auto now = numbersOf(this->Output(1));
+  vtkNew<vtkPolyData> old;
+  old->DeepCopy(this->Terrain->GetOutput());
+  vtkNew<vtkDoubleArray> material;
+  material->SetName("TerrainMaterial");
+  for (int k = 0; k < 7; ++k)
+  {
+    material->InsertNextValue(value(old->GetFieldData(), "TerrainMaterial", 0, k));
+  }
+  old->GetFieldData()->AddArray(material);
+  this->Simulation->SetInputData(0, old);
+  EXPECT_EQ(now, numbersOf(this->Output(1)));
+}
+
+TEST_F(TestRockfallSimulation, RestitutionIsTheMaterials)
+{
+  const auto whole = numbersOf(this->Output(1));
+  this->Terrain->SetTangentialRestitution(0.5); // that model has no use for it
+  this->Terrain->SetRestitutionSpeed(1.0);
+  EXPECT_EQ(whole, numbersOf(this->Output(1)));
+  this->Terrain->SetRestitutionModel(vtkDEMToCFESource::NORMAL_TANGENTIAL);
+  EXPECT_NE(whole, numbersOf(this->Output(1)));
 }
 
 TEST_F(TestRockfallSimulation, CoarselyShownTerrainIsUsedInFull)
@@ -351,8 +379,8 @@ TEST_F(TestRockfallSimulation, PrintSelfNamesEveryProperty)
   std::ostringstream text;
   this->Simulation->Print(text);
   for (const char* name : { "TimeStep", "EndTime", "OutputInterval", "Gravity", "NormalPenalty",
-         "ShearPenaltyRatio", "Iterations", "Seed", "RockRockContact", "RestitutionModel", "Rigid",
-         "NumberOfThreads", "ShownIteration", "NumberOfRuns" })
+         "ShearPenaltyRatio", "Iterations", "Seed", "RockRockContact", "Rigid", "NumberOfThreads",
+         "ShownIteration", "NumberOfRuns" })
   {
     EXPECT_NE(text.str().find(std::string(name) + ":"), std::string::npos) << name;
   }

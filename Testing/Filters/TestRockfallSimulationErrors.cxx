@@ -82,11 +82,30 @@ TEST_F(TestRockfallSimulationErrors, BadValuesAreOneErrorAndNothingElse)
   this->ExpectEmpty();
   this->ExpectOneError({ "RockRockContact", "not available" });
   this->Simulation->RockRockContactOff();
-  this->Simulation->SetRestitutionModel(5);
-  this->ExpectEmpty();
-  this->ExpectOneError({ "RestitutionModel", "5" });
-  this->Simulation->SetRestitutionModel(0);
   EXPECT_EQ(this->Summary()->GetNumberOfRows(), 2); // and it recovers
+}
+
+TEST_F(TestRockfallSimulationErrors, AnUnknownRestitutionModelInAFile)
+{
+  this->Terrain->Update();
+  vtkNew<vtkPolyData> slope;
+  slope->DeepCopy(this->Terrain->GetOutput());
+  vtkDataArray* material = slope->GetFieldData()->GetArray("TerrainMaterial");
+  ASSERT_TRUE(material);
+  ASSERT_EQ(material->GetNumberOfValues(), 10);
+  this->Simulation->SetInputData(0, slope);
+  for (double model : { 3.0, -1.0, 0.5, 1e30, std::nan("") })
+  {
+    material->SetComponent(0, 7, model);
+    slope->Modified();
+    this->ExpectEmpty();
+    this->ExpectOneError({ "TerrainMaterial says RestitutionModel" });
+  }
+  material->SetComponent(0, 7, 2.0);
+  material->SetComponent(0, 9, -1.0);
+  slope->Modified();
+  this->ExpectEmpty();
+  this->ExpectOneError({ "RestitutionSpeed", "-1" });
 }
 
 TEST_F(TestRockfallSimulationErrors, BadPlacesAreErrorsOfTheBlock)

@@ -62,6 +62,9 @@ bad_dem("one-row raster", [name, "1 row"], FileName=name)
 name = write_grid("good.asc", incline(5, 5))
 bad_dem("band", [name, "3"], FileName=name, Band=3)
 bad_dem("cell size", ["CellSize", "-1"], CellSize=-1.0)
+bad_dem("restitution model", ["RestitutionModel", "3"], RestitutionModel=3)
+bad_dem("tangential restitution", ["TangentialRestitution", "1.5"], TangentialRestitution=1.5)
+bad_dem("restitution speed", ["RestitutionSpeed", "0"], RestitutionSpeed=0.0)
 bad_dem("restitution", ["RestitutionCoefficient", "2"], RestitutionCoefficient=2.0)
 
 # Rocks.

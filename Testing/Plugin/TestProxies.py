@@ -5,7 +5,8 @@ from paraview import servermanager, simple
 # label, name in Python, group, properties that scripts rely on
 PROXIES = [
     ("DEM to CFE Mesh", "DEMtoCFEMesh", "sources",
-     "FileName CellSize RestitutionCoefficient RestitutionDeviation FrictionAngle "
+     "FileName CellSize RestitutionModel RestitutionCoefficient RestitutionDeviation "
+     "TangentialRestitution RestitutionSpeed FrictionAngle "
      "FrictionAngleDeviation Cohesion RoughnessMean RoughnessDeviation"),
     ("Rock Blocks", "RockBlocks", "sources",
      "Shape Volume Center Orientation Velocity AngularVelocity Density YoungModulus PoissonRatio "
@@ -40,6 +41,22 @@ for (label, name, group, properties), proxy in zip(PROXIES, (dem, rocks, simulat
         assert text and text.GetDescription().strip(), f"{name}.{wanted} has no documentation"
         # A name in Python comes from the label, one in a state file from the XML: they are one.
         assert proxy.SMProxy.GetProperty(wanted), f"{name}.{wanted} bears another name in the XML"
+
+# What a restitution model has no use for is not shown with it.
+def shown_for(name):
+    """The value that decides, and whether it shows or hides the property."""
+    hints = dem.GetProperty(name).SMProperty.GetHints()
+    decorator = hints.FindNestedElementByName("PropertyWidgetDecorator")
+    assert decorator.GetAttribute("type") == "GenericDecorator", name
+    assert decorator.GetAttribute("mode") == "visibility", name
+    assert decorator.GetAttribute("property") == "RestitutionModel", name
+    return decorator.GetAttribute("value"), decorator.GetAttribute("inverse") or "0"
+
+
+assert dem.GetProperty("RestitutionModel").Available == \
+    ["Whole velocity", "Normal and tangential", "Speed-dependent"]
+assert shown_for("TangentialRestitution") == ("0", "1")
+assert shown_for("RestitutionSpeed") == ("2", "0")
 
 # Defaults run as they stand.
 assert rocks.Shape == "Cube" and rocks.Volume == 1.0 and list(rocks.Orientation) == [0, 0, 0]
