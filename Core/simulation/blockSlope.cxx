@@ -60,6 +60,7 @@ private:
   const SimulationParameters& parameters_;
   BlockSystem system_;
   SurfacePatch patch_; ///< All of the slope.
+  CandidatePairs candidates_;
   BlockState state_;
   PlacedBlock placed_;
   std::vector<Contact> contacts_;
@@ -98,7 +99,8 @@ double BlockSlopeSimulator::energy() const
 /// Against every block of the slope.
 void BlockSlopeSimulator::findContacts(double reach)
 {
-  updateContacts(placed_, patch_, reach, contacts_);
+  gatherCandidates(placed_, state_, patch_, reach, candidates_);
+  updateContacts(placed_, patch_, candidates_, reach, contacts_);
 }
 
 bool BlockSlopeSimulator::isCalm() const
