@@ -62,6 +62,11 @@ public:
              poissonRatio_ * along * along) /
       (youngModulus_ * this->volume());
   }
+  /// Its largest value, at the vertex that is farthest out and along its radius, m/N.
+  double largestCompliance() const
+  {
+    return shape_.radius() * shape_.radius() / (youngModulus_ * this->volume());
+  }
   /// Lowest angular frequency of the uniform strains of the free block, rad/s.
   double strainFrequency() const { return strainFrequency_; }
   /// Bounds of |ωᵢ| about the principal axes, for ever in free rotation from `spin` (body axes),

@@ -80,6 +80,7 @@ private:
   EnergyAudit energy_;
   double springEnergy_ = 0.0; ///< In the contact springs, J.
   double normalEnergy_ = 0.0; ///< In the normal ones, J.
+  double softness_ = 0.0; ///< Of a contact and the block behind it, m/N.
   double penalty_ = 0.0;      ///< pₙ of the contacts that are made now, N/m.
   bool stiff_ = false;        ///< The block's strain follows its contacts without inertia.
   double dampingRatio_ = 0.0; ///< ζ for the surface's restitution.
@@ -89,6 +90,8 @@ private:
   Vec3 spinAcceleration_ = Vec3::Zero();
   StepKind steppedAs_ = StepKind::Impact; ///< In the last step.
   std::uint64_t carrying_ = 0;            ///< What carried in the last lasting step.
+  double ringing_ = 0.0;  ///< Period of a soft block's slowest strain, 0 for a stiff one, s.
+  double openTime_ = 0.0; ///< Since it touched, s.
   double freeFor_ = 0.0; ///< Nothing can be touched for so long after a take-off, s.
   bool done_ = false;
 };

@@ -14,6 +14,9 @@ namespace
 
 /// Speed at which an overlap that was found, not made, is pressed out of a lasting contact, m/s.
 constexpr double kPressOut = 0.005;
+/// Damping ratio of slip at an impact: high, so that a contact that sticks leaves without slip and
+/// not with what its shear spring gives back (rigid-body impact: no tangential restitution).
+constexpr double kShearDamping = 5.0;
 /// An overlap beyond this share of the radius that nothing carries is held where it is.
 constexpr double kLooseOverlap = 1e-3;
 
@@ -74,9 +77,10 @@ bool RockSimulator::isCalm() const
 {
   // At the turning point of an impact nothing moves either, but the springs hold its energy; at
   // rest they hold the weight's, ½ m v² with v = g √(m/p), several times that when the rock rolls.
-  const double settled = restingSpeed_ +
-    4.0 * parameters_.gravity * std::sqrt(block_.mass() / parameters_.normalPenalty);
-  if (normalEnergy_ > 0.5 * block_.mass() * settled * settled)
+  const double settled =
+    restingSpeed_ + 4.0 * parameters_.gravity * std::sqrt(block_.mass() * softness_);
+  const double held = normalEnergy_ + (stiff_ ? 0.0 : strainEnergy(block_, state_));
+  if (held > 0.5 * block_.mass() * settled * settled)
   {
     return false;
   }
@@ -92,6 +96,7 @@ bool RockSimulator::isCalm() const
 void RockSimulator::stayInContact()
 {
   steppedAs_ = StepKind::Lasting; // no impact's step to go by yet
+  openTime_ = ringing_;
   while (!done_)
   {
     const double small = this->impactStep();
@@ -115,13 +120,18 @@ void RockSimulator::stayInContact()
       const double near = reachOf(h);
       std::erase_if(contacts_, [&](const Contact& c) { return !c.closed() && c.gap() > near; });
     }
-    if (kind == StepKind::Impact && !anyClosed(contacts_))
+    if (kind == StepKind::Impact && !anyClosed(contacts_) && openTime_ >= ringing_)
     {
       this->ensureWindow(2.0 * small);
       const double free = timeToTouch(placed_, state_, window_, parameters_.gravity, 2.0 * small);
       if (free > small)
       {
         contacts_.clear();
+        if (!stiff_)
+        {
+          energy_.vibration += relaxStrain(block_, state_);
+          this->finishImpact();
+        }
         freeFor_ = free;
         return;
       }
@@ -166,7 +176,7 @@ void RockSimulator::armContacts()
     const double mobility = block_.mobility(n, y);
     c.frequency2 = c.stiffness * mobility;
     c.dashpot = damped > 0.0 ? 2.0 * damped * std::sqrt(c.stiffness / mobility) : 0.0;
-    c.shearDashpot = 2.0 * std::sqrt(c.shearStiffness / block_.mobility(t, y));
+    c.shearDashpot = 2.0 * kShearDamping * std::sqrt(c.shearStiffness / block_.mobility(t, y));
   }
 }
 
@@ -257,11 +267,10 @@ void RockSimulator::takeStep(double h, StepKind kind)
   recorder_.recordBetween(before_, state_, touching);
   recorder_.follow(state_);
   this->followImpact(before_, taken);
-  if (!touching && !stiff_)
-  {
-    energy_.vibration += relaxStrain(block_, state_);
-  }
-  if (!touching || lasting)
+  // A soft block that is still being pressed together leaves its contacts and comes back to them: it
+  // has taken off when it has not touched for a period of its own.
+  openTime_ = touching ? 0.0 : openTime_ + taken;
+  if (lasting || (!touching && stiff_))
   {
     this->finishImpact();
   }
