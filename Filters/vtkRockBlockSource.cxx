@@ -51,6 +51,11 @@ int vtkRockBlockSource::RequestData(
     defaults.poissonRatio = this->PoissonRatio;
     defaults.shapeFile = this->ShapeFileName;
     defaults.shapeFileAsItIs = this->ShapeFileMode == AS_IT_IS;
+    if (this->ShapeFileMode != CONVEX_HULL && this->ShapeFileMode != AS_IT_IS)
+    {
+      throw rockfall::ParameterError("ShapeFileMode is " + std::to_string(this->ShapeFileMode) +
+        ", it must be 0 (convex hull) or 1 (as it is)");
+    }
     defaults.scaleToVolume = this->ScaleToVolume;
 
     std::vector<rockfall::SourceRow> rows;

@@ -146,7 +146,7 @@ public:
 
   ///@{
   /**
-   * Poisson's ratio, 0 to below 0.5, dimensionless. Default 0.1.
+   * Poisson's ratio, 0 to 0.49, dimensionless. Default 0.1.
    */
   vtkSetMacro(PoissonRatio, double);
   vtkGetMacro(PoissonRatio, double);

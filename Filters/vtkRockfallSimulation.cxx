@@ -172,6 +172,11 @@ bool vtkRockfallSimulation::Simulate(vtkPolyData* terrainInput, vtkPolyData* roc
   parameters.rigid = this->Rigid;
   parameters.iterations = this->Iterations;
   parameters.seed = std::uint64_t(this->Seed);
+  if (this->Seed < 0)
+  {
+    throw rockfall::ParameterError(
+      "Seed is " + std::to_string(this->Seed) + ", it must be at least 0");
+  }
   parameters.threads = this->NumberOfThreads;
   parameters.validate();
   if (this->RockRockContact)
