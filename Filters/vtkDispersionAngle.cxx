@@ -4,6 +4,7 @@
 #include "base/errors.h"
 #include "failure.h"
 #include "pathGroups.h"
+#include "pieces.h"
 #include "statistics/dispersion.h"
 
 #include "vtkCellArray.h"
@@ -124,7 +125,8 @@ int vtkDispersionAngle::RequestData(
     {
       throw rockfall::DataError("The Input is missing");
     }
-    if (rockfall::filters::inheritFailure(input, this))
+    if (rockfall::filters::inheritFailure(input, this) ||
+      (input->GetNumberOfLines() == 0 && rockfall::filters::isFurtherPiece(outputVector)))
     {
       return 1;
     }

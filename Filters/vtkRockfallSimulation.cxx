@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "failure.h"
+#include "pieces.h"
 #include "runOutputs.h"
 #include "simulation/ensemble.h"
 #include "terrainFieldData.h"
@@ -245,6 +246,10 @@ int vtkRockfallSimulation::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   vtkPolyData* terrain = vtkPolyData::GetData(inputVector[0]);
+  if (rockfall::filters::isFurtherPiece(outputVector))
+  {
+    return 1;
+  }
   vtkPolyData* rocks = vtkPolyData::GetData(inputVector[1]);
   if (!terrain || !rocks)
   {
