@@ -6,6 +6,7 @@
 #include "pathGroups.h"
 #include "pieces.h"
 #include "statistics/dispersion.h"
+#include "terrainFieldData.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -178,6 +179,11 @@ int vtkDispersionAngle::RequestData(
       lateralMax->InsertNextValue(dispersion.lateralMax);
       deviation->InsertNextValue(dispersion.lateralDeviation);
       direction->InsertNextValue(rockfall::degrees(azimuth));
+    }
+    for (vtkDataObject* made :
+      { static_cast<vtkDataObject*>(table), static_cast<vtkDataObject*>(lines) })
+    {
+      rockfall::filters::copyCoordinateSystem(input->GetFieldData(), made->GetFieldData());
     }
     vtkTable::GetData(outputVector, 0)->ShallowCopy(table);
     vtkPolyData::GetData(outputVector, 1)->ShallowCopy(lines);
