@@ -172,12 +172,12 @@ bool vtkRockfallSimulation::Simulate(vtkPolyData* terrainInput, vtkPolyData* roc
   parameters.shearRatio = this->ShearPenaltyRatio;
   parameters.rigid = this->Rigid;
   parameters.iterations = this->Iterations;
-  parameters.seed = std::uint64_t(this->Seed);
   if (this->Seed < 0)
   {
     throw rockfall::ParameterError(
       "Seed is " + std::to_string(this->Seed) + ", it must be at least 0");
   }
+  parameters.seed = std::uint64_t(this->Seed);
   parameters.threads = this->NumberOfThreads;
   parameters.validate();
   if (this->RockRockContact)
@@ -199,6 +199,7 @@ bool vtkRockfallSimulation::Simulate(vtkPolyData* terrainInput, vtkPolyData* roc
   const rockfall::Terrain terrain = rockfall::filters::readTerrain(terrainInput);
   rockfall::filters::FinishedRun& run = cache->run;
   run.origin = terrain.geometry().origin();
+  run.gravity = parameters.gravity;
   run.rocks = rockfall::filters::readRocks(rocksInput, run.origin);
 
   std::vector<rockfall::Rock> rocks;
@@ -245,11 +246,11 @@ int vtkRockfallSimulation::Fail(
 int vtkRockfallSimulation::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkPolyData* terrain = vtkPolyData::GetData(inputVector[0]);
   if (rockfall::filters::isFurtherPiece(outputVector))
   {
     return 1;
   }
+  vtkPolyData* terrain = vtkPolyData::GetData(inputVector[0]);
   vtkPolyData* rocks = vtkPolyData::GetData(inputVector[1]);
   if (!terrain || !rocks)
   {
