@@ -12,11 +12,8 @@
 namespace rockfall
 {
 
-namespace
-{
-
-/// ρ ∫ Tᵀ T dV. T is linear in X, T = T₀ + Σ Xₖ Tₖ, and first moments vanish about the centroid:
-/// ∫ Tᵀ T dV = V T₀ᵀ T₀ + Σₖₗ (∫ Xₖ Xₗ dV) Tₖᵀ Tₗ.
+// T is linear in X, T = T₀ + Σ Xₖ Tₖ, and first moments vanish about the centroid:
+// ∫ Tᵀ T dV = V T₀ᵀ T₀ + Σₖₗ (∫ Xₖ Xₗ dV) Tₖᵀ Tₗ.
 Mat12 integrateMass(double density, double volume, const Mat3& second)
 {
   using Mat3x12 = Eigen::Matrix<double, 3, 12>;
@@ -46,7 +43,6 @@ Mat12 integrateMass(double density, double volume, const Mat3& second)
   return density * integral;
 }
 
-/// Isotropic elasticity with engineering shear strains, Pa.
 Mat6 isotropicElasticity(double youngModulus, double poissonRatio)
 {
   const double factor = youngModulus / ((1.0 + poissonRatio) * (1.0 - 2.0 * poissonRatio));
@@ -56,6 +52,9 @@ Mat6 isotropicElasticity(double youngModulus, double poissonRatio)
   e.diagonal().tail<3>().setConstant(0.5 * youngModulus / (1.0 + poissonRatio));
   return e;
 }
+
+namespace
+{
 
 Vec12 bodyVelocity(const BlockState& state)
 {
@@ -69,6 +68,8 @@ Vec12 bodyVelocity(const BlockState& state)
 Block::Block(Polyhedron shape, double density, double youngModulus, double poissonRatio)
   : shape_(std::move(shape))
   , density_(density)
+  , youngModulus_(youngModulus)
+  , poissonRatio_(poissonRatio)
 {
   const VolumeIntegrals& integrals = shape_.integrals();
   mass_ = density * integrals.volume;
@@ -79,11 +80,19 @@ Block::Block(Polyhedron shape, double density, double youngModulus, double poiss
   const Eigen::SelfAdjointEigenSolver<Mat3> axes(inertia_);
   const Vec3 principal = axes.eigenvalues();
   principal_ = principal;
+  axes_ = axes.eigenvectors();
+  if (axes_.determinant() < 0.0)
+  {
+    axes_.col(1) *= -1.0;
+  }
   if (!(principal[0] > 0.0))
   {
     throw GeometryError("a block has the principal moment of inertia " +
       std::to_string(principal[0]) + " kg m², it must be positive");
   }
+  const Mat6 strainMass = massMatrix_.block<6, 6>(kStrain, kStrain);
+  strainFrequency_ = std::sqrt(
+    Eigen::GeneralizedSelfAdjointEigenSolver<Mat6>(elasticity_, strainMass).eigenvalues()[0]);
   isotropic_ = principal[2] - principal[0] < 1e-9 * principal[2];
   largestMobility_ = 0.0;
   for (const Vec3& x : shape_.vertices())

@@ -39,10 +39,31 @@ public:
   const Mat6& elasticity() const { return elasticity_; }
   const Mat3& inertia() const { return inertia_; }               ///< kg m², body axes.
   const Mat3& inverseInertia() const { return inverseInertia_; } ///< 1/(kg m²)
+  /// Principal moments of inertia, rising, kg m².
+  const Vec3& principalMoments() const { return principal_; }
+  /// Their axes as columns, right-handed: from principal to body axes.
+  const Mat3& principalAxes() const { return axes_; }
   /// All three principal moments equal (to 1e-9): free rotation is then steady.
   bool isotropic() const { return isotropic_; }
   /// Largest 1/(effective mass) that a contact at a vertex can see, 1/kg.
   double largestMobility() const { return largestMobility_; }
+  /// 1/(effective mass) of the rigid block along `n` at the point x about the centroid, 1/kg.
+  double mobility(const Vec3& n, const Vec3& x) const
+  {
+    const Vec3 moment = x.cross(n);
+    return 1.0 / mass_ + moment.dot(inverseInertia_ * moment);
+  }
+  /// How far a unit force along `n` at the material point x moves that point by the block's uniform
+  /// strain alone, at rest: J (V E)⁻¹ Jᵀ with the strain part J of nᵀT, m/N.
+  double compliance(const Vec3& n, const Vec3& x) const
+  {
+    const double along = n.dot(x);
+    return ((1.0 + poissonRatio_) * 0.5 * (x.squaredNorm() + along * along) -
+             poissonRatio_ * along * along) /
+      (youngModulus_ * this->volume());
+  }
+  /// Lowest angular frequency of the uniform strains of the free block, rad/s.
+  double strainFrequency() const { return strainFrequency_; }
   /// Bounds of |ωᵢ| about the principal axes, for ever in free rotation from `spin` (body axes),
   /// rad/s: L² = Σ Lᵢ² and 2T = Σ Lᵢ² / Iᵢ are kept, and what the other two axes hold is not
   /// negative.
@@ -53,6 +74,9 @@ public:
 private:
   Polyhedron shape_;
   double density_ = 0.0;
+  double youngModulus_ = 0.0; ///< Pa
+  double poissonRatio_ = 0.0;
+  double strainFrequency_ = 0.0;
   double mass_ = 0.0;
   Mat12 massMatrix_ = Mat12::Zero();
   Mat6 elasticity_ = Mat6::Zero();
@@ -61,6 +85,7 @@ private:
   bool isotropic_ = true;
   double largestMobility_ = 0.0;
   Vec3 principal_ = Vec3::Ones(); ///< Principal moments, kg m².
+  Mat3 axes_ = Mat3::Identity();  ///< Principal axes.
   Vec3 reach_ = Vec3::Zero();     ///< Largest distance of a vertex from each principal axis, m.
 };
 
@@ -81,6 +106,15 @@ struct BlockState
 /// The symmetric tensor of a strain vector with engineering shears.
 Mat3 strainTensor(const Vec6& strain);
 
+/// The strain part of nᵀT.
+inline Vec6 strainRow(const Vec3& n, const Vec3& x)
+{
+  Vec6 row;
+  row << n.x() * x.x(), n.y() * x.y(), n.z() * x.z(), 0.5 * (n.y() * x.z() + n.z() * x.y()),
+    0.5 * (n.z() * x.x() + n.x() * x.z()), 0.5 * (n.x() * x.y() + n.y() * x.x());
+  return row;
+}
+
 /// The row nᵀT of METHOD 1 for a direction n: J·D = n · (displacement). The lever of the rotation
 /// may differ from that of the strain (see the step solver). All in body axes.
 inline Vec12 displacementRow(const Vec3& n, const Vec3& rotationLever, const Vec3& x)
@@ -88,11 +122,15 @@ inline Vec12 displacementRow(const Vec3& n, const Vec3& rotationLever, const Vec
   Vec12 row;
   row.head<3>() = n;
   row.segment<3>(kRotation) = rotationLever.cross(n);
-  row.segment<6>(kStrain) << n.x() * x.x(), n.y() * x.y(), n.z() * x.z(),
-    0.5 * (n.y() * x.z() + n.z() * x.y()), 0.5 * (n.z() * x.x() + n.x() * x.z()),
-    0.5 * (n.x() * x.y() + n.y() * x.x());
+  row.segment<6>(kStrain) = strainRow(n, x);
   return row;
 }
+
+/// M = ρ ∫ Tᵀ T dV of a body with these integrals (density kg/m³, volume m³, second moments about
+/// the centroid m⁵), 12 × 12.
+Mat12 integrateMass(double density, double volume, const Mat3& second);
+/// Isotropic elasticity with engineering shear strains, Pa, 6 × 6.
+Mat6 isotropicElasticity(double youngModulus, double poissonRatio);
 
 /// Kinetic energy of translation and rotation, J.
 double rigidKineticEnergy(const Block& block, const BlockState& state);

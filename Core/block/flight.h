@@ -10,9 +10,8 @@ namespace rockfall
 {
 
 /// Moves a block without strain through free flight by `duration` (s) under `gravity` (m/s², along
-/// −z). The centroid follows the parabola exactly. Angular momentum is constant in world axes by
-/// construction; the attitude is exact for equal principal moments, else integrated by a
-/// fourth-order Runge–Kutta rule at 0.02 rad per step (local energy error below 1e-10, relative).
+/// −z), exactly: the centroid on its parabola, the attitude by FreeRotation. For many times of one
+/// flight make the FreeRotation once and ask it.
 BlockState fly(const Block& block, const BlockState& state, double gravity, double duration);
 
 } // namespace rockfall

@@ -43,9 +43,15 @@ struct Contact
   /// A pair that is found already overlapping carries no force at the overlap it was found with (≤
   /// 0), so that finding it makes no energy; m.
   double offset = 0.0;
-  Vec3 slip = Vec3::Zero(); ///< s₀, elongation of the shear spring, world, m.
-  double normalForce = 0.0; ///< Mean over the last step, N.
-  double shearForce = 0.0;  ///< Magnitude, mean over the last step, N.
+  // What it is made of, given when it is admitted (0: as the step's request says).
+  double stiffness = 0.0;      ///< pₙ, N/m.
+  double shearStiffness = 0.0; ///< pₛ, N/m.
+  double dashpot = 0.0;        ///< Along the normal, during impacts, N s/m.
+  double shearDashpot = 0.0;   ///< In its plane, during impacts, N s/m.
+  double frequency2 = 0.0;     ///< Of the block on this spring alone, squared, 1/s².
+  Vec3 slip = Vec3::Zero();    ///< s₀, elongation of the shear spring, world, m.
+  double normalForce = 0.0;    ///< Mean over the last step, N.
+  double shearForce = 0.0;     ///< Magnitude, mean over the last step, N.
 
   bool closed() const { return state != ContactState::Open; }
   double gap() const { return distance - offset; } ///< d₀, m.
@@ -61,7 +67,10 @@ public:
   const Vec3& position() const { return position_; }
   const Mat3& rotation() const { return rotation_; }
   const std::vector<Vec3>& vertices() const { return vertices_; } ///< World, m.
-  const std::vector<Vec3>& normals() const { return normals_; }   ///< Of faces, world, outward.
+  Vec3 normal(int face) const                                     ///< World, outward, unit.
+  {
+    return rotation_ * block_->shape().normals()[face];
+  }
   Vec3 lower() const { return lower_; } ///< Corners of the bounding box, m.
   Vec3 upper() const { return upper_; }
 
@@ -71,6 +80,8 @@ public:
     const Vec3 x = this->materialPoint(world);
     return block_->shape().normals()[face].dot(x) - block_->shape().offsets()[face];
   }
+  /// The face over which a world point is farthest out, or least deep if it is inside.
+  int outermostFace(const Vec3& world) const;
   /// The undeformed body coordinates of a world point.
   Vec3 materialPoint(const Vec3& world) const
   {
@@ -83,31 +94,67 @@ private:
   Mat3 rotation_ = Mat3::Identity();
   Mat3 undeform_ = Mat3::Identity(); ///< (I + ε)⁻¹
   std::vector<Vec3> vertices_;
-  std::vector<Vec3> normals_;
   Vec3 lower_ = Vec3::Zero();
   Vec3 upper_ = Vec3::Zero();
 };
 
+/// The pairs of features that can touch while the rock stays near where it stood: found once, then
+/// looked through at every step.
+struct CandidatePairs
+{
+  struct Pair
+  {
+    int rock;  ///< Vertex or edge.
+    int patch; ///< Triangle or ridge.
+  };
+  std::vector<Pair> vertexFace;
+  std::vector<Pair> edgeEdge;
+  std::vector<int> peaks;       ///< Nodes of the patch.
+  double distance = -1.0;       ///< Within which they were gathered, m; < 0: not at all.
+  Vec3 position = Vec3::Zero(); ///< Of the rock then.
+  Quat orientation = Quat::Identity();
+
+  /// Whether every pair within `reach` (m) of the rock as it stands now is among them.
+  bool serve(const BlockState& state, double radius, double reach) const;
+};
+
+/// Finds all pairs within `distance` (m).
+void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
+  double distance, CandidatePairs& candidates);
+
 /// Brings the closed contacts of the last step to where the rock stands now, hands them over
-/// between neighbouring features, and adds every pair that can close within `reach` (m).
+/// between neighbouring features, and adds every pair of the candidates that can close within
+/// `reach` (m).
 ///
 /// A pair enters only through a valid configuration, with the normal inside both features' normal
 /// cones and the projection inside both features, at a gap of about zero; once closed it stays,
 /// whatever the cones say, until it opens: the entrance is the physically first one and does not
 /// flip (METHOD 10.6). Flat and concave edges of the slope are no features, so a smooth plane cut
 /// into many CFEs gives the contacts of one (METHOD 10.5).
-void updateContacts(
-  const PlacedBlock& rock, const SurfacePatch& patch, double reach, std::vector<Contact>& contacts);
+void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch,
+  const CandidatePairs& candidates, double reach, std::vector<Contact>& contacts);
 
-/// The net under the entrance rules: every vertex of the rock that is under the slope by more than
-/// `allowed` (m), and every peak as deep inside the rock, gets a contact that carries no force at
-/// the overlap it is found with and resists any further one, unless it has a contact already.
-void holdOverlap(const PlacedBlock& rock, const SurfacePatch& patch, double allowed,
-  std::vector<Contact>& contacts);
+/// The net under the entrance rules: every candidate vertex of the rock that is under the slope by
+/// more than `allowed` (m), and every peak as deep inside the rock, gets a contact that carries no
+/// force at the overlap it is found with and resists any further one, unless it has a contact
+/// already.
+void holdOverlap(const PlacedBlock& rock, const SurfacePatch& patch,
+  const CandidatePairs& candidates, double allowed, std::vector<Contact>& contacts);
 
 /// The same entrance rules by brute force over all pairs, without pruning: the oracle of the tests.
 void findEntrancesBruteForce(
   const PlacedBlock& rock, const SurfacePatch& patch, double reach, std::vector<Contact>& contacts);
+
+/// Lower bound of the time (s, at most `horizon`) to the first touch in free flight over the
+/// window, which must hold all that the rock can come over until then. For every place where the
+/// gap along the vertical can be least, it is covered at the speed that this point of the rock has,
+/// towards a slope that may differ from the window's mean by as much as any of its CFEs does. 0
+/// where the two overlap.
+double timeToTouch(const PlacedBlock& rock, const BlockState& state, const HeightWindow& window,
+  double gravity, double horizon);
+/// The same for the bounding sphere over the plane that no node of the window is above.
+double timeToNear(const BlockState& state, double radius, const HeightWindow& window,
+  double gravity, double horizon);
 
 /// How far a rock is from touching.
 struct Clearance

@@ -2,6 +2,8 @@
 
 #include <Eigen/LU>
 
+#include <limits>
+
 namespace rockfall
 {
 
@@ -10,9 +12,14 @@ void PlacedBlock::place(const Block& block, const BlockState& state)
   block_ = &block;
   position_ = state.position;
   rotation_ = state.orientation.toRotationMatrix();
-  const Mat3 deform = Mat3::Identity() + strainTensor(state.strain);
-  undeform_ = deform.inverse();
-  const Mat3 map = rotation_ * deform;
+  Mat3 map = rotation_;
+  undeform_.setIdentity();
+  if (!state.strain.isZero(0.0))
+  {
+    const Mat3 deform = Mat3::Identity() + strainTensor(state.strain);
+    undeform_ = deform.inverse();
+    map = rotation_ * deform;
+  }
   const std::vector<Vec3>& reference = block.shape().vertices();
   vertices_.resize(reference.size());
   lower_.setConstant(1e300);
@@ -23,12 +30,24 @@ void PlacedBlock::place(const Block& block, const BlockState& state)
     lower_ = lower_.cwiseMin(vertices_[i]);
     upper_ = upper_.cwiseMax(vertices_[i]);
   }
-  const std::vector<Vec3>& normals = block.shape().normals();
-  normals_.resize(normals.size());
-  for (std::size_t f = 0; f < normals.size(); ++f)
+}
+
+int PlacedBlock::outermostFace(const Vec3& world) const
+{
+  const Polyhedron& shape = block_->shape();
+  const Vec3 x = this->materialPoint(world);
+  int face = 0;
+  double farthest = -std::numeric_limits<double>::infinity();
+  for (std::size_t f = 0; f < shape.normals().size(); ++f)
   {
-    normals_[f] = rotation_ * normals[f];
+    const double distance = shape.normals()[f].dot(x) - shape.offsets()[f];
+    if (distance > farthest)
+    {
+      farthest = distance;
+      face = int(f);
+    }
   }
+  return face;
 }
 
 } // namespace rockfall

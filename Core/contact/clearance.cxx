@@ -1,4 +1,5 @@
 #include "contact/Contact.h"
+#include "contact/motion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,26 +7,6 @@
 
 namespace rockfall
 {
-
-namespace
-{
-
-/// Smallest t ≥ 0 with rate·t + ½ g t² = distance (rate may be negative: receding).
-double timeToCover(double distance, double rate, double acceleration)
-{
-  if (distance <= 0.0)
-  {
-    return 0.0;
-  }
-  if (acceleration <= 0.0)
-  {
-    return rate > 0.0 ? distance / rate : std::numeric_limits<double>::infinity();
-  }
-  const double root = std::sqrt(rate * rate + 2.0 * acceleration * distance);
-  return rate > 0.0 ? 2.0 * distance / (rate + root) : (root - rate) / acceleration;
-}
-
-} // namespace
 
 namespace
 {
@@ -90,9 +71,9 @@ Separation separate(const PlacedBlock& rock, const std::array<Vec3, 3>& q,
     return best;
   }
   const Polyhedron& shape = rock.block().shape();
-  for (std::size_t f = 0; f < rock.normals().size(); ++f)
+  for (std::size_t f = 0; f < rock.block().shape().faces().size(); ++f)
   {
-    const Vec3 n = -rock.normals()[f];
+    const Vec3 n = -rock.normal(f);
     const double face = n.dot(rock.vertices()[shape.faces()[f][0]]);
     best.improve(approach, n, face - highestAlong(n));
   }
@@ -166,60 +147,19 @@ Clearance clearance(const PlacedBlock& rock, const BlockState& state, const Surf
 namespace
 {
 
-/// Calls visit(vertex, triangle, distance) for every rock vertex straight above or below a
-/// triangle, and visit of a peak with the face of the rock that it is least deep under.
-template <typename Vertex, typename Peak>
-void visitOverlaps(
-  const PlacedBlock& rock, const SurfacePatch& patch, Vertex&& onVertex, Peak&& onPeak)
+/// Whether a point is straight above or below a triangle.
+bool isStraightOver(const SurfacePatch& patch, const SurfacePatch::Triangle& t, const Vec3& p)
 {
-  for (int i = 0; i < int(patch.triangles.size()); ++i)
+  for (int k = 0; k < 3; ++k)
   {
-    const SurfacePatch::Triangle& t = patch.triangles[i];
-    if (t.cfe == 0)
+    const Vec3& a = patch.nodes[t.nodes[k]].position;
+    const Vec3& b = patch.nodes[t.nodes[(k + 1) % 3]].position;
+    if ((b.x() - a.x()) * (p.y() - a.y()) < (b.y() - a.y()) * (p.x() - a.x()))
     {
-      continue;
-    }
-    const Vec3& a = patch.nodes[t.nodes[0]].position;
-    const Vec3& b = patch.nodes[t.nodes[1]].position;
-    const Vec3& c = patch.nodes[t.nodes[2]].position;
-    const Vec3 most = a.cwiseMax(b).cwiseMax(c), least = a.cwiseMin(b).cwiseMin(c);
-    if ((most.head<2>().array() < rock.lower().head<2>().array()).any() ||
-      (least.head<2>().array() > rock.upper().head<2>().array()).any())
-    {
-      continue;
-    }
-    for (int v = 0; v < int(rock.vertices().size()); ++v)
-    {
-      const Vec3& p = rock.vertices()[v];
-      const auto side = [&](const Vec3& u, const Vec3& w)
-      { return (w.x() - u.x()) * (p.y() - u.y()) - (w.y() - u.y()) * (p.x() - u.x()); };
-      if (side(a, b) >= 0.0 && side(b, c) >= 0.0 && side(c, a) >= 0.0)
-      {
-        onVertex(v, i, t.normal.dot(p) - t.offset);
-      }
+      return false;
     }
   }
-  for (int n = 0; n < int(patch.nodes.size()); ++n)
-  {
-    const Vec3& q = patch.nodes[n].position;
-    if (!patch.nodes[n].peak || (q.array() < rock.lower().array()).any() ||
-      (q.array() > rock.upper().array()).any())
-    {
-      continue;
-    }
-    double outside = -std::numeric_limits<double>::infinity();
-    int face = 0;
-    for (int f = 0; f < int(rock.normals().size()); ++f)
-    {
-      const double d = rock.faceDistance(f, q);
-      if (d > outside)
-      {
-        outside = d;
-        face = f;
-      }
-    }
-    onPeak(n, face, outside);
-  }
+  return true;
 }
 
 } // namespace
@@ -227,20 +167,42 @@ void visitOverlaps(
 double penetration(const PlacedBlock& rock, const SurfacePatch& patch)
 {
   double deepest = 0.0;
-  const auto deeper = [&](int, int, double distance) { deepest = std::max(deepest, -distance); };
-  visitOverlaps(rock, patch, deeper, deeper);
+  const Vec3 lower = rock.lower(), upper = rock.upper();
+  for (const SurfacePatch::Triangle& t : patch.triangles)
+  {
+    const Vec3& a = patch.nodes[t.nodes[0]].position;
+    const Vec3& b = patch.nodes[t.nodes[1]].position;
+    const Vec3& c = patch.nodes[t.nodes[2]].position;
+    const Vec3 most = a.cwiseMax(b).cwiseMax(c), least = a.cwiseMin(b).cwiseMin(c);
+    if (t.cfe == 0 || (most.head<2>().array() < lower.head<2>().array()).any() ||
+      (least.head<2>().array() > upper.head<2>().array()).any())
+    {
+      continue;
+    }
+    for (const Vec3& p : rock.vertices())
+    {
+      if (isStraightOver(patch, t, p))
+      {
+        deepest = std::max(deepest, t.offset - t.normal.dot(p));
+      }
+    }
+  }
+  for (const SurfacePatch::Node& n : patch.nodes)
+  {
+    if (n.peak && (n.position.array() >= lower.array()).all() &&
+      (n.position.array() <= upper.array()).all())
+    {
+      deepest = std::max(deepest, -rock.faceDistance(rock.outermostFace(n.position), n.position));
+    }
+  }
   return deepest;
 }
 
-void holdOverlap(const PlacedBlock& rock, const SurfacePatch& patch, double allowed,
-  std::vector<Contact>& contacts)
+void holdOverlap(const PlacedBlock& rock, const SurfacePatch& patch,
+  const CandidatePairs& candidates, double allowed, std::vector<Contact>& contacts)
 {
   const auto add = [&](ContactKind kind, int onRock, int onPatch, double distance)
   {
-    if (distance >= -allowed)
-    {
-      return;
-    }
     Contact c;
     c.kind = kind;
     c.rockFeature = onRock;
@@ -258,7 +220,7 @@ void holdOverlap(const PlacedBlock& rock, const SurfacePatch& patch, double allo
     {
       c.cfe = patch.nodes[onPatch].cfe;
       c.surfaceFeature = patch.nodes[onPatch].key;
-      c.normal = -rock.normals()[onRock];
+      c.normal = -rock.normal(onRock);
       c.point = patch.nodes[onPatch].position;
     }
     const bool known = std::any_of(contacts.begin(), contacts.end(),
@@ -273,16 +235,27 @@ void holdOverlap(const PlacedBlock& rock, const SurfacePatch& patch, double allo
       contacts.push_back(c);
     }
   };
-  visitOverlaps(
-    rock, patch, [&](int v, int t, double d) { add(ContactKind::VertexFace, v, t, d); },
-    [&](int n, int f, double d)
+  for (const CandidatePairs::Pair& pair : candidates.vertexFace)
+  {
+    const SurfacePatch::Triangle& t = patch.triangles[pair.patch];
+    const Vec3& p = rock.vertices()[pair.rock];
+    const double distance = t.normal.dot(p) - t.offset;
+    if (distance < -allowed && isStraightOver(patch, t, p))
     {
-      // A face that looks up is no way out of the ground.
-      if (rock.normals()[f].z() < 0.0)
-      {
-        add(ContactKind::FaceVertex, f, n, d);
-      }
-    });
+      add(ContactKind::VertexFace, pair.rock, pair.patch, distance);
+    }
+  }
+  for (int node : candidates.peaks)
+  {
+    const Vec3& q = patch.nodes[node].position;
+    const int face = rock.outermostFace(q);
+    const double distance = rock.faceDistance(face, q);
+    // A face that looks up is no way out of the ground.
+    if (distance < -allowed && rock.normal(face).z() < 0.0)
+    {
+      add(ContactKind::FaceVertex, face, node, distance);
+    }
+  }
 }
 
 } // namespace rockfall

@@ -76,24 +76,10 @@ void admit(const SurfacePatch& patch, Contact candidate, std::vector<Contact>& c
   contacts.push_back(candidate);
 }
 
-/// Triangles, peaks and ridges that the rock's bounding box can meet, by their own boxes.
-bool boxesMeet(const Vec3& lower, const Vec3& upper, const Vec3& a, const Vec3& b, double reach)
-{
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    if (std::min(a[axis], b[axis]) > upper[axis] + reach ||
-      std::max(a[axis], b[axis]) < lower[axis] - reach)
-    {
-      return false;
-    }
-  }
-  return true;
-}
-
 } // namespace
 
-void updateContacts(
-  const PlacedBlock& rock, const SurfacePatch& patch, double reach, std::vector<Contact>& contacts)
+void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch,
+  const CandidatePairs& candidates, double reach, std::vector<Contact>& contacts)
 {
   // What carries stays, as long as it is somewhere.
   std::size_t kept = 0;
@@ -117,93 +103,39 @@ void updateContacts(
     else
     {
       // Two have come to the same place: one spring with the energy of both.
-      twin->offset =
-        twin->distance + std::hypot(std::min(0.0, twin->gap()), std::min(0.0, c.gap()));
+      twin->offset = twin->distance +
+        std::hypot(std::min(0.0, twin->gap()),
+          std::min(0.0, c.gap()) *
+            (twin->stiffness > 0.0 ? std::sqrt(c.stiffness / twin->stiffness) : 1.0));
     }
   }
   contacts.resize(kept);
 
-  const Polyhedron& shape = rock.block().shape();
-  const Vec3 lower = rock.lower(), upper = rock.upper();
-  for (int i = 0; i < int(patch.triangles.size()); ++i)
+  for (const CandidatePairs::Pair& pair : candidates.vertexFace)
   {
-    const SurfacePatch::Triangle& t = patch.triangles[i];
-    if (t.cfe == 0)
+    if (auto c = vertexFace(rock, pair.rock, patch, pair.patch, reach))
     {
-      continue;
-    }
-    // The box's lowest corner along the normal bounds all vertices.
-    const Vec3 corner = (t.normal.array() > 0.0).select(lower, upper);
-    if (t.normal.dot(corner) - t.offset > reach)
-    {
-      continue;
-    }
-    const Vec3& a = patch.nodes[t.nodes[0]].position;
-    const Vec3& b = patch.nodes[t.nodes[1]].position;
-    const Vec3& d = patch.nodes[t.nodes[2]].position;
-    if (!boxesMeet(lower, upper, a.cwiseMin(b).cwiseMin(d), a.cwiseMax(b).cwiseMax(d), reach))
-    {
-      continue;
-    }
-    for (int v = 0; v < int(rock.vertices().size()); ++v)
-    {
-      if (t.normal.dot(rock.vertices()[v]) - t.offset <= reach)
-      {
-        if (auto c = vertexFace(rock, v, patch, i, reach))
-        {
-          admit(patch, *c, contacts);
-        }
-      }
+      admit(patch, *c, contacts);
     }
   }
-  for (int i = 0; i < int(patch.nodes.size()); ++i)
+  for (int node : candidates.peaks)
   {
-    const SurfacePatch::Node& q = patch.nodes[i];
-    if (!q.peak || !boxesMeet(lower, upper, q.position, q.position, reach))
-    {
-      continue;
-    }
     // Only the face over which the node is farthest out can be the entrance.
-    int face = -1;
-    double farthest = -1e300;
-    for (int f = 0; f < int(shape.faces().size()); ++f)
+    const Vec3& q = patch.nodes[node].position;
+    const int face = rock.outermostFace(q);
+    if (rock.faceDistance(face, q) <= reach)
     {
-      const double d = rock.faceDistance(f, q.position);
-      if (d > farthest)
-      {
-        farthest = d;
-        face = f;
-      }
-    }
-    if (farthest <= reach)
-    {
-      if (auto c = faceVertex(rock, face, patch, i, reach))
+      if (auto c = faceVertex(rock, face, patch, node, reach))
       {
         admit(patch, *c, contacts);
       }
     }
   }
-  for (int i = 0; i < int(patch.ridges.size()); ++i)
+  for (const CandidatePairs::Pair& pair : candidates.edgeEdge)
   {
-    const SurfacePatch::Ridge& g = patch.ridges[i];
-    const Vec3& q0 = patch.nodes[g.nodes[0]].position;
-    const Vec3& q1 = patch.nodes[g.nodes[1]].position;
-    if (!boxesMeet(lower, upper, q0, q1, reach))
+    if (auto c = edgeEdge(rock, pair.rock, patch, pair.patch, reach))
     {
-      continue;
-    }
-    // A face of the rock with the whole ridge outside of it separates the two.
-    bool apart = false;
-    for (int f = 0; f < int(shape.faces().size()) && !apart; ++f)
-    {
-      apart = rock.faceDistance(f, q0) > reach && rock.faceDistance(f, q1) > reach;
-    }
-    for (int e = 0; e < int(shape.edges().size()) && !apart; ++e)
-    {
-      if (auto c = edgeEdge(rock, e, patch, i, reach))
-      {
-        admit(patch, *c, contacts);
-      }
+      admit(patch, *c, contacts);
     }
   }
 }

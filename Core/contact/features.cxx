@@ -75,7 +75,7 @@ bool inEdgeCones(const PlacedBlock& rock, int edge, const SurfacePatch& patch, i
   for (int k = 0; k < 2; ++k)
   {
     // In-face direction away from the edge; the edge runs as in the loop of faces[0].
-    const Vec3 inward = rock.normals()[e.faces[k]].cross(direction) * (k == 0 ? 1.0 : -1.0);
+    const Vec3 inward = rock.normal(e.faces[k]).cross(direction) * (k == 0 ? 1.0 : -1.0);
     if (normal.dot(inward) < -slack)
     {
       return false;
@@ -145,7 +145,7 @@ std::optional<Contact> faceVertex(
   {
     return std::nullopt;
   }
-  const Vec3 normal = -rock.normals()[face];
+  const Vec3 normal = -rock.normal(face);
   if (!inPeakCone(patch, node, normal, kConeSlack))
   {
     return std::nullopt;
@@ -188,6 +188,16 @@ std::optional<Contact> edgeEdge(
   const Vec3& q = patch.nodes[g.nodes[0]].position;
   const Vec3 u = rock.vertices()[e.vertices[1]] - p;
   const Vec3 w = patch.nodes[g.nodes[1]].position - q;
+  for (int i : g.triangles)
+  {
+    // All of the edge beyond reach of one side of the ridge.
+    const SurfacePatch::Triangle& side = patch.triangles[i];
+    const double over = side.normal.dot(p) - side.offset;
+    if (over > reach && over + side.normal.dot(u) > reach)
+    {
+      return std::nullopt;
+    }
+  }
   double s, t;
   if (!closestOnLines(p, u, q, w, s, t) || s < 0.0 || s > 1.0 || t < 0.0 || t > 1.0)
   {

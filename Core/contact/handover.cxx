@@ -126,7 +126,7 @@ bool refreshFaceVertex(const PlacedBlock& rock, const SurfacePatch& patch, Conta
   const double compression = std::max(0.0, -contact.gap());
   contact.point = q;
   contact.distance = rock.faceDistance(contact.rockFeature, q);
-  for (std::size_t f = 0; f < rock.normals().size(); ++f)
+  for (std::size_t f = 0; f < rock.block().shape().faces().size(); ++f)
   {
     const double d = rock.faceDistance(int(f), q);
     if (int(f) == contact.rockFeature || d <= contact.distance)
@@ -144,7 +144,7 @@ bool refreshFaceVertex(const PlacedBlock& rock, const SurfacePatch& patch, Conta
       return false; // left the rock through its side
     }
   }
-  contact.normal = -rock.normals()[contact.rockFeature];
+  contact.normal = -rock.normal(contact.rockFeature);
   return true;
 }
 
@@ -284,10 +284,10 @@ bool leaveBest(
     const SurfacePatch::Node& q = patch.nodes[node];
     for (int f : e.faces)
     {
-      if (q.peak && inPeakCone(patch, node, -rock.normals()[f], 0.0) &&
+      if (q.peak && inPeakCone(patch, node, -rock.normal(f), 0.0) &&
         insideRockFace(rock, f, q.position, 0.0))
       {
-        offer(ContactKind::FaceVertex, f, node, q.key, q.cfe, -rock.normals()[f], q.position,
+        offer(ContactKind::FaceVertex, f, node, q.key, q.cfe, -rock.normal(f), q.position,
           rock.faceDistance(f, q.position), 0.0);
       }
     }

@@ -1,10 +1,12 @@
 #include "simulation/RockSimulator.h"
 
 #include "block/flight.h"
+#include "solver/springs.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace rockfall
 {
@@ -14,7 +16,7 @@ namespace
 
 /// Steps per half period of a vertex on its penalty spring: the impact is then resolved well enough
 /// for the order in which several vertices touch, and energy does not depend on it at all.
-constexpr double kStepsPerImpact = 10.0;
+constexpr double kStepsPerImpact = 6.0;
 /// Largest part of the rock's radius, and largest angle (rad), covered in a step of contact.
 constexpr double kTravelPerStep = 0.1;
 /// A rock lies still when it has been slower than this share of √(g r) for this long (s).
@@ -22,6 +24,18 @@ constexpr double kStillSpeed = 1e-3;
 constexpr double kStillTime = 0.5;
 /// A touch slower than this share of √(g r) is no impact: r is the rock's radius.
 constexpr double kRestingSpeed = 1e-2;
+/// Longest flight that is looked at at once, s.
+constexpr double kLongFlight = 1.0;
+/// Way over which heights are gathered, in radii or cells, whichever is larger.
+constexpr double kWindow = 4.0;
+/// How far, in radii, the rock may go on until the pairs that can touch are looked for again.
+constexpr double kCandidateSlack = 0.05;
+/// Strain that vibrates faster than this many times the contacts' springs, or than this many
+/// radians per Δt, follows the contact forces as at rest.
+constexpr double kStiffBesideContacts = 4.0;
+constexpr double kStiffBesideStep = 10.0;
+/// However fast a rock comes in, a contact is stiff enough to stop it in this part of its radius.
+constexpr double kDeepestImpact = 0.1;
 
 } // namespace
 
@@ -39,6 +53,12 @@ RockSimulator::RockSimulator(
   state_.spin = state_.orientation.conjugate() * rock.angularVelocity;
   const double g = std::max(p.gravity, 1e-3);
   restingSpeed_ = kRestingSpeed * std::sqrt(g * block.radius());
+  penalty_ = p.normalPenalty;
+  const double contacts = std::sqrt(p.normalPenalty * block.largestMobility());
+  stiff_ = p.rigid ||
+    block.strainFrequency() >=
+      std::min(kStiffBesideContacts * contacts, kStiffBesideStep / p.timeStep);
+  dampingRatio_ = dampingRatio(surface.restitution());
 }
 
 double RockSimulator::travelLimit() const
@@ -50,7 +70,13 @@ double RockSimulator::travelLimit() const
 
 double RockSimulator::impactStep() const
 {
-  const double frequency = std::sqrt(parameters_.normalPenalty * block_.largestMobility());
+  double stiffest = 0.0;
+  for (const Contact& c : contacts_)
+  {
+    stiffest += c.closed() ? c.frequency2 : 0.0;
+  }
+  const double all = penalty_ * block_.largestMobility();
+  const double frequency = std::sqrt(stiffest > 0.0 ? std::min(stiffest, all) : all);
   const double resolved = std::numbers::pi / (kStepsPerImpact * frequency);
   return std::min({ parameters_.timeStep, resolved, this->travelLimit() });
 }
@@ -61,16 +87,38 @@ double RockSimulator::mechanicalEnergy() const
     block_.mass() * parameters_.gravity * state_.position.z();
 }
 
+void RockSimulator::ensureWindow(double duration)
+{
+  const double r = block_.radius();
+  const Vec3& p = state_.position;
+  const Vec3 end = p + duration * state_.velocity;
+  const double x0 = std::min(p.x(), end.x()) - r, x1 = std::max(p.x(), end.x()) + r;
+  const double y0 = std::min(p.y(), end.y()) - r, y1 = std::max(p.y(), end.y()) + r;
+  if (!window_.covers(x0, x1, y0, y1))
+  {
+    window_.gather(surface_, x0, x1, y0, y1);
+  }
+}
+
 void RockSimulator::ensurePatch(double margin)
 {
   const Vec3 lower = placed_.lower(), upper = placed_.upper();
   if (!patch_.covers(
         lower.x() - margin, upper.x() + margin, lower.y() - margin, upper.y() + margin))
   {
-    // A little more than needed, so that it serves for a while.
-    const double more = margin + 0.25 * block_.radius();
-    gatherPatch(
-      surface_, lower.x() - more, upper.x() + more, lower.y() - more, upper.y() + more, patch_);
+    gatherPatch(surface_, lower.x() - margin, upper.x() + margin, lower.y() - margin,
+      upper.y() + margin, patch_);
+    candidates_.distance = -1.0;
+  }
+}
+
+void RockSimulator::ensureCandidates(double reach)
+{
+  if (!candidates_.serve(state_, block_.radius(), reach))
+  {
+    const double distance = std::max(2.0 * reach, reach + kCandidateSlack * block_.radius());
+    this->ensurePatch(distance);
+    gatherCandidates(placed_, state_, patch_, distance, candidates_);
   }
 }
 
@@ -120,27 +168,32 @@ void RockSimulator::flyUntilNear()
           std::min(remaining, (way + 1e-9 * block_.radius() + 1e-15 * extent[axis]) / std::abs(v));
       }
     }
-    const double speed =
-      state_.velocity.norm() + block_.largestRimSpeed(state_.spin) + parameters_.gravity * 0.01;
-    const double shortest = std::max(0.25 * block_.radius() / speed, 4.0 * this->impactStep());
-    double duration = std::min(1.0, remaining);
-    bool clear = this->clearFor(duration);
-    while (!clear && duration > shortest)
+    double duration = std::min(kLongFlight, remaining);
+    if (!this->clearFor(duration))
     {
-      duration *= 0.5;
-      clear = this->clearFor(duration);
-    }
-    if (!clear)
-    {
-      duration = std::min(shortest, remaining);
-      placed_.place(block_, state_);
-      this->ensurePatch(speed * duration + parameters_.gravity * duration * duration);
-      const Clearance gap = clearance(placed_, state_, patch_, parameters_.gravity, duration);
-      if (gap.time < std::min(duration, this->impactStep()))
+      // A window over some of the way: nearer than its plane only the rock itself is looked at.
+      const double across = state_.velocity.head<2>().norm();
+      const double way =
+        kWindow * std::max(block_.radius(), surface_.terrain().geometry().cellSize);
+      duration = std::min(duration, across * duration > way ? way / across : duration);
+      this->ensureWindow(duration);
+      const double near =
+        timeToNear(state_, block_.radius(), window_, parameters_.gravity, duration);
+      if (near > this->impactStep())
       {
-        return;
+        duration = near;
       }
-      duration = std::min(duration, gap.time);
+      else
+      {
+        placed_.place(block_, state_);
+        const double touch = std::max(std::exchange(freeFor_, 0.0),
+          timeToTouch(placed_, state_, window_, parameters_.gravity, duration));
+        if (touch < std::min(duration, this->impactStep()))
+        {
+          return;
+        }
+        duration = std::min(duration, touch);
+      }
     }
     this->advanceInFlight(duration);
     this->checkEnd(0.0);
@@ -218,6 +271,9 @@ Trajectory RockSimulator::run()
     this->flyUntilNear();
     if (!done_)
     {
+      const double depth = kDeepestImpact * block_.radius();
+      penalty_ = std::max(
+        parameters_.normalPenalty, block_.mass() * state_.velocity.squaredNorm() / (depth * depth));
       this->stayInContact();
     }
   }

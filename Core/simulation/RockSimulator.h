@@ -34,6 +34,7 @@ private:
     Vec3 normalImpulse = Vec3::Zero(); ///< N s, world.
     double largestForce = 0.0;         ///< N
     double frictionBefore = 0.0;       ///< Friction work when it began, J.
+    double restitutionBefore = 0.0;    ///< What restitution had taken by then, J.
   };
 
   void liftOntoRoughness(); ///< Straight up, at the start, as far as roughness makes it needed.
@@ -53,7 +54,10 @@ private:
   void followImpact(const BlockState& start, double h);
   void finishImpact();
 
+  void ensureWindow(double duration); ///< Heights under all of the way of a flight.
   void ensurePatch(double margin);
+  void ensureCandidates(double reach);
+  void armContacts(); ///< Gives new contacts their springs and dashpots.
   double impactStep() const;
   double travelLimit() const;
   double mechanicalEnergy() const; ///< Without contact springs, J.
@@ -64,7 +68,9 @@ private:
   const SimulationParameters& parameters_;
   BlockState state_;
   PlacedBlock placed_;
+  HeightWindow window_;
   SurfacePatch patch_;
+  CandidatePairs candidates_;
   StepSolver solver_;
   std::vector<Contact> contacts_;
   std::vector<Contact> contactsBefore_;
@@ -74,11 +80,16 @@ private:
   EnergyAudit energy_;
   double springEnergy_ = 0.0; ///< In the contact springs, J.
   double normalEnergy_ = 0.0; ///< In the normal ones, J.
+  double penalty_ = 0.0;      ///< pₙ of the contacts that are made now, N/m.
+  bool stiff_ = false;        ///< The block's strain follows its contacts without inertia.
+  double dampingRatio_ = 0.0; ///< ζ for the surface's restitution.
   double restingSpeed_ = 0.0; ///< Below it a touch is no impact, m/s.
   double quietTime_ = 0.0;    ///< For how long it has been lying still, s.
   Vec3 acceleration_ = Vec3::Zero();
   Vec3 spinAcceleration_ = Vec3::Zero();
-  std::uint64_t carrying_ = 0; ///< What carried in the last lasting step.
+  StepKind steppedAs_ = StepKind::Impact; ///< In the last step.
+  std::uint64_t carrying_ = 0;            ///< What carried in the last lasting step.
+  double freeFor_ = 0.0; ///< Nothing can be touched for so long after a take-off, s.
   bool done_ = false;
 };
 

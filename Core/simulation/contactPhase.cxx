@@ -91,6 +91,7 @@ bool RockSimulator::isCalm() const
 
 void RockSimulator::stayInContact()
 {
+  steppedAs_ = StepKind::Lasting; // no impact's step to go by yet
   while (!done_)
   {
     const double small = this->impactStep();
@@ -102,8 +103,8 @@ void RockSimulator::stayInContact()
     // A long step is worth a look only when what carries is at rest along its normal.
     const bool calm = this->isCalm();
     const double reach = reachOf(calm ? large : small);
-    this->ensurePatch(reach);
-    updateContacts(placed_, patch_, reach, contacts_);
+    this->ensureCandidates(reach);
+    updateContacts(placed_, patch_, candidates_, reach, contacts_);
 
     double h = std::min(large, parameters_.endTime - state_.time);
     StepKind kind = StepKind::Lasting;
@@ -114,11 +115,14 @@ void RockSimulator::stayInContact()
       const double near = reachOf(h);
       std::erase_if(contacts_, [&](const Contact& c) { return !c.closed() && c.gap() > near; });
     }
-    if (contacts_.empty())
+    if (kind == StepKind::Impact && !anyClosed(contacts_))
     {
-      const Clearance gap = clearance(placed_, state_, patch_, parameters_.gravity, 2.0 * small);
-      if (gap.time > small)
+      this->ensureWindow(2.0 * small);
+      const double free = timeToTouch(placed_, state_, window_, parameters_.gravity, 2.0 * small);
+      if (free > small)
       {
+        contacts_.clear();
+        freeFor_ = free;
         return;
       }
     }
@@ -129,30 +133,69 @@ void RockSimulator::stayInContact()
     {
       pressed = std::max(pressed, -c.distance);
     }
-    holdOverlap(placed_, patch_, kLooseOverlap * block_.radius() + 2.0 * pressed, contacts_);
+    holdOverlap(
+      placed_, patch_, candidates_, kLooseOverlap * block_.radius() + 2.0 * pressed, contacts_);
+    this->armContacts();
     this->takeStep(std::max(h, 1e-12), kind);
     this->checkEnd(state_.time - before_.time);
+  }
+}
+
+void RockSimulator::armContacts()
+{
+  const SurfaceMaterial& material = surface_.terrain().material();
+  const Vec3 spin = state_.angularVelocity();
+  const double speed = state_.velocity.norm();
+  for (Contact& c : contacts_)
+  {
+    if (c.closed())
+    {
+      continue;
+    }
+    const Vec3 lever = c.point - state_.position;
+    const Vec3 y = placed_.rotation().transpose() * lever;
+    const Vec3 n = placed_.rotation().transpose() * c.normal;
+    const Vec3 t = n.unitOrthogonal();
+    const double shear = penalty_ * parameters_.shearRatio;
+    const bool strains = stiff_ && !parameters_.rigid;
+    c.stiffness = penalty_ / (1.0 + (strains ? penalty_ * block_.compliance(n, y) : 0.0));
+    c.shearStiffness = shear / (1.0 + (strains ? shear * block_.compliance(t, y) : 0.0));
+    const double approach = -c.normal.dot(state_.velocity + spin.cross(lever));
+    const double damped = contactDamping(
+      material, surface_.restitution(), dampingRatio_, approach, speed, restingSpeed_);
+    const double mobility = block_.mobility(n, y);
+    c.frequency2 = c.stiffness * mobility;
+    c.dashpot = damped > 0.0 ? 2.0 * damped * std::sqrt(c.stiffness / mobility) : 0.0;
+    c.shearDashpot = 2.0 * std::sqrt(c.shearStiffness / block_.mobility(t, y));
   }
 }
 
 void RockSimulator::takeStep(double h, StepKind kind)
 {
   before_ = state_;
+  const bool lasting = kind == StepKind::Lasting;
   TrajectorySummary& summary = recorder_.trajectory().summary;
   StepRequest request;
   request.duration = h;
   request.kind = kind;
   request.gravity = parameters_.gravity;
-  request.normalPenalty = parameters_.normalPenalty;
-  request.shearPenalty = parameters_.normalPenalty * parameters_.shearRatio;
+  request.normalPenalty = penalty_;
+  request.shearPenalty = penalty_ * parameters_.shearRatio;
   request.friction = surface_.friction();
   request.cohesion = surface_.cohesion();
-  request.rigid = parameters_.rigid;
+  request.rigid = stiff_;
   request.maxOpenClose = parameters_.maxOpenClose;
-  request.acceleration = acceleration_;
-  request.spinAcceleration = spinAcceleration_;
+  if (steppedAs_ == kind)
+  {
+    request.acceleration = acceleration_;
+    request.spinAcceleration = spinAcceleration_;
+  }
+  else if (!lasting)
+  {
+    request.acceleration.z() = -parameters_.gravity;
+  }
   contactsBefore_ = contacts_;
-  const double energyBefore = this->mechanicalEnergy() + springEnergy_;
+  const double energyBefore = lasting ? this->mechanicalEnergy() + springEnergy_ : 0.0;
 
   StepOutcome outcome;
   for (int cut = 0;; ++cut)
@@ -181,9 +224,10 @@ void RockSimulator::takeStep(double h, StepKind kind)
   }
   const double taken = state_.time - before_.time;
   energy_.friction += outcome.frictionWork;
+  energy_.restitution += outcome.dampedWork;
   springEnergy_ = outcome.springEnergy;
   normalEnergy_ = outcome.normalEnergy;
-  if (kind == StepKind::Lasting)
+  if (lasting)
   {
     energy_.damping +=
       energyBefore - this->mechanicalEnergy() - springEnergy_ - outcome.frictionWork;
@@ -204,19 +248,20 @@ void RockSimulator::takeStep(double h, StepKind kind)
   }
   else
   {
-    acceleration_.setZero();
-    spinAcceleration_.setZero();
+    acceleration_ = (state_.velocity - before_.velocity) / taken;
+    spinAcceleration_ = (state_.spin - before_.spin) / taken;
     carrying_ = 0;
   }
+  steppedAs_ = kind;
   const bool touching = anyClosed(contacts_);
   recorder_.recordBetween(before_, state_, touching);
   recorder_.follow(state_);
   this->followImpact(before_, taken);
-  if (!touching)
+  if (!touching && !stiff_)
   {
     energy_.vibration += relaxStrain(block_, state_);
   }
-  if (!touching || kind == StepKind::Lasting)
+  if (!touching || lasting)
   {
     this->finishImpact();
   }
@@ -259,6 +304,7 @@ void RockSimulator::followImpact(const BlockState& start, double h)
           impact_.frictionBefore = energy_.friction;
           event.time = start.time;
           event.velocityBefore = start.velocity;
+          impact_.restitutionBefore = energy_.restitution;
         }
         event.approachSpeed = std::max(event.approachSpeed, approach);
       }
@@ -294,12 +340,11 @@ void RockSimulator::finishImpact()
     event.impulse > 0.0 ? Vec3(impact_.normalImpulse / event.impulse) : Vec3(Vec3::UnitZ());
   event.restitution = surface_.restitution();
   const double before = kineticEnergy(block_, state_);
-  state_.velocity = applyRestitution(surface_.terrain().material().restitutionModel,
-    event.restitution, state_.velocity, event.normal);
-  const double taken = before - kineticEnergy(block_, state_);
-  energy_.restitution += taken;
+  state_.velocity = adjustVelocity(surface_.terrain().material(), event, state_.velocity);
+  energy_.restitution += before - kineticEnergy(block_, state_);
   event.velocityAfter = state_.velocity;
-  event.energyLoss = taken + energy_.friction - impact_.frictionBefore;
+  event.energyLoss =
+    energy_.restitution - impact_.restitutionBefore + energy_.friction - impact_.frictionBefore;
   acceleration_.setZero();
   spinAcceleration_.setZero();
   Trajectory& trajectory = recorder_.trajectory();

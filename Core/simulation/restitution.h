@@ -2,7 +2,14 @@
 
 /// @file
 /// What an impact is, and what it takes (METHOD 4; paper 3.1).
+///
+/// The paper's way, (Vx, Vy, Vz) ← Rv (Vx, Vy, Vz) after an impact that was elastic, is kept for
+/// what comes down on the slope. Whatever glances, rolls or rattles has Rv on the normal velocity
+/// at the contact only: a dashpot beside the contact's spring. So have all touches in the other
+/// models.
 
+#include "simulation/results.h"
+#include "solver/springs.h"
 #include "terrain/Terrain.h"
 
 #include <cmath>
@@ -10,11 +17,14 @@
 namespace rockfall
 {
 
-/// Whether a touch is an impact, to be slowed by Rv, or part of sliding, rolling and lying, which
-/// are not: it is one if the contact point came in faster than `restingSpeed` and either as fast as
-/// from a drop of 5 % of the rock's radius or at more than 11.5° (one fifth of the rock's speed). A
-/// sphere-like polyhedron with 1280 faces that rolls sets its next vertex down at 0.14 of its
-/// speed.
+/// A touch in which the contact point comes in at more than this share of the rock's speed (20.5°)
+/// comes down; below, it glances. A sphere-like polyhedron of 1280 faces that rolls hops from
+/// vertex to vertex and sets down at up to 0.24 of its speed.
+constexpr double kComesDown = 0.35;
+
+/// Whether a touch is worth an event: the contact point came in faster than `restingSpeed` and
+/// either as fast as from a drop of 5 % of the rock's radius or at more than 11.5° (one fifth of
+/// the rock's speed).
 inline bool isImpact(
   double approachSpeed, double speed, double restingSpeed, double gravity, double radius)
 {
@@ -23,21 +33,43 @@ inline bool isImpact(
   return approachSpeed > restingSpeed && (fast || steep);
 }
 
-/// The velocity after an impact that was elastic so far. `normal`: mean direction of the impact's
-/// impulse, unit, out of the slope. Never gains energy.
-inline Vec3 applyRestitution(
-  RestitutionModel model, double coefficient, const Vec3& velocity, const Vec3& normal)
+/// Rn of the speed-dependent model: Rn / (1 + (v/K)²) (Pfeiffer & Bowen 1989). Speeds in m/s.
+inline double restitutionAtSpeed(double restitution, double approachSpeed, double referenceSpeed)
 {
-  if (model == RestitutionModel::Velocity)
+  const double ratio = std::max(0.0, approachSpeed) / referenceSpeed;
+  return restitution / (1.0 + ratio * ratio);
+}
+
+/// Damping ratio ζ of the dashpot of a contact that is about to close. `usual`: that of
+/// `restitution`.
+inline double contactDamping(const SurfaceMaterial& material, double restitution, double usual,
+  double approachSpeed, double speed, double restingSpeed)
+{
+  switch (material.restitutionModel)
   {
-    return coefficient * velocity;
+    case RestitutionModel::Velocity:
+      return approachSpeed > restingSpeed && approachSpeed > kComesDown * speed ? 0.0 : usual;
+    case RestitutionModel::NormalTangential:
+      return usual;
+    case RestitutionModel::SpeedDependent:
+      return dampingRatio(
+        restitutionAtSpeed(restitution, approachSpeed, material.restitutionSpeed));
   }
-  const double away = velocity.dot(normal);
-  if (away <= 0.0)
+  return usual;
+}
+
+/// The velocity of the centroid after an impact, whose `normal` is the mean direction of its
+/// impulse, unit, out of the slope. Never gains energy.
+inline Vec3 adjustVelocity(
+  const SurfaceMaterial& material, const ImpactEvent& event, const Vec3& velocity)
+{
+  if (material.restitutionModel == RestitutionModel::Velocity)
   {
-    return velocity;
+    const bool down = event.approachSpeed > kComesDown * event.velocityBefore.norm();
+    return down ? Vec3(event.restitution * velocity) : velocity;
   }
-  return velocity - ((1.0 - coefficient) * away) * normal;
+  const Vec3 away = velocity.dot(event.normal) * event.normal;
+  return away + material.tangentialRestitution * (velocity - away);
 }
 
 } // namespace rockfall

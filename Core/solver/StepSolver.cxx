@@ -1,6 +1,7 @@
 #include "solver/StepSolver.h"
 
 #include "contact/features.h"
+#include "solver/linear.h"
 #include "solver/springs.h"
 
 #include <Eigen/LU>
@@ -17,21 +18,78 @@ namespace
 /// The Cayley map of a rotation vector, as a unit quaternion.
 Quat cayley(const Vec3& r)
 {
-  return Quat(1.0, 0.5 * r.x(), 0.5 * r.y(), 0.5 * r.z()).normalized();
+  const double scale = 1.0 / std::sqrt(1.0 + 0.25 * r.squaredNorm());
+  return Quat(scale, 0.5 * scale * r.x(), 0.5 * scale * r.y(), 0.5 * scale * r.z());
 }
 
 /// Open–close has settled when no state changes and the gaps move by less than this share of their
-/// change over the step: the energy error of a step is then below 1e-8 of the work done in it.
-constexpr double kGapTolerance = 1e-9;
+/// change over the step: the energy error of a step is then of the order of 1e-7 of the work done
+/// in it.
+constexpr double kGapTolerance = 1e-7;
+
+template <int N>
+Eigen::Matrix<double, N, 1> rowOf(const Vec3& n, const Vec3& lever, const Vec3& x)
+{
+  Eigen::Matrix<double, N, 1> row;
+  row.template head<3>() = n;
+  row.template segment<3>(kRotation) = lever.cross(n);
+  if constexpr (N == 12)
+  {
+    row.template tail<6>() = strainRow(n, x);
+  }
+  return row;
+}
+
+template <int N>
+Mat3 strainOf(const Eigen::Matrix<double, N, 1>& d)
+{
+  if constexpr (N == 12)
+  {
+    return strainTensor(d.template tail<6>());
+  }
+  return Mat3::Zero();
+}
 
 } // namespace
 
-void StepSolver::prepareRows(
-  const Block& block, const BlockState& state, const std::vector<Contact>& contacts)
+template <int N>
+void BlockStep<N>::prepareInertia(const Block& block, double h, double rate, double stress)
+{
+  if constexpr (N == 12)
+  {
+    MatN inert = (rate / h) * block.massMatrix();
+    inert.template bottomRightCorner<6, 6>() += stress * block.elasticity();
+    if (inert == inert_)
+    {
+      return;
+    }
+    mass_ = block.massMatrix();
+    inert_ = inert;
+    inverse_ = inert_.inverse();
+  }
+  else
+  {
+    mass_.setZero();
+    mass_.diagonal().template head<3>().setConstant(block.mass());
+    mass_.template bottomRightCorner<3, 3>() = block.inertia();
+    inert_ = (rate / h) * mass_;
+    inverse_.setZero();
+    inverse_.diagonal().template head<3>().setConstant(h / (rate * block.mass()));
+    inverse_.template bottomRightCorner<3, 3>() = (h / rate) * block.inverseInertia();
+  }
+}
+
+template <int N>
+void BlockStep<N>::prepareRows(const Block& block, const BlockState& state,
+  const StepRequest& request, const std::vector<Contact>& contacts)
 {
   rotation_ = state.orientation.toRotationMatrix();
   deform_ = Mat3::Identity() + strainTensor(state.strain);
-  const Mat3 undeform = deform_.inverse();
+  Mat3 undeform = Mat3::Identity();
+  if (N == 12)
+  {
+    undeform = deform_.inverse();
+  }
   rows_.resize(contacts.size());
   for (std::size_t i = 0; i < contacts.size(); ++i)
   {
@@ -58,18 +116,23 @@ void StepSolver::prepareRows(
     const Vec3 slip = rotation_.transpose() * c.slip;
     row.slip0 = { row.tangent[0].dot(slip), row.tangent[1].dot(slip) };
     row.gap0 = c.gap();
+    row.penalty = c.stiffness > 0.0 ? c.stiffness : request.normalPenalty;
+    row.shearPenalty = c.stiffness > 0.0 ? c.shearStiffness : request.shearPenalty;
+    const bool impact = request.kind == StepKind::Impact;
+    row.dashpot = impact ? c.dashpot : 0.0;
+    row.shearLag = impact ? c.shearDashpot / row.shearPenalty : 0.0;
     row.state = c.state;
     row.share = 1.0;
     row.direction.setZero();
   }
 }
 
-void StepSolver::levers(const Block& block, const std::vector<Contact>& contacts, const Vec12& d)
+template <int N>
+void BlockStep<N>::levers(const Block& block, const std::vector<Contact>& contacts, const VecN& d)
 {
-  const Vec3 u = d.head<3>();
-  const Vec3 r = d.segment<3>(kRotation);
-  const Mat3 turn = cayley(r).toRotationMatrix();
-  const Mat3 strain = strainTensor(d.segment<6>(kStrain));
+  const Vec3 u = d.template head<3>();
+  const Mat3 turn = cayley(d.template segment<3>(kRotation)).toRotationMatrix();
+  const Mat3 strain = strainOf<N>(d);
   for (std::size_t i = 0; i < contacts.size(); ++i)
   {
     Row& row = rows_[i];
@@ -79,10 +142,10 @@ void StepSolver::levers(const Block& block, const std::vector<Contact>& contacts
       // normal and node averaged over the step as the block sees them.
       const Vec3 n = 0.5 * (row.n + turn * row.n);
       const Vec3 y = row.y0 - 0.5 * u;
-      row.normal = displacementRow(n, y, row.x);
+      row.normal = rowOf<N>(n, y, row.x);
       for (int k = 0; k < 2; ++k)
       {
-        row.shear[k] = displacementRow(row.tangent[k], y, row.x);
+        row.shear[k] = rowOf<N>(row.tangent[k], y, row.x);
       }
       continue;
     }
@@ -111,51 +174,56 @@ void StepSolver::levers(const Block& block, const std::vector<Contact>& contacts
     }
     const Vec3 y1 = y0 + strain * x;
     const Vec3 z = 0.5 * (y1 + turn * y1);
-    row.normal = displacementRow(n, z, x);
+    row.normal = rowOf<N>(n, z, x);
     for (int k = 0; k < 2; ++k)
     {
-      row.shear[k] = displacementRow(row.tangent[k], z, x);
+      row.shear[k] = rowOf<N>(row.tangent[k], z, x);
     }
   }
 }
 
-bool StepSolver::evaluate(const StepRequest& request, const Vec12& d)
+template <int N>
+bool BlockStep<N>::evaluate(const StepRequest& request, const VecN& d)
 {
   bool changed = false;
-  const double damped = request.kind == StepKind::Lasting ? 1.0 : 0.0;
+  const bool lasting = request.kind == StepKind::Lasting;
   for (Row& row : rows_)
   {
     row.gap1 = row.gap0 + row.normal.dot(d);
-    const NormalSpring normal = normalSpring(request.normalPenalty, row.gap0, row.gap1, damped);
+    const NormalSpring normal = lasting
+      ? endSpring(row.penalty, row.gap1)
+      : dampedSpring(row.penalty, row.dashpot / request.duration, row.gap0, row.gap1);
     row.force = normal.force;
     row.stiffness = normal.stiffness;
     row.share = normal.share;
     row.shearForce.setZero();
     row.shearStiffness.setZero();
     row.shearCoupling.setZero();
+    row.slip1 = row.slip0;
     ContactState state = ContactState::Open;
     if (row.force > 0.0)
     {
       const Eigen::Vector2d travel(row.shear[0].dot(d), row.shear[1].dot(d));
       const double limit = request.friction * row.force + request.cohesion;
-      const double weight = (0.5 + 0.5 * damped) * row.share;
+      const double weight = row.share * ((lasting ? 1.0 : 0.5) + row.shearLag / request.duration);
       const Eigen::Vector2d stretch = row.slip0 + weight * travel;
       const double length = stretch.norm();
       // A slip that has reversed from one iteration to the next has passed through rest: it locks
       // and is judged again, or the two directions would alternate for ever.
       const bool reversed = row.direction.dot(stretch) < 0.0;
       row.direction.setZero();
-      if (reversed || request.shearPenalty * length <= limit)
+      if (reversed || row.shearPenalty * length <= limit)
       {
         changed = changed || reversed;
         state = ContactState::Locked;
-        row.shearForce = -request.shearPenalty * stretch;
-        row.shearStiffness = request.shearPenalty * weight * Eigen::Matrix2d::Identity();
+        row.shearForce = -row.shearPenalty * stretch;
+        row.shearStiffness = row.shearPenalty * weight * Eigen::Matrix2d::Identity();
         row.slip1 = row.slip0 + row.share * travel;
       }
       else
       {
-        // Radial return onto the Coulomb cone.
+        // Radial return onto the Coulomb cone; the spring stretches no further than what carries
+        // it.
         state = ContactState::Sliding;
         const Eigen::Vector2d direction = stretch / length;
         row.direction = direction;
@@ -163,7 +231,8 @@ bool StepSolver::evaluate(const StepRequest& request, const Vec12& d)
         row.shearStiffness = (limit * weight / length) *
           (Eigen::Matrix2d::Identity() - direction * direction.transpose());
         row.shearCoupling = -request.friction * row.stiffness * direction;
-        row.slip1 = direction * (limit / request.shearPenalty);
+        const double part = weight > row.share ? row.share / weight : 1.0;
+        row.slip1 = row.slip0 + part * (direction * (limit / row.shearPenalty) - row.slip0);
       }
     }
     changed = changed || state != row.state;
@@ -172,98 +241,147 @@ bool StepSolver::evaluate(const StepRequest& request, const Vec12& d)
   return changed;
 }
 
-StepOutcome StepSolver::step(const Block& block, const StepRequest& request,
+template <int N>
+typename BlockStep<N>::VecN BlockStep<N>::solveOne(
+  const Row& row, const VecN& load, const VecN& d) const
+{
+  // In the contact's own directions: (I + F W) f = f(D) + F J (D − A⁻¹ load), W = J A⁻¹ Jᵀ.
+  const VecN free = inverse_ * load;
+  if (row.state == ContactState::Open)
+  {
+    const VecN a = inverse_ * row.normal;
+    const double f = (row.force + row.stiffness * row.normal.dot(d - free)) /
+      (1.0 + row.stiffness * row.normal.dot(a));
+    return free + f * a;
+  }
+  Eigen::Matrix<double, N, 3> j;
+  j << row.normal, row.shear[0], row.shear[1];
+  const Eigen::Matrix<double, N, 3> a = inverse_ * j;
+  Mat3 tangent = Mat3::Zero();
+  tangent(0, 0) = row.stiffness;
+  tangent.block<2, 1>(1, 0) = row.shearCoupling;
+  tangent.block<2, 2>(1, 1) = row.shearStiffness;
+  const Vec3 at(row.force, row.shearForce[0], row.shearForce[1]);
+  const Mat3 system = Mat3::Identity() + tangent * (j.transpose() * a);
+  const Vec3 f = system.inverse() * (at + tangent * (j.transpose() * (d - free)));
+  return free + a * f;
+}
+
+template <int N>
+typename BlockStep<N>::VecN BlockStep<N>::solve(const VecN& load, const VecN& d)
+{
+  const Row* only = nullptr;
+  int acting = 0;
+  for (const Row& row : rows_)
+  {
+    if (row.acts())
+    {
+      only = &row;
+      ++acting;
+    }
+  }
+  if (acting == 0)
+  {
+    return inverse_ * load;
+  }
+  if (acting == 1 && !alwaysFull)
+  {
+    return this->solveOne(*only, load, d);
+  }
+  MatN matrix = inert_;
+  VecN right = load;
+  for (const Row& row : rows_)
+  {
+    if (!row.acts())
+    {
+      continue;
+    }
+    // Newton: f(D') ≈ f(D) − k nᵀT (D' − D)
+    const VecN& n = row.normal;
+    matrix.noalias() += (row.stiffness * n) * n.transpose();
+    right += (row.force + row.stiffness * n.dot(d)) * n;
+    if (row.state == ContactState::Open)
+    {
+      continue;
+    }
+    for (int a = 0; a < 2; ++a)
+    {
+      VecN gradient = row.shearCoupling[a] * n;
+      gradient += row.shearStiffness(a, 0) * row.shear[0];
+      gradient += row.shearStiffness(a, 1) * row.shear[1];
+      matrix.noalias() += row.shear[a] * gradient.transpose();
+      right += (row.shearForce[a] + gradient.dot(d)) * row.shear[a];
+    }
+  }
+  return solveInPlace<N>(matrix, right);
+}
+
+template <int N>
+StepOutcome BlockStep<N>::step(const Block& block, const StepRequest& request,
   std::vector<Contact>& contacts, BlockState& state, bool takeAnyway)
 {
   StepOutcome outcome;
   const double h = request.duration;
   const bool lasting = request.kind == StepKind::Lasting;
-  this->prepareRows(block, state, contacts);
-
-  Vec12 velocity0;
-  velocity0 << rotation_.transpose() * state.velocity, state.spin, state.strainRate;
   // Ḋ¹ = rate·D + offset
   const double rate = lasting ? 1.0 / h : 2.0 / h;
-  Vec12 offset = -velocity0;
+  this->prepareInertia(block, h, rate, lasting ? 1.0 : 0.5);
+  this->prepareRows(block, state, request, contacts);
+
+  VecN velocity0;
+  velocity0.template head<3>() = rotation_.transpose() * state.velocity;
+  velocity0.template segment<3>(kRotation) = state.spin;
+  VecN force = VecN::Zero();
+  const Vec3 down = -request.gravity * rotation_.row(2).transpose();
+  force.template head<3>() = block.mass() * down;
+  if constexpr (N == 12)
+  {
+    velocity0.template tail<6>() = state.strainRate;
+    force.template tail<6>() -= block.elasticity() * state.strain;
+  }
+  VecN offset = -velocity0;
   if (lasting)
   {
     offset.setZero();
-    offset.head<3>() = 0.5 * h * (rotation_.transpose() * request.acceleration);
-    offset.segment<3>(kRotation) = 0.5 * h * request.spinAcceleration;
+    offset.template head<3>() = 0.5 * h * (rotation_.transpose() * request.acceleration);
+    offset.template segment<3>(kRotation) = 0.5 * h * request.spinAcceleration;
   }
-  const Mat12& mass = block.massMatrix();
-  const double stress = lasting ? 1.0 : 0.5;
-  Mat12 inert = (rate / h) * mass;
-  inert.block<6, 6>(kStrain, kStrain) += stress * block.elasticity();
-  Vec12 force = mass * (velocity0 - offset) / h;
-  force.head<3>() -= (block.mass() * request.gravity) * Vec3(rotation_.transpose() * Vec3::UnitZ());
-  force.segment<6>(kStrain) -= block.elasticity() * state.strain;
+  force += mass_ * ((velocity0 - offset) / h);
 
-  // First guess: free flight.
-  Vec12 d = Vec12::Zero();
-  d.head<6>() = h * velocity0.head<6>();
-  d.head<3>() -= (0.5 * h * h * request.gravity) * Vec3(rotation_.transpose() * Vec3::UnitZ());
+  // First guess: free flight, or as the last step went.
+  VecN d = VecN::Zero();
+  const Vec3 going = lasting ? down : Vec3(rotation_.transpose() * request.acceleration);
+  d.template head<3>() = h * velocity0.template head<3>() + (0.5 * h * h) * going;
+  d.template segment<3>(kRotation) = h * state.spin;
+  if (!lasting)
+  {
+    d.template segment<3>(kRotation) += (0.5 * h * h) * request.spinAcceleration;
+  }
   this->levers(block, contacts, d);
   this->evaluate(request, d);
-  Quat turn = cayley(d.segment<3>(kRotation));
-  Vec12 last = Vec12::Zero();
+  Quat turn = cayley(d.template segment<3>(kRotation));
+  VecN last = VecN::Zero();
   double share = 1.0; // of the correction that is taken
   bool settled = false;
   int iteration = 0;
   for (; iteration < request.maxOpenClose && !settled; ++iteration)
   {
-    matrix_ = inert;
-    load_ = force;
     // The momentum of rotation is carried to the end of the step: R₁ p₁ − R₀ p₀ = h τ
     // (METHOD 10.4).
-    const Vec12 velocity1 = rate * d + offset;
-    const Vec3 spinMomentum = (mass * velocity1).segment<3>(kRotation);
-    load_.segment<3>(kRotation) -= (turn * spinMomentum - spinMomentum) / h;
-    for (const Row& row : rows_)
-    {
-      if (row.force <= 0.0 && row.stiffness <= 0.0)
-      {
-        continue;
-      }
-      // Newton: f(D') ≈ f(D) − k nᵀT (D' − D)
-      const Vec12& n = row.normal;
-      const double atZero = row.force + row.stiffness * n.dot(d);
-      matrix_.noalias() += (row.stiffness * n) * n.transpose();
-      load_ += atZero * n;
-      if (row.state == ContactState::Open)
-      {
-        continue;
-      }
-      const Eigen::Vector2d travel(row.shear[0].dot(d), row.shear[1].dot(d));
-      for (int a = 0; a < 2; ++a)
-      {
-        Vec12 gradient = row.shearCoupling[a] * n;
-        gradient += row.shearStiffness(a, 0) * row.shear[0];
-        gradient += row.shearStiffness(a, 1) * row.shear[1];
-        const double shearAtZero = row.shearForce[a] + gradient.dot(d);
-        matrix_.noalias() += row.shear[a] * gradient.transpose();
-        load_ += shearAtZero * row.shear[a];
-      }
-    }
-    Vec12 next = Vec12::Zero();
-    if (request.rigid)
-    {
-      const Eigen::Matrix<double, 6, 6> k = matrix_.topLeftCorner<6, 6>();
-      next.head<6>() = k.partialPivLu().solve(load_.head<6>());
-    }
-    else
-    {
-      next = matrix_.partialPivLu().solve(load_);
-    }
+    VecN load = force;
+    const VecN velocity1 = rate * d + offset;
+    const Vec3 spinMomentum = mass_.template middleRows<3>(kRotation) * velocity1;
+    load.template segment<3>(kRotation) -= (turn * spinMomentum - spinMomentum) / h;
+    const VecN next = this->solve(load, d);
     if (!next.allFinite())
     {
       break;
     }
     // A contact that hardly slips can throw the iteration from one side of the friction cone's tip
     // to the other for ever: when a correction turns back, only part of it is taken.
-    const Vec12 correction = next - d;
-    const double back = correction.head<6>().dot(last.head<6>());
-    if (iteration > 1 && back < -0.25 * last.head<6>().squaredNorm())
+    const VecN correction = next - d;
+    const double back = correction.template head<6>().dot(last.template head<6>());
+    if (iteration > 1 && back < -0.25 * last.template head<6>().squaredNorm())
     {
       share = std::max(0.5 * share, 0.125);
     }
@@ -272,22 +390,22 @@ StepOutcome StepSolver::step(const Block& block, const StepRequest& request,
       share = std::min(1.0, 2.0 * share);
     }
     last = correction;
-    const Vec3 turnChange = correction.segment<3>(kRotation);
     d += share * correction;
-    turn = cayley(d.segment<3>(kRotation));
+    turn = cayley(d.template segment<3>(kRotation));
     this->levers(block, contacts, d);
     double change = 0.0, scale = 0.0;
     for (const Row& row : rows_)
     {
-      change = std::max(change, std::abs(row.gap0 + row.normal.dot(d) - row.gap1));
-      scale = std::max(scale, std::abs(row.normal.dot(d)));
+      const double way = row.normal.dot(d);
+      change = std::max(change, std::abs(row.gap0 + way - row.gap1));
+      scale = std::max(scale, std::abs(way));
     }
     const bool changed = this->evaluate(request, d);
     // The rotation itself, for the gyroscopic term, converges with the gaps; without contacts it
     // alone decides.
-    const double turned = turnChange.norm();
+    const double turned = correction.template segment<3>(kRotation).norm();
     settled = share == 1.0 && !changed && change <= kGapTolerance * scale + 1e-15 &&
-      turned <= 1e-10 * (1.0 + d.segment<3>(kRotation).norm());
+      turned <= kGapTolerance * d.template segment<3>(kRotation).norm() + 1e-13;
   }
   outcome.iterations = iteration;
   outcome.settled = settled;
@@ -296,31 +414,51 @@ StepOutcome StepSolver::step(const Block& block, const StepRequest& request,
     return outcome;
   }
 
-  const Vec12 velocity1 = rate * d + offset;
+  this->write(request, d, contacts, outcome);
+  const VecN velocity1 = rate * d + offset;
+  state.time += h;
+  state.position += rotation_ * Vec3(d.template head<3>());
+  state.velocity = rotation_ * Vec3(velocity1.template head<3>());
+  state.orientation = (state.orientation * turn).normalized();
+  state.spin = velocity1.template segment<3>(kRotation);
+  if constexpr (N == 12)
+  {
+    state.strain += d.template tail<6>();
+    state.strainRate = velocity1.template tail<6>();
+  }
+  return outcome;
+}
+
+template <int N>
+void BlockStep<N>::write(const StepRequest& request, const VecN& d, std::vector<Contact>& contacts,
+  StepOutcome& outcome) const
+{
   for (std::size_t i = 0; i < contacts.size(); ++i)
   {
     const Row& row = rows_[i];
     Contact& c = contacts[i];
-    const Vec3 slip1 = row.tangent[0] * row.slip1[0] + row.tangent[1] * row.slip1[1];
     c.normalForce = row.force;
     c.shearForce = row.shearForce.norm();
     c.distance = row.gap1 + c.offset;
-    const bool closedAtEnd = row.force > 0.0 && row.gap1 < 0.0;
-    if (row.force > 0.0)
+    const bool closedAtEnd = row.gap1 < 0.0;
+    const double shear = closedAtEnd ? 0.5 * row.shearPenalty * row.slip1.squaredNorm() : 0.0;
+    const Eigen::Vector2d travel(row.shear[0].dot(d), row.shear[1].dot(d));
+    outcome.frictionWork +=
+      0.5 * row.shearPenalty * row.slip0.squaredNorm() - shear - row.shearForce.dot(travel);
+    const double compressed0 = std::min(row.gap0, 0.0), compressed1 = std::min(row.gap1, 0.0);
+    const double normal = 0.5 * row.penalty * compressed1 * compressed1;
+    if (row.dashpot > 0.0)
     {
-      const Eigen::Vector2d travel(row.shear[0].dot(d), row.shear[1].dot(d));
-      const double before = 0.5 * request.shearPenalty * row.slip0.squaredNorm();
-      const double after = closedAtEnd ? 0.5 * request.shearPenalty * row.slip1.squaredNorm() : 0.0;
-      outcome.frictionWork += -row.shearForce.dot(travel) - (after - before);
+      outcome.dampedWork +=
+        0.5 * row.penalty * compressed0 * compressed0 - normal - row.force * (row.gap1 - row.gap0);
     }
     if (closedAtEnd)
     {
       outcome.anyClosed = true;
-      c.state = row.state;
-      c.slip = rotation_ * slip1;
-      const double normal = 0.5 * request.normalPenalty * row.gap1 * row.gap1;
+      c.state = row.state == ContactState::Open ? ContactState::Sliding : row.state;
+      c.slip = rotation_ * Vec3(row.tangent[0] * row.slip1[0] + row.tangent[1] * row.slip1[1]);
       outcome.normalEnergy += normal;
-      outcome.springEnergy += normal + 0.5 * request.shearPenalty * row.slip1.squaredNorm();
+      outcome.springEnergy += normal + shear;
     }
     else
     {
@@ -328,17 +466,10 @@ StepOutcome StepSolver::step(const Block& block, const StepRequest& request,
       c.slip.setZero();
     }
   }
-  state.time += h;
-  state.position += rotation_ * Vec3(d.head<3>());
-  state.velocity = rotation_ * Vec3(velocity1.head<3>());
-  state.orientation = (state.orientation * turn).normalized();
-  state.spin = velocity1.segment<3>(kRotation);
-  if (!request.rigid)
-  {
-    state.strain += d.segment<6>(kStrain);
-    state.strainRate = velocity1.segment<6>(kStrain);
-  }
-  return outcome;
+  (void)request;
 }
+
+template class BlockStep<6>;
+template class BlockStep<12>;
 
 } // namespace rockfall

@@ -14,6 +14,10 @@
 /// - Velocities: Impact takes Shi's Ḋ¹ = 2 D/Δt − Ḋ⁰. With a stiff contact that leaves the velocity
 ///   ringing at ±v for ever, so Lasting takes Ḋ¹ = D/Δt + ½ Δt D̈⁰, second-order too and damped at
 ///   high frequency (|λ| = 0.71 as Δt → ∞).
+/// - With 6 unknowns the strain has no inertia: what a contact force strains at its point is part
+/// of
+///   that contact's spring (springs.h).
+/// - One contact is solved in its own three directions, W = J A⁻¹ Jᵀ; several in D.
 
 #include "contact/Contact.h"
 
@@ -32,14 +36,15 @@ struct StepRequest
 {
   double duration = 0.0; ///< h, s.
   StepKind kind = StepKind::Impact;
-  double gravity = 9.81;
-  double normalPenalty = 1e9; ///< pₙ, N/m.
-  double shearPenalty = 1e9;  ///< pₛ, N/m.
+  double gravity = 9.81;      ///< m/s²
+  double normalPenalty = 1e9; ///< pₙ of contacts that bring none of their own, N/m.
+  double shearPenalty = 1e9;  ///< pₛ of these, N/m.
   double friction = 0.0;      ///< tan φ.
   double cohesion = 0.0;      ///< N per closed contact.
   bool rigid = false;         ///< Strain rows left out: 6 unknowns.
   int maxOpenClose = 12;
-  /// Acceleration of translation (world) and of the spin (body), lagged, for Lasting.
+  /// Acceleration of translation (world) and of the spin (body) in the last step: the lag of
+  /// Lasting, a first guess for Impact.
   Vec3 acceleration = Vec3::Zero();
   Vec3 spinAcceleration = Vec3::Zero();
 };
@@ -48,32 +53,33 @@ struct StepOutcome
 {
   bool settled = false;
   int iterations = 0;
-  double frictionWork = 0.0; ///< Dissipated by sliding, J, ≥ 0.
+  double frictionWork = 0.0; ///< Dissipated along the contacts' planes, J, ≥ 0.
+  double dampedWork = 0.0;   ///< Dissipated by the normal dashpots, J, ≥ 0.
   double springEnergy = 0.0; ///< In the contact springs at the end, J.
   double normalEnergy = 0.0; ///< The part of it in the normal springs, J.
   bool anyClosed = false;
 };
 
-/// Holds the work space, so that a step allocates nothing once it has grown.
-class StepSolver
+/// The step for N unknowns per block: 12, or 6 without strain. Holds the work space, so that a step
+/// allocates nothing once it has grown.
+template <int N>
+class BlockStep
 {
 public:
-  /// Advances `state` and the contacts' springs by one step. Contacts come with distance, normal
-  /// and point as of the start of the step; they leave with state, forces, slip and the gap
-  /// predicted for its end in `distance`. If open–close does not settle, nothing is changed unless
-  /// `takeAnyway`.
-  StepOutcome step(const Block& block, const StepRequest& request, std::vector<Contact>& contacts,
-    BlockState& state, bool takeAnyway = false);
+  using VecN = Eigen::Matrix<double, N, 1>;
+  using MatN = Eigen::Matrix<double, N, N>;
 
-  /// The dense system of the last iteration, for the tests.
-  const Mat12& matrix() const { return matrix_; }
-  const Vec12& load() const { return load_; }
+  StepOutcome step(const Block& block, const StepRequest& request, std::vector<Contact>& contacts,
+    BlockState& state, bool takeAnyway);
+
+  /// One contact is solved in D as well: the oracle of the tests.
+  bool alwaysFull = false;
 
 private:
   struct Row
   {
-    Vec12 normal;                ///< nᵀT
-    std::array<Vec12, 2> shear;  ///< lᵀT for two directions in the contact's plane.
+    VecN normal;                 ///< nᵀT
+    std::array<VecN, 2> shear;   ///< lᵀT for two directions in the contact's plane.
     std::array<Vec3, 2> tangent; ///< Body axes.
     Vec3 n;                      ///< Body axes of the step's start.
     Vec3 x;                      ///< Material point.
@@ -81,6 +87,10 @@ private:
     std::array<Vec3, 2> ridge;   ///< EdgeEdge: point and direction about the centroid, body axes.
     Eigen::Vector2d slip0;
     double gap0 = 0.0;
+    double penalty = 0.0;      ///< pₙ, N/m.
+    double shearPenalty = 0.0; ///< pₛ, N/m.
+    double dashpot = 0.0;      ///< Normal, N s/m.
+    double shearLag = 0.0;     ///< cₛ/pₛ, s.
     // As of the last evaluation:
     double gap1 = 0.0;
     double force = 0.0;
@@ -93,19 +103,51 @@ private:
     Eigen::Vector2d direction =
       Eigen::Vector2d::Zero(); ///< Of the slip while it slides, else zero.
     ContactState state = ContactState::Open;
+
+    bool acts() const { return this->force > 0.0 || this->stiffness > 0.0; }
   };
 
-  void prepareRows(
-    const Block& block, const BlockState& state, const std::vector<Contact>& contacts);
-  void levers(const Block& block, const std::vector<Contact>& contacts, const Vec12& d);
+  void prepareInertia(const Block& block, double h, double rate, double stress);
+  void prepareRows(const Block& block, const BlockState& state, const StepRequest& request,
+    const std::vector<Contact>& contacts);
+  void levers(const Block& block, const std::vector<Contact>& contacts, const VecN& d);
   /// Springs for the displacement D; returns whether any contact changed its state.
-  bool evaluate(const StepRequest& request, const Vec12& d);
+  bool evaluate(const StepRequest& request, const VecN& d);
+  /// Newton's next D from springs linearised about `d`; `load`: all other forces.
+  VecN solve(const VecN& load, const VecN& d);
+  VecN solveOne(const Row& row, const VecN& load, const VecN& d) const;
+  void write(const StepRequest& request, const VecN& d, std::vector<Contact>& contacts,
+    StepOutcome& outcome) const;
 
   std::vector<Row> rows_;
-  Mat12 matrix_;
-  Vec12 load_;
-  Mat3 rotation_; ///< Body to world at the start of the step.
-  Mat3 deform_;   ///< I + ε at the start of the step.
+  MatN mass_ = MatN::Zero();
+  MatN inert_ = MatN::Zero();   ///< A: inertia, and elasticity of the strains.
+  MatN inverse_ = MatN::Zero(); ///< A⁻¹
+  Mat3 rotation_;               ///< Body to world at the start of the step.
+  Mat3 deform_;                 ///< I + ε at the start of the step.
+};
+
+extern template class BlockStep<6>;
+extern template class BlockStep<12>;
+
+class StepSolver
+{
+public:
+  /// Advances `state` and the contacts' springs by one step. Contacts come with distance, normal
+  /// and point as of the start of the step; they leave with state, forces, slip and the gap
+  /// predicted for its end in `distance`. If open–close does not settle, nothing is changed unless
+  /// `takeAnyway`.
+  StepOutcome step(const Block& block, const StepRequest& request, std::vector<Contact>& contacts,
+    BlockState& state, bool takeAnyway = false)
+  {
+    return request.rigid ? rigid_.step(block, request, contacts, state, takeAnyway)
+                         : deformable_.step(block, request, contacts, state, takeAnyway);
+  }
+  void solveInFull(bool always) { rigid_.alwaysFull = deformable_.alwaysFull = always; }
+
+private:
+  BlockStep<6> rigid_;
+  BlockStep<12> deformable_;
 };
 
 } // namespace rockfall

@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file
-/// The one-sided normal spring of a contact over a step.
+/// The one-sided normal spring of a contact over a step, with the dashpot that makes a coefficient
+/// of restitution of it.
 
 #include <algorithm>
 #include <cmath>
@@ -50,18 +51,56 @@ inline NormalSpring conservingSpring(double p, double d0, double d1)
   return s;
 }
 
-/// Blends the conserving force with Shi's force at the end of the step: `damped` = 0 … 1.
-inline NormalSpring normalSpring(double p, double d0, double d1, double damped)
+/// With a dashpot beside the spring while it is compressed, c · (change of compression) / h, and no
+/// tension ever. `rate`: c/h, N/m.
+inline NormalSpring dampedSpring(double p, double rate, double d0, double d1)
 {
-  if (damped == 0.0)
+  NormalSpring s = conservingSpring(p, d0, d1);
+  if (rate > 0.0)
   {
-    return conservingSpring(p, d0, d1);
+    s.force += rate * (std::min(d0, 0.0) - std::min(d1, 0.0));
+    s.stiffness += d1 < 0.0 ? rate : 0.0;
+    if (s.force <= 0.0)
+    {
+      s = { 0.0, 0.0, 0.0 };
+    }
   }
-  NormalSpring s;
-  s.force = d1 < 0.0 ? -p * d1 : 0.0;
-  s.stiffness = d1 < 0.0 ? p : 0.0;
-  s.share = d1 < 0.0 ? 1.0 : 0.0;
   return s;
+}
+
+/// Shi's: the force at the end of the step.
+inline NormalSpring endSpring(double p, double d1)
+{
+  return d1 < 0.0 ? NormalSpring{ -p * d1, p, 1.0 } : NormalSpring{ 0.0, 0.0, 0.0 };
+}
+
+/// Damping ratio ζ of a mass on a spring and a dashpot, c = 2 ζ √(p m), that comes back with e
+/// times its speed when it may leave as soon as the force is no longer a push: e = exp(−2 ζ acos ζ
+/// / √(1 − ζ²)), for ζ > 1 with acosh and √(ζ² − 1) (Schwager & Pöschel 2007, Granular Matter 9,
+/// 465, for the condition of no tension). Between 0.01 and 1; below, as for 0.01.
+inline double dampingRatio(double restitution)
+{
+  const auto exponent = [](double z)
+  {
+    if (std::abs(z - 1.0) < 1e-6)
+    {
+      return 2.0;
+    }
+    return z < 1.0 ? 2.0 * z * std::acos(z) / std::sqrt(1.0 - z * z)
+                   : 2.0 * z * std::acosh(z) / std::sqrt(z * z - 1.0);
+  };
+  if (restitution >= 1.0)
+  {
+    return 0.0;
+  }
+  const double wanted = -std::log(std::max(restitution, 0.01));
+  double low = 0.0, high = 8.0;
+  for (int k = 0; k < 50; ++k)
+  {
+    const double middle = 0.5 * (low + high);
+    (exponent(middle) < wanted ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
 }
 
 } // namespace rockfall

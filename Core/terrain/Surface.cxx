@@ -121,20 +121,21 @@ void gatherPatch(
   patch.nodes.resize(std::size_t(nodeColumns) * nodeRows);
   for (int r = 0; r < nodeRows; ++r)
   {
-    for (int c = 0; c < nodeColumns; ++c)
+    const int row = row0 + r;
+    SurfacePatch::Node* node = &patch.nodes[std::size_t(r) * nodeColumns];
+    for (int c = 0; c < nodeColumns; ++c, ++node)
     {
-      SurfacePatch::Node& node = patch.nodes[std::size_t(r) * nodeColumns + c];
-      const int row = row0 + r, column = column0 + c;
-      node.position = { column * g.cellSize, (g.rows - 1 - row) * g.cellSize,
+      const int column = column0 + c;
+      node->position = { column * g.cellSize, (g.rows - 1 - row) * g.cellSize,
         surface.nodeHeight(row, column) };
-      node.key = std::int64_t(row) * g.columns + column;
-      node.cfe = 0;
-      node.peak = false;
-      node.neighbours.fill(-1);
+      node->key = std::int64_t(row) * g.columns + column;
+      node->cfe = 0;
+      node->peak = false;
     }
   }
   const int cellColumns = column1 - column0 + 1;
   const int cellRows = row1 - row0 + 1;
+  const int below = 2 * cellColumns;
   // Two slots per cell; a slot whose triangle touches nodata is marked by cfe = 0.
   patch.triangles.resize(2 * std::size_t(cellColumns) * cellRows);
   for (int r = 0; r < cellRows; ++r)
@@ -148,18 +149,22 @@ void gatherPatch(
       // Edges of the lower triangle: west, south, diagonal; of the upper: diagonal, east, north.
       SurfacePatch::Triangle* t = &patch.triangles[lower];
       t[0].nodes = { upperLeft, lowerLeft, lowerLeft + 1 };
-      t[0].neighbours = { c > 0 ? lower - 1 : -1,
-        r + 1 < cellRows ? lower + 2 * cellColumns + 1 : -1, lower + 1 };
+      t[0].neighbours = { c > 0 ? lower - 1 : -1, r + 1 < cellRows ? lower + below + 1 : -1,
+        lower + 1 };
       t[1].nodes = { upperLeft, lowerLeft + 1, upperLeft + 1 };
-      t[1].neighbours = { lower, c + 1 < cellColumns ? lower + 2 : -1,
-        r > 0 ? lower + 1 - 2 * cellColumns - 1 : -1 };
+      t[1].neighbours = { lower, c + 1 < cellColumns ? lower + 2 : -1, r > 0 ? lower - below : -1 };
+      const double zUpperLeft = patch.nodes[upperLeft].position.z();
+      const double zLowerLeft = patch.nodes[lowerLeft].position.z();
+      const double zUpperRight = patch.nodes[upperLeft + 1].position.z();
+      const double zLowerRight = patch.nodes[lowerLeft + 1].position.z();
+      const Vec3 up[2] = {
+        { zLowerLeft - zLowerRight, zLowerLeft - zUpperLeft, g.cellSize },
+        { zUpperLeft - zUpperRight, zLowerRight - zUpperRight, g.cellSize },
+      };
       for (int k = 0; k < 2; ++k)
       {
-        const Vec3& a = patch.nodes[t[k].nodes[0]].position;
-        const Vec3& b = patch.nodes[t[k].nodes[1]].position;
-        const Vec3& d = patch.nodes[t[k].nodes[2]].position;
-        t[k].normal = (b - a).cross(d - a).normalized();
-        t[k].offset = t[k].normal.dot(a);
+        t[k].normal = up[k] * (1.0 / std::sqrt(up[k].squaredNorm()));
+        t[k].offset = t[k].normal.dot(patch.nodes[upperLeft].position);
         t[k].cfe = std::isnan(t[k].offset) ? 0 : id + k;
         t[k].bends.fill(0);
         for (int n : t[k].nodes)
@@ -169,42 +174,49 @@ void gatherPatch(
       }
     }
   }
-  // Bends and ridges; each inner edge is met twice, taken from the triangle with the smaller index.
-  for (int i = 0; i < int(patch.triangles.size()); ++i)
+  // Bends and ridges. Every inner edge is a side of one lower triangle (odd number): `back` is the
+  // same edge in the upper triangle beyond it.
+  constexpr int back[3] = { 1, 2, 0 };
+  for (int i = 0; i < int(patch.triangles.size()); i += 2)
   {
     SurfacePatch::Triangle& t = patch.triangles[i];
     for (int k = 0; k < 3; ++k)
     {
       const int j = t.neighbours[k];
-      if (j >= 0 && (t.cfe == 0 || patch.triangles[j].cfe == 0))
-      {
-        t.neighbours[k] = -1;
-      }
-      if (t.neighbours[k] < 0 || j < i)
+      if (j < 0)
       {
         continue;
       }
       SurfacePatch::Triangle& other = patch.triangles[j];
-      int back = 0;
-      while (back < 2 && other.neighbours[back] != i)
+      if (t.cfe == 0 || other.cfe == 0)
       {
-        ++back;
+        t.neighbours[k] = -1;
+        other.neighbours[back[k]] = -1;
+        continue;
       }
-      const int wing = other.nodes[(back + 2) % 3];
-      const Vec3& p = patch.nodes[t.nodes[k]].position;
+      const int wing = other.nodes[(back[k] + 2) % 3];
       // Depth of the other triangle's wing below this plane, per its distance.
-      const Vec3 arm = patch.nodes[wing].position - p;
-      const double bend = -t.normal.dot(arm) / arm.norm();
-      const signed char sign = bend > flatBend ? 1 : (bend < -flatBend ? -1 : 0);
+      const Vec3 arm = patch.nodes[wing].position - patch.nodes[t.nodes[k]].position;
+      const double drop = -t.normal.dot(arm);
+      const bool flat = drop * drop <= flatBend * flatBend * arm.squaredNorm();
+      const signed char sign = flat ? 0 : (drop > 0.0 ? 1 : -1);
       t.bends[k] = sign;
-      other.bends[back] = sign;
+      other.bends[back[k]] = sign;
       if (sign > 0)
       {
-        const int n0 = t.nodes[k], n1 = t.nodes[(k + 1) % 3];
-        // Three edges belong to a cell: told apart by which triangle and side they are.
-        patch.ridges.push_back(
-          { { n0, n1 }, { i, j }, { t.nodes[(k + 2) % 3], wing }, 3 * t.cfe + k });
+        // Three edges belong to a lower triangle: that and the side make the key.
+        patch.ridges.push_back({ { t.nodes[k], t.nodes[(k + 1) % 3] }, { i, j },
+          { t.nodes[(k + 2) % 3], wing }, 3 * t.cfe + k });
       }
+    }
+  }
+  // Upper triangles beside holes, over the edges of the patch.
+  for (int i = 1; i < int(patch.triangles.size()); i += 2)
+  {
+    SurfacePatch::Triangle& t = patch.triangles[i];
+    if (t.cfe == 0)
+    {
+      t.neighbours.fill(-1);
     }
   }
   // Peaks: nodes on a ridge that have all their six neighbours in the patch.

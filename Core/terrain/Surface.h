@@ -6,6 +6,8 @@
 #include "terrain/Terrain.h"
 
 #include <array>
+#include <cmath>
+#include <limits>
 #include <vector>
 
 namespace rockfall
@@ -89,6 +91,58 @@ struct SurfacePatch
   {
     return x0 >= xMin && x1 <= xMax && y0 >= yMin && y1 <= yMax;
   }
+};
+
+/// The heights under the way of a rock, without features: what flight looks at.
+class HeightWindow
+{
+public:
+  /// All nodes of the cells that a box (local frame, m) meets. Reuses memory.
+  void gather(const Surface& surface, double xMin, double xMax, double yMin, double yMax);
+  void clear() { rows_ = 0; }
+
+  int rows() const { return rows_; }       ///< Of nodes, from the north.
+  int columns() const { return columns_; } ///< Of nodes, from the west.
+  double cellSize() const { return cellSize_; }
+  double inverseCellSize() const { return inverse_; }
+  double x(int column) const { return west_ + column * cellSize_; }
+  double y(int row) const { return north_ - row * cellSize_; }
+  double west() const { return west_; }
+  double north() const { return north_; }
+  double z(int row, int column) const { return z_[std::size_t(row) * columns_ + column]; }
+  /// Elevation of the surface, NaN where there is none in the window, m.
+  double elevation(double x, double y) const
+  {
+    const double c = (x - west_) * inverse_, r = (north_ - y) * inverse_;
+    if (!(c >= 0.0 && r >= 0.0 && c <= columns_ - 1 && r <= rows_ - 1))
+    {
+      return std::numeric_limits<double>::quiet_NaN();
+    }
+    const int column = std::min(int(c), columns_ - 2), row = std::min(int(r), rows_ - 2);
+    const double s = c - column, t = r - row;
+    const double* upper = &z_[std::size_t(row) * columns_ + column];
+    const double* lower = upper + columns_;
+    return t >= s ? upper[0] + t * (lower[0] - upper[0]) + s * (lower[1] - lower[0])
+                  : upper[0] + s * (upper[1] - upper[0]) + t * (lower[1] - upper[1]);
+  }
+  /// Mean of the gradients (∂z/∂x, ∂z/∂y) of the CFEs, and the farthest that one of them is from
+  /// it.
+  const Eigen::Vector2d& tilt() const { return tilt_; }
+  double relief() const { return relief_; }
+  /// No node is higher than tilt · (x, y) + highest, m; −∞ if there is none.
+  double highest() const { return highest_; }
+  bool covers(double x0, double x1, double y0, double y1) const
+  {
+    return rows_ > 0 && x0 >= xMin_ && x1 <= xMax_ && y0 >= yMin_ && y1 <= yMax_;
+  }
+
+private:
+  std::vector<double> z_; ///< NaN for nodata.
+  int rows_ = 0, columns_ = 0;
+  double cellSize_ = 0.0, inverse_ = 0.0, west_ = 0.0, north_ = 0.0;
+  double xMin_ = 0.0, xMax_ = -1.0, yMin_ = 0.0, yMax_ = -1.0;
+  Eigen::Vector2d tilt_ = Eigen::Vector2d::Zero();
+  double relief_ = 0.0, highest_ = 0.0;
 };
 
 /// Gathers the cells under a box (local frame, m) with a ring of one cell around them, by index

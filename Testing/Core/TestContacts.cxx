@@ -86,7 +86,9 @@ TEST(Contacts, PrunedSearchFindsWhatBruteForceFinds)
       surface, lower.x() - reach, upper.x() + reach, lower.y() - reach, upper.y() + reach, local);
     gatherPatch(surface, 0.0, terrain.width(), 0.0, terrain.height(), whole);
     std::vector<Contact> indexed, brute;
-    updateContacts(p.rock, local, reach, indexed);
+    CandidatePairs candidates;
+    gatherCandidates(p.rock, p.state, local, reach, candidates);
+    updateContacts(p.rock, local, candidates, reach, indexed);
     findEntrancesBruteForce(p.rock, whole, reach, brute);
     const auto order = [](const Contact& a, const Contact& b)
     {
@@ -126,7 +128,9 @@ TEST(Contacts, AFlatPlaneOfManyCfesHasNoInnerFeatures)
   gatherPatch(Surface::asSurveyed(plane), p.rock.lower().x(), p.rock.upper().x(),
     p.rock.lower().y(), p.rock.upper().y(), patch);
   std::vector<Contact> contacts;
-  updateContacts(p.rock, patch, 0.01, contacts);
+  CandidatePairs candidates;
+  gatherCandidates(p.rock, p.state, patch, 0.01, candidates);
+  updateContacts(p.rock, patch, candidates, 0.01, contacts);
   ASSERT_EQ(contacts.size(), 4u); // the corners of the face that lies on it, nothing else
   for (const Contact& c : contacts)
   {

