@@ -30,6 +30,12 @@ Sample sampleAt(const Trajectory& trajectory, double time)
   result.angularVelocity = mix(a.angularVelocity, b.angularVelocity);
   result.kineticEnergy = mix(a.kineticEnergy, b.kineticEnergy);
   result.heightOverGround = mix(a.heightOverGround, b.heightOverGround);
+  for (double EnergyAudit::*term : { &EnergyAudit::released, &EnergyAudit::kinetic,
+         &EnergyAudit::strain, &EnergyAudit::friction, &EnergyAudit::restitution,
+         &EnergyAudit::vibration, &EnergyAudit::damping, &EnergyAudit::numerical })
+  {
+    result.energy.*term = mix(a.energy.*term, b.energy.*term);
+  }
   result.contact = s < 0.5 ? a.contact : b.contact;
   return result;
 }

@@ -46,6 +46,37 @@ struct MotionArrays
   }
 };
 
+/// Where the energy of a rock is, and what has been taken of it since its release, J.
+struct EnergyArrays
+{
+  vtkSmartPointer<vtkDoubleArray> potential, strain, friction, restitution, vibration, damping,
+    numerical;
+
+  explicit EnergyArrays(vtkFieldData* data)
+    : potential(addArray<vtkDoubleArray>(data, "PotentialEnergy"))
+    , strain(addArray<vtkDoubleArray>(data, "StrainEnergy"))
+    , friction(addArray<vtkDoubleArray>(data, "FrictionLoss"))
+    , restitution(addArray<vtkDoubleArray>(data, "RestitutionLoss"))
+    , vibration(addArray<vtkDoubleArray>(data, "VibrationLoss"))
+    , damping(addArray<vtkDoubleArray>(data, "DampingLoss"))
+    , numerical(addArray<vtkDoubleArray>(data, "NumericalLoss"))
+  {
+  }
+
+  /// `weight`: m g, N.
+  void append(const Sample& sample, double weight)
+  {
+    // Heights of the local frame are those of the world.
+    this->potential->InsertNextValue(weight * sample.position.z());
+    this->strain->InsertNextValue(sample.energy.strain);
+    this->friction->InsertNextValue(sample.energy.friction);
+    this->restitution->InsertNextValue(sample.energy.restitution);
+    this->vibration->InsertNextValue(sample.energy.vibration);
+    this->damping->InsertNextValue(sample.energy.damping);
+    this->numerical->InsertNextValue(sample.energy.numerical);
+  }
+};
+
 /// The arrays that say which rock, and in which iteration.
 struct IdentityArrays
 {
@@ -121,6 +152,7 @@ void writeTrajectories(const FinishedRun& run, vtkPolyData* output)
   vtkNew<vtkCellArray> lines;
   const auto time = addArray<vtkDoubleArray>(output->GetPointData(), "Time");
   MotionArrays motion(output->GetPointData());
+  EnergyArrays energy(output->GetPointData());
   IdentityArrays identity(output->GetCellData());
   const auto shape = addArray<vtkIntArray>(output->GetCellData(), "Shape");
   const auto volume = addArray<vtkDoubleArray>(output->GetCellData(), "Volume");
@@ -128,12 +160,14 @@ void writeTrajectories(const FinishedRun& run, vtkPolyData* output)
   for (const Trajectory& trajectory : run.trajectories)
   {
     lines->InsertNextCell(int(trajectory.samples.size()));
+    const double weight = trajectory.summary.mass * run.gravity;
     for (const Sample& sample : trajectory.samples)
     {
       lines->InsertCellPoint(points->GetNumberOfPoints());
       insertPoint(points, sample.position + run.origin);
       time->InsertNextValue(sample.time);
       motion.append(sample);
+      energy.append(sample, weight);
     }
     const TrajectorySummary& summary = trajectory.summary;
     identity.append(summary);

@@ -21,12 +21,14 @@ struct FinishedRun
   std::vector<ReleasedRock> rocks;
   std::span<const Trajectory> trajectories; ///< In the order (iteration, rock).
   Vec3 origin = Vec3::Zero();
+  double gravity = 0.0; ///< m/s²
 };
 
 /// The blocks of one iteration as they stand at `time` (s).
 void writeRocksAt(const FinishedRun& run, int iteration, double time, vtkPolyData* output);
 
-/// One polyline of centroids per rock and iteration.
+/// One polyline of centroids per rock and iteration. Potential energy is m g z, z the elevation of
+/// the centroid.
 void writeTrajectories(const FinishedRun& run, vtkPolyData* output);
 
 /// One vertex per impact.

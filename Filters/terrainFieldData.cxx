@@ -1,5 +1,6 @@
 #include "terrainFieldData.h"
 
+#include "arrays.h"
 #include "base/errors.h"
 #include "geometry/shell.h"
 #include "terrainMesh.h"
@@ -232,6 +233,14 @@ Terrain readTerrain(vtkPolyData* mesh)
   Terrain terrain(std::move(grid), view, std::move(owner), materialOf(m), roughness);
   checkMesh(mesh, terrain, stride);
   return terrain;
+}
+
+void writeCrs(const std::string& wkt, vtkFieldData* fieldData)
+{
+  if (!wkt.empty())
+  {
+    addArray<vtkStringArray>(fieldData, crsName)->InsertNextValue(wkt);
+  }
 }
 
 void copyCoordinateSystem(vtkFieldData* from, vtkFieldData* to)

@@ -23,6 +23,7 @@
 #include "terrain/Terrain.h"
 
 #include <memory>
+#include <string>
 
 class vtkFieldData;
 class vtkPolyData;
@@ -37,6 +38,9 @@ void writeTerrain(std::shared_ptr<const Terrain> terrain, int stride, vtkFieldDa
 /// mesh was moved, clipped or otherwise changed since it was made, so that what the user sees is
 /// not what the rocks would fall on.
 Terrain readTerrain(vtkPolyData* mesh);
+
+/// Puts TerrainCRS alone there; nothing if `wkt` is empty, because nothing is known then.
+void writeCrs(const std::string& wkt, vtkFieldData* fieldData);
 
 /// Copies TerrainCRS and LocalOrigin, for the outputs that stand in the same coordinates.
 void copyCoordinateSystem(vtkFieldData* from, vtkFieldData* to);

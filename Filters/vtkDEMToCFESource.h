@@ -112,7 +112,7 @@ public:
 
   ///@{
   /**
-   * Friction angle between rock and slope in degrees, 0 to below 90. Default 15.
+   * Friction angle between rock and slope in degrees, 0 to 89. Default 15.
    */
   vtkSetMacro(FrictionAngle, double);
   vtkGetMacro(FrictionAngle, double);
@@ -120,7 +120,7 @@ public:
 
   ///@{
   /**
-   * Standard deviation of the friction angle in degrees, 0 to below 90. Default 0.
+   * Standard deviation of the friction angle in degrees, 0 to 89. Default 0.
    */
   vtkSetMacro(FrictionAngleDeviation, double);
   vtkGetMacro(FrictionAngleDeviation, double);

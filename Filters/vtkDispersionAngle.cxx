@@ -4,7 +4,9 @@
 #include "base/errors.h"
 #include "failure.h"
 #include "pathGroups.h"
+#include "pieces.h"
 #include "statistics/dispersion.h"
+#include "terrainFieldData.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -124,7 +126,8 @@ int vtkDispersionAngle::RequestData(
     {
       throw rockfall::DataError("The Input is missing");
     }
-    if (rockfall::filters::inheritFailure(input, this))
+    if (rockfall::filters::inheritFailure(input, this) ||
+      (input->GetNumberOfLines() == 0 && rockfall::filters::isFurtherPiece(outputVector)))
     {
       return 1;
     }
@@ -176,6 +179,11 @@ int vtkDispersionAngle::RequestData(
       lateralMax->InsertNextValue(dispersion.lateralMax);
       deviation->InsertNextValue(dispersion.lateralDeviation);
       direction->InsertNextValue(rockfall::degrees(azimuth));
+    }
+    for (vtkDataObject* made :
+      { static_cast<vtkDataObject*>(table), static_cast<vtkDataObject*>(lines) })
+    {
+      rockfall::filters::copyCoordinateSystem(input->GetFieldData(), made->GetFieldData());
     }
     vtkTable::GetData(outputVector, 0)->ShallowCopy(table);
     vtkPolyData::GetData(outputVector, 1)->ShallowCopy(lines);

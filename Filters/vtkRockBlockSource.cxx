@@ -3,6 +3,7 @@
 #include "base/errors.h"
 #include "failure.h"
 #include "rockMaker.h"
+#include "terrainFieldData.h"
 
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
@@ -50,17 +51,24 @@ int vtkRockBlockSource::RequestData(
     defaults.youngModulus = this->YoungModulus;
     defaults.poissonRatio = this->PoissonRatio;
     defaults.shapeFile = this->ShapeFileName;
+    if (this->ShapeFileMode != CONVEX_HULL && this->ShapeFileMode != AS_IT_IS)
+    {
+      throw rockfall::ParameterError("ShapeFileMode is " + std::to_string(this->ShapeFileMode) +
+        ", it must be 0 (convex hull) or 1 (as it is)");
+    }
     defaults.shapeFileAsItIs = this->ShapeFileMode == AS_IT_IS;
     defaults.scaleToVolume = this->ScaleToVolume;
 
     std::vector<rockfall::SourceRow> rows;
+    std::string crs;
     if (this->FileName.empty())
     {
+      crs = rockfall::wktOfCrs(this->TargetCRS);
       rows.emplace_back().position = vec3(this->Center);
     }
     else
     {
-      rows = rockfall::readSources(this->FileName, this->TargetCRS);
+      rows = rockfall::readSources(this->FileName, this->TargetCRS, &crs);
     }
 
     rockfall::filters::RockMaker maker(defaults);
@@ -83,6 +91,7 @@ int vtkRockBlockSource::RequestData(
     }
     vtkNew<vtkPolyData> blocks;
     rockfall::filters::writeRocks(rocks, blocks);
+    rockfall::filters::writeCrs(crs, blocks->GetFieldData());
     for (const std::string& note : maker.notes())
     {
       rockfall::filters::showNote(note);

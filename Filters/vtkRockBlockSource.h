@@ -146,7 +146,7 @@ public:
 
   ///@{
   /**
-   * Poisson's ratio, 0 to below 0.5, dimensionless. Default 0.1.
+   * Poisson's ratio, 0 to 0.49, dimensionless. Default 0.1.
    */
   vtkSetMacro(PoissonRatio, double);
   vtkGetMacro(PoissonRatio, double);
@@ -166,7 +166,8 @@ public:
   ///@{
   /**
    * Coordinate system of the slope, as WKT or "EPSG:n": the points of a layer in another one are
-   * brought to it. Empty (the default): they are taken as they are.
+   * brought to it. Empty (the default): they are taken as they are. The output says in its field
+   * array TerrainCRS in which one it is, if that is known.
    */
   vtkSetStdStringFromCharMacro(TargetCRS);
   vtkGetCharFromStdStringMacro(TargetCRS);

@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "failure.h"
+#include "pieces.h"
 #include "runOutputs.h"
 #include "simulation/ensemble.h"
 #include "terrainFieldData.h"
@@ -171,6 +172,11 @@ bool vtkRockfallSimulation::Simulate(vtkPolyData* terrainInput, vtkPolyData* roc
   parameters.shearRatio = this->ShearPenaltyRatio;
   parameters.rigid = this->Rigid;
   parameters.iterations = this->Iterations;
+  if (this->Seed < 0)
+  {
+    throw rockfall::ParameterError(
+      "Seed is " + std::to_string(this->Seed) + ", it must be at least 0");
+  }
   parameters.seed = std::uint64_t(this->Seed);
   parameters.threads = this->NumberOfThreads;
   parameters.validate();
@@ -193,6 +199,7 @@ bool vtkRockfallSimulation::Simulate(vtkPolyData* terrainInput, vtkPolyData* roc
   const rockfall::Terrain terrain = rockfall::filters::readTerrain(terrainInput);
   rockfall::filters::FinishedRun& run = cache->run;
   run.origin = terrain.geometry().origin();
+  run.gravity = parameters.gravity;
   run.rocks = rockfall::filters::readRocks(rocksInput, run.origin);
 
   std::vector<rockfall::Rock> rocks;
@@ -239,6 +246,10 @@ int vtkRockfallSimulation::Fail(
 int vtkRockfallSimulation::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
+  if (rockfall::filters::isFurtherPiece(outputVector))
+  {
+    return 1;
+  }
   vtkPolyData* terrain = vtkPolyData::GetData(inputVector[0]);
   vtkPolyData* rocks = vtkPolyData::GetData(inputVector[1]);
   if (!terrain || !rocks)

@@ -278,7 +278,15 @@ std::map<std::string, int> columnsOf(const OGRFeatureDefn& definition)
 
 } // namespace
 
-std::vector<SourceRow> readSources(const std::string& fileName, const std::string& targetCrs)
+std::string wktOfCrs(const std::string& text)
+{
+  Messages messages;
+  const CrsPtr crs = text.empty() ? nullptr : crsFromText(text);
+  return crs ? crsWkt(*crs) : std::string();
+}
+
+std::vector<SourceRow> readSources(
+  const std::string& fileName, const std::string& targetCrs, std::string* crs)
 {
   Messages messages;
   const DatasetPtr dataset = openVector(fileName, messages);
@@ -303,6 +311,7 @@ std::vector<SourceRow> readSources(const std::string& fileName, const std::strin
   }
 
   std::vector<SourceRow> rows;
+  bool allHavePoints = true;
   messages.clear();
   while (const OGRFeatureUniquePtr feature{ layer.GetNextFeature() })
   {
@@ -315,6 +324,7 @@ std::vector<SourceRow> readSources(const std::string& fileName, const std::strin
     SourceRow source;
     source.row = std::int64_t(rows.size()) + 1;
     source.position = placing(row);
+    allHavePoints = allHavePoints && row.point();
     source.shape = row.shape();
     source.volume = row.positive("volume");
     source.density = row.positive("density");
@@ -333,6 +343,11 @@ std::vector<SourceRow> readSources(const std::string& fileName, const std::strin
   {
     throw DataError(
       fileName + ": layer \"" + layer.GetName() + "\" has no row, so there is no rock");
+  }
+  if (crs)
+  {
+    const CrsPtr placed = placing.to ? placing.to : allHavePoints ? placing.from : nullptr;
+    *crs = placed ? crsWkt(*placed) : std::string();
   }
   return rows;
 }

@@ -35,10 +35,17 @@ struct SourceRow
 ///
 /// Points of a layer with a CRS are brought to `targetCrs` (WKT or "EPSG:n") if that is given;
 /// else, and in a table without geometry, the coordinates are taken as they are. z keeps its datum
-/// and becomes metres.
+/// and becomes metres. `crs`, if given, receives the WKT of the CRS in which the positions are:
+/// `targetCrs` if there is one, else that of the layer if all rows have a point of their own, else
+/// nothing.
 ///
 /// Throws FileError (missing, a folder, a raster, unreadable) or DataError naming file, row, field
 /// and value. Prints nothing; safe on several threads at once.
-std::vector<SourceRow> readSources(const std::string& fileName, const std::string& targetCrs = {});
+std::vector<SourceRow> readSources(
+  const std::string& fileName, const std::string& targetCrs = {}, std::string* crs = nullptr);
+
+/// WKT2:2019 on one line of a CRS given as "EPSG:n", WKT or PROJ string; empty for empty text.
+/// Throws DataError naming the text. Prints nothing.
+std::string wktOfCrs(const std::string& text);
 
 } // namespace rockfall

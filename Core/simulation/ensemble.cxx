@@ -115,10 +115,10 @@ void Rock::validate() const
   };
   positive(this->density, "Density", "kg/m³");
   positive(this->youngModulus, "YoungModulus", "Pa");
-  if (!(this->poissonRatio >= 0.0 && this->poissonRatio < 0.5))
+  if (!(this->poissonRatio >= 0.0 && this->poissonRatio <= 0.49))
   {
-    throw ParameterError(name + "PoissonRatio is " + std::to_string(this->poissonRatio) +
-      ", it must be at least 0 and below 0.5");
+    throw ParameterError(
+      name + "PoissonRatio is " + std::to_string(this->poissonRatio) + ", it must be 0 to 0.49");
   }
   positive(this->shape.integrals().volume, "Volume", "m³");
   const auto finite = [&](const Vec3& value, const char* field)

@@ -26,7 +26,7 @@ struct Rock
   Vec3 angularVelocity = Vec3::Zero(); ///< World axes, rad/s.
   double density = 2500.0;             ///< kg/m³, > 0.
   double youngModulus = 1e10;          ///< Pa, > 0.
-  double poissonRatio = 0.1;           ///< Dimensionless, 0 … <0.5.
+  double poissonRatio = 0.1;           ///< Dimensionless, 0 … 0.49.
 
   void validate() const; ///< Throws ParameterError naming block, field and value.
 };

@@ -12,6 +12,20 @@
 namespace rockfall
 {
 
+/// Where the energy went, J. Their sum is what the numerics kept; `numerical` is the remainder:
+/// released = kinetic + strain + friction + restitution + vibration + damping + numerical.
+struct EnergyAudit
+{
+  double released = 0.0;    ///< Start's kinetic energy plus potential energy given up.
+  double kinetic = 0.0;     ///< At the end of the time that is audited.
+  double strain = 0.0;      ///< Block strain and contact springs, at the end.
+  double friction = 0.0;    ///< Dissipated by sliding.
+  double restitution = 0.0; ///< Taken by Rv.
+  double vibration = 0.0;   ///< Strain energy left in a block when it took off.
+  double damping = 0.0;     ///< Dissipated by the damped step of lasting contact.
+  double numerical = 0.0;   ///< Gained (−) or lost (+) by the numerics.
+};
+
 /// The state of a rock at one time (METHOD 8).
 struct Sample
 {
@@ -23,6 +37,7 @@ struct Sample
   double kineticEnergy = 0.0;          ///< Translation and rotation, J.
   double heightOverGround = 0.0;       ///< Least height of a vertex over the ground under it, m.
   bool contact = false;                ///< Touching the slope.
+  EnergyAudit energy;                  ///< From the release to this time.
 };
 
 /// One impact: the rock came from flight, touched, and left or settled.
@@ -47,20 +62,6 @@ enum class Fate
   Moving = 2,     ///< Still moving at the end time.
 };
 std::string fateName(Fate fate);
-
-/// Where the energy went, J. Their sum is what the numerics kept; `numerical` is the remainder:
-/// released = kinetic + strain + friction + restitution + vibration + damping + numerical.
-struct EnergyAudit
-{
-  double released = 0.0;    ///< Start's kinetic energy plus potential energy given up.
-  double kinetic = 0.0;     ///< At the end.
-  double strain = 0.0;      ///< Block strain and contact springs at the end.
-  double friction = 0.0;    ///< Dissipated by sliding.
-  double restitution = 0.0; ///< Taken by Rv.
-  double vibration = 0.0;   ///< Strain energy left in a block when it took off.
-  double damping = 0.0;     ///< Dissipated by the damped step of lasting contact.
-  double numerical = 0.0;   ///< Gained (−) or lost (+) by the numerics.
-};
 
 /// One row per rock and iteration.
 struct TrajectorySummary

@@ -12,6 +12,9 @@ namespace rockfall
 namespace
 {
 
+/// tan φ is 57 here; beyond it only grows. Drawn angles are kept below it, too.
+constexpr double steepestFriction = radians(89.0);
+
 void requireRange(double value, double low, double high, const char* field, const char* range)
 {
   if (!(value >= low && value <= high))
@@ -39,16 +42,15 @@ void SurfaceMaterial::validate() const
     throw ParameterError("RestitutionSpeed is " + std::to_string(this->restitutionSpeed) +
       ", it must be a positive, finite number of metres per second");
   }
-  if (!(this->frictionAngle >= 0.0 && this->frictionAngle < radians(90.0)))
+  if (!(this->frictionAngle >= 0.0 && this->frictionAngle <= steepestFriction))
   {
     throw ParameterError("FrictionAngle is " + std::to_string(degrees(this->frictionAngle)) +
-      " degrees, it must be at least 0 and below 90");
+      " degrees, it must be 0 to 89");
   }
-  if (!(this->frictionAngleDeviation >= 0.0 && this->frictionAngleDeviation < radians(90.0)))
+  if (!(this->frictionAngleDeviation >= 0.0 && this->frictionAngleDeviation <= steepestFriction))
   {
     throw ParameterError("FrictionAngleDeviation is " +
-      std::to_string(degrees(this->frictionAngleDeviation)) +
-      " degrees, it must be at least 0 and below 90");
+      std::to_string(degrees(this->frictionAngleDeviation)) + " degrees, it must be 0 to 89");
   }
   requireRange(this->cohesion, 0.0, std::numeric_limits<double>::max(), "Cohesion",
     "a finite number of newtons, not negative");

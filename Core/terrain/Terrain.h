@@ -59,8 +59,8 @@ struct SurfaceMaterial
   double tangentialRestitution = 1.0; ///< Rt, dimensionless, 0 … 1. Not used by Velocity.
   /// K, normal speed at which half of Rn is left, m/s, > 0: 30 ft/s. Used by SpeedDependent only.
   double restitutionSpeed = 9.144;
-  double frictionAngle = radians(15.0); ///< φ, rad, 0 … <π/2.
-  double frictionAngleDeviation = 0.0;  ///< Standard deviation of φ, rad, ≥ 0.
+  double frictionAngle = radians(15.0); ///< φ, rad, 0° … 89°.
+  double frictionAngleDeviation = 0.0;  ///< Standard deviation of φ, rad, 0° … 89°.
   double cohesion = 0.0;                ///< c, N per contact point, ≥ 0.
 
   void validate() const; ///< Throws ParameterError naming field and value.

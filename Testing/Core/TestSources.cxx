@@ -192,6 +192,26 @@ TEST(Sources, pointsAreBroughtToTheTerrain)
   EXPECT_EQ(readSources(table("x,y,z\n1,2,3\n"), "EPSG:32632")[0].position, Vec3(1.0, 2.0, 3.0));
 }
 
+TEST(Sources, sayInWhichCrsTheyAre)
+{
+  const auto crsOf = [](const std::string& path, const std::string& target = {})
+  {
+    std::string crs = "untouched";
+    readSources(path, target, &crs);
+    return crs;
+  };
+  const std::string lonLat = feature(R"({"type":"Point","coordinates":[9,45,700]})");
+  EXPECT_TRUE(holds(crsOf(lonLat, "EPSG:32632"), { "PROJCRS[", "UTM zone 32N" }));
+  EXPECT_EQ(crsOf(lonLat, "EPSG:32632"), wktOfCrs("EPSG:32632"));
+  EXPECT_TRUE(holds(crsOf(lonLat), { "GEOGCRS[", "WGS 84" }));
+  // A row without a point has no part in the layer's CRS.
+  EXPECT_EQ(crsOf(feature("null", R"("x":1,"y":2,"z":3)")), "");
+  EXPECT_EQ(crsOf(table("x,y,z\n1,2,3\n")), "");
+  EXPECT_EQ(crsOf(table("x,y,z\n1,2,3\n"), "EPSG:32632"), wktOfCrs("EPSG:32632"));
+  EXPECT_EQ(wktOfCrs(""), "");
+  EXPECT_TRUE(holds(messageOf<DataError>([] { wktOfCrs("EPSG:nowhere"); }), { "EPSG:nowhere" }));
+}
+
 TEST(SourceErrors, files)
 {
   const std::string nowhere = pathOf("nowhere.csv");

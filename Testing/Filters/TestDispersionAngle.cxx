@@ -3,9 +3,11 @@
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDispersionAngle.h"
+#include "vtkDoubleArray.h"
 #include "vtkIntArray.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkStringArray.h"
 #include "vtkTable.h"
 
 #include <cmath>
@@ -134,6 +136,35 @@ TEST_F(TestDispersionAngle, WedgeSpansWidthAndLength)
     EXPECT_NEAR(bounds[k], expected[k], 1e-9);
   }
   EXPECT_NEAR(value(wedge->GetCellData(), "Theta"), this->Number(0, "Theta"), 1e-12);
+}
+
+TEST_F(TestDispersionAngle, CoordinateSystemIsThatOfTheTrajectories)
+{
+  this->AddPath(0, 0.0, 1.0);
+  vtkNew<vtkStringArray> crs;
+  crs->SetName("TerrainCRS");
+  crs->InsertNextValue("somewhere");
+  this->Paths->GetFieldData()->AddArray(crs);
+  vtkNew<vtkDoubleArray> origin;
+  origin->SetName("LocalOrigin");
+  origin->SetNumberOfComponents(3);
+  origin->InsertNextTuple3(1, 2, 0);
+  this->Paths->GetFieldData()->AddArray(origin);
+  this->Filter->Update();
+  for (int port : { 0, 1 })
+  {
+    vtkFieldData* data = this->Filter->GetOutputDataObject(port)->GetFieldData();
+    auto* copied = vtkStringArray::SafeDownCast(data->GetAbstractArray("TerrainCRS"));
+    ASSERT_TRUE(copied) << port;
+    EXPECT_EQ(copied->GetValue(0), "somewhere");
+    EXPECT_EQ(value(data, "LocalOrigin", 0, 1), 2.0);
+  }
+}
+
+TEST_F(TestDispersionAngle, FurtherPiecesAreEmpty)
+{
+  this->Filter->UpdatePiece(1, 2, 0); // as on the second of two ranks, which has no trajectories
+  EXPECT_EQ(vtkTable::SafeDownCast(this->Filter->GetOutputDataObject(0))->GetNumberOfRows(), 0);
 }
 
 TEST_F(TestDispersionAngle, BadInput)

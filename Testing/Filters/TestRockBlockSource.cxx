@@ -284,6 +284,14 @@ TEST_F(TestRockBlockSource, BadValuesAreOneErrorAndNothingElse)
   EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
   this->ExpectOneError({ "Shape", "17" });
   this->Source->SetShape(0);
+  this->Source->SetShapeFileMode(2); // whatever the shape
+  EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
+  this->ExpectOneError({ "ShapeFileMode", "2" });
+  this->Source->SetShapeFileMode(vtkRockBlockSource::CONVEX_HULL);
+  this->Source->SetTargetCRS("EPSG:nowhere");
+  EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
+  this->ExpectOneError({ "EPSG:nowhere" });
+  this->Source->SetTargetCRS("");
   this->Source->SetFileName("/no/such/sources.csv");
   EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
   this->ExpectOneError({ "/no/such/sources.csv" });
@@ -291,6 +299,29 @@ TEST_F(TestRockBlockSource, BadValuesAreOneErrorAndNothingElse)
   this->Source->SetFileName(table.c_str());
   EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
   this->ExpectOneError({ table, "row 2", "-2" });
+}
+
+TEST_F(TestRockBlockSource, SaysInWhichCrsTheBlocksAre)
+{
+  const auto crs = [this]() -> std::string
+  {
+    auto* array =
+      vtkStringArray::SafeDownCast(this->Update()->GetFieldData()->GetAbstractArray("TerrainCRS"));
+    return array && array->GetNumberOfValues() == 1 ? std::string(array->GetValue(0)) : "";
+  };
+  EXPECT_EQ(crs(), ""); // nothing says it
+  this->Source->SetTargetCRS("EPSG:32632");
+  EXPECT_NE(crs().find("UTM zone 32N"), std::string::npos);
+  const std::string points = this->WriteFile("points.geojson",
+    R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{},)"
+    R"("geometry":{"type":"Point","coordinates":[9,45,700]}}]})");
+  this->Source->SetFileName(points.c_str());
+  EXPECT_NE(crs().find("UTM zone 32N"), std::string::npos);
+  this->Source->SetTargetCRS("");
+  EXPECT_EQ(crs().find("GEOGCRS[\"WGS 84\""), 0u) << crs();
+  const std::string table = this->WriteFile("table.csv", "x,y,z\n1,2,3\n");
+  this->Source->SetFileName(table.c_str());
+  EXPECT_EQ(crs(), "");
 }
 
 TEST_F(TestRockBlockSource, PrintSelfNamesEveryProperty)

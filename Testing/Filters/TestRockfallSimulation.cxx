@@ -204,6 +204,60 @@ TEST_F(TestRockfallSimulation, OutputsTellOneStory)
   }
 }
 
+TEST_F(TestRockfallSimulation, EveryJouleIsInTheTables)
+{
+  this->Terrain->SetRoughnessDeviation(0.1);
+  this->Rocks->SetVelocity(2.0, 0.0, 0.0);
+  this->Simulation->SetIterations(3);
+  this->Simulation->SetGravity(5.0);
+  vtkTable* summary = this->Summary();
+  vtkPolyData* lines = this->Output(1);
+  vtkFieldData* points = lines->GetPointData();
+  for (int row = 0; row < 3; ++row)
+  {
+    const auto number = [&](const char* column)
+    {
+      EXPECT_TRUE(summary->GetColumnByName(column)) << column;
+      return summary->GetValueByName(row, column).ToDouble();
+    };
+    const double released = number("EnergyReleased");
+    const double spent = number("EnergyKinetic") + number("EnergyStrain") +
+      number("EnergyFriction") + number("EnergyRestitution") + number("EnergyVibration") +
+      number("EnergyDamping") + number("EnergyNumerical");
+    EXPECT_GT(released, 1e4); // J; some 10 m of fall of 2500 kg at 5 m/s²
+    EXPECT_NEAR(spent, released, 1e-9 * released);
+
+    // What a trajectory says is the same: its fall and its speed at the start.
+    vtkIdType size = 0;
+    const vtkIdType* ids = nullptr;
+    lines->GetCellPoints(row, size, ids);
+    const vtkIdType first = ids[0], last = ids[size - 1];
+    const double weight = number("Mass") * 5.0; // N
+    EXPECT_NEAR(value(points, "PotentialEnergy", first), weight * number("StartZ"), 1e-3);
+    EXPECT_NEAR(value(points, "PotentialEnergy", last), weight * number("StopZ"), 1e-3);
+    EXPECT_NEAR(value(points, "PotentialEnergy", first) + value(points, "KineticEnergy", first) -
+        value(points, "PotentialEnergy", last),
+      released, 1e-9 * released);
+  }
+}
+
+TEST_F(TestRockfallSimulation, FurtherPiecesAreEmpty)
+{
+  // As on the second of two ranks, on which sources leave their output empty.
+  this->Simulation->UpdatePiece(1, 2, 0);
+  EXPECT_EQ(this->Simulation->GetNumberOfRuns(), 0);
+  for (int port = 0; port < 4; ++port)
+  {
+    vtkDataObject* output = this->Simulation->GetOutputDataObject(port);
+    EXPECT_EQ(output->GetNumberOfElements(vtkDataObject::POINT), 0) << port;
+    EXPECT_EQ(output->GetNumberOfElements(vtkDataObject::ROW), 0) << port;
+    EXPECT_FALSE(output->GetFieldData()->GetAbstractArray("Error")) << port;
+  }
+  this->Simulation->UpdatePiece(0, 2, 0);
+  EXPECT_EQ(this->Simulation->GetNumberOfRuns(), 1);
+  EXPECT_GT(this->Simulation->GetOutputDataObject(0)->GetNumberOfElements(vtkDataObject::POINT), 0);
+}
+
 TEST_F(TestRockfallSimulation, ResultsDoNotDependOnThreads)
 {
   this->Terrain->SetRoughnessDeviation(0.1);

@@ -78,6 +78,10 @@ TEST_F(TestRockfallSimulationErrors, BadValuesAreOneErrorAndNothingElse)
   this->ExpectEmpty();
   this->ExpectOneError({ "ShownIteration", "2" });
   this->Simulation->SetShownIteration(0);
+  this->Simulation->SetSeed(-1);
+  this->ExpectEmpty();
+  this->ExpectOneError({ "Seed", "-1" });
+  this->Simulation->SetSeed(0);
   this->Simulation->RockRockContactOn();
   this->ExpectEmpty();
   this->ExpectOneError({ "RockRockContact", "not available" });

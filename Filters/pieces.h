@@ -1,0 +1,16 @@
+#pragma once
+
+/// @file
+/// Parallel runs: which of the ranks has the work.
+
+class vtkInformationVector;
+
+namespace rockfall::filters
+{
+
+/// True where another piece than the first is asked for, as on every rank of a parallel run but the
+/// first. Sources leave these pieces empty, and a run is computed by the first rank alone: there a
+/// filter's outputs stay empty, which is no error.
+bool isFurtherPiece(vtkInformationVector* outputs);
+
+} // namespace rockfall::filters

@@ -1,0 +1,111 @@
+"""The ranges and choices in the XML are what the classes take: beyond an end there is one error that
+names the property and the value, at the end there is none."""
+
+import glob
+import os
+import xml.etree.ElementTree as ElementTree
+
+from helpers import errors_of, is_empty
+
+import paraview.simple
+from paraview.simple import (
+    DEMtoCFEMesh, Delete, DispersionAngle, OutputPort, RockBlocks, RockfallSimulation)
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+ABOVE_ZERO = 1e-300  # how the XML says it
+
+failures = []
+
+
+def simulation():
+    # In free flight: whatever the numbers are, there is little to compute.
+    return RockfallSimulation(Terrain=DEMtoCFEMesh(), Rocks=RockBlocks(), EndTime=0.1)
+
+
+def dispersion():
+    return DispersionAngle(Input=OutputPort(simulation(), 1))
+
+
+# Where a property counts only together with others.
+MAKERS = {
+    "DEMToCFEMesh": DEMtoCFEMesh,
+    "RockBlocks": RockBlocks,
+    "RockfallSimulation": simulation,
+    "DispersionAngle": dispersion,
+}
+TOGETHER_WITH = {
+    ("DEMToCFEMesh", "Band"): None,  # only rasters have bands
+    ("RockBlocks", "Lengths"): {"Shape": "Box"},
+    ("RockfallSimulation", "ShownIteration"): {"Iterations": 2},
+}
+# The least value is taken as such, but then makes too many samples, or a body too small to be one.
+NOT_AT_LEAST = {"OutputInterval", "Lengths", "Volume"}
+
+
+def errors_with(name, values):
+    """Errors of the proxy with these values of one property, and whether it made nothing."""
+    proxy = MAKERS[name[0]](**(TOGETHER_WITH.get(name) or {})) if name[0] != "RockfallSimulation" \
+        else simulation()
+    if name[0] == "RockfallSimulation":
+        for other, value in (TOGETHER_WITH.get(name) or {}).items():
+            setattr(proxy, other, value)
+    proxy.GetProperty(name[1]).SetData(values if len(values) > 1 else values[0])
+    result = errors_of(proxy), is_empty(proxy)
+    for source in list(paraview.simple.GetSources().values()):
+        Delete(source)
+    return result
+
+
+def refused(name, values):
+    errors, empty = errors_with(name, values)
+    print(name, values, errors)
+    if len(errors) != 1 or not empty:
+        failures.append(f"{name} {values}: {errors}, empty: {empty}")
+    elif name[1] not in errors[0] and name[1] != "Lengths":
+        failures.append(f"{name} {values} is not named: {errors[0]}")
+
+
+def taken(name, values):
+    errors, _ = errors_with(name, values)
+    print(name, values, errors)
+    if errors:
+        failures.append(f"{name} {values} is within the XML's range: {errors}")
+
+
+count = 0
+for path in sorted(glob.glob(os.path.join(ROOT, "Plugin", "xml", "*.xml"))):
+    for proxy in ElementTree.parse(path).getroot().iter("SourceProxy"):
+        for item in proxy:
+            name = (proxy.get("name"), item.get("name"))
+            if name in TOGETHER_WITH and TOGETHER_WITH[name] is None:
+                continue
+            whole = item.tag in ("IntVectorProperty", "IdTypeVectorProperty")
+            number = int if whole else float
+            elements = int(item.get("number_of_elements", "1"))
+            step = 1 if whole else 1e-3
+            domain = item.find("IntRangeDomain" if whole else "DoubleRangeDomain")
+            if domain is not None and domain.get("min"):
+                least = number(domain.get("min").split()[0])
+                beyond = 0.0 if least == ABOVE_ZERO else least - step
+                refused(name, [beyond] * elements)
+                if name[1] not in NOT_AT_LEAST:
+                    taken(name, [least] * elements)
+                count += 1
+            if domain is not None and domain.get("max"):
+                most = number(domain.get("max").split()[0])
+                refused(name, [most + step] * elements)
+                taken(name, [most] * elements)
+                count += 1
+            entries = [int(e.get("value")) for e in item.iterfind("EnumerationDomain/Entry")]
+            if entries:
+                refused(name, [min(entries) - 1])
+                refused(name, [max(entries) + 1])
+                count += 1
+                for entry in entries:
+                    if name != ("RockBlocks", "Shape") or entry != 8:  # that one needs a file
+                        taken(name, [entry])
+if count < 25:
+    failures.append(f"only {count} ranges were looked at")
+if failures:
+    raise SystemExit("\n".join(failures))
+print(f"{count} ranges are those of the classes")

@@ -1,0 +1,42 @@
+"""On several ranks the first one computes; the others have empty outputs and no errors."""
+# Ranks: 2
+
+from helpers import messages_of
+
+from paraview.simple import (
+    DEMtoCFEMesh, DispersionAngle, OutputPort, RockBlocks, RockfallSimulation, UpdatePipeline)
+from vtkmodules.vtkParallelCore import vtkMultiProcessController
+
+controller = vtkMultiProcessController.GetGlobalController()
+rank = controller.GetLocalProcessId()
+assert controller.GetNumberOfProcesses() == 2, controller.GetNumberOfProcesses()
+
+dem = DEMtoCFEMesh()
+rocks = RockBlocks()
+simulation = RockfallSimulation(Terrain=dem, Rocks=rocks, EndTime=2.0)
+dispersion = DispersionAngle(Input=OutputPort(simulation, 1))
+proxies = {"terrain": (dem, 1), "rocks": (rocks, 1), "simulation": (simulation, 4),
+           "dispersion": (dispersion, 2)}
+
+
+def update():
+    for proxy, _ in proxies.values():
+        UpdatePipeline(proxy=proxy)
+    UpdatePipeline(1.0, simulation)
+    simulation.Seed = 2
+    UpdatePipeline(2.0, simulation)
+
+
+said = messages_of(update)
+failures = [f"said on rank {rank}: {said}"] if said.strip() else []
+for name, (proxy, ports) in proxies.items():
+    for port in range(ports):
+        data = proxy.GetClientSideObject().GetOutputDataObject(port)
+        size = sum(data.GetNumberOfElements(kind) for kind in (0, 1, 6))  # points, cells, rows
+        if (size > 0) != (rank == 0):
+            failures.append(f"rank {rank}: {name}, port {port} has {size} elements")
+        if data.GetFieldData().GetAbstractArray("Error"):
+            failures.append(f"rank {rank}: {name}, port {port} has an error")
+if failures:
+    raise SystemExit("\n".join(failures))
+print(f"rank {rank} did as it should")
