@@ -4,15 +4,14 @@
 /// Torque-free rotation in closed form, by Jacobi's elliptic functions.
 ///
 /// Euler's equations are solved by w₁ = w₁ₘ cn u, w₂ = w₂ₘ sn u, w₃ = w₃ₘ dn u with u = u₀ + p t
-/// (R. van Zon and J. Schofield, J. Comput. Phys. 225 (2007) 145). Axis 3 is the
-/// principal axis that the angular momentum L circles about in the body, axis 2 the intermediate
-/// one. The attitude is what turns L, as the body sees it at t, into L, as it saw it at the start,
-/// times a turn about L by the precession angle
+/// (R. van Zon and J. Schofield, J. Comput. Phys. 225 (2007) 145). Axis 3 is the principal axis
+/// that the angular momentum L circles about in the body, axis 2 the intermediate one. The attitude
+/// is what turns L, as the body sees it at t, into L, as it saw it at the start, times a turn about
+/// L by the precession angle
 ///
 ///     ψ(t) = L [ t/I₁ + (I₃ − I₁)/(I₁ I₃ p) ∫ n sn² / (1 − n sn²) du ],
 ///
-/// an elliptic integral of the third kind (they take theta functions). Where it
-/// departs from there:
+/// an elliptic integral of the third kind (they take theta functions). Where it departs from there:
 /// - Differences such as L² − 2T I₃ and 1 − m are sums of like signs or have one subtraction only,
 ///   so that symmetric tops, nearly steady spins and the separatrix (m → 1) lose no digits.
 /// - ψ is measured from the pole that L's path through the body is roundest about: axis 3 as above
