@@ -89,6 +89,31 @@ double RockSimulator::mechanicalEnergy() const
     block_.mass() * parameters_.gravity * state_.position.z();
 }
 
+EnergyAudit RockSimulator::auditAt(const BlockState& state) const
+{
+  EnergyAudit audit = energy_;
+  audit.kinetic = kineticEnergy(block_, state);
+  audit.strain = strainEnergy(block_, state) + springEnergy_;
+  audit.released = energyAtStart_ - block_.mass() * parameters_.gravity * state.position.z();
+  audit.numerical = audit.released -
+    (audit.kinetic + audit.strain + audit.friction + audit.restitution + audit.vibration +
+      audit.damping);
+  return audit;
+}
+
+void RockSimulator::auditSamples(const BlockState& state)
+{
+  std::vector<Sample>& samples = recorder_.trajectory().samples;
+  if (audited_ < samples.size())
+  {
+    const EnergyAudit audit = this->auditAt(state);
+    for (; audited_ < samples.size(); ++audited_)
+    {
+      samples[audited_].energy = audit;
+    }
+  }
+}
+
 void RockSimulator::ensureWindow(double duration)
 {
   const double r = block_.radius();
@@ -146,6 +171,7 @@ void RockSimulator::advanceInFlight(double duration)
     at = fly(block_, at, parameters_.gravity, std::max(0.0, recorder_.nextTime() - at.time));
     recorder_.follow(at);
     recorder_.record(at, false);
+    this->auditSamples(at);
   }
   state_ = fly(block_, start, parameters_.gravity, duration);
   state_.time = end;
@@ -265,8 +291,9 @@ Trajectory RockSimulator::run()
   summary.mass = block_.mass();
   summary.volume = block_.volume();
   this->liftOntoRoughness();
-  const double before = this->mechanicalEnergy();
+  energyAtStart_ = this->mechanicalEnergy();
   recorder_.begin(state_);
+  this->auditSamples(state_);
   this->checkEnd(0.0);
   while (!done_)
   {
@@ -285,14 +312,8 @@ Trajectory RockSimulator::run()
   summary.stop = state_.position;
   summary.endTime = state_.time;
   summary.runOut = (state_.position - summary.start).head<2>().norm();
-  const double potential = block_.mass() * parameters_.gravity * state_.position.z();
-  energy_.kinetic = kineticEnergy(block_, state_);
-  energy_.strain = strainEnergy(block_, state_) + springEnergy_;
-  energy_.released = before - potential;
-  energy_.numerical = energy_.released -
-    (energy_.kinetic + energy_.strain + energy_.friction + energy_.restitution + energy_.vibration +
-      energy_.damping);
-  summary.energy = energy_;
+  this->auditSamples(state_);
+  summary.energy = this->auditAt(state_);
   return std::move(recorder_.trajectory());
 }
 

@@ -61,6 +61,8 @@ private:
   double impactStep() const;
   double travelLimit() const;
   double mechanicalEnergy() const; ///< Without contact springs, J.
+  EnergyAudit auditAt(const BlockState& state) const;
+  void auditSamples(const BlockState& state); ///< Gives new samples their audit.
 
   const Surface& surface_;
   const Rock& rock_;
@@ -78,21 +80,23 @@ private:
   Recorder recorder_;
   Impact impact_;
   EnergyAudit energy_;
-  double springEnergy_ = 0.0; ///< In the contact springs, J.
-  double normalEnergy_ = 0.0; ///< In the normal ones, J.
-  double softness_ = 0.0; ///< Of a contact and the block behind it, m/N.
-  double penalty_ = 0.0;      ///< pₙ of the contacts that are made now, N/m.
-  bool stiff_ = false;        ///< The block's strain follows its contacts without inertia.
-  double dampingRatio_ = 0.0; ///< ζ for the surface's restitution.
-  double restingSpeed_ = 0.0; ///< Below it a touch is no impact, m/s.
-  double quietTime_ = 0.0;    ///< For how long it has been lying still, s.
+  double energyAtStart_ = 0.0; ///< Kinetic and potential, J.
+  std::size_t audited_ = 0;    ///< Samples that have their audit.
+  double springEnergy_ = 0.0;  ///< In the contact springs, J.
+  double normalEnergy_ = 0.0;  ///< In the normal ones, J.
+  double softness_ = 0.0;      ///< Of a contact and the block behind it, m/N.
+  double penalty_ = 0.0;       ///< pₙ of the contacts that are made now, N/m.
+  bool stiff_ = false;         ///< The block's strain follows its contacts without inertia.
+  double dampingRatio_ = 0.0;  ///< ζ for the surface's restitution.
+  double restingSpeed_ = 0.0;  ///< Below it a touch is no impact, m/s.
+  double quietTime_ = 0.0;     ///< For how long it has been lying still, s.
   Vec3 acceleration_ = Vec3::Zero();
   Vec3 spinAcceleration_ = Vec3::Zero();
   StepKind steppedAs_ = StepKind::Impact; ///< In the last step.
   std::uint64_t carrying_ = 0;            ///< What carried in the last lasting step.
   double ringing_ = 0.0;  ///< Period of a soft block's slowest strain, 0 for a stiff one, s.
   double openTime_ = 0.0; ///< Since it touched, s.
-  double freeFor_ = 0.0; ///< Nothing can be touched for so long after a take-off, s.
+  double freeFor_ = 0.0;  ///< Nothing can be touched for so long after a take-off, s.
   bool done_ = false;
 };
 

@@ -265,10 +265,11 @@ void RockSimulator::takeStep(double h, StepKind kind)
   steppedAs_ = kind;
   const bool touching = anyClosed(contacts_);
   recorder_.recordBetween(before_, state_, touching);
+  this->auditSamples(state_);
   recorder_.follow(state_);
   this->followImpact(before_, taken);
-  // A soft block that is still being pressed together leaves its contacts and comes back to them: it
-  // has taken off when it has not touched for a period of its own.
+  // A soft block that is still being pressed together leaves its contacts and comes back to them:
+  // it has taken off when it has not touched for a period of its own.
   openTime_ = touching ? 0.0 : openTime_ + taken;
   if (lasting || (!touching && stiff_))
   {

@@ -37,7 +37,8 @@ struct Sample
   double kineticEnergy = 0.0;          ///< Translation and rotation, J.
   double heightOverGround = 0.0;       ///< Least height of a vertex over the ground under it, m.
   bool contact = false;                ///< Touching the slope.
-  EnergyAudit energy;                  ///< From the release to this time.
+  /// From the release to this time; in contact to the end of the step in which it falls.
+  EnergyAudit energy;
 };
 
 /// One impact: the rock came from flight, touched, and left or settled.
