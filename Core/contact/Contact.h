@@ -109,13 +109,16 @@ struct CandidatePairs
   };
   std::vector<Pair> vertexFace;
   std::vector<Pair> edgeEdge;
-  std::vector<int> peaks;       ///< Nodes of the patch.
+  std::vector<int> peaks; ///< Nodes of the patch.
+  /// Work space: per triangle the vertices, modulo 64, that are not far over its plane.
+  std::vector<std::uint64_t> under;
   double distance = -1.0;       ///< Within which they were gathered, m; < 0: not at all.
   Vec3 position = Vec3::Zero(); ///< Of the rock then.
   Quat orientation = Quat::Identity();
 
-  /// Whether every pair within `reach` (m) of the rock as it stands now is among them.
-  bool serve(const BlockState& state, double radius, double reach) const;
+  /// How much further the rock (of this radius) may move until a pair within `reach` of it might
+  /// not be among them, m; < 0: it might not be now.
+  double room(const BlockState& state, double radius, double reach) const;
 };
 
 /// Finds all pairs within `distance` (m).
@@ -133,6 +136,11 @@ void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const Su
 /// into many CFEs gives the contacts of one (METHOD 10.5).
 void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch,
   const CandidatePairs& candidates, double reach, std::vector<Contact>& contacts);
+
+/// Lower bound of the time (s, at most `horizon`) in which a pair of the candidates that is apart
+/// now can close in free flight. 0 where the rock overlaps the slope.
+double timeToClose(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
+  const CandidatePairs& candidates, double gravity, double horizon);
 
 /// The net under the entrance rules: every candidate vertex of the rock that is under the slope by
 /// more than `allowed` (m), and every peak as deep inside the rock, gets a contact that carries no

@@ -1,6 +1,9 @@
 #include "contact/features.h"
+#include "contact/motion.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace rockfall
 {
@@ -18,12 +21,145 @@ bool boxesMeet(const Vec3& lower, const Vec3& upper, const Vec3& a, const Vec3& 
 
 } // namespace
 
-bool CandidatePairs::serve(const BlockState& state, double radius, double reach) const
+double CandidatePairs::room(const BlockState& state, double radius, double reach) const
 {
   const double c = orientation.dot(state.orientation);
   const double turned = 2.0 * radius * std::sqrt(std::max(0.0, 1.0 - c * c));
-  return (state.position - position).norm() + turned + reach <= distance;
+  return distance - reach - (state.position - position).norm() - turned;
 }
+
+double timeToClose(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
+  const CandidatePairs& candidates, double gravity, double horizon)
+{
+  const Block& block = rock.block();
+  const Vec3 spin = rock.rotation() * state.spin;
+  // |ω̇| ≤ |ω|²; a normal that turns with the rock doubles what turning adds.
+  const double turning = 2.0 * spin.squaredNorm() * block.radius();
+  const auto rate = [&](const Vec3& normal, const Vec3& point)
+  { return -normal.dot(state.velocity + spin.cross(point - rock.position())); };
+  double time = horizon;
+  for (const CandidatePairs::Pair& pair : candidates.vertexFace)
+  {
+    const SurfacePatch::Triangle& t = patch.triangles[pair.patch];
+    const Vec3& p = rock.vertices()[pair.rock];
+    const double over = t.normal.dot(p) - t.offset;
+    if (over > 0.0)
+    {
+      time = std::min(time, timeToCover(over, rate(t.normal, p), gravity + turning));
+    }
+    else if (projectsInside(patch, pair.patch, p, 0.0, 0.0))
+    {
+      return 0.0;
+    }
+  }
+  for (int node : candidates.peaks)
+  {
+    const Vec3& q = patch.nodes[node].position;
+    const int face = rock.outermostFace(q);
+    const double distance = rock.faceDistance(face, q);
+    time =
+      std::min(time, timeToCover(distance, rate(-rock.normal(face), q), gravity + 2.0 * turning));
+  }
+  for (const CandidatePairs::Pair& pair : candidates.edgeEdge)
+  {
+    const std::array<int, 2>& ends = block.shape().edges()[pair.rock].vertices;
+    const SurfacePatch::Ridge& g = patch.ridges[pair.patch];
+    const Vec3& p = rock.vertices()[ends[0]];
+    const Vec3& p1 = rock.vertices()[ends[1]];
+    // Not before the edge has come to both planes of the ridge …
+    double least = 0.0;
+    for (int i : g.triangles)
+    {
+      const SurfacePatch::Triangle& t = patch.triangles[i];
+      const double a = t.normal.dot(p) - t.offset, b = t.normal.dot(p1) - t.offset;
+      if (a > 0.0 && b > 0.0)
+      {
+        least = std::max(least,
+          std::min(timeToCover(a, rate(t.normal, p), gravity + turning),
+            timeToCover(b, rate(t.normal, p1), gravity + turning)));
+      }
+    }
+    if (least >= time)
+    {
+      continue;
+    }
+    // … nor before the two lines meet.
+    const Vec3& q = patch.nodes[g.nodes[0]].position;
+    const Vec3 u = p1 - p, w = patch.nodes[g.nodes[1]].position - q;
+    double s, t;
+    if (closestOnLines(p, u, q, w, s, t))
+    {
+      Vec3 n = u.cross(w);
+      const double sine = n.norm() / std::sqrt(u.squaredNorm() * w.squaredNorm());
+      n.normalize();
+      n =
+        n.dot(patch.triangles[g.triangles[0]].normal + patch.triangles[g.triangles[1]].normal) < 0.0
+        ? Vec3(-n)
+        : n;
+      const Vec3 c = p + s * u;
+      const double distance = n.dot(c - q);
+      if (distance < 0.0)
+      {
+        continue; // passed each other beside one of their ends
+      }
+      if (sine > 0.1)
+      {
+        least = std::max(least, timeToCover(distance, rate(n, c), gravity + 2.0 * turning / sine));
+      }
+    }
+    time = std::min(time, least);
+  }
+  return time;
+}
+
+namespace
+{
+
+/// The edges of the rock that can touch a ridge.
+void gatherEdges(const PlacedBlock& rock, const SurfacePatch& patch, int ridge, double distance,
+  double turn, CandidatePairs& candidates)
+{
+  const SurfacePatch::Ridge& g = patch.ridges[ridge];
+  // The rock, or an edge, all over one plane of the ridge cannot.
+  const std::uint64_t under[2] = { candidates.under[g.triangles[0]],
+    candidates.under[g.triangles[1]] };
+  const Vec3& q0 = patch.nodes[g.nodes[0]].position;
+  const Vec3& q1 = patch.nodes[g.nodes[1]].position;
+  if (under[0] == 0 || under[1] == 0 || !boxesMeet(rock.lower(), rock.upper(), q0, q1, distance))
+  {
+    return;
+  }
+  const Vec3 least = q0.cwiseMin(q1), most = q0.cwiseMax(q1), along = q1 - q0;
+  const Vec3 out = patch.triangles[g.triangles[0]].normal + patch.triangles[g.triangles[1]].normal;
+  const std::vector<Polyhedron::Edge>& edges = rock.block().shape().edges();
+  for (int e = 0; e < int(edges.size()); ++e)
+  {
+    const std::array<int, 2>& v = edges[e].vertices;
+    const std::uint64_t ends =
+      (std::uint64_t(1) << (v[0] & 63)) | (std::uint64_t(1) << (v[1] & 63));
+    if ((ends & under[0]) == 0 || (ends & under[1]) == 0)
+    {
+      continue;
+    }
+    const Vec3& p0 = rock.vertices()[v[0]];
+    const Vec3& p1 = rock.vertices()[v[1]];
+    if (!boxesMeet(least, most, p0, p1, distance))
+    {
+      continue;
+    }
+    // The normal of the crossing turns faster than the edge, the more so the nearer to parallel.
+    Vec3 n = (p1 - p0).cross(along);
+    const double size = n.norm();
+    const double slack = turn * std::sqrt((p1 - p0).squaredNorm() * along.squaredNorm()) / size;
+    n *= (n.dot(out) < 0.0 ? -1.0 : 1.0) / size;
+    if (!(slack < 0.5) || inEdgeCones(rock, e, patch, ridge, n, slack))
+    {
+      candidates.edgeEdge.push_back({ e, ridge });
+    }
+  }
+}
+
+} // namespace
 
 void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
   double distance, CandidatePairs& candidates)
@@ -34,87 +170,87 @@ void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const Su
   candidates.distance = distance;
   candidates.position = state.position;
   candidates.orientation = state.orientation;
-  const Polyhedron& shape = rock.block().shape();
   const std::vector<Vec3>& vertices = rock.vertices();
   const Vec3 lower = rock.lower(), upper = rock.upper();
   // As far as the rock may turn while the candidates serve, sine.
   const double turn = kConeSlack + distance / rock.block().radius();
-  for (int i = 0; i < int(patch.triangles.size()); ++i)
+  if (patch.nodeRows < 2)
   {
-    const SurfacePatch::Triangle& t = patch.triangles[i];
-    if (t.cfe == 0)
-    {
-      continue;
-    }
-    // The box's lowest corner along the normal bounds all vertices.
-    const Vec3 corner = (t.normal.array() > 0.0).select(lower, upper);
-    if (t.normal.dot(corner) - t.offset > distance)
-    {
-      continue;
-    }
-    const Vec3& a = patch.nodes[t.nodes[0]].position;
-    const Vec3& b = patch.nodes[t.nodes[1]].position;
-    const Vec3& c = patch.nodes[t.nodes[2]].position;
-    // Beyond a concave edge a plane serves a little further: twice the distance takes that in.
-    const Vec3 least = a.cwiseMin(b).cwiseMin(c), most = a.cwiseMax(b).cwiseMax(c);
-    if (!boxesMeet(Vec3(lower.x(), lower.y(), std::min(lower.z(), least.z())),
-          Vec3(upper.x(), upper.y(), std::max(upper.z(), least.z())), least, most, 2.0 * distance))
-    {
-      continue;
-    }
-    for (int v = 0; v < int(vertices.size()); ++v)
-    {
-      const Vec3& p = vertices[v];
-      // No bound below: what has slipped under the slope must be found (holdOverlap).
-      const Vec3 raised(p.x(), p.y(), std::max(p.z(), least.z()));
-      const double over = t.normal.dot(p) - t.offset;
-      if (over <= distance && boxesMeet(least, most, raised, raised, 2.0 * distance) &&
-        (over < 0.0 || inVertexCone(rock, v, t.normal, turn)))
-      {
-        candidates.vertexFace.push_back({ v, i });
-      }
-    }
+    return;
   }
-  for (int i = 0; i < int(patch.nodes.size()); ++i)
+  // Cells that the box meets. Beyond a concave edge a plane serves a little further than its
+  // triangle: twice the distance takes that in.
+  const double inverse = 1.0 / patch.cellSize, wide = 2.0 * distance;
+  const int cellColumns = patch.nodeColumns - 1, cellRows = patch.nodeRows - 1;
+  const auto index = [&](double v, int last)
+  { return int(std::floor(std::clamp(v * inverse, 0.0, double(last)))); };
+  const int column0 = index(lower.x() - wide - patch.west, cellColumns - 1);
+  const int column1 = index(upper.x() + wide - patch.west, cellColumns - 1);
+  const int row0 = index(patch.north - upper.y() - wide, cellRows - 1);
+  const int row1 = index(patch.north - lower.y() + wide, cellRows - 1);
+  const auto bit = [](int vertex) { return std::uint64_t(1) << (vertex & 63); };
+  std::vector<std::uint64_t>& under = candidates.under;
+  under.assign(patch.triangles.size(), 0);
+  for (int row = row0; row <= row1; ++row)
   {
-    const SurfacePatch::Node& q = patch.nodes[i];
-    if (q.peak && boxesMeet(lower, upper, q.position, q.position, distance) &&
-      rock.faceDistance(rock.outermostFace(q.position), q.position) <= distance)
+    for (int i = 2 * (row * cellColumns + column0); i < 2 * (row * cellColumns + column1 + 1); ++i)
     {
-      candidates.peaks.push_back(i);
-    }
-  }
-  for (int i = 0; i < int(patch.ridges.size()); ++i)
-  {
-    const SurfacePatch::Ridge& g = patch.ridges[i];
-    const Vec3& q0 = patch.nodes[g.nodes[0]].position;
-    const Vec3& q1 = patch.nodes[g.nodes[1]].position;
-    if (!boxesMeet(lower, upper, q0, q1, distance))
-    {
-      continue;
-    }
-    // The whole edge above either plane of the ridge: no crossing is near.
-    const SurfacePatch::Triangle& t0 = patch.triangles[g.triangles[0]];
-    const SurfacePatch::Triangle& t1 = patch.triangles[g.triangles[1]];
-    const auto above = [&](const Vec3& p)
-    { return std::min(t0.normal.dot(p) - t0.offset, t1.normal.dot(p) - t1.offset) > distance; };
-    const Vec3 least = q0.cwiseMin(q1), most = q0.cwiseMax(q1);
-    for (int e = 0; e < int(shape.edges().size()); ++e)
-    {
-      const Vec3& p0 = vertices[shape.edges()[e].vertices[0]];
-      const Vec3& p1 = vertices[shape.edges()[e].vertices[1]];
-      if (!boxesMeet(least, most, p0, p1, distance) || (above(p0) && above(p1)))
+      const SurfacePatch::Triangle& t = patch.triangles[i];
+      // How far all of the rock is over the plane; first by the lowest corner of its box.
+      const Vec3 corner = (t.normal.array() > 0.0).select(lower, upper);
+      if (t.cfe == 0 || t.normal.dot(corner) - t.offset > distance)
       {
         continue;
       }
-      // The normal of the crossing turns faster than the edge, the more so the nearer to parallel.
-      Vec3 n = (p1 - p0).cross(q1 - q0);
-      const double size = n.norm(), all = (p1 - p0).norm() * (q1 - q0).norm();
-      const double slack = turn * all / size;
-      n *= (n.dot(t0.normal + t1.normal) < 0.0 ? -1.0 : 1.0) / size;
-      if (!(slack < 0.5) || inEdgeCones(rock, e, patch, i, n, slack))
+      const Vec3& a = patch.nodes[t.nodes[0]].position;
+      const Vec3& b = patch.nodes[t.nodes[1]].position;
+      const Vec3& c = patch.nodes[t.nodes[2]].position;
+      const Vec3 least = a.cwiseMin(b).cwiseMin(c), most = a.cwiseMax(b).cwiseMax(c);
+      std::uint64_t below = 0;
+      for (int v = 0; v < int(vertices.size()); ++v)
       {
-        candidates.edgeEdge.push_back({ e, i });
+        const Vec3& p = vertices[v];
+        const double height = t.normal.dot(p) - t.offset;
+        if (height > distance)
+        {
+          continue;
+        }
+        below |= bit(v);
+        // No bound below: what has slipped under the slope must be found (holdOverlap).
+        const Vec3 raised(p.x(), p.y(), std::max(p.z(), least.z()));
+        if (boxesMeet(least, most, raised, raised, wide) &&
+          (height < 0.0 || inVertexCone(rock, v, t.normal, turn)))
+        {
+          candidates.vertexFace.push_back({ v, i });
+        }
+      }
+      under[i] = below;
+    }
+  }
+  for (int row = row0; row <= row1 + 1; ++row)
+  {
+    for (int column = column0; column <= column1 + 1; ++column)
+    {
+      const int i = row * patch.nodeColumns + column;
+      const SurfacePatch::Node& q = patch.nodes[i];
+      if (q.peak && boxesMeet(lower, upper, q.position, q.position, distance) &&
+        rock.faceDistance(rock.outermostFace(q.position), q.position) <= distance)
+      {
+        candidates.peaks.push_back(i);
+      }
+    }
+  }
+  // The ridges of the cells, and those that the next column and the row above count as theirs.
+  for (int row = std::max(row0 - 1, 0); row <= row1; ++row)
+  {
+    for (int column = column0; column <= std::min(column1 + 1, cellColumns - 1); ++column)
+    {
+      for (int ridge : patch.triangles[2 * (row * cellColumns + column)].ridges)
+      {
+        if (ridge >= 0)
+        {
+          gatherEdges(rock, patch, ridge, distance, turn, candidates);
+        }
       }
     }
   }

@@ -141,7 +141,7 @@ void RockSimulator::ensurePatch(double margin)
 
 void RockSimulator::ensureCandidates(double reach)
 {
-  if (!candidates_.serve(state_, block_.radius(), reach))
+  if (candidates_.room(state_, block_.radius(), reach) < 0.0)
   {
     const double distance = std::max(2.0 * reach, reach + kCandidateSlack * block_.radius());
     this->ensurePatch(distance);
@@ -214,9 +214,13 @@ void RockSimulator::flyUntilNear()
       else
       {
         placed_.place(block_, state_);
-        const double touch = std::max(std::exchange(freeFor_, 0.0),
-          timeToTouch(placed_, state_, window_, parameters_.gravity, duration));
-        if (touch < std::min(duration, this->impactStep()))
+        const double sure = std::exchange(freeFor_, 0.0);
+        const double touch =
+          std::max(sure, timeToTouch(placed_, state_, window_, parameters_.gravity, duration));
+        // So near that the pairs that can touch tell more.
+        const double speed = state_.velocity.norm() + block_.largestRimSpeed(state_.spin);
+        const double close = 0.5 * kCandidateSlack * block_.radius() / std::max(speed, 1e-9);
+        if (sure == 0.0 && touch < std::min(duration, std::max(close, this->impactStep())))
         {
           return;
         }

@@ -1,6 +1,7 @@
 #include "simulation/RockSimulator.h"
 
 #include "block/flight.h"
+#include "contact/motion.h"
 #include "simulation/restitution.h"
 
 #include <algorithm>
@@ -122,9 +123,15 @@ void RockSimulator::stayInContact()
     }
     if (kind == StepKind::Impact && !anyClosed(contacts_) && openTime_ >= ringing_)
     {
-      this->ensureWindow(2.0 * small);
-      const double free = timeToTouch(placed_, state_, window_, parameters_.gravity, 2.0 * small);
-      if (free > small)
+      // Free until a pair closes, or until others than the candidates might.
+      const double room = candidates_.room(state_, block_.radius(), 0.0);
+      const double rim = block_.largestRimSpeed(state_.spin);
+      const double served =
+        std::min(timeToCover(room, state_.velocity.norm() + rim, parameters_.gravity),
+          parameters_.endTime - state_.time);
+      const double free =
+        timeToClose(placed_, state_, patch_, candidates_, parameters_.gravity, served);
+      if (free >= served && served > small)
       {
         contacts_.clear();
         if (!stiff_)
@@ -132,8 +139,15 @@ void RockSimulator::stayInContact()
           energy_.vibration += relaxStrain(block_, state_);
           this->finishImpact();
         }
-        freeFor_ = free;
+        freeFor_ = served;
         return;
+      }
+      if (free > small)
+      {
+        contacts_.clear();
+        this->advanceInFlight(free);
+        this->checkEnd(0.0);
+        continue;
       }
     }
     // What carries may be pressed in, and its neighbourhood with it; anything deeper slipped

@@ -112,12 +112,18 @@ void gatherPatch(
             column1 = std::min(wantColumn1 + 1, g.columns - 2);
   const int row0 = std::max(wantRow0 - 1, 0), row1 = std::min(wantRow1 + 1, g.rows - 2);
   patch.row0 = row0, patch.row1 = row1, patch.column0 = column0, patch.column1 = column1;
+  patch.nodeColumns = patch.nodeRows = 0;
   if (column1 < column0 || row1 < row0)
   {
     return;
   }
   const int nodeColumns = column1 - column0 + 2;
   const int nodeRows = row1 - row0 + 2;
+  patch.nodeColumns = nodeColumns;
+  patch.nodeRows = nodeRows;
+  patch.west = column0 * g.cellSize;
+  patch.north = (g.rows - 1 - row0) * g.cellSize;
+  patch.cellSize = g.cellSize;
   patch.nodes.resize(std::size_t(nodeColumns) * nodeRows);
   for (int r = 0; r < nodeRows; ++r)
   {
@@ -167,6 +173,7 @@ void gatherPatch(
         t[k].offset = t[k].normal.dot(patch.nodes[upperLeft].position);
         t[k].cfe = std::isnan(t[k].offset) ? 0 : id + k;
         t[k].bends.fill(0);
+        t[k].ridges.fill(-1);
         for (int n : t[k].nodes)
         {
           patch.nodes[n].cfe = std::max(patch.nodes[n].cfe, t[k].cfe);
@@ -205,6 +212,7 @@ void gatherPatch(
       if (sign > 0)
       {
         // Three edges belong to a lower triangle: that and the side make the key.
+        t.ridges[k] = int(patch.ridges.size());
         patch.ridges.push_back({ { t.nodes[k], t.nodes[(k + 1) % 3] }, { i, j },
           { t.nodes[(k + 2) % 3], wing }, 3 * t.cfe + k });
       }

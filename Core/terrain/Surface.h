@@ -60,6 +60,7 @@ struct SurfacePatch
     Vec3 normal;
     double offset; ///< normal · x on the plane, m.
     std::int64_t cfe;
+    std::array<int, 3> ridges; ///< That a lower triangle counts as its own, −1: none.
   };
   /// A convex edge between two triangles: the only kind that an edge of a rock can touch.
   struct Ridge
@@ -84,6 +85,11 @@ struct SurfacePatch
 
   /// Cells gathered: rows [row0, row1], columns [column0, column1]; empty if row1 < row0.
   int row0 = 0, row1 = -1, column0 = 0, column1 = -1;
+  /// Node (row, column) of the patch is number row · nodeColumns + column, cell likewise with one
+  /// column less; two triangles per cell, the lower one first.
+  int nodeColumns = 0, nodeRows = 0;
+  double west = 0.0, north = 0.0, cellSize = 1.0; ///< Of node (0, 0), m.
+
   /// x–y box in which a rock may stand for this patch to be enough, m.
   double xMin = 0.0, xMax = -1.0, yMin = 0.0, yMax = -1.0;
 
