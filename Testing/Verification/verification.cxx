@@ -109,7 +109,7 @@ class Scribe : public ::testing::EmptyTestEventListener
       }
     }
     std::ofstream(resultsFile(test), std::ios::app)
-      << "{\"kind\":\"end\",\"passed\":" << (test.result()->Passed() ? "true" : "false")
+      << "{\"kind\":\"end\",\"passed\":" << (test.result()->Failed() ? "false" : "true")
       << ",\"seconds\":" << json(1e-3 * double(test.result()->elapsed_time()))
       << ",\"message\":" << json(message) << "}\n";
   }
