@@ -33,8 +33,9 @@ double timeToClose(const PlacedBlock& rock, const BlockState& state, const Surfa
 {
   const Block& block = rock.block();
   const Vec3 spin = rock.rotation() * state.spin;
-  // |ω̇| ≤ |ω|²; a normal that turns with the rock doubles what turning adds.
+  // |ω̇| ≤ |ω|²; a normal that turns with the rock turns on all of its velocity besides.
   const double turning = 2.0 * spin.squaredNorm() * block.radius();
+  const double carried = 2.0 * (turning + spin.norm() * state.velocity.norm());
   const auto rate = [&](const Vec3& normal, const Vec3& point)
   { return -normal.dot(state.velocity + spin.cross(point - rock.position())); };
   double time = horizon;
@@ -57,8 +58,7 @@ double timeToClose(const PlacedBlock& rock, const BlockState& state, const Surfa
     const Vec3& q = patch.nodes[node].position;
     const int face = rock.outermostFace(q);
     const double distance = rock.faceDistance(face, q);
-    time =
-      std::min(time, timeToCover(distance, rate(-rock.normal(face), q), gravity + 2.0 * turning));
+    time = std::min(time, timeToCover(distance, rate(-rock.normal(face), q), gravity + carried));
   }
   for (const CandidatePairs::Pair& pair : candidates.edgeEdge)
   {
@@ -89,22 +89,30 @@ double timeToClose(const PlacedBlock& rock, const BlockState& state, const Surfa
     double s, t;
     if (closestOnLines(p, u, q, w, s, t))
     {
+      const Vec3 out =
+        patch.triangles[g.triangles[0]].normal + patch.triangles[g.triangles[1]].normal;
       Vec3 n = u.cross(w);
       const double sine = n.norm() / std::sqrt(u.squaredNorm() * w.squaredNorm());
-      n.normalize();
-      n =
-        n.dot(patch.triangles[g.triangles[0]].normal + patch.triangles[g.triangles[1]].normal) < 0.0
-        ? Vec3(-n)
-        : n;
+      n = (n.dot(out) < 0.0 ? Vec3(-n) : n).normalized();
       const Vec3 c = p + s * u;
       const double distance = n.dot(c - q);
-      if (distance < 0.0)
+      if (distance <= 0.0)
       {
-        continue; // passed each other beside one of their ends
+        const bool faced = inEdgeCones(rock, pair.rock, patch, pair.patch, n, kConeSlack);
+        if (faced && s >= 0.0 && s <= 1.0 && t >= 0.0 && t <= 1.0)
+        {
+          return 0.0;
+        }
+        // They pass each other beside one of their ends, unless it is not even sure which of the
+        // two is the upper one.
+        if (faced || n.dot(out) > 0.2)
+        {
+          continue;
+        }
       }
-      if (sine > 0.1)
+      else if (sine > 0.1)
       {
-        least = std::max(least, timeToCover(distance, rate(n, c), gravity + 2.0 * turning / sine));
+        least = std::max(least, timeToCover(distance, rate(n, c), gravity + carried / sine));
       }
     }
     time = std::min(time, least);

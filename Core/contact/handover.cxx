@@ -24,7 +24,7 @@ constexpr double kExtension = 2.0;
 /// A contact that has run off its feature with nothing there to take over lives on, on the
 /// feature's plane or line produced, while it has run off by less than this many times its
 /// compression: a spring that is dropped would take its energy with it.
-constexpr double kRunOff = 10.0;
+constexpr double kRunOff = 50.0;
 
 /// The spring keeps its compression, and so its force and energy, when a contact goes over to a
 /// neighbouring feature.

@@ -16,7 +16,7 @@ namespace
 
 /// Steps per half period of a vertex on its penalty spring: the impact is then resolved well enough
 /// for the order in which several vertices touch, and energy does not depend on it at all.
-constexpr double kStepsPerImpact = 6.0;
+constexpr double kStepsPerImpact = 8.0;
 /// Largest part of the rock's radius, and largest angle (rad), covered in a step of contact.
 constexpr double kTravelPerStep = 0.1;
 /// A rock lies still when it has been slower than this share of √(g r) for this long (s).

@@ -36,6 +36,22 @@ std::uint64_t carriers(const std::vector<Contact>& contacts)
   return sum;
 }
 
+/// In the springs of the closed contacts, J.
+double springEnergyOf(const std::vector<Contact>& contacts)
+{
+  double sum = 0.0;
+  for (const Contact& c : contacts)
+  {
+    if (c.closed())
+    {
+      const double compressed = std::min(0.0, c.gap());
+      sum +=
+        0.5 * c.stiffness * compressed * compressed + 0.5 * c.shearStiffness * c.slip.squaredNorm();
+    }
+  }
+  return sum;
+}
+
 bool anyClosed(const std::vector<Contact>& contacts)
 {
   return std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.closed(); });
@@ -111,6 +127,7 @@ void RockSimulator::stayInContact()
     const double reach = reachOf(calm ? large : small);
     this->ensureCandidates(reach);
     updateContacts(placed_, patch_, candidates_, reach, contacts_);
+    springEnergy_ = springEnergyOf(contacts_); // what has gone with a contact shows as numerical
 
     double h = std::min(large, parameters_.endTime - state_.time);
     StepKind kind = StepKind::Lasting;
@@ -185,8 +202,10 @@ void RockSimulator::armContacts()
     c.stiffness = penalty_ / (1.0 + (strains ? penalty_ * block_.compliance(n, y) : 0.0));
     c.shearStiffness = shear / (1.0 + (strains ? shear * block_.compliance(t, y) : 0.0));
     const double approach = -c.normal.dot(state_.velocity + spin.cross(lever));
-    const double damped = contactDamping(
-      material, surface_.restitution(), dampingRatio_, approach, speed, restingSpeed_);
+    const bool down =
+      approach > restingSpeed_ && comesDown(approach, speed, parameters_.gravity, block_.radius());
+    const double damped =
+      contactDamping(material, surface_.restitution(), dampingRatio_, approach, down);
     const double mobility = block_.mobility(n, y);
     c.frequency2 = c.stiffness * mobility;
     c.dashpot = damped > 0.0 ? 2.0 * damped * std::sqrt(c.stiffness / mobility) : 0.0;
@@ -364,7 +383,9 @@ void RockSimulator::finishImpact()
     event.impulse > 0.0 ? Vec3(impact_.normalImpulse / event.impulse) : Vec3(Vec3::UnitZ());
   event.restitution = surface_.restitution();
   const double before = kineticEnergy(block_, state_);
-  state_.velocity = adjustVelocity(surface_.terrain().material(), event, state_.velocity);
+  state_.velocity = adjustVelocity(surface_.terrain().material(), event, state_.velocity,
+    comesDown(
+      event.approachSpeed, event.velocityBefore.norm(), parameters_.gravity, block_.radius()));
   energy_.restitution += before - kineticEnergy(block_, state_);
   event.velocityAfter = state_.velocity;
   event.energyLoss =

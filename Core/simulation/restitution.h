@@ -17,10 +17,19 @@
 namespace rockfall
 {
 
-/// A touch in which the contact point comes in at more than this share of the rock's speed (20.5°)
-/// comes down; below, it glances. A sphere-like polyhedron of 1280 faces that rolls hops from
-/// vertex to vertex and sets down at up to 0.24 of its speed.
+/// A touch comes down if the contact point comes in at more than this share of the rock's speed
+/// (20.5°), or as from a drop of this part of the rock's radius; else it glances or rolls. A
+/// sphere-like polyhedron of 1280 faces that rolls hops from vertex to vertex and sets down at up
+/// to 0.24 of its speed.
 constexpr double kComesDown = 0.35;
+constexpr double kFallsDown = 0.25;
+
+/// Speeds in m/s, gravity in m/s², radius of the rock in m.
+inline bool comesDown(double approachSpeed, double speed, double gravity, double radius)
+{
+  return approachSpeed > kComesDown * speed ||
+    approachSpeed * approachSpeed > 2.0 * gravity * kFallsDown * radius;
+}
 
 /// Whether a touch is worth an event: the contact point came in faster than `restingSpeed` and
 /// either as fast as from a drop of 5 % of the rock's radius or at more than 11.5° (one fifth of
@@ -43,12 +52,12 @@ inline double restitutionAtSpeed(double restitution, double approachSpeed, doubl
 /// Damping ratio ζ of the dashpot of a contact that is about to close. `usual`: that of
 /// `restitution`.
 inline double contactDamping(const SurfaceMaterial& material, double restitution, double usual,
-  double approachSpeed, double speed, double restingSpeed)
+  double approachSpeed, bool down)
 {
   switch (material.restitutionModel)
   {
     case RestitutionModel::Velocity:
-      return approachSpeed > restingSpeed && approachSpeed > kComesDown * speed ? 0.0 : usual;
+      return down ? 0.0 : usual;
     case RestitutionModel::NormalTangential:
       return usual;
     case RestitutionModel::SpeedDependent:
@@ -61,11 +70,10 @@ inline double contactDamping(const SurfaceMaterial& material, double restitution
 /// The velocity of the centroid after an impact, whose `normal` is the mean direction of its
 /// impulse, unit, out of the slope. Never gains energy.
 inline Vec3 adjustVelocity(
-  const SurfaceMaterial& material, const ImpactEvent& event, const Vec3& velocity)
+  const SurfaceMaterial& material, const ImpactEvent& event, const Vec3& velocity, bool down)
 {
   if (material.restitutionModel == RestitutionModel::Velocity)
   {
-    const bool down = event.approachSpeed > kComesDown * event.velocityBefore.norm();
     return down ? Vec3(event.restitution * velocity) : velocity;
   }
   const Vec3 away = velocity.dot(event.normal) * event.normal;
