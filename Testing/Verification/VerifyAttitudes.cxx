@@ -73,7 +73,8 @@ TEST_P(Attitudes, ElasticDropKeepsEnergyAndMomentum)
     p.outputInterval = 0.01;
     const std::vector<Trajectory> runs = simulateAll(ground.terrain, rocks, p);
     int measured = 0, within = 0;
-    double worst = 0.0, numerical = 0.0, spin = 0.0, along = 0.0;
+    double worst = 0.0, spin = 0.0, along = 0.0;
+    double numerical = 0.0, vibration = 0.0, damping = 0.0, held = 0.0;
     std::int64_t unsettled = 0;
     for (int k = 0; k < attitudes; ++k)
     {
@@ -81,12 +82,15 @@ TEST_P(Attitudes, ElasticDropKeepsEnergyAndMomentum)
       unsettled += t.summary.unsettledSteps;
       const double fall = t.summary.mass * kGravity * drop;
       numerical = std::max(numerical, std::abs(t.summary.energy.numerical) / fall);
+      vibration = std::max(vibration, std::abs(t.summary.energy.vibration) / fall);
+      damping = std::max(damping, std::abs(t.summary.energy.damping) / fall);
       const Sample* end = lastInFlight(t);
       if (!end)
       {
         continue; // still in touch: nothing to measure
       }
       ++measured;
+      held = std::max(held, t.summary.energy.strain / fall);
       const Sample& start = t.samples.front();
       const double change =
         mechanicalEnergy(rocks[k], *end, kGravity) - mechanicalEnergy(rocks[k], start, kGravity);
@@ -119,6 +123,13 @@ TEST_P(Attitudes, ElasticDropKeepsEnergyAndMomentum)
     recordAtMost({ subject, head + "largest numerical remainder of the energy audit", "",
                    "every joule is booked" },
       numerical, 0.005);
+    recordAtMost(
+      { subject, head + "largest share left in springs and strain in flight", "",
+        "in flight nothing is compressed: a contact may only be let go when it is slack" },
+      held, 1e-6);
+    report({ subject, head + "largest share that went into vibration", "", "" }, vibration);
+    report({ subject, head + "largest share that damped steps of lasting contact took", "", "" },
+      damping);
     if (ground.plane)
     {
       recordAtMost({ subject, head + "largest change of angular momentum about the normal", "",

@@ -79,7 +79,7 @@ TEST(Flight, CentroidIsOnTheParabola)
                    std::string(body.name) +
                      ", largest relative error of place over 10 s, Δt 0.001 "
                      "to 0.01 s",
-                   "", "closed form of METHOD 9; only rounding may be left" },
+                   "", "the parabola; only rounding may be left" },
       worst, 1e-9);
   }
 }
