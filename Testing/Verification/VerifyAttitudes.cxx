@@ -90,7 +90,7 @@ TEST_P(Attitudes, ElasticDropKeepsEnergyAndMomentum)
         continue; // still in touch: nothing to measure
       }
       ++measured;
-      held = std::max(held, t.summary.energy.strain / fall);
+      held = std::max(held, end->energy.strain / fall);
       const Sample& start = t.samples.front();
       const double change =
         mechanicalEnergy(rocks[k], *end, kGravity) - mechanicalEnergy(rocks[k], start, kGravity);
