@@ -33,7 +33,7 @@ struct Contact
   ContactState state = ContactState::Open;
   int rockFeature = -1;            ///< Vertex, face or edge of the rock.
   int patchFeature = -1;           ///< Triangle, node or ridge in the patch at hand.
-  std::int64_t surfaceFeature = 0; ///< The same across patches: CFE number, node key, ridge key.
+  std::int64_t surfaceFeature = 0; ///< Key of the triangle, node or ridge: the same across patches.
   std::int64_t cfe = 0;            ///< A CFE that the contact is on, for material and output.
   Vec3 normal = Vec3::UnitZ();     ///< Out of the slope, world, unit.
   Vec3 point = Vec3::Zero();       ///< Where the rock touches, world, m.

@@ -212,7 +212,7 @@ void holdOverlap(const PlacedBlock& rock, const SurfacePatch& patch,
     if (kind == ContactKind::VertexFace)
     {
       c.cfe = patch.triangles[onPatch].cfe;
-      c.surfaceFeature = c.cfe;
+      c.surfaceFeature = patch.triangles[onPatch].key;
       c.normal = patch.triangles[onPatch].normal;
       c.point = rock.vertices()[onRock];
     }

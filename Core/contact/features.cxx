@@ -104,7 +104,7 @@ std::optional<Contact> vertexFace(
   c.kind = ContactKind::VertexFace;
   c.rockFeature = vertex;
   c.patchFeature = triangle;
-  c.surfaceFeature = t.cfe;
+  c.surfaceFeature = t.key;
   c.cfe = t.cfe;
   c.normal = t.normal;
   c.point = p;

@@ -58,7 +58,7 @@ bool relocate(const SurfacePatch& patch, Contact& contact)
   switch (contact.kind)
   {
     case ContactKind::VertexFace:
-      return match(patch.triangles, [](const SurfacePatch::Triangle& t) { return t.cfe; });
+      return match(patch.triangles, [](const SurfacePatch::Triangle& t) { return t.key; });
     case ContactKind::FaceVertex:
       return match(patch.nodes, [](const SurfacePatch::Node& n) { return n.key; });
     case ContactKind::EdgeEdge:
@@ -110,7 +110,7 @@ bool refreshVertexFace(const PlacedBlock& rock, const SurfacePatch& patch, Conta
     }
     contact.patchFeature = next;
     const SurfacePatch::Triangle& t1 = patch.triangles[next];
-    contact.surfaceFeature = t1.cfe;
+    contact.surfaceFeature = t1.key;
     contact.cfe = t1.cfe;
     handOver(contact, distanceTo(next));
     contact.normal = t1.normal;
@@ -263,7 +263,7 @@ bool leaveBest(
       if (inVertexCone(rock, vertex, t.normal, 0.0) &&
         projectsInside(patch, i, p, 0.0, 1e-9 * rock.block().radius()))
       {
-        offer(ContactKind::VertexFace, vertex, i, t.cfe, t.cfe, t.normal, p,
+        offer(ContactKind::VertexFace, vertex, i, t.key, t.cfe, t.normal, p,
           t.normal.dot(p) - t.offset, 0.0);
       }
     }

@@ -7,6 +7,14 @@
 namespace rockfall
 {
 
+namespace
+{
+
+/// How far the path between two samples may be from the motion, in radii of the rock.
+constexpr double kPathTolerance = 0.01;
+
+} // namespace
+
 double heightOverGround(const Surface& surface, const Block& block, const BlockState& state)
 {
   double lowest = std::numeric_limits<double>::infinity();
@@ -44,6 +52,7 @@ Sample Recorder::makeSample(const BlockState& state, bool contact)
 void Recorder::begin(const BlockState& state)
 {
   last_ = state.position;
+  knot_ = state;
   trajectory_.summary.start = state.position;
   this->follow(state);
   this->record(state, false);
@@ -55,8 +64,46 @@ void Recorder::record(const BlockState& state, bool contact)
   ++next_;
 }
 
+void Recorder::knot(const BlockState& state, bool contact)
+{
+  knot_ = state;
+  std::vector<Sample>& samples = trajectory_.samples;
+  // One sample at a time: what an impact left takes the place of what it began to leave.
+  if (samples.back().time >= state.time)
+  {
+    if (samples.back().kind != SampleKind::Knot)
+    {
+      return;
+    }
+    samples.pop_back();
+    audited_ = std::min(audited_, samples.size());
+  }
+  samples.push_back(this->makeSample(state, contact));
+  samples.back().kind = SampleKind::Knot;
+}
+
+void Recorder::audit(const EnergyAudit& audit)
+{
+  for (; audited_ < trajectory_.samples.size(); ++audited_)
+  {
+    trajectory_.samples[audited_].energy = audit;
+  }
+}
+
+bool Recorder::follows(const BlockState& state) const
+{
+  const double h = state.time - knot_.time;
+  const Vec3 bend = state.position - knot_.position - 0.5 * h * (knot_.velocity + state.velocity);
+  const double allowed = kPathTolerance * block_.radius();
+  return bend.squaredNorm() <= allowed * allowed;
+}
+
 void Recorder::recordBetween(const BlockState& from, const BlockState& to, bool contact)
 {
+  if (!this->follows(to))
+  {
+    this->knot(from, contact);
+  }
   const double h = to.time - from.time;
   while (this->nextTime() <= to.time && h > 0.0)
   {
@@ -71,6 +118,10 @@ void Recorder::recordBetween(const BlockState& from, const BlockState& to, bool 
     between.spin = (1.0 - s) * from.spin + s * to.spin;
     between.orientation = from.orientation.slerp(s, to.orientation);
     this->record(between, contact);
+  }
+  if (!this->follows(to))
+  {
+    this->knot(to, contact);
   }
 }
 
@@ -89,6 +140,7 @@ void Recorder::end(const BlockState& state, bool contact)
   {
     trajectory_.samples.push_back(this->makeSample(state, contact));
   }
+  trajectory_.samples.back().kind = SampleKind::End;
 }
 
 } // namespace rockfall

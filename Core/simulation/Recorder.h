@@ -26,8 +26,15 @@ public:
   double nextTime() const { return double(next_) * interval_; }
   /// Records a sample at exactly this state and moves on to the next time.
   void record(const BlockState& state, bool contact);
-  /// Records all samples that fall into a step, interpolated (cubic in place, slerp in attitude).
+  /// Records all samples that fall into a step, interpolated (cubic in place, slerp in attitude),
+  /// and knots before and after it where the motion since the last one is no uniform acceleration.
   void recordBetween(const BlockState& from, const BlockState& to, bool contact);
+  /// A sample at a touch or a take-off.
+  void knot(const BlockState& state, bool contact);
+  /// Whether there are samples without an audit.
+  bool needsAudit() const { return audited_ < trajectory_.samples.size(); }
+  /// Gives it to all of them.
+  void audit(const EnergyAudit& audit);
   /// Follows maxima and path length; call for every state that is reached.
   void follow(const BlockState& state);
   /// Adds the last state if it is not at an even time.
@@ -37,12 +44,15 @@ public:
 
 private:
   Sample makeSample(const BlockState& state, bool contact);
+  bool follows(const BlockState& state) const; ///< The last knot's uniform acceleration leads here.
 
   const Surface& surface_;
   const Block& block_;
   double interval_;
   std::int64_t next_ = 0;
   Vec3 last_ = Vec3::Zero();
+  BlockState knot_;         ///< The last one.
+  std::size_t audited_ = 0; ///< Samples that have their audit.
   Trajectory trajectory_;
 };
 

@@ -103,14 +103,9 @@ EnergyAudit RockSimulator::auditAt(const BlockState& state) const
 
 void RockSimulator::auditSamples(const BlockState& state)
 {
-  std::vector<Sample>& samples = recorder_.trajectory().samples;
-  if (audited_ < samples.size())
+  if (recorder_.needsAudit())
   {
-    const EnergyAudit audit = this->auditAt(state);
-    for (; audited_ < samples.size(); ++audited_)
-    {
-      samples[audited_].energy = audit;
-    }
+    recorder_.audit(this->auditAt(state));
   }
 }
 
@@ -307,7 +302,11 @@ Trajectory RockSimulator::run()
       const double depth = kDeepestImpact * block_.radius();
       penalty_ = std::max(
         parameters_.normalPenalty, block_.mass() * state_.velocity.squaredNorm() / (depth * depth));
+      recorder_.knot(state_, false);
+      this->auditSamples(state_);
       this->stayInContact();
+      recorder_.knot(state_, false);
+      this->auditSamples(state_);
     }
   }
   const bool touching =

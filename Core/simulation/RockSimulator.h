@@ -81,7 +81,6 @@ private:
   Impact impact_;
   EnergyAudit energy_;
   double energyAtStart_ = 0.0; ///< Kinetic and potential, J.
-  std::size_t audited_ = 0;    ///< Samples that have their audit.
   double springEnergy_ = 0.0;  ///< In the contact springs, J.
   double normalEnergy_ = 0.0;  ///< In the normal ones, J.
   double softness_ = 0.0;      ///< Of a contact and the block behind it, m/N.

@@ -26,9 +26,20 @@ struct EnergyAudit
   double numerical = 0.0;   ///< Gained (−) or lost (+) by the numerics.
 };
 
-/// The state of a rock at one time (METHOD 8).
+/// Why a sample is there.
+enum class SampleKind : std::uint8_t
+{
+  Even, ///< At a multiple of the output interval.
+  Knot, ///< A touch, a take-off, or a place where the motion changes.
+  End,  ///< Where the rock rests, leaves or is cut off.
+};
+
+/// The state of a rock at one time (METHOD 8). The motion between two samples is the cubic Hermite
+/// curve of their places and velocities: exact in flight, within 1 % of the rock's radius in
+/// contact.
 struct Sample
 {
+  SampleKind kind = SampleKind::Even;
   double time = 0.0;                   ///< s
   Vec3 position = Vec3::Zero();        ///< Centroid, m.
   Quat orientation = Quat::Identity(); ///< Body to world.
@@ -93,7 +104,7 @@ struct TrajectorySummary
 struct Trajectory
 {
   TrajectorySummary summary;
-  std::vector<Sample> samples; ///< At multiples of the output interval, then the end.
+  std::vector<Sample> samples; ///< In the order of time, the last one is the end.
   std::vector<ImpactEvent> impacts;
 };
 

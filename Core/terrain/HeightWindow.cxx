@@ -15,23 +15,22 @@ void HeightWindow::gather(
   cellSize_ = g.cellSize;
   inverse_ = 1.0 / g.cellSize;
   const double north = terrain.height();
-  const auto cell = [&](double v) { return int(std::floor(std::clamp(v * inverse_, -4.0, 2e9))); };
+  const auto cell = [&](double v) { return int(std::floor(std::clamp(v * inverse_, -1e6, 2e9))); };
   const int wantColumn0 = cell(xMin), wantColumn1 = cell(xMax);
   const int wantRow0 = cell(north - yMax), wantRow1 = cell(north - yMin);
   xMin_ = wantColumn0 * cellSize_;
   xMax_ = (wantColumn1 + 1) * cellSize_;
   yMax_ = north - wantRow0 * cellSize_;
   yMin_ = north - (wantRow1 + 1) * cellSize_;
-  const int column0 = std::max(wantColumn0, 0), column1 = std::min(wantColumn1, g.columns - 2);
-  const int row0 = std::max(wantRow0, 0), row1 = std::min(wantRow1, g.rows - 2);
+  const int column0 = wantColumn0, column1 = wantColumn1, row0 = wantRow0, row1 = wantRow1;
   west_ = column0 * cellSize_;
   north_ = north - row0 * cellSize_;
-  columns_ = std::max(column1 - column0 + 2, 0);
-  rows_ = std::max(row1 - row0 + 2, 0);
+  columns_ = column1 - column0 + 2;
+  rows_ = row1 - row0 + 2;
   tilt_.setZero();
   relief_ = 0.0;
   highest_ = -std::numeric_limits<double>::infinity();
-  if (columns_ < 2 || rows_ < 2)
+  if (column1 < 0 || column0 > g.columns - 2 || row1 < 0 || row0 > g.rows - 2)
   {
     // Beyond the edge: a window in which there is nothing.
     columns_ = rows_ = 2;
@@ -45,7 +44,7 @@ void HeightWindow::gather(
     double* row = &z_[std::size_t(r) * columns_];
     for (int c = 0; c < columns_; ++c)
     {
-      row[c] = surface.nodeHeight(row0 + r, column0 + c);
+      row[c] = surface.apronHeight(row0 + r, column0 + c);
       whole = whole && !std::isnan(row[c]);
     }
   }

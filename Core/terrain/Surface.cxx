@@ -16,6 +16,13 @@ namespace
 /// plane's node heights (1e-12) and below any slope that a survey can tell.
 constexpr double flatBend = 1e-7;
 
+/// A number for a node or cell, also for those of the apron.
+constexpr std::int64_t gridKey(int row, int column)
+{
+  constexpr std::int64_t apron = 1 << 20;
+  return ((row + apron) << 32) + column + apron;
+}
+
 } // namespace
 
 Surface::Surface(const Terrain& terrain)
@@ -100,23 +107,26 @@ void gatherPatch(
   patch.ridges.clear();
   const double inverse = 1.0 / g.cellSize;
   const double north = terrain.height();
-  const auto cell = [&](double v) { return int(std::floor(std::clamp(v * inverse, -4.0, 2e9))); };
+  const auto cell = [&](double v) { return int(std::floor(std::clamp(v * inverse, -1e6, 2e9))); };
   const int wantColumn0 = cell(xMin), wantColumn1 = cell(xMax);
   const int wantRow0 = cell(north - yMax), wantRow1 = cell(north - yMin);
   patch.xMin = wantColumn0 * g.cellSize;
   patch.xMax = (wantColumn1 + 1) * g.cellSize;
   patch.yMax = north - wantRow0 * g.cellSize;
   patch.yMin = north - (wantRow1 + 1) * g.cellSize;
-  // The ring makes the neighbours of every edge and node under the rock known.
-  const int column0 = std::max(wantColumn0 - 1, 0),
-            column1 = std::min(wantColumn1 + 1, g.columns - 2);
-  const int row0 = std::max(wantRow0 - 1, 0), row1 = std::min(wantRow1 + 1, g.rows - 2);
-  patch.row0 = row0, patch.row1 = row1, patch.column0 = column0, patch.column1 = column1;
   patch.nodeColumns = patch.nodeRows = 0;
-  if (column1 < column0 || row1 < row0)
+  patch.row0 = patch.column0 = 0;
+  patch.row1 = patch.column1 = -1;
+  if (wantColumn1 < 0 || wantColumn0 > g.columns - 2 || wantRow1 < 0 || wantRow0 > g.rows - 2)
   {
     return;
   }
+  // The ring makes the neighbours of every edge and node under the rock known. Beyond its edge the
+  // slope goes on level, as an apron, so that a rock that stands half over the edge is carried as
+  // on ground; it has left when its centroid has.
+  const int column0 = wantColumn0 - 1, column1 = wantColumn1 + 1;
+  const int row0 = wantRow0 - 1, row1 = wantRow1 + 1;
+  patch.row0 = row0, patch.row1 = row1, patch.column0 = column0, patch.column1 = column1;
   const int nodeColumns = column1 - column0 + 2;
   const int nodeRows = row1 - row0 + 2;
   patch.nodeColumns = nodeColumns;
@@ -133,8 +143,8 @@ void gatherPatch(
     {
       const int column = column0 + c;
       node->position = { column * g.cellSize, (g.rows - 1 - row) * g.cellSize,
-        surface.nodeHeight(row, column) };
-      node->key = std::int64_t(row) * g.columns + column;
+        surface.apronHeight(row, column) };
+      node->key = gridKey(row, column);
       node->cfe = 0;
       node->peak = false;
     }
@@ -151,7 +161,10 @@ void gatherPatch(
       const int upperLeft = r * nodeColumns + c;
       const int lowerLeft = upperLeft + nodeColumns;
       const int lower = 2 * (r * cellColumns + c);
-      const std::int64_t id = 2 * (std::int64_t(row0 + r) * (g.columns - 1) + column0 + c) + 1;
+      const int row = std::clamp(row0 + r, 0, g.rows - 2);
+      const int column = std::clamp(column0 + c, 0, g.columns - 2);
+      const std::int64_t id = 2 * (std::int64_t(row) * (g.columns - 1) + column) + 1;
+      const std::int64_t key = 2 * gridKey(row0 + r, column0 + c);
       // Edges of the lower triangle: west, south, diagonal; of the upper: diagonal, east, north.
       SurfacePatch::Triangle* t = &patch.triangles[lower];
       t[0].nodes = { upperLeft, lowerLeft, lowerLeft + 1 };
@@ -172,6 +185,7 @@ void gatherPatch(
         t[k].normal = up[k] * (1.0 / std::sqrt(up[k].squaredNorm()));
         t[k].offset = t[k].normal.dot(patch.nodes[upperLeft].position);
         t[k].cfe = std::isnan(t[k].offset) ? 0 : id + k;
+        t[k].key = key + k;
         t[k].bends.fill(0);
         t[k].ridges.fill(-1);
         for (int n : t[k].nodes)
@@ -214,7 +228,7 @@ void gatherPatch(
         // Three edges belong to a lower triangle: that and the side make the key.
         t.ridges[k] = int(patch.ridges.size());
         patch.ridges.push_back({ { t.nodes[k], t.nodes[(k + 1) % 3] }, { i, j },
-          { t.nodes[(k + 2) % 3], wing }, 3 * t.cfe + k });
+          { t.nodes[(k + 2) % 3], wing }, 3 * t.key + k });
       }
     }
   }

@@ -5,6 +5,7 @@
 
 #include "terrain/Terrain.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -29,6 +30,12 @@ public:
 
   double nodeHeight(int row, int column) const; ///< With roughness, NaN for nodata, m.
   double elevation(double x, double y) const;   ///< With roughness, NaN outside, m.
+  /// The same, and beyond the edge of the slope that of the nearest node.
+  double apronHeight(int row, int column) const
+  {
+    const GridGeometry& g = terrain_->geometry();
+    return this->nodeHeight(std::clamp(row, 0, g.rows - 1), std::clamp(column, 0, g.columns - 1));
+  }
   /// Upper bound of the surface over a box, m; −∞ if there is none.
   double maxHeight(double xMin, double xMax, double yMin, double yMax) const
   {
@@ -58,8 +65,9 @@ struct SurfacePatch
     std::array<int, 3> neighbours;
     std::array<signed char, 3> bends; ///< +1 convex (ridge), 0 flat, −1 concave (valley).
     Vec3 normal;
-    double offset; ///< normal · x on the plane, m.
-    std::int64_t cfe;
+    double offset;             ///< normal · x on the plane, m.
+    std::int64_t cfe;          ///< 0: touches nodata. On the apron that of the nearest cell.
+    std::int64_t key;          ///< The same triangle has the same key in every patch.
     std::array<int, 3> ridges; ///< That a lower triangle counts as its own, −1: none.
   };
   /// A convex edge between two triangles: the only kind that an edge of a rock can touch.

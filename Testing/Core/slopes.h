@@ -56,6 +56,14 @@ inline SurfaceMaterial material(double restitution, double frictionDegrees)
   return m;
 }
 
+/// The samples at multiples of the output interval, and the end.
+inline std::vector<Sample> evenSamples(const Trajectory& trajectory)
+{
+  std::vector<Sample> samples = trajectory.samples;
+  std::erase_if(samples, [](const Sample& s) { return s.kind == SampleKind::Knot; });
+  return samples;
+}
+
 /// One rock, one iteration.
 inline Trajectory simulate(
   const Terrain& terrain, const Rock& rock, const SimulationParameters& parameters)
