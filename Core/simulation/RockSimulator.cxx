@@ -175,10 +175,10 @@ void RockSimulator::advanceInFlight(double duration)
 
 void RockSimulator::flyUntilNear()
 {
-  while (!done_)
+  while (!done_ && !this->arrived())
   {
     // Up to the edge of the slope, where the rock is let go.
-    double remaining = parameters_.endTime - state_.time;
+    double remaining = horizon_ - state_.time;
     const double extent[2] = { surface_.terrain().width(), surface_.terrain().height() };
     for (int axis = 0; axis < 2; ++axis)
     {
@@ -283,7 +283,7 @@ void RockSimulator::liftOntoRoughness()
   }
 }
 
-Trajectory RockSimulator::run()
+void RockSimulator::release()
 {
   TrajectorySummary& summary = recorder_.trajectory().summary;
   summary.blockId = rock_.blockId;
@@ -294,21 +294,48 @@ Trajectory RockSimulator::run()
   recorder_.begin(state_);
   this->auditSamples(state_);
   this->checkEnd(0.0);
-  while (!done_)
+}
+
+void RockSimulator::beginContact()
+{
+  const double depth = kDeepestImpact * block_.radius();
+  penalty_ = std::max(
+    parameters_.normalPenalty, block_.mass() * state_.velocity.squaredNorm() / (depth * depth));
+  steppedAs_ = StepKind::Lasting; // no impact's step to go by yet
+  openTime_ = ringing_;
+  inContact_ = true;
+  recorder_.knot(state_, false);
+  this->auditSamples(state_);
+}
+
+void RockSimulator::endContact()
+{
+  inContact_ = false;
+  recorder_.knot(state_, false);
+  this->auditSamples(state_);
+}
+
+void RockSimulator::advance(double until)
+{
+  horizon_ = std::min(until, parameters_.endTime);
+  while (!done_ && !this->arrived())
   {
-    this->flyUntilNear();
-    if (!done_)
+    if (!inContact_)
     {
-      const double depth = kDeepestImpact * block_.radius();
-      penalty_ = std::max(
-        parameters_.normalPenalty, block_.mass() * state_.velocity.squaredNorm() / (depth * depth));
-      recorder_.knot(state_, false);
-      this->auditSamples(state_);
-      this->stayInContact();
-      recorder_.knot(state_, false);
-      this->auditSamples(state_);
+      this->flyUntilNear();
+      if (done_ || this->arrived())
+      {
+        return;
+      }
+      this->beginContact();
     }
+    this->stayInContact();
   }
+}
+
+Trajectory RockSimulator::finish()
+{
+  TrajectorySummary& summary = recorder_.trajectory().summary;
   const bool touching =
     std::any_of(contacts_.begin(), contacts_.end(), [](const Contact& c) { return c.closed(); });
   recorder_.end(state_, touching);
@@ -318,6 +345,13 @@ Trajectory RockSimulator::run()
   this->auditSamples(state_);
   summary.energy = this->auditAt(state_);
   return std::move(recorder_.trajectory());
+}
+
+Trajectory RockSimulator::run()
+{
+  this->release();
+  this->advance(parameters_.endTime);
+  return this->finish();
 }
 
 } // namespace rockfall

@@ -23,7 +23,13 @@ public:
   /// Runs to rest, to the edge of the slope or to the end time.
   Trajectory run();
 
+  // The same in parts, for rocks that may meet others on their way.
+  void release();
+  void advance(double until); ///< Up to this time (s) or to the end.
+  Trajectory finish();
+
   const BlockState& state() const { return state_; }
+  bool done() const { return done_; }
 
 private:
   /// What is under way between the first touch and the take-off or settling.
@@ -46,7 +52,9 @@ private:
   void checkEnd(double h); ///< Rested, left, or out of time? `h`: time since the last call, s.
 
   // Contact, contactPhase.cxx
-  void stayInContact(); ///< Returns after take-off, or at the end.
+  void beginContact();
+  void stayInContact(); ///< Returns after take-off, at the horizon or at the end.
+  void endContact();
   void takeStep(double h, StepKind kind);
   bool isCalm() const;          ///< What carries neither comes nor goes.
   bool mayLast(double h) const; ///< A long, damped step is right.
@@ -60,6 +68,8 @@ private:
   void armContacts(); ///< Gives new contacts their springs and dashpots.
   double impactStep() const;
   double travelLimit() const;
+  /// Whether the horizon is reached, but for what is too short to be a step.
+  bool arrived() const { return state_.time >= horizon_ - 1e-9; }
   double mechanicalEnergy() const; ///< Without contact springs, J.
   EnergyAudit auditAt(const BlockState& state) const;
   void auditSamples(const BlockState& state); ///< Gives new samples their audit.
@@ -96,6 +106,8 @@ private:
   double ringing_ = 0.0;  ///< Period of a soft block's slowest strain, 0 for a stiff one, s.
   double openTime_ = 0.0; ///< Since it touched, s.
   double freeFor_ = 0.0;  ///< Nothing can be touched for so long after a take-off, s.
+  double horizon_ = 0.0;  ///< Up to which it is to advance, s.
+  bool inContact_ = false;
   bool done_ = false;
 };
 

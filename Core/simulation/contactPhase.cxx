@@ -112,9 +112,7 @@ bool RockSimulator::isCalm() const
 
 void RockSimulator::stayInContact()
 {
-  steppedAs_ = StepKind::Lasting; // no impact's step to go by yet
-  openTime_ = ringing_;
-  while (!done_)
+  while (!done_ && !this->arrived())
   {
     const double small = this->impactStep();
     const double large = std::min(parameters_.timeStep, this->travelLimit());
@@ -129,7 +127,7 @@ void RockSimulator::stayInContact()
     updateContacts(placed_, patch_, candidates_, reach, contacts_);
     springEnergy_ = springEnergyOf(contacts_); // what has gone with a contact shows as numerical
 
-    double h = std::min(large, parameters_.endTime - state_.time);
+    double h = std::min(large, horizon_ - state_.time);
     StepKind kind = StepKind::Lasting;
     if (!calm || !this->mayLast(h))
     {
@@ -145,7 +143,7 @@ void RockSimulator::stayInContact()
       const double rim = block_.largestRimSpeed(state_.spin);
       const double served =
         std::min(timeToCover(room, state_.velocity.norm() + rim, parameters_.gravity),
-          parameters_.endTime - state_.time);
+          horizon_ - state_.time);
       const double free =
         timeToClose(placed_, state_, patch_, candidates_, parameters_.gravity, served);
       if (free >= served && served > small)
@@ -157,6 +155,7 @@ void RockSimulator::stayInContact()
           this->finishImpact();
         }
         freeFor_ = served;
+        this->endContact();
         return;
       }
       if (free > small)
