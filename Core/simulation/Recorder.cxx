@@ -82,6 +82,12 @@ void Recorder::knot(const BlockState& state, bool contact)
   samples.back().kind = SampleKind::Knot;
 }
 
+void Recorder::resume(const BlockState& state)
+{
+  next_ = std::max(next_, std::int64_t(std::ceil(state.time / interval_)));
+  this->knot(state, true);
+}
+
 void Recorder::audit(const EnergyAudit& audit)
 {
   for (; audited_ < trajectory_.samples.size(); ++audited_)

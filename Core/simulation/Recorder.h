@@ -31,6 +31,8 @@ public:
   void recordBetween(const BlockState& from, const BlockState& to, bool contact);
   /// A sample at a touch or a take-off.
   void knot(const BlockState& state, bool contact);
+  /// Goes on at a later time; in between nothing moved.
+  void resume(const BlockState& state);
   /// Whether there are samples without an audit.
   bool needsAudit() const { return audited_ < trajectory_.samples.size(); }
   /// Gives it to all of them.

@@ -97,7 +97,7 @@ EnergyAudit RockSimulator::auditAt(const BlockState& state) const
   audit.released = energyAtStart_ - block_.mass() * parameters_.gravity * state.position.z();
   audit.numerical = audit.released -
     (audit.kinetic + audit.strain + audit.friction + audit.restitution + audit.vibration +
-      audit.damping);
+      audit.damping + audit.exchanged);
   return audit;
 }
 
@@ -227,9 +227,8 @@ void RockSimulator::flyUntilNear()
   }
 }
 
-void RockSimulator::checkEnd(double h)
+void RockSimulator::checkLeft()
 {
-  TrajectorySummary& summary = recorder_.trajectory().summary;
   const Terrain& terrain = surface_.terrain();
   const Vec3& p = state_.position;
   const double r = block_.radius();
@@ -243,18 +242,29 @@ void RockSimulator::checkEnd(double h)
   }
   if (left)
   {
-    summary.fate = Fate::LeftDomain;
+    recorder_.trajectory().summary.fate = Fate::LeftDomain;
     done_ = true;
-    return;
   }
-  bool touching = false;
-  for (const Contact& c : contacts_)
-  {
-    touching = touching || c.closed();
-  }
+}
+
+void RockSimulator::followRest(double h, bool touching)
+{
+  const double r = block_.radius();
   const double speed = state_.velocity.norm() + state_.spin.norm() * r;
   const double still = kStillSpeed * std::sqrt(std::max(parameters_.gravity, 1e-3) * r);
   quietTime_ = touching && speed < still ? quietTime_ + h : 0.0;
+}
+
+void RockSimulator::checkEnd(double h)
+{
+  this->checkLeft();
+  if (done_)
+  {
+    return;
+  }
+  TrajectorySummary& summary = recorder_.trajectory().summary;
+  this->followRest(h,
+    std::any_of(contacts_.begin(), contacts_.end(), [](const Contact& c) { return c.closed(); }));
   if (quietTime_ >= kStillTime)
   {
     summary.fate = Fate::Rested;

@@ -32,6 +32,8 @@ public:
   bool done() const { return done_; }
 
 private:
+  friend class MassFall; ///< Moves rocks that touch each other.
+
   /// What is under way between the first touch and the take-off or settling.
   struct Impact
   {
@@ -49,6 +51,8 @@ private:
   void flyUntilNear(); ///< Returns when a touch is possible within a few steps, or at the end.
   void advanceInFlight(double duration);
   bool clearFor(double duration) const;
+  void checkLeft(); ///< Beyond the slope?
+  void followRest(double h, bool touching);
   void checkEnd(double h); ///< Rested, left, or out of time? `h`: time since the last call, s.
 
   // Contact, contactPhase.cxx
@@ -56,6 +60,9 @@ private:
   void stayInContact(); ///< Returns after take-off, at the horizon or at the end.
   void endContact();
   void takeStep(double h, StepKind kind);
+  /// Books a step that has been taken from `before_` to `state_`. `given`: work done on other
+  /// rocks, J.
+  void absorb(StepKind kind, const StepOutcome& outcome, double energyBefore, double given);
   bool isCalm() const;          ///< What carries neither comes nor goes.
   bool mayLast(double h) const; ///< A long, damped step is right.
   void pressOut(double h);

@@ -264,15 +264,23 @@ void RockSimulator::takeStep(double h, StepKind kind)
       contactsBefore_.clear();
     }
   }
+  this->absorb(kind, outcome, energyBefore, 0.0);
+}
+
+void RockSimulator::absorb(
+  StepKind kind, const StepOutcome& outcome, double energyBefore, double given)
+{
+  const bool lasting = kind == StepKind::Lasting;
   const double taken = state_.time - before_.time;
+  energy_.exchanged += given;
   energy_.friction += outcome.frictionWork;
   energy_.restitution += outcome.dampedWork;
   springEnergy_ = outcome.springEnergy;
   normalEnergy_ = outcome.normalEnergy;
   if (lasting)
   {
-    energy_.damping +=
-      energyBefore - this->mechanicalEnergy() - springEnergy_ - outcome.frictionWork;
+    energy_.damping += energyBefore - this->mechanicalEnergy() - springEnergy_ -
+      outcome.frictionWork - outcome.dampedWork - given;
     // The lag of the next lasting step. What an impact left is no acceleration to go on with, nor
     // is that under other contacts: a rock that rattles would be fed by it.
     const double bound = 3.0 * parameters_.gravity;

@@ -16,9 +16,14 @@ struct SimulationParameters
   double outputInterval = 0.05; ///< Between samples, s, > 0. Does not change the motion.
   double gravity = 9.81;        ///< m/s², ≥ 0.
 
-  double normalPenalty = 1e9; ///< pₙ, N/m, > 0. METHOD 9.1: ≥ 1e9 is accurate enough.
-  double shearRatio = 1.0;    ///< pₛ / pₙ, dimensionless, > 0.
-  bool rigid = false;         ///< Infinite stiffness: 6 unknowns per block.
+  double normalPenalty = 1e9;   ///< pₙ, N/m, > 0. METHOD 9.1: ≥ 1e9 is accurate enough.
+  double shearRatio = 1.0;      ///< pₛ / pₙ, dimensionless, > 0.
+  bool rockRockContact = false; ///< Rocks of one iteration fall together and hit each other.
+  double rockRestitution = 0.5; ///< Normal, between rocks, dimensionless, 0 … 1.
+  double rockFrictionAngle = radians(30.0); ///< φ between rocks, rad, 0° … 89°.
+  double rockCohesion = 0.0;                ///< c between rocks, N per contact point, ≥ 0.
+
+  bool rigid = false; ///< Infinite stiffness: 6 unknowns per block.
 
   int iterations = 1;     ///< Independent realisations of roughness, Rv and φ, ≥ 1.
   std::uint64_t seed = 1; ///< With the iteration it determines every random number.

@@ -13,7 +13,9 @@ namespace rockfall
 {
 
 /// Where the energy went, J. Their sum is what the numerics kept; `numerical` is the remainder:
-/// released = kinetic + strain + friction + restitution + vibration + damping + numerical.
+/// released = kinetic + strain + friction + restitution + vibration + damping + exchanged +
+/// numerical. What two rocks exchange does not add up to nothing: the rest is lost, or held,
+/// between them.
 struct EnergyAudit
 {
   double released = 0.0;    ///< Start's kinetic energy plus potential energy given up.
@@ -23,6 +25,7 @@ struct EnergyAudit
   double restitution = 0.0; ///< Taken by Rv.
   double vibration = 0.0;   ///< Strain energy left in a block when it took off.
   double damping = 0.0;     ///< Dissipated by the damped step of lasting contact.
+  double exchanged = 0.0;   ///< Given to other rocks by contact (−: received).
   double numerical = 0.0;   ///< Gained (−) or lost (+) by the numerics.
 };
 
@@ -63,8 +66,10 @@ struct ImpactEvent
   double approachSpeed = 0.0;   ///< Of the contact point along the normal, m/s.
   Vec3 velocityBefore = Vec3::Zero();
   Vec3 velocityAfter = Vec3::Zero();
-  double energyLoss = 0.0;  ///< By friction and restitution, J.
-  double restitution = 1.0; ///< The coefficient that was applied.
+  double energyLoss = 0.0;        ///< By friction and restitution, J.
+  double restitution = 1.0;       ///< The coefficient that was applied.
+  int otherRock = -1;             ///< Index of the rock that was hit, −1: the slope.
+  std::int64_t otherBlockId = -1; ///< Its number.
 };
 
 enum class Fate

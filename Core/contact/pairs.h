@@ -1,0 +1,86 @@
+#pragma once
+
+/// @file
+/// Contacts between two rocks (METHOD 3): the direction in which they are apart, or part again the
+/// shortest way, and the points on which they touch along it.
+///
+/// Vertex–vertex, vertex–edge, edge–face and face–face contacts reduce to the two fundamental ones:
+/// vertices of either rock on a face of the other, and crossings of edges. Where two faces lie on
+/// each other, these are the corners of the polygon that they share.
+
+#include "contact/Contact.h"
+
+#include <vector>
+
+namespace rockfall
+{
+
+/// A direction in which two convex bodies can be told apart, from the second to the first.
+struct PairAxis
+{
+  enum class Kind : std::uint8_t
+  {
+    None,
+    FaceOfFirst,
+    FaceOfSecond,
+    Edges,
+  };
+  Kind kind = Kind::None;
+  int first = -1;              ///< Face or edge of the first rock.
+  int second = -1;             ///< Of the second one.
+  Vec3 normal = Vec3::UnitZ(); ///< World, unit.
+  double distance = 0.0;       ///< Gap along it, m; < 0: overlap.
+};
+
+/// A rock with its face normals as they stand, m.
+struct PairBody
+{
+  const PlacedBlock* placed = nullptr;
+  std::vector<Vec3> normals;   ///< Per face, world, outward.
+  std::vector<double> offsets; ///< Per face, normal · x on it, world, m.
+  void update(const PlacedBlock& block);
+};
+
+/// The axis of the largest gap; `last` stays as long as no other one is better by more than a
+/// thousandth of the smaller radius, so that it does not flip between equals (METHOD 10.6). If any
+/// axis shows a gap beyond `reach` (m), that one is returned at once.
+PairAxis findAxis(
+  const PairBody& first, const PairBody& second, const PairAxis& last, double reach);
+
+/// The points of touch along an axis: gaps up to `reach` (m). For a VertexFace contact the point is
+/// on the first rock and the face on the second, for FaceVertex the other way round; EdgeEdge has
+/// an edge of each. `rockFeature` and `surfaceFeature` are numbers of features of the first and
+/// second rock, `ridge` the line of the second one's edge.
+void findTouches(const PairBody& first, const PairBody& second, const PairAxis& axis, double reach,
+  std::vector<Contact>& contacts);
+
+/// Two rocks that are or were near each other, with what lasts from step to step.
+struct RockPair
+{
+  int first = -1;  ///< Index of a rock.
+  int second = -1; ///< Index of a rock, larger.
+  PairAxis axis;
+  std::vector<Contact> contacts;
+  bool touched = false; ///< Has had closed contacts in the last step.
+  bool linked = false;  ///< May touch in the step at hand.
+  /// What is under way between the first touch and parting or settling.
+  struct Impact
+  {
+    bool pending = false;
+    double time = 0.0;                               ///< Of the first touch, s.
+    double approach = 0.0;                           ///< m/s
+    double loss = 0.0;                               ///< J
+    double largest = 0.0;                            ///< Force, N.
+    Vec3 point = Vec3::Zero();                       ///< m
+    Vec3 impulse = Vec3::Zero();                     ///< On the first rock, N s.
+    Vec3 before[2] = { Vec3::Zero(), Vec3::Zero() }; ///< Velocities, m/s.
+  };
+  Impact impact;
+};
+
+/// Brings a pair's contacts to where the rocks stand: points that were there keep their springs,
+/// new ones get none. A pair that is found overlapping without having touched carries no force at
+/// the depth at which it is found.
+void updatePair(const PairBody& first, const PairBody& second, double reach, RockPair& pair);
+
+} // namespace rockfall

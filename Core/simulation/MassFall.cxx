@@ -1,0 +1,276 @@
+#include "simulation/MassFall.h"
+
+#include "contact/motion.h"
+#include "system/broadPhase.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace rockfall
+{
+
+namespace
+{
+
+/// A group sleeps when all of its rocks have been still for this long, s.
+constexpr double kStillTime = 0.5;
+
+} // namespace
+
+MassFall::MassFall(const Surface& surface, std::span<const Rock> rocks,
+  std::span<const Block> blocks, const SimulationParameters& parameters)
+  : surface_(surface)
+  , parameters_(parameters)
+  , dampingRatio_(dampingRatio(parameters.rockRestitution))
+{
+  members_.reserve(rocks.size());
+  for (std::size_t i = 0; i < rocks.size(); ++i)
+  {
+    members_.push_back(std::make_unique<Member>(surface, rocks[i], blocks[i], parameters));
+    members_.back()->sim.stiff_ = true; // strain follows the contacts of a group as at rest
+    members_.back()->sim.ringing_ = 0.0;
+  }
+}
+
+void MassFall::release()
+{
+  for (const auto& member : members_)
+  {
+    member->sim.release();
+  }
+}
+
+std::vector<Trajectory> MassFall::run(const std::function<bool(double)>& goOn)
+{
+  this->release();
+  while (this->advance() && (!goOn || goOn(time_)))
+  {
+  }
+  std::vector<Trajectory> trajectories;
+  trajectories.reserve(members_.size());
+  for (RockPair& pair : pairs_)
+  {
+    this->finishPairImpact(pair);
+  }
+  for (const auto& member : members_)
+  {
+    trajectories.push_back(member->sim.finish());
+  }
+  return trajectories;
+}
+
+void MassFall::wake(Member& member)
+{
+  RockSimulator& sim = member.sim;
+  member.asleep = false;
+  sim.done_ = false;
+  sim.quietTime_ = 0.0;
+  sim.state_.time = time_;
+  sim.recorder_.trajectory().summary.fate = Fate::Moving;
+  sim.recorder_.resume(sim.state_);
+  sim.auditSamples(sim.state_);
+}
+
+void MassFall::putToSleep(Member& member)
+{
+  member.asleep = true;
+  member.sim.done_ = true;
+  member.sim.recorder_.trajectory().summary.fate = Fate::Rested;
+  member.sim.state_.velocity.setZero();
+  member.sim.state_.spin.setZero();
+  member.sim.acceleration_.setZero();
+  member.sim.spinAcceleration_.setZero();
+}
+
+void MassFall::findPairs(double duration)
+{
+  std::vector<BroadBox> boxes(members_.size());
+  for (std::size_t i = 0; i < members_.size(); ++i)
+  {
+    Member& m = *members_[i];
+    BroadBox& box = boxes[i];
+    box.present = !m.sim.done_ || m.asleep;
+    if (!box.present)
+    {
+      continue;
+    }
+    const BlockState& s = m.sim.state_;
+    box.center = s.position;
+    box.moves = !m.asleep;
+    // In the step it covers no more than this; the longest way of all decides who meets whom.
+    const double speed = s.velocity.norm() + parameters_.gravity * duration;
+    box.radius = m.sim.block_.radius() + (m.asleep ? 0.0 : speed * duration);
+  }
+  const std::vector<std::array<int, 2>> near = findNear(boxes);
+  // What lasts of the pairs that are still near.
+  nextPairs_.clear();
+  nextPairs_.reserve(near.size());
+  std::size_t old = 0;
+  for (const std::array<int, 2>& ij : near)
+  {
+    const auto before = [&](const RockPair& p)
+    { return p.first < ij[0] || (p.first == ij[0] && p.second < ij[1]); };
+    for (; old < pairs_.size() && before(pairs_[old]); ++old)
+    {
+      this->finishPairImpact(pairs_[old]);
+    }
+    if (old < pairs_.size() && pairs_[old].first == ij[0] && pairs_[old].second == ij[1])
+    {
+      nextPairs_.push_back(std::move(pairs_[old++]));
+      continue;
+    }
+    nextPairs_.emplace_back();
+    nextPairs_.back().first = ij[0];
+    nextPairs_.back().second = ij[1];
+  }
+  for (; old < pairs_.size(); ++old)
+  {
+    this->finishPairImpact(pairs_[old]);
+  }
+  pairs_.swap(nextPairs_);
+}
+
+void MassFall::findGroups(double duration)
+{
+  // Which pairs may touch within the step.
+  tbb::parallel_for(std::size_t(0), members_.size(),
+    [&](std::size_t i)
+    {
+      Member& m = *members_[i];
+      if (!m.sim.done_ || m.asleep)
+      {
+        m.sim.placed_.place(m.sim.block_, m.sim.state_);
+        m.body.update(m.sim.placed_);
+      }
+    });
+  tbb::parallel_for(std::size_t(0), pairs_.size(),
+    [&](std::size_t k)
+    {
+      RockPair& pair = pairs_[k];
+      const Member &a = *members_[pair.first], &b = *members_[pair.second];
+      pair.linked = false;
+      if (a.asleep && b.asleep)
+      {
+        return;
+      }
+      const BlockState &s = a.sim.state_, &t = b.sim.state_;
+      const double speed = (s.velocity - t.velocity).norm() + a.sim.block_.largestRimSpeed(s.spin) +
+        b.sim.block_.largestRimSpeed(t.spin) +
+        parameters_.gravity * duration; // one of them may be held
+      const double reach = speed * duration;
+      pair.axis = findAxis(a.body, b.body, pair.axis, reach);
+      pair.linked = pair.axis.distance <= reach;
+      if (!pair.linked)
+      {
+        pair.contacts.clear();
+        pair.touched = false;
+      }
+    });
+  // Sleepers that are touched wake, and with them, in the next steps, all that they touch.
+  for (const RockPair& pair : pairs_)
+  {
+    if (pair.linked)
+    {
+      for (int i : { pair.first, pair.second })
+      {
+        if (members_[i]->asleep)
+        {
+          this->wake(*members_[i]);
+        }
+      }
+    }
+  }
+  std::vector<int> parent(members_.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int i)
+  {
+    while (parent[i] != i)
+    {
+      i = parent[i] = parent[parent[i]];
+    }
+    return i;
+  };
+  for (const RockPair& pair : pairs_)
+  {
+    if (pair.linked)
+    {
+      const int a = root(pair.first), b = root(pair.second);
+      parent[std::max(a, b)] = std::min(a, b);
+    }
+  }
+  std::vector<int> size(members_.size(), 0), place(members_.size(), -1);
+  for (std::size_t i = 0; i < members_.size(); ++i)
+  {
+    ++size[root(int(i))];
+  }
+  groups_.clear();
+  alone_.clear();
+  for (std::size_t i = 0; i < members_.size(); ++i)
+  {
+    const Member& m = *members_[i];
+    if (m.sim.done_)
+    {
+      continue;
+    }
+    const int r = root(int(i));
+    if (size[r] == 1)
+    {
+      alone_.push_back(int(i));
+      continue;
+    }
+    if (place[r] < 0)
+    {
+      place[r] = int(groups_.size());
+      groups_.emplace_back();
+    }
+    groups_[place[r]].members.push_back(int(i));
+  }
+  for (RockPair& pair : pairs_)
+  {
+    if (pair.linked)
+    {
+      groups_[place[root(pair.first)]].pairs.push_back(&pair);
+    }
+  }
+}
+
+bool MassFall::advance()
+{
+  const double until = std::min(time_ + parameters_.timeStep, parameters_.endTime);
+  this->findPairs(until - time_);
+  this->findGroups(until - time_);
+  tbb::parallel_for(std::size_t(0), alone_.size(),
+    [&](std::size_t k)
+    {
+      Member& m = *members_[alone_[k]];
+      m.touchesOthers = false;
+      m.sim.advance(until);
+      m.asleep = m.sim.done_ && m.sim.recorder_.trajectory().summary.fate == Fate::Rested;
+    });
+  tbb::parallel_for(
+    std::size_t(0), groups_.size(), [&](std::size_t k) { this->advanceGroup(groups_[k], until); });
+  time_ = until;
+  if (!awake)
+  {
+    for (const Group& group : groups_)
+    {
+      const bool still = std::all_of(group.members.begin(), group.members.end(),
+        [&](int i) { return members_[i]->sim.done_ || members_[i]->sim.quietTime_ >= kStillTime; });
+      for (int i : group.members)
+      {
+        if (still && !members_[i]->sim.done_)
+        {
+          this->putToSleep(*members_[i]);
+        }
+      }
+    }
+  }
+  const bool moving =
+    std::any_of(members_.begin(), members_.end(), [](const auto& m) { return !m->sim.done_; });
+  return moving && time_ < parameters_.endTime - 1e-9;
+}
+
+} // namespace rockfall

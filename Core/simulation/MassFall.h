@@ -1,0 +1,107 @@
+#pragma once
+
+/// @file
+/// Rocks of one iteration that fall together and hit each other [paper 3.4].
+///
+/// Time goes on in steps of Δt. In each, rocks that can touch within the step are groups; every
+/// group is a system of its own (system/GroupSolver.h), and whatever is alone goes on as if it were
+/// the only rock (RockSimulator): flight costs nothing, and without a meeting a rock's way is the
+/// one that it has without collisions.
+///
+/// Small groups resolve their impacts in time like single rocks. In large ones an impact is an
+/// event of one step: what closes leaves with e times its speed of approach (Newton's law of
+/// restitution). Groups that have come to rest sleep until something touches them.
+
+#include "contact/pairs.h"
+#include "simulation/RockSimulator.h"
+#include "system/GroupSolver.h"
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace rockfall
+{
+
+class MassFall
+{
+public:
+  MassFall(const Surface& surface, std::span<const Rock> rocks, std::span<const Block> blocks,
+    const SimulationParameters& parameters);
+
+  /// All rocks to rest, to the edge of the slope or to the end time: a trajectory for each, in
+  /// their order. `goOn` is asked after every step with the time reached (s); false stops, and the
+  /// trajectories are then a part.
+  std::vector<Trajectory> run(const std::function<bool(double)>& goOn = {});
+
+  // The same in parts.
+  void release();
+  bool advance(); ///< One step of Δt; false when nothing moves any more.
+  double time() const { return time_; }
+  int rocks() const { return int(members_.size()); }
+  const BlockState& state(int rock) const { return members_[rock]->sim.state(); }
+  /// Of a rock, so far.
+  const std::vector<ImpactEvent>& impacts(int rock) const
+  {
+    return members_[rock]->sim.recorder_.trajectory().impacts;
+  }
+  std::span<const RockPair> pairs() const { return pairs_; }
+  std::span<const Contact> slopeContacts(int rock) const { return members_[rock]->sim.contacts_; }
+
+  /// Rocks never sleep: for tests of how still a pile stands.
+  bool awake = false;
+  GroupMethod method = GroupMethod::Suited;
+  /// Largest group that resolves its impacts in time.
+  int resolved = 8;
+
+private:
+  struct Member
+  {
+    Member(const Surface& surface, const Rock& rock, const Block& block,
+      const SimulationParameters& parameters)
+      : sim(surface, rock, block, parameters)
+    {
+    }
+    RockSimulator sim;
+    PairBody body;
+    bool asleep = false;
+    bool touchesOthers = false;
+    std::uint64_t carriers = 0; ///< Which contacts with others carry.
+  };
+  struct Group
+  {
+    std::vector<int> members;
+    std::vector<RockPair*> pairs;
+  };
+  struct Workspace;
+
+  void findPairs(double duration);
+  void findGroups(double duration);
+  void wake(Member& member);
+  void putToSleep(Member& member);
+  void advanceGroup(const Group& group, double until) const;
+  double groupStep(const Group& group) const;
+  void gatherContacts(const Group& group, double h) const;
+  void armPair(RockPair& pair) const;
+  bool isCalm(const Group& group) const;
+  bool mayLast(const Group& group, double h) const;
+  double freeTime(const Group& group, double most) const;
+  void fly(const Group& group, double duration) const;
+  void solve(const Group& group, double h, StepKind kind, bool bounces, Workspace& work) const;
+  void absorb(const Group& group, double h, StepKind kind, Workspace& work) const;
+  void finishPairImpact(RockPair& pair) const;
+  Vec3 relativeVelocity(const RockPair& pair, const Vec3& point) const; ///< First less second, m/s.
+
+  const Surface& surface_;
+  const SimulationParameters& parameters_;
+  double time_ = 0.0;
+  double dampingRatio_ = 0.0; ///< ζ for the restitution between rocks.
+  std::vector<std::unique_ptr<Member>> members_;
+  std::vector<RockPair> pairs_; ///< Ordered by (first, second).
+  std::vector<RockPair> nextPairs_;
+  std::vector<Group> groups_;
+  std::vector<int> alone_;
+};
+
+} // namespace rockfall

@@ -1,0 +1,234 @@
+// Two rocks that meet: momentum, angular momentum, energy, restitution.
+
+#include "simulation/MassFall.h"
+#include "slopes.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <random>
+
+using namespace rockfall;
+using namespace rockfall::testing;
+
+namespace
+{
+
+/// Far below, so that nothing touches it.
+Terrain abyss()
+{
+  return makeSlope(
+    5, 100.0, [](double, double) { return -1000.0; }, material(1.0, 0.0));
+}
+
+Rock rockAt(Shape shape, const Vec3& place, const Vec3& velocity, std::int64_t id)
+{
+  Rock rock;
+  rock.blockId = id;
+  rock.shape = makeShape(shape, 1.0);
+  rock.position = place;
+  rock.velocity = velocity;
+  return rock;
+}
+
+std::vector<Block> blocksOf(const std::vector<Rock>& rocks)
+{
+  std::vector<Block> blocks;
+  for (const Rock& r : rocks)
+  {
+    blocks.emplace_back(r.shape, r.density, r.youngModulus, r.poissonRatio);
+  }
+  return blocks;
+}
+
+struct Totals
+{
+  Vec3 momentum = Vec3::Zero();
+  Vec3 angular = Vec3::Zero();
+  double energy = 0.0;
+};
+
+Totals totalsOf(const MassFall& fall, const std::vector<Block>& blocks)
+{
+  Totals t;
+  for (int i = 0; i < fall.rocks(); ++i)
+  {
+    const BlockState& s = fall.state(i);
+    t.momentum += blocks[i].mass() * s.velocity;
+    t.angular += blocks[i].mass() * (s.position - Vec3(200, 200, 0)).cross(s.velocity) +
+      angularMomentum(blocks[i], s);
+    t.energy += rigidKineticEnergy(blocks[i], s);
+  }
+  return t;
+}
+
+constexpr std::array<std::pair<Shape, Shape>, 6> kShapes = { {
+  { Shape::Cube, Shape::Cube },
+  { Shape::Cube, Shape::Icosahedron },
+  { Shape::Tetrahedron, Shape::Octahedron },
+  { Shape::Eota221, Shape::Eota221 },
+  { Shape::Dodecahedron, Shape::Tetrahedron },
+  { Shape::Icosahedron, Shape::Icosahedron },
+} };
+
+/// A rock whose vertex 0 (or face 0) looks along `direction`.
+Quat facing(const Vec3& own, const Vec3& direction)
+{
+  return Quat::FromTwoVectors(own, direction);
+}
+
+struct Meeting
+{
+  Totals before, after;
+  std::vector<ImpactEvent> events;
+};
+
+Meeting meet(const std::vector<Rock>& rocks, double e, double friction)
+{
+  const Terrain ground = abyss();
+  SimulationParameters p;
+  p.gravity = 0.0;
+  p.endTime = 1.0;
+  p.rockRockContact = true;
+  p.rockRestitution = e;
+  p.rockFrictionAngle = radians(friction);
+  const std::vector<Block> blocks = blocksOf(rocks);
+  const Surface surface(ground, p.seed, 0);
+  MassFall fall(surface, rocks, blocks, p);
+  fall.release();
+  Meeting m;
+  m.before = totalsOf(fall, blocks);
+  while (fall.advance())
+  {
+  }
+  m.after = totalsOf(fall, blocks);
+  m.events = fall.impacts(0);
+  return m;
+}
+
+} // namespace
+
+TEST(Pairs, AnyMeetingKeepsMomentaAndAnElasticOneEnergy)
+{
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  int met = 0;
+  for (const auto& shapes : kShapes)
+  {
+    for (int k = 0; k < 40; ++k)
+    {
+      std::vector<Rock> rocks = {
+        rockAt(shapes.first, Vec3(198.0, 200.0, 0.0), Vec3(5.0, 0.0, 0.0), 1),
+        rockAt(shapes.second, Vec3(202.0, 200.0, 0.0), Vec3(-3.0, 0.0, 0.0), 2),
+      };
+      for (Rock& rock : rocks)
+      {
+        rock.orientation = Quat(u(random), u(random), u(random), u(random)).normalized();
+        rock.position += 0.3 * Vec3(0.0, u(random), u(random));
+        rock.angularVelocity = Vec3(u(random), u(random), u(random));
+      }
+      // Every other one with friction and restitution: momenta are kept all the same.
+      const bool elastic = k % 2 == 0;
+      const Meeting m = elastic ? meet(rocks, 1.0, 0.0) : meet(rocks, 0.5, 30.0);
+      const double momentum = 2500.0 * 8.0;
+      EXPECT_LT((m.after.momentum - m.before.momentum).norm(), 1e-10 * momentum);
+      EXPECT_LT((m.after.angular - m.before.angular).norm(), 1e-10 * momentum * 2.0);
+      met += !m.events.empty();
+      if (elastic)
+      {
+        // Most are within 1e-6; what is left is the step that an impact is resolved in.
+        EXPECT_NEAR(m.after.energy, m.before.energy, 0.01 * m.before.energy);
+      }
+      else
+      {
+        EXPECT_LE(m.after.energy, m.before.energy * (1.0 + 1e-9));
+      }
+    }
+  }
+  EXPECT_EQ(met, 240);
+}
+
+TEST(Pairs, LossIsThatOfTheCoefficientOfRestitution)
+{
+  // A vertex on a face, head-on and oblique: one contact, so that ½ μ (1 − e²) v² is exact.
+  int measured = 0;
+  for (const auto& shapes : kShapes)
+  {
+    for (double e : { 0.2, 0.5, 0.8 })
+    {
+      for (int k = 0; k < 4; ++k)
+      {
+        std::vector<Rock> rocks = {
+          rockAt(shapes.first, Vec3(198.0, 200.0, 0.0), Vec3(5.0, 0.3 * k, 0.0), 1),
+          rockAt(shapes.second, Vec3(202.0, 200.0 + 0.04 * k, 0.05 * k), Vec3(-3.0, 0.0, 0.0), 2),
+        };
+        rocks[0].orientation =
+          facing(rocks[0].shape.vertices()[0], Vec3::UnitX() + 0.05 * k * Vec3::UnitZ());
+        rocks[1].orientation = facing(rocks[1].shape.normals()[0], -Vec3::UnitX());
+        const Meeting m = meet(rocks, e, 0.0);
+        ASSERT_GE(m.events.size(), 1u);
+        if (m.events.size() > 1)
+        {
+          continue;
+        }
+        ++measured;
+        // The loss ½ μ (1 − e²) v² with the impulse μ (1 + e) v.
+        const ImpactEvent& event = m.events.front();
+        const double expected = 0.5 * (1.0 - e) * event.impulse * event.approachSpeed;
+        const double loss = m.before.energy - m.after.energy;
+        EXPECT_NEAR(loss, expected, 0.01 * expected)
+          << shapeName(shapes.first) << " on " << shapeName(shapes.second) << ", e " << e;
+        EXPECT_NEAR(event.energyLoss, loss, 0.001 * loss);
+        EXPECT_EQ(event.otherRock, 1);
+        EXPECT_EQ(event.otherBlockId, 2);
+        // The impulse itself: 1/μ = Σ 1/m + (x × n)·I⁻¹(x × n).
+        double mobility = 0.0;
+        for (int i = 0; i < 2; ++i)
+        {
+          const Block block(rocks[i].shape, rocks[i].density, rocks[i].youngModulus, 0.1);
+          const Mat3 r = rocks[i].orientation.toRotationMatrix();
+          const Vec3 place = rocks[i].position + event.time * rocks[i].velocity;
+          mobility +=
+            block.mobility(r.transpose() * event.normal, r.transpose() * (event.position - place));
+        }
+        const double impulse = (1.0 + e) * event.approachSpeed / mobility;
+        EXPECT_NEAR(event.impulse, impulse, 0.01 * impulse);
+      }
+    }
+  }
+  EXPECT_GE(measured, 50);
+}
+
+TEST(Pairs, NewtonsCradle)
+{
+  // Five cubes in a row, the first comes: the last leaves, the others stay.
+  std::vector<Rock> rocks;
+  for (int i = 0; i < 5; ++i)
+  {
+    rocks.push_back(rockAt(Shape::Cube, Vec3(198.0 + (i > 0 ? 1.5 + 1.001 * i : 0.0), 200.0, 0.0),
+      Vec3(i == 0 ? 4.0 : 0.0, 0.0, 0.0), i));
+  }
+  const Terrain ground = abyss();
+  SimulationParameters p;
+  p.gravity = 0.0;
+  p.endTime = 1.0;
+  p.rockRockContact = true;
+  p.rockRestitution = 1.0;
+  const std::vector<Block> blocks = blocksOf(rocks);
+  const Surface surface(ground, p.seed, 0);
+  MassFall fall(surface, rocks, blocks, p);
+  fall.release();
+  const Totals before = totalsOf(fall, blocks);
+  while (fall.advance())
+  {
+  }
+  const Totals after = totalsOf(fall, blocks);
+  EXPECT_LT((after.momentum - before.momentum).norm(), 1e-10 * before.momentum.norm());
+  EXPECT_NEAR(after.energy, before.energy, 0.01 * before.energy);
+  for (int i = 0; i < 5; ++i)
+  {
+    std::printf("cradle %d: %.6f\n", i, fall.state(i).velocity.x());
+    // Gaps of 1 mm: every impact is over before the next begins, but for its last per cent.
+    EXPECT_NEAR(fall.state(i).velocity.x(), i == 4 ? 4.0 : 0.0, 0.04);
+  }
+}
