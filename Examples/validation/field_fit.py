@@ -1,8 +1,8 @@
 """Calibration: which ground does best, how surely, and how it does on runs that it has not seen.
 
-Candidates are spread over the parameters' ranges by a Halton sequence (Halton 1960). Each is simulated once, and
-its scores per run are kept; leaving runs out, and the bootstrap, then choose among the
-same candidates by other runs and cost no more simulations. The choice is by the energy score of the stopping points.
+Candidates are spread over the parameters' ranges by a Halton sequence. Each is simulated once, and its
+scores per run are kept; leaving runs out, and the bootstrap, then choose among the same candidates
+by other runs and cost no more simulations. The choice is by the energy score of the stopping points.
 """
 import csv
 import os
@@ -10,7 +10,7 @@ import os
 import numpy as np
 
 NAMES = ("RestitutionCoefficient", "TangentialRestitution", "FrictionAngle", "RoughnessDeviation")
-PRIMES = (2, 3, 5, 7)
+PRIMES = (7, 2, 3, 5)
 CRPS, ES, MEAN = range(3)  # columns of the scores
 
 
@@ -36,7 +36,7 @@ def best(scores, runs):
 
 
 def folds(observed, count):
-    """Folds with runs of every block in each, as far as they go. Runs that are the same stay together."""
+    """Folds with runs of every block, as far as they go. Runs that are the same stay together."""
     fold = np.zeros(len(observed.block), int)
     for block in sorted(set(observed.block)):
         distinct = {}
@@ -64,28 +64,33 @@ def report(scores, observed, parameters, reference, seed):
     chosen = best(scores, runs)
     spread = bootstrap(scores, observed, parameters, 1000, seed)
     lines = [f"Best of {len(parameters)} candidates by the energy score of the stopping points "
-             f"(mean {scores[chosen, :, ES].mean():.1f} m); 90 % of 1000 bootstrap samples of the runs:"]
+             f"(mean {scores[chosen, :, ES].mean():.1f} m); 90 % of 1000 bootstrap samples:"]
     for k, name in enumerate(NAMES):
         low, high = np.percentile(spread[:, k], (5, 95))
-        lines.append(f"  {name:24}{parameters[chosen, k]:9.4g}   {low:.4g} to {high:.4g}, "
-                     f"deviation {spread[:, k].std():.2g}")
+        searched = np.ptp(parameters[:, k]) > 0
+        lines.append(f"  {name:24}{parameters[chosen, k]:9.4g}   " + (
+            f"{low:.4g} to {high:.4g}, deviation {spread[:, k].std():.2g}" if searched
+            else "not searched"))
     lines.append(f"Run-out on all runs: {line(scores[chosen], observed, runs)}; CRPS "
                  f"{scores[chosen, :, CRPS].mean():.1f} m, without a model {reference:.1f} m")
     distinct = len(np.unique(observed.same))
-    count = min(6, min(len(np.unique(observed.same[observed.block == b])) for b in set(observed.block)))
+    blocks = sorted(set(observed.block))
+    count = min(6, *(len(np.unique(observed.same[observed.block == block])) for block in blocks))
     splits = []
     if distinct > 1 and count > 1:
         splits.append((f"{count} folds with runs of every block", folds(observed, count)))
-    if len(set(observed.block)) > 1:
-        splits.append(("one block left out at a time", np.unique(observed.block, return_inverse=True)[1]))
+    if len(blocks) > 1:
+        splits.append(("one block left out at a time", np.searchsorted(blocks, observed.block)))
     for name, fold in splits:
         predicted, by = held_out(scores, observed, fold)
         lines.append(f"Held out, {name}: {line(predicted, observed, runs)}; CRPS "
-                     f"{predicted[:, CRPS].mean():.1f} m, energy score {predicted[:, ES].mean():.1f} m")
+                     f"{predicted[:, CRPS].mean():.1f} m, energy score "
+                     f"{predicted[:, ES].mean():.1f} m")
         for f in sorted(set(fold)):
             own = np.nonzero(fold == f)[0]
             values = ", ".join(f"{v:g}" for v in parameters[by[own[0]]])
-            lines.append(f"  fold {f + 1} ({len(own)} runs, by {values}): {line(predicted, observed, own)}")
+            lines.append(f"  fold {f + 1} ({len(own)} runs, by {values}): "
+                         f"{line(predicted, observed, own)}")
     return lines, chosen
 
 

@@ -13,7 +13,8 @@ def draw(path, test, ground, observed, simulated, title):
     figure, (map_, curves) = plt.subplots(
         1, 2, figsize=(14, 8.2), gridspec_kw={"width_ratios": (1.55, 1)}, layout="constrained")
     figure.suptitle(title, fontsize=15, x=0.01, ha="left")
-    colour = {block: COLOURS[k % len(COLOURS)] for k, block in enumerate(sorted(set(observed.block)))}
+    blocks = sorted(set(observed.block))
+    colour = {block: COLOURS[k % len(COLOURS)] for k, block in enumerate(blocks)}
     draw_map(map_, test, ground, observed, simulated, colour)
     draw_curves(curves, test, observed, simulated, colour)
     figure.savefig(path, dpi=110)
@@ -40,7 +41,7 @@ def draw_map(axes, test, ground, observed, simulated, colour):
         runs = np.nonzero(observed.block == block)[0]
         own = np.isin(simulated.run, runs) & moved
         name = test.blocks[block].name
-        axes.plot(*simulated.stop[own].T, ".", color=tint, alpha=0.35, markersize=4,
+        axes.plot(*simulated.stop[own].T, ".", color=tint, alpha=0.45, markersize=5,
                   label=f"{name}: simulated stop")
         axes.plot(*observed.stop[runs].T, "o", color=tint, markersize=9, markeredgecolor="white",
                   markeredgewidth=1.4, label=f"{name}: observed stop", zorder=5)
@@ -50,14 +51,14 @@ def draw_map(axes, test, ground, observed, simulated, colour):
              ylim=(max(low[1], extent[2]), min(high[1], extent[3])),
              xlabel="x (m), local", ylabel="y (m), local", aspect="equal")
     axes.legend(loc="upper right", fontsize=9, framealpha=0.9)
-    axes.set_title("Stopping points; contours every 5 m", fontsize=11, loc="left")
+    axes.set_title("Stopping points; contours every 5 m", fontsize=10.5, loc="left")
 
 
 def draw_curves(axes, test, observed, simulated, colour):
     def curve(values, **style):
         values = np.sort(values)
-        axes.step(np.append(values, values[-1]), np.append(np.arange(len(values)), len(values)) /
-                  len(values) * 100, where="post", **style)
+        axes.step(np.append(values[0], values), np.arange(len(values) + 1) / len(values) * 100,
+                  where="post", **style)
 
     moved = simulated.started
     for block, tint in colour.items():
@@ -74,4 +75,5 @@ def draw_curves(axes, test, observed, simulated, colour):
     axes.set_xlim(left=0)
     axes.grid(color="#dddddd")
     axes.legend(loc="upper left", fontsize=9)
-    axes.set_title("Run-out; thin: by block, in the map's colours", fontsize=11, loc="left")
+    axes.set_title("Run-out. Dashed: observed. Thin: by block, in the map's colours", fontsize=10.5,
+                   loc="left")

@@ -1,8 +1,8 @@
 """Test rocks as polyhedra, and the sources that release them.
 
-Of the rocks, the mass and the size along three axes are known. Their form here is a box whose edges and
-corners are cut off (26 faces, the form of the test blocks of the European guideline on rockfall
-nets, stretched): by so much that the volume gives the mass at the density of the rock.
+Of the rocks, the mass and the size along three axes are known. Their form here is a box whose edges
+and corners are cut off (26 faces, like the EOTA blocks, stretched): by so much that the volume gives
+the mass at the density of the rock.
 """
 import math
 import os
@@ -17,7 +17,7 @@ GAP = 0.05  # m between the lowest vertex and the ground at release
 
 
 def filled_share(cut):
-    """Volume of the polyhedron over that of its box. Vertices: (1, c, c) and the like, with all signs."""
+    """Volume of the polyhedron over its box's. Vertices: (1, c, c) and the like, with all signs."""
     c = cut
     return c * c + c * (1 - c * c) + (1 - c)**2 * (1 + 2 * c) / 6
 
@@ -61,8 +61,8 @@ def orientation(rotation):
 class Sources:
     """The rocks of all runs, each run with a number of attitudes that are drawn at random.
 
-    `rocks` is the pipeline's object, `run` the number of the run of each of its rocks. A rock stands on
-    the ground of the terrain; heights and attitudes at release are not in the data."""
+    `rocks` is the pipeline's object, `run` the number of the run of each of its rocks. A rock stands
+    on the terrain; `raised` is how far that is above the release of the table, per run, in m."""
 
     def __init__(self, test, ground, attitudes, seed, folder):
         random = np.random.default_rng(seed)
@@ -79,8 +79,8 @@ class Sources:
                 file.write("x,y,z,shape,vx,vy,vz,rx,ry,rz\n")
                 for k in runs:
                     run = test.runs[k]
-                    self.raised.append(float(ground.height(*run.start[:2])) + 0.5 * np.mean(block.size)
-                                       - run.start[2])
+                    centre = float(ground.height(*run.start[:2])) + 0.5 * np.mean(block.size)
+                    self.raised.append(centre - run.start[2])
                     for _ in range(attitudes):
                         rotation = random_rotation(random)
                         z = self.standing(run, corners @ rotation.T, ground)
@@ -103,6 +103,6 @@ class Sources:
             ground.south < y.min() and y.max() < ground.north
         heights = ground.height(x, y) if inside else np.array([np.nan])
         if not np.isfinite(heights).all():
-            raise FolderError(f'run "{run.id}": its release at x {run.start[0]:g}, y {run.start[1]:g} m '
-                              "is outside the terrain or where it has no data")
+            raise FolderError(f'run "{run.id}": its release at x {run.start[0]:g}, y {run.start[1]:g} '
+                              "m is outside the terrain or where it has no data")
         return float((heights - corners[:, 2]).max()) + GAP

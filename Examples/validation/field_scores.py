@@ -4,10 +4,10 @@ Per run there is one observed stopping point y and a sample of n simulated ones,
 
     ES = mean |x - y| - 1/2 mean |x - x'|    over all x, and over all pairs of different x
 
-is in metres, zero for a forecast that is sharp and right, and proper: no other forecast is expected to
-score better than the distribution that y comes from. In one dimension, for the run-out, it is the continuous ranked
-probability score (CRPS). Gneiting T., Raftery A.E. (2007), Strictly proper scoring rules, prediction,
-and estimation, Journal of the American Statistical Association 102, 359-378.
+is in metres, zero for a forecast that is sharp and right, and proper: no other forecast is expected
+to score better than the distribution that y comes from. In one dimension, for the run-out, it is the
+continuous ranked probability score (CRPS). Gneiting T., Raftery A.E. (2007), Strictly proper scoring
+rules, prediction, and estimation, Journal of the American Statistical Association 102, 359-378.
 """
 import numpy as np
 
@@ -32,9 +32,10 @@ class Observed:
         self.block = np.array([run.block for run in test.runs])
         way = self.stop - self.start
         self.run_out = np.hypot(*way.T)
-        # Runs are told apart by where they began and ended: one that is there twice counts as one where
-        # runs are held out, or its copy would be no secret.
-        _, self.same = np.unique(np.column_stack([self.start, self.stop]), axis=0, return_inverse=True)
+        # Runs are told apart by where they began and ended: one that is there twice counts as one
+        # where runs are held out, or its copy would be no secret.
+        ends = np.column_stack([self.start, self.stop])
+        _, self.same = np.unique(ends, axis=0, return_inverse=True)
         down = way.sum(axis=0)
         length = np.linalg.norm(down)
         self.down = down / length if length else np.array([1.0, 0.0])
@@ -57,9 +58,11 @@ class Simulated:
         self.started = self.run_out >= STARTED
 
     def of(self, k):
-        """Which rocks belong to run k and started; all of them if fewer than two did."""
+        """Which rocks belong to run k and started; all of them if less than half did: then it is not
+        the chance of an attitude but the ground that holds them."""
         own = self.run == k
-        return own & self.started if (own & self.started).sum() >= 2 else own
+        count = (own & self.started).sum()
+        return own & self.started if count >= max(2, 0.5 * own.sum()) else own
 
     def scores(self, observed):
         """(CRPS of the run-out, ES of the stopping point, mean run-out) per run, (runs, 3), m."""
@@ -69,7 +72,7 @@ class Simulated:
 
 
 def climatology(observed):
-    """Mean CRPS if every run is forecast by the run-outs of the other ones: what a model has to beat."""
+    """Mean CRPS of every run forecast by the run-outs of the others: what a model has to beat."""
     scores = []
     for k, same in enumerate(observed.same):
         others = observed.run_out[observed.same != same]
@@ -79,14 +82,15 @@ def climatology(observed):
 
 
 def comparison(observed, simulated, drop):
-    """Rows (what, unit, observed, simulated) of the table; `drop` is the observed fall height per run."""
+    """Rows (what, unit, observed, simulated) of the table; `drop` is the observed fall per run, m."""
     rows = []
 
     def add(what, unit, seen, made):
         rows.append((what, unit, None if seen is None else float(seen), float(made)))
 
     moved = simulated.started
-    weight = np.array([1.0 / max(1, ((simulated.run == k) & moved).sum()) for k in simulated.run])[moved]
+    # Every run has the same weight, however many of its rocks started.
+    weight = 1.0 / np.bincount(simulated.run[moved])[simulated.run[moved]]
     mean = lambda values: np.average(values[moved], weights=weight)
     deviation = lambda values: np.sqrt(mean((values - mean(values))**2))
     own = lambda values: np.std(values, ddof=1) if len(values) > 1 else 0.0

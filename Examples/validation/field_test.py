@@ -88,8 +88,8 @@ def read_table(folder, file, columns):
                 if None in values or None in values.values():
                     have = sum(v is not None for k, v in values.items() if k is not None)
                     have += len(values.get(None, []))
-                    raise FolderError(f"{rows[-1].place}: has {have} fields, the header {len(names)}; "
-                                      "a comma as decimal mark?")
+                    raise FolderError(f"{rows[-1].place}: has {have} fields, the header {len(names)}"
+                                      "; a comma as decimal mark?")
     except (UnicodeDecodeError, csv.Error) as error:
         raise FolderError(f"{path}: is not a CSV table in UTF-8: {error}")
     if not rows:

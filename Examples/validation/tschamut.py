@@ -1,14 +1,15 @@
 """Real rocks on real ground: simulated run-outs beside those of a field experiment.
 
-Given a folder of a field test with single rocks (see field_test.py for its four files), every run is simulated
-with many attitudes and many realisations of the ground; the run-outs and stopping points are
-compared with the observed ones, as a table and as a map.
+Given a folder of a field test with single rocks (see field_test.py for its four files), every run is
+simulated with many attitudes and many realisations of the ground; the run-outs and stopping points
+are compared with the observed ones, as a table and as a map.
 
     bash Examples/run.sh validation/tschamut.py FOLDER [--output FOLDER] [--calibrate N] ...
 
-The ground parameters that are the defaults were found with --calibrate on 18 of the 80 runs of the experiment
-in Tschamut 2014 (doi:10.16904/envidat.34); docs/validation.md has how and how well. The
-results are in output/tschamut: map.png, comparison.csv, runs.csv, stops.csv, after a calibration candidates.csv.
+The ground parameters that are the defaults were found with --calibrate on 18 of the 80 runs of the
+experiment in Tschamut 2014 (doi:10.16904/envidat.34); docs/validation.md has how, and how well. The
+results are in output/tschamut: map.png, comparison.csv, runs.csv, stops.csv, and after a calibration
+candidates.csv and calibration.txt.
 """
 import argparse
 import csv
@@ -30,13 +31,13 @@ from field_test import FieldTest
 from rockfall_ground import Ground
 from rockfall_tables import columns_of
 
-# The ground: name, option, default, and the range that a calibration searches. The restitution is normal and
-# tangential (RestitutionModel 1).
+# The ground: name, option, default, and the range that a calibration searches; one without a range
+# keeps its value. The restitution is normal and tangential (RestitutionModel 1).
 PARAMETERS = (
-    ("RestitutionCoefficient", "--restitution", 0.3, (0.1, 0.6), "Rn, 0 to 1"),
-    ("TangentialRestitution", "--tangential", 0.9, (0.82, 0.93), "Rt, 0 to 1"),
-    ("FrictionAngle", "--friction", 38.0, (28.0, 52.0), "friction angle in degrees"),
-    ("RoughnessDeviation", "--roughness", 0.04, (0.0, 0.07), "deviation of the nodes' heights in m"),
+    ("RestitutionCoefficient", "--restitution", 0.3, None, "Rn, 0 to 1"),
+    ("TangentialRestitution", "--tangential", 0.886, (0.84, 0.93), "Rt, 0 to 1"),
+    ("FrictionAngle", "--friction", 37.0, (32.0, 52.0), "friction angle in degrees"),
+    ("RoughnessDeviation", "--roughness", 0.039, (0.0, 0.06), "deviation of the nodes' heights in m"),
 )
 CELL = 0.5  # m: about the size of the rocks, for which the ground is rough
 END = 60.0  # s
@@ -61,8 +62,8 @@ def arguments():
     parser.add_argument("--calibrate", type=int, default=0, metavar="N",
                         help="search N candidates for the best ground parameters, then use those")
     parser.add_argument("--pixels", action="store_true",
-                        help="xllcorner of terrain.asc is the corner of a pixel, as GDAL has it, not the "
-                             "place of a node")
+                        help="xllcorner of terrain.asc is the corner of a pixel, as GDAL has it, not "
+                             "the place of a node")
     for name, option, default, _, what in PARAMETERS:
         parser.add_argument(option, type=float, default=default, dest=name, metavar="VALUE",
                             help=f"{what} ({default:g})")
@@ -96,7 +97,8 @@ class Experiment:
         self.chosen = chosen
         grid = os.path.join(chosen.output, "terrain.asc")
         test.write_terrain(grid, chosen.pixels)
-        self.slope = DEMtoCFEMesh(FileName=grid, CellSize=CELL, RestitutionModel="Normal and tangential")
+        self.slope = DEMtoCFEMesh(FileName=grid, CellSize=CELL,
+                                  RestitutionModel="Normal and tangential")
         self.slope.UpdatePipeline()
         self.ground = Ground(made_by(self.slope))
         self.observed = scores.Observed(test)
@@ -118,7 +120,8 @@ class Experiment:
 
 
 def calibrate(experiment, count, output, seed):
-    parameters = fit.candidates(count, {name: span for name, _, _, span, _ in PARAMETERS})
+    parameters = fit.candidates(count, {name: span or 2 * (getattr(experiment.chosen, name),)
+                                        for name, _, _, span, _ in PARAMETERS})
     every = []
     for k, values in enumerate(parameters):
         every.append(experiment.run(values).scores(experiment.observed))
@@ -159,8 +162,8 @@ def write_results(test, experiment, simulated, table, output):
                 [f"RunOut{q}_m" for q in scores.QUANTILES] + ["CRPS_m", "EnergyScore_m"], rows)
     write_table(path("stops.csv"), ["Run", "X", "Y", "RunOut_m", "Started", "FateCode"],
                 [[test.runs[k].id, f"{x:.3f}", f"{y:.3f}", f"{run:.3f}", int(moved), fate]
-                 for k, (x, y), run, moved, fate in zip(
-                     simulated.run, simulated.stop, simulated.run_out, simulated.started, simulated.fate)])
+                 for k, (x, y), run, moved, fate in zip(simulated.run, simulated.stop, simulated.run_out,
+                                                        simulated.started, simulated.fate)])
 
 
 def print_table(table):
@@ -176,8 +179,8 @@ def main():
     test = FieldTest(chosen.folder)
     experiment = Experiment(test, chosen)
     observed, raised = experiment.observed, np.array(experiment.sources.raised)
-    say(f"{len(test.runs)} runs of {len(set(observed.block))} blocks, {len(experiment.sources.run)} rocks, "
-        f"{chosen.iterations} iterations; release heights are taken from the terrain, "
+    say(f"{len(test.runs)} runs of {len(set(observed.block))} blocks, "
+        f"{len(experiment.sources.run)} rocks, {chosen.iterations} iterations; release heights are taken from the terrain, "
         f"{raised.min():+.1f} to {raised.max():+.1f} m beside those of the table")
     values = [getattr(chosen, name) for name, *_ in PARAMETERS]
     if chosen.calibrate:
@@ -185,6 +188,8 @@ def main():
     simulated = experiment.run(values)
     say("Ground: " + ", ".join(f"{name} {value:g}" for (name, *_), value in zip(PARAMETERS, values)))
 
+    if not simulated.started.any():
+        raise SystemExit(f"No rock ran farther than {scores.STARTED:g} m: nothing to compare.")
     drop = np.array([experiment.ground.height(*run.start[:2]) - experiment.ground.height(*run.stop)
                      for run in test.runs])
     table = scores.comparison(observed, simulated, drop)
@@ -192,12 +197,13 @@ def main():
     own = simulated.scores(observed)
     error = 100 * (table[0][3] / table[0][2] - 1)
     print(f"\nMean run-out: {error:+.1f} % of the observed one. CRPS of the run-out "
-          f"{own[:, fit.CRPS].mean():.1f} m (without a model {scores.climatology(observed):.1f} m), energy "
-          f"score of the stopping points {own[:, fit.ES].mean():.1f} m")
+          f"{own[:, fit.CRPS].mean():.1f} m (without a model {scores.climatology(observed):.1f} m), "
+          f"energy score of the stopping points {own[:, fit.ES].mean():.1f} m")
     write_results(test, experiment, simulated, table, chosen.output)
-    field_map.draw(os.path.join(chosen.output, "map.png"), test, experiment.ground, observed, simulated,
-                   f"{os.path.basename(os.path.normpath(chosen.folder))}: {len(test.runs)} runs observed, "
-                   f"{len(simulated.run)} rocks simulated")
+    name = os.path.basename(os.path.normpath(chosen.folder))
+    field_map.draw(os.path.join(chosen.output, "map.png"), test, experiment.ground, observed,
+                   simulated, f"{name}: {len(test.runs)} runs observed, "
+                              f"{simulated.started.sum()} simulated")
     say(f"Written to {chosen.output}: map.png, comparison.csv, runs.csv, stops.csv")
 
 

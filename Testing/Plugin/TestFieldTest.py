@@ -1,5 +1,5 @@
-"""Examples/validation/tschamut.py on a folder that is made here: what it computes and writes, and what it says of
-folders that cannot be used."""
+"""Examples/validation/tschamut.py on a folder that is made here: what it computes and writes, and
+what it says of folders that cannot be used."""
 
 import contextlib
 import csv
@@ -88,7 +88,8 @@ for name in ("map.png", "comparison.csv", "runs.csv", "stops.csv"):
     expect(os.path.isfile(os.path.join("out", name)), f"no {name}")
 compared = {row["What"]: row for row in table("out/comparison.csv")}
 seen = [np.hypot(30, 1), np.hypot(34, 2), 24.0, 30.0]
-expect(abs(float(compared["run-out, mean"]["Observed"]) - np.mean(seen)) < 1e-3,  # 3 decimals are written
+# Three decimals are written.
+expect(abs(float(compared["run-out, mean"]["Observed"]) - np.mean(seen)) < 1e-3,
        f"observed mean {compared['run-out, mean']}")
 expect("Mean run-out:" in said and "CRPS" in said, f"the table was not printed: {said}")
 stops = table("out/stops.csv")
@@ -129,7 +130,8 @@ observed = field_scores.Observed(field_test.FieldTest(copied))
 fold = field_fit.folds(observed, 2)
 expect(fold[2] == fold[3] and fold[0] != fold[1], f"folds {fold}")
 
-# Held out means held out: candidate 0 suits all runs but the last, which is predicted by what suits the others.
+# Held out means held out: candidate 0 suits all runs but the last, which is predicted by what suits
+# the others.
 scores = np.zeros((2, 4, 3))
 scores[0, 3, field_fit.ES], scores[1, :3, field_fit.ES], scores[1, :, field_fit.MEAN] = 100.0, 1.0, 9.0
 predicted, chosen = field_fit.held_out(scores, observed, np.arange(4))
@@ -167,9 +169,11 @@ BAD = [
     (dict(release_points=("a,6,15", "a,600,15")), ['run "a"', "x 600", "outside the terrain"]),
     (dict(block_metadata=("1,Round,69", "1,Round,-69")), ['"mass_kg"', "-69 must be positive"]),
     (dict(block_metadata=("1,Round,69", "1,Round,690")), ['block "1"', "690 kg", "% of that box"]),
-    (dict(block_metadata=(FILES["block_metadata.csv"], "")), ["block_metadata.csv", "the header has nothing"]),
+    (dict(block_metadata=(FILES["block_metadata.csv"], "")),
+     ["block_metadata.csv", "the header has nothing"]),
     (dict(observed_deposition=("d,37,20\n", "")), ['run "d" has no row in observed_deposition.csv']),
-    (dict(observed_deposition=("d,37,20\n", "d,37,20\ne,1,1\n")), ['run "e" has no row in release_points.csv']),
+    (dict(observed_deposition=("d,37,20\n", "d,37,20\ne,1,1\n")),
+     ['run "e" has no row in release_points.csv']),
     (dict(observed_deposition=("a,36,14\nb,40,22\nc,30,25\nd,37,20\n", "")), ["has no rows"]),
     (dict(terrain=("cellsize 5\n", "")), ["terrain.asc", 'the header has no "cellsize"']),
     (dict(terrain=("cellsize 5", "cellsize five")), ['"cellsize"', '"five" is not a number']),
@@ -181,6 +185,11 @@ for changes, parts in BAD:
     for part in parts:
         expect(message is not None and part in message, f"{changes}: {part} is not in {message}")
     expect("Written to" not in said, f"{changes}: results were written")
+flat = make_folder("flat")
+write_text("flat/terrain.asc", FILES["terrain.asc"][:FILES["terrain.asc"].index(str(HEIGHTS[0][0]))] +
+           (" ".join("0" * 17) + "\n") * 9)
+said, message = run(flat, "--output", "none", *FEW, "--tangential", "0")
+expect(message and "No rock ran farther than 1 m" in message, f"on flat ground: {message}")
 said, message = run("nowhere", "--output", "none")
 expect(message == "nowhere: there is no such folder", f"nowhere: {message}")
 said, message = run(folder, "--attitudes", "0", "--output", "none")
