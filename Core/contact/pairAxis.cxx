@@ -47,6 +47,23 @@ bool arcsCross(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
   return cba * dba < 0.0 && adc * bdc < 0.0 && cba * bdc > 0.0;
 }
 
+/// For every edge of a body and every face of the other: on which side of the plane of the edge's
+/// arc the other's reversed normal lies.
+void sidesOfArcs(const PairBody& body, const PairBody& other, std::vector<char>& sides)
+{
+  const std::vector<Polyhedron::Edge>& edges = body.placed->block().shape().edges();
+  sides.resize(edges.size() * other.normals.size());
+  std::size_t k = 0;
+  for (const Polyhedron::Edge& edge : edges)
+  {
+    const Vec3 plane = body.normals[edge.faces[1]].cross(body.normals[edge.faces[0]]);
+    for (const Vec3& n : other.normals)
+    {
+      sides[k++] = n.dot(plane) < 0.0;
+    }
+  }
+}
+
 /// No axis if the edges are nearly parallel or do not face each other.
 PairAxis edgeAxis(const PairBody& first, const PairBody& second, int e, int f)
 {
@@ -143,10 +160,26 @@ PairAxis findAxis(const PairBody& first, const PairBody& second, const PairAxis&
       best.distance + kHysteresis * smaller; // faces before edges that are as good
     PairAxis crossing;
     crossing.distance = faces;
+    // On which side of each other's arcs the normals lie: looked up for every pair of edges.
+    thread_local std::vector<char> overArcs, overOthers;
+    sidesOfArcs(first, second, overArcs);
+    sidesOfArcs(second, first, overOthers);
+    const std::vector<Polyhedron::Edge>& ours = first.placed->block().shape().edges();
+    const std::vector<Polyhedron::Edge>& theirs = second.placed->block().shape().edges();
+    const std::size_t ownFaces = first.normals.size(), otherFaces = second.normals.size();
     for (int e = 0; e < edges; ++e)
     {
+      const char* side = &overArcs[e * otherFaces];
       for (int f = 0; f < others; ++f)
       {
+        const char c = side[theirs[f].faces[0]], d = side[theirs[f].faces[1]];
+        const char* back = &overOthers[f * ownFaces];
+        const char ga = back[ours[e].faces[0]], gb = back[ours[e].faces[1]];
+        // The arcs' ends lie on both sides of each other, and on the same half of the sphere.
+        if (c == d || ga == gb || c == gb)
+        {
+          continue;
+        }
         const PairAxis axis = edgeAxis(first, second, e, f);
         if (axis.kind != PairAxis::Kind::None && axis.distance > crossing.distance)
         {

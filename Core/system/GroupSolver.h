@@ -72,8 +72,8 @@ public:
 
   GroupMethod method = GroupMethod::Suited;
   /// Share of the largest displacement to which Gauss–Seidel goes.
-  double tolerance = 1e-6;
-  int maxSweeps = 400;
+  double tolerance = 1e-4;
+  int maxSweeps = 100;
 
 private:
   struct Side

@@ -20,7 +20,7 @@ constexpr double kGapTolerance = 1e-7;
 /// 1e-12.
 constexpr double kTurnTolerance = 1e-9;
 /// Gauss–Seidel: how often levers and gyroscopic moments are brought up to date in a step.
-constexpr int kLeverUpdates = 3;
+constexpr int kLeverUpdates = 2;
 
 } // namespace
 

@@ -7,6 +7,7 @@
 //
 // Run: BenchmarkRockfall [--benchmark_repetitions=5 --benchmark_report_aggregates_only=true]
 
+#include "benchSlope.h"
 #include "geometry/shapes.h"
 #include "simulation/ensemble.h"
 
@@ -20,33 +21,8 @@ using namespace rockfall;
 namespace
 {
 
-constexpr int kNodes = 201;
 constexpr int kRocks = 256;
 constexpr double kDuration = 10.0; // s
-
-Terrain benchSlope(double restitution, RestitutionModel model)
-{
-  GridGeometry g;
-  g.columns = g.rows = kNodes;
-  g.cellSize = 1.0;
-  std::mt19937_64 random(20240101);
-  std::normal_distribution<double> normal(0.0, 1.0);
-  std::vector<double> heights(std::size_t(g.nodeCount()));
-  for (int row = 0; row < kNodes; ++row)
-  {
-    for (int column = 0; column < kNodes; ++column)
-    {
-      const double x = column;
-      const double z = x < 100.0 ? (100.0 - x) * std::tan(radians(30.0)) : 0.0;
-      heights[std::size_t(row) * kNodes + column] = z + 0.1 * normal(random);
-    }
-  }
-  SurfaceMaterial m;
-  m.restitution = restitution;
-  m.restitutionModel = model;
-  m.frictionAngle = radians(15.0);
-  return Terrain(g, std::move(heights), m);
-}
 
 std::vector<Rock> benchRocks(Shape shape, const Terrain& slope)
 {
