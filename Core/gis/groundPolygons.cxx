@@ -151,6 +151,10 @@ std::vector<std::uint8_t> fromPolygons(const GroundFiles& files, const GroundTab
   }
   refuseSurplusCells(*dataset, files.layer);
   OGRLayer& layer = *dataset->GetLayer(0);
+  if (layer.GetFeatureCount() == 0)
+  {
+    throw DataError(files.layer + ": layer \"" + layer.GetName() + "\" has no polygon");
+  }
   const int column = classField(layer, files);
   const std::string fieldName = layer.GetLayerDefn()->GetFieldDefn(column)->GetNameRef();
   const Columns columns = columnsOf(*layer.GetLayerDefn());

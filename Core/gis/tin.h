@@ -21,14 +21,16 @@ struct TinPoints
 /// What a TIN makes of the nodes of a raster, in the order of Terrain.
 struct TinNodes
 {
-  std::vector<double> heights;    ///< m; NaN outside the points' convex hull.
-  std::vector<std::uint8_t> flat; ///< 1: only triangles whose three vertices are of one height.
+  std::vector<double> heights; ///< m; NaN outside the points' convex hull.
+  /// 1: only triangles with a chord, an edge of one height across a valley or a ridge; most have
+  /// all three vertices at that height and are flat.
+  std::vector<std::uint8_t> flat;
 };
 
 /// The Delaunay triangulation of the points (GDAL's, by Qhull), linear within each triangle. Of the
 /// target `cellSize`, `columns` and `rows` are used; its lower left node stands at (west, south).
-/// No two points may stand at the same place. Throws DataError, beginning with `fileName`, if they
-/// have no triangulation.
+/// Neighbours on a contour are taken to be a cell apart at most. No two points may stand at the
+/// same place. Throws DataError, beginning with `fileName`, if they have no triangulation.
 TinNodes interpolateTin(const TinPoints& points, const GridGeometry& target, double west,
   double south, const std::string& fileName);
 

@@ -41,6 +41,7 @@ struct Plate
   std::vector<double> heights;
   std::vector<std::uint8_t> free;
   std::vector<double> low, high; ///< Bounds of the free nodes, m.
+  std::vector<int> number;       ///< Of an unknown while an area is solved; else −1.
 
   bool known(int row, int column) const
   {
@@ -124,20 +125,13 @@ struct Plate
 void solve(Plate& plate, const std::vector<std::int64_t>& area)
 {
   std::vector<std::uint8_t> held(area.size(), 0);
-  const auto place = [&](std::int64_t node)
-  {
-    const auto found = std::lower_bound(area.begin(), area.end(), node);
-    return found != area.end() && *found == node && !held[std::size_t(found - area.begin())]
-      ? int(found - area.begin())
-      : -1;
-  };
+  const auto numberOf = [&](std::int64_t node) -> int& { return plate.number[std::size_t(node)]; };
   for (int round = 0; round <= mostBounds; ++round)
   {
-    std::vector<int> number(area.size(), -1);
     int unknowns = 0;
     for (std::size_t i = 0; i < area.size(); ++i)
     {
-      number[i] = held[i] ? -1 : unknowns++;
+      numberOf(area[i]) = held[i] ? -1 : unknowns++;
     }
     if (unknowns == 0)
     {
@@ -151,28 +145,29 @@ void solve(Plate& plate, const std::vector<std::int64_t>& area)
       {
         continue;
       }
-      entries.emplace_back(number[i], number[i], hold);
-      load[number[i]] += hold * plate.heights[std::size_t(area[i])];
+      const int own = numberOf(area[i]);
+      entries.emplace_back(own, own, hold);
+      load[own] += hold * plate.heights[std::size_t(area[i])];
       // The row of this node: ½ ∂E/∂z.
       plate.forEachBend(area[i],
         [&](const Bend& bend)
         {
-          double own = 0.0;
+          double share = 0.0;
           for (int k = 0; k < bend.count; ++k)
           {
-            own = bend.nodes[k] == area[i] ? bend.factors[k] : own;
+            share = bend.nodes[k] == area[i] ? bend.factors[k] : share;
           }
           for (int k = 0; k < bend.count; ++k)
           {
-            const double factor = bend.weight * own * bend.factors[k];
-            const int other = place(bend.nodes[k]);
+            const double factor = bend.weight * share * bend.factors[k];
+            const int other = numberOf(bend.nodes[k]);
             if (other < 0)
             {
-              load[number[i]] -= factor * plate.heights[std::size_t(bend.nodes[k])];
+              load[own] -= factor * plate.heights[std::size_t(bend.nodes[k])];
             }
-            else if (number[std::size_t(other)] <= number[i])
+            else if (other <= own)
             {
-              entries.emplace_back(number[i], number[std::size_t(other)], factor);
+              entries.emplace_back(own, other, factor);
             }
           }
         });
@@ -189,7 +184,7 @@ void solve(Plate& plate, const std::vector<std::int64_t>& area)
       {
         continue;
       }
-      const double height = z[number[i]];
+      const double height = z[numberOf(area[i])];
       plate.heights[node] = std::clamp(height, plate.low[node], plate.high[node]);
       if (plate.heights[node] != height)
       {
@@ -218,6 +213,7 @@ void refine(Plate& plate, const std::vector<std::int64_t>& area)
   coarse.free.assign(size, 0);
   coarse.low.resize(size);
   coarse.high.resize(size);
+  coarse.number.assign(size, -1);
   for (int row = 0; row < coarse.rows; ++row)
   {
     for (int column = 0; column < coarse.columns; ++column)
@@ -285,6 +281,7 @@ void refine(Plate& plate, const std::vector<std::int64_t>& area)
 
 void relax(Plate& plate)
 {
+  // Areas have no bend in common, so the numbers of one are never met in another.
   for (const std::vector<std::int64_t>& area : plate.areas())
   {
     area.size() <= mostUnknowns ? solve(plate, area) : refine(plate, area);
@@ -307,6 +304,7 @@ std::int64_t relaxFlats(int columns, int rows, std::span<double> heights,
   plate.free.assign(flat.begin(), flat.end());
   plate.low.assign(heights.size(), 0.0);
   plate.high.assign(heights.size(), 0.0);
+  plate.number.assign(heights.size(), -1);
   for (std::size_t node = 0; node < heights.size(); ++node)
   {
     if (!flat[node])
