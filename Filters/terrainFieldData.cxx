@@ -12,6 +12,7 @@
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 #include "vtkStringArray.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,27 +30,41 @@ constexpr char crsName[] = "TerrainCRS";
 constexpr char materialName[] = "TerrainMaterial";
 constexpr char originName[] = "LocalOrigin";
 
-/// A double array over memory that somebody else owns and that it keeps alive. Deep copies and
-/// NewInstance give a plain vtkDoubleArray.
-class SharedHeights : public vtkDoubleArray
+/// Names of the arrays of the two kinds of classes.
+struct ClassNames
+{
+  const char* cells;
+  const char* numbers;
+  const char* names;
+};
+constexpr ClassNames restitutionNames = { "TerrainRestitutionClass", "TerrainRestitutionClasses",
+  "TerrainRestitutionNames" };
+constexpr ClassNames jointNames = { "TerrainJointClass", "TerrainJointClasses",
+  "TerrainJointNames" };
+
+/// An array over memory that somebody else owns and that it keeps alive. Deep copies and
+/// NewInstance give a plain array.
+template <class Base, typename Value>
+class Shared : public Base
 {
 public:
-  static SharedHeights* New() { VTK_STANDARD_NEW_BODY(SharedHeights); }
-  void Share(std::shared_ptr<const Terrain> terrain)
+  static Shared* New() { VTK_STANDARD_NEW_BODY(Shared); }
+  void Share(std::shared_ptr<const Terrain> terrain, std::span<const Value> values)
   {
-    const std::span<const double> heights = terrain->heights();
     // VTK knows no array over constant memory; nothing in a pipeline writes into its input.
-    this->SetArray(const_cast<double*>(heights.data()), vtkIdType(heights.size()), 1);
+    this->SetArray(const_cast<Value*>(values.data()), vtkIdType(values.size()), 1);
     this->Owner = std::move(terrain);
   }
 
 protected:
-  SharedHeights() = default;
-  ~SharedHeights() override = default;
+  Shared() = default;
+  ~Shared() override = default;
 
 private:
   std::shared_ptr<const Terrain> Owner;
 };
+using SharedHeights = Shared<vtkDoubleArray, double>;
+using SharedClasses = Shared<vtkUnsignedCharArray, std::uint8_t>;
 
 void addNumbers(vtkFieldData* fieldData, const char* name, std::initializer_list<double> values)
 {
@@ -96,6 +111,17 @@ int gridCount(double value, const char* what)
   return int(std::lround(value));
 }
 
+RestitutionModel modelOf(double number, const char* array)
+{
+  if (!(number >= double(RestitutionModel::Velocity) &&
+        number <= double(RestitutionModel::SpeedDependent) && number == std::floor(number)))
+  {
+    throw DataError("The Terrain input's field array " + std::string(array) +
+      " says RestitutionModel " + numberText(number) + ", this version knows 0, 1 and 2");
+  }
+  return RestitutionModel(int(number));
+}
+
 SurfaceMaterial materialOf(const std::vector<double>& numbers)
 {
   SurfaceMaterial material;
@@ -106,18 +132,105 @@ SurfaceMaterial materialOf(const std::vector<double>& numbers)
   material.cohesion = numbers[4];
   if (numbers.size() == materialNumbers)
   {
-    const double model = numbers[7];
-    if (!(model >= double(RestitutionModel::Velocity) &&
-          model <= double(RestitutionModel::SpeedDependent) && model == std::floor(model)))
-    {
-      throw DataError("The Terrain input's field array " + std::string(materialName) +
-        " says RestitutionModel " + numberText(model) + ", this version knows 0, 1 and 2");
-    }
-    material.restitutionModel = RestitutionModel(int(model));
+    material.restitutionModel = modelOf(numbers[7], materialName);
     material.tangentialRestitution = numbers[8];
     material.restitutionSpeed = numbers[9];
   }
   return material;
+}
+
+/// The numbers of one kind of a material, in the order in which its array has them.
+constexpr int restitutionNumbers = 5;
+constexpr int jointNumbers = 3;
+
+std::vector<double> restitutionOf(const SurfaceMaterial& m)
+{
+  return { m.restitution, m.restitutionDeviation, double(m.restitutionModel),
+    m.tangentialRestitution, m.restitutionSpeed };
+}
+
+std::vector<double> jointOf(const SurfaceMaterial& m)
+{
+  return { m.frictionAngle, m.frictionAngleDeviation, m.cohesion };
+}
+
+void takeRestitution(const double* numbers, SurfaceMaterial& m)
+{
+  m.restitution = numbers[0];
+  m.restitutionDeviation = numbers[1];
+  m.restitutionModel = modelOf(numbers[2], restitutionNames.numbers);
+  m.tangentialRestitution = numbers[3];
+  m.restitutionSpeed = numbers[4];
+}
+
+void takeJoint(const double* numbers, SurfaceMaterial& m)
+{
+  m.frictionAngle = numbers[0];
+  m.frictionAngleDeviation = numbers[1];
+  m.cohesion = numbers[2];
+}
+
+template <typename Numbers>
+void writeClasses(const MaterialClasses& classes, const ClassNames& arrays, int count,
+  Numbers&& numbersOf, const std::shared_ptr<const Terrain>& terrain, vtkFieldData* fieldData)
+{
+  if (classes.cells.empty())
+  {
+    return;
+  }
+  vtkNew<SharedClasses> cells;
+  cells->SetName(arrays.cells);
+  cells->Share(terrain, classes.cells);
+  fieldData->AddArray(cells);
+  vtkNew<vtkDoubleArray> table;
+  table->SetName(arrays.numbers);
+  table->SetNumberOfComponents(count);
+  vtkNew<vtkStringArray> names;
+  names->SetName(arrays.names);
+  for (std::size_t k = 0; k < classes.materials.size(); ++k)
+  {
+    table->InsertNextTuple(numbersOf(classes.materials[k]).data());
+    names->InsertNextValue(classes.names[k]);
+  }
+  fieldData->AddArray(table);
+  fieldData->AddArray(names);
+}
+
+/// Nothing if there are no such classes.
+template <typename Take>
+MaterialClasses readClasses(vtkFieldData* fieldData, const ClassNames& arrays, int count,
+  Take&& take, const SurfaceMaterial& usual)
+{
+  MaterialClasses classes;
+  vtkAbstractArray* any = fieldData->GetAbstractArray(arrays.cells);
+  if (!any)
+  {
+    return classes;
+  }
+  vtkSmartPointer<vtkUnsignedCharArray> cells = vtkUnsignedCharArray::SafeDownCast(any);
+  vtkDataArray* table = fieldData->GetArray(arrays.numbers);
+  auto* names = vtkStringArray::SafeDownCast(fieldData->GetAbstractArray(arrays.names));
+  if (!cells || !table || !names || table->GetNumberOfValues() % count != 0 ||
+    table->GetNumberOfValues() / count != names->GetNumberOfValues())
+  {
+    throw DataError(
+      "The Terrain input must come from DEM to CFE Mesh, directly or from a file saved "
+      "from it: its field arrays " +
+      std::string(arrays.cells) + ", " + arrays.numbers + " and " + arrays.names +
+      " do not belong together");
+  }
+  const std::vector<double> values =
+    numbers(fieldData, arrays.numbers, int(table->GetNumberOfValues()));
+  for (vtkIdType k = 0; k < names->GetNumberOfValues(); ++k)
+  {
+    classes.names.push_back(names->GetValue(k));
+    classes.materials.push_back(usual);
+    take(values.data() + k * count, classes.materials.back());
+  }
+  classes.cells = { cells->GetPointer(0), std::size_t(cells->GetNumberOfValues()) };
+  // As for the heights: the array lives in the deleter.
+  classes.owner = std::shared_ptr<const void>(classes.cells.data(), [cells](const void*) {});
+  return classes;
 }
 
 /// Throws unless the mesh is the one that belongs to the slope: all of its triangles, and a sample
@@ -186,9 +299,12 @@ void writeTerrain(std::shared_ptr<const Terrain> terrain, int stride, vtkFieldDa
   crs->SetName(crsName);
   crs->InsertNextValue(grid.crs);
   fieldData->AddArray(crs);
+  writeClasses(terrain->restitutionClasses(), restitutionNames, restitutionNumbers, restitutionOf,
+    terrain, fieldData);
+  writeClasses(terrain->jointClasses(), jointNames, jointNumbers, jointOf, terrain, fieldData);
   vtkNew<SharedHeights> heights;
   heights->SetName(heightsName);
-  heights->Share(std::move(terrain));
+  heights->Share(terrain, terrain->heights());
   fieldData->AddArray(heights);
 }
 
@@ -231,6 +347,10 @@ Terrain readTerrain(vtkPolyData* mesh)
   // The smart pointer lives in the deleter: the terrain keeps the array, not a copy of it.
   std::shared_ptr<const void> owner(view.data(), [heights](const void*) {});
   Terrain terrain(std::move(grid), view, std::move(owner), materialOf(m), roughness);
+  terrain.setRestitutionClasses(readClasses(
+    fieldData, restitutionNames, restitutionNumbers, takeRestitution, terrain.material()));
+  terrain.setJointClasses(
+    readClasses(fieldData, jointNames, jointNumbers, takeJoint, terrain.material()));
   checkMesh(mesh, terrain, stride);
   return terrain;
 }

@@ -14,6 +14,11 @@
 /// |                  | roughness mean and deviation (m), number of the restitution model,        |
 /// |                  | tangential restitution, speed of the speed-dependent model (m/s). Files   |
 /// |                  | of before there were models end with the roughness: whole velocity        |
+/// | TerrainRestitutionClass   | class per cell, row by row from the north, one byte; 0: the | | |
+/// material above. Only where there are classes, as all that follow   | | TerrainRestitutionClasses
+/// | per class restitution, its deviation, number of the model,       | | | tangential restitution,
+/// speed (m/s)                              | | TerrainRestitutionNames   | their names | |
+/// TerrainJointClass, …Classes, …Names | the same of φ (rad), its deviation, cohesion (N)       |
 /// | LocalOrigin      | world = local + origin, m                                                 |
 ///
 /// Arrays, so that it survives shallow copies and saving and reopening as .vtp. The heights are

@@ -8,7 +8,7 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkSmartPointer.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cmath>
@@ -75,13 +75,31 @@ struct CoarseGrid
 
 using Corners = std::array<std::int64_t, 3>;
 
-vtkSmartPointer<vtkDoubleArray> constantArray(const char* name, vtkIdType size, double value)
+/// The class of each triangle and a number of its material.
+template <typename Value>
+void addMaterialArrays(vtkPolyData* mesh, vtkIdTypeArray* cfes, const MaterialClasses& classes,
+  const char* className, const char* valueName, Value&& valueOf)
 {
-  auto array = vtkSmartPointer<vtkDoubleArray>::New();
-  array->SetName(name);
-  array->SetNumberOfValues(size);
-  array->FillValue(value);
-  return array;
+  const vtkIdType triangles = cfes->GetNumberOfValues();
+  std::vector<double> ofClass;
+  for (int number = 0; number <= classes.count(); ++number)
+  {
+    ofClass.push_back(valueOf(number));
+  }
+  vtkNew<vtkUnsignedCharArray> numbers;
+  numbers->SetName(className);
+  numbers->SetNumberOfValues(triangles);
+  vtkNew<vtkDoubleArray> values;
+  values->SetName(valueName);
+  values->SetNumberOfValues(triangles);
+  for (vtkIdType cell = 0; cell < triangles; ++cell)
+  {
+    const int number = classes.at(cfes->GetValue(cell));
+    numbers->SetValue(cell, static_cast<unsigned char>(number));
+    values->SetValue(cell, ofClass[std::size_t(number)]);
+  }
+  mesh->GetCellData()->AddArray(values);
+  mesh->GetCellData()->AddArray(numbers);
 }
 
 } // namespace
@@ -175,11 +193,11 @@ void makeTerrainMesh(const Terrain& terrain, int stride, vtkPolyData* mesh)
   mesh->SetPolys(polygons);
   mesh->GetPointData()->SetScalars(elevation);
   mesh->GetCellData()->AddArray(numbers);
-  const SurfaceMaterial& material = terrain.material();
-  mesh->GetCellData()->AddArray(
-    constantArray("RestitutionCoefficient", triangles, material.restitution));
-  mesh->GetCellData()->AddArray(
-    constantArray("FrictionAngle", triangles, degrees(material.frictionAngle)));
+  addMaterialArrays(mesh, numbers, terrain.restitutionClasses(), "RestitutionClass",
+    "RestitutionCoefficient",
+    [&](int number) { return terrain.restitutionMaterial(number).restitution; });
+  addMaterialArrays(mesh, numbers, terrain.jointClasses(), "JointClass", "FrictionAngle",
+    [&](int number) { return degrees(terrain.jointMaterial(number).frictionAngle); });
 }
 
 } // namespace rockfall::filters

@@ -17,8 +17,8 @@ int displayStride(const Terrain& terrain, std::int64_t maximum);
 std::int64_t countTriangles(const Terrain& terrain, int stride);
 
 /// Fills `mesh` with the triangles over every stride-th node, in real coordinates, with the cell
-/// arrays CFEId, RestitutionCoefficient and FrictionAngle (degrees) and the point array Elevation.
-/// A node without a triangle gets no point.
+/// arrays CFEId, RestitutionCoefficient, RestitutionClass, FrictionAngle (degrees) and JointClass
+/// and the point array Elevation. A node without a triangle gets no point.
 void makeTerrainMesh(const Terrain& terrain, int stride, vtkPolyData* mesh);
 
 } // namespace rockfall::filters

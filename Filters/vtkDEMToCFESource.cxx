@@ -3,8 +3,11 @@
 #include "base/errors.h"
 #include "failure.h"
 #include "geometry/shell.h"
+#include "gis/contours.h"
+#include "gis/ground.h"
 #include "gis/raster.h"
 #include "terrain/Terrain.h"
+#include "terrain/presets.h"
 #include "terrainFieldData.h"
 #include "terrainMesh.h"
 
@@ -23,15 +26,6 @@ namespace
 
 constexpr double testSlopeCellSize = 5.0; // m
 
-/// The bi-planar slope with another material; the first one keeps the heights that both share.
-std::shared_ptr<const rockfall::Terrain> makeTestSlope(
-  double cellSize, const rockfall::SurfaceMaterial& material, const rockfall::Roughness& roughness)
-{
-  auto slope = std::make_shared<const rockfall::Terrain>(rockfall::makeBiplanarSlope(cellSize));
-  return std::make_shared<const rockfall::Terrain>(
-    slope->geometry(), slope->heights(), slope, material, roughness);
-}
-
 } // namespace
 
 //------------------------------------------------------------------------------
@@ -44,21 +38,63 @@ vtkDEMToCFESource::vtkDEMToCFESource()
 vtkDEMToCFESource::~vtkDEMToCFESource() = default;
 
 //------------------------------------------------------------------------------
+rockfall::SurfaceMaterial vtkDEMToCFESource::MakeMaterial() const
+{
+  const auto presets = rockfall::groundPresets();
+  if (this->Preset < 0 || this->Preset > int(presets.size()))
+  {
+    throw rockfall::ParameterError("Preset is " + std::to_string(this->Preset) +
+      ", it must be 0 (none) to " + std::to_string(presets.size()));
+  }
+  rockfall::SurfaceMaterial material;
+  material.restitution = this->RestitutionCoefficient;
+  material.restitutionDeviation = this->RestitutionDeviation;
+  material.restitutionModel = rockfall::RestitutionModel(this->RestitutionModel);
+  material.tangentialRestitution = this->TangentialRestitution;
+  material.restitutionSpeed = this->RestitutionSpeed;
+  material.frictionAngle = rockfall::radians(this->FrictionAngle);
+  material.frictionAngleDeviation = rockfall::radians(this->FrictionAngleDeviation);
+  material.cohesion = this->Cohesion;
+  if (this->Preset > 0)
+  {
+    material.validate(); // what it replaces must not be wrong in silence
+    material = presets[std::size_t(this->Preset) - 1].material();
+    material.cohesion = this->Cohesion;
+  }
+  return material;
+}
+
+//------------------------------------------------------------------------------
+rockfall::Terrain vtkDEMToCFESource::ReadSlope(std::vector<std::string>& notes) const
+{
+  rockfall::RasterSurface surface;
+  if (rockfall::isVectorFile(this->FileName))
+  {
+    rockfall::ContourOptions options;
+    options.cellSize = this->CellSize;
+    options.elevationField = this->ElevationField;
+    options.relaxFlats = this->RelaxFlats != 0;
+    surface = rockfall::readContours(this->FileName, options);
+  }
+  else
+  {
+    rockfall::RasterOptions options;
+    options.cellSize = this->CellSize;
+    options.band = this->Band;
+    surface = rockfall::readRaster(this->FileName, options);
+  }
+  notes = std::move(surface.notes);
+  return rockfall::Terrain(std::move(surface.geometry), std::move(surface.heights));
+}
+
+//------------------------------------------------------------------------------
 int vtkDEMToCFESource::RequestData(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
   vtkPolyData* output = vtkPolyData::GetData(outputVector);
   try
   {
-    rockfall::SurfaceMaterial material;
-    material.restitution = this->RestitutionCoefficient;
-    material.restitutionDeviation = this->RestitutionDeviation;
-    material.restitutionModel = rockfall::RestitutionModel(this->RestitutionModel);
-    material.tangentialRestitution = this->TangentialRestitution;
-    material.restitutionSpeed = this->RestitutionSpeed;
-    material.frictionAngle = rockfall::radians(this->FrictionAngle);
-    material.frictionAngleDeviation = rockfall::radians(this->FrictionAngleDeviation);
-    material.cohesion = this->Cohesion;
+    const rockfall::SurfaceMaterial material = this->MakeMaterial();
     material.validate();
     rockfall::Roughness roughness;
     roughness.mean = this->RoughnessMean;
@@ -75,24 +111,17 @@ int vtkDEMToCFESource::RequestData(
         std::to_string(this->MaximumDisplayCells) + ", it must be at least 2");
     }
 
-    std::shared_ptr<const rockfall::Terrain> terrain;
     std::vector<std::string> notes;
-    if (this->FileName.empty())
-    {
-      terrain = makeTestSlope(
-        this->CellSize > 0.0 ? this->CellSize : testSlopeCellSize, material, roughness);
-    }
-    else
-    {
-      rockfall::RasterOptions options;
-      options.cellSize = this->CellSize;
-      options.band = this->Band;
-      rockfall::RasterSurface surface = rockfall::readRaster(this->FileName, options);
-      notes = std::move(surface.notes);
-      this->UpdateProgress(0.6);
-      terrain = std::make_shared<const rockfall::Terrain>(
-        std::move(surface.geometry), std::move(surface.heights), material, roughness);
-    }
+    rockfall::Terrain slope = this->FileName.empty()
+      ? rockfall::makeBiplanarSlope(this->CellSize > 0.0 ? this->CellSize : testSlopeCellSize)
+      : this->ReadSlope(notes);
+    slope = rockfall::Terrain(slope, material, roughness);
+    this->UpdateProgress(0.6);
+    slope.setRestitutionClasses(readGround(rockfall::GroundKind::Restitution,
+      { this->RestitutionLayer, this->RestitutionTable, this->RestitutionField }, slope, notes));
+    slope.setJointClasses(readGround(rockfall::GroundKind::Joint,
+      { this->JointLayer, this->JointTable, this->JointField }, slope, notes));
+    const auto terrain = std::make_shared<const rockfall::Terrain>(std::move(slope));
     if (this->CheckAbort())
     {
       return 1;
@@ -124,7 +153,10 @@ int vtkDEMToCFESource::RequestData(
   {
     // What the terrain itself says does not know the file.
     std::string message = error.what();
-    if (!this->FileName.empty() && message.find(this->FileName) == std::string::npos)
+    const auto names = [&](const std::string& file)
+    { return !file.empty() && message.find(file) != std::string::npos; };
+    if (!this->FileName.empty() && !names(this->FileName) && !names(this->RestitutionLayer) &&
+      !names(this->RestitutionTable) && !names(this->JointLayer) && !names(this->JointTable))
     {
       message = this->FileName + ": " + message;
     }
@@ -145,6 +177,15 @@ void vtkDEMToCFESource::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "FileName: " << (this->FileName.empty() ? "(none)" : this->FileName) << "\n";
   os << indent << "CellSize: " << this->CellSize << "\n";
   os << indent << "Band: " << this->Band << "\n";
+  os << indent << "ElevationField: " << this->ElevationField << "\n";
+  os << indent << "RelaxFlats: " << this->RelaxFlats << "\n";
+  os << indent << "Preset: " << this->Preset << "\n";
+  os << indent << "RestitutionLayer: " << this->RestitutionLayer << "\n";
+  os << indent << "RestitutionTable: " << this->RestitutionTable << "\n";
+  os << indent << "RestitutionField: " << this->RestitutionField << "\n";
+  os << indent << "JointLayer: " << this->JointLayer << "\n";
+  os << indent << "JointTable: " << this->JointTable << "\n";
+  os << indent << "JointField: " << this->JointField << "\n";
   os << indent << "RestitutionModel: " << this->RestitutionModel << "\n";
   os << indent << "RestitutionCoefficient: " << this->RestitutionCoefficient << "\n";
   os << indent << "RestitutionDeviation: " << this->RestitutionDeviation << "\n";

@@ -6,7 +6,8 @@
  * each cell the lower triangle and then the upper one; triangles that touch nodata are left out),
  * in the real coordinates of the DEM's coordinate system, in double precision.
  *
- * Cell arrays: CFEId (from 1), RestitutionCoefficient, FrictionAngle (degrees). Point array:
+ * Cell arrays: CFEId (from 1), RestitutionCoefficient, RestitutionClass, FrictionAngle (degrees),
+ * JointClass. Point array:
  * Elevation (m). The field data carries the slope itself - node heights, grid, coordinate system,
  * material - and that is what the simulation uses: the triangles are there to be seen, to be
  * coloured and to be picked (see terrainFieldData.h). Notes on what was done to the data
@@ -25,6 +26,13 @@
 #include "vtkPolyDataAlgorithm.h"
 
 #include <string> // for FileName
+#include <vector> // for notes
+
+namespace rockfall
+{
+class Terrain;
+struct SurfaceMaterial;
+}
 
 class ROCKFALLFILTERS_EXPORT vtkDEMToCFESource : public vtkPolyDataAlgorithm
 {
@@ -35,7 +43,8 @@ public:
 
   ///@{
   /**
-   * Any raster that GDAL opens. Empty (the default): the bi-planar test slope.
+   * Any raster that GDAL opens, or any layer of contour lines that OGR opens. Empty (the default):
+   * the bi-planar test slope.
    */
   vtkSetStdStringFromCharMacro(FileName);
   vtkGetCharFromStdStringMacro(FileName);
@@ -44,7 +53,7 @@ public:
   ///@{
   /**
    * Distance between nodes in metres, not negative. 0 (the default) keeps the file's; for the test
-   * slope it means 5 m.
+   * slope it means 5 m, for contours half their mean distance.
    */
   vtkSetMacro(CellSize, double);
   vtkGetMacro(CellSize, double);
@@ -56,6 +65,54 @@ public:
    */
   vtkSetMacro(Band, int);
   vtkGetMacro(Band, int);
+  ///@}
+
+  ///@{
+  /**
+   * Contours: the field with their heights. Empty (the default) looks for the usual names and then
+   * takes the lines' own z.
+   */
+  vtkSetStdStringFromCharMacro(ElevationField);
+  vtkGetCharFromStdStringMacro(ElevationField);
+  ///@}
+
+  ///@{
+  /**
+   * Contours: whether hilltops, ridges and valleys, where the TIN is flat, are rounded (a thin
+   * plate). Default on.
+   */
+  vtkSetMacro(RelaxFlats, int);
+  vtkGetMacro(RelaxFlats, int);
+  vtkBooleanMacro(RelaxFlats, int);
+  ///@}
+
+  ///@{
+  /**
+   * A kind of ground whose published coefficients replace the material's properties below, from 1
+   * in the order of Core/terrain/presets.h. 0 (the default): none.
+   */
+  vtkSetMacro(Preset, int);
+  vtkGetMacro(Preset, int);
+  ///@}
+
+  ///@{
+  /**
+   * Classes of restitution and of friction: a class raster or polygons, and a table with their
+   * numbers (see Core/gis/ground.h). Empty (the default): the slope is all of one material. The
+   * field is that of the polygons with the class; empty looks for class, name, code, ...
+   */
+  vtkSetStdStringFromCharMacro(RestitutionLayer);
+  vtkGetCharFromStdStringMacro(RestitutionLayer);
+  vtkSetStdStringFromCharMacro(RestitutionTable);
+  vtkGetCharFromStdStringMacro(RestitutionTable);
+  vtkSetStdStringFromCharMacro(RestitutionField);
+  vtkGetCharFromStdStringMacro(RestitutionField);
+  vtkSetStdStringFromCharMacro(JointLayer);
+  vtkGetCharFromStdStringMacro(JointLayer);
+  vtkSetStdStringFromCharMacro(JointTable);
+  vtkGetCharFromStdStringMacro(JointTable);
+  vtkSetStdStringFromCharMacro(JointField);
+  vtkGetCharFromStdStringMacro(JointField);
   ///@}
 
   enum RestitutionModelType
@@ -172,9 +229,21 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
 private:
+  rockfall::SurfaceMaterial MakeMaterial() const;
+  rockfall::Terrain ReadSlope(std::vector<std::string>& notes) const;
+
   std::string FileName;
   double CellSize = 0.0;
   int Band = 1;
+  std::string ElevationField;
+  int RelaxFlats = 1;
+  int Preset = 0;
+  std::string RestitutionLayer;
+  std::string RestitutionTable;
+  std::string RestitutionField;
+  std::string JointLayer;
+  std::string JointTable;
+  std::string JointField;
   int RestitutionModel = WHOLE_VELOCITY;
   double RestitutionCoefficient = 0.8;
   double RestitutionDeviation = 0.0;

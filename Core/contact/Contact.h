@@ -48,10 +48,13 @@ struct Contact
   double shearStiffness = 0.0; ///< pₛ, N/m.
   double dashpot = 0.0;        ///< Along the normal, during impacts, N s/m.
   double shearDashpot = 0.0;   ///< In its plane, during impacts, N s/m.
-  double frequency2 = 0.0;     ///< Of the block on this spring alone, squared, 1/s².
-  Vec3 slip = Vec3::Zero();    ///< s₀, elongation of the shear spring, world, m.
-  double normalForce = 0.0;    ///< Mean over the last step, N.
-  double shearForce = 0.0;     ///< Magnitude, mean over the last step, N.
+  /// Of the ground under it, given before every step (< 0: as the step's request says).
+  double friction = -1.0;   ///< tan φ
+  double cohesion = -1.0;   ///< N
+  double frequency2 = 0.0;  ///< Of the block on this spring alone, squared, 1/s².
+  Vec3 slip = Vec3::Zero(); ///< s₀, elongation of the shear spring, world, m.
+  double normalForce = 0.0; ///< Mean over the last step, N.
+  double shearForce = 0.0;  ///< Magnitude, mean over the last step, N.
 
   bool closed() const { return state != ContactState::Open; }
   double gap() const { return distance - offset; } ///< d₀, m.

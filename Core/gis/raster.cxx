@@ -3,6 +3,7 @@
 #include "base/errors.h"
 #include "gis/crs.h"
 #include "gis/gdal.h"
+#include "gis/metric.h"
 #include "gis/rasterFile.h"
 #include "gis/resample.h"
 
@@ -20,44 +21,6 @@ namespace
 
 using namespace gis;
 
-/// A projected CRS whose map metre differs by more than this from a metre on the ground is not used
-/// as it is: slopes would be wrong by as much. UTM stays within 0.001, national grids within 0.01;
-/// Web Mercator is at 0.4 in the Alps.
-constexpr double largestDistortion = 0.02;
-
-/// An extent wider than this is no site for rockfall, and UTM is not made for it.
-constexpr double largestExtent = 1e6; // m
-
-struct Box
-{
-  double xMin, xMax, yMin, yMax;
-};
-
-Box extent(const SourceGrid& grid)
-{
-  const double last[2] = { grid.rows - 1.0, grid.columns - 1.0 };
-  const auto first = grid.place(0.0, 0.0);
-  Box box{ first[0], first[0], first[1], first[1] };
-  for (const auto& p :
-    { grid.place(0.0, last[1]), grid.place(last[0], 0.0), grid.place(last[0], last[1]) })
-  {
-    box = { std::min(box.xMin, p[0]), std::max(box.xMax, p[0]), std::min(box.yMin, p[1]),
-      std::max(box.yMax, p[1]) };
-  }
-  return box;
-}
-
-bool fitsTheGlobe(const Box& box)
-{
-  return box.xMin >= -360.0 && box.xMax <= 360.0 && box.yMin >= -90.0 && box.yMax <= 90.0;
-}
-
-std::string boxText(const Box& box)
-{
-  return number(box.xMin) + " ... " + number(box.xMax) + ", " + number(box.yMin) + " ... " +
-    number(box.yMax);
-}
-
 /// Mean over neighbours in rows of |Δz| / cell: a tangent, if both are in the same unit.
 double meanSteepness(const SourceGrid& grid)
 {
@@ -73,110 +36,6 @@ double meanSteepness(const SourceGrid& grid)
     }
   }
   return pairs > 0 ? sum / double(pairs) / grid.columnStep() : 0.0;
-}
-
-/// Without a CRS nothing says what the coordinates are; degrees taken as metres would make cliffs
-/// of every slope. Meant to catch those and to let small local slopes pass.
-void refuseUnlabelledDegrees(const SourceGrid& grid, const std::string& fileName)
-{
-  const Box box = extent(grid);
-  constexpr double smallestCell = 0.01; // m; no survey is finer, every raster in degrees is
-  constexpr double steepest = 20.0;     // 87°, on average
-  if (!fitsTheGlobe(box) || (grid.columnStep() >= smallestCell && meanSteepness(grid) <= steepest))
-  {
-    return;
-  }
-  throw DataError(fileName + ": has no CRS, and its extent " + boxText(box) + " with cells of " +
-    number(grid.columnStep()) +
-    " looks like degrees; assign the CRS, e.g. gdal_edit.py -a_srs "
-    "EPSG:4326 " +
-    fileName);
-}
-
-/// Lengths (target units) of one step along a row and one along a column at the raster's centre.
-std::array<double, 2> centreSteps(const SourceGrid& grid, const CrsChange& change)
-{
-  const double row = 0.5 * (grid.rows - 1), column = 0.5 * (grid.columns - 1);
-  // Half a cell to each side: the centre itself has no direction.
-  const std::array<std::array<double, 2>, 4> ends = { grid.place(row, column - 0.5),
-    grid.place(row, column + 0.5), grid.place(row - 0.5, column), grid.place(row + 0.5, column) };
-  double x[4], y[4];
-  for (int i = 0; i < 4; ++i)
-  {
-    x[i] = ends[i][0];
-    y[i] = ends[i][1];
-  }
-  change.forth(4, x, y);
-  return { std::hypot(x[1] - x[0], y[1] - y[0]), std::hypot(x[3] - x[2], y[3] - y[2]) };
-}
-
-/// Where the raster is to go, and why; no `target` if it can stay where it is.
-struct Destination
-{
-  CrsPtr target;
-  std::string reason;
-};
-
-CrsPtr utmOf(const SourceGrid& grid, const CrsPtr& crs, const std::string& fileName)
-{
-  const auto centre = grid.place(0.5 * (grid.rows - 1), 0.5 * (grid.columns - 1));
-  double longitude = centre[0], latitude = centre[1];
-  if (!CrsChange(crs, crsFromEpsg(4326)).forth(1, &longitude, &latitude))
-  {
-    throw DataError(fileName + ": the centre " + number(centre[0]) + ", " + number(centre[1]) +
-      " is no place on earth in its CRS " + crsLabel(*crs));
-  }
-  return crsFromEpsg(utmCode(longitude, latitude));
-}
-
-Destination destination(const SourceGrid& grid, const CrsPtr& crs, const std::string& fileName)
-{
-  if (!crs)
-  {
-    return {};
-  }
-  if (crs->IsGeographic())
-  {
-    const Box box = extent(grid);
-    const double inDegrees = crs->GetAngularUnits() * 180.0 / std::numbers::pi;
-    if (!fitsTheGlobe({ box.xMin * inDegrees, box.xMax * inDegrees, box.yMin * inDegrees,
-          box.yMax * inDegrees }))
-    {
-      throw DataError(fileName + ": its CRS " + crsLabel(*crs) + " is geographic, but its extent " +
-        boxText(box) + " is no longitude and latitude");
-    }
-    return { utmOf(grid, crs, fileName), "its coordinates are angles" };
-  }
-  const char* unit = nullptr;
-  if (std::abs(crs->GetLinearUnits(&unit) - 1.0) > 1e-9)
-  {
-    return { utmOf(grid, crs, fileName),
-      "its unit is not the metre but the " + std::string(unit ? unit : "unnamed unit") };
-  }
-  try
-  {
-    Destination there{ utmOf(grid, crs, fileName), "" };
-    const auto steps = centreSteps(grid, CrsChange(crs, there.target));
-    const double along = grid.columnStep() / steps[0], across = grid.rowStep() / steps[1];
-    const double worst = std::abs(along - 1.0) > std::abs(across - 1.0) ? along : across;
-    if (std::abs(worst - 1.0) > largestDistortion)
-    {
-      there.reason = number(worst) + " of its metres are one on the ground";
-      return there;
-    }
-  }
-  catch (const DataError&)
-  {
-    // A projection whose place on earth is not known cannot be checked, but it can be used.
-  }
-  return {};
-}
-
-double threeDigits(double value)
-{
-  const double unit = std::pow(10.0, std::floor(std::log10(value)) - 2.0);
-  return unit < 1.0 ? std::round(value / unit) / std::round(1.0 / unit)
-                    : std::round(value / unit) * unit;
 }
 
 std::string cellText(const SourceGrid& grid, const std::string& unit)
@@ -304,7 +163,8 @@ RasterSurface readRaster(const std::string& fileName, const RasterOptions& optio
   }
   else if (!file.crs())
   {
-    refuseUnlabelledDegrees(grid, fileName);
+    refuseUnlabelledDegrees(extent(grid), grid.columnStep(), meanSteepness(grid),
+      "gdal_edit.py -a_srs EPSG:4326 " + fileName, fileName);
     result.notes.push_back("The file has no CRS; its coordinates were taken as metres.");
   }
 

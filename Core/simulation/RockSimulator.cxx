@@ -60,7 +60,6 @@ RockSimulator::RockSimulator(
       std::min(kStiffBesideContacts * contacts, kStiffBesideStep / p.timeStep);
   ringing_ = stiff_ ? 0.0 : 2.0 * std::numbers::pi / block.strainFrequency();
   softness_ = 1.0 / p.normalPenalty + block.largestCompliance();
-  dampingRatio_ = dampingRatio(surface.restitution());
 }
 
 double RockSimulator::travelLimit() const

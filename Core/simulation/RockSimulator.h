@@ -72,7 +72,8 @@ private:
   void ensureWindow(double duration); ///< Heights under all of the way of a flight.
   void ensurePatch(double margin);
   void ensureCandidates(double reach);
-  void armContacts(); ///< Gives new contacts their springs and dashpots.
+  void armContacts();                          ///< Gives new contacts their springs and dashpots.
+  double dampingRatioOf(int restitutionClass); ///< ζ for the restitution of a class.
   double impactStep() const;
   double travelLimit() const;
   /// Whether the horizon is reached, but for what is too short to be a step.
@@ -97,15 +98,15 @@ private:
   Recorder recorder_;
   Impact impact_;
   EnergyAudit energy_;
-  double energyAtStart_ = 0.0; ///< Kinetic and potential, J.
-  double springEnergy_ = 0.0;  ///< In the contact springs, J.
-  double normalEnergy_ = 0.0;  ///< In the normal ones, J.
-  double softness_ = 0.0;      ///< Of a contact and the block behind it, m/N.
-  double penalty_ = 0.0;       ///< pₙ of the contacts that are made now, N/m.
-  bool stiff_ = false;         ///< The block's strain follows its contacts without inertia.
-  double dampingRatio_ = 0.0;  ///< ζ for the surface's restitution.
-  double restingSpeed_ = 0.0;  ///< Below it a touch is no impact, m/s.
-  double quietTime_ = 0.0;     ///< For how long it has been lying still, s.
+  double energyAtStart_ = 0.0;        ///< Kinetic and potential, J.
+  double springEnergy_ = 0.0;         ///< In the contact springs, J.
+  double normalEnergy_ = 0.0;         ///< In the normal ones, J.
+  double softness_ = 0.0;             ///< Of a contact and the block behind it, m/N.
+  double penalty_ = 0.0;              ///< pₙ of the contacts that are made now, N/m.
+  bool stiff_ = false;                ///< The block's strain follows its contacts without inertia.
+  std::vector<double> dampingRatios_; ///< ζ by restitution class; < 0: not known yet.
+  double restingSpeed_ = 0.0;         ///< Below it a touch is no impact, m/s.
+  double quietTime_ = 0.0;            ///< For how long it has been lying still, s.
   Vec3 acceleration_ = Vec3::Zero();
   Vec3 spinAcceleration_ = Vec3::Zero();
   StepKind steppedAs_ = StepKind::Impact; ///< In the last step.

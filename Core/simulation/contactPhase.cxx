@@ -181,13 +181,26 @@ void RockSimulator::stayInContact()
   }
 }
 
+double RockSimulator::dampingRatioOf(int restitutionClass)
+{
+  // Solved for when a rock meets the class for the first time.
+  dampingRatios_.resize(std::max(dampingRatios_.size(), std::size_t(restitutionClass) + 1), -1.0);
+  double& ratio = dampingRatios_[std::size_t(restitutionClass)];
+  if (ratio < 0.0)
+  {
+    ratio = dampingRatio(surface_.restitutionOf(restitutionClass));
+  }
+  return ratio;
+}
+
 void RockSimulator::armContacts()
 {
-  const SurfaceMaterial& material = surface_.terrain().material();
   const Vec3 spin = state_.angularVelocity();
   const double speed = state_.velocity.norm();
   for (Contact& c : contacts_)
   {
+    c.friction = surface_.frictionAt(c.cfe);
+    c.cohesion = surface_.cohesionAt(c.cfe);
     if (c.closed())
     {
       continue;
@@ -203,8 +216,9 @@ void RockSimulator::armContacts()
     const double approach = -c.normal.dot(state_.velocity + spin.cross(lever));
     const bool down =
       approach > restingSpeed_ && comesDown(approach, speed, parameters_.gravity, block_.radius());
-    const double damped =
-      contactDamping(material, surface_.restitution(), dampingRatio_, approach, down);
+    const int ground = surface_.restitutionClass(c.cfe);
+    const double damped = contactDamping(surface_.terrain().restitutionMaterial(ground),
+      surface_.restitutionOf(ground), this->dampingRatioOf(ground), approach, down);
     const double mobility = block_.mobility(n, y);
     c.frequency2 = c.stiffness * mobility;
     c.dashpot = damped > 0.0 ? 2.0 * damped * std::sqrt(c.stiffness / mobility) : 0.0;
@@ -388,11 +402,13 @@ void RockSimulator::finishImpact()
   event.impulse = impact_.normalImpulse.norm();
   event.normal =
     event.impulse > 0.0 ? Vec3(impact_.normalImpulse / event.impulse) : Vec3(Vec3::UnitZ());
-  event.restitution = surface_.restitution();
+  const int ground = surface_.restitutionClass(event.cfe);
+  event.restitution = surface_.restitutionOf(ground);
   const double before = kineticEnergy(block_, state_);
-  state_.velocity = adjustVelocity(surface_.terrain().material(), event, state_.velocity,
-    comesDown(
-      event.approachSpeed, event.velocityBefore.norm(), parameters_.gravity, block_.radius()));
+  state_.velocity =
+    adjustVelocity(surface_.terrain().restitutionMaterial(ground), event, state_.velocity,
+      comesDown(
+        event.approachSpeed, event.velocityBefore.norm(), parameters_.gravity, block_.radius()));
   energy_.restitution += before - kineticEnergy(block_, state_);
   event.velocityAfter = state_.velocity;
   event.energyLoss =

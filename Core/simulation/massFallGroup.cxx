@@ -405,7 +405,6 @@ void MassFall::solve(
     {
       continue;
     }
-    const SurfaceMaterial& material = surface_.terrain().material();
     const Vec3 spin = sim.state_.angularVelocity();
     for (Contact& c : sim.contacts_)
     {
@@ -413,7 +412,9 @@ void MassFall::solve(
         -c.normal.dot(sim.state_.velocity + spin.cross(c.point - sim.state_.position));
       const bool down =
         comesDown(approach, sim.state_.velocity.norm(), parameters_.gravity, sim.block_.radius());
-      double e = surface_.restitution();
+      const int ground = surface_.restitutionClass(c.cfe);
+      const SurfaceMaterial& material = surface_.terrain().restitutionMaterial(ground);
+      double e = surface_.restitutionOf(ground);
       if (material.restitutionModel == RestitutionModel::Velocity && down)
       {
         e = 1.0; // Rv is taken off the whole velocity when the impact is over
@@ -425,8 +426,8 @@ void MassFall::solve(
       GroupContact k;
       k.contact = &c;
       k.first = work.place[i];
-      k.friction = surface_.friction();
-      k.cohesion = surface_.cohesion();
+      k.friction = c.friction;
+      k.cohesion = c.cohesion;
       k.bounce = bounceOf(c, approach, sim.restingSpeed_, e);
       work.contacts.push_back(k);
     }

@@ -121,6 +121,8 @@ void BlockStep<N>::prepareRows(const Block& block, const BlockState& state,
     const bool impact = request.kind == StepKind::Impact;
     row.dashpot = impact ? c.dashpot : 0.0;
     row.shearLag = impact ? c.shearDashpot / row.shearPenalty : 0.0;
+    row.friction = c.friction >= 0.0 ? c.friction : request.friction;
+    row.cohesion = c.cohesion >= 0.0 ? c.cohesion : request.cohesion;
     row.state = c.state;
     row.share = 1.0;
     row.direction.setZero();
@@ -204,7 +206,7 @@ bool BlockStep<N>::evaluate(const StepRequest& request, const VecN& d)
     if (row.force > 0.0)
     {
       const Eigen::Vector2d travel(row.shear[0].dot(d), row.shear[1].dot(d));
-      const double limit = request.friction * row.force + request.cohesion;
+      const double limit = row.friction * row.force + row.cohesion;
       const double weight = row.share * ((lasting ? 1.0 : 0.5) + row.shearLag / request.duration);
       const Eigen::Vector2d stretch = row.slip0 + weight * travel;
       const double length = stretch.norm();
@@ -230,7 +232,7 @@ bool BlockStep<N>::evaluate(const StepRequest& request, const VecN& d)
         row.shearForce = -limit * direction;
         row.shearStiffness = (limit * weight / length) *
           (Eigen::Matrix2d::Identity() - direction * direction.transpose());
-        row.shearCoupling = -request.friction * row.stiffness * direction;
+        row.shearCoupling = -row.friction * row.stiffness * direction;
         const double part = weight > row.share ? row.share / weight : 1.0;
         row.slip1 = row.slip0 + part * (direction * (limit / row.shearPenalty) - row.slip0);
       }

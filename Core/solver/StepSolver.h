@@ -91,6 +91,8 @@ private:
     double shearPenalty = 0.0; ///< pₛ, N/m.
     double dashpot = 0.0;      ///< Normal, N s/m.
     double shearLag = 0.0;     ///< cₛ/pₛ, s.
+    double friction = 0.0;     ///< tan φ
+    double cohesion = 0.0;     ///< N
     // As of the last evaluation:
     double gap1 = 0.0;
     double force = 0.0;

@@ -23,13 +23,41 @@ constexpr std::int64_t gridKey(int row, int column)
   return ((row + apron) << 32) + column + apron;
 }
 
+/// The mean, or the number of a realisation if there is one to draw it for.
+struct Realisation
+{
+  std::uint64_t seed;
+  std::uint32_t iteration;
+  bool drawn;
+
+  double restitution(const SurfaceMaterial& m, int number) const
+  {
+    if (!drawn || !(m.restitutionDeviation > 0.0))
+    {
+      return m.restitution;
+    }
+    const double deviate = normalDeviate(seed, iteration, Draw::Restitution, std::uint64_t(number));
+    return std::clamp(m.restitution + m.restitutionDeviation * deviate, 0.0, 1.0);
+  }
+  double friction(const SurfaceMaterial& m, int number) const
+  {
+    if (!drawn || !(m.frictionAngleDeviation > 0.0))
+    {
+      return std::tan(m.frictionAngle);
+    }
+    const double deviate =
+      normalDeviate(seed, iteration, Draw::FrictionAngle, std::uint64_t(number));
+    const double angle = m.frictionAngle + m.frictionAngleDeviation * deviate;
+    return std::tan(std::clamp(angle, 0.0, radians(89.0)));
+  }
+};
+
 } // namespace
 
 Surface::Surface(const Terrain& terrain)
   : terrain_(&terrain)
-  , restitution_(terrain.material().restitution)
-  , friction_(std::tan(terrain.material().frictionAngle))
 {
+  this->drawMaterials(false);
 }
 
 Surface Surface::asSurveyed(const Terrain& terrain)
@@ -38,26 +66,29 @@ Surface Surface::asSurveyed(const Terrain& terrain)
 }
 
 Surface::Surface(const Terrain& terrain, std::uint64_t seed, int iteration)
-  : Surface(terrain)
+  : terrain_(&terrain)
+  , seed_(seed)
+  , iteration_(std::uint32_t(iteration))
 {
-  seed_ = seed;
-  iteration_ = std::uint32_t(iteration);
-  const SurfaceMaterial& m = terrain.material();
   const Roughness& r = terrain.roughness();
   rough_ = r.any();
   roughnessBound_ = rough_ ? std::max(0.0, r.mean + largestDeviate * r.deviation) : 0.0;
-  if (m.restitutionDeviation > 0.0)
+  this->drawMaterials(true);
+}
+
+void Surface::drawMaterials(bool drawn)
+{
+  const Realisation realisation{ seed_, iteration_, drawn };
+  restitution_ = realisation.restitution(terrain_->material(), 0);
+  friction_ = realisation.friction(terrain_->material(), 0);
+  for (int k = 1; k <= terrain_->restitutionClasses().count(); ++k)
   {
-    restitution_ += m.restitutionDeviation * normalDeviate(seed_, iteration_, Draw::Restitution, 0);
-    restitution_ = std::clamp(restitution_, 0.0, 1.0);
+    restitutions_.push_back(realisation.restitution(terrain_->restitutionMaterial(k), k));
   }
-  double angle = m.frictionAngle;
-  if (m.frictionAngleDeviation > 0.0)
+  for (int k = 1; k <= terrain_->jointClasses().count(); ++k)
   {
-    angle += m.frictionAngleDeviation * normalDeviate(seed_, iteration_, Draw::FrictionAngle, 0);
-    angle = std::clamp(angle, 0.0, radians(89.0));
+    frictions_.push_back(realisation.friction(terrain_->jointMaterial(k), k));
   }
-  friction_ = std::tan(angle);
 }
 
 double Surface::nodeHeight(int row, int column) const

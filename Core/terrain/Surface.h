@@ -28,6 +28,23 @@ public:
   double friction() const { return friction_; }       ///< tan φ of the φ drawn.
   double cohesion() const { return terrain_->material().cohesion; } ///< N
 
+  // The same of the ground under a CFE. Each class draws its own numbers; class 0 draws those
+  // above.
+  int restitutionClass(std::int64_t cfe) const { return terrain_->restitutionClasses().at(cfe); }
+  double restitutionOf(int restitutionClass) const
+  {
+    return restitutionClass == 0 ? restitution_ : restitutions_[std::size_t(restitutionClass) - 1];
+  }
+  double frictionAt(std::int64_t cfe) const
+  {
+    const int joint = terrain_->jointClasses().at(cfe);
+    return joint == 0 ? friction_ : frictions_[std::size_t(joint) - 1];
+  }
+  double cohesionAt(std::int64_t cfe) const
+  {
+    return terrain_->jointMaterial(terrain_->jointClasses().at(cfe)).cohesion;
+  }
+
   double nodeHeight(int row, int column) const; ///< With roughness, NaN for nodata, m.
   double elevation(double x, double y) const;   ///< With roughness, NaN outside, m.
   /// The same, and beyond the edge of the slope that of the nearest node.
@@ -44,14 +61,17 @@ public:
 
 private:
   explicit Surface(const Terrain& terrain);
+  void drawMaterials(bool drawn); ///< Means if not `drawn`.
 
   const Terrain* terrain_;
   std::uint64_t seed_ = 0;
   std::uint32_t iteration_ = 0;
   bool rough_ = false;
   double roughnessBound_ = 0.0;
-  double restitution_;
-  double friction_; ///< tan φ
+  double restitution_ = 0.0;
+  double friction_ = 0.0;            ///< tan φ
+  std::vector<double> restitutions_; ///< Of the restitution classes 1, 2, …
+  std::vector<double> frictions_;    ///< tan φ of the joint classes 1, 2, …
 };
 
 /// An explicit piece of surface: the triangles near a rock with their edges and nodes. Contact code

@@ -9,63 +9,6 @@
 namespace rockfall
 {
 
-namespace
-{
-
-/// tan φ is 57 here; beyond it only grows. Drawn angles are kept below it, too.
-constexpr double steepestFriction = radians(89.0);
-
-void requireRange(double value, double low, double high, const char* field, const char* range)
-{
-  if (!(value >= low && value <= high))
-  {
-    throw ParameterError(
-      std::string(field) + " is " + std::to_string(value) + ", it must be " + range);
-  }
-}
-
-} // namespace
-
-void SurfaceMaterial::validate() const
-{
-  requireRange(this->restitution, 0.0, 1.0, "RestitutionCoefficient", "0 to 1");
-  requireRange(this->restitutionDeviation, 0.0, 1.0, "RestitutionDeviation", "0 to 1");
-  const int model = int(this->restitutionModel);
-  if (model < int(RestitutionModel::Velocity) || model > int(RestitutionModel::SpeedDependent))
-  {
-    throw ParameterError("RestitutionModel is " + std::to_string(model) +
-      ", it must be 0 (whole velocity), 1 (normal and tangential) or 2 (speed-dependent)");
-  }
-  requireRange(this->tangentialRestitution, 0.0, 1.0, "TangentialRestitution", "0 to 1");
-  if (!(this->restitutionSpeed > 0.0 && std::isfinite(this->restitutionSpeed)))
-  {
-    throw ParameterError("RestitutionSpeed is " + std::to_string(this->restitutionSpeed) +
-      ", it must be a positive, finite number of metres per second");
-  }
-  if (!(this->frictionAngle >= 0.0 && this->frictionAngle <= steepestFriction))
-  {
-    throw ParameterError("FrictionAngle is " + std::to_string(degrees(this->frictionAngle)) +
-      " degrees, it must be 0 to 89");
-  }
-  if (!(this->frictionAngleDeviation >= 0.0 && this->frictionAngleDeviation <= steepestFriction))
-  {
-    throw ParameterError("FrictionAngleDeviation is " +
-      std::to_string(degrees(this->frictionAngleDeviation)) + " degrees, it must be 0 to 89");
-  }
-  requireRange(this->cohesion, 0.0, std::numeric_limits<double>::max(), "Cohesion",
-    "a finite number of newtons, not negative");
-}
-
-void Roughness::validate() const
-{
-  if (!std::isfinite(this->mean))
-  {
-    throw ParameterError("RoughnessMean is " + std::to_string(this->mean) + ", it must be finite");
-  }
-  requireRange(this->deviation, 0.0, std::numeric_limits<double>::max(), "RoughnessDeviation",
-    "a finite number of metres, not negative");
-}
-
 Terrain::Terrain(GridGeometry geometry, std::span<const double> heights,
   std::shared_ptr<const void> owner, SurfaceMaterial material, Roughness roughness)
   : geometry_(std::move(geometry))
@@ -100,6 +43,28 @@ Terrain::Terrain(
   auto kept = std::make_shared<std::vector<double>>(std::move(heights));
   std::span<const double> view(*kept);
   *this = Terrain(std::move(geometry), view, std::move(kept), material, roughness);
+}
+
+Terrain::Terrain(const Terrain& other, SurfaceMaterial material, Roughness roughness)
+  : Terrain(other)
+{
+  material_ = material;
+  roughness_ = roughness;
+  material_.validate();
+  roughness_.validate();
+  restitutionClasses_ = jointClasses_ = {};
+}
+
+void Terrain::setRestitutionClasses(MaterialClasses classes)
+{
+  classes.validate(geometry_.cellCount(), "restitution");
+  restitutionClasses_ = std::move(classes);
+}
+
+void Terrain::setJointClasses(MaterialClasses classes)
+{
+  classes.validate(geometry_.cellCount(), "joint");
+  jointClasses_ = std::move(classes);
 }
 
 void Terrain::buildPyramid()

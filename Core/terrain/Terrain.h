@@ -9,6 +9,7 @@
 /// cellSize, y = (rows − 1 − row) · cellSize.
 
 #include "base/types.h"
+#include "terrain/material.h"
 
 #include <array>
 #include <memory>
@@ -35,46 +36,6 @@ struct GridGeometry
   Vec3 origin() const { return { xOrigin, yOrigin, 0.0 }; }
 };
 
-/// What the slope's coefficient of restitution acts on after an impact (METHOD 4).
-enum class RestitutionModel
-{
-  /// The paper's: (Vx, Vy, Vz) ← Rv (Vx, Vy, Vz), Rv = `restitution`.
-  Velocity = 0,
-  /// Rn = `restitution` on the normal velocity of the contact, Rt = `tangentialRestitution` on what
-  /// friction left of the tangential one.
-  NormalTangential = 1,
-  /// The same with Rn(v) = Rn / (1 + (v/K)²), v the normal speed of approach, K =
-  /// `restitutionSpeed`: hard impacts crush and lose more. Pfeiffer & Bowen (1989), Computer
-  /// simulation of rockfalls, Bulletin of the Association of Engineering Geologists 26(1), 135–146;
-  /// the model of the Colorado Rockfall Simulation Program (CRSP).
-  SpeedDependent = 2,
-};
-
-/// What a CFE is made of.
-struct SurfaceMaterial
-{
-  double restitution = 0.8;          ///< Rv, or Rn, as the model has it; dimensionless, 0 … 1.
-  double restitutionDeviation = 0.0; ///< Standard deviation of `restitution`, 0 … 1.
-  RestitutionModel restitutionModel = RestitutionModel::Velocity;
-  double tangentialRestitution = 1.0; ///< Rt, dimensionless, 0 … 1. Not used by Velocity.
-  /// K, normal speed at which half of Rn is left, m/s, > 0: 30 ft/s. Used by SpeedDependent only.
-  double restitutionSpeed = 9.144;
-  double frictionAngle = radians(15.0); ///< φ, rad, 0° … 89°.
-  double frictionAngleDeviation = 0.0;  ///< Standard deviation of φ, rad, 0° … 89°.
-  double cohesion = 0.0;                ///< c, N per contact point, ≥ 0.
-
-  void validate() const; ///< Throws ParameterError naming field and value.
-};
-
-/// Random elevation added to every node, drawn per iteration (METHOD 7).
-struct Roughness
-{
-  double mean = 0.0;      ///< m
-  double deviation = 0.0; ///< m, ≥ 0.
-  bool any() const { return this->mean != 0.0 || this->deviation != 0.0; }
-  void validate() const;
-};
-
 /// One triangle, as looked up by its number.
 struct Cfe
 {
@@ -95,8 +56,12 @@ public:
   Terrain(GridGeometry geometry, std::vector<double> heights, SurfaceMaterial material = {},
     Roughness roughness = {});
 
+  /// The same heights, shared, of another material, without classes.
+  Terrain(const Terrain& other, SurfaceMaterial material, Roughness roughness);
+
   const GridGeometry& geometry() const { return geometry_; }
   std::span<const double> heights() const { return heights_; }
+  /// Of all cells that no class says anything else of.
   const SurfaceMaterial& material() const { return material_; }
   const Roughness& roughness() const { return roughness_; }
   double width() const { return (geometry_.columns - 1) * geometry_.cellSize; } ///< Extent in x, m.
@@ -129,6 +94,24 @@ public:
   /// from a max-pyramid; −∞ if it touches none. Cost independent of the box.
   double maxHeight(double xMin, double xMax, double yMin, double yMax) const;
 
+  /// Gives cells a restitution of their own, and a friction of their own (METHOD 6, the restitution
+  /// grid and the joint grid). Throws DataError if the cells are not the terrain's or of a class
+  /// that is not there, ParameterError for a material out of range. To be called before the terrain
+  /// is used.
+  void setRestitutionClasses(MaterialClasses classes);
+  void setJointClasses(MaterialClasses classes);
+  const MaterialClasses& restitutionClasses() const { return restitutionClasses_; }
+  const MaterialClasses& jointClasses() const { return jointClasses_; }
+  /// What a class of either kind is made of; class 0 is material().
+  const SurfaceMaterial& restitutionMaterial(int number) const
+  {
+    return number == 0 ? material_ : restitutionClasses_.materials[std::size_t(number) - 1];
+  }
+  const SurfaceMaterial& jointMaterial(int number) const
+  {
+    return number == 0 ? material_ : jointClasses_.materials[std::size_t(number) - 1];
+  }
+
   /// Lowest node height (without roughness), m.
   double lowest() const { return lowest_; }
 
@@ -140,6 +123,8 @@ private:
   std::shared_ptr<const void> owner_;
   SurfaceMaterial material_;
   Roughness roughness_;
+  MaterialClasses restitutionClasses_;
+  MaterialClasses jointClasses_;
 
   struct Level
   {

@@ -1,5 +1,8 @@
 #include "helpers.h"
 
+#include "base/errors.h"
+#include "terrainFieldData.h"
+
 #include "vtkCellData.h"
 #include "vtkDEMToCFESource.h"
 #include "vtkDoubleArray.h"
@@ -229,14 +232,89 @@ TEST_F(TestDEMToCFESource, BadValuesAreOneErrorAndNothingElse)
   EXPECT_EQ(this->Update()->GetNumberOfCells(), 2000); // and it recovers
 }
 
+TEST_F(TestDEMToCFESource, ClassesAreArraysOfTheMeshAndSurviveAFile)
+{
+  this->Source->SetFileName(this->WriteFile("grid.asc", grid).c_str());
+  // 15 m cells over the western half and nothing over the rest.
+  const std::string layer = this->WriteFile(
+    "classes.asc", "ncols 1\nnrows 2\nxllcorner 500000\nyllcorner 4000000\ncellsize 15\n3\n3\n");
+  this->Source->SetRestitutionLayer(layer.c_str());
+  this->Source->SetRestitutionTable(
+    this->WriteFile("rv.csv", "class,name,rv\n1,rock,0.9\n3,talus,0.4\n").c_str());
+  this->Source->SetJointLayer(layer.c_str());
+  this->Source->SetJointTable(
+    this->WriteFile("phi.csv", "class,phi,phi_deviation\n3,35,2\n").c_str());
+  vtkPolyData* mesh = this->Update();
+  ASSERT_EQ(mesh->GetNumberOfCells(), 9);
+  for (vtkIdType cell = 0; cell < 9; ++cell)
+  {
+    // Cells of the slope are centred at x = 10, 20 and 30 m, the layer ends at 15 m.
+    const bool covered = (int(value(mesh->GetCellData(), "CFEId", cell)) - 1) / 2 % 3 == 0;
+    EXPECT_EQ(value(mesh->GetCellData(), "RestitutionClass", cell), covered ? 2 : 0);
+    EXPECT_EQ(value(mesh->GetCellData(), "RestitutionCoefficient", cell), covered ? 0.4 : 0.8);
+    EXPECT_EQ(value(mesh->GetCellData(), "JointClass", cell), covered ? 1 : 0);
+    EXPECT_NEAR(value(mesh->GetCellData(), "FrictionAngle", cell), covered ? 35.0 : 15.0, 1e-12);
+  }
+  const std::string file = this->WriteFile("mesh.vtp", "");
+  vtkNew<vtkXMLPolyDataWriter> writer;
+  writer->SetInputData(mesh);
+  writer->SetFileName(file.c_str());
+  ASSERT_EQ(writer->Write(), 1);
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName(file.c_str());
+  reader->Update();
+  for (vtkPolyData* data : { mesh, reader->GetOutput() })
+  {
+    const rockfall::Terrain terrain = rockfall::filters::readTerrain(data);
+    ASSERT_EQ(terrain.restitutionClasses().count(), 2);
+    EXPECT_EQ(terrain.restitutionClasses().names[1], "talus");
+    EXPECT_EQ(terrain.restitutionMaterial(2).restitution, 0.4);
+    EXPECT_EQ(terrain.restitutionClasses().at(1), 2);
+    EXPECT_EQ(terrain.restitutionClasses().at(3), 0);
+    ASSERT_EQ(terrain.jointClasses().count(), 1);
+    EXPECT_DOUBLE_EQ(terrain.jointMaterial(1).frictionAngleDeviation, rockfall::radians(2.0));
+  }
+  reader->GetOutput()->GetFieldData()->RemoveArray("TerrainJointNames");
+  EXPECT_THROW(rockfall::filters::readTerrain(reader->GetOutput()), rockfall::DataError);
+}
+
+TEST_F(TestDEMToCFESource, ContoursAndPresets)
+{
+  this->Source->SetFileName(
+    this
+      ->WriteFile(
+        "contours.csv", "WKT,elev\n\"LINESTRING(0 0,50 0)\",10\n\"LINESTRING(0 30,50 30)\",20\n")
+      .c_str());
+  this->Source->SetCellSize(5.0);
+  this->Source->SetPreset(4); // talus
+  vtkPolyData* mesh = this->Update();
+  EXPECT_EQ(mesh->GetNumberOfCells(), 2 * 10 * 6);
+  EXPECT_EQ(value(mesh->GetPointData(), "Elevation"), 20.0);
+  EXPECT_EQ(value(mesh->GetCellData(), "RestitutionCoefficient"), 0.32);
+  EXPECT_EQ(value(mesh->GetFieldData(), "TerrainMaterial", 0, 7), 1.0);
+  this->Source->SetElevationField("height");
+  EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
+  this->ExpectOneError({ "contours.csv", "height", "ElevationField", "elev" });
+  this->Source->SetElevationField("");
+  this->Source->SetPreset(8);
+  EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
+  this->ExpectOneError({ "Preset", "8" });
+  this->Source->SetPreset(0);
+  this->Source->SetJointTable("/no/such/table.csv");
+  EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
+  this->ExpectOneError({ "JointTable", "/no/such/table.csv", "JointLayer" });
+}
+
 TEST_F(TestDEMToCFESource, PrintSelfNamesEveryProperty)
 {
   std::ostringstream text;
   this->Source->Print(text);
-  for (const char* name : { "FileName", "CellSize", "Band", "RestitutionModel",
-         "RestitutionCoefficient", "RestitutionDeviation", "TangentialRestitution",
-         "RestitutionSpeed", "FrictionAngle", "FrictionAngleDeviation", "Cohesion", "RoughnessMean",
-         "RoughnessDeviation", "MaximumDisplayCells" })
+  for (const char* name :
+    { "FileName", "CellSize", "Band", "ElevationField", "RelaxFlats", "Preset", "RestitutionLayer",
+      "RestitutionTable", "RestitutionField", "JointLayer", "JointTable", "JointField",
+      "RestitutionModel", "RestitutionCoefficient", "RestitutionDeviation", "TangentialRestitution",
+      "RestitutionSpeed", "FrictionAngle", "FrictionAngleDeviation", "Cohesion", "RoughnessMean",
+      "RoughnessDeviation", "MaximumDisplayCells" })
   {
     EXPECT_NE(text.str().find(std::string(name) + ":"), std::string::npos) << name;
   }

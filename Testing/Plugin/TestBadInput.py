@@ -67,6 +67,39 @@ bad_dem("tangential restitution", ["TangentialRestitution", "1.5"], TangentialRe
 bad_dem("restitution speed", ["RestitutionSpeed", "0"], RestitutionSpeed=0.0)
 bad_dem("restitution", ["RestitutionCoefficient", "2"], RestitutionCoefficient=2.0)
 
+# Contour lines.
+name = write_text("level.csv", 'WKT,elev\n"LINESTRING(0 0,50 0)",10\n"LINESTRING(0 30,50 30)",10\n')
+bad_dem("contours of one height", [name, "10 m", "no slope"], FileName=name)
+name = write_text("comma.csv", 'WKT;elev\n"LINESTRING(0 0,50 0)";10,5\n"LINESTRING(0 9,50 9)";20\n')
+bad_dem("decimal comma", [name, "row 1", "10,5", "decimal"], FileName=name)
+name = write_text("points.csv", 'WKT,elev\n"POINT(0 0)",10\n"POINT(0 30)",20\n')
+bad_dem("points for contours", [name, "POINT", "lines"], FileName=name)
+name = write_text("lines.csv", 'WKT,h\n"LINESTRING(0 0,50 0)",10\n"LINESTRING(0 30,50 30)",20\n')
+bad_dem("no field of heights", [name, "row 1", "ElevationField"], FileName=name)
+bad_dem("another field of heights", [name, "cote", '"h"'], FileName=name, ElevationField="cote")
+
+# Classes of ground.
+zones = write_text("zones.csv", 'WKT,class\n"POLYGON((0 0,250 0,250 100,0 100,0 0))",rock\n')
+far = write_text("far.csv", 'WKT,class\n"POLYGON((900 0,990 0,990 90,900 90,900 0))",rock\n')
+rv = write_text("rv.csv", "class,rv\nrock,0.8\n")
+other = write_text("other.csv", "class,rv\ntalus,0.4\n")
+high = write_text("high.csv", "class,rv\nrock,1.8\n")
+phi = write_text("phi.csv", "class,phi\nrock,95\n")
+bad_dem("layer without a table", ["RestitutionLayer", zones, "RestitutionTable"],
+        RestitutionLayer=zones)
+bad_dem("table without a layer", ["JointTable", phi, "JointLayer"], JointTable=phi)
+bad_dem("class without a row", [zones, "row 1", "rock", other],
+        RestitutionLayer=zones, RestitutionTable=other)
+bad_dem("layer elsewhere", [far, "does not overlap", "900 ... 990", "0 ... 250"],
+        RestitutionLayer=far, RestitutionTable=rv)
+bad_dem("Rv out of range", [high, "row 1", "rv", "1.8"],
+        RestitutionLayer=zones, RestitutionTable=high)
+bad_dem("friction out of range", [phi, "row 1", "phi", "95"], JointLayer=zones, JointTable=phi)
+bad_dem("field of the classes", [zones, "geology", '"class"'],
+        RestitutionLayer=zones, RestitutionTable=rv, RestitutionField="geology")
+bad_dem("missing table", ["/no/such.csv"], RestitutionLayer=zones, RestitutionTable="/no/such.csv")
+bad_dem("preset", ["Preset", "8"], Preset=8)
+
 # Rocks.
 bad_rocks("zero volume", ["Volume", "0"], Volume=0.0)
 bad_rocks("negative volume", ["Volume", "-1"], Volume=-1.0)

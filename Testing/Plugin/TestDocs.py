@@ -19,7 +19,7 @@ PAGES = [
     ("DispersionAngle", "DispersionAngle", "angle"),
 ]
 TYPES = {"vtkDoubleArray": "double", "vtkIntArray": "int", "vtkIdTypeArray": "id",
-         "vtkStringArray": "text"}
+         "vtkStringArray": "text", "vtkUnsignedCharArray": "byte"}
 
 failures = []
 

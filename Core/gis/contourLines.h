@@ -1,0 +1,52 @@
+#pragma once
+
+/// @file
+/// The lines of a contour file, before anything is made of them.
+
+#include "gis/contours.h"
+#include "gis/gdal.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+class OGRLayer;
+
+namespace rockfall::gis
+{
+
+struct Line
+{
+  std::size_t first = 0, count = 0; ///< Of its vertices.
+};
+
+/// The lines as they are in the file, in its CRS but with heights in metres.
+struct Contours
+{
+  std::vector<double> x, y, z;
+  std::vector<Line> lines;
+  std::int64_t features = 0, empty = 0;
+};
+
+/// Where the heights are, and what they are multiplied by.
+struct HeightField
+{
+  int column = -1; ///< −1: the lines' own z.
+  std::string name;
+  double unit = 1.0; ///< m
+};
+
+/// The first layer of lines, else the first of any geometry. Throws DataError if there is none.
+OGRLayer& lineLayerOf(GDALDataset& dataset, const std::string& fileName);
+
+/// Throws DataError if `wanted` is no field of the layer.
+HeightField heightFieldOf(OGRLayer& layer, const std::string& wanted, const std::string& fileName);
+
+/// Throws DataError naming row, field and value; see readContours.
+Contours readLines(OGRLayer& layer, const HeightField& field, const ContourOptions& options,
+  const std::string& fileName, Messages& messages);
+
+[[noreturn]] void refuseVertices(
+  const std::string& fileName, double vertices, std::int64_t largest, const std::string& remedy);
+
+} // namespace rockfall::gis

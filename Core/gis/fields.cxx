@@ -1,0 +1,190 @@
+#include "gis/fields.h"
+
+#include "base/errors.h"
+#include "gis/gdal.h"
+
+#include <cpl_csv.h>
+#include <cpl_string.h>
+#include <ogrsf_frmts.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <memory>
+
+namespace rockfall::gis
+{
+
+std::string trimmed(const std::string& text)
+{
+  const char* const blanks = " \t\r\n";
+  const auto first = text.find_first_not_of(blanks);
+  return first == std::string::npos ? std::string()
+                                    : text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+std::string lowered(std::string text)
+{
+  std::transform(text.begin(), text.end(), text.begin(),
+    [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+  return text;
+}
+
+std::optional<double> parsed(const std::string& text)
+{
+  const char* first = text.data() + (text.size() > 1 && text[0] == '+' ? 1 : 0);
+  const char* const last = text.data() + text.size();
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(first, last, value);
+  return error == std::errc() && end == last ? std::optional(value) : std::nullopt;
+}
+
+Columns columnsOf(const OGRFeatureDefn& definition)
+{
+  Columns columns;
+  for (int i = 0; i < definition.GetFieldCount(); ++i)
+  {
+    columns.emplace(lowered(trimmed(definition.GetFieldDefn(i)->GetNameRef())), i);
+  }
+  return columns;
+}
+
+std::string fieldList(const OGRFeatureDefn& definition)
+{
+  std::string list;
+  for (int i = 0; i < definition.GetFieldCount(); ++i)
+  {
+    list += (i ? ", \"" : "\"") + std::string(definition.GetFieldDefn(i)->GetNameRef()) + "\"";
+  }
+  return list.empty() ? "none" : list;
+}
+
+void refuseSurplusCells(GDALDataset& dataset, const std::string& fileName)
+{
+  if (!dataset.GetDriver() || !EQUAL(dataset.GetDriver()->GetDescription(), "CSV"))
+  {
+    return;
+  }
+  const std::unique_ptr<VSILFILE, int (*)(VSILFILE*)> file(
+    VSIFOpenL(fileName.c_str(), "rb"), VSIFCloseL);
+  const char* first = file ? CPLReadLineL(file.get()) : nullptr;
+  if (!first)
+  {
+    return;
+  }
+  const char separator = CSVDetectSeperator(first);
+  VSIRewindL(file.get());
+  const auto next = [&] { return CPLStringList(CSVReadParseLine2L(file.get(), separator)); };
+  const int columns = next().size();
+  for (std::int64_t row = 1; !VSIFEofL(file.get()); ++row)
+  {
+    const CPLStringList cells = next();
+    for (int i = columns; i < cells.size(); ++i)
+    {
+      if (!trimmed(cells[i]).empty())
+      {
+        throw DataError(fileName + ", row " + std::to_string(row) + ": has " +
+          std::to_string(cells.size()) + " fields, the header " + std::to_string(columns) + "; \"" +
+          cells[i] + "\" is one too many (the decimal sign is a point)");
+      }
+    }
+  }
+}
+
+Fields::Fields(
+  const std::string& fileName, const Columns& columns, const OGRFeature& feature, std::int64_t row)
+  : fileName_(fileName)
+  , columns_(columns)
+  , feature_(feature)
+  , row_(row)
+{
+}
+
+void Fields::fail(const std::string& what) const
+{
+  throw DataError(fileName_ + ", row " + std::to_string(row_) + ": " + what);
+}
+
+std::string Fields::nameOf(int column) const
+{
+  return feature_.GetFieldDefnRef(column)->GetNameRef();
+}
+
+std::optional<std::string> Fields::textAt(int column) const
+{
+  if (!feature_.IsFieldSetAndNotNull(column))
+  {
+    return std::nullopt;
+  }
+  const std::string value = trimmed(feature_.GetFieldAsString(column));
+  return value.empty() ? std::nullopt : std::optional(value);
+}
+
+std::optional<double> Fields::numberAt(int column) const
+{
+  const auto written = this->textAt(column);
+  if (!written)
+  {
+    return std::nullopt;
+  }
+  const OGRFieldType type = feature_.GetFieldDefnRef(column)->GetType();
+  // A field of numbers is taken as such: its text is rounded.
+  const auto value = type == OFTReal || type == OFTInteger || type == OFTInteger64
+    ? std::optional(feature_.GetFieldAsDouble(column))
+    : parsed(*written);
+  if (!value)
+  {
+    const bool comma = written->find(',') != std::string::npos;
+    this->fail("field \"" + this->nameOf(column) + "\": \"" + *written + "\" is not a number" +
+      (comma ? " (the decimal sign is a point)" : ""));
+  }
+  if (!std::isfinite(*value))
+  {
+    this->fail("field \"" + this->nameOf(column) + "\" is " + *written + ", it must be finite");
+  }
+  return value;
+}
+
+std::optional<int> Fields::columnOf(std::initializer_list<const char*> names) const
+{
+  for (const char* name : names)
+  {
+    const auto column = columns_.find(name);
+    if (column != columns_.end() && this->textAt(column->second))
+    {
+      return column->second;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> Fields::text(std::initializer_list<const char*> names) const
+{
+  const auto column = this->columnOf(names);
+  return column ? this->textAt(*column) : std::nullopt;
+}
+
+std::optional<double> Fields::number(std::initializer_list<const char*> names) const
+{
+  const auto column = this->columnOf(names);
+  return column ? this->numberAt(*column) : std::nullopt;
+}
+
+std::optional<double> Fields::ranged(
+  std::initializer_list<const char*> names, double low, double high, const char* range) const
+{
+  const auto column = this->columnOf(names);
+  if (!column)
+  {
+    return std::nullopt;
+  }
+  const auto value = this->numberAt(*column);
+  if (!(*value >= low && *value <= high))
+  {
+    this->fail("field \"" + this->nameOf(*column) + "\" is " + gis::number(*value) +
+      ", it must be " + range);
+  }
+  return value;
+}
+
+} // namespace rockfall::gis

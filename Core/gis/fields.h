@@ -1,0 +1,63 @@
+#pragma once
+
+/// @file
+/// The fields of a layer's features as text and numbers, by names that are not case-sensitive.
+
+#include <cstdint>
+#include <initializer_list>
+#include <map>
+#include <optional>
+#include <string>
+
+class GDALDataset;
+class OGRFeature;
+class OGRFeatureDefn;
+
+namespace rockfall::gis
+{
+
+std::string trimmed(const std::string& text);
+/// A … Z become a … z, whatever the locale.
+std::string lowered(std::string text);
+/// All of the text, with a decimal point in every locale; nothing if any of it is no number.
+std::optional<double> parsed(const std::string& text);
+
+/// Field indices by lowered name; of two that differ in case only the first.
+using Columns = std::map<std::string, int>;
+Columns columnsOf(const OGRFeatureDefn& definition);
+/// "a", "b", "c": the fields of a layer, for a message.
+std::string fieldList(const OGRFeatureDefn& definition);
+
+/// OGR drops what stands beyond the last column of a CSV file's header, so a table whose decimal
+/// commas split every number in two would be read without a word. Throws DataError naming the row;
+/// does nothing for other formats.
+void refuseSurplusCells(GDALDataset& dataset, const std::string& fileName);
+
+/// One feature of a layer. Errors are DataError and name file, row (from 1), field and value.
+class Fields
+{
+public:
+  Fields(const std::string& fileName, const Columns& columns, const OGRFeature& feature,
+    std::int64_t row);
+
+  [[noreturn]] void fail(const std::string& what) const;
+  /// Of the first of these names that has a value; empty cells are as good as no column.
+  std::optional<std::string> text(std::initializer_list<const char*> names) const;
+  std::optional<double> number(std::initializer_list<const char*> names) const;
+  /// From `low` to `high`, "it must be `range`".
+  std::optional<double> ranged(
+    std::initializer_list<const char*> names, double low, double high, const char* range) const;
+  std::optional<double> numberAt(int column) const;
+  std::optional<std::string> textAt(int column) const;
+
+private:
+  std::optional<int> columnOf(std::initializer_list<const char*> names) const;
+  std::string nameOf(int column) const;
+
+  const std::string& fileName_;
+  const Columns& columns_;
+  const OGRFeature& feature_;
+  std::int64_t row_;
+};
+
+} // namespace rockfall::gis

@@ -1,0 +1,239 @@
+// Polygons with classes.
+#include "gis/groundCells.h"
+
+#include "base/errors.h"
+#include "gis/fields.h"
+#include "gis/gdal.h"
+
+#include <cpl_string.h>
+#include <gdal_alg.h>
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+#include <ogrsf_frmts.h>
+
+#include <memory>
+
+namespace rockfall::gis
+{
+
+namespace
+{
+
+/// Polygons are burnt in portions of about so many vertices: each takes a walk over all cells.
+constexpr std::int64_t verticesAtOnce = 2'000'000;
+
+int classField(OGRLayer& layer, const GroundFiles& files)
+{
+  const Columns columns = columnsOf(*layer.GetLayerDefn());
+  const auto take = [&](const std::string& name)
+  {
+    const auto found = columns.find(lowered(trimmed(name)));
+    return found == columns.end() ? -1 : found->second;
+  };
+  if (!files.field.empty())
+  {
+    const int column = take(files.field);
+    if (column < 0)
+    {
+      throw DataError(files.layer + ": layer \"" + layer.GetName() + "\" has no field \"" +
+        files.field + "\"; its fields are " + fieldList(*layer.GetLayerDefn()));
+    }
+    return column;
+  }
+  for (const char* name : { "class", "name", "code", "type", "unit", "material", "ground" })
+  {
+    if (const int column = take(name); column >= 0)
+    {
+      return column;
+    }
+  }
+  throw DataError(files.layer + ": layer \"" + layer.GetName() +
+    "\" has no field \"class\" or the like; say which one has the class; its fields are " +
+    fieldList(*layer.GetLayerDefn()));
+}
+
+std::int64_t vertexCount(const OGRGeometry& geometry)
+{
+  std::int64_t count = 0;
+  const auto polygon = [&](const OGRPolygon& p)
+  {
+    for (const OGRLinearRing* ring : p)
+    {
+      count += ring->getNumPoints();
+    }
+  };
+  if (wkbFlatten(geometry.getGeometryType()) == wkbPolygon)
+  {
+    polygon(*geometry.toPolygon());
+  }
+  else
+  {
+    for (const OGRPolygon* p : *geometry.toMultiPolygon())
+    {
+      polygon(*p);
+    }
+  }
+  return count;
+}
+
+/// Burns polygons into the cells whose centres they cover; a later one over an earlier one.
+class Burner
+{
+public:
+  Burner(const Cells& cells, std::vector<std::uint8_t>& classes)
+    : dataset_(GetGDALDriverManager()->GetDriverByName("MEM")->Create(
+        "", cells.columns, cells.rows, 0, GDT_Byte, nullptr))
+  {
+    char pointer[64] = {};
+    pointer[CPLPrintPointer(pointer, classes.data(), sizeof(pointer) - 1)] = 0;
+    const CPLStringList options(CSLSetNameValue(nullptr, "DATAPOINTER", pointer));
+    const double size = cells.terrain.geometry().cellSize;
+    double affine[6] = { cells.box.xMin, size, 0.0, cells.box.yMax, 0.0, -size };
+    if (!dataset_ || dataset_->AddBand(GDT_Byte, const_cast<char**>(options.List())) != CE_None ||
+      dataset_->SetGeoTransform(affine) != CE_None)
+    {
+      throw DataError("GDAL's raster in memory cannot be made");
+    }
+  }
+
+  void add(std::unique_ptr<OGRGeometry> geometry, int row)
+  {
+    vertices_ += vertexCount(*geometry);
+    geometries_.push_back(std::move(geometry));
+    values_.push_back(row);
+    if (vertices_ > verticesAtOnce)
+    {
+      this->burn();
+    }
+  }
+
+  void burn()
+  {
+    if (geometries_.empty())
+    {
+      return;
+    }
+    std::vector<OGRGeometryH> handles;
+    for (const auto& geometry : geometries_)
+    {
+      handles.push_back(OGRGeometry::ToHandle(geometry.get()));
+    }
+    int band = 1;
+    if (GDALRasterizeGeometries(GDALDataset::ToHandle(dataset_.get()), 1, &band,
+          int(handles.size()), handles.data(), nullptr, nullptr, values_.data(), nullptr, nullptr,
+          nullptr) != CE_None)
+    {
+      throw DataError("GDAL cannot rasterise the polygons");
+    }
+    dataset_->FlushCache();
+    geometries_.clear();
+    values_.clear();
+    vertices_ = 0;
+  }
+
+private:
+  DatasetPtr dataset_;
+  std::vector<std::unique_ptr<OGRGeometry>> geometries_;
+  std::vector<double> values_;
+  std::int64_t vertices_ = 0;
+};
+
+} // namespace
+
+std::vector<std::uint8_t> fromPolygons(const GroundFiles& files, const GroundTable& table,
+  const Cells& cells, std::vector<std::string>& notes)
+{
+  Messages messages;
+  const DatasetPtr dataset = openVector(files.layer, messages);
+  if (dataset->GetLayerCount() == 0)
+  {
+    throw DataError(files.layer + ": has no layer");
+  }
+  refuseSurplusCells(*dataset, files.layer);
+  OGRLayer& layer = *dataset->GetLayer(0);
+  if (layer.GetFeatureCount() == 0)
+  {
+    throw DataError(files.layer + ": layer \"" + layer.GetName() + "\" has no polygon");
+  }
+  const int column = classField(layer, files);
+  const std::string fieldName = layer.GetLayerDefn()->GetFieldDefn(column)->GetNameRef();
+  const Columns columns = columnsOf(*layer.GetLayerDefn());
+  const CrsPtr from = horizontalCrs(layer.GetSpatialRef());
+  noteCrs(from, cells, files.layer, notes);
+  std::unique_ptr<OGRCoordinateTransformation> change;
+  if (from && cells.crs && !from->IsSame(cells.crs.get()))
+  {
+    change.reset(OGRCreateCoordinateTransformation(from.get(), cells.crs.get()));
+    if (!change)
+    {
+      throw DataError(
+        files.layer + ": there is no way from " + crsLabel(*from) + " to " + crsLabel(*cells.crs));
+    }
+  }
+
+  std::vector<std::uint8_t> classes(std::size_t(cells.columns) * cells.rows, 0);
+  Burner burner(cells, classes);
+  OGREnvelope all;
+  bool overlaps = false;
+  std::int64_t number = 0;
+  messages.clear();
+  while (const OGRFeatureUniquePtr feature{ layer.GetNextFeature() })
+  {
+    const Fields fields(files.layer, columns, *feature, ++number);
+    const OGRGeometry* written = feature->GetGeometryRef();
+    if (!written || written->IsEmpty())
+    {
+      continue;
+    }
+    std::unique_ptr<OGRGeometry> geometry(written->getLinearGeometry());
+    const auto type = wkbFlatten(geometry->getGeometryType());
+    if (type != wkbPolygon && type != wkbMultiPolygon)
+    {
+      fields.fail(std::string("geometry is a ") + written->getGeometryName() +
+        ", classes are polygons or a raster");
+    }
+    if (change && geometry->transform(change.get()) != OGRERR_NONE)
+    {
+      fields.fail(
+        "the polygon cannot be brought from " + crsLabel(*from) + " to " + crsLabel(*cells.crs));
+    }
+    OGREnvelope extent;
+    geometry->getEnvelope(&extent);
+    all.Merge(extent);
+    if (extent.MaxX < cells.box.xMin || extent.MinX > cells.box.xMax ||
+      extent.MaxY < cells.box.yMin || extent.MinY > cells.box.yMax)
+    {
+      continue;
+    }
+    overlaps = true;
+    const auto text = fields.textAt(column);
+    if (!text)
+    {
+      fields.fail("field \"" + fieldName + "\" is empty, it must be the class");
+    }
+    const int row = table.rowOf(*text);
+    if (row == 0)
+    {
+      failClass(files.layer + ", row " + std::to_string(number),
+        "class \"" + *text + "\" (field \"" + fieldName + "\")", files.table, table);
+    }
+    burner.add(std::move(geometry), row);
+  }
+  if (!messages.failure().empty())
+  {
+    throw FileError(files.layer + ": row " + std::to_string(number + 1) +
+      " cannot be read: " + messages.failure());
+  }
+  if (!all.IsInit())
+  {
+    throw DataError(files.layer + ": layer \"" + layer.GetName() + "\" has no polygon");
+  }
+  if (!overlaps)
+  {
+    failOverlap(files.layer, boxText({ all.MinX, all.MaxX, all.MinY, all.MaxY }), cells);
+  }
+  burner.burn();
+  return classes;
+}
+
+} // namespace rockfall::gis

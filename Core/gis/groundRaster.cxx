@@ -1,0 +1,134 @@
+// A raster of classes.
+#include "gis/groundCells.h"
+
+#include "base/errors.h"
+#include "gis/gdal.h"
+#include "gis/resample.h"
+
+#include <cpl_string.h>
+#include <gdal_priv.h>
+#include <gdal_utils.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <unordered_map>
+
+namespace rockfall::gis
+{
+
+std::vector<std::uint8_t> fromRaster(const GroundFiles& files, const GroundTable& table,
+  const Cells& cells, std::vector<std::string>& notes)
+{
+  Messages messages;
+  const DatasetPtr source = openRaster(files.layer, messages);
+  if (source->GetRasterCount() == 0)
+  {
+    throw FileError(files.layer + ": has no raster band");
+  }
+  const CrsPtr from = horizontalCrs(source->GetSpatialRef());
+  noteCrs(from, cells, files.layer, notes);
+  std::array<double, 6> affine{};
+  if (source->GetGeoTransform(affine.data()) != CE_None)
+  {
+    throw DataError(files.layer + ": has no georeferencing, so nobody knows where its classes are");
+  }
+  SourceGrid grid;
+  grid.columns = source->GetRasterXSize();
+  grid.rows = source->GetRasterYSize();
+  grid.affine = affine;
+  // extent() is that of the centres.
+  Box box = extent(grid);
+  const double half = 0.5 * std::max(grid.columnStep(), grid.rowStep());
+  box = { box.xMin - half, box.xMax + half, box.yMin - half, box.yMax + half };
+
+  CPLStringList options;
+  const auto add = [&](std::initializer_list<std::string> words)
+  {
+    for (const std::string& word : words)
+    {
+      options.AddString(word.c_str());
+    }
+  };
+  const auto digits = [](double value) { return CPLString().Printf("%.17g", value); };
+  add({ "-of", "VRT", "-r", "near", "-dstalpha", "-te", digits(cells.box.xMin),
+    digits(cells.box.yMin), digits(cells.box.xMax), digits(cells.box.yMax), "-ts",
+    std::to_string(cells.columns), std::to_string(cells.rows) });
+  if (from && cells.crs)
+  {
+    add({ "-t_srs", cells.terrain.geometry().crs });
+  }
+  const std::unique_ptr<GDALWarpAppOptions, void (*)(GDALWarpAppOptions*)> how(
+    GDALWarpAppOptionsNew(options.List(), nullptr), GDALWarpAppOptionsFree);
+  GDALDatasetH sources[] = { GDALDataset::ToHandle(source.get()) };
+  messages.clear();
+  const DatasetPtr warped(
+    GDALDataset::FromHandle(GDALWarp("", nullptr, 1, sources, how.get(), nullptr)));
+  if (!warped)
+  {
+    failOverlap(files.layer,
+      extentText(box, from, cells) +
+        (messages.failure().empty() ? "" : " (" + messages.failure() + ")"),
+      cells);
+  }
+  GDALRasterBand* values = warped->GetRasterBand(1);
+  GDALRasterBand* covered = warped->GetRasterBand(warped->GetRasterCount());
+  char** categories = source->GetRasterBand(1)->GetCategoryNames();
+
+  std::vector<std::uint8_t> classes(std::size_t(cells.columns) * cells.rows, 0);
+  std::unordered_map<double, int> rowOf;
+  bool any = false;
+  const int step = 64; // rows at once
+  std::vector<double> value(std::size_t(step) * cells.columns);
+  std::vector<std::uint8_t> alpha(value.size());
+  for (int first = 0; first < cells.rows; first += step)
+  {
+    const int count = std::min(step, cells.rows - first);
+    messages.clear();
+    if (values->RasterIO(GF_Read, 0, first, cells.columns, count, value.data(), cells.columns,
+          count, GDT_Float64, 0, 0, nullptr) != CE_None ||
+      covered->RasterIO(GF_Read, 0, first, cells.columns, count, alpha.data(), cells.columns, count,
+        GDT_Byte, 0, 0, nullptr) != CE_None)
+    {
+      throw FileError(files.layer + ": cannot be read: " + messages.failure());
+    }
+    for (std::size_t i = 0; i < std::size_t(count) * cells.columns; ++i)
+    {
+      if (alpha[i] == 0 || std::isnan(value[i]))
+      {
+        continue;
+      }
+      any = true;
+      const std::int64_t cell = std::int64_t(first) * cells.columns + std::int64_t(i);
+      auto known = rowOf.find(value[i]);
+      if (known == rowOf.end())
+      {
+        if (!cells.hasGround(cell))
+        {
+          continue;
+        }
+        int row = table.rowOf(number(value[i]));
+        if (row == 0 && categories && value[i] >= 0.0 && value[i] < CSLCount(categories))
+        {
+          row = table.rowOf(categories[int(value[i])]);
+        }
+        if (row == 0)
+        {
+          failClass(files.layer,
+            "class " + number(value[i]) + " (in the cell at " + cells.place(cell) + ")",
+            files.table, table);
+        }
+        known = rowOf.emplace(value[i], row).first;
+      }
+      classes[std::size_t(cell)] = std::uint8_t(known->second);
+    }
+  }
+  if (!any)
+  {
+    failOverlap(files.layer, extentText(box, from, cells), cells);
+  }
+  return classes;
+}
+
+} // namespace rockfall::gis

@@ -1,0 +1,205 @@
+#include "gis/groundTable.h"
+
+#include "base/errors.h"
+#include "gis/fields.h"
+#include "gis/gdal.h"
+#include "terrain/presets.h"
+
+#include <gdal_priv.h>
+#include <ogrsf_frmts.h>
+
+#include <limits>
+#include <optional>
+
+namespace rockfall::gis
+{
+
+namespace
+{
+
+/// "1", "1.0" and " 01" are one class.
+std::string keyOf(const std::string& text)
+{
+  const auto value = parsed(trimmed(text));
+  return value ? number(*value) : lowered(trimmed(text));
+}
+
+RestitutionModel modelFrom(const Fields& row, const std::string& text)
+{
+  std::string letters;
+  for (const char c : lowered(text))
+  {
+    letters += (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') ? std::string(1, c) : "";
+  }
+  if (letters == "0" || letters == "velocity" || letters == "wholevelocity")
+  {
+    return RestitutionModel::Velocity;
+  }
+  if (letters == "1" || letters == "normaltangential" || letters == "normalandtangential")
+  {
+    return RestitutionModel::NormalTangential;
+  }
+  if (letters == "2" || letters == "speeddependent")
+  {
+    return RestitutionModel::SpeedDependent;
+  }
+  row.fail("field \"model\" is \"" + text +
+    "\", it must be 0 (Velocity), 1 (NormalTangential) or 2 (SpeedDependent)");
+}
+
+[[noreturn]] void failEmpty(const Fields& row, const char* name, const Columns& columns)
+{
+  row.fail(std::string("field \"") + name + "\" is " +
+    (columns.count(name) ? "empty" : "missing: the table has no such column") +
+    ", and the row has no preset");
+}
+
+void readRestitution(const Fields& row, const Columns& columns, bool preset, SurfaceMaterial& m)
+{
+  if (const auto model = row.text({ "model", "restitutionmodel" }))
+  {
+    m.restitutionModel = modelFrom(row, *model);
+  }
+  const auto rv = row.ranged(
+    { "rv", "rn", "restitution", "rv_mean", "restitutioncoefficient" }, 0.0, 1.0, "0 to 1");
+  if (!rv && !preset)
+  {
+    failEmpty(row, "rv", columns);
+  }
+  m.restitution = rv.value_or(m.restitution);
+  m.restitutionDeviation =
+    row
+      .ranged({ "rv_deviation", "rn_deviation", "rv_dev", "rv_sd", "restitutiondeviation" }, 0.0,
+        1.0, "0 to 1")
+      .value_or(m.restitutionDeviation);
+  m.tangentialRestitution = row.ranged({ "rt", "tangentialrestitution" }, 0.0, 1.0, "0 to 1")
+                              .value_or(m.tangentialRestitution);
+  m.restitutionSpeed = row
+                         .ranged({ "speed", "k", "restitutionspeed" },
+                           std::numeric_limits<double>::min(), 1e6, "above 0, in m/s")
+                         .value_or(m.restitutionSpeed);
+}
+
+void readJoint(const Fields& row, const Columns& columns, bool preset, SurfaceMaterial& m)
+{
+  const auto phi = row.ranged(
+    { "phi", "phi_mean", "friction_angle", "frictionangle" }, 0.0, 89.0, "0 to 89 degrees");
+  if (!phi && !preset)
+  {
+    failEmpty(row, "phi", columns);
+  }
+  m.frictionAngle = phi ? radians(*phi) : m.frictionAngle;
+  const auto deviation = row.ranged(
+    { "phi_deviation", "phi_dev", "phi_sd", "friction_angle_deviation", "frictionangledeviation" },
+    0.0, 89.0, "0 to 89 degrees");
+  m.frictionAngleDeviation = deviation ? radians(*deviation) : m.frictionAngleDeviation;
+  m.cohesion = row
+                 .ranged({ "cohesion", "c" }, 0.0, std::numeric_limits<double>::max(),
+                   "a finite number of newtons, not negative")
+                 .value_or(m.cohesion);
+}
+
+} // namespace
+
+int GroundTable::rowOf(const std::string& key) const
+{
+  const auto found = this->rows.find(keyOf(key));
+  return found == this->rows.end() ? 0 : found->second;
+}
+
+std::string GroundTable::keys() const
+{
+  std::string list;
+  for (const auto& [key, row] : this->rows)
+  {
+    if (list.size() > 200)
+    {
+      return list + ", ...";
+    }
+    list += (list.empty() ? "\"" : ", \"") + key + "\"";
+  }
+  return list;
+}
+
+GroundTable readGroundTable(
+  GroundKind kind, const std::string& fileName, const SurfaceMaterial& usual)
+{
+  Messages messages;
+  const DatasetPtr dataset = openVector(fileName, messages);
+  if (dataset->GetLayerCount() == 0)
+  {
+    throw DataError(fileName + ": has no table");
+  }
+  refuseSurplusCells(*dataset, fileName);
+  OGRLayer& layer = *dataset->GetLayer(0);
+  const Columns columns = columnsOf(*layer.GetLayerDefn());
+  if (!columns.count("class") && !columns.count("name"))
+  {
+    throw DataError(fileName + ": has no column \"class\" or \"name\"; its columns are " +
+      fieldList(*layer.GetLayerDefn()));
+  }
+  GroundTable table;
+  std::vector<std::string> classes;
+  messages.clear();
+  while (const OGRFeatureUniquePtr feature{ layer.GetNextFeature() })
+  {
+    const int number = int(table.names.size()) + 1;
+    const Fields row(fileName, columns, *feature, number);
+    if (messages.warning().find("Invalid value type") != std::string::npos)
+    {
+      row.fail(messages.warning());
+    }
+    if (number > MaterialClasses::largest)
+    {
+      row.fail("is one too many: a table has at most " + std::to_string(MaterialClasses::largest) +
+        " classes");
+    }
+    const auto written = row.text({ "class" }), name = row.text({ "name" });
+    if (!written && !name)
+    {
+      row.fail("field \"class\" is empty");
+    }
+    const std::string key = keyOf(written.value_or(name.value_or("")));
+    if (!table.rows.emplace(key, number).second)
+    {
+      row.fail(
+        "class \"" + key + "\" is in row " + std::to_string(table.rows.at(key)) + " already");
+    }
+    SurfaceMaterial material = usual;
+    material.restitutionDeviation = material.frictionAngleDeviation = 0.0;
+    const auto preset = row.text({ "preset" });
+    if (preset)
+    {
+      try
+      {
+        material = groundPreset(*preset).material();
+        material.cohesion = usual.cohesion;
+      }
+      catch (const Error& error)
+      {
+        row.fail(std::string("field \"preset\": ") + error.what());
+      }
+    }
+    kind == GroundKind::Restitution ? readRestitution(row, columns, bool(preset), material)
+                                    : readJoint(row, columns, bool(preset), material);
+    table.names.push_back(name.value_or(*(written ? written : name)));
+    table.materials.push_back(material);
+  }
+  if (!messages.failure().empty())
+  {
+    throw FileError(fileName + ": row " + std::to_string(table.names.size() + 1) +
+      " cannot be read: " + messages.failure());
+  }
+  if (table.names.empty())
+  {
+    throw DataError(fileName + ": has no row");
+  }
+  // Names serve as well where no class is called so.
+  for (std::size_t i = 0; i < table.names.size(); ++i)
+  {
+    table.rows.emplace(keyOf(table.names[i]), int(i) + 1);
+  }
+  return table;
+}
+
+} // namespace rockfall::gis

@@ -1,0 +1,32 @@
+#pragma once
+
+/// @file
+/// The table of a ground layer.
+
+#include "gis/ground.h"
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace rockfall::gis
+{
+
+/// The rows of a table, and how cells find theirs.
+struct GroundTable
+{
+  std::vector<std::string> names;         ///< Row by row.
+  std::vector<SurfaceMaterial> materials; ///< Row by row.
+  std::map<std::string, int> rows;        ///< From class (and name, if no class has it), from 1.
+
+  /// 0 if there is none. Numbers are one, however they are written.
+  int rowOf(const std::string& key) const;
+  /// "1", "2", "rock": all classes, for a message.
+  std::string keys() const;
+};
+
+/// See readGround. `usual`: what is taken for empty cells.
+GroundTable readGroundTable(
+  GroundKind kind, const std::string& fileName, const SurfaceMaterial& usual);
+
+} // namespace rockfall::gis

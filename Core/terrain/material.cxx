@@ -1,0 +1,103 @@
+#include "terrain/material.h"
+
+#include "base/errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rockfall
+{
+
+namespace
+{
+
+/// tan φ is 57 here; beyond it only grows. Drawn angles are kept below it, too.
+constexpr double steepestFriction = radians(89.0);
+
+void requireRange(double value, double low, double high, const char* field, const char* range)
+{
+  if (!(value >= low && value <= high))
+  {
+    throw ParameterError(
+      std::string(field) + " is " + std::to_string(value) + ", it must be " + range);
+  }
+}
+
+} // namespace
+
+void SurfaceMaterial::validate() const
+{
+  requireRange(this->restitution, 0.0, 1.0, "RestitutionCoefficient", "0 to 1");
+  requireRange(this->restitutionDeviation, 0.0, 1.0, "RestitutionDeviation", "0 to 1");
+  const int model = int(this->restitutionModel);
+  if (model < int(RestitutionModel::Velocity) || model > int(RestitutionModel::SpeedDependent))
+  {
+    throw ParameterError("RestitutionModel is " + std::to_string(model) +
+      ", it must be 0 (whole velocity), 1 (normal and tangential) or 2 (speed-dependent)");
+  }
+  requireRange(this->tangentialRestitution, 0.0, 1.0, "TangentialRestitution", "0 to 1");
+  if (!(this->restitutionSpeed > 0.0 && std::isfinite(this->restitutionSpeed)))
+  {
+    throw ParameterError("RestitutionSpeed is " + std::to_string(this->restitutionSpeed) +
+      ", it must be a positive, finite number of metres per second");
+  }
+  if (!(this->frictionAngle >= 0.0 && this->frictionAngle <= steepestFriction))
+  {
+    throw ParameterError("FrictionAngle is " + std::to_string(degrees(this->frictionAngle)) +
+      " degrees, it must be 0 to 89");
+  }
+  if (!(this->frictionAngleDeviation >= 0.0 && this->frictionAngleDeviation <= steepestFriction))
+  {
+    throw ParameterError("FrictionAngleDeviation is " +
+      std::to_string(degrees(this->frictionAngleDeviation)) + " degrees, it must be 0 to 89");
+  }
+  requireRange(this->cohesion, 0.0, std::numeric_limits<double>::max(), "Cohesion",
+    "a finite number of newtons, not negative");
+}
+
+void Roughness::validate() const
+{
+  if (!std::isfinite(this->mean))
+  {
+    throw ParameterError("RoughnessMean is " + std::to_string(this->mean) + ", it must be finite");
+  }
+  requireRange(this->deviation, 0.0, std::numeric_limits<double>::max(), "RoughnessDeviation",
+    "a finite number of metres, not negative");
+}
+
+void MaterialClasses::validate(std::int64_t cellCount, const char* kind) const
+{
+  const std::string what = std::string(kind) + " classes";
+  if (names.size() != materials.size() || this->count() > largest)
+  {
+    throw DataError("there are " + std::to_string(materials.size()) + " materials and " +
+      std::to_string(names.size()) + " names of " + what + "; at most " + std::to_string(largest) +
+      " are possible");
+  }
+  if (!cells.empty() && std::int64_t(cells.size()) != cellCount)
+  {
+    throw DataError("there are " + what + " for " + std::to_string(cells.size()) +
+      " cells, the slope has " + std::to_string(cellCount));
+  }
+  const auto highest = std::max_element(cells.begin(), cells.end());
+  if (highest != cells.end() && int(*highest) > this->count())
+  {
+    throw DataError("a cell has number " + std::to_string(int(*highest)) + " of the " + what +
+      ", there are " + std::to_string(this->count()));
+  }
+  for (std::size_t k = 0; k < materials.size(); ++k)
+  {
+    try
+    {
+      materials[k].validate();
+    }
+    catch (const ParameterError& error)
+    {
+      throw ParameterError(
+        std::string(kind) + " class \"" + names[k] + "\": " + std::string(error.what()));
+    }
+  }
+}
+
+} // namespace rockfall

@@ -1,0 +1,397 @@
+// Classes of ground: grids and polygons of any CRS with their tables, on the cells of a terrain.
+#include "base/errors.h"
+#include "gis/ground.h"
+#include "gisFiles.h"
+#include "terrain/Surface.h"
+#include "terrain/presets.h"
+
+#include <cmath>
+#include <set>
+
+using namespace rockfall;
+using namespace rockfall::testing;
+
+namespace
+{
+
+constexpr double west = 600000.0, south = 5100000.0;
+
+/// 8 × 6 cells of 10 m, level, in UTM 32N unless said otherwise.
+Terrain slope(const std::string& crs = "EPSG:32632", SurfaceMaterial material = {})
+{
+  GridGeometry g;
+  g.columns = 9;
+  g.rows = 7;
+  g.cellSize = 10.0;
+  g.xOrigin = west;
+  g.yOrigin = south;
+  g.crs = crs;
+  return Terrain(g, std::vector<double>(63, 0.0), material);
+}
+
+/// Classes 1 in the western half and 2 in the eastern one, at half the terrain's cell.
+RawRaster halves(double first = 1.0, double second = 2.0)
+{
+  RawRaster raster;
+  raster.columns = 16;
+  raster.rows = 12;
+  raster.affine = { west, 5.0, 0.0, south + 60.0, 0.0, -5.0 };
+  raster.crs = "EPSG:32632";
+  raster.type = "Byte";
+  raster.fill([&](double x, double) { return x < west + 40.0 ? first : second; });
+  return raster;
+}
+
+std::string table(const std::string& text = "class,name,rv,rv_deviation\n1,rock,0.9,0.05\n"
+                                            "2,talus,0.5,0.1\n",
+  const std::string& name = "table.csv")
+{
+  return writeFile(name, text);
+}
+
+MaterialClasses read(const GroundFiles& files, const Terrain& terrain,
+  GroundKind kind = GroundKind::Restitution, std::vector<std::string>* notes = nullptr)
+{
+  std::vector<std::string> own;
+  return readGround(kind, files, terrain, notes ? *notes : own);
+}
+
+std::string failure(const GroundFiles& files, GroundKind kind = GroundKind::Restitution)
+{
+  const Terrain terrain = slope();
+  return messageOf<DataError>([&] { read(files, terrain, kind); });
+}
+
+std::string polygons(const std::string& features, const std::string& crs = "EPSG::32632",
+  const std::string& name = "zones.geojson")
+{
+  return writeFile(name,
+    "{\"type\":\"FeatureCollection\",\"crs\":{\"type\":\"name\",\"properties\":{\"name\":"
+    "\"urn:ogc:def:crs:" +
+      crs + "\"}},\"features\":[" + features + "]}");
+}
+
+std::string box(double x0, double y0, double x1, double y1, const std::string& properties)
+{
+  const auto corner = [](double x, double y)
+  { return "[" + exactText(x) + "," + exactText(y) + "]"; };
+  return "{\"type\":\"Feature\",\"properties\":{" + properties +
+    "},\"geometry\":{\"type\":\"Polygon\",\"coordinates\":[[" + corner(x0, y0) + "," +
+    corner(x1, y0) + "," + corner(x1, y1) + "," + corner(x0, y1) + "," + corner(x0, y0) + "]]}}";
+}
+
+} // namespace
+
+TEST(Ground, RasterOnAnotherGrid)
+{
+  const Terrain terrain = slope();
+  std::vector<std::string> notes;
+  const MaterialClasses c =
+    read({ halves().write(), table(), "" }, terrain, GroundKind::Restitution, &notes);
+  ASSERT_EQ(c.count(), 2);
+  ASSERT_EQ(c.cells.size(), 48u);
+  for (int cell = 0; cell < 48; ++cell)
+  {
+    EXPECT_EQ(int(c.cells[std::size_t(cell)]), cell % 8 < 4 ? 1 : 2) << cell;
+    EXPECT_EQ(c.at(2 * cell + 1), cell % 8 < 4 ? 1 : 2);
+    EXPECT_EQ(c.at(2 * cell + 2), cell % 8 < 4 ? 1 : 2);
+  }
+  EXPECT_EQ(c.names[1], "talus");
+  EXPECT_EQ(c.materials[0].restitution, 0.9);
+  EXPECT_EQ(c.materials[1].restitutionDeviation, 0.1);
+  EXPECT_TRUE(holds(notes.back(), { "rock 50 %", "talus 50 %" }));
+}
+
+TEST(Ground, RasterInAnotherCrsAndExtent)
+{
+  // Longitude and latitude, with its border on the meridian 10.2930° E. By PROJ (gdaltransform) it
+  // passes 36.7 m east of the slope's western edge 29 m south of it and, as the meridians converge
+  // by 0.93°, 35.8 m and 36.7 m over the slope.
+  RawRaster raster;
+  raster.columns = 400;
+  raster.rows = 200;
+  // 1e-5° is 0.77 m east and 1.11 m north.
+  raster.affine = { 10.291, 1e-5, 0.0, 46.0476, 0.0, -1e-5 };
+  raster.crs = "EPSG:4326";
+  raster.type = "Float32";
+  raster.fill([](double x, double) { return x < 10.2930 ? 1.0 : 2.0; });
+  const Terrain terrain = slope();
+  const MaterialClasses c = read({ raster.write(), table(), "" }, terrain);
+  for (int cell = 0; cell < 48; ++cell)
+  {
+    // Centres at 5, 15, 25, 35, 45 m: 35 m is west of it.
+    EXPECT_EQ(int(c.cells[std::size_t(cell)]), cell % 8 < 4 ? 1 : 2) << cell;
+  }
+}
+
+TEST(Ground, WhatTheLayerDoesNotCoverIsOfTheSlopesOwnMaterial)
+{
+  RawRaster raster = halves();
+  raster.affine[0] += 20.0; // its western 20 m are missing
+  raster.fill([](double x, double) { return x < west + 60.0 ? 1.0 : 9.0; });
+  raster.band = "<NoDataValue>9</NoDataValue>";
+  std::vector<std::string> notes;
+  const Terrain terrain = slope();
+  const MaterialClasses c =
+    read({ raster.write(), table(), "" }, terrain, GroundKind::Restitution, &notes);
+  for (int cell = 0; cell < 48; ++cell)
+  {
+    EXPECT_EQ(int(c.cells[std::size_t(cell)]), cell % 8 >= 2 && cell % 8 < 6 ? 1 : 0) << cell;
+  }
+  EXPECT_TRUE(holds(notes.back(), { "24 of 48 cells" }));
+  bool unused = false;
+  for (const std::string& note : notes)
+  {
+    unused = unused || holds(note, { "no cell uses row 2", "talus" });
+  }
+  EXPECT_TRUE(unused);
+}
+
+TEST(Ground, PolygonsByNameAndByNumber)
+{
+  const Terrain terrain = slope();
+  const std::string file =
+    polygons(box(west - 5, south - 5, west + 40, south + 65, "\"geology\":\"Rock\"") + "," +
+      box(west + 40, south - 5, west + 85, south + 30, "\"geology\":\"2.0\""));
+  const MaterialClasses c = read({ file, table(), "Geology" }, terrain);
+  for (int cell = 0; cell < 48; ++cell)
+  {
+    const int expected = cell % 8 < 4 ? 1 : cell / 8 >= 3 ? 2 : 0;
+    EXPECT_EQ(int(c.cells[std::size_t(cell)]), expected) << cell;
+  }
+}
+
+TEST(Ground, PolygonsInDegrees)
+{
+  // A box around all of the slope, in longitude and latitude.
+  const Terrain terrain = slope();
+  const std::string file =
+    polygons(box(10.28, 46.03, 10.31, 46.06, "\"class\":1"), "OGC:1.3:CRS84");
+  const MaterialClasses c = read({ file, table(), "" }, terrain);
+  EXPECT_EQ(std::set<int>(c.cells.begin(), c.cells.end()), std::set<int>{ 1 });
+}
+
+TEST(Ground, JointTableAndModels)
+{
+  const Terrain terrain = slope("EPSG:32632", { .cohesion = 7.0 });
+  const MaterialClasses joints = read(
+    { halves().write(), table("class;phi;phi_deviation;cohesion\n1;35;2;\n2;20.5;;100\n"), "" },
+    terrain, GroundKind::Joint);
+  EXPECT_DOUBLE_EQ(joints.materials[0].frictionAngle, radians(35.0));
+  EXPECT_DOUBLE_EQ(joints.materials[0].frictionAngleDeviation, radians(2.0));
+  EXPECT_EQ(joints.materials[0].cohesion, 7.0);
+  EXPECT_DOUBLE_EQ(joints.materials[1].frictionAngle, radians(20.5));
+  EXPECT_EQ(joints.materials[1].frictionAngleDeviation, 0.0);
+  EXPECT_EQ(joints.materials[1].cohesion, 100.0);
+  const MaterialClasses models = read(
+    { halves().write(),
+      table("class,rv,model,rt,speed,preset\n1,0.4,SpeedDependent,0.8,5,\n2,,,,,Talus\n"), "" },
+    terrain);
+  EXPECT_EQ(models.materials[0].restitutionModel, RestitutionModel::SpeedDependent);
+  EXPECT_EQ(models.materials[0].tangentialRestitution, 0.8);
+  EXPECT_EQ(models.materials[0].restitutionSpeed, 5.0);
+  EXPECT_EQ(models.materials[1].restitution, groundPreset("talus").normalRestitution);
+  EXPECT_EQ(models.materials[1].restitutionModel, RestitutionModel::NormalTangential);
+}
+
+TEST(Ground, EachClassDrawsItsOwnNumbers)
+{
+  const SurfaceMaterial own{
+    .restitution = 0.7, .restitutionDeviation = 0.1, .frictionAngleDeviation = radians(3.0)
+  };
+  const Terrain plain = slope("EPSG:32632", own);
+  Terrain terrain = slope("EPSG:32632", own);
+  terrain.setRestitutionClasses(read({ halves().write(), table(), "" }, terrain));
+  terrain.setJointClasses(
+    read({ halves().write(), table("class,phi,phi_deviation\n1,30,2\n2,30,2\n", "joints.csv"), "" },
+      terrain, GroundKind::Joint));
+  double sum[2] = {}, square[2] = {}, cross = 0.0, frictions = 0.0;
+  const int n = 4000;
+  for (int i = 0; i < n; ++i)
+  {
+    const Surface before(plain, 1, i), surface(terrain, 1, i);
+    // What the slope draws for itself is what it drew without classes, bit for bit.
+    ASSERT_EQ(surface.restitution(), before.restitution());
+    ASSERT_EQ(surface.friction(), before.friction());
+    const double r[2] = { surface.restitutionOf(surface.restitutionClass(1)),
+      surface.restitutionOf(surface.restitutionClass(15)) };
+    for (int k = 0; k < 2; ++k)
+    {
+      sum[k] += r[k] / n;
+      square[k] += r[k] * r[k] / n;
+    }
+    cross += (r[0] - 0.9) * (r[1] - 0.5) / n;
+    frictions += surface.frictionAt(1) == surface.frictionAt(15);
+  }
+  // Of n draws the mean deviates by σ/√n; four of that. Class 1 is cut at 1, two σ away: its mean
+  // is 0.0085 σ less.
+  EXPECT_NEAR(sum[0], 0.9 - 0.0085 * 0.05, 4 * 0.05 / std::sqrt(n));
+  EXPECT_NEAR(sum[1], 0.5, 4 * 0.1 / std::sqrt(n));
+  EXPECT_NEAR(std::sqrt(square[1] - sum[1] * sum[1]), 0.1, 4 * 0.1 / std::sqrt(2.0 * n));
+  EXPECT_NEAR(cross, 0.0, 4 * 0.05 * 0.1 / std::sqrt(n)); // independent
+  EXPECT_EQ(frictions, 0.0);
+  const Surface mean = Surface::asSurveyed(terrain);
+  EXPECT_EQ(mean.restitutionOf(1), 0.9);
+  EXPECT_DOUBLE_EQ(mean.frictionAt(15), std::tan(radians(30.0)));
+}
+
+TEST(Ground, DecimalCommasChangeNothing)
+{
+  const std::string layer = halves().write(), rows = table();
+  const CommaLocale commas;
+  const Terrain terrain = slope();
+  const MaterialClasses c = read({ layer, rows, "" }, terrain);
+  EXPECT_EQ(c.materials[0].restitution, 0.9);
+  EXPECT_EQ(c.materials[1].restitutionDeviation, 0.1);
+  EXPECT_EQ(int(c.cells[0]), 1);
+}
+
+TEST(Ground, Presets)
+{
+  for (const GroundPreset& preset : groundPresets())
+  {
+    EXPECT_NO_THROW(preset.material().validate()) << preset.name;
+    EXPECT_NE(std::string(preset.restitutionSource), "");
+    EXPECT_EQ(&groundPreset(preset.name), &preset);
+  }
+  EXPECT_TRUE(holds(messageOf<DataError>([] { groundPreset("cheese"); }),
+    { "cheese", "rock", "talus", "meadow", "asphalt" }));
+}
+
+TEST(GroundErrors, LayersAndTablesBelongTogether)
+{
+  const Terrain terrain = slope();
+  const std::string layer = halves().write(), rows = table();
+  EXPECT_EQ(read({}, terrain).count(), 0);
+  EXPECT_TRUE(holds(messageOf<ParameterError>(
+                      [&] {
+                        read({ layer, "", "" }, terrain);
+                      }),
+    { "RestitutionLayer", layer, "no RestitutionTable" }));
+  EXPECT_TRUE(holds(messageOf<ParameterError>(
+                      [&] {
+                        read({ "", rows, "" }, terrain, GroundKind::Joint);
+                      }),
+    { "JointTable", rows, "no JointLayer" }));
+  EXPECT_TRUE(holds(messageOf<FileError>(
+                      [&] {
+                        read({ "/no/such.tif", rows, "" }, terrain);
+                      }),
+    { "/no/such.tif" }));
+  EXPECT_TRUE(holds(messageOf<FileError>(
+                      [&] {
+                        read({ layer, "/no/such.csv", "" }, terrain);
+                      }),
+    { "/no/such.csv" }));
+}
+
+TEST(GroundErrors, ClassesWithoutARow)
+{
+  const std::string rows = table();
+  std::string layer = halves(1.0, 3.0).write();
+  EXPECT_TRUE(
+    holds(failure({ layer, rows, "" }), { layer, "class 3", "600045, 5100055", rows, "\"1\"" }));
+  layer = polygons(box(west, south, west + 80, south + 60, "\"class\":\"ice\""));
+  EXPECT_TRUE(holds(failure({ layer, rows, "" }), { layer, "row 1", "ice", "class", rows }));
+  layer = polygons(box(west, south, west + 80, south + 60, "\"class\":null"));
+  EXPECT_TRUE(holds(failure({ layer, rows, "" }), { layer, "row 1", "class", "empty" }));
+}
+
+TEST(GroundErrors, LayersElsewhere)
+{
+  const std::string rows = table();
+  RawRaster raster = halves();
+  raster.affine[3] += 1000.0;
+  std::string layer = raster.write();
+  EXPECT_TRUE(holds(failure({ layer, rows, "" }),
+    { layer, "does not overlap", "5101000 ... ", "5100000 ... 5100060", "EPSG:32632" }));
+  layer = polygons(box(west + 500, south, west + 580, south + 60, "\"class\":1"));
+  EXPECT_TRUE(
+    holds(failure({ layer, rows, "" }), { layer, "does not overlap", "600500 ... 600580" }));
+}
+
+TEST(GroundErrors, LayersOfTheWrongKind)
+{
+  const std::string rows = table();
+  std::string layer =
+    polygons("{\"type\":\"Feature\",\"properties\":{\"class\":1},\"geometry\":{\"type\":\"Point\","
+             "\"coordinates\":[600010,5100010]}}");
+  EXPECT_TRUE(holds(failure({ layer, rows, "" }), { layer, "row 1", "POINT", "polygons" }));
+  layer = polygons(box(west, south, west + 80, south + 60, "\"geology\":1"));
+  EXPECT_TRUE(holds(failure({ layer, rows, "" }), { layer, "class", "geology" }));
+  EXPECT_TRUE(holds(failure({ layer, rows, "soil" }), { layer, "soil", "geology" }));
+  RawRaster raster = halves();
+  raster.georeferenced = false;
+  layer = raster.write();
+  EXPECT_TRUE(holds(failure({ layer, rows, "" }), { layer, "georeferencing" }));
+  layer = polygons("");
+  EXPECT_TRUE(holds(failure({ layer, rows, "" }), { layer, "no polygon" }));
+}
+
+TEST(GroundErrors, TablesNameRowFieldAndValue)
+{
+  const std::string layer = halves().write();
+  const struct
+  {
+    const char* rows;
+    std::vector<std::string> parts;
+    GroundKind kind = GroundKind::Restitution;
+  } cases[] = {
+    { "class,rv\n", { "no row" } },
+    { "kind,rv\n1,0.5\n", { "class", "kind" } },
+    { "class,rv\n1,1.5\n2,0.5\n", { "row 1", "rv", "1.5", "0 to 1" } },
+    { "class,rv\n1,0.5\n2,-0.1\n", { "row 2", "rv", "-0.1" } },
+    { "class,rv\n1,0.5\n2,nan\n", { "row 2", "rv", "nan" } },
+    { "class,rv\n1,0.5\n2,hard\n", { "row 2", "rv", "hard", "not a number" } },
+    { "class;rv\n1;0,5\n2;0,6\n", { "row 1", "rv", "0,5", "decimal sign is a point" } },
+    { "class,rv\n1,0,5\n2,0,6\n", { "row 1", "3 fields" } },
+    { "class,rv\n1,0.5\n2,\n", { "row 2", "rv", "empty", "preset" } },
+    { "class,name\n1,rock\n2,talus\n", { "row 1", "rv", "missing" } },
+    { "class,rv\n1,0.5\n1.0,0.6\n", { "row 2", "class \"1\"", "row 1" } },
+    { "class,rv\n1,0.5\n,0.6\n", { "row 2", "class", "empty" } },
+    { "class,rv,rv_deviation\n1,0.5,2\n2,0.5,0\n", { "row 1", "rv_deviation", "2" } },
+    { "class,rv,model\n1,0.5,bouncy\n2,0.5,0\n", { "row 1", "model", "bouncy" } },
+    { "class,rv,rt\n1,0.5,1.2\n2,0.5,0\n", { "row 1", "rt", "1.2" } },
+    { "class,rv,speed\n1,0.5,0\n2,0.5,1\n", { "row 1", "speed", "0" } },
+    { "class,rv,preset\n1,0.5,cheese\n2,0.5,\n", { "row 1", "preset", "cheese", "talus" } },
+    { "class,phi\n1,30\n2,90\n", { "row 2", "phi", "90", "0 to 89" }, GroundKind::Joint },
+    { "class,phi\n1,30\n2,\n", { "row 2", "phi", "empty" }, GroundKind::Joint },
+    { "class,phi,phi_deviation\n1,30,-1\n2,30,0\n", { "row 1", "phi_deviation", "-1" },
+      GroundKind::Joint },
+    { "class,phi,cohesion\n1,30,-5\n2,30,0\n", { "row 1", "cohesion", "-5" }, GroundKind::Joint },
+  };
+  for (const auto& c : cases)
+  {
+    const std::string rows = table(c.rows);
+    const std::string message = failure({ layer, rows, "" }, c.kind);
+    EXPECT_TRUE(holds(message, { rows })) << c.rows;
+    EXPECT_TRUE(holds(message, c.parts)) << c.rows;
+  }
+  std::string many = "class,rv\n";
+  for (int k = 1; k <= 256; ++k)
+  {
+    many += std::to_string(k) + ",0.5\n";
+  }
+  EXPECT_TRUE(holds(failure({ layer, table(many), "" }), { "row 256", "255" }));
+}
+
+TEST(GroundErrors, TerrainRefusesWhatIsNotItsOwn)
+{
+  Terrain terrain = slope();
+  MaterialClasses classes;
+  classes.names = { "rock" };
+  classes.materials = { {} };
+  auto cells = std::make_shared<std::vector<std::uint8_t>>(47, 1);
+  classes.cells = *cells;
+  classes.owner = cells;
+  EXPECT_TRUE(holds(
+    messageOf<DataError>([&] { terrain.setJointClasses(classes); }), { "joint", "47", "48" }));
+  cells->assign(48, 2);
+  classes.cells = *cells;
+  EXPECT_TRUE(
+    holds(messageOf<DataError>([&] { terrain.setJointClasses(classes); }), { "number 2", "1" }));
+  cells->assign(48, 1);
+  classes.materials[0].frictionAngle = 2.0;
+  EXPECT_TRUE(holds(messageOf<ParameterError>([&] { terrain.setJointClasses(classes); }),
+    { "rock", "FrictionAngle" }));
+}
