@@ -192,7 +192,7 @@ void writeTerrain(std::shared_ptr<const Terrain> terrain, int stride, vtkFieldDa
   fieldData->AddArray(heights);
 }
 
-Terrain readTerrain(vtkPolyData* mesh)
+Terrain readTerrain(vtkPolyData* mesh, bool withMesh)
 {
   vtkFieldData* fieldData = mesh->GetFieldData();
   if (mesh->GetNumberOfCells() == 0 && !fieldData->GetArray(heightsName))
@@ -231,7 +231,10 @@ Terrain readTerrain(vtkPolyData* mesh)
   // The smart pointer lives in the deleter: the terrain keeps the array, not a copy of it.
   std::shared_ptr<const void> owner(view.data(), [heights](const void*) {});
   Terrain terrain(std::move(grid), view, std::move(owner), materialOf(m), roughness);
-  checkMesh(mesh, terrain, stride);
+  if (withMesh)
+  {
+    checkMesh(mesh, terrain, stride);
+  }
   return terrain;
 }
 

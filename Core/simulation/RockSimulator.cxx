@@ -288,7 +288,7 @@ void RockSimulator::liftOntoRoughness()
   }
 }
 
-Trajectory RockSimulator::run()
+Trajectory RockSimulator::run(double enough)
 {
   TrajectorySummary& summary = recorder_.trajectory().summary;
   summary.blockId = rock_.blockId;
@@ -299,7 +299,15 @@ Trajectory RockSimulator::run()
   recorder_.begin(state_);
   this->auditSamples(state_);
   this->checkEnd(0.0);
-  while (!done_)
+  const auto seen = [&]
+  {
+    // A knot that is the last sample may still be replaced.
+    const std::vector<Sample>& samples = recorder_.trajectory().samples;
+    const std::size_t last = samples.size() - 1;
+    return samples[last].kind != SampleKind::Knot ? samples[last].time >= enough
+                                                  : last > 0 && samples[last - 1].time >= enough;
+  };
+  while (!done_ && !seen())
   {
     this->flyUntilNear();
     if (!done_)

@@ -9,6 +9,7 @@
 #include "simulation/ensemble.h"
 #include "solver/StepSolver.h"
 
+#include <limits>
 #include <vector>
 
 namespace rockfall
@@ -20,8 +21,10 @@ public:
   RockSimulator(
     const Surface& surface, const Rock& rock, const Block& block, const SimulationParameters& p);
 
-  /// Runs to rest, to the edge of the slope or to the end time.
-  Trajectory run();
+  /// Runs to rest, to the edge of the slope or to the end time. Stops earlier if there is a sample
+  /// at `enough` (s) or later: what it has by then is as in the whole run, bit for bit, but the
+  /// summary is not complete.
+  Trajectory run(double enough = std::numeric_limits<double>::infinity());
 
   const BlockState& state() const { return state_; }
 

@@ -2,8 +2,8 @@
 
 #include "base/errors.h"
 #include "simulation/RockSimulator.h"
+#include "simulation/stateHash.h"
 
-#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -12,6 +12,7 @@
 #include <cmath>
 #include <condition_variable>
 #include <limits>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -97,6 +98,12 @@ void SimulationParameters::validate() const
       " s");
   }
   atLeast(this->iterations, 1, "Iterations");
+  atLeast(this->firstIteration, 0, "FirstIteration");
+  if (this->firstIteration > std::numeric_limits<int>::max() - this->iterations)
+  {
+    throw ParameterError("FirstIteration is " + std::to_string(this->firstIteration) + ", with " +
+      std::to_string(this->iterations) + " Iterations it goes beyond 2,147,483,647");
+  }
   atLeast(this->threads, 0, "NumberOfThreads");
   atLeast(this->maxOpenClose, 2, "MaximumOpenClose");
   atLeast(this->maxCuts, 0, "MaximumCuts");
@@ -137,65 +144,174 @@ void Rock::validate() const
   }
 }
 
-TrajectoryStore::TrajectoryStore(int rocks, int iterations)
-  : rocks_(rocks)
-  , trajectories_(std::size_t(rocks) * iterations)
+namespace
 {
+
+/// Hands trajectories on in the order of their numbers, whatever the order in which they come. No
+/// thread waits for another one's delivery: it leaves its trajectory and goes on.
+class InOrder
+{
+public:
+  explicit InOrder(TrajectorySink& sink)
+    : sink_(sink)
+  {
+  }
+
+  void put(std::int64_t number, Trajectory&& trajectory)
+  {
+    std::unique_lock<std::mutex> lock(mutex_);
+    waiting_.emplace(number, std::move(trajectory));
+    if (delivering_)
+    {
+      return;
+    }
+    delivering_ = true;
+    for (auto turn = waiting_.find(next_); turn != waiting_.end(); turn = waiting_.find(next_))
+    {
+      Trajectory delivered = std::move(turn->second);
+      waiting_.erase(turn);
+      ++next_;
+      lock.unlock();
+      sink_.consume(std::move(delivered)); // if it throws nothing more is delivered
+      lock.lock();
+    }
+    delivering_ = false;
+  }
+
+private:
+  TrajectorySink& sink_;
+  std::mutex mutex_;
+  std::map<std::int64_t, Trajectory> waiting_;
+  std::int64_t next_ = 0;
+  bool delivering_ = false;
+};
+
+/// The exception of the lowest number among those that several threads met.
+class FirstFailure
+{
+public:
+  void note(std::int64_t number)
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!failure_ || number < number_)
+    {
+      number_ = number;
+      failure_ = std::current_exception();
+    }
+  }
+  void rethrow() const
+  {
+    if (failure_)
+    {
+      std::rethrow_exception(failure_);
+    }
+  }
+
+private:
+  std::mutex mutex_;
+  std::int64_t number_ = 0;
+  std::exception_ptr failure_;
+};
+
+/// Calls `work` on as many threads as asked for (0: all), once each; returns when all came back.
+template <typename Work>
+void onThreads(int threads, const Work& work)
+{
+  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic, 1);
+  arena.execute(
+    [&]
+    {
+      tbb::parallel_for(
+        0, tbb::this_task_arena::max_concurrency(), [&](int) { work(); },
+        tbb::simple_partitioner());
+    });
 }
 
-void TrajectoryStore::consume(Trajectory&& trajectory)
+Block blockOf(const Rock& rock)
 {
-  const TrajectorySummary& s = trajectory.summary;
-  trajectories_[std::size_t(s.iteration) * rocks_ + s.rock] = std::move(trajectory);
+  return Block(rock.shape, rock.density, rock.youngModulus, rock.poissonRatio);
 }
 
-bool runEnsemble(const Terrain& terrain, std::span<const Rock> rocks,
-  const SimulationParameters& parameters, TrajectorySink& sink, const Progress& progress)
+} // namespace
+
+Ensemble::Ensemble(
+  const Terrain& terrain, std::span<const Rock> rocks, const SimulationParameters& p)
+  : terrain_(terrain)
+  , rocks_(rocks)
+  , parameters_(p)
 {
-  parameters.validate();
+  p.validate();
   if (rocks.empty())
   {
     throw ParameterError("there are no rock blocks to simulate");
   }
-  std::vector<Block> blocks;
-  blocks.reserve(rocks.size());
-  for (const Rock& rock : rocks)
-  {
-    rock.validate();
-    blocks.emplace_back(rock.shape, rock.density, rock.youngModulus, rock.poissonRatio);
-    checkPlacement(terrain, rock, blocks.back());
-  }
+  FirstFailure failure;
+  std::atomic<std::int64_t> next{ 0 };
+  onThreads(p.threads,
+    [&]
+    {
+      for (std::int64_t k = next++; k < std::int64_t(rocks.size()); k = next++)
+      {
+        try
+        {
+          rocks[std::size_t(k)].validate();
+          checkPlacement(terrain, rocks[std::size_t(k)], blockOf(rocks[std::size_t(k)]));
+        }
+        catch (...)
+        {
+          failure.note(k);
+        }
+      }
+    });
+  failure.rethrow();
+}
 
-  const std::int64_t total = std::int64_t(rocks.size()) * parameters.iterations;
-  std::atomic<std::int64_t> finished{ 0 };
-  std::atomic<bool> stop{ false };
-  std::mutex sinkMutex;
-  std::exception_ptr failure;
-  const auto simulate = [&](std::int64_t index)
+Trajectory Ensemble::simulate(std::int64_t number, double enough) const
+{
+  const int rock = int(number % std::int64_t(rocks_.size()));
+  const int iteration = parameters_.firstIteration + int(number / std::int64_t(rocks_.size()));
+  // The block is made anew: it costs less than a hundredth of what follows, and a hundred thousand
+  // of them would take more memory than all their summaries.
+  const Block block = blockOf(rocks_[std::size_t(rock)]);
+  const Surface surface(terrain_, parameters_.seed, iteration);
+  RockSimulator simulator(surface, rocks_[std::size_t(rock)], block, parameters_);
+  Trajectory trajectory = simulator.run(enough);
+  trajectory.summary.rock = rock;
+  trajectory.summary.iteration = iteration;
+  trajectory.summary.hash = motionHash(trajectory);
+  return trajectory;
+}
+
+bool Ensemble::run(
+  const EnsembleShare& share, TrajectorySink& sink, const Progress& progress, double enough) const
+{
+  const std::int64_t total = share.count();
+  if (total == 0)
   {
-    if (stop)
+    return true;
+  }
+  std::atomic<std::int64_t> next{ 0 }, finished{ 0 };
+  std::atomic<bool> stop{ false };
+  FirstFailure failure;
+  InOrder inOrder(sink);
+  // In order, too, are they begun: so few wait for their turn.
+  const auto simulateNext = [&]
+  {
+    for (std::int64_t k = next++; k < total && !stop; k = next++)
     {
-      return;
+      try
+      {
+        Trajectory trajectory = this->simulate(share.begin + k * share.stride, enough);
+        sink.trim(trajectory);
+        inOrder.put(k, std::move(trajectory));
+      }
+      catch (...)
+      {
+        failure.note(k);
+        stop = true;
+      }
+      ++finished;
     }
-    const int iteration = int(index / std::int64_t(rocks.size()));
-    const int rock = int(index % std::int64_t(rocks.size()));
-    try
-    {
-      const Surface surface(terrain, parameters.seed, iteration);
-      RockSimulator simulator(surface, rocks[rock], blocks[rock], parameters);
-      Trajectory trajectory = simulator.run();
-      trajectory.summary.rock = rock;
-      trajectory.summary.iteration = iteration;
-      const std::lock_guard<std::mutex> lock(sinkMutex);
-      sink.consume(std::move(trajectory));
-    }
-    catch (...)
-    {
-      const std::lock_guard<std::mutex> lock(sinkMutex);
-      failure = failure ? failure : std::current_exception();
-      stop = true;
-    }
-    ++finished;
   };
 
   // The caller's thread only reports: a GUI must not be called from any other one.
@@ -205,10 +321,7 @@ bool runEnsemble(const Terrain& terrain, std::span<const Rock> rocks,
   std::thread worker(
     [&]
     {
-      tbb::task_arena arena(
-        parameters.threads > 0 ? parameters.threads : tbb::task_arena::automatic, 1);
-      arena.execute(
-        [&] { tbb::parallel_for(std::int64_t(0), total, simulate, tbb::simple_partitioner()); });
+      onThreads(parameters_.threads, simulateNext);
       const std::lock_guard<std::mutex> lock(wakeMutex);
       done = true;
       wake.notify_all();
@@ -232,11 +345,15 @@ bool runEnsemble(const Terrain& terrain, std::span<const Rock> rocks,
     }
   }
   worker.join();
-  if (failure)
-  {
-    std::rethrow_exception(failure);
-  }
+  failure.rethrow();
   return !aborted;
+}
+
+bool runEnsemble(const Terrain& terrain, std::span<const Rock> rocks,
+  const SimulationParameters& parameters, TrajectorySink& sink, const Progress& progress)
+{
+  const Ensemble ensemble(terrain, rocks, parameters);
+  return ensemble.run(ensemble.whole(), sink, progress);
 }
 
 } // namespace rockfall

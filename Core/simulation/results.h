@@ -26,9 +26,18 @@ struct EnergyAudit
   double numerical = 0.0;   ///< Gained (−) or lost (+) by the numerics.
 };
 
+/// Why a sample is there.
+enum class SampleKind : std::uint8_t
+{
+  Even, ///< At a multiple of the output interval.
+  Knot, ///< A touch, a take-off, or a place where the motion changes.
+  End,  ///< Where the rock rests, leaves or is cut off.
+};
+
 /// The state of a rock at one time (METHOD 8).
 struct Sample
 {
+  SampleKind kind = SampleKind::Even;
   double time = 0.0;                   ///< s
   Vec3 position = Vec3::Zero();        ///< Centroid, m.
   Quat orientation = Quat::Identity(); ///< Body to world.
@@ -68,7 +77,7 @@ std::string fateName(Fate fate);
 struct TrajectorySummary
 {
   int rock = 0;      ///< Index in the list of rocks.
-  int iteration = 0; ///< From 0.
+  int iteration = 0; ///< From 0, or from the run's first one.
   std::int64_t blockId = 0;
   Fate fate = Fate::Moving;
   double endTime = 0.0; ///< When it rested, left or was cut off, s.
@@ -87,6 +96,7 @@ struct TrajectorySummary
   std::int64_t cutSteps = 0;       ///< Steps redone with a smaller Δt.
   std::int64_t unsettledSteps = 0; ///< Steps taken although open–close had not settled.
   EnergyAudit energy;
+  std::uint64_t hash = 0; ///< Of the motion: `motionHash`, given by the ensemble.
 };
 
 /// All of one rock in one iteration.
