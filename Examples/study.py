@@ -165,7 +165,7 @@ def from_first_rank(work):
     if first_rank:
         try:
             answer = json.dumps([None, work()])
-        except Refused as refusal:
+        except (Refused, OSError) as refusal:
             answer = json.dumps([str(refusal), None])
     if symmetric:
         array = vtkUnsignedCharArray()
@@ -204,6 +204,8 @@ def write_npz(path, columns):
 
 def write_chunk(simulation, stem):
     """Trajectories first, table last: a chunk is there when its table is."""
+    if simulation.GetClientSideObject().GetOutputDataObject(3).GetNumberOfRows() == 0:
+        refuse("The simulation made nothing; the message above says why.")
     lines = simulation.GetClientSideObject().GetOutputDataObject(1)
 
     def write_lines(other):
@@ -212,11 +214,12 @@ def write_chunk(simulation, stem):
         writer.SetFileName(other)
         writer.SetDataModeToBinary()
         if writer.Write() != 1:
-            raise SystemExit(f"{other} could not be written")
+            raise OSError(f"{other} could not be written")
 
     whole(stem + ".vtp", write_lines)
     columns = table_of(simulation)
-    columns["StateHash"] = np.array(simulation.GetClientSideObject().GetStateHash())
+    field = simulation.GetClientSideObject().GetOutputDataObject(3).GetFieldData()
+    columns["StateHash"] = np.array(field.GetAbstractArray("StateHash").GetValue(0))
     whole(stem + ".npz", lambda other: write_npz(other, columns))
 
 
@@ -245,6 +248,9 @@ def combine(folder, stems):
     write_text(os.path.join(folder, "study.json"), json.dumps(
         {"chunks": hashes, "whole": hashlib.sha256("".join(hashes).encode()).hexdigest()}, indent=1)
         + "\n")
+    for name in os.listdir(folder):  # what a killed run left
+        if name.startswith(".unfinished-"):
+            os.remove(os.path.join(folder, name))
 
 
 def begin(chosen):
@@ -304,19 +310,11 @@ def main():
         simulation.FirstIteration = k * study["chunk"]
         simulation.Iterations = min(study["chunk"], study["iterations"] - k * study["chunk"])
         UpdatePipeline(0.0, simulation)
-        if simulation.GetClientSideObject().GetStateHash() == "":
-            raise SystemExit("The simulation made nothing; the message above says why."
-                             if first_rank else 1)
-        if first_rank:
-            write_chunk(simulation, stem_of(chosen, k))
+        from_first_rank(lambda: write_chunk(simulation, stem_of(chosen, k)))
         say(f"chunk {k + 1} of {len(done)}: {simulation.Iterations} iterations from "
             f"{simulation.FirstIteration}")
     stems = [stem_of(chosen, k) for k in range(len(done))]
-    if first_rank:
-        combine(chosen.folder, stems)
-        for name in os.listdir(chosen.folder):  # what a killed run left
-            if name.startswith(".unfinished-"):
-                os.remove(os.path.join(chosen.folder, name))
+    from_first_rank(lambda: combine(chosen.folder, stems))
     say(f"Done: {os.path.join(chosen.folder, 'summary.csv')}")
 
 

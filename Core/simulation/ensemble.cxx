@@ -346,7 +346,7 @@ bool Ensemble::run(
   }
   worker.join();
   failure.rethrow();
-  return !aborted;
+  return !aborted && (!progress || progress(1.0));
 }
 
 bool runEnsemble(const Terrain& terrain, std::span<const Rock> rocks,

@@ -63,7 +63,8 @@ private:
   std::vector<Trajectory> trajectories_;
 };
 
-/// Called now and then from the calling thread with the share done, 0 … 1; returning false aborts.
+/// Called now and then, and at the end, from the calling thread with the share done, 0 … 1;
+/// returning false aborts.
 using Progress = std::function<bool(double)>;
 
 /// A part of an ensemble: the trajectories begin, begin + stride, … below end.

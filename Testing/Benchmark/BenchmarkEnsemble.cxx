@@ -1,6 +1,7 @@
 // What an ensemble costs beside its trajectories: cubes and icosahedra of 1 m³ down the rough
 // bi-planar slope of BenchmarkRockfall, 20 s or until they rest, in many iterations. Compared are
 //
+//   blocks     what is made of a rock before it can move, alone
 //   single     the engine alone: one trajectory after the other, thrown away
 //   ensemble   Ensemble::run into a sink that keeps stopping points, on 1 and 2 threads
 //
@@ -9,6 +10,7 @@
 //
 // Run: BenchmarkEnsemble [trajectories]
 
+#include "block/Block.h"
 #include "geometry/shapes.h"
 #include "simulation/ensemble.h"
 #include "simulation/retention.h"
@@ -101,7 +103,8 @@ Cost costOf(const std::function<void()>& work)
 
 int main(int argc, char** argv)
 {
-  const int wanted = argc > 1 ? std::atoi(argv[1]) : 6400;
+  const int wanted = argc > 1 ? std::atoi(argv[1]) : 1600;
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
   const Terrain slope = roughSlope();
   const std::vector<Rock> rocks = rocksOn(slope);
   SimulationParameters p;
@@ -119,6 +122,21 @@ int main(int argc, char** argv)
   {
     p.threads = 1;
     const Ensemble one(slope, rocks, p);
+    print("blocks", 1,
+      costOf(
+        [&]
+        {
+          double mass = 0.0;
+          for (std::int64_t n = 0; n < one.size(); ++n)
+          {
+            const Rock& rock = rocks[std::size_t(n) % rocks.size()];
+            mass += Block(rock.shape, rock.density, rock.youngModulus, rock.poissonRatio).mass();
+          }
+          if (!(mass > 0.0))
+          {
+            std::printf("no mass\n");
+          }
+        }));
     StateHash hash;
     print("single", 1,
       costOf(

@@ -1,7 +1,7 @@
 """100,000 trajectories on a generated DEM of 2000 x 2000 nodes: time and memory of the whole pipeline.
 
     PV_PLUGIN_PATH=build/lib/paraview-5.11/plugins/RockfallDDA /usr/bin/time -v \\
-      pvbatch Testing/Benchmark/manyRocks.py FOLDER [--trajectories 100000 --keep Thinned --threads 0]
+      pvbatch Testing/Benchmark/manyRocks.py FOLDER [--trajectories 100000 --keep Thinned --no-impacts --threads 0]
 
 The DEM is a slope of 35° with gullies that flattens out, 2 m cells; the rocks are cubes and icosahedra of
 1 m3, 100 of them in 1000 iterations.
@@ -21,6 +21,8 @@ parser.add_argument("folder")
 parser.add_argument("--trajectories", type=int, default=100000)
 parser.add_argument("--rocks", type=int, default=100)
 parser.add_argument("--keep", default="Thinned")
+parser.add_argument("--interval", type=float, default=0.05)
+parser.add_argument("--no-impacts", action="store_true")
 parser.add_argument("--threads", type=int, default=0)
 chosen = parser.parse_args()
 os.makedirs(chosen.folder, exist_ok=True)
@@ -53,14 +55,17 @@ with open(sources, "w") as file:
 slope = DEMtoCFEMesh(FileName=dem, RestitutionCoefficient=0.7, FrictionAngle=32,
                      RoughnessDeviation=0.1, MaximumDisplayCells=200000)
 rocks = RockBlocks(FileName=sources)
-fall = RockfallSimulation(
+fall = RockfallSimulation(OutputInterval=chosen.interval,
     Terrain=slope, Rocks=rocks, Iterations=max(1, chosen.trajectories // chosen.rocks), EndTime=60,
-    TrajectoryOutput=chosen.keep, NumberOfThreads=chosen.threads, PrintProgress=1)
+    TrajectoryOutput=chosen.keep, KeepImpacts=not chosen.no_impacts, NumberOfThreads=chosen.threads, PrintProgress=1)
 slope.UpdatePipeline()
 mark("the slope is there")
 UpdatePipeline(0.0, fall)
+fall.UpdatePropertyInformation()
 lines = fall.GetClientSideObject().GetOutputDataObject(1)
+impacts = fall.GetClientSideObject().GetOutputDataObject(2)
 mark(f"{fall.GetClientSideObject().GetOutputDataObject(3).GetNumberOfRows()} trajectories, "
      f"{lines.GetNumberOfPoints()} points kept ({chosen.keep}), "
      f"{lines.GetActualMemorySize() / 2**20:.2f} GB of them, "
-     f"state hash {fall.GetClientSideObject().GetStateHash()}")
+     f"{impacts.GetNumberOfPoints()} impacts, {impacts.GetActualMemorySize() / 2**20:.2f} GB, "
+     f"state hash {fall.GetPropertyValue('StateHash')}")

@@ -9,7 +9,7 @@ import signal
 import subprocess
 import time
 
-from helpers import incline, write_grid, write_text
+from helpers import incline, outside_mpi, write_grid, write_text
 
 SCRIPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Examples", "study.py")
 MPIEXEC = shutil.which("mpiexec")
@@ -36,7 +36,8 @@ def command(folder, path, ranks=1):
 
 def run(folder, path="study.json", ranks=1):
     done = subprocess.run(command(folder, path, ranks), stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, text=True, timeout=200)
+                          stderr=subprocess.STDOUT, text=True, timeout=200,
+                          env=outside_mpi())
     return done.returncode, done.stdout
 
 
@@ -62,7 +63,7 @@ assert calm["summary.csv"].count(b"\n") == 1 + 33
 
 # Killed as soon as there is a second chunk, so within the third one or while a file is written.
 process = subprocess.Popen(command("results-killed", "study.json"), stdout=subprocess.DEVNULL,
-                           stderr=subprocess.DEVNULL)
+                           stderr=subprocess.DEVNULL, env=outside_mpi())
 while process.poll() is None and not os.path.exists("results-killed/chunk-00001.npz"):
     time.sleep(0.002)
 process.send_signal(signal.SIGKILL)

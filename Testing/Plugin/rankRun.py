@@ -50,8 +50,9 @@ for time in (0.0, 2.5, 2.5):
     UpdatePipeline(time, fall)
 size = algorithm.GetOutputDataObject(3).GetNumberOfRows()
 if first:
-    print(f"RESULT rows={size} hash={algorithm.GetStateHash() or '-'} all={digest()} "
-          f"runs={algorithm.GetNumberOfRuns()}", flush=True)
+    fall.UpdatePropertyInformation()
+    print(f"RESULT rows={size} hash={fall.GetPropertyValue('StateHash') or '-'} all={digest()} "
+          f"runs={fall.GetPropertyValue('NumberOfRuns')}", flush=True)
 elif size or algorithm.GetOutputDataObject(0).GetNumberOfPoints():
     print("RESULT of another rank than the first is not empty", flush=True)
 
