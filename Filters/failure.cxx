@@ -6,6 +6,7 @@
 #include "vtkCommand.h"
 #include "vtkDataObject.h"
 #include "vtkExecutive.h"
+#include "vtkMultiProcessController.h"
 #include "vtkNew.h"
 #include "vtkOutputWindow.h"
 #include "vtkStringArray.h"
@@ -59,7 +60,8 @@ int fail(vtkAlgorithm* algorithm, const std::string& message)
     vtkNew<FailureEcho> echo;
     executive->AddObserver(vtkCommand::ErrorEvent, echo);
   }
-  return 0;
+  vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
+  return controller && controller->GetNumberOfProcesses() > 1 ? 1 : 0;
 }
 
 bool inheritFailure(vtkDataObject* input, vtkAlgorithm* algorithm)

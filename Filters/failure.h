@@ -12,9 +12,10 @@ namespace rockfall::filters
 {
 
 /// Reports `message` as the one error of this execution, empties every output and returns 0, to be
-/// returned from RequestData. The executive's own report that the request failed is dropped: it
-/// says nothing that the message does not, and a user would have two errors to read for one cause.
-/// The message stays in the field array "Error" of the outputs.
+/// returned from RequestData; 1 where several ranks run the pipeline: the others know of no error,
+/// and would go on to filters that this rank would not reach. The executive's own report that the
+/// request failed is dropped: it says nothing that the message does not, and a user would have two
+/// errors to read for one cause. The message stays in the field array "Error" of the outputs.
 int fail(vtkAlgorithm* algorithm, const std::string& message);
 
 /// Empties the outputs but for the message, without a report.

@@ -56,4 +56,10 @@ MotionState stateAt(const Trajectory& trajectory, double time)
   return sampleAt(trajectory, time).contact ? MotionState::InContact : MotionState::Flying;
 }
 
+ShownRock momentOf(const Trajectory& trajectory, double time)
+{
+  return { trajectory.summary.rock, trajectory.summary.iteration, sampleAt(trajectory, time),
+    int(stateAt(trajectory, time)) };
+}
+
 } // namespace rockfall::filters

@@ -3,6 +3,7 @@
 /// @file
 /// Where a rock is at any time, from its samples.
 
+#include "runOutputs.h"
 #include "simulation/results.h"
 
 namespace rockfall::filters
@@ -23,5 +24,8 @@ enum class MotionState
 Sample sampleAt(const Trajectory& trajectory, double time);
 
 MotionState stateAt(const Trajectory& trajectory, double time);
+
+/// Both, to be shown.
+ShownRock momentOf(const Trajectory& trajectory, double time);
 
 } // namespace rockfall::filters

@@ -1,7 +1,6 @@
 #include "runOutputs.h"
 
 #include "arrays.h"
-#include "motion.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -90,11 +89,11 @@ struct IdentityArrays
   {
   }
 
-  void append(const TrajectorySummary& summary)
+  void append(std::int64_t block, int rock, int number)
   {
-    this->blockId->InsertNextValue(summary.blockId);
-    this->rockId->InsertNextValue(summary.rock);
-    this->iteration->InsertNextValue(summary.iteration);
+    this->blockId->InsertNextValue(block);
+    this->rockId->InsertNextValue(rock);
+    this->iteration->InsertNextValue(number);
   }
 };
 
@@ -110,9 +109,18 @@ void insertPoint(vtkPoints* points, const Vec3& world)
   points->InsertNextPoint(world.data());
 }
 
+/// Gives back what the arrays have grown beyond their content.
+void squeeze(vtkFieldData* data)
+{
+  for (int k = 0; k < data->GetNumberOfArrays(); ++k)
+  {
+    data->GetAbstractArray(k)->Squeeze();
+  }
+}
+
 } // namespace
 
-void writeRocksAt(const FinishedRun& run, int iteration, double time, vtkPolyData* output)
+void writeRocks(const RunFrame& frame, std::span<const ShownRock> rocks, vtkPolyData* output)
 {
   const auto points = doublePoints();
   vtkNew<vtkCellArray> polygons;
@@ -121,169 +129,253 @@ void writeRocksAt(const FinishedRun& run, int iteration, double time, vtkPolyDat
   const auto state = addArray<vtkIntArray>(output->GetCellData(), "State");
   const auto shape = addArray<vtkIntArray>(output->GetCellData(), "Shape");
   const auto volume = addArray<vtkDoubleArray>(output->GetCellData(), "Volume");
-  for (const Trajectory& trajectory : run.trajectories)
+  for (const ShownRock& shown : rocks)
   {
-    if (trajectory.summary.iteration != iteration)
-    {
-      continue;
-    }
-    const ReleasedRock& released = run.rocks[std::size_t(trajectory.summary.rock)];
-    const Polyhedron& body = released.rock.shape;
-    const Sample sample = sampleAt(trajectory, time);
-    const int doing = int(stateAt(trajectory, time));
-    appendFaces(
-      body, sample.orientation.toRotationMatrix(), sample.position + run.origin, points, polygons);
+    const Rock& rock = frame.rocks[std::size_t(shown.rock)];
+    const Polyhedron& body = rock.shape;
+    appendFaces(body, shown.sample.orientation.toRotationMatrix(),
+      shown.sample.position + frame.origin, points, polygons);
     for (std::size_t face = 0; face < body.faces().size(); ++face)
     {
-      identity.append(trajectory.summary);
-      motion.append(sample);
-      state->InsertNextValue(doing);
-      shape->InsertNextValue(int(released.shape));
-      volume->InsertNextValue(trajectory.summary.volume);
+      identity.append(rock.blockId, shown.rock, shown.iteration);
+      motion.append(shown.sample);
+      state->InsertNextValue(shown.state);
+      shape->InsertNextValue(int(frame.shapes[std::size_t(shown.rock)]));
+      volume->InsertNextValue(body.integrals().volume);
     }
   }
   output->SetPoints(points);
   output->SetPolys(polygons);
 }
 
-void writeTrajectories(const FinishedRun& run, vtkPolyData* output)
+//------------------------------------------------------------------------------
+struct TrajectoryLines::Arrays
 {
-  const auto points = doublePoints();
-  vtkNew<vtkCellArray> lines;
-  const auto time = addArray<vtkDoubleArray>(output->GetPointData(), "Time");
-  MotionArrays motion(output->GetPointData());
-  EnergyArrays energy(output->GetPointData());
-  IdentityArrays identity(output->GetCellData());
-  const auto shape = addArray<vtkIntArray>(output->GetCellData(), "Shape");
-  const auto volume = addArray<vtkDoubleArray>(output->GetCellData(), "Volume");
-  const auto fate = addArray<vtkIntArray>(output->GetCellData(), "Fate");
-  for (const Trajectory& trajectory : run.trajectories)
+  vtkNew<vtkPolyData> data;
+  vtkSmartPointer<vtkPoints> points = doublePoints();
+  vtkNew<vtkCellArray> lines, vertices;
+  vtkSmartPointer<vtkDoubleArray> time = addArray<vtkDoubleArray>(data->GetPointData(), "Time");
+  MotionArrays motion{ data->GetPointData() };
+  std::unique_ptr<EnergyArrays> energy;
+  IdentityArrays identity{ data->GetCellData() };
+  vtkSmartPointer<vtkIntArray> shape = addArray<vtkIntArray>(data->GetCellData(), "Shape");
+  vtkSmartPointer<vtkDoubleArray> volume = addArray<vtkDoubleArray>(data->GetCellData(), "Volume");
+  vtkSmartPointer<vtkIntArray> fate = addArray<vtkIntArray>(data->GetCellData(), "Fate");
+};
+
+TrajectoryLines::TrajectoryLines(const RunFrame& frame, bool withLosses)
+  : frame_(frame)
+  , arrays_(std::make_unique<Arrays>())
+{
+  if (withLosses)
   {
-    lines->InsertNextCell(int(trajectory.samples.size()));
-    const double weight = trajectory.summary.mass * run.gravity;
-    for (const Sample& sample : trajectory.samples)
-    {
-      lines->InsertCellPoint(points->GetNumberOfPoints());
-      insertPoint(points, sample.position + run.origin);
-      time->InsertNextValue(sample.time);
-      motion.append(sample);
-      energy.append(sample, weight);
-    }
-    const TrajectorySummary& summary = trajectory.summary;
-    identity.append(summary);
-    shape->InsertNextValue(int(run.rocks[std::size_t(summary.rock)].shape));
-    volume->InsertNextValue(summary.volume);
-    fate->InsertNextValue(int(summary.fate));
+    arrays_->energy = std::make_unique<EnergyArrays>(arrays_->data->GetPointData());
   }
-  output->GetPointData()->SetActiveScalars("Speed"); // the colour that a viewer begins with
-  output->SetPoints(points);
-  output->SetLines(lines);
 }
 
-void writeImpacts(const FinishedRun& run, vtkPolyData* output)
+TrajectoryLines::~TrajectoryLines() = default;
+
+void TrajectoryLines::append(const Trajectory& trajectory)
 {
-  const auto points = doublePoints();
+  if (trajectory.samples.empty())
+  {
+    return;
+  }
+  Arrays& a = *arrays_;
+  const TrajectorySummary& summary = trajectory.summary;
+  // Vertices and lines are never mixed: cell data stand in the order of the cells.
+  vtkCellArray* cells = trajectory.samples.size() == 1 ? a.vertices : a.lines;
+  cells->InsertNextCell(int(trajectory.samples.size()));
+  const double weight = summary.mass * frame_.gravity;
+  for (const Sample& sample : trajectory.samples)
+  {
+    cells->InsertCellPoint(a.points->GetNumberOfPoints());
+    insertPoint(a.points, sample.position + frame_.origin);
+    a.time->InsertNextValue(sample.time);
+    a.motion.append(sample);
+    if (a.energy)
+    {
+      a.energy->append(sample, weight);
+    }
+  }
+  a.identity.append(summary.blockId, summary.rock, summary.iteration);
+  a.shape->InsertNextValue(int(frame_.shapes[std::size_t(summary.rock)]));
+  a.volume->InsertNextValue(summary.volume);
+  a.fate->InsertNextValue(int(summary.fate));
+}
+
+void TrajectoryLines::finish(vtkPolyData* output)
+{
+  Arrays& a = *arrays_;
+  squeeze(a.data->GetPointData());
+  squeeze(a.data->GetCellData());
+  a.points->Squeeze();
+  a.lines->Squeeze();
+  a.data->GetPointData()->SetActiveScalars("Speed"); // the colour that a viewer begins with
+  a.data->SetPoints(a.points);
+  a.data->SetLines(a.lines);
+  a.data->SetVerts(a.vertices);
+  output->ShallowCopy(a.data);
+}
+
+//------------------------------------------------------------------------------
+struct ImpactPoints::Arrays
+{
+  vtkNew<vtkPolyData> data;
+  vtkFieldData* fields = data->GetPointData();
+  vtkSmartPointer<vtkPoints> points = doublePoints();
   vtkNew<vtkCellArray> vertices;
-  vtkFieldData* data = output->GetPointData();
-  IdentityArrays identity(data);
-  const auto time = addArray<vtkDoubleArray>(data, "Time");
-  const auto normal = addArray<vtkDoubleArray>(data, "Normal", 3);
-  const auto cfe = addArray<vtkIdTypeArray>(data, "CFEId");
-  const auto impulse = addArray<vtkDoubleArray>(data, "Impulse");
-  const auto approach = addArray<vtkDoubleArray>(data, "ApproachSpeed");
-  const auto before = addArray<vtkDoubleArray>(data, "VelocityBefore", 3);
-  const auto after = addArray<vtkDoubleArray>(data, "VelocityAfter", 3);
-  const auto loss = addArray<vtkDoubleArray>(data, "EnergyLoss");
-  const auto restitution = addArray<vtkDoubleArray>(data, "Restitution");
-  for (const Trajectory& trajectory : run.trajectories)
-  {
-    for (const ImpactEvent& impact : trajectory.impacts)
-    {
-      vertices->InsertNextCell(1);
-      vertices->InsertCellPoint(points->GetNumberOfPoints());
-      insertPoint(points, impact.position + run.origin);
-      identity.append(trajectory.summary);
-      time->InsertNextValue(impact.time);
-      normal->InsertNextTuple(impact.normal.data());
-      cfe->InsertNextValue(impact.cfe);
-      impulse->InsertNextValue(impact.impulse);
-      approach->InsertNextValue(impact.approachSpeed);
-      before->InsertNextTuple(impact.velocityBefore.data());
-      after->InsertNextTuple(impact.velocityAfter.data());
-      loss->InsertNextValue(impact.energyLoss);
-      restitution->InsertNextValue(impact.restitution);
-    }
-  }
-  output->SetPoints(points);
-  output->SetVerts(vertices);
+  IdentityArrays identity{ fields };
+  vtkSmartPointer<vtkDoubleArray> time = addArray<vtkDoubleArray>(fields, "Time");
+  vtkSmartPointer<vtkDoubleArray> normal = addArray<vtkDoubleArray>(fields, "Normal", 3);
+  vtkSmartPointer<vtkIdTypeArray> cfe = addArray<vtkIdTypeArray>(fields, "CFEId");
+  vtkSmartPointer<vtkDoubleArray> impulse = addArray<vtkDoubleArray>(fields, "Impulse");
+  vtkSmartPointer<vtkDoubleArray> approach = addArray<vtkDoubleArray>(fields, "ApproachSpeed");
+  vtkSmartPointer<vtkDoubleArray> before = addArray<vtkDoubleArray>(fields, "VelocityBefore", 3);
+  vtkSmartPointer<vtkDoubleArray> after = addArray<vtkDoubleArray>(fields, "VelocityAfter", 3);
+  vtkSmartPointer<vtkDoubleArray> loss = addArray<vtkDoubleArray>(fields, "EnergyLoss");
+  vtkSmartPointer<vtkDoubleArray> restitution = addArray<vtkDoubleArray>(fields, "Restitution");
+};
+
+ImpactPoints::ImpactPoints(const RunFrame& frame)
+  : frame_(frame)
+  , arrays_(std::make_unique<Arrays>())
+{
 }
 
-void writeSummaries(const FinishedRun& run, vtkTable* output)
+ImpactPoints::~ImpactPoints() = default;
+
+void ImpactPoints::append(const Trajectory& trajectory)
 {
-  vtkFieldData* data = output->GetRowData();
-  IdentityArrays identity(data);
-  const auto shape = addArray<vtkStringArray>(data, "Shape");
-  const auto fate = addArray<vtkStringArray>(data, "Fate");
-  const auto fateCode = addArray<vtkIntArray>(data, "FateCode");
-  struct Column
+  Arrays& a = *arrays_;
+  const TrajectorySummary& summary = trajectory.summary;
+  for (const ImpactEvent& impact : trajectory.impacts)
   {
-    const char* name;
-    double (*value)(const TrajectorySummary& summary, const Vec3& origin);
-  };
-  // clang-format off
-  using S = const TrajectorySummary&;
-  using V = const Vec3&;
-  static constexpr Column numbers[] = {
-    { "EndTime", [](S s, V) { return s.endTime; } },
-    { "StartX", [](S s, V o) { return s.start.x() + o.x(); } },
-    { "StartY", [](S s, V o) { return s.start.y() + o.y(); } },
-    { "StartZ", [](S s, V o) { return s.start.z() + o.z(); } },
-    { "StopX", [](S s, V o) { return s.stop.x() + o.x(); } },
-    { "StopY", [](S s, V o) { return s.stop.y() + o.y(); } },
-    { "StopZ", [](S s, V o) { return s.stop.z() + o.z(); } },
-    { "RunOut", [](S s, V) { return s.runOut; } },
-    { "PathLength", [](S s, V) { return s.pathLength; } },
-    { "MaxSpeed", [](S s, V) { return s.maxSpeed; } },
-    { "MaxKineticEnergy", [](S s, V) { return s.maxKineticEnergy; } },
-    { "MaxHeightOverGround", [](S s, V) { return s.maxHeightOverGround; } },
-    { "Mass", [](S s, V) { return s.mass; } },
-    { "Volume", [](S s, V) { return s.volume; } },
-    { "EnergyReleased", [](S s, V) { return s.energy.released; } },
-    { "EnergyKinetic", [](S s, V) { return s.energy.kinetic; } },
-    { "EnergyStrain", [](S s, V) { return s.energy.strain; } },
-    { "EnergyFriction", [](S s, V) { return s.energy.friction; } },
-    { "EnergyRestitution", [](S s, V) { return s.energy.restitution; } },
-    { "EnergyVibration", [](S s, V) { return s.energy.vibration; } },
-    { "EnergyDamping", [](S s, V) { return s.energy.damping; } },
-    { "EnergyNumerical", [](S s, V) { return s.energy.numerical; } },
-  };
-  // clang-format on
-  for (const Column& column : numbers)
+    a.vertices->InsertNextCell(1);
+    a.vertices->InsertCellPoint(a.points->GetNumberOfPoints());
+    insertPoint(a.points, impact.position + frame_.origin);
+    a.identity.append(summary.blockId, summary.rock, summary.iteration);
+    a.time->InsertNextValue(impact.time);
+    a.normal->InsertNextTuple(impact.normal.data());
+    a.cfe->InsertNextValue(impact.cfe);
+    a.impulse->InsertNextValue(impact.impulse);
+    a.approach->InsertNextValue(impact.approachSpeed);
+    a.before->InsertNextTuple(impact.velocityBefore.data());
+    a.after->InsertNextTuple(impact.velocityAfter.data());
+    a.loss->InsertNextValue(impact.energyLoss);
+    a.restitution->InsertNextValue(impact.restitution);
+  }
+}
+
+void ImpactPoints::finish(vtkPolyData* output)
+{
+  Arrays& a = *arrays_;
+  squeeze(a.fields);
+  a.points->Squeeze();
+  a.vertices->Squeeze();
+  a.data->SetPoints(a.points);
+  a.data->SetVerts(a.vertices);
+  output->ShallowCopy(a.data);
+}
+
+//------------------------------------------------------------------------------
+namespace
+{
+
+/// A column of numbers of the table.
+struct Column
+{
+  const char* name;
+  double (*value)(const TrajectorySummary& summary, const Vec3& origin);
+};
+// clang-format off
+using S = const TrajectorySummary&;
+using V = const Vec3&;
+constexpr Column numberColumns[] = {
+  { "EndTime", [](S s, V) { return s.endTime; } },
+  { "StartX", [](S s, V o) { return s.start.x() + o.x(); } },
+  { "StartY", [](S s, V o) { return s.start.y() + o.y(); } },
+  { "StartZ", [](S s, V o) { return s.start.z() + o.z(); } },
+  { "StopX", [](S s, V o) { return s.stop.x() + o.x(); } },
+  { "StopY", [](S s, V o) { return s.stop.y() + o.y(); } },
+  { "StopZ", [](S s, V o) { return s.stop.z() + o.z(); } },
+  { "RunOut", [](S s, V) { return s.runOut; } },
+  { "PathLength", [](S s, V) { return s.pathLength; } },
+  { "MaxSpeed", [](S s, V) { return s.maxSpeed; } },
+  { "MaxKineticEnergy", [](S s, V) { return s.maxKineticEnergy; } },
+  { "MaxHeightOverGround", [](S s, V) { return s.maxHeightOverGround; } },
+  { "Mass", [](S s, V) { return s.mass; } },
+  { "Volume", [](S s, V) { return s.volume; } },
+  { "EnergyReleased", [](S s, V) { return s.energy.released; } },
+  { "EnergyKinetic", [](S s, V) { return s.energy.kinetic; } },
+  { "EnergyStrain", [](S s, V) { return s.energy.strain; } },
+  { "EnergyFriction", [](S s, V) { return s.energy.friction; } },
+  { "EnergyRestitution", [](S s, V) { return s.energy.restitution; } },
+  { "EnergyVibration", [](S s, V) { return s.energy.vibration; } },
+  { "EnergyDamping", [](S s, V) { return s.energy.damping; } },
+  { "EnergyNumerical", [](S s, V) { return s.energy.numerical; } },
+};
+// clang-format on
+
+} // namespace
+
+struct SummaryRows::Arrays
+{
+  vtkNew<vtkTable> data;
+  vtkFieldData* fields = data->GetRowData();
+  IdentityArrays identity{ fields };
+  vtkSmartPointer<vtkStringArray> shape = addArray<vtkStringArray>(fields, "Shape");
+  vtkSmartPointer<vtkStringArray> fate = addArray<vtkStringArray>(fields, "Fate");
+  vtkSmartPointer<vtkIntArray> fateCode = addArray<vtkIntArray>(fields, "FateCode");
+  std::vector<vtkSmartPointer<vtkDoubleArray>> numbers = makeNumbers(fields);
+  vtkSmartPointer<vtkIntArray> impacts = addArray<vtkIntArray>(fields, "Impacts");
+  vtkSmartPointer<vtkIdTypeArray> contactSteps = addArray<vtkIdTypeArray>(fields, "ContactSteps");
+  vtkSmartPointer<vtkIdTypeArray> openClose =
+    addArray<vtkIdTypeArray>(fields, "OpenCloseIterations");
+  vtkSmartPointer<vtkIdTypeArray> cutSteps = addArray<vtkIdTypeArray>(fields, "CutSteps");
+  vtkSmartPointer<vtkIdTypeArray> unsettled = addArray<vtkIdTypeArray>(fields, "UnsettledSteps");
+
+  static std::vector<vtkSmartPointer<vtkDoubleArray>> makeNumbers(vtkFieldData* fields)
   {
-    const auto values = addArray<vtkDoubleArray>(data, column.name);
-    for (const Trajectory& trajectory : run.trajectories)
+    std::vector<vtkSmartPointer<vtkDoubleArray>> made;
+    for (const Column& column : numberColumns)
     {
-      values->InsertNextValue(column.value(trajectory.summary, run.origin));
+      made.push_back(addArray<vtkDoubleArray>(fields, column.name));
     }
+    return made;
   }
-  const auto impacts = addArray<vtkIntArray>(data, "Impacts");
-  const auto contactSteps = addArray<vtkIdTypeArray>(data, "ContactSteps");
-  const auto openClose = addArray<vtkIdTypeArray>(data, "OpenCloseIterations");
-  const auto cutSteps = addArray<vtkIdTypeArray>(data, "CutSteps");
-  const auto unsettled = addArray<vtkIdTypeArray>(data, "UnsettledSteps");
-  for (const Trajectory& trajectory : run.trajectories)
+};
+
+SummaryRows::SummaryRows(const RunFrame& frame)
+  : frame_(frame)
+  , arrays_(std::make_unique<Arrays>())
+{
+}
+
+SummaryRows::~SummaryRows() = default;
+
+void SummaryRows::append(const TrajectorySummary& summary)
+{
+  Arrays& a = *arrays_;
+  a.identity.append(summary.blockId, summary.rock, summary.iteration);
+  a.shape->InsertNextValue(shapeName(frame_.shapes[std::size_t(summary.rock)]));
+  a.fate->InsertNextValue(fateName(summary.fate));
+  a.fateCode->InsertNextValue(int(summary.fate));
+  for (std::size_t k = 0; k < a.numbers.size(); ++k)
   {
-    const TrajectorySummary& summary = trajectory.summary;
-    identity.append(summary);
-    shape->InsertNextValue(shapeName(run.rocks[std::size_t(summary.rock)].shape));
-    fate->InsertNextValue(fateName(summary.fate));
-    fateCode->InsertNextValue(int(summary.fate));
-    impacts->InsertNextValue(summary.impacts);
-    contactSteps->InsertNextValue(summary.contactSteps);
-    openClose->InsertNextValue(summary.openCloseIterations);
-    cutSteps->InsertNextValue(summary.cutSteps);
-    unsettled->InsertNextValue(summary.unsettledSteps);
+    a.numbers[k]->InsertNextValue(numberColumns[k].value(summary, frame_.origin));
   }
+  a.impacts->InsertNextValue(summary.impacts);
+  a.contactSteps->InsertNextValue(summary.contactSteps);
+  a.openClose->InsertNextValue(summary.openCloseIterations);
+  a.cutSteps->InsertNextValue(summary.cutSteps);
+  a.unsettled->InsertNextValue(summary.unsettledSteps);
+}
+
+void SummaryRows::finish(vtkTable* output)
+{
+  squeeze(arrays_->fields);
+  output->ShallowCopy(arrays_->data);
 }
 
 } // namespace rockfall::filters

@@ -1,11 +1,13 @@
 #pragma once
 
 /// @file
-/// A finished run as VTK data: rocks at a time, trajectories, impacts, and a table of summaries.
+/// A run as VTK data, written as its trajectories come: rocks at a time, trajectories, impacts, and
+/// a table of summaries. Positions are local, `RunFrame::origin` leads to the world's.
 
 #include "rockFieldData.h"
 #include "simulation/results.h"
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -15,26 +17,73 @@ class vtkTable;
 namespace rockfall::filters
 {
 
-/// What was released and what came of it; positions are local, `origin` leads to the world's.
-struct FinishedRun
+/// What was released, and where.
+struct RunFrame
 {
-  std::vector<ReleasedRock> rocks;
-  std::span<const Trajectory> trajectories; ///< In the order (iteration, rock).
+  std::vector<Rock> rocks;
+  std::vector<Shape> shapes; ///< Of the rocks.
   Vec3 origin = Vec3::Zero();
   double gravity = 0.0; ///< m/s²
 };
 
-/// The blocks of one iteration as they stand at `time` (s).
-void writeRocksAt(const FinishedRun& run, int iteration, double time, vtkPolyData* output);
+/// One polyline of centroids per rock and iteration, or a vertex where only the last sample is
+/// kept. Potential energy is m g z, z the elevation of the centroid. Trajectories without samples
+/// leave nothing.
+class TrajectoryLines
+{
+public:
+  /// `withLosses`: every point with the energy audit.
+  TrajectoryLines(const RunFrame& frame, bool withLosses);
+  ~TrajectoryLines();
+  void append(const Trajectory& trajectory);
+  void finish(vtkPolyData* output); ///< Nothing can be appended after it.
 
-/// One polyline of centroids per rock and iteration. Potential energy is m g z, z the elevation of
-/// the centroid.
-void writeTrajectories(const FinishedRun& run, vtkPolyData* output);
+private:
+  struct Arrays;
+  const RunFrame& frame_;
+  std::unique_ptr<Arrays> arrays_;
+};
 
 /// One vertex per impact.
-void writeImpacts(const FinishedRun& run, vtkPolyData* output);
+class ImpactPoints
+{
+public:
+  explicit ImpactPoints(const RunFrame& frame);
+  ~ImpactPoints();
+  void append(const Trajectory& trajectory);
+  void finish(vtkPolyData* output);
+
+private:
+  struct Arrays;
+  const RunFrame& frame_;
+  std::unique_ptr<Arrays> arrays_;
+};
 
 /// One row per rock and iteration.
-void writeSummaries(const FinishedRun& run, vtkTable* output);
+class SummaryRows
+{
+public:
+  explicit SummaryRows(const RunFrame& frame);
+  ~SummaryRows();
+  void append(const TrajectorySummary& summary);
+  void finish(vtkTable* output);
+
+private:
+  struct Arrays;
+  const RunFrame& frame_;
+  std::unique_ptr<Arrays> arrays_;
+};
+
+/// A rock at a time.
+struct ShownRock
+{
+  int rock = 0;
+  int iteration = 0;
+  Sample sample;
+  int state = 0; ///< MotionState
+};
+
+/// The blocks as they stand.
+void writeRocks(const RunFrame& frame, std::span<const ShownRock> rocks, vtkPolyData* output);
 
 } // namespace rockfall::filters

@@ -308,7 +308,7 @@ void writeTerrain(std::shared_ptr<const Terrain> terrain, int stride, vtkFieldDa
   fieldData->AddArray(heights);
 }
 
-Terrain readTerrain(vtkPolyData* mesh)
+Terrain readTerrain(vtkPolyData* mesh, bool withMesh)
 {
   vtkFieldData* fieldData = mesh->GetFieldData();
   if (mesh->GetNumberOfCells() == 0 && !fieldData->GetArray(heightsName))
@@ -351,7 +351,10 @@ Terrain readTerrain(vtkPolyData* mesh)
     fieldData, restitutionNames, restitutionNumbers, takeRestitution, terrain.material()));
   terrain.setJointClasses(
     readClasses(fieldData, jointNames, jointNumbers, takeJoint, terrain.material()));
-  checkMesh(mesh, terrain, stride);
+  if (withMesh)
+  {
+    checkMesh(mesh, terrain, stride);
+  }
   return terrain;
 }
 

@@ -41,8 +41,8 @@ void writeTerrain(std::shared_ptr<const Terrain> terrain, int stride, vtkFieldDa
 
 /// Takes the slope out of a polydata's field data. Throws DataError if there is none, or if the
 /// mesh was moved, clipped or otherwise changed since it was made, so that what the user sees is
-/// not what the rocks would fall on.
-Terrain readTerrain(vtkPolyData* mesh);
+/// not what the rocks would fall on. Without `withMesh` the field data are all that is looked at.
+Terrain readTerrain(vtkPolyData* mesh, bool withMesh = true);
 
 /// Puts TerrainCRS alone there; nothing if `wkt` is empty, because nothing is known then.
 void writeCrs(const std::string& wkt, vtkFieldData* fieldData);

@@ -1,25 +1,29 @@
 #include "vtkRockfallSimulation.h"
 
+#include "arrays.h"
 #include "base/errors.h"
 #include "failure.h"
+#include "keptRun.h"
 #include "pieces.h"
-#include "runOutputs.h"
-#include "simulation/ensemble.h"
+#include "progressText.h"
+#include "sharedRun.h"
 #include "terrainFieldData.h"
 
 #include "vtkDataObject.h"
+#include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStringArray.h"
 #include "vtkTable.h"
 
 #include <algorithm>
 #include <cmath>
-#include <new>
-#include <tuple>
+#include <functional>
+#include <limits>
 #include <vector>
 
 vtkStandardNewMacro(vtkRockfallSimulation);
@@ -28,6 +32,10 @@ namespace
 {
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
+using rockfall::filters::addArray;
+using rockfall::filters::KeptRun;
+using rockfall::filters::Ranks;
+using rockfall::filters::Stamp;
 
 enum OutputPorts
 {
@@ -40,39 +48,10 @@ enum OutputPorts
 /// More time steps than this are not listed, only their range is.
 constexpr double mostTimeSteps = 1e6;
 
-/// Everything that decides what a run gives; the number of threads does not.
-auto runKey(const rockfall::SimulationParameters& p)
-{
-  return std::make_tuple(p.timeStep, p.endTime, p.outputInterval, p.gravity, p.normalPenalty,
-    p.shearRatio, p.rigid, p.iterations, p.seed);
-}
-
-/// A data object as it is now.
-struct Stamp
-{
-  vtkDataObject* object = nullptr;
-  vtkMTimeType time = 0;
-
-  Stamp() = default;
-  explicit Stamp(vtkDataObject* data)
-    : object(data)
-    , time(data->GetMTime())
-  {
-  }
-  bool operator==(const Stamp&) const = default;
-};
-
 } // namespace
 
-/// A finished run, what it was made of, and its outputs that do not depend on time.
-struct vtkRockfallSimulation::Cache
+struct vtkRockfallSimulation::Cache : KeptRun
 {
-  rockfall::SimulationParameters parameters;
-  Stamp terrain, rocks;
-  std::unique_ptr<rockfall::TrajectoryStore> store; ///< What `run` looks at.
-  rockfall::filters::FinishedRun run;
-  vtkNew<vtkPolyData> trajectories, impacts;
-  vtkNew<vtkTable> summary;
 };
 
 /// An error that was reported. Until something changes it is not reported again: an animation asks
@@ -161,75 +140,107 @@ int vtkRockfallSimulation::RequestUpdateExtent(
 }
 
 //------------------------------------------------------------------------------
+void vtkRockfallSimulation::TakeProperties(Cache& run)
+{
+  rockfall::SimulationParameters& p = run.parameters;
+  p.timeStep = this->TimeStep;
+  p.endTime = this->EndTime;
+  p.outputInterval = this->OutputInterval;
+  p.gravity = this->Gravity;
+  p.normalPenalty = this->NormalPenalty;
+  p.shearRatio = this->ShearPenaltyRatio;
+  p.rigid = this->Rigid;
+  p.rockRockContact = this->RockRockContact;
+  p.rockRestitution = this->RockRestitution;
+  p.rockFrictionAngle = rockfall::radians(this->RockFrictionAngle);
+  p.rockCohesion = this->RockCohesion;
+  p.iterations = this->Iterations;
+  p.firstIteration = this->FirstIteration;
+  p.seed = std::uint64_t(this->Seed);
+  p.threads = this->NumberOfThreads;
+  run.parts.retention = rockfall::Retention(this->TrajectoryOutput);
+  run.parts.impacts = this->KeepImpacts;
+}
+
+//------------------------------------------------------------------------------
+void vtkRockfallSimulation::CheckProperties(const Cache& run) const
+{
+  const auto inRange = [](int value, int least, int most, const char* name)
+  {
+    if (value < least || value > most)
+    {
+      const bool open = most == std::numeric_limits<int>::max();
+      throw rockfall::ParameterError(std::string(name) + " is " + std::to_string(value) +
+        ", it must be " + (open ? "at least " : "") + std::to_string(least) +
+        (open ? "" : " to " + std::to_string(most)));
+    }
+  };
+  inRange(this->Seed, 0, std::numeric_limits<int>::max(), "Seed");
+  run.parameters.validate();
+  inRange(this->ShownIteration, 0, this->Iterations - 1, "ShownIteration");
+  inRange(this->TrajectoryOutput, NOTHING, FULL, "TrajectoryOutput");
+}
+
+//------------------------------------------------------------------------------
+std::string vtkRockfallSimulation::NoMemory() const
+{
+  return "The results do not fit in memory: Iterations is " + std::to_string(this->Iterations) +
+    "; fewer of them, a longer OutputInterval or a TrajectoryOutput that keeps less take less";
+}
+
+//------------------------------------------------------------------------------
 bool vtkRockfallSimulation::Simulate(vtkPolyData* terrainInput, vtkPolyData* rocksInput)
 {
-  rockfall::SimulationParameters parameters;
-  parameters.timeStep = this->TimeStep;
-  parameters.endTime = this->EndTime;
-  parameters.outputInterval = this->OutputInterval;
-  parameters.gravity = this->Gravity;
-  parameters.normalPenalty = this->NormalPenalty;
-  parameters.shearRatio = this->ShearPenaltyRatio;
-  parameters.rigid = this->Rigid;
-  parameters.iterations = this->Iterations;
-  if (this->Seed < 0)
-  {
-    throw rockfall::ParameterError(
-      "Seed is " + std::to_string(this->Seed) + ", it must be at least 0");
-  }
-  parameters.seed = std::uint64_t(this->Seed);
-  parameters.threads = this->NumberOfThreads;
-  parameters.validate();
-  if (this->RockRockContact)
-  {
-    throw rockfall::ParameterError(
-      "RockRockContact is on, but collisions between rocks are not available in this version");
-  }
-  if (this->Kept && runKey(this->Kept->parameters) == runKey(parameters) &&
-    this->Kept->terrain == Stamp(terrainInput) && this->Kept->rocks == Stamp(rocksInput))
+  const Ranks ranks;
+  auto run = std::make_unique<Cache>();
+  run->terrain = Stamp(terrainInput);
+  run->rocks = Stamp(rocksInput);
+  this->TakeProperties(*run);
+  ranks.together([&] { this->CheckProperties(*run); }, this->NoMemory());
+  const std::vector<int> kept = ranks.gather(this->Kept && this->Kept->isLike(*run) ? 1 : 0);
+  if (std::find(kept.begin(), kept.end(), 0) == kept.end())
   {
     return true;
   }
-
   this->Kept.reset();
-  auto cache = std::make_unique<Cache>();
-  cache->parameters = parameters;
-  cache->terrain = Stamp(terrainInput);
-  cache->rocks = Stamp(rocksInput);
-  const rockfall::Terrain terrain = rockfall::filters::readTerrain(terrainInput);
-  rockfall::filters::FinishedRun& run = cache->run;
-  run.origin = terrain.geometry().origin();
-  run.gravity = parameters.gravity;
-  run.rocks = rockfall::filters::readRocks(rocksInput, run.origin);
-
-  std::vector<rockfall::Rock> rocks;
-  for (const rockfall::filters::ReleasedRock& released : run.rocks)
+  this->StateHash.clear();
+  const int threads = ranks.threads();
+  run->parameters.threads = this->NumberOfThreads > 0 ? this->NumberOfThreads : threads;
+  run->prepare(terrainInput, rocksInput, ranks, this->NoMemory());
+  if (run->wholeFits())
   {
-    rocks.push_back(released.rock);
+    run->parts.wholeIteration = this->FirstIteration + this->ShownIteration;
   }
-  cache->store =
-    std::make_unique<rockfall::TrajectoryStore>(int(rocks.size()), parameters.iterations);
+  rockfall::filters::RunSink sink(run->frame, run->parts);
+  rockfall::filters::ProgressReport report(
+    this, run->ensemble->size(), ranks.rank() == 0, this->PrintProgress);
   ++this->NumberOfRuns;
-  const bool finished = rockfall::runEnsemble(terrain, rocks, parameters, *cache->store,
-    [this](double share)
-    {
-      this->UpdateProgress(share);
-      return !this->CheckAbort();
-    });
-  if (!finished)
+  if (!rockfall::filters::runShared(
+        *run->ensemble, run->parts, &sink, ranks, std::ref(report), this->NoMemory()))
   {
     return false;
   }
-  run.trajectories = cache->store->trajectories();
-  rockfall::filters::writeTrajectories(run, cache->trajectories);
-  rockfall::filters::writeImpacts(run, cache->impacts);
-  rockfall::filters::writeSummaries(run, cache->summary);
-  for (vtkDataObject* output : { static_cast<vtkDataObject*>(cache->trajectories),
-         static_cast<vtkDataObject*>(cache->impacts), static_cast<vtkDataObject*>(cache->summary) })
+  if (ranks.rank() == 0)
   {
-    rockfall::filters::copyCoordinateSystem(terrainInput->GetFieldData(), output->GetFieldData());
+    sink.finish(run->trajectories, run->impacts, run->summary);
+    run->whole = std::move(sink.whole());
+    run->wholeIteration = run->parts.wholeIteration;
+    this->StateHash = sink.stateHash();
+    addArray<vtkStringArray>(run->summary->GetFieldData(), "StateHash")
+      ->InsertNextValue(this->StateHash);
+    for (vtkDataObject* output : { static_cast<vtkDataObject*>(run->trajectories),
+           static_cast<vtkDataObject*>(run->impacts), static_cast<vtkDataObject*>(run->summary) })
+    {
+      rockfall::filters::copyCoordinateSystem(run->coordinates, output->GetFieldData());
+    }
   }
-  this->Kept = std::move(cache);
+  else
+  {
+    run->dropInputs(); // only the first rank shows anything
+  }
+  ranks.share(this->StateHash);
+  report.finish();
+  this->Kept = std::move(run);
   return true;
 }
 
@@ -239,14 +250,17 @@ int vtkRockfallSimulation::Fail(
 {
   this->Failed =
     std::make_unique<Failure>(Failure{ this->GetMTime(), Stamp(terrain), Stamp(rocks), message });
-  return rockfall::filters::fail(this, message);
+  // The others have the same message, and are silent.
+  return Ranks().rank() == 0 ? rockfall::filters::fail(this, message) : 1;
 }
 
 //------------------------------------------------------------------------------
 int vtkRockfallSimulation::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  if (rockfall::filters::isFurtherPiece(outputVector))
+  const Ranks ranks;
+  const bool first = ranks.rank() == 0;
+  if (ranks.count() == 1 && rockfall::filters::isFurtherPiece(outputVector))
   {
     return 1;
   }
@@ -254,43 +268,58 @@ int vtkRockfallSimulation::RequestData(
   vtkPolyData* rocks = vtkPolyData::GetData(inputVector[1]);
   if (!terrain || !rocks)
   {
-    return rockfall::filters::fail(
-      this, std::string(terrain ? "The Rocks" : "The Terrain") + " input is missing");
+    return first ? rockfall::filters::fail(
+                     this, std::string(terrain ? "The Rocks" : "The Terrain") + " input is missing")
+                 : 1;
   }
-  if (rockfall::filters::inheritFailure(terrain, this) ||
-    rockfall::filters::inheritFailure(rocks, this))
+  const bool inherited = rockfall::filters::inheritFailure(terrain, this) ||
+    rockfall::filters::inheritFailure(rocks, this);
+  const bool again = this->Failed && this->Failed->filter == this->GetMTime() &&
+    this->Failed->terrain == Stamp(terrain) && this->Failed->rocks == Stamp(rocks);
+  // Whatever one rank decided alone would leave the others waiting.
+  const std::vector<int> known = ranks.gather(inherited ? 2 : (again ? 1 : 0));
+  if (*std::max_element(known.begin(), known.end()) == 2)
   {
     return 1;
   }
-  if (this->Failed && this->Failed->filter == this->GetMTime() &&
-    this->Failed->terrain == Stamp(terrain) && this->Failed->rocks == Stamp(rocks))
+  if (*std::min_element(known.begin(), known.end()) == 1)
   {
-    rockfall::filters::leaveError(this, this->Failed->message);
+    if (first)
+    {
+      rockfall::filters::leaveError(this, this->Failed->message);
+    }
     return 1;
   }
   this->Failed.reset();
   try
   {
-    if (!this->Simulate(terrain, rocks))
-    {
-      return 1; // aborted: the outputs stay empty
-    }
-    if (this->ShownIteration < 0 || this->ShownIteration >= this->Iterations)
-    {
-      throw rockfall::ParameterError("ShownIteration is " + std::to_string(this->ShownIteration) +
-        ", it must be 0 to " + std::to_string(this->Iterations - 1));
-    }
+    bool finished = this->Simulate(terrain, rocks);
     vtkInformation* info = outputVector->GetInformationObject(ROCKS);
     double time = 0.0;
     if (info->Has(Pipeline::UPDATE_TIME_STEP()))
     {
       time = std::clamp(info->Get(Pipeline::UPDATE_TIME_STEP()), 0.0, this->EndTime);
     }
-    vtkNew<vtkPolyData> shown;
-    rockfall::filters::writeRocksAt(this->Kept->run, this->ShownIteration, time, shown);
-    rockfall::filters::copyCoordinateSystem(terrain->GetFieldData(), shown->GetFieldData());
     vtkPolyData* output = vtkPolyData::GetData(outputVector, ROCKS);
-    output->ShallowCopy(shown);
+    ranks.together(
+      [&]
+      {
+        if (finished && first)
+        {
+          vtkNew<vtkPolyData> shown;
+          finished = this->Kept->show(
+            this->ShownIteration, time, [this](double) { return !this->CheckAbort(); }, shown);
+          output->ShallowCopy(shown);
+        }
+      },
+      this->NoMemory());
+    if (ranks.gather(finished ? 1 : 0).front() == 0)
+    {
+      output->Initialize();
+      this->SetAbortOutput(true); // on the others as on the one that was told to
+      return 1;                   // the outputs stay empty
+    }
+    // On every rank, or those without would be asked again when the first one is not.
     output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
     vtkPolyData::GetData(outputVector, TRAJECTORIES)->ShallowCopy(this->Kept->trajectories);
     vtkPolyData::GetData(outputVector, IMPACTS)->ShallowCopy(this->Kept->impacts);
@@ -300,12 +329,6 @@ int vtkRockfallSimulation::RequestData(
   catch (const rockfall::Error& error)
   {
     return this->Fail(terrain, rocks, error.what());
-  }
-  catch (const std::bad_alloc&)
-  {
-    return this->Fail(terrain, rocks,
-      "The results do not fit in memory: Iterations is " + std::to_string(this->Iterations) +
-        "; fewer of them or a longer OutputInterval take less");
   }
 }
 
@@ -320,11 +343,19 @@ void vtkRockfallSimulation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "NormalPenalty: " << this->NormalPenalty << "\n";
   os << indent << "ShearPenaltyRatio: " << this->ShearPenaltyRatio << "\n";
   os << indent << "Iterations: " << this->Iterations << "\n";
+  os << indent << "FirstIteration: " << this->FirstIteration << "\n";
   os << indent << "Seed: " << this->Seed << "\n";
   os << indent << "RockRockContact: " << this->RockRockContact << "\n";
+  os << indent << "RockRestitution: " << this->RockRestitution << "\n";
+  os << indent << "RockFrictionAngle: " << this->RockFrictionAngle << "\n";
+  os << indent << "RockCohesion: " << this->RockCohesion << "\n";
   os << indent << "Rigid: " << this->Rigid << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "ShownIteration: " << this->ShownIteration << "\n";
+  os << indent << "TrajectoryOutput: " << this->TrajectoryOutput << "\n";
+  os << indent << "KeepImpacts: " << this->KeepImpacts << "\n";
+  os << indent << "PrintProgress: " << this->PrintProgress << "\n";
+  os << indent << "StateHash: " << this->StateHash << "\n";
   os << indent << "NumberOfRuns: " << this->NumberOfRuns << "\n";
   os << indent << "Kept: " << (this->Kept ? "a finished run" : "(none)") << "\n";
 }

@@ -14,11 +14,16 @@
  *    Iteration, Shape, Volume, Fate (0 rested, 1 left the domain, 2 still moving at the end).
  *  - 2: one vertex per impact. Point arrays BlockId, RockId, Iteration, Time, Normal, CFEId,
  * Impulse, ApproachSpeed, VelocityBefore, VelocityAfter, EnergyLoss, Restitution.
- *  - 3: a table, one row per rock and iteration.
+ *  - 3: a table, one row per rock and iteration, with the field array StateHash.
  *
  * The run is simulated once; any time is then served from it until a property or an input changes.
  * The time steps are those from 0 to EndTime at OutputInterval, whenever the last rock stops: this
  * is known only after the run, and a time range that changes then would move an animation's end.
+ *
+ * On several ranks (mpiexec with pvbatch or pvserver) the work is shared out: whichever rank has
+ * the inputs passes them on, and the outputs come together on the first one, the others' are empty.
+ * Results are the same, bit for bit, for any number of ranks and threads. Every rank has to update
+ * the filter.
  *
  * All values are taken as they come and checked when the filter runs, so that a bad one gives one
  * error that names it instead of being changed silently.
@@ -101,6 +106,15 @@ public:
 
   ///@{
   /**
+   * Number of the first iteration, at least 0. Default 0. Iterations 10 to 19 are the same whether
+   * they are run alone or among 0 to 99.
+   */
+  vtkSetMacro(FirstIteration, int);
+  vtkGetMacro(FirstIteration, int);
+  ///@}
+
+  ///@{
+  /**
    * With iteration and rock it determines every random number. Default 1.
    */
   vtkSetMacro(Seed, int);
@@ -119,6 +133,19 @@ public:
 
   ///@{
   /**
+   * Coefficient of restitution (0 to 1), friction angle (degrees, 0 to 89) and cohesion (N per
+   * contact point) between rocks. Used with RockRockContact only.
+   */
+  vtkSetMacro(RockRestitution, double);
+  vtkGetMacro(RockRestitution, double);
+  vtkSetMacro(RockFrictionAngle, double);
+  vtkGetMacro(RockFrictionAngle, double);
+  vtkSetMacro(RockCohesion, double);
+  vtkGetMacro(RockCohesion, double);
+  ///@}
+
+  ///@{
+  /**
    * Whether blocks are rigid (6 unknowns) instead of deformable (12). Default off.
    */
   vtkSetMacro(Rigid, bool);
@@ -128,7 +155,8 @@ public:
 
   ///@{
   /**
-   * Number of threads; 0 (the default) takes all. Results do not depend on it.
+   * Number of threads of each rank; 0 (the default) takes all, shared out over the ranks of a
+   * machine. Results do not depend on it.
    */
   vtkSetMacro(NumberOfThreads, int);
   vtkGetMacro(NumberOfThreads, int);
@@ -136,12 +164,56 @@ public:
 
   ///@{
   /**
-   * The iteration that port 0 shows, from 0 (the default). The other ports hold all of them.
-   * Changing it does not simulate again.
+   * Which of the Iterations port 0 shows, counted from 0 (the default) whatever FirstIteration is.
+   * The other ports hold all of them. Changing it does not simulate all again: that iteration at
+   * most.
    */
   vtkSetMacro(ShownIteration, int);
   vtkGetMacro(ShownIteration, int);
   ///@}
+
+  enum TrajectoryOutputs
+  {
+    NOTHING = 0,
+    STOPPING_POINTS = 1,
+    EVENTS = 2,
+    THINNED = 3,
+    FULL = 4
+  };
+  ///@{
+  /**
+   * What port 1 keeps of each trajectory: NOTHING; STOPPING_POINTS, a vertex where it ended;
+   * EVENTS, a polyline of release, touches, take-offs and end; THINNED, of all points between which
+   * the motion is one cubic; FULL (the default), of all samples, with the energy audit.
+   */
+  vtkSetMacro(TrajectoryOutput, int);
+  vtkGetMacro(TrajectoryOutput, int);
+  ///@}
+
+  ///@{
+  /**
+   * Whether port 2 has the impacts. Default on.
+   */
+  vtkSetMacro(KeepImpacts, bool);
+  vtkGetMacro(KeepImpacts, bool);
+  vtkBooleanMacro(KeepImpacts, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Whether a run tells on the terminal (standard error) how far it is and how long it will take.
+   * Default off.
+   */
+  vtkSetMacro(PrintProgress, bool);
+  vtkGetMacro(PrintProgress, bool);
+  vtkBooleanMacro(PrintProgress, bool);
+  ///@}
+
+  /**
+   * 16 hexadecimal digits over the bits of all motion of the last run, empty if there is none. Two
+   * runs that differ in threads, ranks, OutputInterval or what is kept have the same.
+   */
+  const char* GetStateHash() const { return this->StateHash.c_str(); }
 
   /**
    * How often this filter has simulated since it was made.
@@ -165,10 +237,13 @@ private:
   struct Cache;
   struct Failure;
 
-  /// Reports an error of this execution and remembers of what it is the error.
+  /// Reports an error of this execution, once for all ranks, and remembers of what it is the error.
   int Fail(vtkPolyData* terrain, vtkPolyData* rocks, const std::string& message);
   /// Simulates unless the kept run is that of these inputs and properties. False if aborted.
   bool Simulate(vtkPolyData* terrain, vtkPolyData* rocks);
+  void TakeProperties(Cache& run);
+  void CheckProperties(const Cache& run) const; ///< Throws ParameterError.
+  std::string NoMemory() const;
 
   double TimeStep = 0.005;
   double EndTime = 60.0;
@@ -179,10 +254,18 @@ private:
   int Iterations = 1;
   int Seed = 1;
   bool RockRockContact = false;
+  double RockRestitution = 0.5;
+  double RockFrictionAngle = 30.0;
+  double RockCohesion = 0.0;
   bool Rigid = false;
   int NumberOfThreads = 0;
   int ShownIteration = 0;
   int NumberOfRuns = 0;
+  int FirstIteration = 0;
+  int TrajectoryOutput = FULL;
+  bool KeepImpacts = true;
+  bool PrintProgress = false;
+  std::string StateHash;
   std::unique_ptr<Cache> Kept;
   std::unique_ptr<Failure> Failed;
 };

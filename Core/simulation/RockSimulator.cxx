@@ -324,10 +324,18 @@ void RockSimulator::endContact()
   this->auditSamples(state_);
 }
 
-void RockSimulator::advance(double until)
+void RockSimulator::advance(double until, double enough)
 {
   horizon_ = std::min(until, parameters_.endTime);
-  while (!done_ && !this->arrived())
+  const auto seen = [&]
+  {
+    // A knot that is the last sample may still be replaced.
+    const std::vector<Sample>& samples = recorder_.trajectory().samples;
+    const std::size_t last = samples.size() - 1;
+    return samples[last].kind != SampleKind::Knot ? samples[last].time >= enough
+                                                  : last > 0 && samples[last - 1].time >= enough;
+  };
+  while (!done_ && !this->arrived() && !seen())
   {
     if (!inContact_)
     {
@@ -356,10 +364,10 @@ Trajectory RockSimulator::finish()
   return std::move(recorder_.trajectory());
 }
 
-Trajectory RockSimulator::run()
+Trajectory RockSimulator::run(double enough)
 {
   this->release();
-  this->advance(parameters_.endTime);
+  this->advance(parameters_.endTime, enough);
   return this->finish();
 }
 

@@ -9,6 +9,7 @@
 #include "simulation/ensemble.h"
 #include "solver/StepSolver.h"
 
+#include <limits>
 #include <vector>
 
 namespace rockfall
@@ -20,12 +21,15 @@ public:
   RockSimulator(
     const Surface& surface, const Rock& rock, const Block& block, const SimulationParameters& p);
 
-  /// Runs to rest, to the edge of the slope or to the end time.
-  Trajectory run();
+  /// Runs to rest, to the edge of the slope or to the end time. Stops earlier if there is a sample
+  /// at `enough` (s) or later: what it has by then is as in the whole run, bit for bit, but the
+  /// summary is not complete.
+  Trajectory run(double enough = std::numeric_limits<double>::infinity());
 
   // The same in parts, for rocks that may meet others on their way.
   void release();
-  void advance(double until); ///< Up to this time (s) or to the end.
+  /// Up to this time (s) or to the end; `enough` as in `run`.
+  void advance(double until, double enough = std::numeric_limits<double>::infinity());
   Trajectory finish();
 
   const BlockState& state() const { return state_; }

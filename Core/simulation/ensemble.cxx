@@ -1,9 +1,11 @@
 #include "simulation/ensemble.h"
 
 #include "base/errors.h"
+#include "simulation/MassFall.h"
 #include "simulation/RockSimulator.h"
+#include "simulation/overlaps.h"
+#include "simulation/stateHash.h"
 
-#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -12,6 +14,7 @@
 #include <cmath>
 #include <condition_variable>
 #include <limits>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -85,6 +88,21 @@ void SimulationParameters::validate() const
   positive(this->outputInterval, "OutputInterval", "seconds");
   positive(this->normalPenalty, "NormalPenalty", "N/m");
   positive(this->shearRatio, "ShearPenaltyRatio", "(no unit)");
+  if (!(this->rockRestitution >= 0.0 && this->rockRestitution <= 1.0))
+  {
+    throw ParameterError(
+      "RockRestitution is " + std::to_string(this->rockRestitution) + ", it must be 0 to 1");
+  }
+  if (!(this->rockFrictionAngle >= 0.0 && this->rockFrictionAngle <= radians(89.0)))
+  {
+    throw ParameterError("RockFrictionAngle is " +
+      std::to_string(degrees(this->rockFrictionAngle)) + "°, it must be 0 to 89");
+  }
+  if (!(this->rockCohesion >= 0.0) || !std::isfinite(this->rockCohesion))
+  {
+    throw ParameterError("RockCohesion is " + std::to_string(this->rockCohesion) +
+      " N, it must be finite and not negative");
+  }
   if (!(this->gravity >= 0.0) || !std::isfinite(this->gravity))
   {
     throw ParameterError(
@@ -97,6 +115,12 @@ void SimulationParameters::validate() const
       " s");
   }
   atLeast(this->iterations, 1, "Iterations");
+  atLeast(this->firstIteration, 0, "FirstIteration");
+  if (this->firstIteration > std::numeric_limits<int>::max() - this->iterations)
+  {
+    throw ParameterError("FirstIteration is " + std::to_string(this->firstIteration) + ", with " +
+      std::to_string(this->iterations) + " Iterations it goes beyond 2,147,483,647");
+  }
   atLeast(this->threads, 0, "NumberOfThreads");
   atLeast(this->maxOpenClose, 2, "MaximumOpenClose");
   atLeast(this->maxCuts, 0, "MaximumCuts");
@@ -137,65 +161,232 @@ void Rock::validate() const
   }
 }
 
-TrajectoryStore::TrajectoryStore(int rocks, int iterations)
-  : rocks_(rocks)
-  , trajectories_(std::size_t(rocks) * iterations)
+namespace
 {
+
+/// Hands trajectories on in the order of their numbers, whatever the order in which they come. No
+/// thread waits for another one's delivery: it leaves its trajectory and goes on.
+class InOrder
+{
+public:
+  explicit InOrder(TrajectorySink& sink)
+    : sink_(sink)
+  {
+  }
+
+  void put(std::int64_t number, std::vector<Trajectory>&& trajectories)
+  {
+    std::unique_lock<std::mutex> lock(mutex_);
+    waiting_.emplace(number, std::move(trajectories));
+    if (delivering_)
+    {
+      return;
+    }
+    delivering_ = true;
+    for (auto turn = waiting_.find(next_); turn != waiting_.end(); turn = waiting_.find(next_))
+    {
+      std::vector<Trajectory> delivered = std::move(turn->second);
+      waiting_.erase(turn);
+      ++next_;
+      lock.unlock();
+      for (Trajectory& trajectory : delivered)
+      {
+        sink_.consume(std::move(trajectory)); // if it throws nothing more is delivered
+      }
+      lock.lock();
+    }
+    delivering_ = false;
+  }
+
+private:
+  TrajectorySink& sink_;
+  std::mutex mutex_;
+  std::map<std::int64_t, std::vector<Trajectory>> waiting_;
+  std::int64_t next_ = 0;
+  bool delivering_ = false;
+};
+
+/// The exception of the lowest number among those that several threads met.
+class FirstFailure
+{
+public:
+  void note(std::int64_t number)
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!failure_ || number < number_)
+    {
+      number_ = number;
+      failure_ = std::current_exception();
+    }
+  }
+  void rethrow() const
+  {
+    if (failure_)
+    {
+      std::rethrow_exception(failure_);
+    }
+  }
+
+private:
+  std::mutex mutex_;
+  std::int64_t number_ = 0;
+  std::exception_ptr failure_;
+};
+
+/// Calls `work` on as many threads as asked for (0: all), once each; returns when all came back.
+template <typename Work>
+void onThreads(int threads, const Work& work)
+{
+  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic, 1);
+  arena.execute(
+    [&]
+    {
+      tbb::parallel_for(
+        0, tbb::this_task_arena::max_concurrency(), [&](int) { work(); },
+        tbb::simple_partitioner());
+    });
 }
 
-void TrajectoryStore::consume(Trajectory&& trajectory)
+Block blockOf(const Rock& rock)
 {
-  const TrajectorySummary& s = trajectory.summary;
-  trajectories_[std::size_t(s.iteration) * rocks_ + s.rock] = std::move(trajectory);
+  return Block(rock.shape, rock.density, rock.youngModulus, rock.poissonRatio);
 }
 
-bool runEnsemble(const Terrain& terrain, std::span<const Rock> rocks,
-  const SimulationParameters& parameters, TrajectorySink& sink, const Progress& progress)
+/// Rocks that hit each other must not be in each other at the start.
+void checkOverlaps(std::span<const Rock> rocks, const Vec3& origin)
 {
-  parameters.validate();
+  const std::vector<RockOverlap> overlaps = findOverlaps(rocks);
+  if (overlaps.empty())
+  {
+    return;
+  }
+  const RockOverlap& worst = *std::max_element(overlaps.begin(), overlaps.end(),
+    [](const RockOverlap& a, const RockOverlap& b) { return a.depth < b.depth; });
+  const Rock &a = rocks[std::size_t(worst.first)], &b = rocks[std::size_t(worst.second)];
+  throw PlacementError("block " + std::to_string(a.blockId) + " at " + where(a.position + origin) +
+    " and block " + std::to_string(b.blockId) + " at " + where(b.position + origin) +
+    " overlap at the start, by " + std::to_string(worst.depth) + " m" +
+    (overlaps.size() > 1 ? "; so do " + std::to_string(overlaps.size() - 1) + " other pairs" : "") +
+    ". Move them apart, or give the same rock only once");
+}
+
+} // namespace
+
+Ensemble::Ensemble(
+  const Terrain& terrain, std::span<const Rock> rocks, const SimulationParameters& p)
+  : terrain_(terrain)
+  , rocks_(rocks)
+  , parameters_(p)
+{
+  p.validate();
   if (rocks.empty())
   {
     throw ParameterError("there are no rock blocks to simulate");
   }
-  std::vector<Block> blocks;
-  blocks.reserve(rocks.size());
-  for (const Rock& rock : rocks)
+  FirstFailure failure;
+  std::atomic<std::int64_t> next{ 0 };
+  onThreads(p.threads,
+    [&]
+    {
+      for (std::int64_t k = next++; k < std::int64_t(rocks.size()); k = next++)
+      {
+        try
+        {
+          rocks[std::size_t(k)].validate();
+          checkPlacement(terrain, rocks[std::size_t(k)], blockOf(rocks[std::size_t(k)]));
+        }
+        catch (...)
+        {
+          failure.note(k);
+        }
+      }
+    });
+  failure.rethrow();
+  if (p.rockRockContact)
   {
-    rock.validate();
-    blocks.emplace_back(rock.shape, rock.density, rock.youngModulus, rock.poissonRatio);
-    checkPlacement(terrain, rock, blocks.back());
+    checkOverlaps(rocks, terrain.geometry().origin());
   }
+}
 
-  const std::int64_t total = std::int64_t(rocks.size()) * parameters.iterations;
-  std::atomic<std::int64_t> finished{ 0 };
-  std::atomic<bool> stop{ false };
-  std::mutex sinkMutex;
-  std::exception_ptr failure;
-  const auto simulate = [&](std::int64_t index)
+Trajectory Ensemble::simulate(std::int64_t number, double enough) const
+{
+  const int rock = int(number % std::int64_t(rocks_.size()));
+  const int iteration = parameters_.firstIteration + int(number / std::int64_t(rocks_.size()));
+  // The block is made anew: it costs less than a hundredth of what follows, and a hundred thousand
+  // of them would take more memory than all their summaries.
+  const Block block = blockOf(rocks_[std::size_t(rock)]);
+  const Surface surface(terrain_, parameters_.seed, iteration);
+  RockSimulator simulator(surface, rocks_[std::size_t(rock)], block, parameters_);
+  Trajectory trajectory = simulator.run(enough);
+  trajectory.summary.rock = rock;
+  trajectory.summary.iteration = iteration;
+  trajectory.summary.hash = motionHash(trajectory);
+  return trajectory;
+}
+
+std::vector<Trajectory> Ensemble::simulateUnit(
+  std::int64_t unit, double enough, const std::atomic<bool>& stop) const
+{
+  std::vector<Trajectory> trajectories;
+  if (!parameters_.rockRockContact)
   {
-    if (stop)
+    trajectories.push_back(this->simulate(unit, enough));
+    return trajectories;
+  }
+  const int iteration = parameters_.firstIteration + int(unit);
+  std::vector<Block> blocks;
+  blocks.reserve(rocks_.size());
+  for (const Rock& rock : rocks_)
+  {
+    blocks.push_back(blockOf(rock));
+  }
+  const Surface surface(terrain_, parameters_.seed, iteration);
+  MassFall fall(surface, rocks_, blocks, parameters_);
+  trajectories = fall.run([&](double time) { return !stop && time < enough; });
+  for (std::size_t rock = 0; rock < trajectories.size(); ++rock)
+  {
+    TrajectorySummary& summary = trajectories[rock].summary;
+    summary.rock = int(rock);
+    summary.iteration = iteration;
+    summary.hash = motionHash(trajectories[rock]);
+  }
+  return trajectories;
+}
+
+bool Ensemble::run(
+  const EnsembleShare& share, TrajectorySink& sink, const Progress& progress, double enough) const
+{
+  const std::int64_t total = share.count();
+  if (total == 0)
+  {
+    return true;
+  }
+  std::atomic<std::int64_t> next{ 0 }, finished{ 0 };
+  std::atomic<bool> stop{ false };
+  FirstFailure failure;
+  InOrder inOrder(sink);
+  // In order, too, are they begun: so few wait for their turn.
+  const auto simulateNext = [&]
+  {
+    for (std::int64_t k = next++; k < total && !stop; k = next++)
     {
-      return;
+      try
+      {
+        std::vector<Trajectory> done =
+          this->simulateUnit(share.begin + k * share.stride, enough, stop);
+        for (Trajectory& trajectory : done)
+        {
+          sink.trim(trajectory);
+        }
+        inOrder.put(k, std::move(done));
+      }
+      catch (...)
+      {
+        failure.note(k);
+        stop = true;
+      }
+      ++finished;
     }
-    const int iteration = int(index / std::int64_t(rocks.size()));
-    const int rock = int(index % std::int64_t(rocks.size()));
-    try
-    {
-      const Surface surface(terrain, parameters.seed, iteration);
-      RockSimulator simulator(surface, rocks[rock], blocks[rock], parameters);
-      Trajectory trajectory = simulator.run();
-      trajectory.summary.rock = rock;
-      trajectory.summary.iteration = iteration;
-      const std::lock_guard<std::mutex> lock(sinkMutex);
-      sink.consume(std::move(trajectory));
-    }
-    catch (...)
-    {
-      const std::lock_guard<std::mutex> lock(sinkMutex);
-      failure = failure ? failure : std::current_exception();
-      stop = true;
-    }
-    ++finished;
   };
 
   // The caller's thread only reports: a GUI must not be called from any other one.
@@ -205,10 +396,7 @@ bool runEnsemble(const Terrain& terrain, std::span<const Rock> rocks,
   std::thread worker(
     [&]
     {
-      tbb::task_arena arena(
-        parameters.threads > 0 ? parameters.threads : tbb::task_arena::automatic, 1);
-      arena.execute(
-        [&] { tbb::parallel_for(std::int64_t(0), total, simulate, tbb::simple_partitioner()); });
+      onThreads(parameters_.threads, simulateNext);
       const std::lock_guard<std::mutex> lock(wakeMutex);
       done = true;
       wake.notify_all();
@@ -232,11 +420,15 @@ bool runEnsemble(const Terrain& terrain, std::span<const Rock> rocks,
     }
   }
   worker.join();
-  if (failure)
-  {
-    std::rethrow_exception(failure);
-  }
-  return !aborted;
+  failure.rethrow();
+  return !aborted && (!progress || progress(1.0));
+}
+
+bool runEnsemble(const Terrain& terrain, std::span<const Rock> rocks,
+  const SimulationParameters& parameters, TrajectorySink& sink, const Progress& progress)
+{
+  const Ensemble ensemble(terrain, rocks, parameters);
+  return ensemble.run(ensemble.whole(), sink, progress);
 }
 
 } // namespace rockfall

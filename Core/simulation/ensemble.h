@@ -8,8 +8,12 @@
 #include "simulation/results.h"
 #include "terrain/Terrain.h"
 
+#include <atomic>
 #include <functional>
+#include <limits>
 #include <span>
+#include <utility>
+#include <vector>
 
 namespace rockfall
 {
@@ -31,12 +35,15 @@ struct Rock
   void validate() const; ///< Throws ParameterError naming block, field and value.
 };
 
-/// Receives finished trajectories. `consume` is called once per rock and iteration, from one thread
-/// at a time but in any order.
+/// Receives finished trajectories.
 class TrajectorySink
 {
 public:
   virtual ~TrajectorySink() = default;
+  /// Drops what is not kept, as soon as the trajectory is finished and before it waits for its
+  /// turn. Called by the thread that simulated it, so by several at a time.
+  virtual void trim(Trajectory&) const {}
+  /// Called once per rock and iteration, in the order (iteration, rock), by one thread at a time.
   virtual void consume(Trajectory&& trajectory) = 0;
 };
 
@@ -44,21 +51,76 @@ public:
 class TrajectoryStore : public TrajectorySink
 {
 public:
-  TrajectoryStore(int rocks, int iterations);
-  void consume(Trajectory&& trajectory) override;
+  TrajectoryStore() = default;
+  TrajectoryStore(int rocks, int iterations)
+  {
+    trajectories_.reserve(std::size_t(rocks) * iterations);
+  }
+  void consume(Trajectory&& trajectory) override { trajectories_.push_back(std::move(trajectory)); }
   const std::vector<Trajectory>& trajectories() const { return trajectories_; }
+  std::vector<Trajectory> take() { return std::move(trajectories_); }
 
 private:
-  int rocks_;
   std::vector<Trajectory> trajectories_;
 };
 
-/// Called now and then from the calling thread with the share done, 0 … 1; returning false aborts.
+/// Called now and then, and at the end, from the calling thread with the share done, 0 … 1;
+/// returning false aborts.
 using Progress = std::function<bool(double)>;
 
-/// Simulates every rock in every iteration. Results do not depend on the number of threads.
-/// Throws ParameterError, GeometryError or PlacementError before anything is simulated.
-/// Returns false if `progress` aborted the run; the sink then holds a part, to be thrown away.
+/// A part of an ensemble: the units begin, begin + stride, … below end.
+struct EnsembleShare
+{
+  std::int64_t begin = 0, end = 0, stride = 1;
+  std::int64_t count() const { return end > begin ? (end - begin + stride - 1) / stride : 0; }
+};
+
+/// Every rock in every iteration, checked and ready to be simulated, in whole or in parts. Its
+/// units are what is simulated at once: number n is rock n mod rocks in iteration firstIteration +
+/// n / rocks, or, if rocks hit each other, all of iteration firstIteration + n.
+class Ensemble
+{
+public:
+  /// Keeps references to the terrain and the rocks. Throws ParameterError, GeometryError or
+  /// PlacementError, of the first rock that has one.
+  Ensemble(const Terrain& terrain, std::span<const Rock> rocks, const SimulationParameters& p);
+
+  std::int64_t size() const ///< Units.
+  {
+    return parameters_.iterations * this->unitsPerIteration();
+  }
+  std::int64_t unitsPerIteration() const
+  {
+    return parameters_.rockRockContact ? 1 : std::int64_t(rocks_.size());
+  }
+  std::int64_t trajectoriesPerUnit() const ///< In the order of the rocks.
+  {
+    return parameters_.rockRockContact ? std::int64_t(rocks_.size()) : 1;
+  }
+  EnsembleShare whole() const { return { 0, this->size(), 1 }; }
+  const SimulationParameters& parameters() const { return parameters_; }
+
+  /// Simulates one trajectory of a rock that hits no other; `enough` as in RockSimulator::run.
+  Trajectory simulate(
+    std::int64_t number, double enough = std::numeric_limits<double>::infinity()) const;
+
+  /// Simulates a share on all threads and hands it to `sink` in order. What comes out does not
+  /// depend on the number of threads. Returns false if `progress` aborted; the sink then has a
+  /// part, to be thrown away. A trajectory waits for its turn only as long as the slowest of those
+  /// before it takes.
+  bool run(const EnsembleShare& share, TrajectorySink& sink, const Progress& progress = {},
+    double enough = std::numeric_limits<double>::infinity()) const;
+
+private:
+  std::vector<Trajectory> simulateUnit(
+    std::int64_t unit, double enough, const std::atomic<bool>& stop) const;
+
+  const Terrain& terrain_;
+  std::span<const Rock> rocks_;
+  SimulationParameters parameters_;
+};
+
+/// Simulates every rock in every iteration: `Ensemble::run` of the whole.
 bool runEnsemble(const Terrain& terrain, std::span<const Rock> rocks,
   const SimulationParameters& parameters, TrajectorySink& sink, const Progress& progress = {});
 

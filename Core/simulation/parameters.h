@@ -25,7 +25,10 @@ struct SimulationParameters
 
   bool rigid = false; ///< Infinite stiffness: 6 unknowns per block.
 
-  int iterations = 1;     ///< Independent realisations of roughness, Rv and φ, ≥ 1.
+  int iterations = 1; ///< Independent realisations of roughness, Rv and φ, ≥ 1.
+  /// Number of the first of them, ≥ 0: iterations 10 … 19 are the same whether they are run alone
+  /// or among 0 … 99.
+  int firstIteration = 0;
   std::uint64_t seed = 1; ///< With the iteration it determines every random number.
   int threads = 0;        ///< 0 = all.
 

@@ -84,7 +84,7 @@ std::string fateName(Fate fate);
 struct TrajectorySummary
 {
   int rock = 0;      ///< Index in the list of rocks.
-  int iteration = 0; ///< From 0.
+  int iteration = 0; ///< From 0, or from the run's first one.
   std::int64_t blockId = 0;
   Fate fate = Fate::Moving;
   double endTime = 0.0; ///< When it rested, left or was cut off, s.
@@ -103,6 +103,7 @@ struct TrajectorySummary
   std::int64_t cutSteps = 0;       ///< Steps redone with a smaller Δt.
   std::int64_t unsettledSteps = 0; ///< Steps taken although open–close had not settled.
   EnergyAudit energy;
+  std::uint64_t hash = 0; ///< Of the motion: `motionHash`, given by the ensemble.
 };
 
 /// All of one rock in one iteration.

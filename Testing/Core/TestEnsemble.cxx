@@ -3,10 +3,12 @@
 
 #include "base/errors.h"
 #include "simulation/Recorder.h"
+#include "simulation/stateHash.h"
 #include "slopes.h"
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cstring>
 #include <random>
 
@@ -176,6 +178,121 @@ TEST(Ensemble, SameBitsForAnyNumberOfThreads)
   EXPECT_NE(other.trajectories()[0].summary.stop, coarse.trajectories()[0].summary.stop);
 }
 
+namespace
+{
+
+/// Checks what a sink is promised.
+class StrictSink : public TrajectorySink
+{
+public:
+  void trim(Trajectory& t) const override { t.samples.clear(); }
+  void consume(Trajectory&& t) override
+  {
+    EXPECT_FALSE(busy_.exchange(true)) << "two threads at once";
+    EXPECT_TRUE(t.samples.empty()) << "not trimmed";
+    numbers.push_back({ t.summary.iteration, t.summary.rock });
+    hash.add(t.summary.hash);
+    busy_ = false;
+    if (numbers.size() == failAt)
+    {
+      throw DataError("the sink is full");
+    }
+  }
+  std::vector<std::pair<int, int>> numbers;
+  StateHash hash;
+  std::size_t failAt = 0;
+
+private:
+  std::atomic<bool> busy_{ false };
+};
+
+} // namespace
+
+TEST(Ensemble, HandsOnInOrderAndInParts)
+{
+  const Terrain slope = roughSlope();
+  const std::vector<Rock> rocks = mixedRocks(7);
+  SimulationParameters p;
+  p.iterations = 6;
+  p.firstIteration = 10;
+  p.endTime = 4.0;
+  p.threads = 3;
+  const Ensemble ensemble(slope, rocks, p);
+  StrictSink sink;
+  ASSERT_TRUE(ensemble.run(ensemble.whole(), sink));
+  ASSERT_EQ(sink.numbers.size(), 42u);
+  for (int n = 0; n < 42; ++n)
+  {
+    EXPECT_EQ(sink.numbers[std::size_t(n)], std::pair(10 + n / 7, n % 7));
+  }
+
+  // Every third from the fifth on.
+  StrictSink part;
+  const EnsembleShare share{ 4, 40, 3 };
+  ASSERT_TRUE(ensemble.run(share, part));
+  ASSERT_EQ(part.numbers.size(), std::size_t(share.count()));
+  ASSERT_EQ(share.count(), 12);
+  for (int k = 0; k < 12; ++k)
+  {
+    EXPECT_EQ(part.numbers[std::size_t(k)], sink.numbers[std::size_t(4 + 3 * k)]);
+  }
+  StrictSink none;
+  EXPECT_TRUE(ensemble.run({ 5, 5, 1 }, none, [](double) { return false; }));
+  EXPECT_TRUE(none.numbers.empty());
+
+  // Iterations 12 to 14 alone are as in the whole.
+  StateHash expected, alone;
+  for (int n = 14; n < 35; ++n)
+  {
+    expected.add(ensemble.simulate(n).summary.hash);
+  }
+  p.firstIteration = 12;
+  p.iterations = 3;
+  StrictSink middle;
+  ASSERT_TRUE(runEnsemble(slope, rocks, p, middle));
+  EXPECT_EQ(middle.hash.value(), expected.value());
+
+  // Nothing is handed on after a failure.
+  StrictSink full;
+  full.failAt = 5;
+  EXPECT_THROW(ensemble.run(ensemble.whole(), full), DataError);
+  EXPECT_EQ(full.numbers.size(), 5u);
+}
+
+TEST(Ensemble, EnoughIsAsInTheWholeRun)
+{
+  const Terrain slope = roughSlope();
+  const std::vector<Rock> rocks = mixedRocks(7);
+  SimulationParameters p;
+  p.endTime = 8.0;
+  const Ensemble ensemble(slope, rocks, p);
+  for (int rock = 0; rock < 7; ++rock)
+  {
+    const Trajectory whole = ensemble.simulate(rock);
+    for (double enough : { 0.0, 1.0, 3.33, 8.0 })
+    {
+      const Trajectory part = ensemble.simulate(rock, enough);
+      // Up to the first sample at that time or later they are the same.
+      for (std::size_t k = 0; k == 0 || whole.samples[k - 1].time < enough; ++k)
+      {
+        ASSERT_LT(k, part.samples.size());
+        EXPECT_EQ(part.samples[k].time, whole.samples[k].time);
+        EXPECT_EQ(part.samples[k].position, whole.samples[k].position);
+        EXPECT_EQ(part.samples[k].velocity, whole.samples[k].velocity);
+        EXPECT_EQ(part.samples[k].contact, whole.samples[k].contact);
+        if (k + 1 == whole.samples.size())
+        {
+          break;
+        }
+      }
+      if (enough <= 1.0)
+      {
+        EXPECT_LT(part.samples.back().time, 4.0); // and it did stop there
+      }
+    }
+  }
+}
+
 TEST(Ensemble, AbortsWhenAsked)
 {
   const std::vector<Rock> rocks = mixedRocks(200);
@@ -262,6 +379,10 @@ TEST(Ensemble, BadInputIsOneClearError)
   expectError<ParameterError>(with([](Rock&, P& p) { p.endTime = NAN; }), "EndTime is nan");
   expectError<ParameterError>(with([](Rock&, P& p) { p.outputInterval = 0; }), "OutputInterval");
   expectError<ParameterError>(with([](Rock&, P& p) { p.iterations = 0; }), "Iterations is 0");
+  expectError<ParameterError>(
+    with([](Rock&, P& p) { p.firstIteration = -1; }), "FirstIteration is -1");
+  expectError<ParameterError>(
+    with([](Rock&, P& p) { p.firstIteration = 2147483647; }), "FirstIteration is 2147483647");
   expectError<ParameterError>(
     with([](Rock& r, P&) { r.density = -2500.0; }), "block 7: Density is -2500");
   expectError<ParameterError>(with([](Rock& r, P&) { r.youngModulus = 0.0; }), "YoungModulus");

@@ -8,6 +8,7 @@
 #include "vtkInformation.h"
 #include "vtkPointData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStringArray.h"
 #include "vtkXMLPolyDataReader.h"
 #include "vtkXMLPolyDataWriter.h"
 
@@ -276,6 +277,148 @@ TEST_F(TestRockfallSimulation, ResultsDoNotDependOnThreads)
   EXPECT_NE(one, numbersOf(this->Output(1)));
 }
 
+TEST_F(TestRockfallSimulation, KeepsWhatIsAskedFor)
+{
+  this->Terrain->SetRoughnessDeviation(0.1);
+  this->Simulation->SetIterations(3);
+  const auto shown = [&](double time)
+  {
+    vtkPolyData* rocks = this->RocksAt(time);
+    std::vector<double> numbers;
+    for (vtkIdType id = 0; id < rocks->GetNumberOfPoints(); ++id)
+    {
+      numbers.insert(numbers.end(), rocks->GetPoint(id), rocks->GetPoint(id) + 3);
+    }
+    return numbers;
+  };
+  vtkNew<vtkPolyData> full, ends;
+  full->DeepCopy(this->Output(1));
+  const std::string hash = this->Simulation->GetStateHash();
+  EXPECT_EQ(hash.size(), 16u);
+  EXPECT_EQ(hash.find_first_not_of("0123456789abcdef"), std::string::npos);
+  auto* field =
+    vtkStringArray::SafeDownCast(this->Summary()->GetFieldData()->GetAbstractArray("StateHash"));
+  ASSERT_TRUE(field);
+  EXPECT_EQ(field->GetValue(0), hash);
+  const auto rocksThen = shown(1.3);
+  const vtkIdType impacts = this->Output(2)->GetNumberOfVerts();
+  EXPECT_GT(impacts, 0);
+  EXPECT_TRUE(full->GetPointData()->HasArray("FrictionLoss"));
+
+  vtkIdType before = 0;
+  for (int kept = vtkRockfallSimulation::NOTHING; kept <= vtkRockfallSimulation::FULL; ++kept)
+  {
+    this->Simulation->SetTrajectoryOutput(kept);
+    vtkPolyData* lines = this->Output(1);
+    const vtkIdType points = lines->GetNumberOfPoints();
+    EXPECT_GE(points, before) << kept; // each keeps more than the one before
+    before = points;
+    EXPECT_EQ(lines->GetNumberOfCells(), kept == vtkRockfallSimulation::NOTHING ? 0 : 3) << kept;
+    EXPECT_EQ(lines->GetNumberOfVerts(), kept == vtkRockfallSimulation::STOPPING_POINTS ? 3 : 0);
+    EXPECT_EQ(this->Summary()->GetNumberOfRows(), 3) << kept;
+    EXPECT_EQ(this->Simulation->GetStateHash(), hash) << kept;
+    EXPECT_EQ(this->Output(2)->GetNumberOfVerts(), impacts) << kept;
+    EXPECT_EQ(shown(1.3), rocksThen) << kept;
+    if (kept == vtkRockfallSimulation::STOPPING_POINTS)
+    {
+      ends->DeepCopy(lines);
+    }
+  }
+  for (vtkIdType row = 0; row < 3; ++row)
+  {
+    vtkIdType size = 0;
+    const vtkIdType* ids = nullptr;
+    full->GetCellPoints(row, size, ids);
+    EXPECT_EQ(ends->GetPoint(row)[0], full->GetPoint(ids[size - 1])[0]);
+    EXPECT_EQ(ends->GetPoint(row)[2], full->GetPoint(ids[size - 1])[2]);
+  }
+  this->Simulation->KeepImpactsOff();
+  EXPECT_EQ(this->Output(2)->GetNumberOfVerts(), 0);
+  EXPECT_GT(this->Summary()->GetValueByName(0, "Impacts").ToDouble(), 0.0);
+  EXPECT_EQ(this->Simulation->GetStateHash(), hash);
+}
+
+TEST_F(TestRockfallSimulation, AnyIterationCanBeShown)
+{
+  this->Terrain->SetRoughnessDeviation(0.1);
+  this->Simulation->SetTrajectoryOutput(vtkRockfallSimulation::STOPPING_POINTS);
+  this->Simulation->SetIterations(4);
+  this->Simulation->SetFirstIteration(5);
+  for (int shown : { 0, 3, 1 })
+  {
+    this->Simulation->SetShownIteration(shown);
+    vtkPolyData* rocks = this->RocksAt(3.0);
+    EXPECT_EQ(value(rocks->GetCellData(), "Iteration"), 5 + shown);
+    // Where its trajectory ends.
+    const double* end = this->Output(1)->GetPoint(shown);
+    this->RocksAt(3.0);
+    double centre = 0.0;
+    for (vtkIdType id = 0; id < 8; ++id)
+    {
+      centre += rocks->GetPoint(id)[0] / 8.0;
+    }
+    EXPECT_NEAR(centre, end[0], 1e-9) << shown;
+  }
+  EXPECT_EQ(this->Simulation->GetNumberOfRuns(), 1);
+  // Where there may be more samples than are kept each time is simulated for itself: the same.
+  const double there = middle(this->RocksAt(1.37), 0);
+  this->Simulation->SetEndTime(2e5); // it rests or leaves long before
+  EXPECT_EQ(middle(this->RocksAt(1.37), 0), there);
+  EXPECT_EQ(this->Simulation->GetNumberOfRuns(), 2);
+}
+
+TEST_F(TestRockfallSimulation, PartsOfAStudyAreThoseOfTheWhole)
+{
+  this->Terrain->SetRoughnessDeviation(0.1);
+  this->Simulation->SetIterations(6);
+  vtkNew<vtkTable> whole;
+  whole->DeepCopy(this->Summary());
+  this->Simulation->SetIterations(2);
+  for (int first : { 0, 2, 4 })
+  {
+    this->Simulation->SetFirstIteration(first);
+    vtkTable* part = this->Summary();
+    ASSERT_EQ(part->GetNumberOfRows(), 2);
+    for (vtkIdType row = 0; row < 2; ++row)
+    {
+      for (vtkIdType column = 0; column < whole->GetNumberOfColumns(); ++column)
+      {
+        EXPECT_EQ(part->GetValue(row, column), whole->GetValue(first + row, column))
+          << whole->GetColumnName(column);
+      }
+    }
+  }
+}
+
+TEST_F(TestRockfallSimulation, TellsItsProgressWhenAsked)
+{
+  this->Terrain->SetRoughnessDeviation(0.1);
+  this->Simulation->SetIterations(20);
+  std::vector<std::string> texts;
+  vtkNew<vtkCallbackCommand> listen;
+  listen->SetClientData(&texts);
+  listen->SetCallback(
+    [](vtkObject* caller, unsigned long, void* clientData, void*)
+    {
+      const char* text = vtkAlgorithm::SafeDownCast(caller)->GetProgressText();
+      static_cast<std::vector<std::string>*>(clientData)->push_back(text ? text : "");
+    });
+  this->Simulation->AddObserver(vtkCommand::ProgressEvent, listen);
+  testing::internal::CaptureStderr();
+  this->Simulation->Update();
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_TRUE(std::any_of(texts.begin(), texts.end(),
+    [](const std::string& text)
+    { return text.find(" of 20 trajectories (") != std::string::npos; }));
+  EXPECT_FALSE(this->Simulation->GetProgressText());
+  this->Simulation->PrintProgressOn();
+  this->Simulation->SetSeed(2);
+  testing::internal::CaptureStderr();
+  this->Simulation->Update();
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("Rockfall Simulation: 20 trajectories in "),
+    std::string::npos);
+}
+
 TEST_F(TestRockfallSimulation, SavedInputsGiveTheSameRun)
 {
   this->Terrain->SetRestitutionModel(vtkDEMToCFESource::NORMAL_TANGENTIAL); // not the default
@@ -407,6 +550,7 @@ TEST_F(TestRockfallSimulation, AbortLeavesNothing)
   this->ExpectEmpty();
   this->Simulation->RemoveObserver(tag);
   EXPECT_EQ(this->Simulation->GetNumberOfRuns(), 1);
+  EXPECT_STREQ(this->Simulation->GetStateHash(), "");
   this->Simulation->SetAbortExecute(0);
   this->Simulation->SetIterations(2);
   EXPECT_EQ(this->Summary()->GetNumberOfRows(), 2);
@@ -434,7 +578,8 @@ TEST_F(TestRockfallSimulation, PrintSelfNamesEveryProperty)
   this->Simulation->Print(text);
   for (const char* name : { "TimeStep", "EndTime", "OutputInterval", "Gravity", "NormalPenalty",
          "ShearPenaltyRatio", "Iterations", "Seed", "RockRockContact", "Rigid", "NumberOfThreads",
-         "ShownIteration", "NumberOfRuns" })
+         "ShownIteration", "FirstIteration", "TrajectoryOutput", "KeepImpacts", "PrintProgress",
+         "StateHash", "NumberOfRuns" })
   {
     EXPECT_NE(text.str().find(std::string(name) + ":"), std::string::npos) << name;
   }

@@ -82,6 +82,14 @@ TEST_F(TestRockfallSimulationErrors, BadValuesAreOneErrorAndNothingElse)
   this->ExpectEmpty();
   this->ExpectOneError({ "Seed", "-1" });
   this->Simulation->SetSeed(0);
+  this->Simulation->SetFirstIteration(-1);
+  this->ExpectEmpty();
+  this->ExpectOneError({ "FirstIteration", "-1" });
+  this->Simulation->SetFirstIteration(0);
+  this->Simulation->SetTrajectoryOutput(5);
+  this->ExpectEmpty();
+  this->ExpectOneError({ "TrajectoryOutput", "5", "0 to 4" });
+  this->Simulation->SetTrajectoryOutput(vtkRockfallSimulation::FULL);
   this->Simulation->RockRockContactOn();
   this->ExpectEmpty();
   this->ExpectOneError({ "RockRockContact", "not available" });

@@ -2,10 +2,13 @@
 
 #include "helpers.h"
 #include "motion.h"
-#include "runOutputs.h"
+#include "progressText.h"
+#include "runSink.h"
 
+#include "vtkCellData.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
+#include "vtkTable.h"
 
 using namespace rockfall;
 
@@ -41,18 +44,26 @@ Trajectory fall()
   return trajectory;
 }
 
+filters::RunFrame frameOf(int rocks)
+{
+  filters::RunFrame frame;
+  frame.rocks.resize(std::size_t(rocks));
+  frame.shapes.resize(std::size_t(rocks), Shape::Cube);
+  frame.origin = Vec3(500000.0, 4000000.0, 0.0);
+  frame.gravity = gravity;
+  return frame;
+}
+
 } // namespace
 
 TEST(RunOutputs, TrajectoriesHaveEveryTermOfTheEnergy)
 {
   const Trajectory trajectory = fall();
-  filters::FinishedRun run;
-  run.rocks.resize(1);
-  run.trajectories = std::span(&trajectory, 1);
-  run.origin = Vec3(500000.0, 4000000.0, 0.0);
-  run.gravity = gravity;
+  const filters::RunFrame frame = frameOf(1);
   vtkNew<vtkPolyData> lines;
-  filters::writeTrajectories(run, lines);
+  filters::TrajectoryLines writer(frame, true);
+  writer.append(trajectory);
+  writer.finish(lines);
   vtkFieldData* data = lines->GetPointData();
   ASSERT_EQ(lines->GetNumberOfPoints(), 2);
   const struct
@@ -87,4 +98,67 @@ TEST(RunOutputs, EnergyBetweenSamplesIsInterpolated)
   EXPECT_DOUBLE_EQ(between.energy.vibration, 0.25 * 400.0);
   EXPECT_DOUBLE_EQ(between.energy.damping, 0.25 * 500.0);
   EXPECT_DOUBLE_EQ(between.energy.numerical, -0.25 * 600.0);
+}
+
+TEST(RunOutputs, OneSampleIsAVertexAndNoneIsNothing)
+{
+  const filters::RunFrame frame = frameOf(3);
+  filters::TrajectoryLines writer(frame, false);
+  for (int rock = 0; rock < 3; ++rock)
+  {
+    Trajectory trajectory = fall();
+    trajectory.summary.rock = rock;
+    thin(trajectory, rock == 1 ? Retention::Nothing : Retention::StoppingPoints);
+    writer.append(trajectory);
+  }
+  vtkNew<vtkPolyData> points;
+  writer.finish(points);
+  ASSERT_EQ(points->GetNumberOfVerts(), 2);
+  EXPECT_EQ(points->GetNumberOfCells(), 2);
+  EXPECT_EQ(value(points->GetCellData(), "RockId", 1), 2);
+  EXPECT_EQ(points->GetPoint(1)[2], 20.0);
+  EXPECT_EQ(points->GetPoint(1)[0], 500001.0);
+  // The audit is of full trajectories only.
+  EXPECT_FALSE(points->GetPointData()->HasArray("FrictionLoss"));
+}
+
+TEST(RunOutputs, TheIterationThatIsShownIsKeptWhole)
+{
+  const filters::RunFrame frame = frameOf(1);
+  const filters::KeptParts parts{ Retention::StoppingPoints, false, 1 };
+  filters::RunSink sink(frame, parts);
+  for (int iteration = 0; iteration < 3; ++iteration)
+  {
+    Trajectory trajectory = fall();
+    trajectory.summary.iteration = iteration;
+    trajectory.impacts.resize(4);
+    sink.trim(trajectory);
+    sink.consume(std::move(trajectory));
+  }
+  vtkNew<vtkPolyData> lines, impacts;
+  vtkNew<vtkTable> summary;
+  sink.finish(lines, impacts, summary);
+  EXPECT_EQ(lines->GetNumberOfVerts(), 3);
+  EXPECT_EQ(lines->GetNumberOfLines(), 0);
+  EXPECT_EQ(impacts->GetNumberOfCells(), 0);
+  EXPECT_EQ(summary->GetNumberOfRows(), 3);
+  ASSERT_EQ(sink.whole().size(), 1u);
+  EXPECT_EQ(sink.whole()[0].samples.size(), 2u);
+  EXPECT_EQ(sink.whole()[0].summary.iteration, 1);
+}
+
+TEST(ProgressText, SaysHowFarAndHowLong)
+{
+  EXPECT_EQ(filters::durationText(0.0), "0 s");
+  EXPECT_EQ(filters::durationText(41.2), "42 s");
+  EXPECT_EQ(filters::durationText(59.9), "1 min 00 s");
+  EXPECT_EQ(filters::durationText(200.0), "3 min 20 s");
+  EXPECT_EQ(filters::durationText(3599.5), "1 h 00 min");
+  EXPECT_EQ(filters::durationText(7500.0), "2 h 05 min");
+  EXPECT_EQ(filters::progressText(0.25, 100000, 60.0),
+    "25,000 of 100,000 trajectories (25 %), about 3 min 00 s left");
+  EXPECT_EQ(filters::progressText(1.0, 12, 60.0), "12 of 12 trajectories (100 %), about 0 s left");
+  // Too early to tell.
+  EXPECT_EQ(filters::progressText(0.0, 1234567, 5.0), "0 of 1,234,567 trajectories (0 %)");
+  EXPECT_EQ(filters::progressText(0.5, 10, 0.1), "5 of 10 trajectories (50 %)");
 }

@@ -1,0 +1,66 @@
+#pragma once
+
+/// @file
+/// A run that a filter keeps, what it was made of, and its outputs that do not depend on time.
+
+#include "ranks.h"
+#include "runSink.h"
+
+#include "vtkFieldData.h"
+#include "vtkNew.h"
+#include "vtkPolyData.h"
+#include "vtkTable.h"
+#include "vtkType.h"
+
+#include <memory>
+
+namespace rockfall::filters
+{
+
+/// A data object as it is now.
+struct Stamp
+{
+  vtkDataObject* object = nullptr;
+  vtkMTimeType time = 0;
+
+  Stamp() = default;
+  explicit Stamp(vtkDataObject* data)
+    : object(data)
+    , time(data->GetMTime())
+  {
+  }
+  bool operator==(const Stamp&) const = default;
+};
+
+struct KeptRun
+{
+  SimulationParameters parameters;
+  KeptParts parts;
+  Stamp terrain, rocks; ///< The inputs.
+
+  Terrain slope;
+  RunFrame frame;
+  vtkNew<vtkFieldData> coordinates;   ///< CRS and origin.
+  std::unique_ptr<Ensemble> ensemble; ///< Of `slope` and the rocks of `frame`.
+
+  vtkNew<vtkPolyData> trajectories, impacts;
+  vtkNew<vtkTable> summary;
+  std::vector<Trajectory> whole; ///< Those of `wholeIteration`, with all samples.
+  int wholeIteration = -1;
+
+  /// Whether the other one would come out the same.
+  bool isLike(const KeptRun& other) const;
+  /// Whether all samples of one iteration may be kept beside the outputs, some 400 MB at most.
+  bool wholeFits() const;
+
+  /// Takes the inputs from the ranks that have them. Collective. Throws Error on all ranks.
+  void prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const Ranks& ranks,
+    const std::string& noMemory);
+  /// Lets go of what only `show` needs.
+  void dropInputs();
+  /// Writes the blocks of an iteration (counted from the run's first one) as they are at `time`, s.
+  /// False if aborted.
+  bool show(int shown, double time, const Progress& progress, vtkPolyData* output);
+};
+
+} // namespace rockfall::filters

@@ -1,0 +1,104 @@
+#include "progressText.h"
+
+#include "vtkAlgorithm.h"
+
+#include <cmath>
+#include <iostream>
+
+namespace rockfall::filters
+{
+
+namespace
+{
+
+constexpr double printInterval = 10.0; // s
+
+/// With commas between thousands, whatever the locale.
+std::string countText(std::int64_t count)
+{
+  std::string text = std::to_string(count);
+  for (int at = int(text.size()) - 3; at > 0; at -= 3)
+  {
+    text.insert(std::size_t(at), ",");
+  }
+  return text;
+}
+
+std::string twoDigits(std::int64_t number)
+{
+  return (number < 10 ? "0" : "") + std::to_string(number);
+}
+
+} // namespace
+
+std::string durationText(double seconds)
+{
+  const std::int64_t s = std::llround(std::ceil(seconds));
+  if (s < 60)
+  {
+    return std::to_string(s) + " s";
+  }
+  if (s < 3600)
+  {
+    return std::to_string(s / 60) + " min " + twoDigits(s % 60) + " s";
+  }
+  const std::int64_t minutes = (s + 59) / 60;
+  return std::to_string(minutes / 60) + " h " + twoDigits(minutes % 60) + " min";
+}
+
+std::string progressText(double share, std::int64_t total, double elapsed)
+{
+  std::string text = countText(std::int64_t(share * double(total) + 0.5)) + " of " +
+    countText(total) + " trajectories (" + std::to_string(int(100.0 * share)) + " %)";
+  if (share >= 1e-3 && elapsed >= 1.0)
+  {
+    text += ", about " + durationText(elapsed * (1.0 - share) / share) + " left";
+  }
+  return text;
+}
+
+ProgressReport::ProgressReport(vtkAlgorithm* filter, std::int64_t total, bool first, bool print)
+  : filter_(filter)
+  , total_(total)
+  , first_(first)
+  , print_(first && print)
+{
+}
+
+ProgressReport::~ProgressReport()
+{
+  filter_->SetProgressText(nullptr);
+}
+
+double ProgressReport::elapsed() const
+{
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
+}
+
+bool ProgressReport::operator()(double share)
+{
+  if (first_)
+  {
+    const double now = this->elapsed();
+    const std::string text = progressText(share, total_, now);
+    filter_->SetProgressText(text.c_str());
+    filter_->UpdateProgress(share);
+    if (print_ && now - printed_ >= printInterval)
+    {
+      printed_ = now;
+      std::cerr << "Rockfall Simulation: " << text << std::endl;
+    }
+  }
+  return !filter_->CheckAbort();
+}
+
+void ProgressReport::finish()
+{
+  if (print_)
+  {
+    std::cerr << "Rockfall Simulation: " << countText(total_) << " trajectories in "
+              << durationText(this->elapsed()) << std::endl;
+  }
+}
+
+} // namespace rockfall::filters

@@ -1,0 +1,48 @@
+#pragma once
+
+/// @file
+/// What a user reads while a run goes on.
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+class vtkAlgorithm;
+
+namespace rockfall::filters
+{
+
+/// Whole seconds, minutes and seconds, or hours and minutes: "42 s", "3 min 20 s", "2 h 05 min".
+std::string durationText(double seconds);
+
+/// "12,300 of 100,000 trajectories (12 %), about 3 min 20 s left". `share`: done, 0 … 1; `elapsed`:
+/// time that this took, s. The rest is taken to go at the same pace; nothing is said of it before
+/// one second or a thousandth are through.
+std::string progressText(double share, std::int64_t total, double elapsed);
+
+/// Tells the world how far a filter's run is: as progress with its text, and on standard error if
+/// `print`. Where `first` is false (a rank that is not the first) it only listens for an abort.
+class ProgressReport
+{
+public:
+  ProgressReport(vtkAlgorithm* filter, std::int64_t total, bool first, bool print);
+  ~ProgressReport();
+  /// False to abort.
+  bool operator()(double share);
+  /// Says that it is done.
+  void finish();
+
+  ProgressReport(const ProgressReport&) = delete;
+  ProgressReport& operator=(const ProgressReport&) = delete;
+
+private:
+  double elapsed() const; ///< s
+
+  vtkAlgorithm* filter_;
+  std::int64_t total_;
+  bool first_, print_;
+  std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
+  double printed_ = 0.0; ///< When it last did, s after the start.
+};
+
+} // namespace rockfall::filters
