@@ -128,7 +128,11 @@ void writeRocksAt(const FinishedRun& run, int iteration, double time, vtkPolyDat
       continue;
     }
     const ReleasedRock& released = run.rocks[std::size_t(trajectory.summary.rock)];
-    const Polyhedron& body = released.rock.shape;
+    // The volume may be one of this iteration.
+    const bool drawn = released.rock.uncertainty.volume.law != VolumeLaw::Fixed;
+    const Polyhedron scaled =
+      drawn ? released.rock.shape.withVolume(trajectory.summary.volume) : Polyhedron();
+    const Polyhedron& body = drawn ? scaled : released.rock.shape;
     const Sample sample = sampleAt(trajectory, time);
     const int doing = int(stateAt(trajectory, time));
     appendFaces(
@@ -157,6 +161,7 @@ void writeTrajectories(const FinishedRun& run, vtkPolyData* output)
   const auto shape = addArray<vtkIntArray>(output->GetCellData(), "Shape");
   const auto volume = addArray<vtkDoubleArray>(output->GetCellData(), "Volume");
   const auto fate = addArray<vtkIntArray>(output->GetCellData(), "Fate");
+  const auto source = addArray<vtkIdTypeArray>(output->GetCellData(), "SourceId");
   for (const Trajectory& trajectory : run.trajectories)
   {
     lines->InsertNextCell(int(trajectory.samples.size()));
@@ -174,6 +179,7 @@ void writeTrajectories(const FinishedRun& run, vtkPolyData* output)
     shape->InsertNextValue(int(run.rocks[std::size_t(summary.rock)].shape));
     volume->InsertNextValue(summary.volume);
     fate->InsertNextValue(int(summary.fate));
+    source->InsertNextValue(run.rocks[std::size_t(summary.rock)].sourceId);
   }
   output->GetPointData()->SetActiveScalars("Speed"); // the colour that a viewer begins with
   output->SetPoints(points);
@@ -266,6 +272,8 @@ void writeSummaries(const FinishedRun& run, vtkTable* output)
       values->InsertNextValue(column.value(trajectory.summary, run.origin));
     }
   }
+  const auto sourceId = addArray<vtkIdTypeArray>(data, "SourceId");
+  const auto sourceName = addArray<vtkStringArray>(data, "SourceName");
   const auto impacts = addArray<vtkIntArray>(data, "Impacts");
   const auto contactSteps = addArray<vtkIdTypeArray>(data, "ContactSteps");
   const auto openClose = addArray<vtkIdTypeArray>(data, "OpenCloseIterations");
@@ -278,6 +286,8 @@ void writeSummaries(const FinishedRun& run, vtkTable* output)
     shape->InsertNextValue(shapeName(run.rocks[std::size_t(summary.rock)].shape));
     fate->InsertNextValue(fateName(summary.fate));
     fateCode->InsertNextValue(int(summary.fate));
+    sourceId->InsertNextValue(run.rocks[std::size_t(summary.rock)].sourceId);
+    sourceName->InsertNextValue(run.rocks[std::size_t(summary.rock)].sourceName);
     impacts->InsertNextValue(summary.impacts);
     contactSteps->InsertNextValue(summary.contactSteps);
     openClose->InsertNextValue(summary.openCloseIterations);

@@ -43,6 +43,11 @@ void checkPlacement(const Terrain& terrain, const Rock& rock, const Block& block
       std::to_string(g.xOrigin) + " to " + std::to_string(g.xOrigin + terrain.width()) + ", y " +
       std::to_string(g.yOrigin) + " to " + std::to_string(g.yOrigin + terrain.height()) + ")");
   }
+  if (rock.uncertainty.horizontalDeviation > std::hypot(terrain.width(), terrain.height()))
+  {
+    throw ParameterError(name + ": HorizontalDeviation is " +
+      std::to_string(rock.uncertainty.horizontalDeviation) + " m, more than the slope is wide");
+  }
   BlockState state;
   state.position = rock.position;
   state.orientation = rock.orientation.normalized();
@@ -135,6 +140,14 @@ void Rock::validate() const
   {
     throw ParameterError(name + "Orientation is not a rotation");
   }
+  try
+  {
+    this->uncertainty.validate();
+  }
+  catch (const ParameterError& error)
+  {
+    throw ParameterError(name + error.what());
+  }
 }
 
 TrajectoryStore::TrajectoryStore(int rocks, int iterations)
@@ -171,6 +184,17 @@ bool runEnsemble(const Terrain& terrain, std::span<const Rock> rocks,
   std::atomic<bool> stop{ false };
   std::mutex sinkMutex;
   std::exception_ptr failure;
+  const auto release = [&](const Surface& surface, int rock, int iteration)
+  {
+    if (!rocks[rock].uncertainty.any())
+    {
+      return RockSimulator(surface, rocks[rock], blocks[rock], parameters).run();
+    }
+    const Rock drawn =
+      realise(terrain, rocks[rock], parameters.seed, iteration, std::uint64_t(rock));
+    const Block block(drawn.shape, drawn.density, drawn.youngModulus, drawn.poissonRatio);
+    return RockSimulator(surface, drawn, block, parameters).run();
+  };
   const auto simulate = [&](std::int64_t index)
   {
     if (stop)
@@ -182,8 +206,7 @@ bool runEnsemble(const Terrain& terrain, std::span<const Rock> rocks,
     try
     {
       const Surface surface(terrain, parameters.seed, iteration);
-      RockSimulator simulator(surface, rocks[rock], blocks[rock], parameters);
-      Trajectory trajectory = simulator.run();
+      Trajectory trajectory = release(surface, rock, iteration);
       trajectory.summary.rock = rock;
       trajectory.summary.iteration = iteration;
       const std::lock_guard<std::mutex> lock(sinkMutex);
