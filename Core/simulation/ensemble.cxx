@@ -1,6 +1,7 @@
 #include "simulation/ensemble.h"
 
 #include "base/errors.h"
+#include "geometry/shell.h"
 #include "simulation/RockSimulator.h"
 
 #include <tbb/global_control.h>
@@ -46,7 +47,7 @@ void checkPlacement(const Terrain& terrain, const Rock& rock, const Block& block
   if (rock.uncertainty.horizontalDeviation > std::hypot(terrain.width(), terrain.height()))
   {
     throw ParameterError(name + ": HorizontalDeviation is " +
-      std::to_string(rock.uncertainty.horizontalDeviation) + " m, more than the slope is wide");
+      numberText(rock.uncertainty.horizontalDeviation) + " m, more than the slope is wide");
   }
   BlockState state;
   state.position = rock.position;

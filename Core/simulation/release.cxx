@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "base/random.h"
+#include "geometry/shell.h"
 #include "simulation/ensemble.h"
 #include "simulation/placement.h"
 #include "terrain/Surface.h"
@@ -42,13 +43,13 @@ void ReleaseUncertainty::validate() const
   {
     if (!(value >= 0.0 && std::isfinite(value)))
     {
-      throw ParameterError(std::string(field) + " is " + std::to_string(value) +
+      throw ParameterError(std::string(field) + " is " + numberText(value) +
         ", it must be a finite number of " + unit + ", at least 0");
     }
   };
   notNegative(this->horizontalDeviation, "HorizontalDeviation", "m");
   notNegative(this->verticalDeviation, "VerticalDeviation", "m");
-  notNegative(this->attitudeDeviation, "AttitudeDeviation", "degrees");
+  notNegative(degrees(this->attitudeDeviation), "AttitudeDeviation", "degrees");
   if (this->attitude < AttitudeLaw::AsGiven || this->attitude > AttitudeLaw::Deviate)
   {
     throw ParameterError(
@@ -92,7 +93,7 @@ Rock realise(
       if (attempt == mostPlaces)
       {
         throw PlacementError("block " + std::to_string(rock.blockId) + ": HorizontalDeviation " +
-          std::to_string(unsure.horizontalDeviation) + " m puts it outside the slope " +
+          numberText(unsure.horizontalDeviation) + " m puts it outside the slope " +
           std::to_string(mostPlaces) + " times in a row in iteration " + std::to_string(iteration));
       }
       const auto [x, y] = normalDeviates(

@@ -263,8 +263,8 @@ TEST(Realise, badDeviationsAreNamed)
     { "block 5", "HorizontalDeviation is 1000", "wide" }));
   EXPECT_TRUE(
     holds(error([](U& u) { u.verticalDeviation = NAN; }), { "VerticalDeviation is nan" }));
-  EXPECT_TRUE(
-    holds(error([](U& u) { u.attitudeDeviation = -0.1; }), { "AttitudeDeviation is -0.1" }));
+  EXPECT_TRUE(holds(
+    error([](U& u) { u.attitudeDeviation = radians(-0.1); }), { "AttitudeDeviation is -0.1" }));
   EXPECT_TRUE(holds(error([](U& u) { u.attitude = AttitudeLaw(4); }), { "AttitudeLaw is 4" }));
   EXPECT_TRUE(
     holds(error([](U& u) { u.volume.deviation = -2.0; }), { "block 5", "VolumeDeviation is -2" }));
