@@ -93,6 +93,8 @@ void KeptRun::prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const 
       {
         frame.rocks.push_back(std::move(rock.rock));
         frame.shapes.push_back(rock.shape);
+        frame.sourceIds.push_back(rock.sourceId);
+        frame.sourceNames.push_back(std::move(rock.sourceName));
       }
       ensemble = std::make_unique<Ensemble>(slope, frame.rocks, parameters);
     },

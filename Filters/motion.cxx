@@ -24,15 +24,20 @@ Sample sampleAt(const Trajectory& trajectory, double time)
   const auto mix = [s](const auto& from, const auto& to) { return (1.0 - s) * from + s * to; };
   Sample result;
   result.time = time;
-  result.position = mix(a.position, b.position);
+  // The cubic Hermite curve: exact in flight.
+  const double h = b.time - a.time, s2 = s * s, s3 = s2 * s;
+  result.position = (2.0 * s3 - 3.0 * s2 + 1.0) * a.position +
+    (s3 - 2.0 * s2 + s) * h * a.velocity + (3.0 * s2 - 2.0 * s3) * b.position +
+    (s3 - s2) * h * b.velocity;
   result.orientation = a.orientation.slerp(s, b.orientation);
   result.velocity = mix(a.velocity, b.velocity);
   result.angularVelocity = mix(a.angularVelocity, b.angularVelocity);
   result.kineticEnergy = mix(a.kineticEnergy, b.kineticEnergy);
   result.heightOverGround = mix(a.heightOverGround, b.heightOverGround);
-  for (double EnergyAudit::*term : { &EnergyAudit::released, &EnergyAudit::kinetic,
-         &EnergyAudit::strain, &EnergyAudit::friction, &EnergyAudit::restitution,
-         &EnergyAudit::vibration, &EnergyAudit::damping, &EnergyAudit::numerical })
+  for (double EnergyAudit::*term :
+    { &EnergyAudit::released, &EnergyAudit::kinetic, &EnergyAudit::strain, &EnergyAudit::friction,
+      &EnergyAudit::restitution, &EnergyAudit::vibration, &EnergyAudit::damping,
+      &EnergyAudit::exchanged, &EnergyAudit::numerical })
   {
     result.energy.*term = mix(a.energy.*term, b.energy.*term);
   }
@@ -58,8 +63,8 @@ MotionState stateAt(const Trajectory& trajectory, double time)
 
 ShownRock momentOf(const Trajectory& trajectory, double time)
 {
-  return { trajectory.summary.rock, trajectory.summary.iteration, sampleAt(trajectory, time),
-    int(stateAt(trajectory, time)) };
+  return { trajectory.summary.rock, trajectory.summary.iteration, trajectory.summary.volume,
+    sampleAt(trajectory, time), int(stateAt(trajectory, time)) };
 }
 
 } // namespace rockfall::filters

@@ -92,6 +92,84 @@ void readNumber(vtkPolyData* input, const char* name, vtkIdType cell, double& va
   }
 }
 
+/// A whole number of an enumeration, as a double that its own check can refuse.
+template <typename Law>
+void readLaw(vtkPolyData* input, const char* name, vtkIdType cell, Law& law)
+{
+  double value = double(law);
+  readNumber(input, name, cell, value);
+  if (!(std::abs(value) < 1e6) || value != std::floor(value))
+  {
+    throw DataError("The Rocks input's cell array " + std::string(name) + " has " +
+      numberText(value) + ", it must be a whole number");
+  }
+  law = Law(int(value));
+}
+
+/// The components of an array, if it is there, into these numbers.
+void readTuple(
+  vtkPolyData* input, const char* name, vtkIdType cell, std::initializer_list<double*> values)
+{
+  vtkDataArray* array = input->GetCellData()->GetArray(name);
+  if (!array)
+  {
+    return;
+  }
+  if (array->GetNumberOfComponents() != int(values.size()))
+  {
+    throw DataError("The Rocks input's cell array " + std::string(name) + " has " +
+      std::to_string(array->GetNumberOfComponents()) + " components, it must have " +
+      std::to_string(values.size()));
+  }
+  int component = 0;
+  for (double* value : values)
+  {
+    *value = array->GetComponent(cell, component++);
+  }
+}
+
+void readUncertainty(vtkPolyData* input, vtkIdType cell, ReleaseUncertainty& unsure)
+{
+  readTuple(
+    input, "PositionDeviation", cell, { &unsure.horizontalDeviation, &unsure.verticalDeviation });
+  readLaw(input, "AttitudeLaw", cell, unsure.attitude);
+  double angle = 0.0;
+  readNumber(input, "AttitudeDeviation", cell, angle);
+  unsure.attitudeDeviation = radians(angle);
+  VolumeDistribution& v = unsure.volume;
+  readLaw(input, "VolumeLaw", cell, v.law);
+  readTuple(input, "VolumeParameters", cell,
+    { &v.mean, &v.deviation, &v.minimum, &v.maximum, &v.exponent });
+}
+
+/// The arrays of what is drawn in each iteration.
+struct UncertaintyArrays
+{
+  vtkSmartPointer<vtkDoubleArray> position, attitude, volume;
+  vtkSmartPointer<vtkIntArray> attitudeLaw, volumeLaw;
+
+  explicit UncertaintyArrays(vtkFieldData* cells)
+    : position(addArray<vtkDoubleArray>(cells, "PositionDeviation", 2))
+    , attitude(addArray<vtkDoubleArray>(cells, "AttitudeDeviation"))
+    , volume(addArray<vtkDoubleArray>(cells, "VolumeParameters", 5))
+    , attitudeLaw(addArray<vtkIntArray>(cells, "AttitudeLaw"))
+    , volumeLaw(addArray<vtkIntArray>(cells, "VolumeLaw"))
+  {
+  }
+
+  void append(const ReleaseUncertainty& unsure)
+  {
+    const VolumeDistribution& v = unsure.volume;
+    const double deviations[] = { unsure.horizontalDeviation, unsure.verticalDeviation };
+    const double parameters[] = { v.mean, v.deviation, v.minimum, v.maximum, v.exponent };
+    this->position->InsertNextTuple(deviations);
+    this->attitudeLaw->InsertNextValue(int(unsure.attitude));
+    this->attitude->InsertNextValue(degrees(unsure.attitudeDeviation));
+    this->volumeLaw->InsertNextValue(int(v.law));
+    this->volume->InsertNextTuple(parameters);
+  }
+};
+
 void readVector(vtkPolyData* input, const char* name, vtkIdType cell, Vec3& value)
 {
   vtkDataArray* array = input->GetCellData()->GetArray(name);
@@ -142,8 +220,10 @@ void writeRocks(std::span<const ReleasedRock> rocks, vtkPolyData* output)
   const auto velocity = addArray<vtkDoubleArray>(cells, "Velocity", 3);
   const auto rotation = addArray<vtkDoubleArray>(cells, "AngularVelocity", 3);
   const auto shape = addArray<vtkIntArray>(cells, "Shape");
-  vtkNew<vtkStringArray> names;
-  names->SetName("ShapeName");
+  const auto sourceId = addArray<vtkIdTypeArray>(cells, "SourceId");
+  UncertaintyArrays uncertainty(cells);
+  const auto names = addArray<vtkStringArray>(output->GetFieldData(), "ShapeName");
+  const auto sourceNames = addArray<vtkStringArray>(output->GetFieldData(), "SourceName");
   for (const ReleasedRock& released : rocks)
   {
     const Rock& rock = released.rock;
@@ -158,12 +238,14 @@ void writeRocks(std::span<const ReleasedRock> rocks, vtkPolyData* output)
       velocity->InsertNextTuple(rock.velocity.data());
       rotation->InsertNextTuple(rock.angularVelocity.data());
       shape->InsertNextValue(int(released.shape));
+      sourceId->InsertNextValue(released.sourceId);
+      uncertainty.append(rock.uncertainty);
     }
     names->InsertNextValue(shapeName(released.shape));
+    sourceNames->InsertNextValue(released.sourceName);
   }
   output->SetPoints(points);
   output->SetPolys(polygons);
-  output->GetFieldData()->AddArray(names);
 }
 
 std::vector<ReleasedRock> readRocks(vtkPolyData* input, const Vec3& origin)
@@ -173,7 +255,15 @@ std::vector<ReleasedRock> readRocks(vtkPolyData* input, const Vec3& origin)
     throw DataError("The Rocks input has no polygons, so there is no rock in it");
   }
   std::vector<ReleasedRock> rocks;
-  for (const Faces& block : groupByBlock(input, origin))
+  const std::vector<Faces> blocks = groupByBlock(input, origin);
+  // Names that are not one for each block belong to others: sources were appended, blocks left out.
+  auto* sourceNames =
+    vtkStringArray::SafeDownCast(input->GetFieldData()->GetAbstractArray("SourceName"));
+  if (sourceNames && sourceNames->GetNumberOfValues() != vtkIdType(blocks.size()))
+  {
+    sourceNames = nullptr;
+  }
+  for (const Faces& block : blocks)
   {
     const std::string name = "block " + std::to_string(block.blockId);
     ReleasedRock released;
@@ -205,6 +295,17 @@ std::vector<ReleasedRock> readRocks(vtkPolyData* input, const Vec3& origin)
     {
       released.shape = Shape(int(shape));
     }
+    readUncertainty(input, block.firstCell, rock.uncertainty);
+    double source = 0.0;
+    readNumber(input, "SourceId", block.firstCell, source);
+    if (!(std::abs(source) < 0x1p53))
+    {
+      throw DataError("The Rocks input's SourceId of " + name + " is " + numberText(source) +
+        ", it must be a whole number");
+    }
+    released.sourceId = std::int64_t(source);
+    released.sourceName = sourceNames ? std::string(sourceNames->GetValue(vtkIdType(rocks.size())))
+                                      : "source " + std::to_string(released.sourceId);
     rocks.push_back(std::move(released));
   }
   return rocks;

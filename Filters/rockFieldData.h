@@ -14,6 +14,18 @@
 /// | AngularVelocity | cells | at release, about the world's axes, rad/s               |
 /// | Shape           | cells | number of the shape as in the rock source               |
 /// | ShapeName       | field | name of the shape, one per block in order of appearance |
+/// | SourceId        | cells | number of the source that the block is of               |
+/// | SourceName      | field | its name, one per block in order of appearance          |
+///
+/// and what is drawn in each iteration (ReleaseUncertainty):
+///
+/// | array             | on    | what                                                           |
+/// |-------------------|-------|----------------------------------------------------------------|
+/// | PositionDeviation | cells | horizontal and vertical standard deviation, m                  |
+/// | AttitudeLaw       | cells | 0 as given, 1 any rotation, 2 deviating                        |
+/// | AttitudeDeviation | cells | standard deviation of the angle about each axis, degrees       |
+/// | VolumeLaw         | cells | 0 as it is, else the law by which it is drawn                  |
+/// | VolumeParameters  | cells | mean, deviation, minimum, maximum (m³) and exponent of the law |
 ///
 /// Every cell of a block repeats the block's values, so that any of VTK's filters can cut, move and
 /// append rocks and they stay whole.
@@ -22,6 +34,7 @@
 #include "simulation/ensemble.h"
 
 #include <span>
+#include <string>
 #include <vector>
 
 class vtkCellArray;
@@ -36,6 +49,8 @@ struct ReleasedRock
 {
   Rock rock;
   Shape shape = Shape::File;
+  std::int64_t sourceId = 0;
+  std::string sourceName;
 };
 
 /// Appends the faces of a block, placed with x ↦ rotation · x + shift.

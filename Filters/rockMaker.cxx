@@ -1,8 +1,11 @@
 #include "rockMaker.h"
 
+#include "base/RockMaterial.h"
 #include "base/errors.h"
+#include "base/random.h"
 #include "geometry/shell.h"
 #include "shapeFile.h"
+#include "simulation/placement.h"
 
 #include <cmath>
 
@@ -33,44 +36,134 @@ Quat orientationFromDegrees(const Vec3& angles)
     Eigen::AngleAxisd(radians(angles.y()), Vec3::UnitY());
 }
 
-Polyhedron RockMaker::shape(Shape kind, const SourceRow& row)
+VolumeDistribution RockMaker::volume(const SourceRow& row) const
 {
-  // A volume that the row itself gives is meant; the property has one always.
+  VolumeDistribution law = defaults_.volume;
+  law.law = row.volumeLaw.value_or(law.law);
+  const bool hasMean = law.law != VolumeLaw::Uniform && law.law != VolumeLaw::PowerLaw;
+  if (row.volume && !row.volumeLaw && !hasMean)
+  {
+    law.law = VolumeLaw::Fixed; // the row's one volume is meant
+  }
+  law.mean = row.volume.value_or(law.mean);
+  law.deviation = row.volumeDeviation.value_or(law.deviation);
+  law.minimum = row.volumeMinimum.value_or(law.minimum);
+  law.maximum = row.volumeMaximum.value_or(law.maximum);
+  law.exponent = row.volumeExponent.value_or(law.exponent);
+  return law;
+}
+
+Polyhedron RockMaker::shape(
+  Shape kind, const SourceRow& row, const VolumeDistribution& law, std::uint64_t draw)
+{
+  // A volume that the row itself gives is meant, and so is a distribution; the property has a fixed
+  // one always.
+  const bool fixed = law.law == VolumeLaw::Fixed;
+  const bool meant = row.volume || !fixed;
+  const auto drawn = [&]
+  {
+    law.validate();
+    return fixed ? law.mean
+                 : law.quantile(uniformDeviate(defaults_.seed, 0, Draw::SourceVolume, draw));
+  };
   if (kind == Shape::Box)
   {
     const Polyhedron box = makeBox(row.lengths.value_or(defaults_.lengths));
-    return row.volume ? box.withVolume(*row.volume) : box;
+    return meant ? box.withVolume(drawn()) : box;
   }
-  const double volume = row.volume.value_or(defaults_.volume);
-  if (kind == Shape::File)
+  if (kind != Shape::File && fixed)
   {
-    if (!haveFile_)
-    {
-      fromFile_ = readShape(defaults_.shapeFile, defaults_.shapeFileAsItIs, notes_).centred();
-      haveFile_ = true;
-    }
-    return defaults_.scaleToVolume || row.volume ? fromFile_.withVolume(volume) : fromFile_;
+    law.validate();
   }
-  return makeShape(kind, volume);
+  const auto [place, isNew] = made_.try_emplace(kind);
+  if (isNew)
+  {
+    try
+    {
+      place->second = kind == Shape::File
+        ? readShape(defaults_.shapeFile, defaults_.shapeFileAsItIs, notes_).centred()
+        : makeShape(kind, 1.0);
+    }
+    catch (...)
+    {
+      made_.erase(place);
+      throw;
+    }
+  }
+  const bool keep = kind == Shape::File && !defaults_.scaleToVolume && !meant;
+  return keep ? place->second : place->second.withVolume(drawn());
 }
 
-ReleasedRock RockMaker::make(const SourceRow& row, std::int64_t blockId)
+void RockMaker::setMaterial(const SourceRow& row, Rock& rock) const
 {
-  ReleasedRock released;
-  released.shape = row.shape.value_or(defaults_.shape);
-  Rock& rock = released.rock;
-  rock.blockId = blockId;
-  rock.shape = this->shape(released.shape, row);
-  rock.position = row.position;
-  const Vec3 angles = row.orientation.value_or(defaults_.orientation);
-  requireFinite(rock.position, "Center");
-  requireFinite(angles, "Orientation");
-  rock.orientation = orientationFromDegrees(angles);
-  rock.velocity = row.velocity.value_or(defaults_.velocity);
-  rock.angularVelocity = row.angularVelocity.value_or(defaults_.angularVelocity);
-  rock.density = row.density.value_or(defaults_.density);
+  rock.density = defaults_.density;
   rock.youngModulus = defaults_.youngModulus;
   rock.poissonRatio = defaults_.poissonRatio;
+  if (!row.material.empty())
+  {
+    const RockMaterial& material = rockMaterialFromName(row.material);
+    rock.density = material.density;
+    rock.youngModulus = material.youngModulus;
+    rock.poissonRatio = material.poissonRatio;
+  }
+  rock.density = row.density.value_or(rock.density);
+  rock.youngModulus = row.youngModulus.value_or(rock.youngModulus);
+  rock.poissonRatio = row.poissonRatio.value_or(rock.poissonRatio);
+}
+
+void RockMaker::setUncertainty(
+  const SourceRow& row, const VolumeDistribution& law, ReleaseUncertainty& unsure) const
+{
+  unsure = defaults_.uncertainty;
+  unsure.horizontalDeviation = row.horizontalDeviation.value_or(unsure.horizontalDeviation);
+  unsure.verticalDeviation = row.verticalDeviation.value_or(unsure.verticalDeviation);
+  if (row.randomAttitude)
+  {
+    unsure.attitude = AttitudeLaw::Random;
+  }
+  else if (row.attitudeDeviation)
+  {
+    unsure.attitude = *row.attitudeDeviation > 0.0 ? AttitudeLaw::Deviate : AttitudeLaw::AsGiven;
+    unsure.attitudeDeviation = radians(*row.attitudeDeviation);
+  }
+  unsure.volume =
+    defaults_.redrawVolume && law.law != VolumeLaw::Fixed ? law : VolumeDistribution();
+}
+
+ReleasedRock RockMaker::make(
+  const SourceRow& row, std::size_t index, const ReleasePlace& place, std::int64_t blockId)
+{
+  ReleasedRock released;
+  const ShapeMix& shapes = row.shapes ? *row.shapes : defaults_.shapes;
+  released.shape = shapes.parts.size() == 1
+    ? shapes.parts.front().shape
+    : shapes.pick(uniformDeviate(defaults_.seed, 0, Draw::SourceShape, place.draw));
+  released.sourceId = row.sourceId.value_or(defaults_.firstSourceId + std::int64_t(index));
+  released.sourceName = !row.sourceName.empty() ? row.sourceName
+    : !defaults_.sourceName.empty()             ? defaults_.sourceName
+                                                : "source " + std::to_string(released.sourceId);
+
+  Rock& rock = released.rock;
+  rock.blockId = blockId;
+  const VolumeDistribution law = this->volume(row);
+  rock.shape = this->shape(released.shape, row, law, place.draw);
+  rock.position = place.position;
+  const Vec3 angles = row.orientation.value_or(defaults_.orientation);
+  requireFinite(angles, "Orientation");
+  rock.orientation = orientationFromDegrees(angles);
+  if (place.overGround)
+  {
+    const Vec3 origin = terrain_->geometry().origin();
+    const Vec3 local = place.position - origin;
+    rock.position.z() = place.height +
+      touchingHeight(
+        Surface::asSurveyed(*terrain_), rock.shape, rock.orientation, local.x(), local.y());
+  }
+  requireFinite(rock.position, "Center");
+  rock.velocity = row.velocity.value_or(defaults_.velocity);
+  rock.angularVelocity = row.angularVelocity.value_or(defaults_.angularVelocity);
+  this->setMaterial(row, rock);
+  this->setUncertainty(row, law, rock.uncertainty);
   rock.validate();
   return released;
 }

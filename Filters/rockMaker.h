@@ -1,11 +1,14 @@
 #pragma once
 
 /// @file
-/// One rock per row of a source layer, what a row leaves open being taken from defaults.
+/// Rocks from the rows of a source layer, what a row leaves open being taken from defaults.
 
 #include "gis/sources.h"
 #include "rockFieldData.h"
+#include "simulation/releasePlaces.h"
 
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,8 +18,8 @@ namespace rockfall::filters
 /// What a row may say, as the source's properties say it.
 struct RockDefaults
 {
-  Shape shape = Shape::Cube;
-  double volume = 1.0;             ///< m³
+  ShapeMix shapes = Shape::Cube;
+  VolumeDistribution volume;
   Vec3 lengths = Vec3::Ones();     ///< Of a box, m.
   Vec3 orientation = Vec3::Zero(); ///< Degrees.
   Vec3 velocity = Vec3::Zero();
@@ -27,28 +30,41 @@ struct RockDefaults
   std::string shapeFile;
   bool shapeFileAsItIs = false;
   bool scaleToVolume = true;
+  bool redrawVolume = false;      ///< The volume is drawn in each iteration.
+  ReleaseUncertainty uncertainty; ///< But for the volume.
+  std::int64_t firstSourceId = 1;
+  std::string sourceName; ///< Of sources without a name; empty: "source n".
+  std::uint64_t seed = 1;
 };
 
 /// Makes rocks in world coordinates, reading the shape file at most once.
 class RockMaker
 {
 public:
-  explicit RockMaker(RockDefaults defaults)
+  /// `terrain` is for rocks that stand over the ground; null if there is none. It is kept.
+  RockMaker(RockDefaults defaults, const Terrain* terrain)
     : defaults_(std::move(defaults))
+    , terrain_(terrain)
   {
   }
 
-  /// Throws on a bad value, naming it.
-  ReleasedRock make(const SourceRow& row, std::int64_t blockId);
+  /// `index` counts sources, from 0. Throws on a bad value, naming it.
+  ReleasedRock make(
+    const SourceRow& row, std::size_t index, const ReleasePlace& place, std::int64_t blockId);
   /// What was done to the shape file, one sentence each.
   const std::vector<std::string>& notes() const { return notes_; }
 
 private:
-  Polyhedron shape(Shape kind, const SourceRow& row);
+  VolumeDistribution volume(const SourceRow& row) const;
+  Polyhedron shape(
+    Shape kind, const SourceRow& row, const VolumeDistribution& law, std::uint64_t draw);
+  void setMaterial(const SourceRow& row, Rock& rock) const;
+  void setUncertainty(
+    const SourceRow& row, const VolumeDistribution& law, ReleaseUncertainty& unsure) const;
 
   RockDefaults defaults_;
-  Polyhedron fromFile_;
-  bool haveFile_ = false;
+  const Terrain* terrain_;
+  std::map<Shape, Polyhedron> made_; ///< Of volume 1; the file's as it is.
   std::vector<std::string> notes_;
 };
 

@@ -49,7 +49,7 @@ struct MotionArrays
 struct EnergyArrays
 {
   vtkSmartPointer<vtkDoubleArray> potential, strain, friction, restitution, vibration, damping,
-    numerical;
+    exchanged, numerical;
 
   explicit EnergyArrays(vtkFieldData* data)
     : potential(addArray<vtkDoubleArray>(data, "PotentialEnergy"))
@@ -58,6 +58,7 @@ struct EnergyArrays
     , restitution(addArray<vtkDoubleArray>(data, "RestitutionLoss"))
     , vibration(addArray<vtkDoubleArray>(data, "VibrationLoss"))
     , damping(addArray<vtkDoubleArray>(data, "DampingLoss"))
+    , exchanged(addArray<vtkDoubleArray>(data, "GivenToRocks"))
     , numerical(addArray<vtkDoubleArray>(data, "NumericalLoss"))
   {
   }
@@ -72,6 +73,7 @@ struct EnergyArrays
     this->restitution->InsertNextValue(sample.energy.restitution);
     this->vibration->InsertNextValue(sample.energy.vibration);
     this->damping->InsertNextValue(sample.energy.damping);
+    this->exchanged->InsertNextValue(sample.energy.exchanged);
     this->numerical->InsertNextValue(sample.energy.numerical);
   }
 };
@@ -132,7 +134,10 @@ void writeRocks(const RunFrame& frame, std::span<const ShownRock> rocks, vtkPoly
   for (const ShownRock& shown : rocks)
   {
     const Rock& rock = frame.rocks[std::size_t(shown.rock)];
-    const Polyhedron& body = rock.shape;
+    // The volume may be one of this iteration.
+    const bool drawn = rock.uncertainty.volume.law != VolumeLaw::Fixed;
+    const Polyhedron scaled = drawn ? rock.shape.withVolume(shown.volume) : Polyhedron();
+    const Polyhedron& body = drawn ? scaled : rock.shape;
     appendFaces(body, shown.sample.orientation.toRotationMatrix(),
       shown.sample.position + frame.origin, points, polygons);
     for (std::size_t face = 0; face < body.faces().size(); ++face)
@@ -161,6 +166,8 @@ struct TrajectoryLines::Arrays
   vtkSmartPointer<vtkIntArray> shape = addArray<vtkIntArray>(data->GetCellData(), "Shape");
   vtkSmartPointer<vtkDoubleArray> volume = addArray<vtkDoubleArray>(data->GetCellData(), "Volume");
   vtkSmartPointer<vtkIntArray> fate = addArray<vtkIntArray>(data->GetCellData(), "Fate");
+  vtkSmartPointer<vtkIdTypeArray> source =
+    addArray<vtkIdTypeArray>(data->GetCellData(), "SourceId");
 };
 
 TrajectoryLines::TrajectoryLines(const RunFrame& frame, bool withLosses)
@@ -202,6 +209,7 @@ void TrajectoryLines::append(const Trajectory& trajectory)
   a.shape->InsertNextValue(int(frame_.shapes[std::size_t(summary.rock)]));
   a.volume->InsertNextValue(summary.volume);
   a.fate->InsertNextValue(int(summary.fate));
+  a.source->InsertNextValue(frame_.sourceIds[std::size_t(summary.rock)]);
 }
 
 void TrajectoryLines::finish(vtkPolyData* output)
@@ -235,6 +243,8 @@ struct ImpactPoints::Arrays
   vtkSmartPointer<vtkDoubleArray> after = addArray<vtkDoubleArray>(fields, "VelocityAfter", 3);
   vtkSmartPointer<vtkDoubleArray> loss = addArray<vtkDoubleArray>(fields, "EnergyLoss");
   vtkSmartPointer<vtkDoubleArray> restitution = addArray<vtkDoubleArray>(fields, "Restitution");
+  vtkSmartPointer<vtkIntArray> otherRock = addArray<vtkIntArray>(fields, "OtherRockId");
+  vtkSmartPointer<vtkIdTypeArray> otherBlock = addArray<vtkIdTypeArray>(fields, "OtherBlockId");
 };
 
 ImpactPoints::ImpactPoints(const RunFrame& frame)
@@ -264,6 +274,8 @@ void ImpactPoints::append(const Trajectory& trajectory)
     a.after->InsertNextTuple(impact.velocityAfter.data());
     a.loss->InsertNextValue(impact.energyLoss);
     a.restitution->InsertNextValue(impact.restitution);
+    a.otherRock->InsertNextValue(impact.otherRock);
+    a.otherBlock->InsertNextValue(impact.otherBlockId);
   }
 }
 
@@ -313,6 +325,7 @@ constexpr Column numberColumns[] = {
   { "EnergyRestitution", [](S s, V) { return s.energy.restitution; } },
   { "EnergyVibration", [](S s, V) { return s.energy.vibration; } },
   { "EnergyDamping", [](S s, V) { return s.energy.damping; } },
+  { "EnergyExchanged", [](S s, V) { return s.energy.exchanged; } },
   { "EnergyNumerical", [](S s, V) { return s.energy.numerical; } },
 };
 // clang-format on
@@ -328,6 +341,8 @@ struct SummaryRows::Arrays
   vtkSmartPointer<vtkStringArray> fate = addArray<vtkStringArray>(fields, "Fate");
   vtkSmartPointer<vtkIntArray> fateCode = addArray<vtkIntArray>(fields, "FateCode");
   std::vector<vtkSmartPointer<vtkDoubleArray>> numbers = makeNumbers(fields);
+  vtkSmartPointer<vtkIdTypeArray> sourceId = addArray<vtkIdTypeArray>(fields, "SourceId");
+  vtkSmartPointer<vtkStringArray> sourceName = addArray<vtkStringArray>(fields, "SourceName");
   vtkSmartPointer<vtkIntArray> impacts = addArray<vtkIntArray>(fields, "Impacts");
   vtkSmartPointer<vtkIdTypeArray> contactSteps = addArray<vtkIdTypeArray>(fields, "ContactSteps");
   vtkSmartPointer<vtkIdTypeArray> openClose =
@@ -365,6 +380,8 @@ void SummaryRows::append(const TrajectorySummary& summary)
   {
     a.numbers[k]->InsertNextValue(numberColumns[k].value(summary, frame_.origin));
   }
+  a.sourceId->InsertNextValue(frame_.sourceIds[std::size_t(summary.rock)]);
+  a.sourceName->InsertNextValue(frame_.sourceNames[std::size_t(summary.rock)]);
   a.impacts->InsertNextValue(summary.impacts);
   a.contactSteps->InsertNextValue(summary.contactSteps);
   a.openClose->InsertNextValue(summary.openCloseIterations);

@@ -9,6 +9,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 class vtkPolyData;
@@ -21,7 +22,9 @@ namespace rockfall::filters
 struct RunFrame
 {
   std::vector<Rock> rocks;
-  std::vector<Shape> shapes; ///< Of the rocks.
+  std::vector<Shape> shapes;            ///< Of the rocks.
+  std::vector<std::int64_t> sourceIds;  ///< Of the rocks.
+  std::vector<std::string> sourceNames; ///< Of the rocks.
   Vec3 origin = Vec3::Zero();
   double gravity = 0.0; ///< m/s²
 };
@@ -79,6 +82,7 @@ struct ShownRock
 {
   int rock = 0;
   int iteration = 0;
+  double volume = 0.0; ///< m³
   Sample sample;
   int state = 0; ///< MotionState
 };

@@ -1,10 +1,16 @@
 /**
  * @class   vtkRockBlockSource
- * @brief   makes rock blocks: one by properties, or one per row of a table of rockfall sources
+ * @brief   makes rock blocks, by properties or from a layer of rockfall sources
+ *
+ * Input port 1, optional, is the terrain, from vtkDEMToCFESource: rocks can then be placed over the
+ * ground and where it is steep, and layers are brought to its coordinate system. Port 0 is not
+ * used: ParaView's Python connects whatever is active to the first input of a proxy if none is
+ * named.
  *
  * The output has the real polygonal faces of every block in world coordinates, in double precision.
  * Cell arrays: BlockId, and beside it the properties of the block, Density, Volume, YoungModulus,
- * PoissonRatio, Velocity, AngularVelocity and Shape (see rockFieldData.h).
+ * PoissonRatio, Velocity, AngularVelocity, Shape, SourceId and what is drawn in each iteration of a
+ * simulation (see rockFieldData.h).
  *
  * All values are taken as they come and checked when the source runs, so that a bad one gives one
  * error that names it instead of being changed silently.
@@ -47,7 +53,62 @@ public:
 
   ///@{
   /**
-   * Volume in m³, positive. A box has that of its Lengths instead. Default 1.
+   * Several shapes in proportion instead of one, as "cube:2;icosahedron:1". Empty (the default):
+   * all are of Shape.
+   */
+  vtkSetStdStringFromCharMacro(ShapeMix);
+  vtkGetCharFromStdStringMacro(ShapeMix);
+  ///@}
+
+  enum VolumeLawType
+  {
+    FIXED = 0,
+    UNIFORM = 1,
+    NORMAL = 2,
+    LOG_NORMAL = 3,
+    POWER_LAW = 4
+  };
+
+  ///@{
+  /**
+   * Distribution of the volumes, one of VolumeLawType. Default FIXED.
+   */
+  vtkSetMacro(VolumeLaw, int);
+  vtkGetMacro(VolumeLaw, int);
+  ///@}
+
+  ///@{
+  /**
+   * Standard deviation of the volume in m³, not negative: of the normal and the log-normal law.
+   * Default 0.5.
+   */
+  vtkSetMacro(VolumeDeviation, double);
+  vtkGetMacro(VolumeDeviation, double);
+  ///@}
+
+  ///@{
+  /**
+   * Bounds of the volume in m³, not negative, of every law but the fixed one. A maximum of 0 is
+   * none for the normal and the log-normal law. Default 0.1 and 10.
+   */
+  vtkSetMacro(VolumeMinimum, double);
+  vtkGetMacro(VolumeMinimum, double);
+  vtkSetMacro(VolumeMaximum, double);
+  vtkGetMacro(VolumeMaximum, double);
+  ///@}
+
+  ///@{
+  /**
+   * Exponent b of the power law N(> V) ∝ V⁻ᵇ, positive. Default 0.5.
+   */
+  vtkSetMacro(VolumeExponent, double);
+  vtkGetMacro(VolumeExponent, double);
+  ///@}
+
+  ///@{
+  /**
+   * Volume in m³, positive; the mean of the normal and the log-normal law. A box has that of its
+   * Lengths instead. Default 1.
    */
   vtkSetMacro(Volume, double);
   vtkGetMacro(Volume, double);
@@ -130,6 +191,16 @@ public:
 
   ///@{
   /**
+   * Kind of rock whose density, Young's modulus and Poisson's ratio are taken instead of the
+   * properties: 0 (the default) none, then granite, gneiss, basalt, limestone, dolomite, sandstone,
+   * shale.
+   */
+  vtkSetMacro(Material, int);
+  vtkGetMacro(Material, int);
+  ///@}
+
+  ///@{
+  /**
    * Density in kg/m³, positive. Default 2500.
    */
   vtkSetMacro(Density, double);
@@ -154,10 +225,10 @@ public:
 
   ///@{
   /**
-   * Rockfall sources: a point layer of any kind that OGR opens, or a CSV table with columns x, y,
-   * z. One block per row; what a row does not say (columns shape, volume, density, vx, vy, vz, wx,
-   * wy, wz, rx, ry, rz, lx, ly, lz) is as the properties say. Empty (the default): one block by the
-   * properties alone.
+   * Rockfall sources: a layer of points, lines or polygons of any kind that OGR opens, or a CSV
+   * table with columns x, y, z. What a row does not say is as the properties say; the columns are
+   * in docs/RockBlocks.md. Empty (the default): the source is the point Center, or the steep part
+   * of the terrain if SlopeThreshold is above 0.
    */
   vtkSetStdStringFromCharMacro(FileName);
   vtkGetCharFromStdStringMacro(FileName);
@@ -165,12 +236,133 @@ public:
 
   ///@{
   /**
-   * Coordinate system of the slope, as WKT or "EPSG:n": the points of a layer in another one are
-   * brought to it. Empty (the default): they are taken as they are. The output says in its field
-   * array TerrainCRS in which one it is, if that is known.
+   * Coordinate system of the slope where there is no terrain that knows it, as WKT or "EPSG:n": the
+   * points of a layer in another one are brought to it. Empty (the default): they are taken as they
+   * are. The output says in its field array TerrainCRS in which one it is, if that is known.
    */
   vtkSetStdStringFromCharMacro(TargetCRS);
   vtkGetCharFromStdStringMacro(TargetCRS);
+  ///@}
+
+  ///@{
+  /**
+   * Number of rocks of a source, at least 1. Default 1.
+   */
+  vtkSetMacro(Amount, int);
+  vtkGetMacro(Amount, int);
+  ///@}
+
+  ///@{
+  /**
+   * Rocks per m of a line and per m² of a polygon or of steep terrain, in plan, not negative. 0
+   * (the default): Amount counts.
+   */
+  vtkSetMacro(Intensity, double);
+  vtkGetMacro(Intensity, double);
+  ///@}
+
+  ///@{
+  /**
+   * Release from the terrain where it is at least so steep, in degrees, 0 to 89. 0 (the default):
+   * not so.
+   */
+  vtkSetMacro(SlopeThreshold, double);
+  vtkGetMacro(SlopeThreshold, double);
+  ///@}
+
+  ///@{
+  /**
+   * Whether points stand over the ground, too, whatever their z. Default off.
+   */
+  vtkSetMacro(PlaceOnGround, bool);
+  vtkGetMacro(PlaceOnGround, bool);
+  vtkBooleanMacro(PlaceOnGround, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Height over ground of the rocks' lowest part in m, not negative, of those that have no z.
+   * Default 0.
+   */
+  vtkSetMacro(ReleaseHeight, double);
+  vtkGetMacro(ReleaseHeight, double);
+  ///@}
+
+  ///@{
+  /**
+   * Standard deviations of the place in m, not negative: of x and y each, and of the height. Drawn
+   * in each iteration of a simulation. Default 0.
+   */
+  vtkSetMacro(HorizontalDeviation, double);
+  vtkGetMacro(HorizontalDeviation, double);
+  vtkSetMacro(VerticalDeviation, double);
+  vtkGetMacro(VerticalDeviation, double);
+  ///@}
+
+  enum AttitudeLawType
+  {
+    AS_GIVEN = 0,
+    RANDOM = 1,
+    DEVIATING = 2
+  };
+
+  ///@{
+  /**
+   * Attitude in each iteration of a simulation, one of AttitudeLawType. Default AS_GIVEN.
+   */
+  vtkSetMacro(AttitudeLaw, int);
+  vtkGetMacro(AttitudeLaw, int);
+  ///@}
+
+  ///@{
+  /**
+   * Standard deviation of the angle about each axis in degrees, not negative: of DEVIATING. Default
+   * 10.
+   */
+  vtkSetMacro(AttitudeDeviation, double);
+  vtkGetMacro(AttitudeDeviation, double);
+  ///@}
+
+  ///@{
+  /**
+   * Whether the volume is drawn in each iteration of a simulation instead of once. Default off.
+   */
+  vtkSetMacro(RedrawVolume, bool);
+  vtkGetMacro(RedrawVolume, bool);
+  vtkBooleanMacro(RedrawVolume, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Number from which places, shapes and volumes are drawn, not negative. Default 1.
+   */
+  vtkSetMacro(Seed, int);
+  vtkGetMacro(Seed, int);
+  ///@}
+
+  ///@{
+  /**
+   * More rocks than this are an error, at least 1. Default 1,000,000.
+   */
+  vtkSetMacro(MaximumRocks, int);
+  vtkGetMacro(MaximumRocks, int);
+  ///@}
+
+  ///@{
+  /**
+   * Name of sources that have none of their own. Empty (the default): "source" and the number.
+   */
+  vtkSetStdStringFromCharMacro(SourceName);
+  vtkGetCharFromStdStringMacro(SourceName);
+  ///@}
+
+  ///@{
+  /**
+   * SourceId of the first source; the others follow. Default 1, so that a source has the number of
+   * its row.
+   */
+  vtkSetMacro(FirstSourceId, vtkIdType);
+  vtkGetMacro(FirstSourceId, vtkIdType);
   ///@}
 
   ///@{
@@ -189,9 +381,15 @@ protected:
   vtkRockBlockSource();
   ~vtkRockBlockSource() override;
 
+  int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
 private:
+  struct Sources;
+
+  /// Where the rocks are released, and of which sources.
+  Sources FindSources(vtkPolyData* terrain);
+
   int Shape = CUBE;
   double Volume = 1.0;
   double Lengths[3] = { 1.0, 1.0, 1.0 };
@@ -208,6 +406,27 @@ private:
   std::string FileName;
   std::string TargetCRS;
   vtkIdType FirstBlockId = 1;
+  std::string ShapeMix;
+  int VolumeLaw = FIXED;
+  double VolumeDeviation = 0.5;
+  double VolumeMinimum = 0.1;
+  double VolumeMaximum = 10.0;
+  double VolumeExponent = 0.5;
+  int Material = 0;
+  int Amount = 1;
+  double Intensity = 0.0;
+  double SlopeThreshold = 0.0;
+  bool PlaceOnGround = false;
+  double ReleaseHeight = 0.0;
+  double HorizontalDeviation = 0.0;
+  double VerticalDeviation = 0.0;
+  int AttitudeLaw = AS_GIVEN;
+  double AttitudeDeviation = 10.0;
+  bool RedrawVolume = false;
+  int Seed = 1;
+  int MaximumRocks = 1000000;
+  std::string SourceName;
+  vtkIdType FirstSourceId = 1;
 };
 
 #endif

@@ -1,17 +1,16 @@
 #include "gis/sources.h"
 
+#include "base/RockMaterial.h"
 #include "base/errors.h"
+#include "gis/FeatureRow.h"
 #include "gis/crs.h"
 #include "gis/gdal.h"
+#include "gis/sourceGeometry.h"
 
 #include <cpl_csv.h>
 #include <cpl_string.h>
-#include <ogrsf_frmts.h>
 
-#include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <map>
 
 namespace rockfall
 {
@@ -20,217 +19,6 @@ namespace
 {
 
 using namespace gis;
-
-std::string trimmed(const std::string& text)
-{
-  const char* const blanks = " \t\r\n";
-  const auto first = text.find_first_not_of(blanks);
-  return first == std::string::npos ? std::string()
-                                    : text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
-
-/// All of the text, with a decimal point in every locale; nothing if any of it is no number.
-std::optional<double> parsed(const std::string& text)
-{
-  const char* first = text.data() + (text.size() > 1 && text[0] == '+' ? 1 : 0);
-  const char* const last = text.data() + text.size();
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(first, last, value);
-  return error == std::errc() && end == last ? std::optional(value) : std::nullopt;
-}
-
-/// One feature of the layer, asked by column name.
-class Row
-{
-public:
-  Row(const std::string& fileName, const std::map<std::string, int>& columns,
-    const OGRFeature& feature, std::int64_t number)
-    : fileName_(fileName)
-    , columns_(columns)
-    , feature_(feature)
-    , number_(number)
-  {
-  }
-
-  [[noreturn]] void fail(const std::string& what) const
-  {
-    throw DataError(fileName_ + ", row " + std::to_string(number_) + ": " + what);
-  }
-
-  std::optional<std::string> text(const std::string& name) const
-  {
-    const auto column = columns_.find(name);
-    if (column == columns_.end() || !feature_.IsFieldSetAndNotNull(column->second))
-    {
-      return std::nullopt;
-    }
-    const std::string value = trimmed(feature_.GetFieldAsString(column->second));
-    return value.empty() ? std::nullopt : std::optional(value);
-  }
-
-  std::optional<double> number(const std::string& name) const
-  {
-    const auto written = this->text(name);
-    if (!written)
-    {
-      return std::nullopt;
-    }
-    const int column = columns_.at(name);
-    const OGRFieldType type = feature_.GetFieldDefnRef(column)->GetType();
-    // A field of numbers is taken as such: its text is rounded.
-    const auto value = type == OFTReal || type == OFTInteger || type == OFTInteger64
-      ? std::optional(feature_.GetFieldAsDouble(column))
-      : parsed(*written);
-    if (!value)
-    {
-      const bool comma = written->find(',') != std::string::npos;
-      this->fail("field \"" + name + "\": \"" + *written + "\" is not a number" +
-        (comma ? " (the decimal sign is a point)" : ""));
-    }
-    if (!std::isfinite(*value))
-    {
-      this->fail("field \"" + name + "\" is " + *written + ", it must be finite");
-    }
-    return value;
-  }
-
-  std::optional<double> positive(const std::string& name) const
-  {
-    const auto value = this->number(name);
-    if (value && !(*value > 0.0))
-    {
-      this->fail("field \"" + name + "\" is " + gis::number(*value) + ", it must be above 0");
-    }
-    return value;
-  }
-
-  double needed(const std::string& name) const
-  {
-    const auto value = this->number(name);
-    if (!value)
-    {
-      this->fail("field \"" + name + "\" is " +
-        (columns_.count(name) ? "empty" : "missing: the layer has no such column") +
-        ", and the row has no " + (name == "z" ? "elevation" : "point") + " of its own");
-    }
-    return *value;
-  }
-
-  /// Empty if none of the three is there.
-  std::optional<Vec3> vector(const std::array<const char*, 3>& names) const
-  {
-    std::optional<Vec3> result;
-    for (int i = 0; i < 3; ++i)
-    {
-      if (const auto value = this->number(names[i]))
-      {
-        result = result.value_or(Vec3::Zero());
-        (*result)[i] = *value;
-      }
-    }
-    return result;
-  }
-
-  std::optional<Vec3> lengths() const
-  {
-    const auto x = this->positive("lx"), y = this->positive("ly"), z = this->positive("lz");
-    if (!x && !y && !z)
-    {
-      return std::nullopt;
-    }
-    if (!x || !y || !z)
-    {
-      this->fail(std::string("field \"") +
-        (!x      ? "lx"
-            : !y ? "ly"
-                 : "lz") +
-        "\" is empty; a box needs all of lx, ly and lz");
-    }
-    return Vec3(*x, *y, *z);
-  }
-
-  std::optional<Shape> shape() const
-  {
-    const auto name = this->text("shape");
-    if (!name)
-    {
-      return std::nullopt;
-    }
-    try
-    {
-      return shapeFromName(*name);
-    }
-    catch (const Error& error)
-    {
-      this->fail(std::string("field \"shape\": ") + error.what());
-    }
-  }
-
-  /// The feature's point, or null if it has no geometry. A collection of one point is one, too:
-  /// some programs write nothing else.
-  const OGRPoint* point() const
-  {
-    const OGRGeometry* geometry = feature_.GetGeometryRef();
-    if (!geometry || geometry->IsEmpty())
-    {
-      return nullptr;
-    }
-    if (wkbFlatten(geometry->getGeometryType()) == wkbMultiPoint)
-    {
-      const OGRMultiPoint& points = *geometry->toMultiPoint();
-      if (points.getNumGeometries() != 1)
-      {
-        this->fail("geometry is a MULTIPOINT of " + std::to_string(points.getNumGeometries()) +
-          " points, one point is needed");
-      }
-      return points.getGeometryRef(0);
-    }
-    if (wkbFlatten(geometry->getGeometryType()) != wkbPoint)
-    {
-      this->fail(
-        std::string("geometry is a ") + geometry->getGeometryName() + ", a POINT is needed");
-    }
-    return geometry->toPoint();
-  }
-
-private:
-  const std::string& fileName_;
-  const std::map<std::string, int>& columns_;
-  const OGRFeature& feature_;
-  std::int64_t number_;
-};
-
-/// Brings points to the CRS of the terrain.
-struct Placing
-{
-  CrsPtr from;
-  CrsPtr to;
-  CrsChange change;
-  double heightUnit = 1.0; ///< m
-
-  Vec3 operator()(const Row& row) const
-  {
-    const OGRPoint* point = row.point();
-    if (!point)
-    {
-      return { row.needed("x"), row.needed("y"), row.needed("z") };
-    }
-    Vec3 place(point->getX(), point->getY(), 0.0);
-    place.z() = point->Is3D() ? point->getZ() * heightUnit : row.needed("z");
-    if (!place.allFinite())
-    {
-      row.fail("the point " + number(place.x()) + ", " + number(place.y()) + ", " +
-        number(place.z()) + " is not finite");
-    }
-    const Vec3 written = place;
-    if (!change.forth(1, &place.x(), &place.y()))
-    {
-      row.fail("the point " + number(written.x()) + ", " + number(written.y()) +
-        " cannot be brought from " + crsLabel(*from) + " to " + crsLabel(*to));
-    }
-    return place;
-  }
-};
 
 /// OGR drops what stands beyond the last column of the header, so a table whose decimal commas
 /// split every number in two would be read without a word.
@@ -262,18 +50,88 @@ void refuseSurplusCells(const std::string& fileName)
   }
 }
 
-std::map<std::string, int> columnsOf(const OGRFeatureDefn& definition)
+/// Words and ranges that other parts of the Core check, with the row and the field before.
+template <class Make>
+auto checked(const FeatureRow& row, const char* field, Make&& make)
 {
-  std::map<std::string, int> columns;
-  for (int i = 0; i < definition.GetFieldCount(); ++i)
+  try
   {
-    std::string name = trimmed(definition.GetFieldDefn(i)->GetNameRef());
-    // ASCII only, on purpose: tolower would ask the locale.
-    std::transform(name.begin(), name.end(), name.begin(),
-      [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
-    columns.emplace(name, i); // the first of two that differ in case only
+    return make();
   }
-  return columns;
+  catch (const ParameterError& error)
+  {
+    row.failField(field, std::string(": ") + error.what());
+  }
+}
+
+void readNumbers(const FeatureRow& row, SourceRow& source)
+{
+  source.amount = row.count("amount");
+  source.intensity = row.notNegative("intensity");
+  if (source.amount && source.intensity)
+  {
+    row.fail("has an \"amount\" and an \"intensity\"; it must have one of them");
+  }
+  if (source.intensity && source.geometry == SourceGeometry::Point)
+  {
+    row.failField("intensity", " is for lines and polygons; a point needs an \"amount\"");
+  }
+  if (const auto id = row.number("source_id"))
+  {
+    if (*id != std::floor(*id) || std::abs(*id) > 0x1p53)
+    {
+      row.failField("source_id", " is " + number(*id) + ", it must be a whole number");
+    }
+    source.sourceId = std::int64_t(*id);
+  }
+  source.sourceName = row.text("source").value_or("");
+}
+
+void readBody(const FeatureRow& row, SourceRow& source)
+{
+  if (const auto text = row.text("shape"))
+  {
+    source.shapes = checked(row, "shape", [&] { return ShapeMix::fromText(*text); });
+  }
+  source.volume = row.positive("volume");
+  if (const auto text = row.text("vol_law"))
+  {
+    source.volumeLaw = checked(row, "vol_law", [&] { return volumeLawFromName(*text); });
+  }
+  source.volumeDeviation = row.notNegative("vol_dev");
+  source.volumeMinimum = row.notNegative("vol_min");
+  source.volumeMaximum = row.notNegative("vol_max");
+  source.volumeExponent = row.positive("vol_exp");
+  if (const auto text = row.text("material"))
+  {
+    checked(row, "material", [&] { return rockMaterialFromName(*text); });
+    source.material = *text;
+  }
+  source.density = row.positive("density");
+  source.youngModulus = row.positive("young");
+  source.poissonRatio = row.notNegative("poisson");
+  if (source.poissonRatio && *source.poissonRatio > 0.49)
+  {
+    row.failField("poisson", " is " + number(*source.poissonRatio) + ", it must be 0 to 0.49");
+  }
+  source.lengths = row.lengths();
+}
+
+void readRelease(const FeatureRow& row, SourceRow& source)
+{
+  source.velocity = row.vector({ "vx", "vy", "vz" });
+  source.angularVelocity = row.vector({ "wx", "wy", "wz" });
+  source.orientation = row.vector({ "rx", "ry", "rz" });
+  source.horizontalDeviation = row.notNegative("dev_xy");
+  source.verticalDeviation = row.notNegative("dev_z");
+  if (const auto text = row.text("dev_att"); text && EQUAL(text->c_str(), "random"))
+  {
+    source.randomAttitude = true;
+  }
+  else
+  {
+    source.attitudeDeviation = row.notNegative("dev_att");
+  }
 }
 
 } // namespace
@@ -285,8 +143,19 @@ std::string wktOfCrs(const std::string& text)
   return crs ? crsWkt(*crs) : std::string();
 }
 
-std::vector<SourceRow> readSources(
-  const std::string& fileName, const std::string& targetCrs, std::string* crs)
+std::string labelOfCrs(const std::string& text)
+{
+  Messages messages;
+  return text.empty() ? std::string() : crsLabel(*crsFromText(text));
+}
+
+bool sameCrs(const std::string& one, const std::string& other)
+{
+  Messages messages;
+  return one.empty() || other.empty() || crsFromText(one)->IsSame(crsFromText(other).get());
+}
+
+SourceLayer readSourceLayer(const std::string& fileName, const SourceOptions& options)
 {
   Messages messages;
   const DatasetPtr dataset = openVector(fileName, messages);
@@ -299,57 +168,71 @@ std::vector<SourceRow> readSources(
     refuseSurplusCells(fileName);
   }
   OGRLayer& layer = *dataset->GetLayer(0);
-  const auto columns = columnsOf(*layer.GetLayerDefn());
+  const Columns columns = columnsOf(*layer.GetLayerDefn());
 
-  Placing placing;
+  SourcePlacing placing;
   placing.from = horizontalCrs(layer.GetSpatialRef());
   placing.heightUnit = verticalUnit(layer.GetSpatialRef());
-  if (!targetCrs.empty())
+  placing.haveTerrain = options.haveTerrain;
+  if (!options.targetCrs.empty())
   {
-    placing.to = crsFromText(targetCrs);
+    placing.to = crsFromText(options.targetCrs);
     placing.change = CrsChange(placing.from, placing.to);
   }
 
-  std::vector<SourceRow> rows;
-  bool allHavePoints = true;
+  SourceLayer result;
+  result.ownCrs = placing.from ? crsLabel(*placing.from) : std::string();
+  bool allHaveGeometry = true;
   messages.clear();
   while (const OGRFeatureUniquePtr feature{ layer.GetNextFeature() })
   {
-    const Row row(fileName, columns, *feature, std::int64_t(rows.size()) + 1);
+    SourceRow source;
+    source.row = std::int64_t(result.rows.size()) + 1;
+    if (source.row > options.mostRocks)
+    {
+      throw DataError(fileName + ": layer \"" + layer.GetName() + "\" has more than " +
+        std::to_string(options.mostRocks) +
+        " rows, each a source of rocks. Is it the right layer? MaximumRocks allows more");
+    }
+    const FeatureRow row(fileName, columns, *feature, source.row);
     // OGR only warns where a typed table (.csvt) holds text in a column of numbers, and gives 0.
     if (messages.warning().find("Invalid value type") != std::string::npos)
     {
       row.fail(messages.warning());
     }
-    SourceRow source;
-    source.row = std::int64_t(rows.size()) + 1;
-    source.position = placing(row);
-    allHavePoints = allHavePoints && row.point();
-    source.shape = row.shape();
-    source.volume = row.positive("volume");
-    source.density = row.positive("density");
-    source.velocity = row.vector({ "vx", "vy", "vz" });
-    source.angularVelocity = row.vector({ "wx", "wy", "wz" });
-    source.orientation = row.vector({ "rx", "ry", "rz" });
-    source.lengths = row.lengths();
-    rows.push_back(std::move(source));
+    placing.place(row, source);
+    allHaveGeometry = allHaveGeometry && row.geometry();
+    readNumbers(row, source);
+    readBody(row, source);
+    readRelease(row, source);
+    result.rows.push_back(std::move(source));
   }
   if (!messages.failure().empty())
   {
-    throw FileError(fileName + ": row " + std::to_string(rows.size() + 1) +
+    throw FileError(fileName + ": row " + std::to_string(result.rows.size() + 1) +
       " cannot be read: " + messages.failure());
   }
-  if (rows.empty())
+  if (result.rows.empty())
   {
     throw DataError(
       fileName + ": layer \"" + layer.GetName() + "\" has no row, so there is no rock");
   }
+  const CrsPtr placed = placing.to ? placing.to : allHaveGeometry ? placing.from : nullptr;
+  result.crs = placed ? crsWkt(*placed) : std::string();
+  return result;
+}
+
+std::vector<SourceRow> readSources(
+  const std::string& fileName, const std::string& targetCrs, std::string* crs)
+{
+  SourceOptions options;
+  options.targetCrs = targetCrs;
+  SourceLayer layer = readSourceLayer(fileName, options);
   if (crs)
   {
-    const CrsPtr placed = placing.to ? placing.to : allHavePoints ? placing.from : nullptr;
-    *crs = placed ? crsWkt(*placed) : std::string();
+    *crs = layer.crs;
   }
-  return rows;
+  return std::move(layer.rows);
 }
 
 } // namespace rockfall

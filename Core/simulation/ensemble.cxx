@@ -1,6 +1,7 @@
 #include "simulation/ensemble.h"
 
 #include "base/errors.h"
+#include "geometry/shell.h"
 #include "simulation/MassFall.h"
 #include "simulation/RockSimulator.h"
 #include "simulation/overlaps.h"
@@ -45,6 +46,11 @@ void checkPlacement(const Terrain& terrain, const Rock& rock, const Block& block
       " is outside the slope: there is no CFE under it (the slope spans x " +
       std::to_string(g.xOrigin) + " to " + std::to_string(g.xOrigin + terrain.width()) + ", y " +
       std::to_string(g.yOrigin) + " to " + std::to_string(g.yOrigin + terrain.height()) + ")");
+  }
+  if (rock.uncertainty.horizontalDeviation > std::hypot(terrain.width(), terrain.height()))
+  {
+    throw ParameterError(name + ": HorizontalDeviation is " +
+      numberText(rock.uncertainty.horizontalDeviation) + " m, more than the slope is wide");
   }
   BlockState state;
   state.position = rock.position;
@@ -158,6 +164,14 @@ void Rock::validate() const
   if (!this->orientation.coeffs().allFinite() || this->orientation.norm() < 1e-6)
   {
     throw ParameterError(name + "Orientation is not a rotation");
+  }
+  try
+  {
+    this->uncertainty.validate();
+  }
+  catch (const ParameterError& error)
+  {
+    throw ParameterError(name + error.what());
   }
 }
 
@@ -314,10 +328,16 @@ Trajectory Ensemble::simulate(std::int64_t number, double enough) const
   const int iteration = parameters_.firstIteration + int(number / std::int64_t(rocks_.size()));
   // The block is made anew: it costs less than a hundredth of what follows, and a hundred thousand
   // of them would take more memory than all their summaries.
-  const Block block = blockOf(rocks_[std::size_t(rock)]);
+  const Rock& given = rocks_[std::size_t(rock)];
   const Surface surface(terrain_, parameters_.seed, iteration);
-  RockSimulator simulator(surface, rocks_[std::size_t(rock)], block, parameters_);
-  Trajectory trajectory = simulator.run(enough);
+  const auto release = [&](const Rock& released)
+  {
+    const Block block = blockOf(released);
+    return RockSimulator(surface, released, block, parameters_).run(enough);
+  };
+  Trajectory trajectory = given.uncertainty.any()
+    ? release(realise(terrain_, given, parameters_.seed, iteration, std::uint64_t(rock)))
+    : release(given);
   trajectory.summary.rock = rock;
   trajectory.summary.iteration = iteration;
   trajectory.summary.hash = motionHash(trajectory);
@@ -334,14 +354,19 @@ std::vector<Trajectory> Ensemble::simulateUnit(
     return trajectories;
   }
   const int iteration = parameters_.firstIteration + int(unit);
+  std::vector<Rock> rocks(rocks_.begin(), rocks_.end());
   std::vector<Block> blocks;
-  blocks.reserve(rocks_.size());
-  for (const Rock& rock : rocks_)
+  blocks.reserve(rocks.size());
+  for (std::size_t k = 0; k < rocks.size(); ++k)
   {
-    blocks.push_back(blockOf(rock));
+    if (rocks[k].uncertainty.any())
+    {
+      rocks[k] = realise(terrain_, rocks_[k], parameters_.seed, iteration, std::uint64_t(k));
+    }
+    blocks.push_back(blockOf(rocks[k]));
   }
   const Surface surface(terrain_, parameters_.seed, iteration);
-  MassFall fall(surface, rocks_, blocks, parameters_);
+  MassFall fall(surface, rocks, blocks, parameters_);
   trajectories = fall.run([&](double time) { return !stop && time < enough; });
   for (std::size_t rock = 0; rock < trajectories.size(); ++rock)
   {

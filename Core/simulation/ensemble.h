@@ -5,6 +5,7 @@
 
 #include "geometry/Polyhedron.h"
 #include "simulation/parameters.h"
+#include "simulation/release.h"
 #include "simulation/results.h"
 #include "terrain/Terrain.h"
 
@@ -31,6 +32,7 @@ struct Rock
   double density = 2500.0;             ///< kg/m³, > 0.
   double youngModulus = 1e10;          ///< Pa, > 0.
   double poissonRatio = 0.1;           ///< Dimensionless, 0 … 0.49.
+  ReleaseUncertainty uncertainty;      ///< What is drawn in each iteration.
 
   void validate() const; ///< Throws ParameterError naming block, field and value.
 };

@@ -49,7 +49,7 @@ TEST(Sources, everyColumnOfATable)
   const SourceRow& row = rows[0];
   EXPECT_EQ(row.row, 1);
   EXPECT_EQ(row.position, Vec3(600000.25, 5100000.5, 1234.125));
-  EXPECT_EQ(row.shape, Shape::Cube);
+  EXPECT_EQ(row.shapes, ShapeMix(Shape::Cube));
   EXPECT_EQ(row.volume, 1.5);
   EXPECT_EQ(row.density, 2700.0);
   EXPECT_EQ(row.velocity, Vec3(1.0, -2.0, 3.0));
@@ -62,7 +62,7 @@ TEST(Sources, whatIsNotSaidStaysEmpty)
 {
   const auto rows = readSources(table("x,y,z,volume,shape,vz\n1,2,3,,,\n4,5,6,2,,-1\n7,8,9\n"));
   ASSERT_EQ(rows.size(), 3u);
-  EXPECT_FALSE(rows[0].volume || rows[0].shape || rows[0].density || rows[0].velocity ||
+  EXPECT_FALSE(rows[0].volume || rows[0].shapes || rows[0].density || rows[0].velocity ||
     rows[0].angularVelocity || rows[0].orientation || rows[0].lengths);
   EXPECT_EQ(rows[1].row, 2);
   EXPECT_EQ(rows[1].volume, 2.0);
@@ -101,7 +101,7 @@ TEST(Sources, pointsWithAndWithoutHeight)
   EXPECT_EQ(readSources(three)[0].position, Vec3(10.0, 20.0, 30.0)); // its own before the column
   EXPECT_EQ(readSources(three)[0].volume, 2.0);
   EXPECT_EQ(readSources(three)[0].density, 2600.5);
-  EXPECT_EQ(readSources(three)[0].shape, Shape::Cube);
+  EXPECT_EQ(readSources(three)[0].shapes, ShapeMix(Shape::Cube));
   const std::string two = feature(R"({"type":"Point","coordinates":[10,20]})", properties);
   EXPECT_EQ(readSources(two)[0].position, Vec3(10.0, 20.0, 99.5));
   const std::string one =
@@ -171,7 +171,7 @@ TEST(Sources, shapefile)
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_EQ(rows[0].position, Vec3(600000.5, 5100000.5, 321.5));
   EXPECT_EQ(rows[0].volume, 1.125);
-  EXPECT_EQ(rows[0].shape, Shape::Cube);
+  EXPECT_EQ(rows[0].shapes, ShapeMix(Shape::Cube));
 }
 
 TEST(Sources, pointsAreBroughtToTheTerrain)
@@ -299,8 +299,9 @@ TEST(SourceErrors, unknownShape)
 
 TEST(SourceErrors, wrongGeometry)
 {
-  const std::string line = feature(R"({"type":"LineString","coordinates":[[1,2,3],[4,5,6]]})");
-  EXPECT_TRUE(holds(failure<DataError>(line), { line, "row 1", "LINESTRING", "POINT" }));
+  const std::string mixed = feature(
+    R"({"type":"GeometryCollection","geometries":[{"type":"Point","coordinates":[1,2,3]}]})");
+  EXPECT_TRUE(holds(failure<DataError>(mixed), { mixed, "row 1", "GEOMETRYCOLLECTION", "POINT" }));
   const std::string two = feature(R"({"type":"MultiPoint","coordinates":[[1,2,3],[4,5,6]]})");
   EXPECT_TRUE(holds(failure<DataError>(two), { two, "row 1", "MULTIPOINT", "2 points" }));
 }

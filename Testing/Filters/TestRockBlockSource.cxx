@@ -1,6 +1,7 @@
 #include "helpers.h"
 
 #include "vtkCellData.h"
+#include "vtkDEMToCFESource.h"
 #include "vtkMassProperties.h"
 #include "vtkPolyData.h"
 #include "vtkRockBlockSource.h"
@@ -8,6 +9,7 @@
 #include "vtkTransform.h"
 #include "vtkTriangleFilter.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace
@@ -324,13 +326,153 @@ TEST_F(TestRockBlockSource, SaysInWhichCrsTheBlocksAre)
   EXPECT_EQ(crs(), "");
 }
 
+TEST_F(TestRockBlockSource, SourcesOnTheGround)
+{
+  // The test slope: 57.7 m high, 30° down over 100 m, then flat.
+  vtkNew<vtkDEMToCFESource> slope;
+  this->Source->SetInputConnection(1, slope->GetOutputPort());
+  const std::string layer = this->WriteFile("cliff.geojson",
+    R"({"type":"FeatureCollection","crs":{"type":"name","properties":{"name":)"
+    R"("urn:ogc:def:crs:EPSG::32632"}},"features":[)"
+    R"({"type":"Feature","properties":{"amount":40,"height":0.5,"source":"cliff",)"
+    R"("shape":"cube:1;octahedron:3","volume":0.5,"material":"basalt","dev_att":"random"},)"
+    R"("geometry":{"type":"Polygon","coordinates":[[[10,10],[30,10],[30,90],[10,90],[10,10]]]}},)"
+    R"({"type":"Feature","properties":{"amount":5,"source_id":9,"dev_xy":2,"dev_z":0.5},)"
+    R"("geometry":{"type":"LineString","coordinates":[[150,10],[150,90]]}}]})");
+  this->Source->SetFileName(layer.c_str());
+  vtkPolyData* blocks = this->Update();
+  vtkCellData* data = blocks->GetCellData();
+  vtkFieldData* field = blocks->GetFieldData();
+  auto* names = vtkStringArray::SafeDownCast(field->GetAbstractArray("SourceName"));
+  auto* shapes = vtkStringArray::SafeDownCast(field->GetAbstractArray("ShapeName"));
+  ASSERT_TRUE(names && shapes);
+  ASSERT_EQ(names->GetNumberOfValues(), 45);
+  EXPECT_EQ(names->GetValue(0), "cliff");
+  EXPECT_EQ(names->GetValue(44), "source 9");
+  int octahedra = 0;
+  for (vtkIdType k = 0; k < 40; ++k)
+  {
+    octahedra += shapes->GetValue(k) == "octahedron";
+  }
+  EXPECT_NEAR(octahedra, 30, 11); // four standard deviations of √(40 · ¾ · ¼)
+  EXPECT_EQ(value(data, "SourceId", 0), 1);
+  EXPECT_NEAR(value(data, "Volume", 0), 0.5, 1e-12);
+  EXPECT_EQ(value(data, "Density", 0), 2990);
+  EXPECT_EQ(value(data, "YoungModulus", 0), 6.1e10);
+  EXPECT_EQ(value(data, "AttitudeLaw", 0), vtkRockBlockSource::RANDOM);
+  EXPECT_EQ(value(data, "PositionDeviation", 0), 0);
+  // The line's are the last: five cubes of 1 m³ on the flat part.
+  const vtkIdType last = blocks->GetNumberOfCells() - 1;
+  EXPECT_EQ(value(data, "SourceId", last), 9);
+  EXPECT_EQ(value(data, "PositionDeviation", last, 0), 2);
+  EXPECT_EQ(value(data, "PositionDeviation", last, 1), 0.5);
+  EXPECT_EQ(value(data, "Density", last), 2500);
+  for (vtkIdType id = blocks->GetNumberOfPoints() - 40; id < blocks->GetNumberOfPoints(); ++id)
+  {
+    const double* p = blocks->GetPoint(id);
+    EXPECT_NEAR(std::abs(p[0] - 150.0), 0.5, 1e-9);
+    EXPECT_NEAR(std::abs(p[2] - 0.5), 0.5, 1e-9);
+  }
+  // The cliff's are 0.5 m over the slope at their lowest, and so clear of it everywhere.
+  double least = 1e9;
+  for (vtkIdType id = 0; id < blocks->GetNumberOfPoints() - 40; ++id)
+  {
+    const double* p = blocks->GetPoint(id);
+    least = std::min(least, p[2] - 57.7 * (1.0 - p[0] / 100.0));
+  }
+  EXPECT_NEAR(least, 0.5, 1e-9);
+}
+
+TEST_F(TestRockBlockSource, SteepGroundAndVolumeLaws)
+{
+  vtkNew<vtkDEMToCFESource> slope;
+  this->Source->SetInputConnection(1, slope->GetOutputPort());
+  this->Source->SetSlopeThreshold(29.0);
+  this->Source->SetAmount(50);
+  this->Source->SetVolumeLaw(vtkRockBlockSource::POWER_LAW);
+  vtkPolyData* blocks = this->Update();
+  ASSERT_EQ(blocks->GetNumberOfCells(), 50 * 6);
+  EXPECT_LT(blocks->GetBounds()[1], 102.0); // the incline ends at 100 m
+  double before = 0.0;
+  int different = 0;
+  for (vtkIdType cell = 0; cell < blocks->GetNumberOfCells(); cell += 6)
+  {
+    const double volume = value(blocks->GetCellData(), "Volume", cell);
+    EXPECT_GE(volume, 0.1 * (1 - 1e-12));
+    EXPECT_LE(volume, 10.0 * (1 + 1e-12));
+    different += volume != before;
+    before = volume;
+  }
+  EXPECT_EQ(different, 50);
+  // Drawn once: the simulation draws again only if it is told to.
+  EXPECT_EQ(value(blocks->GetCellData(), "VolumeLaw"), 0);
+  this->Source->RedrawVolumeOn();
+  vtkCellData* data = this->Update()->GetCellData();
+  EXPECT_EQ(value(data, "VolumeLaw"), vtkRockBlockSource::POWER_LAW);
+  EXPECT_EQ(value(data, "VolumeParameters", 0, 2), 0.1);
+  EXPECT_EQ(value(data, "VolumeParameters", 0, 4), 0.5);
+  this->Source->SetMaximumRocks(49);
+  EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
+  this->ExpectOneError({ "50 rocks", "MaximumRocks", "49" });
+}
+
+TEST_F(TestRockBlockSource, BadValuesOfSources)
+{
+  const auto refused = [this](const std::vector<std::string>& words)
+  {
+    EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
+    this->ExpectOneError(words);
+  };
+  this->Source->SetAmount(0);
+  refused({ "Amount is 0" });
+  this->Source->SetAmount(1);
+  this->Source->SetIntensity(-1.0);
+  refused({ "Intensity is -1" });
+  this->Source->SetIntensity(0.0);
+  this->Source->SetSlopeThreshold(30.0);
+  refused({ "SlopeThreshold is 30", "Terrain" });
+  this->Source->SetSlopeThreshold(90.0);
+  refused({ "SlopeThreshold is 90" });
+  this->Source->SetSlopeThreshold(0.0);
+  this->Source->SetReleaseHeight(-1.0);
+  refused({ "ReleaseHeight is -1" });
+  this->Source->SetReleaseHeight(0.0);
+  this->Source->PlaceOnGroundOn();
+  refused({ "PlaceOnGround", "Terrain" });
+  this->Source->PlaceOnGroundOff();
+  this->Source->SetShapeMix("cube;ball");
+  refused({ "\"ball\"" });
+  this->Source->SetShapeMix("");
+  this->Source->SetVolumeLaw(5);
+  refused({ "VolumeLaw is 5" });
+  this->Source->SetVolumeLaw(vtkRockBlockSource::UNIFORM);
+  this->Source->SetVolumeMaximum(0.05);
+  refused({ "VolumeMaximum is 0.05", "0.1" });
+  this->Source->SetVolumeMaximum(10.0);
+  this->Source->SetMaterial(8);
+  refused({ "Material is 8" });
+  this->Source->SetMaterial(0);
+  this->Source->SetAttitudeLaw(3);
+  refused({ "AttitudeLaw is 3" });
+  this->Source->SetAttitudeLaw(0);
+  this->Source->SetHorizontalDeviation(std::nan(""));
+  refused({ "HorizontalDeviation is nan" });
+  this->Source->SetHorizontalDeviation(0.0);
+  this->Source->SetSeed(-1);
+  refused({ "Seed is -1" });
+}
+
 TEST_F(TestRockBlockSource, PrintSelfNamesEveryProperty)
 {
   std::ostringstream text;
   this->Source->Print(text);
   for (const char* name : { "Shape", "Volume", "Lengths", "ShapeFileName", "ShapeFileMode",
          "ScaleToVolume", "Center", "Orientation", "Velocity", "AngularVelocity", "Density",
-         "YoungModulus", "PoissonRatio", "FileName", "TargetCRS", "FirstBlockId" })
+         "YoungModulus", "PoissonRatio", "FileName", "TargetCRS", "FirstBlockId", "ShapeMix",
+         "VolumeLaw", "VolumeDeviation", "VolumeMinimum", "VolumeMaximum", "VolumeExponent",
+         "Material", "Amount", "Intensity", "SlopeThreshold", "PlaceOnGround", "ReleaseHeight",
+         "HorizontalDeviation", "VerticalDeviation", "AttitudeLaw", "AttitudeDeviation",
+         "RedrawVolume", "Seed", "MaximumRocks", "SourceName", "FirstSourceId" })
   {
     EXPECT_NE(text.str().find(std::string(name) + ":"), std::string::npos) << name;
   }

@@ -108,6 +108,53 @@ bad_rocks("negative density", ["Density", "-2500"], Density=-2500.0)
 bad_rocks("missing sources", ["/no/such/rocks.csv"], FileName="/no/such/rocks.csv")
 name = write_text("sources.csv", "x,y,z,density\n1,2,3,2500\n4,5,6,heavy\n")
 bad_rocks("sources", [name, "row 2", "heavy"], FileName=name)
+slope = DEMtoCFEMesh()  # x 0 to 250, y 0 to 100, 30° down to x = 100
+SQUARE = '{"type":"Polygon","coordinates":[[[10,10],[30,10],[30,30],[10,30],[10,10]]]}'
+
+
+def layer(name, geometry, properties=""):
+    """A GeoJSON layer in UTM coordinates, of one feature."""
+    return write_text(name, '{"type":"FeatureCollection","crs":{"type":"name","properties":{"name":'
+                      '"urn:ogc:def:crs:EPSG::32616"}},"features":[{"type":"Feature","properties":{'
+                      f'{properties}}},"geometry":{geometry}}}]}}')
+
+
+def bad_sources(what, words, header, cells):
+    name = write_text("bad.csv", f"x,y,{header}\n20,50,{cells}\n")
+    bad_rocks(what, [name, "row 1"] + words, FileName=name, Terrain=slope)
+
+
+bad_sources("negative amount", ["amount", "-3"], "amount", "-3")
+bad_sources("amount that is no number", ["amount", "many"], "amount", "many")
+bad_sources("NaN deviation", ["vol_dev", "nan"], "vol_dev", "nan")
+bad_sources("decimal comma", ["height", "1,5", "point"], "height", '"1,5"')
+bad_sources("unknown shape in a mix", ["shape", "ball"], "shape", "cube:2;ball:1")
+bad_sources("bounds of a distribution", ["VolumeMaximum is 2", "3"], "vol_law,vol_min,vol_max",
+            "uniform,3,2")
+bad_sources("too many rocks", ["10000000 rocks", "MaximumRocks", "GB"], "amount", "10000000")
+name = write_text("far.csv", "x,y\n700000,4000000\n")
+bad_rocks("no overlap", [name, "x 700000", "x 0 to 250", "y 0 to 100"], FileName=name, Terrain=slope)
+name = write_text("none.csv", "x,y,amount\n")
+bad_rocks("empty layer", [name, "no row"], FileName=name, Terrain=slope)
+name = layer("square.geojson", SQUARE)
+bad_rocks("polygon without terrain", [name, "POLYGON", "Terrain"], FileName=name)
+name = layer("mixed.geojson", '{"type":"GeometryCollection","geometries":[' + SQUARE + "]}")
+bad_rocks("wrong geometry", [name, "GEOMETRYCOLLECTION"], FileName=name, Terrain=slope)
+site = DEMtoCFEMesh(FileName=write_grid("site.asc", incline(31, 21)))
+name = layer("site.geojson", '{"type":"Point","coordinates":[700100,4000100]}')
+bad_rocks("CRS beside the terrain's", ["TargetCRS", "EPSG:2056", "UTM zone 16N"], FileName=name,
+          Terrain=site, TargetCRS="EPSG:2056")
+bad_rocks("threshold without terrain", ["SlopeThreshold", "30", "Terrain"], SlopeThreshold=30.0)
+bad_rocks("nothing so steep", ["SlopeThreshold", "31"], SlopeThreshold=31.0, Terrain=slope)
+bad_rocks("threshold out of range", ["SlopeThreshold", "90"], SlopeThreshold=90.0, Terrain=slope)
+bad_rocks("ground without terrain", ["PlaceOnGround", "Terrain"], PlaceOnGround=1)
+bad_rocks("mix", ["Shape mix", "sum"], ShapeMix="cube:0")
+bad_rocks("terrain from elsewhere", ["Terrain", "DEM to CFE Mesh"], Terrain=Plane())
+broken = DEMtoCFEMesh(FileName="/no/such/dem.tif")
+errors = errors_of(RockBlocks(Terrain=broken))
+if len(errors) != 1 or "/no/such/dem.tif" not in errors[0]:
+    failures.append(f"a terrain that failed: {errors}")
+
 corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
 name = write_text("open.obj", corners + "f 1 3 2\nf 1 2 4\nf 1 4 3\n")
 bad_rocks("open mesh", [name, "open"], Shape="From File", ShapeFileName=name)

@@ -10,7 +10,7 @@ PROXIES = [
      "FrictionAngleDeviation Cohesion RoughnessMean RoughnessDeviation"),
     ("Rock Blocks", "RockBlocks", "sources",
      "Shape Volume Center Orientation Velocity AngularVelocity Density YoungModulus PoissonRatio "
-     "FileName"),
+     "FileName Terrain Amount Intensity SlopeThreshold ShapeMix VolumeLaw Material"),
     ("Rockfall Simulation", "RockfallSimulation", "filters",
      "Terrain Rocks TimeStep EndTime NormalPenalty Iterations Seed OutputInterval RockRockContact"),
     ("Dispersion Angle", "DispersionAngle", "filters", "Input Direction Length GroupBy"),
@@ -41,6 +41,25 @@ for (label, name, group, properties), proxy in zip(PROXIES, (dem, rocks, simulat
         assert text and text.GetDescription().strip(), f"{name}.{wanted} has no documentation"
         # A name in Python comes from the label, one in a state file from the XML: they are one.
         assert proxy.SMProxy.GetProperty(wanted), f"{name}.{wanted} bears another name in the XML"
+
+# Rock Blocks needs no terrain, and does not take what happens to be active for one.
+for active in (dem, rocks, None):
+    simple.SetActiveSource(active)
+    alone = simple.RockBlocks()
+    assert alone.Terrain is None, active
+    alone.UpdatePipeline()
+    assert alone.GetDataInformation().GetNumberOfCells() == 6, active
+    simple.Delete(alone)
+standing = simple.RockBlocks(Terrain=dem, PlaceOnGround=1)
+standing.UpdatePipeline()
+low, high = standing.GetDataInformation().GetBounds()[4:]
+# On its upper edge, at x = 4.5 m.
+assert abs(high - low - 1.0) < 1e-9 and abs(low - 57.7 * (1 - 0.045)) < 1e-9, (low, high)
+standing.Terrain = None
+standing.PlaceOnGround = 0
+standing.UpdatePipeline()
+assert abs(standing.GetDataInformation().GetBounds()[4] - 57.5) < 1e-9
+simple.Delete(standing)
 
 # What a restitution model has no use for is not shown with it.
 def shown_for(name):

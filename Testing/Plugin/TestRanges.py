@@ -36,6 +36,7 @@ MAKERS = {
 TOGETHER_WITH = {
     ("DEMToCFEMesh", "Band"): None,  # only rasters have bands
     ("RockBlocks", "Lengths"): {"Shape": "Box"},
+    ("RockBlocks", "SlopeThreshold"): None,  # needs a terrain as steep: TestBadInput
     ("RockfallSimulation", "ShownIteration"): {"Iterations": 2},
 }
 # The least value is taken as such, but then makes too many samples, or a body too small to be one.

@@ -1,0 +1,48 @@
+#include "base/RockMaterial.h"
+
+#include "base/errors.h"
+
+#include <algorithm>
+
+namespace rockfall
+{
+
+namespace
+{
+
+constexpr RockMaterial materials[] = {
+  { "granite", 2640.0, 5.86e10, 0.26 },
+  { "gneiss", 2800.0, 7.99e10, 0.24 },
+  { "basalt", 2990.0, 6.10e10, 0.19 },
+  { "limestone", 2550.0, 5.39e10, 0.32 },
+  { "dolomite", 2700.0, 5.17e10, 0.29 },
+  { "sandstone", 2350.0, 2.99e10, 0.31 },
+  { "shale", 2400.0, 2.19e10, 0.38 },
+};
+
+} // namespace
+
+std::span<const RockMaterial> rockMaterials()
+{
+  return materials;
+}
+
+const RockMaterial& rockMaterialFromName(const std::string& name)
+{
+  // ASCII only: what a locale makes of capitals must not matter.
+  std::string lower = name;
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+    [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+  std::string choices;
+  for (const RockMaterial& material : materials)
+  {
+    if (lower == material.name)
+    {
+      return material;
+    }
+    choices += (choices.empty() ? "" : ", ") + std::string(material.name);
+  }
+  throw ParameterError("Material is \"" + name + "\", it must be one of " + choices);
+}
+
+} // namespace rockfall

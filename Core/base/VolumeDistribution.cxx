@@ -1,0 +1,194 @@
+#include "base/VolumeDistribution.h"
+
+#include "base/errors.h"
+
+#include <boost/math/distributions/normal.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace rockfall
+{
+
+namespace
+{
+
+constexpr std::pair<VolumeLaw, const char*> names[] = {
+  { VolumeLaw::Fixed, "fixed" },
+  { VolumeLaw::Uniform, "uniform" },
+  { VolumeLaw::Normal, "normal" },
+  { VolumeLaw::LogNormal, "lognormal" },
+  { VolumeLaw::PowerLaw, "powerlaw" },
+};
+
+/// Bounds that leave less than this of a distribution are a mistake, not a choice.
+constexpr double leastShare = 1e-6;
+
+std::string text(double value)
+{
+  char digits[32];
+  const auto end =
+    std::to_chars(digits, digits + sizeof(digits), value, std::chars_format::general, 10);
+  return { digits, end.ptr };
+}
+
+[[noreturn]] void fail(const char* field, double value, const std::string& rule)
+{
+  throw ParameterError(std::string(field) + " is " + text(value) + ", it must be " + rule);
+}
+
+/// A normal distribution of V, or of ln V, with the shares that the bounds cut off below.
+struct Bell
+{
+  double centre, width;       ///< m³, or of ln(V/m³)
+  double lowShare, highShare; ///< Cumulated at the bounds.
+  bool logarithmic;
+
+  explicit Bell(const VolumeDistribution& d)
+    : logarithmic(d.law == VolumeLaw::LogNormal)
+  {
+    const double ratio = d.deviation / d.mean;
+    width = logarithmic ? std::sqrt(std::log1p(ratio * ratio)) : d.deviation;
+    centre = logarithmic ? std::log(d.mean) - 0.5 * width * width : d.mean;
+    lowShare = !logarithmic || d.minimum > 0.0 ? this->share(d.minimum) : 0.0;
+    highShare = d.maximum > 0.0 ? this->share(d.maximum) : 1.0;
+  }
+  double share(double volume) const
+  {
+    const double place = logarithmic ? std::log(volume) : volume;
+    return boost::math::cdf(boost::math::normal(centre, width), place);
+  }
+  double quantile(double u) const
+  {
+    const double share = lowShare + u * (highShare - lowShare);
+    // Rounding must not reach the ends, where the quantile is infinite.
+    const double within = std::clamp(share, std::numeric_limits<double>::min(), 1.0 - 0x1p-53);
+    const double place = boost::math::quantile(boost::math::normal(centre, width), within);
+    return logarithmic ? std::exp(place) : place;
+  }
+};
+
+} // namespace
+
+std::string volumeLawName(VolumeLaw law)
+{
+  for (const auto& [known, name] : names)
+  {
+    if (known == law)
+    {
+      return name;
+    }
+  }
+  throw ParameterError("VolumeLaw is " + std::to_string(int(law)) + ", it must be 0 to 4");
+}
+
+VolumeLaw volumeLawFromName(const std::string& name)
+{
+  // ASCII only: what a locale makes of capitals must not matter.
+  std::string lower = name;
+  std::transform(lower.begin(), lower.end(), lower.begin(),
+    [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+  std::string choices;
+  for (const auto& [law, known] : names)
+  {
+    if (lower == known)
+    {
+      return law;
+    }
+    choices += (choices.empty() ? "" : ", ") + std::string(known);
+  }
+  throw ParameterError("VolumeLaw is \"" + name + "\", it must be one of " + choices);
+}
+
+void VolumeDistribution::validate() const
+{
+  volumeLawName(this->law); // throws if there is no such law
+  const auto notNegative = [](double value, const char* field)
+  {
+    if (!(value >= 0.0 && std::isfinite(value)))
+    {
+      fail(field, value, "a finite number of m³, at least 0");
+    }
+  };
+  notNegative(this->deviation, "VolumeDeviation");
+  notNegative(this->minimum, "VolumeMinimum");
+  notNegative(this->maximum, "VolumeMaximum");
+  if (!(this->exponent > 0.0 && std::isfinite(this->exponent)))
+  {
+    fail("VolumeExponent", this->exponent, "positive and finite");
+  }
+  const bool bell = this->law == VolumeLaw::Normal || this->law == VolumeLaw::LogNormal;
+  if ((this->law == VolumeLaw::Fixed || bell) && !(this->mean > 0.0 && std::isfinite(this->mean)))
+  {
+    fail("Volume", this->mean, "a positive, finite number of m³");
+  }
+  if (this->law == VolumeLaw::Fixed)
+  {
+    return;
+  }
+  if (this->law == VolumeLaw::PowerLaw && this->minimum == 0.0)
+  {
+    fail("VolumeMinimum", this->minimum, "above 0 for the law powerlaw");
+  }
+  if (!bell && this->maximum == 0.0)
+  {
+    fail("VolumeMaximum", this->maximum, "above 0 for the law " + volumeLawName(this->law));
+  }
+  if (this->maximum > 0.0 && !(this->maximum > this->minimum))
+  {
+    fail("VolumeMaximum", this->maximum, "above VolumeMinimum, which is " + text(this->minimum));
+  }
+  if (bell && this->deviation == 0.0 &&
+    !(this->mean >= this->minimum && (this->maximum == 0.0 || this->mean <= this->maximum)))
+  {
+    fail("Volume", this->mean,
+      "within VolumeMinimum and VolumeMaximum, which are " + text(this->minimum) + " and " +
+        text(this->maximum));
+  }
+  if (bell && this->deviation > 0.0)
+  {
+    const Bell curve(*this);
+    if (!(curve.highShare - curve.lowShare > leastShare))
+    {
+      throw ParameterError("VolumeMinimum " + text(this->minimum) + " and VolumeMaximum " +
+        text(this->maximum) + " m³ leave nothing of the law " + volumeLawName(this->law) +
+        " with Volume " + text(this->mean) + " and VolumeDeviation " + text(this->deviation));
+    }
+  }
+}
+
+double VolumeDistribution::quantile(double u) const
+{
+  switch (this->law)
+  {
+    case VolumeLaw::Uniform:
+      return this->minimum + u * (this->maximum - this->minimum);
+    case VolumeLaw::Normal:
+    case VolumeLaw::LogNormal:
+    {
+      if (this->deviation == 0.0)
+      {
+        return this->mean;
+      }
+      const double volume = Bell(*this).quantile(u);
+      // Bounds are kept to the last bit, and a volume is never 0.
+      const double least = std::max(this->minimum, 1e-12 * this->mean);
+      return std::clamp(volume, least, this->maximum > 0.0 ? this->maximum : INFINITY);
+    }
+    case VolumeLaw::PowerLaw:
+    {
+      // The share below V is (1 − (V/min)⁻ᵇ) / (1 − (max/min)⁻ᵇ).
+      const double b = this->exponent;
+      const double all = -std::expm1(-b * std::log(this->maximum / this->minimum));
+      return std::min(this->maximum, this->minimum * std::exp(-std::log1p(-u * all) / b));
+    }
+    case VolumeLaw::Fixed:
+      break;
+  }
+  return this->mean;
+}
+
+} // namespace rockfall

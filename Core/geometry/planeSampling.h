@@ -1,0 +1,53 @@
+#pragma once
+
+/// @file
+/// Places drawn uniformly from polygons and lines in plan.
+
+#include "base/types.h"
+
+#include <array>
+#include <vector>
+
+namespace rockfall
+{
+
+/// Places of equal chance within rings in the x–y plane: what an odd number of them encloses, so
+/// that holes and several parts need no telling apart. The rings must neither cross themselves nor
+/// each other. Cut into trapezoids once; a place then costs a search in them.
+class PolygonSampler
+{
+public:
+  /// `rings`: their corners, m, closed or not.
+  explicit PolygonSampler(const std::vector<std::vector<Vec3>>& rings);
+
+  double area() const { return cumulated_.empty() ? 0.0 : cumulated_.back(); } ///< m²
+  /// The place of three numbers from 0 to 1. Area must not be 0.
+  Eigen::Vector2d at(double u, double v, double w) const;
+
+private:
+  struct Trapezoid
+  {
+    double y0, y1;        ///< m
+    double left0, right0; ///< x at y0, m
+    double left1, right1; ///< x at y1, m
+  };
+  std::vector<Trapezoid> trapezoids_;
+  std::vector<double> cumulated_; ///< Area up to and with each, m².
+};
+
+/// Places of equal chance along lines, by their length in plan.
+class LineSampler
+{
+public:
+  explicit LineSampler(const std::vector<std::vector<Vec3>>& lines);
+
+  double length() const { return cumulated_.empty() ? 0.0 : cumulated_.back(); } ///< In plan, m.
+  /// The place of a number from 0 to 1; z between that of the corners. Length must not be 0.
+  Vec3 at(double u) const;
+
+private:
+  std::vector<std::array<Vec3, 2>> segments_;
+  std::vector<double> cumulated_; ///< Length up to and with each, m.
+};
+
+} // namespace rockfall
