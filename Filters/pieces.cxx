@@ -3,6 +3,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationIntegerKey.h"
 #include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 namespace rockfall::filters
@@ -21,6 +22,12 @@ bool isFurtherPiece(vtkInformationVector* outputs)
     }
   }
   return false;
+}
+
+bool isFurtherRank()
+{
+  auto* controller = vtkMultiProcessController::GetGlobalController();
+  return controller && controller->GetLocalProcessId() > 0;
 }
 
 } // namespace rockfall::filters

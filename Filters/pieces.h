@@ -13,4 +13,7 @@ namespace rockfall::filters
 /// filter's outputs stay empty, which is no error.
 bool isFurtherPiece(vtkInformationVector* outputs);
 
+/// True on every rank of a parallel run but the first.
+bool isFurtherRank();
+
 } // namespace rockfall::filters

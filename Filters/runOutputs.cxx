@@ -156,6 +156,7 @@ void writeTrajectories(const FinishedRun& run, vtkPolyData* output)
   IdentityArrays identity(output->GetCellData());
   const auto shape = addArray<vtkIntArray>(output->GetCellData(), "Shape");
   const auto volume = addArray<vtkDoubleArray>(output->GetCellData(), "Volume");
+  const auto mass = addArray<vtkDoubleArray>(output->GetCellData(), "Mass");
   const auto fate = addArray<vtkIntArray>(output->GetCellData(), "Fate");
   for (const Trajectory& trajectory : run.trajectories)
   {
@@ -173,6 +174,7 @@ void writeTrajectories(const FinishedRun& run, vtkPolyData* output)
     identity.append(summary);
     shape->InsertNextValue(int(run.rocks[std::size_t(summary.rock)].shape));
     volume->InsertNextValue(summary.volume);
+    mass->InsertNextValue(summary.mass);
     fate->InsertNextValue(int(summary.fate));
   }
   output->GetPointData()->SetActiveScalars("Speed"); // the colour that a viewer begins with

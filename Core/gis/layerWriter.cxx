@@ -97,6 +97,11 @@ LayerWriter::~LayerWriter()
   }
 }
 
+bool LayerWriter::manyLayers() const
+{
+  return !state_->csv;
+}
+
 void LayerWriter::beginLayer(
   const std::string& name, Geometry geometry, const std::vector<LayerField>& fields)
 {

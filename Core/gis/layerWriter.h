@@ -48,6 +48,7 @@ public:
   LayerWriter(const LayerWriter&) = delete;
   LayerWriter& operator=(const LayerWriter&) = delete;
 
+  bool manyLayers() const; ///< Whether the format holds more than one layer.
   /// Throws FileError, also for a second layer of a CSV file.
   void beginLayer(
     const std::string& name, Geometry geometry, const std::vector<LayerField>& fields);
