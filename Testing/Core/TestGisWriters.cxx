@@ -151,7 +151,7 @@ TEST(LayerWriter, LinesOfACsvTable)
     EXPECT_FALSE(writer.manyLayers());
     writer.beginLayer("trajectories", LayerWriter::Geometry::MeasuredLine,
       { { "Mass", FieldType::Real }, { "Empty", FieldType::Real } });
-    const Vec3 places[] = { { 500000.5, 5100000.0, 712.5 }, { 500010.0, 5100000.0, 700.0 } };
+    const Vec3 places[] = { { 500000.5, 5100000.25, 712.5 }, { 500010.5, 5100000.75, 700.5 } };
     const double times[] = { 0.0, 2.5 };
     const FieldValue values[] = { 2500.25, std::nan("") };
     writer.add(places, times, values);
@@ -160,7 +160,7 @@ TEST(LayerWriter, LinesOfACsvTable)
   }
   EXPECT_EQ(contentOf(path),
     "WKT,Mass,Empty\n"
-    "\"LINESTRING ZM (500000.5 5100000 712.5 0,500010 5100000 700 2.5)\",2500.25,\n");
+    "\"LINESTRING ZM (500000.5 5100000.25 712.5 0,500010.5 5100000.75 700.5 2.5)\",2500.25,\n");
   fs::path companion(path);
   EXPECT_TRUE(fs::exists(companion.replace_extension("csvt")));
   EXPECT_NE(contentOf(companion.replace_extension("prj").string()).find("UTM"), std::string::npos);
