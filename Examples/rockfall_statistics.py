@@ -194,7 +194,7 @@ def main():
     paths = tables.Trajectories(result(fall, 1))
     print(f"{len(paths.block)} trajectories")
 
-    hazard = RockfallHazardMap(Input=OutputPort(fall, 1), Terrain=slope)
+    hazard = RockfallHazardMap(Input=OutputPort(fall, 1), Terrain=slope, CellSize=4)
     reach_map(result(hazard), in_folder("reach.png"))
     road = PolyLineSource(Points=[ROAD, SOUTH, 0, ROAD, SOUTH + CELL * (ROWS - 1), 0])
     collector = TrajectoryCollector(Input=OutputPort(fall, 1), Lines=road, Terrain=slope,

@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <optional>
 #include <string>
@@ -190,7 +191,17 @@ void addElevation(const Terrain& terrain, const CellGrid& grid, vtkImageData* im
   }
 }
 
+void addMarker(vtkImageData* image, std::initializer_list<double> numbers)
+{
+  addArray<vtkDoubleArray>(image->GetFieldData(), "HazardMap", 7)->InsertNextTuple(numbers.begin());
+}
+
 } // namespace
+
+void markEmptyMap(vtkImageData* image)
+{
+  addMarker(image, { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 });
+}
 
 void makeHazardImage(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
   const HazardMapOptions& options, vtkImageData* image)
@@ -232,11 +243,9 @@ void makeHazardImage(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
     addElevation(*terrain, grid, image);
   }
   image->GetCellData()->SetActiveScalars("ReachProbability"); // what a viewer begins with
-  const auto marker = addArray<vtkDoubleArray>(image->GetFieldData(), "HazardMap", 7);
-  const double numbers[7] = { double(grid.columns), double(grid.rows), grid.cellSize,
-    origin.x() + grid.west, origin.y() + grid.south, double(raster.released()),
-    terrain ? 1.0 : 0.0 };
-  marker->InsertNextTuple(numbers);
+  addMarker(image,
+    { double(grid.columns), double(grid.rows), grid.cellSize, origin.x() + grid.west,
+      origin.y() + grid.south, double(raster.released()), terrain ? 1.0 : 0.0 });
   copyCoordinateSystem(trajectories->GetFieldData(), image->GetFieldData());
 }
 

@@ -21,4 +21,8 @@ struct HazardMapOptions
 void makeHazardImage(vtkPolyData* trajectories, vtkPolyData* terrain,
   const HazardMapOptions& options, vtkImageData* image);
 
+/// Marks an empty image as a map: ranks without data must find the writer of maps as the first one
+/// does.
+void markEmptyMap(vtkImageData* image);
+
 } // namespace rockfall::filters

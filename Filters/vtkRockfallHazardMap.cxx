@@ -145,9 +145,13 @@ int vtkRockfallHazardMap::RequestData(
     return rockfall::filters::fail(this, "The Input is missing");
   }
   if (rockfall::filters::inheritFailure(trajectories, this) ||
-    (terrain && rockfall::filters::inheritFailure(terrain, this)) ||
-    (trajectories->GetNumberOfLines() == 0 && rockfall::filters::isFurtherPiece(outputVector)))
+    (terrain && rockfall::filters::inheritFailure(terrain, this)))
   {
+    return 1;
+  }
+  if (trajectories->GetNumberOfLines() == 0 && rockfall::filters::isFurtherPiece(outputVector))
+  {
+    rockfall::filters::markEmptyMap(vtkImageData::GetData(outputVector, 0));
     return 1;
   }
   if (trajectories->GetNumberOfLines() == 0)

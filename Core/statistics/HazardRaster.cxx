@@ -197,12 +197,15 @@ void HazardRaster::add(const RockPath& path)
   const auto ground = [this](const PathPoint& p)
   { return terrain_ ? terrain_->elevation(p.position.x(), p.position.y()) : 0.0; };
   bool moved = false;
+  double before = path.points.empty() ? 0.0 : ground(path.points.front());
   for (std::size_t k = 1; k < path.points.size(); ++k)
   {
     const PathPoint &a = path.points[k - 1], &b = path.points[k];
     if (b.time > a.time)
     {
-      this->addPiece(PathPiece(a, b, path.mass), { ground(a), ground(b) });
+      const double after = ground(b);
+      this->addPiece(PathPiece(a, b, path.mass), { before, after });
+      before = after;
       moved = true;
     }
   }

@@ -153,8 +153,8 @@ TEST_F(TestRockfallHazardMap, BadInput)
   expect({ "CellSize is 0", "Terrain" });
   this->Filter->SetCellSize(-1.0);
   expect({ "CellSize is -1" });
-  this->Filter->SetCellSize(1e-4);
-  expect({ "200001 x 1", "CellSize" });
+  this->Filter->SetCellSize(1e-7);
+  expect({ "more than 50000000", "CellSize", "CropToTrajectories" });
   this->Filter->SetCellSize(5.0);
   EXPECT_EQ(this->Map()->GetNumberOfCells(), 5);
   this->Paths.AddLevel(0, 0, { 1, 3, 50 }, 20, 10);
