@@ -30,4 +30,15 @@ bool isFurtherRank()
   return controller && controller->GetLocalProcessId() > 0;
 }
 
+void requestOwnPiece(vtkInformation* input)
+{
+  if (auto* controller = vtkMultiProcessController::GetGlobalController())
+  {
+    input->Set(
+      vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), controller->GetLocalProcessId());
+    input->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(),
+      controller->GetNumberOfProcesses());
+  }
+}
+
 } // namespace rockfall::filters

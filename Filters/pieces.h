@@ -3,6 +3,7 @@
 /// @file
 /// Parallel runs: which of the ranks has the work.
 
+class vtkInformation;
 class vtkInformationVector;
 
 namespace rockfall::filters
@@ -15,5 +16,8 @@ bool isFurtherPiece(vtkInformationVector* outputs);
 
 /// True on every rank of a parallel run but the first.
 bool isFurtherRank();
+
+/// Asks an input for the piece of this rank: writers would ask for all of it, on every rank.
+void requestOwnPiece(vtkInformation* input);
 
 } // namespace rockfall::filters

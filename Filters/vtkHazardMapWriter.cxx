@@ -10,7 +10,9 @@
 #include "vtkErrorCode.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
+#include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 
 vtkStandardNewMacro(vtkHazardMapWriter);
 
@@ -88,6 +90,18 @@ int vtkHazardMapWriter::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
   return 1;
+}
+
+//------------------------------------------------------------------------------
+vtkTypeBool vtkHazardMapWriter::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()) &&
+    inputs[0]->GetNumberOfInformationObjects() > 0)
+  {
+    rockfall::filters::requestOwnPiece(inputs[0]->GetInformationObject(0));
+  }
+  return this->Superclass::ProcessRequest(request, inputs, outputs);
 }
 
 //------------------------------------------------------------------------------

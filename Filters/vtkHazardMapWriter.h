@@ -38,6 +38,8 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void WriteData() override;
+  vtkTypeBool ProcessRequest(
+    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
 private:
   std::string FileName;

@@ -12,10 +12,12 @@
 #include "vtkDataArray.h"
 #include "vtkErrorCode.h"
 #include "vtkInformation.h"
+#include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
 
 #include <functional>
@@ -201,6 +203,18 @@ int vtkTrajectoryLayerWriter::FillInputPortInformation(int, vtkInformation* info
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
   return 1;
+}
+
+//------------------------------------------------------------------------------
+vtkTypeBool vtkTrajectoryLayerWriter::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()) &&
+    inputs[0]->GetNumberOfInformationObjects() > 0)
+  {
+    rockfall::filters::requestOwnPiece(inputs[0]->GetInformationObject(0));
+  }
+  return this->Superclass::ProcessRequest(request, inputs, outputs);
 }
 
 //------------------------------------------------------------------------------
