@@ -29,7 +29,7 @@ fall = RockfallSimulation(Terrain=dem, Rocks=rocks, EndTime=20, Iterations=8)
 hazard = RockfallHazardMap(Input=OutputPort(fall, 1), Terrain=dem)
 road = PolyLineSource(Points=[700100, 4000000, 0, 700100, 4000210, 0])
 collector = TrajectoryCollector(Input=OutputPort(fall, 1), Lines=road, Terrain=dem)
-for old in glob.glob("*.tif*") + glob.glob("*.gpkg") + glob.glob("paths.*"):
+for old in {*glob.glob("*.tif*"), *glob.glob("*.gpkg"), *glob.glob("paths.*")}:
     os.remove(old)
 
 # The map: its cells lie between the nodes.

@@ -18,7 +18,7 @@ simulation = RockfallSimulation(Terrain=dem, Rocks=rocks, EndTime=2.0)
 dispersion = DispersionAngle(Input=OutputPort(simulation, 1))
 hazard = RockfallHazardMap(Input=OutputPort(simulation, 1), Terrain=dem)
 collector = TrajectoryCollector(
-    Input=OutputPort(simulation, 1), Lines=PolyLineSource(Points=[20, 0, 0, 20, 100, 0]))
+    Input=OutputPort(simulation, 1), Lines=PolyLineSource(Points=[8, 0, 0, 8, 100, 0]))
 proxies = {"terrain": (dem, 1), "rocks": (rocks, 1), "simulation": (simulation, 4),
            "dispersion": (dispersion, 2), "hazard map": (hazard, 1), "collector": (collector, 3)}
 
