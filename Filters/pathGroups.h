@@ -19,9 +19,12 @@ struct PathGroup
   std::vector<std::vector<Vec3>> paths;
 };
 
-/// In the order of the array's values. The numbers of an array "Shape" are named as the shapes are.
-/// An empty `arrayName` makes one group, "all". Throws DataError if there are no lines or no such
-/// array.
-std::vector<PathGroup> groupPaths(vtkPolyData* input, const std::string& arrayName);
+/// In the order of the array's values; with `limits`, which ascend, in classes of them: below the
+/// first, from the first up to the second, and so on; only those that have a path. The numbers of
+/// an array "Shape" are named as the shapes are. An empty `arrayName` makes one group, "all".
+/// Throws DataError if there are no lines, no such array or, for classes, none of numbers,
+/// ParameterError if the limits do not ascend.
+std::vector<PathGroup> groupPaths(
+  vtkPolyData* input, const std::string& arrayName, const std::vector<double>& limits = {});
 
 } // namespace rockfall::filters

@@ -3,6 +3,7 @@
 #include "vtkInformation.h"
 #include "vtkInformationIntegerKey.h"
 #include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 namespace rockfall::filters
@@ -21,6 +22,23 @@ bool isFurtherPiece(vtkInformationVector* outputs)
     }
   }
   return false;
+}
+
+bool isFurtherRank()
+{
+  auto* controller = vtkMultiProcessController::GetGlobalController();
+  return controller && controller->GetLocalProcessId() > 0;
+}
+
+void requestOwnPiece(vtkInformation* input)
+{
+  if (auto* controller = vtkMultiProcessController::GetGlobalController())
+  {
+    input->Set(
+      vtkStreamingDemandDrivenPipeline::UPDATE_PIECE_NUMBER(), controller->GetLocalProcessId());
+    input->Set(vtkStreamingDemandDrivenPipeline::UPDATE_NUMBER_OF_PIECES(),
+      controller->GetNumberOfProcesses());
+  }
 }
 
 } // namespace rockfall::filters

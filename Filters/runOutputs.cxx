@@ -165,6 +165,7 @@ struct TrajectoryLines::Arrays
   IdentityArrays identity{ data->GetCellData() };
   vtkSmartPointer<vtkIntArray> shape = addArray<vtkIntArray>(data->GetCellData(), "Shape");
   vtkSmartPointer<vtkDoubleArray> volume = addArray<vtkDoubleArray>(data->GetCellData(), "Volume");
+  vtkSmartPointer<vtkDoubleArray> mass = addArray<vtkDoubleArray>(data->GetCellData(), "Mass");
   vtkSmartPointer<vtkIntArray> fate = addArray<vtkIntArray>(data->GetCellData(), "Fate");
   vtkSmartPointer<vtkIdTypeArray> source =
     addArray<vtkIdTypeArray>(data->GetCellData(), "SourceId");
@@ -208,6 +209,7 @@ void TrajectoryLines::append(const Trajectory& trajectory)
   a.identity.append(summary.blockId, summary.rock, summary.iteration);
   a.shape->InsertNextValue(int(frame_.shapes[std::size_t(summary.rock)]));
   a.volume->InsertNextValue(summary.volume);
+  a.mass->InsertNextValue(summary.mass);
   a.fate->InsertNextValue(int(summary.fate));
   a.source->InsertNextValue(frame_.sourceIds[std::size_t(summary.rock)]);
 }

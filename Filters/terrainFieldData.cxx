@@ -325,10 +325,7 @@ Terrain readTerrain(vtkPolyData* mesh, bool withMesh)
   grid.xOrigin = g[3];
   grid.yOrigin = g[4];
   const int stride = gridCount(g[5], "as its stride");
-  if (auto* crs = vtkStringArray::SafeDownCast(fieldData->GetAbstractArray(crsName)))
-  {
-    grid.crs = crs->GetNumberOfValues() > 0 ? std::string(crs->GetValue(0)) : std::string();
-  }
+  grid.crs = readCrs(fieldData);
   Roughness roughness;
   roughness.mean = m[5];
   roughness.deviation = m[6];
@@ -364,6 +361,12 @@ void writeCrs(const std::string& wkt, vtkFieldData* fieldData)
   {
     addArray<vtkStringArray>(fieldData, crsName)->InsertNextValue(wkt);
   }
+}
+
+std::string readCrs(vtkFieldData* fieldData)
+{
+  auto* crs = vtkStringArray::SafeDownCast(fieldData->GetAbstractArray(crsName));
+  return crs && crs->GetNumberOfValues() > 0 ? std::string(crs->GetValue(0)) : std::string();
 }
 
 void copyCoordinateSystem(vtkFieldData* from, vtkFieldData* to)

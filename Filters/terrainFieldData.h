@@ -47,6 +47,9 @@ Terrain readTerrain(vtkPolyData* mesh, bool withMesh = true);
 /// Puts TerrainCRS alone there; nothing if `wkt` is empty, because nothing is known then.
 void writeCrs(const std::string& wkt, vtkFieldData* fieldData);
 
+/// TerrainCRS as WKT; empty if it is not there.
+std::string readCrs(vtkFieldData* fieldData);
+
 /// Copies TerrainCRS and LocalOrigin, for the outputs that stand in the same coordinates.
 void copyCoordinateSystem(vtkFieldData* from, vtkFieldData* to);
 

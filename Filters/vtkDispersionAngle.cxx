@@ -6,6 +6,7 @@
 #include "pathGroups.h"
 #include "pieces.h"
 #include "statistics/dispersion.h"
+#include "statistics/sample.h"
 #include "terrainFieldData.h"
 
 #include "vtkCellArray.h"
@@ -89,7 +90,57 @@ private:
   vtkSmartPointer<vtkDoubleArray> Theta;
 };
 
+/// How far the trajectories of each group got, as columns of a table.
+class RunOuts
+{
+public:
+  explicit RunOuts(vtkFieldData* rows)
+  {
+    for (const char* name : { "RunOutMean", "RunOutDeviation", "RunOut50", "RunOut90", "RunOut95",
+           "RunOut99", "RunOutMaximum" })
+    {
+      this->Columns.push_back(rockfall::filters::addArray<vtkDoubleArray>(rows, name));
+    }
+  }
+
+  void Append(const Paths& paths)
+  {
+    std::vector<double> distances;
+    for (const std::vector<Vec3>& path : paths)
+    {
+      if (!path.empty())
+      {
+        distances.push_back((path.back() - path.front()).head<2>().norm());
+      }
+    }
+    const rockfall::SampleStatistics of = rockfall::statisticsOf(distances);
+    const double values[] = { of.mean, of.deviation, of.quantiles[0], of.quantiles[1],
+      of.quantiles[2], of.quantiles[3], of.maximum };
+    for (std::size_t k = 0; k < this->Columns.size(); ++k)
+    {
+      this->Columns[k]->InsertNextValue(values[k]);
+    }
+  }
+
+private:
+  std::vector<vtkSmartPointer<vtkDoubleArray>> Columns;
+};
+
 } // namespace
+
+//------------------------------------------------------------------------------
+void vtkDispersionAngle::AddClassLimit(double limit)
+{
+  this->ClassLimits.push_back(limit);
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+void vtkDispersionAngle::ClearClassLimits()
+{
+  this->ClassLimits.clear();
+  this->Modified();
+}
 
 //------------------------------------------------------------------------------
 vtkDispersionAngle::vtkDispersionAngle()
@@ -131,8 +182,8 @@ int vtkDispersionAngle::RequestData(
     {
       return 1;
     }
-    const auto groups =
-      rockfall::filters::groupPaths(input, this->UseGroups ? this->GroupBy : std::string());
+    const auto groups = rockfall::filters::groupPaths(
+      input, this->UseGroups ? this->GroupBy : std::string(), this->ClassLimits);
 
     double azimuth = std::atan2(this->Direction[1], this->Direction[0]);
     if (this->AutomaticDirection)
@@ -162,6 +213,7 @@ int vtkDispersionAngle::RequestData(
     const auto lateralMax = addArray<vtkDoubleArray>(rows, "LateralMax");
     const auto deviation = addArray<vtkDoubleArray>(rows, "LateralDeviation");
     const auto direction = addArray<vtkDoubleArray>(rows, "Azimuth");
+    RunOuts runOuts(rows);
     vtkNew<vtkPolyData> lines;
     Wedges wedges(lines);
     for (const auto& group : groups)
@@ -179,6 +231,7 @@ int vtkDispersionAngle::RequestData(
       lateralMax->InsertNextValue(dispersion.lateralMax);
       deviation->InsertNextValue(dispersion.lateralDeviation);
       direction->InsertNextValue(rockfall::degrees(azimuth));
+      runOuts.Append(group.paths);
     }
     for (vtkDataObject* made :
       { static_cast<vtkDataObject*>(table), static_cast<vtkDataObject*>(lines) })
@@ -204,6 +257,12 @@ void vtkDispersionAngle::PrintSelf(ostream& os, vtkIndent indent)
      << this->Direction[2] << "\n";
   os << indent << "Length: " << this->Length << "\n";
   os << indent << "GroupBy: " << this->GroupBy << "\n";
+  os << indent << "ClassLimits:";
+  for (const double limit : this->ClassLimits)
+  {
+    os << " " << limit;
+  }
+  os << "\n";
   os << indent << "UseGroups: " << this->UseGroups << "\n";
   os << indent << "RelativeToStart: " << this->RelativeToStart << "\n";
 }

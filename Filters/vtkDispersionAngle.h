@@ -8,9 +8,11 @@
  *
  * Output port 0 is a table with one row per group: Group, Trajectories, L, W (m), Theta (degrees),
  * LateralMin, LateralMax, LateralDeviation (m; the standard deviation of where the trajectories
- * end), Azimuth (degrees from +x, counter-clockwise). Output port 1 shows the same as lines, a
- * wedge per group: from the mean start to both ends of the dispersion width and to its middle, and
- * across; cell arrays Group (the row) and Theta.
+ * end), Azimuth (degrees from +x, counter-clockwise), and RunOutMean, RunOutDeviation, RunOut50,
+ * RunOut90, RunOut95, RunOut99 and RunOutMaximum (m), the run-out being the horizontal distance
+ * from the start to the end of a trajectory. Output port 1 shows the same as lines, a wedge per
+ * group: from the mean start to both ends of the dispersion width and to its middle, and across;
+ * cell arrays Group (the row) and Theta.
  */
 #ifndef vtkDispersionAngle_h
 #define vtkDispersionAngle_h
@@ -19,6 +21,7 @@
 #include "vtkTableAlgorithm.h"
 
 #include <string> // for GroupBy
+#include <vector> // for ClassLimits
 
 class ROCKFALLFILTERS_EXPORT vtkDispersionAngle : public vtkTableAlgorithm
 {
@@ -65,6 +68,15 @@ public:
 
   ///@{
   /**
+   * Limits of classes of the array's numbers, ascending: groups are the classes then, such as
+   * "below 0.5", "0.5 to 1" and "1 and above". None by default: every value is a group.
+   */
+  void AddClassLimit(double limit);
+  void ClearClassLimits();
+  ///@}
+
+  ///@{
+  /**
    * Whether there are groups (the default), or all trajectories are taken together as with an empty
    * GroupBy.
    */
@@ -99,6 +111,7 @@ private:
   double Direction[3] = { 1.0, 0.0, 0.0 };
   double Length = 0.0;
   std::string GroupBy = "Shape";
+  std::vector<double> ClassLimits;
   bool UseGroups = true;
   bool RelativeToStart = true;
 };

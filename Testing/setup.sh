@@ -11,7 +11,7 @@ rockfall_log=$rockfall_build/setup.log
 rockfall_packages=(
   g++ cmake ninja-build
   paraview paraview-dev python3-paraview libopenmpi-dev libdouble-conversion-dev
-  libeigen3-dev libgdal-dev libtbb-dev librandom123-dev libqhull-dev libboost-dev
+  libeigen3-dev libgdal-dev gdal-bin libtbb-dev librandom123-dev libqhull-dev libboost-dev
   libgtest-dev libbenchmark-dev
   xvfb xauth python3-matplotlib python-matplotlib-data)
 

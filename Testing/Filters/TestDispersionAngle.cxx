@@ -109,6 +109,35 @@ TEST_F(TestDispersionAngle, GroupsHaveARowEach)
   EXPECT_EQ(this->Number(0, "Trajectories"), 4);
 }
 
+TEST_F(TestDispersionAngle, ClassesOfNumbers)
+{
+  for (const int number : { 3, 1, 7, 5 })
+  {
+    this->AddPath(number, 0.0, 0.0, 10.0 * number);
+  }
+  this->Filter->AddClassLimit(3.0);
+  this->Filter->AddClassLimit(6.0);
+  ASSERT_EQ(this->Table()->GetNumberOfRows(), 3);
+  const char* const names[] = { "below 3", "3 to 6", "6 and above" };
+  const double counts[] = { 1, 2, 1 }, means[] = { 10, 40, 70 };
+  for (int row = 0; row < 3; ++row)
+  {
+    EXPECT_EQ(this->Table()->GetValueByName(row, "Group").ToString(), names[row]);
+    EXPECT_EQ(this->Number(row, "Trajectories"), counts[row]);
+    EXPECT_NEAR(this->Number(row, "RunOutMean"), means[row], 1e-9);
+  }
+  EXPECT_NEAR(this->Number(1, "RunOutDeviation"), std::sqrt(200.0), 1e-9);
+  EXPECT_NEAR(this->Number(1, "RunOut50"), 40.0, 1e-9);
+  EXPECT_NEAR(this->Number(1, "RunOut90"), 48.0, 1e-9);
+  EXPECT_NEAR(this->Number(1, "RunOut99"), 49.8, 1e-9);
+  EXPECT_NEAR(this->Number(1, "RunOutMaximum"), 50.0, 1e-9);
+  this->Filter->AddClassLimit(6.0);
+  EXPECT_EQ(this->Table()->GetNumberOfRows(), 0);
+  this->ExpectOneError({ "ClassLimits", "6", "number 3" });
+  this->Filter->ClearClassLimits();
+  EXPECT_EQ(this->Table()->GetNumberOfRows(), 4);
+}
+
 TEST_F(TestDispersionAngle, GivenDirection)
 {
   this->AddPath(0, 30 * rad, 0.0);
@@ -194,8 +223,8 @@ TEST_F(TestDispersionAngle, PrintSelfNamesEveryProperty)
 {
   std::ostringstream text;
   this->Filter->Print(text);
-  for (const char* name :
-    { "AutomaticDirection", "Direction", "Length", "GroupBy", "UseGroups", "RelativeToStart" })
+  for (const char* name : { "AutomaticDirection", "Direction", "Length", "GroupBy", "ClassLimits",
+         "UseGroups", "RelativeToStart" })
   {
     EXPECT_NE(text.str().find(std::string(name) + ":"), std::string::npos) << name;
   }

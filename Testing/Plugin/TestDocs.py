@@ -17,8 +17,10 @@ PAGES = [
     ("RockBlocks", "RockBlocks", "rocks"),
     ("RockfallSimulation", "RockfallSimulation", "fall"),
     ("DispersionAngle", "DispersionAngle", "angle"),
+    ("RockfallHazardMap", "RockfallHazardMap", "hazard"),
+    ("TrajectoryCollector", "TrajectoryCollector", "collector"),
 ]
-TYPES = {"vtkDoubleArray": "double", "vtkIntArray": "int", "vtkIdTypeArray": "id",
+TYPES = {"vtkDoubleArray": "double", "vtkFloatArray": "float", "vtkIntArray": "int", "vtkIdTypeArray": "id",
          "vtkStringArray": "text", "vtkUnsignedCharArray": "byte"}
 
 failures = []

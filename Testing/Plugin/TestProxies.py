@@ -13,7 +13,11 @@ PROXIES = [
      "FileName Terrain Amount Intensity SlopeThreshold ShapeMix VolumeLaw Material"),
     ("Rockfall Simulation", "RockfallSimulation", "filters",
      "Terrain Rocks TimeStep EndTime NormalPenalty Iterations Seed OutputInterval RockRockContact"),
-    ("Dispersion Angle", "DispersionAngle", "filters", "Input Direction Length GroupBy"),
+    ("Dispersion Angle", "DispersionAngle", "filters",
+     "Input Direction Length GroupBy ClassLimits"),
+    ("Rockfall Hazard Map", "RockfallHazardMap", "filters", "Input Terrain CellSize"),
+    ("Trajectory Collector", "TrajectoryCollector", "filters",
+     "Input Lines FileName BarrierHeight BarrierCapacity"),
 ]
 
 dem = simple.DEMtoCFEMesh()
@@ -21,8 +25,11 @@ rocks = simple.RockBlocks()
 simulation = simple.RockfallSimulation(Terrain=dem, Rocks=rocks)
 simulation.EndTime = 1.0
 dispersion = simple.DispersionAngle(Input=simple.OutputPort(simulation, 1))
+hazard = simple.RockfallHazardMap(Input=simple.OutputPort(simulation, 1), Terrain=dem)
+collector = simple.TrajectoryCollector(Input=simple.OutputPort(simulation, 1))
 
-for (label, name, group, properties), proxy in zip(PROXIES, (dem, rocks, simulation, dispersion)):
+for (label, name, group, properties), proxy in zip(
+        PROXIES, (dem, rocks, simulation, dispersion, hazard, collector)):
     assert hasattr(simple, name), name
     assert proxy.GetXMLGroup() == group, (name, proxy.GetXMLGroup())
     assert proxy.GetXMLLabel() == label, (name, proxy.GetXMLLabel())

@@ -9,7 +9,8 @@ from helpers import errors_of, is_empty
 
 import paraview.simple
 from paraview.simple import (
-    DEMtoCFEMesh, Delete, DispersionAngle, OutputPort, RockBlocks, RockfallSimulation)
+    DEMtoCFEMesh, Delete, DispersionAngle, OutputPort, PolyLineSource, RockBlocks, RockfallHazardMap,
+    RockfallSimulation, TrajectoryCollector)
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 ABOVE_ZERO = 1e-300  # how the XML says it
@@ -26,12 +27,23 @@ def dispersion():
     return DispersionAngle(Input=OutputPort(simulation(), 1))
 
 
+def hazard():
+    fall = simulation()
+    return RockfallHazardMap(Input=OutputPort(fall, 1), Terrain=fall.Terrain)
+
+
+def collector():
+    return TrajectoryCollector(Input=OutputPort(simulation(), 1), Lines=PolyLineSource())
+
+
 # Where a property counts only together with others.
 MAKERS = {
     "DEMToCFEMesh": DEMtoCFEMesh,
     "RockBlocks": RockBlocks,
     "RockfallSimulation": simulation,
     "DispersionAngle": dispersion,
+    "RockfallHazardMap": hazard,
+    "TrajectoryCollector": collector,
 }
 TOGETHER_WITH = {
     ("DEMToCFEMesh", "Band"): None,  # only rasters have bands

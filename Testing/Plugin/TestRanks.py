@@ -4,7 +4,8 @@
 from helpers import messages_of
 
 from paraview.simple import (
-    DEMtoCFEMesh, DispersionAngle, OutputPort, RockBlocks, RockfallSimulation, UpdatePipeline)
+    DEMtoCFEMesh, DispersionAngle, OutputPort, PolyLineSource, RockBlocks, RockfallHazardMap,
+    RockfallSimulation, SaveData, TrajectoryCollector, UpdatePipeline)
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 controller = vtkMultiProcessController.GetGlobalController()
@@ -15,8 +16,11 @@ dem = DEMtoCFEMesh()
 rocks = RockBlocks()
 simulation = RockfallSimulation(Terrain=dem, Rocks=rocks, EndTime=2.0)
 dispersion = DispersionAngle(Input=OutputPort(simulation, 1))
+hazard = RockfallHazardMap(Input=OutputPort(simulation, 1), Terrain=dem)
+collector = TrajectoryCollector(
+    Input=OutputPort(simulation, 1), Lines=PolyLineSource(Points=[8, 0, 0, 8, 100, 0]))
 proxies = {"terrain": (dem, 1), "rocks": (rocks, 1), "simulation": (simulation, 4),
-           "dispersion": (dispersion, 2)}
+           "dispersion": (dispersion, 2), "hazard map": (hazard, 1), "collector": (collector, 3)}
 
 
 def update():
@@ -25,6 +29,9 @@ def update():
     UpdatePipeline(1.0, simulation)
     simulation.Seed = 2
     UpdatePipeline(2.0, simulation)
+    # Before there are files: only the first rank writes.
+    SaveData("map.tif", proxy=hazard)
+    SaveData("paths.gpkg", proxy=OutputPort(simulation, 1))
 
 
 said = messages_of(update)

@@ -1,0 +1,175 @@
+#include "gis/lineLayer.h"
+
+#include "base/errors.h"
+#include "gis/crs.h"
+#include "gis/gdal.h"
+
+#include <ogrsf_frmts.h>
+
+#include <charconv>
+#include <cmath>
+
+namespace rockfall
+{
+
+using namespace gis;
+
+namespace
+{
+
+class LineReader
+{
+public:
+  LineReader(const std::string& fileName, OGRLayer& layer, const std::string& targetCrs)
+    : fileName_(fileName)
+
+    , from_(horizontalCrs(layer.GetSpatialRef()))
+  {
+    if (!targetCrs.empty() && from_)
+    {
+      to_ = crsFromText(targetCrs);
+      change_ = CrsChange(from_, to_);
+    }
+  }
+
+  void read(const OGRFeature& feature)
+  {
+    ++number_;
+    LayerLine line;
+    line.feature = number_;
+    if (const auto name = this->text(feature, "name"))
+    {
+      line.name = *name;
+    }
+    line.height = this->size(feature, "height");
+    line.capacity = this->size(feature, "capacity");
+    const OGRGeometry* geometry = feature.GetGeometryRef();
+    if (!geometry || geometry->IsEmpty())
+    {
+      this->fail("has no geometry, a line is needed");
+    }
+    const auto type = wkbFlatten(geometry->getGeometryType());
+    if (type == wkbLineString)
+    {
+      this->add(*geometry->toLineString(), line);
+    }
+    else if (type == wkbMultiLineString)
+    {
+      for (const OGRLineString* part : *geometry->toMultiLineString())
+      {
+        this->add(*part, line);
+      }
+    }
+    else
+    {
+      this->fail(std::string("is a ") + geometry->getGeometryName() + ", a LINESTRING is needed");
+    }
+  }
+
+  std::int64_t number() const { return number_; }
+  std::vector<LayerLine> lines;
+
+private:
+  [[noreturn]] void fail(const std::string& what) const
+  {
+    throw DataError(fileName_ + ", feature " + std::to_string(number_) + ": " + what);
+  }
+
+  std::optional<std::string> text(const OGRFeature& feature, const char* column) const
+  {
+    const int field = feature.GetFieldIndex(column); // without regard to case
+    if (field < 0 || !feature.IsFieldSetAndNotNull(field))
+    {
+      return std::nullopt;
+    }
+    const std::string value = feature.GetFieldAsString(field);
+    return value.empty() ? std::nullopt : std::optional(value);
+  }
+
+  std::optional<double> size(const OGRFeature& feature, const char* column) const
+  {
+    const auto written = this->text(feature, column);
+    if (!written)
+    {
+      return std::nullopt;
+    }
+    const int field = feature.GetFieldIndex(column);
+    double value = feature.GetFieldAsDouble(field);
+    if (feature.GetFieldDefnRef(field)->GetType() == OFTString)
+    {
+      const char* const last = written->data() + written->size();
+      const auto [end, error] = std::from_chars(written->data(), last, value);
+      if (error != std::errc() || end != last)
+      {
+        this->fail(std::string("field \"") + column + "\": \"" + *written + "\" is not a number");
+      }
+    }
+    if (!std::isfinite(value) || value < 0.0)
+    {
+      this->fail(std::string("field \"") + column + "\" is " + number(value) +
+        ", it must be finite and not negative");
+    }
+    return value;
+  }
+
+  static std::string number(double value) { return gis::number(value); }
+
+  void add(const OGRLineString& part, LayerLine line)
+  {
+    for (int k = 0; k < part.getNumPoints(); ++k)
+    {
+      Eigen::Vector2d place(part.getX(k), part.getY(k));
+      const Eigen::Vector2d written = place;
+      if (!place.allFinite() || !change_.forth(1, &place.x(), &place.y()))
+      {
+        this->fail("the point " + number(written.x()) + ", " + number(written.y()) +
+          " cannot be brought to the coordinates of the trajectories");
+      }
+      if (line.points.empty() || line.points.back() != place)
+      {
+        line.points.push_back(place);
+      }
+    }
+    if (line.points.size() < 2)
+    {
+      this->fail("is a line of one place only");
+    }
+    lines.push_back(std::move(line));
+  }
+
+  const std::string& fileName_;
+  CrsPtr from_, to_;
+  CrsChange change_;
+  std::int64_t number_ = 0;
+};
+
+} // namespace
+
+std::vector<LayerLine> readLineLayer(const std::string& fileName, const std::string& targetCrs)
+{
+  Messages messages;
+  const DatasetPtr dataset = openVector(fileName, messages);
+  if (dataset->GetLayerCount() == 0)
+  {
+    throw DataError(fileName + ": has no layer");
+  }
+  OGRLayer& layer = *dataset->GetLayer(0);
+  LineReader reader(fileName, layer, targetCrs);
+  messages.clear();
+  while (const OGRFeatureUniquePtr feature{ layer.GetNextFeature() })
+  {
+    reader.read(*feature);
+  }
+  if (!messages.failure().empty())
+  {
+    throw FileError(fileName + ": feature " + std::to_string(reader.number() + 1) +
+      " cannot be read: " + messages.failure());
+  }
+  if (reader.lines.empty())
+  {
+    throw DataError(fileName + ": layer \"" + layer.GetName() + "\" has no line");
+  }
+  return std::move(reader.lines);
+}
+
+} // namespace rockfall

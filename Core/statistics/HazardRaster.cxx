@@ -1,0 +1,344 @@
+#include "statistics/HazardRaster.h"
+
+#include "base/errors.h"
+#include "terrain/Terrain.h"
+
+#include <tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace rockfall
+{
+
+namespace
+{
+
+constexpr double none = -std::numeric_limits<double>::infinity();
+
+/// Between two cuts less than this of the way apart there is no cell, only rounding: a path through
+/// the corner of four cells. m
+constexpr double leastWay = 1e-9;
+
+/// Appends where `value` (of bounds low, high) passes a multiple of `size` from `start` on.
+void appendCuts(const Cubic& value, std::array<double, 2> bounds, double start, double size,
+  double firstLine, double lastLine, double from, double to, std::vector<double>& cuts)
+{
+  const double first = std::max(firstLine, std::ceil((bounds[0] - start) / size));
+  const double last = std::min(lastLine, std::floor((bounds[1] - start) / size));
+  for (double line = first; line <= last; ++line)
+  {
+    Cubic shifted = value;
+    shifted.c[0] -= start + line * size;
+    const Roots roots = signChanges(shifted, from, to);
+    cuts.insert(cuts.end(), roots.at.begin(), roots.at.begin() + roots.count);
+  }
+}
+
+Cubic sum(const Cubic& a, const Cubic& b)
+{
+  return { { a.c[0] + b.c[0], a.c[1] + b.c[1], a.c[2] + b.c[2], a.c[3] + b.c[3] } };
+}
+
+double maximum(const Cubic& f, double from, double to)
+{
+  double most = std::max(f(from), f(to));
+  const Roots turns = extremes(f, from, to);
+  for (int k = 0; k < turns.count; ++k)
+  {
+    most = std::max(most, f(turns.at[std::size_t(k)]));
+  }
+  return most;
+}
+
+} // namespace
+
+std::string hazardName(Hazard hazard)
+{
+  switch (hazard)
+  {
+    case Hazard::KineticEnergy:
+      return "KineticEnergy";
+    case Hazard::Speed:
+      return "Speed";
+    case Hazard::HeightOverGround:
+      return "HeightOverGround";
+    case Hazard::RotationRate:
+      break;
+  }
+  return "RotationRate";
+}
+
+HazardRaster::HazardRaster(const CellGrid& grid, const Terrain* terrain)
+  : grid_(grid)
+  , terrain_(terrain)
+{
+  if (grid.columns < 1 || grid.rows < 1 || !(grid.cellSize > 0.0) ||
+    grid.cellCount() > std::int64_t(std::numeric_limits<std::uint32_t>::max()))
+  {
+    throw ParameterError("A hazard raster of " + std::to_string(grid.columns) + " x " +
+      std::to_string(grid.rows) + " cells cannot be made");
+  }
+}
+
+std::int64_t HazardRaster::cellAt(double x, double y) const
+{
+  const double column = std::floor((x - grid_.west) / grid_.cellSize);
+  const double row = std::floor((y - grid_.south) / grid_.cellSize);
+  return column >= 0.0 && column < grid_.columns && row >= 0.0 && row < grid_.rows
+    ? std::int64_t(row) * grid_.columns + std::int64_t(column)
+    : -1;
+}
+
+void HazardRaster::addVisit(std::int64_t cell, const std::array<double, hazardCount>& maxima)
+{
+  if (cell >= 0 && cell == here_)
+  {
+    auto& known = visits_.back().maxima;
+    for (std::size_t k = 0; k < known.size(); ++k)
+    {
+      known[k] = std::max(known[k], maxima[k]);
+    }
+  }
+  else if (cell >= 0)
+  {
+    Passage& visit = visits_.emplace_back();
+    visit.cell = std::uint32_t(cell);
+    visit.maxima = maxima;
+  }
+  here_ = cell;
+}
+
+double HazardRaster::maxHeight(
+  const PathPiece& piece, double from, double to, std::array<double, 2> grounds) const
+{
+  if (!terrain_ || std::isnan(grounds[0] + grounds[1]))
+  {
+    const double most = maximum(piece.height(), from, to);
+    return std::isnan(most) ? none : most;
+  }
+  // Between the sides of the CFEs the ground is a plane under the path, so the height is a cubic.
+  const double size = terrain_->geometry().cellSize;
+  const double lines = terrain_->geometry().columns + double(terrain_->geometry().rows);
+  const Cubic height = piece.height(grounds[0], grounds[1]);
+  const Cubic &x = piece.along(0), &y = piece.along(1);
+  const auto xs = piece.bounds(0), ys = piece.bounds(1);
+  groundCuts_.assign({ from, to });
+  appendCuts(x, xs, 0.0, size, 0.0, lines, from, to, groundCuts_);
+  appendCuts(y, ys, 0.0, size, 0.0, lines, from, to, groundCuts_);
+  // A cell's diagonal goes from its upper left to its lower right node.
+  appendCuts(
+    sum(x, y), { xs[0] + ys[0], xs[1] + ys[1] }, 0.0, size, 0.0, lines, from, to, groundCuts_);
+  std::sort(groundCuts_.begin(), groundCuts_.end());
+  double most = none;
+  for (std::size_t k = 1; k < groundCuts_.size(); ++k)
+  {
+    const double a = groundCuts_[k - 1], b = groundCuts_[k];
+    const double middle = 0.5 * (a + b);
+    const std::int64_t id = b > a ? terrain_->cfeAt(x(middle), y(middle)) : 0;
+    if (id == 0)
+    {
+      continue; // nothing between the cuts, or no ground
+    }
+    const Cfe cfe = terrain_->cfe(id);
+    const double slopeX = -cfe.normal.x() / cfe.normal.z(),
+                 slopeY = -cfe.normal.y() / cfe.normal.z();
+    Cubic over = height;
+    for (std::size_t i = 0; i < 4; ++i)
+    {
+      over.c[i] -= slopeX * x.c[i] + slopeY * y.c[i];
+    }
+    over.c[0] -= cfe.nodes[0].z() - slopeX * cfe.nodes[0].x() - slopeY * cfe.nodes[0].y();
+    const double value = maximum(over, a, b);
+    most = std::isnan(value) ? most : std::max(most, value);
+  }
+  return most;
+}
+
+void HazardRaster::addPiece(const PathPiece& piece, std::array<double, 2> grounds)
+{
+  cuts_.assign({ 0.0, 1.0 });
+  appendCuts(piece.along(0), piece.bounds(0), grid_.west, grid_.cellSize, 0.0, grid_.columns, 0.0,
+    1.0, cuts_);
+  appendCuts(
+    piece.along(1), piece.bounds(1), grid_.south, grid_.cellSize, 0.0, grid_.rows, 0.0, 1.0, cuts_);
+  std::sort(cuts_.begin() + 2, cuts_.end());
+  std::rotate(cuts_.begin() + 1, cuts_.begin() + 2, cuts_.end()); // the end behind the crossings
+  for (std::size_t k = 1; k < cuts_.size(); ++k)
+  {
+    const double from = cuts_[k - 1], to = cuts_[k];
+    const bool whole = cuts_.size() == 2;
+    const double middle = 0.5 * (from + to);
+    const Vec3 start = piece.position(from);
+    if (!whole && (piece.position(to) - start).head<2>().norm() < leastWay &&
+      (piece.position(middle) - start).head<2>().norm() < leastWay)
+    {
+      continue;
+    }
+    const std::int64_t cell = this->cellAt(piece.along(0)(middle), piece.along(1)(middle));
+    std::array<double, hazardCount> maxima{};
+    if (cell >= 0)
+    {
+      maxima = { piece.maxKineticEnergy(from, to), piece.maxSpeed(from, to),
+        this->maxHeight(piece, from, to, grounds), piece.maxRotationRate(from, to) };
+    }
+    this->addVisit(cell, maxima);
+  }
+}
+
+void HazardRaster::add(const RockPath& path)
+{
+  checkPath(path);
+  ++released_;
+  ++releasedIn_[path.iteration];
+  visits_.clear();
+  here_ = -1;
+  const auto ground = [this](const PathPoint& p)
+  { return terrain_ ? terrain_->elevation(p.position.x(), p.position.y()) : 0.0; };
+  bool moved = false;
+  double before = path.points.empty() ? 0.0 : ground(path.points.front());
+  for (std::size_t k = 1; k < path.points.size(); ++k)
+  {
+    const PathPoint &a = path.points[k - 1], &b = path.points[k];
+    if (b.time > a.time)
+    {
+      const double after = ground(b);
+      this->addPiece(PathPiece(a, b, path.mass), { before, after });
+      before = after;
+      moved = true;
+    }
+  }
+  if (path.points.empty())
+  {
+    return;
+  }
+  const PathPoint& last = path.points.back();
+  if (!moved)
+  {
+    this->addVisit(this->cellAt(last.position.x(), last.position.y()),
+      { last.kineticEnergy, last.velocity.norm(),
+        std::isnan(last.heightOverGround) ? none : last.heightOverGround,
+        last.rotationRate.norm() });
+  }
+  if (path.rested && here_ >= 0)
+  {
+    stops_.push_back(std::uint32_t(here_));
+  }
+  std::stable_sort(visits_.begin(), visits_.end(),
+    [](const Passage& a, const Passage& b) { return a.cell < b.cell; });
+  for (const Passage& visit : visits_)
+  {
+    Passage* known = passages_.empty() ? nullptr : &passages_.back();
+    if (known && &visit != &visits_.front() && known->cell == visit.cell)
+    {
+      ++known->entries;
+      for (std::size_t k = 0; k < known->maxima.size(); ++k)
+      {
+        known->maxima[k] = std::max(known->maxima[k], visit.maxima[k]);
+      }
+      continue;
+    }
+    Passage& passage = passages_.emplace_back(visit);
+    passage.iteration = path.iteration;
+    passage.rock = path.rock;
+  }
+}
+
+void HazardRaster::merge(const HazardRaster& other)
+{
+  const auto as = [](const CellGrid& g)
+  { return std::tie(g.columns, g.rows, g.cellSize, g.west, g.south); };
+  if (as(grid_) != as(other.grid_))
+  {
+    throw ParameterError("Hazard rasters of different grids cannot be merged");
+  }
+  passages_.insert(passages_.end(), other.passages_.begin(), other.passages_.end());
+  stops_.insert(stops_.end(), other.stops_.begin(), other.stops_.end());
+  for (const auto& [iteration, count] : other.releasedIn_)
+  {
+    releasedIn_[iteration] += count;
+  }
+  released_ += other.released_;
+}
+
+void HazardRaster::summarize(const std::function<void(const CellSummary&)>& use)
+{
+  const auto key = [](const Passage& p) { return std::tie(p.cell, p.iteration, p.rock); };
+  tbb::parallel_sort(passages_.begin(), passages_.end(),
+    [key](const Passage& a, const Passage& b) { return key(a) < key(b); });
+  std::sort(stops_.begin(), stops_.end());
+  double squaredReleases = 0.0; // Σ Rᵢ², Rᵢ the rocks released in iteration i
+  for (const auto& [iteration, count] : releasedIn_)
+  {
+    squaredReleases += double(count) * double(count);
+  }
+  const double iterations = double(releasedIn_.size());
+  const double all = double(released_);
+  std::array<std::vector<double>, hazardCount> values;
+  auto stop = stops_.begin();
+  for (std::size_t first = 0; first < passages_.size();)
+  {
+    CellSummary summary;
+    const std::uint32_t cell = passages_[first].cell;
+    summary.cell = cell;
+    for (std::vector<double>& list : values)
+    {
+      list.clear();
+    }
+    std::size_t k = first;
+    struct Count
+    {
+      double rocks, released;
+    };
+    std::vector<Count> counts; // of the iterations that came here
+    for (; k < passages_.size() && passages_[k].cell == cell; ++k)
+    {
+      const Passage& passage = passages_[k];
+      const bool same = k > first && passages_[k - 1].iteration == passage.iteration;
+      if (same && passages_[k - 1].rock == passage.rock)
+      {
+        throw DataError("The trajectory of iteration " + std::to_string(passage.iteration) +
+          ", rock " + std::to_string(passage.rock) + " is there twice");
+      }
+      if (!same)
+      {
+        counts.push_back({ 0.0, double(releasedIn_.at(passage.iteration)) });
+      }
+      ++counts.back().rocks;
+      summary.passages += int(passage.entries);
+      ++summary.rocks;
+      for (std::size_t h = 0; h < values.size(); ++h)
+      {
+        if (passage.maxima[h] > none)
+        {
+          values[h].push_back(passage.maxima[h]);
+        }
+      }
+    }
+    for (; stop != stops_.end() && *stop <= cell; ++stop)
+    {
+      summary.stops += *stop == cell;
+    }
+    const double p = summary.rocks / all;
+    summary.reach = p;
+    summary.reachError = binomialError(p, all);
+    // Ratio estimator: n / (n − 1) Σ (kᵢ − p Rᵢ)² / N², also over the iterations with kᵢ = 0.
+    double scatter = p * p * squaredReleases;
+    for (const Count& count : counts)
+    {
+      scatter += count.rocks * (count.rocks - 2.0 * p * count.released);
+    }
+    summary.reachErrorOfIterations = iterations > 1.0
+      ? std::sqrt(std::max(0.0, scatter) * iterations / (iterations - 1.0)) / all
+      : std::numeric_limits<double>::quiet_NaN();
+    for (std::size_t h = 0; h < values.size(); ++h)
+    {
+      summary.statistics[h] = statisticsOf(values[h]);
+    }
+    use(summary);
+    first = k;
+  }
+}
+
+} // namespace rockfall

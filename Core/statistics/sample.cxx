@@ -1,0 +1,61 @@
+#include "statistics/sample.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rockfall
+{
+
+double quantile(std::span<const double> ascending, double q)
+{
+  if (ascending.empty())
+  {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  const double place = q * double(ascending.size() - 1);
+  const auto below = std::size_t(place);
+  if (below + 1 >= ascending.size())
+  {
+    return ascending.back();
+  }
+  return std::lerp(ascending[below], ascending[below + 1], place - double(below));
+}
+
+SampleStatistics statisticsOf(std::vector<double>& values)
+{
+  SampleStatistics result;
+  if (values.empty())
+  {
+    result.mean = result.deviation = result.maximum = std::numeric_limits<double>::quiet_NaN();
+    result.quantiles.fill(result.mean);
+    return result;
+  }
+  const double n = double(values.size());
+  double sum = 0.0, squares = 0.0;
+  for (const double value : values)
+  {
+    sum += value;
+  }
+  result.mean = sum / n;
+  for (const double value : values)
+  {
+    squares += (value - result.mean) * (value - result.mean);
+  }
+  result.deviation = values.size() > 1 ? std::sqrt(squares / (n - 1.0)) : 0.0;
+  std::sort(values.begin(), values.end());
+  result.maximum = values.back();
+  for (std::size_t k = 0; k < hazardQuantiles.size(); ++k)
+  {
+    result.quantiles[k] = quantile(values, hazardQuantiles[k]);
+  }
+  return result;
+}
+
+double binomialError(double share, double trials)
+{
+  return trials > 0.0 ? std::sqrt(std::max(0.0, share * (1.0 - share)) / trials)
+                      : std::numeric_limits<double>::quiet_NaN();
+}
+
+} // namespace rockfall

@@ -1,0 +1,43 @@
+#pragma once
+
+/// @file
+/// Lines of a collector from a polydata, and what passes them as VTK data.
+
+#include "statistics/crossings.h"
+
+#include <span>
+#include <vector>
+
+class vtkPolyData;
+class vtkTable;
+
+namespace rockfall::filters
+{
+
+/// A passing and the cell of its trajectory.
+struct CollectedCrossing
+{
+  Crossing crossing;
+  std::int64_t cell = 0;
+};
+
+/// The polylines of `input`, without `origin`; named "line 1" and so on, with the barrier of
+/// `barrier`. Throws DataError if there is none or one has fewer than two different places.
+std::vector<CollectorLine> linesOf(
+  vtkPolyData* input, const Vec3& origin, const CollectorLine& barrier);
+
+/// One vertex per passing. Other cell arrays of the trajectories go along.
+void writeCrossings(std::span<const CollectedCrossing> crossings,
+  std::span<const CollectorLine> lines, const Vec3& origin, vtkPolyData* trajectories,
+  vtkPolyData* output);
+
+/// One row per line.
+void writeLines(
+  std::span<const LineSummary> summaries, std::span<const CollectorLine> lines, vtkTable* output);
+
+/// Per line, energy and height in descending order and the share of rocks that have at least as
+/// much.
+void writeExceedance(
+  std::span<const LineSummary> summaries, std::int64_t released, vtkTable* output);
+
+} // namespace rockfall::filters

@@ -1,0 +1,252 @@
+#include "hazardImage.h"
+
+#include "arrays.h"
+#include "base/errors.h"
+#include "geometry/shell.h"
+#include "rockPaths.h"
+#include "statistics/HazardRaster.h"
+#include "terrainFieldData.h"
+
+#include "vtkCellData.h"
+#include "vtkDoubleArray.h"
+#include "vtkFloatArray.h"
+#include "vtkImageData.h"
+#include "vtkIntArray.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+#include <optional>
+#include <string>
+
+namespace rockfall::filters
+{
+
+namespace
+{
+
+/// At 120 bytes each the map takes 6 GB.
+constexpr std::int64_t mostCells = 50'000'000;
+
+struct Bounds
+{
+  double xMin, xMax, yMin, yMax;
+};
+
+Bounds boundsOf(vtkPolyData* trajectories, const Vec3& origin)
+{
+  double b[6];
+  trajectories->GetBounds(b);
+  return { b[0] - origin.x(), b[1] - origin.x(), b[2] - origin.y(), b[3] - origin.y() };
+}
+
+/// The cells from `first` to `last` along one axis, counted from the corner of the whole grid.
+struct Range
+{
+  double first, last;
+};
+
+Range rangeOf(double low, double high, double start, double cell)
+{
+  return { std::floor((low - start) / cell), std::floor((high - start) / cell) };
+}
+
+/// The grid in the local frame.
+CellGrid gridOf(vtkPolyData* trajectories, const Terrain* terrain, const HazardMapOptions& options,
+  const Vec3& origin)
+{
+  if (!(options.cellSize >= 0.0) || !std::isfinite(options.cellSize))
+  {
+    throw ParameterError(
+      "CellSize is " + numberText(options.cellSize) + ", it must be finite and not negative");
+  }
+  if (options.cellSize == 0.0 && !terrain)
+  {
+    throw ParameterError("CellSize is 0, which takes the cells of the Terrain, but no Terrain is "
+                         "connected: give a CellSize or connect the slope");
+  }
+  CellGrid grid;
+  grid.cellSize = options.cellSize > 0.0 ? options.cellSize : terrain->geometry().cellSize;
+  const double cell = grid.cellSize;
+  Range columns{}, rows{};
+  if (!terrain || options.crop)
+  {
+    const Bounds b = boundsOf(trajectories, origin);
+    columns = rangeOf(b.xMin, b.xMax, 0.0, cell);
+    rows = rangeOf(b.yMin, b.yMax, 0.0, cell);
+  }
+  if (terrain)
+  {
+    // A last cell may reach beyond the slope; not for the sake of rounding, though.
+    const Range all{ 0.0, std::ceil(terrain->width() / cell - 1e-9) - 1.0 };
+    const Range allRows{ 0.0, std::ceil(terrain->height() / cell - 1e-9) - 1.0 };
+    const auto within = [](const Range& part, const Range& whole) {
+      return Range{ std::max(part.first, whole.first), std::min(part.last, whole.last) };
+    };
+    columns = options.crop ? within(columns, all) : all;
+    rows = options.crop ? within(rows, allRows) : allRows;
+    if (columns.last < columns.first || rows.last < rows.first)
+    {
+      throw DataError(
+        "No trajectory of the Input is over the Terrain: they do not belong together");
+    }
+  }
+  const double width = columns.last - columns.first + 1.0, depth = rows.last - rows.first + 1.0;
+  if (!(width * depth <= double(mostCells)))
+  {
+    throw ParameterError("A map of " + numberText(width) + " x " + numberText(depth) +
+      " cells of " + numberText(cell) + " m has more than " + std::to_string(mostCells) +
+      ": give a larger CellSize, or switch CropToTrajectories on");
+  }
+  grid.columns = int(width);
+  grid.rows = int(depth);
+  grid.west = columns.first * cell;
+  grid.south = rows.first * cell;
+  return grid;
+}
+
+/// The cell arrays.
+class Layers
+{
+public:
+  explicit Layers(vtkImageData* image)
+  {
+    vtkFieldData* data = image->GetCellData();
+    const vtkIdType cells = image->GetNumberOfCells();
+    const auto count = [&](const char* name)
+    {
+      auto array = addArray<vtkIntArray>(data, name);
+      array->SetNumberOfTuples(cells);
+      array->FillValue(0);
+      return array;
+    };
+    const auto number = [&](const std::string& name, float empty)
+    {
+      auto array = addArray<vtkFloatArray>(data, name.c_str());
+      array->SetNumberOfTuples(cells);
+      array->FillValue(empty);
+      return array;
+    };
+    passages_ = count("Passages");
+    rocks_ = count("Rocks");
+    stops_ = count("StoppingPoints");
+    reach_ = number("ReachProbability", 0.0F);
+    reachError_ = number("ReachProbabilityError", 0.0F);
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    reachScatter_ = number("ReachProbabilityErrorOfIterations", 0.0F);
+    for (int h = 0; h < hazardCount; ++h)
+    {
+      for (const char* what : { "Mean", "Maximum", "50", "90", "95", "99" })
+      {
+        statistics_.push_back(number(hazardName(Hazard(h)) + what, nan));
+      }
+    }
+  }
+
+  void set(const CellSummary& cell)
+  {
+    const vtkIdType id = cell.cell;
+    passages_->SetValue(id, cell.passages);
+    rocks_->SetValue(id, cell.rocks);
+    stops_->SetValue(id, cell.stops);
+    reach_->SetValue(id, float(cell.reach));
+    reachError_->SetValue(id, float(cell.reachError));
+    reachScatter_->SetValue(id, float(cell.reachErrorOfIterations));
+    auto array = statistics_.begin();
+    for (const SampleStatistics& of : cell.statistics)
+    {
+      (*array++)->SetValue(id, float(of.mean));
+      (*array++)->SetValue(id, float(of.maximum));
+      for (const double quantile : of.quantiles)
+      {
+        (*array++)->SetValue(id, float(quantile));
+      }
+    }
+  }
+
+private:
+  vtkSmartPointer<vtkIntArray> passages_, rocks_, stops_;
+  vtkSmartPointer<vtkFloatArray> reach_, reachError_, reachScatter_;
+  std::vector<vtkSmartPointer<vtkFloatArray>> statistics_;
+};
+
+/// Heights of the slope at the corners of the cells, to drape the map over it.
+void addElevation(const Terrain& terrain, const CellGrid& grid, vtkImageData* image)
+{
+  const auto elevation = addArray<vtkFloatArray>(image->GetPointData(), "Elevation");
+  elevation->SetNumberOfTuples(image->GetNumberOfPoints());
+  vtkIdType id = 0;
+  for (int row = 0; row <= grid.rows; ++row)
+  {
+    for (int column = 0; column <= grid.columns; ++column, ++id)
+    {
+      const double height =
+        terrain.elevation(std::min(grid.west + column * grid.cellSize, terrain.width()),
+          std::min(grid.south + row * grid.cellSize, terrain.height()));
+      elevation->SetValue(id, float(std::isnan(height) ? terrain.lowest() : height));
+    }
+  }
+}
+
+void addMarker(vtkImageData* image, std::initializer_list<double> numbers)
+{
+  addArray<vtkDoubleArray>(image->GetFieldData(), "HazardMap", 7)->InsertNextTuple(numbers.begin());
+}
+
+} // namespace
+
+void markEmptyMap(vtkImageData* image)
+{
+  addMarker(image, { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 });
+}
+
+void makeHazardImage(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
+  const HazardMapOptions& options, vtkImageData* image)
+{
+  if (trajectories->GetNumberOfLines() == 0)
+  {
+    throw DataError("The Input has no lines; the trajectories of Rockfall Simulation are wanted");
+  }
+  std::optional<Terrain> terrain;
+  Vec3 origin = Vec3::Zero();
+  if (terrainMesh)
+  {
+    terrain.emplace(readTerrain(terrainMesh));
+    origin = terrain->geometry().origin();
+  }
+  else
+  {
+    // Of maps of one cell size the cells are the same everywhere: multiples of it in the world.
+    const Bounds b = boundsOf(trajectories, origin);
+    const double cell = options.cellSize;
+    if (cell > 0.0 && std::isfinite(cell))
+    {
+      origin = Vec3(std::floor(b.xMin / cell) * cell, std::floor(b.yMin / cell) * cell, 0.0);
+    }
+  }
+  const Terrain* ground = terrain ? &*terrain : nullptr;
+  const CellGrid grid = gridOf(trajectories, ground, options, origin);
+  HazardRaster raster(grid, ground);
+  forEachPath(trajectories, origin, [&](const RockPath& path, std::int64_t) { raster.add(path); });
+
+  image->Initialize();
+  image->SetExtent(0, grid.columns, 0, grid.rows, 0, 0);
+  image->SetOrigin(origin.x() + grid.west, origin.y() + grid.south, 0.0);
+  image->SetSpacing(grid.cellSize, grid.cellSize, grid.cellSize);
+  Layers layers(image);
+  raster.summarize([&layers](const CellSummary& cell) { layers.set(cell); });
+  if (terrain)
+  {
+    addElevation(*terrain, grid, image);
+  }
+  image->GetCellData()->SetActiveScalars("ReachProbability"); // what a viewer begins with
+  addMarker(image,
+    { double(grid.columns), double(grid.rows), grid.cellSize, origin.x() + grid.west,
+      origin.y() + grid.south, double(raster.released()), terrain ? 1.0 : 0.0 });
+  copyCoordinateSystem(trajectories->GetFieldData(), image->GetFieldData());
+}
+
+} // namespace rockfall::filters

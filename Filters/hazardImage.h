@@ -1,0 +1,28 @@
+#pragma once
+
+/// @file
+/// The map of hazards as an image.
+
+#include "base/types.h"
+
+class vtkImageData;
+class vtkPolyData;
+
+namespace rockfall::filters
+{
+
+struct HazardMapOptions
+{
+  double cellSize = 0.0; ///< m; 0 = the terrain's.
+  bool crop = false;     ///< To what the trajectories reach.
+};
+
+/// Fills `image`: see vtkRockfallHazardMap. `terrain` may be null. Throws rockfall::Error.
+void makeHazardImage(vtkPolyData* trajectories, vtkPolyData* terrain,
+  const HazardMapOptions& options, vtkImageData* image);
+
+/// Marks an empty image as a map: ranks without data must find the writer of maps as the first one
+/// does.
+void markEmptyMap(vtkImageData* image);
+
+} // namespace rockfall::filters

@@ -1,0 +1,90 @@
+#include "rockPaths.h"
+
+#include "base/errors.h"
+#include "simulation/results.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellArrayIterator.h"
+#include "vtkCellData.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+
+#include <string>
+#include <vector>
+
+namespace rockfall::filters
+{
+
+namespace
+{
+
+vtkDataArray* needed(vtkFieldData* data, const char* kind, const char* name, int components = 1)
+{
+  vtkDataArray* array = data->GetArray(name);
+  if (!array || array->GetNumberOfComponents() != components)
+  {
+    throw DataError("The Input has no " + std::string(kind) + " array " + name + " of " +
+      std::to_string(components) + (components == 1 ? " component" : " components") +
+      "; the trajectories of Rockfall Simulation are wanted");
+  }
+  return array;
+}
+
+} // namespace
+
+void forEachPath(vtkPolyData* trajectories, const Vec3& origin,
+  const std::function<void(const RockPath& path, std::int64_t cell)>& use)
+{
+  if (trajectories->GetNumberOfLines() == 0)
+  {
+    throw DataError("The Input has no lines; the trajectories of Rockfall Simulation are wanted");
+  }
+  vtkFieldData* points = trajectories->GetPointData();
+  vtkDataArray* time = needed(points, "point", "Time");
+  vtkDataArray* velocity = needed(points, "point", "Velocity", 3);
+  vtkDataArray* rotation = needed(points, "point", "RotationRate", 3);
+  vtkDataArray* energy = needed(points, "point", "KineticEnergy");
+  vtkDataArray* height = needed(points, "point", "HeightOverGround");
+  vtkFieldData* cells = trajectories->GetCellData();
+  vtkDataArray* iteration = needed(cells, "cell", "Iteration");
+  vtkDataArray* rock = needed(cells, "cell", "RockId");
+  vtkDataArray* block = needed(cells, "cell", "BlockId");
+  vtkDataArray* fate = needed(cells, "cell", "Fate");
+  vtkDataArray* mass = cells->GetArray("Mass");
+
+  std::vector<PathPoint> path;
+  vtkIdType cell = trajectories->GetNumberOfVerts(); // polydata's cells begin with its vertices
+  auto lines = vtk::TakeSmartPointer(trajectories->GetLines()->NewIterator());
+  for (lines->GoToFirstCell(); !lines->IsDoneWithTraversal(); lines->GoToNextCell(), ++cell)
+  {
+    vtkIdType size = 0;
+    const vtkIdType* ids = nullptr;
+    lines->GetCurrentCell(size, ids);
+    path.resize(std::size_t(size));
+    for (vtkIdType k = 0; k < size; ++k)
+    {
+      PathPoint& p = path[std::size_t(k)];
+      p.time = time->GetTuple1(ids[k]);
+      trajectories->GetPoint(ids[k], p.position.data());
+      p.position -= origin;
+      velocity->GetTuple(ids[k], p.velocity.data());
+      rotation->GetTuple(ids[k], p.rotationRate.data());
+      p.kineticEnergy = energy->GetTuple1(ids[k]);
+      p.heightOverGround = height->GetTuple1(ids[k]);
+    }
+    RockPath rockPath;
+    rockPath.iteration = int(iteration->GetTuple1(cell));
+    rockPath.rock = int(rock->GetTuple1(cell));
+    rockPath.blockId = std::int64_t(block->GetTuple1(cell));
+    rockPath.rested = int(fate->GetTuple1(cell)) == int(Fate::Rested);
+    if (mass)
+    {
+      rockPath.mass = mass->GetTuple1(cell);
+    }
+    rockPath.points = path;
+    use(rockPath, cell);
+  }
+}
+
+} // namespace rockfall::filters

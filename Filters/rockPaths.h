@@ -1,0 +1,23 @@
+#pragma once
+
+/// @file
+/// Trajectories of a polydata as the Core's paths.
+
+#include "statistics/path.h"
+
+#include <functional>
+
+class vtkPolyData;
+
+namespace rockfall::filters
+{
+
+/// Calls `use` for every polyline, with its number among the cells. `origin` is subtracted from the
+/// points. The span of the path's points is good during the call only. Needs the point arrays Time,
+/// Velocity, RotationRate, KineticEnergy and HeightOverGround and the cell arrays Iteration,
+/// RockId, BlockId and Fate of Rockfall Simulation; takes the cell array Mass if there is one.
+/// Throws DataError that names what is missing.
+void forEachPath(vtkPolyData* trajectories, const Vec3& origin,
+  const std::function<void(const RockPath& path, std::int64_t cell)>& use);
+
+} // namespace rockfall::filters

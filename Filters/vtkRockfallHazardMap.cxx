@@ -1,0 +1,177 @@
+#include "vtkRockfallHazardMap.h"
+
+#include "base/errors.h"
+#include "failure.h"
+#include "hazardImage.h"
+#include "pieces.h"
+
+#include "vtkAlgorithmOutput.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkMultiProcessController.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+#include <algorithm>
+#include <new>
+#include <string>
+
+vtkStandardNewMacro(vtkRockfallHazardMap);
+
+using Pipeline = vtkStreamingDemandDrivenPipeline;
+
+/// The map, or why there is none, and of what it was made.
+struct vtkRockfallHazardMap::Result
+{
+  vtkPolyData* trajectories = nullptr;
+  vtkPolyData* terrain = nullptr;
+  vtkMTimeType time = 0; ///< Of the latest change of the filter and its inputs.
+  vtkNew<vtkImageData> image;
+  std::string error;
+};
+
+//------------------------------------------------------------------------------
+vtkRockfallHazardMap::vtkRockfallHazardMap()
+{
+  this->SetNumberOfInputPorts(2);
+}
+
+//------------------------------------------------------------------------------
+vtkRockfallHazardMap::~vtkRockfallHazardMap() = default;
+
+//------------------------------------------------------------------------------
+int vtkRockfallHazardMap::FillInputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  if (port == 1)
+  {
+    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkRockfallHazardMap::Prepare(vtkInformationVector** inputVector)
+{
+  vtkPolyData* trajectories = vtkPolyData::GetData(inputVector[0]);
+  vtkPolyData* terrain = vtkPolyData::GetData(inputVector[1]);
+  vtkMTimeType time = this->GetMTime();
+  for (vtkPolyData* input : { trajectories, terrain })
+  {
+    time = std::max(time, input ? input->GetMTime() : 0);
+  }
+  if (this->Made && this->Made->trajectories == trajectories && this->Made->terrain == terrain &&
+    this->Made->time == time)
+  {
+    return;
+  }
+  this->Made = std::make_unique<Result>();
+  this->Made->trajectories = trajectories;
+  this->Made->terrain = terrain;
+  this->Made->time = time;
+  if (!trajectories || trajectories->GetNumberOfLines() == 0)
+  {
+    return; // whether that is an error is for RequestData to say
+  }
+  try
+  {
+    rockfall::filters::makeHazardImage(
+      trajectories, terrain, { this->CellSize, this->CropToTrajectories }, this->Made->image);
+  }
+  catch (const rockfall::Error& error)
+  {
+    this->Made->image->Initialize();
+    this->Made->error = error.what();
+  }
+  catch (const std::bad_alloc&)
+  {
+    this->Made->image->Initialize();
+    this->Made->error = "There is not enough memory for the map: give a larger CellSize, or switch "
+                        "CropToTrajectories on";
+  }
+}
+
+//------------------------------------------------------------------------------
+int vtkRockfallHazardMap::RequestInformation(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  auto* controller = vtkMultiProcessController::GetGlobalController();
+  for (int port = 0; port < 2; ++port)
+  {
+    if (this->GetNumberOfInputConnections(port) > 0)
+    {
+      vtkAlgorithmOutput* producer = this->GetInputConnection(port, 0);
+      vtkNew<vtkInformation> request;
+      request->Set(
+        Pipeline::UPDATE_PIECE_NUMBER(), controller ? controller->GetLocalProcessId() : 0);
+      request->Set(
+        Pipeline::UPDATE_NUMBER_OF_PIECES(), controller ? controller->GetNumberOfProcesses() : 1);
+      vtkNew<vtkInformationVector> requests;
+      for (int of = 0; of <= producer->GetIndex(); ++of)
+      {
+        requests->Append(request);
+      }
+      producer->GetProducer()->Update(producer->GetIndex(), requests);
+    }
+  }
+  this->Prepare(inputVector);
+  vtkInformation* info = outputVector->GetInformationObject(0);
+  vtkImageData* image = this->Made->image;
+  info->Set(Pipeline::WHOLE_EXTENT(), image->GetExtent(), 6);
+  info->Set(vtkDataObject::ORIGIN(), image->GetOrigin(), 3);
+  info->Set(vtkDataObject::SPACING(), image->GetSpacing(), 3);
+  info->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkRockfallHazardMap::RequestUpdateExtent(
+  vtkInformation*, vtkInformationVector**, vtkInformationVector*)
+{
+  return 1; // the inputs are no images, and whole
+}
+
+//------------------------------------------------------------------------------
+int vtkRockfallHazardMap::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkPolyData* trajectories = vtkPolyData::GetData(inputVector[0]);
+  vtkPolyData* terrain = vtkPolyData::GetData(inputVector[1]);
+  if (!trajectories)
+  {
+    return rockfall::filters::fail(this, "The Input is missing");
+  }
+  if (rockfall::filters::inheritFailure(trajectories, this) ||
+    (terrain && rockfall::filters::inheritFailure(terrain, this)))
+  {
+    return 1;
+  }
+  if (trajectories->GetNumberOfLines() == 0 && rockfall::filters::isFurtherPiece(outputVector))
+  {
+    rockfall::filters::markEmptyMap(vtkImageData::GetData(outputVector, 0));
+    return 1;
+  }
+  if (trajectories->GetNumberOfLines() == 0)
+  {
+    return rockfall::filters::fail(
+      this, "The Input has no lines; the trajectories of Rockfall Simulation are wanted");
+  }
+  this->Prepare(inputVector);
+  if (!this->Made->error.empty())
+  {
+    return rockfall::filters::fail(this, this->Made->error);
+  }
+  vtkImageData::GetData(outputVector, 0)->ShallowCopy(this->Made->image);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkRockfallHazardMap::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "CellSize: " << this->CellSize << "\n";
+  os << indent << "CropToTrajectories: " << this->CropToTrajectories << "\n";
+}

@@ -1,0 +1,72 @@
+/**
+ * @class   vtkRockfallHazardMap
+ * @brief   maps what passes: how many rocks, how fast, how high, with what energy
+ *
+ * Input port 0 has one polyline per trajectory, as port 1 of vtkRockfallSimulation; port 1 is the
+ * terrain of vtkDEMToCFESource, optional. The output is a vtkImageData in world coordinates with
+ * cell data. A path is cut exactly at the borders of the cells, along the cubic curve between its
+ * points.
+ *
+ * Cell arrays: Passages, Rocks, StoppingPoints, ReachProbability, ReachProbabilityError,
+ * ReachProbabilityErrorOfIterations, and of KineticEnergy (J), Speed (m/s), HeightOverGround (m)
+ * and RotationRate (rad/s) the Mean, Maximum, 50, 90, 95 and 99 % quantiles over the rocks, such as
+ * SpeedMean and Speed95. Counts are 0 and the others NaN where nothing passed, probabilities 0.
+ *
+ * How large the image is depends on the data, and a pipeline wants to know it before: the inputs
+ * are brought up to date when information is asked for.
+ */
+#ifndef vtkRockfallHazardMap_h
+#define vtkRockfallHazardMap_h
+
+#include "RockfallFiltersModule.h"
+#include "vtkImageAlgorithm.h"
+
+#include <memory> // for the result
+
+class ROCKFALLFILTERS_EXPORT vtkRockfallHazardMap : public vtkImageAlgorithm
+{
+public:
+  static vtkRockfallHazardMap* New();
+  vtkTypeMacro(vtkRockfallHazardMap, vtkImageAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * Edge of the cells in metres, not negative. 0 (the default): the terrain's cells.
+   */
+  vtkSetMacro(CellSize, double);
+  vtkGetMacro(CellSize, double);
+  ///@}
+
+  ///@{
+  /**
+   * Whether the map ends where the trajectories do instead of covering the whole terrain. Its cells
+   * are the same. Off by default; without a terrain it always does.
+   */
+  vtkSetMacro(CropToTrajectories, bool);
+  vtkGetMacro(CropToTrajectories, bool);
+  vtkBooleanMacro(CropToTrajectories, bool);
+  ///@}
+
+  vtkRockfallHazardMap(const vtkRockfallHazardMap&) = delete;
+  void operator=(const vtkRockfallHazardMap&) = delete;
+
+protected:
+  vtkRockfallHazardMap();
+  ~vtkRockfallHazardMap() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+private:
+  void Prepare(vtkInformationVector** inputVector);
+
+  double CellSize = 0.0;
+  bool CropToTrajectories = false;
+  struct Result;
+  std::unique_ptr<Result> Made;
+};
+
+#endif

@@ -1,0 +1,74 @@
+/**
+ * @class   vtkTrajectoryCollector
+ * @brief   collects what passes lines, such as a road or a planned barrier
+ *
+ * Input port 0 has one polyline per trajectory, as port 1 of vtkRockfallSimulation; port 1 has
+ * lines as polydata, optional, further lines come from FileName; port 2 is the terrain of
+ * vtkDEMToCFESource, optional. A line stands for the vertical planes through its segments. A
+ * passing is found exactly, along the cubic curve between two points of a trajectory.
+ *
+ * Output port 0 has a vertex for every passing, with what the rock does there and the cell arrays
+ * of its trajectory. Port 1 is a table with a row for each line: how many rocks passed, mean,
+ * deviation, maximum and quantiles of their energy, height over ground and speed, and the share
+ * that a barrier of BarrierHeight and BarrierCapacity would catch. Port 2 is a table of exceedance
+ * curves.
+ */
+#ifndef vtkTrajectoryCollector_h
+#define vtkTrajectoryCollector_h
+
+#include "RockfallFiltersModule.h"
+#include "vtkPolyDataAlgorithm.h"
+
+#include <string> // for FileName
+
+class ROCKFALLFILTERS_EXPORT vtkTrajectoryCollector : public vtkPolyDataAlgorithm
+{
+public:
+  static vtkTrajectoryCollector* New();
+  vtkTypeMacro(vtkTrajectoryCollector, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  ///@{
+  /**
+   * File of lines: anything OGR opens. Brought to the CRS of the trajectories. Empty by default.
+   */
+  vtkSetStdStringFromCharMacro(FileName);
+  vtkGetCharFromStdStringMacro(FileName);
+  ///@}
+
+  ///@{
+  /**
+   * Height of a barrier in metres, not negative. Lines of the file that have a number in the column
+   * "height" have their own. Default 4.
+   */
+  vtkSetMacro(BarrierHeight, double);
+  vtkGetMacro(BarrierHeight, double);
+  ///@}
+
+  ///@{
+  /**
+   * Energy that a barrier can take, in kJ, not negative. Lines of the file that have a number in
+   * the column "capacity" have their own. Default 1000.
+   */
+  vtkSetMacro(BarrierCapacity, double);
+  vtkGetMacro(BarrierCapacity, double);
+  ///@}
+
+  vtkTrajectoryCollector(const vtkTrajectoryCollector&) = delete;
+  void operator=(const vtkTrajectoryCollector&) = delete;
+
+protected:
+  vtkTrajectoryCollector();
+  ~vtkTrajectoryCollector() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+private:
+  std::string FileName;
+  double BarrierHeight = 4.0;
+  double BarrierCapacity = 1000.0;
+};
+
+#endif

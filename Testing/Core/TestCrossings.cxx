@@ -1,0 +1,188 @@
+// Collectors: a parabola through a line in closed form, a walk along random curves, and what a
+// barrier catches.
+
+#include "hermitePaths.h"
+
+#include "base/errors.h"
+#include "statistics/crossings.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+using namespace rockfall;
+using rockfall::testing::g;
+using rockfall::testing::hops;
+using rockfall::testing::wild;
+
+namespace
+{
+
+RockPath pathOf(const std::vector<PathPoint>& points, int iteration, int rock, double mass)
+{
+  RockPath path;
+  path.iteration = iteration;
+  path.rock = rock;
+  path.blockId = 100 + rock;
+  path.mass = mass;
+  path.points = points;
+  return path;
+}
+
+std::vector<Crossing> crossingsOf(const RockPath& path, const CollectorLine& line)
+{
+  std::vector<Crossing> found;
+  appendCrossings(path, line, 0, nullptr, found);
+  return found;
+}
+
+CollectorLine lineOf(std::vector<Eigen::Vector2d> points)
+{
+  CollectorLine line;
+  line.points = std::move(points);
+  return line;
+}
+
+} // namespace
+
+TEST(Crossings, ParabolaThroughALine)
+{
+  const double mass = 2000.0, spin = 700.0;
+  // Thrown with (10, 5, 8) m/s from (0, 0, 3); the line x = 6 from y = −20 to y = 20, then away.
+  const CollectorLine line = lineOf({ { 6, -20 }, { 6, 20 }, { 30, 20 } });
+  for (const double interval : { 100.0, 0.013 })
+  {
+    const auto points = hops(interval, { 0, 0, 3 }, { 10, 5, 8 }, mass, spin, 0);
+    const auto found = crossingsOf(pathOf(points, 4, 2, mass), line);
+    ASSERT_EQ(found.size(), 1u);
+    const Crossing& c = found[0];
+    const double t = 0.6, vz = 8.0 - g * t;
+    // Coefficients of pieces of 13 ms are good to 1e-12 of a speed.
+    EXPECT_NEAR(c.time, t, 1e-10);
+    EXPECT_NEAR((c.position - Vec3(6, 3, 3.0 + 8.0 * t - 0.5 * g * t * t)).norm(), 0.0, 1e-9);
+    EXPECT_NEAR(c.distance, 23.0, 1e-9);
+    EXPECT_EQ(c.direction, -1); // the line runs north, the rock goes to its right
+    EXPECT_NEAR((c.velocity - Vec3(10, 5, vz)).norm(), 0.0, 1e-9);
+    EXPECT_NEAR(c.translationalEnergy, 0.5 * mass * (125.0 + vz * vz), 1e-5);
+    EXPECT_NEAR(c.kineticEnergy - c.translationalEnergy, spin, 1e-5);
+    EXPECT_NEAR(c.heightOverGround, c.position.z(), 1e-9);
+    EXPECT_NEAR(c.horizontalAngle, std::atan2(5.0, 10.0), 1e-10);
+    EXPECT_NEAR(c.verticalAngle, std::atan2(vz, std::sqrt(125.0)), 1e-10);
+    EXPECT_EQ(c.iteration, 4);
+    EXPECT_EQ(c.rock, 2);
+    EXPECT_EQ(c.blockId, 102);
+  }
+}
+
+TEST(Crossings, BackAndForthAndAtKnots)
+{
+  // A path of straight pieces whose knots lie on the line: through it, along it, back, touching.
+  const CollectorLine line = lineOf({ { 0, 0 }, { 0, 10 } });
+  const double xs[] = { -2, 0, 2, 0, 0, -2, 0, -2, 0, 3 };
+  std::vector<PathPoint> points;
+  for (std::size_t k = 0; k < std::size(xs); ++k)
+  {
+    PathPoint p;
+    p.time = double(k);
+    p.position = Vec3(xs[k], 1.0 + 0.5 * double(k), 0.0);
+    points.push_back(p); // velocity 0: every piece eases in and out, its x monotone
+  }
+  const auto found = crossingsOf(pathOf(points, 0, 0, 1.0), line);
+  ASSERT_EQ(found.size(), 3u);
+  EXPECT_EQ(found[0].direction, -1);
+  EXPECT_NEAR(found[0].time, 1.0, 1e-12);
+  EXPECT_EQ(found[1].direction, 1);
+  EXPECT_NEAR(found[1].time, 4.0, 1e-12); // lay on it from 3 to 4 s, then left on the other side
+  EXPECT_EQ(found[2].direction, -1);
+  EXPECT_NEAR(found[2].time, 8.0, 1e-12); // at 6 s it only touched
+  for (int k = 0; k < 3; ++k)
+  {
+    EXPECT_EQ(found[std::size_t(k)].number, k);
+  }
+}
+
+TEST(Crossings, BruteForceAlongRandomCurves)
+{
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> place(0.0, 60.0);
+  int all = 0;
+  for (int trial = 0; trial < 40; ++trial)
+  {
+    const auto points = wild(random, 5, 60.0);
+    const CollectorLine line = lineOf({ { place(random), place(random) },
+      { place(random), place(random) }, { place(random), place(random) } });
+    const auto found = crossingsOf(pathOf(points, 0, 0, 1.0), line);
+    std::vector<double> times;
+    const int steps = 20000;
+    for (std::size_t k = 1; k < points.size(); ++k)
+    {
+      const PathPiece piece(points[k - 1], points[k], 1.0);
+      Vec3 before = piece.position(0.0);
+      for (int i = 1; i <= steps; ++i)
+      {
+        const Vec3 after = piece.position(double(i) / steps);
+        for (std::size_t j = 1; j < line.points.size(); ++j)
+        {
+          const Eigen::Vector2d a = line.points[j - 1], d = line.points[j] - a;
+          const auto side = [&](const Vec3& p)
+          { return d.x() * (p.y() - a.y()) - d.y() * (p.x() - a.x()); };
+          const double share = d.dot(Eigen::Vector2d(after.head<2>()) - a) / d.squaredNorm();
+          if ((side(before) < 0.0) != (side(after) < 0.0) && share >= 0.0 && share < 1.0)
+          {
+            times.push_back(piece.time(double(i) / steps));
+          }
+        }
+        before = after;
+      }
+    }
+    ASSERT_EQ(found.size(), times.size()) << trial;
+    for (std::size_t k = 0; k < times.size(); ++k)
+    {
+      EXPECT_NEAR(
+        found[k].time, times[k], 1.5 / steps); // a step of the walk: pieces last 1.5 s at most
+    }
+    all += int(times.size());
+  }
+  EXPECT_GT(all, 40);
+}
+
+TEST(Crossings, WhatABarrierCatches)
+{
+  // Ten rocks at heights 0.5, 1.5, … 9.5 m and speeds 1 … 10 m/s through a barrier of 5 m and 32 J:
+  // 1 kg at 8 m/s has 32 J, so height decides: five are caught. Ten more do not come.
+  CollectorLine line = lineOf({ { 5, 0 }, { 5, 100 } });
+  line.barrierHeight = 5.0;
+  line.barrierCapacity = 32.0;
+  std::vector<Crossing> crossings;
+  for (int k = 9; k >= 0; --k)
+  {
+    std::vector<PathPoint> points(2);
+    for (PathPoint& p : points)
+    {
+      p.velocity = Vec3(k + 1, 0, 0);
+      p.kineticEnergy = 0.5 * (k + 1) * (k + 1);
+      p.heightOverGround = 0.5 + k;
+    }
+    points[0].position = Vec3(0, 10 * k + 1, 20);
+    points[1].position = Vec3(10, 10 * k + 1, 20);
+    points[1].time = 10.0 / (k + 1);
+    appendCrossings(pathOf(points, 0, k, 1.0), line, 0, nullptr, crossings);
+  }
+  LineSummary summary = summarizeLine(line, 0, crossings, 20);
+  EXPECT_EQ(summary.rocks, 10);
+  EXPECT_EQ(summary.crossings, 10);
+  EXPECT_DOUBLE_EQ(summary.share, 0.5);
+  EXPECT_DOUBLE_EQ(summary.shareError, std::sqrt(0.25 / 20.0));
+  EXPECT_EQ(summary.caught, 5);
+  EXPECT_DOUBLE_EQ(summary.caughtShare, 0.5);
+  EXPECT_DOUBLE_EQ(summary.caughtShareError, std::sqrt(0.25 / 10.0));
+  EXPECT_NEAR(summary.speed.mean, 5.5, 1e-12);
+  EXPECT_NEAR(summary.speed.maximum, 10.0, 1e-12);
+  EXPECT_NEAR(summary.height.quantiles[0], 5.0, 1e-12);
+  line.barrierHeight = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(summarizeLine(line, 0, crossings, 20).caught, 8);
+  line.barrierCapacity = 31.0;
+  EXPECT_EQ(summarizeLine(line, 0, crossings, 20).caught, 7);
+  EXPECT_EQ(summarizeLine(line, 1, crossings, 20).rocks, 0);
+  EXPECT_TRUE(std::isnan(summarizeLine(line, 1, crossings, 20).caughtShare));
+}

@@ -1,0 +1,182 @@
+#include "helpers.h"
+#include "trajectories.h"
+
+#include "vtkDEMToCFESource.h"
+#include "vtkHazardMapWriter.h"
+#include "vtkImageData.h"
+#include "vtkRockfallHazardMap.h"
+
+#include "gis/raster.h"
+
+#include <cmath>
+
+namespace
+{
+
+class TestRockfallHazardMap : public FilterTest
+{
+protected:
+  void SetUp() override
+  {
+    this->FilterTest::SetUp();
+    this->Filter->SetInputDataObject(0, this->Paths.Data);
+  }
+
+  vtkImageData* Map()
+  {
+    this->Filter->Update();
+    return this->Filter->GetOutput();
+  }
+  double At(const char* array, double x, double y)
+  {
+    vtkImageData* map = this->Map();
+    int ijk[3];
+    double local[3];
+    const double point[3] = { x, y, 0.0 };
+    if (!map->ComputeStructuredCoordinates(point, ijk, local))
+    {
+      ADD_FAILURE() << x << ", " << y << " is not in the map";
+      return 0.0;
+    }
+    return value(map->GetCellData(), array, map->ComputeCellId(ijk));
+  }
+
+  HandMadeTrajectories Paths;
+  vtkNew<vtkRockfallHazardMap> Filter;
+};
+
+} // namespace
+
+TEST_F(TestRockfallHazardMap, CellsOfTheWorld)
+{
+  // Of 5 m cells: cells are multiples of 5 m in the world, the map ends where the paths do.
+  this->Paths.AddLevel(0, 0, { 500001, 4000003, 50 }, 20, 10, 2.0, 0);
+  this->Paths.AddLevel(1, 0, { 500001, 4000003, 50 }, 9, 20);
+  this->Paths.AddLevel(1, 1, { 500001, 4000013, 50 }, 20, 5);
+  this->Filter->SetCellSize(5.0);
+  vtkImageData* map = this->Map();
+  EXPECT_EQ(map->GetDataObjectType(), VTK_IMAGE_DATA);
+  const int* size = map->GetDimensions();
+  EXPECT_EQ(size[0], 6);
+  EXPECT_EQ(size[1], 4);
+  EXPECT_EQ(size[2], 1);
+  EXPECT_EQ(map->GetOrigin()[0], 500000.0);
+  EXPECT_EQ(map->GetOrigin()[1], 4000000.0);
+  EXPECT_EQ(map->GetSpacing()[0], 5.0);
+
+  EXPECT_EQ(this->At("Rocks", 500007, 4000002), 2.0);
+  EXPECT_EQ(this->At("Passages", 500007, 4000002), 2.0);
+  EXPECT_NEAR(this->At("ReachProbability", 500007, 4000002), 2.0 / 3.0, 1e-7); // floats
+  EXPECT_NEAR(this->At("ReachProbabilityError", 500007, 4000002), std::sqrt(2.0 / 9.0 / 3.0), 1e-7);
+  EXPECT_NEAR(this->At("SpeedMean", 500007, 4000002), 15.0, 1e-5);
+  EXPECT_NEAR(this->At("SpeedMaximum", 500007, 4000002), 20.0, 1e-5);
+  EXPECT_NEAR(this->At("Speed90", 500007, 4000002), 19.0, 1e-5);
+  EXPECT_NEAR(this->At("KineticEnergy50", 500007, 4000002), 125100.0, 0.1);
+  EXPECT_NEAR(this->At("HeightOverGroundMaximum", 500007, 4000002), 2.0, 1e-6);
+  EXPECT_NEAR(this->At("RotationRate99", 500007, 4000002), 5.0, 1e-6);
+  EXPECT_EQ(this->At("Rocks", 500017, 4000002), 1.0);
+  EXPECT_EQ(this->At("StoppingPoints", 500022, 4000002), 1.0); // the others left
+  EXPECT_EQ(this->At("StoppingPoints", 500012, 4000002), 0.0);
+  EXPECT_EQ(this->At("Rocks", 500007, 4000007), 0.0);
+  EXPECT_EQ(this->At("ReachProbability", 500007, 4000007), 0.0);
+  EXPECT_TRUE(std::isnan(this->At("SpeedMean", 500007, 4000007)));
+  auto* crs = vtkStringArray::SafeDownCast(map->GetFieldData()->GetAbstractArray("TerrainCRS"));
+  ASSERT_TRUE(crs);
+  EXPECT_EQ(crs->GetValue(0), "EPSG:32632");
+}
+
+TEST_F(TestRockfallHazardMap, CellsOfTheTerrain)
+{
+  vtkNew<vtkDEMToCFESource> slope; // the default slope: 250 × 100 m, cells of 5 m
+  this->Filter->SetInputConnection(1, slope->GetOutputPort());
+  this->Paths.AddLevel(0, 0, { 101, 52, 80 }, 20, 10);
+  vtkImageData* map = this->Map();
+  double slopeBounds[6], bounds[6];
+  vtkPolyData* mesh = slope->GetOutput();
+  mesh->GetBounds(slopeBounds);
+  map->GetBounds(bounds);
+  for (int k = 0; k < 4; ++k)
+  {
+    EXPECT_EQ(bounds[k], slopeBounds[k]) << k; // nodes are corners of cells
+  }
+  const vtkIdType cells = map->GetNumberOfCells();
+  EXPECT_EQ(cells, mesh->GetNumberOfCells() / 2);
+  EXPECT_EQ(this->At("Rocks", 103, 53), 1.0);
+  double corner[3];
+  map->GetPoint(0, corner);
+  EXPECT_NEAR(value(map->GetPointData(), "Elevation"), slopeBounds[5], 1e-4); // its top, in floats
+
+  this->Filter->CropToTrajectoriesOn();
+  map = this->Map();
+  map->GetBounds(bounds);
+  EXPECT_EQ(bounds[0], 100.0);
+  EXPECT_EQ(bounds[1], 125.0);
+  EXPECT_EQ(bounds[2], 50.0);
+  EXPECT_EQ(bounds[3], 55.0);
+  EXPECT_EQ(this->At("Rocks", 103, 53), 1.0);
+}
+
+TEST_F(TestRockfallHazardMap, WrittenAsGeoTiff)
+{
+  this->Paths.AddLevel(0, 0, { 500001, 5100003, 50 }, 20, 10);
+  this->Paths.AddLevel(0, 1, { 500001, 5100013, 50 }, 20, 10);
+  this->Filter->SetCellSize(5.0);
+  vtkNew<vtkHazardMapWriter> writer;
+  const std::string path = this->WriteFile("map.tif", "older");
+  writer->SetFileName(path.c_str());
+  writer->SetInputConnection(this->Filter->GetOutputPort());
+  EXPECT_EQ(writer->Write(), 1);
+  const rockfall::RasterSurface read = rockfall::readRaster(path, { .cellSize = 0.0, .band = 2 });
+  EXPECT_EQ(read.geometry.xOrigin, 500002.5);
+  EXPECT_EQ(read.geometry.yOrigin, 5100002.5);
+  EXPECT_NE(read.geometry.crs.find("UTM zone 32N"), std::string::npos);
+  const std::vector<double> rocks = { 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1 };
+  EXPECT_EQ(read.heights, rocks);
+
+  vtkNew<vtkImageData> other;
+  other->SetDimensions(2, 2, 1);
+  writer->SetInputDataObject(other);
+  writer->Write();
+  this->ExpectOneError({ "no hazard map" });
+  EXPECT_EQ(rockfall::readRaster(path, { .cellSize = 0.0, .band = 2 }).heights, rocks);
+}
+
+TEST_F(TestRockfallHazardMap, BadInput)
+{
+  const auto expect = [this](const std::vector<std::string>& words)
+  {
+    EXPECT_EQ(this->Map()->GetNumberOfCells(), 0);
+    this->ExpectOneError(words);
+  };
+  expect({ "no lines" });
+  this->Paths.AddLevel(0, 0, { 1, 3, 50 }, 20, 10);
+  expect({ "CellSize is 0", "Terrain" });
+  this->Filter->SetCellSize(-1.0);
+  expect({ "CellSize is -1" });
+  this->Filter->SetCellSize(1e-7);
+  expect({ "more than 50000000", "CellSize", "CropToTrajectories" });
+  this->Filter->SetCellSize(5.0);
+  EXPECT_EQ(this->Map()->GetNumberOfCells(), 5);
+  this->Paths.AddLevel(0, 0, { 1, 3, 50 }, 20, 10);
+  expect({ "iteration 0, rock 0", "twice" });
+  this->Paths.Data->GetPointData()->RemoveArray("Velocity");
+  this->Paths.Data->Modified();
+  expect({ "Velocity" });
+  vtkNew<vtkDEMToCFESource> slope;
+  HandMadeTrajectories far;
+  far.AddLevel(0, 0, { 5000, 3, 50 }, 20, 10);
+  this->Filter->SetInputDataObject(0, far.Data);
+  this->Filter->SetInputConnection(1, slope->GetOutputPort());
+  this->Filter->CropToTrajectoriesOn();
+  expect({ "No trajectory" });
+}
+
+TEST_F(TestRockfallHazardMap, PrintSelfNamesEveryProperty)
+{
+  std::ostringstream text;
+  this->Filter->Print(text);
+  for (const char* name : { "CellSize", "CropToTrajectories" })
+  {
+    EXPECT_NE(text.str().find(std::string(name) + ":"), std::string::npos) << name;
+  }
+}
