@@ -1,56 +1,11 @@
 #include "gis/FeatureRow.h"
 
-#include "base/errors.h"
 #include "gis/gdal.h"
 
-#include <algorithm>
-#include <charconv>
 #include <cmath>
 
 namespace rockfall::gis
 {
-
-namespace
-{
-
-/// All of the text, with a decimal point in every locale; nothing if any of it is no number.
-std::optional<double> parsed(const std::string& text)
-{
-  const char* first = text.data() + (text.size() > 1 && text[0] == '+' ? 1 : 0);
-  const char* const last = text.data() + text.size();
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(first, last, value);
-  return error == std::errc() && end == last ? std::optional(value) : std::nullopt;
-}
-
-} // namespace
-
-Columns columnsOf(const OGRFeatureDefn& definition)
-{
-  Columns columns;
-  for (int i = 0; i < definition.GetFieldCount(); ++i)
-  {
-    std::string name = trimmed(definition.GetFieldDefn(i)->GetNameRef());
-    // ASCII only, on purpose: tolower would ask the locale.
-    std::transform(name.begin(), name.end(), name.begin(),
-      [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
-    columns.emplace(name, i); // the first of two that differ in case only
-  }
-  return columns;
-}
-
-std::string trimmed(const std::string& text)
-{
-  const char* const blanks = " \t\r\n";
-  const auto first = text.find_first_not_of(blanks);
-  return first == std::string::npos ? std::string()
-                                    : text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
-
-void FeatureRow::fail(const std::string& what) const
-{
-  throw DataError(fileName_ + ", row " + std::to_string(number_) + ": " + what);
-}
 
 void FeatureRow::failField(const std::string& name, const std::string& what) const
 {
@@ -59,39 +14,12 @@ void FeatureRow::failField(const std::string& name, const std::string& what) con
 
 std::optional<std::string> FeatureRow::text(const std::string& name) const
 {
-  const auto column = columns_.find(name);
-  if (column == columns_.end() || !feature_.IsFieldSetAndNotNull(column->second))
-  {
-    return std::nullopt;
-  }
-  const std::string value = trimmed(feature_.GetFieldAsString(column->second));
-  return value.empty() ? std::nullopt : std::optional(value);
+  return Fields::text({ name.c_str() });
 }
 
 std::optional<double> FeatureRow::number(const std::string& name) const
 {
-  const auto written = this->text(name);
-  if (!written)
-  {
-    return std::nullopt;
-  }
-  const int column = columns_.at(name);
-  const OGRFieldType type = feature_.GetFieldDefnRef(column)->GetType();
-  // A field of numbers is taken as such: its text is rounded.
-  const auto value = type == OFTReal || type == OFTInteger || type == OFTInteger64
-    ? std::optional(feature_.GetFieldAsDouble(column))
-    : parsed(*written);
-  if (!value)
-  {
-    const bool comma = written->find(',') != std::string::npos;
-    this->failField(name,
-      ": \"" + *written + "\" is not a number" + (comma ? " (the decimal sign is a point)" : ""));
-  }
-  if (!std::isfinite(*value))
-  {
-    this->failField(name, " is " + *written + ", it must be finite");
-  }
-  return value;
+  return Fields::number({ name.c_str() });
 }
 
 std::optional<double> FeatureRow::positive(const std::string& name) const

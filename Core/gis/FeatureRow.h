@@ -5,39 +5,32 @@
 /// and value. Internal to gis/: needs GDAL's headers.
 
 #include "base/types.h"
+#include "gis/fields.h"
 
 #include <ogrsf_frmts.h>
 
 #include <array>
-#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 
 namespace rockfall::gis
 {
 
-/// Column names in small letters, to their numbers.
-using Columns = std::map<std::string, int>;
-Columns columnsOf(const OGRFeatureDefn& definition);
-
-/// Without blanks at either end.
-std::string trimmed(const std::string& text);
-
-class FeatureRow
+/// Fields by one name each, and the geometry.
+class FeatureRow : public Fields
 {
 public:
   /// `number`: of the row in the file, from 1. References are kept.
   FeatureRow(const std::string& fileName, const Columns& columns, const OGRFeature& feature,
     std::int64_t number)
-    : fileName_(fileName)
+    : Fields(fileName, columns, feature, number)
     , columns_(columns)
     , feature_(feature)
-    , number_(number)
   {
   }
 
-  [[noreturn]] void fail(const std::string& what) const;
-  /// The same, about a field that is there.
+  /// About a field that is there.
   [[noreturn]] void failField(const std::string& name, const std::string& what) const;
 
   bool has(const std::string& name) const { return columns_.count(name) > 0; }
@@ -57,10 +50,8 @@ public:
   const OGRGeometry* geometry() const;
 
 private:
-  const std::string& fileName_;
   const Columns& columns_;
   const OGRFeature& feature_;
-  std::int64_t number_;
   mutable std::unique_ptr<OGRGeometry> straight_; ///< Of a curved geometry.
 };
 

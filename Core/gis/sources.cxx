@@ -7,9 +7,6 @@
 #include "gis/gdal.h"
 #include "gis/sourceGeometry.h"
 
-#include <cpl_csv.h>
-#include <cpl_string.h>
-
 #include <cmath>
 
 namespace rockfall
@@ -19,36 +16,6 @@ namespace
 {
 
 using namespace gis;
-
-/// OGR drops what stands beyond the last column of the header, so a table whose decimal commas
-/// split every number in two would be read without a word.
-void refuseSurplusCells(const std::string& fileName)
-{
-  const std::unique_ptr<VSILFILE, int (*)(VSILFILE*)> file(
-    VSIFOpenL(fileName.c_str(), "rb"), VSIFCloseL);
-  const char* first = file ? CPLReadLineL(file.get()) : nullptr;
-  if (!first)
-  {
-    return;
-  }
-  const char separator = CSVDetectSeperator(first);
-  VSIRewindL(file.get());
-  const auto next = [&] { return CPLStringList(CSVReadParseLine2L(file.get(), separator)); };
-  const int columns = next().size();
-  for (std::int64_t row = 1; !VSIFEofL(file.get()); ++row)
-  {
-    const CPLStringList cells = next();
-    for (int i = columns; i < cells.size(); ++i)
-    {
-      if (!trimmed(cells[i]).empty())
-      {
-        throw DataError(fileName + ", row " + std::to_string(row) + ": has " +
-          std::to_string(cells.size()) + " fields, the header " + std::to_string(columns) + "; \"" +
-          cells[i] + "\" is one too many (the decimal sign is a point)");
-      }
-    }
-  }
-}
 
 /// Words and ranges that other parts of the Core check, with the row and the field before.
 template <class Make>
@@ -163,10 +130,7 @@ SourceLayer readSourceLayer(const std::string& fileName, const SourceOptions& op
   {
     throw DataError(fileName + ": has no layer");
   }
-  if (dataset->GetDriver() && EQUAL(dataset->GetDriver()->GetDescription(), "CSV"))
-  {
-    refuseSurplusCells(fileName);
-  }
+  refuseSurplusCells(*dataset, fileName);
   OGRLayer& layer = *dataset->GetLayer(0);
   const Columns columns = columnsOf(*layer.GetLayerDefn());
 

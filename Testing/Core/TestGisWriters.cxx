@@ -138,7 +138,7 @@ TEST(LayerWriter, PointsOfAGeoPackage)
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_EQ(rows[0].position, Vec3(500000.125, 5100000.25, 712.5));
   EXPECT_EQ(rows[0].volume, 1.5);
-  EXPECT_EQ(rows[0].shape, Shape::Cube);
+  EXPECT_EQ(rows[0].shapes, ShapeMix(Shape::Cube));
   EXPECT_NE(crs.find("UTM zone 32N"), std::string::npos);
 }
 

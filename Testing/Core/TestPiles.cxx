@@ -99,9 +99,12 @@ TEST(Piles, ColumnOfTenStands)
   pile.start();
   for (int k = 0; k < 6; ++k)
   {
-    pile.run(k==0?1.0: 0.5);
-    double v = 0; for (int i=0;i<10;++i) v=std::max(v,pile.fall->state(i).velocity.norm());
-    std::printf("t %g drift %.3e carried %.6f v %g\n", pile.fall->time(), pile.drift(), pile.carried(), v);
+    pile.run(k == 0 ? 1.0 : 0.5);
+    double v = 0;
+    for (int i = 0; i < 10; ++i)
+      v = std::max(v, pile.fall->state(i).velocity.norm());
+    std::printf(
+      "t %g drift %.3e carried %.6f v %g\n", pile.fall->time(), pile.drift(), pile.carried(), v);
   }
 }
 
@@ -113,15 +116,19 @@ TEST(Piles, WallStands)
   {
     for (int k = 0; k < 5; ++k)
     {
-      pile.rocks.push_back(brick(Vec3(1.0, 0.5, 0.5), Vec3(18.0 + k + 0.25 * (row % 2), 20.0, 0.25 + 0.5 * row), 10 * row + k));
+      pile.rocks.push_back(brick(Vec3(1.0, 0.5, 0.5),
+        Vec3(18.0 + k + 0.25 * (row % 2), 20.0, 0.25 + 0.5 * row), 10 * row + k));
     }
   }
   pile.start();
   for (int k = 0; k < 4; ++k)
   {
     pile.run(0.25);
-    double v = 0; for (int i=0;i<50;++i) v=std::max(v,pile.fall->state(i).velocity.norm());
-    std::printf("t %g drift %.3e carried %.6f v %g\n", pile.fall->time(), pile.drift(), pile.carried(), v);
+    double v = 0;
+    for (int i = 0; i < 50; ++i)
+      v = std::max(v, pile.fall->state(i).velocity.norm());
+    std::printf(
+      "t %g drift %.3e carried %.6f v %g\n", pile.fall->time(), pile.drift(), pile.carried(), v);
   }
 }
 
@@ -130,7 +137,8 @@ TEST(Piles, ArchStands)
   // Eleven voussoirs of a semicircle on two abutments.
   Pile pile;
   pile.ground = floorSlope();
-  pile.ground = makeSlope(9, 5.0, [](double, double) { return 0.0; }, material(0.3, 45.0));
+  pile.ground = makeSlope(
+    9, 5.0, [](double, double) { return 0.0; }, material(0.3, 45.0));
   pile.parameters.rockFrictionAngle = radians(40.0);
   const int n = 11;
   const double r0 = 2.0, r1 = 3.0, depth = 0.5;
@@ -159,35 +167,40 @@ TEST(Piles, ArchStands)
   for (int k = 0; k < 6; ++k)
   {
     pile.run(0.5);
-    double v = 0; for (int i=0;i<n;++i) v=std::max(v,pile.fall->state(i).velocity.norm());
-    std::printf("t %g drift %.3e carried %.6f v %g\n", pile.fall->time(), pile.drift(), pile.carried(), v);
+    double v = 0;
+    for (int i = 0; i < n; ++i)
+      v = std::max(v, pile.fall->state(i).velocity.norm());
+    std::printf(
+      "t %g drift %.3e carried %.6f v %g\n", pile.fall->time(), pile.drift(), pile.carried(), v);
   }
 }
 
 TEST(Piles, Dominoes)
 {
-  for (double dt : {0.01, 0.005, 0.0025, 0.00125})
+  for (double dt : { 0.01, 0.005, 0.0025, 0.00125 })
   {
-  Pile pile;
-  pile.ground = floorSlope();
-  pile.parameters.timeStep = dt;
-  pile.parameters.rockRestitution = 0.0;
-  for (int k = 0; k < 20; ++k)
-  {
-    pile.rocks.push_back(brick(Vec3(0.2, 0.5, 1.0), Vec3(15.0 + 0.5 * k, 20.0, 0.5), k));
-  }
-  // The first leans beyond its edge.
-  const double lean = radians(14.0);
-  pile.rocks[0].orientation = Quat(Eigen::AngleAxisd(lean, Vec3::UnitY()));
-  pile.rocks[0].position = Vec3(15.0, 20.0, 0.5 * std::cos(lean) + 0.1 * std::sin(lean));
-  pile.start();
-  double first = 0, last = 0;
-  while (pile.fall->time() < 8.0 && last == 0)
-  {
-    pile.fall->advance();
-    if (first == 0 && pile.fall->state(5).position.z() < 0.49) first = pile.fall->time();
-    if (last == 0 && pile.fall->state(18).position.z() < 0.49) last = pile.fall->time();
-  }
-  std::printf("dt %g: first %g last %g speed %g\n", dt, first, last, 13*0.5/(last-first));
+    Pile pile;
+    pile.ground = floorSlope();
+    pile.parameters.timeStep = dt;
+    pile.parameters.rockRestitution = 0.0;
+    for (int k = 0; k < 20; ++k)
+    {
+      pile.rocks.push_back(brick(Vec3(0.2, 0.5, 1.0), Vec3(15.0 + 0.5 * k, 20.0, 0.5), k));
+    }
+    // The first leans beyond its edge.
+    const double lean = radians(14.0);
+    pile.rocks[0].orientation = Quat(Eigen::AngleAxisd(lean, Vec3::UnitY()));
+    pile.rocks[0].position = Vec3(15.0, 20.0, 0.5 * std::cos(lean) + 0.1 * std::sin(lean));
+    pile.start();
+    double first = 0, last = 0;
+    while (pile.fall->time() < 8.0 && last == 0)
+    {
+      pile.fall->advance();
+      if (first == 0 && pile.fall->state(5).position.z() < 0.49)
+        first = pile.fall->time();
+      if (last == 0 && pile.fall->state(18).position.z() < 0.49)
+        last = pile.fall->time();
+    }
+    std::printf("dt %g: first %g last %g speed %g\n", dt, first, last, 13 * 0.5 / (last - first));
   }
 }
