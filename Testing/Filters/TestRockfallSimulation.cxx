@@ -159,13 +159,19 @@ TEST_F(TestRockfallSimulation, OutputsTellOneStory)
     vtkIdType size = 0;
     const vtkIdType* ids = nullptr;
     lines->GetCellPoints(row, size, ids);
-    ASSERT_EQ(size, 61); // 3 s at 0.05 s
+    int even = 0; // beside the knots
+    for (vtkIdType k = 0; k < size; ++k)
+    {
+      const double intervals = value(lines->GetPointData(), "Time", ids[k]) / 0.05;
+      even += std::abs(intervals - std::round(intervals)) < 1e-9;
+    }
+    ASSERT_EQ(even, 61); // 3 s at 0.05 s
     EXPECT_EQ(value(lines->GetPointData(), "Time", ids[0]), 0.0);
-    EXPECT_NEAR(value(lines->GetPointData(), "Time", ids[60]), 3.0, 1e-9);
+    EXPECT_NEAR(value(lines->GetPointData(), "Time", ids[size - 1]), 3.0, 1e-9);
     const double* first = lines->GetPoint(ids[0]);
     EXPECT_NEAR(first[1], rock ? 60 : 40, 1e-9);
     EXPECT_NEAR(number("StartZ"), 58, 1e-9);
-    const double* last = lines->GetPoint(ids[60]);
+    const double* last = lines->GetPoint(ids[size - 1]);
     EXPECT_NEAR(number("StopX"), last[0], 1e-9);
     impactCount += int(number("Impacts"));
     // The rocks that are shown are those of iteration 2, where their lines end.
@@ -186,7 +192,7 @@ TEST_F(TestRockfallSimulation, OutputsTellOneStory)
       lines->GetCellPoints(row, size, ids);
       for (int k = 0; k < 3; ++k)
       {
-        EXPECT_NEAR(centre[k], lines->GetPoint(ids[60])[k], 1e-9);
+        EXPECT_NEAR(centre[k], lines->GetPoint(ids[size - 1])[k], 1e-9);
       }
     }
   }

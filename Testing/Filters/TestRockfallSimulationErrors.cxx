@@ -90,10 +90,18 @@ TEST_F(TestRockfallSimulationErrors, BadValuesAreOneErrorAndNothingElse)
   this->ExpectEmpty();
   this->ExpectOneError({ "TrajectoryOutput", "5", "0 to 4" });
   this->Simulation->SetTrajectoryOutput(vtkRockfallSimulation::FULL);
-  this->Simulation->RockRockContactOn();
+  this->Simulation->SetRockRestitution(1.5);
   this->ExpectEmpty();
-  this->ExpectOneError({ "RockRockContact", "not available" });
-  this->Simulation->RockRockContactOff();
+  this->ExpectOneError({ "RockRestitution", "1.5" });
+  this->Simulation->SetRockRestitution(0.5);
+  this->Simulation->SetRockFrictionAngle(95);
+  this->ExpectEmpty();
+  this->ExpectOneError({ "RockFrictionAngle", "95" });
+  this->Simulation->SetRockFrictionAngle(30);
+  this->Simulation->SetRockCohesion(-1);
+  this->ExpectEmpty();
+  this->ExpectOneError({ "RockCohesion", "-1" });
+  this->Simulation->SetRockCohesion(0);
   EXPECT_EQ(this->Summary()->GetNumberOfRows(), 2); // and it recovers
 }
 

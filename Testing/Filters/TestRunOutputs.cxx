@@ -49,6 +49,8 @@ filters::RunFrame frameOf(int rocks)
   filters::RunFrame frame;
   frame.rocks.resize(std::size_t(rocks));
   frame.shapes.resize(std::size_t(rocks), Shape::Cube);
+  frame.sourceIds.resize(std::size_t(rocks), 1);
+  frame.sourceNames.resize(std::size_t(rocks));
   frame.origin = Vec3(500000.0, 4000000.0, 0.0);
   frame.gravity = gravity;
   return frame;
