@@ -429,6 +429,7 @@ void MassFall::solve(
       k.friction = c.friction;
       k.cohesion = c.cohesion;
       k.bounce = bounceOf(c, approach, sim.restingSpeed_, e);
+      k.approach = approach;
       work.contacts.push_back(k);
     }
   }
@@ -447,6 +448,7 @@ void MassFall::solve(
       k.friction = std::tan(parameters_.rockFrictionAngle);
       k.cohesion = parameters_.rockCohesion;
       k.bounce = bounceOf(c, approach, resting, parameters_.rockRestitution);
+      k.approach = approach;
       work.contacts.push_back(k);
     }
   }

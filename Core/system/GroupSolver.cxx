@@ -11,8 +11,9 @@ namespace rockfall
 namespace
 {
 
-/// A bounce is this much stiffer than the rocks are heavy: it misses its speed by so little.
-constexpr double kBounceStiffness = 1e4;
+/// A bounce is this much stiffer than the rocks are heavy. Much more, and what bounces to and fro
+/// between others would keep Gauss–Seidel from settling.
+constexpr double kBounceStiffness = 100.0;
 
 Quat cayley(const Vec3& r)
 {
@@ -36,22 +37,23 @@ void GroupSolver::prepare(const StepRequest& request, const std::vector<GroupBod
     const BlockState& state = *body.state;
     Work& w = work_[i];
     w.rotation = state.orientation.toRotationMatrix();
-    w.velocity0.head<3>() = w.rotation.transpose() * state.velocity;
-    w.velocity0.tail<3>() = state.spin;
+    const Mat3 back = w.rotation.transpose();
+    w.velocity0.head<3>() = state.velocity;
+    w.velocity0.tail<3>() = w.rotation * state.spin;
+    const Vec3 spinAcceleration = w.rotation * body.spinAcceleration;
     w.offset = -w.velocity0;
-    const Vec3 acceleration = w.rotation.transpose() * body.acceleration;
     if (lasting)
     {
-      w.offset.head<3>() = 0.5 * h * acceleration;
-      w.offset.tail<3>() = 0.5 * h * body.spinAcceleration;
+      w.offset.head<3>() = 0.5 * h * body.acceleration;
+      w.offset.tail<3>() = 0.5 * h * spinAcceleration;
     }
     w.inverseMass = h / (rate_ * block.mass());
-    w.inverseInertia = (h / rate_) * block.inverseInertia();
-    w.inertia = (rate_ / h) * block.inertia();
+    w.inverseInertia = w.rotation * ((h / rate_) * block.inverseInertia()) * back;
+    w.inertia = w.rotation * ((rate_ / h) * block.inertia()) * back;
     w.position = state.position;
     // First guess: as the last step went.
-    w.d.head<3>() = h * w.velocity0.head<3>() + (0.5 * h * h) * acceleration;
-    w.d.tail<3>() = h * state.spin + (0.5 * h * h) * body.spinAcceleration;
+    w.d.head<3>() = h * w.velocity0.head<3>() + (0.5 * h * h) * body.acceleration;
+    w.d.tail<3>() = h * w.velocity0.tail<3>() + (0.5 * h * h) * spinAcceleration;
     w.last.setZero();
   }
   rows_.resize(contacts.size());
@@ -61,35 +63,28 @@ void GroupSolver::prepare(const StepRequest& request, const std::vector<GroupBod
     const Contact& c = *group.contact;
     Row& row = rows_[k];
     row.kind = c.kind;
-    row.n = c.normal;
-    row.tangent[0] = c.normal.unitOrthogonal();
-    row.tangent[1] = c.normal.cross(row.tangent[0]);
+    row.n = row.directions[0] = c.normal;
+    row.directions[1] = c.normal.unitOrthogonal();
+    row.directions[2] = c.normal.cross(row.directions[1]);
     row.sides[0].body = group.first;
     row.sides[1].body = group.second;
     row.fixed = c.kind == ContactKind::EdgeEdge ? c.ridge[0] : c.point;
+    row.sides[1].edge = c.ridge[1];
     for (int s = 0; s < 2; ++s)
     {
-      const int i = row.sides[s].body;
-      if (i < 0)
+      Side& side = row.sides[s];
+      if (side.body < 0)
       {
-        row.edge[s] = c.ridge[1];
         continue;
       }
-      const Mat3& r = work_[i].rotation;
       const Vec3& at = c.kind == ContactKind::EdgeEdge && s == 1 ? c.ridge[0] : c.point;
-      row.place[s] = r.transpose() * (at - bodies[i].state->position);
-      if (c.kind == ContactKind::EdgeEdge)
+      side.place = at - work_[side.body].position;
+      if (c.kind == ContactKind::EdgeEdge && s == 0)
       {
-        if (s == 0)
-        {
-          const Polyhedron& shape = bodies[i].block->shape();
-          const std::array<int, 2>& ends = shape.edges()[c.rockFeature].vertices;
-          row.edge[0] = shape.vertices()[ends[1]] - shape.vertices()[ends[0]];
-        }
-        else
-        {
-          row.edge[1] = r.transpose() * c.ridge[1];
-        }
+        const Polyhedron& shape = bodies[side.body].block->shape();
+        const std::array<int, 2>& ends = shape.edges()[c.rockFeature].vertices;
+        side.edge =
+          work_[side.body].rotation * (shape.vertices()[ends[1]] - shape.vertices()[ends[0]]);
       }
     }
     ContactLaw& law = row.law;
@@ -101,20 +96,23 @@ void GroupSolver::prepare(const StepRequest& request, const std::vector<GroupBod
     law.shearLag = lasting ? 0.0 : c.shearDashpot / c.shearStiffness;
     law.friction = group.friction;
     law.cohesion = group.cohesion;
-    law.slip0 = { row.tangent[0].dot(c.slip), row.tangent[1].dot(c.slip) };
+    law.slip0 = { row.directions[1].dot(c.slip), row.directions[2].dot(c.slip) };
     law.state = c.state;
     row.force.setZero();
   }
   this->levers();
-  this->mobilities();
   for (std::size_t k = 0; k < contacts.size(); ++k)
   {
     Row& row = rows_[k];
     if (contacts[k].bounce >= 0.0)
     {
-      row.law.gap0 = -contacts[k].bounce * h;
-      row.law.penalty = std::max(row.law.penalty, kBounceStiffness / row.w(0, 0));
-      row.law.shearPenalty = std::max(row.law.shearPenalty, kBounceStiffness / row.w(1, 1));
+      const Mat3 w = this->mobility(row);
+      const auto mobile = [&](int i) { return row.directions[i].dot(w * row.directions[i]); };
+      row.law.penalty = std::max(row.law.penalty, kBounceStiffness / mobile(0));
+      // The spring misses a gap by so much of what it has to turn round; that is added to it.
+      const double turned = contacts[k].approach + contacts[k].bounce;
+      row.law.gap0 = -h * (contacts[k].bounce + turned / (row.law.penalty * mobile(0)));
+      row.law.shearPenalty = std::max(row.law.shearPenalty, kBounceStiffness / mobile(1));
     }
     else if (lasting && contacts[k].contact->closed())
     {
@@ -132,40 +130,31 @@ void GroupSolver::levers()
     w.turn = cayley(w.d.tail<3>());
     w.turned = w.turn.toRotationMatrix();
   }
-  // A material vector of a body, averaged over the step, in the body's axes of the start.
-  const auto mean = [&](int body, const Vec3& y)
-  { return Vec3(0.5 * (y + work_[body].turned * y)); };
+  // A material vector of a body, averaged over the step.
+  const auto mean = [&](const Side& side, const Vec3& y)
+  { return side.body < 0 ? y : Vec3(0.5 * (y + work_[side.body].turned * y)); };
+  const auto middle = [&](const Side& side)
+  { return Vec3(work_[side.body].position + 0.5 * work_[side.body].d.head<3>()); };
   for (Row& row : rows_)
   {
-    const int a = row.sides[0].body, b = row.sides[1].body;
+    Side &first = row.sides[0], &second = row.sides[1];
+    const auto pointOn = [&](const Side& side)
+    { return side.body < 0 ? row.fixed : Vec3(middle(side) + mean(side, side.place)); };
     Vec3 n = row.n, x = row.fixed;
-    const auto pointOn = [&](int side)
-    {
-      const int i = row.sides[side].body;
-      return i < 0 ? row.fixed
-                   : Vec3(work_[i].position +
-                       work_[i].rotation * (0.5 * work_[i].d.head<3>() + mean(i, row.place[side])));
-    };
-    const auto turnedWith = [&](int i, const Vec3& world)
-    {
-      const Mat3& r = work_[i].rotation;
-      return Vec3(r * mean(i, r.transpose() * world));
-    };
     switch (row.kind)
     {
       case ContactKind::VertexFace:
-        x = pointOn(0);
-        n = b < 0 ? n : turnedWith(b, n);
+        x = pointOn(first);
+        n = mean(second, n);
         break;
       case ContactKind::FaceVertex:
-        x = pointOn(1);
-        n = turnedWith(a, n);
+        x = pointOn(second);
+        n = mean(first, n);
         break;
       case ContactKind::EdgeEdge:
       {
-        const Vec3 p = pointOn(0), q = pointOn(1);
-        const Vec3 u = work_[a].rotation * mean(a, row.edge[0]);
-        const Vec3 w = b < 0 ? row.edge[1] : Vec3(work_[b].rotation * mean(b, row.edge[1]));
+        const Vec3 p = pointOn(first), q = pointOn(second);
+        const Vec3 u = mean(first, first.edge), w = mean(second, second.edge);
         double s, t;
         x = p;
         if (closestOnLines(p, u, q, w, s, t))
@@ -177,63 +166,49 @@ void GroupSolver::levers()
         break;
       }
     }
-    for (int side = 0; side < 2; ++side)
-    {
-      Side& s = row.sides[side];
-      if (s.body < 0)
-      {
-        continue;
-      }
-      const Work& w = work_[s.body];
-      const double sign = side == 0 ? 1.0 : -1.0;
-      const Vec3 lever = w.rotation.transpose() * (x - w.position) - 0.5 * w.d.head<3>();
-      const std::array<Vec3, 3> directions = { n, row.tangent[0], row.tangent[1] };
-      for (int k = 0; k < 3; ++k)
-      {
-        const Vec3 local = sign * (w.rotation.transpose() * directions[k]);
-        s.row[k].head<3>() = local;
-        s.row[k].tail<3>() = lever.cross(local);
-      }
-    }
-  }
-}
-
-void GroupSolver::mobilities()
-{
-  for (Row& row : rows_)
-  {
-    row.w.setZero();
+    row.directions[0] = n;
     for (Side& side : row.sides)
     {
-      if (side.body < 0)
+      if (side.body >= 0)
       {
-        continue;
-      }
-      const Work& w = work_[side.body];
-      for (int k = 0; k < 3; ++k)
-      {
-        side.moved[k].head<3>() = w.inverseMass * side.row[k].head<3>();
-        side.moved[k].tail<3>() = w.inverseInertia * side.row[k].tail<3>();
-      }
-      for (int i = 0; i < 3; ++i)
-      {
-        for (int j = 0; j < 3; ++j)
-        {
-          row.w(i, j) += side.row[i].dot(side.moved[j]);
-        }
+        side.lever = x - middle(side);
       }
     }
   }
 }
 
-double GroupSolver::along(const Row& row, int direction) const
+Mat3 GroupSolver::mobility(const Row& row) const
 {
-  double sum = 0.0;
+  Mat3 sum = Mat3::Zero();
   for (const Side& side : row.sides)
   {
-    sum += side.body < 0 ? 0.0 : side.row[direction].dot(work_[side.body].d);
+    if (side.body >= 0)
+    {
+      const Work& w = work_[side.body];
+      Mat3 cross;
+      cross << 0.0, -side.lever.z(), side.lever.y(), side.lever.z(), 0.0, -side.lever.x(),
+        -side.lever.y(), side.lever.x(), 0.0;
+      sum.diagonal().array() += w.inverseMass;
+      sum -= cross * w.inverseInertia * cross;
+    }
   }
   return sum;
+}
+
+Vec3 GroupSolver::travel(const Row& row) const
+{
+  Vec3 way = Vec3::Zero();
+  double sign = 1.0;
+  for (const Side& side : row.sides)
+  {
+    if (side.body >= 0)
+    {
+      const Vec6& d = work_[side.body].d;
+      way += sign * (d.head<3>() + d.tail<3>().cross(side.lever));
+    }
+    sign = -1.0;
+  }
+  return { row.directions[0].dot(way), row.directions[1].dot(way), row.directions[2].dot(way) };
 }
 
 bool GroupSolver::evaluate(double h, bool lasting)
@@ -241,8 +216,8 @@ bool GroupSolver::evaluate(double h, bool lasting)
   bool changed = false;
   for (Row& row : rows_)
   {
-    const Eigen::Vector2d travel(this->along(row, 1), this->along(row, 2));
-    changed |= row.law.evaluate(lasting, h, row.law.gap0 + this->along(row, 0), travel);
+    const Vec3 way = this->travel(row);
+    changed |= row.law.evaluate(lasting, h, row.law.gap0 + way[0], way.tail<2>());
   }
   return changed;
 }
@@ -252,15 +227,15 @@ void GroupSolver::loads(const StepRequest& request, const std::vector<GroupBody>
   const double h = request.duration;
   for (std::size_t i = 0; i < bodies.size(); ++i)
   {
-    const Block& block = *bodies[i].block;
     Work& w = work_[i];
     const Vec6 change = (w.velocity0 - w.offset) / h;
-    w.load.head<3>() =
-      block.mass() * (change.head<3>() - request.gravity * Vec3(w.rotation.row(2).transpose()));
+    const double mass = bodies[i].block->mass();
+    w.load.head<3>() = mass * (change.head<3>() - request.gravity * Vec3::UnitZ());
     // The momentum of rotation is carried to the end of the step: R₁ p₁ − R₀ p₀ = h τ
-    // (METHOD 10.4).
-    const Vec3 momentum = block.inertia() * (rate_ * w.d + w.offset).tail<3>();
-    w.load.tail<3>() = block.inertia() * change.tail<3>() - (w.turned * momentum - momentum) / h;
+    // (METHOD 10.4). inertia holds rate/h.
+    const double unit = h / rate_;
+    const Vec3 momentum = unit * (w.inertia * (rate_ * w.d + w.offset).tail<3>());
+    w.load.tail<3>() = unit * (w.inertia * change.tail<3>()) - (w.turned * momentum - momentum) / h;
     w.free.head<3>() = w.inverseMass * w.load.head<3>();
     w.free.tail<3>() = w.inverseInertia * w.load.tail<3>();
   }

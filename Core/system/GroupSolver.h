@@ -50,7 +50,8 @@ struct GroupContact
   /// ≥ 0: leaves with at least this speed along the normal if it closes in a lasting step (Newton's
   /// law of restitution), m/s.
   double bounce = -1.0;
-  double work = 0.0; ///< Out: what it took from the rocks' motion, springs included, J.
+  double approach = 0.0; ///< Speed at which it closes, m/s.
+  double work = 0.0;     ///< Out: what it took from the rocks' motion, springs included, J.
 };
 
 struct GroupOutcome
@@ -76,45 +77,65 @@ public:
   int maxSweeps = 100;
 
 private:
+  // Everything in world axes. A rotation over the step is the Cayley vector of its turn.
   struct Side
   {
     int body = -1;
-    std::array<Vec6, 3> row;   ///< nᵀT and the two lᵀT, in the body's axes.
-    std::array<Vec6, 3> moved; ///< A⁻¹ of them.
+    Vec3 lever = Vec3::Zero(); ///< From the centroid to the point of force, at mid-step.
+    Vec3 place = Vec3::Zero(); ///< The material point about the centroid, at the start.
+    Vec3 edge = Vec3::Zero();  ///< EdgeEdge: direction of the edge at the start.
   };
   struct Row
   {
     ContactLaw law;
     std::array<Side, 2> sides;
     ContactKind kind;
-    Vec3 n;                      ///< World, at the start.
-    std::array<Vec3, 2> tangent; ///< World.
-    std::array<Vec3, 2> place;   ///< Of the point about each centroid at the start, body axes.
-    std::array<Vec3, 2> edge;    ///< EdgeEdge: directions of the edges, of the bodies' axes.
-    Vec3 fixed = Vec3::Zero();   ///< A point of the slope, world.
-    double gap0 = 0.0;           ///< Without what a bounce asks for, m.
-    Mat3 w = Mat3::Zero();       ///< J A⁻¹ Jᵀ in the three directions.
-    Vec3 force = Vec3::Zero();   ///< Normal and shear, as applied by Gauss–Seidel so far, N.
+    Vec3 n;                         ///< At the start.
+    std::array<Vec3, 3> directions; ///< Normal at mid-step, and the two tangents.
+    Vec3 fixed = Vec3::Zero();      ///< A point of the slope.
+    double gap0 = 0.0;              ///< Without what a bounce asks for, m.
+    Vec3 force = Vec3::Zero();      ///< Normal and shear, with which Gauss–Seidel begins, N.
   };
   struct Work
   {
-    Mat3 rotation;
-    Quat turn;
-    Mat3 turned; ///< R₀ · cay(r)
+    Mat3 rotation; ///< At the start.
+    Mat3 turned;   ///< cay(θ)
+    Quat turn;     ///< The same.
     Vec6 velocity0, offset, load, free, d, last;
     double inverseMass;  ///< h/(rate m)
     Mat3 inverseInertia; ///< h/rate · I⁻¹
     Mat3 inertia;        ///< rate/h · I
-    Vec3 position;       ///< Of the centroid at the start, world.
+    Vec3 position;       ///< Of the centroid at the start.
+  };
+  /// What a sweep of Gauss–Seidel meets of a contact, and of a rock: no more than that.
+  struct Point
+  {
+    std::array<int, 2> body; ///< The slope is one more body, which nothing moves.
+    std::array<Vec3, 3> directions;
+    std::array<Vec3, 2> lever;
+    double w;              ///< nᵀ J A⁻¹ Jᵀ n
+    double coupling[2];    ///< Of a normal force with the two tangents.
+    double gap, stiffness; ///< Gap at the start, and p/(1 + p w).
+    double shear, gain;    ///< 1/pₛ, and the step towards the locked spring.
+    double friction, cohesion;
+    double slip[2];
+    double force[3];
+  };
+  struct Mover
+  {
+    Vec3 way, turn;
+    double inverseMass;
+    Mat3 inverseInertia;
+    int changed; ///< The last sweep in which it was moved by more than a share of the tolerance.
   };
 
   void prepare(const StepRequest& request, const std::vector<GroupBody>& bodies,
     const std::vector<GroupContact>& contacts);
   void levers();
-  void mobilities();
+  Mat3 mobility(const Row& row) const; ///< J A⁻¹ Jᵀ of a force at the contact, m/N.
+  Vec3 travel(const Row& row) const;   ///< J D: along the normal and the two tangents, m.
   bool evaluate(double h, bool lasting);
   void loads(const StepRequest& request, const std::vector<GroupBody>& bodies);
-  double along(const Row& row, int direction) const; ///< Row of J times D, m.
   bool newton(const StepRequest& request, const std::vector<GroupBody>& bodies, bool dense,
     GroupOutcome& outcome);
   bool solveDense(Eigen::VectorXd& next);
@@ -123,13 +144,16 @@ private:
   void assemble(Eigen::VectorXd& right, Add&& add) const;
   bool gaussSeidel(
     const StepRequest& request, const std::vector<GroupBody>& bodies, GroupOutcome& outcome);
-  double sweep();
-  void apply(const Row& row, const Vec3& change);
+  void gather(); ///< Rows and bodies into points and movers.
+  double sweep(int number, double enough);
+  double relax(Point& p);
   void write(const StepRequest& request, std::vector<GroupBody>& bodies,
     std::vector<GroupContact>& contacts, GroupOutcome& outcome);
 
   std::vector<Row> rows_;
   std::vector<Work> work_;
+  std::vector<Point> points_;
+  std::vector<Mover> movers_;
   double rate_ = 0.0;
   Eigen::MatrixXd dense_;
   std::vector<Eigen::Triplet<double>> triplets_;

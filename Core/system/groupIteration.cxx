@@ -21,6 +21,8 @@ constexpr double kGapTolerance = 1e-7;
 constexpr double kTurnTolerance = 1e-9;
 /// Gauss–Seidel: how often levers and gyroscopic moments are brought up to date in a step.
 constexpr int kLeverUpdates = 2;
+/// Changes below this share of the tolerance are no reason to visit a contact again.
+constexpr double kQuiet = 0.3;
 
 } // namespace
 
@@ -62,7 +64,7 @@ bool GroupSolver::newton(const StepRequest& request, const std::vector<GroupBody
     double change = 0.0, scale = 0.0;
     for (const Row& row : rows_)
     {
-      const double way = this->along(row, 0);
+      const double way = this->travel(row)[0];
       change = std::max(change, std::abs(row.law.gap0 + way - row.law.gap1));
       scale = std::max(scale, std::abs(way));
     }
@@ -77,52 +79,130 @@ bool GroupSolver::newton(const StepRequest& request, const std::vector<GroupBody
   return false;
 }
 
-void GroupSolver::apply(const Row& row, const Vec3& change)
+void GroupSolver::gather()
 {
-  for (const Side& side : row.sides)
+  movers_.resize(work_.size() + 1);
+  for (std::size_t i = 0; i < work_.size(); ++i)
   {
-    if (side.body >= 0)
+    const Work& w = work_[i];
+    movers_[i] = { w.free.head<3>(), w.free.tail<3>(), w.inverseMass, w.inverseInertia, 0 };
+  }
+  movers_.back() = { Vec3::Zero(), Vec3::Zero(), 0.0, Mat3::Zero(), -2 };
+  points_.resize(rows_.size());
+  const int slope = int(work_.size());
+  for (std::size_t k = 0; k < rows_.size(); ++k)
+  {
+    const Row& row = rows_[k];
+    const ContactLaw& law = row.law;
+    Point& p = points_[k];
+    const Mat3 w = this->mobility(row);
+    const Vec3 moved = w * row.directions[0];
+    Eigen::Matrix2d across;
+    for (int i = 0; i < 2; ++i)
     {
-      work_[side.body].d +=
-        side.moved[0] * change[0] + side.moved[1] * change[1] + side.moved[2] * change[2];
+      p.body[i] = row.sides[i].body < 0 ? slope : row.sides[i].body;
+      p.lever[i] = row.sides[i].lever;
+      p.coupling[i] = row.directions[i + 1].dot(moved);
+      p.slip[i] = law.slip0[i];
+      for (int j = 0; j < 2; ++j)
+      {
+        across(i, j) = row.directions[i + 1].dot(w * row.directions[j + 1]);
+      }
+    }
+    p.directions = row.directions;
+    p.w = row.directions[0].dot(moved);
+    p.gap = law.gap0;
+    p.stiffness = law.penalty / (1.0 + law.penalty * p.w);
+    const double mobile = std::max(across(0, 0), across(1, 1)) + std::abs(across(0, 1));
+    p.shear = 1.0 / law.shearPenalty;
+    p.gain = law.shearPenalty / (1.0 + law.shearPenalty * mobile);
+    p.friction = law.friction;
+    p.cohesion = law.cohesion;
+    const Vec3 force = row.force[0] * row.directions[0] + row.force[1] * row.directions[1] +
+      row.force[2] * row.directions[2];
+    for (int i = 0; i < 3; ++i)
+    {
+      p.force[i] = row.force[i];
+    }
+    for (int i = 0; i < 2; ++i)
+    {
+      Mover& m = movers_[p.body[i]];
+      const double sign = i == 0 ? 1.0 : -1.0;
+      m.way += (sign * m.inverseMass) * force;
+      m.turn += sign * (m.inverseInertia * p.lever[i].cross(force));
     }
   }
 }
 
-double GroupSolver::sweep()
+double GroupSolver::relax(Point& p)
+{
+  Mover &a = movers_[p.body[0]], &b = movers_[p.body[1]];
+  const Vec3 way = a.way - b.way + a.turn.cross(p.lever[0]) - b.turn.cross(p.lever[1]);
+  const double* before = p.force;
+  // The gap that the others leave, and the spring that closes it.
+  const double open = p.gap + p.directions[0].dot(way) - p.w * before[0];
+  const double normal = open < 0.0 ? -p.stiffness * open : 0.0;
+  if (normal == 0.0 && before[0] == 0.0)
+  {
+    return 0.0;
+  }
+  const double push = normal - before[0];
+  double s = 0.0, t = 0.0;
+  if (normal > 0.0)
+  {
+    // One step towards the locked spring, then back onto the Coulomb cone.
+    s = p.slip[0] + p.directions[1].dot(way) + p.coupling[0] * push;
+    t = p.slip[1] + p.directions[2].dot(way) + p.coupling[1] * push;
+    s = before[1] - p.gain * (s + before[1] * p.shear);
+    t = before[2] - p.gain * (t + before[2] * p.shear);
+    const double limit = p.friction * normal + p.cohesion, square = s * s + t * t;
+    if (square > limit * limit)
+    {
+      const double back = limit / std::sqrt(square);
+      s *= back;
+      t *= back;
+    }
+  }
+  const double slide[2] = { s - before[1], t - before[2] };
+  const Vec3 change =
+    push * p.directions[0] + slide[0] * p.directions[1] + slide[1] * p.directions[2];
+  p.force[0] = normal;
+  p.force[1] = s;
+  p.force[2] = t;
+  a.way += a.inverseMass * change;
+  b.way -= b.inverseMass * change;
+  a.turn += a.inverseInertia * p.lever[0].cross(change);
+  b.turn -= b.inverseInertia * p.lever[1].cross(change);
+  return p.w * (std::abs(push) + std::abs(slide[0]) + std::abs(slide[1]));
+}
+
+double GroupSolver::sweep(int number, double enough)
 {
   double most = 0.0;
-  for (Row& row : rows_)
+  const auto visit = [&](Point& p)
   {
-    const ContactLaw& law = row.law;
-    const double w = row.w(0, 0);
-    // The gap that the others leave, and the spring that closes it.
-    const double open = law.gap0 + this->along(row, 0) - w * row.force[0];
-    const double normal = open < 0.0 ? -law.penalty * open / (1.0 + law.penalty * w) : 0.0;
-    Vec3 change(normal - row.force[0], 0.0, 0.0);
-    if (normal > 0.0 || row.force[0] > 0.0)
+    Mover &a = movers_[p.body[0]], &b = movers_[p.body[1]];
+    // Where nothing has changed since the last visit there is nothing to do.
+    if (std::max(a.changed, b.changed) < number - 1)
     {
-      this->apply(row, change);
-      Eigen::Vector2d shear = Eigen::Vector2d::Zero();
-      if (normal > 0.0)
-      {
-        // One step towards the locked spring, then back onto the Coulomb cone.
-        const Eigen::Vector2d stretch =
-          law.slip0 + Eigen::Vector2d(this->along(row, 1), this->along(row, 2));
-        const double mobile = std::max(row.w(1, 1), row.w(2, 2)) + std::abs(row.w(1, 2));
-        const double gain = law.shearPenalty / (1.0 + law.shearPenalty * mobile);
-        shear = row.force.tail<2>() - gain * (stretch + row.force.tail<2>() / law.shearPenalty);
-        const double limit = law.friction * normal + law.cohesion, length = shear.norm();
-        shear *= length > limit ? limit / length : 1.0;
-      }
-      const Vec3 slide(0.0, shear[0] - row.force[1], shear[1] - row.force[2]);
-      this->apply(row, slide);
-      change += slide;
-      row.force += change;
+      return;
     }
-    most = std::max({ most, std::abs(w * change[0]), std::abs(row.w(1, 1) * change[1]),
-      std::abs(row.w(2, 2) * change[2]) });
+    const double change = this->relax(p);
+    if (change > kQuiet * enough)
+    {
+      a.changed = b.changed = number;
+      most = std::max(most, change);
+    }
+  };
+  if (number % 2 == 0)
+  {
+    std::for_each(points_.begin(), points_.end(), visit);
   }
+  else
+  {
+    std::for_each(points_.rbegin(), points_.rend(), visit);
+  }
+  movers_.back().changed = -2; // the slope
   return most;
 }
 
@@ -142,29 +222,27 @@ bool GroupSolver::gaussSeidel(
     if (update > 0)
     {
       this->levers();
-      this->mobilities();
     }
     this->loads(request, bodies);
-    for (Work& w : work_)
-    {
-      w.last = w.d;
-      w.d = w.free;
-    }
-    for (const Row& row : rows_)
-    {
-      this->apply(row, row.force);
-    }
+    this->gather();
     settled = false;
     for (int k = 0; k < maxSweeps && !settled; ++k)
     {
       ++outcome.iterations;
-      outcome.residual = this->sweep();
+      outcome.residual = this->sweep(k, enough);
       settled = outcome.residual <= enough;
     }
     double moved = 0.0;
-    for (const Work& w : work_)
+    for (std::size_t i = 0; i < work_.size(); ++i)
     {
+      Work& w = work_[i];
+      w.last = w.d;
+      w.d << movers_[i].way, movers_[i].turn;
       moved = std::max(moved, (w.d - w.last).norm());
+    }
+    for (std::size_t k = 0; k < rows_.size(); ++k)
+    {
+      rows_[k].force = Eigen::Map<const Vec3>(points_[k].force);
     }
     if (update > 0 && moved <= 10.0 * enough)
     {
@@ -221,8 +299,9 @@ void GroupSolver::write(const StepRequest& request, std::vector<GroupBody>& bodi
     const Row& row = rows_[k];
     const ContactLaw& law = row.law;
     Contact& c = *contacts[k].contact;
-    const Eigen::Vector2d travel(this->along(row, 1), this->along(row, 2));
-    const double gap1 = row.gap0 + this->along(row, 0);
+    const Vec3 way = this->travel(row);
+    const Eigen::Vector2d travel = way.tail<2>();
+    const double gap1 = row.gap0 + way[0];
     c.normalForce = law.force;
     c.shearForce = law.shearForce.norm();
     c.distance = gap1 + c.offset;
@@ -246,19 +325,22 @@ void GroupSolver::write(const StepRequest& request, std::vector<GroupBody>& bodi
       outcome.frictionWork += friction;
       outcome.dampedWork += damped;
       contacts[k].work = 0.0;
+      const Vec3 force = law.force * row.directions[0] + law.shearForce[0] * row.directions[1] +
+        law.shearForce[1] * row.directions[2];
+      double sign = 1.0;
       for (const Side& side : row.sides)
       {
-        const Vec6 force = law.force * side.row[0] + law.shearForce[0] * side.row[1] +
-          law.shearForce[1] * side.row[2];
-        const double done = force.dot(work_[side.body].d);
+        const Vec6& d = work_[side.body].d;
+        const double done = sign * force.dot(d.head<3>() + d.tail<3>().cross(side.lever));
         bodies[side.body].given -= done;
         contacts[k].work -= done;
+        sign = -1.0;
       }
     }
     if (closed)
     {
       c.state = law.state == ContactState::Open ? ContactState::Sliding : law.state;
-      c.slip = row.tangent[0] * law.slip1[0] + row.tangent[1] * law.slip1[1];
+      c.slip = row.directions[1] * law.slip1[0] + row.directions[2] * law.slip1[1];
     }
     else
     {
@@ -271,7 +353,7 @@ void GroupSolver::write(const StepRequest& request, std::vector<GroupBody>& bodi
     if (i >= 0)
     {
       const Work& w = work_[i];
-      c.point = w.position + w.rotation * (w.d.head<3>() + w.turned * row.place[carrier]);
+      c.point = w.position + w.d.head<3>() + w.turned * row.sides[carrier].place;
     }
   }
   for (std::size_t i = 0; i < bodies.size(); ++i)
@@ -280,10 +362,10 @@ void GroupSolver::write(const StepRequest& request, std::vector<GroupBody>& bodi
     BlockState& state = *bodies[i].state;
     const Vec6 velocity = rate_ * w.d + w.offset;
     state.time += request.duration;
-    state.position += w.rotation * w.d.head<3>();
-    state.velocity = w.rotation * velocity.head<3>();
-    state.orientation = (state.orientation * w.turn).normalized();
-    state.spin = velocity.tail<3>();
+    state.position += w.d.head<3>();
+    state.velocity = velocity.head<3>();
+    state.orientation = (w.turn * state.orientation).normalized();
+    state.spin = w.rotation.transpose() * velocity.tail<3>();
   }
 }
 

@@ -38,24 +38,31 @@ void GroupSolver::assemble(Eigen::VectorXd& right, Add&& add) const
       t.block<2, 2>(1, 1) = law.shearStiffness;
       f.tail<2>() = law.shearForce;
     }
-    f += t * Vec3(this->along(row, 0), this->along(row, 1), this->along(row, 2));
-    for (const Side& i : row.sides)
+    f += t * this->travel(row);
+    const auto jacobian = [&](int s)
     {
-      if (i.body < 0)
+      Eigen::Matrix<double, 6, 3> j;
+      for (int k = 0; k < 3; ++k)
+      {
+        j.col(k) << row.directions[k], row.sides[s].lever.cross(row.directions[k]);
+      }
+      return s == 0 ? j : Eigen::Matrix<double, 6, 3>(-j);
+    };
+    const std::array<Eigen::Matrix<double, 6, 3>, 2> j = { jacobian(0), jacobian(1) };
+    for (int s = 0; s < 2; ++s)
+    {
+      const int i = row.sides[s].body;
+      if (i < 0)
       {
         continue;
       }
-      Eigen::Matrix<double, 6, 3> ji;
-      ji << i.row[0], i.row[1], i.row[2];
-      right.segment<6>(6 * i.body) += ji * f;
-      const Eigen::Matrix<double, 6, 3> jt = ji * t;
-      for (const Side& j : row.sides)
+      right.segment<6>(6 * i) += j[s] * f;
+      const Eigen::Matrix<double, 6, 3> jt = j[s] * t;
+      for (int other = 0; other < 2; ++other)
       {
-        if (j.body >= 0)
+        if (row.sides[other].body >= 0)
         {
-          Eigen::Matrix<double, 6, 3> jj;
-          jj << j.row[0], j.row[1], j.row[2];
-          add(i.body, j.body, Mat6(jt * jj.transpose()));
+          add(i, row.sides[other].body, Mat6(jt * j[other].transpose()));
         }
       }
     }
