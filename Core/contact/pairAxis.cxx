@@ -47,19 +47,45 @@ bool arcsCross(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
   return cba * dba < 0.0 && adc * bdc < 0.0 && cba * bdc > 0.0;
 }
 
-/// For every edge of a body and every face of the other: on which side of the plane of the edge's
-/// arc the other's reversed normal lies.
-void sidesOfArcs(const PairBody& body, const PairBody& other, std::vector<char>& sides)
+/// Edges that can still show a larger gap than `least`. A face of the Minkowski difference that an
+/// edge is part of has its normal between those of the edge's faces (turned round, for the first
+/// body). The gap in such a direction n is at most n · (edge − other centroid) less the radius of
+/// the ball in the other body; no direction in the arc gives more than this.
+struct ArcEdge
 {
+  int edge;
+  std::array<const Vec3*, 2> normals; ///< Of its faces.
+};
+
+void edgesAbove(
+  const PairBody& body, const PairBody& other, double least, std::vector<ArcEdge>& found)
+{
+  found.clear();
   const std::vector<Polyhedron::Edge>& edges = body.placed->block().shape().edges();
-  sides.resize(edges.size() * other.normals.size());
-  std::size_t k = 0;
-  for (const Polyhedron::Edge& edge : edges)
+  const std::vector<Vec3>& vertices = body.placed->vertices();
+  const Vec3 center = other.placed->position();
+  const double least2 = least + other.inside;
+  for (std::size_t e = 0; e < edges.size(); ++e)
   {
-    const Vec3 plane = body.normals[edge.faces[1]].cross(body.normals[edge.faces[0]]);
-    for (const Vec3& n : other.normals)
+    const Vec3& a = body.normals[edges[e].faces[0]];
+    const Vec3& b = body.normals[edges[e].faces[1]];
+    const Vec3& start = vertices[edges[e].vertices[0]];
+    const Vec3 v = center - start;
+    const double overA = v.dot(a), overB = v.dot(b);
+    bool above = std::max(overA, overB) > least2;
+    if (!above)
     {
-      sides[k++] = n.dot(plane) < 0.0;
+      const double between = a.dot(b);
+      if (overA > between * overB && overB > between * overA)
+      {
+        // The nearest direction lies within the arc: the distance from the edge's line.
+        const Vec3 u = vertices[edges[e].vertices[1]] - start;
+        above = least2 < 0.0 || v.cross(u).squaredNorm() > least2 * least2 * u.squaredNorm();
+      }
+    }
+    if (above)
+    {
+      found.push_back({ int(e), { &a, &b } });
     }
   }
 }
@@ -110,10 +136,12 @@ void PairBody::update(const PlacedBlock& block)
   const std::size_t faces = shape.normals().size();
   normals.resize(faces);
   offsets.resize(faces);
+  inside = std::numeric_limits<double>::infinity();
   for (std::size_t f = 0; f < faces; ++f)
   {
     normals[f] = block.rotation() * shape.normals()[f];
     offsets[f] = shape.offsets()[f] + normals[f].dot(block.position());
+    inside = std::min(inside, shape.offsets()[f]);
   }
 }
 
@@ -144,46 +172,51 @@ PairAxis findAxis(const PairBody& first, const PairBody& second, const PairAxis&
   const PairAxis kept = best;
   const auto offer = [&](const PairAxis& axis)
   { best = axis.distance > best.distance ? axis : best; };
+  // No face is farther from a body than from the ball in it.
+  const auto mayBeat = [&](const PairBody& owner, int f, const PairBody& other)
+  {
+    return owner.normals[f].dot(other.placed->position()) - owner.offsets[f] - other.inside >
+      best.distance;
+  };
   for (int f = 0; f < int(first.normals.size()); ++f)
   {
-    offer(faceAxis(first, second, PairAxis::Kind::FaceOfFirst, f));
+    if (mayBeat(first, f, second))
+    {
+      offer(faceAxis(first, second, PairAxis::Kind::FaceOfFirst, f));
+    }
   }
   for (int f = 0; f < int(second.normals.size()); ++f)
   {
-    offer(faceAxis(first, second, PairAxis::Kind::FaceOfSecond, f));
+    if (mayBeat(second, f, first))
+    {
+      offer(faceAxis(first, second, PairAxis::Kind::FaceOfSecond, f));
+    }
   }
   if (best.distance <= reach)
   {
-    const int edges = int(first.placed->block().shape().edges().size());
-    const int others = int(second.placed->block().shape().edges().size());
-    const double faces =
-      best.distance + kHysteresis * smaller; // faces before edges that are as good
+    // Faces go before edges that are as good.
     PairAxis crossing;
-    crossing.distance = faces;
-    // On which side of each other's arcs the normals lie: looked up for every pair of edges.
-    thread_local std::vector<char> overArcs, overOthers;
-    sidesOfArcs(first, second, overArcs);
-    sidesOfArcs(second, first, overOthers);
-    const std::vector<Polyhedron::Edge>& ours = first.placed->block().shape().edges();
-    const std::vector<Polyhedron::Edge>& theirs = second.placed->block().shape().edges();
-    const std::size_t ownFaces = first.normals.size(), otherFaces = second.normals.size();
-    for (int e = 0; e < edges; ++e)
+    crossing.distance = best.distance + kHysteresis * smaller;
+    thread_local std::vector<ArcEdge> ours, theirs;
+    edgesAbove(first, second, crossing.distance, ours);
+    if (!ours.empty())
     {
-      const char* side = &overArcs[e * otherFaces];
-      for (int f = 0; f < others; ++f)
+      edgesAbove(second, first, crossing.distance, theirs);
+      for (const ArcEdge& e : ours)
       {
-        const char c = side[theirs[f].faces[0]], d = side[theirs[f].faces[1]];
-        const char* back = &overOthers[f * ownFaces];
-        const char ga = back[ours[e].faces[0]], gb = back[ours[e].faces[1]];
-        // The arcs' ends lie on both sides of each other, and on the same half of the sphere.
-        if (c == d || ga == gb || c == gb)
+        const Vec3 plane = e.normals[1]->cross(*e.normals[0]);
+        for (const ArcEdge& f : theirs)
         {
-          continue;
-        }
-        const PairAxis axis = edgeAxis(first, second, e, f);
-        if (axis.kind != PairAxis::Kind::None && axis.distance > crossing.distance)
-        {
-          crossing = axis;
+          // The arc of the other one must pass from one side of this one's plane to the other.
+          if (f.normals[0]->dot(plane) * f.normals[1]->dot(plane) >= 0.0)
+          {
+            continue;
+          }
+          const PairAxis axis = edgeAxis(first, second, e.edge, f.edge);
+          if (axis.kind != PairAxis::Kind::None && axis.distance > crossing.distance)
+          {
+            crossing = axis;
+          }
         }
       }
     }

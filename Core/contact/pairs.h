@@ -38,6 +38,7 @@ struct PairBody
   const PlacedBlock* placed = nullptr;
   std::vector<Vec3> normals;   ///< Per face, world, outward.
   std::vector<double> offsets; ///< Per face, normal · x on it, world, m.
+  double inside = 0.0;         ///< Radius of a ball about the centroid that the rock holds, m.
   void update(const PlacedBlock& block);
 };
 
@@ -63,6 +64,8 @@ struct RockPair
   std::vector<Contact> contacts;
   bool touched = false; ///< Has had closed contacts in the last step.
   bool linked = false;  ///< May touch in the step at hand.
+  bool known = false;   ///< The axis has been found for where the rocks stand now.
+  PairAxis before;      ///< The axis of the last step, if so.
   /// What is under way between the first touch and parting or settling.
   struct Impact
   {

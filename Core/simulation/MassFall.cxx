@@ -151,7 +151,7 @@ void MassFall::findGroups(double duration)
     {
       RockPair& pair = pairs_[k];
       const Member &a = *members_[pair.first], &b = *members_[pair.second];
-      pair.linked = false;
+      pair.linked = pair.known = false;
       if (a.asleep && b.asleep)
       {
         return;
@@ -161,8 +161,9 @@ void MassFall::findGroups(double duration)
         b.sim.block_.largestRimSpeed(t.spin) +
         parameters_.gravity * duration; // one of them may be held
       const double reach = speed * duration;
+      pair.before = pair.axis;
       pair.axis = findAxis(a.body, b.body, pair.axis, reach);
-      pair.linked = pair.axis.distance <= reach;
+      pair.linked = pair.known = pair.axis.distance <= reach;
       if (!pair.linked)
       {
         pair.contacts.clear();

@@ -67,6 +67,7 @@ private:
     PairBody body;
     bool asleep = false;
     bool touchesOthers = false;
+    int place = -1;             ///< Among the bodies of its group in the step at hand.
     std::uint64_t carriers = 0; ///< Which contacts with others carry.
   };
   struct Group

@@ -32,7 +32,6 @@ struct MassFall::Workspace
   std::vector<GroupBody> bodies;
   std::vector<GroupContact> contacts;
   std::vector<double> energyBefore;
-  std::vector<int> place;          ///< Of each member in the group.
   std::vector<std::size_t> firsts; ///< First contact of each pair among `contacts`.
 };
 
@@ -310,7 +309,8 @@ void MassFall::advanceGroup(const Group& group, double until) const
       travel = sim.done_ ? travel : std::min(travel, sim.travelLimit());
     }
     const double remaining = until - now();
-    const double large = std::min(remaining, travel);
+    // A step without an impact resolved in it may go twice as far.
+    const double large = std::min(remaining, inTime ? travel : 2.0 * travel);
     const double small = inTime ? std::min(remaining, this->groupStep(group)) : large;
     const bool calm = this->isCalm(group);
     this->gatherContacts(group, calm || !inTime ? large : small);
@@ -367,15 +367,14 @@ void MassFall::solve(
   work.contacts.clear();
   work.firsts.clear();
   work.energyBefore.clear();
-  work.place.assign(members_.size(), -1);
   for (int i : group.members)
   {
     RockSimulator& sim = members_[i]->sim;
+    members_[i]->place = sim.done_ ? -1 : int(work.bodies.size());
     if (sim.done_)
     {
       continue;
     }
-    work.place[i] = int(work.bodies.size());
     sim.before_ = sim.state_;
     sim.contactsBefore_ = sim.contacts_;
     work.energyBefore.push_back(sim.mechanicalEnergy() + sim.springEnergy_);
@@ -425,7 +424,7 @@ void MassFall::solve(
       }
       GroupContact k;
       k.contact = &c;
-      k.first = work.place[i];
+      k.first = members_[i]->place;
       k.friction = c.friction;
       k.cohesion = c.cohesion;
       k.bounce = bounceOf(c, approach, sim.restingSpeed_, e);
@@ -443,8 +442,8 @@ void MassFall::solve(
       const double approach = -c.normal.dot(this->relativeVelocity(*pair, c.point));
       GroupContact k;
       k.contact = &c;
-      k.first = work.place[pair->first];
-      k.second = work.place[pair->second];
+      k.first = members_[pair->first]->place;
+      k.second = members_[pair->second]->place;
       k.friction = std::tan(parameters_.rockFrictionAngle);
       k.cohesion = parameters_.rockCohesion;
       k.bounce = bounceOf(c, approach, resting, parameters_.rockRestitution);
@@ -583,7 +582,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     {
       continue;
     }
-    const int b = work.place[i];
+    const int b = members_[i]->place;
     const GroupBody& body = work.bodies[b];
     StepOutcome outcome;
     outcome.frictionWork = body.frictionWork;

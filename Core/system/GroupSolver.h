@@ -12,8 +12,7 @@
 #include "block/Block.h"
 #include "solver/StepSolver.h"
 #include "solver/contactLaw.h"
-
-#include <Eigen/Sparse>
+#include "system/BlockMatrix.h"
 
 #include <array>
 #include <vector>
@@ -25,7 +24,7 @@ namespace rockfall
 enum class GroupMethod : std::uint8_t
 {
   Suited,    ///< Direct up to a size, iterative beyond.
-  Direct,    ///< Sparse LU of K.
+  Direct,    ///< Elimination of K's blocks.
   Iterative, ///< Gauss–Seidel over the contacts, in their own three directions.
 };
 
@@ -74,7 +73,7 @@ public:
   GroupMethod method = GroupMethod::Suited;
   /// Share of the largest displacement to which Gauss–Seidel goes.
   double tolerance = 1e-4;
-  int maxSweeps = 100;
+  int maxSweeps = 30;
 
 private:
   // Everything in world axes. A rotation over the step is the Cayley vector of its turn.
@@ -136,10 +135,9 @@ private:
   Vec3 travel(const Row& row) const;   ///< J D: along the normal and the two tangents, m.
   bool evaluate(double h, bool lasting);
   void loads(const StepRequest& request, const std::vector<GroupBody>& bodies);
-  bool newton(const StepRequest& request, const std::vector<GroupBody>& bodies, bool dense,
-    GroupOutcome& outcome);
-  bool solveDense(Eigen::VectorXd& next);
-  bool solveSparse(Eigen::VectorXd& next);
+  bool newton(
+    const StepRequest& request, const std::vector<GroupBody>& bodies, GroupOutcome& outcome);
+  bool solveDirect(Eigen::VectorXd& next);
   template <class Add>
   void assemble(Eigen::VectorXd& right, Add&& add) const;
   bool gaussSeidel(
@@ -155,8 +153,7 @@ private:
   std::vector<Point> points_;
   std::vector<Mover> movers_;
   double rate_ = 0.0;
-  Eigen::MatrixXd dense_;
-  std::vector<Eigen::Triplet<double>> triplets_;
+  BlockMatrix blocks_, kept_;
 };
 
 } // namespace rockfall

@@ -11,8 +11,7 @@ namespace rockfall
 namespace
 {
 
-/// Largest group whose matrix is dense, and largest one that is solved directly at all.
-constexpr std::size_t kDense = 12;
+/// Largest group that is solved directly.
 constexpr std::size_t kDirect = 60;
 /// As in the step of a single rock.
 constexpr double kGapTolerance = 1e-7;
@@ -21,13 +20,16 @@ constexpr double kGapTolerance = 1e-7;
 constexpr double kTurnTolerance = 1e-9;
 /// Gauss–Seidel: how often levers and gyroscopic moments are brought up to date in a step.
 constexpr int kLeverUpdates = 2;
+/// … unless no rock has turned otherwise than guessed by more than this, rad: gaps are then right
+/// to the square of it.
+constexpr double kTurnGuessed = 0.02;
 /// Changes below this share of the tolerance are no reason to visit a contact again.
 constexpr double kQuiet = 0.3;
 
 } // namespace
 
-bool GroupSolver::newton(const StepRequest& request, const std::vector<GroupBody>& bodies,
-  bool dense, GroupOutcome& outcome)
+bool GroupSolver::newton(
+  const StepRequest& request, const std::vector<GroupBody>& bodies, GroupOutcome& outcome)
 {
   const bool lasting = request.kind == StepKind::Lasting;
   this->evaluate(request.duration, lasting);
@@ -37,7 +39,7 @@ bool GroupSolver::newton(const StepRequest& request, const std::vector<GroupBody
   {
     ++outcome.iterations;
     this->loads(request, bodies);
-    if (!(dense ? this->solveDense(next) : this->solveSparse(next)))
+    if (!this->solveDirect(next))
     {
       return false;
     }
@@ -232,19 +234,18 @@ bool GroupSolver::gaussSeidel(
       outcome.residual = this->sweep(k, enough);
       settled = outcome.residual <= enough;
     }
-    double moved = 0.0;
+    double turned = 0.0;
     for (std::size_t i = 0; i < work_.size(); ++i)
     {
       Work& w = work_[i];
-      w.last = w.d;
+      turned = std::max(turned, (movers_[i].turn - w.d.tail<3>()).squaredNorm());
       w.d << movers_[i].way, movers_[i].turn;
-      moved = std::max(moved, (w.d - w.last).norm());
     }
     for (std::size_t k = 0; k < rows_.size(); ++k)
     {
       rows_[k].force = Eigen::Map<const Vec3>(points_[k].force);
     }
-    if (update > 0 && moved <= 10.0 * enough)
+    if (turned <= kTurnGuessed * kTurnGuessed)
     {
       break;
     }
@@ -272,7 +273,7 @@ GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody
   }
   else
   {
-    outcome.settled = this->newton(request, bodies, bodies.size() <= kDense, outcome);
+    outcome.settled = this->newton(request, bodies, outcome);
   }
   bool finite = true;
   for (const Work& w : work_)

@@ -3,7 +3,6 @@
 #include "system/GroupSolver.h"
 
 #include <Eigen/LU>
-#include <Eigen/SparseLU>
 
 namespace rockfall
 {
@@ -69,40 +68,33 @@ void GroupSolver::assemble(Eigen::VectorXd& right, Add&& add) const
   }
 }
 
-bool GroupSolver::solveDense(Eigen::VectorXd& next)
+namespace
 {
-  const Eigen::Index n = 6 * Eigen::Index(work_.size());
-  dense_.setZero(n, n);
-  Eigen::VectorXd right;
-  this->assemble(
-    right, [&](int i, int j, const Mat6& k) { dense_.block<6, 6>(6 * i, 6 * j) += k; });
-  next = dense_.partialPivLu().solve(right);
-  return next.allFinite();
-}
 
-bool GroupSolver::solveSparse(Eigen::VectorXd& next)
+/// The direct solution is checked: what is left over, as a share of the largest load.
+constexpr double kResidual = 1e-9;
+
+} // namespace
+
+bool GroupSolver::solveDirect(Eigen::VectorXd& next)
 {
-  triplets_.clear();
+  const int n = int(work_.size());
   Eigen::VectorXd right;
-  this->assemble(right,
-    [&](int i, int j, const Mat6& k)
-    {
-      for (int c = 0; c < 6; ++c)
-      {
-        for (int r = 0; r < 6; ++r)
-        {
-          triplets_.emplace_back(6 * i + r, 6 * j + c, k(r, c));
-        }
-      }
-    });
-  Eigen::SparseMatrix<double> matrix(right.size(), right.size());
-  matrix.setFromTriplets(triplets_.begin(), triplets_.end());
-  Eigen::SparseLU<Eigen::SparseMatrix<double>> lu(matrix);
-  if (lu.info() != Eigen::Success)
+  blocks_.reset(n);
+  this->assemble(right, [&](int i, int j, const Mat6& k) { blocks_.at(i, j) += k; });
+  kept_.copy(blocks_);
+  next = right;
+  if (blocks_.solve(next))
   {
-    return false;
+    const double left = (right - kept_.times(next)).cwiseAbs().maxCoeff();
+    if (left <= kResidual * right.cwiseAbs().maxCoeff())
+    {
+      return true;
+    }
   }
-  next = lu.solve(right);
+  // Friction makes K unsymmetric: where elimination by blocks does not hold, pivots are sought
+  // everywhere.
+  next = kept_.dense().partialPivLu().solve(right);
   return next.allFinite();
 }
 
