@@ -104,6 +104,12 @@ CHAPTERS = [
      "Released = kinetic + strain + friction + restitution + vibration + damping + numerical, over every trajectory "
      "of the shape "
      "test.", []),
+    ("Piles that stand",
+     "A column of ten cubes, a wall of 10 × 5 bricks and a dry-stone arch, every contact awake: nothing may creep, "
+     "and the floor carries the weight.", []),
+    ("Heaps",
+     "Cubes of 0.6 m³, turned at random, fall onto a floor and on each other: no overlap, rest, and a heap that is "
+     "the steeper the more friction there is.", ["heap-repose"]),
     ("Robustness",
      "Unreasonable input. Every case is a test of its own under a guard of 120 s of wall time, so that a hang "
      "is a failure.", []),

@@ -1,0 +1,192 @@
+#pragma once
+
+/// @file
+/// Piles of rocks, for the tests of mass falls.
+
+#include "simulation/MassFall.h"
+#include "slopes.h"
+
+#include <memory>
+#include <vector>
+
+namespace rockfall::testing
+{
+
+/// Rocks on a slope, run together.
+struct Pile
+{
+  Terrain ground;
+  std::vector<Rock> rocks;
+  std::vector<Block> blocks;
+  SimulationParameters parameters;
+  std::unique_ptr<Surface> surface;
+  std::unique_ptr<MassFall> fall;
+  bool awake = true; ///< Nothing sleeps.
+
+  void start()
+  {
+    for (const Rock& r : rocks)
+    {
+      blocks.emplace_back(r.shape, r.density, r.youngModulus, r.poissonRatio);
+    }
+    parameters.rockRockContact = true;
+    surface = std::make_unique<Surface>(ground, parameters.seed, 0);
+    fall = std::make_unique<MassFall>(*surface, rocks, blocks, parameters);
+    fall->awake = awake;
+    fall->release();
+  }
+  /// Over a duration, s; returns the time reached.
+  double run(double duration)
+  {
+    const double end = fall->time() + duration;
+    while (fall->time() < end - 1e-9 && fall->advance())
+    {
+    }
+    return fall->time();
+  }
+  std::vector<Vec3> places() const
+  {
+    std::vector<Vec3> all;
+    for (int i = 0; i < fall->rocks(); ++i)
+    {
+      all.push_back(fall->state(i).position);
+    }
+    return all;
+  }
+  /// The longest way of a rock from where it was, m.
+  double drift(const std::vector<Vec3>& from) const
+  {
+    double most = 0.0;
+    for (int i = 0; i < fall->rocks(); ++i)
+    {
+      most = std::max(most, (fall->state(i).position - from[i]).norm());
+    }
+    return most;
+  }
+  double fastest() const
+  {
+    double most = 0.0;
+    for (int i = 0; i < fall->rocks(); ++i)
+    {
+      most = std::max(most, fall->state(i).velocity.norm());
+    }
+    return most;
+  }
+  /// The deepest overlap of two rocks as they stand, m.
+  double overlap() const
+  {
+    double deepest = 0.0;
+    for (int i = 0; i < fall->rocks(); ++i)
+    {
+      PlacedBlock one;
+      one.place(blocks[i], fall->state(i));
+      PairBody first;
+      first.update(one);
+      for (int j = i + 1; j < fall->rocks(); ++j)
+      {
+        const double reach = blocks[i].radius() + blocks[j].radius();
+        if ((fall->state(i).position - fall->state(j).position).norm() < reach)
+        {
+          PlacedBlock other;
+          other.place(blocks[j], fall->state(j));
+          PairBody second;
+          second.update(other);
+          deepest = std::max(deepest, -findAxis(first, second, {}, 0.0).distance);
+        }
+      }
+    }
+    return deepest;
+  }
+  /// Sum of the slope's forces over the weight.
+  double carried() const
+  {
+    double force = 0.0, weight = 0.0;
+    for (int i = 0; i < fall->rocks(); ++i)
+    {
+      weight += blocks[i].mass() * parameters.gravity;
+      for (const Contact& c : fall->slopeContacts(i))
+      {
+        force += c.normalForce * c.normal.z();
+      }
+    }
+    return force / weight;
+  }
+};
+
+inline Terrain floorSlope(double friction = 35.0)
+{
+  return makeSlope(
+    9, 5.0, [](double, double) { return 0.0; }, material(0.3, friction));
+}
+
+inline Rock brick(const Vec3& size, const Vec3& center, std::int64_t id)
+{
+  std::vector<Vec3> corners;
+  for (int k = 0; k < 8; ++k)
+  {
+    corners.emplace_back((k & 1 ? 0.5 : -0.5) * size.x(), (k & 2 ? 0.5 : -0.5) * size.y(),
+      (k & 4 ? 0.5 : -0.5) * size.z());
+  }
+  Rock rock;
+  rock.blockId = id;
+  rock.shape = Polyhedron::convexHull(corners);
+  rock.position = center;
+  return rock;
+}
+
+/// Eleven voussoirs of a semicircle of 2 m inside and 3 m outside, standing on the floor.
+inline std::vector<Rock> arch()
+{
+  std::vector<Rock> rocks;
+  constexpr int stones = 11;
+  for (int k = 0; k < stones; ++k)
+  {
+    std::vector<Vec3> corners;
+    for (int s = 0; s < 2; ++s)
+    {
+      const double a = std::numbers::pi * (k + s) / stones;
+      for (double r : { 2.0, 3.0 })
+      {
+        for (double y : { -0.5, 0.5 })
+        {
+          corners.emplace_back(20.0 + r * std::cos(a), 20.0 + y, r * std::sin(a));
+        }
+      }
+    }
+    const Polyhedron hull = Polyhedron::convexHull(corners);
+    Rock rock;
+    rock.blockId = k;
+    rock.position = hull.integrals().centroid;
+    rock.shape = hull.centred();
+    rocks.push_back(rock);
+  }
+  return rocks;
+}
+
+/// Cubes of 1 m on each other.
+inline std::vector<Rock> column(int height)
+{
+  std::vector<Rock> rocks;
+  for (int i = 0; i < height; ++i)
+  {
+    rocks.push_back(brick(Vec3(1, 1, 1), Vec3(20.0, 20.0, 0.5 + i), i));
+  }
+  return rocks;
+}
+
+/// Bricks of 1 × 0.5 × 0.5 m in running bond, every second row a quarter of a brick on.
+inline std::vector<Rock> wall(int rows, int bricks)
+{
+  std::vector<Rock> rocks;
+  for (int row = 0; row < rows; ++row)
+  {
+    for (int k = 0; k < bricks; ++k)
+    {
+      rocks.push_back(brick(Vec3(1.0, 0.5, 0.5),
+        Vec3(18.0 + k + 0.25 * (row % 2), 20.0, 0.25 + 0.5 * row), bricks * row + k));
+    }
+  }
+  return rocks;
+}
+
+} // namespace rockfall::testing

@@ -1,0 +1,159 @@
+// Many rocks: piles that stand for a minute, heaps that come to rest without overlap and steeper
+// with more friction.
+
+#include "Core/piles.h"
+#include "verification.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+using namespace rockfall;
+using namespace rockfall::verification;
+using rockfall::testing::Pile;
+
+namespace
+{
+
+const char* const kStanding = "Piles that stand";
+const char* const kHeap = "Heaps";
+
+void stand(const char* name, Pile& pile)
+{
+  pile.start();
+  pile.run(1.0); // the springs take up the weight
+  const std::vector<Vec3> settled = pile.places();
+  const double duration = count(5, 59);
+  pile.run(duration);
+  const std::string circumstances =
+    std::string(name) + ", " + text(duration) + " s after the first second, nothing asleep: ";
+  recordAtMost({ kStanding, circumstances + "drift", "m", "the bar of a pile that stands" },
+    pile.drift(settled), 1e-4);
+  record({ kStanding, circumstances + "forces of the floor over the weight", "", "" },
+    pile.carried(), 1.0, 1e-3);
+}
+
+struct Heap
+{
+  double repose = 0.0;  ///< Angle, rad.
+  double overlap = 0.0; ///< The deepest at any time, of the edge of a cube.
+  double resting = 0.0; ///< Share of the cubes.
+  double duration = 0.0;
+};
+
+/// Cubes of 0.6 m³, turned at random, let fall onto a floor.
+Heap drop(int cubes, double friction)
+{
+  constexpr double kVolume = 0.6;
+  const double edge = std::cbrt(kVolume), spacing = 1.75 * edge; // room to be turned in
+  const int across = cubes >= 500 ? 6 : 3;
+  Pile pile;
+  pile.ground = rockfall::testing::makeSlope(
+    21, 5.0, [](double, double) { return 0.0; }, rockfall::testing::material(0.2, friction));
+  pile.awake = false;
+  pile.parameters.rockFrictionAngle = radians(friction);
+  pile.parameters.rockRestitution = 0.2;
+  pile.parameters.endTime = 60.0;
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  const Polyhedron cube = makeShape(Shape::Cube, kVolume);
+  for (int k = 0; k < cubes; ++k)
+  {
+    Rock rock;
+    rock.blockId = k;
+    rock.shape = cube;
+    const int place = k % (across * across), level = k / (across * across);
+    rock.position = Vec3(50.0 + spacing * (place % across - 0.5 * (across - 1)),
+      50.0 + spacing * (place / across - 0.5 * (across - 1)), edge + spacing * level);
+    rock.orientation = Quat(u(random), u(random), u(random), u(random)).normalized();
+    pile.rocks.push_back(rock);
+  }
+  pile.start();
+  Heap heap;
+  bool moves = true;
+  for (int step = 0; moves; ++step)
+  {
+    moves = pile.fall->advance();
+    if (step % 40 == 0 || !moves)
+    {
+      heap.overlap = std::max(heap.overlap, pile.overlap() / edge);
+    }
+  }
+  heap.duration = pile.fall->time();
+  // Of a cone of angle θ, the centre of gravity is at a quarter of its height and the mean distance
+  // from the axis is half of its radius: tan θ = 2 z / r.
+  Vec3 middle = Vec3::Zero();
+  int moving = 0;
+  for (int i = 0; i < cubes; ++i)
+  {
+    middle += pile.fall->state(i).position / cubes;
+    moving += pile.fall->state(i).velocity.norm() > 1e-6;
+  }
+  heap.resting = double(cubes - moving) / cubes;
+  double distance = 0.0;
+  for (int i = 0; i < cubes; ++i)
+  {
+    distance += (pile.fall->state(i).position - middle).head<2>().norm() / cubes;
+  }
+  heap.repose = std::atan(2.0 * middle.z() / distance);
+  return heap;
+}
+
+} // namespace
+
+TEST(MassFall, ColumnOfTenStands)
+{
+  Pile pile;
+  pile.ground = rockfall::testing::floorSlope();
+  pile.rocks = rockfall::testing::column(10);
+  stand("column of 10 cubes", pile);
+}
+
+TEST(MassFall, WallStands)
+{
+  Pile pile;
+  pile.ground = rockfall::testing::floorSlope();
+  pile.rocks = rockfall::testing::wall(10, 5);
+  stand("wall of 10 rows of 5 bricks", pile);
+}
+
+TEST(MassFall, ArchStands)
+{
+  Pile pile;
+  pile.ground = rockfall::testing::floorSlope(45.0);
+  pile.parameters.rockFrictionAngle = radians(40.0);
+  pile.rocks = rockfall::testing::arch();
+  stand("arch of 11 stones", pile);
+}
+
+TEST(MassFall, HeapsOfCubes)
+{
+  const int cubes = count(45, 1000);
+  const std::vector<double> frictions =
+    full() ? std::vector<double>{ 10.0, 20.0, 30.0, 40.0 } : std::vector<double>{ 10.0, 40.0 };
+  std::vector<double> angles;
+  for (const double friction : frictions)
+  {
+    const Heap heap = drop(cubes, friction);
+    const std::string circumstances = text(cubes) + " cubes of 0.6 m³, φ " + text(friction) + "°: ";
+    recordAtMost({ kHeap, circumstances + "deepest overlap", "of an edge", "the bar: 1 %" },
+      heap.overlap, 0.01);
+    record({ kHeap, circumstances + "share at rest in the end", "", "all of them" }, heap.resting,
+      1.0, 0.0);
+    report({ kHeap, circumstances + "time to rest", "s", "" }, heap.duration);
+    report({ kHeap, circumstances + "slope of the heap, 2 z / r of its mean height and distance",
+             "°", "" },
+      degrees(heap.repose));
+    angles.push_back(degrees(heap.repose));
+  }
+  for (std::size_t k = 1; k < angles.size(); ++k)
+  {
+    recordAtLeast({ kHeap,
+                    "slope of the heap at φ " + text(frictions[k]) + "° over that at φ " +
+                      text(frictions[k - 1]) + "°",
+                    "°", "it grows with φ" },
+      angles[k] - angles[k - 1], 0.0);
+  }
+  addCurve("heap-repose", text(cubes) + " cubes", frictions, angles);
+}
