@@ -17,6 +17,8 @@ namespace
 /// on its rock since the last step is the same.
 constexpr double kOnePoint = 1e-3;
 constexpr double kSamePoint = 0.05;
+/// What is deeper than reckoned by more than this share of the smaller radius is no compression.
+constexpr double kMisreckoned = 1e-4;
 
 /// A corner of the polygon that two faces share.
 struct Corner
@@ -240,6 +242,8 @@ void updatePair(const PairBody& first, const PairBody& second, double reach, Roc
   }
   const double same =
     kSamePoint * std::min(first.placed->block().radius(), second.placed->block().radius());
+  const double far =
+    kMisreckoned * std::min(first.placed->block().radius(), second.placed->block().radius());
   thread_local std::vector<char> taken, known;
   taken.assign(pair.contacts.size(), 0);
   known.assign(found.size(), 0);
@@ -283,6 +287,10 @@ void updatePair(const PairBody& first, const PairBody& second, double reach, Roc
         // Seen elsewhere the gap is another one: the spring keeps its compression.
         c.offset = c.distance - old.gap();
       }
+      // A step reckons with levers of its middle; where the rocks have turned far they end up
+      // deeper than reckoned, and that is no compression.
+      const double reckoned = std::min(0.0, old.gap());
+      c.offset = c.gap() < reckoned - far ? c.distance - reckoned : c.offset;
       c.stiffness = old.stiffness;
       c.shearStiffness = old.shearStiffness;
       c.dashpot = old.dashpot;

@@ -53,7 +53,7 @@ public:
   bool awake = false;
   GroupMethod method = GroupMethod::Suited;
   /// Largest group that resolves its impacts in time.
-  int resolved = 24;
+  int resolved = 64;
 
 private:
   struct Member

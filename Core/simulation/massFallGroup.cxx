@@ -19,9 +19,42 @@ constexpr double kDeepestImpact = 0.1;
 /// Steps per half period of an impact, as for single rocks.
 constexpr double kStepsPerImpact = 8.0;
 constexpr double kPressOut = 0.005;    // m/s, as for single rocks
+constexpr double kPressOutDeep = 0.02; // m/s, of overlaps beyond the loose one
 constexpr double kShearDamping = 5.0;  // as for single rocks
 constexpr double kLooseOverlap = 1e-3; // of the radius, as for single rocks
 constexpr double kTooShort = 1e-9;     // s
+
+/// Newton's law of restitution asked of a rock by several others at once may make energy. It holds
+/// for what meets one other only; rocks that are hit on several sides, or lie on something, come
+/// to rest against each other.
+void settleBounces(
+  std::size_t bodies, std::vector<GroupContact>& contacts, std::vector<int>& partners)
+{
+  constexpr int none = -3, several = -2; // else the other body, −1 the slope
+  partners.assign(bodies, none);
+  const auto meet = [&](int body, int other)
+  {
+    if (body >= 0)
+    {
+      int& partner = partners[body];
+      partner = partner == none || partner == other ? other : several;
+    }
+  };
+  for (const GroupContact& k : contacts)
+  {
+    if (k.bounce >= 0.0 || k.contact->closed())
+    {
+      meet(k.first, k.second);
+      meet(k.second, k.first);
+    }
+  }
+  for (GroupContact& k : contacts)
+  {
+    const bool alone =
+      partners[k.first] != several || (k.second >= 0 && partners[k.second] != several);
+    k.bounce = alone ? k.bounce : -1.0;
+  }
+}
 
 } // namespace
 
@@ -32,6 +65,7 @@ struct MassFall::Workspace
   std::vector<GroupBody> bodies;
   std::vector<GroupContact> contacts;
   std::vector<double> energyBefore;
+  std::vector<int> partners;
   std::vector<std::size_t> firsts; ///< First contact of each pair among `contacts`.
 };
 
@@ -309,8 +343,7 @@ void MassFall::advanceGroup(const Group& group, double until) const
       travel = sim.done_ ? travel : std::min(travel, sim.travelLimit());
     }
     const double remaining = until - now();
-    // A step without an impact resolved in it may go twice as far.
-    const double large = std::min(remaining, inTime ? travel : 2.0 * travel);
+    const double large = std::min(remaining, travel);
     const double small = inTime ? std::min(remaining, this->groupStep(group)) : large;
     const bool calm = this->isCalm(group);
     this->gatherContacts(group, calm || !inTime ? large : small);
@@ -452,6 +485,10 @@ void MassFall::solve(
     }
   }
   work.firsts.push_back(work.contacts.size());
+  if (bounces)
+  {
+    settleBounces(work.bodies.size(), work.contacts, work.partners);
+  }
   for (const GroupContact& k : work.contacts)
   {
     // What bounces has no acceleration to go on with.
@@ -563,10 +600,15 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
       // What was found overlapping is pressed out slowly.
       const double mass =
         std::min(members_[pair.first]->sim.block_.mass(), members_[pair.second]->sim.block_.mass());
-      const double way =
+      const double slow =
         std::min(kPressOut * h, 0.5 * mass * parameters_.gravity / parameters_.normalPenalty);
+      const double loose = kLooseOverlap *
+        std::min(
+          members_[pair.first]->sim.block_.radius(), members_[pair.second]->sim.block_.radius());
       for (Contact& c : pair.contacts)
       {
+        const bool deep = kind == StepKind::Lasting && c.offset < -loose;
+        const double way = deep ? kPressOutDeep * h : slow;
         c.offset = c.offset < 0.0 ? std::min(0.0, c.offset + way) : std::max(0.0, c.offset - way);
       }
     }

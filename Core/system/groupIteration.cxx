@@ -23,6 +23,9 @@ constexpr int kLeverUpdates = 2;
 /// … unless no rock has turned otherwise than guessed by more than this, rad: gaps are then right
 /// to the square of it.
 constexpr double kTurnGuessed = 0.02;
+/// Where nothing bounces forces are to be exact, and few contacts still change: so many times more
+/// sweeps.
+constexpr int kCalmSweeps = 10;
 /// Changes below this share of the tolerance are no reason to visit a contact again.
 constexpr double kQuiet = 0.3;
 
@@ -218,6 +221,9 @@ bool GroupSolver::gaussSeidel(
     scale = std::max(scale, w.d.head<3>().norm());
   }
   const double enough = tolerance * scale;
+  const bool calm = std::none_of(
+    rows_.begin(), rows_.end(), [](const Row& row) { return row.gap0 != row.law.gap0; });
+  const int most = calm ? kCalmSweeps * maxSweeps : maxSweeps;
   bool settled = false;
   for (int update = 0; update < kLeverUpdates; ++update)
   {
@@ -228,7 +234,7 @@ bool GroupSolver::gaussSeidel(
     this->loads(request, bodies);
     this->gather();
     settled = false;
-    for (int k = 0; k < maxSweeps && !settled; ++k)
+    for (int k = 0; k < most && !settled; ++k)
     {
       ++outcome.iterations;
       outcome.residual = this->sweep(k, enough);
@@ -265,15 +271,30 @@ GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody
 {
   GroupOutcome outcome;
   this->prepare(request, bodies, contacts);
+  const bool lasting = request.kind == StepKind::Lasting;
   const bool iterate =
     method == GroupMethod::Iterative || (method == GroupMethod::Suited && bodies.size() > kDirect);
-  if (iterate && request.kind == StepKind::Lasting)
+  if (iterate && lasting)
   {
     outcome.settled = this->gaussSeidel(request, bodies, outcome);
   }
   else
   {
     outcome.settled = this->newton(request, bodies, outcome);
+    if (!outcome.settled && takeAnyway)
+    {
+      // Newton that has not settled may be anywhere; Gauss–Seidel comes nearer with every sweep,
+      // and a lasting step makes no energy.
+      StepRequest calmer = request;
+      calmer.kind = StepKind::Lasting;
+      for (GroupBody& body : bodies)
+      {
+        body.acceleration.setZero();
+        body.spinAcceleration.setZero();
+      }
+      this->prepare(calmer, bodies, contacts);
+      this->gaussSeidel(calmer, bodies, outcome);
+    }
   }
   bool finite = true;
   for (const Work& w : work_)
