@@ -6,7 +6,8 @@ from helpers import messages_of
 from paraview import servermanager
 from paraview.simple import (
     DEMtoCFEMesh, DispersionAngle, HazardPassageReader, MergeCollectors, OutputPort,
-    PolyLineSource, RockBlocks, RockfallHazardMap, RockfallSimulation, SaveData, TrajectoryCollector, UpdatePipeline)
+    PolyLineSource, RockBlocks, RockfallHazardMap, RockfallSimulation, SaveData,
+    TrajectoryCollector, UpdatePipeline)
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 controller = vtkMultiProcessController.GetGlobalController()
