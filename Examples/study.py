@@ -15,19 +15,32 @@ study.json, all paths from where it stands:
       "terrain":    {"FileName": "dem.tif", "RoughnessDeviation": 0.1},
       "rocks":      {"FileName": "sources.csv"},
       "simulation": {"EndTime": 60, "Seed": 1, "TrajectoryOutput": "Thinned"},
+      "map":        {"CellSize": 4},
+      "lines":      {"FileName": "road.gpkg", "BarrierHeight": 3, "BarrierCapacity": 500},
+      "trajectories": true,
       "iterations": 1000,
       "chunk":      50
     }
 
-"terrain", "rocks" and "simulation" are properties of DEM to CFE Mesh, Rock Blocks and Rockfall
-Simulation. Files named in them count by their content, not by their name. FOLDER gets
+"terrain", "rocks", "simulation" and "lines" are properties of DEM to CFE Mesh, Rock Blocks, Rockfall
+Simulation and Trajectory Collector. "map" and "lines" may be left out, and then there are none; with
+"trajectories": false those are not kept. Files count by their content, not by their name. FOLDER gets
 
     manifest.json               what the study is
-    chunk-00000.vtp, .npz       trajectories and table of the first chunk, and so on
-    summary.csv                 the table of all chunks, once they are there
+    chunk-00000.npz             table of the first chunk, and so on
+    chunk-00000.vtp             its trajectories
+    chunk-00000.passages        what the map is made of
+    chunk-00000-crossings.vtp   what passed the lines
+
+and when all chunks are there
+
+    summary.csv                 the table of all rocks and iterations
+    hazard.tif                  the hazard map
+    crossings.csv, lines.csv, exceedance.csv     what passed the lines, and statistics of it
     study.json                  the state hash of every chunk and of the whole
 """
 import argparse
+import csv
 import hashlib
 import io
 import json
@@ -39,14 +52,16 @@ from paraview import servermanager
 from paraview.simple import *
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
-from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLPolyDataWriter
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
-FORMAT = 1  # of the files here: another one is another study
+FILES = ("FileName", "Layer", "Table")  # a property whose name ends so is a file
+FORMAT = 2  # of the files here: another one is another study
 controller = vtkMultiProcessController.GetGlobalController()
 # Without --sym the first rank alone runs the script.
 symmetric = controller is not None and controller.GetNumberOfProcesses() > 1 and \
     servermanager.vtkProcessModule.GetProcessModule().GetSymmetricMPIMode()
+PARTS = ("terrain", "rocks", "simulation", "map", "lines")  # of a study: properties of proxies
 first_rank = not symmetric or controller.GetLocalProcessId() == 0
 
 
@@ -82,12 +97,12 @@ def read_study(path):
         refuse(f"{path} is not JSON: {error}")
     if not isinstance(study, dict):
         refuse(f"{path} must be an object with terrain, rocks, simulation, iterations and chunk")
-    known = {"terrain": dict, "rocks": dict, "simulation": dict, "iterations": int, "chunk": int}
+    known = {**dict.fromkeys(PARTS, dict), "trajectories": bool, "iterations": int, "chunk": int}
     for key, value in study.items():
         if key not in known:
             refuse(f"{path}: there is no \"{key}\" in a study, it knows {', '.join(known)}")
-        if not isinstance(value, known[key]) or isinstance(value, bool):
-            kind = "an object" if known[key] is dict else "a whole number"
+        if type(value) is not known[key]:
+            kind = {dict: "an object", bool: "true or false", int: "a whole number"}[known[key]]
             refuse(f"{path}: \"{key}\" is {json.dumps(value)}, it must be {kind}")
     for key in ("iterations", "chunk"):
         if study.get(key, 0) < 1:
@@ -96,11 +111,20 @@ def read_study(path):
         if key in study.get("simulation", {}):
             refuse(f"{path}: \"{key}\" of simulation is this script's; use \"iterations\", \"chunk\" "
                    "and --threads")
+    if "map" in study or "lines" in study:
+        kept = study.get("simulation", {}).get("TrajectoryOutput", "Full")
+        if kept not in ("Thinned", "Full", 3, 4):
+            refuse(f"{path}: TrajectoryOutput of simulation is {json.dumps(kept)}, but \"map\" and "
+                   "\"lines\" need \"Thinned\" or \"Full\"")
+    if "lines" in study and not study["lines"].get("FileName"):
+        refuse(f"{path}: \"lines\" has no FileName")
     base = os.path.dirname(os.path.abspath(path))
+    study.setdefault("trajectories", True)
     for part in ("terrain", "rocks", "simulation"):
         study.setdefault(part, {})
-        for name, value in study[part].items():
-            if name.endswith("FileName") and value:
+    for part in PARTS:
+        for name, value in study.get(part, {}).items():
+            if name.endswith(FILES) and value:
                 study[part][name] = os.path.join(base, value)
                 if not os.path.isfile(study[part][name]):
                     refuse(f"{path}: {part} {name}: there is no file {study[part][name]}")
@@ -117,10 +141,11 @@ def content(path):
 
 def identity(study):
     """What makes a study this one: all that its results depend on, files by their content."""
-    result = {"format": FORMAT, "iterations": study["iterations"], "chunk": study["chunk"]}
-    for part in ("terrain", "rocks", "simulation"):
+    result = {"format": FORMAT}
+    result.update((key, study[key]) for key in ("trajectories", "iterations", "chunk"))
+    for part in filter(study.__contains__, PARTS):
         result[part] = {
-            name: "sha256 " + content(value) if name.endswith("FileName") and value else value
+            name: "sha256 " + content(value) if name.endswith(FILES) and value else value
             for name, value in sorted(study[part].items())}
     return result
 
@@ -179,17 +204,46 @@ def from_first_rank(work):
     return result
 
 
-def table_of(simulation):
-    table = simulation.GetClientSideObject().GetOutputDataObject(3)
+def output(proxy, port=0):
+    """What a proxy made on this rank. Ends all ranks if the first has nothing but an error."""
+    data = proxy.GetClientSideObject().GetOutputDataObject(port)
+
+    def check():
+        if data.GetFieldData().GetAbstractArray("Error"):
+            refuse("The study cannot be done; the message above says why.")
+
+    from_first_rank(check)
+    return data
+
+
+def columns_of(fields):
+    """Arrays as {name: numbers or texts}, a vector as three columns that end in X, Y and Z."""
     columns = {}
-    for c in range(table.GetNumberOfColumns()):
-        column = table.GetColumn(c)
-        if column.IsNumeric():
-            columns[table.GetColumnName(c)] = vtk_to_numpy(column).copy()
+    for k in range(fields.GetNumberOfArrays()):
+        array = fields.GetAbstractArray(k)
+        if not array.IsNumeric():
+            columns[array.GetName()] = np.array(
+                [array.GetValue(n) for n in range(array.GetNumberOfValues())], dtype=str)
+        elif array.GetNumberOfComponents() == 1:
+            columns[array.GetName()] = vtk_to_numpy(array).copy()
         else:
-            columns[table.GetColumnName(c)] = np.array(
-                [column.GetValue(k) for k in range(column.GetNumberOfValues())])
+            for n, values in enumerate(vtk_to_numpy(array).T):
+                columns[array.GetName() + "XYZ"[n]] = values.copy()
     return columns
+
+
+def write_csv(path, tables):
+    """Tables of the same columns as one."""
+    names = list(tables[0])
+
+    def write(other):
+        with open(other, "w", encoding="utf-8", newline="") as file:
+            writer = csv.writer(file, lineterminator="\n")
+            writer.writerow(names)
+            for table in tables:
+                writer.writerows(zip(*(table[name].tolist() for name in names)))
+
+    whole(path, write)
 
 
 def write_npz(path, columns):
@@ -202,55 +256,132 @@ def write_npz(path, columns):
                              compress_type=zipfile.ZIP_DEFLATED)
 
 
-def write_chunk(simulation, stem):
-    """Trajectories first, table last: a chunk is there when its table is."""
-    if simulation.GetClientSideObject().GetOutputDataObject(3).GetNumberOfRows() == 0:
-        refuse("The simulation made nothing; the message above says why.")
-    lines = simulation.GetClientSideObject().GetOutputDataObject(1)
-
-    def write_lines(other):
+def write_polydata(path, data):
+    def write(other):
         writer = vtkXMLPolyDataWriter()
-        writer.SetInputData(lines)
+        writer.SetInputData(data)
         writer.SetFileName(other)
         writer.SetDataModeToBinary()
         if writer.Write() != 1:
             raise OSError(f"{other} could not be written")
 
-    whole(stem + ".vtp", write_lines)
-    columns = table_of(simulation)
-    field = simulation.GetClientSideObject().GetOutputDataObject(3).GetFieldData()
-    columns["StateHash"] = np.array(field.GetAbstractArray("StateHash").GetValue(0))
-    whole(stem + ".npz", lambda other: write_npz(other, columns))
+    whole(path, write)
 
 
-def combine(folder, stems):
-    """The results of the whole study, from its chunks alone."""
+def write_by(writer, path):
+    """Has a writer's proxy write its file, on the first rank; the other ranks take part."""
+    head, tail = os.path.split(os.path.abspath(path))
+    unfinished = os.path.join(head, ".unfinished-" + tail)
+
+    def remove():
+        if os.path.exists(unfinished):
+            os.remove(unfinished)
+
+    def check(other):
+        if not os.path.exists(other):
+            refuse(f"{path} could not be made; the message above says why.")
+
+    from_first_rank(remove)
+    writer.FileName = unfinished
+    writer.UpdatePipeline()
+    from_first_rank(lambda: whole(path, check))
+
+
+class Pipeline:
+    """Slope, rocks, simulation and what is made of its trajectories."""
+
+    def __init__(self, study, threads):
+        self.study = study
+        self.slope = make(DEMtoCFEMesh, "terrain", study["terrain"])
+        rocks = make(RockBlocks, "rocks", {"Terrain": self.slope, **study["rocks"]})
+        self.simulation = make(RockfallSimulation, "simulation", {
+            "PrintProgress": 1, "KeepImpacts": 0, **study["simulation"], "Terrain": self.slope,
+            "Rocks": rocks, "NumberOfThreads": threads})
+        lines = OutputPort(self.simulation, 1)
+        self.passages = self.crossings = None
+        if "map" in study:
+            self.passages = make(servermanager.writers.HazardPassageWriter, "map", {
+                **study["map"], "Input": lines, "Terrain": self.slope})
+        if "lines" in study:
+            self.crossings = make(TrajectoryCollector, "lines", {
+                **study["lines"], "Input": lines, "Terrain": self.slope})
+
+    def write_chunk(self, stem, first, iterations):
+        """A chunk is there when its table is, so that comes last."""
+        self.simulation.FirstIteration = first
+        self.simulation.Iterations = iterations
+        UpdatePipeline(0.0, self.simulation)
+        table = output(self.simulation, 3)
+        lines = output(self.simulation, 1)
+        if self.study["trajectories"]:
+            from_first_rank(lambda: write_polydata(stem + ".vtp", lines))
+        if self.passages:
+            write_by(self.passages, stem + ".passages")
+        if self.crossings:
+            UpdatePipeline(proxy=self.crossings)
+            crossings = output(self.crossings)
+            from_first_rank(lambda: write_polydata(stem + "-crossings.vtp", crossings))
+
+        def write_table():
+            columns = columns_of(table.GetRowData())
+            state = table.GetFieldData().GetAbstractArray("StateHash").GetValue(0)
+            whole(stem + ".npz", lambda other: write_npz(other, {**columns, "StateHash": state}))
+
+        from_first_rank(write_table)
+
+
+def combine_tables(folder, stems):
+    """The table of the whole study, from its chunks alone; gives their state hashes."""
     hashes = []
     tables = []
     for stem in stems:
         with np.load(stem + ".npz") as chunk:
             tables.append({name: chunk[name] for name in chunk.files if name != "StateHash"})
             hashes.append(str(chunk["StateHash"]))
-    names = list(tables[0])
+    write_csv(os.path.join(folder, "summary.csv"), tables)
+    return hashes
 
-    def write_summary(other):
-        with open(other, "w", encoding="utf-8") as file:
-            file.write(",".join(names) + "\n")
-            for table in tables:
-                for row in zip(*(table[name].tolist() for name in names)):
-                    file.write(",".join(v if isinstance(v, str) else repr(v) for v in row) + "\n")
 
-    whole(os.path.join(folder, "summary.csv"), write_summary)
+def combine_crossings(folder, stems, merge):
+    """Crossings, and the tables of all of them. `merge` is the filter itself: no other rank takes
+    part, and its inputs have no proxies."""
+    for stem in stems:
+        reader = vtkXMLPolyDataReader()
+        reader.SetFileName(stem + "-crossings.vtp")
+        reader.Update()
+        merge.AddInputDataObject(0, reader.GetOutput())
+    merge.Update()
+    points = merge.GetOutputDataObject(0)
+    if points.GetFieldData().GetAbstractArray("Error"):
+        refuse("The crossings cannot be merged; the message above says why.")
+    places = vtk_to_numpy(points.GetPoints().GetData()).reshape(-1, 3)
+    write_csv(os.path.join(folder, "crossings.csv"),
+              [{**dict(zip("XYZ", places.T)), **columns_of(points.GetPointData())}])
+    for port, name in ((1, "lines.csv"), (2, "exceedance.csv")):
+        write_csv(os.path.join(folder, name),
+                  [columns_of(merge.GetOutputDataObject(port).GetRowData())])
 
-    # Maps and collectors of the whole study are made here, from the trajectories of all chunks:
-    # lines = AppendDatasets(Input=[XMLPolyDataReader(FileName=[stem + ".vtp"]) for stem in stems])
 
-    write_text(os.path.join(folder, "study.json"), json.dumps(
-        {"chunks": hashes, "whole": hashlib.sha256("".join(hashes).encode()).hexdigest()}, indent=1)
-        + "\n")
-    for name in os.listdir(folder):  # what a killed run left
-        if name.startswith(".unfinished-"):
-            os.remove(os.path.join(folder, name))
+def combine(study, folder, stems):
+    """The results of the whole study, from the files of its chunks alone."""
+    hashes = from_first_rank(lambda: combine_tables(folder, stems))
+    if "lines" in study:
+        merge = servermanager.filters.MergeCollectors().GetClientSideObject()
+        from_first_rank(lambda: combine_crossings(folder, stems, merge))
+    if "map" in study:
+        hazard = HazardPassageReader(FileNames=[stem + ".passages" for stem in stems])
+        writer = servermanager.writers.HazardMapWriter(Input=hazard)
+        write_by(writer, os.path.join(folder, "hazard.tif"))
+
+    def finish():
+        write_text(os.path.join(folder, "study.json"), json.dumps(
+            {"chunks": hashes, "whole": hashlib.sha256("".join(hashes).encode()).hexdigest()},
+            indent=1) + "\n")
+        for name in os.listdir(folder):  # what a killed run left
+            if name.startswith(".unfinished-"):
+                os.remove(os.path.join(folder, name))
+
+    from_first_rank(finish)
 
 
 def begin(chosen):
@@ -297,25 +428,17 @@ def main():
     study, done = from_first_rank(lambda: begin(chosen))
     if any(done):
         say(f"{sum(done)} of {len(done)} chunks are there already")
-    simulation = None
+    pipeline = None
     for k, there in enumerate(done):
         if there:
             continue
-        if simulation is None:
-            slope = make(DEMtoCFEMesh, "terrain", study["terrain"])
-            rocks = make(RockBlocks, "rocks", study["rocks"])
-            simulation = make(RockfallSimulation, "simulation", {
-                "PrintProgress": 1, **study["simulation"], "Terrain": slope, "Rocks": rocks,
-                "NumberOfThreads": chosen.threads})
-        simulation.FirstIteration = k * study["chunk"]
-        simulation.Iterations = min(study["chunk"], study["iterations"] - k * study["chunk"])
-        UpdatePipeline(0.0, simulation)
-        from_first_rank(lambda: write_chunk(simulation, stem_of(chosen, k)))
-        say(f"chunk {k + 1} of {len(done)}: {simulation.Iterations} iterations from "
-            f"{simulation.FirstIteration}")
-    stems = [stem_of(chosen, k) for k in range(len(done))]
-    from_first_rank(lambda: combine(chosen.folder, stems))
-    say(f"Done: {os.path.join(chosen.folder, 'summary.csv')}")
+        pipeline = pipeline or Pipeline(study, chosen.threads)
+        first = k * study["chunk"]
+        iterations = min(study["chunk"], study["iterations"] - first)
+        pipeline.write_chunk(stem_of(chosen, k), first, iterations)
+        say(f"chunk {k + 1} of {len(done)}: {iterations} iterations from {first}")
+    combine(study, chosen.folder, [stem_of(chosen, k) for k in range(len(done))])
+    say(f"Done: {chosen.folder}")
 
 
 main()

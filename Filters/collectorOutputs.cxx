@@ -59,8 +59,8 @@ std::vector<CollectorLine> linesOf(
 }
 
 void writeCrossings(std::span<const CollectedCrossing> crossings,
-  std::span<const CollectorLine> lines, const Vec3& origin, vtkPolyData* trajectories,
-  vtkPolyData* output)
+  std::span<const CollectorLine> lines, std::int64_t released, const Vec3& origin,
+  vtkPolyData* trajectories, vtkPolyData* output)
 {
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
@@ -117,6 +117,15 @@ void writeCrossings(std::span<const CollectedCrossing> crossings,
   }
   output->SetPoints(points);
   output->SetVerts(vertices);
+  vtkFieldData* field = output->GetFieldData();
+  addArray<vtkIdTypeArray>(field, "CollectorReleased")->InsertNextValue(released);
+  const auto lineNames = addArray<vtkStringArray>(field, "CollectorLineName");
+  const auto barriers = addArray<vtkDoubleArray>(field, "CollectorBarrier", 2);
+  for (const CollectorLine& of : lines)
+  {
+    lineNames->InsertNextValue(of.name);
+    barriers->InsertNextTuple2(of.barrierHeight, of.barrierCapacity / 1000.0);
+  }
 }
 
 void writeLines(

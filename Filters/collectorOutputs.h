@@ -26,10 +26,11 @@ struct CollectedCrossing
 std::vector<CollectorLine> linesOf(
   vtkPolyData* input, const Vec3& origin, const CollectorLine& barrier);
 
-/// One vertex per passing. Other cell arrays of the trajectories go along.
+/// One vertex per passing. Other cell arrays of the trajectories go along. The field data say what
+/// the tables need beside: CollectorReleased, CollectorLineName and CollectorBarrier.
 void writeCrossings(std::span<const CollectedCrossing> crossings,
-  std::span<const CollectorLine> lines, const Vec3& origin, vtkPolyData* trajectories,
-  vtkPolyData* output);
+  std::span<const CollectorLine> lines, std::int64_t released, const Vec3& origin,
+  vtkPolyData* trajectories, vtkPolyData* output);
 
 /// One row per line.
 void writeLines(

@@ -5,6 +5,7 @@
 #include "geometry/shell.h"
 #include "rockPaths.h"
 #include "statistics/HazardRaster.h"
+#include "statistics/passageFile.h"
 #include "terrainFieldData.h"
 
 #include "vtkCellData.h"
@@ -17,6 +18,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <initializer_list>
 #include <limits>
 #include <optional>
@@ -52,6 +54,16 @@ struct Range
 Range rangeOf(double low, double high, double start, double cell)
 {
   return { std::floor((low - start) / cell), std::floor((high - start) / cell) };
+}
+
+void checkSize(double columns, double rows, double cell)
+{
+  if (!(columns * rows <= double(mostCells)))
+  {
+    throw ParameterError("A map of " + numberText(columns) + " x " + numberText(rows) +
+      " cells of " + numberText(cell) + " m has more than " + std::to_string(mostCells) +
+      ": give a larger CellSize, or switch CropToTrajectories on");
+  }
 }
 
 /// The grid in the local frame.
@@ -95,12 +107,7 @@ CellGrid gridOf(vtkPolyData* trajectories, const Terrain* terrain, const HazardM
     }
   }
   const double width = columns.last - columns.first + 1.0, depth = rows.last - rows.first + 1.0;
-  if (!(width * depth <= double(mostCells)))
-  {
-    throw ParameterError("A map of " + numberText(width) + " x " + numberText(depth) +
-      " cells of " + numberText(cell) + " m has more than " + std::to_string(mostCells) +
-      ": give a larger CellSize, or switch CropToTrajectories on");
-  }
+  checkSize(width, depth, cell);
   grid.columns = int(width);
   grid.rows = int(depth);
   grid.west = columns.first * cell;
@@ -203,13 +210,40 @@ void markEmptyMap(vtkImageData* image)
   addMarker(image, { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 });
 }
 
-void makeHazardImage(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
-  const HazardMapOptions& options, vtkImageData* image)
+namespace
+{
+
+/// The map but for its heights and coordinate system. `corner`: the south-western one, in the
+/// world.
+void fillImage(const CellGrid& grid, const Vec3& corner, std::int64_t released, bool withTerrain,
+  const std::function<void(const UseCell&)>& summarize, vtkImageData* image)
+{
+  image->Initialize();
+  image->SetExtent(0, grid.columns, 0, grid.rows, 0, 0);
+  image->SetOrigin(corner.x(), corner.y(), 0.0);
+  image->SetSpacing(grid.cellSize, grid.cellSize, grid.cellSize);
+  Layers layers(image);
+  summarize([&layers](const CellSummary& cell) { layers.set(cell); });
+  image->GetCellData()->SetActiveScalars("ReachProbability"); // what a viewer begins with
+  addMarker(image,
+    { double(grid.columns), double(grid.rows), grid.cellSize, corner.x(), corner.y(),
+      double(released), withTerrain ? 1.0 : 0.0 });
+}
+
+void checkLines(vtkPolyData* trajectories)
 {
   if (trajectories->GetNumberOfLines() == 0)
   {
     throw DataError("The Input has no lines; the trajectories of Rockfall Simulation are wanted");
   }
+}
+
+} // namespace
+
+void makeHazardImage(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
+  const HazardMapOptions& options, vtkImageData* image)
+{
+  checkLines(trajectories);
   std::optional<Terrain> terrain;
   Vec3 origin = Vec3::Zero();
   if (terrainMesh)
@@ -231,22 +265,35 @@ void makeHazardImage(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
   const CellGrid grid = gridOf(trajectories, ground, options, origin);
   HazardRaster raster(grid, ground);
   forEachPath(trajectories, origin, [&](const RockPath& path, std::int64_t) { raster.add(path); });
-
-  image->Initialize();
-  image->SetExtent(0, grid.columns, 0, grid.rows, 0, 0);
-  image->SetOrigin(origin.x() + grid.west, origin.y() + grid.south, 0.0);
-  image->SetSpacing(grid.cellSize, grid.cellSize, grid.cellSize);
-  Layers layers(image);
-  raster.summarize([&layers](const CellSummary& cell) { layers.set(cell); });
+  fillImage(
+    grid, origin + Vec3(grid.west, grid.south, 0.0), raster.released(), terrain.has_value(),
+    [&raster](const UseCell& use) { raster.summarize(use); }, image);
   if (terrain)
   {
     addElevation(*terrain, grid, image);
   }
-  image->GetCellData()->SetActiveScalars("ReachProbability"); // what a viewer begins with
-  addMarker(image,
-    { double(grid.columns), double(grid.rows), grid.cellSize, origin.x() + grid.west,
-      origin.y() + grid.south, double(raster.released()), terrain ? 1.0 : 0.0 });
   copyCoordinateSystem(trajectories->GetFieldData(), image->GetFieldData());
+}
+
+void makeHazardImage(const PassageFiles& files, vtkImageData* image)
+{
+  const CellGrid& grid = files.grid();
+  checkSize(grid.columns, grid.rows, grid.cellSize);
+  fillImage(
+    grid, Vec3(grid.west, grid.south, 0.0), files.released(), true,
+    [&files](const UseCell& use) { files.summarize(use); }, image);
+  writeCoordinateSystem(files.crs(), files.origin(), image->GetFieldData());
+}
+
+void writeHazardPassages(
+  vtkPolyData* trajectories, vtkPolyData* terrainMesh, double cellSize, const std::string& fileName)
+{
+  checkLines(trajectories);
+  const Terrain terrain = readTerrain(terrainMesh);
+  const Vec3 origin = terrain.geometry().origin();
+  HazardRaster raster(gridOf(trajectories, &terrain, { cellSize, false }, origin), &terrain);
+  forEachPath(trajectories, origin, [&](const RockPath& path, std::int64_t) { raster.add(path); });
+  writePassages(raster, origin, readCrs(trajectories->GetFieldData()), fileName);
 }
 
 } // namespace rockfall::filters

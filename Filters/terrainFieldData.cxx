@@ -369,6 +369,12 @@ std::string readCrs(vtkFieldData* fieldData)
   return crs && crs->GetNumberOfValues() > 0 ? std::string(crs->GetValue(0)) : std::string();
 }
 
+void writeCoordinateSystem(const std::string& wkt, const Vec3& origin, vtkFieldData* fieldData)
+{
+  addArray<vtkStringArray>(fieldData, crsName)->InsertNextValue(wkt);
+  addNumbers(fieldData, originName, { origin.x(), origin.y(), origin.z() });
+}
+
 void copyCoordinateSystem(vtkFieldData* from, vtkFieldData* to)
 {
   for (const char* name : { crsName, originName })

@@ -50,6 +50,9 @@ void writeCrs(const std::string& wkt, vtkFieldData* fieldData);
 /// TerrainCRS as WKT; empty if it is not there.
 std::string readCrs(vtkFieldData* fieldData);
 
+/// Puts TerrainCRS and LocalOrigin there.
+void writeCoordinateSystem(const std::string& wkt, const Vec3& origin, vtkFieldData* fieldData);
+
 /// Copies TerrainCRS and LocalOrigin, for the outputs that stand in the same coordinates.
 void copyCoordinateSystem(vtkFieldData* from, vtkFieldData* to);
 

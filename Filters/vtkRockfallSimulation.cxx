@@ -245,9 +245,17 @@ bool vtkRockfallSimulation::Simulate(vtkPolyData* terrainInput, vtkPolyData* roc
 }
 
 //------------------------------------------------------------------------------
+void vtkRockfallSimulation::Forget()
+{
+  this->Kept.reset();
+  this->StateHash.clear();
+}
+
+//------------------------------------------------------------------------------
 int vtkRockfallSimulation::Fail(
   vtkPolyData* terrain, vtkPolyData* rocks, const std::string& message)
 {
+  this->Forget();
   this->Failed =
     std::make_unique<Failure>(Failure{ this->GetMTime(), Stamp(terrain), Stamp(rocks), message });
   // The others have the same message, and are silent.
@@ -280,6 +288,7 @@ int vtkRockfallSimulation::RequestData(
   const std::vector<int> known = ranks.gather(inherited ? 2 : (again ? 1 : 0));
   if (*std::max_element(known.begin(), known.end()) == 2)
   {
+    this->Forget();
     return 1;
   }
   if (*std::min_element(known.begin(), known.end()) == 1)

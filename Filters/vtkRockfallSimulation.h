@@ -237,6 +237,7 @@ private:
   struct Cache;
   struct Failure;
 
+  void Forget(); ///< The kept run, as it is not what the outputs have.
   /// Reports an error of this execution, once for all ranks, and remembers of what it is the error.
   int Fail(vtkPolyData* terrain, vtkPolyData* rocks, const std::string& message);
   /// Simulates unless the kept run is that of these inputs and properties. False if aborted.

@@ -196,7 +196,7 @@ int vtkTrajectoryCollector::RequestData(
     }
 
     vtkNew<vtkPolyData> points;
-    filters::writeCrossings(crossings, lines, origin, trajectories, points);
+    filters::writeCrossings(crossings, lines, released, origin, trajectories, points);
     vtkNew<vtkTable> table, exceedance;
     filters::writeLines(summaries, lines, table);
     filters::writeExceedance(summaries, released, exceedance);

@@ -45,12 +45,16 @@ double lengthOf(const Contours& contours)
   return length;
 }
 
+/// Width over length below which a TIN of the lines is nothing but needles.
+constexpr double narrowest = 1e-3;
+
 /// To metres on the ground.
 void toMetric(
   Contours& contours, const CrsPtr& crs, RasterSurface& result, const std::string& fileName)
 {
   const Box box = boxOf(contours);
-  if (!(box.xMax > box.xMin && box.yMax > box.yMin))
+  const double wide = box.xMax - box.xMin, deep = box.yMax - box.yMin;
+  if (!(std::min(wide, deep) > narrowest * std::max(wide, deep)))
   {
     throw DataError(fileName + ": its lines span " + boxText(box) + ", that is no area");
   }

@@ -17,6 +17,9 @@ using namespace gis;
 namespace
 {
 
+/// Every trajectory is held against every line.
+constexpr std::size_t mostLines = 10'000;
+
 class LineReader
 {
 public:
@@ -159,6 +162,11 @@ std::vector<LayerLine> readLineLayer(const std::string& fileName, const std::str
   while (const OGRFeatureUniquePtr feature{ layer.GetNextFeature() })
   {
     reader.read(*feature);
+    if (reader.lines.size() > mostLines)
+    {
+      throw DataError(fileName + ": layer \"" + layer.GetName() + "\" has more than " +
+        std::to_string(mostLines) + " lines; leave out those that no rock can reach");
+    }
   }
   if (!messages.failure().empty())
   {

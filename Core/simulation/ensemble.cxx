@@ -28,6 +28,9 @@ namespace
 
 /// Shallower overlaps at the start are rounding: a rock laid on the slope by computed coordinates.
 constexpr double kLaidDown = 1e-6; // of the radius
+/// Over the slope, m. Rocks start on the slope or a fall over it; 1000 m read as feet are 2000 m
+/// too high.
+constexpr double kHighest = 500.0;
 
 std::string where(const Vec3& world)
 {
@@ -46,6 +49,13 @@ void checkPlacement(const Terrain& terrain, const Rock& rock, const Block& block
       " is outside the slope: there is no CFE under it (the slope spans x " +
       std::to_string(g.xOrigin) + " to " + std::to_string(g.xOrigin + terrain.width()) + ", y " +
       std::to_string(g.yOrigin) + " to " + std::to_string(g.yOrigin + terrain.height()) + ")");
+  }
+  const double height = rock.position.z() - terrain.elevation(rock.position.x(), rock.position.y());
+  if (height > kHighest)
+  {
+    throw PlacementError(name + " is " + std::to_string(height) + " m over the slope, more than " +
+      std::to_string(int(kHighest)) +
+      " m: is its height in feet, or that of another reference than the slope's?");
   }
   if (rock.uncertainty.horizontalDeviation > std::hypot(terrain.width(), terrain.height()))
   {

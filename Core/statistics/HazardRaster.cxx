@@ -54,22 +54,6 @@ double maximum(const Cubic& f, double from, double to)
 
 } // namespace
 
-std::string hazardName(Hazard hazard)
-{
-  switch (hazard)
-  {
-    case Hazard::KineticEnergy:
-      return "KineticEnergy";
-    case Hazard::Speed:
-      return "Speed";
-    case Hazard::HeightOverGround:
-      return "HeightOverGround";
-    case Hazard::RotationRate:
-      break;
-  }
-  return "RotationRate";
-}
-
 HazardRaster::HazardRaster(const CellGrid& grid, const Terrain* terrain)
   : grid_(grid)
   , terrain_(terrain)
@@ -223,7 +207,7 @@ void HazardRaster::add(const RockPath& path)
   }
   if (path.rested && here_ >= 0)
   {
-    stops_.push_back(std::uint32_t(here_));
+    visits_.back().stopped = 1; // that of here_
   }
   std::stable_sort(visits_.begin(), visits_.end(),
     [](const Passage& a, const Passage& b) { return a.cell < b.cell; });
@@ -233,6 +217,7 @@ void HazardRaster::add(const RockPath& path)
     if (known && &visit != &visits_.front() && known->cell == visit.cell)
     {
       ++known->entries;
+      known->stopped |= visit.stopped;
       for (std::size_t k = 0; k < known->maxima.size(); ++k)
       {
         known->maxima[k] = std::max(known->maxima[k], visit.maxima[k]);
@@ -254,7 +239,6 @@ void HazardRaster::merge(const HazardRaster& other)
     throw ParameterError("Hazard rasters of different grids cannot be merged");
   }
   passages_.insert(passages_.end(), other.passages_.begin(), other.passages_.end());
-  stops_.insert(stops_.end(), other.stops_.begin(), other.stops_.end());
   for (const auto& [iteration, count] : other.releasedIn_)
   {
     releasedIn_[iteration] += count;
@@ -262,83 +246,20 @@ void HazardRaster::merge(const HazardRaster& other)
   released_ += other.released_;
 }
 
-void HazardRaster::summarize(const std::function<void(const CellSummary&)>& use)
+const std::vector<Passage>& HazardRaster::sorted()
 {
-  const auto key = [](const Passage& p) { return std::tie(p.cell, p.iteration, p.rock); };
-  tbb::parallel_sort(passages_.begin(), passages_.end(),
-    [key](const Passage& a, const Passage& b) { return key(a) < key(b); });
-  std::sort(stops_.begin(), stops_.end());
-  double squaredReleases = 0.0; // Σ Rᵢ², Rᵢ the rocks released in iteration i
-  for (const auto& [iteration, count] : releasedIn_)
+  tbb::parallel_sort(passages_.begin(), passages_.end());
+  return passages_;
+}
+
+void HazardRaster::summarize(const UseCell& use)
+{
+  CellSummarizer summarizer(releasedIn_, use);
+  for (const Passage& passage : this->sorted())
   {
-    squaredReleases += double(count) * double(count);
+    summarizer.add(passage);
   }
-  const double iterations = double(releasedIn_.size());
-  const double all = double(released_);
-  std::array<std::vector<double>, hazardCount> values;
-  auto stop = stops_.begin();
-  for (std::size_t first = 0; first < passages_.size();)
-  {
-    CellSummary summary;
-    const std::uint32_t cell = passages_[first].cell;
-    summary.cell = cell;
-    for (std::vector<double>& list : values)
-    {
-      list.clear();
-    }
-    std::size_t k = first;
-    struct Count
-    {
-      double rocks, released;
-    };
-    std::vector<Count> counts; // of the iterations that came here
-    for (; k < passages_.size() && passages_[k].cell == cell; ++k)
-    {
-      const Passage& passage = passages_[k];
-      const bool same = k > first && passages_[k - 1].iteration == passage.iteration;
-      if (same && passages_[k - 1].rock == passage.rock)
-      {
-        throw DataError("The trajectory of iteration " + std::to_string(passage.iteration) +
-          ", rock " + std::to_string(passage.rock) + " is there twice");
-      }
-      if (!same)
-      {
-        counts.push_back({ 0.0, double(releasedIn_.at(passage.iteration)) });
-      }
-      ++counts.back().rocks;
-      summary.passages += int(passage.entries);
-      ++summary.rocks;
-      for (std::size_t h = 0; h < values.size(); ++h)
-      {
-        if (passage.maxima[h] > none)
-        {
-          values[h].push_back(passage.maxima[h]);
-        }
-      }
-    }
-    for (; stop != stops_.end() && *stop <= cell; ++stop)
-    {
-      summary.stops += *stop == cell;
-    }
-    const double p = summary.rocks / all;
-    summary.reach = p;
-    summary.reachError = binomialError(p, all);
-    // Ratio estimator: n / (n − 1) Σ (kᵢ − p Rᵢ)² / N², also over the iterations with kᵢ = 0.
-    double scatter = p * p * squaredReleases;
-    for (const Count& count : counts)
-    {
-      scatter += count.rocks * (count.rocks - 2.0 * p * count.released);
-    }
-    summary.reachErrorOfIterations = iterations > 1.0
-      ? std::sqrt(std::max(0.0, scatter) * iterations / (iterations - 1.0)) / all
-      : std::numeric_limits<double>::quiet_NaN();
-    for (std::size_t h = 0; h < values.size(); ++h)
-    {
-      summary.statistics[h] = statisticsOf(values[h]);
-    }
-    use(summary);
-    first = k;
-  }
+  summarizer.finish();
 }
 
 } // namespace rockfall

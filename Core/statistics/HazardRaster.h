@@ -3,60 +3,15 @@
 /// @file
 /// What passes through the cells of a grid: how many rocks, how fast, how high, with what energy.
 
+#include "statistics/passages.h"
 #include "statistics/path.h"
-#include "statistics/sample.h"
 
-#include <functional>
-#include <map>
-#include <string>
 #include <vector>
 
 namespace rockfall
 {
 
 class Terrain;
-
-/// Square cells in the frame of the paths. Cell (0, 0) is the south-western one.
-struct CellGrid
-{
-  int columns = 0;
-  int rows = 0;
-  double cellSize = 0.0; ///< m
-  double west = 0.0;     ///< Corner of the south-western cell, m.
-  double south = 0.0;
-
-  std::int64_t cellCount() const { return std::int64_t(columns) * rows; }
-};
-
-/// The quantities that are mapped.
-enum class Hazard
-{
-  KineticEnergy = 0,    ///< J
-  Speed = 1,            ///< m/s
-  HeightOverGround = 2, ///< m
-  RotationRate = 3,     ///< rad/s
-};
-constexpr int hazardCount = 4;
-std::string hazardName(Hazard hazard); ///< In PascalCase.
-
-/// One cell that something passed.
-struct CellSummary
-{
-  std::int64_t cell = 0; ///< row · columns + column, rows from the south.
-  int passages = 0;      ///< How often a rock came in, or was released there.
-  int rocks = 0;         ///< Rocks (iteration × rock) that were there.
-  int stops = 0;         ///< Rocks that came to rest there.
-  double reach = 0.0;    ///< rocks / all rocks × iterations released.
-  /// √(p (1 − p) / n) of n released rocks × iterations: as if every release were an independent
-  /// trial of one kind. Where sources differ the true error for these sources is smaller, as
-  /// Σ pₖ (1 − pₖ) / n ≤ p (1 − p).
-  double reachError = 0.0;
-  /// From the scatter of the share between iterations: also right where rocks of one iteration are
-  /// not independent, as they share its realisation of the slope. NaN for one iteration.
-  double reachErrorOfIterations = 0.0;
-  /// Over the rocks; a rock's value is its largest on the way through the cell.
-  std::array<SampleStatistics, hazardCount> statistics;
-};
 
 /// Keeps one passage per rock, iteration and cell, so that quantiles are exact and parts can be
 /// merged. The results depend on what was added, not on the order or on how it was shared out.
@@ -79,17 +34,13 @@ public:
   std::int64_t released() const { return released_; }
   /// Calls `use` for each cell that anything passed, in the order of cells. Throws DataError if a
   /// rock was added twice for an iteration.
-  void summarize(const std::function<void(const CellSummary&)>& use);
+  void summarize(const UseCell& use);
+
+  /// All passages in their order.
+  const std::vector<Passage>& sorted();
+  const Releases& releases() const { return releasedIn_; }
 
 private:
-  struct Passage
-  {
-    std::uint32_t cell = 0;
-    std::uint32_t entries = 1;
-    std::int32_t iteration = 0;
-    std::int32_t rock = 0;
-    std::array<double, hazardCount> maxima{}; ///< −∞ where there was none.
-  };
   std::int64_t cellAt(double x, double y) const; ///< −1 beyond the grid.
   void addPiece(const PathPiece& piece, std::array<double, 2> grounds);
   void addVisit(std::int64_t cell, const std::array<double, hazardCount>& maxima);
@@ -99,8 +50,7 @@ private:
   CellGrid grid_;
   const Terrain* terrain_;
   std::vector<Passage> passages_;
-  std::vector<std::uint32_t> stops_;
-  std::map<int, std::int64_t> releasedIn_; ///< Rocks per iteration.
+  Releases releasedIn_;
   std::int64_t released_ = 0;
 
   // Of the path being added.

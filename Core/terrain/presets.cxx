@@ -12,7 +12,8 @@ namespace
 
 /// E. Hoek (1987), Rockfall: a program in BASIC for the analysis of rockfalls from slopes,
 /// University of Toronto; the table is reprinted in Hoek, Practical Rock Engineering, chapter
-/// Analysis of rockfall hazards. It has no deviations.
+/// Analysis of rockfall hazards. It has no deviations. The numbers are those that are commonly
+/// quoted of it; the table itself could not be consulted.
 constexpr const char* hoek = "Hoek (1987)";
 /// Smooth unweathered joints of most rocks have 25° to 35°: N. Barton & V. Choubey (1977), The
 /// shear strength of rock joints in theory and practice, Rock Mechanics 10, 1–54.

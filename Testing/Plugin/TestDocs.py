@@ -19,6 +19,8 @@ PAGES = [
     ("DispersionAngle", "DispersionAngle", "angle"),
     ("RockfallHazardMap", "RockfallHazardMap", "hazard"),
     ("TrajectoryCollector", "TrajectoryCollector", "collector"),
+    ("HazardPassages", "HazardPassageReader", "hazard"),
+    ("MergeCollectors", "MergeCollectors", "merged"),
 ]
 TYPES = {"vtkDoubleArray": "double", "vtkFloatArray": "float", "vtkIntArray": "int", "vtkIdTypeArray": "id",
          "vtkStringArray": "text", "vtkUnsignedCharArray": "byte"}

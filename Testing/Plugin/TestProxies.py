@@ -18,6 +18,8 @@ PROXIES = [
     ("Rockfall Hazard Map", "RockfallHazardMap", "filters", "Input Terrain CellSize"),
     ("Trajectory Collector", "TrajectoryCollector", "filters",
      "Input Lines FileName BarrierHeight BarrierCapacity"),
+    ("Hazard Passage Reader", "HazardPassageReader", "sources", "FileNames"),
+    ("Merge Collectors", "MergeCollectors", "filters", "Input"),
 ]
 
 dem = simple.DEMtoCFEMesh()
@@ -27,9 +29,11 @@ simulation.EndTime = 1.0
 dispersion = simple.DispersionAngle(Input=simple.OutputPort(simulation, 1))
 hazard = simple.RockfallHazardMap(Input=simple.OutputPort(simulation, 1), Terrain=dem)
 collector = simple.TrajectoryCollector(Input=simple.OutputPort(simulation, 1))
+passages = simple.HazardPassageReader()
+merged = simple.MergeCollectors(Input=[collector])
 
 for (label, name, group, properties), proxy in zip(
-        PROXIES, (dem, rocks, simulation, dispersion, hazard, collector)):
+        PROXIES, (dem, rocks, simulation, dispersion, hazard, collector, passages, merged)):
     assert hasattr(simple, name), name
     assert proxy.GetXMLGroup() == group, (name, proxy.GetXMLGroup())
     assert proxy.GetXMLLabel() == label, (name, proxy.GetXMLLabel())

@@ -1,15 +1,26 @@
-"""A study that is killed and started again ends with the same files, byte for byte, as one that nobody
-disturbed; on two ranks as well. A changed one is refused."""
+"""A study that is killed at some moment and started again, on other ranks, or in other chunks, ends with
+the same files, byte for byte, as one that nobody disturbed: table, hazard map and what passed a road.
+They are what the filters make of all trajectories at once. A changed study is refused."""
 
+import contextlib
+import csv
 import glob
+import io
 import json
 import os
+import random
+import runpy
 import shutil
 import signal
 import subprocess
+import sys
 import time
 
 from helpers import incline, outside_mpi, write_grid, write_text
+
+from paraview.simple import (
+    DEMtoCFEMesh, GetSources, Delete, OutputPort, RockBlocks, RockfallHazardMap, RockfallSimulation,
+    SaveData, TrajectoryCollector, UpdatePipeline)
 
 SCRIPT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Examples", "study.py")
 MPIEXEC = shutil.which("mpiexec")
@@ -18,27 +29,45 @@ terrain = write_grid("incline.asc", incline())
 rocks = write_text("sources.csv", "x,y,z,shape,volume\n" + "\n".join(
     f"700025,{4000060 + 10 * k},{146 + k},{shape},{0.5 + 0.25 * k}"
     for k, shape in enumerate(["cube", "icosahedron", "octahedron"])) + "\n")
+road = write_text("road.csv", "WKT,name,height\n" + "\n".join(
+    f'"LINESTRING({x} 3999990,{x} 4000230)","road, {x}",{h}' for x, h in ((700045, 1), (700055, 3))) + "\n")
 study = {
     "terrain": {"FileName": "incline.asc", "RoughnessDeviation": 0.2},
     "rocks": {"FileName": "sources.csv"},
-    "simulation": {"EndTime": 6.0, "TrajectoryOutput": "Events"},
+    "simulation": {"EndTime": 6.0, "TrajectoryOutput": "Thinned"},
+    "map": {"CellSize": 5.0},
+    "lines": {"FileName": "road.csv", "BarrierCapacity": 150.0},
     "iterations": 11, "chunk": 2}
+RESULTS = ["summary.csv", "hazard.tif", "crossings.csv", "lines.csv", "exceedance.csv"]
 
 
 def write_study(name="study.json", **changes):
     return write_text(name, json.dumps({**study, **changes}))
 
 
-def command(folder, path, ranks=1):
+def command(folder, path="study.json", ranks=1):
     start = [MPIEXEC, "-n", str(ranks), "--oversubscribe", "--bind-to", "none"] if ranks > 1 else []
     return start + ["pvbatch"] + (["--sym"] if ranks > 1 else []) + [SCRIPT, folder, path]
 
 
-def run(folder, path="study.json", ranks=1):
-    done = subprocess.run(command(folder, path, ranks), stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, text=True, timeout=200,
-                          env=outside_mpi())
-    return done.returncode, done.stdout
+def run(folder, path="study.json", ranks=0):
+    """Its exit code and what it said; without ranks in this process, which is quicker."""
+    if ranks:
+        done = subprocess.run(command(folder, path, ranks), stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT, text=True, timeout=200, env=outside_mpi())
+        return done.returncode, done.stdout
+    said = io.StringIO()
+    kept, sys.argv = sys.argv, [SCRIPT, folder, path]
+    try:
+        with contextlib.redirect_stdout(said):
+            runpy.run_path(SCRIPT, run_name="__main__")
+        return 0, said.getvalue()
+    except SystemExit as end:
+        return 1, said.getvalue() + str(end)
+    finally:
+        sys.argv = kept
+        for source in list(GetSources().values()):
+            Delete(source)
 
 
 def files_of(folder):
@@ -49,6 +78,12 @@ def files_of(folder):
     return result
 
 
+def expect_same(folder, what):
+    there = files_of(folder)
+    assert set(there) == set(calm), f"{what}: {sorted(set(there) ^ set(calm))}"
+    assert there == calm, f"{what} makes other files: {[n for n in calm if there[n] != calm[n]]}"
+
+
 for folder in glob.glob("results-*"):
     shutil.rmtree(folder)
 write_study()
@@ -57,41 +92,86 @@ code, said = run("results-calm")
 assert code == 0, said
 calm = files_of("results-calm")
 assert sorted(calm) == sorted(
-    [f"chunk-{k:05d}.{kind}" for k in range(6) for kind in ("npz", "vtp")] +
-    ["manifest.json", "study.json", "summary.csv"]), sorted(calm)
+    [f"chunk-{k:05d}{kind}" for k in range(6)
+     for kind in (".npz", ".vtp", ".passages", "-crossings.vtp")] +
+    ["manifest.json", "study.json"] + RESULTS), sorted(calm)
 assert calm["summary.csv"].count(b"\n") == 1 + 33
+crossings = calm["crossings.csv"].count(b"\n") - 1
+assert crossings > 20, calm["lines.csv"]
 
-# Killed as soon as there is a second chunk, so within the third one or while a file is written.
-process = subprocess.Popen(command("results-killed", "study.json"), stdout=subprocess.DEVNULL,
+# Killed at some moment, the third time it gets that far: within a chunk, or while a file is written.
+moment = random.Random()
+last = 5
+process = subprocess.Popen(command("results-killed"), stdout=subprocess.DEVNULL,
                            stderr=subprocess.DEVNULL, env=outside_mpi())
-while process.poll() is None and not os.path.exists("results-killed/chunk-00001.npz"):
-    time.sleep(0.002)
+awaited = f"results-killed/chunk-{moment.randrange(last):05d}.npz"
+while process.poll() is None and not os.path.exists(awaited):
+    time.sleep(0.001)
+time.sleep(moment.uniform(0.0, 0.02))
 process.send_signal(signal.SIGKILL)
 process.wait()
 left = files_of("results-killed")
-assert "summary.csv" not in left, "it was done before it could be killed"
+assert "study.json" not in left, "it was done before it could be killed"
 for name, data in left.items():
     assert name.startswith(".unfinished-") or data == calm[name], f"{name} is not whole"
 write_text("results-killed/.unfinished-chunk-00003.npz", "half of it")
-code, said = run("results-killed")
+write_text("results-killed/.unfinished-hazard.tif", "half of it")
+code, said = run("results-killed", ranks=4 if MPIEXEC else 1)
 assert code == 0, said
 assert "chunks are there already" in said, said
-assert files_of("results-killed") == calm, "the restarted study has other files"
+expect_same("results-killed", f"the study killed after {awaited} and restarted")
 
 # What is there is not done again.
 code, said = run("results-killed")
 assert code == 0 and "6 of 6 chunks are there already" in said, said
-assert files_of("results-killed") == calm
+expect_same("results-killed", "the study started once more")
 
 if MPIEXEC:
     code, said = run("results-ranks", ranks=2)
     assert code == 0, said
-    assert files_of("results-ranks") == calm, "two ranks make other files"
+    expect_same("results-ranks", "two ranks")
+
+# In other chunks, and without keeping the trajectories.
+write_study("one.json", chunk=11, trajectories=False)
+code, said = run("results-one", "one.json")
+assert code == 0, said
+one = files_of("results-one")
+assert "chunk-00000.vtp" not in one and len(one) == 3 + 2 + len(RESULTS), sorted(one)
+for name in RESULTS:
+    assert one[name] == calm[name], f"{name} depends on the chunks"
+
+# The same of all trajectories at once.
+slope = DEMtoCFEMesh(FileName=terrain, RoughnessDeviation=0.2)
+fall = RockfallSimulation(Terrain=slope, Rocks=RockBlocks(FileName=rocks, Terrain=slope), EndTime=6.0,
+                          TrajectoryOutput="Thinned", Iterations=11)
+SaveData("hazard.tif", proxy=RockfallHazardMap(
+    Input=OutputPort(fall, 1), Terrain=slope, CellSize=5.0))
+with open("hazard.tif", "rb") as file:
+    assert file.read() == calm["hazard.tif"], "the map is not that of Rockfall Hazard Map"
+collector = TrajectoryCollector(Input=OutputPort(fall, 1), Terrain=slope, FileName=road,
+                                BarrierCapacity=150.0)
+UpdatePipeline(proxy=collector)
+table = collector.GetClientSideObject().GetOutputDataObject(1)
+rows = list(csv.DictReader(io.StringIO(calm["lines.csv"].decode())))
+assert len(rows) == table.GetNumberOfRows() == 2
+assert rows[0]["LineName"] == "road, 700045" and rows[1]["BarrierHeight"] == "3.0", rows
+for k, row in enumerate(rows):
+    assert int(row["Rocks"]) > 5, row
+    for name, value in row.items():
+        expected = table.GetValueByName(k, name)
+        assert value == expected.ToString() if name == "LineName" else \
+            float(value) == expected.ToDouble(), (name, value, expected)
+assert collector.GetClientSideObject().GetOutputDataObject(0).GetNumberOfPoints() == crossings
+for source in list(GetSources().values()):
+    Delete(source)
 
 # Another study, by a number or by the content of a file.
-write_study("other.json", simulation={"EndTime": 7.0, "TrajectoryOutput": "Events"})
+write_study("other.json", simulation={"EndTime": 7.0, "TrajectoryOutput": "Thinned"})
 code, said = run("results-calm", "other.json")
 assert code != 0 and "another study: changed are simulation EndTime." in said, said
+write_study("other.json", map={"CellSize": 6.0})
+code, said = run("results-calm", "other.json")
+assert code != 0 and "another study: changed are map CellSize." in said, said
 write_text("sources.csv", open(rocks).read().replace("0.75", "0.8"))
 code, said = run("results-calm")
 assert code != 0 and "changed are rocks FileName." in said, said
@@ -101,13 +181,26 @@ if MPIEXEC:
     assert code != 0 and said.count("changed are rocks FileName.") == 1, said
 
 # Bad descriptions.
-for bad, word in (("{", "is not JSON"), ('{"itterations": 3}', '"itterations"'),
+for bad, word in (("", "is not JSON"), ("{", "is not JSON"), ("[]", "must be an object"),
+                  ('{"itterations": 3}', '"itterations"'),
+                  (json.dumps({**study, "terrain": "dem.tif"}), '"terrain" is "dem.tif"'),
                   (json.dumps({**study, "chunk": 0}), '"chunk" is 0'),
+                  (json.dumps({**study, "chunk": -2}), '"chunk" is -2'),
+                  (json.dumps({**study, "chunk": True}), '"chunk" is true'),
                   (json.dumps({**study, "iterations": 2.5}), '"iterations" is 2.5'),
+                  (json.dumps({**study, "iterations": "10"}), '"iterations" is "10"'),
                   (json.dumps({**study, "terrain": {"FileName": "no.tif"}}), "no.tif"),
-                  (json.dumps({**study, "simulation": {"Iterations": 3}}), '"Iterations"')):
+                  (json.dumps({**study, "simulation": {"Iterations": 3}}), '"Iterations"'),
+                  (json.dumps({**study, "simulation": {"TrajectoryOutput": "Events"}}), '"Events"'),
+                  (json.dumps({**study, "lines": {}}), '"lines" has no FileName'),
+                  (json.dumps({**study, "lines": {"FileName": "no.gpkg"}}), "no.gpkg")):
     write_text("bad.json", bad)
     code, said = run("results-bad", "bad.json")
     assert code != 0 and word in said, (bad, said)
 assert not os.path.exists("results-bad")
+code, said = run("results-bad", "no.json")
+assert code != 0 and "no.json: No such file" in said, said
+write_study("bad.json", simulation={"EndTimes": 3})
+code, said = run("results-bad", "bad.json")
+assert code != 0 and "simulation: " in said and "EndTimes" in said, said
 print("a study goes on where it was")

@@ -1,8 +1,10 @@
-"""One rank's part of TestRankHash: runs the default slope and rocks, prints what came out on rank 0."""
+"""One rank's part of TestRankHash: runs the default slope and rocks, prints what came out on rank 0, and
+then the same with each of the troubles that are named."""
 
 import hashlib
 import sys
 
+from paraview import servermanager
 from paraview.simple import (
     DEMtoCFEMesh, RockBlocks, RockfallSimulation, UpdatePipeline)
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -10,25 +12,14 @@ from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 controller = vtkMultiProcessController.GetGlobalController()
 first = controller.GetLocalProcessId() == 0
-sources, trouble = sys.argv[1], sys.argv[2] if len(sys.argv) > 2 else ""
+symmetric = servermanager.vtkProcessModule.GetProcessModule().GetSymmetricMPIMode()
+sources, troubles = sys.argv[1], sys.argv[2:]
 
 slope = DEMtoCFEMesh(RoughnessDeviation=0.1)
 rocks = RockBlocks(FileName=sources)
-fall = RockfallSimulation(Terrain=slope, Rocks=rocks, EndTime=5.0, Iterations=23,
+fall = RockfallSimulation(Terrain=slope, Rocks=rocks, EndTime=5.0, Iterations=11,
                           TrajectoryOutput="Events", PrintProgress=0)
 algorithm = fall.GetClientSideObject()
-
-if trouble == "source":  # fails on the first rank only: the others' have nothing to read
-    slope.FileName = "no such file.tif"
-elif trouble == "placement":
-    rocks.FileName = ""
-    rocks.Center = [-50, 0, 0]
-elif trouble == "property":
-    fall.TimeStep = -1.0
-elif trouble == "abort":
-    fall.Iterations = 100000
-    if first:
-        algorithm.AddObserver("ProgressEvent", lambda caller, _: caller.SetAbortExecute(1))
 
 
 def digest():
@@ -46,17 +37,37 @@ def digest():
     return sha.hexdigest()
 
 
-for time in (0.0, 2.5, 2.5):
-    UpdatePipeline(time, fall)
-size = algorithm.GetOutputDataObject(3).GetNumberOfRows()
-if first:
-    fall.UpdatePropertyInformation()
-    print(f"RESULT rows={size} hash={fall.GetPropertyValue('StateHash') or '-'} all={digest()} "
-          f"runs={fall.GetPropertyValue('NumberOfRuns')}", flush=True)
-elif size or algorithm.GetOutputDataObject(0).GetNumberOfPoints():
-    print("RESULT of another rank than the first is not empty", flush=True)
+def run():
+    for time in (0.0, 2.5, 2.5):
+        UpdatePipeline(time, fall)
+    size = algorithm.GetOutputDataObject(3).GetNumberOfRows()
+    if first:
+        fall.UpdatePropertyInformation()
+        print(f"RESULT rows={size} hash={fall.GetPropertyValue('StateHash') or '-'} all={digest()} "
+              f"runs={fall.GetPropertyValue('NumberOfRuns')}", flush=True)
+    elif size or algorithm.GetOutputDataObject(0).GetNumberOfPoints():
+        print("RESULT of another rank than the first is not empty", flush=True)
 
-if trouble:  # and then it goes well
+
+run()
+for trouble in troubles:
+    if symmetric:
+        controller.Barrier()  # what was said before belongs to what was before
+    if first:
+        print(f"TROUBLE {trouble}", flush=True)
+    if trouble == "source":  # fails on the first rank only: the others' have nothing to read
+        slope.FileName = "no such file.tif"
+    elif trouble == "placement":
+        rocks.FileName = ""
+        rocks.Center = [-50, 0, 0]
+    elif trouble == "property":
+        fall.TimeStep = -1.0
+    elif trouble == "abort":
+        fall.Iterations = 100000
+        if first:
+            algorithm.AddObserver("ProgressEvent", lambda caller, _: caller.SetAbortExecute(1))
+    run()
+    # And then it goes well.
     algorithm.RemoveObservers("ProgressEvent")
     algorithm.SetAbortExecute(0)
     slope.FileName, rocks.FileName, fall.TimeStep, fall.Iterations = "", sources, 0.005, 2

@@ -1,0 +1,110 @@
+#pragma once
+
+/// @file
+/// What passes through the cells of a grid, rock by rock, and what that says of each cell.
+
+#include "statistics/sample.h"
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace rockfall
+{
+
+/// Square cells in the frame of the paths. Cell (0, 0) is the south-western one.
+struct CellGrid
+{
+  int columns = 0;
+  int rows = 0;
+  double cellSize = 0.0; ///< m
+  double west = 0.0;     ///< Corner of the south-western cell, m.
+  double south = 0.0;
+
+  std::int64_t cellCount() const { return std::int64_t(columns) * rows; }
+};
+
+/// The quantities that are mapped.
+enum class Hazard
+{
+  KineticEnergy = 0,    ///< J
+  Speed = 1,            ///< m/s
+  HeightOverGround = 2, ///< m
+  RotationRate = 3,     ///< rad/s
+};
+constexpr int hazardCount = 4;
+std::string hazardName(Hazard hazard); ///< In PascalCase.
+
+/// One cell that something passed.
+struct CellSummary
+{
+  std::int64_t cell = 0; ///< row · columns + column, rows from the south.
+  int passages = 0;      ///< How often a rock came in, or was released there.
+  int rocks = 0;         ///< Rocks (iteration × rock) that were there.
+  int stops = 0;         ///< Rocks that came to rest there.
+  double reach = 0.0;    ///< rocks / all rocks × iterations released.
+  /// √(p (1 − p) / n) of n released rocks × iterations: as if every release were an independent
+  /// trial of one kind. Where sources differ the true error for these sources is smaller, as
+  /// Σ pₖ (1 − pₖ) / n ≤ p (1 − p).
+  double reachError = 0.0;
+  /// From the scatter of the share between iterations: also right where rocks of one iteration are
+  /// not independent, as they share its realisation of the slope. NaN for one iteration.
+  double reachErrorOfIterations = 0.0;
+  /// Over the rocks; a rock's value is its largest on the way through the cell.
+  std::array<SampleStatistics, hazardCount> statistics;
+};
+
+/// One rock in one iteration in one cell.
+struct Passage
+{
+  std::uint32_t cell = 0;
+  std::uint32_t entries : 31 = 1;
+  std::uint32_t stopped : 1 = 0; ///< Came to rest there.
+  std::int32_t iteration = 0;
+  std::int32_t rock = 0;
+  std::array<double, hazardCount>
+    maxima{}; ///< On the way through the cell; −∞ where there is none.
+};
+
+/// The order in which passages are summed: by cell, iteration and rock.
+bool operator<(const Passage& a, const Passage& b);
+
+/// How many rocks were released in each iteration.
+using Releases = std::map<int, std::int64_t>;
+
+using UseCell = std::function<void(const CellSummary&)>;
+
+/// Makes summaries of passages that come in their order, so that it needs no more memory than one
+/// cell's. The results are the same bits wherever the passages come from.
+class CellSummarizer
+{
+public:
+  /// Keeps a reference to `use`.
+  CellSummarizer(const Releases& releases, const UseCell& use);
+
+  /// Throws DataError if a rock comes twice for an iteration, or a passage out of its order or of
+  /// an iteration without releases.
+  void add(const Passage& passage);
+  void finish(); ///< Hands on the last cell.
+
+private:
+  struct Count
+  {
+    double rocks, released;
+  };
+  void begin(std::uint32_t cell);
+
+  const Releases& releases_;
+  const UseCell& use_;
+  double all_ = 0.0;             ///< Releases of all iterations.
+  double squaredReleases_ = 0.0; ///< Σ Rᵢ², Rᵢ the rocks released in iteration i
+  bool any_ = false;
+  Passage last_;
+  CellSummary summary_;
+  std::vector<Count> counts_; ///< Of the iterations that came here.
+  std::array<std::vector<double>, hazardCount> values_;
+};
+
+} // namespace rockfall

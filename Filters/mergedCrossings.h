@@ -1,0 +1,28 @@
+#pragma once
+
+/// @file
+/// The crossings of several collectors as those of one.
+
+#include "statistics/crossings.h"
+
+#include <span>
+#include <vector>
+
+class vtkPolyData;
+
+namespace rockfall::filters
+{
+
+struct MergedCrossings
+{
+  std::vector<CollectorLine> lines; ///< Name and barrier only.
+  std::int64_t released = 0;
+  std::vector<Crossing> crossings; ///< What summarizeLine needs of them.
+};
+
+/// Fills `output` with the points of all `inputs`, crossings of Trajectory Collector, in the order
+/// of iteration, rock, line and passing. Throws DataError if one is no crossings, has other lines,
+/// barriers, CRS or arrays than the first, or if a crossing is there twice.
+MergedCrossings mergeCrossings(std::span<vtkPolyData* const> inputs, vtkPolyData* output);
+
+} // namespace rockfall::filters

@@ -1,0 +1,190 @@
+// Passages in files: the same bits as in memory, whatever they are shared out over files; damage is
+// noticed.
+
+#include "hermitePaths.h"
+
+#include "base/errors.h"
+#include "statistics/HazardRaster.h"
+#include "statistics/passageFile.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+using namespace rockfall;
+using rockfall::testing::wild;
+
+namespace
+{
+
+const CellGrid grid{ 20, 20, 5.0, 10.0, 0.0 };
+const Vec3 origin(700000.0, 4000000.0, 0.0);
+
+std::string fileName(const std::string& name)
+{
+  const std::filesystem::path folder =
+    std::filesystem::temp_directory_path() / ("passages." + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  return (folder / name).string();
+}
+
+/// Rocks of 6 iterations, ten each; those for which `chosen` is true.
+template <typename Chosen>
+HazardRaster rasterOf(Chosen&& chosen)
+{
+  std::mt19937_64 random(5);
+  HazardRaster raster(grid);
+  for (int k = 0; k < 60; ++k)
+  {
+    const std::vector<PathPoint> points = wild(random, 5, 90.0);
+    RockPath path;
+    path.iteration = k / 10;
+    path.rock = k % 10;
+    path.mass = 100.0 + k;
+    path.rested = k % 3 == 0;
+    path.points = points;
+    if (chosen(k))
+    {
+      raster.add(path);
+    }
+  }
+  return raster;
+}
+
+/// All numbers of all cells, for a comparison of bits.
+std::vector<double> numbers(const std::function<void(const UseCell&)>& summarize)
+{
+  std::vector<double> all;
+  summarize(
+    [&all](const CellSummary& c)
+    {
+      all.insert(all.end(),
+        { double(c.cell), double(c.passages), double(c.rocks), double(c.stops), c.reach,
+          c.reachError, c.reachErrorOfIterations });
+      for (const SampleStatistics& s : c.statistics)
+      {
+        all.insert(all.end(), { s.mean, s.deviation, s.maximum });
+        all.insert(all.end(), s.quantiles.begin(), s.quantiles.end());
+      }
+    });
+  return all;
+}
+
+bool sameBits(const std::vector<double>& a, const std::vector<double>& b)
+{
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+std::string read(const std::string& name)
+{
+  std::ifstream in(name, std::ios::binary);
+  return { std::istreambuf_iterator<char>(in), {} };
+}
+
+void expectError(const std::vector<std::string>& names, const char* word)
+{
+  try
+  {
+    PassageFiles(names).summarize([](const CellSummary&) {});
+    ADD_FAILURE() << "no error: " << word;
+  }
+  catch (const Error& error)
+  {
+    EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
+  }
+}
+
+class TestPassageFile : public ::testing::Test
+{
+protected:
+  void TearDown() override
+  {
+    std::filesystem::remove_all(std::filesystem::path(fileName("x")).parent_path());
+  }
+};
+
+} // namespace
+
+TEST_F(TestPassageFile, AnySharingOutGivesTheSameBits)
+{
+  HazardRaster whole = rasterOf([](int) { return true; });
+  const auto expected = numbers([&](const UseCell& use) { whole.summarize(use); });
+  ASSERT_GT(expected.size(), 100u * 35u);
+  for (const int parts : { 1, 2, 7, 60 })
+  {
+    std::vector<std::string> names;
+    for (int part = 0; part < parts; ++part)
+    {
+      // Also iterations of which each file has some rocks only.
+      HazardRaster raster = rasterOf([&](int k) { return k % parts == part; });
+      names.push_back(fileName(std::to_string(part)));
+      writePassages(raster, origin, "EPSG:32616", names.back());
+    }
+    std::reverse(names.begin(), names.end());
+    const PassageFiles files(names);
+    EXPECT_EQ(files.released(), 60);
+    EXPECT_EQ(files.grid().west, 700010.0);
+    EXPECT_EQ(files.grid().south, 4000000.0);
+    EXPECT_EQ(files.origin(), origin);
+    EXPECT_EQ(files.crs(), "EPSG:32616");
+    EXPECT_TRUE(sameBits(numbers([&](const UseCell& use) { files.summarize(use); }), expected))
+      << parts;
+  }
+}
+
+TEST_F(TestPassageFile, TheSameRunMakesTheSameFile)
+{
+  HazardRaster a = rasterOf([](int) { return true; });
+  HazardRaster b = rasterOf([](int k) { return k >= 30; });
+  b.merge(rasterOf([](int k) { return k < 30; }));
+  writePassages(a, origin, "", fileName("a"));
+  writePassages(b, origin, "", fileName("b"));
+  EXPECT_EQ(read(fileName("a")), read(fileName("b")));
+}
+
+TEST_F(TestPassageFile, NothingPassed)
+{
+  HazardRaster raster(grid);
+  RockPath path; // without points: released, and nowhere
+  raster.add(path);
+  writePassages(raster, origin, "", fileName("none"));
+  const PassageFiles files({ fileName("none") });
+  EXPECT_EQ(files.released(), 1);
+  files.summarize([](const CellSummary&) { ADD_FAILURE(); });
+}
+
+TEST_F(TestPassageFile, BadInput)
+{
+  HazardRaster raster = rasterOf([](int k) { return k < 10; });
+  const std::string good = fileName("good"), bad = fileName("bad");
+  writePassages(raster, origin, "EPSG:32616", good);
+  expectError({}, "FileNames");
+  expectError({ fileName("absent") }, "absent: cannot be opened");
+  expectError({ good, good }, "is there twice");
+  const std::string bytes = read(good);
+  const auto with = [&](const std::string& content)
+  { std::ofstream(bad, std::ios::binary) << content; };
+  with("");
+  expectError({ bad }, "bad: is no file of passages");
+  with("ncols 5\nnrows 5\n");
+  expectError({ bad }, "bad: is no file of passages");
+  for (std::size_t length = 8; length < bytes.size(); length += length < 300 ? 1 : 1009)
+  {
+    with(bytes.substr(0, length));
+    expectError({ bad }, "bad: is damaged");
+  }
+  with(bytes + "x");
+  expectError({ bad }, "bad: is damaged");
+  std::string cell = bytes;
+  cell.replace(cell.size() - 48, 4, "\xff\xff\xff\x7f");
+  with(cell);
+  expectError({ bad }, "bad: is damaged: there is no cell");
+  HazardRaster other({ 20, 20, 5.0, 15.0, 0.0 });
+  writePassages(other, origin, "EPSG:32616", bad);
+  expectError({ good, bad }, "bad: its cells or its CRS are not those of");
+  writePassages(raster, origin, "EPSG:32617", bad);
+  expectError({ good, bad }, "bad: its cells or its CRS are not those of");
+  EXPECT_THROW(writePassages(raster, origin, "", fileName("no/such")), FileError);
+}

@@ -1,0 +1,378 @@
+"""docs/bad_input.md says for every input what a user is told when it is bad. Each row is made here: the
+input is given to ParaView, there is one error and no result, and the row has its words. When they differ,
+the page as it should be is left in this test's folder as bad_input.md."""
+
+import contextlib
+import difflib
+import io
+import json
+import os
+import re
+import runpy
+import shutil
+import sys
+
+from helpers import errors_of, incline, is_empty, messages_of, write_grid, write_text, UTM16, WGS84
+
+from paraview.simple import (
+    DEMtoCFEMesh, Delete, GetSources, HazardPassageReader, MergeCollectors, OutputPort, RockBlocks,
+    RockfallHazardMap, RockfallSimulation, TrajectoryCollector, UpdatePipeline)
+from paraview import servermanager
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+PAGE = os.path.join(HERE, "..", "..", "docs", "bad_input.md")
+STUDY = os.path.join(HERE, "..", "..", "Examples", "study.py")
+MARK = "<!-- From here on made by Testing/Plugin/TestBadInputPage.py. -->\n"
+
+sections = []  # (title, [(what is wrong, message)])
+failures = []
+
+
+def section(title):
+    sections.append((title, []))
+
+
+def row(wrong, text):
+    text = re.sub(r"^\w+ \(0x[0-9a-f]+\): ", "", text)
+    text = text.replace(os.getcwd() + "/", "")
+    text = re.sub(r"this machine has [\d.]+ GB", "this machine has … GB", text)
+    sections[-1][1].append((wrong, text.replace("|", "\\|").replace("\n", " ")))
+
+
+def one(wrong, proxy, ports=1, own=None):
+    """The proxy has one error and makes nothing."""
+    errors = errors_of(proxy, *range(ports))
+    name = f"{sections[-1][0]}, {wrong}"
+    if len(errors) != 1:
+        failures.append(f"{name}: {len(errors)} errors instead of one: {errors}")
+    if not all(is_empty(proxy, port) for port in range(ports)):
+        failures.append(f"{name}: there is a result all the same")
+    row(wrong, errors[0] if errors else "no error")
+    Delete(proxy)
+
+
+def dem(wrong, **properties):
+    one(wrong, DEMtoCFEMesh(**properties))
+
+
+def rocks(wrong, **properties):
+    one(wrong, RockBlocks(**properties))
+
+
+def features(geometries, properties="", crs="EPSG::32616"):
+    """GeoJSON of these geometries."""
+    return ('{"type":"FeatureCollection","crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:' +
+            crs + '"}},"features":[' + ",".join(
+                '{"type":"Feature","properties":{' + properties + '},"geometry":' + g + "}"
+                for g in geometries) + "]}")
+
+
+SQUARE = '{"type":"Polygon","coordinates":[[[10,10],[30,10],[30,30],[10,30],[10,10]]]}'
+BOW = '{"type":"Polygon","coordinates":[[[10,10],[30,30],[30,10],[10,30],[10,10]]]}'
+LINE = '{"type":"LineString","coordinates":[[60,0],[60,100]]}'
+POINT = '{"type":"Point","coordinates":[20,50]}'
+good = write_grid("good.asc", incline(5, 5))
+
+section("DEM and other grids")
+dem("missing", FileName="missing.tif")
+dem("empty", FileName=write_text("empty.tif", ""))
+dem("wrong type: a text", FileName=write_text("letter.tif", "Dear reader\n"))
+dem("wrong type: a vector layer", FileName=write_text("points.geojson", features([POINT])))
+cut = write_grid("cut.asc", incline(5, 5))
+text = open(cut).read().split("\n")
+dem("truncated", FileName=write_text("cut.asc", "\n".join(text[:-2]) + "\n"))
+write_text("raw.hdr", "ENVI\nsamples = 30\nlines = 40\nbands = 1\nheader offset = 0\nfile type = "
+           "ENVI Standard\ndata type = 4\ninterleave = bsq\nbyte order = 0\n"
+           "map info = {UTM, 1, 1, 600000, 5100000, 10, 10, 32, North, WGS-84}\n")
+dem("truncated, binary", FileName=write_text("raw.dat", "\1" * 3000))
+dem("one row only", FileName=write_grid("row.asc", [[1, 2, 3, 4]]))
+dem("all of it nodata", FileName=write_grid("nodata.asc", [[-9999] * 4] * 4))
+dem("a nodata value that is not declared", FileName=write_grid(
+    "undeclared.asc", [[1.5, 2, 3], [4, -32768, 6], [7, 8, 9]]))
+dem("NaN", FileName=write_grid("nan.asc", [[1.5, 2, 3], [4, "nan", 6], [7, 8, 9]]))
+dem("infinite", FileName=write_grid("inf.asc", [[1.5, 2, 3], [4, "inf", 6], [7, 8, 9]]))
+dem("a word", FileName=write_grid("word.asc", [[1.5, 2, 3], [4, "high", 6], [7, 8, 9]]))
+comma = DEMtoCFEMesh(FileName=write_grid("comma.asc", [[1, 2, 3], [4, "9,75", 6], [7, 8, 9]]))
+UpdatePipeline(proxy=comma)
+if comma.GetDataInformation().GetBounds()[5] != 9.75:
+    failures.append(f"comma in a grid: {comma.GetDataInformation().GetBounds()}")
+row("comma as decimal mark in an ASCII grid", "no error: as GDAL does, 9,75 is read as 9.75")
+Delete(comma)
+dem("degrees without a CRS",
+    FileName=write_grid("degrees.asc", incline(5, 5), corner=(-84.5, 36.5), cell=0.001, crs=None))
+dem("wrong CRS: metres that are called degrees",
+    FileName=write_grid("called.asc", incline(5, 5), crs=WGS84))
+dem("wrong CRS: half of the world",
+    FileName=write_grid("world.asc", incline(5, 5), corner=(-60, -40), cell=20, crs=WGS84))
+dem("a band that is not there", FileName=good, Band=3)
+dem("a cell size that is negative", FileName=good, CellSize=-1.0)
+dem("a cell size in kilometres", FileName=good, CellSize=0.000001)
+dem("a cell size larger than the slope", FileName=good, CellSize=1000.0)
+steep = DEMtoCFEMesh(FileName=write_grid("feet.asc", incline(11, 11, drop=23.0)))
+notes = re.findall(r".*metres\?", messages_of(lambda: UpdatePipeline(proxy=steep)))
+if len(notes) != 1:
+    failures.append(f"heights in feet: {notes}")
+row("heights in feet that nothing says are feet (a note, no error)", re.sub(r"^.*\|\s*", "", "".join(notes)))
+Delete(steep)
+
+section("Contour lines")
+dem("missing", FileName="missing.gpkg")
+dem("empty", FileName=write_text("none.csv", "WKT,elev\n"))
+dem("truncated", FileName=write_text("cut.geojson", features([LINE] * 3, '"elev":10')[:-70]))
+dem("wrong type: points",
+    FileName=write_text("points.csv", 'WKT,elev\n"POINT(0 0)",10\n"POINT(0 30)",20\n'))
+two = 'WKT,{}\n"LINESTRING(0 0,50 0)",{}\n"LINESTRING(0 30,50 30)",20\n'
+dem("no field of heights", FileName=write_text("field.csv", two.format("h", 10)))
+dem("a field of heights that is not there",
+    FileName=write_text("field.csv", two.format("h", 10)), ElevationField="cote")
+dem("one height only", FileName=write_text("level.csv", two.format("elev", 20)))
+dem("an empty height", FileName=write_text("gap.csv", two.format("elev", "")))
+dem("NaN", FileName=write_text("nan.csv", two.format("elev", "nan")))
+dem("comma as decimal mark",
+    FileName=write_text("comma.csv", two.replace(",{}", ";{}").replace(",20", ";20").format("elev", "10,5")))
+dem("degrees without a CRS", FileName=write_text("degrees.csv", (
+    'WKT,elev\n"LINESTRING(7 46,7.01 46)",1000\n"LINESTRING(7 46.01,7.01 46.01)",1200\n')))
+dem("lines in a row", FileName=write_text("narrow.csv", (
+    'WKT,elev\n"LINESTRING(0 0,700 0)",10\n"LINESTRING(0 0.1,700 0.1)",20\n')))
+
+ZONES = 'WKT,class\n"POLYGON(({0} 0,{1} 0,{1} 100,{0} 100,{0} 0))",rock\n'
+zones = write_text("zones.csv", ZONES.format(0, 250))
+table = write_text("table.csv", "class,rv\nrock,0.8\n")
+
+section("Layers of classes of ground")
+
+
+def classes(wrong, layer, **more):
+    dem(wrong, RestitutionLayer=layer, RestitutionTable=table, **more)
+
+
+classes("missing", "missing.gpkg")
+classes("empty", write_text("none.csv", "WKT,class\n"))
+classes("truncated", write_text("cut.geojson", features([SQUARE] * 3, '"class":"rock"')[:-70]))
+classes("wrong type: points", write_text("points.csv", 'WKT,class\n"POINT(0 0)",rock\n'))
+classes("wrong type: a text", write_text("letter.gpkg", "Dear reader\n"))
+classes("no overlap, or another CRS", write_text("far.csv", ZONES.format(900, 990)))
+classes("no field of classes", write_text("field.csv", ZONES.format(0, 250).replace("class", "id")))
+classes("a field that is not there", zones, RestitutionField="geology")
+classes("a class that the table does not have", write_text(
+    "scree.csv", ZONES.format(0, 250).replace("rock", "scree")))
+dem("no table with it", RestitutionLayer=zones)
+classes("a grid that does not overlap", write_grid("classes.asc", [[1] * 5] * 5, crs=None))
+
+section("Tables of classes of ground")
+
+
+def bad_table(wrong, text, **more):
+    dem(wrong, RestitutionLayer=zones, RestitutionTable=write_text("bad.csv", text), **more)
+
+
+dem("missing", RestitutionLayer=zones, RestitutionTable="missing.csv")
+bad_table("empty", "")
+bad_table("a header only", "class,rv\n")
+bad_table("no column of classes", "kind,rv\nrock,0.8\n")
+bad_table("no column of values", "class,kind\nrock,hard\n")
+bad_table("truncated", "class,rv\nrock,")
+bad_table("out of range", "class,rv\nrock,1.8\n")
+bad_table("negative", "class,rv\nrock,-0.1\n")
+bad_table("NaN", "class,rv\nrock,nan\n")
+bad_table("a word", "class,rv\nrock,hard\n")
+bad_table("comma as decimal mark", 'class,rv\nrock,"0,8"\n')
+bad_table("comma as decimal mark, not quoted", "class,rv\nrock,0,8\n")
+bad_table("a class twice", "class,rv\nrock,0.8\nrock,0.7\n")
+bad_table("an unknown preset", "class,preset\nrock,cheese\n")
+dem("φ in radians or grads, out of range", JointLayer=zones,
+    JointTable=write_text("phi.csv", "class,phi\nrock,95\n"))
+
+slope = DEMtoCFEMesh()  # x 0 to 250, y 0 to 100, heights from 57.7 down to 0
+section("Layers and tables of sources")
+
+
+def sources(wrong, text, name="sources.csv", terrain=True, **more):
+    rocks(wrong, FileName=write_text(name, text), Terrain=slope if terrain else None, **more)
+
+
+rocks("missing", FileName="missing.csv", Terrain=slope)
+sources("empty", "")
+sources("a header only", "x,y,amount\n")
+sources("truncated", features([SQUARE] * 3)[:-70], "cut.geojson")
+sources("wrong type: a text", "Dear reader\n", "letter.gpkg")
+sources("wrong type: a collection", features(
+    ['{"type":"GeometryCollection","geometries":[' + SQUARE + "]}"]), "mixed.geojson")
+sources("no places", "a,b\n1,2\n")
+sources("an empty cell", "x,y,z\n20,,60\n")
+sources("a word", "x,y,amount\n20,50,many\n")
+sources("negative", "x,y,amount\n20,50,-3\n")
+sources("NaN", "x,y,vol_dev\n20,50,nan\n")
+sources("a volume of nothing", "x,y,volume\n20,50,0\n")
+sources("comma as decimal mark", 'x,y,height\n20,50,"1,5"\n')
+sources("comma as decimal mark, not quoted", "x,y,height\n20,50,1,5\n")
+sources("an unknown shape", "x,y,shape\n20,50,ball\n")
+sources("an unknown material", "x,y,material\n20,50,cheese\n")
+sources("a polygon that crosses itself", features([BOW]), "bow.geojson")
+sources("a polygon without a terrain", features([SQUARE]), "square.geojson", terrain=False)
+sources("no overlap, or another CRS", "x,y\n700000,4000000\n")
+site = DEMtoCFEMesh(FileName=write_grid("site.asc", incline(31, 21)))
+rocks("a TargetCRS that is not the terrain's", Terrain=site, TargetCRS="EPSG:2056",
+      FileName=write_text("site.geojson", features(['{"type":"Point","coordinates":[700100,4000100]}'])))
+rocks("a TargetCRS that nobody knows", TargetCRS="EPSG:99999999",
+      FileName=write_text("site.geojson", features(['{"type":"Point","coordinates":[700100,4000100,100]}'])))
+# Of ten million no more are read than these.
+sources("10⁷ features", "x,y\n" + "20,50\n" * 1_000_001, "many.csv")
+sources("10⁷ rocks of one feature", "x,y,amount\n20,50,10000000\n")
+
+section("Places of release")
+
+
+def release(wrong, terrain=None, **properties):
+    one(wrong, RockfallSimulation(Terrain=terrain or slope, Rocks=RockBlocks(**properties),
+                                  EndTime=0.1), ports=4)
+
+
+hole = incline(11, 11)
+for r in range(4, 7):
+    hole[r][4:7] = [-9999] * 3
+holed = DEMtoCFEMesh(FileName=write_grid("holed.asc", hole))
+release("beside the slope", Center=[-20, 50, 58])
+release("nodata in the release cell", holed, Center=[700050, 4000050, 50])
+rocks("nodata in the release cell, by a table", Terrain=holed, PlaceOnGround=1,
+      FileName=write_text("hole.csv", "x,y\n700055,4000055\n"))
+release("under the slope", Center=[40, 50, 34])
+release("far over the slope: feet, or another reference", Center=[40, 50, 1834])
+release("NaN", Center=[40, 50, float("nan")])
+release("a volume that is negative", Volume=-1.0)
+release("a density that is negative", Density=-2500.0)
+
+section("Shape files")
+
+
+def shape(wrong, name, text=None):
+    rocks(wrong, Shape="From File", ShapeFileName=name if text is None else write_text(name, text))
+
+
+CORNERS = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+PLY = ("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+       "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n")
+shape("missing", "missing.stl")
+shape("empty", "empty.stl", "")
+shape("empty points", "empty.xyz", "")
+shape("truncated", "cut.ply", PLY + "0 0 0\n1 0 0\n")
+shape("wrong type", "rock.doc", "0 0 0\n")
+shape("words", "words.csv", "x,y,z\n0,0,0\n1,two,3\n")
+shape("NaN", "nan.csv", "x,y,z\n0,0,0\n1,nan,3\n1,0,0\n0,1,0\n0,0,1\n")
+shape("all in a plane", "flat.csv", "0,0,0\n1,0,0\n0,1,0\n1,1,0\n")
+shape("open", "open.obj", CORNERS + "f 1 3 2\nf 1 2 4\nf 1 4 3\n")
+shape("inside out", "inverted.obj", CORNERS + "f 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n")
+shape("a vertex that is not there", "range.obj", CORNERS + "f 1 2 9\n")
+
+section("Lines of collectors")
+fall = RockfallSimulation(Terrain=slope, Rocks=RockBlocks(), EndTime=2.0, Iterations=1)
+
+
+def lines(wrong, text, name="lines.csv"):
+    file = name if text is None else write_text(name, text)
+    one(wrong, TrajectoryCollector(Input=OutputPort(fall, 1), FileName=file), ports=3)
+
+
+ROAD = 'WKT,name,height\n"LINESTRING({0} 0,{0} 100)",road,{1}\n'
+lines("missing", None, "missing.gpkg")
+lines("empty", "WKT,name\n")
+lines("truncated", features([LINE] * 3)[:-70], "cut.geojson")
+lines("wrong type: points", 'WKT,name\n"POINT(8 0)",road\n')
+lines("no overlap, or another CRS", ROAD.format(900, 3))
+lines("a line of one place", 'WKT,name\n"LINESTRING(8 0,8 0)",road\n')
+lines("a word", ROAD.format(8, "high"))
+lines("negative", ROAD.format(8, -3))
+lines("NaN", ROAD.format(8, "nan"))
+lines("comma as decimal mark", ROAD.format(8, '"4,5"'))
+lines("10⁷ features", "WKT,name\n" + '"LINESTRING(8 0,8 100)",road\n' * 10_001)
+one("no lines at all", TrajectoryCollector(Input=OutputPort(fall, 1)), ports=3)
+one("a barrier that is negative", TrajectoryCollector(
+    Input=OutputPort(fall, 1), FileName=write_text("lines.csv", ROAD.format(8, "")),
+    BarrierHeight=-1.0), ports=3)
+
+section("Trajectories")
+one("the wrong output of the simulation", RockfallHazardMap(Input=OutputPort(fall, 0), Terrain=slope))
+one("a slope that they did not fall on", RockfallHazardMap(
+    Input=OutputPort(fall, 1), Terrain=site, CropToTrajectories=1))
+one("a cell size that is negative", RockfallHazardMap(Input=OutputPort(fall, 1), CellSize=-1.0))
+one("no cell size and no slope", RockfallHazardMap(Input=OutputPort(fall, 1)))
+
+section("Passages and crossings of several runs")
+writer = servermanager.writers.HazardPassageWriter(
+    Input=OutputPort(fall, 1), Terrain=slope, FileName=os.path.abspath("good.passages"))
+writer.UpdatePipeline()
+writer.CellSize = 10.0
+writer.FileName = os.path.abspath("coarse.passages")
+writer.UpdatePipeline()
+with open("good.passages", "rb") as file:
+    whole = file.read()
+with open("cut.passages", "wb") as file:
+    file.write(whole[:-100])
+one("missing", HazardPassageReader(FileNames=["missing.passages"]))
+one("empty", HazardPassageReader(FileNames=[write_text("empty.passages", "")]))
+one("truncated", HazardPassageReader(FileNames=["cut.passages"]))
+one("wrong type", HazardPassageReader(FileNames=[good]))
+one("cells of another size", HazardPassageReader(FileNames=["good.passages", "coarse.passages"]))
+one("a run twice", HazardPassageReader(FileNames=["good.passages", "good.passages"]))
+one("not the crossings of a collector", MergeCollectors(Input=[OutputPort(fall, 1)]), ports=3)
+
+section("Studies")
+for source in list(GetSources().values()):
+    Delete(source)
+shutil.rmtree("results", ignore_errors=True)
+write_grid("dem.asc", incline())
+study = {"terrain": {"FileName": "dem.asc"}, "rocks": {"Center": [700025, 4000060, 146]},
+         "simulation": {"EndTime": 0.5}, "iterations": 2, "chunk": 1}
+
+
+def run(wrong, text=None, name="study.json", folder="no-results", **changes):
+    if text is None:
+        text = json.dumps({**study, **changes})
+    if text:
+        write_text(name, text)
+    kept, sys.argv = sys.argv, [STUDY, folder, name]
+    end = None
+    try:
+        with contextlib.redirect_stdout(io.StringIO()):
+            runpy.run_path(STUDY, run_name="__main__")
+    except SystemExit as refused:
+        end = refused
+    finally:
+        sys.argv = kept
+    if wrong:
+        if end is None:
+            failures.append(f"study, {wrong}: no error")
+        row(wrong, str(end))
+
+
+run("missing", "", "missing.json")
+run("empty", " ")
+run("truncated", json.dumps(study)[:-40])
+run("wrong type", "[1, 2]")
+run("a part that is not known", json.dumps({**study, "itterations": 3}))
+run("a part of another type", terrain="dem.asc")
+run("negative", chunk=-2)
+run("NaN", iterations=float("nan"))
+run("a text for a number", iterations="10")
+run("comma as decimal mark", json.dumps(study).replace("0.5", "0,5"))
+run("a file that is missing", terrain={"FileName": "missing.tif"})
+run("a property that is not there", simulation={"EndTimes": 3})
+run("a map of trajectories that are not kept", map={}, simulation={"TrajectoryOutput": "Events"})
+run("lines without a file", lines={})
+run(None, folder="results")
+run("another study in the folder", folder="results", chunk=2)
+
+made = MARK
+for title, rows in sections:
+    made += f"\n## {title}\n\n| What is wrong | What the user is told |\n|---|---|\n"
+    made += "".join(f"| {wrong} | {text} |\n" for wrong, text in rows)
+with open(PAGE, encoding="utf-8") as file:
+    page = file.read()
+head, mark, told = page.partition(MARK)
+if mark + told != made:
+    write_text("bad_input.md", head + made)
+    failures.append("bad_input.md is not what the program says:\n" + "".join(difflib.unified_diff(
+        (mark + told).splitlines(True), made.splitlines(True), "docs", "made", n=0)))
+if failures:
+    raise SystemExit("\n".join(failures))
+print(sum(len(rows) for _, rows in sections), "kinds of bad input, one message each")
