@@ -12,9 +12,6 @@
 namespace rockfall::filters
 {
 
-namespace
-{
-
 void requireFinite(const Vec3& value, const char* field)
 {
   for (int k = 0; k < 3; ++k)
@@ -27,7 +24,22 @@ void requireFinite(const Vec3& value, const char* field)
   }
 }
 
-} // namespace
+void takeMaterial(int number, double& density, double& youngModulus, double& poissonRatio)
+{
+  const auto materials = rockMaterials();
+  if (number < 0 || number > int(materials.size()))
+  {
+    throw ParameterError(
+      "Material is " + std::to_string(number) + ", it must be 0 (as given) to 7 (shale)");
+  }
+  if (number > 0)
+  {
+    const RockMaterial& material = materials[std::size_t(number) - 1];
+    density = material.density;
+    youngModulus = material.youngModulus;
+    poissonRatio = material.poissonRatio;
+  }
+}
 
 Quat orientationFromDegrees(const Vec3& angles)
 {

@@ -68,6 +68,13 @@ private:
   std::vector<std::string> notes_;
 };
 
+/// The values of a kind of rock by its number in the sources' property Material, if that is not 0;
+/// throws ParameterError naming it.
+void takeMaterial(int number, double& density, double& youngModulus, double& poissonRatio);
+
+/// Throws ParameterError naming the field if a component is not finite.
+void requireFinite(const Vec3& value, const char* field);
+
 /// Degrees about x, y and z to the rotation Rz · Rx · Ry, as vtkTransform's RotateZ, RotateX,
 /// RotateY.
 Quat orientationFromDegrees(const Vec3& angles);

@@ -1,6 +1,5 @@
 #include "vtkRockBlockSource.h"
 
-#include "base/RockMaterial.h"
 #include "base/errors.h"
 #include "failure.h"
 #include "geometry/shell.h"
@@ -175,18 +174,8 @@ int vtkRockBlockSource::RequestData(
     defaults.density = this->Density;
     defaults.youngModulus = this->YoungModulus;
     defaults.poissonRatio = this->PoissonRatio;
-    const auto materials = rockfall::rockMaterials();
-    if (this->Material < 0 || this->Material > int(materials.size()))
-    {
-      refuse("Material", this->Material, "0 (as given) to 7 (shale)");
-    }
-    if (this->Material > 0)
-    {
-      const rockfall::RockMaterial& material = materials[std::size_t(this->Material) - 1];
-      defaults.density = material.density;
-      defaults.youngModulus = material.youngModulus;
-      defaults.poissonRatio = material.poissonRatio;
-    }
+    rockfall::filters::takeMaterial(
+      this->Material, defaults.density, defaults.youngModulus, defaults.poissonRatio);
     defaults.shapeFile = this->ShapeFileName;
     if (this->ShapeFileMode != CONVEX_HULL && this->ShapeFileMode != AS_IT_IS)
     {
