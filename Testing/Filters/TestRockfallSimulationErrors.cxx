@@ -90,10 +90,10 @@ TEST_F(TestRockfallSimulationErrors, BadValuesAreOneErrorAndNothingElse)
   this->ExpectEmpty();
   this->ExpectOneError({ "TrajectoryOutput", "5", "0 to 4" });
   this->Simulation->SetTrajectoryOutput(vtkRockfallSimulation::FULL);
-  this->Simulation->RockRockContactOn();
+  this->Simulation->SetRockRestitution(1.5);
   this->ExpectEmpty();
-  this->ExpectOneError({ "RockRockContact", "not available" });
-  this->Simulation->RockRockContactOff();
+  this->ExpectOneError({ "RockRestitution", "1.5" });
+  this->Simulation->SetRockRestitution(0.5);
   EXPECT_EQ(this->Summary()->GetNumberOfRows(), 2); // and it recovers
 }
 
