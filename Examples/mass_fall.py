@@ -99,7 +99,7 @@ def simulate(slope, rocks, collide, chosen):
     UpdatePipeline(proxy=simulation)
     summary = columns_of(result(simulation, 3))
     numerical = -np.asarray(summary["EnergyDamping"]) - np.asarray(summary["EnergyNumerical"])
-    say(f"  energy from nowhere: {100 * max(0.0, numerical.sum()) / summary['EnergyReleased'].sum():.3f} % "
+    say(f"  energy from nowhere: {100 * np.maximum(0.0, numerical.sum()) / summary['EnergyReleased'].sum():.3f} % "
         f"of what was released; {int(np.sum(summary['UnsettledSteps']))} unsettled steps of "
         f"{int(np.sum(summary['ContactSteps']))}; {int(np.sum(np.array(summary['FateCode']) == 2))} rocks "
         f"still move at {END:g} s")
@@ -150,6 +150,6 @@ if chosen.frames:
     say(f"Movie: {chosen.frames} frames")
     together = simulations["with collisions"]
     SaveData(in_folder("rocks.pvd"), proxy=OutputPort(together, 0), WriteTimeSteps=1,
-             Timestepstride=max(1, int(END / INTERVAL / chosen.frames)))
+             Timestepstride=int(np.ceil(END / INTERVAL / chosen.frames)))
     pictures.movie(slopes, simulations, in_folder("mass_fall.ogv"), chosen.frames, END)
 say("Done: " + chosen.output)

@@ -34,14 +34,14 @@ def strip(ground, x0, x1, lift=0.05, step=0.5):
 
 def show_ground(view, ground, bank):
     patch = produce(ground.patch(0.0, scenario.LENGTH, 0.0, scenario.WIDTH,
-                                 hillshade(315.0, smooth=1)))
+                                 hillshade(60.0, smooth=1)))
     show_slope(patch, view)
     levels = np.arange(18.0, 66.0)
     for every, width in ((levels, 1.0), (levels[levels % 5 == 0], 2.5)):
         lines = Contour(Input=patch, ContourBy=["POINTS", "Elevation"], Isosurfaces=every.tolist())
         flat(lines, view, [0.42, 0.38, 0.28], LineWidth=width, Position=[0, 0, 0.04])
     flat(strip(ground, *scenario.ROAD), view, ROAD_COLOUR)
-    middle = 0.5 * sum(scenario.ROAD)
+    middle = 0.5 * (scenario.ROAD[0] + scenario.ROAD[1])
     flat(strip(ground, middle - 0.25, middle + 0.25, 0.1), view, [1.0] * 3)
     if bank:
         half = scenario.TOP / 2
@@ -76,7 +76,7 @@ def map_picture(slopes, simulations, stops, path):
     gap = 8.0  # m between the maps, which stand one over the other
     for k, name in enumerate(("with collisions", "without collisions")):
         up = k * (scenario.WIDTH + gap)
-        patch = produce(ground.patch(0.0, scenario.LENGTH, 0.0, scenario.WIDTH, hillshade(315.0, smooth=1)))
+        patch = produce(ground.patch(0.0, scenario.LENGTH, 0.0, scenario.WIDTH, hillshade(60.0, smooth=1)))
         shift = dict(Position=[0.0, up, 0.0])
         show_slope(patch, view).Position = [0.0, up, 0.0]
         levels = np.arange(18.0, 66.0, 2.0)
@@ -92,7 +92,7 @@ def map_picture(slopes, simulations, stops, path):
     tall = 2 * scenario.WIDTH + gap
     view.CameraParallelProjection = 1
     view.CameraParallelScale = 0.5 * tall * 1.12
-    focus = [scenario.LENGTH * 0.5 + 16.0, 0.5 * tall + 0.02 * tall]
+    focus = [scenario.LENGTH * 0.5 + 38.0, 0.5 * tall + 0.02 * tall]
     view.CameraFocalPoint, view.CameraPosition = focus + [0.0], focus + [1000.0]
     view.CameraViewUp = [0.0, 1.0, 0.0]
     write(view, "41 rocks of one iteration: paths (red) and where they end (black)", (0.02, 0.95), 26, bold=True)
@@ -115,10 +115,10 @@ def map_picture(slopes, simulations, stops, path):
 def look_uphill(view):
     """From over the road's far side, a little from the side."""
     view.CameraViewUp, view.CameraViewAngle = [0.0, 0.0, 1.0], 30.0
-    middle = np.array([0.52 * scenario.LENGTH, 0.5 * scenario.WIDTH, 27.0])
-    away = np.array([0.80, -0.50, 0.46])
+    middle = np.array([0.50 * scenario.LENGTH, 0.5 * scenario.WIDTH, 36.0])
+    away = np.array([0.80, -0.62, 0.42])
     view.CameraFocalPoint = middle.tolist()
-    view.CameraPosition = (middle + 150.0 * away / np.linalg.norm(away)).tolist()
+    view.CameraPosition = (middle + 185.0 * away / np.linalg.norm(away)).tolist()
 
 
 def oblique_picture(slopes, simulations, path, end):
@@ -168,7 +168,7 @@ def stops_picture(stops, path):
     above.axvspan(*scenario.ROAD, color="0.55", alpha=0.5, label="road")
     above.axhline(scenario.STEP, color="0.3", lw=0.8, ls=":", label=f"Z = {scenario.STEP} m")
     above.set_ylabel("height (m)")
-    above.set_aspect("equal", adjustable="datalim")
+    above.set_ylim(z.min() - 3.0, z.max() + 2.0)
     above.legend(loc="upper right", frameon=False)
     iterations = len(stops["with collisions"]) / scenario.ROCKS
     edges = np.arange(0.0, scenario.LENGTH + 2.0, 2.0)
