@@ -149,7 +149,6 @@ pictures.oblique_picture(slopes, simulations, in_folder("oblique.png"), END)
 if chosen.frames:
     say(f"Movie: {chosen.frames} frames")
     together = simulations["with collisions"]
-    SaveData(in_folder("rocks.pvd"), proxy=OutputPort(together, 0), WriteTimeSteps=1,
-             Timestepstride=int(np.ceil(END / INTERVAL / chosen.frames)))
+    SaveData(in_folder("rocks.pvd"), proxy=OutputPort(together, 0), WriteTimeSteps=1)
     pictures.movie(slopes, simulations, in_folder("mass_fall.ogv"), chosen.frames, END)
 say("Done: " + chosen.output)

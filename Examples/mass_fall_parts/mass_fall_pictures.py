@@ -92,7 +92,7 @@ def map_picture(slopes, simulations, stops, path):
     tall = 2 * scenario.WIDTH + gap
     view.CameraParallelProjection = 1
     view.CameraParallelScale = 0.5 * tall * 1.12
-    focus = [scenario.LENGTH * 0.5 + 38.0, 0.5 * tall + 0.02 * tall]
+    focus = [scenario.LENGTH * 0.5 + 22.0, 0.5 * tall + 0.02 * tall]
     view.CameraFocalPoint, view.CameraPosition = focus + [0.0], focus + [1000.0]
     view.CameraViewUp = [0.0, 1.0, 0.0]
     write(view, "41 rocks of one iteration: paths (red) and where they end (black)", (0.02, 0.95), 26, bold=True)
