@@ -145,13 +145,14 @@ def movie(slopes, simulations, path, frames, end):
     show_rocks(view, simulations["with collisions"], ground, "movie")
     look_uphill(view)
     write(view, "41 rocks that hit and push each other", (0.02, 0.93), 24, bold=True)
-    clock = AnnotateTime(Format="{time:.1f} s")
+    clock = AnnotateTime()
+    clock.Format = "Time: {time:.1f} s"
     shown = Show(clock, view)
     shown.WindowLocation, shown.Position, shown.FontSize, shown.Color = "Any Location", [0.86, 0.93], 24, INK
     animation = GetAnimationScene()
     animation.PlayMode = "Sequence"
     animation.StartTime, animation.EndTime, animation.NumberOfFrames = 0.0, 0.7 * end, frames
-    SaveAnimation(path, view, ImageResolution=list(view.ViewSize), FrameRate=frames / (0.7 * end),
+    SaveAnimation(path, view, ImageResolution=list(view.ViewSize), FrameRate=int(np.ceil(frames / (0.7 * end))),
                   FrameWindow=[0, frames - 1])
     Delete(view)
 
