@@ -18,7 +18,7 @@ auto runKey(const SimulationParameters& p)
 {
   return std::make_tuple(p.timeStep, p.endTime, p.outputInterval, p.gravity, p.normalPenalty,
     p.shearRatio, p.rigid, p.iterations, p.firstIteration, p.seed, p.rockRockContact,
-    p.rockRestitution, p.rockFrictionAngle, p.rockCohesion);
+    p.rockRestitution, p.rockFrictionAngle, p.rockCohesion, p.pushRocksApart);
 }
 
 /// The one rank that has cells of an input, or 0 if none has.

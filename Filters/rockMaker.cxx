@@ -12,9 +12,6 @@
 namespace rockfall::filters
 {
 
-namespace
-{
-
 void requireFinite(const Vec3& value, const char* field)
 {
   for (int k = 0; k < 3; ++k)
@@ -27,7 +24,22 @@ void requireFinite(const Vec3& value, const char* field)
   }
 }
 
-} // namespace
+void takeMaterial(int number, double& density, double& youngModulus, double& poissonRatio)
+{
+  const auto materials = rockMaterials();
+  if (number < 0 || number > int(materials.size()))
+  {
+    throw ParameterError(
+      "Material is " + std::to_string(number) + ", it must be 0 (as given) to 7 (shale)");
+  }
+  if (number > 0)
+  {
+    const RockMaterial& material = materials[std::size_t(number) - 1];
+    density = material.density;
+    youngModulus = material.youngModulus;
+    poissonRatio = material.poissonRatio;
+  }
+}
 
 Quat orientationFromDegrees(const Vec3& angles)
 {
@@ -130,14 +142,39 @@ void RockMaker::setUncertainty(
     defaults_.redrawVolume && law.law != VolumeLaw::Fixed ? law : VolumeDistribution();
 }
 
+Shape RockMaker::kindOf(const SourceRow& row, std::uint64_t draw) const
+{
+  const ShapeMix& shapes = row.shapes ? *row.shapes : defaults_.shapes;
+  return shapes.parts.size() == 1
+    ? shapes.parts.front().shape
+    : shapes.pick(uniformDeviate(defaults_.seed, 0, Draw::SourceShape, draw));
+}
+
+std::int64_t RockMaker::amountOf(
+  const SourceRow& row, std::uint64_t firstDraw, double totalVolume, std::int64_t most)
+{
+  const VolumeDistribution law = this->volume(row);
+  double sum = 0.0;
+  for (std::int64_t amount = 1; amount <= most; ++amount)
+  {
+    const std::uint64_t draw = firstDraw + std::uint64_t(amount) - 1;
+    const double volume = this->shape(this->kindOf(row, draw), row, law, draw).integrals().volume;
+    if (sum + volume >= totalVolume)
+    {
+      return amount > 1 && totalVolume - sum < sum + volume - totalVolume ? amount - 1 : amount;
+    }
+    sum += volume;
+  }
+  throw ParameterError("TotalVolume is " + numberText(totalVolume) + " m³, which " +
+    std::to_string(most) + " rocks (MaximumRocks) do not have: they have " + numberText(sum) +
+    " m³");
+}
+
 ReleasedRock RockMaker::make(
   const SourceRow& row, std::size_t index, const ReleasePlace& place, std::int64_t blockId)
 {
   ReleasedRock released;
-  const ShapeMix& shapes = row.shapes ? *row.shapes : defaults_.shapes;
-  released.shape = shapes.parts.size() == 1
-    ? shapes.parts.front().shape
-    : shapes.pick(uniformDeviate(defaults_.seed, 0, Draw::SourceShape, place.draw));
+  released.shape = this->kindOf(row, place.draw);
   released.sourceId = row.sourceId.value_or(defaults_.firstSourceId + std::int64_t(index));
   released.sourceName = !row.sourceName.empty() ? row.sourceName
     : !defaults_.sourceName.empty()             ? defaults_.sourceName
@@ -151,6 +188,12 @@ ReleasedRock RockMaker::make(
   const Vec3 angles = row.orientation.value_or(defaults_.orientation);
   requireFinite(angles, "Orientation");
   rock.orientation = orientationFromDegrees(angles);
+  if (defaults_.randomOrientation && !row.orientation)
+  {
+    const auto [u, v] = uniformDeviates(defaults_.seed, 0, Draw::SourceAttitude, place.draw);
+    rock.orientation =
+      randomRotation(u, v, uniformDeviate(defaults_.seed, 1, Draw::SourceAttitude, place.draw));
+  }
   if (place.overGround)
   {
     const Vec3 origin = terrain_->geometry().origin();

@@ -30,6 +30,7 @@ struct RockDefaults
   std::string shapeFile;
   bool shapeFileAsItIs = false;
   bool scaleToVolume = true;
+  bool randomOrientation = false; ///< The attitude is drawn once, instead of `orientation`.
   bool redrawVolume = false;      ///< The volume is drawn in each iteration.
   ReleaseUncertainty uncertainty; ///< But for the volume.
   std::int64_t firstSourceId = 1;
@@ -51,11 +52,16 @@ public:
   /// `index` counts sources, from 0. Throws on a bad value, naming it.
   ReleasedRock make(
     const SourceRow& row, std::size_t index, const ReleasePlace& place, std::int64_t blockId);
+  /// How many rocks of a source, whose draws begin at `firstDraw`, have this volume in all (m³,
+  /// > 0), as nearly as whole rocks can; at least 1, and at most `most`.
+  std::int64_t amountOf(
+    const SourceRow& row, std::uint64_t firstDraw, double totalVolume, std::int64_t most);
   /// What was done to the shape file, one sentence each.
   const std::vector<std::string>& notes() const { return notes_; }
 
 private:
   VolumeDistribution volume(const SourceRow& row) const;
+  rockfall::Shape kindOf(const SourceRow& row, std::uint64_t draw) const;
   Polyhedron shape(
     Shape kind, const SourceRow& row, const VolumeDistribution& law, std::uint64_t draw);
   void setMaterial(const SourceRow& row, Rock& rock) const;
@@ -67,6 +73,13 @@ private:
   std::map<Shape, Polyhedron> made_; ///< Of volume 1; the file's as it is.
   std::vector<std::string> notes_;
 };
+
+/// The values of a kind of rock by its number in the sources' property Material, if that is not 0;
+/// throws ParameterError naming it.
+void takeMaterial(int number, double& density, double& youngModulus, double& poissonRatio);
+
+/// Throws ParameterError naming the field if a component is not finite.
+void requireFinite(const Vec3& value, const char* field);
 
 /// Degrees about x, y and z to the rotation Rz · Rx · Ry, as vtkTransform's RotateZ, RotateX,
 /// RotateY.

@@ -1,11 +1,11 @@
 #include "vtkRockBlockSource.h"
 
-#include "base/RockMaterial.h"
 #include "base/errors.h"
 #include "failure.h"
 #include "geometry/shell.h"
 #include "pieces.h"
 #include "rockMaker.h"
+#include "simulation/overlaps.h"
 #include "simulation/releasePlaces.h"
 #include "terrainFieldData.h"
 
@@ -14,7 +14,10 @@
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 
+#include <algorithm>
+#include <cmath>
 #include <new>
+#include <numeric>
 #include <optional>
 
 vtkStandardNewMacro(vtkRockBlockSource);
@@ -23,15 +26,23 @@ vtkStandardNewMacro(vtkRockBlockSource);
 struct vtkRockBlockSource::Sources
 {
   std::optional<rockfall::Terrain> terrain;
+  rockfall::ReleaseDefaults defaults;
   std::vector<rockfall::SourceRow> rows;
   std::vector<rockfall::ReleasePlace> places;
   std::string crs; ///< WKT of the places, empty if it is not known.
+  std::optional<rockfall::filters::RockMaker> maker;
+  std::vector<rockfall::filters::ReleasedRock> rocks; ///< One for each place.
+
+  const rockfall::Terrain* ground() const { return terrain ? &*terrain : nullptr; }
 };
 
 namespace
 {
 
 constexpr int TERRAIN = 1;
+
+/// Places drawn for a rock until it is in no other one.
+constexpr std::uint32_t MOST_PLACES = 1000;
 
 rockfall::Vec3 vec3(const double v[3])
 {
@@ -64,14 +75,13 @@ int vtkRockBlockSource::FillInputPortInformation(int, vtkInformation* info)
 }
 
 //------------------------------------------------------------------------------
-vtkRockBlockSource::Sources vtkRockBlockSource::FindSources(vtkPolyData* terrainInput)
+void vtkRockBlockSource::FindSources(vtkPolyData* terrainInput, Sources& sources)
 {
-  Sources sources;
   if (terrainInput)
   {
     sources.terrain = rockfall::filters::readTerrain(terrainInput);
   }
-  const rockfall::Terrain* terrain = sources.terrain ? &*sources.terrain : nullptr;
+  const rockfall::Terrain* terrain = sources.ground();
   sources.crs = rockfall::wktOfCrs(this->TargetCRS);
   if (terrain && !terrain->geometry().crs.empty())
   {
@@ -84,14 +94,26 @@ vtkRockBlockSource::Sources vtkRockBlockSource::FindSources(vtkPolyData* terrain
     sources.crs = terrain->geometry().crs;
   }
 
-  rockfall::ReleaseDefaults defaults;
+  rockfall::ReleaseDefaults& defaults = sources.defaults;
   defaults.amount = this->Amount;
   defaults.intensity = this->Intensity;
   defaults.height = this->ReleaseHeight;
   defaults.onGround = this->PlaceOnGround;
   defaults.seed = std::uint64_t(this->Seed);
   defaults.mostRocks = this->MaximumRocks;
+  defaults.clusterRadius = this->ClusterRadius;
   defaults.validate();
+  if (!(this->TotalVolume >= 0.0 && std::isfinite(this->TotalVolume)))
+  {
+    throw rockfall::ParameterError("TotalVolume is " + rockfall::numberText(this->TotalVolume) +
+      " m³, it must be finite and at least 0");
+  }
+  if (this->TotalVolume > 0.0 && this->Intensity > 0.0)
+  {
+    throw rockfall::ParameterError("TotalVolume is " + rockfall::numberText(this->TotalVolume) +
+      " m³ and Intensity is " + rockfall::numberText(this->Intensity) +
+      ": the number of rocks is by the one or the other");
+  }
   if (this->PlaceOnGround && !terrain)
   {
     throw rockfall::ParameterError("PlaceOnGround is on, which needs the Terrain input");
@@ -113,9 +135,13 @@ vtkRockBlockSource::Sources vtkRockBlockSource::FindSources(vtkPolyData* terrain
     }
     rockfall::SourceRow& steep = sources.rows.emplace_back();
     steep.sourceName = this->SourceName.empty() ? "steep cells" : this->SourceName;
-    sources.places =
-      rockfall::steepPlaces(*terrain, rockfall::radians(this->SlopeThreshold), defaults);
-    return sources;
+    if (this->KeepApart)
+    {
+      throw rockfall::ParameterError("KeepApart is on and SlopeThreshold is " +
+        rockfall::numberText(this->SlopeThreshold) +
+        " degrees: rocks of steep terrain cannot be kept apart, take a polygon around it");
+    }
+    return;
   }
   if (this->FileName.empty())
   {
@@ -135,8 +161,102 @@ vtkRockBlockSource::Sources vtkRockBlockSource::FindSources(vtkPolyData* terrain
     sources.rows = std::move(layer.rows);
     sources.crs = std::move(layer.crs);
   }
-  sources.places = rockfall::releasePlaces(sources.rows, terrain, defaults, this->FileName);
-  return sources;
+}
+
+//------------------------------------------------------------------------------
+void vtkRockBlockSource::FindPlaces(Sources& sources)
+{
+  const bool steep = this->SlopeThreshold > 0.0;
+  if (this->TotalVolume > 0.0)
+  {
+    for (rockfall::SourceRow& row : sources.rows)
+    {
+      if (!row.amount && !row.intensity)
+      {
+        row.amount = sources.maker->amountOf(
+          row, steep ? 0 : std::uint64_t(row.row) << 32, this->TotalVolume, this->MaximumRocks);
+      }
+    }
+  }
+  if (steep)
+  {
+    sources.defaults.amount = sources.rows.front().amount.value_or(this->Amount);
+    sources.places = rockfall::steepPlaces(
+      *sources.terrain, rockfall::radians(this->SlopeThreshold), sources.defaults);
+    return;
+  }
+  sources.places =
+    rockfall::releasePlaces(sources.rows, sources.ground(), sources.defaults, this->FileName);
+}
+
+//------------------------------------------------------------------------------
+void vtkRockBlockSource::MakeRocks(Sources& sources)
+{
+  sources.rocks.reserve(sources.places.size());
+  for (const rockfall::ReleasePlace& place : sources.places)
+  {
+    const rockfall::SourceRow& row = sources.rows[place.source];
+    const vtkIdType blockId = this->FirstBlockId + vtkIdType(sources.rocks.size());
+    try
+    {
+      sources.rocks.push_back(sources.maker->make(row, place.source, place, blockId));
+    }
+    catch (const rockfall::ParameterError& error)
+    {
+      // The row is what the user can find again; the block's number is not.
+      throw rockfall::ParameterError(
+        (this->FileName.empty() ? std::string()
+                                : this->FileName + ", row " + std::to_string(row.row) + ": ") +
+        error.what());
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkRockBlockSource::PlaceApart(Sources& sources)
+{
+  // The largest first: the small ones find room between them.
+  std::vector<std::size_t> order(sources.rocks.size());
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  const auto radius = [&](std::size_t k) { return sources.rocks[k].rock.shape.radius(); };
+  std::stable_sort(order.begin(), order.end(),
+    [&](std::size_t a, std::size_t b) { return radius(a) > radius(b); });
+  rockfall::ApartPlacer placer(radius(order.front()));
+  const rockfall::PlaceRedrawer redrawer(
+    sources.rows, sources.ground(), sources.defaults, this->FileName);
+  for (std::size_t done = 0; done < order.size(); ++done)
+  {
+    rockfall::filters::ReleasedRock& released = sources.rocks[order[done]];
+    rockfall::ReleasePlace place = sources.places[order[done]];
+    const rockfall::SourceRow& row = sources.rows[place.source];
+    bool placed = placer.fits(released.rock);
+    std::uint32_t attempt = 0;
+    for (; !placed && redrawer.hasOthers(place) && attempt < MOST_PLACES; ++attempt)
+    {
+      if (redrawer.redraw(place, attempt))
+      {
+        released = sources.maker->make(row, place.source, place, released.rock.blockId);
+        placed = placer.fits(released.rock);
+      }
+    }
+    if (!placed)
+    {
+      throw rockfall::PlacementError(
+        (this->FileName.empty() ? std::string()
+                                : this->FileName + ", row " + std::to_string(row.row) + ": ") +
+        "KeepApart finds no room for block " + std::to_string(released.rock.blockId) + " of " +
+        rockfall::numberText(released.rock.shape.integrals().volume) + " m³, " +
+        std::to_string(done) + " of " + std::to_string(order.size()) + " blocks being placed: " +
+        (attempt == 0
+            ? "all blocks of its source have one place, as ClusterRadius is 0 m"
+            : "it is in another one at each of " + std::to_string(attempt) + " places. Take a " +
+              (row.geometry == rockfall::SourceGeometry::Point
+                  ? "ClusterRadius above " + rockfall::numberText(this->ClusterRadius) + " m"
+                  : "larger source") +
+              " or fewer blocks"));
+    }
+    placer.add(released.rock);
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -175,18 +295,8 @@ int vtkRockBlockSource::RequestData(
     defaults.density = this->Density;
     defaults.youngModulus = this->YoungModulus;
     defaults.poissonRatio = this->PoissonRatio;
-    const auto materials = rockfall::rockMaterials();
-    if (this->Material < 0 || this->Material > int(materials.size()))
-    {
-      refuse("Material", this->Material, "0 (as given) to 7 (shale)");
-    }
-    if (this->Material > 0)
-    {
-      const rockfall::RockMaterial& material = materials[std::size_t(this->Material) - 1];
-      defaults.density = material.density;
-      defaults.youngModulus = material.youngModulus;
-      defaults.poissonRatio = material.poissonRatio;
-    }
+    rockfall::filters::takeMaterial(
+      this->Material, defaults.density, defaults.youngModulus, defaults.poissonRatio);
     defaults.shapeFile = this->ShapeFileName;
     if (this->ShapeFileMode != CONVEX_HULL && this->ShapeFileMode != AS_IT_IS)
     {
@@ -207,31 +317,21 @@ int vtkRockBlockSource::RequestData(
     defaults.sourceName = this->SourceName;
     defaults.firstSourceId = this->FirstSourceId;
 
-    const Sources sources = this->FindSources(terrain);
-    rockfall::filters::RockMaker maker(defaults, sources.terrain ? &*sources.terrain : nullptr);
-    std::vector<rockfall::filters::ReleasedRock> rocks;
-    rocks.reserve(sources.places.size());
-    for (const rockfall::ReleasePlace& place : sources.places)
+    defaults.randomOrientation = this->RandomOrientation;
+
+    Sources sources;
+    this->FindSources(terrain, sources);
+    sources.maker.emplace(defaults, sources.ground());
+    this->FindPlaces(sources);
+    this->MakeRocks(sources);
+    if (this->KeepApart)
     {
-      const rockfall::SourceRow& row = sources.rows[place.source];
-      const vtkIdType blockId = this->FirstBlockId + vtkIdType(rocks.size());
-      try
-      {
-        rocks.push_back(maker.make(row, place.source, place, blockId));
-      }
-      catch (const rockfall::ParameterError& error)
-      {
-        // The row is what the user can find again; the block's number is not.
-        throw rockfall::ParameterError(
-          (this->FileName.empty() ? std::string()
-                                  : this->FileName + ", row " + std::to_string(row.row) + ": ") +
-          error.what());
-      }
+      this->PlaceApart(sources);
     }
     vtkNew<vtkPolyData> blocks;
-    rockfall::filters::writeRocks(rocks, blocks);
+    rockfall::filters::writeRocks(sources.rocks, blocks);
     rockfall::filters::writeCrs(sources.crs, blocks->GetFieldData());
-    for (const std::string& note : maker.notes())
+    for (const std::string& note : sources.maker->notes())
     {
       rockfall::filters::showNote(note);
     }
@@ -280,6 +380,10 @@ void vtkRockBlockSource::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Material: " << this->Material << "\n";
   os << indent << "Amount: " << this->Amount << "\n";
   os << indent << "Intensity: " << this->Intensity << "\n";
+  os << indent << "TotalVolume: " << this->TotalVolume << "\n";
+  os << indent << "ClusterRadius: " << this->ClusterRadius << "\n";
+  os << indent << "KeepApart: " << this->KeepApart << "\n";
+  os << indent << "RandomOrientation: " << this->RandomOrientation << "\n";
   os << indent << "SlopeThreshold: " << this->SlopeThreshold << "\n";
   os << indent << "PlaceOnGround: " << this->PlaceOnGround << "\n";
   os << indent << "ReleaseHeight: " << this->ReleaseHeight << "\n";

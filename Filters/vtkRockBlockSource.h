@@ -263,6 +263,43 @@ public:
 
   ///@{
   /**
+   * Volume of all rocks of a source in m³, as nearly as whole rocks can have it, not negative. 0
+   * (the default): Amount or Intensity counts.
+   */
+  vtkSetMacro(TotalVolume, double);
+  vtkGetMacro(TotalVolume, double);
+  ///@}
+
+  ///@{
+  /**
+   * Radius in m, not negative, of the cluster that the rocks of a point make: a disc for rocks over
+   * the ground, else a ball. Default 0.
+   */
+  vtkSetMacro(ClusterRadius, double);
+  vtkGetMacro(ClusterRadius, double);
+  ///@}
+
+  ///@{
+  /**
+   * Whether places are drawn until no rock is in another one. Default off.
+   */
+  vtkSetMacro(KeepApart, bool);
+  vtkGetMacro(KeepApart, bool);
+  vtkBooleanMacro(KeepApart, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Whether each rock has an attitude of its own, drawn once, any with equal chance, instead of
+   * Orientation. Default off.
+   */
+  vtkSetMacro(RandomOrientation, bool);
+  vtkGetMacro(RandomOrientation, bool);
+  vtkBooleanMacro(RandomOrientation, bool);
+  ///@}
+
+  ///@{
+  /**
    * Release from the terrain where it is at least so steep, in degrees, 0 to 89. 0 (the default):
    * not so.
    */
@@ -387,8 +424,12 @@ protected:
 private:
   struct Sources;
 
-  /// Where the rocks are released, and of which sources.
-  Sources FindSources(vtkPolyData* terrain);
+  /// Terrain, rows and CRS.
+  void FindSources(vtkPolyData* terrain, Sources& sources);
+  void FindPlaces(Sources& sources);
+  void MakeRocks(Sources& sources);
+  /// Draws places anew until no rock is in another one, or throws.
+  void PlaceApart(Sources& sources);
 
   int Shape = CUBE;
   double Volume = 1.0;
@@ -415,6 +456,10 @@ private:
   int Material = 0;
   int Amount = 1;
   double Intensity = 0.0;
+  double TotalVolume = 0.0;
+  double ClusterRadius = 0.0;
+  bool KeepApart = false;
+  bool RandomOrientation = false;
   double SlopeThreshold = 0.0;
   bool PlaceOnGround = false;
   double ReleaseHeight = 0.0;

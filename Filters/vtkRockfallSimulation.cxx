@@ -154,6 +154,7 @@ void vtkRockfallSimulation::TakeProperties(Cache& run)
   p.rockRestitution = this->RockRestitution;
   p.rockFrictionAngle = rockfall::radians(this->RockFrictionAngle);
   p.rockCohesion = this->RockCohesion;
+  p.pushRocksApart = this->PushRocksApart;
   p.iterations = this->Iterations;
   p.firstIteration = this->FirstIteration;
   p.seed = std::uint64_t(this->Seed);
@@ -210,6 +211,14 @@ bool vtkRockfallSimulation::Simulate(vtkPolyData* terrainInput, vtkPolyData* roc
   if (run->wholeFits())
   {
     run->parts.wholeIteration = this->FirstIteration + this->ShownIteration;
+  }
+  if (ranks.rank() == 0 && run->ensemble->pushed().rocks > 0)
+  {
+    const rockfall::PushedApart& pushed = run->ensemble->pushed();
+    rockfall::filters::showNote("PushRocksApart moved " + std::to_string(pushed.rocks) + " of " +
+      std::to_string(run->ensemble->trajectoriesPerUnit()) + " blocks in iteration " +
+      std::to_string(this->FirstIteration) + ", by up to " + std::to_string(pushed.farthest) +
+      " m");
   }
   rockfall::filters::RunSink sink(run->frame, run->parts);
   rockfall::filters::ProgressReport report(
@@ -358,6 +367,7 @@ void vtkRockfallSimulation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "RockRestitution: " << this->RockRestitution << "\n";
   os << indent << "RockFrictionAngle: " << this->RockFrictionAngle << "\n";
   os << indent << "RockCohesion: " << this->RockCohesion << "\n";
+  os << indent << "PushRocksApart: " << this->PushRocksApart << "\n";
   os << indent << "Rigid: " << this->Rigid << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "ShownIteration: " << this->ShownIteration << "\n";

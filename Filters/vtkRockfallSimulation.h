@@ -123,8 +123,8 @@ public:
 
   ///@{
   /**
-   * Whether rocks collide with each other. They do not in this version: switching it on is an
-   * error.
+   * Whether the rocks of an iteration fall together, hit each other, pile up and push each other.
+   * Default off.
    */
   vtkSetMacro(RockRockContact, bool);
   vtkGetMacro(RockRockContact, bool);
@@ -142,6 +142,16 @@ public:
   vtkGetMacro(RockFrictionAngle, double);
   vtkSetMacro(RockCohesion, double);
   vtkGetMacro(RockCohesion, double);
+  ///@}
+
+  ///@{
+  /**
+   * Whether rocks that overlap at the start are pushed apart instead of being an error. Used with
+   * RockRockContact only. Default off.
+   */
+  vtkSetMacro(PushRocksApart, bool);
+  vtkGetMacro(PushRocksApart, bool);
+  vtkBooleanMacro(PushRocksApart, bool);
   ///@}
 
   ///@{
@@ -258,6 +268,7 @@ private:
   double RockRestitution = 0.5;
   double RockFrictionAngle = 30.0;
   double RockCohesion = 0.0;
+  bool PushRocksApart = false;
   bool Rigid = false;
   int NumberOfThreads = 0;
   int ShownIteration = 0;

@@ -31,6 +31,10 @@ enum class Draw : std::uint32_t
   SourcePlace = 33,
   SourceShape = 34,
   SourceVolume = 35,
+  SourceAttitude = 36,
+  // Of a joint in its set; the iteration is the number of the set.
+  JointSpacing = 48,
+  JointTilt = 49,
 };
 
 /// Largest magnitude that `normalDeviate` can give: √(−2 ln 2⁻⁵³).

@@ -276,24 +276,6 @@ Block blockOf(const Rock& rock)
   return Block(rock.shape, rock.density, rock.youngModulus, rock.poissonRatio);
 }
 
-/// Rocks that hit each other must not be in each other at the start.
-void checkOverlaps(std::span<const Rock> rocks, const Vec3& origin)
-{
-  const std::vector<RockOverlap> overlaps = findOverlaps(rocks);
-  if (overlaps.empty())
-  {
-    return;
-  }
-  const RockOverlap& worst = *std::max_element(overlaps.begin(), overlaps.end(),
-    [](const RockOverlap& a, const RockOverlap& b) { return a.depth < b.depth; });
-  const Rock &a = rocks[std::size_t(worst.first)], &b = rocks[std::size_t(worst.second)];
-  throw PlacementError("block " + std::to_string(a.blockId) + " at " + where(a.position + origin) +
-    " and block " + std::to_string(b.blockId) + " at " + where(b.position + origin) +
-    " overlap at the start, by " + std::to_string(worst.depth) + " m" +
-    (overlaps.size() > 1 ? "; so do " + std::to_string(overlaps.size() - 1) + " other pairs" : "") +
-    ". Move them apart, or give the same rock only once");
-}
-
 } // namespace
 
 Ensemble::Ensemble(
@@ -328,8 +310,44 @@ Ensemble::Ensemble(
   failure.rethrow();
   if (p.rockRockContact)
   {
-    checkOverlaps(rocks, terrain.geometry().origin());
+    if (std::none_of(rocks.begin(), rocks.end(), [](const Rock& r) { return r.uncertainty.any(); }))
+    {
+      requireEachOnce(rocks, terrain.geometry().origin());
+      start_ = this->released(p.firstIteration, &pushed_);
+    }
+    else
+    {
+      this->released(p.firstIteration, &pushed_); // throws what would stop the run at once
+    }
   }
+}
+
+std::vector<Rock> Ensemble::released(int iteration, PushedApart* pushed) const
+{
+  std::vector<Rock> rocks(rocks_.begin(), rocks_.end());
+  bool drawn = false;
+  for (std::size_t k = 0; k < rocks.size(); ++k)
+  {
+    if (rocks[k].uncertainty.any())
+    {
+      rocks[k] = realise(terrain_, rocks_[k], parameters_.seed, iteration, std::uint64_t(k));
+      drawn = true;
+    }
+  }
+  if (parameters_.pushRocksApart)
+  {
+    const PushedApart done = pushApart(terrain_, rocks);
+    if (pushed)
+    {
+      *pushed = done;
+    }
+  }
+  else
+  {
+    requireNoOverlap(rocks, terrain_.geometry().origin(),
+      drawn ? " in iteration " + std::to_string(iteration) : std::string());
+  }
+  return rocks;
 }
 
 Trajectory Ensemble::simulate(std::int64_t number, double enough) const
@@ -364,16 +382,12 @@ std::vector<Trajectory> Ensemble::simulateUnit(
     return trajectories;
   }
   const int iteration = parameters_.firstIteration + int(unit);
-  std::vector<Rock> rocks(rocks_.begin(), rocks_.end());
+  const std::vector<Rock> rocks = start_.empty() ? this->released(iteration) : start_;
   std::vector<Block> blocks;
   blocks.reserve(rocks.size());
-  for (std::size_t k = 0; k < rocks.size(); ++k)
+  for (const Rock& rock : rocks)
   {
-    if (rocks[k].uncertainty.any())
-    {
-      rocks[k] = realise(terrain_, rocks_[k], parameters_.seed, iteration, std::uint64_t(k));
-    }
-    blocks.push_back(blockOf(rocks[k]));
+    blocks.push_back(blockOf(rock));
   }
   const Surface surface(terrain_, parameters_.seed, iteration);
   MassFall fall(surface, rocks, blocks, parameters_);

@@ -37,6 +37,14 @@ struct Rock
   void validate() const; ///< Throws ParameterError naming block, field and value.
 };
 
+/// What pushing rocks apart before they fall has done.
+struct PushedApart
+{
+  std::int64_t rocks = 0; ///< How many were moved.
+  double farthest = 0.0;  ///< The longest way of one, m.
+  int passes = 0;
+};
+
 /// Receives finished trajectories.
 class TrajectorySink
 {
@@ -101,6 +109,9 @@ public:
   }
   EnsembleShare whole() const { return { 0, this->size(), 1 }; }
   const SimulationParameters& parameters() const { return parameters_; }
+  /// What pushing rocks apart does in the first iteration, and in every other one if nothing of
+  /// their release is drawn.
+  const PushedApart& pushed() const { return pushed_; }
 
   /// Simulates one trajectory of a rock that hits no other; `enough` as in RockSimulator::run.
   Trajectory simulate(
@@ -117,9 +128,15 @@ private:
   std::vector<Trajectory> simulateUnit(
     std::int64_t unit, double enough, const std::atomic<bool>& stop) const;
 
+  /// The rocks of an iteration that fall together, as they are released. Throws PlacementError if
+  /// they overlap and are not to be pushed apart.
+  std::vector<Rock> released(int iteration, PushedApart* pushed = nullptr) const;
+
   const Terrain& terrain_;
   std::span<const Rock> rocks_;
   SimulationParameters parameters_;
+  std::vector<Rock> start_; ///< Rocks that fall together, if they are the same in all iterations.
+  PushedApart pushed_;
 };
 
 /// Simulates every rock in every iteration: `Ensemble::run` of the whole.

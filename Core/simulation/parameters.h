@@ -22,6 +22,7 @@ struct SimulationParameters
   double rockRestitution = 0.5; ///< Normal, between rocks, dimensionless, 0 … 1.
   double rockFrictionAngle = radians(30.0); ///< φ between rocks, rad, 0° … 89°.
   double rockCohesion = 0.0;                ///< c between rocks, N per contact point, ≥ 0.
+  bool pushRocksApart = false; ///< Rocks that overlap at the start are moved instead of an error.
 
   bool rigid = false; ///< Infinite stiffness: 6 unknowns per block.
 

@@ -20,15 +20,6 @@ namespace
 /// Places that are drawn until one is on the slope.
 constexpr int mostPlaces = 1000;
 
-/// Uniform over all rotations: Shoemake (1992), Uniform random rotations, Graphics Gems III,
-/// 124–132.
-Quat randomRotation(double u, double v, double w)
-{
-  const double a = std::sqrt(1.0 - u), b = std::sqrt(u);
-  const double s = 2.0 * std::numbers::pi * v, t = 2.0 * std::numbers::pi * w;
-  return Quat(b * std::cos(t), a * std::sin(s), a * std::cos(s), b * std::sin(t));
-}
-
 Quat rotationOf(const Vec3& vector)
 {
   const double angle = vector.norm();
@@ -36,6 +27,13 @@ Quat rotationOf(const Vec3& vector)
 }
 
 } // namespace
+
+Quat randomRotation(double u, double v, double w)
+{
+  const double a = std::sqrt(1.0 - u), b = std::sqrt(u);
+  const double s = 2.0 * std::numbers::pi * v, t = 2.0 * std::numbers::pi * w;
+  return Quat(b * std::cos(t), a * std::sin(s), a * std::cos(s), b * std::sin(t));
+}
 
 void ReleaseUncertainty::validate() const
 {

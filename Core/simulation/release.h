@@ -41,6 +41,10 @@ struct ReleaseUncertainty
   void validate() const; ///< Throws ParameterError naming field and value.
 };
 
+/// Of three uniform numbers, uniform over all rotations: Shoemake (1992), Uniform random rotations,
+/// Graphics Gems III, 124–132.
+Quat randomRotation(double u, double v, double w);
+
 /// The rock as it is released in this iteration: a function of (seed, iteration, index) alone,
 /// `index` being that of the rock in the run.
 ///

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <optional>
 
 namespace rockfall
@@ -47,12 +48,27 @@ void refuseTooMany(double rocks, const ReleaseDefaults& defaults, const std::str
   }
 }
 
+/// Places of equal chance in a disc and in a ball of radius 1.
+Vec3 inDisc(double u, double v)
+{
+  const double r = std::sqrt(u), angle = 2.0 * std::numbers::pi * v;
+  return { r * std::cos(angle), r * std::sin(angle), 0.0 };
+}
+
+Vec3 inBall(double u, double v, double w)
+{
+  const double r = std::cbrt(u), z = 2.0 * w - 1.0, angle = 2.0 * std::numbers::pi * v;
+  const double across = std::sqrt(std::max(0.0, 1.0 - z * z));
+  return r * Vec3(across * std::cos(angle), across * std::sin(angle), z);
+}
+
 /// One source with all that is needed to draw places from it.
 class Sampler
 {
 public:
   Sampler(const SourceRow& row, const ReleaseDefaults& defaults, const std::string& name)
     : row_(row)
+    , clusterRadius_(defaults.clusterRadius)
   {
     double size = 0.0;
     if (row.geometry == SourceGeometry::Polygon)
@@ -78,14 +94,21 @@ public:
 
   double rocks() const { return rocks_; }
   bool byIntensity() const { return byIntensity_; }
-  Vec3 at(std::uint64_t seed, std::uint32_t attempt, std::uint64_t draw) const
+  /// Whether it has one place only.
+  bool isPlace() const { return row_.geometry == SourceGeometry::Point && clusterRadius_ == 0.0; }
+  Vec3 at(std::uint64_t seed, std::uint32_t attempt, std::uint64_t draw, bool overGround) const
   {
-    if (row_.geometry == SourceGeometry::Point)
+    if (this->isPlace())
     {
       return row_.position;
     }
     // Attempts take every second number, so that a place has three of its own.
     const auto [u, v] = uniformDeviates(seed, 2 * attempt, Draw::SourcePlace, draw);
+    if (row_.geometry == SourceGeometry::Point)
+    {
+      const double w = uniformDeviate(seed, 2 * attempt + 1, Draw::SourcePlace, draw);
+      return row_.position + clusterRadius_ * (overGround ? inDisc(u, v) : inBall(u, v, w));
+    }
     if (line_)
     {
       return line_->at(u);
@@ -97,6 +120,7 @@ public:
 
 private:
   const SourceRow& row_;
+  double clusterRadius_ = 0.0;
   std::optional<PolygonSampler> polygon_;
   std::optional<LineSampler> line_;
   bool byIntensity_ = false;
@@ -131,6 +155,11 @@ void ReleaseDefaults::validate() const
   {
     throw ParameterError(
       "ReleaseHeight is " + number(this->height) + " m, it must be finite and at least 0");
+  }
+  if (!(this->clusterRadius >= 0.0 && std::isfinite(this->clusterRadius)))
+  {
+    throw ParameterError(
+      "ClusterRadius is " + number(this->clusterRadius) + " m, it must be finite and at least 0");
   }
   if (this->mostRocks < 1)
   {
@@ -223,22 +252,23 @@ std::vector<ReleasePlace> releasePlaces(std::span<const SourceRow> sources, cons
   for (std::size_t k = 0; k < sources.size(); ++k)
   {
     const SourceRow& source = sources[k];
-    const bool point = source.geometry == SourceGeometry::Point;
+    const bool point = samplers[k].isPlace();
     for (std::uint64_t i = 0; i < std::uint64_t(samplers[k].rocks()); ++i)
     {
       ReleasePlace place;
       place.source = k;
       place.draw = (std::uint64_t(source.row) << 32) + i;
       std::uint32_t attempt = 0;
-      place.position = samplers[k].at(defaults.seed, attempt, place.draw);
-      place.overGround =
-        terrain && (source.height || defaults.onGround || std::isnan(place.position.z()));
+      place.overGround = terrain &&
+        (source.height || defaults.onGround ||
+          std::isnan(samplers[k].at(defaults.seed, attempt, place.draw, false).z()));
+      place.position = samplers[k].at(defaults.seed, attempt, place.draw, place.overGround);
       place.height = source.height.value_or(defaults.height);
       // A point that is given with its z is left to the simulation, which says what is wrong.
       bool placed = !terrain || (point && !place.overGround) || onTerrain(*terrain, place.position);
       while (!placed && !point && !samplers[k].byIntensity() && ++attempt < mostAttempts)
       {
-        place.position = samplers[k].at(defaults.seed, attempt, place.draw);
+        place.position = samplers[k].at(defaults.seed, attempt, place.draw, place.overGround);
         placed = onTerrain(*terrain, place.position);
       }
       if (!placed && samplers[k].byIntensity())
@@ -264,6 +294,39 @@ std::vector<ReleasePlace> releasePlaces(std::span<const SourceRow> sources, cons
       ": there is no rock: every amount is 0, or intensity times size makes none on the terrain");
   }
   return places;
+}
+
+struct PlaceRedrawer::Samplers
+{
+  std::vector<Sampler> samplers;
+  const Terrain* terrain = nullptr;
+  std::uint64_t seed = 0;
+};
+
+PlaceRedrawer::PlaceRedrawer(std::span<const SourceRow> sources, const Terrain* terrain,
+  const ReleaseDefaults& defaults, const std::string& layer)
+  : samplers_(std::make_unique<Samplers>())
+{
+  for (const SourceRow& source : sources)
+  {
+    samplers_->samplers.emplace_back(source, defaults, rowName(layer, source));
+  }
+  samplers_->terrain = terrain;
+  samplers_->seed = defaults.seed;
+}
+
+PlaceRedrawer::~PlaceRedrawer() = default;
+
+bool PlaceRedrawer::hasOthers(const ReleasePlace& place) const
+{
+  return !samplers_->samplers[place.source].isPlace();
+}
+
+bool PlaceRedrawer::redraw(ReleasePlace& place, std::uint32_t attempt) const
+{
+  place.position = samplers_->samplers[place.source].at(
+    samplers_->seed, mostAttempts + attempt, place.draw, place.overGround);
+  return !samplers_->terrain || onTerrain(*samplers_->terrain, place.position);
 }
 
 std::vector<ReleasePlace> steepPlaces(

@@ -8,6 +8,7 @@
 #include "terrain/Terrain.h"
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -21,8 +22,11 @@ struct ReleaseDefaults
   std::int64_t amount = 1; ///< Rocks of a source, ≥ 1.
   /// Rocks per m of lines and m² of polygons and steep cells, in plan; 0: `amount` counts.
   double intensity = 0.0;
-  double height = 0.0;    ///< Of the rocks over ground where that is their height, m, ≥ 0.
-  bool onGround = false;  ///< All rocks stand over the ground, whatever z says.
+  double height = 0.0;   ///< Of the rocks over ground where that is their height, m, ≥ 0.
+  bool onGround = false; ///< All rocks stand over the ground, whatever z says.
+  /// Points are spread over a disc of this radius if their rocks stand over the ground, else over a
+  /// ball, m, ≥ 0.
+  double clusterRadius = 0.0;
   std::uint64_t seed = 1; ///< With row and number of the rock it decides every random number.
   std::int64_t mostRocks = 1000000;
 
@@ -60,6 +64,28 @@ void requireOverlap(std::span<const SourceRow> sources, const Terrain& terrain,
 /// null. Throws DataError or ParameterError, naming `layer` and row.
 std::vector<ReleasePlace> releasePlaces(std::span<const SourceRow> sources, const Terrain* terrain,
   const ReleaseDefaults& defaults, const std::string& layer);
+
+/// Other places for rocks of the same sources.
+class PlaceRedrawer
+{
+public:
+  /// Keeps references. `terrain` may be null.
+  PlaceRedrawer(std::span<const SourceRow> sources, const Terrain* terrain,
+    const ReleaseDefaults& defaults, const std::string& layer);
+  ~PlaceRedrawer();
+  PlaceRedrawer(const PlaceRedrawer&) = delete;
+  PlaceRedrawer& operator=(const PlaceRedrawer&) = delete;
+
+  /// Whether the source of this place has others.
+  bool hasOthers(const ReleasePlace& place) const;
+  /// Draws the place anew, a function of the attempt (≥ 0) and of what `releasePlaces` depends on.
+  /// False if it is not on the terrain.
+  bool redraw(ReleasePlace& place, std::uint32_t attempt) const;
+
+private:
+  struct Samplers;
+  std::unique_ptr<Samplers> samplers_;
+};
 
 /// The places of rocks on all CFEs that are at least `threshold` (rad, above 0, below 90°) steep,
 /// each part of their area in plan being as likely. Throws DataError if there is no such CFE.

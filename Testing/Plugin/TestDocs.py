@@ -15,6 +15,7 @@ DOCS = os.path.join(ROOT, "docs")
 PAGES = [
     ("DEMtoCFEMesh", "DEMToCFEMesh", "slope"),
     ("RockBlocks", "RockBlocks", "rocks"),
+    ("JointedRockMass", "JointedRockMass", "mass"),
     ("RockfallSimulation", "RockfallSimulation", "fall"),
     ("DispersionAngle", "DispersionAngle", "angle"),
     ("RockfallHazardMap", "RockfallHazardMap", "hazard"),

@@ -10,9 +10,14 @@ PROXIES = [
      "FrictionAngleDeviation Cohesion RoughnessMean RoughnessDeviation"),
     ("Rock Blocks", "RockBlocks", "sources",
      "Shape Volume Center Orientation Velocity AngularVelocity Density YoungModulus PoissonRatio "
-     "FileName Terrain Amount Intensity SlopeThreshold ShapeMix VolumeLaw Material"),
+     "FileName Terrain Amount Intensity SlopeThreshold ShapeMix VolumeLaw Material TotalVolume "
+     "ClusterRadius KeepApart RandomOrientation"),
+    ("Jointed Rock Mass", "JointedRockMass", "sources",
+     "Terrain MassShape Center Lengths Orientation MassFileName JointSets Slivers MinimumThickness "
+     "MinimumVolume MaximumRocks Seed PlaceOnGround Density"),
     ("Rockfall Simulation", "RockfallSimulation", "filters",
-     "Terrain Rocks TimeStep EndTime NormalPenalty Iterations Seed OutputInterval RockRockContact"),
+     "Terrain Rocks TimeStep EndTime NormalPenalty Iterations Seed OutputInterval RockRockContact "
+     "PushRocksApart"),
     ("Dispersion Angle", "DispersionAngle", "filters",
      "Input Direction Length GroupBy ClassLimits"),
     ("Rockfall Hazard Map", "RockfallHazardMap", "filters", "Input Terrain CellSize"),
@@ -24,6 +29,7 @@ PROXIES = [
 
 dem = simple.DEMtoCFEMesh()
 rocks = simple.RockBlocks()
+mass = simple.JointedRockMass()
 simulation = simple.RockfallSimulation(Terrain=dem, Rocks=rocks)
 simulation.EndTime = 1.0
 dispersion = simple.DispersionAngle(Input=simple.OutputPort(simulation, 1))
@@ -33,7 +39,7 @@ passages = simple.HazardPassageReader()
 merged = simple.MergeCollectors(Input=[collector])
 
 for (label, name, group, properties), proxy in zip(
-        PROXIES, (dem, rocks, simulation, dispersion, hazard, collector, passages, merged)):
+        PROXIES, (dem, rocks, mass, simulation, dispersion, hazard, collector, passages, merged)):
     assert hasattr(simple, name), name
     assert proxy.GetXMLGroup() == group, (name, proxy.GetXMLGroup())
     assert proxy.GetXMLLabel() == label, (name, proxy.GetXMLLabel())

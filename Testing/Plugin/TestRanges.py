@@ -9,7 +9,7 @@ from helpers import errors_of, is_empty
 
 import paraview.simple
 from paraview.simple import (
-    DEMtoCFEMesh, Delete, DispersionAngle, OutputPort, PolyLineSource, RockBlocks, RockfallHazardMap,
+    DEMtoCFEMesh, Delete, DispersionAngle, JointedRockMass, OutputPort, PolyLineSource, RockBlocks, RockfallHazardMap,
     RockfallSimulation, TrajectoryCollector)
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
@@ -40,6 +40,7 @@ def collector():
 MAKERS = {
     "DEMToCFEMesh": DEMtoCFEMesh,
     "RockBlocks": RockBlocks,
+    "JointedRockMass": JointedRockMass,
     "RockfallSimulation": simulation,
     "DispersionAngle": dispersion,
     "RockfallHazardMap": hazard,
@@ -49,10 +50,13 @@ TOGETHER_WITH = {
     ("DEMToCFEMesh", "Band"): None,  # only rasters have bands
     ("RockBlocks", "Lengths"): {"Shape": "Box"},
     ("RockBlocks", "SlopeThreshold"): None,  # needs a terrain as steep: TestBadInput
+    ("JointedRockMass", "MaximumRocks"): None,  # a cut makes more than 1: TestRockMasses
     ("RockfallSimulation", "ShownIteration"): {"Iterations": 2},
 }
 # The least value is taken as such, but then makes too many samples, or a body too small to be one.
 NOT_AT_LEAST = {"OutputInterval", "Lengths", "Volume"}
+
+NEED_A_FILE = {("RockBlocks", "Shape", 8), ("JointedRockMass", "MassShape", 1)}
 
 
 def errors_with(name, values):
@@ -115,7 +119,7 @@ for path in sorted(glob.glob(os.path.join(ROOT, "Plugin", "xml", "*.xml"))):
                 refused(name, [max(entries) + 1])
                 count += 1
                 for entry in entries:
-                    if name != ("RockBlocks", "Shape") or entry != 8:  # that one needs a file
+                    if (*name, entry) not in NEED_A_FILE:
                         taken(name, [entry])
 if count < 25:
     failures.append(f"only {count} ranges were looked at")

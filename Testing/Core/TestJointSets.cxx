@@ -1,0 +1,377 @@
+// A rock mass that joint sets cut into blocks: volumes, counts, faces that fit, bad input.
+
+#include "base/errors.h"
+#include "geometry/jointSets.h"
+#include "geometry/shapes.h"
+#include "simulation/MassFall.h"
+#include "simulation/overlaps.h"
+#include "slopes.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <set>
+
+using namespace rockfall;
+using namespace rockfall::testing;
+
+namespace
+{
+
+JointSet jointSet(double dip, double dipDirection, double spacing, double offset = 0.0)
+{
+  JointSet set;
+  set.dip = radians(dip);
+  set.dipDirection = radians(dipDirection);
+  set.spacing = spacing;
+  set.offset = offset;
+  return set;
+}
+
+MassCut keeping()
+{
+  MassCut how;
+  how.slivers = SliverRule::Keep;
+  return how;
+}
+
+double sumOf(const CutMass& cut)
+{
+  double sum = 0.0;
+  for (const Polyhedron& block : cut.blocks)
+  {
+    sum += block.integrals().volume;
+  }
+  return sum;
+}
+
+/// Cubes of 1 m that make one of 3 m, about the origin.
+std::vector<JointSet> cubeSets()
+{
+  return { jointSet(0.0, 0.0, 1.0, 0.5), jointSet(90.0, 90.0, 1.0, 0.5),
+    jointSet(90.0, 0.0, 1.0, 0.5) };
+}
+
+template <typename Failure>
+void expectError(const Polyhedron& mass, const std::vector<JointSet>& sets, const MassCut& how,
+  const std::vector<std::string>& words)
+{
+  try
+  {
+    cutMass(mass, sets, how, Vec3(1000.0, 2000.0, 300.0));
+    ADD_FAILURE() << "no error with " << words.front();
+  }
+  catch (const Failure& error)
+  {
+    for (const std::string& word : words)
+    {
+      EXPECT_NE(std::string(error.what()).find(word), std::string::npos)
+        << word << " is not in: " << error.what();
+    }
+  }
+}
+
+/// Blocks released as they stand, the lowest point of the mass at the given place.
+std::vector<Rock> rocksOf(const CutMass& cut, const Quat& turn, const Vec3& shift)
+{
+  std::vector<Rock> rocks;
+  for (const Polyhedron& block : cut.blocks)
+  {
+    Rock rock;
+    rock.blockId = std::int64_t(rocks.size());
+    rock.position = turn * block.integrals().centroid + shift;
+    rock.shape = block.centred();
+    rock.orientation = turn;
+    rocks.push_back(rock);
+  }
+  return rocks;
+}
+
+/// How far blocks have come after `duration`, least and most.
+std::array<double, 2> travel(const Terrain& ground, const std::vector<Rock>& rocks, double duration)
+{
+  SimulationParameters parameters;
+  parameters.rockRockContact = true;
+  std::vector<Block> blocks;
+  for (const Rock& r : rocks)
+  {
+    blocks.emplace_back(r.shape, r.density, r.youngModulus, r.poissonRatio);
+  }
+  const Surface surface(ground, 1, 0);
+  MassFall fall(surface, rocks, blocks, parameters);
+  fall.awake = true;
+  fall.release();
+  while (fall.time() < duration - 1e-9 && fall.advance())
+  {
+  }
+  std::array<double, 2> way{ INFINITY, 0.0 };
+  for (std::size_t i = 0; i < rocks.size(); ++i)
+  {
+    const double moved = (fall.state(int(i)).position - rocks[i].position).norm();
+    way = { std::min(way[0], moved), std::max(way[1], moved) };
+  }
+  return way;
+}
+
+} // namespace
+
+TEST(JointSets, NormalsAreThoseOfGeologists)
+{
+  // Dips 30° to the east: the normal leans east.
+  const Vec3 east = jointSet(30.0, 90.0, 1.0).normal();
+  EXPECT_NEAR((east - Vec3(0.5, 0.0, std::sqrt(0.75))).norm(), 0.0, 1e-15);
+  const Vec3 north = jointSet(90.0, 0.0, 1.0).normal();
+  EXPECT_NEAR((north - Vec3::UnitY()).norm(), 0.0, 1e-15);
+}
+
+TEST(JointSets, BoxIntoCubes)
+{
+  const Polyhedron mass = makeBox(Vec3(3.0, 3.0, 3.0));
+  EXPECT_NEAR(expectedBlocks(mass, cubeSets()), 64.0, 1e-9); // mean over all offsets: (1 + 3)³
+  const CutMass cut = cutMass(mass, cubeSets(), {});
+  ASSERT_EQ(cut.blocks.size(), 27u);
+  for (const Polyhedron& block : cut.blocks)
+  {
+    EXPECT_EQ(block.faces().size(), 6u);
+    EXPECT_EQ(block.edges().size(), 12u);
+    EXPECT_NEAR(block.integrals().volume, 1.0, 1e-14);
+  }
+  EXPECT_NEAR(sumOf(cut), 27.0, 27.0 * 1e-14);
+}
+
+TEST(JointSets, VolumesSumToTheWhole)
+{
+  // Oblique sets with deviations, through a box and an icosahedron, near the origin and far away.
+  std::vector<JointSet> sets = { jointSet(35.0, 120.0, 0.9), jointSet(80.0, 215.0, 1.1, 0.2),
+    jointSet(65.0, 330.0, 0.8, -0.1), jointSet(15.0, 20.0, 1.7) };
+  for (std::uint64_t seed : { 1u, 2u, 3u, 4u, 5u })
+  {
+    for (JointSet& set : sets)
+    {
+      set.spacingDeviation = seed % 2 ? 0.3 : 0.0;
+      set.orientationDeviation = seed % 3 ? radians(4.0) : 0.0;
+    }
+    for (const Polyhedron& mass :
+      { makeBox(Vec3(5.0, 4.0, 3.0)), makeShape(Shape::Icosahedron, 50.0),
+        makeShape(Shape::Dodecahedron, 50.0)
+          .transformed(1.0, Quat::Identity(), Vec3(1e4, 2e4, 500)) })
+    {
+      MassCut how;
+      how.slivers = SliverRule::Drop;
+      how.leastThickness = 0.001;
+      how.leastVolume = 0.0;
+      how.seed = seed;
+      const CutMass cut = cutMass(mass, sets, how);
+      EXPECT_GT(cut.blocks.size(), 150u);
+      // 1e-12: every block rounds its own volume; 1e4 m away the coordinates are rounded, too.
+      const double tolerance = mass.integrals().centroid.norm() > 1.0 ? 1e-10 : 1e-12;
+      EXPECT_NEAR((sumOf(cut) + cut.sliverVolume) / mass.integrals().volume, 1.0, tolerance)
+        << seed;
+    }
+  }
+}
+
+TEST(JointSets, NeighboursHaveTheSamePoints)
+{
+  // Persistent planes make a complex: every face inside the mass is that of two blocks, with the
+  // same points bit for bit, so that blocks touch and neither overlap nor gape.
+  const Polyhedron mass = makeBox(Vec3(4.0, 4.0, 4.0));
+  const std::vector<JointSet> sets = { jointSet(35.0, 120.0, 1.1), jointSet(80.0, 215.0, 1.3, 0.2),
+    jointSet(65.0, 330.0, 1.2, -0.1) };
+  MassCut how = keeping();
+  const CutMass cut = cutMass(mass, sets, how);
+  std::map<std::set<std::array<double, 3>>, int> faces;
+  for (const Polyhedron& block : cut.blocks)
+  {
+    for (const std::vector<int>& loop : block.faces())
+    {
+      std::set<std::array<double, 3>> points;
+      for (const int id : loop)
+      {
+        const Vec3& p = block.vertices()[std::size_t(id)];
+        points.insert({ p.x(), p.y(), p.z() });
+      }
+      ++faces[points];
+    }
+  }
+  int inner = 0, outer = 0;
+  for (const auto& [points, uses] : faces)
+  {
+    bool onHull = false;
+    for (std::size_t f = 0; f < mass.faces().size(); ++f)
+    {
+      onHull = onHull ||
+        std::all_of(points.begin(), points.end(),
+          [&](const std::array<double, 3>& p) {
+            return std::abs(mass.normals()[f].dot(Vec3(p[0], p[1], p[2])) - mass.offsets()[f]) <
+              1e-9;
+          });
+    }
+    EXPECT_EQ(uses, onHull ? 1 : 2);
+    ++(onHull ? outer : inner);
+  }
+  EXPECT_GT(inner, 50);
+  EXPECT_GT(outer, 50);
+  EXPECT_TRUE(findOverlaps(rocksOf(cut, Quat::Identity(), Vec3::Zero())).empty());
+}
+
+TEST(JointSets, CountIsForetold)
+{
+  // The formula is a mean over offsets: 30 of them come within 3 %, as a count scatters by some 5
+  // %.
+  const Polyhedron mass = makeBox(Vec3(7.0, 5.0, 4.0));
+  double sum = 0.0, expected = 0.0;
+  for (int k = 0; k < 30; ++k)
+  {
+    const std::vector<JointSet> sets = { jointSet(35.0, 120.0, 0.9, 0.03 * k),
+      jointSet(80.0, 215.0, 1.1, 0.17 * k), jointSet(65.0, 330.0, 1.3, 0.11 * k) };
+    MassCut how;
+    how.slivers = SliverRule::Drop;
+    how.leastThickness = 1e-3;
+    const CutMass cut = cutMass(mass, sets, how);
+    sum += double(cut.blocks.size()) + double(cut.slivers);
+    expected += expectedBlocks(mass, sets);
+  }
+  EXPECT_NEAR(sum / expected, 1.0, 0.03);
+}
+
+TEST(JointSets, ThroughVerticesAndEdges)
+{
+  // Planes through corners and along edges and faces: nothing is cut off that has no volume.
+  const Polyhedron cube = makeBox(Vec3(2.0, 2.0, 2.0));
+  const CutMass diagonal = cutMass(cube, std::vector{ jointSet(45.0, 90.0, 10.0) }, {});
+  ASSERT_EQ(diagonal.blocks.size(), 2u);
+  for (const Polyhedron& block : diagonal.blocks)
+  {
+    EXPECT_EQ(block.faces().size(), 5u);
+    EXPECT_NEAR(block.integrals().volume, 4.0, 1e-13);
+  }
+  // Joints in two of the faces and through the middle.
+  EXPECT_EQ(cutMass(cube, std::vector{ jointSet(0.0, 0.0, 1.0) }, {}).blocks.size(), 2u);
+}
+
+TEST(JointSets, SliversAreNamedDroppedOrKept)
+{
+  const Polyhedron mass = makeBox(Vec3(3.0, 3.0, 3.0));
+  // The upper joint is 5 mm below the top.
+  const std::vector<JointSet> sets = { jointSet(0.0, 0.0, 2.0, 1.495), jointSet(90.0, 90.0, 2.0) };
+  expectError<GeometryError>(mass, sets, {},
+    { "slivers: 2 of the 6 blocks", "MinimumThickness, 0.01 m", "0.005",
+      "at (999.25, 2000, 301.4975)", "0.045", "Slivers" });
+  MassCut how;
+  how.slivers = SliverRule::Drop;
+  CutMass cut = cutMass(mass, sets, how);
+  EXPECT_EQ(cut.blocks.size(), 4u);
+  EXPECT_EQ(cut.slivers, 2);
+  EXPECT_NEAR(cut.sliverVolume, 0.045, 1e-12);
+  how.slivers = SliverRule::Keep;
+  cut = cutMass(mass, sets, how);
+  EXPECT_EQ(cut.blocks.size(), 6u);
+  EXPECT_EQ(cut.slivers, 2);
+  EXPECT_NEAR(sumOf(cut), 27.0, 27e-12);
+  // Too thin for a polyhedron (3 V / A below 1e-4 of its extent).
+  expectError<GeometryError>(mass, { jointSet(0.0, 0.0, 2.0, 1.49999) }, how,
+    { "too thin", "at (1000, 2000, 301.4", "Drop" });
+  how.slivers = SliverRule::Drop;
+  how.leastThickness = 10.0;
+  expectError<GeometryError>(mass, sets, how, { "nothing", "all 6" });
+}
+
+TEST(JointSets, BadInput)
+{
+  const Polyhedron mass = makeBox(Vec3(3.0, 3.0, 3.0));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const JointSet good = jointSet(0.0, 0.0, 1.0, 0.5);
+  expectError<ParameterError>(mass, {}, {}, { "JointSets is empty" });
+  expectError<ParameterError>(
+    mass, { good, jointSet(90.0, 0.0, 0.0) }, {}, { "joint set 2", "spacing is 0 m" });
+  expectError<ParameterError>(
+    mass, { good, jointSet(90.0, 0.0, nan) }, {}, { "joint set 2", "spacing is nan" });
+  expectError<ParameterError>(
+    mass, { jointSet(nan, 0.0, 1.0) }, {}, { "joint set 1", "dip is nan", "0 to 90" });
+  expectError<ParameterError>(
+    mass, { jointSet(91.0, 0.0, 1.0) }, {}, { "joint set 1", "dip is 91" });
+  expectError<ParameterError>(
+    mass, { jointSet(10.0, nan, 1.0) }, {}, { "joint set 1", "dip direction is nan" });
+  JointSet bad = good;
+  bad.spacingDeviation = -1.0;
+  expectError<ParameterError>(mass, { bad }, {}, { "spacing deviation is -1" });
+  bad = good;
+  bad.orientationDeviation = nan;
+  expectError<ParameterError>(mass, { bad }, {}, { "orientation deviation is nan" });
+  expectError<ParameterError>(mass, { good, jointSet(90.0, 0.0, 9.0, 4.0) }, {},
+    { "joint set 2", "spacing 9 m", "cuts nothing", "3 m wide" });
+  expectError<ParameterError>(mass, { good, jointSet(90.0, 0.0, 1.0), jointSet(0.5, 30.0, 0.7) },
+    {}, { "joint set 1", "joint set 3", "parallel within 1°" });
+  // Vertical planes whose dip directions are opposite.
+  expectError<ParameterError>(
+    mass, { jointSet(90.0, 10.0, 1.0), jointSet(90.0, 190.0, 0.7) }, {}, { "parallel" });
+  expectError<ParameterError>(
+    mass, { jointSet(0.0, 0.0, 0.001) }, {}, { "joint set 1", "slivers", "MinimumThickness" });
+  // A million by mistake: says what it would cost, before it is cut.
+  expectError<ParameterError>(mass,
+    { jointSet(0.0, 0.0, 0.03), jointSet(90.0, 0.0, 0.03), jointSet(90.0, 90.0, 0.03) }, {},
+    { "1030301 blocks", "MaximumRocks, which is 100000", "8.3 GB" });
+  MassCut how;
+  how.leastThickness = nan;
+  expectError<ParameterError>(mass, { good }, how, { "MinimumThickness is nan" });
+  how = {};
+  how.leastVolume = -1.0;
+  expectError<ParameterError>(mass, { good }, how, { "MinimumVolume is -1" });
+  how = {};
+  how.slivers = SliverRule(3);
+  expectError<ParameterError>(mass, { good }, how, { "Slivers is 3" });
+}
+
+TEST(JointSets, DrawnFromTheSeed)
+{
+  const Polyhedron mass = makeBox(Vec3(40.0, 4.0, 4.0));
+  JointSet set = jointSet(90.0, 90.0, 0.5);
+  set.spacingDeviation = 0.25;
+  const auto places = jointPlanes(mass, set, 0, 7);
+  double sum = 0.0, squares = 0.0;
+  for (std::size_t k = 1; k < places.size(); ++k)
+  {
+    const double gap = places[k].offset - places[k - 1].offset;
+    EXPECT_GT(gap, 0.0);
+    sum += gap;
+    squares += gap * gap;
+  }
+  const double n = double(places.size() - 1), mean = sum / n;
+  // Standard errors of some 80 gaps: 0.028 of the mean, about 0.03 of the deviation.
+  EXPECT_NEAR(mean, 0.5, 0.09);
+  EXPECT_NEAR(std::sqrt(squares / n - mean * mean), 0.25, 0.09);
+  const auto again = jointPlanes(mass, set, 0, 7), other = jointPlanes(mass, set, 0, 8);
+  ASSERT_EQ(places.size(), again.size());
+  EXPECT_EQ(places[3].offset, again[3].offset);
+  EXPECT_NE(places[3].offset, other[3].offset);
+}
+
+TEST(JointSets, CutBoxStandsStill)
+{
+  // 27 cubes that touch face to face, on flat ground: calm from the first step.
+  const CutMass cut = cutMass(makeBox(Vec3(3.0, 3.0, 3.0)), cubeSets(), {});
+  const Terrain ground = makeSlope(
+    9, 5.0, [](double, double) { return 0.0; }, material(0.3, 35.0));
+  const auto rocks = rocksOf(cut, Quat::Identity(), Vec3(20.0, 20.0, 1.5));
+  const auto [least, most] = travel(ground, rocks, 2.0);
+  EXPECT_LT(most, 1e-4);
+}
+
+TEST(JointSets, CutBoxSlidesDownASlope)
+{
+  // On 35° with φ 20° all of it slides, s = ½ g (sin α − cos α tan φ) t², for the blocks in contact
+  // with the slope; those above go along or come off.
+  const CutMass cut = cutMass(makeBox(Vec3(3.0, 3.0, 3.0)), cubeSets(), {});
+  const double angle = radians(35.0), time = 0.5;
+  const Terrain ground = makePlane(21, 100.0, angle, 0.0, material(0.3, 20.0));
+  const Vec3 normal(std::sin(angle), 0.0, std::cos(angle));
+  const auto rocks = rocksOf(
+    cut, Quat(Eigen::AngleAxisd(angle, Vec3::UnitY())), Vec3(50.0, 50.0, 100.0) + 1.5 * normal);
+  const double expected =
+    0.5 * kGravity * (std::sin(angle) - std::cos(angle) * std::tan(radians(20.0))) * time * time;
+  const auto [least, most] = travel(ground, rocks, time);
+  // φ between the blocks (30°) is greater, so that they go as one.
+  EXPECT_NEAR(least, expected, 0.02 * expected);
+  EXPECT_NEAR(most, expected, 0.02 * expected);
+}
