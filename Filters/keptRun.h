@@ -43,7 +43,7 @@ struct KeptRun
   vtkNew<vtkFieldData> coordinates;   ///< CRS and origin.
   std::unique_ptr<Ensemble> ensemble; ///< Of `slope` and the rocks of `frame`.
 
-  vtkNew<vtkPolyData> trajectories, impacts;
+  vtkNew<vtkPolyData> trajectories, impacts, structures;
   vtkNew<vtkTable> summary;
   std::vector<Trajectory> whole; ///< Those of `wholeIteration`, with all samples.
   int wholeIteration = -1;

@@ -37,7 +37,7 @@ Sample sampleAt(const Trajectory& trajectory, double time)
   for (double EnergyAudit::*term :
     { &EnergyAudit::released, &EnergyAudit::kinetic, &EnergyAudit::strain, &EnergyAudit::friction,
       &EnergyAudit::restitution, &EnergyAudit::vibration, &EnergyAudit::damping,
-      &EnergyAudit::exchanged, &EnergyAudit::numerical })
+      &EnergyAudit::structures, &EnergyAudit::exchanged, &EnergyAudit::numerical })
   {
     result.energy.*term = mix(a.energy.*term, b.energy.*term);
   }
@@ -49,7 +49,7 @@ MotionState stateAt(const Trajectory& trajectory, double time)
 {
   if (time >= trajectory.samples.back().time)
   {
-    if (trajectory.summary.fate == Fate::Rested)
+    if (trajectory.summary.fate == Fate::Rested || trajectory.summary.fate == Fate::Caught)
     {
       return MotionState::Stopped;
     }

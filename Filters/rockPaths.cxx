@@ -77,7 +77,8 @@ void forEachPath(vtkPolyData* trajectories, const Vec3& origin,
     rockPath.iteration = int(iteration->GetTuple1(cell));
     rockPath.rock = int(rock->GetTuple1(cell));
     rockPath.blockId = std::int64_t(block->GetTuple1(cell));
-    rockPath.rested = int(fate->GetTuple1(cell)) == int(Fate::Rested);
+    const int end = int(fate->GetTuple1(cell));
+    rockPath.rested = end == int(Fate::Rested) || end == int(Fate::Caught);
     if (mass)
     {
       rockPath.mass = mass->GetTuple1(cell);

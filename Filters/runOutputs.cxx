@@ -49,7 +49,7 @@ struct MotionArrays
 struct EnergyArrays
 {
   vtkSmartPointer<vtkDoubleArray> potential, strain, friction, restitution, vibration, damping,
-    exchanged, numerical;
+    structures, exchanged, numerical;
 
   explicit EnergyArrays(vtkFieldData* data)
     : potential(addArray<vtkDoubleArray>(data, "PotentialEnergy"))
@@ -58,6 +58,7 @@ struct EnergyArrays
     , restitution(addArray<vtkDoubleArray>(data, "RestitutionLoss"))
     , vibration(addArray<vtkDoubleArray>(data, "VibrationLoss"))
     , damping(addArray<vtkDoubleArray>(data, "DampingLoss"))
+    , structures(addArray<vtkDoubleArray>(data, "StructureLoss"))
     , exchanged(addArray<vtkDoubleArray>(data, "GivenToRocks"))
     , numerical(addArray<vtkDoubleArray>(data, "NumericalLoss"))
   {
@@ -73,6 +74,7 @@ struct EnergyArrays
     this->restitution->InsertNextValue(sample.energy.restitution);
     this->vibration->InsertNextValue(sample.energy.vibration);
     this->damping->InsertNextValue(sample.energy.damping);
+    this->structures->InsertNextValue(sample.energy.structures);
     this->exchanged->InsertNextValue(sample.energy.exchanged);
     this->numerical->InsertNextValue(sample.energy.numerical);
   }
@@ -293,6 +295,64 @@ void ImpactPoints::finish(vtkPolyData* output)
 }
 
 //------------------------------------------------------------------------------
+struct StructurePoints::Arrays
+{
+  vtkNew<vtkPolyData> data;
+  vtkFieldData* fields = data->GetPointData();
+  vtkSmartPointer<vtkPoints> points = doublePoints();
+  vtkNew<vtkCellArray> vertices;
+  IdentityArrays identity{ fields };
+  vtkSmartPointer<vtkIdTypeArray> structure = addArray<vtkIdTypeArray>(fields, "StructureId");
+  vtkSmartPointer<vtkIntArray> outcome = addArray<vtkIntArray>(fields, "Outcome");
+  vtkSmartPointer<vtkDoubleArray> time = addArray<vtkDoubleArray>(fields, "Time");
+  vtkSmartPointer<vtkDoubleArray> velocity = addArray<vtkDoubleArray>(fields, "Velocity", 3);
+  vtkSmartPointer<vtkDoubleArray> speed = addArray<vtkDoubleArray>(fields, "Speed");
+  vtkSmartPointer<vtkDoubleArray> energy = addArray<vtkDoubleArray>(fields, "KineticEnergy");
+  vtkSmartPointer<vtkDoubleArray> height = addArray<vtkDoubleArray>(fields, "HeightOverGround");
+  vtkSmartPointer<vtkDoubleArray> taken = addArray<vtkDoubleArray>(fields, "EnergyTaken");
+};
+
+StructurePoints::StructurePoints(const RunFrame& frame)
+  : frame_(frame)
+  , arrays_(std::make_unique<Arrays>())
+{
+}
+
+StructurePoints::~StructurePoints() = default;
+
+void StructurePoints::append(const Trajectory& trajectory)
+{
+  Arrays& a = *arrays_;
+  const TrajectorySummary& summary = trajectory.summary;
+  for (const StructureEvent& event : trajectory.structures)
+  {
+    a.vertices->InsertNextCell(1);
+    a.vertices->InsertCellPoint(a.points->GetNumberOfPoints());
+    insertPoint(a.points, event.position + frame_.origin);
+    a.identity.append(summary.blockId, summary.rock, summary.iteration);
+    a.structure->InsertNextValue(event.feature);
+    a.outcome->InsertNextValue(int(event.outcome));
+    a.time->InsertNextValue(event.time);
+    a.velocity->InsertNextTuple(event.velocity.data());
+    a.speed->InsertNextValue(event.velocity.norm());
+    a.energy->InsertNextValue(event.kineticEnergy);
+    a.height->InsertNextValue(event.heightOverGround);
+    a.taken->InsertNextValue(event.energyTaken);
+  }
+}
+
+void StructurePoints::finish(vtkPolyData* output)
+{
+  Arrays& a = *arrays_;
+  squeeze(a.fields);
+  a.points->Squeeze();
+  a.vertices->Squeeze();
+  a.data->SetPoints(a.points);
+  a.data->SetVerts(a.vertices);
+  output->ShallowCopy(a.data);
+}
+
+//------------------------------------------------------------------------------
 namespace
 {
 
@@ -327,6 +387,7 @@ constexpr Column numberColumns[] = {
   { "EnergyRestitution", [](S s, V) { return s.energy.restitution; } },
   { "EnergyVibration", [](S s, V) { return s.energy.vibration; } },
   { "EnergyDamping", [](S s, V) { return s.energy.damping; } },
+  { "EnergyStructures", [](S s, V) { return s.energy.structures; } },
   { "EnergyExchanged", [](S s, V) { return s.energy.exchanged; } },
   { "EnergyNumerical", [](S s, V) { return s.energy.numerical; } },
 };

@@ -62,6 +62,21 @@ private:
   std::unique_ptr<Arrays> arrays_;
 };
 
+/// One vertex per meeting with a barrier or with a tree that broke.
+class StructurePoints
+{
+public:
+  explicit StructurePoints(const RunFrame& frame);
+  ~StructurePoints();
+  void append(const Trajectory& trajectory);
+  void finish(vtkPolyData* output);
+
+private:
+  struct Arrays;
+  const RunFrame& frame_;
+  std::unique_ptr<Arrays> arrays_;
+};
+
 /// One row per rock and iteration.
 class SummaryRows
 {

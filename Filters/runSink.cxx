@@ -22,6 +22,7 @@ RunSink::RunSink(const RunFrame& frame, const KeptParts& kept)
   : kept_(kept)
   , lines_(frame, kept.retention == Retention::Full)
   , impacts_(frame)
+  , structures_(frame)
   , rows_(frame)
 {
 }
@@ -31,6 +32,7 @@ void RunSink::consume(Trajectory&& trajectory)
   hash_.add(trajectory.summary.hash);
   rows_.append(trajectory.summary);
   impacts_.append(trajectory);
+  structures_.append(trajectory);
   if (trajectory.summary.iteration == kept_.wholeIteration)
   {
     trajectory.impacts = {};
@@ -40,8 +42,13 @@ void RunSink::consume(Trajectory&& trajectory)
   lines_.append(trajectory);
 }
 
-void RunSink::finish(vtkPolyData* trajectories, vtkPolyData* impacts, vtkTable* summary)
+void RunSink::finish(
+  vtkPolyData* trajectories, vtkPolyData* impacts, vtkTable* summary, vtkPolyData* structures)
 {
+  if (structures)
+  {
+    structures_.finish(structures);
+  }
   lines_.finish(trajectories);
   impacts_.finish(impacts);
   rows_.finish(summary);

@@ -33,7 +33,8 @@ public:
   void consume(Trajectory&& trajectory) override;
 
   /// Nothing is consumed after it.
-  void finish(vtkPolyData* trajectories, vtkPolyData* impacts, vtkTable* summary);
+  void finish(vtkPolyData* trajectories, vtkPolyData* impacts, vtkTable* summary,
+    vtkPolyData* structures = nullptr);
 
   std::string stateHash() const { return hash_.text(); }
   /// Those of `wholeIteration`, with all samples.
@@ -43,6 +44,7 @@ private:
   KeptParts kept_;
   TrajectoryLines lines_;
   ImpactPoints impacts_;
+  StructurePoints structures_;
   SummaryRows rows_;
   StateHash hash_;
   std::vector<Trajectory> whole_;

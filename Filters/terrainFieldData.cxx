@@ -3,6 +3,7 @@
 #include "arrays.h"
 #include "base/errors.h"
 #include "geometry/shell.h"
+#include "structureFieldData.h"
 #include "terrainMesh.h"
 
 #include "vtkDoubleArray.h"
@@ -302,6 +303,7 @@ void writeTerrain(std::shared_ptr<const Terrain> terrain, int stride, vtkFieldDa
   writeClasses(terrain->restitutionClasses(), restitutionNames, restitutionNumbers, restitutionOf,
     terrain, fieldData);
   writeClasses(terrain->jointClasses(), jointNames, jointNumbers, jointOf, terrain, fieldData);
+  writeStructures(*terrain, fieldData);
   vtkNew<SharedHeights> heights;
   heights->SetName(heightsName);
   heights->Share(terrain, terrain->heights());
@@ -348,6 +350,7 @@ Terrain readTerrain(vtkPolyData* mesh, bool withMesh)
     fieldData, restitutionNames, restitutionNumbers, takeRestitution, terrain.material()));
   terrain.setJointClasses(
     readClasses(fieldData, jointNames, jointNumbers, takeJoint, terrain.material()));
+  terrain.setStructures(readStructures(fieldData));
   if (withMesh)
   {
     checkMesh(mesh, terrain, stride);

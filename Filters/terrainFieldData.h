@@ -19,6 +19,7 @@
 /// | per class restitution, its deviation, number of the model,       | | | tangential restitution,
 /// speed (m/s)                              | | TerrainRestitutionNames   | their names | |
 /// TerrainJointClass, …Classes, …Names | the same of φ (rad), its deviation, cohesion (N)       |
+/// Embankments, trees and barriers: see structureFieldData.h
 /// | LocalOrigin      | world = local + origin, m                                                 |
 ///
 /// Arrays, so that it survives shallow copies and saving and reopening as .vtp. The heights are

@@ -6,6 +6,8 @@
 #include "gis/contours.h"
 #include "gis/ground.h"
 #include "gis/raster.h"
+#include "gis/structureLayers.h"
+#include "structureFieldData.h"
 #include "terrain/Terrain.h"
 #include "terrain/presets.h"
 #include "terrainFieldData.h"
@@ -32,6 +34,7 @@ constexpr double testSlopeCellSize = 5.0; // m
 vtkDEMToCFESource::vtkDEMToCFESource()
 {
   this->SetNumberOfInputPorts(0);
+  this->SetNumberOfOutputPorts(2);
 }
 
 //------------------------------------------------------------------------------
@@ -121,6 +124,9 @@ int vtkDEMToCFESource::RequestData(
       { this->RestitutionLayer, this->RestitutionTable, this->RestitutionField }, slope, notes));
     slope.setJointClasses(readGround(rockfall::GroundKind::Joint,
       { this->JointLayer, this->JointTable, this->JointField }, slope, notes));
+    slope.setStructures(readStructures(
+      { this->EmbankmentFile, this->TreeFile, this->BarrierFile, this->TreesBreak != 0 }, slope,
+      notes));
     const auto terrain = std::make_shared<const rockfall::Terrain>(std::move(slope));
     if (this->CheckAbort())
     {
@@ -146,6 +152,10 @@ int vtkDEMToCFESource::RequestData(
       kept->InsertNextValue(note);
     }
     mesh->GetFieldData()->AddArray(kept);
+    vtkNew<vtkPolyData> structures;
+    rockfall::filters::makeStructureMesh(*terrain, structures);
+    rockfall::filters::copyCoordinateSystem(mesh->GetFieldData(), structures->GetFieldData());
+    vtkPolyData::GetData(outputVector, 1)->ShallowCopy(structures);
     output->ShallowCopy(mesh);
     return 1;
   }
@@ -156,7 +166,8 @@ int vtkDEMToCFESource::RequestData(
     const auto names = [&](const std::string& file)
     { return !file.empty() && message.find(file) != std::string::npos; };
     if (!this->FileName.empty() && !names(this->FileName) && !names(this->RestitutionLayer) &&
-      !names(this->RestitutionTable) && !names(this->JointLayer) && !names(this->JointTable))
+      !names(this->RestitutionTable) && !names(this->JointLayer) && !names(this->JointTable) &&
+      !names(this->EmbankmentFile) && !names(this->TreeFile) && !names(this->BarrierFile))
     {
       message = this->FileName + ": " + message;
     }
@@ -186,6 +197,10 @@ void vtkDEMToCFESource::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "JointLayer: " << this->JointLayer << "\n";
   os << indent << "JointTable: " << this->JointTable << "\n";
   os << indent << "JointField: " << this->JointField << "\n";
+  os << indent << "EmbankmentFile: " << this->EmbankmentFile << "\n";
+  os << indent << "TreeFile: " << this->TreeFile << "\n";
+  os << indent << "TreesBreak: " << this->TreesBreak << "\n";
+  os << indent << "BarrierFile: " << this->BarrierFile << "\n";
   os << indent << "RestitutionModel: " << this->RestitutionModel << "\n";
   os << indent << "RestitutionCoefficient: " << this->RestitutionCoefficient << "\n";
   os << indent << "RestitutionDeviation: " << this->RestitutionDeviation << "\n";

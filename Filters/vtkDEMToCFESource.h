@@ -115,6 +115,24 @@ public:
   vtkGetCharFromStdStringMacro(JointField);
   ///@}
 
+  ///@{
+  /**
+   * Embankments and dams (lines), trees (points) and barriers or nets (lines), see
+   * Core/gis/structureLayers.h for their fields. Empty (the default): there are none. TreesBreak:
+   * trees without a capacity of their own break at that of their diameter (Dorren & Berger 2006);
+   * default off. Output port 1 shows them.
+   */
+  vtkSetStdStringFromCharMacro(EmbankmentFile);
+  vtkGetCharFromStdStringMacro(EmbankmentFile);
+  vtkSetStdStringFromCharMacro(TreeFile);
+  vtkGetCharFromStdStringMacro(TreeFile);
+  vtkSetMacro(TreesBreak, int);
+  vtkGetMacro(TreesBreak, int);
+  vtkBooleanMacro(TreesBreak, int);
+  vtkSetStdStringFromCharMacro(BarrierFile);
+  vtkGetCharFromStdStringMacro(BarrierFile);
+  ///@}
+
   enum RestitutionModelType
   {
     WHOLE_VELOCITY = 0,
@@ -244,6 +262,10 @@ private:
   std::string JointLayer;
   std::string JointTable;
   std::string JointField;
+  std::string EmbankmentFile;
+  std::string TreeFile;
+  int TreesBreak = 0;
+  std::string BarrierFile;
   int RestitutionModel = WHOLE_VELOCITY;
   double RestitutionCoefficient = 0.8;
   double RestitutionDeviation = 0.0;

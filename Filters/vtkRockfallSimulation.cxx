@@ -42,7 +42,8 @@ enum OutputPorts
   ROCKS = 0,
   TRAJECTORIES = 1,
   IMPACTS = 2,
-  SUMMARY = 3
+  SUMMARY = 3,
+  STRUCTURES = 4,
 };
 
 /// More time steps than this are not listed, only their range is.
@@ -67,7 +68,7 @@ struct vtkRockfallSimulation::Failure
 vtkRockfallSimulation::vtkRockfallSimulation()
 {
   this->SetNumberOfInputPorts(2);
-  this->SetNumberOfOutputPorts(4);
+  this->SetNumberOfOutputPorts(5);
 }
 
 //------------------------------------------------------------------------------
@@ -231,14 +232,15 @@ bool vtkRockfallSimulation::Simulate(vtkPolyData* terrainInput, vtkPolyData* roc
   }
   if (ranks.rank() == 0)
   {
-    sink.finish(run->trajectories, run->impacts, run->summary);
+    sink.finish(run->trajectories, run->impacts, run->summary, run->structures);
     run->whole = std::move(sink.whole());
     run->wholeIteration = run->parts.wholeIteration;
     this->StateHash = sink.stateHash();
     addArray<vtkStringArray>(run->summary->GetFieldData(), "StateHash")
       ->InsertNextValue(this->StateHash);
-    for (vtkDataObject* output : { static_cast<vtkDataObject*>(run->trajectories),
-           static_cast<vtkDataObject*>(run->impacts), static_cast<vtkDataObject*>(run->summary) })
+    for (vtkDataObject* output :
+      { static_cast<vtkDataObject*>(run->trajectories), static_cast<vtkDataObject*>(run->impacts),
+        static_cast<vtkDataObject*>(run->summary), static_cast<vtkDataObject*>(run->structures) })
     {
       rockfall::filters::copyCoordinateSystem(run->coordinates, output->GetFieldData());
     }
@@ -341,6 +343,7 @@ int vtkRockfallSimulation::RequestData(
     output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
     vtkPolyData::GetData(outputVector, TRAJECTORIES)->ShallowCopy(this->Kept->trajectories);
     vtkPolyData::GetData(outputVector, IMPACTS)->ShallowCopy(this->Kept->impacts);
+    vtkPolyData::GetData(outputVector, STRUCTURES)->ShallowCopy(this->Kept->structures);
     vtkTable::GetData(outputVector, SUMMARY)->ShallowCopy(this->Kept->summary);
     return 1;
   }

@@ -11,10 +11,14 @@
  *    1 in contact, 2 stopped, 3 has left the domain: shown where and as it left), Shape, Volume.
  *  - 1: one polyline of centroids per rock and iteration. Point arrays Time, Velocity, Speed,
  *    RotationRate (about x, y, z), KineticEnergy, HeightOverGround; cell arrays BlockId, RockId,
- *    Iteration, Shape, Volume, Fate (0 rested, 1 left the domain, 2 still moving at the end).
+ *    Iteration, Shape, Volume, Fate (0 rested, 1 left the domain, 2 still moving at the end,
+ *    3 caught by a barrier).
  *  - 2: one vertex per impact. Point arrays BlockId, RockId, Iteration, Time, Normal, CFEId,
  * Impulse, ApproachSpeed, VelocityBefore, VelocityAfter, EnergyLoss, Restitution.
  *  - 3: a table, one row per rock and iteration, with the field array StateHash.
+ *  - 4: one vertex per meeting with a barrier or a tree that broke. Point arrays BlockId, RockId,
+ *    Iteration, StructureId, Outcome (0 stopped, 1 barrier broken, 2 recorded, 3 tree broken),
+ *    Time, Velocity, Speed, KineticEnergy, HeightOverGround (of the centre), EnergyTaken.
  *
  * The run is simulated once; any time is then served from it until a property or an input changes.
  * The time steps are those from 0 to EndTime at OutputInterval, whenever the last rock stops: this

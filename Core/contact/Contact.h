@@ -6,6 +6,7 @@
 #include "block/Block.h"
 #include "terrain/Surface.h"
 
+#include <span>
 #include <vector>
 
 namespace rockfall
@@ -166,6 +167,13 @@ double timeToTouch(const PlacedBlock& rock, const BlockState& state, const Heigh
 /// The same for the bounding sphere over the plane that no node of the window is above.
 double timeToNear(const BlockState& state, double radius, const HeightWindow& window,
   double gravity, double horizon);
+
+/// Lower bound of the time (s, at most `horizon`) to the first touch of an obstacle in free flight.
+/// Where the bounding sphere comes to one within `close` (s), `rock` is placed there and looked at
+/// itself. Trees that are `gone` (ascending) do not count.
+double timeToObstacle(PlacedBlock& rock, const BlockState& state, const Block& block,
+  const Obstacles& obstacles, std::span<const int> gone, double gravity, double close,
+  double horizon);
 
 /// How far a rock is from touching.
 struct Clearance

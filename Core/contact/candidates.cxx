@@ -235,17 +235,20 @@ void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const Su
       under[i] = below;
     }
   }
+  const auto gatherPeak = [&](int i)
+  {
+    const SurfacePatch::Node& q = patch.nodes[i];
+    if (q.peak && boxesMeet(lower, upper, q.position, q.position, distance) &&
+      rock.faceDistance(rock.outermostFace(q.position), q.position) <= distance)
+    {
+      candidates.peaks.push_back(i);
+    }
+  };
   for (int row = row0; row <= row1 + 1; ++row)
   {
     for (int column = column0; column <= column1 + 1; ++column)
     {
-      const int i = row * patch.nodeColumns + column;
-      const SurfacePatch::Node& q = patch.nodes[i];
-      if (q.peak && boxesMeet(lower, upper, q.position, q.position, distance) &&
-        rock.faceDistance(rock.outermostFace(q.position), q.position) <= distance)
-      {
-        candidates.peaks.push_back(i);
-      }
+      gatherPeak(row * patch.nodeColumns + column);
     }
   }
   // The ridges of the cells, and those that the next column and the row above count as theirs.
@@ -261,6 +264,44 @@ void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const Su
         }
       }
     }
+  }
+  // Obstacles. They have a far side, whose planes are above all of the rock: only what comes in
+  // from outside is a pair, and what is less deep than contacts ever are.
+  const double deepest = 0.1 * rock.block().radius();
+  for (int i = patch.slopeTriangles; i < int(patch.triangles.size()); ++i)
+  {
+    const SurfacePatch::Triangle& t = patch.triangles[i];
+    const Vec3& a = patch.nodes[t.nodes[0]].position;
+    const Vec3& b = patch.nodes[t.nodes[1]].position;
+    const Vec3& c = patch.nodes[t.nodes[2]].position;
+    const Vec3 least = a.cwiseMin(b).cwiseMin(c), most = a.cwiseMax(b).cwiseMax(c);
+    const Vec3 corner = (t.normal.array() > 0.0).select(lower, upper);
+    if (!boxesMeet(lower, upper, least, most, wide) || t.normal.dot(corner) - t.offset > distance)
+    {
+      continue;
+    }
+    for (int v = 0; v < int(vertices.size()); ++v)
+    {
+      const double height = t.normal.dot(vertices[v]) - t.offset;
+      if (height > distance)
+      {
+        continue;
+      }
+      under[i] |= bit(v);
+      if (height > -deepest && boxesMeet(least, most, vertices[v], vertices[v], wide) &&
+        inVertexCone(rock, v, t.normal, turn))
+      {
+        candidates.vertexFace.push_back({ v, i });
+      }
+    }
+  }
+  for (int i = patch.slopeNodes; i < int(patch.nodes.size()); ++i)
+  {
+    gatherPeak(i);
+  }
+  for (int i = patch.slopeRidges; i < int(patch.ridges.size()); ++i)
+  {
+    gatherEdges(rock, patch, i, distance, turn, candidates);
   }
 }
 

@@ -1,4 +1,5 @@
 #include "contact/Contact.h"
+#include "contact/features.h"
 #include "contact/motion.h"
 
 #include <algorithm>
@@ -240,7 +241,10 @@ void holdOverlap(const PlacedBlock& rock, const SurfacePatch& patch,
     const SurfacePatch::Triangle& t = patch.triangles[pair.patch];
     const Vec3& p = rock.vertices()[pair.rock];
     const double distance = t.normal.dot(p) - t.offset;
-    if (distance < -allowed && isStraightOver(patch, t, p))
+    if (distance < -allowed &&
+      (pair.patch < patch.slopeTriangles ? isStraightOver(patch, t, p)
+                                         : projectsInside(patch, pair.patch, p, 0.0, 0.0) &&
+            inVertexCone(rock, pair.rock, t.normal, kConeSlack)))
     {
       add(ContactKind::VertexFace, pair.rock, pair.patch, distance);
     }
@@ -251,7 +255,7 @@ void holdOverlap(const PlacedBlock& rock, const SurfacePatch& patch,
     const int face = rock.outermostFace(q);
     const double distance = rock.faceDistance(face, q);
     // A face that looks up is no way out of the ground.
-    if (distance < -allowed && rock.normal(face).z() < 0.0)
+    if (distance < -allowed && (node >= patch.slopeNodes || rock.normal(face).z() < 0.0))
     {
       add(ContactKind::FaceVertex, face, node, distance);
     }

@@ -67,7 +67,9 @@ void admit(const SurfacePatch& patch, Contact candidate, std::vector<Contact>& c
     {
       return;
     }
-    if (!adjacent && c.distance < 0.0 && candidate.distance < c.distance)
+    const bool alike = (c.patchFeature < patch.slopeTriangles) ==
+      (candidate.patchFeature < patch.slopeTriangles); // both of the slope, or both of obstacles
+    if (alike && !adjacent && c.distance < 0.0 && candidate.distance < c.distance)
     {
       return; // deeper under a triangle further off: not where it came in
     }

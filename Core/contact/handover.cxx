@@ -213,7 +213,8 @@ bool leaveBest(
                        double beyond)
   {
     const bool tie = std::abs(distance - highest) <= same && beyond < bestBeyond;
-    if (normal.z() <= 0.0 || normal.dot(contact.normal) < kSmoothTurn ||
+    const bool onSlope = contact.patchFeature < patch.slopeRidges; // obstacles have upright sides
+    if ((onSlope && normal.z() <= 0.0) || normal.dot(contact.normal) < kSmoothTurn ||
       !(distance > highest + same || tie))
     {
       return;

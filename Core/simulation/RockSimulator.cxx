@@ -55,6 +55,9 @@ RockSimulator::RockSimulator(
   restingSpeed_ = kRestingSpeed * std::sqrt(g * block.radius());
   penalty_ = p.normalPenalty;
   const double contacts = std::sqrt(p.normalPenalty * block.largestMobility());
+  obstacles_ = surface.terrain().obstacles();
+  solid_ = obstacles_ && obstacles_->solid();
+  barriers_ = obstacles_ && !obstacles_->structures().barriers.empty();
   stiff_ = p.rigid ||
     block.strainFrequency() >=
       std::min(kStiffBesideContacts * contacts, kStiffBesideStep / p.timeStep);
@@ -96,7 +99,7 @@ EnergyAudit RockSimulator::auditAt(const BlockState& state) const
   audit.released = energyAtStart_ - block_.mass() * parameters_.gravity * state.position.z();
   audit.numerical = audit.released -
     (audit.kinetic + audit.strain + audit.friction + audit.restitution + audit.vibration +
-      audit.damping + audit.exchanged);
+      audit.damping + audit.structures + audit.exchanged);
   return audit;
 }
 
@@ -129,6 +132,12 @@ void RockSimulator::ensurePatch(double margin)
   {
     gatherPatch(surface_, lower.x() - margin, upper.x() + margin, lower.y() - margin,
       upper.y() + margin, patch_);
+    if (solid_)
+    {
+      const double ring = patch_.cellSize;
+      obstacles_->append(patch_.xMin - ring, patch_.xMax + ring, patch_.yMin - ring,
+        patch_.yMax + ring, goneTrees_, patch_);
+    }
     candidates_.distance = -1.0;
   }
 }
@@ -158,6 +167,14 @@ bool RockSimulator::clearFor(double duration) const
 void RockSimulator::advanceInFlight(double duration)
 {
   const BlockState start = state_;
+  if (barriers_)
+  {
+    BlockState reached = start;
+    reached.position += duration * start.velocity;
+    reached.time += duration;
+    this->findBarriers(start, reached, true);
+    duration = hit_.barrier >= 0 ? hit_.fraction * duration : duration;
+  }
   const double end = start.time + duration;
   BlockState at = start;
   while (recorder_.nextTime() <= end)
@@ -170,6 +187,10 @@ void RockSimulator::advanceInFlight(double duration)
   state_ = fly(block_, start, parameters_.gravity, duration);
   state_.time = end;
   recorder_.follow(state_);
+  if (barriers_ && hit_.barrier >= 0)
+  {
+    this->meetBarrier();
+  }
 }
 
 void RockSimulator::flyUntilNear()
@@ -221,6 +242,15 @@ void RockSimulator::flyUntilNear()
         duration = std::min(duration, touch);
       }
     }
+    if (solid_)
+    {
+      const double free = this->freeOfObstacles(duration);
+      if (free < std::min(duration, this->impactStep()))
+      {
+        return;
+      }
+      duration = free;
+    }
     this->advanceInFlight(duration);
     this->checkEnd(0.0);
   }
@@ -256,7 +286,10 @@ void RockSimulator::followRest(double h, bool touching)
 
 void RockSimulator::checkEnd(double h)
 {
-  this->checkLeft();
+  if (!done_)
+  {
+    this->checkLeft();
+  }
   if (done_)
   {
     return;
@@ -281,6 +314,10 @@ void RockSimulator::liftOntoRoughness()
   // The placement was checked on the slope as surveyed; roughness can raise the ground into the
   // rock.
   const double step = 0.01 * block_.radius();
+  if (solid_)
+  {
+    this->clearTrees();
+  }
   placed_.place(block_, state_);
   this->ensurePatch(step);
   double depth = penetration(placed_, patch_);

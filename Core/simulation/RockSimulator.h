@@ -8,6 +8,7 @@
 #include "simulation/Recorder.h"
 #include "simulation/ensemble.h"
 #include "solver/StepSolver.h"
+#include "terrain/Obstacles.h"
 
 #include <limits>
 #include <vector>
@@ -58,6 +59,17 @@ private:
   void checkLeft(); ///< Beyond the slope?
   void followRest(double h, bool touching);
   void checkEnd(double h); ///< Rested, left, or out of time? `h`: time since the last call, s.
+
+  // Structures, structuresOnWay.cxx
+  double freeOfObstacles(double duration); ///< For how long, at most this, nothing is touched, s.
+  void clearTrees();                       ///< Where the rock is released there is none.
+  bool breakTrees(double h); ///< That it is about to touch within `h`; whether there were any.
+  /// Fills `hit_` with the first barrier that stops the rock or breaks on the way to `state_`, and
+  /// notes those that record; `flight`: the way is a parabola, else a step of contact.
+  void findBarriers(const BlockState& from, const BlockState& to, bool flight);
+  void meetBarrier(); ///< The one in `hit_`, at `state_`.
+  void endStepAtBarrier(bool touching);
+  void forgetPatch();
 
   // Contact, contactPhase.cxx
   void beginContact();
@@ -115,7 +127,19 @@ private:
   Vec3 spinAcceleration_ = Vec3::Zero();
   StepKind steppedAs_ = StepKind::Impact; ///< In the last step.
   std::uint64_t carrying_ = 0;            ///< What carried in the last lasting step.
-  double ringing_ = 0.0;  ///< Period of a soft block's slowest strain, 0 for a stiff one, s.
+  double ringing_ = 0.0; ///< Period of a soft block's slowest strain, 0 for a stiff one, s.
+  const Obstacles* obstacles_ = nullptr; ///< Null if there are none.
+  bool solid_ = false;                   ///< There are embankments or trees.
+  bool barriers_ = false;
+  std::vector<int> goneTrees_;      ///< Ascending.
+  std::vector<int> brokenBarriers_; ///< In the order of breaking.
+  double freeUntil_ = 0.0;          ///< No obstacle can be touched until then, s.
+  struct BarrierHit
+  {
+    int barrier = -1;      ///< −1: none.
+    double fraction = 0.0; ///< Of the way.
+    double heightOverGround = 0.0;
+  } hit_;
   double openTime_ = 0.0; ///< Since it touched, s.
   double freeFor_ = 0.0;  ///< Nothing can be touched for so long after a take-off, s.
   double horizon_ = 0.0;  ///< Up to which it is to advance, s.

@@ -136,6 +136,10 @@ void RockSimulator::stayInContact()
       const double near = reachOf(h);
       std::erase_if(contacts_, [&](const Contact& c) { return !c.closed() && c.gap() > near; });
     }
+    if (solid_ && this->breakTrees(h))
+    {
+      continue;
+    }
     if (kind == StepKind::Impact && !anyClosed(contacts_) && openTime_ >= ringing_)
     {
       // Free until a pair closes, or until others than the candidates might.
@@ -155,6 +159,7 @@ void RockSimulator::stayInContact()
           this->finishImpact();
         }
         freeFor_ = served;
+        freeUntil_ = state_.time + served;
         this->endContact();
         return;
       }
@@ -318,6 +323,18 @@ void RockSimulator::absorb(
   }
   steppedAs_ = kind;
   const bool touching = anyClosed(contacts_);
+  if (barriers_)
+  {
+    this->findBarriers(before_, state_, false);
+    if (hit_.barrier >= 0)
+    {
+      this->endStepAtBarrier(touching);
+      if (done_)
+      {
+        return;
+      }
+    }
+  }
   recorder_.recordBetween(before_, state_, touching);
   this->auditSamples(state_);
   recorder_.follow(state_);

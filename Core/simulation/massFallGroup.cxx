@@ -120,6 +120,11 @@ void MassFall::gatherContacts(const Group& group, double h) const
     const double reach = reachOf(sim.state_.velocity.norm() + sim.state_.spin.norm() * r, r);
     sim.ensureCandidates(reach);
     updateContacts(sim.placed_, sim.patch_, sim.candidates_, reach, sim.contacts_);
+    while (sim.solid_ && sim.breakTrees(h))
+    {
+      sim.ensureCandidates(reach);
+      updateContacts(sim.placed_, sim.patch_, sim.candidates_, reach, sim.contacts_);
+    }
     double pressed = 0.0;
     for (const Contact& c : sim.contacts_)
     {
@@ -297,8 +302,16 @@ void MassFall::fly(const Group& group, double duration) const
     {
       sim.contacts_.clear();
       sim.finishImpact();
+      const double end = sim.state_.time + duration;
       sim.advanceInFlight(duration);
-      sim.checkLeft();
+      while (sim.barriers_ && !sim.done_ && sim.state_.time < end)
+      {
+        sim.advanceInFlight(end - sim.state_.time); // through a barrier that broke
+      }
+      if (!sim.done_)
+      {
+        sim.checkLeft();
+      }
       sim.quietTime_ = 0.0;
     }
   }
@@ -637,6 +650,10 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
       m.sim.acceleration_.setZero();
       m.sim.spinAcceleration_.setZero();
       m.carriers = carriers[b];
+    }
+    if (m.sim.done_)
+    {
+      continue; // caught
     }
     m.sim.checkLeft();
     const std::vector<Contact>& c = m.sim.contacts_;

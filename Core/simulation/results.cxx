@@ -11,6 +11,8 @@ std::string fateName(Fate fate)
       return "rested";
     case Fate::LeftDomain:
       return "left the domain";
+    case Fate::Caught:
+      return "caught";
     case Fate::Moving:
       break;
   }

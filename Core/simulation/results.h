@@ -13,9 +13,9 @@ namespace rockfall
 {
 
 /// Where the energy went, J. Their sum is what the numerics kept; `numerical` is the remainder:
-/// released = kinetic + strain + friction + restitution + vibration + damping + exchanged +
-/// numerical. What two rocks exchange does not add up to nothing: the rest is lost, or held,
-/// between them.
+/// released = kinetic + strain + friction + restitution + vibration + damping + structures +
+/// exchanged + numerical. What two rocks exchange does not add up to nothing: the rest is lost, or
+/// held, between them.
 struct EnergyAudit
 {
   double released = 0.0;    ///< Start's kinetic energy plus potential energy given up.
@@ -25,6 +25,7 @@ struct EnergyAudit
   double restitution = 0.0; ///< Taken by Rv.
   double vibration = 0.0;   ///< Strain energy left in a block when it took off.
   double damping = 0.0;     ///< Dissipated by the damped step of lasting contact.
+  double structures = 0.0;  ///< Taken by barriers and by trees that broke.
   double exchanged = 0.0;   ///< Given to other rocks by contact (−: received).
   double numerical = 0.0;   ///< Gained (−) or lost (+) by the numerics.
 };
@@ -72,11 +73,35 @@ struct ImpactEvent
   std::int64_t otherBlockId = -1; ///< Its number.
 };
 
+/// What became of a structure that a rock met.
+enum class StructureOutcome
+{
+  BarrierStopped = 0,  ///< It holds the rock.
+  BarrierBroken = 1,   ///< The rock went through, and lost the barrier's capacity.
+  BarrierRecorded = 2, ///< It only records; nothing happened to the rock.
+  TreeBroken = 3,      ///< The rock broke it, and lost its capacity.
+};
+
+/// A rock at a barrier, or at a tree that it breaks. Trees that hold and embankments are slope:
+/// their impacts are ImpactEvents.
+struct StructureEvent
+{
+  StructureOutcome outcome = StructureOutcome::BarrierStopped;
+  std::int64_t feature = 0;      ///< Number of the structure in its layer, from 1.
+  double time = 0.0;             ///< s
+  Vec3 position = Vec3::Zero();  ///< Of the rock's centre, m.
+  Vec3 velocity = Vec3::Zero();  ///< Before, m/s.
+  double kineticEnergy = 0.0;    ///< Translation and rotation, before, J.
+  double heightOverGround = 0.0; ///< Of the rock's centre over the slope, m.
+  double energyTaken = 0.0;      ///< J
+};
+
 enum class Fate
 {
   Rested = 0,     ///< Lies still on the slope.
   LeftDomain = 1, ///< Went beyond the slope's edge or over a nodata hole.
   Moving = 2,     ///< Still moving at the end time.
+  Caught = 3,     ///< Stopped by a barrier.
 };
 std::string fateName(Fate fate);
 
@@ -112,6 +137,7 @@ struct Trajectory
   TrajectorySummary summary;
   std::vector<Sample> samples; ///< In the order of time, the last one is the end.
   std::vector<ImpactEvent> impacts;
+  std::vector<StructureEvent> structures; ///< In the order of time.
 };
 
 } // namespace rockfall

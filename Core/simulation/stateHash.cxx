@@ -83,6 +83,15 @@ std::uint64_t motionHash(const Trajectory& trajectory)
     mixer.add(impact.restitution);
     mixer.add(impact.otherRock);
   }
+  for (const StructureEvent& event : trajectory.structures)
+  {
+    mixer.add(int(event.outcome));
+    mixer.add(event.feature);
+    mixer.add(event.time);
+    mixer.add(event.position);
+    mixer.add(event.kineticEnergy);
+    mixer.add(event.energyTaken);
+  }
   return mixer.value() == 0 ? 1 : mixer.value();
 }
 

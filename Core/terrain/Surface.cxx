@@ -1,6 +1,7 @@
 #include "terrain/Surface.h"
 
 #include "base/random.h"
+#include "terrain/Obstacles.h"
 
 #include <algorithm>
 #include <cmath>
@@ -81,11 +82,13 @@ void Surface::drawMaterials(bool drawn)
   const Realisation realisation{ seed_, iteration_, drawn };
   restitution_ = realisation.restitution(terrain_->material(), 0);
   friction_ = realisation.friction(terrain_->material(), 0);
-  for (int k = 1; k <= terrain_->restitutionClasses().count(); ++k)
+  const Obstacles* const obstacles = terrain_->obstacles();
+  const int built = obstacles ? int(obstacles->structures().materials.size()) : 0;
+  for (int k = 1; k <= terrain_->restitutionClasses().count() + built; ++k)
   {
     restitutions_.push_back(realisation.restitution(terrain_->restitutionMaterial(k), k));
   }
-  for (int k = 1; k <= terrain_->jointClasses().count(); ++k)
+  for (int k = 1; k <= terrain_->jointClasses().count() + built; ++k)
   {
     frictions_.push_back(realisation.friction(terrain_->jointMaterial(k), k));
   }
@@ -148,6 +151,7 @@ void gatherPatch(
   patch.nodeColumns = patch.nodeRows = 0;
   patch.row0 = patch.column0 = 0;
   patch.row1 = patch.column1 = -1;
+  patch.slopeNodes = patch.slopeTriangles = patch.slopeRidges = 0;
   if (wantColumn1 < 0 || wantColumn0 > g.columns - 2 || wantRow1 < 0 || wantRow0 > g.rows - 2)
   {
     return;
@@ -290,6 +294,9 @@ void gatherPatch(
         [&](int m) { return std::isnan(patch.nodes[m].position.z()); });
     }
   }
+  patch.slopeNodes = int(patch.nodes.size());
+  patch.slopeTriangles = int(patch.triangles.size());
+  patch.slopeRidges = int(patch.ridges.size());
 }
 
 } // namespace rockfall

@@ -30,19 +30,19 @@ public:
 
   // The same of the ground under a CFE. Each class draws its own numbers; class 0 draws those
   // above.
-  int restitutionClass(std::int64_t cfe) const { return terrain_->restitutionClasses().at(cfe); }
+  int restitutionClass(std::int64_t cfe) const { return terrain_->restitutionClassOf(cfe); }
   double restitutionOf(int restitutionClass) const
   {
     return restitutionClass == 0 ? restitution_ : restitutions_[std::size_t(restitutionClass) - 1];
   }
   double frictionAt(std::int64_t cfe) const
   {
-    const int joint = terrain_->jointClasses().at(cfe);
+    const int joint = terrain_->jointClassOf(cfe);
     return joint == 0 ? friction_ : frictions_[std::size_t(joint) - 1];
   }
   double cohesionAt(std::int64_t cfe) const
   {
-    return terrain_->jointMaterial(terrain_->jointClasses().at(cfe)).cohesion;
+    return terrain_->jointMaterial(terrain_->jointClassOf(cfe)).cohesion;
   }
 
   double nodeHeight(int row, int column) const; ///< With roughness, NaN for nodata, m.
@@ -110,6 +110,9 @@ struct SurfacePatch
   std::vector<Node> nodes;
   std::vector<Triangle> triangles;
   std::vector<Ridge> ridges;
+
+  /// How many of each are the slope's; those of obstacles follow.
+  int slopeNodes = 0, slopeTriangles = 0, slopeRidges = 0;
 
   /// Cells gathered: rows [row0, row1], columns [column0, column1]; empty if row1 < row0.
   int row0 = 0, row1 = -1, column0 = 0, column1 = -1;
@@ -180,7 +183,8 @@ private:
 };
 
 /// Gathers the cells under a box (local frame, m) with a ring of one cell around them, by index
-/// arithmetic [paper eq. 1]. Reuses the memory of `patch`.
+/// arithmetic [paper eq. 1]. Reuses the memory of `patch`. Obstacles are not among them
+/// (Obstacles::append).
 void gatherPatch(
   const Surface& surface, double xMin, double xMax, double yMin, double yMax, SurfacePatch& patch);
 

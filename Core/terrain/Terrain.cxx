@@ -1,6 +1,7 @@
 #include "terrain/Terrain.h"
 
 #include "base/errors.h"
+#include "terrain/Obstacles.h"
 
 #include <algorithm>
 #include <cmath>
@@ -53,6 +54,7 @@ Terrain::Terrain(const Terrain& other, SurfaceMaterial material, Roughness rough
   material_.validate();
   roughness_.validate();
   restitutionClasses_ = jointClasses_ = {};
+  obstacles_.reset();
 }
 
 void Terrain::setRestitutionClasses(MaterialClasses classes)
@@ -242,6 +244,23 @@ double Terrain::elevation(double x, double y) const
   const Vec3& n = face.normal;
   const Vec3& a = face.nodes[0];
   return a.z() - (n.x() * (x - a.x()) + n.y() * (y - a.y())) / n.z();
+}
+
+void Terrain::setStructures(Structures structures)
+{
+  obstacles_ =
+    structures.any() ? std::make_shared<const Obstacles>(std::move(structures), *this) : nullptr;
+}
+
+int Terrain::obstacleClass(std::int64_t cfe, int layerClasses) const
+{
+  const int material = obstacles_->materialOf(cfe);
+  return material == 0 ? 0 : layerClasses + material;
+}
+
+const SurfaceMaterial& Terrain::obstacleMaterial(int number) const
+{
+  return obstacles_->structures().materials[std::size_t(number) - 1];
 }
 
 Terrain makeBiplanarSlope(double cellSize)

@@ -20,6 +20,9 @@
 namespace rockfall
 {
 
+class Obstacles;
+struct Structures;
+
 /// Where a raster stands in the world.
 struct GridGeometry
 {
@@ -102,21 +105,47 @@ public:
   void setJointClasses(MaterialClasses classes);
   const MaterialClasses& restitutionClasses() const { return restitutionClasses_; }
   const MaterialClasses& jointClasses() const { return jointClasses_; }
-  /// What a class of either kind is made of; class 0 is material().
+  /// What a class of either kind is made of; class 0 is material(), and the materials of obstacles
+  /// follow those of the layer.
   const SurfaceMaterial& restitutionMaterial(int number) const
   {
-    return number == 0 ? material_ : restitutionClasses_.materials[std::size_t(number) - 1];
+    return number == 0 ? material_
+      : number <= restitutionClasses_.count()
+      ? restitutionClasses_.materials[std::size_t(number) - 1]
+      : this->obstacleMaterial(number - restitutionClasses_.count());
   }
   const SurfaceMaterial& jointMaterial(int number) const
   {
-    return number == 0 ? material_ : jointClasses_.materials[std::size_t(number) - 1];
+    return number == 0                  ? material_
+      : number <= jointClasses_.count() ? jointClasses_.materials[std::size_t(number) - 1]
+                                        : this->obstacleMaterial(number - jointClasses_.count());
   }
+  /// The class of a CFE, also of one of an obstacle.
+  int restitutionClassOf(std::int64_t cfe) const
+  {
+    return obstacles_ && cfe > this->cfeCapacity()
+      ? this->obstacleClass(cfe, restitutionClasses_.count())
+      : restitutionClasses_.at(cfe);
+  }
+  int jointClassOf(std::int64_t cfe) const
+  {
+    return obstacles_ && cfe > this->cfeCapacity() ? this->obstacleClass(cfe, jointClasses_.count())
+                                                   : jointClasses_.at(cfe);
+  }
+
+  /// Puts embankments, trees and barriers on the slope; nothing if there are none. Throws as
+  /// Obstacles. To be called before the terrain is used.
+  void setStructures(Structures structures);
+  /// Null if there are none.
+  const Obstacles* obstacles() const { return obstacles_.get(); }
 
   /// Lowest node height (without roughness), m.
   double lowest() const { return lowest_; }
 
 private:
   void buildPyramid();
+  int obstacleClass(std::int64_t cfe, int layerClasses) const;
+  const SurfaceMaterial& obstacleMaterial(int number) const; ///< From 1.
 
   GridGeometry geometry_;
   std::span<const double> heights_;
@@ -125,6 +154,7 @@ private:
   Roughness roughness_;
   MaterialClasses restitutionClasses_;
   MaterialClasses jointClasses_;
+  std::shared_ptr<const Obstacles> obstacles_;
 
   struct Level
   {

@@ -45,6 +45,15 @@ def bad_run(what, words, rocks=None, terrain=None, **properties):
     Delete(simulation)
 
 
+# Structures.
+layer = write_text("dams.csv", 'WKT,height,width,slope\n"LINESTRING(50 20,50 80)",-3,1,1.5\n')
+bad_dem("negative crest", [layer, "row 1", "height", "-3"], EmbankmentFile=layer)
+layer = write_text("trees.csv", "x,y,height\n50,50,20\n")
+bad_dem("tree without diameter", [layer, "row 1", "diameter"], TreeFile=layer)
+layer = write_text("nets.csv", 'WKT,height,capacity\n"LINESTRING(5000 20,5000 80)",3,100\n')
+bad_dem("barrier beside the terrain", [layer, "does not overlap"], BarrierFile=layer)
+bad_dem("missing layer", ["/no/such/nets.gpkg"], BarrierFile="/no/such/nets.gpkg")
+
 # Rasters.
 bad_dem("missing file", ["/no/such/dem.tif"], FileName="/no/such/dem.tif")
 text = write_text("notes.txt", "no raster at all\n")

@@ -14,6 +14,10 @@ sources = write_text("sources.csv", "x,y,z,shape\n" + "\n".join(
     f"5,{30 + 10 * k},58,{shape}"
     for k, shape in enumerate(["cube", "icosahedron", "octahedron", "eota111", "tetrahedron"])) + "\n")
 
+write_text("dams.csv", 'WKT,height,width,slope\n"LINESTRING(60 20,60 60)",1,1,1.5\n')
+write_text("trees.csv", "x,y,diameter,height\n30,40,40,20\n32,50,10,12\n40,60,30,20\n")
+write_text("nets.csv", 'WKT,height,capacity\n"LINESTRING(85 1,85 99)",3,150\n')
+
 
 def run(ranks, symmetric=True, troubles=()):
     start = [MPIEXEC, "-n", str(ranks), "--oversubscribe", "--bind-to", "none"] if ranks else []

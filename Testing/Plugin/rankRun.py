@@ -2,6 +2,7 @@
 then the same with each of the troubles that are named."""
 
 import hashlib
+import os
 import sys
 
 from paraview import servermanager
@@ -15,7 +16,10 @@ first = controller.GetLocalProcessId() == 0
 symmetric = servermanager.vtkProcessModule.GetProcessModule().GetSymmetricMPIMode()
 sources, troubles = sys.argv[1], sys.argv[2:]
 
-slope = DEMtoCFEMesh(RoughnessDeviation=0.1)
+folder = os.path.dirname(os.path.abspath(sources))
+slope = DEMtoCFEMesh(RoughnessDeviation=0.1, EmbankmentFile=os.path.join(folder, "dams.csv"),
+                     TreeFile=os.path.join(folder, "trees.csv"), TreesBreak=1,
+                     BarrierFile=os.path.join(folder, "nets.csv"))
 rocks = RockBlocks(FileName=sources)
 fall = RockfallSimulation(Terrain=slope, Rocks=rocks, EndTime=5.0, Iterations=11,
                           TrajectoryOutput="Events", PrintProgress=0)
@@ -25,9 +29,9 @@ algorithm = fall.GetClientSideObject()
 def digest():
     """Over all bits of all outputs."""
     sha = hashlib.sha256()
-    for port in range(4):
+    for port in range(5):
         data = algorithm.GetOutputDataObject(port)
-        arrays = [data.GetPoints().GetData()] if port < 3 and data.GetPoints() else []
+        arrays = [data.GetPoints().GetData()] if port != 3 and data.GetPoints() else []
         for fields in ([data.GetRowData()] if port == 3 else
                        [data.GetPointData(), data.GetCellData()]):
             arrays += [fields.GetAbstractArray(k) for k in range(fields.GetNumberOfArrays())]

@@ -1,0 +1,367 @@
+#include "gis/structureLayers.h"
+
+#include "base/errors.h"
+#include "gis/FeatureRow.h"
+#include "gis/crs.h"
+#include "gis/gdal.h"
+#include "terrain/Obstacles.h"
+#include "terrain/Terrain.h"
+
+#include <ogrsf_frmts.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace rockfall
+{
+
+using namespace gis;
+
+namespace
+{
+
+constexpr double kJ = 1000.0; // J
+constexpr double cm = 0.01;   // m
+
+/// Brings places to the terrain's local frame, and keeps the extent for the message that they are
+/// beside it.
+class Placing
+{
+public:
+  Placing(const CrsPtr& from, const Terrain& terrain)
+    : origin_(terrain.geometry().origin().head<2>())
+  {
+    if (from && !terrain.geometry().crs.empty())
+    {
+      change_ = CrsChange(from, crsFromText(terrain.geometry().crs));
+    }
+  }
+
+  Eigen::Vector2d local(const FeatureRow& row, double x, double y)
+  {
+    Eigen::Vector2d p(x, y);
+    if (!p.allFinite() || !change_.forth(1, &p.x(), &p.y()))
+    {
+      row.fail("the point " + number(x) + ", " + number(y) +
+        " cannot be brought to the coordinates of the terrain");
+    }
+    least = least.cwiseMin(p);
+    most = most.cwiseMax(p);
+    return p - origin_;
+  }
+
+  Eigen::Vector2d least = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector2d most = -least;
+
+private:
+  CrsChange change_;
+  Eigen::Vector2d origin_;
+};
+
+/// Calls `use` for every row, then tells a layer beside the terrain.
+void forEachRow(const std::string& fileName, const Terrain& terrain,
+  const std::function<void(const FeatureRow&, std::int64_t, Placing&)>& use)
+{
+  Messages messages;
+  const DatasetPtr dataset = openVector(fileName, messages);
+  if (dataset->GetLayerCount() == 0)
+  {
+    throw DataError(fileName + ": has no layer");
+  }
+  refuseSurplusCells(*dataset, fileName);
+  OGRLayer& layer = *dataset->GetLayer(0);
+  const Columns columns = columnsOf(*layer.GetLayerDefn());
+  Placing placing(horizontalCrs(layer.GetSpatialRef()), terrain);
+  std::int64_t count = 0;
+  messages.clear();
+  while (const OGRFeatureUniquePtr feature{ layer.GetNextFeature() })
+  {
+    ++count;
+    const FeatureRow row(fileName, columns, *feature, count);
+    if (messages.warning().find("Invalid value type") != std::string::npos)
+    {
+      row.fail(messages.warning());
+    }
+    use(row, count, placing);
+  }
+  if (!messages.failure().empty())
+  {
+    throw FileError(
+      fileName + ": row " + std::to_string(count + 1) + " cannot be read: " + messages.failure());
+  }
+  if (count == 0)
+  {
+    throw DataError(fileName + ": layer \"" + layer.GetName() + "\" has no row");
+  }
+  const GridGeometry& g = terrain.geometry();
+  const double east = g.xOrigin + terrain.width(), north = g.yOrigin + terrain.height();
+  if (!(placing.least.x() <= east && placing.least.y() <= north && placing.most.x() >= g.xOrigin &&
+        placing.most.y() >= g.yOrigin))
+  {
+    throw DataError(fileName + ": does not overlap the terrain: it spans x " +
+      number(placing.least.x()) + " to " + number(placing.most.x()) + ", y " +
+      number(placing.least.y()) + " to " + number(placing.most.y()) + ", the terrain x " +
+      number(g.xOrigin) + " to " + number(east) + ", y " + number(g.yOrigin) + " to " +
+      number(north));
+  }
+}
+
+double needed(const FeatureRow& row, const char* field, const char* what)
+{
+  const auto value = row.positive(field);
+  if (!value)
+  {
+    row.failField(field,
+      std::string(row.has(field) ? " is empty" : " is missing: the layer has no such column") +
+        "; it is " + what);
+  }
+  return *value;
+}
+
+/// Metres across per metre down.
+std::optional<double> slopeOf(const FeatureRow& row, const char* field)
+{
+  const auto text = row.text(field);
+  const auto colon = text ? text->find(':') : std::string::npos;
+  if (colon == std::string::npos)
+  {
+    return row.notNegative(field);
+  }
+  const auto across = parsed(trimmed(text->substr(0, colon)));
+  const auto down = parsed(trimmed(text->substr(colon + 1)));
+  if (!across || !down || !(*across >= 0.0) || !(*down > 0.0))
+  {
+    row.failField(field, " is \"" + *text + "\", it must be across:down, as 3:2, or a number");
+  }
+  return *across / *down;
+}
+
+/// Number of the row's own material, 0 if it has none.
+int materialOf(const FeatureRow& row, const Terrain& terrain, std::vector<SurfaceMaterial>& all)
+{
+  SurfaceMaterial m = terrain.material();
+  m.restitutionDeviation = m.frictionAngleDeviation = 0.0;
+  const auto rv = row.ranged({ "rv", "rn" }, 0.0, 1.0, "0 to 1");
+  const auto rt = row.ranged({ "rt" }, 0.0, 1.0, "0 to 1");
+  const auto phi = row.ranged({ "phi" }, 0.0, 89.0, "0 to 89 degrees");
+  const auto cohesion = row.notNegative("cohesion");
+  if (!rv && !rt && !phi && !cohesion)
+  {
+    return 0;
+  }
+  m.restitution = rv.value_or(m.restitution);
+  m.tangentialRestitution = rt.value_or(m.tangentialRestitution);
+  m.frictionAngle = phi ? radians(*phi) : m.frictionAngle;
+  m.cohesion = cohesion.value_or(m.cohesion);
+  for (std::size_t k = 0; k < all.size(); ++k)
+  {
+    if (all[k].restitution == m.restitution &&
+      all[k].tangentialRestitution == m.tangentialRestitution &&
+      all[k].frictionAngle == m.frictionAngle && all[k].cohesion == m.cohesion)
+    {
+      return int(k) + 1;
+    }
+  }
+  all.push_back(m);
+  return int(all.size());
+}
+
+/// The lines of a row, each in the local frame.
+std::vector<std::vector<Eigen::Vector2d>> linesOf(const FeatureRow& row, Placing& placing)
+{
+  const OGRGeometry* geometry = row.geometry();
+  if (!geometry)
+  {
+    row.fail("has no geometry, a line is needed");
+  }
+  std::vector<const OGRLineString*> parts;
+  const auto type = wkbFlatten(geometry->getGeometryType());
+  if (type == wkbLineString)
+  {
+    parts.push_back(geometry->toLineString());
+  }
+  else if (type == wkbMultiLineString)
+  {
+    for (const OGRLineString* part : *geometry->toMultiLineString())
+    {
+      parts.push_back(part);
+    }
+  }
+  else
+  {
+    row.fail(std::string("is a ") + geometry->getGeometryName() + ", a LINESTRING is needed");
+  }
+  std::vector<std::vector<Eigen::Vector2d>> lines;
+  for (const OGRLineString* part : parts)
+  {
+    std::vector<Eigen::Vector2d>& line = lines.emplace_back();
+    for (int k = 0; k < part->getNumPoints(); ++k)
+    {
+      const Eigen::Vector2d p = placing.local(row, part->getX(k), part->getY(k));
+      if (line.empty() || (line.back() - p).norm() > 1e-6)
+      {
+        line.push_back(p);
+      }
+    }
+    if (line.size() < 2)
+    {
+      row.fail("is a line of one place only");
+    }
+  }
+  return lines;
+}
+
+void readEmbankments(const std::string& fileName, const Terrain& terrain, Structures& all)
+{
+  forEachRow(fileName, terrain,
+    [&](const FeatureRow& row, std::int64_t count, Placing& placing)
+    {
+      Embankment e;
+      e.feature = count;
+      e.name = row.text("name").value_or("");
+      const auto height = row.positive("height"), crest = row.number("crest");
+      if (bool(height) == bool(crest))
+      {
+        row.fail(height ? "has a \"height\" and a \"crest\"; it must have one of them"
+                        : "has no \"height\" over ground and no \"crest\" elevation, in m");
+      }
+      e.height = height.value_or(e.height);
+      e.elevation = crest.value_or(e.elevation);
+      e.crestWidth = needed(row, "width", "the width of the crest in m");
+      const auto both = slopeOf(row, "slope"), up = slopeOf(row, "slope_up"),
+                 down = slopeOf(row, "slope_down");
+      if (!both && !(up && down))
+      {
+        row.fail("has no \"slope\" of its sides (across:down, as 3:2 or 1.5), nor \"slope_up\" and "
+                 "\"slope_down\"");
+      }
+      e.mountainSlope = up ? *up : *both;
+      e.valleySlope = down ? *down : *both;
+      e.material = materialOf(row, terrain, all.materials);
+      for (std::vector<Eigen::Vector2d>& line : linesOf(row, placing))
+      {
+        e.points = std::move(line);
+        all.embankments.push_back(e);
+      }
+    });
+}
+
+void readTrees(const StructureFiles& files, const Terrain& terrain, Structures& all,
+  std::vector<std::string>& notes)
+{
+  std::int64_t outside = 0;
+  forEachRow(files.trees, terrain,
+    [&](const FeatureRow& row, std::int64_t count, Placing& placing)
+    {
+      Tree t;
+      t.feature = count;
+      const OGRGeometry* geometry = row.geometry();
+      if (geometry && wkbFlatten(geometry->getGeometryType()) != wkbPoint)
+      {
+        row.fail(std::string("is a ") + geometry->getGeometryName() + ", a POINT is needed");
+      }
+      if (!geometry && !(row.number("x") && row.number("y")))
+      {
+        row.fail("has no point, and no fields \"x\" and \"y\"");
+      }
+      t.position = geometry
+        ? placing.local(row, geometry->toPoint()->getX(), geometry->toPoint()->getY())
+        : placing.local(row, *row.number("x"), *row.number("y"));
+      t.diameter = cm * needed(row, "diameter", "that of the stem in cm");
+      if (t.diameter > 10.0)
+      {
+        row.failField("diameter", " is " + number(t.diameter / cm) + " cm: is it in millimetres?");
+      }
+      t.height = needed(row, "height", "that of the tree in m");
+      const double factor = row.positive("factor").value_or(1.0);
+      if (const auto capacity = row.notNegative("capacity"))
+      {
+        t.capacity = kJ * *capacity;
+      }
+      else if (files.treesBreak)
+      {
+        t.capacity = stemCapacity(t.diameter, factor);
+      }
+      t.material = materialOf(row, terrain, all.materials);
+      if (std::isnan(terrain.elevation(t.position.x(), t.position.y())))
+      {
+        ++outside;
+        return;
+      }
+      all.trees.push_back(t);
+    });
+  if (outside > 0)
+  {
+    notes.push_back(files.trees + ": " + std::to_string(outside) +
+      " trees stand where the terrain has no ground and are left out; " +
+      std::to_string(all.trees.size()) + " are taken.");
+  }
+}
+
+void readBarriers(const std::string& fileName, const Terrain& terrain, Structures& all)
+{
+  forEachRow(fileName, terrain,
+    [&](const FeatureRow& row, std::int64_t count, Placing& placing)
+    {
+      Barrier b;
+      b.feature = count;
+      b.name = row.text("name").value_or("");
+      b.height = needed(row, "height", "that of the barrier over ground in m");
+      if (const auto capacity = row.notNegative("capacity"))
+      {
+        b.capacity = kJ * *capacity;
+      }
+      const std::string mode = lowered(row.text("mode").value_or("stop"));
+      if (mode != "stop" && mode != "record")
+      {
+        row.failField("mode", " is \"" + mode + "\", it must be stop or record");
+      }
+      b.records = mode == "record";
+      b.absorbs = row.ranged({ "absorbs" }, 0.0, 1.0, "1 or 0").value_or(1.0) != 0.0;
+      for (std::vector<Eigen::Vector2d>& line : linesOf(row, placing))
+      {
+        b.points = std::move(line);
+        all.barriers.push_back(b);
+      }
+    });
+}
+
+/// What cannot be built says which file it is from.
+void tryOut(const std::string& fileName, Structures part, const Terrain& terrain)
+{
+  try
+  {
+    const Obstacles built(std::move(part), terrain);
+  }
+  catch (const Error& error)
+  {
+    throw DataError(fileName + ", " + error.what());
+  }
+}
+
+} // namespace
+
+Structures readStructures(
+  const StructureFiles& files, const Terrain& terrain, std::vector<std::string>& notes)
+{
+  Structures all;
+  if (!files.embankments.empty())
+  {
+    readEmbankments(files.embankments, terrain, all);
+    tryOut(files.embankments, { all.embankments, {}, {}, all.materials }, terrain);
+  }
+  if (!files.trees.empty())
+  {
+    readTrees(files, terrain, all, notes);
+    tryOut(files.trees, { {}, all.trees, {}, all.materials }, terrain);
+  }
+  if (!files.barriers.empty())
+  {
+    readBarriers(files.barriers, terrain, all);
+    tryOut(files.barriers, { {}, {}, all.barriers, {} }, terrain);
+  }
+  return all;
+}
+
+} // namespace rockfall

@@ -1,0 +1,124 @@
+#pragma once
+
+/// @file
+/// Structures as the rocks meet them: embankments and trees as explicit triangles on the slope,
+/// barriers as upright planes.
+///
+/// The solid is the union of the slope and the obstacles. Every embankment is one mesh with mitred
+/// joints, every tree a prism; both go down below the ground, where they are open. What is buried
+/// is never met.
+
+#include "terrain/BoxIndex.h"
+#include "terrain/structures.h"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace rockfall
+{
+
+class Terrain;
+struct SurfacePatch;
+
+/// Triangles with what contact needs to know of them.
+struct ObstacleMesh
+{
+  struct Triangle
+  {
+    std::array<int, 3> nodes;
+    std::array<int, 3> neighbours = { -1, -1, -1 }; ///< Across nodes k, k + 1; −1: underground.
+    std::array<signed char, 3> bends = { 0, 0, 0 };
+    Vec3 normal = Vec3::UnitZ();
+  };
+  struct Node
+  {
+    Vec3 position;
+    bool peak = false;                                          ///< On a ridge.
+    std::array<int, 6> neighbours = { -1, -1, -1, -1, -1, -1 }; ///< Along edges that bend.
+  };
+  std::vector<Node> nodes;
+  std::vector<Triangle> triangles;
+
+  /// Finds neighbours, bends, normals and peaks of the triangles from `from` on; their neighbours
+  /// are among them.
+  void connect(std::size_t from = 0);
+};
+
+/// Appends the mesh of an embankment. Throws DataError naming what cannot be built.
+void addEmbankment(const Embankment& embankment, const Terrain& terrain, ObstacleMesh& mesh);
+
+/// Immutable, so safe to share over threads.
+class Obstacles
+{
+public:
+  /// Sides of a tree's prism, and triangles of it.
+  static constexpr int treeSides = 8;
+  static constexpr int treeTriangles = 3 * treeSides - 2;
+
+  /// Throws ParameterError or DataError naming feature, field and value: numbers out of range,
+  /// places where there is no ground, sides that do not come down to the ground.
+  Obstacles(Structures structures, const Terrain& terrain);
+
+  const Structures& structures() const { return structures_; }
+  bool solid() const { return !mesh_.triangles.empty() || !structures_.trees.empty(); }
+  const ObstacleMesh& mesh() const { return mesh_; } ///< Of the embankments.
+  int embankmentOf(int meshTriangle) const { return owners_[std::size_t(meshTriangle)]; }
+  /// Corners of the upper and lower end of a tree's prism and its triangles.
+  static const ObstacleMesh& treeShape();
+  Vec3 treeCorner(int tree, int corner) const;
+
+  /// CFEs of obstacles have numbers beyond the slope's: first the embankments', then the trees'.
+  std::int64_t firstCfe() const { return firstCfe_; }
+  int treeOf(std::int64_t cfe) const; ///< −1 if it is none.
+  int materialOf(std::int64_t cfe) const;
+
+  /// Upper bound of the obstacles over a box, m; −∞ if there is none.
+  double maxHeight(double xMin, double xMax, double yMin, double yMax) const
+  {
+    return std::max(meshIndex_.top(xMin, xMax, yMin, yMax), treeIndex_.top(xMin, xMax, yMin, yMax));
+  }
+  /// Appends to a patch what stands in a box, without the trees that are `gone` (ascending).
+  void append(double xMin, double xMax, double yMin, double yMax, std::span<const int> gone,
+    SurfacePatch& patch) const;
+  /// The same of single triangles of embankments (ascending) and trees.
+  void append(
+    std::span<const int> triangles, std::span<const int> trees, SurfacePatch& patch) const;
+
+  template <typename Use>
+  void visitTriangles(double xMin, double xMax, double yMin, double yMax, Use&& use) const
+  {
+    meshIndex_.visit(xMin, xMax, yMin, yMax, use);
+  }
+  template <typename Use>
+  void visitTrees(double xMin, double xMax, double yMin, double yMax, Use&& use) const
+  {
+    treeIndex_.visit(xMin, xMax, yMin, yMax, use);
+  }
+  double treeRadius(int tree) const; ///< Of the circle around the prism, m.
+  double treeTop(int tree) const { return treeEnds_[std::size_t(tree)][1]; }
+
+  /// A piece of a barrier between two of its points.
+  struct Piece
+  {
+    int barrier;
+    Eigen::Vector2d from, to;
+  };
+  template <typename Use>
+  void visitBarriers(double xMin, double xMax, double yMin, double yMax, Use&& use) const
+  {
+    barrierIndex_.visit(
+      xMin, xMax, yMin, yMax, [&](int k) { use(barrierPieces_[std::size_t(k)]); });
+  }
+
+private:
+  Structures structures_;
+  std::int64_t firstCfe_ = 0;
+  ObstacleMesh mesh_;
+  std::vector<int> owners_;
+  std::vector<std::array<double, 2>> treeEnds_; ///< Elevation of the lower and the upper end, m.
+  std::vector<Piece> barrierPieces_;
+  BoxIndex meshIndex_, treeIndex_, barrierIndex_;
+};
+
+} // namespace rockfall

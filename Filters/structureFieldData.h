@@ -1,0 +1,38 @@
+#pragma once
+
+/// @file
+/// How embankments, trees and barriers travel with the slope: as a map has them, so that whoever
+/// reads them builds the same obstacles.
+///
+/// | array                     | what, per tuple                                                  |
+/// |---------------------------|------------------------------------------------------------------|
+/// | TerrainEmbankments        | feature, height (m), elevation (m), width of the crest (m),      |
+/// |                           | slopes of the mountain and the valley side, material, points     |
+/// | TerrainEmbankmentPoints   | x, y in the local frame, m                                       |
+/// | TerrainTrees              | feature, x, y, diameter (m), height (m), capacity (J), material  |
+/// | TerrainBarriers           | feature, height (m), capacity (J), absorbs, records, points      |
+/// | TerrainBarrierPoints      | x, y in the local frame, m                                       |
+/// | TerrainStructureMaterials | restitution, its model, tangential restitution, speed (m/s),     |
+/// |                           | φ (rad), cohesion (N)                                            |
+
+#include "terrain/Terrain.h"
+#include "terrain/structures.h"
+
+class vtkFieldData;
+class vtkPolyData;
+
+namespace rockfall::filters
+{
+
+/// Nothing if there are none.
+void writeStructures(const Terrain& terrain, vtkFieldData* fieldData);
+
+/// None if there are no such arrays. Throws DataError if they do not belong together.
+Structures readStructures(vtkFieldData* fieldData);
+
+/// What stands on the slope as triangles and quads in world coordinates, with the cell arrays
+/// StructureKind (0 embankment, 1 tree, 2 barrier), StructureId (number in its layer) and CFEId (0
+/// for barriers, which are no CFEs).
+void makeStructureMesh(const Terrain& terrain, vtkPolyData* mesh);
+
+} // namespace rockfall::filters

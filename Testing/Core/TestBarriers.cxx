@@ -1,0 +1,170 @@
+// Barriers catch exactly what is below their height and capacity, whatever Δt and output interval.
+
+#include "slopes.h"
+#include "terrain/Obstacles.h"
+
+#include <gtest/gtest.h>
+
+using namespace rockfall;
+using namespace rockfall::testing;
+
+namespace
+{
+
+/// Level ground at 100 m with a barrier across x = 60 m, in two pieces.
+Terrain withBarrier(double height, double capacity, bool records = false, bool absorbs = true)
+{
+  Terrain terrain = makePlane(21, 100.0, 0.0, 0.0, material(0.5, 20.0));
+  Structures s;
+  Barrier b;
+  b.feature = 3;
+  b.points = { { 60.0, 20.0 }, { 60.0, 50.0 }, { 60.0, 80.0 } };
+  b.height = height;
+  b.capacity = capacity;
+  b.records = records;
+  b.absorbs = absorbs;
+  s.barriers = { b };
+  terrain.setStructures(s);
+  return terrain;
+}
+
+/// A cube of 2.5 t, thrown level at `speed` from `up` over ground, 10 m before the barrier.
+Rock thrown(double up, double speed)
+{
+  Rock rock;
+  rock.shape = makeShape(Shape::Cube, 1.0);
+  rock.position = Vec3(50.0, 50.0, 100.0 + up); // through the joint of the two pieces
+  rock.velocity = Vec3(speed, 0.0, 0.0);
+  return rock;
+}
+
+SimulationParameters rigidParameters(double endTime)
+{
+  SimulationParameters p;
+  p.endTime = endTime;
+  p.rigid = true;
+  return p;
+}
+
+} // namespace
+
+TEST(Barriers, CatchWhatIsBelowHeightAndCapacity)
+{
+  const double speed = 20.0, fallen = 0.5 * kGravity * 0.25; // 0.5 s to the barrier
+  const double energy = 0.5 * 2500.0 * speed * speed + 2500.0 * kGravity * fallen;
+  const double crossing = 6.0 - fallen;
+  for (const double height : { crossing - 1e-6, crossing + 1e-6 })
+  {
+    for (const double capacity : { energy * (1.0 - 1e-9), energy * (1.0 + 1e-9) })
+    {
+      const Trajectory t =
+        simulate(withBarrier(height, capacity), thrown(6.0, speed), rigidParameters(0.6));
+      if (height < crossing)
+      {
+        EXPECT_TRUE(t.structures.empty());
+        EXPECT_NEAR(t.summary.stop.x(), 62.0, 1e-9);
+        continue;
+      }
+      ASSERT_EQ(t.structures.size(), 1u);
+      const StructureEvent& event = t.structures[0];
+      EXPECT_EQ(event.feature, 3);
+      EXPECT_NEAR(event.time, 0.5, 1e-9);
+      EXPECT_NEAR(event.heightOverGround, crossing, 1e-9);
+      EXPECT_NEAR(event.kineticEnergy, energy, 1e-9 * energy);
+      EXPECT_LT(std::abs(t.summary.energy.numerical), 1e-9 * energy);
+      if (energy < capacity)
+      {
+        EXPECT_EQ(event.outcome, StructureOutcome::BarrierStopped);
+        EXPECT_EQ(t.summary.fate, Fate::Caught);
+        EXPECT_NEAR(t.summary.stop.x(), 60.0, 1e-9);
+        EXPECT_NEAR(t.summary.endTime, 0.5, 1e-9);
+        EXPECT_NEAR(t.summary.energy.structures, energy, 1e-9 * energy);
+        EXPECT_NEAR(t.samples.back().kineticEnergy, energy, 1e-9 * energy); // as it came
+      }
+      else
+      {
+        EXPECT_EQ(event.outcome, StructureOutcome::BarrierBroken);
+        EXPECT_EQ(t.summary.fate, Fate::Moving);
+        EXPECT_LT(t.summary.stop.x(), 60.01); // next to nothing is left
+      }
+    }
+  }
+}
+
+TEST(Barriers, TakeTheirCapacityFromWhatBreaksThem)
+{
+  const double speed = 20.0, capacity = 3e5;
+  for (const bool absorbs : { true, false })
+  {
+    const Trajectory t = simulate(
+      withBarrier(8.0, capacity, false, absorbs), thrown(6.0, speed), rigidParameters(0.7));
+    ASSERT_EQ(t.structures.size(), 1u);
+    const double energy = t.structures[0].kineticEnergy;
+    const double left = absorbs ? std::sqrt(1.0 - capacity / energy) : 1.0;
+    EXPECT_NEAR(t.structures[0].energyTaken, absorbs ? capacity : 0.0, 1e-6);
+    EXPECT_NEAR(t.summary.stop.x(), 60.0 + 0.2 * speed * left, 1e-6);
+    EXPECT_LT(std::abs(t.summary.energy.numerical), 1e-9 * energy);
+  }
+}
+
+TEST(Barriers, RecordWithoutAnyEffect)
+{
+  Trajectory bare = simulate(
+    makePlane(21, 100.0, 0.0, 0.0, material(0.5, 20.0)), thrown(6.0, 15.0), rigidParameters(8.0));
+  const Trajectory t =
+    simulate(withBarrier(8.0, 0.0, true), thrown(6.0, 15.0), rigidParameters(8.0));
+  ASSERT_EQ(t.structures.size(), 1u);
+  EXPECT_EQ(t.structures[0].outcome, StructureOutcome::BarrierRecorded);
+  EXPECT_EQ(t.structures[0].energyTaken, 0.0);
+  EXPECT_EQ(t.summary.stop, bare.summary.stop);
+  EXPECT_EQ(t.summary.contactSteps, bare.summary.contactSteps);
+}
+
+/// A cube that slides into it, on level ground: v² = v₀² − 2 g tan φ x.
+TEST(Barriers, CatchWhatSlides)
+{
+  for (const double dt : { 0.005, 0.0013 })
+  {
+    for (const double interval : { 0.05, 0.5 })
+    {
+      SimulationParameters p = rigidParameters(10.0);
+      p.timeStep = dt;
+      p.outputInterval = interval;
+      const double speed = 12.0;
+      const double energy =
+        1250.0 * (speed * speed - 2.0 * kGravity * std::tan(radians(20.0)) * 10.0);
+      const Trajectory t = simulate(withBarrier(1.0, 1.01 * energy), thrown(0.5, speed), p);
+      ASSERT_EQ(t.summary.fate, Fate::Caught);
+      EXPECT_NEAR(t.summary.stop.x(), 60.0, 1e-6);
+      EXPECT_NEAR(t.structures[0].kineticEnergy, energy, 5e-3 * energy); // METHOD 9.2: 1 %
+      EXPECT_NEAR(t.summary.energy.structures, energy, 5e-3 * energy);
+      EXPECT_LT(std::abs(t.summary.energy.numerical), 1e-3 * energy);
+      // Lower than its centre, or with less capacity, it does not.
+      EXPECT_EQ(simulate(withBarrier(0.49, 1.01 * energy), thrown(0.5, speed), p).summary.fate,
+        Fate::Rested);
+      EXPECT_EQ(
+        simulate(withBarrier(1.0, 0.9 * energy), thrown(0.5, speed), p).summary.fate, Fate::Rested);
+    }
+  }
+}
+
+/// Rocks of a mass fall as well; what is caught is out of the way of the others.
+TEST(Barriers, CatchInMassFalls)
+{
+  const Terrain terrain = withBarrier(4.0, 1e9);
+  std::vector<Rock> rocks;
+  for (int k = 0; k < 4; ++k)
+  {
+    rocks.push_back(thrown(1.2 + 1.3 * (k % 2), 30.0));
+    rocks.back().position.x() -= 1.1 * (k / 2);
+  }
+  SimulationParameters p = rigidParameters(6.0);
+  p.rockRockContact = true;
+  TrajectoryStore store(4, 1);
+  runEnsemble(terrain, rocks, p, store);
+  for (const Trajectory& t : store.trajectories())
+  {
+    EXPECT_EQ(t.summary.fate, Fate::Caught) << t.summary.rock;
+    EXPECT_NEAR(t.summary.stop.x(), 60.0, 1e-6);
+  }
+}

@@ -1,0 +1,155 @@
+// Embankments, trees and barriers from layers, and the message of each bad one.
+
+#include "base/errors.h"
+#include "gis/structureLayers.h"
+#include "gisFiles.h"
+#include "slopes.h"
+#include "terrain/Obstacles.h"
+
+using namespace rockfall;
+using namespace rockfall::testing;
+
+namespace
+{
+
+Terrain site()
+{
+  return makePlane(21, 100.0, 0.0, 0.0, material(0.5, 20.0));
+}
+
+std::string messageOf(const StructureFiles& files)
+{
+  std::vector<std::string> notes;
+  try
+  {
+    readStructures(files, site(), notes);
+  }
+  catch (const Error& error)
+  {
+    return error.what();
+  }
+  return "";
+}
+
+const std::string line = "\"LINESTRING(20 50,80 50)\"";
+
+} // namespace
+
+TEST(StructureLayers, AreReadInTheUnitsThatAPersonTypes)
+{
+  StructureFiles files;
+  files.embankments = writeFile("dams.csv",
+    "WKT,height,crest,width,slope,slope_up,rv,phi\n" + line + ",3,,1.5,3:2,0.5,,\n" + line +
+      ",,104,2,1.25,,0.3,35\n");
+  files.trees = writeFile("trees.csv",
+    "x,y,diameter,height,capacity,factor\n"
+    "50,50,30,20,,\n51,52,40,25,80,\n52,50,30,20,,2\n"
+    "500,50,30,20,,\n");
+  files.barriers = writeFile("nets.csv",
+    "WKT,height,capacity,mode,absorbs\n" + line + ",4,500,stop,\n" + line + ",3,,record,0\n");
+  files.treesBreak = true;
+  std::vector<std::string> notes;
+  const Structures s = readStructures(files, site(), notes);
+  ASSERT_EQ(s.embankments.size(), 2u);
+  EXPECT_EQ(s.embankments[0].height, 3.0);
+  EXPECT_EQ(s.embankments[0].mountainSlope, 0.5);
+  EXPECT_EQ(s.embankments[0].valleySlope, 1.5);
+  EXPECT_EQ(s.embankments[0].material, 0);
+  EXPECT_TRUE(std::isnan(s.embankments[1].height));
+  EXPECT_EQ(s.embankments[1].elevation, 104.0);
+  ASSERT_EQ(s.embankments[1].material, 1);
+  EXPECT_EQ(s.materials[0].restitution, 0.3);
+  EXPECT_DOUBLE_EQ(s.materials[0].frictionAngle, radians(35.0));
+  ASSERT_EQ(s.trees.size(), 3u); // one stands beside the terrain
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_NE(notes[0].find("1 trees"), std::string::npos);
+  EXPECT_DOUBLE_EQ(s.trees[0].diameter, 0.3);
+  EXPECT_DOUBLE_EQ(s.trees[0].capacity, stemCapacity(0.3));
+  EXPECT_EQ(s.trees[1].capacity, 80e3);
+  EXPECT_DOUBLE_EQ(s.trees[2].capacity, 2.0 * stemCapacity(0.3));
+  ASSERT_EQ(s.barriers.size(), 2u);
+  EXPECT_EQ(s.barriers[0].capacity, 500e3);
+  EXPECT_TRUE(s.barriers[1].records);
+  EXPECT_FALSE(s.barriers[1].absorbs);
+  EXPECT_TRUE(std::isinf(s.barriers[1].capacity));
+}
+
+TEST(StructureLayers, AreBroughtToTheTerrainsCoordinates)
+{
+  GridGeometry g;
+  g.columns = g.rows = 21;
+  g.cellSize = 5.0;
+  g.xOrigin = 600000.0;
+  g.yOrigin = 5100000.0;
+  g.crs = "EPSG:32632";
+  const Terrain terrain(g, std::vector<double>(441, 100.0));
+  StructureFiles files;
+  // 600050 5100050 in UTM 32N, as longitude and latitude.
+  files.trees = writeFile("trees.geojson",
+    R"({"type":"FeatureCollection","features":[{"type":"Feature","geometry":{"type":"Point",)"
+    R"("coordinates":[10.2937,46.0457]},"properties":{"diameter":30,"height":20}}]})");
+  std::vector<std::string> notes;
+  try
+  {
+    const Structures s = readStructures(files, terrain, notes);
+    FAIL() << s.trees[0].position.transpose();
+  }
+  catch (const DataError& error)
+  {
+    // About 46° N, 10.3° E; the terrain is a hundred metres wide.
+    EXPECT_NE(std::string(error.what()).find("does not overlap the terrain: it spans x 60"),
+      std::string::npos)
+      << error.what();
+  }
+}
+
+TEST(StructureLayers, TellWhatIsWrong)
+{
+  struct Case
+  {
+    int kind; // embankment, tree, barrier
+    std::string content, part;
+  };
+  const std::string dam = "WKT,height,width,slope\n", tree = "x,y,diameter,height\n",
+                    net = "WKT,height,capacity\n";
+  const Case cases[] = {
+    { 0, "WKT,width,slope\n" + line + ",1,1.5\n", "row 1: has no \"height\"" },
+    { 0, "WKT,height,slope\n" + line + ",3,1.5\n", "field \"width\" is missing" },
+    { 0, "WKT,height,width\n" + line + ",3,1\n", "has no \"slope\"" },
+    { 0, dam + line + ",-3,1,1.5\n", "\"height\" is -3" },
+    { 0, dam + line + ",nan,1,1.5\n", "\"height\"" },
+    { 0, dam + line + ",\"3,5\",1,1.5\n", "\"height\"" },
+    { 0, dam + line + ",3,1,steep\n", "\"slope\"" },
+    { 0, dam + line + ",3,1,3:0\n", "\"slope\" is \"3:0\"" },
+    { 0, dam + line + ",3,1,90\n", "slope of a side is 90" },
+    { 0, dam + "\"LINESTRING(20 50,120 50)\",3,1,1.5\n", "no ground" },
+    { 0, dam + "\"LINESTRING(2000 50,2120 50)\",3,1,1.5\n", "does not overlap the terrain" },
+    { 0, dam + "\"POINT(20 50)\",3,1,1.5\n", "is a POINT, a LINESTRING is needed" },
+    { 0, dam + "\"LINESTRING(20 50,20 50)\",3,1,1.5\n", "is a line of one place only" },
+    { 0, dam, "has no row" },
+    { 1, "x,y,height\n50,50,20\n", "field \"diameter\" is missing" },
+    { 1, tree + "50,50,0,20\n", "\"diameter\" is 0" },
+    { 1, tree + "50,50,30,-1\n", "\"height\" is -1" },
+    { 1, tree + "50,50,3000,20\n", "is it in millimetres?" },
+    { 1, tree + "50,50,30,2000\n", "height of the tree is 2000" },
+    { 1, "diameter,height\n30,20\n", "has no point" },
+    { 1, "WKT,diameter,height\n" + line + ",30,20\n", "is a LINESTRING, a POINT is needed" },
+    { 1, tree + "50,50,30;5,20\n", "\"diameter\"" },
+    { 2, "WKT,capacity\n" + line + ",100\n", "field \"height\" is missing" },
+    { 2, net + line + ",4,-5\n", "\"capacity\" is -5" },
+    { 2, "WKT,height,mode\n" + line + ",4,hold\n", "\"mode\" is \"hold\"" },
+    { 2, net + "\"LINESTRING(2000 50,2120 50)\",4,100\n", "does not overlap the terrain" },
+  };
+  for (const Case& c : cases)
+  {
+    StructureFiles files;
+    const std::string path = writeFile("layer.csv", c.content);
+    (c.kind == 0 ? files.embankments : c.kind == 1 ? files.trees : files.barriers) = path;
+    const std::string message = messageOf(files);
+    EXPECT_NE(message.find(c.part), std::string::npos) << c.content << message;
+    EXPECT_EQ(message.find(path), 0u) << message;
+  }
+  StructureFiles files;
+  files.trees = "no such file.gpkg";
+  EXPECT_NE(messageOf(files).find("no such file.gpkg"), std::string::npos);
+}

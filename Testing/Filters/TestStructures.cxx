@@ -1,0 +1,109 @@
+// Embankments, trees and barriers on their way through the pipeline.
+
+#include "simulationTest.h"
+#include "structureFieldData.h"
+#include "terrain/Obstacles.h"
+#include "terrainFieldData.h"
+
+#include "vtkCellData.h"
+#include "vtkPointData.h"
+#include "vtkXMLPolyDataReader.h"
+#include "vtkXMLPolyDataWriter.h"
+
+using namespace rockfall;
+
+namespace
+{
+
+class TestStructures : public SimulationTest
+{
+protected:
+  void SetUp() override
+  {
+    this->SimulationTest::SetUp();
+    this->Terrain->SetEmbankmentFile(this
+                                       ->WriteFile("dams.csv",
+                                         "WKT,height,width,slope,phi\n"
+                                         "\"LINESTRING(200 20,200 80)\",3.5,1.5,1.5,40\n")
+                                       .c_str());
+    this->Terrain->SetTreeFile(
+      this->WriteFile("trees.csv", "x,y,diameter,height,capacity\n180,10,30,20,\n180,90,30,20,5\n")
+        .c_str());
+    this->Terrain->SetBarrierFile(
+      this->WriteFile("nets.csv", "WKT,height,capacity\n\"LINESTRING(60 1,60 99)\",50,1000\n")
+        .c_str());
+  }
+};
+
+} // namespace
+
+TEST_F(TestStructures, AreShownBesideTheSlope)
+{
+  this->Terrain->Update();
+  // The slope itself is as without them: one triangle per CFE.
+  vtkNew<vtkDEMToCFESource> bare;
+  bare->Update();
+  EXPECT_EQ(this->Terrain->GetOutput()->GetNumberOfCells(), bare->GetOutput()->GetNumberOfCells());
+  EXPECT_EQ(bare->GetOutput(1)->GetNumberOfCells(), 0);
+  vtkPolyData* shown = this->Terrain->GetOutput(1);
+  vtkDataArray* kind = shown->GetCellData()->GetArray("StructureKind");
+  ASSERT_NE(kind, nullptr);
+  int count[3] = { 0, 0, 0 };
+  for (vtkIdType k = 0; k < shown->GetNumberOfCells(); ++k)
+  {
+    ++count[int(kind->GetTuple1(k))];
+  }
+  EXPECT_GT(count[0], 0);
+  EXPECT_EQ(count[1], 2 * Obstacles::treeTriangles);
+  EXPECT_EQ(count[2], 20); // 98 m in pieces of at most 5 m
+}
+
+TEST_F(TestStructures, SurviveAFile)
+{
+  const std::string name = this->WriteFile("slope.vtp", "");
+  this->Terrain->Update();
+  vtkNew<vtkXMLPolyDataWriter> writer;
+  writer->SetFileName(name.c_str());
+  writer->SetInputConnection(this->Terrain->GetOutputPort());
+  writer->Write();
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName(name.c_str());
+  reader->Update();
+  const rockfall::Terrain before = filters::readTerrain(this->Terrain->GetOutput());
+  const rockfall::Terrain after = filters::readTerrain(reader->GetOutput());
+  ASSERT_NE(after.obstacles(), nullptr);
+  const Structures &a = before.obstacles()->structures(), &b = after.obstacles()->structures();
+  ASSERT_EQ(b.embankments.size(), 1u);
+  EXPECT_EQ(a.embankments[0].points, b.embankments[0].points);
+  EXPECT_EQ(b.embankments[0].height, 3.5);
+  EXPECT_EQ(b.embankments[0].material, 1);
+  EXPECT_EQ(a.materials[0].frictionAngle, b.materials[0].frictionAngle);
+  ASSERT_EQ(b.trees.size(), 2u);
+  EXPECT_TRUE(std::isinf(b.trees[0].capacity));
+  EXPECT_EQ(b.trees[1].capacity, 5e3);
+  ASSERT_EQ(b.barriers.size(), 1u);
+  EXPECT_EQ(b.barriers[0].capacity, 1e6);
+}
+
+TEST_F(TestStructures, ABarrierCatchesTheRock)
+{
+  this->Simulation->SetEndTime(20.0);
+  vtkPolyData* met = this->Output(4);
+  ASSERT_EQ(met->GetNumberOfPoints(), 1);
+  EXPECT_EQ(value(met->GetPointData(), "StructureId"), 1.0);
+  EXPECT_EQ(value(met->GetPointData(), "Outcome"), 0.0);
+  EXPECT_NEAR(met->GetPoint(0)[0], 60.0, 1e-6);
+  EXPECT_EQ(value(this->Summary()->GetRowData(), "FateCode"), 3.0);
+  EXPECT_NEAR(value(this->Summary()->GetRowData(), "EnergyStructures"),
+    value(met->GetPointData(), "KineticEnergy"),
+    1e-3 * value(met->GetPointData(), "KineticEnergy"));
+}
+
+TEST_F(TestStructures, ABadLayerIsOneError)
+{
+  const std::string name = this->WriteFile(
+    "bad.csv", "WKT,height,width,slope\n\"LINESTRING(200 20,200 80)\",\"3,5\",1,1\n");
+  this->Terrain->SetEmbankmentFile(name.c_str());
+  this->Terrain->Update();
+  this->ExpectOneError({ name, "row 1", "height", "3,5" });
+}
