@@ -58,14 +58,19 @@ Heap drop(int cubes, double friction)
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> u(-1.0, 1.0);
   const Polyhedron cube = makeShape(Shape::Cube, kVolume);
+  Vec3 shift = Vec3::Zero();
   for (int k = 0; k < cubes; ++k)
   {
     Rock rock;
     rock.blockId = k;
     rock.shape = cube;
     const int place = k % (across * across), level = k / (across * across);
-    rock.position = Vec3(50.0 + spacing * (place % across - 0.5 * (across - 1)),
-      50.0 + spacing * (place / across - 0.5 * (across - 1)), edge + spacing * level);
+    // No level stands over the other one: cubes that turn until they lie on each other would make
+    // columns.
+    shift = place == 0 ? Vec3(edge * u(random), edge * u(random), 0.0) : shift;
+    rock.position = shift +
+      Vec3(50.0 + spacing * (place % across - 0.5 * (across - 1)),
+        50.0 + spacing * (place / across - 0.5 * (across - 1)), edge + spacing * level);
     rock.orientation = Quat(u(random), u(random), u(random), u(random)).normalized();
     pile.rocks.push_back(rock);
   }
@@ -147,7 +152,8 @@ TEST(MassFall, HeapsOfCubes)
       degrees(heap.repose));
     angles.push_back(degrees(heap.repose));
   }
-  for (std::size_t k = 1; k < angles.size(); ++k)
+  // Some dozen cubes are no heap whose slope says anything.
+  for (std::size_t k = 1; full() && k < angles.size(); ++k)
   {
     recordAtLeast({ kHeap,
                     "slope of the heap at φ " + text(frictions[k]) + "° over that at φ " +
