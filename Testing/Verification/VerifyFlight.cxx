@@ -59,7 +59,7 @@ TEST(Flight, CentroidIsOnTheParabola)
     {
       Rock rock;
       rock.shape = body.shape;
-      rock.position = Vec3(900.0, 950.0, 1500.0);
+      rock.position = Vec3(900.0, 950.0, 450.0);
       rock.velocity = Vec3(12.0, 7.0, 25.0);
       rock.angularVelocity = Vec3(9.0, -4.0, 14.0);
       SimulationParameters p;

@@ -34,6 +34,8 @@ void stand(const char* name, Pile& pile)
     pile.carried(), 1.0, 1e-3);
 }
 
+constexpr double kTimeStep = 0.0025; // s
+
 struct Heap
 {
   double repose = 0.0;  ///< Angle, rad.
@@ -55,6 +57,7 @@ Heap drop(int cubes, double friction)
   pile.parameters.rockFrictionAngle = radians(friction);
   pile.parameters.rockRestitution = 0.2;
   pile.parameters.endTime = 60.0;
+  pile.parameters.timeStep = kTimeStep;
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> u(-1.0, 1.0);
   const Polyhedron cube = makeShape(Shape::Cube, kVolume);
@@ -141,7 +144,8 @@ TEST(MassFall, HeapsOfCubes)
   for (const double friction : frictions)
   {
     const Heap heap = drop(cubes, friction);
-    const std::string circumstances = text(cubes) + " cubes of 0.6 m³, φ " + text(friction) + "°: ";
+    const std::string circumstances =
+      text(cubes) + " cubes of 0.6 m³, φ " + text(friction) + "°, Δt " + text(kTimeStep) + " s: ";
     recordAtMost({ kHeap, circumstances + "deepest overlap", "of an edge", "the bar: 1 %" },
       heap.overlap, 0.01);
     record({ kHeap, circumstances + "share at rest in the end", "", "all of them" }, heap.resting,
