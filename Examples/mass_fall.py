@@ -3,11 +3,10 @@
 After Zheng et al. (2014), section 3.4: rocks fall from a mountainside onto a gentle step above a road. Each
 iteration draws restitution and friction anew. How many rocks come to the road is counted with collisions
 and without, and with an embankment of 3.5 m planned at the foot; confidence intervals are over
-iterations, because the rocks of one iteration are not independent. Collisions of rocks that are jammed
-behind the embankment are left out unless --jam asks for them: the engine may make energy there. The mountainside is invented, see
+iterations, because the rocks of one iteration are not independent. The mountainside is invented, see
 mass_fall_parts/scenario.py and docs/mass_falls.md. Run it with
 
-    bash Examples/run.sh mass_fall.py [--output FOLDER --iterations N --time-step S --frames N --jam]
+    bash Examples/run.sh mass_fall.py [--output FOLDER --iterations N --time-step S --frames N]
 
 and find in output/mass_fall counts.csv and counts.txt, map.png, oblique.png, stops.png, and the movie
 mass_fall.ogv; rocks.pvd, a time series of the shown iteration, opens in ParaView.
@@ -47,7 +46,6 @@ def arguments():
     parser.add_argument("--time-step", type=float, default=scenario.TIME_STEP,
                         help="of lasting contact, s (0.001)")
     parser.add_argument("--frames", type=int, default=120, help="frames of the movie (120); 0 makes none")
-    parser.add_argument("--jam", action="store_true", help="collisions at the embankment, too; see the docs")
     chosen = parser.parse_args()
     if chosen.iterations < 2:
         parser.error(f"--iterations is {chosen.iterations}, it must be at least 2")
@@ -124,7 +122,7 @@ slopes = {False: make_slope(chosen.output, "slope.asc", False),
 rocks, mean = make_rocks(chosen.output, slopes[False])
 cases, simulations, stops = {}, {}, {}
 for bank in (False, True):
-    for collide in (False, True) if chosen.jam or not bank else (False,):
+    for collide in (False, True):
         name = ("with collisions" if collide else "without collisions") + (", embankment" if bank else "")
         say(name)
         simulation, summary = simulate(slopes[bank], rocks, collide, chosen)
