@@ -24,7 +24,7 @@ void stand(const char* name, Pile& pile)
   pile.start();
   pile.run(1.0); // the springs take up the weight
   const std::vector<Vec3> settled = pile.places();
-  const double duration = count(5, 59);
+  const double duration = count(2, 59);
   pile.run(duration);
   const std::string circumstances =
     std::string(name) + ", " + text(duration) + " s after the first second, nothing asleep: ";
