@@ -93,7 +93,7 @@ bool refreshVertexFace(const PlacedBlock& rock, const SurfacePatch& patch, Conta
       {
         next = g;
       }
-      else if (!outside && t.bends[k] > 0 && contact.distance < 0.0)
+      else if (!outside && g >= 0 && t.bends[k] > 0 && contact.distance < 0.0)
       {
         const SurfacePatch::Triangle& other = patch.triangles[g];
         const double d = distanceTo(g);
