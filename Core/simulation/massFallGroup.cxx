@@ -2,6 +2,7 @@
 
 #include "simulation/massFallWork.h"
 
+#include "base/parallel.h"
 #include "contact/motion.h"
 
 #include <algorithm>
@@ -60,13 +61,13 @@ void MassFall::gatherContacts(const Group& group, double h) const
 {
   const auto reachOf = [&](double speed, double radius)
   { return 1.5 * speed * h + parameters_.gravity * h * h + 1e-6 * radius; };
-  for (int i : group.members)
+  const auto onSlope = [&](std::size_t k)
   {
-    Member& m = *members_[i];
+    Member& m = *members_[group.members[k]];
     RockSimulator& sim = m.sim;
     if (sim.done_)
     {
-      continue;
+      return;
     }
     sim.placed_.place(sim.block_, sim.state_);
     m.body.update(sim.placed_);
@@ -87,22 +88,25 @@ void MassFall::gatherContacts(const Group& group, double h) const
     holdOverlap(
       sim.placed_, sim.patch_, sim.candidates_, kLooseOverlap * r + 2.0 * pressed, sim.contacts_);
     sim.armContacts();
-  }
-  for (RockPair* pair : group.pairs)
+  };
+  forEach(group.members.size(), kRockGrain, onSlope);
+  const auto eachOther = [&](std::size_t k)
   {
+    RockPair* pair = group.pairs[k];
     const Member &a = *members_[pair->first], &b = *members_[pair->second];
     if (a.sim.done_ || b.sim.done_)
     {
       pair->contacts.clear();
       pair->axis.distance = std::max(0.0, pair->axis.distance);
-      continue;
+      return;
     }
     const BlockState &s = a.sim.state_, &t = b.sim.state_;
     const double ra = a.sim.block_.radius(), rb = b.sim.block_.radius();
     const double speed = (s.velocity - t.velocity).norm() + s.spin.norm() * ra + t.spin.norm() * rb;
     updatePair(a.body, b.body, reachOf(speed, std::min(ra, rb)), *pair);
     this->armPair(*pair);
-  }
+  };
+  forEach(group.pairs.size(), kPairGrain, eachOther);
 }
 
 void MassFall::armPair(RockPair& pair) const
@@ -312,7 +316,7 @@ void MassFall::advanceGroup(const Group& group, double until) const
     const double remaining = until - now();
     const double large = std::min(remaining, travel);
     const double small = inTime ? std::min(remaining, this->groupStep(group)) : large;
-    const bool calm = this->isCalm(group);
+    const bool calm = inTime && this->isCalm(group);
     this->gatherContacts(group, calm || !inTime ? large : small);
     bool any = false;
     for (int i : group.members)

@@ -2,9 +2,11 @@
 
 #include "simulation/massFallWork.h"
 
+#include "base/parallel.h"
 #include "simulation/restitution.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 namespace rockfall
@@ -60,22 +62,45 @@ void MassFall::solve(
   request.kind = kind;
   request.gravity = parameters_.gravity;
   request.maxOpenClose = parameters_.maxOpenClose;
-  work.bodies.clear();
-  work.contacts.clear();
-  work.firsts.clear();
-  work.energyBefore.clear();
+  // Places first, then each rock and each pair for itself.
+  int places = 0;
+  std::size_t contacts = 0;
+  work.slopeFirsts.clear();
   for (int i : group.members)
   {
-    RockSimulator& sim = members_[i]->sim;
-    members_[i]->place = sim.done_ ? -1 : int(work.bodies.size());
+    const RockSimulator& sim = members_[i]->sim;
+    members_[i]->place = sim.done_ ? -1 : places++;
+    work.slopeFirsts.push_back(contacts);
+    contacts += sim.done_ ? 0 : sim.contacts_.size();
+  }
+  work.firsts.clear();
+  for (const RockPair* pair : group.pairs)
+  {
+    work.firsts.push_back(contacts);
+    contacts += pair->contacts.size();
+  }
+  work.firsts.push_back(contacts);
+  work.bodies.resize(std::size_t(places));
+  work.energyBefore.resize(std::size_t(places));
+  work.contacts.resize(contacts);
+  const auto bounceOf = [&](const Contact& c, double approach, double resting, double e)
+  {
+    const bool hits = bounces && !c.closed() && approach > resting && c.gap() < approach * h;
+    return hits ? e * approach : -1.0;
+  };
+  const auto takeRock = [&](std::size_t m)
+  {
+    Member& member = *members_[group.members[m]];
+    RockSimulator& sim = member.sim;
     if (sim.done_)
     {
-      continue;
+      return;
     }
     sim.before_ = sim.state_;
     sim.contactsBefore_ = sim.contacts_;
-    work.energyBefore.push_back(sim.mechanicalEnergy() + sim.springEnergy_);
-    GroupBody body;
+    work.energyBefore[member.place] = sim.mechanicalEnergy() + sim.springEnergy_;
+    GroupBody& body = work.bodies[member.place];
+    body = {};
     body.block = &sim.block_;
     body.state = &sim.state_;
     if (sim.steppedAs_ == kind)
@@ -87,21 +112,8 @@ void MassFall::solve(
     {
       body.acceleration.z() = -parameters_.gravity;
     }
-    work.bodies.push_back(body);
-  }
-  const auto bounceOf = [&](const Contact& c, double approach, double resting, double e)
-  {
-    const bool hits = bounces && !c.closed() && approach > resting && c.gap() < approach * h;
-    return hits ? e * approach : -1.0;
-  };
-  for (int i : group.members)
-  {
-    RockSimulator& sim = members_[i]->sim;
-    if (sim.done_)
-    {
-      continue;
-    }
     const Vec3 spin = sim.state_.angularVelocity();
+    std::size_t next = work.slopeFirsts[m];
     for (Contact& c : sim.contacts_)
     {
       const double approach =
@@ -119,36 +131,54 @@ void MassFall::solve(
       {
         e = restitutionAtSpeed(e, approach, material.restitutionSpeed);
       }
-      GroupContact k;
+      GroupContact& k = work.contacts[next++];
+      k = {};
       k.contact = &c;
-      k.first = members_[i]->place;
+      k.first = member.place;
       k.friction = c.friction;
       k.cohesion = c.cohesion;
       k.bounce = bounceOf(c, approach, sim.restingSpeed_, e);
       k.approach = approach;
-      work.contacts.push_back(k);
     }
-  }
-  for (RockPair* pair : group.pairs)
+  };
+  forEach(group.members.size(), kRockGrain, takeRock);
+  const double friction = std::tan(parameters_.rockFrictionAngle);
+  const auto takePair = [&](std::size_t p)
   {
-    work.firsts.push_back(work.contacts.size());
-    const double resting =
-      std::min(members_[pair->first]->sim.restingSpeed_, members_[pair->second]->sim.restingSpeed_);
-    for (Contact& c : pair->contacts)
+    RockPair& pair = *group.pairs[p];
+    const Member &a = *members_[pair.first], &b = *members_[pair.second];
+    const double resting = std::min(a.sim.restingSpeed_, b.sim.restingSpeed_);
+    std::size_t next = work.firsts[p];
+    for (Contact& c : pair.contacts)
     {
-      const double approach = -c.normal.dot(this->relativeVelocity(*pair, c.point));
-      GroupContact k;
+      const double approach = -c.normal.dot(this->relativeVelocity(pair, c.point));
+      GroupContact& k = work.contacts[next++];
+      k = {};
       k.contact = &c;
-      k.first = members_[pair->first]->place;
-      k.second = members_[pair->second]->place;
-      k.friction = std::tan(parameters_.rockFrictionAngle);
+      k.first = a.place;
+      k.second = b.place;
+      k.friction = friction;
       k.cohesion = parameters_.rockCohesion;
       k.bounce = bounceOf(c, approach, resting, parameters_.rockRestitution);
       k.approach = approach;
-      work.contacts.push_back(k);
+      // For the events.
+      RockPair::Impact& impact = pair.impact;
+      if (!c.closed() && approach > resting && c.gap() < approach * h && !impact.pending)
+      {
+        impact = {};
+        impact.pending = true;
+        impact.time = a.sim.state_.time;
+        impact.before[0] = a.sim.state_.velocity;
+        impact.before[1] = b.sim.state_.velocity;
+        impact.point = c.point;
+      }
+      if (impact.pending && !c.closed())
+      {
+        impact.approach = std::max(impact.approach, approach);
+      }
     }
-  }
-  work.firsts.push_back(work.contacts.size());
+  };
+  forEach(group.pairs.size(), kPairGrain, takePair);
   if (bounces)
   {
     settleBounces(work.bodies.size(), work.contacts, work.partners);
@@ -162,30 +192,6 @@ void MassFall::solve(
       {
         work.bodies[b].acceleration.setZero();
         work.bodies[b].spinAcceleration.setZero();
-      }
-    }
-  }
-  // Approach speeds at the start, for the events.
-  for (RockPair* pair : group.pairs)
-  {
-    for (const Contact& c : pair->contacts)
-    {
-      const double approach = -c.normal.dot(this->relativeVelocity(*pair, c.point));
-      RockPair::Impact& impact = pair->impact;
-      const double resting = std::min(
-        members_[pair->first]->sim.restingSpeed_, members_[pair->second]->sim.restingSpeed_);
-      if (!c.closed() && approach > resting && c.gap() < approach * h && !impact.pending)
-      {
-        impact = {};
-        impact.pending = true;
-        impact.time = members_[pair->first]->sim.state_.time;
-        impact.before[0] = members_[pair->first]->sim.state_.velocity;
-        impact.before[1] = members_[pair->second]->sim.state_.velocity;
-        impact.point = c.point;
-      }
-      if (impact.pending && !c.closed())
-      {
-        impact.approach = std::max(impact.approach, approach);
       }
     }
   }
@@ -226,11 +232,14 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
   {
     members_[i]->touchesOthers = false;
   }
-  std::vector<std::uint64_t> carriers(work.bodies.size(), 0);
-  for (std::size_t p = 0; p < group.pairs.size(); ++p)
+  std::vector<std::uint64_t>& carriers = work.carriers;
+  carriers.assign(work.bodies.size(), 0);
+  const auto absorbPair = [&](std::size_t p)
   {
     RockPair& pair = *group.pairs[p];
+    Member &first = *members_[pair.first], &second = *members_[pair.second];
     pair.touched = false;
+    std::uint64_t carry[2] = {};
     for (std::size_t k = work.firsts[p]; k < work.firsts[p + 1]; ++k)
     {
       const Contact& c = *work.contacts[k].contact;
@@ -254,41 +263,48 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
         const std::uint64_t key =
           (std::uint64_t(c.rockFeature + 1000) * 4 + std::uint64_t(c.kind) + 1) *
           0x9e3779b97f4a7c15ull;
-        carriers[work.contacts[k].first] += key * std::uint64_t(pair.second + 2);
-        carriers[work.contacts[k].second] += key * std::uint64_t(pair.first + 2);
+        carry[0] += key * std::uint64_t(pair.second + 2);
+        carry[1] += key * std::uint64_t(pair.first + 2);
       }
     }
-    if (pair.touched)
+    if (!pair.touched)
     {
-      members_[pair.first]->touchesOthers = members_[pair.second]->touchesOthers = true;
-      // What was found overlapping is pressed out slowly.
-      const double mass =
-        std::min(members_[pair.first]->sim.block_.mass(), members_[pair.second]->sim.block_.mass());
-      const double slow =
-        std::min(kPressOut * h, 0.5 * mass * parameters_.gravity / parameters_.normalPenalty);
-      const double loose = kLooseOverlap *
-        std::min(
-          members_[pair.first]->sim.block_.radius(), members_[pair.second]->sim.block_.radius());
-      for (Contact& c : pair.contacts)
-      {
-        const bool deep = kind == StepKind::Lasting && c.offset < -loose;
-        const double way = deep ? kPressOutDeep * h : slow;
-        c.offset = c.offset < 0.0 ? std::min(0.0, c.offset + way) : std::max(0.0, c.offset - way);
-      }
+      return;
     }
-    if (pair.impact.pending && (!pair.touched || kind == StepKind::Lasting))
+    // Whole numbers: their sum is the same in any order.
+    std::atomic_ref(carriers[first.place]).fetch_add(carry[0], std::memory_order_relaxed);
+    std::atomic_ref(carriers[second.place]).fetch_add(carry[1], std::memory_order_relaxed);
+    std::atomic_ref(first.touchesOthers).store(true, std::memory_order_relaxed);
+    std::atomic_ref(second.touchesOthers).store(true, std::memory_order_relaxed);
+    // What was found overlapping is pressed out slowly.
+    const Block &a = first.sim.block_, &b = second.sim.block_;
+    const double mass = std::min(a.mass(), b.mass());
+    const double slow =
+      std::min(kPressOut * h, 0.5 * mass * parameters_.gravity / parameters_.normalPenalty);
+    const double loose = kLooseOverlap * std::min(a.radius(), b.radius());
+    for (Contact& c : pair.contacts)
     {
-      this->finishPairImpact(pair);
+      const bool deep = kind == StepKind::Lasting && c.offset < -loose;
+      const double way = deep ? kPressOutDeep * h : slow;
+      c.offset = c.offset < 0.0 ? std::min(0.0, c.offset + way) : std::max(0.0, c.offset - way);
+    }
+  };
+  forEach(group.pairs.size(), kPairGrain, absorbPair);
+  for (RockPair* pair : group.pairs)
+  {
+    if (pair->impact.pending && (!pair->touched || kind == StepKind::Lasting))
+    {
+      this->finishPairImpact(*pair);
     }
   }
-  for (int i : group.members)
+  const auto absorbRock = [&](std::size_t k)
   {
-    Member& m = *members_[i];
+    Member& m = *members_[group.members[k]];
     if (m.sim.done_)
     {
-      continue;
+      return;
     }
-    const int b = members_[i]->place;
+    const int b = m.place;
     const GroupBody& body = work.bodies[b];
     StepOutcome outcome;
     outcome.frictionWork = body.frictionWork;
@@ -304,19 +320,20 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     }
     if (m.sim.done_)
     {
-      continue; // caught
+      return; // caught
     }
     m.sim.checkLeft();
     const std::vector<Contact>& c = m.sim.contacts_;
     m.sim.followRest(h,
       m.touchesOthers ||
-        std::any_of(c.begin(), c.end(), [](const Contact& k) { return k.closed(); }));
+        std::any_of(c.begin(), c.end(), [](const Contact& touch) { return touch.closed(); }));
     if (!m.sim.done_ && m.sim.state_.time >= parameters_.endTime - kTooShort)
     {
       m.sim.recorder_.trajectory().summary.fate = Fate::Moving;
       m.sim.done_ = true;
     }
-  }
+  };
+  forEach(group.members.size(), kRockGrain, absorbRock);
 }
 
 void MassFall::finishPairImpact(RockPair& pair) const

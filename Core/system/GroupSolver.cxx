@@ -1,8 +1,10 @@
 #include "system/GroupSolver.h"
 
+#include "base/parallel.h"
 #include "contact/features.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 namespace rockfall
@@ -30,7 +32,7 @@ void GroupSolver::prepare(const StepRequest& request, const std::vector<GroupBod
   const bool lasting = request.kind == StepKind::Lasting;
   rate_ = lasting ? 1.0 / h : 2.0 / h;
   work_.resize(bodies.size());
-  for (std::size_t i = 0; i < bodies.size(); ++i)
+  const auto prepareBody = [&](std::size_t i)
   {
     const GroupBody& body = bodies[i];
     const Block& block = *body.block;
@@ -55,9 +57,10 @@ void GroupSolver::prepare(const StepRequest& request, const std::vector<GroupBod
     w.d.head<3>() = h * w.velocity0.head<3>() + (0.5 * h * h) * body.acceleration;
     w.d.tail<3>() = h * w.velocity0.tail<3>() + (0.5 * h * h) * spinAcceleration;
     w.last.setZero();
-  }
+  };
+  forEach(bodies.size(), kBodyGrain, prepareBody);
   rows_.resize(contacts.size());
-  for (std::size_t k = 0; k < contacts.size(); ++k)
+  const auto prepareRow = [&](std::size_t k)
   {
     const GroupContact& group = contacts[k];
     const Contact& c = *group.contact;
@@ -99,9 +102,10 @@ void GroupSolver::prepare(const StepRequest& request, const std::vector<GroupBod
     law.slip0 = { row.directions[1].dot(c.slip), row.directions[2].dot(c.slip) };
     law.state = c.state;
     row.force.setZero();
-  }
+  };
+  forEach(contacts.size(), kRowGrain, prepareRow);
   this->levers();
-  for (std::size_t k = 0; k < contacts.size(); ++k)
+  const auto start = [&](std::size_t k)
   {
     Row& row = rows_[k];
     if (contacts[k].bounce >= 0.0)
@@ -120,23 +124,27 @@ void GroupSolver::prepare(const StepRequest& request, const std::vector<GroupBod
       row.force[0] = contacts[k].contact->normalForce;
       row.force.tail<2>() = -row.law.shearPenalty * row.law.slip0;
     }
-  }
+  };
+  forEach(contacts.size(), kRowGrain, start);
 }
 
 void GroupSolver::levers()
 {
-  for (Work& w : work_)
+  const auto turn = [&](std::size_t i)
   {
+    Work& w = work_[i];
     w.turn = cayley(w.d.tail<3>());
     w.turned = w.turn.toRotationMatrix();
-  }
+  };
+  forEach(work_.size(), kBodyGrain, turn);
   // A material vector of a body, averaged over the step.
   const auto mean = [&](const Side& side, const Vec3& y)
   { return side.body < 0 ? y : Vec3(0.5 * (y + work_[side.body].turned * y)); };
   const auto middle = [&](const Side& side)
   { return Vec3(work_[side.body].position + 0.5 * work_[side.body].d.head<3>()); };
-  for (Row& row : rows_)
+  const auto move = [&](std::size_t k)
   {
+    Row& row = rows_[k];
     Side &first = row.sides[0], &second = row.sides[1];
     const auto pointOn = [&](const Side& side)
     { return side.body < 0 ? row.fixed : Vec3(middle(side) + mean(side, side.place)); };
@@ -174,7 +182,8 @@ void GroupSolver::levers()
         side.lever = x - middle(side);
       }
     }
-  }
+  };
+  forEach(rows_.size(), kRowGrain, move);
 }
 
 Mat3 GroupSolver::mobility(const Row& row) const
@@ -213,19 +222,24 @@ Vec3 GroupSolver::travel(const Row& row) const
 
 bool GroupSolver::evaluate(double h, bool lasting)
 {
-  bool changed = false;
-  for (Row& row : rows_)
+  std::atomic<bool> changed = false;
+  const auto evaluateRow = [&](std::size_t k)
   {
+    Row& row = rows_[k];
     const Vec3 way = this->travel(row);
-    changed |= row.law.evaluate(lasting, h, row.law.gap0 + way[0], way.tail<2>());
-  }
+    if (row.law.evaluate(lasting, h, row.law.gap0 + way[0], way.tail<2>()))
+    {
+      changed.store(true, std::memory_order_relaxed);
+    }
+  };
+  forEach(rows_.size(), kRowGrain, evaluateRow);
   return changed;
 }
 
 void GroupSolver::loads(const StepRequest& request, const std::vector<GroupBody>& bodies)
 {
   const double h = request.duration;
-  for (std::size_t i = 0; i < bodies.size(); ++i)
+  const auto loadBody = [&](std::size_t i)
   {
     Work& w = work_[i];
     const Vec6 change = (w.velocity0 - w.offset) / h;
@@ -238,7 +252,8 @@ void GroupSolver::loads(const StepRequest& request, const std::vector<GroupBody>
     w.load.tail<3>() = unit * (w.inertia * change.tail<3>()) - (w.turned * momentum - momentum) / h;
     w.free.head<3>() = w.inverseMass * w.load.head<3>();
     w.free.tail<3>() = w.inverseInertia * w.load.tail<3>();
-  }
+  };
+  forEach(bodies.size(), kBodyGrain, loadBody);
 }
 
 } // namespace rockfall

@@ -76,6 +76,9 @@ public:
   int maxSweeps = 30;
 
 private:
+  static constexpr int kNever = -2;                              ///< A sweep before all others.
+  static constexpr std::size_t kBodyGrain = 64, kRowGrain = 256; ///< For one thread at a time.
+
   // Everything in world axes. A rotation over the step is the Cayley vector of its turn.
   struct Side
   {
@@ -94,6 +97,9 @@ private:
     Vec3 fixed = Vec3::Zero();      ///< A point of the slope.
     double gap0 = 0.0;              ///< Without what a bounce asks for, m.
     Vec3 force = Vec3::Zero();      ///< Normal and shear, with which Gauss–Seidel begins, N.
+    double done[2] = {};            ///< Out: work of the force on the two bodies, J.
+    double frictionWork = 0.0, dampedWork = 0.0; ///< Out, J.
+    bool closed = false;                         ///< Out.
   };
   struct Work
   {
@@ -109,7 +115,7 @@ private:
   /// What a sweep of Gauss–Seidel meets of a contact, and of a rock: no more than that.
   struct Point
   {
-    std::array<int, 2> body; ///< The slope is one more body, which nothing moves.
+    std::array<int, 2> body; ///< The slope is one more body of each part, which nothing moves.
     std::array<Vec3, 3> directions;
     std::array<Vec3, 2> lever;
     double w;              ///< nᵀ J A⁻¹ Jᵀ n
@@ -142,7 +148,9 @@ private:
   void assemble(Eigen::VectorXd& right, Add&& add) const;
   bool gaussSeidel(
     const StepRequest& request, const std::vector<GroupBody>& bodies, GroupOutcome& outcome);
-  void gather(); ///< Rows and bodies into points and movers.
+  void arrange(); ///< Rows by parts of the group.
+  void gather();  ///< Rows and bodies into points and movers.
+  double visit(int part, int number, double enough);
   double sweep(int number, double enough);
   double relax(Point& p);
   void write(const StepRequest& request, std::vector<GroupBody>& bodies,
@@ -152,6 +160,15 @@ private:
   std::vector<Work> work_;
   std::vector<Point> points_;
   std::vector<Mover> movers_;
+  // Parts are strips across the group, and contacts belong to the lower part of their two rocks:
+  // those of every second part share no rock, and are swept at the same time. The last part holds
+  // what reaches further than to the next strip.
+  int parts_ = 1;
+  std::vector<int> order_;          ///< Rows, part by part.
+  std::vector<std::size_t> starts_; ///< First of each part there.
+  std::vector<std::size_t> nextInPart_;
+  std::vector<int> byPlace_, partOf_; ///< Bodies.
+  std::vector<double> most_;          ///< Largest change, by part.
   double rate_ = 0.0;
   BlockMatrix blocks_, kept_;
 };

@@ -1,5 +1,7 @@
 #include "system/broadPhase.h"
 
+#include "base/parallel.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -9,6 +11,8 @@ namespace rockfall
 
 namespace
 {
+
+constexpr std::size_t kPart = 256; // rocks that one thread looks after at a time
 
 struct Entry
 {
@@ -43,7 +47,7 @@ std::vector<std::array<int, 2>> findNear(std::span<const BroadBox> boxes)
       highest = std::max(highest, level[i]);
     }
   }
-  std::vector<std::array<int, 2>> pairs;
+  std::vector<std::vector<std::array<int, 2>>> parts((boxes.size() + kPart - 1) / kPart);
   std::vector<Entry> entries;
   for (int k = lowest; k <= highest; ++k)
   {
@@ -63,12 +67,12 @@ std::vector<std::array<int, 2>> findNear(std::span<const BroadBox> boxes)
     }
     std::sort(entries.begin(), entries.end(), before);
     // Rocks of this level and of all below it look for those of this level.
-    for (std::size_t i = 0; i < boxes.size(); ++i)
+    const auto search = [&](std::size_t i, std::vector<std::array<int, 2>>& found)
     {
       const BroadBox& a = boxes[i];
       if (!a.present || level[i] > k)
       {
-        continue;
+        return;
       }
       const std::int64_t row = cellOf(a.center.y(), size), column = cellOf(a.center.x(), size);
       for (std::int64_t r = row - 1; r <= row + 1; ++r)
@@ -86,11 +90,25 @@ std::vector<std::array<int, 2>> findNear(std::span<const BroadBox> boxes)
           const double reach = a.radius + b.radius;
           if ((a.moves || b.moves) && (a.center - b.center).squaredNorm() <= reach * reach)
           {
-            pairs.push_back({ std::min(int(i), j), std::max(int(i), j) });
+            found.push_back({ std::min(int(i), j), std::max(int(i), j) });
           }
         }
       }
-    }
+    };
+    forEach(parts.size(), 1,
+      [&](std::size_t part)
+      {
+        const std::size_t end = std::min(boxes.size(), (part + 1) * kPart);
+        for (std::size_t i = part * kPart; i < end; ++i)
+        {
+          search(i, parts[part]);
+        }
+      });
+  }
+  std::vector<std::array<int, 2>> pairs;
+  for (const std::vector<std::array<int, 2>>& found : parts)
+  {
+    pairs.insert(pairs.end(), found.begin(), found.end());
   }
   std::sort(pairs.begin(), pairs.end());
   return pairs;

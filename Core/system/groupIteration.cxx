@@ -2,8 +2,11 @@
 
 #include "system/GroupSolver.h"
 
+#include "base/parallel.h"
+
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace rockfall
 {
@@ -28,6 +31,9 @@ constexpr double kTurnGuessed = 0.02;
 constexpr int kCalmSweeps = 10;
 /// Changes below this share of the tolerance are no reason to visit a contact again.
 constexpr double kQuiet = 0.3;
+/// Gauss–Seidel: rocks of a part of the group, and parts at most.
+constexpr int kPart = 64;
+constexpr int kMostParts = 64;
 
 } // namespace
 
@@ -84,20 +90,77 @@ bool GroupSolver::newton(
   return false;
 }
 
+void GroupSolver::arrange()
+{
+  const int bodies = int(work_.size());
+  parts_ = std::clamp(bodies / kPart, 1, kMostParts);
+  order_.resize(rows_.size());
+  partOf_.assign(work_.size(), 0);
+  if (parts_ == 1)
+  {
+    std::iota(order_.begin(), order_.end(), 0);
+    starts_ = { 0, rows_.size(), rows_.size() };
+    return;
+  }
+  Vec3 low = work_.front().position, high = low;
+  for (const Work& w : work_)
+  {
+    low = low.cwiseMin(w.position);
+    high = high.cwiseMax(w.position);
+  }
+  int axis = 0;
+  (high - low).maxCoeff(&axis);
+  byPlace_.resize(work_.size());
+  std::iota(byPlace_.begin(), byPlace_.end(), 0);
+  std::sort(byPlace_.begin(), byPlace_.end(),
+    [&](int a, int b)
+    {
+      const double x = work_[std::size_t(a)].position[axis];
+      const double y = work_[std::size_t(b)].position[axis];
+      return x != y ? x < y : a < b;
+    });
+  for (int k = 0; k < bodies; ++k)
+  {
+    partOf_[std::size_t(byPlace_[std::size_t(k)])] =
+      int(std::int64_t(k) * std::int64_t(parts_) / std::int64_t(bodies));
+  }
+  const auto partOf = [&](const Row& row)
+  {
+    const int a = partOf_[std::size_t(row.sides[0].body)];
+    const int b = row.sides[1].body < 0 ? a : partOf_[std::size_t(row.sides[1].body)];
+    return std::abs(a - b) <= 1 ? std::min(a, b) : parts_;
+  };
+  starts_.assign(std::size_t(parts_) + 2, 0);
+  for (const Row& row : rows_)
+  {
+    ++starts_[std::size_t(partOf(row)) + 1];
+  }
+  std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
+  std::vector<std::size_t>& next = nextInPart_;
+  next.assign(starts_.begin(), starts_.end());
+  for (std::size_t k = 0; k < rows_.size(); ++k)
+  {
+    order_[next[std::size_t(partOf(rows_[k]))]++] = int(k);
+  }
+}
+
 void GroupSolver::gather()
 {
-  movers_.resize(work_.size() + 1);
+  const int slope = int(work_.size());
+  movers_.resize(work_.size() + std::size_t(parts_) + 1);
   for (std::size_t i = 0; i < work_.size(); ++i)
   {
     const Work& w = work_[i];
     movers_[i] = { w.free.head<3>(), w.free.tail<3>(), w.inverseMass, w.inverseInertia, 0 };
   }
-  movers_.back() = { Vec3::Zero(), Vec3::Zero(), 0.0, Mat3::Zero(), -2 };
-  points_.resize(rows_.size());
-  const int slope = int(work_.size());
-  for (std::size_t k = 0; k < rows_.size(); ++k)
+  for (std::size_t i = work_.size(); i < movers_.size(); ++i)
   {
-    const Row& row = rows_[k];
+    movers_[i] = { Vec3::Zero(), Vec3::Zero(), 0.0, Mat3::Zero(), kNever };
+  }
+  points_.resize(rows_.size());
+  const auto gatherPoint = [&](std::size_t k)
+  {
+    const Row& row = rows_[std::size_t(order_[k])];
     const ContactLaw& law = row.law;
     Point& p = points_[k];
     const Mat3 w = this->mobility(row);
@@ -105,7 +168,9 @@ void GroupSolver::gather()
     Eigen::Matrix2d across;
     for (int i = 0; i < 2; ++i)
     {
-      p.body[i] = row.sides[i].body < 0 ? slope : row.sides[i].body;
+      // Contacts with the slope are in the part of their rock.
+      p.body[i] =
+        row.sides[i].body < 0 ? slope + partOf_[std::size_t(row.sides[0].body)] : row.sides[i].body;
       p.lever[i] = row.sides[i].lever;
       p.coupling[i] = row.directions[i + 1].dot(moved);
       p.slip[i] = law.slip0[i];
@@ -123,12 +188,20 @@ void GroupSolver::gather()
     p.gain = law.shearPenalty / (1.0 + law.shearPenalty * mobile);
     p.friction = law.friction;
     p.cohesion = law.cohesion;
-    const Vec3 force = row.force[0] * row.directions[0] + row.force[1] * row.directions[1] +
-      row.force[2] * row.directions[2];
     for (int i = 0; i < 3; ++i)
     {
       p.force[i] = row.force[i];
     }
+  };
+  forEach(points_.size(), kRowGrain, gatherPoint);
+  for (const Point& p : points_)
+  {
+    if (p.force[0] == 0.0)
+    {
+      continue;
+    }
+    const Vec3 force =
+      p.force[0] * p.directions[0] + p.force[1] * p.directions[1] + p.force[2] * p.directions[2];
     for (int i = 0; i < 2; ++i)
     {
       Mover& m = movers_[p.body[i]];
@@ -181,10 +254,10 @@ double GroupSolver::relax(Point& p)
   return p.w * (std::abs(push) + std::abs(slide[0]) + std::abs(slide[1]));
 }
 
-double GroupSolver::sweep(int number, double enough)
+double GroupSolver::visit(int part, int number, double enough)
 {
   double most = 0.0;
-  const auto visit = [&](Point& p)
+  const auto visitPoint = [&](Point& p)
   {
     Mover &a = movers_[p.body[0]], &b = movers_[p.body[1]];
     // Where nothing has changed since the last visit there is nothing to do.
@@ -195,20 +268,51 @@ double GroupSolver::sweep(int number, double enough)
     const double change = this->relax(p);
     if (change > kQuiet * enough)
     {
-      a.changed = b.changed = number;
+      a.changed = number;
+      b.changed = b.inverseMass > 0.0 ? number : kNever; // the slope does not move
       most = std::max(most, change);
     }
   };
+  const auto begin = points_.begin() + std::ptrdiff_t(starts_[std::size_t(part)]);
+  const auto end = points_.begin() + std::ptrdiff_t(starts_[std::size_t(part) + 1]);
   if (number % 2 == 0)
   {
-    std::for_each(points_.begin(), points_.end(), visit);
+    std::for_each(begin, end, visitPoint);
   }
   else
   {
-    std::for_each(points_.rbegin(), points_.rend(), visit);
+    std::for_each(std::make_reverse_iterator(end), std::make_reverse_iterator(begin), visitPoint);
   }
-  movers_.back().changed = -2; // the slope
   return most;
+}
+
+double GroupSolver::sweep(int number, double enough)
+{
+  // Every second part, the others, and what reaches further; backwards in every second sweep.
+  most_.assign(std::size_t(parts_) + 1, 0.0);
+  const auto visitParts = [&](int first)
+  {
+    forEach(std::size_t(parts_ - first + 1) / 2, 1,
+      [&](std::size_t k)
+      {
+        const int part = first + 2 * int(k);
+        most_[std::size_t(part)] = this->visit(part, number, enough);
+      });
+  };
+  const auto visitRest = [&] { most_.back() = this->visit(parts_, number, enough); };
+  if (number % 2 == 0)
+  {
+    visitParts(0);
+    visitParts(1);
+    visitRest();
+  }
+  else
+  {
+    visitRest();
+    visitParts(1);
+    visitParts(0);
+  }
+  return *std::max_element(most_.begin(), most_.end());
 }
 
 bool GroupSolver::gaussSeidel(
@@ -225,6 +329,7 @@ bool GroupSolver::gaussSeidel(
     rows_.begin(), rows_.end(), [](const Row& row) { return row.gap0 != row.law.gap0; });
   const int most = calm ? kCalmSweeps * maxSweeps : maxSweeps;
   bool settled = false;
+  this->arrange();
   for (int update = 0; update < kLeverUpdates; ++update)
   {
     if (update > 0)
@@ -249,7 +354,7 @@ bool GroupSolver::gaussSeidel(
     }
     for (std::size_t k = 0; k < rows_.size(); ++k)
     {
-      rows_[k].force = Eigen::Map<const Vec3>(points_[k].force);
+      rows_[std::size_t(order_[k])].force = Eigen::Map<const Vec3>(points_[k].force);
     }
     if (turned <= kTurnGuessed * kTurnGuessed)
     {
@@ -316,9 +421,9 @@ void GroupSolver::write(const StepRequest& request, std::vector<GroupBody>& bodi
     body.given = body.frictionWork = body.dampedWork = 0.0;
     body.springEnergy = body.normalEnergy = 0.0;
   }
-  for (std::size_t k = 0; k < contacts.size(); ++k)
+  const auto writeContact = [&](std::size_t k)
   {
-    const Row& row = rows_[k];
+    Row& row = rows_[k];
     const ContactLaw& law = row.law;
     Contact& c = *contacts[k].contact;
     const Vec3 way = this->travel(row);
@@ -328,38 +433,22 @@ void GroupSolver::write(const StepRequest& request, std::vector<GroupBody>& bodi
     c.shearForce = law.shearForce.norm();
     c.distance = gap1 + c.offset;
     const bool bounced = contacts[k].bounce >= 0.0;
-    const bool closed = !bounced && law.gap1 < 0.0;
-    GroupBody& first = bodies[row.sides[0].body];
-    const double friction = bounced ? -law.shearForce.dot(travel) : law.frictionWork(travel);
-    const double damped = bounced ? -law.force * (gap1 - row.gap0) : law.dampedWork();
-    if (row.sides[1].body < 0)
+    row.closed = !bounced && law.gap1 < 0.0;
+    row.frictionWork = bounced ? -law.shearForce.dot(travel) : law.frictionWork(travel);
+    row.dampedWork = bounced ? -law.force * (gap1 - row.gap0) : law.dampedWork();
+    if (row.sides[1].body >= 0)
     {
-      first.frictionWork += friction;
-      first.dampedWork += damped;
-      if (closed)
-      {
-        first.normalEnergy += law.normalEnergy();
-        first.springEnergy += law.normalEnergy() + law.shearEnergy();
-      }
-    }
-    else
-    {
-      outcome.frictionWork += friction;
-      outcome.dampedWork += damped;
-      contacts[k].work = 0.0;
       const Vec3 force = law.force * row.directions[0] + law.shearForce[0] * row.directions[1] +
         law.shearForce[1] * row.directions[2];
-      double sign = 1.0;
-      for (const Side& side : row.sides)
+      for (int side = 0; side < 2; ++side)
       {
-        const Vec6& d = work_[side.body].d;
-        const double done = sign * force.dot(d.head<3>() + d.tail<3>().cross(side.lever));
-        bodies[side.body].given -= done;
-        contacts[k].work -= done;
-        sign = -1.0;
+        const Vec6& d = work_[row.sides[side].body].d;
+        const double sign = side == 0 ? 1.0 : -1.0;
+        row.done[side] = sign * force.dot(d.head<3>() + d.tail<3>().cross(row.sides[side].lever));
       }
+      contacts[k].work = -row.done[0] - row.done[1];
     }
-    if (closed)
+    if (row.closed)
     {
       c.state = law.state == ContactState::Open ? ContactState::Sliding : law.state;
       c.slip = row.directions[1] * law.slip1[0] + row.directions[2] * law.slip1[1];
@@ -377,8 +466,30 @@ void GroupSolver::write(const StepRequest& request, std::vector<GroupBody>& bodi
       const Work& w = work_[i];
       c.point = w.position + w.d.head<3>() + w.turned * row.sides[carrier].place;
     }
+  };
+  forEach(contacts.size(), kRowGrain, writeContact);
+  for (const Row& row : rows_)
+  {
+    GroupBody& first = bodies[row.sides[0].body];
+    if (row.sides[1].body < 0)
+    {
+      first.frictionWork += row.frictionWork;
+      first.dampedWork += row.dampedWork;
+      if (row.closed)
+      {
+        first.normalEnergy += row.law.normalEnergy();
+        first.springEnergy += row.law.normalEnergy() + row.law.shearEnergy();
+      }
+    }
+    else
+    {
+      outcome.frictionWork += row.frictionWork;
+      outcome.dampedWork += row.dampedWork;
+      first.given -= row.done[0];
+      bodies[row.sides[1].body].given -= row.done[1];
+    }
   }
-  for (std::size_t i = 0; i < bodies.size(); ++i)
+  const auto writeBody = [&](std::size_t i)
   {
     const Work& w = work_[i];
     BlockState& state = *bodies[i].state;
@@ -388,7 +499,8 @@ void GroupSolver::write(const StepRequest& request, std::vector<GroupBody>& bodi
     state.velocity = velocity.head<3>();
     state.orientation = (w.turn * state.orientation).normalized();
     state.spin = w.rotation.transpose() * velocity.tail<3>();
-  }
+  };
+  forEach(bodies.size(), kBodyGrain, writeBody);
 }
 
 } // namespace rockfall
