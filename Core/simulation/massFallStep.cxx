@@ -141,9 +141,9 @@ void MassFall::solve(
       k.contact = &c;
       k.first = members_[pair->first]->place;
       k.second = members_[pair->second]->place;
-      k.friction = std::tan(parameters_.rockFrictionAngle);
-      k.cohesion = parameters_.rockCohesion;
-      k.bounce = bounceOf(c, approach, resting, parameters_.rockRestitution);
+      k.friction = pair->law.friction;
+      k.cohesion = pair->law.cohesion;
+      k.bounce = bounceOf(c, approach, resting, pair->law.restitution);
       k.approach = approach;
       work.contacts.push_back(k);
     }
@@ -347,7 +347,7 @@ void MassFall::finishPairImpact(RockPair& pair) const
     event.velocityBefore = impact.before[side];
     event.velocityAfter = sim.state_.velocity;
     event.energyLoss = std::max(0.0, impact.loss);
-    event.restitution = parameters_.rockRestitution;
+    event.restitution = pair.law.restitution;
     event.otherRock = other;
     event.otherBlockId = members_[other]->sim.rock_.blockId;
     Trajectory& trajectory = sim.recorder_.trajectory();

@@ -470,7 +470,7 @@ TEST_F(TestRockBlockSource, PrintSelfNamesEveryProperty)
          "ScaleToVolume", "Center", "Orientation", "Velocity", "AngularVelocity", "Density",
          "YoungModulus", "PoissonRatio", "FileName", "TargetCRS", "FirstBlockId", "ShapeMix",
          "VolumeLaw", "VolumeDeviation", "VolumeMinimum", "VolumeMaximum", "VolumeExponent",
-         "Material", "Amount", "Intensity", "SlopeThreshold", "PlaceOnGround", "ReleaseHeight",
+         "Material", "MaterialName", "Amount", "Intensity", "SlopeThreshold", "PlaceOnGround", "ReleaseHeight",
          "HorizontalDeviation", "VerticalDeviation", "AttitudeLaw", "AttitudeDeviation",
          "RedrawVolume", "Seed", "MaximumRocks", "SourceName", "FirstSourceId" })
   {

@@ -583,7 +583,8 @@ TEST_F(TestRockfallSimulation, PrintSelfNamesEveryProperty)
   std::ostringstream text;
   this->Simulation->Print(text);
   for (const char* name : { "TimeStep", "EndTime", "OutputInterval", "Gravity", "NormalPenalty",
-         "ShearPenaltyRatio", "Iterations", "Seed", "RockRockContact", "Rigid", "NumberOfThreads",
+         "ShearPenaltyRatio", "Iterations", "Seed", "RockRockContact",
+         "RockContactFile", "Rigid", "NumberOfThreads",
          "ShownIteration", "FirstIteration", "TrajectoryOutput", "KeepImpacts", "PrintProgress",
          "StateHash", "NumberOfRuns" })
   {
