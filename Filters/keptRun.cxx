@@ -1,7 +1,12 @@
 #include "keptRun.h"
 
+#include "arrays.h"
 #include "base/errors.h"
+#include "gis/rockContacts.h"
 #include "terrainFieldData.h"
+
+#include "vtkDoubleArray.h"
+#include "vtkStringArray.h"
 
 #include <algorithm>
 #include <optional>
@@ -40,7 +45,7 @@ bool KeptRun::isLike(const KeptRun& other) const
 {
   return terrain == other.terrain && rocks == other.rocks &&
     parts.retention == other.parts.retention && parts.impacts == other.parts.impacts &&
-    runKey(parameters) == runKey(other.parameters);
+    contactFile == other.contactFile && runKey(parameters) == runKey(other.parameters);
 }
 
 bool KeptRun::wholeFits() const
@@ -96,9 +101,56 @@ void KeptRun::prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const 
         frame.sourceIds.push_back(rock.sourceId);
         frame.sourceNames.push_back(std::move(rock.sourceName));
       }
-      ensemble = std::make_unique<Ensemble>(slope, frame.rocks, parameters);
     },
     noMemory);
+  if (parameters.rockRockContact && !contactFile.empty())
+  {
+    this->readContacts(ranks, noMemory);
+  }
+  ranks.together(
+    [&] { ensemble = std::make_unique<Ensemble>(slope, frame.rocks, parameters); }, noMemory);
+}
+
+void KeptRun::readContacts(const Ranks& ranks, const std::string& noMemory)
+{
+  // The file need be there for the first rank only. It is taken apart, sent, and put together.
+  vtkNew<vtkPolyData> table;
+  const auto first = addArray<vtkStringArray>(table->GetFieldData(), "First");
+  const auto second = addArray<vtkStringArray>(table->GetFieldData(), "Second");
+  const auto values = addArray<vtkDoubleArray>(table->GetFieldData(), "Values", 3);
+  ranks.together(
+    [&]
+    {
+      if (ranks.rank() != 0)
+      {
+        return;
+      }
+      std::vector<std::string> materials;
+      for (const Rock& rock : frame.rocks)
+      {
+        materials.push_back(rock.material);
+      }
+      for (const RockContactPair& pair :
+        readRockContacts(contactFile, parameters.rockCohesion, materials))
+      {
+        first->InsertNextValue(pair.first);
+        second->InsertNextValue(pair.second);
+        values->InsertNextTuple3(
+          pair.contact.restitution, pair.contact.frictionAngle, pair.contact.cohesion);
+      }
+    },
+    noMemory);
+  ranks.broadcast(table, 0);
+  vtkFieldData* sent = table->GetFieldData();
+  auto* one = vtkStringArray::SafeDownCast(sent->GetAbstractArray("First"));
+  auto* other = vtkStringArray::SafeDownCast(sent->GetAbstractArray("Second"));
+  vtkDataArray* numbers = sent->GetArray("Values");
+  for (vtkIdType k = 0; k < numbers->GetNumberOfTuples(); ++k)
+  {
+    const double* v = numbers->GetTuple(k);
+    parameters.rockContactPairs.push_back(
+      { one->GetValue(k), other->GetValue(k), { v[0], v[1], v[2] } });
+  }
 }
 
 bool KeptRun::show(int shown, double time, const Progress& progress, vtkPolyData* output)

@@ -13,6 +13,7 @@
 #include "vtkType.h"
 
 #include <memory>
+#include <string>
 
 namespace rockfall::filters
 {
@@ -35,6 +36,7 @@ struct Stamp
 struct KeptRun
 {
   SimulationParameters parameters;
+  std::string contactFile; ///< Of pairs of materials; empty: none.
   KeptParts parts;
   Stamp terrain, rocks; ///< The inputs.
 
@@ -56,6 +58,9 @@ struct KeptRun
   /// Takes the inputs from the ranks that have them. Collective. Throws Error on all ranks.
   void prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const Ranks& ranks,
     const std::string& noMemory);
+  /// Reads the pairs of materials on the first rank, for all. Collective. Throws Error on all
+  /// ranks.
+  void readContacts(const Ranks& ranks, const std::string& noMemory);
   /// Lets go of what only `show` needs.
   void dropInputs();
   /// Writes the blocks of an iteration (counted from the run's first one) as they are at `time`, s.

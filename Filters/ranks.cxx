@@ -164,14 +164,23 @@ vtkSmartPointer<vtkAbstractArray> Ranks::broadcast(vtkAbstractArray* array, int 
     return result;
   }
   auto* strings = vtkStringArray::SafeDownCast(result);
-  for (vtkIdType k = 0; k < strings->GetNumberOfValues(); ++k)
+  // All at once: there may be one for each face of many rocks.
+  const vtkIdType count = strings->GetNumberOfValues();
+  std::vector<vtkTypeInt64> sizes(static_cast<std::size_t>(count));
+  std::string all;
+  for (vtkIdType k = 0; k < count && rank_ == root; ++k)
   {
-    std::string text = strings->GetValue(k);
-    this->broadcastText(text, root);
-    if (rank_ != root)
-    {
-      strings->SetValue(k, text);
-    }
+    all += strings->GetValue(k);
+    sizes[std::size_t(k)] = vtkTypeInt64(strings->GetValue(k).size());
+  }
+  this->broadcastBytes(sizes.data(), sizes.size() * sizeof(vtkTypeInt64), root);
+  this->broadcastText(all, root);
+  std::size_t start = 0;
+  for (vtkIdType k = 0; k < count && rank_ != root; ++k)
+  {
+    const std::size_t size = std::size_t(sizes[std::size_t(k)]);
+    strings->SetValue(k, all.substr(start, size));
+    start += size;
   }
   return result;
 }

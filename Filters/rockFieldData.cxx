@@ -92,6 +92,18 @@ void readNumber(vtkPolyData* input, const char* name, vtkIdType cell, double& va
   }
 }
 
+/// A name, of which a number will do; empty if there is no such array.
+std::string nameOf(vtkPolyData* input, const char* name, vtkIdType cell)
+{
+  vtkAbstractArray* array = input->GetCellData()->GetAbstractArray(name);
+  if (auto* names = vtkStringArray::SafeDownCast(array))
+  {
+    return names->GetValue(cell);
+  }
+  auto* numbers = vtkDataArray::SafeDownCast(array);
+  return numbers ? numberText(numbers->GetComponent(cell, 0)) : std::string();
+}
+
 /// A whole number of an enumeration, as a double that its own check can refuse.
 template <typename Law>
 void readLaw(vtkPolyData* input, const char* name, vtkIdType cell, Law& law)
@@ -217,6 +229,7 @@ void writeRocks(std::span<const ReleasedRock> rocks, vtkPolyData* output)
   const auto volume = addArray<vtkDoubleArray>(cells, "Volume");
   const auto young = addArray<vtkDoubleArray>(cells, "YoungModulus");
   const auto poisson = addArray<vtkDoubleArray>(cells, "PoissonRatio");
+  const auto material = addArray<vtkStringArray>(cells, "Material");
   const auto velocity = addArray<vtkDoubleArray>(cells, "Velocity", 3);
   const auto rotation = addArray<vtkDoubleArray>(cells, "AngularVelocity", 3);
   const auto shape = addArray<vtkIntArray>(cells, "Shape");
@@ -235,6 +248,7 @@ void writeRocks(std::span<const ReleasedRock> rocks, vtkPolyData* output)
       volume->InsertNextValue(rock.shape.integrals().volume);
       young->InsertNextValue(rock.youngModulus);
       poisson->InsertNextValue(rock.poissonRatio);
+      material->InsertNextValue(rock.material);
       velocity->InsertNextTuple(rock.velocity.data());
       rotation->InsertNextTuple(rock.angularVelocity.data());
       shape->InsertNextValue(int(released.shape));
@@ -287,6 +301,7 @@ std::vector<ReleasedRock> readRocks(vtkPolyData* input, const Vec3& origin)
     readNumber(input, "Density", block.firstCell, rock.density);
     readNumber(input, "YoungModulus", block.firstCell, rock.youngModulus);
     readNumber(input, "PoissonRatio", block.firstCell, rock.poissonRatio);
+    rock.material = nameOf(input, "Material", block.firstCell);
     readVector(input, "Velocity", block.firstCell, rock.velocity);
     readVector(input, "AngularVelocity", block.firstCell, rock.angularVelocity);
     double shape = double(Shape::File);

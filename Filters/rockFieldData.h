@@ -10,6 +10,7 @@
 /// | Volume          | cells | m³                                                      |
 /// | YoungModulus    | cells | Pa                                                      |
 /// | PoissonRatio    | cells |                                                         |
+/// | Material        | cells | its name, for contacts of rocks; empty: none            |
 /// | Velocity        | cells | at release, m/s                                         |
 /// | AngularVelocity | cells | at release, about the world's axes, rad/s               |
 /// | Shape           | cells | number of the shape as in the rock source               |

@@ -24,7 +24,8 @@ void requireFinite(const Vec3& value, const char* field)
   }
 }
 
-void takeMaterial(int number, double& density, double& youngModulus, double& poissonRatio)
+void takeMaterial(
+  int number, double& density, double& youngModulus, double& poissonRatio, std::string& name)
 {
   const auto materials = rockMaterials();
   if (number < 0 || number > int(materials.size()))
@@ -38,6 +39,7 @@ void takeMaterial(int number, double& density, double& youngModulus, double& poi
     density = material.density;
     youngModulus = material.youngModulus;
     poissonRatio = material.poissonRatio;
+    name = name.empty() ? material.name : name;
   }
 }
 
@@ -111,13 +113,16 @@ void RockMaker::setMaterial(const SourceRow& row, Rock& rock) const
   rock.density = defaults_.density;
   rock.youngModulus = defaults_.youngModulus;
   rock.poissonRatio = defaults_.poissonRatio;
+  rock.material = defaults_.material;
   if (!row.material.empty())
   {
     const RockMaterial& material = rockMaterialFromName(row.material);
     rock.density = material.density;
     rock.youngModulus = material.youngModulus;
     rock.poissonRatio = material.poissonRatio;
+    rock.material = material.name;
   }
+  rock.material = row.materialName.empty() ? rock.material : row.materialName;
   rock.density = row.density.value_or(rock.density);
   rock.youngModulus = row.youngModulus.value_or(rock.youngModulus);
   rock.poissonRatio = row.poissonRatio.value_or(rock.poissonRatio);

@@ -27,6 +27,7 @@ struct RockDefaults
   double density = 2500.0;
   double youngModulus = 1e10;
   double poissonRatio = 0.1;
+  std::string material; ///< Its name, for contacts of rocks; empty: none.
   std::string shapeFile;
   bool shapeFileAsItIs = false;
   bool scaleToVolume = true;
@@ -74,9 +75,10 @@ private:
   std::vector<std::string> notes_;
 };
 
-/// The values of a kind of rock by its number in the sources' property Material, if that is not 0;
-/// throws ParameterError naming it.
-void takeMaterial(int number, double& density, double& youngModulus, double& poissonRatio);
+/// The values of a kind of rock by its number in the sources' property Material, if that is not 0,
+/// and its name where `name` is empty; throws ParameterError naming the number.
+void takeMaterial(
+  int number, double& density, double& youngModulus, double& poissonRatio, std::string& name);
 
 /// Throws ParameterError naming the field if a component is not finite.
 void requireFinite(const Vec3& value, const char* field);

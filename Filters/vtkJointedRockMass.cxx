@@ -202,8 +202,9 @@ void vtkJointedRockMass::MakeBlocks(vtkPolyData* terrainInput, vtkPolyData* bloc
   like.rock.youngModulus = this->YoungModulus;
   like.rock.poissonRatio = this->PoissonRatio;
   like.rock.velocity = vec3(this->Velocity);
-  filters::takeMaterial(
-    this->Material, like.rock.density, like.rock.youngModulus, like.rock.poissonRatio);
+  like.rock.material = this->MaterialName;
+  filters::takeMaterial(this->Material, like.rock.density, like.rock.youngModulus,
+    like.rock.poissonRatio, like.rock.material);
   std::vector<filters::ReleasedRock> rocks;
   rocks.reserve(cut.blocks.size());
   for (const Polyhedron& block : cut.blocks)
@@ -289,6 +290,8 @@ void vtkJointedRockMass::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ReleaseHeight: " << this->ReleaseHeight << "\n";
   printVector("Velocity", this->Velocity);
   os << indent << "Material: " << this->Material << "\n";
+  os << indent << "MaterialName: " << (this->MaterialName.empty() ? "(none)" : this->MaterialName)
+     << "\n";
   os << indent << "Density: " << this->Density << "\n";
   os << indent << "YoungModulus: " << this->YoungModulus << "\n";
   os << indent << "PoissonRatio: " << this->PoissonRatio << "\n";

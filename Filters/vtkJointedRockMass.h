@@ -168,6 +168,8 @@ public:
    */
   vtkSetMacro(Material, int);
   vtkGetMacro(Material, int);
+  vtkSetStdStringFromCharMacro(MaterialName);
+  vtkGetCharFromStdStringMacro(MaterialName);
   vtkSetMacro(Density, double);
   vtkGetMacro(Density, double);
   vtkSetMacro(YoungModulus, double);
@@ -229,6 +231,7 @@ private:
   double ReleaseHeight = 0.0;
   double Velocity[3] = { 0.0, 0.0, 0.0 };
   int Material = 0;
+  std::string MaterialName;
   double Density = 2500.0;
   double YoungModulus = 1e10;
   double PoissonRatio = 0.1;

@@ -295,8 +295,9 @@ int vtkRockBlockSource::RequestData(
     defaults.density = this->Density;
     defaults.youngModulus = this->YoungModulus;
     defaults.poissonRatio = this->PoissonRatio;
-    rockfall::filters::takeMaterial(
-      this->Material, defaults.density, defaults.youngModulus, defaults.poissonRatio);
+    defaults.material = this->MaterialName;
+    rockfall::filters::takeMaterial(this->Material, defaults.density, defaults.youngModulus,
+      defaults.poissonRatio, defaults.material);
     defaults.shapeFile = this->ShapeFileName;
     if (this->ShapeFileMode != CONVEX_HULL && this->ShapeFileMode != AS_IT_IS)
     {
@@ -378,6 +379,8 @@ void vtkRockBlockSource::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "VolumeMaximum: " << this->VolumeMaximum << "\n";
   os << indent << "VolumeExponent: " << this->VolumeExponent << "\n";
   os << indent << "Material: " << this->Material << "\n";
+  os << indent << "MaterialName: " << (this->MaterialName.empty() ? "(none)" : this->MaterialName)
+     << "\n";
   os << indent << "Amount: " << this->Amount << "\n";
   os << indent << "Intensity: " << this->Intensity << "\n";
   os << indent << "TotalVolume: " << this->TotalVolume << "\n";

@@ -9,8 +9,8 @@
  *
  * The output has the real polygonal faces of every block in world coordinates, in double precision.
  * Cell arrays: BlockId, and beside it the properties of the block, Density, Volume, YoungModulus,
- * PoissonRatio, Velocity, AngularVelocity, Shape, SourceId and what is drawn in each iteration of a
- * simulation (see rockFieldData.h).
+ * PoissonRatio, Material, Velocity, AngularVelocity, Shape, SourceId and what is drawn in each
+ * iteration of a simulation (see rockFieldData.h).
  *
  * All values are taken as they come and checked when the source runs, so that a bad one gives one
  * error that names it instead of being changed silently.
@@ -197,6 +197,15 @@ public:
    */
   vtkSetMacro(Material, int);
   vtkGetMacro(Material, int);
+  ///@}
+
+  ///@{
+  /**
+   * What the material is called where rocks hit each other (RockContactFile of
+   * vtkRockfallSimulation). Empty (the default) takes the name of Material, if that is not 0.
+   */
+  vtkSetStdStringFromCharMacro(MaterialName);
+  vtkGetCharFromStdStringMacro(MaterialName);
   ///@}
 
   ///@{
@@ -454,6 +463,7 @@ private:
   double VolumeMaximum = 10.0;
   double VolumeExponent = 0.5;
   int Material = 0;
+  std::string MaterialName;
   int Amount = 1;
   double Intensity = 0.0;
   double TotalVolume = 0.0;

@@ -155,6 +155,7 @@ void vtkRockfallSimulation::TakeProperties(Cache& run)
   p.rockRestitution = this->RockRestitution;
   p.rockFrictionAngle = rockfall::radians(this->RockFrictionAngle);
   p.rockCohesion = this->RockCohesion;
+  run.contactFile = this->RockContactFile;
   p.pushRocksApart = this->PushRocksApart;
   p.iterations = this->Iterations;
   p.firstIteration = this->FirstIteration;
@@ -370,6 +371,9 @@ void vtkRockfallSimulation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "RockRestitution: " << this->RockRestitution << "\n";
   os << indent << "RockFrictionAngle: " << this->RockFrictionAngle << "\n";
   os << indent << "RockCohesion: " << this->RockCohesion << "\n";
+  os << indent
+     << "RockContactFile: " << (this->RockContactFile.empty() ? "(none)" : this->RockContactFile)
+     << "\n";
   os << indent << "PushRocksApart: " << this->PushRocksApart << "\n";
   os << indent << "Rigid: " << this->Rigid << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";

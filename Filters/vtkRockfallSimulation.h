@@ -150,6 +150,16 @@ public:
 
   ///@{
   /**
+   * A table of pairs of materials that have another restitution, friction angle and cohesion than
+   * the three above: anything OGR opens, see docs/mass_falls.md. Empty (the default): none. Read
+   * when a run is made, with RockRockContact only.
+   */
+  vtkSetStdStringFromCharMacro(RockContactFile);
+  vtkGetCharFromStdStringMacro(RockContactFile);
+  ///@}
+
+  ///@{
+  /**
    * Whether rocks that overlap at the start are pushed apart instead of being an error. Used with
    * RockRockContact only. Default off.
    */
@@ -272,6 +282,7 @@ private:
   double RockRestitution = 0.5;
   double RockFrictionAngle = 30.0;
   double RockCohesion = 0.0;
+  std::string RockContactFile;
   bool PushRocksApart = false;
   bool Rigid = false;
   int NumberOfThreads = 0;

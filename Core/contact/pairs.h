@@ -55,11 +55,21 @@ PairAxis findAxis(
 void findTouches(const PairBody& first, const PairBody& second, const PairAxis& axis, double reach,
   std::vector<Contact>& contacts);
 
+/// What rules the contacts of two rocks.
+struct PairLaw
+{
+  double restitution = 0.0; ///< Dimensionless, 0 … 1.
+  double friction = 0.0;    ///< tan φ
+  double cohesion = 0.0;    ///< N per contact point.
+  double damping = 0.0;     ///< ζ for the restitution, dimensionless.
+};
+
 /// Two rocks that are or were near each other, with what lasts from step to step.
 struct RockPair
 {
   int first = -1;  ///< Index of a rock.
   int second = -1; ///< Index of a rock, larger.
+  PairLaw law;     ///< Of the materials that meet.
   PairAxis axis;
   std::vector<Contact> contacts;
   bool touched = false; ///< Has had closed contacts in the last step.

@@ -74,6 +74,7 @@ void readBody(const FeatureRow& row, SourceRow& source)
     checked(row, "material", [&] { return rockMaterialFromName(*text); });
     source.material = *text;
   }
+  source.materialName = row.text("mat_name").value_or("");
   source.density = row.positive("density");
   source.youngModulus = row.positive("young");
   source.poissonRatio = row.notNegative("poisson");

@@ -44,6 +44,7 @@ struct SourceRow
   std::optional<double> volumeDeviation, volumeMinimum, volumeMaximum; ///< m³
   std::optional<double> volumeExponent;
   std::string material;                ///< Name of a RockMaterial; empty if it is not said.
+  std::string materialName;            ///< For contacts of rocks; empty if it is not said.
   std::optional<double> density;       ///< kg/m³
   std::optional<double> youngModulus;  ///< Pa
   std::optional<double> poissonRatio;  ///< Dimensionless.

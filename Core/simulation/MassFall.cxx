@@ -24,7 +24,7 @@ MassFall::MassFall(const Surface& surface, std::span<const Rock> rocks,
   std::span<const Block> blocks, const SimulationParameters& parameters)
   : surface_(surface)
   , parameters_(parameters)
-  , dampingRatio_(dampingRatio(parameters.rockRestitution))
+  , contacts_(rocks, parameters)
 {
   members_.reserve(rocks.size());
   for (std::size_t i = 0; i < rocks.size(); ++i)
@@ -125,6 +125,7 @@ void MassFall::findPairs(double duration)
     nextPairs_.emplace_back();
     nextPairs_.back().first = ij[0];
     nextPairs_.back().second = ij[1];
+    nextPairs_.back().law = contacts_.between(ij[0], ij[1]);
   }
   for (; old < pairs_.size(); ++old)
   {

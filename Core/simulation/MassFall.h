@@ -14,6 +14,7 @@
 
 #include "contact/pairs.h"
 #include "simulation/RockSimulator.h"
+#include "simulation/rockContacts.h"
 #include "system/GroupSolver.h"
 
 #include <functional>
@@ -97,7 +98,7 @@ private:
   const Surface& surface_;
   const SimulationParameters& parameters_;
   double time_ = 0.0;
-  double dampingRatio_ = 0.0; ///< ζ for the restitution between rocks.
+  RockContacts contacts_;
   std::vector<std::unique_ptr<Member>> members_;
   std::vector<RockPair> pairs_; ///< Ordered by (first, second).
   std::vector<RockPair> nextPairs_;

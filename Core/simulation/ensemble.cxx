@@ -5,6 +5,7 @@
 #include "simulation/MassFall.h"
 #include "simulation/RockSimulator.h"
 #include "simulation/overlaps.h"
+#include "simulation/rockContacts.h"
 #include "simulation/stateHash.h"
 
 #include <tbb/parallel_for.h>
@@ -119,6 +120,7 @@ void SimulationParameters::validate() const
     throw ParameterError("RockCohesion is " + std::to_string(this->rockCohesion) +
       " N, it must be finite and not negative");
   }
+  validateRockContacts(this->rockContactPairs);
   if (!(this->gravity >= 0.0) || !std::isfinite(this->gravity))
   {
     throw ParameterError(

@@ -32,6 +32,7 @@ struct Rock
   double density = 2500.0;             ///< kg/m³, > 0.
   double youngModulus = 1e10;          ///< Pa, > 0.
   double poissonRatio = 0.1;           ///< Dimensionless, 0 … 0.49.
+  std::string material;                ///< Its name, for contacts of rocks; empty: none.
   ReleaseUncertainty uncertainty;      ///< What is drawn in each iteration.
 
   void validate() const; ///< Throws ParameterError naming block, field and value.

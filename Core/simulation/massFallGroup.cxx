@@ -139,7 +139,8 @@ void MassFall::armPair(RockPair& pair) const
     c.stiffness = penalty / (1.0 + penalty * soft);
     c.shearStiffness = shear / (1.0 + shear * softAlong);
     c.frequency2 = c.stiffness * mobile;
-    c.dashpot = dampingRatio_ > 0.0 ? 2.0 * dampingRatio_ * std::sqrt(c.stiffness / mobile) : 0.0;
+    const double damping = pair.law.damping;
+    c.dashpot = damping > 0.0 ? 2.0 * damping * std::sqrt(c.stiffness / mobile) : 0.0;
     c.shearDashpot = 2.0 * kShearDamping * std::sqrt(c.shearStiffness / mobileAlong);
   }
 }

@@ -142,7 +142,6 @@ void MassFall::solve(
     }
   };
   forEach(group.members.size(), kRockGrain, takeRock);
-  const double friction = std::tan(parameters_.rockFrictionAngle);
   const auto takePair = [&](std::size_t p)
   {
     RockPair& pair = *group.pairs[p];
@@ -157,9 +156,9 @@ void MassFall::solve(
       k.contact = &c;
       k.first = a.place;
       k.second = b.place;
-      k.friction = friction;
-      k.cohesion = parameters_.rockCohesion;
-      k.bounce = bounceOf(c, approach, resting, parameters_.rockRestitution);
+      k.friction = pair.law.friction;
+      k.cohesion = pair.law.cohesion;
+      k.bounce = bounceOf(c, approach, resting, pair.law.restitution);
       k.approach = approach;
       // For the events.
       RockPair::Impact& impact = pair.impact;
@@ -364,7 +363,7 @@ void MassFall::finishPairImpact(RockPair& pair) const
     event.velocityBefore = impact.before[side];
     event.velocityAfter = sim.state_.velocity;
     event.energyLoss = std::max(0.0, impact.loss);
-    event.restitution = parameters_.rockRestitution;
+    event.restitution = pair.law.restitution;
     event.otherRock = other;
     event.otherBlockId = members_[other]->sim.rock_.blockId;
     Trajectory& trajectory = sim.recorder_.trajectory();

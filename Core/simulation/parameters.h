@@ -3,7 +3,9 @@
 /// @file
 /// Every number that rules a run, in one struct.
 
-#include "base/types.h"
+#include "base/RockContact.h"
+
+#include <vector>
 
 namespace rockfall
 {
@@ -22,6 +24,8 @@ struct SimulationParameters
   double rockRestitution = 0.5; ///< Normal, between rocks, dimensionless, 0 … 1.
   double rockFrictionAngle = radians(30.0); ///< φ between rocks, rad, 0° … 89°.
   double rockCohesion = 0.0;                ///< c between rocks, N per contact point, ≥ 0.
+  /// Pairs of materials that have others than these three, each pair once.
+  std::vector<RockContactPair> rockContactPairs;
   bool pushRocksApart = false; ///< Rocks that overlap at the start are moved instead of an error.
 
   bool rigid = false; ///< Infinite stiffness: 6 unknowns per block.

@@ -1,5 +1,6 @@
 // Two rocks that meet: momentum, angular momentum, energy, restitution.
 
+#include "base/errors.h"
 #include "simulation/MassFall.h"
 #include "slopes.h"
 
@@ -197,6 +198,93 @@ TEST(Pairs, LossIsThatOfTheCoefficientOfRestitution)
     }
   }
   EXPECT_GE(measured, 50);
+}
+
+// Couples of cubes in one run, a vertex on a face in line with both centroids: the loss is
+// ½ μ (1 − e²) v² with μ = m/2 and the e of the couple's two materials.
+TEST(Pairs, EachPairOfMaterialsHasItsRestitution)
+{
+  const struct
+  {
+    const char *first, *second;
+    double e;
+  } couples[] = {
+    { "schist", "schist", 0.2 },
+    { "schist", "marble", 0.9 },
+    { "Marble", "Schist ", 0.9 }, // in the other order, written in another way
+    { "marble", "marble", 0.6 },  // no row: as RockRestitution
+    { "schist", "", 0.6 },        // no material, likewise
+    { "concrete", "schist", 0.6 },
+  };
+  SimulationParameters p;
+  p.gravity = 0.0;
+  p.endTime = 0.6;
+  p.rockRockContact = true;
+  p.rockRestitution = 0.6;
+  p.rockContactPairs = { { "schist", "schist", { 0.2, 0.0, 0.0 } },
+    { "SCHIST", "marble", { 0.9, 0.0, 0.0 } } };
+  std::vector<Rock> rocks;
+  for (const auto& couple : couples)
+  {
+    const double y = 100.0 + 10.0 * double(rocks.size());
+    Rock one = rockAt(Shape::Cube, Vec3(198.0, y, 0.0), Vec3(5.0, 0.0, 0.0), 1);
+    Rock other = rockAt(Shape::Cube, Vec3(202.0, y, 0.0), Vec3(-3.0, 0.0, 0.0), 2);
+    one.orientation = facing(one.shape.vertices()[0], Vec3::UnitX());
+    other.orientation = facing(other.shape.normals()[0], -Vec3::UnitX());
+    one.material = couple.first;
+    other.material = couple.second;
+    rocks.push_back(one);
+    rocks.push_back(other);
+  }
+  const Terrain ground = abyss();
+  const std::vector<Block> blocks = blocksOf(rocks);
+  const Surface surface(ground, p.seed, 0);
+  MassFall fall(surface, rocks, blocks, p);
+  const auto energyOf = [&](int i) { return rigidKineticEnergy(blocks[i], fall.state(i)); };
+  fall.release();
+  const double before = energyOf(0) + energyOf(1); // the same of all
+  while (fall.advance())
+  {
+  }
+  for (int k = 0; k < int(std::size(couples)); ++k)
+  {
+    const double e = couples[k].e, v = 8.0, mu = 0.5 * blocks[0].mass();
+    const double expected = 0.5 * mu * (1.0 - e * e) * v * v;
+    const double loss = before - energyOf(2 * k) - energyOf(2 * k + 1);
+    // What is left is the step that an impact is resolved in.
+    EXPECT_NEAR(loss, expected, 0.01 * expected) << couples[k].first << " on " << couples[k].second;
+    ASSERT_EQ(fall.impacts(2 * k).size(), 1u);
+    EXPECT_EQ(fall.impacts(2 * k).front().restitution, e);
+  }
+}
+
+TEST(Pairs, ContactsOfMaterialsAreChecked)
+{
+  const auto refused = [](std::vector<RockContactPair> pairs, const std::string& what)
+  {
+    SimulationParameters p;
+    p.rockContactPairs = std::move(pairs);
+    try
+    {
+      p.validate();
+      ADD_FAILURE() << what << " is taken";
+    }
+    catch (const ParameterError& error)
+    {
+      EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
+    }
+  };
+  refused({ { "a", "b", {} }, { "B", "a ", {} } }, "\"B\" and \"a \" is there twice");
+  refused({ { "a", " ", {} } }, "without a name");
+  refused({ { "a", "b", { 1.5, 0.0, 0.0 } } }, "the restitution is 1.5");
+  refused({ { "a", "b", { 0.5, radians(95.0), 0.0 } } }, "the friction angle is 95");
+  refused({ { "a", "b", { 0.5, 0.0, -2.0 } } }, "the cohesion is -2");
+  std::vector<RockContactPair> many;
+  for (int k = 0; k < 256; ++k)
+  {
+    many.push_back({ std::to_string(k), std::to_string(k), {} });
+  }
+  refused(many, "256 materials");
 }
 
 TEST(Pairs, NewtonsCradle)

@@ -195,6 +195,68 @@ TEST(Piles, CubeOnCubeSlidesPairByPair)
   }
 }
 
+// Stacks of two cubes beside each other on a slope of 24°, in one run. The lower cubes stand; the
+// upper ones slide or not by what the two materials say, in whatever order the row has them.
+TEST(Piles, CubeOnCubeSlidesByItsMaterials)
+{
+  const double angle = radians(24.0);
+  const struct
+  {
+    const char *below, *above;
+    double friction, cohesion; // φ, degrees; c, N per contact point
+  } stacks[] = {
+    { "granite", "slate", 15.0, 0.0 }, { "granite", "granite", 30.0, 0.0 },
+    { "slate", "granite", 15.0, 0.0 },
+    { "slate", "slate", 10.0, 3000.0 }, // four points of 3 kN hold what 10° do not: 5.6 kN
+    { "slate", "gabbro", 20.0, 0.0 },   // no row
+  };
+  Pile pile;
+  pile.ground = makePlane(2, 120.0, angle, 0.0, material(0.3, 45.0));
+  pile.parameters.timeStep = 0.001;
+  pile.parameters.rockFrictionAngle = radians(20.0);
+  pile.parameters.rockContactPairs = { { "slate", "granite", { 0.5, radians(15.0), 0.0 } },
+    { "granite", "granite", { 0.5, radians(30.0), 0.0 } },
+    { "slate", "slate", { 0.5, radians(10.0), 3000.0 } } };
+  const Vec3 normal(std::sin(angle), 0.0, std::cos(angle));
+  const Vec3 downhill(std::cos(angle), 0.0, -std::sin(angle));
+  for (const auto& stack : stacks)
+  {
+    const double y = 40.0 + 4.0 * double(pile.rocks.size());
+    for (int k = 0; k < 2; ++k)
+    {
+      Rock rock = brick(Vec3(1, 1, 1), Vec3::Zero(), std::int64_t(pile.rocks.size()));
+      rock.orientation = Quat(Eigen::AngleAxisd(angle, Vec3::UnitY()));
+      rock.position = Vec3(60.0, y, 100.0) + (0.5 + k) * normal - 20.0 * downhill;
+      rock.material = k == 0 ? stack.below : stack.above;
+      pile.rocks.push_back(rock);
+    }
+  }
+  pile.start();
+  pile.run(0.2);
+  std::vector<double> speed;
+  for (int i = 0; i < pile.fall->rocks(); ++i)
+  {
+    speed.push_back(downhill.dot(pile.fall->state(i).velocity));
+  }
+  constexpr double duration = 0.2;
+  pile.run(duration);
+  const double g = pile.parameters.gravity;
+  const double pull = g * std::sin(angle), press = g * std::cos(angle);
+  for (int k = 0; k < int(std::size(stacks)); ++k)
+  {
+    const double hold = std::tan(radians(stacks[k].friction)) * press +
+      4.0 * stacks[k].cohesion / pile.blocks[0].mass();
+    const double expected[2] = { 0.0, std::max(0.0, pull - hold) };
+    for (int i = 0; i < 2; ++i)
+    {
+      const int rock = 2 * k + i;
+      const double found = (downhill.dot(pile.fall->state(rock).velocity) - speed[rock]) / duration;
+      // 0.1 % of gravity: the springs still swing a little after 0.2 s.
+      EXPECT_NEAR(found, expected[i], 1e-3 * g) << stacks[k].above << " on " << stacks[k].below;
+    }
+  }
+}
+
 TEST(Piles, DominoesFallAtTheSpeedOfSmallSteps)
 {
   const auto speed = [](double step)

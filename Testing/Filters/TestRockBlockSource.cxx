@@ -466,13 +466,14 @@ TEST_F(TestRockBlockSource, PrintSelfNamesEveryProperty)
 {
   std::ostringstream text;
   this->Source->Print(text);
-  for (const char* name : { "Shape", "Volume", "Lengths", "ShapeFileName", "ShapeFileMode",
-         "ScaleToVolume", "Center", "Orientation", "Velocity", "AngularVelocity", "Density",
-         "YoungModulus", "PoissonRatio", "FileName", "TargetCRS", "FirstBlockId", "ShapeMix",
-         "VolumeLaw", "VolumeDeviation", "VolumeMinimum", "VolumeMaximum", "VolumeExponent",
-         "Material", "Amount", "Intensity", "SlopeThreshold", "PlaceOnGround", "ReleaseHeight",
-         "HorizontalDeviation", "VerticalDeviation", "AttitudeLaw", "AttitudeDeviation",
-         "RedrawVolume", "Seed", "MaximumRocks", "SourceName", "FirstSourceId" })
+  for (const char* name :
+    { "Shape", "Volume", "Lengths", "ShapeFileName", "ShapeFileMode", "ScaleToVolume", "Center",
+      "Orientation", "Velocity", "AngularVelocity", "Density", "YoungModulus", "PoissonRatio",
+      "FileName", "TargetCRS", "FirstBlockId", "ShapeMix", "VolumeLaw", "VolumeDeviation",
+      "VolumeMinimum", "VolumeMaximum", "VolumeExponent", "Material", "MaterialName", "Amount",
+      "Intensity", "SlopeThreshold", "PlaceOnGround", "ReleaseHeight", "HorizontalDeviation",
+      "VerticalDeviation", "AttitudeLaw", "AttitudeDeviation", "RedrawVolume", "Seed",
+      "MaximumRocks", "SourceName", "FirstSourceId" })
   {
     EXPECT_NE(text.str().find(std::string(name) + ":"), std::string::npos) << name;
   }

@@ -583,9 +583,9 @@ TEST_F(TestRockfallSimulation, PrintSelfNamesEveryProperty)
   std::ostringstream text;
   this->Simulation->Print(text);
   for (const char* name : { "TimeStep", "EndTime", "OutputInterval", "Gravity", "NormalPenalty",
-         "ShearPenaltyRatio", "Iterations", "Seed", "RockRockContact", "Rigid", "NumberOfThreads",
-         "ShownIteration", "FirstIteration", "TrajectoryOutput", "KeepImpacts", "PrintProgress",
-         "StateHash", "NumberOfRuns" })
+         "ShearPenaltyRatio", "Iterations", "Seed", "RockRockContact", "RockContactFile", "Rigid",
+         "NumberOfThreads", "ShownIteration", "FirstIteration", "TrajectoryOutput", "KeepImpacts",
+         "PrintProgress", "StateHash", "NumberOfRuns" })
   {
     EXPECT_NE(text.str().find(std::string(name) + ":"), std::string::npos) << name;
   }

@@ -242,6 +242,38 @@ release("NaN", Center=[40, 50, float("nan")])
 release("a volume that is negative", Volume=-1.0)
 release("a density that is negative", Density=-2500.0)
 
+section("Tables of contacts between rocks")
+two = write_text("two.csv", "x,y,z,material,mat_name\n5,40,58,granite,\n5,60,58,,Slag\n")
+CONTACTS = "material_a,material_b,restitution,phi,cohesion\n"
+
+
+def contacts(wrong, text, **properties):
+    one(wrong, RockfallSimulation(
+        Terrain=slope, Rocks=RockBlocks(**(properties or {"FileName": two})), EndTime=0.1,
+        RockRockContact=1, RockContactFile=text if text == "missing.csv" else
+        write_text("contacts.csv", text)), ports=4)
+
+
+contacts("missing", "missing.csv")
+contacts("empty", "")
+contacts("a header only", CONTACTS)
+contacts("no column of the other material", "material_a,restitution,phi\ngranite,0.5,30\n")
+contacts("no column of the restitution", "material_a,material_b,phi\ngranite,slag,30\n")
+contacts("no column of the friction angle", "material_a,material_b,restitution\ngranite,slag,0.5\n")
+contacts("truncated", CONTACTS + "granite,slag,0.5,")
+contacts("one material only", CONTACTS + "granite,,0.5,30,0\n")
+contacts("a material that no rock is of", CONTACTS + "granite,slab,0.5,30,0\n")
+contacts("rocks without a material", CONTACTS + "granite,slag,0.5,30,0\n", Center=[5, 50, 58])
+contacts("a pair twice", CONTACTS + "granite,slag,0.5,30,0\ngranite,slag,0.4,30,0\n")
+contacts("a pair twice, the other way round", CONTACTS + "granite,slag,0.5,30,0\nslag,granite,0.4,30,0\n")
+contacts("out of range", CONTACTS + "granite,slag,1.5,30,0\n")
+contacts("negative", CONTACTS + "granite,slag,0.5,30,-200\n")
+contacts("NaN", CONTACTS + "granite,slag,nan,30,0\n")
+contacts("φ in grads, out of range", CONTACTS + "granite,slag,0.5,95,0\n")
+contacts("a word", CONTACTS + "granite,slag,hard,30,0\n")
+contacts("comma as decimal mark", CONTACTS + 'granite,slag,"0,5",30,0\n')
+contacts("comma as decimal mark, not quoted", CONTACTS + "granite,slag,0,5,30,0\n")
+
 section("Shape files")
 
 

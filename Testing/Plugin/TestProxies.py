@@ -11,13 +11,13 @@ PROXIES = [
     ("Rock Blocks", "RockBlocks", "sources",
      "Shape Volume Center Orientation Velocity AngularVelocity Density YoungModulus PoissonRatio "
      "FileName Terrain Amount Intensity SlopeThreshold ShapeMix VolumeLaw Material TotalVolume "
-     "ClusterRadius KeepApart RandomOrientation"),
+     "ClusterRadius KeepApart RandomOrientation MaterialName"),
     ("Jointed Rock Mass", "JointedRockMass", "sources",
      "Terrain MassShape Center Lengths Orientation MassFileName JointSets Slivers MinimumThickness "
      "MinimumVolume MaximumRocks Seed PlaceOnGround Density"),
     ("Rockfall Simulation", "RockfallSimulation", "filters",
      "Terrain Rocks TimeStep EndTime NormalPenalty Iterations Seed OutputInterval RockRockContact "
-     "PushRocksApart"),
+     "PushRocksApart RockContactFile"),
     ("Dispersion Angle", "DispersionAngle", "filters",
      "Input Direction Length GroupBy ClassLimits"),
     ("Rockfall Hazard Map", "RockfallHazardMap", "filters", "Input Terrain CellSize"),

@@ -1,7 +1,7 @@
 """On several ranks the first one computes; the others have empty outputs and no errors."""
 # Ranks: 2
 
-from helpers import messages_of
+from helpers import messages_of, write_text
 
 from paraview import servermanager
 from paraview.simple import (
@@ -25,9 +25,16 @@ merged = MergeCollectors(Input=[collector])
 writer = servermanager.writers.HazardPassageWriter(
     Input=OutputPort(simulation, 1), Terrain=dem, FileName="run.passages")
 passages = HazardPassageReader(FileNames=["run.passages"])
+# Two rocks that meet in each iteration; the table of what they do to each other is on the first rank only.
+if rank == 0:
+    write_text("meeting.csv", "x,y,z,vx,material\n40,50,60,5,granite\n44,50,60,-3,shale\n")
+    write_text("contacts.csv", "material_a,material_b,restitution,phi\nshale,granite,0.9,10\n")
+meeting = RockfallSimulation(
+    Terrain=dem, Rocks=RockBlocks(FileName="meeting.csv"), RockRockContact=1, Iterations=2, EndTime=1.0,
+    RockContactFile="contacts.csv" if rank == 0 else "elsewhere.csv")
 proxies = {"terrain": (dem, 1), "rocks": (rocks, 1), "simulation": (simulation, 4),
            "dispersion": (dispersion, 2), "hazard map": (hazard, 1), "collector": (collector, 3),
-           "merged collectors": (merged, 3)}
+           "merged collectors": (merged, 3), "meeting": (meeting, 4)}
 
 
 def update():
@@ -57,6 +64,12 @@ for name, (proxy, ports) in proxies.items():
         if data.GetFieldData().GetAbstractArray("Error"):
             failures.append(f"rank {rank}: {name}, port {port} has an error")
 if rank == 0:
+    impacts = meeting.GetClientSideObject().GetOutputDataObject(2).GetPointData()
+    rows = zip(*([impacts.GetArray(name).GetValue(k) for k in range(impacts.GetNumberOfTuples())]
+                 for name in ("Iteration", "OtherBlockId", "Restitution")))
+    met = sorted({(iteration, e) for iteration, other, e in rows if other > 0})
+    if met != [(0, 0.9), (1, 0.9)]:
+        failures.append(f"the rocks met with {met}")
     with open("map.tif", "rb") as one, open("merged.tif", "rb") as other:
         if one.read() != other.read():
             failures.append("the map of the passages is not that of the trajectories")
