@@ -39,7 +39,8 @@ struct StructureFiles
 ///
 /// Trees where the terrain has no ground are left out, with a note. Throws FileError, DataError or
 /// ParameterError naming file, row, field and value: another geometry, a number missing or out of
-/// range, no overlap with the terrain, what cannot be built (see Obstacles).
+/// range, no overlap with the terrain, more than a million rows, what cannot be built (see
+/// Obstacles).
 Structures readStructures(
   const StructureFiles& files, const Terrain& terrain, std::vector<std::string>& notes);
 
