@@ -108,7 +108,7 @@ def main():
               "BarrierFile": site.write_net(in_folder("net.csv"))}
     slopes, falls, counts, events = {}, {}, {}, {}
     for name, kinds in CASES.items():
-        slope = DEMtoCFEMesh(FileName=dem, RestitutionCoefficient=0.75, RestitutionDeviation=0.05,
+        slope = DEMtoCFEMesh(FileName=dem, RestitutionCoefficient=0.7, RestitutionDeviation=0.05,
                              FrictionAngle=25, FrictionAngleDeviation=3, RoughnessDeviation=0.15,
                              TreesBreak=1, **{kind: layers[kind] for kind in kinds})
         rocks = RockBlocks(FileName=sources, Terrain=slope)
@@ -118,7 +118,7 @@ def main():
         events[name] = met(fall)
         slopes[name], falls[name] = slope, fall
         print(f"{name}: {counts[name].sum()} of {chosen.rocks * chosen.iterations} come to the road", flush=True)
-    SaveData(in_folder("met.csv"), proxy=OutputPort(falls["all three"], 4))
+    SaveData(in_folder("met.csv"), proxy=OutputPort(falls["all three"], 4), Precision=12)
     write_shares(counts, events, chosen.rocks, chosen.iterations, in_folder)
     if chosen.picture:
         site_picture.draw([(name, slopes[name], falls[name]) for name in ("no structures", "all three")],

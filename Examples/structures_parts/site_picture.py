@@ -22,7 +22,7 @@ def local(points, across):
 
 def ground_patch(ground, across):
     patch = ground.patch(site.WEST, site.WEST + site.LENGTH, site.SOUTH, site.SOUTH + site.WIDTH,
-                         hillshade(25.0, 35.0, smooth=1))
+                         hillshade(45.0, 40.0, smooth=1))
     points = local(vtk_to_numpy(patch.GetPoints().GetData()), across)
     patch.SetPoints(make_polydata(points).GetPoints())
     return produce(patch)
@@ -74,7 +74,8 @@ def show_site(view, slope, fall, across):
     flat(road_strip(ground, across), view, ROAD)
     data = slope.GetClientSideObject().GetOutputDataObject(1)
     if data.GetNumberOfCells():
-        plain(structures_of(slope, TREES, across), view, STEM, Ambient=0.35, Diffuse=0.7)
+        plain(structures_of(slope, TREES, across), view, STEM, Representation="Surface With Edges",
+              EdgeColor=STEM, LineWidth=1.0, Ambient=0.35, Diffuse=0.7)
         plain(structures_of(slope, EMBANKMENTS, across), view, BANK, Ambient=0.35, Diffuse=0.7,
               Interpolation="Flat")
         plain(structures_of(slope, BARRIERS, across), view, NET, Representation="Surface With Edges",
@@ -90,11 +91,11 @@ def draw(shown, shares, path):
     for k, (_, slope, fall) in enumerate(shown):
         show_site(view, slope, fall, k * (site.WIDTH + GAP))
     wide = len(shown) * (site.WIDTH + GAP) - GAP
-    middle = np.array([0.44 * site.LENGTH, 0.5 * wide + 8.0, 42.0])
+    middle = np.array([0.46 * site.LENGTH, 0.5 * wide + 10.0, 42.0])
     away = np.array([0.80, 0.0, 0.72])
     view.CameraViewUp, view.CameraViewAngle = [0.0, 0.0, 1.0], 30.0
     view.CameraFocalPoint = middle.tolist()
-    view.CameraPosition = (middle + 470.0 * away / np.linalg.norm(away)).tolist()
+    view.CameraPosition = (middle + 530.0 * away / np.linalg.norm(away)).tolist()
     speed_bar(view, (0.925, 0.30), 0.42)
     write(view, "The same rocks of one iteration, without structures and with them", (0.02, 0.95), 26, bold=True)
     write(view, "dots: where rocks end; green: stems; ochre: embankment; blue: net; grey: road; contours: 5 m",

@@ -13,11 +13,11 @@ ROAD = (170.0, 176.0)                         # x of its two sides, m from WEST
 # Along x: the rock face, the forest's hillside, its foot, the level strip of the road.
 PROFILE = ([0.0, 14.0, 134.0, 166.0, LENGTH], [118.0, 102.0, 10.0, 3.0, 1.5])
 FOREST_X, FOREST_Y = (35.0, 115.0), (4.0, 126.0)
-STEMS = 300  # a hectare
+STEMS = 400  # a hectare
 DAM = ((153.0, 6.0), (150.0, 36.0), (153.0, 62.0))  # the crest's axis
 NET = ((153.0, 68.0), (150.0, 96.0), (153.0, 124.0))
-DAM_HEIGHT, DAM_WIDTH = 3.0, 1.5                    # m
-NET_HEIGHT, NET_CAPACITY = 4.0, 1000.0              # m, kJ
+DAM_HEIGHT, DAM_WIDTH = 5.0, 1.5                    # m
+NET_HEIGHT, NET_CAPACITY = 5.0, 1000.0              # m, kJ
 UTM32 = ('PROJCS["WGS 84 / UTM zone 32N",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",'
          '6378137,298.257223563]],PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],'
          'PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],'

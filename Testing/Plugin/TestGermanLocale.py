@@ -12,12 +12,12 @@ from paraview.simple import DEMtoCFEMesh, Delete, OutputPort, RockBlocks, Rockfa
 
 layers = {
     "EmbankmentFile": write_text("dam.csv", "WKT,height,width,slope,phi\n"
-                                            '"LINESTRING(118.25 10.5,117.75 50.25)",3.25,1.5,3:2,35.5\n'),
+                                            '"LINESTRING(106.25 5.5,104.75 43.25)",3.25,1.5,3:2,35.5\n'),
     "TreeFile": write_text("trees.geojson", '{"type":"FeatureCollection","features":[' + ",".join(
         '{"type":"Feature","geometry":{"type":"Point","coordinates":[%.2f,%.2f]},"properties":'
         '{"diameter":32.5,"height":"21.5"}}' % (40.25 + 5 * k, 48.75 + k) for k in range(5)) + "]}"),
     "BarrierFile": write_text("net.csv", "WKT,height,capacity\n"
-                                         '"LINESTRING(117.75 50.5,118.25 90.75)",4.5,1000.5\n'),
+                                         '"LINESTRING(97.75 43.5,98.25 90.75)",4.5,1000.5\n'),
     "RestitutionLayer": write_text("zones.csv", 'WKT,class\n"POLYGON((0 0,60.5 0,60.5 100,0 100,0 0))",rock\n'),
     "RestitutionTable": write_text("table.csv", "class,rv,rv_deviation\nrock,0.85,0.05\n"),
 }
@@ -34,7 +34,7 @@ def run(name):
     UpdatePipeline(proxy=fall)
     texts = [repr(columns_of(servermanager.Fetch(fall, idx=3)))]
     met = servermanager.Fetch(fall, idx=4)
-    assert met.GetNumberOfPoints() > 3
+    assert met.GetNumberOfPoints() > 3, met.GetNumberOfPoints()
     texts.append(repr([met.GetPoint(k) for k in range(met.GetNumberOfPoints())]))
     for file, proxy in ((name + ".csv", OutputPort(fall, 3)), (name + "-met.csv", OutputPort(fall, 4)),
                         (name + "-paths.csv", OutputPort(fall, 1))):
