@@ -323,6 +323,11 @@ void readTrees(const StructureFiles& files, const Terrain& terrain, OwnMaterials
       }
       all.trees.push_back(t);
     });
+  if (all.trees.empty())
+  {
+    throw DataError(files.trees + ": none of its " + std::to_string(outside) +
+      " trees stands where the terrain has ground");
+  }
   if (outside > 0)
   {
     notes.push_back(files.trees + ": " + std::to_string(outside) +
