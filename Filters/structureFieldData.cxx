@@ -174,8 +174,9 @@ Structures readStructures(vtkFieldData* fieldData)
   return s;
 }
 
-void makeStructureMesh(const Terrain& terrain, vtkPolyData* mesh)
+int makeStructureMesh(const Terrain& terrain, vtkIdType mostCells, vtkPolyData* mesh)
 {
+  std::size_t stride = 1;
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
   vtkNew<vtkCellArray> cells;
@@ -209,8 +210,13 @@ void makeStructureMesh(const Terrain& terrain, vtkPolyData* mesh)
       add({ n[0], n[1], n[2] }, 0,
         s.embankments[std::size_t(obstacles->embankmentOf(int(k)))].feature, number++);
     }
-    for (std::size_t k = 0; k < s.trees.size(); ++k)
+    const std::int64_t firstOfTrees = number;
+    const std::size_t shown =
+      std::max<std::size_t>(1, std::size_t(mostCells) / Obstacles::treeTriangles);
+    stride = std::max<std::size_t>(1, (s.trees.size() + shown - 1) / shown);
+    for (std::size_t k = 0; k < s.trees.size(); k += stride)
     {
+      number = firstOfTrees + std::int64_t(k) * Obstacles::treeTriangles;
       const vtkIdType first = points->GetNumberOfPoints();
       for (int corner = 0; corner < 2 * Obstacles::treeSides; ++corner)
       {
@@ -252,6 +258,7 @@ void makeStructureMesh(const Terrain& terrain, vtkPolyData* mesh)
   }
   mesh->SetPoints(points);
   mesh->SetPolys(cells);
+  return int(stride);
 }
 
 } // namespace rockfall::filters

@@ -18,6 +18,8 @@
 #include "terrain/Terrain.h"
 #include "terrain/structures.h"
 
+#include "vtkType.h"
+
 class vtkFieldData;
 class vtkPolyData;
 
@@ -32,7 +34,8 @@ Structures readStructures(vtkFieldData* fieldData);
 
 /// What stands on the slope as triangles and quads in world coordinates, with the cell arrays
 /// StructureKind (0 embankment, 1 tree, 2 barrier), StructureId (number in its layer) and CFEId (0
-/// for barriers, which are no CFEs).
-void makeStructureMesh(const Terrain& terrain, vtkPolyData* mesh);
+/// for barriers, which are no CFEs). Trees take at most `mostCells` triangles: of more, every
+/// second, third … is there, which is what is returned; else 1.
+int makeStructureMesh(const Terrain& terrain, vtkIdType mostCells, vtkPolyData* mesh);
 
 } // namespace rockfall::filters

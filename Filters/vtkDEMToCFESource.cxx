@@ -140,6 +140,14 @@ int vtkDEMToCFESource::RequestData(
         " each way, because all " + std::to_string(terrain->cfeCapacity()) +
         " CFEs would be more than Maximum Display Cells; the simulation uses every node");
     }
+    vtkNew<vtkPolyData> structures;
+    const int trees =
+      rockfall::filters::makeStructureMesh(*terrain, this->MaximumDisplayCells, structures);
+    if (trees > 1)
+    {
+      notes.push_back("One tree in " + std::to_string(trees) +
+        " is shown, because all would be more than Maximum Display Cells; the simulation uses all");
+    }
     vtkNew<vtkPolyData> mesh;
     rockfall::filters::makeTerrainMesh(*terrain, stride, mesh);
     rockfall::filters::writeTerrain(terrain, stride, mesh->GetFieldData());
@@ -152,8 +160,6 @@ int vtkDEMToCFESource::RequestData(
       kept->InsertNextValue(note);
     }
     mesh->GetFieldData()->AddArray(kept);
-    vtkNew<vtkPolyData> structures;
-    rockfall::filters::makeStructureMesh(*terrain, structures);
     rockfall::filters::copyCoordinateSystem(mesh->GetFieldData(), structures->GetFieldData());
     vtkPolyData::GetData(outputVector, 1)->ShallowCopy(structures);
     output->ShallowCopy(mesh);

@@ -13,7 +13,7 @@ rockfall_packages=(
   paraview paraview-dev python3-paraview libopenmpi-dev libdouble-conversion-dev
   libeigen3-dev libgdal-dev gdal-bin libtbb-dev librandom123-dev libqhull-dev libboost-dev
   libgtest-dev libbenchmark-dev
-  xvfb xauth python3-matplotlib python-matplotlib-data)
+  xvfb xauth locales python3-matplotlib python-matplotlib-data)
 
 fail() {
   echo "RockfallDDA: $*" >&2

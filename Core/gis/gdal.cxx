@@ -45,8 +45,9 @@ enum class Kind
 DatasetPtr tryOpen(const std::string& fileName, Kind kind)
 {
   // Tables: every column as text. A column that GDAL took for numbers would turn words into zeros.
-  // Drivers other than CSV do not know the option and say so in a warning that nobody sees.
-  const char* const tableOptions[] = { "AUTODETECT_TYPE=NO", nullptr };
+  // GeoJSON: a text like 3:2 stays one; GDAL would make a time of day of it. Other drivers do not
+  // know these options and say so in a warning that nobody sees.
+  const char* const tableOptions[] = { "AUTODETECT_TYPE=NO", "DATE_AS_STRING=YES", nullptr };
   const unsigned flags = GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR |
     (kind == Kind::Raster ? GDAL_OF_RASTER : GDAL_OF_VECTOR);
   return DatasetPtr(GDALDataset::Open(

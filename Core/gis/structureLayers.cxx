@@ -9,9 +9,11 @@
 
 #include <ogrsf_frmts.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 
 namespace rockfall
 {
@@ -23,6 +25,8 @@ namespace
 
 constexpr double kJ = 1000.0; // J
 constexpr double cm = 0.01;   // m
+/// Most rows of a layer: more trees than any slope has, and a wrong layer does not fill the memory.
+constexpr std::int64_t kMostRows = 1000000;
 
 /// Brings places to the terrain's local frame, and keeps the extent for the message that they are
 /// beside it.
@@ -35,6 +39,11 @@ public:
     if (from && !terrain.geometry().crs.empty())
     {
       change_ = CrsChange(from, crsFromText(terrain.geometry().crs));
+    }
+    else if (!from)
+    {
+      assumed_ = ". The layer does not say in which CRS it is, so its coordinates were taken as "
+                 "they are";
     }
   }
 
@@ -51,11 +60,14 @@ public:
     return p - origin_;
   }
 
+  const std::string& assumed() const { return assumed_; }
+
   Eigen::Vector2d least = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
   Eigen::Vector2d most = -least;
 
 private:
   CrsChange change_;
+  std::string assumed_; ///< For the message.
   Eigen::Vector2d origin_;
 };
 
@@ -78,6 +90,12 @@ void forEachRow(const std::string& fileName, const Terrain& terrain,
   while (const OGRFeatureUniquePtr feature{ layer.GetNextFeature() })
   {
     ++count;
+    if (count > kMostRows)
+    {
+      throw DataError(fileName + ": layer \"" + layer.GetName() + "\" has more than " +
+        std::to_string(kMostRows) +
+        " rows. Is it the right layer? Cut out what stands on the terrain");
+    }
     const FeatureRow row(fileName, columns, *feature, count);
     if (messages.warning().find("Invalid value type") != std::string::npos)
     {
@@ -103,7 +121,7 @@ void forEachRow(const std::string& fileName, const Terrain& terrain,
       number(placing.least.x()) + " to " + number(placing.most.x()) + ", y " +
       number(placing.least.y()) + " to " + number(placing.most.y()) + ", the terrain x " +
       number(g.xOrigin) + " to " + number(east) + ", y " + number(g.yOrigin) + " to " +
-      number(north));
+      number(north) + placing.assumed());
   }
 }
 
@@ -137,35 +155,48 @@ std::optional<double> slopeOf(const FeatureRow& row, const char* field)
   return *across / *down;
 }
 
-/// Number of the row's own material, 0 if it has none.
-int materialOf(const FeatureRow& row, const Terrain& terrain, std::vector<SurfaceMaterial>& all)
+/// Materials of rows that have their own, each kept once.
+class OwnMaterials
 {
-  SurfaceMaterial m = terrain.material();
-  m.restitutionDeviation = m.frictionAngleDeviation = 0.0;
-  const auto rv = row.ranged({ "rv", "rn" }, 0.0, 1.0, "0 to 1");
-  const auto rt = row.ranged({ "rt" }, 0.0, 1.0, "0 to 1");
-  const auto phi = row.ranged({ "phi" }, 0.0, 89.0, "0 to 89 degrees");
-  const auto cohesion = row.notNegative("cohesion");
-  if (!rv && !rt && !phi && !cohesion)
+public:
+  OwnMaterials(const Terrain& terrain, std::vector<SurfaceMaterial>& all)
+    : base_(terrain.material())
+    , all_(all)
   {
-    return 0;
+    base_.restitutionDeviation = base_.frictionAngleDeviation = 0.0;
   }
-  m.restitution = rv.value_or(m.restitution);
-  m.tangentialRestitution = rt.value_or(m.tangentialRestitution);
-  m.frictionAngle = phi ? radians(*phi) : m.frictionAngle;
-  m.cohesion = cohesion.value_or(m.cohesion);
-  for (std::size_t k = 0; k < all.size(); ++k)
+
+  /// Number of the row's own, 0 if it has none.
+  int of(const FeatureRow& row)
   {
-    if (all[k].restitution == m.restitution &&
-      all[k].tangentialRestitution == m.tangentialRestitution &&
-      all[k].frictionAngle == m.frictionAngle && all[k].cohesion == m.cohesion)
+    const auto rv = row.ranged({ "rv", "rn" }, 0.0, 1.0, "0 to 1");
+    const auto rt = row.ranged({ "rt" }, 0.0, 1.0, "0 to 1");
+    const auto phi = row.ranged({ "phi" }, 0.0, 89.0, "0 to 89 degrees");
+    const auto cohesion = row.notNegative("cohesion");
+    if (!rv && !rt && !phi && !cohesion)
     {
-      return int(k) + 1;
+      return 0;
     }
+    SurfaceMaterial m = base_;
+    m.restitution = rv.value_or(m.restitution);
+    m.tangentialRestitution = rt.value_or(m.tangentialRestitution);
+    m.frictionAngle = phi ? radians(*phi) : m.frictionAngle;
+    m.cohesion = cohesion.value_or(m.cohesion);
+    const auto [found, isNew] = numbers_.try_emplace(
+      { m.restitution, m.tangentialRestitution, m.frictionAngle, m.cohesion }, 0);
+    if (isNew)
+    {
+      all_.push_back(m);
+      found->second = int(all_.size());
+    }
+    return found->second;
   }
-  all.push_back(m);
-  return int(all.size());
-}
+
+private:
+  SurfaceMaterial base_;
+  std::vector<SurfaceMaterial>& all_;
+  std::map<std::array<double, 4>, int> numbers_;
+};
 
 /// The lines of a row, each in the local frame.
 std::vector<std::vector<Eigen::Vector2d>> linesOf(const FeatureRow& row, Placing& placing)
@@ -212,7 +243,8 @@ std::vector<std::vector<Eigen::Vector2d>> linesOf(const FeatureRow& row, Placing
   return lines;
 }
 
-void readEmbankments(const std::string& fileName, const Terrain& terrain, Structures& all)
+void readEmbankments(
+  const std::string& fileName, const Terrain& terrain, OwnMaterials& own, Structures& all)
 {
   forEachRow(fileName, terrain,
     [&](const FeatureRow& row, std::int64_t count, Placing& placing)
@@ -238,7 +270,7 @@ void readEmbankments(const std::string& fileName, const Terrain& terrain, Struct
       }
       e.mountainSlope = up ? *up : *both;
       e.valleySlope = down ? *down : *both;
-      e.material = materialOf(row, terrain, all.materials);
+      e.material = own.of(row);
       for (std::vector<Eigen::Vector2d>& line : linesOf(row, placing))
       {
         e.points = std::move(line);
@@ -247,8 +279,8 @@ void readEmbankments(const std::string& fileName, const Terrain& terrain, Struct
     });
 }
 
-void readTrees(const StructureFiles& files, const Terrain& terrain, Structures& all,
-  std::vector<std::string>& notes)
+void readTrees(const StructureFiles& files, const Terrain& terrain, OwnMaterials& own,
+  Structures& all, std::vector<std::string>& notes)
 {
   std::int64_t outside = 0;
   forEachRow(files.trees, terrain,
@@ -283,7 +315,7 @@ void readTrees(const StructureFiles& files, const Terrain& terrain, Structures& 
       {
         t.capacity = stemCapacity(t.diameter, factor);
       }
-      t.material = materialOf(row, terrain, all.materials);
+      t.material = own.of(row);
       if (std::isnan(terrain.elevation(t.position.x(), t.position.y())))
       {
         ++outside;
@@ -291,6 +323,11 @@ void readTrees(const StructureFiles& files, const Terrain& terrain, Structures& 
       }
       all.trees.push_back(t);
     });
+  if (all.trees.empty())
+  {
+    throw DataError(files.trees + ": none of its " + std::to_string(outside) +
+      " trees stands where the terrain has ground");
+  }
   if (outside > 0)
   {
     notes.push_back(files.trees + ": " + std::to_string(outside) +
@@ -346,14 +383,15 @@ Structures readStructures(
   const StructureFiles& files, const Terrain& terrain, std::vector<std::string>& notes)
 {
   Structures all;
+  OwnMaterials own(terrain, all.materials);
   if (!files.embankments.empty())
   {
-    readEmbankments(files.embankments, terrain, all);
+    readEmbankments(files.embankments, terrain, own, all);
     tryOut(files.embankments, { all.embankments, {}, {}, all.materials }, terrain);
   }
   if (!files.trees.empty())
   {
-    readTrees(files, terrain, all, notes);
+    readTrees(files, terrain, own, all, notes);
     tryOut(files.trees, { {}, all.trees, {}, all.materials }, terrain);
   }
   if (!files.barriers.empty())

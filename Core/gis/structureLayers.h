@@ -37,9 +37,10 @@ struct StructureFiles
 ///   `absorbs` (1 or 0).
 /// - Embankments and trees: `rv`, `rt`, `phi` (degrees), `cohesion` (N); empty: the slope's own.
 ///
-/// Trees where the terrain has no ground are left out, with a note. Throws FileError, DataError or
-/// ParameterError naming file, row, field and value: another geometry, a number missing or out of
-/// range, no overlap with the terrain, what cannot be built (see Obstacles).
+/// Trees where the terrain has no ground are left out, with a note; if all do, that is an error.
+/// Throws FileError, DataError or ParameterError naming file, row, field and value: another
+/// geometry, a number missing or out of range, no overlap with the terrain, more than a million
+/// rows, what cannot be built (see Obstacles).
 Structures readStructures(
   const StructureFiles& files, const Terrain& terrain, std::vector<std::string>& notes);
 

@@ -3,6 +3,15 @@
 namespace rockfall
 {
 
+namespace
+{
+
+/// Boxes spread evenly fill 0.63 of as many cells; below this part of them the extent is sparse.
+constexpr double kSparse = 0.3;
+constexpr double kMostCells = 16.0;
+
+} // namespace
+
 BoxIndex::BoxIndex(std::span<const FlatBox> boxes)
 {
   if (boxes.empty())
@@ -18,10 +27,22 @@ BoxIndex::BoxIndex(std::span<const FlatBox> boxes)
     south_ = std::min(south_, b.yMin);
     north_ = std::max(north_, b.yMax);
   }
-  // About as many cells as boxes.
+  // About as many cells as boxes. Where most of the extent is empty (woods far apart, one tree by
+  // itself) as many in what is occupied, but neither more than kMostCells for a box nor smaller
+  // than the boxes are.
   const double width = east_ - west_, height = north_ - south_;
-  const double size = std::max({ std::sqrt(width * height / double(boxes.size())),
+  double size = std::max({ std::sqrt(width * height / double(boxes.size())),
     std::max(width, height) / double(boxes.size() + 1), 1e-3 });
+  const double filled = this->filledPart(boxes, size);
+  if (filled < kSparse)
+  {
+    double extent = 0.0;
+    for (const FlatBox& b : boxes)
+    {
+      extent += std::max(b.xMax - b.xMin, b.yMax - b.yMin) / double(boxes.size());
+    }
+    size = std::min(size, std::max(size * std::sqrt(std::max(filled, 1.0 / kMostCells)), extent));
+  }
   inverse_ = 1.0 / size;
   columns_ = int(width * inverse_) + 1;
   rows_ = int(height * inverse_) + 1;
@@ -58,6 +79,23 @@ BoxIndex::BoxIndex(std::span<const FlatBox> boxes)
   items_.resize(begins_.back());
   std::vector<std::uint32_t> next(begins_.begin(), begins_.end() - 1);
   each([&](std::size_t i, std::size_t cell) { items_[next[cell]++] = std::uint32_t(i); });
+}
+
+double BoxIndex::filledPart(std::span<const FlatBox> boxes, double size) const
+{
+  const std::size_t columns = std::size_t((east_ - west_) / size) + 1;
+  const std::size_t rows = std::size_t((north_ - south_) / size) + 1;
+  std::vector<bool> filled(columns * rows, false);
+  std::size_t count = 0;
+  for (const FlatBox& b : boxes)
+  {
+    const std::size_t c = std::size_t((0.5 * (b.xMin + b.xMax) - west_) / size);
+    const std::size_t r = std::size_t((0.5 * (b.yMin + b.yMax) - south_) / size);
+    const auto cell = filled.begin() + std::ptrdiff_t(r * columns + c);
+    count += *cell ? 0 : 1;
+    *cell = true;
+  }
+  return double(count) / double(filled.size());
 }
 
 double BoxIndex::top(double xMin, double xMax, double yMin, double yMax) const

@@ -60,6 +60,8 @@ public:
   double top(double xMin, double xMax, double yMin, double yMax) const;
 
 private:
+  /// Part of the cells of this size that hold the middle of a box.
+  double filledPart(std::span<const FlatBox> boxes, double size) const;
   bool cells(
     double xMin, double xMax, double yMin, double yMax, int& c0, int& c1, int& r0, int& r1) const
   {

@@ -135,6 +135,7 @@ TEST(StructureLayers, TellWhatIsWrong)
     { 1, "diameter,height\n30,20\n", "has no point" },
     { 1, "WKT,diameter,height\n" + line + ",30,20\n", "is a LINESTRING, a POINT is needed" },
     { 1, tree + "50,50,30;5,20\n", "\"diameter\"" },
+    { 1, tree + "-50,50,30,20\n150,50,30,20\n", "none of its 2 trees stands where" },
     { 2, "WKT,capacity\n" + line + ",100\n", "field \"height\" is missing" },
     { 2, net + line + ",4,-5\n", "\"capacity\" is -5" },
     { 2, "WKT,height,mode\n" + line + ",4,hold\n", "\"mode\" is \"hold\"" },

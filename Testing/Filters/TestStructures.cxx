@@ -58,6 +58,29 @@ TEST_F(TestStructures, AreShownBesideTheSlope)
   EXPECT_EQ(count[2], 20); // 98 m in pieces of at most 5 m
 }
 
+/// What is shown of many trees is thinned out as the slope is; the simulation has all of them.
+TEST_F(TestStructures, ManyTreesAreShownInPart)
+{
+  std::string rows = "x,y,diameter,height\n";
+  for (int k = 0; k < 100; ++k)
+  {
+    rows += std::to_string(20 + 2 * k) + ",50,30,20\n";
+  }
+  this->Terrain->SetEmbankmentFile("");
+  this->Terrain->SetBarrierFile("");
+  this->Terrain->SetTreeFile(this->WriteFile("many.csv", rows).c_str());
+  this->Terrain->SetMaximumDisplayCells(40 * Obstacles::treeTriangles);
+  this->Terrain->Update();
+  vtkPolyData* shown = this->Terrain->GetOutput(1);
+  ASSERT_EQ(shown->GetNumberOfCells(), 34 * Obstacles::treeTriangles); // one in three
+  vtkDataArray* number = shown->GetCellData()->GetArray("CFEId");
+  const rockfall::Terrain terrain = filters::readTerrain(this->Terrain->GetOutput());
+  ASSERT_EQ(terrain.obstacles()->structures().trees.size(), 100u);
+  const vtkIdType last = shown->GetNumberOfCells() - 1;
+  EXPECT_EQ(value(shown->GetCellData(), "StructureId", last), 100.0);
+  EXPECT_EQ(terrain.obstacles()->treeOf(std::int64_t(number->GetTuple1(last))), 99);
+}
+
 TEST_F(TestStructures, SurviveAFile)
 {
   const std::string name = this->WriteFile("slope.vtp", "");

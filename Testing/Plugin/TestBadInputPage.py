@@ -184,6 +184,37 @@ dem("φ in radians or grads, out of range", JointLayer=zones,
     JointTable=write_text("phi.csv", "class,phi\nrock,95\n"))
 
 slope = DEMtoCFEMesh()  # x 0 to 250, y 0 to 100, heights from 57.7 down to 0
+section("Layers of structures")
+
+
+def structures(wrong, kind, text, name="layer.csv"):
+    dem(wrong, **{kind: name if text is None else write_text(name, text)})
+
+
+DAM = 'WKT,height,width,slope\n"LINESTRING(60 {0},60 {1})",{2},1.5,3:2\n'
+TREE = "x,y,diameter,height\n60,50,{},{}\n"
+NET = 'WKT,height,capacity\n"LINESTRING({0} 10,{0} 90)",{1},{2}\n'
+structures("missing", "TreeFile", None, "missing.gpkg")
+structures("empty", "TreeFile", "")
+structures("a header only", "BarrierFile", "WKT,height,capacity\n")
+structures("truncated", "TreeFile", features([POINT] * 3)[:-70], "cut.geojson")
+structures("wrong type: a text", "EmbankmentFile", "Dear reader\n", "letter.gpkg")
+structures("wrong type: points", "EmbankmentFile", 'WKT,height,width,slope\n"POINT(60 50)",3,1.5,3:2\n')
+structures("no overlap, or another CRS", "BarrierFile", NET.format(5000, 4, 1000))
+structures("an embankment without a height", "EmbankmentFile", DAM.format(20, 80, ""))
+structures("an embankment under the ground", "EmbankmentFile",
+           DAM.format(20, 80, 5).replace("height", "crest"))
+structures("an embankment that goes beyond the slope", "EmbankmentFile", DAM.format(20, 120, 3))
+structures("no diameter", "TreeFile", "x,y,height\n60,50,20\n")
+structures("a diameter in millimetres", "TreeFile", TREE.format(3500, 20))
+structures("a height in feet, or none of a tree", "TreeFile", TREE.format(35, 328))
+structures("negative", "BarrierFile", NET.format(60, -4, 1000))
+structures("NaN", "EmbankmentFile", DAM.format(20, 80, "nan"))
+structures("a word", "BarrierFile", NET.format(60, 4, "strong"))
+structures("comma as decimal mark", "TreeFile", TREE.format('"32,5"', 20))
+structures("comma as decimal mark, not quoted", "TreeFile", TREE.format("32,5", 20))
+structures("10⁷ features", "TreeFile", "x,y,diameter,height\n" + "60,50,35,20\n" * 1_000_001, "many.csv")
+
 section("Layers and tables of sources")
 
 
