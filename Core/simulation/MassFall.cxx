@@ -15,8 +15,11 @@ namespace rockfall
 namespace
 {
 
-/// A group sleeps when all of its rocks have been still for this long, s.
+/// A group sleeps when for this long, s, each of its rocks has gone no further than it would at a
+/// speed of this share of √(g r). Not the speeds decide: in a pile that lies some rock always
+/// trembles, by less than its springs are compressed.
 constexpr double kStillTime = 0.5;
+constexpr double kStillSpeed = 1e-3;
 
 } // namespace
 
@@ -69,6 +72,7 @@ void MassFall::wake(Member& member)
   sim.done_ = false;
   sim.quietTime_ = 0.0;
   sim.state_.time = time_;
+  member.stayed = sim.state_;
   sim.recorder_.trajectory().summary.fate = Fate::Moving;
   sim.recorder_.resume(sim.state_);
   sim.auditSamples(sim.state_);
@@ -83,6 +87,24 @@ void MassFall::putToSleep(Member& member)
   member.sim.state_.spin.setZero();
   member.sim.acceleration_.setZero();
   member.sim.spinAcceleration_.setZero();
+}
+
+bool MassFall::stays(Member& member) const
+{
+  const RockSimulator& sim = member.sim;
+  if (sim.done_)
+  {
+    return true;
+  }
+  const double r = sim.block_.radius();
+  const double way = (sim.state_.position - member.stayed.position).norm() +
+    r * sim.state_.orientation.angularDistance(member.stayed.orientation);
+  const double speed = kStillSpeed * std::sqrt(std::max(parameters_.gravity, 1e-3) * r);
+  if (way > speed * kStillTime)
+  {
+    member.stayed = sim.state_;
+  }
+  return time_ - member.stayed.time >= kStillTime;
 }
 
 void MassFall::findPairs(double duration)
@@ -259,8 +281,11 @@ bool MassFall::advance()
   {
     for (const Group& group : groups_)
     {
-      const bool still = std::all_of(group.members.begin(), group.members.end(),
-        [&](int i) { return members_[i]->sim.done_ || members_[i]->sim.quietTime_ >= kStillTime; });
+      bool still = true;
+      for (int i : group.members)
+      {
+        still = this->stays(*members_[i]) && still;
+      }
       for (int i : group.members)
       {
         if (still && !members_[i]->sim.done_)

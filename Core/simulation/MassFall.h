@@ -66,6 +66,7 @@ private:
     }
     RockSimulator sim;
     PairBody body;
+    BlockState stayed; ///< Where, and since when, it has not gone far from.
     bool asleep = false;
     bool touchesOthers = false;
     int place = -1;             ///< Among the bodies of its group in the step at hand.
@@ -82,6 +83,7 @@ private:
   void findGroups(double duration);
   void wake(Member& member);
   void putToSleep(Member& member);
+  bool stays(Member& member) const; ///< Whether it has been still for long enough.
   void advanceGroup(const Group& group, double until) const;
   double groupStep(const Group& group) const;
   void gatherContacts(const Group& group, double h) const;

@@ -16,7 +16,7 @@ namespace
 {
 
 constexpr double kPressOut = 0.005;    // m/s, as for single rocks
-constexpr double kPressOutDeep = 0.02; // m/s, of overlaps beyond the loose one
+constexpr double kPressOutDeep = 0.1;  // m/s, of overlaps beyond the loose one
 constexpr double kLooseOverlap = 1e-3; // of the radius, as for single rocks
 
 /// Newton's law of restitution asked of a rock by several others at once may make energy. It holds
@@ -296,6 +296,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
       this->finishPairImpact(*pair);
     }
   }
+  const bool crowd = int(group.members.size()) > resolved;
   const auto absorbRock = [&](std::size_t k)
   {
     Member& m = *members_[group.members[k]];
@@ -311,7 +312,12 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     outcome.springEnergy = body.springEnergy;
     outcome.normalEnergy = body.normalEnergy;
     m.sim.absorb(kind, outcome, work.energyBefore[b], body.given);
-    if (carriers[b] != m.carriers)
+    const std::vector<Contact>& c = m.sim.contacts_;
+    const bool carried = m.touchesOthers ||
+      std::any_of(c.begin(), c.end(), [](const Contact& touch) { return touch.closed(); });
+    // In a crowd some contact opens or closes in every step, and the acceleration of one step says
+    // little of the next: carried on it would keep the pile in motion for ever.
+    if (carriers[b] != m.carriers || (crowd && carried))
     {
       m.sim.acceleration_.setZero();
       m.sim.spinAcceleration_.setZero();
@@ -322,10 +328,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
       return; // caught
     }
     m.sim.checkLeft();
-    const std::vector<Contact>& c = m.sim.contacts_;
-    m.sim.followRest(h,
-      m.touchesOthers ||
-        std::any_of(c.begin(), c.end(), [](const Contact& touch) { return touch.closed(); }));
+    m.sim.followRest(h, carried);
     if (!m.sim.done_ && m.sim.state_.time >= parameters_.endTime - kTooShort)
     {
       m.sim.recorder_.trajectory().summary.fate = Fate::Moving;
