@@ -29,6 +29,7 @@ from paraview.simple import *
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 import rockfall_tables as tables
+from rockfall_tables import result
 
 WEST, SOUTH, CELL = 400000.0, 5200000.0, 2.0  # m; UTM zone 32
 COLUMNS, ROWS = 151, 81
@@ -83,16 +84,6 @@ def write_sources(path):
             shape = ("Dodecahedron", "Cube", "Octahedron")[k % 3]
             file.write(f"{WEST + x},{SOUTH + y},{profile(x) + 3.0},{shape},{VOLUMES[k // 3 % 3]}\n")
     return path
-
-
-def result(proxy, port=0):
-    """What a filter made; pvbatch is its own server, so nothing is copied."""
-    proxy.UpdatePipeline()
-    data = proxy.GetClientSideObject().GetOutputDataObject(port)
-    error = data.GetFieldData().GetAbstractArray("Error") if data else None
-    if data is None or error:
-        raise SystemExit(error.GetValue(0) if error else f"{proxy.GetXMLLabel()} made nothing.")
-    return data
 
 
 def finish(figure, path):

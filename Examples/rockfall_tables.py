@@ -5,6 +5,16 @@ import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 
+def result(proxy, port=0):
+    """What a filter made; pvbatch is its own server, so nothing is copied."""
+    proxy.UpdatePipeline()
+    data = proxy.GetClientSideObject().GetOutputDataObject(port)
+    error = data.GetFieldData().GetAbstractArray("Error") if data else None
+    if data is None or error:
+        raise SystemExit(error.GetValue(0) if error else f"{proxy.GetXMLLabel()} made nothing.")
+    return data
+
+
 def columns_of(table):
     """A vtkTable as {name: array or list of texts}."""
     result = {}

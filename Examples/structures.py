@@ -26,6 +26,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 import site_picture
 import slope_site as site
 from counts import interval
+from rockfall_tables import result
 
 SEED, END = 11, 45.0
 CASES = {"no structures": (), "forest": ("TreeFile",), "embankment": ("EmbankmentFile",),
@@ -44,16 +45,6 @@ def arguments():
             parser.error(f"--{name} is {getattr(chosen, name)}, it must be at least {least}")
     os.makedirs(chosen.output, exist_ok=True)
     return chosen
-
-
-def result(proxy, port=0):
-    """What a filter made; pvbatch is its own server, so nothing is copied."""
-    proxy.UpdatePipeline()
-    data = proxy.GetClientSideObject().GetOutputDataObject(port)
-    error = data.GetFieldData().GetAbstractArray("Error") if data else None
-    if data is None or error:
-        raise SystemExit(error.GetValue(0) if error else f"{proxy.GetXMLLabel()} made nothing.")
-    return data
 
 
 def on_road(fall, slope, road, iterations):
