@@ -120,6 +120,15 @@ DatasetPtr openVector(const std::string& fileName, Messages& messages)
   return open(fileName, Kind::Vector, messages);
 }
 
+OGRLayer& firstLayer(GDALDataset& dataset, const std::string& fileName, const char* what)
+{
+  if (dataset.GetLayerCount() == 0)
+  {
+    throw DataError(fileName + ": has no " + what);
+  }
+  return *dataset.GetLayer(0);
+}
+
 std::string number(double value)
 {
   char text[32];

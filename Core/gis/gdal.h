@@ -9,6 +9,7 @@
 #include <string>
 
 class GDALDataset;
+class OGRLayer;
 
 namespace rockfall::gis
 {
@@ -50,6 +51,10 @@ using DatasetPtr = std::unique_ptr<GDALDataset, CloseDataset>;
 /// such file, a folder, the other kind of data, or nothing that GDAL knows.
 DatasetPtr openRaster(const std::string& fileName, Messages& messages);
 DatasetPtr openVector(const std::string& fileName, Messages& messages);
+
+/// The one that is read of a vector file. Throws DataError naming the file if it has none; `what`
+/// is what the user calls it.
+OGRLayer& firstLayer(GDALDataset& dataset, const std::string& fileName, const char* what = "layer");
 
 /// A number for a message, with a decimal point in every locale.
 std::string number(double value);

@@ -145,12 +145,8 @@ std::vector<std::uint8_t> fromPolygons(const GroundFiles& files, const GroundTab
 {
   Messages messages;
   const DatasetPtr dataset = openVector(files.layer, messages);
-  if (dataset->GetLayerCount() == 0)
-  {
-    throw DataError(files.layer + ": has no layer");
-  }
+  OGRLayer& layer = firstLayer(*dataset, files.layer);
   refuseSurplusCells(*dataset, files.layer);
-  OGRLayer& layer = *dataset->GetLayer(0);
   if (layer.GetFeatureCount() == 0)
   {
     throw DataError(files.layer + ": layer \"" + layer.GetName() + "\" has no polygon");

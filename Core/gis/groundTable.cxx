@@ -126,12 +126,8 @@ GroundTable readGroundTable(
 {
   Messages messages;
   const DatasetPtr dataset = openVector(fileName, messages);
-  if (dataset->GetLayerCount() == 0)
-  {
-    throw DataError(fileName + ": has no table");
-  }
+  OGRLayer& layer = firstLayer(*dataset, fileName, "table");
   refuseSurplusCells(*dataset, fileName);
-  OGRLayer& layer = *dataset->GetLayer(0);
   const Columns columns = columnsOf(*layer.GetLayerDefn());
   if (!columns.count("class") && !columns.count("name"))
   {

@@ -152,11 +152,7 @@ std::vector<LayerLine> readLineLayer(const std::string& fileName, const std::str
 {
   Messages messages;
   const DatasetPtr dataset = openVector(fileName, messages);
-  if (dataset->GetLayerCount() == 0)
-  {
-    throw DataError(fileName + ": has no layer");
-  }
-  OGRLayer& layer = *dataset->GetLayer(0);
+  OGRLayer& layer = firstLayer(*dataset, fileName);
   LineReader reader(fileName, layer, targetCrs);
   messages.clear();
   while (const OGRFeatureUniquePtr feature{ layer.GetNextFeature() })

@@ -147,12 +147,8 @@ std::vector<RockContactPair> readRockContacts(
 {
   Messages messages;
   const DatasetPtr dataset = openVector(fileName, messages);
-  if (dataset->GetLayerCount() == 0)
-  {
-    throw DataError(fileName + ": has no table");
-  }
+  OGRLayer& layer = firstLayer(*dataset, fileName, "table");
   refuseSurplusCells(*dataset, fileName);
-  OGRLayer& layer = *dataset->GetLayer(0);
   const Columns columns = columnsOf(*layer.GetLayerDefn());
   PairReader reader(fileName, layer, columns, namesOf(materials));
   std::vector<RockContactPair> pairs;

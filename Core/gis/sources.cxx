@@ -127,12 +127,8 @@ SourceLayer readSourceLayer(const std::string& fileName, const SourceOptions& op
 {
   Messages messages;
   const DatasetPtr dataset = openVector(fileName, messages);
-  if (dataset->GetLayerCount() == 0)
-  {
-    throw DataError(fileName + ": has no layer");
-  }
+  OGRLayer& layer = firstLayer(*dataset, fileName);
   refuseSurplusCells(*dataset, fileName);
-  OGRLayer& layer = *dataset->GetLayer(0);
   const Columns columns = columnsOf(*layer.GetLayerDefn());
 
   SourcePlacing placing;

@@ -77,12 +77,8 @@ void forEachRow(const std::string& fileName, const Terrain& terrain,
 {
   Messages messages;
   const DatasetPtr dataset = openVector(fileName, messages);
-  if (dataset->GetLayerCount() == 0)
-  {
-    throw DataError(fileName + ": has no layer");
-  }
+  OGRLayer& layer = firstLayer(*dataset, fileName);
   refuseSurplusCells(*dataset, fileName);
-  OGRLayer& layer = *dataset->GetLayer(0);
   const Columns columns = columnsOf(*layer.GetLayerDefn());
   Placing placing(horizontalCrs(layer.GetSpatialRef()), terrain);
   std::int64_t count = 0;
