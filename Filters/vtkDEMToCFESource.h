@@ -88,8 +88,8 @@ public:
 
   ///@{
   /**
-   * A kind of ground whose published coefficients replace the material's properties below, from 1
-   * in the order of Core/terrain/presets.h. 0 (the default): none.
+   * A kind of ground whose coefficients, quoted from publications, replace the material's
+   * properties below, from 1 in the order of Core/terrain/presets.h. 0 (the default): none.
    */
   vtkSetMacro(Preset, int);
   vtkGetMacro(Preset, int);

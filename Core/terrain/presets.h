@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file
-/// Common kinds of ground with published coefficients.
+/// Common kinds of ground with coefficients quoted from publications. Which of them were checked
+/// stands in docs/DEMtoCFEMesh.md, Presets.
 
 #include "terrain/material.h"
 
