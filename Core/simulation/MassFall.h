@@ -88,11 +88,17 @@ private:
   double groupStep(const Group& group) const;
   void gatherContacts(const Group& group, double h) const;
   void armPair(RockPair& pair) const;
+  void armContact(const RockPair& pair, Contact& contact) const;
   bool isCalm(const Group& group) const;
   bool mayLast(const Group& group, double h) const;
   double freeTime(const Group& group, double most) const;
   void fly(const Group& group, double duration) const;
   void solve(const Group& group, double h, StepKind kind, bool bounces, Workspace& work) const;
+  /// What a pair's contact is in a step of `h`; an impact begins with it if it closes fast.
+  GroupContact take(RockPair& pair, Contact& contact, double h, bool bounces) const;
+  /// Contacts between rocks that nobody reckoned with, seen where a step would end: they are
+  /// appended, and whether there are any is returned.
+  bool lookAgain(const Group& group, double h, bool bounces, Workspace& work) const;
   void absorb(const Group& group, double h, StepKind kind, Workspace& work) const;
   void finishPairImpact(RockPair& pair) const;
   Vec3 relativeVelocity(const RockPair& pair, const Vec3& point) const; ///< First less second, m/s.

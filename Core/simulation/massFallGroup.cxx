@@ -16,7 +16,7 @@ namespace
 
 /// However fast two rocks meet, their contact is stiff enough to stop them in this part of the
 /// smaller radius.
-constexpr double kDeepestImpact = 0.1;
+constexpr double kDeepestImpact = 0.01;
 /// Steps per half period of an impact, as for single rocks.
 constexpr double kStepsPerImpact = 8.0;
 constexpr double kShearDamping = 5.0;  // as for single rocks
@@ -111,38 +111,42 @@ void MassFall::gatherContacts(const Group& group, double h) const
 
 void MassFall::armPair(RockPair& pair) const
 {
+  for (Contact& c : pair.contacts)
+  {
+    if (!c.closed())
+    {
+      this->armContact(pair, c);
+    }
+  }
+}
+
+void MassFall::armContact(const RockPair& pair, Contact& c) const
+{
   const RockSimulator &a = members_[pair.first]->sim, &b = members_[pair.second]->sim;
   const double mass = 1.0 / (1.0 / a.block_.mass() + 1.0 / b.block_.mass());
   const double depth = kDeepestImpact * std::min(a.block_.radius(), b.block_.radius());
-  for (Contact& c : pair.contacts)
+  const double speed = (a.state_.velocity - b.state_.velocity).norm();
+  const double penalty =
+    std::max(parameters_.normalPenalty, mass * speed * speed / (depth * depth));
+  const double shear = penalty * parameters_.shearRatio;
+  double soft = 0.0, softAlong = 0.0, mobile = 0.0, mobileAlong = 0.0;
+  const Vec3 along = c.normal.unitOrthogonal();
+  for (const RockSimulator* rock : { &a, &b })
   {
-    if (c.closed())
-    {
-      continue;
-    }
-    const double speed = (a.state_.velocity - b.state_.velocity).norm();
-    const double penalty =
-      std::max(parameters_.normalPenalty, mass * speed * speed / (depth * depth));
-    const double shear = penalty * parameters_.shearRatio;
-    double soft = 0.0, softAlong = 0.0, mobile = 0.0, mobileAlong = 0.0;
-    const Vec3 along = c.normal.unitOrthogonal();
-    for (const RockSimulator* rock : { &a, &b })
-    {
-      const Mat3& r = rock->placed_.rotation();
-      const Vec3 x = r.transpose() * (c.point - rock->state_.position);
-      const Vec3 n = r.transpose() * c.normal, t = r.transpose() * along;
-      soft += parameters_.rigid ? 0.0 : rock->block_.compliance(n, x);
-      softAlong += parameters_.rigid ? 0.0 : rock->block_.compliance(t, x);
-      mobile += rock->block_.mobility(n, x);
-      mobileAlong += rock->block_.mobility(t, x);
-    }
-    c.stiffness = penalty / (1.0 + penalty * soft);
-    c.shearStiffness = shear / (1.0 + shear * softAlong);
-    c.frequency2 = c.stiffness * mobile;
-    const double damping = pair.law.damping;
-    c.dashpot = damping > 0.0 ? 2.0 * damping * std::sqrt(c.stiffness / mobile) : 0.0;
-    c.shearDashpot = 2.0 * kShearDamping * std::sqrt(c.shearStiffness / mobileAlong);
+    const Mat3& r = rock->placed_.rotation();
+    const Vec3 x = r.transpose() * (c.point - rock->state_.position);
+    const Vec3 n = r.transpose() * c.normal, t = r.transpose() * along;
+    soft += parameters_.rigid ? 0.0 : rock->block_.compliance(n, x);
+    softAlong += parameters_.rigid ? 0.0 : rock->block_.compliance(t, x);
+    mobile += rock->block_.mobility(n, x);
+    mobileAlong += rock->block_.mobility(t, x);
   }
+  c.stiffness = penalty / (1.0 + penalty * soft);
+  c.shearStiffness = shear / (1.0 + shear * softAlong);
+  c.frequency2 = c.stiffness * mobile;
+  const double damping = pair.law.damping;
+  c.dashpot = damping > 0.0 ? 2.0 * damping * std::sqrt(c.stiffness / mobile) : 0.0;
+  c.shearDashpot = 2.0 * kShearDamping * std::sqrt(c.shearStiffness / mobileAlong);
 }
 
 bool MassFall::isCalm(const Group& group) const

@@ -25,14 +25,14 @@ constexpr double kLooseOverlap = 1e-3; // of the radius, as for single rocks
 void settleBounces(
   std::size_t bodies, std::vector<GroupContact>& contacts, std::vector<int>& partners)
 {
-  constexpr int none = -3, several = -2; // else the other body, −1 the slope
-  partners.assign(bodies, none);
+  constexpr int several = -2; // else the other body, −1 the slope
+  partners.assign(bodies, kMeetsNone);
   const auto meet = [&](int body, int other)
   {
     if (body >= 0)
     {
       int& partner = partners[body];
-      partner = partner == none || partner == other ? other : several;
+      partner = partner == kMeetsNone || partner == other ? other : several;
     }
   };
   for (const GroupContact& k : contacts)
@@ -52,6 +52,37 @@ void settleBounces(
 }
 
 } // namespace
+
+GroupContact MassFall::take(RockPair& pair, Contact& c, double h, bool bounces) const
+{
+  const Member &a = *members_[pair.first], &b = *members_[pair.second];
+  const double resting = std::min(a.sim.restingSpeed_, b.sim.restingSpeed_);
+  GroupContact k;
+  k.contact = &c;
+  k.first = a.place;
+  k.second = b.place;
+  k.friction = pair.law.friction;
+  k.cohesion = pair.law.cohesion;
+  k.approach = -c.normal.dot(this->relativeVelocity(pair, c.point));
+  const bool hits = !c.closed() && k.approach > resting && c.gap() < k.approach * h;
+  k.bounce = bounces && hits ? pair.law.restitution * k.approach : -1.0;
+  // For the events.
+  RockPair::Impact& impact = pair.impact;
+  if (hits && !impact.pending)
+  {
+    impact = {};
+    impact.pending = true;
+    impact.time = a.sim.state_.time;
+    impact.before[0] = a.sim.state_.velocity;
+    impact.before[1] = b.sim.state_.velocity;
+    impact.point = c.point;
+  }
+  if (impact.pending && !c.closed())
+  {
+    impact.approach = std::max(impact.approach, k.approach);
+  }
+  return k;
+}
 
 void MassFall::solve(
   const Group& group, double h, StepKind kind, bool bounces, Workspace& work) const
@@ -145,36 +176,10 @@ void MassFall::solve(
   const auto takePair = [&](std::size_t p)
   {
     RockPair& pair = *group.pairs[p];
-    const Member &a = *members_[pair.first], &b = *members_[pair.second];
-    const double resting = std::min(a.sim.restingSpeed_, b.sim.restingSpeed_);
     std::size_t next = work.firsts[p];
     for (Contact& c : pair.contacts)
     {
-      const double approach = -c.normal.dot(this->relativeVelocity(pair, c.point));
-      GroupContact& k = work.contacts[next++];
-      k = {};
-      k.contact = &c;
-      k.first = a.place;
-      k.second = b.place;
-      k.friction = pair.law.friction;
-      k.cohesion = pair.law.cohesion;
-      k.bounce = bounceOf(c, approach, resting, pair.law.restitution);
-      k.approach = approach;
-      // For the events.
-      RockPair::Impact& impact = pair.impact;
-      if (!c.closed() && approach > resting && c.gap() < approach * h && !impact.pending)
-      {
-        impact = {};
-        impact.pending = true;
-        impact.time = a.sim.state_.time;
-        impact.before[0] = a.sim.state_.velocity;
-        impact.before[1] = b.sim.state_.velocity;
-        impact.point = c.point;
-      }
-      if (impact.pending && !c.closed())
-      {
-        impact.approach = std::max(impact.approach, approach);
-      }
+      work.contacts[next++] = this->take(pair, c, h, bounces);
     }
   };
   forEach(group.pairs.size(), kPairGrain, takePair);
@@ -194,12 +199,22 @@ void MassFall::solve(
       }
     }
   }
+  work.added.clear();
+  work.addedTo.clear();
+  const bool crowd = int(group.members.size()) > resolved;
+  const auto look = [&] { return this->lookAgain(group, request.duration, bounces, work); };
   GroupOutcome outcome;
   for (int cut = 0;; ++cut)
   {
     // A large group is not stepped again: what is left to settle is counted and small.
-    const bool last = !(int(group.members.size()) <= resolved) || cut >= parameters_.maxCuts;
-    outcome = work.solver.step(request, work.bodies, work.contacts, last);
+    const bool last = crowd || cut >= parameters_.maxCuts;
+    if (!work.added.empty())
+    {
+      work.contacts.resize(work.firsts.back());
+      work.added.clear();
+      work.addedTo.clear();
+    }
+    outcome = work.solver.step(request, work.bodies, work.contacts, last, look);
     for (int i : group.members)
     {
       TrajectorySummary& summary = members_[i]->sim.recorder_.trajectory().summary;
@@ -233,6 +248,25 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
   }
   std::vector<std::uint64_t>& carriers = work.carriers;
   carriers.assign(work.bodies.size(), 0);
+  const auto book = [&](RockPair& pair, const GroupContact& taken)
+  {
+    const Contact& c = *taken.contact;
+    RockPair::Impact& impact = pair.impact;
+    if (!impact.pending)
+    {
+      return;
+    }
+    if (c.normalForce > 0.0)
+    {
+      impact.impulse += (h * c.normalForce) * c.normal;
+      if (c.normalForce > impact.largest)
+      {
+        impact.largest = c.normalForce;
+        impact.point = c.point;
+      }
+    }
+    impact.loss += taken.work;
+  };
   const auto absorbPair = [&](std::size_t p)
   {
     RockPair& pair = *group.pairs[p];
@@ -242,20 +276,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     for (std::size_t k = work.firsts[p]; k < work.firsts[p + 1]; ++k)
     {
       const Contact& c = *work.contacts[k].contact;
-      RockPair::Impact& impact = pair.impact;
-      if (impact.pending && c.normalForce > 0.0)
-      {
-        impact.impulse += (h * c.normalForce) * c.normal;
-        if (c.normalForce > impact.largest)
-        {
-          impact.largest = c.normalForce;
-          impact.point = c.point;
-        }
-      }
-      if (impact.pending)
-      {
-        impact.loss += work.contacts[k].work;
-      }
+      book(pair, work.contacts[k]);
       pair.touched = pair.touched || c.closed();
       if (c.closed())
       {
@@ -289,6 +310,18 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     }
   };
   forEach(group.pairs.size(), kPairGrain, absorbPair);
+  for (std::size_t k = 0; k < work.added.size(); ++k)
+  {
+    RockPair& pair = *group.pairs[work.addedTo[k]];
+    const Contact& c = work.added[k];
+    book(pair, work.contacts[work.firsts.back() + k]);
+    if (c.closed())
+    {
+      pair.touched = true;
+      members_[pair.first]->touchesOthers = members_[pair.second]->touchesOthers = true;
+    }
+    pair.contacts.push_back(c);
+  }
   for (RockPair* pair : group.pairs)
   {
     if (pair->impact.pending && (!pair->touched || kind == StepKind::Lasting))

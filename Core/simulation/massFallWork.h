@@ -5,10 +5,15 @@
 
 #include "simulation/MassFall.h"
 
+#include <deque>
+
 namespace rockfall
 {
 
 constexpr double kTooShort = 1e-9; // s
+
+/// A rock's partner in the step, if it has none.
+constexpr int kMeetsNone = -3;
 
 /// What is worth handing to another thread.
 constexpr std::size_t kRockGrain = 16, kPairGrain = 32;
@@ -24,6 +29,14 @@ struct MassFall::Workspace
   std::vector<std::uint64_t> carriers; ///< By place, what carries it.
   /// First contact of each rock's with the slope among `contacts`, and of each pair.
   std::vector<std::size_t> slopeFirsts, firsts;
+  /// Contacts that are found in a second look, behind the others in `contacts`, and whose they are.
+  std::deque<Contact> added;
+  std::vector<std::size_t> addedTo;
+  /// Where the rocks would be at the end of the step, and along what the pairs are apart there.
+  std::vector<PlacedBlock> ends;
+  std::vector<PairBody> endBodies;
+  std::vector<PairAxis> endAxes;
+  std::vector<char> missed;
 };
 
 } // namespace rockfall

@@ -59,9 +59,19 @@ void GroupSolver::prepare(const StepRequest& request, const std::vector<GroupBod
     w.last.setZero();
   };
   forEach(bodies.size(), kBodyGrain, prepareBody);
+  this->prepareRows(request, bodies, contacts, 0);
+  this->levers();
+  this->startRows(request, contacts, 0);
+}
+
+void GroupSolver::prepareRows(const StepRequest& request, const std::vector<GroupBody>& bodies,
+  const std::vector<GroupContact>& contacts, std::size_t first)
+{
+  const bool lasting = request.kind == StepKind::Lasting;
   rows_.resize(contacts.size());
-  const auto prepareRow = [&](std::size_t k)
+  const auto prepareRow = [&](std::size_t further)
   {
+    const std::size_t k = first + further;
     const GroupContact& group = contacts[k];
     const Contact& c = *group.contact;
     Row& row = rows_[k];
@@ -103,10 +113,17 @@ void GroupSolver::prepare(const StepRequest& request, const std::vector<GroupBod
     law.state = c.state;
     row.force.setZero();
   };
-  forEach(contacts.size(), kRowGrain, prepareRow);
-  this->levers();
-  const auto start = [&](std::size_t k)
+  forEach(contacts.size() - first, kRowGrain, prepareRow);
+}
+
+void GroupSolver::startRows(
+  const StepRequest& request, const std::vector<GroupContact>& contacts, std::size_t first)
+{
+  const double h = request.duration;
+  const bool lasting = request.kind == StepKind::Lasting;
+  const auto start = [&](std::size_t further)
   {
+    const std::size_t k = first + further;
     Row& row = rows_[k];
     if (contacts[k].bounce >= 0.0)
     {
@@ -125,18 +142,64 @@ void GroupSolver::prepare(const StepRequest& request, const std::vector<GroupBod
       row.force.tail<2>() = -row.law.shearPenalty * row.law.slip0;
     }
   };
-  forEach(contacts.size(), kRowGrain, start);
+  forEach(contacts.size() - first, kRowGrain, start);
 }
 
-void GroupSolver::levers()
+void GroupSolver::append(const StepRequest& request, const std::vector<GroupBody>& bodies,
+  std::vector<GroupContact>& contacts)
 {
-  const auto turn = [&](std::size_t i)
+  const std::size_t first = rows_.size();
+  this->prepareRows(request, bodies, contacts, first);
+  this->levers();
+  for (std::size_t k = first; k < rows_.size(); ++k)
+  {
+    // The gap at the start from which this way leads to the one at the end.
+    Row& row = rows_[k];
+    Contact& c = *contacts[k].contact;
+    c.distance -= this->travel(row)[0];
+    c.offset = std::min(0.0, c.distance);
+    row.law.gap0 = row.gap0 = c.gap();
+  }
+  this->startRows(request, contacts, first);
+}
+
+BlockState GroupSolver::end(const std::vector<GroupBody>& bodies, std::size_t i) const
+{
+  BlockState state = *bodies[i].state;
+  state.position += work_[i].d.head<3>();
+  state.orientation = (work_[i].turn * state.orientation).normalized();
+  return state;
+}
+
+double GroupSolver::gap(std::size_t contact) const
+{
+  const Row& row = rows_[contact];
+  return row.gap0 + this->travel(row)[0];
+}
+
+void GroupSolver::setGap(std::size_t contact, double found)
+{
+  Row& row = rows_[contact];
+  const double least = std::min(0.0, row.gap0);
+  const double change = std::max(least - row.gap0, found - this->gap(contact));
+  row.law.gap0 += row.law.gap0 == row.gap0 ? change : 0.0; // a bounce asks for one of its own
+  row.gap0 += change;
+}
+
+void GroupSolver::turn()
+{
+  const auto turnBody = [&](std::size_t i)
   {
     Work& w = work_[i];
     w.turn = cayley(w.d.tail<3>());
     w.turned = w.turn.toRotationMatrix();
   };
-  forEach(work_.size(), kBodyGrain, turn);
+  forEach(work_.size(), kBodyGrain, turnBody);
+}
+
+void GroupSolver::levers()
+{
+  this->turn();
   // A material vector of a body, averaged over the step.
   const auto mean = [&](const Side& side, const Vec3& y)
   { return side.body < 0 ? y : Vec3(0.5 * (y + work_[side.body].turned * y)); };

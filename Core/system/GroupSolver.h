@@ -15,6 +15,7 @@
 #include "system/BlockMatrix.h"
 
 #include <array>
+#include <functional>
 #include <vector>
 
 namespace rockfall
@@ -67,8 +68,21 @@ class GroupSolver
 public:
   /// Advances the bodies' states and the contacts' springs by `request.duration`. If open–close
   /// does not settle nothing is changed, unless `takeAnyway`.
+  ///
+  /// `lookAgain` is asked after a solution by Gauss–Seidel, before it is written: it may look where
+  /// the bodies would be (`end`), append contacts that were not reckoned with, and correct the gaps
+  /// of others (`setGap`); if it returns true the step goes on from where it is. The `distance` of
+  /// an appended contact is that at the end, the rest of it as all stands at the start.
   GroupOutcome step(const StepRequest& request, std::vector<GroupBody>& bodies,
-    std::vector<GroupContact>& contacts, bool takeAnyway);
+    std::vector<GroupContact>& contacts, bool takeAnyway,
+    const std::function<bool()>& lookAgain = {});
+
+  // For lookAgain.
+  /// Where a body would be at the end of the step; its velocity is not set.
+  BlockState end(const std::vector<GroupBody>& bodies, std::size_t i) const;
+  double gap(std::size_t contact) const; ///< At the end of the step as reckoned, m.
+  /// The gap is found to be another one (m). No contact is asked to open further than it was.
+  void setGap(std::size_t contact, double found);
 
   GroupMethod method = GroupMethod::Suited;
   /// Share of the largest displacement to which Gauss–Seidel goes.
@@ -136,7 +150,15 @@ private:
 
   void prepare(const StepRequest& request, const std::vector<GroupBody>& bodies,
     const std::vector<GroupContact>& contacts);
-  void levers();
+  /// Rows of the contacts from `first` on.
+  void prepareRows(const StepRequest& request, const std::vector<GroupBody>& bodies,
+    const std::vector<GroupContact>& contacts, std::size_t first);
+  void startRows(
+    const StepRequest& request, const std::vector<GroupContact>& contacts, std::size_t first);
+  void append(const StepRequest& request, const std::vector<GroupBody>& bodies,
+    std::vector<GroupContact>& contacts);
+  void turn();   ///< Rotations as the displacements are.
+  void levers(); ///< … and levers with them.
   Mat3 mobility(const Row& row) const; ///< J A⁻¹ Jᵀ of a force at the contact, m/N.
   Vec3 travel(const Row& row) const;   ///< J D: along the normal and the two tangents, m.
   bool evaluate(double h, bool lasting);

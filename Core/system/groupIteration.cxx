@@ -15,6 +15,8 @@ namespace
 
 /// Largest group that is solved directly.
 constexpr std::size_t kDirect = 60;
+/// How often missed contacts are looked for in a step.
+constexpr int kLooks = 2;
 /// As in the step of a single rock.
 constexpr double kGapTolerance = 1e-7;
 /// The gyroscopic moment converges linearly: to this share of a turn it keeps angular momentum to
@@ -77,20 +79,34 @@ bool GroupSolver::newton(
 }
 
 GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody>& bodies,
-  std::vector<GroupContact>& contacts, bool takeAnyway)
+  std::vector<GroupContact>& contacts, bool takeAnyway, const std::function<bool()>& lookAgain)
 {
   GroupOutcome outcome;
   this->prepare(request, bodies, contacts);
   const bool lasting = request.kind == StepKind::Lasting;
   const bool iterate =
     method == GroupMethod::Iterative || (method == GroupMethod::Suited && bodies.size() > kDirect);
+  const auto sweep = [&](const StepRequest& how)
+  {
+    outcome.settled = this->gaussSeidel(how, bodies, outcome);
+    for (int look = 0; look < kLooks && lookAgain && lookAgain(); ++look)
+    {
+      this->append(how, bodies, contacts);
+      outcome.settled = this->gaussSeidel(how, bodies, outcome);
+    }
+  };
   if (iterate && lasting)
   {
-    outcome.settled = this->gaussSeidel(request, bodies, outcome);
+    sweep(request);
   }
   else
   {
     outcome.settled = this->newton(request, bodies, outcome);
+    for (int look = 0; look < kLooks && outcome.settled && lookAgain && lookAgain(); ++look)
+    {
+      this->append(request, bodies, contacts);
+      outcome.settled = this->newton(request, bodies, outcome);
+    }
     if (!outcome.settled && takeAnyway)
     {
       // Newton that has not settled may be anywhere; Gauss–Seidel comes nearer with every sweep,
@@ -103,7 +119,8 @@ GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody
         body.spinAcceleration.setZero();
       }
       this->prepare(calmer, bodies, contacts);
-      this->gaussSeidel(calmer, bodies, outcome);
+      sweep(calmer);
+      outcome.settled = false;
     }
   }
   bool finite = true;

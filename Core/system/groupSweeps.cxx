@@ -302,6 +302,7 @@ bool GroupSolver::gaussSeidel(
       break;
     }
   }
+  this->turn();
   // The forces that the rocks were moved with are the ones that are booked.
   this->evaluate(request.duration, true);
   for (Row& row : rows_)

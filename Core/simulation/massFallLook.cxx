@@ -1,0 +1,166 @@
+// The second look of a crowd's step: contacts that show only where the rocks would end.
+//
+// A step takes the points of touch along the axis on which two rocks are farthest apart when it
+// begins. Rocks that meet fast, turn, or are pushed by others on the way may come to touch
+// elsewhere, and would be found as deep in each other as they go in a step.
+
+#include "simulation/massFallWork.h"
+
+#include "base/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rockfall
+{
+
+namespace
+{
+
+/// What is deeper than reckoned by more than this share of the smaller radius was missed.
+constexpr double kMissed = 5e-5;
+
+/// A contact that is found at the end of a step, with its points and normal as they were at the
+/// start.
+void carryBack(const PlacedBlock& firstEnd, const PlacedBlock& secondEnd,
+  const PlacedBlock& firstStart, const PlacedBlock& secondStart, Contact& contact)
+{
+  const auto direction = [](const PlacedBlock& end, const PlacedBlock& start, const Vec3& x) -> Vec3
+  { return start.rotation() * (end.rotation().transpose() * x); };
+  const auto point = [&](const PlacedBlock& end, const PlacedBlock& start, const Vec3& x) -> Vec3
+  { return start.position() + direction(end, start, x - end.position()); };
+  switch (contact.kind)
+  {
+    case ContactKind::VertexFace:
+      contact.point = point(firstEnd, firstStart, contact.point);
+      contact.normal = direction(secondEnd, secondStart, contact.normal);
+      break;
+    case ContactKind::FaceVertex:
+      contact.point = point(secondEnd, secondStart, contact.point);
+      contact.normal = direction(firstEnd, firstStart, contact.normal);
+      break;
+    case ContactKind::EdgeEdge:
+      contact.point = point(firstEnd, firstStart, contact.point);
+      contact.ridge = { point(secondEnd, secondStart, contact.ridge[0]),
+        direction(secondEnd, secondStart, contact.ridge[1]) };
+      break;
+  }
+}
+
+} // namespace
+
+bool MassFall::lookAgain(const Group& group, double h, bool bounces, Workspace& work) const
+{
+  work.ends.resize(work.bodies.size());
+  work.endBodies.resize(work.bodies.size());
+  const auto place = [&](std::size_t k)
+  {
+    const Member& m = *members_[group.members[k]];
+    if (!m.sim.done_)
+    {
+      const std::size_t i = std::size_t(m.place);
+      work.ends[i].place(m.sim.block_, work.solver.end(work.bodies, i));
+      work.endBodies[i].update(work.ends[i]);
+    }
+  };
+  forEach(group.members.size(), kRockGrain, place);
+  const auto smaller = [&](const RockPair& pair)
+  {
+    return std::min(
+      members_[pair.first]->sim.block_.radius(), members_[pair.second]->sim.block_.radius());
+  };
+  const std::size_t firstAdded = work.firsts.back();
+  const auto deepest = [&](std::size_t p)
+  {
+    double least = 0.0;
+    for (std::size_t k = work.firsts[p]; k < work.firsts[p + 1]; ++k)
+    {
+      least = std::min(least, work.solver.gap(k) + work.contacts[k].contact->offset);
+    }
+    return least;
+  };
+  work.endAxes.resize(group.pairs.size());
+  work.missed.assign(group.pairs.size(), 0);
+  const auto compare = [&](std::size_t p)
+  {
+    const RockPair& pair = *group.pairs[p];
+    const Member &a = *members_[pair.first], &b = *members_[pair.second];
+    if (a.sim.done_ || b.sim.done_)
+    {
+      return;
+    }
+    PairAxis& axis = work.endAxes[p];
+    axis = findAxis(
+      work.endBodies[std::size_t(a.place)], work.endBodies[std::size_t(b.place)], pair.axis, 0.0);
+    const double allowed = kMissed * smaller(pair);
+    work.missed[p] = axis.distance < -allowed && axis.distance < deepest(p) - allowed;
+  };
+  forEach(group.pairs.size(), kPairGrain, compare);
+  thread_local std::vector<Contact> found;
+  bool any = false;
+  for (std::size_t p = 0; p < group.pairs.size(); ++p)
+  {
+    if (!work.missed[p])
+    {
+      continue;
+    }
+    RockPair& pair = *group.pairs[p];
+    const Member &a = *members_[pair.first], &b = *members_[pair.second];
+    const std::size_t i = std::size_t(a.place), j = std::size_t(b.place);
+    findTouches(work.endBodies[i], work.endBodies[j], work.endAxes[p], 0.0, found);
+    pair.axis = work.endAxes[p];
+    const double limit = deepest(p) - kMissed * smaller(pair);
+    for (Contact& c : found)
+    {
+      if (c.distance >= limit)
+      {
+        continue;
+      }
+      any = true;
+      // One that is there already was reckoned wrong.
+      const auto same = [&](std::size_t k)
+      {
+        const Contact& old = *work.contacts[k].contact;
+        return old.kind == c.kind && old.rockFeature == c.rockFeature &&
+          old.surfaceFeature == c.surfaceFeature;
+      };
+      std::size_t known = work.firsts[p];
+      while (known < work.firsts[p + 1] && !same(known))
+      {
+        ++known;
+      }
+      if (known == work.firsts[p + 1])
+      {
+        known = firstAdded;
+        while (
+          known < work.contacts.size() && !(work.addedTo[known - firstAdded] == p && same(known)))
+        {
+          ++known;
+        }
+      }
+      if (known < work.contacts.size())
+      {
+        work.solver.setGap(known, c.distance - work.contacts[known].contact->offset);
+        continue;
+      }
+      carryBack(work.ends[i], work.ends[j], a.sim.placed_, b.sim.placed_, c);
+      c.state = ContactState::Open;
+      this->armContact(pair, c);
+      work.added.push_back(c);
+      work.addedTo.push_back(p);
+      GroupContact taken = this->take(pair, work.added.back(), h, bounces);
+      // As for all others: what meets several at once does not bounce.
+      const auto meetsOthers = [&](int body, int other)
+      { return work.partners[body] != other && work.partners[body] != kMeetsNone; };
+      if (taken.bounce >= 0.0 && meetsOthers(taken.first, taken.second) &&
+        meetsOthers(taken.second, taken.first))
+      {
+        taken.bounce = -1.0;
+      }
+      work.contacts.push_back(taken);
+    }
+  }
+  return any;
+}
+
+} // namespace rockfall
