@@ -132,6 +132,8 @@ PairAxis edgeAxis(const PairBody& first, const PairBody& second, int e, int f)
 void PairBody::update(const PlacedBlock& block)
 {
   placed = &block;
+  position = block.position();
+  rotation = block.rotation();
   const Polyhedron& shape = block.block().shape();
   const std::size_t faces = shape.normals().size();
   normals.resize(faces);

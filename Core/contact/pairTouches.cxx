@@ -210,17 +210,18 @@ void findTouches(const PairBody& first, const PairBody& second, const PairAxis& 
 
 void updatePair(const PairBody& first, const PairBody& second, double reach, RockPair& pair)
 {
-  const PairAxis last = pair.known ? pair.before : pair.axis;
+  const PairAxis last = pair.known || pair.seen ? pair.before : pair.axis;
   const auto closed = [&]
   {
     return std::any_of(
       pair.contacts.begin(), pair.contacts.end(), [](const Contact& c) { return c.closed(); });
   };
-  if (!pair.known)
+  const bool stands = pair.seen && (pair.axis.distance <= 0.0 || pair.axis.distance > reach);
+  if (!pair.known && !stands)
   {
     pair.axis = findAxis(first, second, pair.axis, reach);
   }
-  pair.known = false;
+  pair.known = pair.seen = false;
   if (pair.axis.distance > reach)
   {
     // A spring that is still compressed, as it was found or handed over so, opens by itself.

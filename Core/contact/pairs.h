@@ -36,9 +36,11 @@ struct PairAxis
 struct PairBody
 {
   const PlacedBlock* placed = nullptr;
-  std::vector<Vec3> normals;   ///< Per face, world, outward.
-  std::vector<double> offsets; ///< Per face, normal · x on it, world, m.
-  double inside = 0.0;         ///< Radius of a ball about the centroid that the rock holds, m.
+  std::vector<Vec3> normals;    ///< Per face, world, outward.
+  std::vector<double> offsets;  ///< Per face, normal · x on it, world, m.
+  double inside = 0.0;          ///< Radius of a ball about the centroid that the rock holds, m.
+  Vec3 position = Vec3::Zero(); ///< For which all this stands.
+  Mat3 rotation = Mat3::Zero();
   void update(const PlacedBlock& block);
 };
 
@@ -75,7 +77,11 @@ struct RockPair
   bool touched = false; ///< Has had closed contacts in the last step.
   bool linked = false;  ///< May touch in the step at hand.
   bool known = false;   ///< The axis has been found for where the rocks stand now.
-  PairAxis before;      ///< The axis of the last step, if so.
+  PairAxis before;      ///< The axis of the last step, if so or if seen.
+  /// The axis was found at the end of the last step, where the rocks still stand: exact if they
+  /// overlap, else some direction in which they are apart.
+  bool seen = false;
+  PairAxis end; ///< At the end of the step at hand, as long as it is being solved.
   /// What is under way between the first touch and parting or settling.
   struct Impact
   {

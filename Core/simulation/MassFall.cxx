@@ -38,6 +38,36 @@ MassFall::MassFall(const Surface& surface, std::span<const Rock> rocks,
   }
 }
 
+void MassFall::Member::stand()
+{
+  const BlockState& s = sim.state_;
+  const Mat3 rotation = s.orientation.toRotationMatrix();
+  const bool placed = sim.placed_.position() == s.position && sim.placed_.rotation() == rotation;
+  if (!placed)
+  {
+    sim.placed_.place(sim.block_, s);
+  }
+  if (!placed || body.position != s.position || body.rotation != rotation)
+  {
+    body.update(sim.placed_);
+  }
+}
+
+bool MassFall::Member::arrive()
+{
+  const BlockState& s = sim.state_;
+  const bool there =
+    endBody.position == s.position && endBody.rotation == s.orientation.toRotationMatrix();
+  if (there)
+  {
+    std::swap(sim.placed_, end);
+    std::swap(body, endBody);
+    body.placed = &sim.placed_;
+    endBody.placed = &end;
+  }
+  return there;
+}
+
 void MassFall::release()
 {
   for (const auto& member : members_)
@@ -165,8 +195,7 @@ void MassFall::findGroups(double duration)
       Member& m = *members_[i];
       if (!m.sim.done_ || m.asleep)
       {
-        m.sim.placed_.place(m.sim.block_, m.sim.state_);
-        m.body.update(m.sim.placed_);
+        m.stand();
       }
     });
   tbb::parallel_for(std::size_t(0), pairs_.size(),
@@ -177,6 +206,7 @@ void MassFall::findGroups(double duration)
       pair.linked = pair.known = false;
       if (a.asleep && b.asleep)
       {
+        pair.seen = false;
         return;
       }
       const BlockState &s = a.sim.state_, &t = b.sim.state_;
@@ -184,8 +214,15 @@ void MassFall::findGroups(double duration)
         b.sim.block_.largestRimSpeed(t.spin) +
         parameters_.gravity * duration; // one of them may be held
       const double reach = speed * duration;
-      pair.before = pair.axis;
-      pair.axis = findAxis(a.body, b.body, pair.axis, reach);
+      if (!pair.seen)
+      {
+        pair.before = pair.axis;
+      }
+      if (!pair.seen || (pair.axis.distance > 0.0 && pair.axis.distance <= reach))
+      {
+        pair.axis = findAxis(a.body, b.body, pair.axis, reach);
+      }
+      pair.seen = false;
       pair.linked = pair.known = pair.axis.distance <= reach;
       if (!pair.linked)
       {
@@ -217,12 +254,40 @@ void MassFall::findGroups(double duration)
     }
     return i;
   };
+  const auto join = [&](const RockPair& pair)
+  {
+    const int a = root(pair.first), b = root(pair.second);
+    parent[std::max(a, b)] = std::min(a, b);
+  };
   for (const RockPair& pair : pairs_)
   {
     if (pair.linked)
     {
-      const int a = root(pair.first), b = root(pair.second);
-      parent[std::max(a, b)] = std::min(a, b);
+      join(pair);
+    }
+  }
+  // What a fast rock strikes may go on at its speed, and reach another one within the step.
+  std::vector<double> fastest(members_.size(), 0.0);
+  for (std::size_t i = 0; i < members_.size(); ++i)
+  {
+    const RockSimulator& sim = members_[i]->sim;
+    double& speed = fastest[std::size_t(root(int(i)))];
+    speed = std::max(speed, sim.done_ ? 0.0 : sim.state_.velocity.norm());
+  }
+  for (std::size_t i = 0; i < members_.size(); ++i)
+  {
+    fastest[i] = fastest[std::size_t(root(int(i)))]; // a root is no larger than its members
+  }
+  for (RockPair& pair : pairs_)
+  {
+    const Member &a = *members_[pair.first], &b = *members_[pair.second];
+    const double speed =
+      std::max(fastest[std::size_t(pair.first)], fastest[std::size_t(pair.second)]);
+    if (!pair.linked && !a.asleep && !b.asleep && !a.sim.done_ && !b.sim.done_ &&
+      pair.axis.kind != PairAxis::Kind::None && pair.axis.distance <= speed * duration)
+    {
+      pair.linked = true;
+      join(pair);
     }
   }
   std::vector<int> size(members_.size(), 0), place(members_.size(), -1);

@@ -64,11 +64,19 @@ private:
       : sim(surface, rock, block, parameters)
     {
     }
+    /// `sim.placed_` and `body` for where the rock stands, unless they are.
+    void stand();
+    /// Takes on `end` as where it stands, and returns whether it does.
+    bool arrive();
+
     RockSimulator sim;
     PairBody body;
+    PlacedBlock end; ///< Of the step at hand, as long as it is being solved.
+    PairBody endBody;
     BlockState stayed; ///< Where, and since when, it has not gone far from.
     bool asleep = false;
     bool touchesOthers = false;
+    bool arrived = false;       ///< The step has been looked at where it ended.
     int place = -1;             ///< Among the bodies of its group in the step at hand.
     std::uint64_t carriers = 0; ///< Which contacts with others carry.
   };

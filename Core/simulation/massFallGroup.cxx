@@ -69,8 +69,7 @@ void MassFall::gatherContacts(const Group& group, double h) const
     {
       return;
     }
-    sim.placed_.place(sim.block_, sim.state_);
-    m.body.update(sim.placed_);
+    m.stand();
     const double r = sim.block_.radius();
     const double reach = reachOf(sim.state_.velocity.norm() + sim.state_.spin.norm() * r, r);
     sim.ensureCandidates(reach);
@@ -281,7 +280,7 @@ void MassFall::fly(const Group& group, double duration) const
   for (RockPair* pair : group.pairs)
   {
     pair->contacts.clear();
-    pair->touched = false;
+    pair->touched = pair->seen = false;
     this->finishPairImpact(*pair);
   }
 }

@@ -51,23 +51,22 @@ void carryBack(const PlacedBlock& firstEnd, const PlacedBlock& secondEnd,
 
 bool MassFall::lookAgain(const Group& group, double h, bool bounces, Workspace& work) const
 {
-  work.ends.resize(work.bodies.size());
-  work.endBodies.resize(work.bodies.size());
   const auto place = [&](std::size_t k)
   {
-    const Member& m = *members_[group.members[k]];
-    if (!m.sim.done_)
+    Member& m = *members_[group.members[k]];
+    if (!m.sim.done_ && work.solver.moved(std::size_t(m.place)))
     {
-      const std::size_t i = std::size_t(m.place);
-      work.ends[i].place(m.sim.block_, work.solver.end(work.bodies, i));
-      work.endBodies[i].update(work.ends[i]);
+      m.end.place(m.sim.block_, work.solver.end(work.bodies, std::size_t(m.place)));
+      m.endBody.update(m.end);
     }
   };
   forEach(group.members.size(), kRockGrain, place);
-  const auto smaller = [&](const RockPair& pair)
+  work.looked = true;
+  const auto allowed = [&](const RockPair& pair)
   {
-    return std::min(
-      members_[pair.first]->sim.block_.radius(), members_[pair.second]->sim.block_.radius());
+    return kMissed *
+      std::min(
+        members_[pair.first]->sim.block_.radius(), members_[pair.second]->sim.block_.radius());
   };
   const std::size_t firstAdded = work.firsts.back();
   const auto deepest = [&](std::size_t p)
@@ -79,21 +78,19 @@ bool MassFall::lookAgain(const Group& group, double h, bool bounces, Workspace& 
     }
     return least;
   };
-  work.endAxes.resize(group.pairs.size());
   work.missed.assign(group.pairs.size(), 0);
   const auto compare = [&](std::size_t p)
   {
-    const RockPair& pair = *group.pairs[p];
+    RockPair& pair = *group.pairs[p];
     const Member &a = *members_[pair.first], &b = *members_[pair.second];
-    if (a.sim.done_ || b.sim.done_)
+    if (a.sim.done_ || b.sim.done_ ||
+      !(work.solver.moved(std::size_t(a.place)) || work.solver.moved(std::size_t(b.place))))
     {
       return;
     }
-    PairAxis& axis = work.endAxes[p];
-    axis = findAxis(
-      work.endBodies[std::size_t(a.place)], work.endBodies[std::size_t(b.place)], pair.axis, 0.0);
-    const double allowed = kMissed * smaller(pair);
-    work.missed[p] = axis.distance < -allowed && axis.distance < deepest(p) - allowed;
+    pair.end = findAxis(a.endBody, b.endBody, pair.axis, 0.0);
+    const double deep = -allowed(pair);
+    work.missed[p] = pair.end.distance < deep && pair.end.distance < deepest(p) + deep;
   };
   forEach(group.pairs.size(), kPairGrain, compare);
   thread_local std::vector<Contact> found;
@@ -106,10 +103,8 @@ bool MassFall::lookAgain(const Group& group, double h, bool bounces, Workspace& 
     }
     RockPair& pair = *group.pairs[p];
     const Member &a = *members_[pair.first], &b = *members_[pair.second];
-    const std::size_t i = std::size_t(a.place), j = std::size_t(b.place);
-    findTouches(work.endBodies[i], work.endBodies[j], work.endAxes[p], 0.0, found);
-    pair.axis = work.endAxes[p];
-    const double limit = deepest(p) - kMissed * smaller(pair);
+    findTouches(a.endBody, b.endBody, pair.end, 0.0, found);
+    const double limit = deepest(p) - allowed(pair);
     for (Contact& c : found)
     {
       if (c.distance >= limit)
@@ -143,15 +138,17 @@ bool MassFall::lookAgain(const Group& group, double h, bool bounces, Workspace& 
         work.solver.setGap(known, c.distance - work.contacts[known].contact->offset);
         continue;
       }
-      carryBack(work.ends[i], work.ends[j], a.sim.placed_, b.sim.placed_, c);
-      c.state = ContactState::Open;
+      carryBack(a.end, b.end, a.sim.placed_, b.sim.placed_, c);
       this->armContact(pair, c);
       work.added.push_back(c);
       work.addedTo.push_back(p);
       GroupContact taken = this->take(pair, work.added.back(), h, bounces);
       // As for all others: what meets several at once does not bounce.
       const auto meetsOthers = [&](int body, int other)
-      { return work.partners[body] != other && work.partners[body] != kMeetsNone; };
+      {
+        const int partner = work.partners[std::size_t(body)];
+        return partner != other && partner != kMeetsNone;
+      };
       if (taken.bounce >= 0.0 && meetsOthers(taken.first, taken.second) &&
         meetsOthers(taken.second, taken.first))
       {

@@ -214,6 +214,7 @@ void MassFall::solve(
       work.added.clear();
       work.addedTo.clear();
     }
+    work.looked = false;
     outcome = work.solver.step(request, work.bodies, work.contacts, last, look);
     for (int i : group.members)
     {
@@ -333,6 +334,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
   const auto absorbRock = [&](std::size_t k)
   {
     Member& m = *members_[group.members[k]];
+    m.arrived = false;
     if (m.sim.done_)
     {
       return;
@@ -367,8 +369,18 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
       m.sim.recorder_.trajectory().summary.fate = Fate::Moving;
       m.sim.done_ = true;
     }
+    m.arrived = work.looked && m.arrive();
   };
   forEach(group.members.size(), kRockGrain, absorbRock);
+  for (RockPair* pair : group.pairs)
+  {
+    pair->seen = members_[pair->first]->arrived && members_[pair->second]->arrived;
+    if (work.looked)
+    {
+      pair->before = pair->axis;
+      pair->axis = pair->end;
+    }
+  }
 }
 
 void MassFall::finishPairImpact(RockPair& pair) const

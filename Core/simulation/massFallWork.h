@@ -32,11 +32,8 @@ struct MassFall::Workspace
   /// Contacts that are found in a second look, behind the others in `contacts`, and whose they are.
   std::deque<Contact> added;
   std::vector<std::size_t> addedTo;
-  /// Where the rocks would be at the end of the step, and along what the pairs are apart there.
-  std::vector<PlacedBlock> ends;
-  std::vector<PairBody> endBodies;
-  std::vector<PairAxis> endAxes;
-  std::vector<char> missed;
+  std::vector<char> missed; ///< By pair.
+  bool looked = false;      ///< Where the step ends.
 };
 
 } // namespace rockfall

@@ -150,12 +150,12 @@ void GroupSolver::append(const StepRequest& request, const std::vector<GroupBody
 {
   const std::size_t first = rows_.size();
   this->prepareRows(request, bodies, contacts, first);
-  this->levers();
   for (std::size_t k = first; k < rows_.size(); ++k)
   {
     // The gap at the start from which this way leads to the one at the end.
     Row& row = rows_[k];
     Contact& c = *contacts[k].contact;
+    this->lever(row);
     c.distance -= this->travel(row)[0];
     c.offset = std::min(0.0, c.distance);
     row.law.gap0 = row.gap0 = c.gap();
@@ -184,6 +184,21 @@ void GroupSolver::setGap(std::size_t contact, double found)
   const double change = std::max(least - row.gap0, found - this->gap(contact));
   row.law.gap0 += row.law.gap0 == row.gap0 ? change : 0.0; // a bounce asks for one of its own
   row.gap0 += change;
+  if (sweeping_)
+  {
+    Point& p = points_[std::size_t(pointOf_[contact])];
+    p.gap = row.law.gap0;
+    for (const int body : p.body)
+    {
+      Mover& m = movers_[std::size_t(body)];
+      m.changed = m.inverseMass > 0.0 ? sweep_ : kNever;
+    }
+  }
+}
+
+bool GroupSolver::moved(std::size_t body) const
+{
+  return !sweeping_ || movers_[body].changed >= looked_;
 }
 
 void GroupSolver::turn()
@@ -200,53 +215,53 @@ void GroupSolver::turn()
 void GroupSolver::levers()
 {
   this->turn();
+  forEach(rows_.size(), kRowGrain, [&](std::size_t k) { this->lever(rows_[k]); });
+}
+
+void GroupSolver::lever(Row& row) const
+{
   // A material vector of a body, averaged over the step.
   const auto mean = [&](const Side& side, const Vec3& y)
   { return side.body < 0 ? y : Vec3(0.5 * (y + work_[side.body].turned * y)); };
   const auto middle = [&](const Side& side)
   { return Vec3(work_[side.body].position + 0.5 * work_[side.body].d.head<3>()); };
-  const auto move = [&](std::size_t k)
+  Side &first = row.sides[0], &second = row.sides[1];
+  const auto pointOn = [&](const Side& side)
+  { return side.body < 0 ? row.fixed : Vec3(middle(side) + mean(side, side.place)); };
+  Vec3 n = row.n, x = row.fixed;
+  switch (row.kind)
   {
-    Row& row = rows_[k];
-    Side &first = row.sides[0], &second = row.sides[1];
-    const auto pointOn = [&](const Side& side)
-    { return side.body < 0 ? row.fixed : Vec3(middle(side) + mean(side, side.place)); };
-    Vec3 n = row.n, x = row.fixed;
-    switch (row.kind)
+    case ContactKind::VertexFace:
+      x = pointOn(first);
+      n = mean(second, n);
+      break;
+    case ContactKind::FaceVertex:
+      x = pointOn(second);
+      n = mean(first, n);
+      break;
+    case ContactKind::EdgeEdge:
     {
-      case ContactKind::VertexFace:
-        x = pointOn(first);
-        n = mean(second, n);
-        break;
-      case ContactKind::FaceVertex:
-        x = pointOn(second);
-        n = mean(first, n);
-        break;
-      case ContactKind::EdgeEdge:
+      const Vec3 p = pointOn(first), q = pointOn(second);
+      const Vec3 u = mean(first, first.edge), w = mean(second, second.edge);
+      double s, t;
+      x = p;
+      if (closestOnLines(p, u, q, w, s, t))
       {
-        const Vec3 p = pointOn(first), q = pointOn(second);
-        const Vec3 u = mean(first, first.edge), w = mean(second, second.edge);
-        double s, t;
-        x = p;
-        if (closestOnLines(p, u, q, w, s, t))
-        {
-          const Vec3 cross = u.cross(w).normalized();
-          n = cross.dot(row.n) < 0.0 ? Vec3(-cross) : cross;
-          x = p + s * u;
-        }
-        break;
+        const Vec3 cross = u.cross(w).normalized();
+        n = cross.dot(row.n) < 0.0 ? Vec3(-cross) : cross;
+        x = p + s * u;
       }
+      break;
     }
-    row.directions[0] = n;
-    for (Side& side : row.sides)
+  }
+  row.directions[0] = n;
+  for (Side& side : row.sides)
+  {
+    if (side.body >= 0)
     {
-      if (side.body >= 0)
-      {
-        side.lever = x - middle(side);
-      }
+      side.lever = x - middle(side);
     }
-  };
-  forEach(rows_.size(), kRowGrain, move);
+  }
 }
 
 Mat3 GroupSolver::mobility(const Row& row) const

@@ -83,6 +83,7 @@ public:
   double gap(std::size_t contact) const; ///< At the end of the step as reckoned, m.
   /// The gap is found to be another one (m). No contact is asked to open further than it was.
   void setGap(std::size_t contact, double found);
+  bool moved(std::size_t body) const; ///< Since lookAgain was asked last.
 
   GroupMethod method = GroupMethod::Suited;
   /// Share of the largest displacement to which Gauss–Seidel goes.
@@ -155,10 +156,12 @@ private:
     const std::vector<GroupContact>& contacts, std::size_t first);
   void startRows(
     const StepRequest& request, const std::vector<GroupContact>& contacts, std::size_t first);
+  /// Rows of the contacts that lookAgain has appended.
   void append(const StepRequest& request, const std::vector<GroupBody>& bodies,
     std::vector<GroupContact>& contacts);
-  void turn();   ///< Rotations as the displacements are.
-  void levers(); ///< … and levers with them.
+  void lever(Row& row) const;
+  void turn();                         ///< Rotations as the displacements are.
+  void levers();                       ///< … and levers with them.
   Mat3 mobility(const Row& row) const; ///< J A⁻¹ Jᵀ of a force at the contact, m/N.
   Vec3 travel(const Row& row) const;   ///< J D: along the normal and the two tangents, m.
   bool evaluate(double h, bool lasting);
@@ -172,6 +175,12 @@ private:
     const StepRequest& request, const std::vector<GroupBody>& bodies, GroupOutcome& outcome);
   void arrange(); ///< Rows by parts of the group.
   void gather();  ///< Rows and bodies into points and movers.
+  void gatherPoint(const Row& row, Point& point) const;
+  bool sweeps(int most, GroupOutcome& outcome);
+  void collect(); ///< Displacements and forces from movers and points.
+  /// Goes on with the rows that were appended and the gaps that were set.
+  bool resume(GroupOutcome& outcome);
+  void finishSweeps(const StepRequest& request);
   double visit(int part, int number, double enough);
   double sweep(int number, double enough);
   double relax(Point& p);
@@ -191,6 +200,11 @@ private:
   std::vector<std::size_t> nextInPart_;
   std::vector<int> byPlace_, partOf_; ///< Bodies.
   std::vector<double> most_;          ///< Largest change, by part.
+  std::vector<int> pointOf_;          ///< By row, its point.
+  int sweep_ = 0;                     ///< Number of the next sweep.
+  int looked_ = 0;                    ///< Number of the first one since lookAgain was asked.
+  double enough_ = 0.0;               ///< m
+  bool sweeping_ = false;             ///< Gauss–Seidel it is.
   double rate_ = 0.0;
   BlockMatrix blocks_, kept_;
 };

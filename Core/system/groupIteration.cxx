@@ -82,6 +82,7 @@ GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody
   std::vector<GroupContact>& contacts, bool takeAnyway, const std::function<bool()>& lookAgain)
 {
   GroupOutcome outcome;
+  sweeping_ = false;
   this->prepare(request, bodies, contacts);
   const bool lasting = request.kind == StepKind::Lasting;
   const bool iterate =
@@ -92,8 +93,9 @@ GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody
     for (int look = 0; look < kLooks && lookAgain && lookAgain(); ++look)
     {
       this->append(how, bodies, contacts);
-      outcome.settled = this->gaussSeidel(how, bodies, outcome);
+      outcome.settled = this->resume(outcome);
     }
+    this->finishSweeps(how);
   };
   if (iterate && lasting)
   {

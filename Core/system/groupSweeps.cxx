@@ -87,7 +87,6 @@ void GroupSolver::arrange()
 
 void GroupSolver::gather()
 {
-  const int slope = int(work_.size());
   movers_.resize(work_.size() + std::size_t(parts_) + 1);
   for (std::size_t i = 0; i < work_.size(); ++i)
   {
@@ -99,42 +98,14 @@ void GroupSolver::gather()
     movers_[i] = { Vec3::Zero(), Vec3::Zero(), 0.0, Mat3::Zero(), kNever };
   }
   points_.resize(rows_.size());
-  const auto gatherPoint = [&](std::size_t k)
+  pointOf_.resize(rows_.size());
+  const auto gatherRow = [&](std::size_t k)
   {
-    const Row& row = rows_[std::size_t(order_[k])];
-    const ContactLaw& law = row.law;
-    Point& p = points_[k];
-    const Mat3 w = this->mobility(row);
-    const Vec3 moved = w * row.directions[0];
-    Eigen::Matrix2d across;
-    for (int i = 0; i < 2; ++i)
-    {
-      // Contacts with the slope are in the part of their rock.
-      p.body[i] =
-        row.sides[i].body < 0 ? slope + partOf_[std::size_t(row.sides[0].body)] : row.sides[i].body;
-      p.lever[i] = row.sides[i].lever;
-      p.coupling[i] = row.directions[i + 1].dot(moved);
-      p.slip[i] = law.slip0[i];
-      for (int j = 0; j < 2; ++j)
-      {
-        across(i, j) = row.directions[i + 1].dot(w * row.directions[j + 1]);
-      }
-    }
-    p.directions = row.directions;
-    p.w = row.directions[0].dot(moved);
-    p.gap = law.gap0;
-    p.stiffness = law.penalty / (1.0 + law.penalty * p.w);
-    const double mobile = std::max(across(0, 0), across(1, 1)) + std::abs(across(0, 1));
-    p.shear = 1.0 / law.shearPenalty;
-    p.gain = law.shearPenalty / (1.0 + law.shearPenalty * mobile);
-    p.friction = law.friction;
-    p.cohesion = law.cohesion;
-    for (int i = 0; i < 3; ++i)
-    {
-      p.force[i] = row.force[i];
-    }
+    const std::size_t row = std::size_t(order_[k]);
+    pointOf_[row] = int(k);
+    this->gatherPoint(rows_[row], points_[k]);
   };
-  forEach(points_.size(), kRowGrain, gatherPoint);
+  forEach(points_.size(), kRowGrain, gatherRow);
   for (const Point& p : points_)
   {
     if (p.force[0] == 0.0)
@@ -150,6 +121,41 @@ void GroupSolver::gather()
       m.way += (sign * m.inverseMass) * force;
       m.turn += sign * (m.inverseInertia * p.lever[i].cross(force));
     }
+  }
+}
+
+void GroupSolver::gatherPoint(const Row& row, Point& p) const
+{
+  const int slope = int(work_.size());
+  const ContactLaw& law = row.law;
+  const Mat3 w = this->mobility(row);
+  const Vec3 moved = w * row.directions[0];
+  Eigen::Matrix2d across;
+  for (int i = 0; i < 2; ++i)
+  {
+    // Contacts with the slope are in the part of their rock.
+    p.body[i] =
+      row.sides[i].body < 0 ? slope + partOf_[std::size_t(row.sides[0].body)] : row.sides[i].body;
+    p.lever[i] = row.sides[i].lever;
+    p.coupling[i] = row.directions[i + 1].dot(moved);
+    p.slip[i] = law.slip0[i];
+    for (int j = 0; j < 2; ++j)
+    {
+      across(i, j) = row.directions[i + 1].dot(w * row.directions[j + 1]);
+    }
+  }
+  p.directions = row.directions;
+  p.w = row.directions[0].dot(moved);
+  p.gap = law.gap0;
+  p.stiffness = law.penalty / (1.0 + law.penalty * p.w);
+  const double mobile = std::max(across(0, 0), across(1, 1)) + std::abs(across(0, 1));
+  p.shear = 1.0 / law.shearPenalty;
+  p.gain = law.shearPenalty / (1.0 + law.shearPenalty * mobile);
+  p.friction = law.friction;
+  p.cohesion = law.cohesion;
+  for (int i = 0; i < 3; ++i)
+  {
+    p.force[i] = row.force[i];
   }
 }
 
@@ -256,6 +262,30 @@ double GroupSolver::sweep(int number, double enough)
   return *std::max_element(most_.begin(), most_.end());
 }
 
+bool GroupSolver::sweeps(int most, GroupOutcome& outcome)
+{
+  bool settled = false;
+  for (int k = 0; k < most && !settled; ++k)
+  {
+    ++outcome.iterations;
+    outcome.residual = this->sweep(sweep_++, enough_);
+    settled = outcome.residual <= enough_;
+  }
+  return settled;
+}
+
+void GroupSolver::collect()
+{
+  for (std::size_t i = 0; i < work_.size(); ++i)
+  {
+    work_[i].d << movers_[i].way, movers_[i].turn;
+  }
+  for (std::size_t k = 0; k < rows_.size(); ++k)
+  {
+    rows_[std::size_t(order_[k])].force = Eigen::Map<const Vec3>(points_[k].force);
+  }
+}
+
 bool GroupSolver::gaussSeidel(
   const StepRequest& request, const std::vector<GroupBody>& bodies, GroupOutcome& outcome)
 {
@@ -265,7 +295,7 @@ bool GroupSolver::gaussSeidel(
   {
     scale = std::max(scale, w.d.head<3>().norm());
   }
-  const double enough = tolerance * scale;
+  enough_ = tolerance * scale;
   const bool calm = std::none_of(
     rows_.begin(), rows_.end(), [](const Row& row) { return row.gap0 != row.law.gap0; });
   const int most = calm ? kCalmSweeps * maxSweeps : maxSweeps;
@@ -279,30 +309,48 @@ bool GroupSolver::gaussSeidel(
     }
     this->loads(request, bodies);
     this->gather();
-    settled = false;
-    for (int k = 0; k < most && !settled; ++k)
-    {
-      ++outcome.iterations;
-      outcome.residual = this->sweep(k, enough);
-      settled = outcome.residual <= enough;
-    }
+    sweep_ = looked_ = 0;
+    settled = this->sweeps(most, outcome);
     double turned = 0.0;
     for (std::size_t i = 0; i < work_.size(); ++i)
     {
-      Work& w = work_[i];
-      turned = std::max(turned, (movers_[i].turn - w.d.tail<3>()).squaredNorm());
-      w.d << movers_[i].way, movers_[i].turn;
+      turned = std::max(turned, (movers_[i].turn - work_[i].d.tail<3>()).squaredNorm());
     }
-    for (std::size_t k = 0; k < rows_.size(); ++k)
-    {
-      rows_[std::size_t(order_[k])].force = Eigen::Map<const Vec3>(points_[k].force);
-    }
+    this->collect();
     if (turned <= kTurnGuessed * kTurnGuessed)
     {
       break;
     }
   }
   this->turn();
+  sweeping_ = true;
+  return settled;
+}
+
+bool GroupSolver::resume(GroupOutcome& outcome)
+{
+  looked_ = sweep_;
+  for (std::size_t k = points_.size(); k < rows_.size(); ++k)
+  {
+    // With what reaches further than to the next part.
+    order_.push_back(int(k));
+    pointOf_.push_back(int(k));
+    ++starts_.back();
+    points_.emplace_back();
+    this->gatherPoint(rows_[k], points_.back());
+    for (const int body : points_.back().body)
+    {
+      movers_[std::size_t(body)].changed = sweep_;
+    }
+  }
+  const bool settled = this->sweeps(maxSweeps, outcome);
+  this->collect();
+  this->turn();
+  return settled;
+}
+
+void GroupSolver::finishSweeps(const StepRequest& request)
+{
   // The forces that the rocks were moved with are the ones that are booked.
   this->evaluate(request.duration, true);
   for (Row& row : rows_)
@@ -310,7 +358,6 @@ bool GroupSolver::gaussSeidel(
     row.law.force = row.force[0];
     row.law.shearForce = row.force.tail<2>();
   }
-  return settled;
 }
 
 } // namespace rockfall
