@@ -157,17 +157,28 @@ void MassFall::findPairs(double duration)
     box.radius = m.sim.block_.radius() + (m.asleep ? 0.0 : speed * duration);
   }
   const std::vector<std::array<int, 2>> near = findNear(boxes);
-  // What lasts of the pairs that are still near.
+  // What lasts of the pairs that are still near, and those of sleepers, which are not looked for.
   nextPairs_.clear();
-  nextPairs_.reserve(near.size());
+  nextPairs_.reserve(std::max(near.size(), pairs_.size()));
   std::size_t old = 0;
+  const auto leave = [&](RockPair& pair)
+  {
+    if (members_[pair.first]->asleep && members_[pair.second]->asleep)
+    {
+      nextPairs_.push_back(std::move(pair));
+    }
+    else
+    {
+      this->finishPairImpact(pair);
+    }
+  };
   for (const std::array<int, 2>& ij : near)
   {
     const auto before = [&](const RockPair& p)
     { return p.first < ij[0] || (p.first == ij[0] && p.second < ij[1]); };
     for (; old < pairs_.size() && before(pairs_[old]); ++old)
     {
-      this->finishPairImpact(pairs_[old]);
+      leave(pairs_[old]);
     }
     if (old < pairs_.size() && pairs_[old].first == ij[0] && pairs_[old].second == ij[1])
     {
@@ -181,7 +192,7 @@ void MassFall::findPairs(double duration)
   }
   for (; old < pairs_.size(); ++old)
   {
-    this->finishPairImpact(pairs_[old]);
+    leave(pairs_[old]);
   }
   pairs_.swap(nextPairs_);
 }
@@ -206,8 +217,7 @@ void MassFall::findGroups(double duration)
       pair.linked = pair.known = false;
       if (a.asleep && b.asleep)
       {
-        pair.seen = false;
-        return;
+        return; // unless one of them wakes
       }
       const BlockState &s = a.sim.state_, &t = b.sim.state_;
       const double speed = (s.velocity - t.velocity).norm() + a.sim.block_.largestRimSpeed(s.spin) +
@@ -230,20 +240,6 @@ void MassFall::findGroups(double duration)
         pair.touched = false;
       }
     });
-  // Sleepers that are touched wake, and with them, in the next steps, all that they touch.
-  for (const RockPair& pair : pairs_)
-  {
-    if (pair.linked)
-    {
-      for (int i : { pair.first, pair.second })
-      {
-        if (members_[i]->asleep)
-        {
-          this->wake(*members_[i]);
-        }
-      }
-    }
-  }
   std::vector<int> parent(members_.size());
   std::iota(parent.begin(), parent.end(), 0);
   const auto root = [&](int i)
@@ -259,35 +255,60 @@ void MassFall::findGroups(double duration)
     const int a = root(pair.first), b = root(pair.second);
     parent[std::max(a, b)] = std::min(a, b);
   };
-  for (const RockPair& pair : pairs_)
+  const auto link = [&](RockPair& pair)
+  {
+    for (int i : { pair.first, pair.second })
+    {
+      if (members_[i]->asleep)
+      {
+        this->wake(*members_[i]);
+      }
+    }
+    pair.linked = true;
+    join(pair);
+  };
+  for (RockPair& pair : pairs_)
   {
     if (pair.linked)
     {
-      join(pair);
+      link(pair);
     }
   }
-  // What a fast rock strikes may go on at its speed, and reach another one within the step.
-  std::vector<double> fastest(members_.size(), 0.0);
-  for (std::size_t i = 0; i < members_.size(); ++i)
+  // What a fast rock strikes may go on at its speed and reach another one within the step. So may
+  // what it strikes in its sleep: with it wakes all that it may touch.
+  std::vector<double> fastest(members_.size());
+  for (bool changed = true; changed;)
   {
-    const RockSimulator& sim = members_[i]->sim;
-    double& speed = fastest[std::size_t(root(int(i)))];
-    speed = std::max(speed, sim.done_ ? 0.0 : sim.state_.velocity.norm());
-  }
-  for (std::size_t i = 0; i < members_.size(); ++i)
-  {
-    fastest[i] = fastest[std::size_t(root(int(i)))]; // a root is no larger than its members
-  }
-  for (RockPair& pair : pairs_)
-  {
-    const Member &a = *members_[pair.first], &b = *members_[pair.second];
-    const double speed =
-      std::max(fastest[std::size_t(pair.first)], fastest[std::size_t(pair.second)]);
-    if (!pair.linked && !a.asleep && !b.asleep && !a.sim.done_ && !b.sim.done_ &&
-      pair.axis.kind != PairAxis::Kind::None && pair.axis.distance <= speed * duration)
+    changed = false;
+    std::fill(fastest.begin(), fastest.end(), 0.0);
+    for (std::size_t i = 0; i < members_.size(); ++i)
     {
-      pair.linked = true;
-      join(pair);
+      const RockSimulator& sim = members_[i]->sim;
+      double& speed = fastest[std::size_t(root(int(i)))];
+      speed = std::max(speed, sim.done_ ? 0.0 : sim.state_.velocity.norm());
+    }
+    for (RockPair& pair : pairs_)
+    {
+      const Member &a = *members_[pair.first], &b = *members_[pair.second];
+      if (pair.linked || (a.sim.done_ && b.sim.done_))
+      {
+        continue;
+      }
+      const double speed = parameters_.gravity * duration +
+        std::max(fastest[std::size_t(root(pair.first))], fastest[std::size_t(root(pair.second))]);
+      const double reach = speed * duration;
+      if (!pair.known && pair.axis.distance <= reach)
+      {
+        pair.before = pair.seen ? pair.before : pair.axis;
+        pair.axis = findAxis(a.body, b.body, pair.axis, reach);
+        pair.seen = false;
+        pair.known = true;
+      }
+      if (pair.axis.distance <= reach)
+      {
+        link(pair);
+        changed = true;
+      }
     }
   }
   std::vector<int> size(members_.size(), 0), place(members_.size(), -1);
