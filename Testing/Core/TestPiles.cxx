@@ -385,7 +385,7 @@ TEST(Piles, LargeGroupKeepsMomentum)
     5, 100.0, [](double, double) { return -1000.0; }, material(1.0, 0.0));
   pile.parameters.gravity = 0.0;
   pile.parameters.rockRestitution = 0.3;
-  pile.rocks = handful(63, 5);
+  pile.rocks = handful(108, 5);
   for (Rock& rock : pile.rocks)
   {
     rock.velocity = 2.0 * (Vec3(20.0, 20.0, 4.5) - rock.position); // all to one place
@@ -419,8 +419,8 @@ TEST(Piles, LargeGroupKeepsMomentum)
   const double after = totals(p1, l1);
   EXPECT_LT((p1 - p0).norm(), 1e-10 * size);
   // Displacements of a lasting step are not along its mean velocity: the moment of momentum is kept
-  // to the order of the step only (6e-5 here, of rocks at 10 m/s 5 m from the middle).
-  EXPECT_LT((l1 - l0).norm(), 2e-4 * size * 5.0);
+  // to the order of the step only (3e-5 here, of rocks at 10 m/s 5 m from the middle).
+  EXPECT_LT((l1 - l0).norm(), 1e-4 * size * 5.0);
   EXPECT_LT(after, before);
   EXPECT_GT(pile.fall->impacts(31).size(), 0u);
 }
