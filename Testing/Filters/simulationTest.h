@@ -6,11 +6,46 @@
 #include "helpers.h"
 
 #include "vtkDEMToCFESource.h"
+#include "vtkDataArray.h"
 #include "vtkDataObject.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkRockBlockSource.h"
 #include "vtkRockfallSimulation.h"
 #include "vtkTable.h"
+#include "vtkVariant.h"
+
+#include <cmath>
+#include <vector>
+
+/// Middle of a mesh along an axis, m.
+inline double middle(vtkPolyData* mesh, int axis)
+{
+  double bounds[6];
+  mesh->GetBounds(bounds);
+  return 0.5 * (bounds[2 * axis] + bounds[2 * axis + 1]);
+}
+
+/// All numbers of a polydata's points and arrays, to compare runs bit by bit.
+inline std::vector<double> numbersOf(vtkPolyData* data)
+{
+  std::vector<double> numbers;
+  const auto append = [&](vtkDataArray* array)
+  {
+    for (vtkIdType k = 0; array && k < array->GetNumberOfValues(); ++k)
+    {
+      const double v = array->GetVariantValue(k).ToDouble();
+      numbers.push_back(std::isnan(v) ? -1e300 : v);
+    }
+  };
+  append(data->GetPoints()->GetData());
+  for (int k = 0; k < data->GetPointData()->GetNumberOfArrays(); ++k)
+  {
+    append(data->GetPointData()->GetArray(k));
+  }
+  return numbers;
+}
 
 class SimulationTest : public FilterTest
 {
