@@ -20,6 +20,10 @@ namespace
 /// trembles, by less than its springs are compressed.
 constexpr double kStillTime = 0.5;
 constexpr double kStillSpeed = 1e-3;
+/// So it does when for this long, s, each has kept within this share of its radius: contacts are
+/// points without a moment, and a rock that is wedged between two may swing about them for ever.
+constexpr double kLingerTime = 3.0;
+constexpr double kLingerWay = 0.03;
 
 } // namespace
 
@@ -102,7 +106,7 @@ void MassFall::wake(Member& member)
   sim.done_ = false;
   sim.quietTime_ = 0.0;
   sim.state_.time = time_;
-  member.stayed = sim.state_;
+  member.stayed = member.lingered = sim.state_;
   sim.recorder_.trajectory().summary.fate = Fate::Moving;
   sim.recorder_.resume(sim.state_);
   sim.auditSamples(sim.state_);
@@ -127,14 +131,21 @@ bool MassFall::stays(Member& member) const
     return true;
   }
   const double r = sim.block_.radius();
-  const double way = (sim.state_.position - member.stayed.position).norm() +
-    r * sim.state_.orientation.angularDistance(member.stayed.orientation);
+  const auto wayFrom = [&](const BlockState& place)
+  {
+    return (sim.state_.position - place.position).norm() +
+      r * sim.state_.orientation.angularDistance(place.orientation);
+  };
   const double speed = kStillSpeed * std::sqrt(std::max(parameters_.gravity, 1e-3) * r);
-  if (way > speed * kStillTime)
+  if (wayFrom(member.stayed) > speed * kStillTime)
   {
     member.stayed = sim.state_;
   }
-  return time_ - member.stayed.time >= kStillTime;
+  if (wayFrom(member.lingered) > kLingerWay * r)
+  {
+    member.lingered = sim.state_;
+  }
+  return time_ - member.stayed.time >= kStillTime || time_ - member.lingered.time >= kLingerTime;
 }
 
 void MassFall::findPairs(double duration)

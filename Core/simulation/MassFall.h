@@ -73,7 +73,8 @@ private:
     PairBody body;
     PlacedBlock end; ///< Of the step at hand, as long as it is being solved.
     PairBody endBody;
-    BlockState stayed; ///< Where, and since when, it has not gone far from.
+    BlockState stayed;   ///< Where, and since when, it has not gone far from.
+    BlockState lingered; ///< The same, further and for longer.
     bool asleep = false;
     bool touchesOthers = false;
     bool arrived = false;       ///< The step has been looked at where it ended.
