@@ -313,7 +313,7 @@ void MassFall::findGroups(double duration)
         pair.before = pair.seen ? pair.before : pair.axis;
         pair.axis = findAxis(a.body, b.body, pair.axis, reach);
         pair.seen = false;
-        pair.known = true;
+        pair.known = pair.axis.distance <= reach;
       }
       if (pair.axis.distance <= reach)
       {
@@ -321,6 +321,12 @@ void MassFall::findGroups(double duration)
         changed = true;
       }
     }
+  }
+  for (RockPair& pair : pairs_)
+  {
+    // Who is awake and not linked moves by himself, away from where the axis was found.
+    const bool asleep = members_[pair.first]->asleep && members_[pair.second]->asleep;
+    pair.seen = pair.seen && asleep;
   }
   std::vector<int> size(members_.size(), 0), place(members_.size(), -1);
   for (std::size_t i = 0; i < members_.size(); ++i)
@@ -369,6 +375,7 @@ bool MassFall::advance()
       Member& m = *members_[alone_[k]];
       m.touchesOthers = false;
       m.sim.advance(until);
+      this->stays(m); // to know when it comes back to a group
       m.asleep = m.sim.done_ && m.sim.recorder_.trajectory().summary.fate == Fate::Rested;
     });
   tbb::parallel_for(

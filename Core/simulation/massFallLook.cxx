@@ -90,7 +90,8 @@ bool MassFall::lookAgain(const Group& group, double h, bool bounces, Workspace& 
     }
     pair.end = findAxis(a.endBody, b.endBody, pair.axis, 0.0);
     const double deep = -allowed(pair);
-    work.missed[p] = pair.end.distance < deep && pair.end.distance < deepest(p) + deep;
+    work.missed[p] = pair.end.kind != PairAxis::Kind::None && pair.end.distance < deep &&
+      pair.end.distance < deepest(p) + deep;
   };
   forEach(group.pairs.size(), kPairGrain, compare);
   thread_local std::vector<Contact> found;

@@ -51,6 +51,13 @@ void settleBounces(
   }
 }
 
+/// A number for a contact that carries.
+std::uint64_t keyOf(const Contact& c)
+{
+  return (std::uint64_t(c.rockFeature + 1000) * 4 + std::uint64_t(c.kind) + 1) *
+    0x9e3779b97f4a7c15ull;
+}
+
 } // namespace
 
 GroupContact MassFall::take(RockPair& pair, Contact& c, double h, bool bounces) const
@@ -281,11 +288,8 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
       pair.touched = pair.touched || c.closed();
       if (c.closed())
       {
-        const std::uint64_t key =
-          (std::uint64_t(c.rockFeature + 1000) * 4 + std::uint64_t(c.kind) + 1) *
-          0x9e3779b97f4a7c15ull;
-        carry[0] += key * std::uint64_t(pair.second + 2);
-        carry[1] += key * std::uint64_t(pair.first + 2);
+        carry[0] += keyOf(c) * std::uint64_t(pair.second + 2);
+        carry[1] += keyOf(c) * std::uint64_t(pair.first + 2);
       }
     }
     if (!pair.touched)
@@ -319,7 +323,10 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     if (c.closed())
     {
       pair.touched = true;
-      members_[pair.first]->touchesOthers = members_[pair.second]->touchesOthers = true;
+      Member &first = *members_[pair.first], &second = *members_[pair.second];
+      first.touchesOthers = second.touchesOthers = true;
+      carriers[std::size_t(first.place)] += keyOf(c) * std::uint64_t(pair.second + 2);
+      carriers[std::size_t(second.place)] += keyOf(c) * std::uint64_t(pair.first + 2);
     }
     pair.contacts.push_back(c);
   }
@@ -375,7 +382,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
   for (RockPair* pair : group.pairs)
   {
     pair->seen = members_[pair->first]->arrived && members_[pair->second]->arrived;
-    if (work.looked)
+    if (pair->seen)
     {
       pair->before = pair->axis;
       pair->axis = pair->end;

@@ -17,6 +17,9 @@ namespace
 /// between others would keep Gauss–Seidel from settling.
 constexpr double kBounceStiffness = 100.0;
 
+/// How often the turn of a free body is gone over for the first guess of a step.
+constexpr int kFreeTurns = 2;
+
 Quat cayley(const Vec3& r)
 {
   const double scale = 1.0 / std::sqrt(1.0 + 0.25 * r.squaredNorm());
@@ -56,6 +59,17 @@ void GroupSolver::prepare(const StepRequest& request, const std::vector<GroupBod
     // First guess: as the last step went.
     w.d.head<3>() = h * w.velocity0.head<3>() + (0.5 * h * h) * body.acceleration;
     w.d.tail<3>() = h * w.velocity0.tail<3>() + (0.5 * h * h) * spinAcceleration;
+    for (int k = 0; k < kFreeTurns && lasting && body.spinAcceleration.isZero(0.0); ++k)
+    {
+      // … but turning as a free body does, that keeps its angular momentum (see loads): taken for
+      // constant, its spin would gain energy from the gyroscopic moment.
+      const Vec3 spin = (rate_ * w.d + w.offset).tail<3>();
+      const Vec3 momentum = w.rotation * (block.inertia() * (back * spin));
+      const Vec3 turned = cayley(w.d.tail<3>()) * momentum;
+      w.d.tail<3>() = ((w.velocity0 - w.offset).tail<3>() -
+                        w.rotation * (block.inverseInertia() * (back * (turned - momentum)))) /
+        rate_;
+    }
     w.last.setZero();
   };
   forEach(bodies.size(), kBodyGrain, prepareBody);

@@ -16,7 +16,7 @@ namespace
 {
 
 /// Gauss–Seidel: how often levers and gyroscopic moments are brought up to date in a step.
-constexpr int kLeverUpdates = 1;
+constexpr int kLeverUpdates = 2;
 /// … unless no rock has turned otherwise than guessed by more than this, rad: gaps are then right
 /// to the square of it.
 constexpr double kTurnGuessed = 0.02;
