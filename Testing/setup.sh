@@ -13,7 +13,8 @@ rockfall_packages=(
   paraview paraview-dev python3-paraview libopenmpi-dev libdouble-conversion-dev
   libeigen3-dev libgdal-dev gdal-bin libtbb-dev librandom123-dev libqhull-dev libboost-dev
   libgtest-dev libbenchmark-dev
-  xvfb xauth locales python3-matplotlib python-matplotlib-data)
+  xvfb xauth locales python3-matplotlib python-matplotlib-data
+  libqt5svg5) # without it ParaView's window has no icons: no eyes, no Play
 
 fail() {
   echo "RockfallDDA: $*" >&2
