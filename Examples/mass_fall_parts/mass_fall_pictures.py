@@ -131,7 +131,7 @@ def oblique_picture(slopes, simulations, path, end):
     flat(paths_of(simulations[name], 0), view, PATH, LineWidth=1.5)
     view.ViewTime = end
     look_uphill(view)
-    write(view, "41 rocks that have hit each other: on the step, at the foot and on the road", (0.02, 0.945), 28, bold=True)
+    write(view, "41 rocks that have hit each other: on the step, at the foot, on the road and beyond", (0.02, 0.945), 28, bold=True)
     write(view, "Real shapes in their real size; red: paths; green: crest of the embankment planned; contours: 1 m", (0.02, 0.905), 20)
     SaveScreenshot(path, view, ImageResolution=list(view.ViewSize))
     Delete(view)

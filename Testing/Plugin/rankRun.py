@@ -11,6 +11,7 @@ from paraview.simple import (
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
+os.dup2(1, 2)  # one stream, or mpiexec may hand on an error before the line that was printed before it
 controller = vtkMultiProcessController.GetGlobalController()
 first = controller.GetLocalProcessId() == 0
 symmetric = servermanager.vtkProcessModule.GetProcessModule().GetSymmetricMPIMode()
@@ -59,6 +60,8 @@ for trouble in troubles:
         controller.Barrier()  # what was said before belongs to what was before
     if first:
         print(f"TROUBLE {trouble}", flush=True)
+    if symmetric:
+        controller.Barrier()
     if trouble == "source":  # fails on the first rank only: the others' have nothing to read
         slope.FileName = "no such file.tif"
     elif trouble == "placement":
