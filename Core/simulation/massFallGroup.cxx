@@ -192,10 +192,7 @@ bool MassFall::mayLast(const Group& group, double h) const
 {
   // Whatever is about to close must not come in as an impact.
   const auto impact = [&](const Contact& c, const Vec3& velocity, double resting)
-  {
-    const double approach = -c.normal.dot(velocity);
-    return !c.closed() && approach > resting && c.gap() < approach * h;
-  };
+  { return hits(c, -c.normal.dot(velocity), resting, h); };
   for (int i : group.members)
   {
     const RockSimulator& sim = members_[i]->sim;

@@ -71,11 +71,11 @@ GroupContact MassFall::take(RockPair& pair, Contact& c, double h, bool bounces) 
   k.friction = pair.law.friction;
   k.cohesion = pair.law.cohesion;
   k.approach = -c.normal.dot(this->relativeVelocity(pair, c.point));
-  const bool hits = !c.closed() && k.approach > resting && c.gap() < k.approach * h;
-  k.bounce = bounces && hits ? pair.law.restitution * k.approach : -1.0;
+  const bool impacts = hits(c, k.approach, resting, h);
+  k.bounce = bounces && impacts ? pair.law.restitution * k.approach : -1.0;
   // For the events.
   RockPair::Impact& impact = pair.impact;
-  if (hits && !impact.pending)
+  if (impacts && !impact.pending)
   {
     impact = {};
     impact.pending = true;
@@ -121,11 +121,6 @@ void MassFall::solve(
   work.bodies.resize(std::size_t(places));
   work.energyBefore.resize(std::size_t(places));
   work.contacts.resize(contacts);
-  const auto bounceOf = [&](const Contact& c, double approach, double resting, double e)
-  {
-    const bool hits = bounces && !c.closed() && approach > resting && c.gap() < approach * h;
-    return hits ? e * approach : -1.0;
-  };
   const auto takeRock = [&](std::size_t m)
   {
     Member& member = *members_[group.members[m]];
@@ -175,7 +170,7 @@ void MassFall::solve(
       k.first = member.place;
       k.friction = c.friction;
       k.cohesion = c.cohesion;
-      k.bounce = bounceOf(c, approach, sim.restingSpeed_, e);
+      k.bounce = bounces && hits(c, approach, sim.restingSpeed_, h) ? e * approach : -1.0;
       k.approach = approach;
     }
   };

@@ -15,6 +15,12 @@ constexpr double kTooShort = 1e-9; // s
 /// A rock's partner in the step, if it has none.
 constexpr int kMeetsNone = -3;
 
+/// Whether an open contact comes in as an impact within a step of `h`.
+inline bool hits(const Contact& c, double approach, double resting, double h)
+{
+  return !c.closed() && approach > resting && c.gap() < approach * h;
+}
+
 /// What is worth handing to another thread.
 constexpr std::size_t kRockGrain = 16, kPairGrain = 32;
 

@@ -69,10 +69,11 @@ public:
   /// Advances the bodies' states and the contacts' springs by `request.duration`. If open–close
   /// does not settle nothing is changed, unless `takeAnyway`.
   ///
-  /// `lookAgain` is asked after a solution by Gauss–Seidel, before it is written: it may look where
-  /// the bodies would be (`end`), append contacts that were not reckoned with, and correct the gaps
-  /// of others (`setGap`); if it returns true the step goes on from where it is. The `distance` of
-  /// an appended contact is that at the end, the rest of it as all stands at the start.
+  /// `lookAgain` is asked after a solution that has settled, or one by Gauss–Seidel, before it is
+  /// written: it may look where the bodies would be (`end`), append contacts that were not reckoned
+  /// with, and correct the gaps of others (`setGap`); if it returns true the step goes on from
+  /// where it is. The `distance` of an appended contact is that at the end, the rest of it as all
+  /// stands at the start.
   GroupOutcome step(const StepRequest& request, std::vector<GroupBody>& bodies,
     std::vector<GroupContact>& contacts, bool takeAnyway,
     const std::function<bool()>& lookAgain = {});
