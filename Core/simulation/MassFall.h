@@ -30,6 +30,7 @@ class MassFall
 public:
   MassFall(const Surface& surface, std::span<const Rock> rocks, std::span<const Block> blocks,
     const SimulationParameters& parameters);
+  ~MassFall();
 
   /// All rocks to rest, to the edge of the slope or to the end time: a trajectory for each, in
   /// their order. `goOn` is asked after every step with the time reached (s); false stops, and the
@@ -47,7 +48,8 @@ public:
   {
     return members_[rock]->sim.recorder_.trajectory().impacts;
   }
-  std::span<const RockPair> pairs() const { return pairs_; }
+  /// Those near each other whose axis was ever looked for, by (first, second).
+  std::vector<const RockPair*> pairs() const;
   std::span<const Contact> slopeContacts(int rock) const { return members_[rock]->sim.contacts_; }
 
   /// Rocks never sleep: for tests of how still a pile stands.
@@ -87,9 +89,9 @@ private:
     std::vector<RockPair*> pairs;
   };
   struct Workspace;
+  struct Meetings;
 
-  void findPairs(double duration);
-  void findGroups(double duration);
+  void findGroups(double duration); ///< Who may meet whom within the step, massFallMeet.cxx.
   void wake(Member& member);
   void putToSleep(Member& member);
   bool stays(Member& member) const; ///< Whether it has been still for long enough.
@@ -117,10 +119,10 @@ private:
   double time_ = 0.0;
   RockContacts contacts_;
   std::vector<std::unique_ptr<Member>> members_;
-  std::vector<RockPair> pairs_; ///< Ordered by (first, second).
-  std::vector<RockPair> nextPairs_;
+  std::unique_ptr<Meetings> meetings_;
   std::vector<Group> groups_;
   std::vector<int> alone_;
+  std::vector<int> groupOf_; ///< By the first rock of a group.
 };
 
 } // namespace rockfall

@@ -5,6 +5,7 @@
 #include "geometry/shell.h"
 #include "solver/springs.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -99,6 +100,16 @@ RockContacts::RockContacts(std::span<const Rock> rocks, const SimulationParamete
     const std::size_t b = std::size_t(kinds.at(materialKey(pair.second)));
     laws_[a * kinds_ + b] = laws_[b * kinds_ + a] = lawOf(pair.contact);
   }
+}
+
+double RockContacts::largestRestitution() const
+{
+  double largest = 0.0;
+  for (const PairLaw& law : laws_)
+  {
+    largest = std::max(largest, law.restitution);
+  }
+  return largest;
 }
 
 } // namespace rockfall

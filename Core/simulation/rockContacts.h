@@ -29,6 +29,7 @@ public:
     return laws_[std::size_t(kindOf_[std::size_t(first)]) * kinds_ +
       std::size_t(kindOf_[std::size_t(second)])];
   }
+  double largestRestitution() const;
 
 private:
   std::size_t kinds_ = 1;

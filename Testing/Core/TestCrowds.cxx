@@ -48,11 +48,11 @@ int largestGroup(const Pile& pile)
     }
     return i;
   };
-  for (const RockPair& pair : pile.fall->pairs())
+  for (const RockPair* pair : pile.fall->pairs())
   {
-    if (pair.linked)
+    if (pair->linked)
     {
-      parent[std::size_t(root(pair.first))] = root(pair.second);
+      parent[std::size_t(root(pair->first))] = root(pair->second);
     }
   }
   std::vector<int> size(parent.size(), 0);

@@ -43,11 +43,11 @@ TEST(Piles, ColumnOfTenStands)
         stiffness += c.stiffness;
       }
     }
-    for (const RockPair& pair : pile.fall->pairs())
+    for (const RockPair* pair : pile.fall->pairs())
     {
-      for (const Contact& c : pair.contacts)
+      for (const Contact& c : pair->contacts)
       {
-        stiffness += pair.first == i - 1 && pair.second == i ? c.stiffness : 0.0;
+        stiffness += pair->first == i - 1 && pair->second == i ? c.stiffness : 0.0;
       }
     }
     sunk += (10 - i) * pile.blocks[i].mass() * pile.parameters.gravity / stiffness;
@@ -271,12 +271,12 @@ TEST(Piles, DirectAndIterativeSolutionAgree)
           sides.push_back({ i, -1 });
         }
       }
-      for (const RockPair& pair : pile.fall->pairs())
+      for (const RockPair* pair : pile.fall->pairs())
       {
-        for (const Contact& c : pair.contacts)
+        for (const Contact& c : pair->contacts)
         {
           contacts.push_back(c);
-          sides.push_back({ pair.first, pair.second });
+          sides.push_back({ pair->first, pair->second });
         }
       }
       std::vector<GroupBody> bodies(n);

@@ -1,0 +1,578 @@
+// Which rocks may meet within a step, and the groups that they are.
+//
+// Two rocks may meet if their gap can close within the step. How fast it closes follows from what
+// their velocities can become: those of a rock that flies are known; what touches the slope may be
+// stopped or thrown back; and what belongs to a company of rocks that may touch each other may get
+// any velocity that is among theirs, by impacts from rock to rock. On the other hand no rock goes
+// further than its own way, or than what is left of the way of the one that strikes it, less the
+// gaps that had to be crossed before. The smaller of the two bounds holds.
+
+#include "simulation/massFallMeet.h"
+
+#include "base/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace rockfall
+{
+
+namespace
+{
+
+constexpr std::size_t kRockGrain = 64, kNearGrain = 256, kLookGrain = 16;
+
+/// Neighbours are looked for within the own way, and this many times the mean one: most rocks of a
+/// crowd are struck by somewhat faster ones.
+constexpr double kMeanWays = 1.25;
+
+/// A way that is longer by no more than this factor is not passed on.
+constexpr double kNoMore = 1.0 + 1e-6;
+
+/// Gap of two rocks along no axis yet.
+constexpr double kNoAxis = -std::numeric_limits<double>::infinity();
+
+/// Largest component along the normal of a velocity in a box.
+double most(const Company& c, const Vec3& normal)
+{
+  return normal.cwiseProduct(c.lower).cwiseMax(normal.cwiseProduct(c.upper)).sum();
+}
+
+} // namespace
+
+void MassFall::Meetings::follow(MassFall& fall, double duration)
+{
+  const std::size_t count = fall.members_.size();
+  duration_ = duration;
+  fall_ = fall.parameters_.gravity * duration * duration;
+  if (movers.empty())
+  {
+    movers.resize(count);
+    companies_.resize(count);
+    parents_.resize(count);
+    roots_.resize(count);
+    boxes_.resize(count);
+    later_.resize(count);
+    marks_.resize(count, 0);
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      movers[i].radius = fall.members_[i]->sim.block_.radius();
+      movers[i].mass = fall.members_[i]->sim.block_.mass();
+    }
+    bounciest_ = fall.contacts_.largestRestitution();
+  }
+  double ground = fall.surface_.restitution();
+  for (int k = 1; k <= fall.surface_.terrain().restitutionClasses().count(); ++k)
+  {
+    ground = std::max(ground, fall.surface_.restitutionOf(k));
+  }
+  const auto followRock = [&](std::size_t i)
+  {
+    Mover& m = movers[i];
+    const Member& member = *fall.members_[i];
+    const RockSimulator& sim = member.sim;
+    const bool slept = m.asleep;
+    m.asleep = member.asleep;
+    m.present = !sim.done_ || m.asleep;
+    m.queued = false;
+    if (!m.present || (slept && m.asleep))
+    {
+      m.way = m.known = 0.0;
+      return;
+    }
+    const BlockState& s = sim.state_;
+    m.position = s.position;
+    const double turn = std::min((s.orientation.coeffs() - m.orientation.coeffs()).norm(),
+      (s.orientation.coeffs() + m.orientation.coeffs()).norm());
+    m.turned += m.radius * (2.0 * turn + (s.strain - m.strain).norm());
+    m.orientation = s.orientation;
+    m.strain = s.strain;
+    if (m.asleep)
+    {
+      m.middle.setZero();
+      m.spread = m.own = m.way = m.known = 0.0;
+      return;
+    }
+    const double speed = s.velocity.norm(), rim = sim.block_.largestRimSpeed(s.spin);
+    const bool flies = !sim.obstacles_ && sim.contacts_.empty() && sim.clearFor(duration);
+    // Velocities that an impact on the slope leaves, with any normal.
+    const double e = sim.obstacles_ ? 1.0 : ground;
+    m.middle = flies ? s.velocity : Vec3(0.5 * (1.0 - e) * s.velocity);
+    m.spread = rim + (flies ? 0.0 : 0.5 * (1.0 + e) * speed);
+    m.own = m.way = (speed + rim) * duration + fall_;
+  };
+  forEach(count, kRockGrain, followRock);
+  double sum = 0.0;
+  int moving = 0;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const Mover& m = movers[i];
+    companies_[i] = { m.middle.array() - m.spread, m.middle.array() + m.spread, m.mass, 1 };
+    const bool moves = m.present && !m.asleep;
+    sum += moves ? m.own : 0.0;
+    moving += moves;
+  }
+  const double mean = moving > 0 ? kMeanWays * sum / moving : 0.0;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    Mover& m = movers[i];
+    const bool moves = m.present && !m.asleep;
+    m.known = moves ? std::max(m.own, mean) : 0.0;
+    boxes_[i] = { m.position, m.radius + m.known, m.present, moves };
+  }
+  std::iota(parents_.begin(), parents_.end(), 0);
+}
+
+RockPair* MassFall::Meetings::newPair(const MassFall& fall, int first, int second)
+{
+  if (spare_.empty())
+  {
+    spare_.push_back(&pairs_.emplace_back());
+  }
+  RockPair* pair = spare_.back();
+  spare_.pop_back();
+  pair->first = first;
+  pair->second = second;
+  pair->law = fall.contacts_.between(first, second);
+  return pair;
+}
+
+void MassFall::Meetings::drop(MassFall& fall, Near& n)
+{
+  if (n.pair)
+  {
+    fall.finishPairImpact(*n.pair);
+    std::vector<Contact> contacts = std::move(n.pair->contacts);
+    contacts.clear();
+    *n.pair = RockPair();
+    n.pair->contacts = std::move(contacts);
+    spare_.push_back(n.pair);
+  }
+}
+
+void MassFall::Meetings::findNear(MassFall& fall)
+{
+  broad_.place(boxes_);
+  const std::span<const std::array<int, 2>> found = broad_.pairs();
+  // What lasts of those that are still near, and of sleepers, which are not looked for.
+  nextNear_.clear();
+  nextNear_.reserve(std::max(found.size(), near.size()));
+  auto old = near.begin();
+  const auto take = [&](const Near& n)
+  {
+    Near& next = nextNear_.emplace_back(n);
+    next.wasLinked = n.linked;
+    next.linked = false;
+    next.looked = -1.0;
+  };
+  const auto leave = [&](Near& n)
+  {
+    if (n.pair && movers[std::size_t(n.first)].asleep && movers[std::size_t(n.second)].asleep)
+    {
+      take(n);
+    }
+    else
+    {
+      this->drop(fall, n);
+    }
+  };
+  for (const std::array<int, 2>& ij : found)
+  {
+    Near n;
+    n.first = ij[0];
+    n.second = ij[1];
+    for (; old != near.end() && *old < n; ++old)
+    {
+      leave(*old);
+    }
+    if (old != near.end() && !(n < *old))
+    {
+      take(*old++);
+      continue;
+    }
+    n.offset = kNoAxis;
+    nextNear_.push_back(n);
+  }
+  for (; old != near.end(); ++old)
+  {
+    leave(*old);
+  }
+  near.swap(nextNear_);
+  sorted_ = near.size();
+  widened_ = 0.0;
+  this->indexNeighbours();
+}
+
+void MassFall::Meetings::indexNeighbours()
+{
+  firsts_.assign(movers.size() + 1, 0);
+  for (const Near& n : near)
+  {
+    ++firsts_[std::size_t(n.first)];
+    ++firsts_[std::size_t(n.second)];
+  }
+  std::size_t sum = 0;
+  for (std::size_t& first : firsts_)
+  {
+    sum += first;
+    first = sum;
+  }
+  places_.resize(sum);
+  for (std::size_t k = near.size(); k-- > 0;)
+  {
+    places_[--firsts_[std::size_t(near[k].first)]] = k;
+    places_[--firsts_[std::size_t(near[k].second)]] = k;
+  }
+  for (const int i : widenedRocks_)
+  {
+    later_[std::size_t(i)].clear();
+  }
+  widenedRocks_.clear();
+}
+
+template <class Visit>
+void MassFall::Meetings::forNeighbours(int rock, Visit&& visit)
+{
+  for (std::size_t k = firsts_[std::size_t(rock)]; k < firsts_[std::size_t(rock) + 1]; ++k)
+  {
+    visit(places_[k]);
+  }
+  for (const std::size_t k : later_[std::size_t(rock)])
+  {
+    visit(k);
+  }
+}
+
+/// Those that a rock may meet which goes further than the broad phase had it.
+void MassFall::Meetings::addNeighbours(int rock)
+{
+  Mover& m = movers[std::size_t(rock)];
+  const double before = m.known;
+  m.known = kMeanWays * (this->thrown(std::size_t(rock)) * m.way + fall_);
+  broad_.within(m.position, m.radius + m.known + widened_, found_);
+  widened_ = std::max(widened_, m.known - before);
+  const auto other = [&](std::size_t k)
+  { return std::size_t(near[k].first == rock ? near[k].second : near[k].first); };
+  this->forNeighbours(rock, [&](std::size_t k) { marks_[other(k)] = 1; });
+  marks_[std::size_t(rock)] = 1;
+  for (const int j : found_)
+  {
+    const Mover& o = movers[std::size_t(j)];
+    const double reach = m.radius + m.known + o.radius + o.known;
+    if (!marks_[std::size_t(j)] && (m.position - o.position).squaredNorm() <= reach * reach)
+    {
+      Near n;
+      n.first = std::min(rock, j);
+      n.second = std::max(rock, j);
+      n.offset = kNoAxis;
+      for (const int i : { rock, j })
+      {
+        later_[std::size_t(i)].push_back(near.size());
+        widenedRocks_.push_back(i);
+      }
+      near.push_back(n);
+    }
+  }
+  this->forNeighbours(rock, [&](std::size_t k) { marks_[other(k)] = 0; });
+  marks_[std::size_t(rock)] = 0;
+}
+
+int MassFall::Meetings::root(int i)
+{
+  while (parents_[std::size_t(i)] != i)
+  {
+    i = parents_[std::size_t(i)] = parents_[std::size_t(parents_[std::size_t(i)])];
+  }
+  return i;
+}
+
+double MassFall::Meetings::gap(const Near& n) const
+{
+  const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
+  return n.offset + n.normal.dot(a.position - b.position) - a.turned - b.turned;
+}
+
+/// How fast the gap may close along its normal, m/s.
+double MassFall::Meetings::closing(const Near& n) const
+{
+  const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
+  const Company& first = companies_[std::size_t(roots_[i])];
+  const Company& second = companies_[std::size_t(roots_[j])];
+  const double towards =
+    first.size > 1 ? most(first, -n.normal) : movers[i].spread - n.normal.dot(movers[i].middle);
+  const double against =
+    second.size > 1 ? most(second, n.normal) : movers[j].spread + n.normal.dot(movers[j].middle);
+  return std::max(0.0, towards + against);
+}
+
+/// A light rock that a heavy one strikes goes on faster than it, by this factor.
+double MassFall::Meetings::thrown(std::size_t rock) const
+{
+  const Company& c = companies_[std::size_t(roots_[rock])];
+  return std::max(1.0, (1.0 + bounciest_) * c.heaviest / (c.heaviest + movers[rock].mass));
+}
+
+/// The widest gap over which the two may meet.
+double MassFall::Meetings::reach(const Near& n) const
+{
+  const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
+  const double first = this->thrown(i), second = this->thrown(j);
+  const double ways = first * movers[i].way + second * movers[j].way;
+  const double speed = n.offset > kNoAxis ? std::max(first, second) * this->closing(n) : -kNoAxis;
+  return std::min(ways, speed * duration_) + fall_;
+}
+
+bool MassFall::Meetings::mayMeet(const Near& n, double reach) const
+{
+  if (this->gap(n) > reach)
+  {
+    return false;
+  }
+  const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
+  const double most = a.radius + b.radius + reach;
+  return (a.position - b.position).squaredNorm() <= most * most;
+}
+
+/// Whether two rocks that stand may meet; finds their axis as far as that needs it.
+bool MassFall::Meetings::meet(const MassFall& fall, Near& n)
+{
+  RockPair& pair = *n.pair;
+  for (;;)
+  {
+    const double reach = this->reach(n);
+    const bool exact = n.looked >= 0.0 && pair.axis.distance <= n.looked;
+    if (exact || n.looked >= reach)
+    {
+      return exact && this->gap(n) <= reach;
+    }
+    const bool stands =
+      n.looked < 0.0 && pair.seen && (pair.axis.distance <= 0.0 || pair.axis.distance > reach);
+    if (n.looked < 0.0 && !pair.seen)
+    {
+      pair.before = pair.axis;
+    }
+    if (!stands)
+    {
+      pair.axis = findAxis(fall.members_[std::size_t(n.first)]->body,
+        fall.members_[std::size_t(n.second)]->body, pair.axis, reach);
+    }
+    pair.seen = false;
+    n.looked = reach;
+    const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
+    n.normal = pair.axis.normal;
+    n.offset = pair.axis.distance - n.normal.dot(a.position - b.position) + a.turned + b.turned;
+    // Along this axis the velocities may tell more, or less: then once more.
+  }
+}
+
+/// Looks at all that are near each other; returns whether more of them may meet.
+bool MassFall::Meetings::sweep(MassFall& fall)
+{
+  for (std::size_t i = 0; i < roots_.size(); ++i)
+  {
+    roots_[i] = this->root(int(i));
+    const Mover& m = movers[i];
+    if (m.present && !m.asleep && companies_[std::size_t(roots_[i])].size > 1 &&
+      this->thrown(i) * m.way + fall_ > m.known)
+    {
+      this->addNeighbours(int(i));
+    }
+  }
+  asks_.resize(near.size());
+  const auto ask = [&](std::size_t k)
+  {
+    const Near& n = near[k];
+    const bool asleep = movers[std::size_t(n.first)].asleep && movers[std::size_t(n.second)].asleep;
+    asks_[k] = !n.linked && !asleep && this->mayMeet(n, this->reach(n));
+  };
+  forEach(near.size(), kNearGrain, ask);
+  asked_.clear();
+  placed_.clear();
+  for (std::size_t k = 0; k < near.size(); ++k)
+  {
+    if (asks_[k])
+    {
+      Near& n = near[k];
+      n.pair = n.pair ? n.pair : this->newPair(fall, n.first, n.second);
+      asked_.push_back(k);
+      for (const int i : { n.first, n.second })
+      {
+        if (!marks_[std::size_t(i)])
+        {
+          marks_[std::size_t(i)] = 1;
+          placed_.push_back(i);
+        }
+      }
+    }
+  }
+  forEach(placed_.size(), kLookGrain,
+    [&](std::size_t k) { fall.members_[std::size_t(placed_[k])]->stand(); });
+  forEach(asked_.size(), kLookGrain,
+    [&](std::size_t k) { asks_[asked_[k]] = this->meet(fall, near[asked_[k]]); });
+  for (const int i : placed_)
+  {
+    marks_[std::size_t(i)] = 0;
+  }
+  bool any = false;
+  for (const std::size_t k : asked_)
+  {
+    if (asks_[k])
+    {
+      this->join(fall, near[k]);
+      any = true;
+    }
+  }
+  return any;
+}
+
+void MassFall::Meetings::join(MassFall& fall, Near& n)
+{
+  n.linked = n.holds = true;
+  n.pair->linked = n.pair->known = true;
+  for (const int i : { n.first, n.second })
+  {
+    Mover& m = movers[std::size_t(i)];
+    if (m.asleep)
+    {
+      fall.wake(*fall.members_[std::size_t(i)]);
+      m.asleep = false;
+    }
+    if (!m.queued)
+    {
+      m.queued = true;
+      queue_.push_back(i);
+    }
+  }
+  const int a = this->root(n.first), b = this->root(n.second);
+  if (a == b)
+  {
+    return;
+  }
+  Company &kept = companies_[std::size_t(std::min(a, b))],
+          &other = companies_[std::size_t(std::max(a, b))];
+  parents_[std::size_t(std::max(a, b))] = std::min(a, b);
+  kept.lower = kept.lower.cwiseMin(other.lower);
+  kept.upper = kept.upper.cwiseMax(other.upper);
+  kept.heaviest = std::max(kept.heaviest, other.heaviest);
+  kept.size += other.size;
+}
+
+/// Carries on what each rock that has been joined may do to those that it may meet.
+void MassFall::Meetings::tell(MassFall& fall)
+{
+  for (std::size_t next = 0; next < queue_.size(); ++next)
+  {
+    const int i = queue_[next];
+    movers[std::size_t(i)].queued = false;
+    roots_[std::size_t(i)] = this->root(i);
+    const auto visit = [&](std::size_t k)
+    {
+      Near& n = near[k];
+      Mover& other = movers[std::size_t(n.first == i ? n.second : n.first)];
+      // All that lies on each other wakes at once; others have their turn in the next sweep.
+      if (!n.linked && other.asleep && this->mayMeet(n, this->reach(n)))
+      {
+        n.pair = n.pair ? n.pair : this->newPair(fall, n.first, n.second);
+        fall.members_[std::size_t(n.first)]->stand();
+        fall.members_[std::size_t(n.second)]->stand();
+        if (this->meet(fall, n))
+        {
+          this->join(fall, n);
+        }
+      }
+      if (!n.linked)
+      {
+        return;
+      }
+      // The gap must be crossed first, by both together.
+      const double way = movers[std::size_t(i)].way;
+      const double left =
+        way - std::max(0.0, this->gap(n)) * way / std::max(way + other.own, 1e-12);
+      if (left > other.way * kNoMore)
+      {
+        other.way = left;
+        if (!other.queued)
+        {
+          other.queued = true;
+          queue_.push_back(n.first == i ? n.second : n.first);
+        }
+      }
+    };
+    this->forNeighbours(i, visit);
+  }
+  queue_.clear();
+}
+
+void MassFall::Meetings::link(MassFall& fall)
+{
+  while (this->sweep(fall))
+  {
+    this->tell(fall);
+  }
+  const auto behind = near.begin() + std::ptrdiff_t(sorted_);
+  std::sort(behind, near.end());
+  std::inplace_merge(near.begin(), behind, near.end());
+  const auto settle = [&](std::size_t k)
+  {
+    Near& n = near[k];
+    if (n.linked || !(n.holds || n.wasLinked || n.looked >= 0.0))
+    {
+      return;
+    }
+    const bool asleep = movers[std::size_t(n.first)].asleep && movers[std::size_t(n.second)].asleep;
+    if (asleep && !n.wasLinked)
+    {
+      return;
+    }
+    n.pair->linked = n.pair->known = false;
+    if (!asleep)
+    {
+      // Who is awake and not linked moves by himself, away from where the axis was found.
+      n.pair->seen = n.pair->touched = n.holds = false;
+      n.pair->contacts.clear();
+    }
+  };
+  forEach(near.size(), kNearGrain, settle);
+}
+
+void MassFall::findGroups(double duration)
+{
+  Meetings& meet = *meetings_;
+  meet.follow(*this, duration);
+  meet.findNear(*this);
+  meet.link(*this);
+  std::vector<int>& place = groupOf_;
+  place.assign(members_.size(), -1);
+  groups_.clear();
+  alone_.clear();
+  for (std::size_t i = 0; i < members_.size(); ++i)
+  {
+    if (!meet.movers[i].present || meet.movers[i].asleep)
+    {
+      continue;
+    }
+    const std::size_t root = std::size_t(meet.root(int(i)));
+    if (meet.isAlone(root))
+    {
+      alone_.push_back(int(i));
+      continue;
+    }
+    if (place[root] < 0)
+    {
+      place[root] = int(groups_.size());
+      groups_.emplace_back();
+    }
+    groups_[std::size_t(place[root])].members.push_back(int(i));
+  }
+  for (const Near& n : meet.near)
+  {
+    if (n.linked)
+    {
+      groups_[std::size_t(place[std::size_t(meet.root(n.first))])].pairs.push_back(n.pair);
+    }
+  }
+}
+
+} // namespace rockfall
