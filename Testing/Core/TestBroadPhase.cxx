@@ -39,7 +39,7 @@ TEST(BroadPhase, PairsAreThoseWhoseSpheresOverlap)
 {
   for (const double ratio : { 1.0, 1.5, 100.0 })
   {
-    const std::vector<BroadBox> boxes = spheres(700, ratio, ratio > 2.0 ? 10.0 : 1.5, 1);
+    const std::vector<BroadBox> boxes = spheres(700, ratio, ratio > 2.0 ? 10.0 : 1.0, 1);
     std::vector<std::array<int, 2>> expected;
     for (int i = 0; i < 700; ++i)
     {

@@ -1,0 +1,124 @@
+// Who may meet whom within a step: what a fast rock strikes goes on at its speed in the same step,
+// and must not enter what stands behind it, though neither moved before.
+
+#include "piles.h"
+
+#include <gtest/gtest.h>
+
+#include <span>
+
+using namespace rockfall;
+using namespace rockfall::testing;
+
+namespace
+{
+
+constexpr double kLength = 1.0, kWidth = 0.2; // of a bar, m
+
+/// Bars end to end along x with these gaps, m; the first one moves.
+std::vector<Rock> row(double x, double z, std::span<const double> gaps, const Vec3& velocity)
+{
+  std::vector<Rock> rocks;
+  rocks.push_back(brick(Vec3(kLength, kWidth, kWidth), Vec3(x, 20.0, z), 0));
+  rocks[0].velocity = velocity;
+  for (const double gap : gaps)
+  {
+    x += kLength + gap;
+    rocks.push_back(brick(Vec3(kLength, kWidth, kWidth), Vec3(x, 20.0, z), int(rocks.size())));
+  }
+  return rocks;
+}
+
+/// Impacts are stopped within a hundredth of the smaller radius, and rocks that meet in the corner
+/// of a step are seen one short step later.
+constexpr double kAllowed = 0.015 * 0.52;
+
+} // namespace
+
+TEST(Meetings, StruckRockDoesNotEnterTheNextOne)
+{
+  // 0.1 m in a step of 5 ms; bars of which bounding spheres are 10 mm apart and more.
+  for (const double first : { 0.001, 0.03, 0.07 })
+  {
+    Pile pile;
+    pile.ground = makeSlope(
+      5, 100.0, [](double, double) { return -1000.0; }, material(1.0, 0.0));
+    pile.parameters.gravity = 0.0;
+    pile.parameters.timeStep = 0.005;
+    pile.parameters.rockRestitution = 1.0;
+    const double gaps[] = { first, 0.05, 0.05, 0.05, 0.2 };
+    pile.rocks = row(20.0, 0.0, gaps, Vec3(20.0, 0.0, 0.0));
+    pile.start();
+    double last = 0.0;
+    for (int step = 0; step < 10; ++step)
+    {
+      pile.fall->advance();
+      last = std::max(last, pile.fall->state(4).velocity.x());
+      EXPECT_LT(pile.overlap(), kAllowed) << first << " m, step " << step;
+    }
+    EXPECT_GT(last, 10.0); // it went on so far
+  }
+}
+
+TEST(Meetings, StruckSleepersDoNotEnterTheNextOne)
+{
+  // A bar comes down in front of others that lie asleep by then, and pushes them along; what lies
+  // 3 m off sleeps on.
+  Pile pile;
+  pile.ground = floorSlope(10.0);
+  pile.awake = false;
+  pile.parameters.timeStep = 0.005;
+  pile.parameters.rockRestitution = 0.8;
+  const double gaps[] = { 20.0, 0.05, 0.05, 0.05, 3.0, 0.05 };
+  pile.rocks = row(5.0, 0.5 * kWidth, gaps, Vec3(20.0, 0.0, 4.9));
+  pile.rocks[0].position.z() += 0.02;
+  pile.start();
+  double deepest = 0.0;
+  bool struck = false;
+  std::vector<Vec3> lay;
+  for (int step = 0; step < 210; ++step)
+  {
+    pile.fall->advance();
+    deepest = std::max(deepest, pile.overlap());
+    if (step == 179)
+    {
+      lay = pile.places();
+    }
+    else if (step == 180)
+    {
+      for (std::size_t i = 1; i < lay.size(); ++i)
+      {
+        EXPECT_EQ(pile.places()[i], lay[i]) << i; // asleep
+      }
+    }
+    struck = struck || pile.fall->state(4).velocity.x() > 1.0;
+  }
+  EXPECT_TRUE(struck);
+  EXPECT_LT(deepest, kAllowed);
+  for (std::size_t i : { 5, 6 })
+  {
+    EXPECT_EQ(pile.places()[i], lay[i]) << i;
+  }
+}
+
+TEST(Meetings, FieldOfSleepersIsNotWokenByOneRock)
+{
+  // Gaps of 30 mm have to be crossed one after the other: a row is not one group.
+  Pile pile;
+  pile.ground = makeSlope(
+    5, 100.0, [](double, double) { return -1000.0; }, material(1.0, 0.0));
+  pile.parameters.gravity = 0.0;
+  pile.parameters.timeStep = 0.005;
+  pile.parameters.rockRestitution = 0.9;
+  const std::vector<double> gaps(12, 0.03);
+  pile.rocks = row(20.0, 0.0, gaps, Vec3(20.0, 0.0, 0.0));
+  pile.start();
+  pile.fall->advance();
+  int linked = 0;
+  for (const RockPair* pair : pile.fall->pairs())
+  {
+    linked += pair->linked;
+  }
+  EXPECT_GE(linked, 3); // 0.1 m
+  EXPECT_LE(linked, 5);
+}
