@@ -459,12 +459,31 @@ void MassFall::Meetings::join(MassFall& fall, Near& n)
   kept.size += other.size;
 }
 
-/// Carries on what each rock that has been joined may do to those that it may meet.
+/// Carries on what each rock that has been joined may do to those that it may meet: the longest way
+/// first, so that none has its turn twice.
 void MassFall::Meetings::tell(MassFall& fall)
 {
-  for (std::size_t next = 0; next < queue_.size(); ++next)
+  const auto shorter = [](const Turn& a, const Turn& b)
+  { return a.way != b.way ? a.way < b.way : a.rock > b.rock; };
+  turns_.clear();
+  for (std::size_t taken = 0;;)
   {
-    const int i = queue_[next];
+    for (; taken < queue_.size(); ++taken)
+    {
+      turns_.push_back({ movers[std::size_t(queue_[taken])].way, queue_[taken] });
+      std::push_heap(turns_.begin(), turns_.end(), shorter);
+    }
+    if (turns_.empty())
+    {
+      break;
+    }
+    const auto [length, i] = turns_.front();
+    std::pop_heap(turns_.begin(), turns_.end(), shorter);
+    turns_.pop_back();
+    if (!movers[std::size_t(i)].queued || length < movers[std::size_t(i)].way)
+    {
+      continue; // has had its turn, or has a longer way since
+    }
     movers[std::size_t(i)].queued = false;
     roots_[std::size_t(i)] = this->root(i);
     const auto visit = [&](std::size_t k)
@@ -482,22 +501,19 @@ void MassFall::Meetings::tell(MassFall& fall)
           this->join(fall, n);
         }
       }
-      if (!n.linked)
+      const double way = movers[std::size_t(i)].way;
+      if (!n.linked || way <= other.way * kNoMore)
       {
         return;
       }
       // The gap must be crossed first, by both together.
-      const double way = movers[std::size_t(i)].way;
       const double left =
         way - std::max(0.0, this->gap(n)) * way / std::max(way + other.own, 1e-12);
       if (left > other.way * kNoMore)
       {
         other.way = left;
-        if (!other.queued)
-        {
-          other.queued = true;
-          queue_.push_back(n.first == i ? n.second : n.first);
-        }
+        other.queued = true;
+        queue_.push_back(n.first == i ? n.second : n.first);
       }
     };
     this->forNeighbours(i, visit);

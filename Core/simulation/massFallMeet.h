@@ -107,7 +107,13 @@ private:
   std::vector<std::vector<std::size_t>> later_;
   std::vector<int> widenedRocks_;
   std::size_t sorted_ = 0; ///< Of `near`; behind it those found later.
+  struct Turn
+  {
+    double way; ///< m
+    int rock;
+  };
   std::vector<int> queue_;
+  std::vector<Turn> turns_;
   std::vector<int> found_;
   std::vector<char> marks_;
   std::vector<char> asks_;
