@@ -24,9 +24,8 @@ namespace
 
 constexpr std::size_t kRockGrain = 64, kNearGrain = 256, kLookGrain = 16;
 
-/// Neighbours are looked for within the own way, and this many times the mean one: most rocks of a
-/// crowd are struck by somewhat faster ones.
-constexpr double kMeanWays = 1.25;
+/// Neighbours are looked for within this many times the way that is known, which may yet grow.
+constexpr double kWider = 1.1;
 
 /// A way that is longer by no more than this factor is not passed on.
 constexpr double kNoMore = 1.0 + 1e-6;
@@ -101,26 +100,17 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
     const double e = sim.obstacles_ ? 1.0 : ground;
     m.middle = flies ? s.velocity : Vec3(0.5 * (1.0 - e) * s.velocity);
     m.spread = rim + (flies ? 0.0 : 0.5 * (1.0 + e) * speed);
-    m.own = m.way = (speed + rim) * duration + fall_;
+    m.own = (speed + rim) * duration + fall_;
+    // In a crowd it is struck by much the same ones as in the last step.
+    m.known = kWider * std::max(m.own, m.way) + fall_;
+    m.way = m.own;
   };
   forEach(count, kRockGrain, followRock);
-  double sum = 0.0;
-  int moving = 0;
   for (std::size_t i = 0; i < count; ++i)
   {
     const Mover& m = movers[i];
     companies_[i] = { m.middle.array() - m.spread, m.middle.array() + m.spread, m.mass, 1 };
-    const bool moves = m.present && !m.asleep;
-    sum += moves ? m.own : 0.0;
-    moving += moves;
-  }
-  const double mean = moving > 0 ? kMeanWays * sum / moving : 0.0;
-  for (std::size_t i = 0; i < count; ++i)
-  {
-    Mover& m = movers[i];
-    const bool moves = m.present && !m.asleep;
-    m.known = moves ? std::max(m.own, mean) : 0.0;
-    boxes_[i] = { m.position, m.radius + m.known, m.present, moves };
+    boxes_[i] = { m.position, m.radius + m.known, m.present, m.present && !m.asleep };
   }
   std::iota(parents_.begin(), parents_.end(), 0);
 }
@@ -250,7 +240,7 @@ void MassFall::Meetings::addNeighbours(int rock)
 {
   Mover& m = movers[std::size_t(rock)];
   const double before = m.known;
-  m.known = kMeanWays * (this->thrown(std::size_t(rock)) * m.way + fall_);
+  m.known = kWider * (this->thrown(std::size_t(rock)) * m.way + fall_);
   broad_.within(m.position, m.radius + m.known + widened_, found_);
   widened_ = std::max(widened_, m.known - before);
   const auto other = [&](std::size_t k)
