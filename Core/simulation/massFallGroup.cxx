@@ -19,6 +19,9 @@ namespace
 constexpr double kDeepestImpact = 0.01;
 /// Steps per half period of an impact, as for single rocks.
 constexpr double kStepsPerImpact = 8.0;
+/// In a crowd a step is this much longer than rocks that resolve their impacts may take: where they
+/// would end is looked at.
+constexpr double kCrowdTravel = 2.0;
 constexpr double kShearDamping = 5.0;  // as for single rocks
 constexpr double kLooseOverlap = 1e-3; // of the radius, as for single rocks
 
@@ -312,7 +315,8 @@ void MassFall::advanceGroup(const Group& group, double until) const
     for (int i : group.members)
     {
       const RockSimulator& sim = members_[i]->sim;
-      travel = sim.done_ ? travel : std::min(travel, sim.travelLimit());
+      const double limit = (inTime ? 1.0 : kCrowdTravel) * sim.travelLimit();
+      travel = sim.done_ ? travel : std::min(travel, limit);
     }
     const double remaining = until - now();
     const double large = std::min(remaining, travel);
