@@ -278,6 +278,11 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
   this->collect();
   for (int look = 0; look < kLooks && lookAgain && lookAgain(); ++look)
   {
+    // From here it goes on around what was found only.
+    for (int& changed : changed_)
+    {
+      changed = changed < sweep_ ? kNever : changed;
+    }
     looked_ = sweep_;
     this->append(bodies, contacts);
     outcome.settled = this->sweeps(most, outcome);
