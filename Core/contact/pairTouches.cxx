@@ -43,9 +43,9 @@ int mostOpposed(const PairBody& body, const Vec3& normal)
 {
   int face = 0;
   double least = std::numeric_limits<double>::infinity();
-  for (int f = 0; f < int(body.normals.size()); ++f)
+  for (int f = 0; f < body.faces(); ++f)
   {
-    const double along = body.normals[f].dot(normal);
+    const double along = body.normal(f).dot(normal);
     if (along < least)
     {
       least = along;
@@ -60,7 +60,7 @@ int mostOpposed(const PairBody& body, const Vec3& normal)
 void clipFace(const PairBody& body, const PairBody& owner, int ownerFace, double tolerance,
   std::vector<Corner>& polygon, std::vector<Corner>& work)
 {
-  const Vec3& normal = owner.normals[ownerFace];
+  const Vec3 normal = owner.normal(ownerFace);
   polygon.clear();
   const int facing = mostOpposed(body, normal);
   for (int v : body.placed->block().shape().faces()[facing])
@@ -191,7 +191,7 @@ void findTouches(const PairBody& first, const PairBody& second, const PairAxis& 
   const double one = kOnePoint * smaller;
   for (const Corner& corner : polygon)
   {
-    c.distance = owner.normals[face].dot(corner.point) - owner.offsets[face];
+    c.distance = owner.normal(face).dot(corner.point) - owner.offset(face);
     c.point = corner.point;
     c.rockFeature = faceOfFirst ? face : corner.feature;
     c.surfaceFeature = faceOfFirst ? corner.feature : face;
