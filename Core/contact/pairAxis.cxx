@@ -53,8 +53,8 @@ bool arcsCross(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
 struct ArcEdge
 {
   int edge;
-  Vec3 normals[2]; ///< Of its faces; of the second body turned round.
-  Vec3 across;     ///< Out of the plane of their arc.
+  Vec3 normals[2];   ///< Of its faces; of the second body turned round.
+  Vec3 across;       ///< Out of the plane of their arc.
   Vec3 start, along; ///< Of the edge, from end to end.
 };
 
@@ -72,8 +72,7 @@ void edgesAbove(const PairBody& body, const PairBody& other, double least, doubl
   {
     Eigen::Map<PairBody::Four>(over.data() + 4 * i) = body.overFaces(other.position, i);
   }
-  const std::vector<Polyhedron::Edge>& edges = body.shape->edges();
-  const std::vector<Vec3>& vertices = body.placed->vertices();
+  const std::span<const Polyhedron::Edge> edges = body.edges;
   const double least2 = least + other.inside;
   for (std::size_t e = 0; e < edges.size(); ++e)
   {
@@ -85,8 +84,8 @@ void edgesAbove(const PairBody& body, const PairBody& other, double least, doubl
       continue;
     }
     const Vec3 a = body.normal(edges[e].faces[0]), b = body.normal(edges[e].faces[1]);
-    const Vec3& start = vertices[std::size_t(edges[e].vertices[0])];
-    const Vec3 u = vertices[std::size_t(edges[e].vertices[1])] - start;
+    const Vec3 start = body.vertex(edges[e].vertices[0]);
+    const Vec3 u = body.vertex(edges[e].vertices[1]) - start;
     if (!above)
     {
       const double between = a.dot(b);
@@ -107,18 +106,18 @@ void edgesAbove(const PairBody& body, const PairBody& other, double least, doubl
 /// No axis if the edges are nearly parallel or do not face each other.
 PairAxis edgeAxis(const PairBody& first, const PairBody& second, int e, int f)
 {
-  const Polyhedron::Edge& edge = first.shape->edges()[e];
-  const Polyhedron::Edge& other = second.shape->edges()[f];
+  const Polyhedron::Edge& edge = first.edges[std::size_t(e)];
+  const Polyhedron::Edge& other = second.edges[std::size_t(f)];
   PairAxis axis;
   if (!arcsCross(first.normal(edge.faces[0]), first.normal(edge.faces[1]),
         -second.normal(other.faces[0]), -second.normal(other.faces[1])))
   {
     return axis;
   }
-  const Vec3& p0 = first.placed->vertices()[edge.vertices[0]];
-  const Vec3& q0 = second.placed->vertices()[other.vertices[0]];
-  const Vec3 u = first.placed->vertices()[edge.vertices[1]] - p0;
-  const Vec3 w = second.placed->vertices()[other.vertices[1]] - q0;
+  const Vec3 p0 = first.vertex(edge.vertices[0]);
+  const Vec3 q0 = second.vertex(other.vertices[0]);
+  const Vec3 u = first.vertex(edge.vertices[1]) - p0;
+  const Vec3 w = second.vertex(other.vertices[1]) - q0;
   Vec3 n = u.cross(w);
   const double square = n.squaredNorm();
   if (square < kParallel * kParallel * u.squaredNorm() * w.squaredNorm())
@@ -210,11 +209,11 @@ bool areWithin(const PairBody& first, const PairBody& second, const PairAxis& ax
   }
   if (axis.kind == PairAxis::Kind::Edges)
   {
-    const std::array<int, 2>& e = first.shape->edges()[axis.first].vertices;
-    const std::array<int, 2>& f = second.shape->edges()[axis.second].vertices;
-    const Vec3& p = first.placed->vertices()[e[0]];
-    const Vec3& q = second.placed->vertices()[f[0]];
-    const Vec3 u = first.placed->vertices()[e[1]] - p, w = second.placed->vertices()[f[1]] - q;
+    const std::array<int, 2>& e = first.edges[std::size_t(axis.first)].vertices;
+    const std::array<int, 2>& f = second.edges[std::size_t(axis.second)].vertices;
+    const Vec3 p = first.vertex(e[0]);
+    const Vec3 q = second.vertex(f[0]);
+    const Vec3 u = first.vertex(e[1]) - p, w = second.vertex(f[1]) - q;
     double s, t;
     return closestOnLines(p, u, q, w, s, t) && s >= 0.0 && s <= 1.0 && t >= 0.0 && t <= 1.0 &&
       (p + s * u - (q + t * w)).squaredNorm() <= limit * limit;
@@ -226,19 +225,22 @@ bool areWithin(const PairBody& first, const PairBody& second, const PairAxis& ax
   const Vec3 n = owner.normal(face);
   const double offset = owner.offset(face);
   // Vertices over the face …
-  const std::vector<Vec3>& vertices = other.placed->vertices();
-  for (const Vec3& v : vertices)
+  for (int i = 0; i < other.vertexFours(); ++i)
   {
-    const double over = n.dot(v) - offset, gap = std::max(0.0, over);
-    if (over <= limit && gap + farFrom(owner, v - gap * n) <= limit)
+    const PairBody::Four over = other.alongVertices(n, i) - offset;
+    for (int k = 0; k < 4 && 4 * i + k < other.vertices(); ++k)
     {
-      return true;
+      const double gap = std::max(0.0, over[k]);
+      if (over[k] <= limit && gap + farFrom(owner, other.vertex(4 * i + k) - gap * n) <= limit)
+      {
+        return true;
+      }
     }
   }
   // … or of it, under the other body.
-  for (int k : owner.shape->faces()[face])
+  for (int k : owner.loops[std::size_t(face)])
   {
-    if (farFrom(other, owner.placed->vertices()[k]) <= limit)
+    if (farFrom(other, owner.vertex(k)) <= limit)
     {
       return true;
     }
@@ -251,20 +253,23 @@ bool areWithin(const PairBody& first, const PairBody& second, const PairAxis& ax
 void PairBody::update(const PlacedBlock& block)
 {
   placed = &block;
-  shape = &block.block().shape();
-  radius = block.block().radius();
+  const Polyhedron& shape = block.block().shape();
+  edges = shape.edges();
+  loops = shape.faces();
+  radius = shape.radius();
   position = block.position();
   rotation = block.rotation();
-  const std::vector<Vec3>& vertices = block.vertices();
-  const std::vector<Vec3>& normals = shape->normals();
-  faces_ = int(normals.size());
-  vertexFours_ = (int(vertices.size()) + 3) / 4;
-  faceFours_ = (faces_ + 3) / 4;
+  const std::vector<Vec3>& corners = block.vertices();
+  const std::vector<Vec3>& normals = shape.normals();
+  const int faceCount = int(normals.size());
+  vertices_ = int(corners.size());
+  vertexFours_ = (vertices_ + 3) / 4;
+  faceFours_ = (faceCount + 3) / 4;
   data_.resize(std::size_t(12 * vertexFours_ + 16 * faceFours_));
   double* to = data_.data();
   for (int i = 0; i < 4 * vertexFours_; ++i)
   {
-    const Vec3& v = vertices[std::min(std::size_t(i), vertices.size() - 1)];
+    const Vec3& v = corners[std::size_t(std::min(i, vertices_ - 1))];
     double* at = to + 12 * (i >> 2) + (i & 3);
     at[0] = v.x();
     at[4] = v.y();
@@ -276,9 +281,9 @@ void PairBody::update(const PlacedBlock& block)
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 4 * faceFours_; ++i)
   {
-    const std::size_t f = std::size_t(std::min(i, faces_ - 1));
+    const std::size_t f = std::size_t(std::min(i, faceCount - 1));
     const Vec3 n = turn * normals[f];
-    const double offset = shape->offsets()[f];
+    const double offset = shape.offsets()[f];
     double* at = to + 16 * (i >> 2) + (i & 3);
     at[0] = n.x();
     at[4] = n.y();

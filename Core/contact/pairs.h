@@ -10,6 +10,7 @@
 
 #include "contact/Contact.h"
 
+#include <span>
 #include <vector>
 
 namespace rockfall
@@ -40,8 +41,9 @@ public:
   void update(const PlacedBlock& block);
 
   const PlacedBlock* placed = nullptr;
-  const Polyhedron* shape = nullptr;
-  double radius = 0.0;          ///< Of the bounding sphere about the centroid, m.
+  std::span<const Polyhedron::Edge> edges;
+  std::span<const std::vector<int>> loops; ///< Of the faces.
+  double radius = 0.0;                     ///< Of the bounding sphere about the centroid, m.
   double inside = 0.0;          ///< Radius of a ball about the centroid that the rock holds, m.
   Vec3 position = Vec3::Zero(); ///< For which all this stands.
   Mat3 rotation = Mat3::Zero();
@@ -49,14 +51,23 @@ public:
   using Four = Eigen::Array4d;
   int vertexFours() const { return vertexFours_; }
   int faceFours() const { return faceFours_; }
-  int faces() const { return faces_; }
+  int vertices() const { return vertices_; }
+  int faces() const { return int(loops.size()); }
   /// n · x of four vertices, from vertex 4 i, m.
   Four alongVertices(const Vec3& n, int i) const { return along(n, data_.data() + 12 * i); }
+  /// n · (normal) of four faces, from face 4 i.
+  Four alongNormals(const Vec3& n, int i) const { return along(n, faceData() + 16 * i); }
   /// How far over four faces' planes a point is, from face 4 i, m.
   Four overFaces(const Vec3& point, int i) const
   {
     const double* of = faceData() + 16 * i;
     return along(point, of) - Eigen::Map<const Four>(of + 12);
+  }
+  /// World, m.
+  Vec3 vertex(int i) const
+  {
+    const double* of = data_.data() + 12 * (i >> 2) + (i & 3);
+    return { of[0], of[4], of[8] };
   }
   /// World, outward, unit.
   Vec3 normal(int face) const
@@ -76,7 +87,7 @@ private:
   }
   const double* faceData() const { return data_.data() + 12 * vertexFours_; }
 
-  int faces_ = 0, vertexFours_ = 0, faceFours_ = 0;
+  int vertices_ = 0, vertexFours_ = 0, faceFours_ = 0;
   /// Per four vertices x, y, z, then per four faces the normals' x, y, z and the offsets.
   std::vector<double> data_;
 };
