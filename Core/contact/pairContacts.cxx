@@ -155,8 +155,7 @@ void updatePair(const PairBody& first, const PairBody& second, double reach, Roc
   bool inOrder = found.size() >= before;
   for (std::size_t i = 0; i < found.size(); ++i)
   {
-    Contact place; // of its features
-    setFeatures(found[i], pair.axis, place);
+    const TouchFeatures features(found[i], pair.axis);
     Match& match = matches[i];
     match = {};
     double least = same * same;
@@ -165,8 +164,7 @@ void updatePair(const PairBody& first, const PairBody& second, double reach, Roc
       // The old point is where its rock has carried it since (see the solver's write-back).
       const Contact& old = pair.contacts[k];
       const double away = (old.point - found[i].point).squaredNorm();
-      const bool equal = old.kind == place.kind && old.rockFeature == place.rockFeature &&
-        old.surfaceFeature == place.surfaceFeature;
+      const bool equal = features.are(old);
       if (!taken[k] && (equal || (!match.itself && away < least)))
       {
         match.itself = equal;

@@ -23,7 +23,24 @@ std::span<const Touch> touchesAlong(
   const PairBody& first, const PairBody& second, const PairAxis& axis, double reach);
 
 /// The features that touch.
-void setFeatures(const Touch& touch, const PairAxis& axis, Contact& contact);
+struct TouchFeatures
+{
+  ContactKind kind;
+  int first, second; ///< Of the rocks.
+
+  TouchFeatures(const Touch& touch, const PairAxis& axis)
+    : kind(axis.kind == PairAxis::Kind::Edges        ? ContactKind::EdgeEdge
+          : axis.kind == PairAxis::Kind::FaceOfFirst ? ContactKind::FaceVertex
+                                                     : ContactKind::VertexFace)
+    , first(kind == ContactKind::VertexFace ? touch.feature : axis.first)
+    , second(kind == ContactKind::FaceVertex ? touch.feature : axis.second)
+  {
+  }
+  bool are(const Contact& c) const
+  {
+    return c.kind == kind && c.rockFeature == first && c.surfaceFeature == second;
+  }
+};
 
 /// Where a touch is: all of a contact that is not its springs'.
 void putTouch(const Touch& touch, const PairBody& second, const PairAxis& axis, Contact& contact);

@@ -173,17 +173,6 @@ std::span<const Touch> touchesAlong(
   return { touches, count };
 }
 
-void setFeatures(const Touch& touch, const PairAxis& axis, Contact& c)
-{
-  const bool edges = axis.kind == PairAxis::Kind::Edges;
-  const bool ofFirst = axis.kind == PairAxis::Kind::FaceOfFirst;
-  c.kind = edges ? ContactKind::EdgeEdge
-    : ofFirst    ? ContactKind::FaceVertex
-                 : ContactKind::VertexFace;
-  c.rockFeature = edges || ofFirst ? axis.first : touch.feature;
-  c.surfaceFeature = ofFirst ? touch.feature : axis.second;
-}
-
 void putTouch(const Touch& touch, const PairBody& second, const PairAxis& axis, Contact& c)
 {
   c.normal = axis.normal;
@@ -200,7 +189,10 @@ void putTouch(const Touch& touch, const PairBody& second, const PairAxis& axis, 
   {
     c.ridge = { Vec3::Zero(), Vec3::Zero() };
   }
-  setFeatures(touch, axis, c);
+  const TouchFeatures features(touch, axis);
+  c.kind = features.kind;
+  c.rockFeature = features.first;
+  c.surfaceFeature = features.second;
 }
 
 void findTouches(const PairBody& first, const PairBody& second, const PairAxis& axis, double reach,
