@@ -8,7 +8,6 @@
 /// vertices of either rock on a face of the other, and crossings of edges. Where two faces lie on
 /// each other, these are the corners of the polygon that they share.
 
-#include "base/prefetch.h"
 #include "contact/Contact.h"
 
 #include <span>
@@ -48,15 +47,6 @@ public:
   double inside = 0.0;          ///< Radius of a ball about the centroid that the rock holds, m.
   Vec3 position = Vec3::Zero(); ///< For which all this stands.
   Mat3 rotation = Mat3::Zero();
-
-  /// Asks for it from memory ahead of use: in a crowd the rocks are more than the caches hold.
-  void fetch() const
-  {
-    for (std::size_t i = 0; i < data_.size(); i += kLine / sizeof(double))
-    {
-      prefetch(data_.data() + i);
-    }
-  }
 
   using Four = Eigen::Array4d;
   int vertexFours() const { return vertexFours_; }

@@ -150,28 +150,8 @@ void MassFall::gatherContacts(const Group& group, double h) const
     sim.armContacts();
   };
   forEach(group.members.size(), kRockGrain, onSlope);
-  // What the pairs after this one need.
-  const auto ahead = [&](std::size_t k)
-  {
-    if (k + 4 < group.pairs.size())
-    {
-      const RockPair& pair = *group.pairs[k + 4];
-      prefetchAll(pair);
-      prefetchAll(members_[std::size_t(pair.second)]->body);
-    }
-    if (k + 2 < group.pairs.size())
-    {
-      const RockPair& pair = *group.pairs[k + 2];
-      members_[std::size_t(pair.second)]->body.fetch();
-      for (const Contact& c : pair.contacts)
-      {
-        prefetchAll(c);
-      }
-    }
-  };
   const auto eachOther = [&](std::size_t k)
   {
-    ahead(k);
     RockPair* pair = group.pairs[k];
     const Member &a = *members_[pair->first], &b = *members_[pair->second];
     if (a.sim.done_ || b.sim.done_)
