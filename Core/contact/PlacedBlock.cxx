@@ -22,14 +22,17 @@ void PlacedBlock::place(const Block& block, const BlockState& state)
   }
   const std::vector<Vec3>& reference = block.shape().vertices();
   vertices_.resize(reference.size());
-  lower_.setConstant(1e300);
-  upper_.setConstant(-1e300);
+  const Vec3 center = position_; // all this in registers
+  Vec3 lower = Vec3::Constant(1e300), upper = Vec3::Constant(-1e300);
   for (std::size_t i = 0; i < reference.size(); ++i)
   {
-    vertices_[i] = position_ + map * reference[i];
-    lower_ = lower_.cwiseMin(vertices_[i]);
-    upper_ = upper_.cwiseMax(vertices_[i]);
+    const Vec3 v = center + map * reference[i];
+    vertices_[i] = v;
+    lower = lower.cwiseMin(v);
+    upper = upper.cwiseMax(v);
   }
+  lower_ = lower;
+  upper_ = upper;
 }
 
 int PlacedBlock::outermostFace(const Vec3& world) const

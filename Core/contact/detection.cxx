@@ -31,7 +31,7 @@ bool onOneLine(const SurfacePatch& patch, int a, int b)
 }
 
 /// Adds an entrance unless the contacts that are already there stand for it.
-void admit(const SurfacePatch& patch, Contact candidate, std::vector<Contact>& contacts)
+void admit(const SurfacePatch& patch, const Contact& candidate, std::vector<Contact>& contacts)
 {
   for (const Contact& c : contacts)
   {
@@ -74,8 +74,8 @@ void admit(const SurfacePatch& patch, Contact candidate, std::vector<Contact>& c
       return; // deeper under a triangle further off: not where it came in
     }
   }
-  candidate.offset = std::min(0.0, candidate.distance);
   contacts.push_back(candidate);
+  contacts.back().offset = std::min(0.0, candidate.distance);
 }
 
 } // namespace
@@ -87,12 +87,8 @@ void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch,
   std::size_t kept = 0;
   for (std::size_t i = 0; i < contacts.size(); ++i)
   {
-    Contact c = contacts[i];
-    if (!c.closed())
-    {
-      continue;
-    }
-    if (!refreshContact(rock, patch, c))
+    Contact& c = contacts[i];
+    if (!c.closed() || !refreshContact(rock, patch, c))
     {
       continue;
     }
@@ -100,7 +96,11 @@ void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch,
       [&](const Contact& other) { return samePlace(other, c); });
     if (twin == contacts.begin() + kept)
     {
-      contacts[kept++] = c;
+      if (kept < i)
+      {
+        contacts[kept] = c;
+      }
+      ++kept;
     }
     else
     {
@@ -113,9 +113,22 @@ void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch,
   }
   contacts.resize(kept);
 
+  // What is there already is not looked at again.
+  const auto isThere = [&](ContactKind kind, int onRock, std::int64_t key)
+  {
+    return std::any_of(contacts.begin(), contacts.end(),
+      [&](const Contact& c)
+      { return c.rockFeature == onRock && c.surfaceFeature == key && c.kind == kind; });
+  };
   for (const CandidatePairs::Pair& pair : candidates.vertexFace)
   {
-    if (auto c = vertexFace(rock, pair.rock, patch, pair.patch, reach))
+    const SurfacePatch::Triangle& t = patch.triangles[pair.patch];
+    if (t.normal.dot(rock.vertices()[pair.rock]) - t.offset > reach ||
+      isThere(ContactKind::VertexFace, pair.rock, t.key))
+    {
+      continue;
+    }
+    if (const auto c = vertexFace(rock, pair.rock, patch, pair.patch, reach))
     {
       admit(patch, *c, contacts);
     }
@@ -135,7 +148,11 @@ void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch,
   }
   for (const CandidatePairs::Pair& pair : candidates.edgeEdge)
   {
-    if (auto c = edgeEdge(rock, pair.rock, patch, pair.patch, reach))
+    if (isThere(ContactKind::EdgeEdge, pair.rock, patch.ridges[pair.patch].key))
+    {
+      continue;
+    }
+    if (const auto c = edgeEdge(rock, pair.rock, patch, pair.patch, reach))
     {
       admit(patch, *c, contacts);
     }

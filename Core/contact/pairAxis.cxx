@@ -1,5 +1,7 @@
 #include "contact/pairs.h"
 
+#include "contact/features.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -18,13 +20,13 @@ constexpr double kParallel = 1e-3;
 /// Least distance of the other body's vertices over a face.
 double overFace(const PairBody& owner, int face, const PairBody& other)
 {
-  const Vec3& n = owner.normals[face];
-  double least = std::numeric_limits<double>::infinity();
-  for (const Vec3& v : other.placed->vertices())
+  const Vec3 n = owner.normal(face);
+  PairBody::Four least = other.alongVertices(n, 0);
+  for (int i = 1; i < other.vertexFours(); ++i)
   {
-    least = std::min(least, n.dot(v));
+    least = least.min(other.alongVertices(n, i));
   }
-  return least - owner.offsets[face];
+  return least.minCoeff() - owner.offset(face);
 }
 
 PairAxis faceAxis(const PairBody& first, const PairBody& second, PairAxis::Kind kind, int face)
@@ -33,7 +35,7 @@ PairAxis faceAxis(const PairBody& first, const PairBody& second, PairAxis::Kind 
   PairAxis axis;
   axis.kind = kind;
   (ofFirst ? axis.first : axis.second) = face;
-  axis.normal = ofFirst ? Vec3(-first.normals[face]) : second.normals[face];
+  axis.normal = ofFirst ? Vec3(-first.normal(face)) : second.normal(face);
   axis.distance = ofFirst ? overFace(first, face, second) : overFace(second, face, first);
   return axis;
 }
@@ -47,45 +49,56 @@ bool arcsCross(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d)
   return cba * dba < 0.0 && adc * bdc < 0.0 && cba * bdc > 0.0;
 }
 
+/// An edge that can still show a larger gap than others.
+struct ArcEdge
+{
+  int edge;
+  Vec3 normals[2];   ///< Of its faces; of the second body turned round.
+  Vec3 across;       ///< Out of the plane of their arc.
+  Vec3 start, along; ///< Of the edge, from end to end.
+};
+
 /// Edges that can still show a larger gap than `least`. A face of the Minkowski difference that an
 /// edge is part of has its normal between those of the edge's faces (turned round, for the first
 /// body). The gap in such a direction n is at most n · (edge − other centroid) less the radius of
 /// the ball in the other body; no direction in the arc gives more than this.
-struct ArcEdge
-{
-  int edge;
-  std::array<const Vec3*, 2> normals; ///< Of its faces.
-};
-
-void edgesAbove(
-  const PairBody& body, const PairBody& other, double least, std::vector<ArcEdge>& found)
+void edgesAbove(const PairBody& body, const PairBody& other, double least, double sign,
+  std::vector<ArcEdge>& found)
 {
   found.clear();
-  const std::vector<Polyhedron::Edge>& edges = body.placed->block().shape().edges();
-  const std::vector<Vec3>& vertices = body.placed->vertices();
-  const Vec3 center = other.placed->position();
+  thread_local std::vector<double> over;
+  over.resize(std::size_t(4 * body.faceFours()));
+  for (int i = 0; i < body.faceFours(); ++i)
+  {
+    Eigen::Map<PairBody::Four>(over.data() + 4 * i) = body.overFaces(other.position, i);
+  }
+  const std::span<const Polyhedron::Edge> edges = body.edges;
   const double least2 = least + other.inside;
   for (std::size_t e = 0; e < edges.size(); ++e)
   {
-    const Vec3& a = body.normals[edges[e].faces[0]];
-    const Vec3& b = body.normals[edges[e].faces[1]];
-    const Vec3& start = vertices[edges[e].vertices[0]];
-    const Vec3 v = center - start;
-    const double overA = v.dot(a), overB = v.dot(b);
+    const double overA = over[std::size_t(edges[e].faces[0])];
+    const double overB = over[std::size_t(edges[e].faces[1])];
     bool above = std::max(overA, overB) > least2;
+    if (!above && std::max(overA, overB) <= 0.0 && least2 >= 0.0)
+    {
+      continue;
+    }
+    const Vec3 a = body.normal(edges[e].faces[0]), b = body.normal(edges[e].faces[1]);
+    const Vec3 start = body.vertex(edges[e].vertices[0]);
+    const Vec3 u = body.vertex(edges[e].vertices[1]) - start;
     if (!above)
     {
       const double between = a.dot(b);
       if (overA > between * overB && overB > between * overA)
       {
         // The nearest direction lies within the arc: the distance from the edge's line.
-        const Vec3 u = vertices[edges[e].vertices[1]] - start;
-        above = least2 < 0.0 || v.cross(u).squaredNorm() > least2 * least2 * u.squaredNorm();
+        above = least2 < 0.0 ||
+          (other.position - start).cross(u).squaredNorm() > least2 * least2 * u.squaredNorm();
       }
     }
     if (above)
     {
-      found.push_back({ int(e), { &a, &b } });
+      found.push_back({ int(e), { sign * a, sign * b }, b.cross(a), start, u });
     }
   }
 }
@@ -93,20 +106,18 @@ void edgesAbove(
 /// No axis if the edges are nearly parallel or do not face each other.
 PairAxis edgeAxis(const PairBody& first, const PairBody& second, int e, int f)
 {
-  const Polyhedron& p = first.placed->block().shape();
-  const Polyhedron& q = second.placed->block().shape();
-  const Polyhedron::Edge& edge = p.edges()[e];
-  const Polyhedron::Edge& other = q.edges()[f];
+  const Polyhedron::Edge& edge = first.edges[std::size_t(e)];
+  const Polyhedron::Edge& other = second.edges[std::size_t(f)];
   PairAxis axis;
-  if (!arcsCross(first.normals[edge.faces[0]], first.normals[edge.faces[1]],
-        -second.normals[other.faces[0]], -second.normals[other.faces[1]]))
+  if (!arcsCross(first.normal(edge.faces[0]), first.normal(edge.faces[1]),
+        -second.normal(other.faces[0]), -second.normal(other.faces[1])))
   {
     return axis;
   }
-  const Vec3& p0 = first.placed->vertices()[edge.vertices[0]];
-  const Vec3& q0 = second.placed->vertices()[other.vertices[0]];
-  const Vec3 u = first.placed->vertices()[edge.vertices[1]] - p0;
-  const Vec3 w = second.placed->vertices()[other.vertices[1]] - q0;
+  const Vec3 p0 = first.vertex(edge.vertices[0]);
+  const Vec3 q0 = second.vertex(other.vertices[0]);
+  const Vec3 u = first.vertex(edge.vertices[1]) - p0;
+  const Vec3 w = second.vertex(other.vertices[1]) - q0;
   Vec3 n = u.cross(w);
   const double square = n.squaredNorm();
   if (square < kParallel * kParallel * u.squaredNorm() * w.squaredNorm())
@@ -115,7 +126,7 @@ PairAxis edgeAxis(const PairBody& first, const PairBody& second, int e, int f)
   }
   n *= 1.0 / std::sqrt(square);
   // Out of the second body, into the first.
-  if (n.dot(q0 - second.placed->position()) < 0.0)
+  if (n.dot(q0 - second.position) < 0.0)
   {
     n = -n;
   }
@@ -127,29 +138,164 @@ PairAxis edgeAxis(const PairBody& first, const PairBody& second, int e, int f)
   return axis;
 }
 
+/// Whether a pair of such edges cannot show a gap larger than `least`, by a test without a root.
+bool showsLess(const ArcEdge& e, const ArcEdge& f, const Vec3& center, double least)
+{
+  const double cba = f.normals[0].dot(e.across), dba = f.normals[1].dot(e.across);
+  const double adc = e.normals[0].dot(f.across), bdc = e.normals[1].dot(f.across);
+  if (!(cba * dba < 0.0 && adc * bdc < 0.0))
+  {
+    return true;
+  }
+  const Vec3 n = e.along.cross(f.along);
+  const double outward = n.dot(f.start - center), apart = n.dot(e.start - f.start);
+  const double gap = outward < 0.0 ? -apart : apart;
+  // What rounding may turn round is left to the full test.
+  const double gap2 = gap * gap, least2 = least * least * n.squaredNorm();
+  return gap > 0.0 ? least > 0.0 && gap2 < least2 * (1.0 - 1e-9)
+                   : least >= 0.0 || gap2 > least2 * (1.0 + 1e-9);
+}
+
+/// The edges' axis, if it shows a larger gap than `least`.
+PairAxis bestCrossing(const PairBody& first, const PairBody& second, double least)
+{
+  PairAxis best;
+  best.distance = least;
+  thread_local std::vector<ArcEdge> ours, theirs;
+  edgesAbove(first, second, least, 1.0, ours);
+  if (ours.empty())
+  {
+    return best;
+  }
+  edgesAbove(second, first, least, -1.0, theirs);
+  for (const ArcEdge& e : ours)
+  {
+    for (const ArcEdge& f : theirs)
+    {
+      if (showsLess(e, f, second.position, best.distance))
+      {
+        continue;
+      }
+      const PairAxis axis = edgeAxis(first, second, e.edge, f.edge);
+      if (axis.kind != PairAxis::Kind::None && axis.distance > best.distance)
+      {
+        best = axis;
+      }
+    }
+  }
+  return best;
+}
+
+/// Upper bound of the distance of a point from a body. Where it is over a plane by ε, the body
+/// scaled up about its centroid by ε over the radius of the ball in it holds the point.
+double farFrom(const PairBody& body, const Vec3& point)
+{
+  PairBody::Four most = body.overFaces(point, 0);
+  for (int i = 1; i < body.faceFours(); ++i)
+  {
+    most = most.max(body.overFaces(point, i));
+  }
+  const double over = most.maxCoeff();
+  return over <= 0.0 ? 0.0 : over * (point - body.position).norm() / body.inside;
+}
+
+/// Whether the bodies have points no farther from each other than `limit`: no direction then shows
+/// a larger gap. Looked for where they touch along an axis; false if it is not sure.
+bool areWithin(const PairBody& first, const PairBody& second, const PairAxis& axis, double limit)
+{
+  if (limit < 0.0)
+  {
+    return false;
+  }
+  if (axis.kind == PairAxis::Kind::Edges)
+  {
+    const std::array<int, 2>& e = first.edges[std::size_t(axis.first)].vertices;
+    const std::array<int, 2>& f = second.edges[std::size_t(axis.second)].vertices;
+    const Vec3 p = first.vertex(e[0]);
+    const Vec3 q = second.vertex(f[0]);
+    const Vec3 u = first.vertex(e[1]) - p, w = second.vertex(f[1]) - q;
+    double s, t;
+    return closestOnLines(p, u, q, w, s, t) && s >= 0.0 && s <= 1.0 && t >= 0.0 && t <= 1.0 &&
+      (p + s * u - (q + t * w)).squaredNorm() <= limit * limit;
+  }
+  const bool ofFirst = axis.kind == PairAxis::Kind::FaceOfFirst;
+  const PairBody& owner = ofFirst ? first : second;
+  const PairBody& other = ofFirst ? second : first;
+  const int face = ofFirst ? axis.first : axis.second;
+  const Vec3 n = owner.normal(face);
+  const double offset = owner.offset(face);
+  // Vertices over the face …
+  for (int i = 0; i < other.vertexFours(); ++i)
+  {
+    const PairBody::Four over = other.alongVertices(n, i) - offset;
+    for (int k = 0; k < 4 && 4 * i + k < other.vertices(); ++k)
+    {
+      const double gap = std::max(0.0, over[k]);
+      if (over[k] <= limit && gap + farFrom(owner, other.vertex(4 * i + k) - gap * n) <= limit)
+      {
+        return true;
+      }
+    }
+  }
+  // … or of it, under the other body.
+  for (int k : owner.loops[std::size_t(face)])
+  {
+    if (farFrom(other, owner.vertex(k)) <= limit)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
 } // namespace
 
 void PairBody::update(const PlacedBlock& block)
 {
   placed = &block;
+  const Polyhedron& shape = block.block().shape();
+  edges = shape.edges();
+  loops = shape.faces();
+  radius = shape.radius();
   position = block.position();
   rotation = block.rotation();
-  const Polyhedron& shape = block.block().shape();
-  const std::size_t faces = shape.normals().size();
-  normals.resize(faces);
-  offsets.resize(faces);
-  inside = std::numeric_limits<double>::infinity();
-  for (std::size_t f = 0; f < faces; ++f)
+  const std::vector<Vec3>& corners = block.vertices();
+  const std::vector<Vec3>& normals = shape.normals();
+  const int faceCount = int(normals.size());
+  vertices_ = int(corners.size());
+  vertexFours_ = (vertices_ + 3) / 4;
+  faceFours_ = (faceCount + 3) / 4;
+  data_.resize(std::size_t(12 * vertexFours_ + 16 * faceFours_));
+  double* to = data_.data();
+  for (int i = 0; i < 4 * vertexFours_; ++i)
   {
-    normals[f] = block.rotation() * shape.normals()[f];
-    offsets[f] = shape.offsets()[f] + normals[f].dot(block.position());
-    inside = std::min(inside, shape.offsets()[f]);
+    const Vec3& v = corners[std::size_t(std::min(i, vertices_ - 1))];
+    double* at = to + 12 * (i >> 2) + (i & 3);
+    at[0] = v.x();
+    at[4] = v.y();
+    at[8] = v.z();
   }
+  to += 12 * vertexFours_;
+  const Mat3 turn = rotation;
+  const Vec3 center = position;
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 4 * faceFours_; ++i)
+  {
+    const std::size_t f = std::size_t(std::min(i, faceCount - 1));
+    const Vec3 n = turn * normals[f];
+    const double offset = shape.offsets()[f];
+    double* at = to + 16 * (i >> 2) + (i & 3);
+    at[0] = n.x();
+    at[4] = n.y();
+    at[8] = n.z();
+    at[12] = offset + n.dot(center);
+    least = std::min(least, offset);
+  }
+  inside = least;
 }
 
 PairAxis findAxis(const PairBody& first, const PairBody& second, const PairAxis& last, double reach)
 {
-  const double smaller = std::min(first.placed->block().radius(), second.placed->block().radius());
   PairAxis best;
   best.distance = -std::numeric_limits<double>::infinity();
   // The last axis first: most pairs are apart along it still.
@@ -163,71 +309,49 @@ PairAxis findAxis(const PairBody& first, const PairBody& second, const PairAxis&
     best = faceAxis(first, second, last.kind,
       last.kind == PairAxis::Kind::FaceOfFirst ? last.first : last.second);
   }
+  const double better = kHysteresis * std::min(first.radius, second.radius);
   if (best.kind != PairAxis::Kind::None)
   {
     if (best.distance > reach)
     {
       return best;
     }
-    best.distance += kHysteresis * smaller;
+    best.distance += better;
+    if (areWithin(first, second, best, best.distance))
+    {
+      best.distance -= better;
+      return best;
+    }
   }
   const PairAxis kept = best;
-  const auto offer = [&](const PairAxis& axis)
-  { best = axis.distance > best.distance ? axis : best; };
   // No face is farther from a body than from the ball in it.
-  const auto mayBeat = [&](const PairBody& owner, int f, const PairBody& other)
+  const auto offerFaces = [&](const PairBody& owner, const PairBody& other, PairAxis::Kind kind)
   {
-    return owner.normals[f].dot(other.placed->position()) - owner.offsets[f] - other.inside >
-      best.distance;
-  };
-  for (int f = 0; f < int(first.normals.size()); ++f)
-  {
-    if (mayBeat(first, f, second))
+    for (int i = 0; i < owner.faceFours(); ++i)
     {
-      offer(faceAxis(first, second, PairAxis::Kind::FaceOfFirst, f));
-    }
-  }
-  for (int f = 0; f < int(second.normals.size()); ++f)
-  {
-    if (mayBeat(second, f, first))
-    {
-      offer(faceAxis(first, second, PairAxis::Kind::FaceOfSecond, f));
-    }
-  }
-  if (best.distance <= reach)
-  {
-    // Faces go before edges that are as good.
-    PairAxis crossing;
-    crossing.distance = best.distance + kHysteresis * smaller;
-    thread_local std::vector<ArcEdge> ours, theirs;
-    edgesAbove(first, second, crossing.distance, ours);
-    if (!ours.empty())
-    {
-      edgesAbove(second, first, crossing.distance, theirs);
-      for (const ArcEdge& e : ours)
+      const PairBody::Four most = owner.overFaces(other.position, i) - other.inside;
+      for (int k = 0; k < 4 && 4 * i + k < owner.faces(); ++k)
       {
-        const Vec3 plane = e.normals[1]->cross(*e.normals[0]);
-        for (const ArcEdge& f : theirs)
+        if (most[k] > best.distance)
         {
-          // The arc of the other one must pass from one side of this one's plane to the other.
-          if (f.normals[0]->dot(plane) * f.normals[1]->dot(plane) >= 0.0)
-          {
-            continue;
-          }
-          const PairAxis axis = edgeAxis(first, second, e.edge, f.edge);
-          if (axis.kind != PairAxis::Kind::None && axis.distance > crossing.distance)
-          {
-            crossing = axis;
-          }
+          const PairAxis axis = faceAxis(first, second, kind, 4 * i + k);
+          best = axis.distance > best.distance ? axis : best;
         }
       }
     }
+  };
+  offerFaces(first, second, PairAxis::Kind::FaceOfFirst);
+  offerFaces(second, first, PairAxis::Kind::FaceOfSecond);
+  // Faces go before edges that are as good.
+  if (best.distance <= reach && !areWithin(first, second, best, best.distance + better))
+  {
+    const PairAxis crossing = bestCrossing(first, second, best.distance + better);
     best = crossing.kind != PairAxis::Kind::None ? crossing : best;
   }
   if (best.kind == kept.kind && best.first == kept.first && best.second == kept.second &&
     kept.kind != PairAxis::Kind::None && best.distance == kept.distance)
   {
-    best.distance -= kHysteresis * smaller;
+    best.distance -= better;
   }
   return best;
 }

@@ -10,6 +10,7 @@
 
 #include "contact/Contact.h"
 
+#include <span>
 #include <vector>
 
 namespace rockfall
@@ -32,16 +33,63 @@ struct PairAxis
   double distance = 0.0;       ///< Gap along it, m; < 0: overlap.
 };
 
-/// A rock with its face normals as they stand, m.
-struct PairBody
+/// A rock as it stands, laid out for the search of axes: coordinate by coordinate, in fours, the
+/// last vertex and face repeated to fill them up.
+class PairBody
 {
+public:
+  void update(const PlacedBlock& block);
+
   const PlacedBlock* placed = nullptr;
-  std::vector<Vec3> normals;    ///< Per face, world, outward.
-  std::vector<double> offsets;  ///< Per face, normal · x on it, world, m.
+  std::span<const Polyhedron::Edge> edges;
+  std::span<const std::vector<int>> loops; ///< Of the faces.
+  double radius = 0.0;                     ///< Of the bounding sphere about the centroid, m.
   double inside = 0.0;          ///< Radius of a ball about the centroid that the rock holds, m.
   Vec3 position = Vec3::Zero(); ///< For which all this stands.
   Mat3 rotation = Mat3::Zero();
-  void update(const PlacedBlock& block);
+
+  using Four = Eigen::Array4d;
+  int vertexFours() const { return vertexFours_; }
+  int faceFours() const { return faceFours_; }
+  int vertices() const { return vertices_; }
+  int faces() const { return int(loops.size()); }
+  /// n · x of four vertices, from vertex 4 i, m.
+  Four alongVertices(const Vec3& n, int i) const { return along(n, data_.data() + 12 * i); }
+  /// n · (normal) of four faces, from face 4 i.
+  Four alongNormals(const Vec3& n, int i) const { return along(n, faceData() + 16 * i); }
+  /// How far over four faces' planes a point is, from face 4 i, m.
+  Four overFaces(const Vec3& point, int i) const
+  {
+    const double* of = faceData() + 16 * i;
+    return along(point, of) - Eigen::Map<const Four>(of + 12);
+  }
+  /// World, m.
+  Vec3 vertex(int i) const
+  {
+    const double* of = data_.data() + 12 * (i >> 2) + (i & 3);
+    return { of[0], of[4], of[8] };
+  }
+  /// World, outward, unit.
+  Vec3 normal(int face) const
+  {
+    const double* of = faceData() + 16 * (face >> 2) + (face & 3);
+    return { of[0], of[4], of[8] };
+  }
+  /// normal · x on the face, m.
+  double offset(int face) const { return faceData()[16 * (face >> 2) + 12 + (face & 3)]; }
+
+private:
+  /// Of four vectors, given by their x, their y and their z.
+  static Four along(const Vec3& n, const double* of)
+  {
+    using Lane = Eigen::Map<const Four>;
+    return Lane(of) * n.x() + Lane(of + 4) * n.y() + Lane(of + 8) * n.z();
+  }
+  const double* faceData() const { return data_.data() + 12 * vertexFours_; }
+
+  int vertices_ = 0, vertexFours_ = 0, faceFours_ = 0;
+  /// Per four vertices x, y, z, then per four faces the normals' x, y, z and the offsets.
+  std::vector<double> data_;
 };
 
 /// The axis of the largest gap; `last` stays as long as no other one is better by more than a

@@ -114,58 +114,69 @@ Polyhedron Polyhedron::convexHull(std::span<const Vec3> points, const std::strin
 Polyhedron Polyhedron::fromShell(
   const Shell& shell, std::span<const Vec3> points, const std::string& name)
 {
-  Polyhedron result;
+  Parts result;
   for (const int id : shell.pointIds)
   {
-    result.vertices_.push_back(points[id]); // as given, to the last digit
+    result.vertices.push_back(points[id]); // as given, to the last digit
   }
-  result.faces_ = shell.faces;
+  result.faces = shell.faces;
   const DirectedEdges sides(shell.faces);
-  result.neighbours_.resize(result.vertices_.size());
+  result.neighbours.resize(result.vertices.size());
   for (std::size_t f = 0; f < shell.faces.size(); ++f)
   {
     const std::vector<int>& loop = shell.faces[f];
-    result.normals_.push_back(facePlane(shell.points, loop).normal);
+    result.normals.push_back(facePlane(shell.points, loop).normal);
     for (std::size_t i = 0; i < loop.size(); ++i)
     {
       const int a = loop[i], b = loop[(i + 1) % loop.size()];
       const int other = sides.face(b, a);
       if (int(f) < other)
       {
-        result.edges_.push_back({ { a, b }, { int(f), other } });
-        result.neighbours_[a].push_back(b);
-        result.neighbours_[b].push_back(a);
+        result.edges.push_back({ { a, b }, { int(f), other } });
+        result.neighbours[a].push_back(b);
+        result.neighbours[b].push_back(a);
       }
     }
   }
   const int euler =
-    int(result.vertices_.size()) - int(result.edges_.size()) + int(result.faces_.size());
+    int(result.vertices.size()) - int(result.edges.size()) + int(result.faces.size());
   if (euler != 2)
   {
     throw GeometryError(name +
       ": is not one simple body: vertices − edges + faces = " + std::to_string(euler) + ", not 2");
   }
-  result.integrals_ = integrateSimplices(result.vertices_, result.faces_);
+  result.integrals = integrateSimplices(result.vertices, result.faces);
   result.updateDistances();
-  return result;
+  return Polyhedron(std::move(result));
 }
 
-void Polyhedron::updateDistances()
+Polyhedron::Polyhedron(Parts parts)
+  : parts_(std::make_shared<const Parts>(std::move(parts)))
 {
-  offsets_.resize(faces_.size());
-  for (std::size_t f = 0; f < faces_.size(); ++f)
+}
+
+const std::shared_ptr<const Polyhedron::Parts>& Polyhedron::nothing()
+{
+  static const std::shared_ptr<const Parts> parts = std::make_shared<const Parts>();
+  return parts;
+}
+
+void Polyhedron::Parts::updateDistances()
+{
+  offsets.resize(faces.size());
+  for (std::size_t f = 0; f < faces.size(); ++f)
   {
     double sum = 0.0;
-    for (const int id : faces_[f])
+    for (const int id : faces[f])
     {
-      sum += normals_[f].dot(vertices_[id]);
+      sum += normals[f].dot(vertices[id]);
     }
-    offsets_[f] = sum / double(faces_[f].size());
+    offsets[f] = sum / double(faces[f].size());
   }
-  radius_ = 0.0;
-  for (const Vec3& vertex : vertices_)
+  radius = 0.0;
+  for (const Vec3& vertex : vertices)
   {
-    radius_ = std::max(radius_, (vertex - integrals_.centroid).norm());
+    radius = std::max(radius, (vertex - integrals.centroid).norm());
   }
 }
 
@@ -182,30 +193,32 @@ Polyhedron Polyhedron::transformed(double scale, const Quat& rotation, const Vec
                          "not zero");
   }
   const Mat3 turn = rotation.normalized().toRotationMatrix();
-  Polyhedron result = *this;
-  for (Vec3& vertex : result.vertices_)
+  Parts result = *parts_;
+  for (Vec3& vertex : result.vertices)
   {
     vertex = scale * (turn * vertex) + shift;
   }
-  for (Vec3& normal : result.normals_)
+  for (Vec3& normal : result.normals)
   {
     normal = (turn * normal).normalized();
   }
   const double cubed = scale * scale * scale;
-  result.integrals_.volume = cubed * integrals_.volume;
-  result.integrals_.centroid = scale * (turn * integrals_.centroid) + shift;
-  result.integrals_.second = cubed * scale * scale * (turn * integrals_.second * turn.transpose());
+  result.integrals.volume = cubed * result.integrals.volume;
+  result.integrals.centroid = scale * (turn * result.integrals.centroid) + shift;
+  result.integrals.second =
+    cubed * scale * scale * (turn * result.integrals.second * turn.transpose());
   // From the new vertices, not from the old offsets: a shift to the origin wins digits back.
   result.updateDistances();
-  return result;
+  return Polyhedron(std::move(result));
 }
 
 Polyhedron Polyhedron::centred() const
 {
   // Twice, because the centroid of a body far from the origin is itself rounded.
-  Polyhedron result = this->transformed(1.0, Quat::Identity(), -integrals_.centroid);
-  result.integrals_ = integrateSimplices(result.vertices_, result.faces_);
-  return result.transformed(1.0, Quat::Identity(), -result.integrals_.centroid);
+  Parts once = *this->transformed(1.0, Quat::Identity(), -this->integrals().centroid).parts_;
+  once.integrals = integrateSimplices(once.vertices, once.faces);
+  const Vec3 rest = once.integrals.centroid;
+  return Polyhedron(std::move(once)).transformed(1.0, Quat::Identity(), -rest);
 }
 
 Polyhedron Polyhedron::withVolume(double volume) const
@@ -214,12 +227,12 @@ Polyhedron Polyhedron::withVolume(double volume) const
   {
     throw ParameterError("Volume is " + numberText(volume) + " m³, it must be positive and finite");
   }
-  if (!(integrals_.volume > 0.0))
+  if (!(this->integrals().volume > 0.0))
   {
     throw GeometryError("polyhedron: has no faces yet, so no volume can be given to it");
   }
-  const double scale = std::cbrt(volume / integrals_.volume);
-  return this->centred().transformed(scale, Quat::Identity(), integrals_.centroid);
+  const double scale = std::cbrt(volume / this->integrals().volume);
+  return this->centred().transformed(scale, Quat::Identity(), this->integrals().centroid);
 }
 
 } // namespace rockfall

@@ -8,6 +8,7 @@
 #include "geometry/simplexIntegration.h"
 
 #include <array>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,7 +31,14 @@ public:
     std::array<int, 2> faces;    ///< The two faces that meet here.
   };
 
-  Polyhedron() = default;
+  Polyhedron()
+    : parts_(nothing())
+  {
+  }
+  // Copies share what they are made of; what is moved from stays whole.
+  Polyhedron(const Polyhedron&) = default;
+  Polyhedron& operator=(const Polyhedron&) = default;
+  ~Polyhedron() = default;
 
   /// From polygon loops, counter-clockwise seen from outside. Points closer than a relative 1e-9
   /// are one vertex, and what lies within a relative 1e-6 of a plane is planar, so that single
@@ -45,22 +53,19 @@ public:
   static Polyhedron convexHull(
     std::span<const Vec3> points, const std::string& name = "polyhedron");
 
-  const std::vector<Vec3>& vertices() const { return vertices_; }
-  const std::vector<std::vector<int>>& faces() const
-  {
-    return faces_;
-  }                                                             ///< Loops, CCW from outside.
-  const std::vector<Vec3>& normals() const { return normals_; } ///< Per face, outward, unit.
-  const std::vector<double>& offsets() const
-  {
-    return offsets_;
-  } ///< Per face, normal · x on it, m.
-  const std::vector<Edge>& edges() const { return edges_; }
+  const std::vector<Vec3>& vertices() const { return parts_->vertices; }
+  /// Loops, CCW from outside.
+  const std::vector<std::vector<int>>& faces() const { return parts_->faces; }
+  /// Per face, outward, unit.
+  const std::vector<Vec3>& normals() const { return parts_->normals; }
+  /// Per face, normal · x on it, m.
+  const std::vector<double>& offsets() const { return parts_->offsets; }
+  const std::vector<Edge>& edges() const { return parts_->edges; }
   /// Vertices joined to vertex v by an edge.
-  const std::vector<int>& neighbours(int v) const { return neighbours_[v]; }
-  const VolumeIntegrals& integrals() const { return integrals_; }
+  const std::vector<int>& neighbours(int v) const { return parts_->neighbours[v]; }
+  const VolumeIntegrals& integrals() const { return parts_->integrals; }
   /// Largest distance of a vertex from the centroid, m.
-  double radius() const { return radius_; }
+  double radius() const { return parts_->radius; }
 
   /// The same shape with x ↦ scale·(R x) + shift; scale > 0 (ParameterError).
   Polyhedron transformed(double scale, const Quat& rotation, const Vec3& shift) const;
@@ -70,20 +75,28 @@ public:
   Polyhedron withVolume(double volume) const;
 
 private:
+  struct Parts
+  {
+    std::vector<Vec3> vertices;
+    std::vector<std::vector<int>> faces;
+    std::vector<Vec3> normals;
+    std::vector<double> offsets;
+    std::vector<Edge> edges;
+    std::vector<std::vector<int>> neighbours;
+    VolumeIntegrals integrals;
+    double radius = 0.0;
+
+    /// Offsets and radius, from vertices, normals and integrals.
+    void updateDistances();
+  };
+  explicit Polyhedron(Parts parts);
   /// From a shell that has passed every check.
   static Polyhedron fromShell(
     const Shell& shell, std::span<const Vec3> points, const std::string& name);
-  /// Offsets and radius, from vertices, normals and integrals.
-  void updateDistances();
+  /// What a polyhedron without faces is made of.
+  static const std::shared_ptr<const Parts>& nothing();
 
-  std::vector<Vec3> vertices_;
-  std::vector<std::vector<int>> faces_;
-  std::vector<Vec3> normals_;
-  std::vector<double> offsets_;
-  std::vector<Edge> edges_;
-  std::vector<std::vector<int>> neighbours_;
-  VolumeIntegrals integrals_;
-  double radius_ = 0.0;
+  std::shared_ptr<const Parts> parts_; ///< Of all copies: a thousand alike take up the room of one.
 };
 
 } // namespace rockfall

@@ -19,8 +19,72 @@ namespace
 constexpr double kDeepestImpact = 0.01;
 /// Steps per half period of an impact, as for single rocks.
 constexpr double kStepsPerImpact = 8.0;
+/// In a crowd a step is this much longer than rocks that resolve their impacts may take: where they
+/// would end is looked at.
+constexpr double kCrowdTravel = 2.0;
 constexpr double kShearDamping = 5.0;  // as for single rocks
 constexpr double kLooseOverlap = 1e-3; // of the radius, as for single rocks
+
+/// Gives contacts of a pair what they are made of; what only their normal decides is found once.
+class PairArming
+{
+public:
+  PairArming(const PlacedBlock& a, const BlockState& s, const PlacedBlock& b, const BlockState& t,
+    const PairLaw& law, const SimulationParameters& parameters)
+    : rigid_(parameters.rigid)
+    , damping_(law.damping)
+    , sides_{ { { &a.block(), a.rotation(), s.position },
+        { &b.block(), b.rotation(), t.position } } }
+  {
+    const double mass = 1.0 / (1.0 / a.block().mass() + 1.0 / b.block().mass());
+    const double depth = kDeepestImpact * std::min(a.block().radius(), b.block().radius());
+    const double speed = (s.velocity - t.velocity).norm();
+    penalty_ = std::max(parameters.normalPenalty, mass * speed * speed / (depth * depth));
+    shear_ = penalty_ * parameters.shearRatio;
+  }
+  void arm(Contact& c)
+  {
+    if (c.normal != normal_)
+    {
+      normal_ = c.normal;
+      const Vec3 along = normal_.unitOrthogonal();
+      for (Side& side : sides_)
+      {
+        side.n = side.turn.transpose() * normal_;
+        side.t = side.turn.transpose() * along;
+      }
+    }
+    double soft = 0.0, softAlong = 0.0, mobile = 0.0, mobileAlong = 0.0;
+    for (const Side& side : sides_)
+    {
+      const Vec3 x = side.turn.transpose() * (c.point - side.position);
+      soft += rigid_ ? 0.0 : side.block->compliance(side.n, x);
+      softAlong += rigid_ ? 0.0 : side.block->compliance(side.t, x);
+      mobile += side.block->mobility(side.n, x);
+      mobileAlong += side.block->mobility(side.t, x);
+    }
+    c.stiffness = penalty_ / (1.0 + penalty_ * soft);
+    c.shearStiffness = shear_ / (1.0 + shear_ * softAlong);
+    c.frequency2 = c.stiffness * mobile;
+    c.dashpot = damping_ > 0.0 ? 2.0 * damping_ * std::sqrt(c.stiffness / mobile) : 0.0;
+    c.shearDashpot = 2.0 * kShearDamping * std::sqrt(c.shearStiffness / mobileAlong);
+  }
+
+private:
+  struct Side
+  {
+    const Block* block;
+    Mat3 turn; ///< Body to world axes.
+    Vec3 position;
+    Vec3 n = Vec3::Zero(), t = Vec3::Zero(); ///< The normal and a direction across it, body axes.
+  };
+  bool rigid_;
+  double damping_;
+  double penalty_ = 0.0; ///< N/m
+  double shear_ = 0.0;   ///< N/m
+  Vec3 normal_ = Vec3::Zero();
+  std::array<Side, 2> sides_;
+};
 
 } // namespace
 
@@ -110,11 +174,18 @@ void MassFall::gatherContacts(const Group& group, double h) const
 
 void MassFall::armPair(RockPair& pair) const
 {
+  const auto open = [](const Contact& c) { return !c.closed(); };
+  if (std::none_of(pair.contacts.begin(), pair.contacts.end(), open))
+  {
+    return;
+  }
+  const RockSimulator &a = members_[pair.first]->sim, &b = members_[pair.second]->sim;
+  PairArming arming(a.placed_, a.state_, b.placed_, b.state_, pair.law, parameters_);
   for (Contact& c : pair.contacts)
   {
-    if (!c.closed())
+    if (open(c))
     {
-      this->armContact(pair, c);
+      arming.arm(c);
     }
   }
 }
@@ -122,30 +193,7 @@ void MassFall::armPair(RockPair& pair) const
 void MassFall::armContact(const RockPair& pair, Contact& c) const
 {
   const RockSimulator &a = members_[pair.first]->sim, &b = members_[pair.second]->sim;
-  const double mass = 1.0 / (1.0 / a.block_.mass() + 1.0 / b.block_.mass());
-  const double depth = kDeepestImpact * std::min(a.block_.radius(), b.block_.radius());
-  const double speed = (a.state_.velocity - b.state_.velocity).norm();
-  const double penalty =
-    std::max(parameters_.normalPenalty, mass * speed * speed / (depth * depth));
-  const double shear = penalty * parameters_.shearRatio;
-  double soft = 0.0, softAlong = 0.0, mobile = 0.0, mobileAlong = 0.0;
-  const Vec3 along = c.normal.unitOrthogonal();
-  for (const RockSimulator* rock : { &a, &b })
-  {
-    const Mat3& r = rock->placed_.rotation();
-    const Vec3 x = r.transpose() * (c.point - rock->state_.position);
-    const Vec3 n = r.transpose() * c.normal, t = r.transpose() * along;
-    soft += parameters_.rigid ? 0.0 : rock->block_.compliance(n, x);
-    softAlong += parameters_.rigid ? 0.0 : rock->block_.compliance(t, x);
-    mobile += rock->block_.mobility(n, x);
-    mobileAlong += rock->block_.mobility(t, x);
-  }
-  c.stiffness = penalty / (1.0 + penalty * soft);
-  c.shearStiffness = shear / (1.0 + shear * softAlong);
-  c.frequency2 = c.stiffness * mobile;
-  const double damping = pair.law.damping;
-  c.dashpot = damping > 0.0 ? 2.0 * damping * std::sqrt(c.stiffness / mobile) : 0.0;
-  c.shearDashpot = 2.0 * kShearDamping * std::sqrt(c.shearStiffness / mobileAlong);
+  PairArming(a.placed_, a.state_, b.placed_, b.state_, pair.law, parameters_).arm(c);
 }
 
 bool MassFall::isCalm(const Group& group) const
@@ -312,7 +360,8 @@ void MassFall::advanceGroup(const Group& group, double until) const
     for (int i : group.members)
     {
       const RockSimulator& sim = members_[i]->sim;
-      travel = sim.done_ ? travel : std::min(travel, sim.travelLimit());
+      const double limit = (inTime ? 1.0 : kCrowdTravel) * sim.travelLimit();
+      travel = sim.done_ ? travel : std::min(travel, limit);
     }
     const double remaining = until - now();
     const double large = std::min(remaining, travel);

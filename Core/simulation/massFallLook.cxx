@@ -112,7 +112,6 @@ bool MassFall::lookAgain(const Group& group, double h, bool bounces, Workspace& 
       {
         continue;
       }
-      any = true;
       // One that is there already was reckoned wrong.
       const auto same = [&](std::size_t k)
       {
@@ -136,9 +135,10 @@ bool MassFall::lookAgain(const Group& group, double h, bool bounces, Workspace& 
       }
       if (known < work.contacts.size())
       {
-        work.solver.setGap(known, c.distance - work.contacts[known].contact->offset);
+        any = work.solver.setGap(known, c.distance - work.contacts[known].contact->offset) || any;
         continue;
       }
+      any = true;
       carryBack(a.end, b.end, a.sim.placed_, b.sim.placed_, c);
       this->armContact(pair, c);
       work.added.push_back(c);

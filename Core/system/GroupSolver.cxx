@@ -10,24 +10,6 @@
 namespace rockfall
 {
 
-namespace
-{
-
-/// A bounce is this much stiffer than the rocks are heavy. Much more, and what bounces to and fro
-/// between others would keep Gauss–Seidel from settling.
-constexpr double kBounceStiffness = 100.0;
-
-/// How often the turn of a free body is gone over for the first guess of a step.
-constexpr int kFreeTurns = 2;
-
-Quat cayley(const Vec3& r)
-{
-  const double scale = 1.0 / std::sqrt(1.0 + 0.25 * r.squaredNorm());
-  return Quat(scale, 0.5 * scale * r.x(), 0.5 * scale * r.y(), 0.5 * scale * r.z());
-}
-
-} // namespace
-
 void GroupSolver::prepare(const StepRequest& request, const std::vector<GroupBody>& bodies,
   const std::vector<GroupContact>& contacts)
 {
@@ -59,17 +41,6 @@ void GroupSolver::prepare(const StepRequest& request, const std::vector<GroupBod
     // First guess: as the last step went.
     w.d.head<3>() = h * w.velocity0.head<3>() + (0.5 * h * h) * body.acceleration;
     w.d.tail<3>() = h * w.velocity0.tail<3>() + (0.5 * h * h) * spinAcceleration;
-    for (int k = 0; k < kFreeTurns && lasting && body.spinAcceleration.isZero(0.0); ++k)
-    {
-      // … but turning as a free body does, that keeps its angular momentum (see loads): taken for
-      // constant, its spin would gain energy from the gyroscopic moment.
-      const Vec3 spin = (rate_ * w.d + w.offset).tail<3>();
-      const Vec3 momentum = w.rotation * (block.inertia() * (back * spin));
-      const Vec3 turned = cayley(w.d.tail<3>()) * momentum;
-      w.d.tail<3>() = ((w.velocity0 - w.offset).tail<3>() -
-                        w.rotation * (block.inverseInertia() * (back * (turned - momentum)))) /
-        rate_;
-    }
     w.last.setZero();
   };
   forEach(bodies.size(), kBodyGrain, prepareBody);
@@ -125,7 +96,6 @@ void GroupSolver::prepareRows(const StepRequest& request, const std::vector<Grou
     law.cohesion = group.cohesion;
     law.slip0 = { row.directions[1].dot(c.slip), row.directions[2].dot(c.slip) };
     law.state = c.state;
-    row.force.setZero();
   };
   forEach(contacts.size() - first, kRowGrain, prepareRow);
 }
@@ -134,7 +104,6 @@ void GroupSolver::startRows(
   const StepRequest& request, const std::vector<GroupContact>& contacts, std::size_t first)
 {
   const double h = request.duration;
-  const bool lasting = request.kind == StepKind::Lasting;
   const auto start = [&](std::size_t further)
   {
     const std::size_t k = first + further;
@@ -148,12 +117,6 @@ void GroupSolver::startRows(
       const double turned = contacts[k].approach + contacts[k].bounce;
       row.law.gap0 = -h * (contacts[k].bounce + turned / (row.law.penalty * mobile(0)));
       row.law.shearPenalty = std::max(row.law.shearPenalty, kBounceStiffness / mobile(1));
-    }
-    else if (lasting && contacts[k].contact->closed())
-    {
-      // Gauss–Seidel starts from the forces of the last step.
-      row.force[0] = contacts[k].contact->normalForce;
-      row.force.tail<2>() = -row.law.shearPenalty * row.law.slip0;
     }
   };
   forEach(contacts.size() - first, kRowGrain, start);
@@ -179,6 +142,10 @@ void GroupSolver::append(const StepRequest& request, const std::vector<GroupBody
 
 BlockState GroupSolver::end(const std::vector<GroupBody>& bodies, std::size_t i) const
 {
+  if (sweeping_)
+  {
+    return crowd_.end(bodies, i);
+  }
   BlockState state = *bodies[i].state;
   state.position += work_[i].d.head<3>();
   state.orientation = (work_[i].turn * state.orientation).normalized();
@@ -187,32 +154,31 @@ BlockState GroupSolver::end(const std::vector<GroupBody>& bodies, std::size_t i)
 
 double GroupSolver::gap(std::size_t contact) const
 {
+  if (sweeping_)
+  {
+    return crowd_.gap(contact);
+  }
   const Row& row = rows_[contact];
   return row.gap0 + this->travel(row)[0];
 }
 
-void GroupSolver::setGap(std::size_t contact, double found)
+bool GroupSolver::setGap(std::size_t contact, double found)
 {
+  if (sweeping_)
+  {
+    return crowd_.setGap(contact, found);
+  }
   Row& row = rows_[contact];
   const double least = std::min(0.0, row.gap0);
   const double change = std::max(least - row.gap0, found - this->gap(contact));
   row.law.gap0 += row.law.gap0 == row.gap0 ? change : 0.0; // a bounce asks for one of its own
   row.gap0 += change;
-  if (sweeping_)
-  {
-    Point& p = points_[std::size_t(pointOf_[contact])];
-    p.gap = row.law.gap0;
-    for (const int body : p.body)
-    {
-      Mover& m = movers_[std::size_t(body)];
-      m.changed = m.inverseMass > 0.0 ? sweep_ : kNever;
-    }
-  }
+  return change != 0.0;
 }
 
 bool GroupSolver::moved(std::size_t body) const
 {
-  return !sweeping_ || movers_[body].changed >= looked_;
+  return !sweeping_ || crowd_.moved(body);
 }
 
 void GroupSolver::turn()

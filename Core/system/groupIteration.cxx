@@ -17,6 +17,9 @@ namespace
 constexpr std::size_t kDirect = 60;
 /// How often missed contacts are looked for in a step.
 constexpr int kLooks = 2;
+/// Where nothing bounces forces are to be exact, and few contacts still change: so many times more
+/// sweeps.
+constexpr int kCalmSweeps = 25;
 /// As in the step of a single rock.
 constexpr double kGapTolerance = 1e-7;
 /// The gyroscopic moment converges linearly: to this share of a turn it keeps angular momentum to
@@ -81,56 +84,51 @@ bool GroupSolver::newton(
 GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody>& bodies,
   std::vector<GroupContact>& contacts, bool takeAnyway, const std::function<bool()>& lookAgain)
 {
-  GroupOutcome outcome;
-  sweeping_ = false;
-  this->prepare(request, bodies, contacts);
   const bool lasting = request.kind == StepKind::Lasting;
   const bool iterate =
     method == GroupMethod::Iterative || (method == GroupMethod::Suited && bodies.size() > kDirect);
-  const auto sweep = [&](const StepRequest& how)
+  const auto sweep = [&]
   {
-    outcome.settled = this->gaussSeidel(how, bodies, outcome);
-    for (int look = 0; look < kLooks && lookAgain && lookAgain(); ++look)
-    {
-      this->append(how, bodies, contacts);
-      outcome.settled = this->resume(outcome);
-    }
-    this->finishSweeps(how);
+    sweeping_ = true;
+    crowd_.tolerance = tolerance;
+    crowd_.maxSweeps = maxSweeps;
+    crowd_.maxCalmSweeps = kCalmSweeps * maxSweeps;
+    return crowd_.step(request, bodies, contacts, lookAgain);
   };
   if (iterate && lasting)
   {
-    sweep(request);
+    return sweep();
   }
-  else
+  GroupOutcome outcome;
+  sweeping_ = false;
+  this->prepare(request, bodies, contacts);
+  outcome.settled = this->newton(request, bodies, outcome);
+  for (int look = 0; look < kLooks && outcome.settled && lookAgain && lookAgain(); ++look)
   {
+    this->append(request, bodies, contacts);
     outcome.settled = this->newton(request, bodies, outcome);
-    for (int look = 0; look < kLooks && outcome.settled && lookAgain && lookAgain(); ++look)
+  }
+  if (!outcome.settled && takeAnyway)
+  {
+    // Newton that has not settled may be anywhere; Gauss–Seidel comes nearer with every sweep, and
+    // a lasting step makes no energy.
+    for (GroupBody& body : bodies)
     {
-      this->append(request, bodies, contacts);
-      outcome.settled = this->newton(request, bodies, outcome);
+      body.acceleration.setZero();
+      body.spinAcceleration.setZero();
     }
-    if (!outcome.settled && takeAnyway)
-    {
-      // Newton that has not settled may be anywhere; Gauss–Seidel comes nearer with every sweep,
-      // and a lasting step makes no energy.
-      StepRequest calmer = request;
-      calmer.kind = StepKind::Lasting;
-      for (GroupBody& body : bodies)
-      {
-        body.acceleration.setZero();
-        body.spinAcceleration.setZero();
-      }
-      this->prepare(calmer, bodies, contacts);
-      sweep(calmer);
-      outcome.settled = false;
-    }
+    const int iterations = outcome.iterations;
+    outcome = sweep();
+    outcome.iterations += iterations;
+    outcome.settled = false;
+    return outcome;
   }
   bool finite = true;
   for (const Work& w : work_)
   {
     finite = finite && w.d.allFinite();
   }
-  if (finite && (outcome.settled || takeAnyway))
+  if (finite && outcome.settled)
   {
     this->write(request, bodies, contacts, outcome);
   }

@@ -1,0 +1,48 @@
+#pragma once
+
+/// @file
+/// A point on which two rocks touch, before it is a contact.
+
+#include "contact/pairs.h"
+
+#include <span>
+
+namespace rockfall
+{
+
+/// A point of touch.
+struct Touch
+{
+  Vec3 point;
+  double distance; ///< m
+  int feature;     ///< Of the corner's rock: a vertex, or < 0: where an edge is cut.
+};
+
+/// The points of touch along an axis (findTouches), valid until the next call on this thread.
+std::span<const Touch> touchesAlong(
+  const PairBody& first, const PairBody& second, const PairAxis& axis, double reach);
+
+/// The features that touch.
+struct TouchFeatures
+{
+  ContactKind kind;
+  int first, second; ///< Of the rocks.
+
+  TouchFeatures(const Touch& touch, const PairAxis& axis)
+    : kind(axis.kind == PairAxis::Kind::Edges        ? ContactKind::EdgeEdge
+          : axis.kind == PairAxis::Kind::FaceOfFirst ? ContactKind::FaceVertex
+                                                     : ContactKind::VertexFace)
+    , first(kind == ContactKind::VertexFace ? touch.feature : axis.first)
+    , second(kind == ContactKind::FaceVertex ? touch.feature : axis.second)
+  {
+  }
+  bool are(const Contact& c) const
+  {
+    return c.kind == kind && c.rockFeature == first && c.surfaceFeature == second;
+  }
+};
+
+/// Where a touch is: all of a contact that is not its springs'.
+void putTouch(const Touch& touch, const PairBody& second, const PairAxis& axis, Contact& contact);
+
+} // namespace rockfall

@@ -1,0 +1,123 @@
+#pragma once
+
+/// @file
+/// A lasting step of many rocks that touch each other: open–close iteration as projected
+/// Gauss–Seidel over the contacts, in their own three directions.
+///
+/// The same unknowns, springs and integration as in system/GroupSolver.h, which uses this for what
+/// is too large to eliminate. Contacts lie in memory as the sweeps meet them
+/// (system/crowdKernel.h), and nothing else of them is kept.
+
+#include "solver/StepSolver.h"
+#include "system/crowdKernel.h"
+#include "system/group.h"
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace rockfall
+{
+
+class CrowdSolver
+{
+public:
+  /// Advances the bodies' states and the contacts' springs by `request.duration`, as if it lasted.
+  /// `lookAgain`: see GroupSolver::step. Nothing is changed if a displacement is not finite.
+  GroupOutcome step(const StepRequest& request, std::vector<GroupBody>& bodies,
+    std::vector<GroupContact>& contacts, const std::function<bool()>& lookAgain);
+
+  // For lookAgain, as GroupSolver has them.
+  BlockState end(const std::vector<GroupBody>& bodies, std::size_t i) const;
+  double gap(std::size_t contact) const;
+  bool setGap(std::size_t contact, double found);
+  bool moved(std::size_t body) const { return changed_[body] >= looked_; }
+
+  /// Share of the largest displacement to which the sweeps go.
+  double tolerance = 1e-4;
+  int maxSweeps = 12;
+  int maxCalmSweeps = 300; ///< Where nothing bounces, forces are to be exact.
+
+private:
+  static constexpr int kNever = -2;                              ///< A sweep before all others.
+  static constexpr std::size_t kBodyGrain = 64, kRowGrain = 256; ///< For one thread at a time.
+
+  /// World axes. A rotation over the step is the Cayley vector of its turn.
+  struct Work
+  {
+    Mat3 rotation;  ///< At the start.
+    Mat3 turned;    ///< As turned for which levers and loads hold, and at last as solved.
+    Mat3 mean;      ///< ½ (I + turned): a material vector, averaged over the step.
+    Quat turn;      ///< Of `turned`.
+    Vec3 position;  ///< Of the centroid at the start.
+    Vec3 way, spun; ///< Displacement and Cayley vector.
+    Vec3 velocity0, spin0;
+    Vec3 offset, spinOffset; ///< Velocity at the end is way/h + offset.
+    double inverseMass;      ///< h²/m
+    Mat3 inverseInertia;     ///< h² I⁻¹
+  };
+  /// What is not in its lane of a batch.
+  struct Row
+  {
+    int batch = 0, lane = 0;
+    double gap0 = 0.0; ///< Without what a bounce asks for, m.
+    double penalty = 0.0, shearPenalty = 0.0;
+    double done[2] = {};                           ///< Out: work of the force on the two bodies, J.
+    double frictionWork = 0.0, dampedWork = 0.0;   ///< Out, J.
+    double normalEnergy = 0.0, springEnergy = 0.0; ///< Out, J.
+  };
+
+  void prepareBodies(const StepRequest& request, const std::vector<GroupBody>& bodies);
+  void turnAs(Work& work, const Vec3& spun) const; ///< turned, mean and turn.
+  /// Where a body goes without contacts, for the turn that it has.
+  std::array<Vec3, 2> freeMotion(const GroupBody& body, const Work& work) const;
+  void arrange(const std::vector<GroupContact>& contacts); ///< Parts, and batches of each.
+  /// Deals contacts out to batches; `slope`: the mover that stands for it.
+  void deal(
+    const std::vector<GroupContact>& contacts, const int* first, const int* last, int slope);
+  void prepareRow(const std::vector<GroupBody>& bodies, const GroupContact& group, Row& row);
+  /// Directions and levers at mid-step, and what a force does along them.
+  void lever(const std::vector<GroupBody>& bodies, const GroupContact& group, const Row& row);
+  void pushed(const Row& row, double sign); ///< Movers by the row's force.
+  Vec3 travel(const Row& row) const;        ///< Along the normal and the tangents, m.
+  void startMover(const GroupBody& body, std::size_t i);
+  void startMovers(const std::vector<GroupBody>& bodies);
+  /// Turns that were guessed wrong, and the levers that go with them.
+  bool correctTurns(
+    const std::vector<GroupBody>& bodies, const std::vector<GroupContact>& contacts);
+  void append(const std::vector<GroupBody>& bodies, std::vector<GroupContact>& contacts);
+  double visit(int part);
+  double sweep();
+  bool sweeps(int most, GroupOutcome& outcome);
+  void collect(); ///< Displacements from movers.
+  void write(const StepRequest& request, std::vector<GroupBody>& bodies,
+    std::vector<GroupContact>& contacts, GroupOutcome& outcome);
+
+  double h_ = 0.0, gravity_ = 0.0;
+  std::vector<Work> work_;
+  std::vector<Row> rows_;
+  std::vector<crowd::Batch> batches_;
+  /// The slope is one more mover of each part, which nothing moves.
+  std::vector<crowd::Mover> movers_;
+  std::vector<int> changed_;
+  // Parts are strips across the group, and contacts belong to the lower part of their two rocks:
+  // those of every second part share no rock, and are swept at the same time. The last part holds
+  // what reaches further than to the next strip, and what is found in a second look. In each part
+  // contacts between rocks come before those with the slope, and those that will carry before those
+  // that may stay open.
+  static constexpr int kKinds = 4;
+  int parts_ = 1;
+  std::vector<int> byPlace_, partOf_; ///< Bodies.
+  std::vector<int> keyOf_, order_;    ///< Contacts: part and kind; in order of it.
+  std::vector<int> starts_;           ///< First batch of each part and kind.
+  std::vector<std::size_t> firstOf_;  ///< First contact of each part and kind in `order_`.
+  std::vector<std::uint32_t> open_;   ///< By body: the batches being filled that hold it.
+  std::vector<double> most_;          ///< Largest change, by part.
+  crowd::Sweep kernel_ = nullptr;
+  int sweep_ = 0;       ///< Number of the next sweep.
+  int looked_ = 0;      ///< Number of the first one since lookAgain was asked.
+  double enough_ = 0.0; ///< m
+};
+
+} // namespace rockfall

@@ -1,0 +1,61 @@
+#pragma once
+
+/// @file
+/// The innermost loop of a crowd's solver: one pass of projected Gauss–Seidel over contacts that
+/// are dealt out in batches of four, of which no two share a rock, so that the four are reckoned
+/// side by side in vector registers. Plain numbers only: this is compiled once for every x86-64
+/// processor and once for those with AVX2, to the same bits (no fused operations).
+
+namespace rockfall::crowd
+{
+
+constexpr int kLanes = 4;
+
+/// What a sweep meets of a rock.
+struct alignas(64) Mover
+{
+  double way[4];     ///< Displacement of the centroid, m; h²/m, m/N.
+  double turn[4];    ///< Cayley vector of the turn, rad; unused.
+  double inertia[8]; ///< h² I⁻¹, world: xx, yy, zz, xy, xz, yz, 1/(N m); unused.
+};
+
+/// What a sweep meets of four contacts; the last index is the contact.
+struct alignas(64) Batch
+{
+  double directions[3][3][kLanes]; ///< Normal and two tangents; their x, y, z.
+  double lever[2][3][kLanes];      ///< From the rocks' centroids, m.
+  double w[kLanes];                ///< nᵀ J A⁻¹ Jᵀ n, m/N
+  double coupling[2][kLanes];      ///< Of a normal force with the two tangents, m/N.
+  double gap[kLanes];              ///< At the start of the step, m.
+  double stiffness[kLanes];        ///< p/(1 + p w), N/m
+  double shear[kLanes];            ///< 1/pₛ, m/N
+  double gain[kLanes];             ///< Step towards the locked spring, N/m.
+  double friction[kLanes];         ///< tan φ
+  double cohesion[kLanes];         ///< N
+  double slip[2][kLanes];          ///< m
+  double force[3][kLanes];         ///< Along the directions, N.
+  int body[2][kLanes];             ///< Index of the mover.
+};
+
+/// A run of batches, swept in their order or backwards.
+struct Pass
+{
+  Batch* first;
+  int count;
+  bool backwards;
+  bool slope; ///< Contacts with the slope: the second rock is none.
+  Mover* movers;
+  int* changed; ///< By mover: the last sweep in which it was moved by more than `quiet`.
+  int number;   ///< Of this sweep. Batches around which nothing changed are left out.
+  double quiet; ///< m
+};
+
+/// The largest change of a displacement, m.
+using Sweep = double (*)(const Pass&);
+double sweepAnywhere(const Pass& pass);
+double sweepAvx2(const Pass& pass);
+
+/// The one that suits the processor.
+Sweep suitedSweep();
+
+} // namespace rockfall::crowd

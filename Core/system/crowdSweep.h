@@ -1,0 +1,248 @@
+// The body of crowd::sweepAnywhere and sweepAvx2: included by the two files that compile it. No
+// function with external linkage may be used here, or the linker could take the AVX2 one for all.
+
+#include "system/crowdKernel.h"
+
+namespace
+{
+
+using rockfall::crowd::Batch;
+using rockfall::crowd::kLanes;
+using rockfall::crowd::Mover;
+using rockfall::crowd::Pass;
+
+using Lanes = double __attribute__((vector_size(32), may_alias));
+using Mask = long long __attribute__((vector_size(32)));
+
+struct Triple
+{
+  Lanes x, y, z;
+};
+
+#define ROCKFALL_INLINE inline __attribute__((always_inline))
+
+ROCKFALL_INLINE Lanes load(const double* p)
+{
+  return *reinterpret_cast<const Lanes*>(p);
+}
+
+ROCKFALL_INLINE void store(double* p, Lanes v)
+{
+  *reinterpret_cast<Lanes*>(p) = v;
+}
+
+ROCKFALL_INLINE Triple load3(const double (&p)[3][kLanes])
+{
+  return { load(p[0]), load(p[1]), load(p[2]) };
+}
+
+/// Rows to columns: four numbers of each of four movers.
+ROCKFALL_INLINE void transpose(Lanes (&m)[4])
+{
+#ifdef __AVX__
+  const Lanes even01 = __builtin_shufflevector(m[0], m[1], 0, 4, 2, 6);
+  const Lanes odd01 = __builtin_shufflevector(m[0], m[1], 1, 5, 3, 7);
+  const Lanes even23 = __builtin_shufflevector(m[2], m[3], 0, 4, 2, 6);
+  const Lanes odd23 = __builtin_shufflevector(m[2], m[3], 1, 5, 3, 7);
+  m[0] = __builtin_shufflevector(even01, even23, 0, 1, 4, 5);
+  m[1] = __builtin_shufflevector(odd01, odd23, 0, 1, 4, 5);
+  m[2] = __builtin_shufflevector(even01, even23, 2, 3, 6, 7);
+  m[3] = __builtin_shufflevector(odd01, odd23, 2, 3, 6, 7);
+#else
+  const Lanes a = m[0], b = m[1], c = m[2], d = m[3];
+  m[0] = Lanes{ a[0], b[0], c[0], d[0] };
+  m[1] = Lanes{ a[1], b[1], c[1], d[1] };
+  m[2] = Lanes{ a[2], b[2], c[2], d[2] };
+  m[3] = Lanes{ a[3], b[3], c[3], d[3] };
+#endif
+}
+
+ROCKFALL_INLINE void gather(const double* (&from)[4], Lanes (&m)[4])
+{
+  for (int i = 0; i < 4; ++i)
+  {
+    m[i] = load(from[i]);
+  }
+  transpose(m);
+}
+
+ROCKFALL_INLINE void scatter(Lanes (&m)[4], double* (&to)[4])
+{
+  transpose(m);
+  for (int i = 0; i < 4; ++i)
+  {
+    store(to[i], m[i]);
+  }
+}
+
+ROCKFALL_INLINE Triple cross(const Triple& a, const Triple& b)
+{
+  return { a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x };
+}
+
+ROCKFALL_INLINE Lanes dot(const Triple& a, const Triple& b)
+{
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+ROCKFALL_INLINE Lanes absolute(Lanes v)
+{
+  return v < 0.0 ? -v : v;
+}
+
+/// One side of four contacts.
+struct Side
+{
+  double* way[4];
+  double* turn[4];
+  const double* inertia[4];
+  Lanes ways[4], turns[4];
+};
+
+ROCKFALL_INLINE void take(Mover* movers, const int (&body)[kLanes], Side& side)
+{
+  for (int i = 0; i < kLanes; ++i)
+  {
+    Mover& m = movers[body[i]];
+    side.way[i] = m.way;
+    side.turn[i] = m.turn;
+    side.inertia[i] = m.inertia;
+    side.ways[i] = load(m.way);
+    side.turns[i] = load(m.turn);
+  }
+  transpose(side.ways);
+  transpose(side.turns);
+}
+
+/// What a force does to its rocks.
+ROCKFALL_INLINE void push(Side& side, const Triple& lever, const Triple& force)
+{
+  side.ways[0] += side.ways[3] * force.x;
+  side.ways[1] += side.ways[3] * force.y;
+  side.ways[2] += side.ways[3] * force.z;
+  const Triple moment = cross(lever, force);
+  Lanes diagonal[4], others[4];
+  for (int i = 0; i < kLanes; ++i)
+  {
+    diagonal[i] = load(side.inertia[i]);
+    others[i] = load(side.inertia[i] + 4);
+  }
+  transpose(diagonal);
+  transpose(others);
+  const Lanes xx = diagonal[0], yy = diagonal[1], zz = diagonal[2], xy = diagonal[3];
+  const Lanes xz = others[0], yz = others[1];
+  side.turns[0] += xx * moment.x + xy * moment.y + xz * moment.z;
+  side.turns[1] += xy * moment.x + yy * moment.y + yz * moment.z;
+  side.turns[2] += xz * moment.x + yz * moment.y + zz * moment.z;
+  scatter(side.ways, side.way);
+  scatter(side.turns, side.turn);
+}
+
+template <bool onSlope>
+ROCKFALL_INLINE double relax(Batch& batch, const Pass& pass)
+{
+  Side a, b;
+  take(pass.movers, batch.body[0], a);
+  const Triple leverA = load3(batch.lever[0]);
+  Triple way = cross({ a.turns[0], a.turns[1], a.turns[2] }, leverA);
+  way.x += a.ways[0];
+  way.y += a.ways[1];
+  way.z += a.ways[2];
+  Triple leverB = leverA;
+  if (!onSlope)
+  {
+    take(pass.movers, batch.body[1], b);
+    leverB = load3(batch.lever[1]);
+    const Triple turned = cross({ b.turns[0], b.turns[1], b.turns[2] }, leverB);
+    way.x -= b.ways[0] + turned.x;
+    way.y -= b.ways[1] + turned.y;
+    way.z -= b.ways[2] + turned.z;
+  }
+  const Triple n = load3(batch.directions[0]);
+  const Lanes before = load(batch.force[0]);
+  const Lanes w = load(batch.w);
+  const Lanes zero = { 0.0, 0.0, 0.0, 0.0 }, one = { 1.0, 1.0, 1.0, 1.0 };
+  // The gap that the others leave, and the spring that closes it.
+  const Lanes open = load(batch.gap) + dot(n, way) - w * before;
+  const Mask closes = open < zero;
+  const Lanes normal = closes ? -load(batch.stiffness) * open : zero;
+  const Lanes any = normal + before;
+  if (any[0] + any[1] + any[2] + any[3] == 0.0)
+  {
+    return 0.0;
+  }
+  const Lanes more = normal - before;
+  // One step towards the locked spring, then back onto the Coulomb cone.
+  const Triple u = load3(batch.directions[1]), v = load3(batch.directions[2]);
+  const Lanes shear = load(batch.shear), gain = load(batch.gain);
+  const Lanes before1 = load(batch.force[1]), before2 = load(batch.force[2]);
+  Lanes s = load(batch.slip[0]) + dot(u, way) + load(batch.coupling[0]) * more;
+  Lanes t = load(batch.slip[1]) + dot(v, way) + load(batch.coupling[1]) * more;
+  s = before1 - gain * (s + before1 * shear);
+  t = before2 - gain * (t + before2 * shear);
+  const Lanes limit = closes ? load(batch.friction) * normal + load(batch.cohesion) : zero;
+  const Lanes square = s * s + t * t;
+  const Mask slides = square > limit * limit;
+  Lanes root = slides ? square : one;
+  for (int i = 0; i < kLanes; ++i)
+  {
+    root[i] = __builtin_sqrt(root[i]);
+  }
+  const Lanes back = slides ? limit / root : one;
+  s *= back;
+  t *= back;
+  const Lanes slide1 = s - before1, slide2 = t - before2;
+  store(batch.force[0], normal);
+  store(batch.force[1], s);
+  store(batch.force[2], t);
+  const Triple force = { more * n.x + slide1 * u.x + slide2 * v.x,
+    more * n.y + slide1 * u.y + slide2 * v.y, more * n.z + slide1 * u.z + slide2 * v.z };
+  push(a, leverA, force);
+  if (!onSlope)
+  {
+    push(b, leverB, { -force.x, -force.y, -force.z });
+  }
+  const Lanes change = w * (absolute(more) + absolute(slide1) + absolute(slide2));
+  double most = 0.0;
+  for (int i = 0; i < kLanes; ++i)
+  {
+    if (change[i] > pass.quiet)
+    {
+      most = change[i] > most ? change[i] : most;
+      pass.changed[batch.body[0][i]] = pass.number;
+      if (!onSlope)
+      {
+        pass.changed[batch.body[1][i]] = pass.number;
+      }
+    }
+  }
+  return most;
+}
+
+template <bool onSlope>
+ROCKFALL_INLINE double sweepAll(const Pass& pass)
+{
+  double most = 0.0;
+  for (int k = 0; k < pass.count; ++k)
+  {
+    Batch& batch = pass.first[pass.backwards ? pass.count - 1 - k : k];
+    // Where nothing has changed since the last visit there is nothing to do.
+    int last = pass.changed[batch.body[0][0]];
+    for (int i = 0; i < kLanes; ++i)
+    {
+      const int a = pass.changed[batch.body[0][i]];
+      const int c = onSlope ? a : pass.changed[batch.body[1][i]];
+      last = a > last ? a : last;
+      last = c > last ? c : last;
+    }
+    if (last < pass.number - 1)
+    {
+      continue;
+    }
+    const double change = relax<onSlope>(batch, pass);
+    most = change > most ? change : most;
+  }
+  return most;
+}
+
+} // namespace

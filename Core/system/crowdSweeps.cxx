@@ -1,0 +1,379 @@
+// A crowd's step: contacts into batches, sweeps over them, and what comes of it.
+
+#include "system/CrowdSolver.h"
+
+#include "base/parallel.h"
+#include "solver/contactLaw.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace rockfall
+{
+
+namespace
+{
+
+/// How often missed contacts are looked for in a step.
+constexpr int kLooks = 2;
+/// Changes below this share of the tolerance are no reason to visit a contact again.
+constexpr double kQuiet = 0.3;
+/// Rocks of a part of the group, and parts at most.
+constexpr int kPart = 64;
+constexpr int kMostParts = 64;
+/// Batches that are filled at the same time.
+constexpr int kOpen = 32;
+
+/// Four contacts that do nothing, with the slope.
+crowd::Batch idleBatch(int slope)
+{
+  crowd::Batch batch = {};
+  for (int lane = 0; lane < crowd::kLanes; ++lane)
+  {
+    batch.gap[lane] = std::numeric_limits<double>::max();
+    batch.body[0][lane] = batch.body[1][lane] = slope;
+  }
+  return batch;
+}
+
+} // namespace
+
+void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
+{
+  const int bodies = int(work_.size());
+  parts_ = std::clamp(bodies / kPart, 1, kMostParts);
+  partOf_.assign(work_.size(), 0);
+  if (parts_ > 1)
+  {
+    Vec3 low = work_.front().position, high = low;
+    for (const Work& w : work_)
+    {
+      low = low.cwiseMin(w.position);
+      high = high.cwiseMax(w.position);
+    }
+    int axis = 0;
+    (high - low).maxCoeff(&axis);
+    byPlace_.resize(work_.size());
+    std::iota(byPlace_.begin(), byPlace_.end(), 0);
+    std::sort(byPlace_.begin(), byPlace_.end(),
+      [&](int a, int b)
+      {
+        const double x = work_[std::size_t(a)].position[axis];
+        const double y = work_[std::size_t(b)].position[axis];
+        return x != y ? x < y : a < b;
+      });
+    for (int k = 0; k < bodies; ++k)
+    {
+      partOf_[std::size_t(byPlace_[std::size_t(k)])] =
+        int(std::int64_t(k) * std::int64_t(parts_) / std::int64_t(bodies));
+    }
+  }
+  const auto keyOf = [&](const GroupContact& k)
+  {
+    const int a = partOf_[std::size_t(k.first)];
+    const int b = k.second < 0 ? a : partOf_[std::size_t(k.second)];
+    const int part = std::abs(a - b) <= 1 ? std::min(a, b) : parts_;
+    const bool open = !k.contact->closed() && k.bounce < 0.0 && k.contact->gap() > h_ * k.approach;
+    return part * kKinds + (k.second < 0 ? 2 : 0) + (open ? 1 : 0);
+  };
+  const std::size_t keys = std::size_t(parts_ + 1) * kKinds;
+  keyOf_.resize(contacts.size());
+  firstOf_.assign(keys + 1, 0);
+  for (std::size_t k = 0; k < contacts.size(); ++k)
+  {
+    keyOf_[k] = keyOf(contacts[k]);
+    ++firstOf_[std::size_t(keyOf_[k]) + 1];
+  }
+  std::partial_sum(firstOf_.begin(), firstOf_.end(), firstOf_.begin());
+  order_.resize(contacts.size());
+  for (std::size_t k = 0; k < contacts.size(); ++k)
+  {
+    order_[firstOf_[std::size_t(keyOf_[k])]++] = int(k);
+  }
+  // Now each entry is the end of its key.
+  rows_.resize(contacts.size());
+  batches_.clear();
+  open_.assign(work_.size(), 0);
+  starts_.assign(keys + 1, 0);
+  std::size_t first = 0;
+  for (std::size_t key = 0; key < keys; ++key)
+  {
+    starts_[key] = int(batches_.size());
+    this->deal(
+      contacts, order_.data() + first, order_.data() + firstOf_[key], bodies + int(key) / kKinds);
+    first = firstOf_[key];
+  }
+  starts_[keys] = int(batches_.size());
+}
+
+void CrowdSolver::deal(
+  const std::vector<GroupContact>& contacts, const int* first, const int* last, int slope)
+{
+  // Each contact goes to the first batch that is being filled and holds neither of its rocks.
+  std::array<int, kOpen> batch{}, filled{};
+  std::uint32_t filling = 0; // those that have room
+  int oldest = 0;
+  const auto close = [&](int slot)
+  {
+    const crowd::Batch& b = batches_[std::size_t(batch[std::size_t(slot)])];
+    for (const int* side : { b.body[0], b.body[1] })
+    {
+      for (int lane = 0; lane < crowd::kLanes; ++lane)
+      {
+        if (side[lane] < int(work_.size()))
+        {
+          open_[std::size_t(side[lane])] &= ~(std::uint32_t(1) << slot);
+        }
+      }
+    }
+    filling &= ~(std::uint32_t(1) << slot);
+  };
+  for (const int* k = first; k != last; ++k)
+  {
+    const GroupContact& contact = contacts[std::size_t(*k)];
+    std::uint32_t taken = open_[std::size_t(contact.first)];
+    taken |= contact.second < 0 ? 0 : open_[std::size_t(contact.second)];
+    int slot = std::countr_zero(filling & ~taken);
+    if (slot == kOpen)
+    {
+      slot = std::countr_one(filling);
+      if (slot == kOpen)
+      {
+        slot = oldest;
+        oldest = (oldest + 1) % kOpen;
+        close(slot);
+      }
+      batch[std::size_t(slot)] = int(batches_.size());
+      filled[std::size_t(slot)] = 0;
+      filling |= std::uint32_t(1) << slot;
+      batches_.push_back(idleBatch(slope));
+    }
+    Row& row = rows_[std::size_t(*k)];
+    row.batch = batch[std::size_t(slot)];
+    row.lane = filled[std::size_t(slot)]++;
+    crowd::Batch& b = batches_[std::size_t(row.batch)];
+    b.body[0][row.lane] = contact.first;
+    open_[std::size_t(contact.first)] |= std::uint32_t(1) << slot;
+    if (contact.second >= 0)
+    {
+      b.body[1][row.lane] = contact.second;
+      open_[std::size_t(contact.second)] |= std::uint32_t(1) << slot;
+    }
+    if (row.lane + 1 == crowd::kLanes)
+    {
+      close(slot);
+    }
+  }
+  while (filling != 0)
+  {
+    close(std::countr_zero(filling));
+  }
+}
+
+double CrowdSolver::visit(int part)
+{
+  crowd::Pass pass;
+  pass.backwards = sweep_ % 2 != 0;
+  pass.movers = movers_.data();
+  pass.changed = changed_.data();
+  pass.number = sweep_;
+  pass.quiet = kQuiet * enough_;
+  double most = 0.0;
+  for (int k = 0; k < kKinds; ++k)
+  {
+    const int kind = pass.backwards ? kKinds - 1 - k : k;
+    const std::size_t key = std::size_t(part * kKinds + kind);
+    pass.first = batches_.data() + starts_[key];
+    pass.count = starts_[key + 1] - starts_[key];
+    pass.slope = kind >= 2;
+    most = std::max(most, kernel_(pass));
+  }
+  return most;
+}
+
+double CrowdSolver::sweep()
+{
+  // Every second part, the others, and what reaches further; backwards in every second sweep.
+  most_.assign(std::size_t(parts_) + 1, 0.0);
+  const auto visitParts = [&](int first)
+  {
+    forEach(std::size_t(parts_ - first + 1) / 2, 1,
+      [&](std::size_t k)
+      {
+        const int part = first + 2 * int(k);
+        most_[std::size_t(part)] = this->visit(part);
+      });
+  };
+  const auto visitRest = [&] { most_.back() = this->visit(parts_); };
+  if (sweep_ % 2 == 0)
+  {
+    visitParts(0);
+    visitParts(1);
+    visitRest();
+  }
+  else
+  {
+    visitRest();
+    visitParts(1);
+    visitParts(0);
+  }
+  return *std::max_element(most_.begin(), most_.end());
+}
+
+bool CrowdSolver::sweeps(int most, GroupOutcome& outcome)
+{
+  bool settled = false;
+  for (int k = 0; k < most && !settled; ++k, ++sweep_)
+  {
+    ++outcome.iterations;
+    outcome.residual = this->sweep();
+    settled = outcome.residual <= enough_;
+  }
+  return settled;
+}
+
+void CrowdSolver::collect()
+{
+  const auto take = [&](std::size_t i)
+  {
+    work_[i].way = Eigen::Map<const Vec3>(movers_[i].way);
+    work_[i].spun = Eigen::Map<const Vec3>(movers_[i].turn);
+    this->turnAs(work_[i], work_[i].spun);
+  };
+  forEach(work_.size(), kBodyGrain, take);
+}
+
+GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody>& bodies,
+  std::vector<GroupContact>& contacts, const std::function<bool()>& lookAgain)
+{
+  GroupOutcome outcome;
+  kernel_ = crowd::suitedSweep();
+  this->prepareBodies(request, bodies);
+  this->arrange(contacts);
+  forEach(contacts.size(), kRowGrain,
+    [&](std::size_t k) { this->prepareRow(bodies, contacts[k], rows_[k]); });
+  this->startMovers(bodies);
+  // Displacements matter in relation to how far gravity and the rocks' speed move them in the step.
+  double scale = 0.5 * request.gravity * h_ * h_;
+  bool calm = true;
+  for (const Work& w : work_)
+  {
+    scale = std::max(scale, w.way.norm());
+  }
+  for (const GroupContact& k : contacts)
+  {
+    calm = calm && k.bounce < 0.0;
+  }
+  enough_ = tolerance * scale;
+  sweep_ = looked_ = 0;
+  const int most = calm ? maxCalmSweeps : maxSweeps;
+  outcome.settled = this->sweeps(most, outcome);
+  if (this->correctTurns(bodies, contacts))
+  {
+    outcome.settled = this->sweeps(most, outcome);
+  }
+  this->collect();
+  for (int look = 0; look < kLooks && lookAgain && lookAgain(); ++look)
+  {
+    // From here it goes on around what was found only.
+    for (int& changed : changed_)
+    {
+      changed = changed < sweep_ ? kNever : changed;
+    }
+    looked_ = sweep_;
+    this->append(bodies, contacts);
+    outcome.settled = this->sweeps(most, outcome);
+    this->collect();
+  }
+  bool finite = true;
+  for (const Work& w : work_)
+  {
+    finite = finite && w.way.allFinite() && w.spun.allFinite();
+  }
+  if (finite)
+  {
+    this->write(request, bodies, contacts, outcome);
+  }
+  return outcome;
+}
+
+void CrowdSolver::append(const std::vector<GroupBody>& bodies, std::vector<GroupContact>& contacts)
+{
+  const std::size_t first = rows_.size();
+  rows_.resize(contacts.size());
+  std::vector<int> added(contacts.size() - first);
+  std::iota(added.begin(), added.end(), int(first));
+  // They go with what reaches further than to the next part.
+  const int slope = int(work_.size()) + parts_;
+  const std::size_t key = std::size_t(parts_) * kKinds;
+  const int before = int(batches_.size());
+  this->deal(contacts, added.data(), added.data() + added.size(), slope);
+  // Contacts between rocks come first there.
+  const int more = int(batches_.size()) - before, at = starts_[key + 1];
+  if (more > 0 && at < before)
+  {
+    std::rotate(batches_.begin() + at, batches_.begin() + before, batches_.end());
+    for (Row& row : rows_)
+    {
+      row.batch = row.batch >= before ? row.batch - before + at
+                                      : (row.batch >= at ? row.batch + more : row.batch);
+    }
+  }
+  for (std::size_t next = key + 1; next < starts_.size(); ++next)
+  {
+    starts_[next] += more;
+  }
+  for (std::size_t k = first; k < rows_.size(); ++k)
+  {
+    // The gap at the start from which this way leads to the one at the end.
+    Row& row = rows_[k];
+    Contact& c = *contacts[k].contact;
+    this->prepareRow(bodies, contacts[k], row);
+    c.distance -= this->travel(row)[0];
+    c.offset = std::min(0.0, c.distance);
+    row.gap0 = c.gap();
+    if (contacts[k].bounce < 0.0)
+    {
+      batches_[std::size_t(row.batch)].gap[row.lane] = row.gap0;
+    }
+    changed_[std::size_t(contacts[k].first)] = changed_[std::size_t(contacts[k].second)] = sweep_;
+  }
+}
+
+BlockState CrowdSolver::end(const std::vector<GroupBody>& bodies, std::size_t i) const
+{
+  BlockState state = *bodies[i].state;
+  state.position += work_[i].way;
+  state.orientation = (work_[i].turn * state.orientation).normalized();
+  return state;
+}
+
+double CrowdSolver::gap(std::size_t contact) const
+{
+  return rows_[contact].gap0 + this->travel(rows_[contact])[0];
+}
+
+bool CrowdSolver::setGap(std::size_t contact, double found)
+{
+  Row& row = rows_[contact];
+  double& asked = batches_[std::size_t(row.batch)].gap[row.lane];
+  const double least = std::min(0.0, row.gap0);
+  const double change = std::max(least - row.gap0, found - this->gap(contact));
+  if (change == 0.0)
+  {
+    return false;
+  }
+  asked += asked == row.gap0 ? change : 0.0; // a bounce asks for one of its own
+  row.gap0 += change;
+  for (int side = 0; side < 2; ++side)
+  {
+    const std::size_t i = std::size_t(batches_[std::size_t(row.batch)].body[side][row.lane]);
+    changed_[i] = i < work_.size() ? sweep_ : kNever;
+  }
+  return true;
+}
+
+} // namespace rockfall

@@ -1,0 +1,181 @@
+// The innermost loop of crowds: the same bits on every processor, momentum kept, and the springs
+// met where it has settled.
+
+#include "system/crowdKernel.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <random>
+#include <vector>
+
+using namespace rockfall::crowd;
+
+namespace
+{
+
+struct Crowd
+{
+  std::vector<Mover> movers;
+  std::vector<int> changed;
+  std::vector<Batch> batches;
+};
+
+/// Contacts of random directions between random rocks, no two of a batch on the same rock; with the
+/// slope every second one.
+Crowd randomCrowd(int rocks, int batches, bool slope, unsigned seed)
+{
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  Crowd crowd;
+  crowd.movers.resize(std::size_t(rocks) + 1, Mover{});
+  crowd.changed.assign(crowd.movers.size(), 0);
+  for (int i = 0; i < rocks; ++i)
+  {
+    Mover& m = crowd.movers[std::size_t(i)];
+    for (int k = 0; k < 3; ++k)
+    {
+      m.way[k] = 1e-2 * u(random);
+      m.turn[k] = 1e-2 * u(random);
+      m.inertia[k] = 1e-7 * (1.5 + u(random));
+    }
+    m.way[3] = 2e-8 * (1.5 + u(random));
+    m.inertia[3] = 1e-8 * u(random);
+    m.inertia[4] = 1e-8 * u(random);
+    m.inertia[5] = 1e-8 * u(random);
+  }
+  std::vector<int> order(static_cast<std::size_t>(rocks));
+  for (int i = 0; i < rocks; ++i)
+  {
+    order[std::size_t(i)] = i;
+  }
+  for (int b = 0; b < batches; ++b)
+  {
+    std::shuffle(order.begin(), order.end(), random);
+    Batch batch = {};
+    for (int lane = 0; lane < kLanes; ++lane)
+    {
+      // Three directions at right angles.
+      double n[3] = { u(random), u(random), 1.0 }, t[3] = { n[1], -n[0], 0.0 };
+      const double nn = std::hypot(n[0], n[1], n[2]), tt = std::hypot(t[0], t[1]);
+      for (int k = 0; k < 3; ++k)
+      {
+        n[k] /= nn;
+        t[k] /= tt;
+      }
+      const double v[3] = { n[1] * t[2] - n[2] * t[1], n[2] * t[0] - n[0] * t[2],
+        n[0] * t[1] - n[1] * t[0] };
+      for (int k = 0; k < 3; ++k)
+      {
+        batch.directions[0][k][lane] = n[k];
+        batch.directions[1][k][lane] = t[k];
+        batch.directions[2][k][lane] = v[k];
+        batch.lever[0][k][lane] = 0.5 * u(random);
+        batch.lever[1][k][lane] = slope ? 0.0 : 0.5 * u(random);
+      }
+      batch.w[lane] = 2e-7;
+      batch.gap[lane] = 1e-2 * u(random);
+      batch.stiffness[lane] = 1e9 / (1.0 + 1e9 * batch.w[lane]);
+      batch.shear[lane] = 1e-9;
+      batch.gain[lane] = batch.stiffness[lane];
+      batch.friction[lane] = 0.3;
+      batch.cohesion[lane] = lane == 0 ? 100.0 : 0.0;
+      batch.body[0][lane] = order[std::size_t(2 * lane)];
+      batch.body[1][lane] = slope ? rocks : order[std::size_t(2 * lane + 1)];
+    }
+    crowd.batches.push_back(batch);
+  }
+  return crowd;
+}
+
+double run(Crowd& crowd, Sweep sweep, bool slope, int sweeps)
+{
+  double change = 0.0;
+  for (int number = 0; number < sweeps; ++number)
+  {
+    Pass pass;
+    pass.first = crowd.batches.data();
+    pass.count = int(crowd.batches.size());
+    pass.backwards = number % 2 != 0;
+    pass.slope = slope;
+    pass.movers = crowd.movers.data();
+    pass.changed = crowd.changed.data();
+    pass.number = number;
+    pass.quiet = 1e-12;
+    change = sweep(pass);
+  }
+  return change;
+}
+
+} // namespace
+
+TEST(CrowdKernel, SameBitsOnEveryProcessor)
+{
+  for (const bool slope : { false, true })
+  {
+    Crowd one = randomCrowd(40, 60, slope, 11);
+    Crowd other = one;
+    const double a = run(one, sweepAnywhere, slope, 30);
+    const double b = run(other, suitedSweep(), slope, 30);
+    EXPECT_EQ(a, b);
+    EXPECT_EQ(one.changed, other.changed);
+    EXPECT_EQ(
+      std::memcmp(one.movers.data(), other.movers.data(), sizeof(Mover) * one.movers.size()), 0);
+    EXPECT_EQ(
+      std::memcmp(one.batches.data(), other.batches.data(), sizeof(Batch) * one.batches.size()), 0);
+  }
+}
+
+TEST(CrowdKernel, MomentumIsKeptAndSpringsAreMet)
+{
+  Crowd crowd = randomCrowd(40, 30, false, 5);
+  const auto momentum = [&](int k)
+  {
+    double sum = 0.0;
+    for (int i = 0; i < 40; ++i)
+    {
+      const Mover& m = crowd.movers[std::size_t(i)];
+      sum += m.way[k] / m.way[3];
+    }
+    return sum;
+  };
+  const double before[3] = { momentum(0), momentum(1), momentum(2) };
+  run(crowd, suitedSweep(), false, 3000);
+  for (int k = 0; k < 3; ++k)
+  {
+    // 40 rocks of some 3e7 kg/s² times 1e-2 m.
+    EXPECT_NEAR(momentum(k), before[k], 1e-10 * 40 * 3e5);
+  }
+  int pressed = 0, sliding = 0;
+  for (const Batch& b : crowd.batches)
+  {
+    for (int lane = 0; lane < kLanes; ++lane)
+    {
+      double gap = b.gap[lane];
+      for (int side = 0; side < 2; ++side)
+      {
+        const Mover& m = crowd.movers[std::size_t(b.body[side][lane])];
+        const double l[3] = { b.lever[side][0][lane], b.lever[side][1][lane],
+          b.lever[side][2][lane] };
+        for (int k = 0; k < 3; ++k)
+        {
+          const int i = (k + 1) % 3, j = (k + 2) % 3;
+          const double way = m.way[k] + m.turn[i] * l[j] - m.turn[j] * l[i];
+          gap += (side == 0 ? way : -way) * b.directions[0][k][lane];
+        }
+      }
+      const double normal = b.force[0][lane];
+      // Of a spring of 1e9 N/m, to 1e-9 m.
+      EXPECT_NEAR(normal, std::max(0.0, -1e9 * gap), 1.0 + 1e-6 * normal);
+      const double shear = std::hypot(b.force[1][lane], b.force[2][lane]);
+      const double limit = 0.3 * normal + (normal > 0.0 ? b.cohesion[lane] : 0.0);
+      EXPECT_LE(shear, limit * (1.0 + 1e-12));
+      pressed += normal > 0.0;
+      sliding += normal > 0.0 && shear > 0.999 * limit;
+    }
+  }
+  EXPECT_GT(pressed, 20);
+  EXPECT_GT(sliding, 5);
+}
