@@ -365,9 +365,11 @@ void MassFall::advanceGroup(const Group& group, double until) const
     }
     const double remaining = until - now();
     const double large = std::min(remaining, travel);
-    const double small = inTime ? std::min(remaining, this->groupStep(group)) : large;
+    double small = inTime ? std::min(remaining, this->groupStep(group)) : large;
     const bool calm = inTime && this->isCalm(group);
     this->gatherContacts(group, calm || !inTime ? large : small);
+    // How stiff they are is known now: the faster rocks meet, the stiffer.
+    small = inTime ? std::min(small, this->groupStep(group)) : small;
     bool any = false;
     for (int i : group.members)
     {

@@ -144,16 +144,10 @@ bool MassFall::lookAgain(const Group& group, double h, bool bounces, Workspace& 
       work.added.push_back(c);
       work.addedTo.push_back(p);
       GroupContact taken = this->take(pair, work.added.back(), h, bounces);
-      // As for all others: what meets several at once does not bounce.
-      const auto meetsOthers = [&](int body, int other)
+      if (taken.bounce >= 0.0)
       {
-        const int partner = work.partners[std::size_t(body)];
-        return partner != other && partner != kMeetsNone;
-      };
-      if (taken.bounce >= 0.0 && meetsOthers(taken.first, taken.second) &&
-        meetsOthers(taken.second, taken.first))
-      {
-        taken.bounce = -1.0;
+        meet(work.partners, taken);
+        taken.bounce = mayBounce(work.partners, taken) ? taken.bounce : -1.0;
       }
       work.contacts.push_back(taken);
     }

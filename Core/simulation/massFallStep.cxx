@@ -19,35 +19,20 @@ constexpr double kPressOut = 0.005;    // m/s, as for single rocks
 constexpr double kPressOutDeep = 0.1;  // m/s, of overlaps beyond the loose one
 constexpr double kLooseOverlap = 1e-3; // of the radius, as for single rocks
 
-/// Newton's law of restitution asked of a rock by several others at once may make energy. It holds
-/// for what meets one other only; rocks that are hit on several sides, or lie on something, come
-/// to rest against each other.
 void settleBounces(
   std::size_t bodies, std::vector<GroupContact>& contacts, std::vector<int>& partners)
 {
-  constexpr int several = -2; // else the other body, −1 the slope
   partners.assign(bodies, kMeetsNone);
-  const auto meet = [&](int body, int other)
-  {
-    if (body >= 0)
-    {
-      int& partner = partners[body];
-      partner = partner == kMeetsNone || partner == other ? other : several;
-    }
-  };
   for (const GroupContact& k : contacts)
   {
     if (k.bounce >= 0.0 || k.contact->closed())
     {
-      meet(k.first, k.second);
-      meet(k.second, k.first);
+      meet(partners, k);
     }
   }
   for (GroupContact& k : contacts)
   {
-    const bool alone =
-      partners[k.first] != several || (k.second >= 0 && partners[k.second] != several);
-    k.bounce = alone ? k.bounce : -1.0;
+    k.bounce = mayBounce(partners, k) ? k.bounce : -1.0;
   }
 }
 

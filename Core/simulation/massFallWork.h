@@ -12,8 +12,31 @@ namespace rockfall
 
 constexpr double kTooShort = 1e-9; // s
 
-/// A rock's partner in the step, if it has none.
-constexpr int kMeetsNone = -3;
+/// What a rock meets in the step (MassFall::Workspace::partners): another rock, the slope (−1), or
+constexpr int kMeetsSeveral = -2, kMeetsNone = -3;
+
+/// Newton's law of restitution asked of a rock by several others at once may make energy. It holds
+/// for what meets one other only; rocks that are hit on several sides, or lie on something, come
+/// to rest against each other.
+inline void meet(std::vector<int>& partners, const GroupContact& k)
+{
+  const auto meets = [&](int body, int other)
+  {
+    if (body >= 0)
+    {
+      int& partner = partners[std::size_t(body)];
+      partner = partner == kMeetsNone || partner == other ? other : kMeetsSeveral;
+    }
+  };
+  meets(k.first, k.second);
+  meets(k.second, k.first);
+}
+
+inline bool mayBounce(const std::vector<int>& partners, const GroupContact& k)
+{
+  return partners[std::size_t(k.first)] != kMeetsSeveral ||
+    (k.second >= 0 && partners[std::size_t(k.second)] != kMeetsSeveral);
+}
 
 /// Whether an open contact comes in as an impact within a step of `h`.
 inline bool hits(const Contact& c, double approach, double resting, double h)
