@@ -8,9 +8,13 @@
 #include "system/broadPhase.h"
 
 #include <deque>
+#include <limits>
 
 namespace rockfall
 {
+
+/// Gap of two rocks along no axis yet.
+constexpr double kNoAxis = -std::numeric_limits<double>::infinity();
 
 /// A rock as the others meet it in the step at hand.
 struct Mover
@@ -120,5 +124,18 @@ private:
   std::vector<std::size_t> asked_;
   std::vector<int> placed_;
 };
+
+template <class Visit>
+void MassFall::Meetings::forNeighbours(int rock, Visit&& visit)
+{
+  for (std::size_t k = firsts_[std::size_t(rock)]; k < firsts_[std::size_t(rock) + 1]; ++k)
+  {
+    visit(places_[k]);
+  }
+  for (const std::size_t k : later_[std::size_t(rock)])
+  {
+    visit(k);
+  }
+}
 
 } // namespace rockfall

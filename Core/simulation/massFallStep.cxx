@@ -359,15 +359,17 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     m.arrived = work.looked && m.arrive();
   };
   forEach(group.members.size(), kRockGrain, absorbRock);
-  for (RockPair* pair : group.pairs)
+  const auto see = [&](std::size_t p)
   {
-    pair->seen = members_[pair->first]->arrived && members_[pair->second]->arrived;
-    if (pair->seen)
+    RockPair& pair = *group.pairs[p];
+    pair.seen = members_[pair.first]->arrived && members_[pair.second]->arrived;
+    if (pair.seen)
     {
-      pair->before = pair->axis;
-      pair->axis = pair->end;
+      pair.before = pair.axis;
+      pair.axis = pair.end;
     }
-  }
+  };
+  forEach(group.pairs.size(), kPairGrain, see);
 }
 
 void MassFall::finishPairImpact(RockPair& pair) const

@@ -200,12 +200,14 @@ double CrowdSolver::sweep()
   most_.assign(std::size_t(parts_) + 1, 0.0);
   const auto visitParts = [&](int first)
   {
-    forEach(std::size_t(parts_ - first + 1) / 2, 1,
-      [&](std::size_t k)
-      {
-        const int part = first + 2 * int(k);
-        most_[std::size_t(part)] = this->visit(part);
-      });
+    const auto visitPart = [&](std::size_t k)
+    {
+      const int part = first + 2 * int(k);
+      most_[std::size_t(part)] = this->visit(part);
+    };
+    const std::size_t count = std::size_t(parts_ - first + 1) / 2;
+    // Around what a second look has found there is less to do than it takes to share it out.
+    forEach(count, looked_ > 0 ? count : 1, visitPart);
   };
   const auto visitRest = [&] { most_.back() = this->visit(parts_); };
   if (sweep_ % 2 == 0)

@@ -1,0 +1,344 @@
+// Which of the rocks that are near each other may meet within the step, and the groups that they
+// are: massFallMeet.cxx says by what bounds.
+
+#include "simulation/massFallMeet.h"
+
+#include "base/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace rockfall
+{
+
+namespace
+{
+
+constexpr std::size_t kNearGrain = 256, kLookGrain = 16;
+
+/// A way that is longer by no more than this factor is not passed on.
+constexpr double kNoMore = 1.0 + 1e-6;
+
+/// Largest component along the normal of a velocity in a box.
+double most(const Company& c, const Vec3& normal)
+{
+  return normal.cwiseProduct(c.lower).cwiseMax(normal.cwiseProduct(c.upper)).sum();
+}
+
+} // namespace
+
+int MassFall::Meetings::root(int i)
+{
+  while (parents_[std::size_t(i)] != i)
+  {
+    i = parents_[std::size_t(i)] = parents_[std::size_t(parents_[std::size_t(i)])];
+  }
+  return i;
+}
+
+double MassFall::Meetings::gap(const Near& n) const
+{
+  const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
+  return n.offset + n.normal.dot(a.position - b.position) - a.turned - b.turned;
+}
+
+/// How fast the gap may close along its normal, m/s.
+double MassFall::Meetings::closing(const Near& n) const
+{
+  const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
+  const Company& first = companies_[std::size_t(roots_[i])];
+  const Company& second = companies_[std::size_t(roots_[j])];
+  const double towards =
+    first.size > 1 ? most(first, -n.normal) : movers[i].spread - n.normal.dot(movers[i].middle);
+  const double against =
+    second.size > 1 ? most(second, n.normal) : movers[j].spread + n.normal.dot(movers[j].middle);
+  return std::max(0.0, towards + against);
+}
+
+/// A light rock that a heavy one strikes goes on faster than it, by this factor.
+double MassFall::Meetings::thrown(std::size_t rock) const
+{
+  const Company& c = companies_[std::size_t(roots_[rock])];
+  return std::max(1.0, (1.0 + bounciest_) * c.heaviest / (c.heaviest + movers[rock].mass));
+}
+
+/// The widest gap over which the two may meet.
+double MassFall::Meetings::reach(const Near& n) const
+{
+  const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
+  const double first = this->thrown(i), second = this->thrown(j);
+  const double ways = first * movers[i].way + second * movers[j].way;
+  const double speed = n.offset > kNoAxis ? std::max(first, second) * this->closing(n) : -kNoAxis;
+  return std::min(ways, speed * duration_) + fall_;
+}
+
+bool MassFall::Meetings::mayMeet(const Near& n, double reach) const
+{
+  if (this->gap(n) > reach)
+  {
+    return false;
+  }
+  const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
+  const double most = a.radius + b.radius + reach;
+  return (a.position - b.position).squaredNorm() <= most * most;
+}
+
+/// Whether two rocks that stand may meet; finds their axis as far as that needs it.
+bool MassFall::Meetings::meet(const MassFall& fall, Near& n)
+{
+  RockPair& pair = *n.pair;
+  for (;;)
+  {
+    const double reach = this->reach(n);
+    const bool exact = n.looked >= 0.0 && pair.axis.distance <= n.looked;
+    if (exact || n.looked >= reach)
+    {
+      return exact && this->gap(n) <= reach;
+    }
+    const bool stands =
+      n.looked < 0.0 && pair.seen && (pair.axis.distance <= 0.0 || pair.axis.distance > reach);
+    if (n.looked < 0.0 && !pair.seen)
+    {
+      pair.before = pair.axis;
+    }
+    if (!stands)
+    {
+      pair.axis = findAxis(fall.members_[std::size_t(n.first)]->body,
+        fall.members_[std::size_t(n.second)]->body, pair.axis, reach);
+    }
+    pair.seen = false;
+    n.looked = reach;
+    const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
+    n.normal = pair.axis.normal;
+    n.offset = pair.axis.distance - n.normal.dot(a.position - b.position) + a.turned + b.turned;
+    // Along this axis the velocities may tell more, or less: then once more.
+  }
+}
+
+/// Looks at all that are near each other; returns whether more of them may meet.
+bool MassFall::Meetings::sweep(MassFall& fall)
+{
+  for (std::size_t i = 0; i < roots_.size(); ++i)
+  {
+    roots_[i] = this->root(int(i));
+    const Mover& m = movers[i];
+    if (m.present && !m.asleep && companies_[std::size_t(roots_[i])].size > 1 &&
+      this->thrown(i) * m.way + fall_ > m.known)
+    {
+      this->addNeighbours(int(i));
+    }
+  }
+  asks_.resize(near.size());
+  const auto ask = [&](std::size_t k)
+  {
+    const Near& n = near[k];
+    const bool asleep = movers[std::size_t(n.first)].asleep && movers[std::size_t(n.second)].asleep;
+    asks_[k] = !n.linked && !asleep && this->mayMeet(n, this->reach(n));
+  };
+  forEach(near.size(), kNearGrain, ask);
+  asked_.clear();
+  placed_.clear();
+  for (std::size_t k = 0; k < near.size(); ++k)
+  {
+    if (asks_[k])
+    {
+      Near& n = near[k];
+      n.pair = n.pair ? n.pair : this->newPair(fall, n.first, n.second);
+      asked_.push_back(k);
+      for (const int i : { n.first, n.second })
+      {
+        if (!marks_[std::size_t(i)])
+        {
+          marks_[std::size_t(i)] = 1;
+          placed_.push_back(i);
+        }
+      }
+    }
+  }
+  forEach(placed_.size(), kLookGrain,
+    [&](std::size_t k) { fall.members_[std::size_t(placed_[k])]->stand(); });
+  forEach(asked_.size(), kLookGrain,
+    [&](std::size_t k) { asks_[asked_[k]] = this->meet(fall, near[asked_[k]]); });
+  for (const int i : placed_)
+  {
+    marks_[std::size_t(i)] = 0;
+  }
+  bool any = false;
+  for (const std::size_t k : asked_)
+  {
+    if (asks_[k])
+    {
+      this->join(fall, near[k]);
+      any = true;
+    }
+  }
+  return any;
+}
+
+void MassFall::Meetings::join(MassFall& fall, Near& n)
+{
+  n.linked = n.holds = true;
+  n.pair->linked = n.pair->known = true;
+  for (const int i : { n.first, n.second })
+  {
+    Mover& m = movers[std::size_t(i)];
+    if (m.asleep)
+    {
+      fall.wake(*fall.members_[std::size_t(i)]);
+      m.asleep = false;
+    }
+    if (!m.queued)
+    {
+      m.queued = true;
+      queue_.push_back(i);
+    }
+  }
+  const int a = this->root(n.first), b = this->root(n.second);
+  if (a == b)
+  {
+    return;
+  }
+  Company &kept = companies_[std::size_t(std::min(a, b))],
+          &other = companies_[std::size_t(std::max(a, b))];
+  parents_[std::size_t(std::max(a, b))] = std::min(a, b);
+  kept.lower = kept.lower.cwiseMin(other.lower);
+  kept.upper = kept.upper.cwiseMax(other.upper);
+  kept.heaviest = std::max(kept.heaviest, other.heaviest);
+  kept.size += other.size;
+}
+
+/// Carries on what each rock that has been joined may do to those that it may meet: the longest way
+/// first, so that none has its turn twice.
+void MassFall::Meetings::tell(MassFall& fall)
+{
+  const auto shorter = [](const Turn& a, const Turn& b)
+  { return a.way != b.way ? a.way < b.way : a.rock > b.rock; };
+  turns_.clear();
+  for (std::size_t taken = 0;;)
+  {
+    for (; taken < queue_.size(); ++taken)
+    {
+      turns_.push_back({ movers[std::size_t(queue_[taken])].way, queue_[taken] });
+      std::push_heap(turns_.begin(), turns_.end(), shorter);
+    }
+    if (turns_.empty())
+    {
+      break;
+    }
+    const auto [length, i] = turns_.front();
+    std::pop_heap(turns_.begin(), turns_.end(), shorter);
+    turns_.pop_back();
+    if (!movers[std::size_t(i)].queued || length < movers[std::size_t(i)].way)
+    {
+      continue; // has had its turn, or has a longer way since
+    }
+    movers[std::size_t(i)].queued = false;
+    roots_[std::size_t(i)] = this->root(i);
+    const auto visit = [&](std::size_t k)
+    {
+      Near& n = near[k];
+      Mover& other = movers[std::size_t(n.first == i ? n.second : n.first)];
+      // All that lies on each other wakes at once; others have their turn in the next sweep.
+      if (!n.linked && other.asleep && this->mayMeet(n, this->reach(n)))
+      {
+        n.pair = n.pair ? n.pair : this->newPair(fall, n.first, n.second);
+        fall.members_[std::size_t(n.first)]->stand();
+        fall.members_[std::size_t(n.second)]->stand();
+        if (this->meet(fall, n))
+        {
+          this->join(fall, n);
+        }
+      }
+      const double way = movers[std::size_t(i)].way;
+      if (!n.linked || way <= other.way * kNoMore)
+      {
+        return;
+      }
+      // The gap must be crossed first, by both together.
+      const double left =
+        way - std::max(0.0, this->gap(n)) * way / std::max(way + other.own, 1e-12);
+      if (left > other.way * kNoMore)
+      {
+        other.way = left;
+        other.queued = true;
+        queue_.push_back(n.first == i ? n.second : n.first);
+      }
+    };
+    this->forNeighbours(i, visit);
+  }
+  queue_.clear();
+}
+
+void MassFall::Meetings::link(MassFall& fall)
+{
+  while (this->sweep(fall))
+  {
+    this->tell(fall);
+  }
+  const auto behind = near.begin() + std::ptrdiff_t(sorted_);
+  std::sort(behind, near.end());
+  std::inplace_merge(near.begin(), behind, near.end());
+  const auto settle = [&](std::size_t k)
+  {
+    Near& n = near[k];
+    if (n.linked || !(n.holds || n.wasLinked || n.looked >= 0.0))
+    {
+      return;
+    }
+    const bool asleep = movers[std::size_t(n.first)].asleep && movers[std::size_t(n.second)].asleep;
+    if (asleep && !n.wasLinked)
+    {
+      return;
+    }
+    n.pair->linked = n.pair->known = false;
+    if (!asleep)
+    {
+      // Who is awake and not linked moves by himself, away from where the axis was found.
+      n.pair->seen = n.pair->touched = n.holds = false;
+      n.pair->contacts.clear();
+    }
+  };
+  forEach(near.size(), kNearGrain, settle);
+}
+
+void MassFall::findGroups(double duration)
+{
+  Meetings& meet = *meetings_;
+  meet.follow(*this, duration);
+  meet.findNear(*this);
+  meet.link(*this);
+  std::vector<int>& place = groupOf_;
+  place.assign(members_.size(), -1);
+  groups_.clear();
+  alone_.clear();
+  for (std::size_t i = 0; i < members_.size(); ++i)
+  {
+    if (!meet.movers[i].present || meet.movers[i].asleep)
+    {
+      continue;
+    }
+    const std::size_t root = std::size_t(meet.root(int(i)));
+    if (meet.isAlone(root))
+    {
+      alone_.push_back(int(i));
+      continue;
+    }
+    if (place[root] < 0)
+    {
+      place[root] = int(groups_.size());
+      groups_.emplace_back();
+    }
+    groups_[std::size_t(place[root])].members.push_back(int(i));
+  }
+  for (const Near& n : meet.near)
+  {
+    if (n.linked)
+    {
+      groups_[std::size_t(place[std::size_t(meet.root(n.first))])].pairs.push_back(n.pair);
+    }
+  }
+}
+
+} // namespace rockfall
