@@ -21,6 +21,9 @@ namespace
 constexpr int kLooks = 2;
 /// Changes below this share of the tolerance are no reason to visit a contact again.
 constexpr double kQuiet = 0.3;
+/// What is found in a second look is met to this many times the tolerance, which is about as exact
+/// as it is found, unless nothing bounces.
+constexpr double kFound = 4.0;
 /// Rocks of a part of the group, and parts at most.
 constexpr int kPart = 64;
 constexpr int kMostParts = 64;
@@ -286,6 +289,7 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
       changed = changed < sweep_ ? kNever : changed;
     }
     looked_ = sweep_;
+    enough_ = (calm ? 1.0 : kFound) * tolerance * scale;
     this->append(bodies, contacts);
     outcome.settled = this->sweeps(most, outcome);
     this->collect();
