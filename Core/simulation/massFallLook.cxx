@@ -144,7 +144,7 @@ bool MassFall::lookAgain(const Group& group, double h, bool bounces, Workspace& 
       work.added.push_back(c);
       work.addedTo.push_back(p);
       GroupContact taken = this->take(pair, work.added.back(), h, bounces);
-      if (taken.bounce >= 0.0)
+      if (bounces)
       {
         meet(work.partners, taken);
         taken.bounce = mayBounce(work.partners, taken) ? taken.bounce : -1.0;

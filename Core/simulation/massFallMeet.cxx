@@ -213,10 +213,9 @@ void MassFall::Meetings::indexNeighbours()
 void MassFall::Meetings::addNeighbours(int rock)
 {
   Mover& m = movers[std::size_t(rock)];
-  const double before = m.known;
   m.known = kWider * (this->thrown(std::size_t(rock)) * m.way + fall_);
   broad_.within(m.position, m.radius + m.known + widened_, found_);
-  widened_ = std::max(widened_, m.known - before);
+  widened_ = std::max(widened_, m.known - (boxes_[std::size_t(rock)].radius - m.radius));
   const auto other = [&](std::size_t k)
   { return std::size_t(near[k].first == rock ? near[k].second : near[k].first); };
   this->forNeighbours(rock, [&](std::size_t k) { marks_[other(k)] = 1; });

@@ -295,13 +295,17 @@ bool CrowdSolver::correctTurns(
     {
       any = true;
       changed_[i] = sweep_;
-      work_[i].way = Eigen::Map<const Vec3>(movers_[i].way);
       work_[i].spun = spun;
     }
   }
   if (!any)
   {
     return false;
+  }
+  // Levers lie between places that are of one kind, guessed or solved.
+  for (std::size_t i = 0; i < work_.size(); ++i)
+  {
+    work_[i].way = Eigen::Map<const Vec3>(movers_[i].way);
   }
   const auto wrong = [&](int i) { return i >= 0 && changed_[std::size_t(i)] == sweep_; };
   const auto forTheirRows = [&](auto&& change)
@@ -329,6 +333,23 @@ bool CrowdSolver::correctTurns(
       this->lever(bodies, contacts[k], rows_[k]);
       this->pushed(rows_[k], 1.0);
     });
+  // What others press on has been moved with them.
+  touched_.clear();
+  forTheirRows(
+    [&](std::size_t k)
+    {
+      for (const int i : { contacts[k].first, contacts[k].second })
+      {
+        if (i >= 0 && !wrong(i))
+        {
+          touched_.push_back(i);
+        }
+      }
+    });
+  for (const int i : touched_)
+  {
+    changed_[std::size_t(i)] = sweep_;
+  }
   return true;
 }
 

@@ -24,9 +24,10 @@ class CrowdSolver
 {
 public:
   /// Advances the bodies' states and the contacts' springs by `request.duration`, as if it lasted.
-  /// `lookAgain`: see GroupSolver::step. Nothing is changed if a displacement is not finite.
+  /// `takeAnyway` and `lookAgain`: see GroupSolver::step. Nothing is changed if a displacement is
+  /// not finite.
   GroupOutcome step(const StepRequest& request, std::vector<GroupBody>& bodies,
-    std::vector<GroupContact>& contacts, const std::function<bool()>& lookAgain);
+    std::vector<GroupContact>& contacts, bool takeAnyway, const std::function<bool()>& lookAgain);
 
   // For lookAgain, as GroupSolver has them.
   BlockState end(const std::vector<GroupBody>& bodies, std::size_t i) const;
@@ -108,12 +109,12 @@ private:
   // that may stay open.
   static constexpr int kKinds = 4;
   int parts_ = 1;
-  std::vector<int> byPlace_, partOf_; ///< Bodies.
-  std::vector<int> keyOf_, order_;    ///< Contacts: part and kind; in order of it.
-  std::vector<int> starts_;           ///< First batch of each part and kind.
-  std::vector<std::size_t> firstOf_;  ///< First contact of each part and kind in `order_`.
-  std::vector<std::uint32_t> open_;   ///< By body: the batches being filled that hold it.
-  std::vector<double> most_;          ///< Largest change, by part.
+  std::vector<int> byPlace_, partOf_, touched_; ///< Bodies.
+  std::vector<int> keyOf_, order_;              ///< Contacts: part and kind; in order of it.
+  std::vector<int> starts_;                     ///< First batch of each part and kind.
+  std::vector<std::size_t> firstOf_; ///< First contact of each part and kind in `order_`.
+  std::vector<std::uint32_t> open_;  ///< By body: the batches being filled that hold it.
+  std::vector<double> most_;         ///< Largest change, by part.
   crowd::Sweep kernel_ = nullptr;
   int sweep_ = 0;       ///< Number of the next sweep.
   int looked_ = 0;      ///< Number of the first one since lookAgain was asked.

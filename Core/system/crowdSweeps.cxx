@@ -252,7 +252,7 @@ void CrowdSolver::collect()
 }
 
 GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody>& bodies,
-  std::vector<GroupContact>& contacts, const std::function<bool()>& lookAgain)
+  std::vector<GroupContact>& contacts, bool takeAnyway, const std::function<bool()>& lookAgain)
 {
   GroupOutcome outcome;
   kernel_ = crowd::suitedSweep();
@@ -299,7 +299,7 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
   {
     finite = finite && w.way.allFinite() && w.spun.allFinite();
   }
-  if (finite)
+  if (finite && (outcome.settled || takeAnyway))
   {
     this->write(request, bodies, contacts, outcome);
   }
@@ -368,9 +368,9 @@ bool CrowdSolver::setGap(std::size_t contact, double found)
   double& asked = batches_[std::size_t(row.batch)].gap[row.lane];
   const double least = std::min(0.0, row.gap0);
   const double change = std::max(least - row.gap0, found - this->gap(contact));
-  if (change == 0.0)
+  if (std::abs(change) <= kQuiet * enough_)
   {
-    return false;
+    return false; // as exact as it is
   }
   asked += asked == row.gap0 ? change : 0.0; // a bounce asks for one of its own
   row.gap0 += change;

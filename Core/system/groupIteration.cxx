@@ -93,7 +93,7 @@ GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody
     crowd_.tolerance = tolerance;
     crowd_.maxSweeps = maxSweeps;
     crowd_.maxCalmSweeps = kCalmSweeps * maxSweeps;
-    return crowd_.step(request, bodies, contacts, lookAgain);
+    return crowd_.step(request, bodies, contacts, takeAnyway, lookAgain);
   };
   if (iterate && lasting)
   {

@@ -255,3 +255,42 @@ TEST(Crowds, SpinOfASlabMakesNoEnergy)
   EXPECT_LT(rigidKineticEnergy(block, state), energy);
   EXPECT_LT((angularMomentum(block, state) - momentum).norm(), 1e-3 * momentum.norm());
 }
+
+TEST(Crowds, WhatHasNotSettledIsNotTaken)
+{
+  // A cube on the corners of its lower face, one of them higher than the others: four springs that
+  // hang together.
+  const Rock cube = brick(Vec3(1.0, 1.0, 1.0), Vec3(0.0, 0.0, 0.5), 0);
+  const Block block(cube.shape, cube.density, cube.youngModulus, cube.poissonRatio);
+  for (const bool takeAnyway : { false, true })
+  {
+    BlockState state;
+    state.position.z() = 0.5;
+    std::vector<Contact> corners(4);
+    std::vector<GroupContact> contacts(4);
+    for (int k = 0; k < 4; ++k)
+    {
+      Contact& c = corners[std::size_t(k)];
+      c.point = Vec3(k % 2 - 0.5, k / 2 - 0.5, 0.0);
+      c.distance = k == 0 ? 1e-5 : 0.0;
+      c.stiffness = c.shearStiffness = 1e9;
+      contacts[std::size_t(k)].contact = &c;
+      contacts[std::size_t(k)].first = 0;
+      contacts[std::size_t(k)].friction = 0.5;
+    }
+    std::vector<GroupBody> bodies(1);
+    bodies[0].block = &block;
+    bodies[0].state = &state;
+    GroupSolver solver;
+    solver.method = GroupMethod::Iterative;
+    solver.tolerance = 1e-13;
+    solver.maxSweeps = 0;
+    StepRequest request;
+    request.duration = 0.005;
+    request.kind = StepKind::Lasting;
+    EXPECT_FALSE(solver.step(request, bodies, contacts, takeAnyway).settled);
+    EXPECT_EQ(state.time, takeAnyway ? 0.005 : 0.0);
+    EXPECT_EQ(state.position.z() == 0.5, !takeAnyway);
+    EXPECT_EQ(corners[1].closed(), takeAnyway);
+  }
+}
