@@ -91,8 +91,8 @@ private:
   struct Workspace;
   struct Meetings;
 
-  void findGroups(
-    double duration); ///< Who may meet whom within the step: massFallMeet.cxx, massFallLink.cxx.
+  /// Who may meet whom within the step: massFallMeet.cxx, massFallLink.cxx.
+  void findGroups(double duration);
   void wake(Member& member);
   void putToSleep(Member& member);
   bool stays(Member& member) const; ///< Whether it has been still for long enough.

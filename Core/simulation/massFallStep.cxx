@@ -19,6 +19,7 @@ constexpr double kPressOut = 0.005;    // m/s, as for single rocks
 constexpr double kPressOutDeep = 0.1;  // m/s, of overlaps beyond the loose one
 constexpr double kLooseOverlap = 1e-3; // of the radius, as for single rocks
 
+/// No bounce for what meets several (mayBounce).
 void settleBounces(
   std::size_t bodies, std::vector<GroupContact>& contacts, std::vector<int>& partners)
 {

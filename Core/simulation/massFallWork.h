@@ -12,7 +12,8 @@ namespace rockfall
 
 constexpr double kTooShort = 1e-9; // s
 
-/// What a rock meets in the step (MassFall::Workspace::partners): another rock, the slope (−1), or
+/// What a rock meets in the step (MassFall::Workspace::partners), if not one other rock or the
+/// slope (−1).
 constexpr int kMeetsSeveral = -2, kMeetsNone = -3;
 
 /// Newton's law of restitution asked of a rock by several others at once may make energy. It holds

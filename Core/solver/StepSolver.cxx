@@ -1,5 +1,6 @@
 #include "solver/StepSolver.h"
 
+#include "block/cayley.h"
 #include "contact/features.h"
 #include "solver/linear.h"
 #include "solver/springs.h"
@@ -14,13 +15,6 @@ namespace rockfall
 
 namespace
 {
-
-/// The Cayley map of a rotation vector, as a unit quaternion.
-Quat cayley(const Vec3& r)
-{
-  const double scale = 1.0 / std::sqrt(1.0 + 0.25 * r.squaredNorm());
-  return Quat(scale, 0.5 * scale * r.x(), 0.5 * scale * r.y(), 0.5 * scale * r.z());
-}
 
 /// Open–close has settled when no state changes and the gaps move by less than this share of their
 /// change over the step: the energy error of a step is then of the order of 1e-7 of the work done

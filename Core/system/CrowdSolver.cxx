@@ -1,8 +1,8 @@
 #include "system/CrowdSolver.h"
 
 #include "base/parallel.h"
+#include "block/cayley.h"
 #include "contact/features.h"
-#include "solver/contactLaw.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,11 +18,6 @@ constexpr int kFreeTurns = 2;
 /// Levers and gyroscopic moments are brought up to date where a rock has turned otherwise than
 /// guessed by more than this, rad: gaps are right to the square of it.
 constexpr double kTurnGuessed = 0.02;
-
-Vec3 laneOf(const double (&of)[3][crowd::kLanes], int lane)
-{
-  return { of[0][lane], of[1][lane], of[2][lane] };
-}
 
 void setLane(double (&of)[3][crowd::kLanes], int lane, const Vec3& to)
 {
@@ -116,9 +111,7 @@ void CrowdSolver::prepareRow(
   if (group.bounce >= 0.0)
   {
     row.penalty = std::max(row.penalty, kBounceStiffness / p.w[lane]);
-    // The spring misses a gap by so much of what it has to turn round; that is added to it.
-    const double turned = group.approach + group.bounce;
-    p.gap[lane] = -h_ * (group.bounce + turned / (row.penalty * p.w[lane]));
+    p.gap[lane] = bounceGap(group, h_, row.penalty * p.w[lane]);
     row.shearPenalty = std::max(row.shearPenalty, kBounceStiffness / p.w[lane]);
     this->lever(bodies, group, row);
   }
@@ -234,22 +227,20 @@ void CrowdSolver::pushed(const Row& row, double sign)
   }
 }
 
+Vec3 CrowdSolver::wayOf(const Row& row, int side) const
+{
+  const crowd::Batch& p = batches_[std::size_t(row.batch)];
+  const std::size_t i = std::size_t(p.body[side][row.lane]);
+  return i < work_.size()
+    ? Vec3(work_[i].way + work_[i].spun.cross(laneOf(p.lever[side], row.lane)))
+    : Vec3(Vec3::Zero()); // the slope
+}
+
 Vec3 CrowdSolver::travel(const Row& row) const
 {
   const crowd::Batch& p = batches_[std::size_t(row.batch)];
   const int lane = row.lane;
-  Vec3 way = Vec3::Zero();
-  double sign = 1.0;
-  for (int side = 0; side < 2; ++side)
-  {
-    const std::size_t i = std::size_t(p.body[side][lane]);
-    if (i >= work_.size())
-    {
-      break;
-    }
-    way += sign * (work_[i].way + work_[i].spun.cross(laneOf(p.lever[side], lane)));
-    sign = -1.0;
-  }
+  const Vec3 way = this->wayOf(row, 0) - this->wayOf(row, 1);
   return { laneOf(p.directions[0], lane).dot(way), laneOf(p.directions[1], lane).dot(way),
     laneOf(p.directions[2], lane).dot(way) };
 }

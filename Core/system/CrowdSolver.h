@@ -38,7 +38,6 @@ public:
   /// Share of the largest displacement to which the sweeps go.
   double tolerance = 1e-4;
   int maxSweeps = 12;
-  int maxCalmSweeps = 300; ///< Where nothing bounces, forces are to be exact.
 
 private:
   static constexpr int kNever = -2;                              ///< A sweep before all others.
@@ -64,11 +63,12 @@ private:
     int batch = 0, lane = 0;
     double gap0 = 0.0; ///< Without what a bounce asks for, m.
     double penalty = 0.0, shearPenalty = 0.0;
-    double done[2] = {};                           ///< Out: work of the force on the two bodies, J.
-    double frictionWork = 0.0, dampedWork = 0.0;   ///< Out, J.
-    double normalEnergy = 0.0, springEnergy = 0.0; ///< Out, J.
   };
 
+  static Vec3 laneOf(const double (&of)[3][crowd::kLanes], int lane)
+  {
+    return { of[0][lane], of[1][lane], of[2][lane] };
+  }
   void prepareBodies(const StepRequest& request, const std::vector<GroupBody>& bodies);
   void turnAs(Work& work, const Vec3& spun) const; ///< turned, mean and turn.
   /// Where a body goes without contacts, for the turn that it has.
@@ -80,8 +80,9 @@ private:
   void prepareRow(const std::vector<GroupBody>& bodies, const GroupContact& group, Row& row);
   /// Directions and levers at mid-step, and what a force does along them.
   void lever(const std::vector<GroupBody>& bodies, const GroupContact& group, const Row& row);
-  void pushed(const Row& row, double sign); ///< Movers by the row's force.
-  Vec3 travel(const Row& row) const;        ///< Along the normal and the tangents, m.
+  void pushed(const Row& row, double sign);   ///< Movers by the row's force.
+  Vec3 wayOf(const Row& row, int side) const; ///< Of a rock's point of force, m.
+  Vec3 travel(const Row& row) const;          ///< Along the normal and the tangents, m.
   void startMover(const GroupBody& body, std::size_t i);
   void startMovers(const std::vector<GroupBody>& bodies);
   /// Turns that were guessed wrong, and the levers that go with them.
@@ -98,6 +99,7 @@ private:
   double h_ = 0.0, gravity_ = 0.0;
   std::vector<Work> work_;
   std::vector<Row> rows_;
+  std::vector<ContactBooks> books_; ///< Out, by row.
   std::vector<crowd::Batch> batches_;
   /// The slope is one more mover of each part, which nothing moves.
   std::vector<crowd::Mover> movers_;

@@ -1,6 +1,7 @@
 #include "system/GroupSolver.h"
 
 #include "base/parallel.h"
+#include "block/cayley.h"
 #include "contact/features.h"
 
 #include <algorithm>
@@ -113,9 +114,7 @@ void GroupSolver::startRows(
       const Mat3 w = this->mobility(row);
       const auto mobile = [&](int i) { return row.directions[i].dot(w * row.directions[i]); };
       row.law.penalty = std::max(row.law.penalty, kBounceStiffness / mobile(0));
-      // The spring misses a gap by so much of what it has to turn round; that is added to it.
-      const double turned = contacts[k].approach + contacts[k].bounce;
-      row.law.gap0 = -h * (contacts[k].bounce + turned / (row.law.penalty * mobile(0)));
+      row.law.gap0 = bounceGap(contacts[k], h, row.law.penalty * mobile(0));
       row.law.shearPenalty = std::max(row.law.shearPenalty, kBounceStiffness / mobile(1));
     }
   };
@@ -169,8 +168,7 @@ bool GroupSolver::setGap(std::size_t contact, double found)
     return crowd_.setGap(contact, found);
   }
   Row& row = rows_[contact];
-  const double least = std::min(0.0, row.gap0);
-  const double change = std::max(least - row.gap0, found - this->gap(contact));
+  const double change = gapChange(row.gap0, this->gap(contact), found);
   row.law.gap0 += row.law.gap0 == row.gap0 ? change : 0.0; // a bounce asks for one of its own
   row.gap0 += change;
   return change != 0.0;
@@ -181,7 +179,7 @@ bool GroupSolver::moved(std::size_t body) const
   return !sweeping_ || crowd_.moved(body);
 }
 
-void GroupSolver::turn()
+void GroupSolver::levers()
 {
   const auto turnBody = [&](std::size_t i)
   {
@@ -190,11 +188,6 @@ void GroupSolver::turn()
     w.turned = w.turn.toRotationMatrix();
   };
   forEach(work_.size(), kBodyGrain, turnBody);
-}
-
-void GroupSolver::levers()
-{
-  this->turn();
   forEach(rows_.size(), kRowGrain, [&](std::size_t k) { this->lever(rows_[k]); });
 }
 
@@ -262,6 +255,12 @@ Mat3 GroupSolver::mobility(const Row& row) const
   return sum;
 }
 
+Vec3 GroupSolver::wayOf(const Side& side) const
+{
+  const Vec6& d = work_[side.body].d;
+  return d.head<3>() + d.tail<3>().cross(side.lever);
+}
+
 Vec3 GroupSolver::travel(const Row& row) const
 {
   Vec3 way = Vec3::Zero();
@@ -270,8 +269,7 @@ Vec3 GroupSolver::travel(const Row& row) const
   {
     if (side.body >= 0)
     {
-      const Vec6& d = work_[side.body].d;
-      way += sign * (d.head<3>() + d.tail<3>().cross(side.lever));
+      way += sign * this->wayOf(side);
     }
     sign = -1.0;
   }

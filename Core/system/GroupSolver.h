@@ -74,13 +74,10 @@ private:
     ContactLaw law;
     std::array<Side, 2> sides;
     ContactKind kind;
-    Vec3 n;                                      ///< At the start.
-    std::array<Vec3, 3> directions;              ///< Normal at mid-step, and the two tangents.
-    Vec3 fixed = Vec3::Zero();                   ///< A point of the slope.
-    double gap0 = 0.0;                           ///< Without what a bounce asks for, m.
-    double done[2] = {};                         ///< Out: work of the force on the two bodies, J.
-    double frictionWork = 0.0, dampedWork = 0.0; ///< Out, J.
-    bool closed = false;                         ///< Out.
+    Vec3 n;                         ///< At the start.
+    std::array<Vec3, 3> directions; ///< Normal at mid-step, and the two tangents.
+    Vec3 fixed = Vec3::Zero();      ///< A point of the slope.
+    double gap0 = 0.0;              ///< Without what a bounce asks for, m.
   };
   struct Work
   {
@@ -104,9 +101,9 @@ private:
   void append(const StepRequest& request, const std::vector<GroupBody>& bodies,
     std::vector<GroupContact>& contacts);
   void lever(Row& row) const;
-  void turn();                         ///< Rotations as the displacements are.
-  void levers();                       ///< … and levers with them.
+  void levers();                       ///< Rotations and levers as the displacements are.
   Mat3 mobility(const Row& row) const; ///< J A⁻¹ Jᵀ of a force at the contact, m/N.
+  Vec3 wayOf(const Side& side) const;  ///< Of a rock's point of force, m.
   Vec3 travel(const Row& row) const;   ///< J D: along the normal and the two tangents, m.
   bool evaluate(double h, bool lasting);
   void loads(const StepRequest& request, const std::vector<GroupBody>& bodies);
@@ -119,6 +116,7 @@ private:
     std::vector<GroupContact>& contacts, GroupOutcome& outcome);
 
   std::vector<Row> rows_;
+  std::vector<ContactBooks> books_; ///< Out, by row.
   std::vector<Work> work_;
   CrowdSolver crowd_;
   bool sweeping_ = false; ///< It is crowd_ that solves the step at hand.

@@ -57,15 +57,6 @@ ROCKFALL_INLINE void transpose(Lanes (&m)[4])
 #endif
 }
 
-ROCKFALL_INLINE void gather(const double* (&from)[4], Lanes (&m)[4])
-{
-  for (int i = 0; i < 4; ++i)
-  {
-    m[i] = load(from[i]);
-  }
-  transpose(m);
-}
-
 ROCKFALL_INLINE void scatter(Lanes (&m)[4], double* (&to)[4])
 {
   transpose(m);

@@ -3,7 +3,6 @@
 #include "system/CrowdSolver.h"
 
 #include "base/parallel.h"
-#include "solver/contactLaw.h"
 
 #include <algorithm>
 #include <bit>
@@ -17,8 +16,9 @@ namespace rockfall
 namespace
 {
 
-/// How often missed contacts are looked for in a step.
-constexpr int kLooks = 2;
+/// Where nothing bounces forces are to be exact, and few contacts still change: so many times more
+/// sweeps.
+constexpr int kCalmSweeps = 25;
 /// Changes below this share of the tolerance are no reason to visit a contact again.
 constexpr double kQuiet = 0.3;
 /// What is found in a second look is met to this many times the tolerance, which is about as exact
@@ -274,7 +274,7 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
   }
   enough_ = tolerance * scale;
   sweep_ = looked_ = 0;
-  const int most = calm ? maxCalmSweeps : maxSweeps;
+  const int most = calm ? kCalmSweeps * maxSweeps : maxSweeps;
   outcome.settled = this->sweeps(most, outcome);
   if (this->correctTurns(bodies, contacts))
   {
@@ -366,8 +366,7 @@ bool CrowdSolver::setGap(std::size_t contact, double found)
 {
   Row& row = rows_[contact];
   double& asked = batches_[std::size_t(row.batch)].gap[row.lane];
-  const double least = std::min(0.0, row.gap0);
-  const double change = std::max(least - row.gap0, found - this->gap(contact));
+  const double change = gapChange(row.gap0, this->gap(contact), found);
   if (std::abs(change) <= kQuiet * enough_)
   {
     return false; // as exact as it is

@@ -5,6 +5,12 @@
 
 #include "block/Block.h"
 #include "contact/Contact.h"
+#include "solver/contactLaw.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
 
 namespace rockfall
 {
@@ -43,15 +49,45 @@ struct GroupOutcome
   double dampedWork = 0.0;   ///< Between rocks, J.
 };
 
-/// The unit quaternion of a turn by Cayley's vector r (METHOD 10.4).
-inline Quat cayley(const Vec3& r)
-{
-  const double scale = 1.0 / std::sqrt(1.0 + 0.25 * r.squaredNorm());
-  return Quat(scale, 0.5 * scale * r.x(), 0.5 * scale * r.y(), 0.5 * scale * r.z());
-}
-
 /// A bounce is this much stiffer than the rocks are heavy. Much more, and what bounces to and fro
 /// between others would keep Gauss–Seidel from settling.
 constexpr double kBounceStiffness = 100.0;
+
+/// How often missed contacts are looked for in a step (GroupSolver::step, lookAgain).
+constexpr int kLooks = 2;
+
+/// The gap at the start of a step of `h` (s) that makes a contact leave as its bounce asks for.
+/// `turned`: stiffness times mobility along the normal; the spring misses a gap by so much of what
+/// it has to turn round, which is added to it.
+inline double bounceGap(const GroupContact& contact, double h, double turned)
+{
+  return -h * (contact.bounce + (contact.approach + contact.bounce) / turned);
+}
+
+/// By how much a gap at the start (m) changes if the one at the end is found to be another one than
+/// reckoned. No contact is asked to open further than it was.
+inline double gapChange(double gap0, double reckoned, double found)
+{
+  return std::max(std::min(0.0, gap0) - gap0, found - reckoned);
+}
+
+/// What a contact has done in a step, J.
+struct ContactBooks
+{
+  std::array<double, 2> done = {}; ///< Work of its force on the two rocks, if it is between rocks.
+  double frictionWork = 0.0, dampedWork = 0.0;
+  double normalEnergy = 0.0, springEnergy = 0.0; ///< In it at the end.
+};
+
+/// Writes a contact after a step: forces, gap, state and slip. `law` is as evaluated, with the
+/// forces that the rocks were moved with; `directions` its normal and tangents; `ways` those of its
+/// point on the two rocks, `way` the first less the second along the directions, m; `gap0` the gap
+/// at the start without what a bounce asks for.
+ContactBooks writeContact(const ContactLaw& law, const std::array<Vec3, 3>& directions,
+  const std::array<Vec3, 2>& ways, const Vec3& way, double gap0, GroupContact& contact);
+
+/// Adds the books of all contacts, in their order, to those of the bodies.
+void addBooks(const std::vector<GroupContact>& contacts, const std::vector<ContactBooks>& books,
+  std::vector<GroupBody>& bodies, GroupOutcome& outcome);
 
 } // namespace rockfall

@@ -15,11 +15,6 @@ namespace
 
 /// Largest group that is solved directly.
 constexpr std::size_t kDirect = 60;
-/// How often missed contacts are looked for in a step.
-constexpr int kLooks = 2;
-/// Where nothing bounces forces are to be exact, and few contacts still change: so many times more
-/// sweeps.
-constexpr int kCalmSweeps = 25;
 /// As in the step of a single rock.
 constexpr double kGapTolerance = 1e-7;
 /// The gyroscopic moment converges linearly: to this share of a turn it keeps angular momentum to
@@ -92,7 +87,6 @@ GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody
     sweeping_ = true;
     crowd_.tolerance = tolerance;
     crowd_.maxSweeps = maxSweeps;
-    crowd_.maxCalmSweeps = kCalmSweeps * maxSweeps;
     return crowd_.step(request, bodies, contacts, takeAnyway, lookAgain);
   };
   if (iterate && lasting)
@@ -138,79 +132,28 @@ GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody
 void GroupSolver::write(const StepRequest& request, std::vector<GroupBody>& bodies,
   std::vector<GroupContact>& contacts, GroupOutcome& outcome)
 {
-  for (GroupBody& body : bodies)
+  books_.resize(contacts.size());
+  const auto writeRow = [&](std::size_t k)
   {
-    body.given = body.frictionWork = body.dampedWork = 0.0;
-    body.springEnergy = body.normalEnergy = 0.0;
-  }
-  const auto writeContact = [&](std::size_t k)
-  {
-    Row& row = rows_[k];
-    const ContactLaw& law = row.law;
-    Contact& c = *contacts[k].contact;
-    const Vec3 way = this->travel(row);
-    const Eigen::Vector2d travel = way.tail<2>();
-    const double gap1 = row.gap0 + way[0];
-    c.normalForce = law.force;
-    c.shearForce = law.shearForce.norm();
-    c.distance = gap1 + c.offset;
-    const bool bounced = contacts[k].bounce >= 0.0;
-    row.closed = !bounced && law.gap1 < 0.0;
-    row.frictionWork = bounced ? -law.shearForce.dot(travel) : law.frictionWork(travel);
-    row.dampedWork = bounced ? -law.force * (gap1 - row.gap0) : law.dampedWork();
-    if (row.sides[1].body >= 0)
+    const Row& row = rows_[k];
+    std::array<Vec3, 2> ways = { Vec3::Zero(), Vec3::Zero() };
+    for (int side = 0; side < 2; ++side)
     {
-      const Vec3 force = law.force * row.directions[0] + law.shearForce[0] * row.directions[1] +
-        law.shearForce[1] * row.directions[2];
-      for (int side = 0; side < 2; ++side)
-      {
-        const Vec6& d = work_[row.sides[side].body].d;
-        const double sign = side == 0 ? 1.0 : -1.0;
-        row.done[side] = sign * force.dot(d.head<3>() + d.tail<3>().cross(row.sides[side].lever));
-      }
-      contacts[k].work = -row.done[0] - row.done[1];
+      const Side& of = row.sides[side];
+      ways[side] = of.body < 0 ? Vec3(Vec3::Zero()) : this->wayOf(of);
     }
-    if (row.closed)
-    {
-      c.state = law.state == ContactState::Open ? ContactState::Sliding : law.state;
-      c.slip = row.directions[1] * law.slip1[0] + row.directions[2] * law.slip1[1];
-    }
-    else
-    {
-      c.state = ContactState::Open;
-      c.slip.setZero();
-    }
+    books_[k] =
+      writeContact(row.law, row.directions, ways, this->travel(row), row.gap0, contacts[k]);
     // Where its rock has carried it: by this the next step knows it again.
-    const int carrier = row.kind == ContactKind::FaceVertex ? 1 : 0;
-    const int i = row.sides[carrier].body;
-    if (i >= 0)
+    const Side& carrier = row.sides[row.kind == ContactKind::FaceVertex ? 1 : 0];
+    if (carrier.body >= 0)
     {
-      const Work& w = work_[i];
-      c.point = w.position + w.d.head<3>() + w.turned * row.sides[carrier].place;
+      const Work& w = work_[carrier.body];
+      contacts[k].contact->point = w.position + w.d.head<3>() + w.turned * carrier.place;
     }
   };
-  forEach(contacts.size(), kRowGrain, writeContact);
-  for (const Row& row : rows_)
-  {
-    GroupBody& first = bodies[row.sides[0].body];
-    if (row.sides[1].body < 0)
-    {
-      first.frictionWork += row.frictionWork;
-      first.dampedWork += row.dampedWork;
-      if (row.closed)
-      {
-        first.normalEnergy += row.law.normalEnergy();
-        first.springEnergy += row.law.normalEnergy() + row.law.shearEnergy();
-      }
-    }
-    else
-    {
-      outcome.frictionWork += row.frictionWork;
-      outcome.dampedWork += row.dampedWork;
-      first.given -= row.done[0];
-      bodies[row.sides[1].body].given -= row.done[1];
-    }
-  }
+  forEach(contacts.size(), kRowGrain, writeRow);
+  addBooks(contacts, books_, bodies, outcome);
   const auto writeBody = [&](std::size_t i)
   {
     const Work& w = work_[i];

@@ -69,8 +69,7 @@ int largestGroup(const Pile& pile)
 TEST(Crowds, LargeGroupKeepsMomentum)
 {
   Pile pile;
-  pile.ground = makeSlope(
-    5, 100.0, [](double, double) { return -1000.0; }, material(1.0, 0.0));
+  pile.ground = abyss();
   pile.parameters.gravity = 0.0;
   pile.parameters.rockRestitution = 0.3;
   pile.rocks = handful(108, 5);

@@ -41,8 +41,7 @@ TEST(Meetings, StruckRockDoesNotEnterTheNextOne)
   for (const double first : { 0.001, 0.03, 0.07 })
   {
     Pile pile;
-    pile.ground = makeSlope(
-      5, 100.0, [](double, double) { return -1000.0; }, material(1.0, 0.0));
+    pile.ground = abyss();
     pile.parameters.gravity = 0.0;
     pile.parameters.timeStep = 0.005;
     pile.parameters.rockRestitution = 1.0;
@@ -105,8 +104,7 @@ TEST(Meetings, FieldOfSleepersIsNotWokenByOneRock)
 {
   // Gaps of 30 mm have to be crossed one after the other: a row is not one group.
   Pile pile;
-  pile.ground = makeSlope(
-    5, 100.0, [](double, double) { return -1000.0; }, material(1.0, 0.0));
+  pile.ground = abyss();
   pile.parameters.gravity = 0.0;
   pile.parameters.timeStep = 0.005;
   pile.parameters.rockRestitution = 0.9;

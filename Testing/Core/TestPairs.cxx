@@ -1,6 +1,7 @@
 // Two rocks that meet: momentum, angular momentum, energy, restitution.
 
 #include "base/errors.h"
+#include "piles.h"
 #include "simulation/MassFall.h"
 #include "slopes.h"
 
@@ -14,13 +15,6 @@ using namespace rockfall::testing;
 
 namespace
 {
-
-/// Far below, so that nothing touches it.
-Terrain abyss()
-{
-  return makeSlope(
-    5, 100.0, [](double, double) { return -1000.0; }, material(1.0, 0.0));
-}
 
 Rock rockAt(Shape shape, const Vec3& place, const Vec3& velocity, std::int64_t id)
 {

@@ -113,6 +113,13 @@ struct Pile
   }
 };
 
+/// Far below, so that nothing touches it.
+inline Terrain abyss()
+{
+  return makeSlope(
+    5, 100.0, [](double, double) { return -1000.0; }, material(1.0, 0.0));
+}
+
 inline Terrain floorSlope(double friction = 35.0)
 {
   return makeSlope(

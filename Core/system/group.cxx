@@ -1,0 +1,70 @@
+#include "system/group.h"
+
+namespace rockfall
+{
+
+ContactBooks writeContact(const ContactLaw& law, const std::array<Vec3, 3>& directions,
+  const std::array<Vec3, 2>& ways, const Vec3& way, double gap0, GroupContact& contact)
+{
+  Contact& c = *contact.contact;
+  const Eigen::Vector2d travel = way.tail<2>();
+  const double gap1 = gap0 + way[0];
+  c.normalForce = law.force;
+  c.shearForce = law.shearForce.norm();
+  c.distance = gap1 + c.offset;
+  const bool bounced = contact.bounce >= 0.0;
+  ContactBooks books;
+  books.frictionWork = bounced ? -law.shearForce.dot(travel) : law.frictionWork(travel);
+  books.dampedWork = bounced ? -law.force * (gap1 - gap0) : law.dampedWork();
+  if (contact.second >= 0)
+  {
+    const Vec3 force = law.force * directions[0] + law.shearForce[0] * directions[1] +
+      law.shearForce[1] * directions[2];
+    books.done = { force.dot(ways[0]), -force.dot(ways[1]) };
+    contact.work = -books.done[0] - books.done[1];
+  }
+  if (!bounced && law.gap1 < 0.0)
+  {
+    books.normalEnergy = law.normalEnergy();
+    books.springEnergy = books.normalEnergy + law.shearEnergy();
+    c.state = law.state == ContactState::Open ? ContactState::Sliding : law.state;
+    c.slip = directions[1] * law.slip1[0] + directions[2] * law.slip1[1];
+  }
+  else
+  {
+    c.state = ContactState::Open;
+    c.slip.setZero();
+  }
+  return books;
+}
+
+void addBooks(const std::vector<GroupContact>& contacts, const std::vector<ContactBooks>& books,
+  std::vector<GroupBody>& bodies, GroupOutcome& outcome)
+{
+  for (GroupBody& body : bodies)
+  {
+    body.given = body.frictionWork = body.dampedWork = 0.0;
+    body.springEnergy = body.normalEnergy = 0.0;
+  }
+  for (std::size_t k = 0; k < contacts.size(); ++k)
+  {
+    const ContactBooks& of = books[k];
+    GroupBody& first = bodies[std::size_t(contacts[k].first)];
+    if (contacts[k].second < 0)
+    {
+      first.frictionWork += of.frictionWork;
+      first.dampedWork += of.dampedWork;
+      first.normalEnergy += of.normalEnergy;
+      first.springEnergy += of.springEnergy;
+    }
+    else
+    {
+      outcome.frictionWork += of.frictionWork;
+      outcome.dampedWork += of.dampedWork;
+      first.given -= of.done[0];
+      bodies[std::size_t(contacts[k].second)].given -= of.done[1];
+    }
+  }
+}
+
+} // namespace rockfall
