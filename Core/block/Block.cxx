@@ -154,13 +154,17 @@ double rigidKineticEnergy(const Block& block, const BlockState& state)
 
 double kineticEnergy(const Block& block, const BlockState& state)
 {
+  if (state.strain.isZero(0.0) && state.strainRate.isZero(0.0))
+  {
+    return rigidKineticEnergy(block, state);
+  }
   const Vec12 v = bodyVelocity(state);
   return 0.5 * v.dot(block.massMatrix() * v);
 }
 
 double strainEnergy(const Block& block, const BlockState& state)
 {
-  return 0.5 * state.strain.dot(block.elasticity() * state.strain);
+  return state.strain.isZero(0.0) ? 0.0 : 0.5 * state.strain.dot(block.elasticity() * state.strain);
 }
 
 Vec3 angularMomentum(const Block& block, const BlockState& state)

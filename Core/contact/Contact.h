@@ -123,6 +123,7 @@ struct CandidatePairs
   /// How much further the rock (of this radius) may move until a pair within `reach` of it might
   /// not be among them, m; < 0: it might not be now.
   double room(const BlockState& state, double radius, double reach) const;
+  bool empty() const { return vertexFace.empty() && edgeEdge.empty() && peaks.empty(); }
 };
 
 /// Finds all pairs within `distance` (m).

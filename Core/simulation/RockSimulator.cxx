@@ -30,6 +30,8 @@ constexpr double kLongFlight = 1.0;
 constexpr double kWindow = 4.0;
 /// How far, in radii, the rock may go on until the pairs that can touch are looked for again.
 constexpr double kCandidateSlack = 0.05;
+/// The same of a rock among others that has nothing of the slope near it.
+constexpr double kFarSlack = 0.4;
 /// Strain that vibrates faster than this many times the contacts' springs, or than this many
 /// radians per Δt, follows the contact forces as at rest.
 constexpr double kStiffBesideContacts = 4.0;
@@ -142,11 +144,13 @@ void RockSimulator::ensurePatch(double margin)
   }
 }
 
-void RockSimulator::ensureCandidates(double reach)
+void RockSimulator::ensureCandidates(double reach, bool among)
 {
   if (candidates_.room(state_, block_.radius(), reach) < 0.0)
   {
-    const double distance = std::max(2.0 * reach, reach + kCandidateSlack * block_.radius());
+    // Where nothing was near at the last look there is little that a wider one finds.
+    const double slack = among && candidates_.empty() ? kFarSlack : kCandidateSlack;
+    const double distance = std::max(2.0 * reach, reach + slack * block_.radius());
     this->ensurePatch(distance);
     gatherCandidates(placed_, state_, patch_, distance, candidates_);
   }

@@ -125,6 +125,7 @@ void MassFall::gatherContacts(const Group& group, double h) const
 {
   const auto reachOf = [&](double speed, double radius)
   { return 1.5 * speed * h + parameters_.gravity * h * h + 1e-6 * radius; };
+  const bool crowd = int(group.members.size()) > resolved;
   const auto onSlope = [&](std::size_t k)
   {
     Member& m = *members_[group.members[k]];
@@ -136,11 +137,11 @@ void MassFall::gatherContacts(const Group& group, double h) const
     m.stand();
     const double r = sim.block_.radius();
     const double reach = reachOf(sim.state_.velocity.norm() + sim.state_.spin.norm() * r, r);
-    sim.ensureCandidates(reach);
+    sim.ensureCandidates(reach, crowd);
     updateContacts(sim.placed_, sim.patch_, sim.candidates_, reach, sim.contacts_);
     while (sim.solid_ && sim.breakTrees(h))
     {
-      sim.ensureCandidates(reach);
+      sim.ensureCandidates(reach, crowd);
       updateContacts(sim.placed_, sim.patch_, sim.candidates_, reach, sim.contacts_);
     }
     double pressed = 0.0;

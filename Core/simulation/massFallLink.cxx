@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace rockfall
 {
@@ -74,15 +75,21 @@ double MassFall::Meetings::reach(const Near& n) const
   return std::min(ways, speed * duration_) + fall_;
 }
 
-bool MassFall::Meetings::mayMeet(const Near& n, double reach) const
+bool MassFall::Meetings::mayMeet(const Near& n) const
 {
-  if (this->gap(n) > reach)
+  // By their ways alone first: that tells most of them apart.
+  const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
+  const double gap = this->gap(n);
+  const double first = this->thrown(std::size_t(n.first));
+  const double second = this->thrown(std::size_t(n.second));
+  const double ways = first * a.way + second * b.way + fall_;
+  const double most = a.radius + b.radius + ways;
+  if (gap > ways || (a.position - b.position).squaredNorm() > most * most)
   {
     return false;
   }
-  const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
-  const double most = a.radius + b.radius + reach;
-  return (a.position - b.position).squaredNorm() <= most * most;
+  const double reach = this->reach(n), nearer = a.radius + b.radius + reach;
+  return gap <= reach && (a.position - b.position).squaredNorm() <= nearer * nearer;
 }
 
 /// Whether two rocks that stand may meet; finds their axis as far as that needs it.
@@ -110,9 +117,7 @@ bool MassFall::Meetings::meet(const MassFall& fall, Near& n)
     }
     pair.seen = false;
     n.looked = reach;
-    const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
-    n.normal = pair.axis.normal;
-    n.offset = pair.axis.distance - n.normal.dot(a.position - b.position) + a.turned + b.turned;
+    this->lookAlong(n);
     // Along this axis the velocities may tell more, or less: then once more.
   }
 }
@@ -135,9 +140,10 @@ bool MassFall::Meetings::sweep(MassFall& fall)
   {
     const Near& n = near[k];
     const bool asleep = movers[std::size_t(n.first)].asleep && movers[std::size_t(n.second)].asleep;
-    asks_[k] = !n.linked && !asleep && this->mayMeet(n, this->reach(n));
+    asks_[k] = !n.linked && !asleep && this->mayMeet(n);
   };
   forEach(near.size(), kNearGrain, ask);
+  bool any = false;
   asked_.clear();
   placed_.clear();
   for (std::size_t k = 0; k < near.size(); ++k)
@@ -145,6 +151,14 @@ bool MassFall::Meetings::sweep(MassFall& fall)
     if (asks_[k])
     {
       Near& n = near[k];
+      if (n.pair && n.looked < 0.0 && this->root(n.first) == this->root(n.second))
+      {
+        // Of one company they are: how far apart is looked at when their contacts are.
+        this->join(fall, k);
+        n.pair->known = false;
+        any = true;
+        continue;
+      }
       n.pair = n.pair ? n.pair : this->newPair(fall, n.first, n.second);
       asked_.push_back(k);
       for (const int i : { n.first, n.second })
@@ -165,20 +179,23 @@ bool MassFall::Meetings::sweep(MassFall& fall)
   {
     marks_[std::size_t(i)] = 0;
   }
-  bool any = false;
   for (const std::size_t k : asked_)
   {
     if (asks_[k])
     {
-      this->join(fall, near[k]);
+      this->join(fall, k);
       any = true;
     }
   }
   return any;
 }
 
-void MassFall::Meetings::join(MassFall& fall, Near& n)
+void MassFall::Meetings::join(MassFall& fall, std::size_t k)
 {
+  Near& n = near[k];
+  nextLink_.resize(near.size());
+  nextLink_[k] = { std::exchange(firstLink_[std::size_t(n.first)], int(k)),
+    std::exchange(firstLink_[std::size_t(n.second)], int(k)) };
   n.linked = n.holds = true;
   n.pair->linked = n.pair->known = true;
   for (const int i : { n.first, n.second })
@@ -188,6 +205,7 @@ void MassFall::Meetings::join(MassFall& fall, Near& n)
     {
       fall.wake(*fall.members_[std::size_t(i)]);
       m.asleep = false;
+      --sleepers_;
     }
     if (!m.queued)
     {
@@ -207,6 +225,53 @@ void MassFall::Meetings::join(MassFall& fall, Near& n)
   kept.upper = kept.upper.cwiseMax(other.upper);
   kept.heaviest = std::max(kept.heaviest, other.heaviest);
   kept.size += other.size;
+}
+
+/// All that lies on each other wakes at once; others have their turn in the next sweep.
+void MassFall::Meetings::wakeAbout(MassFall& fall, int rock)
+{
+  const auto visit = [&](std::size_t k)
+  {
+    Near& n = near[k];
+    const Mover& other = movers[std::size_t(n.first == rock ? n.second : n.first)];
+    if (!n.linked && other.asleep && this->mayMeet(n))
+    {
+      n.pair = n.pair ? n.pair : this->newPair(fall, n.first, n.second);
+      fall.members_[std::size_t(n.first)]->stand();
+      fall.members_[std::size_t(n.second)]->stand();
+      if (this->meet(fall, n))
+      {
+        this->join(fall, k);
+      }
+    }
+  };
+  this->forNeighbours(rock, visit);
+}
+
+/// What is left of a rock's way, to those that it is linked with.
+void MassFall::Meetings::passOn(int rock)
+{
+  const double way = movers[std::size_t(rock)].way;
+  for (int k = firstLink_[std::size_t(rock)]; k >= 0;)
+  {
+    const Near& n = near[std::size_t(k)];
+    const bool first = n.first == rock;
+    const int next = nextLink_[std::size_t(k)][first ? 0 : 1];
+    Mover& other = movers[std::size_t(first ? n.second : n.first)];
+    if (way > other.way * kNoMore)
+    {
+      // The gap must be crossed first, by both together.
+      const double left =
+        way - std::max(0.0, this->gap(n)) * way / std::max(way + other.own, 1e-12);
+      if (left > other.way * kNoMore)
+      {
+        other.way = left;
+        other.queued = true;
+        queue_.push_back(first ? n.second : n.first);
+      }
+    }
+    k = next;
+  }
 }
 
 /// Carries on what each rock that has been joined may do to those that it may meet: the longest way
@@ -236,43 +301,31 @@ void MassFall::Meetings::tell(MassFall& fall)
     }
     movers[std::size_t(i)].queued = false;
     roots_[std::size_t(i)] = this->root(i);
-    const auto visit = [&](std::size_t k)
+    if (sleepers_ > 0)
     {
-      Near& n = near[k];
-      Mover& other = movers[std::size_t(n.first == i ? n.second : n.first)];
-      // All that lies on each other wakes at once; others have their turn in the next sweep.
-      if (!n.linked && other.asleep && this->mayMeet(n, this->reach(n)))
-      {
-        n.pair = n.pair ? n.pair : this->newPair(fall, n.first, n.second);
-        fall.members_[std::size_t(n.first)]->stand();
-        fall.members_[std::size_t(n.second)]->stand();
-        if (this->meet(fall, n))
-        {
-          this->join(fall, n);
-        }
-      }
-      const double way = movers[std::size_t(i)].way;
-      if (!n.linked || way <= other.way * kNoMore)
-      {
-        return;
-      }
-      // The gap must be crossed first, by both together.
-      const double left =
-        way - std::max(0.0, this->gap(n)) * way / std::max(way + other.own, 1e-12);
-      if (left > other.way * kNoMore)
-      {
-        other.way = left;
-        other.queued = true;
-        queue_.push_back(n.first == i ? n.second : n.first);
-      }
-    };
-    this->forNeighbours(i, visit);
+      this->wakeAbout(fall, i);
+    }
+    this->passOn(i);
   }
   queue_.clear();
 }
 
 void MassFall::Meetings::link(MassFall& fall)
 {
+  // What overlaps is known already.
+  firstLink_.assign(movers.size(), -1);
+  nextLink_.resize(near.size());
+  for (std::size_t k = 0; k < near.size(); ++k)
+  {
+    Near& n = near[k];
+    const bool asleep = movers[std::size_t(n.first)].asleep && movers[std::size_t(n.second)].asleep;
+    if (!asleep && n.pair && n.pair->seen && n.pair->axis.distance <= 0.0)
+    {
+      this->join(fall, k);
+      n.pair->known = false;
+    }
+  }
+  this->tell(fall);
   while (this->sweep(fall))
   {
     this->tell(fall);

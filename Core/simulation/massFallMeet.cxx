@@ -93,13 +93,23 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
     m.way = m.own;
   };
   forEach(count, kRockGrain, followRock);
+  sleepers_ = 0;
   for (std::size_t i = 0; i < count; ++i)
   {
     const Mover& m = movers[i];
+    sleepers_ += m.present && m.asleep;
     companies_[i] = { m.middle.array() - m.spread, m.middle.array() + m.spread, m.mass, 1 };
     boxes_[i] = { m.position, m.radius + m.known, m.present, m.present && !m.asleep };
   }
   std::iota(parents_.begin(), parents_.end(), 0);
+}
+
+/// From now on the gap is bounded along the pair's axis.
+void MassFall::Meetings::lookAlong(Near& n) const
+{
+  const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
+  n.normal = n.pair->axis.normal;
+  n.offset = n.pair->axis.distance - n.normal.dot(a.position - b.position) + a.turned + b.turned;
 }
 
 RockPair* MassFall::Meetings::newPair(const MassFall& fall, int first, int second)
@@ -143,6 +153,10 @@ void MassFall::Meetings::findNear(MassFall& fall)
     next.wasLinked = n.linked;
     next.linked = false;
     next.looked = -1.0;
+    if (n.pair && n.pair->seen)
+    {
+      this->lookAlong(next); // found where they stand
+    }
   };
   const auto leave = [&](Near& n)
   {

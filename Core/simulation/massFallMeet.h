@@ -7,6 +7,7 @@
 #include "simulation/MassFall.h"
 #include "system/broadPhase.h"
 
+#include <array>
 #include <deque>
 #include <limits>
 
@@ -83,14 +84,17 @@ private:
   double closing(const Near& near) const;
   double thrown(std::size_t rock) const;
   double reach(const Near& near) const;
-  bool mayMeet(const Near& near, double reach) const;
+  bool mayMeet(const Near& near) const;
+  void lookAlong(Near& near) const;
   RockPair* newPair(const MassFall& fall, int first, int second);
   void drop(MassFall& fall, Near& near);
   void indexNeighbours();
   void addNeighbours(int rock);
   bool meet(const MassFall& fall, Near& near);
   bool sweep(MassFall& fall);
-  void join(MassFall& fall, Near& near);
+  void join(MassFall& fall, std::size_t near);
+  void wakeAbout(MassFall& fall, int rock);
+  void passOn(int rock);
   void tell(MassFall& fall);
   template <class Visit>
   void forNeighbours(int rock, Visit&& visit);
@@ -110,6 +114,11 @@ private:
   std::vector<std::size_t> firsts_, places_;
   std::vector<std::vector<std::size_t>> later_;
   std::vector<int> widenedRocks_;
+  /// Linked pairs of each rock, as lists: the first one, and by pair the next of either rock; −1
+  /// ends.
+  std::vector<int> firstLink_;
+  std::vector<std::array<int, 2>> nextLink_;
+  int sleepers_ = 0;
   std::size_t sorted_ = 0; ///< Of `near`; behind it those found later.
   struct Turn
   {
