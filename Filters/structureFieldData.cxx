@@ -15,6 +15,7 @@
 #include "vtkPolyData.h"
 
 #include <cmath>
+#include <limits>
 #include <string>
 
 namespace rockfall::filters
@@ -43,6 +44,18 @@ void addPoints(vtkDoubleArray* array, const std::vector<Eigen::Vector2d>& points
   throw DataError("The Terrain input must come from DEM to CFE Mesh, directly or from a file saved "
                   "from it: its field arrays of embankments, trees and barriers do not belong "
                   "together");
+}
+
+constexpr double kNoLimit = -1.0;
+
+double writtenCapacity(double capacity)
+{
+  return std::isinf(capacity) ? kNoLimit : capacity;
+}
+
+double readCapacity(double written)
+{
+  return written < 0.0 ? std::numeric_limits<double>::infinity() : written;
 }
 
 /// Tuples of an array of this many components; none if there is no such array.
@@ -90,8 +103,10 @@ void writeStructures(const Terrain& terrain, vtkFieldData* fieldData)
   const auto embankmentPoints = addArray<vtkDoubleArray>(fieldData, embankmentPointsName, 2);
   for (const Embankment& e : s.embankments)
   {
-    const double row[] = { double(e.feature), e.height, e.elevation, e.crestWidth, e.mountainSlope,
-      e.valleySlope, double(e.material), double(e.points.size()) };
+    // Either a height or an elevation; the other one is 0.
+    const bool high = e.height > 0.0;
+    const double row[] = { double(e.feature), high ? e.height : 0.0, high ? 0.0 : e.elevation,
+      e.crestWidth, e.mountainSlope, e.valleySlope, double(e.material), double(e.points.size()) };
     embankments->InsertNextTuple(row);
     addPoints(embankmentPoints, e.points);
   }
@@ -99,15 +114,15 @@ void writeStructures(const Terrain& terrain, vtkFieldData* fieldData)
   for (const Tree& t : s.trees)
   {
     const double row[] = { double(t.feature), t.position.x(), t.position.y(), t.diameter, t.height,
-      t.capacity, double(t.material) };
+      writtenCapacity(t.capacity), double(t.material) };
     trees->InsertNextTuple(row);
   }
   const auto barriers = addArray<vtkDoubleArray>(fieldData, barriersName, 6);
   const auto barrierPoints = addArray<vtkDoubleArray>(fieldData, barrierPointsName, 2);
   for (const Barrier& b : s.barriers)
   {
-    const double row[] = { double(b.feature), b.height, b.capacity, double(b.absorbs),
-      double(b.records), double(b.points.size()) };
+    const double row[] = { double(b.feature), b.height, writtenCapacity(b.capacity),
+      double(b.absorbs), double(b.records), double(b.points.size()) };
     barriers->InsertNextTuple(row);
     addPoints(barrierPoints, b.points);
   }
@@ -132,8 +147,8 @@ Structures readStructures(vtkFieldData* fieldData)
   {
     Embankment& e = s.embankments.emplace_back();
     e.feature = std::int64_t(embankments.at(k, 0));
-    e.height = embankments.at(k, 1);
-    e.elevation = embankments.at(k, 2);
+    const bool high = embankments.at(k, 1) > 0.0;
+    (high ? e.height : e.elevation) = embankments.at(k, high ? 1 : 2);
     e.crestWidth = embankments.at(k, 3);
     e.mountainSlope = embankments.at(k, 4);
     e.valleySlope = embankments.at(k, 5);
@@ -147,7 +162,7 @@ Structures readStructures(vtkFieldData* fieldData)
     t.position = { trees.at(k, 1), trees.at(k, 2) };
     t.diameter = trees.at(k, 3);
     t.height = trees.at(k, 4);
-    t.capacity = trees.at(k, 5);
+    t.capacity = readCapacity(trees.at(k, 5));
     t.material = int(trees.at(k, 6));
   }
   next = 0;
@@ -156,7 +171,7 @@ Structures readStructures(vtkFieldData* fieldData)
     Barrier& b = s.barriers.emplace_back();
     b.feature = std::int64_t(barriers.at(k, 0));
     b.height = barriers.at(k, 1);
-    b.capacity = barriers.at(k, 2);
+    b.capacity = readCapacity(barriers.at(k, 2));
     b.absorbs = barriers.at(k, 3) != 0.0;
     b.records = barriers.at(k, 4) != 0.0;
     b.points = takePoints(barrierPoints, barriers.at(k, 5), next);

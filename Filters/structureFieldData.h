@@ -14,6 +14,10 @@
 /// | TerrainBarrierPoints      | x, y in the local frame, m                                       |
 /// | TerrainStructureMaterials | restitution, its model, tangential restitution, speed (m/s),     |
 /// |                           | φ (rad), cohesion (N)                                            |
+///
+/// An embankment that has a height has no elevation, which is then 0, and the other way round; a
+/// capacity without limit is −1: VTK's XML readers do not understand their writers' "nan" and
+/// "inf".
 
 #include "terrain/Terrain.h"
 #include "terrain/structures.h"

@@ -87,8 +87,17 @@ build_all() {
       fail "configuring failed; all of it is in $rockfall_log"
   fi
   echo "Building"
-  logged cmake --build "$rockfall_build" --parallel "$(nproc)" ||
-    fail "the build failed; all of it is in $rockfall_log"
+  build || fail "the build failed; all of it is in $rockfall_log"
+}
+
+# Builds, says at every tenth how far it is, and shows the end of the log if it fails.
+build() {
+  NINJA_STATUS='[%p] ' cmake --build "$rockfall_build" --parallel "$(nproc)" 2>&1 </dev/null |
+    tee -- "$rockfall_log" |
+    awk '/^\[ *[0-9]+%\]/ {
+      tenth = int(substr($0, 2) / 10)
+      if (tenth > last) { last = tenth; printf "  %d %% built\n", 10 * tenth; fflush() }
+    }' || { tail -n 40 -- "$rockfall_log" >&2; return 1; }
 }
 
 # Packages and build, and where ParaView finds the plugin.

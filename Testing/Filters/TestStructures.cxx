@@ -88,6 +88,7 @@ TEST_F(TestStructures, SurviveAFile)
   vtkNew<vtkXMLPolyDataWriter> writer;
   writer->SetFileName(name.c_str());
   writer->SetInputConnection(this->Terrain->GetOutputPort());
+  writer->SetDataModeToBinary(); // not every libexpat lets appended data be read back
   writer->Write();
   vtkNew<vtkXMLPolyDataReader> reader;
   reader->SetFileName(name.c_str());
@@ -99,6 +100,7 @@ TEST_F(TestStructures, SurviveAFile)
   ASSERT_EQ(b.embankments.size(), 1u);
   EXPECT_EQ(a.embankments[0].points, b.embankments[0].points);
   EXPECT_EQ(b.embankments[0].height, 3.5);
+  EXPECT_TRUE(std::isnan(b.embankments[0].elevation));
   EXPECT_EQ(b.embankments[0].material, 1);
   EXPECT_EQ(a.materials[0].frictionAngle, b.materials[0].frictionAngle);
   ASSERT_EQ(b.trees.size(), 2u);
@@ -106,6 +108,19 @@ TEST_F(TestStructures, SurviveAFile)
   EXPECT_EQ(b.trees[1].capacity, 5e3);
   ASSERT_EQ(b.barriers.size(), 1u);
   EXPECT_EQ(b.barriers[0].capacity, 1e6);
+}
+
+TEST_F(TestStructures, ACrestTravelsWithTheSlope)
+{
+  const std::string dams = this->WriteFile(
+    "crest.csv", "WKT,crest,width,slope\n\"LINESTRING(200 20,200 80)\",2.25,1.5,1.5\n");
+  this->Terrain->SetEmbankmentFile(dams.c_str());
+  this->Terrain->Update();
+  const rockfall::Terrain terrain = filters::readTerrain(this->Terrain->GetOutput());
+  ASSERT_NE(terrain.obstacles(), nullptr);
+  const Embankment& read = terrain.obstacles()->structures().embankments.at(0);
+  EXPECT_TRUE(std::isnan(read.height));
+  EXPECT_EQ(read.elevation, 2.25);
 }
 
 TEST_F(TestStructures, ABarrierCatchesTheRock)
