@@ -142,7 +142,7 @@ class Scene:
             f"{self.count} rocks fall from an escarpment at the Jacksboro fault")
         self.contours(view, ground, 10.0)
         show_speed(self.tubes(1.5 * metres), view, self.top)
-        speed_bar(view, (0.845, 0.5), 0.4)
+        speed_bar(view, (0.862, 0.5), 0.4)
         lift = np.array([0.0, 0.0, 60.0])  # over all else
         dot = 4.0 * metres
         flat(points_source(self.stops + lift, dot), view, INK)

@@ -65,7 +65,7 @@ def speed_bar(view, position, length, size=20):
     bar.Title, bar.ComponentTitle = "Speed (m/s)", ""
     bar.TitleColor = bar.LabelColor = INK
     bar.TitleFontSize = bar.LabelFontSize = size
-    bar.AutoOrient, bar.Orientation = 0, "Vertical"
+    bar.AutoOrient, bar.Orientation, bar.HorizontalTitle = 0, "Vertical", 1
     bar.WindowLocation = "Any Location"
     bar.Position, bar.ScalarBarLength, bar.ScalarBarThickness = list(position), length, size
     bar.LabelFormat = bar.RangeLabelFormat = "%.0f"
