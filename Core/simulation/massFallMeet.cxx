@@ -102,6 +102,7 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
     boxes_[i] = { m.position, m.radius + m.known, m.present, m.present && !m.asleep };
   }
   std::iota(parents_.begin(), parents_.end(), 0);
+  std::iota(roots_.begin(), roots_.end(), 0);
 }
 
 /// From now on the gap is bounded along the pair's axis.
