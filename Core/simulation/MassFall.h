@@ -96,6 +96,8 @@ private:
   void wake(Member& member);
   void putToSleep(Member& member);
   bool stays(Member& member) const; ///< Whether it has been still for long enough.
+  /// Too large to resolve its impacts in time.
+  bool isCrowd(const Group& group) const { return int(group.members.size()) > resolved; }
   void advanceGroup(const Group& group, double until) const;
   double groupStep(const Group& group) const;
   void gatherContacts(const Group& group, double h) const;

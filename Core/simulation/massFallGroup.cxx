@@ -125,7 +125,7 @@ void MassFall::gatherContacts(const Group& group, double h) const
 {
   const auto reachOf = [&](double speed, double radius)
   { return 1.5 * speed * h + parameters_.gravity * h * h + 1e-6 * radius; };
-  const bool crowd = int(group.members.size()) > resolved;
+  const bool crowd = this->isCrowd(group);
   const auto onSlope = [&](std::size_t k)
   {
     Member& m = *members_[group.members[k]];
@@ -343,7 +343,7 @@ void MassFall::advanceGroup(const Group& group, double until) const
       sim.beginContact();
     }
   }
-  const bool inTime = int(group.members.size()) <= resolved;
+  const bool inTime = !this->isCrowd(group);
   const auto now = [&]
   {
     for (int i : group.members)

@@ -65,31 +65,42 @@ double MassFall::Meetings::thrown(std::size_t rock) const
   return std::max(1.0, (1.0 + bounciest_) * c.heaviest / (c.heaviest + movers[rock].mass));
 }
 
+/// How far the two may come towards each other, m.
+double MassFall::Meetings::ways(const Near& n) const
+{
+  const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
+  return this->thrown(i) * movers[i].way + this->thrown(j) * movers[j].way;
+}
+
 /// The widest gap over which the two may meet.
 double MassFall::Meetings::reach(const Near& n) const
 {
-  const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
-  const double first = this->thrown(i), second = this->thrown(j);
-  const double ways = first * movers[i].way + second * movers[j].way;
-  const double speed = n.offset > kNoAxis ? std::max(first, second) * this->closing(n) : -kNoAxis;
-  return std::min(ways, speed * duration_) + fall_;
+  const double faster =
+    std::max(this->thrown(std::size_t(n.first)), this->thrown(std::size_t(n.second)));
+  const double speed = n.offset > kNoAxis ? faster * this->closing(n) : -kNoAxis;
+  return std::min(this->ways(n), speed * duration_) + fall_;
+}
+
+bool MassFall::Meetings::isWithin(const Near& n, double reach) const
+{
+  if (this->gap(n) > reach)
+  {
+    return false;
+  }
+  const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
+  const double most = a.radius + b.radius + reach;
+  return (a.position - b.position).squaredNorm() <= most * most;
 }
 
 bool MassFall::Meetings::mayMeet(const Near& n) const
 {
   // By their ways alone first: that tells most of them apart.
-  const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
-  const double gap = this->gap(n);
-  const double first = this->thrown(std::size_t(n.first));
-  const double second = this->thrown(std::size_t(n.second));
-  const double ways = first * a.way + second * b.way + fall_;
-  const double most = a.radius + b.radius + ways;
-  if (gap > ways || (a.position - b.position).squaredNorm() > most * most)
-  {
-    return false;
-  }
-  const double reach = this->reach(n), nearer = a.radius + b.radius + reach;
-  return gap <= reach && (a.position - b.position).squaredNorm() <= nearer * nearer;
+  return this->isWithin(n, this->ways(n) + fall_) && this->isWithin(n, this->reach(n));
+}
+
+bool MassFall::Meetings::isAsleep(const Near& n) const
+{
+  return movers[std::size_t(n.first)].asleep && movers[std::size_t(n.second)].asleep;
 }
 
 /// Whether two rocks that stand may meet; finds their axis as far as that needs it.
@@ -139,8 +150,7 @@ bool MassFall::Meetings::sweep(MassFall& fall)
   const auto ask = [&](std::size_t k)
   {
     const Near& n = near[k];
-    const bool asleep = movers[std::size_t(n.first)].asleep && movers[std::size_t(n.second)].asleep;
-    asks_[k] = !n.linked && !asleep && this->mayMeet(n);
+    asks_[k] = !n.linked && !this->isAsleep(n) && this->mayMeet(n);
   };
   forEach(near.size(), kNearGrain, ask);
   bool any = false;
@@ -154,8 +164,7 @@ bool MassFall::Meetings::sweep(MassFall& fall)
       if (n.pair && n.looked < 0.0 && this->root(n.first) == this->root(n.second))
       {
         // Of one company they are: how far apart is looked at when their contacts are.
-        this->join(fall, k);
-        n.pair->known = false;
+        this->join(fall, k, false);
         any = true;
         continue;
       }
@@ -183,21 +192,22 @@ bool MassFall::Meetings::sweep(MassFall& fall)
   {
     if (asks_[k])
     {
-      this->join(fall, k);
+      this->join(fall, k, true);
       any = true;
     }
   }
   return any;
 }
 
-void MassFall::Meetings::join(MassFall& fall, std::size_t k)
+/// Links two; `known`: their axis has been found for where they stand.
+void MassFall::Meetings::join(MassFall& fall, std::size_t k, bool known)
 {
   Near& n = near[k];
-  nextLink_.resize(near.size());
   nextLink_[k] = { std::exchange(firstLink_[std::size_t(n.first)], int(k)),
     std::exchange(firstLink_[std::size_t(n.second)], int(k)) };
   n.linked = n.holds = true;
-  n.pair->linked = n.pair->known = true;
+  n.pair->linked = true;
+  n.pair->known = known;
   for (const int i : { n.first, n.second })
   {
     Mover& m = movers[std::size_t(i)];
@@ -241,7 +251,7 @@ void MassFall::Meetings::wakeAbout(MassFall& fall, int rock)
       fall.members_[std::size_t(n.second)]->stand();
       if (this->meet(fall, n))
       {
-        this->join(fall, k);
+        this->join(fall, k, true);
       }
     }
   };
@@ -318,11 +328,9 @@ void MassFall::Meetings::link(MassFall& fall)
   for (std::size_t k = 0; k < near.size(); ++k)
   {
     Near& n = near[k];
-    const bool asleep = movers[std::size_t(n.first)].asleep && movers[std::size_t(n.second)].asleep;
-    if (!asleep && n.pair && n.pair->seen && n.pair->axis.distance <= 0.0)
+    if (!this->isAsleep(n) && n.pair && n.pair->seen && n.pair->axis.distance <= 0.0)
     {
-      this->join(fall, k);
-      n.pair->known = false;
+      this->join(fall, k, false);
     }
   }
   this->tell(fall);
@@ -340,7 +348,7 @@ void MassFall::Meetings::link(MassFall& fall)
     {
       return;
     }
-    const bool asleep = movers[std::size_t(n.first)].asleep && movers[std::size_t(n.second)].asleep;
+    const bool asleep = this->isAsleep(n);
     if (asleep && !n.wasLinked)
     {
       return;

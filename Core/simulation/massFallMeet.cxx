@@ -161,7 +161,7 @@ void MassFall::Meetings::findNear(MassFall& fall)
   };
   const auto leave = [&](Near& n)
   {
-    if (n.pair && movers[std::size_t(n.first)].asleep && movers[std::size_t(n.second)].asleep)
+    if (n.pair && this->isAsleep(n))
     {
       take(n);
     }
@@ -253,6 +253,7 @@ void MassFall::Meetings::addNeighbours(int rock)
       near.push_back(n);
     }
   }
+  nextLink_.resize(near.size());
   this->forNeighbours(rock, [&](std::size_t k) { marks_[other(k)] = 0; });
   marks_[std::size_t(rock)] = 0;
 }

@@ -84,7 +84,10 @@ private:
   double closing(const Near& near) const;
   double thrown(std::size_t rock) const;
   double reach(const Near& near) const;
+  double ways(const Near& near) const;
+  bool isWithin(const Near& near, double reach) const;
   bool mayMeet(const Near& near) const;
+  bool isAsleep(const Near& near) const; ///< Both.
   void lookAlong(Near& near) const;
   RockPair* newPair(const MassFall& fall, int first, int second);
   void drop(MassFall& fall, Near& near);
@@ -92,7 +95,7 @@ private:
   void addNeighbours(int rock);
   bool meet(const MassFall& fall, Near& near);
   bool sweep(MassFall& fall);
-  void join(MassFall& fall, std::size_t near);
+  void join(MassFall& fall, std::size_t near, bool known);
   void wakeAbout(MassFall& fall, int rock);
   void passOn(int rock);
   void tell(MassFall& fall);

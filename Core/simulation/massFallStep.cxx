@@ -189,7 +189,7 @@ void MassFall::solve(
   }
   work.added.clear();
   work.addedTo.clear();
-  const bool crowd = int(group.members.size()) > resolved;
+  const bool crowd = this->isCrowd(group);
   const auto look = [&] { return this->lookAgain(group, request.duration, bounces, work); };
   GroupOutcome outcome;
   for (int cut = 0;; ++cut)
@@ -318,7 +318,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
       this->finishPairImpact(*pair);
     }
   }
-  const bool crowd = int(group.members.size()) > resolved;
+  const bool crowd = this->isCrowd(group);
   const auto absorbRock = [&](std::size_t k)
   {
     Member& m = *members_[group.members[k]];

@@ -28,6 +28,7 @@ struct OdeFall
   dWorldID world;
   dSpaceID ground, rocks;
   dJointGroupID joints;
+  dHeightfieldDataID heights;
   std::vector<dBodyID> bodies;
   std::vector<dReal> planes, points;
   std::vector<unsigned> polygons;
@@ -50,7 +51,7 @@ struct OdeFall
     joints = dJointGroupCreate(0);
     friction = std::tan(radians(kRockFriction));
     // Its height fields have y upwards; rows go against the y of the world.
-    const dHeightfieldDataID heights = dGeomHeightfieldDataCreate();
+    heights = dGeomHeightfieldDataCreate();
     dGeomHeightfieldDataBuildDouble(heights, slope.heights().data(), 1, slope.width(),
       slope.height(), kNodes, kNodes, 1.0, 0.0, 1.0, 0);
     const dGeomID field = dCreateHeightfield(ground, heights, 1);
@@ -92,6 +93,7 @@ struct OdeFall
     dJointGroupDestroy(joints);
     dSpaceDestroy(rocks);
     dSpaceDestroy(ground);
+    dGeomHeightfieldDataDestroy(heights);
     dWorldDestroy(world);
     dCloseODE();
   }

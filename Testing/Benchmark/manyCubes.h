@@ -4,12 +4,11 @@
 /// The rocks of the benchmarks of mass falls: cubes of 0.6 m³ in columns with gaps of 0.15 m above
 /// the slope of benchSlope.h; and how deep they overlap.
 
+#include "../overlap.h"
 #include "benchSlope.h"
-#include "contact/pairs.h"
 #include "geometry/shapes.h"
 #include "simulation/ensemble.h"
 
-#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -51,37 +50,8 @@ inline std::vector<Rock> columns(int count)
 template <class StateOf>
 double deepestOverlap(const Block& cube, int count, StateOf&& stateOf)
 {
-  std::vector<PlacedBlock> placed(count);
-  std::vector<PairBody> bodies(count);
-  std::vector<int> byX(count);
-  for (int i = 0; i < count; ++i)
-  {
-    placed[i].place(cube, stateOf(i));
-    bodies[i].update(placed[i]);
-    byX[i] = i;
-  }
-  std::sort(byX.begin(), byX.end(),
-    [&](int i, int j) { return bodies[i].position.x() < bodies[j].position.x(); });
-  const double reach = 2.0 * cube.radius();
-  double deepest = 0.0;
-  for (int a = 0; a < count; ++a)
-  {
-    const PairBody& one = bodies[byX[a]];
-    for (int b = a + 1; b < count; ++b)
-    {
-      const PairBody& other = bodies[byX[b]];
-      const Vec3 apart = other.position - one.position;
-      if (apart.x() > reach)
-      {
-        break;
-      }
-      if (apart.squaredNorm() < reach * reach)
-      {
-        deepest = std::max(deepest, -findAxis(one, other, {}, 0.0).distance);
-      }
-    }
-  }
-  return deepest / std::cbrt(kCubeVolume);
+  const auto blockOf = [&](int) -> const Block& { return cube; };
+  return testing::deepestOverlap(count, blockOf, stateOf) / std::cbrt(kCubeVolume);
 }
 
 } // namespace rockfall

@@ -3,6 +3,7 @@
 /// @file
 /// Piles of rocks, for the tests of mass falls.
 
+#include "../overlap.h"
 #include "simulation/MassFall.h"
 #include "slopes.h"
 
@@ -75,27 +76,9 @@ struct Pile
   /// The deepest overlap of two rocks as they stand, m.
   double overlap() const
   {
-    double deepest = 0.0;
-    for (int i = 0; i < fall->rocks(); ++i)
-    {
-      PlacedBlock one;
-      one.place(blocks[i], fall->state(i));
-      PairBody first;
-      first.update(one);
-      for (int j = i + 1; j < fall->rocks(); ++j)
-      {
-        const double reach = blocks[i].radius() + blocks[j].radius();
-        if ((fall->state(i).position - fall->state(j).position).norm() < reach)
-        {
-          PlacedBlock other;
-          other.place(blocks[j], fall->state(j));
-          PairBody second;
-          second.update(other);
-          deepest = std::max(deepest, -findAxis(first, second, {}, 0.0).distance);
-        }
-      }
-    }
-    return deepest;
+    return deepestOverlap(
+      fall->rocks(), [&](int i) -> const Block& { return blocks[std::size_t(i)]; },
+      [&](int i) -> const BlockState& { return fall->state(i); });
   }
   /// Sum of the slope's forces over the weight.
   double carried() const
