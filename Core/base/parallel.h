@@ -8,36 +8,67 @@
 #include <tbb/task_arena.h>
 
 #include <cstddef>
+#include <functional>
+#include <type_traits>
 
 namespace rockfall
 {
 
-/// work(i) for i = 0 … count − 1, on the threads that there are; in order on the calling thread if
-/// there are fewer than two times `grain`. A thread that waits for the others takes up no other
-/// work meanwhile: what the caller keeps by thread stays its own.
+namespace parallel
+{
+
+/// Turns begin … end − 1 of a loop.
+struct Loop
+{
+  void (*run)(const void* work, std::size_t begin, std::size_t end);
+  const void* work;
+  std::size_t count;
+  std::size_t grain;
+};
+
+/// Threads that there are for a loop.
+int threads();
+
+/// Shares a loop out among the threads that stand by (standBy); false if none does.
+bool share(const Loop& loop);
+
+} // namespace parallel
+
+/// work(), while up to `most` − 1 further threads stand by for the loops in it (forEach). They
+/// don't sleep in between: a loop of a few microseconds is worth sharing out too. Only threads that
+/// have nothing else to do come, of those that the caller's TBB arena has.
+void standBy(int most, const std::function<void()>& work);
+
+/// work(i) for i = 0 … count − 1, on the threads that there are, `grain` turns at a time; in order
+/// on the calling thread if there are fewer than two times `grain`. A thread that waits for the
+/// others takes up no work meanwhile but that of loops within its own: what the caller keeps by
+/// thread stays its own.
+/// @throws What work throws; of several the first.
 template <class Work>
 void forEach(std::size_t count, std::size_t grain, Work&& work)
 {
-  if (count < 2 * grain || tbb::this_task_arena::max_concurrency() == 1)
+  const auto run = [](const void* of, std::size_t begin, std::size_t end)
   {
-    for (std::size_t i = 0; i < count; ++i)
+    const auto& turn = *static_cast<const std::remove_reference_t<Work>*>(of);
+    for (std::size_t i = begin; i < end; ++i)
     {
-      work(i);
+      turn(i);
     }
-    return;
+  };
+  if (count < 2 || count < 2 * grain || parallel::threads() == 1)
+  {
+    run(&work, 0, count);
   }
-  tbb::this_task_arena::isolate(
-    [&]
-    {
-      tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
-        [&](const tbb::blocked_range<std::size_t>& part)
-        {
-          for (std::size_t i = part.begin(); i != part.end(); ++i)
-          {
-            work(i);
-          }
-        });
-    });
+  else if (!parallel::share({ run, &work, count, grain }))
+  {
+    tbb::this_task_arena::isolate(
+      [&]
+      {
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
+          [&](const tbb::blocked_range<std::size_t>& part)
+          { run(&work, part.begin(), part.end()); });
+      });
+  }
 }
 
 } // namespace rockfall

@@ -1,12 +1,13 @@
 #include "simulation/MassFall.h"
 
+#include "base/parallel.h"
 #include "contact/motion.h"
 #include "simulation/massFallMeet.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <numeric>
 
 namespace rockfall
 {
@@ -23,6 +24,8 @@ constexpr double kStillSpeed = 1e-3;
 /// points without a moment, and a rock that is wedged between two may swing about them for ever.
 constexpr double kLingerTime = 3.0;
 constexpr double kLingerWay = 0.03;
+/// Fewer are not worth a thread of their own.
+constexpr std::size_t kRocksPerThread = 32, kStayGrain = 64;
 
 } // namespace
 
@@ -168,29 +171,49 @@ bool MassFall::stays(Member& member) const
 
 bool MassFall::advance()
 {
+  bool moving = false;
+  standBy(int(members_.size() / kRocksPerThread), [&] { moving = this->advanceAll(); });
+  return moving;
+}
+
+bool MassFall::advanceAll()
+{
   const double until = std::min(time_ + parameters_.timeStep, parameters_.endTime);
   this->findGroups(until - time_);
-  tbb::parallel_for(std::size_t(0), alone_.size(),
-    [&](std::size_t k)
+  // What takes longest first.
+  turns_.resize(groups_.size());
+  std::iota(turns_.begin(), turns_.end(), 0);
+  std::stable_sort(turns_.begin(), turns_.end(),
+    [&](int a, int b)
+    { return groups_[std::size_t(a)].members.size() > groups_[std::size_t(b)].members.size(); });
+  const auto advanceOne = [&](std::size_t k)
+  {
+    if (k < groups_.size())
     {
-      Member& m = *members_[alone_[k]];
-      m.touchesOthers = false;
-      m.sim.advance(until);
-      this->stays(m); // to know when it comes back to a group
-      m.asleep = m.sim.done_ && m.sim.recorder_.trajectory().summary.fate == Fate::Rested;
-    });
-  tbb::parallel_for(
-    std::size_t(0), groups_.size(), [&](std::size_t k) { this->advanceGroup(groups_[k], until); });
+      this->advanceGroup(groups_[std::size_t(turns_[k])], until);
+      return;
+    }
+    Member& m = *members_[std::size_t(alone_[k - groups_.size()])];
+    m.touchesOthers = false;
+    m.sim.advance(until);
+    this->stays(m); // to know when it comes back to a group
+    m.asleep = m.sim.done_ && m.sim.recorder_.trajectory().summary.fate == Fate::Rested;
+  };
+  forEach(groups_.size() + alone_.size(), 1, advanceOne);
   time_ = until;
   if (!awake)
   {
     for (const Group& group : groups_)
     {
-      bool still = true;
-      for (int i : group.members)
+      std::atomic<bool> still = true;
+      const auto look = [&](std::size_t k)
       {
-        still = this->stays(*members_[i]) && still;
-      }
+        if (!this->stays(*members_[std::size_t(group.members[k])]))
+        {
+          still.store(false, std::memory_order_relaxed);
+        }
+      };
+      forEach(group.members.size(), kStayGrain, look);
       for (int i : group.members)
       {
         if (still && !members_[i]->sim.done_)

@@ -98,6 +98,7 @@ private:
   bool stays(Member& member) const; ///< Whether it has been still for long enough.
   /// Too large to resolve its impacts in time.
   bool isCrowd(const Group& group) const { return int(group.members.size()) > resolved; }
+  bool advanceAll();
   void advanceGroup(const Group& group, double until) const;
   double groupStep(const Group& group) const;
   void gatherContacts(const Group& group, double h) const;
@@ -125,6 +126,7 @@ private:
   std::unique_ptr<Meetings> meetings_;
   std::vector<Group> groups_;
   std::vector<int> alone_;
+  std::vector<int> turns_;   ///< Groups in the order in which they are gone over.
   std::vector<int> groupOf_; ///< By the first rock of a group.
 };
 
