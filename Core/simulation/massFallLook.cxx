@@ -20,6 +20,8 @@ namespace
 /// What is deeper than reckoned by more than this share of the smaller radius was missed.
 constexpr double kMissed = 5e-5;
 
+constexpr std::size_t kMissedGrain = 4;
+
 /// A contact that is found at the end of a step, with its points and normal as they were at the
 /// start.
 void carryBack(const PlacedBlock& firstEnd, const PlacedBlock& secondEnd,
@@ -78,7 +80,7 @@ bool MassFall::lookAgain(const Group& group, double h, bool bounces, Workspace& 
     }
     return least;
   };
-  work.missed.assign(group.pairs.size(), 0);
+  work.flags.assign(group.pairs.size(), 0);
   const auto compare = [&](std::size_t p)
   {
     RockPair& pair = *group.pairs[p];
@@ -90,23 +92,34 @@ bool MassFall::lookAgain(const Group& group, double h, bool bounces, Workspace& 
     }
     pair.end = findAxis(a.endBody, b.endBody, pair.axis, 0.0);
     const double deep = -allowed(pair);
-    work.missed[p] = pair.end.kind != PairAxis::Kind::None && pair.end.distance < deep &&
+    work.flags[p] = pair.end.kind != PairAxis::Kind::None && pair.end.distance < deep &&
       pair.end.distance < deepest(p) + deep;
   };
   forEach(group.pairs.size(), kPairGrain, compare);
-  thread_local std::vector<Contact> found;
-  bool any = false;
+  work.missedPairs.clear();
   for (std::size_t p = 0; p < group.pairs.size(); ++p)
   {
-    if (!work.missed[p])
+    if (work.flags[p])
     {
-      continue;
+      work.missedPairs.push_back(p);
     }
+  }
+  work.found.resize(std::max(work.found.size(), work.missedPairs.size()));
+  const auto findThem = [&](std::size_t m)
+  {
+    const RockPair& pair = *group.pairs[work.missedPairs[m]];
+    const Member &a = *members_[pair.first], &b = *members_[pair.second];
+    findTouches(a.endBody, b.endBody, pair.end, 0.0, work.found[m]);
+  };
+  forEach(work.missedPairs.size(), kMissedGrain, findThem);
+  bool any = false;
+  for (std::size_t m = 0; m < work.missedPairs.size(); ++m)
+  {
+    const std::size_t p = work.missedPairs[m];
     RockPair& pair = *group.pairs[p];
     const Member &a = *members_[pair.first], &b = *members_[pair.second];
-    findTouches(a.endBody, b.endBody, pair.end, 0.0, found);
     const double limit = deepest(p) - allowed(pair);
-    for (Contact& c : found)
+    for (Contact& c : work.found[m])
     {
       if (c.distance >= limit)
       {

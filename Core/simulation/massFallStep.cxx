@@ -26,7 +26,7 @@ void settleBounces(
   partners.assign(bodies, kMeetsNone);
   for (const GroupContact& k : contacts)
   {
-    if (k.bounce >= 0.0 || k.contact->closed())
+    if (k.bounce >= 0.0 || k.closed)
     {
       meet(partners, k);
     }
@@ -52,6 +52,7 @@ GroupContact MassFall::take(RockPair& pair, Contact& c, double h, bool bounces) 
   const double resting = std::min(a.sim.restingSpeed_, b.sim.restingSpeed_);
   GroupContact k;
   k.contact = &c;
+  k.closed = c.closed();
   k.first = a.place;
   k.second = b.place;
   k.friction = pair.law.friction;
@@ -153,6 +154,7 @@ void MassFall::solve(
       GroupContact& k = work.contacts[next++];
       k = {};
       k.contact = &c;
+      k.closed = c.closed();
       k.first = member.place;
       k.friction = c.friction;
       k.cohesion = c.cohesion;
@@ -204,14 +206,16 @@ void MassFall::solve(
     }
     work.looked = false;
     outcome = work.solver.step(request, work.bodies, work.contacts, last, look);
-    for (int i : group.members)
+    const auto count = [&](std::size_t m)
     {
-      TrajectorySummary& summary = members_[i]->sim.recorder_.trajectory().summary;
-      summary.openCloseIterations += members_[i]->sim.done_ ? 0 : outcome.iterations;
-      summary.contactSteps += members_[i]->sim.done_ ? 0 : 1;
-      summary.cutSteps += !outcome.settled && !last && !members_[i]->sim.done_;
-      summary.unsettledSteps += !outcome.settled && last && !members_[i]->sim.done_;
-    }
+      RockSimulator& sim = members_[group.members[m]]->sim;
+      TrajectorySummary& summary = sim.recorder_.trajectory().summary;
+      summary.openCloseIterations += sim.done_ ? 0 : outcome.iterations;
+      summary.contactSteps += sim.done_ ? 0 : 1;
+      summary.cutSteps += !outcome.settled && !last && !sim.done_;
+      summary.unsettledSteps += !outcome.settled && last && !sim.done_;
+    };
+    forEach(group.members.size(), kRockGrain, count);
     if (outcome.settled || last)
     {
       break;
@@ -311,11 +315,18 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     }
     pair.contacts.push_back(c);
   }
-  for (RockPair* pair : group.pairs)
+  const auto ends = [&](std::size_t p)
   {
-    if (pair->impact.pending && (!pair->touched || kind == StepKind::Lasting))
+    const RockPair& pair = *group.pairs[p];
+    work.flags[p] = pair.impact.pending && (!pair.touched || kind == StepKind::Lasting);
+  };
+  work.flags.resize(group.pairs.size());
+  forEach(group.pairs.size(), kPairGrain, ends);
+  for (std::size_t p = 0; p < group.pairs.size(); ++p)
+  {
+    if (work.flags[p])
     {
-      this->finishPairImpact(*pair);
+      this->finishPairImpact(*group.pairs[p]);
     }
   }
   const bool crowd = this->isCrowd(group);

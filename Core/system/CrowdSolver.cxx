@@ -1,6 +1,5 @@
 #include "system/CrowdSolver.h"
 
-#include "base/parallel.h"
 #include "block/cayley.h"
 #include "contact/features.h"
 
@@ -216,8 +215,8 @@ void CrowdSolver::pushed(const Row& row, double sign)
       break; // the slope
     }
     crowd::Mover& m = movers_[std::size_t(i)];
-    const Vec3 moment =
-      work_[std::size_t(i)].inverseInertia * laneOf(p.lever[side], lane).cross(force);
+    const Mat3& inertia = work_[std::size_t(line_[std::size_t(i)].second)].inverseInertia;
+    const Vec3 moment = inertia * laneOf(p.lever[side], lane).cross(force);
     for (int k = 0; k < 3; ++k)
     {
       m.way[k] += m.way[3] * force[k];
@@ -231,9 +230,12 @@ Vec3 CrowdSolver::wayOf(const Row& row, int side) const
 {
   const crowd::Batch& p = batches_[std::size_t(row.batch)];
   const std::size_t i = std::size_t(p.body[side][row.lane]);
-  return i < work_.size()
-    ? Vec3(work_[i].way + work_[i].spun.cross(laneOf(p.lever[side], row.lane)))
-    : Vec3(Vec3::Zero()); // the slope
+  if (i >= work_.size())
+  {
+    return Vec3::Zero(); // the slope
+  }
+  const Work& w = work_[std::size_t(line_[i].second)];
+  return w.way + w.spun.cross(laneOf(p.lever[side], row.lane));
 }
 
 Vec3 CrowdSolver::travel(const Row& row) const
@@ -248,7 +250,7 @@ Vec3 CrowdSolver::travel(const Row& row) const
 void CrowdSolver::startMover(const GroupBody& body, std::size_t i)
 {
   const Work& w = work_[i];
-  crowd::Mover& m = movers_[i];
+  crowd::Mover& m = movers_[w.mover];
   const std::array<Vec3, 2> free = this->freeMotion(body, w);
   const Mat3& inertia = w.inverseInertia;
   for (int k = 0; k < 3; ++k)
@@ -269,10 +271,8 @@ void CrowdSolver::startMovers(const std::vector<GroupBody>& bodies)
   changed_.assign(movers_.size(), 0);
   std::fill(changed_.begin() + std::ptrdiff_t(work_.size()), changed_.end(), kNever);
   forEach(work_.size(), kBodyGrain, [&](std::size_t i) { this->startMover(bodies[i], i); });
-  for (const Row& row : rows_)
-  {
-    this->pushed(row, 1.0);
-  }
+  this->forParts(false,
+    [&](int part) { this->forRows(part, [&](std::size_t k) { this->pushed(rows_[k], 1.0); }); });
 }
 
 bool CrowdSolver::correctTurns(
@@ -281,11 +281,11 @@ bool CrowdSolver::correctTurns(
   bool any = false;
   for (std::size_t i = 0; i < work_.size(); ++i)
   {
-    const Vec3 spun = Eigen::Map<const Vec3>(movers_[i].turn);
+    const Vec3 spun = Eigen::Map<const Vec3>(movers_[work_[i].mover].turn);
     if ((spun - work_[i].spun).squaredNorm() > kTurnGuessed * kTurnGuessed)
     {
       any = true;
-      changed_[i] = sweep_;
+      changed_[work_[i].mover] = sweep_;
       work_[i].spun = spun;
     }
   }
@@ -296,28 +296,34 @@ bool CrowdSolver::correctTurns(
   // Levers lie between places that are of one kind, guessed or solved.
   for (std::size_t i = 0; i < work_.size(); ++i)
   {
-    work_[i].way = Eigen::Map<const Vec3>(movers_[i].way);
+    work_[i].way = Eigen::Map<const Vec3>(movers_[work_[i].mover].way);
   }
-  const auto wrong = [&](int i) { return i >= 0 && changed_[std::size_t(i)] == sweep_; };
+  const auto wrong = [&](int i)
+  { return i >= 0 && changed_[work_[std::size_t(i)].mover] == sweep_; };
+  wrong_.resize(rows_.size());
+  forEach(rows_.size(), kRowGrain,
+    [&](std::size_t k) { wrong_[k] = wrong(contacts[k].first) || wrong(contacts[k].second); });
   const auto forTheirRows = [&](auto&& change)
   {
-    for (std::size_t k = 0; k < rows_.size(); ++k)
+    const auto ifWrong = [&](std::size_t k)
     {
-      if (wrong(contacts[k].first) || wrong(contacts[k].second))
+      if (wrong_[k])
       {
         change(k);
       }
-    }
+    };
+    this->forParts(false, [&](int part) { this->forRows(part, ifWrong); });
   };
   forTheirRows([&](std::size_t k) { this->pushed(rows_[k], -1.0); });
-  for (std::size_t i = 0; i < work_.size(); ++i)
+  const auto turn = [&](std::size_t i)
   {
     if (wrong(int(i)))
     {
       this->turnAs(work_[i], work_[i].spun);
       this->startMover(bodies[i], i);
     }
-  }
+  };
+  forEach(work_.size(), kBodyGrain, turn);
   forTheirRows(
     [&](std::size_t k)
     {
@@ -326,20 +332,19 @@ bool CrowdSolver::correctTurns(
     });
   // What others press on has been moved with them.
   touched_.clear();
-  forTheirRows(
-    [&](std::size_t k)
+  for (std::size_t k = 0; k < rows_.size(); ++k)
+  {
+    for (const int i : { contacts[k].first, contacts[k].second })
     {
-      for (const int i : { contacts[k].first, contacts[k].second })
+      if (wrong_[k] && i >= 0 && !wrong(i))
       {
-        if (i >= 0 && !wrong(i))
-        {
-          touched_.push_back(i);
-        }
+        touched_.push_back(i);
       }
-    });
+    }
+  }
   for (const int i : touched_)
   {
-    changed_[std::size_t(i)] = sweep_;
+    changed_[work_[std::size_t(i)].mover] = sweep_;
   }
   return true;
 }

@@ -8,6 +8,7 @@
 /// is too large to eliminate. Contacts lie in memory as the sweeps meet them
 /// (system/crowdKernel.h), and nothing else of them is kept.
 
+#include "base/parallel.h"
 #include "solver/StepSolver.h"
 #include "system/crowdKernel.h"
 #include "system/group.h"
@@ -15,6 +16,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <utility>
 #include <vector>
 
 namespace rockfall
@@ -33,7 +35,7 @@ public:
   BlockState end(const std::vector<GroupBody>& bodies, std::size_t i) const;
   double gap(std::size_t contact) const;
   bool setGap(std::size_t contact, double found);
-  bool moved(std::size_t body) const { return changed_[body] >= looked_; }
+  bool moved(std::size_t body) const { return changed_[work_[body].mover] >= looked_; }
 
   /// Share of the largest displacement to which the sweeps go.
   double tolerance = 1e-4;
@@ -55,6 +57,7 @@ private:
     Vec3 velocity0, spin0;
     Vec3 offset, spinOffset; ///< Velocity at the end is way/h + offset.
     double inverseMass;      ///< h²/m
+    std::size_t mover;       ///< Among movers_.
     Mat3 inverseInertia;     ///< h² I⁻¹
   };
   /// What is not in its lane of a batch.
@@ -74,9 +77,24 @@ private:
   /// Where a body goes without contacts, for the turn that it has.
   std::array<Vec3, 2> freeMotion(const GroupBody& body, const Work& work) const;
   void arrange(const std::vector<GroupContact>& contacts); ///< Parts, and batches of each.
+  /// Whose contacts a batch will hold.
+  struct Hand
+  {
+    explicit Hand(int slope);
+    crowd::Batch idle() const;
+    int body[2][crowd::kLanes]; ///< Movers.
+  };
   /// Deals contacts out to batches; `slope`: the mover that stands for it.
-  void deal(
-    const std::vector<GroupContact>& contacts, const int* first, const int* last, int slope);
+  void deal(const std::vector<GroupContact>& contacts, const int* first, const int* last, int slope,
+    std::vector<Hand>& hands);
+  /// visit(part): every second part, the others, and what reaches further, or backwards. Parts that
+  /// are visited at the same time share no rock.
+  template <class Visit>
+  void forParts(bool backwards, Visit&& visit) const;
+  /// visit(row) of a part, without those that were appended.
+  template <class Visit>
+  void forRows(int part, Visit&& visit) const;
+  std::size_t firstOf(std::size_t key) const { return key == 0 ? 0 : ends_[key - 1]; }
   void prepareRow(const std::vector<GroupBody>& bodies, const GroupContact& group, Row& row);
   /// Directions and levers at mid-step, and what a force does along them.
   void lever(const std::vector<GroupBody>& bodies, const GroupContact& group, const Row& row);
@@ -101,8 +119,10 @@ private:
   std::vector<Row> rows_;
   std::vector<ContactBooks> books_; ///< Out, by row.
   std::vector<crowd::Batch> batches_;
-  /// The slope is one more mover of each part, which nothing moves.
+  /// In order along the group's largest extent, so that what threads work on lies apart; the slope
+  /// is one more of each part, which nothing moves.
   std::vector<crowd::Mover> movers_;
+  std::vector<std::pair<double, int>> line_; ///< Place along the group and body, by mover.
   std::vector<int> changed_;
   // Parts are strips across the group, and contacts belong to the lower part of their two rocks:
   // those of every second part share no rock, and are swept at the same time. The last part holds
@@ -111,16 +131,50 @@ private:
   // that may stay open.
   static constexpr int kKinds = 4;
   int parts_ = 1;
-  std::vector<int> byPlace_, partOf_, touched_; ///< Bodies.
-  std::vector<int> keyOf_, order_;              ///< Contacts: part and kind; in order of it.
-  std::vector<int> starts_;                     ///< First batch of each part and kind.
-  std::vector<std::size_t> firstOf_; ///< First contact of each part and kind in `order_`.
-  std::vector<std::uint32_t> open_;  ///< By body: the batches being filled that hold it.
-  std::vector<double> most_;         ///< Largest change, by part.
+  std::vector<std::vector<Hand>> hands_; ///< Of each part.
+  std::vector<char> wrong_; ///< By contact, whether a rock of it has turned otherwise than guessed.
+  std::vector<int> touched_;        ///< Bodies.
+  std::vector<int> keyOf_, order_;  ///< Contacts: part and kind; in order of it.
+  std::vector<int> starts_;         ///< First batch of each part and kind.
+  std::vector<std::size_t> ends_;   ///< Behind the last contact of each part and kind in `order_`.
+  std::vector<std::uint32_t> open_; ///< By mover: the batches being filled that hold it.
+  std::vector<double> most_;        ///< Largest change, by part.
   crowd::Sweep kernel_ = nullptr;
   int sweep_ = 0;       ///< Number of the next sweep.
   int looked_ = 0;      ///< Number of the first one since lookAgain was asked.
   double enough_ = 0.0; ///< m
 };
+
+template <class Visit>
+void CrowdSolver::forParts(bool backwards, Visit&& visit) const
+{
+  const auto visitSecond = [&](int first)
+  {
+    forEach(
+      std::size_t(parts_ - first + 1) / 2, 1, [&](std::size_t k) { visit(first + 2 * int(k)); });
+  };
+  if (!backwards)
+  {
+    visitSecond(0);
+    visitSecond(1);
+    visit(parts_);
+  }
+  else
+  {
+    visit(parts_);
+    visitSecond(1);
+    visitSecond(0);
+  }
+}
+
+template <class Visit>
+void CrowdSolver::forRows(int part, Visit&& visit) const
+{
+  const std::size_t key = std::size_t(part * kKinds);
+  for (std::size_t k = this->firstOf(key); k < ends_[key + kKinds - 1]; ++k)
+  {
+    visit(std::size_t(order_[k]));
+  }
+}
 
 } // namespace rockfall

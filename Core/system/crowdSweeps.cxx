@@ -2,8 +2,6 @@
 
 #include "system/CrowdSolver.h"
 
-#include "base/parallel.h"
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -25,95 +23,115 @@ constexpr double kQuiet = 0.3;
 /// as it is found, unless nothing bounces.
 constexpr double kFound = 4.0;
 /// Rocks of a part of the group, and parts at most.
-constexpr int kPart = 64;
+constexpr int kPart = 56;
 constexpr int kMostParts = 64;
 /// Batches that are filled at the same time.
 constexpr int kOpen = 32;
 
-/// Four contacts that do nothing, with the slope.
-crowd::Batch idleBatch(int slope)
+} // namespace
+
+CrowdSolver::Hand::Hand(int slope)
 {
-  crowd::Batch batch = {};
-  for (int lane = 0; lane < crowd::kLanes; ++lane)
+  for (auto& side : body)
   {
-    batch.gap[lane] = std::numeric_limits<double>::max();
-    batch.body[0][lane] = batch.body[1][lane] = slope;
+    std::fill(std::begin(side), std::end(side), slope);
   }
-  return batch;
 }
 
-} // namespace
+/// A batch of contacts that do nothing as yet.
+crowd::Batch CrowdSolver::Hand::idle() const
+{
+  crowd::Batch batch = {};
+  std::fill(std::begin(batch.gap), std::end(batch.gap), std::numeric_limits<double>::max());
+  std::copy(&body[0][0], &body[0][0] + 2 * crowd::kLanes, &batch.body[0][0]);
+  return batch;
+}
 
 void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
 {
   const int bodies = int(work_.size());
   parts_ = std::clamp(bodies / kPart, 1, kMostParts);
-  partOf_.assign(work_.size(), 0);
-  if (parts_ > 1)
+  parts_ -= parts_ > 4 ? parts_ % 4 : 0;
+  Vec3 low = work_.front().position, high = low;
+  for (const Work& w : work_)
   {
-    Vec3 low = work_.front().position, high = low;
-    for (const Work& w : work_)
-    {
-      low = low.cwiseMin(w.position);
-      high = high.cwiseMax(w.position);
-    }
-    int axis = 0;
-    (high - low).maxCoeff(&axis);
-    byPlace_.resize(work_.size());
-    std::iota(byPlace_.begin(), byPlace_.end(), 0);
-    std::sort(byPlace_.begin(), byPlace_.end(),
-      [&](int a, int b)
-      {
-        const double x = work_[std::size_t(a)].position[axis];
-        const double y = work_[std::size_t(b)].position[axis];
-        return x != y ? x < y : a < b;
-      });
-    for (int k = 0; k < bodies; ++k)
-    {
-      partOf_[std::size_t(byPlace_[std::size_t(k)])] =
-        int(std::int64_t(k) * std::int64_t(parts_) / std::int64_t(bodies));
-    }
+    low = low.cwiseMin(w.position);
+    high = high.cwiseMax(w.position);
   }
+  int axis = 0;
+  (high - low).maxCoeff(&axis);
+  line_.resize(work_.size());
+  for (std::size_t i = 0; i < work_.size(); ++i)
+  {
+    line_[i] = { work_[i].position[axis], int(i) };
+  }
+  std::sort(line_.begin(), line_.end());
+  for (std::size_t mover = 0; mover < line_.size(); ++mover)
+  {
+    work_[std::size_t(line_[mover].second)].mover = mover;
+  }
+  const auto partOf = [&](int body)
+  { return int(work_[std::size_t(body)].mover * std::size_t(parts_) / work_.size()); };
   const auto keyOf = [&](const GroupContact& k)
   {
-    const int a = partOf_[std::size_t(k.first)];
-    const int b = k.second < 0 ? a : partOf_[std::size_t(k.second)];
+    const int a = partOf(k.first);
+    const int b = k.second < 0 ? a : partOf(k.second);
     const int part = std::abs(a - b) <= 1 ? std::min(a, b) : parts_;
     const bool open = !k.contact->closed() && k.bounce < 0.0 && k.contact->gap() > h_ * k.approach;
     return part * kKinds + (k.second < 0 ? 2 : 0) + (open ? 1 : 0);
   };
   const std::size_t keys = std::size_t(parts_ + 1) * kKinds;
   keyOf_.resize(contacts.size());
-  firstOf_.assign(keys + 1, 0);
+  ends_.assign(keys + 1, 0);
+  forEach(contacts.size(), kRowGrain, [&](std::size_t k) { keyOf_[k] = keyOf(contacts[k]); });
   for (std::size_t k = 0; k < contacts.size(); ++k)
   {
-    keyOf_[k] = keyOf(contacts[k]);
-    ++firstOf_[std::size_t(keyOf_[k]) + 1];
+    ++ends_[std::size_t(keyOf_[k]) + 1];
   }
-  std::partial_sum(firstOf_.begin(), firstOf_.end(), firstOf_.begin());
+  std::partial_sum(ends_.begin(), ends_.end(), ends_.begin());
   order_.resize(contacts.size());
   for (std::size_t k = 0; k < contacts.size(); ++k)
   {
-    order_[firstOf_[std::size_t(keyOf_[k])]++] = int(k);
+    order_[ends_[std::size_t(keyOf_[k])]++] = int(k);
   }
-  // Now each entry is the end of its key.
   rows_.resize(contacts.size());
-  batches_.clear();
   open_.assign(work_.size(), 0);
-  starts_.assign(keys + 1, 0);
-  std::size_t first = 0;
+  starts_.resize(keys + 1);
+  hands_.resize(std::max(hands_.size(), std::size_t(parts_) + 1));
+  const auto dealPart = [&](int part)
+  {
+    std::vector<Hand>& hands = hands_[std::size_t(part)];
+    hands.clear();
+    for (std::size_t key = std::size_t(part * kKinds); key < std::size_t((part + 1) * kKinds);
+         ++key)
+    {
+      starts_[key] = int(hands.size());
+      this->deal(contacts, order_.data() + this->firstOf(key), order_.data() + ends_[key],
+        bodies + part, hands);
+    }
+  };
+  this->forParts(false, dealPart);
+  // Part after part.
+  int count = 0;
   for (std::size_t key = 0; key < keys; ++key)
   {
-    starts_[key] = int(batches_.size());
-    this->deal(
-      contacts, order_.data() + first, order_.data() + firstOf_[key], bodies + int(key) / kKinds);
-    first = firstOf_[key];
+    starts_[key] += count;
+    count += (key + 1) % kKinds == 0 ? int(hands_[key / kKinds].size()) : 0;
   }
-  starts_[keys] = int(batches_.size());
+  starts_[keys] = count;
+  batches_.resize(std::size_t(count));
+  const auto layOut = [&](int part)
+  {
+    const std::size_t key = std::size_t(part * kKinds);
+    std::transform(hands_[std::size_t(part)].begin(), hands_[std::size_t(part)].end(),
+      batches_.begin() + starts_[key], [](const Hand& hand) { return hand.idle(); });
+    this->forRows(part, [&](std::size_t k) { rows_[k].batch += starts_[key]; });
+  };
+  this->forParts(false, layOut);
 }
 
-void CrowdSolver::deal(
-  const std::vector<GroupContact>& contacts, const int* first, const int* last, int slope)
+void CrowdSolver::deal(const std::vector<GroupContact>& contacts, const int* first, const int* last,
+  int slope, std::vector<Hand>& hands)
 {
   // Each contact goes to the first batch that is being filled and holds neither of its rocks.
   std::array<int, kOpen> batch{}, filled{};
@@ -121,8 +139,8 @@ void CrowdSolver::deal(
   int oldest = 0;
   const auto close = [&](int slot)
   {
-    const crowd::Batch& b = batches_[std::size_t(batch[std::size_t(slot)])];
-    for (const int* side : { b.body[0], b.body[1] })
+    const Hand& hand = hands[std::size_t(batch[std::size_t(slot)])];
+    for (const int* side : { hand.body[0], hand.body[1] })
     {
       for (int lane = 0; lane < crowd::kLanes; ++lane)
       {
@@ -137,8 +155,9 @@ void CrowdSolver::deal(
   for (const int* k = first; k != last; ++k)
   {
     const GroupContact& contact = contacts[std::size_t(*k)];
-    std::uint32_t taken = open_[std::size_t(contact.first)];
-    taken |= contact.second < 0 ? 0 : open_[std::size_t(contact.second)];
+    const std::size_t a = work_[std::size_t(contact.first)].mover;
+    const std::size_t c = contact.second < 0 ? a : work_[std::size_t(contact.second)].mover;
+    const std::uint32_t taken = open_[a] | open_[c];
     int slot = std::countr_zero(filling & ~taken);
     if (slot == kOpen)
     {
@@ -149,22 +168,19 @@ void CrowdSolver::deal(
         oldest = (oldest + 1) % kOpen;
         close(slot);
       }
-      batch[std::size_t(slot)] = int(batches_.size());
+      batch[std::size_t(slot)] = int(hands.size());
       filled[std::size_t(slot)] = 0;
       filling |= std::uint32_t(1) << slot;
-      batches_.push_back(idleBatch(slope));
+      hands.emplace_back(slope);
     }
     Row& row = rows_[std::size_t(*k)];
     row.batch = batch[std::size_t(slot)];
     row.lane = filled[std::size_t(slot)]++;
-    crowd::Batch& b = batches_[std::size_t(row.batch)];
-    b.body[0][row.lane] = contact.first;
-    open_[std::size_t(contact.first)] |= std::uint32_t(1) << slot;
-    if (contact.second >= 0)
-    {
-      b.body[1][row.lane] = contact.second;
-      open_[std::size_t(contact.second)] |= std::uint32_t(1) << slot;
-    }
+    Hand& hand = hands[std::size_t(row.batch)];
+    hand.body[0][row.lane] = int(a);
+    hand.body[1][row.lane] = contact.second < 0 ? slope : int(c);
+    open_[a] |= std::uint32_t(1) << slot;
+    open_[c] |= std::uint32_t(1) << slot;
     if (row.lane + 1 == crowd::kLanes)
     {
       close(slot);
@@ -199,32 +215,8 @@ double CrowdSolver::visit(int part)
 
 double CrowdSolver::sweep()
 {
-  // Every second part, the others, and what reaches further; backwards in every second sweep.
   most_.assign(std::size_t(parts_) + 1, 0.0);
-  const auto visitParts = [&](int first)
-  {
-    const auto visitPart = [&](std::size_t k)
-    {
-      const int part = first + 2 * int(k);
-      most_[std::size_t(part)] = this->visit(part);
-    };
-    const std::size_t count = std::size_t(parts_ - first + 1) / 2;
-    // Around what a second look has found there is less to do than it takes to share it out.
-    forEach(count, looked_ > 0 ? count : 1, visitPart);
-  };
-  const auto visitRest = [&] { most_.back() = this->visit(parts_); };
-  if (sweep_ % 2 == 0)
-  {
-    visitParts(0);
-    visitParts(1);
-    visitRest();
-  }
-  else
-  {
-    visitRest();
-    visitParts(1);
-    visitParts(0);
-  }
+  this->forParts(sweep_ % 2 != 0, [&](int part) { most_[std::size_t(part)] = this->visit(part); });
   return *std::max_element(most_.begin(), most_.end());
 }
 
@@ -244,8 +236,9 @@ void CrowdSolver::collect()
 {
   const auto take = [&](std::size_t i)
   {
-    work_[i].way = Eigen::Map<const Vec3>(movers_[i].way);
-    work_[i].spun = Eigen::Map<const Vec3>(movers_[i].turn);
+    const crowd::Mover& m = movers_[work_[i].mover];
+    work_[i].way = Eigen::Map<const Vec3>(m.way);
+    work_[i].spun = Eigen::Map<const Vec3>(m.turn);
     this->turnAs(work_[i], work_[i].spun);
   };
   forEach(work_.size(), kBodyGrain, take);
@@ -316,7 +309,16 @@ void CrowdSolver::append(const std::vector<GroupBody>& bodies, std::vector<Group
   const int slope = int(work_.size()) + parts_;
   const std::size_t key = std::size_t(parts_) * kKinds;
   const int before = int(batches_.size());
-  this->deal(contacts, added.data(), added.data() + added.size(), slope);
+  std::vector<Hand> hands;
+  this->deal(contacts, added.data(), added.data() + added.size(), slope, hands);
+  for (const Hand& hand : hands)
+  {
+    batches_.push_back(hand.idle());
+  }
+  for (const int k : added)
+  {
+    rows_[std::size_t(k)].batch += before;
+  }
   // Contacts between rocks come first there.
   const int more = int(batches_.size()) - before, at = starts_[key + 1];
   if (more > 0 && at < before)
@@ -345,7 +347,10 @@ void CrowdSolver::append(const std::vector<GroupBody>& bodies, std::vector<Group
     {
       batches_[std::size_t(row.batch)].gap[row.lane] = row.gap0;
     }
-    changed_[std::size_t(contacts[k].first)] = changed_[std::size_t(contacts[k].second)] = sweep_;
+    for (const int body : { contacts[k].first, contacts[k].second })
+    {
+      changed_[work_[std::size_t(body)].mover] = sweep_;
+    }
   }
 }
 
