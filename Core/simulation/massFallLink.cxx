@@ -6,7 +6,9 @@
 #include "base/parallel.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -69,14 +71,14 @@ double MassFall::Meetings::thrown(std::size_t rock) const
 double MassFall::Meetings::ways(const Near& n) const
 {
   const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
-  return this->thrown(i) * movers[i].way + this->thrown(j) * movers[j].way;
+  return movers[i].thrown * movers[i].way + movers[j].thrown * movers[j].way;
 }
 
 /// The widest gap over which the two may meet.
 double MassFall::Meetings::reach(const Near& n) const
 {
   const double faster =
-    std::max(this->thrown(std::size_t(n.first)), this->thrown(std::size_t(n.second)));
+    std::max(movers[std::size_t(n.first)].thrown, movers[std::size_t(n.second)].thrown);
   const double speed = n.offset > kNoAxis ? faster * this->closing(n) : -kNoAxis;
   return std::min(this->ways(n), speed * duration_) + fall_;
 }
@@ -139,9 +141,19 @@ bool MassFall::Meetings::sweep(MassFall& fall)
   for (std::size_t i = 0; i < roots_.size(); ++i)
   {
     roots_[i] = this->root(int(i));
-    const Mover& m = movers[i];
-    if (m.present && !m.asleep && companies_[std::size_t(roots_[i])].size > 1 &&
-      this->thrown(i) * m.way + fall_ > m.known)
+  }
+  asks_.resize(std::max(near.size(), movers.size()));
+  const auto goesFurther = [&](std::size_t i)
+  {
+    Mover& m = movers[i];
+    m.thrown = this->thrown(i);
+    asks_[i] = m.present && !m.asleep && companies_[std::size_t(roots_[i])].size > 1 &&
+      m.thrown * m.way + fall_ > m.known;
+  };
+  forEach(movers.size(), kNearGrain, goesFurther);
+  for (std::size_t i = 0; i < movers.size(); ++i)
+  {
+    if (asks_[i])
     {
       this->addNeighbours(int(i));
     }
@@ -206,8 +218,7 @@ void MassFall::Meetings::join(MassFall& fall, std::size_t k, bool known)
   nextLink_[k] = { std::exchange(firstLink_[std::size_t(n.first)], int(k)),
     std::exchange(firstLink_[std::size_t(n.second)], int(k)) };
   n.linked = n.holds = true;
-  n.pair->linked = true;
-  n.pair->known = known;
+  n.known = known;
   for (const int i : { n.first, n.second })
   {
     Mover& m = movers[std::size_t(i)];
@@ -288,29 +299,36 @@ void MassFall::Meetings::passOn(int rock)
 /// first, so that none has its turn twice.
 void MassFall::Meetings::tell(MassFall& fall)
 {
-  const auto shorter = [](const Turn& a, const Turn& b)
-  { return a.way != b.way ? a.way < b.way : a.rock > b.rock; };
+  // In one number that orders them: the way, rounded, and the rock.
+  const auto turnOf = [this](int i)
+  {
+    const auto way = std::bit_cast<std::uint32_t>(float(movers[std::size_t(i)].way));
+    return (std::uint64_t(way) << 32) + ~std::uint32_t(i);
+  };
   turns_.clear();
   for (std::size_t taken = 0;;)
   {
     for (; taken < queue_.size(); ++taken)
     {
-      turns_.push_back({ movers[std::size_t(queue_[taken])].way, queue_[taken] });
-      std::push_heap(turns_.begin(), turns_.end(), shorter);
+      turns_.push_back(turnOf(queue_[taken]));
+      std::push_heap(turns_.begin(), turns_.end());
     }
     if (turns_.empty())
     {
       break;
     }
-    const auto [length, i] = turns_.front();
-    std::pop_heap(turns_.begin(), turns_.end(), shorter);
+    const std::uint64_t turn = turns_.front();
+    std::pop_heap(turns_.begin(), turns_.end());
     turns_.pop_back();
-    if (!movers[std::size_t(i)].queued || length < movers[std::size_t(i)].way)
+    const int i = int(~std::uint32_t(turn));
+    Mover& m = movers[std::size_t(i)];
+    if (!m.queued || turn != turnOf(i))
     {
       continue; // has had its turn, or has a longer way since
     }
-    movers[std::size_t(i)].queued = false;
+    m.queued = false;
     roots_[std::size_t(i)] = this->root(i);
+    m.thrown = this->thrown(std::size_t(i));
     if (sleepers_ > 0)
     {
       this->wakeAbout(fall, i);
@@ -325,10 +343,21 @@ void MassFall::Meetings::link(MassFall& fall)
   // What overlaps is known already.
   firstLink_.assign(movers.size(), -1);
   nextLink_.resize(near.size());
-  for (std::size_t k = 0; k < near.size(); ++k)
+  asks_.resize(near.size());
+  const auto overlap = [&](std::size_t k)
   {
     Near& n = near[k];
-    if (!this->isAsleep(n) && n.pair && n.pair->seen && n.pair->axis.distance <= 0.0)
+    const bool seen = n.pair && n.pair->seen; // found where they stand
+    asks_[k] = seen && n.pair->axis.distance <= 0.0 && !this->isAsleep(n);
+    if (seen)
+    {
+      this->lookAlong(n);
+    }
+  };
+  forEach(near.size(), kNearGrain, overlap);
+  for (std::size_t k = 0; k < near.size(); ++k)
+  {
+    if (asks_[k])
     {
       this->join(fall, k, false);
     }
@@ -344,7 +373,13 @@ void MassFall::Meetings::link(MassFall& fall)
   const auto settle = [&](std::size_t k)
   {
     Near& n = near[k];
-    if (n.linked || !(n.holds || n.wasLinked || n.looked >= 0.0))
+    if (n.linked)
+    {
+      n.pair->linked = true;
+      n.pair->known = n.known;
+      return;
+    }
+    if (!(n.holds || n.wasLinked || n.looked >= 0.0))
     {
       return;
     }

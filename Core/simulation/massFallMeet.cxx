@@ -63,6 +63,7 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
     m.asleep = member.asleep;
     m.present = !sim.done_ || m.asleep;
     m.queued = false;
+    m.thrown = 1.0;
     if (!m.present || (slept && m.asleep))
     {
       m.way = m.known = 0.0;
@@ -154,10 +155,6 @@ void MassFall::Meetings::findNear(MassFall& fall)
     next.wasLinked = n.linked;
     next.linked = false;
     next.looked = -1.0;
-    if (n.pair && n.pair->seen)
-    {
-      this->lookAlong(next); // found where they stand
-    }
   };
   const auto leave = [&](Near& n)
   {
@@ -228,7 +225,7 @@ void MassFall::Meetings::indexNeighbours()
 void MassFall::Meetings::addNeighbours(int rock)
 {
   Mover& m = movers[std::size_t(rock)];
-  m.known = kWider * (this->thrown(std::size_t(rock)) * m.way + fall_);
+  m.known = kWider * (m.thrown * m.way + fall_);
   broad_.within(m.position, m.radius + m.known + widened_, found_);
   widened_ = std::max(widened_, m.known - (boxes_[std::size_t(rock)].radius - m.radius));
   const auto other = [&](std::size_t k)

@@ -8,6 +8,7 @@
 #include "system/broadPhase.h"
 
 #include <array>
+#include <cstdint>
 #include <deque>
 #include <limits>
 
@@ -18,26 +19,29 @@ namespace rockfall
 constexpr double kNoAxis = -std::numeric_limits<double>::infinity();
 
 /// A rock as the others meet it in the step at hand.
-struct Mover
+struct alignas(64) Mover
 {
+  // What every look at a pair asks for lies in one line of the cache.
   Vec3 position; ///< m
   double radius; ///< m
-  double mass;   ///< kg
+  double turned =
+    0.0;      ///< Longest way about the centroid since the release, by turns and strain, m.
+  double way; ///< The longest way of a point of it in the step, m, if it is struck by others.
+  double thrown = 1.0;  ///< What it is struck by may make it go on faster by this factor.
+  bool present = false; ///< Neither gone nor stopped by the end time.
+  bool asleep = false;
+  bool queued = false; ///< Those about it have to be told.
+
+  double own;   ///< The longest way if nothing strikes it, m.
+  double known; ///< Rocks nearer than such a way, less their own, are its neighbours.
+  double mass;  ///< kg
   /// All velocities that points of it may have until it meets another rock are in a ball, m/s:
   /// about its velocity if it flies clear of the slope; else the slope may stop it or throw it
   /// back.
   Vec3 middle;
   double spread;
-  double own;   ///< The longest way of a point of it in the step, m.
-  double way;   ///< The same if it is struck by others.
-  double known; ///< Rocks nearer than such a way, less their own, are its neighbours.
-  double turned =
-    0.0; ///< Longest way about the centroid since the release, by turns and strain, m.
   Quat orientation = Quat::Identity(); ///< For which `turned` stands.
   Vec6 strain = Vec6::Zero();
-  bool present = false; ///< Neither gone nor stopped by the end time.
-  bool asleep = false;
-  bool queued = false; ///< Those about it have to be told.
 };
 
 /// Rocks that may touch within the step, or one alone.
@@ -59,7 +63,8 @@ struct Near
   double offset = 0.0;
   double looked = -1.0;   ///< Reach within which the axis was looked for in this step, m.
   bool linked = false;    ///< May touch in this step,
-  bool wasLinked = false; ///< or in the last.
+  bool known = false;     ///< and the axis has been found for where they stand;
+  bool wasLinked = false; ///< or could in the last one.
   bool holds = false;     ///< May have contacts.
 };
 
@@ -123,13 +128,8 @@ private:
   std::vector<std::array<int, 2>> nextLink_;
   int sleepers_ = 0;
   std::size_t sorted_ = 0; ///< Of `near`; behind it those found later.
-  struct Turn
-  {
-    double way; ///< m
-    int rock;
-  };
   std::vector<int> queue_;
-  std::vector<Turn> turns_;
+  std::vector<std::uint64_t> turns_;
   std::vector<int> found_;
   std::vector<char> marks_;
   std::vector<char> asks_;
