@@ -24,6 +24,10 @@ constexpr double kStillSpeed = 1e-3;
 /// points without a moment, and a rock that is wedged between two may swing about them for ever.
 constexpr double kLingerTime = 3.0;
 constexpr double kLingerWay = 0.03;
+/// Turning counts for that from this share of √(g r) on, as the speed of its rim. What turns more
+/// slowly on two points, its centroid between them, would do so for ever; the friction of contacts
+/// a millimetre across would stop it in a second.
+constexpr double kLingerRim = 0.01;
 /// Fewer are not worth a thread of their own.
 constexpr std::size_t kRocksPerThread = 32, kStayGrain = 64;
 
@@ -153,16 +157,16 @@ bool MassFall::stays(Member& member) const
   }
   const double r = sim.block_.radius();
   const auto wayFrom = [&](const BlockState& place)
-  {
-    return (sim.state_.position - place.position).norm() +
-      r * sim.state_.orientation.angularDistance(place.orientation);
-  };
-  const double speed = kStillSpeed * std::sqrt(std::max(parameters_.gravity, 1e-3) * r);
-  if (wayFrom(member.stayed) > speed * kStillTime)
+  { return (sim.state_.position - place.position).norm(); };
+  const auto turnFrom = [&](const BlockState& place)
+  { return r * sim.state_.orientation.angularDistance(place.orientation); };
+  const double unit = std::sqrt(std::max(parameters_.gravity, 1e-3) * r); // m/s
+  if (wayFrom(member.stayed) + turnFrom(member.stayed) > kStillSpeed * unit * kStillTime)
   {
     member.stayed = sim.state_;
   }
-  if (wayFrom(member.lingered) > kLingerWay * r)
+  const bool turns = r * sim.state_.spin.norm() > kLingerRim * unit;
+  if (wayFrom(member.lingered) + (turns ? turnFrom(member.lingered) : 0.0) > kLingerWay * r)
   {
     member.lingered = sim.state_;
   }

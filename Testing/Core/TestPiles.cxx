@@ -86,6 +86,50 @@ TEST(Piles, ArchFallsWithoutFriction)
 
 // The upper cube on a slope of angle α begins to slide where Coulomb says of the pair that it is
 // in, and speeds up as the closed form has it; the lower one carries its friction.
+TEST(Piles, WhatTurnsSlowlyOnTwoPointsComesToRest)
+{
+  // An octahedron stands on one corner and holds a slab with the other one. Points of contact have
+  // no moment: nothing slows its turning about them.
+  for (const double spin : { 0.02, 0.1 }) // rad/s; its rim makes 12 and 60 mm/s
+  {
+    Pile pile;
+    pile.ground = floorSlope();
+    pile.awake = false;
+    pile.parameters.rockFrictionAngle = radians(35.0);
+    pile.parameters.endTime = 12.0;
+    const double half = 0.6, wide = 0.4; // m
+    Rock top;
+    top.blockId = 0;
+    top.shape = Polyhedron::convexHull(std::vector<Vec3>{ { 0, 0, half }, { 0, 0, -half },
+      { wide, 0, 0 }, { -wide, 0, 0 }, { 0, wide, 0 }, { 0, -wide, 0 } });
+    top.position = Vec3(0, 0, half);
+    top.angularVelocity = Vec3(0, 0, spin);
+    pile.rocks.push_back(top);
+    // Both sides rest on pillars a tenth of a millimetre lower than it.
+    const double height = 2.0 * half - 1e-4;
+    pile.rocks.push_back(brick(Vec3(3.0, 1.0, 0.4), Vec3(0, 0, 2.0 * half + 0.2), 1));
+    pile.rocks.push_back(brick(Vec3(0.4, 0.8, height), Vec3(-1.3, 0, 0.5 * height), 2));
+    pile.rocks.push_back(brick(Vec3(0.4, 0.8, height), Vec3(1.3, 0, 0.5 * height), 3));
+    for (Rock& rock : pile.rocks)
+    {
+      rock.position += Vec3(20, 20, 0);
+    }
+    pile.start();
+    const double reached = pile.run(pile.parameters.endTime);
+    const Vec3 left = pile.fall->state(0).angularVelocity();
+    if (spin < 0.05)
+    {
+      EXPECT_LT(reached, 6.0);
+      EXPECT_EQ(left.norm(), 0.0);
+    }
+    else
+    {
+      EXPECT_NEAR(left.z(), spin, 0.02 * spin); // not stopped while it visibly turns
+    }
+    EXPECT_LT((pile.fall->state(0).position - Vec3(20, 20, half)).norm(), 2e-3); // as springs give
+  }
+}
+
 TEST(Piles, CubeOnCubeSlidesPairByPair)
 {
   const double angle = radians(24.0);

@@ -156,7 +156,9 @@ TEST(MassFall, HeapsOfCubes)
       heap.overlap, 0.01);
     record({ kHeap, circumstances + "share at rest in the end", "", "all of them" }, heap.resting,
       1.0, 0.0);
-    report({ kHeap, circumstances + "time to rest", "s", "" }, heap.duration);
+    // All of them sleep then: what trembles or turns on the spot has been found out.
+    recordAtMost({ kHeap, circumstances + "time to rest", "s", "before the run of 60 s ends" },
+      heap.duration, 59.0);
     report(
       { kHeap, circumstances + "slope of the heap, 2 z / r of its mean height and median distance",
         "°", "" },
