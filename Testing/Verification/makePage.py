@@ -118,7 +118,7 @@ CHAPTERS = [
 # What a reader has to know about the figures of a case, whatever they are.
 COMMENTS = {
     "Heaps":
-        "The full form, 1000 cubes at four friction angles, takes some five minutes of two cores; the reduced one (45 "
+        "The full form, 1000 cubes at four friction angles, takes some two minutes of two cores; the reduced one (45 "
         "cubes at two) runs with the other tests.",
     "Elastic rebound":
         "Where the block is softer than its contact (E L < p) the outcome depends on what becomes of the block's "
