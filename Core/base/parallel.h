@@ -41,8 +41,8 @@ void standBy(int most, const std::function<void()>& work);
 
 /// work(i) for i = 0 … count − 1, on the threads that there are, `grain` turns at a time; in order
 /// on the calling thread if there are fewer than two times `grain`. A thread that waits for the
-/// others takes up no work meanwhile but that of loops within its own: what the caller keeps by
-/// thread stays its own.
+/// others takes up no work meanwhile but that of loops further in than its own: what a turn keeps
+/// by thread is safe from turns of the same loop.
 /// @throws What work throws; of several the first.
 template <class Work>
 void forEach(std::size_t count, std::size_t grain, Work&& work)

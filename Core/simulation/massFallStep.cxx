@@ -105,6 +105,10 @@ void MassFall::solve(
     contacts += pair->contacts.size();
   }
   work.firsts.push_back(contacts);
+  if (places == 0)
+  {
+    return; // the last of them was caught just now
+  }
   work.bodies.resize(std::size_t(places));
   work.energyBefore.resize(std::size_t(places));
   work.contacts.resize(contacts);

@@ -248,6 +248,11 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
   std::vector<GroupContact>& contacts, bool takeAnyway, const std::function<bool()>& lookAgain)
 {
   GroupOutcome outcome;
+  if (bodies.empty())
+  {
+    outcome.settled = true;
+    return outcome;
+  }
   kernel_ = crowd::suitedSweep();
   this->prepareBodies(request, bodies);
   this->arrange(contacts);

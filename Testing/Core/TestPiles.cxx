@@ -84,8 +84,6 @@ TEST(Piles, ArchFallsWithoutFriction)
   EXPECT_LT(pile.fall->state(5).position.z(), 2.0); // the keystone, from 2.5 m
 }
 
-// The upper cube on a slope of angle α begins to slide where Coulomb says of the pair that it is
-// in, and speeds up as the closed form has it; the lower one carries its friction.
 TEST(Piles, WhatTurnsSlowlyOnTwoPointsComesToRest)
 {
   // An octahedron stands on one corner and holds a slab with the other one. Points of contact have
@@ -130,6 +128,8 @@ TEST(Piles, WhatTurnsSlowlyOnTwoPointsComesToRest)
   }
 }
 
+// The upper cube on a slope of angle α begins to slide where Coulomb says of the pair that it is
+// in, and speeds up as the closed form has it; the lower one carries its friction.
 TEST(Piles, CubeOnCubeSlidesPairByPair)
 {
   const double angle = radians(24.0);
