@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <functional>
 #include <type_traits>
+#include <vector>
 
 namespace rockfall
 {
@@ -68,6 +69,23 @@ void forEach(std::size_t count, std::size_t grain, Work&& work)
           [&](const tbb::blocked_range<std::size_t>& part)
           { run(&work, part.begin(), part.end()); });
       });
+  }
+}
+
+/// ask(i) of all i as in forEach, then act(i) of those for which it was true, in order on the
+/// calling thread. `answers` is work space.
+template <class Ask, class Act>
+void forThose(
+  std::size_t count, std::size_t grain, std::vector<char>& answers, Ask&& ask, Act&& act)
+{
+  answers.resize(count);
+  forEach(count, grain, [&](std::size_t i) { answers[i] = ask(i); });
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    if (answers[i])
+    {
+      act(i);
+    }
   }
 }
 

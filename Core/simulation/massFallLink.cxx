@@ -142,56 +142,45 @@ bool MassFall::Meetings::sweep(MassFall& fall)
   {
     roots_[i] = this->root(int(i));
   }
-  asks_.resize(std::max(near.size(), movers.size()));
   const auto goesFurther = [&](std::size_t i)
   {
     Mover& m = movers[i];
     m.thrown = this->thrown(i);
-    asks_[i] = m.present && !m.asleep && companies_[std::size_t(roots_[i])].size > 1 &&
+    return m.present && !m.asleep && companies_[std::size_t(roots_[i])].size > 1 &&
       m.thrown * m.way + fall_ > m.known;
   };
-  forEach(movers.size(), kNearGrain, goesFurther);
-  for (std::size_t i = 0; i < movers.size(); ++i)
-  {
-    if (asks_[i])
-    {
-      this->addNeighbours(int(i));
-    }
-  }
-  asks_.resize(near.size());
-  const auto ask = [&](std::size_t k)
+  forThose(movers.size(), kNearGrain, asks_, goesFurther,
+    [&](std::size_t i) { this->addNeighbours(int(i)); });
+  const auto meets = [&](std::size_t k)
   {
     const Near& n = near[k];
-    asks_[k] = !n.linked && !this->isAsleep(n) && this->mayMeet(n);
+    return !n.linked && !this->isAsleep(n) && this->mayMeet(n);
   };
-  forEach(near.size(), kNearGrain, ask);
   bool any = false;
   asked_.clear();
   placed_.clear();
-  for (std::size_t k = 0; k < near.size(); ++k)
+  const auto ask = [&](std::size_t k)
   {
-    if (asks_[k])
+    Near& n = near[k];
+    if (n.pair && n.looked < 0.0 && this->root(n.first) == this->root(n.second))
     {
-      Near& n = near[k];
-      if (n.pair && n.looked < 0.0 && this->root(n.first) == this->root(n.second))
+      // Of one company they are: how far apart is looked at when their contacts are.
+      this->join(fall, k, false);
+      any = true;
+      return;
+    }
+    n.pair = n.pair ? n.pair : this->newPair(fall, n.first, n.second);
+    asked_.push_back(k);
+    for (const int i : { n.first, n.second })
+    {
+      if (!marks_[std::size_t(i)])
       {
-        // Of one company they are: how far apart is looked at when their contacts are.
-        this->join(fall, k, false);
-        any = true;
-        continue;
-      }
-      n.pair = n.pair ? n.pair : this->newPair(fall, n.first, n.second);
-      asked_.push_back(k);
-      for (const int i : { n.first, n.second })
-      {
-        if (!marks_[std::size_t(i)])
-        {
-          marks_[std::size_t(i)] = 1;
-          placed_.push_back(i);
-        }
+        marks_[std::size_t(i)] = 1;
+        placed_.push_back(i);
       }
     }
-  }
+  };
+  forThose(near.size(), kNearGrain, asks_, meets, ask);
   forEach(placed_.size(), kLookGrain,
     [&](std::size_t k) { fall.members_[std::size_t(placed_[k])]->stand(); });
   forEach(asked_.size(), kLookGrain,
@@ -343,25 +332,18 @@ void MassFall::Meetings::link(MassFall& fall)
   // What overlaps is known already.
   firstLink_.assign(movers.size(), -1);
   nextLink_.resize(near.size());
-  asks_.resize(near.size());
   const auto overlap = [&](std::size_t k)
   {
     Near& n = near[k];
     const bool seen = n.pair && n.pair->seen; // found where they stand
-    asks_[k] = seen && n.pair->axis.distance <= 0.0 && !this->isAsleep(n);
     if (seen)
     {
       this->lookAlong(n);
     }
+    return seen && n.pair->axis.distance <= 0.0 && !this->isAsleep(n);
   };
-  forEach(near.size(), kNearGrain, overlap);
-  for (std::size_t k = 0; k < near.size(); ++k)
-  {
-    if (asks_[k])
-    {
-      this->join(fall, k, false);
-    }
-  }
+  forThose(
+    near.size(), kNearGrain, asks_, overlap, [&](std::size_t k) { this->join(fall, k, false); });
   this->tell(fall);
   while (this->sweep(fall))
   {

@@ -80,7 +80,6 @@ bool MassFall::lookAgain(const Group& group, double h, bool bounces, Workspace& 
     }
     return least;
   };
-  work.flags.assign(group.pairs.size(), 0);
   const auto compare = [&](std::size_t p)
   {
     RockPair& pair = *group.pairs[p];
@@ -88,22 +87,16 @@ bool MassFall::lookAgain(const Group& group, double h, bool bounces, Workspace& 
     if (a.sim.done_ || b.sim.done_ ||
       !(work.solver.moved(std::size_t(a.place)) || work.solver.moved(std::size_t(b.place))))
     {
-      return;
+      return false;
     }
     pair.end = findAxis(a.endBody, b.endBody, pair.axis, 0.0);
     const double deep = -allowed(pair);
-    work.flags[p] = pair.end.kind != PairAxis::Kind::None && pair.end.distance < deep &&
+    return pair.end.kind != PairAxis::Kind::None && pair.end.distance < deep &&
       pair.end.distance < deepest(p) + deep;
   };
-  forEach(group.pairs.size(), kPairGrain, compare);
   work.missedPairs.clear();
-  for (std::size_t p = 0; p < group.pairs.size(); ++p)
-  {
-    if (work.flags[p])
-    {
-      work.missedPairs.push_back(p);
-    }
-  }
+  forThose(group.pairs.size(), kPairGrain, work.flags, compare,
+    [&](std::size_t p) { work.missedPairs.push_back(p); });
   work.found.resize(std::max(work.found.size(), work.missedPairs.size()));
   const auto findThem = [&](std::size_t m)
   {

@@ -322,17 +322,10 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
   const auto ends = [&](std::size_t p)
   {
     const RockPair& pair = *group.pairs[p];
-    work.flags[p] = pair.impact.pending && (!pair.touched || kind == StepKind::Lasting);
+    return pair.impact.pending && (!pair.touched || kind == StepKind::Lasting);
   };
-  work.flags.resize(group.pairs.size());
-  forEach(group.pairs.size(), kPairGrain, ends);
-  for (std::size_t p = 0; p < group.pairs.size(); ++p)
-  {
-    if (work.flags[p])
-    {
-      this->finishPairImpact(*group.pairs[p]);
-    }
-  }
+  forThose(group.pairs.size(), kPairGrain, work.flags, ends,
+    [&](std::size_t p) { this->finishPairImpact(*group.pairs[p]); });
   const bool crowd = this->isCrowd(group);
   const auto absorbRock = [&](std::size_t k)
   {

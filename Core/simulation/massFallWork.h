@@ -62,7 +62,7 @@ struct MassFall::Workspace
   /// Contacts that are found in a second look, behind the others in `contacts`, and whose they are.
   std::deque<Contact> added;
   std::vector<std::size_t> addedTo;
-  std::vector<char> flags;                 ///< By pair, what is to be done with it.
+  std::vector<char> flags;                 ///< For forThose.
   std::vector<std::size_t> missedPairs;    ///< Whose contacts were missed.
   std::vector<std::vector<Contact>> found; ///< Of each of them, where it touches.
   bool looked = false;                     ///< Where the step ends.

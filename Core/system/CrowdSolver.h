@@ -76,7 +76,8 @@ private:
   void turnAs(Work& work, const Vec3& spun) const; ///< turned, mean and turn.
   /// Where a body goes without contacts, for the turn that it has.
   std::array<Vec3, 2> freeMotion(const GroupBody& body, const Work& work) const;
-  void arrange(const std::vector<GroupContact>& contacts); ///< Parts, and batches of each.
+  void lineUp(); ///< Movers in order, and the number of parts.
+  void arrange(const std::vector<GroupContact>& contacts); ///< Batches of each part.
   /// Whose contacts a batch will hold.
   struct Hand
   {

@@ -43,15 +43,17 @@ crowd::Batch CrowdSolver::Hand::idle() const
 {
   crowd::Batch batch = {};
   std::fill(std::begin(batch.gap), std::end(batch.gap), std::numeric_limits<double>::max());
-  std::copy(&body[0][0], &body[0][0] + 2 * crowd::kLanes, &batch.body[0][0]);
+  for (int side = 0; side < 2; ++side)
+  {
+    std::copy(std::begin(body[side]), std::end(body[side]), batch.body[side]);
+  }
   return batch;
 }
 
-void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
+void CrowdSolver::lineUp()
 {
-  const int bodies = int(work_.size());
-  parts_ = std::clamp(bodies / kPart, 1, kMostParts);
-  parts_ -= parts_ > 4 ? parts_ % 4 : 0;
+  parts_ = std::clamp(int(work_.size()) / kPart, 1, kMostParts);
+  parts_ -= parts_ > 4 ? parts_ % 4 : 0; // two threads get the same number of every second part
   Vec3 low = work_.front().position, high = low;
   for (const Work& w : work_)
   {
@@ -70,6 +72,11 @@ void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
   {
     work_[std::size_t(line_[mover].second)].mover = mover;
   }
+}
+
+void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
+{
+  const int bodies = int(work_.size());
   const auto partOf = [&](int body)
   { return int(work_[std::size_t(body)].mover * std::size_t(parts_) / work_.size()); };
   const auto keyOf = [&](const GroupContact& k)
@@ -255,6 +262,7 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
   }
   kernel_ = crowd::suitedSweep();
   this->prepareBodies(request, bodies);
+  this->lineUp();
   this->arrange(contacts);
   forEach(contacts.size(), kRowGrain,
     [&](std::size_t k) { this->prepareRow(bodies, contacts[k], rows_[k]); });
