@@ -42,7 +42,11 @@ double deepestOverlap(int count, BlockOf&& blockOf, StateOf&& stateOf)
       }
       if ((first.position - second.position).norm() < first.radius + second.radius)
       {
-        deepest = std::max(deepest, -findAxis(first, second, {}, 0.0).distance);
+        // Apart they may be told quickly; how deep needs the best axis of all.
+        if (findAxis(first, second, {}, 0.0).distance < 0.0)
+        {
+          deepest = std::max(deepest, -bestAxis(first, second).distance);
+        }
       }
     }
   }

@@ -56,6 +56,10 @@ Mat6 isotropicElasticity(double youngModulus, double poissonRatio)
 namespace
 {
 
+/// Share of its radius by which a block's centroid may be off the origin: what single precision
+/// leaves.
+constexpr double kCentred = 1e-6;
+
 Vec12 bodyVelocity(const BlockState& state)
 {
   Vec12 v;
@@ -72,6 +76,13 @@ Block::Block(Polyhedron shape, double density, double youngModulus, double poiss
   , poissonRatio_(poissonRatio)
 {
   const VolumeIntegrals& integrals = shape_.integrals();
+  const Vec3& centroid = integrals.centroid;
+  if (!(centroid.norm() <= kCentred * shape_.radius()))
+  {
+    throw GeometryError("block: the centroid of its shape is at (" + std::to_string(centroid.x()) +
+      ", " + std::to_string(centroid.y()) + ", " + std::to_string(centroid.z()) +
+      ") m, but must be at the origin");
+  }
   mass_ = density * integrals.volume;
   massMatrix_ = integrateMass(density, integrals.volume, integrals.second);
   elasticity_ = integrals.volume * isotropicElasticity(youngModulus, poissonRatio);

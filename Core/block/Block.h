@@ -22,7 +22,8 @@ class Block
 {
 public:
   Block() = default;
-  /// `shape` has its centroid at the origin; density kg/m³, Young's modulus Pa, Poisson's ratio.
+  /// `shape` has its centroid at the origin (GeometryError); density kg/m³, Young's modulus Pa,
+  /// Poisson's ratio.
   Block(Polyhedron shape, double density, double youngModulus, double poissonRatio);
 
   const Polyhedron& shape() const { return shape_; }

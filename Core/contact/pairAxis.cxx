@@ -12,7 +12,8 @@ namespace rockfall
 namespace
 {
 
-/// An axis must be better than the last one by this share of the smaller radius to take its place.
+/// An axis must be better than the last one by this share of the smaller radius to take its place,
+/// edges by twice as much.
 constexpr double kHysteresis = 1e-3;
 /// Edges are a pair only if they are farther from parallel than this sine.
 constexpr double kParallel = 1e-3;
@@ -186,6 +187,29 @@ PairAxis bestCrossing(const PairBody& first, const PairBody& second, double leas
   return best;
 }
 
+/// The axis of a face, if it shows a larger gap than `best`.
+void offerFaces(const PairBody& first, const PairBody& second, PairAxis& best)
+{
+  const auto offer = [&](const PairBody& owner, const PairBody& other, PairAxis::Kind kind)
+  {
+    for (int i = 0; i < owner.faceFours(); ++i)
+    {
+      // No face is farther from a body than from the ball in it.
+      const PairBody::Four most = owner.overFaces(other.position, i) - other.inside;
+      for (int k = 0; k < 4 && 4 * i + k < owner.faces(); ++k)
+      {
+        if (most[k] > best.distance)
+        {
+          const PairAxis axis = faceAxis(first, second, kind, 4 * i + k);
+          best = axis.distance > best.distance ? axis : best;
+        }
+      }
+    }
+  };
+  offer(first, second, PairAxis::Kind::FaceOfFirst);
+  offer(second, first, PairAxis::Kind::FaceOfSecond);
+}
+
 /// Upper bound of the distance of a point from a body. Where it is over a plane by ε, the body
 /// scaled up about its centroid by ε over the radius of the ball in it holds the point.
 double farFrom(const PairBody& body, const Vec3& point)
@@ -296,64 +320,54 @@ void PairBody::update(const PlacedBlock& block)
 
 PairAxis findAxis(const PairBody& first, const PairBody& second, const PairAxis& last, double reach)
 {
-  PairAxis best;
-  best.distance = -std::numeric_limits<double>::infinity();
   // The last axis first: most pairs are apart along it still.
+  PairAxis kept;
   if (last.kind == PairAxis::Kind::Edges)
   {
-    const PairAxis again = edgeAxis(first, second, last.first, last.second);
-    best = again.kind != PairAxis::Kind::None ? again : best;
+    kept = edgeAxis(first, second, last.first, last.second);
   }
   else if (last.kind != PairAxis::Kind::None)
   {
-    best = faceAxis(first, second, last.kind,
+    kept = faceAxis(first, second, last.kind,
       last.kind == PairAxis::Kind::FaceOfFirst ? last.first : last.second);
   }
+  // It stays unless another one is better by so much.
   const double better = kHysteresis * std::min(first.radius, second.radius);
-  if (best.kind != PairAxis::Kind::None)
+  PairAxis best = kept;
+  best.distance = -std::numeric_limits<double>::infinity();
+  if (kept.kind != PairAxis::Kind::None)
   {
-    if (best.distance > reach)
+    best.distance = kept.distance + better;
+    if (kept.distance > reach || areWithin(first, second, kept, best.distance))
     {
-      return best;
-    }
-    best.distance += better;
-    if (areWithin(first, second, best, best.distance))
-    {
-      best.distance -= better;
-      return best;
+      return kept;
     }
   }
-  const PairAxis kept = best;
-  // No face is farther from a body than from the ball in it.
-  const auto offerFaces = [&](const PairBody& owner, const PairBody& other, PairAxis::Kind kind)
+  const double least = best.distance;
+  offerFaces(first, second, best);
+  const bool stays = kept.kind != PairAxis::Kind::None && best.distance == least;
+  best = stays ? kept : best;
+  if (best.distance > reach)
   {
-    for (int i = 0; i < owner.faceFours(); ++i)
-    {
-      const PairBody::Four most = owner.overFaces(other.position, i) - other.inside;
-      for (int k = 0; k < 4 && 4 * i + k < owner.faces(); ++k)
-      {
-        if (most[k] > best.distance)
-        {
-          const PairAxis axis = faceAxis(first, second, kind, 4 * i + k);
-          best = axis.distance > best.distance ? axis : best;
-        }
-      }
-    }
-  };
-  offerFaces(first, second, PairAxis::Kind::FaceOfFirst);
-  offerFaces(second, first, PairAxis::Kind::FaceOfSecond);
-  // Faces go before edges that are as good.
-  if (best.distance <= reach && !areWithin(first, second, best, best.distance + better))
+    return best;
+  }
+  // Faces go before edges that are as good, and what was kept before them again.
+  const double beaten = best.distance + (stays ? 2.0 : 1.0) * better;
+  if (stays || !areWithin(first, second, best, beaten))
   {
-    const PairAxis crossing = bestCrossing(first, second, best.distance + better);
+    const PairAxis crossing = bestCrossing(first, second, beaten);
     best = crossing.kind != PairAxis::Kind::None ? crossing : best;
   }
-  if (best.kind == kept.kind && best.first == kept.first && best.second == kept.second &&
-    kept.kind != PairAxis::Kind::None && best.distance == kept.distance)
-  {
-    best.distance -= better;
-  }
   return best;
+}
+
+PairAxis bestAxis(const PairBody& first, const PairBody& second)
+{
+  PairAxis best;
+  best.distance = -std::numeric_limits<double>::infinity();
+  offerFaces(first, second, best);
+  const PairAxis crossing = bestCrossing(first, second, best.distance);
+  return crossing.kind != PairAxis::Kind::None ? crossing : best;
 }
 
 } // namespace rockfall

@@ -135,14 +135,18 @@ void updatePair(const PairBody& first, const PairBody& second, double reach, Roc
     }
     return;
   }
-  const bool turned =
-    last.kind != pair.axis.kind || last.first != pair.axis.first || last.second != pair.axis.second;
-  const std::span<const Touch> found = touchesAlong(first, second, pair.axis, reach);
+  std::span<const Touch> found = touchesAlong(first, second, pair.axis, reach);
   if (found.empty() && closed())
   {
     pair.axis = last; // past the end of a feature, with no other one there
     return;
   }
+  if (found.empty())
+  {
+    found = touchesOf(first, second, pair.axis, reach);
+  }
+  const bool turned =
+    last.kind != pair.axis.kind || last.first != pair.axis.first || last.second != pair.axis.second;
   const double smaller = std::min(first.radius, second.radius);
   const double same = kSamePoint * smaller;
   // Which of the old ones each is: mostly all are there again, in their order.

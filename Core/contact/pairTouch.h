@@ -18,9 +18,12 @@ struct Touch
   int feature;     ///< Of the corner's rock: a vertex, or < 0: where an edge is cut.
 };
 
-/// The points of touch along an axis (findTouches), valid until the next call on this thread.
+/// The points of touch along an axis, valid until the next call on this thread.
 std::span<const Touch> touchesAlong(
   const PairBody& first, const PairBody& second, const PairAxis& axis, double reach);
+/// The same as findTouches has them.
+std::span<const Touch> touchesOf(
+  const PairBody& first, const PairBody& second, PairAxis& axis, double reach);
 
 /// The features that touch.
 struct TouchFeatures

@@ -47,8 +47,17 @@ int cutFeature(int from, int to, int k)
   return -1 - int(hash & 0x3fffffff);
 }
 
-int mostOpposed(const PairBody& body, const Vec3& normal)
+/// The face that is most against `normal`, of those that reach as low along it as the body does
+/// (`lowest`, m, with its tolerance): a splinter may turn another one towards it from behind its
+/// point.
+int mostOpposed(const PairBody& body, const Vec3& normal, double lowest)
 {
+  const auto reachesDown = [&](int face)
+  {
+    const std::vector<int>& loop = body.loops[std::size_t(face)];
+    return std::any_of(
+      loop.begin(), loop.end(), [&](int v) { return normal.dot(body.vertex(v)) <= lowest; });
+  };
   int face = 0;
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < body.faceFours(); ++i)
@@ -63,17 +72,32 @@ int mostOpposed(const PairBody& body, const Vec3& normal)
       }
     }
   }
+  if (reachesDown(face))
+  {
+    return face;
+  }
+  least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < body.faces(); ++i)
+  {
+    const double along = normal.dot(body.normal(i));
+    if (along < least && reachesDown(i))
+    {
+      least = along;
+      face = i;
+    }
+  }
   return face;
 }
 
-/// The face of `body` that is most against `normal`, cut by the prism over a face of `owner`
-/// (Sutherland & Hodgman 1974).
+/// The face of `body` that lies towards a face of `owner`, cut by the prism over that (Sutherland &
+/// Hodgman 1974). `gap` (m): of the body's lowest vertex over it.
 std::span<const Corner> clipFace(
-  const PairBody& body, const PairBody& owner, int ownerFace, double tolerance)
+  const PairBody& body, const PairBody& owner, int ownerFace, double gap, double tolerance)
 {
   thread_local std::vector<Corner> keptA, keptB;
   const Vec3 normal = owner.normal(ownerFace);
-  const std::vector<int>& cut = body.loops[std::size_t(mostOpposed(body, normal))];
+  const double lowest = owner.offset(ownerFace) + gap + tolerance;
+  const std::vector<int>& cut = body.loops[std::size_t(mostOpposed(body, normal, lowest))];
   const std::vector<int>& loop = owner.loops[std::size_t(ownerFace)];
   std::vector<Corner>*from = &keptA, *to = &keptB;
   Corner* polygon = roomFor(*from, cut.size());
@@ -154,7 +178,8 @@ std::span<const Touch> touchesAlong(
   const PairBody& body = faceOfFirst ? second : first;
   const int face = faceOfFirst ? axis.first : axis.second;
   const double smaller = std::min(first.radius, second.radius);
-  const std::span<const Corner> polygon = clipFace(body, owner, face, 1e-6 * smaller);
+  const std::span<const Corner> polygon =
+    clipFace(body, owner, face, axis.distance, 1e-6 * smaller);
   Touch* touches = roomFor(kept, polygon.size());
   std::size_t count = 0;
   const double one = kOnePoint * smaller;
@@ -171,6 +196,18 @@ std::span<const Touch> touchesAlong(
     }
   }
   return { touches, count };
+}
+
+std::span<const Touch> touchesOf(
+  const PairBody& first, const PairBody& second, PairAxis& axis, double reach)
+{
+  const std::span<const Touch> touches = touchesAlong(first, second, axis, reach);
+  if (!touches.empty() || axis.distance >= 0.0)
+  {
+    return touches;
+  }
+  axis = bestAxis(first, second);
+  return touchesAlong(first, second, axis, reach);
 }
 
 void putTouch(const Touch& touch, const PairBody& second, const PairAxis& axis, Contact& c)
@@ -195,10 +232,10 @@ void putTouch(const Touch& touch, const PairBody& second, const PairAxis& axis, 
   c.surfaceFeature = features.second;
 }
 
-void findTouches(const PairBody& first, const PairBody& second, const PairAxis& axis, double reach,
+void findTouches(const PairBody& first, const PairBody& second, PairAxis& axis, double reach,
   std::vector<Contact>& contacts)
 {
-  const std::span<const Touch> touches = touchesAlong(first, second, axis, reach);
+  const std::span<const Touch> touches = touchesOf(first, second, axis, reach);
   contacts.assign(touches.size(), Contact());
   for (std::size_t i = 0; i < touches.size(); ++i)
   {

@@ -98,11 +98,15 @@ private:
 PairAxis findAxis(
   const PairBody& first, const PairBody& second, const PairAxis& last, double reach);
 
-/// The points of touch along an axis: gaps up to `reach` (m). For a VertexFace contact the point is
-/// on the first rock and the face on the second, for FaceVertex the other way round; EdgeEdge has
-/// an edge of each. `rockFeature` and `surfaceFeature` are numbers of features of the first and
-/// second rock, `ridge` the line of the second one's edge.
-void findTouches(const PairBody& first, const PairBody& second, const PairAxis& axis, double reach,
+/// The axis of the largest gap of all, by however little.
+PairAxis bestAxis(const PairBody& first, const PairBody& second);
+
+/// The points of touch along an axis: gaps up to `reach` (m). An overlap that has none along it,
+/// since another one is a little better, is looked at along that, and `axis` is it then. For a
+/// VertexFace contact the point is on the first rock and the face on the second, for FaceVertex the
+/// other way round; EdgeEdge has an edge of each. `rockFeature` and `surfaceFeature` are numbers of
+/// features of the first and second rock, `ridge` the line of the second one's edge.
+void findTouches(const PairBody& first, const PairBody& second, PairAxis& axis, double reach,
   std::vector<Contact>& contacts);
 
 /// What rules the contacts of two rocks.

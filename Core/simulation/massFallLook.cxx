@@ -100,7 +100,7 @@ bool MassFall::lookAgain(const Group& group, double h, bool bounces, Workspace& 
   work.found.resize(std::max(work.found.size(), work.missedPairs.size()));
   const auto findThem = [&](std::size_t m)
   {
-    const RockPair& pair = *group.pairs[work.missedPairs[m]];
+    RockPair& pair = *group.pairs[work.missedPairs[m]];
     const Member &a = *members_[pair.first], &b = *members_[pair.second];
     findTouches(a.endBody, b.endBody, pair.end, 0.0, work.found[m]);
   };

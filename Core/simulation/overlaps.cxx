@@ -71,7 +71,11 @@ std::vector<RockOverlap> overlapsOf(
   {
     const std::size_t i = std::size_t(ij[0]), j = std::size_t(ij[1]);
     const double smaller = std::min(boxes[i].radius, boxes[j].radius);
-    const PairAxis axis = findAxis(all[i]->body, all[j]->body, {}, 0.0);
+    if (findAxis(all[i]->body, all[j]->body, {}, 0.0).distance >= -kLaidDown * smaller)
+    {
+      continue;
+    }
+    const PairAxis axis = bestAxis(all[i]->body, all[j]->body);
     if (axis.distance < -kLaidDown * smaller)
     {
       overlaps.push_back({ ij[0], ij[1], -axis.distance, axis.normal });
