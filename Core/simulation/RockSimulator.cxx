@@ -233,7 +233,7 @@ void RockSimulator::flyUntilNear()
       else
       {
         placed_.place(block_, state_);
-        const double sure = std::exchange(freeFor_, 0.0);
+        const double sure = std::max(0.0, freeUntil_ - state_.time);
         const double touch =
           std::max(sure, timeToTouch(placed_, state_, window_, parameters_.gravity, duration));
         // So near that the pairs that can touch tell more.

@@ -133,7 +133,7 @@ private:
   bool barriers_ = false;
   std::vector<int> goneTrees_;      ///< Ascending.
   std::vector<int> brokenBarriers_; ///< In the order of breaking.
-  double freeUntil_ = 0.0;          ///< No obstacle can be touched until then, s.
+  double freeUntil_ = 0.0;          ///< Nothing can be touched until then, after a take-off, s.
   struct BarrierHit
   {
     int barrier = -1;      ///< −1: none.
@@ -141,7 +141,6 @@ private:
     double heightOverGround = 0.0;
   } hit_;
   double openTime_ = 0.0; ///< Since it touched, s.
-  double freeFor_ = 0.0;  ///< Nothing can be touched for so long after a take-off, s.
   double horizon_ = 0.0;  ///< Up to which it is to advance, s.
   bool inContact_ = false;
   bool done_ = false;

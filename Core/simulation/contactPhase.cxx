@@ -158,7 +158,6 @@ void RockSimulator::stayInContact()
           energy_.vibration += relaxStrain(block_, state_);
           this->finishImpact();
         }
-        freeFor_ = served;
         freeUntil_ = state_.time + served;
         this->endContact();
         return;

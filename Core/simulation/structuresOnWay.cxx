@@ -238,7 +238,6 @@ void RockSimulator::meetBarrier()
     return;
   }
   brokenBarriers_.push_back(hit_.barrier);
-  freeFor_ = 0.0;
   freeUntil_ = 0.0;
   state_.time += kInstant;
   recorder_.knot(state_, false);

@@ -159,3 +159,11 @@ TEST(Block, RelaxingStrainKeepsMomenta)
   EXPECT_GT(dropped, 0.0);
   EXPECT_NEAR(kineticEnergy(block, s) + dropped, before, 1e-10 * before);
 }
+
+TEST(Block, ShapeOffItsCentroidIsRefused)
+{
+  const Polyhedron box = makeBox({ 2.0, 1.0, 0.5 });
+  const Polyhedron off = box.transformed(1.0, Quat::Identity(), Vec3(0.0, 1e-3, 0.0));
+  EXPECT_THROW(Block(off, 2500.0, 1e10, 0.1), GeometryError);
+  EXPECT_NO_THROW(Block(off.centred(), 2500.0, 1e10, 0.1));
+}

@@ -172,28 +172,37 @@ TEST(Crowds, HandfulComesToRestWithoutOverlap)
 TEST(Crowds, CrowdThatMeetsFastDoesNotOverlap)
 {
   // Cubes that fall onto each other at 9 m/s go 5 % of their edge in a step; a crowd, whose impacts
-  // are events of one step, holds them apart in it all the same.
-  Pile pile;
-  pile.ground = floorSlope();
-  pile.awake = false;
-  pile.rocks = handful(108, 4);
-  for (Rock& rock : pile.rocks)
+  // are events of one step, holds them apart in it all the same. How deep the deepest overlap ever
+  // is hangs on chance: of 60 seeds 0.87 % of the edge on average, with a standard deviation of 0.3
+  // %, and 2.2 % at worst.
+  constexpr int seeds = 6;
+  double sum = 0.0;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed)
   {
-    rock.shape = makeShape(Shape::Cube, 0.6);
-    rock.position = Vec3(20, 20, 0) + 1.5 * (rock.position - Vec3(20, 20, 0));
-    rock.velocity = Vec3(0, 0, -9.0);
+    Pile pile;
+    pile.ground = floorSlope();
+    pile.awake = false;
+    pile.rocks = handful(108, seed);
+    for (Rock& rock : pile.rocks)
+    {
+      rock.shape = makeShape(Shape::Cube, 0.6);
+      rock.position = Vec3(20, 20, 0) + 1.5 * (rock.position - Vec3(20, 20, 0));
+      rock.velocity = Vec3(0, 0, -9.0);
+    }
+    pile.start();
+    double deepest = 0.0;
+    int largest = 0;
+    for (int step = 0; step < 300; ++step)
+    {
+      pile.fall->advance();
+      deepest = std::max(deepest, step % 4 == 0 ? pile.overlap() : 0.0);
+      largest = std::max(largest, step % 4 == 0 ? largestGroup(pile) : 0);
+    }
+    EXPECT_GT(largest, 64); // in one step
+    EXPECT_LT(deepest, 0.03 * std::cbrt(0.6)) << seed;
+    sum += deepest;
   }
-  pile.start();
-  double deepest = 0.0;
-  int largest = 0;
-  for (int step = 0; step < 300; ++step)
-  {
-    pile.fall->advance();
-    deepest = std::max(deepest, step % 4 == 0 ? pile.overlap() : 0.0);
-    largest = std::max(largest, step % 4 == 0 ? largestGroup(pile) : 0);
-  }
-  EXPECT_GT(largest, 64); // in one step
-  EXPECT_LT(deepest, 0.01 * std::cbrt(0.6));
+  EXPECT_LT(sum / seeds, 0.012 * std::cbrt(0.6));
 }
 
 TEST(Crowds, SleepersAreNotPushedIntoEachOther)

@@ -1,0 +1,203 @@
+// Thin and long rocks with sharp points, of very different sizes: what cubes do not show.
+
+#include "piles.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+
+using namespace rockfall;
+using namespace rockfall::testing;
+
+namespace
+{
+
+/// A hull of twelve random points, thin and long like rock that has split off.
+Polyhedron splinter(std::mt19937& random, double size)
+{
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  std::vector<Vec3> corners;
+  for (int k = 0; k < 12; ++k)
+  {
+    const double x = u(random), y = u(random), z = u(random);
+    corners.push_back(size * Vec3(x, 0.3 * y, 1.5 * z));
+  }
+  return Polyhedron::convexHull(corners).centred();
+}
+
+std::vector<Block> blocksOf(const std::vector<Rock>& rocks)
+{
+  std::vector<Block> blocks;
+  for (const Rock& r : rocks)
+  {
+    blocks.emplace_back(r.shape, r.density, r.youngModulus, r.poissonRatio);
+  }
+  return blocks;
+}
+
+} // namespace
+
+// Wherever two splinters overlap they touch, as deep as the best axis says: their sharp points may
+// lie behind faces that look more towards the other one.
+TEST(Splinters, WhatOverlapsTouches)
+{
+  std::mt19937 random(17);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  int overlapping = 0;
+  for (int k = 0; k < 3000; ++k)
+  {
+    const double ratio = std::pow(10.0, 0.8 * u(random));
+    const std::array<Block, 2> blocks = { Block(splinter(random, 1.0), 2500.0, 1e9, 0.2),
+      Block(splinter(random, ratio), 2500.0, 1e9, 0.2) };
+    std::array<PlacedBlock, 2> placed;
+    std::array<PairBody, 2> bodies;
+    std::array<BlockState, 2> states;
+    PairAxis last;
+    std::vector<Contact> touches;
+    for (BlockState& s : states)
+    {
+      s.orientation = Quat(u(random), u(random), u(random), u(random)).normalized();
+    }
+    const Vec3 way = Vec3(u(random), u(random), u(random)).normalized();
+    const double smaller = std::min(blocks[0].radius(), blocks[1].radius());
+    // Into each other in steps, the axis remembered, turning a little.
+    for (int step = 0; step < 400; ++step)
+    {
+      states[1].position = (blocks[0].radius() + blocks[1].radius() - 0.01 * step * smaller) * way;
+      states[1].orientation =
+        (Quat(1.0, 0.005 * u(random), 0.005 * u(random), 0.005 * u(random)) * states[1].orientation)
+          .normalized();
+      for (int i : { 0, 1 })
+      {
+        placed[i].place(blocks[i], states[i]);
+        bodies[i].update(placed[i]);
+      }
+      last = findAxis(bodies[0], bodies[1], last, 0.0);
+      if (last.distance >= 0.0)
+      {
+        continue;
+      }
+      ++overlapping;
+      const double depth = -bestAxis(bodies[0], bodies[1]).distance;
+      // An axis stays as long as none is better by 1e-3 of the smaller radius, no edges by 2e-3.
+      EXPECT_GE(-last.distance, depth - 1e-12);
+      EXPECT_LE(-last.distance, depth + 2.1e-3 * smaller);
+      findTouches(bodies[0], bodies[1], last, 0.0, touches);
+      if (depth <= 0.0)
+      {
+        continue;
+      }
+      ASSERT_FALSE(touches.empty()) << "case " << k << ", step " << step;
+      if (depth > 0.05 * smaller)
+      {
+        break;
+      }
+    }
+  }
+  EXPECT_GT(overlapping, 10000);
+}
+
+// Splinters that hit each other fast and spinning are stopped by their springs within about 1 % of
+// the smaller one's radius, which is what these are made stiff enough for by the speeds of the
+// centroids; spin may add to it.
+TEST(Splinters, DoNotPassIntoEachOther)
+{
+  std::mt19937 random(23);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  const Terrain ground = abyss();
+  int met = 0;
+  for (int k = 0; k < 150; ++k)
+  {
+    SimulationParameters p;
+    p.gravity = 0.0;
+    p.timeStep = 0.01;
+    p.endTime = 0.8;
+    p.rockRockContact = true;
+    p.rockRestitution = 0.9;
+    p.rockFrictionAngle = radians(30.0);
+    std::vector<Rock> rocks(2);
+    for (int i : { 0, 1 })
+    {
+      Rock& rock = rocks[i];
+      rock.blockId = i;
+      rock.shape = splinter(random, i == 0 ? 1.0 : std::pow(10.0, 0.5 * (u(random) - 1.0)));
+      rock.position = Vec3(200.0 + (i == 0 ? -2.0 : 2.0), 200.0, 0.0);
+      rock.velocity = Vec3(i == 0 ? 6.0 : -6.0, 0.5 * u(random), 0.5 * u(random));
+      rock.orientation = Quat(u(random), u(random), u(random), u(random)).normalized();
+      rock.angularVelocity = 10.0 * Vec3(u(random), u(random), u(random));
+    }
+    const std::vector<Block> blocks = blocksOf(rocks);
+    const Surface surface(ground, p.seed, 0);
+    MassFall fall(surface, rocks, blocks, p);
+    fall.release();
+    double deepest = 0.0;
+    while (fall.advance())
+    {
+      deepest = std::max(deepest,
+        deepestOverlap(
+          2, [&](int i) -> const Block& { return blocks[i]; },
+          [&](int i) -> const BlockState& { return fall.state(i); }));
+    }
+    met += !fall.impacts(0).empty();
+    EXPECT_LT(deepest, 0.02 * std::min(blocks[0].radius(), blocks[1].radius())) << "case " << k;
+  }
+  EXPECT_GT(met, 100);
+}
+
+// A rock that has taken off knows for how long nothing can be touched. That holds from the take-off
+// on, and not for any later flight: it would end below the slope.
+TEST(Splinters, WhatFliesIsOverTheSlope)
+{
+  for (const unsigned seed : { 1u, 3u })
+  {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> u(-1.0, 1.0);
+    Pile pile;
+    pile.awake = false;
+    pile.ground = makeSlope(
+      41, 3.0,
+      [](double x, double y) {
+        return 0.02 * (x - 60.0) * (x - 60.0) + 3.0 * std::sin(y / 5.0) + 2.0 * std::cos(x / 4.0);
+      },
+      material(0.6, 40.0));
+    pile.parameters.timeStep = 0.01;
+    pile.parameters.endTime = 4.0;
+    pile.parameters.rockFrictionAngle = radians(30.0);
+    pile.parameters.rockRestitution = 0.5;
+    for (int k = 0; k < 120; ++k)
+    {
+      Rock rock;
+      rock.blockId = k;
+      rock.shape = splinter(random, 0.25 * std::pow(10.0, 0.85 * u(random)));
+      rock.position = Vec3(51.0 + 6.0 * u(random), 51.0 + 6.0 * u(random), 40.0 + 20.0 * u(random));
+      rock.velocity = Vec3(10.0 * u(random), 5.0 * u(random), -15.0 * (1.0 + u(random)));
+      rock.angularVelocity = 20.0 * Vec3(u(random), u(random), u(random));
+      pile.rocks.push_back(rock);
+    }
+    pile.start();
+    PlacedBlock placed;
+    int flying = 0;
+    for (bool goOn = true; goOn;)
+    {
+      goOn = pile.fall->advance();
+      for (int k = 0; k < pile.fall->rocks(); ++k)
+      {
+        if (!pile.fall->slopeContacts(k).empty())
+        {
+          continue;
+        }
+        ++flying;
+        placed.place(pile.blocks[k], pile.fall->state(k));
+        for (const Vec3& p : placed.vertices())
+        {
+          // Where there is no ground, the elevation is NaN. Flight ends a hair over the slope.
+          EXPECT_FALSE(pile.surface->elevation(p.x(), p.y()) - p.z() > 1e-9)
+            << "seed " << seed << ", rock " << k << " at " << pile.fall->time() << " s";
+        }
+      }
+    }
+    EXPECT_GT(flying, 40000);
+  }
+}
