@@ -16,6 +16,7 @@
 #include "vtkPolyData.h"
 #include "vtkTable.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -43,6 +44,10 @@ void checkSize(double value, const char* name)
   }
 }
 
+/// Lines that are farther from the trajectories than this, m, and than ten times their extent, are
+/// those of another place. Where all rocks stop before a nearer one, none has passed it.
+constexpr double kElsewhere = 1000.0;
+
 /// The lines of a file, which must be where the trajectories are. What they do not say of their
 /// barrier is `barrier`'s.
 std::vector<CollectorLine> readLines(const std::string& fileName, vtkPolyData* trajectories,
@@ -66,7 +71,7 @@ std::vector<CollectorLine> readLines(const std::string& fileName, vtkPolyData* t
       line.points.push_back(place - origin.head<2>());
     }
   }
-  if (!all.intersects(rocks))
+  if (all.exteriorDistance(rocks) > std::max(kElsewhere, 10.0 * rocks.diagonal().norm()))
   {
     const auto text = [](const Eigen::AlignedBox2d& box)
     {
@@ -75,7 +80,7 @@ std::vector<CollectorLine> readLines(const std::string& fileName, vtkPolyData* t
         numberText(box.min().y()) + " to " + numberText(box.max().y());
     };
     throw rockfall::DataError(fileName + ": its lines (" + text(all) +
-      ") do not overlap the trajectories (" + text(rocks) + ")");
+      ") are far from the trajectories (" + text(rocks) + ")");
   }
   return lines;
 }

@@ -247,6 +247,29 @@ Vec3 CrowdSolver::travel(const Row& row) const
     laneOf(p.directions[2], lane).dot(way) };
 }
 
+std::array<Vec3, 2> CrowdSolver::velocities(const Row& row) const
+{
+  const crowd::Batch& p = batches_[std::size_t(row.batch)];
+  const int lane = row.lane;
+  Vec3 before = Vec3::Zero(), after = Vec3::Zero();
+  for (int side = 0; side < 2; ++side)
+  {
+    const std::size_t i = std::size_t(p.body[side][lane]);
+    if (i < work_.size())
+    {
+      const Work& w = work_[std::size_t(line_[i].second)];
+      const Vec3 lever = laneOf(p.lever[side], lane);
+      const double sign = side == 0 ? 1.0 : -1.0;
+      before += sign * (w.velocity0 + w.spin0.cross(lever));
+      after += sign * (w.way / h_ + w.offset + (w.spun / h_ + w.spinOffset).cross(lever));
+    }
+  }
+  Mat3 along;
+  along << laneOf(p.directions[0], lane).transpose(), laneOf(p.directions[1], lane).transpose(),
+    laneOf(p.directions[2], lane).transpose();
+  return { along * before, along * after };
+}
+
 void CrowdSolver::startMover(const GroupBody& body, std::size_t i)
 {
   const Work& w = work_[i];

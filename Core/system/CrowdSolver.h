@@ -102,6 +102,8 @@ private:
   void pushed(const Row& row, double sign);   ///< Movers by the row's force.
   Vec3 wayOf(const Row& row, int side) const; ///< Of a rock's point of force, m.
   Vec3 travel(const Row& row) const;          ///< Along the normal and the tangents, m.
+  /// Velocities before and after the step along the normal and the tangents, m/s.
+  std::array<Vec3, 2> velocities(const Row& row) const;
   void startMover(const GroupBody& body, std::size_t i);
   void startMovers(const std::vector<GroupBody>& bodies);
   /// Turns that were guessed wrong, and the levers that go with them.
@@ -111,7 +113,10 @@ private:
   double visit(int part);
   double sweep();
   bool sweeps(int most, GroupOutcome& outcome);
-  void collect(); ///< Displacements from movers.
+  /// Sweeps, and again as long as bounces give energy.
+  void settle(int most, std::vector<GroupContact>& contacts, GroupOutcome& outcome);
+  bool holdBounces(std::vector<GroupContact>& contacts); ///< Whether any gives energy.
+  void collect();                                        ///< Displacements from movers.
   void write(const StepRequest& request, std::vector<GroupBody>& bodies,
     std::vector<GroupContact>& contacts, GroupOutcome& outcome);
 
@@ -134,6 +139,7 @@ private:
   int parts_ = 1;
   std::vector<std::vector<Hand>> hands_; ///< Of each part.
   std::vector<char> wrong_; ///< By contact, whether a rock of it has turned otherwise than guessed.
+  std::vector<char> gives_; ///< By contact, whether its bounce gives energy.
   std::vector<int> touched_;        ///< Bodies.
   std::vector<int> keyOf_, order_;  ///< Contacts: part and kind; in order of it.
   std::vector<int> starts_;         ///< First batch of each part and kind.

@@ -109,6 +109,10 @@ private:
   void loads(const StepRequest& request, const std::vector<GroupBody>& bodies);
   bool newton(
     const StepRequest& request, const std::vector<GroupBody>& bodies, GroupOutcome& outcome);
+  /// Newton, and again as long as bounces give energy; returns whether it has settled.
+  bool settle(const StepRequest& request, const std::vector<GroupBody>& bodies,
+    std::vector<GroupContact>& contacts, GroupOutcome& outcome);
+  bool holdBounces(double h, std::vector<GroupContact>& contacts); ///< Whether any gives energy.
   bool solveDirect(Eigen::VectorXd& next);
   template <class Add>
   void assemble(Eigen::VectorXd& right, Add&& add) const;

@@ -239,6 +239,50 @@ bool CrowdSolver::sweeps(int most, GroupOutcome& outcome)
   return settled;
 }
 
+bool CrowdSolver::holdBounces(std::vector<GroupContact>& contacts)
+{
+  const auto gives = [&](std::size_t k)
+  {
+    const Row& row = rows_[k];
+    crowd::Batch& p = batches_[std::size_t(row.batch)];
+    if (contacts[k].bounce <= 0.0 || p.force[0][row.lane] <= 0.0)
+    {
+      return false;
+    }
+    const auto [before, after] = this->velocities(row);
+    const double held = heldBounce(contacts[k], laneOf(p.force, row.lane), before, after);
+    if (held >= 0.0)
+    {
+      contacts[k].bounce = held;
+      p.gap[row.lane] = bounceGap(contacts[k], h_, row.penalty * p.w[row.lane]);
+    }
+    return held >= 0.0;
+  };
+  bool any = false;
+  const auto goOn = [&](std::size_t k)
+  {
+    any = true;
+    for (const int body : { contacts[k].first, contacts[k].second })
+    {
+      if (body >= 0)
+      {
+        changed_[work_[std::size_t(body)].mover] = sweep_;
+      }
+    }
+  };
+  forThose(rows_.size(), kRowGrain, gives_, gives, goOn);
+  return any;
+}
+
+void CrowdSolver::settle(int most, std::vector<GroupContact>& contacts, GroupOutcome& outcome)
+{
+  for (int k = 0; k < kHeldBounces && this->holdBounces(contacts); ++k)
+  {
+    outcome.settled = this->sweeps(most, outcome);
+    this->collect();
+  }
+}
+
 void CrowdSolver::collect()
 {
   const auto take = [&](std::size_t i)
@@ -287,6 +331,7 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
     outcome.settled = this->sweeps(most, outcome);
   }
   this->collect();
+  this->settle(most, contacts, outcome);
   for (int look = 0; look < kLooks && lookAgain && lookAgain(); ++look)
   {
     // From here it goes on around what was found only.
@@ -299,6 +344,7 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
     this->append(bodies, contacts);
     outcome.settled = this->sweeps(most, outcome);
     this->collect();
+    this->settle(most, contacts, outcome);
   }
   bool finite = true;
   for (const Work& w : work_)

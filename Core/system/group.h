@@ -56,6 +56,11 @@ struct GroupOutcome
 /// between others would keep Gauss–Seidel from settling.
 constexpr double kBounceStiffness = 100.0;
 
+/// Bounces that give less than this share of what comes in along their normal are let be, and how
+/// often the others are held back in a step.
+constexpr double kBounceGain = 1e-3;
+constexpr int kHeldBounces = 3;
+
 /// How often missed contacts are looked for in a step (GroupSolver::step, lookAgain).
 constexpr int kLooks = 2;
 
@@ -72,6 +77,22 @@ inline double bounceGap(const GroupContact& contact, double h, double turned)
 inline double gapChange(double gap0, double reckoned, double found)
 {
   return std::max(std::min(0.0, gap0) - gap0, found - reckoned);
+}
+
+/// Lower bounce of a contact, m/s, if it gives the rocks energy. Newton's law asks for a speed
+/// along the normal, whatever friction does: where that turns the velocity across the normal round,
+/// as it can under a long lever, both together may give more than was there (Kane & Levinson 1985).
+/// An impulse P does the work P · ½ (v + v′). `force` (N) and velocities before and after (m/s) are
+/// along the normal and the tangents. Negative if nothing is to be changed.
+inline double heldBounce(
+  const GroupContact& contact, const Vec3& force, const Vec3& before, const Vec3& after)
+{
+  const Vec3 twice = before + after;
+  const double across = force.tail<2>().dot(twice.tail<2>());
+  const double given = across + force[0] * twice[0];
+  const bool gives =
+    contact.bounce > 0.0 && across > 0.0 && given > kBounceGain * force[0] * contact.approach;
+  return gives ? std::max(0.0, contact.bounce - given / force[0]) : -1.0;
 }
 
 /// What a contact has done in a step, J.

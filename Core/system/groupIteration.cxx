@@ -76,6 +76,56 @@ bool GroupSolver::newton(
   return false;
 }
 
+bool GroupSolver::holdBounces(double h, std::vector<GroupContact>& contacts)
+{
+  bool any = false;
+  for (std::size_t k = 0; k < rows_.size(); ++k)
+  {
+    Row& row = rows_[k];
+    if (contacts[k].bounce <= 0.0 || row.law.force <= 0.0)
+    {
+      continue;
+    }
+    Vec3 before = Vec3::Zero(), after = Vec3::Zero();
+    double sign = 1.0;
+    for (const Side& side : row.sides)
+    {
+      if (side.body >= 0)
+      {
+        const Work& w = work_[side.body];
+        const Vec6 velocity = rate_ * w.d + w.offset;
+        before += sign * (w.velocity0.head<3>() + w.velocity0.tail<3>().cross(side.lever));
+        after += sign * (velocity.head<3>() + velocity.tail<3>().cross(side.lever));
+      }
+      sign = -1.0;
+    }
+    Mat3 along;
+    along << row.directions[0].transpose(), row.directions[1].transpose(),
+      row.directions[2].transpose();
+    const Vec3 force(row.law.force, row.law.shearForce[0], row.law.shearForce[1]);
+    const double held = heldBounce(contacts[k], force, along * before, along * after);
+    if (held >= 0.0)
+    {
+      const double n = row.directions[0].dot(this->mobility(row) * row.directions[0]);
+      contacts[k].bounce = held;
+      row.law.gap0 = bounceGap(contacts[k], h, row.law.penalty * n);
+      any = true;
+    }
+  }
+  return any;
+}
+
+bool GroupSolver::settle(const StepRequest& request, const std::vector<GroupBody>& bodies,
+  std::vector<GroupContact>& contacts, GroupOutcome& outcome)
+{
+  bool settled = this->newton(request, bodies, outcome);
+  for (int k = 0; k < kHeldBounces && settled && this->holdBounces(request.duration, contacts); ++k)
+  {
+    settled = this->newton(request, bodies, outcome);
+  }
+  return settled;
+}
+
 GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody>& bodies,
   std::vector<GroupContact>& contacts, bool takeAnyway, const std::function<bool()>& lookAgain)
 {
@@ -96,11 +146,11 @@ GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody
   GroupOutcome outcome;
   sweeping_ = false;
   this->prepare(request, bodies, contacts);
-  outcome.settled = this->newton(request, bodies, outcome);
+  outcome.settled = this->settle(request, bodies, contacts, outcome);
   for (int look = 0; look < kLooks && outcome.settled && lookAgain && lookAgain(); ++look)
   {
     this->append(request, bodies, contacts);
-    outcome.settled = this->newton(request, bodies, outcome);
+    outcome.settled = this->settle(request, bodies, contacts, outcome);
   }
   if (!outcome.settled && takeAnyway)
   {

@@ -1,5 +1,6 @@
 // The block with its 12 unknowns and its free flight (METHOD 1, 10.3, 10.4).
 
+#include "base/errors.h"
 #include "block/Block.h"
 #include "block/flight.h"
 #include "geometry/shapes.h"
@@ -164,6 +165,7 @@ TEST(Block, ShapeOffItsCentroidIsRefused)
 {
   const Polyhedron box = makeBox({ 2.0, 1.0, 0.5 });
   const Polyhedron off = box.transformed(1.0, Quat::Identity(), Vec3(0.0, 1e-3, 0.0));
-  EXPECT_THROW(Block(off, 2500.0, 1e10, 0.1), GeometryError);
-  EXPECT_NO_THROW(Block(off.centred(), 2500.0, 1e10, 0.1));
+  const auto make = [](const Polyhedron& shape) { return Block(shape, 2500.0, 1e10, 0.1); };
+  EXPECT_THROW(make(off), GeometryError);
+  EXPECT_NO_THROW(make(off.centred()));
 }

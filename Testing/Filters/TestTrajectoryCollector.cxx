@@ -143,6 +143,14 @@ TEST_F(TestTrajectoryCollector, LinesOfAFile)
   EXPECT_EQ(this->Number("BarrierHeight", 0), 4.0);
 }
 
+TEST_F(TestTrajectoryCollector, LineThatNobodyComesToHasNoPassage)
+{
+  this->Filter->SetFileName(this->Json(R"({ "name": "village" })", 500400).c_str());
+  ASSERT_EQ(this->Table(1)->GetNumberOfRows(), 1);
+  EXPECT_EQ(this->Number("Rocks"), 0);
+  EXPECT_TRUE(this->Heard->Errors.empty());
+}
+
 TEST_F(TestTrajectoryCollector, BadInput)
 {
   const auto expect = [this](const std::vector<std::string>& words)
@@ -154,7 +162,7 @@ TEST_F(TestTrajectoryCollector, BadInput)
   };
   expect({ "no line", "FileName" });
   this->Filter->SetFileName(this->Json("{}", 600003).c_str());
-  expect({ "lines.geojson", "do not overlap", "600003" });
+  expect({ "lines.geojson", "far from the trajectories", "600003" });
   this->Filter->SetFileName("missing.gpkg");
   expect({ "missing.gpkg" });
   this->Filter->SetFileName("");
