@@ -48,8 +48,10 @@ double timeToClose(const PlacedBlock& rock, const BlockState& state, const Surfa
     {
       time = std::min(time, timeToCover(over, rate(t.normal, p), gravity + turning));
     }
-    else if (projectsInside(patch, pair.patch, p, 0.0, 0.0))
+    else if (projectsInside(patch, pair.patch, p, 0.0, 0.0) ||
+      (pair.patch < patch.slopeTriangles && isStraightOver(patch, t, p)))
     {
+      // Under the bottom of a valley it is beside both walls, seen square to them.
       return 0.0;
     }
   }

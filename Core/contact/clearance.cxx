@@ -148,21 +148,6 @@ Clearance clearance(const PlacedBlock& rock, const BlockState& state, const Surf
 namespace
 {
 
-/// Whether a point is straight above or below a triangle.
-bool isStraightOver(const SurfacePatch& patch, const SurfacePatch::Triangle& t, const Vec3& p)
-{
-  for (int k = 0; k < 3; ++k)
-  {
-    const Vec3& a = patch.nodes[t.nodes[k]].position;
-    const Vec3& b = patch.nodes[t.nodes[(k + 1) % 3]].position;
-    if ((b.x() - a.x()) * (p.y() - a.y()) < (b.y() - a.y()) * (p.x() - a.x()))
-    {
-      return false;
-    }
-  }
-  return true;
-}
-
 } // namespace
 
 double penetration(const PlacedBlock& rock, const SurfacePatch& patch)
@@ -227,9 +212,14 @@ void holdOverlap(const PlacedBlock& rock, const SurfacePatch& patch,
     const bool known = std::any_of(contacts.begin(), contacts.end(),
       [&](const Contact& o)
       {
-        return o.kind == c.kind &&
-          (c.kind == ContactKind::VertexFace ? o.rockFeature == c.rockFeature
-                                             : o.surfaceFeature == c.surfaceFeature);
+        if (o.kind != c.kind || c.kind != ContactKind::VertexFace)
+        {
+          return o.kind == c.kind && o.surfaceFeature == c.surfaceFeature;
+        }
+        // The plane of a triangle is produced beyond a concave edge: a contact that lives on there
+        // knows of no depth under the triangle that rises behind it.
+        return o.rockFeature == c.rockFeature &&
+          (o.surfaceFeature == c.surfaceFeature || o.distance <= c.distance + allowed);
       });
     if (!known)
     {

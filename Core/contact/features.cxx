@@ -25,6 +25,20 @@ bool projectsInside(
   return true;
 }
 
+bool isStraightOver(const SurfacePatch& patch, const SurfacePatch::Triangle& t, const Vec3& p)
+{
+  for (int k = 0; k < 3; ++k)
+  {
+    const Vec3& a = patch.nodes[t.nodes[k]].position;
+    const Vec3& b = patch.nodes[t.nodes[(k + 1) % 3]].position;
+    if ((b.x() - a.x()) * (p.y() - a.y()) < (b.y() - a.y()) * (p.x() - a.x()))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
 bool inVertexCone(const PlacedBlock& rock, int vertex, const Vec3& normal, double slack)
 {
   // The vertex must be the lowest of its surroundings along the normal.

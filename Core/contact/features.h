@@ -21,6 +21,10 @@ constexpr double kConeSlack = 0.02;
 bool projectsInside(
   const SurfacePatch& patch, int triangle, const Vec3& point, double reach, double tolerance);
 
+/// Whether a point is straight above or below a triangle of the slope.
+bool isStraightOver(
+  const SurfacePatch& patch, const SurfacePatch::Triangle& triangle, const Vec3& point);
+
 /// Entrance of a rock vertex into a CFE, if the pair is valid.
 std::optional<Contact> vertexFace(
   const PlacedBlock& rock, int vertex, const SurfacePatch& patch, int triangle, double reach);

@@ -346,11 +346,15 @@ void RockSimulator::release()
   this->checkEnd(0.0);
 }
 
-void RockSimulator::beginContact()
+double RockSimulator::penaltyFor(double speed) const
 {
   const double depth = kDeepestImpact * block_.radius();
-  penalty_ = std::max(
-    parameters_.normalPenalty, block_.mass() * state_.velocity.squaredNorm() / (depth * depth));
+  return std::max(parameters_.normalPenalty, block_.mass() * speed * speed / (depth * depth));
+}
+
+void RockSimulator::beginContact()
+{
+  penalty_ = this->penaltyFor(state_.velocity.norm());
   steppedAs_ = StepKind::Lasting; // no impact's step to go by yet
   openTime_ = ringing_;
   inContact_ = true;

@@ -11,6 +11,7 @@
 #include "terrain/Obstacles.h"
 
 #include <limits>
+#include <span>
 #include <vector>
 
 namespace rockfall
@@ -63,7 +64,11 @@ private:
   // Structures, structuresOnWay.cxx
   double freeOfObstacles(double duration); ///< For how long, at most this, nothing is touched, s.
   void clearTrees();                       ///< Where the rock is released there is none.
-  bool breakTrees(double h); ///< That it is about to touch within `h`; whether there were any.
+  /// Those that it is about to touch within `h`, presses against or has `hit`, and that cannot hold
+  /// it; whether there were any.
+  bool breakTrees(double h, std::span<const int> hit = {});
+  /// Takes a step of `h` back in which it came against trees that cannot hold it, and breaks them.
+  bool undoAtTrees(double h);
   /// Fills `hit_` with the first barrier that stops the rock or breaks on the way to `state_`, and
   /// notes those that record; `flight`: the way is a parabola, else a step of contact.
   void findBarriers(const BlockState& from, const BlockState& to, bool flight);
@@ -72,6 +77,7 @@ private:
   void forgetPatch();
 
   // Contact, contactPhase.cxx
+  double penaltyFor(double speed) const; ///< That stops it in time, N/m.
   void beginContact();
   void stayInContact(); ///< Returns after take-off, at the horizon or at the end.
   void endContact();

@@ -142,6 +142,14 @@ void RockSimulator::stayInContact()
     }
     if (kind == StepKind::Impact && !anyClosed(contacts_) && openTime_ >= ringing_)
     {
+      if (!stiff_ && !(state_.strain.isZero(0.0) && state_.strainRate.isZero(0.0)))
+      {
+        // It has taken off, and what flies does not strain. How long it is free is asked of what
+        // it is then.
+        energy_.vibration += relaxStrain(block_, state_);
+        this->finishImpact();
+        continue;
+      }
       // Free until a pair closes, or until others than the candidates might.
       const double room = candidates_.room(state_, block_.radius(), 0.0);
       const double rim = block_.largestRimSpeed(state_.spin);
@@ -155,7 +163,6 @@ void RockSimulator::stayInContact()
         contacts_.clear();
         if (!stiff_)
         {
-          energy_.vibration += relaxStrain(block_, state_);
           this->finishImpact();
         }
         freeUntil_ = state_.time + served;
@@ -175,7 +182,7 @@ void RockSimulator::stayInContact()
     double pressed = 0.0;
     for (const Contact& c : contacts_)
     {
-      pressed = std::max(pressed, -c.distance);
+      pressed = std::max(pressed, -c.gap());
     }
     holdOverlap(
       placed_, patch_, candidates_, kLooseOverlap * block_.radius() + 2.0 * pressed, contacts_);
@@ -201,6 +208,8 @@ void RockSimulator::armContacts()
 {
   const Vec3 spin = state_.angularVelocity();
   const double speed = state_.velocity.norm();
+  // What slides into something may be faster than when its contact began.
+  penalty_ = std::max(penalty_, this->penaltyFor(speed));
   for (Contact& c : contacts_)
   {
     c.friction = surface_.frictionAt(c.cfe);
@@ -269,6 +278,10 @@ void RockSimulator::takeStep(double h, StepKind kind)
     }
     ++summary.cutSteps;
     request.duration *= 0.5;
+  }
+  if (solid_ && this->undoAtTrees(request.duration))
+  {
+    return;
   }
   ++summary.contactSteps;
   if (!outcome.settled)

@@ -147,7 +147,7 @@ void MassFall::gatherContacts(const Group& group, double h) const
     double pressed = 0.0;
     for (const Contact& c : sim.contacts_)
     {
-      pressed = std::max(pressed, -c.distance);
+      pressed = std::max(pressed, -c.gap());
     }
     holdOverlap(
       sim.placed_, sim.patch_, sim.candidates_, kLooseOverlap * r + 2.0 * pressed, sim.contacts_);

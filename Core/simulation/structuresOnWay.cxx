@@ -79,21 +79,46 @@ void RockSimulator::clearTrees()
   this->forgetPatch();
 }
 
-bool RockSimulator::breakTrees(double h)
+bool RockSimulator::undoAtTrees(double h)
+{
+  const double energy = rigidKineticEnergy(block_, before_);
+  std::vector<int> hit;
+  for (std::size_t i = 0; i < contactsBefore_.size(); ++i)
+  {
+    const Contact& c = contacts_[i];
+    const int tree = c.cfe >= obstacles_->firstCfe() ? obstacles_->treeOf(c.cfe) : -1;
+    if (tree >= 0 && c.closed() && !contactsBefore_[i].closed() &&
+      energy > obstacles_->structures().trees[std::size_t(tree)].capacity)
+    {
+      hit.push_back(tree);
+    }
+  }
+  if (hit.empty())
+  {
+    return false;
+  }
+  state_ = before_;
+  contacts_ = contactsBefore_;
+  return this->breakTrees(h, hit);
+}
+
+bool RockSimulator::breakTrees(double h, std::span<const int> hit)
 {
   bool any = false;
   const Vec3 spin = state_.angularVelocity();
   for (const Contact& c : contacts_)
   {
     const int tree = c.cfe >= obstacles_->firstCfe() ? obstacles_->treeOf(c.cfe) : -1;
-    if (tree < 0 || c.closed() || std::binary_search(goneTrees_.begin(), goneTrees_.end(), tree))
+    if (tree < 0 || std::binary_search(goneTrees_.begin(), goneTrees_.end(), tree))
     {
       continue;
     }
     const Tree& stem = obstacles_->structures().trees[std::size_t(tree)];
     const double energy = rigidKineticEnergy(block_, state_);
     const double approach = -c.normal.dot(state_.velocity + spin.cross(c.point - state_.position));
-    if (approach <= 0.0 || c.gap() >= approach * h || energy <= stem.capacity)
+    const bool meets =
+      c.closed() ? approach > restingSpeed_ : approach > 0.0 && c.gap() < approach * h;
+    if (energy <= stem.capacity || !(meets || std::find(hit.begin(), hit.end(), tree) != hit.end()))
     {
       continue;
     }
