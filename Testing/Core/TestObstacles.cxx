@@ -275,6 +275,52 @@ TEST(Obstacles, NoShotGoesThroughATree)
   EXPECT_EQ(through, 0);
 }
 
+// Whatever its shape and spin, a rock goes on as if stems of no capacity were not there: none
+// carries it for a step before it breaks.
+TEST(Obstacles, AStemWithoutCapacityDoesNotCarry)
+{
+  std::mt19937 random(31);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  const Terrain bare = level(material(0.5, 20.0));
+  std::size_t broken = 0;
+  for (int k = 0; k < 400; ++k)
+  {
+    Rock rock;
+    if (k % 2 == 0)
+    {
+      rock.shape = makeShape(Shape::Tetrahedron, 0.7);
+    }
+    else
+    {
+      rock.shape = makeBox(Vec3(0.15, 0.15, 3.0)).centred();
+    }
+    rock.orientation = Quat(u(random), u(random), u(random), u(random)).normalized();
+    rock.position = Vec3(40.0, 50.0 + u(random), 112.0);
+    rock.velocity = Vec3(30.0 + 15.0 * u(random), 0.0, 2.0);
+    rock.angularVelocity = 20.0 * Vec3(u(random), u(random), u(random));
+    Structures s;
+    for (int i = 0; i < 4; ++i)
+    {
+      Tree tree;
+      tree.feature = i;
+      tree.position = { 45.0 + 3.0 * i, 50.0 + u(random) };
+      tree.diameter = 0.5 + 0.3 * u(random);
+      tree.height = 25.0;
+      tree.capacity = 0.0;
+      s.trees.push_back(tree);
+    }
+    Terrain forest = bare;
+    forest.setStructures(s);
+    SimulationParameters p = rigidParameters(0.5);
+    p.endTime = 0.5; // before it comes to the ground
+    const Trajectory through = simulate(forest, rock, p), free = simulate(bare, rock, p);
+    broken += through.structures.size();
+    EXPECT_LT((through.summary.stop - free.summary.stop).norm(), 1e-6) << "case " << k;
+    EXPECT_NEAR(through.summary.energy.restitution, 0.0, 1e-9) << "case " << k;
+  }
+  EXPECT_GT(broken, 400u);
+}
+
 TEST(Obstacles, ATreeBreaksForMoreThanItsCapacityOnly)
 {
   for (const double speed : { 15.0, 25.0 })

@@ -1,0 +1,159 @@
+// Where two faces of the slope rise from a common bottom: nothing goes through it, and nothing in
+// short flights between its walls makes energy.
+
+#include "piles.h"
+#include "simulation/placement.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+
+using namespace rockfall;
+using namespace rockfall::testing;
+
+namespace
+{
+
+/// Runs a rock step by step; returns how deep a vertex of it ever was under the slope, square to
+/// that, in radii.
+double deepestUnderSlope(Pile& pile)
+{
+  pile.awake = false;
+  pile.start();
+  const Surface& surface = *pile.surface;
+  PlacedBlock placed;
+  double deepest = 0.0;
+  for (bool goOn = true; goOn;)
+  {
+    goOn = pile.fall->advance();
+    placed.place(pile.blocks[0], pile.fall->state(0));
+    for (const Vec3& p : placed.vertices())
+    {
+      constexpr double e = 1e-4;
+      const double z = surface.elevation(p.x(), p.y());
+      const double gx = (surface.elevation(p.x() + e, p.y()) - z) / e;
+      const double gy = (surface.elevation(p.x(), p.y() + e) - z) / e;
+      const double depth = (z - p.z()) / std::sqrt(1.0 + gx * gx + gy * gy);
+      deepest = depth > deepest ? depth : deepest; // NaN where there is no ground
+    }
+  }
+  return deepest / pile.blocks[0].radius();
+}
+
+} // namespace
+
+TEST(Valleys, RocksDoNotFallThroughTheBottomOfAGully)
+{
+  // What springs give at these speeds is below 0.06 radii. Of 2000 such cases four went deeper, by
+  // up to 0.23, all in gullies of 72°, where a vertex in the bottom is pushed from one wall into
+  // the other; none was lost. Before it was held there, 45 went deeper and 12 fell through.
+  int deeper = 0;
+  std::mt19937 random(77);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  for (int k = 0; k < 400; ++k)
+  {
+    const double wall = std::array{ 1.0, 1.5, 2.0, 3.0 }[std::size_t(k % 4)];
+    const double turned = k % 8 < 4 ? 0.0 : u(random);
+    Pile pile;
+    pile.ground = makeSlope(
+      61, 1.0,
+      [&](double x, double y)
+      {
+        const double along = -(x - 30.0) * std::sin(turned) + (y - 30.0) * std::cos(turned);
+        const double across = (x - 30.0) * std::cos(turned) + (y - 30.0) * std::sin(turned);
+        return 100.0 + wall * std::abs(across) + 0.4 * along;
+      },
+      material(0.5, std::array{ 10.0, 25.0, 35.0 }[std::size_t(k % 3)]));
+    pile.parameters.endTime = 10.0;
+    Rock rock;
+    std::vector<Vec3> corners;
+    const double size = 0.65 + 0.35 * u(random);
+    if (k % 5 < 3)
+    {
+      for (int i = 0; i < 12; ++i)
+      {
+        const double x = u(random), y = u(random), z = u(random);
+        corners.push_back(size * Vec3(x, 0.3 * y, 1.5 * z));
+      }
+      rock.shape = Polyhedron::convexHull(corners).centred();
+    }
+    else
+    {
+      rock.shape = makeShape(k % 5 == 3 ? Shape::Tetrahedron : Shape::Cube, size * size * size);
+    }
+    rock.orientation = Quat(u(random), u(random), u(random), u(random)).normalized();
+    rock.position = Vec3(30.0 + 2.0 * u(random), 35.0 + 5.0 * u(random), 0.0);
+    const Surface surface(pile.ground, 1, 0);
+    rock.position.z() =
+      touchingHeight(surface, rock.shape, rock.orientation, rock.position.x(), rock.position.y()) +
+      0.5 + 0.5 * u(random);
+    rock.velocity = 1.5 * (1.0 + u(random)) * Vec3(u(random), -1.0, 0.0);
+    rock.angularVelocity = 3.0 * Vec3(u(random), u(random), u(random));
+    pile.rocks = { rock };
+    const double depth = deepestUnderSlope(pile);
+    EXPECT_LT(depth, 0.25) << "case " << k;
+    deeper += depth > 0.06;
+  }
+  EXPECT_LE(deeper, 2);
+}
+
+TEST(Valleys, CubesDoNotFallThroughABend)
+{
+  // Down a ramp into a counter slope, face down and without friction, at up to 19 m/s.
+  for (const double size : { 1.0, 3.0, 6.0 })
+  {
+    for (const double up : { 0.5, 1.0 })
+    {
+      Pile pile;
+      pile.ground = makeSlope(
+        201, 2.0,
+        [&](double x, double) { return x < 200.0 ? (200.0 - x) * 0.8 : up * (x - 200.0); },
+        material(0.0, 0.0));
+      pile.parameters.endTime = 20.0;
+      Rock rock;
+      rock.shape = makeShape(Shape::Cube, size * size * size);
+      const double angle = std::atan(0.8), x = 175.0;
+      const Vec3 normal(std::sin(angle), 0.0, std::cos(angle));
+      rock.orientation = Quat::FromTwoVectors(Vec3::UnitZ(), normal);
+      rock.position = Vec3(x, 200.3, (200.0 - x) * 0.8) + (0.5 * size + 1e-4) * normal;
+      pile.rocks = { rock };
+      EXPECT_LT(deepestUnderSlope(pile), 0.11) << size << " m, up " << up;
+    }
+  }
+}
+
+TEST(Valleys, SoftRocksKeepTheirEnergyBetweenTouches)
+{
+  // Needles that rattle: they strain at every touch, and fly shortly in between.
+  std::mt19937 random(12);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  double worst = 0.0;
+  for (int k = 0; k < 60; ++k)
+  {
+    Pile pile;
+    const Terrain ground = makeSlope(
+      61, 1.5, [](double x, double y) { return 100.0 - 0.5 * x + 0.4 * std::sin(x) * std::cos(y); },
+      material(0.9, 40.0));
+    SimulationParameters parameters;
+    parameters.timeStep = 0.001;
+    parameters.endTime = 6.0;
+    Rock rock;
+    const double size = 1.0 + u(random);
+    rock.shape = makeBox((0.2 + size) * Vec3(0.1, 0.1, 2.0)).centred();
+    rock.youngModulus = std::pow(10.0, 9.5 + 0.5 * u(random));
+    rock.orientation = Quat(u(random), u(random), u(random), u(random)).normalized();
+    rock.position = Vec3(20.0, 45.0, 0.0);
+    const Surface surface(ground, 1, 0);
+    rock.position.z() = touchingHeight(surface, rock.shape, rock.orientation, 20.0, 45.0) + 0.5;
+    rock.velocity = 5.0 * Vec3(1.0, u(random), 0.0);
+    rock.angularVelocity = 10.0 / rock.shape.radius() * Vec3(u(random), u(random), u(random));
+    const Block block(rock.shape, rock.density, rock.youngModulus, rock.poissonRatio);
+    RockSimulator simulator(surface, rock, block, parameters);
+    const TrajectorySummary summary = simulator.run().summary;
+    worst = std::max(worst, std::abs(summary.energy.numerical) / summary.energy.released);
+  }
+  EXPECT_LT(worst, 0.002);
+}
