@@ -5,8 +5,9 @@
 ///
 /// Time goes on in steps of Δt. In each, rocks that can touch within the step are groups; every
 /// group is a system of its own (system/GroupSolver.h), and whatever is alone goes on as if it were
-/// the only rock (RockSimulator): flight costs nothing, and without a meeting a rock's way is the
-/// one that it has without collisions.
+/// the only rock (RockSimulator): flight costs nothing, and without a meeting a stiff rock's way is
+/// the one that it has without collisions. One that is soft enough to ring in an impact does so
+/// only when it falls without collisions.
 ///
 /// Small groups resolve their impacts in time like single rocks. In large ones an impact is an
 /// event of one step: what closes leaves with e times its speed of approach (Newton's law of

@@ -17,6 +17,11 @@ namespace
 /// Where nothing bounces forces are to be exact, and few contacts still change: so many times more
 /// sweeps.
 constexpr int kCalmSweeps = 25;
+/// As long as the last sweep has moved something by more than this many times the tolerance, a
+/// tenth of the longest way, so many times more sweeps are made: forces as wrong as that would
+/// throw rocks about. It happens where light rocks with sharp corners lie under heavy ones.
+constexpr double kRough = 1000.0;
+constexpr int kRoughSweeps = 8;
 /// Changes below this share of the tolerance are no reason to visit a contact again.
 constexpr double kQuiet = 0.3;
 /// What is found in a second look is met to this many times the tolerance, which is about as exact
@@ -230,7 +235,9 @@ double CrowdSolver::sweep()
 bool CrowdSolver::sweeps(int most, GroupOutcome& outcome)
 {
   bool settled = false;
-  for (int k = 0; k < most && !settled; ++k, ++sweep_)
+  const auto goesOn = [&](int k)
+  { return k < most || (k < kRoughSweeps * most && outcome.residual > kRough * enough_); };
+  for (int k = 0; goesOn(k) && !settled; ++k, ++sweep_)
   {
     ++outcome.iterations;
     outcome.residual = this->sweep();
