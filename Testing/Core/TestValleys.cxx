@@ -47,10 +47,9 @@ double deepestUnderSlope(Pile& pile)
 
 TEST(Valleys, RocksDoNotFallThroughTheBottomOfAGully)
 {
-  // What springs give at these speeds is below 0.06 radii. Of 2000 such cases four went deeper, by
-  // up to 0.23, all in gullies of 72°, where a vertex in the bottom is pushed from one wall into
-  // the other; none was lost. Before it was held there, 45 went deeper and 12 fell through.
-  int deeper = 0;
+  // What springs give at these speeds. Of 2000 such rocks 45 once went deeper, and 12 fell through:
+  // a vertex in the bottom is beside both walls, seen square to them, and neither held it.
+  constexpr double allowed = 0.06;
   std::mt19937 random(77);
   std::uniform_real_distribution<double> u(-1.0, 1.0);
   for (int k = 0; k < 400; ++k)
@@ -93,11 +92,8 @@ TEST(Valleys, RocksDoNotFallThroughTheBottomOfAGully)
     rock.velocity = 1.5 * (1.0 + u(random)) * Vec3(u(random), -1.0, 0.0);
     rock.angularVelocity = 3.0 * Vec3(u(random), u(random), u(random));
     pile.rocks = { rock };
-    const double depth = deepestUnderSlope(pile);
-    EXPECT_LT(depth, 0.25) << "case " << k;
-    deeper += depth > 0.06;
+    EXPECT_LT(deepestUnderSlope(pile), allowed) << "case " << k;
   }
-  EXPECT_LE(deeper, 2);
 }
 
 TEST(Valleys, CubesDoNotFallThroughABend)
