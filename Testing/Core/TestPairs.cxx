@@ -26,16 +26,6 @@ Rock rockAt(Shape shape, const Vec3& place, const Vec3& velocity, std::int64_t i
   return rock;
 }
 
-std::vector<Block> blocksOf(const std::vector<Rock>& rocks)
-{
-  std::vector<Block> blocks;
-  for (const Rock& r : rocks)
-  {
-    blocks.emplace_back(r.shape, r.density, r.youngModulus, r.poissonRatio);
-  }
-  return blocks;
-}
-
 struct Totals
 {
   Vec3 momentum = Vec3::Zero();

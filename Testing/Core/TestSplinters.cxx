@@ -28,16 +28,6 @@ Polyhedron splinter(std::mt19937& random, double size)
   return Polyhedron::convexHull(corners).centred();
 }
 
-std::vector<Block> blocksOf(const std::vector<Rock>& rocks)
-{
-  std::vector<Block> blocks;
-  for (const Rock& r : rocks)
-  {
-    blocks.emplace_back(r.shape, r.density, r.youngModulus, r.poissonRatio);
-  }
-  return blocks;
-}
-
 } // namespace
 
 // Wherever two splinters overlap they touch, as deep as the best axis says: their sharp points may

@@ -13,6 +13,16 @@
 namespace rockfall::testing
 {
 
+inline std::vector<Block> blocksOf(const std::vector<Rock>& rocks)
+{
+  std::vector<Block> blocks;
+  for (const Rock& r : rocks)
+  {
+    blocks.emplace_back(r.shape, r.density, r.youngModulus, r.poissonRatio);
+  }
+  return blocks;
+}
+
 /// Rocks on a slope, run together.
 struct Pile
 {
@@ -26,10 +36,7 @@ struct Pile
 
   void start()
   {
-    for (const Rock& r : rocks)
-    {
-      blocks.emplace_back(r.shape, r.density, r.youngModulus, r.poissonRatio);
-    }
+    blocks = blocksOf(rocks);
     parameters.rockRockContact = true;
     surface = std::make_unique<Surface>(ground, parameters.seed, 0);
     fall = std::make_unique<MassFall>(*surface, rocks, blocks, parameters);
