@@ -268,7 +268,9 @@ class Scene:
         shown = np.nonzero(near[middle])[0]
         centre = self.stops[shown].mean(axis=0)
         view = new_view(size, (0.86, 0.91, 0.97))
-        self.near_slope(view, centre)
+        # As far as rocks lie, or the distant ones would hang in the air.
+        reach = np.abs(self.stops[:, :2] - centre[:2]).max() + 60.0
+        self.near_slope(view, centre, reach)
         self.show_rocks(view, "close-up")
         view.ViewTime = float(self.paths.time.max())
         eye = self.standing(centre, 14.0, 3.5, 65.0)
