@@ -91,9 +91,12 @@ bool refreshVertexFace(const PlacedBlock& rock, const SurfacePatch& patch, Conta
       }
       // In a valley a vertex that is under this wall is beside it, seen square, and may be over the
       // plane of the other one, which does not hold it.
-      const bool under = t.bends[k] < 0 && contact.distance < 0.0 &&
-        contact.patchFeature < patch.slopeTriangles && isStraightOver(patch, t, p);
-      if (outside && (t.bends[k] >= 0 || (distanceTo(g) > 0.0 && !under)))
+      const auto isUnder = [&]
+      {
+        return contact.distance < 0.0 && contact.patchFeature < patch.slopeTriangles &&
+          isStraightOver(patch, t, p);
+      };
+      if (outside && (t.bends[k] >= 0 || (distanceTo(g) > 0.0 && !isUnder())))
       {
         next = g;
       }

@@ -141,10 +141,7 @@ void updatePair(const PairBody& first, const PairBody& second, double reach, Roc
     pair.axis = last; // past the end of a feature, with no other one there
     return;
   }
-  if (found.empty())
-  {
-    found = touchesOf(first, second, pair.axis, reach);
-  }
+  found = orAlongBest(found, first, second, pair.axis, reach);
   const bool turned =
     last.kind != pair.axis.kind || last.first != pair.axis.first || last.second != pair.axis.second;
   const double smaller = std::min(first.radius, second.radius);

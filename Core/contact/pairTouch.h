@@ -21,9 +21,10 @@ struct Touch
 /// The points of touch along an axis, valid until the next call on this thread.
 std::span<const Touch> touchesAlong(
   const PairBody& first, const PairBody& second, const PairAxis& axis, double reach);
-/// The same as findTouches has them.
-std::span<const Touch> touchesOf(
-  const PairBody& first, const PairBody& second, PairAxis& axis, double reach);
+/// What was found along an axis; an overlap that shows none there is looked at along the best axis,
+/// and `axis` is it then.
+std::span<const Touch> orAlongBest(std::span<const Touch> found, const PairBody& first,
+  const PairBody& second, PairAxis& axis, double reach);
 
 /// The features that touch.
 struct TouchFeatures

@@ -198,13 +198,12 @@ std::span<const Touch> touchesAlong(
   return { touches, count };
 }
 
-std::span<const Touch> touchesOf(
-  const PairBody& first, const PairBody& second, PairAxis& axis, double reach)
+std::span<const Touch> orAlongBest(std::span<const Touch> found, const PairBody& first,
+  const PairBody& second, PairAxis& axis, double reach)
 {
-  const std::span<const Touch> touches = touchesAlong(first, second, axis, reach);
-  if (!touches.empty() || axis.distance >= 0.0)
+  if (!found.empty() || axis.distance >= 0.0)
   {
-    return touches;
+    return found;
   }
   axis = bestAxis(first, second);
   return touchesAlong(first, second, axis, reach);
@@ -235,7 +234,8 @@ void putTouch(const Touch& touch, const PairBody& second, const PairAxis& axis, 
 void findTouches(const PairBody& first, const PairBody& second, PairAxis& axis, double reach,
   std::vector<Contact>& contacts)
 {
-  const std::span<const Touch> touches = touchesOf(first, second, axis, reach);
+  const std::span<const Touch> touches =
+    orAlongBest(touchesAlong(first, second, axis, reach), first, second, axis, reach);
   contacts.assign(touches.size(), Contact());
   for (std::size_t i = 0; i < touches.size(); ++i)
   {

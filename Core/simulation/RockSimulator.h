@@ -62,8 +62,9 @@ private:
   void checkEnd(double h); ///< Rested, left, or out of time? `h`: time since the last call, s.
 
   // Structures, structuresOnWay.cxx
-  double freeOfObstacles(double duration); ///< For how long, at most this, nothing is touched, s.
-  void clearTrees();                       ///< Where the rock is released there is none.
+  double freeOfObstacles(double duration);  ///< For how long, at most this, nothing is touched, s.
+  void clearTrees();                        ///< Where the rock is released there is none.
+  int treeOf(const Contact& contact) const; ///< −1: it is on none.
   /// Those that it is about to touch within `h`, presses against or has `hit`, and that cannot hold
   /// it; whether there were any.
   bool breakTrees(double h, std::span<const int> hit = {});

@@ -79,6 +79,11 @@ void RockSimulator::clearTrees()
   this->forgetPatch();
 }
 
+int RockSimulator::treeOf(const Contact& contact) const
+{
+  return contact.cfe >= obstacles_->firstCfe() ? obstacles_->treeOf(contact.cfe) : -1;
+}
+
 bool RockSimulator::undoAtTrees(double h)
 {
   const double energy = rigidKineticEnergy(block_, before_);
@@ -86,7 +91,7 @@ bool RockSimulator::undoAtTrees(double h)
   for (std::size_t i = 0; i < contactsBefore_.size(); ++i)
   {
     const Contact& c = contacts_[i];
-    const int tree = c.cfe >= obstacles_->firstCfe() ? obstacles_->treeOf(c.cfe) : -1;
+    const int tree = this->treeOf(c);
     if (tree >= 0 && c.closed() && !contactsBefore_[i].closed() &&
       energy > obstacles_->structures().trees[std::size_t(tree)].capacity)
     {
@@ -108,7 +113,7 @@ bool RockSimulator::breakTrees(double h, std::span<const int> hit)
   const Vec3 spin = state_.angularVelocity();
   for (const Contact& c : contacts_)
   {
-    const int tree = c.cfe >= obstacles_->firstCfe() ? obstacles_->treeOf(c.cfe) : -1;
+    const int tree = this->treeOf(c);
     if (tree < 0 || std::binary_search(goneTrees_.begin(), goneTrees_.end(), tree))
     {
       continue;
@@ -143,7 +148,7 @@ bool RockSimulator::breakTrees(double h, std::span<const int> hit)
     std::erase_if(contacts_,
       [&](const Contact& c)
       {
-        const int tree = c.cfe >= obstacles_->firstCfe() ? obstacles_->treeOf(c.cfe) : -1;
+        const int tree = this->treeOf(c);
         return tree >= 0 && std::binary_search(goneTrees_.begin(), goneTrees_.end(), tree);
       });
     acceleration_.setZero();
