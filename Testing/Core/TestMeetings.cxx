@@ -120,3 +120,46 @@ TEST(Meetings, FieldOfSleepersIsNotWokenByOneRock)
   EXPECT_GE(linked, 3); // 0.1 m
   EXPECT_LE(linked, 5);
 }
+
+TEST(Meetings, WhatMeetsNoOtherFallsAsWithoutCollisions)
+{
+  // Not bit for bit, as the steps of an impact are cut where those of the fall end, but no way is
+  // longer or shorter for it: also at the lowest stiffness of rock and in steps that resolve its
+  // vibration. Whether a block rings in its impacts is a question of the block.
+  Roughness roughness;
+  roughness.deviation = 0.1;
+  const Terrain slope = makeSlope(
+    41, 5.0,
+    [](double x, double) { return x < 100.0 ? 120.0 - 0.6 * x : 60.0 + 0.2 * (x - 100.0); },
+    material(0.8, 20.0), roughness);
+  std::vector<Rock> rocks;
+  for (int k = 0; k < 5; ++k)
+  {
+    Rock rock = brick(Vec3(1.1, 0.8, 0.5 + 0.1 * k), Vec3(20.0, 20.0 + 40.0 * k, 112.0), k);
+    rock.youngModulus = 1e9;
+    rocks.push_back(rock);
+  }
+  SimulationParameters p;
+  p.timeStep = 0.001;
+  p.iterations = 20;
+  TrajectoryStore apart(5, p.iterations), together(5, p.iterations);
+  runEnsemble(slope, rocks, p, apart);
+  p.rockRockContact = true;
+  runEnsemble(slope, rocks, p, together);
+  double sum = 0.0, squares = 0.0;
+  const std::size_t n = apart.trajectories().size();
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    const TrajectorySummary& a = apart.trajectories()[i].summary;
+    const TrajectorySummary& b = together.trajectories()[i].summary;
+    EXPECT_EQ(a.energy.vibration, 0.0);
+    EXPECT_EQ(b.energy.exchanged, 0.0) << "met another one";
+    const double longer = b.stop.x() - a.stop.x();
+    sum += longer;
+    squares += longer * longer;
+  }
+  const double mean = sum / double(n);
+  const double error = std::sqrt((squares / double(n) - mean * mean) / double(n));
+  EXPECT_LT(std::abs(mean), 3.0 * error);
+  EXPECT_LT(error, 1.0); // of ways of 100 m
+}
