@@ -104,6 +104,16 @@ Block::Block(Polyhedron shape, double density, double youngModulus, double poiss
   const Mat6 strainMass = massMatrix_.block<6, 6>(kStrain, kStrain);
   strainFrequency_ = std::sqrt(
     Eigen::GeneralizedSelfAdjointEigenSolver<Mat6>(elasticity_, strainMass).eigenvalues()[0]);
+  thickness_ = 2.0 * shape_.radius();
+  for (std::size_t f = 0; f < shape_.normals().size(); ++f)
+  {
+    double deepest = 0.0;
+    for (const Vec3& x : shape_.vertices())
+    {
+      deepest = std::max(deepest, shape_.offsets()[f] - shape_.normals()[f].dot(x));
+    }
+    thickness_ = std::min(thickness_, deepest);
+  }
   isotropic_ = principal[2] - principal[0] < 1e-9 * principal[2];
   largestMobility_ = 0.0;
   for (const Vec3& x : shape_.vertices())

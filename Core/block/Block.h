@@ -70,6 +70,8 @@ public:
   }
   /// Lowest angular frequency of the uniform strains of the free block, rad/s.
   double strainFrequency() const { return strainFrequency_; }
+  /// The least distance between a face and the parallel plane that the block ends at, m.
+  double thickness() const { return thickness_; }
   /// Bounds of |ωᵢ| about the principal axes, for ever in free rotation from `spin` (body axes),
   /// rad/s: L² = Σ Lᵢ² and 2T = Σ Lᵢ² / Iᵢ are kept, and what the other two axes hold is not
   /// negative.
@@ -83,6 +85,7 @@ private:
   double youngModulus_ = 0.0; ///< Pa
   double poissonRatio_ = 0.0;
   double strainFrequency_ = 0.0;
+  double thickness_ = 0.0;
   double mass_ = 0.0;
   Mat12 massMatrix_ = Mat12::Zero();
   Mat6 elasticity_ = Mat6::Zero();

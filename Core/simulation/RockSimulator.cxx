@@ -17,8 +17,11 @@ namespace
 /// Steps per half period of a vertex on its penalty spring: the impact is then resolved well enough
 /// for the order in which several vertices touch, and energy does not depend on it at all.
 constexpr double kStepsPerImpact = 8.0;
-/// Largest part of the rock's radius, and largest angle (rad), covered in a step of contact.
+/// Largest part of the rock's size, and largest angle (rad), covered in a step of contact.
 constexpr double kTravelPerStep = 0.1;
+/// Its size is its radius, or for slabs and splinters this many times their thickness: no step goes
+/// through a quarter of them.
+constexpr double kThin = 2.5;
 /// A rock lies still when it has been slower than this share of √(g r) for this long (s).
 constexpr double kStillSpeed = 1e-3;
 constexpr double kStillTime = 0.5;
@@ -38,7 +41,7 @@ constexpr double kFarSlack = 0.4;
 /// excite. A penalty spring is stiffer, and would.
 constexpr double kStiffBesideContacts = 4.0;
 constexpr double kFastVibration = 1000.0;
-/// However fast a rock comes in, a contact is stiff enough to stop it in this part of its radius.
+/// However fast a rock comes in, a contact is stiff enough to stop it in this part of its size.
 constexpr double kDeepestImpact = 0.1;
 
 } // namespace
@@ -57,6 +60,7 @@ RockSimulator::RockSimulator(
   state_.spin = state_.orientation.conjugate() * rock.angularVelocity;
   const double g = std::max(p.gravity, 1e-3);
   restingSpeed_ = kRestingSpeed * std::sqrt(g * block.radius());
+  size_ = std::min(block.radius(), kThin * block.thickness());
   penalty_ = p.normalPenalty;
   const double contacts = std::sqrt(p.normalPenalty * block.largestMobility());
   obstacles_ = surface.terrain().obstacles();
@@ -72,7 +76,7 @@ double RockSimulator::travelLimit() const
 {
   const double rim = state_.spin.norm() * block_.radius();
   const double speed = state_.velocity.norm() + rim + parameters_.gravity * parameters_.timeStep;
-  return speed > 0.0 ? kTravelPerStep * block_.radius() / speed : parameters_.timeStep;
+  return speed > 0.0 ? kTravelPerStep * size_ / speed : parameters_.timeStep;
 }
 
 double RockSimulator::impactStep() const
@@ -347,15 +351,17 @@ void RockSimulator::release()
   this->checkEnd(0.0);
 }
 
-double RockSimulator::penaltyFor(double speed) const
+double RockSimulator::stoppingPenalty() const
 {
-  const double depth = kDeepestImpact * block_.radius();
-  return std::max(parameters_.normalPenalty, block_.mass() * speed * speed / (depth * depth));
+  // All that moves in one spring.
+  const double depth = kDeepestImpact * size_;
+  return std::max(
+    parameters_.normalPenalty, 2.0 * rigidKineticEnergy(block_, state_) / (depth * depth));
 }
 
 void RockSimulator::beginContact()
 {
-  penalty_ = this->penaltyFor(state_.velocity.norm());
+  penalty_ = this->stoppingPenalty();
   steppedAs_ = StepKind::Lasting; // no impact's step to go by yet
   openTime_ = ringing_;
   inContact_ = true;

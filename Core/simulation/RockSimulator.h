@@ -78,7 +78,7 @@ private:
   void forgetPatch();
 
   // Contact, contactPhase.cxx
-  double penaltyFor(double speed) const; ///< That stops it in time, N/m.
+  double stoppingPenalty() const; ///< That stops it in time, N/m.
   void beginContact();
   void stayInContact(); ///< Returns after take-off, at the horizon or at the end.
   void endContact();
@@ -126,6 +126,7 @@ private:
   double normalEnergy_ = 0.0;         ///< In the normal ones, J.
   double softness_ = 0.0;             ///< Of a contact and the block behind it, m/N.
   double penalty_ = 0.0;              ///< pₙ of the contacts that are made now, N/m.
+  double size_ = 0.0;                 ///< That depths and ways in contact are measured by, m.
   bool stiff_ = false;                ///< The block's strain follows its contacts without inertia.
   std::vector<double> dampingRatios_; ///< ζ by restitution class; < 0: not known yet.
   double restingSpeed_ = 0.0;         ///< Below it a touch is no impact, m/s.

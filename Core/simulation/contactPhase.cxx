@@ -209,7 +209,7 @@ void RockSimulator::armContacts()
   const Vec3 spin = state_.angularVelocity();
   const double speed = state_.velocity.norm();
   // What slides into something may be faster than when its contact began.
-  penalty_ = std::max(penalty_, this->penaltyFor(speed));
+  penalty_ = std::max(penalty_, this->stoppingPenalty());
   for (Contact& c : contacts_)
   {
     c.friction = surface_.frictionAt(c.cfe);
