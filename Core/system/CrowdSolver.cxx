@@ -238,6 +238,20 @@ Vec3 CrowdSolver::wayOf(const Row& row, int side) const
   return w.way + w.spun.cross(laneOf(p.lever[side], row.lane));
 }
 
+Vec3 CrowdSolver::meanWayOf(const Row& row, int side) const
+{
+  const crowd::Batch& p = batches_[std::size_t(row.batch)];
+  const std::size_t i = std::size_t(p.body[side][row.lane]);
+  if (i >= work_.size())
+  {
+    return Vec3::Zero(); // the slope
+  }
+  const Work& w = work_[std::size_t(line_[i].second)];
+  const Vec3 way = 0.5 * (h_ * (w.velocity0 + w.offset) + w.way);
+  const Vec3 spun = 0.5 * (h_ * (w.spin0 + w.spinOffset) + w.spun);
+  return way + spun.cross(laneOf(p.lever[side], row.lane));
+}
+
 Vec3 CrowdSolver::travel(const Row& row) const
 {
   const crowd::Batch& p = batches_[std::size_t(row.batch)];

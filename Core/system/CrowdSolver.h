@@ -101,7 +101,9 @@ private:
   void lever(const std::vector<GroupBody>& bodies, const GroupContact& group, const Row& row);
   void pushed(const Row& row, double sign);   ///< Movers by the row's force.
   Vec3 wayOf(const Row& row, int side) const; ///< Of a rock's point of force, m.
-  Vec3 travel(const Row& row) const;          ///< Along the normal and the tangents, m.
+  /// The same at the mean of the velocities before and after the step, m.
+  Vec3 meanWayOf(const Row& row, int side) const;
+  Vec3 travel(const Row& row) const; ///< Along the normal and the tangents, m.
   /// Velocities before and after the step along the normal and the tangents, m/s.
   std::array<Vec3, 2> velocities(const Row& row) const;
   void startMover(const GroupBody& body, std::size_t i);

@@ -261,6 +261,13 @@ Vec3 GroupSolver::wayOf(const Side& side) const
   return d.head<3>() + d.tail<3>().cross(side.lever);
 }
 
+Vec3 GroupSolver::meanWayOf(double h, const Side& side) const
+{
+  const Work& w = work_[side.body];
+  const Vec6 mean = (0.5 * h) * (w.velocity0 + rate_ * w.d + w.offset);
+  return mean.head<3>() + mean.tail<3>().cross(side.lever);
+}
+
 Vec3 GroupSolver::travel(const Row& row) const
 {
   Vec3 way = Vec3::Zero();

@@ -104,7 +104,9 @@ private:
   void levers();                       ///< Rotations and levers as the displacements are.
   Mat3 mobility(const Row& row) const; ///< J A⁻¹ Jᵀ of a force at the contact, m/N.
   Vec3 wayOf(const Side& side) const;  ///< Of a rock's point of force, m.
-  Vec3 travel(const Row& row) const;   ///< J D: along the normal and the two tangents, m.
+  /// The same at the mean of the velocities before and after the step, m.
+  Vec3 meanWayOf(double h, const Side& side) const;
+  Vec3 travel(const Row& row) const; ///< J D: along the normal and the two tangents, m.
   bool evaluate(double h, bool lasting);
   void loads(const StepRequest& request, const std::vector<GroupBody>& bodies);
   bool newton(

@@ -18,8 +18,9 @@ void CrowdSolver::write(const StepRequest& request, std::vector<GroupBody>& bodi
     Contact& c = *group.contact;
     const crowd::Batch& p = batches_[std::size_t(row.batch)];
     const int lane = row.lane;
-    const Vec3 way = this->travel(row);
-    const double gap1 = row.gap0 + way[0];
+    ContactWays ways;
+    ways.way = this->travel(row);
+    const double gap1 = row.gap0 + ways.way[0];
     // Where its rock has carried it: by this the next step knows it again.
     const int carrier = c.kind == ContactKind::FaceVertex ? group.second : group.first;
     if (carrier >= 0)
@@ -44,13 +45,14 @@ void CrowdSolver::write(const StepRequest& request, std::vector<GroupBody>& bodi
     law.friction = group.friction;
     law.cohesion = group.cohesion;
     law.slip0 = { p.slip[0][lane], p.slip[1][lane] };
-    law.evaluate(true, h_, p.gap[lane] + way[0], way.tail<2>());
+    law.evaluate(true, h_, p.gap[lane] + ways.way[0], ways.way.tail<2>());
     law.force = p.force[0][lane];
     law.shearForce = { p.force[1][lane], p.force[2][lane] };
+    ways.means = { this->meanWayOf(row, 0), this->meanWayOf(row, 1) };
     books_[k] = writeContact(law,
       { laneOf(p.directions[0], lane), laneOf(p.directions[1], lane),
         laneOf(p.directions[2], lane) },
-      { this->wayOf(row, 0), this->wayOf(row, 1) }, way, row.gap0, group);
+      ways, row.gap0, group);
   };
   forEach(contacts.size(), kRowGrain, writeRow);
   addBooks(contacts, books_, bodies, outcome);

@@ -4,23 +4,30 @@ namespace rockfall
 {
 
 ContactBooks writeContact(const ContactLaw& law, const std::array<Vec3, 3>& directions,
-  const std::array<Vec3, 2>& ways, const Vec3& way, double gap0, GroupContact& contact)
+  const ContactWays& ways, double gap0, GroupContact& contact)
 {
   Contact& c = *contact.contact;
-  const Eigen::Vector2d travel = way.tail<2>();
-  const double gap1 = gap0 + way[0];
+  const Eigen::Vector2d travel = ways.way.tail<2>();
   c.normalForce = law.force;
   c.shearForce = law.shearForce.norm();
-  c.distance = gap1 + c.offset;
+  c.distance = gap0 + ways.way[0] + c.offset;
   const bool bounced = contact.bounce >= 0.0;
+  const Vec3 along = ways.means[0] - ways.means[1];
+  const double mean = along.dot(directions[0]);
+  const Eigen::Vector2d across(along.dot(directions[1]), along.dot(directions[2]));
   ContactBooks books;
-  books.frictionWork = bounced ? -law.shearForce.dot(travel) : law.frictionWork(travel);
-  books.dampedWork = bounced ? -law.force * (gap1 - gap0) : law.dampedWork();
+  books.frictionWork = -law.shearForce.dot(across);
+  books.dampedWork = -law.force * mean;
+  if (!bounced)
+  {
+    books.frictionWork += law.shearForce.dot(travel) + law.frictionWork(travel);
+    books.dampedWork += law.force * ways.way[0] + law.dampedWork();
+  }
   if (contact.second >= 0)
   {
     const Vec3 force = law.force * directions[0] + law.shearForce[0] * directions[1] +
       law.shearForce[1] * directions[2];
-    books.done = { force.dot(ways[0]), -force.dot(ways[1]) };
+    books.done = { force.dot(ways.means[0]), -force.dot(ways.means[1]) };
     contact.work = -books.done[0] - books.done[1];
   }
   if (!bounced && law.gap1 < 0.0)

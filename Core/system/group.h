@@ -103,12 +103,21 @@ struct ContactBooks
   double normalEnergy = 0.0, springEnergy = 0.0; ///< In it at the end.
 };
 
+/// How its point moves on the two rocks of a contact in a step.
+struct ContactWays
+{
+  std::array<Vec3, 2> means; ///< ½ h (v₀ + v₁), m: a force over the step does its work on this way.
+  Vec3 way = Vec3::Zero(); ///< First less second along the normal and the tangents, m.
+};
+
 /// Writes a contact after a step: forces, gap, state and slip. `law` is as evaluated, with the
-/// forces that the rocks were moved with; `directions` its normal and tangents; `ways` those of its
-/// point on the two rocks, `way` the first less the second along the directions, m; `gap0` the gap
-/// at the start without what a bounce asks for.
+/// forces that the rocks were moved with; `directions` its normal and tangents; `gap0` the gap at
+/// the start without what a bounce asks for.
+///
+/// A lasting step's way is h v₁. What an impulse P takes from rocks that move at v₀ and leave at v₁
+/// is −P · ½ (v₀ + v₁), though; the rest is booked as damped along the normal, as friction across.
 ContactBooks writeContact(const ContactLaw& law, const std::array<Vec3, 3>& directions,
-  const std::array<Vec3, 2>& ways, const Vec3& way, double gap0, GroupContact& contact);
+  const ContactWays& ways, double gap0, GroupContact& contact);
 
 /// Adds the books of all contacts, in their order, to those of the bodies.
 void addBooks(const std::vector<GroupContact>& contacts, const std::vector<ContactBooks>& books,

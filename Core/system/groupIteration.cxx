@@ -186,14 +186,14 @@ void GroupSolver::write(const StepRequest& request, std::vector<GroupBody>& bodi
   const auto writeRow = [&](std::size_t k)
   {
     const Row& row = rows_[k];
-    std::array<Vec3, 2> ways = { Vec3::Zero(), Vec3::Zero() };
+    ContactWays ways;
+    ways.way = this->travel(row);
     for (int side = 0; side < 2; ++side)
     {
       const Side& of = row.sides[side];
-      ways[side] = of.body < 0 ? Vec3(Vec3::Zero()) : this->wayOf(of);
+      ways.means[side] = of.body < 0 ? Vec3(Vec3::Zero()) : this->meanWayOf(request.duration, of);
     }
-    books_[k] =
-      writeContact(row.law, row.directions, ways, this->travel(row), row.gap0, contacts[k]);
+    books_[k] = writeContact(row.law, row.directions, ways, row.gap0, contacts[k]);
     // Where its rock has carried it: by this the next step knows it again.
     const Side& carrier = row.sides[row.kind == ContactKind::FaceVertex ? 1 : 0];
     if (carrier.body >= 0)

@@ -112,6 +112,65 @@ TEST(Crowds, LargeGroupKeepsMomentum)
   EXPECT_GT(pile.fall->impacts(31).size(), 0u);
 }
 
+TEST(Crowds, ImpactsLoseWhatTheCoefficientOfRestitutionSays)
+{
+  // Two cubes face to face, stepped as a crowd is.
+  for (const double e : { 0.0, 0.5, 0.9 })
+  {
+    Pile pile;
+    pile.ground = abyss();
+    pile.parameters.gravity = 0.0;
+    pile.parameters.endTime = 0.3;
+    pile.parameters.rockRestitution = e;
+    pile.rocks = { brick(Vec3(1, 1, 1), Vec3(20.0, 20.0, 0.0), 0),
+      brick(Vec3(1, 1, 1), Vec3(21.3, 20.0, 0.0), 1) };
+    pile.rocks[0].velocity = Vec3(6.0, 0.0, 0.0);
+    pile.make();
+    pile.fall->resolved = 0;
+    const std::vector<Trajectory> runs = pile.fall->run();
+    const double brought = 0.5 * pile.blocks[0].mass() * 36.0;
+    const double lost = 0.5 * (1.0 - e * e) * brought; // ½ μ (1 − e²) v²
+    for (const Trajectory& t : runs)
+    {
+      ASSERT_EQ(t.impacts.size(), 1u);
+      EXPECT_NEAR(t.impacts[0].energyLoss, lost, 0.01 * brought) << e;
+    }
+    const EnergyAudit &a = runs[0].summary.energy, &b = runs[1].summary.energy;
+    EXPECT_NEAR(a.exchanged + b.exchanged, lost, 0.01 * brought) << e;
+    EXPECT_NEAR(a.damping, 0.0, 1e-6 * brought);
+    EXPECT_NEAR(b.damping, 0.0, 1e-6 * brought);
+  }
+}
+
+TEST(Crowds, EveryJouleIsBooked)
+{
+  Pile pile;
+  pile.ground = floorSlope();
+  pile.awake = false;
+  pile.parameters.endTime = 20.0;
+  pile.parameters.rockRestitution = 0.8;
+  pile.rocks = handful(108, 8);
+  pile.make();
+  pile.fall->resolved = 0;
+  EnergyAudit sum;
+  for (const Trajectory& t : pile.fall->run())
+  {
+    const EnergyAudit& e = t.summary.energy;
+    sum.released += e.released;
+    sum.friction += e.friction;
+    sum.restitution += e.restitution;
+    sum.exchanged += e.exchanged;
+    sum.damping += e.damping;
+    sum.numerical += e.numerical;
+  }
+  // What meets is neither damped nor given by others, which would add up as well.
+  EXPECT_GT(sum.damping, -1e-3 * sum.released);
+  EXPECT_LT(sum.damping, 0.02 * sum.released);
+  EXPECT_LT(std::abs(sum.numerical), 1e-3 * sum.released);
+  EXPECT_GT(sum.exchanged, 0.05 * sum.released);
+  EXPECT_GT(sum.restitution, 0.05 * sum.released);
+}
+
 TEST(Crowds, SameBitsForAnyNumberOfThreads)
 {
   // All to one place, until they are one group of which several threads have parts.

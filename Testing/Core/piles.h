@@ -34,13 +34,18 @@ struct Pile
   std::unique_ptr<MassFall> fall;
   bool awake = true; ///< Nothing sleeps.
 
-  void start()
+  /// Up to the release: for whoever runs the fall to its end (MassFall::run).
+  void make()
   {
     blocks = blocksOf(rocks);
     parameters.rockRockContact = true;
     surface = std::make_unique<Surface>(ground, parameters.seed, 0);
     fall = std::make_unique<MassFall>(*surface, rocks, blocks, parameters);
     fall->awake = awake;
+  }
+  void start()
+  {
+    this->make();
     fall->release();
   }
   /// Over a duration, s; returns the time reached.
