@@ -1,6 +1,6 @@
 #include "system/BlockMatrix.h"
 
-#include <Eigen/LU>
+#include "solver/linear.h"
 
 #include <algorithm>
 
@@ -111,15 +111,12 @@ bool BlockMatrix::solve(Eigen::VectorXd& x)
     left_[pivot] = 0;
     order_.push_back(pivot);
     const std::vector<int>& near = neighbours_[pivot];
-    const Mat6 diagonal = this->at(pivot, pivot);
-    const Eigen::PartialPivLU<Mat6> lu(diagonal);
-    const auto pivots = lu.matrixLU().diagonal().cwiseAbs();
-    if (!(pivots.minCoeff() > kSingular * pivots.maxCoeff()))
+    Mat6& inverse = pivots_[pivot];
+    inverse = this->at(pivot, pivot);
+    if (!invertInPlace<6>(inverse, kSingular))
     {
       return false;
     }
-    const Mat6 inverse = lu.inverse();
-    pivots_[pivot] = inverse;
     for (int i : near)
     {
       const Mat6 factor = this->at(i, pivot) * inverse;
