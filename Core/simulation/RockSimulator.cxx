@@ -17,11 +17,8 @@ namespace
 /// Steps per half period of a vertex on its penalty spring: the impact is then resolved well enough
 /// for the order in which several vertices touch, and energy does not depend on it at all.
 constexpr double kStepsPerImpact = 8.0;
-/// Largest part of the rock's size, and largest angle (rad), covered in a step of contact.
+/// Largest part of the rock's radius, and largest angle (rad), covered in a step of contact.
 constexpr double kTravelPerStep = 0.1;
-/// Its size is its radius, or for slabs and splinters this many times their thickness: no step goes
-/// through a quarter of them.
-constexpr double kThin = 2.5;
 /// A rock lies still when it has been slower than this share of √(g r) for this long (s).
 constexpr double kStillSpeed = 1e-3;
 constexpr double kStillTime = 0.5;
@@ -41,8 +38,10 @@ constexpr double kFarSlack = 0.4;
 /// excite. A penalty spring is stiffer, and would.
 constexpr double kStiffBesideContacts = 4.0;
 constexpr double kFastVibration = 1000.0;
-/// However fast a rock comes in, a contact is stiff enough to stop it in this part of its size.
+/// However fast a rock comes in, a contact is stiff enough to stop it in this part of its radius,
+/// and of its thickness.
 constexpr double kDeepestImpact = 0.1;
+constexpr double kDeepestOfThin = 0.25;
 
 } // namespace
 
@@ -60,7 +59,6 @@ RockSimulator::RockSimulator(
   state_.spin = state_.orientation.conjugate() * rock.angularVelocity;
   const double g = std::max(p.gravity, 1e-3);
   restingSpeed_ = kRestingSpeed * std::sqrt(g * block.radius());
-  size_ = std::min(block.radius(), kThin * block.thickness());
   penalty_ = p.normalPenalty;
   const double contacts = std::sqrt(p.normalPenalty * block.largestMobility());
   obstacles_ = surface.terrain().obstacles();
@@ -76,7 +74,7 @@ double RockSimulator::travelLimit() const
 {
   const double rim = state_.spin.norm() * block_.radius();
   const double speed = state_.velocity.norm() + rim + parameters_.gravity * parameters_.timeStep;
-  return speed > 0.0 ? kTravelPerStep * size_ / speed : parameters_.timeStep;
+  return speed > 0.0 ? kTravelPerStep * block_.radius() / speed : parameters_.timeStep;
 }
 
 double RockSimulator::impactStep() const
@@ -176,9 +174,9 @@ bool RockSimulator::clearFor(double duration) const
 void RockSimulator::advanceInFlight(double duration)
 {
   const BlockState start = state_;
+  BlockState reached = start;
   if (barriers_)
   {
-    BlockState reached = start;
     reached.position += duration * start.velocity;
     reached.time += duration;
     this->findBarriers(start, reached, true);
@@ -196,9 +194,10 @@ void RockSimulator::advanceInFlight(double duration)
   state_ = fly(block_, start, parameters_.gravity, duration);
   state_.time = end;
   recorder_.follow(state_);
-  if (barriers_ && hit_.barrier >= 0)
+  while (barriers_ && !done_ && hit_.barrier >= 0)
   {
     this->meetBarrier();
+    this->findBarriers(start, reached, true, hit_);
   }
 }
 
@@ -354,7 +353,8 @@ void RockSimulator::release()
 double RockSimulator::stoppingPenalty() const
 {
   // All that moves in one spring.
-  const double depth = kDeepestImpact * size_;
+  const double depth =
+    std::min(kDeepestImpact * block_.radius(), kDeepestOfThin * block_.thickness());
   return std::max(
     parameters_.normalPenalty, 2.0 * rigidKineticEnergy(block_, state_) / (depth * depth));
 }

@@ -17,6 +17,14 @@
 namespace rockfall
 {
 
+/// Where a rock meets a barrier on a way.
+struct BarrierHit
+{
+  int barrier = -1;      ///< −1: none.
+  double fraction = 0.0; ///< Of the way.
+  double heightOverGround = 0.0;
+};
+
 class RockSimulator
 {
 public:
@@ -70,11 +78,14 @@ private:
   bool breakTrees(double h, std::span<const int> hit = {});
   /// Takes a step of `h` back in which it came against trees that cannot hold it, and breaks them.
   bool undoAtTrees(double h);
-  /// Fills `hit_` with the first barrier that stops the rock or breaks on the way to `state_`, and
-  /// notes those that record; `flight`: the way is a parabola, else a step of contact.
-  void findBarriers(const BlockState& from, const BlockState& to, bool flight);
+  /// Fills `hit_` with the first barrier that stops the rock or breaks on a way, and notes those
+  /// that record; `flight`: the way is a parabola, else a step of contact. `met`: goes on after
+  /// this one, in flight only to one at the same place.
+  void findBarriers(const BlockState& from, const BlockState& to, bool flight, BarrierHit met = {});
   void meetBarrier(); ///< The one in `hit_`, at `state_`.
-  void endStepAtBarrier(bool touching);
+  /// The one in `hit_`, in a step of contact that would go to `end` and in which others have taken
+  /// so much (J); returns what this one takes if it breaks.
+  double endStepAtBarrier(const BlockState& end, double taken, bool touching);
   void forgetPatch();
 
   // Contact, contactPhase.cxx
@@ -126,7 +137,7 @@ private:
   double normalEnergy_ = 0.0;         ///< In the normal ones, J.
   double softness_ = 0.0;             ///< Of a contact and the block behind it, m/N.
   double penalty_ = 0.0;              ///< pₙ of the contacts that are made now, N/m.
-  double size_ = 0.0;                 ///< That depths and ways in contact are measured by, m.
+  bool crowded_ = false;              ///< Its step is that of a crowd, as long as Δt.
   bool stiff_ = false;                ///< The block's strain follows its contacts without inertia.
   std::vector<double> dampingRatios_; ///< ζ by restitution class; < 0: not known yet.
   double restingSpeed_ = 0.0;         ///< Below it a touch is no impact, m/s.
@@ -142,12 +153,7 @@ private:
   std::vector<int> goneTrees_;      ///< Ascending.
   std::vector<int> brokenBarriers_; ///< In the order of breaking.
   double freeUntil_ = 0.0;          ///< Nothing can be touched until then, after a take-off, s.
-  struct BarrierHit
-  {
-    int barrier = -1;      ///< −1: none.
-    double fraction = 0.0; ///< Of the way.
-    double heightOverGround = 0.0;
-  } hit_;
+  BarrierHit hit_;
   double openTime_ = 0.0; ///< Since it touched, s.
   double horizon_ = 0.0;  ///< Up to which it is to advance, s.
   bool inContact_ = false;

@@ -15,6 +15,7 @@ namespace
 
 /// Speed at which an overlap that was found, not made, is pressed out of a lasting contact, m/s.
 constexpr double kPressOut = 0.005;
+constexpr double kPressOutDeep = 0.1; ///< The same of what is beyond a loose overlap, in crowds.
 /// Damping ratio of slip at an impact: high, so that a contact that sticks leaves without slip and
 /// not with what its shear spring gives back (rigid-body impact: no tangential restitution).
 constexpr double kShearDamping = 5.0;
@@ -337,10 +338,13 @@ void RockSimulator::absorb(
   const bool touching = anyClosed(contacts_);
   if (barriers_)
   {
-    this->findBarriers(before_, state_, false);
-    if (hit_.barrier >= 0)
+    // Behind one that breaks there may be others.
+    const BlockState end = state_;
+    double lost = 0.0;
+    for (this->findBarriers(before_, end, false); hit_.barrier >= 0;
+         this->findBarriers(before_, end, false, hit_))
     {
-      this->endStepAtBarrier(touching);
+      lost += this->endStepAtBarrier(end, lost, touching);
       if (done_)
       {
         return;
@@ -368,7 +372,10 @@ void RockSimulator::pressOut(double h)
     std::min(kPressOut * h, 0.5 * block_.mass() * parameters_.gravity / parameters_.normalPenalty);
   for (Contact& c : contacts_)
   {
-    c.offset = c.offset < 0.0 ? std::min(0.0, c.offset + way) : std::max(0.0, c.offset - way);
+    // In a crowd a rock may be pushed under the slope within a step.
+    const bool deep = crowded_ && c.offset < -kLooseOverlap * block_.radius();
+    const double by = deep ? kPressOutDeep * h : way;
+    c.offset = c.offset < 0.0 ? std::min(0.0, c.offset + by) : std::max(0.0, c.offset - by);
   }
 }
 

@@ -29,6 +29,9 @@ BlockState between(const BlockState& from, const BlockState& to, double s)
   return at;
 }
 
+/// Barriers are at one place if they are met within this share of a flight.
+constexpr double kSamePlace = 1e-9;
+
 /// Takes kinetic energy: all velocities become smaller by the same factor.
 void slowDown(BlockState& state, double energy, double taken)
 {
@@ -158,9 +161,12 @@ bool RockSimulator::breakTrees(double h, std::span<const int> hit)
   return any;
 }
 
-void RockSimulator::findBarriers(const BlockState& from, const BlockState& to, bool flight)
+void RockSimulator::findBarriers(
+  const BlockState& from, const BlockState& to, bool flight, BarrierHit met)
 {
   hit_ = {};
+  // The rest of a flight is flown anew; what stands at the same place would then be behind.
+  const bool again = flight && met.barrier >= 0;
   const double duration = to.time - from.time;
   const Vec3 &p = from.position, &q = to.position;
   // In a step of contact the cubic may go a little beyond its ends.
@@ -213,6 +219,14 @@ void RockSimulator::findBarriers(const BlockState& from, const BlockState& to, b
     {
       continue; // where two pieces meet
     }
+    if (fraction < met.fraction || (fraction == met.fraction && number <= met.barrier))
+    {
+      continue; // before it
+    }
+    if (again && fraction > met.fraction + kSamePlace)
+    {
+      return;
+    }
     const BlockState at = flight ? fly(block_, from, parameters_.gravity, fraction * duration)
                                  : between(from, to, fraction);
     const Barrier& barrier = obstacles_->structures().barriers[std::size_t(number)];
@@ -220,6 +234,10 @@ void RockSimulator::findBarriers(const BlockState& from, const BlockState& to, b
     if (!(height < barrier.height))
     {
       continue; // over it, or where there is no ground to stand on
+    }
+    if (again && barrier.records)
+    {
+      continue;
     }
     if (!barrier.records)
     {
@@ -274,23 +292,24 @@ void RockSimulator::meetBarrier()
   this->auditSamples(state_);
 }
 
-void RockSimulator::endStepAtBarrier(bool touching)
+double RockSimulator::endStepAtBarrier(const BlockState& end, double taken, bool touching)
 {
   const Barrier& barrier = obstacles_->structures().barriers[std::size_t(hit_.barrier)];
-  const BlockState end = state_;
-  const BlockState at = between(before_, end, hit_.fraction);
+  BlockState at = between(before_, end, hit_.fraction);
+  const double came = rigidKineticEnergy(block_, at);
+  slowDown(at, came, std::min(taken, came));
   const double energy = rigidKineticEnergy(block_, at);
   if (energy <= barrier.capacity)
   {
     // The rest of the step did not happen; what it booked did. The barrier takes what makes it up.
     recorder_.recordBetween(before_, at, touching);
-    state_ = at;
-    energy_.structures += kineticEnergy(block_, end) - kineticEnergy(block_, at) +
+    energy_.structures += kineticEnergy(block_, state_) - kineticEnergy(block_, at) +
       block_.mass() * parameters_.gravity * (end.position.z() - at.position.z()) + springEnergy_;
+    state_ = at;
     springEnergy_ = normalEnergy_ = 0.0;
     recorder_.follow(state_);
     this->meetBarrier();
-    return;
+    return 0.0;
   }
   StructureEvent event;
   event.outcome = StructureOutcome::BarrierBroken;
@@ -306,6 +325,7 @@ void RockSimulator::endStepAtBarrier(bool touching)
   energy_.structures += event.energyTaken;
   recorder_.trajectory().structures.push_back(event);
   brokenBarriers_.push_back(hit_.barrier);
+  return event.energyTaken;
 }
 
 } // namespace rockfall

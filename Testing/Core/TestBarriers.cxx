@@ -168,3 +168,49 @@ TEST(Barriers, CatchInMassFalls)
     EXPECT_NEAR(t.summary.stop.x(), 60.0, 1e-6);
   }
 }
+
+/// One barrier that breaks must not hide another one, wherever within the step that stands.
+TEST(Barriers, BehindOneThatBreaksAreMetToo)
+{
+  for (const bool flies : { false, true })
+  {
+    for (const double gap : { 0.0, 0.02, 0.1, 0.3 })
+    {
+      for (int k = 0; k < 12; ++k)
+      {
+        const double x = 60.0 + 0.013 * k;
+        Terrain terrain = makePlane(21, 100.0, 0.0, 0.0, material(0.5, 5.0));
+        Structures s;
+        for (int b = 0; b < 3; ++b)
+        {
+          Barrier barrier;
+          barrier.feature = b;
+          barrier.points = { { x + gap * b, 20.0 }, { x + gap * b, 80.0 } };
+          barrier.height = 5.0;
+          barrier.capacity = b < 2 ? 1e5 : 1e9;
+          s.barriers.push_back(barrier);
+        }
+        terrain.setStructures(s);
+        Rock rock = thrown(flies ? 3.0 : 0.5, 20.0);
+        SimulationParameters p = rigidParameters(3.0);
+        p.timeStep = 0.01;
+        p.rockRockContact = k % 2;
+        const Trajectory t = simulate(terrain, rock, p);
+        const std::string at =
+          (flies ? "flies, " : "slides, ") + std::to_string(gap) + " m, " + std::to_string(x);
+        ASSERT_EQ(t.structures.size(), 3u) << at;
+        for (int b = 0; b < 3; ++b)
+        {
+          EXPECT_EQ(t.structures[std::size_t(b)].feature, b) << at;
+        }
+        EXPECT_EQ(t.summary.fate, Fate::Caught) << at;
+        // What the first two took is no more there for the third one.
+        EXPECT_NEAR(t.structures[1].kineticEnergy, t.structures[0].kineticEnergy - 1e5, 0.02 * 5e5)
+          << at;
+        EXPECT_NEAR(t.structures[2].kineticEnergy, t.structures[0].kineticEnergy - 2e5, 0.02 * 5e5)
+          << at;
+        EXPECT_LT(std::abs(t.summary.energy.numerical), 0.02 * 5e5) << at;
+      }
+    }
+  }
+}
