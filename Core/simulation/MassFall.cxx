@@ -184,6 +184,7 @@ bool MassFall::advance()
 bool MassFall::advanceAll()
 {
   const double until = std::min(time_ + parameters_.timeStep, parameters_.endTime);
+  const double before = time_;
   this->findGroups(until - time_);
   // What takes longest first.
   turns_.resize(groups_.size());
@@ -210,15 +211,29 @@ bool MassFall::advanceAll()
   {
     for (const Group& group : groups_)
     {
-      std::atomic<bool> still = true;
+      std::atomic<bool> still = true, gone = false;
       const auto look = [&](std::size_t k)
       {
-        if (!this->stays(*members_[std::size_t(group.members[k])]))
+        Member& m = *members_[std::size_t(group.members[k])];
+        if (!this->stays(m))
         {
           still.store(false, std::memory_order_relaxed);
         }
+        if (m.sim.done_ && !m.asleep && m.sim.state_.time > before)
+        {
+          gone.store(true, std::memory_order_relaxed);
+        }
       };
       forEach(group.members.size(), kStayGrain, look);
+      if (gone)
+      {
+        // Left the slope or was caught in this step: what it carried has yet to fall.
+        still = false;
+        for (int i : group.members)
+        {
+          members_[i]->stayed = members_[i]->lingered = members_[i]->sim.state_;
+        }
+      }
       for (int i : group.members)
       {
         if (still && !members_[i]->sim.done_)

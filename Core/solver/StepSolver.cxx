@@ -2,6 +2,7 @@
 
 #include "block/cayley.h"
 #include "contact/features.h"
+#include "solver/cohesion.h"
 #include "solver/linear.h"
 #include "solver/springs.h"
 
@@ -200,7 +201,7 @@ bool BlockStep<N>::evaluate(const StepRequest& request, const VecN& d)
     if (row.force > 0.0)
     {
       const Eigen::Vector2d travel(row.shear[0].dot(d), row.shear[1].dot(d));
-      const double limit = row.friction * row.force + row.cohesion;
+      const auto [limit, slope] = coulombLimit(row.friction, row.cohesion, row.force);
       const double weight = row.share * ((lasting ? 1.0 : 0.5) + row.shearLag / request.duration);
       const Eigen::Vector2d stretch = row.slip0 + weight * travel;
       const double length = stretch.norm();
@@ -226,7 +227,7 @@ bool BlockStep<N>::evaluate(const StepRequest& request, const VecN& d)
         row.shearForce = -limit * direction;
         row.shearStiffness = (limit * weight / length) *
           (Eigen::Matrix2d::Identity() - direction * direction.transpose());
-        row.shearCoupling = -row.friction * row.stiffness * direction;
+        row.shearCoupling = -slope * row.stiffness * direction;
         const double part = weight > row.share ? row.share / weight : 1.0;
         row.slip1 = row.slip0 + part * (direction * (limit / row.shearPenalty) - row.slip0);
       }

@@ -5,6 +5,7 @@
 /// spring and Coulomb's limit (METHOD 3).
 
 #include "contact/Contact.h"
+#include "solver/cohesion.h"
 #include "solver/springs.h"
 
 namespace rockfall
@@ -54,7 +55,7 @@ struct ContactLaw
     ContactState now = ContactState::Open;
     if (this->force > 0.0)
     {
-      const double limit = this->friction * this->force + this->cohesion;
+      const auto [limit, slope] = coulombLimit(this->friction, this->cohesion, this->force);
       const double weight = this->share * ((lasting ? 1.0 : 0.5) + this->shearLag / h);
       const Eigen::Vector2d stretch = this->slip0 + weight * travel;
       const double length = stretch.norm();
@@ -79,7 +80,7 @@ struct ContactLaw
         this->shearForce = -limit * this->direction;
         this->shearStiffness = (limit * weight / length) *
           (Eigen::Matrix2d::Identity() - this->direction * this->direction.transpose());
-        this->shearCoupling = -this->friction * this->stiffness * this->direction;
+        this->shearCoupling = -slope * this->stiffness * this->direction;
         const double part = weight > this->share ? this->share / weight : 1.0;
         this->slip1 =
           this->slip0 + part * (this->direction * (limit / this->shearPenalty) - this->slip0);

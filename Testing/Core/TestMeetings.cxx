@@ -163,3 +163,38 @@ TEST(Meetings, WhatMeetsNoOtherFallsAsWithoutCollisions)
   EXPECT_LT(std::abs(mean), 3.0 * error);
   EXPECT_LT(error, 1.0); // of ways of 100 m
 }
+
+TEST(Meetings, WhatLosesItsSupportFalls)
+{
+  // A cube at rest on a slab that slides away under it without friction, until the slab leaves the
+  // slope or is caught.
+  for (const bool caught : { false, true })
+  {
+    for (const double speed : { 1.0, 2.0, 4.0 })
+    {
+      const double end = caught ? 30.0 : 40.0;
+      Pile pile;
+      pile.ground = floorSlope(0.0);
+      if (caught)
+      {
+        Structures s;
+        Barrier barrier;
+        barrier.points = { { end, 5.0 }, { end, 35.0 } };
+        barrier.height = 4.0;
+        s.barriers.push_back(barrier);
+        pile.ground.setStructures(s);
+      }
+      const double x =
+        end - 0.96 * speed; // gone after 0.96 s, when the cube has been still for long
+      pile.rocks = { brick(Vec3(6.0, 2.0, 0.5), Vec3(x, 20.0, 0.25), 0),
+        brick(Vec3(1.0, 1.0, 1.0), Vec3(std::min(x + 2.0, end - 2.4), 20.0, 1.0), 1) };
+      pile.rocks[0].velocity = Vec3(speed, 0.0, 0.0);
+      pile.parameters.rockFrictionAngle = 0.0;
+      pile.parameters.endTime = 6.0;
+      pile.awake = false;
+      pile.start();
+      pile.run(6.0);
+      EXPECT_NEAR(pile.fall->state(1).position.z(), 0.5, 0.02) << speed << " m/s, " << caught;
+    }
+  }
+}
