@@ -83,6 +83,7 @@ private:
     bool arrived = false;       ///< The step has been looked at where it ended.
     int place = -1;             ///< Among the bodies of its group in the step at hand.
     std::uint64_t carriers = 0; ///< Which contacts with others carry.
+    double pushed = 0.0;        ///< What others may add to its speed within a step of a crowd, m/s.
   };
   struct Group
   {
@@ -103,6 +104,7 @@ private:
   void advanceGroup(const Group& group, double until) const;
   double groupStep(const Group& group) const;
   void gatherContacts(const Group& group, double h) const;
+  void findPushes(const Group& group) const;
   void armPair(RockPair& pair) const;
   void armContact(const RockPair& pair, Contact& contact) const;
   bool isCalm(const Group& group) const;

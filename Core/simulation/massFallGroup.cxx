@@ -126,6 +126,10 @@ void MassFall::gatherContacts(const Group& group, double h) const
   const auto reachOf = [&](double speed, double radius)
   { return 1.5 * speed * h + parameters_.gravity * h * h + 1e-6 * radius; };
   const bool crowd = this->isCrowd(group);
+  if (crowd)
+  {
+    this->findPushes(group);
+  }
   const auto onSlope = [&](std::size_t k)
   {
     Member& m = *members_[group.members[k]];
@@ -136,7 +140,10 @@ void MassFall::gatherContacts(const Group& group, double h) const
     }
     m.stand();
     const double r = sim.block_.radius();
-    const double reach = reachOf(sim.state_.velocity.norm() + sim.state_.spin.norm() * r, r);
+    const double pushed = crowd ? m.pushed : 0.0;
+    const double reach =
+      reachOf(sim.state_.velocity.norm() + sim.state_.spin.norm() * r + pushed, r);
+    sim.crowded_ = crowd;
     sim.ensureCandidates(reach, crowd);
     updateContacts(sim.placed_, sim.patch_, sim.candidates_, reach, sim.contacts_);
     while (sim.solid_ && sim.breakTrees(h))
@@ -171,6 +178,27 @@ void MassFall::gatherContacts(const Group& group, double h) const
     this->armPair(*pair);
   };
   forEach(group.pairs.size(), kPairGrain, eachOther);
+}
+
+void MassFall::findPushes(const Group& group) const
+{
+  for (int i : group.members)
+  {
+    members_[i]->pushed = 0.0;
+  }
+  for (const RockPair* pair : group.pairs)
+  {
+    Member &a = *members_[pair->first], &b = *members_[pair->second];
+    if (a.sim.done_ || b.sim.done_)
+    {
+      continue;
+    }
+    // What meets elastically changes its velocity by twice the closing one's share.
+    const double closing = 2.0 * (a.sim.state_.velocity - b.sim.state_.velocity).norm();
+    const double ma = a.sim.block_.mass(), mb = b.sim.block_.mass();
+    a.pushed = std::max(a.pushed, closing * mb / (ma + mb));
+    b.pushed = std::max(b.pushed, closing * ma / (ma + mb));
+  }
 }
 
 void MassFall::armPair(RockPair& pair) const

@@ -18,6 +18,8 @@ namespace
 constexpr double kPressOut = 0.005;    // m/s, as for single rocks
 constexpr double kPressOutDeep = 0.1;  // m/s, of overlaps beyond the loose one
 constexpr double kLooseOverlap = 1e-3; // of the radius, as for single rocks
+/// How often the step of a crowd is halved that is far from settled.
+constexpr int kCrowdCuts = 4;
 
 /// No bounce for what meets several (mayBounce).
 void settleBounces(
@@ -200,8 +202,9 @@ void MassFall::solve(
   GroupOutcome outcome;
   for (int cut = 0;; ++cut)
   {
-    // A large group is not stepped again: what is left to settle is counted and small.
-    const bool last = crowd || cut >= parameters_.maxCuts;
+    // What a large group leaves to settle is small, and counted; if it is not, a shorter step is.
+    const bool last = cut >= (crowd ? kCrowdCuts : parameters_.maxCuts);
+    const Taken take = last ? Taken::Any : crowd ? Taken::NotRough : Taken::Settled;
     if (!work.added.empty())
     {
       work.contacts.resize(work.firsts.back());
@@ -209,18 +212,18 @@ void MassFall::solve(
       work.addedTo.clear();
     }
     work.looked = false;
-    outcome = work.solver.step(request, work.bodies, work.contacts, last, look);
+    outcome = work.solver.step(request, work.bodies, work.contacts, take, look);
     const auto count = [&](std::size_t m)
     {
       RockSimulator& sim = members_[group.members[m]]->sim;
       TrajectorySummary& summary = sim.recorder_.trajectory().summary;
       summary.openCloseIterations += sim.done_ ? 0 : outcome.iterations;
       summary.contactSteps += sim.done_ ? 0 : 1;
-      summary.cutSteps += !outcome.settled && !last && !sim.done_;
-      summary.unsettledSteps += !outcome.settled && last && !sim.done_;
+      summary.cutSteps += !outcome.taken && !last && !sim.done_;
+      summary.unsettledSteps += !outcome.settled && (outcome.taken || last) && !sim.done_;
     };
     forEach(group.members.size(), kRockGrain, count);
-    if (outcome.settled || last)
+    if (outcome.taken || last)
     {
       break;
     }

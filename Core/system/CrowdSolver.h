@@ -26,10 +26,10 @@ class CrowdSolver
 {
 public:
   /// Advances the bodies' states and the contacts' springs by `request.duration`, as if it lasted.
-  /// `takeAnyway` and `lookAgain`: see GroupSolver::step. Nothing is changed if a displacement is
+  /// `take` and `lookAgain`: see GroupSolver::step. Nothing is changed if a displacement is
   /// not finite.
   GroupOutcome step(const StepRequest& request, std::vector<GroupBody>& bodies,
-    std::vector<GroupContact>& contacts, bool takeAnyway, const std::function<bool()>& lookAgain);
+    std::vector<GroupContact>& contacts, Taken take, const std::function<bool()>& lookAgain);
 
   // For lookAgain, as GroupSolver has them.
   BlockState end(const std::vector<GroupBody>& bodies, std::size_t i) const;

@@ -33,7 +33,7 @@ class GroupSolver
 {
 public:
   /// Advances the bodies' states and the contacts' springs by `request.duration`. If open–close
-  /// does not settle nothing is changed, unless `takeAnyway`.
+  /// does not settle nothing is changed, unless `take` says so.
   ///
   /// `lookAgain` is asked after a solution that has settled, or one by Gauss–Seidel, before it is
   /// written: it may look where the bodies would be (`end`), append contacts that were not reckoned
@@ -41,8 +41,7 @@ public:
   /// where it is. The `distance` of an appended contact is that at the end, the rest of it as all
   /// stands at the start.
   GroupOutcome step(const StepRequest& request, std::vector<GroupBody>& bodies,
-    std::vector<GroupContact>& contacts, bool takeAnyway,
-    const std::function<bool()>& lookAgain = {});
+    std::vector<GroupContact>& contacts, Taken take, const std::function<bool()>& lookAgain = {});
 
   // For lookAgain.
   /// Where a body would be at the end of the step; its velocity is not set.

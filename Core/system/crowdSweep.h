@@ -1,6 +1,7 @@
 // The body of crowd::sweepAnywhere and sweepAvx2: included by the two files that compile it. No
 // function with external linkage may be used here, or the linker could take the AVX2 one for all.
 
+#include "solver/cohesion.h"
 #include "system/crowdKernel.h"
 
 namespace
@@ -151,12 +152,24 @@ ROCKFALL_INLINE double relax(Batch& batch, const Pass& pass)
   }
   const Triple n = load3(batch.directions[0]);
   const Lanes before = load(batch.force[0]);
-  const Lanes w = load(batch.w);
+  const Lanes before1 = load(batch.force[1]), before2 = load(batch.force[2]);
+  const Lanes w = load(batch.w), friction = load(batch.friction), cohesion = load(batch.cohesion);
+  const Lanes coupling1 = load(batch.coupling[0]), coupling2 = load(batch.coupling[1]);
   const Lanes zero = { 0.0, 0.0, 0.0, 0.0 }, one = { 1.0, 1.0, 1.0, 1.0 };
+  // Where it slides friction grows with the normal force, and may work against it under a long
+  // lever: taken for fixed, both would drive each other up from visit to visit. What is solved for
+  // is the same.
+  const Lanes coheres = before * rockfall::kCohesionPerForce;
+  const Lanes held = friction * before + (coheres < cohesion ? coheres : cohesion);
+  const Lanes across = friction * (coupling1 * before1 + coupling2 * before2);
+  const Mask slid = before1 * before1 + before2 * before2 > 0.999 * held * held;
+  const Mask against = slid & (across > zero);
+  const Lanes tied = against ? across / (against ? held : one) : zero;
   // The gap that the others leave, and the spring that closes it.
-  const Lanes open = load(batch.gap) + dot(n, way) - w * before;
+  const Lanes open = load(batch.gap) + dot(n, way) - (w + tied) * before;
   const Mask closes = open < zero;
-  const Lanes normal = closes ? -load(batch.stiffness) * open : zero;
+  const Lanes stiffness = load(batch.stiffness);
+  const Lanes normal = closes ? -stiffness * open / (one + stiffness * tied) : zero;
   const Lanes any = normal + before;
   if (any[0] + any[1] + any[2] + any[3] == 0.0)
   {
@@ -166,12 +179,12 @@ ROCKFALL_INLINE double relax(Batch& batch, const Pass& pass)
   // One step towards the locked spring, then back onto the Coulomb cone.
   const Triple u = load3(batch.directions[1]), v = load3(batch.directions[2]);
   const Lanes shear = load(batch.shear), gain = load(batch.gain);
-  const Lanes before1 = load(batch.force[1]), before2 = load(batch.force[2]);
-  Lanes s = load(batch.slip[0]) + dot(u, way) + load(batch.coupling[0]) * more;
-  Lanes t = load(batch.slip[1]) + dot(v, way) + load(batch.coupling[1]) * more;
+  Lanes s = load(batch.slip[0]) + dot(u, way) + coupling1 * more;
+  Lanes t = load(batch.slip[1]) + dot(v, way) + coupling2 * more;
   s = before1 - gain * (s + before1 * shear);
   t = before2 - gain * (t + before2 * shear);
-  const Lanes limit = closes ? load(batch.friction) * normal + load(batch.cohesion) : zero;
+  const Lanes holds = normal * rockfall::kCohesionPerForce;
+  const Lanes limit = closes ? friction * normal + (holds < cohesion ? holds : cohesion) : zero;
   const Lanes square = s * s + t * t;
   const Mask slides = square > limit * limit;
   Lanes root = slides ? square : one;

@@ -21,7 +21,7 @@ constexpr int kCalmSweeps = 25;
 /// tenth of the longest way, so many times more sweeps are made: forces as wrong as that would
 /// throw rocks about. It happens where light rocks with sharp corners lie under heavy ones.
 constexpr double kRough = 1000.0;
-constexpr int kRoughSweeps = 8;
+constexpr int kRoughSweeps = 100;
 /// Changes below this share of the tolerance are no reason to visit a contact again.
 constexpr double kQuiet = 0.3;
 /// What is found in a second look is met to this many times the tolerance, which is about as exact
@@ -303,12 +303,12 @@ void CrowdSolver::collect()
 }
 
 GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody>& bodies,
-  std::vector<GroupContact>& contacts, bool takeAnyway, const std::function<bool()>& lookAgain)
+  std::vector<GroupContact>& contacts, Taken take, const std::function<bool()>& lookAgain)
 {
   GroupOutcome outcome;
   if (bodies.empty())
   {
-    outcome.settled = true;
+    outcome.settled = outcome.taken = true;
     return outcome;
   }
   kernel_ = crowd::suitedSweep();
@@ -358,7 +358,9 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
   {
     finite = finite && w.way.allFinite() && w.spun.allFinite();
   }
-  if (finite && (outcome.settled || takeAnyway))
+  const bool near = take == Taken::NotRough && outcome.residual <= kRough * enough_;
+  outcome.taken = finite && (outcome.settled || near || take == Taken::Any);
+  if (outcome.taken)
   {
     this->write(request, bodies, contacts, outcome);
   }

@@ -43,9 +43,18 @@ struct GroupContact
   bool closed = false;
 };
 
+/// Which solutions of a step are taken.
+enum class Taken : std::uint8_t
+{
+  Settled,
+  NotRough, ///< Those of Gauss–Seidel, too, that are not far from it.
+  Any,
+};
+
 struct GroupOutcome
 {
   bool settled = false;
+  bool taken = false;        ///< Bodies and contacts are those at the end of the step.
   int iterations = 0;        ///< Of open–close.
   double residual = 0.0;     ///< Largest |Δ gap| of the last correction, m.
   double frictionWork = 0.0; ///< Between rocks, J.

@@ -127,7 +127,7 @@ bool GroupSolver::settle(const StepRequest& request, const std::vector<GroupBody
 }
 
 GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody>& bodies,
-  std::vector<GroupContact>& contacts, bool takeAnyway, const std::function<bool()>& lookAgain)
+  std::vector<GroupContact>& contacts, Taken take, const std::function<bool()>& lookAgain)
 {
   const bool lasting = request.kind == StepKind::Lasting;
   const bool iterate =
@@ -137,7 +137,7 @@ GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody
     sweeping_ = true;
     crowd_.tolerance = tolerance;
     crowd_.maxSweeps = maxSweeps;
-    return crowd_.step(request, bodies, contacts, takeAnyway, lookAgain);
+    return crowd_.step(request, bodies, contacts, take, lookAgain);
   };
   if (iterate && lasting)
   {
@@ -152,7 +152,7 @@ GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody
     this->append(request, bodies, contacts);
     outcome.settled = this->settle(request, bodies, contacts, outcome);
   }
-  if (!outcome.settled && takeAnyway)
+  if (!outcome.settled && take == Taken::Any)
   {
     // Newton that has not settled may be anywhere; Gauss–Seidel comes nearer with every sweep, and
     // a lasting step makes no energy.
@@ -175,6 +175,7 @@ GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody
   if (finite && outcome.settled)
   {
     this->write(request, bodies, contacts, outcome);
+    outcome.taken = true;
   }
   return outcome;
 }

@@ -165,7 +165,7 @@ TEST(Crowds, EveryJouleIsBooked)
   }
   // What meets is neither damped nor given by others, which would add up as well.
   EXPECT_GT(sum.damping, -1e-3 * sum.released);
-  EXPECT_LT(sum.damping, 0.02 * sum.released);
+  EXPECT_LT(sum.damping, 0.05 * sum.released); // springs that close and open within steps
   EXPECT_LT(std::abs(sum.numerical), 1e-3 * sum.released);
   EXPECT_GT(sum.exchanged, 0.05 * sum.released);
   EXPECT_GT(sum.restitution, 0.05 * sum.released);
@@ -316,7 +316,7 @@ TEST(Crowds, SpinOfASlabMakesNoEnergy)
     std::vector<GroupBody> bodies(1);
     bodies[0].block = &block;
     bodies[0].state = &state;
-    EXPECT_TRUE(solver.step(request, bodies, contacts, true).settled);
+    EXPECT_TRUE(solver.step(request, bodies, contacts, Taken::Any).settled);
   }
   // The end of a step rules it, as always in lasting steps: energy is lost (a seventh), never made.
   EXPECT_LT(rigidKineticEnergy(block, state), energy);
@@ -355,9 +355,89 @@ TEST(Crowds, WhatHasNotSettledIsNotTaken)
     StepRequest request;
     request.duration = 0.005;
     request.kind = StepKind::Lasting;
-    EXPECT_FALSE(solver.step(request, bodies, contacts, takeAnyway).settled);
+    EXPECT_FALSE(
+      solver.step(request, bodies, contacts, takeAnyway ? Taken::Any : Taken::Settled).settled);
     EXPECT_EQ(state.time, takeAnyway ? 0.005 : 0.0);
     EXPECT_EQ(state.position.z() == 0.5, !takeAnyway);
     EXPECT_EQ(corners[1].closed(), takeAnyway);
   }
+}
+
+TEST(Crowds, HighFrictionMakesNoEnergy)
+{
+  // Friction of 85 degrees under long levers: with what works against the normal force reckoned
+  // beside it, both drove each other up (half as much energy again).
+  constexpr std::array shapes = { Shape::Cube, Shape::Dodecahedron, Shape::Icosahedron,
+    Shape::Octahedron, Shape::Tetrahedron };
+  for (std::uint64_t seed = 1; seed <= 4; ++seed)
+  {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> u(-1.0, 1.0);
+    const Vec3 middle(20.0, 20.0, 0.0);
+    Pile pile;
+    pile.ground = abyss();
+    pile.parameters.gravity = 0.0;
+    pile.parameters.rockRestitution = 0.0;
+    pile.parameters.rockFrictionAngle = radians(85.0);
+    pile.parameters.timeStep = seed % 2 ? 0.005 : 0.02;
+    for (int k = 0; k < 100; ++k)
+    {
+      Rock rock;
+      rock.blockId = k;
+      const double size = 0.8 + 0.4 * u(random);
+      rock.shape = makeShape(shapes[std::size_t(k) % shapes.size()], size * size * size);
+      rock.orientation = Quat(u(random), u(random), u(random), u(random)).normalized();
+      rock.position = middle + 2.2 * Vec3(k % 5 - 2.0, k / 5 % 5 - 2.0, k / 25 - 1.5) +
+        0.05 * Vec3(u(random), u(random), u(random));
+      rock.velocity = (5.0 + 3.0 * u(random)) * (middle - rock.position).normalized();
+      rock.angularVelocity = 2.0 * Vec3(u(random), u(random), u(random));
+      pile.rocks.push_back(rock);
+    }
+    pile.start();
+    pile.fall->resolved = 0;
+    const auto energy = [&]
+    {
+      double sum = 0.0;
+      for (int i = 0; i < pile.fall->rocks(); ++i)
+      {
+        sum += rigidKineticEnergy(pile.blocks[std::size_t(i)], pile.fall->state(i));
+      }
+      return sum;
+    };
+    const double start = energy();
+    double least = start, most = 0.0;
+    while (pile.fall->time() < 1.5)
+    {
+      pile.fall->advance();
+      most = std::max(most, energy() - least);
+      least = std::min(least, energy());
+    }
+    EXPECT_LT(most, 0.02 * start) << "seed " << seed; // what springs held may come back
+  }
+}
+
+TEST(Crowds, CohesionTakesNoMoreStepsThanNone)
+{
+  // At the literal limit, which jumps where a contact opens, open–close went round in circles.
+  double steps[2];
+  for (const bool coheres : { false, true })
+  {
+    Pile pile;
+    pile.ground = floorSlope();
+    pile.awake = false;
+    pile.parameters.endTime = 3.0;
+    pile.parameters.rockRestitution = 0.2;
+    pile.parameters.rockCohesion = coheres ? 3000.0 : 0.0;
+    pile.rocks = handful(27, 4);
+    pile.make();
+    double cut = 0.0;
+    steps[coheres] = 0.0;
+    for (const Trajectory& t : pile.fall->run())
+    {
+      steps[coheres] += double(t.summary.contactSteps);
+      cut += double(t.summary.unsettledSteps);
+    }
+    EXPECT_LT(cut, 0.001 * steps[coheres]);
+  }
+  EXPECT_LT(steps[1], 3.0 * steps[0]);
 }

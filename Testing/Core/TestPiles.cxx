@@ -347,7 +347,7 @@ TEST(Piles, DirectAndIterativeSolutionAgree)
       solver.method = method;
       solver.tolerance = 1e-14;
       solver.maxSweeps = 200000;
-      outcome = solver.step(request, bodies, group, false);
+      outcome = solver.step(request, bodies, group, Taken::Settled);
     };
     std::vector<BlockState> direct, iterative;
     GroupOutcome one, other;
