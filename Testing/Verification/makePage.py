@@ -110,6 +110,9 @@ CHAPTERS = [
     ("Heaps",
      "Cubes of 0.6 m³, turned at random, fall onto a floor and on each other: no overlap, rest, and a heap that is "
      "the steeper the more friction there is.", ["heap-repose"]),
+    ("Crowds",
+     "The same rocks fall twice: with every impact resolved in time, as in groups of up to 64 rocks, and all stepped as "
+     "in a large crowd. They go as far, and lose their energy to the same.", []),
     ("Robustness",
      "Unreasonable input. Every case is a test of its own under a guard of 120 s of wall time, so that a hang "
      "is a failure.", []),
