@@ -147,7 +147,7 @@ TEST(Crowds, EveryJouleIsBooked)
   Pile pile;
   pile.ground = floorSlope();
   pile.awake = false;
-  pile.parameters.endTime = 20.0;
+  pile.parameters.endTime = 8.0;
   pile.parameters.rockRestitution = 0.8;
   pile.rocks = handful(108, 8);
   pile.make();
@@ -425,7 +425,7 @@ TEST(Crowds, CohesionTakesNoMoreStepsThanNone)
     Pile pile;
     pile.ground = floorSlope();
     pile.awake = false;
-    pile.parameters.endTime = 3.0;
+    pile.parameters.endTime = 1.6;
     pile.parameters.rockRestitution = 0.2;
     pile.parameters.rockCohesion = coheres ? 3000.0 : 0.0;
     pile.rocks = handful(27, 4);

@@ -141,7 +141,7 @@ TEST(Meetings, WhatMeetsNoOtherFallsAsWithoutCollisions)
   }
   SimulationParameters p;
   p.timeStep = 0.001;
-  p.iterations = 20;
+  p.iterations = 6;
   TrajectoryStore apart(5, p.iterations), together(5, p.iterations);
   runEnsemble(slope, rocks, p, apart);
   p.rockRockContact = true;
