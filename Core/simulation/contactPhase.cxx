@@ -2,6 +2,7 @@
 
 #include "block/flight.h"
 #include "contact/motion.h"
+#include "simulation/pressOut.h"
 #include "simulation/restitution.h"
 
 #include <algorithm>
@@ -13,14 +14,9 @@ namespace rockfall
 namespace
 {
 
-/// Speed at which an overlap that was found, not made, is pressed out of a lasting contact, m/s.
-constexpr double kPressOut = 0.005;
-constexpr double kPressOutDeep = 0.1; ///< The same of what is beyond a loose overlap, in crowds.
 /// Damping ratio of slip at an impact: high, so that a contact that sticks leaves without slip and
 /// not with what its shear spring gives back (rigid-body impact: no tangential restitution).
 constexpr double kShearDamping = 5.0;
-/// An overlap beyond this share of the radius that nothing carries is held where it is.
-constexpr double kLooseOverlap = 1e-3;
 
 /// Which features of the rock carry, as a number that any change changes.
 std::uint64_t carriers(const std::vector<Contact>& contacts)
@@ -373,9 +369,7 @@ void RockSimulator::pressOut(double h)
   for (Contact& c : contacts_)
   {
     // In a crowd a rock may be pushed under the slope within a step.
-    const bool deep = crowded_ && c.offset < -kLooseOverlap * block_.radius();
-    const double by = deep ? kPressOutDeep * h : way;
-    c.offset = c.offset < 0.0 ? std::min(0.0, c.offset + by) : std::max(0.0, c.offset - by);
+    rockfall::pressOut(c, h, way, crowded_, kLooseOverlap * block_.radius());
   }
 }
 

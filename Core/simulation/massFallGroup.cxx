@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "contact/motion.h"
+#include "simulation/pressOut.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,8 +23,7 @@ constexpr double kStepsPerImpact = 8.0;
 /// In a crowd a step is this much longer than rocks that resolve their impacts may take: where they
 /// would end is looked at.
 constexpr double kCrowdTravel = 2.0;
-constexpr double kShearDamping = 5.0;  // as for single rocks
-constexpr double kLooseOverlap = 1e-3; // of the radius, as for single rocks
+constexpr double kShearDamping = 5.0; // as for single rocks
 
 /// Gives contacts of a pair what they are made of; what only their normal decides is found once.
 class PairArming

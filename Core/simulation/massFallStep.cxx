@@ -3,6 +3,7 @@
 #include "simulation/massFallWork.h"
 
 #include "base/parallel.h"
+#include "simulation/pressOut.h"
 #include "simulation/restitution.h"
 
 #include <algorithm>
@@ -15,9 +16,6 @@ namespace rockfall
 namespace
 {
 
-constexpr double kPressOut = 0.005;    // m/s, as for single rocks
-constexpr double kPressOutDeep = 0.1;  // m/s, of overlaps beyond the loose one
-constexpr double kLooseOverlap = 1e-3; // of the radius, as for single rocks
 /// How often the step of a crowd is halved that is far from settled.
 constexpr int kCrowdCuts = 4;
 
@@ -301,9 +299,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     const double loose = kLooseOverlap * std::min(a.radius(), b.radius());
     for (Contact& c : pair.contacts)
     {
-      const bool deep = kind == StepKind::Lasting && c.offset < -loose;
-      const double way = deep ? kPressOutDeep * h : slow;
-      c.offset = c.offset < 0.0 ? std::min(0.0, c.offset + way) : std::max(0.0, c.offset - way);
+      pressOut(c, h, slow, kind == StepKind::Lasting, loose);
     }
   };
   forEach(group.pairs.size(), kPairGrain, absorbPair);

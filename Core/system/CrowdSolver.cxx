@@ -226,30 +226,34 @@ void CrowdSolver::pushed(const Row& row, double sign)
   }
 }
 
-Vec3 CrowdSolver::wayOf(const Row& row, int side) const
+const CrowdSolver::Work* CrowdSolver::workOf(const Row& row, int side) const
 {
   const crowd::Batch& p = batches_[std::size_t(row.batch)];
   const std::size_t i = std::size_t(p.body[side][row.lane]);
-  if (i >= work_.size())
-  {
-    return Vec3::Zero(); // the slope
-  }
-  const Work& w = work_[std::size_t(line_[i].second)];
-  return w.way + w.spun.cross(laneOf(p.lever[side], row.lane));
+  return i < work_.size() ? &work_[std::size_t(line_[i].second)] : nullptr;
+}
+
+Vec3 CrowdSolver::leverOf(const Row& row, int side) const
+{
+  return laneOf(batches_[std::size_t(row.batch)].lever[side], row.lane);
+}
+
+Vec3 CrowdSolver::wayOf(const Row& row, int side) const
+{
+  const Work* w = this->workOf(row, side);
+  return w ? Vec3(w->way + w->spun.cross(this->leverOf(row, side))) : Vec3(Vec3::Zero());
 }
 
 Vec3 CrowdSolver::meanWayOf(const Row& row, int side) const
 {
-  const crowd::Batch& p = batches_[std::size_t(row.batch)];
-  const std::size_t i = std::size_t(p.body[side][row.lane]);
-  if (i >= work_.size())
+  const Work* w = this->workOf(row, side);
+  if (!w)
   {
-    return Vec3::Zero(); // the slope
+    return Vec3::Zero();
   }
-  const Work& w = work_[std::size_t(line_[i].second)];
-  const Vec3 way = 0.5 * (h_ * (w.velocity0 + w.offset) + w.way);
-  const Vec3 spun = 0.5 * (h_ * (w.spin0 + w.spinOffset) + w.spun);
-  return way + spun.cross(laneOf(p.lever[side], row.lane));
+  const Vec3 way = 0.5 * (h_ * (w->velocity0 + w->offset) + w->way);
+  const Vec3 spun = 0.5 * (h_ * (w->spin0 + w->spinOffset) + w->spun);
+  return way + spun.cross(this->leverOf(row, side));
 }
 
 Vec3 CrowdSolver::travel(const Row& row) const
@@ -268,14 +272,12 @@ std::array<Vec3, 2> CrowdSolver::velocities(const Row& row) const
   Vec3 before = Vec3::Zero(), after = Vec3::Zero();
   for (int side = 0; side < 2; ++side)
   {
-    const std::size_t i = std::size_t(p.body[side][lane]);
-    if (i < work_.size())
+    if (const Work* w = this->workOf(row, side))
     {
-      const Work& w = work_[std::size_t(line_[i].second)];
-      const Vec3 lever = laneOf(p.lever[side], lane);
+      const Vec3 lever = this->leverOf(row, side);
       const double sign = side == 0 ? 1.0 : -1.0;
-      before += sign * (w.velocity0 + w.spin0.cross(lever));
-      after += sign * (w.way / h_ + w.offset + (w.spun / h_ + w.spinOffset).cross(lever));
+      before += sign * (w->velocity0 + w->spin0.cross(lever));
+      after += sign * (w->way / h_ + w->offset + (w->spun / h_ + w->spinOffset).cross(lever));
     }
   }
   Mat3 along;

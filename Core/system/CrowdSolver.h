@@ -99,8 +99,10 @@ private:
   void prepareRow(const std::vector<GroupBody>& bodies, const GroupContact& group, Row& row);
   /// Directions and levers at mid-step, and what a force does along them.
   void lever(const std::vector<GroupBody>& bodies, const GroupContact& group, const Row& row);
-  void pushed(const Row& row, double sign);   ///< Movers by the row's force.
-  Vec3 wayOf(const Row& row, int side) const; ///< Of a rock's point of force, m.
+  void pushed(const Row& row, double sign);           ///< Movers by the row's force.
+  const Work* workOf(const Row& row, int side) const; ///< Null: the slope.
+  Vec3 leverOf(const Row& row, int side) const;       ///< m
+  Vec3 wayOf(const Row& row, int side) const;         ///< Of a rock's point of force, m.
   /// The same at the mean of the velocities before and after the step, m.
   Vec3 meanWayOf(const Row& row, int side) const;
   Vec3 travel(const Row& row) const; ///< Along the normal and the tangents, m.

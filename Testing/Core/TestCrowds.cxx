@@ -155,13 +155,7 @@ TEST(Crowds, EveryJouleIsBooked)
   EnergyAudit sum;
   for (const Trajectory& t : pile.fall->run())
   {
-    const EnergyAudit& e = t.summary.energy;
-    sum.released += e.released;
-    sum.friction += e.friction;
-    sum.restitution += e.restitution;
-    sum.exchanged += e.exchanged;
-    sum.damping += e.damping;
-    sum.numerical += e.numerical;
+    add(sum, t.summary.energy);
   }
   // What meets is neither damped nor given by others, which would add up as well.
   EXPECT_GT(sum.damping, -1e-3 * sum.released);

@@ -23,6 +23,17 @@ inline std::vector<Block> blocksOf(const std::vector<Rock>& rocks)
   return blocks;
 }
 
+/// Adds what was released and where it went.
+inline void add(EnergyAudit& sum, const EnergyAudit& e)
+{
+  sum.released += e.released;
+  sum.friction += e.friction;
+  sum.restitution += e.restitution;
+  sum.exchanged += e.exchanged;
+  sum.damping += e.damping;
+  sum.numerical += e.numerical;
+}
+
 /// Rocks on a slope, run together.
 struct Pile
 {

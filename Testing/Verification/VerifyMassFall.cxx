@@ -155,15 +155,9 @@ Fall rush(int rocks, std::uint64_t seed, int resolved)
   std::vector<double> stops;
   for (const Trajectory& t : pile.fall->run())
   {
-    const EnergyAudit& e = t.summary.energy;
     stops.push_back(t.summary.stop.x() - start);
     fall.way += stops.back() / rocks;
-    fall.energy.released += e.released;
-    fall.energy.friction += e.friction;
-    fall.energy.restitution += e.restitution;
-    fall.energy.exchanged += e.exchanged;
-    fall.energy.damping += e.damping;
-    fall.energy.numerical += e.numerical;
+    rockfall::testing::add(fall.energy, t.summary.energy);
   }
   std::sort(stops.begin(), stops.end(), std::greater<>());
   const int tenth = rocks / 10;
@@ -257,12 +251,7 @@ TEST(MassFall, CrowdsGoAsFarAsResolved)
       Kind& kind = kinds[crowd];
       kind.ways.push_back(fall.way);
       kind.leads.push_back(fall.lead);
-      kind.energy.released += fall.energy.released;
-      kind.energy.friction += fall.energy.friction;
-      kind.energy.restitution += fall.energy.restitution;
-      kind.energy.exchanged += fall.energy.exchanged;
-      kind.energy.damping += fall.energy.damping;
-      kind.energy.numerical += fall.energy.numerical;
+      rockfall::testing::add(kind.energy, fall.energy);
     }
   }
   const std::string circumstances =
