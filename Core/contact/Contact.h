@@ -154,6 +154,10 @@ double timeToClose(const PlacedBlock& rock, const BlockState& state, const Surfa
 void holdOverlap(const PlacedBlock& rock, const SurfacePatch& patch,
   const CandidatePairs& candidates, double allowed, std::vector<Contact>& contacts);
 
+/// Whether any vertex or peak is that deep.
+bool overlaps(const PlacedBlock& rock, const SurfacePatch& patch, const CandidatePairs& candidates,
+  double allowed);
+
 /// The same entrance rules by brute force over all pairs, without pruning: the oracle of the tests.
 void findEntrancesBruteForce(
   const PlacedBlock& rock, const SurfacePatch& patch, double reach, std::vector<Contact>& contacts);

@@ -145,11 +145,6 @@ Clearance clearance(const PlacedBlock& rock, const BlockState& state, const Surf
   return result;
 }
 
-namespace
-{
-
-} // namespace
-
 double penetration(const PlacedBlock& rock, const SurfacePatch& patch)
 {
   double deepest = 0.0;
@@ -183,6 +178,46 @@ double penetration(const PlacedBlock& rock, const SurfacePatch& patch)
   }
   return deepest;
 }
+
+namespace
+{
+
+/// visit(kind, feature of the rock, of the patch, distance) of each candidate vertex and peak that
+/// is too deep, until it returns false. Returns whether it never did.
+template <class Visit>
+bool visitOverlaps(const PlacedBlock& rock, const SurfacePatch& patch,
+  const CandidatePairs& candidates, double allowed, Visit&& visit)
+{
+  for (const CandidatePairs::Pair& pair : candidates.vertexFace)
+  {
+    const SurfacePatch::Triangle& t = patch.triangles[pair.patch];
+    const Vec3& p = rock.vertices()[pair.rock];
+    const double distance = t.normal.dot(p) - t.offset;
+    if (distance < -allowed &&
+      (pair.patch < patch.slopeTriangles ? isStraightOver(patch, t, p)
+                                         : projectsInside(patch, pair.patch, p, 0.0, 0.0) &&
+            inVertexCone(rock, pair.rock, t.normal, kConeSlack)) &&
+      !visit(ContactKind::VertexFace, pair.rock, pair.patch, distance))
+    {
+      return false;
+    }
+  }
+  for (int node : candidates.peaks)
+  {
+    const Vec3& q = patch.nodes[node].position;
+    const int face = rock.outermostFace(q);
+    const double distance = rock.faceDistance(face, q);
+    // A face that looks up is no way out of the ground.
+    if (distance < -allowed && (node >= patch.slopeNodes || rock.normal(face).z() < 0.0) &&
+      !visit(ContactKind::FaceVertex, face, node, distance))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+} // namespace
 
 void holdOverlap(const PlacedBlock& rock, const SurfacePatch& patch,
   const CandidatePairs& candidates, double allowed, std::vector<Contact>& contacts)
@@ -226,30 +261,18 @@ void holdOverlap(const PlacedBlock& rock, const SurfacePatch& patch,
       contacts.push_back(c);
     }
   };
-  for (const CandidatePairs::Pair& pair : candidates.vertexFace)
-  {
-    const SurfacePatch::Triangle& t = patch.triangles[pair.patch];
-    const Vec3& p = rock.vertices()[pair.rock];
-    const double distance = t.normal.dot(p) - t.offset;
-    if (distance < -allowed &&
-      (pair.patch < patch.slopeTriangles ? isStraightOver(patch, t, p)
-                                         : projectsInside(patch, pair.patch, p, 0.0, 0.0) &&
-            inVertexCone(rock, pair.rock, t.normal, kConeSlack)))
+  visitOverlaps(rock, patch, candidates, allowed,
+    [&](ContactKind kind, int onRock, int onPatch, double distance)
     {
-      add(ContactKind::VertexFace, pair.rock, pair.patch, distance);
-    }
-  }
-  for (int node : candidates.peaks)
-  {
-    const Vec3& q = patch.nodes[node].position;
-    const int face = rock.outermostFace(q);
-    const double distance = rock.faceDistance(face, q);
-    // A face that looks up is no way out of the ground.
-    if (distance < -allowed && (node >= patch.slopeNodes || rock.normal(face).z() < 0.0))
-    {
-      add(ContactKind::FaceVertex, face, node, distance);
-    }
-  }
+      add(kind, onRock, onPatch, distance);
+      return true;
+    });
+}
+
+bool overlaps(const PlacedBlock& rock, const SurfacePatch& patch, const CandidatePairs& candidates,
+  double allowed)
+{
+  return !visitOverlaps(rock, patch, candidates, allowed, [](auto&&...) { return false; });
 }
 
 } // namespace rockfall

@@ -112,11 +112,19 @@ private:
   double freeTime(const Group& group, double most) const;
   void fly(const Group& group, double duration) const;
   void solve(const Group& group, double h, StepKind kind, bool bounces, Workspace& work) const;
-  /// What a pair's contact is in a step of `h`; an impact begins with it if it closes fast.
+  /// What a contact is in a step of `h`; between rocks an impact begins with it if it closes fast.
   GroupContact take(RockPair& pair, Contact& contact, double h, bool bounces) const;
-  /// Contacts between rocks that nobody reckoned with, seen where a step would end: they are
-  /// appended, and whether there are any is returned.
-  bool lookAgain(const Group& group, double h, bool bounces, Workspace& work) const;
+  GroupContact take(const Member& member, Contact& contact, double h, bool bounces) const;
+  /// Contacts that nobody reckoned with, seen where a step would end: they are appended. Returns
+  /// how deep the deepest is, of the smaller radius; 0: none.
+  double lookAgain(const Group& group, double h, bool bounces, Workspace& work) const;
+  double lookAtPairs(const Group& group, double h, bool bounces, Workspace& work) const;
+  double lookAtSlope(const Group& group, double h, bool bounces, Workspace& work) const;
+  /// Contacts of a rock with the slope where a step would end: those that are reckoned with, then
+  /// those that are not. Returns how many the former are.
+  std::size_t touchesOnSlope(
+    const Group& group, std::size_t m, Workspace& work, std::vector<Contact>& touches) const;
+  void add(GroupContact taken, bool bounces, Workspace& work) const;
   void absorb(const Group& group, double h, StepKind kind, Workspace& work) const;
   void finishPairImpact(RockPair& pair) const;
   Vec3 relativeVelocity(const RockPair& pair, const Vec3& point) const; ///< First less second, m/s.

@@ -106,7 +106,8 @@ private:
   void ensureWindow(double duration); ///< Heights under all of the way of a flight.
   void ensurePatch(double margin);
   void ensureCandidates(double reach, bool among = false); ///< `among`: many others.
-  void armContacts();                          ///< Gives new contacts their springs and dashpots.
+  void armContacts(); ///< Gives new contacts their springs and dashpots.
+  void armContact(Contact& contact);
   double dampingRatioOf(int restitutionClass); ///< ζ for the restitution of a class.
   double impactStep() const;
   double travelLimit() const;

@@ -203,37 +203,41 @@ double RockSimulator::dampingRatioOf(int restitutionClass)
 
 void RockSimulator::armContacts()
 {
-  const Vec3 spin = state_.angularVelocity();
-  const double speed = state_.velocity.norm();
   // What slides into something may be faster than when its contact began.
   penalty_ = std::max(penalty_, this->stoppingPenalty());
   for (Contact& c : contacts_)
   {
-    c.friction = surface_.frictionAt(c.cfe);
-    c.cohesion = surface_.cohesionAt(c.cfe);
-    if (c.closed())
-    {
-      continue;
-    }
-    const Vec3 lever = c.point - state_.position;
-    const Vec3 y = placed_.rotation().transpose() * lever;
-    const Vec3 n = placed_.rotation().transpose() * c.normal;
-    const Vec3 t = n.unitOrthogonal();
-    const double shear = penalty_ * parameters_.shearRatio;
-    const bool strains = stiff_ && !parameters_.rigid;
-    c.stiffness = penalty_ / (1.0 + (strains ? penalty_ * block_.compliance(n, y) : 0.0));
-    c.shearStiffness = shear / (1.0 + (strains ? shear * block_.compliance(t, y) : 0.0));
-    const double approach = -c.normal.dot(state_.velocity + spin.cross(lever));
-    const bool down =
-      approach > restingSpeed_ && comesDown(approach, speed, parameters_.gravity, block_.radius());
-    const int ground = surface_.restitutionClass(c.cfe);
-    const double damped = contactDamping(surface_.terrain().restitutionMaterial(ground),
-      surface_.restitutionOf(ground), this->dampingRatioOf(ground), approach, down);
-    const double mobility = block_.mobility(n, y);
-    c.frequency2 = c.stiffness * mobility;
-    c.dashpot = damped > 0.0 ? 2.0 * damped * std::sqrt(c.stiffness / mobility) : 0.0;
-    c.shearDashpot = 2.0 * kShearDamping * std::sqrt(c.shearStiffness / block_.mobility(t, y));
+    this->armContact(c);
   }
+}
+
+void RockSimulator::armContact(Contact& c)
+{
+  c.friction = surface_.frictionAt(c.cfe);
+  c.cohesion = surface_.cohesionAt(c.cfe);
+  if (c.closed())
+  {
+    return;
+  }
+  const Vec3 lever = c.point - state_.position;
+  const Vec3 y = placed_.rotation().transpose() * lever;
+  const Vec3 n = placed_.rotation().transpose() * c.normal;
+  const Vec3 t = n.unitOrthogonal();
+  const double shear = penalty_ * parameters_.shearRatio;
+  const bool strains = stiff_ && !parameters_.rigid;
+  c.stiffness = penalty_ / (1.0 + (strains ? penalty_ * block_.compliance(n, y) : 0.0));
+  c.shearStiffness = shear / (1.0 + (strains ? shear * block_.compliance(t, y) : 0.0));
+  const double speed = state_.velocity.norm();
+  const double approach = -c.normal.dot(state_.velocity + state_.angularVelocity().cross(lever));
+  const bool down =
+    approach > restingSpeed_ && comesDown(approach, speed, parameters_.gravity, block_.radius());
+  const int ground = surface_.restitutionClass(c.cfe);
+  const double damped = contactDamping(surface_.terrain().restitutionMaterial(ground),
+    surface_.restitutionOf(ground), this->dampingRatioOf(ground), approach, down);
+  const double mobility = block_.mobility(n, y);
+  c.frequency2 = c.stiffness * mobility;
+  c.dashpot = damped > 0.0 ? 2.0 * damped * std::sqrt(c.stiffness / mobility) : 0.0;
+  c.shearDashpot = 2.0 * kShearDamping * std::sqrt(c.shearStiffness / block_.mobility(t, y));
 }
 
 void RockSimulator::takeStep(double h, StepKind kind)

@@ -1,12 +1,14 @@
 // The second look of a crowd's step: contacts that show only where the rocks would end.
 //
 // A step takes the points of touch along the axis on which two rocks are farthest apart when it
-// begins. Rocks that meet fast, turn, or are pushed by others on the way may come to touch
-// elsewhere, and would be found as deep in each other as they go in a step.
+// begins, and what may reach the slope as the rocks move then. Rocks that meet fast, turn, or are
+// pushed by others on the way may come to touch elsewhere, and would be found as deep in each other
+// or in the slope as they go in a step.
 
 #include "simulation/massFallWork.h"
 
 #include "base/parallel.h"
+#include "simulation/pressOut.h"
 
 #include <algorithm>
 #include <cmath>
@@ -51,7 +53,7 @@ void carryBack(const PlacedBlock& firstEnd, const PlacedBlock& secondEnd,
 
 } // namespace
 
-bool MassFall::lookAgain(const Group& group, double h, bool bounces, Workspace& work) const
+double MassFall::lookAgain(const Group& group, double h, bool bounces, Workspace& work) const
 {
   const auto place = [&](std::size_t k)
   {
@@ -64,6 +66,112 @@ bool MassFall::lookAgain(const Group& group, double h, bool bounces, Workspace& 
   };
   forEach(group.members.size(), kRockGrain, place);
   work.looked = true;
+  const double missed = this->lookAtPairs(group, h, bounces, work);
+  // Who resolves his impacts takes steps so short that what he may reach is known.
+  return this->isCrowd(group) ? std::max(missed, this->lookAtSlope(group, h, bounces, work))
+                              : missed;
+}
+
+void MassFall::add(GroupContact taken, bool bounces, Workspace& work) const
+{
+  if (bounces)
+  {
+    meet(work.partners, taken);
+    taken.bounce = mayBounce(work.partners, taken) ? taken.bounce : -1.0;
+  }
+  work.contacts.push_back(taken);
+}
+
+std::size_t MassFall::touchesOnSlope(
+  const Group& group, std::size_t m, Workspace& work, std::vector<Contact>& touches) const
+{
+  const Member& member = *members_[group.members[m]];
+  const RockSimulator& sim = member.sim;
+  touches.clear();
+  double pressed = 0.0;
+  const auto reckoned = [&](std::size_t k)
+  {
+    Contact c = *work.contacts[k].contact;
+    const double gap = work.solver.gap(k);
+    pressed = std::max(pressed, -gap);
+    c.distance = gap + c.offset;
+    touches.push_back(c);
+  };
+  for (std::size_t k = 0; k < sim.contacts_.size(); ++k)
+  {
+    reckoned(work.slopeFirsts[m] + k);
+  }
+  for (std::size_t k = 0; k < work.addedTo.size(); ++k)
+  {
+    if (work.addedTo[k].onSlope && work.addedTo[k].of == m)
+    {
+      reckoned(work.firsts.back() + k);
+    }
+  }
+  const std::size_t known = touches.size();
+  holdOverlap(member.end, sim.patch_, sim.candidates_,
+    kLooseOverlap * sim.block_.radius() + 2.0 * pressed, touches);
+  // Whether a tree stands is settled before the step.
+  const auto behind = touches.begin() + std::ptrdiff_t(known);
+  touches.erase(std::remove_if(behind, touches.end(),
+                  [&](const Contact& c) { return sim.solid_ && sim.treeOf(c) >= 0; }),
+    touches.end());
+  return known;
+}
+
+double MassFall::lookAtSlope(const Group& group, double h, bool bounces, Workspace& work) const
+{
+  const auto isMissed = [&](std::size_t m)
+  {
+    Member& member = *members_[group.members[m]];
+    RockSimulator& sim = member.sim;
+    if (sim.done_ || !work.solver.moved(std::size_t(member.place)))
+    {
+      return false;
+    }
+    const BlockState end = work.solver.end(work.bodies, std::size_t(member.place));
+    if (sim.candidates_.room(end, sim.block_.radius(), 0.0) < 0.0)
+    {
+      // Thrown further than anyone would have thought.
+      const double turned = 2.0 * sim.block_.radius() *
+        (end.orientation.coeffs() - sim.state_.orientation.coeffs()).norm();
+      sim.ensureCandidates((end.position - sim.state_.position).norm() + turned, true);
+    }
+    if (!overlaps(member.end, sim.patch_, sim.candidates_, kLooseOverlap * sim.block_.radius()))
+    {
+      return false;
+    }
+    thread_local std::vector<Contact> touches;
+    const std::size_t known = this->touchesOnSlope(group, m, work, touches);
+    return touches.size() > known;
+  };
+  double deepest = 0.0;
+  work.missed.clear();
+  forThose(group.members.size(), kRockGrain, work.flags, isMissed,
+    [&](std::size_t m) { work.missed.push_back(m); });
+  work.found.resize(std::max<std::size_t>(1, work.found.size()));
+  std::vector<Contact>& touches = work.found.front();
+  for (const std::size_t m : work.missed)
+  {
+    Member& member = *members_[group.members[m]];
+    for (std::size_t k = this->touchesOnSlope(group, m, work, touches); k < touches.size(); ++k)
+    {
+      Contact& c = touches[k];
+      deepest = std::max(deepest, -c.distance / member.sim.block_.radius());
+      const PlacedBlock slope;
+      carryBack(member.end, slope, member.sim.placed_, slope, c);
+      c.offset = 0.0;
+      member.sim.armContact(c);
+      work.added.push_back(c);
+      work.addedTo.push_back({ true, m, c });
+      this->add(this->take(member, work.added.back(), h, bounces), bounces, work);
+    }
+  }
+  return deepest;
+}
+
+double MassFall::lookAtPairs(const Group& group, double h, bool bounces, Workspace& work) const
+{
   const auto allowed = [&](const RockPair& pair)
   {
     return kMissed *
@@ -94,24 +202,27 @@ bool MassFall::lookAgain(const Group& group, double h, bool bounces, Workspace& 
     return pair.end.kind != PairAxis::Kind::None && pair.end.distance < deep &&
       pair.end.distance < deepest(p) + deep;
   };
-  work.missedPairs.clear();
+  work.missed.clear();
   forThose(group.pairs.size(), kPairGrain, work.flags, compare,
-    [&](std::size_t p) { work.missedPairs.push_back(p); });
-  work.found.resize(std::max(work.found.size(), work.missedPairs.size()));
+    [&](std::size_t p) { work.missed.push_back(p); });
+  work.found.resize(std::max(work.found.size(), work.missed.size()));
   const auto findThem = [&](std::size_t m)
   {
-    RockPair& pair = *group.pairs[work.missedPairs[m]];
+    RockPair& pair = *group.pairs[work.missed[m]];
     const Member &a = *members_[pair.first], &b = *members_[pair.second];
     findTouches(a.endBody, b.endBody, pair.end, 0.0, work.found[m]);
   };
-  forEach(work.missedPairs.size(), kMissedGrain, findThem);
-  bool any = false;
-  for (std::size_t m = 0; m < work.missedPairs.size(); ++m)
+  forEach(work.missed.size(), kMissedGrain, findThem);
+  const auto isAddedTo = [&](std::size_t k, std::size_t p)
+  { return !work.addedTo[k].onSlope && work.addedTo[k].of == p; };
+  double most = 0.0;
+  for (std::size_t m = 0; m < work.missed.size(); ++m)
   {
-    const std::size_t p = work.missedPairs[m];
+    const std::size_t p = work.missed[m];
     RockPair& pair = *group.pairs[p];
     const Member &a = *members_[pair.first], &b = *members_[pair.second];
     const double limit = deepest(p) - allowed(pair);
+    const double smaller = std::min(a.sim.block_.radius(), b.sim.block_.radius());
     for (Contact& c : work.found[m])
     {
       if (c.distance >= limit)
@@ -133,32 +244,27 @@ bool MassFall::lookAgain(const Group& group, double h, bool bounces, Workspace& 
       if (known == work.firsts[p + 1])
       {
         known = firstAdded;
-        while (
-          known < work.contacts.size() && !(work.addedTo[known - firstAdded] == p && same(known)))
+        while (known < work.contacts.size() && !(isAddedTo(known - firstAdded, p) && same(known)))
         {
           ++known;
         }
       }
       if (known < work.contacts.size())
       {
-        any = work.solver.setGap(known, c.distance - work.contacts[known].contact->offset) || any;
+        const double gap = c.distance - work.contacts[known].contact->offset;
+        const double wrong = std::abs(work.solver.gap(known) - gap) / smaller;
+        most = work.solver.setGap(known, gap) ? std::max(most, wrong) : most;
         continue;
       }
-      any = true;
+      most = std::max(most, (deepest(p) - c.distance) / smaller);
       carryBack(a.end, b.end, a.sim.placed_, b.sim.placed_, c);
       this->armContact(pair, c);
       work.added.push_back(c);
-      work.addedTo.push_back(p);
-      GroupContact taken = this->take(pair, work.added.back(), h, bounces);
-      if (bounces)
-      {
-        meet(work.partners, taken);
-        taken.bounce = mayBounce(work.partners, taken) ? taken.bounce : -1.0;
-      }
-      work.contacts.push_back(taken);
+      work.addedTo.push_back({ false, p, c });
+      this->add(this->take(pair, work.added.back(), h, bounces), bounces, work);
     }
   }
-  return any;
+  return most;
 }
 
 } // namespace rockfall

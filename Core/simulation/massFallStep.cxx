@@ -46,6 +46,36 @@ std::uint64_t keyOf(const Contact& c)
 
 } // namespace
 
+GroupContact MassFall::take(const Member& member, Contact& c, double h, bool bounces) const
+{
+  const RockSimulator& sim = member.sim;
+  const BlockState& state = sim.state_;
+  const Vec3 lever = c.point - state.position;
+  const double approach = -c.normal.dot(state.velocity + state.angularVelocity().cross(lever));
+  const bool down =
+    comesDown(approach, state.velocity.norm(), parameters_.gravity, sim.block_.radius());
+  const int ground = surface_.restitutionClass(c.cfe);
+  const SurfaceMaterial& material = surface_.terrain().restitutionMaterial(ground);
+  double e = surface_.restitutionOf(ground);
+  if (material.restitutionModel == RestitutionModel::Velocity && down)
+  {
+    e = 1.0; // Rv is taken off the whole velocity when the impact is over
+  }
+  else if (material.restitutionModel == RestitutionModel::SpeedDependent)
+  {
+    e = restitutionAtSpeed(e, approach, material.restitutionSpeed);
+  }
+  GroupContact k;
+  k.contact = &c;
+  k.closed = c.closed();
+  k.first = member.place;
+  k.friction = c.friction;
+  k.cohesion = c.cohesion;
+  k.bounce = bounces && hits(c, approach, sim.restingSpeed_, h) ? e * approach : -1.0;
+  k.approach = approach;
+  return k;
+}
+
 GroupContact MassFall::take(RockPair& pair, Contact& c, double h, bool bounces) const
 {
   const Member &a = *members_[pair.first], &b = *members_[pair.second];
@@ -136,34 +166,10 @@ void MassFall::solve(
     {
       body.acceleration.z() = -parameters_.gravity;
     }
-    const Vec3 spin = sim.state_.angularVelocity();
     std::size_t next = work.slopeFirsts[m];
     for (Contact& c : sim.contacts_)
     {
-      const double approach =
-        -c.normal.dot(sim.state_.velocity + spin.cross(c.point - sim.state_.position));
-      const bool down =
-        comesDown(approach, sim.state_.velocity.norm(), parameters_.gravity, sim.block_.radius());
-      const int ground = surface_.restitutionClass(c.cfe);
-      const SurfaceMaterial& material = surface_.terrain().restitutionMaterial(ground);
-      double e = surface_.restitutionOf(ground);
-      if (material.restitutionModel == RestitutionModel::Velocity && down)
-      {
-        e = 1.0; // Rv is taken off the whole velocity when the impact is over
-      }
-      else if (material.restitutionModel == RestitutionModel::SpeedDependent)
-      {
-        e = restitutionAtSpeed(e, approach, material.restitutionSpeed);
-      }
-      GroupContact& k = work.contacts[next++];
-      k = {};
-      k.contact = &c;
-      k.closed = c.closed();
-      k.first = member.place;
-      k.friction = c.friction;
-      k.cohesion = c.cohesion;
-      k.bounce = bounces && hits(c, approach, sim.restingSpeed_, h) ? e * approach : -1.0;
-      k.approach = approach;
+      work.contacts[next++] = this->take(member, c, h, bounces);
     }
   };
   forEach(group.members.size(), kRockGrain, takeRock);
@@ -305,8 +311,16 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
   forEach(group.pairs.size(), kPairGrain, absorbPair);
   for (std::size_t k = 0; k < work.added.size(); ++k)
   {
-    RockPair& pair = *group.pairs[work.addedTo[k]];
     const Contact& c = work.added[k];
+    const Workspace::Added& added = work.addedTo[k];
+    if (added.onSlope)
+    {
+      RockSimulator& sim = members_[group.members[added.of]]->sim;
+      sim.contacts_.push_back(c);
+      sim.contactsBefore_.push_back(added.before);
+      continue;
+    }
+    RockPair& pair = *group.pairs[added.of];
     book(pair, work.contacts[work.firsts.back() + k]);
     if (c.closed())
     {

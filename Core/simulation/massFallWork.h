@@ -61,9 +61,15 @@ struct MassFall::Workspace
   std::vector<std::size_t> slopeFirsts, firsts;
   /// Contacts that are found in a second look, behind the others in `contacts`, and whose they are.
   std::deque<Contact> added;
-  std::vector<std::size_t> addedTo;
+  struct Added
+  {
+    bool onSlope;
+    std::size_t of; ///< Number in the group, of a pair or of a rock.
+    Contact before; ///< As it was before the step.
+  };
+  std::vector<Added> addedTo;
   std::vector<char> flags;                 ///< For forThose.
-  std::vector<std::size_t> missedPairs;    ///< Whose contacts were missed.
+  std::vector<std::size_t> missed;         ///< Pairs or rocks whose contacts were missed.
   std::vector<std::vector<Contact>> found; ///< Of each of them, where it touches.
   bool looked = false;                     ///< Where the step ends.
 };

@@ -352,6 +352,10 @@ bool CrowdSolver::correctTurns(
       }
     };
     this->forParts(false, [&](int part) { this->forRows(part, ifWrong); });
+    for (std::size_t k = order_.size(); k < rows_.size(); ++k)
+    {
+      ifWrong(k);
+    }
   };
   forTheirRows([&](std::size_t k) { this->pushed(rows_[k], -1.0); });
   const auto turn = [&](std::size_t i)

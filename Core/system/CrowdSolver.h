@@ -29,7 +29,7 @@ public:
   /// `take` and `lookAgain`: see GroupSolver::step. Nothing is changed if a displacement is
   /// not finite.
   GroupOutcome step(const StepRequest& request, std::vector<GroupBody>& bodies,
-    std::vector<GroupContact>& contacts, Taken take, const std::function<bool()>& lookAgain);
+    std::vector<GroupContact>& contacts, Taken take, const std::function<double()>& lookAgain);
 
   // For lookAgain, as GroupSolver has them.
   BlockState end(const std::vector<GroupBody>& bodies, std::size_t i) const;
@@ -42,6 +42,8 @@ public:
   int maxSweeps = 12;
 
 private:
+  /// Changes below this share of the tolerance are no reason to visit a contact again.
+  static constexpr double kQuiet = 0.3;
   static constexpr int kNever = -2;                              ///< A sweep before all others.
   static constexpr std::size_t kBodyGrain = 64, kRowGrain = 256; ///< For one thread at a time.
 
@@ -114,6 +116,9 @@ private:
   bool correctTurns(
     const std::vector<GroupBody>& bodies, const std::vector<GroupContact>& contacts);
   void append(const std::vector<GroupBody>& bodies, std::vector<GroupContact>& contacts);
+  /// Batches of further contacts behind those of a part and kind.
+  void appendTo(
+    std::size_t key, const std::vector<GroupContact>& contacts, const std::vector<int>& added);
   double visit(int part);
   double sweep();
   bool sweeps(int most, GroupOutcome& outcome);

@@ -37,11 +37,11 @@ public:
   ///
   /// `lookAgain` is asked after a solution that has settled, or one by Gauss–Seidel, before it is
   /// written: it may look where the bodies would be (`end`), append contacts that were not reckoned
-  /// with, and correct the gaps of others (`setGap`); if it returns true the step goes on from
-  /// where it is. The `distance` of an appended contact is that at the end, the rest of it as all
-  /// stands at the start.
+  /// with, and correct the gaps of others (`setGap`). It returns how deep what it has found is, of
+  /// the smaller rock's radius; if that is not 0 the step goes on from where it is. The `distance`
+  /// of an appended contact is that at the end, the rest of it as all stands at the start.
   GroupOutcome step(const StepRequest& request, std::vector<GroupBody>& bodies,
-    std::vector<GroupContact>& contacts, Taken take, const std::function<bool()>& lookAgain = {});
+    std::vector<GroupContact>& contacts, Taken take, const std::function<double()>& lookAgain = {});
 
   // For lookAgain.
   /// Where a body would be at the end of the step; its velocity is not set.

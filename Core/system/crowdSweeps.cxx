@@ -17,16 +17,17 @@ namespace
 /// Where nothing bounces forces are to be exact, and few contacts still change: so many times more
 /// sweeps.
 constexpr int kCalmSweeps = 25;
-/// As long as the last sweep has moved something by more than this many times the tolerance, a
-/// tenth of the longest way, so many times more sweeps are made: forces as wrong as that would
-/// throw rocks about. It happens where light rocks with sharp corners lie under heavy ones.
-constexpr double kRough = 1000.0;
+/// As long as the last sweep has moved something by more than this many times the tolerance, 3 % of
+/// the longest way, so many times more sweeps are made: forces as wrong as that would throw rocks
+/// about. It happens where light rocks with sharp corners lie under heavy ones.
+constexpr double kRough = 300.0;
 constexpr int kRoughSweeps = 100;
-/// Changes below this share of the tolerance are no reason to visit a contact again.
-constexpr double kQuiet = 0.3;
 /// What is found in a second look is met to this many times the tolerance, which is about as exact
 /// as it is found, unless nothing bounces.
 constexpr double kFound = 4.0;
+/// A step whose last look still finds something deeper than this share of a radius is far from
+/// settled.
+constexpr double kDeepMiss = 0.02;
 /// Rocks of a part of the group, and parts at most.
 constexpr int kPart = 56;
 constexpr int kMostParts = 64;
@@ -303,7 +304,7 @@ void CrowdSolver::collect()
 }
 
 GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody>& bodies,
-  std::vector<GroupContact>& contacts, Taken take, const std::function<bool()>& lookAgain)
+  std::vector<GroupContact>& contacts, Taken take, const std::function<double()>& lookAgain)
 {
   GroupOutcome outcome;
   if (bodies.empty())
@@ -339,8 +340,14 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
   }
   this->collect();
   this->settle(most, contacts, outcome);
-  for (int look = 0; look < kLooks && lookAgain && lookAgain(); ++look)
+  double missed = 0.0;
+  for (int look = 0; lookAgain && look <= kLooks; ++look)
   {
+    missed = lookAgain();
+    if (missed <= 0.0)
+    {
+      break;
+    }
     // From here it goes on around what was found only.
     for (int& changed : changed_)
     {
@@ -349,7 +356,15 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
     looked_ = sweep_;
     enough_ = (calm ? 1.0 : kFound) * tolerance * scale;
     this->append(bodies, contacts);
+    if (look == kLooks)
+    {
+      break; // the last one only tells how deep it is
+    }
     outcome.settled = this->sweeps(most, outcome);
+    if (this->correctTurns(bodies, contacts))
+    {
+      outcome.settled = this->sweeps(most, outcome);
+    }
     this->collect();
     this->settle(most, contacts, outcome);
   }
@@ -358,100 +373,14 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
   {
     finite = finite && w.way.allFinite() && w.spun.allFinite();
   }
-  const bool near = take == Taken::NotRough && outcome.residual <= kRough * enough_;
-  outcome.taken = finite && (outcome.settled || near || take == Taken::Any);
+  const bool near = outcome.settled || outcome.residual <= kRough * enough_;
+  const bool fair = take == Taken::NotRough ? near && missed <= kDeepMiss : outcome.settled;
+  outcome.taken = finite && (fair || take == Taken::Any);
   if (outcome.taken)
   {
     this->write(request, bodies, contacts, outcome);
   }
   return outcome;
-}
-
-void CrowdSolver::append(const std::vector<GroupBody>& bodies, std::vector<GroupContact>& contacts)
-{
-  const std::size_t first = rows_.size();
-  rows_.resize(contacts.size());
-  std::vector<int> added(contacts.size() - first);
-  std::iota(added.begin(), added.end(), int(first));
-  // They go with what reaches further than to the next part.
-  const int slope = int(work_.size()) + parts_;
-  const std::size_t key = std::size_t(parts_) * kKinds;
-  const int before = int(batches_.size());
-  std::vector<Hand> hands;
-  this->deal(contacts, added.data(), added.data() + added.size(), slope, hands);
-  for (const Hand& hand : hands)
-  {
-    batches_.push_back(hand.idle());
-  }
-  for (const int k : added)
-  {
-    rows_[std::size_t(k)].batch += before;
-  }
-  // Contacts between rocks come first there.
-  const int more = int(batches_.size()) - before, at = starts_[key + 1];
-  if (more > 0 && at < before)
-  {
-    std::rotate(batches_.begin() + at, batches_.begin() + before, batches_.end());
-    for (Row& row : rows_)
-    {
-      row.batch = row.batch >= before ? row.batch - before + at
-                                      : (row.batch >= at ? row.batch + more : row.batch);
-    }
-  }
-  for (std::size_t next = key + 1; next < starts_.size(); ++next)
-  {
-    starts_[next] += more;
-  }
-  for (std::size_t k = first; k < rows_.size(); ++k)
-  {
-    // The gap at the start from which this way leads to the one at the end.
-    Row& row = rows_[k];
-    Contact& c = *contacts[k].contact;
-    this->prepareRow(bodies, contacts[k], row);
-    c.distance -= this->travel(row)[0];
-    c.offset = std::min(0.0, c.distance);
-    row.gap0 = c.gap();
-    if (contacts[k].bounce < 0.0)
-    {
-      batches_[std::size_t(row.batch)].gap[row.lane] = row.gap0;
-    }
-    for (const int body : { contacts[k].first, contacts[k].second })
-    {
-      changed_[work_[std::size_t(body)].mover] = sweep_;
-    }
-  }
-}
-
-BlockState CrowdSolver::end(const std::vector<GroupBody>& bodies, std::size_t i) const
-{
-  BlockState state = *bodies[i].state;
-  state.position += work_[i].way;
-  state.orientation = (work_[i].turn * state.orientation).normalized();
-  return state;
-}
-
-double CrowdSolver::gap(std::size_t contact) const
-{
-  return rows_[contact].gap0 + this->travel(rows_[contact])[0];
-}
-
-bool CrowdSolver::setGap(std::size_t contact, double found)
-{
-  Row& row = rows_[contact];
-  double& asked = batches_[std::size_t(row.batch)].gap[row.lane];
-  const double change = gapChange(row.gap0, this->gap(contact), found);
-  if (std::abs(change) <= kQuiet * enough_)
-  {
-    return false; // as exact as it is
-  }
-  asked += asked == row.gap0 ? change : 0.0; // a bounce asks for one of its own
-  row.gap0 += change;
-  for (int side = 0; side < 2; ++side)
-  {
-    const std::size_t i = std::size_t(batches_[std::size_t(row.batch)].body[side][row.lane]);
-    changed_[i] = i < work_.size() ? sweep_ : kNever;
-  }
-  return true;
 }
 
 } // namespace rockfall

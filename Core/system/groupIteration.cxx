@@ -127,7 +127,7 @@ bool GroupSolver::settle(const StepRequest& request, const std::vector<GroupBody
 }
 
 GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody>& bodies,
-  std::vector<GroupContact>& contacts, Taken take, const std::function<bool()>& lookAgain)
+  std::vector<GroupContact>& contacts, Taken take, const std::function<double()>& lookAgain)
 {
   const bool lasting = request.kind == StepKind::Lasting;
   const bool iterate =
@@ -147,7 +147,7 @@ GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody
   sweeping_ = false;
   this->prepare(request, bodies, contacts);
   outcome.settled = this->settle(request, bodies, contacts, outcome);
-  for (int look = 0; look < kLooks && outcome.settled && lookAgain && lookAgain(); ++look)
+  for (int look = 0; look < kLooks && outcome.settled && lookAgain && lookAgain() > 0.0; ++look)
   {
     this->append(request, bodies, contacts);
     outcome.settled = this->settle(request, bodies, contacts, outcome);
