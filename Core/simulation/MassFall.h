@@ -44,10 +44,14 @@ public:
   double time() const { return time_; }
   int rocks() const { return int(members_.size()); }
   const BlockState& state(int rock) const { return members_[rock]->sim.state(); }
-  /// Of a rock, so far.
+  // Of a rock, so far.
   const std::vector<ImpactEvent>& impacts(int rock) const
   {
     return members_[rock]->sim.recorder_.trajectory().impacts;
+  }
+  const TrajectorySummary& summary(int rock) const
+  {
+    return members_[rock]->sim.recorder_.trajectory().summary;
   }
   /// Those near each other whose axis was ever looked for, by (first, second).
   std::vector<const RockPair*> pairs() const;
@@ -56,7 +60,8 @@ public:
   /// Rocks never sleep: for tests of how still a pile stands.
   bool awake = false;
   GroupMethod method = GroupMethod::Suited;
-  /// Largest group that resolves its impacts in time.
+  /// Largest group that resolves its impacts in time; fewer rocks if the smallest of them needs
+  /// more than a hundred steps in one of Δt.
   int resolved = 64;
 
 private:
@@ -89,6 +94,7 @@ private:
   {
     std::vector<int> members;
     std::vector<RockPair*> pairs;
+    bool crowd = false; ///< Too large to resolve its impacts in time.
   };
   struct Workspace;
   struct Meetings;
@@ -98,8 +104,7 @@ private:
   void wake(Member& member);
   void putToSleep(Member& member);
   bool stays(Member& member) const; ///< Whether it has been still for long enough.
-  /// Too large to resolve its impacts in time.
-  bool isCrowd(const Group& group) const { return int(group.members.size()) > resolved; }
+  bool isCrowd(const Group& group) const;
   bool advanceAll();
   void advanceGroup(const Group& group, double until) const;
   double groupStep(const Group& group) const;

@@ -20,6 +20,10 @@ namespace
 constexpr double kDeepestImpact = 0.01;
 /// Steps per half period of an impact, as for single rocks.
 constexpr double kStepsPerImpact = 8.0;
+/// Steps that the smallest rock of a group may ask of all in one of Δt; if it asks for more, so
+/// many times fewer rocks resolve their impacts, but a few always do.
+constexpr double kMostSteps = 100.0;
+constexpr int kFew = 4;
 /// In a crowd a step is this much longer than rocks that resolve their impacts may take: where they
 /// would end is looked at.
 constexpr double kCrowdTravel = 2.0;
@@ -98,6 +102,19 @@ Vec3 MassFall::relativeVelocity(const RockPair& pair, const Vec3& point) const
   return at(pair.first) - at(pair.second);
 }
 
+bool MassFall::isCrowd(const Group& group) const
+{
+  double stiffest = 0.0;
+  for (int i : group.members)
+  {
+    stiffest = std::max(stiffest, members_[i]->sim.block_.largestMobility());
+  }
+  const double frequency = std::sqrt(parameters_.normalPenalty * stiffest);
+  const double steps = parameters_.timeStep * kStepsPerImpact * frequency / std::numbers::pi;
+  const int size = int(group.members.size());
+  return size > resolved || (size > kFew && size * steps > kMostSteps * resolved);
+}
+
 double MassFall::groupStep(const Group& group) const
 {
   double h = parameters_.timeStep;
@@ -125,7 +142,7 @@ void MassFall::gatherContacts(const Group& group, double h) const
 {
   const auto reachOf = [&](double speed, double radius)
   { return 1.5 * speed * h + parameters_.gravity * h * h + 1e-6 * radius; };
-  const bool crowd = this->isCrowd(group);
+  const bool crowd = group.crowd;
   if (crowd)
   {
     this->findPushes(group);
@@ -371,7 +388,7 @@ void MassFall::advanceGroup(const Group& group, double until) const
       sim.beginContact();
     }
   }
-  const bool inTime = !this->isCrowd(group);
+  const bool inTime = !group.crowd;
   const auto now = [&]
   {
     for (int i : group.members)

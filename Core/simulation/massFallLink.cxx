@@ -417,6 +417,10 @@ void MassFall::findGroups(double duration)
       groups_[std::size_t(place[std::size_t(meet.root(n.first))])].pairs.push_back(n.pair);
     }
   }
+  for (Group& group : groups_)
+  {
+    group.crowd = this->isCrowd(group);
+  }
 }
 
 } // namespace rockfall

@@ -68,8 +68,7 @@ double MassFall::lookAgain(const Group& group, double h, bool bounces, Workspace
   work.looked = true;
   const double missed = this->lookAtPairs(group, h, bounces, work);
   // Who resolves his impacts takes steps so short that what he may reach is known.
-  return this->isCrowd(group) ? std::max(missed, this->lookAtSlope(group, h, bounces, work))
-                              : missed;
+  return group.crowd ? std::max(missed, this->lookAtSlope(group, h, bounces, work)) : missed;
 }
 
 void MassFall::add(GroupContact taken, bool bounces, Workspace& work) const

@@ -201,7 +201,7 @@ void MassFall::solve(
   }
   work.added.clear();
   work.addedTo.clear();
-  const bool crowd = this->isCrowd(group);
+  const bool crowd = group.crowd;
   const auto look = [&] { return this->lookAgain(group, request.duration, bounces, work); };
   GroupOutcome outcome;
   for (int cut = 0;; ++cut)
@@ -339,7 +339,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
   };
   forThose(group.pairs.size(), kPairGrain, work.flags, ends,
     [&](std::size_t p) { this->finishPairImpact(*group.pairs[p]); });
-  const bool crowd = this->isCrowd(group);
+  const bool crowd = group.crowd;
   const auto absorbRock = [&](std::size_t k)
   {
     Member& m = *members_[group.members[k]];

@@ -432,3 +432,42 @@ TEST(Crowds, CohesionTakesNoMoreStepsThanNone)
   }
   EXPECT_LT(steps[1], 3.0 * steps[0]);
 }
+
+TEST(Crowds, OneSmallRockDoesNotSetTheStepsOfAll)
+{
+  // Springs that stop a stone of 1.5 l ask for 400 steps in one of Δt. With a cube that it falls on
+  // they are taken; a column of twenty does not take them all with it.
+  const auto steps = [](int cubes)
+  {
+    Pile pile;
+    pile.ground = floorSlope();
+    Rock rock;
+    rock.shape = makeShape(Shape::Cube, 1.0);
+    for (rock.blockId = 0; rock.blockId < cubes; ++rock.blockId)
+    {
+      rock.position = Vec3(20.0, 20.0, 0.5 + double(rock.blockId));
+      pile.rocks.push_back(rock);
+    }
+    rock.shape = makeShape(Shape::Cube, 0.0015);
+    rock.position = Vec3(20.2, 20.1, cubes + 0.06);
+    rock.velocity = Vec3(0.0, 0.0, -0.2);
+    pile.rocks.push_back(rock);
+    pile.parameters.rockRestitution = 0.0;
+    pile.start();
+    // In those of Δt in which all are one group.
+    std::vector<int> taken;
+    while (pile.fall->time() < 0.05)
+    {
+      const int before = int(pile.fall->summary(0).contactSteps);
+      pile.fall->advance();
+      if (largestGroup(pile) == cubes + 1)
+      {
+        taken.push_back(int(pile.fall->summary(0).contactSteps) - before);
+      }
+    }
+    EXPECT_FALSE(taken.empty());
+    return *std::max_element(taken.begin(), taken.end());
+  };
+  EXPECT_GT(steps(1), 100);
+  EXPECT_LT(steps(20), 20);
+}
