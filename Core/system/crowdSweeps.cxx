@@ -28,6 +28,9 @@ constexpr double kFound = 4.0;
 /// A step whose last look still finds something deeper than this share of a radius is far from
 /// settled.
 constexpr double kDeepMiss = 0.02;
+/// What is less deep than this share of a radius in the look before the last one leaves nothing
+/// deep behind it.
+constexpr double kWorthALook = 0.25 * kDeepMiss;
 /// Rocks of a part of the group, and parts at most.
 constexpr int kPart = 56;
 constexpr int kMostParts = 64;
@@ -341,7 +344,9 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
   this->collect();
   this->settle(most, contacts, outcome);
   double missed = 0.0;
-  for (int look = 0; lookAgain && look <= kLooks; ++look)
+  const auto looksOn = [&](int look)
+  { return look < kLooks || (look == kLooks && missed > kWorthALook); };
+  for (int look = 0; lookAgain && looksOn(look); ++look)
   {
     missed = lookAgain();
     if (missed <= 0.0)
