@@ -1,5 +1,6 @@
 #include "rockPaths.h"
 
+#include "arrays.h"
 #include "base/errors.h"
 #include "simulation/results.h"
 
@@ -9,6 +10,7 @@
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
+#include "vtkStringArray.h"
 
 #include <string>
 #include <vector>
@@ -31,11 +33,27 @@ vtkDataArray* needed(vtkFieldData* data, const char* kind, const char* name, int
   return array;
 }
 
+constexpr char retentionName[] = "TrajectoryOutput";
+
 } // namespace
+
+void writeRetention(Retention retention, vtkFieldData* data)
+{
+  constexpr const char* names[] = { "Nothing", "Stopping Points", "Events", "Thinned", "Full" };
+  addArray<vtkStringArray>(data, retentionName)->InsertNextValue(names[int(retention)]);
+}
 
 void forEachPath(vtkPolyData* trajectories, const Vec3& origin,
   const std::function<void(const RockPath& path, std::int64_t cell)>& use)
 {
+  auto* kept =
+    vtkStringArray::SafeDownCast(trajectories->GetFieldData()->GetAbstractArray(retentionName));
+  if (kept && kept->GetNumberOfValues() > 0 && kept->GetValue(0) == "Events")
+  {
+    throw DataError("The Input is of a Rockfall Simulation whose TrajectoryOutput is Events: "
+                    "between touches that are far apart its paths say little; Thinned or Full is "
+                    "wanted");
+  }
   if (trajectories->GetNumberOfLines() == 0)
   {
     throw DataError("The Input has no lines; the trajectories of Rockfall Simulation are wanted");

@@ -1,7 +1,10 @@
 #include "runSink.h"
 
 #include "motion.h"
+#include "rockPaths.h"
 #include "simulation/packing.h"
+
+#include "vtkPolyData.h"
 
 namespace rockfall::filters
 {
@@ -50,6 +53,7 @@ void RunSink::finish(
     structures_.finish(structures);
   }
   lines_.finish(trajectories);
+  writeRetention(kept_.retention, trajectories->GetFieldData());
   impacts_.finish(impacts);
   rows_.finish(summary);
 }

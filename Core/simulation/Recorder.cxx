@@ -12,6 +12,9 @@ namespace
 
 /// How far the path between two samples may be from the motion, in radii of the rock.
 constexpr double kPathTolerance = 0.01;
+/// Samples that are no further apart are at one time, s: half of what two at a barrier that breaks
+/// are. Steps that should end at a time of sampling may miss it by rounding.
+constexpr double kOneTime = 5e-10;
 
 } // namespace
 
@@ -60,26 +63,41 @@ void Recorder::begin(const BlockState& state)
 
 void Recorder::record(const BlockState& state, bool contact)
 {
+  const bool knot = this->isAt(state.time) && trajectory_.samples.back().kind == SampleKind::Knot;
+  if (knot)
+  {
+    contact = trajectory_.samples.back().contact;
+    this->dropLast();
+  }
   trajectory_.samples.push_back(this->makeSample(state, contact));
+  trajectory_.samples.back().kind = knot ? SampleKind::EvenKnot : SampleKind::Even;
   ++next_;
 }
 
 void Recorder::knot(const BlockState& state, bool contact)
 {
   knot_ = state;
-  std::vector<Sample>& samples = trajectory_.samples;
   // One sample at a time: what an impact left takes the place of what it began to leave.
-  if (samples.back().time >= state.time)
+  SampleKind kind = SampleKind::Knot;
+  if (this->isAt(state.time))
   {
-    if (samples.back().kind != SampleKind::Knot)
-    {
-      return;
-    }
-    samples.pop_back();
-    audited_ = std::min(audited_, samples.size());
+    const bool even = trajectory_.samples.back().kind != SampleKind::Knot;
+    kind = even ? SampleKind::EvenKnot : SampleKind::Knot;
+    this->dropLast();
   }
-  samples.push_back(this->makeSample(state, contact));
-  samples.back().kind = SampleKind::Knot;
+  trajectory_.samples.push_back(this->makeSample(state, contact));
+  trajectory_.samples.back().kind = kind;
+}
+
+bool Recorder::isAt(double time) const
+{
+  return !trajectory_.samples.empty() && trajectory_.samples.back().time >= time - kOneTime;
+}
+
+void Recorder::dropLast()
+{
+  trajectory_.samples.pop_back();
+  audited_ = std::min(audited_, trajectory_.samples.size());
 }
 
 void Recorder::resume(const BlockState& state)
@@ -142,7 +160,7 @@ void Recorder::follow(const BlockState& state)
 
 void Recorder::end(const BlockState& state, bool contact)
 {
-  if (trajectory_.samples.empty() || trajectory_.samples.back().time < state.time)
+  if (!this->isAt(state.time))
   {
     trajectory_.samples.push_back(this->makeSample(state, contact));
   }

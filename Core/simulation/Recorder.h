@@ -45,6 +45,8 @@ public:
   Trajectory& trajectory() { return trajectory_; }
 
 private:
+  bool isAt(double time) const; ///< Whether the last sample is.
+  void dropLast();
   Sample makeSample(const BlockState& state, bool contact);
   bool follows(const BlockState& state) const; ///< The last knot's uniform acceleration leads here.
 

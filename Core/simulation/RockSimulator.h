@@ -23,6 +23,7 @@ struct BarrierHit
   int barrier = -1;      ///< −1: none.
   double fraction = 0.0; ///< Of the way.
   double heightOverGround = 0.0;
+  double stored = 0.0; ///< In contact springs at the time, J.
 };
 
 class RockSimulator
@@ -135,6 +136,7 @@ private:
   EnergyAudit energy_;
   double energyAtStart_ = 0.0;        ///< Kinetic and potential, J.
   double springEnergy_ = 0.0;         ///< In the contact springs, J.
+  double springEnergyBefore_ = 0.0;   ///< The same at the start of the last step of contact, J.
   double normalEnergy_ = 0.0;         ///< In the normal ones, J.
   double softness_ = 0.0;             ///< Of a contact and the block behind it, m/N.
   double penalty_ = 0.0;              ///< pₙ of the contacts that are made now, N/m.

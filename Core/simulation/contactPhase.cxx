@@ -243,6 +243,7 @@ void RockSimulator::armContact(Contact& c)
 void RockSimulator::takeStep(double h, StepKind kind)
 {
   before_ = state_;
+  springEnergyBefore_ = springEnergy_;
   const bool lasting = kind == StepKind::Lasting;
   TrajectorySummary& summary = recorder_.trajectory().summary;
   StepRequest request;

@@ -151,6 +151,7 @@ void MassFall::solve(
       return;
     }
     sim.before_ = sim.state_;
+    sim.springEnergyBefore_ = sim.springEnergy_;
     sim.contactsBefore_ = sim.contacts_;
     work.energyBefore[member.place] = sim.mechanicalEnergy() + sim.springEnergy_;
     GroupBody& body = work.bodies[member.place];

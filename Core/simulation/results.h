@@ -33,9 +33,10 @@ struct EnergyAudit
 /// Why a sample is there.
 enum class SampleKind : std::uint8_t
 {
-  Even, ///< At a multiple of the output interval.
-  Knot, ///< A touch, a take-off, or a place where the motion changes.
-  End,  ///< Where the rock rests, leaves or is cut off.
+  Even,     ///< At a multiple of the output interval.
+  Knot,     ///< A touch, a take-off, or a place where the motion changes.
+  EvenKnot, ///< Both at one time.
+  End,      ///< Where the rock rests, leaves or is cut off.
 };
 
 /// The state of a rock at one time (METHOD 8). The motion between two samples is the cubic Hermite

@@ -21,7 +21,9 @@ std::vector<std::size_t> keptSamples(const std::vector<Sample>& samples, Retenti
     else if (retention == Retention::Events)
     {
       // In contact there are knots, too, where the motion changes.
-      keep = keep || first || (samples[k].kind == SampleKind::Knot && !samples[k].contact);
+      const bool knot =
+        samples[k].kind == SampleKind::Knot || samples[k].kind == SampleKind::EvenKnot;
+      keep = keep || first || (knot && !samples[k].contact);
     }
     if (keep)
     {

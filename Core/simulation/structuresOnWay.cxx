@@ -239,9 +239,12 @@ void RockSimulator::findBarriers(
     {
       continue;
     }
+    // What the ground holds in a touch it gives back in a moment.
+    const double stored =
+      flight ? 0.0 : (1.0 - fraction) * springEnergyBefore_ + fraction * springEnergy_;
     if (!barrier.records)
     {
-      hit_ = { number, fraction, height };
+      hit_ = { number, fraction, height, stored };
       return;
     }
     StructureEvent event;
@@ -250,7 +253,7 @@ void RockSimulator::findBarriers(
     event.time = at.time;
     event.position = at.position;
     event.velocity = at.velocity;
-    event.kineticEnergy = rigidKineticEnergy(block_, at);
+    event.kineticEnergy = rigidKineticEnergy(block_, at) + stored;
     event.heightOverGround = height;
     recorder_.trajectory().structures.push_back(event);
   }
@@ -259,7 +262,7 @@ void RockSimulator::findBarriers(
 void RockSimulator::meetBarrier()
 {
   const Barrier& barrier = obstacles_->structures().barriers[std::size_t(hit_.barrier)];
-  const double energy = rigidKineticEnergy(block_, state_);
+  const double kinetic = rigidKineticEnergy(block_, state_), energy = kinetic + hit_.stored;
   const bool holds = energy <= barrier.capacity;
   const double taken = holds ? energy : barrier.absorbs ? barrier.capacity : 0.0;
   StructureEvent event;
@@ -275,8 +278,8 @@ void RockSimulator::meetBarrier()
   recorder_.trajectory().structures.push_back(event);
   recorder_.knot(state_, false);
   this->auditSamples(state_);
-  slowDown(state_, energy, taken);
-  energy_.structures += energy - rigidKineticEnergy(block_, state_);
+  slowDown(state_, kinetic, std::min(taken, kinetic));
+  energy_.structures += kinetic - rigidKineticEnergy(block_, state_);
   if (holds)
   {
     summary.fate = Fate::Caught;
@@ -298,7 +301,7 @@ double RockSimulator::endStepAtBarrier(const BlockState& end, double taken, bool
   BlockState at = between(before_, end, hit_.fraction);
   const double came = rigidKineticEnergy(block_, at);
   slowDown(at, came, std::min(taken, came));
-  const double energy = rigidKineticEnergy(block_, at);
+  const double energy = rigidKineticEnergy(block_, at) + hit_.stored;
   if (energy <= barrier.capacity)
   {
     // The rest of the step did not happen; what it booked did. The barrier takes what makes it up.

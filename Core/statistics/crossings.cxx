@@ -12,6 +12,9 @@ namespace rockfall
 namespace
 {
 
+/// A path whose end is no further from a line ends on it, m.
+constexpr double kOnLine = 1e-6;
+
 using Vec2 = Eigen::Vector2d;
 
 struct Segment
@@ -110,7 +113,10 @@ void appendOf(const RockPath& path, const Segment& segment, const Terrain* terra
   for (std::size_t k = 1; k < path.points.size(); ++k)
   {
     const PathPoint &a = path.points[k - 1], &b = path.points[k];
-    const double end = sideOf(b);
+    // What ends on the line, caught by a net there, has not crossed it.
+    const bool last = k + 1 == path.points.size();
+    const double side = sideOf(b);
+    const double end = last && std::abs(side) < kOnLine ? 0.0 : side;
     if (!(b.time > a.time))
     {
       previous = end != 0.0 ? end : previous;
@@ -122,27 +128,27 @@ void appendOf(const RockPath& path, const Segment& segment, const Terrain* terra
       previous = end != 0.0 ? end : previous;
       continue;
     }
-    Cubic side;
+    Cubic distance;
     for (std::size_t i = 0; i < 4; ++i)
     {
-      side.c[i] =
+      distance.c[i] =
         segment.normal.x() * piece.along(0).c[i] + segment.normal.y() * piece.along(1).c[i];
     }
-    side.c[0] -= segment.normal.dot(segment.from);
+    distance.c[0] -= segment.normal.dot(segment.from);
     // Where the side turns; the ends' sides are those of the points themselves, so that what one
     // piece ends with is what the next begins with.
-    const Roots turns = extremes(side, 0.0, 1.0);
+    const Roots turns = extremes(distance, 0.0, 1.0);
     double from = 0.0;
     double valueFrom = sideOf(a);
     for (int t = 0; t <= turns.count; ++t)
     {
       const bool whole = t == turns.count;
       const double to = whole ? 1.0 : turns.at[std::size_t(t)];
-      const double value = whole ? end : side(to);
+      const double value = whole ? end : distance(to);
       if (previous * value < 0.0)
       {
         // At its beginning if it came to the plane there and lay in it.
-        const Roots roots = signChanges(side, from, to);
+        const Roots roots = signChanges(distance, from, to);
         const double s = valueFrom == 0.0 ? from : roots.count > 0 ? roots.at[0] : to;
         const double place =
           segment.along.dot(Vec2(piece.along(0)(s), piece.along(1)(s)) - segment.from);

@@ -95,19 +95,12 @@ PathPiece::PathPiece(const PathPoint& a, const PathPoint& b, double mass)
   , mass_(mass)
   , duration_(b.time - a.time)
 {
-  std::array<Vec3, 3> v; // velocity as v[0] + v[1] s + v[2] s²
   for (int k = 0; k < 3; ++k)
   {
     const double d = b.position[k] - a.position[k];
     const double va = duration_ * a.velocity[k], vb = duration_ * b.velocity[k];
-    auto& c = place_[std::size_t(k)].c;
-    c = { a.position[k], va, 3.0 * d - 2.0 * va - vb, va + vb - 2.0 * d };
-    v[0][k] = c[1] / duration_;
-    v[1][k] = 2.0 * c[2] / duration_;
-    v[2][k] = 3.0 * c[3] / duration_;
+    place_[std::size_t(k)].c = { a.position[k], va, 3.0 * d - 2.0 * va - vb, va + vb - 2.0 * d };
   }
-  speedSquared_ = { v[0].dot(v[0]), 2.0 * v[0].dot(v[1]), v[1].dot(v[1]) + 2.0 * v[0].dot(v[2]),
-    2.0 * v[1].dot(v[2]), v[2].dot(v[2]) };
 }
 
 std::array<double, 2> PathPiece::bounds(int axis) const
@@ -117,17 +110,6 @@ std::array<double, 2> PathPiece::bounds(int axis) const
     std::minmax({ a_.position[axis], a_.position[axis] + third * a_.velocity[axis],
       b_.position[axis] - third * b_.velocity[axis], b_.position[axis] });
   return { low, high };
-}
-
-Vec3 PathPiece::velocity(double s) const
-{
-  Vec3 v;
-  for (int k = 0; k < 3; ++k)
-  {
-    const auto& c = place_[std::size_t(k)].c;
-    v[k] = (c[1] + s * (2.0 * c[2] + s * 3.0 * c[3])) / duration_;
-  }
-  return v;
 }
 
 double PathPiece::translationalEnergy(double s) const
@@ -166,36 +148,14 @@ Cubic PathPiece::height(double groundA, double groundB) const
 
 double PathPiece::maxSpeed(double from, double to) const
 {
-  const auto& q = speedSquared_;
-  const auto at = [&q](double s) { return q[0] + s * (q[1] + s * (q[2] + s * (q[3] + s * q[4]))); };
-  double most = std::max(at(from), at(to));
-  const Roots inside =
-    signChanges({ { q[1], 2.0 * q[2], 3.0 * q[3], 4.0 * q[4] } }, from, to); // of the derivative
-  for (int k = 0; k < inside.count; ++k)
-  {
-    most = std::max(most, at(inside.at[std::size_t(k)]));
-  }
-  return std::sqrt(std::max(0.0, most));
+  // Convex along the piece.
+  return std::max(this->velocity(from).norm(), this->velocity(to).norm());
 }
 
 double PathPiece::maxKineticEnergy(double from, double to) const
 {
-  double most = std::max(this->kineticEnergy(from), this->kineticEnergy(to));
-  if (std::isnan(mass_))
-  {
-    return most;
-  }
-  const auto& q = speedSquared_;
-  const double half = 0.5 * mass_;
-  const double spin = this->kineticEnergy(1.0) - this->translationalEnergy(1.0) -
-    (this->kineticEnergy(0.0) - this->translationalEnergy(0.0));
-  const Roots inside = signChanges(
-    { { half * q[1] + spin, 2.0 * half * q[2], 3.0 * half * q[3], 4.0 * half * q[4] } }, from, to);
-  for (int k = 0; k < inside.count; ++k)
-  {
-    most = std::max(most, this->kineticEnergy(inside.at[std::size_t(k)]));
-  }
-  return most;
+  // Convex, too.
+  return std::max(this->kineticEnergy(from), this->kineticEnergy(to));
 }
 
 double PathPiece::maxRotationRate(double from, double to) const

@@ -4,7 +4,8 @@
 /// The way of a rock between its samples: from one point of a trajectory to the next the centroid
 /// follows the cubic Hermite curve of their positions and velocities, which in flight is the
 /// parabola itself. What is made of trajectories asks this curve, so that it does not depend on how
-/// often they were sampled.
+/// often they were sampled. Velocities are linear in time between the points, as they are in
+/// flight: they never exceed those of the points, whatever an impact does to the curve.
 
 #include "base/types.h"
 
@@ -69,10 +70,10 @@ public:
   std::array<double, 2> bounds(int axis) const;
   double time(double s) const { return a_.time + s * duration_; }
   Vec3 position(double s) const { return { place_[0](s), place_[1](s), place_[2](s) }; }
-  Vec3 velocity(double s) const;
+  Vec3 velocity(double s) const { return (1.0 - s) * a_.velocity + s * b_.velocity; }
   /// Linear between the points, as nothing is known of the attitude there.
   Vec3 rotationRate(double s) const { return (1.0 - s) * a_.rotationRate + s * b_.rotationRate; }
-  /// ½ m v² of the curve, J; NaN without a mass.
+  /// ½ m v², J; NaN without a mass.
   double translationalEnergy(double s) const;
   /// J. The rotational share is linear between the points; in flight it is constant.
   double kineticEnergy(double s) const;
@@ -95,7 +96,6 @@ private:
   double mass_;
   double duration_;
   std::array<Cubic, 3> place_;
-  std::array<double, 5> speedSquared_; ///< Coefficients of |v|², (m/s)².
 };
 
 /// Throws DataError that names iteration, rock and time if a number is not finite (heights may be

@@ -101,6 +101,45 @@ TEST(Crossings, BackAndForthAndAtKnots)
   }
 }
 
+TEST(Crossings, WhatEndsOnTheLineHasNotCrossedIt)
+{
+  // A net catches a rock on its line, on either side of it by rounding.
+  const CollectorLine line = lineOf({ { 10, -20 }, { 10, 20 } });
+  for (const double beyond : { -1e-9, 0.0, 1e-9, 1e-3 })
+  {
+    std::vector<PathPoint> points(2);
+    points[0].velocity = points[1].velocity = Vec3((10.0 + beyond) / 2.0, 0.0, 0.0);
+    points[1].time = 2.0;
+    points[1].position.x() = 10.0 + beyond;
+    EXPECT_EQ(crossingsOf(pathOf(points, 0, 0, 1.0), line).size(), beyond > 1e-6 ? 1u : 0u);
+  }
+}
+
+TEST(Crossings, NothingIsFasterThanThePointsOfThePath)
+{
+  // Two points at one time but for rounding, and an impact, whose curve swings out.
+  std::vector<PathPoint> points(2);
+  points[0].position = points[1].position = Vec3(100.0, 50.0, 30.0);
+  points[0].velocity = Vec3(20.0, 0.0, -10.0);
+  points[1].velocity = Vec3(19.9, 0.0, 8.0);
+  points[0].time = 0.15;
+  for (const double duration : { 3e-14, 1e-3 })
+  {
+    points[1].time = points[0].time + duration;
+    points[1].position.x() = 100.0 + (duration < 1e-9 ? 1e-13 : 0.015);
+    points[0].kineticEnergy = 500.0 * points[0].velocity.squaredNorm();
+    points[1].kineticEnergy = 500.0 * points[1].velocity.squaredNorm();
+    const PathPiece piece(points[0], points[1], 1000.0);
+    EXPECT_LE(piece.maxSpeed(0.0, 1.0), points[0].velocity.norm());
+    EXPECT_LE(piece.maxKineticEnergy(0.0, 1.0), points[0].kineticEnergy * (1.0 + 1e-12));
+    for (int k = 0; k <= 100; ++k)
+    {
+      EXPECT_LE(piece.velocity(0.01 * k).norm(), points[0].velocity.norm());
+      EXPECT_LE(piece.kineticEnergy(0.01 * k), points[0].kineticEnergy * (1.0 + 1e-12));
+    }
+  }
+}
+
 TEST(Crossings, BruteForceAlongRandomCurves)
 {
   std::mt19937_64 random(5);

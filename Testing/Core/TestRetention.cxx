@@ -1,5 +1,7 @@
 // What is kept of a trajectory, its way to another process, and the hash of its motion.
 
+#include "piles.h"
+
 #include "base/errors.h"
 #include "simulation/packing.h"
 #include "simulation/retention.h"
@@ -10,6 +12,7 @@
 #include <set>
 
 using namespace rockfall;
+using namespace rockfall::testing;
 
 namespace
 {
@@ -74,6 +77,40 @@ TEST(Retention, KeepsWhatItSays)
   EXPECT_TRUE(keptSamples(one, Retention::Nothing).empty());
   EXPECT_EQ(keptSamples(one, Retention::Events).size(), 1u);
   EXPECT_TRUE(keptSamples({}, Retention::Full).empty());
+}
+
+TEST(Retention, PathsHaveOnePointAtATime)
+{
+  // Steps of Δt end where samples are due, but for rounding.
+  Pile pile;
+  pile.ground = floorSlope();
+  Rock rock;
+  rock.shape = makeShape(Shape::Icosahedron, 0.3);
+  for (rock.blockId = 0; rock.blockId < 12; ++rock.blockId)
+  {
+    rock.position = Vec3(20.0 + 0.03 * double(rock.blockId), 20.0, 1.0 + double(rock.blockId));
+    pile.rocks.push_back(rock);
+  }
+  pile.parameters.outputInterval = 0.05;
+  pile.parameters.endTime = 3.0;
+  pile.make();
+  int even = 0;
+  for (const Trajectory& t : pile.fall->run())
+  {
+    double fastest = 0.0;
+    for (std::size_t k = 1; k < t.samples.size(); ++k)
+    {
+      EXPECT_GT(t.samples[k].time - t.samples[k - 1].time, 4e-10);
+    }
+    for (const Sample& sample : t.samples)
+    {
+      const double due = std::round(sample.time / 0.05) * 0.05;
+      even += std::abs(sample.time - due) < 1e-9;
+      fastest = std::max(fastest, sample.velocity.norm());
+    }
+    EXPECT_LE(fastest, t.summary.maxSpeed);
+  }
+  EXPECT_GE(even, 12 * 20);
 }
 
 TEST(Packing, IsTheSameOnTheOtherSide)
