@@ -171,12 +171,12 @@ double MassFall::lookAtSlope(const Group& group, double h, bool bounces, Workspa
 
 double MassFall::lookAtPairs(const Group& group, double h, bool bounces, Workspace& work) const
 {
-  const auto allowed = [&](const RockPair& pair)
+  const auto smaller = [&](const RockPair& pair)
   {
-    return kMissed *
-      std::min(
-        members_[pair.first]->sim.block_.radius(), members_[pair.second]->sim.block_.radius());
+    return std::min(
+      members_[pair.first]->sim.block_.radius(), members_[pair.second]->sim.block_.radius());
   };
+  const auto allowed = [&](const RockPair& pair) { return kMissed * smaller(pair); };
   const std::size_t firstAdded = work.firsts.back();
   const auto deepest = [&](std::size_t p)
   {
@@ -221,7 +221,6 @@ double MassFall::lookAtPairs(const Group& group, double h, bool bounces, Workspa
     RockPair& pair = *group.pairs[p];
     const Member &a = *members_[pair.first], &b = *members_[pair.second];
     const double limit = deepest(p) - allowed(pair);
-    const double smaller = std::min(a.sim.block_.radius(), b.sim.block_.radius());
     for (Contact& c : work.found[m])
     {
       if (c.distance >= limit)
@@ -251,11 +250,11 @@ double MassFall::lookAtPairs(const Group& group, double h, bool bounces, Workspa
       if (known < work.contacts.size())
       {
         const double gap = c.distance - work.contacts[known].contact->offset;
-        const double wrong = std::abs(work.solver.gap(known) - gap) / smaller;
+        const double wrong = std::abs(work.solver.gap(known) - gap) / smaller(pair);
         most = work.solver.setGap(known, gap) ? std::max(most, wrong) : most;
         continue;
       }
-      most = std::max(most, (deepest(p) - c.distance) / smaller);
+      most = std::max(most, (deepest(p) - c.distance) / smaller(pair));
       carryBack(a.end, b.end, a.sim.placed_, b.sim.placed_, c);
       this->armContact(pair, c);
       work.added.push_back(c);
