@@ -170,7 +170,7 @@ void vtkJointedRockMass::MakeBlocks(vtkPolyData* terrainInput, vtkPolyData* bloc
     if (std::isnan(height))
     {
       throw PlacementError("The rock mass at (" + numberText(centre.x()) + ", " +
-        numberText(centre.y()) + ") is outside the slope: there is no CFE under it");
+        numberText(centre.y()) + ")" + whyNoGround(*terrain, centre.x(), centre.y()));
     }
     centre.z() = height + this->ReleaseHeight;
   }

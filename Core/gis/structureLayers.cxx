@@ -301,6 +301,10 @@ void readTrees(const StructureFiles& files, const Terrain& terrain, OwnMaterials
       {
         row.failField("diameter", " is " + number(t.diameter / cm) + " cm: is it in millimetres?");
       }
+      if (t.diameter < cm)
+      {
+        row.failField("diameter", " is " + number(t.diameter / cm) + " cm: is it in metres?");
+      }
       t.height = needed(row, "height", "that of the tree in m");
       const double factor = row.positive("factor").value_or(1.0);
       if (const auto capacity = row.notNegative("capacity"))

@@ -5,6 +5,7 @@
 #include "simulation/MassFall.h"
 #include "simulation/RockSimulator.h"
 #include "simulation/overlaps.h"
+#include "simulation/releasePlaces.h"
 #include "simulation/stateHash.h"
 
 #include <tbb/parallel_for.h>
@@ -30,6 +31,9 @@ constexpr double kLaidDown = 1e-6; // of the radius
 /// Over the slope, m. Rocks start on the slope or a fall over it; 1000 m read as feet are 2000 m
 /// too high.
 constexpr double kHighest = 500.0;
+/// Deeper than this share of their radius under their own weight rocks do not always come to rest,
+/// and energy gets lost.
+constexpr double kDeepestAtRest = 0.02;
 
 std::string where(const Vec3& world)
 {
@@ -39,15 +43,11 @@ std::string where(const Vec3& world)
 
 void checkPlacement(const Terrain& terrain, const Rock& rock, const Block& block)
 {
-  const std::string name = "block " + std::to_string(rock.blockId) + " at " +
-    where(rock.position + terrain.geometry().origin());
+  const Vec3 world = rock.position + terrain.geometry().origin();
+  const std::string name = "block " + std::to_string(rock.blockId) + " at " + where(world);
   if (terrain.cfeAt(rock.position.x(), rock.position.y()) == 0)
   {
-    const GridGeometry& g = terrain.geometry();
-    throw PlacementError(name +
-      " is outside the slope: there is no CFE under it (the slope spans x " +
-      std::to_string(g.xOrigin) + " to " + std::to_string(g.xOrigin + terrain.width()) + ", y " +
-      std::to_string(g.yOrigin) + " to " + std::to_string(g.yOrigin + terrain.height()) + ")");
+    throw PlacementError(name + whyNoGround(terrain, world.x(), world.y()));
   }
   const double height = rock.position.z() - terrain.elevation(rock.position.x(), rock.position.y());
   if (height > kHighest)
@@ -75,6 +75,20 @@ void checkPlacement(const Terrain& terrain, const Rock& rock, const Block& block
   {
     throw PlacementError(
       name + " starts inside the slope, by " + std::to_string(depth) + " m; raise its centre");
+  }
+}
+
+void checkPenalty(const Rock& rock, const Block& block, const SimulationParameters& p)
+{
+  const double weight = block.mass() * p.gravity;
+  const double most = kDeepestAtRest * block.radius();
+  if (weight > most * p.normalPenalty)
+  {
+    throw ParameterError("NormalPenalty is " + numberText(p.normalPenalty) +
+      " N/m, too soft for block " + std::to_string(rock.blockId) + ": at rest its " +
+      numberText(block.mass()) + " kg would lie " + numberText(weight / p.normalPenalty) +
+      " m deep in the ground, more than " + numberText(100.0 * kDeepestAtRest) +
+      " % of its radius; it needs " + numberText(weight / most) + " N/m or more");
   }
 }
 
@@ -237,7 +251,9 @@ Ensemble::Ensemble(
         try
         {
           rocks[std::size_t(k)].validate();
-          checkPlacement(terrain, rocks[std::size_t(k)], blockOf(rocks[std::size_t(k)]));
+          const Block& block = blockOf(rocks[std::size_t(k)]);
+          checkPlacement(terrain, rocks[std::size_t(k)], block);
+          checkPenalty(rocks[std::size_t(k)], block, p);
         }
         catch (...)
         {

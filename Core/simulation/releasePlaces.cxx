@@ -180,6 +180,14 @@ Extent extentOf(const Terrain& terrain)
   return { g.xOrigin, g.yOrigin, g.xOrigin + terrain.width(), g.yOrigin + terrain.height() };
 }
 
+std::string whyNoGround(const Terrain& terrain, double x, double y)
+{
+  const Extent e = extentOf(terrain);
+  return x >= e.xMin && x <= e.xMax && y >= e.yMin && y <= e.yMax
+    ? " lies on nodata of the slope: there is no CFE under it"
+    : " is outside the slope: it spans " + e.text();
+}
+
 Extent extentOf(std::span<const SourceRow> sources)
 {
   constexpr double far = std::numeric_limits<double>::infinity();
@@ -279,8 +287,8 @@ std::vector<ReleasePlace> releasePlaces(std::span<const SourceRow> sources, cons
       {
         const std::string name = layer.empty() ? "Center" : rowName(layer, source);
         throw DataError(point ? name + ": the point " + number(source.position.x()) + ", " +
-              number(source.position.y()) + " has no ground under it: the terrain spans " +
-              extentOf(*terrain).text() + ", nodata left out"
+              number(source.position.y()) +
+              whyNoGround(*terrain, source.position.x(), source.position.y())
                               : name + ": none of " + std::to_string(mostAttempts) +
               " places is on the terrain: the source spans " + extentOf({ &source, 1 }).text() +
               ", the terrain " + extentOf(*terrain).text());

@@ -53,6 +53,9 @@ struct Extent
 Extent extentOf(const Terrain& terrain);
 Extent extentOf(std::span<const SourceRow> sources);
 
+/// Why there is no CFE under a place (world coordinates, m), to follow its name in a message.
+std::string whyNoGround(const Terrain& terrain, double x, double y);
+
 /// Throws DataError, naming both extents, if no source can be on the terrain. `layer` is the file's
 /// name, `layerCrs` its CRS by name or empty.
 void requireOverlap(std::span<const SourceRow> sources, const Terrain& terrain,

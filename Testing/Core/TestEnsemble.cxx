@@ -376,6 +376,10 @@ TEST(Ensemble, BadInputIsOneClearError)
   expectError<ParameterError>(with([](Rock&, P& p) { p.timeStep = 0.0; }), "TimeStep is 0.0");
   expectError<ParameterError>(with([](Rock&, P& p) { p.timeStep = -1.0; }), "TimeStep is -1.0");
   expectError<ParameterError>(with([](Rock&, P& p) { p.normalPenalty = 0.0; }), "NormalPenalty");
+  // 2600 kg and 0.866 m: 26 kN in 0.02 of the radius.
+  expectError<ParameterError>(with([](Rock&, P& p) { p.normalPenalty = 1.4e6; }),
+    "NormalPenalty is 1400000 N/m, too soft for block 7: at rest its ");
+  EXPECT_NO_THROW(with([](Rock&, P& p) { p.normalPenalty = 1.7e6; })());
   expectError<ParameterError>(with([](Rock&, P& p) { p.endTime = NAN; }), "EndTime is nan");
   expectError<ParameterError>(with([](Rock&, P& p) { p.outputInterval = 0; }), "OutputInterval");
   expectError<ParameterError>(with([](Rock&, P& p) { p.iterations = 0; }), "Iterations is 0");
@@ -393,6 +397,9 @@ TEST(Ensemble, BadInputIsOneClearError)
     with([](Rock& r, P&) { r.position.x() = -10.0; }), "block 7 at (-10.0");
   expectError<PlacementError>(
     with([](Rock& r, P&) { r.position.z() = 54.0; }), "starts inside the slope, by ");
+  const Terrain holed = makeSlope(
+    21, 5.0, [](double x, double y) { return std::hypot(x - 5.0, y - 50.0) < 8.0 ? NAN : 50.0; });
+  expectError<PlacementError>([&] { simulate(holed, good, P()); }, "lies on nodata of the slope");
   expectError<ParameterError>(
     [&]
     {

@@ -131,6 +131,7 @@ TEST(StructureLayers, TellWhatIsWrong)
     { 1, tree + "50,50,0,20\n", "\"diameter\" is 0" },
     { 1, tree + "50,50,30,-1\n", "\"height\" is -1" },
     { 1, tree + "50,50,3000,20\n", "is it in millimetres?" },
+    { 1, tree + "50,50,0.3,20\n", "\"diameter\" is 0.3 cm: is it in metres?" },
     { 1, tree + "50,50,30,2000\n", "height of the tree is 2000" },
     { 1, "diameter,height\n30,20\n", "has no point" },
     { 1, "WKT,diameter,height\n" + line + ",30,20\n", "is a LINESTRING, a POINT is needed" },

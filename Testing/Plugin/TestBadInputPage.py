@@ -207,6 +207,7 @@ structures("an embankment under the ground", "EmbankmentFile",
 structures("an embankment that goes beyond the slope", "EmbankmentFile", DAM.format(20, 120, 3))
 structures("no diameter", "TreeFile", "x,y,height\n60,50,20\n")
 structures("a diameter in millimetres", "TreeFile", TREE.format(3500, 20))
+structures("a diameter in metres", "TreeFile", TREE.format(0.35, 20))
 structures("a height in feet, or none of a tree", "TreeFile", TREE.format(35, 328))
 structures("negative", "BarrierFile", NET.format(60, -4, 1000))
 structures("NaN", "EmbankmentFile", DAM.format(20, 80, "nan"))
@@ -272,6 +273,8 @@ release("far over the slope: feet, or another reference", Center=[40, 50, 1834])
 release("NaN", Center=[40, 50, float("nan")])
 release("a volume that is negative", Volume=-1.0)
 release("a density that is negative", Density=-2500.0)
+one("springs that do not hold the rock", RockfallSimulation(
+    Terrain=slope, Rocks=RockBlocks(Center=[5, 50, 58]), EndTime=0.1, NormalPenalty=1e5), ports=4)
 
 section("Tables of contacts between rocks")
 two = write_text("two.csv", "x,y,z,material,mat_name\n5,40,58,granite,\n5,60,58,,Slag\n")
