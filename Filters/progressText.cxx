@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <iostream>
+#include <utility>
 
 namespace rockfall::filters
 {
@@ -12,6 +13,8 @@ namespace
 {
 
 constexpr double printInterval = 10.0; // s
+/// A share of so many is whole but for this.
+constexpr double kRounding = 1e-3;
 
 /// With commas between thousands, whatever the locale.
 std::string countText(std::int64_t count)
@@ -46,10 +49,10 @@ std::string durationText(double seconds)
   return std::to_string(minutes / 60) + " h " + twoDigits(minutes % 60) + " min";
 }
 
-std::string progressText(double share, std::int64_t total, double elapsed)
+std::string progressText(double share, std::int64_t total, const std::string& units, double elapsed)
 {
-  std::string text = countText(std::int64_t(share * double(total) + 0.5)) + " of " +
-    countText(total) + " trajectories (" + std::to_string(int(100.0 * share)) + " %)";
+  std::string text = countText(std::int64_t(share * double(total) + kRounding)) + " of " +
+    countText(total) + " " + units + " (" + std::to_string(int(100.0 * share)) + " %)";
   if (share >= 1e-3 && elapsed >= 1.0)
   {
     text += ", about " + durationText(elapsed * (1.0 - share) / share) + " left";
@@ -57,9 +60,11 @@ std::string progressText(double share, std::int64_t total, double elapsed)
   return text;
 }
 
-ProgressReport::ProgressReport(vtkAlgorithm* filter, std::int64_t total, bool first, bool print)
+ProgressReport::ProgressReport(
+  vtkAlgorithm* filter, std::int64_t total, std::string units, bool first, bool print)
   : filter_(filter)
   , total_(total)
+  , units_(std::move(units))
   , first_(first)
   , print_(first && print)
 {
@@ -80,7 +85,7 @@ bool ProgressReport::operator()(double share)
   if (first_)
   {
     const double now = this->elapsed();
-    const std::string text = progressText(share, total_, now);
+    const std::string text = progressText(share, total_, units_, now);
     filter_->SetProgressText(text.c_str());
     filter_->UpdateProgress(share);
     if (print_ && now - printed_ >= printInterval)
@@ -96,7 +101,7 @@ void ProgressReport::finish()
 {
   if (print_)
   {
-    std::cerr << "Rockfall Simulation: " << countText(total_) << " trajectories in "
+    std::cerr << "Rockfall Simulation: " << countText(total_) << " " << units_ << " in "
               << durationText(this->elapsed()) << std::endl;
   }
 }

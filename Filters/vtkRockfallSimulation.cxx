@@ -223,8 +223,8 @@ bool vtkRockfallSimulation::Simulate(vtkPolyData* terrainInput, vtkPolyData* roc
       " m");
   }
   rockfall::filters::RunSink sink(run->frame, run->parts);
-  rockfall::filters::ProgressReport report(
-    this, run->ensemble->size(), ranks.rank() == 0, this->PrintProgress);
+  rockfall::filters::ProgressReport report(this, run->ensemble->size(),
+    this->RockRockContact ? "iterations" : "trajectories", ranks.rank() == 0, this->PrintProgress);
   ++this->NumberOfRuns;
   if (!rockfall::filters::runShared(
         *run->ensemble, run->parts, &sink, ranks, std::ref(report), this->NoMemory()))

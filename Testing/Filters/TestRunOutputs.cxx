@@ -157,10 +157,20 @@ TEST(ProgressText, SaysHowFarAndHowLong)
   EXPECT_EQ(filters::durationText(200.0), "3 min 20 s");
   EXPECT_EQ(filters::durationText(3599.5), "1 h 00 min");
   EXPECT_EQ(filters::durationText(7500.0), "2 h 05 min");
-  EXPECT_EQ(filters::progressText(0.25, 100000, 60.0),
+  EXPECT_EQ(filters::progressText(0.25, 100000, "trajectories", 60.0),
     "25,000 of 100,000 trajectories (25 %), about 3 min 00 s left");
-  EXPECT_EQ(filters::progressText(1.0, 12, 60.0), "12 of 12 trajectories (100 %), about 0 s left");
+  EXPECT_EQ(filters::progressText(1.0, 12, "trajectories", 60.0),
+    "12 of 12 trajectories (100 %), about 0 s left");
   // Too early to tell.
-  EXPECT_EQ(filters::progressText(0.0, 1234567, 5.0), "0 of 1,234,567 trajectories (0 %)");
-  EXPECT_EQ(filters::progressText(0.5, 10, 0.1), "5 of 10 trajectories (50 %)");
+  EXPECT_EQ(
+    filters::progressText(0.0, 1234567, "trajectories", 5.0), "0 of 1,234,567 trajectories (0 %)");
+  EXPECT_EQ(filters::progressText(0.5, 10, "trajectories", 0.1), "5 of 10 trajectories (50 %)");
+  // Every share of so many is exact but for rounding; within one nothing is done yet.
+  for (int k = 0; k <= 49; ++k)
+  {
+    EXPECT_EQ(
+      filters::progressText(k / 49.0, 49, "trajectories", 0.1).find(std::to_string(k) + " of 49"),
+      0u);
+  }
+  EXPECT_EQ(filters::progressText(0.9, 1, "iterations", 0.1), "0 of 1 iterations (90 %)");
 }
