@@ -55,7 +55,9 @@ from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLPolyDataWriter
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
-FILES = ("FileName", "Layer", "Table")  # a property whose name ends so is a file
+FILES = ("FileName", "File", "Layer", "Table")  # a property whose name ends so is a file
+# What belongs to a file: with its ending instead of the file's own, or behind it.
+COMPANIONS = (".dbf", ".shx", ".prj", ".cpg", ".csvt", ".tfw", ".wld"), (".aux.xml", ".msk")
 FORMAT = 2  # of the files here: another one is another study
 controller = vtkMultiProcessController.GetGlobalController()
 # Without --sym the first rank alone runs the script.
@@ -132,10 +134,13 @@ def read_study(path):
 
 
 def content(path):
+    stem = os.path.splitext(path)[0]
+    companions = [stem + end for end in COMPANIONS[0]] + [path + end for end in COMPANIONS[1]]
     digest = hashlib.sha256()
-    with open(path, "rb") as file:
-        while block := file.read(1 << 20):
-            digest.update(block)
+    for one in [path] + [c for c in companions if c != path and os.path.isfile(c)]:
+        with open(one, "rb") as file:
+            while block := file.read(1 << 20):
+                digest.update(block)
     return digest.hexdigest()
 
 

@@ -3,6 +3,7 @@
 #include "base/errors.h"
 #include "gis/crs.h"
 #include "gis/fields.h"
+#include "gis/heightUnit.h"
 
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
@@ -16,8 +17,8 @@ namespace rockfall::gis
 namespace
 {
 
-/// As for rasters: what lies beyond is no height.
-constexpr double largestHeight = 20000.0; // m
+/// A line's z and its field may differ by so much, m: one of them may be rounded.
+constexpr double sameHeight = 1.0;
 
 /// Names under which contour files have their heights, most telling first.
 constexpr const char* usualNames[] = { "elev", "elevation", "contour", "z", "height", "ele",
@@ -51,16 +52,21 @@ void addLine(const OGRLineString& line, double height, const HeightField& field,
   for (int i = 0; i < line.getNumPoints(); ++i)
   {
     const double z = field.column < 0 ? line.getZ(i) * field.unit : height;
+    if (field.guessed && line.Is3D() && line.getZ(i) != 0.0 &&
+      std::abs(line.getZ(i) * field.unit - height) > sameHeight)
+    {
+      fields.fail("the line's z is " + number(line.getZ(i)) + ", its field \"" + field.name +
+        "\" " + number(height / field.unit) +
+        "; say in ElevationField that it is this field, or leave the field out of the file");
+    }
     if (!std::isfinite(line.getX(i)) || !std::isfinite(line.getY(i)) || !std::isfinite(z))
     {
       fields.fail("the vertex " + number(line.getX(i)) + ", " + number(line.getY(i)) + ", " +
         number(z) + " is not finite");
     }
-    if (std::abs(z) > largestHeight)
+    if (z < kDeepest || z > kHighest)
     {
-      fields.fail("the height " + number(z) +
-        " m is beyond 20 km: a mark for no data, or another "
-        "unit?");
+      fields.fail("the height " + number(z) + " m is none: a mark for no data, or another unit?");
     }
     contours.x.push_back(line.getX(i));
     contours.y.push_back(line.getY(i));
@@ -116,10 +122,12 @@ HeightField heightFieldOf(OGRLayer& layer, const std::string& wanted, const std:
   {
     field.column = column.second;
     field.name = definition.GetFieldDefn(column.second)->GetNameRef();
-    if (column.first.size() > 3 && column.first.substr(column.first.size() - 3) == "_ft")
+    const auto endsWith = [&](const std::string& end)
     {
-      field.unit = 0.3048;
-    }
+      return column.first.size() > end.size() &&
+        column.first.compare(column.first.size() - end.size(), end.size(), end) == 0;
+    };
+    field.unit = endsWith("_ft") || endsWith("_feet") ? 0.3048 : endsWith("_m") ? 1.0 : field.unit;
   };
   if (!wanted.empty())
   {
@@ -134,11 +142,19 @@ HeightField heightFieldOf(OGRLayer& layer, const std::string& wanted, const std:
   }
   for (const char* name : usualNames)
   {
-    if (const auto column = columns.find(name); column != columns.end())
+    const auto column = columns.find(name);
+    if (column == columns.end())
     {
-      take(*column);
-      return field;
+      continue;
     }
+    if (field.column >= 0)
+    {
+      throw DataError(fileName + ": layer \"" + layer.GetName() + "\" has two fields that may be " +
+        "heights, \"" + field.name + "\" and \"" +
+        definition.GetFieldDefn(column->second)->GetNameRef() + "\"; say which in ElevationField");
+    }
+    take(*column);
+    field.guessed = true;
   }
   return field;
 }

@@ -33,7 +33,8 @@ struct HeightField
 {
   int column = -1; ///< −1: the lines' own z.
   std::string name;
-  double unit = 1.0; ///< m
+  double unit = 1.0;    ///< m
+  bool guessed = false; ///< By its name.
 };
 
 /// The first layer of lines, else the first of any geometry. Throws DataError if there is none.

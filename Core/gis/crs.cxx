@@ -51,6 +51,18 @@ CrsPtr horizontalCrs(const OGRSpatialReference* crs)
   return copy;
 }
 
+CrsPtr layerCrs(const OGRSpatialReference* crs, const std::string& fileName)
+{
+  const CrsPtr result = horizontalCrs(crs);
+  const char* unit = nullptr;
+  if (result && result->IsLocal() && std::abs(result->GetLinearUnits(&unit) - 1.0) > 1e-9)
+  {
+    throw DataError(fileName + ": its local coordinates are in \"" + (unit ? unit : "") +
+      "\"; bring them to metres first");
+  }
+  return result;
+}
+
 CrsPtr crsFromEpsg(int code)
 {
   auto crs = empty();
@@ -143,7 +155,7 @@ CrsChange::CrsChange(const CrsPtr& from, const CrsPtr& to, double tolerance)
     });
   if (!exact_)
   {
-    throw DataError("There is no way from " + crsLabel(*from) + " to " + crsLabel(*to));
+    throw DataError("there is no way from " + crsLabel(*from) + " to " + crsLabel(*to));
   }
   if (tolerance > 0.0)
   {
@@ -181,6 +193,18 @@ bool CrsChange::apply(bool inverse, int count, double* x, double* y) const
     }
   }
   return all;
+}
+
+CrsChange layerChange(const std::string& fileName, const CrsPtr& from, const CrsPtr& to)
+{
+  try
+  {
+    return CrsChange(from, to);
+  }
+  catch (const DataError& error)
+  {
+    throw DataError(fileName + ": " + error.what());
+  }
 }
 
 } // namespace rockfall::gis

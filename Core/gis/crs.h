@@ -17,6 +17,9 @@ using CrsPtr = std::shared_ptr<const OGRSpatialReference>;
 
 /// A copy without its vertical part; null stays null.
 CrsPtr horizontalCrs(const OGRSpatialReference* crs);
+/// The same of a layer that comes to a slope. Throws DataError if its coordinates are local ones
+/// and not in metres: nobody would bring them to metres, as is done for a DEM.
+CrsPtr layerCrs(const OGRSpatialReference* crs, const std::string& fileName);
 CrsPtr crsFromEpsg(int code);
 /// From WKT of either version, "EPSG:2056", a PROJ string. Throws DataError naming `text`.
 CrsPtr crsFromText(const std::string& text);
@@ -52,5 +55,8 @@ private:
   std::shared_ptr<void> exact_;
   std::shared_ptr<void> interpolated_;
 };
+
+/// From a layer's CRS to another one. Throws DataError that names the file if there is no way.
+CrsChange layerChange(const std::string& fileName, const CrsPtr& from, const CrsPtr& to);
 
 } // namespace rockfall::gis

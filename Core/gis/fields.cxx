@@ -59,6 +59,29 @@ std::string fieldList(const OGRFeatureDefn& definition)
   return list.empty() ? "none" : list;
 }
 
+void refuseNearMisses(const OGRFeatureDefn& definition, const std::string& fileName,
+  std::initializer_list<const char*> known)
+{
+  const Columns columns = columnsOf(definition);
+  const auto goesOn = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); };
+  for (const auto& [column, index] : columns)
+  {
+    for (const std::string name : known)
+    {
+      const bool like = column.size() > name.size() && column.compare(0, name.size(), name) == 0 &&
+        !goesOn(column[name.size()]);
+      const bool isOther =
+        std::any_of(known.begin(), known.end(), [&](const char* k) { return column == k; });
+      if (like && !isOther && !columns.count(name))
+      {
+        throw DataError(fileName + ": its column \"" +
+          definition.GetFieldDefn(index)->GetNameRef() + "\" is not read, and there is none \"" +
+          name + "\"; call it so if it is that, else something that does not begin so");
+      }
+    }
+  }
+}
+
 void refuseSurplusCells(GDALDataset& dataset, const std::string& fileName)
 {
   if (!dataset.GetDriver() || !EQUAL(dataset.GetDriver()->GetDescription(), "CSV"))

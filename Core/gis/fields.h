@@ -28,6 +28,11 @@ Columns columnsOf(const OGRFeatureDefn& definition);
 /// "a", "b", "c": the fields of a layer, for a message.
 std::string fieldList(const OGRFeatureDefn& definition);
 
+/// Throws DataError where a column that would not be read begins as one that is not there, as
+/// "capacity_kJ" or "Volume [m3]" do. `known`: names that are read.
+void refuseNearMisses(const OGRFeatureDefn& definition, const std::string& fileName,
+  std::initializer_list<const char*> known);
+
 /// OGR drops what stands beyond the last column of a CSV file's header, so a table whose decimal
 /// commas split every number in two would be read without a word. Throws DataError naming the row;
 /// does nothing for other formats.

@@ -136,6 +136,12 @@ std::string number(double value)
   return { text, end.ptr };
 }
 
+std::string exactly(double value)
+{
+  char text[32];
+  return { text, std::to_chars(text, text + sizeof(text), value).ptr };
+}
+
 std::string sizeText(std::int64_t columns, std::int64_t rows)
 {
   return std::to_string(columns) + " x " + std::to_string(rows);

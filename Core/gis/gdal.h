@@ -59,6 +59,9 @@ OGRLayer& firstLayer(GDALDataset& dataset, const std::string& fileName, const ch
 /// A number for a message, with a decimal point in every locale.
 std::string number(double value);
 
+/// The shortest text that reads back as this very number.
+std::string exactly(double value);
+
 /// "120 x 80": columns first, as GDAL prints sizes.
 std::string sizeText(std::int64_t columns, std::int64_t rows);
 

@@ -154,7 +154,7 @@ std::vector<std::uint8_t> fromPolygons(const GroundFiles& files, const GroundTab
   const int column = classField(layer, files);
   const std::string fieldName = layer.GetLayerDefn()->GetFieldDefn(column)->GetNameRef();
   const Columns columns = columnsOf(*layer.GetLayerDefn());
-  const CrsPtr from = horizontalCrs(layer.GetSpatialRef());
+  const CrsPtr from = layerCrs(layer.GetSpatialRef(), files.layer);
   noteCrs(from, cells, files.layer, notes);
   std::unique_ptr<OGRCoordinateTransformation> change;
   if (from && cells.crs && !from->IsSame(cells.crs.get()))
@@ -179,7 +179,7 @@ std::vector<std::uint8_t> fromPolygons(const GroundFiles& files, const GroundTab
     const OGRGeometry* written = feature->GetGeometryRef();
     if (!written || written->IsEmpty())
     {
-      continue;
+      fields.fail("has no geometry, a POLYGON is needed");
     }
     std::unique_ptr<OGRGeometry> geometry(written->getLinearGeometry());
     const auto type = wkbFlatten(geometry->getGeometryType());

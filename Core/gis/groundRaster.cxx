@@ -18,6 +18,39 @@
 namespace rockfall::gis
 {
 
+namespace
+{
+
+/// The first band with its mask or transparency, and no other one: what these hold would count as
+/// data of the first where that has none.
+DatasetPtr firstBandOf(GDALDataset& source, const std::string& fileName, const Messages& messages)
+{
+  CPLStringList options;
+  for (const char* word : { "-of", "VRT", "-b", "1" })
+  {
+    options.AddString(word);
+  }
+  for (int band = 2; band <= source.GetRasterCount(); ++band)
+  {
+    if (source.GetRasterBand(band)->GetColorInterpretation() == GCI_AlphaBand)
+    {
+      options.AddString("-b");
+      options.AddString(std::to_string(band).c_str());
+    }
+  }
+  const std::unique_ptr<GDALTranslateOptions, void (*)(GDALTranslateOptions*)> how(
+    GDALTranslateOptionsNew(options.List(), nullptr), GDALTranslateOptionsFree);
+  DatasetPtr first(
+    GDALDataset::FromHandle(GDALTranslate("", GDALDataset::ToHandle(&source), how.get(), nullptr)));
+  if (!first)
+  {
+    throw FileError(fileName + ": cannot be read: " + messages.failure());
+  }
+  return first;
+}
+
+} // namespace
+
 std::vector<std::uint8_t> fromRaster(const GroundFiles& files, const GroundTable& table,
   const Cells& cells, std::vector<std::string>& notes)
 {
@@ -27,8 +60,9 @@ std::vector<std::uint8_t> fromRaster(const GroundFiles& files, const GroundTable
   {
     throw FileError(files.layer + ": has no raster band");
   }
-  const CrsPtr from = horizontalCrs(source->GetSpatialRef());
+  const CrsPtr from = layerCrs(source->GetSpatialRef(), files.layer);
   noteCrs(from, cells, files.layer, notes);
+  layerChange(files.layer, from, cells.crs); // or there is no way
   std::array<double, 6> affine{};
   if (source->GetGeoTransform(affine.data()) != CE_None)
   {
@@ -61,7 +95,9 @@ std::vector<std::uint8_t> fromRaster(const GroundFiles& files, const GroundTable
   }
   const std::unique_ptr<GDALWarpAppOptions, void (*)(GDALWarpAppOptions*)> how(
     GDALWarpAppOptionsNew(options.List(), nullptr), GDALWarpAppOptionsFree);
-  GDALDatasetH sources[] = { GDALDataset::ToHandle(source.get()) };
+  const DatasetPtr single =
+    source->GetRasterCount() > 1 ? firstBandOf(*source, files.layer, messages) : DatasetPtr();
+  GDALDatasetH sources[] = { GDALDataset::ToHandle(single ? single.get() : source.get()) };
   messages.clear();
   const DatasetPtr warped(
     GDALDataset::FromHandle(GDALWarp("", nullptr, 1, sources, how.get(), nullptr)));
@@ -108,7 +144,7 @@ std::vector<std::uint8_t> fromRaster(const GroundFiles& files, const GroundTable
         {
           continue;
         }
-        int row = table.rowOf(number(value[i]));
+        int row = table.rowOf(exactly(value[i]));
         if (row == 0 && categories && value[i] >= 0.0 && value[i] < CSLCount(categories))
         {
           row = table.rowOf(categories[int(value[i])]);
@@ -116,7 +152,7 @@ std::vector<std::uint8_t> fromRaster(const GroundFiles& files, const GroundTable
         if (row == 0)
         {
           failClass(files.layer,
-            "class " + number(value[i]) + " (in the cell at " + cells.place(cell) + ")",
+            "class " + exactly(value[i]) + " (in the cell at " + cells.place(cell) + ")",
             files.table, table);
         }
         known = rowOf.emplace(value[i], row).first;

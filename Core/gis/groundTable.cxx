@@ -17,11 +17,13 @@ namespace rockfall::gis
 namespace
 {
 
-/// "1", "1.0" and " 01" are one class.
+/// "1", "1.0" and " 01" are one class; "15E2" is a name.
 std::string keyOf(const std::string& text)
 {
-  const auto value = parsed(trimmed(text));
-  return value ? number(*value) : lowered(trimmed(text));
+  const std::string key = lowered(trimmed(text));
+  const auto value = parsed(key);
+  return value && key.find_first_not_of("+-.0123456789") == std::string::npos ? exactly(*value)
+                                                                              : key;
 }
 
 RestitutionModel modelFrom(const Fields& row, const std::string& text)

@@ -1,12 +1,12 @@
 #include "gis/lineLayer.h"
 
 #include "base/errors.h"
+#include "gis/FeatureRow.h"
 #include "gis/crs.h"
 #include "gis/gdal.h"
 
 #include <ogrsf_frmts.h>
 
-#include <charconv>
 #include <cmath>
 
 namespace rockfall
@@ -25,13 +25,13 @@ class LineReader
 public:
   LineReader(const std::string& fileName, OGRLayer& layer, const std::string& targetCrs)
     : fileName_(fileName)
-
-    , from_(horizontalCrs(layer.GetSpatialRef()))
+    , columns_(columnsOf(*layer.GetLayerDefn()))
+    , from_(layerCrs(layer.GetSpatialRef(), fileName))
   {
     if (!targetCrs.empty() && from_)
     {
       to_ = crsFromText(targetCrs);
-      change_ = CrsChange(from_, to_);
+      change_ = layerChange(fileName, from_, to_);
     }
   }
 
@@ -40,12 +40,10 @@ public:
     ++number_;
     LayerLine line;
     line.feature = number_;
-    if (const auto name = this->text(feature, "name"))
-    {
-      line.name = *name;
-    }
-    line.height = this->size(feature, "height");
-    line.capacity = this->size(feature, "capacity");
+    const FeatureRow row(fileName_, columns_, feature, number_);
+    line.name = row.text("name").value_or("");
+    line.height = row.notNegative("height");
+    line.capacity = row.notNegative("capacity");
     const OGRGeometry* geometry = feature.GetGeometryRef();
     if (!geometry || geometry->IsEmpty())
     {
@@ -75,44 +73,7 @@ public:
 private:
   [[noreturn]] void fail(const std::string& what) const
   {
-    throw DataError(fileName_ + ", feature " + std::to_string(number_) + ": " + what);
-  }
-
-  std::optional<std::string> text(const OGRFeature& feature, const char* column) const
-  {
-    const int field = feature.GetFieldIndex(column); // without regard to case
-    if (field < 0 || !feature.IsFieldSetAndNotNull(field))
-    {
-      return std::nullopt;
-    }
-    const std::string value = feature.GetFieldAsString(field);
-    return value.empty() ? std::nullopt : std::optional(value);
-  }
-
-  std::optional<double> size(const OGRFeature& feature, const char* column) const
-  {
-    const auto written = this->text(feature, column);
-    if (!written)
-    {
-      return std::nullopt;
-    }
-    const int field = feature.GetFieldIndex(column);
-    double value = feature.GetFieldAsDouble(field);
-    if (feature.GetFieldDefnRef(field)->GetType() == OFTString)
-    {
-      const char* const last = written->data() + written->size();
-      const auto [end, error] = std::from_chars(written->data(), last, value);
-      if (error != std::errc() || end != last)
-      {
-        this->fail(std::string("field \"") + column + "\": \"" + *written + "\" is not a number");
-      }
-    }
-    if (!std::isfinite(value) || value < 0.0)
-    {
-      this->fail(std::string("field \"") + column + "\" is " + number(value) +
-        ", it must be finite and not negative");
-    }
-    return value;
+    throw DataError(fileName_ + ", row " + std::to_string(number_) + ": " + what);
   }
 
   static std::string number(double value) { return gis::number(value); }
@@ -141,6 +102,7 @@ private:
   }
 
   const std::string& fileName_;
+  Columns columns_;
   CrsPtr from_, to_;
   CrsChange change_;
   std::int64_t number_ = 0;
@@ -153,10 +115,17 @@ std::vector<LayerLine> readLineLayer(const std::string& fileName, const std::str
   Messages messages;
   const DatasetPtr dataset = openVector(fileName, messages);
   OGRLayer& layer = firstLayer(*dataset, fileName);
+  refuseSurplusCells(*dataset, fileName);
+  refuseNearMisses(*layer.GetLayerDefn(), fileName, { "height", "capacity" });
   LineReader reader(fileName, layer, targetCrs);
   messages.clear();
   while (const OGRFeatureUniquePtr feature{ layer.GetNextFeature() })
   {
+    if (messages.warning().find("Invalid value type") != std::string::npos)
+    {
+      throw DataError(
+        fileName + ", row " + std::to_string(reader.number() + 1) + ": " + messages.warning());
+    }
     reader.read(*feature);
     if (reader.lines.size() > mostLines)
     {
@@ -166,7 +135,7 @@ std::vector<LayerLine> readLineLayer(const std::string& fileName, const std::str
   }
   if (!messages.failure().empty())
   {
-    throw FileError(fileName + ": feature " + std::to_string(reader.number() + 1) +
+    throw FileError(fileName + ": row " + std::to_string(reader.number() + 1) +
       " cannot be read: " + messages.failure());
   }
   if (reader.lines.empty())

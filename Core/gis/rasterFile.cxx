@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "gis/asciiGrid.h"
+#include "gis/heightUnit.h"
 #include "gis/rawSize.h"
 
 #include <cpl_string.h>
@@ -20,46 +21,21 @@ namespace rockfall::gis
 namespace
 {
 
-/// Higher than any mountain and deeper than any sea: what lies beyond is a forgotten nodata value.
-constexpr double largestHeight = 20000.0; // m
+/// A node of exactly 0 is suspect if the next one is so much higher or deeper.
+constexpr double suspectStep = 100.0; // m
 
-constexpr double foot = 0.3048;                // m, international
-constexpr double surveyFoot = 1200.0 / 3937.0; // m, United States
-
-/// Metres per unit of height by the unit's name; nothing for a name that is not known.
-std::optional<double> metresPer(const std::string& unit)
+/// The band of transparency, if it is not the mask already: GDAL makes none of one of real numbers.
+GDALRasterBand* alphaBand(GDALDataset& dataset, const GDALRasterBand* heights)
 {
-  const auto is = [&unit](std::initializer_list<const char*> names)
+  for (int band = 1; band <= dataset.GetRasterCount(); ++band)
   {
-    return std::any_of(
-      names.begin(), names.end(), [&unit](const char* name) { return EQUAL(unit.c_str(), name); });
-  };
-  if (is({ "m", "metre", "metres", "meter", "meters" }))
-  {
-    return 1.0;
+    GDALRasterBand* alpha = dataset.GetRasterBand(band);
+    if (alpha != heights && alpha->GetColorInterpretation() == GCI_AlphaBand)
+    {
+      return alpha;
+    }
   }
-  if (is({ "ft", "foot", "feet", "international foot", "international feet" }))
-  {
-    return foot;
-  }
-  if (is({ "us survey foot", "us survey feet", "us_survey_foot", "us-ft", "ftus", "sft", "foot_us",
-        "us foot", "u.s. survey foot", "survey foot" }))
-  {
-    return surveyFoot;
-  }
-  if (is({ "cm", "centimetre", "centimeter", "centimetres", "centimeters" }))
-  {
-    return 0.01;
-  }
-  if (is({ "dm", "decimetre", "decimeter" }))
-  {
-    return 0.1;
-  }
-  if (is({ "mm", "millimetre", "millimeter" }))
-  {
-    return 0.001;
-  }
-  return std::nullopt;
+  return nullptr;
 }
 
 /// The band's own nodata value, met in raw values.
@@ -129,6 +105,7 @@ RasterFile::RasterFile(
       (bands == 1 ? "1 band" : std::to_string(bands) + " bands"));
   }
   band_ = dataset_->GetRasterBand(band);
+  alpha_ = alphaBand(*dataset_, band_);
   const GDALDataType type = band_->GetRasterDataType();
   if (GDALDataTypeIsComplex(type))
   {
@@ -247,9 +224,17 @@ void RasterFile::findUnits()
   }
   else
   {
-    notes_.push_back("Heights have the unit \"" + unit +
-      "\", which is not known; they were taken "
-      "as metres.");
+    throw DataError(fileName_ + ": the heights of band " + std::to_string(bandNumber_) +
+      " have the unit \"" + unit +
+      "\", which is not known (gdal_edit.py -units m, or ft, says which it is)");
+  }
+  if (unit.empty() && metres == 1.0 && crs_ && isInFeet(*crs_) &&
+    !dataset_->GetSpatialRef()->IsCompound())
+  {
+    notes_.push_back("The CRS " + crsLabel(*crs_) +
+      " is in feet, and nothing says what its heights are in; they were taken as metres. If they "
+      "are "
+      "feet, gdal_edit.py -units ft says so");
   }
   if (metres != 1.0)
   {
@@ -265,9 +250,56 @@ void RasterFile::findUnits()
   }
 }
 
+void RasterFile::requireCoverage()
+{
+  int hasNodata = 0;
+  band_->GetNoDataValue(&hasNodata);
+  if (hasNodata || !(band_->GetMaskFlags() & GMF_ALL_VALID) || alpha_)
+  {
+    return;
+  }
+  double share = 100.0; // of what is there, %
+  const int status = band_->GetDataCoverageStatus(0, 0, columns_, rows_, 0, &share);
+  if (!(status & GDAL_DATA_COVERAGE_STATUS_UNIMPLEMENTED) &&
+    (status & GDAL_DATA_COVERAGE_STATUS_EMPTY))
+  {
+    throw DataError(fileName_ + ": no tile or block holds " + number(100.0 - share) +
+      " % of band " + std::to_string(bandNumber_) +
+      ", and the file declares no nodata value: they would be heights of 0 (gdalbuildvrt "
+      "-vrtnodata -9999, or gdal_edit.py -a_nodata -9999, declares it)");
+  }
+}
+
+void RasterFile::noteZeros(const std::vector<double>& heights)
+{
+  std::int64_t suspect = 0, all = 0;
+  const auto high = [&](std::size_t i) { return std::abs(heights[i]) > suspectStep; };
+  for (int row = 0; row < rows_; ++row)
+  {
+    for (int column = 0; column < columns_; ++column)
+    {
+      const std::size_t i = std::size_t(row) * columns_ + column;
+      if (heights[i] != 0.0)
+      {
+        continue;
+      }
+      ++all;
+      suspect += (column > 0 && high(i - 1)) || (column + 1 < columns_ && high(i + 1)) ||
+        (row > 0 && high(i - columns_)) || (row + 1 < rows_ && high(i + columns_));
+    }
+  }
+  if (suspect > 0)
+  {
+    notes_.push_back(std::to_string(all) + " nodes of band " + std::to_string(bandNumber_) +
+      " are exactly 0 m, " + std::to_string(suspect) + " of them beside ground more than " +
+      number(suspectStep) + " m off. If 0 stands for no data, gdal_edit.py -a_nodata 0 says so");
+  }
+}
+
 SourceGrid RasterFile::read()
 {
   requireMemory(double(columns_) * rows_, fileName_);
+  this->requireCoverage();
   SourceGrid grid;
   grid.columns = columns_;
   grid.rows = rows_;
@@ -293,6 +325,8 @@ SourceGrid RasterFile::read()
     throw DataError(fileName_ + ": all " + sizeText(columns_, rows_) + " nodes of band " +
       std::to_string(bandNumber_) + " are nodata");
   }
+
+  this->noteZeros(grid.heights);
 
   if (affine_[2] == 0.0 && affine_[4] == 0.0 && affine_[5] > 0.0)
   {
@@ -332,6 +366,16 @@ void RasterFile::readRows(int first, int count, double* values)
   const GDALDataType type = band_->GetRasterDataType();
   const bool wide = type == GDT_Int64 || type == GDT_UInt64;
   std::vector<GByte> mask;
+  std::vector<double> alpha;
+  if (alpha_ && !(flags & GMF_ALPHA))
+  {
+    alpha.resize(std::size_t(count) * columns_);
+    if (alpha_->RasterIO(GF_Read, 0, first, columns_, count, alpha.data(), columns_, count,
+          GDT_Float64, 0, 0, nullptr) != CE_None)
+    {
+      fail();
+    }
+  }
   if (!(flags & GMF_ALL_VALID) && (!(flags & GMF_NODATA) || wide))
   {
     mask.resize(std::size_t(count) * columns_);
@@ -346,13 +390,13 @@ void RasterFile::readRows(int first, int count, double* values)
   for (std::size_t i = 0; i < std::size_t(count) * columns_; ++i)
   {
     const double raw = values[i];
-    if ((!mask.empty() && mask[i] == 0) || nodata(raw))
+    if ((!mask.empty() && mask[i] == 0) || (!alpha.empty() && alpha[i] == 0.0) || nodata(raw))
     {
       values[i] = std::numeric_limits<double>::quiet_NaN();
       continue;
     }
     values[i] = raw * scale_ + offset_;
-    if (!(std::abs(values[i]) <= largestHeight))
+    if (!(values[i] >= kDeepest && values[i] <= kHighest))
     {
       this->check(first + int(i / columns_), int(i % columns_), raw, values[i]);
     }

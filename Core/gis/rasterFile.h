@@ -35,6 +35,10 @@ public:
 private:
   void findPlace();
   void findUnits();
+  /// Throws where parts of the file hold nothing and would be read as 0.
+  void requireCoverage();
+  /// Says what looks like a nodata value of 0 that nobody declared.
+  void noteZeros(const std::vector<double>& heights);
   void readRows(int first, int count, double* values);
   void check(int row, int column, double raw, double height) const;
 
@@ -43,6 +47,7 @@ private:
   std::vector<std::string>& notes_;
   DatasetPtr dataset_;
   GDALRasterBand* band_ = nullptr;
+  GDALRasterBand* alpha_ = nullptr; ///< Null if there is none.
   int bandNumber_ = 1;
   int columns_ = 0;
   int rows_ = 0;

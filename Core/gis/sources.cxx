@@ -129,16 +129,19 @@ SourceLayer readSourceLayer(const std::string& fileName, const SourceOptions& op
   const DatasetPtr dataset = openVector(fileName, messages);
   OGRLayer& layer = firstLayer(*dataset, fileName);
   refuseSurplusCells(*dataset, fileName);
+  refuseNearMisses(*layer.GetLayerDefn(), fileName,
+    { "amount", "intensity", "volume", "vol_law", "vol_dev", "vol_min", "vol_max", "vol_exp",
+      "density", "young", "poisson", "height", "dev_xy", "dev_z", "dev_att" });
   const Columns columns = columnsOf(*layer.GetLayerDefn());
 
   SourcePlacing placing;
-  placing.from = horizontalCrs(layer.GetSpatialRef());
+  placing.from = layerCrs(layer.GetSpatialRef(), fileName);
   placing.heightUnit = verticalUnit(layer.GetSpatialRef());
   placing.haveTerrain = options.haveTerrain;
   if (!options.targetCrs.empty())
   {
     placing.to = crsFromText(options.targetCrs);
-    placing.change = CrsChange(placing.from, placing.to);
+    placing.change = layerChange(fileName, placing.from, placing.to);
   }
 
   SourceLayer result;

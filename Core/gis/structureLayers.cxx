@@ -33,12 +33,12 @@ constexpr std::int64_t kMostRows = 1000000;
 class Placing
 {
 public:
-  Placing(const CrsPtr& from, const Terrain& terrain)
+  Placing(const std::string& fileName, const CrsPtr& from, const Terrain& terrain)
     : origin_(terrain.geometry().origin().head<2>())
   {
     if (from && !terrain.geometry().crs.empty())
     {
-      change_ = CrsChange(from, crsFromText(terrain.geometry().crs));
+      change_ = layerChange(fileName, from, crsFromText(terrain.geometry().crs));
     }
     else if (!from)
     {
@@ -73,14 +73,16 @@ private:
 
 /// Calls `use` for every row, then tells a layer beside the terrain.
 void forEachRow(const std::string& fileName, const Terrain& terrain,
+  std::initializer_list<const char*> numbers,
   const std::function<void(const FeatureRow&, std::int64_t, Placing&)>& use)
 {
   Messages messages;
   const DatasetPtr dataset = openVector(fileName, messages);
   OGRLayer& layer = firstLayer(*dataset, fileName);
   refuseSurplusCells(*dataset, fileName);
+  refuseNearMisses(*layer.GetLayerDefn(), fileName, numbers);
   const Columns columns = columnsOf(*layer.GetLayerDefn());
-  Placing placing(horizontalCrs(layer.GetSpatialRef()), terrain);
+  Placing placing(fileName, layerCrs(layer.GetSpatialRef(), fileName), terrain);
   std::int64_t count = 0;
   messages.clear();
   while (const OGRFeatureUniquePtr feature{ layer.GetNextFeature() })
@@ -243,6 +245,8 @@ void readEmbankments(
   const std::string& fileName, const Terrain& terrain, OwnMaterials& own, Structures& all)
 {
   forEachRow(fileName, terrain,
+    { "height", "crest", "width", "slope", "slope_up", "slope_down", "rv", "rn", "rt", "phi",
+      "cohesion" },
     [&](const FeatureRow& row, std::int64_t count, Placing& placing)
     {
       Embankment e;
@@ -280,6 +284,7 @@ void readTrees(const StructureFiles& files, const Terrain& terrain, OwnMaterials
 {
   std::int64_t outside = 0;
   forEachRow(files.trees, terrain,
+    { "diameter", "height", "factor", "capacity", "rv", "rn", "rt", "phi", "cohesion" },
     [&](const FeatureRow& row, std::int64_t count, Placing& placing)
     {
       Tree t;
@@ -338,7 +343,7 @@ void readTrees(const StructureFiles& files, const Terrain& terrain, OwnMaterials
 
 void readBarriers(const std::string& fileName, const Terrain& terrain, Structures& all)
 {
-  forEachRow(fileName, terrain,
+  forEachRow(fileName, terrain, { "height", "capacity", "mode", "absorbs" },
     [&](const FeatureRow& row, std::int64_t count, Placing& placing)
     {
       Barrier b;

@@ -46,6 +46,29 @@ bool positive(double value)
   return value > 0.0 && std::isfinite(value);
 }
 
+/// Whether a line comes over ground, looked at in every half a cell.
+bool isOverGround(const Terrain& terrain, const Eigen::Vector2d& p, const Eigen::Vector2d& q)
+{
+  const Eigen::AlignedBox2d slope(
+    Eigen::Vector2d::Zero(), Eigen::Vector2d(terrain.width(), terrain.height()));
+  if (!slope.intersects(Eigen::AlignedBox2d(p.cwiseMin(q), p.cwiseMax(q))))
+  {
+    return false;
+  }
+  constexpr double kMostLooks = 1e6;
+  const double looks =
+    std::min(kMostLooks, std::ceil(2.0 * (q - p).norm() / terrain.geometry().cellSize));
+  for (double k = 0.0; k <= looks; ++k)
+  {
+    const Eigen::Vector2d at = p + (looks > 0.0 ? k / looks : 0.0) * (q - p);
+    if (!std::isnan(terrain.elevation(at.x(), at.y())))
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
 } // namespace
 
 double stemCapacity(double diameter, double factor)
@@ -226,10 +249,10 @@ Obstacles::Obstacles(Structures structures, const Terrain& terrain)
     bool over = false;
     for (std::size_t i = 0; i < b.points.size(); ++i)
     {
-      over = over || !std::isnan(terrain.elevation(b.points[i].x(), b.points[i].y()));
       if (i > 0)
       {
         const Eigen::Vector2d &p = b.points[i - 1], &q = b.points[i];
+        over = over || isOverGround(terrain, p, q);
         barrierPieces_.push_back({ int(k), p, q });
         boxes.push_back({ std::min(p.x(), q.x()), std::max(p.x(), q.x()), std::min(p.y(), q.y()),
           std::max(p.y(), q.y()), 0.0 });
@@ -238,7 +261,7 @@ Obstacles::Obstacles(Structures structures, const Terrain& terrain)
     if (!over)
     {
       throw DataError("feature " + std::to_string(b.feature) +
-        ": no point of the barrier is where the terrain has ground");
+        ": no part of the barrier is where the terrain has ground");
     }
   }
   barrierIndex_ = BoxIndex(boxes);

@@ -319,6 +319,29 @@ TEST(Contours, NamesOfTheField)
   EXPECT_TRUE(holds(message(file, { .elevationField = "hoogte" }), { file, "hoogte", "hauteur" }));
 }
 
+TEST(Contours, WhatTheHeightIsMustBePlain)
+{
+  const std::string two = writeFile("two.csv",
+    "WKT,level,contour_m\n\"LINESTRING(0 0,50 0)\",1,510\n\"LINESTRING(0 30,50 30)\",2,520\n");
+  EXPECT_TRUE(holds(message(two), { two, "\"contour_m\"", "\"level\"", "ElevationField" }));
+  EXPECT_NO_THROW(readContours(two, { .elevationField = "contour_m" }));
+  const auto solid = [](const std::string& heights, const std::string& name)
+  {
+    return writeFile(name,
+      "WKT,level\n\"LINESTRING Z(0 0 510,50 0 510)\"," + heights.substr(0, 3) +
+        "\n\"LINESTRING Z(0 30 520,50 30 520)\"," + heights.substr(3) + "\n");
+  };
+  const std::string labels = solid("1  2  ", "labels.csv");
+  EXPECT_TRUE(holds(message(labels), { labels, "row 1", "z is 510", "\"level\" 1" }));
+  EXPECT_NO_THROW(readContours(labels, { .elevationField = "level" }));
+  EXPECT_NO_THROW(readContours(solid("510520", "same.csv")));
+  const std::string feet = writeFile(
+    "feet.csv", "WKT,elev_feet\n\"LINESTRING(0 0,50 0)\",100\n\"LINESTRING(0 30,50 30)\",200\n");
+  const RasterSurface surface =
+    readContours(feet, { .cellSize = 10.0, .elevationField = "elev_feet" });
+  EXPECT_NEAR(surface.heights.back(), 30.48, 1e-9);
+}
+
 TEST(Contours, FeetBecomeMetres)
 {
   const RasterSurface metres = readContours(geoJson(smallHill()), { .cellSize = 2.0 });

@@ -50,7 +50,7 @@ MapImage smallMap()
   map.crs = wktOfCrs("EPSG:32632");
   map.bands.push_back(
     { "Rocks", "", [](int, std::span<float> v) { std::fill(v.begin(), v.end(), 3); } });
-  map.bands.push_back({ "Speed95", "m/s",
+  map.bands.push_back({ "HeightOverGround95", "m",
     [](int row, std::span<float> v)
     {
       for (std::size_t c = 0; c < v.size(); ++c)
@@ -90,7 +90,7 @@ TEST(GeoTiff, PixelsAreInTheRightPlace)
       << k << ": " << read.heights[k];
   }
   const std::string bytes = contentOf(path);
-  EXPECT_NE(bytes.find("Speed95"), std::string::npos);
+  EXPECT_NE(bytes.find("HeightOverGround95"), std::string::npos);
 }
 
 TEST(GeoTiff, FailuresLeaveTheOlderFile)
@@ -216,12 +216,12 @@ TEST(LineLayer, BadInput)
   const std::string line = R"({ "type": "LineString", "coordinates": [[0, 0], [1, 0]] })";
   const auto refused = [](const std::string& path, const std::vector<std::string>& words)
   { EXPECT_TRUE(holds(messageOf<DataError>([&] { readLineLayer(path); }), words)); };
-  refused(json(R"({ "height": "4,5" })", line), { "bad.geojson", "feature 1", "height", "4,5" });
-  refused(json(R"({ "capacity": -1.5 })", line), { "feature 1", "capacity", "-1.5" });
+  refused(json(R"({ "height": "4,5" })", line), { "bad.geojson", "row 1", "height", "4,5" });
+  refused(json(R"({ "capacity": -1.5 })", line), { "row 1", "capacity", "-1.5" });
   refused(json("{}", R"({ "type": "Point", "coordinates": [0, 0] })"), { "POINT", "LINESTRING" });
   refused(
     json("{}", R"({ "type": "LineString", "coordinates": [[0, 0], [0, 0]] })"), { "one place" });
-  refused(json("{}", "null"), { "feature 1", "no geometry" });
+  refused(json("{}", "null"), { "row 1", "no geometry" });
   refused(writeFile("none.geojson", R"({ "type": "FeatureCollection", "features": [] })"),
     { "none.geojson", "no line" });
   EXPECT_TRUE(holds(messageOf<FileError>([] { readLineLayer("missing.gpkg"); }),

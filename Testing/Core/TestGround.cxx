@@ -147,6 +147,23 @@ TEST(Ground, WhatTheLayerDoesNotCoverIsOfTheSlopesOwnMaterial)
   EXPECT_TRUE(unused);
 }
 
+TEST(Ground, OtherBandsOfARasterDoNotCount)
+{
+  RawRaster raster = halves(1.0, 7.0);
+  raster.band = "<NoDataValue>7</NoDataValue>";
+  const std::string other = halves(2.0, 2.0).write("other");
+  raster.dataset =
+    "<VRTRasterBand dataType=\"Byte\" band=\"2\"><NoDataValue>9</NoDataValue><SimpleSource>"
+    "<SourceFilename>" +
+    other + "</SourceFilename><SourceBand>1</SourceBand></SimpleSource></VRTRasterBand>";
+  const Terrain terrain = slope();
+  // With a row for 0, which cells without data must not become.
+  const MaterialClasses classes =
+    read({ raster.write(), table("class,rv\n1,0.9\n0,0.1\n"), "" }, terrain);
+  EXPECT_EQ(int(classes.cells[0]), 1);
+  EXPECT_EQ(int(classes.cells[7]), 0);
+}
+
 TEST(Ground, PolygonsByNameAndByNumber)
 {
   const Terrain terrain = slope();
@@ -295,6 +312,22 @@ TEST(GroundErrors, ClassesWithoutARow)
   EXPECT_TRUE(holds(failure({ layer, rows, "" }), { layer, "row 1", "ice", "class", rows }));
   layer = polygons(box(west, south, west + 80, south + 60, "\"class\":null"));
   EXPECT_TRUE(holds(failure({ layer, rows, "" }), { layer, "row 1", "class", "empty" }));
+}
+
+TEST(GroundErrors, ClassesThatAreOnlyAlike)
+{
+  const std::string rows = table("class,rv\n20230000001,0.9\n1500,0.5\n1,0.4\n");
+  const auto layer = [](const std::string& value)
+  { return polygons(box(west, south, west + 80, south + 60, "\"class\":" + value)); };
+  EXPECT_TRUE(holds(failure({ layer("20230000002"), rows, "" }), { "20230000002", "no row" }));
+  EXPECT_TRUE(holds(failure({ layer("\"15E2\""), rows, "" }), { "15E2", "no row" }));
+  const Terrain terrain = slope();
+  EXPECT_NO_THROW(read({ layer("20230000001"), rows, "" }, terrain));
+  EXPECT_NO_THROW(read({ layer("\" 01.0\""), rows, "" }, terrain));
+  // A polygon that nobody could read is no polygon less.
+  const std::string broken =
+    writeFile("broken.csv", "WKT,class\n\"POLYGON((600000 5100000,600080 5100000\",1\n");
+  EXPECT_TRUE(holds(failure({ broken, rows, "" }), { broken, "row 1", "no geometry" }));
 }
 
 TEST(GroundErrors, LayersElsewhere)

@@ -1,6 +1,7 @@
 /// @file
 /// What a raster's numbers become where nothing has to be resampled, and the notes about it.
 
+#include "base/errors.h"
 #include "gis/raster.h"
 #include "gisFiles.h"
 
@@ -143,9 +144,38 @@ TEST(Raster, feetBecomeMetres)
   }
   RawRaster raster = small();
   raster.band = "<UnitType>fathom</UnitType>";
+  EXPECT_TRUE(holds(messageOf<DataError>([&] { readRaster(raster.write()); }),
+    { "band 1", "\"fathom\"", "not known", "gdal_edit.py -units" }));
+}
+
+TEST(Raster, transparencyOfRealNumbersIsAMask)
+{
+  RawRaster raster = small();
+  std::string bytes;
+  for (const double alpha : { 255.0, 255.0, 0.0, 255.0, 255.0, 255.0 })
+  {
+    bytes.append(reinterpret_cast<const char*>(&alpha), sizeof(alpha));
+  }
+  raster.dataset = "<VRTRasterBand dataType=\"Float64\" band=\"2\" subClass=\"VRTRawRasterBand\">"
+                   "<ColorInterp>Alpha</ColorInterp><SourceFilename relativeToVRT=\"0\">" +
+    writeFile("alpha.raw", bytes) +
+    "</SourceFilename><PixelOffset>8</PixelOffset><LineOffset>24</LineOffset><ByteOrder>LSB"
+    "</ByteOrder></VRTRasterBand>";
   const RasterSurface surface = readRaster(raster.write());
-  EXPECT_EQ(surface.heights[5], 6.0);
-  EXPECT_TRUE(holds(joined(surface), { "\"fathom\"", "not known" }));
+  for (int i = 0; i < 6; ++i)
+  {
+    EXPECT_EQ(std::isnan(surface.heights[i]), i == 2) << i;
+  }
+}
+
+TEST(Raster, zerosBesideHighGroundAreNoted)
+{
+  RawRaster raster = small();
+  raster.values = { 0.0, 50.0, 0.0, 3.0, 700.0, 0.0 };
+  EXPECT_TRUE(holds(joined(readRaster(raster.write())),
+    { "3 nodes of band 1 are exactly 0 m, 1 of them", "-a_nodata 0" }));
+  raster.values[4] = 90.0; // a shore
+  EXPECT_EQ(joined(readRaster(raster.write())).find("exactly 0"), std::string::npos);
 }
 
 TEST(Raster, verticalCrsInFeet)

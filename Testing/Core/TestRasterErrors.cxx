@@ -292,6 +292,38 @@ TEST(RasterErrors, absurdHeight)
     holds(failure<DataError>(path), { path, "row 1, column 3", "-32768 m", "-a_nodata -32768" }));
 }
 
+TEST(RasterErrors, usualNodataThatIsNotDeclared)
+{
+  RawRaster raster = small();
+  raster.values[4] = -9999.0;
+  EXPECT_TRUE(
+    holds(failure<DataError>(raster.write()), { "row 2, column 2", "-9999 m", "-a_nodata -9999" }));
+  raster.values[4] = -4900.0; // interpolated between one and ground
+  EXPECT_TRUE(holds(failure<DataError>(raster.write()), { "row 2, column 2", "-4900 m" }));
+  raster.values[4] = -430.0; // the Dead Sea
+  EXPECT_EQ(readRaster(raster.write()).heights[4], -430.0);
+}
+
+TEST(RasterErrors, gapsOfAMosaic)
+{
+  const std::string tile = small().write("tile");
+  const auto mosaic = [&](const std::string& nodata)
+  {
+    return writeFile("mosaic.vrt",
+      "<VRTDataset rasterXSize=\"6\" rasterYSize=\"2\"><SRS>EPSG:32632</SRS><GeoTransform>600000, "
+      "10, 0, 5100020, 0, -10</GeoTransform><VRTRasterBand dataType=\"Float64\" band=\"1\">" +
+        nodata + "<SimpleSource><SourceFilename>" + tile +
+        "</SourceFilename><SourceBand>1</SourceBand><SrcRect xOff=\"0\" yOff=\"0\" xSize=\"3\" "
+        "ySize=\"2\"/><DstRect xOff=\"0\" yOff=\"0\" xSize=\"3\" ySize=\"2\"/></SimpleSource>"
+        "</VRTRasterBand></VRTDataset>");
+  };
+  const std::string path = mosaic("");
+  EXPECT_TRUE(holds(failure<DataError>(path), { path, "50 %", "band 1", "-vrtnodata" }));
+  const RasterSurface read = readRaster(mosaic("<NoDataValue>-9999</NoDataValue>"));
+  EXPECT_EQ(read.heights[2], 3.0);
+  EXPECT_TRUE(std::isnan(read.heights[3]));
+}
+
 TEST(RasterErrors, degreesWithoutCrs)
 {
   // Small cells; and cells that could be metres but for the cliffs.

@@ -185,8 +185,9 @@ TEST(RasterResampling, projectedFeetBecomeMetres)
   const RasterSurface surface = readRaster(raster.write());
   EXPECT_NEAR(surface.geometry.cellSize, 10.0, 1e-12);
   EXPECT_LT(largestError(surface, plane), 1e-3); // 1e-4 of a 10 m cell, slope 0.6
-  ASSERT_FALSE(surface.notes.empty());
-  EXPECT_TRUE(holds(surface.notes[0], { "foot", "EPSG:32632" }));
+  ASSERT_EQ(surface.notes.size(), 2u);
+  EXPECT_TRUE(holds(surface.notes[0], { "is in feet", "heights", "taken as metres" }));
+  EXPECT_TRUE(holds(surface.notes[1], { "foot", "EPSG:32632" }));
 }
 
 TEST(RasterResampling, webMercatorIsNoMetre)

@@ -103,6 +103,31 @@ TEST(StructureLayers, AreBroughtToTheTerrainsCoordinates)
   }
 }
 
+TEST(StructureLayers, BarriersMayReachOverBothEdges)
+{
+  std::vector<std::string> notes;
+  StructureFiles files;
+  files.barriers = writeFile("net.csv", "WKT,height\n\"LINESTRING(-20 -15,120 125)\",4\n");
+  EXPECT_EQ(readStructures(files, site(), notes).barriers.size(), 1u);
+}
+
+TEST(StructureLayers, LocalCoordinatesInFeetAreRefused)
+{
+  StructureFiles files;
+  const std::string table = writeFile("trees.csv", "x,y,diameter,height\n50,50,30,20\n");
+  const std::size_t first = table.find_last_of('/') + 1;
+  const std::string stem = table.substr(first, table.size() - 4 - first);
+  files.trees = writeFile("trees.vrt",
+    "<OGRVRTDataSource><OGRVRTLayer name=\"trees\"><SrcDataSource>" + table +
+      "</SrcDataSource><SrcSQL>SELECT * FROM \"" + stem +
+      "\"</SrcSQL><GeometryType>wkbPoint</GeometryType><LayerSRS>LOCAL_CS[\"site\",UNIT[\"foot\","
+      "0.3048],AXIS[\"x\",EAST],AXIS[\"y\",NORTH]]</LayerSRS><GeometryField "
+      "encoding=\"PointFromColumns\" x=\"x\" y=\"y\"/></OGRVRTLayer></OGRVRTDataSource>");
+  const std::string message = messageOf(files);
+  EXPECT_EQ(
+    message, files.trees + ": its local coordinates are in \"foot\"; bring them to metres first");
+}
+
 TEST(StructureLayers, TellWhatIsWrong)
 {
   struct Case
@@ -140,6 +165,9 @@ TEST(StructureLayers, TellWhatIsWrong)
     { 2, "WKT,capacity\n" + line + ",100\n", "field \"height\" is missing" },
     { 2, net + line + ",4,-5\n", "\"capacity\" is -5" },
     { 2, "WKT,height,mode\n" + line + ",4,hold\n", "\"mode\" is \"hold\"" },
+    { 2, "WKT,height,capacity_kJ\n" + line + ",4,1000\n",
+      "its column \"capacity_kJ\" is not read, and there is none \"capacity\"" },
+    { 1, tree.substr(0, tree.size() - 1) + ",Factor [-]\n50,50,30,20,0.5\n", "\"Factor [-]\"" },
     { 2, net + "\"LINESTRING(2000 50,2120 50)\",4,100\n", "does not overlap the terrain" },
   };
   for (const Case& c : cases)

@@ -89,6 +89,14 @@ dem("one row only", FileName=write_grid("row.asc", [[1, 2, 3, 4]]))
 dem("all of it nodata", FileName=write_grid("nodata.asc", [[-9999] * 4] * 4))
 dem("a nodata value that is not declared", FileName=write_grid(
     "undeclared.asc", [[1.5, 2, 3], [4, -32768, 6], [7, 8, 9]]))
+dem("the usual nodata value, not declared", FileName=write_text(
+    "undeclared.asc", "ncols 3\nnrows 2\nxllcorner 700000\nyllcorner 4000000\ncellsize 10\n"
+    "1.5 2 3\n4 -9999 6\n"))
+dem("a mosaic of tiles with a gap, and no nodata value", FileName=write_text("mosaic.vrt", (
+    '<VRTDataset rasterXSize="8" rasterYSize="2"><GeoTransform>700000, 10, 0, 4000020, 0, -10'
+    '</GeoTransform><VRTRasterBand dataType="Float32" band="1"><SimpleSource><SourceFilename '
+    'relativeToVRT="1">good.asc</SourceFilename><DstRect xOff="0" yOff="0" xSize="4" ySize="2"/>'
+    '</SimpleSource></VRTRasterBand></VRTDataset>')))
 dem("NaN", FileName=write_grid("nan.asc", [[1.5, 2, 3], [4, "nan", 6], [7, 8, 9]]))
 dem("infinite", FileName=write_grid("inf.asc", [[1.5, 2, 3], [4, "inf", 6], [7, 8, 9]]))
 dem("a word", FileName=write_grid("word.asc", [[1.5, 2, 3], [4, "high", 6], [7, 8, 9]]))
@@ -125,6 +133,10 @@ two = 'WKT,{}\n"LINESTRING(0 0,50 0)",{}\n"LINESTRING(0 30,50 30)",20\n'
 dem("no field of heights", FileName=write_text("field.csv", two.format("h", 10)))
 dem("a field of heights that is not there",
     FileName=write_text("field.csv", two.format("h", 10)), ElevationField="cote")
+dem("two fields that may be heights", FileName=write_text("both.csv", (
+    'WKT,level,contour\n"LINESTRING(0 0,50 0)",1,510\n"LINESTRING(0 30,50 30)",2,520\n')))
+dem("a field and a z that differ", FileName=write_text("solid.csv", (
+    'WKT,level\n"LINESTRING Z(0 0 510,50 0 510)",1\n"LINESTRING Z(0 30 520,50 30 520)",2\n')))
 dem("one height only", FileName=write_text("level.csv", two.format("elev", 20)))
 dem("an empty height", FileName=write_text("gap.csv", two.format("elev", "")))
 dem("NaN", FileName=write_text("nan.csv", two.format("elev", "nan")))
@@ -151,6 +163,8 @@ classes("empty", write_text("none.csv", "WKT,class\n"))
 classes("truncated", write_text("cut.geojson", features([SQUARE] * 3, '"class":"rock"')[:-70]))
 classes("wrong type: points", write_text("points.csv", 'WKT,class\n"POINT(0 0)",rock\n'))
 classes("wrong type: a text", write_text("letter.gpkg", "Dear reader\n"))
+classes("a polygon that cannot be read", write_text(
+    "broken.csv", ZONES.format(0, 250) + '"POLYGON((0 0,250 0",rock\n'))
 classes("no overlap, or another CRS", write_text("far.csv", ZONES.format(900, 990)))
 classes("no field of classes", write_text("field.csv", ZONES.format(0, 250).replace("class", "id")))
 classes("a field that is not there", zones, RestitutionField="geology")
@@ -207,6 +221,8 @@ structures("an embankment under the ground", "EmbankmentFile",
 structures("an embankment that goes beyond the slope", "EmbankmentFile", DAM.format(20, 120, 3))
 structures("no diameter", "TreeFile", "x,y,height\n60,50,20\n")
 structures("a diameter in millimetres", "TreeFile", TREE.format(3500, 20))
+structures("a column by another name", "BarrierFile",
+           NET.format(60, 4, 1000).replace("capacity", "capacity_kJ"))
 structures("a diameter in metres", "TreeFile", TREE.format(0.35, 20))
 structures("a height in feet, or none of a tree", "TreeFile", TREE.format(35, 328))
 structures("negative", "BarrierFile", NET.format(60, -4, 1000))

@@ -2,6 +2,7 @@
 the same files, byte for byte, as one that nobody disturbed: table, hazard map and what passed a road.
 They are what the filters make of all trajectories at once. A changed study is refused."""
 
+import ast
 import contextlib
 import csv
 import glob
@@ -9,12 +10,14 @@ import io
 import json
 import os
 import random
+import re
 import runpy
 import shutil
 import signal
 import subprocess
 import sys
 import time
+import xml.etree.ElementTree as ElementTree
 
 from helpers import incline, outside_mpi, write_grid, write_text
 
@@ -180,6 +183,33 @@ if MPIEXEC:
     code, said = run("results-calm", ranks=2)
     assert code != 0 and said.count("changed are rocks FileName.") == 1, said
 
+# Nets and other structures are files, too, and so is every property for which the GUI offers files.
+nets = 'WKT,height,capacity\n"LINESTRING(700045 3999990,700045 4000230)",{},1000\n'
+for left in glob.glob("nets.*"):
+    os.remove(left)
+shutil.rmtree("results-netted", ignore_errors=True)
+write_text("nets.csv", nets.format(4))
+netted = {**study["terrain"], "BarrierFile": "nets.csv"}
+write_study("netted.json", terrain=netted, iterations=1, chunk=1)
+code, said = run("results-netted", "netted.json")
+assert code == 0, said
+write_text("nets.csv", nets.format(0.1))
+code, said = run("results-netted", "netted.json")
+assert code != 0 and "changed are terrain BarrierFile." in said, said
+write_text("nets.prj", "")
+write_text("nets.csv", nets.format(4))
+code, said = run("results-netted", "netted.json")
+assert code == 0, said  # an empty one says nothing
+write_text("nets.prj", "another CRS")
+code, said = run("results-netted", "netted.json")
+assert code != 0 and "changed are terrain BarrierFile." in said, said
+with open(SCRIPT, encoding="utf-8") as file:
+    endings = ast.literal_eval(re.search(r"^FILES = (\(.*?\))", file.read(), re.M).group(1))
+for xml in glob.glob(os.path.join(os.path.dirname(SCRIPT), "..", "Plugin", "xml", "*.xml")):
+    for prop in ElementTree.parse(xml).iter("StringVectorProperty"):
+        if prop.find("FileListDomain") is not None and not prop.get("name").endswith(("Field", "FileNames")):
+            assert prop.get("name").endswith(endings), prop.get("name")
+
 # Bad descriptions.
 for bad, word in (("", "is not JSON"), ("{", "is not JSON"), ("[]", "must be an object"),
                   ('{"itterations": 3}', '"itterations"'),
@@ -190,6 +220,7 @@ for bad, word in (("", "is not JSON"), ("{", "is not JSON"), ("[]", "must be an 
                   (json.dumps({**study, "iterations": 2.5}), '"iterations" is 2.5'),
                   (json.dumps({**study, "iterations": "10"}), '"iterations" is "10"'),
                   (json.dumps({**study, "terrain": {"FileName": "no.tif"}}), "no.tif"),
+                  (json.dumps({**study, "terrain": {**netted, "BarrierFile": "no.csv"}}), "no.csv"),
                   (json.dumps({**study, "simulation": {"Iterations": 3}}), '"Iterations"'),
                   (json.dumps({**study, "simulation": {"TrajectoryOutput": "Events"}}), '"Events"'),
                   (json.dumps({**study, "lines": {}}), '"lines" has no FileName'),
