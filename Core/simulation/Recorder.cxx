@@ -12,9 +12,9 @@ namespace
 
 /// How far the path between two samples may be from the motion, in radii of the rock.
 constexpr double kPathTolerance = 0.01;
-/// Samples that are no further apart are at one time, s: half of what two at a barrier that breaks
-/// are. Steps that should end at a time of sampling may miss it by rounding.
-constexpr double kOneTime = 5e-10;
+/// Samples that are no further apart are at one time, s. Steps that should end at a time of
+/// sampling may miss it by rounding.
+constexpr double kOneTime = 0.5 * kInstant;
 
 } // namespace
 
@@ -87,6 +87,30 @@ void Recorder::knot(const BlockState& state, bool contact)
   }
   trajectory_.samples.push_back(this->makeSample(state, contact));
   trajectory_.samples.back().kind = kind;
+}
+
+void Recorder::beforeJump(const BlockState& state, bool contact)
+{
+  jump_ = SampleKind::Knot;
+  if (this->isAt(state.time))
+  {
+    jump_ = trajectory_.samples.back().kind != SampleKind::Knot ? SampleKind::EvenKnot : jump_;
+    this->dropLast();
+  }
+  BlockState before = state;
+  before.time -= kInstant;
+  if (!this->isAt(before.time))
+  {
+    trajectory_.samples.push_back(this->makeSample(before, contact));
+    trajectory_.samples.back().kind = SampleKind::Knot;
+  }
+}
+
+void Recorder::afterJump(const BlockState& state, bool contact)
+{
+  knot_ = state;
+  trajectory_.samples.push_back(this->makeSample(state, contact));
+  trajectory_.samples.back().kind = jump_;
 }
 
 bool Recorder::isAt(double time) const

@@ -10,6 +10,10 @@
 namespace rockfall
 {
 
+/// Between the knots before and after a velocity changes at once, in an impact or at a barrier that
+/// breaks, s: a path has one point at a time.
+constexpr double kInstant = 1e-9;
+
 class Recorder
 {
 public:
@@ -31,6 +35,10 @@ public:
   void recordBetween(const BlockState& from, const BlockState& to, bool contact);
   /// A sample at a touch or a take-off.
   void knot(const BlockState& state, bool contact);
+  /// Knots on both sides of a change of velocity that takes no time: the first one an instant
+  /// before it. What it had until then would else seem to fade since the last knot.
+  void beforeJump(const BlockState& state, bool contact);
+  void afterJump(const BlockState& state, bool contact);
   /// Goes on at a later time; in between nothing moved.
   void resume(const BlockState& state);
   /// Whether there are samples without an audit.
@@ -56,7 +64,8 @@ private:
   std::int64_t next_ = 0;
   Vec3 last_ = Vec3::Zero();
   BlockState knot_;         ///< The last one.
-  std::size_t audited_ = 0; ///< Samples that have their audit.
+  SampleKind jump_ = SampleKind::Knot; ///< What the sample after a jump is.
+  std::size_t audited_ = 0;            ///< Samples that have their audit.
   Trajectory trajectory_;
 };
 

@@ -14,6 +14,9 @@ namespace rockfall
 namespace
 {
 
+/// Velocities that differ by this share only are the same.
+constexpr double kNoJump = 1e-9;
+
 /// Damping ratio of slip at an impact: high, so that a contact that sticks leaves without slip and
 /// not with what its shear spring gives back (rigid-body impact: no tangential restitution).
 constexpr double kShearDamping = 5.0;
@@ -440,14 +443,26 @@ void RockSimulator::finishImpact()
   const int ground = surface_.restitutionClass(event.cfe);
   event.restitution = surface_.restitutionOf(ground);
   const double before = kineticEnergy(block_, state_);
-  state_.velocity =
+  const Vec3 after =
     adjustVelocity(surface_.terrain().restitutionMaterial(ground), event, state_.velocity,
       comesDown(
         event.approachSpeed, event.velocityBefore.norm(), parameters_.gravity, block_.radius()));
+  const bool jumps = (after - state_.velocity).norm() > kNoJump * state_.velocity.norm();
+  if (jumps)
+  {
+    recorder_.beforeJump(state_, true);
+    this->auditSamples(state_);
+  }
+  state_.velocity = after;
   energy_.restitution += before - kineticEnergy(block_, state_);
   event.velocityAfter = state_.velocity;
   event.energyLoss =
     energy_.restitution - impact_.restitutionBefore + energy_.friction - impact_.frictionBefore;
+  if (jumps)
+  {
+    recorder_.afterJump(state_, true);
+    this->auditSamples(state_);
+  }
   acceleration_.setZero();
   spinAcceleration_.setZero();
   Trajectory& trajectory = recorder_.trajectory();

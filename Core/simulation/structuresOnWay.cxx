@@ -12,9 +12,6 @@ namespace rockfall
 namespace
 {
 
-/// Between the knots before and after a barrier that breaks, s: a path has one point at a time.
-constexpr double kInstant = 1e-9;
-
 /// Within a step of contact: cubic in place, linear in velocity.
 BlockState between(const BlockState& from, const BlockState& to, double s)
 {

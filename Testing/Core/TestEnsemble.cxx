@@ -354,6 +354,40 @@ void expectError(const std::function<void()>& run, const std::string& part)
 
 } // namespace
 
+TEST(Ensemble, APathKeepsItsEnergyUntilTheImpactIsOver)
+{
+  // What restitution takes it takes in the end. A path without a point right before would lose it
+  // on the whole way from the touch, and a line crossed there would see too little.
+  Rock rock;
+  rock.shape = makeShape(Shape::Icosahedron, 30.0);
+  rock.position = Vec3(50.0, 50.0, 110.0);
+  rock.angularVelocity = Vec3(0.3, 0.7, 0.2);
+  rock.velocity = Vec3(4.0, 0.0, 0.0);
+  SimulationParameters p;
+  p.endTime = 3.0;
+  const Trajectory t =
+    simulate(makePlane(21, 100.0, radians(20.0), 0.0, material(0.6, 35.0)), rock, p);
+  std::size_t jumps = 0;
+  for (std::size_t k = 1; k < t.samples.size(); ++k)
+  {
+    const Sample &a = t.samples[k - 1], &b = t.samples[k];
+    ASSERT_GT(b.time, a.time) << k;
+    if (b.time - a.time < 2e-9)
+    {
+      EXPECT_NEAR(b.velocity.norm(), 0.6 * a.velocity.norm(), 1e-9 * a.velocity.norm());
+      EXPECT_NEAR(a.energy.kinetic, a.kineticEnergy, 1e-6 * a.kineticEnergy);
+      EXPECT_NEAR(a.energy.released,
+        a.energy.kinetic + a.energy.strain + a.energy.friction + a.energy.restitution +
+          a.energy.vibration + a.energy.damping + a.energy.numerical,
+        1e-9 * a.kineticEnergy);
+      EXPECT_LT(std::abs(a.energy.numerical), 1e-6 * a.kineticEnergy);
+      ++jumps;
+    }
+  }
+  EXPECT_GE(jumps, 2u);
+  EXPECT_EQ(jumps, t.impacts.size());
+}
+
 TEST(Ensemble, BadInputIsOneClearError)
 {
   const Terrain slope = makeBiplanarSlope(5.0);
