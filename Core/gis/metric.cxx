@@ -81,7 +81,7 @@ void refuseUnlabelledDegrees(
     number(near) + " looks like degrees; assign the CRS, e.g. " + remedy);
 }
 
-std::array<double, 2> centreSteps(const SourceGrid& grid, const CrsChange& change)
+std::array<double, 3> centreSteps(const SourceGrid& grid, const CrsChange& change)
 {
   const double row = 0.5 * (grid.rows - 1), column = 0.5 * (grid.columns - 1);
   // Half a cell to each side: the centre itself has no direction.
@@ -94,7 +94,10 @@ std::array<double, 2> centreSteps(const SourceGrid& grid, const CrsChange& chang
     y[i] = ends[i][1];
   }
   change.forth(4, x, y);
-  return { std::hypot(x[1] - x[0], y[1] - y[0]), std::hypot(x[3] - x[2], y[3] - y[2]) };
+  const double along = std::hypot(x[1] - x[0], y[1] - y[0]);
+  const double across = std::hypot(x[3] - x[2], y[3] - y[2]);
+  const double dot = (x[1] - x[0]) * (x[3] - x[2]) + (y[1] - y[0]) * (y[3] - y[2]);
+  return { along, across, dot / (along * across) };
 }
 
 Destination destination(const SourceGrid& grid, const CrsPtr& crs, const std::string& fileName)
@@ -130,6 +133,14 @@ Destination destination(const SourceGrid& grid, const CrsPtr& crs, const std::st
     if (std::abs(worst - 1.0) > largestDistortion)
     {
       there.reason = number(worst) + " of its metres are one on the ground";
+      return there;
+    }
+    // A shear leaves both lengths alone.
+    const auto& a = grid.affine;
+    const double right = (a[1] * a[2] + a[4] * a[5]) / (grid.columnStep() * grid.rowStep());
+    if (std::abs(steps[2] - right) > largestDistortion)
+    {
+      there.reason = "its axes are not square on the ground";
       return there;
     }
   }

@@ -34,8 +34,9 @@ std::string boxText(const Box& box);
 void refuseUnlabelledDegrees(const Box& box, double near, double steep, const std::string& remedy,
   const std::string& fileName);
 
-/// Lengths (target units) of one step along a row and one along a column at the raster's centre.
-std::array<double, 2> centreSteps(const SourceGrid& grid, const CrsChange& change);
+/// Lengths (target units) of one step along a row and one along a column at the raster's centre,
+/// and the cosine of the angle between them.
+std::array<double, 3> centreSteps(const SourceGrid& grid, const CrsChange& change);
 
 /// Where the layer is to go, and why; no `target` if it can stay where it is.
 struct Destination

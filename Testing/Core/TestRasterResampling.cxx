@@ -210,6 +210,22 @@ TEST(RasterResampling, webMercatorIsNoMetre)
   EXPECT_TRUE(holds(surface.notes[0], { "EPSG:3857", "on the ground" }));
 }
 
+TEST(RasterResampling, shearedProjection)
+{
+  // Sinusoidal: lengths along parallels and the spacing of parallels are true, angles are not.
+  constexpr double radius = 6378137.0;
+  RawRaster raster;
+  raster.columns = 40;
+  raster.rows = 40;
+  raster.crs = "+proj=sinu +lon_0=0 +R=6378137 +units=m";
+  const double north = radians(46.5) * radius,
+               east = radians(10.0) * radius * std::cos(radians(46.5));
+  raster.affine = { east, 30.0, 0.0, north, 0.0, -30.0 };
+  raster.fill([](double, double) { return 500.0; });
+  const RasterSurface surface = readRaster(raster.write());
+  EXPECT_TRUE(holds(surface.notes[0], { "axes are not square on the ground" }));
+}
+
 TEST(RasterResampling, turnedRaster)
 {
   RawRaster raster = onPlane(40, 30);
