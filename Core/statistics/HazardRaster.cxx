@@ -36,6 +36,17 @@ void appendCuts(const Cubic& value, std::array<double, 2> bounds, double start, 
   }
 }
 
+/// Seen from above.
+bool isShort(const PathPiece& piece, double from, double to)
+{
+  const auto isNear = [&](double s)
+  {
+    return std::hypot(piece.along(0)(s) - piece.along(0)(from),
+             piece.along(1)(s) - piece.along(1)(from)) < leastWay;
+  };
+  return isNear(to) && isNear(0.5 * (from + to));
+}
+
 Cubic sum(const Cubic& a, const Cubic& b)
 {
   return { { a.c[0] + b.c[0], a.c[1] + b.c[1], a.c[2] + b.c[2], a.c[3] + b.c[3] } };
@@ -68,8 +79,14 @@ HazardRaster::HazardRaster(const CellGrid& grid, const Terrain* terrain)
 
 std::int64_t HazardRaster::cellAt(double x, double y) const
 {
-  const double column = std::floor((x - grid_.west) / grid_.cellSize);
-  const double row = std::floor((y - grid_.south) / grid_.cellSize);
+  const auto index = [this](double place, double start, int count)
+  {
+    const double found = std::floor((place - start) / grid_.cellSize);
+    // What lies on the outer border is on the map.
+    return found == count && place <= start + count * grid_.cellSize ? count - 1.0 : found;
+  };
+  const double column = index(x, grid_.west, grid_.columns);
+  const double row = index(y, grid_.south, grid_.rows);
   return column >= 0.0 && column < grid_.columns && row >= 0.0 && row < grid_.rows
     ? std::int64_t(row) * grid_.columns + std::int64_t(column)
     : -1;
@@ -97,7 +114,8 @@ void HazardRaster::addVisit(std::int64_t cell, const std::array<double, hazardCo
 double HazardRaster::maxHeight(
   const PathPiece& piece, double from, double to, std::array<double, 2> grounds) const
 {
-  if (!terrain_ || std::isnan(grounds[0] + grounds[1]))
+  // With one end beyond the ground the terrain still is what lies under the rest of the way.
+  if (!terrain_ || (std::isnan(grounds[0]) && std::isnan(grounds[1])))
   {
     const double most = maximum(piece.height(), from, to);
     return std::isnan(most) ? none : most;
@@ -115,15 +133,20 @@ double HazardRaster::maxHeight(
   appendCuts(
     sum(x, y), { xs[0] + ys[0], xs[1] + ys[1] }, 0.0, size, 0.0, lines, from, to, groundCuts_);
   std::sort(groundCuts_.begin(), groundCuts_.end());
+  const bool still = isShort(piece, from, to);
   double most = none;
   for (std::size_t k = 1; k < groundCuts_.size(); ++k)
   {
     const double a = groundCuts_[k - 1], b = groundCuts_[k];
+    if (!(b > a) || (!still && isShort(piece, a, b)))
+    {
+      continue; // nothing between the cuts
+    }
     const double middle = 0.5 * (a + b);
-    const std::int64_t id = b > a ? terrain_->cfeAt(x(middle), y(middle)) : 0;
+    const std::int64_t id = terrain_->cfeAt(x(middle), y(middle));
     if (id == 0)
     {
-      continue; // nothing between the cuts, or no ground
+      continue; // no ground
     }
     const Cfe cfe = terrain_->cfe(id);
     const double slopeX = -cfe.normal.x() / cfe.normal.z(),
@@ -149,18 +172,8 @@ void HazardRaster::addPiece(const PathPiece& piece, std::array<double, 2> ground
     piece.along(1), piece.bounds(1), grid_.south, grid_.cellSize, 0.0, grid_.rows, 0.0, 1.0, cuts_);
   std::sort(cuts_.begin() + 2, cuts_.end());
   std::rotate(cuts_.begin() + 1, cuts_.begin() + 2, cuts_.end()); // the end behind the crossings
-  for (std::size_t k = 1; k < cuts_.size(); ++k)
+  const auto visit = [&](std::int64_t cell, double from, double to)
   {
-    const double from = cuts_[k - 1], to = cuts_[k];
-    const bool whole = cuts_.size() == 2;
-    const double middle = 0.5 * (from + to);
-    const Vec3 start = piece.position(from);
-    if (!whole && (piece.position(to) - start).head<2>().norm() < leastWay &&
-      (piece.position(middle) - start).head<2>().norm() < leastWay)
-    {
-      continue;
-    }
-    const std::int64_t cell = this->cellAt(piece.along(0)(middle), piece.along(1)(middle));
     std::array<double, hazardCount> maxima{};
     if (cell >= 0)
     {
@@ -168,6 +181,29 @@ void HazardRaster::addPiece(const PathPiece& piece, std::array<double, 2> ground
         this->maxHeight(piece, from, to, grounds), piece.maxRotationRate(from, to) };
     }
     this->addVisit(cell, maxima);
+  };
+  const auto cellOf = [&](double s) { return this->cellAt(piece.along(0)(s), piece.along(1)(s)); };
+  bool visited = false;
+  for (std::size_t k = 1; k < cuts_.size(); ++k)
+  {
+    const double from = cuts_[k - 1], to = cuts_[k];
+    const bool whole = cuts_.size() == 2;
+    if (!whole && isShort(piece, from, to))
+    {
+      continue;
+    }
+    visit(cellOf(0.5 * (from + to)), from, to);
+    visited = true;
+  }
+  if (!visited)
+  {
+    // It stays on a border but for rounding: in the cell where the rock was, else in any of them.
+    std::int64_t cell = here_;
+    for (std::size_t k = cuts_.size(); cell < 0 && k > 0; --k)
+    {
+      cell = cellOf(cuts_[k - 1]);
+    }
+    visit(cell, 0.0, 1.0);
   }
 }
 
@@ -198,9 +234,11 @@ void HazardRaster::add(const RockPath& path)
     return;
   }
   const PathPoint& last = path.points.back();
-  if (!moved)
+  const std::int64_t end = this->cellAt(last.position.x(), last.position.y());
+  // Also one that came from beyond and rests on the map's border.
+  if (!moved || (path.rested && here_ < 0 && end >= 0))
   {
-    this->addVisit(this->cellAt(last.position.x(), last.position.y()),
+    this->addVisit(end,
       { last.kineticEnergy, last.velocity.norm(),
         std::isnan(last.heightOverGround) ? none : last.heightOverGround,
         last.rotationRate.norm() });

@@ -220,6 +220,54 @@ TEST(HazardRaster, GroundBetweenThePoints)
   }
 }
 
+TEST(HazardRaster, GroundUnderAFlightThatLeavesIt)
+{
+  // The same ridge, and no ground beyond x = 40, where the flight ends: one of its points has no
+  // height. However often it is sampled, it is as high over the ridge, and beyond has no height.
+  std::vector<double> heights;
+  for (int row = 0; row < 5; ++row)
+  {
+    for (const double h : { 0.0, 0.0, 10.0, 0.0, 0.0, double(NAN) })
+    {
+      heights.push_back(h);
+    }
+  }
+  const Terrain terrain({ 6, 5, 10.0, 0.0, 0.0, "" }, heights);
+  const double expected[10] = { 12, 12, 12, 7, 7, 12, 12, 12, -1, -1 };
+  for (const double step : { 46.0, 11.5 })
+  {
+    for (const bool back : { false, true })
+    {
+      std::vector<PathPoint> points;
+      for (double x = 2.0; x < 49.0; x += step)
+      {
+        PathPoint& p = points.emplace_back();
+        p.position = Vec3(back ? 50.0 - x : x, 17.0, 14.0);
+        p.time = (x - 2.0) / 10.0;
+        p.velocity = Vec3(back ? -10 : 10, 0, 0);
+        const double ground = terrain.elevation(p.position.x(), 17.0);
+        p.heightOverGround = 12.0 - ground;
+      }
+      HazardRaster raster({ 10, 8, 5.0, 0.0, 0.0 }, &terrain);
+      raster.add(pathOf(points, 0, 0, 1.0));
+      const auto cells = cellsOf(raster);
+      ASSERT_EQ(cells.size(), 10u);
+      for (std::size_t k = 0; k < 10; ++k)
+      {
+        const double found = cells[k].statistics[height].maximum;
+        if (expected[k] < 0.0)
+        {
+          EXPECT_TRUE(std::isnan(found)) << k << " of " << step;
+        }
+        else
+        {
+          EXPECT_NEAR(found, expected[k], 1e-9) << k << " of " << step;
+        }
+      }
+    }
+  }
+}
+
 TEST(HazardRaster, StatisticsOfACell)
 {
   // Rocks of speeds 1, 2, … 101 m/s through one cell, three more through none.
@@ -279,6 +327,46 @@ TEST(HazardRaster, ComingBackIsAPassageButNoOtherRock)
   EXPECT_EQ(cells[1].passages, 2);
   EXPECT_EQ(cells[2].passages, 1);
   EXPECT_EQ(cells[0].reach, 1.0);
+}
+
+TEST(HazardRaster, ARockOnABorderIsInOneCell)
+{
+  // Dropped onto a border or a corner of cells, the noise of its rest on either side of it.
+  const CellGrid grid{ 4, 4, 5.0, 0.0, 0.0 };
+  std::mt19937_64 random(13);
+  std::uniform_real_distribution<double> noise(-1e-13, 1e-13);
+  const double places[][2] = { { 5.0, 7.0 }, { 7.0, 10.0 }, { 10.0, 10.0 }, { 0.0, 7.0 },
+    { 20.0, 7.0 }, { 20.0, 20.0 } };
+  for (const auto& [x, y] : places)
+  {
+    for (int trial = 0; trial < 20; ++trial)
+    {
+      std::vector<PathPoint> points(2 + trial % 4);
+      for (std::size_t k = 0; k < points.size(); ++k)
+      {
+        PathPoint& p = points[k];
+        p.time = 0.5 * double(k);
+        p.position = Vec3(std::clamp(x + (trial > 3 ? noise(random) : 0.0), 0.0, 20.0),
+          std::clamp(y + noise(random), 0.0, 20.0), 0.0);
+        p.velocity = Vec3(noise(random), noise(random), k == 1 ? -4.0 : 0.0);
+        p.kineticEnergy = 0.5 * p.velocity.squaredNorm();
+      }
+      HazardRaster raster(grid);
+      RockPath path = pathOf(points, 0, 0, 1.0);
+      path.rested = true;
+      raster.add(path);
+      const auto cells = cellsOf(raster);
+      int stops = 0;
+      double most = 0.0;
+      for (const CellSummary& cell : cells)
+      {
+        stops += cell.stops;
+        most = std::max(most, cell.statistics[energy].maximum);
+      }
+      EXPECT_EQ(stops, 1) << x << ", " << y << ", " << trial;
+      EXPECT_NEAR(most, 8.0, 1e-9) << x << ", " << y << ", " << trial;
+    }
+  }
 }
 
 TEST(HazardRaster, PartsMergeToTheSameBits)
