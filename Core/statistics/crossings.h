@@ -24,7 +24,8 @@ struct CollectorLine
   double barrierCapacity = 0.0;        ///< J; infinite if energy does not matter.
 };
 
-/// One passing: the path goes from one side of a segment's vertical plane to the other.
+/// One passing: the path goes from one side of a segment's vertical plane to the other; at a vertex
+/// of the line, from one side of the line to the other.
 struct Crossing
 {
   int line = 0;

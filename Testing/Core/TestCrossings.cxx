@@ -115,6 +115,129 @@ TEST(Crossings, WhatEndsOnTheLineHasNotCrossedIt)
   }
 }
 
+TEST(Crossings, ThroughAVertex)
+{
+  // Through a vertex of the line, or up to it and off elsewhere, with and without a knot there: one
+  // passing if it goes from one side of the line to the other, none or as many back if not.
+  std::mt19937_64 random(17);
+  std::uniform_real_distribution<double> turn(-M_PI, M_PI), way(5.0, 60.0), speed(1.0, 20.0);
+  const auto towards = [](double angle)
+  { return Eigen::Vector2d(std::cos(angle), std::sin(angle)); };
+  const auto left = [](double angle, double in, double out)
+  {
+    const auto from = [out](double a)
+    { return a - out - 2 * M_PI * std::floor((a - out) / (2 * M_PI)); };
+    return from(angle) < from(in); // between the line's way on and its way back
+  };
+  int passed = 0;
+  for (int trial = 0; trial < 4000; ++trial)
+  {
+    const Eigen::Vector2d vertex =
+      trial % 4 == 0 ? Eigen::Vector2d(100.0, 50.0) : Eigen::Vector2d(100.1 + way(random), 50.7);
+    const double in = turn(random), out = turn(random), from = turn(random);
+    const bool knot = trial % 2, bent = trial % 3 == 0 && knot;
+    const double to = bent ? turn(random) : from + M_PI;
+    const auto apart = [](double a, double b) { return std::abs(std::remainder(a - b, 2 * M_PI)); };
+    if (apart(in, out) < 0.01 ||
+      std::min({ apart(from, in), apart(from, out), apart(to, in), apart(to, out) }) < 0.001)
+    {
+      continue;
+    }
+    const double v = speed(random);
+    const auto point = [&](double angle, double distance, double time, double along)
+    {
+      PathPoint p;
+      p.position << vertex + distance * towards(angle), 0.0;
+      p.velocity << v * towards(along), 0.0;
+      p.time = time;
+      return p;
+    };
+    const double before = way(random), after = way(random);
+    std::vector<PathPoint> points = { point(from, before, 0.0, from + M_PI) };
+    if (knot)
+    {
+      points.push_back(point(0.0, 0.0, before / v, from + M_PI));
+      points.push_back(point(0.0, 0.0, before / v, to));
+    }
+    points.push_back(point(to, after, (before + after) / v, to));
+    const CollectorLine line =
+      lineOf({ vertex + way(random) * towards(in), vertex, vertex + way(random) * towards(out) });
+    const auto found = crossingsOf(pathOf(points, 0, 0, 1.0), line);
+    const int change = int(left(to, in, out)) - int(left(from, in, out));
+    ASSERT_EQ(found.size(), std::size_t(std::abs(change))) << trial;
+    if (change != 0)
+    {
+      ++passed;
+      EXPECT_EQ(found[0].direction, change) << trial;
+      EXPECT_NEAR((found[0].position.head<2>() - vertex).norm(), 0.0, 1e-5) << trial;
+      EXPECT_NEAR(found[0].distance, (line.points[0] - vertex).norm(), 1e-5) << trial;
+    }
+  }
+  EXPECT_GT(passed, 1000);
+}
+
+TEST(Crossings, KnotsOnAnObliqueLine)
+{
+  // A path whose own vertex is on the line but for rounding passes there.
+  std::mt19937_64 random(19);
+  std::uniform_real_distribution<double> place(0.1, 0.9), turn(0.1, 3.0), speed(0.5, 20.0);
+  const CollectorLine line = lineOf({ { 101.3, 7.7 }, { 317.9, 211.1 } });
+  const Eigen::Vector2d way = line.points[1] - line.points[0];
+  const double angle = std::atan2(way.y(), way.x());
+  for (int trial = 0; trial < 2000; ++trial)
+  {
+    const Eigen::Vector2d knot = line.points[0] + place(random) * way;
+    std::vector<PathPoint> points(3);
+    double on = 0.0; // towards the left of the line
+    for (std::size_t k = 0; k < 3; ++k)
+    {
+      on = k == 1 ? on : angle + turn(random);
+      points[k].time = double(k);
+      points[k].position << knot, 0.0;
+      points[k].velocity = speed(random) * Vec3(std::cos(on), std::sin(on), 0.0);
+      points[k].position += (double(k) - 1.0) * points[k].velocity;
+    }
+    const auto found = crossingsOf(pathOf(points, 0, 0, 1.0), line);
+    ASSERT_EQ(found.size() % 2, 1u) << trial; // the curve may swing over the line and back
+    double nearest = 1.0;
+    for (const Crossing& crossing : found)
+    {
+      nearest = std::min(nearest, (crossing.position.head<2>() - knot).norm());
+    }
+    EXPECT_LT(nearest, 1e-9) << trial;
+  }
+}
+
+TEST(Crossings, EndsAtAVertexAndComesAlongTheLine)
+{
+  const CollectorLine line = lineOf({ { 0, 0 }, { 10, 0 }, { 20, 10 } });
+  const auto passings = [&](const std::vector<Eigen::Vector2d>& places)
+  {
+    std::vector<PathPoint> points(places.size());
+    for (std::size_t k = 0; k < places.size(); ++k)
+    {
+      points[k].time = double(k);
+      points[k].position << places[k], 0.0;
+    }
+    return crossingsOf(pathOf(points, 0, 0, 1.0), line).size();
+  };
+  EXPECT_EQ(passings({ { 10, -5 }, { 10, 0 } }), 0u);
+  EXPECT_EQ(passings({ { 10, 0 }, { 10, 5 } }), 0u);
+  EXPECT_EQ(passings({ { 10, -5 }, { 10, 0 }, { 10, 0 }, { 10, 5 } }), 1u); // rests there
+  EXPECT_EQ(passings({ { 10, -5 }, { 10, 0 }, { 12, -5 } }), 0u);
+  // Along the first segment, off at the vertex: the line bends to the left of it.
+  EXPECT_EQ(passings({ { 2, 5 }, { 4, 0 }, { 25, 0 } }), 1u);
+  EXPECT_EQ(passings({ { 2, -5 }, { 4, 0 }, { 25, 0 } }), 0u);
+  // A closed line has a vertex where it begins.
+  const CollectorLine ring = lineOf({ { 0, 0 }, { 10, 0 }, { 10, 10 }, { 0, 10 }, { 0, 0 } });
+  std::vector<PathPoint> points(2);
+  points[0].position = Vec3(-3, -3, 0);
+  points[1].position = Vec3(4, 4, 0);
+  points[1].time = 1.0;
+  points[0].velocity = points[1].velocity = Vec3(7, 7, 0);
+  EXPECT_EQ(crossingsOf(pathOf(points, 0, 0, 1.0), ring).size(), 1u);
+}
+
 TEST(Crossings, NothingIsFasterThanThePointsOfThePath)
 {
   // Two points at one time but for rounding, and an impact, whose curve swings out.
