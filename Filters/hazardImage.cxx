@@ -83,13 +83,8 @@ CellGrid gridOf(vtkPolyData* trajectories, const Terrain* terrain, const HazardM
   CellGrid grid;
   grid.cellSize = options.cellSize > 0.0 ? options.cellSize : terrain->geometry().cellSize;
   const double cell = grid.cellSize;
-  Range columns{}, rows{};
-  if (!terrain || options.crop)
-  {
-    const Bounds b = boundsOf(trajectories, origin);
-    columns = rangeOf(b.xMin, b.xMax, 0.0, cell);
-    rows = rangeOf(b.yMin, b.yMax, 0.0, cell);
-  }
+  const Bounds b = boundsOf(trajectories, origin);
+  Range columns = rangeOf(b.xMin, b.xMax, 0.0, cell), rows = rangeOf(b.yMin, b.yMax, 0.0, cell);
   if (terrain)
   {
     // A last cell may reach beyond the slope; not for the sake of rounding, though.
@@ -98,12 +93,17 @@ CellGrid gridOf(vtkPolyData* trajectories, const Terrain* terrain, const HazardM
     const auto within = [](const Range& part, const Range& whole) {
       return Range{ std::max(part.first, whole.first), std::min(part.last, whole.last) };
     };
-    columns = options.crop ? within(columns, all) : all;
-    rows = options.crop ? within(rows, allRows) : allRows;
+    columns = within(columns, all);
+    rows = within(rows, allRows);
     if (columns.last < columns.first || rows.last < rows.first)
     {
       throw DataError(
         "No trajectory of the Input is over the Terrain: they do not belong together");
+    }
+    if (!options.crop)
+    {
+      columns = all;
+      rows = allRows;
     }
   }
   const double width = columns.last - columns.first + 1.0, depth = rows.last - rows.first + 1.0;
@@ -249,6 +249,8 @@ void makeHazardImage(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
   if (terrainMesh)
   {
     terrain.emplace(readTerrain(terrainMesh));
+    checkSameCrs(trajectories->GetFieldData(), "The trajectories of the Input are",
+      terrainMesh->GetFieldData());
     origin = terrain->geometry().origin();
   }
   else
@@ -290,6 +292,8 @@ void writeHazardPassages(
 {
   checkLines(trajectories);
   const Terrain terrain = readTerrain(terrainMesh);
+  checkSameCrs(
+    trajectories->GetFieldData(), "The trajectories of the Input are", terrainMesh->GetFieldData());
   const Vec3 origin = terrain.geometry().origin();
   HazardRaster raster(gridOf(trajectories, &terrain, { cellSize, false }, origin), &terrain);
   forEachPath(trajectories, origin, [&](const RockPath& path, std::int64_t) { raster.add(path); });

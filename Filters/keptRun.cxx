@@ -92,6 +92,7 @@ void KeptRun::prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const 
     [&]
     {
       slope = read ? std::move(*read) : readTerrain(bare, false);
+      checkSameCrs(released->GetFieldData(), "The Rocks are", bare->GetFieldData());
       frame.origin = slope.geometry().origin();
       frame.gravity = parameters.gravity;
       for (ReleasedRock& rock : readRocks(released, frame.origin))

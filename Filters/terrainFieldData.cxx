@@ -3,6 +3,7 @@
 #include "arrays.h"
 #include "base/errors.h"
 #include "geometry/shell.h"
+#include "gis/sources.h"
 #include "structureFieldData.h"
 #include "terrainMesh.h"
 
@@ -370,6 +371,16 @@ std::string readCrs(vtkFieldData* fieldData)
 {
   auto* crs = vtkStringArray::SafeDownCast(fieldData->GetAbstractArray(crsName));
   return crs && crs->GetNumberOfValues() > 0 ? std::string(crs->GetValue(0)) : std::string();
+}
+
+void checkSameCrs(vtkFieldData* fieldData, const std::string& who, vtkFieldData* terrain)
+{
+  const std::string own = readCrs(fieldData), ground = readCrs(terrain);
+  if (own != ground && !sameCrs(own, ground))
+  {
+    throw DataError(
+      who + " in " + labelOfCrs(own) + ", but the Terrain is in " + labelOfCrs(ground));
+  }
 }
 
 void writeCoordinateSystem(const std::string& wkt, const Vec3& origin, vtkFieldData* fieldData)

@@ -51,6 +51,10 @@ void writeCrs(const std::string& wkt, vtkFieldData* fieldData);
 /// TerrainCRS as WKT; empty if it is not there.
 std::string readCrs(vtkFieldData* fieldData);
 
+/// Throws DataError if both have a TerrainCRS and not the same one. `who` begins the message: "The
+/// Rocks are".
+void checkSameCrs(vtkFieldData* fieldData, const std::string& who, vtkFieldData* terrain);
+
 /// Puts TerrainCRS and LocalOrigin there.
 void writeCoordinateSystem(const std::string& wkt, const Vec3& origin, vtkFieldData* fieldData);
 

@@ -154,6 +154,8 @@ int vtkTrajectoryCollector::RequestData(
     if (mesh)
     {
       terrain.emplace(filters::readTerrain(mesh));
+      filters::checkSameCrs(
+        trajectories->GetFieldData(), "The trajectories of the Input are", mesh->GetFieldData());
       origin = terrain->geometry().origin();
     }
     CollectorLine barrier;

@@ -3,6 +3,7 @@
 
 #include "vtkDEMToCFESource.h"
 #include "vtkHazardMapWriter.h"
+#include "vtkHazardPassageWriter.h"
 #include "vtkImageData.h"
 #include "vtkRockfallHazardMap.h"
 
@@ -167,8 +168,38 @@ TEST_F(TestRockfallHazardMap, BadInput)
   far.AddLevel(0, 0, { 5000, 3, 50 }, 20, 10);
   this->Filter->SetInputDataObject(0, far.Data);
   this->Filter->SetInputConnection(1, slope->GetOutputPort());
+  expect({ "No trajectory" });
   this->Filter->CropToTrajectoriesOn();
   expect({ "No trajectory" });
+}
+
+TEST_F(TestRockfallHazardMap, TerrainOfAnotherPlaceOrCrs)
+{
+  vtkNew<vtkDEMToCFESource> slope;
+  slope->Update();
+  vtkNew<vtkPolyData> elsewhere;
+  elsewhere->DeepCopy(slope->GetOutput());
+  setCrs(elsewhere, "EPSG:32617");
+  this->Paths.AddLevel(0, 0, { 101, 52, 80 }, 20, 10);
+  this->Filter->SetInputDataObject(1, elsewhere);
+  EXPECT_EQ(this->Map()->GetNumberOfCells(), 0);
+  this->ExpectOneError({ "trajectories", "EPSG:32632", "Terrain", "EPSG:32617" });
+
+  vtkNew<vtkHazardPassageWriter> writer;
+  const std::string path = this->WriteFile("run.passages", "older");
+  writer->SetFileName(path.c_str());
+  writer->SetInputDataObject(0, this->Paths.Data);
+  writer->SetInputDataObject(1, elsewhere);
+  writer->Write();
+  this->ExpectOneError({ "trajectories", "EPSG:32632", "Terrain", "EPSG:32617" });
+  HandMadeTrajectories far;
+  far.AddLevel(0, 0, { 5000, 3, 50 }, 20, 10);
+  writer->SetInputDataObject(0, far.Data);
+  writer->SetInputDataObject(1, slope->GetOutput());
+  writer->Write();
+  this->ExpectOneError({ "No trajectory" });
+  std::ifstream file(path);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "older");
 }
 
 TEST_F(TestRockfallHazardMap, PrintSelfNamesEveryProperty)

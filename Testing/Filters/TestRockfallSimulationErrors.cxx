@@ -160,3 +160,21 @@ TEST_F(TestRockfallSimulationErrors, EmptyRocksAreAnError)
   this->ExpectEmpty();
   this->ExpectOneError({ "Rocks", "no polygons" });
 }
+
+TEST_F(TestRockfallSimulationErrors, RocksOfAnotherCrs)
+{
+  this->Terrain->Update();
+  this->Rocks->Update();
+  vtkNew<vtkPolyData> slope, rocks;
+  slope->ShallowCopy(this->Terrain->GetOutput());
+  rocks->ShallowCopy(this->Rocks->GetOutput());
+  setCrs(slope, "EPSG:32617");
+  setCrs(rocks, "EPSG:32632");
+  this->Simulation->SetInputData(0, slope);
+  this->Simulation->SetInputData(1, rocks);
+  this->ExpectEmpty();
+  this->ExpectOneError({ "Rocks", "EPSG:32632", "zone 32N", "Terrain", "EPSG:32617" });
+  rocks->GetFieldData()->RemoveArray("TerrainCRS"); // then it is not known
+  rocks->Modified();
+  EXPECT_EQ(this->Summary()->GetNumberOfRows(), 1);
+}

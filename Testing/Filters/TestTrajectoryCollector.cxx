@@ -1,6 +1,7 @@
 #include "helpers.h"
 #include "trajectories.h"
 
+#include "vtkDEMToCFESource.h"
 #include "vtkTable.h"
 #include "vtkTrajectoryCollector.h"
 #include "vtkTrajectoryLayerWriter.h"
@@ -176,6 +177,12 @@ TEST_F(TestTrajectoryCollector, BadInput)
   vtkNew<vtkPolyData> empty;
   this->Filter->SetInputDataObject(1, empty);
   expect({ "Lines input has no lines" });
+  this->Filter->SetInputDataObject(1, this->Drawn);
+  vtkNew<vtkDEMToCFESource> slope;
+  slope->Update();
+  setCrs(slope->GetOutput(), "EPSG:32617");
+  this->Filter->SetInputDataObject(2, slope->GetOutput());
+  expect({ "trajectories", "EPSG:32632", "Terrain", "EPSG:32617" });
 }
 
 TEST_F(TestTrajectoryCollector, WrittenAsGeoPackage)

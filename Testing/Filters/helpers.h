@@ -8,7 +8,9 @@
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkOutputWindow.h"
+#include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
+#include "vtkStringArray.h"
 
 #include <gtest/gtest.h>
 
@@ -86,4 +88,13 @@ inline double value(vtkFieldData* data, const char* array, vtkIdType tuple = 0, 
     return 0.0;
   }
   return found->GetComponent(tuple, component);
+}
+
+/// Says that a polydata is in this coordinate system.
+inline void setCrs(vtkPolyData* data, const char* crs)
+{
+  vtkNew<vtkStringArray> array;
+  array->SetName("TerrainCRS");
+  array->InsertNextValue(crs);
+  data->GetFieldData()->AddArray(array);
 }
