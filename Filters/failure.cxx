@@ -1,6 +1,7 @@
 #include "failure.h"
 
 #include "arrays.h"
+#include "pieces.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkCommand.h"
@@ -62,6 +63,16 @@ int fail(vtkAlgorithm* algorithm, const std::string& message)
   }
   vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
   return controller && controller->GetNumberOfProcesses() > 1 ? 1 : 0;
+}
+
+int failTogether(vtkAlgorithm* algorithm, const std::string& message)
+{
+  if (!isFurtherRank())
+  {
+    return fail(algorithm, message);
+  }
+  leaveError(algorithm, message);
+  return 1;
 }
 
 bool inheritFailure(vtkDataObject* input, vtkAlgorithm* algorithm)

@@ -18,6 +18,9 @@ namespace rockfall::filters
 /// errors to read for one cause. The message stays in the field array "Error" of the outputs.
 int fail(vtkAlgorithm* algorithm, const std::string& message);
 
+/// As fail, for what every rank finds at once: the first one reports it.
+int failTogether(vtkAlgorithm* algorithm, const std::string& message);
+
 /// Empties the outputs but for the message, without a report.
 void leaveError(vtkAlgorithm* algorithm, const std::string& message);
 

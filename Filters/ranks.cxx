@@ -293,4 +293,15 @@ std::vector<std::vector<char>> Ranks::collect(
   return all;
 }
 
+std::string spreadOf(vtkPolyData* trajectories)
+{
+  const std::vector<int> has =
+    Ranks().gather(trajectories && trajectories->GetNumberOfLines() > 0 ? 1 : 0);
+  const auto count = std::count(has.begin(), has.end(), 1);
+  return count > 1 ? "The Input is spread over " + std::to_string(count) +
+      " ranks, it must be on one: take the trajectories as Rockfall Simulation makes them, or open "
+      "their file without MPI"
+                   : std::string();
+}
+
 } // namespace rockfall::filters

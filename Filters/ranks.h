@@ -61,4 +61,8 @@ private:
   int rank_ = 0;
 };
 
+/// On every rank an error's text if more than one of them has lines of trajectories, which filters
+/// that look at their own part alone would take for all; else empty. Collective. May be null.
+std::string spreadOf(vtkPolyData* trajectories);
+
 } // namespace rockfall::filters

@@ -5,6 +5,7 @@
 #include "failure.h"
 #include "pathGroups.h"
 #include "pieces.h"
+#include "ranks.h"
 #include "statistics/dispersion.h"
 #include "statistics/sample.h"
 #include "terrainFieldData.h"
@@ -173,6 +174,11 @@ int vtkDispersionAngle::RequestData(
   try
   {
     vtkPolyData* input = vtkPolyData::GetData(inputVector[0]);
+    const std::string spread = rockfall::filters::spreadOf(input);
+    if (!spread.empty())
+    {
+      return rockfall::filters::failTogether(this, spread);
+    }
     if (!input)
     {
       throw rockfall::DataError("The Input is missing");

@@ -3,6 +3,7 @@
 #include "base/errors.h"
 #include "hazardImage.h"
 #include "pieces.h"
+#include "ranks.h"
 
 #include "vtkErrorCode.h"
 #include "vtkFieldData.h"
@@ -52,6 +53,16 @@ void vtkHazardPassageWriter::WriteData()
 {
   auto* trajectories = vtkPolyData::SafeDownCast(this->GetInputDataObject(0, 0));
   auto* terrain = vtkPolyData::SafeDownCast(this->GetInputDataObject(1, 0));
+  const std::string spread = rockfall::filters::spreadOf(trajectories);
+  if (!spread.empty())
+  {
+    this->SetErrorCode(vtkErrorCode::UserError);
+    if (!rockfall::filters::isFurtherRank())
+    {
+      vtkErrorMacro(<< spread);
+    }
+    return;
+  }
   if (!trajectories || !terrain ||
     (trajectories->GetNumberOfLines() == 0 && rockfall::filters::isFurtherRank()))
   {

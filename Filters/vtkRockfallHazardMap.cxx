@@ -4,6 +4,7 @@
 #include "failure.h"
 #include "hazardImage.h"
 #include "pieces.h"
+#include "ranks.h"
 
 #include "vtkAlgorithmOutput.h"
 #include "vtkImageData.h"
@@ -117,7 +118,16 @@ int vtkRockfallHazardMap::RequestInformation(
       producer->GetProducer()->Update(producer->GetIndex(), requests);
     }
   }
-  this->Prepare(inputVector);
+  // Every rank comes here, but one without a part of the image perhaps not to its data.
+  this->Spread = rockfall::filters::spreadOf(vtkPolyData::GetData(inputVector[0]));
+  if (this->Spread.empty())
+  {
+    this->Prepare(inputVector);
+  }
+  else
+  {
+    this->Made = std::make_unique<Result>();
+  }
   vtkInformation* info = outputVector->GetInformationObject(0);
   vtkImageData* image = this->Made->image;
   info->Set(Pipeline::WHOLE_EXTENT(), image->GetExtent(), 6);
@@ -143,6 +153,10 @@ int vtkRockfallHazardMap::RequestData(
   if (!trajectories)
   {
     return rockfall::filters::fail(this, "The Input is missing");
+  }
+  if (!this->Spread.empty())
+  {
+    return rockfall::filters::failTogether(this, this->Spread);
   }
   if (rockfall::filters::inheritFailure(trajectories, this) ||
     (terrain && rockfall::filters::inheritFailure(terrain, this)))

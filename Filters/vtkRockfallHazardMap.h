@@ -22,6 +22,7 @@
 #include "vtkImageAlgorithm.h"
 
 #include <memory> // for the result
+#include <string> // for an error
 
 class ROCKFALLFILTERS_EXPORT vtkRockfallHazardMap : public vtkImageAlgorithm
 {
@@ -65,6 +66,7 @@ private:
 
   double CellSize = 0.0;
   bool CropToTrajectories = false;
+  std::string Spread; // why trajectories on several ranks make no map
   struct Result;
   std::unique_ptr<Result> Made;
 };

@@ -6,6 +6,7 @@
 #include "geometry/shell.h"
 #include "gis/lineLayer.h"
 #include "pieces.h"
+#include "ranks.h"
 #include "rockPaths.h"
 #include "terrainFieldData.h"
 
@@ -125,6 +126,11 @@ int vtkTrajectoryCollector::RequestData(
     vtkPolyData* trajectories = vtkPolyData::GetData(inputVector[TRAJECTORIES]);
     vtkPolyData* drawn = vtkPolyData::GetData(inputVector[LINES]);
     vtkPolyData* mesh = vtkPolyData::GetData(inputVector[TERRAIN]);
+    const std::string spread = filters::spreadOf(trajectories);
+    if (!spread.empty())
+    {
+      return filters::failTogether(this, spread);
+    }
     if (!trajectories)
     {
       throw rockfall::DataError("The Input is missing");
