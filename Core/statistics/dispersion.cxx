@@ -65,6 +65,7 @@ Dispersion measureDispersion(
   result.lateralMin = std::numeric_limits<double>::infinity();
   result.lateralMax = -std::numeric_limits<double>::infinity();
   double sum = 0.0, squares = 0.0;
+  int n = 0; // trajectories that begin within L
   for (const std::vector<Vec3>& path : paths)
   {
     if (path.empty())
@@ -72,6 +73,10 @@ Dispersion measureDispersion(
       continue;
     }
     const Vec3 origin = fromOwnStart ? path.front() : result.apex;
+    if (along.dot(path.front() - origin) > result.length)
+    {
+      continue;
+    }
     double last = 0.0;
     for (std::size_t i = 0; i < path.size(); ++i)
     {
@@ -80,10 +85,6 @@ Dispersion measureDispersion(
       const bool beyond = run > result.length;
       if (beyond)
       {
-        if (i == 0)
-        {
-          break;
-        }
         // Cut where the path crosses the end of the cross-section.
         const double run0 = along.dot(path[i - 1] - origin);
         const double side0 = across.dot(path[i - 1] - origin);
@@ -98,10 +99,10 @@ Dispersion measureDispersion(
         break;
       }
     }
+    ++n;
     sum += last;
     squares += last * last;
   }
-  const int n = result.trajectories;
   if (result.lateralMax < result.lateralMin)
   {
     result.lateralMin = result.lateralMax = 0.0; // all of them start beyond L

@@ -68,6 +68,17 @@ TEST(Dispersion, OwnStartsTakeTheSourceWidthOut)
   EXPECT_NEAR(measureDispersion(paths, 0.0, 0.0, false).width, 40.0, 1e-12);
 }
 
+TEST(Dispersion, WhatStartsBeyondLIsLeftOut)
+{
+  // Mean start at x = 10: of L = 5 the third starts beyond it.
+  const std::vector<std::vector<Vec3>> paths = { { { 0, 0, 0 }, { 30, 3, 0 } },
+    { { 0, 6, 0 }, { 30, 9, 0 } }, { { 30, 0, 0 }, { 60, 0, 0 } } };
+  const Dispersion d = measureDispersion(paths, 0.0, 5.0, false);
+  EXPECT_EQ(d.trajectories, 3);
+  EXPECT_NEAR(d.width, 7.5, 1e-12);
+  EXPECT_NEAR(d.lateralDeviation, std::sqrt(18.0), 1e-12); // of two that are 6 m apart
+}
+
 TEST(Dispersion, RefusesAndStaysFinite)
 {
   EXPECT_THROW(measureDispersion({}, 0.0, -1.0), ParameterError);
