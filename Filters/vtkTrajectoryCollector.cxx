@@ -49,16 +49,38 @@ void checkSize(double value, const char* name)
 /// those of another place. Where all rocks stop before a nearer one, none has passed it.
 constexpr double kElsewhere = 1000.0;
 
+using Box2 = Eigen::AlignedBox2d;
+
+/// In plan, world coordinates.
+Box2 boxOf(vtkPolyData* data)
+{
+  double b[6];
+  data->GetBounds(b);
+  return { Eigen::Vector2d(b[0], b[2]), Eigen::Vector2d(b[1], b[3]) };
+}
+
+void requireNear(const Box2& lines, const Box2& rocks, const std::string& whose)
+{
+  if (lines.exteriorDistance(rocks) > std::max(kElsewhere, 10.0 * rocks.diagonal().norm()))
+  {
+    const auto text = [](const Box2& box)
+    {
+      using rockfall::numberText;
+      return "x " + numberText(box.min().x()) + " to " + numberText(box.max().x()) + ", y " +
+        numberText(box.min().y()) + " to " + numberText(box.max().y());
+    };
+    throw rockfall::DataError(
+      whose + " (" + text(lines) + ") are far from the trajectories (" + text(rocks) + ")");
+  }
+}
+
 /// The lines of a file, which must be where the trajectories are. What they do not say of their
 /// barrier is `barrier`'s.
 std::vector<CollectorLine> readLines(const std::string& fileName, vtkPolyData* trajectories,
   const Vec3& origin, const CollectorLine& barrier)
 {
   const std::string crs = rockfall::filters::readCrs(trajectories->GetFieldData());
-  double b[6];
-  trajectories->GetBounds(b);
-  Eigen::AlignedBox2d rocks(Eigen::Vector2d(b[0], b[2]), Eigen::Vector2d(b[1], b[3]));
-  Eigen::AlignedBox2d all;
+  Box2 all;
   std::vector<CollectorLine> lines;
   for (rockfall::LayerLine& read : rockfall::readLineLayer(fileName, crs))
   {
@@ -72,17 +94,7 @@ std::vector<CollectorLine> readLines(const std::string& fileName, vtkPolyData* t
       line.points.push_back(place - origin.head<2>());
     }
   }
-  if (all.exteriorDistance(rocks) > std::max(kElsewhere, 10.0 * rocks.diagonal().norm()))
-  {
-    const auto text = [](const Eigen::AlignedBox2d& box)
-    {
-      using rockfall::numberText;
-      return "x " + numberText(box.min().x()) + " to " + numberText(box.max().x()) + ", y " +
-        numberText(box.min().y()) + " to " + numberText(box.max().y());
-    };
-    throw rockfall::DataError(fileName + ": its lines (" + text(all) +
-      ") are far from the trajectories (" + text(rocks) + ")");
-  }
+  requireNear(all, boxOf(trajectories), fileName + ": its lines");
   return lines;
 }
 
@@ -154,15 +166,21 @@ int vtkTrajectoryCollector::RequestData(
     checkSize(this->BarrierHeight, "BarrierHeight");
     checkSize(this->BarrierCapacity, "BarrierCapacity");
     std::optional<rockfall::Terrain> terrain;
-    double corner[6];
-    trajectories->GetBounds(corner);
-    Vec3 origin(std::floor(corner[0]), std::floor(corner[2]), 0.0);
+    const Box2 rocks = boxOf(trajectories);
+    Vec3 origin(std::floor(rocks.min().x()), std::floor(rocks.min().y()), 0.0);
     if (mesh)
     {
       terrain.emplace(filters::readTerrain(mesh));
       filters::checkSameCrs(
         trajectories->GetFieldData(), "The trajectories of the Input are", mesh->GetFieldData());
       origin = terrain->geometry().origin();
+      const Eigen::Vector2d corner = origin.head<2>();
+      const Eigen::Vector2d size(terrain->width(), terrain->height());
+      if (!rocks.intersects(Box2(corner, corner + size)))
+      {
+        throw rockfall::DataError(
+          "No trajectory of the Input is over the Terrain: they do not belong together");
+      }
     }
     CollectorLine barrier;
     barrier.barrierHeight = this->BarrierHeight;
@@ -170,6 +188,10 @@ int vtkTrajectoryCollector::RequestData(
     std::vector<CollectorLine> lines;
     if (drawn)
     {
+      if (drawn->GetNumberOfPoints() > 0)
+      {
+        requireNear(boxOf(drawn), rocks, "The lines of the Lines input");
+      }
       lines = filters::linesOf(drawn, origin, barrier);
     }
     if (!this->FileName.empty())

@@ -183,6 +183,16 @@ TEST_F(TestTrajectoryCollector, BadInput)
   setCrs(slope->GetOutput(), "EPSG:32617");
   this->Filter->SetInputDataObject(2, slope->GetOutput());
   expect({ "trajectories", "EPSG:32632", "Terrain", "EPSG:32617" });
+  setCrs(slope->GetOutput(), "EPSG:32632");
+  slope->GetOutput()->Modified();
+  this->Filter->Modified();
+  expect({ "No trajectory of the Input is over the Terrain" });
+  this->Filter->SetInputDataObject(2, nullptr);
+  this->Points->SetPoint(0, 10, 9990, 0); // in local coordinates
+  this->Points->SetPoint(1, 10, 10100, 0);
+  this->Points->Modified();
+  this->Drawn->Modified();
+  expect({ "Lines input", "far from the trajectories", "x 10 to 10" });
 }
 
 TEST_F(TestTrajectoryCollector, WrittenAsGeoPackage)
