@@ -72,8 +72,13 @@ void forEachPath(vtkPolyData* trajectories, const Vec3& origin,
   vtkDataArray* mass = cells->GetArray("Mass");
 
   std::vector<PathPoint> path;
-  const auto useCell = [&](vtkIdType cell, vtkIdType size, const vtkIdType* ids)
+  vtkIdType cell = trajectories->GetNumberOfVerts(); // polydata's cells begin with its vertices
+  auto lines = vtk::TakeSmartPointer(trajectories->GetLines()->NewIterator());
+  for (lines->GoToFirstCell(); !lines->IsDoneWithTraversal(); lines->GoToNextCell(), ++cell)
   {
+    vtkIdType size = 0;
+    const vtkIdType* ids = nullptr;
+    lines->GetCurrentCell(size, ids);
     path.resize(std::size_t(size));
     for (vtkIdType k = 0; k < size; ++k)
     {
@@ -98,25 +103,6 @@ void forEachPath(vtkPolyData* trajectories, const Vec3& origin,
     }
     rockPath.points = path;
     use(rockPath, cell);
-  };
-  // Polydata's cells begin with its vertices. Where whole trajectories are kept, those of rocks
-  // that were caught at once, with one sample, are among them.
-  const bool whole = kept && kept->GetNumberOfValues() > 0 &&
-    (kept->GetValue(0) == "Full" || kept->GetValue(0) == "Thinned");
-  vtkIdType cell = 0;
-  for (vtkCellArray* of : { trajectories->GetVerts(), trajectories->GetLines() })
-  {
-    auto each = vtk::TakeSmartPointer(of->NewIterator());
-    for (each->GoToFirstCell(); !each->IsDoneWithTraversal(); each->GoToNextCell(), ++cell)
-    {
-      vtkIdType size = 0;
-      const vtkIdType* ids = nullptr;
-      each->GetCurrentCell(size, ids);
-      if (of == trajectories->GetLines() || (whole && size == 1))
-      {
-        useCell(cell, size, ids);
-      }
-    }
   }
 }
 

@@ -17,13 +17,11 @@ namespace rockfall::filters
 /// A field array that says what is kept of the trajectories.
 void writeRetention(Retention retention, vtkFieldData* data);
 
-/// Calls `use` for every polyline, with its number among the cells, and before them for the
-/// vertices of rocks with one sample where the field data say that whole trajectories are kept.
-/// `origin` is subtracted from the points. The span of the path's points is good during the call
-/// only. Needs the point arrays Time, Velocity, RotationRate, KineticEnergy and HeightOverGround
-/// and the cell arrays Iteration, RockId, BlockId and Fate of Rockfall Simulation; takes the cell
-/// array Mass if there is one. Throws DataError that names what is missing, or if only events are
-/// kept.
+/// Calls `use` for every polyline, with its number among the cells. `origin` is subtracted from the
+/// points. The span of the path's points is good during the call only. Needs the point arrays Time,
+/// Velocity, RotationRate, KineticEnergy and HeightOverGround and the cell arrays Iteration,
+/// RockId, BlockId and Fate of Rockfall Simulation; takes the cell array Mass if there is one.
+/// Throws DataError that names what is missing, or if only events are kept.
 void forEachPath(vtkPolyData* trajectories, const Vec3& origin,
   const std::function<void(const RockPath& path, std::int64_t cell)>& use);
 

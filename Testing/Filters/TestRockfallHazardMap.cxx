@@ -117,30 +117,6 @@ TEST_F(TestRockfallHazardMap, CellsOfTheTerrain)
   EXPECT_EQ(this->At("Rocks", 103, 53), 1.0);
 }
 
-TEST_F(TestRockfallHazardMap, ARockOfOneSampleIsReleasedAndStops)
-{
-  // Caught at once, it is a vertex beside the lines.
-  this->Paths.AddLevel(0, 0, { 1, 3, 50 }, 20, 10, 2.0, 3);
-  this->Paths.AddLevel(0, 1, { 1, 13, 50 }, 20, 10);
-  vtkNew<vtkCellArray> vertices, lines;
-  vertices->InsertNextCell({ 0 });
-  lines->InsertNextCell({ 2, 3 });
-  this->Paths.Data->SetVerts(vertices);
-  this->Paths.Data->SetLines(lines);
-  this->Filter->SetCellSize(5.0);
-  EXPECT_NEAR(this->At("ReachProbability", 2, 12), 1.0, 1e-7); // it might be anything else
-  vtkNew<vtkStringArray> kept;
-  kept->SetName("TrajectoryOutput");
-  kept->InsertNextValue("Thinned");
-  this->Paths.Data->GetFieldData()->AddArray(kept);
-  this->Paths.Data->Modified();
-  EXPECT_NEAR(this->At("ReachProbability", 2, 12), 0.5, 1e-7);
-  EXPECT_EQ(this->At("Rocks", 2, 2), 1.0);
-  EXPECT_EQ(this->At("StoppingPoints", 2, 2), 1.0);
-  EXPECT_NEAR(this->At("SpeedMaximum", 2, 2), 10.0, 1e-6);
-  EXPECT_EQ(this->At("Rocks", 7, 2), 0.0);
-}
-
 TEST_F(TestRockfallHazardMap, WrittenAsGeoTiff)
 {
   this->Paths.AddLevel(0, 0, { 500001, 5100003, 50 }, 20, 10);
