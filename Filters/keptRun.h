@@ -49,6 +49,7 @@ struct KeptRun
   vtkNew<vtkTable> summary;
   std::vector<Trajectory> whole; ///< Those of `wholeIteration`, with all samples.
   int wholeIteration = -1;
+  std::string stateHash; ///< Over the bits of all motion.
 
   /// Whether the other one would come out the same.
   bool isLike(const KeptRun& other) const;

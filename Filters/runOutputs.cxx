@@ -193,7 +193,8 @@ void TrajectoryLines::append(const Trajectory& trajectory)
   }
   Arrays& a = *arrays_;
   const TrajectorySummary& summary = trajectory.summary;
-  // Vertices and lines are never mixed: cell data stand in the order of the cells.
+  // Vertices and lines are never mixed, as whole paths have two samples at least: cell data stand
+  // in the order in which trajectories come, but polydata's cells begin with the vertices.
   vtkCellArray* cells = trajectory.samples.size() == 1 ? a.vertices : a.lines;
   cells->InsertNextCell(int(trajectory.samples.size()));
   const double weight = summary.mass * frame_.gravity;

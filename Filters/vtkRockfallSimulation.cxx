@@ -203,6 +203,7 @@ bool vtkRockfallSimulation::Simulate(vtkPolyData* terrainInput, vtkPolyData* roc
   const std::vector<int> kept = ranks.gather(this->Kept && this->Kept->isLike(*run) ? 1 : 0);
   if (std::find(kept.begin(), kept.end(), 0) == kept.end())
   {
+    this->StateHash = this->Kept->stateHash;
     return true;
   }
   this->Kept.reset();
@@ -251,6 +252,7 @@ bool vtkRockfallSimulation::Simulate(vtkPolyData* terrainInput, vtkPolyData* roc
     run->dropInputs(); // only the first rank shows anything
   }
   ranks.share(this->StateHash);
+  run->stateHash = this->StateHash;
   report.finish();
   this->Kept = std::move(run);
   return true;
@@ -267,7 +269,8 @@ void vtkRockfallSimulation::Forget()
 int vtkRockfallSimulation::Fail(
   vtkPolyData* terrain, vtkPolyData* rocks, const std::string& message)
 {
-  this->Forget();
+  // The last run is kept: a property that was mistyped and is put right must not cost it.
+  this->StateHash.clear();
   this->Failed =
     std::make_unique<Failure>(Failure{ this->GetMTime(), Stamp(terrain), Stamp(rocks), message });
   // The others have the same message, and are silent.

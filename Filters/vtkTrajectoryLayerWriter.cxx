@@ -173,18 +173,22 @@ void writeLinePoints(vtkPolyData* data, bool all, LayerWriter& writer)
 
 void writeVertices(vtkPolyData* data, LayerWriter& writer)
 {
-  Attributes attributes;
-  attributes.Append(data->GetPointData());
-  writer.beginLayer("points", LayerWriter::Geometry::Point, attributes.Fields);
+  Attributes ofVertex, ofPoint;
+  ofVertex.Append(data->GetCellData());
+  ofPoint.Append(data->GetPointData());
+  std::vector<LayerField> fields = ofVertex.Fields;
+  fields.insert(fields.end(), ofPoint.Fields.begin(), ofPoint.Fields.end());
+  writer.beginLayer("points", LayerWriter::Geometry::Point, fields);
   std::vector<FieldValue> values;
   forEachCell(data->GetVerts(), 0,
-    [&](vtkIdType, vtkIdType size, const vtkIdType* ids)
+    [&](vtkIdType cell, vtkIdType size, const vtkIdType* ids)
     {
       for (vtkIdType k = 0; k < size; ++k)
       {
         const Vec3 place = pointOf(data, ids[k]);
         values.clear();
-        attributes.AppendValues(ids[k], values);
+        ofVertex.AppendValues(cell, values);
+        ofPoint.AppendValues(ids[k], values);
         writer.add({ &place, 1 }, {}, values);
       }
     });

@@ -16,6 +16,19 @@ constexpr double kPathTolerance = 0.01;
 /// sampling may miss it by rounding.
 constexpr double kOneTime = 0.5 * kInstant;
 
+/// Of a flight of this time (s) between two velocities, m: Simpson's rule in pieces.
+double parabolaLength(double duration, const Vec3& from, const Vec3& to)
+{
+  constexpr int pieces = 32;
+  double sum = 0.0;
+  for (int k = 0; k <= 2 * pieces; ++k)
+  {
+    const double weight = k == 0 || k == 2 * pieces ? 1.0 : k % 2 == 1 ? 4.0 : 2.0;
+    sum += weight * (from + (0.5 * k / pieces) * (to - from)).norm();
+  }
+  return duration * sum / (6.0 * pieces);
+}
+
 } // namespace
 
 double heightOverGround(const Surface& surface, const Block& block, const BlockState& state)
@@ -54,8 +67,7 @@ Sample Recorder::makeSample(const BlockState& state, bool contact)
 
 void Recorder::begin(const BlockState& state)
 {
-  last_ = state.position;
-  knot_ = state;
+  last_ = knot_ = state;
   trajectory_.summary.start = state.position;
   this->follow(state);
   this->record(state, false);
@@ -76,6 +88,7 @@ void Recorder::record(const BlockState& state, bool contact)
 
 void Recorder::knot(const BlockState& state, bool contact)
 {
+  last_.velocity = state.velocity; // it may have changed at once
   knot_ = state;
   // One sample at a time: what an impact left takes the place of what it began to leave.
   SampleKind kind = SampleKind::Knot;
@@ -108,7 +121,7 @@ void Recorder::beforeJump(const BlockState& state, bool contact)
 
 void Recorder::afterJump(const BlockState& state, bool contact)
 {
-  knot_ = state;
+  last_ = knot_ = state;
   trajectory_.samples.push_back(this->makeSample(state, contact));
   trajectory_.samples.back().kind = jump_;
 }
@@ -173,20 +186,30 @@ void Recorder::recordBetween(const BlockState& from, const BlockState& to, bool 
   }
 }
 
-void Recorder::follow(const BlockState& state)
+void Recorder::follow(const BlockState& state, bool flown)
 {
   TrajectorySummary& s = trajectory_.summary;
-  s.pathLength += (state.position - last_).norm();
-  last_ = state.position;
+  s.pathLength += flown ? parabolaLength(state.time - last_.time, last_.velocity, state.velocity)
+                        : (state.position - last_.position).norm();
+  last_ = state;
   s.maxSpeed = std::max(s.maxSpeed, state.velocity.norm());
   s.maxKineticEnergy = std::max(s.maxKineticEnergy, rigidKineticEnergy(block_, state));
 }
 
 void Recorder::end(const BlockState& state, bool contact)
 {
-  if (!this->isAt(state.time))
+  if (trajectory_.samples.size() > 1 && this->isAt(state.time) &&
+    trajectory_.samples.back().kind == SampleKind::Even)
+  {
+    // This state itself: the way to the sample went over others, and rounded otherwise.
+    this->dropLast();
+  }
+  // A path has two points at least, also of a rock that is caught at once.
+  const bool atOnce = trajectory_.samples.size() == 1 && this->isAt(state.time);
+  if (atOnce || !this->isAt(state.time))
   {
     trajectory_.samples.push_back(this->makeSample(state, contact));
+    trajectory_.samples.back().time += atOnce ? kInstant : 0.0;
   }
   trajectory_.samples.back().kind = SampleKind::End;
 }

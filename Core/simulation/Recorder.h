@@ -45,9 +45,10 @@ public:
   bool needsAudit() const { return audited_ < trajectory_.samples.size(); }
   /// Gives it to all of them.
   void audit(const EnergyAudit& audit);
-  /// Follows maxima and path length; call for every state that is reached.
-  void follow(const BlockState& state);
-  /// Adds the last state if it is not at an even time.
+  /// Follows maxima and path length; call for every state that is reached. `flown`: along a
+  /// parabola since the last one, else nearly straight.
+  void follow(const BlockState& state, bool flown = false);
+  /// Adds the last state if it is not at an even time, or the only one.
   void end(const BlockState& state, bool contact);
 
   Trajectory& trajectory() { return trajectory_; }
@@ -62,8 +63,8 @@ private:
   const Block& block_;
   double interval_;
   std::int64_t next_ = 0;
-  Vec3 last_ = Vec3::Zero();
-  BlockState knot_;         ///< The last one.
+  BlockState last_;                    ///< That was followed.
+  BlockState knot_;                    ///< The last one.
   SampleKind jump_ = SampleKind::Knot; ///< What the sample after a jump is.
   std::size_t audited_ = 0;            ///< Samples that have their audit.
   Trajectory trajectory_;

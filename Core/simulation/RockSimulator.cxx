@@ -187,13 +187,13 @@ void RockSimulator::advanceInFlight(double duration)
   while (recorder_.nextTime() <= end)
   {
     at = fly(block_, at, parameters_.gravity, std::max(0.0, recorder_.nextTime() - at.time));
-    recorder_.follow(at);
+    recorder_.follow(at, true);
     recorder_.record(at, false);
     this->auditSamples(at);
   }
   state_ = fly(block_, start, parameters_.gravity, duration);
   state_.time = end;
-  recorder_.follow(state_);
+  recorder_.follow(state_, true);
   while (barriers_ && !done_ && hit_.barrier >= 0)
   {
     this->meetBarrier();
@@ -408,6 +408,10 @@ Trajectory RockSimulator::finish()
   const bool touching =
     std::any_of(contacts_.begin(), contacts_.end(), [](const Contact& c) { return c.closed(); });
   recorder_.end(state_, touching);
+  // One that ends later may have begun earlier.
+  std::vector<ImpactEvent>& impacts = recorder_.trajectory().impacts;
+  std::stable_sort(impacts.begin(), impacts.end(),
+    [](const ImpactEvent& a, const ImpactEvent& b) { return a.time < b.time; });
   summary.stop = state_.position;
   summary.endTime = state_.time;
   summary.runOut = (state_.position - summary.start).head<2>().norm();

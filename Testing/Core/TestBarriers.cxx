@@ -150,6 +150,19 @@ TEST(Barriers, CountWhatATouchHolds)
   }
 }
 
+TEST(Barriers, CatchAtOnceWhatStartsOnThem)
+{
+  // A path is a line all the same.
+  Rock rock = thrown(2.0, 5.0);
+  rock.position.x() = 60.0 - 1e-9;
+  const Trajectory t = simulate(withBarrier(5.0, 1e9), rock, rigidParameters(1.0));
+  EXPECT_EQ(t.summary.fate, Fate::Caught);
+  ASSERT_EQ(t.samples.size(), 2u);
+  EXPECT_GT(t.samples[1].time, t.samples[0].time);
+  EXPECT_LT(t.samples[1].time, 1e-8);
+  EXPECT_EQ(t.samples[1].kind, SampleKind::End);
+}
+
 TEST(Barriers, CatchWhatSlides)
 {
   for (const double dt : { 0.005, 0.0013 })

@@ -77,6 +77,19 @@ TEST_F(TestRockfallSimulationErrors, BadValuesAreOneErrorAndNothingElse)
   this->Simulation->SetShownIteration(2);
   this->ExpectEmpty();
   this->ExpectOneError({ "ShownIteration", "2" });
+  // What was simulated is still there when it is put right.
+  this->Simulation->SetShownIteration(0);
+  this->Simulation->Update();
+  const int runs = this->Simulation->GetNumberOfRuns();
+  const std::string hash = this->Simulation->GetStateHash();
+  EXPECT_FALSE(hash.empty());
+  this->Simulation->SetShownIteration(2);
+  this->ExpectEmpty();
+  this->ExpectOneError({ "ShownIteration", "2" });
+  this->Simulation->SetShownIteration(1);
+  this->Simulation->Update();
+  EXPECT_EQ(this->Simulation->GetNumberOfRuns(), runs);
+  EXPECT_EQ(this->Simulation->GetStateHash(), hash);
   this->Simulation->SetShownIteration(0);
   this->Simulation->SetSeed(-1);
   this->ExpectEmpty();
