@@ -83,12 +83,17 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
       return;
     }
     const double speed = s.velocity.norm(), rim = sim.block_.largestRimSpeed(s.spin);
-    const bool flies = !sim.obstacles_ && sim.contacts_.empty() && sim.clearFor(duration);
+    m.own = (speed + rim) * duration + fall_;
+    // What stands farther off than it may come has no say.
+    const double way = m.radius + m.own;
+    const Vec3& p = m.position;
+    const bool obstructed =
+      sim.obstacles_ && sim.obstacles_->anyIn(p.x() - way, p.x() + way, p.y() - way, p.y() + way);
+    const bool flies = !obstructed && sim.contacts_.empty() && sim.clearFor(duration);
     // Velocities that an impact on the slope leaves, with any normal.
-    const double e = sim.obstacles_ ? 1.0 : ground;
+    const double e = obstructed ? 1.0 : ground;
     m.middle = flies ? s.velocity : Vec3(0.5 * (1.0 - e) * s.velocity);
     m.spread = rim + (flies ? 0.0 : 0.5 * (1.0 + e) * speed);
-    m.own = (speed + rim) * duration + fall_;
     // In a crowd it is struck by much the same ones as in the last step.
     m.known = kWider * std::max(m.own, m.way) + fall_;
     m.way = m.own;

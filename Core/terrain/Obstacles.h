@@ -12,6 +12,7 @@
 #include "terrain/structures.h"
 
 #include <array>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -77,6 +78,16 @@ public:
   double maxHeight(double xMin, double xMax, double yMin, double yMax) const
   {
     return std::max(meshIndex_.top(xMin, xMax, yMin, yMax), treeIndex_.top(xMin, xMax, yMin, yMax));
+  }
+  /// Whether there may be any in a box that does something to rocks: barriers, too, but those that
+  /// only record.
+  bool anyIn(double xMin, double xMax, double yMin, double yMax) const
+  {
+    bool any = this->maxHeight(xMin, xMax, yMin, yMax) > -std::numeric_limits<double>::infinity();
+    this->visitBarriers(xMin, xMax, yMin, yMax,
+      [&](const Piece& piece)
+      { any = any || !structures_.barriers[std::size_t(piece.barrier)].records; });
+    return any;
   }
   /// Appends to a patch what stands in a box, without the trees that are `gone` (ascending).
   void append(double xMin, double xMax, double yMin, double yMax, std::span<const int> gone,

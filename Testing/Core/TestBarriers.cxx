@@ -212,6 +212,54 @@ TEST(Barriers, CatchInMassFalls)
 }
 
 /// One barrier that breaks must not hide another one, wherever within the step that stands.
+TEST(Barriers, WhatNobodyMeetsLeavesAMassFallAlone)
+{
+  // What a structure does is the difference between two runs, so it must be none where nothing is
+  // met, and where rocks are only recorded.
+  std::vector<Rock> rocks(12);
+  for (int k = 0; k < 12; ++k)
+  {
+    rocks[std::size_t(k)].blockId = k;
+    rocks[std::size_t(k)].shape = makeShape(Shape::Cube, 0.5);
+    rocks[std::size_t(k)].position =
+      Vec3(20.0 + k % 3, 48.0 + 1.1 * (k / 3 % 2), 128.0 + 1.2 * (k / 6));
+  }
+  SimulationParameters p;
+  p.endTime = 4.0;
+  p.rockRockContact = true;
+  const auto endsOn = [&](const std::vector<Barrier>& barriers, const std::vector<Tree>& trees)
+  {
+    Terrain slope = makePlane(21, 100.0, radians(40.0), 0.0, material(0.4, 20.0));
+    Structures s;
+    s.barriers = barriers;
+    s.trees = trees;
+    slope.setStructures(s);
+    TrajectoryStore store(12, 1);
+    runEnsemble(slope, rocks, p, store);
+    std::size_t recorded = 0;
+    std::vector<Vec3> ends;
+    for (const Trajectory& t : store.trajectories())
+    {
+      ends.push_back(t.summary.stop);
+      recorded += t.structures.size();
+    }
+    return std::pair(ends, recorded);
+  };
+  Barrier far, across;
+  far.points = { { 95.0, 2.0 }, { 99.0, 2.0 } };
+  far.height = across.height = 4.0;
+  across.points = { { 27.0, 5.0 }, { 27.0, 95.0 } };
+  across.records = true;
+  Tree tree;
+  tree.position = { 5.0, 5.0 };
+  tree.diameter = 0.3;
+  tree.height = 10.0;
+  const auto alone = endsOn({}, {});
+  const auto beside = endsOn({ far, across }, { tree });
+  EXPECT_EQ(alone.first, beside.first);
+  EXPECT_GT(beside.second, 5u);
+}
+
 TEST(Barriers, BehindOneThatBreaksAreMetToo)
 {
   for (const bool flies : { false, true })
