@@ -128,6 +128,14 @@ void Fields::fail(const std::string& what) const
   throw DataError(fileName_ + ", row " + std::to_string(row_) + ": " + what);
 }
 
+void Fields::refuseLostText(const Messages& messages) const
+{
+  if (messages.warning().find("Invalid value type") != std::string::npos)
+  {
+    this->fail(messages.warning());
+  }
+}
+
 std::string Fields::nameOf(int column) const
 {
   return feature_.GetFieldDefnRef(column)->GetNameRef();

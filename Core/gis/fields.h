@@ -16,6 +16,8 @@ class OGRFeatureDefn;
 namespace rockfall::gis
 {
 
+class Messages;
+
 std::string trimmed(const std::string& text);
 /// A … Z become a … z, whatever the locale.
 std::string lowered(std::string text);
@@ -46,6 +48,9 @@ public:
     std::int64_t row);
 
   [[noreturn]] void fail(const std::string& what) const;
+  /// Fails with what was said when the row was read if a word was lost: OGR only warns where a
+  /// typed table (.csvt) holds text in a column of numbers, and gives 0.
+  void refuseLostText(const Messages& messages) const;
   /// Of the first of these names that has a value; empty cells are as good as no column.
   std::optional<std::string> text(std::initializer_list<const char*> names) const;
   std::optional<double> number(std::initializer_list<const char*> names) const;

@@ -143,10 +143,7 @@ GroundTable readGroundTable(
   {
     const int number = int(table.names.size()) + 1;
     const Fields row(fileName, columns, *feature, number);
-    if (messages.warning().find("Invalid value type") != std::string::npos)
-    {
-      row.fail(messages.warning());
-    }
+    row.refuseLostText(messages);
     if (number > MaterialClasses::largest)
     {
       row.fail("is one too many: a table has at most " + std::to_string(MaterialClasses::largest) +

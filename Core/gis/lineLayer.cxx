@@ -35,35 +35,36 @@ public:
     }
   }
 
-  void read(const OGRFeature& feature)
+  void read(const OGRFeature& feature, const Messages& messages)
   {
     ++number_;
     LayerLine line;
     line.feature = number_;
     const FeatureRow row(fileName_, columns_, feature, number_);
+    row.refuseLostText(messages);
     line.name = row.text("name").value_or("");
     line.height = row.notNegative("height");
     line.capacity = row.notNegative("capacity");
     const OGRGeometry* geometry = feature.GetGeometryRef();
     if (!geometry || geometry->IsEmpty())
     {
-      this->fail("has no geometry, a line is needed");
+      row.fail("has no geometry, a line is needed");
     }
     const auto type = wkbFlatten(geometry->getGeometryType());
     if (type == wkbLineString)
     {
-      this->add(*geometry->toLineString(), line);
+      this->add(row, *geometry->toLineString(), line);
     }
     else if (type == wkbMultiLineString)
     {
       for (const OGRLineString* part : *geometry->toMultiLineString())
       {
-        this->add(*part, line);
+        this->add(row, *part, line);
       }
     }
     else
     {
-      this->fail(std::string("is a ") + geometry->getGeometryName() + ", a LINESTRING is needed");
+      row.fail(std::string("is a ") + geometry->getGeometryName() + ", a LINESTRING is needed");
     }
   }
 
@@ -71,14 +72,7 @@ public:
   std::vector<LayerLine> lines;
 
 private:
-  [[noreturn]] void fail(const std::string& what) const
-  {
-    throw DataError(fileName_ + ", row " + std::to_string(number_) + ": " + what);
-  }
-
-  static std::string number(double value) { return gis::number(value); }
-
-  void add(const OGRLineString& part, LayerLine line)
+  void add(const FeatureRow& row, const OGRLineString& part, LayerLine line)
   {
     for (int k = 0; k < part.getNumPoints(); ++k)
     {
@@ -86,7 +80,7 @@ private:
       const Eigen::Vector2d written = place;
       if (!place.allFinite() || !change_.forth(1, &place.x(), &place.y()))
       {
-        this->fail("the point " + number(written.x()) + ", " + number(written.y()) +
+        row.fail("the point " + gis::number(written.x()) + ", " + gis::number(written.y()) +
           " cannot be brought to the coordinates of the trajectories");
       }
       if (line.points.empty() || line.points.back() != place)
@@ -96,7 +90,7 @@ private:
     }
     if (line.points.size() < 2)
     {
-      this->fail("is a line of one place only");
+      row.fail("is a line of one place only");
     }
     lines.push_back(std::move(line));
   }
@@ -121,12 +115,7 @@ std::vector<LayerLine> readLineLayer(const std::string& fileName, const std::str
   messages.clear();
   while (const OGRFeatureUniquePtr feature{ layer.GetNextFeature() })
   {
-    if (messages.warning().find("Invalid value type") != std::string::npos)
-    {
-      throw DataError(
-        fileName + ", row " + std::to_string(reader.number() + 1) + ": " + messages.warning());
-    }
-    reader.read(*feature);
+    reader.read(*feature, messages);
     if (reader.lines.size() > mostLines)
     {
       throw DataError(fileName + ": layer \"" + layer.GetName() + "\" has more than " +

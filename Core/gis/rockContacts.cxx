@@ -157,10 +157,7 @@ std::vector<RockContactPair> readRockContacts(
   {
     const int number = int(pairs.size()) + 1;
     const Fields row(fileName, columns, *feature, number);
-    if (messages.warning().find("Invalid value type") != std::string::npos)
-    {
-      row.fail(messages.warning());
-    }
+    row.refuseLostText(messages);
     pairs.push_back(reader.read(row, number, usualCohesion));
   }
   if (!messages.failure().empty())

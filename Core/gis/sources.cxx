@@ -159,11 +159,7 @@ SourceLayer readSourceLayer(const std::string& fileName, const SourceOptions& op
         " rows, each a source of rocks. Is it the right layer? MaximumRocks allows more");
     }
     const FeatureRow row(fileName, columns, *feature, source.row);
-    // OGR only warns where a typed table (.csvt) holds text in a column of numbers, and gives 0.
-    if (messages.warning().find("Invalid value type") != std::string::npos)
-    {
-      row.fail(messages.warning());
-    }
+    row.refuseLostText(messages);
     placing.place(row, source);
     allHaveGeometry = allHaveGeometry && row.geometry();
     readNumbers(row, source);

@@ -95,10 +95,7 @@ void forEachRow(const std::string& fileName, const Terrain& terrain,
         " rows. Is it the right layer? Cut out what stands on the terrain");
     }
     const FeatureRow row(fileName, columns, *feature, count);
-    if (messages.warning().find("Invalid value type") != std::string::npos)
-    {
-      row.fail(messages.warning());
-    }
+    row.refuseLostText(messages);
     use(row, count, placing);
   }
   if (!messages.failure().empty())
