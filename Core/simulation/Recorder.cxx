@@ -67,7 +67,8 @@ Sample Recorder::makeSample(const BlockState& state, bool contact)
 
 void Recorder::begin(const BlockState& state)
 {
-  last_ = knot_ = state;
+  last_ = state.position;
+  knot_ = state;
   trajectory_.summary.start = state.position;
   this->follow(state);
   this->record(state, false);
@@ -88,28 +89,16 @@ void Recorder::record(const BlockState& state, bool contact)
 
 void Recorder::knot(const BlockState& state, bool contact)
 {
-  last_.velocity = state.velocity; // it may have changed at once
   knot_ = state;
   // One sample at a time: what an impact left takes the place of what it began to leave.
-  SampleKind kind = SampleKind::Knot;
-  if (this->isAt(state.time))
-  {
-    const bool even = trajectory_.samples.back().kind != SampleKind::Knot;
-    kind = even ? SampleKind::EvenKnot : SampleKind::Knot;
-    this->dropLast();
-  }
+  const SampleKind kind = this->knotAt(state.time);
   trajectory_.samples.push_back(this->makeSample(state, contact));
   trajectory_.samples.back().kind = kind;
 }
 
 void Recorder::beforeJump(const BlockState& state, bool contact)
 {
-  jump_ = SampleKind::Knot;
-  if (this->isAt(state.time))
-  {
-    jump_ = trajectory_.samples.back().kind != SampleKind::Knot ? SampleKind::EvenKnot : jump_;
-    this->dropLast();
-  }
+  jump_ = this->knotAt(state.time);
   BlockState before = state;
   before.time -= kInstant;
   if (!this->isAt(before.time))
@@ -121,7 +110,7 @@ void Recorder::beforeJump(const BlockState& state, bool contact)
 
 void Recorder::afterJump(const BlockState& state, bool contact)
 {
-  last_ = knot_ = state;
+  knot_ = state;
   trajectory_.samples.push_back(this->makeSample(state, contact));
   trajectory_.samples.back().kind = jump_;
 }
@@ -129,6 +118,17 @@ void Recorder::afterJump(const BlockState& state, bool contact)
 bool Recorder::isAt(double time) const
 {
   return !trajectory_.samples.empty() && trajectory_.samples.back().time >= time - kOneTime;
+}
+
+SampleKind Recorder::knotAt(double time)
+{
+  if (!this->isAt(time))
+  {
+    return SampleKind::Knot;
+  }
+  const bool even = trajectory_.samples.back().kind != SampleKind::Knot;
+  this->dropLast();
+  return even ? SampleKind::EvenKnot : SampleKind::Knot;
 }
 
 void Recorder::dropLast()
@@ -186,12 +186,22 @@ void Recorder::recordBetween(const BlockState& from, const BlockState& to, bool 
   }
 }
 
-void Recorder::follow(const BlockState& state, bool flown)
+void Recorder::follow(const BlockState& state)
+{
+  trajectory_.summary.pathLength += (state.position - last_).norm();
+  this->reach(state);
+}
+
+void Recorder::followFlight(const BlockState& from, const BlockState& to)
+{
+  trajectory_.summary.pathLength += parabolaLength(to.time - from.time, from.velocity, to.velocity);
+  this->reach(to);
+}
+
+void Recorder::reach(const BlockState& state)
 {
   TrajectorySummary& s = trajectory_.summary;
-  s.pathLength += flown ? parabolaLength(state.time - last_.time, last_.velocity, state.velocity)
-                        : (state.position - last_.position).norm();
-  last_ = state;
+  last_ = state.position;
   s.maxSpeed = std::max(s.maxSpeed, state.velocity.norm());
   s.maxKineticEnergy = std::max(s.maxKineticEnergy, rigidKineticEnergy(block_, state));
 }

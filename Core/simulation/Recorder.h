@@ -45,9 +45,10 @@ public:
   bool needsAudit() const { return audited_ < trajectory_.samples.size(); }
   /// Gives it to all of them.
   void audit(const EnergyAudit& audit);
-  /// Follows maxima and path length; call for every state that is reached. `flown`: along a
-  /// parabola since the last one, else nearly straight.
-  void follow(const BlockState& state, bool flown = false);
+  /// Follows maxima and path length; call for every state that is reached …
+  void follow(const BlockState& state);
+  /// … or once for a whole flight, which is fastest at one of its ends.
+  void followFlight(const BlockState& from, const BlockState& to);
   /// Adds the last state if it is not at an even time, or the only one.
   void end(const BlockState& state, bool contact);
 
@@ -55,7 +56,10 @@ public:
 
 private:
   bool isAt(double time) const; ///< Whether the last sample is.
+  /// Drops the last sample if it is at this time; what a knot in its place is.
+  SampleKind knotAt(double time);
   void dropLast();
+  void reach(const BlockState& state);
   Sample makeSample(const BlockState& state, bool contact);
   bool follows(const BlockState& state) const; ///< The last knot's uniform acceleration leads here.
 
@@ -63,7 +67,7 @@ private:
   const Block& block_;
   double interval_;
   std::int64_t next_ = 0;
-  BlockState last_;                    ///< That was followed.
+  Vec3 last_ = Vec3::Zero();           ///< That was reached.
   BlockState knot_;                    ///< The last one.
   SampleKind jump_ = SampleKind::Knot; ///< What the sample after a jump is.
   std::size_t audited_ = 0;            ///< Samples that have their audit.

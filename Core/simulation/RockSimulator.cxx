@@ -187,13 +187,12 @@ void RockSimulator::advanceInFlight(double duration)
   while (recorder_.nextTime() <= end)
   {
     at = fly(block_, at, parameters_.gravity, std::max(0.0, recorder_.nextTime() - at.time));
-    recorder_.follow(at, true);
     recorder_.record(at, false);
     this->auditSamples(at);
   }
   state_ = fly(block_, start, parameters_.gravity, duration);
   state_.time = end;
-  recorder_.follow(state_, true);
+  recorder_.followFlight(start, state_);
   while (barriers_ && !done_ && hit_.barrier >= 0)
   {
     this->meetBarrier();

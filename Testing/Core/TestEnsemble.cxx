@@ -388,6 +388,33 @@ TEST(Ensemble, APathKeepsItsEnergyUntilTheImpactIsOver)
   EXPECT_EQ(jumps, t.impacts.size());
 }
 
+TEST(Ensemble, OutputIntervalChangesNothing)
+{
+  // Thrown straight up, and down again.
+  Rock rock;
+  rock.shape = makeBox(Vec3(0.5, 1.0, 1.5));
+  rock.position = Vec3(50.0, 50.0, 130.0);
+  rock.velocity = Vec3(0.0, 0.0, kGravity);
+  rock.angularVelocity = Vec3(1.0, 2.0, 3.0);
+  const auto run = [&](double interval, double endTime)
+  {
+    SimulationParameters p;
+    p.endTime = endTime;
+    p.outputInterval = interval;
+    return simulate(makePlane(21, 100.0, radians(20.0), 0.0, material(0.6, 35.0)), rock, p);
+  };
+  // The corner at the top is met in the middle of the pieces.
+  EXPECT_NEAR(run(0.05, 2.0).summary.pathLength, kGravity, 1e-12);
+  for (const double endTime : { 2.0, 8.0 })
+  {
+    const Trajectory fine = run(0.013, endTime), coarse = run(100.0, endTime);
+    EXPECT_EQ(fine.summary.pathLength, coarse.summary.pathLength);
+    EXPECT_EQ(fine.summary.maxSpeed, coarse.summary.maxSpeed);
+    EXPECT_EQ(fine.summary.maxKineticEnergy, coarse.summary.maxKineticEnergy);
+    EXPECT_EQ(motionHash(fine), motionHash(coarse));
+  }
+}
+
 TEST(Ensemble, BadInputIsOneClearError)
 {
   const Terrain slope = makeBiplanarSlope(5.0);
