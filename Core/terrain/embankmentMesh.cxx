@@ -1,5 +1,7 @@
-// The mesh of an embankment: stations along its line, at each the two corners of the crest and the
-// two feet, strips of two triangles per piece between them, and an upright end on either side.
+// The mesh of an embankment: stations along its axis, and five strings of nodes along them: a foot,
+// an edge of the crest, the axis, the other edge and the other foot, with two triangles per piece
+// between two strings and an upright end on either side. On the inner side of a bend the strings of
+// edge and foot are shorter than the axis: the stations there have one node of them in common.
 
 #include "base/errors.h"
 #include "geometry/shell.h"
@@ -26,21 +28,25 @@ constexpr double kLongestSide = 200.0;
 constexpr double kCrestTolerance = 0.05;
 /// A mitre longer than this many widths folds.
 constexpr double kLongestMitre = 5.0;
+/// How far from the slope of a side, as a part of it, its faces may be in a bend whose points have
+/// one foot in common.
+constexpr double kFanTolerance = 0.5;
 
 struct Station
 {
   Vec2 place;
-  double crest = 0.0;             ///< Elevation, m.
-  bool drawn = true;              ///< A point of the line itself.
-  Vec3 corner[2];                 ///< Left and right end of the crest.
-  Vec2 out[2];                    ///< Way of the side per metre down.
-  double depth[2] = { 0.0, 0.0 }; ///< Of the foot below the corner, m.
-
-  Vec3 foot(int side) const
-  {
-    return corner[side] + depth[side] * Vec3(out[side].x(), out[side].y(), -1.0);
-  }
+  double crest = 0.0; ///< Elevation, m.
+  bool drawn = true;  ///< A point of the line itself.
 };
+
+/// Stations that have a node of a string in common, mostly one.
+struct Bunch
+{
+  int first, last;
+  double depth = 0.0; ///< Of its foot below its edge of the crest, m.
+  double crest = 0.0; ///< Elevation of its edge of the crest, m.
+};
+using Bunches = std::vector<Bunch>;
 
 class Builder
 {
@@ -53,57 +59,70 @@ public:
     margin_ = kFootDepth + std::max(0.0, -(r.mean - 9.0 * r.deviation));
     this->placeStations();
     this->chooseSides();
-    // Stations that were added are dropped again where the sides of a bend need the room.
-    for (int folded = this->shape(); folded >= 0; folded = this->shape())
+    for (std::size_t i = 0; i + 1 < stations_.size(); ++i)
     {
-      const std::size_t i = std::size_t(folded);
-      if (!stations_[i].drawn)
-      {
-        stations_.erase(stations_.begin() + folded);
-      }
-      else if (!stations_[i + 1].drawn)
-      {
-        stations_.erase(stations_.begin() + folded + 1);
-      }
-      else
-      {
-        this->fail(stations_[i].place,
-          "bends so sharply, for the length of its pieces, that its sides fold over themselves; "
-          "draw a gentler bend or two lines");
-      }
+      along_.push_back((stations_[i + 1].place - stations_[i].place).normalized());
+    }
+    for (int side = 0; side < 2; ++side)
+    {
+      this->shape(side);
     }
   }
 
   void append(ObstacleMesh& mesh) const
   {
     const std::size_t firstTriangle = mesh.triangles.size();
-    const int first = int(mesh.nodes.size());
+    const int count = int(stations_.size());
+    std::array<std::vector<int>, 5> strings; // nodes by station
+    const auto node = [&](const Vec3& p)
+    {
+      mesh.nodes.emplace_back();
+      mesh.nodes.back().position = p;
+      return int(mesh.nodes.size()) - 1;
+    };
+    for (int side = 0; side < 2; ++side)
+    {
+      for (const bool foot : { false, true })
+      {
+        std::vector<int>& string = strings[side == 0 ? (foot ? 0 : 1) : (foot ? 4 : 3)];
+        for (const Bunch& b : foot ? feet_[side] : edges_[side])
+        {
+          string.insert(string.end(), std::size_t(b.last - b.first) + 1,
+            node(this->at(b, side, foot ? b.depth : 0.0)));
+        }
+      }
+    }
     for (const Station& s : stations_)
     {
-      for (const Vec3& p : { s.foot(0), s.corner[0], s.corner[1], s.foot(1) })
-      {
-        mesh.nodes.emplace_back();
-        mesh.nodes.back().position = p;
-      }
+      strings[2].push_back(node(Vec3(s.place.x(), s.place.y(), s.crest)));
     }
     const auto add = [&](int a, int b, int c)
     {
-      mesh.triangles.emplace_back();
-      mesh.triangles.back().nodes = { first + a, first + b, first + c };
-    };
-    const int last = 4 * (int(stations_.size()) - 1);
-    for (int i = 0; i < last; i += 4)
-    {
-      for (int k = 0; k < 3; ++k)
+      if (a != b && b != c && c != a)
       {
-        add(i + k, i + k + 1, i + k + 5);
-        add(i + k, i + k + 5, i + k + 4);
+        mesh.triangles.emplace_back();
+        mesh.triangles.back().nodes = { a, b, c };
+      }
+    };
+    for (int i = 0; i + 1 < count; ++i)
+    {
+      for (int k = 0; k < 4; ++k)
+      {
+        const auto &left = strings[k], &right = strings[k + 1];
+        add(left[i], right[i], right[i + 1]);
+        add(left[i], right[i + 1], left[i + 1]);
       }
     }
-    add(1, 0, 3);
-    add(1, 3, 2);
-    add(last + 1, last + 3, last);
-    add(last + 1, last + 2, last + 3);
+    for (int k = 0; k < 4; ++k)
+    {
+      if (k != 2)
+      {
+        // From the middle of the crest: an edge, both feet, the other edge.
+        const int from = k == 0 ? 1 : k == 1 ? 0 : 4, to = k == 0 ? 0 : k == 1 ? 4 : 3;
+        add(strings[2].front(), strings[from].front(), strings[to].front());
+        add(strings[2].back(), strings[to].back(), strings[from].back());
+      }
+    }
     mesh.connect(firstTriangle);
   }
 
@@ -139,7 +158,7 @@ private:
       if (k > 0)
       {
         const Vec2 a = it_.points[k - 1], way = it_.points[k] - a;
-        const int n = std::max(1, int(std::ceil(2.0 * way.norm() / terrain_.geometry().cellSize)));
+        const int n = std::max(1, int(std::ceil(4.0 * way.norm() / terrain_.geometry().cellSize)));
         std::vector<Station> profile;
         for (int i = 0; i <= n; ++i)
         {
@@ -220,120 +239,196 @@ private:
     return true;
   }
 
-  /// Corners and feet of all stations. Number of the first piece that folds, −1 if none does.
-  int shape()
+  Vec2 outward(int piece, int side) const
   {
-    const int count = int(stations_.size());
-    std::vector<Vec2> along(std::size_t(count) - 1);
-    for (int i = 0; i + 1 < count; ++i)
-    {
-      along[i] = (stations_[i + 1].place - stations_[i].place).normalized();
-    }
-    const auto left = [](const Vec2& t) { return Vec2(-t.y(), t.x()); };
-    for (int side = 0; side < 2; ++side)
-    {
-      const double sign = side == 0 ? 1.0 : -1.0, half = 0.5 * it_.crestWidth;
-      for (int i = 0; i < count; ++i)
-      {
-        const Vec2 a = sign * left(along[std::max(i - 1, 0)]);
-        const Vec2 b = sign * left(along[std::min(i, count - 2)]);
-        Vec2 off;
-        if (!meet(a, half, b, half, off))
-        {
-          off = half * a;
-        }
-        if (off.norm() > kLongestMitre * half || a.dot(b) < -0.99)
-        {
-          this->fail(stations_[i].place, "turns back on itself");
-        }
-        const Vec2 p = stations_[i].place + off;
-        stations_[i].corner[side] = Vec3(p.x(), p.y(), stations_[i].crest);
-      }
-      // Each side is a plane: it holds the edge of the crest and falls at its slope across it. Two
-      // planes meet along the way of the station between them.
-      const double r = slope_[side];
-      const auto plane = [&](int i)
-      {
-        const Vec3 edge = stations_[i + 1].corner[side] - stations_[i].corner[side];
-        const double rise = edge.z() / std::max(edge.head<2>().norm(), 1e-9);
-        return Vec2(sign * left(along[i]) - rise * r * along[i]);
-      };
-      for (int i = 0; i < count; ++i)
-      {
-        const int before = std::max(i - 1, 0), after = std::min(i, count - 2);
-        Vec2& out = stations_[i].out[side];
-        if (!meet(plane(before), r, plane(after), r, out))
-        {
-          out = sign * r * left(along[after]);
-        }
-        if (out.norm() > kLongestMitre * r)
-        {
-          this->fail(stations_[i].place, "turns back on itself");
-        }
-        stations_[i].depth[side] = 0.0;
-      }
-      for (int i = 0; i + 1 < count; ++i)
-      {
-        const double deep = this->depthOfPiece(i, side);
-        for (Station* s : { &stations_[i], &stations_[i + 1] })
-        {
-          s->depth[side] = std::max(s->depth[side], deep);
-        }
-      }
-    }
-    for (int i = 0; i + 1 < count; ++i)
-    {
-      for (int side = 0; side < 2; ++side)
-      {
-        const Vec3 crest = stations_[i + 1].corner[side] - stations_[i].corner[side];
-        const Vec3 foot = stations_[i + 1].foot(side) - stations_[i].foot(side);
-        if (crest.head<2>().dot(along[i]) <= 0.0 || foot.head<2>().dot(along[i]) <= 0.0)
-        {
-          return i;
-        }
-      }
-    }
-    return -1;
+    const Vec2& t = along_[std::size_t(piece)];
+    return side == 0 ? Vec2(-t.y(), t.x()) : Vec2(t.y(), -t.x());
   }
 
-  /// How far below the crest the side of a piece is safely under the ground, m.
-  double depthOfPiece(int piece, int side) const
+  /// A point on the side of a bunch, `down` metres below its edge of the crest. The sides of the
+  /// pieces before and after the bunch meet there, as if the crest were level.
+  Vec3 at(const Bunch& b, int side, double down) const
   {
-    const Station &a = stations_[piece], &b = stations_[piece + 1];
+    const int before = std::max(b.first - 1, 0);
+    const int after = std::min(b.last, int(along_.size()) - 1);
+    const double off = 0.5 * it_.crestWidth + slope_[side] * down;
+    const Vec2 m = this->outward(before, side), n = this->outward(after, side);
+    const Vec2 &p = stations_[std::size_t(b.first)].place,
+               &q = stations_[std::size_t(b.last)].place;
+    Vec2 way; // from p
+    if (!meet(m, off, n, n.dot(q - p) + off, way))
+    {
+      way = 0.5 * (q - p) + off * m;
+    }
+    const Vec2 x = p + way;
+    return Vec3(x.x(), x.y(), b.crest - down);
+  }
+
+  const Bunch& edgeOf(int station, int side) const
+  {
+    return *std::find_if(
+      edges_[side].begin(), edges_[side].end(), [&](const Bunch& b) { return station <= b.last; });
+  }
+
+  /// Whether the side between two bunches of feet folds, seen from above.
+  bool folds(const Bunch& a, const Bunch& b, int side) const
+  {
+    const Vec3 corners[] = { this->at(a, side, a.depth),
+      this->at(this->edgeOf(a.last, side), side, 0.0),
+      this->at(this->edgeOf(b.first, side), side, 0.0), this->at(b, side, b.depth) };
+    const auto along = [&](int from, int to)
+    { return (corners[to] - corners[from]).head<2>().dot(along_[std::size_t(a.last)]); };
+    bool folded = along(0, 3) <= 1e-6;
+    for (int k = 0; k < 4; ++k)
+    {
+      const Vec3 in = corners[(k + 1) % 4] - corners[k],
+                 out = corners[(k + 2) % 4] - corners[(k + 1) % 4];
+      const double turn = in.x() * out.y() - in.y() * out.x();
+      folded = folded || (side == 0 ? turn : -turn) < -1e-9;
+    }
+    return folded;
+  }
+
+  /// Two bunches become one where the side between them folds. False if there are none.
+  bool gather(Bunches& bunches, int side) const
+  {
+    for (std::size_t k = 0; k + 1 < bunches.size(); ++k)
+    {
+      Bunch &a = bunches[k], &b = bunches[k + 1];
+      if (!this->folds(a, b, side))
+      {
+        continue;
+      }
+      if (a.first == 0 || b.last + 1 == int(stations_.size()))
+      {
+        this->failFolded(a.first == 0 ? b.first : a.last);
+      }
+      a = this->bunch(a.first, b.last);
+      bunches.erase(bunches.begin() + std::ptrdiff_t(k) + 1);
+      return true;
+    }
+    return false;
+  }
+
+  Bunch bunch(int first, int last) const
+  {
+    Bunch b{ first, last };
+    for (int i = first; i <= last; ++i)
+    {
+      b.crest += stations_[std::size_t(i)].crest / (last - first + 1);
+    }
+    return b;
+  }
+
+  [[noreturn]] void failFolded(int station) const
+  {
+    this->fail(stations_[std::size_t(station)].place,
+      "bends so sharply, for the length of its pieces, that its sides fold over themselves; "
+      "draw a gentler bend or two lines");
+  }
+
+  /// Edge of the crest and feet on one side.
+  void shape(int side)
+  {
+    Bunches& edges = edges_[side];
+    for (int i = 0; i < int(stations_.size()); ++i)
+    {
+      edges.push_back(this->bunch(i, i));
+      const Vec2 off =
+        this->at(edges.back(), side, 0.0).head<2>() - stations_[std::size_t(i)].place;
+      const Vec2 a = this->outward(std::max(i - 1, 0), side);
+      const Vec2 b = this->outward(std::min(i, int(along_.size()) - 1), side);
+      if (off.norm() > kLongestMitre * 0.5 * it_.crestWidth || a.dot(b) < -0.99)
+      {
+        this->fail(stations_[std::size_t(i)].place, "turns back on itself");
+      }
+    }
+    while (this->gather(edges, side))
+    {
+    }
+    Bunches& feet = feet_[side] = edges;
+    do
+    {
+      for (Bunch& b : feet)
+      {
+        b.depth = 0.0;
+      }
+      for (std::size_t k = 0; k < feet.size(); ++k)
+      {
+        const Bunch &a = feet[k], &b = feet[std::min(k + 1, feet.size() - 1)];
+        const double deep = this->depthBetween(a, b, side);
+        for (Bunch* one : { &feet[k], &feet[std::min(k + 1, feet.size() - 1)] })
+        {
+          one->depth = std::max(one->depth, deep);
+        }
+      }
+    } while (this->gather(feet, side));
+    this->checkFans(side);
+  }
+
+  /// In a bend of several points the sides between them go down to one point, which may be far from
+  /// the planes of the slope that was asked for.
+  void checkFans(int side) const
+  {
+    for (const Bunch& b : feet_[side])
+    {
+      const auto drawn = [](const Station& s) { return s.drawn; };
+      if (std::count_if(&stations_[b.first], &stations_[b.last] + 1, drawn) < 2)
+      {
+        continue;
+      }
+      const Vec3 foot = this->at(b, side, b.depth);
+      for (int i = b.first; i < b.last; ++i)
+      {
+        const Station &s = stations_[std::size_t(i)], &t = stations_[std::size_t(i) + 1];
+        const double across = (foot.head<2>() - s.place).dot(this->outward(i, side));
+        const double down = 0.5 * (s.crest + t.crest) - foot.z();
+        const double slope = (across - 0.5 * it_.crestWidth) / down;
+        if (!(std::abs(slope - slope_[side]) <= kFanTolerance * std::max(slope_[side], 0.2)))
+        {
+          this->failFolded(i);
+        }
+      }
+    }
+  }
+
+  /// How far below the crest the side between two bunches is safely under the ground, m.
+  double depthBetween(const Bunch& a, const Bunch& b, int side) const
+  {
     const double cell = terrain_.geometry().cellSize;
-    const int n =
-      std::max(1, int(std::ceil(2.0 * (b.corner[side] - a.corner[side]).head<2>().norm() / cell)));
+    const double length = (this->at(b, side, 0.0) - this->at(a, side, 0.0)).head<2>().norm();
+    const int n = std::max(1, int(std::ceil(2.0 * length / cell)));
     const double step = std::min(0.5, 0.25 * cell / std::max(slope_[side], 0.1));
     double deepest = 0.0;
     for (int k = 0; k <= n; ++k)
     {
       const double f = double(k) / n;
-      const Vec3 corner = (1.0 - f) * a.corner[side] + f * b.corner[side];
-      const Vec2 out = (1.0 - f) * a.out[side] + f * b.out[side];
-      double down = 0.0;
-      for (;; down += step)
+      const auto place = [&](double down)
+      { return Vec3((1.0 - f) * this->at(a, side, down) + f * this->at(b, side, down)); };
+      for (double down = 0.0;; down += step)
       {
-        const double ground = this->groundAt(corner.head<2>() + down * out);
-        if (corner.z() - down <= ground - margin_)
+        const Vec3 p = place(down);
+        const double ground = this->groundAt(p.head<2>());
+        if (p.z() <= ground - margin_)
         {
+          deepest = std::max(deepest, down + margin_);
           break;
         }
         if (std::isnan(ground))
         {
-          this->fail(corner.head<2>(),
+          this->fail(place(0.0).head<2>(),
             "has a side that comes to the edge of the terrain, or to a hole in it, before it is at "
             "the ground");
         }
         if (down > kLongestSide)
         {
-          this->fail(corner.head<2>(),
+          this->fail(place(0.0).head<2>(),
             "has a side of " + numberText(slope_[side]) +
               " m across per m down that is not at the ground " + numberText(kLongestSide) +
               " m below its crest: the slope falls as steeply as the side, or the crest is too "
               "high");
         }
       }
-      deepest = std::max(deepest, down + margin_);
     }
     return deepest;
   }
@@ -344,6 +439,8 @@ private:
   bool buried_ = true;
   double slope_[2] = { 0.0, 0.0 }; ///< Left and right.
   std::vector<Station> stations_;
+  std::vector<Vec2> along_;    ///< The way of each piece, unit.
+  Bunches edges_[2], feet_[2]; ///< Left and right.
 };
 
 } // namespace
