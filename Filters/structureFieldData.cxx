@@ -126,11 +126,12 @@ void writeStructures(const Terrain& terrain, vtkFieldData* fieldData)
     barriers->InsertNextTuple(row);
     addPoints(barrierPoints, b.points);
   }
-  const auto materials = addArray<vtkDoubleArray>(fieldData, materialsName, 6);
+  const auto materials = addArray<vtkDoubleArray>(fieldData, materialsName, 8);
   for (const SurfaceMaterial& m : s.materials)
   {
-    const double row[] = { m.restitution, double(m.restitutionModel), m.tangentialRestitution,
-      m.restitutionSpeed, m.frictionAngle, m.cohesion };
+    const double row[] = { m.restitution, m.restitutionDeviation, double(m.restitutionModel),
+      m.tangentialRestitution, m.restitutionSpeed, m.frictionAngle, m.frictionAngleDeviation,
+      m.cohesion };
     materials->InsertNextTuple(row);
   }
 }
@@ -138,7 +139,7 @@ void writeStructures(const Terrain& terrain, vtkFieldData* fieldData)
 Structures readStructures(vtkFieldData* fieldData)
 {
   const Rows embankments(fieldData, embankmentsName, 8), trees(fieldData, treesName, 7),
-    barriers(fieldData, barriersName, 6), materials(fieldData, materialsName, 6),
+    barriers(fieldData, barriersName, 6), materials(fieldData, materialsName, 8),
     embankmentPoints(fieldData, embankmentPointsName, 2),
     barrierPoints(fieldData, barrierPointsName, 2);
   Structures s;
@@ -180,11 +181,13 @@ Structures readStructures(vtkFieldData* fieldData)
   {
     SurfaceMaterial& m = s.materials.emplace_back();
     m.restitution = materials.at(k, 0);
-    m.restitutionModel = RestitutionModel(int(materials.at(k, 1)));
-    m.tangentialRestitution = materials.at(k, 2);
-    m.restitutionSpeed = materials.at(k, 3);
-    m.frictionAngle = materials.at(k, 4);
-    m.cohesion = materials.at(k, 5);
+    m.restitutionDeviation = materials.at(k, 1);
+    m.restitutionModel = RestitutionModel(int(materials.at(k, 2)));
+    m.tangentialRestitution = materials.at(k, 3);
+    m.restitutionSpeed = materials.at(k, 4);
+    m.frictionAngle = materials.at(k, 5);
+    m.frictionAngleDeviation = materials.at(k, 6);
+    m.cohesion = materials.at(k, 7);
   }
   return s;
 }

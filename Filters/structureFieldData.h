@@ -12,8 +12,8 @@
 /// | TerrainTrees              | feature, x, y, diameter (m), height (m), capacity (J), material  |
 /// | TerrainBarriers           | feature, height (m), capacity (J), absorbs, records, points      |
 /// | TerrainBarrierPoints      | x, y in the local frame, m                                       |
-/// | TerrainStructureMaterials | restitution, its model, tangential restitution, speed (m/s),     |
-/// |                           | φ (rad), cohesion (N)                                            |
+/// | TerrainStructureMaterials | restitution, its deviation, its model, tangential restitution,   |
+/// |                           | speed (m/s), φ (rad), its deviation (rad), cohesion (N)          |
 ///
 /// An embankment that has a height has no elevation, which is then 0, and the other way round; a
 /// capacity without limit is −1: VTK's XML readers do not understand their writers' "nan" and

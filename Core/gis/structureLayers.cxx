@@ -150,7 +150,8 @@ std::optional<double> slopeOf(const FeatureRow& row, const char* field)
   return *across / *down;
 }
 
-/// Materials of rows that have their own, each kept once.
+/// Materials of rows that have their own, each kept once. What a row does not give is the slope's
+/// own, with its deviation; what it gives has none.
 class OwnMaterials
 {
 public:
@@ -158,7 +159,6 @@ public:
     : base_(terrain.material())
     , all_(all)
   {
-    base_.restitutionDeviation = base_.frictionAngleDeviation = 0.0;
   }
 
   /// Number of the row's own, 0 if it has none.
@@ -177,8 +177,12 @@ public:
     m.tangentialRestitution = rt.value_or(m.tangentialRestitution);
     m.frictionAngle = phi ? radians(*phi) : m.frictionAngle;
     m.cohesion = cohesion.value_or(m.cohesion);
-    const auto [found, isNew] = numbers_.try_emplace(
-      { m.restitution, m.tangentialRestitution, m.frictionAngle, m.cohesion }, 0);
+    m.restitutionDeviation = rv ? 0.0 : m.restitutionDeviation;
+    m.frictionAngleDeviation = phi ? 0.0 : m.frictionAngleDeviation;
+    const auto [found, isNew] =
+      numbers_.try_emplace({ m.restitution, m.restitutionDeviation, m.tangentialRestitution,
+                             m.frictionAngle, m.frictionAngleDeviation, m.cohesion },
+        0);
     if (isNew)
     {
       all_.push_back(m);
@@ -190,7 +194,7 @@ public:
 private:
   SurfaceMaterial base_;
   std::vector<SurfaceMaterial>& all_;
-  std::map<std::array<double, 4>, int> numbers_;
+  std::map<std::array<double, 6>, int> numbers_;
 };
 
 /// The lines of a row, each in the local frame.

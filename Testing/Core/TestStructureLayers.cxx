@@ -60,6 +60,8 @@ TEST(StructureLayers, AreReadInTheUnitsThatAPersonTypes)
   ASSERT_EQ(s.embankments[1].material, 1);
   EXPECT_EQ(s.materials[0].restitution, 0.3);
   EXPECT_DOUBLE_EQ(s.materials[0].frictionAngle, radians(35.0));
+  EXPECT_EQ(s.materials[0].restitutionDeviation, 0.0);
+  EXPECT_EQ(s.materials[0].frictionAngleDeviation, 0.0);
   ASSERT_EQ(s.trees.size(), 3u); // one stands beside the terrain
   ASSERT_EQ(notes.size(), 1u);
   EXPECT_NE(notes[0].find("1 trees"), std::string::npos);

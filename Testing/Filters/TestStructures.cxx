@@ -3,6 +3,7 @@
 #include "simulationTest.h"
 #include "structureFieldData.h"
 #include "terrain/Obstacles.h"
+#include "terrain/Surface.h"
 #include "terrainFieldData.h"
 
 #include "vtkCellData.h"
@@ -121,6 +122,30 @@ TEST_F(TestStructures, ACrestTravelsWithTheSlope)
   const Embankment& read = terrain.obstacles()->structures().embankments.at(0);
   EXPECT_TRUE(std::isnan(read.height));
   EXPECT_EQ(read.elevation, 2.25);
+}
+
+/// What a structure does not say of its material is drawn as the slope's is.
+TEST_F(TestStructures, AMaterialTravelsWithTheSlope)
+{
+  const std::string dams = this->WriteFile("material.csv",
+    "WKT,height,width,slope,phi,cohesion\n\"LINESTRING(200 20,200 80)\",2,1.5,1.5,35,7\n");
+  this->Terrain->SetEmbankmentFile(dams.c_str());
+  this->Terrain->SetRestitutionCoefficient(0.5);
+  this->Terrain->SetRestitutionDeviation(0.1);
+  this->Terrain->SetFrictionAngleDeviation(4.0);
+  this->Terrain->Update();
+  const rockfall::Terrain terrain = filters::readTerrain(this->Terrain->GetOutput());
+  ASSERT_NE(terrain.obstacles(), nullptr);
+  const SurfaceMaterial& read = terrain.obstacles()->structures().materials.at(0);
+  EXPECT_EQ(read.restitution, 0.5);
+  EXPECT_EQ(read.restitutionDeviation, 0.1);
+  EXPECT_DOUBLE_EQ(read.frictionAngle, radians(35.0));
+  EXPECT_EQ(read.frictionAngleDeviation, 0.0);
+  EXPECT_EQ(read.cohesion, 7.0);
+  const int number = terrain.restitutionClassOf(terrain.cfeCapacity() + 1);
+  EXPECT_EQ(number, 1);
+  EXPECT_NE(
+    Surface(terrain, 1, 1).restitutionOf(number), Surface(terrain, 1, 2).restitutionOf(number));
 }
 
 TEST_F(TestStructures, ABarrierCatchesTheRock)
