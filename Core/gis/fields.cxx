@@ -59,6 +59,36 @@ std::string fieldList(const OGRFeatureDefn& definition)
   return list.empty() ? "none" : list;
 }
 
+namespace
+{
+
+/// Whether one letter makes two words of one: wrong, missing, too many, or taken with the next one
+/// in the wrong order. Short words and other first letters do not count: weight is no height.
+bool isSlipOf(const std::string& one, const std::string& other)
+{
+  const std::string& longer = one.size() >= other.size() ? one : other;
+  const std::string& shorter = one.size() >= other.size() ? other : one;
+  if (shorter.size() < 5 || longer.size() > shorter.size() + 1 || longer[0] != shorter[0])
+  {
+    return false;
+  }
+  const auto [a, b] = std::mismatch(shorter.begin(), shorter.end(), longer.begin());
+  if (longer.size() > shorter.size())
+  {
+    return std::equal(a, shorter.end(), b + 1);
+  }
+  if (a == shorter.end())
+  {
+    return false; // the same word
+  }
+  const bool wrong = std::equal(a + 1, shorter.end(), b + 1);
+  const bool turned =
+    shorter.end() - a > 1 && *a == b[1] && a[1] == *b && std::equal(a + 2, shorter.end(), b + 2);
+  return wrong || turned;
+}
+
+} // namespace
+
 void refuseNearMisses(const OGRFeatureDefn& definition, const std::string& fileName,
   std::initializer_list<const char*> known)
 {
@@ -68,15 +98,15 @@ void refuseNearMisses(const OGRFeatureDefn& definition, const std::string& fileN
   {
     for (const std::string name : known)
     {
-      const bool like = column.size() > name.size() && column.compare(0, name.size(), name) == 0 &&
-        !goesOn(column[name.size()]);
+      const bool goneOn =
+        column.size() > name.size() && column.starts_with(name) && !goesOn(column[name.size()]);
       const bool isOther =
         std::any_of(known.begin(), known.end(), [&](const char* k) { return column == k; });
-      if (like && !isOther && !columns.count(name))
+      if ((goneOn || isSlipOf(column, name)) && !isOther && !columns.count(name))
       {
         throw DataError(fileName + ": its column \"" +
           definition.GetFieldDefn(index)->GetNameRef() + "\" is not read, and there is none \"" +
-          name + "\"; call it so if it is that, else something that does not begin so");
+          name + "\"; call it so if it is that, else something less like it");
       }
     }
   }

@@ -31,7 +31,8 @@ Columns columnsOf(const OGRFeatureDefn& definition);
 std::string fieldList(const OGRFeatureDefn& definition);
 
 /// Throws DataError where a column that would not be read begins as one that is not there, as
-/// "capacity_kJ" or "Volume [m3]" do. `known`: names that are read.
+/// "capacity_kJ" or "Volume [m3]" do, or is one letter off, as "ammount". `known`: names that are
+/// read.
 void refuseNearMisses(const OGRFeatureDefn& definition, const std::string& fileName,
   std::initializer_list<const char*> known);
 

@@ -130,6 +130,10 @@ GroundTable readGroundTable(
   const DatasetPtr dataset = openVector(fileName, messages);
   OGRLayer& layer = firstLayer(*dataset, fileName, "table");
   refuseSurplusCells(*dataset, fileName);
+  refuseNearMisses(*layer.GetLayerDefn(), fileName,
+    { "preset", "model", "rv", "rn", "rv_mean", "restitution", "rv_deviation", "rn_deviation",
+      "rv_dev", "rv_sd", "rt", "speed", "phi", "phi_mean", "friction_angle", "phi_deviation",
+      "phi_dev", "phi_sd", "friction_angle_deviation", "cohesion" });
   const Columns columns = columnsOf(*layer.GetLayerDefn());
   if (!columns.count("class") && !columns.count("name"))
   {

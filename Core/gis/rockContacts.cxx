@@ -149,6 +149,7 @@ std::vector<RockContactPair> readRockContacts(
   const DatasetPtr dataset = openVector(fileName, messages);
   OGRLayer& layer = firstLayer(*dataset, fileName, "table");
   refuseSurplusCells(*dataset, fileName);
+  refuseNearMisses(*layer.GetLayerDefn(), fileName, { "cohesion" });
   const Columns columns = columnsOf(*layer.GetLayerDefn());
   PairReader reader(fileName, layer, columns, namesOf(materials));
   std::vector<RockContactPair> pairs;

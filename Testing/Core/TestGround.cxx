@@ -391,6 +391,9 @@ TEST(GroundErrors, TablesNameRowFieldAndValue)
     { "class,phi\n1,30\n2,\n", { "row 2", "phi", "empty" }, GroundKind::Joint },
     { "class,phi,phi_deviation\n1,30,-1\n2,30,0\n", { "row 1", "phi_deviation", "-1" },
       GroundKind::Joint },
+    { "class,phi,cohesoin\n1,30,5\n2,30,0\n", { "\"cohesoin\"", "\"cohesion\"" },
+      GroundKind::Joint },
+    { "class,rv,rv_deviatoin\n1,0.5,0\n2,0.5,0\n", { "\"rv_deviatoin\"", "\"rv_deviation\"" } },
     { "class,phi,cohesion\n1,30,-5\n2,30,0\n", { "row 1", "cohesion", "-5" }, GroundKind::Joint },
   };
   for (const auto& c : cases)

@@ -163,6 +163,8 @@ TEST(SourceLayerErrors, cells)
 
 TEST(SourceLayerErrors, rows)
 {
+  EXPECT_TRUE(holds(failure(writeFile("slip.csv", "x,y,ammount\n1,2,3\n")),
+    { "slip.csv", "\"ammount\"", "none \"amount\"" }));
   EXPECT_TRUE(holds(failure(feature(square, R"("amount":1,"intensity":2)")),
     { "row 1", "\"amount\"", "\"intensity\"", "one of them" }));
   EXPECT_TRUE(holds(failure(feature(square), {}), { "row 1", "POLYGON", "Terrain", "\"z\"" }));

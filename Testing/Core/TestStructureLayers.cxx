@@ -169,6 +169,11 @@ TEST(StructureLayers, TellWhatIsWrong)
     { 2, "WKT,height,mode\n" + line + ",4,hold\n", "\"mode\" is \"hold\"" },
     { 2, "WKT,height,capacity_kJ\n" + line + ",4,1000\n",
       "its column \"capacity_kJ\" is not read, and there is none \"capacity\"" },
+    { 2, "WKT,height,capcity\n" + line + ",4,1000\n",
+      "its column \"capcity\" is not read, and there is none \"capacity\"" },
+    { 2, "WKT,height,capaicty\n" + line + ",4,1000\n", "\"capaicty\"" },
+    { 2, "WKT,height,capazity\n" + line + ",4,1000\n", "\"capazity\"" },
+    { 2, "WKT,height,capacityy\n" + line + ",4,1000\n", "\"capacityy\"" },
     { 1, tree.substr(0, tree.size() - 1) + ",Factor [-]\n50,50,30,20,0.5\n", "\"Factor [-]\"" },
     { 2, net + "\"LINESTRING(2000 50,2120 50)\",4,100\n", "does not overlap the terrain" },
   };
