@@ -58,8 +58,30 @@ std::vector<CollectorLine> linesOf(
   return lines;
 }
 
+void checkReleased(ReleasedRocks& rocks)
+{
+  std::sort(rocks.begin(), rocks.end());
+  const auto twice = std::adjacent_find(rocks.begin(), rocks.end());
+  if (twice != rocks.end())
+  {
+    throw DataError("Rock " + std::to_string((*twice)[1]) + " of iteration " +
+      std::to_string((*twice)[0]) +
+      " is there twice: a run was given twice, or two runs have the same iterations");
+  }
+}
+
+void writeReleased(const ReleasedRocks& released, vtkFieldData* field)
+{
+  addArray<vtkIdTypeArray>(field, "CollectorReleased")->InsertNextValue(vtkIdType(released.size()));
+  const auto rocks = addArray<vtkIntArray>(field, "CollectorRocks", 2);
+  for (const auto& [iteration, rock] : released)
+  {
+    rocks->InsertNextTuple2(iteration, rock);
+  }
+}
+
 void writeCrossings(std::span<const CollectedCrossing> crossings,
-  std::span<const CollectorLine> lines, std::int64_t released, const Vec3& origin,
+  std::span<const CollectorLine> lines, const ReleasedRocks& released, const Vec3& origin,
   vtkPolyData* trajectories, vtkPolyData* output)
 {
   vtkNew<vtkPoints> points;
@@ -118,7 +140,7 @@ void writeCrossings(std::span<const CollectedCrossing> crossings,
   output->SetPoints(points);
   output->SetVerts(vertices);
   vtkFieldData* field = output->GetFieldData();
-  addArray<vtkIdTypeArray>(field, "CollectorReleased")->InsertNextValue(released);
+  writeReleased(released, field);
   const auto lineNames = addArray<vtkStringArray>(field, "CollectorLineName");
   const auto barriers = addArray<vtkDoubleArray>(field, "CollectorBarrier", 2);
   for (const CollectorLine& of : lines)

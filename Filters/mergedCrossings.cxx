@@ -2,6 +2,7 @@
 
 #include "arrays.h"
 #include "base/errors.h"
+#include "collectorOutputs.h"
 #include "terrainFieldData.h"
 
 #include "vtkAbstractArray.h"
@@ -151,6 +152,7 @@ void copyArrays(std::span<vtkPolyData* const> inputs, std::span<const Place> pla
 MergedCrossings mergeCrossings(std::span<vtkPolyData* const> inputs, vtkPolyData* output)
 {
   MergedCrossings merged;
+  ReleasedRocks rocks;
   std::vector<Place> places;
   vtkPolyData* pattern = nullptr; // the first that has points, or the first
   for (std::size_t k = 0; k < inputs.size(); ++k)
@@ -169,14 +171,19 @@ MergedCrossings mergeCrossings(std::span<vtkPolyData* const> inputs, vtkPolyData
     {
       throw DataError(numbered(k) + " has another CRS than the first");
     }
-    vtkDataArray* released = numbers(field, "CollectorReleased", 1, k);
-    merged.released += std::int64_t(released->GetTuple1(0));
+    vtkDataArray* released = numbers(field, "CollectorRocks", 2, k);
+    for (vtkIdType i = 0; i < released->GetNumberOfTuples(); ++i)
+    {
+      rocks.push_back({ int(released->GetComponent(i, 0)), int(released->GetComponent(i, 1)) });
+    }
     if (inputs[k]->GetNumberOfPoints() > 0)
     {
       appendPlaces(inputs[k], k, lines.size(), places);
       pattern = pattern ? pattern : inputs[k];
     }
   }
+  checkReleased(rocks);
+  merged.released = std::int64_t(rocks.size());
   std::sort(
     places.begin(), places.end(), [](const Place& a, const Place& b) { return key(a) < key(b); });
   vtkNew<vtkPoints> points;
@@ -188,8 +195,8 @@ MergedCrossings mergeCrossings(std::span<vtkPolyData* const> inputs, vtkPolyData
     const Crossing& c = places[k].crossing;
     if (k > 0 && key(places[k - 1]) == key(places[k]))
     {
-      throw DataError("The crossings of iteration " + std::to_string(c.iteration) + ", rock " +
-        std::to_string(c.rock) + " are there twice");
+      throw DataError("A crossing of rock " + std::to_string(c.rock) + " of iteration " +
+        std::to_string(c.iteration) + " is there twice");
     }
     double place[3];
     inputs[places[k].input]->GetPoint(places[k].id, place);
@@ -207,7 +214,7 @@ MergedCrossings mergeCrossings(std::span<vtkPolyData* const> inputs, vtkPolyData
   {
     field->AddArray(inputs[0]->GetFieldData()->GetAbstractArray(name));
   }
-  addArray<vtkIdTypeArray>(field, "CollectorReleased")->InsertNextValue(merged.released);
+  writeReleased(rocks, field);
   copyCoordinateSystem(inputs[0]->GetFieldData(), field);
   return merged;
 }

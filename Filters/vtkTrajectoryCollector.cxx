@@ -208,11 +208,11 @@ int vtkTrajectoryCollector::RequestData(
     }
     std::vector<filters::CollectedCrossing> crossings;
     std::vector<rockfall::Crossing> all, found;
-    std::int64_t released = 0;
+    filters::ReleasedRocks released;
     filters::forEachPath(trajectories, origin,
       [&](const rockfall::RockPath& path, std::int64_t cell)
       {
-        ++released;
+        released.push_back({ path.iteration, path.rock });
         for (std::size_t k = 0; k < lines.size(); ++k)
         {
           found.clear();
@@ -224,17 +224,19 @@ int vtkTrajectoryCollector::RequestData(
           }
         }
       });
+    filters::checkReleased(released);
     std::vector<rockfall::LineSummary> summaries;
     for (std::size_t k = 0; k < lines.size(); ++k)
     {
-      summaries.push_back(rockfall::summarizeLine(lines[k], int(k), all, released));
+      summaries.push_back(
+        rockfall::summarizeLine(lines[k], int(k), all, std::int64_t(released.size())));
     }
 
     vtkNew<vtkPolyData> points;
     filters::writeCrossings(crossings, lines, released, origin, trajectories, points);
     vtkNew<vtkTable> table, exceedance;
     filters::writeLines(summaries, lines, table);
-    filters::writeExceedance(summaries, released, exceedance);
+    filters::writeExceedance(summaries, std::int64_t(released.size()), exceedance);
     for (vtkDataObject* made : { static_cast<vtkDataObject*>(points),
            static_cast<vtkDataObject*>(table), static_cast<vtkDataObject*>(exceedance) })
     {

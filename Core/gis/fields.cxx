@@ -160,9 +160,9 @@ void Fields::fail(const std::string& what) const
 
 void Fields::refuseLostText(const Messages& messages) const
 {
-  if (messages.warning().find("Invalid value type") != std::string::npos)
+  if (!messages.lostText().empty())
   {
-    this->fail(messages.warning());
+    this->fail(messages.lostText());
   }
 }
 

@@ -9,6 +9,7 @@
 #include <gdal_priv.h>
 
 #include <charconv>
+#include <cstring>
 #include <mutex>
 
 namespace rockfall::gis
@@ -24,9 +25,13 @@ void CPL_STDCALL keep(CPLErr level, CPLErrorNum, const char* text)
   {
     kept.failure = text;
   }
-  else if (level == CE_Warning && kept.warning.empty())
+  else if (level == CE_Warning)
   {
-    kept.warning = text;
+    kept.warning = kept.warning.empty() ? text : kept.warning;
+    if (kept.lostText.empty() && std::strstr(text, "Invalid value type"))
+    {
+      kept.lostText = text;
+    }
   }
 }
 

@@ -29,12 +29,15 @@ public:
   const std::string& failure() const { return kept_.failure; }
   /// The first warning since the last `clear`.
   const std::string& warning() const { return kept_.warning; }
+  /// The first warning that text in a column of numbers was lost.
+  const std::string& lostText() const { return kept_.lostText; }
   void clear() { kept_ = {}; }
 
   struct Kept
   {
     std::string failure;
     std::string warning;
+    std::string lostText;
   };
 
 private:

@@ -276,6 +276,10 @@ TEST(SourceErrors, textInATypedTable)
   const std::string path = table("x,y,z\n1,2,3\n1,2,high\n");
   writeFile("rocks.csvt", "\"Real\",\"Real\",\"Real\"\n");
   EXPECT_TRUE(holds(failure<DataError>(path), { path, "row 2", "z" }));
+  // Another warning before it hides nothing.
+  const std::string longer = table("x,y,z\n1234567,2,3\n1,2,high\n");
+  writeFile("rocks.csvt", "\"Real(5.2)\",\"Real\",\"Real\"\n");
+  EXPECT_TRUE(holds(failure<DataError>(longer), { longer, "row 2", "z" }));
 }
 
 TEST(SourceErrors, noPosition)

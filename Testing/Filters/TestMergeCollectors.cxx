@@ -126,6 +126,23 @@ TEST_F(TestMergeCollectors, APartWithoutCrossings)
   EXPECT_DOUBLE_EQ(table->GetValueByName(0, "Share").ToDouble(), 12.0 / 13.0);
 }
 
+/// Where nothing crossed there is nothing else to know a part by.
+TEST_F(TestMergeCollectors, APartWithoutCrossingsIsThereTwice)
+{
+  HandMadeTrajectories paths;
+  paths.AddLevel(9, 0, { 500000, 5100000, 50 }, 5, 5.0);
+  vtkNew<vtkTrajectoryCollector> none;
+  none->SetInputDataObject(0, paths.Data);
+  none->SetInputDataObject(1, this->Drawn);
+  none->Update();
+  for (int k = 0; k < 2; ++k)
+  {
+    this->Filter->AddInputDataObject(0, none->GetOutput());
+  }
+  this->Filter->Update();
+  this->ExpectOneError({ "Rock 0 of iteration 9", "twice" });
+}
+
 TEST_F(TestMergeCollectors, BadInput)
 {
   vtkNew<vtkPolyData> none;
@@ -143,7 +160,7 @@ TEST_F(TestMergeCollectors, BadInput)
     this->ExpectOneError(words);
     EXPECT_EQ(merge->GetOutput()->GetNumberOfPoints(), 0);
   };
-  expect(whole->GetOutput(), { "iteration 0, rock 0", "twice" });
+  expect(whole->GetOutput(), { "Rock 0 of iteration 0", "twice" });
   expect(this->Collect(1, 0, 4.0)->GetOutput(), { "part 2", "other lines or barriers" });
   vtkNew<vtkPolyData> elsewhere, poorer;
   elsewhere->DeepCopy(whole->GetOutput());
