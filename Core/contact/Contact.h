@@ -194,8 +194,8 @@ struct Clearance
 Clearance clearance(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
   double gravity, double horizon);
 
-/// Deepest penetration of the rock's vertices under the patch and of its peaks into the rock, m, ≥
-/// 0.
+/// Deepest penetration of the rock's vertices under the slope of the patch and of its peaks into
+/// the rock, m, ≥ 0. Edges that cross and obstacles are not looked at.
 double penetration(const PlacedBlock& rock, const SurfacePatch& patch);
 
 } // namespace rockfall

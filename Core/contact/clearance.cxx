@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace rockfall
 {
@@ -149,7 +150,7 @@ double penetration(const PlacedBlock& rock, const SurfacePatch& patch)
 {
   double deepest = 0.0;
   const Vec3 lower = rock.lower(), upper = rock.upper();
-  for (const SurfacePatch::Triangle& t : patch.triangles)
+  for (const SurfacePatch::Triangle& t : std::span(patch.triangles).first(patch.slopeTriangles))
   {
     const Vec3& a = patch.nodes[t.nodes[0]].position;
     const Vec3& b = patch.nodes[t.nodes[1]].position;
@@ -168,7 +169,7 @@ double penetration(const PlacedBlock& rock, const SurfacePatch& patch)
       }
     }
   }
-  for (const SurfacePatch::Node& n : patch.nodes)
+  for (const SurfacePatch::Node& n : std::span(patch.nodes).first(patch.slopeNodes))
   {
     if (n.peak && (n.position.array() >= lower.array()).all() &&
       (n.position.array() <= upper.array()).all())

@@ -1,6 +1,7 @@
 #include "simulation/RockSimulator.h"
 
 #include "block/flight.h"
+#include "simulation/placement.h"
 #include "solver/springs.h"
 
 #include <algorithm>
@@ -316,10 +317,10 @@ void RockSimulator::checkEnd(double h)
   }
 }
 
-void RockSimulator::liftOntoRoughness()
+void RockSimulator::liftOntoGround()
 {
   // The placement was checked on the slope as surveyed; roughness can raise the ground into the
-  // rock.
+  // rock. By steps, so it ends a hair over the ground.
   const double step = 0.01 * block_.radius();
   if (solid_)
   {
@@ -334,6 +335,9 @@ void RockSimulator::liftOntoRoughness()
     placed_.place(block_, state_);
     depth = penetration(placed_, patch_);
   }
+  // Edges across each other are not seen by that, and embankments may be upright walls.
+  state_.position.z() += liftOut(placed_, patch_);
+  placed_.place(block_, state_);
 }
 
 void RockSimulator::release()
@@ -342,7 +346,7 @@ void RockSimulator::release()
   summary.blockId = rock_.blockId;
   summary.mass = block_.mass();
   summary.volume = block_.volume();
-  this->liftOntoRoughness();
+  this->liftOntoGround();
   energyAtStart_ = this->mechanicalEnergy();
   recorder_.begin(state_);
   this->auditSamples(state_);

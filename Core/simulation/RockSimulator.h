@@ -60,7 +60,8 @@ private:
     double restitutionBefore = 0.0;    ///< What restitution had taken by then, J.
   };
 
-  void liftOntoRoughness(); ///< Straight up, at the start, as far as roughness makes it needed.
+  /// Straight up, at the start, as far as roughness and embankments make it needed.
+  void liftOntoGround();
 
   // Flight, RockSimulator.cxx
   void flyUntilNear(); ///< Returns when a touch is possible within a few steps, or at the end.

@@ -5,6 +5,7 @@
 #include "simulation/MassFall.h"
 #include "simulation/RockSimulator.h"
 #include "simulation/overlaps.h"
+#include "simulation/placement.h"
 #include "simulation/releasePlaces.h"
 #include "simulation/stateHash.h"
 
@@ -26,8 +27,6 @@ namespace rockfall
 namespace
 {
 
-/// Shallower overlaps at the start are rounding: a rock laid on the slope by computed coordinates.
-constexpr double kLaidDown = 1e-6; // of the radius
 /// Over the slope, m. Rocks start on the slope or a fall over it; 1000 m read as feet are 2000 m
 /// too high.
 constexpr double kHighest = 500.0;
@@ -70,8 +69,8 @@ void checkPlacement(const Terrain& terrain, const Rock& rock, const Block& block
   // The check is on the slope as surveyed: roughness belongs to an iteration.
   gatherPatch(Surface::asSurveyed(terrain), placed.lower().x(), placed.upper().x(),
     placed.lower().y(), placed.upper().y(), patch);
-  const double depth = penetration(placed, patch);
-  if (depth > kLaidDown * block.radius())
+  const double depth = liftOut(placed, patch);
+  if (depth > 0.0)
   {
     throw PlacementError(
       name + " starts inside the slope, by " + std::to_string(depth) + " m; raise its centre");

@@ -1,5 +1,7 @@
 #include "simulation/placement.h"
 
+#include "contact/features.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,33 +14,69 @@ namespace
 
 constexpr double none = -std::numeric_limits<double>::infinity();
 
-/// z of the underside of a convex body at (x, y) over its centroid; −∞ outside of its outline.
-double underside(const std::vector<Vec3>& normals, const std::vector<double>& offsets, double x,
-  double y, double tolerance)
+/// A rock that is in something by no more than this share of its radius only touches it: rounding,
+/// of one that was laid down by computed coordinates.
+constexpr double kTouch = 1e-6;
+/// Over a triangle that is steeper than this (z of its normal) nothing stands but its edges.
+constexpr double kUpright = 1e-9;
+
+/// A convex body where it is to stand, its centroid at height 0.
+struct Body
 {
-  double lower = none, upper = -none;
-  for (std::size_t face = 0; face < normals.size(); ++face)
+  const Polyhedron& shape;
+  double x, y;
+  std::vector<Vec3> vertices;
+  std::vector<Vec3> normals;
+  std::vector<double> offsets;
+
+  /// `scale`: about its centroid.
+  Body(const Polyhedron& polyhedron, const Mat3& turn, double atX, double atY, double scale)
+    : shape(polyhedron)
+    , x(atX)
+    , y(atY)
   {
-    const Vec3& n = normals[face];
-    const double rest = offsets[face] - n.x() * x - n.y() * y;
-    if (std::abs(n.z()) < 1e-12)
+    for (const Vec3& v : shape.vertices())
     {
-      if (rest < -tolerance)
-      {
-        return none;
-      }
+      vertices.push_back(turn * (scale * v) + Vec3(x, y, 0.0));
     }
-    else if (n.z() < 0.0)
+    for (const Vec3& n : shape.normals())
     {
-      lower = std::max(lower, rest / n.z());
+      normals.push_back(turn * n);
     }
-    else
+    for (const double offset : shape.offsets())
     {
-      upper = std::min(upper, rest / n.z());
+      offsets.push_back(scale * offset);
     }
   }
-  return lower <= upper + tolerance ? lower : none;
-}
+
+  /// z of the underside at a place; −∞ outside of the outline.
+  double underside(double atX, double atY) const
+  {
+    const double tolerance = 1e-9 * shape.radius();
+    double lower = none, upper = -none;
+    for (std::size_t face = 0; face < normals.size(); ++face)
+    {
+      const Vec3& n = normals[face];
+      const double rest = offsets[face] - n.x() * (atX - x) - n.y() * (atY - y);
+      if (std::abs(n.z()) < 1e-12)
+      {
+        if (rest < -tolerance)
+        {
+          return none;
+        }
+      }
+      else if (n.z() < 0.0)
+      {
+        lower = std::max(lower, rest / n.z());
+      }
+      else
+      {
+        upper = std::min(upper, rest / n.z());
+      }
+    }
+    return lower <= upper + tolerance ? lower : none;
+  }
+};
 
 /// How much b's segment is over a's where they cross in plan; −∞ if they do not.
 double above(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1)
@@ -59,6 +97,72 @@ double above(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1)
   return b0.z() + t * (b1.z() - b0.z()) - (a0.z() + s * (a1.z() - a0.z()));
 }
 
+/// How far the body has to be raised for its faces over the nodes of a patch and for its edges over
+/// the ridges; −∞ if there are none under it.
+double liftOverNodesAndRidges(const Body& body, const SurfacePatch& patch)
+{
+  double lift = none;
+  const double r = body.shape.radius();
+  for (const SurfacePatch::Node& node : patch.nodes)
+  {
+    const Vec3& p = node.position;
+    if (node.cfe != 0 && std::hypot(p.x() - body.x, p.y() - body.y) <= r)
+    {
+      const double under = body.underside(p.x(), p.y());
+      lift = under > none ? std::max(lift, p.z() - under) : lift;
+    }
+  }
+  for (const SurfacePatch::Ridge& ridge : patch.ridges)
+  {
+    const Vec3& a = patch.nodes[std::size_t(ridge.nodes[0])].position;
+    const Vec3& b = patch.nodes[std::size_t(ridge.nodes[1])].position;
+    if (std::min(a.x(), b.x()) > body.x + r || std::max(a.x(), b.x()) < body.x - r ||
+      std::min(a.y(), b.y()) > body.y + r || std::max(a.y(), b.y()) < body.y - r)
+    {
+      continue;
+    }
+    for (const Polyhedron::Edge& edge : body.shape.edges())
+    {
+      lift = std::max(lift,
+        above(body.vertices[std::size_t(edge.vertices[0])],
+          body.vertices[std::size_t(edge.vertices[1])], a, b));
+    }
+  }
+  return lift;
+}
+
+/// The same for its vertices over the triangles.
+double liftOverTriangles(const Body& body, const SurfacePatch& patch)
+{
+  double lift = none;
+  const double r = body.shape.radius();
+  for (const SurfacePatch::Triangle& t : patch.triangles)
+  {
+    if (t.cfe == 0 || t.normal.z() < kUpright)
+    {
+      continue;
+    }
+    const Vec3& a = patch.nodes[std::size_t(t.nodes[0])].position;
+    const Vec3& b = patch.nodes[std::size_t(t.nodes[1])].position;
+    const Vec3& c = patch.nodes[std::size_t(t.nodes[2])].position;
+    const Vec3 most = a.cwiseMax(b).cwiseMax(c), least = a.cwiseMin(b).cwiseMin(c);
+    if (least.x() > body.x + r || most.x() < body.x - r || least.y() > body.y + r ||
+      most.y() < body.y - r)
+    {
+      continue;
+    }
+    for (const Vec3& v : body.vertices)
+    {
+      if (isStraightOver(patch, t, v))
+      {
+        const double z = a.z() - (t.normal.head<2>().dot((v - a).head<2>())) / t.normal.z();
+        lift = std::max(lift, std::clamp(z, least.z(), most.z()) - v.z());
+      }
+    }
+  }
+  return lift;
+}
+
 } // namespace
 
 double touchingHeight(
@@ -69,21 +173,9 @@ double touchingHeight(
   {
     return ground;
   }
-  const Vec3 place(x, y, 0.0);
-  const Mat3 turn = orientation.toRotationMatrix();
-  std::vector<Vec3> vertices, normals;
-  for (const Vec3& v : shape.vertices())
-  {
-    vertices.push_back(turn * v + place);
-  }
-  for (const Vec3& n : shape.normals())
-  {
-    normals.push_back(turn * n);
-  }
-  const double tolerance = 1e-9 * shape.radius();
-  // How far the body, with its centroid at height 0, has to be raised for each pair of features.
-  double lift = ground - underside(normals, shape.offsets(), 0.0, 0.0, tolerance);
-  for (const Vec3& v : vertices)
+  const Body body(shape, orientation.toRotationMatrix(), x, y, 1.0);
+  double lift = ground - body.underside(x, y);
+  for (const Vec3& v : body.vertices)
   {
     const double below = surface.elevation(v.x(), v.y());
     if (!std::isnan(below))
@@ -94,26 +186,19 @@ double touchingHeight(
   SurfacePatch patch;
   const double r = shape.radius();
   gatherPatch(surface, x - r, x + r, y - r, y + r, patch);
-  for (const SurfacePatch::Node& node : patch.nodes)
-  {
-    const Vec3& p = node.position;
-    if (node.cfe != 0 && std::hypot(p.x() - x, p.y() - y) <= r)
-    {
-      const double under = underside(normals, shape.offsets(), p.x() - x, p.y() - y, tolerance);
-      lift = under > none ? std::max(lift, p.z() - under) : lift;
-    }
-  }
-  for (const SurfacePatch::Ridge& ridge : patch.ridges)
-  {
-    for (const Polyhedron::Edge& edge : shape.edges())
-    {
-      lift = std::max(lift,
-        above(vertices[std::size_t(edge.vertices[0])], vertices[std::size_t(edge.vertices[1])],
-          patch.nodes[std::size_t(ridge.nodes[0])].position,
-          patch.nodes[std::size_t(ridge.nodes[1])].position));
-    }
-  }
-  return lift;
+  return std::max(lift, liftOverNodesAndRidges(body, patch));
+}
+
+double liftOut(const PlacedBlock& rock, const SurfacePatch& patch)
+{
+  // Beside an upright wall rounding must not decide between nothing and all of its height, so the
+  // rock is taken a hair smaller than it is.
+  const Body body(
+    rock.block().shape(), rock.rotation(), rock.position().x(), rock.position().y(), 1.0 - kTouch);
+  const double height =
+    std::max(liftOverNodesAndRidges(body, patch), liftOverTriangles(body, patch));
+  const double lift = height - rock.position().z();
+  return lift > kTouch * rock.block().radius() ? lift : 0.0;
 }
 
 } // namespace rockfall

@@ -3,6 +3,7 @@
 /// @file
 /// Where a rock stands on the slope.
 
+#include "contact/Contact.h"
 #include "geometry/Polyhedron.h"
 #include "terrain/Surface.h"
 
@@ -16,5 +17,11 @@ namespace rockfall
 /// touches nothing.
 double touchingHeight(
   const Surface& surface, const Polyhedron& shape, const Quat& orientation, double x, double y);
+
+/// How far (m) a rock that is in the slope or in an obstacle of the patch has to go straight up
+/// until it is on all of it; 0 if it is in none or only touches. Exact in the same sense: upright
+/// walls have tops, and what is over the rock is in its way. The patch must hold all that is under
+/// the rock's outline. An unstrained rock is taken.
+double liftOut(const PlacedBlock& rock, const SurfacePatch& patch);
 
 } // namespace rockfall

@@ -1,0 +1,285 @@
+// Rocks that are released in an embankment, or in ground that roughness raised, are lifted out of
+// it: as far as it takes and no farther.
+
+#include "base/errors.h"
+#include "contact/Contact.h"
+#include "contact/features.h"
+#include "gisFiles.h"
+#include "simulation/placement.h"
+#include "slopes.h"
+#include "terrain/Obstacles.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+using namespace rockfall;
+using namespace rockfall::testing;
+
+namespace
+{
+
+/// Numbers with a fixed seed.
+class Numbers
+{
+public:
+  explicit Numbers(unsigned seed)
+    : random_(seed)
+  {
+  }
+  double operator()(double a, double b)
+  {
+    return std::uniform_real_distribution<double>(a, b)(random_);
+  }
+  Quat attitude()
+  {
+    std::normal_distribution<double> n;
+    return Quat(n(random_), n(random_), n(random_), n(random_)).normalized();
+  }
+  /// Any convex shape of this volume.
+  Polyhedron shape(int kind, double volume)
+  {
+    const Shape shapes[] = { Shape::Cube, Shape::Tetrahedron, Shape::Icosahedron, Shape::Eota221 };
+    if (kind % 6 < 4)
+    {
+      return makeShape(shapes[kind % 6], volume);
+    }
+    if (kind % 6 == 4)
+    {
+      return makeBox(Vec3(1.0, (*this)(0.3, 1.0), (*this)(0.1, 3.0))).centred().withVolume(volume);
+    }
+    std::vector<Vec3> points(8);
+    for (Vec3& p : points)
+    {
+      p = Vec3((*this)(-1, 1), (*this)(-1, 1), (*this)(-1, 1));
+    }
+    return Polyhedron::convexHull(points).centred().withVolume(volume);
+  }
+
+private:
+  std::mt19937 random_;
+};
+
+/// An embankment of 3 m along y, over x = 50 m, on ground at 100 m.
+Terrain withDam(double slope, double width, std::vector<Eigen::Vector2d> points, double bumps = 0.0)
+{
+  Terrain terrain = makeSlope(
+    51, 2.0,
+    [=](double x, double y) { return 100.0 + bumps * std::sin(0.7 * x) * std::cos(0.5 * y); },
+    material(0.3, 30.0));
+  Embankment e;
+  e.feature = 1;
+  e.points = std::move(points);
+  e.height = 3.0;
+  e.crestWidth = width;
+  e.mountainSlope = e.valleySlope = slope;
+  Structures s;
+  s.embankments = { e };
+  terrain.setStructures(s);
+  return terrain;
+}
+
+const std::vector<Eigen::Vector2d> straight{ { 50.0, 10.0 }, { 50.0, 90.0 } };
+const std::vector<Eigen::Vector2d> bent{ { 50.0, 42.0 }, { 51.0, 50.0 }, { 49.0, 58.0 } };
+
+/// What is under a rock that stands there.
+SurfacePatch patchUnder(const Surface& surface, const PlacedBlock& rock)
+{
+  SurfacePatch patch;
+  gatherPatch(
+    surface, rock.lower().x(), rock.upper().x(), rock.lower().y(), rock.upper().y(), patch);
+  if (const Obstacles* obstacles = surface.terrain().obstacles())
+  {
+    obstacles->append(rock.lower().x() - 1.0, rock.upper().x() + 1.0, rock.lower().y() - 1.0,
+      rock.upper().y() + 1.0, {}, patch);
+  }
+  return patch;
+}
+
+/// Of ground and embankment.
+double topAt(const SurfacePatch& patch, const Vec3& p)
+{
+  double top = -1e300;
+  for (const SurfacePatch::Triangle& t : patch.triangles)
+  {
+    if (t.cfe != 0 && t.normal.z() > 1e-6 && isStraightOver(patch, t, p))
+    {
+      top = std::max(top, p.z() + (t.offset - t.normal.dot(p)) / t.normal.z());
+    }
+  }
+  return top;
+}
+
+/// By separating axes, which know nothing of heights.
+bool isClear(const Block& block, BlockState state, double raised, const SurfacePatch& patch)
+{
+  state.position.z() += raised;
+  PlacedBlock rock;
+  rock.place(block, state);
+  const double forever = std::numeric_limits<double>::infinity();
+  return clearance(rock, state, patch, 0.0, forever).distance > 0.0 &&
+    state.position.z() > topAt(patch, state.position);
+}
+
+} // namespace
+
+TEST(Starts, LiftIsWhatItTakesAndNoMore)
+{
+  Numbers number(5);
+  int lifted = 0, edges = 0;
+  for (const double slope : { 0.0, 0.2, 1.5 })
+  {
+    for (const double width : { 1.0, 4.0 })
+    {
+      for (const bool bends : { false, true })
+      {
+        const Terrain terrain = withDam(slope, width, bends ? bent : straight, bends ? 0.4 : 0.0);
+        for (int k = 0; k < 120; ++k)
+        {
+          const Block block(number.shape(k, std::pow(10.0, number(-2.0, 1.5))), 2500.0, 1e10, 0.1);
+          BlockState state;
+          state.orientation = number.attitude();
+          const double off = 0.5 * width + 3.0 * slope + block.radius();
+          // Over the ends as well, where it bends.
+          state.position =
+            Vec3(50.0 + off * number(-1, 1), bends ? number(40.0, 60.0) : number(20.0, 80.0), 0.0);
+          state.position.z() = touchingHeight(Surface::asSurveyed(terrain), block.shape(),
+                                 state.orientation, state.position.x(), state.position.y()) +
+            std::max(0.0, number(-1.0, 2.0));
+          PlacedBlock rock;
+          rock.place(block, state);
+          const SurfacePatch patch = patchUnder(Surface::asSurveyed(terrain), rock);
+          const double lift = liftOut(rock, patch), hair = 1e-5 * block.radius();
+          const std::string at = "slope " + std::to_string(slope) + " width " +
+            std::to_string(width) + (bends ? " bent " : " ") + std::to_string(k);
+          EXPECT_TRUE(isClear(block, state, lift + 2.0 * hair, patch)) << at;
+          if (lift > 0.0)
+          {
+            EXPECT_FALSE(isClear(block, state, lift - hair, patch)) << at;
+            ++lifted;
+            // That none of its corners is in the body, and none of the body's in it, is common.
+            bool seen = false;
+            for (const Vec3& v : rock.vertices())
+            {
+              seen = seen || topAt(patch, v) > v.z();
+            }
+            for (const SurfacePatch::Node& n : patch.nodes)
+            {
+              seen = seen || rock.faceDistance(rock.outermostFace(n.position), n.position) < 0.0;
+            }
+            edges += !seen;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(lifted, 700);
+  EXPECT_GT(edges, 20);
+}
+
+TEST(Starts, NoRockThatStartsInAnEmbankmentEndsInIt)
+{
+  Numbers number(9);
+  for (const double slope : { 0.0, 0.2, 1.5 })
+  {
+    for (const double width : { 1.0, 10.0 })
+    {
+      const Terrain terrain = withDam(slope, width, straight);
+      std::vector<Rock> rocks(100);
+      for (int k = 0; k < 100; ++k)
+      {
+        Rock& rock = rocks[std::size_t(k)];
+        rock.blockId = k;
+        rock.shape = number.shape(k, number(0.1, 2.0));
+        rock.orientation = number.attitude();
+        const double off = 0.5 * width + number(0.0, 1.0) * (3.0 * slope + rock.shape.radius());
+        rock.position = Vec3(50.0 + (k % 2 ? off : -off), 12.0 + 0.76 * k, 0.0);
+        rock.position.z() = touchingHeight(Surface::asSurveyed(terrain), rock.shape,
+          rock.orientation, rock.position.x(), rock.position.y());
+      }
+      SimulationParameters p;
+      p.endTime = 3.0;
+      p.rigid = true;
+      TrajectoryStore store(100, 1);
+      runEnsemble(terrain, rocks, p, store);
+      for (const Trajectory& t : store.trajectories())
+      {
+        for (const Sample& at : t.samples)
+        {
+          const double down = 103.0 - at.position.z();
+          const bool inside =
+            down > 0.0 && std::abs(at.position.x() - 50.0) < 0.5 * width + slope * down;
+          ASSERT_FALSE(inside) << "slope " << slope << " width " << width << " rock "
+                               << t.summary.blockId << " at " << at.time << " s, "
+                               << at.position.transpose();
+        }
+      }
+    }
+  }
+}
+
+/// A rock beside an upright wall stands on the ground, whatever the last digits of its place.
+TEST(Starts, WhatOnlyTouchesAWallStaysDown)
+{
+  const Terrain terrain = withDam(0.0, 1.0, straight);
+  for (const double off : { -1e-8, -1e-15, 0.0, 1e-15, 1e-8, -1e-3 })
+  {
+    Rock rock;
+    rock.shape = makeShape(Shape::Cube, 1.0);
+    rock.position = Vec3(49.0 + off, 50.0, 100.5);
+    SimulationParameters p;
+    p.endTime = 0.1;
+    EXPECT_EQ(simulate(terrain, rock, p).samples.front().position, rock.position) << off;
+    rock.position.x() = 49.0 + 1e-4;
+    EXPECT_NEAR(simulate(terrain, rock, p).samples.front().position.z(), 103.5, 1e-5);
+  }
+}
+
+/// A ridge of the ground cuts an edge of a rock as a crest does.
+TEST(Starts, RoughGroundIsClearOfEdgesToo)
+{
+  Roughness roughness;
+  roughness.mean = 0.3;
+  roughness.deviation = 0.1;
+  const Terrain rough = makeSlope(
+    61, 0.5, [](double x, double) { return 40.0 - 0.5 * x; }, material(0.5, 30.0), roughness);
+  Numbers number(4);
+  for (int k = 0; k < 60; ++k)
+  {
+    Rock rock;
+    rock.shape = number.shape(k, number(0.02, 2.0));
+    rock.orientation = number.attitude();
+    rock.position = Vec3(number(5.0, 25.0), number(5.0, 25.0), 0.0);
+    rock.position.z() = touchingHeight(Surface::asSurveyed(rough), rock.shape, rock.orientation,
+      rock.position.x(), rock.position.y());
+    SimulationParameters p;
+    p.endTime = 0.01;
+    p.seed = 3;
+    const Block block(rock.shape, 2500.0, 1e10, 0.1);
+    BlockState state;
+    state.orientation = rock.orientation;
+    state.position = simulate(rough, rock, p).samples.front().position;
+    PlacedBlock placed;
+    placed.place(block, state);
+    EXPECT_EQ(liftOut(placed, patchUnder(Surface(rough, p.seed, 0), placed)), 0.0) << k;
+    EXPECT_LT(state.position.z() - rock.position.z(), 1.5) << k;
+  }
+}
+
+TEST(Starts, AnEdgeAcrossARidgeOfTheSlopeIsInsideIt)
+{
+  // A ridge along y at x = 15 m, 1 in 2 to either side, and a bar across it.
+  const Terrain terrain =
+    makeSlope(61, 0.5, [](double x, double) { return 40.0 - 0.5 * std::abs(x - 15.0); });
+  Rock rock;
+  rock.blockId = 5;
+  rock.shape = makeBox(Vec3(4.0, 0.3, 0.3)).centred();
+  rock.orientation = Quat(Eigen::AngleAxisd(radians(45.0), Vec3::UnitX()));
+  rock.position = Vec3(15.0, 15.1, 40.0 + 0.15 * std::sqrt(2.0) - 0.1);
+  SimulationParameters p;
+  p.endTime = 0.1;
+  EXPECT_TRUE(holds(messageOf<PlacementError>([&] { simulate(terrain, rock, p); }),
+    { "block 5", "starts inside the slope, by 0.1" }));
+  rock.position.z() += 0.1 + 1e-7;
+  EXPECT_NO_THROW(simulate(terrain, rock, p));
+}
