@@ -5,12 +5,18 @@
 namespace rockfall
 {
 
+Vec3 placeInFlight(const BlockState& state, double gravity, double duration)
+{
+  Vec3 place = state.position + duration * state.velocity;
+  place.z() -= 0.5 * gravity * duration * duration;
+  return place;
+}
+
 BlockState fly(const Block& block, const BlockState& state, double gravity, double duration)
 {
   BlockState next = state;
   next.time = state.time + duration;
-  next.position += duration * state.velocity;
-  next.position.z() -= 0.5 * gravity * duration * duration;
+  next.position = placeInFlight(state, gravity, duration);
   next.velocity.z() -= gravity * duration;
   if (!state.spin.isZero(0.0))
   {

@@ -13,5 +13,7 @@ namespace rockfall
 /// −z), exactly: the centroid on its parabola, the attitude by FreeRotation. For many times of one
 /// flight make the FreeRotation once and ask it.
 BlockState fly(const Block& block, const BlockState& state, double gravity, double duration);
+/// Where the centroid is then, to the bit.
+Vec3 placeInFlight(const BlockState& state, double gravity, double duration);
 
 } // namespace rockfall

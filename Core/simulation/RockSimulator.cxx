@@ -176,11 +176,12 @@ void RockSimulator::advanceInFlight(double duration)
 {
   const BlockState start = state_;
   BlockState reached = start;
+  const Way way{ start, reached, duration, true };
   if (barriers_)
   {
-    reached.position += duration * start.velocity;
-    reached.time += duration;
-    this->findBarriers(start, reached, true);
+    reached.position = placeInFlight(start, parameters_.gravity, duration);
+    this->findBarriers(way);
+    this->passBarriers(way, 0.0);
     duration = hit_.barrier >= 0 ? hit_.fraction * duration : duration;
   }
   const double end = start.time + duration;
@@ -197,7 +198,7 @@ void RockSimulator::advanceInFlight(double duration)
   while (barriers_ && !done_ && hit_.barrier >= 0)
   {
     this->meetBarrier();
-    this->findBarriers(start, reached, true, hit_);
+    this->passBarriers(way, 0.0);
   }
 }
 

@@ -17,6 +17,24 @@
 namespace rockfall
 {
 
+/// What a rock goes at once: a parabola, or a step of contact.
+struct Way
+{
+  const BlockState& from;
+  const BlockState& to;
+  double duration; ///< s
+  bool flight;
+};
+
+/// Where the line of a barrier is passed on a way.
+struct BarrierPassage
+{
+  double fraction = 0.0; ///< Of the way; by rounding rather behind the line.
+  int barrier = -1;
+
+  bool operator==(const BarrierPassage&) const = default;
+};
+
 /// Where a rock meets a barrier on a way.
 struct BarrierHit
 {
@@ -80,10 +98,11 @@ private:
   bool breakTrees(double h, std::span<const int> hit = {});
   /// Takes a step of `h` back in which it came against trees that cannot hold it, and breaks them.
   bool undoAtTrees(double h);
-  /// Fills `hit_` with the first barrier that stops the rock or breaks on a way, and notes those
-  /// that record; `flight`: the way is a parabola, else a step of contact. `met`: goes on after
-  /// this one, in flight only to one at the same place.
-  void findBarriers(const BlockState& from, const BlockState& to, bool flight, BarrierHit met = {});
+  void findBarriers(const Way& way); ///< Fills `passages_` with those whose line is passed.
+  /// Goes on along this way, on which barriers have taken so much so far (J): notes what records,
+  /// and fills `hit_` with the first barrier that stops the rock or breaks. After such a one flight
+  /// goes on to those at the same place only; its rest is flown anew.
+  void passBarriers(const Way& way, double taken);
   void meetBarrier(); ///< The one in `hit_`, at `state_`.
   /// The one in `hit_`, in a step of contact that would go to `end` and in which others have taken
   /// so much (J); returns what this one takes if it breaks.
@@ -157,6 +176,8 @@ private:
   std::vector<int> goneTrees_;      ///< Ascending.
   std::vector<int> brokenBarriers_; ///< In the order of breaking.
   double freeUntil_ = 0.0;          ///< Nothing can be touched until then, after a take-off, s.
+  std::vector<BarrierPassage> passages_; ///< Of the way at hand.
+  std::size_t passed_ = 0;               ///< How many of them are dealt with.
   BarrierHit hit_;
   double openTime_ = 0.0; ///< Since it touched, s.
   double horizon_ = 0.0;  ///< Up to which it is to advance, s.

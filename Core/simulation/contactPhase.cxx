@@ -345,8 +345,9 @@ void RockSimulator::absorb(
     // Behind one that breaks there may be others.
     const BlockState end = state_;
     double lost = 0.0;
-    for (this->findBarriers(before_, end, false); hit_.barrier >= 0;
-         this->findBarriers(before_, end, false, hit_))
+    const Way way{ before_, end, end.time - before_.time, false };
+    this->findBarriers(way);
+    for (this->passBarriers(way, lost); hit_.barrier >= 0; this->passBarriers(way, lost))
     {
       lost += this->endStepAtBarrier(end, lost, touching);
       if (done_)

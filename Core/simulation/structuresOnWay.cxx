@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <tuple>
 
 namespace rockfall
 {
@@ -26,8 +28,11 @@ BlockState between(const BlockState& from, const BlockState& to, double s)
   return at;
 }
 
-/// Barriers are at one place if they are met within this share of a flight.
-constexpr double kSamePlace = 1e-9;
+/// Barriers are at one place if they are passed within this way, m: lines that are the same on the
+/// map but for rounding.
+constexpr double kSamePlace = 1e-6;
+/// Where the line of a barrier's piece ends, as a share of its length.
+constexpr double kPieceEnd = 1e-9;
 
 /// Takes kinetic energy: all velocities become smaller by the same factor.
 void slowDown(BlockState& state, double energy, double taken)
@@ -158,22 +163,15 @@ bool RockSimulator::breakTrees(double h, std::span<const int> hit)
   return any;
 }
 
-void RockSimulator::findBarriers(
-  const BlockState& from, const BlockState& to, bool flight, BarrierHit met)
+void RockSimulator::findBarriers(const Way& way)
 {
   hit_ = {};
-  // The rest of a flight is flown anew; what stands at the same place would then be behind.
-  const bool again = flight && met.barrier >= 0;
-  const double duration = to.time - from.time;
-  const Vec3 &p = from.position, &q = to.position;
+  passages_.clear();
+  passed_ = 0;
+  const Vec3 &p = way.from.position, &q = way.to.position;
   // In a step of contact the cubic may go a little beyond its ends.
-  const double room = flight ? 0.0 : 0.15 * duration * (from.velocity.norm() + to.velocity.norm());
-  struct Way
-  {
-    double fraction;
-    int barrier;
-  };
-  std::vector<Way> ways;
+  const double room =
+    way.flight ? 0.0 : 0.15 * way.duration * (way.from.velocity.norm() + way.to.velocity.norm());
   obstacles_->visitBarriers(std::min(p.x(), q.x()) - room, std::max(p.x(), q.x()) + room,
     std::min(p.y(), q.y()) - room, std::max(p.y(), q.y()) + room,
     [&](const Obstacles::Piece& piece)
@@ -182,68 +180,106 @@ void RockSimulator::findBarriers(
       const Eigen::Vector2d normal = Eigen::Vector2d(-along.y(), along.x()).normalized();
       const auto side = [&](const Vec3& x) { return normal.dot(x.head<2>() - piece.from); };
       const double before = side(p), after = side(q);
-      if ((before < 0.0) == (after < 0.0) ||
-        std::find(brokenBarriers_.begin(), brokenBarriers_.end(), piece.barrier) !=
-          brokenBarriers_.end())
+      if ((before < 0.0) == (after < 0.0))
       {
         return;
       }
-      double s = before / (before - after);
-      Vec3 at = p + s * (q - p);
-      if (!flight)
+      // Passed is only what the next way, which may begin there, finds behind it.
+      const auto placeAt = [&](double s)
       {
-        double low = 0.0, high = 1.0;
-        for (int k = 0; k < 60; ++k)
+        return way.flight ? placeInFlight(way.from, parameters_.gravity, s * way.duration)
+                          : between(way.from, way.to, s).position;
+      };
+      const auto behind = [&](double s) { return (side(placeAt(s)) < 0.0) == (after < 0.0); };
+      double s = 1.0;
+      if (way.flight)
+      {
+        s = before / (before - after);
+        for (double more = 1e-16; s < 1.0 && !behind(s); more *= 2.0)
         {
-          s = 0.5 * (low + high);
-          at = between(from, to, s).position;
-          ((side(at) < 0.0) == (before < 0.0) ? low : high) = s;
+          s = std::min(s + more, 1.0);
         }
       }
-      const double reached = along.dot(at.head<2>() - piece.from) / along.squaredNorm();
-      if (reached >= -1e-9 && reached <= 1.0 + 1e-9)
+      else
       {
-        ways.push_back({ s, piece.barrier });
+        double low = 0.0;
+        for (int k = 0; k < 60; ++k)
+        {
+          const double middle = 0.5 * (low + s);
+          (behind(middle) ? s : low) = middle;
+        }
+      }
+      const Vec3 at = placeAt(s);
+      const double reached = along.dot(at.head<2>() - piece.from) / along.squaredNorm();
+      if (reached >= -kPieceEnd && reached <= 1.0 + kPieceEnd)
+      {
+        passages_.push_back({ s, piece.barrier });
       }
     });
-  std::sort(ways.begin(), ways.end(),
-    [](const Way& a, const Way& b)
-    { return a.fraction != b.fraction ? a.fraction < b.fraction : a.barrier < b.barrier; });
-  for (std::size_t k = 0; k < ways.size(); ++k)
+  if (passages_.empty())
   {
-    const auto [fraction, number] = ways[k];
-    if (k > 0 && ways[k - 1].barrier == number && fraction - ways[k - 1].fraction < 1e-9)
-    {
-      continue; // where two pieces meet
-    }
-    if (fraction < met.fraction || (fraction == met.fraction && number <= met.barrier))
-    {
-      continue; // before it
-    }
-    if (again && fraction > met.fraction + kSamePlace)
+    return;
+  }
+  // What is at one place is passed at once: first all that record, then, in their order, those that
+  // stop the rock or break.
+  const auto earlier = [this](const BarrierPassage& a, const BarrierPassage& b)
+  {
+    const auto stops = [this](const BarrierPassage& x)
+    { return !obstacles_->structures().barriers[std::size_t(x.barrier)].records; };
+    return std::tuple(a.fraction, stops(a), a.barrier) <
+      std::tuple(b.fraction, stops(b), b.barrier);
+  };
+  std::sort(passages_.begin(), passages_.end(), earlier);
+  const double length = (q - p).head<2>().norm();
+  for (auto first = passages_.begin(); first != passages_.end();)
+  {
+    const auto next = std::find_if(first, passages_.end(),
+      [&](const BarrierPassage& x)
+      { return (x.fraction - first->fraction) * length > kSamePlace; });
+    const double last = std::prev(next)->fraction;
+    std::for_each(first, next, [&](BarrierPassage& x) { x.fraction = last; });
+    first = next;
+  }
+  std::sort(passages_.begin(), passages_.end(), earlier);
+  // Two pieces of a barrier meet at one place.
+  passages_.erase(std::unique(passages_.begin(), passages_.end()), passages_.end());
+}
+
+void RockSimulator::passBarriers(const Way& way, double taken)
+{
+  const bool again = hit_.barrier >= 0;
+  const double place = hit_.fraction;
+  hit_ = {};
+  while (passed_ < passages_.size())
+  {
+    const auto [fraction, number] = passages_[passed_];
+    if (way.flight && again && fraction > place)
     {
       return;
     }
-    const BlockState at = flight ? fly(block_, from, parameters_.gravity, fraction * duration)
-                                 : between(from, to, fraction);
+    ++passed_;
+    if (std::find(brokenBarriers_.begin(), brokenBarriers_.end(), number) != brokenBarriers_.end())
+    {
+      continue;
+    }
+    BlockState at = way.flight ? fly(block_, way.from, parameters_.gravity, fraction * way.duration)
+                               : between(way.from, way.to, fraction);
     const Barrier& barrier = obstacles_->structures().barriers[std::size_t(number)];
     const double height = at.position.z() - surface_.elevation(at.position.x(), at.position.y());
     if (!(height < barrier.height))
     {
       continue; // over it, or where there is no ground to stand on
     }
-    if (again && barrier.records)
-    {
-      continue;
-    }
     // What the ground holds in a touch it gives back in a moment.
     const double stored =
-      flight ? 0.0 : (1.0 - fraction) * springEnergyBefore_ + fraction * springEnergy_;
+      way.flight ? 0.0 : (1.0 - fraction) * springEnergyBefore_ + fraction * springEnergy_;
     if (!barrier.records)
     {
       hit_ = { number, fraction, height, stored };
       return;
     }
+    const double came = rigidKineticEnergy(block_, at);
+    slowDown(at, came, std::min(taken, came));
     StructureEvent event;
     event.outcome = StructureOutcome::BarrierRecorded;
     event.feature = barrier.feature;

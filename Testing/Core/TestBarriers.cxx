@@ -5,6 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <random>
+
 using namespace rockfall;
 using namespace rockfall::testing;
 
@@ -303,4 +306,97 @@ TEST(Barriers, BehindOneThatBreaksAreMetToo)
       }
     }
   }
+}
+
+/// Nets on one line are passed at once: each that records does so once, with what the rock comes
+/// with, whatever the order of the layer, the points of the lines and whether the other net holds.
+TEST(Barriers, OnOneLineAreAllMetOnce)
+{
+  std::mt19937 random(12);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  int held = 0;
+  for (int k = 0; k < 400; ++k)
+  {
+    const bool flies = k % 2 == 0;
+    const double x = 60.0 + u(random), angle = 1.2 * u(random);
+    const Eigen::Vector2d along(std::sin(angle), std::cos(angle)), middle(x, 50.0);
+    // Between other points, either way round.
+    const auto line = [&](double off)
+    {
+      const Eigen::Vector2d m = middle + Eigen::Vector2d(off, 0.0);
+      std::vector<Eigen::Vector2d> points{ m - (25.0 + 5.0 * u(random)) * along,
+        m + 10.0 * u(random) * along, m + (25.0 + 5.0 * u(random)) * along };
+      if (u(random) < 0.0)
+      {
+        std::reverse(points.begin(), points.end());
+      }
+      return points;
+    };
+    enum
+    {
+      Before,
+      On,
+      OnToo,
+      Behind,
+      Net
+    };
+    std::vector<Barrier> nets(5);
+    for (int b = Before; b <= Net; ++b)
+    {
+      nets[b].feature = b;
+      nets[b].points = line(b == Before ? -0.03 : b == Behind ? 0.03 : 0.0);
+      nets[b].height = 5.0;
+      nets[b].records = b != Net;
+    }
+    if (k % 3 == 0)
+    {
+      nets[On].points = nets[Net].points; // the very same
+    }
+    nets[Net].capacity = 4.9e5 + 2e5 * u(random); // J, about what comes
+    std::map<std::int64_t, StructureEvent> first;
+    for (int order = 0; order < 3; ++order)
+    {
+      std::shuffle(nets.begin(), nets.end(), random);
+      Terrain terrain = makePlane(21, 100.0, 0.0, 0.0, material(0.5, 5.0));
+      Structures s;
+      s.barriers = nets;
+      terrain.setStructures(s);
+      SimulationParameters p = rigidParameters(1.5);
+      p.timeStep = 0.01;
+      p.rockRockContact = k % 5 == 0;
+      const Trajectory t = simulate(terrain, thrown(flies ? 3.0 : 0.5, 20.0), p);
+      std::map<std::int64_t, StructureEvent> met;
+      for (const StructureEvent& event : t.structures)
+      {
+        EXPECT_TRUE(met.emplace(event.feature, event).second) << k << ": twice " << event.feature;
+      }
+      ASSERT_TRUE(met.count(Net) && met.count(On) && met.count(OnToo) && met.count(Before)) << k;
+      const bool holds = met[Net].outcome == StructureOutcome::BarrierStopped;
+      held += holds;
+      EXPECT_EQ(t.summary.fate == Fate::Caught, holds) << k;
+      EXPECT_EQ(met.count(Behind), holds ? 0u : 1u) << k;
+      const double energy = met[Net].kineticEnergy;
+      for (const int b : { On, OnToo })
+      {
+        EXPECT_EQ(met[b].outcome, StructureOutcome::BarrierRecorded) << k;
+        EXPECT_NEAR(met[b].kineticEnergy, energy, 1e-6 * energy) << k;
+        EXPECT_NEAR(met[b].time, met[Net].time, 1e-6) << k;
+      }
+      EXPECT_LT(met[Before].time, met[Net].time) << k;
+      if (!holds)
+      {
+        const double left = energy - met[Net].energyTaken;
+        EXPECT_NEAR(met[Behind].kineticEnergy, left, 0.01 * energy) << k;
+        EXPECT_LT(met[Net].time, met[Behind].time) << k;
+      }
+      for (const auto& [feature, event] : order == 0 ? met : first)
+      {
+        EXPECT_NEAR(event.kineticEnergy, met[feature].kineticEnergy, 1e-6 * energy) << k;
+        EXPECT_NEAR(event.time, met[feature].time, 1e-6) << k;
+      }
+      first = met;
+    }
+  }
+  EXPECT_GT(held, 200);
+  EXPECT_LT(held, 1000);
 }
