@@ -157,8 +157,8 @@ void gatherPatch(
     return;
   }
   // The ring makes the neighbours of every edge and node under the rock known. Beyond its edge the
-  // slope goes on level, as an apron, so that a rock that stands half over the edge is carried as
-  // on ground; it has left when its centroid has.
+  // slope goes on as an apron, so that a rock that stands half over the edge is carried as on
+  // ground, and slides on where it slid; it has left when its centroid has.
   const int column0 = wantColumn0 - 1, column1 = wantColumn1 + 1;
   const int row0 = wantRow0 - 1, row1 = wantRow1 + 1;
   patch.row0 = row0, patch.row1 = row1, patch.column0 = column0, patch.column1 = column1;

@@ -47,11 +47,21 @@ public:
 
   double nodeHeight(int row, int column) const; ///< With roughness, NaN for nodata, m.
   double elevation(double x, double y) const;   ///< With roughness, NaN outside, m.
-  /// The same, and beyond the edge of the slope that of the nearest node.
+  /// The same, and beyond the edge of the slope what makes a rock leave it as it would go on: where
+  /// the ground falls towards the edge it goes on falling as it did, as far outside as inside;
+  /// elsewhere it goes on level. So nothing out there is higher than the edge.
   double apronHeight(int row, int column) const
   {
     const GridGeometry& g = terrain_->geometry();
-    return this->nodeHeight(std::clamp(row, 0, g.rows - 1), std::clamp(column, 0, g.columns - 1));
+    const int r = std::clamp(row, 0, g.rows - 1), c = std::clamp(column, 0, g.columns - 1);
+    const double edge = this->nodeHeight(r, c);
+    if (r == row && c == column)
+    {
+      return edge;
+    }
+    const double inside = this->nodeHeight(
+      std::clamp(2 * r - row, 0, g.rows - 1), std::clamp(2 * c - column, 0, g.columns - 1));
+    return inside > edge ? 2.0 * edge - inside : edge;
   }
   /// Upper bound of the surface over a box, m; −∞ if there is none.
   double maxHeight(double xMin, double xMax, double yMin, double yMax) const

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
+
 using namespace rockfall;
 using namespace rockfall::testing;
 
@@ -106,4 +108,38 @@ TEST(Sliding, EnergyIsAccountedFor)
   EXPECT_NEAR(e.friction, work, 1e-3 * work);
   EXPECT_LT(std::abs(e.numerical), 1e-6 * e.released);
   EXPECT_LT(std::abs(e.damping), 1e-4 * e.released);
+}
+
+/// Where friction is less than the slope nothing comes to rest at the slope's edge, whichever edge
+/// it is and however slow it gets there; where friction is more, what stands half over it stays.
+TEST(Sliding, GoesOnOverTheEdge)
+{
+  const double size = 20.0;
+  SimulationParameters p = paperParameters(30.0);
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> u(0.0, 1.0);
+  for (const double degrees : { 20.0, 25.0, 30.0, 35.0 })
+  {
+    const double angle = radians(degrees);
+    for (int k = 0; k < 8; ++k)
+    {
+      const double azimuth = 2.0 * std::numbers::pi * k / 8.0;
+      const double reach = 0.5 * size / std::cos(angle) *
+        (k % 2 == 0 ? 1.0 : std::numbers::sqrt2); // down to the edge or corner
+      const Terrain slippery = makePlane(11, size, angle, azimuth, material(0.3, 0.5 * degrees));
+      const Terrain rough = makePlane(11, size, angle, azimuth, material(0.3, degrees + 10.0));
+      Rock rock = cubeOnPlane(size, angle, azimuth, 0.5 - reach);
+      EXPECT_EQ(simulate(rough, rock, p).summary.fate, Fate::Rested) << degrees << ", " << k;
+      for (int repeat = 0; repeat < 6; ++repeat)
+      {
+        const double left = 0.8 + 4.0 * u(random);
+        rock = cubeOnPlane(size, angle, azimuth, left - reach);
+        const Vec3 normal = rock.orientation * Vec3::UnitZ();
+        rock.orientation = Quat(Eigen::AngleAxisd(0.3 * u(random), normal)) * rock.orientation;
+        rock.position += 0.01 * normal;
+        EXPECT_EQ(simulate(slippery, rock, p).summary.fate, Fate::LeftDomain)
+          << degrees << " degrees, towards " << k << ", from " << left << " m";
+      }
+    }
+  }
 }
