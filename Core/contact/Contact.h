@@ -59,6 +59,13 @@ struct Contact
 
   bool closed() const { return state != ContactState::Open; }
   double gap() const { return distance - offset; } ///< d₀, m.
+  double springEnergy() const                      ///< In both springs, J.
+  {
+    const double compressed = std::min(0.0, this->gap());
+    return this->closed()
+      ? 0.5 * stiffness * compressed * compressed + 0.5 * shearStiffness * slip.squaredNorm()
+      : 0.0;
+  }
 };
 
 /// A block as it stands in the world: what contact detection reads.

@@ -42,12 +42,7 @@ double springEnergyOf(const std::vector<Contact>& contacts)
   double sum = 0.0;
   for (const Contact& c : contacts)
   {
-    if (c.closed())
-    {
-      const double compressed = std::min(0.0, c.gap());
-      sum +=
-        0.5 * c.stiffness * compressed * compressed + 0.5 * c.shearStiffness * c.slip.squaredNorm();
-    }
+    sum += c.springEnergy();
   }
   return sum;
 }

@@ -143,8 +143,15 @@ bool RockSimulator::breakTrees(double h, std::span<const int> hit)
       state_.position.z() - surface_.elevation(state_.position.x(), state_.position.y());
     event.energyTaken = stem.capacity;
     recorder_.trajectory().structures.push_back(event);
-    slowDown(state_, energy, stem.capacity);
-    energy_.structures += energy - rigidKineticEnergy(block_, state_);
+    // What the springs against the stem hold has been taken already and is not given back.
+    double held = 0.0;
+    for (const Contact& other : contacts_)
+    {
+      held += this->treeOf(other) == tree ? other.springEnergy() : 0.0;
+    }
+    slowDown(state_, energy, std::max(0.0, stem.capacity - held));
+    energy_.structures += held + energy - rigidKineticEnergy(block_, state_);
+    springEnergy_ = std::max(0.0, springEnergy_ - held);
     goneTrees_.insert(std::lower_bound(goneTrees_.begin(), goneTrees_.end(), tree), tree);
     any = true;
   }

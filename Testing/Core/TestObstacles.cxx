@@ -1,6 +1,7 @@
 // Embankments and trees as explicit triangles: closed forms, and nothing goes through.
 
 #include "base/errors.h"
+#include "piles.h"
 #include "slopes.h"
 #include "terrain/Obstacles.h"
 
@@ -487,6 +488,43 @@ TEST(Obstacles, ResultsAreTheSameForAnyThreads)
   }
   EXPECT_EQ(hashes[0], hashes[1]);
   EXPECT_GT(broken, 0u);
+}
+
+/// Cubes that rest against a stem are driven into it by a boulder: what its springs hold when it
+/// breaks is a part of what it takes.
+TEST(Obstacles, AStemThatBreaksInASqueezeTakesItsCapacity)
+{
+  const double angle = radians(35.0), capacity = 2e4;
+  const Vec3 normal(std::sin(angle), 0.0, std::cos(angle));
+  Pile pile;
+  pile.ground = makePlane(81, 160.0, angle, 0.0, material(0.3, 15.0));
+  Structures structures;
+  Tree& stem = structures.trees.emplace_back();
+  stem.feature = 1;
+  stem.position = { 100.0, 80.0 };
+  stem.diameter = 0.5;
+  stem.height = 10.0;
+  stem.capacity = capacity;
+  pile.ground.setStructures(structures);
+  for (int k = 0; k < 5; ++k)
+  {
+    const double edge = k == 4 ? 1.5 : 0.6, x = k == 4 ? 20.0 : 98.8 - 0.65 * k;
+    Rock rock = brick(Vec3::Constant(edge), Vec3::Zero(), k);
+    rock.orientation = Quat::FromTwoVectors(Vec3::UnitZ(), normal);
+    rock.position =
+      Vec3(x, 80.0, 100.0 - (x - 80.0) * std::tan(angle)) + (0.5 * edge + 0.001) * normal;
+    pile.rocks.push_back(rock);
+  }
+  pile.parameters.endTime = 40.0;
+  pile.parameters.rockFrictionAngle = radians(20.0);
+  pile.make();
+  for (const Trajectory& t : pile.fall->run())
+  {
+    ASSERT_EQ(t.structures.size(), 1u);
+    EXPECT_NEAR(t.summary.energy.structures, capacity, 1e-9 * capacity);
+    // Rounding, over some thousand steps.
+    EXPECT_LT(std::abs(t.summary.energy.numerical), 1e-9 * t.summary.energy.released);
+  }
 }
 
 TEST(Obstacles, RefuseWhatCannotBeBuilt)
