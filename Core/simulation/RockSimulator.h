@@ -127,7 +127,7 @@ private:
   void ensureWindow(double duration); ///< Heights under all of the way of a flight.
   void ensurePatch(double margin);
   void ensureCandidates(double reach, bool among = false); ///< `among`: many others.
-  void armContacts(); ///< Gives new contacts their springs and dashpots.
+  void armContacts(double h); ///< Gives new contacts their springs and dashpots, for a step of h.
   void armContact(Contact& contact);
   double dampingRatioOf(int restitutionClass); ///< ζ for the restitution of a class.
   double impactStep() const;

@@ -2,6 +2,7 @@
 
 #include "block/flight.h"
 #include "contact/motion.h"
+#include "simulation/impactMode.h"
 #include "simulation/pressOut.h"
 #include "simulation/restitution.h"
 
@@ -181,8 +182,9 @@ void RockSimulator::stayInContact()
     }
     holdOverlap(
       placed_, patch_, candidates_, kLooseOverlap * block_.radius() + 2.0 * pressed, contacts_);
-    this->armContacts();
-    this->takeStep(std::max(h, 1e-12), kind);
+    h = std::max(h, 1e-12);
+    this->armContacts(h);
+    this->takeStep(h, kind);
     this->checkEnd(state_.time - before_.time);
   }
 }
@@ -199,13 +201,22 @@ double RockSimulator::dampingRatioOf(int restitutionClass)
   return ratio;
 }
 
-void RockSimulator::armContacts()
+void RockSimulator::armContacts(double h)
 {
   // What slides into something may be faster than when its contact began.
   penalty_ = std::max(penalty_, this->stoppingPenalty());
   for (Contact& c : contacts_)
   {
     this->armContact(c);
+  }
+  if (!crowded_)
+  {
+    tuneDashpots(
+      contacts_, h,
+      [this, spin = state_.angularVelocity()](const Contact& c)
+      { return -c.normal.dot(state_.velocity + spin.cross(c.point - state_.position)); },
+      [this](const Vec3& force, const Vec3& moment, const Vec3& at)
+      { return response(placed_, force, moment, at); });
   }
 }
 

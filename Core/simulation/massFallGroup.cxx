@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "contact/motion.h"
+#include "simulation/impactMode.h"
 #include "simulation/pressOut.h"
 
 #include <algorithm>
@@ -175,7 +176,7 @@ void MassFall::gatherContacts(const Group& group, double h) const
     }
     holdOverlap(
       sim.placed_, sim.patch_, sim.candidates_, kLooseOverlap * r + 2.0 * pressed, sim.contacts_);
-    sim.armContacts();
+    sim.armContacts(h);
   };
   forEach(group.members.size(), kRockGrain, onSlope);
   const auto eachOther = [&](std::size_t k)
@@ -192,7 +193,7 @@ void MassFall::gatherContacts(const Group& group, double h) const
     const double ra = a.sim.block_.radius(), rb = b.sim.block_.radius();
     const double speed = (s.velocity - t.velocity).norm() + s.spin.norm() * ra + t.spin.norm() * rb;
     updatePair(a.body, b.body, reachOf(speed, std::min(ra, rb)), *pair);
-    this->armPair(*pair);
+    this->armPair(*pair, h, crowd);
   };
   forEach(group.pairs.size(), kPairGrain, eachOther);
 }
@@ -218,7 +219,7 @@ void MassFall::findPushes(const Group& group) const
   }
 }
 
-void MassFall::armPair(RockPair& pair) const
+void MassFall::armPair(RockPair& pair, double h, bool crowd) const
 {
   const auto open = [](const Contact& c) { return !c.closed(); };
   if (std::none_of(pair.contacts.begin(), pair.contacts.end(), open))
@@ -233,6 +234,14 @@ void MassFall::armPair(RockPair& pair) const
     {
       arming.arm(c);
     }
+  }
+  if (!crowd && pair.law.damping > 0.0)
+  {
+    tuneDashpots(
+      pair.contacts, h,
+      [&](const Contact& c) { return -c.normal.dot(this->relativeVelocity(pair, c.point)); },
+      [&](const Vec3& force, const Vec3& moment, const Vec3& at)
+      { return response(a.placed_, force, moment, at) + response(b.placed_, force, moment, at); });
   }
 }
 

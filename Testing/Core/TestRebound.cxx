@@ -1,8 +1,11 @@
 // A block dropped on a horizontal slope: METHOD 9.1 and 10.1, restitution (METHOD 4).
 
+#include "piles.h"
 #include "slopes.h"
 
 #include <gtest/gtest.h>
+
+#include <random>
 
 using namespace rockfall;
 using namespace rockfall::testing;
@@ -10,7 +13,7 @@ using namespace rockfall::testing;
 namespace
 {
 
-Terrain floorSlope(double restitution)
+Terrain slopeOf(double restitution)
 {
   return makeSlope(
     5, 5.0, [](double, double) { return 100.0; }, material(restitution, 15.0));
@@ -30,7 +33,7 @@ Rock cubeOver(double height)
 TEST(Rebound, IsElasticWhateverThePhaseOfTheStep)
 {
   // METHOD 10.1: a literal transcription gives 0.03 … 2.81 here.
-  const Terrain slope = floorSlope(1.0);
+  const Terrain slope = slopeOf(1.0);
   for (double timeStep : { 0.01, 0.005, 0.001 })
   {
     for (double penalty : { 1e8, 1e9, 1e10 })
@@ -58,7 +61,7 @@ TEST(Rebound, FiveMetreDropLosesWhatRvSays)
   {
     SimulationParameters p;
     p.endTime = 30.0;
-    const Trajectory t = simulate(floorSlope(rv), cubeOver(5.0), p);
+    const Trajectory t = simulate(slopeOf(rv), cubeOver(5.0), p);
     ASSERT_GT(t.impacts.size(), 5u);
     // √(2 g 5 m) = 9.905 m/s; the event starts up to one step of 0.2 ms before the touch.
     EXPECT_NEAR(t.impacts[0].velocityBefore.z(), -9.905, 0.003);
@@ -86,7 +89,7 @@ TEST(Rebound, OfASoftBlockDoesNotHangOnTheTimeStep)
 {
   // Whether the block rings, and what it loses so, is its own affair. Impacts are resolved by
   // themselves; what is left is the phase of their steps.
-  const Terrain slope = floorSlope(1.0);
+  const Terrain slope = slopeOf(1.0);
   for (double youngModulus : { 1e7, 1e8, 1e9, 1e10 })
   {
     double least = 1.0, most = 0.0;
@@ -165,6 +168,53 @@ TEST(Rebound, ElasticDropInAnyAttitudeKeepsEnergy)
     total, worst);
 }
 
+/// Boxes of any proportions on a face or an edge, without friction: what touches comes back with Rn
+/// times its speed, however many corners it is and whatever mass each of them would feel alone.
+TEST(Rebound, OfFacesAndEdgesIsThatOfTheCoefficient)
+{
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> u(0.0, 1.0);
+  for (const double e : { 0.2, 0.5, 0.8 })
+  {
+    SurfaceMaterial m = material(e, 0.0);
+    m.restitutionModel = RestitutionModel::NormalTangential;
+    const Terrain floor = makePlane(21, 100.0, 0.0, 0.0, m);
+    for (int k = 0; k < 100; ++k)
+    {
+      const bool edge = k % 2 == 1;
+      const Vec3 size(0.2 + 1.5 * u(random), 0.2 + 1.5 * u(random), 0.2 + 1.5 * u(random));
+      Rock rock = brick(size, Vec3(50.0, 50.0, 103.0), 1);
+      rock.orientation =
+        Quat(Eigen::AngleAxisd(edge ? 0.15 + 1.2 * u(random) : 0.0, Vec3::UnitY()));
+      rock.velocity = Vec3(0.0, 0.0, -3.0);
+      SimulationParameters p;
+      p.gravity = 1e-6;
+      p.endTime = 2.0;
+      p.rigid = true;
+      const Trajectory t = simulate(floor, rock, p);
+      ASSERT_GE(t.impacts.size(), 1u);
+      double back = t.impacts[0].velocityAfter.z();
+      if (edge)
+      {
+        // The impulse is that on the centroid, the speed that of the edge.
+        const Block block(rock.shape, rock.density, rock.youngModulus, rock.poissonRatio);
+        Vec3 lowest = Vec3::Constant(1e9);
+        for (const Vec3& v : rock.shape.vertices())
+        {
+          const Vec3 x = rock.orientation * v;
+          lowest = x.z() < lowest.z() ? x : lowest;
+        }
+        lowest.y() = 0.0;
+        const Quat turn = rock.orientation.conjugate();
+        back =
+          -3.0 + block.mass() * (back + 3.0) * block.mobility(turn * Vec3::UnitZ(), turn * lowest);
+      }
+      // The impact is resolved with eight steps.
+      EXPECT_NEAR(back / 3.0, e, 0.02) << (edge ? "edge " : "face ") << size.transpose();
+    }
+  }
+}
+
 TEST(Rebound, RollingAndSlidingAreNoImpacts)
 {
   // A cube pushed over a floor slides to rest in v² / 2μg, not slowed by Rv = 0.6 on the way.
@@ -172,7 +222,7 @@ TEST(Rebound, RollingAndSlidingAreNoImpacts)
   rock.velocity = Vec3(3.0, 0.0, 0.0);
   SimulationParameters p;
   p.endTime = 10.0;
-  const Trajectory t = simulate(floorSlope(0.6), rock, p);
+  const Trajectory t = simulate(slopeOf(0.6), rock, p);
   const double expected = 9.0 / (2.0 * kGravity * std::tan(radians(15.0)));
   EXPECT_EQ(t.summary.impacts, 0);
   EXPECT_EQ(t.summary.fate, Fate::Rested);
