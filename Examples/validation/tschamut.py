@@ -35,9 +35,9 @@ from rockfall_tables import columns_of
 # keeps its value. The restitution is normal and tangential (RestitutionModel 1).
 PARAMETERS = (
     ("RestitutionCoefficient", "--restitution", 0.3, None, "Rn, 0 to 1"),
-    ("TangentialRestitution", "--tangential", 0.886, (0.84, 0.93), "Rt, 0 to 1"),
-    ("FrictionAngle", "--friction", 37.0, (32.0, 52.0), "friction angle in degrees"),
-    ("RoughnessDeviation", "--roughness", 0.039, (0.0, 0.06), "deviation of the nodes' heights in m"),
+    ("TangentialRestitution", "--tangential", 0.875, (0.84, 0.93), "Rt, 0 to 1"),
+    ("FrictionAngle", "--friction", 46.0, (32.0, 52.0), "friction angle in degrees"),
+    ("RoughnessDeviation", "--roughness", 0.041, (0.0, 0.06), "deviation of the nodes' heights in m"),
 )
 CELL = 0.5  # m: about the size of the rocks, for which the ground is rough
 END = 60.0  # s
