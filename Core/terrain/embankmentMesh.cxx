@@ -124,6 +124,13 @@ public:
       }
     }
     mesh.connect(firstTriangle);
+    for (std::size_t k = firstTriangle; k < mesh.triangles.size(); ++k)
+    {
+      if (mesh.triangles[k].normal.z() < -1e-9)
+      {
+        this->failFolded(mesh.nodes[std::size_t(mesh.triangles[k].nodes[0])].position.head<2>());
+      }
+    }
   }
 
 private:
@@ -301,7 +308,7 @@ private:
       }
       if (a.first == 0 || b.last + 1 == int(stations_.size()))
       {
-        this->failFolded(a.first == 0 ? b.first : a.last);
+        this->failFolded(stations_[std::size_t(a.first == 0 ? b.first : a.last)].place);
       }
       a = this->bunch(a.first, b.last);
       bunches.erase(bunches.begin() + std::ptrdiff_t(k) + 1);
@@ -320,9 +327,9 @@ private:
     return b;
   }
 
-  [[noreturn]] void failFolded(int station) const
+  [[noreturn]] void failFolded(const Vec2& place) const
   {
-    this->fail(stations_[std::size_t(station)].place,
+    this->fail(place,
       "bends so sharply, for the length of its pieces, that its sides fold over themselves; "
       "draw a gentler bend or two lines");
   }
@@ -386,7 +393,7 @@ private:
         const double slope = (across - 0.5 * it_.crestWidth) / down;
         if (!(std::abs(slope - slope_[side]) <= kFanTolerance * std::max(slope_[side], 0.2)))
         {
-          this->failFolded(i);
+          this->failFolded(s.place);
         }
       }
     }

@@ -183,6 +183,49 @@ TEST(Obstacles, CrestsAreAsHighAsAskedForBesideBends)
   EXPECT_GT(bunches, 40);
 }
 
+/// Whatever line is drawn: it is refused, or no face looks down and no number is lost.
+TEST(Obstacles, WildLinesAreBuiltRightOrRefused)
+{
+  std::mt19937_64 random(9);
+  std::uniform_real_distribution<double> u(0.0, 1.0);
+  const Terrain ground = makeSlope(101, 1.0,
+    [](double x, double y)
+    { return 200.0 - 0.3 * x + std::sin(0.7 * y) + std::sin(0.5 * (x + y)); });
+  int built = 0;
+  for (int repeat = 0; repeat < 10000; ++repeat)
+  {
+    Embankment e;
+    e.height = 0.3 + 5.0 * u(random);
+    e.crestWidth = 0.2 + 5.0 * u(random);
+    e.mountainSlope = u(random) < 0.2 ? 0.0 : 2.0 * u(random);
+    e.valleySlope = u(random) < 0.2 ? 0.0 : 2.0 * u(random);
+    Eigen::Vector2d p(30.0 + 40.0 * u(random), 30.0 + 40.0 * u(random));
+    e.points = { p };
+    for (int k = 1 + int(5.0 * u(random)); k > 0; --k)
+    {
+      const double length = u(random) < 0.3 ? 0.5 : 20.0;
+      const double east = u(random) - 0.5, north = u(random) - 0.5;
+      p += length * Eigen::Vector2d(east, north);
+      e.points.push_back(p);
+    }
+    ObstacleMesh mesh;
+    try
+    {
+      addEmbankment(e, ground, mesh);
+    }
+    catch (const DataError&)
+    {
+      continue;
+    }
+    ++built;
+    for (const ObstacleMesh::Triangle& t : mesh.triangles)
+    {
+      EXPECT_GE(t.normal.z(), -1e-9) << repeat; // not of a number that is none
+    }
+  }
+  EXPECT_GT(built, 2000);
+}
+
 TEST(Obstacles, AnEdgeBetweenPiecesOfAPlaneIsNoFeature)
 {
   Terrain terrain = level(material(1.0, 0.0));
@@ -559,5 +602,9 @@ TEST(Obstacles, RefuseWhatCannotBeBuilt)
   e.points = { { 20.0, 50.0 }, { 50.0, 50.0 }, { 20.0, 50.5 } };
   EXPECT_TRUE(has(message(e, 0.0), "turns back on itself"));
   e.points = { { 20.0, 50.0 }, { 22.0, 50.0 }, { 22.0, 52.0 }, { 20.0, 52.0 } };
+  EXPECT_TRUE(has(message(e, 0.0), "fold over themselves"));
+  // A hook at the end that is shorter than the crest is wide.
+  e = dam(4.852, 0.656, 0.0);
+  e.points = { { 50.0, 50.0 }, { 49.7, 50.0 }, { 49.5, 50.4 }, { 49.8, 50.4 }, { 57.8, 42.2 } };
   EXPECT_TRUE(has(message(e, 0.0), "fold over themselves"));
 }
