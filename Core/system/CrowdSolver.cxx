@@ -102,9 +102,11 @@ void CrowdSolver::prepareRow(
   p.cohesion[lane] = group.cohesion;
   const bool closed = c.closed() && group.bounce < 0.0 && c.normalForce > 0.0;
   // The sweeps start from the forces of the last step.
-  p.force[0][lane] = closed ? c.normalForce : 0.0;
-  p.force[1][lane] = closed ? -row.shearPenalty * p.slip[0][lane] : 0.0;
-  p.force[2][lane] = closed ? -row.shearPenalty * p.slip[1][lane] : 0.0;
+  if (closed)
+  {
+    setLane(forces_[std::size_t(row.batch)].along, lane,
+      { c.normalForce, -row.shearPenalty * p.slip[0][lane], -row.shearPenalty * p.slip[1][lane] });
+  }
   this->lever(bodies, group, row);
   p.gap[lane] = row.gap0;
   if (group.bounce >= 0.0)
@@ -198,14 +200,15 @@ void CrowdSolver::pushed(const Row& row, double sign)
 {
   const crowd::Batch& p = batches_[std::size_t(row.batch)];
   const int lane = row.lane;
-  if (p.force[0][lane] == 0.0)
+  const Vec3 along = sign * this->forceOf(row);
+  if (along.isZero(0.0))
   {
     return;
   }
   Vec3 force = Vec3::Zero();
   for (int k = 0; k < 3; ++k)
   {
-    force += (sign * p.force[k][lane]) * laneOf(p.directions[k], lane);
+    force += along[k] * laneOf(p.directions[k], lane);
   }
   for (int side = 0; side < 2; ++side)
   {

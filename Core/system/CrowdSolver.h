@@ -39,7 +39,7 @@ public:
 
   /// Share of the largest displacement to which the sweeps go.
   double tolerance = 1e-4;
-  int maxSweeps = 12;
+  int maxSweeps = 4;
 
 private:
   /// Changes below this share of the tolerance are no reason to visit a contact again.
@@ -73,6 +73,10 @@ private:
   static Vec3 laneOf(const double (&of)[3][crowd::kLanes], int lane)
   {
     return { of[0][lane], of[1][lane], of[2][lane] };
+  }
+  Vec3 forceOf(const Row& row) const ///< Along the normal and the tangents, N.
+  {
+    return laneOf(forces_[std::size_t(row.batch)].along, row.lane);
   }
   void prepareBodies(const StepRequest& request, const std::vector<GroupBody>& bodies);
   void turnAs(Work& work, const Vec3& spun) const; ///< turned, mean and turn.
@@ -122,6 +126,9 @@ private:
   double visit(int part);
   double sweep();
   bool sweeps(int most, GroupOutcome& outcome);
+  void begin();                     ///< Before the first of a run of sweeps.
+  void goFurther();                 ///< Between two sweeps of a run: along a conjugate direction.
+  double changeOf(int first) const; ///< Of a block of movers from `first` on, N m.
   /// Sweeps, and again as long as bounces give energy.
   void settle(int most, std::vector<GroupContact>& contacts, GroupOutcome& outcome);
   bool holdBounces(std::vector<GroupContact>& contacts); ///< Whether any gives energy.
@@ -134,6 +141,7 @@ private:
   std::vector<Row> rows_;
   std::vector<ContactBooks> books_; ///< Out, by row.
   std::vector<crowd::Batch> batches_;
+  std::vector<crowd::Forces> forces_; ///< Of the contacts of each batch.
   /// In order along the group's largest extent, so that what threads work on lies apart; the slope
   /// is one more of each part, which nothing moves.
   std::vector<crowd::Mover> movers_;
@@ -155,6 +163,16 @@ private:
   std::vector<std::size_t> ends_;   ///< Behind the last contact of each part and kind in `order_`.
   std::vector<std::uint32_t> open_; ///< By mover: the batches being filled that hold it.
   std::vector<double> most_;        ///< Largest change, by part.
+  // Of the run of sweeps at hand (goFurther): what it was before the last sweep, and the direction
+  // in which it goes on, by batch and by mover.
+  struct Way
+  {
+    std::array<double, 6> of; ///< Displacement, m, and Cayley vector, rad.
+  };
+  std::vector<crowd::Forces> forcesBefore_, forcesAlong_;
+  std::vector<Way> before_, along_;
+  std::vector<double> changes_; ///< By block of movers.
+  double lastChange_ = 0.0;     ///< Of the sweep before; negative: there was none.
   crowd::Sweep kernel_ = nullptr;
   int sweep_ = 0;       ///< Number of the next sweep.
   int looked_ = 0;      ///< Number of the first one since lookAgain was asked.

@@ -33,14 +33,20 @@ struct alignas(64) Batch
   double friction[kLanes];         ///< tan φ
   double cohesion[kLanes];         ///< N
   double slip[2][kLanes];          ///< m
-  double force[3][kLanes];         ///< Along the directions, N.
   int body[2][kLanes];             ///< Index of the mover.
+};
+
+/// Forces of four contacts along their directions, N.
+struct alignas(32) Forces
+{
+  double along[3][kLanes];
 };
 
 /// A run of batches, swept in their order or backwards.
 struct Pass
 {
-  Batch* first;
+  const Batch* first;
+  Forces* forces; ///< Of the same contacts.
   int count;
   bool backwards;
   bool slope; ///< Contacts with the slope: the second rock is none.

@@ -59,6 +59,7 @@ void CrowdSolver::appendTo(
   for (const Hand& hand : hands)
   {
     batches_.push_back(hand.idle());
+    forces_.push_back({});
   }
   for (const int k : added)
   {
@@ -68,6 +69,7 @@ void CrowdSolver::appendTo(
   if (more > 0 && at < before)
   {
     std::rotate(batches_.begin() + at, batches_.begin() + before, batches_.end());
+    std::rotate(forces_.begin() + at, forces_.begin() + before, forces_.end());
     for (Row& row : rows_)
     {
       row.batch = row.batch >= before ? row.batch - before + at

@@ -8,6 +8,7 @@ namespace
 {
 
 using rockfall::crowd::Batch;
+using rockfall::crowd::Forces;
 using rockfall::crowd::kLanes;
 using rockfall::crowd::Mover;
 using rockfall::crowd::Pass;
@@ -131,7 +132,7 @@ ROCKFALL_INLINE void push(Side& side, const Triple& lever, const Triple& force)
 }
 
 template <bool onSlope>
-ROCKFALL_INLINE double relax(Batch& batch, const Pass& pass)
+ROCKFALL_INLINE double relax(const Batch& batch, Forces& forces, const Pass& pass)
 {
   Side a, b;
   take(pass.movers, batch.body[0], a);
@@ -151,26 +152,27 @@ ROCKFALL_INLINE double relax(Batch& batch, const Pass& pass)
     way.z -= b.ways[2] + turned.z;
   }
   const Triple n = load3(batch.directions[0]);
-  const Lanes before = load(batch.force[0]);
-  const Lanes before1 = load(batch.force[1]), before2 = load(batch.force[2]);
+  const Lanes before = load(forces.along[0]);
+  const Lanes before1 = load(forces.along[1]), before2 = load(forces.along[2]);
   const Lanes w = load(batch.w), friction = load(batch.friction), cohesion = load(batch.cohesion);
   const Lanes coupling1 = load(batch.coupling[0]), coupling2 = load(batch.coupling[1]);
   const Lanes zero = { 0.0, 0.0, 0.0, 0.0 }, one = { 1.0, 1.0, 1.0, 1.0 };
   // Where it slides friction grows with the normal force, and may work against it under a long
   // lever: taken for fixed, both would drive each other up from visit to visit. What is solved for
   // is the same.
-  const Lanes coheres = before * rockfall::kCohesionPerForce;
-  const Lanes held = friction * before + (coheres < cohesion ? coheres : cohesion);
+  const Lanes pressed = before > zero ? before : zero; // between sweeps it may be less
+  const Lanes coheres = pressed * rockfall::kCohesionPerForce;
+  const Lanes held = friction * pressed + (coheres < cohesion ? coheres : cohesion);
   const Lanes across = friction * (coupling1 * before1 + coupling2 * before2);
   const Mask slid = before1 * before1 + before2 * before2 > 0.999 * held * held;
-  const Mask against = slid & (across > zero);
+  const Mask against = slid & (across > zero) & (held > zero);
   const Lanes tied = against ? across / (against ? held : one) : zero;
   // The gap that the others leave, and the spring that closes it.
   const Lanes open = load(batch.gap) + dot(n, way) - (w + tied) * before;
   const Mask closes = open < zero;
   const Lanes stiffness = load(batch.stiffness);
   const Lanes normal = closes ? -stiffness * open / (one + stiffness * tied) : zero;
-  const Lanes any = normal + before;
+  const Lanes any = normal + absolute(before) + absolute(before1) + absolute(before2);
   if (any[0] + any[1] + any[2] + any[3] == 0.0)
   {
     return 0.0;
@@ -196,9 +198,9 @@ ROCKFALL_INLINE double relax(Batch& batch, const Pass& pass)
   s *= back;
   t *= back;
   const Lanes slide1 = s - before1, slide2 = t - before2;
-  store(batch.force[0], normal);
-  store(batch.force[1], s);
-  store(batch.force[2], t);
+  store(forces.along[0], normal);
+  store(forces.along[1], s);
+  store(forces.along[2], t);
   const Triple force = { more * n.x + slide1 * u.x + slide2 * v.x,
     more * n.y + slide1 * u.y + slide2 * v.y, more * n.z + slide1 * u.z + slide2 * v.z };
   push(a, leverA, force);
@@ -229,7 +231,8 @@ ROCKFALL_INLINE double sweepAll(const Pass& pass)
   double most = 0.0;
   for (int k = 0; k < pass.count; ++k)
   {
-    Batch& batch = pass.first[pass.backwards ? pass.count - 1 - k : k];
+    const int at = pass.backwards ? pass.count - 1 - k : k;
+    const Batch& batch = pass.first[at];
     // Where nothing has changed since the last visit there is nothing to do.
     int last = pass.changed[batch.body[0][0]];
     for (int i = 0; i < kLanes; ++i)
@@ -243,7 +246,7 @@ ROCKFALL_INLINE double sweepAll(const Pass& pass)
     {
       continue;
     }
-    const double change = relax<onSlope>(batch, pass);
+    const double change = relax<onSlope>(batch, pass.forces[at], pass);
     most = change > most ? change : most;
   }
   return most;

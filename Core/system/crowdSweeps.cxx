@@ -16,12 +16,12 @@ namespace
 
 /// Where nothing bounces forces are to be exact, and few contacts still change: so many times more
 /// sweeps.
-constexpr int kCalmSweeps = 25;
+constexpr int kCalmSweeps = 75;
 /// As long as the last sweep has moved something by more than this many times the tolerance, 3 % of
 /// the longest way, so many times more sweeps are made: forces as wrong as that would throw rocks
 /// about. It happens where light rocks with sharp corners lie under heavy ones.
 constexpr double kRough = 300.0;
-constexpr int kRoughSweeps = 100;
+constexpr int kRoughSweeps = 300;
 /// What is found in a second look is met to this many times the tolerance, which is about as exact
 /// as it is found, unless nothing bounces.
 constexpr double kFound = 4.0;
@@ -136,6 +136,7 @@ void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
   }
   starts_[keys] = count;
   batches_.resize(std::size_t(count));
+  forces_.assign(std::size_t(count), crowd::Forces{});
   const auto layOut = [&](int part)
   {
     const std::size_t key = std::size_t(part * kKinds);
@@ -222,6 +223,7 @@ double CrowdSolver::visit(int part)
     const int kind = pass.backwards ? kKinds - 1 - k : k;
     const std::size_t key = std::size_t(part * kKinds + kind);
     pass.first = batches_.data() + starts_[key];
+    pass.forces = forces_.data() + starts_[key];
     pass.count = starts_[key + 1] - starts_[key];
     pass.slope = kind >= 2;
     most = std::max(most, kernel_(pass));
@@ -241,8 +243,13 @@ bool CrowdSolver::sweeps(int most, GroupOutcome& outcome)
   bool settled = false;
   const auto goesOn = [&](int k)
   { return k < most || (k < kRoughSweeps * most && outcome.residual > kRough * enough_); };
+  this->begin();
   for (int k = 0; goesOn(k) && !settled; ++k, ++sweep_)
   {
+    if (k > 0)
+    {
+      this->goFurther();
+    }
     ++outcome.iterations;
     outcome.residual = this->sweep();
     settled = outcome.residual <= enough_;
@@ -256,12 +263,13 @@ bool CrowdSolver::holdBounces(std::vector<GroupContact>& contacts)
   {
     const Row& row = rows_[k];
     crowd::Batch& p = batches_[std::size_t(row.batch)];
-    if (contacts[k].bounce <= 0.0 || p.force[0][row.lane] <= 0.0)
+    const Vec3 force = this->forceOf(row);
+    if (contacts[k].bounce <= 0.0 || force[0] <= 0.0)
     {
       return false;
     }
     const auto [before, after] = this->velocities(row);
-    const double held = heldBounce(contacts[k], laneOf(p.force, row.lane), before, after);
+    const double held = heldBounce(contacts[k], force, before, after);
     if (held >= 0.0)
     {
       contacts[k].bounce = held;

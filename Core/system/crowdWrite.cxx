@@ -28,7 +28,8 @@ void CrowdSolver::write(const StepRequest& request, std::vector<GroupBody>& bodi
       const Work& w = work_[std::size_t(carrier)];
       c.point = w.position + w.way + w.turned * (c.point - w.position);
     }
-    if (p.force[0][lane] == 0.0 && !c.closed() && (group.bounce >= 0.0 || gap1 >= 0.0))
+    const Vec3 force = this->forceOf(row);
+    if (force[0] == 0.0 && !c.closed() && (group.bounce >= 0.0 || gap1 >= 0.0))
     {
       // Open before and after, as most are.
       c.distance = gap1 + c.offset;
@@ -46,8 +47,8 @@ void CrowdSolver::write(const StepRequest& request, std::vector<GroupBody>& bodi
     law.cohesion = group.cohesion;
     law.slip0 = { p.slip[0][lane], p.slip[1][lane] };
     law.evaluate(true, h_, p.gap[lane] + ways.way[0], ways.way.tail<2>());
-    law.force = p.force[0][lane];
-    law.shearForce = { p.force[1][lane], p.force[2][lane] };
+    law.force = force[0];
+    law.shearForce = force.tail<2>();
     ways.means = { this->meanWayOf(row, 0), this->meanWayOf(row, 1) };
     books_[k] = writeContact(law,
       { laneOf(p.directions[0], lane), laneOf(p.directions[1], lane),

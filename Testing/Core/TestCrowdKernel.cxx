@@ -21,6 +21,7 @@ struct Crowd
   std::vector<Mover> movers;
   std::vector<int> changed;
   std::vector<Batch> batches;
+  std::vector<Forces> forces;
 };
 
 /// Contacts of random directions between random rocks, no two of a batch on the same rock; with the
@@ -86,6 +87,7 @@ Crowd randomCrowd(int rocks, int batches, bool slope, unsigned seed)
       batch.body[1][lane] = slope ? rocks : order[std::size_t(2 * lane + 1)];
     }
     crowd.batches.push_back(batch);
+    crowd.forces.push_back({});
   }
   return crowd;
 }
@@ -97,6 +99,7 @@ double run(Crowd& crowd, Sweep sweep, bool slope, int sweeps)
   {
     Pass pass;
     pass.first = crowd.batches.data();
+    pass.forces = crowd.forces.data();
     pass.count = int(crowd.batches.size());
     pass.backwards = number % 2 != 0;
     pass.slope = slope;
@@ -116,6 +119,16 @@ TEST(CrowdKernel, SameBitsOnEveryProcessor)
   for (const bool slope : { false, true })
   {
     Crowd one = randomCrowd(40, 60, slope, 11);
+    // Between sweeps forces may be outside of their cones, and pull.
+    std::mt19937_64 random(12);
+    std::normal_distribution<double> force(0.0, 1e4);
+    for (Forces& forces : one.forces)
+    {
+      for (auto& along : forces.along)
+      {
+        std::generate(std::begin(along), std::end(along), [&] { return force(random); });
+      }
+    }
     Crowd other = one;
     const double a = run(one, sweepAnywhere, slope, 30);
     const double b = run(other, suitedSweep(), slope, 30);
@@ -124,7 +137,14 @@ TEST(CrowdKernel, SameBitsOnEveryProcessor)
     EXPECT_EQ(
       std::memcmp(one.movers.data(), other.movers.data(), sizeof(Mover) * one.movers.size()), 0);
     EXPECT_EQ(
-      std::memcmp(one.batches.data(), other.batches.data(), sizeof(Batch) * one.batches.size()), 0);
+      std::memcmp(one.forces.data(), other.forces.data(), sizeof(Forces) * one.forces.size()), 0);
+    for (const Forces& forces : one.forces)
+    {
+      for (int lane = 0; lane < kLanes; ++lane)
+      {
+        EXPECT_GE(forces.along[0][lane], 0.0); // also where it pulled before; no NaN
+      }
+    }
   }
 }
 
@@ -149,8 +169,10 @@ TEST(CrowdKernel, MomentumIsKeptAndSpringsAreMet)
     EXPECT_NEAR(momentum(k), before[k], 1e-10 * 40 * 3e5);
   }
   int pressed = 0, sliding = 0;
-  for (const Batch& b : crowd.batches)
+  for (std::size_t at = 0; at < crowd.batches.size(); ++at)
   {
+    const Batch& b = crowd.batches[at];
+    const Forces& forces = crowd.forces[at];
     for (int lane = 0; lane < kLanes; ++lane)
     {
       double gap = b.gap[lane];
@@ -166,10 +188,10 @@ TEST(CrowdKernel, MomentumIsKeptAndSpringsAreMet)
           gap += (side == 0 ? way : -way) * b.directions[0][k][lane];
         }
       }
-      const double normal = b.force[0][lane];
+      const double normal = forces.along[0][lane];
       // Of a spring of 1e9 N/m, to 1e-9 m.
       EXPECT_NEAR(normal, std::max(0.0, -1e9 * gap), 1.0 + 1e-6 * normal);
-      const double shear = std::hypot(b.force[1][lane], b.force[2][lane]);
+      const double shear = std::hypot(forces.along[1][lane], forces.along[2][lane]);
       const double limit = 0.3 * normal + (normal > 0.0 ? b.cohesion[lane] : 0.0);
       EXPECT_LE(shear, limit * (1.0 + 1e-12));
       pressed += normal > 0.0;
