@@ -6,6 +6,8 @@
 #include "block/Block.h"
 #include "terrain/Surface.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -48,6 +50,7 @@ struct Contact
   double stiffness = 0.0;      ///< pₙ, N/m.
   double shearStiffness = 0.0; ///< pₛ, N/m.
   double dashpot = 0.0;        ///< Along the normal, during impacts, N s/m.
+  double stopped = 1e300;      ///< Mass that this dashpot stops, kg.
   double shearDashpot = 0.0;   ///< In its plane, during impacts, N s/m.
   /// Of the ground under it, given before every step (< 0: as the step's request says).
   double friction = -1.0;   ///< tan φ
@@ -67,6 +70,12 @@ struct Contact
       : 0.0;
   }
 };
+
+inline std::ptrdiff_t closedCount(const std::vector<Contact>& contacts)
+{
+  return std::count_if(
+    contacts.begin(), contacts.end(), [](const Contact& c) { return c.closed(); });
+}
 
 /// A block as it stands in the world: what contact detection reads.
 class PlacedBlock

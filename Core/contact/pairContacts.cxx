@@ -97,6 +97,7 @@ void handOver(const std::vector<char>& taken, const std::vector<char>& known,
       c.stiffness = strongest->stiffness;
       c.shearStiffness = strongest->shearStiffness;
       c.dashpot = strongest->dashpot;
+      c.stopped = strongest->stopped;
       c.shearDashpot = strongest->shearDashpot;
       c.frequency2 = strongest->frequency2;
     }

@@ -18,6 +18,9 @@ namespace
 /// Steps per half period of a vertex on its penalty spring: the impact is then resolved well enough
 /// for the order in which several vertices touch, and energy does not depend on it at all.
 constexpr double kStepsPerImpact = 8.0;
+/// Of many springs a motion feels about this part of what all their frequencies, squared, add up
+/// to.
+constexpr double kOneMotion = 0.25;
 /// Largest part of the rock's radius, and largest angle (rad), covered in a step of contact.
 constexpr double kTravelPerStep = 0.1;
 /// A rock lies still when it has been slower than this share of √(g r) for this long (s).
@@ -43,6 +46,24 @@ constexpr double kFastVibration = 1000.0;
 /// and of its thickness.
 constexpr double kDeepestImpact = 0.1;
 constexpr double kDeepestOfThin = 0.25;
+
+/// Frequencies of a block on the springs of several contacts, squared, 1/s².
+struct ImpactFrequency
+{
+  double sum = 0.0;      ///< Of each alone.
+  double together = 0.0; ///< Of what they stop together (impactMode.h).
+
+  void add(const Contact& c, bool acts)
+  {
+    this->sum += acts ? c.frequency2 : 0.0;
+    this->together = std::max(this->together, acts ? c.stiffness / c.stopped : 0.0);
+  }
+  /// `one`: of one where the block is turned best.
+  double ofAll(double one) const
+  {
+    return std::min(this->sum, std::max({ one, kOneMotion * this->sum, this->together }));
+  }
+};
 
 } // namespace
 
@@ -80,15 +101,28 @@ double RockSimulator::travelLimit() const
 
 double RockSimulator::impactStep() const
 {
-  double stiffest = 0.0;
+  ImpactFrequency closed;
   for (const Contact& c : contacts_)
   {
-    stiffest += c.closed() ? c.frequency2 : 0.0;
+    closed.add(c, c.closed());
   }
-  const double all = penalty_ * block_.largestMobility();
-  const double frequency = std::sqrt(stiffest > 0.0 ? std::min(stiffest, all) : all);
-  const double resolved = std::numbers::pi / (kStepsPerImpact * frequency);
+  const double one = penalty_ * block_.largestMobility();
+  const double frequency2 = closed.sum > 0.0 ? closed.ofAll(one) : one;
+  const double resolved = std::numbers::pi / (kStepsPerImpact * std::sqrt(frequency2));
   return std::min({ parameters_.timeStep, resolved, this->travelLimit() });
+}
+
+double RockSimulator::touchdownStep(double h) const
+{
+  ImpactFrequency closing;
+  const Vec3 spin = state_.angularVelocity();
+  for (const Contact& c : contacts_)
+  {
+    const double approach = -c.normal.dot(state_.velocity + spin.cross(c.point - state_.position));
+    closing.add(c, c.closed() || c.gap() < approach * h);
+  }
+  const double frequency2 = closing.ofAll(penalty_ * block_.largestMobility());
+  return std::min(h, std::numbers::pi / (kStepsPerImpact * std::sqrt(frequency2)));
 }
 
 double RockSimulator::mechanicalEnergy() const

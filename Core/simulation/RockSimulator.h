@@ -132,6 +132,8 @@ private:
   double dampingRatioOf(int restitutionClass); ///< ζ for the restitution of a class.
   double impactStep() const;
   double travelLimit() const;
+  /// What the contacts that are closed or close within a step of `h` allow of it, s.
+  double touchdownStep(double h) const;
   /// Whether the horizon is reached, but for what is too short to be a step.
   bool arrived() const { return state_.time >= horizon_ - 1e-9; }
   double mechanicalEnergy() const; ///< Without contact springs, J.

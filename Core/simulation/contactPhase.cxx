@@ -5,6 +5,7 @@
 #include "simulation/impactMode.h"
 #include "simulation/pressOut.h"
 #include "simulation/restitution.h"
+#include "solver/cohesion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -184,6 +185,15 @@ void RockSimulator::stayInContact()
       placed_, patch_, candidates_, kLooseOverlap * block_.radius() + 2.0 * pressed, contacts_);
     h = std::max(h, 1e-12);
     this->armContacts(h);
+    if (kind == StepKind::Impact && contacts_.size() > 1)
+    {
+      const double touchdown = this->touchdownStep(h);
+      if (touchdown < (1.0 - 1e-9) * h)
+      {
+        h = touchdown;
+        this->armContacts(h);
+      }
+    }
     this->takeStep(h, kind);
     this->checkEnd(state_.time - before_.time);
   }
@@ -208,6 +218,13 @@ void RockSimulator::armContacts(double h)
   for (Contact& c : contacts_)
   {
     this->armContact(c);
+  }
+  if (const std::ptrdiff_t points = closedCount(contacts_); points > kCohesivePoints)
+  {
+    for (Contact& c : contacts_)
+    {
+      c.cohesion = sharedCohesion(c.cohesion, points);
+    }
   }
   if (!crowded_)
   {
@@ -245,6 +262,7 @@ void RockSimulator::armContact(Contact& c)
     surface_.restitutionOf(ground), this->dampingRatioOf(ground), approach, down);
   const double mobility = block_.mobility(n, y);
   c.frequency2 = c.stiffness * mobility;
+  c.stopped = 1.0 / mobility;
   c.dashpot = damped > 0.0 ? 2.0 * damped * std::sqrt(c.stiffness / mobility) : 0.0;
   c.shearDashpot = 2.0 * kShearDamping * std::sqrt(c.shearStiffness / block_.mobility(t, y));
 }

@@ -65,7 +65,9 @@ void tuneDashpots(
   {
     if (!c.closed() && stops(c, approachOf(c)))
     {
-      c.dashpot *= std::sqrt(c.frequency2 / std::max(frequency2, kLowest * c.frequency2));
+      const double together2 = std::max(frequency2, kLowest * c.frequency2);
+      c.dashpot *= std::sqrt(c.frequency2 / together2);
+      c.stopped = c.stiffness / together2;
     }
   }
 }

@@ -71,6 +71,7 @@ public:
     c.stiffness = penalty_ / (1.0 + penalty_ * soft);
     c.shearStiffness = shear_ / (1.0 + shear_ * softAlong);
     c.frequency2 = c.stiffness * mobile;
+    c.stopped = 1.0 / mobile;
     c.dashpot = damping_ > 0.0 ? 2.0 * damping_ * std::sqrt(c.stiffness / mobile) : 0.0;
     c.shearDashpot = 2.0 * kShearDamping * std::sqrt(c.shearStiffness / mobileAlong);
   }

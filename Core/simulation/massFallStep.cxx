@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "simulation/pressOut.h"
 #include "simulation/restitution.h"
+#include "solver/cohesion.h"
 
 #include <algorithm>
 #include <atomic>
@@ -87,6 +88,10 @@ GroupContact MassFall::take(RockPair& pair, Contact& c, double h, bool bounces) 
   k.second = b.place;
   k.friction = pair.law.friction;
   k.cohesion = pair.law.cohesion;
+  if (k.cohesion > 0.0)
+  {
+    k.cohesion = sharedCohesion(k.cohesion, closedCount(pair.contacts));
+  }
   k.approach = -c.normal.dot(this->relativeVelocity(pair, c.point));
   const bool impacts = hits(c, k.approach, resting, h);
   k.bounce = bounces && impacts ? pair.law.restitution * k.approach : -1.0;

@@ -114,7 +114,7 @@ void BlockStep<N>::prepareRows(const Block& block, const BlockState& state,
     row.penalty = c.stiffness > 0.0 ? c.stiffness : request.normalPenalty;
     row.shearPenalty = c.stiffness > 0.0 ? c.shearStiffness : request.shearPenalty;
     const bool impact = request.kind == StepKind::Impact;
-    row.dashpot = impact ? c.dashpot : 0.0;
+    row.dashpot = impact ? dashpotOver(request.duration, c.dashpot, c.stopped) : 0.0;
     row.shearLag = impact ? c.shearDashpot / row.shearPenalty : 0.0;
     row.friction = c.friction >= 0.0 ? c.friction : request.friction;
     row.cohesion = c.cohesion >= 0.0 ? c.cohesion : request.cohesion;

@@ -68,6 +68,13 @@ inline NormalSpring dampedSpring(double p, double rate, double d0, double d1)
   return s;
 }
 
+/// A dashpot (N s/m) as it acts over a step of `h` (s) on the mass that it stops (kg). By the mean
+/// velocity of the step more than this would turn the mass round, not stop it.
+inline double dashpotOver(double h, double dashpot, double stopped)
+{
+  return std::min(dashpot, 2.0 * stopped / h);
+}
+
 /// Shi's: the force at the end of the step.
 inline NormalSpring endSpring(double p, double d1)
 {

@@ -91,7 +91,7 @@ void GroupSolver::prepareRows(const StepRequest& request, const std::vector<Grou
     law.gap0 = row.gap0 = c.gap();
     law.penalty = c.stiffness;
     law.shearPenalty = c.shearStiffness;
-    law.dashpot = lasting ? 0.0 : c.dashpot;
+    law.dashpot = lasting ? 0.0 : dashpotOver(request.duration, c.dashpot, c.stopped);
     law.shearLag = lasting ? 0.0 : c.shearDashpot / c.shearStiffness;
     law.friction = group.friction;
     law.cohesion = group.cohesion;
