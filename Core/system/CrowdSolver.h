@@ -39,7 +39,7 @@ public:
 
   /// Share of the largest displacement to which the sweeps go.
   double tolerance = 1e-4;
-  int maxSweeps = 4;
+  int maxSweeps = 6;
 
 private:
   /// Changes below this share of the tolerance are no reason to visit a contact again.

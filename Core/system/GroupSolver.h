@@ -55,7 +55,7 @@ public:
   GroupMethod method = GroupMethod::Suited;
   /// Share of the largest displacement to which Gauss–Seidel goes.
   double tolerance = 1e-4;
-  int maxSweeps = 4;
+  int maxSweeps = 6;
 
 private:
   static constexpr std::size_t kBodyGrain = 64, kRowGrain = 256; ///< For one thread at a time.

@@ -16,12 +16,12 @@ namespace
 
 /// Where nothing bounces forces are to be exact, and few contacts still change: so many times more
 /// sweeps.
-constexpr int kCalmSweeps = 75;
+constexpr int kCalmSweeps = 50;
 /// As long as the last sweep has moved something by more than this many times the tolerance, 3 % of
 /// the longest way, so many times more sweeps are made: forces as wrong as that would throw rocks
 /// about. It happens where light rocks with sharp corners lie under heavy ones.
 constexpr double kRough = 300.0;
-constexpr int kRoughSweeps = 300;
+constexpr int kRoughSweeps = 200;
 /// What is found in a second look is met to this many times the tolerance, which is about as exact
 /// as it is found, unless nothing bounces.
 constexpr double kFound = 4.0;
