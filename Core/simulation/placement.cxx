@@ -97,9 +97,29 @@ double above(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1)
   return b0.z() + t * (b1.z() - b0.z()) - (a0.z() + s * (a1.z() - a0.z()));
 }
 
+/// How far the body has to be raised for its edges over the straight line between two points of the
+/// ground; −∞ if there are none over it.
+double liftOverLine(const Body& body, const Vec3& a, const Vec3& b)
+{
+  double lift = none;
+  const double r = body.shape.radius();
+  if (std::min(a.x(), b.x()) > body.x + r || std::max(a.x(), b.x()) < body.x - r ||
+    std::min(a.y(), b.y()) > body.y + r || std::max(a.y(), b.y()) < body.y - r)
+  {
+    return lift;
+  }
+  for (const Polyhedron::Edge& edge : body.shape.edges())
+  {
+    lift = std::max(lift,
+      above(body.vertices[std::size_t(edge.vertices[0])],
+        body.vertices[std::size_t(edge.vertices[1])], a, b));
+  }
+  return lift;
+}
+
 /// How far the body has to be raised for its faces over the nodes of a patch and for its edges over
-/// the ridges; −∞ if there are none under it.
-double liftOverNodesAndRidges(const Body& body, const SurfacePatch& patch)
+/// the ridges and over the rims of holes; −∞ if there are none under it.
+double liftOverNodesAndEdges(const Body& body, const SurfacePatch& patch)
 {
   double lift = none;
   const double r = body.shape.radius();
@@ -114,18 +134,23 @@ double liftOverNodesAndRidges(const Body& body, const SurfacePatch& patch)
   }
   for (const SurfacePatch::Ridge& ridge : patch.ridges)
   {
-    const Vec3& a = patch.nodes[std::size_t(ridge.nodes[0])].position;
-    const Vec3& b = patch.nodes[std::size_t(ridge.nodes[1])].position;
-    if (std::min(a.x(), b.x()) > body.x + r || std::max(a.x(), b.x()) < body.x - r ||
-      std::min(a.y(), b.y()) > body.y + r || std::max(a.y(), b.y()) < body.y - r)
+    lift = std::max(lift,
+      liftOverLine(body, patch.nodes[std::size_t(ridge.nodes[0])].position,
+        patch.nodes[std::size_t(ridge.nodes[1])].position));
+  }
+  // Beside nodata a triangle ends in an edge that is no ridge of the patch. Its outermost sides are
+  // like that, too, and clear of the rock; those of obstacles are underground.
+  for (int i = 0; i < patch.slopeTriangles; ++i)
+  {
+    const SurfacePatch::Triangle& t = patch.triangles[std::size_t(i)];
+    for (std::size_t k = 0; t.cfe != 0 && k < 3; ++k)
     {
-      continue;
-    }
-    for (const Polyhedron::Edge& edge : body.shape.edges())
-    {
-      lift = std::max(lift,
-        above(body.vertices[std::size_t(edge.vertices[0])],
-          body.vertices[std::size_t(edge.vertices[1])], a, b));
+      if (t.neighbours[k] < 0)
+      {
+        lift = std::max(lift,
+          liftOverLine(body, patch.nodes[std::size_t(t.nodes[k])].position,
+            patch.nodes[std::size_t(t.nodes[(k + 1) % 3])].position));
+      }
     }
   }
   return lift;
@@ -186,7 +211,7 @@ double touchingHeight(
   SurfacePatch patch;
   const double r = shape.radius();
   gatherPatch(surface, x - r, x + r, y - r, y + r, patch);
-  return std::max(lift, liftOverNodesAndRidges(body, patch));
+  return std::max(lift, liftOverNodesAndEdges(body, patch));
 }
 
 double liftOut(const PlacedBlock& rock, const SurfacePatch& patch)
@@ -196,7 +221,7 @@ double liftOut(const PlacedBlock& rock, const SurfacePatch& patch)
   const Body body(
     rock.block().shape(), rock.rotation(), rock.position().x(), rock.position().y(), 1.0 - kTouch);
   const double height =
-    std::max(liftOverNodesAndRidges(body, patch), liftOverTriangles(body, patch));
+    std::max(liftOverNodesAndEdges(body, patch), liftOverTriangles(body, patch));
   const double lift = height - rock.position().z();
   return lift > kTouch * rock.block().radius() ? lift : 0.0;
 }

@@ -13,8 +13,8 @@ namespace rockfall
 /// The height of the centroid (m) at which a polyhedron, centroid at the origin, turned by
 /// `orientation` (unit), just touches the surface when it comes down along z at this place (local
 /// frame, m). Exact for triangulated surfaces: vertices over faces, faces over nodes, edges over
-/// edges. NaN where there is no CFE under the centroid; what hangs over the edge of the slope
-/// touches nothing.
+/// edges, those at the rims of holes among them. NaN where there is no CFE under the centroid; what
+/// hangs over the edge of the slope touches nothing.
 double touchingHeight(
   const Surface& surface, const Polyhedron& shape, const Quat& orientation, double x, double y);
 

@@ -1,5 +1,5 @@
 // Rocks that are released in an embankment, or in ground that roughness raised, are lifted out of
-// it: as far as it takes and no farther.
+// it: as far as it takes and no farther, at the rims of holes as well.
 
 #include "base/errors.h"
 #include "contact/Contact.h"
@@ -77,6 +77,20 @@ Terrain withDam(double slope, double width, std::vector<Eigen::Vector2d> points,
   s.embankments = { e };
   terrain.setStructures(s);
   return terrain;
+}
+
+/// Uneven ground about 5 m high, a fifth of whose nodes have no height.
+Terrain withHoles(unsigned seed)
+{
+  Numbers number(seed);
+  return makeSlope(
+    21, 1.0,
+    [&](double, double)
+    {
+      const double z = 5.0 + number(-0.4, 0.4);
+      return number(0.0, 1.0) < 0.2 ? std::numeric_limits<double>::quiet_NaN() : z;
+    },
+    material(0.5, 30.0));
 }
 
 const std::vector<Eigen::Vector2d> straight{ { 50.0, 10.0 }, { 50.0, 90.0 } };
@@ -282,4 +296,129 @@ TEST(Starts, AnEdgeAcrossARidgeOfTheSlopeIsInsideIt)
     { "block 5", "starts inside the slope, by 0.1" }));
   rock.position.z() += 0.1 + 1e-7;
   EXPECT_NO_THROW(simulate(terrain, rock, p));
+}
+
+/// A triangle beside nodata ends in an edge that is a ridge of nothing, and cuts rocks as one does.
+TEST(Starts, RimsOfHolesAreClearOfEdgesToo)
+{
+  Numbers number(6);
+  int lifted = 0, overHoles = 0;
+  for (int k = 0; k < 300; ++k)
+  {
+    const Terrain terrain = withHoles(1000 + unsigned(k));
+    const Surface surface = Surface::asSurveyed(terrain);
+    const Block block(number.shape(k, number(0.05, 1.0)), 2500.0, 1e10, 0.1);
+    BlockState state;
+    state.orientation = number.attitude();
+    // Over the outer edge as well.
+    state.position = Vec3(number(0.0, 20.0), number(0.0, 20.0), 0.0);
+    const double touching = touchingHeight(
+      surface, block.shape(), state.orientation, state.position.x(), state.position.y());
+    const bool hole = std::isnan(touching);
+    state.position.z() = hole ? 5.0 : touching;
+    state.position.z() -= number(0.0, 0.8) * block.radius();
+    PlacedBlock rock;
+    rock.place(block, state);
+    const SurfacePatch patch = patchUnder(surface, rock);
+    const double lift = liftOut(rock, patch), hair = 1e-5 * block.radius();
+    EXPECT_TRUE(isClear(block, state, lift + 2.0 * hair, patch)) << k;
+    if (lift > 0.0)
+    {
+      EXPECT_FALSE(isClear(block, state, lift - hair, patch)) << k;
+      ++lifted;
+      overHoles += hole;
+    }
+    if (!hole)
+    {
+      // What was set down is clear, but for what of it is beyond the outer edge.
+      const Vec3 &low = rock.lower(), &high = rock.upper();
+      if (low.x() > 0.0 && low.y() > 0.0 && high.x() < 20.0 && high.y() < 20.0)
+      {
+        EXPECT_TRUE(isClear(block, state, touching - state.position.z() + 2.0 * hair, patch)) << k;
+        EXPECT_NEAR(state.position.z() + lift, touching, hair) << k;
+      }
+    }
+  }
+  EXPECT_GT(lifted, 200);
+  EXPECT_GT(overHoles, 50);
+}
+
+TEST(Starts, ABarOverARimLeansOnIt)
+{
+  // Level ground at 20 m with a hole from x = 8 m on, and a bar on an edge that dips into it by
+  // 30°.
+  const Terrain terrain = makeSlope(21, 1.0,
+    [](double x, double y)
+    {
+      const bool hole = x > 8.5 && x < 14.5 && y > 6.5 && y < 14.5;
+      return hole ? std::numeric_limits<double>::quiet_NaN() : 20.0;
+    });
+  const double dip = radians(30.0), half = 0.15 * std::sqrt(2.0);
+  Rock rock;
+  rock.blockId = 5;
+  rock.shape = makeBox(Vec3(4.0, 0.3, 0.3)).centred();
+  rock.orientation = Quat(Eigen::AngleAxisd(dip, Vec3::UnitY())) *
+    Quat(Eigen::AngleAxisd(radians(45.0), Vec3::UnitX()));
+  // No node of the rim is under it: they are at whole metres.
+  rock.position = Vec3(7.8, 10.5, 0.0);
+  const double height = 20.0 + half / std::cos(dip) + 0.2 * std::tan(dip);
+  EXPECT_NEAR(touchingHeight(Surface::asSurveyed(terrain), rock.shape, rock.orientation, 7.8, 10.5),
+    height, 1e-12);
+  SimulationParameters p;
+  p.endTime = 0.1;
+  rock.position.z() = height - 0.1;
+  EXPECT_TRUE(holds(messageOf<PlacementError>([&] { simulate(terrain, rock, p); }),
+    { "block 5", "starts inside the slope, by 0.1" }));
+  rock.position.z() = height + 1e-7;
+  EXPECT_NO_THROW(simulate(terrain, rock, p));
+}
+
+/// Roughness raises rims into rocks, too. What is lifted out of one falls and makes no energy.
+TEST(Starts, RocksLiftedOutOfRimsFallFromThere)
+{
+  Numbers number(7);
+  int rocks = 0;
+  for (int k = 0; k < 100; ++k)
+  {
+    Roughness roughness;
+    roughness.mean = 0.3;
+    roughness.deviation = 0.2;
+    const Terrain holes = withHoles(unsigned(k));
+    const Terrain terrain = makeSlope(
+      21, 1.0, [&](double x, double y) { return holes.nodeHeight(20 - int(y), int(x)); },
+      material(0.5, 30.0), roughness);
+    Rock rock;
+    rock.shape = number.shape(k, number(0.05, 1.0));
+    rock.orientation = number.attitude();
+    rock.position = Vec3(number(2.0, 18.0), number(2.0, 18.0), 0.0);
+    rock.position.z() = touchingHeight(Surface::asSurveyed(terrain), rock.shape, rock.orientation,
+      rock.position.x(), rock.position.y());
+    if (std::isnan(rock.position.z()))
+    {
+      continue;
+    }
+    ++rocks;
+    SimulationParameters p;
+    p.endTime = 2.0;
+    p.seed = 3;
+    const Trajectory trajectory = simulate(terrain, rock, p);
+    const Block block(rock.shape, 2500.0, 1e10, 0.1);
+    BlockState state;
+    state.orientation = rock.orientation;
+    state.position = trajectory.samples.front().position;
+    PlacedBlock placed;
+    placed.place(block, state);
+    EXPECT_EQ(liftOut(placed, patchUnder(Surface(terrain, p.seed, 0), placed)), 0.0) << k;
+    EXPECT_TRUE(
+      isClear(block, state, 2e-5 * block.radius(), patchUnder(Surface(terrain, p.seed, 0), placed)))
+      << k;
+    for (const Sample& sample : trajectory.samples)
+    {
+      const double fallen = state.position.z() - sample.position.z();
+      EXPECT_GT(
+        kGravity * fallen + 0.03 * kGravity * block.radius(), 0.5 * sample.velocity.squaredNorm())
+        << k << " at " << sample.time << " s";
+    }
+  }
+  EXPECT_GT(rocks, 30);
 }
