@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "contact/motion.h"
 #include "simulation/massFallMeet.h"
+#include "simulation/raising.h"
 
 #include <algorithm>
 #include <atomic>
@@ -97,9 +98,27 @@ bool MassFall::Member::arrive()
 
 void MassFall::release()
 {
+  std::vector<RaisedRock> raised;
+  raised.reserve(members_.size());
+  std::vector<double> lifts; // of each by itself, m
   for (const auto& member : members_)
   {
-    member->sim.release();
+    RockSimulator& sim = member->sim;
+    const BlockState given = sim.state_;
+    sim.liftOntoGround();
+    raised.push_back({ &sim.block_, given, sim.state_.position.z() - given.position.z() });
+    lifts.push_back(raised.back().lift);
+  }
+  raiseOthers(raised);
+  for (std::size_t i = 0; i < members_.size(); ++i)
+  {
+    RockSimulator& sim = members_[i]->sim;
+    if (raised[i].lift > lifts[i])
+    {
+      sim.state_.position.z() = raised[i].state.position.z() + raised[i].lift;
+      sim.placed_.place(sim.block_, sim.state_);
+    }
+    sim.begin();
   }
 }
 

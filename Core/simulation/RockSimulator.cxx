@@ -377,11 +377,16 @@ void RockSimulator::liftOntoGround()
 
 void RockSimulator::release()
 {
+  this->liftOntoGround();
+  this->begin();
+}
+
+void RockSimulator::begin()
+{
   TrajectorySummary& summary = recorder_.trajectory().summary;
   summary.blockId = rock_.blockId;
   summary.mass = block_.mass();
   summary.volume = block_.volume();
-  this->liftOntoGround();
   energyAtStart_ = this->mechanicalEnergy();
   recorder_.begin(state_);
   this->auditSamples(state_);

@@ -80,6 +80,7 @@ private:
 
   /// Straight up, at the start, as far as roughness and embankments make it needed.
   void liftOntoGround();
+  void begin(); ///< From where it stands.
 
   // Flight, RockSimulator.cxx
   void flyUntilNear(); ///< Returns when a touch is possible within a few steps, or at the end.
