@@ -77,4 +77,19 @@ bool runShared(const Ensemble& ensemble, const KeptParts& kept, TrajectorySink* 
   return true;
 }
 
+PushedApart pushedOnAll(const Ensemble& ensemble, const Ranks& ranks)
+{
+  const PushedApart own = ensemble.pushed();
+  const std::vector<double> rocks = ranks.gather(double(own.rocks));
+  const std::vector<double> ways = ranks.gather(own.farthest);
+  const std::vector<int> passes = ranks.gather(own.passes);
+  const std::vector<int> iterations = ranks.gather(int(own.iterations));
+  PushedApart all;
+  for (std::size_t k = 0; k < rocks.size(); ++k)
+  {
+    all.add({ std::int64_t(rocks[k]), ways[k], passes[k], iterations[k] });
+  }
+  return all;
+}
+
 } // namespace rockfall::filters

@@ -49,6 +49,21 @@ enum OutputPorts
 /// More time steps than this are not listed, only their range is.
 constexpr double mostTimeSteps = 1e6;
 
+void tellPushed(
+  const rockfall::Ensemble& ensemble, const rockfall::PushedApart& pushed, const Ranks& ranks)
+{
+  if (ranks.rank() != 0 || pushed.rocks == 0)
+  {
+    return;
+  }
+  const int iterations = ensemble.parameters().iterations;
+  rockfall::filters::showNote("PushRocksApart moved " +
+    std::string(ensemble.pushesAnew() ? "up to " : "") + std::to_string(pushed.rocks) + " of " +
+    std::to_string(ensemble.trajectoriesPerUnit()) + " blocks, by up to " +
+    std::to_string(pushed.farthest) + " m, in " + std::to_string(pushed.iterations) + " of " +
+    std::to_string(iterations) + " iterations");
+}
+
 } // namespace
 
 struct vtkRockfallSimulation::Cache : KeptRun
@@ -215,13 +230,11 @@ bool vtkRockfallSimulation::Simulate(vtkPolyData* terrainInput, vtkPolyData* roc
   {
     run->parts.wholeIteration = this->FirstIteration + this->ShownIteration;
   }
-  if (ranks.rank() == 0 && run->ensemble->pushed().rocks > 0)
+  // What is the same in all iterations is known before they run.
+  const bool anew = run->ensemble->pushesAnew();
+  if (!anew)
   {
-    const rockfall::PushedApart& pushed = run->ensemble->pushed();
-    rockfall::filters::showNote("PushRocksApart moved " + std::to_string(pushed.rocks) + " of " +
-      std::to_string(run->ensemble->trajectoriesPerUnit()) + " blocks in iteration " +
-      std::to_string(this->FirstIteration) + ", by up to " + std::to_string(pushed.farthest) +
-      " m");
+    tellPushed(*run->ensemble, run->ensemble->pushed(), ranks);
   }
   rockfall::filters::RunSink sink(run->frame, run->parts);
   rockfall::filters::ProgressReport report(this, run->ensemble->size(),
@@ -231,6 +244,10 @@ bool vtkRockfallSimulation::Simulate(vtkPolyData* terrainInput, vtkPolyData* roc
         *run->ensemble, run->parts, &sink, ranks, std::ref(report), this->NoMemory()))
   {
     return false;
+  }
+  if (anew)
+  {
+    tellPushed(*run->ensemble, rockfall::filters::pushedOnAll(*run->ensemble, ranks), ranks);
   }
   if (ranks.rank() == 0)
   {

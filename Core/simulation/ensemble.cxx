@@ -266,16 +266,24 @@ Ensemble::Ensemble(
     if (std::none_of(rocks.begin(), rocks.end(), [](const Rock& r) { return r.uncertainty.any(); }))
     {
       requireEachOnce(rocks, terrain.geometry().origin());
-      start_ = this->released(p.firstIteration, &pushed_);
+      start_ = this->released(p.firstIteration, pushed_);
+      pushed_.iterations *= p.iterations;
     }
     else
     {
-      this->released(p.firstIteration, &pushed_); // throws what would stop the run at once
+      PushedApart first;
+      this->released(p.firstIteration, first); // throws what would stop the run at once
     }
   }
 }
 
-std::vector<Rock> Ensemble::released(int iteration, PushedApart* pushed) const
+PushedApart Ensemble::pushed() const
+{
+  const std::lock_guard<std::mutex> lock(pushing_);
+  return pushed_;
+}
+
+std::vector<Rock> Ensemble::released(int iteration, PushedApart& pushed) const
 {
   std::vector<Rock> rocks(rocks_.begin(), rocks_.end());
   bool drawn = false;
@@ -289,11 +297,7 @@ std::vector<Rock> Ensemble::released(int iteration, PushedApart* pushed) const
   }
   if (parameters_.pushRocksApart)
   {
-    const PushedApart done = pushApart(terrain_, rocks);
-    if (pushed)
-    {
-      *pushed = done;
-    }
+    pushed = pushApart(terrain_, rocks);
   }
   else
   {
@@ -335,7 +339,12 @@ std::vector<Trajectory> Ensemble::simulateUnit(
     return trajectories;
   }
   const int iteration = parameters_.firstIteration + int(unit);
-  const std::vector<Rock> rocks = start_.empty() ? this->released(iteration) : start_;
+  PushedApart pushed;
+  const std::vector<Rock> rocks = start_.empty() ? this->released(iteration, pushed) : start_;
+  {
+    const std::lock_guard<std::mutex> lock(pushing_);
+    pushed_.add(pushed);
+  }
   std::vector<Block> blocks;
   blocks.reserve(rocks.size());
   for (const Rock& rock : rocks)

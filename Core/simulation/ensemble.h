@@ -12,6 +12,7 @@
 #include <atomic>
 #include <functional>
 #include <limits>
+#include <mutex>
 #include <span>
 #include <utility>
 #include <vector>
@@ -38,12 +39,15 @@ struct Rock
   void validate() const; ///< Throws ParameterError naming block, field and value.
 };
 
-/// What pushing rocks apart before they fall has done.
+/// What pushing rocks apart before they fall has done: the most of any iteration.
 struct PushedApart
 {
   std::int64_t rocks = 0; ///< How many were moved.
   double farthest = 0.0;  ///< The longest way of one, m.
   int passes = 0;
+  std::int64_t iterations = 0; ///< In how many any were moved.
+
+  void add(const PushedApart& others); ///< Of other iterations.
 };
 
 /// Receives finished trajectories.
@@ -110,9 +114,11 @@ public:
   }
   EnsembleShare whole() const { return { 0, this->size(), 1 }; }
   const SimulationParameters& parameters() const { return parameters_; }
-  /// What pushing rocks apart does in the first iteration, and in every other one if nothing of
-  /// their release is drawn.
-  const PushedApart& pushed() const { return pushed_; }
+  /// What pushing rocks apart has done in the iterations simulated so far; where nothing of their
+  /// release is drawn, what it does in all, known from the start.
+  PushedApart pushed() const;
+  /// Whether they are pushed anew in each iteration.
+  bool pushesAnew() const { return parameters_.pushRocksApart && start_.empty(); }
 
   /// Simulates one trajectory of a rock that hits no other; `enough` as in RockSimulator::run.
   Trajectory simulate(
@@ -131,13 +137,14 @@ private:
 
   /// The rocks of an iteration that fall together, as they are released. Throws PlacementError if
   /// they overlap and are not to be pushed apart.
-  std::vector<Rock> released(int iteration, PushedApart* pushed = nullptr) const;
+  std::vector<Rock> released(int iteration, PushedApart& pushed) const;
 
   const Terrain& terrain_;
   std::span<const Rock> rocks_;
   SimulationParameters parameters_;
   std::vector<Rock> start_; ///< Rocks that fall together, if they are the same in all iterations.
-  PushedApart pushed_;
+  mutable std::mutex pushing_;
+  mutable PushedApart pushed_; ///< Most and sums: the order does not count.
 };
 
 /// Simulates every rock in every iteration: `Ensemble::run` of the whole.

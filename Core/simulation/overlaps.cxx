@@ -182,6 +182,14 @@ void requireNoOverlap(std::span<const Rock> rocks, const Vec3& origin, const std
     ". Move them apart, or switch PushRocksApart on");
 }
 
+void PushedApart::add(const PushedApart& others)
+{
+  rocks = std::max(rocks, others.rocks);
+  farthest = std::max(farthest, others.farthest);
+  passes = std::max(passes, others.passes);
+  iterations += others.iterations;
+}
+
 PushedApart pushApart(const Terrain& terrain, std::span<Rock> rocks)
 {
   const Surface ground = Surface::asSurveyed(terrain);
@@ -243,6 +251,7 @@ PushedApart pushApart(const Terrain& terrain, std::span<Rock> rocks)
     done.rocks += way > 0.0;
     done.farthest = std::max(done.farthest, way);
   }
+  done.iterations = done.rocks > 0;
   return done;
 }
 

@@ -187,9 +187,54 @@ TEST(Overlaps, TheRunStartsWhereTheyWerePushed)
   ASSERT_TRUE(runEnsemble(ground, rocks, p, store));
   const Ensemble ensemble(ground, rocks, p);
   EXPECT_GT(ensemble.pushed().rocks, 20);
+  EXPECT_EQ(ensemble.pushed().iterations, 1);
+  EXPECT_FALSE(ensemble.pushesAnew());
   for (std::size_t i = 0; i < rocks.size(); ++i)
   {
     EXPECT_EQ(store.trajectories()[i].samples.front().position, pushed[i].position) << i;
+  }
+}
+
+TEST(Overlaps, WhatWasPushedInAnyIterationIsTold)
+{
+  // Four rocks 4 m from each other, drawn 2 m about: few iterations have them in each other.
+  std::vector<Rock> rocks;
+  for (int i = 0; i < 4; ++i)
+  {
+    rocks.push_back(cubeAt({ 14.0 + 4.0 * i, 20.0, 0.5 }, i));
+    rocks.back().uncertainty.horizontalDeviation = 2.0;
+  }
+  SimulationParameters p = together();
+  p.pushRocksApart = true;
+  p.iterations = 24;
+  PushedApart expected;
+  for (int iteration = 0; iteration < p.iterations; ++iteration)
+  {
+    std::vector<Rock> drawn;
+    for (std::size_t i = 0; i < rocks.size(); ++i)
+    {
+      drawn.push_back(realise(flat(), rocks[i], p.seed, iteration, i));
+    }
+    const PushedApart done = pushApart(flat(), drawn);
+    EXPECT_EQ(done.iterations, done.rocks > 0 ? 1 : 0);
+    expected.add(done);
+  }
+  ASSERT_GT(expected.iterations, 0);
+  ASSERT_LT(expected.iterations, p.iterations);
+  for (const int threads : { 1, 3 })
+  {
+    p.threads = threads;
+    const Terrain ground = flat();
+    const Ensemble ensemble(ground, rocks, p);
+    EXPECT_TRUE(ensemble.pushesAnew());
+    EXPECT_EQ(ensemble.pushed().iterations, 0); // not known yet
+    TrajectoryStore store;
+    ASSERT_TRUE(ensemble.run(ensemble.whole(), store));
+    const PushedApart told = ensemble.pushed();
+    EXPECT_EQ(told.iterations, expected.iterations);
+    EXPECT_EQ(told.rocks, expected.rocks);
+    EXPECT_EQ(told.farthest, expected.farthest);
+    EXPECT_EQ(told.passes, expected.passes);
   }
 }
 
