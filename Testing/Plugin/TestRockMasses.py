@@ -140,7 +140,7 @@ assert "in 1 of 1 iterations" in note, note
 Delete(fall)
 Delete(rocks)
 # Drawn anew in each iteration: the note is about all of them, also if nothing is moved in the first one.
-rocks = RockBlocks(Terrain=slope, PlaceOnGround=1, Center=[20, 50, 0], ClusterRadius=6, Amount=4, KeepApart=1,
+rocks = RockBlocks(Terrain=slope, PlaceOnGround=1, Center=[20, 50, 0], ClusterRadius=2, Amount=4, KeepApart=1,
                    Volume=0.5, HorizontalDeviation=1, Seed=3)
 fall = RockfallSimulation(Terrain=slope, Rocks=rocks, RockRockContact=1, PushRocksApart=1, EndTime=0.05, Iterations=30)
 note = messages_of(lambda: UpdatePipeline(proxy=fall))
