@@ -81,6 +81,7 @@ private:
     PairBody body;
     PlacedBlock end; ///< Of the step at hand, as long as it is being solved.
     PairBody endBody;
+    double turned = 0.0; ///< Longest way about the centroid until then, by its turn, m.
     BlockState stayed;   ///< Where, and since when, it has not gone far from.
     BlockState lingered; ///< The same, further and for longer.
     bool asleep = false;

@@ -29,6 +29,9 @@ constexpr int kFew = 4;
 /// would end is looked at.
 constexpr double kCrowdTravel = 2.0;
 constexpr double kShearDamping = 5.0; // as for single rocks
+/// In a crowd contacts are reckoned with that may close at the speed at which they come in, or are
+/// nearer than this share of the smaller radius.
+constexpr double kSurely = 2e-3;
 
 /// Gives contacts of a pair what they are made of; what only their normal decides is found once.
 class PairArming
@@ -194,6 +197,17 @@ void MassFall::gatherContacts(const Group& group, double h) const
     const double ra = a.sim.block_.radius(), rb = b.sim.block_.radius();
     const double speed = (s.velocity - t.velocity).norm() + s.spin.norm() * ra + t.spin.norm() * rb;
     updatePair(a.body, b.body, reachOf(speed, std::min(ra, rb)), *pair);
+    if (crowd)
+    {
+      // The second look finds the others, should they be needed.
+      const double least = parameters_.gravity * h * h + kSurely * std::min(ra, rb);
+      const auto staysOpen = [&](const Contact& c)
+      {
+        const double approach = -c.normal.dot(this->relativeVelocity(*pair, c.point));
+        return !c.closed() && c.gap() > least + 1.5 * h * std::max(0.0, approach);
+      };
+      std::erase_if(pair->contacts, staysOpen);
+    }
     this->armPair(*pair, h, crowd);
   };
   forEach(group.pairs.size(), kPairGrain, eachOther);

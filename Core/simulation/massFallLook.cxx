@@ -8,6 +8,7 @@
 #include "simulation/massFallWork.h"
 
 #include "base/parallel.h"
+#include "contact/motion.h"
 #include "simulation/pressOut.h"
 
 #include <algorithm>
@@ -60,8 +61,10 @@ double MassFall::lookAgain(const Group& group, double h, bool bounces, Workspace
     Member& m = *members_[group.members[k]];
     if (!m.sim.done_ && work.solver.moved(std::size_t(m.place)))
     {
-      m.end.place(m.sim.block_, work.solver.end(work.bodies, std::size_t(m.place)));
+      const BlockState end = work.solver.end(work.bodies, std::size_t(m.place));
+      m.end.place(m.sim.block_, end);
       m.endBody.update(m.end);
+      m.turned = wayOfTurn(m.sim.state_.orientation, end.orientation, m.sim.block_.radius());
     }
   };
   forEach(group.members.size(), kRockGrain, place);
@@ -132,9 +135,7 @@ double MassFall::lookAtSlope(const Group& group, double h, bool bounces, Workspa
     if (sim.candidates_.room(end, sim.block_.radius(), 0.0) < 0.0)
     {
       // Thrown further than anyone would have thought.
-      const double turned = 2.0 * sim.block_.radius() *
-        (end.orientation.coeffs() - sim.state_.orientation.coeffs()).norm();
-      sim.ensureCandidates((end.position - sim.state_.position).norm() + turned, true);
+      sim.ensureCandidates((end.position - sim.state_.position).norm() + member.turned, true);
     }
     if (!overlaps(member.end, sim.patch_, sim.candidates_, kLooseOverlap * sim.block_.radius()))
     {
@@ -195,6 +196,19 @@ double MassFall::lookAtPairs(const Group& group, double h, bool bounces, Workspa
       !(work.solver.moved(std::size_t(a.place)) || work.solver.moved(std::size_t(b.place))))
     {
       return false;
+    }
+    if (closedCount(pair.contacts) == 0)
+    {
+      // Along the axis where the step began they may still be apart.
+      const Vec3 way =
+        (a.endBody.position - a.body.position) - (b.endBody.position - b.body.position);
+      const double gap = pair.axis.distance + pair.axis.normal.dot(way) - a.turned - b.turned;
+      if (gap > 0.0)
+      {
+        pair.end = pair.axis;
+        pair.end.distance = gap;
+        return false;
+      }
     }
     pair.end = findAxis(a.endBody, b.endBody, pair.axis, 0.0);
     const double deep = -allowed(pair);
