@@ -119,7 +119,8 @@ private:
   void fly(const Group& group, double duration) const;
   void solve(const Group& group, double h, StepKind kind, bool bounces, Workspace& work) const;
   /// What a contact is in a step of `h`; between rocks an impact begins with it if it closes fast.
-  GroupContact take(RockPair& pair, Contact& contact, double h, bool bounces) const;
+  GroupContact take(
+    RockPair& pair, const PairMotion& motion, Contact& contact, double h, bool bounces) const;
   GroupContact take(const Member& member, Contact& contact, double h, bool bounces) const;
   /// Contacts that nobody reckoned with, seen where a step would end: they are appended. Returns
   /// how deep the deepest is, of the smaller radius; 0: none.
@@ -133,7 +134,7 @@ private:
   void add(GroupContact taken, bool bounces, Workspace& work) const;
   void absorb(const Group& group, double h, StepKind kind, Workspace& work) const;
   void finishPairImpact(RockPair& pair) const;
-  Vec3 relativeVelocity(const RockPair& pair, const Vec3& point) const; ///< First less second, m/s.
+  PairMotion motionOf(const RockPair& pair) const;
 
   const Surface& surface_;
   const SimulationParameters& parameters_;

@@ -235,6 +235,7 @@ double MassFall::lookAtPairs(const Group& group, double h, bool bounces, Workspa
     RockPair& pair = *group.pairs[p];
     const Member &a = *members_[pair.first], &b = *members_[pair.second];
     const double limit = deepest(p) - allowed(pair);
+    const PairMotion motion = this->motionOf(pair);
     for (Contact& c : work.found[m])
     {
       if (c.distance >= limit)
@@ -273,7 +274,7 @@ double MassFall::lookAtPairs(const Group& group, double h, bool bounces, Workspa
       this->armContact(pair, c);
       work.added.push_back(c);
       work.addedTo.push_back({ false, p, c });
-      this->add(this->take(pair, work.added.back(), h, bounces), bounces, work);
+      this->add(this->take(pair, motion, work.added.back(), h, bounces), bounces, work);
     }
   }
   return most;

@@ -77,7 +77,8 @@ GroupContact MassFall::take(const Member& member, Contact& c, double h, bool bou
   return k;
 }
 
-GroupContact MassFall::take(RockPair& pair, Contact& c, double h, bool bounces) const
+GroupContact MassFall::take(
+  RockPair& pair, const PairMotion& motion, Contact& c, double h, bool bounces) const
 {
   const Member &a = *members_[pair.first], &b = *members_[pair.second];
   const double resting = std::min(a.sim.restingSpeed_, b.sim.restingSpeed_);
@@ -92,7 +93,7 @@ GroupContact MassFall::take(RockPair& pair, Contact& c, double h, bool bounces) 
   {
     k.cohesion = sharedCohesion(k.cohesion, closedCount(pair.contacts));
   }
-  k.approach = -c.normal.dot(this->relativeVelocity(pair, c.point));
+  k.approach = -c.normal.dot(motion.at(c.point));
   const bool impacts = hits(c, k.approach, resting, h);
   k.bounce = bounces && impacts ? pair.law.restitution * k.approach : -1.0;
   // For the events.
@@ -182,10 +183,15 @@ void MassFall::solve(
   const auto takePair = [&](std::size_t p)
   {
     RockPair& pair = *group.pairs[p];
+    if (pair.contacts.empty())
+    {
+      return;
+    }
+    const PairMotion motion = this->motionOf(pair);
     std::size_t next = work.firsts[p];
     for (Contact& c : pair.contacts)
     {
-      work.contacts[next++] = this->take(pair, c, h, bounces);
+      work.contacts[next++] = this->take(pair, motion, c, h, bounces);
     }
   };
   forEach(group.pairs.size(), kPairGrain, takePair);
