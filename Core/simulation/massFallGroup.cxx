@@ -182,6 +182,7 @@ void MassFall::gatherContacts(const Group& group, double h) const
   forEach(group.members.size(), kRockGrain, onSlope);
   const auto eachOther = [&](std::size_t k)
   {
+    comeTo(group.pairs, k);
     RockPair* pair = group.pairs[k];
     const Member &a = *members_[pair->first], &b = *members_[pair->second];
     if (a.sim.done_ || b.sim.done_)

@@ -190,6 +190,7 @@ double MassFall::lookAtPairs(const Group& group, double h, bool bounces, Workspa
   };
   const auto compare = [&](std::size_t p)
   {
+    comeTo(group.pairs, p);
     RockPair& pair = *group.pairs[p];
     const Member &a = *members_[pair.first], &b = *members_[pair.second];
     if (a.sim.done_ || b.sim.done_ ||

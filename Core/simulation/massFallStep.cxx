@@ -182,6 +182,7 @@ void MassFall::solve(
   forEach(group.members.size(), kRockGrain, takeRock);
   const auto takePair = [&](std::size_t p)
   {
+    comeTo(group.pairs, p);
     RockPair& pair = *group.pairs[p];
     if (pair.contacts.empty())
     {
@@ -285,6 +286,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
   };
   const auto absorbPair = [&](std::size_t p)
   {
+    comeTo(group.pairs, p);
     RockPair& pair = *group.pairs[p];
     Member &first = *members_[pair.first], &second = *members_[pair.second];
     pair.touched = false;
@@ -395,6 +397,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
   forEach(group.members.size(), kRockGrain, absorbRock);
   const auto see = [&](std::size_t p)
   {
+    comeTo(group.pairs, p);
     RockPair& pair = *group.pairs[p];
     pair.seen = members_[pair.first]->arrived && members_[pair.second]->arrived;
     if (pair.seen)

@@ -45,6 +45,20 @@ inline bool hits(const Contact& c, double approach, double resting, double h)
   return !c.closed() && approach > resting && c.gap() < approach * h;
 }
 
+/// Asks the cache for what a loop over pairs comes to soon.
+inline void comeTo(const std::vector<RockPair*>& pairs, std::size_t p)
+{
+  constexpr std::size_t kAhead = 6, kLine = 64;
+  if (p + kAhead < pairs.size())
+  {
+    const char* pair = reinterpret_cast<const char*>(pairs[p + kAhead]);
+    for (std::size_t at = 0; at < 4 * kLine; at += kLine)
+    {
+      __builtin_prefetch(pair + at);
+    }
+  }
+}
+
 /// What is worth handing to another thread.
 constexpr std::size_t kRockGrain = 16, kPairGrain = 32;
 
