@@ -77,19 +77,20 @@ private:
     /// Takes on `end` as where it stands, and returns whether it does.
     bool arrive();
 
-    RockSimulator sim;
-    PairBody body;
-    PlacedBlock end; ///< Of the step at hand, as long as it is being solved.
-    PairBody endBody;
-    double turned = 0.0; ///< Longest way about the centroid until then, by its turn, m.
+    // What the step of a crowd needs of a rock lies together, before and behind where `sim` begins.
     BlockState stayed;   ///< Where, and since when, it has not gone far from.
     BlockState lingered; ///< The same, further and for longer.
+    PlacedBlock end;     ///< Of the step at hand, as long as it is being solved.
+    PairBody body;
+    PairBody endBody;
+    double turned = 0.0;        ///< Longest way about the centroid until then, by its turn, m.
+    double pushed = 0.0;        ///< What others may add to its speed within a step of a crowd, m/s.
+    std::uint64_t carriers = 0; ///< Which contacts with others carry.
+    int place = -1;             ///< Among the bodies of its group in the step at hand.
     bool asleep = false;
     bool touchesOthers = false;
-    bool arrived = false;       ///< The step has been looked at where it ended.
-    int place = -1;             ///< Among the bodies of its group in the step at hand.
-    std::uint64_t carriers = 0; ///< Which contacts with others carry.
-    double pushed = 0.0;        ///< What others may add to its speed within a step of a crowd, m/s.
+    bool arrived = false; ///< The step has been looked at where it ended.
+    RockSimulator sim;
   };
   struct Group
   {
@@ -99,6 +100,8 @@ private:
   };
   struct Workspace;
   struct Meetings;
+
+  void comeToRock(const Group& group, std::size_t k) const;
 
   /// Who may meet whom within the step: massFallMeet.cxx, massFallLink.cxx.
   void findGroups(double duration);

@@ -151,6 +151,7 @@ void MassFall::gatherContacts(const Group& group, double h) const
   }
   const auto onSlope = [&](std::size_t k)
   {
+    this->comeToRock(group, k);
     Member& m = *members_[group.members[k]];
     RockSimulator& sim = m.sim;
     if (sim.done_)
@@ -182,7 +183,7 @@ void MassFall::gatherContacts(const Group& group, double h) const
   forEach(group.members.size(), kRockGrain, onSlope);
   const auto eachOther = [&](std::size_t k)
   {
-    comeTo(group.pairs, k);
+    comeToPair(group.pairs, k);
     RockPair* pair = group.pairs[k];
     const Member &a = *members_[pair->first], &b = *members_[pair->second];
     if (a.sim.done_ || b.sim.done_)

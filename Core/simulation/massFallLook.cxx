@@ -58,6 +58,7 @@ double MassFall::lookAgain(const Group& group, double h, bool bounces, Workspace
 {
   const auto place = [&](std::size_t k)
   {
+    this->comeToRock(group, k);
     Member& m = *members_[group.members[k]];
     if (!m.sim.done_ && work.solver.moved(std::size_t(m.place)))
     {
@@ -190,7 +191,7 @@ double MassFall::lookAtPairs(const Group& group, double h, bool bounces, Workspa
   };
   const auto compare = [&](std::size_t p)
   {
-    comeTo(group.pairs, p);
+    comeToPair(group.pairs, p);
     RockPair& pair = *group.pairs[p];
     const Member &a = *members_[pair.first], &b = *members_[pair.second];
     if (a.sim.done_ || b.sim.done_ ||

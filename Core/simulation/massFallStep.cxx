@@ -150,6 +150,7 @@ void MassFall::solve(
   work.contacts.resize(contacts);
   const auto takeRock = [&](std::size_t m)
   {
+    this->comeToRock(group, m);
     Member& member = *members_[group.members[m]];
     RockSimulator& sim = member.sim;
     if (sim.done_)
@@ -182,7 +183,7 @@ void MassFall::solve(
   forEach(group.members.size(), kRockGrain, takeRock);
   const auto takePair = [&](std::size_t p)
   {
-    comeTo(group.pairs, p);
+    comeToPair(group.pairs, p);
     RockPair& pair = *group.pairs[p];
     if (pair.contacts.empty())
     {
@@ -286,7 +287,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
   };
   const auto absorbPair = [&](std::size_t p)
   {
-    comeTo(group.pairs, p);
+    comeToPair(group.pairs, p);
     RockPair& pair = *group.pairs[p];
     Member &first = *members_[pair.first], &second = *members_[pair.second];
     pair.touched = false;
@@ -356,6 +357,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
   const bool crowd = group.crowd;
   const auto absorbRock = [&](std::size_t k)
   {
+    this->comeToRock(group, k);
     Member& m = *members_[group.members[k]];
     m.arrived = false;
     if (m.sim.done_)
@@ -397,7 +399,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
   forEach(group.members.size(), kRockGrain, absorbRock);
   const auto see = [&](std::size_t p)
   {
-    comeTo(group.pairs, p);
+    comeToPair(group.pairs, p);
     RockPair& pair = *group.pairs[p];
     pair.seen = members_[pair.first]->arrived && members_[pair.second]->arrived;
     if (pair.seen)

@@ -45,17 +45,34 @@ inline bool hits(const Contact& c, double approach, double resting, double h)
   return !c.closed() && approach > resting && c.gap() < approach * h;
 }
 
-/// Asks the cache for what a loop over pairs comes to soon.
-inline void comeTo(const std::vector<RockPair*>& pairs, std::size_t p)
+constexpr std::size_t kCacheLine = 64; // bytes
+
+inline void askCache(const void* from, const void* to)
 {
-  constexpr std::size_t kAhead = 6, kLine = 64;
+  for (const char* at = static_cast<const char*>(from); at < to; at += kCacheLine)
+  {
+    __builtin_prefetch(at);
+  }
+}
+
+// Asks the cache for what a loop over the pairs or rocks of a group comes to soon.
+
+inline void comeToPair(const std::vector<RockPair*>& pairs, std::size_t p)
+{
+  constexpr std::size_t kAhead = 6;
   if (p + kAhead < pairs.size())
   {
-    const char* pair = reinterpret_cast<const char*>(pairs[p + kAhead]);
-    for (std::size_t at = 0; at < 4 * kLine; at += kLine)
-    {
-      __builtin_prefetch(pair + at);
-    }
+    askCache(pairs[p + kAhead], &pairs[p + kAhead]->impact);
+  }
+}
+
+inline void MassFall::comeToRock(const Group& group, std::size_t k) const
+{
+  constexpr std::size_t kAhead = 2;
+  if (k + kAhead < group.members.size())
+  {
+    const Member& m = *members_[std::size_t(group.members[k + kAhead])];
+    askCache(&m.body, &m.sim.energyAtStart_);
   }
 }
 
