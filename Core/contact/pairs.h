@@ -147,6 +147,7 @@ struct RockPair
     Vec3 before[2] = { Vec3::Zero(), Vec3::Zero() }; ///< Velocities, m/s.
   };
   Impact impact;
+  double lastingLoss = 0.0; ///< What contacts have taken that is of no impact, springs included, J.
 };
 
 /// Brings a pair's contacts to where the rocks stand: points that were there keep their springs,

@@ -95,20 +95,14 @@ GroupContact MassFall::take(RockPair& pair, Contact& c, double h, bool bounces) 
   k.approach = -c.normal.dot(this->relativeVelocity(pair, c.point));
   const bool impacts = hits(c, k.approach, resting, h);
   k.bounce = bounces && impacts ? pair.law.restitution * k.approach : -1.0;
-  // For the events.
-  RockPair::Impact& impact = pair.impact;
-  if (impacts && !impact.pending)
+  // For the events: what strikes one of two that touch strikes the other through it.
+  if (impacts || (c.closed() && k.approach > resting))
   {
-    impact = {};
-    impact.pending = true;
-    impact.time = a.sim.state_.time;
-    impact.before[0] = a.sim.state_.velocity;
-    impact.before[1] = b.sim.state_.velocity;
-    impact.point = c.point;
+    this->beginPairImpact(pair, a.sim.state_, b.sim.state_, c.point);
   }
-  if (impact.pending && !c.closed())
+  if (pair.impact.pending)
   {
-    impact.approach = std::max(impact.approach, k.approach);
+    pair.impact.approach = std::max(pair.impact.approach, k.approach);
   }
   return k;
 }
@@ -264,6 +258,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     RockPair::Impact& impact = pair.impact;
     if (!impact.pending)
     {
+      pair.lastingLoss += taken.work;
       return;
     }
     if (c.normalForce > 0.0)
@@ -283,6 +278,10 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     Member &first = *members_[pair.first], &second = *members_[pair.second];
     pair.touched = false;
     std::uint64_t carry[2] = {};
+    for (std::size_t k = work.firsts[p]; k < work.firsts[p + 1]; ++k)
+    {
+      this->findKnock(pair, work.contacts[k], h);
+    }
     for (std::size_t k = work.firsts[p]; k < work.firsts[p + 1]; ++k)
     {
       const Contact& c = *work.contacts[k].contact;
@@ -327,6 +326,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
       continue;
     }
     RockPair& pair = *group.pairs[added.of];
+    this->findKnock(pair, work.contacts[work.firsts.back() + k], h);
     book(pair, work.contacts[work.firsts.back() + k]);
     if (c.closed())
     {
@@ -398,43 +398,6 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     }
   };
   forEach(group.pairs.size(), kPairGrain, see);
-}
-
-void MassFall::finishPairImpact(RockPair& pair) const
-{
-  RockPair::Impact& impact = pair.impact;
-  if (!impact.pending)
-  {
-    return;
-  }
-  impact.pending = false;
-  const double size = impact.impulse.norm();
-  if (size <= 0.0)
-  {
-    return;
-  }
-  for (int side = 0; side < 2; ++side)
-  {
-    const int own = side == 0 ? pair.first : pair.second;
-    const int other = side == 0 ? pair.second : pair.first;
-    RockSimulator& sim = members_[own]->sim;
-    ImpactEvent event;
-    event.time = impact.time;
-    event.position = impact.point;
-    event.normal = (side == 0 ? 1.0 : -1.0) / size * impact.impulse;
-    event.cfe = 0;
-    event.impulse = size;
-    event.approachSpeed = impact.approach;
-    event.velocityBefore = impact.before[side];
-    event.velocityAfter = sim.state_.velocity;
-    event.energyLoss = std::max(0.0, impact.loss);
-    event.restitution = pair.law.restitution;
-    event.otherRock = other;
-    event.otherBlockId = members_[other]->sim.rock_.blockId;
-    Trajectory& trajectory = sim.recorder_.trajectory();
-    trajectory.impacts.push_back(event);
-    ++trajectory.summary.impacts;
-  }
 }
 
 } // namespace rockfall

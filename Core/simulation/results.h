@@ -126,9 +126,12 @@ struct TrajectorySummary
   int impacts = 0;
   std::int64_t contactSteps = 0; ///< Steps solved in contact.
   std::int64_t openCloseIterations = 0;
-  std::int64_t cutSteps = 0;       ///< Steps redone with a smaller Δt.
+  std::int64_t cutSteps = 0; ///< Steps redone with a smaller Δt.
   std::int64_t unsettledSteps = 0; ///< Steps taken although open–close had not settled.
   EnergyAudit energy;
+  /// What contacts with other rocks took while no impact was under way, half of it for each of the
+  /// two, J: the sum over rocks, and the losses of impacts between rocks, are that of `exchanged`.
+  double lastingLoss = 0.0;
   std::uint64_t hash = 0; ///< Of the motion: `motionHash`, given by the ensemble.
 };
 

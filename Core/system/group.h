@@ -38,6 +38,7 @@ struct GroupContact
   double bounce = -1.0;
   double approach = 0.0; ///< Speed at which it closes, m/s.
   double work = 0.0;     ///< Out: what it took from the rocks' motion, springs included, J.
+  double way = 0.0;      ///< Out, if it carried: how far it opened along the normal, m.
   /// What contact->closed() says when the step begins; for whoever set the contact up and goes over
   /// all of them.
   bool closed = false;
