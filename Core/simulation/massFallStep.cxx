@@ -224,7 +224,7 @@ void MassFall::solve(
       summary.openCloseIterations += sim.done_ ? 0 : outcome.iterations;
       summary.contactSteps += sim.done_ ? 0 : 1;
       summary.cutSteps += !outcome.taken && !last && !sim.done_;
-      summary.unsettledSteps += !outcome.settled && (outcome.taken || last) && !sim.done_;
+      summary.unsettledSteps += outcome.rough && (outcome.taken || last) && !sim.done_;
     };
     forEach(group.members.size(), kRockGrain, count);
     if (outcome.taken || last)

@@ -55,6 +55,7 @@ enum class Taken : std::uint8_t
 struct GroupOutcome
 {
   bool settled = false;
+  bool rough = false;        ///< Far from settled: what is taken so is counted.
   bool taken = false;        ///< Bodies and contacts are those at the end of the step.
   int iterations = 0;        ///< Of open–close.
   double residual = 0.0;     ///< Largest |Δ gap| of the last correction, m.
