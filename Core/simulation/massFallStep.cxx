@@ -206,7 +206,7 @@ void MassFall::solve(
   GroupOutcome outcome;
   for (int cut = 0;; ++cut)
   {
-    // What a large group leaves to settle is small, and counted; if it is not, a shorter step is.
+    // What a large group leaves to settle is small; if it is not, a shorter step is taken.
     const bool last = cut >= (crowd ? kCrowdCuts : parameters_.maxCuts);
     const Taken take = last ? Taken::Any : crowd ? Taken::NotRough : Taken::Settled;
     if (!work.added.empty())
