@@ -149,6 +149,7 @@ struct RockPair
     Vec3 before[2] = { Vec3::Zero(), Vec3::Zero() }; ///< Velocities, m/s.
   };
   Impact impact;
+  double lastingLoss = 0.0; ///< What contacts have taken that is of no impact, springs included, J.
 };
 
 /// How a rock moves past another.

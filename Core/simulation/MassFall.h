@@ -136,7 +136,13 @@ private:
     const Group& group, std::size_t m, Workspace& work, std::vector<Contact>& touches) const;
   void add(GroupContact taken, bool bounces, Workspace& work) const;
   void absorb(const Group& group, double h, StepKind kind, Workspace& work) const;
+  /// An impact of the two, unless one is under way; as they were before it, and where (m).
+  void beginPairImpact(
+    RockPair& pair, const BlockState& first, const BlockState& second, const Vec3& point) const;
+  /// One that began within a step of `h`: rocks that were apart, and that others drove together.
+  void findKnock(RockPair& pair, const GroupContact& taken, double h) const;
   void finishPairImpact(RockPair& pair) const;
+  void closePairBooks(RockPair& pair) const; ///< What it has lost, to the two rocks.
   PairMotion motionOf(const RockPair& pair) const;
 
   const Surface& surface_;

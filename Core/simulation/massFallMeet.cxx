@@ -137,7 +137,7 @@ void MassFall::Meetings::drop(MassFall& fall, Near& n)
 {
   if (n.pair)
   {
-    fall.finishPairImpact(*n.pair);
+    fall.closePairBooks(*n.pair);
     std::vector<Contact> contacts = std::move(n.pair->contacts);
     contacts.clear();
     *n.pair = RockPair();

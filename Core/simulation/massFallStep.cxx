@@ -96,20 +96,14 @@ GroupContact MassFall::take(
   k.approach = -c.normal.dot(motion.at(c.point));
   const bool impacts = hits(c, k.approach, resting, h);
   k.bounce = bounces && impacts ? pair.law.restitution * k.approach : -1.0;
-  // For the events.
-  RockPair::Impact& impact = pair.impact;
-  if (impacts && !impact.pending)
+  // For the events: what strikes one of two that touch strikes the other through it.
+  if (impacts || (c.closed() && k.approach > resting))
   {
-    impact = {};
-    impact.pending = true;
-    impact.time = a.sim.state_.time;
-    impact.before[0] = a.sim.state_.velocity;
-    impact.before[1] = b.sim.state_.velocity;
-    impact.point = c.point;
+    this->beginPairImpact(pair, a.sim.state_, b.sim.state_, c.point);
   }
-  if (impact.pending && !c.closed())
+  if (pair.impact.pending)
   {
-    impact.approach = std::max(impact.approach, k.approach);
+    pair.impact.approach = std::max(pair.impact.approach, k.approach);
   }
   return k;
 }
@@ -220,7 +214,7 @@ void MassFall::solve(
   GroupOutcome outcome;
   for (int cut = 0;; ++cut)
   {
-    // What a large group leaves to settle is small, and counted; if it is not, a shorter step is.
+    // What a large group leaves to settle is small; if it is not, a shorter step is taken.
     const bool last = cut >= (crowd ? kCrowdCuts : parameters_.maxCuts);
     const Taken take = last ? Taken::Any : crowd ? Taken::NotRough : Taken::Settled;
     if (!work.added.empty())
@@ -238,7 +232,7 @@ void MassFall::solve(
       summary.openCloseIterations += sim.done_ ? 0 : outcome.iterations;
       summary.contactSteps += sim.done_ ? 0 : 1;
       summary.cutSteps += !outcome.taken && !last && !sim.done_;
-      summary.unsettledSteps += !outcome.settled && (outcome.taken || last) && !sim.done_;
+      summary.unsettledSteps += outcome.rough && (outcome.taken || last) && !sim.done_;
     };
     forEach(group.members.size(), kRockGrain, count);
     if (outcome.taken || last)
@@ -272,6 +266,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     RockPair::Impact& impact = pair.impact;
     if (!impact.pending)
     {
+      pair.lastingLoss += taken.work;
       return;
     }
     if (c.normalForce > 0.0)
@@ -292,6 +287,10 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     Member &first = *members_[pair.first], &second = *members_[pair.second];
     pair.touched = false;
     std::uint64_t carry[2] = {};
+    for (std::size_t k = work.firsts[p]; k < work.firsts[p + 1]; ++k)
+    {
+      this->findKnock(pair, work.contacts[k], h);
+    }
     for (std::size_t k = work.firsts[p]; k < work.firsts[p + 1]; ++k)
     {
       const Contact& c = *work.contacts[k].contact;
@@ -336,6 +335,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
       continue;
     }
     RockPair& pair = *group.pairs[added.of];
+    this->findKnock(pair, work.contacts[work.firsts.back() + k], h);
     book(pair, work.contacts[work.firsts.back() + k]);
     if (c.closed())
     {
@@ -409,43 +409,6 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     }
   };
   forEach(group.pairs.size(), kPairGrain, see);
-}
-
-void MassFall::finishPairImpact(RockPair& pair) const
-{
-  RockPair::Impact& impact = pair.impact;
-  if (!impact.pending)
-  {
-    return;
-  }
-  impact.pending = false;
-  const double size = impact.impulse.norm();
-  if (size <= 0.0)
-  {
-    return;
-  }
-  for (int side = 0; side < 2; ++side)
-  {
-    const int own = side == 0 ? pair.first : pair.second;
-    const int other = side == 0 ? pair.second : pair.first;
-    RockSimulator& sim = members_[own]->sim;
-    ImpactEvent event;
-    event.time = impact.time;
-    event.position = impact.point;
-    event.normal = (side == 0 ? 1.0 : -1.0) / size * impact.impulse;
-    event.cfe = 0;
-    event.impulse = size;
-    event.approachSpeed = impact.approach;
-    event.velocityBefore = impact.before[side];
-    event.velocityAfter = sim.state_.velocity;
-    event.energyLoss = std::max(0.0, impact.loss);
-    event.restitution = pair.law.restitution;
-    event.otherRock = other;
-    event.otherBlockId = members_[other]->sim.rock_.blockId;
-    Trajectory& trajectory = sim.recorder_.trajectory();
-    trajectory.impacts.push_back(event);
-    ++trajectory.summary.impacts;
-  }
 }
 
 } // namespace rockfall

@@ -387,7 +387,8 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
     finite = finite && w.way.allFinite() && w.spun.allFinite();
   }
   const bool near = outcome.settled || outcome.residual <= kRough * enough_;
-  const bool fair = take == Taken::NotRough ? near && missed <= kDeepMiss : outcome.settled;
+  outcome.rough = !near || missed > kDeepMiss;
+  const bool fair = take == Taken::NotRough ? !outcome.rough : outcome.settled;
   outcome.taken = finite && (fair || take == Taken::Any);
   if (outcome.taken)
   {
