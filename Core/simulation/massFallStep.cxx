@@ -140,6 +140,8 @@ void MassFall::solve(
     return; // the last of them was caught just now
   }
   work.bodies.resize(std::size_t(places));
+  work.ways.resize(std::size_t(places));
+  work.places.resize(group.pairs.size());
   work.energyBefore.resize(std::size_t(places));
   work.contacts.resize(contacts);
   const auto takeRock = [&](std::size_t m)
@@ -179,6 +181,7 @@ void MassFall::solve(
   {
     comeToPair(group.pairs, p);
     RockPair& pair = *group.pairs[p];
+    work.places[p] = { members_[pair.first]->place, members_[pair.second]->place };
     if (pair.contacts.empty())
     {
       return;

@@ -5,6 +5,7 @@
 
 #include "simulation/MassFall.h"
 
+#include <array>
 #include <deque>
 
 namespace rockfall
@@ -103,6 +104,16 @@ struct MassFall::Workspace
   std::vector<std::size_t> missed;         ///< Pairs or rocks whose contacts were missed.
   std::vector<std::vector<Contact>> found; ///< Of each of them, where it touches.
   bool looked = false;                     ///< Where the step ends.
+  /// By pair, the places of the two; −1: gone.
+  std::vector<std::array<int, 2>> places;
+  /// By place, how a rock goes in the step.
+  struct Way
+  {
+    Vec3 way;      ///< Of the centroid, m.
+    double turned; ///< Longest way about it, m.
+    bool moved;    ///< Since the last look.
+  };
+  std::vector<Way> ways;
 };
 
 } // namespace rockfall
