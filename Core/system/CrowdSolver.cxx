@@ -59,6 +59,7 @@ void CrowdSolver::prepareBodies(const StepRequest& request, const std::vector<Gr
     const Block& block = *body.block;
     const BlockState& state = *body.state;
     Work& w = work_[i];
+    w.moved = true;
     w.rotation = state.orientation.toRotationMatrix();
     const Mat3 back = w.rotation.transpose();
     w.position = state.position;
@@ -328,6 +329,7 @@ bool CrowdSolver::correctTurns(
     {
       any = true;
       changed_[work_[i].mover] = sweep_;
+      work_[i].moved = true;
       work_[i].spun = spun;
     }
   }
@@ -338,7 +340,7 @@ bool CrowdSolver::correctTurns(
   // Levers lie between places that are of one kind, guessed or solved.
   for (std::size_t i = 0; i < work_.size(); ++i)
   {
-    work_[i].way = Eigen::Map<const Vec3>(movers_[work_[i].mover].way);
+    this->goTo(work_[i], Eigen::Map<const Vec3>(movers_[work_[i].mover].way));
   }
   const auto wrong = [&](int i)
   { return i >= 0 && changed_[work_[std::size_t(i)].mover] == sweep_; };

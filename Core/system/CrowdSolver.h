@@ -35,14 +35,14 @@ public:
   BlockState end(const std::vector<GroupBody>& bodies, std::size_t i) const;
   double gap(std::size_t contact) const;
   bool setGap(std::size_t contact, double found);
-  bool moved(std::size_t body) const { return changed_[work_[body].mover] >= looked_; }
+  bool moved(std::size_t body) const { return work_[body].moved; }
 
   /// Share of the largest displacement to which the sweeps go.
   double tolerance = 1e-4;
   int maxSweeps = 6;
 
 private:
-  /// Changes below this share of the tolerance are no reason to visit a contact again.
+  /// Changes below this share of the tolerance are none.
   static constexpr double kQuiet = 0.3;
   static constexpr int kNever = -2;                              ///< A sweep before all others.
   static constexpr std::size_t kBodyGrain = 64, kRowGrain = 256; ///< For one thread at a time.
@@ -60,6 +60,7 @@ private:
     Vec3 offset, spinOffset; ///< Velocity at the end is way/h + offset.
     double inverseMass;      ///< h²/m
     std::size_t mover;       ///< Among movers_.
+    bool moved;              ///< Since lookAgain was asked.
     Mat3 inverseInertia;     ///< h² I⁻¹
   };
   /// What is not in its lane of a batch.
@@ -125,13 +126,26 @@ private:
     std::size_t key, const std::vector<GroupContact>& contacts, const std::vector<int>& added);
   double visit(int part);
   double sweep();
-  bool sweeps(int most, GroupOutcome& outcome);
+  /// Sweeps until none changes anything by more than `goal`, m; whether they get there.
+  bool sweepTo(double goal, int most, bool conjugate, GroupOutcome& outcome);
+  /// A run of sweeps over everything, or around what has changed; whether all has settled.
+  bool sweeps(int most, bool everywhere, GroupOutcome& outcome);
   void begin();     ///< Before the first of a run of sweeps.
   void goFurther(); ///< Between two sweeps of a run: along a conjugate direction.
   /// Sweeps, and again as long as bounces give energy.
-  void settle(int most, std::vector<GroupContact>& contacts, GroupOutcome& outcome);
+  void settle(
+    int most, bool everywhere, std::vector<GroupContact>& contacts, GroupOutcome& outcome);
   bool holdBounces(std::vector<GroupContact>& contacts); ///< Whether any gives energy.
   void collect();                                        ///< Displacements from movers.
+  bool isNear(const Vec3& a, const Vec3& b) const
+  {
+    return (a - b).cwiseAbs().maxCoeff() <= kQuiet * enough_;
+  }
+  void goTo(Work& work, const Vec3& way) const
+  {
+    work.moved = work.moved || !this->isNear(work.way, way);
+    work.way = way;
+  }
   void write(const StepRequest& request, std::vector<GroupBody>& bodies,
     std::vector<GroupContact>& contacts, GroupOutcome& outcome);
 
@@ -170,8 +184,9 @@ private:
   double lastChange_ = 0.0;     ///< Of the sweep before; negative: there was none.
   const crowd::Kernel* kernel_ = nullptr;
   int sweep_ = 0;       ///< Number of the next sweep.
-  int looked_ = 0;      ///< Number of the first one since lookAgain was asked.
-  double enough_ = 0.0; ///< m
+  double scale_ = 0.0;  ///< The longest way in the step, m.
+  double enough_ = 0.0; ///< Changes that settle a run, m,
+  double quiet_ = 0.0;  ///< and those that are no reason to visit a contact again.
 };
 
 template <class Visit>

@@ -57,7 +57,7 @@ void CrowdSolver::goFurther()
   crowd::Further further;
   further.share = first || anew || change <= 0.0 ? 0.0 : change / lastChange_;
   further.anew = anew;
-  further.quiet = kQuiet * enough_;
+  further.quiet = quiet_;
   further.number = sweep_ - 1; // since the last visit
   lastChange_ = change;
   const auto goForces = [&](std::size_t, std::size_t from, std::size_t count)

@@ -22,6 +22,12 @@ constexpr int kCalmSweeps = 50;
 /// about. It happens where light rocks with sharp corners lie under heavy ones.
 constexpr double kRough = 300.0;
 constexpr int kRoughSweeps = 200;
+/// Sweeps over everything that follow those over what is rough.
+constexpr int kAfterRough = 2;
+/// After what has changed here and there (a bounce held back, a contact found) the sweeps go on
+/// around it, where things move by more than this share of the longest way. Forces are not that
+/// exact yet anywhere: else each of these runs would go on with all of them.
+constexpr double kNoticed = 3e-3;
 /// What is found in a second look is met to this many times the tolerance, which is about as exact
 /// as it is found, unless nothing bounces.
 constexpr double kFound = 4.0;
@@ -216,7 +222,7 @@ double CrowdSolver::visit(int part)
   pass.movers = movers_.data();
   pass.changed = changed_.data();
   pass.number = sweep_;
-  pass.quiet = kQuiet * enough_;
+  pass.quiet = quiet_;
   double most = 0.0;
   for (int k = 0; k < kKinds; ++k)
   {
@@ -238,21 +244,44 @@ double CrowdSolver::sweep()
   return *std::max_element(most_.begin(), most_.end());
 }
 
-bool CrowdSolver::sweeps(int most, GroupOutcome& outcome)
+bool CrowdSolver::sweepTo(double goal, int most, bool conjugate, GroupOutcome& outcome)
 {
-  bool settled = false;
-  const auto goesOn = [&](int k)
-  { return k < most || (k < kRoughSweeps * most && outcome.residual > kRough * enough_); };
-  this->begin();
-  for (int k = 0; goesOn(k) && !settled; ++k, ++sweep_)
+  bool reached = false;
+  for (int k = 0; k < most && !reached; ++k, ++sweep_)
   {
-    if (k > 0)
+    if (conjugate && k > 0)
     {
       this->goFurther();
     }
     ++outcome.iterations;
     outcome.residual = this->sweep();
-    settled = outcome.residual <= enough_;
+    reached = outcome.residual <= goal;
+  }
+  return reached;
+}
+
+bool CrowdSolver::sweeps(int most, bool everywhere, GroupOutcome& outcome)
+{
+  const double rough = kRough * enough_;
+  const double quiet = std::max(kQuiet * enough_, everywhere ? 0.0 : kNoticed * scale_);
+  // What goes on as one cannot be left alone here and there.
+  const auto sweepAround = [&](double goal, double least, int count)
+  {
+    quiet_ = least;
+    if (everywhere)
+    {
+      this->begin();
+    }
+    return this->sweepTo(goal, count, everywhere, outcome);
+  };
+  bool settled = sweepAround(enough_, quiet, most) && everywhere;
+  const int last = outcome.iterations + kRoughSweeps * most;
+  while (outcome.residual > rough && outcome.iterations < last)
+  {
+    // Most have settled by then: first where it is rough, then the others' answer.
+    sweepAround(rough, rough, last - outcome.iterations);
+    std::fill_n(changed_.begin(), work_.size(), sweep_);
+    settled = sweepAround(enough_, quiet, kAfterRough) && everywhere;
   }
   return settled;
 }
@@ -293,11 +322,12 @@ bool CrowdSolver::holdBounces(std::vector<GroupContact>& contacts)
   return any;
 }
 
-void CrowdSolver::settle(int most, std::vector<GroupContact>& contacts, GroupOutcome& outcome)
+void CrowdSolver::settle(
+  int most, bool everywhere, std::vector<GroupContact>& contacts, GroupOutcome& outcome)
 {
   for (int k = 0; k < kHeldBounces && this->holdBounces(contacts); ++k)
   {
-    outcome.settled = this->sweeps(most, outcome);
+    outcome.settled = this->sweeps(most, everywhere, outcome);
     this->collect();
   }
 }
@@ -306,10 +336,15 @@ void CrowdSolver::collect()
 {
   const auto take = [&](std::size_t i)
   {
-    const crowd::Mover& m = movers_[work_[i].mover];
-    work_[i].way = Eigen::Map<const Vec3>(m.way);
-    work_[i].spun = Eigen::Map<const Vec3>(m.turn);
-    this->turnAs(work_[i], work_[i].spun);
+    Work& w = work_[i];
+    const crowd::Mover& m = movers_[w.mover];
+    const Eigen::Map<const Vec3> spun(m.turn);
+    this->goTo(w, Eigen::Map<const Vec3>(m.way));
+    if (w.spun != spun)
+    {
+      w.moved = w.moved || !this->isNear(w.spun, spun);
+      this->turnAs(w, w.spun = spun);
+    }
   };
   forEach(work_.size(), kBodyGrain, take);
 }
@@ -341,16 +376,17 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
   {
     calm = calm && k.bounce < 0.0;
   }
+  scale_ = scale;
   enough_ = tolerance * scale;
-  sweep_ = looked_ = 0;
+  sweep_ = 0;
   const int most = calm ? kCalmSweeps * maxSweeps : maxSweeps;
-  outcome.settled = this->sweeps(most, outcome);
+  outcome.settled = this->sweeps(most, true, outcome);
   if (this->correctTurns(bodies, contacts))
   {
-    outcome.settled = this->sweeps(most, outcome);
+    outcome.settled = this->sweeps(most, calm, outcome);
   }
   this->collect();
-  this->settle(most, contacts, outcome);
+  this->settle(most, calm, contacts, outcome);
   double missed = 0.0;
   const auto looksOn = [&](int look)
   { return look < kLooks || (look == kLooks && missed > kWorthALook); };
@@ -366,20 +402,23 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
     {
       changed = changed < sweep_ ? kNever : changed;
     }
-    looked_ = sweep_;
+    for (Work& w : work_)
+    {
+      w.moved = false;
+    }
     enough_ = (calm ? 1.0 : kFound) * tolerance * scale;
     this->append(bodies, contacts);
     if (look == kLooks)
     {
       break; // the last one only tells how deep it is
     }
-    outcome.settled = this->sweeps(most, outcome);
+    outcome.settled = this->sweeps(most, calm, outcome);
     if (this->correctTurns(bodies, contacts))
     {
-      outcome.settled = this->sweeps(most, outcome);
+      outcome.settled = this->sweeps(most, calm, outcome);
     }
     this->collect();
-    this->settle(most, contacts, outcome);
+    this->settle(most, calm, contacts, outcome);
   }
   bool finite = true;
   for (const Work& w : work_)
