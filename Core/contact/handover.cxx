@@ -269,7 +269,8 @@ bool leaveBest(
     {
       const SurfacePatch::Triangle& t = patch.triangles[i];
       if (inVertexCone(rock, vertex, t.normal, 0.0) &&
-        projectsInside(patch, i, p, 0.0, 1e-9 * rock.block().radius()))
+        projectsInside(patch, i, p, 0.0, 1e-9 * rock.block().radius()) &&
+        cameThrough(patch, i, p, t.normal.dot(p) - t.offset))
       {
         offer(ContactKind::VertexFace, vertex, i, t.key, t.cfe, t.normal, p,
           t.normal.dot(p) - t.offset, 0.0);

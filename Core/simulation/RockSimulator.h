@@ -10,6 +10,7 @@
 #include "solver/StepSolver.h"
 #include "terrain/Obstacles.h"
 
+#include <array>
 #include <limits>
 #include <span>
 #include <vector>
@@ -125,7 +126,11 @@ private:
   void followImpact(const BlockState& start, double h);
   void finishImpact();
 
+  /// Least and most x and y (m) that a flight comes over.
+  std::array<double, 4> boxOfWay(double duration) const;
   void ensureWindow(double duration); ///< Heights under all of the way of a flight.
+  /// Lower bound of the time to the first touch of the ground in free flight, s.
+  double timeToGround(double duration);
   void ensurePatch(double margin);
   void ensureCandidates(double reach, bool among = false); ///< `among`: many others.
   void armContacts(double h); ///< Gives new contacts their springs and dashpots, for a step of h.
@@ -149,6 +154,7 @@ private:
   PlacedBlock placed_;
   HeightWindow window_;
   SurfacePatch patch_;
+  SurfacePatch holed_; ///< Under the way of a flight that comes over holes.
   CandidatePairs candidates_;
   StepSolver solver_;
   std::vector<Contact> contacts_;
