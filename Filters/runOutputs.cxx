@@ -391,6 +391,7 @@ constexpr Column numberColumns[] = {
   { "EnergyStructures", [](S s, V) { return s.energy.structures; } },
   { "EnergyExchanged", [](S s, V) { return s.energy.exchanged; } },
   { "EnergyNumerical", [](S s, V) { return s.energy.numerical; } },
+  { "LastingLoss", [](S s, V) { return s.lastingLoss; } },
 };
 // clang-format on
 

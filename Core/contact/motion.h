@@ -1,8 +1,11 @@
 #pragma once
 
 /// @file
-/// How long a way takes.
+/// How long a way takes, and how far a turn goes.
 
+#include "base/types.h"
+
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -23,6 +26,14 @@ inline double timeToCover(double distance, double rate, double acceleration)
   }
   const double root = std::sqrt(rate * rate + 2.0 * acceleration * distance);
   return rate > 0.0 ? 2.0 * distance / (rate + root) : (root - rate) / acceleration;
+}
+
+/// Longest way of a point within `radius` (m) of the centre of a turn from one orientation to
+/// another, m: no less than it is, and hardly more if the turn is small.
+inline double wayOfTurn(const Quat& from, const Quat& to, double radius)
+{
+  return 2.0 * radius *
+    std::min((to.coeffs() - from.coeffs()).norm(), (to.coeffs() + from.coeffs()).norm());
 }
 
 } // namespace rockfall

@@ -112,24 +112,25 @@ void handOver(const std::vector<char>& taken, const std::vector<char>& known,
 
 } // namespace
 
-void updatePair(const PairBody& first, const PairBody& second, double reach, RockPair& pair)
+void updatePair(const PairBody& first, const PairBody& second, double reach, RockPair& pair,
+  const ClosingGaps* closing)
 {
   const PairAxis last = pair.known || pair.seen ? pair.before : pair.axis;
-  const auto closed = [&]
-  {
-    return std::any_of(
-      pair.contacts.begin(), pair.contacts.end(), [](const Contact& c) { return c.closed(); });
-  };
   const bool stands = pair.seen && (pair.axis.distance <= 0.0 || pair.axis.distance > reach);
   if (!pair.known && !stands)
   {
     pair.axis = findAxis(first, second, pair.axis, reach);
   }
   pair.known = pair.seen = false;
+  const bool carries = closedCount(pair.contacts) > 0;
+  if (closing && !carries)
+  {
+    reach = std::min(reach, closing->along(pair.axis.normal));
+  }
   if (pair.axis.distance > reach)
   {
     // A spring that is still compressed, as it was found or handed over so, opens by itself.
-    if (!closed())
+    if (!carries)
     {
       pair.contacts.clear();
       pair.touched = false;
@@ -137,7 +138,7 @@ void updatePair(const PairBody& first, const PairBody& second, double reach, Roc
     return;
   }
   std::span<const Touch> found = touchesAlong(first, second, pair.axis, reach);
-  if (found.empty() && closed())
+  if (found.empty() && carries)
   {
     pair.axis = last; // past the end of a feature, with no other one there
     return;
@@ -209,6 +210,11 @@ void updatePair(const PairBody& first, const PairBody& second, double reach, Roc
   if (!inOrder)
   {
     handOver(taken, known, olds, pair.contacts);
+  }
+  if (closing)
+  {
+    std::erase_if(pair.contacts,
+      [&](const Contact& c) { return !c.closed() && c.gap() > closing->at(c.point, c.normal); });
   }
 }
 

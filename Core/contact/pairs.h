@@ -10,6 +10,8 @@
 
 #include "contact/Contact.h"
 
+#include <algorithm>
+#include <array>
 #include <span>
 #include <vector>
 
@@ -147,11 +149,53 @@ struct RockPair
     Vec3 before[2] = { Vec3::Zero(), Vec3::Zero() }; ///< Velocities, m/s.
   };
   Impact impact;
+  double lastingLoss = 0.0; ///< What contacts have taken that is of no impact, springs included, J.
+};
+
+/// How a rock moves past another.
+struct PairMotion
+{
+  Vec3 velocity;                 ///< Of the first one's centroid less the second one's, m/s.
+  std::array<Vec3, 2> spins;     ///< rad/s
+  std::array<Vec3, 2> positions; ///< Of the centroids, m.
+
+  PairMotion(const BlockState& first, const BlockState& second)
+    : velocity(first.velocity - second.velocity)
+    , spins{ first.angularVelocity(), second.angularVelocity() }
+    , positions{ first.position, second.position }
+  {
+  }
+  /// First less second, m/s.
+  Vec3 at(const Vec3& point) const
+  {
+    return velocity + spins[0].cross(point - positions[0]) - spins[1].cross(point - positions[1]);
+  }
+};
+
+/// Gaps that may close within a step.
+struct ClosingGaps
+{
+  PairMotion motion;
+  double time;  ///< For which it goes on, s.
+  double least; ///< Gaps that may close however the rocks move, m.
+  double rims;  ///< Speed at most by turning, of both together, m/s.
+
+  /// The widest one along a normal, m,
+  double along(const Vec3& normal) const
+  {
+    return least + time * std::max(0.0, rims - normal.dot(motion.velocity));
+  }
+  /// and at a point.
+  double at(const Vec3& point, const Vec3& normal) const
+  {
+    return least + time * std::max(0.0, -normal.dot(motion.at(point)));
+  }
 };
 
 /// Brings a pair's contacts to where the rocks stand: points that were there keep their springs,
 /// new ones get none. A pair that is found overlapping without having touched carries no force at
-/// the depth at which it is found.
-void updatePair(const PairBody& first, const PairBody& second, double reach, RockPair& pair);
+/// the depth at which it is found. With `closing` only gaps that may close become contacts.
+void updatePair(const PairBody& first, const PairBody& second, double reach, RockPair& pair,
+  const ClosingGaps* closing = nullptr);
 
 } // namespace rockfall

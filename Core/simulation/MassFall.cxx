@@ -134,7 +134,7 @@ std::vector<Trajectory> MassFall::run(const std::function<bool(double)>& goOn)
   {
     if (near.pair)
     {
-      this->finishPairImpact(*near.pair);
+      this->closePairBooks(*near.pair);
     }
   }
   for (const auto& member : members_)

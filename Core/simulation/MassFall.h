@@ -77,18 +77,20 @@ private:
     /// Takes on `end` as where it stands, and returns whether it does.
     bool arrive();
 
-    RockSimulator sim;
-    PairBody body;
-    PlacedBlock end; ///< Of the step at hand, as long as it is being solved.
-    PairBody endBody;
+    // What the step of a crowd needs of a rock lies together, before and behind where `sim` begins.
     BlockState stayed;   ///< Where, and since when, it has not gone far from.
     BlockState lingered; ///< The same, further and for longer.
+    PlacedBlock end;     ///< Of the step at hand, as long as it is being solved.
+    PairBody body;
+    PairBody endBody;
+    double turned = 0.0;        ///< Longest way about the centroid until then, by its turn, m.
+    double pushed = 0.0;        ///< What others may add to its speed within a step of a crowd, m/s.
+    std::uint64_t carriers = 0; ///< Which contacts with others carry.
+    int place = -1;             ///< Among the bodies of its group in the step at hand.
     bool asleep = false;
     bool touchesOthers = false;
-    bool arrived = false;       ///< The step has been looked at where it ended.
-    int place = -1;             ///< Among the bodies of its group in the step at hand.
-    std::uint64_t carriers = 0; ///< Which contacts with others carry.
-    double pushed = 0.0;        ///< What others may add to its speed within a step of a crowd, m/s.
+    bool arrived = false; ///< The step has been looked at where it ended.
+    RockSimulator sim;
   };
   struct Group
   {
@@ -98,6 +100,8 @@ private:
   };
   struct Workspace;
   struct Meetings;
+
+  void comeToRock(const Group& group, std::size_t k) const;
 
   /// Who may meet whom within the step: massFallMeet.cxx, massFallLink.cxx.
   void findGroups(double duration);
@@ -118,7 +122,8 @@ private:
   void fly(const Group& group, double duration) const;
   void solve(const Group& group, double h, StepKind kind, bool bounces, Workspace& work) const;
   /// What a contact is in a step of `h`; between rocks an impact begins with it if it closes fast.
-  GroupContact take(RockPair& pair, Contact& contact, double h, bool bounces) const;
+  GroupContact take(
+    RockPair& pair, const PairMotion& motion, Contact& contact, double h, bool bounces) const;
   GroupContact take(const Member& member, Contact& contact, double h, bool bounces) const;
   /// Contacts that nobody reckoned with, seen where a step would end: they are appended. Returns
   /// how deep the deepest is, of the smaller radius; 0: none.
@@ -131,8 +136,14 @@ private:
     const Group& group, std::size_t m, Workspace& work, std::vector<Contact>& touches) const;
   void add(GroupContact taken, bool bounces, Workspace& work) const;
   void absorb(const Group& group, double h, StepKind kind, Workspace& work) const;
+  /// An impact of the two, unless one is under way; as they were before it, and where (m).
+  void beginPairImpact(
+    RockPair& pair, const BlockState& first, const BlockState& second, const Vec3& point) const;
+  /// One that began within a step of `h`: rocks that were apart, and that others drove together.
+  void findKnock(RockPair& pair, const GroupContact& taken, double h) const;
   void finishPairImpact(RockPair& pair) const;
-  Vec3 relativeVelocity(const RockPair& pair, const Vec3& point) const; ///< First less second, m/s.
+  void closePairBooks(RockPair& pair) const; ///< What it has lost, to the two rocks.
+  PairMotion motionOf(const RockPair& pair) const;
 
   const Surface& surface_;
   const SimulationParameters& parameters_;

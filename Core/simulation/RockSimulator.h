@@ -150,48 +150,50 @@ private:
   const Rock& rock_;
   const Block& block_;
   const SimulationParameters& parameters_;
+  // In the order of their use in the step of a crowd, which goes from rock to rock: what it needs
+  // lies together, and in one page.
+  bool done_ = false;
+  bool inContact_ = false;
+  bool crowded_ = false; ///< Its step is that of a crowd, as long as Δt.
+  bool stiff_ = false;   ///< The block's strain follows its contacts without inertia.
+  bool solid_ = false;   ///< There are embankments or trees.
+  bool barriers_ = false;
+  StepKind steppedAs_ = StepKind::Impact; ///< In the last step.
+  double restingSpeed_ = 0.0;             ///< Below it a touch is no impact, m/s.
   BlockState state_;
-  PlacedBlock placed_;
-  HeightWindow window_;
-  SurfacePatch patch_;
-  SurfacePatch holed_; ///< Under the way of a flight that comes over holes.
-  CandidatePairs candidates_;
-  StepSolver solver_;
   std::vector<Contact> contacts_;
   std::vector<Contact> contactsBefore_;
   BlockState before_; ///< At the start of the last step of contact.
-  Recorder recorder_;
-  Impact impact_;
-  EnergyAudit energy_;
-  double energyAtStart_ = 0.0;        ///< Kinetic and potential, J.
-  double springEnergy_ = 0.0;         ///< In the contact springs, J.
-  double springEnergyBefore_ = 0.0;   ///< The same at the start of the last step of contact, J.
-  double normalEnergy_ = 0.0;         ///< In the normal ones, J.
-  double softness_ = 0.0;             ///< Of a contact and the block behind it, m/N.
-  double penalty_ = 0.0;              ///< pₙ of the contacts that are made now, N/m.
-  bool crowded_ = false;              ///< Its step is that of a crowd, as long as Δt.
-  bool stiff_ = false;                ///< The block's strain follows its contacts without inertia.
-  std::vector<double> dampingRatios_; ///< ζ by restitution class; < 0: not known yet.
-  double restingSpeed_ = 0.0;         ///< Below it a touch is no impact, m/s.
-  double quietTime_ = 0.0;            ///< For how long it has been lying still, s.
   Vec3 acceleration_ = Vec3::Zero();
   Vec3 spinAcceleration_ = Vec3::Zero();
-  StepKind steppedAs_ = StepKind::Impact; ///< In the last step.
-  std::uint64_t carrying_ = 0;            ///< What carried in the last lasting step.
-  double ringing_ = 0.0; ///< Period of a soft block's slowest strain, 0 for a stiff one, s.
+  double springEnergy_ = 0.0;            ///< In the contact springs, J.
+  double springEnergyBefore_ = 0.0;      ///< The same at the start of the last step of contact, J.
+  double normalEnergy_ = 0.0;            ///< In the normal ones, J.
+  double quietTime_ = 0.0;               ///< For how long it has been lying still, s.
+  double openTime_ = 0.0;                ///< Since it touched, s.
+  double horizon_ = 0.0;                 ///< Up to which it is to advance, s.
+  double penalty_ = 0.0;                 ///< pₙ of the contacts that are made now, N/m.
+  std::uint64_t carrying_ = 0;           ///< What carried in the last lasting step.
   const Obstacles* obstacles_ = nullptr; ///< Null if there are none.
-  bool solid_ = false;                   ///< There are embankments or trees.
-  bool barriers_ = false;
-  std::vector<int> goneTrees_;      ///< Ascending.
-  std::vector<int> brokenBarriers_; ///< In the order of breaking.
-  double freeUntil_ = 0.0;          ///< Nothing can be touched until then, after a take-off, s.
+  EnergyAudit energy_;
+  double energyAtStart_ = 0.0; ///< Kinetic and potential, J.
+  PlacedBlock placed_;
+  CandidatePairs candidates_;
+  Impact impact_;
+  Recorder recorder_;
+  SurfacePatch patch_;
+  HeightWindow window_;
+  SurfacePatch holed_; ///< Under the way of a flight that comes over holes.
+  double softness_ = 0.0; ///< Of a contact and the block behind it, m/N.
+  double ringing_ = 0.0;  ///< Period of a soft block's slowest strain, 0 for a stiff one, s.
+  std::vector<double> dampingRatios_; ///< ζ by restitution class; < 0: not known yet.
+  std::vector<int> goneTrees_;        ///< Ascending.
+  std::vector<int> brokenBarriers_;   ///< In the order of breaking.
+  double freeUntil_ = 0.0;            ///< Nothing can be touched until then, after a take-off, s.
   std::vector<BarrierPassage> passages_; ///< Of the way at hand.
   std::size_t passed_ = 0;               ///< How many of them are dealt with.
   BarrierHit hit_;
-  double openTime_ = 0.0; ///< Since it touched, s.
-  double horizon_ = 0.0;  ///< Up to which it is to advance, s.
-  bool inContact_ = false;
-  bool done_ = false;
+  StepSolver solver_;
 };
 
 } // namespace rockfall

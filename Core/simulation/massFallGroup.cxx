@@ -29,6 +29,11 @@ constexpr int kFew = 4;
 /// would end is looked at.
 constexpr double kCrowdTravel = 2.0;
 constexpr double kShearDamping = 5.0; // as for single rocks
+/// What comes near within a step may do so faster than when it begins, by this factor.
+constexpr double kFaster = 1.5;
+/// In a crowd contacts are reckoned with that may close at the speed at which they come in, or are
+/// nearer than this share of the smaller radius.
+constexpr double kSurely = 2e-3;
 
 /// Gives contacts of a pair what they are made of; what only their normal decides is found once.
 class PairArming
@@ -94,14 +99,9 @@ private:
 
 } // namespace
 
-Vec3 MassFall::relativeVelocity(const RockPair& pair, const Vec3& point) const
+PairMotion MassFall::motionOf(const RockPair& pair) const
 {
-  const auto at = [&](int i)
-  {
-    const BlockState& s = members_[i]->sim.state_;
-    return Vec3(s.velocity + s.angularVelocity().cross(point - s.position));
-  };
-  return at(pair.first) - at(pair.second);
+  return { members_[pair.first]->sim.state_, members_[pair.second]->sim.state_ };
 }
 
 bool MassFall::isCrowd(const Group& group) const
@@ -143,7 +143,7 @@ double MassFall::groupStep(const Group& group) const
 void MassFall::gatherContacts(const Group& group, double h) const
 {
   const auto reachOf = [&](double speed, double radius)
-  { return 1.5 * speed * h + parameters_.gravity * h * h + 1e-6 * radius; };
+  { return kFaster * speed * h + parameters_.gravity * h * h + 1e-6 * radius; };
   const bool crowd = group.crowd;
   if (crowd)
   {
@@ -151,6 +151,7 @@ void MassFall::gatherContacts(const Group& group, double h) const
   }
   const auto onSlope = [&](std::size_t k)
   {
+    this->comeToRock(group, k);
     Member& m = *members_[group.members[k]];
     RockSimulator& sim = m.sim;
     if (sim.done_)
@@ -182,6 +183,7 @@ void MassFall::gatherContacts(const Group& group, double h) const
   forEach(group.members.size(), kRockGrain, onSlope);
   const auto eachOther = [&](std::size_t k)
   {
+    comeToPair(group.pairs, k);
     RockPair* pair = group.pairs[k];
     const Member &a = *members_[pair->first], &b = *members_[pair->second];
     if (a.sim.done_ || b.sim.done_)
@@ -192,8 +194,20 @@ void MassFall::gatherContacts(const Group& group, double h) const
     }
     const BlockState &s = a.sim.state_, &t = b.sim.state_;
     const double ra = a.sim.block_.radius(), rb = b.sim.block_.radius();
-    const double speed = (s.velocity - t.velocity).norm() + s.spin.norm() * ra + t.spin.norm() * rb;
-    updatePair(a.body, b.body, reachOf(speed, std::min(ra, rb)), *pair);
+    const double rims = s.spin.norm() * ra + t.spin.norm() * rb;
+    const double smaller = std::min(ra, rb);
+    const double reach = reachOf((s.velocity - t.velocity).norm() + rims, smaller);
+    if (crowd)
+    {
+      // The second look finds the others, should they be needed.
+      const ClosingGaps closing = { PairMotion(s, t), kFaster * h,
+        parameters_.gravity * h * h + kSurely * smaller, rims };
+      updatePair(a.body, b.body, reach, *pair, &closing);
+    }
+    else
+    {
+      updatePair(a.body, b.body, reach, *pair);
+    }
     this->armPair(*pair, h, crowd);
   };
   forEach(group.pairs.size(), kPairGrain, eachOther);
@@ -240,7 +254,8 @@ void MassFall::armPair(RockPair& pair, double h, bool crowd) const
   {
     tuneDashpots(
       pair.contacts, h,
-      [&](const Contact& c) { return -c.normal.dot(this->relativeVelocity(pair, c.point)); },
+      [motion = this->motionOf(pair)](const Contact& c)
+      { return -c.normal.dot(motion.at(c.point)); },
       [&](const Vec3& force, const Vec3& moment, const Vec3& at)
       { return response(a.placed_, force, moment, at) + response(b.placed_, force, moment, at); });
   }
@@ -267,6 +282,7 @@ bool MassFall::isCalm(const Group& group) const
     const RockSimulator &a = members_[pair->first]->sim, &b = members_[pair->second]->sim;
     const double resting = std::min(a.restingSpeed_, b.restingSpeed_);
     const double mass = 1.0 / (1.0 / a.block_.mass() + 1.0 / b.block_.mass());
+    const PairMotion motion = this->motionOf(*pair);
     double held = 0.0;
     for (const Contact& c : pair->contacts)
     {
@@ -274,7 +290,7 @@ bool MassFall::isCalm(const Group& group) const
       {
         continue;
       }
-      if (std::abs(c.normal.dot(this->relativeVelocity(*pair, c.point))) > resting)
+      if (std::abs(c.normal.dot(motion.at(c.point))) > resting)
       {
         return false;
       }
@@ -314,9 +330,10 @@ bool MassFall::mayLast(const Group& group, double h) const
   {
     const double resting =
       std::min(members_[pair->first]->sim.restingSpeed_, members_[pair->second]->sim.restingSpeed_);
+    const PairMotion motion = this->motionOf(*pair);
     for (const Contact& c : pair->contacts)
     {
-      if (impact(c, this->relativeVelocity(*pair, c.point), resting))
+      if (impact(c, motion.at(c.point), resting))
       {
         return false;
       }

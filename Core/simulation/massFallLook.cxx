@@ -8,6 +8,7 @@
 #include "simulation/massFallWork.h"
 
 #include "base/parallel.h"
+#include "contact/motion.h"
 #include "simulation/pressOut.h"
 
 #include <algorithm>
@@ -57,11 +58,22 @@ double MassFall::lookAgain(const Group& group, double h, bool bounces, Workspace
 {
   const auto place = [&](std::size_t k)
   {
+    this->comeToRock(group, k);
     Member& m = *members_[group.members[k]];
-    if (!m.sim.done_ && work.solver.moved(std::size_t(m.place)))
+    if (m.sim.done_)
     {
-      m.end.place(m.sim.block_, work.solver.end(work.bodies, std::size_t(m.place)));
+      return;
+    }
+    const std::size_t at = std::size_t(m.place);
+    Workspace::Way& way = work.ways[at];
+    way.moved = work.solver.moved(at);
+    if (way.moved)
+    {
+      const BlockState end = work.solver.end(work.bodies, at);
+      m.end.place(m.sim.block_, end);
       m.endBody.update(m.end);
+      way.way = end.position - m.sim.state_.position;
+      way.turned = wayOfTurn(m.sim.state_.orientation, end.orientation, m.sim.block_.radius());
     }
   };
   forEach(group.members.size(), kRockGrain, place);
@@ -132,9 +144,8 @@ double MassFall::lookAtSlope(const Group& group, double h, bool bounces, Workspa
     if (sim.candidates_.room(end, sim.block_.radius(), 0.0) < 0.0)
     {
       // Thrown further than anyone would have thought.
-      const double turned = 2.0 * sim.block_.radius() *
-        (end.orientation.coeffs() - sim.state_.orientation.coeffs()).norm();
-      sim.ensureCandidates((end.position - sim.state_.position).norm() + turned, true);
+      const Workspace::Way& way = work.ways[std::size_t(member.place)];
+      sim.ensureCandidates(way.way.norm() + way.turned, true);
     }
     if (!overlaps(member.end, sim.patch_, sim.candidates_, kLooseOverlap * sim.block_.radius()))
     {
@@ -189,14 +200,36 @@ double MassFall::lookAtPairs(const Group& group, double h, bool bounces, Workspa
   };
   const auto compare = [&](std::size_t p)
   {
+    comeToPair(group.pairs, p);
     RockPair& pair = *group.pairs[p];
-    const Member &a = *members_[pair.first], &b = *members_[pair.second];
-    if (a.sim.done_ || b.sim.done_ ||
-      !(work.solver.moved(std::size_t(a.place)) || work.solver.moved(std::size_t(b.place))))
+    const std::array<int, 2>& places = work.places[p];
+    if (places[0] < 0 || places[1] < 0)
     {
       return false;
     }
-    pair.end = findAxis(a.endBody, b.endBody, pair.axis, 0.0);
+    const Workspace::Way& first = work.ways[std::size_t(places[0])];
+    const Workspace::Way& second = work.ways[std::size_t(places[1])];
+    if (!first.moved && !second.moved)
+    {
+      return false;
+    }
+    const auto isClosed = [](const GroupContact& k) { return k.closed; };
+    const auto contacts = work.contacts.begin();
+    if (std::none_of(contacts + std::ptrdiff_t(work.firsts[p]),
+          contacts + std::ptrdiff_t(work.firsts[p + 1]), isClosed))
+    {
+      // Along the axis where the step began they may still be apart.
+      const double gap = pair.axis.distance + pair.axis.normal.dot(first.way - second.way) -
+        first.turned - second.turned;
+      if (gap > 0.0)
+      {
+        pair.end = pair.axis;
+        pair.end.distance = gap;
+        return false;
+      }
+    }
+    pair.end =
+      findAxis(members_[pair.first]->endBody, members_[pair.second]->endBody, pair.axis, 0.0);
     const double deep = -allowed(pair);
     return pair.end.kind != PairAxis::Kind::None && pair.end.distance < deep &&
       pair.end.distance < deepest(p) + deep;
@@ -221,6 +254,7 @@ double MassFall::lookAtPairs(const Group& group, double h, bool bounces, Workspa
     RockPair& pair = *group.pairs[p];
     const Member &a = *members_[pair.first], &b = *members_[pair.second];
     const double limit = deepest(p) - allowed(pair);
+    const PairMotion motion = this->motionOf(pair);
     for (Contact& c : work.found[m])
     {
       if (c.distance >= limit)
@@ -259,7 +293,7 @@ double MassFall::lookAtPairs(const Group& group, double h, bool bounces, Workspa
       this->armContact(pair, c);
       work.added.push_back(c);
       work.addedTo.push_back({ false, p, c });
-      this->add(this->take(pair, work.added.back(), h, bounces), bounces, work);
+      this->add(this->take(pair, motion, work.added.back(), h, bounces), bounces, work);
     }
   }
   return most;

@@ -10,6 +10,7 @@
 #include "simulation/massFallMeet.h"
 
 #include "base/parallel.h"
+#include "contact/motion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -71,9 +72,8 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
     }
     const BlockState& s = sim.state_;
     m.position = s.position;
-    const double turn = std::min((s.orientation.coeffs() - m.orientation.coeffs()).norm(),
-      (s.orientation.coeffs() + m.orientation.coeffs()).norm());
-    m.turned += m.radius * (2.0 * turn + (s.strain - m.strain).norm());
+    m.turned +=
+      wayOfTurn(m.orientation, s.orientation, m.radius) + m.radius * (s.strain - m.strain).norm();
     m.orientation = s.orientation;
     m.strain = s.strain;
     if (m.asleep)
@@ -137,7 +137,7 @@ void MassFall::Meetings::drop(MassFall& fall, Near& n)
 {
   if (n.pair)
   {
-    fall.finishPairImpact(*n.pair);
+    fall.closePairBooks(*n.pair);
     std::vector<Contact> contacts = std::move(n.pair->contacts);
     contacts.clear();
     *n.pair = RockPair();

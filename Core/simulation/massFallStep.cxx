@@ -77,7 +77,8 @@ GroupContact MassFall::take(const Member& member, Contact& c, double h, bool bou
   return k;
 }
 
-GroupContact MassFall::take(RockPair& pair, Contact& c, double h, bool bounces) const
+GroupContact MassFall::take(
+  RockPair& pair, const PairMotion& motion, Contact& c, double h, bool bounces) const
 {
   const Member &a = *members_[pair.first], &b = *members_[pair.second];
   const double resting = std::min(a.sim.restingSpeed_, b.sim.restingSpeed_);
@@ -92,23 +93,17 @@ GroupContact MassFall::take(RockPair& pair, Contact& c, double h, bool bounces) 
   {
     k.cohesion = sharedCohesion(k.cohesion, closedCount(pair.contacts));
   }
-  k.approach = -c.normal.dot(this->relativeVelocity(pair, c.point));
+  k.approach = -c.normal.dot(motion.at(c.point));
   const bool impacts = hits(c, k.approach, resting, h);
   k.bounce = bounces && impacts ? pair.law.restitution * k.approach : -1.0;
-  // For the events.
-  RockPair::Impact& impact = pair.impact;
-  if (impacts && !impact.pending)
+  // For the events: what strikes one of two that touch strikes the other through it.
+  if (impacts || (c.closed() && k.approach > resting))
   {
-    impact = {};
-    impact.pending = true;
-    impact.time = a.sim.state_.time;
-    impact.before[0] = a.sim.state_.velocity;
-    impact.before[1] = b.sim.state_.velocity;
-    impact.point = c.point;
+    this->beginPairImpact(pair, a.sim.state_, b.sim.state_, c.point);
   }
-  if (impact.pending && !c.closed())
+  if (pair.impact.pending)
   {
-    impact.approach = std::max(impact.approach, k.approach);
+    pair.impact.approach = std::max(pair.impact.approach, k.approach);
   }
   return k;
 }
@@ -145,10 +140,13 @@ void MassFall::solve(
     return; // the last of them was caught just now
   }
   work.bodies.resize(std::size_t(places));
+  work.ways.resize(std::size_t(places));
+  work.places.resize(group.pairs.size());
   work.energyBefore.resize(std::size_t(places));
   work.contacts.resize(contacts);
   const auto takeRock = [&](std::size_t m)
   {
+    this->comeToRock(group, m);
     Member& member = *members_[group.members[m]];
     RockSimulator& sim = member.sim;
     if (sim.done_)
@@ -181,11 +179,18 @@ void MassFall::solve(
   forEach(group.members.size(), kRockGrain, takeRock);
   const auto takePair = [&](std::size_t p)
   {
+    comeToPair(group.pairs, p);
     RockPair& pair = *group.pairs[p];
+    work.places[p] = { members_[pair.first]->place, members_[pair.second]->place };
+    if (pair.contacts.empty())
+    {
+      return;
+    }
+    const PairMotion motion = this->motionOf(pair);
     std::size_t next = work.firsts[p];
     for (Contact& c : pair.contacts)
     {
-      work.contacts[next++] = this->take(pair, c, h, bounces);
+      work.contacts[next++] = this->take(pair, motion, c, h, bounces);
     }
   };
   forEach(group.pairs.size(), kPairGrain, takePair);
@@ -212,7 +217,7 @@ void MassFall::solve(
   GroupOutcome outcome;
   for (int cut = 0;; ++cut)
   {
-    // What a large group leaves to settle is small, and counted; if it is not, a shorter step is.
+    // What a large group leaves to settle is small; if it is not, a shorter step is taken.
     const bool last = cut >= (crowd ? kCrowdCuts : parameters_.maxCuts);
     const Taken take = last ? Taken::Any : crowd ? Taken::NotRough : Taken::Settled;
     if (!work.added.empty())
@@ -230,7 +235,7 @@ void MassFall::solve(
       summary.openCloseIterations += sim.done_ ? 0 : outcome.iterations;
       summary.contactSteps += sim.done_ ? 0 : 1;
       summary.cutSteps += !outcome.taken && !last && !sim.done_;
-      summary.unsettledSteps += !outcome.settled && (outcome.taken || last) && !sim.done_;
+      summary.unsettledSteps += outcome.rough && (outcome.taken || last) && !sim.done_;
     };
     forEach(group.members.size(), kRockGrain, count);
     if (outcome.taken || last)
@@ -264,6 +269,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     RockPair::Impact& impact = pair.impact;
     if (!impact.pending)
     {
+      pair.lastingLoss += taken.work;
       return;
     }
     if (c.normalForce > 0.0)
@@ -279,10 +285,15 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
   };
   const auto absorbPair = [&](std::size_t p)
   {
+    comeToPair(group.pairs, p);
     RockPair& pair = *group.pairs[p];
     Member &first = *members_[pair.first], &second = *members_[pair.second];
     pair.touched = false;
     std::uint64_t carry[2] = {};
+    for (std::size_t k = work.firsts[p]; k < work.firsts[p + 1]; ++k)
+    {
+      this->findKnock(pair, work.contacts[k], h);
+    }
     for (std::size_t k = work.firsts[p]; k < work.firsts[p + 1]; ++k)
     {
       const Contact& c = *work.contacts[k].contact;
@@ -327,6 +338,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
       continue;
     }
     RockPair& pair = *group.pairs[added.of];
+    this->findKnock(pair, work.contacts[work.firsts.back() + k], h);
     book(pair, work.contacts[work.firsts.back() + k]);
     if (c.closed())
     {
@@ -348,6 +360,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
   const bool crowd = group.crowd;
   const auto absorbRock = [&](std::size_t k)
   {
+    this->comeToRock(group, k);
     Member& m = *members_[group.members[k]];
     m.arrived = false;
     if (m.sim.done_)
@@ -389,6 +402,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
   forEach(group.members.size(), kRockGrain, absorbRock);
   const auto see = [&](std::size_t p)
   {
+    comeToPair(group.pairs, p);
     RockPair& pair = *group.pairs[p];
     pair.seen = members_[pair.first]->arrived && members_[pair.second]->arrived;
     if (pair.seen)
@@ -398,43 +412,6 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     }
   };
   forEach(group.pairs.size(), kPairGrain, see);
-}
-
-void MassFall::finishPairImpact(RockPair& pair) const
-{
-  RockPair::Impact& impact = pair.impact;
-  if (!impact.pending)
-  {
-    return;
-  }
-  impact.pending = false;
-  const double size = impact.impulse.norm();
-  if (size <= 0.0)
-  {
-    return;
-  }
-  for (int side = 0; side < 2; ++side)
-  {
-    const int own = side == 0 ? pair.first : pair.second;
-    const int other = side == 0 ? pair.second : pair.first;
-    RockSimulator& sim = members_[own]->sim;
-    ImpactEvent event;
-    event.time = impact.time;
-    event.position = impact.point;
-    event.normal = (side == 0 ? 1.0 : -1.0) / size * impact.impulse;
-    event.cfe = 0;
-    event.impulse = size;
-    event.approachSpeed = impact.approach;
-    event.velocityBefore = impact.before[side];
-    event.velocityAfter = sim.state_.velocity;
-    event.energyLoss = std::max(0.0, impact.loss);
-    event.restitution = pair.law.restitution;
-    event.otherRock = other;
-    event.otherBlockId = members_[other]->sim.rock_.blockId;
-    Trajectory& trajectory = sim.recorder_.trajectory();
-    trajectory.impacts.push_back(event);
-    ++trajectory.summary.impacts;
-  }
 }
 
 } // namespace rockfall

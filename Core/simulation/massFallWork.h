@@ -5,6 +5,7 @@
 
 #include "simulation/MassFall.h"
 
+#include <array>
 #include <deque>
 
 namespace rockfall
@@ -45,6 +46,37 @@ inline bool hits(const Contact& c, double approach, double resting, double h)
   return !c.closed() && approach > resting && c.gap() < approach * h;
 }
 
+constexpr std::size_t kCacheLine = 64; // bytes
+
+inline void askCache(const void* from, const void* to)
+{
+  for (const char* at = static_cast<const char*>(from); at < to; at += kCacheLine)
+  {
+    __builtin_prefetch(at);
+  }
+}
+
+// Asks the cache for what a loop over the pairs or rocks of a group comes to soon.
+
+inline void comeToPair(const std::vector<RockPair*>& pairs, std::size_t p)
+{
+  constexpr std::size_t kAhead = 6;
+  if (p + kAhead < pairs.size())
+  {
+    askCache(pairs[p + kAhead], &pairs[p + kAhead]->impact);
+  }
+}
+
+inline void MassFall::comeToRock(const Group& group, std::size_t k) const
+{
+  constexpr std::size_t kAhead = 2;
+  if (k + kAhead < group.members.size())
+  {
+    const Member& m = *members_[std::size_t(group.members[k + kAhead])];
+    askCache(&m.body, &m.sim.energyAtStart_);
+  }
+}
+
 /// What is worth handing to another thread.
 constexpr std::size_t kRockGrain = 16, kPairGrain = 32;
 
@@ -72,6 +104,16 @@ struct MassFall::Workspace
   std::vector<std::size_t> missed;         ///< Pairs or rocks whose contacts were missed.
   std::vector<std::vector<Contact>> found; ///< Of each of them, where it touches.
   bool looked = false;                     ///< Where the step ends.
+  /// By pair, the places of the two; −1: gone.
+  std::vector<std::array<int, 2>> places;
+  /// By place, how a rock goes in the step.
+  struct Way
+  {
+    Vec3 way;      ///< Of the centroid, m.
+    double turned; ///< Longest way about it, m.
+    bool moved;    ///< Since the last look.
+  };
+  std::vector<Way> ways;
 };
 
 } // namespace rockfall

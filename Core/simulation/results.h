@@ -57,7 +57,8 @@ struct Sample
   EnergyAudit energy;
 };
 
-/// One impact: the rock came from flight, touched, and left or settled.
+/// One impact: the rock came from flight, touched, and left or settled. Another rock may also
+/// strike it through one that it touches.
 struct ImpactEvent
 {
   double time = 0.0;            ///< Of the first touch, s.
@@ -126,9 +127,13 @@ struct TrajectorySummary
   int impacts = 0;
   std::int64_t contactSteps = 0; ///< Steps solved in contact.
   std::int64_t openCloseIterations = 0;
-  std::int64_t cutSteps = 0;       ///< Steps redone with a smaller Δt.
-  std::int64_t unsettledSteps = 0; ///< Steps taken although open–close had not settled.
+  std::int64_t cutSteps = 0; ///< Steps redone with a smaller Δt.
+  /// Steps taken although open–close had not settled, in a crowd: was far from it.
+  std::int64_t unsettledSteps = 0;
   EnergyAudit energy;
+  /// What contacts with other rocks took while no impact was under way, half of it for each of the
+  /// two, J: the sum over rocks, and the losses of impacts between rocks, are that of `exchanged`.
+  double lastingLoss = 0.0;
   std::uint64_t hash = 0; ///< Of the motion: `motionHash`, given by the ensemble.
 };
 

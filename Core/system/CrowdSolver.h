@@ -126,9 +126,8 @@ private:
   double visit(int part);
   double sweep();
   bool sweeps(int most, GroupOutcome& outcome);
-  void begin();                     ///< Before the first of a run of sweeps.
-  void goFurther();                 ///< Between two sweeps of a run: along a conjugate direction.
-  double changeOf(int first) const; ///< Of a block of movers from `first` on, N m.
+  void begin();     ///< Before the first of a run of sweeps.
+  void goFurther(); ///< Between two sweeps of a run: along a conjugate direction.
   /// Sweeps, and again as long as bounces give energy.
   void settle(int most, std::vector<GroupContact>& contacts, GroupOutcome& outcome);
   bool holdBounces(std::vector<GroupContact>& contacts); ///< Whether any gives energy.
@@ -165,15 +164,11 @@ private:
   std::vector<double> most_;        ///< Largest change, by part.
   // Of the run of sweeps at hand (goFurther): what it was before the last sweep, and the direction
   // in which it goes on, by batch and by mover.
-  struct Way
-  {
-    std::array<double, 6> of; ///< Displacement, m, and Cayley vector, rad.
-  };
   std::vector<crowd::Forces> forcesBefore_, forcesAlong_;
-  std::vector<Way> before_, along_;
+  std::vector<crowd::Way> before_, along_;
   std::vector<double> changes_; ///< By block of movers.
   double lastChange_ = 0.0;     ///< Of the sweep before; negative: there was none.
-  crowd::Sweep kernel_ = nullptr;
+  const crowd::Kernel* kernel_ = nullptr;
   int sweep_ = 0;       ///< Number of the next sweep.
   int looked_ = 0;      ///< Number of the first one since lookAgain was asked.
   double enough_ = 0.0; ///< m

@@ -9,7 +9,7 @@
 #include "system/CrowdSolver.h"
 
 #include <algorithm>
-#include <cmath>
+#include <iterator>
 #include <numeric>
 
 namespace rockfall
@@ -18,13 +18,8 @@ namespace rockfall
 namespace
 {
 
-constexpr int kMoverBlock = 64;
-constexpr std::size_t kBatchBlock = 64;
-
-std::array<double*, 6> placesOf(crowd::Mover& m)
-{
-  return { m.way, m.way + 1, m.way + 2, m.turn, m.turn + 1, m.turn + 2 };
-}
+/// Rocks, or batches of contacts, that are gone over at once.
+constexpr std::size_t kBlock = 64;
 
 } // namespace
 
@@ -33,83 +28,47 @@ void CrowdSolver::begin()
   forcesBefore_ = forces_;
   forcesAlong_.assign(forces_.size(), crowd::Forces{});
   before_.resize(work_.size());
-  along_.assign(work_.size(), Way{});
+  along_.assign(work_.size(), crowd::Way{});
   for (std::size_t i = 0; i < work_.size(); ++i)
   {
     const crowd::Mover& m = movers_[i];
-    before_[i] = { { m.way[0], m.way[1], m.way[2], m.turn[0], m.turn[1], m.turn[2] } };
+    std::copy(std::begin(m.way), std::end(m.way), before_[i].way);
+    std::copy(std::begin(m.turn), std::end(m.turn), before_[i].turn);
   }
   lastChange_ = -1.0;
 }
 
-double CrowdSolver::changeOf(int first) const
-{
-  // In the norm of kinetic energy, with a ball's inertia for that of each rock.
-  double sum = 0.0;
-  const int end = std::min(first + kMoverBlock, int(work_.size()));
-  for (int i = first; i < end; ++i)
-  {
-    const crowd::Mover& m = movers_[std::size_t(i)];
-    const std::array<double, 6>& was = before_[std::size_t(i)].of;
-    double way = 0.0, turn = 0.0;
-    for (int k = 0; k < 3; ++k)
-    {
-      way += (m.way[k] - was[std::size_t(k)]) * (m.way[k] - was[std::size_t(k)]);
-      turn += (m.turn[k] - was[std::size_t(k) + 3]) * (m.turn[k] - was[std::size_t(k) + 3]);
-    }
-    const double mobile = m.inertia[0] + m.inertia[1] + m.inertia[2];
-    sum += way / m.way[3] + 3.0 * turn / mobile;
-  }
-  return sum;
-}
-
 void CrowdSolver::goFurther()
 {
-  const int movers = int(work_.size());
-  changes_.resize(std::size_t((movers + kMoverBlock - 1) / kMoverBlock));
-  forEach(
-    changes_.size(), 4, [&](std::size_t b) { changes_[b] = this->changeOf(int(b) * kMoverBlock); });
+  const std::size_t movers = work_.size();
+  const auto inBlocks = [](std::size_t count, auto&& go)
+  {
+    const auto goBlock = [&](std::size_t block)
+    { go(block, block * kBlock, std::min((block + 1) * kBlock, count) - block * kBlock); };
+    forEach((count + kBlock - 1) / kBlock, 4, goBlock);
+  };
+  changes_.resize((movers + kBlock - 1) / kBlock);
+  const auto changeOf = [&](std::size_t block, std::size_t first, std::size_t count)
+  { changes_[block] = kernel_->changeOf(&movers_[first], &before_[first], int(count)); };
+  inBlocks(movers, changeOf);
   const double change = std::accumulate(changes_.begin(), changes_.end(), 0.0);
   // Where it does not get smaller it begins anew.
   const bool first = lastChange_ < 0.0, anew = !first && !(change <= lastChange_);
-  const double share = first || anew || change <= 0.0 ? 0.0 : change / lastChange_;
+  crowd::Further further;
+  further.share = first || anew || change <= 0.0 ? 0.0 : change / lastChange_;
+  further.anew = anew;
+  further.quiet = kQuiet * enough_;
+  further.number = sweep_ - 1; // since the last visit
   lastChange_ = change;
-  const auto forcesOf = [&](std::size_t block)
+  const auto goForces = [&](std::size_t, std::size_t from, std::size_t count)
+  { kernel_->goForces(further, &forces_[from], &forcesBefore_[from], &forcesAlong_[from], count); };
+  inBlocks(forces_.size(), goForces);
+  const auto goMovers = [&](std::size_t, std::size_t from, std::size_t count)
   {
-    const std::size_t end = std::min((block + 1) * kBatchBlock, forces_.size());
-    for (std::size_t k = block * kBatchBlock; k < end; ++k)
-    {
-      double* now = forces_[k].along[0];
-      double* was = forcesBefore_[k].along[0];
-      double* along = forcesAlong_[k].along[0];
-      for (int i = 0; i < 3 * crowd::kLanes; ++i)
-      {
-        const double step = now[i] - was[i], further = share * along[i];
-        was[i] = now[i] += further;
-        along[i] = anew ? 0.0 : further + step;
-      }
-    }
+    kernel_->goMovers(
+      further, &movers_[from], &before_[from], &along_[from], &changed_[from], count);
   };
-  forEach((forces_.size() + kBatchBlock - 1) / kBatchBlock, 4, forcesOf);
-  const double quiet = kQuiet * enough_;
-  const auto moverOf = [&](std::size_t i)
-  {
-    const std::array<double*, 6> now = placesOf(movers_[i]);
-    double most = 0.0;
-    for (std::size_t k = 0; k < 6; ++k)
-    {
-      double &was = before_[i].of[k], &along = along_[i].of[k];
-      const double step = *now[k] - was, further = share * along;
-      was = *now[k] += further;
-      along = anew ? 0.0 : further + step;
-      most = std::max(most, std::abs(further));
-    }
-    if (most > quiet)
-    {
-      changed_[i] = sweep_ - 1; // since the last visit
-    }
-  };
-  forEach(work_.size(), kBodyGrain, moverOf);
+  inBlocks(movers, goMovers);
 }
 
 } // namespace rockfall

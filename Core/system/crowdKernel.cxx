@@ -3,25 +3,19 @@
 namespace rockfall::crowd
 {
 
-double sweepAnywhere(const Pass& pass)
-{
-  return pass.slope ? sweepAll<true>(pass) : sweepAll<false>(pass);
-}
+const Kernel kAnywhere = kernelHere;
 
 #ifndef ROCKFALL_AVX2
-double sweepAvx2(const Pass& pass)
-{
-  return sweepAnywhere(pass);
-}
+const Kernel kAvx2 = kernelHere;
 #endif
 
-Sweep suitedSweep()
+const Kernel& suitedKernel()
 {
 #ifdef ROCKFALL_AVX2
-  static const Sweep suited = __builtin_cpu_supports("avx2") ? sweepAvx2 : sweepAnywhere;
-  return suited;
+  static const bool hasAvx2 = __builtin_cpu_supports("avx2");
+  return hasAvx2 ? kAvx2 : kAnywhere;
 #else
-  return sweepAnywhere;
+  return kAnywhere;
 #endif
 }
 

@@ -1,10 +1,12 @@
 #pragma once
 
 /// @file
-/// The innermost loop of a crowd's solver: one pass of projected Gauss–Seidel over contacts that
+/// The innermost loops of a crowd's solver: one pass of projected Gauss–Seidel over contacts that
 /// are dealt out in batches of four, of which no two share a rock, so that the four are reckoned
 /// side by side in vector registers. Plain numbers only: this is compiled once for every x86-64
 /// processor and once for those with AVX2, to the same bits (no fused operations).
+
+#include <cstddef>
 
 namespace rockfall::crowd
 {
@@ -56,12 +58,40 @@ struct Pass
   double quiet; ///< m
 };
 
-/// The largest change of a displacement, m.
-using Sweep = double (*)(const Pass&);
-double sweepAnywhere(const Pass& pass);
-double sweepAvx2(const Pass& pass);
+/// Displacement (m) and Cayley vector (rad) of a mover, as they lie in it.
+struct alignas(32) Way
+{
+  double way[4];
+  double turn[4];
+};
+
+/// Between two sweeps: all that a sweep has changed goes on by `share` of the direction that it
+/// went in so far.
+struct Further
+{
+  double share;
+  bool anew;    ///< From here on another direction begins.
+  double quiet; ///< What goes further than this (m, rad) counts as moved
+  int number;   ///< in this sweep.
+};
+
+/// The loops, as compiled for one kind of processor.
+struct Kernel
+{
+  /// The largest change of a displacement, m.
+  double (*sweep)(const Pass& pass);
+  /// How far movers have come since `before`, in the norm of kinetic energy with a ball's inertia
+  /// for that of each rock, N m.
+  double (*changeOf)(const Mover* movers, const Way* before, int count);
+  /// `now`, `before` and `along` are gone over together.
+  void (*goForces)(
+    const Further& further, Forces* now, Forces* before, Forces* along, std::size_t count);
+  void (*goMovers)(
+    const Further& further, Mover* now, Way* before, Way* along, int* changed, std::size_t count);
+};
+extern const Kernel kAnywhere, kAvx2;
 
 /// The one that suits the processor.
-Sweep suitedSweep();
+const Kernel& suitedKernel();
 
 } // namespace rockfall::crowd

@@ -6,10 +6,7 @@
 namespace rockfall::crowd
 {
 
-double sweepAvx2(const Pass& pass)
-{
-  return pass.slope ? sweepAll<true>(pass) : sweepAll<false>(pass);
-}
+const Kernel kAvx2 = kernelHere;
 
 } // namespace rockfall::crowd
 

@@ -1,4 +1,4 @@
-// The body of crowd::sweepAnywhere and sweepAvx2: included by the two files that compile it. No
+// The loops of crowd::kAnywhere and kAvx2: included by the two files that compile it. No
 // function with external linkage may be used here, or the linker could take the AVX2 one for all.
 
 #include "solver/cohesion.h"
@@ -9,9 +9,12 @@ namespace
 
 using rockfall::crowd::Batch;
 using rockfall::crowd::Forces;
+using rockfall::crowd::Further;
+using rockfall::crowd::Kernel;
 using rockfall::crowd::kLanes;
 using rockfall::crowd::Mover;
 using rockfall::crowd::Pass;
+using rockfall::crowd::Way;
 
 using Lanes = double __attribute__((vector_size(32), may_alias));
 using Mask = long long __attribute__((vector_size(32)));
@@ -251,5 +254,67 @@ ROCKFALL_INLINE double sweepAll(const Pass& pass)
   }
   return most;
 }
+
+double sweepHere(const Pass& pass)
+{
+  return pass.slope ? sweepAll<true>(pass) : sweepAll<false>(pass);
+}
+
+double changeHere(const Mover* movers, const Way* before, int count)
+{
+  double sum = 0.0;
+  for (int i = 0; i < count; ++i)
+  {
+    const Mover& m = movers[i];
+    Lanes way = load(m.way) - load(before[i].way), turn = load(m.turn) - load(before[i].turn);
+    way *= way;
+    turn *= turn;
+    const double mobile = m.inertia[0] + m.inertia[1] + m.inertia[2];
+    sum += (way[0] + way[1] + way[2]) / m.way[3] + 3.0 * (turn[0] + turn[1] + turn[2]) / mobile;
+  }
+  return sum;
+}
+
+/// Four numbers go on; by how much.
+ROCKFALL_INLINE Lanes go(const Further& further, double* now, double* before, double* along)
+{
+  const Lanes reached = load(now), went = load(along);
+  const Lanes step = reached - load(before), more = further.share * went;
+  store(now, reached + more);
+  store(before, reached + more);
+  const Lanes none = { 0.0, 0.0, 0.0, 0.0 };
+  store(along, further.anew ? none : more + step);
+  return more;
+}
+
+void goForcesHere(
+  const Further& further, Forces* now, Forces* before, Forces* along, std::size_t count)
+{
+  for (std::size_t k = 0; k < count; ++k)
+  {
+    for (int i = 0; i < 3; ++i)
+    {
+      go(further, now[k].along[i], before[k].along[i], along[k].along[i]);
+    }
+  }
+}
+
+void goMoversHere(
+  const Further& further, Mover* now, Way* before, Way* along, int* changed, std::size_t count)
+{
+  for (std::size_t k = 0; k < count; ++k)
+  {
+    // What is no displacement does not change.
+    const Lanes way = go(further, now[k].way, before[k].way, along[k].way);
+    const Lanes turn = go(further, now[k].turn, before[k].turn, along[k].turn);
+    const Mask moved = (absolute(way) > further.quiet) | (absolute(turn) > further.quiet);
+    if ((moved[0] | moved[1] | moved[2] | moved[3]) != 0)
+    {
+      changed[k] = further.number;
+    }
+  }
+}
+
+constexpr Kernel kernelHere = { sweepHere, changeHere, goForcesHere, goMoversHere };
 
 } // namespace

@@ -226,7 +226,7 @@ double CrowdSolver::visit(int part)
     pass.forces = forces_.data() + starts_[key];
     pass.count = starts_[key + 1] - starts_[key];
     pass.slope = kind >= 2;
-    most = std::max(most, kernel_(pass));
+    most = std::max(most, kernel_->sweep(pass));
   }
   return most;
 }
@@ -323,7 +323,7 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
     outcome.settled = outcome.taken = true;
     return outcome;
   }
-  kernel_ = crowd::suitedSweep();
+  kernel_ = &crowd::suitedKernel();
   this->prepareBodies(request, bodies);
   this->lineUp();
   this->arrange(contacts);
@@ -387,7 +387,8 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
     finite = finite && w.way.allFinite() && w.spun.allFinite();
   }
   const bool near = outcome.settled || outcome.residual <= kRough * enough_;
-  const bool fair = take == Taken::NotRough ? near && missed <= kDeepMiss : outcome.settled;
+  outcome.rough = !near || missed > kDeepMiss;
+  const bool fair = take == Taken::NotRough ? !outcome.rough : outcome.settled;
   outcome.taken = finite && (fair || take == Taken::Any);
   if (outcome.taken)
   {

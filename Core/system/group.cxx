@@ -9,6 +9,7 @@ ContactBooks writeContact(const ContactLaw& law, const std::array<Vec3, 3>& dire
   Contact& c = *contact.contact;
   const Eigen::Vector2d travel = ways.way.tail<2>();
   c.normalForce = law.force;
+  contact.way = ways.way[0];
   c.shearForce = law.shearForce.norm();
   c.distance = gap0 + ways.way[0] + c.offset;
   const bool bounced = contact.bounce >= 0.0;

@@ -38,6 +38,7 @@ struct GroupContact
   double bounce = -1.0;
   double approach = 0.0; ///< Speed at which it closes, m/s.
   double work = 0.0;     ///< Out: what it took from the rocks' motion, springs included, J.
+  double way = 0.0;      ///< Out, if it carried: how far it opened along the normal, m.
   /// What contact->closed() says when the step begins; for whoever set the contact up and goes over
   /// all of them.
   bool closed = false;
@@ -54,6 +55,7 @@ enum class Taken : std::uint8_t
 struct GroupOutcome
 {
   bool settled = false;
+  bool rough = false;        ///< Far from settled: what is taken so is counted.
   bool taken = false;        ///< Bodies and contacts are those at the end of the step.
   int iterations = 0;        ///< Of open–close.
   double residual = 0.0;     ///< Largest |Δ gap| of the last correction, m.

@@ -165,6 +165,7 @@ GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody
     outcome = sweep();
     outcome.iterations += iterations;
     outcome.settled = false;
+    outcome.rough = true;
     return outcome;
   }
   bool finite = true;
@@ -172,6 +173,7 @@ GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody
   {
     finite = finite && w.d.allFinite();
   }
+  outcome.rough = !outcome.settled;
   if (finite && outcome.settled)
   {
     this->write(request, bodies, contacts, outcome);

@@ -92,7 +92,7 @@ Crowd randomCrowd(int rocks, int batches, bool slope, unsigned seed)
   return crowd;
 }
 
-double run(Crowd& crowd, Sweep sweep, bool slope, int sweeps)
+double run(Crowd& crowd, const Kernel& kernel, bool slope, int sweeps)
 {
   double change = 0.0;
   for (int number = 0; number < sweeps; ++number)
@@ -107,7 +107,7 @@ double run(Crowd& crowd, Sweep sweep, bool slope, int sweeps)
     pass.changed = crowd.changed.data();
     pass.number = number;
     pass.quiet = 1e-12;
-    change = sweep(pass);
+    change = kernel.sweep(pass);
   }
   return change;
 }
@@ -130,8 +130,8 @@ TEST(CrowdKernel, SameBitsOnEveryProcessor)
       }
     }
     Crowd other = one;
-    const double a = run(one, sweepAnywhere, slope, 30);
-    const double b = run(other, suitedSweep(), slope, 30);
+    const double a = run(one, kAnywhere, slope, 30);
+    const double b = run(other, suitedKernel(), slope, 30);
     EXPECT_EQ(a, b);
     EXPECT_EQ(one.changed, other.changed);
     EXPECT_EQ(
@@ -143,6 +143,95 @@ TEST(CrowdKernel, SameBitsOnEveryProcessor)
       for (int lane = 0; lane < kLanes; ++lane)
       {
         EXPECT_GE(forces.along[0][lane], 0.0); // also where it pulled before; no NaN
+      }
+    }
+  }
+}
+
+TEST(CrowdKernel, GoesFurtherInTheSameBits)
+{
+  // Against the plain formulas.
+  const Crowd start = randomCrowd(37, 29, false, 3);
+  std::mt19937_64 random(4);
+  std::normal_distribution<double> force(0.0, 1e4), way(0.0, 1e-2);
+  for (const bool anew : { false, true })
+  {
+    for (const Kernel* kernel : { &kAnywhere, &suitedKernel() })
+    {
+      Crowd crowd = start;
+      const std::size_t rocks = 37, count = crowd.forces.size();
+      std::vector<Forces> forcesBefore(count), forcesAlong(count);
+      std::vector<Way> before(rocks), along(rocks);
+      for (std::size_t k = 0; k < count; ++k)
+      {
+        for (Forces* f : { &crowd.forces[k], &forcesBefore[k], &forcesAlong[k] })
+        {
+          for (auto& of : f->along)
+          {
+            std::generate(std::begin(of), std::end(of), [&] { return force(random); });
+          }
+        }
+      }
+      for (std::size_t i = 0; i < rocks; ++i)
+      {
+        for (int k = 0; k < 3; ++k)
+        {
+          before[i].way[k] = way(random), before[i].turn[k] = way(random);
+          along[i].way[k] = way(random), along[i].turn[k] = i % 5 == 0 ? 0.0 : way(random);
+          along[i].way[k] *= i % 5 == 0 ? 0.0 : 1.0;
+        }
+        before[i].way[3] = crowd.movers[i].way[3];
+      }
+      double change = 0.0;
+      for (std::size_t i = 0; i < rocks; ++i)
+      {
+        const Mover& m = crowd.movers[i];
+        double ways = 0.0, turns = 0.0;
+        for (int k = 0; k < 3; ++k)
+        {
+          ways += (m.way[k] - before[i].way[k]) * (m.way[k] - before[i].way[k]);
+          turns += (m.turn[k] - before[i].turn[k]) * (m.turn[k] - before[i].turn[k]);
+        }
+        change += ways / m.way[3] + 3.0 * turns / (m.inertia[0] + m.inertia[1] + m.inertia[2]);
+      }
+      EXPECT_EQ(kernel->changeOf(crowd.movers.data(), before.data(), int(rocks)), change);
+      const Crowd was = crowd;
+      const std::vector<Forces> forcesWere = forcesBefore, forcesWent = forcesAlong;
+      const std::vector<Way> waysWere = before, waysWent = along;
+      const Further further = { 0.7, anew, 1e-9, 11 };
+      kernel->goForces(
+        further, crowd.forces.data(), forcesBefore.data(), forcesAlong.data(), count);
+      kernel->goMovers(
+        further, crowd.movers.data(), before.data(), along.data(), crowd.changed.data(), rocks);
+      const auto expect = [&](double now, double then, double went, double reached, double left)
+      {
+        EXPECT_EQ(now, reached + 0.7 * went);
+        EXPECT_EQ(left, anew ? 0.0 : 0.7 * went + (reached - then));
+      };
+      for (std::size_t k = 0; k < count; ++k)
+      {
+        for (int of = 0; of < 3; ++of)
+        {
+          for (int i = 0; i < kLanes; ++i)
+          {
+            expect(crowd.forces[k].along[of][i], forcesWere[k].along[of][i],
+              forcesWent[k].along[of][i], was.forces[k].along[of][i], forcesAlong[k].along[of][i]);
+            EXPECT_EQ(forcesBefore[k].along[of][i], crowd.forces[k].along[of][i]);
+          }
+        }
+      }
+      for (std::size_t i = 0; i < rocks; ++i)
+      {
+        for (int k = 0; k < 3; ++k)
+        {
+          expect(crowd.movers[i].way[k], waysWere[i].way[k], waysWent[i].way[k],
+            was.movers[i].way[k], along[i].way[k]);
+          expect(crowd.movers[i].turn[k], waysWere[i].turn[k], waysWent[i].turn[k],
+            was.movers[i].turn[k], along[i].turn[k]);
+          EXPECT_EQ(before[i].turn[k], crowd.movers[i].turn[k]);
+        }
+        EXPECT_EQ(crowd.movers[i].way[3], was.movers[i].way[3]);
+        EXPECT_EQ(crowd.changed[i], i % 5 == 0 ? 0 : 11);
       }
     }
   }
@@ -162,7 +251,7 @@ TEST(CrowdKernel, MomentumIsKeptAndSpringsAreMet)
     return sum;
   };
   const double before[3] = { momentum(0), momentum(1), momentum(2) };
-  run(crowd, suitedSweep(), false, 3000);
+  run(crowd, suitedKernel(), false, 3000);
   for (int k = 0; k < 3; ++k)
   {
     // 40 rocks of some 3e7 kg/s² times 1e-2 m.

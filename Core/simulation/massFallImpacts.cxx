@@ -1,0 +1,92 @@
+// Impacts of rocks on each other as events, and what their other contacts take.
+
+#include "simulation/MassFall.h"
+
+#include <algorithm>
+
+namespace rockfall
+{
+
+void MassFall::beginPairImpact(
+  RockPair& pair, const BlockState& first, const BlockState& second, const Vec3& point) const
+{
+  RockPair::Impact& impact = pair.impact;
+  if (impact.pending)
+  {
+    return;
+  }
+  impact = {};
+  impact.pending = true;
+  impact.time = first.time;
+  impact.before[0] = first.velocity;
+  impact.before[1] = second.velocity;
+  impact.point = point;
+}
+
+void MassFall::findKnock(RockPair& pair, const GroupContact& taken, double h) const
+{
+  const Contact& c = *taken.contact;
+  if (taken.closed || c.normalForce <= 0.0)
+  {
+    return;
+  }
+  const RockSimulator &a = members_[pair.first]->sim, &b = members_[pair.second]->sim;
+  const double resting = std::min(a.restingSpeed_, b.restingSpeed_);
+  const double closing = -taken.way / h;
+  if (closing > resting + parameters_.gravity * h)
+  {
+    this->beginPairImpact(pair, a.before_, b.before_, c.point);
+    pair.impact.approach = std::max(pair.impact.approach, closing);
+  }
+}
+
+void MassFall::finishPairImpact(RockPair& pair) const
+{
+  RockPair::Impact& impact = pair.impact;
+  if (!impact.pending)
+  {
+    return;
+  }
+  impact.pending = false;
+  const double size = impact.impulse.norm();
+  const double loss = size > 0.0 ? std::max(0.0, impact.loss) : 0.0;
+  pair.lastingLoss += impact.loss - loss; // springs that had been compressed before
+  if (size <= 0.0)
+  {
+    return;
+  }
+  for (int side = 0; side < 2; ++side)
+  {
+    const int own = side == 0 ? pair.first : pair.second;
+    const int other = side == 0 ? pair.second : pair.first;
+    RockSimulator& sim = members_[own]->sim;
+    ImpactEvent event;
+    event.time = impact.time;
+    event.position = impact.point;
+    event.normal = (side == 0 ? 1.0 : -1.0) / size * impact.impulse;
+    event.cfe = 0;
+    event.impulse = size;
+    event.approachSpeed = impact.approach;
+    event.velocityBefore = impact.before[side];
+    event.velocityAfter = sim.state_.velocity;
+    event.energyLoss = loss;
+    event.restitution = pair.law.restitution;
+    event.otherRock = other;
+    event.otherBlockId = members_[other]->sim.rock_.blockId;
+    Trajectory& trajectory = sim.recorder_.trajectory();
+    trajectory.impacts.push_back(event);
+    ++trajectory.summary.impacts;
+  }
+}
+
+void MassFall::closePairBooks(RockPair& pair) const
+{
+  this->finishPairImpact(pair);
+  for (const int i : { pair.first, pair.second })
+  {
+    members_[i]->sim.recorder_.trajectory().summary.lastingLoss += 0.5 * pair.lastingLoss;
+  }
+  pair.lastingLoss = 0.0;
+}
+
+} // namespace rockfall

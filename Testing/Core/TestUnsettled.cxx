@@ -1,0 +1,110 @@
+// Which steps are counted as taken although they had not settled.
+
+#include "piles.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+using namespace rockfall;
+using namespace rockfall::testing;
+
+namespace
+{
+
+/// A cube lies on three corners of its lower face and comes down on the fourth: four springs that
+/// hang together, and few sweeps. Nothing of it is settled to `tolerance`.
+GroupOutcome sweepOnce(double tolerance, Taken take)
+{
+  const Rock cube = brick(Vec3(1.0, 1.0, 1.0), Vec3(0.0, 0.0, 0.5), 0);
+  const Block block(cube.shape, cube.density, cube.youngModulus, cube.poissonRatio);
+  BlockState state;
+  state.position.z() = 0.5;
+  state.velocity.z() = -0.1;
+  std::vector<Contact> corners(4);
+  std::vector<GroupContact> contacts(4);
+  for (int k = 0; k < 4; ++k)
+  {
+    Contact& c = corners[std::size_t(k)];
+    c.point = Vec3(k % 2 - 0.5, k / 2 - 0.5, 0.0);
+    c.distance = k == 0 ? 1e-5 : 0.0;
+    c.stiffness = c.shearStiffness = 1e9;
+    contacts[std::size_t(k)].contact = &c;
+    contacts[std::size_t(k)].first = 0;
+    contacts[std::size_t(k)].friction = 0.5;
+    contacts[std::size_t(k)].bounce = k == 3 ? 0.0 : -1.0; // so that it is not calm
+  }
+  std::vector<GroupBody> bodies(1);
+  bodies[0].block = &block;
+  bodies[0].state = &state;
+  GroupSolver solver;
+  solver.method = GroupMethod::Iterative;
+  solver.tolerance = tolerance;
+  solver.maxSweeps = 2;
+  StepRequest request;
+  request.duration = 0.005;
+  request.kind = StepKind::Lasting;
+  return solver.step(request, bodies, contacts, take);
+}
+
+} // namespace
+
+TEST(Unsettled, WhatIsNearlySettledIsNotRough)
+{
+  const GroupOutcome near = sweepOnce(1e-4, Taken::NotRough);
+  EXPECT_FALSE(near.settled);
+  EXPECT_FALSE(near.rough);
+  EXPECT_TRUE(near.taken);
+  // The same to a tolerance that rounding does not reach.
+  const GroupOutcome far = sweepOnce(1e-22, Taken::NotRough);
+  EXPECT_TRUE(far.rough);
+  EXPECT_FALSE(far.taken);
+  const GroupOutcome anyway = sweepOnce(1e-22, Taken::Any);
+  EXPECT_TRUE(anyway.rough);
+  EXPECT_TRUE(anyway.taken);
+}
+
+TEST(Unsettled, AHeapThatFallsAndRestsHasNone)
+{
+  // Nine of ten steps do not settle to 1e-4 of the longest way; none is far from it.
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  Pile pile;
+  pile.ground = floorSlope();
+  pile.awake = false;
+  pile.parameters.endTime = 6.0;
+  for (int k = 0; k < 108; ++k)
+  {
+    Rock rock;
+    rock.blockId = k;
+    rock.shape = makeShape(k % 2 ? Shape::Icosahedron : Shape::Cube, 0.3);
+    rock.position = Vec3(20.0 + 1.2 * (k % 3 - 1) + 0.1 * u(random), 20.0 + 1.2 * (k / 3 % 3 - 1),
+      1.0 + 1.2 * (k / 9));
+    rock.orientation = Quat(u(random), u(random), u(random), u(random)).normalized();
+    pile.rocks.push_back(rock);
+  }
+  pile.make();
+  pile.fall->resolved = 0;
+  std::int64_t unsettled = 0, steps = 0;
+  for (const Trajectory& t : pile.fall->run())
+  {
+    unsettled += t.summary.unsettledSteps;
+    steps += t.summary.contactSteps;
+  }
+  EXPECT_GT(steps, 50000);
+  EXPECT_LT(double(unsettled), 0.001 * double(steps));
+}
+
+TEST(Unsettled, OneRockThatMayNotIterateHasSome)
+{
+  // Two open–close iterations and no cuts are never enough to close a contact and see it stay.
+  Rock rock;
+  rock.shape = makeShape(Shape::Cube, 1.0);
+  rock.position = Vec3(20.0, 20.0, 2.0);
+  SimulationParameters p;
+  p.endTime = 2.0;
+  EXPECT_EQ(simulate(floorSlope(), rock, p).summary.unsettledSteps, 0);
+  p.maxOpenClose = 2;
+  p.maxCuts = 0;
+  EXPECT_GT(simulate(floorSlope(), rock, p).summary.unsettledSteps, 0);
+}
