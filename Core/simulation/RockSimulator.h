@@ -183,7 +183,7 @@ private:
   Recorder recorder_;
   SurfacePatch patch_;
   HeightWindow window_;
-  SurfacePatch holed_; ///< Under the way of a flight that comes over holes.
+  SurfacePatch holed_;    ///< Under the way of a flight that comes over holes.
   double softness_ = 0.0; ///< Of a contact and the block behind it, m/N.
   double ringing_ = 0.0;  ///< Period of a soft block's slowest strain, 0 for a stiff one, s.
   std::vector<double> dampingRatios_; ///< ζ by restitution class; < 0: not known yet.
