@@ -102,7 +102,8 @@ double timeToClose(const PlacedBlock& rock, const BlockState& state, const Surfa
       if (distance <= 0.0)
       {
         const bool faced = inEdgeCones(rock, pair.rock, patch, pair.patch, n, kConeSlack);
-        if (faced && s >= 0.0 && s <= 1.0 && t >= 0.0 && t <= 1.0)
+        if (faced && s >= 0.0 && s <= 1.0 && t >= 0.0 && t <= 1.0 &&
+          cameAcross(rock, patch, pair.patch, distance))
         {
           return 0.0;
         }

@@ -68,6 +68,26 @@ bool cameThrough(const SurfacePatch& patch, int triangle, const Vec3& point, dou
   return true;
 }
 
+bool cameAcross(const PlacedBlock& rock, const SurfacePatch& patch, int ridge, double distance)
+{
+  const SurfacePatch::Ridge& g = patch.ridges[ridge];
+  if (distance >= 0.0 || !patch.isWall(g.triangles[0]) || !patch.isWall(g.triangles[1]))
+  {
+    return true;
+  }
+  // All of the ridge is farther from a face that looks down than its top is.
+  const Vec3& top = patch.nodes[g.nodes[0]].position;
+  const int faces = int(rock.block().shape().faces().size());
+  for (int f = 0; f < faces; ++f)
+  {
+    if (rock.normal(f).z() < 0.0 && rock.faceDistance(f, top) > distance)
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
 bool inVertexCone(const PlacedBlock& rock, int vertex, const Vec3& normal, double slack)
 {
   // The vertex must be the lowest of its surroundings along the normal.
@@ -261,7 +281,8 @@ std::optional<Contact> edgeEdge(
   {
     return std::nullopt;
   }
-  if (!inEdgeCones(rock, edge, patch, ridge, n, kConeSlack))
+  if (!inEdgeCones(rock, edge, patch, ridge, n, kConeSlack) ||
+    !cameAcross(rock, patch, ridge, distance))
   {
     return std::nullopt;
   }
