@@ -48,8 +48,9 @@ double timeToClose(const PlacedBlock& rock, const BlockState& state, const Surfa
     {
       time = std::min(time, timeToCover(over, rate(t.normal, p), gravity + turning));
     }
-    else if (projectsInside(patch, pair.patch, p, 0.0, 0.0) ||
-      (pair.patch < patch.slopeTriangles && isStraightOver(patch, t, p)))
+    else if ((projectsInside(patch, pair.patch, p, 0.0, 0.0) ||
+               (pair.patch < patch.slopeTriangles && isStraightOver(patch, t, p))) &&
+      cameThrough(patch, pair.patch, p, over))
     {
       // Under the bottom of a valley it is beside both walls, seen square to them.
       return 0.0;
@@ -101,7 +102,8 @@ double timeToClose(const PlacedBlock& rock, const BlockState& state, const Surfa
       if (distance <= 0.0)
       {
         const bool faced = inEdgeCones(rock, pair.rock, patch, pair.patch, n, kConeSlack);
-        if (faced && s >= 0.0 && s <= 1.0 && t >= 0.0 && t <= 1.0)
+        if (faced && s >= 0.0 && s <= 1.0 && t >= 0.0 && t <= 1.0 &&
+          cameAcross(rock, patch, pair.patch, distance))
         {
           return 0.0;
         }
@@ -267,8 +269,8 @@ void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const Su
       }
     }
   }
-  // Obstacles. They have a far side, whose planes are above all of the rock: only what comes in
-  // from outside is a pair, and what is less deep than contacts ever are.
+  // Walls and obstacles. They have a far side, whose planes are above all of the rock: only what
+  // comes in from outside is a pair, and what is less deep than contacts ever are.
   const double deepest = 0.1 * rock.block().radius();
   for (int i = patch.slopeTriangles; i < int(patch.triangles.size()); ++i)
   {

@@ -146,6 +146,27 @@ Clearance clearance(const PlacedBlock& rock, const BlockState& state, const Surf
   return result;
 }
 
+namespace
+{
+
+/// How deep a point of the ground is behind the nearest wall, m; ∞ if it is behind none.
+double depthInWalls(const SurfacePatch& patch, const Vec3& p)
+{
+  double depth = std::numeric_limits<double>::infinity();
+  for (int i = patch.slopeTriangles; i < patch.slopeTriangles + patch.wallTriangles; ++i)
+  {
+    const SurfacePatch::Triangle& t = patch.triangles[i];
+    const double behind = t.offset - t.normal.dot(p);
+    if (behind >= 0.0 && behind < depth && projectsInside(patch, i, p, 0.0, 0.0))
+    {
+      depth = behind;
+    }
+  }
+  return depth;
+}
+
+} // namespace
+
 double penetration(const PlacedBlock& rock, const SurfacePatch& patch)
 {
   double deepest = 0.0;
@@ -163,9 +184,10 @@ double penetration(const PlacedBlock& rock, const SurfacePatch& patch)
     }
     for (const Vec3& p : rock.vertices())
     {
-      if (isStraightOver(patch, t, p))
+      const double depth = t.offset - t.normal.dot(p);
+      if (depth > deepest && isStraightOver(patch, t, p))
       {
-        deepest = std::max(deepest, t.offset - t.normal.dot(p));
+        deepest = std::max(deepest, std::min(depth, depthInWalls(patch, p)));
       }
     }
   }
@@ -198,6 +220,7 @@ bool visitOverlaps(const PlacedBlock& rock, const SurfacePatch& patch,
       (pair.patch < patch.slopeTriangles ? isStraightOver(patch, t, p)
                                          : projectsInside(patch, pair.patch, p, 0.0, 0.0) &&
             inVertexCone(rock, pair.rock, t.normal, kConeSlack)) &&
+      cameThrough(patch, pair.patch, p, distance) &&
       !visit(ContactKind::VertexFace, pair.rock, pair.patch, distance))
     {
       return false;

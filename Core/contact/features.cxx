@@ -39,6 +39,55 @@ bool isStraightOver(const SurfacePatch& patch, const SurfacePatch::Triangle& t, 
   return true;
 }
 
+bool cameThrough(const SurfacePatch& patch, int triangle, const Vec3& point, double distance)
+{
+  const int walls = patch.slopeTriangles + patch.wallTriangles;
+  if (patch.wallTriangles == 0 || distance >= 0.0 || triangle >= walls)
+  {
+    return true;
+  }
+  const int ground = patch.triangleAt(point.x(), point.y());
+  if (ground < 0)
+  {
+    return false;
+  }
+  if (patch.isWall(triangle))
+  {
+    const SurfacePatch::Triangle& t = patch.triangles[ground];
+    return t.normal.dot(point) - t.offset <= distance;
+  }
+  for (int i = patch.slopeTriangles; i < walls; ++i)
+  {
+    const SurfacePatch::Triangle& t = patch.triangles[i];
+    const double beside = t.normal.dot(point) - t.offset;
+    if (beside > distance && beside <= 0.0 && projectsInside(patch, i, point, 0.0, 0.0))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool cameAcross(const PlacedBlock& rock, const SurfacePatch& patch, int ridge, double distance)
+{
+  const SurfacePatch::Ridge& g = patch.ridges[ridge];
+  if (distance >= 0.0 || !patch.isWall(g.triangles[0]) || !patch.isWall(g.triangles[1]))
+  {
+    return true;
+  }
+  // All of the ridge is farther from a face that looks down than its top is.
+  const Vec3& top = patch.nodes[g.nodes[0]].position;
+  const int faces = int(rock.block().shape().faces().size());
+  for (int f = 0; f < faces; ++f)
+  {
+    if (rock.normal(f).z() < 0.0 && rock.faceDistance(f, top) > distance)
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
 bool inVertexCone(const PlacedBlock& rock, int vertex, const Vec3& normal, double slack)
 {
   // The vertex must be the lowest of its surroundings along the normal.
@@ -110,7 +159,8 @@ std::optional<Contact> vertexFace(
   {
     return std::nullopt;
   }
-  if (!inVertexCone(rock, vertex, t.normal, kConeSlack))
+  if (!inVertexCone(rock, vertex, t.normal, kConeSlack) ||
+    !cameThrough(patch, triangle, p, distance))
   {
     return std::nullopt;
   }
@@ -231,7 +281,8 @@ std::optional<Contact> edgeEdge(
   {
     return std::nullopt;
   }
-  if (!inEdgeCones(rock, edge, patch, ridge, n, kConeSlack))
+  if (!inEdgeCones(rock, edge, patch, ridge, n, kConeSlack) ||
+    !cameAcross(rock, patch, ridge, distance))
   {
     return std::nullopt;
   }

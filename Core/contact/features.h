@@ -25,6 +25,16 @@ bool projectsInside(
 bool isStraightOver(
   const SurfacePatch& patch, const SurfacePatch::Triangle& triangle, const Vec3& point);
 
+/// Whether a point `distance` (m) over the plane of a triangle that it projects inside got there
+/// through this triangle. Where the ground ends in walls, that is so for a point in the ground that
+/// has no shorter way out through one of them, or, of a wall, through the slope. Anywhere else it
+/// is taken to be.
+bool cameThrough(const SurfacePatch& patch, int triangle, const Vec3& point, double distance);
+/// The same of an edge of the rock `distance` (m) over a ridge that it crosses: an upright one,
+/// between walls, has it beside it unless a face of the rock is over the top, or less deep under
+/// it.
+bool cameAcross(const PlacedBlock& rock, const SurfacePatch& patch, int ridge, double distance);
+
 /// Entrance of a rock vertex into a CFE, if the pair is valid.
 std::optional<Contact> vertexFace(
   const PlacedBlock& rock, int vertex, const SurfacePatch& patch, int triangle, double reach);

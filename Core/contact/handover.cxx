@@ -67,21 +67,10 @@ bool relocate(const SurfacePatch& patch, Contact& contact)
   return false;
 }
 
-/// How far a point is past the side a … b of a triangle, m, behind which there is no other one. On
-/// the slope as seen from above: there it is what is straight under the slope that overlaps it.
-double beyondRim(
-  bool onSlope, const SurfacePatch::Triangle& t, const Vec3& a, const Vec3& b, const Vec3& p)
-{
-  const Vec3 side = b - a;
-  const Vec3 out = onSlope ? Vec3(side.y(), -side.x(), 0.0) : Vec3(side.cross(t.normal));
-  return out.dot(p - a) / out.norm();
-}
-
 /// A rock vertex walks over the triangles that it has come to.
 bool refreshVertexFace(const PlacedBlock& rock, const SurfacePatch& patch, Contact& contact)
 {
   const Vec3& p = rock.vertices()[contact.rockFeature];
-  const double compression = std::max(0.0, -contact.gap());
   contact.point = p;
   const auto distanceTo = [&](int triangle)
   { return patch.triangles[triangle].normal.dot(p) - patch.triangles[triangle].offset; };
@@ -98,12 +87,7 @@ bool refreshVertexFace(const PlacedBlock& rock, const SurfacePatch& patch, Conta
       const int g = t.neighbours[k];
       if (outside && g < 0)
       {
-        if (beyondRim(contact.patchFeature < patch.slopeTriangles, t, a, b, p) >
-          kRunOff * compression)
-        {
-          return false; // beyond the edge of the slope
-        }
-        continue;
+        return false; // beyond the edge of the patch
       }
       // In a valley a vertex that is under this wall is beside it, seen square, and may be over the
       // plane of the other one, which does not hold it.
@@ -285,7 +269,8 @@ bool leaveBest(
     {
       const SurfacePatch::Triangle& t = patch.triangles[i];
       if (inVertexCone(rock, vertex, t.normal, 0.0) &&
-        projectsInside(patch, i, p, 0.0, 1e-9 * rock.block().radius()))
+        projectsInside(patch, i, p, 0.0, 1e-9 * rock.block().radius()) &&
+        cameThrough(patch, i, p, t.normal.dot(p) - t.offset))
       {
         offer(ContactKind::VertexFace, vertex, i, t.key, t.cfe, t.normal, p,
           t.normal.dot(p) - t.offset, 0.0);

@@ -151,17 +151,37 @@ void RockSimulator::auditSamples(const BlockState& state)
   }
 }
 
-void RockSimulator::ensureWindow(double duration)
+std::array<double, 4> RockSimulator::boxOfWay(double duration) const
 {
   const double r = block_.radius();
   const Vec3& p = state_.position;
   const Vec3 end = p + duration * state_.velocity;
-  const double x0 = std::min(p.x(), end.x()) - r, x1 = std::max(p.x(), end.x()) + r;
-  const double y0 = std::min(p.y(), end.y()) - r, y1 = std::max(p.y(), end.y()) + r;
+  return { std::min(p.x(), end.x()) - r, std::max(p.x(), end.x()) + r, std::min(p.y(), end.y()) - r,
+    std::max(p.y(), end.y()) + r };
+}
+
+void RockSimulator::ensureWindow(double duration)
+{
+  const auto [x0, x1, y0, y1] = this->boxOfWay(duration);
   if (!window_.covers(x0, x1, y0, y1))
   {
     window_.gather(surface_, x0, x1, y0, y1);
   }
+}
+
+double RockSimulator::timeToGround(double duration)
+{
+  if (window_.whole())
+  {
+    return timeToTouch(placed_, state_, window_, parameters_.gravity, duration);
+  }
+  // What is over a hole has no gap to close: it comes to a rim or a wall from beside.
+  const auto [x0, x1, y0, y1] = this->boxOfWay(duration);
+  if (!holed_.covers(x0, x1, y0, y1))
+  {
+    gatherPatch(surface_, x0, x1, y0, y1, holed_);
+  }
+  return clearance(placed_, state_, holed_, parameters_.gravity, duration).time;
 }
 
 void RockSimulator::ensurePatch(double margin)
@@ -273,8 +293,7 @@ void RockSimulator::flyUntilNear()
       {
         placed_.place(block_, state_);
         const double sure = std::max(0.0, freeUntil_ - state_.time);
-        const double touch =
-          std::max(sure, timeToTouch(placed_, state_, window_, parameters_.gravity, duration));
+        const double touch = std::max(sure, this->timeToGround(duration));
         // So near that the pairs that can touch tell more.
         const double speed = state_.velocity.norm() + block_.largestRimSpeed(state_.spin);
         const double close = 0.5 * kCandidateSlack * block_.radius() / std::max(speed, 1e-9);

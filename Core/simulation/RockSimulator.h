@@ -10,6 +10,7 @@
 #include "solver/StepSolver.h"
 #include "terrain/Obstacles.h"
 
+#include <array>
 #include <limits>
 #include <span>
 #include <vector>
@@ -125,7 +126,11 @@ private:
   void followImpact(const BlockState& start, double h);
   void finishImpact();
 
+  /// Least and most x and y (m) that a flight comes over.
+  std::array<double, 4> boxOfWay(double duration) const;
   void ensureWindow(double duration); ///< Heights under all of the way of a flight.
+  /// Lower bound of the time to the first touch of the ground in free flight, s.
+  double timeToGround(double duration);
   void ensurePatch(double margin);
   void ensureCandidates(double reach, bool among = false); ///< `among`: many others.
   void armContacts(double h); ///< Gives new contacts their springs and dashpots, for a step of h.
@@ -178,6 +183,7 @@ private:
   Recorder recorder_;
   SurfacePatch patch_;
   HeightWindow window_;
+  SurfacePatch holed_;    ///< Under the way of a flight that comes over holes.
   double softness_ = 0.0; ///< Of a contact and the block behind it, m/N.
   double ringing_ = 0.0;  ///< Period of a soft block's slowest strain, 0 for a stiff one, s.
   std::vector<double> dampingRatios_; ///< ζ by restitution class; < 0: not known yet.

@@ -118,7 +118,7 @@ double liftOverLine(const Body& body, const Vec3& a, const Vec3& b)
 }
 
 /// How far the body has to be raised for its faces over the nodes of a patch and for its edges over
-/// the ridges and over the rims of holes; −∞ if there are none under it.
+/// the ridges, which the rims of holes are, too; −∞ if there are none under it.
 double liftOverNodesAndEdges(const Body& body, const SurfacePatch& patch)
 {
   double lift = none;
@@ -137,21 +137,6 @@ double liftOverNodesAndEdges(const Body& body, const SurfacePatch& patch)
     lift = std::max(lift,
       liftOverLine(body, patch.nodes[std::size_t(ridge.nodes[0])].position,
         patch.nodes[std::size_t(ridge.nodes[1])].position));
-  }
-  // Beside nodata a triangle ends in an edge that is no ridge of the patch. Its outermost sides are
-  // like that, too, and clear of the rock; those of obstacles are underground.
-  for (int i = 0; i < patch.slopeTriangles; ++i)
-  {
-    const SurfacePatch::Triangle& t = patch.triangles[std::size_t(i)];
-    for (std::size_t k = 0; t.cfe != 0 && k < 3; ++k)
-    {
-      if (t.neighbours[k] < 0)
-      {
-        lift = std::max(lift,
-          liftOverLine(body, patch.nodes[std::size_t(t.nodes[k])].position,
-            patch.nodes[std::size_t(t.nodes[(k + 1) % 3])].position));
-      }
-    }
   }
   return lift;
 }

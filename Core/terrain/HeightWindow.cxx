@@ -30,6 +30,7 @@ void HeightWindow::gather(
   tilt_.setZero();
   relief_ = 0.0;
   highest_ = -std::numeric_limits<double>::infinity();
+  whole_ = false;
   if (column1 < 0 || column0 > g.columns - 2 || row1 < 0 || row0 > g.rows - 2)
   {
     // Beyond the edge: a window in which there is nothing.
@@ -48,6 +49,7 @@ void HeightWindow::gather(
       whole = whole && !std::isnan(row[c]);
     }
   }
+  whole_ = whole;
   // Gradients of the CFEs: their mean, then the farthest from it.
   const auto visit = [&](auto&& use)
   {

@@ -2,6 +2,7 @@
 
 #include "base/random.h"
 #include "terrain/Obstacles.h"
+#include "terrain/walls.h"
 
 #include <algorithm>
 #include <cmath>
@@ -151,7 +152,7 @@ void gatherPatch(
   patch.nodeColumns = patch.nodeRows = 0;
   patch.row0 = patch.column0 = 0;
   patch.row1 = patch.column1 = -1;
-  patch.slopeNodes = patch.slopeTriangles = patch.slopeRidges = 0;
+  patch.slopeNodes = patch.slopeTriangles = patch.slopeRidges = patch.wallTriangles = 0;
   if (wantColumn1 < 0 || wantColumn0 > g.columns - 2 || wantRow1 < 0 || wantRow0 > g.rows - 2)
   {
     return;
@@ -230,6 +231,7 @@ void gatherPatch(
       }
     }
   }
+  std::vector<Rim> rims;
   // Bends and ridges. Every inner edge is a side of one lower triangle (odd number): `back` is the
   // same edge in the upper triangle beyond it.
   constexpr int back[3] = { 1, 2, 0 };
@@ -248,6 +250,10 @@ void gatherPatch(
       {
         t.neighbours[k] = -1;
         other.neighbours[back[k]] = -1;
+        if (t.cfe != 0 || other.cfe != 0)
+        {
+          rims.push_back(t.cfe != 0 ? Rim{ i, k } : Rim{ j, back[k] });
+        }
         continue;
       }
       const int wing = other.nodes[(back[k] + 2) % 3];
@@ -297,6 +303,7 @@ void gatherPatch(
   patch.slopeNodes = int(patch.nodes.size());
   patch.slopeTriangles = int(patch.triangles.size());
   patch.slopeRidges = int(patch.ridges.size());
+  addWalls(rims, patch);
 }
 
 } // namespace rockfall

@@ -100,7 +100,8 @@ struct SurfacePatch
     std::int64_t key;          ///< The same triangle has the same key in every patch.
     std::array<int, 3> ridges; ///< That a lower triangle counts as its own, −1: none.
   };
-  /// A convex edge between two triangles: the only kind that an edge of a rock can touch.
+  /// A convex edge between two triangles: the only kind that an edge of a rock can touch. At the
+  /// rim of a hole the ground goes down in an upright wall, so that rims are ridges, too.
   struct Ridge
   {
     std::array<int, 2> nodes;
@@ -121,8 +122,26 @@ struct SurfacePatch
   std::vector<Triangle> triangles;
   std::vector<Ridge> ridges;
 
-  /// How many of each are the slope's; those of obstacles follow.
+  /// How many of each are the slope's; those of walls under rims follow, then those of obstacles.
   int slopeNodes = 0, slopeTriangles = 0, slopeRidges = 0;
+  int wallTriangles = 0; ///< How many are walls'.
+  bool isWall(int triangle) const
+  {
+    return triangle >= slopeTriangles && triangle < slopeTriangles + wallTriangles;
+  }
+  /// The slope's triangle straight over or under a place, −1 over a hole and beyond the patch.
+  int triangleAt(double x, double y) const
+  {
+    const double c = (x - west) / cellSize, r = (north - y) / cellSize;
+    if (!(c >= 0.0 && r >= 0.0 && c <= nodeColumns - 1 && r <= nodeRows - 1))
+    {
+      return -1;
+    }
+    const int column = std::min(int(c), nodeColumns - 2), row = std::min(int(r), nodeRows - 2);
+    const int lower = 2 * (row * (nodeColumns - 1) + column);
+    const int i = r - row >= c - column ? lower : lower + 1;
+    return triangles[std::size_t(i)].cfe != 0 ? i : -1;
+  }
 
   /// Cells gathered: rows [row0, row1], columns [column0, column1]; empty if row1 < row0.
   int row0 = 0, row1 = -1, column0 = 0, column1 = -1;
@@ -176,6 +195,8 @@ public:
   /// it.
   const Eigen::Vector2d& tilt() const { return tilt_; }
   double relief() const { return relief_; }
+  /// Whether there is ground all over it.
+  bool whole() const { return whole_; }
   /// No node is higher than tilt · (x, y) + highest, m; −∞ if there is none.
   double highest() const { return highest_; }
   bool covers(double x0, double x1, double y0, double y1) const
@@ -190,6 +211,7 @@ private:
   double xMin_ = 0.0, xMax_ = -1.0, yMin_ = 0.0, yMax_ = -1.0;
   Eigen::Vector2d tilt_ = Eigen::Vector2d::Zero();
   double relief_ = 0.0, highest_ = 0.0;
+  bool whole_ = false;
 };
 
 /// Gathers the cells under a box (local frame, m) with a ring of one cell around them, by index
