@@ -3,6 +3,7 @@
 #include "block/flight.h"
 #include "simulation/placement.h"
 #include "solver/springs.h"
+#include "terrain/walls.h"
 
 #include <algorithm>
 #include <cmath>
@@ -328,8 +329,10 @@ void RockSimulator::checkLeft()
   if (!left && terrain.cfeAt(p.x(), p.y()) == 0)
   {
     // Over a hole it has left once it is below everything around.
-    const double around = surface_.maxHeight(p.x() - r, p.x() + r, p.y() - r, p.y() + r);
-    left = p.z() + r < around || p.z() < terrain.lowest() - 2.0 * r;
+    const double x0 = p.x() - r, x1 = p.x() + r, y0 = p.y() - r, y1 = p.y() + r;
+    left = p.z() < terrain.lowest() - 2.0 * r ||
+      (p.z() + r < surface_.maxHeight(x0, x1, y0, y1) &&
+        p.z() + r < lowestNode(surface_, x0, x1, y0, y1));
   }
   if (left)
   {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace rockfall
 {
@@ -154,6 +155,26 @@ void addWalls(std::span<const Rim> rims, SurfacePatch& patch)
         { { b, bottoms[b] }, { i, j }, { a, c }, firstKey + 3 * t.key + rim.side });
     }
   }
+}
+
+double lowestNode(const Surface& surface, double x0, double x1, double y0, double y1)
+{
+  const GridGeometry& g = surface.terrain().geometry();
+  const auto within = [&](double cells, int last)
+  { return int(std::clamp(cells, 0.0, double(last))); };
+  const int column0 = within(std::floor(x0 / g.cellSize), g.columns - 1);
+  const int column1 = within(std::ceil(x1 / g.cellSize), g.columns - 1);
+  const int row0 = g.rows - 1 - within(std::ceil(y1 / g.cellSize), g.rows - 1);
+  const int row1 = g.rows - 1 - within(std::floor(y0 / g.cellSize), g.rows - 1);
+  double lowest = std::numeric_limits<double>::quiet_NaN();
+  for (int row = row0; row <= row1; ++row)
+  {
+    for (int column = column0; column <= column1; ++column)
+    {
+      lowest = std::fmin(lowest, surface.nodeHeight(row, column));
+    }
+  }
+  return lowest;
 }
 
 } // namespace rockfall

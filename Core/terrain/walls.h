@@ -22,4 +22,8 @@ struct Rim
 /// if there are no rims.
 void addWalls(std::span<const Rim> rims, SurfacePatch& patch);
 
+/// Lowest node (m) of the cells that a box in x–y (local frame, m) touches; NaN if none of them has
+/// a height. Costs as many nodes as there are.
+double lowestNode(const Surface& surface, double x0, double x1, double y0, double y1);
+
 } // namespace rockfall

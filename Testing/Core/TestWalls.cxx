@@ -382,6 +382,47 @@ TEST(Walls, WhatIsOverACornerOfTheGroundHasNotItsRidgeBesideIt)
   EXPECT_GT(near, 200);
 }
 
+TEST(Walls, ASlopeAroundAHoleThatIsHigherThanARockDoesNotEndItsRun)
+{
+  // With nodes higher than the rock within its reach, or within some cells of it, all the same.
+  const auto slope = [](double inclination, double x) { return 100.0 - inclination * x; };
+  const auto withHole = [&](double inclination, double friction)
+  {
+    return makeSlope(
+      41, 1.0,
+      [&, inclination](double x, double y)
+      {
+        return x == 20.0 && y == 20.0 ? std::numeric_limits<double>::quiet_NaN()
+                                      : slope(inclination, x);
+      },
+      material(0.5, friction));
+  };
+  // A slab of 3 m slides onto it and comes to rest there.
+  const double angle = radians(35.0);
+  const Vec3 down(std::cos(angle), 0.0, -std::sin(angle));
+  Rock slab;
+  slab.shape = makeBox({ 3.0, 3.0, 0.6 });
+  slab.orientation = Quat(Eigen::AngleAxisd(angle, Vec3::UnitY()));
+  slab.position = Vec3(18.2, 20.0, slope(std::tan(angle), 18.2)) +
+    0.3 * Vec3(std::sin(angle), 0.0, std::cos(angle));
+  slab.velocity =
+    std::sqrt(2.0 * 1.8 * kGravity * (std::cos(angle) - std::sin(angle)) / std::cos(angle)) * down;
+  SimulationParameters p;
+  p.endTime = 20.0;
+  const Terrain slanting = withHole(std::tan(angle), 45.0);
+  const TrajectorySummary slid = simulate(slanting, slab, p).summary;
+  EXPECT_EQ(slid.fate, Fate::Rested);
+  EXPECT_EQ(slanting.cfeAt(slid.stop.x(), slid.stop.y()), 0);
+  EXPECT_NEAR((slid.stop - slab.position).dot(down), 1.8 / std::cos(angle), 0.05);
+  // One that flies over it goes on.
+  Rock flying;
+  flying.shape = makeShape(Shape::Cube, 0.1);
+  flying.position = Vec3(12.0, 20.0, slope(1.0, 12.0) + 1.0);
+  flying.velocity = Vec3(15.0, 0.0, -15.0);
+  const TrajectorySummary flew = simulate(withHole(1.0, 20.0), flying, p).summary;
+  EXPECT_TRUE(flew.fate != Fate::LeftDomain || flew.stop.x() > 25.0) << flew.stop.transpose();
+}
+
 TEST(Walls, NothingPassesUnderTheFarSideOfAHole)
 {
   // Over a hole of 10 m, too slow to reach the other side: against the wall and down.
