@@ -328,7 +328,7 @@ void RockSimulator::checkLeft()
     !(p.x() >= 0.0 && p.y() >= 0.0 && p.x() <= terrain.width() && p.y() <= terrain.height());
   if (!left && terrain.cfeAt(p.x(), p.y()) == 0)
   {
-    // Over a hole it has left once it is below everything around.
+    // Over a hole it has left once it is below everything around; the bound costs next to nothing.
     const double x0 = p.x() - r, x1 = p.x() + r, y0 = p.y() - r, y1 = p.y() + r;
     left = p.z() < terrain.lowest() - 2.0 * r ||
       (p.z() + r < surface_.maxHeight(x0, x1, y0, y1) &&

@@ -7,7 +7,10 @@
 #include "simulation/MassFall.h"
 #include "slopes.h"
 
+#include <cmath>
+#include <cstdint>
 #include <memory>
+#include <random>
 #include <vector>
 
 namespace rockfall::testing
@@ -21,6 +24,33 @@ inline std::vector<Block> blocksOf(const std::vector<Rock>& rocks)
     blocks.emplace_back(r.shape, r.density, r.youngModulus, r.poissonRatio);
   }
   return blocks;
+}
+
+/// Cubes of some volume (m³) over a level floor, turned at random, in levels of `across`² about
+/// (50, 50). No level stands over the other one: cubes that turn until they lie on each other would
+/// make columns.
+inline std::vector<Rock> levelsOfCubes(int count, int across, double volume, std::uint64_t seed)
+{
+  const double edge = std::cbrt(volume), spacing = 1.75 * edge; // room to be turned in
+  const Polyhedron cube = makeShape(Shape::Cube, volume);
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  std::vector<Rock> rocks;
+  Vec3 shift = Vec3::Zero();
+  for (int k = 0; k < count; ++k)
+  {
+    Rock rock;
+    rock.blockId = k;
+    rock.shape = cube;
+    const int place = k % (across * across), level = k / (across * across);
+    shift = place == 0 ? Vec3(edge * u(random), edge * u(random), 0.0) : shift;
+    rock.position = shift +
+      Vec3(50.0 + spacing * (place % across - 0.5 * (across - 1)),
+        50.0 + spacing * (place / across - 0.5 * (across - 1)), edge + spacing * level);
+    rock.orientation = Quat(u(random), u(random), u(random), u(random)).normalized();
+    rocks.push_back(rock);
+  }
+  return rocks;
 }
 
 /// Adds what was released and where it went.

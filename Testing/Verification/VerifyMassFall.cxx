@@ -51,8 +51,7 @@ struct Heap
 Heap drop(int cubes, double friction)
 {
   constexpr double kVolume = 0.6;
-  const double edge = std::cbrt(kVolume), spacing = 1.75 * edge; // room to be turned in
-  const int across = cubes >= 500 ? 10 : 3;                      // 1000 cubes meet at up to 17 m/s
+  const double edge = std::cbrt(kVolume);
   Pile pile;
   pile.ground = rockfall::testing::makeSlope(
     21, 5.0, [](double, double) { return 0.0; }, rockfall::testing::material(0.2, friction));
@@ -61,25 +60,8 @@ Heap drop(int cubes, double friction)
   pile.parameters.rockRestitution = 0.2;
   pile.parameters.endTime = 60.0;
   pile.parameters.timeStep = kTimeStep;
-  std::mt19937_64 random(7);
-  std::uniform_real_distribution<double> u(-1.0, 1.0);
-  const Polyhedron cube = makeShape(Shape::Cube, kVolume);
-  Vec3 shift = Vec3::Zero();
-  for (int k = 0; k < cubes; ++k)
-  {
-    Rock rock;
-    rock.blockId = k;
-    rock.shape = cube;
-    const int place = k % (across * across), level = k / (across * across);
-    // No level stands over the other one: cubes that turn until they lie on each other would make
-    // columns.
-    shift = place == 0 ? Vec3(edge * u(random), edge * u(random), 0.0) : shift;
-    rock.position = shift +
-      Vec3(50.0 + spacing * (place % across - 0.5 * (across - 1)),
-        50.0 + spacing * (place / across - 0.5 * (across - 1)), edge + spacing * level);
-    rock.orientation = Quat(u(random), u(random), u(random), u(random)).normalized();
-    pile.rocks.push_back(rock);
-  }
+  // 1000 cubes meet at up to 17 m/s.
+  pile.rocks = rockfall::testing::levelsOfCubes(cubes, cubes >= 500 ? 10 : 3, kVolume, 7);
   pile.start();
   Heap heap;
   bool moves = true;
