@@ -146,9 +146,9 @@ struct CandidatePairs
 void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
   double distance, CandidatePairs& candidates);
 
-/// Brings the closed contacts of the last step to where the rock stands now, hands them over
-/// between neighbouring features, and adds every pair of the candidates that can close within
-/// `reach` (m).
+/// Brings the closed contacts of the last step, and the open ones that still overlap, to where the
+/// rock stands now, hands them over between neighbouring features, and adds every pair of the
+/// candidates that can close within `reach` (m).
 ///
 /// A pair enters only through a valid configuration, with the normal inside both features' normal
 /// cones and the projection inside both features, at a gap of about zero; once closed it stays,

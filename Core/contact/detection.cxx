@@ -30,6 +30,21 @@ bool onOneLine(const SurfacePatch& patch, int a, int b)
   return joined && std::abs(direction(x).dot(direction(y))) > 0.999;
 }
 
+/// What carries stays, and so does what has opened where the two still overlap: lost and found
+/// again some steps later, it would be forgiven all that the rock has sunk meanwhile.
+bool stays(const Contact& c)
+{
+  return c.closed() || c.distance < 0.0;
+}
+
+/// One that has opened, as if it had just been found: what it has come out stays out.
+void reopen(Contact& c)
+{
+  c.offset = c.distance;
+  c.slip.setZero();
+  c.normalForce = c.shearForce = 0.0;
+}
+
 /// Adds an entrance unless the contacts that are already there stand for it.
 void admit(const SurfacePatch& patch, const Contact& candidate, std::vector<Contact>& contacts)
 {
@@ -78,6 +93,33 @@ void admit(const SurfacePatch& patch, const Contact& candidate, std::vector<Cont
   contacts.back().offset = std::min(0.0, candidate.distance);
 }
 
+/// Admits the other sides of the valleys in whose bottom a vertex is pressed: it is beside them,
+/// seen square to them, and each step would leave it to go deeper under the one or the other.
+void findOtherSides(
+  const PlacedBlock& rock, const SurfacePatch& patch, double reach, std::vector<Contact>& contacts)
+{
+  for (std::size_t i = 0; i < contacts.size(); ++i) // grows
+  {
+    const int side = contacts[i].patchFeature, vertex = contacts[i].rockFeature;
+    if (contacts[i].kind != ContactKind::VertexFace || contacts[i].distance >= 0.0 ||
+      side >= patch.slopeTriangles)
+    {
+      continue;
+    }
+    for (int k = 0; k < 3; ++k)
+    {
+      const int other = patch.triangles[side].neighbours[k];
+      if (patch.triangles[side].bends[k] < 0 && other >= 0 && patch.triangles[other].cfe != 0)
+      {
+        if (const auto c = vertexFace(rock, vertex, patch, other, reach, side))
+        {
+          admit(patch, *c, contacts);
+        }
+      }
+    }
+  }
+}
+
 } // namespace
 
 void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch,
@@ -88,7 +130,7 @@ void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch,
   for (std::size_t i = 0; i < contacts.size(); ++i)
   {
     Contact& c = contacts[i];
-    if (!c.closed() || !refreshContact(rock, patch, c))
+    if (!stays(c) || !refreshContact(rock, patch, c) || !stays(c))
     {
       continue;
     }
@@ -96,6 +138,10 @@ void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch,
       [&](const Contact& other) { return samePlace(other, c); });
     if (twin == contacts.begin() + kept)
     {
+      if (!c.closed())
+      {
+        reopen(c);
+      }
       if (kept < i)
       {
         contacts[kept] = c;
@@ -157,6 +203,7 @@ void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch,
       admit(patch, *c, contacts);
     }
   }
+  findOtherSides(rock, patch, reach, contacts);
 }
 
 void findEntrancesBruteForce(

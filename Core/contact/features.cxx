@@ -5,8 +5,8 @@
 namespace rockfall
 {
 
-bool projectsInside(
-  const SurfacePatch& patch, int triangle, const Vec3& point, double reach, double tolerance)
+bool projectsInside(const SurfacePatch& patch, int triangle, const Vec3& point, double reach,
+  double tolerance, int from)
 {
   const SurfacePatch::Triangle& t = patch.triangles[triangle];
   for (int k = 0; k < 3; ++k)
@@ -17,7 +17,8 @@ bool projectsInside(
     const Vec3 inward = t.normal.cross(along);
     const double side = inward.dot(point - a); // distance from the edge times its length
     const double length = along.norm();
-    if (side < -tolerance * length && !(t.bends[k] < 0 && side > -reach * length))
+    if (side < -tolerance * length && !(t.bends[k] < 0 && side > -reach * length) &&
+      !(from >= 0 && t.neighbours[k] == from))
     {
       return false;
     }
@@ -147,15 +148,15 @@ bool inEdgeCones(const PlacedBlock& rock, int edge, const SurfacePatch& patch, i
   return true;
 }
 
-std::optional<Contact> vertexFace(
-  const PlacedBlock& rock, int vertex, const SurfacePatch& patch, int triangle, double reach)
+std::optional<Contact> vertexFace(const PlacedBlock& rock, int vertex, const SurfacePatch& patch,
+  int triangle, double reach, int from)
 {
   const SurfacePatch::Triangle& t = patch.triangles[triangle];
   const Vec3& p = rock.vertices()[vertex];
   const double distance = t.normal.dot(p) - t.offset;
   const double depth = 0.1 * rock.block().radius();
   if (distance > reach || distance < -depth ||
-    !projectsInside(patch, triangle, p, reach, 1e-9 * rock.block().radius()))
+    !projectsInside(patch, triangle, p, reach, 1e-9 * rock.block().radius(), from))
   {
     return std::nullopt;
   }

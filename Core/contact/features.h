@@ -17,9 +17,10 @@ constexpr double kConeSlack = 0.02;
 
 /// Whether the projection of a point on the triangle's plane lies inside it. Beyond a concave edge
 /// the plane is still a valid constraint and is extended by `reach`; so a vertex that runs into a
-/// valley meets the other side in the step in which it gets there.
-bool projectsInside(
-  const SurfacePatch& patch, int triangle, const Vec3& point, double reach, double tolerance);
+/// valley meets the other side in the step in which it gets there. The edge to the triangle `from`
+/// does not count (−1: all do).
+bool projectsInside(const SurfacePatch& patch, int triangle, const Vec3& point, double reach,
+  double tolerance, int from = -1);
 
 /// Whether a point is straight above or below a triangle of the slope.
 bool isStraightOver(
@@ -35,9 +36,9 @@ bool cameThrough(const SurfacePatch& patch, int triangle, const Vec3& point, dou
 /// it.
 bool cameAcross(const PlacedBlock& rock, const SurfacePatch& patch, int ridge, double distance);
 
-/// Entrance of a rock vertex into a CFE, if the pair is valid.
-std::optional<Contact> vertexFace(
-  const PlacedBlock& rock, int vertex, const SurfacePatch& patch, int triangle, double reach);
+/// Entrance of a rock vertex into a CFE, if the pair is valid; `from` as for projectsInside.
+std::optional<Contact> vertexFace(const PlacedBlock& rock, int vertex, const SurfacePatch& patch,
+  int triangle, double reach, int from = -1);
 
 /// Entrance of a peak of the slope into a face of the rock.
 std::optional<Contact> faceVertex(
