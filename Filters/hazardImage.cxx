@@ -2,6 +2,7 @@
 
 #include "arrays.h"
 #include "base/errors.h"
+#include "base/numberText.h"
 #include "geometry/shell.h"
 #include "rockPaths.h"
 #include "statistics/HazardRaster.h"

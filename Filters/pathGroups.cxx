@@ -1,6 +1,7 @@
 #include "pathGroups.h"
 
 #include "base/errors.h"
+#include "base/numberText.h"
 #include "geometry/shapes.h"
 #include "geometry/shell.h"
 

@@ -2,6 +2,7 @@
 
 #include "base/RockMaterial.h"
 #include "base/errors.h"
+#include "base/numberText.h"
 #include "base/random.h"
 #include "geometry/shell.h"
 #include "shapeFile.h"

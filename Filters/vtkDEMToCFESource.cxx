@@ -1,6 +1,7 @@
 #include "vtkDEMToCFESource.h"
 
 #include "base/errors.h"
+#include "base/numberText.h"
 #include "failure.h"
 #include "geometry/shell.h"
 #include "gis/contours.h"

@@ -1,6 +1,7 @@
 #include "vtkRockBlockSource.h"
 
 #include "base/errors.h"
+#include "base/numberText.h"
 #include "failure.h"
 #include "geometry/shell.h"
 #include "pieces.h"

@@ -2,6 +2,7 @@
 
 #include "arrays.h"
 #include "base/errors.h"
+#include "base/numberText.h"
 #include "failure.h"
 #include "keptRun.h"
 #include "pieces.h"
@@ -60,8 +61,8 @@ void tellPushed(
   rockfall::filters::showNote("PushRocksApart moved " +
     std::string(ensemble.pushesAnew() ? "up to " : "") + std::to_string(pushed.rocks) + " of " +
     std::to_string(ensemble.trajectoriesPerUnit()) + " blocks, by up to " +
-    std::to_string(pushed.farthest) + " m, in " + std::to_string(pushed.iterations) + " of " +
-    std::to_string(iterations) + " iterations");
+    rockfall::numberText(pushed.farthest, 4) + " m, in " + std::to_string(pushed.iterations) +
+    " of " + std::to_string(iterations) + " iterations");
 }
 
 } // namespace
@@ -188,9 +189,9 @@ void vtkRockfallSimulation::CheckProperties(const Cache& run) const
     if (value < least || value > most)
     {
       const bool open = most == std::numeric_limits<int>::max();
-      throw rockfall::ParameterError(std::string(name) + " is " + std::to_string(value) +
-        ", it must be " + (open ? "at least " : "") + std::to_string(least) +
-        (open ? "" : " to " + std::to_string(most)));
+      throw rockfall::ParameterError(std::string(name) + " is " + rockfall::numberText(value) +
+        ", it must be " + (open ? "at least " : "") + rockfall::numberText(least) +
+        (open ? "" : " to " + rockfall::numberText(most)));
     }
   };
   inRange(this->Seed, 0, std::numeric_limits<int>::max(), "Seed");

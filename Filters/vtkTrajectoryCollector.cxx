@@ -1,6 +1,7 @@
 #include "vtkTrajectoryCollector.h"
 
 #include "base/errors.h"
+#include "base/numberText.h"
 #include "collectorOutputs.h"
 #include "failure.h"
 #include "geometry/shell.h"

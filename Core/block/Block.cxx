@@ -1,6 +1,7 @@
 #include "block/Block.h"
 
 #include "base/errors.h"
+#include "base/numberText.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
@@ -79,8 +80,8 @@ Block::Block(Polyhedron shape, double density, double youngModulus, double poiss
   const Vec3& centroid = integrals.centroid;
   if (!(centroid.norm() <= kCentred * shape_.radius()))
   {
-    throw GeometryError("block: the centroid of its shape is at (" + std::to_string(centroid.x()) +
-      ", " + std::to_string(centroid.y()) + ", " + std::to_string(centroid.z()) +
+    throw GeometryError("block: the centroid of its shape is at (" + numberText(centroid.x()) +
+      ", " + numberText(centroid.y()) + ", " + numberText(centroid.z()) +
       ") m, but must be at the origin");
   }
   mass_ = density * integrals.volume;
@@ -98,8 +99,8 @@ Block::Block(Polyhedron shape, double density, double youngModulus, double poiss
   }
   if (!(principal[0] > 0.0))
   {
-    throw GeometryError("a block has the principal moment of inertia " +
-      std::to_string(principal[0]) + " kg m², it must be positive");
+    throw GeometryError("a block has the principal moment of inertia " + numberText(principal[0]) +
+      " kg m², it must be positive");
   }
   const Mat6 strainMass = massMatrix_.block<6, 6>(kStrain, kStrain);
   strainFrequency_ = std::sqrt(

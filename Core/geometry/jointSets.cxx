@@ -1,6 +1,7 @@
 #include "geometry/jointSets.h"
 
 #include "base/errors.h"
+#include "base/numberText.h"
 #include "base/random.h"
 #include "geometry/shell.h"
 

@@ -1,6 +1,7 @@
 #include "geometry/shapes.h"
 
 #include "base/errors.h"
+#include "base/numberText.h"
 #include "geometry/shell.h"
 
 #include <algorithm>

@@ -1,10 +1,10 @@
 #include "geometry/shell.h"
 
 #include "base/errors.h"
+#include "base/numberText.h"
 #include "geometry/simplexIntegration.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <numeric>
 
@@ -96,14 +96,6 @@ void checkLoops(
 }
 
 } // namespace
-
-std::string numberText(double value)
-{
-  char text[32];
-  const auto end =
-    std::to_chars(text, text + sizeof text, value, std::chars_format::general, 9).ptr;
-  return std::string(text, end);
-}
 
 FacePlane facePlane(std::span<const Vec3> points, std::span<const int> loop)
 {

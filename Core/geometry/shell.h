@@ -65,9 +65,6 @@ private:
   bool repeated_ = false;
 };
 
-/// A number for a message: shortest form, whatever the locale.
-std::string numberText(double value);
-
 /// Finite points about an origin in their midst, duplicates welded, faces over them if any are
 /// given. Points keep their order. Throws GeometryError, as do the checks; `name` begins every
 /// message.

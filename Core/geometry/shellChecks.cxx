@@ -1,3 +1,4 @@
+#include "base/numberText.h"
 #include "geometry/shell.h"
 
 #include "base/errors.h"

@@ -1,6 +1,7 @@
 #include "simulation/ensemble.h"
 
 #include "base/errors.h"
+#include "base/numberText.h"
 #include "geometry/shell.h"
 #include "simulation/MassFall.h"
 #include "simulation/RockSimulator.h"
@@ -36,8 +37,8 @@ constexpr double kDeepestAtRest = 0.02;
 
 std::string where(const Vec3& world)
 {
-  return "(" + std::to_string(world.x()) + ", " + std::to_string(world.y()) + ", " +
-    std::to_string(world.z()) + ")";
+  return "(" + numberText(world.x()) + ", " + numberText(world.y()) + ", " + numberText(world.z()) +
+    ")";
 }
 
 void checkPlacement(const Terrain& terrain, const Rock& rock, const Block& block)
@@ -51,7 +52,7 @@ void checkPlacement(const Terrain& terrain, const Rock& rock, const Block& block
   const double height = rock.position.z() - terrain.elevation(rock.position.x(), rock.position.y());
   if (height > kHighest)
   {
-    throw PlacementError(name + " is " + std::to_string(height) + " m over the slope, more than " +
+    throw PlacementError(name + " is " + numberText(height, 4) + " m over the slope, more than " +
       std::to_string(int(kHighest)) +
       " m: is its height in feet, or that of another reference than the slope's?");
   }
@@ -73,7 +74,7 @@ void checkPlacement(const Terrain& terrain, const Rock& rock, const Block& block
   if (depth > 0.0)
   {
     throw PlacementError(
-      name + " starts inside the slope, by " + std::to_string(depth) + " m; raise its centre");
+      name + " starts inside the slope, by " + numberText(depth, 4) + " m; raise its centre");
   }
 }
 
@@ -100,7 +101,7 @@ void Rock::validate() const
   {
     if (!(value > 0.0) || !std::isfinite(value))
     {
-      throw ParameterError(name + field + " is " + std::to_string(value) +
+      throw ParameterError(name + field + " is " + numberText(value) +
         ", it must be a positive, finite number of " + unit);
     }
   };
@@ -109,7 +110,7 @@ void Rock::validate() const
   if (!(this->poissonRatio >= 0.0 && this->poissonRatio <= 0.49))
   {
     throw ParameterError(
-      name + "PoissonRatio is " + std::to_string(this->poissonRatio) + ", it must be 0 to 0.49");
+      name + "PoissonRatio is " + numberText(this->poissonRatio) + ", it must be 0 to 0.49");
   }
   positive(this->shape.integrals().volume, "Volume", "m³");
   const auto finite = [&](const Vec3& value, const char* field)

@@ -1,6 +1,7 @@
 #include "simulation/overlaps.h"
 
 #include "base/errors.h"
+#include "base/numberText.h"
 #include "contact/pairs.h"
 #include "simulation/placement.h"
 #include "system/broadPhase.h"
@@ -87,8 +88,8 @@ std::vector<RockOverlap> overlapsOf(
 std::string nameOf(const Rock& rock, const Vec3& origin)
 {
   const Vec3 world = rock.position + origin;
-  return "block " + std::to_string(rock.blockId) + " at (" + std::to_string(world.x()) + ", " +
-    std::to_string(world.y()) + ", " + std::to_string(world.z()) + ")";
+  return "block " + std::to_string(rock.blockId) + " at (" + numberText(world.x()) + ", " +
+    numberText(world.y()) + ", " + numberText(world.z()) + ")";
 }
 
 const RockOverlap& deepest(const std::vector<RockOverlap>& overlaps)
@@ -178,7 +179,7 @@ void requireNoOverlap(std::span<const Rock> rocks, const Vec3& origin, const std
   const RockOverlap& worst = deepest(overlaps);
   throw PlacementError(nameOf(rocks[std::size_t(worst.first)], origin) + " and " +
     nameOf(rocks[std::size_t(worst.second)], origin) + " overlap at the start" + when + ", by " +
-    std::to_string(worst.depth) + " m" + others(overlaps.size()) +
+    numberText(worst.depth, 4) + " m" + others(overlaps.size()) +
     ". Move them apart, or switch PushRocksApart on");
 }
 
@@ -212,7 +213,7 @@ PushedApart pushApart(const Terrain& terrain, std::span<Rock> rocks)
       throw PlacementError(nameOf(rocks[std::size_t(worst.first)], origin) + " and " +
         nameOf(rocks[std::size_t(worst.second)], origin) + " cannot be pushed apart: after " +
         std::to_string(mostPasses) + " passes they still overlap, by " +
-        std::to_string(worst.depth) + " m" + others(overlaps.size()));
+        numberText(worst.depth, 4) + " m" + others(overlaps.size()));
     }
     std::fill(ways.begin(), ways.end(), Vec3::Zero());
     std::fill(pairs.begin(), pairs.end(), 0);

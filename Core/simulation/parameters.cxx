@@ -1,6 +1,7 @@
 #include "simulation/parameters.h"
 
 #include "base/errors.h"
+#include "base/numberText.h"
 #include "simulation/rockContacts.h"
 
 #include <cmath>
@@ -16,7 +17,7 @@ void SimulationParameters::validate() const
   {
     if (!(value > 0.0) || !std::isfinite(value))
     {
-      throw ParameterError(std::string(field) + " is " + std::to_string(value) +
+      throw ParameterError(std::string(field) + " is " + numberText(value) +
         ", it must be a positive, finite number of " + unit);
     }
   };
@@ -24,8 +25,8 @@ void SimulationParameters::validate() const
   {
     if (!(value >= least))
     {
-      throw ParameterError(std::string(field) + " is " + std::to_string(value) +
-        ", it must be at least " + std::to_string(least));
+      throw ParameterError(std::string(field) + " is " + numberText(value) +
+        ", it must be at least " + numberText(least));
     }
   };
   positive(this->timeStep, "TimeStep", "seconds");
@@ -36,28 +37,28 @@ void SimulationParameters::validate() const
   if (!(this->rockRestitution >= 0.0 && this->rockRestitution <= 1.0))
   {
     throw ParameterError(
-      "RockRestitution is " + std::to_string(this->rockRestitution) + ", it must be 0 to 1");
+      "RockRestitution is " + numberText(this->rockRestitution) + ", it must be 0 to 1");
   }
   if (!(this->rockFrictionAngle >= 0.0 && this->rockFrictionAngle <= radians(89.0)))
   {
-    throw ParameterError("RockFrictionAngle is " +
-      std::to_string(degrees(this->rockFrictionAngle)) + "°, it must be 0 to 89");
+    throw ParameterError("RockFrictionAngle is " + numberText(degrees(this->rockFrictionAngle)) +
+      "°, it must be 0 to 89");
   }
   if (!(this->rockCohesion >= 0.0) || !std::isfinite(this->rockCohesion))
   {
-    throw ParameterError("RockCohesion is " + std::to_string(this->rockCohesion) +
+    throw ParameterError("RockCohesion is " + numberText(this->rockCohesion) +
       " N, it must be finite and not negative");
   }
   validateRockContacts(this->rockContactPairs);
   if (!(this->gravity >= 0.0) || !std::isfinite(this->gravity))
   {
     throw ParameterError(
-      "Gravity is " + std::to_string(this->gravity) + " m/s², it must be finite and not negative");
+      "Gravity is " + numberText(this->gravity) + " m/s², it must be finite and not negative");
   }
   if (this->endTime / this->outputInterval > 1e7)
   {
-    throw ParameterError("OutputInterval is " + std::to_string(this->outputInterval) +
-      " s, which makes more than 10,000,000 samples in EndTime " + std::to_string(this->endTime) +
+    throw ParameterError("OutputInterval is " + numberText(this->outputInterval) +
+      " s, which makes more than 10,000,000 samples in EndTime " + numberText(this->endTime) +
       " s");
   }
   atLeast(this->iterations, 1, "Iterations");

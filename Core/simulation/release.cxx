@@ -1,6 +1,7 @@
 #include "simulation/release.h"
 
 #include "base/errors.h"
+#include "base/numberText.h"
 #include "base/random.h"
 #include "geometry/shell.h"
 #include "simulation/ensemble.h"

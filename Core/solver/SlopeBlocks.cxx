@@ -1,6 +1,7 @@
 #include "solver/SlopeBlocks.h"
 
 #include "base/errors.h"
+#include "base/numberText.h"
 
 #include <algorithm>
 #include <array>
@@ -48,7 +49,7 @@ void SlopeBlockMaterial::validate() const
   {
     if (!(value > 0.0) || !std::isfinite(value))
     {
-      throw ParameterError(std::string("slope block: ") + field + " is " + std::to_string(value) +
+      throw ParameterError(std::string("slope block: ") + field + " is " + numberText(value) +
         ", it must be positive and finite");
     }
   };
@@ -58,7 +59,7 @@ void SlopeBlockMaterial::validate() const
   positive(this->fixity, "fixity");
   if (!(this->poissonRatio >= 0.0 && this->poissonRatio < 0.5))
   {
-    throw ParameterError("slope block: Poisson's ratio is " + std::to_string(this->poissonRatio) +
+    throw ParameterError("slope block: Poisson's ratio is " + numberText(this->poissonRatio) +
       ", it must be at least 0 and below 0.5");
   }
 }

@@ -1,6 +1,7 @@
 #include "statistics/dispersion.h"
 
 #include "base/errors.h"
+#include "base/numberText.h"
 
 #include <algorithm>
 #include <cmath>
@@ -28,12 +29,12 @@ Dispersion measureDispersion(
 {
   if (!(length >= 0.0) || !std::isfinite(length))
   {
-    throw ParameterError("Length is " + std::to_string(length) +
-      ", it must be a finite number of metres, not negative");
+    throw ParameterError(
+      "Length is " + numberText(length) + ", it must be a finite number of metres, not negative");
   }
   if (!std::isfinite(azimuth))
   {
-    throw ParameterError("Direction is " + std::to_string(azimuth) + ", it must be finite");
+    throw ParameterError("Direction is " + numberText(azimuth) + ", it must be finite");
   }
   Dispersion result;
   const Vec3 along(std::cos(azimuth), std::sin(azimuth), 0.0);

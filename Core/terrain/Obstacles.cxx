@@ -1,6 +1,7 @@
 #include "terrain/Obstacles.h"
 
 #include "base/errors.h"
+#include "base/numberText.h"
 #include "geometry/shell.h"
 #include "terrain/Surface.h"
 #include "terrain/Terrain.h"

@@ -1,6 +1,7 @@
 #include "terrain/Terrain.h"
 
 #include "base/errors.h"
+#include "base/numberText.h"
 #include "terrain/Obstacles.h"
 
 #include <algorithm>
@@ -25,8 +26,8 @@ Terrain::Terrain(GridGeometry geometry, std::span<const double> heights,
   }
   if (!(geometry_.cellSize > 0.0) || !std::isfinite(geometry_.cellSize))
   {
-    throw DataError("the cell size is " + std::to_string(geometry_.cellSize) +
-      " m; it must be positive and finite");
+    throw DataError(
+      "the cell size is " + numberText(geometry_.cellSize) + " m; it must be positive and finite");
   }
   if (std::int64_t(heights_.size()) != geometry_.nodeCount())
   {
@@ -267,7 +268,7 @@ Terrain makeBiplanarSlope(double cellSize)
 {
   if (!(cellSize > 0.0) || !(cellSize <= 50.0))
   {
-    throw ParameterError("CellSize is " + std::to_string(cellSize) +
+    throw ParameterError("CellSize is " + numberText(cellSize) +
       " m, the test slope takes more than 0 and at most 50");
   }
   const double incline = 100.0;

@@ -1,6 +1,7 @@
 #include "terrain/material.h"
 
 #include "base/errors.h"
+#include "base/numberText.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,8 +20,7 @@ void requireRange(double value, double low, double high, const char* field, cons
 {
   if (!(value >= low && value <= high))
   {
-    throw ParameterError(
-      std::string(field) + " is " + std::to_string(value) + ", it must be " + range);
+    throw ParameterError(std::string(field) + " is " + numberText(value) + ", it must be " + range);
   }
 }
 
@@ -39,18 +39,18 @@ void SurfaceMaterial::validate() const
   requireRange(this->tangentialRestitution, 0.0, 1.0, "TangentialRestitution", "0 to 1");
   if (!(this->restitutionSpeed > 0.0 && std::isfinite(this->restitutionSpeed)))
   {
-    throw ParameterError("RestitutionSpeed is " + std::to_string(this->restitutionSpeed) +
+    throw ParameterError("RestitutionSpeed is " + numberText(this->restitutionSpeed) +
       ", it must be a positive, finite number of metres per second");
   }
   if (!(this->frictionAngle >= 0.0 && this->frictionAngle <= steepestFriction))
   {
-    throw ParameterError("FrictionAngle is " + std::to_string(degrees(this->frictionAngle)) +
+    throw ParameterError("FrictionAngle is " + numberText(degrees(this->frictionAngle)) +
       " degrees, it must be 0 to 89");
   }
   if (!(this->frictionAngleDeviation >= 0.0 && this->frictionAngleDeviation <= steepestFriction))
   {
     throw ParameterError("FrictionAngleDeviation is " +
-      std::to_string(degrees(this->frictionAngleDeviation)) + " degrees, it must be 0 to 89");
+      numberText(degrees(this->frictionAngleDeviation)) + " degrees, it must be 0 to 89");
   }
   requireRange(this->cohesion, 0.0, std::numeric_limits<double>::max(), "Cohesion",
     "a finite number of newtons, not negative");
@@ -60,7 +60,7 @@ void Roughness::validate() const
 {
   if (!std::isfinite(this->mean))
   {
-    throw ParameterError("RoughnessMean is " + std::to_string(this->mean) + ", it must be finite");
+    throw ParameterError("RoughnessMean is " + numberText(this->mean) + ", it must be finite");
   }
   requireRange(this->deviation, 0.0, std::numeric_limits<double>::max(), "RoughnessDeviation",
     "a finite number of metres, not negative");

@@ -86,7 +86,7 @@ TEST(Overlaps, NamedWithTheDepth)
   std::vector<Rock> rocks = { cubeAt({ 20.0, 20.0, 0.5 }, 3), cubeAt({ 20.7, 20.1, 0.5 }, 7),
     cubeAt({ 20.0, 20.9, 0.5 }, 8) };
   expectRefused(flat(), rocks, together(),
-    { "block 3 at (20.000000", "block 7 at (20.700000", "overlap at the start, by 0.3",
+    { "block 3 at (20,", "block 7 at (20.7,", "overlap at the start, by 0.3",
       "2 other pairs", "PushRocksApart" });
   // Face to face is no overlap; without rock-rock contact nothing is asked.
   EXPECT_TRUE(
@@ -107,7 +107,7 @@ TEST(Overlaps, TheSameRockTwice)
   {
     p.pushRocksApart = push;
     expectRefused(flat(), rocks, p,
-      { "block 1 at (20.000000, 20.000000, 0.500000) and block 9", "same rock twice" });
+      { "block 1 at (20, 20, 0.5) and block 9", "same rock twice" });
   }
   // Another size at the same place is another rock.
   rocks[2] = cubeAt({ 20.0, 20.0, 0.5 }, 9, 0.5);
