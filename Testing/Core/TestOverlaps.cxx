@@ -86,8 +86,8 @@ TEST(Overlaps, NamedWithTheDepth)
   std::vector<Rock> rocks = { cubeAt({ 20.0, 20.0, 0.5 }, 3), cubeAt({ 20.7, 20.1, 0.5 }, 7),
     cubeAt({ 20.0, 20.9, 0.5 }, 8) };
   expectRefused(flat(), rocks, together(),
-    { "block 3 at (20,", "block 7 at (20.7,", "overlap at the start, by 0.3",
-      "2 other pairs", "PushRocksApart" });
+    { "block 3 at (20,", "block 7 at (20.7,", "overlap at the start, by 0.3", "2 other pairs",
+      "PushRocksApart" });
   // Face to face is no overlap; without rock-rock contact nothing is asked.
   EXPECT_TRUE(
     findOverlaps(std::vector{ cubeAt({ 1.0, 1.0, 0.5 }, 0), cubeAt({ 2.0, 1.5, 0.5 }, 1) })
@@ -106,8 +106,7 @@ TEST(Overlaps, TheSameRockTwice)
   for (const bool push : { false, true })
   {
     p.pushRocksApart = push;
-    expectRefused(flat(), rocks, p,
-      { "block 1 at (20, 20, 0.5) and block 9", "same rock twice" });
+    expectRefused(flat(), rocks, p, { "block 1 at (20, 20, 0.5) and block 9", "same rock twice" });
   }
   // Another size at the same place is another rock.
   rocks[2] = cubeAt({ 20.0, 20.0, 0.5 }, 9, 0.5);
