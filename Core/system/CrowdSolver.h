@@ -6,7 +6,8 @@
 ///
 /// The same unknowns, springs and integration as in system/GroupSolver.h, which uses this for what
 /// is too large to eliminate. Contacts lie in memory as the sweeps meet them
-/// (system/crowdKernel.h), and nothing else of them is kept.
+/// (system/crowdKernel.h), and nothing else of them is kept. Most contacts of a crowd are open and
+/// stay so: they are only watched, and are made ready when they close.
 
 #include "base/parallel.h"
 #include "solver/StepSolver.h"
@@ -66,9 +67,11 @@ private:
   /// What is not in its lane of a batch.
   struct Row
   {
-    int batch = 0, lane = 0;
+    int batch = 0; ///< ~i: it is watched, in fours i.
+    int lane = 0;
     double gap0 = 0.0; ///< Without what a bounce asks for, m.
-    double penalty = 0.0, shearPenalty = 0.0;
+    bool isWatched() const { return batch < 0; }
+    std::size_t fours() const { return std::size_t(~batch); }
   };
 
   static Vec3 laneOf(const double (&of)[3][crowd::kLanes], int lane)
@@ -77,7 +80,8 @@ private:
   }
   Vec3 forceOf(const Row& row) const ///< Along the normal and the tangents, N.
   {
-    return laneOf(forces_[std::size_t(row.batch)].along, row.lane);
+    return row.isWatched() ? Vec3(Vec3::Zero())
+                           : laneOf(forces_[std::size_t(row.batch)].along, row.lane);
   }
   void prepareBodies(const StepRequest& request, const std::vector<GroupBody>& bodies);
   void turnAs(Work& work, const Vec3& spun) const; ///< turned, mean and turn.
@@ -90,11 +94,13 @@ private:
   {
     explicit Hand(int slope);
     crowd::Batch idle() const;
+    crowd::Watched watchedIdle() const;
     int body[2][crowd::kLanes]; ///< Movers.
   };
   /// Deals contacts out to batches; `slope`: the mover that stands for it.
   void deal(const std::vector<GroupContact>& contacts, const int* first, const int* last, int slope,
     std::vector<Hand>& hands);
+  void layOutWatched(const std::vector<GroupContact>& contacts, int part, int slope);
   /// visit(part): every second part, the others, and what reaches further, or backwards. Parts that
   /// are visited at the same time share no rock.
   template <class Visit>
@@ -104,26 +110,36 @@ private:
   void forRows(int part, Visit&& visit) const;
   std::size_t firstOf(std::size_t key) const { return key == 0 ? 0 : ends_[key - 1]; }
   void prepareRow(const std::vector<GroupBody>& bodies, const GroupContact& group, Row& row);
-  /// Directions and levers at mid-step, and what a force does along them.
+  void arm(const GroupContact& group, const Row& row); ///< With springs, and what bounces stiffer.
+  /// Directions and levers at mid-step.
   void lever(const std::vector<GroupBody>& bodies, const GroupContact& group, const Row& row);
-  void pushed(const Row& row, double sign);           ///< Movers by the row's force.
-  const Work* workOf(const Row& row, int side) const; ///< Null: the slope.
-  Vec3 leverOf(const Row& row, int side) const;       ///< m
-  Vec3 wayOf(const Row& row, int side) const;         ///< Of a rock's point of force, m.
+  void assemble(std::size_t first, std::size_t count); ///< Batches: what forces do along levers.
+  void pushed(const Row& row, double sign);            ///< Movers by the row's force.
+  const Work* workOf(const Row& row, int side) const;  ///< Null: the slope.
+  Vec3 leverOf(const Row& row, int side) const;        ///< m
+  Vec3 wayOf(const Row& row, int side) const;          ///< Of a rock's point of force, m.
   /// The same at the mean of the velocities before and after the step, m.
   Vec3 meanWayOf(const Row& row, int side) const;
-  Vec3 travel(const Row& row) const; ///< Along the normal and the tangents, m.
+  double opened(const Row& row) const; ///< Along the normal, m.
+  Vec3 travel(const Row& row) const;   ///< Along the normal and the tangents, m.
   /// Velocities before and after the step along the normal and the tangents, m/s.
   std::array<Vec3, 2> velocities(const Row& row) const;
   void startMover(const GroupBody& body, std::size_t i);
-  void startMovers(const std::vector<GroupBody>& bodies);
+  void startMovers(const std::vector<GroupBody>& bodies); ///< As if there were no contacts.
+  /// All rows, and what they do to the movers to begin with.
+  void prepareRows(const std::vector<GroupBody>& bodies, const std::vector<GroupContact>& contacts);
   /// Turns that were guessed wrong, and the levers that go with them.
   bool correctTurns(
     const std::vector<GroupBody>& bodies, const std::vector<GroupContact>& contacts);
   void append(const std::vector<GroupBody>& bodies, std::vector<GroupContact>& contacts);
-  /// Batches of further contacts behind those of a part and kind.
-  void appendTo(
-    std::size_t key, const std::vector<GroupContact>& contacts, const std::vector<int>& added);
+  /// Batches of further contacts behind all others. Returns the first one.
+  std::size_t appendBatches(
+    const std::vector<GroupContact>& contacts, const std::vector<int>& added);
+  void noteChange(const GroupContact& contact); ///< Its rocks' contacts are to be visited.
+  /// Makes those of the watched contacts ready that are closed where the rocks go now; whether
+  /// there were any.
+  /// `sweep` is the next one.
+  bool watch(int sweep);
   double visit(int part);
   double sweep();
   /// Sweeps until none changes anything by more than `goal`, m; whether they get there.
@@ -154,7 +170,13 @@ private:
   std::vector<Row> rows_;
   std::vector<ContactBooks> books_; ///< Out, by row.
   std::vector<crowd::Batch> batches_;
-  std::vector<crowd::Forces> forces_; ///< Of the contacts of each batch.
+  std::vector<crowd::Springs> springs_; ///< Of each batch.
+  std::vector<crowd::Forces> forces_;   ///< Of the contacts of each batch.
+  std::vector<crowd::Watched> watched_;
+  std::vector<int> watchedContacts_; ///< By fours and lane; −1: none.
+  std::vector<int> watchStarts_;     ///< First fours of each part.
+  std::vector<unsigned char> closes_;
+  int checked_ = 0; ///< Sweep before which watched contacts were last looked at.
   /// In order along the group's largest extent, so that what threads work on lies apart; the slope
   /// is one more of each part, which nothing moves.
   std::vector<crowd::Mover> movers_;
@@ -162,15 +184,24 @@ private:
   std::vector<int> changed_;
   // Parts are strips across the group, and contacts belong to the lower part of their two rocks:
   // those of every second part share no rock, and are swept at the same time. The last part holds
-  // what reaches further than to the next strip, and what is found in a second look. In each part
-  // contacts between rocks come before those with the slope, and those that will carry before those
-  // that may stay open.
-  static constexpr int kKinds = 4;
+  // what reaches further than to the next strip, and what turns up while the sweeps go on: watched
+  // contacts that close, and those of a second look. In each part contacts between rocks come
+  // before those with the slope, but in the last one they are mixed; what is watched is swept by
+  // none.
+  static constexpr int kKinds = 3;
+  enum Kind
+  {
+    Pairs,
+    OnSlope,
+    Watching,
+  };
   int parts_ = 1;
   std::vector<std::vector<Hand>> hands_; ///< Of each part.
   std::vector<char> wrong_; ///< By contact, whether a rock of it has turned otherwise than guessed.
   std::vector<char> gives_; ///< By contact, whether its bounce gives energy.
+  std::vector<char> turned_;        ///< By batch, whether it holds such a contact.
   std::vector<int> touched_;        ///< Bodies.
+  std::vector<int> closing_;        ///< Watched contacts that have closed.
   std::vector<int> keyOf_, order_;  ///< Contacts: part and kind; in order of it.
   std::vector<int> starts_;         ///< First batch of each part and kind.
   std::vector<std::size_t> ends_;   ///< Behind the last contact of each part and kind in `order_`.
@@ -183,6 +214,9 @@ private:
   std::vector<double> changes_; ///< By block of movers.
   double lastChange_ = 0.0;     ///< Of the sweep before; negative: there was none.
   const crowd::Kernel* kernel_ = nullptr;
+  // Of the step at hand.
+  const std::vector<GroupBody>* bodies_ = nullptr;
+  const std::vector<GroupContact>* contacts_ = nullptr;
   int sweep_ = 0;       ///< Number of the next sweep.
   double scale_ = 0.0;  ///< The longest way in the step, m.
   double enough_ = 0.0; ///< Changes that settle a run, m,

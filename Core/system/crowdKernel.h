@@ -38,6 +38,22 @@ struct alignas(64) Batch
   int body[2][kLanes];             ///< Index of the mover.
 };
 
+/// What springs four contacts have, for `assemble`; 0 in lanes that hold none.
+struct alignas(32) Springs
+{
+  double penalty[kLanes]; ///< pₙ, N/m
+  double shear[kLanes];   ///< pₛ, N/m
+};
+
+/// Four contacts that may stay open: all that tells whether they do.
+struct alignas(64) Watched
+{
+  double normal[3][kLanes];
+  double lever[2][3][kLanes]; ///< From the rocks' centroids, m.
+  double gap[kLanes];         ///< At the start of the step, m.
+  int body[2][kLanes];        ///< Index of the mover.
+};
+
 /// Forces of four contacts along their directions, N.
 struct alignas(32) Forces
 {
@@ -56,6 +72,17 @@ struct Pass
   int* changed; ///< By mover: the last sweep in which it was moved by more than `quiet`.
   int number;   ///< Of this sweep. Batches around which nothing changed are left out.
   double quiet; ///< m
+};
+
+/// A look at contacts that are watched.
+struct Watch
+{
+  const Watched* first;
+  std::size_t count;
+  const Mover* movers;
+  const int* changed; ///< By mover, as for a pass.
+  int since;          ///< Those of which no rock has moved in this sweep or later stay as they are.
+  unsigned char* closes; ///< Out, by four: a bit for each one that is closed where the rocks go.
 };
 
 /// Displacement (m) and Cayley vector (rad) of a mover, as they lie in it.
@@ -80,6 +107,10 @@ struct Kernel
 {
   /// The largest change of a displacement, m.
   double (*sweep)(const Pass& pass);
+  /// Fills in `w`, `coupling`, `stiffness`, `shear` and `gain` from directions, levers, springs and
+  /// the movers' mobility.
+  void (*assemble)(Batch* batches, const Springs* springs, const Mover* movers, std::size_t count);
+  bool (*watch)(const Watch& watch); ///< Whether any closes.
   /// How far movers have come since `before`, in the norm of kinetic energy with a ball's inertia
   /// for that of each rock, N m.
   double (*changeOf)(const Mover* movers, const Way* before, int count);

@@ -5,81 +5,122 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
+#include <numeric>
 
 namespace rockfall
 {
+
+void CrowdSolver::noteChange(const GroupContact& contact)
+{
+  for (const int body : { contact.first, contact.second })
+  {
+    if (body >= 0)
+    {
+      changed_[work_[std::size_t(body)].mover] = sweep_;
+    }
+  }
+}
+
+std::size_t CrowdSolver::appendBatches(
+  const std::vector<GroupContact>& contacts, const std::vector<int>& added)
+{
+  const std::size_t before = batches_.size();
+  std::vector<Hand>& hands = hands_.back();
+  hands.clear();
+  this->deal(
+    contacts, added.data(), added.data() + added.size(), int(work_.size()) + parts_, hands);
+  for (const int k : added)
+  {
+    rows_[std::size_t(k)].batch += int(before);
+  }
+  std::transform(hands.begin(), hands.end(), std::back_inserter(batches_),
+    [](const Hand& hand) { return hand.idle(); });
+  springs_.resize(batches_.size());
+  forces_.resize(batches_.size());
+  forcesBefore_.resize(batches_.size());
+  forcesAlong_.resize(batches_.size());
+  // They go with what reaches further than to the next part.
+  for (std::size_t key = std::size_t(parts_ * kKinds + Pairs) + 1; key < starts_.size(); ++key)
+  {
+    starts_[key] += int(hands.size());
+  }
+  return before;
+}
 
 void CrowdSolver::append(const std::vector<GroupBody>& bodies, std::vector<GroupContact>& contacts)
 {
   const std::size_t first = rows_.size();
   rows_.resize(contacts.size());
-  // They go with what reaches further than to the next part, in the order that is kept there.
-  for (const int kind : { 0, 2 })
-  {
-    std::vector<int> added;
-    for (std::size_t k = first; k < contacts.size(); ++k)
-    {
-      if ((contacts[k].second < 0) == (kind == 2))
-      {
-        added.push_back(int(k));
-      }
-    }
-    this->appendTo(std::size_t(parts_ * kKinds + kind), contacts, added);
-  }
+  std::vector<int> added(rows_.size() - first);
+  std::iota(added.begin(), added.end(), int(first));
+  const std::size_t batches = this->appendBatches(contacts, added);
   for (std::size_t k = first; k < rows_.size(); ++k)
   {
     // The gap at the start from which this way leads to the one at the end.
     Row& row = rows_[k];
     Contact& c = *contacts[k].contact;
     this->prepareRow(bodies, contacts[k], row);
-    c.distance -= this->travel(row)[0];
+    c.distance -= this->opened(row);
     c.offset = std::min(0.0, c.distance);
-    row.gap0 = c.gap();
-    if (contacts[k].bounce < 0.0)
+    row.gap0 = batches_[std::size_t(row.batch)].gap[row.lane] = c.gap();
+    this->noteChange(contacts[k]);
+  }
+  this->assemble(batches, batches_.size() - batches);
+  for (std::size_t k = first; k < rows_.size(); ++k)
+  {
+    if (contacts[k].bounce >= 0.0)
     {
-      batches_[std::size_t(row.batch)].gap[row.lane] = row.gap0;
-    }
-    for (const int body : { contacts[k].first, contacts[k].second })
-    {
-      if (body >= 0)
-      {
-        changed_[work_[std::size_t(body)].mover] = sweep_;
-      }
+      this->arm(contacts[k], rows_[k]);
     }
   }
 }
 
-void CrowdSolver::appendTo(
-  std::size_t key, const std::vector<GroupContact>& contacts, const std::vector<int>& added)
+bool CrowdSolver::watch(int sweep)
 {
-  const int slope = int(work_.size()) + parts_;
-  const int before = int(batches_.size());
-  std::vector<Hand> hands;
-  this->deal(contacts, added.data(), added.data() + added.size(), slope, hands);
-  for (const Hand& hand : hands)
+  constexpr std::size_t kBlock = 64; // fours at once
+  const auto look = [&](std::size_t block)
   {
-    batches_.push_back(hand.idle());
-    forces_.push_back({});
-  }
-  for (const int k : added)
+    const std::size_t first = block * kBlock;
+    crowd::Watch watch;
+    watch.first = &watched_[first];
+    watch.count = std::min(kBlock, watched_.size() - first);
+    watch.movers = movers_.data();
+    watch.changed = changed_.data();
+    watch.since = checked_ - 1; // going further counts for the sweep before
+    watch.closes = &closes_[first];
+    kernel_->watch(watch);
+  };
+  forEach((watched_.size() + kBlock - 1) / kBlock, 4, look);
+  checked_ = sweep;
+  closing_.clear();
+  for (std::size_t k = 0; k < watched_.size(); ++k)
   {
-    rows_[std::size_t(k)].batch += before;
-  }
-  const int more = int(batches_.size()) - before, at = starts_[key + 1];
-  if (more > 0 && at < before)
-  {
-    std::rotate(batches_.begin() + at, batches_.begin() + before, batches_.end());
-    std::rotate(forces_.begin() + at, forces_.begin() + before, forces_.end());
-    for (Row& row : rows_)
+    for (int lane = 0; closes_[k] != 0 && lane < crowd::kLanes; ++lane)
     {
-      row.batch = row.batch >= before ? row.batch - before + at
-                                      : (row.batch >= at ? row.batch + more : row.batch);
+      if ((closes_[k] >> lane & 1) != 0)
+      {
+        closing_.push_back(watchedContacts_[k * crowd::kLanes + std::size_t(lane)]);
+        watched_[k].gap[lane] = std::numeric_limits<double>::max();
+      }
     }
   }
-  for (std::size_t next = key + 1; next < starts_.size(); ++next)
+  if (closing_.empty())
   {
-    starts_[next] += more;
+    return false;
   }
+  const std::size_t batches = this->appendBatches(*contacts_, closing_);
+  for (const int k : closing_)
+  {
+    Row& row = rows_[std::size_t(k)];
+    const double gap0 = row.gap0; // may have been set right by a look
+    this->prepareRow(*bodies_, (*contacts_)[std::size_t(k)], row);
+    row.gap0 = batches_[std::size_t(row.batch)].gap[row.lane] = gap0;
+    this->noteChange((*contacts_)[std::size_t(k)]);
+  }
+  this->assemble(batches, batches_.size() - batches);
+  return true;
 }
 
 BlockState CrowdSolver::end(const std::vector<GroupBody>& bodies, std::size_t i) const
@@ -92,13 +133,14 @@ BlockState CrowdSolver::end(const std::vector<GroupBody>& bodies, std::size_t i)
 
 double CrowdSolver::gap(std::size_t contact) const
 {
-  return rows_[contact].gap0 + this->travel(rows_[contact])[0];
+  return rows_[contact].gap0 + this->opened(rows_[contact]);
 }
 
 bool CrowdSolver::setGap(std::size_t contact, double found)
 {
   Row& row = rows_[contact];
-  double& asked = batches_[std::size_t(row.batch)].gap[row.lane];
+  double& asked = row.isWatched() ? watched_[row.fours()].gap[row.lane]
+                                  : batches_[std::size_t(row.batch)].gap[row.lane];
   const double change = gapChange(row.gap0, this->gap(contact), found);
   if (std::abs(change) <= kQuiet * enough_)
   {
@@ -108,8 +150,10 @@ bool CrowdSolver::setGap(std::size_t contact, double found)
   row.gap0 += change;
   for (int side = 0; side < 2; ++side)
   {
-    const std::size_t i = std::size_t(batches_[std::size_t(row.batch)].body[side][row.lane]);
-    changed_[i] = i < work_.size() ? sweep_ : kNever;
+    if (const Work* w = this->workOf(row, side))
+    {
+      changed_[w->mover] = sweep_;
+    }
   }
   return true;
 }

@@ -14,6 +14,9 @@ using rockfall::crowd::Kernel;
 using rockfall::crowd::kLanes;
 using rockfall::crowd::Mover;
 using rockfall::crowd::Pass;
+using rockfall::crowd::Springs;
+using rockfall::crowd::Watch;
+using rockfall::crowd::Watched;
 using rockfall::crowd::Way;
 
 using Lanes = double __attribute__((vector_size(32), may_alias));
@@ -260,6 +263,121 @@ double sweepHere(const Pass& pass)
   return pass.slope ? sweepAll<true>(pass) : sweepAll<false>(pass);
 }
 
+/// What forces along three directions do along them and along each other, by way of one rock.
+struct Mobility
+{
+  Lanes nn, nu, nv, uu, vv, uv;
+};
+
+/// h² I⁻¹ of a rock times a vector.
+ROCKFALL_INLINE Triple turned(const Lanes (&inertia)[6], const Triple& v)
+{
+  return { inertia[0] * v.x + inertia[3] * v.y + inertia[4] * v.z,
+    inertia[3] * v.x + inertia[1] * v.y + inertia[5] * v.z,
+    inertia[4] * v.x + inertia[5] * v.y + inertia[2] * v.z };
+}
+
+ROCKFALL_INLINE void addMobility(const Mover* movers, const int (&body)[kLanes],
+  const Triple& lever, const Triple (&directions)[3], Mobility& sum)
+{
+  Lanes ways[4], diagonal[4], others[4];
+  for (int i = 0; i < kLanes; ++i)
+  {
+    const Mover& m = movers[body[i]];
+    ways[i] = load(m.way);
+    diagonal[i] = load(m.inertia);
+    others[i] = load(m.inertia + 4);
+  }
+  transpose(ways);
+  transpose(diagonal);
+  transpose(others);
+  const Lanes mass = ways[3];
+  const Lanes inertia[6] = { diagonal[0], diagonal[1], diagonal[2], diagonal[3], others[0],
+    others[1] };
+  const Triple jn = cross(lever, directions[0]), ju = cross(lever, directions[1]);
+  const Triple jv = cross(lever, directions[2]);
+  const Triple in = turned(inertia, jn), iv = turned(inertia, jv);
+  sum.nn += mass * dot(directions[0], directions[0]) + dot(jn, in);
+  sum.nu += mass * dot(directions[0], directions[1]) + dot(ju, in);
+  sum.nv += mass * dot(directions[0], directions[2]) + dot(jv, in);
+  sum.uu += mass + dot(ju, turned(inertia, ju));
+  sum.vv += mass + dot(jv, iv);
+  sum.uv += dot(ju, iv);
+}
+
+void assembleHere(Batch* batches, const Springs* springs, const Mover* movers, std::size_t count)
+{
+  const Lanes zero = { 0.0, 0.0, 0.0, 0.0 }, one = { 1.0, 1.0, 1.0, 1.0 };
+  for (std::size_t k = 0; k < count; ++k)
+  {
+    Batch& batch = batches[k];
+    const Triple directions[3] = { load3(batch.directions[0]), load3(batch.directions[1]),
+      load3(batch.directions[2]) };
+    Mobility m = { zero, zero, zero, zero, zero, zero };
+    addMobility(movers, batch.body[0], load3(batch.lever[0]), directions, m);
+    addMobility(movers, batch.body[1], load3(batch.lever[1]), directions, m);
+    const Lanes penalty = load(springs[k].penalty), shear = load(springs[k].shear);
+    store(batch.w, m.nn);
+    store(batch.coupling[0], m.nu);
+    store(batch.coupling[1], m.nv);
+    store(batch.stiffness, penalty / (one + penalty * m.nn));
+    store(batch.shear, shear > zero ? one / (shear > zero ? shear : one) : zero);
+    const Lanes mobile = (m.uu > m.vv ? m.uu : m.vv) + absolute(m.uv);
+    store(batch.gain, shear / (one + shear * mobile));
+  }
+}
+
+/// How the points of four contacts on one of their rocks go.
+ROCKFALL_INLINE Triple wayOf(
+  const Mover* movers, const int (&body)[kLanes], const double (&lever)[3][kLanes])
+{
+  Lanes ways[4], turns[4];
+  for (int i = 0; i < kLanes; ++i)
+  {
+    const Mover& m = movers[body[i]];
+    ways[i] = load(m.way);
+    turns[i] = load(m.turn);
+  }
+  transpose(ways);
+  transpose(turns);
+  const Triple turned = cross({ turns[0], turns[1], turns[2] }, load3(lever));
+  return { ways[0] + turned.x, ways[1] + turned.y, ways[2] + turned.z };
+}
+
+bool watchHere(const Watch& watch)
+{
+  bool any = false;
+  for (std::size_t k = 0; k < watch.count; ++k)
+  {
+    const Watched& four = watch.first[k];
+    watch.closes[k] = 0;
+    int last = watch.changed[four.body[0][0]];
+    for (int i = 0; i < kLanes; ++i)
+    {
+      const int a = watch.changed[four.body[0][i]], b = watch.changed[four.body[1][i]];
+      last = a > last ? a : last;
+      last = b > last ? b : last;
+    }
+    if (last < watch.since)
+    {
+      continue;
+    }
+    const Triple a = wayOf(watch.movers, four.body[0], four.lever[0]);
+    const Triple b = wayOf(watch.movers, four.body[1], four.lever[1]);
+    const Lanes gap = load(four.gap) + dot(load3(four.normal), { a.x - b.x, a.y - b.y, a.z - b.z });
+    const Mask closes = gap < Lanes{ 0.0, 0.0, 0.0, 0.0 };
+    if ((closes[0] | closes[1] | closes[2] | closes[3]) != 0)
+    {
+      any = true;
+      for (int i = 0; i < kLanes; ++i)
+      {
+        watch.closes[k] = static_cast<unsigned char>(watch.closes[k] | (closes[i] != 0) << i);
+      }
+    }
+  }
+  return any;
+}
+
 double changeHere(const Mover* movers, const Way* before, int count)
 {
   double sum = 0.0;
@@ -315,6 +433,7 @@ void goMoversHere(
   }
 }
 
-constexpr Kernel kernelHere = { sweepHere, changeHere, goForcesHere, goMoversHere };
+constexpr Kernel kernelHere = { sweepHere, assembleHere, watchHere, changeHere, goForcesHere,
+  goMoversHere };
 
 } // namespace

@@ -37,6 +37,9 @@ constexpr double kDeepMiss = 0.02;
 /// What is less deep than this share of a radius in the look before the last one leaves nothing
 /// deep behind it.
 constexpr double kWorthALook = 0.25 * kDeepMiss;
+/// In each so many sweeps watched contacts are looked at, and so many follow on one that closes.
+constexpr int kWatchEvery = 2;
+constexpr int kAfterWatched = 2;
 /// Rocks of a part of the group, and parts at most.
 constexpr int kPart = 56;
 constexpr int kMostParts = 64;
@@ -63,6 +66,17 @@ crowd::Batch CrowdSolver::Hand::idle() const
     std::copy(std::begin(body[side]), std::end(body[side]), batch.body[side]);
   }
   return batch;
+}
+
+crowd::Watched CrowdSolver::Hand::watchedIdle() const
+{
+  crowd::Watched four = {};
+  std::fill(std::begin(four.gap), std::end(four.gap), std::numeric_limits<double>::max());
+  for (int side = 0; side < 2; ++side)
+  {
+    std::copy(std::begin(body[side]), std::end(body[side]), four.body[side]);
+  }
+  return four;
 }
 
 void CrowdSolver::lineUp()
@@ -100,7 +114,7 @@ void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
     const int b = k.second < 0 ? a : partOf(k.second);
     const int part = std::abs(a - b) <= 1 ? std::min(a, b) : parts_;
     const bool open = !k.contact->closed() && k.bounce < 0.0 && k.contact->gap() > h_ * k.approach;
-    return part * kKinds + (k.second < 0 ? 2 : 0) + (open ? 1 : 0);
+    return part * kKinds + (open ? Watching : k.second < 0 && part < parts_ ? OnSlope : Pairs);
   };
   const std::size_t keys = std::size_t(parts_ + 1) * kKinds;
   keyOf_.resize(contacts.size());
@@ -124,13 +138,14 @@ void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
   {
     std::vector<Hand>& hands = hands_[std::size_t(part)];
     hands.clear();
-    for (std::size_t key = std::size_t(part * kKinds); key < std::size_t((part + 1) * kKinds);
-         ++key)
+    for (const Kind kind : { Pairs, OnSlope })
     {
+      const std::size_t key = std::size_t(part * kKinds + kind);
       starts_[key] = int(hands.size());
       this->deal(contacts, order_.data() + this->firstOf(key), order_.data() + ends_[key],
         bodies + part, hands);
     }
+    starts_[std::size_t(part * kKinds + Watching)] = int(hands.size());
   };
   this->forParts(false, dealPart);
   // Part after part.
@@ -141,14 +156,29 @@ void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
     count += (key + 1) % kKinds == 0 ? int(hands_[key / kKinds].size()) : 0;
   }
   starts_[keys] = count;
+  watchStarts_.assign(std::size_t(parts_) + 2, 0);
+  for (std::size_t part = 0; part <= std::size_t(parts_); ++part)
+  {
+    const std::size_t key = part * kKinds + Watching;
+    watchStarts_[part + 1] = watchStarts_[part] +
+      int((ends_[key] - this->firstOf(key) + crowd::kLanes - 1) / crowd::kLanes);
+  }
+  watched_.resize(std::size_t(watchStarts_.back()));
+  watchedContacts_.assign(watched_.size() * crowd::kLanes, -1);
+  closes_.resize(watched_.size());
   batches_.resize(std::size_t(count));
+  springs_.assign(std::size_t(count), crowd::Springs{});
   forces_.assign(std::size_t(count), crowd::Forces{});
   const auto layOut = [&](int part)
   {
     const std::size_t key = std::size_t(part * kKinds);
     std::transform(hands_[std::size_t(part)].begin(), hands_[std::size_t(part)].end(),
       batches_.begin() + starts_[key], [](const Hand& hand) { return hand.idle(); });
-    this->forRows(part, [&](std::size_t k) { rows_[k].batch += starts_[key]; });
+    for (std::size_t k = this->firstOf(key); k < ends_[key + OnSlope]; ++k)
+    {
+      rows_[std::size_t(order_[k])].batch += starts_[key];
+    }
+    this->layOutWatched(contacts, part, bodies + part);
   };
   this->forParts(false, layOut);
 }
@@ -215,6 +245,27 @@ void CrowdSolver::deal(const std::vector<GroupContact>& contacts, const int* fir
   }
 }
 
+void CrowdSolver::layOutWatched(const std::vector<GroupContact>& contacts, int part, int slope)
+{
+  const auto first = watched_.begin() + watchStarts_[std::size_t(part)];
+  std::for_each(first, watched_.begin() + watchStarts_[std::size_t(part) + 1],
+    [&](crowd::Watched& four) { four = Hand(slope).watchedIdle(); });
+  const std::size_t key = std::size_t(part * kKinds + Watching);
+  std::size_t at = std::size_t(watchStarts_[std::size_t(part)]) * crowd::kLanes;
+  for (std::size_t k = this->firstOf(key); k < ends_[key]; ++k, ++at)
+  {
+    const int contact = order_[k];
+    const GroupContact& group = contacts[std::size_t(contact)];
+    Row& row = rows_[std::size_t(contact)];
+    row.batch = ~int(at / crowd::kLanes);
+    row.lane = int(at % crowd::kLanes);
+    crowd::Watched& four = watched_[row.fours()];
+    four.body[0][row.lane] = int(work_[std::size_t(group.first)].mover);
+    four.body[1][row.lane] = group.second < 0 ? slope : int(work_[std::size_t(group.second)].mover);
+    watchedContacts_[at] = contact;
+  }
+}
+
 double CrowdSolver::visit(int part)
 {
   crowd::Pass pass;
@@ -224,14 +275,13 @@ double CrowdSolver::visit(int part)
   pass.number = sweep_;
   pass.quiet = quiet_;
   double most = 0.0;
-  for (int k = 0; k < kKinds; ++k)
+  for (const bool slope : { pass.backwards, !pass.backwards })
   {
-    const int kind = pass.backwards ? kKinds - 1 - k : k;
-    const std::size_t key = std::size_t(part * kKinds + kind);
+    const std::size_t key = std::size_t(part * kKinds + (slope ? OnSlope : Pairs));
     pass.first = batches_.data() + starts_[key];
     pass.forces = forces_.data() + starts_[key];
     pass.count = starts_[key + 1] - starts_[key];
-    pass.slope = kind >= 2;
+    pass.slope = slope;
     most = std::max(most, kernel_->sweep(pass));
   }
   return most;
@@ -241,6 +291,7 @@ double CrowdSolver::sweep()
 {
   most_.assign(std::size_t(parts_) + 1, 0.0);
   this->forParts(sweep_ % 2 != 0, [&](int part) { most_[std::size_t(part)] = this->visit(part); });
+  changed_.back() = kNever; // the slope of the last part, where its contacts are among the others
   return *std::max_element(most_.begin(), most_.end());
 }
 
@@ -256,6 +307,12 @@ bool CrowdSolver::sweepTo(double goal, int most, bool conjugate, GroupOutcome& o
     ++outcome.iterations;
     outcome.residual = this->sweep();
     reached = outcome.residual <= goal;
+    const bool last = reached || k + 1 == most;
+    if ((last || k == 0 || k % kWatchEvery == 0) && this->watch(sweep_ + 1))
+    {
+      reached = false;
+      most = std::max(most, k + 1 + kAfterWatched);
+    }
   }
   return reached;
 }
@@ -291,18 +348,19 @@ bool CrowdSolver::holdBounces(std::vector<GroupContact>& contacts)
   const auto gives = [&](std::size_t k)
   {
     const Row& row = rows_[k];
-    crowd::Batch& p = batches_[std::size_t(row.batch)];
     const Vec3 force = this->forceOf(row);
     if (contacts[k].bounce <= 0.0 || force[0] <= 0.0)
     {
       return false;
     }
+    crowd::Batch& p = batches_[std::size_t(row.batch)];
     const auto [before, after] = this->velocities(row);
     const double held = heldBounce(contacts[k], force, before, after);
     if (held >= 0.0)
     {
       contacts[k].bounce = held;
-      p.gap[row.lane] = bounceGap(contacts[k], h_, row.penalty * p.w[row.lane]);
+      p.gap[row.lane] = bounceGap(
+        contacts[k], h_, springs_[std::size_t(row.batch)].penalty[row.lane] * p.w[row.lane]);
     }
     return held >= 0.0;
   };
@@ -310,13 +368,7 @@ bool CrowdSolver::holdBounces(std::vector<GroupContact>& contacts)
   const auto goOn = [&](std::size_t k)
   {
     any = true;
-    for (const int body : { contacts[k].first, contacts[k].second })
-    {
-      if (body >= 0)
-      {
-        changed_[work_[std::size_t(body)].mover] = sweep_;
-      }
-    }
+    this->noteChange(contacts[k]);
   };
   forThose(rows_.size(), kRowGrain, gives_, gives, goOn);
   return any;
@@ -359,12 +411,13 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
     return outcome;
   }
   kernel_ = &crowd::suitedKernel();
+  bodies_ = &bodies;
+  contacts_ = &contacts;
   this->prepareBodies(request, bodies);
   this->lineUp();
   this->arrange(contacts);
-  forEach(contacts.size(), kRowGrain,
-    [&](std::size_t k) { this->prepareRow(bodies, contacts[k], rows_[k]); });
   this->startMovers(bodies);
+  this->prepareRows(bodies, contacts);
   // Displacements matter in relation to how far gravity and the rocks' speed move them in the step.
   double scale = 0.5 * request.gravity * h_ * h_;
   bool calm = true;
@@ -378,7 +431,7 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
   }
   scale_ = scale;
   enough_ = tolerance * scale;
-  sweep_ = 0;
+  sweep_ = checked_ = 0;
   const int most = calm ? kCalmSweeps * maxSweeps : maxSweeps;
   outcome.settled = this->sweeps(most, true, outcome);
   if (this->correctTurns(bodies, contacts))

@@ -16,11 +16,8 @@ void CrowdSolver::write(const StepRequest& request, std::vector<GroupBody>& bodi
     const Row& row = rows_[k];
     GroupContact& group = contacts[k];
     Contact& c = *group.contact;
-    const crowd::Batch& p = batches_[std::size_t(row.batch)];
-    const int lane = row.lane;
-    ContactWays ways;
-    ways.way = this->travel(row);
-    const double gap1 = row.gap0 + ways.way[0];
+    const Vec3 force = this->forceOf(row);
+    const double gap1 = row.gap0 + this->opened(row);
     // Where its rock has carried it: by this the next step knows it again.
     const int carrier = c.kind == ContactKind::FaceVertex ? group.second : group.first;
     if (carrier >= 0)
@@ -28,8 +25,7 @@ void CrowdSolver::write(const StepRequest& request, std::vector<GroupBody>& bodi
       const Work& w = work_[std::size_t(carrier)];
       c.point = w.position + w.way + w.turned * (c.point - w.position);
     }
-    const Vec3 force = this->forceOf(row);
-    if (force[0] == 0.0 && !c.closed() && (group.bounce >= 0.0 || gap1 >= 0.0))
+    if (row.isWatched() || (force[0] == 0.0 && !c.closed() && (group.bounce >= 0.0 || gap1 >= 0.0)))
     {
       // Open before and after, as most are.
       c.distance = gap1 + c.offset;
@@ -39,10 +35,15 @@ void CrowdSolver::write(const StepRequest& request, std::vector<GroupBody>& bodi
     }
     // The states are those of where the rocks end; the forces that the rocks were moved with are
     // the ones that are booked.
+    const crowd::Batch& p = batches_[std::size_t(row.batch)];
+    const crowd::Springs& springs = springs_[std::size_t(row.batch)];
+    const int lane = row.lane;
+    ContactWays ways;
+    ways.way = this->travel(row);
     ContactLaw law;
     law.gap0 = row.gap0;
-    law.penalty = row.penalty;
-    law.shearPenalty = row.shearPenalty;
+    law.penalty = springs.penalty[lane];
+    law.shearPenalty = springs.shear[lane];
     law.friction = group.friction;
     law.cohesion = group.cohesion;
     law.slip0 = { p.slip[0][lane], p.slip[1][lane] };

@@ -1,0 +1,266 @@
+// The contacts of a crowd's step as its sweeps meet them: directions, levers, springs.
+
+#include "system/CrowdSolver.h"
+
+#include "contact/features.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rockfall
+{
+
+namespace
+{
+
+/// Batches that are assembled at once.
+constexpr std::size_t kBlock = 64;
+
+void setLane(double (&of)[3][crowd::kLanes], int lane, const Vec3& to)
+{
+  of[0][lane] = to[0];
+  of[1][lane] = to[1];
+  of[2][lane] = to[2];
+}
+
+} // namespace
+
+void CrowdSolver::prepareRow(
+  const std::vector<GroupBody>& bodies, const GroupContact& group, Row& row)
+{
+  const Contact& c = *group.contact;
+  row.gap0 = c.gap();
+  if (row.isWatched())
+  {
+    watched_[row.fours()].gap[row.lane] = row.gap0;
+  }
+  else
+  {
+    crowd::Batch& p = batches_[std::size_t(row.batch)];
+    crowd::Springs& springs = springs_[std::size_t(row.batch)];
+    const int lane = row.lane;
+    const Vec3 u = c.normal.unitOrthogonal(), v = c.normal.cross(u);
+    setLane(p.directions[1], lane, u);
+    setLane(p.directions[2], lane, v);
+    springs.penalty[lane] = c.stiffness;
+    springs.shear[lane] = c.shearStiffness;
+    p.gap[lane] = row.gap0;
+    p.slip[0][lane] = u.dot(c.slip);
+    p.slip[1][lane] = v.dot(c.slip);
+    p.friction[lane] = group.friction;
+    p.cohesion[lane] = group.cohesion;
+    // The sweeps start from the forces of the last step.
+    if (c.closed() && group.bounce < 0.0 && c.normalForce > 0.0)
+    {
+      setLane(forces_[std::size_t(row.batch)].along, lane,
+        { c.normalForce, -c.shearStiffness * p.slip[0][lane],
+          -c.shearStiffness * p.slip[1][lane] });
+    }
+  }
+  this->lever(bodies, group, row);
+}
+
+void CrowdSolver::arm(const GroupContact& group, const Row& row)
+{
+  crowd::Batch& p = batches_[std::size_t(row.batch)];
+  crowd::Springs& springs = springs_[std::size_t(row.batch)];
+  const int lane = row.lane;
+  const double stiff = kBounceStiffness / p.w[lane];
+  springs.penalty[lane] = std::max(springs.penalty[lane], stiff);
+  springs.shear[lane] = std::max(springs.shear[lane], stiff);
+  p.gap[lane] = bounceGap(group, h_, springs.penalty[lane] * p.w[lane]);
+  this->assemble(std::size_t(row.batch), 1);
+}
+
+void CrowdSolver::assemble(std::size_t first, std::size_t count)
+{
+  kernel_->assemble(&batches_[first], &springs_[first], movers_.data(), count);
+}
+
+void CrowdSolver::prepareRows(
+  const std::vector<GroupBody>& bodies, const std::vector<GroupContact>& contacts)
+{
+  forEach(contacts.size(), kRowGrain,
+    [&](std::size_t k) { this->prepareRow(bodies, contacts[k], rows_[k]); });
+  const auto assembleBlock = [&](std::size_t block)
+  {
+    const std::size_t first = block * kBlock;
+    this->assemble(first, std::min(kBlock, batches_.size() - first));
+  };
+  forEach((batches_.size() + kBlock - 1) / kBlock, 4, assembleBlock);
+  const auto start = [&](std::size_t k)
+  {
+    if (contacts[k].bounce >= 0.0)
+    {
+      this->arm(contacts[k], rows_[k]);
+    }
+    this->pushed(rows_[k], 1.0);
+  };
+  this->forParts(false, [&](int part) { this->forRows(part, start); });
+}
+
+void CrowdSolver::lever(
+  const std::vector<GroupBody>& bodies, const GroupContact& group, const Row& row)
+{
+  const Contact& c = *group.contact;
+  const int lane = row.lane;
+  const Work& a = work_[std::size_t(group.first)];
+  const Work* b = group.second < 0 ? nullptr : &work_[std::size_t(group.second)];
+  const Vec3 middleA = a.position + 0.5 * a.way;
+  const Vec3 middleB = b ? Vec3(b->position + 0.5 * b->way) : Vec3(Vec3::Zero());
+  const auto onA = [&](const Vec3& at) -> Vec3 { return middleA + a.mean * (at - a.position); };
+  const auto onB = [&](const Vec3& at) -> Vec3
+  { return b ? Vec3(middleB + b->mean * (at - b->position)) : at; };
+  Vec3 n = c.normal, x = c.point;
+  switch (c.kind)
+  {
+    case ContactKind::VertexFace:
+      x = onA(c.point);
+      n = b ? Vec3(b->mean * n) : n;
+      break;
+    case ContactKind::FaceVertex:
+      x = onB(c.point);
+      n = a.mean * n;
+      break;
+    case ContactKind::EdgeEdge:
+    {
+      const Polyhedron& shape = bodies[std::size_t(group.first)].block->shape();
+      const std::array<int, 2>& ends = shape.edges()[c.rockFeature].vertices;
+      const Vec3 u =
+        a.mean * (a.rotation * (shape.vertices()[ends[1]] - shape.vertices()[ends[0]]));
+      const Vec3 w = b ? Vec3(b->mean * c.ridge[1]) : c.ridge[1];
+      const Vec3 q = onB(c.ridge[0]);
+      double s, t;
+      x = onA(c.point);
+      if (closestOnLines(x, u, q, w, s, t))
+      {
+        const Vec3 cross = u.cross(w).normalized();
+        n = cross.dot(c.normal) < 0.0 ? Vec3(-cross) : cross;
+        x += s * u;
+      }
+      break;
+    }
+  }
+  const Vec3 armA = x - middleA, armB = b ? Vec3(x - middleB) : Vec3(Vec3::Zero());
+  auto* const normal =
+    row.isWatched() ? watched_[row.fours()].normal : batches_[std::size_t(row.batch)].directions[0];
+  auto* const levers =
+    row.isWatched() ? watched_[row.fours()].lever : batches_[std::size_t(row.batch)].lever;
+  for (int k = 0; k < 3; ++k)
+  {
+    normal[k][lane] = n[k];
+    levers[0][k][lane] = armA[k];
+    levers[1][k][lane] = armB[k];
+  }
+}
+
+void CrowdSolver::pushed(const Row& row, double sign)
+{
+  if (row.isWatched())
+  {
+    return;
+  }
+  const crowd::Batch& p = batches_[std::size_t(row.batch)];
+  const int lane = row.lane;
+  const Vec3 along = sign * this->forceOf(row);
+  if (along.isZero(0.0))
+  {
+    return;
+  }
+  Vec3 force = Vec3::Zero();
+  for (int k = 0; k < 3; ++k)
+  {
+    force += along[k] * laneOf(p.directions[k], lane);
+  }
+  for (int side = 0; side < 2; ++side)
+  {
+    const int i = p.body[side][lane];
+    if (i >= int(work_.size()))
+    {
+      break; // the slope
+    }
+    crowd::Mover& m = movers_[std::size_t(i)];
+    const Mat3& inertia = work_[std::size_t(line_[std::size_t(i)].second)].inverseInertia;
+    const Vec3 moment = inertia * laneOf(p.lever[side], lane).cross(force);
+    for (int k = 0; k < 3; ++k)
+    {
+      m.way[k] += m.way[3] * force[k];
+      m.turn[k] += moment[k];
+    }
+    force = -force;
+  }
+}
+
+const CrowdSolver::Work* CrowdSolver::workOf(const Row& row, int side) const
+{
+  const auto& body =
+    row.isWatched() ? watched_[row.fours()].body : batches_[std::size_t(row.batch)].body;
+  const std::size_t i = std::size_t(body[side][row.lane]);
+  return i < work_.size() ? &work_[std::size_t(line_[i].second)] : nullptr;
+}
+
+Vec3 CrowdSolver::leverOf(const Row& row, int side) const
+{
+  return laneOf(row.isWatched() ? watched_[row.fours()].lever[side]
+                                : batches_[std::size_t(row.batch)].lever[side],
+    row.lane);
+}
+
+Vec3 CrowdSolver::wayOf(const Row& row, int side) const
+{
+  const Work* w = this->workOf(row, side);
+  return w ? Vec3(w->way + w->spun.cross(this->leverOf(row, side))) : Vec3(Vec3::Zero());
+}
+
+Vec3 CrowdSolver::meanWayOf(const Row& row, int side) const
+{
+  const Work* w = this->workOf(row, side);
+  if (!w)
+  {
+    return Vec3::Zero();
+  }
+  const Vec3 way = 0.5 * (h_ * (w->velocity0 + w->offset) + w->way);
+  const Vec3 spun = 0.5 * (h_ * (w->spin0 + w->spinOffset) + w->spun);
+  return way + spun.cross(this->leverOf(row, side));
+}
+
+double CrowdSolver::opened(const Row& row) const
+{
+  const Vec3 way = this->wayOf(row, 0) - this->wayOf(row, 1);
+  return laneOf(
+    row.isWatched() ? watched_[row.fours()].normal : batches_[std::size_t(row.batch)].directions[0],
+    row.lane)
+    .dot(way);
+}
+
+Vec3 CrowdSolver::travel(const Row& row) const
+{
+  const crowd::Batch& p = batches_[std::size_t(row.batch)];
+  const int lane = row.lane;
+  const Vec3 way = this->wayOf(row, 0) - this->wayOf(row, 1);
+  return { laneOf(p.directions[0], lane).dot(way), laneOf(p.directions[1], lane).dot(way),
+    laneOf(p.directions[2], lane).dot(way) };
+}
+
+std::array<Vec3, 2> CrowdSolver::velocities(const Row& row) const
+{
+  const crowd::Batch& p = batches_[std::size_t(row.batch)];
+  const int lane = row.lane;
+  Vec3 before = Vec3::Zero(), after = Vec3::Zero();
+  for (int side = 0; side < 2; ++side)
+  {
+    if (const Work* w = this->workOf(row, side))
+    {
+      const Vec3 lever = this->leverOf(row, side);
+      const double sign = side == 0 ? 1.0 : -1.0;
+      before += sign * (w->velocity0 + w->spin0.cross(lever));
+      after += sign * (w->way / h_ + w->offset + (w->spun / h_ + w->spinOffset).cross(lever));
+    }
+  }
+  Mat3 along;
+  along << laneOf(p.directions[0], lane).transpose(), laneOf(p.directions[1], lane).transpose(),
+    laneOf(p.directions[2], lane).transpose();
+  return { along * before, along * after };
+}
+
+} // namespace rockfall
