@@ -297,7 +297,7 @@ double CrowdSolver::sweep()
 
 bool CrowdSolver::sweepTo(double goal, int most, bool conjugate, GroupOutcome& outcome)
 {
-  bool reached = false;
+  bool reached = false, extended = false;
   for (int k = 0; k < most && !reached; ++k, ++sweep_)
   {
     if (conjugate && k > 0)
@@ -307,11 +307,13 @@ bool CrowdSolver::sweepTo(double goal, int most, bool conjugate, GroupOutcome& o
     ++outcome.iterations;
     outcome.residual = this->sweep();
     reached = outcome.residual <= goal;
+    // What closes in the end gets some sweeps more, once.
     const bool last = reached || k + 1 == most;
-    if ((last || k == 0 || k % kWatchEvery == 0) && this->watch(sweep_ + 1))
+    if ((last ? !extended : k % kWatchEvery == 0) && this->watch(sweep_ + 1))
     {
       reached = false;
       most = std::max(most, k + 1 + kAfterWatched);
+      extended = last;
     }
   }
   return reached;
