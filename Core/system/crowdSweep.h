@@ -89,6 +89,26 @@ ROCKFALL_INLINE Lanes absolute(Lanes v)
   return v < 0.0 ? -v : v;
 }
 
+/// Which lanes are set, as bits.
+ROCKFALL_INLINE int bits(Mask m)
+{
+#ifdef __AVX__
+  return __builtin_ia32_movmskpd256(reinterpret_cast<Lanes>(m));
+#else
+  return int(-m[0] | -m[1] << 1 | -m[2] << 2 | -m[3] << 3);
+#endif
+}
+
+ROCKFALL_INLINE Lanes squareRoot(Lanes v)
+{
+#ifdef __AVX__
+  return __builtin_ia32_sqrtpd256(v);
+#else
+  return Lanes{ __builtin_sqrt(v[0]), __builtin_sqrt(v[1]), __builtin_sqrt(v[2]),
+    __builtin_sqrt(v[3]) };
+#endif
+}
+
 /// One side of four contacts.
 struct Side
 {
@@ -137,8 +157,9 @@ ROCKFALL_INLINE void push(Side& side, const Triple& lever, const Triple& force)
   scatter(side.turns, side.turn);
 }
 
+/// Returns by how much displacements change at each contact, m.
 template <bool onSlope>
-ROCKFALL_INLINE double relax(const Batch& batch, Forces& forces, const Pass& pass)
+ROCKFALL_INLINE Lanes relax(const Batch& batch, Forces& forces, const Pass& pass)
 {
   Side a, b;
   take(pass.movers, batch.body[0], a);
@@ -179,9 +200,9 @@ ROCKFALL_INLINE double relax(const Batch& batch, Forces& forces, const Pass& pas
   const Lanes stiffness = load(batch.stiffness);
   const Lanes normal = closes ? -stiffness * open / (one + stiffness * tied) : zero;
   const Lanes any = normal + absolute(before) + absolute(before1) + absolute(before2);
-  if (any[0] + any[1] + any[2] + any[3] == 0.0)
+  if (bits(any > zero) == 0)
   {
-    return 0.0;
+    return zero;
   }
   const Lanes more = normal - before;
   // One step towards the locked spring, then back onto the Coulomb cone.
@@ -195,11 +216,7 @@ ROCKFALL_INLINE double relax(const Batch& batch, Forces& forces, const Pass& pas
   const Lanes limit = closes ? friction * normal + (holds < cohesion ? holds : cohesion) : zero;
   const Lanes square = s * s + t * t;
   const Mask slides = square > limit * limit;
-  Lanes root = slides ? square : one;
-  for (int i = 0; i < kLanes; ++i)
-  {
-    root[i] = __builtin_sqrt(root[i]);
-  }
+  const Lanes root = squareRoot(slides ? square : one);
   const Lanes back = slides ? limit / root : one;
   s *= back;
   t *= back;
@@ -215,26 +232,24 @@ ROCKFALL_INLINE double relax(const Batch& batch, Forces& forces, const Pass& pas
     push(b, leverB, { -force.x, -force.y, -force.z });
   }
   const Lanes change = w * (absolute(more) + absolute(slide1) + absolute(slide2));
-  double most = 0.0;
+  const int moved = bits(change > pass.quiet);
   for (int i = 0; i < kLanes; ++i)
   {
-    if (change[i] > pass.quiet)
+    int &first = pass.changed[batch.body[0][i]], &second = pass.changed[batch.body[1][i]];
+    const bool moves = (moved >> i & 1) != 0;
+    first = moves ? pass.number : first;
+    if (!onSlope)
     {
-      most = change[i] > most ? change[i] : most;
-      pass.changed[batch.body[0][i]] = pass.number;
-      if (!onSlope)
-      {
-        pass.changed[batch.body[1][i]] = pass.number;
-      }
+      second = moves ? pass.number : second;
     }
   }
-  return most;
+  return change > pass.quiet ? change : zero;
 }
 
 template <bool onSlope>
 ROCKFALL_INLINE double sweepAll(const Pass& pass)
 {
-  double most = 0.0;
+  Lanes most = { 0.0, 0.0, 0.0, 0.0 };
   for (int k = 0; k < pass.count; ++k)
   {
     const int at = pass.backwards ? pass.count - 1 - k : k;
@@ -252,10 +267,12 @@ ROCKFALL_INLINE double sweepAll(const Pass& pass)
     {
       continue;
     }
-    const double change = relax<onSlope>(batch, pass.forces[at], pass);
+    const Lanes change = relax<onSlope>(batch, pass.forces[at], pass);
     most = change > most ? change : most;
   }
-  return most;
+  const double low = most[0] > most[1] ? most[0] : most[1];
+  const double high = most[2] > most[3] ? most[2] : most[3];
+  return low > high ? low : high;
 }
 
 double sweepHere(const Pass& pass)
@@ -365,15 +382,8 @@ bool watchHere(const Watch& watch)
     const Triple a = wayOf(watch.movers, four.body[0], four.lever[0]);
     const Triple b = wayOf(watch.movers, four.body[1], four.lever[1]);
     const Lanes gap = load(four.gap) + dot(load3(four.normal), { a.x - b.x, a.y - b.y, a.z - b.z });
-    const Mask closes = gap < Lanes{ 0.0, 0.0, 0.0, 0.0 };
-    if ((closes[0] | closes[1] | closes[2] | closes[3]) != 0)
-    {
-      any = true;
-      for (int i = 0; i < kLanes; ++i)
-      {
-        watch.closes[k] = static_cast<unsigned char>(watch.closes[k] | (closes[i] != 0) << i);
-      }
-    }
+    watch.closes[k] = static_cast<unsigned char>(bits(gap < 0.0));
+    any = any || watch.closes[k] != 0;
   }
   return any;
 }
@@ -426,7 +436,7 @@ void goMoversHere(
     const Lanes way = go(further, now[k].way, before[k].way, along[k].way);
     const Lanes turn = go(further, now[k].turn, before[k].turn, along[k].turn);
     const Mask moved = (absolute(way) > further.quiet) | (absolute(turn) > further.quiet);
-    if ((moved[0] | moved[1] | moved[2] | moved[3]) != 0)
+    if (bits(moved) != 0)
     {
       changed[k] = further.number;
     }

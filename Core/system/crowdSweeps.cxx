@@ -22,11 +22,9 @@ constexpr int kCalmSweeps = 50;
 /// about. It happens where light rocks with sharp corners lie under heavy ones.
 constexpr double kRough = 300.0;
 constexpr int kRoughSweeps = 200;
-/// Sweeps over everything that follow those over what is rough.
-constexpr int kAfterRough = 2;
-/// After what has changed here and there (a bounce held back, a contact found) the sweeps go on
-/// around it, where things move by more than this share of the longest way. Forces are not that
-/// exact yet anywhere: else each of these runs would go on with all of them.
+/// After what has changed here and there (a bounce held back, a contact found), and where it is
+/// rough, the sweeps go on around it, where things move by more than this share of the longest way.
+/// Forces are not that exact yet anywhere: else each of these runs would go on with all of them.
 constexpr double kNoticed = 3e-3;
 /// What is found in a second look is met to this many times the tolerance, which is about as exact
 /// as it is found, unless nothing bounces.
@@ -322,25 +320,23 @@ bool CrowdSolver::sweepTo(double goal, int most, bool conjugate, GroupOutcome& o
 bool CrowdSolver::sweeps(int most, bool everywhere, GroupOutcome& outcome)
 {
   const double rough = kRough * enough_;
-  const double quiet = std::max(kQuiet * enough_, everywhere ? 0.0 : kNoticed * scale_);
-  // What goes on as one cannot be left alone here and there.
-  const auto sweepAround = [&](double goal, double least, int count)
+  const double noticed = kNoticed * scale_;
+  const auto sweepAround = [&](double goal, double least, int count, bool conjugate)
   {
-    quiet_ = least;
-    if (everywhere)
+    quiet_ = std::max(kQuiet * enough_, least);
+    if (conjugate)
     {
       this->begin();
     }
-    return this->sweepTo(goal, count, everywhere, outcome);
+    return this->sweepTo(goal, count, conjugate, outcome);
   };
-  bool settled = sweepAround(enough_, quiet, most) && everywhere;
-  const int last = outcome.iterations + kRoughSweeps * most;
-  while (outcome.residual > rough && outcome.iterations < last)
+  // What goes on as one cannot be left alone here and there.
+  bool settled = sweepAround(enough_, everywhere ? 0.0 : noticed, most, everywhere) && everywhere;
+  if (outcome.residual > rough)
   {
-    // Most have settled by then: first where it is rough, then the others' answer.
-    sweepAround(rough, rough, last - outcome.iterations);
-    std::fill_n(changed_.begin(), work_.size(), sweep_);
-    settled = sweepAround(enough_, quiet, kAfterRough) && everywhere;
+    // Most have settled by then: on around where it is rough.
+    sweepAround(rough, noticed, kRoughSweeps * most, false);
+    settled = false;
   }
   return settled;
 }
