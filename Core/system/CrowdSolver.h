@@ -117,8 +117,10 @@ private:
   void pushed(const Row& row, double sign);            ///< Movers by the row's force.
   const Work* workOf(const Row& row, int side) const;  ///< Null: the slope.
   Vec3 leverOf(const Row& row, int side) const;        ///< m
-  Vec3 wayOf(const Row& row, int side) const;          ///< Of a rock's point of force, m.
-  /// The same at the mean of the velocities before and after the step, m.
+  /// Of the first rock's point of force less the second one's, as the sweeps have it, m.
+  Vec3 wayOf(const int (&body)[2][crowd::kLanes], const double (&lever)[2][3][crowd::kLanes],
+    int lane) const;
+  /// Of a rock's point of force at the mean of the velocities before and after the step, m.
   Vec3 meanWayOf(const Row& row, int side) const;
   double opened(const Row& row) const; ///< Along the normal, m.
   Vec3 travel(const Row& row) const;   ///< Along the normal and the tangents, m.

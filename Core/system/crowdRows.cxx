@@ -206,12 +206,6 @@ Vec3 CrowdSolver::leverOf(const Row& row, int side) const
     row.lane);
 }
 
-Vec3 CrowdSolver::wayOf(const Row& row, int side) const
-{
-  const Work* w = this->workOf(row, side);
-  return w ? Vec3(w->way + w->spun.cross(this->leverOf(row, side))) : Vec3(Vec3::Zero());
-}
-
 Vec3 CrowdSolver::meanWayOf(const Row& row, int side) const
 {
   const Work* w = this->workOf(row, side);
@@ -224,20 +218,35 @@ Vec3 CrowdSolver::meanWayOf(const Row& row, int side) const
   return way + spun.cross(this->leverOf(row, side));
 }
 
+Vec3 CrowdSolver::wayOf(
+  const int (&body)[2][crowd::kLanes], const double (&lever)[2][3][crowd::kLanes], int lane) const
+{
+  const auto wayOn = [&](int side) -> Vec3
+  {
+    const crowd::Mover& m = movers_[std::size_t(body[side][lane])]; // the slope's goes nowhere
+    return Eigen::Map<const Vec3>(m.way) +
+      Eigen::Map<const Vec3>(m.turn).cross(laneOf(lever[side], lane));
+  };
+  return wayOn(0) - wayOn(1);
+}
+
 double CrowdSolver::opened(const Row& row) const
 {
-  const Vec3 way = this->wayOf(row, 0) - this->wayOf(row, 1);
-  return laneOf(
-    row.isWatched() ? watched_[row.fours()].normal : batches_[std::size_t(row.batch)].directions[0],
-    row.lane)
-    .dot(way);
+  const int lane = row.lane;
+  if (row.isWatched())
+  {
+    const crowd::Watched& four = watched_[row.fours()];
+    return laneOf(four.normal, lane).dot(this->wayOf(four.body, four.lever, lane));
+  }
+  const crowd::Batch& p = batches_[std::size_t(row.batch)];
+  return laneOf(p.directions[0], lane).dot(this->wayOf(p.body, p.lever, lane));
 }
 
 Vec3 CrowdSolver::travel(const Row& row) const
 {
   const crowd::Batch& p = batches_[std::size_t(row.batch)];
   const int lane = row.lane;
-  const Vec3 way = this->wayOf(row, 0) - this->wayOf(row, 1);
+  const Vec3 way = this->wayOf(p.body, p.lever, lane);
   return { laneOf(p.directions[0], lane).dot(way), laneOf(p.directions[1], lane).dot(way),
     laneOf(p.directions[2], lane).dot(way) };
 }
