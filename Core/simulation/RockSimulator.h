@@ -193,7 +193,6 @@ private:
   std::vector<BarrierPassage> passages_; ///< Of the way at hand.
   std::size_t passed_ = 0;               ///< How many of them are dealt with.
   BarrierHit hit_;
-  StepSolver solver_;
 };
 
 } // namespace rockfall
