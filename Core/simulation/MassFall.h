@@ -106,7 +106,6 @@ private:
     int place = -1;             ///< Among the bodies of its group in the step at hand.
     bool asleep = false;
     bool touchesOthers = false;
-    bool arrived = false; ///< The step has been looked at where it ended.
     RockSimulator sim;
   };
   /// All of them in one piece of memory: a step goes over them again and again, in their order.
