@@ -72,9 +72,11 @@ Vec12 bodyVelocity(const BlockState& state)
 
 Block::Block(Polyhedron shape, double density, double youngModulus, double poissonRatio)
   : shape_(std::move(shape))
-  , density_(density)
+  , radius_(shape_.radius())
+  , volume_(shape_.integrals().volume)
   , youngModulus_(youngModulus)
   , poissonRatio_(poissonRatio)
+  , density_(density)
 {
   const VolumeIntegrals& integrals = shape_.integrals();
   const Vec3& centroid = integrals.centroid;
@@ -153,10 +155,10 @@ double Block::largestRimSpeed(const Vec3& spin) const
 {
   if (isotropic_)
   {
-    return spin.norm() * shape_.radius();
+    return spin.norm() * radius_;
   }
   const Vec3 bound = this->largestSpin(spin);
-  return std::min(bound.dot(reach_), bound.norm() * shape_.radius());
+  return std::min(bound.dot(reach_), bound.norm() * radius_);
 }
 
 Mat3 strainTensor(const Vec6& e)

@@ -27,13 +27,10 @@ public:
   Block(Polyhedron shape, double density, double youngModulus, double poissonRatio);
 
   const Polyhedron& shape() const { return shape_; }
-  double mass() const { return mass_; }                       ///< kg
-  double volume() const { return shape_.integrals().volume; } ///< m³
-  double density() const { return density_; }                 ///< kg/m³
-  double radius() const
-  {
-    return shape_.radius();
-  } ///< Of the bounding sphere about the centroid, m.
+  double mass() const { return mass_; }       ///< kg
+  double volume() const { return volume_; }   ///< m³
+  double density() const { return density_; } ///< kg/m³
+  double radius() const { return radius_; }   ///< Of the bounding sphere about the centroid, m.
   /// M = ρ ∫ Tᵀ T dV, 12 × 12, body axes.
   const Mat12& massMatrix() const { return massMatrix_; }
   /// V E, 6 × 6: strain energy ½ εᵀ (V E) ε with engineering shear strains, J.
@@ -61,13 +58,10 @@ public:
     const double along = n.dot(x);
     return ((1.0 + poissonRatio_) * 0.5 * (x.squaredNorm() + along * along) -
              poissonRatio_ * along * along) /
-      (youngModulus_ * this->volume());
+      (youngModulus_ * volume_);
   }
   /// Its largest value, at the vertex that is farthest out and along its radius, m/N.
-  double largestCompliance() const
-  {
-    return shape_.radius() * shape_.radius() / (youngModulus_ * this->volume());
-  }
+  double largestCompliance() const { return radius_ * radius_ / (youngModulus_ * volume_); }
   /// Lowest angular frequency of the uniform strains of the free block, rad/s.
   double strainFrequency() const { return strainFrequency_; }
   /// The least distance between a face and the parallel plane that the block ends at, m.
@@ -80,22 +74,25 @@ public:
   double largestRimSpeed(const Vec3& spin) const;
 
 private:
+  // What every step asks for lies together.
   Polyhedron shape_;
-  double density_ = 0.0;
+  double radius_ = 0.0; ///< The shape's, m.
+  double volume_ = 0.0; ///< The shape's, m³.
+  double mass_ = 0.0;
+  double largestMobility_ = 0.0;
   double youngModulus_ = 0.0; ///< Pa
   double poissonRatio_ = 0.0;
+  Mat3 inverseInertia_ = Mat3::Zero();
+  Mat3 inertia_ = Mat3::Zero();
+  bool isotropic_ = true;
+  Vec3 principal_ = Vec3::Ones(); ///< Principal moments, kg m².
+  Vec3 reach_ = Vec3::Zero();     ///< Largest distance of a vertex from each principal axis, m.
+  Mat3 axes_ = Mat3::Identity();  ///< Principal axes.
+  double density_ = 0.0;
   double strainFrequency_ = 0.0;
   double thickness_ = 0.0;
-  double mass_ = 0.0;
   Mat12 massMatrix_ = Mat12::Zero();
   Mat6 elasticity_ = Mat6::Zero();
-  Mat3 inertia_ = Mat3::Zero();
-  Mat3 inverseInertia_ = Mat3::Zero();
-  bool isotropic_ = true;
-  double largestMobility_ = 0.0;
-  Vec3 principal_ = Vec3::Ones(); ///< Principal moments, kg m².
-  Mat3 axes_ = Mat3::Identity();  ///< Principal axes.
-  Vec3 reach_ = Vec3::Zero();     ///< Largest distance of a vertex from each principal axis, m.
 };
 
 /// What of a block moves. Translation in world axes, strain in body axes.

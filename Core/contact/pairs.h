@@ -160,8 +160,14 @@ struct PairMotion
   std::array<Vec3, 2> positions; ///< Of the centroids, m.
 
   PairMotion(const BlockState& first, const BlockState& second)
+    : PairMotion(first, second, first.angularVelocity(), second.angularVelocity())
+  {
+  }
+  /// With angular velocities in world axes that are known.
+  PairMotion(const BlockState& first, const BlockState& second, const Vec3& spinOfFirst,
+    const Vec3& spinOfSecond)
     : velocity(first.velocity - second.velocity)
-    , spins{ first.angularVelocity(), second.angularVelocity() }
+    , spins{ spinOfFirst, spinOfSecond }
     , positions{ first.position, second.position }
   {
   }

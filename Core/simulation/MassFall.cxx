@@ -45,9 +45,9 @@ MassFall::MassFall(const Surface& surface, std::span<const Rock> rocks,
   members_.reserve(rocks.size());
   for (std::size_t i = 0; i < rocks.size(); ++i)
   {
-    members_.push_back(std::make_unique<Member>(surface, rocks[i], blocks[i], parameters));
-    members_.back()->sim.stiff_ = true; // strain follows the contacts of a group as at rest
-    members_.back()->sim.ringing_ = 0.0;
+    RockSimulator& sim = members_.add(surface, rocks[i], blocks[i], parameters).sim;
+    sim.stiff_ = true; // strain follows the contacts of a group as at rest
+    sim.ringing_ = 0.0;
   }
 }
 
@@ -101,9 +101,9 @@ void MassFall::release()
   std::vector<RaisedRock> raised;
   raised.reserve(members_.size());
   std::vector<double> lifts; // of each by itself, m
-  for (const auto& member : members_)
+  for (Member& member : members_)
   {
-    RockSimulator& sim = member->sim;
+    RockSimulator& sim = member.sim;
     const BlockState given = sim.state_;
     sim.liftOntoGround();
     raised.push_back({ &sim.block_, given, sim.state_.position.z() - given.position.z() });
@@ -137,9 +137,9 @@ std::vector<Trajectory> MassFall::run(const std::function<bool(double)>& goOn)
       this->closePairBooks(*near.pair);
     }
   }
-  for (const auto& member : members_)
+  for (Member& member : members_)
   {
-    trajectories.push_back(member->sim.finish());
+    trajectories.push_back(member.sim.finish());
   }
   return trajectories;
 }
@@ -176,9 +176,9 @@ bool MassFall::stays(Member& member) const
     return true;
   }
   const double r = sim.block_.radius();
-  const auto wayFrom = [&](const BlockState& place)
+  const auto wayFrom = [&](const Member::Place& place)
   { return (sim.state_.position - place.position).norm(); };
-  const auto turnFrom = [&](const BlockState& place)
+  const auto turnFrom = [&](const Member::Place& place)
   { return r * sim.state_.orientation.angularDistance(place.orientation); };
   const double unit = std::sqrt(std::max(parameters_.gravity, 1e-3) * r); // m/s
   if (wayFrom(member.stayed) + turnFrom(member.stayed) > kStillSpeed * unit * kStillTime)
@@ -263,7 +263,7 @@ bool MassFall::advanceAll()
     }
   }
   const bool moving =
-    std::any_of(members_.begin(), members_.end(), [](const auto& m) { return !m->sim.done_; });
+    std::any_of(members_.begin(), members_.end(), [](const Member& m) { return !m.sim.done_; });
   return moving && time_ < parameters_.endTime - 1e-9;
 }
 

@@ -21,6 +21,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace rockfall
@@ -77,10 +78,26 @@ private:
     /// Takes on `end` as where it stands, and returns whether it does.
     bool arrive();
 
+    /// Where, and since when, s, it has not gone far from.
+    struct Place
+    {
+      double time = 0.0;
+      Vec3 position = Vec3::Zero();        ///< m
+      Quat orientation = Quat::Identity(); ///< Body to world.
+
+      Place() = default;
+      Place(const BlockState& s)
+        : time(s.time)
+        , position(s.position)
+        , orientation(s.orientation)
+      {
+      }
+    };
+
     // What the step of a crowd needs of a rock lies together, before and behind where `sim` begins.
-    BlockState stayed;   ///< Where, and since when, it has not gone far from.
-    BlockState lingered; ///< The same, further and for longer.
-    PlacedBlock end;     ///< Of the step at hand, as long as it is being solved.
+    Place stayed;
+    Place lingered;  ///< The same, further and for longer.
+    PlacedBlock end; ///< Of the step at hand, as long as it is being solved.
     PairBody body;
     PairBody endBody;
     double turned = 0.0;        ///< Longest way about the centroid until then, by its turn, m.
@@ -89,8 +106,28 @@ private:
     int place = -1;             ///< Among the bodies of its group in the step at hand.
     bool asleep = false;
     bool touchesOthers = false;
-    bool arrived = false; ///< The step has been looked at where it ended.
     RockSimulator sim;
+  };
+  /// All of them in one piece of memory: a step goes over them again and again, in their order.
+  class Members
+  {
+  public:
+    void reserve(std::size_t count) { all_.reserve(count); }
+    template <class... Of>
+    Member& add(Of&&... of)
+    {
+      Member& added = all_.emplace_back(std::forward<Of>(of)...);
+      first_ = all_.data();
+      return added;
+    }
+    Member* operator[](std::size_t i) const { return first_ + i; }
+    std::size_t size() const { return all_.size(); }
+    Member* begin() const { return first_; }
+    Member* end() const { return first_ + all_.size(); }
+
+  private:
+    std::vector<Member> all_;
+    Member* first_ = nullptr;
   };
   struct Group
   {
@@ -149,7 +186,7 @@ private:
   const SimulationParameters& parameters_;
   double time_ = 0.0;
   RockContacts contacts_;
-  std::vector<std::unique_ptr<Member>> members_;
+  Members members_;
   std::unique_ptr<Meetings> meetings_;
   std::vector<Group> groups_;
   std::vector<int> alone_;

@@ -37,6 +37,8 @@ constexpr double kWindow = 4.0;
 constexpr double kCandidateSlack = 0.05;
 /// The same of a rock among others that has nothing of the slope near it.
 constexpr double kFarSlack = 0.4;
+/// How far, in radii, a rock among others may go on until the height of the ground is looked up.
+constexpr double kLid = 4.0;
 /// Strain that vibrates faster than this many times the contacts' springs, or than this (rad/s),
 /// follows the contact forces as at rest. Rocks that strike rock touch for T = 2.9 (m² / (R E*²
 /// v))^⅕ (Hertz), some 3 ms for 1 m³: 30 rad and more of any rock's vibration, which it does not
@@ -215,6 +217,24 @@ void RockSimulator::ensureCandidates(double reach, bool among)
   }
 }
 
+bool RockSimulator::isHigh(double reach)
+{
+  if (solid_ || !contacts_.empty())
+  {
+    return false;
+  }
+  const double r = block_.radius();
+  const Vec3& p = state_.position;
+  if (!lid_.covers(p, r + reach))
+  {
+    thread_local HeightWindow window;
+    const double half = r + reach + kLid * r;
+    window.gather(surface_, p.x() - half, p.x() + half, p.y() - half, p.y() + half);
+    lid_ = GroundLid(window);
+  }
+  return this->isHighAt(p, reach);
+}
+
 bool RockSimulator::clearFor(double duration) const
 {
   const double r = block_.radius();
@@ -326,7 +346,7 @@ void RockSimulator::checkLeft()
   const double r = block_.radius();
   bool left =
     !(p.x() >= 0.0 && p.y() >= 0.0 && p.x() <= terrain.width() && p.y() <= terrain.height());
-  if (!left && terrain.cfeAt(p.x(), p.y()) == 0)
+  if (!left && !this->isHighAt(p, 0.0) && terrain.cfeAt(p.x(), p.y()) == 0)
   {
     // Over a hole it has left once it is below everything around; the bound costs next to nothing.
     const double x0 = p.x() - r, x1 = p.x() + r, y0 = p.y() - r, y1 = p.y() + r;

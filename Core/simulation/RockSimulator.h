@@ -133,6 +133,14 @@ private:
   double timeToGround(double duration);
   void ensurePatch(double margin);
   void ensureCandidates(double reach, bool among = false); ///< `among`: many others.
+  /// Whether no ground is within a reach of the rock (m) for sure, among others; looks for how high
+  /// it is where that is not known.
+  bool isHigh(double reach);
+  /// The same where it is known, wherever the rock may be.
+  bool isHighAt(const Vec3& place, double reach) const
+  {
+    return lid_.isUnder(place, block_.radius() + reach);
+  }
   void armContacts(double h); ///< Gives new contacts their springs and dashpots, for a step of h.
   void armContact(Contact& contact);
   double dampingRatioOf(int restitutionClass); ///< ζ for the restitution of a class.
@@ -177,6 +185,7 @@ private:
   const Obstacles* obstacles_ = nullptr; ///< Null if there are none.
   EnergyAudit energy_;
   double energyAtStart_ = 0.0; ///< Kinetic and potential, J.
+  GroundLid lid_;
   PlacedBlock placed_;
   CandidatePairs candidates_;
   Impact impact_;
@@ -193,7 +202,6 @@ private:
   std::vector<BarrierPassage> passages_; ///< Of the way at hand.
   std::size_t passed_ = 0;               ///< How many of them are dealt with.
   BarrierHit hit_;
-  StepSolver solver_;
 };
 
 } // namespace rockfall

@@ -293,13 +293,14 @@ void RockSimulator::takeStep(double h, StepKind kind)
     request.acceleration.z() = -parameters_.gravity;
   }
   contactsBefore_ = contacts_;
+  thread_local StepSolver solver; // its work space is as large as the rest of a rock
   const double energyBefore = lasting ? this->mechanicalEnergy() + springEnergy_ : 0.0;
 
   StepOutcome outcome;
   for (int cut = 0;; ++cut)
   {
     const bool last = cut >= parameters_.maxCuts;
-    outcome = solver_.step(block_, request, contacts_, state_, last);
+    outcome = solver.step(block_, request, contacts_, state_, last);
     summary.openCloseIterations += outcome.iterations;
     if (outcome.settled || last)
     {

@@ -166,6 +166,12 @@ void MassFall::gatherContacts(const Group& group, double h) const
     const double reach =
       reachOf(sim.state_.velocity.norm() + sim.state_.spin.norm() * r + pushed, r);
     sim.crowded_ = crowd;
+    // Twice: beyond a concave edge planes serve a little further than their triangles.
+    if (crowd && sim.isHigh(2.0 * reach))
+    {
+      sim.armContacts(h);
+      return;
+    }
     sim.ensureCandidates(reach, crowd);
     updateContacts(sim.placed_, sim.patch_, sim.candidates_, reach, sim.contacts_);
     while (sim.solid_ && sim.breakTrees(h))
@@ -353,6 +359,10 @@ double MassFall::freeTime(const Group& group, double most) const
     if (sim.done_)
     {
       continue;
+    }
+    if (sim.crowded_)
+    {
+      members_[i]->sim.ensureCandidates(0.0, true); // what is high over the ground had no need yet
     }
     const double room = sim.candidates_.room(sim.state_, sim.block_.radius(), 0.0);
     const double rim = sim.block_.largestRimSpeed(sim.state_.spin);

@@ -140,6 +140,10 @@ double MassFall::lookAtSlope(const Group& group, double h, bool bounces, Workspa
     {
       return false;
     }
+    if (!sim.solid_ && sim.isHighAt(member.end.position(), 0.0))
+    {
+      return false;
+    }
     const BlockState end = work.solver.end(work.bodies, std::size_t(member.place));
     if (sim.candidates_.room(end, sim.block_.radius(), 0.0) < 0.0)
     {

@@ -121,27 +121,40 @@ void MassFall::solve(
   int places = 0;
   std::size_t contacts = 0;
   work.slopeFirsts.clear();
+  work.placeOf.resize(members_.size());
   for (int i : group.members)
   {
     const RockSimulator& sim = members_[i]->sim;
-    members_[i]->place = sim.done_ ? -1 : places++;
+    work.placeOf[std::size_t(i)] = members_[i]->place = sim.done_ ? -1 : places++;
     work.slopeFirsts.push_back(contacts);
     contacts += sim.done_ ? 0 : sim.contacts_.size();
   }
-  work.firsts.clear();
-  for (const RockPair* pair : group.pairs)
+  work.firsts.resize(group.pairs.size() + 1);
+  work.places.resize(group.pairs.size());
+  work.touching.clear();
+  for (std::size_t p = 0; p < group.pairs.size(); ++p)
   {
-    work.firsts.push_back(contacts);
-    contacts += pair->contacts.size();
+    comeToPair(group.pairs, p);
+    RockPair& pair = *group.pairs[p];
+    work.places[p] = { work.placeOf[std::size_t(pair.first)],
+      work.placeOf[std::size_t(pair.second)] };
+    work.firsts[p] = contacts;
+    contacts += pair.contacts.size();
+    pair.touched = false;
+    if (!pair.contacts.empty() || pair.impact.pending)
+    {
+      work.touching.push_back(p);
+    }
   }
-  work.firsts.push_back(contacts);
+  work.firsts.back() = contacts;
   if (places == 0)
   {
     return; // the last of them was caught just now
   }
   work.bodies.resize(std::size_t(places));
   work.ways.resize(std::size_t(places));
-  work.places.resize(group.pairs.size());
+  work.spins.resize(std::size_t(places));
+  work.arrived.resize(std::size_t(places));
   work.energyBefore.resize(std::size_t(places));
   work.contacts.resize(contacts);
   const auto takeRock = [&](std::size_t m)
@@ -153,6 +166,8 @@ void MassFall::solve(
     {
       return;
     }
+    member.touchesOthers = false;
+    work.spins[std::size_t(member.place)] = sim.state_.angularVelocity();
     sim.before_ = sim.state_;
     sim.springEnergyBefore_ = sim.springEnergy_;
     sim.contactsBefore_ = sim.contacts_;
@@ -177,23 +192,24 @@ void MassFall::solve(
     }
   };
   forEach(group.members.size(), kRockGrain, takeRock);
-  const auto takePair = [&](std::size_t p)
+  const auto takePair = [&](std::size_t t)
   {
-    comeToPair(group.pairs, p);
+    work.comeToTouching(group, t);
+    const std::size_t p = work.touching[t];
     RockPair& pair = *group.pairs[p];
-    work.places[p] = { members_[pair.first]->place, members_[pair.second]->place };
     if (pair.contacts.empty())
     {
       return;
     }
-    const PairMotion motion = this->motionOf(pair);
+    const PairMotion motion(members_[pair.first]->sim.state_, members_[pair.second]->sim.state_,
+      work.spins[std::size_t(work.places[p][0])], work.spins[std::size_t(work.places[p][1])]);
     std::size_t next = work.firsts[p];
     for (Contact& c : pair.contacts)
     {
       work.contacts[next++] = this->take(pair, motion, c, h, bounces);
     }
   };
-  forEach(group.pairs.size(), kPairGrain, takePair);
+  forEach(work.touching.size(), kPairGrain, takePair);
   if (bounces)
   {
     settleBounces(work.bodies.size(), work.contacts, work.partners);
@@ -215,6 +231,7 @@ void MassFall::solve(
   const bool crowd = group.crowd;
   const auto look = [&] { return this->lookAgain(group, request.duration, bounces, work); };
   GroupOutcome outcome;
+  work.iterations = work.cuts = work.unsettled = work.tries = 0;
   for (int cut = 0;; ++cut)
   {
     // What a large group leaves to settle is small; if it is not, a shorter step is taken.
@@ -228,16 +245,10 @@ void MassFall::solve(
     }
     work.looked = false;
     outcome = work.solver.step(request, work.bodies, work.contacts, take, look);
-    const auto count = [&](std::size_t m)
-    {
-      RockSimulator& sim = members_[group.members[m]]->sim;
-      TrajectorySummary& summary = sim.recorder_.trajectory().summary;
-      summary.openCloseIterations += sim.done_ ? 0 : outcome.iterations;
-      summary.contactSteps += sim.done_ ? 0 : 1;
-      summary.cutSteps += !outcome.taken && !last && !sim.done_;
-      summary.unsettledSteps += outcome.rough && (outcome.taken || last) && !sim.done_;
-    };
-    forEach(group.members.size(), kRockGrain, count);
+    work.iterations += outcome.iterations;
+    work.cuts += !outcome.taken && !last;
+    work.unsettled += outcome.rough && (outcome.taken || last);
+    ++work.tries;
     if (outcome.taken || last)
     {
       break;
@@ -249,6 +260,10 @@ void MassFall::solve(
   if (one.state->time <= start && !members_[group.members.front()]->sim.done_)
   {
     // Not even a finite displacement: the contacts are let go for this step.
+    for (int i : group.members)
+    {
+      work.count(members_[i]->sim);
+    }
     this->fly(group, request.duration);
     return;
   }
@@ -257,10 +272,6 @@ void MassFall::solve(
 
 void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& work) const
 {
-  for (int i : group.members)
-  {
-    members_[i]->touchesOthers = false;
-  }
   std::vector<std::uint64_t>& carriers = work.carriers;
   carriers.assign(work.bodies.size(), 0);
   const auto book = [&](RockPair& pair, const GroupContact& taken)
@@ -283,12 +294,12 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     }
     impact.loss += taken.work;
   };
-  const auto absorbPair = [&](std::size_t p)
+  const auto absorbPair = [&](std::size_t t)
   {
-    comeToPair(group.pairs, p);
+    work.comeToTouching(group, t);
+    const std::size_t p = work.touching[t];
     RockPair& pair = *group.pairs[p];
     Member &first = *members_[pair.first], &second = *members_[pair.second];
-    pair.touched = false;
     std::uint64_t carry[2] = {};
     for (std::size_t k = work.firsts[p]; k < work.firsts[p + 1]; ++k)
     {
@@ -325,7 +336,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
       pressOut(c, h, slow, kind == StepKind::Lasting, loose);
     }
   };
-  forEach(group.pairs.size(), kPairGrain, absorbPair);
+  forEach(work.touching.size(), kPairGrain, absorbPair);
   for (std::size_t k = 0; k < work.added.size(); ++k)
   {
     const Contact& c = work.added[k];
@@ -350,24 +361,37 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     }
     pair.contacts.push_back(c);
   }
-  const auto ends = [&](std::size_t p)
+  for (const Workspace::Added& added : work.addedTo)
   {
-    const RockPair& pair = *group.pairs[p];
-    return pair.impact.pending && (!pair.touched || kind == StepKind::Lasting);
-  };
-  forThose(group.pairs.size(), kPairGrain, work.flags, ends,
-    [&](std::size_t p) { this->finishPairImpact(*group.pairs[p]); });
+    if (!added.onSlope && work.firsts[added.of] == work.firsts[added.of + 1])
+    {
+      work.touching.push_back(added.of);
+    }
+  }
+  if (!work.addedTo.empty())
+  {
+    std::sort(work.touching.begin(), work.touching.end()); // one may be there twice: it ends once
+  }
+  for (const std::size_t p : work.touching)
+  {
+    RockPair& pair = *group.pairs[p];
+    if (pair.impact.pending && (!pair.touched || kind == StepKind::Lasting))
+    {
+      this->finishPairImpact(pair);
+    }
+  }
   const bool crowd = group.crowd;
   const auto absorbRock = [&](std::size_t k)
   {
     this->comeToRock(group, k);
     Member& m = *members_[group.members[k]];
-    m.arrived = false;
     if (m.sim.done_)
     {
       return;
     }
     const int b = m.place;
+    work.arrived[std::size_t(b)] = false;
+    work.count(m.sim);
     const GroupBody& body = work.bodies[b];
     StepOutcome outcome;
     outcome.frictionWork = body.frictionWork;
@@ -397,14 +421,15 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
       m.sim.recorder_.trajectory().summary.fate = Fate::Moving;
       m.sim.done_ = true;
     }
-    m.arrived = work.looked && m.arrive();
+    work.arrived[std::size_t(b)] = work.looked && m.arrive();
   };
   forEach(group.members.size(), kRockGrain, absorbRock);
   const auto see = [&](std::size_t p)
   {
     comeToPair(group.pairs, p);
     RockPair& pair = *group.pairs[p];
-    pair.seen = members_[pair.first]->arrived && members_[pair.second]->arrived;
+    const auto [a, b] = work.places[p];
+    pair.seen = a >= 0 && b >= 0 && work.arrived[std::size_t(a)] && work.arrived[std::size_t(b)];
     if (pair.seen)
     {
       pair.before = pair.axis;

@@ -106,6 +106,15 @@ struct MassFall::Workspace
   bool looked = false;                     ///< Where the step ends.
   /// By pair, the places of the two; −1: gone.
   std::vector<std::array<int, 2>> places;
+  std::vector<int> placeOf; ///< By rock, of those in the group.
+  /// Pairs that have contacts, or an impact under way. Most are only near each other.
+  std::vector<std::size_t> touching;
+  std::vector<Vec3> spins;   ///< By place, angular velocity in world axes, rad/s.
+  std::vector<char> arrived; ///< By place, whether the step has been looked at where it ended.
+  /// What the summary of each rock counts in the step at hand.
+  std::int64_t iterations = 0, cuts = 0, unsettled = 0, tries = 0;
+  void count(RockSimulator& sim) const;
+  void comeToTouching(const Group& group, std::size_t t) const; ///< As comeToPair.
   /// By place, how a rock goes in the step.
   struct Way
   {
@@ -115,5 +124,27 @@ struct MassFall::Workspace
   };
   std::vector<Way> ways;
 };
+
+inline void MassFall::Workspace::count(RockSimulator& sim) const
+{
+  if (!sim.done_)
+  {
+    TrajectorySummary& summary = sim.recorder_.trajectory().summary;
+    summary.openCloseIterations += iterations;
+    summary.contactSteps += tries;
+    summary.cutSteps += cuts;
+    summary.unsettledSteps += unsettled;
+  }
+}
+
+inline void MassFall::Workspace::comeToTouching(const Group& group, std::size_t t) const
+{
+  constexpr std::size_t kAhead = 3;
+  if (t + kAhead < touching.size())
+  {
+    const RockPair& pair = *group.pairs[touching[t + kAhead]];
+    askCache(&pair, &pair + 1);
+  }
+}
 
 } // namespace rockfall

@@ -99,4 +99,18 @@ void HeightWindow::gather(
   }
 }
 
+GroundLid::GroundLid(const HeightWindow& window)
+  : tilt_(window.tilt_)
+  , slant_(std::sqrt(1.0 + tilt_.squaredNorm()))
+  , xMin_(window.xMin_)
+  , xMax_(window.xMax_)
+  , yMin_(window.yMin_)
+  , yMax_(window.yMax_)
+{
+  if (window.whole_)
+  {
+    highest_ = window.highest_; // at rims rocks may go down beside the ground
+  }
+}
+
 } // namespace rockfall

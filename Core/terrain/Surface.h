@@ -205,6 +205,7 @@ public:
   }
 
 private:
+  friend class GroundLid;
   std::vector<double> z_; ///< NaN for nodata.
   int rows_ = 0, columns_ = 0;
   double cellSize_ = 0.0, inverse_ = 0.0, west_ = 0.0, north_ = 0.0;
@@ -212,6 +213,33 @@ private:
   Eigen::Vector2d tilt_ = Eigen::Vector2d::Zero();
   double relief_ = 0.0, highest_ = 0.0;
   bool whole_ = false;
+};
+
+/// A plane that no ground is above, within a box: what is sure to be in the air is told by it alone.
+class GroundLid
+{
+public:
+  GroundLid() = default;
+  explicit GroundLid(const HeightWindow& window);
+
+  /// Whether a box (half its width, m) about a place is in the one that this is for.
+  bool covers(const Vec3& at, double half) const
+  {
+    return at.x() - half >= xMin_ && at.x() + half <= xMax_ && at.y() - half >= yMin_ &&
+      at.y() + half <= yMax_;
+  }
+  /// Whether no ground is within a ball.
+  bool isUnder(const Vec3& at, double radius) const
+  {
+    return at.z() - tilt_.dot(at.head<2>()) - highest_ > radius * slant_ &&
+      this->covers(at, radius);
+  }
+
+private:
+  Eigen::Vector2d tilt_ = Eigen::Vector2d::Zero();
+  double highest_ = std::numeric_limits<double>::infinity(); ///< Of the plane over (0, 0), m.
+  double slant_ = 1.0;                                       ///< √(1 + |tilt|²)
+  double xMin_ = 0.0, xMax_ = -1.0, yMin_ = 0.0, yMax_ = -1.0;
 };
 
 /// Gathers the cells under a box (local frame, m) with a ring of one cell around them, by index
