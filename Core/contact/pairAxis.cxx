@@ -262,7 +262,7 @@ bool areWithin(const PairBody& first, const PairBody& second, const PairAxis& ax
     }
   }
   // … or of it, under the other body.
-  for (int k : owner.loops[std::size_t(face)])
+  for (int k : owner.loop(face))
   {
     if (farFrom(other, owner.vertex(k)) <= limit)
     {
@@ -276,46 +276,52 @@ bool areWithin(const PairBody& first, const PairBody& second, const PairAxis& ax
 
 void PairBody::update(const PlacedBlock& block)
 {
-  placed = &block;
   const Polyhedron& shape = block.block().shape();
+  shape_ = &shape.layout();
   edges = shape.edges();
-  loops = shape.faces();
   radius = shape.radius();
+  inside = shape_->inside;
   position = block.position();
   rotation = block.rotation();
-  const std::vector<Vec3>& corners = block.vertices();
-  const std::vector<Vec3>& normals = shape.normals();
-  const int faceCount = int(normals.size());
-  vertices_ = int(corners.size());
-  vertexFours_ = (vertices_ + 3) / 4;
-  faceFours_ = (faceCount + 3) / 4;
-  data_.resize(std::size_t(12 * vertexFours_ + 16 * faceFours_));
+  vertexFours_ = shape_->vertexFours;
+  faceFours_ = shape_->faceFours;
+  data_.resize(shape_->data.size());
+  using From = Eigen::Map<const Four>;
+  using To = Eigen::Map<Four>;
+  const double* from = shape_->data.data();
   double* to = data_.data();
-  for (int i = 0; i < 4 * vertexFours_; ++i)
+  // Sums in the order in which a matrix times a vector has them.
+  const auto turned = [&](const Mat3& map)
   {
-    const Vec3& v = corners[std::size_t(std::min(i, vertices_ - 1))];
-    double* at = to + 12 * (i >> 2) + (i & 3);
-    at[0] = v.x();
-    at[4] = v.y();
-    at[8] = v.z();
-  }
-  to += 12 * vertexFours_;
-  const Mat3 turn = rotation;
+    const From x(from), y(from + 4), z(from + 8);
+    const std::array<Four, 3> result = { map(0, 0) * x + map(0, 1) * y + map(0, 2) * z,
+      map(1, 0) * x + map(1, 1) * y + map(1, 2) * z,
+      map(2, 0) * x + (map(2, 1) * y + map(2, 2) * z) };
+    return result;
+  };
   const Vec3 center = position;
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 4 * faceFours_; ++i)
+  const Mat3 map = block.map(), turn = rotation;
+  for (int i = 0; i < vertexFours_; ++i)
   {
-    const std::size_t f = std::size_t(std::min(i, faceCount - 1));
-    const Vec3 n = turn * normals[f];
-    const double offset = shape.offsets()[f];
-    double* at = to + 16 * (i >> 2) + (i & 3);
-    at[0] = n.x();
-    at[4] = n.y();
-    at[8] = n.z();
-    at[12] = offset + n.dot(center);
-    least = std::min(least, offset);
+    const std::array<Four, 3> of = turned(map);
+    for (int k = 0; k < 3; ++k)
+    {
+      To(to + 4 * k) = center[k] + of[std::size_t(k)];
+    }
+    from += ShapeLayout::kOfVertices;
+    to += ShapeLayout::kOfVertices;
   }
-  inside = least;
+  for (int i = 0; i < faceFours_; ++i)
+  {
+    const std::array<Four, 3> n = turned(turn);
+    for (int k = 0; k < 3; ++k)
+    {
+      To(to + 4 * k) = n[std::size_t(k)];
+    }
+    To(to + 12) = From(from + 12) + (n[0] * center.x() + n[1] * center.y() + n[2] * center.z());
+    from += ShapeLayout::kOfFaces;
+    to += ShapeLayout::kOfFaces;
+  }
 }
 
 PairAxis findAxis(const PairBody& first, const PairBody& second, const PairAxis& last, double reach)

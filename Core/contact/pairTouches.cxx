@@ -54,7 +54,7 @@ int mostOpposed(const PairBody& body, const Vec3& normal, double lowest)
 {
   const auto reachesDown = [&](int face)
   {
-    const std::vector<int>& loop = body.loops[std::size_t(face)];
+    const std::span<const int> loop = body.loop(face);
     return std::any_of(
       loop.begin(), loop.end(), [&](int v) { return normal.dot(body.vertex(v)) <= lowest; });
   };
@@ -97,8 +97,8 @@ std::span<const Corner> clipFace(
   thread_local std::vector<Corner> keptA, keptB;
   const Vec3 normal = owner.normal(ownerFace);
   const double lowest = owner.offset(ownerFace) + gap + tolerance;
-  const std::vector<int>& cut = body.loops[std::size_t(mostOpposed(body, normal, lowest))];
-  const std::vector<int>& loop = owner.loops[std::size_t(ownerFace)];
+  const std::span<const int> cut = body.loop(mostOpposed(body, normal, lowest));
+  const std::span<const int> loop = owner.loop(ownerFace);
   std::vector<Corner>*from = &keptA, *to = &keptB;
   Corner* polygon = roomFor(*from, cut.size());
   std::size_t size = 0;
