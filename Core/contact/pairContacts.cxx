@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace rockfall
 {
@@ -84,7 +85,10 @@ void goOn(const Touch& touch, const PairBody& second, const PairAxis& axis, cons
   const Vec3 oldPoint = c.point;
   const double oldGap = c.gap();
   putTouch(touch, second, axis, c);
-  c.slip = c.slip - c.slip.dot(c.normal) * c.normal;
+  if (!c.slip.isZero(0.0))
+  {
+    c.slip = c.slip - c.slip.dot(c.normal) * c.normal;
+  }
   c.shearForce = 0.0;
   if (match.itself && match.near && isCut(c))
   {
@@ -156,9 +160,9 @@ void handOver(const std::vector<char>& taken, const std::vector<Match>& matches,
   }
 }
 
-bool mayClose(const Contact& c, const ClosingGaps& closing)
+bool mayClose(const Contact& c, const ClosingGaps::AtPoints& closing)
 {
-  return c.closed() || !(c.gap() > closing.at(c.point, c.normal));
+  return c.closed() || !(c.gap() > closing.at(c.point));
 }
 
 } // namespace
@@ -206,7 +210,11 @@ void updatePair(const PairBody& first, const PairBody& second, double reach, Roc
     hands = hands || (!taken[k] && released(pair.contacts[k]) > 0.0);
   }
   // What springs are handed to may be any.
-  const ClosingGaps* const sieve = hands ? nullptr : closing;
+  std::optional<ClosingGaps::AtPoints> sieve;
+  if (closing && !hands)
+  {
+    sieve = closing->atPoints(pair.axis.normal);
+  }
   // As long as nothing is written where an old one is still to be read, there is no need for a
   // copy.
   std::size_t count = 0;
@@ -215,8 +223,8 @@ void updatePair(const PairBody& first, const PairBody& second, double reach, Roc
   {
     Match& match = matches[i];
     inPlace = inPlace && (match.old < 0 || std::size_t(match.old) >= count);
-    match.comes = match.old >= 0 || !sieve ||
-      !(std::max(0.0, found[i].distance) > sieve->at(found[i].point, pair.axis.normal));
+    match.comes =
+      match.old >= 0 || !sieve || !(std::max(0.0, found[i].distance) > sieve->at(found[i].point));
     count += match.comes ? 1 : 0;
   }
   if (!inPlace)
@@ -259,7 +267,9 @@ void updatePair(const PairBody& first, const PairBody& second, double reach, Roc
     handOver(taken, matches, olds, pair.contacts);
     if (closing)
     {
-      std::erase_if(pair.contacts, [&](const Contact& c) { return !mayClose(c, *closing); });
+      std::erase_if(pair.contacts,
+        [may = closing->atPoints(pair.axis.normal)](const Contact& c)
+        { return !mayClose(c, may); });
     }
   }
 }

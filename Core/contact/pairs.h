@@ -174,20 +174,36 @@ struct PairMotion
 /// Gaps that may close within a step.
 struct ClosingGaps
 {
-  PairMotion motion;
-  double time;  ///< For which it goes on, s.
+  const BlockState& first;
+  const BlockState& second;
+  double time;  ///< For which they go on, s.
   double least; ///< Gaps that may close however the rocks move, m.
   double rims;  ///< Speed at most by turning, of both together, m/s.
 
   /// The widest one along a normal, m,
   double along(const Vec3& normal) const
   {
-    return least + time * std::max(0.0, rims - normal.dot(motion.velocity));
+    return least + time * std::max(0.0, rims - normal.dot(first.velocity - second.velocity));
   }
-  /// and at a point.
-  double at(const Vec3& point, const Vec3& normal) const
+  /// and at points, along one normal for all.
+  struct AtPoints
   {
-    return least + time * std::max(0.0, -normal.dot(motion.at(point)));
+    double time, least;
+    double closing; ///< Speed at which the rocks close at the origin, m/s,
+    Vec3 slope;     ///< and what it grows by from there, 1/s.
+
+    double at(const Vec3& point) const
+    {
+      return least + time * std::max(0.0, closing + slope.dot(point));
+    }
+  };
+  AtPoints atPoints(const Vec3& normal) const
+  {
+    const Vec3 a = first.angularVelocity().cross(normal);
+    const Vec3 b = second.angularVelocity().cross(normal);
+    return { time, least,
+      b.dot(second.position) - a.dot(first.position) - normal.dot(first.velocity - second.velocity),
+      a - b };
   }
 };
 

@@ -203,7 +203,7 @@ void MassFall::gatherContacts(const Group& group, double h) const
     if (crowd)
     {
       // The second look finds the others, should they be needed.
-      const ClosingGaps closing = { PairMotion(s, t), kFaster * h,
+      const ClosingGaps closing = { s, t, kFaster * h,
         parameters_.gravity * h * h + kSurely * smaller, rims };
       updatePair(a.body, b.body, reach, *pair, &closing);
     }
