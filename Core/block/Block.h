@@ -17,6 +17,15 @@ namespace rockfall
 constexpr int kRotation = 3;
 constexpr int kStrain = 6;
 
+/// Two directions side by side, coordinate by coordinate.
+using TwoWays = std::array<Eigen::Array2d, 3>;
+
+inline TwoWays twoWays(const Vec3& first, const Vec3& second)
+{
+  return { Eigen::Array2d(first.x(), second.x()), Eigen::Array2d(first.y(), second.y()),
+    Eigen::Array2d(first.z(), second.z()) };
+}
+
 /// What of a block never changes.
 class Block
 {
@@ -59,6 +68,24 @@ public:
     return ((1.0 + poissonRatio_) * 0.5 * (x.squaredNorm() + along * along) -
              poissonRatio_ * along * along) /
       (youngModulus_ * volume_);
+  }
+  // The same for two directions at once.
+  Eigen::Array2d mobility(const TwoWays& n, const Vec3& x) const
+  {
+    const TwoWays m = { x.y() * n[2] - x.z() * n[1], x.z() * n[0] - x.x() * n[2],
+      x.x() * n[1] - x.y() * n[0] };
+    const Mat3& j = inverseInertia_;
+    const Eigen::Array2d turned[3] = { j(0, 0) * m[0] + j(0, 1) * m[1] + j(0, 2) * m[2],
+      j(1, 0) * m[0] + j(1, 1) * m[1] + j(1, 2) * m[2],
+      j(2, 0) * m[0] + (j(2, 1) * m[1] + j(2, 2) * m[2]) };
+    return 1.0 / mass_ + (m[0] * turned[0] + m[1] * turned[1] + m[2] * turned[2]);
+  }
+  Eigen::Array2d compliance(const TwoWays& n, const Vec3& x) const
+  {
+    const Eigen::Array2d along = n[0] * x.x() + n[1] * x.y() + n[2] * x.z();
+    return ((1.0 + poissonRatio_) * 0.5 * (x.squaredNorm() + along * along) -
+             poissonRatio_ * along * along) /
+      (youngModulus_ * this->volume());
   }
   /// Its largest value, at the vertex that is farthest out and along its radius, m/N.
   double largestCompliance() const { return radius_ * radius_ / (youngModulus_ * volume_); }

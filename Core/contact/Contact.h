@@ -86,13 +86,28 @@ public:
   const Block& block() const { return *block_; }
   const Vec3& position() const { return position_; }
   const Mat3& rotation() const { return rotation_; }
-  const std::vector<Vec3>& vertices() const { return vertices_; } ///< World, m.
-  Vec3 normal(int face) const                                     ///< World, outward, unit.
+  /// Of the reference shape, strained, to world axes.
+  const Mat3& map() const { return map_; }
+  // Found when they are asked for first, by whoever has the block: not by several threads at once.
+  const std::vector<Vec3>& vertices() const ///< World, m.
+  {
+    this->findVertices();
+    return vertices_;
+  }
+  Vec3 lower() const ///< Corner of the bounding box, m.
+  {
+    this->findVertices();
+    return lower_;
+  }
+  Vec3 upper() const
+  {
+    this->findVertices();
+    return upper_;
+  }
+  Vec3 normal(int face) const ///< World, outward, unit.
   {
     return rotation_ * block_->shape().normals()[face];
   }
-  Vec3 lower() const { return lower_; } ///< Corners of the bounding box, m.
-  Vec3 upper() const { return upper_; }
 
   /// Signed distance of a world point over a face; the strain of the block is undone first.
   double faceDistance(int face, const Vec3& world) const
@@ -109,13 +124,24 @@ public:
   }
 
 private:
+  void findVertices() const
+  {
+    if (!found_)
+    {
+      this->placeVertices();
+    }
+  }
+  void placeVertices() const;
+
   const Block* block_ = nullptr;
   Vec3 position_ = Vec3::Zero();
   Mat3 rotation_ = Mat3::Identity();
+  Mat3 map_ = Mat3::Identity();
   Mat3 undeform_ = Mat3::Identity(); ///< (I + ε)⁻¹
-  std::vector<Vec3> vertices_;
-  Vec3 lower_ = Vec3::Zero();
-  Vec3 upper_ = Vec3::Zero();
+  mutable bool found_ = true;        ///< What follows.
+  mutable std::vector<Vec3> vertices_;
+  mutable Vec3 lower_ = Vec3::Zero();
+  mutable Vec3 upper_ = Vec3::Zero();
 };
 
 /// The pairs of features that can touch while the rock stays near where it stood: found once, then

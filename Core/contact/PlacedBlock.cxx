@@ -12,16 +12,22 @@ void PlacedBlock::place(const Block& block, const BlockState& state)
   block_ = &block;
   position_ = state.position;
   rotation_ = state.orientation.toRotationMatrix();
-  Mat3 map = rotation_;
+  map_ = rotation_;
   undeform_.setIdentity();
   if (!state.strain.isZero(0.0))
   {
     const Mat3 deform = Mat3::Identity() + strainTensor(state.strain);
     undeform_ = deform.inverse();
-    map = rotation_ * deform;
+    map_ = rotation_ * deform;
   }
-  const std::vector<Vec3>& reference = block.shape().vertices();
+  found_ = false;
+}
+
+void PlacedBlock::placeVertices() const
+{
+  const std::vector<Vec3>& reference = block_->shape().vertices();
   vertices_.resize(reference.size());
+  const Mat3 map = map_;
   const Vec3 center = position_; // all this in registers
   Vec3 lower = Vec3::Constant(1e300), upper = Vec3::Constant(-1e300);
   for (std::size_t i = 0; i < reference.size(); ++i)
@@ -33,6 +39,7 @@ void PlacedBlock::place(const Block& block, const BlockState& state)
   }
   lower_ = lower;
   upper_ = upper;
+  found_ = true;
 }
 
 int PlacedBlock::outermostFace(const Vec3& world) const

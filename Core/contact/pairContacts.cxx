@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace rockfall
 {
@@ -31,7 +32,50 @@ struct Match
   int old = -1;        ///< Number of a contact, −1: none.
   bool itself = false; ///< Between the same features.
   bool near = false;   ///< Where it was.
+  bool comes = true;   ///< It becomes a contact.
 };
+
+/// Finds for each touch which of the old contacts it is; points nearer than `same` (m) may be one.
+void match(std::span<const Touch> found, const PairAxis& axis, const std::vector<Contact>& olds,
+  double same, std::vector<Match>& matches, std::vector<char>& taken)
+{
+  matches.resize(found.size());
+  taken.assign(olds.size(), 0);
+  for (std::size_t i = 0; i < found.size(); ++i)
+  {
+    const TouchFeatures features(found[i], axis);
+    // The old point is where its rock has carried it since (see the solver's write-back).
+    const auto away = [&](std::size_t k) { return (olds[k].point - found[i].point).squaredNorm(); };
+    Match& match = matches[i];
+    match = {};
+    // Mostly all are there again, in their order.
+    const bool there = i < olds.size() && !taken[i] && features.are(olds[i]);
+    for (std::size_t k = there ? i : 0; k < olds.size() && !match.itself; ++k)
+    {
+      if (!taken[k] && features.are(olds[k]))
+      {
+        match.itself = true;
+        match.old = int(k);
+        match.near = away(k) < same * same;
+      }
+    }
+    double least = same * same;
+    for (std::size_t k = 0; k < olds.size() && !match.itself; ++k)
+    {
+      const double distance = taken[k] ? least : away(k);
+      if (distance < least)
+      {
+        least = distance;
+        match.old = int(k);
+        match.near = true;
+      }
+    }
+    if (match.old >= 0)
+    {
+      taken[std::size_t(match.old)] = 1;
+    }
+  }
+}
 
 /// A contact goes on with its springs at a touch; `turned`: along another axis. What is deeper than
 /// reckoned by more than `far` (m) is no compression.
@@ -41,7 +85,10 @@ void goOn(const Touch& touch, const PairBody& second, const PairAxis& axis, cons
   const Vec3 oldPoint = c.point;
   const double oldGap = c.gap();
   putTouch(touch, second, axis, c);
-  c.slip = c.slip - c.slip.dot(c.normal) * c.normal;
+  if (!c.slip.isZero(0.0))
+  {
+    c.slip = c.slip - c.slip.dot(c.normal) * c.normal;
+  }
   c.shearForce = 0.0;
   if (match.itself && match.near && isCut(c))
   {
@@ -61,8 +108,15 @@ void goOn(const Touch& touch, const PairBody& second, const PairAxis& axis, cons
   c.offset = c.gap() < reckoned - far ? c.distance - reckoned : c.offset;
 }
 
+/// What is in a spring that is gone, J.
+double released(const Contact& c)
+{
+  const double compressed = std::min(0.0, c.gap());
+  return c.closed() ? 0.5 * c.stiffness * compressed * compressed : 0.0;
+}
+
 /// What was in springs that are gone goes into those that are new, or else into those that stay.
-void handOver(const std::vector<char>& taken, const std::vector<char>& known,
+void handOver(const std::vector<char>& taken, const std::vector<Match>& matches,
   const std::vector<Contact>& before, std::vector<Contact>& now)
 {
   double energy = 0.0;
@@ -72,26 +126,22 @@ void handOver(const std::vector<char>& taken, const std::vector<char>& known,
     const Contact& c = before[k];
     if (!taken[k] && c.closed())
     {
-      const double compressed = std::min(0.0, c.gap());
-      energy += 0.5 * c.stiffness * compressed * compressed;
+      energy += released(c);
       strongest = !strongest || c.normalForce > strongest->normalForce ? &c : strongest;
     }
   }
-  if (energy <= 0.0)
-  {
-    return;
-  }
-  const auto fresh = std::count(known.begin(), known.end(), char(0));
+  const auto isFresh = [](const Match& match) { return match.old < 0; };
+  const auto fresh = std::count_if(matches.begin(), matches.end(), isFresh);
   const double share =
-    energy / double(fresh > 0 ? fresh : std::max<std::ptrdiff_t>(1, known.size()));
+    energy / double(fresh > 0 ? fresh : std::max<std::ptrdiff_t>(1, matches.size()));
   for (std::size_t i = 0; i < now.size(); ++i)
   {
     Contact& c = now[i];
-    if (fresh > 0 && known[i])
+    if (fresh > 0 && !isFresh(matches[i]))
     {
       continue;
     }
-    if (!known[i])
+    if (isFresh(matches[i]))
     {
       c.state = strongest->state;
       c.stiffness = strongest->stiffness;
@@ -108,6 +158,11 @@ void handOver(const std::vector<char>& taken, const std::vector<char>& known,
       c.state = c.closed() ? c.state : ContactState::Sliding;
     }
   }
+}
+
+bool mayClose(const Contact& c, const ClosingGaps::AtPoints& closing)
+{
+  return c.closed() || !(c.gap() > closing.at(c.point));
 }
 
 } // namespace
@@ -144,77 +199,78 @@ void updatePair(const PairBody& first, const PairBody& second, double reach, Roc
     return;
   }
   found = orAlongBest(found, first, second, pair.axis, reach);
-  const bool turned =
-    last.kind != pair.axis.kind || last.first != pair.axis.first || last.second != pair.axis.second;
-  const double smaller = std::min(first.radius, second.radius);
-  const double same = kSamePoint * smaller;
-  // Which of the old ones each is: mostly all are there again, in their order.
   thread_local std::vector<Match> matches;
-  thread_local std::vector<char> taken, known;
-  const std::size_t before = pair.contacts.size();
-  matches.resize(found.size());
-  known.resize(found.size());
-  taken.assign(before, 0);
-  bool inOrder = found.size() >= before;
+  thread_local std::vector<char> taken;
+  thread_local std::vector<Contact> olds;
+  const double smaller = std::min(first.radius, second.radius);
+  match(found, pair.axis, pair.contacts, kSamePoint * smaller, matches, taken);
+  bool hands = false;
+  for (std::size_t k = 0; k < taken.size(); ++k)
+  {
+    hands = hands || (!taken[k] && released(pair.contacts[k]) > 0.0);
+  }
+  // What springs are handed to may be any.
+  std::optional<ClosingGaps::AtPoints> sieve;
+  if (closing && !hands)
+  {
+    sieve = closing->atPoints(pair.axis.normal);
+  }
+  // As long as nothing is written where an old one is still to be read, there is no need for a
+  // copy.
+  std::size_t count = 0;
+  bool inPlace = !hands;
   for (std::size_t i = 0; i < found.size(); ++i)
   {
-    const TouchFeatures features(found[i], pair.axis);
     Match& match = matches[i];
-    match = {};
-    double least = same * same;
-    for (std::size_t k = 0; k < before; ++k)
-    {
-      // The old point is where its rock has carried it since (see the solver's write-back).
-      const Contact& old = pair.contacts[k];
-      const double away = (old.point - found[i].point).squaredNorm();
-      const bool equal = features.are(old);
-      if (!taken[k] && (equal || (!match.itself && away < least)))
-      {
-        match.itself = equal;
-        least = away;
-        match.old = int(k);
-      }
-    }
-    known[i] = match.old >= 0;
-    if (match.old >= 0)
-    {
-      taken[std::size_t(match.old)] = 1;
-      match.near = least < same * same;
-    }
-    inOrder = inOrder && (i < before ? match.old == int(i) : match.old < 0);
+    inPlace = inPlace && (match.old < 0 || std::size_t(match.old) >= count);
+    match.comes =
+      match.old >= 0 || !sieve || !(std::max(0.0, found[i].distance) > sieve->at(found[i].point));
+    count += match.comes ? 1 : 0;
   }
-  thread_local std::vector<Contact> olds;
-  if (!inOrder)
+  if (!inPlace)
   {
     olds = pair.contacts;
   }
-  pair.contacts.resize(found.size());
+  pair.contacts.resize(std::max(count, pair.contacts.size()));
+  const std::vector<Contact>& before = inPlace ? pair.contacts : olds;
+  const bool turned =
+    last.kind != pair.axis.kind || last.first != pair.axis.first || last.second != pair.axis.second;
+  std::size_t to = 0;
   for (std::size_t i = 0; i < found.size(); ++i)
   {
-    Contact& c = pair.contacts[i];
-    if (!inOrder)
+    const Match& match = matches[i];
+    if (!match.comes)
     {
-      c = known[i] ? olds[std::size_t(matches[i].old)] : Contact();
+      continue;
     }
-    if (known[i])
+    Contact& c = pair.contacts[to];
+    if (match.old < 0)
     {
-      goOn(found[i], second, pair.axis, matches[i], turned, kMisreckoned * smaller, c);
-    }
-    else
-    {
+      c = Contact();
       putTouch(found[i], second, pair.axis, c);
       // Found overlapping: finding it makes no energy.
       c.offset = std::min(0.0, c.distance);
+      ++to;
+      continue;
     }
+    const Contact& old = before[std::size_t(match.old)];
+    if (&old != &c)
+    {
+      c = old;
+    }
+    goOn(found[i], second, pair.axis, match, turned, kMisreckoned * smaller, c);
+    to += !sieve || mayClose(c, *sieve) ? 1 : 0;
   }
-  if (!inOrder)
+  pair.contacts.resize(to);
+  if (hands)
   {
-    handOver(taken, known, olds, pair.contacts);
-  }
-  if (closing)
-  {
-    std::erase_if(pair.contacts,
-      [&](const Contact& c) { return !c.closed() && c.gap() > closing->at(c.point, c.normal); });
+    handOver(taken, matches, olds, pair.contacts);
+    if (closing)
+    {
+      std::erase_if(pair.contacts,
+        [may = closing->atPoints(pair.axis.normal)](const Contact& c)
+        { return !mayClose(c, may); });
+    }
   }
 }
 

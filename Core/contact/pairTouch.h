@@ -47,6 +47,26 @@ struct TouchFeatures
 };
 
 /// Where a touch is: all of a contact that is not its springs'.
-void putTouch(const Touch& touch, const PairBody& second, const PairAxis& axis, Contact& contact);
+inline void putTouch(const Touch& touch, const PairBody& second, const PairAxis& axis, Contact& c)
+{
+  c.normal = axis.normal;
+  c.point = touch.point;
+  c.distance = touch.distance;
+  const bool edges = axis.kind == PairAxis::Kind::Edges;
+  if (edges)
+  {
+    const std::array<int, 2>& f = second.edges[std::size_t(axis.second)].vertices;
+    const Vec3 q = second.vertex(f[0]);
+    c.ridge = { q, second.vertex(f[1]) - q };
+  }
+  else if (c.kind == ContactKind::EdgeEdge)
+  {
+    c.ridge = { Vec3::Zero(), Vec3::Zero() };
+  }
+  const TouchFeatures features(touch, axis);
+  c.kind = features.kind;
+  c.rockFeature = features.first;
+  c.surfaceFeature = features.second;
+}
 
 } // namespace rockfall

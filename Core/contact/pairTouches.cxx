@@ -54,7 +54,7 @@ int mostOpposed(const PairBody& body, const Vec3& normal, double lowest)
 {
   const auto reachesDown = [&](int face)
   {
-    const std::vector<int>& loop = body.loops[std::size_t(face)];
+    const std::span<const int> loop = body.loop(face);
     return std::any_of(
       loop.begin(), loop.end(), [&](int v) { return normal.dot(body.vertex(v)) <= lowest; });
   };
@@ -97,8 +97,8 @@ std::span<const Corner> clipFace(
   thread_local std::vector<Corner> keptA, keptB;
   const Vec3 normal = owner.normal(ownerFace);
   const double lowest = owner.offset(ownerFace) + gap + tolerance;
-  const std::vector<int>& cut = body.loops[std::size_t(mostOpposed(body, normal, lowest))];
-  const std::vector<int>& loop = owner.loops[std::size_t(ownerFace)];
+  const std::span<const int> cut = body.loop(mostOpposed(body, normal, lowest));
+  const std::span<const int> loop = owner.loop(ownerFace);
   std::vector<Corner>*from = &keptA, *to = &keptB;
   Corner* polygon = roomFor(*from, cut.size());
   std::size_t size = 0;
@@ -207,28 +207,6 @@ std::span<const Touch> orAlongBest(std::span<const Touch> found, const PairBody&
   }
   axis = bestAxis(first, second);
   return touchesAlong(first, second, axis, reach);
-}
-
-void putTouch(const Touch& touch, const PairBody& second, const PairAxis& axis, Contact& c)
-{
-  c.normal = axis.normal;
-  c.point = touch.point;
-  c.distance = touch.distance;
-  const bool edges = axis.kind == PairAxis::Kind::Edges;
-  if (edges)
-  {
-    const std::array<int, 2>& f = second.edges[std::size_t(axis.second)].vertices;
-    const Vec3 q = second.vertex(f[0]);
-    c.ridge = { q, second.vertex(f[1]) - q };
-  }
-  else if (c.kind == ContactKind::EdgeEdge)
-  {
-    c.ridge = { Vec3::Zero(), Vec3::Zero() };
-  }
-  const TouchFeatures features(touch, axis);
-  c.kind = features.kind;
-  c.rockFeature = features.first;
-  c.surfaceFeature = features.second;
 }
 
 void findTouches(const PairBody& first, const PairBody& second, PairAxis& axis, double reach,

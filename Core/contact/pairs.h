@@ -42,19 +42,18 @@ class PairBody
 public:
   void update(const PlacedBlock& block);
 
-  const PlacedBlock* placed = nullptr;
   std::span<const Polyhedron::Edge> edges;
-  std::span<const std::vector<int>> loops; ///< Of the faces.
-  double radius = 0.0;                     ///< Of the bounding sphere about the centroid, m.
+  double radius = 0.0;          ///< Of the bounding sphere about the centroid, m.
   double inside = 0.0;          ///< Radius of a ball about the centroid that the rock holds, m.
   Vec3 position = Vec3::Zero(); ///< For which all this stands.
   Mat3 rotation = Mat3::Zero();
 
-  using Four = Eigen::Array4d;
+  using Four = ShapeLayout::Four;
   int vertexFours() const { return vertexFours_; }
   int faceFours() const { return faceFours_; }
-  int vertices() const { return vertices_; }
-  int faces() const { return int(loops.size()); }
+  int vertices() const { return shape_->vertices; }
+  int faces() const { return shape_->faces; }
+  std::span<const int> loop(int face) const { return shape_->loop(face); }
   /// n · x of four vertices, from vertex 4 i, m.
   Four alongVertices(const Vec3& n, int i) const { return along(n, data_.data() + 12 * i); }
   /// n · (normal) of four faces, from face 4 i.
@@ -89,9 +88,9 @@ private:
   }
   const double* faceData() const { return data_.data() + 12 * vertexFours_; }
 
-  int vertices_ = 0, vertexFours_ = 0, faceFours_ = 0;
-  /// Per four vertices x, y, z, then per four faces the normals' x, y, z and the offsets.
-  std::vector<double> data_;
+  const ShapeLayout* shape_ = nullptr;
+  int vertexFours_ = 0, faceFours_ = 0;
+  std::vector<double> data_; ///< As in the shape's layout, but in world axes.
 };
 
 /// The axis of the largest gap; `last` stays as long as no other one is better by more than a
@@ -181,20 +180,36 @@ struct PairMotion
 /// Gaps that may close within a step.
 struct ClosingGaps
 {
-  PairMotion motion;
-  double time;  ///< For which it goes on, s.
+  const BlockState& first;
+  const BlockState& second;
+  double time;  ///< For which they go on, s.
   double least; ///< Gaps that may close however the rocks move, m.
   double rims;  ///< Speed at most by turning, of both together, m/s.
 
   /// The widest one along a normal, m,
   double along(const Vec3& normal) const
   {
-    return least + time * std::max(0.0, rims - normal.dot(motion.velocity));
+    return least + time * std::max(0.0, rims - normal.dot(first.velocity - second.velocity));
   }
-  /// and at a point.
-  double at(const Vec3& point, const Vec3& normal) const
+  /// and at points, along one normal for all.
+  struct AtPoints
   {
-    return least + time * std::max(0.0, -normal.dot(motion.at(point)));
+    double time, least;
+    double closing; ///< Speed at which the rocks close at the origin, m/s,
+    Vec3 slope;     ///< and what it grows by from there, 1/s.
+
+    double at(const Vec3& point) const
+    {
+      return least + time * std::max(0.0, closing + slope.dot(point));
+    }
+  };
+  AtPoints atPoints(const Vec3& normal) const
+  {
+    const Vec3 a = first.angularVelocity().cross(normal);
+    const Vec3 b = second.angularVelocity().cross(normal);
+    return { time, least,
+      b.dot(second.position) - a.dot(first.position) - normal.dot(first.velocity - second.velocity),
+      a - b };
   }
 };
 

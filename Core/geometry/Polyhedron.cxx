@@ -179,6 +179,7 @@ void Polyhedron::Parts::updateDistances()
   {
     radius = std::max(radius, (vertex - integrals.centroid).norm());
   }
+  layout = ShapeLayout(vertices, faces, normals, offsets);
 }
 
 Polyhedron Polyhedron::transformed(double scale, const Quat& rotation, const Vec3& shift) const

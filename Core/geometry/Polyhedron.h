@@ -5,6 +5,7 @@
 /// integrals.
 
 #include "base/types.h"
+#include "geometry/ShapeLayout.h"
 #include "geometry/simplexIntegration.h"
 
 #include <array>
@@ -61,6 +62,8 @@ public:
   /// Per face, normal · x on it, m.
   const std::vector<double>& offsets() const { return parts_->offsets; }
   const std::vector<Edge>& edges() const { return parts_->edges; }
+  /// All of this for loops over vertices or faces.
+  const ShapeLayout& layout() const { return parts_->layout; }
   /// Vertices joined to vertex v by an edge.
   const std::vector<int>& neighbours(int v) const { return parts_->neighbours[v]; }
   const VolumeIntegrals& integrals() const { return parts_->integrals; }
@@ -85,8 +88,9 @@ private:
     std::vector<std::vector<int>> neighbours;
     VolumeIntegrals integrals;
     double radius = 0.0;
+    ShapeLayout layout;
 
-    /// Offsets and radius, from vertices, normals and integrals.
+    /// Offsets, radius and layout, from vertices, normals and integrals.
     void updateDistances();
   };
   explicit Polyhedron(Parts parts);

@@ -90,8 +90,6 @@ bool MassFall::Member::arrive()
   {
     std::swap(sim.placed_, end);
     std::swap(body, endBody);
-    body.placed = &sim.placed_;
-    endBody.placed = &end;
   }
   return there;
 }

@@ -37,22 +37,24 @@ constexpr double kFaster = 1.5;
 /// meet at 17 m/s, Δt 5 ms: the deepest by 0.6 % of an edge on average; with 2e-3 by 1.1 %).
 constexpr double kSurely = 3e-2;
 
-/// Gives contacts of a pair what they are made of; what only their normal decides is found once.
+/// Gives contacts of a pair what they are made of, along the normal and across it side by side;
+/// what only the normal decides is found once.
 class PairArming
 {
 public:
   PairArming(const PlacedBlock& a, const BlockState& s, const PlacedBlock& b, const BlockState& t,
     const PairLaw& law, const SimulationParameters& parameters)
     : rigid_(parameters.rigid)
-    , damping_(law.damping)
-    , sides_{ { { &a.block(), a.rotation(), s.position },
-        { &b.block(), b.rotation(), t.position } } }
+    , dampings_(std::max(0.0, law.damping), kShearDamping)
+    , sides_{ { { &a.block(), a.rotation(), s.position, {} },
+        { &b.block(), b.rotation(), t.position, {} } } }
   {
     const double mass = 1.0 / (1.0 / a.block().mass() + 1.0 / b.block().mass());
     const double depth = kDeepestImpact * std::min(a.block().radius(), b.block().radius());
     const double speed = (s.velocity - t.velocity).norm();
-    penalty_ = std::max(parameters.normalPenalty, mass * speed * speed / (depth * depth));
-    shear_ = penalty_ * parameters.shearRatio;
+    const double penalty =
+      std::max(parameters.normalPenalty, mass * speed * speed / (depth * depth));
+    penalties_ = { penalty, penalty * parameters.shearRatio };
   }
   void arm(Contact& c)
   {
@@ -62,39 +64,38 @@ public:
       const Vec3 along = normal_.unitOrthogonal();
       for (Side& side : sides_)
       {
-        side.n = side.turn.transpose() * normal_;
-        side.t = side.turn.transpose() * along;
+        side.ways = twoWays(side.turn.transpose() * normal_, side.turn.transpose() * along);
       }
     }
-    double soft = 0.0, softAlong = 0.0, mobile = 0.0, mobileAlong = 0.0;
+    Two soft = Two::Zero(), mobile = Two::Zero();
     for (const Side& side : sides_)
     {
       const Vec3 x = side.turn.transpose() * (c.point - side.position);
-      soft += rigid_ ? 0.0 : side.block->compliance(side.n, x);
-      softAlong += rigid_ ? 0.0 : side.block->compliance(side.t, x);
-      mobile += side.block->mobility(side.n, x);
-      mobileAlong += side.block->mobility(side.t, x);
+      soft += rigid_ ? Two(Two::Zero()) : side.block->compliance(side.ways, x);
+      mobile += side.block->mobility(side.ways, x);
     }
-    c.stiffness = penalty_ / (1.0 + penalty_ * soft);
-    c.shearStiffness = shear_ / (1.0 + shear_ * softAlong);
-    c.frequency2 = c.stiffness * mobile;
-    c.stopped = 1.0 / mobile;
-    c.dashpot = damping_ > 0.0 ? 2.0 * damping_ * std::sqrt(c.stiffness / mobile) : 0.0;
-    c.shearDashpot = 2.0 * kShearDamping * std::sqrt(c.shearStiffness / mobileAlong);
+    const Two stiffnesses = penalties_ / (1.0 + penalties_ * soft);
+    const Two dashpots = 2.0 * dampings_ * (stiffnesses / mobile).sqrt();
+    c.stiffness = stiffnesses[0];
+    c.shearStiffness = stiffnesses[1];
+    c.frequency2 = c.stiffness * mobile[0];
+    c.stopped = 1.0 / mobile[0];
+    c.dashpot = dashpots[0];
+    c.shearDashpot = dashpots[1];
   }
 
 private:
+  using Two = Eigen::Array2d;
   struct Side
   {
     const Block* block;
     Mat3 turn; ///< Body to world axes.
     Vec3 position;
-    Vec3 n = Vec3::Zero(), t = Vec3::Zero(); ///< The normal and a direction across it, body axes.
+    TwoWays ways; ///< The normal and a direction across it, body axes.
   };
   bool rigid_;
-  double damping_;
-  double penalty_ = 0.0; ///< N/m
-  double shear_ = 0.0;   ///< N/m
+  Two dampings_;
+  Two penalties_; ///< N/m
   Vec3 normal_ = Vec3::Zero();
   std::array<Side, 2> sides_;
 };
@@ -208,7 +209,7 @@ void MassFall::gatherContacts(const Group& group, double h) const
     if (crowd)
     {
       // The second look finds the others, should they be needed.
-      const ClosingGaps closing = { PairMotion(s, t), kFaster * h,
+      const ClosingGaps closing = { s, t, kFaster * h,
         parameters_.gravity * h * h + kSurely * smaller, rims };
       updatePair(a.body, b.body, reach, *pair, &closing);
     }
