@@ -24,6 +24,16 @@ constexpr std::size_t kNearGrain = 256, kLookGrain = 16;
 /// A way that is longer by no more than this factor is not passed on.
 constexpr double kNoMore = 1.0 + 1e-6;
 
+/// What a look at two rocks near each other has shown: they may meet if they go far, as far as is
+/// known they don't, their bounding spheres tell them apart, or they overlap.
+enum : char
+{
+  kOpen,
+  kShut,
+  kApart,
+  kOverlaps,
+};
+
 /// Largest component along the normal of a velocity in a box.
 double most(const Company& c, const Vec3& normal)
 {
@@ -41,10 +51,25 @@ int MassFall::Meetings::root(int i)
   return i;
 }
 
+/// From now on the gap is bounded along the pair's axis.
+void MassFall::Meetings::lookAlong(Near& n) const
+{
+  const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
+  n.normal = n.pair->axis.normal;
+  n.offset = n.pair->axis.distance - n.normal.dot(a.position - b.position) + a.turned + b.turned;
+}
+
 double MassFall::Meetings::gap(const Near& n) const
 {
   const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
   return n.offset + n.normal.dot(a.position - b.position) - a.turned - b.turned;
+}
+
+/// How far apart they are at least, along the axis and by their bounding spheres, m.
+double MassFall::Meetings::apart(const Near& n) const
+{
+  const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
+  return std::max(this->gap(n), (a.position - b.position).norm() - a.radius - b.radius);
 }
 
 /// How fast the gap may close along its normal, m/s.
@@ -54,60 +79,45 @@ double MassFall::Meetings::closing(const Near& n) const
   const Company& first = companies_[std::size_t(roots_[i])];
   const Company& second = companies_[std::size_t(roots_[j])];
   const double towards =
-    first.size > 1 ? most(first, -n.normal) : movers[i].spread - n.normal.dot(movers[i].middle);
+    first.size > 1 ? most(first, -n.normal) : paces_[i].spread - n.normal.dot(paces_[i].middle);
   const double against =
-    second.size > 1 ? most(second, n.normal) : movers[j].spread + n.normal.dot(movers[j].middle);
+    second.size > 1 ? most(second, n.normal) : paces_[j].spread + n.normal.dot(paces_[j].middle);
   return std::max(0.0, towards + against);
 }
 
 /// A light rock that a heavy one strikes goes on faster than it, by this factor.
 double MassFall::Meetings::thrown(std::size_t rock) const
 {
-  const Company& c = companies_[std::size_t(roots_[rock])];
-  return std::max(1.0, (1.0 + bounciest_) * c.heaviest / (c.heaviest + movers[rock].mass));
-}
-
-/// How far the two may come towards each other, m.
-double MassFall::Meetings::ways(const Near& n) const
-{
-  const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
-  return movers[i].thrown * movers[i].way + movers[j].thrown * movers[j].way;
+  const double heaviest = companies_[std::size_t(roots_[rock])].heaviest;
+  const double mass = paces_[rock].mass;
+  return bounciest_ * heaviest > mass ? (1.0 + bounciest_) * heaviest / (heaviest + mass) : 1.0;
 }
 
 /// The widest gap over which the two may meet.
 double MassFall::Meetings::reach(const Near& n) const
 {
-  const double faster =
-    std::max(movers[std::size_t(n.first)].thrown, movers[std::size_t(n.second)].thrown);
+  const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
+  const double faster = std::max(paces_[i].thrown, paces_[j].thrown);
   const double speed = n.offset > kNoAxis ? faster * this->closing(n) : -kNoAxis;
-  return std::min(this->ways(n), speed * duration_) + fall_;
+  return std::min(fars_[i] + fars_[j], speed * duration_) + fall_;
 }
 
-bool MassFall::Meetings::isWithin(const Near& n, double reach) const
-{
-  if (this->gap(n) > reach)
-  {
-    return false;
-  }
-  const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
-  const double most = a.radius + b.radius + reach;
-  return (a.position - b.position).squaredNorm() <= most * most;
-}
-
-bool MassFall::Meetings::mayMeet(const Near& n) const
+bool MassFall::Meetings::mayMeet(const Open& o) const
 {
   // By their ways alone first: that tells most of them apart.
-  return this->isWithin(n, this->ways(n) + fall_) && this->isWithin(n, this->reach(n));
+  return o.apart <= fars_[std::size_t(o.first)] + fars_[std::size_t(o.second)] + fall_ &&
+    o.apart <= this->reach(near[std::size_t(o.near)]);
 }
 
-bool MassFall::Meetings::isAsleep(const Near& n) const
+bool MassFall::Meetings::isAsleep(int first, int second) const
 {
-  return movers[std::size_t(n.first)].asleep && movers[std::size_t(n.second)].asleep;
+  return movers[std::size_t(first)].asleep && movers[std::size_t(second)].asleep;
 }
 
 /// Whether two rocks that stand may meet; finds their axis as far as that needs it.
-bool MassFall::Meetings::meet(const MassFall& fall, Near& n)
+bool MassFall::Meetings::meet(const MassFall& fall, std::size_t k)
 {
+  Near& n = near[k];
   RockPair& pair = *n.pair;
   for (;;)
   {
@@ -115,6 +125,7 @@ bool MassFall::Meetings::meet(const MassFall& fall, Near& n)
     const bool exact = n.looked >= 0.0 && pair.axis.distance <= n.looked;
     if (exact || n.looked >= reach)
     {
+      aparts_[k] = this->apart(n);
       return exact && this->gap(n) <= reach;
     }
     const bool stands =
@@ -135,42 +146,148 @@ bool MassFall::Meetings::meet(const MassFall& fall, Near& n)
   }
 }
 
-/// Looks at all that are near each other; returns whether more of them may meet.
+/// What has to be known of all that are near each other before the first of them are linked.
+void MassFall::Meetings::look(MassFall& fall)
+{
+  states_.resize(near.size());
+  aparts_.resize(near.size());
+  const auto lookAt = [&](std::size_t k)
+  {
+    Near& n = near[k];
+    n.wasLinked = n.linked;
+    n.linked = false;
+    n.looked = -1.0;
+    const bool seen = n.holds && n.pair->seen; // found where they stand
+    const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
+    if (!a.present || !b.present)
+    {
+      aparts_[k] = -kNoAxis;
+      states_[k] = kApart;
+      return;
+    }
+    const bool asleep = a.asleep && b.asleep;
+    const Vec3 between = a.position - b.position;
+    const double spheres = between.norm() - a.radius - b.radius;
+    const double known = a.known + b.known;
+    if (seen)
+    {
+      this->lookAlong(n);
+    }
+    const double gap = n.offset + n.normal.dot(between) - a.turned - b.turned;
+    aparts_[k] = std::max(gap, spheres);
+    states_[k] = spheres > known && !asleep             ? kApart
+      : seen && n.pair->axis.distance <= 0.0 && !asleep ? kOverlaps
+      : aparts_[k] <= known                             ? kOpen
+                                                        : kShut;
+  };
+  forEach(near.size(), kNearGrain, lookAt);
+  open_.clear();
+  for (std::size_t k = 0; k < near.size(); ++k)
+  {
+    switch (states_[k])
+    {
+      case kApart:
+        if (near[k].pair)
+        {
+          this->drop(fall, near[k]);
+        }
+        break;
+      case kOverlaps:
+        this->join(fall, k, false);
+        break;
+      case kOpen:
+        open_.push_back(this->openOf(k));
+        break;
+    }
+  }
+}
+
+MassFall::Meetings::Open MassFall::Meetings::openOf(std::size_t k) const
+{
+  return { aparts_[k], near[k].first, near[k].second, int(k) };
+}
+
+/// Takes up those that ways reach that have outgrown what was known.
+void MassFall::Meetings::widen()
+{
+  for (std::size_t k = states_.size(); k < near.size(); ++k)
+  {
+    states_.push_back(kShut);
+    aparts_.push_back(this->apart(near[k]));
+  }
+  for (std::size_t k = 0; k < near.size(); ++k)
+  {
+    const Mover &a = movers[std::size_t(near[k].first)], &b = movers[std::size_t(near[k].second)];
+    if ((states_[k] == kShut || states_[k] == kApart) && aparts_[k] <= a.known + b.known)
+    {
+      states_[k] = kOpen;
+      open_.push_back(this->openOf(k));
+    }
+  }
+}
+
+/// Looks at all that are open; returns whether more of them may meet.
 bool MassFall::Meetings::sweep(MassFall& fall)
 {
-  for (std::size_t i = 0; i < roots_.size(); ++i)
+  bool wider = false;
+  for (std::size_t i = 0; i < movers.size(); ++i)
   {
     roots_[i] = this->root(int(i));
-  }
-  const auto goesFurther = [&](std::size_t i)
-  {
     Mover& m = movers[i];
-    m.thrown = this->thrown(i);
-    return m.present && !m.asleep && companies_[std::size_t(roots_[i])].size > 1 &&
-      m.thrown * m.way + fall_ > m.known;
-  };
-  forThose(movers.size(), kNearGrain, asks_, goesFurther,
-    [&](std::size_t i) { this->addNeighbours(int(i)); });
-  const auto meets = [&](std::size_t k)
+    if (companies_[std::size_t(roots_[i])].size == 1)
+    {
+      continue;
+    }
+    paces_[i].thrown = this->thrown(i);
+    fars_[i] = paces_[i].thrown * m.way;
+    if (fars_[i] + fall_ > m.known && m.present && !m.asleep)
+    {
+      m.known = kWider * (fars_[i] + fall_);
+      wider = true;
+      if (!this->isCovered(i))
+      {
+        this->cover(int(i));
+      }
+    }
+  }
+  if (wider)
   {
-    const Near& n = near[k];
-    return !n.linked && !this->isAsleep(n) && this->mayMeet(n);
-  };
+    this->widen();
+  }
+  chosen_.clear();
+  std::size_t left = 0;
+  for (const Open& o : open_)
+  {
+    if (o.apart <= fars_[std::size_t(o.first)] + fars_[std::size_t(o.second)] + fall_)
+    {
+      if (near[std::size_t(o.near)].linked)
+      {
+        continue;
+      }
+      if (!this->isAsleep(o.first, o.second) && this->mayMeet(o))
+      {
+        chosen_.push_back(left);
+      }
+    }
+    open_[left++] = o;
+  }
+  open_.resize(left);
   bool any = false;
   asked_.clear();
   placed_.clear();
-  const auto ask = [&](std::size_t k)
+  for (const std::size_t o : chosen_)
   {
+    const std::size_t k = std::size_t(open_[o].near);
     Near& n = near[k];
     if (n.pair && n.looked < 0.0 && this->root(n.first) == this->root(n.second))
     {
       // Of one company they are: how far apart is looked at when their contacts are.
       this->join(fall, k, false);
       any = true;
-      return;
+      continue;
     }
     n.pair = n.pair ? n.pair : this->newPair(fall, n.first, n.second);
-    asked_.push_back(k);
+    asked_.push_back(o);
     for (const int i : { n.first, n.second })
     {
       if (!marks_[std::size_t(i)])
@@ -179,21 +296,23 @@ bool MassFall::Meetings::sweep(MassFall& fall)
         placed_.push_back(i);
       }
     }
-  };
-  forThose(near.size(), kNearGrain, asks_, meets, ask);
+  }
   forEach(placed_.size(), kLookGrain,
     [&](std::size_t k) { fall.members_[std::size_t(placed_[k])]->stand(); });
+  answers_.resize(std::max(answers_.size(), asked_.size()));
   forEach(asked_.size(), kLookGrain,
-    [&](std::size_t k) { asks_[asked_[k]] = this->meet(fall, near[asked_[k]]); });
+    [&](std::size_t k) { answers_[k] = this->meet(fall, std::size_t(open_[asked_[k]].near)); });
   for (const int i : placed_)
   {
     marks_[std::size_t(i)] = 0;
   }
-  for (const std::size_t k : asked_)
+  for (std::size_t a = 0; a < asked_.size(); ++a)
   {
-    if (asks_[k])
+    Open& o = open_[asked_[a]];
+    o.apart = aparts_[std::size_t(o.near)];
+    if (answers_[a])
     {
-      this->join(fall, k, true);
+      this->join(fall, std::size_t(o.near), true);
       any = true;
     }
   }
@@ -204,12 +323,13 @@ bool MassFall::Meetings::sweep(MassFall& fall)
 void MassFall::Meetings::join(MassFall& fall, std::size_t k, bool known)
 {
   Near& n = near[k];
-  nextLink_[k] = { std::exchange(firstLink_[std::size_t(n.first)], int(k)),
-    std::exchange(firstLink_[std::size_t(n.second)], int(k)) };
   n.linked = n.holds = true;
-  n.known = known;
-  for (const int i : { n.first, n.second })
+  n.pair->linked = true;
+  n.pair->known = known;
+  const double gap = this->gap(n);
+  for (const auto& [i, other] : { std::pair(n.first, n.second), std::pair(n.second, n.first) })
   {
+    links_.push_back({ gap, other, std::exchange(firstLink_[std::size_t(i)], int(links_.size())) });
     Mover& m = movers[std::size_t(i)];
     if (m.asleep)
     {
@@ -244,12 +364,13 @@ void MassFall::Meetings::wakeAbout(MassFall& fall, int rock)
   {
     Near& n = near[k];
     const Mover& other = movers[std::size_t(n.first == rock ? n.second : n.first)];
-    if (!n.linked && other.asleep && this->mayMeet(n))
+    if (k < states_.size() && !n.linked && other.asleep && other.present &&
+      this->mayMeet(this->openOf(k)))
     {
       n.pair = n.pair ? n.pair : this->newPair(fall, n.first, n.second);
       fall.members_[std::size_t(n.first)]->stand();
       fall.members_[std::size_t(n.second)]->stand();
-      if (this->meet(fall, n))
+      if (this->meet(fall, k))
       {
         this->join(fall, k, true);
       }
@@ -262,25 +383,22 @@ void MassFall::Meetings::wakeAbout(MassFall& fall, int rock)
 void MassFall::Meetings::passOn(int rock)
 {
   const double way = movers[std::size_t(rock)].way;
-  for (int k = firstLink_[std::size_t(rock)]; k >= 0;)
+  for (int l = firstLink_[std::size_t(rock)]; l >= 0; l = links_[std::size_t(l)].next)
   {
-    const Near& n = near[std::size_t(k)];
-    const bool first = n.first == rock;
-    const int next = nextLink_[std::size_t(k)][first ? 0 : 1];
-    Mover& other = movers[std::size_t(first ? n.second : n.first)];
+    const Link& link = links_[std::size_t(l)];
+    Mover& other = movers[std::size_t(link.other)];
     if (way > other.way * kNoMore)
     {
       // The gap must be crossed first, by both together.
-      const double left =
-        way - std::max(0.0, this->gap(n)) * way / std::max(way + other.own, 1e-12);
+      const double left = way -
+        std::max(0.0, link.gap) * way / std::max(way + paces_[std::size_t(link.other)].own, 1e-12);
       if (left > other.way * kNoMore)
       {
         other.way = left;
         other.queued = true;
-        queue_.push_back(first ? n.second : n.first);
+        queue_.push_back(link.other);
       }
     }
-    k = next;
   }
 }
 
@@ -317,7 +435,8 @@ void MassFall::Meetings::tell(MassFall& fall)
     }
     m.queued = false;
     roots_[std::size_t(i)] = this->root(i);
-    m.thrown = this->thrown(std::size_t(i));
+    paces_[std::size_t(i)].thrown = this->thrown(std::size_t(i));
+    fars_[std::size_t(i)] = paces_[std::size_t(i)].thrown * m.way;
     if (sleepers_ > 0)
     {
       this->wakeAbout(fall, i);
@@ -329,43 +448,28 @@ void MassFall::Meetings::tell(MassFall& fall)
 
 void MassFall::Meetings::link(MassFall& fall)
 {
-  // What overlaps is known already.
   firstLink_.assign(movers.size(), -1);
-  nextLink_.resize(near.size());
-  const auto overlap = [&](std::size_t k)
-  {
-    Near& n = near[k];
-    const bool seen = n.pair && n.pair->seen; // found where they stand
-    if (seen)
-    {
-      this->lookAlong(n);
-    }
-    return seen && n.pair->axis.distance <= 0.0 && !this->isAsleep(n);
-  };
-  forThose(
-    near.size(), kNearGrain, asks_, overlap, [&](std::size_t k) { this->join(fall, k, false); });
+  links_.clear();
+  this->look(fall);
   this->tell(fall);
   while (this->sweep(fall))
   {
     this->tell(fall);
   }
-  const auto behind = near.begin() + std::ptrdiff_t(sorted_);
-  std::sort(behind, near.end());
-  std::inplace_merge(near.begin(), behind, near.end());
-  const auto settle = [&](std::size_t k)
+  this->settle();
+}
+
+/// Who is no longer linked.
+void MassFall::Meetings::settle()
+{
+  const auto part = [&](std::size_t k)
   {
     Near& n = near[k];
-    if (n.linked)
-    {
-      n.pair->linked = true;
-      n.pair->known = n.known;
-      return;
-    }
-    if (!(n.holds || n.wasLinked || n.looked >= 0.0))
+    if (n.linked || !(n.holds || n.wasLinked))
     {
       return;
     }
-    const bool asleep = this->isAsleep(n);
+    const bool asleep = this->isAsleep(n.first, n.second);
     if (asleep && !n.wasLinked)
     {
       return;
@@ -378,7 +482,7 @@ void MassFall::Meetings::link(MassFall& fall)
       n.pair->contacts.clear();
     }
   };
-  forEach(near.size(), kNearGrain, settle);
+  forEach(near.size(), kNearGrain, part);
 }
 
 void MassFall::findGroups(double duration)

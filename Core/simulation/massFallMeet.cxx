@@ -1,5 +1,9 @@
 // Which rocks are near each other in a step; which of them may meet: massFallLink.cxx.
 //
+// Those near each other are looked for in balls about the rocks wide enough for a few steps, and
+// again when a rock may come out of its own: for this one alone, or, if there are many such, for
+// all.
+//
 // Two rocks may meet if their gap can close within the step. How fast it closes follows from what
 // their velocities can become: those of a rock that flies are known; what touches the slope may be
 // stopped or thrown back; and what belongs to a company of rocks that may touch each other may get
@@ -22,10 +26,14 @@ namespace rockfall
 namespace
 {
 
-constexpr std::size_t kRockGrain = 64, kNearGrain = 256;
+constexpr std::size_t kRockGrain = 64;
 
-/// Neighbours are looked for within this many times the way that is known, which may yet grow.
-constexpr double kWider = 1.1;
+/// Steps that a rock may go on in its ball as it moves past the others now, and what it may go
+/// otherwise, of the way that is known.
+constexpr double kSteps = 4.0, kOtherwise = 0.5;
+
+/// All are looked for anew when this share of them are out of their balls.
+constexpr std::size_t kMostOut = 16;
 
 } // namespace
 
@@ -37,16 +45,18 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
   if (movers.empty())
   {
     movers.resize(count);
+    paces_.resize(count);
     companies_.resize(count);
     parents_.resize(count);
     roots_.resize(count);
     boxes_.resize(count);
+    fars_.resize(count);
     later_.resize(count);
     marks_.resize(count, 0);
     for (std::size_t i = 0; i < count; ++i)
     {
       movers[i].radius = fall.members_[i]->sim.block_.radius();
-      movers[i].mass = fall.members_[i]->sim.block_.mass();
+      paces_[i].mass = fall.members_[i]->sim.block_.mass();
     }
     bounciest_ = fall.contacts_.largestRestitution();
   }
@@ -58,13 +68,15 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
   const auto followRock = [&](std::size_t i)
   {
     Mover& m = movers[i];
+    Pace& pace = paces_[i];
     const Member& member = *fall.members_[i];
     const RockSimulator& sim = member.sim;
     const bool slept = m.asleep;
     m.asleep = member.asleep;
     m.present = !sim.done_ || m.asleep;
     m.queued = false;
-    m.thrown = 1.0;
+    pace.thrown = 1.0;
+    fars_[i] = 0.0;
     if (!m.present || (slept && m.asleep))
     {
       m.way = m.known = 0.0;
@@ -72,51 +84,58 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
     }
     const BlockState& s = sim.state_;
     m.position = s.position;
-    m.turned +=
-      wayOfTurn(m.orientation, s.orientation, m.radius) + m.radius * (s.strain - m.strain).norm();
-    m.orientation = s.orientation;
-    m.strain = s.strain;
+    m.turned += wayOfTurn(pace.orientation, s.orientation, m.radius) +
+      m.radius * (s.strain - pace.strain).norm();
+    pace.orientation = s.orientation;
+    pace.strain = s.strain;
     if (m.asleep)
     {
-      m.middle.setZero();
-      m.spread = m.own = m.way = m.known = 0.0;
+      pace.middle.setZero();
+      pace.velocity.setZero();
+      pace.spread = pace.own = m.way = m.known = 0.0;
       return;
     }
     const double speed = s.velocity.norm(), rim = sim.block_.largestRimSpeed(s.spin);
-    m.own = (speed + rim) * duration + fall_;
+    pace.velocity = s.velocity;
+    pace.own = (speed + rim) * duration + fall_;
     // What stands farther off than it may come has no say.
-    const double way = m.radius + m.own;
+    const double way = m.radius + pace.own;
     const Vec3& p = m.position;
     const bool obstructed =
       sim.obstacles_ && sim.obstacles_->anyIn(p.x() - way, p.x() + way, p.y() - way, p.y() + way);
     const bool flies = !obstructed && sim.contacts_.empty() && sim.clearFor(duration);
     // Velocities that an impact on the slope leaves, with any normal.
     const double e = obstructed ? 1.0 : ground;
-    m.middle = flies ? s.velocity : Vec3(0.5 * (1.0 - e) * s.velocity);
-    m.spread = rim + (flies ? 0.0 : 0.5 * (1.0 + e) * speed);
+    pace.middle = flies ? s.velocity : Vec3(0.5 * (1.0 - e) * s.velocity);
+    pace.spread = rim + (flies ? 0.0 : 0.5 * (1.0 + e) * speed);
     // In a crowd it is struck by much the same ones as in the last step.
-    m.known = kWider * std::max(m.own, m.way) + fall_;
-    m.way = m.own;
+    m.known = kWider * std::max(pace.own, m.way) + fall_;
+    m.way = fars_[i] = pace.own;
   };
   forEach(count, kRockGrain, followRock);
   sleepers_ = 0;
+  int present = 0;
+  drift_.setZero();
   for (std::size_t i = 0; i < count; ++i)
   {
     const Mover& m = movers[i];
+    const Pace& pace = paces_[i];
     sleepers_ += m.present && m.asleep;
-    companies_[i] = { m.middle.array() - m.spread, m.middle.array() + m.spread, m.mass, 1 };
-    boxes_[i] = { m.position, m.radius + m.known, m.present, m.present && !m.asleep };
+    companies_[i] = { pace.middle.array() - pace.spread, pace.middle.array() + pace.spread,
+      pace.mass, 1 };
+    if (m.present)
+    {
+      drift_ += m.position - pace.covered;
+      ++present;
+    }
+  }
+  drift_ /= std::max(1, present);
+  if (sleepers_ > 0)
+  {
+    drift_.setZero(); // who sleeps does not go on with the others
   }
   std::iota(parents_.begin(), parents_.end(), 0);
   std::iota(roots_.begin(), roots_.end(), 0);
-}
-
-/// From now on the gap is bounded along the pair's axis.
-void MassFall::Meetings::lookAlong(Near& n) const
-{
-  const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
-  n.normal = n.pair->axis.normal;
-  n.offset = n.pair->axis.distance - n.normal.dot(a.position - b.position) + a.turned + b.turned;
 }
 
 RockPair* MassFall::Meetings::newPair(const MassFall& fall, int first, int second)
@@ -144,28 +163,86 @@ void MassFall::Meetings::drop(MassFall& fall, Near& n)
     n.pair->contacts = std::move(contacts);
     spare_.push_back(n.pair);
   }
+  Near fresh;
+  fresh.first = n.first;
+  fresh.second = n.second;
+  n = fresh;
+}
+
+/// Whether all that it is near, wherever it may go in the step, are among its neighbours.
+bool MassFall::Meetings::isCovered(std::size_t i) const
+{
+  const Mover& m = movers[i];
+  const Pace& pace = paces_[i];
+  const double room = pace.cover - m.radius - m.known;
+  return !m.present ||
+    ((m.asleep || !pace.slept) && room >= 0.0 &&
+      (m.position - drift_ - pace.covered).squaredNorm() <= room * room);
 }
 
 void MassFall::Meetings::findNear(MassFall& fall)
 {
+  chosen_.clear();
+  forThose(
+    movers.size(), kRockGrain, answers_, [&](std::size_t i) { return !this->isCovered(i); },
+    [&](std::size_t i) { chosen_.push_back(i); });
+  if (!searched_ || chosen_.size() * kMostOut > movers.size())
+  {
+    this->search(fall);
+    return;
+  }
+  for (const std::size_t i : chosen_)
+  {
+    this->cover(int(i));
+  }
+}
+
+/// How much wider a rock's ball is than it need be in the step, m.
+double MassFall::Meetings::spare(int rock) const
+{
+  return kSteps * duration_ * (paces_[std::size_t(rock)].velocity - mean_).norm() +
+    kOtherwise * movers[std::size_t(rock)].known;
+}
+
+/// For all, from where they stand.
+void MassFall::Meetings::search(MassFall& fall)
+{
+  searched_ = true;
+  mean_.setZero();
+  int present = 0;
+  for (std::size_t i = 0; i < movers.size(); ++i)
+  {
+    if (movers[i].present)
+    {
+      mean_ += paces_[i].velocity;
+      ++present;
+    }
+  }
+  mean_ /= std::max(1, present);
+  drift_.setZero();
+  for (std::size_t i = 0; i < movers.size(); ++i)
+  {
+    const Mover& m = movers[i];
+    Pace& pace = paces_[i];
+    pace.covered = m.position;
+    pace.cover = m.radius + m.known + this->spare(int(i));
+    pace.slept = m.asleep;
+    boxes_[i] = { m.position, pace.cover, m.present, m.present && !m.asleep };
+  }
   broad_.place(boxes_);
   const std::span<const std::array<int, 2>> found = broad_.pairs();
+  const auto behind = near.begin() + std::ptrdiff_t(sorted_);
+  std::sort(behind, near.end());
+  std::inplace_merge(near.begin(), behind, near.end());
   // What lasts of those that are still near, and of sleepers, which are not looked for.
   nextNear_.clear();
   nextNear_.reserve(std::max(found.size(), near.size()));
   auto old = near.begin();
-  const auto take = [&](const Near& n)
-  {
-    Near& next = nextNear_.emplace_back(n);
-    next.wasLinked = n.linked;
-    next.linked = false;
-    next.looked = -1.0;
-  };
   const auto leave = [&](Near& n)
   {
-    if (n.pair && this->isAsleep(n))
+    if (n.pair && this->isAsleep(n.first, n.second))
     {
-      take(n);
+      nextNear_.push_back(n);
     }
     else
     {
@@ -181,13 +258,8 @@ void MassFall::Meetings::findNear(MassFall& fall)
     {
       leave(*old);
     }
-    if (old != near.end() && !(n < *old))
-    {
-      take(*old++);
-      continue;
-    }
-    n.offset = kNoAxis;
-    nextNear_.push_back(n);
+    const bool there = old != near.end() && !(n < *old);
+    nextNear_.push_back(there ? *old++ : n);
   }
   for (; old != near.end(); ++old)
   {
@@ -226,27 +298,32 @@ void MassFall::Meetings::indexNeighbours()
   widenedRocks_.clear();
 }
 
-/// Those that a rock may meet which goes further than the broad phase had it.
-void MassFall::Meetings::addNeighbours(int rock)
+/// Looks for those about a rock that comes out of its ball.
+void MassFall::Meetings::cover(int rock)
 {
-  Mover& m = movers[std::size_t(rock)];
-  m.known = kWider * (m.thrown * m.way + fall_);
-  broad_.within(m.position, m.radius + m.known + widened_, found_);
-  widened_ = std::max(widened_, m.known - (boxes_[std::size_t(rock)].radius - m.radius));
+  const Mover& m = movers[std::size_t(rock)];
+  Pace& pace = paces_[std::size_t(rock)];
+  const BroadBox& searched = boxes_[std::size_t(rock)];
+  pace.covered = m.position - drift_;
+  pace.cover = m.radius + m.known + this->spare(rock);
+  pace.slept = false;
+  broad_.within(pace.covered, pace.cover + widened_, found_);
+  widened_ =
+    std::max(widened_, pace.cover + (pace.covered - searched.center).norm() - searched.radius);
   const auto other = [&](std::size_t k)
   { return std::size_t(near[k].first == rock ? near[k].second : near[k].first); };
   this->forNeighbours(rock, [&](std::size_t k) { marks_[other(k)] = 1; });
   marks_[std::size_t(rock)] = 1;
   for (const int j : found_)
   {
-    const Mover& o = movers[std::size_t(j)];
-    const double reach = m.radius + m.known + o.radius + o.known;
-    if (!marks_[std::size_t(j)] && (m.position - o.position).squaredNorm() <= reach * reach)
+    const Pace& o = paces_[std::size_t(j)];
+    const double reach = pace.cover + o.cover;
+    if (!marks_[std::size_t(j)] && movers[std::size_t(j)].present &&
+      (pace.covered - o.covered).squaredNorm() <= reach * reach)
     {
       Near n;
       n.first = std::min(rock, j);
       n.second = std::max(rock, j);
-      n.offset = kNoAxis;
       for (const int i : { rock, j })
       {
         later_[std::size_t(i)].push_back(near.size());
@@ -255,7 +332,6 @@ void MassFall::Meetings::addNeighbours(int rock)
       near.push_back(n);
     }
   }
-  nextLink_.resize(near.size());
   this->forNeighbours(rock, [&](std::size_t k) { marks_[other(k)] = 0; });
   marks_[std::size_t(rock)] = 0;
 }

@@ -18,30 +18,43 @@ namespace rockfall
 /// Gap of two rocks along no axis yet.
 constexpr double kNoAxis = -std::numeric_limits<double>::infinity();
 
-/// A rock as the others meet it in the step at hand.
+/// Neighbours are near within this many times the way that is known, which may yet grow.
+constexpr double kWider = 1.1;
+
+/// A rock as the others meet it in the step at hand: what every look at a pair asks for, in one
+/// line of the cache.
 struct alignas(64) Mover
 {
-  // What every look at a pair asks for lies in one line of the cache.
   Vec3 position; ///< m
   double radius; ///< m
   double turned =
-    0.0;      ///< Longest way about the centroid since the release, by turns and strain, m.
-  double way; ///< The longest way of a point of it in the step, m, if it is struck by others.
-  double thrown = 1.0;  ///< What it is struck by may make it go on faster by this factor.
+    0.0;        ///< Longest way about the centroid since the release, by turns and strain, m.
+  double way;   ///< The longest way of a point of it in the step, m, if it is struck by others.
+  double known; ///< Rocks nearer than such a way, less their own, are its neighbours.
   bool present = false; ///< Neither gone nor stopped by the end time.
   bool asleep = false;
   bool queued = false; ///< Those about it have to be told.
+};
 
-  double own;   ///< The longest way if nothing strikes it, m.
-  double known; ///< Rocks nearer than such a way, less their own, are its neighbours.
-  double mass;  ///< kg
+/// What else decides how a rock moves in the step.
+struct Pace
+{
+  double own = 0.0;    ///< The longest way if nothing strikes it, m.
+  double thrown = 1.0; ///< What it is struck by may make it go on faster by this factor.
+  double mass;         ///< kg
   /// All velocities that points of it may have until it meets another rock are in a ball, m/s:
   /// about its velocity if it flies clear of the slope; else the slope may stop it or throw it
   /// back.
-  Vec3 middle;
-  double spread;
+  Vec3 middle = Vec3::Zero();
+  double spread = 0.0;
+  Vec3 velocity = Vec3::Zero();        ///< m/s
   Quat orientation = Quat::Identity(); ///< For which `turned` stands.
   Vec6 strain = Vec6::Zero();
+  /// Those in a ball about it have been looked for, which was here when it was where all have gone
+  /// on from together since, m.
+  Vec3 covered = Vec3::Zero();
+  double cover = 0.0; ///< Radius of the ball, m.
+  bool slept = true;  ///< Then: others that did were no neighbours.
 };
 
 /// Rocks that may touch within the step, or one alone.
@@ -52,7 +65,7 @@ struct Company
   int size;
 };
 
-/// Two rocks that are near each other.
+/// Two rocks that are near each other, or may come near each other soon.
 struct Near
 {
   int first = -1;
@@ -60,10 +73,9 @@ struct Near
   RockPair* pair = nullptr; ///< None as long as their bounding spheres tell them apart.
   /// At any later time the gap is no less than offset + normal · (x₁ − x₂) − turned₁ − turned₂.
   Vec3 normal = Vec3::Zero();
-  double offset = 0.0;
+  double offset = kNoAxis;
   double looked = -1.0;   ///< Reach within which the axis was looked for in this step, m.
   bool linked = false;    ///< May touch in this step,
-  bool known = false;     ///< and the axis has been found for where they stand;
   bool wasLinked = false; ///< or could in the last one.
   bool holds = false;     ///< May have contacts.
 };
@@ -76,7 +88,7 @@ inline bool operator<(const Near& a, const Near& b)
 struct MassFall::Meetings
 {
   std::vector<Mover> movers;
-  std::vector<Near> near; ///< Ordered by (first, second).
+  std::vector<Near> near; ///< Ordered by (first, second), but for those found later.
 
   void follow(MassFall& fall, double duration); ///< The rocks, to where they stand now.
   void findNear(MassFall& fall);
@@ -85,55 +97,86 @@ struct MassFall::Meetings
   bool isAlone(std::size_t root) const { return companies_[root].size == 1; }
 
 private:
-  double gap(const Near& near) const; ///< At least, m.
-  double closing(const Near& near) const;
-  double thrown(std::size_t rock) const;
-  double reach(const Near& near) const;
-  double ways(const Near& near) const;
-  bool isWithin(const Near& near, double reach) const;
-  bool mayMeet(const Near& near) const;
-  bool isAsleep(const Near& near) const; ///< Both.
-  void lookAlong(Near& near) const;
+  /// Two that are not linked and no farther apart than ways go that are known.
+  struct Open
+  {
+    double apart; ///< No nearer than that, m.
+    int first, second;
+    int near; ///< Which one of `near`.
+  };
+  /// One that a rock is linked with, in a list.
+  struct Link
+  {
+    double gap; ///< At least, m.
+    int other;
+    int next; ///< −1 ends.
+  };
+
+  // Who is near: massFallMeet.cxx
+  void search(MassFall& fall);
+  void cover(int rock);
+  double spare(int rock) const;
+  bool isCovered(std::size_t rock) const;
   RockPair* newPair(const MassFall& fall, int first, int second);
   void drop(MassFall& fall, Near& near);
   void indexNeighbours();
-  void addNeighbours(int rock);
-  bool meet(const MassFall& fall, Near& near);
+  template <class Visit>
+  void forNeighbours(int rock, Visit&& visit);
+
+  // Who may meet: massFallLink.cxx
+  double gap(const Near& near) const; ///< At least, along the axis, m.
+  double apart(const Near& near) const;
+  double closing(const Near& near) const;
+  double thrown(std::size_t rock) const;
+  double reach(const Near& near) const;
+  bool isAsleep(int first, int second) const; ///< Both.
+  void lookAlong(Near& near) const;
+  bool mayMeet(const Open& open) const;
+  bool meet(const MassFall& fall, std::size_t near);
+  void look(MassFall& fall);
+  Open openOf(std::size_t near) const;
+  void widen();
   bool sweep(MassFall& fall);
   void join(MassFall& fall, std::size_t near, bool known);
   void wakeAbout(MassFall& fall, int rock);
   void passOn(int rock);
   void tell(MassFall& fall);
-  template <class Visit>
-  void forNeighbours(int rock, Visit&& visit);
+  void settle();
 
   double duration_ = 0.0;
-  double fall_ = 0.0;      ///< What gravity may add to a way, m.
-  double bounciest_ = 0.0; ///< Largest restitution of rocks on each other.
-  double widened_ = 0.0;   ///< Most that `known` has grown by since the broad phase, m.
+  double fall_ = 0.0;         ///< What gravity may add to a way, m.
+  double bounciest_ = 0.0;    ///< Largest restitution of rocks on each other.
+  double widened_ = 0.0;      ///< Most that a rock's ball reaches beyond that of the search, m.
+  Vec3 drift_ = Vec3::Zero(); ///< How far all have gone on together since, m.
+  Vec3 mean_ = Vec3::Zero();  ///< Velocity of all together, m/s.
+  bool searched_ = false;
   BroadPhase broad_;
-  std::vector<BroadBox> boxes_;
+  std::vector<BroadBox> boxes_; ///< Of the last search.
+  std::vector<Pace> paces_;
   std::vector<Near> nextNear_;
   std::deque<RockPair> pairs_;
   std::vector<RockPair*> spare_;
   std::vector<Company> companies_; ///< By root.
   std::vector<int> parents_, roots_;
-  /// Of each rock, where it is in `near`: those of the broad phase, and those found later.
+  /// Of each rock, where it is in `near`: those of the search, and those found later.
   std::vector<std::size_t> firsts_, places_;
   std::vector<std::vector<std::size_t>> later_;
   std::vector<int> widenedRocks_;
-  /// Linked pairs of each rock, as lists: the first one, and by pair the next of either rock; −1
-  /// ends.
-  std::vector<int> firstLink_;
-  std::vector<std::array<int, 2>> nextLink_;
+  std::size_t sorted_ = 0;     ///< Of `near`; behind it those found later.
+  std::vector<double> aparts_; ///< Of `near`.
+  std::vector<char> states_;   ///< Of `near`: what a look at it has shown.
+  std::vector<Open> open_;
+  std::vector<double> fars_;   ///< By rock, how far it may come towards others, m.
+  std::vector<int> firstLink_; ///< By rock, in `links_`.
+  std::vector<Link> links_;
   int sleepers_ = 0;
-  std::size_t sorted_ = 0; ///< Of `near`; behind it those found later.
+  bool widening_ = false; ///< Ways have outgrown what was known.
   std::vector<int> queue_;
   std::vector<std::uint64_t> turns_;
   std::vector<int> found_;
   std::vector<char> marks_;
-  std::vector<char> asks_;
-  std::vector<std::size_t> asked_;
+  std::vector<char> answers_;
+  std::vector<std::size_t> chosen_, asked_;
   std::vector<int> placed_;
 };
 
