@@ -1,5 +1,7 @@
 #include "base/parallel.h"
 
+#include "base/cache.h"
+
 #include <tbb/global_control.h>
 #include <tbb/task_group.h>
 
@@ -17,7 +19,6 @@ namespace rockfall
 namespace
 {
 
-constexpr std::size_t kCacheLine = 64; // bytes
 /// Loops within loops; further down a thread goes on by itself.
 constexpr int kLevels = 3;
 /// Looks for something to do before other programs get their turn.

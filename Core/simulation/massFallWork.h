@@ -3,6 +3,7 @@
 /// @file
 /// What massFallGroup.cxx and massFallStep.cxx share.
 
+#include "base/cache.h"
 #include "simulation/MassFall.h"
 
 #include <array>
@@ -44,16 +45,6 @@ inline bool mayBounce(const std::vector<int>& partners, const GroupContact& k)
 inline bool hits(const Contact& c, double approach, double resting, double h)
 {
   return !c.closed() && approach > resting && c.gap() < approach * h;
-}
-
-constexpr std::size_t kCacheLine = 64; // bytes
-
-inline void askCache(const void* from, const void* to)
-{
-  for (const char* at = static_cast<const char*>(from); at < to; at += kCacheLine)
-  {
-    __builtin_prefetch(at);
-  }
 }
 
 // Asks the cache for what a loop over the pairs or rocks of a group comes to soon.

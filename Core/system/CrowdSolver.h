@@ -9,6 +9,7 @@
 /// (system/crowdKernel.h), and nothing else of them is kept. Most contacts of a crowd are open and
 /// stay so: they are only watched, and are made ready when they close.
 
+#include "base/cache.h"
 #include "base/parallel.h"
 #include "solver/StepSolver.h"
 #include "system/crowdKernel.h"
@@ -108,6 +109,9 @@ private:
   /// visit(row) of a part, without those that were appended.
   template <class Visit>
   void forRows(int part, Visit&& visit) const;
+  /// The same where contacts themselves are read or written: they are asked for ahead.
+  template <class Visit>
+  void forContacts(int part, Visit&& visit) const;
   std::size_t firstOf(std::size_t key) const { return key == 0 ? 0 : ends_[key - 1]; }
   void prepareRow(const std::vector<GroupBody>& bodies, const GroupContact& group, Row& row);
   void arm(const GroupContact& group, const Row& row); ///< With springs, and what bounces stiffer.
@@ -253,6 +257,22 @@ void CrowdSolver::forRows(int part, Visit&& visit) const
   const std::size_t key = std::size_t(part * kKinds);
   for (std::size_t k = this->firstOf(key); k < ends_[key + kKinds - 1]; ++k)
   {
+    visit(std::size_t(order_[k]));
+  }
+}
+
+template <class Visit>
+void CrowdSolver::forContacts(int part, Visit&& visit) const
+{
+  constexpr std::size_t kAhead = 6;
+  const std::size_t key = std::size_t(part * kKinds), end = ends_[key + kKinds - 1];
+  for (std::size_t k = this->firstOf(key); k < end; ++k)
+  {
+    if (k + kAhead < end)
+    {
+      const Contact* next = (*contacts_)[std::size_t(order_[k + kAhead])].contact;
+      askCache(next, next + 1);
+    }
     visit(std::size_t(order_[k]));
   }
 }

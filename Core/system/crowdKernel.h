@@ -2,16 +2,16 @@
 
 /// @file
 /// The innermost loops of a crowd's solver: one pass of projected Gauss–Seidel over contacts that
-/// are dealt out in batches of four, of which no two share a rock, so that the four are reckoned
-/// side by side in vector registers. Plain numbers only: this is compiled once for every x86-64
-/// processor and once for those with AVX2, to the same bits (no fused operations).
+/// are dealt out in batches of eight, of which no two share a rock, so that they are reckoned side
+/// by side in vector registers. Plain numbers only: this is compiled for every x86-64 processor,
+/// for those with AVX2 and for those with AVX-512, to the same bits (no fused operations).
 
 #include <cstddef>
 
 namespace rockfall::crowd
 {
 
-constexpr int kLanes = 4;
+constexpr int kLanes = 8;
 
 /// What a sweep meets of a rock.
 struct alignas(64) Mover
@@ -21,7 +21,7 @@ struct alignas(64) Mover
   double inertia[8]; ///< h² I⁻¹, world: xx, yy, zz, xy, xz, yz, 1/(N m); unused.
 };
 
-/// What a sweep meets of four contacts; the last index is the contact.
+/// What a sweep meets of the contacts of a batch; the last index is the contact.
 struct alignas(64) Batch
 {
   double directions[3][3][kLanes]; ///< Normal and two tangents; their x, y, z.
@@ -38,14 +38,14 @@ struct alignas(64) Batch
   int body[2][kLanes];             ///< Index of the mover.
 };
 
-/// What springs four contacts have, for `assemble`; 0 in lanes that hold none.
-struct alignas(32) Springs
+/// What springs they have, for `assemble`; 0 in lanes that hold none.
+struct alignas(64) Springs
 {
   double penalty[kLanes]; ///< pₙ, N/m
   double shear[kLanes];   ///< pₛ, N/m
 };
 
-/// Four contacts that may stay open: all that tells whether they do.
+/// Contacts that may stay open: all that tells whether they do.
 struct alignas(64) Watched
 {
   double normal[3][kLanes];
@@ -54,8 +54,8 @@ struct alignas(64) Watched
   int body[2][kLanes];        ///< Index of the mover.
 };
 
-/// Forces of four contacts along their directions, N.
-struct alignas(32) Forces
+/// Forces of the contacts of a batch along their directions, N.
+struct alignas(64) Forces
 {
   double along[3][kLanes];
 };
@@ -79,10 +79,10 @@ struct Watch
 {
   const Watched* first;
   std::size_t count;
-  const Mover* movers;
+  Mover* movers;      ///< Read only.
   const int* changed; ///< By mover, as for a pass.
   int since;          ///< Those of which no rock has moved in this sweep or later stay as they are.
-  unsigned char* closes; ///< Out, by four: a bit for each one that is closed where the rocks go.
+  unsigned char* closes; ///< Out, by batch: a bit for each one that is closed where the rocks go.
 };
 
 /// Displacement (m) and Cayley vector (rad) of a mover, as they lie in it.
@@ -109,7 +109,7 @@ struct Kernel
   double (*sweep)(const Pass& pass);
   /// Fills in `w`, `coupling`, `stiffness`, `shear` and `gain` from directions, levers, springs and
   /// the movers' mobility.
-  void (*assemble)(Batch* batches, const Springs* springs, const Mover* movers, std::size_t count);
+  void (*assemble)(Batch* batches, const Springs* springs, Mover* movers, std::size_t count);
   bool (*watch)(const Watch& watch); ///< Whether any closes.
   /// How far movers have come since `before`, in the norm of kinetic energy with a ball's inertia
   /// for that of each rock, N m.
@@ -120,9 +120,9 @@ struct Kernel
   void (*goMovers)(
     const Further& further, Mover* now, Way* before, Way* along, int* changed, std::size_t count);
 };
-extern const Kernel kAnywhere, kAvx2;
+extern const Kernel kAnywhere, kAvx2, kAvx512;
 
-/// The one that suits the processor.
+/// The one that suits the processor best.
 const Kernel& suitedKernel();
 
 } // namespace rockfall::crowd

@@ -13,9 +13,6 @@ namespace rockfall
 namespace
 {
 
-/// Batches that are assembled at once.
-constexpr std::size_t kBlock = 64;
-
 void setLane(double (&of)[3][crowd::kLanes], int lane, const Vec3& to)
 {
   of[0][lane] = to[0];
@@ -80,23 +77,24 @@ void CrowdSolver::assemble(std::size_t first, std::size_t count)
 void CrowdSolver::prepareRows(
   const std::vector<GroupBody>& bodies, const std::vector<GroupContact>& contacts)
 {
-  forEach(contacts.size(), kRowGrain,
-    [&](std::size_t k) { this->prepareRow(bodies, contacts[k], rows_[k]); });
-  const auto assembleBlock = [&](std::size_t block)
+  // Part by part, as long as it lies in the cache.
+  const auto preparePart = [&](int part)
   {
-    const std::size_t first = block * kBlock;
-    this->assemble(first, std::min(kBlock, batches_.size() - first));
-  };
-  forEach((batches_.size() + kBlock - 1) / kBlock, 4, assembleBlock);
-  const auto start = [&](std::size_t k)
-  {
-    if (contacts[k].bounce >= 0.0)
+    this->forContacts(
+      part, [&](std::size_t k) { this->prepareRow(bodies, contacts[k], rows_[k]); });
+    const std::size_t key = std::size_t(part * kKinds), first = std::size_t(starts_[key]);
+    this->assemble(first, std::size_t(starts_[key + Watching]) - first);
+    for (std::size_t at = this->firstOf(key); at < ends_[key + OnSlope]; ++at)
     {
-      this->arm(contacts[k], rows_[k]);
+      const std::size_t k = std::size_t(order_[at]);
+      if (contacts[k].bounce >= 0.0)
+      {
+        this->arm(contacts[k], rows_[k]);
+      }
+      this->pushed(rows_[k], 1.0);
     }
-    this->pushed(rows_[k], 1.0);
   };
-  this->forParts(false, [&](int part) { this->forRows(part, start); });
+  this->forParts(false, preparePart);
 }
 
 void CrowdSolver::lever(

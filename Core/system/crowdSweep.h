@@ -1,8 +1,12 @@
-// The loops of crowd::kAnywhere and kAvx2: included by the two files that compile it. No
-// function with external linkage may be used here, or the linker could take the AVX2 one for all.
+// The loops of crowd::kAnywhere, kAvx2 and kAvx512: included by the files that compile it. No
+// function with external linkage may be used here, or the linker could take one of these for all.
 
 #include "solver/cohesion.h"
 #include "system/crowdKernel.h"
+
+#ifdef __AVX__
+#include <immintrin.h>
+#endif
 
 namespace
 {
@@ -19,8 +23,17 @@ using rockfall::crowd::Watch;
 using rockfall::crowd::Watched;
 using rockfall::crowd::Way;
 
-using Lanes = double __attribute__((vector_size(32), may_alias));
-using Mask = long long __attribute__((vector_size(32)));
+/// What a mover has, and contacts side by side: as many as a register holds.
+using Four = double __attribute__((vector_size(32), may_alias));
+using FourMask = long long __attribute__((vector_size(32)));
+#ifdef __AVX512F__
+constexpr int kWidth = 8;
+#else
+constexpr int kWidth = 4;
+#endif
+using Lanes = double __attribute__((vector_size(8 * kWidth), may_alias));
+using Mask = long long __attribute__((vector_size(8 * kWidth)));
+static_assert(kLanes % kWidth == 0);
 
 struct Triple
 {
@@ -29,25 +42,52 @@ struct Triple
 
 #define ROCKFALL_INLINE inline __attribute__((always_inline))
 
+ROCKFALL_INLINE Four loadFour(const double* p)
+{
+  return *reinterpret_cast<const Four*>(p);
+}
+
+ROCKFALL_INLINE void store(double* p, Four v)
+{
+  *reinterpret_cast<Four*>(p) = v;
+}
+
 ROCKFALL_INLINE Lanes load(const double* p)
 {
   return *reinterpret_cast<const Lanes*>(p);
 }
 
+#ifdef __AVX512F__
 ROCKFALL_INLINE void store(double* p, Lanes v)
 {
   *reinterpret_cast<Lanes*>(p) = v;
 }
+#endif
 
-ROCKFALL_INLINE Triple load3(const double (&p)[3][kLanes])
+/// From lane `at` on.
+ROCKFALL_INLINE Triple load3(const double (&p)[3][kLanes], int at)
 {
-  return { load(p[0]), load(p[1]), load(p[2]) };
+  return { load(p[0] + at), load(p[1] + at), load(p[2] + at) };
 }
 
-/// Rows to columns: four numbers of each of four movers.
+ROCKFALL_INLINE Lanes all(double v)
+{
+  return v - Lanes{};
+}
+
+/// Rows to columns, or back, in each half of the registers: four numbers of four movers.
 ROCKFALL_INLINE void transpose(Lanes (&m)[4])
 {
-#ifdef __AVX__
+#if defined(__AVX512F__)
+  const Lanes even01 = __builtin_shufflevector(m[0], m[1], 0, 8, 2, 10, 4, 12, 6, 14);
+  const Lanes odd01 = __builtin_shufflevector(m[0], m[1], 1, 9, 3, 11, 5, 13, 7, 15);
+  const Lanes even23 = __builtin_shufflevector(m[2], m[3], 0, 8, 2, 10, 4, 12, 6, 14);
+  const Lanes odd23 = __builtin_shufflevector(m[2], m[3], 1, 9, 3, 11, 5, 13, 7, 15);
+  m[0] = __builtin_shufflevector(even01, even23, 0, 1, 8, 9, 4, 5, 12, 13);
+  m[1] = __builtin_shufflevector(odd01, odd23, 0, 1, 8, 9, 4, 5, 12, 13);
+  m[2] = __builtin_shufflevector(even01, even23, 2, 3, 10, 11, 6, 7, 14, 15);
+  m[3] = __builtin_shufflevector(odd01, odd23, 2, 3, 10, 11, 6, 7, 14, 15);
+#elif defined(__AVX__)
   const Lanes even01 = __builtin_shufflevector(m[0], m[1], 0, 4, 2, 6);
   const Lanes odd01 = __builtin_shufflevector(m[0], m[1], 1, 5, 3, 7);
   const Lanes even23 = __builtin_shufflevector(m[2], m[3], 0, 4, 2, 6);
@@ -65,12 +105,32 @@ ROCKFALL_INLINE void transpose(Lanes (&m)[4])
 #endif
 }
 
-ROCKFALL_INLINE void scatter(Lanes (&m)[4], double* (&to)[4])
+/// Four numbers of each of as many movers as there are lanes: `m[k]` has their number k.
+ROCKFALL_INLINE void gather(const double* const (&from)[kWidth], Lanes (&m)[4])
+{
+  for (int i = 0; i < 4; ++i)
+  {
+#ifdef __AVX512F__
+    m[i] =
+      __builtin_shufflevector(loadFour(from[i]), loadFour(from[i + 4]), 0, 1, 2, 3, 4, 5, 6, 7);
+#else
+    m[i] = loadFour(from[i]);
+#endif
+  }
+  transpose(m);
+}
+
+ROCKFALL_INLINE void scatter(Lanes (&m)[4], double* const (&to)[kWidth])
 {
   transpose(m);
   for (int i = 0; i < 4; ++i)
   {
+#ifdef __AVX512F__
+    store(to[i], __builtin_shufflevector(m[i], m[i], 0, 1, 2, 3));
+    store(to[i + 4], __builtin_shufflevector(m[i], m[i], 4, 5, 6, 7));
+#else
     store(to[i], m[i]);
+#endif
   }
 }
 
@@ -89,11 +149,18 @@ ROCKFALL_INLINE Lanes absolute(Lanes v)
   return v < 0.0 ? -v : v;
 }
 
+ROCKFALL_INLINE Four absolute4(Four v)
+{
+  return v < 0.0 ? -v : v;
+}
+
 /// Which lanes are set, as bits.
 ROCKFALL_INLINE int bits(Mask m)
 {
-#ifdef __AVX__
-  return __builtin_ia32_movmskpd256(reinterpret_cast<Lanes>(m));
+#if defined(__AVX512F__)
+  return _mm512_movepi64_mask(reinterpret_cast<__m512i>(m));
+#elif defined(__AVX__)
+  return _mm256_movemask_pd(reinterpret_cast<__m256d>(m));
 #else
   return int(-m[0] | -m[1] << 1 | -m[2] << 2 | -m[3] << 3);
 #endif
@@ -101,36 +168,39 @@ ROCKFALL_INLINE int bits(Mask m)
 
 ROCKFALL_INLINE Lanes squareRoot(Lanes v)
 {
-#ifdef __AVX__
-  return __builtin_ia32_sqrtpd256(v);
+#if defined(__AVX512F__)
+  return _mm512_mask_sqrt_pd(v, 0xff, v); // the plain one warns of what it does not use
+#elif defined(__AVX__)
+  return _mm256_sqrt_pd(v);
 #else
   return Lanes{ __builtin_sqrt(v[0]), __builtin_sqrt(v[1]), __builtin_sqrt(v[2]),
     __builtin_sqrt(v[3]) };
 #endif
 }
 
-/// One side of four contacts.
+/// One side of the contacts.
 struct Side
 {
-  double* way[4];
-  double* turn[4];
-  const double* inertia[4];
+  double* way[kWidth];
+  double* turn[kWidth];
+  const double* inertia[kWidth];
+  const double* others[kWidth]; ///< Off the diagonal of the inertia.
   Lanes ways[4], turns[4];
 };
 
-ROCKFALL_INLINE void take(Mover* movers, const int (&body)[kLanes], Side& side)
+/// `body`: from the first lane on.
+ROCKFALL_INLINE void take(Mover* movers, const int* body, Side& side)
 {
-  for (int i = 0; i < kLanes; ++i)
+  for (int i = 0; i < kWidth; ++i)
   {
     Mover& m = movers[body[i]];
     side.way[i] = m.way;
     side.turn[i] = m.turn;
     side.inertia[i] = m.inertia;
-    side.ways[i] = load(m.way);
-    side.turns[i] = load(m.turn);
+    side.others[i] = m.inertia + 4;
   }
-  transpose(side.ways);
-  transpose(side.turns);
+  gather(side.way, side.ways);
+  gather(side.turn, side.turns);
 }
 
 /// What a force does to its rocks.
@@ -141,13 +211,8 @@ ROCKFALL_INLINE void push(Side& side, const Triple& lever, const Triple& force)
   side.ways[2] += side.ways[3] * force.z;
   const Triple moment = cross(lever, force);
   Lanes diagonal[4], others[4];
-  for (int i = 0; i < kLanes; ++i)
-  {
-    diagonal[i] = load(side.inertia[i]);
-    others[i] = load(side.inertia[i] + 4);
-  }
-  transpose(diagonal);
-  transpose(others);
+  gather(side.inertia, diagonal);
+  gather(side.others, others);
   const Lanes xx = diagonal[0], yy = diagonal[1], zz = diagonal[2], xy = diagonal[3];
   const Lanes xz = others[0], yz = others[1];
   side.turns[0] += xx * moment.x + xy * moment.y + xz * moment.z;
@@ -157,13 +222,13 @@ ROCKFALL_INLINE void push(Side& side, const Triple& lever, const Triple& force)
   scatter(side.turns, side.turn);
 }
 
-/// Returns by how much displacements change at each contact, m.
+/// From lane `at` on. Returns by how much displacements change at each contact, m.
 template <bool onSlope>
-ROCKFALL_INLINE Lanes relax(const Batch& batch, Forces& forces, const Pass& pass)
+ROCKFALL_INLINE Lanes relax(const Batch& batch, Forces& forces, const Pass& pass, int at)
 {
   Side a, b;
-  take(pass.movers, batch.body[0], a);
-  const Triple leverA = load3(batch.lever[0]);
+  take(pass.movers, batch.body[0] + at, a);
+  const Triple leverA = load3(batch.lever[0], at);
   Triple way = cross({ a.turns[0], a.turns[1], a.turns[2] }, leverA);
   way.x += a.ways[0];
   way.y += a.ways[1];
@@ -171,19 +236,20 @@ ROCKFALL_INLINE Lanes relax(const Batch& batch, Forces& forces, const Pass& pass
   Triple leverB = leverA;
   if (!onSlope)
   {
-    take(pass.movers, batch.body[1], b);
-    leverB = load3(batch.lever[1]);
+    take(pass.movers, batch.body[1] + at, b);
+    leverB = load3(batch.lever[1], at);
     const Triple turned = cross({ b.turns[0], b.turns[1], b.turns[2] }, leverB);
     way.x -= b.ways[0] + turned.x;
     way.y -= b.ways[1] + turned.y;
     way.z -= b.ways[2] + turned.z;
   }
-  const Triple n = load3(batch.directions[0]);
-  const Lanes before = load(forces.along[0]);
-  const Lanes before1 = load(forces.along[1]), before2 = load(forces.along[2]);
-  const Lanes w = load(batch.w), friction = load(batch.friction), cohesion = load(batch.cohesion);
-  const Lanes coupling1 = load(batch.coupling[0]), coupling2 = load(batch.coupling[1]);
-  const Lanes zero = { 0.0, 0.0, 0.0, 0.0 }, one = { 1.0, 1.0, 1.0, 1.0 };
+  const Triple n = load3(batch.directions[0], at);
+  const Lanes before = load(forces.along[0] + at);
+  const Lanes before1 = load(forces.along[1] + at), before2 = load(forces.along[2] + at);
+  const Lanes w = load(batch.w + at), friction = load(batch.friction + at),
+              cohesion = load(batch.cohesion + at);
+  const Lanes coupling1 = load(batch.coupling[0] + at), coupling2 = load(batch.coupling[1] + at);
+  const Lanes zero = all(0.0), one = all(1.0);
   // Where it slides friction grows with the normal force, and may work against it under a long
   // lever: taken for fixed, both would drive each other up from visit to visit. What is solved for
   // is the same.
@@ -195,9 +261,9 @@ ROCKFALL_INLINE Lanes relax(const Batch& batch, Forces& forces, const Pass& pass
   const Mask against = slid & (across > zero) & (held > zero);
   const Lanes tied = against ? across / (against ? held : one) : zero;
   // The gap that the others leave, and the spring that closes it.
-  const Lanes open = load(batch.gap) + dot(n, way) - (w + tied) * before;
+  const Lanes open = load(batch.gap + at) + dot(n, way) - (w + tied) * before;
   const Mask closes = open < zero;
-  const Lanes stiffness = load(batch.stiffness);
+  const Lanes stiffness = load(batch.stiffness + at);
   const Lanes normal = closes ? -stiffness * open / (one + stiffness * tied) : zero;
   const Lanes any = normal + absolute(before) + absolute(before1) + absolute(before2);
   if (bits(any > zero) == 0)
@@ -206,10 +272,10 @@ ROCKFALL_INLINE Lanes relax(const Batch& batch, Forces& forces, const Pass& pass
   }
   const Lanes more = normal - before;
   // One step towards the locked spring, then back onto the Coulomb cone.
-  const Triple u = load3(batch.directions[1]), v = load3(batch.directions[2]);
-  const Lanes shear = load(batch.shear), gain = load(batch.gain);
-  Lanes s = load(batch.slip[0]) + dot(u, way) + coupling1 * more;
-  Lanes t = load(batch.slip[1]) + dot(v, way) + coupling2 * more;
+  const Triple u = load3(batch.directions[1], at), v = load3(batch.directions[2], at);
+  const Lanes shear = load(batch.shear + at), gain = load(batch.gain + at);
+  Lanes s = load(batch.slip[0] + at) + dot(u, way) + coupling1 * more;
+  Lanes t = load(batch.slip[1] + at) + dot(v, way) + coupling2 * more;
   s = before1 - gain * (s + before1 * shear);
   t = before2 - gain * (t + before2 * shear);
   const Lanes holds = normal * rockfall::kCohesionPerForce;
@@ -218,12 +284,13 @@ ROCKFALL_INLINE Lanes relax(const Batch& batch, Forces& forces, const Pass& pass
   const Mask slides = square > limit * limit;
   const Lanes root = squareRoot(slides ? square : one);
   const Lanes back = slides ? limit / root : one;
-  s *= back;
-  t *= back;
+  const Mask carries = limit > zero; // else zero without a sign, as where nothing is reckoned
+  s = carries ? s * back : zero;
+  t = carries ? t * back : zero;
   const Lanes slide1 = s - before1, slide2 = t - before2;
-  store(forces.along[0], normal);
-  store(forces.along[1], s);
-  store(forces.along[2], t);
+  store(forces.along[0] + at, normal);
+  store(forces.along[1] + at, s);
+  store(forces.along[2] + at, t);
   const Triple force = { more * n.x + slide1 * u.x + slide2 * v.x,
     more * n.y + slide1 * u.y + slide2 * v.y, more * n.z + slide1 * u.z + slide2 * v.z };
   push(a, leverA, force);
@@ -233,9 +300,10 @@ ROCKFALL_INLINE Lanes relax(const Batch& batch, Forces& forces, const Pass& pass
   }
   const Lanes change = w * (absolute(more) + absolute(slide1) + absolute(slide2));
   const int moved = bits(change > pass.quiet);
-  for (int i = 0; i < kLanes; ++i)
+  for (int i = 0; i < kWidth; ++i)
   {
-    int &first = pass.changed[batch.body[0][i]], &second = pass.changed[batch.body[1][i]];
+    int& first = pass.changed[batch.body[0][at + i]];
+    int& second = pass.changed[batch.body[1][at + i]];
     const bool moves = (moved >> i & 1) != 0;
     first = moves ? pass.number : first;
     if (!onSlope)
@@ -249,7 +317,7 @@ ROCKFALL_INLINE Lanes relax(const Batch& batch, Forces& forces, const Pass& pass
 template <bool onSlope>
 ROCKFALL_INLINE double sweepAll(const Pass& pass)
 {
-  Lanes most = { 0.0, 0.0, 0.0, 0.0 };
+  Lanes most = all(0.0);
   for (int k = 0; k < pass.count; ++k)
   {
     const int at = pass.backwards ? pass.count - 1 - k : k;
@@ -267,12 +335,18 @@ ROCKFALL_INLINE double sweepAll(const Pass& pass)
     {
       continue;
     }
-    const Lanes change = relax<onSlope>(batch, pass.forces[at], pass);
-    most = change > most ? change : most;
+    for (int lane = 0; lane < kLanes; lane += kWidth)
+    {
+      const Lanes change = relax<onSlope>(batch, pass.forces[at], pass, lane);
+      most = change > most ? change : most;
+    }
   }
-  const double low = most[0] > most[1] ? most[0] : most[1];
-  const double high = most[2] > most[3] ? most[2] : most[3];
-  return low > high ? low : high;
+  double largest = 0.0;
+  for (int i = 0; i < kWidth; ++i)
+  {
+    largest = most[i] > largest ? most[i] : largest;
+  }
+  return largest;
 }
 
 double sweepHere(const Pass& pass)
@@ -294,21 +368,15 @@ ROCKFALL_INLINE Triple turned(const Lanes (&inertia)[6], const Triple& v)
     inertia[4] * v.x + inertia[5] * v.y + inertia[2] * v.z };
 }
 
-ROCKFALL_INLINE void addMobility(const Mover* movers, const int (&body)[kLanes],
-  const Triple& lever, const Triple (&directions)[3], Mobility& sum)
+ROCKFALL_INLINE void addMobility(
+  Mover* movers, const int* body, const Triple& lever, const Triple (&directions)[3], Mobility& sum)
 {
-  Lanes ways[4], diagonal[4], others[4];
-  for (int i = 0; i < kLanes; ++i)
-  {
-    const Mover& m = movers[body[i]];
-    ways[i] = load(m.way);
-    diagonal[i] = load(m.inertia);
-    others[i] = load(m.inertia + 4);
-  }
-  transpose(ways);
-  transpose(diagonal);
-  transpose(others);
-  const Lanes mass = ways[3];
+  Side side;
+  take(movers, body, side);
+  Lanes diagonal[4], others[4];
+  gather(side.inertia, diagonal);
+  gather(side.others, others);
+  const Lanes mass = side.ways[3];
   const Lanes inertia[6] = { diagonal[0], diagonal[1], diagonal[2], diagonal[3], others[0],
     others[1] };
   const Triple jn = cross(lever, directions[0]), ju = cross(lever, directions[1]);
@@ -322,43 +390,39 @@ ROCKFALL_INLINE void addMobility(const Mover* movers, const int (&body)[kLanes],
   sum.uv += dot(ju, iv);
 }
 
-void assembleHere(Batch* batches, const Springs* springs, const Mover* movers, std::size_t count)
+void assembleHere(Batch* batches, const Springs* springs, Mover* movers, std::size_t count)
 {
-  const Lanes zero = { 0.0, 0.0, 0.0, 0.0 }, one = { 1.0, 1.0, 1.0, 1.0 };
+  const Lanes zero = all(0.0), one = all(1.0);
   for (std::size_t k = 0; k < count; ++k)
   {
     Batch& batch = batches[k];
-    const Triple directions[3] = { load3(batch.directions[0]), load3(batch.directions[1]),
-      load3(batch.directions[2]) };
-    Mobility m = { zero, zero, zero, zero, zero, zero };
-    addMobility(movers, batch.body[0], load3(batch.lever[0]), directions, m);
-    addMobility(movers, batch.body[1], load3(batch.lever[1]), directions, m);
-    const Lanes penalty = load(springs[k].penalty), shear = load(springs[k].shear);
-    store(batch.w, m.nn);
-    store(batch.coupling[0], m.nu);
-    store(batch.coupling[1], m.nv);
-    store(batch.stiffness, penalty / (one + penalty * m.nn));
-    store(batch.shear, shear > zero ? one / (shear > zero ? shear : one) : zero);
-    const Lanes mobile = (m.uu > m.vv ? m.uu : m.vv) + absolute(m.uv);
-    store(batch.gain, shear / (one + shear * mobile));
+    for (int at = 0; at < kLanes; at += kWidth)
+    {
+      const Triple directions[3] = { load3(batch.directions[0], at), load3(batch.directions[1], at),
+        load3(batch.directions[2], at) };
+      Mobility m = { zero, zero, zero, zero, zero, zero };
+      addMobility(movers, batch.body[0] + at, load3(batch.lever[0], at), directions, m);
+      addMobility(movers, batch.body[1] + at, load3(batch.lever[1], at), directions, m);
+      const Lanes penalty = load(springs[k].penalty + at), shear = load(springs[k].shear + at);
+      store(batch.w + at, m.nn);
+      store(batch.coupling[0] + at, m.nu);
+      store(batch.coupling[1] + at, m.nv);
+      store(batch.stiffness + at, penalty / (one + penalty * m.nn));
+      store(batch.shear + at, shear > zero ? one / (shear > zero ? shear : one) : zero);
+      const Lanes mobile = (m.uu > m.vv ? m.uu : m.vv) + absolute(m.uv);
+      store(batch.gain + at, shear / (one + shear * mobile));
+    }
   }
 }
 
-/// How the points of four contacts on one of their rocks go.
+/// How the points of contacts on one of their rocks go; from lane `at` on.
 ROCKFALL_INLINE Triple wayOf(
-  const Mover* movers, const int (&body)[kLanes], const double (&lever)[3][kLanes])
+  Mover* movers, const int (&body)[kLanes], const double (&lever)[3][kLanes], int at)
 {
-  Lanes ways[4], turns[4];
-  for (int i = 0; i < kLanes; ++i)
-  {
-    const Mover& m = movers[body[i]];
-    ways[i] = load(m.way);
-    turns[i] = load(m.turn);
-  }
-  transpose(ways);
-  transpose(turns);
-  const Triple turned = cross({ turns[0], turns[1], turns[2] }, load3(lever));
-  return { ways[0] + turned.x, ways[1] + turned.y, ways[2] + turned.z };
+  Side side;
+  take(movers, body + at, side);
+  const Triple turned = cross({ side.turns[0], side.turns[1], side.turns[2] }, load3(lever, at));
+  return { side.ways[0] + turned.x, side.ways[1] + turned.y, side.ways[2] + turned.z };
 }
 
 bool watchHere(const Watch& watch)
@@ -366,12 +430,12 @@ bool watchHere(const Watch& watch)
   bool any = false;
   for (std::size_t k = 0; k < watch.count; ++k)
   {
-    const Watched& four = watch.first[k];
+    const Watched& of = watch.first[k];
     watch.closes[k] = 0;
-    int last = watch.changed[four.body[0][0]];
+    int last = watch.changed[of.body[0][0]];
     for (int i = 0; i < kLanes; ++i)
     {
-      const int a = watch.changed[four.body[0][i]], b = watch.changed[four.body[1][i]];
+      const int a = watch.changed[of.body[0][i]], b = watch.changed[of.body[1][i]];
       last = a > last ? a : last;
       last = b > last ? b : last;
     }
@@ -379,11 +443,17 @@ bool watchHere(const Watch& watch)
     {
       continue;
     }
-    const Triple a = wayOf(watch.movers, four.body[0], four.lever[0]);
-    const Triple b = wayOf(watch.movers, four.body[1], four.lever[1]);
-    const Lanes gap = load(four.gap) + dot(load3(four.normal), { a.x - b.x, a.y - b.y, a.z - b.z });
-    watch.closes[k] = static_cast<unsigned char>(bits(gap < 0.0));
-    any = any || watch.closes[k] != 0;
+    int closes = 0;
+    for (int at = 0; at < kLanes; at += kWidth)
+    {
+      const Triple a = wayOf(watch.movers, of.body[0], of.lever[0], at);
+      const Triple b = wayOf(watch.movers, of.body[1], of.lever[1], at);
+      const Lanes gap =
+        load(of.gap + at) + dot(load3(of.normal, at), { a.x - b.x, a.y - b.y, a.z - b.z });
+      closes |= bits(gap < all(0.0)) << at;
+    }
+    watch.closes[k] = static_cast<unsigned char>(closes);
+    any = any || closes != 0;
   }
   return any;
 }
@@ -394,7 +464,8 @@ double changeHere(const Mover* movers, const Way* before, int count)
   for (int i = 0; i < count; ++i)
   {
     const Mover& m = movers[i];
-    Lanes way = load(m.way) - load(before[i].way), turn = load(m.turn) - load(before[i].turn);
+    Four way = loadFour(m.way) - loadFour(before[i].way);
+    Four turn = loadFour(m.turn) - loadFour(before[i].turn);
     way *= way;
     turn *= turn;
     const double mobile = m.inertia[0] + m.inertia[1] + m.inertia[2];
@@ -404,13 +475,13 @@ double changeHere(const Mover* movers, const Way* before, int count)
 }
 
 /// Four numbers go on; by how much.
-ROCKFALL_INLINE Lanes go(const Further& further, double* now, double* before, double* along)
+ROCKFALL_INLINE Four go(const Further& further, double* now, double* before, double* along)
 {
-  const Lanes reached = load(now), went = load(along);
-  const Lanes step = reached - load(before), more = further.share * went;
+  const Four reached = loadFour(now), went = loadFour(along);
+  const Four step = reached - loadFour(before), more = further.share * went;
   store(now, reached + more);
   store(before, reached + more);
-  const Lanes none = { 0.0, 0.0, 0.0, 0.0 };
+  const Four none = { 0.0, 0.0, 0.0, 0.0 };
   store(along, further.anew ? none : more + step);
   return more;
 }
@@ -422,7 +493,10 @@ void goForcesHere(
   {
     for (int i = 0; i < 3; ++i)
     {
-      go(further, now[k].along[i], before[k].along[i], along[k].along[i]);
+      for (int at = 0; at < kLanes; at += 4)
+      {
+        go(further, now[k].along[i] + at, before[k].along[i] + at, along[k].along[i] + at);
+      }
     }
   }
 }
@@ -433,10 +507,10 @@ void goMoversHere(
   for (std::size_t k = 0; k < count; ++k)
   {
     // What is no displacement does not change.
-    const Lanes way = go(further, now[k].way, before[k].way, along[k].way);
-    const Lanes turn = go(further, now[k].turn, before[k].turn, along[k].turn);
-    const Mask moved = (absolute(way) > further.quiet) | (absolute(turn) > further.quiet);
-    if (bits(moved) != 0)
+    const Four way = go(further, now[k].way, before[k].way, along[k].way);
+    const Four turn = go(further, now[k].turn, before[k].turn, along[k].turn);
+    const FourMask moved = (absolute4(way) > further.quiet) | (absolute4(turn) > further.quiet);
+    if ((moved[0] | moved[1] | moved[2] | moved[3]) != 0)
     {
       changed[k] = further.number;
     }

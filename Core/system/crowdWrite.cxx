@@ -56,7 +56,11 @@ void CrowdSolver::write(const StepRequest& request, std::vector<GroupBody>& bodi
         laneOf(p.directions[2], lane) },
       ways, row.gap0, group);
   };
-  forEach(contacts.size(), kRowGrain, writeRow);
+  this->forParts(false, [&](int part) { this->forContacts(part, writeRow); });
+  for (std::size_t k = order_.size(); k < contacts.size(); ++k)
+  {
+    writeRow(k);
+  }
   addBooks(contacts, books_, bodies, outcome);
   const auto writeBody = [&](std::size_t i)
   {

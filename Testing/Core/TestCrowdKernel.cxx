@@ -1,5 +1,5 @@
-// The innermost loop of crowds: the same bits on every processor, momentum kept, and the springs
-// met where it has settled.
+// The innermost loops of crowds: the same bits on every processor, the plain formulas, momentum
+// kept, and the springs met where it has settled.
 
 #include "system/crowdKernel.h"
 
@@ -92,6 +92,20 @@ Crowd randomCrowd(int rocks, int batches, bool slope, unsigned seed)
   return crowd;
 }
 
+/// Those that this processor can run.
+std::vector<const Kernel*> kernelsHere()
+{
+  std::vector<const Kernel*> kernels = { &kAnywhere };
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx2"))
+  {
+    kernels.push_back(&kAvx2);
+  }
+#endif
+  kernels.push_back(&suitedKernel());
+  return kernels;
+}
+
 double run(Crowd& crowd, const Kernel& kernel, bool slope, int sweeps)
 {
   double change = 0.0;
@@ -129,15 +143,19 @@ TEST(CrowdKernel, SameBitsOnEveryProcessor)
         std::generate(std::begin(along), std::end(along), [&] { return force(random); });
       }
     }
-    Crowd other = one;
+    const Crowd start = one;
     const double a = run(one, kAnywhere, slope, 30);
-    const double b = run(other, suitedKernel(), slope, 30);
-    EXPECT_EQ(a, b);
-    EXPECT_EQ(one.changed, other.changed);
-    EXPECT_EQ(
-      std::memcmp(one.movers.data(), other.movers.data(), sizeof(Mover) * one.movers.size()), 0);
-    EXPECT_EQ(
-      std::memcmp(one.forces.data(), other.forces.data(), sizeof(Forces) * one.forces.size()), 0);
+    for (const Kernel* kernel : kernelsHere())
+    {
+      Crowd other = start;
+      const double b = run(other, *kernel, slope, 30);
+      EXPECT_EQ(a, b);
+      EXPECT_EQ(one.changed, other.changed);
+      EXPECT_EQ(
+        std::memcmp(one.movers.data(), other.movers.data(), sizeof(Mover) * one.movers.size()), 0);
+      EXPECT_EQ(
+        std::memcmp(one.forces.data(), other.forces.data(), sizeof(Forces) * one.forces.size()), 0);
+    }
     for (const Forces& forces : one.forces)
     {
       for (int lane = 0; lane < kLanes; ++lane)
@@ -156,7 +174,7 @@ TEST(CrowdKernel, GoesFurtherInTheSameBits)
   std::normal_distribution<double> force(0.0, 1e4), way(0.0, 1e-2);
   for (const bool anew : { false, true })
   {
-    for (const Kernel* kernel : { &kAnywhere, &suitedKernel() })
+    for (const Kernel* kernel : kernelsHere())
     {
       Crowd crowd = start;
       const std::size_t rocks = 37, count = crowd.forces.size();
@@ -234,6 +252,104 @@ TEST(CrowdKernel, GoesFurtherInTheSameBits)
         EXPECT_EQ(crowd.changed[i], i % 5 == 0 ? 0 : 11);
       }
     }
+  }
+}
+
+TEST(CrowdKernel, MobilityAndWatchedGapsAreThoseOfThePlainFormulas)
+{
+  Crowd crowd = randomCrowd(40, 20, false, 8);
+  // Of a contact by itself: the change of the gap per force, and the gap where the rocks go.
+  std::mt19937_64 random(9);
+  std::uniform_real_distribution<double> stiff(1e8, 1e9);
+  std::vector<Springs> springs(crowd.batches.size());
+  std::vector<Watched> watched(crowd.batches.size());
+  for (std::size_t k = 0; k < springs.size(); ++k)
+  {
+    const Batch& b = crowd.batches[k];
+    for (int lane = 0; lane < kLanes; ++lane)
+    {
+      springs[k].penalty[lane] = stiff(random);
+      springs[k].shear[lane] = lane == 1 ? 0.0 : stiff(random); // no contact: no number either
+      watched[k].gap[lane] = b.gap[lane];
+      for (int side = 0; side < 2; ++side)
+      {
+        watched[k].body[side][lane] = b.body[side][lane];
+        for (int i = 0; i < 3; ++i)
+        {
+          watched[k].normal[i][lane] = b.directions[0][i][lane];
+          watched[k].lever[side][i][lane] = b.lever[side][i][lane];
+        }
+      }
+    }
+  }
+  const std::vector<Batch> before = crowd.batches;
+  for (const Kernel* kernel : kernelsHere())
+  {
+    std::vector<Batch> batches = before;
+    kernel->assemble(batches.data(), springs.data(), crowd.movers.data(), batches.size());
+    std::vector<unsigned char> closes(watched.size());
+    const Watch watch = { watched.data(), watched.size(), crowd.movers.data(), crowd.changed.data(),
+      0, closes.data() };
+    EXPECT_TRUE(kernel->watch(watch));
+    int closed = 0;
+    for (std::size_t k = 0; k < batches.size(); ++k)
+    {
+      const Batch& b = batches[k];
+      for (int lane = 0; lane < kLanes; ++lane)
+      {
+        double w[3][3] = {}, gap = b.gap[lane];
+        for (int side = 0; side < 2; ++side)
+        {
+          const Mover& m = crowd.movers[std::size_t(b.body[side][lane])];
+          const double* I = m.inertia;
+          const double inertia[3][3] = { { I[0], I[3], I[4] }, { I[3], I[1], I[5] },
+            { I[4], I[5], I[2] } };
+          double moment[3][3]; // of each direction
+          for (int d = 0; d < 3; ++d)
+          {
+            for (int i = 0; i < 3; ++i)
+            {
+              const int j = (i + 1) % 3, l = (i + 2) % 3;
+              moment[d][i] = b.lever[side][j][lane] * b.directions[d][l][lane] -
+                b.lever[side][l][lane] * b.directions[d][j][lane];
+            }
+          }
+          for (int i = 0; i < 3; ++i)
+          {
+            gap += (side == 0 ? 1.0 : -1.0) *
+              (m.way[i] * b.directions[0][i][lane] + m.turn[i] * moment[0][i]);
+            for (int d = 0; d < 3; ++d)
+            {
+              for (int e = 0; e < 3; ++e)
+              {
+                w[d][e] += m.way[3] * b.directions[d][i][lane] * b.directions[e][i][lane];
+                for (int j = 0; j < 3; ++j)
+                {
+                  w[d][e] += moment[d][i] * inertia[i][j] * moment[e][j];
+                }
+              }
+            }
+          }
+        }
+        const double p = springs[k].penalty[lane], s = springs[k].shear[lane];
+        EXPECT_NEAR(b.w[lane], w[0][0], 1e-12 * w[0][0]); // rounding
+        EXPECT_NEAR(b.coupling[0][lane], w[0][1], 1e-12 * w[0][0]);
+        EXPECT_NEAR(b.coupling[1][lane], w[0][2], 1e-12 * w[0][0]);
+        EXPECT_NEAR(b.stiffness[lane], p / (1.0 + p * w[0][0]), 1e-9 * p);
+        EXPECT_NEAR(b.shear[lane], s > 0.0 ? 1.0 / s : 0.0, 1e-18);
+        const double mobile = std::max(w[1][1], w[2][2]) + std::abs(w[1][2]);
+        EXPECT_NEAR(b.gain[lane], s / (1.0 + s * mobile), 1e-9 * p);
+        EXPECT_GT(std::abs(gap), 1e-12);
+        EXPECT_EQ((closes[k] >> lane & 1) != 0, gap < 0.0);
+        closed += gap < 0.0;
+      }
+    }
+    EXPECT_GT(closed, 20);
+    EXPECT_LT(closed, 20 * kLanes - 20);
+    // Around what has not moved since nothing is looked at.
+    Watch still = watch;
+    still.since = 1;
+    EXPECT_FALSE(kernel->watch(still));
   }
 }
 
