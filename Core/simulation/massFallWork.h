@@ -128,6 +128,7 @@ struct MassFall::Workspace
     Vec3 way;      ///< Of the centroid, m.
     double turned; ///< Longest way about it, m.
     bool moved;    ///< Since the last look.
+    bool low;      ///< May be at the slope in the end.
   };
   std::vector<Way> ways;
 };
