@@ -40,7 +40,7 @@ struct alignas(64) Contact
   int patchFeature = -1;           ///< Triangle, node or ridge in the patch at hand.
   std::int64_t surfaceFeature = 0; ///< Key of the triangle, node or ridge: the same across patches.
   std::int64_t cfe = 0;            ///< A CFE that the contact is on, for material and output.
-  double distance = 0.0; ///< Signed geometric gap along the normal, m; < 0 penetrates.
+  double distance = 0.0;           ///< Signed geometric gap along the normal, m; < 0 penetrates.
   /// A pair that is found already overlapping carries no force at the overlap it was found with (≤
   /// 0), so that finding it makes no energy; m.
   double offset = 0.0;
