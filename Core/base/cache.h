@@ -10,12 +10,15 @@ namespace rockfall
 
 constexpr std::size_t kCacheLine = 64; // bytes
 
-/// Asks the cache for what lies between two places.
-inline void askCache(const void* from, const void* to)
+/// Asks the cache for so many lines from there on.
+template <std::size_t Lines>
+void askCache(const void* from)
 {
-  for (const char* at = static_cast<const char*>(from); at < to; at += kCacheLine)
+  const char* const first = static_cast<const char*>(from);
+#pragma GCC unroll 32
+  for (std::size_t k = 0; k < Lines; ++k)
   {
-    __builtin_prefetch(at);
+    __builtin_prefetch(first + k * kCacheLine);
   }
 }
 

@@ -61,6 +61,11 @@ namespace
 /// leaves.
 constexpr double kCentred = 1e-6;
 
+bool isZero(const Vec6& v)
+{
+  return v.cwiseAbs().sum() == 0.0;
+}
+
 Vec12 bodyVelocity(const BlockState& state)
 {
   Vec12 v;
@@ -178,7 +183,7 @@ double rigidKineticEnergy(const Block& block, const BlockState& state)
 
 double kineticEnergy(const Block& block, const BlockState& state)
 {
-  if (state.strain.isZero(0.0) && state.strainRate.isZero(0.0))
+  if (isZero(state.strain) && isZero(state.strainRate))
   {
     return rigidKineticEnergy(block, state);
   }
@@ -188,7 +193,7 @@ double kineticEnergy(const Block& block, const BlockState& state)
 
 double strainEnergy(const Block& block, const BlockState& state)
 {
-  return state.strain.isZero(0.0) ? 0.0 : 0.5 * state.strain.dot(block.elasticity() * state.strain);
+  return isZero(state.strain) ? 0.0 : 0.5 * state.strain.dot(block.elasticity() * state.strain);
 }
 
 Vec3 angularMomentum(const Block& block, const BlockState& state)

@@ -30,7 +30,9 @@ enum class ContactState : std::uint8_t
   Locked,
 };
 
-struct Contact
+/// Four lines of the cache, in the order of their use: most who go over many contacts need the
+/// first one or two, and the last is for edges.
+struct alignas(64) Contact
 {
   ContactKind kind = ContactKind::VertexFace;
   ContactState state = ContactState::Open;
@@ -38,27 +40,30 @@ struct Contact
   int patchFeature = -1;           ///< Triangle, node or ridge in the patch at hand.
   std::int64_t surfaceFeature = 0; ///< Key of the triangle, node or ridge: the same across patches.
   std::int64_t cfe = 0;            ///< A CFE that the contact is on, for material and output.
-  Vec3 normal = Vec3::UnitZ();     ///< Out of the slope, world, unit.
-  Vec3 point = Vec3::Zero();       ///< Where the rock touches, world, m.
-  /// EdgeEdge: a point of the ridge and its direction, world.
-  std::array<Vec3, 2> ridge = { Vec3::Zero(), Vec3::Zero() };
-  double distance = 0.0; ///< Signed geometric gap along the normal, m; < 0 penetrates.
+  double distance = 0.0;           ///< Signed geometric gap along the normal, m; < 0 penetrates.
   /// A pair that is found already overlapping carries no force at the overlap it was found with (≤
   /// 0), so that finding it makes no energy; m.
   double offset = 0.0;
+  double normalForce = 0.0; ///< Mean over the last step, N.
+  double shearForce = 0.0;  ///< Magnitude, mean over the last step, N.
+
+  Vec3 normal = Vec3::UnitZ(); ///< Out of the slope, world, unit.
+  Vec3 point = Vec3::Zero();   ///< Where the rock touches, world, m.
   // What it is made of, given when it is admitted (0: as the step's request says).
   double stiffness = 0.0;      ///< pₙ, N/m.
   double shearStiffness = 0.0; ///< pₛ, N/m.
-  double dashpot = 0.0;        ///< Along the normal, during impacts, N s/m.
-  double stopped = 1e300;      ///< Mass that this dashpot stops, kg.
-  double shearDashpot = 0.0;   ///< In its plane, during impacts, N s/m.
+
+  Vec3 slip = Vec3::Zero();  ///< s₀, elongation of the shear spring, world, m.
+  double dashpot = 0.0;      ///< Along the normal, during impacts, N s/m.
+  double stopped = 1e300;    ///< Mass that this dashpot stops, kg.
+  double shearDashpot = 0.0; ///< In its plane, during impacts, N s/m.
   /// Of the ground under it, given before every step (< 0: as the step's request says).
-  double friction = -1.0;   ///< tan φ
-  double cohesion = -1.0;   ///< N
-  double frequency2 = 0.0;  ///< Of the block on this spring alone, squared, 1/s².
-  Vec3 slip = Vec3::Zero(); ///< s₀, elongation of the shear spring, world, m.
-  double normalForce = 0.0; ///< Mean over the last step, N.
-  double shearForce = 0.0;  ///< Magnitude, mean over the last step, N.
+  double friction = -1.0; ///< tan φ
+  double cohesion = -1.0; ///< N
+
+  double frequency2 = 0.0; ///< Of the block on this spring alone, squared, 1/s².
+  /// EdgeEdge: a point of the ridge and its direction, world.
+  std::array<Vec3, 2> ridge = { Vec3::Zero(), Vec3::Zero() };
 
   bool closed() const { return state != ContactState::Open; }
   double gap() const { return distance - offset; } ///< d₀, m.

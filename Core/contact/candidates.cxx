@@ -19,6 +19,18 @@ bool boxesMeet(const Vec3& lower, const Vec3& upper, const Vec3& a, const Vec3& 
     .all();
 }
 
+/// A box as most points are told to be outside: by their first coordinate.
+struct Box
+{
+  Vec3 lower, upper;
+
+  bool holds(double x, double y, double z) const
+  {
+    return x <= upper.x() && x >= lower.x() && y <= upper.y() && y >= lower.y() && z <= upper.z() &&
+      z >= lower.z();
+  }
+};
+
 } // namespace
 
 double CandidatePairs::room(const BlockState& state, double radius, double reach) const
@@ -218,6 +230,7 @@ void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const Su
       const Vec3& b = patch.nodes[t.nodes[1]].position;
       const Vec3& c = patch.nodes[t.nodes[2]].position;
       const Vec3 least = a.cwiseMin(b).cwiseMin(c), most = a.cwiseMax(b).cwiseMax(c);
+      const Box near{ least.array() - wide, most.array() + wide };
       std::uint64_t below = 0;
       for (int v = 0; v < int(vertices.size()); ++v)
       {
@@ -229,8 +242,7 @@ void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const Su
         }
         below |= bit(v);
         // No bound below: what has slipped under the slope must be found (holdOverlap).
-        const Vec3 raised(p.x(), p.y(), std::max(p.z(), least.z()));
-        if (boxesMeet(least, most, raised, raised, wide) &&
+        if (near.holds(p.x(), p.y(), std::max(p.z(), least.z())) &&
           (height < 0.0 || inVertexCone(rock, v, t.normal, turn)))
         {
           candidates.vertexFace.push_back({ v, i });

@@ -179,12 +179,15 @@ bool MassFall::stays(Member& member) const
   const auto turnFrom = [&](const Member::Place& place)
   { return r * sim.state_.orientation.angularDistance(place.orientation); };
   const double unit = std::sqrt(std::max(parameters_.gravity, 1e-3) * r); // m/s
-  if (wayFrom(member.stayed) + turnFrom(member.stayed) > kStillSpeed * unit * kStillTime)
+  // Most go so far that how far they turn does not matter.
+  const double still = kStillSpeed * unit * kStillTime, way = wayFrom(member.stayed);
+  if (way > still || way + turnFrom(member.stayed) > still)
   {
     member.stayed = sim.state_;
   }
-  const bool turns = r * sim.state_.spin.norm() > kLingerRim * unit;
-  if (wayFrom(member.lingered) + (turns ? turnFrom(member.lingered) : 0.0) > kLingerWay * r)
+  const double near = kLingerWay * r, further = wayFrom(member.lingered);
+  const auto turns = [&] { return r * sim.state_.spin.norm() > kLingerRim * unit; };
+  if (further > near || (turns() && further + turnFrom(member.lingered) > near))
   {
     member.lingered = sim.state_;
   }

@@ -161,7 +161,8 @@ bool Recorder::follows(const BlockState& state) const
 
 void Recorder::recordBetween(const BlockState& from, const BlockState& to, bool contact)
 {
-  if (!this->follows(to))
+  const bool even = this->follows(to);
+  if (!even)
   {
     this->knot(from, contact);
   }
@@ -180,7 +181,7 @@ void Recorder::recordBetween(const BlockState& from, const BlockState& to, bool 
     between.orientation = from.orientation.slerp(s, to.orientation);
     this->record(between, contact);
   }
-  if (!this->follows(to))
+  if (!even && !this->follows(to))
   {
     this->knot(to, contact);
   }

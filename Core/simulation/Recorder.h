@@ -63,12 +63,28 @@ private:
   Sample makeSample(const BlockState& state, bool contact);
   bool follows(const BlockState& state) const; ///< The last knot's uniform acceleration leads here.
 
+  /// What of a state tells whether the motion since then is a uniform acceleration.
+  struct Knot
+  {
+    double time = 0.0;            ///< s
+    Vec3 position = Vec3::Zero(); ///< m
+    Vec3 velocity = Vec3::Zero(); ///< m/s
+
+    Knot() = default;
+    Knot(const BlockState& state)
+      : time(state.time)
+      , position(state.position)
+      , velocity(state.velocity)
+    {
+    }
+  };
+
   const Surface& surface_;
   const Block& block_;
   double interval_;
   std::int64_t next_ = 0;
   Vec3 last_ = Vec3::Zero();           ///< That was reached.
-  BlockState knot_;                    ///< The last one.
+  Knot knot_;                          ///< The last one.
   SampleKind jump_ = SampleKind::Knot; ///< What the sample after a jump is.
   std::size_t audited_ = 0;            ///< Samples that have their audit.
   Trajectory trajectory_;

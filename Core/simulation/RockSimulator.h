@@ -169,6 +169,7 @@ private:
   StepKind steppedAs_ = StepKind::Impact; ///< In the last step.
   double restingSpeed_ = 0.0;             ///< Below it a touch is no impact, m/s.
   BlockState state_;
+  GroundLid lid_;
   std::vector<Contact> contacts_;
   std::vector<Contact> contactsBefore_;
   BlockState before_; ///< At the start of the last step of contact.
@@ -185,11 +186,10 @@ private:
   const Obstacles* obstacles_ = nullptr; ///< Null if there are none.
   EnergyAudit energy_;
   double energyAtStart_ = 0.0; ///< Kinetic and potential, J.
-  GroundLid lid_;
   PlacedBlock placed_;
+  Recorder recorder_;
   CandidatePairs candidates_;
   Impact impact_;
-  Recorder recorder_;
   SurfacePatch patch_;
   HeightWindow window_;
   SurfacePatch holed_;    ///< Under the way of a flight that comes over holes.

@@ -420,14 +420,6 @@ void MassFall::advanceGroup(const Group& group, double until) const
 {
   thread_local Workspace work;
   work.solver.method = method;
-  for (int i : group.members)
-  {
-    RockSimulator& sim = members_[i]->sim;
-    if (!sim.inContact_)
-    {
-      sim.beginContact();
-    }
-  }
   const bool inTime = !group.crowd;
   const auto now = [&]
   {
@@ -445,7 +437,11 @@ void MassFall::advanceGroup(const Group& group, double until) const
     double travel = parameters_.timeStep;
     for (int i : group.members)
     {
-      const RockSimulator& sim = members_[i]->sim;
+      RockSimulator& sim = members_[i]->sim;
+      if (!sim.inContact_)
+      {
+        sim.beginContact();
+      }
       const double limit = (inTime ? 1.0 : kCrowdTravel) * sim.travelLimit();
       travel = sim.done_ ? travel : std::min(travel, limit);
     }
@@ -488,11 +484,6 @@ void MassFall::advanceGroup(const Group& group, double until) const
     {
       this->solve(group, small, StepKind::Impact, false, work);
     }
-  }
-  for (int i : group.members)
-  {
-    Member& m = *members_[i];
-    m.sim.horizon_ = until;
   }
 }
 

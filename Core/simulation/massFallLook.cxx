@@ -74,6 +74,7 @@ double MassFall::lookAgain(const Group& group, double h, bool bounces, Workspace
       m.endBody.update(m.end);
       way.way = end.position - m.sim.state_.position;
       way.turned = wayOfTurn(m.sim.state_.orientation, end.orientation, m.sim.block_.radius());
+      way.low = m.sim.solid_ || !m.sim.isHighAt(end.position, 0.0);
     }
   };
   forEach(group.members.size(), kRockGrain, place);
@@ -134,16 +135,13 @@ double MassFall::lookAtSlope(const Group& group, double h, bool bounces, Workspa
 {
   const auto isMissed = [&](std::size_t m)
   {
+    const int place = work.placeOf[std::size_t(group.members[m])];
+    if (place < 0 || !work.ways[std::size_t(place)].moved || !work.ways[std::size_t(place)].low)
+    {
+      return false;
+    }
     Member& member = *members_[group.members[m]];
     RockSimulator& sim = member.sim;
-    if (sim.done_ || !work.solver.moved(std::size_t(member.place)))
-    {
-      return false;
-    }
-    if (!sim.solid_ && sim.isHighAt(member.end.position(), 0.0))
-    {
-      return false;
-    }
     const BlockState end = work.solver.end(work.bodies, std::size_t(member.place));
     if (sim.candidates_.room(end, sim.block_.radius(), 0.0) < 0.0)
     {

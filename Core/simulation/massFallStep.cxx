@@ -217,9 +217,13 @@ void MassFall::solve(
   for (const GroupContact& k : work.contacts)
   {
     // What bounces has no acceleration to go on with.
+    if (!lasting || k.bounce < 0.0)
+    {
+      continue;
+    }
     for (int b : { k.first, k.second })
     {
-      if (lasting && k.bounce >= 0.0 && b >= 0)
+      if (b >= 0)
       {
         work.bodies[b].acceleration.setZero();
         work.bodies[b].spinAcceleration.setZero();

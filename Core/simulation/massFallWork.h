@@ -47,6 +47,9 @@ inline bool hits(const Contact& c, double approach, double resting, double h)
   return !c.closed() && approach > resting && c.gap() < approach * h;
 }
 
+/// Of a RockSimulator, what the step of a crowd needs of every rock.
+constexpr std::size_t kHotLines = 14;
+
 // Asks the cache for what a loop over the pairs or rocks of a group comes to soon.
 
 inline void comeToPair(const std::vector<RockPair*>& pairs, std::size_t p)
@@ -54,7 +57,7 @@ inline void comeToPair(const std::vector<RockPair*>& pairs, std::size_t p)
   constexpr std::size_t kAhead = 6;
   if (p + kAhead < pairs.size())
   {
-    askCache(pairs[p + kAhead], &pairs[p + kAhead]->impact);
+    askCache<4>(pairs[p + kAhead]); // all but the impact
   }
 }
 
@@ -64,7 +67,8 @@ inline void MassFall::comeToRock(const Group& group, std::size_t k) const
   if (k + kAhead < group.members.size())
   {
     const Member& m = *members_[std::size_t(group.members[k + kAhead])];
-    askCache(&m.body, &m.sim.energyAtStart_);
+    askCache<kHotLines>(&m.sim);
+    askCache<6>(&m.body);
   }
 }
 
@@ -112,6 +116,7 @@ struct MassFall::Workspace
     Vec3 way;      ///< Of the centroid, m.
     double turned; ///< Longest way about it, m.
     bool moved;    ///< Since the last look.
+    bool low;      ///< May be at the slope in the end.
   };
   std::vector<Way> ways;
 };
@@ -133,8 +138,7 @@ inline void MassFall::Workspace::comeToTouching(const Group& group, std::size_t 
   constexpr std::size_t kAhead = 3;
   if (t + kAhead < touching.size())
   {
-    const RockPair& pair = *group.pairs[touching[t + kAhead]];
-    askCache(&pair, &pair + 1);
+    askCache<6>(group.pairs[touching[t + kAhead]]);
   }
 }
 

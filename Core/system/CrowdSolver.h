@@ -270,8 +270,7 @@ void CrowdSolver::forContacts(int part, Visit&& visit) const
   {
     if (k + kAhead < end)
     {
-      const Contact* next = (*contacts_)[std::size_t(order_[k + kAhead])].contact;
-      askCache(next, next + 1);
+      askCache<sizeof(Contact) / kCacheLine>((*contacts_)[std::size_t(order_[k + kAhead])].contact);
     }
     visit(std::size_t(order_[k]));
   }

@@ -215,7 +215,8 @@ private:
   bool whole_ = false;
 };
 
-/// A plane that no ground is above, within a box: what is sure to be in the air is told by it alone.
+/// A plane that no ground is above, within a box: what is sure to be in the air is told by it
+/// alone.
 class GroundLid
 {
 public:
