@@ -210,29 +210,36 @@ void offerFaces(const PairBody& first, const PairBody& second, PairAxis& best)
   offer(second, first, PairAxis::Kind::FaceOfSecond);
 }
 
-/// Upper bound of the distance of a point from a body. Where it is over a plane by ε, the body
-/// scaled up about its centroid by ε over the radius of the ball in it holds the point.
-double farFrom(const PairBody& body, const Vec3& point)
+/// Of all planes of a body the farthest that a point is over one, m; < 0: so deep it is inside.
+double overAll(const PairBody& body, const Vec3& point)
 {
   PairBody::Four most = body.overFaces(point, 0);
   for (int i = 1; i < body.faceFours(); ++i)
   {
     most = most.max(body.overFaces(point, i));
   }
-  const double over = most.maxCoeff();
+  return most.maxCoeff();
+}
+
+/// Upper bound of the distance of a point from a body. Where it is over a plane by ε, the body
+/// scaled up about its centroid by ε over the radius of the ball in it holds the point.
+double farFrom(const PairBody& body, const Vec3& point)
+{
+  const double over = overAll(body, point);
   return over <= 0.0 ? 0.0 : over * (point - body.position).norm() / body.inside;
 }
 
-/// Whether the bodies have points no farther from each other than `limit`: no direction then shows
-/// a larger gap. Looked for where they touch along an axis; false if it is not sure.
+/// Whether the bodies have points no farther from each other than `limit`, or if that is < 0 one
+/// has a point as deep in the other: no direction then shows a larger gap. Looked for where they
+/// touch along an axis; false if it is not sure.
 bool areWithin(const PairBody& first, const PairBody& second, const PairAxis& axis, double limit)
 {
-  if (limit < 0.0)
-  {
-    return false;
-  }
   if (axis.kind == PairAxis::Kind::Edges)
   {
+    if (limit < 0.0)
+    {
+      return false;
+    }
     const std::array<int, 2>& e = first.edges[std::size_t(axis.first)].vertices;
     const std::array<int, 2>& f = second.edges[std::size_t(axis.second)].vertices;
     const Vec3 p = first.vertex(e[0]);
@@ -254,17 +261,23 @@ bool areWithin(const PairBody& first, const PairBody& second, const PairAxis& ax
     const PairBody::Four over = other.alongVertices(n, i) - offset;
     for (int k = 0; k < 4 && 4 * i + k < other.vertices(); ++k)
     {
-      const double gap = std::max(0.0, over[k]);
-      if (over[k] <= limit && gap + farFrom(owner, other.vertex(4 * i + k) - gap * n) <= limit)
+      if (over[k] <= limit)
       {
-        return true;
+        const Vec3 vertex = other.vertex(4 * i + k);
+        const double gap = std::max(0.0, over[k]);
+        if (limit < 0.0 ? overAll(owner, vertex) <= limit
+                        : gap + farFrom(owner, vertex - gap * n) <= limit)
+        {
+          return true;
+        }
       }
     }
   }
   // … or of it, under the other body.
   for (int k : owner.loop(face))
   {
-    if (farFrom(other, owner.vertex(k)) <= limit)
+    const Vec3 vertex = owner.vertex(k);
+    if ((limit < 0.0 ? overAll(other, vertex) : farFrom(other, vertex)) <= limit)
     {
       return true;
     }
