@@ -186,19 +186,29 @@ bool showsLess(const ArcEdge& e, const ArcEdge& f, const Vec3& center, double le
                    : least >= 0.0 || gap2 > least2 * (1.0 + 1e-9);
 }
 
-/// The edges' axis, if it shows a larger gap than `least`; along `normal` they are near each other.
+/// The edges' axis, if it shows a larger gap than `least`; along `near` they are near each other.
 PairAxis bestCrossing(
-  const PairBody& first, const PairBody& second, const Vec3& normal, double least)
+  const PairBody& first, const PairBody& second, const PairAxis& near, double least)
 {
   PairAxis best;
   best.distance = least;
   thread_local std::vector<ArcEdge> ours, theirs;
-  edgesAbove(first, second, farthestAlong(second, normal), least, 1.0, ours);
-  if (ours.empty())
+  const auto findOurs = [&]
+  {
+    edgesAbove(first, second, farthestAlong(second, near.normal), least, 1.0, ours);
+    return !ours.empty();
+  };
+  const auto findTheirs = [&]
+  {
+    edgesAbove(second, first, farthestAlong(first, -near.normal), least, -1.0, theirs);
+    return !theirs.empty();
+  };
+  // Of the rock first whose face it is: mostly none of its edges will do.
+  if (near.kind == PairAxis::Kind::FaceOfSecond ? !findTheirs() || !findOurs()
+                                                : !findOurs() || !findTheirs())
   {
     return best;
   }
-  edgesAbove(second, first, farthestAlong(first, -normal), least, -1.0, theirs);
   for (const ArcEdge& e : ours)
   {
     for (const ArcEdge& f : theirs)
@@ -416,7 +426,7 @@ PairAxis findAxis(const PairBody& first, const PairBody& second, const PairAxis&
   const double beaten = best.distance + (stays ? 2.0 : 1.0) * better;
   if (stays || !areWithin(first, second, best, beaten))
   {
-    const PairAxis crossing = bestCrossing(first, second, best.normal, beaten);
+    const PairAxis crossing = bestCrossing(first, second, best, beaten);
     best = crossing.kind != PairAxis::Kind::None ? crossing : best;
   }
   return best;
@@ -427,7 +437,7 @@ PairAxis bestAxis(const PairBody& first, const PairBody& second)
   PairAxis best;
   best.distance = -std::numeric_limits<double>::infinity();
   offerFaces(first, second, best);
-  const PairAxis crossing = bestCrossing(first, second, best.normal, best.distance);
+  const PairAxis crossing = bestCrossing(first, second, best, best.distance);
   return crossing.kind != PairAxis::Kind::None ? crossing : best;
 }
 
