@@ -66,9 +66,12 @@ std::span<const Touch> touchesAlong(
   {
     const Corner& corner = polygon[i];
     const double distance = normal.dot(corner.point) - offset;
-    if (distance <= reach &&
-      std::none_of(touches, touches + count,
-        [&](const Touch& o) { return (o.point - corner.point).squaredNorm() < one * one; }))
+    bool isNew = distance <= reach;
+    for (std::size_t k = 0; isNew && k < count; ++k)
+    {
+      isNew = !((touches[k].point - corner.point).squaredNorm() < one * one);
+    }
+    if (isNew)
     {
       touches[count++] = { corner.point, distance, corner.feature };
     }
