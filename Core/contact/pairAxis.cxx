@@ -59,47 +59,76 @@ struct ArcEdge
   Vec3 start, along; ///< Of the edge, from end to end.
 };
 
+/// The vertex that is farthest along a direction.
+Vec3 farthestAlong(const PairBody& body, const Vec3& n)
+{
+  int farthest = 0;
+  double most = -std::numeric_limits<double>::infinity();
+  for (int i = 0; i < body.vertexFours(); ++i)
+  {
+    const PairBody::Four along = body.alongVertices(n, i);
+    for (int k = 0; k < 4; ++k) // what fills the last four up is no farther than the last vertex
+    {
+      farthest = along[k] > most ? 4 * i + k : farthest;
+      most = std::max(most, along[k]);
+    }
+  }
+  return body.vertex(farthest);
+}
+
 /// Edges that can still show a larger gap than `least`. A face of the Minkowski difference that an
 /// edge is part of has its normal between those of the edge's faces (turned round, for the first
 /// body). The gap in such a direction n is at most n · (edge − other centroid) less the radius of
-/// the ball in the other body; no direction in the arc gives more than this.
-void edgesAbove(const PairBody& body, const PairBody& other, double least, double sign,
-  std::vector<ArcEdge>& found)
+/// the ball in the other body, and n · (edge − `tip`), a point of the other body; no direction in
+/// the arc gives more than this.
+void edgesAbove(const PairBody& body, const PairBody& other, const Vec3& tip, double least,
+  double sign, std::vector<ArcEdge>& found)
 {
   found.clear();
   thread_local std::vector<double> over;
-  over.resize(std::size_t(4 * body.faceFours()));
-  for (int i = 0; i < body.faceFours(); ++i)
+  const int fours = body.faceFours();
+  over.resize(std::size_t(8 * fours));
+  double* const ofBall = over.data();
+  double* const ofTip = ofBall + 4 * fours;
+  for (int i = 0; i < fours; ++i)
   {
-    Eigen::Map<PairBody::Four>(over.data() + 4 * i) = body.overFaces(other.position, i);
+    Eigen::Map<PairBody::Four>(ofBall + 4 * i) = body.overFaces(other.position, i);
+    Eigen::Map<PairBody::Four>(ofTip + 4 * i) = body.overFaces(tip, i);
   }
-  const std::span<const Polyhedron::Edge> edges = body.edges;
-  const double least2 = least + other.inside;
-  for (std::size_t e = 0; e < edges.size(); ++e)
+  const auto isAbove =
+    [&](const Polyhedron::Edge& edge, const double* of, const Vec3& point, double most)
   {
-    const double overA = over[std::size_t(edges[e].faces[0])];
-    const double overB = over[std::size_t(edges[e].faces[1])];
-    bool above = std::max(overA, overB) > least2;
-    if (!above && std::max(overA, overB) <= 0.0 && least2 >= 0.0)
+    const int f = edge.faces[0], g = edge.faces[1];
+    const double overA = of[f], overB = of[g];
+    if (std::max(overA, overB) > most)
     {
-      continue;
+      return true;
     }
-    const Vec3 a = body.normal(edges[e].faces[0]), b = body.normal(edges[e].faces[1]);
-    const Vec3 start = body.vertex(edges[e].vertices[0]);
-    const Vec3 u = body.vertex(edges[e].vertices[1]) - start;
-    if (!above)
+    if (std::max(overA, overB) <= 0.0 && most >= 0.0)
     {
-      const double between = a.dot(b);
-      if (overA > between * overB && overB > between * overA)
-      {
-        // The nearest direction lies within the arc: the distance from the edge's line.
-        above = least2 < 0.0 ||
-          (other.position - start).cross(u).squaredNorm() > least2 * least2 * u.squaredNorm();
-      }
+      return false;
     }
-    if (above)
+    const double between = body.normal(f).dot(body.normal(g));
+    if (!(overA > between * overB && overB > between * overA))
     {
-      found.push_back({ int(e), { sign * a, sign * b }, b.cross(a), start, u });
+      return false;
+    }
+    // The nearest direction lies within the arc: the distance from the edge's line.
+    const Vec3 start = body.vertex(edge.vertices[0]);
+    const Vec3 u = body.vertex(edge.vertices[1]) - start;
+    return most < 0.0 || (point - start).cross(u).squaredNorm() > most * most * u.squaredNorm();
+  };
+  const double rounding = 1e-12 * body.radius;
+  for (std::size_t e = 0; e < body.edges.size(); ++e)
+  {
+    const Polyhedron::Edge& edge = body.edges[e];
+    if (isAbove(edge, ofBall, other.position, least + other.inside) &&
+      isAbove(edge, ofTip, tip, least - rounding))
+    {
+      const Vec3 a = body.normal(edge.faces[0]), b = body.normal(edge.faces[1]);
+      const Vec3 start = body.vertex(edge.vertices[0]);
+      found.push_back({ int(e), { sign * a, sign * b }, b.cross(a), start,
+        body.vertex(edge.vertices[1]) - start });
     }
   }
 }
@@ -157,18 +186,29 @@ bool showsLess(const ArcEdge& e, const ArcEdge& f, const Vec3& center, double le
                    : least >= 0.0 || gap2 > least2 * (1.0 + 1e-9);
 }
 
-/// The edges' axis, if it shows a larger gap than `least`.
-PairAxis bestCrossing(const PairBody& first, const PairBody& second, double least)
+/// The edges' axis, if it shows a larger gap than `least`; along `near` they are near each other.
+PairAxis bestCrossing(
+  const PairBody& first, const PairBody& second, const PairAxis& near, double least)
 {
   PairAxis best;
   best.distance = least;
   thread_local std::vector<ArcEdge> ours, theirs;
-  edgesAbove(first, second, least, 1.0, ours);
-  if (ours.empty())
+  const auto findOurs = [&]
+  {
+    edgesAbove(first, second, farthestAlong(second, near.normal), least, 1.0, ours);
+    return !ours.empty();
+  };
+  const auto findTheirs = [&]
+  {
+    edgesAbove(second, first, farthestAlong(first, -near.normal), least, -1.0, theirs);
+    return !theirs.empty();
+  };
+  // Of the rock first whose face it is: mostly none of its edges will do.
+  if (near.kind == PairAxis::Kind::FaceOfSecond ? !findTheirs() || !findOurs()
+                                                : !findOurs() || !findTheirs())
   {
     return best;
   }
-  edgesAbove(second, first, least, -1.0, theirs);
   for (const ArcEdge& e : ours)
   {
     for (const ArcEdge& f : theirs)
@@ -210,29 +250,36 @@ void offerFaces(const PairBody& first, const PairBody& second, PairAxis& best)
   offer(second, first, PairAxis::Kind::FaceOfSecond);
 }
 
-/// Upper bound of the distance of a point from a body. Where it is over a plane by ε, the body
-/// scaled up about its centroid by ε over the radius of the ball in it holds the point.
-double farFrom(const PairBody& body, const Vec3& point)
+/// Of all planes of a body the farthest that a point is over one, m; < 0: so deep it is inside.
+double overAll(const PairBody& body, const Vec3& point)
 {
   PairBody::Four most = body.overFaces(point, 0);
   for (int i = 1; i < body.faceFours(); ++i)
   {
     most = most.max(body.overFaces(point, i));
   }
-  const double over = most.maxCoeff();
+  return most.maxCoeff();
+}
+
+/// Upper bound of the distance of a point from a body. Where it is over a plane by ε, the body
+/// scaled up about its centroid by ε over the radius of the ball in it holds the point.
+double farFrom(const PairBody& body, const Vec3& point)
+{
+  const double over = overAll(body, point);
   return over <= 0.0 ? 0.0 : over * (point - body.position).norm() / body.inside;
 }
 
-/// Whether the bodies have points no farther from each other than `limit`: no direction then shows
-/// a larger gap. Looked for where they touch along an axis; false if it is not sure.
+/// Whether the bodies have points no farther from each other than `limit`, or if that is < 0 one
+/// has a point as deep in the other: no direction then shows a larger gap. Looked for where they
+/// touch along an axis; false if it is not sure.
 bool areWithin(const PairBody& first, const PairBody& second, const PairAxis& axis, double limit)
 {
-  if (limit < 0.0)
-  {
-    return false;
-  }
   if (axis.kind == PairAxis::Kind::Edges)
   {
+    if (limit < 0.0)
+    {
+      return false;
+    }
     const std::array<int, 2>& e = first.edges[std::size_t(axis.first)].vertices;
     const std::array<int, 2>& f = second.edges[std::size_t(axis.second)].vertices;
     const Vec3 p = first.vertex(e[0]);
@@ -254,17 +301,23 @@ bool areWithin(const PairBody& first, const PairBody& second, const PairAxis& ax
     const PairBody::Four over = other.alongVertices(n, i) - offset;
     for (int k = 0; k < 4 && 4 * i + k < other.vertices(); ++k)
     {
-      const double gap = std::max(0.0, over[k]);
-      if (over[k] <= limit && gap + farFrom(owner, other.vertex(4 * i + k) - gap * n) <= limit)
+      if (over[k] <= limit)
       {
-        return true;
+        const Vec3 vertex = other.vertex(4 * i + k);
+        const double gap = std::max(0.0, over[k]);
+        if (limit < 0.0 ? overAll(owner, vertex) <= limit
+                        : gap + farFrom(owner, vertex - gap * n) <= limit)
+        {
+          return true;
+        }
       }
     }
   }
   // … or of it, under the other body.
   for (int k : owner.loop(face))
   {
-    if (farFrom(other, owner.vertex(k)) <= limit)
+    const Vec3 vertex = owner.vertex(k);
+    if ((limit < 0.0 ? overAll(other, vertex) : farFrom(other, vertex)) <= limit)
     {
       return true;
     }
@@ -373,7 +426,7 @@ PairAxis findAxis(const PairBody& first, const PairBody& second, const PairAxis&
   const double beaten = best.distance + (stays ? 2.0 : 1.0) * better;
   if (stays || !areWithin(first, second, best, beaten))
   {
-    const PairAxis crossing = bestCrossing(first, second, beaten);
+    const PairAxis crossing = bestCrossing(first, second, best, beaten);
     best = crossing.kind != PairAxis::Kind::None ? crossing : best;
   }
   return best;
@@ -384,7 +437,7 @@ PairAxis bestAxis(const PairBody& first, const PairBody& second)
   PairAxis best;
   best.distance = -std::numeric_limits<double>::infinity();
   offerFaces(first, second, best);
-  const PairAxis crossing = bestCrossing(first, second, best.distance);
+  const PairAxis crossing = bestCrossing(first, second, best, best.distance);
   return crossing.kind != PairAxis::Kind::None ? crossing : best;
 }
 

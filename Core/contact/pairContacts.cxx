@@ -1,5 +1,6 @@
 // How the contacts of two rocks last from step to step.
 
+#include "contact/pairClip.h"
 #include "contact/pairTouch.h"
 
 #include <algorithm>
@@ -29,51 +30,55 @@ bool isCut(const Contact& c)
 /// What a touch was before.
 struct Match
 {
-  int old = -1;        ///< Number of a contact, −1: none.
-  bool itself = false; ///< Between the same features.
-  bool near = false;   ///< Where it was.
-  bool comes = true;   ///< It becomes a contact.
+  int old;     ///< Number of a contact, −1: none.
+  bool itself; ///< Between the same features.
+  bool near;   ///< Where it was.
+  bool comes;  ///< It becomes a contact.
 };
 
 /// Finds for each touch which of the old contacts it is; points nearer than `same` (m) may be one.
-void match(std::span<const Touch> found, const PairAxis& axis, const std::vector<Contact>& olds,
-  double same, std::vector<Match>& matches, std::vector<char>& taken)
+void match(std::span<const Touch> found, const PairAxis& axis, std::span<const Contact> olds,
+  double same, Match* matches, char* taken)
 {
-  matches.resize(found.size());
-  taken.assign(olds.size(), 0);
+  std::fill_n(taken, olds.size(), char(0));
+  const double same2 = same * same;
   for (std::size_t i = 0; i < found.size(); ++i)
   {
     const TouchFeatures features(found[i], axis);
     // The old point is where its rock has carried it since (see the solver's write-back).
     const auto away = [&](std::size_t k) { return (olds[k].point - found[i].point).squaredNorm(); };
-    Match& match = matches[i];
-    match = {};
+    Match match = { -1, false, false, true };
     // Mostly all are there again, in their order.
-    const bool there = i < olds.size() && !taken[i] && features.are(olds[i]);
-    for (std::size_t k = there ? i : 0; k < olds.size() && !match.itself; ++k)
+    std::size_t k = i < olds.size() && !taken[i] && features.are(olds[i]) ? i : 0;
+    while (k < olds.size() && (taken[k] || !features.are(olds[k])))
     {
-      if (!taken[k] && features.are(olds[k]))
-      {
-        match.itself = true;
-        match.old = int(k);
-        match.near = away(k) < same * same;
-      }
+      ++k;
     }
-    double least = same * same;
-    for (std::size_t k = 0; k < olds.size() && !match.itself; ++k)
+    if (k < olds.size())
     {
-      const double distance = taken[k] ? least : away(k);
-      if (distance < least)
+      match.itself = true;
+      match.old = int(k);
+      match.near = away(k) < same2;
+    }
+    else
+    {
+      double least = same2;
+      for (k = 0; k < olds.size(); ++k)
       {
-        least = distance;
-        match.old = int(k);
-        match.near = true;
+        const double distance = taken[k] ? least : away(k);
+        if (distance < least)
+        {
+          least = distance;
+          match.old = int(k);
+          match.near = true;
+        }
       }
     }
     if (match.old >= 0)
     {
-      taken[std::size_t(match.old)] = 1;
+      taken[match.old] = 1;
     }
+    matches[i] = match;
   }
 }
 
@@ -116,8 +121,8 @@ double released(const Contact& c)
 }
 
 /// What was in springs that are gone goes into those that are new, or else into those that stay.
-void handOver(const std::vector<char>& taken, const std::vector<Match>& matches,
-  const std::vector<Contact>& before, std::vector<Contact>& now)
+void handOver(std::span<const char> taken, std::span<const Match> matches,
+  std::span<const Contact> before, std::span<Contact> now)
 {
   double energy = 0.0;
   const Contact* strongest = nullptr;
@@ -199,13 +204,15 @@ void updatePair(const PairBody& first, const PairBody& second, double reach, Roc
     return;
   }
   found = orAlongBest(found, first, second, pair.axis, reach);
-  thread_local std::vector<Match> matches;
-  thread_local std::vector<char> taken;
-  thread_local std::vector<Contact> olds;
+  const std::size_t touches = found.size(), olds = pair.contacts.size();
+  Room<Match, 16> matchRoom;
+  Room<char, 16> takenRoom;
+  Match* const matches = matchRoom.of(touches);
+  char* const taken = takenRoom.of(olds);
   const double smaller = std::min(first.radius, second.radius);
   match(found, pair.axis, pair.contacts, kSamePoint * smaller, matches, taken);
   bool hands = false;
-  for (std::size_t k = 0; k < taken.size(); ++k)
+  for (std::size_t k = 0; k < olds; ++k)
   {
     hands = hands || (!taken[k] && released(pair.contacts[k]) > 0.0);
   }
@@ -219,7 +226,7 @@ void updatePair(const PairBody& first, const PairBody& second, double reach, Roc
   // copy.
   std::size_t count = 0;
   bool inPlace = !hands;
-  for (std::size_t i = 0; i < found.size(); ++i)
+  for (std::size_t i = 0; i < touches; ++i)
   {
     Match& match = matches[i];
     inPlace = inPlace && (match.old < 0 || std::size_t(match.old) >= count);
@@ -227,23 +234,27 @@ void updatePair(const PairBody& first, const PairBody& second, double reach, Roc
       match.old >= 0 || !sieve || !(std::max(0.0, found[i].distance) > sieve->at(found[i].point));
     count += match.comes ? 1 : 0;
   }
+  thread_local std::vector<Contact> copies;
   if (!inPlace)
   {
-    olds = pair.contacts;
+    copies = pair.contacts;
   }
-  pair.contacts.resize(std::max(count, pair.contacts.size()));
-  const std::vector<Contact>& before = inPlace ? pair.contacts : olds;
+  if (count > olds)
+  {
+    pair.contacts.resize(count);
+  }
+  const Contact* const before = inPlace ? pair.contacts.data() : copies.data();
   const bool turned =
     last.kind != pair.axis.kind || last.first != pair.axis.first || last.second != pair.axis.second;
-  std::size_t to = 0;
-  for (std::size_t i = 0; i < found.size(); ++i)
+  Contact* to = pair.contacts.data();
+  for (std::size_t i = 0; i < touches; ++i)
   {
     const Match& match = matches[i];
     if (!match.comes)
     {
       continue;
     }
-    Contact& c = pair.contacts[to];
+    Contact& c = *to;
     if (match.old < 0)
     {
       c = Contact();
@@ -253,7 +264,7 @@ void updatePair(const PairBody& first, const PairBody& second, double reach, Roc
       ++to;
       continue;
     }
-    const Contact& old = before[std::size_t(match.old)];
+    const Contact& old = before[match.old];
     if (&old != &c)
     {
       c = old;
@@ -261,10 +272,10 @@ void updatePair(const PairBody& first, const PairBody& second, double reach, Roc
     goOn(found[i], second, pair.axis, match, turned, kMisreckoned * smaller, c);
     to += !sieve || mayClose(c, *sieve) ? 1 : 0;
   }
-  pair.contacts.resize(to);
+  pair.contacts.resize(std::size_t(to - pair.contacts.data()));
   if (hands)
   {
-    handOver(taken, matches, olds, pair.contacts);
+    handOver({ taken, olds }, { matches, touches }, copies, pair.contacts);
     if (closing)
     {
       std::erase_if(pair.contacts,

@@ -245,18 +245,23 @@ void MassFall::findPushes(const Group& group) const
 
 void MassFall::armPair(RockPair& pair, double h, bool crowd) const
 {
-  const auto open = [](const Contact& c) { return !c.closed(); };
-  if (std::none_of(pair.contacts.begin(), pair.contacts.end(), open))
+  Contact* k = pair.contacts.data();
+  Contact* const end = k + pair.contacts.size();
+  while (k != end && k->closed())
+  {
+    ++k;
+  }
+  if (k == end)
   {
     return;
   }
   const RockSimulator &a = members_[pair.first]->sim, &b = members_[pair.second]->sim;
   PairArming arming(a.placed_, a.state_, b.placed_, b.state_, pair.law, parameters_);
-  for (Contact& c : pair.contacts)
+  for (; k != end; ++k)
   {
-    if (open(c))
+    if (!k->closed())
     {
-      arming.arm(c);
+      arming.arm(*k);
     }
   }
   if (!crowd && pair.law.damping > 0.0)

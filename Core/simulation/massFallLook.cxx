@@ -215,10 +215,13 @@ double MassFall::lookAtPairs(const Group& group, double h, bool bounces, Workspa
     {
       return false;
     }
-    const auto isClosed = [](const GroupContact& k) { return k.closed; };
-    const auto contacts = work.contacts.begin();
-    if (std::none_of(contacts + std::ptrdiff_t(work.firsts[p]),
-          contacts + std::ptrdiff_t(work.firsts[p + 1]), isClosed))
+    bool touches = false;
+    const GroupContact* const end = work.contacts.data() + work.firsts[p + 1];
+    for (const GroupContact* k = work.contacts.data() + work.firsts[p]; k != end && !touches; ++k)
+    {
+      touches = k->closed;
+    }
+    if (!touches)
     {
       // Along the axis where the step began they may still be apart.
       const double gap = pair.axis.distance + pair.axis.normal.dot(first.way - second.way) -
