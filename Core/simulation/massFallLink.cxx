@@ -157,7 +157,7 @@ void MassFall::Meetings::look(MassFall& fall)
     n.wasLinked = n.linked;
     n.linked = false;
     n.looked = -1.0;
-    const bool seen = n.holds && n.pair->seen; // found where they stand
+    n.seen = n.holds && n.pair->seen; // found where they stand
     const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
     if (!a.present || !b.present)
     {
@@ -169,16 +169,16 @@ void MassFall::Meetings::look(MassFall& fall)
     const Vec3 between = a.position - b.position;
     const double spheres = between.norm() - a.radius - b.radius;
     const double known = a.known + b.known;
-    if (seen)
+    if (n.seen)
     {
       this->lookAlong(n);
     }
     const double gap = n.offset + n.normal.dot(between) - a.turned - b.turned;
     aparts_[k] = std::max(gap, spheres);
-    states_[k] = spheres > known && !asleep             ? kApart
-      : seen && n.pair->axis.distance <= 0.0 && !asleep ? kOverlaps
-      : aparts_[k] <= known                             ? kOpen
-                                                        : kShut;
+    states_[k] = spheres > known && !asleep               ? kApart
+      : n.seen && n.pair->axis.distance <= 0.0 && !asleep ? kOverlaps
+      : aparts_[k] <= known                               ? kOpen
+                                                          : kShut;
   };
   forEach(near.size(), kNearGrain, lookAt);
   open_.clear();
@@ -232,7 +232,8 @@ bool MassFall::Meetings::sweep(MassFall& fall)
   bool wider = false;
   for (std::size_t i = 0; i < movers.size(); ++i)
   {
-    roots_[i] = this->root(int(i));
+    // Parents come before their children.
+    roots_[i] = parents_[i] = roots_[std::size_t(parents_[i])];
     Mover& m = movers[i];
     if (companies_[std::size_t(roots_[i])].size == 1)
     {
@@ -279,7 +280,7 @@ bool MassFall::Meetings::sweep(MassFall& fall)
   {
     const std::size_t k = std::size_t(open_[o].near);
     Near& n = near[k];
-    if (n.pair && n.looked < 0.0 && this->root(n.first) == this->root(n.second))
+    if (n.pair && n.looked < 0.0 && (this->stays(n) || this->root(n.first) == this->root(n.second)))
     {
       // Of one company they are: how far apart is looked at when their contacts are.
       this->join(fall, k, false);
@@ -319,6 +320,15 @@ bool MassFall::Meetings::sweep(MassFall& fall)
   return any;
 }
 
+/// In a crowd two stay linked as long as they may meet for all that is known of them: their axis is
+/// looked for when their contacts are, within a shorter reach.
+bool MassFall::Meetings::stays(const Near& n) const
+{
+  const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
+  return n.wasLinked && (n.seen || n.pair->touched) && a.crowded && b.crowded && !a.asleep &&
+    !b.asleep;
+}
+
 /// Links two; `known`: their axis has been found for where they stand.
 void MassFall::Meetings::join(MassFall& fall, std::size_t k, bool known)
 {
@@ -337,11 +347,7 @@ void MassFall::Meetings::join(MassFall& fall, std::size_t k, bool known)
       m.asleep = false;
       --sleepers_;
     }
-    if (!m.queued)
-    {
-      m.queued = true;
-      queue_.push_back(i);
-    }
+    turns_.add(i, m.way);
   }
   const int a = this->root(n.first), b = this->root(n.second);
   if (a == b)
@@ -395,61 +401,35 @@ void MassFall::Meetings::passOn(int rock)
       if (left > other.way * kNoMore)
       {
         other.way = left;
-        other.queued = true;
-        queue_.push_back(link.other);
+        turns_.add(link.other, left);
       }
     }
   }
 }
 
 /// Carries on what each rock that has been joined may do to those that it may meet: the longest way
-/// first, so that none has its turn twice.
+/// first, so that few have their turn twice.
 void MassFall::Meetings::tell(MassFall& fall)
 {
-  // In one number that orders them: the way, rounded, and the rock.
-  const auto turnOf = [this](int i)
+  for (int i = turns_.take(); i >= 0; i = turns_.take())
   {
-    const auto way = std::bit_cast<std::uint32_t>(float(movers[std::size_t(i)].way));
-    return (std::uint64_t(way) << 32) + ~std::uint32_t(i);
-  };
-  turns_.clear();
-  for (std::size_t taken = 0;;)
-  {
-    for (; taken < queue_.size(); ++taken)
-    {
-      turns_.push_back(turnOf(queue_[taken]));
-      std::push_heap(turns_.begin(), turns_.end());
-    }
-    if (turns_.empty())
-    {
-      break;
-    }
-    const std::uint64_t turn = turns_.front();
-    std::pop_heap(turns_.begin(), turns_.end());
-    turns_.pop_back();
-    const int i = int(~std::uint32_t(turn));
-    Mover& m = movers[std::size_t(i)];
-    if (!m.queued || turn != turnOf(i))
-    {
-      continue; // has had its turn, or has a longer way since
-    }
-    m.queued = false;
-    roots_[std::size_t(i)] = this->root(i);
-    paces_[std::size_t(i)].thrown = this->thrown(std::size_t(i));
-    fars_[std::size_t(i)] = paces_[std::size_t(i)].thrown * m.way;
+    const std::size_t rock = std::size_t(i);
+    roots_[rock] = this->root(i);
+    paces_[rock].thrown = this->thrown(rock);
+    fars_[rock] = paces_[rock].thrown * movers[rock].way;
     if (sleepers_ > 0)
     {
       this->wakeAbout(fall, i);
     }
     this->passOn(i);
   }
-  queue_.clear();
 }
 
 void MassFall::Meetings::link(MassFall& fall)
 {
   firstLink_.assign(movers.size(), -1);
   links_.clear();
+  turns_.reset(movers.size(), longest_);
   this->look(fall);
   this->tell(fall);
   while (this->sweep(fall))
@@ -505,6 +485,7 @@ void MassFall::findGroups(double duration)
     if (meet.isAlone(root))
     {
       alone_.push_back(int(i));
+      meet.movers[i].crowded = false;
       continue;
     }
     if (place[root] < 0)
@@ -524,6 +505,10 @@ void MassFall::findGroups(double duration)
   for (Group& group : groups_)
   {
     group.crowd = this->isCrowd(group);
+    for (const int i : group.members)
+    {
+      meet.movers[std::size_t(i)].crowded = group.crowd;
+    }
   }
 }
 

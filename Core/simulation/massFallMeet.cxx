@@ -74,7 +74,6 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
     const bool slept = m.asleep;
     m.asleep = member.asleep;
     m.present = !sim.done_ || m.asleep;
-    m.queued = false;
     pace.thrown = 1.0;
     fars_[i] = 0.0;
     if (!m.present || (slept && m.asleep))
@@ -116,10 +115,12 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
   sleepers_ = 0;
   int present = 0;
   drift_.setZero();
+  longest_ = 0.0;
   for (std::size_t i = 0; i < count; ++i)
   {
     const Mover& m = movers[i];
     const Pace& pace = paces_[i];
+    longest_ = std::max(longest_, m.way);
     sleepers_ += m.present && m.asleep;
     companies_[i] = { pace.middle.array() - pace.spread, pace.middle.array() + pace.spread,
       pace.mass, 1 };

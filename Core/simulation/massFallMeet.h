@@ -5,6 +5,7 @@
 /// more rocks near each other than touch.
 
 #include "simulation/MassFall.h"
+#include "simulation/turns.h"
 #include "system/broadPhase.h"
 
 #include <array>
@@ -33,7 +34,7 @@ struct alignas(64) Mover
   double known; ///< Rocks nearer than such a way, less their own, are its neighbours.
   bool present = false; ///< Neither gone nor stopped by the end time.
   bool asleep = false;
-  bool queued = false; ///< Those about it have to be told.
+  bool crowded = false; ///< Was in a crowd in the last step.
 };
 
 /// What else decides how a rock moves in the step.
@@ -78,6 +79,7 @@ struct Near
   bool linked = false;    ///< May touch in this step,
   bool wasLinked = false; ///< or could in the last one.
   bool holds = false;     ///< May have contacts.
+  bool seen = false;      ///< The axis had been found where the step begins.
 };
 
 inline bool operator<(const Near& a, const Near& b)
@@ -141,6 +143,7 @@ private:
   void wakeAbout(MassFall& fall, int rock);
   void passOn(int rock);
   void tell(MassFall& fall);
+  bool stays(const Near& near) const;
   void settle();
 
   double duration_ = 0.0;
@@ -171,8 +174,8 @@ private:
   std::vector<Link> links_;
   int sleepers_ = 0;
   bool widening_ = false; ///< Ways have outgrown what was known.
-  std::vector<int> queue_;
-  std::vector<std::uint64_t> turns_;
+  double longest_ = 0.0;  ///< Way of all, m.
+  Turns turns_;           ///< Of those that others have to be told of.
   std::vector<int> found_;
   std::vector<char> marks_;
   std::vector<char> answers_;

@@ -3,6 +3,7 @@
 #include "simulation/massFallWork.h"
 
 #include "base/parallel.h"
+#include "contact/motion.h"
 #include "simulation/pressOut.h"
 #include "simulation/restitution.h"
 #include "solver/cohesion.h"
@@ -398,17 +399,41 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
       m.sim.done_ = true;
     }
     m.arrived = work.looked && m.arrive();
+    if (crowd && !m.arrived)
+    {
+      const BlockState &from = m.sim.before_, &to = m.sim.state_;
+      const double r = m.sim.block_.radius();
+      Workspace::Way& way = work.ways[std::size_t(b)];
+      way.way = to.position - from.position;
+      way.turned =
+        wayOfTurn(from.orientation, to.orientation, r) + r * (to.strain - from.strain).norm();
+    }
   };
   forEach(group.members.size(), kRockGrain, absorbRock);
   const auto see = [&](std::size_t p)
   {
     comeToPair(group.pairs, p);
     RockPair& pair = *group.pairs[p];
-    pair.seen = members_[pair.first]->arrived && members_[pair.second]->arrived;
+    const Member &first = *members_[pair.first], &second = *members_[pair.second];
+    pair.seen = first.arrived && second.arrived;
     if (pair.seen)
     {
       pair.before = pair.axis;
       pair.axis = pair.end;
+    }
+    else if (crowd && !pair.touched && !first.sim.done_ && !second.sim.done_)
+    {
+      // The look was before the last sweeps; but they may still be apart as they were.
+      const Workspace::Way& way = work.ways[std::size_t(first.place)];
+      const Workspace::Way& other = work.ways[std::size_t(second.place)];
+      const double gap =
+        pair.axis.distance + pair.axis.normal.dot(way.way - other.way) - way.turned - other.turned;
+      pair.seen = gap > 0.0;
+      if (pair.seen)
+      {
+        pair.before = pair.axis;
+        pair.axis.distance = gap;
+      }
     }
   };
   forEach(group.pairs.size(), kPairGrain, see);
