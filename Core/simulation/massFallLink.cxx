@@ -73,11 +73,15 @@ double MassFall::Meetings::apart(const Near& n) const
 }
 
 /// How fast the gap may close along its normal, m/s.
-double MassFall::Meetings::closing(const Near& n) const
+inline double MassFall::Meetings::closing(const Near& n) const
 {
   const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
   const Company& first = companies_[std::size_t(roots_[i])];
   const Company& second = companies_[std::size_t(roots_[j])];
+  if (&first == &second)
+  {
+    return n.normal.cwiseAbs().dot(first.upper - first.lower);
+  }
   const double towards =
     first.size > 1 ? most(first, -n.normal) : paces_[i].spread - n.normal.dot(paces_[i].middle);
   const double against =
@@ -94,7 +98,7 @@ double MassFall::Meetings::thrown(std::size_t rock) const
 }
 
 /// The widest gap over which the two may meet.
-double MassFall::Meetings::reach(const Near& n) const
+inline double MassFall::Meetings::reach(const Near& n) const
 {
   const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
   const double faster = std::max(paces_[i].thrown, paces_[j].thrown);
@@ -102,7 +106,7 @@ double MassFall::Meetings::reach(const Near& n) const
   return std::min(fars_[i] + fars_[j], speed * duration_) + fall_;
 }
 
-bool MassFall::Meetings::mayMeet(const Open& o) const
+inline bool MassFall::Meetings::mayMeet(const Open& o) const
 {
   // By their ways alone first: that tells most of them apart.
   return o.apart <= fars_[std::size_t(o.first)] + fars_[std::size_t(o.second)] + fall_ &&
@@ -151,37 +155,47 @@ void MassFall::Meetings::look(MassFall& fall)
 {
   states_.resize(near.size());
   aparts_.resize(near.size());
-  const auto lookAt = [&](std::size_t k)
+  const auto lookAt = [this, nears = near.data(), rocks = movers.data(), aparts = aparts_.data(),
+                        states = states_.data()](std::size_t k)
   {
-    Near& n = near[k];
+    Near& n = nears[k];
     n.wasLinked = n.linked;
     n.linked = false;
     n.looked = -1.0;
     n.seen = n.holds && n.pair->seen; // found where they stand
-    const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
-    if (!a.present || !b.present)
-    {
-      aparts_[k] = -kNoAxis;
-      states_[k] = kApart;
-      return;
-    }
-    const bool asleep = a.asleep && b.asleep;
+    const Mover &a = rocks[n.first], &b = rocks[n.second];
     const Vec3 between = a.position - b.position;
-    const double spheres = between.norm() - a.radius - b.radius;
-    const double known = a.known + b.known;
+    const double spheres = between.norm() - (a.radius + b.radius);
+    const double known = a.known + b.known, turned = a.turned + b.turned;
+    char state = kShut;
     if (n.seen)
     {
-      this->lookAlong(n);
+      const PairAxis& axis = n.pair->axis;
+      n.normal = axis.normal;
+      n.offset = axis.distance - n.normal.dot(between) + turned;
+      state = axis.distance <= 0.0 ? char(kOverlaps) : state;
     }
-    const double gap = n.offset + n.normal.dot(between) - a.turned - b.turned;
-    aparts_[k] = std::max(gap, spheres);
-    states_[k] = spheres > known && !asleep               ? kApart
-      : n.seen && n.pair->axis.distance <= 0.0 && !asleep ? kOverlaps
-      : aparts_[k] <= known                               ? kOpen
-                                                          : kShut;
+    const double apart = std::max(n.offset + n.normal.dot(between) - turned, spheres);
+    aparts[k] = apart;
+    state = state == kShut && apart <= known ? char(kOpen) : state;
+    if (!a.present || !b.present)
+    {
+      aparts[k] = -kNoAxis;
+      state = kApart;
+    }
+    else if (a.asleep && b.asleep)
+    {
+      state = kShut;
+    }
+    else if (spheres > known)
+    {
+      state = kApart;
+    }
+    states[k] = state;
   };
   forEach(near.size(), kNearGrain, lookAt);
-  open_.clear();
+  open_.resize(near.size());
+  Open* to = open_.data();
   for (std::size_t k = 0; k < near.size(); ++k)
   {
     switch (states_[k])
@@ -196,10 +210,11 @@ void MassFall::Meetings::look(MassFall& fall)
         this->join(fall, k, false);
         break;
       case kOpen:
-        open_.push_back(this->openOf(k));
+        *to++ = this->openOf(k);
         break;
     }
   }
+  open_.resize(std::size_t(to - open_.data()));
 }
 
 MassFall::Meetings::Open MassFall::Meetings::openOf(std::size_t k) const
@@ -256,23 +271,25 @@ bool MassFall::Meetings::sweep(MassFall& fall)
     this->widen();
   }
   chosen_.clear();
-  std::size_t left = 0;
-  for (const Open& o : open_)
+  Open* const first = open_.data();
+  Open* to = first;
+  const double* const fars = fars_.data();
+  for (const Open *o = first, *end = first + open_.size(); o != end; ++o)
   {
-    if (o.apart <= fars_[std::size_t(o.first)] + fars_[std::size_t(o.second)] + fall_)
+    if (o->apart <= fars[o->first] + fars[o->second] + fall_)
     {
-      if (near[std::size_t(o.near)].linked)
+      if (near[std::size_t(o->near)].linked)
       {
         continue;
       }
-      if (!this->isAsleep(o.first, o.second) && this->mayMeet(o))
+      if (!this->isAsleep(o->first, o->second) && this->mayMeet(*o))
       {
-        chosen_.push_back(left);
+        chosen_.push_back(std::size_t(to - first));
       }
     }
-    open_[left++] = o;
+    *to++ = *o;
   }
-  open_.resize(left);
+  open_.resize(std::size_t(to - first));
   bool any = false;
   asked_.clear();
   placed_.clear();
@@ -336,10 +353,10 @@ void MassFall::Meetings::join(MassFall& fall, std::size_t k, bool known)
   n.linked = n.holds = true;
   n.pair->linked = true;
   n.pair->known = known;
-  const double gap = this->gap(n);
-  for (const auto& [i, other] : { std::pair(n.first, n.second), std::pair(n.second, n.first) })
+  const auto linkTo = [&](int i, int other)
   {
-    links_.push_back({ gap, other, std::exchange(firstLink_[std::size_t(i)], int(links_.size())) });
+    const int next = std::exchange(firstLink_[std::size_t(i)], int(links_.size()));
+    links_.push_back({ aparts_[k], other, next });
     Mover& m = movers[std::size_t(i)];
     if (m.asleep)
     {
@@ -348,7 +365,9 @@ void MassFall::Meetings::join(MassFall& fall, std::size_t k, bool known)
       --sleepers_;
     }
     turns_.add(i, m.way);
-  }
+  };
+  linkTo(n.first, n.second);
+  linkTo(n.second, n.first);
   const int a = this->root(n.first), b = this->root(n.second);
   if (a == b)
   {
@@ -388,20 +407,21 @@ void MassFall::Meetings::wakeAbout(MassFall& fall, int rock)
 /// What is left of a rock's way, to those that it is linked with.
 void MassFall::Meetings::passOn(int rock)
 {
-  const double way = movers[std::size_t(rock)].way;
-  for (int l = firstLink_[std::size_t(rock)]; l >= 0; l = links_[std::size_t(l)].next)
+  Mover* const rocks = movers.data();
+  const double way = rocks[rock].way;
+  const Link* const links = links_.data();
+  for (int l = firstLink_[std::size_t(rock)]; l >= 0; l = links[l].next)
   {
-    const Link& link = links_[std::size_t(l)];
-    Mover& other = movers[std::size_t(link.other)];
+    Mover& other = rocks[links[l].other];
     if (way > other.way * kNoMore)
     {
       // The gap must be crossed first, by both together.
-      const double left = way -
-        std::max(0.0, link.gap) * way / std::max(way + paces_[std::size_t(link.other)].own, 1e-12);
+      const double own = paces_[std::size_t(links[l].other)].own;
+      const double left = way - std::max(0.0, links[l].gap) * way / std::max(way + own, 1e-12);
       if (left > other.way * kNoMore)
       {
         other.way = left;
-        turns_.add(link.other, left);
+        turns_.add(links[l].other, left);
       }
     }
   }
@@ -429,6 +449,7 @@ void MassFall::Meetings::link(MassFall& fall)
 {
   firstLink_.assign(movers.size(), -1);
   links_.clear();
+  links_.reserve(near.size());
   turns_.reset(movers.size(), longest_);
   this->look(fall);
   this->tell(fall);
@@ -493,13 +514,14 @@ void MassFall::findGroups(double duration)
       place[root] = int(groups_.size());
       groups_.emplace_back();
     }
+    place[i] = place[root];
     groups_[std::size_t(place[root])].members.push_back(int(i));
   }
   for (const Near& n : meet.near)
   {
     if (n.linked)
     {
-      groups_[std::size_t(place[std::size_t(meet.root(n.first))])].pairs.push_back(n.pair);
+      groups_[std::size_t(place[std::size_t(n.first)])].pairs.push_back(n.pair);
     }
   }
   for (Group& group : groups_)

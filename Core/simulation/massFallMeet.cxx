@@ -32,8 +32,8 @@ constexpr std::size_t kRockGrain = 64;
 /// otherwise, of the way that is known.
 constexpr double kSteps = 4.0, kOtherwise = 0.5;
 
-/// All are looked for anew when this share of them are out of their balls.
-constexpr std::size_t kMostOut = 16;
+/// All are looked for anew when this share of them have come out of their balls.
+constexpr std::size_t kMostOut = 4;
 
 } // namespace
 
@@ -187,9 +187,11 @@ void MassFall::Meetings::findNear(MassFall& fall)
   forThose(
     movers.size(), kRockGrain, answers_, [&](std::size_t i) { return !this->isCovered(i); },
     [&](std::size_t i) { chosen_.push_back(i); });
-  if (!searched_ || chosen_.size() * kMostOut > movers.size())
+  out_ += chosen_.size();
+  if (!searched_ || out_ * kMostOut > movers.size())
   {
     this->search(fall);
+    out_ = 0;
     return;
   }
   for (const std::size_t i : chosen_)

@@ -153,6 +153,7 @@ private:
   Vec3 drift_ = Vec3::Zero(); ///< How far all have gone on together since, m.
   Vec3 mean_ = Vec3::Zero();  ///< Velocity of all together, m/s.
   bool searched_ = false;
+  std::size_t out_ = 0; ///< Rocks that have come out of their balls since.
   BroadPhase broad_;
   std::vector<BroadBox> boxes_; ///< Of the last search.
   std::vector<Pace> paces_;
