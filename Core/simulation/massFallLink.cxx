@@ -1,17 +1,11 @@
 // Which of the rocks that are near each other may meet within the step, and the groups that they
-// are: massFallMeet.cxx says by what bounds.
+// are: massFallMeet.cxx says by what bounds, massFallWays.cxx what they pass on to each other.
 
 #include "simulation/massFallMeet.h"
 
 #include "base/parallel.h"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <numeric>
-#include <utility>
 
 namespace rockfall
 {
@@ -21,11 +15,11 @@ namespace
 
 constexpr std::size_t kNearGrain = 256, kLookGrain = 16;
 
-/// A way that is longer by no more than this factor is not passed on.
-constexpr double kNoMore = 1.0 + 1e-6;
+/// So many pairs ahead the cache is asked for one.
+constexpr std::size_t kAhead = 8;
 
-/// What a look at two rocks near each other has shown: they may meet if they go far, as far as is
-/// known they don't, their bounding spheres tell them apart, or they overlap.
+/// What a look at two rocks near each other has shown: they may meet if they go as far as is known;
+/// they don't, or both sleep; their bounding spheres tell them apart; or they overlap.
 enum : char
 {
   kOpen,
@@ -41,15 +35,6 @@ double most(const Company& c, const Vec3& normal)
 }
 
 } // namespace
-
-int MassFall::Meetings::root(int i)
-{
-  while (parents_[std::size_t(i)] != i)
-  {
-    i = parents_[std::size_t(i)] = parents_[std::size_t(parents_[std::size_t(i)])];
-  }
-  return i;
-}
 
 /// From now on the gap is bounded along the pair's axis.
 void MassFall::Meetings::lookAlong(Near& n) const
@@ -89,14 +74,6 @@ inline double MassFall::Meetings::closing(const Near& n) const
   return std::max(0.0, towards + against);
 }
 
-/// A light rock that a heavy one strikes goes on faster than it, by this factor.
-double MassFall::Meetings::thrown(std::size_t rock) const
-{
-  const double heaviest = companies_[std::size_t(roots_[rock])].heaviest;
-  const double mass = paces_[rock].mass;
-  return bounciest_ * heaviest > mass ? (1.0 + bounciest_) * heaviest / (heaviest + mass) : 1.0;
-}
-
 /// The widest gap over which the two may meet.
 inline double MassFall::Meetings::reach(const Near& n) const
 {
@@ -106,7 +83,7 @@ inline double MassFall::Meetings::reach(const Near& n) const
   return std::min(fars_[i] + fars_[j], speed * duration_) + fall_;
 }
 
-inline bool MassFall::Meetings::mayMeet(const Open& o) const
+bool MassFall::Meetings::mayMeet(const Open& o) const
 {
   // By their ways alone first: that tells most of them apart.
   return o.apart <= fars_[std::size_t(o.first)] + fars_[std::size_t(o.second)] + fall_ &&
@@ -155,9 +132,10 @@ void MassFall::Meetings::look(MassFall& fall)
 {
   states_.resize(near.size());
   aparts_.resize(near.size());
-  const auto lookAt = [this, nears = near.data(), rocks = movers.data(), aparts = aparts_.data(),
-                        states = states_.data()](std::size_t k)
+  const auto lookAt = [last = near.size() - 1, nears = near.data(), rocks = movers.data(),
+                        aparts = aparts_.data(), states = states_.data()](std::size_t k)
   {
+    __builtin_prefetch(nears[std::min(k + kAhead, last)].pair);
     Near& n = nears[k];
     n.wasLinked = n.linked;
     n.linked = false;
@@ -222,7 +200,7 @@ MassFall::Meetings::Open MassFall::Meetings::openOf(std::size_t k) const
   return { aparts_[k], near[k].first, near[k].second, int(k) };
 }
 
-/// Takes up those that ways reach that have outgrown what was known.
+/// Takes up those about rocks whose ways have outgrown what was known.
 void MassFall::Meetings::widen()
 {
   for (std::size_t k = states_.size(); k < near.size(); ++k)
@@ -230,21 +208,25 @@ void MassFall::Meetings::widen()
     states_.push_back(kShut);
     aparts_.push_back(this->apart(near[k]));
   }
-  for (std::size_t k = 0; k < near.size(); ++k)
+  for (const int rock : wider_)
   {
-    const Mover &a = movers[std::size_t(near[k].first)], &b = movers[std::size_t(near[k].second)];
-    if ((states_[k] == kShut || states_[k] == kApart) && aparts_[k] <= a.known + b.known)
+    const auto take = [&](std::size_t k)
     {
-      states_[k] = kOpen;
-      open_.push_back(this->openOf(k));
-    }
+      const Mover &a = movers[std::size_t(near[k].first)], &b = movers[std::size_t(near[k].second)];
+      if ((states_[k] == kShut || states_[k] == kApart) && aparts_[k] <= a.known + b.known)
+      {
+        states_[k] = kOpen;
+        open_.push_back(this->openOf(k));
+      }
+    };
+    this->forNeighbours(rock, take);
   }
 }
 
 /// Looks at all that are open; returns whether more of them may meet.
 bool MassFall::Meetings::sweep(MassFall& fall)
 {
-  bool wider = false;
+  wider_.clear();
   for (std::size_t i = 0; i < movers.size(); ++i)
   {
     // Parents come before their children.
@@ -259,14 +241,14 @@ bool MassFall::Meetings::sweep(MassFall& fall)
     if (fars_[i] + fall_ > m.known && m.present && !m.asleep)
     {
       m.known = kWider * (fars_[i] + fall_);
-      wider = true;
+      wider_.push_back(int(i));
       if (!this->isCovered(i))
       {
         this->cover(int(i));
       }
     }
   }
-  if (wider)
+  if (!wider_.empty())
   {
     this->widen();
   }
@@ -344,105 +326,6 @@ bool MassFall::Meetings::stays(const Near& n) const
   const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
   return n.wasLinked && (n.seen || n.pair->touched) && a.crowded && b.crowded && !a.asleep &&
     !b.asleep;
-}
-
-/// Links two; `known`: their axis has been found for where they stand.
-void MassFall::Meetings::join(MassFall& fall, std::size_t k, bool known)
-{
-  Near& n = near[k];
-  n.linked = n.holds = true;
-  n.pair->linked = true;
-  n.pair->known = known;
-  const auto linkTo = [&](int i, int other)
-  {
-    const int next = std::exchange(firstLink_[std::size_t(i)], int(links_.size()));
-    links_.push_back({ aparts_[k], other, next });
-    Mover& m = movers[std::size_t(i)];
-    if (m.asleep)
-    {
-      fall.wake(*fall.members_[std::size_t(i)]);
-      m.asleep = false;
-      --sleepers_;
-    }
-    turns_.add(i, m.way);
-  };
-  linkTo(n.first, n.second);
-  linkTo(n.second, n.first);
-  const int a = this->root(n.first), b = this->root(n.second);
-  if (a == b)
-  {
-    return;
-  }
-  Company &kept = companies_[std::size_t(std::min(a, b))],
-          &other = companies_[std::size_t(std::max(a, b))];
-  parents_[std::size_t(std::max(a, b))] = std::min(a, b);
-  kept.lower = kept.lower.cwiseMin(other.lower);
-  kept.upper = kept.upper.cwiseMax(other.upper);
-  kept.heaviest = std::max(kept.heaviest, other.heaviest);
-  kept.size += other.size;
-}
-
-/// All that lies on each other wakes at once; others have their turn in the next sweep.
-void MassFall::Meetings::wakeAbout(MassFall& fall, int rock)
-{
-  const auto visit = [&](std::size_t k)
-  {
-    Near& n = near[k];
-    const Mover& other = movers[std::size_t(n.first == rock ? n.second : n.first)];
-    if (k < states_.size() && !n.linked && other.asleep && other.present &&
-      this->mayMeet(this->openOf(k)))
-    {
-      n.pair = n.pair ? n.pair : this->newPair(fall, n.first, n.second);
-      fall.members_[std::size_t(n.first)]->stand();
-      fall.members_[std::size_t(n.second)]->stand();
-      if (this->meet(fall, k))
-      {
-        this->join(fall, k, true);
-      }
-    }
-  };
-  this->forNeighbours(rock, visit);
-}
-
-/// What is left of a rock's way, to those that it is linked with.
-void MassFall::Meetings::passOn(int rock)
-{
-  Mover* const rocks = movers.data();
-  const double way = rocks[rock].way;
-  const Link* const links = links_.data();
-  for (int l = firstLink_[std::size_t(rock)]; l >= 0; l = links[l].next)
-  {
-    Mover& other = rocks[links[l].other];
-    if (way > other.way * kNoMore)
-    {
-      // The gap must be crossed first, by both together.
-      const double own = paces_[std::size_t(links[l].other)].own;
-      const double left = way - std::max(0.0, links[l].gap) * way / std::max(way + own, 1e-12);
-      if (left > other.way * kNoMore)
-      {
-        other.way = left;
-        turns_.add(links[l].other, left);
-      }
-    }
-  }
-}
-
-/// Carries on what each rock that has been joined may do to those that it may meet: the longest way
-/// first, so that few have their turn twice.
-void MassFall::Meetings::tell(MassFall& fall)
-{
-  for (int i = turns_.take(); i >= 0; i = turns_.take())
-  {
-    const std::size_t rock = std::size_t(i);
-    roots_[rock] = this->root(i);
-    paces_[rock].thrown = this->thrown(rock);
-    fars_[rock] = paces_[rock].thrown * movers[rock].way;
-    if (sleepers_ > 0)
-    {
-      this->wakeAbout(fall, i);
-    }
-    this->passOn(i);
-  }
 }
 
 void MassFall::Meetings::link(MassFall& fall)

@@ -129,7 +129,6 @@ private:
   double gap(const Near& near) const; ///< At least, along the axis, m.
   double apart(const Near& near) const;
   double closing(const Near& near) const;
-  double thrown(std::size_t rock) const;
   double reach(const Near& near) const;
   bool isAsleep(int first, int second) const; ///< Both.
   void lookAlong(Near& near) const;
@@ -139,12 +138,15 @@ private:
   Open openOf(std::size_t near) const;
   void widen();
   bool sweep(MassFall& fall);
+  bool stays(const Near& near) const;
+  void settle();
+
+  // What they pass on to each other: massFallWays.cxx
+  double thrown(std::size_t rock) const;
   void join(MassFall& fall, std::size_t near, bool known);
   void wakeAbout(MassFall& fall, int rock);
   void passOn(int rock);
   void tell(MassFall& fall);
-  bool stays(const Near& near) const;
-  void settle();
 
   double duration_ = 0.0;
   double fall_ = 0.0;         ///< What gravity may add to a way, m.
@@ -174,9 +176,9 @@ private:
   std::vector<int> firstLink_; ///< By rock, in `links_`.
   std::vector<Link> links_;
   int sleepers_ = 0;
-  bool widening_ = false; ///< Ways have outgrown what was known.
-  double longest_ = 0.0;  ///< Way of all, m.
-  Turns turns_;           ///< Of those that others have to be told of.
+  std::vector<int> wider_; ///< Rocks whose ways have outgrown what was known.
+  double longest_ = 0.0;   ///< Way of all, m.
+  Turns turns_;            ///< Of those that others have to be told of.
   std::vector<int> found_;
   std::vector<char> marks_;
   std::vector<char> answers_;
