@@ -119,22 +119,23 @@ struct PairLaw
   double damping = 0.0;     ///< ζ for the restitution, dimensionless.
 };
 
-/// Two rocks that are or were near each other, with what lasts from step to step.
-struct RockPair
+/// Two rocks that are or were near each other, with what lasts from step to step. What is asked of
+/// those that do not touch is in one line of the cache.
+struct alignas(64) RockPair
 {
-  int first = -1;  ///< Index of a rock.
-  int second = -1; ///< Index of a rock, larger.
-  PairLaw law;     ///< Of the materials that meet.
   PairAxis axis;
-  std::vector<Contact> contacts;
   bool touched = false; ///< Has had closed contacts in the last step.
   bool linked = false;  ///< May touch in the step at hand.
   bool known = false;   ///< The axis has been found for where the rocks stand now.
-  PairAxis before;      ///< The axis of the last step, if so or if seen.
   /// The axis was found at the end of the last step, where the rocks still stand: exact if they
   /// overlap, else some direction in which they are apart.
   bool seen = false;
-  PairAxis end; ///< At the end of the step at hand, as long as it is being solved.
+  int first = -1;  ///< Index of a rock.
+  int second = -1; ///< Index of a rock, larger.
+  PairLaw law;     ///< Of the materials that meet.
+  std::vector<Contact> contacts;
+  PairAxis before; ///< The axis of the last step, if known or seen.
+  PairAxis end;    ///< At the end of the step at hand, as long as it is being solved.
   /// What is under way between the first touch and parting or settling.
   struct Impact
   {

@@ -1,17 +1,11 @@
 // Which of the rocks that are near each other may meet within the step, and the groups that they
-// are: massFallMeet.cxx says by what bounds.
+// are: massFallMeet.cxx says by what bounds, massFallWays.cxx what they pass on to each other.
 
 #include "simulation/massFallMeet.h"
 
 #include "base/parallel.h"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <numeric>
-#include <utility>
 
 namespace rockfall
 {
@@ -21,11 +15,11 @@ namespace
 
 constexpr std::size_t kNearGrain = 256, kLookGrain = 16;
 
-/// A way that is longer by no more than this factor is not passed on.
-constexpr double kNoMore = 1.0 + 1e-6;
+/// So many pairs ahead the cache is asked for one.
+constexpr std::size_t kAhead = 8;
 
-/// What a look at two rocks near each other has shown: they may meet if they go far, as far as is
-/// known they don't, their bounding spheres tell them apart, or they overlap.
+/// What a look at two rocks near each other has shown: they may meet if they go as far as is known;
+/// they don't, or both sleep; their bounding spheres tell them apart; or they overlap.
 enum : char
 {
   kOpen,
@@ -41,15 +35,6 @@ double most(const Company& c, const Vec3& normal)
 }
 
 } // namespace
-
-int MassFall::Meetings::root(int i)
-{
-  while (parents_[std::size_t(i)] != i)
-  {
-    i = parents_[std::size_t(i)] = parents_[std::size_t(parents_[std::size_t(i)])];
-  }
-  return i;
-}
 
 /// From now on the gap is bounded along the pair's axis.
 void MassFall::Meetings::lookAlong(Near& n) const
@@ -73,11 +58,15 @@ double MassFall::Meetings::apart(const Near& n) const
 }
 
 /// How fast the gap may close along its normal, m/s.
-double MassFall::Meetings::closing(const Near& n) const
+inline double MassFall::Meetings::closing(const Near& n) const
 {
   const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
   const Company& first = companies_[std::size_t(roots_[i])];
   const Company& second = companies_[std::size_t(roots_[j])];
+  if (&first == &second)
+  {
+    return n.normal.cwiseAbs().dot(first.upper - first.lower);
+  }
   const double towards =
     first.size > 1 ? most(first, -n.normal) : paces_[i].spread - n.normal.dot(paces_[i].middle);
   const double against =
@@ -85,16 +74,8 @@ double MassFall::Meetings::closing(const Near& n) const
   return std::max(0.0, towards + against);
 }
 
-/// A light rock that a heavy one strikes goes on faster than it, by this factor.
-double MassFall::Meetings::thrown(std::size_t rock) const
-{
-  const double heaviest = companies_[std::size_t(roots_[rock])].heaviest;
-  const double mass = paces_[rock].mass;
-  return bounciest_ * heaviest > mass ? (1.0 + bounciest_) * heaviest / (heaviest + mass) : 1.0;
-}
-
 /// The widest gap over which the two may meet.
-double MassFall::Meetings::reach(const Near& n) const
+inline double MassFall::Meetings::reach(const Near& n) const
 {
   const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
   const double faster = std::max(paces_[i].thrown, paces_[j].thrown);
@@ -151,37 +132,48 @@ void MassFall::Meetings::look(MassFall& fall)
 {
   states_.resize(near.size());
   aparts_.resize(near.size());
-  const auto lookAt = [&](std::size_t k)
+  const auto lookAt = [last = near.size() - 1, nears = near.data(), rocks = movers.data(),
+                        aparts = aparts_.data(), states = states_.data()](std::size_t k)
   {
-    Near& n = near[k];
+    __builtin_prefetch(nears[std::min(k + kAhead, last)].pair);
+    Near& n = nears[k];
     n.wasLinked = n.linked;
     n.linked = false;
     n.looked = -1.0;
-    const bool seen = n.holds && n.pair->seen; // found where they stand
-    const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
+    n.seen = n.holds && n.pair->seen; // found where they stand
+    const Mover &a = rocks[n.first], &b = rocks[n.second];
+    const Vec3 between = a.position - b.position;
+    const double spheres = between.norm() - (a.radius + b.radius);
+    const double known = a.known + b.known, turned = a.turned + b.turned;
+    char state = kShut;
+    if (n.seen)
+    {
+      const PairAxis& axis = n.pair->axis;
+      n.normal = axis.normal;
+      n.offset = axis.distance - n.normal.dot(between) + turned;
+      state = axis.distance <= 0.0 ? char(kOverlaps) : state;
+    }
+    const double apart = std::max(n.offset + n.normal.dot(between) - turned, spheres);
+    aparts[k] = apart;
+    state = state == kShut && apart <= known ? char(kOpen) : state;
     if (!a.present || !b.present)
     {
-      aparts_[k] = -kNoAxis;
-      states_[k] = kApart;
-      return;
+      aparts[k] = -kNoAxis;
+      state = kApart;
     }
-    const bool asleep = a.asleep && b.asleep;
-    const Vec3 between = a.position - b.position;
-    const double spheres = between.norm() - a.radius - b.radius;
-    const double known = a.known + b.known;
-    if (seen)
+    else if (a.asleep && b.asleep)
     {
-      this->lookAlong(n);
+      state = kShut;
     }
-    const double gap = n.offset + n.normal.dot(between) - a.turned - b.turned;
-    aparts_[k] = std::max(gap, spheres);
-    states_[k] = spheres > known && !asleep             ? kApart
-      : seen && n.pair->axis.distance <= 0.0 && !asleep ? kOverlaps
-      : aparts_[k] <= known                             ? kOpen
-                                                        : kShut;
+    else if (spheres > known)
+    {
+      state = kApart;
+    }
+    states[k] = state;
   };
   forEach(near.size(), kNearGrain, lookAt);
-  open_.clear();
+  open_.resize(near.size());
+  Open* to = open_.data();
   for (std::size_t k = 0; k < near.size(); ++k)
   {
     switch (states_[k])
@@ -196,10 +188,11 @@ void MassFall::Meetings::look(MassFall& fall)
         this->join(fall, k, false);
         break;
       case kOpen:
-        open_.push_back(this->openOf(k));
+        *to++ = this->openOf(k);
         break;
     }
   }
+  open_.resize(std::size_t(to - open_.data()));
 }
 
 MassFall::Meetings::Open MassFall::Meetings::openOf(std::size_t k) const
@@ -207,7 +200,7 @@ MassFall::Meetings::Open MassFall::Meetings::openOf(std::size_t k) const
   return { aparts_[k], near[k].first, near[k].second, int(k) };
 }
 
-/// Takes up those that ways reach that have outgrown what was known.
+/// Takes up those about rocks whose ways have outgrown what was known.
 void MassFall::Meetings::widen()
 {
   for (std::size_t k = states_.size(); k < near.size(); ++k)
@@ -215,24 +208,29 @@ void MassFall::Meetings::widen()
     states_.push_back(kShut);
     aparts_.push_back(this->apart(near[k]));
   }
-  for (std::size_t k = 0; k < near.size(); ++k)
+  for (const int rock : wider_)
   {
-    const Mover &a = movers[std::size_t(near[k].first)], &b = movers[std::size_t(near[k].second)];
-    if ((states_[k] == kShut || states_[k] == kApart) && aparts_[k] <= a.known + b.known)
+    const auto take = [&](std::size_t k)
     {
-      states_[k] = kOpen;
-      open_.push_back(this->openOf(k));
-    }
+      const Mover &a = movers[std::size_t(near[k].first)], &b = movers[std::size_t(near[k].second)];
+      if ((states_[k] == kShut || states_[k] == kApart) && aparts_[k] <= a.known + b.known)
+      {
+        states_[k] = kOpen;
+        open_.push_back(this->openOf(k));
+      }
+    };
+    this->forNeighbours(rock, take);
   }
 }
 
 /// Looks at all that are open; returns whether more of them may meet.
 bool MassFall::Meetings::sweep(MassFall& fall)
 {
-  bool wider = false;
+  wider_.clear();
   for (std::size_t i = 0; i < movers.size(); ++i)
   {
-    roots_[i] = this->root(int(i));
+    // Parents come before their children.
+    roots_[i] = parents_[i] = roots_[std::size_t(parents_[i])];
     Mover& m = movers[i];
     if (companies_[std::size_t(roots_[i])].size == 1)
     {
@@ -243,35 +241,37 @@ bool MassFall::Meetings::sweep(MassFall& fall)
     if (fars_[i] + fall_ > m.known && m.present && !m.asleep)
     {
       m.known = kWider * (fars_[i] + fall_);
-      wider = true;
+      wider_.push_back(int(i));
       if (!this->isCovered(i))
       {
         this->cover(int(i));
       }
     }
   }
-  if (wider)
+  if (!wider_.empty())
   {
     this->widen();
   }
   chosen_.clear();
-  std::size_t left = 0;
-  for (const Open& o : open_)
+  Open* const first = open_.data();
+  Open* to = first;
+  const double* const fars = fars_.data();
+  for (const Open *o = first, *end = first + open_.size(); o != end; ++o)
   {
-    if (o.apart <= fars_[std::size_t(o.first)] + fars_[std::size_t(o.second)] + fall_)
+    if (o->apart <= fars[o->first] + fars[o->second] + fall_)
     {
-      if (near[std::size_t(o.near)].linked)
+      if (near[std::size_t(o->near)].linked)
       {
         continue;
       }
-      if (!this->isAsleep(o.first, o.second) && this->mayMeet(o))
+      if (!this->isAsleep(o->first, o->second) && this->mayMeet(*o))
       {
-        chosen_.push_back(left);
+        chosen_.push_back(std::size_t(to - first));
       }
     }
-    open_[left++] = o;
+    *to++ = *o;
   }
-  open_.resize(left);
+  open_.resize(std::size_t(to - first));
   bool any = false;
   asked_.clear();
   placed_.clear();
@@ -279,7 +279,7 @@ bool MassFall::Meetings::sweep(MassFall& fall)
   {
     const std::size_t k = std::size_t(open_[o].near);
     Near& n = near[k];
-    if (n.pair && n.looked < 0.0 && this->root(n.first) == this->root(n.second))
+    if (n.pair && n.looked < 0.0 && (this->stays(n) || this->root(n.first) == this->root(n.second)))
     {
       // Of one company they are: how far apart is looked at when their contacts are.
       this->join(fall, k, false);
@@ -319,137 +319,21 @@ bool MassFall::Meetings::sweep(MassFall& fall)
   return any;
 }
 
-/// Links two; `known`: their axis has been found for where they stand.
-void MassFall::Meetings::join(MassFall& fall, std::size_t k, bool known)
+/// In a crowd two stay linked as long as they may meet for all that is known of them: their axis is
+/// looked for when their contacts are, within a shorter reach.
+bool MassFall::Meetings::stays(const Near& n) const
 {
-  Near& n = near[k];
-  n.linked = n.holds = true;
-  n.pair->linked = true;
-  n.pair->known = known;
-  const double gap = this->gap(n);
-  for (const auto& [i, other] : { std::pair(n.first, n.second), std::pair(n.second, n.first) })
-  {
-    links_.push_back({ gap, other, std::exchange(firstLink_[std::size_t(i)], int(links_.size())) });
-    Mover& m = movers[std::size_t(i)];
-    if (m.asleep)
-    {
-      fall.wake(*fall.members_[std::size_t(i)]);
-      m.asleep = false;
-      --sleepers_;
-    }
-    if (!m.queued)
-    {
-      m.queued = true;
-      queue_.push_back(i);
-    }
-  }
-  const int a = this->root(n.first), b = this->root(n.second);
-  if (a == b)
-  {
-    return;
-  }
-  Company &kept = companies_[std::size_t(std::min(a, b))],
-          &other = companies_[std::size_t(std::max(a, b))];
-  parents_[std::size_t(std::max(a, b))] = std::min(a, b);
-  kept.lower = kept.lower.cwiseMin(other.lower);
-  kept.upper = kept.upper.cwiseMax(other.upper);
-  kept.heaviest = std::max(kept.heaviest, other.heaviest);
-  kept.size += other.size;
-}
-
-/// All that lies on each other wakes at once; others have their turn in the next sweep.
-void MassFall::Meetings::wakeAbout(MassFall& fall, int rock)
-{
-  const auto visit = [&](std::size_t k)
-  {
-    Near& n = near[k];
-    const Mover& other = movers[std::size_t(n.first == rock ? n.second : n.first)];
-    if (k < states_.size() && !n.linked && other.asleep && other.present &&
-      this->mayMeet(this->openOf(k)))
-    {
-      n.pair = n.pair ? n.pair : this->newPair(fall, n.first, n.second);
-      fall.members_[std::size_t(n.first)]->stand();
-      fall.members_[std::size_t(n.second)]->stand();
-      if (this->meet(fall, k))
-      {
-        this->join(fall, k, true);
-      }
-    }
-  };
-  this->forNeighbours(rock, visit);
-}
-
-/// What is left of a rock's way, to those that it is linked with.
-void MassFall::Meetings::passOn(int rock)
-{
-  const double way = movers[std::size_t(rock)].way;
-  for (int l = firstLink_[std::size_t(rock)]; l >= 0; l = links_[std::size_t(l)].next)
-  {
-    const Link& link = links_[std::size_t(l)];
-    Mover& other = movers[std::size_t(link.other)];
-    if (way > other.way * kNoMore)
-    {
-      // The gap must be crossed first, by both together.
-      const double left = way -
-        std::max(0.0, link.gap) * way / std::max(way + paces_[std::size_t(link.other)].own, 1e-12);
-      if (left > other.way * kNoMore)
-      {
-        other.way = left;
-        other.queued = true;
-        queue_.push_back(link.other);
-      }
-    }
-  }
-}
-
-/// Carries on what each rock that has been joined may do to those that it may meet: the longest way
-/// first, so that none has its turn twice.
-void MassFall::Meetings::tell(MassFall& fall)
-{
-  // In one number that orders them: the way, rounded, and the rock.
-  const auto turnOf = [this](int i)
-  {
-    const auto way = std::bit_cast<std::uint32_t>(float(movers[std::size_t(i)].way));
-    return (std::uint64_t(way) << 32) + ~std::uint32_t(i);
-  };
-  turns_.clear();
-  for (std::size_t taken = 0;;)
-  {
-    for (; taken < queue_.size(); ++taken)
-    {
-      turns_.push_back(turnOf(queue_[taken]));
-      std::push_heap(turns_.begin(), turns_.end());
-    }
-    if (turns_.empty())
-    {
-      break;
-    }
-    const std::uint64_t turn = turns_.front();
-    std::pop_heap(turns_.begin(), turns_.end());
-    turns_.pop_back();
-    const int i = int(~std::uint32_t(turn));
-    Mover& m = movers[std::size_t(i)];
-    if (!m.queued || turn != turnOf(i))
-    {
-      continue; // has had its turn, or has a longer way since
-    }
-    m.queued = false;
-    roots_[std::size_t(i)] = this->root(i);
-    paces_[std::size_t(i)].thrown = this->thrown(std::size_t(i));
-    fars_[std::size_t(i)] = paces_[std::size_t(i)].thrown * m.way;
-    if (sleepers_ > 0)
-    {
-      this->wakeAbout(fall, i);
-    }
-    this->passOn(i);
-  }
-  queue_.clear();
+  const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
+  return n.wasLinked && (n.seen || n.pair->touched) && a.crowded && b.crowded && !a.asleep &&
+    !b.asleep;
 }
 
 void MassFall::Meetings::link(MassFall& fall)
 {
   firstLink_.assign(movers.size(), -1);
   links_.clear();
+  links_.reserve(near.size());
+  turns_.reset(movers.size(), longest_);
   this->look(fall);
   this->tell(fall);
   while (this->sweep(fall))
@@ -505,6 +389,7 @@ void MassFall::findGroups(double duration)
     if (meet.isAlone(root))
     {
       alone_.push_back(int(i));
+      meet.movers[i].crowded = false;
       continue;
     }
     if (place[root] < 0)
@@ -512,18 +397,23 @@ void MassFall::findGroups(double duration)
       place[root] = int(groups_.size());
       groups_.emplace_back();
     }
+    place[i] = place[root];
     groups_[std::size_t(place[root])].members.push_back(int(i));
   }
   for (const Near& n : meet.near)
   {
     if (n.linked)
     {
-      groups_[std::size_t(place[std::size_t(meet.root(n.first))])].pairs.push_back(n.pair);
+      groups_[std::size_t(place[std::size_t(n.first)])].pairs.push_back(n.pair);
     }
   }
   for (Group& group : groups_)
   {
     group.crowd = this->isCrowd(group);
+    for (const int i : group.members)
+    {
+      meet.movers[std::size_t(i)].crowded = group.crowd;
+    }
   }
 }
 

@@ -28,12 +28,16 @@ namespace
 
 constexpr std::size_t kRockGrain = 64;
 
+/// So many rocks ahead the cache is asked for what follows here, in so many lines.
+constexpr std::size_t kAhead = 4;
+constexpr int kLinesAsked = 5;
+
 /// Steps that a rock may go on in its ball as it moves past the others now, and what it may go
 /// otherwise, of the way that is known.
-constexpr double kSteps = 4.0, kOtherwise = 0.5;
+constexpr double kSteps = 6.0, kOtherwise = 0.5;
 
-/// All are looked for anew when this share of them are out of their balls.
-constexpr std::size_t kMostOut = 16;
+/// All are looked for anew when this share of them have come out of their balls.
+constexpr std::size_t kMostOut = 4;
 
 } // namespace
 
@@ -65,16 +69,22 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
   {
     ground = std::max(ground, fall.surface_.restitutionOf(k));
   }
+  const std::size_t last = count - 1;
   const auto followRock = [&](std::size_t i)
   {
     Mover& m = movers[i];
     Pace& pace = paces_[i];
     const Member& member = *fall.members_[i];
     const RockSimulator& sim = member.sim;
+    const char* const ahead =
+      reinterpret_cast<const char*>(&fall.members_[std::min(i + kAhead, last)]->asleep);
+    for (int line = 0; line < kLinesAsked; ++line)
+    {
+      __builtin_prefetch(ahead + 64 * line);
+    }
     const bool slept = m.asleep;
     m.asleep = member.asleep;
     m.present = !sim.done_ || m.asleep;
-    m.queued = false;
     pace.thrown = 1.0;
     fars_[i] = 0.0;
     if (!m.present || (slept && m.asleep))
@@ -116,10 +126,12 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
   sleepers_ = 0;
   int present = 0;
   drift_.setZero();
+  longest_ = 0.0;
   for (std::size_t i = 0; i < count; ++i)
   {
     const Mover& m = movers[i];
     const Pace& pace = paces_[i];
+    longest_ = std::max(longest_, m.way);
     sleepers_ += m.present && m.asleep;
     companies_[i] = { pace.middle.array() - pace.spread, pace.middle.array() + pace.spread,
       pace.mass, 1 };
@@ -186,9 +198,11 @@ void MassFall::Meetings::findNear(MassFall& fall)
   forThose(
     movers.size(), kRockGrain, answers_, [&](std::size_t i) { return !this->isCovered(i); },
     [&](std::size_t i) { chosen_.push_back(i); });
-  if (!searched_ || chosen_.size() * kMostOut > movers.size())
+  out_ += chosen_.size();
+  if (!searched_ || out_ * kMostOut > movers.size())
   {
     this->search(fall);
+    out_ = 0;
     return;
   }
   for (const std::size_t i : chosen_)

@@ -5,6 +5,7 @@
 /// more rocks near each other than touch.
 
 #include "simulation/MassFall.h"
+#include "simulation/turns.h"
 #include "system/broadPhase.h"
 
 #include <array>
@@ -33,7 +34,7 @@ struct alignas(64) Mover
   double known; ///< Rocks nearer than such a way, less their own, are its neighbours.
   bool present = false; ///< Neither gone nor stopped by the end time.
   bool asleep = false;
-  bool queued = false; ///< Those about it have to be told.
+  bool crowded = false; ///< Was in a crowd in the last step.
 };
 
 /// What else decides how a rock moves in the step.
@@ -78,6 +79,7 @@ struct Near
   bool linked = false;    ///< May touch in this step,
   bool wasLinked = false; ///< or could in the last one.
   bool holds = false;     ///< May have contacts.
+  bool seen = false;      ///< The axis had been found where the step begins.
 };
 
 inline bool operator<(const Near& a, const Near& b)
@@ -127,7 +129,6 @@ private:
   double gap(const Near& near) const; ///< At least, along the axis, m.
   double apart(const Near& near) const;
   double closing(const Near& near) const;
-  double thrown(std::size_t rock) const;
   double reach(const Near& near) const;
   bool isAsleep(int first, int second) const; ///< Both.
   void lookAlong(Near& near) const;
@@ -137,11 +138,15 @@ private:
   Open openOf(std::size_t near) const;
   void widen();
   bool sweep(MassFall& fall);
+  bool stays(const Near& near) const;
+  void settle();
+
+  // What they pass on to each other: massFallWays.cxx
+  double thrown(std::size_t rock) const;
   void join(MassFall& fall, std::size_t near, bool known);
   void wakeAbout(MassFall& fall, int rock);
   void passOn(int rock);
   void tell(MassFall& fall);
-  void settle();
 
   double duration_ = 0.0;
   double fall_ = 0.0;         ///< What gravity may add to a way, m.
@@ -150,6 +155,7 @@ private:
   Vec3 drift_ = Vec3::Zero(); ///< How far all have gone on together since, m.
   Vec3 mean_ = Vec3::Zero();  ///< Velocity of all together, m/s.
   bool searched_ = false;
+  std::size_t out_ = 0; ///< Rocks that have come out of their balls since.
   BroadPhase broad_;
   std::vector<BroadBox> boxes_; ///< Of the last search.
   std::vector<Pace> paces_;
@@ -170,9 +176,9 @@ private:
   std::vector<int> firstLink_; ///< By rock, in `links_`.
   std::vector<Link> links_;
   int sleepers_ = 0;
-  bool widening_ = false; ///< Ways have outgrown what was known.
-  std::vector<int> queue_;
-  std::vector<std::uint64_t> turns_;
+  std::vector<int> wider_; ///< Rocks whose ways have outgrown what was known.
+  double longest_ = 0.0;   ///< Way of all, m.
+  Turns turns_;            ///< Of those that others have to be told of.
   std::vector<int> found_;
   std::vector<char> marks_;
   std::vector<char> answers_;

@@ -3,6 +3,7 @@
 #include "simulation/massFallWork.h"
 
 #include "base/parallel.h"
+#include "contact/motion.h"
 #include "simulation/pressOut.h"
 #include "simulation/restitution.h"
 #include "solver/cohesion.h"
@@ -425,7 +426,17 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
       m.sim.recorder_.trajectory().summary.fate = Fate::Moving;
       m.sim.done_ = true;
     }
-    work.arrived[std::size_t(b)] = work.looked && m.arrive();
+    const bool arrived = work.looked && m.arrive();
+    work.arrived[std::size_t(b)] = arrived;
+    if (crowd && !arrived)
+    {
+      const BlockState &from = m.sim.before_, &to = m.sim.state_;
+      const double r = m.sim.block_.radius();
+      Workspace::Way& way = work.ways[std::size_t(b)];
+      way.way = to.position - from.position;
+      way.turned =
+        wayOfTurn(from.orientation, to.orientation, r) + r * (to.strain - from.strain).norm();
+    }
   };
   forEach(group.members.size(), kRockGrain, absorbRock);
   const auto see = [&](std::size_t p)
@@ -433,11 +444,27 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     comeToPair(group.pairs, p);
     RockPair& pair = *group.pairs[p];
     const auto [a, b] = work.places[p];
-    pair.seen = a >= 0 && b >= 0 && work.arrived[std::size_t(a)] && work.arrived[std::size_t(b)];
+    const bool both = a >= 0 && b >= 0;
+    pair.seen = both && work.arrived[std::size_t(a)] && work.arrived[std::size_t(b)];
     if (pair.seen)
     {
       pair.before = pair.axis;
       pair.axis = pair.end;
+    }
+    else if (crowd && both && !pair.touched && !members_[pair.first]->sim.done_ &&
+      !members_[pair.second]->sim.done_)
+    {
+      // The look was before the last sweeps; but they may still be apart as they were.
+      const Workspace::Way& way = work.ways[std::size_t(a)];
+      const Workspace::Way& other = work.ways[std::size_t(b)];
+      const double gap =
+        pair.axis.distance + pair.axis.normal.dot(way.way - other.way) - way.turned - other.turned;
+      pair.seen = gap > 0.0;
+      if (pair.seen)
+      {
+        pair.before = pair.axis;
+        pair.axis.distance = gap;
+      }
     }
   };
   forEach(group.pairs.size(), kPairGrain, see);

@@ -1,0 +1,136 @@
+// What rocks that may meet pass on to each other: the velocities of their company, and what is left
+// of their ways.
+
+#include "simulation/massFallMeet.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace rockfall
+{
+
+namespace
+{
+
+/// A way that is longer by no more than this factor is not passed on.
+constexpr double kNoMore = 1.0 + 1e-6;
+
+} // namespace
+
+int MassFall::Meetings::root(int i)
+{
+  while (parents_[std::size_t(i)] != i)
+  {
+    i = parents_[std::size_t(i)] = parents_[std::size_t(parents_[std::size_t(i)])];
+  }
+  return i;
+}
+
+/// A light rock that a heavy one strikes goes on faster than it, by this factor.
+double MassFall::Meetings::thrown(std::size_t rock) const
+{
+  const double heaviest = companies_[std::size_t(roots_[rock])].heaviest;
+  const double mass = paces_[rock].mass;
+  return bounciest_ * heaviest > mass ? (1.0 + bounciest_) * heaviest / (heaviest + mass) : 1.0;
+}
+
+/// Links two; `known`: their axis has been found for where they stand.
+void MassFall::Meetings::join(MassFall& fall, std::size_t k, bool known)
+{
+  Near& n = near[k];
+  n.linked = n.holds = true;
+  n.pair->linked = true;
+  n.pair->known = known;
+  const auto linkTo = [&](int i, int other)
+  {
+    const int next = std::exchange(firstLink_[std::size_t(i)], int(links_.size()));
+    links_.push_back({ aparts_[k], other, next });
+    Mover& m = movers[std::size_t(i)];
+    if (m.asleep)
+    {
+      fall.wake(*fall.members_[std::size_t(i)]);
+      m.asleep = false;
+      --sleepers_;
+    }
+    turns_.add(i, m.way);
+  };
+  linkTo(n.first, n.second);
+  linkTo(n.second, n.first);
+  const int a = this->root(n.first), b = this->root(n.second);
+  if (a == b)
+  {
+    return;
+  }
+  Company &kept = companies_[std::size_t(std::min(a, b))],
+          &other = companies_[std::size_t(std::max(a, b))];
+  parents_[std::size_t(std::max(a, b))] = std::min(a, b);
+  kept.lower = kept.lower.cwiseMin(other.lower);
+  kept.upper = kept.upper.cwiseMax(other.upper);
+  kept.heaviest = std::max(kept.heaviest, other.heaviest);
+  kept.size += other.size;
+}
+
+/// All that lies on each other wakes at once; others have their turn in the next sweep.
+void MassFall::Meetings::wakeAbout(MassFall& fall, int rock)
+{
+  const auto visit = [&](std::size_t k)
+  {
+    Near& n = near[k];
+    const Mover& other = movers[std::size_t(n.first == rock ? n.second : n.first)];
+    if (k < states_.size() && !n.linked && other.asleep && other.present &&
+      this->mayMeet(this->openOf(k)))
+    {
+      n.pair = n.pair ? n.pair : this->newPair(fall, n.first, n.second);
+      fall.members_[std::size_t(n.first)]->stand();
+      fall.members_[std::size_t(n.second)]->stand();
+      if (this->meet(fall, k))
+      {
+        this->join(fall, k, true);
+      }
+    }
+  };
+  this->forNeighbours(rock, visit);
+}
+
+/// What is left of a rock's way, to those that it is linked with.
+void MassFall::Meetings::passOn(int rock)
+{
+  Mover* const rocks = movers.data();
+  const double way = rocks[rock].way;
+  const Link* const links = links_.data();
+  for (int l = firstLink_[std::size_t(rock)]; l >= 0; l = links[l].next)
+  {
+    Mover& other = rocks[links[l].other];
+    if (way > other.way * kNoMore)
+    {
+      // The gap must be crossed first, by both together.
+      const double own = paces_[std::size_t(links[l].other)].own;
+      const double left = way - std::max(0.0, links[l].gap) * way / std::max(way + own, 1e-12);
+      if (left > other.way * kNoMore)
+      {
+        other.way = left;
+        turns_.add(links[l].other, left);
+      }
+    }
+  }
+}
+
+/// Carries on what each rock that has been joined may do to those that it may meet: the longest way
+/// first, so that few have their turn twice.
+void MassFall::Meetings::tell(MassFall& fall)
+{
+  for (int i = turns_.take(); i >= 0; i = turns_.take())
+  {
+    const std::size_t rock = std::size_t(i);
+    roots_[rock] = this->root(i);
+    paces_[rock].thrown = this->thrown(rock);
+    fars_[rock] = paces_[rock].thrown * movers[rock].way;
+    if (sleepers_ > 0)
+    {
+      this->wakeAbout(fall, i);
+    }
+    this->passOn(i);
+  }
+}
+
+} // namespace rockfall
