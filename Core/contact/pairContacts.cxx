@@ -146,7 +146,7 @@ void handOver(std::span<const char> taken, std::span<const Match> matches,
     {
       continue;
     }
-    if (isFresh(matches[i]))
+    if (isFresh(matches[i]) || c.stiffness == 0.0) // open so far, and without springs
     {
       c.state = strongest->state;
       c.stiffness = strongest->stiffness;

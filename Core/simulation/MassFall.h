@@ -151,7 +151,8 @@ private:
   double groupStep(const Group& group) const;
   void gatherContacts(const Group& group, double h) const;
   void findPushes(const Group& group) const;
-  void armPair(RockPair& pair, double h, bool crowd) const;
+  void armPair(RockPair& pair, double h) const;
+  /// One of a crowd, whose dashpots are not asked for.
   void armContact(const RockPair& pair, Contact& contact) const;
   bool isCalm(const Group& group) const;
   bool mayLast(const Group& group, double h) const;

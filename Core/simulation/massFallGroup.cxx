@@ -217,7 +217,10 @@ void MassFall::gatherContacts(const Group& group, double h) const
     {
       updatePair(a.body, b.body, reach, *pair);
     }
-    this->armPair(*pair, h, crowd);
+    if (!crowd)
+    {
+      this->armPair(*pair, h); // in a crowd what may close is armed when it is taken
+    }
   };
   forEach(group.pairs.size(), kPairGrain, eachOther);
 }
@@ -243,7 +246,7 @@ void MassFall::findPushes(const Group& group) const
   }
 }
 
-void MassFall::armPair(RockPair& pair, double h, bool crowd) const
+void MassFall::armPair(RockPair& pair, double h) const
 {
   Contact* k = pair.contacts.data();
   Contact* const end = k + pair.contacts.size();
@@ -264,7 +267,7 @@ void MassFall::armPair(RockPair& pair, double h, bool crowd) const
       arming.arm(*k);
     }
   }
-  if (!crowd && pair.law.damping > 0.0)
+  if (pair.law.damping > 0.0)
   {
     tuneDashpots(
       pair.contacts, h,

@@ -193,6 +193,7 @@ void MassFall::solve(
     }
   };
   forEach(group.members.size(), kRockGrain, takeRock);
+  const bool crowd = group.crowd, swept = work.solver.isSwept(kind, work.bodies.size());
   const auto takePair = [&](std::size_t t)
   {
     work.comeToTouching(group, t);
@@ -207,7 +208,11 @@ void MassFall::solve(
     std::size_t next = work.firsts[p];
     for (Contact& c : pair.contacts)
     {
-      work.contacts[next++] = this->take(pair, motion, c, h, bounces);
+      const GroupContact& taken = work.contacts[next++] = this->take(pair, motion, c, h, bounces);
+      if (crowd && !taken.closed && !(swept && mayStayOpen(taken, h)))
+      {
+        this->armContact(pair, c);
+      }
     }
   };
   forEach(work.touching.size(), kPairGrain, takePair);
@@ -233,7 +238,16 @@ void MassFall::solve(
   }
   work.added.clear();
   work.addedTo.clear();
-  const bool crowd = group.crowd;
+  const auto armLate = [&](std::size_t k)
+  {
+    const auto behind = std::upper_bound(work.firsts.begin(), work.firsts.end(), k);
+    if (crowd && behind != work.firsts.begin() && behind != work.firsts.end())
+    {
+      const RockPair& pair = *group.pairs[std::size_t(behind - work.firsts.begin()) - 1];
+      this->armContact(pair, *work.contacts[k].contact);
+    }
+  };
+  work.solver.armLate(armLate);
   const auto look = [&] { return this->lookAgain(group, request.duration, bounces, work); };
   GroupOutcome outcome;
   work.iterations = work.cuts = work.unsettled = work.tries = 0;

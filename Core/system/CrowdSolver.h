@@ -42,6 +42,8 @@ public:
   /// Share of the largest displacement to which the sweeps go.
   double tolerance = 1e-4;
   int maxSweeps = 6;
+  /// Gives a contact its springs that was watched and closes, unless it has them.
+  std::function<void(std::size_t contact)> arm;
 
 private:
   /// Changes below this share of the tolerance are none.
@@ -114,7 +116,7 @@ private:
   void forContacts(int part, Visit&& visit) const;
   std::size_t firstOf(std::size_t key) const { return key == 0 ? 0 : ends_[key - 1]; }
   void prepareRow(const std::vector<GroupBody>& bodies, const GroupContact& group, Row& row);
-  void arm(const GroupContact& group, const Row& row); ///< With springs, and what bounces stiffer.
+  void stiffen(const GroupContact& group, const Row& row); ///< What bounces.
   /// Directions and levers at mid-step.
   void lever(const std::vector<GroupBody>& bodies, const GroupContact& group, const Row& row);
   void assemble(std::size_t first, std::size_t count); ///< Batches: what forces do along levers.

@@ -53,6 +53,10 @@ public:
   bool moved(std::size_t body) const; ///< Since lookAgain was asked last.
 
   GroupMethod method = GroupMethod::Suited;
+  /// Whether a step is solved by Gauss–Seidel from the start.
+  bool isSwept(StepKind kind, std::size_t bodies) const;
+  /// For contacts without springs that mayStayOpen, if it is: gives one its springs when it closes.
+  void armLate(std::function<void(std::size_t contact)> arm) { crowd_.arm = std::move(arm); }
   /// Share of the largest displacement to which Gauss–Seidel goes.
   double tolerance = 1e-4;
   int maxSweeps = 6;

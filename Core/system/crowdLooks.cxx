@@ -72,7 +72,7 @@ void CrowdSolver::append(const std::vector<GroupBody>& bodies, std::vector<Group
   {
     if (contacts[k].bounce >= 0.0)
     {
-      this->arm(contacts[k], rows_[k]);
+      this->stiffen(contacts[k], rows_[k]);
     }
   }
 }
@@ -115,6 +115,10 @@ bool CrowdSolver::watch(int sweep)
   {
     Row& row = rows_[std::size_t(k)];
     const double gap0 = row.gap0; // may have been set right by a look
+    if (arm)
+    {
+      arm(std::size_t(k));
+    }
     this->prepareRow(*bodies_, (*contacts_)[std::size_t(k)], row);
     row.gap0 = batches_[std::size_t(row.batch)].gap[row.lane] = gap0;
     this->noteChange((*contacts_)[std::size_t(k)]);

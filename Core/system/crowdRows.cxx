@@ -57,7 +57,7 @@ void CrowdSolver::prepareRow(
   this->lever(bodies, group, row);
 }
 
-void CrowdSolver::arm(const GroupContact& group, const Row& row)
+void CrowdSolver::stiffen(const GroupContact& group, const Row& row)
 {
   crowd::Batch& p = batches_[std::size_t(row.batch)];
   crowd::Springs& springs = springs_[std::size_t(row.batch)];
@@ -89,7 +89,7 @@ void CrowdSolver::prepareRows(
       const std::size_t k = std::size_t(order_[at]);
       if (contacts[k].bounce >= 0.0)
       {
-        this->arm(contacts[k], rows_[k]);
+        this->stiffen(contacts[k], rows_[k]);
       }
       this->pushed(rows_[k], 1.0);
     }

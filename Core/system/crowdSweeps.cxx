@@ -111,7 +111,7 @@ void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
     const int a = partOf(k.first);
     const int b = k.second < 0 ? a : partOf(k.second);
     const int part = std::abs(a - b) <= 1 ? std::min(a, b) : parts_;
-    const bool open = !k.contact->closed() && k.bounce < 0.0 && k.contact->gap() > h_ * k.approach;
+    const bool open = !k.contact->closed() && mayStayOpen(k, h_);
     return part * kKinds + (open ? Watching : k.second < 0 && part < parts_ ? OnSlope : Pairs);
   };
   const std::size_t keys = std::size_t(parts_ + 1) * kKinds;

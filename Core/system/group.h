@@ -44,6 +44,13 @@ struct GroupContact
   bool closed = false;
 };
 
+/// Whether it is open and stays so in a step of `h` (s) unless its rocks are pushed: Gauss–Seidel
+/// only watches it, and it needs no springs before it closes.
+inline bool mayStayOpen(const GroupContact& k, double h)
+{
+  return !k.closed && k.bounce < 0.0 && k.contact->gap() > h * k.approach;
+}
+
 /// Which solutions of a step are taken.
 enum class Taken : std::uint8_t
 {

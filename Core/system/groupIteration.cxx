@@ -126,12 +126,15 @@ bool GroupSolver::settle(const StepRequest& request, const std::vector<GroupBody
   return settled;
 }
 
+bool GroupSolver::isSwept(StepKind kind, std::size_t bodies) const
+{
+  return kind == StepKind::Lasting &&
+    (method == GroupMethod::Iterative || (method == GroupMethod::Suited && bodies > kDirect));
+}
+
 GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody>& bodies,
   std::vector<GroupContact>& contacts, Taken take, const std::function<double()>& lookAgain)
 {
-  const bool lasting = request.kind == StepKind::Lasting;
-  const bool iterate =
-    method == GroupMethod::Iterative || (method == GroupMethod::Suited && bodies.size() > kDirect);
   const auto sweep = [&]
   {
     sweeping_ = true;
@@ -139,7 +142,7 @@ GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody
     crowd_.maxSweeps = maxSweeps;
     return crowd_.step(request, bodies, contacts, take, lookAgain);
   };
-  if (iterate && lasting)
+  if (this->isSwept(request.kind, bodies.size()))
   {
     return sweep();
   }
