@@ -132,6 +132,8 @@ private:
   /// Lower bound of the time to the first touch of the ground in free flight, s.
   double timeToGround(double duration);
   void ensurePatch(double margin);
+  /// How far, in radii, the rock may go on until the pairs that can touch are looked for again.
+  static constexpr double kCandidateSlack = 0.05;
   void ensureCandidates(double reach, bool among = false); ///< `among`: many others.
   /// Whether no ground is within a reach of the rock (m) for sure, among others; looks for how high
   /// it is where that is not known.

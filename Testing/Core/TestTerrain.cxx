@@ -254,6 +254,56 @@ TEST(Surface, PatchKnowsRidgesAndFlats)
   EXPECT_TRUE(patch.ridges.empty());
 }
 
+TEST(Surface, NoGroundIsInABallOverTheLid)
+{
+  // Waves with a hole: a ball that the lid clears has no node in it, and none is cleared whose box
+  // has the hole or the edge in it.
+  const auto isHole = [](double x, double y) { return std::hypot(x - 28.0, y - 12.0) < 2.5; };
+  const Terrain slope = makeSlope(41, 1.0,
+    [&](double x, double y)
+    {
+      return isHole(x, y) ? std::numeric_limits<double>::quiet_NaN()
+                          : 0.5 * x + 2.0 * std::sin(0.4 * x) * std::cos(0.3 * y);
+    });
+  const Surface surface = Surface::asSurveyed(slope);
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> place(0.0, 40.0), height(0.0, 12.0), size(0.3, 2.0);
+  int cleared = 0, low = 0;
+  for (int k = 0; k < 4000; ++k)
+  {
+    const Vec3 center(place(random), place(random), 0.0);
+    const double half = 4.0, radius = size(random);
+    HeightWindow window;
+    window.gather(
+      surface, center.x() - half, center.x() + half, center.y() - half, center.y() + half);
+    const GroundLid lid(window);
+    const Vec3 at = center + Vec3(0.5, -0.5, 0.5 * center.x() + height(random));
+    double nearest = std::numeric_limits<double>::infinity();
+    bool whole = lid.covers(at, radius);
+    for (int i = 0; i <= 40; ++i)
+    {
+      for (int j = 0; j <= 40; ++j)
+      {
+        const bool inside =
+          std::abs(i - at.x()) <= radius + 1.0 && std::abs(j - at.y()) <= radius + 1.0;
+        whole = whole && !(inside && isHole(i, j));
+        const Vec3 node(i, j, 0.5 * i + 2.0 * std::sin(0.4 * i) * std::cos(0.3 * j));
+        nearest = isHole(i, j) ? nearest : std::min(nearest, (node - at).norm());
+      }
+    }
+    if (lid.isUnder(at, radius))
+    {
+      ++cleared;
+      EXPECT_TRUE(whole);
+      EXPECT_GT(nearest, radius);
+    }
+    low += nearest <= radius;
+  }
+  EXPECT_GT(cleared, 1000); // both are met
+  EXPECT_GT(low, 300);
+  EXPECT_FALSE(GroundLid().isUnder({ 20.0, 20.0, 1e6 }, 1.0));
+}
+
 TEST(Random, IsACounter)
 {
   // Pinned: a change here changes every published result.

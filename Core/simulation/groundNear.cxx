@@ -1,0 +1,68 @@
+// What of the slope is near a rock, and that nothing of it is.
+
+#include "simulation/RockSimulator.h"
+
+#include <algorithm>
+
+namespace rockfall
+{
+
+namespace
+{
+
+/// As kCandidateSlack, of a rock among others that has nothing of the slope near it.
+constexpr double kFarSlack = 0.4;
+/// How far, in radii, a rock among others may go on until the height of the ground is looked up.
+constexpr double kLid = 4.0;
+
+} // namespace
+
+void RockSimulator::ensurePatch(double margin)
+{
+  const Vec3 lower = placed_.lower(), upper = placed_.upper();
+  if (!patch_.covers(
+        lower.x() - margin, upper.x() + margin, lower.y() - margin, upper.y() + margin))
+  {
+    gatherPatch(surface_, lower.x() - margin, upper.x() + margin, lower.y() - margin,
+      upper.y() + margin, patch_);
+    if (solid_)
+    {
+      const double ring = patch_.cellSize;
+      obstacles_->append(patch_.xMin - ring, patch_.xMax + ring, patch_.yMin - ring,
+        patch_.yMax + ring, goneTrees_, patch_);
+    }
+    candidates_.distance = -1.0;
+  }
+}
+
+void RockSimulator::ensureCandidates(double reach, bool among)
+{
+  if (candidates_.room(state_, block_.radius(), reach) < 0.0)
+  {
+    // Where nothing was near at the last look there is little that a wider one finds.
+    const double slack = among && candidates_.empty() ? kFarSlack : kCandidateSlack;
+    const double distance = std::max(2.0 * reach, reach + slack * block_.radius());
+    this->ensurePatch(distance);
+    gatherCandidates(placed_, state_, patch_, distance, candidates_);
+  }
+}
+
+bool RockSimulator::isHigh(double reach)
+{
+  if (solid_ || !contacts_.empty())
+  {
+    return false;
+  }
+  const double r = block_.radius();
+  const Vec3& p = state_.position;
+  if (!lid_.covers(p, r + reach))
+  {
+    thread_local HeightWindow window;
+    const double half = r + reach + kLid * r;
+    window.gather(surface_, p.x() - half, p.x() + half, p.y() - half, p.y() + half);
+    lid_ = GroundLid(window);
+  }
+  return this->isHighAt(p, reach);
+}
+
+} // namespace rockfall

@@ -1,0 +1,244 @@
+// How the contacts of a crowd are dealt out: into parts across the group, batches of which no two
+// share a rock, and what is only watched.
+
+#include "system/CrowdSolver.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace rockfall
+{
+
+namespace
+{
+
+/// Rocks of a part of the group, and parts at most.
+constexpr int kPart = 56;
+constexpr int kMostParts = 64;
+/// Batches that are filled at the same time.
+constexpr int kOpen = 32;
+
+} // namespace
+
+CrowdSolver::Hand::Hand(int slope)
+{
+  for (auto& side : body)
+  {
+    std::fill(std::begin(side), std::end(side), slope);
+  }
+}
+
+/// A batch of contacts that do nothing as yet.
+crowd::Batch CrowdSolver::Hand::idle() const
+{
+  crowd::Batch batch = {};
+  std::fill(std::begin(batch.gap), std::end(batch.gap), std::numeric_limits<double>::max());
+  for (int side = 0; side < 2; ++side)
+  {
+    std::copy(std::begin(body[side]), std::end(body[side]), batch.body[side]);
+  }
+  return batch;
+}
+
+crowd::Watched CrowdSolver::Hand::watchedIdle() const
+{
+  crowd::Watched four = {};
+  std::fill(std::begin(four.gap), std::end(four.gap), std::numeric_limits<double>::max());
+  for (int side = 0; side < 2; ++side)
+  {
+    std::copy(std::begin(body[side]), std::end(body[side]), four.body[side]);
+  }
+  return four;
+}
+
+void CrowdSolver::lineUp()
+{
+  parts_ = std::clamp(int(work_.size()) / kPart, 1, kMostParts);
+  parts_ -= parts_ > 4 ? parts_ % 4 : 0; // two threads get the same number of every second part
+  Vec3 low = work_.front().position, high = low;
+  for (const Work& w : work_)
+  {
+    low = low.cwiseMin(w.position);
+    high = high.cwiseMax(w.position);
+  }
+  int axis = 0;
+  (high - low).maxCoeff(&axis);
+  line_.resize(work_.size());
+  for (std::size_t i = 0; i < work_.size(); ++i)
+  {
+    line_[i] = { work_[i].position[axis], int(i) };
+  }
+  std::sort(line_.begin(), line_.end());
+  for (std::size_t mover = 0; mover < line_.size(); ++mover)
+  {
+    work_[std::size_t(line_[mover].second)].mover = mover;
+  }
+}
+
+void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
+{
+  const int bodies = int(work_.size());
+  const auto partOf = [&](int body)
+  { return int(work_[std::size_t(body)].mover * std::size_t(parts_) / work_.size()); };
+  const auto keyOf = [&](const GroupContact& k)
+  {
+    const int a = partOf(k.first);
+    const int b = k.second < 0 ? a : partOf(k.second);
+    const int part = std::abs(a - b) <= 1 ? std::min(a, b) : parts_;
+    const bool open = !k.contact->closed() && mayStayOpen(k, h_);
+    return part * kKinds + (open ? Watching : k.second < 0 && part < parts_ ? OnSlope : Pairs);
+  };
+  const std::size_t keys = std::size_t(parts_ + 1) * kKinds;
+  keyOf_.resize(contacts.size());
+  ends_.assign(keys + 1, 0);
+  forEach(contacts.size(), kRowGrain, [&](std::size_t k) { keyOf_[k] = keyOf(contacts[k]); });
+  for (std::size_t k = 0; k < contacts.size(); ++k)
+  {
+    ++ends_[std::size_t(keyOf_[k]) + 1];
+  }
+  std::partial_sum(ends_.begin(), ends_.end(), ends_.begin());
+  order_.resize(contacts.size());
+  for (std::size_t k = 0; k < contacts.size(); ++k)
+  {
+    order_[ends_[std::size_t(keyOf_[k])]++] = int(k);
+  }
+  rows_.resize(contacts.size());
+  open_.assign(work_.size(), 0);
+  starts_.resize(keys + 1);
+  hands_.resize(std::max(hands_.size(), std::size_t(parts_) + 1));
+  const auto dealPart = [&](int part)
+  {
+    std::vector<Hand>& hands = hands_[std::size_t(part)];
+    hands.clear();
+    for (const Kind kind : { Pairs, OnSlope })
+    {
+      const std::size_t key = std::size_t(part * kKinds + kind);
+      starts_[key] = int(hands.size());
+      this->deal(contacts, order_.data() + this->firstOf(key), order_.data() + ends_[key],
+        bodies + part, hands);
+    }
+    starts_[std::size_t(part * kKinds + Watching)] = int(hands.size());
+  };
+  this->forParts(false, dealPart);
+  // Part after part.
+  int count = 0;
+  for (std::size_t key = 0; key < keys; ++key)
+  {
+    starts_[key] += count;
+    count += (key + 1) % kKinds == 0 ? int(hands_[key / kKinds].size()) : 0;
+  }
+  starts_[keys] = count;
+  watchStarts_.assign(std::size_t(parts_) + 2, 0);
+  for (std::size_t part = 0; part <= std::size_t(parts_); ++part)
+  {
+    const std::size_t key = part * kKinds + Watching;
+    watchStarts_[part + 1] = watchStarts_[part] +
+      int((ends_[key] - this->firstOf(key) + crowd::kLanes - 1) / crowd::kLanes);
+  }
+  watched_.resize(std::size_t(watchStarts_.back()));
+  watchedContacts_.assign(watched_.size() * crowd::kLanes, -1);
+  closes_.resize(watched_.size());
+  batches_.resize(std::size_t(count));
+  springs_.assign(std::size_t(count), crowd::Springs{});
+  forces_.assign(std::size_t(count), crowd::Forces{});
+  const auto layOut = [&](int part)
+  {
+    const std::size_t key = std::size_t(part * kKinds);
+    std::transform(hands_[std::size_t(part)].begin(), hands_[std::size_t(part)].end(),
+      batches_.begin() + starts_[key], [](const Hand& hand) { return hand.idle(); });
+    for (std::size_t k = this->firstOf(key); k < ends_[key + OnSlope]; ++k)
+    {
+      rows_[std::size_t(order_[k])].batch += starts_[key];
+    }
+    this->layOutWatched(contacts, part, bodies + part);
+  };
+  this->forParts(false, layOut);
+}
+
+void CrowdSolver::deal(const std::vector<GroupContact>& contacts, const int* first, const int* last,
+  int slope, std::vector<Hand>& hands)
+{
+  // Each contact goes to the first batch that is being filled and holds neither of its rocks.
+  std::array<int, kOpen> batch{}, filled{};
+  std::uint32_t filling = 0; // those that have room
+  int oldest = 0;
+  const auto close = [&](int slot)
+  {
+    const Hand& hand = hands[std::size_t(batch[std::size_t(slot)])];
+    for (const int* side : { hand.body[0], hand.body[1] })
+    {
+      for (int lane = 0; lane < crowd::kLanes; ++lane)
+      {
+        if (side[lane] < int(work_.size()))
+        {
+          open_[std::size_t(side[lane])] &= ~(std::uint32_t(1) << slot);
+        }
+      }
+    }
+    filling &= ~(std::uint32_t(1) << slot);
+  };
+  for (const int* k = first; k != last; ++k)
+  {
+    const GroupContact& contact = contacts[std::size_t(*k)];
+    const std::size_t a = work_[std::size_t(contact.first)].mover;
+    const std::size_t c = contact.second < 0 ? a : work_[std::size_t(contact.second)].mover;
+    const std::uint32_t taken = open_[a] | open_[c];
+    int slot = std::countr_zero(filling & ~taken);
+    if (slot == kOpen)
+    {
+      slot = std::countr_one(filling);
+      if (slot == kOpen)
+      {
+        slot = oldest;
+        oldest = (oldest + 1) % kOpen;
+        close(slot);
+      }
+      batch[std::size_t(slot)] = int(hands.size());
+      filled[std::size_t(slot)] = 0;
+      filling |= std::uint32_t(1) << slot;
+      hands.emplace_back(slope);
+    }
+    Row& row = rows_[std::size_t(*k)];
+    row.batch = batch[std::size_t(slot)];
+    row.lane = filled[std::size_t(slot)]++;
+    Hand& hand = hands[std::size_t(row.batch)];
+    hand.body[0][row.lane] = int(a);
+    hand.body[1][row.lane] = contact.second < 0 ? slope : int(c);
+    open_[a] |= std::uint32_t(1) << slot;
+    open_[c] |= std::uint32_t(1) << slot;
+    if (row.lane + 1 == crowd::kLanes)
+    {
+      close(slot);
+    }
+  }
+  while (filling != 0)
+  {
+    close(std::countr_zero(filling));
+  }
+}
+
+void CrowdSolver::layOutWatched(const std::vector<GroupContact>& contacts, int part, int slope)
+{
+  const auto first = watched_.begin() + watchStarts_[std::size_t(part)];
+  std::for_each(first, watched_.begin() + watchStarts_[std::size_t(part) + 1],
+    [&](crowd::Watched& four) { four = Hand(slope).watchedIdle(); });
+  const std::size_t key = std::size_t(part * kKinds + Watching);
+  std::size_t at = std::size_t(watchStarts_[std::size_t(part)]) * crowd::kLanes;
+  for (std::size_t k = this->firstOf(key); k < ends_[key]; ++k, ++at)
+  {
+    const int contact = order_[k];
+    const GroupContact& group = contacts[std::size_t(contact)];
+    Row& row = rows_[std::size_t(contact)];
+    row.batch = ~int(at / crowd::kLanes);
+    row.lane = int(at % crowd::kLanes);
+    crowd::Watched& four = watched_[row.fours()];
+    four.body[0][row.lane] = int(work_[std::size_t(group.first)].mover);
+    four.body[1][row.lane] = group.second < 0 ? slope : int(work_[std::size_t(group.second)].mover);
+    watchedContacts_[at] = contact;
+  }
+}
+
+} // namespace rockfall
