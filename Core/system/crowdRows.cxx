@@ -71,7 +71,7 @@ void CrowdSolver::stiffen(const GroupContact& group, const Row& row)
 
 void CrowdSolver::assemble(std::size_t first, std::size_t count)
 {
-  kernel_->assemble(&batches_[first], &springs_[first], movers_.data(), count);
+  kernel_->assemble(batches_.data() + first, springs_.data() + first, movers_.data(), count);
 }
 
 void CrowdSolver::prepareRows(
