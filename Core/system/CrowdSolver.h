@@ -96,9 +96,11 @@ private:
   struct Hand
   {
     explicit Hand(int slope);
-    crowd::Batch idle() const;
-    crowd::Watched watchedIdle() const;
+    /// A batch of contacts that do nothing as yet.
+    template <class Of>
+    Of idle() const;
     int body[2][crowd::kLanes]; ///< Movers.
+    int filled = 0;             ///< Lanes.
   };
   /// Deals contacts out to batches; `slope`: the mover that stands for it.
   void deal(const std::vector<GroupContact>& contacts, const int* first, const int* last, int slope,
@@ -140,9 +142,14 @@ private:
   bool correctTurns(
     const std::vector<GroupBody>& bodies, const std::vector<GroupContact>& contacts);
   void append(const std::vector<GroupBody>& bodies, std::vector<GroupContact>& contacts);
-  /// Batches of further contacts behind all others. Returns the first one.
-  std::size_t appendBatches(
-    const std::vector<GroupContact>& contacts, const std::vector<int>& added);
+  /// Lanes for further contacts: those that are still empty in batches of their part, or else in
+  /// batches behind all others. `fresh_` are the batches that they are in.
+  void findLanes(const std::vector<GroupContact>& contacts, const std::vector<int>& added);
+  bool findEmptyLane(const GroupContact& contact, Row& row);
+  void appendBatches(const std::vector<GroupContact>& contacts, const std::vector<int>& added);
+  void assembleFresh();
+  /// Which one a contact belongs to.
+  int partOf(const GroupContact& contact) const;
   void noteChange(const GroupContact& contact); ///< Its rocks' contacts are to be visited.
   /// Makes those of the watched contacts ready that are closed where the rocks go now; whether
   /// there were any.
@@ -180,6 +187,7 @@ private:
   std::vector<crowd::Batch> batches_;
   std::vector<crowd::Springs> springs_; ///< Of each batch.
   std::vector<crowd::Forces> forces_;   ///< Of the contacts of each batch.
+  std::vector<int> filled_;             ///< Lanes of each batch that hold a contact.
   std::vector<crowd::Watched> watched_;
   std::vector<int> watchedContacts_; ///< By fours and lane; −1: none.
   std::vector<int> watchStarts_;     ///< First fours of each part.
@@ -192,10 +200,10 @@ private:
   std::vector<int> changed_;
   // Parts are strips across the group, and contacts belong to the lower part of their two rocks:
   // those of every second part share no rock, and are swept at the same time. The last part holds
-  // what reaches further than to the next strip, and what turns up while the sweeps go on: watched
-  // contacts that close, and those of a second look. In each part contacts between rocks come
-  // before those with the slope, but in the last one they are mixed; what is watched is swept by
-  // none.
+  // what reaches further than to the next strip, and what turns up while the sweeps go on (watched
+  // contacts that close, and those of a second look) if no batch of its part has an empty lane for
+  // it. In each part contacts between rocks come before those with the slope, but in the last one
+  // they are mixed; what is watched is swept by none.
   static constexpr int kKinds = 3;
   enum Kind
   {
@@ -209,7 +217,9 @@ private:
   std::vector<char> gives_; ///< By contact, whether its bounce gives energy.
   std::vector<char> turned_;        ///< By batch, whether it holds such a contact.
   std::vector<int> touched_;        ///< Bodies.
-  std::vector<int> closing_;        ///< Watched contacts that have closed.
+  std::vector<int> closing_;        ///< Watched contacts that have closed,
+  std::vector<int> left_;           ///< and those for which there is no empty lane.
+  std::vector<int> fresh_;          ///< Batches with contacts that are new in them.
   std::vector<int> keyOf_, order_;  ///< Contacts: part and kind; in order of it.
   std::vector<int> starts_;         ///< First batch of each part and kind.
   std::vector<std::size_t> ends_;   ///< Behind the last contact of each part and kind in `order_`.

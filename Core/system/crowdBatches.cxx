@@ -31,27 +31,16 @@ CrowdSolver::Hand::Hand(int slope)
   }
 }
 
-/// A batch of contacts that do nothing as yet.
-crowd::Batch CrowdSolver::Hand::idle() const
+template <class Of>
+Of CrowdSolver::Hand::idle() const
 {
-  crowd::Batch batch = {};
+  Of batch = {};
   std::fill(std::begin(batch.gap), std::end(batch.gap), std::numeric_limits<double>::max());
   for (int side = 0; side < 2; ++side)
   {
     std::copy(std::begin(body[side]), std::end(body[side]), batch.body[side]);
   }
   return batch;
-}
-
-crowd::Watched CrowdSolver::Hand::watchedIdle() const
-{
-  crowd::Watched four = {};
-  std::fill(std::begin(four.gap), std::end(four.gap), std::numeric_limits<double>::max());
-  for (int side = 0; side < 2; ++side)
-  {
-    std::copy(std::begin(body[side]), std::end(body[side]), four.body[side]);
-  }
-  return four;
 }
 
 void CrowdSolver::lineUp()
@@ -78,16 +67,21 @@ void CrowdSolver::lineUp()
   }
 }
 
+int CrowdSolver::partOf(const GroupContact& contact) const
+{
+  const auto partOfRock = [&](int body)
+  { return int(work_[std::size_t(body)].mover * std::size_t(parts_) / work_.size()); };
+  const int a = partOfRock(contact.first);
+  const int b = contact.second < 0 ? a : partOfRock(contact.second);
+  return std::abs(a - b) <= 1 ? std::min(a, b) : parts_;
+}
+
 void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
 {
   const int bodies = int(work_.size());
-  const auto partOf = [&](int body)
-  { return int(work_[std::size_t(body)].mover * std::size_t(parts_) / work_.size()); };
   const auto keyOf = [&](const GroupContact& k)
   {
-    const int a = partOf(k.first);
-    const int b = k.second < 0 ? a : partOf(k.second);
-    const int part = std::abs(a - b) <= 1 ? std::min(a, b) : parts_;
+    const int part = this->partOf(k);
     const bool open = !k.contact->closed() && mayStayOpen(k, h_);
     return part * kKinds + (open ? Watching : k.second < 0 && part < parts_ ? OnSlope : Pairs);
   };
@@ -142,13 +136,18 @@ void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
   watchedContacts_.assign(watched_.size() * crowd::kLanes, -1);
   closes_.resize(watched_.size());
   batches_.resize(std::size_t(count));
+  filled_.resize(std::size_t(count));
   springs_.assign(std::size_t(count), crowd::Springs{});
   forces_.assign(std::size_t(count), crowd::Forces{});
   const auto layOut = [&](int part)
   {
     const std::size_t key = std::size_t(part * kKinds);
-    std::transform(hands_[std::size_t(part)].begin(), hands_[std::size_t(part)].end(),
-      batches_.begin() + starts_[key], [](const Hand& hand) { return hand.idle(); });
+    std::size_t at = std::size_t(starts_[key]);
+    for (const Hand& hand : hands_[std::size_t(part)])
+    {
+      batches_[at] = hand.idle<crowd::Batch>();
+      filled_[at++] = hand.filled;
+    }
     for (std::size_t k = this->firstOf(key); k < ends_[key + OnSlope]; ++k)
     {
       rows_[std::size_t(order_[k])].batch += starts_[key];
@@ -162,7 +161,7 @@ void CrowdSolver::deal(const std::vector<GroupContact>& contacts, const int* fir
   int slope, std::vector<Hand>& hands)
 {
   // Each contact goes to the first batch that is being filled and holds neither of its rocks.
-  std::array<int, kOpen> batch{}, filled{};
+  std::array<int, kOpen> batch{};
   std::uint32_t filling = 0; // those that have room
   int oldest = 0;
   const auto close = [&](int slot)
@@ -197,14 +196,13 @@ void CrowdSolver::deal(const std::vector<GroupContact>& contacts, const int* fir
         close(slot);
       }
       batch[std::size_t(slot)] = int(hands.size());
-      filled[std::size_t(slot)] = 0;
       filling |= std::uint32_t(1) << slot;
       hands.emplace_back(slope);
     }
     Row& row = rows_[std::size_t(*k)];
     row.batch = batch[std::size_t(slot)];
-    row.lane = filled[std::size_t(slot)]++;
     Hand& hand = hands[std::size_t(row.batch)];
+    row.lane = hand.filled++;
     hand.body[0][row.lane] = int(a);
     hand.body[1][row.lane] = contact.second < 0 ? slope : int(c);
     open_[a] |= std::uint32_t(1) << slot;
@@ -220,11 +218,97 @@ void CrowdSolver::deal(const std::vector<GroupContact>& contacts, const int* fir
   }
 }
 
+void CrowdSolver::findLanes(
+  const std::vector<GroupContact>& contacts, const std::vector<int>& added)
+{
+  fresh_.clear();
+  left_.clear();
+  for (const int k : added)
+  {
+    if (this->findEmptyLane(contacts[std::size_t(k)], rows_[std::size_t(k)]))
+    {
+      fresh_.push_back(rows_[std::size_t(k)].batch);
+    }
+    else
+    {
+      left_.push_back(k);
+    }
+  }
+  std::sort(fresh_.begin(), fresh_.end());
+  fresh_.erase(std::unique(fresh_.begin(), fresh_.end()), fresh_.end());
+  if (!left_.empty())
+  {
+    const int first = int(batches_.size());
+    this->appendBatches(contacts, left_);
+    for (int k = first; k < int(batches_.size()); ++k)
+    {
+      fresh_.push_back(k);
+    }
+  }
+}
+
+bool CrowdSolver::findEmptyLane(const GroupContact& contact, Row& row)
+{
+  const int part = this->partOf(contact);
+  const bool slope = contact.second < 0;
+  const std::size_t key = std::size_t(part * kKinds + (slope && part < parts_ ? OnSlope : Pairs));
+  const int a = int(work_[std::size_t(contact.first)].mover);
+  const int c = slope ? a : int(work_[std::size_t(contact.second)].mover);
+  for (int k = starts_[key]; k < starts_[key + 1]; ++k)
+  {
+    crowd::Batch& batch = batches_[std::size_t(k)];
+    int& filled = filled_[std::size_t(k)];
+    bool has = filled == crowd::kLanes;
+    for (int lane = 0; lane < crowd::kLanes && !has; ++lane)
+    {
+      const int first = batch.body[0][lane], second = batch.body[1][lane];
+      has = first == a || first == c || second == a || second == c;
+    }
+    if (!has)
+    {
+      row.batch = k;
+      row.lane = filled++;
+      batch.body[0][row.lane] = a;
+      batch.body[1][row.lane] = slope ? batch.body[1][row.lane] : c;
+      return true;
+    }
+  }
+  return false;
+}
+
+void CrowdSolver::appendBatches(
+  const std::vector<GroupContact>& contacts, const std::vector<int>& added)
+{
+  const std::size_t before = batches_.size();
+  std::vector<Hand>& hands = hands_.back();
+  hands.clear();
+  this->deal(
+    contacts, added.data(), added.data() + added.size(), int(work_.size()) + parts_, hands);
+  for (const int k : added)
+  {
+    rows_[std::size_t(k)].batch += int(before);
+  }
+  for (const Hand& hand : hands)
+  {
+    batches_.push_back(hand.idle<crowd::Batch>());
+    filled_.push_back(hand.filled);
+  }
+  springs_.resize(batches_.size());
+  forces_.resize(batches_.size());
+  forcesBefore_.resize(batches_.size());
+  forcesAlong_.resize(batches_.size());
+  // They go with what reaches further than to the next part.
+  for (std::size_t key = std::size_t(parts_ * kKinds + Pairs) + 1; key < starts_.size(); ++key)
+  {
+    starts_[key] += int(hands.size());
+  }
+}
+
 void CrowdSolver::layOutWatched(const std::vector<GroupContact>& contacts, int part, int slope)
 {
   const auto first = watched_.begin() + watchStarts_[std::size_t(part)];
   std::for_each(first, watched_.begin() + watchStarts_[std::size_t(part) + 1],
-    [&](crowd::Watched& four) { four = Hand(slope).watchedIdle(); });
+    [&](crowd::Watched& four) { four = Hand(slope).idle<crowd::Watched>(); });
   const std::size_t key = std::size_t(part * kKinds + Watching);
   std::size_t at = std::size_t(watchStarts_[std::size_t(part)]) * crowd::kLanes;
   for (std::size_t k = this->firstOf(key); k < ends_[key]; ++k, ++at)

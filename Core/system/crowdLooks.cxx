@@ -23,30 +23,12 @@ void CrowdSolver::noteChange(const GroupContact& contact)
   }
 }
 
-std::size_t CrowdSolver::appendBatches(
-  const std::vector<GroupContact>& contacts, const std::vector<int>& added)
+void CrowdSolver::assembleFresh()
 {
-  const std::size_t before = batches_.size();
-  std::vector<Hand>& hands = hands_.back();
-  hands.clear();
-  this->deal(
-    contacts, added.data(), added.data() + added.size(), int(work_.size()) + parts_, hands);
-  for (const int k : added)
+  for (const int k : fresh_)
   {
-    rows_[std::size_t(k)].batch += int(before);
+    this->assemble(std::size_t(k), 1);
   }
-  std::transform(hands.begin(), hands.end(), std::back_inserter(batches_),
-    [](const Hand& hand) { return hand.idle(); });
-  springs_.resize(batches_.size());
-  forces_.resize(batches_.size());
-  forcesBefore_.resize(batches_.size());
-  forcesAlong_.resize(batches_.size());
-  // They go with what reaches further than to the next part.
-  for (std::size_t key = std::size_t(parts_ * kKinds + Pairs) + 1; key < starts_.size(); ++key)
-  {
-    starts_[key] += int(hands.size());
-  }
-  return before;
 }
 
 void CrowdSolver::append(const std::vector<GroupBody>& bodies, std::vector<GroupContact>& contacts)
@@ -55,7 +37,7 @@ void CrowdSolver::append(const std::vector<GroupBody>& bodies, std::vector<Group
   rows_.resize(contacts.size());
   std::vector<int> added(rows_.size() - first);
   std::iota(added.begin(), added.end(), int(first));
-  const std::size_t batches = this->appendBatches(contacts, added);
+  this->findLanes(contacts, added);
   for (std::size_t k = first; k < rows_.size(); ++k)
   {
     // The gap at the start from which this way leads to the one at the end.
@@ -67,7 +49,7 @@ void CrowdSolver::append(const std::vector<GroupBody>& bodies, std::vector<Group
     row.gap0 = batches_[std::size_t(row.batch)].gap[row.lane] = c.gap();
     this->noteChange(contacts[k]);
   }
-  this->assemble(batches, batches_.size() - batches);
+  this->assembleFresh();
   for (std::size_t k = first; k < rows_.size(); ++k)
   {
     if (contacts[k].bounce >= 0.0)
@@ -80,6 +62,7 @@ void CrowdSolver::append(const std::vector<GroupBody>& bodies, std::vector<Group
 bool CrowdSolver::watch(int sweep)
 {
   constexpr std::size_t kBlock = 64; // fours at once
+  constexpr std::size_t kCloseGrain = 8;
   const auto look = [&](std::size_t block)
   {
     const std::size_t first = block * kBlock;
@@ -110,20 +93,25 @@ bool CrowdSolver::watch(int sweep)
   {
     return false;
   }
-  const std::size_t batches = this->appendBatches(*contacts_, closing_);
-  for (const int k : closing_)
+  this->findLanes(*contacts_, closing_);
+  const auto makeReady = [&](std::size_t c)
   {
-    Row& row = rows_[std::size_t(k)];
+    const std::size_t k = std::size_t(closing_[c]);
+    Row& row = rows_[k];
     const double gap0 = row.gap0; // may have been set right by a look
     if (arm)
     {
-      arm(std::size_t(k));
+      arm(k);
     }
-    this->prepareRow(*bodies_, (*contacts_)[std::size_t(k)], row);
+    this->prepareRow(*bodies_, (*contacts_)[k], row);
     row.gap0 = batches_[std::size_t(row.batch)].gap[row.lane] = gap0;
+  };
+  forEach(closing_.size(), kCloseGrain, makeReady);
+  for (const int k : closing_)
+  {
     this->noteChange((*contacts_)[std::size_t(k)]);
   }
-  this->assemble(batches, batches_.size() - batches);
+  this->assembleFresh();
   return true;
 }
 
