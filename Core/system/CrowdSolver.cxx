@@ -29,15 +29,19 @@ void CrowdSolver::turnAs(Work& w, const Vec3& spun) const
 
 std::array<Vec3, 2> CrowdSolver::freeMotion(const GroupBody& body, const Work& w) const
 {
+  Vec3 way = h_ * (w.velocity0 - w.offset);
+  way.z() -= h_ * h_ * gravity_;
+  const Vec3 steady = h_ * (w.spin0 - w.spinOffset);
+  if (body.block->isotropic())
+  {
+    return { way, steady };
+  }
   // The momentum of rotation is carried to the end of the step: R₁ p₁ − R₀ p₀ = h τ (METHOD 10.4).
   const Mat3 back = w.rotation.transpose();
   const Vec3 spin = w.spun / h_ + w.spinOffset;
   const Vec3 momentum = w.rotation * (body.block->inertia() * (back * spin));
   const Vec3 gained = back * (w.turned * momentum - momentum);
-  Vec3 way = h_ * (w.velocity0 - w.offset);
-  way.z() -= h_ * h_ * gravity_;
-  return { way,
-    h_ * (w.spin0 - w.spinOffset) - h_ * (w.rotation * (body.block->inverseInertia() * gained)) };
+  return { way, steady - h_ * (w.rotation * (body.block->inverseInertia() * gained)) };
 }
 
 void CrowdSolver::prepareBodies(const StepRequest& request, const std::vector<GroupBody>& bodies)
@@ -61,11 +65,14 @@ void CrowdSolver::prepareBodies(const StepRequest& request, const std::vector<Gr
     w.offset = 0.5 * h * body.acceleration;
     w.spinOffset = 0.5 * h * spinAcceleration;
     w.inverseMass = h * h / block.mass();
-    w.inverseInertia = w.rotation * ((h * h) * block.inverseInertia()) * back;
+    w.inverseInertia = block.isotropic()
+      ? Mat3((h * h) * block.inverseInertia())
+      : Mat3(w.rotation * ((h * h) * block.inverseInertia()) * back);
     // First guess: as the last step went.
     w.way = h * w.velocity0 + (0.5 * h * h) * body.acceleration;
     w.spun = h * w.spin0 + (0.5 * h * h) * spinAcceleration;
-    for (int k = 0; k < kFreeTurns && body.spinAcceleration.isZero(0.0); ++k)
+    const bool gyrates = !block.isotropic() && body.spinAcceleration.isZero(0.0);
+    for (int k = 0; k < kFreeTurns && gyrates; ++k)
     {
       // … but turning as a free body does, that keeps its angular momentum: taken for constant, its
       // spin would gain energy from the gyroscopic moment.
