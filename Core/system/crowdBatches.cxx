@@ -21,6 +21,27 @@ constexpr int kMostParts = 64;
 /// Batches that are filled at the same time.
 constexpr int kOpen = 32;
 
+/// Sorts what may be nearly in order.
+void sortNearly(std::vector<std::pair<double, int>>& of)
+{
+  std::size_t moves = 8 * of.size(); // that are worth it
+  for (std::size_t i = 1; i < of.size(); ++i)
+  {
+    const std::pair<double, int> one = of[i];
+    std::size_t k = i;
+    for (; k > 0 && one < of[k - 1] && moves > 0; --k, --moves)
+    {
+      of[k] = of[k - 1];
+    }
+    of[k] = one;
+    if (moves == 0)
+    {
+      std::sort(of.begin(), of.end());
+      return;
+    }
+  }
+}
+
 } // namespace
 
 CrowdSolver::Hand::Hand(int slope)
@@ -55,12 +76,16 @@ void CrowdSolver::lineUp()
   }
   int axis = 0;
   (high - low).maxCoeff(&axis);
+  // Nearly in order they are from the last step, mostly.
+  const bool lined = line_.size() == work_.size();
   line_.resize(work_.size());
   for (std::size_t i = 0; i < work_.size(); ++i)
   {
-    line_[i] = { work_[i].position[axis], int(i) };
+    int& body = line_[i].second;
+    body = lined ? body : int(i);
+    line_[i].first = work_[std::size_t(body)].position[axis];
   }
-  std::sort(line_.begin(), line_.end());
+  sortNearly(line_);
   for (std::size_t mover = 0; mover < line_.size(); ++mover)
   {
     work_[std::size_t(line_[mover].second)].mover = mover;
