@@ -6,6 +6,8 @@
 #include "base/parallel.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 namespace rockfall
 {
@@ -13,19 +15,21 @@ namespace rockfall
 namespace
 {
 
-constexpr std::size_t kNearGrain = 256, kLookGrain = 16;
+constexpr std::size_t kLookGrain = 16;
 
 /// So many pairs ahead the cache is asked for one.
 constexpr std::size_t kAhead = 8;
 
 /// What a look at two rocks near each other has shown: they may meet if they go as far as is known;
-/// they don't, or both sleep; their bounding spheres tell them apart; or they overlap.
+/// they don't, or both sleep; their bounding spheres tell them apart; they overlap; or they are of
+/// one crowd, and linked.
 enum : char
 {
   kOpen,
   kShut,
   kApart,
   kOverlaps,
+  kLinked,
 };
 
 /// Largest component along the normal of a velocity in a box.
@@ -78,7 +82,7 @@ inline double MassFall::Meetings::closing(const Near& n) const
 inline double MassFall::Meetings::reach(const Near& n) const
 {
   const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
-  const double faster = std::max(paces_[i].thrown, paces_[j].thrown);
+  const double faster = std::max(thrown_[i], thrown_[j]);
   const double speed = n.offset > kNoAxis ? faster * this->closing(n) : -kNoAxis;
   return std::min(fars_[i] + fars_[j], speed * duration_) + fall_;
 }
@@ -127,69 +131,98 @@ bool MassFall::Meetings::meet(const MassFall& fall, std::size_t k)
   }
 }
 
-/// What has to be known of all that are near each other before the first of them are linked.
+/// What has to be known of two near each other before the first of them are linked. Of a crowd the
+/// ways are known by now: its rocks are linked here.
+inline char MassFall::Meetings::lookAt(std::size_t k)
+{
+  Near& n = near[k];
+  n.wasLinked = n.linked;
+  n.linked = false;
+  n.looked = -1.0;
+  n.seen = n.holds && n.pair->seen; // found where they stand
+  const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
+  const Vec3 between = a.position - b.position;
+  const double distance2 = between.squaredNorm();
+  const double known = a.known + b.known, radii = a.radius + b.radius;
+  if (!a.present || !b.present)
+  {
+    aparts_[k] = -kNoAxis;
+    return kApart;
+  }
+  const bool asleep = a.asleep && b.asleep;
+  if (!asleep && distance2 > (radii + known) * (radii + known))
+  {
+    aparts_[k] = std::sqrt(distance2) - radii;
+    return kApart;
+  }
+  const double turned = a.turned + b.turned;
+  bool overlap = false;
+  if (n.seen)
+  {
+    const PairAxis& axis = n.pair->axis;
+    n.normal = axis.normal;
+    n.offset = axis.distance - n.normal.dot(between) + turned;
+    overlap = axis.distance <= 0.0;
+  }
+  const double apart =
+    std::max(n.offset + n.normal.dot(between) - turned, std::sqrt(distance2) - radii);
+  aparts_[k] = apart;
+  if (asleep || (!overlap && apart > known))
+  {
+    return kShut;
+  }
+  if (n.pair && a.isOneCrowdWith(b) &&
+    (overlap || this->mayMeet({ apart, n.first, n.second, int(k) })))
+  {
+    n.linked = n.holds = n.pair->linked = true;
+    n.pair->known = false;
+    return kLinked;
+  }
+  return overlap ? kOverlaps : kOpen;
+}
+
 void MassFall::Meetings::look(MassFall& fall)
 {
-  states_.resize(near.size());
-  aparts_.resize(near.size());
-  const auto lookAt = [last = near.size() - 1, nears = near.data(), rocks = movers.data(),
-                        aparts = aparts_.data(), states = states_.data()](std::size_t k)
+  const std::size_t count = near.size(), parts = (count + kNearPart - 1) / kNearPart;
+  states_.resize(count);
+  aparts_.resize(count);
+  open_.resize(count);
+  others_.resize(count);
+  left_.resize(parts);
+  const auto lookAtPart = [&](std::size_t part)
   {
-    __builtin_prefetch(nears[std::min(k + kAhead, last)].pair);
-    Near& n = nears[k];
-    n.wasLinked = n.linked;
-    n.linked = false;
-    n.looked = -1.0;
-    n.seen = n.holds && n.pair->seen; // found where they stand
-    const Mover &a = rocks[n.first], &b = rocks[n.second];
-    const Vec3 between = a.position - b.position;
-    const double spheres = between.norm() - (a.radius + b.radius);
-    const double known = a.known + b.known, turned = a.turned + b.turned;
-    char state = kShut;
-    if (n.seen)
+    const std::size_t first = part * kNearPart, last = std::min(count, first + kNearPart);
+    Open* open = open_.data() + first;
+    std::size_t* other = others_.data() + first;
+    for (std::size_t k = first; k < last; ++k)
     {
-      const PairAxis& axis = n.pair->axis;
-      n.normal = axis.normal;
-      n.offset = axis.distance - n.normal.dot(between) + turned;
-      state = axis.distance <= 0.0 ? char(kOverlaps) : state;
+      __builtin_prefetch(near[std::min(k + kAhead, last - 1)].pair);
+      const char state = states_[k] = this->lookAt(k);
+      *open = this->openOf(k);
+      open += state == kOpen;
+      *other = k;
+      other += state == kOverlaps || (state == kApart && near[k].pair);
     }
-    const double apart = std::max(n.offset + n.normal.dot(between) - turned, spheres);
-    aparts[k] = apart;
-    state = state == kShut && apart <= known ? char(kOpen) : state;
-    if (!a.present || !b.present)
-    {
-      aparts[k] = -kNoAxis;
-      state = kApart;
-    }
-    else if (a.asleep && b.asleep)
-    {
-      state = kShut;
-    }
-    else if (spheres > known)
-    {
-      state = kApart;
-    }
-    states[k] = state;
+    left_[part] = { std::size_t(open - open_.data()) - first,
+      std::size_t(other - others_.data()) - first };
   };
-  forEach(near.size(), kNearGrain, lookAt);
-  open_.resize(near.size());
+  forEach(parts, 1, lookAtPart);
   Open* to = open_.data();
-  for (std::size_t k = 0; k < near.size(); ++k)
+  for (std::size_t part = 0; part < parts; ++part)
   {
-    switch (states_[k])
+    const Open* const from = open_.data() + part * kNearPart;
+    to = std::copy(from, from + left_[part].open, to);
+    const std::size_t* const other = others_.data() + part * kNearPart;
+    for (std::size_t k = 0; k < left_[part].others; ++k)
     {
-      case kApart:
-        if (near[k].pair)
-        {
-          this->drop(fall, near[k]);
-        }
-        break;
-      case kOverlaps:
-        this->join(fall, k, false);
-        break;
-      case kOpen:
-        *to++ = this->openOf(k);
-        break;
+      if (states_[other[k]] == kOverlaps)
+      {
+        this->join(fall, other[k], false);
+      }
+      else
+      {
+        this->drop(fall, near[other[k]]);
+      }
     }
   }
   open_.resize(std::size_t(to - open_.data()));
@@ -223,21 +256,32 @@ void MassFall::Meetings::widen()
   }
 }
 
-/// Looks at all that are open; returns whether more of them may meet.
+/// Looks at all that are open; returns whether others have to be told of what it has shown.
 bool MassFall::Meetings::sweep(MassFall& fall)
 {
+  bool any = false;
   wider_.clear();
   for (std::size_t i = 0; i < movers.size(); ++i)
   {
     // Parents come before their children.
     roots_[i] = parents_[i] = roots_[std::size_t(parents_[i])];
     Mover& m = movers[i];
-    if (companies_[std::size_t(roots_[i])].size == 1)
+    const Company& company = companies_[std::size_t(roots_[i])];
+    if (company.size == 1)
     {
       continue;
     }
-    paces_[i].thrown = this->thrown(i);
-    fars_[i] = paces_[i].thrown * m.way;
+    thrown_[i] = this->thrown(i);
+    if (m.shares && m.way < company.longest)
+    {
+      m.way = company.longest;
+      if (firstLink_[i] >= 0)
+      {
+        turns_.add(int(i), m.way);
+        any = true;
+      }
+    }
+    fars_[i] = thrown_[i] * m.way;
     if (fars_[i] + fall_ > m.known && m.present && !m.asleep)
     {
       m.known = kWider * (fars_[i] + fall_);
@@ -272,7 +316,6 @@ bool MassFall::Meetings::sweep(MassFall& fall)
     *to++ = *o;
   }
   open_.resize(std::size_t(to - first));
-  bool any = false;
   asked_.clear();
   placed_.clear();
   for (const std::size_t o : chosen_)
@@ -282,8 +325,7 @@ bool MassFall::Meetings::sweep(MassFall& fall)
     if (n.pair && n.looked < 0.0 && (this->stays(n) || this->root(n.first) == this->root(n.second)))
     {
       // Of one company they are: how far apart is looked at when their contacts are.
-      this->join(fall, k, false);
-      any = true;
+      any |= this->join(fall, k, false);
       continue;
     }
     n.pair = n.pair ? n.pair : this->newPair(fall, n.first, n.second);
@@ -312,8 +354,7 @@ bool MassFall::Meetings::sweep(MassFall& fall)
     o.apart = aparts_[std::size_t(o.near)];
     if (answers_[a])
     {
-      this->join(fall, std::size_t(o.near), true);
-      any = true;
+      any |= this->join(fall, std::size_t(o.near), true);
     }
   }
   return any;
@@ -324,7 +365,7 @@ bool MassFall::Meetings::sweep(MassFall& fall)
 bool MassFall::Meetings::stays(const Near& n) const
 {
   const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
-  return n.wasLinked && (n.seen || n.pair->touched) && a.crowded && b.crowded && !a.asleep &&
+  return n.wasLinked && (n.seen || n.pair->touched) && a.crowd >= 0 && b.crowd >= 0 && !a.asleep &&
     !b.asleep;
 }
 
@@ -341,15 +382,15 @@ void MassFall::Meetings::link(MassFall& fall)
     this->tell(fall);
   }
   this->settle();
+  this->unite();
 }
 
-/// Who is no longer linked.
+/// Who is linked, and who no longer is.
 void MassFall::Meetings::settle()
 {
-  const auto part = [&](std::size_t k)
+  const auto part = [&](Near& n)
   {
-    Near& n = near[k];
-    if (n.linked || !(n.holds || n.wasLinked))
+    if (!(n.holds || n.wasLinked))
     {
       return;
     }
@@ -366,7 +407,52 @@ void MassFall::Meetings::settle()
       n.pair->contacts.clear();
     }
   };
-  forEach(near.size(), kNearGrain, part);
+  linked_.resize(near.size());
+  linkedCounts_.resize((near.size() + kNearPart - 1) / kNearPart);
+  const auto settlePart = [&](std::size_t of)
+  {
+    const std::size_t first = of * kNearPart, last = std::min(near.size(), first + kNearPart);
+    Linked* linked = linked_.data() + first;
+    for (std::size_t k = first; k < last; ++k)
+    {
+      Near& n = near[k];
+      *linked = { n.first, n.second, n.pair };
+      linked += n.linked;
+      if (!n.linked)
+      {
+        part(n);
+      }
+    }
+    linkedCounts_[of] = std::size_t(linked - linked_.data()) - first;
+  };
+  forEach(linkedCounts_.size(), 1, settlePart);
+}
+
+/// Groups are what is linked: a company may have fallen apart.
+void MassFall::Meetings::unite()
+{
+  std::iota(heads_.begin(), heads_.end(), 0);
+  std::fill(grouped_.begin(), grouped_.end(), char(0));
+  int* const heads = heads_.data();
+  const auto headOf = [heads](int i)
+  {
+    while (heads[i] != i)
+    {
+      i = heads[i] = heads[heads[i]];
+    }
+    return i;
+  };
+  const auto uniteTwo = [&](const Linked& l)
+  {
+    grouped_[std::size_t(l.first)] = grouped_[std::size_t(l.second)] = 1;
+    const int a = headOf(l.first), b = headOf(l.second);
+    heads[std::max(a, b)] = std::min(a, b);
+  };
+  this->forLinked(uniteTwo);
+  for (int& head : heads_)
+  {
+    head = heads[head]; // that of a head before it
+  }
 }
 
 void MassFall::findGroups(double duration)
@@ -377,42 +463,43 @@ void MassFall::findGroups(double duration)
   meet.link(*this);
   std::vector<int>& place = groupOf_;
   place.assign(members_.size(), -1);
+  // What lists of the last step's groups hold in memory serves again.
+  std::vector<Group> old = std::move(groups_);
   groups_.clear();
   alone_.clear();
   for (std::size_t i = 0; i < members_.size(); ++i)
   {
-    if (!meet.movers[i].present || meet.movers[i].asleep)
+    Mover& m = meet.movers[i];
+    m.crowd = -1;
+    if (!m.present || m.asleep)
     {
       continue;
     }
-    const std::size_t root = std::size_t(meet.root(int(i)));
-    if (meet.isAlone(root))
+    if (meet.isAlone(int(i)))
     {
       alone_.push_back(int(i));
-      meet.movers[i].crowded = false;
       continue;
     }
-    if (place[root] < 0)
+    const std::size_t head = std::size_t(meet.head(int(i)));
+    if (place[head] < 0)
     {
-      place[root] = int(groups_.size());
-      groups_.emplace_back();
+      place[head] = int(groups_.size());
+      groups_.push_back(groups_.size() < old.size() ? std::move(old[groups_.size()]) : Group());
+      groups_.back().members.clear();
+      groups_.back().pairs.clear();
     }
-    place[i] = place[root];
-    groups_[std::size_t(place[root])].members.push_back(int(i));
+    place[i] = place[head];
+    groups_[std::size_t(place[head])].members.push_back(int(i));
   }
-  for (const Near& n : meet.near)
+  meet.forLinked([&](const auto& l)
+    { groups_[std::size_t(place[std::size_t(l.first)])].pairs.push_back(l.pair); });
+  for (std::size_t g = 0; g < groups_.size(); ++g)
   {
-    if (n.linked)
-    {
-      groups_[std::size_t(place[std::size_t(n.first)])].pairs.push_back(n.pair);
-    }
-  }
-  for (Group& group : groups_)
-  {
+    Group& group = groups_[g];
     group.crowd = this->isCrowd(group);
     for (const int i : group.members)
     {
-      meet.movers[std::size_t(i)].crowded = group.crowd;
+      meet.movers[std::size_t(i)].crowd = group.crowd ? int(g) : -1;
     }
   }
 }

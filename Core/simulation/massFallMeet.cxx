@@ -18,7 +18,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace rockfall
 {
@@ -55,6 +54,9 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
     roots_.resize(count);
     boxes_.resize(count);
     fars_.resize(count);
+    thrown_.resize(count);
+    heads_.resize(count);
+    grouped_.resize(count);
     later_.resize(count);
     marks_.resize(count, 0);
     for (std::size_t i = 0; i < count; ++i)
@@ -85,7 +87,8 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
     const bool slept = m.asleep;
     m.asleep = member.asleep;
     m.present = !sim.done_ || m.asleep;
-    pace.thrown = 1.0;
+    m.shares = m.present && !m.asleep && m.crowd >= 0;
+    thrown_[i] = 1.0;
     fars_[i] = 0.0;
     if (!m.present || (slept && m.asleep))
     {
@@ -118,7 +121,7 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
     const double e = obstructed ? 1.0 : ground;
     pace.middle = flies ? s.velocity : Vec3(0.5 * (1.0 - e) * s.velocity);
     pace.spread = rim + (flies ? 0.0 : 0.5 * (1.0 + e) * speed);
-    // In a crowd it is struck by much the same ones as in the last step.
+    // It is struck by much the same ones as in the last step.
     m.known = kWider * std::max(pace.own, m.way) + fall_;
     m.way = fars_[i] = pace.own;
   };
@@ -127,6 +130,7 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
   int present = 0;
   drift_.setZero();
   longest_ = 0.0;
+  crowds_.clear();
   for (std::size_t i = 0; i < count; ++i)
   {
     const Mover& m = movers[i];
@@ -134,7 +138,23 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
     longest_ = std::max(longest_, m.way);
     sleepers_ += m.present && m.asleep;
     companies_[i] = { pace.middle.array() - pace.spread, pace.middle.array() + pace.spread,
-      pace.mass, 1 };
+      pace.mass, m.way, 1 };
+    parents_[i] = roots_[i] = int(i);
+    if (m.shares)
+    {
+      // What was a crowd in the last step is one company from the beginning.
+      crowds_.resize(std::max(crowds_.size(), std::size_t(m.crowd) + 1), -1);
+      int& first = crowds_[std::size_t(m.crowd)];
+      if (first < 0)
+      {
+        first = int(i);
+      }
+      else
+      {
+        parents_[i] = roots_[i] = first;
+        companies_[std::size_t(first)].take(companies_[i]);
+      }
+    }
     if (m.present)
     {
       drift_ += m.position - pace.covered;
@@ -146,8 +166,19 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
   {
     drift_.setZero(); // who sleeps does not go on with the others
   }
-  std::iota(parents_.begin(), parents_.end(), 0);
-  std::iota(roots_.begin(), roots_.end(), 0);
+}
+
+/// Gives a rock of a crowd the way of its company.
+void MassFall::Meetings::share(std::size_t i)
+{
+  Mover& m = movers[i];
+  if (m.shares)
+  {
+    m.way = companies_[std::size_t(roots_[i])].longest;
+    thrown_[i] = this->thrown(i);
+    fars_[i] = thrown_[i] * m.way;
+    m.known = kWider * (fars_[i] + fall_);
+  }
 }
 
 RockPair* MassFall::Meetings::newPair(const MassFall& fall, int first, int second)
@@ -196,7 +227,12 @@ void MassFall::Meetings::findNear(MassFall& fall)
 {
   chosen_.clear();
   forThose(
-    movers.size(), kRockGrain, answers_, [&](std::size_t i) { return !this->isCovered(i); },
+    movers.size(), kRockGrain, answers_,
+    [&](std::size_t i)
+    {
+      this->share(i);
+      return !this->isCovered(i);
+    },
     [&](std::size_t i) { chosen_.push_back(i); });
   out_ += chosen_.size();
   if (!searched_ || out_ * kMostOut > movers.size())
