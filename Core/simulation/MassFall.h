@@ -159,6 +159,8 @@ private:
   double freeTime(const Group& group, double most) const;
   void fly(const Group& group, double duration) const;
   void solve(const Group& group, double h, StepKind kind, bool bounces, Workspace& work) const;
+  /// Gives rocks, pairs and contacts their places in the system; returns how many rocks have one.
+  std::size_t layOut(const Group& group, Workspace& work) const;
   /// What a contact is in a step of `h`; between rocks an impact begins with it if it closes fast.
   GroupContact take(
     RockPair& pair, const PairMotion& motion, Contact& contact, double h, bool bounces) const;

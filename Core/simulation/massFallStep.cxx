@@ -119,45 +119,10 @@ void MassFall::solve(
   request.gravity = parameters_.gravity;
   request.maxOpenClose = parameters_.maxOpenClose;
   // Places first, then each rock and each pair for itself.
-  int places = 0;
-  std::size_t contacts = 0;
-  work.slopeFirsts.clear();
-  work.placeOf.resize(members_.size());
-  for (int i : group.members)
-  {
-    const RockSimulator& sim = members_[i]->sim;
-    work.placeOf[std::size_t(i)] = members_[i]->place = sim.done_ ? -1 : places++;
-    work.slopeFirsts.push_back(contacts);
-    contacts += sim.done_ ? 0 : sim.contacts_.size();
-  }
-  work.firsts.resize(group.pairs.size() + 1);
-  work.places.resize(group.pairs.size());
-  work.touching.clear();
-  for (std::size_t p = 0; p < group.pairs.size(); ++p)
-  {
-    comeToPair(group.pairs, p);
-    RockPair& pair = *group.pairs[p];
-    work.places[p] = { work.placeOf[std::size_t(pair.first)],
-      work.placeOf[std::size_t(pair.second)] };
-    work.firsts[p] = contacts;
-    contacts += pair.contacts.size();
-    pair.touched = false;
-    if (!pair.contacts.empty() || pair.impact.pending)
-    {
-      work.touching.push_back(p);
-    }
-  }
-  work.firsts.back() = contacts;
-  if (places == 0)
+  if (this->layOut(group, work) == 0)
   {
     return; // the last of them was caught just now
   }
-  work.bodies.resize(std::size_t(places));
-  work.ways.resize(std::size_t(places));
-  work.spins.resize(std::size_t(places));
-  work.arrived.resize(std::size_t(places));
-  work.energyBefore.resize(std::size_t(places));
-  work.contacts.resize(contacts);
   const auto takeRock = [&](std::size_t m)
   {
     this->comeToRock(group, m);

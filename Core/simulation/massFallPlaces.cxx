@@ -1,0 +1,175 @@
+// What has to be known of all rocks and pairs of a group before each of them is taken for itself:
+// their places in the system of a step, and what rocks may add to each other's speed.
+
+#include "simulation/massFallWork.h"
+
+#include "base/parallel.h"
+
+#include <algorithm>
+#include <atomic>
+
+namespace rockfall
+{
+
+namespace
+{
+
+/// So many rocks or pairs are one part.
+constexpr std::size_t kPart = 128;
+
+std::size_t partsOf(std::size_t count)
+{
+  return (count + kPart - 1) / kPart;
+}
+
+/// The larger of the two, whoever else raises it at the same time.
+void raise(double& value, double to, bool alone)
+{
+  const std::atomic_ref<double> shared(value);
+  double was = shared.load(std::memory_order_relaxed);
+  if (alone)
+  {
+    shared.store(std::max(was, to), std::memory_order_relaxed);
+    return;
+  }
+  while (was < to && !shared.compare_exchange_weak(was, to, std::memory_order_relaxed))
+  {
+  }
+}
+
+} // namespace
+
+std::size_t MassFall::layOut(const Group& group, Workspace& work) const
+{
+  const std::size_t rocks = group.members.size(), pairs = group.pairs.size();
+  const std::size_t rockParts = partsOf(rocks), pairParts = partsOf(pairs);
+  work.parts.resize(std::max(rockParts, pairParts));
+  work.placeOf.resize(members_.size());
+  work.slopeFirsts.resize(rocks);
+  // Each part counts from its own beginning, then from where the parts before it end.
+  const auto countRocks = [&](std::size_t part)
+  {
+    Workspace::Part counted;
+    for (std::size_t k = part * kPart; k < std::min(rocks, (part + 1) * kPart); ++k)
+    {
+      this->comeToRock(group, k);
+      const RockSimulator& sim = members_[group.members[k]]->sim;
+      work.placeOf[std::size_t(group.members[k])] = sim.done_ ? -1 : counted.places++;
+      work.slopeFirsts[k] = counted.contacts;
+      counted.contacts += sim.done_ ? 0 : sim.contacts_.size();
+    }
+    work.parts[part] = counted;
+  };
+  forEach(rockParts, 1, countRocks);
+  std::size_t contacts = 0;
+  const auto goOn = [&](std::size_t parts)
+  {
+    int places = 0;
+    for (std::size_t part = 0; part < parts; ++part)
+    {
+      Workspace::Part& p = work.parts[part];
+      const Workspace::Part counted = p;
+      p.places = places;
+      p.contacts = contacts;
+      places += counted.places;
+      contacts += counted.contacts;
+    }
+    return places;
+  };
+  const int places = goOn(rockParts);
+  const auto placeRocks = [&](std::size_t part)
+  {
+    const Workspace::Part& before = work.parts[part];
+    for (std::size_t k = part * kPart; k < std::min(rocks, (part + 1) * kPart); ++k)
+    {
+      int& place = work.placeOf[std::size_t(group.members[k])];
+      place += place < 0 ? 0 : before.places;
+      work.slopeFirsts[k] += before.contacts;
+      members_[group.members[k]]->place = place;
+    }
+  };
+  forEach(rockParts, 1, placeRocks);
+  work.firsts.resize(pairs + 1);
+  work.places.resize(pairs);
+  work.touching.resize(pairs);
+  const auto countPairs = [&](std::size_t part)
+  {
+    Workspace::Part counted;
+    std::size_t* touching = work.touching.data() + part * kPart;
+    for (std::size_t p = part * kPart; p < std::min(pairs, (part + 1) * kPart); ++p)
+    {
+      comeToPair(group.pairs, p);
+      RockPair& pair = *group.pairs[p];
+      work.places[p] = { work.placeOf[std::size_t(pair.first)],
+        work.placeOf[std::size_t(pair.second)] };
+      work.firsts[p] = counted.contacts;
+      counted.contacts += pair.contacts.size();
+      pair.touched = false;
+      touching[counted.touching] = p;
+      counted.touching += !pair.contacts.empty() || pair.impact.pending;
+    }
+    work.parts[part] = counted;
+  };
+  forEach(pairParts, 1, countPairs);
+  goOn(pairParts);
+  auto to = work.touching.begin();
+  for (std::size_t part = 0; part < pairParts; ++part)
+  {
+    const auto from = work.touching.begin() + std::ptrdiff_t(part * kPart);
+    to = std::copy(from, from + std::ptrdiff_t(work.parts[part].touching), to);
+    for (std::size_t p = part * kPart; p < std::min(pairs, (part + 1) * kPart); ++p)
+    {
+      work.firsts[p] += work.parts[part].contacts;
+    }
+  }
+  work.touching.erase(to, work.touching.end());
+  work.firsts.back() = contacts;
+  work.bodies.resize(std::size_t(places));
+  work.ways.resize(std::size_t(places));
+  work.spins.resize(std::size_t(places));
+  work.arrived.resize(std::size_t(places));
+  work.energyBefore.resize(std::size_t(places));
+  work.contacts.resize(contacts);
+  return std::size_t(places);
+}
+
+void MassFall::findPushes(const Group& group) const
+{
+  struct Striker
+  {
+    Vec3 velocity; ///< m/s
+    double mass;   ///< kg; < 0: gone.
+    double pushed; ///< m/s
+  };
+  thread_local std::vector<Striker> kept;
+  std::vector<Striker>& strikers = kept; // this thread's, whoever takes a part of the loops
+  strikers.resize(members_.size());
+  const auto takeRock = [&](std::size_t k)
+  {
+    const RockSimulator& sim = members_[group.members[k]]->sim;
+    strikers[std::size_t(group.members[k])] = { sim.state_.velocity,
+      sim.done_ ? -1.0 : sim.block_.mass(), 0.0 };
+  };
+  forEach(group.members.size(), kPart, takeRock);
+  const bool alone = parallel::threads() == 1;
+  const auto strike = [&](std::size_t p)
+  {
+    comeToPair(group.pairs, p);
+    const RockPair& pair = *group.pairs[p];
+    Striker &a = strikers[std::size_t(pair.first)], &b = strikers[std::size_t(pair.second)];
+    if (a.mass < 0.0 || b.mass < 0.0)
+    {
+      return;
+    }
+    // What meets elastically changes its velocity by twice the closing one's share.
+    const double closing = 2.0 * (a.velocity - b.velocity).norm(), sum = a.mass + b.mass;
+    raise(a.pushed, closing * b.mass / sum, alone);
+    raise(b.pushed, closing * a.mass / sum, alone);
+  };
+  forEach(group.pairs.size(), kPart, strike);
+  const auto give = [&](std::size_t k)
+  { members_[group.members[k]]->pushed = strikers[std::size_t(group.members[k])].pushed; };
+  forEach(group.members.size(), kPart, give);
+}
+
+} // namespace rockfall
