@@ -131,56 +131,8 @@ bool MassFall::Meetings::meet(const MassFall& fall, std::size_t k)
   }
 }
 
-/// What has to be known of two near each other before the first of them are linked. Of a crowd the
-/// ways are known by now: its rocks are linked here.
-inline char MassFall::Meetings::lookAt(std::size_t k)
-{
-  Near& n = near[k];
-  n.wasLinked = n.linked;
-  n.linked = false;
-  n.looked = -1.0;
-  n.seen = n.holds && n.pair->seen; // found where they stand
-  const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
-  const Vec3 between = a.position - b.position;
-  const double distance2 = between.squaredNorm();
-  const double known = a.known + b.known, radii = a.radius + b.radius;
-  if (!a.present || !b.present)
-  {
-    aparts_[k] = -kNoAxis;
-    return kApart;
-  }
-  const bool asleep = a.asleep && b.asleep;
-  if (!asleep && distance2 > (radii + known) * (radii + known))
-  {
-    aparts_[k] = std::sqrt(distance2) - radii;
-    return kApart;
-  }
-  const double turned = a.turned + b.turned;
-  bool overlap = false;
-  if (n.seen)
-  {
-    const PairAxis& axis = n.pair->axis;
-    n.normal = axis.normal;
-    n.offset = axis.distance - n.normal.dot(between) + turned;
-    overlap = axis.distance <= 0.0;
-  }
-  const double apart =
-    std::max(n.offset + n.normal.dot(between) - turned, std::sqrt(distance2) - radii);
-  aparts_[k] = apart;
-  if (asleep || (!overlap && apart > known))
-  {
-    return kShut;
-  }
-  if (n.pair && a.isOneCrowdWith(b) &&
-    (overlap || this->mayMeet({ apart, n.first, n.second, int(k) })))
-  {
-    n.linked = n.holds = n.pair->linked = true;
-    n.pair->known = false;
-    return kLinked;
-  }
-  return overlap ? kOverlaps : kOpen;
-}
-
+/// What has to be known of all that are near each other before the first of them are linked. Of a
+/// crowd the ways are known by now: its rocks are linked here.
 void MassFall::Meetings::look(MassFall& fall)
 {
   const std::size_t count = near.size(), parts = (count + kNearPart - 1) / kNearPart;
@@ -189,19 +141,67 @@ void MassFall::Meetings::look(MassFall& fall)
   open_.resize(count);
   others_.resize(count);
   left_.resize(parts);
-  const auto lookAtPart = [&](std::size_t part)
+  const auto lookAtPart = [this, count, nears = near.data(), rocks = movers.data(),
+                            aparts = aparts_.data(), states = states_.data(), fars = fars_.data(),
+                            surely = surely_.data(), most = fall_](std::size_t part)
   {
     const std::size_t first = part * kNearPart, last = std::min(count, first + kNearPart);
     Open* open = open_.data() + first;
     std::size_t* other = others_.data() + first;
     for (std::size_t k = first; k < last; ++k)
     {
-      __builtin_prefetch(near[std::min(k + kAhead, last - 1)].pair);
-      const char state = states_[k] = this->lookAt(k);
-      *open = this->openOf(k);
-      open += state == kOpen;
+      __builtin_prefetch(nears[std::min(k + kAhead, last - 1)].pair);
+      Near& n = nears[k];
+      const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
+      const Mover &a = rocks[i], &b = rocks[j];
+      const Vec3 between = a.position - b.position;
+      const double distance2 = between.squaredNorm();
+      const double known = a.known + b.known, radii = a.radius + b.radius;
+      const bool asleep = a.asleep && b.asleep;
+      if ((!asleep && distance2 > (radii + known) * (radii + known)) || !a.present || !b.present)
+      {
+        // Without a pair there is nothing to forget.
+        states[k] = kApart;
+        *other = k;
+        other += n.pair != nullptr;
+        continue;
+      }
+      n.wasLinked = n.linked;
+      n.linked = false;
+      n.looked = -1.0;
+      n.seen = n.holds && n.pair->seen; // found where they stand
+      const double turned = a.turned + b.turned;
+      bool overlap = false;
+      if (n.seen)
+      {
+        const PairAxis& axis = n.pair->axis;
+        n.normal = axis.normal;
+        n.offset = axis.distance - n.normal.dot(between) + turned;
+        overlap = axis.distance <= 0.0;
+      }
+      const double apart =
+        std::max(n.offset + n.normal.dot(between) - turned, std::sqrt(distance2) - radii);
+      aparts[k] = apart;
+      if (asleep || (!overlap && apart > known))
+      {
+        states[k] = kShut;
+        continue;
+      }
+      const Open two = { apart, n.first, n.second, int(k) };
+      if (n.pair && a.isOneCrowdWith(b) &&
+        (overlap || apart <= std::min(fars[i] + fars[j], surely[a.crowd]) + most ||
+          this->mayMeet(two)))
+      {
+        n.linked = n.holds = n.pair->linked = true;
+        n.pair->known = false;
+        states[k] = kLinked;
+        continue;
+      }
+      states[k] = overlap ? kOverlaps : kOpen;
+      *open = two;
+      open += !overlap;
       *other = k;
-      other += state == kOverlaps || (state == kApart && near[k].pair);
+      other += overlap;
     }
     left_[part] = { std::size_t(open - open_.data()) - first,
       std::size_t(other - others_.data()) - first };
@@ -246,7 +246,12 @@ void MassFall::Meetings::widen()
     const auto take = [&](std::size_t k)
     {
       const Mover &a = movers[std::size_t(near[k].first)], &b = movers[std::size_t(near[k].second)];
-      if ((states_[k] == kShut || states_[k] == kApart) && aparts_[k] <= a.known + b.known)
+      if (states_[k] != kShut && states_[k] != kApart)
+      {
+        return;
+      }
+      aparts_[k] = a.present && b.present ? this->apart(near[k]) : -kNoAxis;
+      if (aparts_[k] <= a.known + b.known)
       {
         states_[k] = kOpen;
         open_.push_back(this->openOf(k));

@@ -161,6 +161,15 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
       ++present;
     }
   }
+  surely_.assign(crowds_.size(), 0.0);
+  for (std::size_t c = 0; c < crowds_.size(); ++c)
+  {
+    if (crowds_[c] >= 0)
+    {
+      const Company& all = companies_[std::size_t(crowds_[c])];
+      surely_[c] = all.size > 1 ? (all.upper - all.lower).minCoeff() * duration : 0.0;
+    }
+  }
   drift_ /= std::max(1, present);
   if (sleepers_ > 0)
   {
@@ -177,7 +186,7 @@ void MassFall::Meetings::share(std::size_t i)
     m.way = companies_[std::size_t(roots_[i])].longest;
     thrown_[i] = this->thrown(i);
     fars_[i] = thrown_[i] * m.way;
-    m.known = kWider * (fars_[i] + fall_);
+    m.known = fars_[i] + fall_;
   }
 }
 

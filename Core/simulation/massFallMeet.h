@@ -165,7 +165,6 @@ private:
   void lookAlong(Near& near) const;
   bool mayMeet(const Open& open) const;
   bool meet(const MassFall& fall, std::size_t near);
-  char lookAt(std::size_t near);
   void look(MassFall& fall);
   Open openOf(std::size_t near) const;
   void widen();
@@ -199,6 +198,8 @@ private:
   std::vector<Company> companies_; ///< By root.
   std::vector<int> parents_, roots_;
   std::vector<int> crowds_; ///< First rock of each crowd of the last step.
+  std::vector<double>
+    surely_; ///< Of each of them, its velocities may close such a gap anywhere, m.
   /// Of each rock, where it is in `near`: those of the search, and those found later.
   std::vector<std::size_t> firsts_, places_;
   std::vector<std::vector<std::size_t>> later_;

@@ -152,19 +152,20 @@ void MassFall::findPushes(const Group& group) const
   };
   forEach(group.members.size(), kPart, takeRock);
   const bool alone = parallel::threads() == 1;
-  const auto strike = [&](std::size_t p)
+  const auto strike = [alone, pairs = group.pairs.data(), last = group.pairs.size() - 1,
+                        of = strikers.data()](std::size_t p)
   {
-    comeToPair(group.pairs, p);
-    const RockPair& pair = *group.pairs[p];
-    Striker &a = strikers[std::size_t(pair.first)], &b = strikers[std::size_t(pair.second)];
+    constexpr std::size_t kAhead = 8;
+    __builtin_prefetch(pairs[std::min(p + kAhead, last)]);
+    Striker &a = of[pairs[p]->first], &b = of[pairs[p]->second];
     if (a.mass < 0.0 || b.mass < 0.0)
     {
       return;
     }
     // What meets elastically changes its velocity by twice the closing one's share.
-    const double closing = 2.0 * (a.velocity - b.velocity).norm(), sum = a.mass + b.mass;
-    raise(a.pushed, closing * b.mass / sum, alone);
-    raise(b.pushed, closing * a.mass / sum, alone);
+    const double shared = 2.0 * (a.velocity - b.velocity).norm() / (a.mass + b.mass);
+    raise(a.pushed, shared * b.mass, alone);
+    raise(b.pushed, shared * a.mass, alone);
   };
   forEach(group.pairs.size(), kPart, strike);
   const auto give = [&](std::size_t k)
