@@ -33,7 +33,7 @@ constexpr int kLinesAsked = 5;
 
 /// Steps that a rock may go on in its ball as it moves past the others now, and what it may go
 /// otherwise, of the way that is known.
-constexpr double kSteps = 6.0, kOtherwise = 0.5;
+constexpr double kSteps = 9.0, kOtherwise = 0.5;
 
 /// All are looked for anew when this share of them have come out of their balls.
 constexpr std::size_t kMostOut = 4;
