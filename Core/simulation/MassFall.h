@@ -161,6 +161,8 @@ private:
   void solve(const Group& group, double h, StepKind kind, bool bounces, Workspace& work) const;
   /// Gives rocks, pairs and contacts their places in the system; returns how many rocks have one.
   std::size_t layOut(const Group& group, Workspace& work) const;
+  /// No bounce for what meets several (mayBounce).
+  void settleBounces(bool lasting, Workspace& work) const;
   /// What a contact is in a step of `h`; between rocks an impact begins with it if it closes fast.
   GroupContact take(
     RockPair& pair, const PairMotion& motion, Contact& contact, double h, bool bounces) const;

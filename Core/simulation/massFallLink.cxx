@@ -138,15 +138,15 @@ void MassFall::Meetings::look(MassFall& fall)
   const std::size_t count = near.size(), parts = (count + kNearPart - 1) / kNearPart;
   states_.resize(count);
   aparts_.resize(count);
-  open_.resize(count);
-  others_.resize(count);
+  sighted_.resize(std::max(count, sighted_.size()));
+  others_.resize(std::max(count, others_.size()));
   left_.resize(parts);
   const auto lookAtPart = [this, count, nears = near.data(), rocks = movers.data(),
                             aparts = aparts_.data(), states = states_.data(), fars = fars_.data(),
                             surely = surely_.data(), most = fall_](std::size_t part)
   {
     const std::size_t first = part * kNearPart, last = std::min(count, first + kNearPart);
-    Open* open = open_.data() + first;
+    Open* open = sighted_.data() + first;
     std::size_t* other = others_.data() + first;
     for (std::size_t k = first; k < last; ++k)
     {
@@ -203,15 +203,15 @@ void MassFall::Meetings::look(MassFall& fall)
       *other = k;
       other += overlap;
     }
-    left_[part] = { std::size_t(open - open_.data()) - first,
+    left_[part] = { std::size_t(open - sighted_.data()) - first,
       std::size_t(other - others_.data()) - first };
   };
   forEach(parts, 1, lookAtPart);
-  Open* to = open_.data();
+  open_.clear();
   for (std::size_t part = 0; part < parts; ++part)
   {
-    const Open* const from = open_.data() + part * kNearPart;
-    to = std::copy(from, from + left_[part].open, to);
+    const Open* const from = sighted_.data() + part * kNearPart;
+    open_.insert(open_.end(), from, from + left_[part].open);
     const std::size_t* const other = others_.data() + part * kNearPart;
     for (std::size_t k = 0; k < left_[part].others; ++k)
     {
@@ -225,7 +225,6 @@ void MassFall::Meetings::look(MassFall& fall)
       }
     }
   }
-  open_.resize(std::size_t(to - open_.data()));
 }
 
 MassFall::Meetings::Open MassFall::Meetings::openOf(std::size_t k) const
@@ -412,7 +411,7 @@ void MassFall::Meetings::settle()
       n.pair->contacts.clear();
     }
   };
-  linked_.resize(near.size());
+  linked_.resize(std::max(near.size(), linked_.size()));
   linkedCounts_.resize((near.size() + kNearPart - 1) / kNearPart);
   const auto settlePart = [&](std::size_t of)
   {
@@ -420,10 +419,16 @@ void MassFall::Meetings::settle()
     Linked* linked = linked_.data() + first;
     for (std::size_t k = first; k < last; ++k)
     {
+      if (states_[k] == kApart)
+      {
+        continue; // nothing lasts of them
+      }
       Near& n = near[k];
-      *linked = { n.first, n.second, n.pair };
-      linked += n.linked;
-      if (!n.linked)
+      if (n.linked)
+      {
+        *linked++ = { n.first, n.second, n.pair };
+      }
+      else
       {
         part(n);
       }
@@ -439,6 +444,7 @@ void MassFall::Meetings::unite()
   std::iota(heads_.begin(), heads_.end(), 0);
   std::fill(grouped_.begin(), grouped_.end(), char(0));
   int* const heads = heads_.data();
+  char* const grouped = grouped_.data();
   const auto headOf = [heads](int i)
   {
     while (heads[i] != i)
@@ -449,9 +455,12 @@ void MassFall::Meetings::unite()
   };
   const auto uniteTwo = [&](const Linked& l)
   {
-    grouped_[std::size_t(l.first)] = grouped_[std::size_t(l.second)] = 1;
-    const int a = headOf(l.first), b = headOf(l.second);
-    heads[std::max(a, b)] = std::min(a, b);
+    grouped[l.first] = grouped[l.second] = 1;
+    if (heads[l.first] != heads[l.second])
+    {
+      const int a = headOf(l.first), b = headOf(l.second);
+      heads[std::max(a, b)] = std::min(a, b);
+    }
   };
   this->forLinked(uniteTwo);
   for (int& head : heads_)

@@ -208,6 +208,7 @@ private:
   std::vector<double> aparts_; ///< Of `near`.
   std::vector<char> states_;   ///< Of `near`: what a look at it has shown.
   std::vector<Open> open_;
+  std::vector<Open> sighted_; ///< The same as found by each part of `near`, from its beginning.
   std::vector<std::size_t> others_; ///< Of `near`, what else a look has to see to.
   std::vector<Left> left_;          ///< By part of `near`.
   std::vector<Linked> linked_;

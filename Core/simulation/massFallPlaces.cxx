@@ -1,11 +1,13 @@
 // What has to be known of all rocks and pairs of a group before each of them is taken for itself:
-// their places in the system of a step, and what rocks may add to each other's speed.
+// their places in the system of a step, whether they may bounce, and what rocks may add to each
+// other's speed.
 
 #include "simulation/massFallWork.h"
 
 #include "base/parallel.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 
 namespace rockfall
@@ -76,7 +78,7 @@ std::size_t MassFall::layOut(const Group& group, Workspace& work) const
     }
     return places;
   };
-  const int places = goOn(rockParts);
+  const int all = goOn(rockParts);
   const auto placeRocks = [&](std::size_t part)
   {
     const Workspace::Part& before = work.parts[part];
@@ -91,46 +93,105 @@ std::size_t MassFall::layOut(const Group& group, Workspace& work) const
   forEach(rockParts, 1, placeRocks);
   work.firsts.resize(pairs + 1);
   work.places.resize(pairs);
-  work.touching.resize(pairs);
+  work.meeting.resize(std::max(pairs, work.meeting.size()));
+  work.touching.clear();
   const auto countPairs = [&](std::size_t part)
   {
     Workspace::Part counted;
-    std::size_t* touching = work.touching.data() + part * kPart;
-    for (std::size_t p = part * kPart; p < std::min(pairs, (part + 1) * kPart); ++p)
+    const std::size_t begin = part * kPart, end = std::min(pairs, begin + kPart);
+    std::size_t* const meeting = work.meeting.data() + begin;
+    std::size_t* const firsts = work.firsts.data();
+    std::array<int, 2>* const places = work.places.data();
+    const int* const placeOf = work.placeOf.data();
+    for (std::size_t p = begin; p < end; ++p)
     {
       comeToPair(group.pairs, p);
       RockPair& pair = *group.pairs[p];
-      work.places[p] = { work.placeOf[std::size_t(pair.first)],
-        work.placeOf[std::size_t(pair.second)] };
-      work.firsts[p] = counted.contacts;
+      places[p] = { placeOf[pair.first], placeOf[pair.second] };
+      firsts[p] = counted.contacts;
       counted.contacts += pair.contacts.size();
       pair.touched = false;
-      touching[counted.touching] = p;
+      meeting[counted.touching] = p;
       counted.touching += !pair.contacts.empty() || pair.impact.pending;
     }
     work.parts[part] = counted;
   };
   forEach(pairParts, 1, countPairs);
   goOn(pairParts);
-  auto to = work.touching.begin();
   for (std::size_t part = 0; part < pairParts; ++part)
   {
-    const auto from = work.touching.begin() + std::ptrdiff_t(part * kPart);
-    to = std::copy(from, from + std::ptrdiff_t(work.parts[part].touching), to);
-    for (std::size_t p = part * kPart; p < std::min(pairs, (part + 1) * kPart); ++p)
+    const std::size_t* const from = work.meeting.data() + part * kPart;
+    work.touching.insert(work.touching.end(), from, from + work.parts[part].touching);
+    std::size_t* const firsts = work.firsts.data();
+    const std::size_t before = work.parts[part].contacts;
+    for (std::size_t p = part * kPart, end = std::min(pairs, p + kPart); p < end; ++p)
     {
-      work.firsts[p] += work.parts[part].contacts;
+      firsts[p] += before;
     }
   }
-  work.touching.erase(to, work.touching.end());
   work.firsts.back() = contacts;
-  work.bodies.resize(std::size_t(places));
-  work.ways.resize(std::size_t(places));
-  work.spins.resize(std::size_t(places));
-  work.arrived.resize(std::size_t(places));
-  work.energyBefore.resize(std::size_t(places));
+  work.bodies.resize(std::size_t(all));
+  work.ways.resize(std::size_t(all));
+  work.spins.resize(std::size_t(all));
+  work.arrived.resize(std::size_t(all));
+  work.energyBefore.resize(std::size_t(all));
   work.contacts.resize(contacts);
-  return std::size_t(places);
+  return std::size_t(all);
+}
+
+void MassFall::settleBounces(bool lasting, Workspace& work) const
+{
+  // Few contacts have a say: each part looks for its own.
+  const std::size_t contacts = work.contacts.size(), parts = partsOf(contacts);
+  work.parts.resize(std::max(parts, work.parts.size()));
+  work.meeting.resize(std::max(contacts, work.meeting.size()));
+  const auto choose = [&](std::size_t part)
+  {
+    std::size_t* to = work.meeting.data() + part * kPart;
+    for (std::size_t k = part * kPart, end = std::min(contacts, k + kPart); k < end; ++k)
+    {
+      const GroupContact& c = work.contacts[k];
+      *to = k;
+      to += c.bounce >= 0.0 || c.closed;
+    }
+    work.parts[part].contacts = std::size_t(to - work.meeting.data()) - part * kPart;
+  };
+  forEach(parts, 1, choose);
+  const auto forChosen = [&](auto&& visit)
+  {
+    for (std::size_t part = 0; part < parts; ++part)
+    {
+      const std::size_t* const first = work.meeting.data() + part * kPart;
+      for (const std::size_t *k = first, *end = first + work.parts[part].contacts; k != end; ++k)
+      {
+        visit(work.contacts[*k]);
+      }
+    }
+  };
+  work.partners.assign(work.bodies.size(), kMeetsNone);
+  forChosen([&](const GroupContact& k) { meet(work.partners, k); });
+  const auto settle = [&](GroupContact& k)
+  {
+    if (k.bounce < 0.0)
+    {
+      return;
+    }
+    k.bounce = mayBounce(work.partners, k) ? k.bounce : -1.0;
+    if (!lasting || k.bounce < 0.0)
+    {
+      return;
+    }
+    // What bounces has no acceleration to go on with.
+    for (const int b : { k.first, k.second })
+    {
+      if (b >= 0)
+      {
+        work.bodies[std::size_t(b)].acceleration.setZero();
+        work.bodies[std::size_t(b)].spinAcceleration.setZero();
+      }
+    }
+  };
+  forChosen(settle);
 }
 
 void MassFall::findPushes(const Group& group) const

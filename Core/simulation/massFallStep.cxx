@@ -21,24 +21,6 @@ namespace
 /// How often the step of a crowd is halved that is far from settled.
 constexpr int kCrowdCuts = 4;
 
-/// No bounce for what meets several (mayBounce).
-void settleBounces(
-  std::size_t bodies, std::vector<GroupContact>& contacts, std::vector<int>& partners)
-{
-  partners.assign(bodies, kMeetsNone);
-  for (const GroupContact& k : contacts)
-  {
-    if (k.bounce >= 0.0 || k.closed)
-    {
-      meet(partners, k);
-    }
-  }
-  for (GroupContact& k : contacts)
-  {
-    k.bounce = mayBounce(partners, k) ? k.bounce : -1.0;
-  }
-}
-
 /// A number for a contact that carries.
 std::uint64_t keyOf(const Contact& c)
 {
@@ -183,23 +165,7 @@ void MassFall::solve(
   forEach(work.touching.size(), kPairGrain, takePair);
   if (bounces)
   {
-    settleBounces(work.bodies.size(), work.contacts, work.partners);
-  }
-  for (const GroupContact& k : work.contacts)
-  {
-    // What bounces has no acceleration to go on with.
-    if (!lasting || k.bounce < 0.0)
-    {
-      continue;
-    }
-    for (int b : { k.first, k.second })
-    {
-      if (b >= 0)
-      {
-        work.bodies[b].acceleration.setZero();
-        work.bodies[b].spinAcceleration.setZero();
-      }
-    }
+    this->settleBounces(lasting, work);
   }
   work.added.clear();
   work.addedTo.clear();

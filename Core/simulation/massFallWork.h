@@ -102,6 +102,7 @@ struct MassFall::Workspace
     std::size_t contacts = 0, touching = 0;
   };
   std::vector<Part> parts;
+  std::vector<std::size_t> meeting;        ///< What each part has chosen, from its beginning.
   std::vector<char> flags;                 ///< For forThose.
   std::vector<std::size_t> missed;         ///< Pairs or rocks whose contacts were missed.
   std::vector<std::vector<Contact>> found; ///< Of each of them, where it touches.
