@@ -20,18 +20,6 @@ constexpr std::size_t kLookGrain = 16;
 /// So many pairs ahead the cache is asked for one.
 constexpr std::size_t kAhead = 8;
 
-/// What a look at two rocks near each other has shown: they may meet if they go as far as is known;
-/// they don't, or both sleep; their bounding spheres tell them apart; they overlap; or they are of
-/// one crowd, and linked.
-enum : char
-{
-  kOpen,
-  kShut,
-  kApart,
-  kOverlaps,
-  kLinked,
-};
-
 /// Largest component along the normal of a velocity in a box.
 double most(const Company& c, const Vec3& normal)
 {
@@ -150,6 +138,7 @@ void MassFall::Meetings::look(MassFall& fall)
     std::size_t* other = others_.data() + first;
     for (std::size_t k = first; k < last; ++k)
     {
+      __builtin_prefetch(nears + std::min(k + 3 * kAhead, count - 1));
       __builtin_prefetch(nears[std::min(k + kAhead, last - 1)].pair);
       Near& n = nears[k];
       const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
@@ -161,7 +150,7 @@ void MassFall::Meetings::look(MassFall& fall)
       if ((!asleep && distance2 > (radii + known) * (radii + known)) || !a.present || !b.present)
       {
         // Without a pair there is nothing to forget.
-        states[k] = kApart;
+        states[k] = Sight::Apart;
         *other = k;
         other += n.pair != nullptr;
         continue;
@@ -184,7 +173,7 @@ void MassFall::Meetings::look(MassFall& fall)
       aparts[k] = apart;
       if (asleep || (!overlap && apart > known))
       {
-        states[k] = kShut;
+        states[k] = asleep || n.holds || n.wasLinked ? Sight::Shut : Sight::Apart;
         continue;
       }
       const Open two = { apart, n.first, n.second, int(k) };
@@ -194,10 +183,10 @@ void MassFall::Meetings::look(MassFall& fall)
       {
         n.linked = n.holds = n.pair->linked = true;
         n.pair->known = false;
-        states[k] = kLinked;
+        states[k] = Sight::Linked;
         continue;
       }
-      states[k] = overlap ? kOverlaps : kOpen;
+      states[k] = overlap ? Sight::Overlaps : Sight::Open;
       *open = two;
       open += !overlap;
       *other = k;
@@ -215,7 +204,7 @@ void MassFall::Meetings::look(MassFall& fall)
     const std::size_t* const other = others_.data() + part * kNearPart;
     for (std::size_t k = 0; k < left_[part].others; ++k)
     {
-      if (states_[other[k]] == kOverlaps)
+      if (states_[other[k]] == Sight::Overlaps)
       {
         this->join(fall, other[k], false);
       }
@@ -237,7 +226,7 @@ void MassFall::Meetings::widen()
 {
   for (std::size_t k = states_.size(); k < near.size(); ++k)
   {
-    states_.push_back(kShut);
+    states_.push_back(Sight::Shut);
     aparts_.push_back(this->apart(near[k]));
   }
   for (const int rock : wider_)
@@ -245,14 +234,14 @@ void MassFall::Meetings::widen()
     const auto take = [&](std::size_t k)
     {
       const Mover &a = movers[std::size_t(near[k].first)], &b = movers[std::size_t(near[k].second)];
-      if (states_[k] != kShut && states_[k] != kApart)
+      if (states_[k] != Sight::Shut && states_[k] != Sight::Apart)
       {
         return;
       }
       aparts_[k] = a.present && b.present ? this->apart(near[k]) : -kNoAxis;
       if (aparts_[k] <= a.known + b.known)
       {
-        states_[k] = kOpen;
+        states_[k] = Sight::Open;
         open_.push_back(this->openOf(k));
       }
     };
@@ -419,7 +408,7 @@ void MassFall::Meetings::settle()
     Linked* linked = linked_.data() + first;
     for (std::size_t k = first; k < last; ++k)
     {
-      if (states_[k] == kApart)
+      if (states_[k] == Sight::Apart)
       {
         continue; // nothing lasts of them
       }

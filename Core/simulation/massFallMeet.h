@@ -103,6 +103,16 @@ inline bool operator<(const Near& a, const Near& b)
   return a.first != b.first ? a.first < b.first : a.second < b.second;
 }
 
+/// What a look at two rocks near each other has shown.
+enum class Sight : std::uint8_t
+{
+  Open,     ///< They may meet if they go as far as is known;
+  Shut,     ///< they don't, or both sleep;
+  Apart,    ///< they don't, and nothing lasts of them;
+  Overlaps, ///< they overlap;
+  Linked,   ///< or they may meet for sure.
+};
+
 struct MassFall::Meetings
 {
   std::vector<Mover> movers;
@@ -206,7 +216,7 @@ private:
   std::vector<int> widenedRocks_;
   std::size_t sorted_ = 0;     ///< Of `near`; behind it those found later.
   std::vector<double> aparts_; ///< Of `near`.
-  std::vector<char> states_;   ///< Of `near`: what a look at it has shown.
+  std::vector<Sight> states_;  ///< Of `near`.
   std::vector<Open> open_;
   std::vector<Open> sighted_; ///< The same as found by each part of `near`, from its beginning.
   std::vector<std::size_t> others_; ///< Of `near`, what else a look has to see to.

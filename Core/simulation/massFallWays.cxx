@@ -40,6 +40,7 @@ bool MassFall::Meetings::join(MassFall& fall, std::size_t k, bool known)
 {
   Near& n = near[k];
   n.linked = n.holds = true;
+  states_[k] = Sight::Linked;
   n.pair->linked = true;
   n.pair->known = known;
   const auto linkTo = [&](int i, int other)
@@ -77,8 +78,12 @@ void MassFall::Meetings::wakeAbout(MassFall& fall, int rock)
   {
     Near& n = near[k];
     const Mover& other = movers[std::size_t(n.first == rock ? n.second : n.first)];
-    if (k < states_.size() && !n.linked && other.asleep && other.present &&
-      this->mayMeet(this->openOf(k)))
+    if (k >= states_.size() || n.linked || !other.asleep || !other.present)
+    {
+      return;
+    }
+    aparts_[k] = this->apart(n);
+    if (this->mayMeet(this->openOf(k)))
     {
       n.pair = n.pair ? n.pair : this->newPair(fall, n.first, n.second);
       fall.members_[std::size_t(n.first)]->stand();
