@@ -10,6 +10,9 @@
 // any velocity that is among theirs, by impacts from rock to rock. On the other hand no rock goes
 // further than its own way, or than what is left of the way of the one that strikes it, less the
 // gaps that had to be crossed before. The smaller of the two bounds holds.
+//
+// In a crowd the gaps are mostly none, and all get about the longest way of all: rocks that were
+// one crowd in the last step are one company from the beginning, and share its longest way.
 
 #include "simulation/massFallMeet.h"
 
