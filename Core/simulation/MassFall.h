@@ -140,7 +140,7 @@ private:
 
   void comeToRock(const Group& group, std::size_t k) const;
 
-  /// Who may meet whom within the step: massFallMeet.cxx, massFallLink.cxx.
+  /// Who may meet whom within the step: massFallMeet.cxx to massFallGroups.cxx.
   void findGroups(double duration);
   void wake(Member& member);
   void putToSleep(Member& member);

@@ -180,6 +180,8 @@ private:
   void widen();
   bool sweep(MassFall& fall);
   bool stays(const Near& near) const;
+
+  // What groups they are: massFallGroups.cxx
   void settle();
   void unite();
 
