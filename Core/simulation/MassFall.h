@@ -140,7 +140,7 @@ private:
 
   void comeToRock(const Group& group, std::size_t k) const;
 
-  /// Who may meet whom within the step: massFallMeet.cxx, massFallLink.cxx.
+  /// Who may meet whom within the step: massFallMeet.cxx to massFallGroups.cxx.
   void findGroups(double duration);
   void wake(Member& member);
   void putToSleep(Member& member);
@@ -159,6 +159,10 @@ private:
   double freeTime(const Group& group, double most) const;
   void fly(const Group& group, double duration) const;
   void solve(const Group& group, double h, StepKind kind, bool bounces, Workspace& work) const;
+  /// Gives rocks, pairs and contacts their places in the system; returns how many rocks have one.
+  std::size_t layOut(const Group& group, Workspace& work) const;
+  /// No bounce for what meets several (mayBounce).
+  void settleBounces(bool lasting, Workspace& work) const;
   /// What a contact is in a step of `h`; between rocks an impact begins with it if it closes fast.
   GroupContact take(
     RockPair& pair, const PairMotion& motion, Contact& contact, double h, bool bounces) const;

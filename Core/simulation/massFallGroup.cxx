@@ -225,27 +225,6 @@ void MassFall::gatherContacts(const Group& group, double h) const
   forEach(group.pairs.size(), kPairGrain, eachOther);
 }
 
-void MassFall::findPushes(const Group& group) const
-{
-  for (int i : group.members)
-  {
-    members_[i]->pushed = 0.0;
-  }
-  for (const RockPair* pair : group.pairs)
-  {
-    Member &a = *members_[pair->first], &b = *members_[pair->second];
-    if (a.sim.done_ || b.sim.done_)
-    {
-      continue;
-    }
-    // What meets elastically changes its velocity by twice the closing one's share.
-    const double closing = 2.0 * (a.sim.state_.velocity - b.sim.state_.velocity).norm();
-    const double ma = a.sim.block_.mass(), mb = b.sim.block_.mass();
-    a.pushed = std::max(a.pushed, closing * mb / (ma + mb));
-    b.pushed = std::max(b.pushed, closing * ma / (ma + mb));
-  }
-}
-
 void MassFall::armPair(RockPair& pair, double h) const
 {
   Contact* k = pair.contacts.data();

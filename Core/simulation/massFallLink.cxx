@@ -1,11 +1,13 @@
-// Which of the rocks that are near each other may meet within the step, and the groups that they
-// are: massFallMeet.cxx says by what bounds, massFallWays.cxx what they pass on to each other.
+// Which of the rocks that are near each other may meet within the step: massFallMeet.cxx says by
+// what bounds, massFallWays.cxx what they pass on to each other, massFallGroups.cxx what groups
+// they are.
 
 #include "simulation/massFallMeet.h"
 
 #include "base/parallel.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace rockfall
 {
@@ -13,20 +15,10 @@ namespace rockfall
 namespace
 {
 
-constexpr std::size_t kNearGrain = 256, kLookGrain = 16;
+constexpr std::size_t kLookGrain = 16;
 
 /// So many pairs ahead the cache is asked for one.
 constexpr std::size_t kAhead = 8;
-
-/// What a look at two rocks near each other has shown: they may meet if they go as far as is known;
-/// they don't, or both sleep; their bounding spheres tell them apart; or they overlap.
-enum : char
-{
-  kOpen,
-  kShut,
-  kApart,
-  kOverlaps,
-};
 
 /// Largest component along the normal of a velocity in a box.
 double most(const Company& c, const Vec3& normal)
@@ -78,7 +70,7 @@ inline double MassFall::Meetings::closing(const Near& n) const
 inline double MassFall::Meetings::reach(const Near& n) const
 {
   const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
-  const double faster = std::max(paces_[i].thrown, paces_[j].thrown);
+  const double faster = std::max(thrown_[i], thrown_[j]);
   const double speed = n.offset > kNoAxis ? faster * this->closing(n) : -kNoAxis;
   return std::min(fars_[i] + fars_[j], speed * duration_) + fall_;
 }
@@ -127,72 +119,101 @@ bool MassFall::Meetings::meet(const MassFall& fall, std::size_t k)
   }
 }
 
-/// What has to be known of all that are near each other before the first of them are linked.
+/// What has to be known of all that are near each other before the first of them are linked. Of a
+/// crowd the ways are known by now: its rocks are linked here.
 void MassFall::Meetings::look(MassFall& fall)
 {
-  states_.resize(near.size());
-  aparts_.resize(near.size());
-  const auto lookAt = [last = near.size() - 1, nears = near.data(), rocks = movers.data(),
-                        aparts = aparts_.data(), states = states_.data()](std::size_t k)
+  const std::size_t count = near.size(), parts = (count + kNearPart - 1) / kNearPart;
+  states_.resize(count);
+  aparts_.resize(count);
+  sighted_.resize(std::max(count, sighted_.size()));
+  others_.resize(std::max(count, others_.size()));
+  left_.resize(parts);
+  const auto lookAtPart = [this, count, nears = near.data(), rocks = movers.data(),
+                            aparts = aparts_.data(), states = states_.data(), fars = fars_.data(),
+                            surely = surely_.data(), most = fall_](std::size_t part)
   {
-    __builtin_prefetch(nears[std::min(k + kAhead, last)].pair);
-    Near& n = nears[k];
-    n.wasLinked = n.linked;
-    n.linked = false;
-    n.looked = -1.0;
-    n.seen = n.holds && n.pair->seen; // found where they stand
-    const Mover &a = rocks[n.first], &b = rocks[n.second];
-    const Vec3 between = a.position - b.position;
-    const double spheres = between.norm() - (a.radius + b.radius);
-    const double known = a.known + b.known, turned = a.turned + b.turned;
-    char state = kShut;
-    if (n.seen)
+    const std::size_t first = part * kNearPart, last = std::min(count, first + kNearPart);
+    Open* open = sighted_.data() + first;
+    std::size_t* other = others_.data() + first;
+    for (std::size_t k = first; k < last; ++k)
     {
-      const PairAxis& axis = n.pair->axis;
-      n.normal = axis.normal;
-      n.offset = axis.distance - n.normal.dot(between) + turned;
-      state = axis.distance <= 0.0 ? char(kOverlaps) : state;
+      __builtin_prefetch(nears + std::min(k + 3 * kAhead, count - 1));
+      __builtin_prefetch(nears[std::min(k + kAhead, last - 1)].pair);
+      Near& n = nears[k];
+      const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
+      const Mover &a = rocks[i], &b = rocks[j];
+      const Vec3 between = a.position - b.position;
+      const double distance2 = between.squaredNorm();
+      const double known = a.known + b.known, radii = a.radius + b.radius;
+      const bool asleep = a.asleep && b.asleep;
+      if ((!asleep && distance2 > (radii + known) * (radii + known)) || !a.present || !b.present)
+      {
+        // Without a pair there is nothing to forget.
+        states[k] = Sight::Apart;
+        *other = k;
+        other += n.pair != nullptr;
+        continue;
+      }
+      n.wasLinked = n.linked;
+      n.linked = false;
+      n.looked = -1.0;
+      n.seen = n.holds && n.pair->seen; // found where they stand
+      const double turned = a.turned + b.turned;
+      bool overlap = false;
+      if (n.seen)
+      {
+        const PairAxis& axis = n.pair->axis;
+        n.normal = axis.normal;
+        n.offset = axis.distance - n.normal.dot(between) + turned;
+        overlap = axis.distance <= 0.0;
+      }
+      const double apart =
+        std::max(n.offset + n.normal.dot(between) - turned, std::sqrt(distance2) - radii);
+      aparts[k] = apart;
+      if (asleep || (!overlap && apart > known))
+      {
+        states[k] = asleep || n.holds || n.wasLinked ? Sight::Shut : Sight::Apart;
+        continue;
+      }
+      const Open two = { apart, n.first, n.second, int(k) };
+      if (n.pair && a.isOneCrowdWith(b) &&
+        (overlap || apart <= std::min(fars[i] + fars[j], surely[a.crowd]) + most ||
+          this->mayMeet(two)))
+      {
+        n.linked = n.holds = n.pair->linked = true;
+        n.pair->known = false;
+        states[k] = Sight::Linked;
+        continue;
+      }
+      states[k] = overlap ? Sight::Overlaps : Sight::Open;
+      *open = two;
+      open += !overlap;
+      *other = k;
+      other += overlap;
     }
-    const double apart = std::max(n.offset + n.normal.dot(between) - turned, spheres);
-    aparts[k] = apart;
-    state = state == kShut && apart <= known ? char(kOpen) : state;
-    if (!a.present || !b.present)
-    {
-      aparts[k] = -kNoAxis;
-      state = kApart;
-    }
-    else if (a.asleep && b.asleep)
-    {
-      state = kShut;
-    }
-    else if (spheres > known)
-    {
-      state = kApart;
-    }
-    states[k] = state;
+    left_[part] = { std::size_t(open - sighted_.data()) - first,
+      std::size_t(other - others_.data()) - first };
   };
-  forEach(near.size(), kNearGrain, lookAt);
-  open_.resize(near.size());
-  Open* to = open_.data();
-  for (std::size_t k = 0; k < near.size(); ++k)
+  forEach(parts, 1, lookAtPart);
+  open_.clear();
+  for (std::size_t part = 0; part < parts; ++part)
   {
-    switch (states_[k])
+    const Open* const from = sighted_.data() + part * kNearPart;
+    open_.insert(open_.end(), from, from + left_[part].open);
+    const std::size_t* const other = others_.data() + part * kNearPart;
+    for (std::size_t k = 0; k < left_[part].others; ++k)
     {
-      case kApart:
-        if (near[k].pair)
-        {
-          this->drop(fall, near[k]);
-        }
-        break;
-      case kOverlaps:
-        this->join(fall, k, false);
-        break;
-      case kOpen:
-        *to++ = this->openOf(k);
-        break;
+      if (states_[other[k]] == Sight::Overlaps)
+      {
+        this->join(fall, other[k], false);
+      }
+      else
+      {
+        this->drop(fall, near[other[k]]);
+      }
     }
   }
-  open_.resize(std::size_t(to - open_.data()));
 }
 
 MassFall::Meetings::Open MassFall::Meetings::openOf(std::size_t k) const
@@ -205,7 +226,7 @@ void MassFall::Meetings::widen()
 {
   for (std::size_t k = states_.size(); k < near.size(); ++k)
   {
-    states_.push_back(kShut);
+    states_.push_back(Sight::Shut);
     aparts_.push_back(this->apart(near[k]));
   }
   for (const int rock : wider_)
@@ -213,9 +234,14 @@ void MassFall::Meetings::widen()
     const auto take = [&](std::size_t k)
     {
       const Mover &a = movers[std::size_t(near[k].first)], &b = movers[std::size_t(near[k].second)];
-      if ((states_[k] == kShut || states_[k] == kApart) && aparts_[k] <= a.known + b.known)
+      if (states_[k] != Sight::Shut && states_[k] != Sight::Apart)
       {
-        states_[k] = kOpen;
+        return;
+      }
+      aparts_[k] = a.present && b.present ? this->apart(near[k]) : -kNoAxis;
+      if (aparts_[k] <= a.known + b.known)
+      {
+        states_[k] = Sight::Open;
         open_.push_back(this->openOf(k));
       }
     };
@@ -223,21 +249,32 @@ void MassFall::Meetings::widen()
   }
 }
 
-/// Looks at all that are open; returns whether more of them may meet.
+/// Looks at all that are open; returns whether others have to be told of what it has shown.
 bool MassFall::Meetings::sweep(MassFall& fall)
 {
+  bool any = false;
   wider_.clear();
   for (std::size_t i = 0; i < movers.size(); ++i)
   {
     // Parents come before their children.
     roots_[i] = parents_[i] = roots_[std::size_t(parents_[i])];
     Mover& m = movers[i];
-    if (companies_[std::size_t(roots_[i])].size == 1)
+    const Company& company = companies_[std::size_t(roots_[i])];
+    if (company.size == 1)
     {
       continue;
     }
-    paces_[i].thrown = this->thrown(i);
-    fars_[i] = paces_[i].thrown * m.way;
+    thrown_[i] = this->thrown(i);
+    if (m.shares && m.way < company.longest)
+    {
+      m.way = company.longest;
+      if (firstLink_[i] >= 0)
+      {
+        turns_.add(int(i), m.way);
+        any = true;
+      }
+    }
+    fars_[i] = thrown_[i] * m.way;
     if (fars_[i] + fall_ > m.known && m.present && !m.asleep)
     {
       m.known = kWider * (fars_[i] + fall_);
@@ -272,7 +309,6 @@ bool MassFall::Meetings::sweep(MassFall& fall)
     *to++ = *o;
   }
   open_.resize(std::size_t(to - first));
-  bool any = false;
   asked_.clear();
   placed_.clear();
   for (const std::size_t o : chosen_)
@@ -282,8 +318,7 @@ bool MassFall::Meetings::sweep(MassFall& fall)
     if (n.pair && n.looked < 0.0 && (this->stays(n) || this->root(n.first) == this->root(n.second)))
     {
       // Of one company they are: how far apart is looked at when their contacts are.
-      this->join(fall, k, false);
-      any = true;
+      any |= this->join(fall, k, false);
       continue;
     }
     n.pair = n.pair ? n.pair : this->newPair(fall, n.first, n.second);
@@ -312,8 +347,7 @@ bool MassFall::Meetings::sweep(MassFall& fall)
     o.apart = aparts_[std::size_t(o.near)];
     if (answers_[a])
     {
-      this->join(fall, std::size_t(o.near), true);
-      any = true;
+      any |= this->join(fall, std::size_t(o.near), true);
     }
   }
   return any;
@@ -324,7 +358,7 @@ bool MassFall::Meetings::sweep(MassFall& fall)
 bool MassFall::Meetings::stays(const Near& n) const
 {
   const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
-  return n.wasLinked && (n.seen || n.pair->touched) && a.crowded && b.crowded && !a.asleep &&
+  return n.wasLinked && (n.seen || n.pair->touched) && a.crowd >= 0 && b.crowd >= 0 && !a.asleep &&
     !b.asleep;
 }
 
@@ -341,80 +375,7 @@ void MassFall::Meetings::link(MassFall& fall)
     this->tell(fall);
   }
   this->settle();
-}
-
-/// Who is no longer linked.
-void MassFall::Meetings::settle()
-{
-  const auto part = [&](std::size_t k)
-  {
-    Near& n = near[k];
-    if (n.linked || !(n.holds || n.wasLinked))
-    {
-      return;
-    }
-    const bool asleep = this->isAsleep(n.first, n.second);
-    if (asleep && !n.wasLinked)
-    {
-      return;
-    }
-    n.pair->linked = n.pair->known = false;
-    if (!asleep)
-    {
-      // Who is awake and not linked moves by himself, away from where the axis was found.
-      n.pair->seen = n.pair->touched = n.holds = false;
-      n.pair->contacts.clear();
-    }
-  };
-  forEach(near.size(), kNearGrain, part);
-}
-
-void MassFall::findGroups(double duration)
-{
-  Meetings& meet = *meetings_;
-  meet.follow(*this, duration);
-  meet.findNear(*this);
-  meet.link(*this);
-  std::vector<int>& place = groupOf_;
-  place.assign(members_.size(), -1);
-  groups_.clear();
-  alone_.clear();
-  for (std::size_t i = 0; i < members_.size(); ++i)
-  {
-    if (!meet.movers[i].present || meet.movers[i].asleep)
-    {
-      continue;
-    }
-    const std::size_t root = std::size_t(meet.root(int(i)));
-    if (meet.isAlone(root))
-    {
-      alone_.push_back(int(i));
-      meet.movers[i].crowded = false;
-      continue;
-    }
-    if (place[root] < 0)
-    {
-      place[root] = int(groups_.size());
-      groups_.emplace_back();
-    }
-    place[i] = place[root];
-    groups_[std::size_t(place[root])].members.push_back(int(i));
-  }
-  for (const Near& n : meet.near)
-  {
-    if (n.linked)
-    {
-      groups_[std::size_t(place[std::size_t(n.first)])].pairs.push_back(n.pair);
-    }
-  }
-  for (Group& group : groups_)
-  {
-    group.crowd = this->isCrowd(group);
-    for (const int i : group.members)
-    {
-      meet.movers[std::size_t(i)].crowded = group.crowd;
-    }
-  }
+  this->unite();
 }
 
 } // namespace rockfall

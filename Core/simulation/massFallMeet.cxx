@@ -10,6 +10,9 @@
 // any velocity that is among theirs, by impacts from rock to rock. On the other hand no rock goes
 // further than its own way, or than what is left of the way of the one that strikes it, less the
 // gaps that had to be crossed before. The smaller of the two bounds holds.
+//
+// In a crowd the gaps are mostly none, and all get about the longest way of all: rocks that were
+// one crowd in the last step are one company from the beginning, and share its longest way.
 
 #include "simulation/massFallMeet.h"
 
@@ -18,7 +21,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace rockfall
 {
@@ -34,7 +36,7 @@ constexpr int kLinesAsked = 5;
 
 /// Steps that a rock may go on in its ball as it moves past the others now, and what it may go
 /// otherwise, of the way that is known.
-constexpr double kSteps = 6.0, kOtherwise = 0.5;
+constexpr double kSteps = 9.0, kOtherwise = 0.5;
 
 /// All are looked for anew when this share of them have come out of their balls.
 constexpr std::size_t kMostOut = 4;
@@ -55,6 +57,9 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
     roots_.resize(count);
     boxes_.resize(count);
     fars_.resize(count);
+    thrown_.resize(count);
+    heads_.resize(count);
+    grouped_.resize(count);
     later_.resize(count);
     marks_.resize(count, 0);
     for (std::size_t i = 0; i < count; ++i)
@@ -85,7 +90,8 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
     const bool slept = m.asleep;
     m.asleep = member.asleep;
     m.present = !sim.done_ || m.asleep;
-    pace.thrown = 1.0;
+    m.shares = m.present && !m.asleep && m.crowd >= 0;
+    thrown_[i] = 1.0;
     fars_[i] = 0.0;
     if (!m.present || (slept && m.asleep))
     {
@@ -118,7 +124,7 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
     const double e = obstructed ? 1.0 : ground;
     pace.middle = flies ? s.velocity : Vec3(0.5 * (1.0 - e) * s.velocity);
     pace.spread = rim + (flies ? 0.0 : 0.5 * (1.0 + e) * speed);
-    // In a crowd it is struck by much the same ones as in the last step.
+    // It is struck by much the same ones as in the last step.
     m.known = kWider * std::max(pace.own, m.way) + fall_;
     m.way = fars_[i] = pace.own;
   };
@@ -127,6 +133,7 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
   int present = 0;
   drift_.setZero();
   longest_ = 0.0;
+  crowds_.clear();
   for (std::size_t i = 0; i < count; ++i)
   {
     const Mover& m = movers[i];
@@ -134,11 +141,36 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
     longest_ = std::max(longest_, m.way);
     sleepers_ += m.present && m.asleep;
     companies_[i] = { pace.middle.array() - pace.spread, pace.middle.array() + pace.spread,
-      pace.mass, 1 };
+      pace.mass, m.way, 1 };
+    parents_[i] = roots_[i] = int(i);
+    if (m.shares)
+    {
+      // What was a crowd in the last step is one company from the beginning.
+      crowds_.resize(std::max(crowds_.size(), std::size_t(m.crowd) + 1), -1);
+      int& first = crowds_[std::size_t(m.crowd)];
+      if (first < 0)
+      {
+        first = int(i);
+      }
+      else
+      {
+        parents_[i] = roots_[i] = first;
+        companies_[std::size_t(first)].take(companies_[i]);
+      }
+    }
     if (m.present)
     {
       drift_ += m.position - pace.covered;
       ++present;
+    }
+  }
+  surely_.assign(crowds_.size(), 0.0);
+  for (std::size_t c = 0; c < crowds_.size(); ++c)
+  {
+    if (crowds_[c] >= 0)
+    {
+      const Company& all = companies_[std::size_t(crowds_[c])];
+      surely_[c] = all.size > 1 ? (all.upper - all.lower).minCoeff() * duration : 0.0;
     }
   }
   drift_ /= std::max(1, present);
@@ -146,8 +178,19 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
   {
     drift_.setZero(); // who sleeps does not go on with the others
   }
-  std::iota(parents_.begin(), parents_.end(), 0);
-  std::iota(roots_.begin(), roots_.end(), 0);
+}
+
+/// Gives a rock of a crowd the way of its company.
+void MassFall::Meetings::share(std::size_t i)
+{
+  Mover& m = movers[i];
+  if (m.shares)
+  {
+    m.way = companies_[std::size_t(roots_[i])].longest;
+    thrown_[i] = this->thrown(i);
+    fars_[i] = thrown_[i] * m.way;
+    m.known = fars_[i] + fall_;
+  }
 }
 
 RockPair* MassFall::Meetings::newPair(const MassFall& fall, int first, int second)
@@ -196,7 +239,12 @@ void MassFall::Meetings::findNear(MassFall& fall)
 {
   chosen_.clear();
   forThose(
-    movers.size(), kRockGrain, answers_, [&](std::size_t i) { return !this->isCovered(i); },
+    movers.size(), kRockGrain, answers_,
+    [&](std::size_t i)
+    {
+      this->share(i);
+      return !this->isCovered(i);
+    },
     [&](std::size_t i) { chosen_.push_back(i); });
   out_ += chosen_.size();
   if (!searched_ || out_ * kMostOut > movers.size())

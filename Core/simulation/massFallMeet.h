@@ -8,6 +8,7 @@
 #include "simulation/turns.h"
 #include "system/broadPhase.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <deque>
@@ -34,15 +35,20 @@ struct alignas(64) Mover
   double known; ///< Rocks nearer than such a way, less their own, are its neighbours.
   bool present = false; ///< Neither gone nor stopped by the end time.
   bool asleep = false;
-  bool crowded = false; ///< Was in a crowd in the last step.
+  /// Goes as far as any rock of its company may: it was in a crowd in the last step. There nearly
+  /// every rock's way is the one of some faster rock, and to pass it on from rock to rock tells no
+  /// more.
+  bool shares = false;
+  int crowd = -1; ///< Of the last step, −1: none.
+
+  bool isOneCrowdWith(const Mover& o) const { return shares && o.shares && crowd == o.crowd; }
 };
 
 /// What else decides how a rock moves in the step.
 struct Pace
 {
-  double own = 0.0;    ///< The longest way if nothing strikes it, m.
-  double thrown = 1.0; ///< What it is struck by may make it go on faster by this factor.
-  double mass;         ///< kg
+  double own = 0.0; ///< The longest way if nothing strikes it, m.
+  double mass;      ///< kg
   /// All velocities that points of it may have until it meets another rock are in a ball, m/s:
   /// about its velocity if it flies clear of the slope; else the slope may stop it or throw it
   /// back.
@@ -63,11 +69,21 @@ struct Company
 {
   Vec3 lower, upper; ///< Velocities of its points, m/s.
   double heaviest;   ///< kg
+  double longest;    ///< Way of one of them if nothing else strikes it, m.
   int size;
+
+  void take(const Company& other)
+  {
+    lower = lower.cwiseMin(other.lower);
+    upper = upper.cwiseMax(other.upper);
+    heaviest = std::max(heaviest, other.heaviest);
+    longest = std::max(longest, other.longest);
+    size += other.size;
+  }
 };
 
-/// Two rocks that are near each other, or may come near each other soon.
-struct Near
+/// Two rocks that are near each other, or may come near each other soon; in one line of the cache.
+struct alignas(64) Near
 {
   int first = -1;
   int second = -1;
@@ -87,6 +103,16 @@ inline bool operator<(const Near& a, const Near& b)
   return a.first != b.first ? a.first < b.first : a.second < b.second;
 }
 
+/// What a look at two rocks near each other has shown.
+enum class Sight : std::uint8_t
+{
+  Open,     ///< They may meet if they go as far as is known;
+  Shut,     ///< they don't, or both sleep;
+  Apart,    ///< they don't, and nothing lasts of them;
+  Overlaps, ///< they overlap;
+  Linked,   ///< or they may meet for sure.
+};
+
 struct MassFall::Meetings
 {
   std::vector<Mover> movers;
@@ -95,8 +121,10 @@ struct MassFall::Meetings
   void follow(MassFall& fall, double duration); ///< The rocks, to where they stand now.
   void findNear(MassFall& fall);
   void link(MassFall& fall);
-  int root(int rock); ///< The first one of its company.
-  bool isAlone(std::size_t root) const { return companies_[root].size == 1; }
+  int head(int rock) const { return heads_[std::size_t(rock)]; } ///< The first of its group.
+  bool isAlone(int rock) const { return !grouped_[std::size_t(rock)]; }
+  template <class Visit>
+  void forLinked(Visit&& visit) const; ///< In the order of `near`.
 
 private:
   /// Two that are not linked and no farther apart than ways go that are known.
@@ -114,7 +142,20 @@ private:
     int next; ///< −1 ends.
   };
 
+  /// Two that may touch in the step.
+  struct Linked
+  {
+    int first, second;
+    RockPair* pair;
+  };
+  /// How many a part of `near` has left behind, each from its own beginning on.
+  struct Left
+  {
+    std::size_t open, others;
+  };
+
   // Who is near: massFallMeet.cxx
+  void share(std::size_t rock);
   void search(MassFall& fall);
   void cover(int rock);
   double spare(int rock) const;
@@ -139,11 +180,15 @@ private:
   void widen();
   bool sweep(MassFall& fall);
   bool stays(const Near& near) const;
+
+  // What groups they are: massFallGroups.cxx
   void settle();
+  void unite();
 
   // What they pass on to each other: massFallWays.cxx
+  int root(int rock); ///< The first one of its company.
   double thrown(std::size_t rock) const;
-  void join(MassFall& fall, std::size_t near, bool known);
+  bool join(MassFall& fall, std::size_t near, bool known);
   void wakeAbout(MassFall& fall, int rock);
   void passOn(int rock);
   void tell(MassFall& fall);
@@ -164,14 +209,25 @@ private:
   std::vector<RockPair*> spare_;
   std::vector<Company> companies_; ///< By root.
   std::vector<int> parents_, roots_;
+  std::vector<int> crowds_; ///< First rock of each crowd of the last step.
+  std::vector<double>
+    surely_; ///< Of each of them, its velocities may close such a gap anywhere, m.
   /// Of each rock, where it is in `near`: those of the search, and those found later.
   std::vector<std::size_t> firsts_, places_;
   std::vector<std::vector<std::size_t>> later_;
   std::vector<int> widenedRocks_;
   std::size_t sorted_ = 0;     ///< Of `near`; behind it those found later.
   std::vector<double> aparts_; ///< Of `near`.
-  std::vector<char> states_;   ///< Of `near`: what a look at it has shown.
+  std::vector<Sight> states_;  ///< Of `near`.
   std::vector<Open> open_;
+  std::vector<Open> sighted_; ///< The same as found by each part of `near`, from its beginning.
+  std::vector<std::size_t> others_; ///< Of `near`, what else a look has to see to.
+  std::vector<Left> left_;          ///< By part of `near`.
+  std::vector<Linked> linked_;
+  std::vector<std::size_t> linkedCounts_; ///< By part of `near`.
+  std::vector<int> heads_;
+  std::vector<char> grouped_;
+  std::vector<double> thrown_; ///< By rock: what strikes it may make it faster by this factor.
   std::vector<double> fars_;   ///< By rock, how far it may come towards others, m.
   std::vector<int> firstLink_; ///< By rock, in `links_`.
   std::vector<Link> links_;
@@ -185,6 +241,22 @@ private:
   std::vector<std::size_t> chosen_, asked_;
   std::vector<int> placed_;
 };
+
+/// So many of `near` are one part.
+constexpr std::size_t kNearPart = 256;
+
+template <class Visit>
+void MassFall::Meetings::forLinked(Visit&& visit) const
+{
+  for (std::size_t part = 0; part < linkedCounts_.size(); ++part)
+  {
+    const Linked* const first = linked_.data() + part * kNearPart;
+    for (const Linked *l = first, *end = first + linkedCounts_[part]; l != end; ++l)
+    {
+      visit(*l);
+    }
+  }
+}
 
 template <class Visit>
 void MassFall::Meetings::forNeighbours(int rock, Visit&& visit)

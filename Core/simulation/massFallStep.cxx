@@ -21,24 +21,6 @@ namespace
 /// How often the step of a crowd is halved that is far from settled.
 constexpr int kCrowdCuts = 4;
 
-/// No bounce for what meets several (mayBounce).
-void settleBounces(
-  std::size_t bodies, std::vector<GroupContact>& contacts, std::vector<int>& partners)
-{
-  partners.assign(bodies, kMeetsNone);
-  for (const GroupContact& k : contacts)
-  {
-    if (k.bounce >= 0.0 || k.closed)
-    {
-      meet(partners, k);
-    }
-  }
-  for (GroupContact& k : contacts)
-  {
-    k.bounce = mayBounce(partners, k) ? k.bounce : -1.0;
-  }
-}
-
 /// A number for a contact that carries.
 std::uint64_t keyOf(const Contact& c)
 {
@@ -119,45 +101,10 @@ void MassFall::solve(
   request.gravity = parameters_.gravity;
   request.maxOpenClose = parameters_.maxOpenClose;
   // Places first, then each rock and each pair for itself.
-  int places = 0;
-  std::size_t contacts = 0;
-  work.slopeFirsts.clear();
-  work.placeOf.resize(members_.size());
-  for (int i : group.members)
-  {
-    const RockSimulator& sim = members_[i]->sim;
-    work.placeOf[std::size_t(i)] = members_[i]->place = sim.done_ ? -1 : places++;
-    work.slopeFirsts.push_back(contacts);
-    contacts += sim.done_ ? 0 : sim.contacts_.size();
-  }
-  work.firsts.resize(group.pairs.size() + 1);
-  work.places.resize(group.pairs.size());
-  work.touching.clear();
-  for (std::size_t p = 0; p < group.pairs.size(); ++p)
-  {
-    comeToPair(group.pairs, p);
-    RockPair& pair = *group.pairs[p];
-    work.places[p] = { work.placeOf[std::size_t(pair.first)],
-      work.placeOf[std::size_t(pair.second)] };
-    work.firsts[p] = contacts;
-    contacts += pair.contacts.size();
-    pair.touched = false;
-    if (!pair.contacts.empty() || pair.impact.pending)
-    {
-      work.touching.push_back(p);
-    }
-  }
-  work.firsts.back() = contacts;
-  if (places == 0)
+  if (this->layOut(group, work) == 0)
   {
     return; // the last of them was caught just now
   }
-  work.bodies.resize(std::size_t(places));
-  work.ways.resize(std::size_t(places));
-  work.spins.resize(std::size_t(places));
-  work.arrived.resize(std::size_t(places));
-  work.energyBefore.resize(std::size_t(places));
-  work.contacts.resize(contacts);
   const auto takeRock = [&](std::size_t m)
   {
     this->comeToRock(group, m);
@@ -218,23 +165,7 @@ void MassFall::solve(
   forEach(work.touching.size(), kPairGrain, takePair);
   if (bounces)
   {
-    settleBounces(work.bodies.size(), work.contacts, work.partners);
-  }
-  for (const GroupContact& k : work.contacts)
-  {
-    // What bounces has no acceleration to go on with.
-    if (!lasting || k.bounce < 0.0)
-    {
-      continue;
-    }
-    for (int b : { k.first, k.second })
-    {
-      if (b >= 0)
-      {
-        work.bodies[b].acceleration.setZero();
-        work.bodies[b].spinAcceleration.setZero();
-      }
-    }
+    this->settleBounces(lasting, work);
   }
   work.added.clear();
   work.addedTo.clear();

@@ -34,11 +34,13 @@ double MassFall::Meetings::thrown(std::size_t rock) const
   return bounciest_ * heaviest > mass ? (1.0 + bounciest_) * heaviest / (heaviest + mass) : 1.0;
 }
 
-/// Links two; `known`: their axis has been found for where they stand.
-void MassFall::Meetings::join(MassFall& fall, std::size_t k, bool known)
+/// Links two; `known`: their axis has been found for where they stand. Returns whether that tells
+/// anything new of others.
+bool MassFall::Meetings::join(MassFall& fall, std::size_t k, bool known)
 {
   Near& n = near[k];
   n.linked = n.holds = true;
+  states_[k] = Sight::Linked;
   n.pair->linked = true;
   n.pair->known = known;
   const auto linkTo = [&](int i, int other)
@@ -54,20 +56,19 @@ void MassFall::Meetings::join(MassFall& fall, std::size_t k, bool known)
     }
     turns_.add(i, m.way);
   };
-  linkTo(n.first, n.second);
-  linkTo(n.second, n.first);
-  const int a = this->root(n.first), b = this->root(n.second);
-  if (a == b)
+  const bool share = movers[std::size_t(n.first)].shares && movers[std::size_t(n.second)].shares;
+  if (!share)
   {
-    return;
+    linkTo(n.first, n.second);
+    linkTo(n.second, n.first);
   }
-  Company &kept = companies_[std::size_t(std::min(a, b))],
-          &other = companies_[std::size_t(std::max(a, b))];
-  parents_[std::size_t(std::max(a, b))] = std::min(a, b);
-  kept.lower = kept.lower.cwiseMin(other.lower);
-  kept.upper = kept.upper.cwiseMax(other.upper);
-  kept.heaviest = std::max(kept.heaviest, other.heaviest);
-  kept.size += other.size;
+  const int a = this->root(n.first), b = this->root(n.second);
+  if (a != b)
+  {
+    parents_[std::size_t(std::max(a, b))] = std::min(a, b);
+    companies_[std::size_t(std::min(a, b))].take(companies_[std::size_t(std::max(a, b))]);
+  }
+  return a != b || !share;
 }
 
 /// All that lies on each other wakes at once; others have their turn in the next sweep.
@@ -77,8 +78,12 @@ void MassFall::Meetings::wakeAbout(MassFall& fall, int rock)
   {
     Near& n = near[k];
     const Mover& other = movers[std::size_t(n.first == rock ? n.second : n.first)];
-    if (k < states_.size() && !n.linked && other.asleep && other.present &&
-      this->mayMeet(this->openOf(k)))
+    if (k >= states_.size() || n.linked || !other.asleep || !other.present)
+    {
+      return;
+    }
+    aparts_[k] = this->apart(n);
+    if (this->mayMeet(this->openOf(k)))
     {
       n.pair = n.pair ? n.pair : this->newPair(fall, n.first, n.second);
       fall.members_[std::size_t(n.first)]->stand();
@@ -92,7 +97,7 @@ void MassFall::Meetings::wakeAbout(MassFall& fall, int rock)
   this->forNeighbours(rock, visit);
 }
 
-/// What is left of a rock's way, to those that it is linked with.
+/// What is left of a rock's way, to those that it is linked with and that do not share it.
 void MassFall::Meetings::passOn(int rock)
 {
   Mover* const rocks = movers.data();
@@ -101,7 +106,7 @@ void MassFall::Meetings::passOn(int rock)
   for (int l = firstLink_[std::size_t(rock)]; l >= 0; l = links[l].next)
   {
     Mover& other = rocks[links[l].other];
-    if (way > other.way * kNoMore)
+    if (way > other.way * kNoMore && !other.shares)
     {
       // The gap must be crossed first, by both together.
       const double own = paces_[std::size_t(links[l].other)].own;
@@ -123,8 +128,13 @@ void MassFall::Meetings::tell(MassFall& fall)
   {
     const std::size_t rock = std::size_t(i);
     roots_[rock] = this->root(i);
-    paces_[rock].thrown = this->thrown(rock);
-    fars_[rock] = paces_[rock].thrown * movers[rock].way;
+    Mover& m = movers[rock];
+    if (m.shares)
+    {
+      m.way = companies_[std::size_t(roots_[rock])].longest;
+    }
+    thrown_[rock] = this->thrown(rock);
+    fars_[rock] = thrown_[rock] * m.way;
     if (sleepers_ > 0)
     {
       this->wakeAbout(fall, i);

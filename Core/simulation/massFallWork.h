@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// What massFallGroup.cxx and massFallStep.cxx share.
+/// What massFallGroup.cxx, massFallPlaces.cxx and massFallStep.cxx share.
 
 #include "base/cache.h"
 #include "simulation/MassFall.h"
@@ -95,6 +95,14 @@ struct MassFall::Workspace
     Contact before; ///< As it was before the step.
   };
   std::vector<Added> addedTo;
+  /// Of a part of the rocks or pairs that are laid out: how many there are in it, then before it.
+  struct Part
+  {
+    int places = 0;
+    std::size_t contacts = 0, touching = 0;
+  };
+  std::vector<Part> parts;
+  std::vector<std::size_t> meeting;        ///< What each part has chosen, from its beginning.
   std::vector<char> flags;                 ///< For forThose.
   std::vector<std::size_t> missed;         ///< Pairs or rocks whose contacts were missed.
   std::vector<std::vector<Contact>> found; ///< Of each of them, where it touches.

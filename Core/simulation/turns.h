@@ -19,9 +19,7 @@ public:
   void reset(std::size_t count, double most)
   {
     scale_ = most > 0.0 ? double(kRanges - 1) / most : 0.0;
-    places_.assign(count, {});
-    ends_.fill({});
-    highest_ = 0;
+    places_.resize(count);
   }
   /// Once each; who waits already is moved up to where his way belongs.
   void add(int rock, double way)

@@ -57,13 +57,19 @@ void BroadPhase::place(std::span<const BroadBox> boxes)
   order_.clear();
   Vec3 upper = Vec3::Constant(-1e300);
   lower_.setConstant(1e300);
+  double largest = 1e-9;
+  for (const BroadBox& box : boxes)
+  {
+    largest = box.present ? std::max(largest, box.radius) : largest;
+  }
+  largest *= 1.0 + 1e-9;
   for (std::size_t i = 0; i < boxes.size(); ++i)
   {
     if (boxes[i].present)
     {
-      // By power of two of the size first.
+      // By power of two of the size first: rocks of half the largest size and more are of one map.
       int power = 0;
-      std::frexp(std::max(boxes[i].radius, 1e-9), &power);
+      std::frexp(std::max(boxes[i].radius, 1e-9) / largest, &power);
       order_.push_back({ power, 0, std::int64_t(i) });
       lower_ = lower_.cwiseMin(boxes[i].center);
       upper = upper.cwiseMax(boxes[i].center);

@@ -1,0 +1,142 @@
+// The groups that rocks are that may meet within the step, once it is known which do.
+
+#include "simulation/massFallMeet.h"
+
+#include "base/parallel.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace rockfall
+{
+
+/// Who is linked, and who no longer is.
+void MassFall::Meetings::settle()
+{
+  const auto part = [&](Near& n)
+  {
+    if (!(n.holds || n.wasLinked))
+    {
+      return;
+    }
+    const bool asleep = this->isAsleep(n.first, n.second);
+    if (asleep && !n.wasLinked)
+    {
+      return;
+    }
+    n.pair->linked = n.pair->known = false;
+    if (!asleep)
+    {
+      // Who is awake and not linked moves by himself, away from where the axis was found.
+      n.pair->seen = n.pair->touched = n.holds = false;
+      n.pair->contacts.clear();
+    }
+  };
+  linked_.resize(std::max(near.size(), linked_.size()));
+  linkedCounts_.resize((near.size() + kNearPart - 1) / kNearPart);
+  const auto settlePart = [&](std::size_t of)
+  {
+    const std::size_t first = of * kNearPart, last = std::min(near.size(), first + kNearPart);
+    Linked* linked = linked_.data() + first;
+    for (std::size_t k = first; k < last; ++k)
+    {
+      if (states_[k] == Sight::Apart)
+      {
+        continue; // nothing lasts of them
+      }
+      Near& n = near[k];
+      if (n.linked)
+      {
+        *linked++ = { n.first, n.second, n.pair };
+      }
+      else
+      {
+        part(n);
+      }
+    }
+    linkedCounts_[of] = std::size_t(linked - linked_.data()) - first;
+  };
+  forEach(linkedCounts_.size(), 1, settlePart);
+}
+
+/// Groups are what is linked: a company may have fallen apart.
+void MassFall::Meetings::unite()
+{
+  std::iota(heads_.begin(), heads_.end(), 0);
+  std::fill(grouped_.begin(), grouped_.end(), char(0));
+  int* const heads = heads_.data();
+  char* const grouped = grouped_.data();
+  const auto headOf = [heads](int i)
+  {
+    while (heads[i] != i)
+    {
+      i = heads[i] = heads[heads[i]];
+    }
+    return i;
+  };
+  const auto uniteTwo = [&](const Linked& l)
+  {
+    grouped[l.first] = grouped[l.second] = 1;
+    if (heads[l.first] != heads[l.second])
+    {
+      const int a = headOf(l.first), b = headOf(l.second);
+      heads[std::max(a, b)] = std::min(a, b);
+    }
+  };
+  this->forLinked(uniteTwo);
+  for (int& head : heads_)
+  {
+    head = heads[head]; // that of a head before it
+  }
+}
+
+void MassFall::findGroups(double duration)
+{
+  Meetings& meet = *meetings_;
+  meet.follow(*this, duration);
+  meet.findNear(*this);
+  meet.link(*this);
+  std::vector<int>& place = groupOf_;
+  place.assign(members_.size(), -1);
+  // What lists of the last step's groups hold in memory serves again.
+  std::vector<Group> old = std::move(groups_);
+  groups_.clear();
+  alone_.clear();
+  for (std::size_t i = 0; i < members_.size(); ++i)
+  {
+    Mover& m = meet.movers[i];
+    m.crowd = -1;
+    if (!m.present || m.asleep)
+    {
+      continue;
+    }
+    if (meet.isAlone(int(i)))
+    {
+      alone_.push_back(int(i));
+      continue;
+    }
+    const std::size_t head = std::size_t(meet.head(int(i)));
+    if (place[head] < 0)
+    {
+      place[head] = int(groups_.size());
+      groups_.push_back(groups_.size() < old.size() ? std::move(old[groups_.size()]) : Group());
+      groups_.back().members.clear();
+      groups_.back().pairs.clear();
+    }
+    place[i] = place[head];
+    groups_[std::size_t(place[head])].members.push_back(int(i));
+  }
+  meet.forLinked([&](const auto& l)
+    { groups_[std::size_t(place[std::size_t(l.first)])].pairs.push_back(l.pair); });
+  for (std::size_t g = 0; g < groups_.size(); ++g)
+  {
+    Group& group = groups_[g];
+    group.crowd = this->isCrowd(group);
+    for (const int i : group.members)
+    {
+      meet.movers[std::size_t(i)].crowd = group.crowd ? int(g) : -1;
+    }
+  }
+}
+
+} // namespace rockfall

@@ -1,0 +1,237 @@
+// What has to be known of all rocks and pairs of a group before each of them is taken for itself:
+// their places in the system of a step, whether they may bounce, and what rocks may add to each
+// other's speed.
+
+#include "simulation/massFallWork.h"
+
+#include "base/parallel.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+
+namespace rockfall
+{
+
+namespace
+{
+
+/// So many rocks or pairs are one part.
+constexpr std::size_t kPart = 128;
+
+std::size_t partsOf(std::size_t count)
+{
+  return (count + kPart - 1) / kPart;
+}
+
+/// The larger of the two, whoever else raises it at the same time.
+void raise(double& value, double to, bool alone)
+{
+  const std::atomic_ref<double> shared(value);
+  double was = shared.load(std::memory_order_relaxed);
+  if (alone)
+  {
+    shared.store(std::max(was, to), std::memory_order_relaxed);
+    return;
+  }
+  while (was < to && !shared.compare_exchange_weak(was, to, std::memory_order_relaxed))
+  {
+  }
+}
+
+} // namespace
+
+std::size_t MassFall::layOut(const Group& group, Workspace& work) const
+{
+  const std::size_t rocks = group.members.size(), pairs = group.pairs.size();
+  const std::size_t rockParts = partsOf(rocks), pairParts = partsOf(pairs);
+  work.parts.resize(std::max(rockParts, pairParts));
+  work.placeOf.resize(members_.size());
+  work.slopeFirsts.resize(rocks);
+  // Each part counts from its own beginning, then from where the parts before it end.
+  const auto countRocks = [&](std::size_t part)
+  {
+    Workspace::Part counted;
+    for (std::size_t k = part * kPart; k < std::min(rocks, (part + 1) * kPart); ++k)
+    {
+      this->comeToRock(group, k);
+      const RockSimulator& sim = members_[group.members[k]]->sim;
+      work.placeOf[std::size_t(group.members[k])] = sim.done_ ? -1 : counted.places++;
+      work.slopeFirsts[k] = counted.contacts;
+      counted.contacts += sim.done_ ? 0 : sim.contacts_.size();
+    }
+    work.parts[part] = counted;
+  };
+  forEach(rockParts, 1, countRocks);
+  std::size_t contacts = 0;
+  const auto goOn = [&](std::size_t parts)
+  {
+    int places = 0;
+    for (std::size_t part = 0; part < parts; ++part)
+    {
+      Workspace::Part& p = work.parts[part];
+      const Workspace::Part counted = p;
+      p.places = places;
+      p.contacts = contacts;
+      places += counted.places;
+      contacts += counted.contacts;
+    }
+    return places;
+  };
+  const int all = goOn(rockParts);
+  const auto placeRocks = [&](std::size_t part)
+  {
+    const Workspace::Part& before = work.parts[part];
+    for (std::size_t k = part * kPart; k < std::min(rocks, (part + 1) * kPart); ++k)
+    {
+      int& place = work.placeOf[std::size_t(group.members[k])];
+      place += place < 0 ? 0 : before.places;
+      work.slopeFirsts[k] += before.contacts;
+      members_[group.members[k]]->place = place;
+    }
+  };
+  forEach(rockParts, 1, placeRocks);
+  work.firsts.resize(pairs + 1);
+  work.places.resize(pairs);
+  work.meeting.resize(std::max(pairs, work.meeting.size()));
+  work.touching.clear();
+  const auto countPairs = [&](std::size_t part)
+  {
+    Workspace::Part counted;
+    const std::size_t begin = part * kPart, end = std::min(pairs, begin + kPart);
+    std::size_t* const meeting = work.meeting.data() + begin;
+    std::size_t* const firsts = work.firsts.data();
+    std::array<int, 2>* const places = work.places.data();
+    const int* const placeOf = work.placeOf.data();
+    for (std::size_t p = begin; p < end; ++p)
+    {
+      comeToPair(group.pairs, p);
+      RockPair& pair = *group.pairs[p];
+      places[p] = { placeOf[pair.first], placeOf[pair.second] };
+      firsts[p] = counted.contacts;
+      counted.contacts += pair.contacts.size();
+      pair.touched = false;
+      meeting[counted.touching] = p;
+      counted.touching += !pair.contacts.empty() || pair.impact.pending;
+    }
+    work.parts[part] = counted;
+  };
+  forEach(pairParts, 1, countPairs);
+  goOn(pairParts);
+  for (std::size_t part = 0; part < pairParts; ++part)
+  {
+    const std::size_t* const from = work.meeting.data() + part * kPart;
+    work.touching.insert(work.touching.end(), from, from + work.parts[part].touching);
+    std::size_t* const firsts = work.firsts.data();
+    const std::size_t before = work.parts[part].contacts;
+    for (std::size_t p = part * kPart, end = std::min(pairs, p + kPart); p < end; ++p)
+    {
+      firsts[p] += before;
+    }
+  }
+  work.firsts.back() = contacts;
+  work.bodies.resize(std::size_t(all));
+  work.ways.resize(std::size_t(all));
+  work.spins.resize(std::size_t(all));
+  work.arrived.resize(std::size_t(all));
+  work.energyBefore.resize(std::size_t(all));
+  work.contacts.resize(contacts);
+  return std::size_t(all);
+}
+
+void MassFall::settleBounces(bool lasting, Workspace& work) const
+{
+  // Few contacts have a say: each part looks for its own.
+  const std::size_t contacts = work.contacts.size(), parts = partsOf(contacts);
+  work.parts.resize(std::max(parts, work.parts.size()));
+  work.meeting.resize(std::max(contacts, work.meeting.size()));
+  const auto choose = [&](std::size_t part)
+  {
+    std::size_t* to = work.meeting.data() + part * kPart;
+    for (std::size_t k = part * kPart, end = std::min(contacts, k + kPart); k < end; ++k)
+    {
+      const GroupContact& c = work.contacts[k];
+      *to = k;
+      to += c.bounce >= 0.0 || c.closed;
+    }
+    work.parts[part].contacts = std::size_t(to - work.meeting.data()) - part * kPart;
+  };
+  forEach(parts, 1, choose);
+  const auto forChosen = [&](auto&& visit)
+  {
+    for (std::size_t part = 0; part < parts; ++part)
+    {
+      const std::size_t* const first = work.meeting.data() + part * kPart;
+      for (const std::size_t *k = first, *end = first + work.parts[part].contacts; k != end; ++k)
+      {
+        visit(work.contacts[*k]);
+      }
+    }
+  };
+  work.partners.assign(work.bodies.size(), kMeetsNone);
+  forChosen([&](const GroupContact& k) { meet(work.partners, k); });
+  const auto settle = [&](GroupContact& k)
+  {
+    if (k.bounce < 0.0)
+    {
+      return;
+    }
+    k.bounce = mayBounce(work.partners, k) ? k.bounce : -1.0;
+    if (!lasting || k.bounce < 0.0)
+    {
+      return;
+    }
+    // What bounces has no acceleration to go on with.
+    for (const int b : { k.first, k.second })
+    {
+      if (b >= 0)
+      {
+        work.bodies[std::size_t(b)].acceleration.setZero();
+        work.bodies[std::size_t(b)].spinAcceleration.setZero();
+      }
+    }
+  };
+  forChosen(settle);
+}
+
+void MassFall::findPushes(const Group& group) const
+{
+  struct Striker
+  {
+    Vec3 velocity; ///< m/s
+    double mass;   ///< kg; < 0: gone.
+    double pushed; ///< m/s
+  };
+  thread_local std::vector<Striker> kept;
+  std::vector<Striker>& strikers = kept; // this thread's, whoever takes a part of the loops
+  strikers.resize(members_.size());
+  const auto takeRock = [&](std::size_t k)
+  {
+    const RockSimulator& sim = members_[group.members[k]]->sim;
+    strikers[std::size_t(group.members[k])] = { sim.state_.velocity,
+      sim.done_ ? -1.0 : sim.block_.mass(), 0.0 };
+  };
+  forEach(group.members.size(), kPart, takeRock);
+  const bool alone = parallel::threads() == 1;
+  const auto strike = [alone, pairs = group.pairs.data(), last = group.pairs.size() - 1,
+                        of = strikers.data()](std::size_t p)
+  {
+    constexpr std::size_t kAhead = 8;
+    __builtin_prefetch(pairs[std::min(p + kAhead, last)]);
+    Striker &a = of[pairs[p]->first], &b = of[pairs[p]->second];
+    if (a.mass < 0.0 || b.mass < 0.0)
+    {
+      return;
+    }
+    // What meets elastically changes its velocity by twice the closing one's share.
+    const double shared = 2.0 * (a.velocity - b.velocity).norm() / (a.mass + b.mass);
+    raise(a.pushed, shared * b.mass, alone);
+    raise(b.pushed, shared * a.mass, alone);
+  };
+  forEach(group.pairs.size(), kPart, strike);
+  const auto give = [&](std::size_t k)
+  { members_[group.members[k]]->pushed = strikers[std::size_t(group.members[k])].pushed; };
+  forEach(group.members.size(), kPart, give);
+}
+
+} // namespace rockfall
