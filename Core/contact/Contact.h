@@ -177,6 +177,18 @@ struct CandidatePairs
 void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
   double distance, CandidatePairs& candidates);
 
+class PairBody;
+
+/// Finds the pairs within `reach` (m) that can be contacts where the rock stands now, and no
+/// others: for one that goes on so far in a step that candidates would not serve the next. Only on
+/// a patch that is all slope.
+void gatherNow(const PlacedBlock& rock, const PairBody& body, const SurfacePatch& patch,
+  double reach, CandidatePairs& candidates);
+/// The same of vertices that are straight under the slope, and peaks in the rock, by more than
+/// `allowed` (m).
+void gatherUnder(const PlacedBlock& rock, const PairBody& body, const SurfacePatch& patch,
+  double allowed, CandidatePairs& candidates);
+
 /// Brings the closed contacts of the last step, and the open ones that still overlap, to where the
 /// rock stands now, hands them over between neighbouring features, and adds every pair of the
 /// candidates that can close within `reach` (m).

@@ -173,20 +173,27 @@ void MassFall::gatherContacts(const Group& group, double h) const
       sim.armContacts(h);
       return;
     }
-    sim.ensureCandidates(reach, crowd);
-    updateContacts(sim.placed_, sim.patch_, sim.candidates_, reach, sim.contacts_);
+    const auto findThem = [&]() -> const CandidatePairs&
+    {
+      if (!crowd)
+      {
+        sim.ensureCandidates(reach);
+      }
+      const CandidatePairs& near = crowd ? sim.candidatesNow(m.body, reach) : sim.candidates_;
+      updateContacts(sim.placed_, sim.patch_, near, reach, sim.contacts_);
+      return near;
+    };
+    const CandidatePairs* near = &findThem();
     while (sim.solid_ && sim.breakTrees(h))
     {
-      sim.ensureCandidates(reach, crowd);
-      updateContacts(sim.placed_, sim.patch_, sim.candidates_, reach, sim.contacts_);
+      near = &findThem();
     }
     double pressed = 0.0;
     for (const Contact& c : sim.contacts_)
     {
       pressed = std::max(pressed, -c.gap());
     }
-    holdOverlap(
-      sim.placed_, sim.patch_, sim.candidates_, kLooseOverlap * r + 2.0 * pressed, sim.contacts_);
+    holdOverlap(sim.placed_, sim.patch_, *near, kLooseOverlap * r + 2.0 * pressed, sim.contacts_);
     sim.armContacts(h);
   };
   forEach(group.members.size(), kRockGrain, onSlope);
