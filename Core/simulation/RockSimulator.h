@@ -139,7 +139,7 @@ private:
   void ensureCandidates(double reach, bool among = false); ///< `among`: many others.
   /// Those of a rock among many others, for where it stands in this step only if there is nothing
   /// but the slope near it; `body` stands there, too. They serve until this thread asks again.
-  const CandidatePairs& candidatesNow(const PairBody& body, double reach);
+  const CandidatePairs& candidatesNow(const PairBody& body, const SlopeReach& reach);
   /// Where a step would end, by a way (m), those that would overlap by more than `allowed` (m); in
   /// doubt others, too.
   const CandidatePairs& candidatesAt(const BlockState& end, const PlacedBlock& placed,

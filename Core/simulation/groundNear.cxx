@@ -55,11 +55,11 @@ void RockSimulator::ensureCandidates(double reach, bool among)
   }
 }
 
-const CandidatePairs& RockSimulator::candidatesNow(const PairBody& body, double reach)
+const CandidatePairs& RockSimulator::candidatesNow(const PairBody& body, const SlopeReach& reach)
 {
   if (!solid_)
   {
-    this->ensurePatch(2.0 * reach);
+    this->ensurePatch(2.0 * reach.most);
     if (patch_.isSlopeOnly())
     {
       CandidatePairs& now = workSpace();
@@ -67,7 +67,7 @@ const CandidatePairs& RockSimulator::candidatesNow(const PairBody& body, double 
       return now;
     }
   }
-  this->ensureCandidates(reach, true);
+  this->ensureCandidates(reach.most, true);
   return candidates_;
 }
 

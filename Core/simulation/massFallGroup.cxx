@@ -36,6 +36,8 @@ constexpr double kFaster = 1.5;
 /// found only where they end may be past each other by then, and stays as deep as it is (cubes that
 /// meet at 17 m/s, Δt 5 ms: the deepest by 0.6 % of an edge on average; with 2e-3 by 1.1 %).
 constexpr double kSurely = 3e-2;
+/// The same on the slope, where what pushes and turns rocks is reckoned with.
+constexpr double kSurelyOnSlope = 1e-2;
 
 /// Gives contacts of a pair what they are made of, along the normal and across it side by side;
 /// what only the normal decides is found once.
@@ -179,7 +181,12 @@ void MassFall::gatherContacts(const Group& group, double h) const
       {
         sim.ensureCandidates(reach);
       }
-      const CandidatePairs& near = crowd ? sim.candidatesNow(m.body, reach) : sim.candidates_;
+      const double spread = sim.state_.spin.norm() * r + pushed;
+      const CandidatePairs& near = crowd
+        ? sim.candidatesNow(m.body,
+            { sim.state_.velocity, spread, kFaster * h,
+              parameters_.gravity * h * h + kSurelyOnSlope * r, reach })
+        : sim.candidates_;
       updateContacts(sim.placed_, sim.patch_, near, reach, sim.contacts_);
       return near;
     };
