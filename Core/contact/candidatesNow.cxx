@@ -174,9 +174,14 @@ void gatherNow(const PlacedBlock& rock, const PairBody& body, const SurfacePatch
     }
   }
   const double wide = kBeyondCorner * most * inverse;
+  const double high = kBeyondCorner * most * std::sqrt(1.0 + patch.tilt.squaredNorm());
   for (int v = 0; v < body.vertices(); ++v)
   {
     const Vec3 p = body.vertex(v);
+    if (patch.over(p) > high)
+    {
+      continue;
+    }
     const double east = (p.x() - patch.west) * inverse, south = (patch.north - p.y()) * inverse;
     const CellRange near(patch, east - wide, east + wide, south - wide, south + wide);
     for (int row = near.row0; row <= near.row1; ++row)
@@ -299,6 +304,10 @@ void gatherUnder(const PlacedBlock& rock, const PairBody& body, const SurfacePat
   for (int v = 0; v < body.vertices(); ++v)
   {
     const Vec3 p = body.vertex(v);
+    if (patch.over(p) > 0.0)
+    {
+      continue;
+    }
     const int i = patch.triangleAt(p.x(), p.y());
     if (i >= 0 && patch.triangles[i].normal.dot(p) - patch.triangles[i].offset < -allowed)
     {
