@@ -174,8 +174,8 @@ private:
   double lookAtSlope(const Group& group, double h, bool bounces, Workspace& work) const;
   /// Contacts of a rock with the slope where a step would end: those that are reckoned with, then
   /// those that are not. Returns how many the former are.
-  std::size_t touchesOnSlope(
-    const Group& group, std::size_t m, Workspace& work, std::vector<Contact>& touches) const;
+  std::size_t touchesOnSlope(const Group& group, std::size_t m, const CandidatePairs& near,
+    Workspace& work, std::vector<Contact>& touches) const;
   void add(GroupContact taken, bool bounces, Workspace& work) const;
   void absorb(const Group& group, double h, StepKind kind, Workspace& work) const;
   /// An impact of the two, unless one is under way; as they were before it, and where (m).

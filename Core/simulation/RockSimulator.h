@@ -45,6 +45,8 @@ struct BarrierHit
   double stored = 0.0; ///< In contact springs at the time, J.
 };
 
+class PairBody;
+
 class RockSimulator
 {
 public:
@@ -135,6 +137,13 @@ private:
   /// How far, in radii, the rock may go on until the pairs that can touch are looked for again.
   static constexpr double kCandidateSlack = 0.05;
   void ensureCandidates(double reach, bool among = false); ///< `among`: many others.
+  /// Those of a rock among many others, for where it stands in this step only if there is nothing
+  /// but the slope near it; `body` stands there, too. They serve until this thread asks again.
+  const CandidatePairs& candidatesNow(const PairBody& body, const SlopeReach& reach);
+  /// Where a step would end, by a way (m), those that would overlap by more than `allowed` (m); in
+  /// doubt others, too.
+  const CandidatePairs& candidatesAt(const BlockState& end, const PlacedBlock& placed,
+    const PairBody& body, double way, double allowed);
   /// Whether no ground is within a reach of the rock (m) for sure, among others; looks for how high
   /// it is where that is not known.
   bool isHigh(double reach);

@@ -2,6 +2,8 @@
 
 #include "simulation/RockSimulator.h"
 
+#include "contact/pairs.h"
+
 #include <algorithm>
 
 namespace rockfall
@@ -14,6 +16,12 @@ namespace
 constexpr double kFarSlack = 0.4;
 /// How far, in radii, a rock among others may go on until the height of the ground is looked up.
 constexpr double kLid = 4.0;
+
+CandidatePairs& workSpace()
+{
+  thread_local CandidatePairs pairs;
+  return pairs;
+}
 
 } // namespace
 
@@ -45,6 +53,48 @@ void RockSimulator::ensureCandidates(double reach, bool among)
     this->ensurePatch(distance);
     gatherCandidates(placed_, state_, patch_, distance, candidates_);
   }
+}
+
+const CandidatePairs& RockSimulator::candidatesNow(const PairBody& body, const SlopeReach& reach)
+{
+  if (!solid_)
+  {
+    this->ensurePatch(2.0 * reach.most);
+    if (patch_.isSlopeOnly())
+    {
+      CandidatePairs& now = workSpace();
+      gatherNow(placed_, body, patch_, reach, now);
+      return now;
+    }
+  }
+  this->ensureCandidates(reach.most, true);
+  return candidates_;
+}
+
+const CandidatePairs& RockSimulator::candidatesAt(const BlockState& end, const PlacedBlock& placed,
+  const PairBody& body, double way, double allowed)
+{
+  if (!solid_)
+  {
+    const double r = block_.radius();
+    const Vec3& p = end.position;
+    if (!patch_.covers(p.x() - r, p.x() + r, p.y() - r, p.y() + r))
+    {
+      this->ensurePatch(way);
+    }
+    if (patch_.isSlopeOnly())
+    {
+      CandidatePairs& now = workSpace();
+      gatherUnder(placed, body, patch_, allowed, now);
+      return now;
+    }
+  }
+  if (candidates_.room(end, block_.radius(), 0.0) < 0.0)
+  {
+    // Thrown further than anyone would have thought.
+    this->ensureCandidates(way, true);
+  }
+  return candidates_;
 }
 
 bool RockSimulator::isHigh(double reach)

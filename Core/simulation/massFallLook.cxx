@@ -94,8 +94,8 @@ void MassFall::add(GroupContact taken, bool bounces, Workspace& work) const
   work.contacts.push_back(taken);
 }
 
-std::size_t MassFall::touchesOnSlope(
-  const Group& group, std::size_t m, Workspace& work, std::vector<Contact>& touches) const
+std::size_t MassFall::touchesOnSlope(const Group& group, std::size_t m, const CandidatePairs& near,
+  Workspace& work, std::vector<Contact>& touches) const
 {
   const Member& member = *members_[group.members[m]];
   const RockSimulator& sim = member.sim;
@@ -121,8 +121,8 @@ std::size_t MassFall::touchesOnSlope(
     }
   }
   const std::size_t known = touches.size();
-  holdOverlap(member.end, sim.patch_, sim.candidates_,
-    kLooseOverlap * sim.block_.radius() + 2.0 * pressed, touches);
+  holdOverlap(
+    member.end, sim.patch_, near, kLooseOverlap * sim.block_.radius() + 2.0 * pressed, touches);
   // Whether a tree stands is settled before the step.
   const auto behind = touches.begin() + std::ptrdiff_t(known);
   touches.erase(std::remove_if(behind, touches.end(),
@@ -133,6 +133,14 @@ std::size_t MassFall::touchesOnSlope(
 
 double MassFall::lookAtSlope(const Group& group, double h, bool bounces, Workspace& work) const
 {
+  const auto candidatesOf = [&](std::size_t m) -> const CandidatePairs&
+  {
+    Member& member = *members_[group.members[m]];
+    const std::size_t place = std::size_t(member.place);
+    const Workspace::Way& way = work.ways[place];
+    return member.sim.candidatesAt(work.solver.end(work.bodies, place), member.end, member.endBody,
+      way.way.norm() + way.turned, kLooseOverlap * member.sim.block_.radius());
+  };
   const auto isMissed = [&](std::size_t m)
   {
     const int place = work.placeOf[std::size_t(group.members[m])];
@@ -140,21 +148,15 @@ double MassFall::lookAtSlope(const Group& group, double h, bool bounces, Workspa
     {
       return false;
     }
-    Member& member = *members_[group.members[m]];
-    RockSimulator& sim = member.sim;
-    const BlockState end = work.solver.end(work.bodies, std::size_t(member.place));
-    if (sim.candidates_.room(end, sim.block_.radius(), 0.0) < 0.0)
-    {
-      // Thrown further than anyone would have thought.
-      const Workspace::Way& way = work.ways[std::size_t(member.place)];
-      sim.ensureCandidates(way.way.norm() + way.turned, true);
-    }
-    if (!overlaps(member.end, sim.patch_, sim.candidates_, kLooseOverlap * sim.block_.radius()))
+    const Member& member = *members_[group.members[m]];
+    const RockSimulator& sim = member.sim;
+    const CandidatePairs& near = candidatesOf(m);
+    if (!overlaps(member.end, sim.patch_, near, kLooseOverlap * sim.block_.radius()))
     {
       return false;
     }
     thread_local std::vector<Contact> touches;
-    const std::size_t known = this->touchesOnSlope(group, m, work, touches);
+    const std::size_t known = this->touchesOnSlope(group, m, near, work, touches);
     return touches.size() > known;
   };
   double deepest = 0.0;
@@ -166,7 +168,8 @@ double MassFall::lookAtSlope(const Group& group, double h, bool bounces, Workspa
   for (const std::size_t m : work.missed)
   {
     Member& member = *members_[group.members[m]];
-    for (std::size_t k = this->touchesOnSlope(group, m, work, touches); k < touches.size(); ++k)
+    for (std::size_t k = this->touchesOnSlope(group, m, candidatesOf(m), work, touches);
+         k < touches.size(); ++k)
     {
       Contact& c = touches[k];
       deepest = std::max(deepest, -c.distance / member.sim.block_.radius());

@@ -132,6 +132,26 @@ double Surface::elevation(double x, double y) const
   return p[0].z() - (n.x() * (x - p[0].x()) + n.y() * (y - p[0].y())) / n.z();
 }
 
+void SurfacePatch::findTop()
+{
+  // As steep as between its corners.
+  const auto z = [&](int row, int column)
+  { return nodes[std::size_t(row) * nodeColumns + column].position.z(); };
+  const int r = nodeRows - 1, c = nodeColumns - 1;
+  tilt.x() = 0.5 * (z(0, c) + z(r, c) - z(0, 0) - z(r, 0)) / (c * cellSize);
+  tilt.y() = 0.5 * (z(0, 0) + z(0, c) - z(r, 0) - z(r, c)) / (r * cellSize);
+  if (!tilt.allFinite())
+  {
+    tilt.setZero();
+  }
+  highest = -std::numeric_limits<double>::infinity();
+  for (const Node& node : nodes)
+  {
+    const double height = node.position.z() - tilt.dot(node.position.head<2>());
+    highest = height > highest ? height : highest; // not over holes
+  }
+}
+
 void gatherPatch(
   const Surface& surface, double xMin, double xMax, double yMin, double yMax, SurfacePatch& patch)
 {
@@ -185,6 +205,7 @@ void gatherPatch(
       node->peak = false;
     }
   }
+  patch.findTop();
   const int cellColumns = column1 - column0 + 1;
   const int cellRows = row1 - row0 + 1;
   const int below = 2 * cellColumns;

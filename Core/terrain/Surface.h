@@ -129,6 +129,12 @@ struct SurfacePatch
   {
     return triangle >= slopeTriangles && triangle < slopeTriangles + wallTriangles;
   }
+  /// Whether there are neither walls nor obstacles.
+  bool isSlopeOnly() const
+  {
+    return int(triangles.size()) == slopeTriangles && int(nodes.size()) == slopeNodes &&
+      int(ridges.size()) == slopeRidges;
+  }
   /// The slope's triangle straight over or under a place, −1 over a hole and beyond the patch.
   int triangleAt(double x, double y) const
   {
@@ -149,6 +155,14 @@ struct SurfacePatch
   /// column less; two triangles per cell, the lower one first.
   int nodeColumns = 0, nodeRows = 0;
   double west = 0.0, north = 0.0, cellSize = 1.0; ///< Of node (0, 0), m.
+
+  /// No node of the slope is further over the plane through the origin that rises by `tilt` than
+  /// this, straight up, m.
+  Eigen::Vector2d tilt = Eigen::Vector2d::Zero();
+  double highest = 0.0;
+  /// How far a place is over all of them, m; < 0: it may be under one.
+  double over(const Vec3& p) const { return p.z() - tilt.dot(p.head<2>()) - highest; }
+  void findTop(); ///< Of the nodes of the slope, when these are all.
 
   /// x–y box in which a rock may stand for this patch to be enough, m.
   double xMin = 0.0, xMax = -1.0, yMin = 0.0, yMax = -1.0;
