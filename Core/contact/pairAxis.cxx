@@ -17,6 +17,8 @@ namespace
 constexpr double kHysteresis = 1e-3;
 /// Edges are a pair only if they are farther from parallel than this sine.
 constexpr double kParallel = 1e-3;
+/// Where no vertex shows that an axis is best, none is looked for so many times.
+constexpr std::int16_t kNoWitness = std::numeric_limits<std::int16_t>::min(), kSearches = 4;
 
 /// Least distance of the other body's vertices over a face.
 double overFace(const PairBody& owner, int face, const PairBody& other)
@@ -317,7 +319,8 @@ struct FacePlane
       const Vec3 vertex = other.vertex(witness);
       return this->shows(vertex, alongOf(normal, vertex) - offset, limit);
     }
-    return witness < -1 && this->shows(owner.vertex(owner.loop(face)[-2 - witness]), limit);
+    return witness < -1 &&
+      this->shows(owner.vertex(owner.loop(face)[std::size_t(-2 - witness)]), limit);
   }
 
 private:
@@ -348,6 +351,11 @@ bool areWithin(const PairBody& first, const PairBody& second, PairAxis& axis, do
     return closestOnLines(p, u, q, w, s, t) && s >= 0.0 && s <= 1.0 && t >= 0.0 && t <= 1.0 &&
       (p + s * u - (q + t * w)).squaredNorm() <= limit * limit;
   }
+  if (axis.witness < kNoWitness + kSearches)
+  {
+    axis.witness = ++axis.witness < kNoWitness + kSearches ? axis.witness : std::int16_t(-1);
+    return false;
+  }
   const FacePlane plane(first, second, axis);
   if (plane.shows(axis.witness, limit))
   {
@@ -377,7 +385,7 @@ bool areWithin(const PairBody& first, const PairBody& second, PairAxis& axis, do
       return true;
     }
   }
-  axis.witness = -1;
+  axis.witness = kNoWitness;
   return false;
 }
 

@@ -30,7 +30,8 @@ struct PairAxis
   };
   Kind kind = Kind::None;
   /// What showed last that no direction is better than that of the face: a vertex of the other
-  /// rock, or −2 − i: vertex i of the face's loop; −1: nothing.
+  /// rock, or −2 − i: vertex i of the face's loop; −1: not looked for, less than all of these:
+  /// nothing did (see pairAxis.cxx).
   std::int16_t witness = -1;
   int first = -1;              ///< Face or edge of the first rock.
   int second = -1;             ///< Of the second one.

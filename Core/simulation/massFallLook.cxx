@@ -191,12 +191,14 @@ double MassFall::lookAtPairs(const Group& group, double h, bool bounces, Workspa
   };
   const auto allowed = [&](const RockPair& pair) { return kMissed * smaller(pair); };
   const std::size_t firstAdded = work.firsts.back();
+  const auto gapAt = [&](std::size_t k)
+  { return work.solver.gap(k) + work.contacts[k].contact->offset; };
   const auto deepest = [&](std::size_t p)
   {
     double least = 0.0;
     for (std::size_t k = work.firsts[p]; k < work.firsts[p + 1]; ++k)
     {
-      least = std::min(least, work.solver.gap(k) + work.contacts[k].contact->offset);
+      least = std::min(least, gapAt(k));
     }
     return least;
   };
@@ -236,8 +238,17 @@ double MassFall::lookAtPairs(const Group& group, double h, bool bounces, Workspa
     pair.end =
       findAxis(members_[pair.first]->endBody, members_[pair.second]->endBody, pair.axis, 0.0);
     const double deep = -allowed(pair);
-    return pair.end.kind != PairAxis::Kind::None && pair.end.distance < deep &&
-      pair.end.distance < deepest(p) + deep;
+    if (pair.end.kind == PairAxis::Kind::None || !(pair.end.distance < deep))
+    {
+      return false;
+    }
+    // Mostly one of the contacts is as deep.
+    std::size_t k = work.firsts[p];
+    while (k < work.firsts[p + 1] && pair.end.distance < gapAt(k) + deep)
+    {
+      ++k;
+    }
+    return k == work.firsts[p + 1];
   };
   work.missed.clear();
   forThose(group.pairs.size(), kPairGrain, work.flags, compare,
