@@ -167,12 +167,17 @@ struct PairMotion
     : PairMotion(first, second, first.angularVelocity(), second.angularVelocity())
   {
   }
-  /// With angular velocities in world axes that are known.
   PairMotion(const BlockState& first, const BlockState& second, const Vec3& spinOfFirst,
     const Vec3& spinOfSecond)
-    : velocity(first.velocity - second.velocity)
-    , spins{ spinOfFirst, spinOfSecond }
-    , positions{ first.position, second.position }
+    : PairMotion(first.velocity - second.velocity, { spinOfFirst, spinOfSecond },
+        { first.position, second.position })
+  {
+  }
+  PairMotion(const Vec3& passing, const std::array<Vec3, 2>& theirSpins,
+    const std::array<Vec3, 2>& theirPositions)
+    : velocity(passing)
+    , spins(theirSpins)
+    , positions(theirPositions)
   {
   }
   /// First less second, m/s.
@@ -185,8 +190,7 @@ struct PairMotion
 /// Gaps that may close within a step.
 struct ClosingGaps
 {
-  const BlockState& first;
-  const BlockState& second;
+  const PairMotion& motion;
   double time;  ///< For which they go on, s.
   double least; ///< Gaps that may close however the rocks move, m.
   double rims;  ///< Speed at most by turning, of both together, m/s.
@@ -194,7 +198,7 @@ struct ClosingGaps
   /// The widest one along a normal, m,
   double along(const Vec3& normal) const
   {
-    return least + time * std::max(0.0, rims - normal.dot(first.velocity - second.velocity));
+    return least + time * std::max(0.0, rims - normal.dot(motion.velocity));
   }
   /// and at points, along one normal for all.
   struct AtPoints
@@ -210,10 +214,9 @@ struct ClosingGaps
   };
   AtPoints atPoints(const Vec3& normal) const
   {
-    const Vec3 a = first.angularVelocity().cross(normal);
-    const Vec3 b = second.angularVelocity().cross(normal);
+    const Vec3 a = motion.spins[0].cross(normal), b = motion.spins[1].cross(normal);
     return { time, least,
-      b.dot(second.position) - a.dot(first.position) - normal.dot(first.velocity - second.velocity),
+      b.dot(motion.positions[1]) - a.dot(motion.positions[0]) - normal.dot(motion.velocity),
       a - b };
   }
 };

@@ -101,7 +101,6 @@ private:
     PairBody body;
     PairBody endBody;
     double turned = 0.0;        ///< Longest way about the centroid until then, by its turn, m.
-    double pushed = 0.0;        ///< What others may add to its speed within a step of a crowd, m/s.
     std::uint64_t carriers = 0; ///< Which contacts with others carry.
     int place = -1;             ///< Among the bodies of its group in the step at hand.
     bool asleep = false;
@@ -149,8 +148,8 @@ private:
   bool advanceAll();
   void advanceGroup(const Group& group, double until) const;
   double groupStep(const Group& group) const;
-  void gatherContacts(const Group& group, double h) const;
-  void findPushes(const Group& group) const;
+  void gatherContacts(const Group& group, double h, Workspace& work) const;
+  static void findPushes(const Group& group, Workspace& work);
   void armPair(RockPair& pair, double h) const;
   /// One of a crowd, whose dashpots are not asked for.
   void armContact(const RockPair& pair, Contact& contact) const;
