@@ -104,7 +104,6 @@ private:
     std::uint64_t carriers = 0; ///< Which contacts with others carry.
     int place = -1;             ///< Among the bodies of its group in the step at hand.
     bool asleep = false;
-    bool touchesOthers = false;
     RockSimulator sim;
   };
   /// All of them in one piece of memory: a step goes over them again and again, in their order.
@@ -159,8 +158,8 @@ private:
   void fly(const Group& group, double duration) const;
   void solve(const Group& group, double h, StepKind kind, bool bounces, Workspace& work) const;
   /// What a contact is in a step of `h`; between rocks an impact begins with it if it closes fast.
-  GroupContact take(
-    RockPair& pair, const PairMotion& motion, Contact& contact, double h, bool bounces) const;
+  GroupContact take(RockPair& pair, const PairMotion& motion, Contact& contact, double h,
+    bool bounces, const Workspace& work) const;
   GroupContact take(const Member& member, Contact& contact, double h, bool bounces) const;
   /// Contacts that nobody reckoned with, seen where a step would end: they are appended. Returns
   /// how deep the deepest is, of the smaller radius; 0: none.

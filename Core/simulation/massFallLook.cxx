@@ -187,7 +187,7 @@ double MassFall::lookAtPairs(const Group& group, double h, bool bounces, Workspa
   const auto smaller = [&](const RockPair& pair)
   {
     return std::min(
-      members_[pair.first]->sim.block_.radius(), members_[pair.second]->sim.block_.radius());
+      work.sides[std::size_t(pair.first)].radius, work.sides[std::size_t(pair.second)].radius);
   };
   const auto allowed = [&](const RockPair& pair) { return kMissed * smaller(pair); };
   const std::size_t firstAdded = work.firsts.back();
@@ -270,7 +270,7 @@ double MassFall::lookAtPairs(const Group& group, double h, bool bounces, Workspa
     RockPair& pair = *group.pairs[p];
     const Member &a = *members_[pair.first], &b = *members_[pair.second];
     const double limit = deepest(p) - allowed(pair);
-    const PairMotion motion = this->motionOf(pair);
+    const PairMotion motion = work.motionOf(pair);
     for (Contact& c : work.found[m])
     {
       if (c.distance >= limit)
@@ -309,7 +309,7 @@ double MassFall::lookAtPairs(const Group& group, double h, bool bounces, Workspa
       this->armContact(pair, c);
       work.added.push_back(c);
       work.addedTo.push_back({ false, p, c });
-      this->add(this->take(pair, motion, work.added.back(), h, bounces), bounces, work);
+      this->add(this->take(pair, motion, work.added.back(), h, bounces, work), bounces, work);
     }
   }
   return most;

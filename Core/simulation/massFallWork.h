@@ -104,7 +104,7 @@ struct MassFall::Workspace
   std::vector<int> placeOf; ///< By rock, of those in the group.
   /// Pairs that have contacts, or an impact under way. Most are only near each other.
   std::vector<std::size_t> touching;
-  std::vector<Vec3> spins;   ///< By place, angular velocity in world axes, rad/s.
+  std::vector<char> touchesOthers; ///< By place, in the end.
   std::vector<char> arrived; ///< By place, whether the step has been looked at where it ended.
   /// What those who go over pairs ask of each of the two rocks, in two lines of the cache.
   struct alignas(kCacheLine) Side
