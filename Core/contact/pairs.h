@@ -124,7 +124,7 @@ struct PairLaw
 };
 
 /// Two rocks that are or were near each other, with what lasts from step to step. What is asked of
-/// those that do not touch is in one line of the cache.
+/// those that do not touch is in the first line of the cache, and in the two behind it.
 struct alignas(64) RockPair
 {
   PairAxis axis;
@@ -134,16 +134,16 @@ struct alignas(64) RockPair
   /// The axis was found at the end of the last step, where the rocks still stand: exact if they
   /// overlap, else some direction in which they are apart.
   bool seen = false;
-  int first = -1;  ///< Index of a rock.
-  int second = -1; ///< Index of a rock, larger.
-  PairLaw law;     ///< Of the materials that meet.
+  int first = -1;       ///< Index of a rock.
+  int second = -1;      ///< Index of a rock, larger.
+  bool strikes = false; ///< An impact is under way.
   std::vector<Contact> contacts;
   PairAxis before; ///< The axis of the last step, if known or seen.
   PairAxis end;    ///< At the end of the step at hand, as long as it is being solved.
+  PairLaw law;     ///< Of the materials that meet.
   /// What is under way between the first touch and parting or settling.
   struct Impact
   {
-    bool pending = false;
     double time = 0.0;                               ///< Of the first touch, s.
     double approach = 0.0;                           ///< m/s
     double loss = 0.0;                               ///< J

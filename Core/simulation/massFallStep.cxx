@@ -103,7 +103,7 @@ GroupContact MassFall::take(RockPair& pair, const PairMotion& motion, Contact& c
     this->beginPairImpact(
       pair, members_[pair.first]->sim.state_, members_[pair.second]->sim.state_, c.point);
   }
-  if (pair.impact.pending)
+  if (pair.strikes)
   {
     pair.impact.approach = std::max(pair.impact.approach, k.approach);
   }
@@ -143,7 +143,7 @@ void MassFall::solve(
     work.firsts[p] = contacts;
     contacts += pair.contacts.size();
     pair.touched = false;
-    if (!pair.contacts.empty() || pair.impact.pending)
+    if (!pair.contacts.empty() || pair.strikes)
     {
       work.touching.push_back(p);
     }
@@ -295,7 +295,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
   {
     const Contact& c = *taken.contact;
     RockPair::Impact& impact = pair.impact;
-    if (!impact.pending)
+    if (!pair.strikes)
     {
       pair.lastingLoss += taken.work;
       return;
@@ -396,7 +396,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
   for (const std::size_t p : work.touching)
   {
     RockPair& pair = *group.pairs[p];
-    if (pair.impact.pending && (!pair.touched || kind == StepKind::Lasting))
+    if (pair.strikes && (!pair.touched || kind == StepKind::Lasting))
     {
       this->finishPairImpact(pair);
     }
