@@ -435,10 +435,14 @@ PairAxis findAxis(const PairBody& first, const PairBody& second, const PairAxis&
   return best;
 }
 
-PairAxis bestAxis(const PairBody& first, const PairBody& second)
+PairAxis bestAxis(const PairBody& first, const PairBody& second, const PairAxis& known)
 {
+  // A face that is known is found again: none that shows less need be looked at.
+  const bool isFace =
+    known.kind == PairAxis::Kind::FaceOfFirst || known.kind == PairAxis::Kind::FaceOfSecond;
+  constexpr double kNone = -std::numeric_limits<double>::infinity();
   PairAxis best;
-  best.distance = -std::numeric_limits<double>::infinity();
+  best.distance = isFace ? std::nextafter(known.distance, kNone) : kNone;
   offerFaces(first, second, best);
   const PairAxis crossing = bestCrossing(first, second, best, best.distance);
   return crossing.kind != PairAxis::Kind::None ? crossing : best;

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -103,16 +104,17 @@ private:
 PairAxis findAxis(
   const PairBody& first, const PairBody& second, const PairAxis& last, double reach);
 
-/// The axis of the largest gap of all, by however little.
-PairAxis bestAxis(const PairBody& first, const PairBody& second);
+/// The axis of the largest gap of all, by however little; `known` is one of them.
+PairAxis bestAxis(const PairBody& first, const PairBody& second, const PairAxis& known = {});
 
 /// The points of touch along an axis: gaps up to `reach` (m). An overlap that has none along it,
 /// since another one is a little better, is looked at along that, and `axis` is it then. For a
 /// VertexFace contact the point is on the first rock and the face on the second, for FaceVertex the
 /// other way round; EdgeEdge has an edge of each. `rockFeature` and `surfaceFeature` are numbers of
-/// features of the first and second rock, `ridge` the line of the second one's edge.
+/// features of the first and second rock, `ridge` the line of the second one's edge. Only those with
+/// gaps under `below` (m) are told.
 void findTouches(const PairBody& first, const PairBody& second, PairAxis& axis, double reach,
-  std::vector<Contact>& contacts);
+  std::vector<Contact>& contacts, double below = std::numeric_limits<double>::infinity());
 
 /// What rules the contacts of two rocks.
 struct PairLaw

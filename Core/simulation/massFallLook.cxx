@@ -258,7 +258,8 @@ double MassFall::lookAtPairs(const Group& group, double h, bool bounces, Workspa
   {
     RockPair& pair = *group.pairs[work.missed[m]];
     const Member &a = *members_[pair.first], &b = *members_[pair.second];
-    findTouches(a.endBody, b.endBody, pair.end, 0.0, work.found[m]);
+    const double limit = deepest(work.missed[m]) - allowed(pair);
+    findTouches(a.endBody, b.endBody, pair.end, 0.0, work.found[m], limit);
   };
   forEach(work.missed.size(), kMissedGrain, findThem);
   const auto isAddedTo = [&](std::size_t k, std::size_t p)
@@ -266,17 +267,16 @@ double MassFall::lookAtPairs(const Group& group, double h, bool bounces, Workspa
   double most = 0.0;
   for (std::size_t m = 0; m < work.missed.size(); ++m)
   {
+    if (work.found[m].empty())
+    {
+      continue;
+    }
     const std::size_t p = work.missed[m];
     RockPair& pair = *group.pairs[p];
     const Member &a = *members_[pair.first], &b = *members_[pair.second];
-    const double limit = deepest(p) - allowed(pair);
     const PairMotion motion = work.motionOf(pair);
     for (Contact& c : work.found[m])
     {
-      if (c.distance >= limit)
-      {
-        continue;
-      }
       // One that is there already was reckoned wrong.
       const auto same = [&](std::size_t k)
       {
