@@ -107,7 +107,8 @@ void letGo(double oldGap, double far, Contact& c)
 
 /// goOn() for one that is between the same features on a face; points nearer than √`same2` (m) are
 /// one.
-void stay(const Touch& touch, const PairAxis& axis, bool turned, double same2, double far, Contact& c)
+void stay(
+  const Touch& touch, const PairAxis& axis, bool turned, double same2, double far, Contact& c)
 {
   const double oldGap = c.gap();
   const Vec3 moved = c.point - touch.point;

@@ -111,8 +111,8 @@ PairAxis bestAxis(const PairBody& first, const PairBody& second, const PairAxis&
 /// since another one is a little better, is looked at along that, and `axis` is it then. For a
 /// VertexFace contact the point is on the first rock and the face on the second, for FaceVertex the
 /// other way round; EdgeEdge has an edge of each. `rockFeature` and `surfaceFeature` are numbers of
-/// features of the first and second rock, `ridge` the line of the second one's edge. Only those with
-/// gaps under `below` (m) are told.
+/// features of the first and second rock, `ridge` the line of the second one's edge. Only those
+/// with gaps under `below` (m) are told.
 void findTouches(const PairBody& first, const PairBody& second, PairAxis& axis, double reach,
   std::vector<Contact>& contacts, double below = std::numeric_limits<double>::infinity());
 

@@ -205,7 +205,8 @@ void MassFall::solve(
     std::size_t next = work.firsts[p];
     for (Contact& c : pair.contacts)
     {
-      const GroupContact& taken = work.contacts[next++] = this->take(pair, motion, c, h, bounces, work);
+      const GroupContact& taken = work.contacts[next++] =
+        this->take(pair, motion, c, h, bounces, work);
       if (crowd && !taken.closed && !(swept && mayStayOpen(taken, h)))
       {
         this->armContact(pair, c);

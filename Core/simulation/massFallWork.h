@@ -109,14 +109,14 @@ struct MassFall::Workspace
   /// What those who go over pairs ask of each of the two rocks, in two lines of the cache.
   struct alignas(kCacheLine) Side
   {
-    Vec3 velocity; ///< m/s
-    Vec3 spin;     ///< World axes, rad/s.
-    Vec3 position; ///< m
-    double radius; ///< m
-    double rim;    ///< Speed at most by turning, m/s.
-    double mass;   ///< kg
+    Vec3 velocity;  ///< m/s
+    Vec3 spin;      ///< World axes, rad/s.
+    Vec3 position;  ///< m
+    double radius;  ///< m
+    double rim;     ///< Speed at most by turning, m/s.
+    double mass;    ///< kg
     double resting; ///< Below it a touch is no impact, m/s.
-    double pushed; ///< What others may add to its speed within a step of a crowd, m/s.
+    double pushed;  ///< What others may add to its speed within a step of a crowd, m/s.
     bool done;
 
     void set(const RockSimulator& sim);
