@@ -17,6 +17,8 @@ namespace
 constexpr double kHysteresis = 1e-3;
 /// Edges are a pair only if they are farther from parallel than this sine.
 constexpr double kParallel = 1e-3;
+/// Where no vertex shows that an axis is best, none is looked for so many times.
+constexpr std::int16_t kNoWitness = std::numeric_limits<std::int16_t>::min(), kSearches = 4;
 
 /// Least distance of the other body's vertices over a face.
 double overFace(const PairBody& owner, int face, const PairBody& other)
@@ -269,10 +271,70 @@ double farFrom(const PairBody& body, const Vec3& point)
   return over <= 0.0 ? 0.0 : over * (point - body.position).norm() / body.inside;
 }
 
+/// A face's plane, and the rock beyond it.
+struct FacePlane
+{
+  const PairBody& owner;
+  const PairBody& other;
+  int face;
+  Vec3 normal;
+  double offset;
+
+  FacePlane(const PairBody& first, const PairBody& second, const PairAxis& axis)
+    : FacePlane(axis.kind == PairAxis::Kind::FaceOfFirst ? first : second,
+        axis.kind == PairAxis::Kind::FaceOfFirst ? second : first,
+        axis.kind == PairAxis::Kind::FaceOfFirst ? axis.first : axis.second)
+  {
+  }
+  FacePlane(const PairBody& itsOwner, const PairBody& theOther, int itsFace)
+    : owner(itsOwner)
+    , other(theOther)
+    , face(itsFace)
+    , normal(itsOwner.normal(itsFace))
+    , offset(itsOwner.offset(itsFace))
+  {
+  }
+  /// Whether a vertex of the other rock, so far over the face, shows that the two are within
+  /// `limit`,
+  bool shows(const Vec3& vertex, double over, double limit) const
+  {
+    if (!(over <= limit))
+    {
+      return false;
+    }
+    const double gap = std::max(0.0, over);
+    return limit < 0.0 ? overAll(owner, vertex) <= limit
+                       : gap + farFrom(owner, vertex - gap * normal) <= limit;
+  }
+  /// or one of the face.
+  bool shows(const Vec3& vertex, double limit) const
+  {
+    return (limit < 0.0 ? overAll(other, vertex) : farFrom(other, vertex)) <= limit;
+  }
+  /// Whether what showed it last does so again.
+  bool shows(int witness, double limit) const
+  {
+    if (witness >= 0)
+    {
+      const Vec3 vertex = other.vertex(witness);
+      return this->shows(vertex, alongOf(normal, vertex) - offset, limit);
+    }
+    return witness < -1 &&
+      this->shows(owner.vertex(owner.loop(face)[std::size_t(-2 - witness)]), limit);
+  }
+
+private:
+  /// As PairBody::alongVertices has it, to the bit.
+  static double alongOf(const Vec3& n, const Vec3& x)
+  {
+    return x.x() * n.x() + x.y() * n.y() + x.z() * n.z();
+  }
+};
+
 /// Whether the bodies have points no farther from each other than `limit`, or if that is < 0 one
 /// has a point as deep in the other: no direction then shows a larger gap. Looked for where they
-/// touch along an axis; false if it is not sure.
-bool areWithin(const PairBody& first, const PairBody& second, const PairAxis& axis, double limit)
+/// touch along an axis, first where it was found last; false if it is not sure.
+bool areWithin(const PairBody& first, const PairBody& second, PairAxis& axis, double limit)
 {
   if (axis.kind == PairAxis::Kind::Edges)
   {
@@ -289,39 +351,41 @@ bool areWithin(const PairBody& first, const PairBody& second, const PairAxis& ax
     return closestOnLines(p, u, q, w, s, t) && s >= 0.0 && s <= 1.0 && t >= 0.0 && t <= 1.0 &&
       (p + s * u - (q + t * w)).squaredNorm() <= limit * limit;
   }
-  const bool ofFirst = axis.kind == PairAxis::Kind::FaceOfFirst;
-  const PairBody& owner = ofFirst ? first : second;
-  const PairBody& other = ofFirst ? second : first;
-  const int face = ofFirst ? axis.first : axis.second;
-  const Vec3 n = owner.normal(face);
-  const double offset = owner.offset(face);
+  if (axis.witness < kNoWitness + kSearches)
+  {
+    axis.witness = ++axis.witness < kNoWitness + kSearches ? axis.witness : std::int16_t(-1);
+    return false;
+  }
+  const FacePlane plane(first, second, axis);
+  if (plane.shows(axis.witness, limit))
+  {
+    return true;
+  }
   // Vertices over the face …
+  const PairBody& other = plane.other;
   for (int i = 0; i < other.vertexFours(); ++i)
   {
-    const PairBody::Four over = other.alongVertices(n, i) - offset;
+    const PairBody::Four over = other.alongVertices(plane.normal, i) - plane.offset;
     for (int k = 0; k < 4 && 4 * i + k < other.vertices(); ++k)
     {
-      if (over[k] <= limit)
+      if (over[k] <= limit && plane.shows(other.vertex(4 * i + k), over[k], limit))
       {
-        const Vec3 vertex = other.vertex(4 * i + k);
-        const double gap = std::max(0.0, over[k]);
-        if (limit < 0.0 ? overAll(owner, vertex) <= limit
-                        : gap + farFrom(owner, vertex - gap * n) <= limit)
-        {
-          return true;
-        }
+        axis.witness = std::int16_t(4 * i + k);
+        return true;
       }
     }
   }
   // … or of it, under the other body.
-  for (int k : owner.loop(face))
+  const std::span<const int> loop = plane.owner.loop(plane.face);
+  for (std::size_t i = 0; i < loop.size(); ++i)
   {
-    const Vec3 vertex = owner.vertex(k);
-    if ((limit < 0.0 ? overAll(other, vertex) : farFrom(other, vertex)) <= limit)
+    if (plane.shows(plane.owner.vertex(loop[i]), limit))
     {
+      axis.witness = std::int16_t(-2 - int(i));
       return true;
     }
   }
+  axis.witness = kNoWitness;
   return false;
 }
 
@@ -339,6 +403,7 @@ PairAxis findAxis(const PairBody& first, const PairBody& second, const PairAxis&
   {
     kept = faceAxis(first, second, last.kind,
       last.kind == PairAxis::Kind::FaceOfFirst ? last.first : last.second);
+    kept.witness = last.witness;
   }
   // It stays unless another one is better by so much.
   const double better = kHysteresis * std::min(first.radius, second.radius);
@@ -370,10 +435,14 @@ PairAxis findAxis(const PairBody& first, const PairBody& second, const PairAxis&
   return best;
 }
 
-PairAxis bestAxis(const PairBody& first, const PairBody& second)
+PairAxis bestAxis(const PairBody& first, const PairBody& second, const PairAxis& known)
 {
+  // A face that is known is found again: none that shows less need be looked at.
+  const bool isFace =
+    known.kind == PairAxis::Kind::FaceOfFirst || known.kind == PairAxis::Kind::FaceOfSecond;
+  constexpr double kNone = -std::numeric_limits<double>::infinity();
   PairAxis best;
-  best.distance = -std::numeric_limits<double>::infinity();
+  best.distance = isFace ? std::nextafter(known.distance, kNone) : kNone;
   offerFaces(first, second, best);
   const PairAxis crossing = bestCrossing(first, second, best, best.distance);
   return crossing.kind != PairAxis::Kind::None ? crossing : best;

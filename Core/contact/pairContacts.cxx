@@ -82,8 +82,57 @@ void match(std::span<const Touch> found, const PairAxis& axis, std::span<const C
   }
 }
 
-/// A contact goes on with its springs at a touch; `turned`: along another axis. What is deeper than
-/// reckoned by more than `far` (m) is no compression.
+/// Whether the touches are those that were there, in their order.
+bool areSame(std::span<const Touch> found, const PairAxis& axis, std::span<const Contact> olds)
+{
+  if (found.size() != olds.size() || axis.kind == PairAxis::Kind::Edges)
+  {
+    return false;
+  }
+  std::size_t i = 0;
+  while (i < olds.size() && TouchFeatures(found[i], axis).are(olds[i]))
+  {
+    ++i;
+  }
+  return i == olds.size();
+}
+
+/// What is deeper than reckoned by more than `far` (m) is no compression: a step reckons with
+/// levers of its middle, and where the rocks have turned far they end up deeper.
+void letGo(double oldGap, double far, Contact& c)
+{
+  const double reckoned = std::min(0.0, oldGap);
+  c.offset = c.gap() < reckoned - far ? c.distance - reckoned : c.offset;
+}
+
+/// goOn() for one that is between the same features on a face; points nearer than √`same2` (m) are
+/// one.
+void stay(
+  const Touch& touch, const PairAxis& axis, bool turned, double same2, double far, Contact& c)
+{
+  const double oldGap = c.gap();
+  const Vec3 moved = c.point - touch.point;
+  c.normal = axis.normal;
+  c.shearForce = 0.0;
+  const bool cut = touch.feature < 0;
+  c.distance = touch.distance;
+  if (cut && moved.squaredNorm() < same2)
+  {
+    c.distance += (axis.kind == PairAxis::Kind::FaceOfFirst ? -1.0 : 1.0) * c.normal.dot(moved);
+  }
+  else
+  {
+    c.point = touch.point;
+    c.offset = c.closed() && (turned || cut) ? c.distance - oldGap : c.offset;
+  }
+  if (c.closed())
+  {
+    c.slip -= c.slip.dot(c.normal) * c.normal;
+  }
+  letGo(oldGap, far, c);
+}
+
+/// A contact goes on with its springs at a touch; `turned`: along another axis.
 void goOn(const Touch& touch, const PairBody& second, const PairAxis& axis, const Match& match,
   bool turned, double far, Contact& c)
 {
@@ -107,10 +156,7 @@ void goOn(const Touch& touch, const PairBody& second, const PairAxis& axis, cons
     // Seen elsewhere the gap is another one: the spring keeps its compression.
     c.offset = c.distance - oldGap;
   }
-  // A step reckons with levers of its middle; where the rocks have turned far they end up deeper
-  // than reckoned, and that is no compression.
-  const double reckoned = std::min(0.0, oldGap);
-  c.offset = c.gap() < reckoned - far ? c.distance - reckoned : c.offset;
+  letGo(oldGap, far, c);
 }
 
 /// What is in a spring that is gone, J.
@@ -204,23 +250,49 @@ void updatePair(const PairBody& first, const PairBody& second, double reach, Roc
     return;
   }
   found = orAlongBest(found, first, second, pair.axis, reach);
+  const double smaller = std::min(first.radius, second.radius);
+  const double same = kSamePoint * smaller, far = kMisreckoned * smaller;
+  const bool turned =
+    last.kind != pair.axis.kind || last.first != pair.axis.first || last.second != pair.axis.second;
+  std::optional<ClosingGaps::AtPoints> sieve;
+  if (closing && !found.empty())
+  {
+    sieve = closing->atPoints(pair.axis.normal);
+  }
+  if (areSame(found, pair.axis, pair.contacts))
+  {
+    Contact* to = pair.contacts.data();
+    for (std::size_t i = 0; i < found.size(); ++i)
+    {
+      Contact& c = pair.contacts[i];
+      stay(found[i], pair.axis, turned, same * same, far, c);
+      if (!sieve || mayClose(c, *sieve))
+      {
+        if (to != &c)
+        {
+          *to = c;
+        }
+        ++to;
+      }
+    }
+    pair.contacts.resize(std::size_t(to - pair.contacts.data()));
+    return;
+  }
   const std::size_t touches = found.size(), olds = pair.contacts.size();
   Room<Match, 16> matchRoom;
   Room<char, 16> takenRoom;
   Match* const matches = matchRoom.of(touches);
   char* const taken = takenRoom.of(olds);
-  const double smaller = std::min(first.radius, second.radius);
-  match(found, pair.axis, pair.contacts, kSamePoint * smaller, matches, taken);
+  match(found, pair.axis, pair.contacts, same, matches, taken);
   bool hands = false;
   for (std::size_t k = 0; k < olds; ++k)
   {
     hands = hands || (!taken[k] && released(pair.contacts[k]) > 0.0);
   }
-  // What springs are handed to may be any.
-  std::optional<ClosingGaps::AtPoints> sieve;
-  if (closing && !hands)
+  const std::optional<ClosingGaps::AtPoints> all = sieve;
+  if (hands)
   {
-    sieve = closing->atPoints(pair.axis.normal);
+    sieve.reset(); // what springs are handed to may be any
   }
   // As long as nothing is written where an old one is still to be read, there is no need for a
   // copy.
@@ -244,8 +316,6 @@ void updatePair(const PairBody& first, const PairBody& second, double reach, Roc
     pair.contacts.resize(count);
   }
   const Contact* const before = inPlace ? pair.contacts.data() : copies.data();
-  const bool turned =
-    last.kind != pair.axis.kind || last.first != pair.axis.first || last.second != pair.axis.second;
   Contact* to = pair.contacts.data();
   for (std::size_t i = 0; i < touches; ++i)
   {
@@ -269,18 +339,16 @@ void updatePair(const PairBody& first, const PairBody& second, double reach, Roc
     {
       c = old;
     }
-    goOn(found[i], second, pair.axis, match, turned, kMisreckoned * smaller, c);
+    goOn(found[i], second, pair.axis, match, turned, far, c);
     to += !sieve || mayClose(c, *sieve) ? 1 : 0;
   }
   pair.contacts.resize(std::size_t(to - pair.contacts.data()));
   if (hands)
   {
     handOver({ taken, olds }, { matches, touches }, copies, pair.contacts);
-    if (closing)
+    if (all)
     {
-      std::erase_if(pair.contacts,
-        [may = closing->atPoints(pair.axis.normal)](const Contact& c)
-        { return !mayClose(c, may); });
+      std::erase_if(pair.contacts, [&](const Contact& c) { return !mayClose(c, *all); });
     }
   }
 }

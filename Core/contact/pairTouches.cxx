@@ -86,19 +86,29 @@ std::span<const Touch> orAlongBest(std::span<const Touch> found, const PairBody&
   {
     return found;
   }
-  axis = bestAxis(first, second);
+  axis = bestAxis(first, second, axis);
   return touchesAlong(first, second, axis, reach);
 }
 
 void findTouches(const PairBody& first, const PairBody& second, PairAxis& axis, double reach,
-  std::vector<Contact>& contacts)
+  std::vector<Contact>& contacts, double below)
 {
-  const std::span<const Touch> touches =
-    orAlongBest(touchesAlong(first, second, axis, reach), first, second, axis, reach);
-  contacts.assign(touches.size(), Contact());
-  for (std::size_t i = 0; i < touches.size(); ++i)
+  contacts.clear();
+  std::span<const Touch> touches = touchesAlong(first, second, axis, reach);
+  if (touches.empty() && axis.distance < 0.0)
   {
-    putTouch(touches[i], second, axis, contacts[i]);
+    axis = bestAxis(first, second, axis);
+    if (axis.distance < below)
+    {
+      touches = touchesAlong(first, second, axis, reach);
+    }
+  }
+  for (const Touch& touch : touches)
+  {
+    if (touch.distance < below)
+    {
+      putTouch(touch, second, axis, contacts.emplace_back());
+    }
   }
 }
 

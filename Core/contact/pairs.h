@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -29,6 +30,10 @@ struct PairAxis
     Edges,
   };
   Kind kind = Kind::None;
+  /// What showed last that no direction is better than that of the face: a vertex of the other
+  /// rock, or −2 − i: vertex i of the face's loop; −1: not looked for, less than all of these:
+  /// nothing did (see pairAxis.cxx).
+  std::int16_t witness = -1;
   int first = -1;              ///< Face or edge of the first rock.
   int second = -1;             ///< Of the second one.
   Vec3 normal = Vec3::UnitZ(); ///< World, unit.
@@ -99,16 +104,17 @@ private:
 PairAxis findAxis(
   const PairBody& first, const PairBody& second, const PairAxis& last, double reach);
 
-/// The axis of the largest gap of all, by however little.
-PairAxis bestAxis(const PairBody& first, const PairBody& second);
+/// The axis of the largest gap of all, by however little; `known` is one of them.
+PairAxis bestAxis(const PairBody& first, const PairBody& second, const PairAxis& known = {});
 
 /// The points of touch along an axis: gaps up to `reach` (m). An overlap that has none along it,
 /// since another one is a little better, is looked at along that, and `axis` is it then. For a
 /// VertexFace contact the point is on the first rock and the face on the second, for FaceVertex the
 /// other way round; EdgeEdge has an edge of each. `rockFeature` and `surfaceFeature` are numbers of
-/// features of the first and second rock, `ridge` the line of the second one's edge.
+/// features of the first and second rock, `ridge` the line of the second one's edge. Only those
+/// with gaps under `below` (m) are told.
 void findTouches(const PairBody& first, const PairBody& second, PairAxis& axis, double reach,
-  std::vector<Contact>& contacts);
+  std::vector<Contact>& contacts, double below = std::numeric_limits<double>::infinity());
 
 /// What rules the contacts of two rocks.
 struct PairLaw
@@ -120,7 +126,7 @@ struct PairLaw
 };
 
 /// Two rocks that are or were near each other, with what lasts from step to step. What is asked of
-/// those that do not touch is in one line of the cache.
+/// those that do not touch is in the first line of the cache, and in the two behind it.
 struct alignas(64) RockPair
 {
   PairAxis axis;
@@ -130,16 +136,16 @@ struct alignas(64) RockPair
   /// The axis was found at the end of the last step, where the rocks still stand: exact if they
   /// overlap, else some direction in which they are apart.
   bool seen = false;
-  int first = -1;  ///< Index of a rock.
-  int second = -1; ///< Index of a rock, larger.
-  PairLaw law;     ///< Of the materials that meet.
+  int first = -1;       ///< Index of a rock.
+  int second = -1;      ///< Index of a rock, larger.
+  bool strikes = false; ///< An impact is under way.
   std::vector<Contact> contacts;
   PairAxis before; ///< The axis of the last step, if known or seen.
   PairAxis end;    ///< At the end of the step at hand, as long as it is being solved.
+  PairLaw law;     ///< Of the materials that meet.
   /// What is under way between the first touch and parting or settling.
   struct Impact
   {
-    bool pending = false;
     double time = 0.0;                               ///< Of the first touch, s.
     double approach = 0.0;                           ///< m/s
     double loss = 0.0;                               ///< J
@@ -163,12 +169,17 @@ struct PairMotion
     : PairMotion(first, second, first.angularVelocity(), second.angularVelocity())
   {
   }
-  /// With angular velocities in world axes that are known.
   PairMotion(const BlockState& first, const BlockState& second, const Vec3& spinOfFirst,
     const Vec3& spinOfSecond)
-    : velocity(first.velocity - second.velocity)
-    , spins{ spinOfFirst, spinOfSecond }
-    , positions{ first.position, second.position }
+    : PairMotion(first.velocity - second.velocity, { spinOfFirst, spinOfSecond },
+        { first.position, second.position })
+  {
+  }
+  PairMotion(const Vec3& passing, const std::array<Vec3, 2>& theirSpins,
+    const std::array<Vec3, 2>& theirPositions)
+    : velocity(passing)
+    , spins(theirSpins)
+    , positions(theirPositions)
   {
   }
   /// First less second, m/s.
@@ -181,8 +192,7 @@ struct PairMotion
 /// Gaps that may close within a step.
 struct ClosingGaps
 {
-  const BlockState& first;
-  const BlockState& second;
+  const PairMotion& motion;
   double time;  ///< For which they go on, s.
   double least; ///< Gaps that may close however the rocks move, m.
   double rims;  ///< Speed at most by turning, of both together, m/s.
@@ -190,7 +200,7 @@ struct ClosingGaps
   /// The widest one along a normal, m,
   double along(const Vec3& normal) const
   {
-    return least + time * std::max(0.0, rims - normal.dot(first.velocity - second.velocity));
+    return least + time * std::max(0.0, rims - normal.dot(motion.velocity));
   }
   /// and at points, along one normal for all.
   struct AtPoints
@@ -206,10 +216,9 @@ struct ClosingGaps
   };
   AtPoints atPoints(const Vec3& normal) const
   {
-    const Vec3 a = first.angularVelocity().cross(normal);
-    const Vec3 b = second.angularVelocity().cross(normal);
+    const Vec3 a = motion.spins[0].cross(normal), b = motion.spins[1].cross(normal);
     return { time, least,
-      b.dot(second.position) - a.dot(first.position) - normal.dot(first.velocity - second.velocity),
+      b.dot(motion.positions[1]) - a.dot(motion.positions[0]) - normal.dot(motion.velocity),
       a - b };
   }
 };

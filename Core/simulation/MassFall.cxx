@@ -220,7 +220,6 @@ bool MassFall::advanceAll()
       return;
     }
     Member& m = *members_[std::size_t(alone_[k - groups_.size()])];
-    m.touchesOthers = false;
     m.sim.advance(until);
     this->stays(m); // to know when it comes back to a group
     m.asleep = m.sim.done_ && m.sim.recorder_.trajectory().summary.fate == Fate::Rested;

@@ -101,11 +101,9 @@ private:
     PairBody body;
     PairBody endBody;
     double turned = 0.0;        ///< Longest way about the centroid until then, by its turn, m.
-    double pushed = 0.0;        ///< What others may add to its speed within a step of a crowd, m/s.
     std::uint64_t carriers = 0; ///< Which contacts with others carry.
     int place = -1;             ///< Among the bodies of its group in the step at hand.
     bool asleep = false;
-    bool touchesOthers = false;
     RockSimulator sim;
   };
   /// All of them in one piece of memory: a step goes over them again and again, in their order.
@@ -149,8 +147,8 @@ private:
   bool advanceAll();
   void advanceGroup(const Group& group, double until) const;
   double groupStep(const Group& group) const;
-  void gatherContacts(const Group& group, double h) const;
-  void findPushes(const Group& group) const;
+  void gatherContacts(const Group& group, double h, Workspace& work) const;
+  static void findPushes(const Group& group, Workspace& work);
   void armPair(RockPair& pair, double h) const;
   /// One of a crowd, whose dashpots are not asked for.
   void armContact(const RockPair& pair, Contact& contact) const;
@@ -164,8 +162,8 @@ private:
   /// No bounce for what meets several (mayBounce).
   void settleBounces(bool lasting, Workspace& work) const;
   /// What a contact is in a step of `h`; between rocks an impact begins with it if it closes fast.
-  GroupContact take(
-    RockPair& pair, const PairMotion& motion, Contact& contact, double h, bool bounces) const;
+  GroupContact take(RockPair& pair, const PairMotion& motion, Contact& contact, double h,
+    bool bounces, const Workspace& work) const;
   GroupContact take(const Member& member, Contact& contact, double h, bool bounces) const;
   /// Contacts that nobody reckoned with, seen where a step would end: they are appended. Returns
   /// how deep the deepest is, of the smaller radius; 0: none.

@@ -145,14 +145,21 @@ double MassFall::groupStep(const Group& group) const
   return h;
 }
 
-void MassFall::gatherContacts(const Group& group, double h) const
+void MassFall::gatherContacts(const Group& group, double h, Workspace& work) const
 {
   const auto reachOf = [&](double speed, double radius)
   { return kFaster * speed * h + parameters_.gravity * h * h + 1e-6 * radius; };
   const bool crowd = group.crowd;
+  work.sides.resize(members_.size());
+  const auto stand = [&](std::size_t k)
+  {
+    const int i = group.members[k];
+    work.sides[std::size_t(i)].set(members_[std::size_t(i)]->sim);
+  };
+  forEach(group.members.size(), kRockGrain, stand);
   if (crowd)
   {
-    this->findPushes(group);
+    findPushes(group, work);
   }
   const auto onSlope = [&](std::size_t k)
   {
@@ -165,7 +172,7 @@ void MassFall::gatherContacts(const Group& group, double h) const
     }
     m.stand();
     const double r = sim.block_.radius();
-    const double pushed = crowd ? m.pushed : 0.0;
+    const double pushed = work.sides[std::size_t(group.members[k])].pushed;
     const double reach =
       reachOf(sim.state_.velocity.norm() + sim.state_.spin.norm() * r + pushed, r);
     sim.crowded_ = crowd;
@@ -195,6 +202,10 @@ void MassFall::gatherContacts(const Group& group, double h) const
     {
       near = &findThem();
     }
+    if (sim.solid_)
+    {
+      stand(k); // what broke has taken speed
+    }
     double pressed = 0.0;
     for (const Contact& c : sim.contacts_)
     {
@@ -208,28 +219,30 @@ void MassFall::gatherContacts(const Group& group, double h) const
   {
     comeToPair(group.pairs, k);
     RockPair* pair = group.pairs[k];
-    const Member &a = *members_[pair->first], &b = *members_[pair->second];
-    if (a.sim.done_ || b.sim.done_)
+    const Workspace::Side& a = work.sides[std::size_t(pair->first)];
+    const Workspace::Side& b = work.sides[std::size_t(pair->second)];
+    if (a.done || b.done)
     {
       pair->contacts.clear();
       pair->axis.distance = std::max(0.0, pair->axis.distance);
       return;
     }
-    const BlockState &s = a.sim.state_, &t = b.sim.state_;
-    const double ra = a.sim.block_.radius(), rb = b.sim.block_.radius();
-    const double rims = s.spin.norm() * ra + t.spin.norm() * rb;
-    const double smaller = std::min(ra, rb);
-    const double reach = reachOf((s.velocity - t.velocity).norm() + rims, smaller);
+    const PairMotion motion = work.motionOf(*pair);
+    const double rims = a.rim + b.rim;
+    const double smaller = std::min(a.radius, b.radius);
+    const double reach = reachOf(motion.velocity.norm() + rims, smaller);
+    const PairBody& first = members_[pair->first]->body;
+    const PairBody& second = members_[pair->second]->body;
     if (crowd)
     {
       // The second look finds the others, should they be needed.
-      const ClosingGaps closing = { s, t, kFaster * h,
+      const ClosingGaps closing = { motion, kFaster * h,
         parameters_.gravity * h * h + kSurely * smaller, rims };
-      updatePair(a.body, b.body, reach, *pair, &closing);
+      updatePair(first, second, reach, *pair, &closing);
     }
     else
     {
-      updatePair(a.body, b.body, reach, *pair);
+      updatePair(first, second, reach, *pair);
     }
     if (!crowd)
     {
@@ -450,7 +463,7 @@ void MassFall::advanceGroup(const Group& group, double until) const
     const double large = std::min(remaining, travel);
     double small = inTime ? std::min(remaining, this->groupStep(group)) : large;
     const bool calm = inTime && this->isCalm(group);
-    this->gatherContacts(group, calm || !inTime ? large : small);
+    this->gatherContacts(group, calm || !inTime ? large : small, work);
     // How stiff they are is known now: the faster rocks meet, the stiffer.
     small = inTime ? std::min(small, this->groupStep(group)) : small;
     bool any = false;

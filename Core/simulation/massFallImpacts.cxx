@@ -11,12 +11,12 @@ void MassFall::beginPairImpact(
   RockPair& pair, const BlockState& first, const BlockState& second, const Vec3& point) const
 {
   RockPair::Impact& impact = pair.impact;
-  if (impact.pending)
+  if (pair.strikes)
   {
     return;
   }
   impact = {};
-  impact.pending = true;
+  pair.strikes = true;
   impact.time = first.time;
   impact.before[0] = first.velocity;
   impact.before[1] = second.velocity;
@@ -43,11 +43,11 @@ void MassFall::findKnock(RockPair& pair, const GroupContact& taken, double h) co
 void MassFall::finishPairImpact(RockPair& pair) const
 {
   RockPair::Impact& impact = pair.impact;
-  if (!impact.pending)
+  if (!pair.strikes)
   {
     return;
   }
-  impact.pending = false;
+  pair.strikes = false;
   const double size = impact.impulse.norm();
   const double loss = size > 0.0 ? std::max(0.0, impact.loss) : 0.0;
   pair.lastingLoss += impact.loss - loss; // springs that had been compressed before

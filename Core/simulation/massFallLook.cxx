@@ -190,16 +190,18 @@ double MassFall::lookAtPairs(const Group& group, double h, bool bounces, Workspa
   const auto smaller = [&](const RockPair& pair)
   {
     return std::min(
-      members_[pair.first]->sim.block_.radius(), members_[pair.second]->sim.block_.radius());
+      work.sides[std::size_t(pair.first)].radius, work.sides[std::size_t(pair.second)].radius);
   };
   const auto allowed = [&](const RockPair& pair) { return kMissed * smaller(pair); };
   const std::size_t firstAdded = work.firsts.back();
+  const auto gapAt = [&](std::size_t k)
+  { return work.solver.gap(k) + work.contacts[k].contact->offset; };
   const auto deepest = [&](std::size_t p)
   {
     double least = 0.0;
     for (std::size_t k = work.firsts[p]; k < work.firsts[p + 1]; ++k)
     {
-      least = std::min(least, work.solver.gap(k) + work.contacts[k].contact->offset);
+      least = std::min(least, gapAt(k));
     }
     return least;
   };
@@ -239,8 +241,17 @@ double MassFall::lookAtPairs(const Group& group, double h, bool bounces, Workspa
     pair.end =
       findAxis(members_[pair.first]->endBody, members_[pair.second]->endBody, pair.axis, 0.0);
     const double deep = -allowed(pair);
-    return pair.end.kind != PairAxis::Kind::None && pair.end.distance < deep &&
-      pair.end.distance < deepest(p) + deep;
+    if (pair.end.kind == PairAxis::Kind::None || !(pair.end.distance < deep))
+    {
+      return false;
+    }
+    // Mostly one of the contacts is as deep.
+    std::size_t k = work.firsts[p];
+    while (k < work.firsts[p + 1] && pair.end.distance < gapAt(k) + deep)
+    {
+      ++k;
+    }
+    return k == work.firsts[p + 1];
   };
   work.missed.clear();
   forThose(group.pairs.size(), kPairGrain, work.flags, compare,
@@ -250,7 +261,8 @@ double MassFall::lookAtPairs(const Group& group, double h, bool bounces, Workspa
   {
     RockPair& pair = *group.pairs[work.missed[m]];
     const Member &a = *members_[pair.first], &b = *members_[pair.second];
-    findTouches(a.endBody, b.endBody, pair.end, 0.0, work.found[m]);
+    const double limit = deepest(work.missed[m]) - allowed(pair);
+    findTouches(a.endBody, b.endBody, pair.end, 0.0, work.found[m], limit);
   };
   forEach(work.missed.size(), kMissedGrain, findThem);
   const auto isAddedTo = [&](std::size_t k, std::size_t p)
@@ -258,17 +270,16 @@ double MassFall::lookAtPairs(const Group& group, double h, bool bounces, Workspa
   double most = 0.0;
   for (std::size_t m = 0; m < work.missed.size(); ++m)
   {
+    if (work.found[m].empty())
+    {
+      continue;
+    }
     const std::size_t p = work.missed[m];
     RockPair& pair = *group.pairs[p];
     const Member &a = *members_[pair.first], &b = *members_[pair.second];
-    const double limit = deepest(p) - allowed(pair);
-    const PairMotion motion = this->motionOf(pair);
+    const PairMotion motion = work.motionOf(pair);
     for (Contact& c : work.found[m])
     {
-      if (c.distance >= limit)
-      {
-        continue;
-      }
       // One that is there already was reckoned wrong.
       const auto same = [&](std::size_t k)
       {
@@ -301,7 +312,7 @@ double MassFall::lookAtPairs(const Group& group, double h, bool bounces, Workspa
       this->armContact(pair, c);
       work.added.push_back(c);
       work.addedTo.push_back({ false, p, c });
-      this->add(this->take(pair, motion, work.added.back(), h, bounces), bounces, work);
+      this->add(this->take(pair, motion, work.added.back(), h, bounces, work), bounces, work);
     }
   }
   return most;

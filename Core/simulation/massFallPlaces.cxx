@@ -112,7 +112,7 @@ std::size_t MassFall::layOut(const Group& group, Workspace& work) const
       counted.contacts += pair.contacts.size();
       pair.touched = false;
       meeting[counted.touching] = p;
-      counted.touching += !pair.contacts.empty() || pair.impact.pending;
+      counted.touching += !pair.contacts.empty() || pair.strikes;
     }
     work.parts[part] = counted;
   };
@@ -132,7 +132,6 @@ std::size_t MassFall::layOut(const Group& group, Workspace& work) const
   work.firsts.back() = contacts;
   work.bodies.resize(std::size_t(all));
   work.ways.resize(std::size_t(all));
-  work.spins.resize(std::size_t(all));
   work.arrived.resize(std::size_t(all));
   work.energyBefore.resize(std::size_t(all));
   work.contacts.resize(contacts);
@@ -194,32 +193,16 @@ void MassFall::settleBounces(bool lasting, Workspace& work) const
   forChosen(settle);
 }
 
-void MassFall::findPushes(const Group& group) const
+void MassFall::findPushes(const Group& group, Workspace& work)
 {
-  struct Striker
-  {
-    Vec3 velocity; ///< m/s
-    double mass;   ///< kg; < 0: gone.
-    double pushed; ///< m/s
-  };
-  thread_local std::vector<Striker> kept;
-  std::vector<Striker>& strikers = kept; // this thread's, whoever takes a part of the loops
-  strikers.resize(members_.size());
-  const auto takeRock = [&](std::size_t k)
-  {
-    const RockSimulator& sim = members_[group.members[k]]->sim;
-    strikers[std::size_t(group.members[k])] = { sim.state_.velocity,
-      sim.done_ ? -1.0 : sim.block_.mass(), 0.0 };
-  };
-  forEach(group.members.size(), kPart, takeRock);
   const bool alone = parallel::threads() == 1;
   const auto strike = [alone, pairs = group.pairs.data(), last = group.pairs.size() - 1,
-                        of = strikers.data()](std::size_t p)
+                        of = work.sides.data()](std::size_t p)
   {
     constexpr std::size_t kAhead = 8;
     __builtin_prefetch(pairs[std::min(p + kAhead, last)]);
-    Striker &a = of[pairs[p]->first], &b = of[pairs[p]->second];
-    if (a.mass < 0.0 || b.mass < 0.0)
+    Workspace::Side &a = of[pairs[p]->first], &b = of[pairs[p]->second];
+    if (a.done || b.done)
     {
       return;
     }
@@ -229,9 +212,6 @@ void MassFall::findPushes(const Group& group) const
     raise(b.pushed, shared * a.mass, alone);
   };
   forEach(group.pairs.size(), kPart, strike);
-  const auto give = [&](std::size_t k)
-  { members_[group.members[k]]->pushed = strikers[std::size_t(group.members[k])].pushed; };
-  forEach(group.members.size(), kPart, give);
 }
 
 } // namespace rockfall

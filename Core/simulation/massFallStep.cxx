@@ -60,16 +60,16 @@ GroupContact MassFall::take(const Member& member, Contact& c, double h, bool bou
   return k;
 }
 
-GroupContact MassFall::take(
-  RockPair& pair, const PairMotion& motion, Contact& c, double h, bool bounces) const
+GroupContact MassFall::take(RockPair& pair, const PairMotion& motion, Contact& c, double h,
+  bool bounces, const Workspace& work) const
 {
-  const Member &a = *members_[pair.first], &b = *members_[pair.second];
-  const double resting = std::min(a.sim.restingSpeed_, b.sim.restingSpeed_);
+  const double resting = std::min(
+    work.sides[std::size_t(pair.first)].resting, work.sides[std::size_t(pair.second)].resting);
   GroupContact k;
   k.contact = &c;
   k.closed = c.closed();
-  k.first = a.place;
-  k.second = b.place;
+  k.first = work.placeOf[std::size_t(pair.first)];
+  k.second = work.placeOf[std::size_t(pair.second)];
   k.friction = pair.law.friction;
   k.cohesion = pair.law.cohesion;
   if (k.cohesion > 0.0)
@@ -82,9 +82,10 @@ GroupContact MassFall::take(
   // For the events: what strikes one of two that touch strikes the other through it.
   if (impacts || (c.closed() && k.approach > resting))
   {
-    this->beginPairImpact(pair, a.sim.state_, b.sim.state_, c.point);
+    this->beginPairImpact(
+      pair, members_[pair.first]->sim.state_, members_[pair.second]->sim.state_, c.point);
   }
-  if (pair.impact.pending)
+  if (pair.strikes)
   {
     pair.impact.approach = std::max(pair.impact.approach, k.approach);
   }
@@ -114,8 +115,6 @@ void MassFall::solve(
     {
       return;
     }
-    member.touchesOthers = false;
-    work.spins[std::size_t(member.place)] = sim.state_.angularVelocity();
     sim.before_ = sim.state_;
     sim.springEnergyBefore_ = sim.springEnergy_;
     sim.contactsBefore_ = sim.contacts_;
@@ -150,12 +149,12 @@ void MassFall::solve(
     {
       return;
     }
-    const PairMotion motion(members_[pair.first]->sim.state_, members_[pair.second]->sim.state_,
-      work.spins[std::size_t(work.places[p][0])], work.spins[std::size_t(work.places[p][1])]);
+    const PairMotion motion = work.motionOf(pair);
     std::size_t next = work.firsts[p];
     for (Contact& c : pair.contacts)
     {
-      const GroupContact& taken = work.contacts[next++] = this->take(pair, motion, c, h, bounces);
+      const GroupContact& taken = work.contacts[next++] =
+        this->take(pair, motion, c, h, bounces, work);
       if (crowd && !taken.closed && !(swept && mayStayOpen(taken, h)))
       {
         this->armContact(pair, c);
@@ -224,11 +223,12 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
 {
   std::vector<std::uint64_t>& carriers = work.carriers;
   carriers.assign(work.bodies.size(), 0);
+  work.touchesOthers.assign(work.bodies.size(), 0);
   const auto book = [&](RockPair& pair, const GroupContact& taken)
   {
     const Contact& c = *taken.contact;
     RockPair::Impact& impact = pair.impact;
-    if (!impact.pending)
+    if (!pair.strikes)
     {
       pair.lastingLoss += taken.work;
       return;
@@ -249,7 +249,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     work.comeToTouching(group, t);
     const std::size_t p = work.touching[t];
     RockPair& pair = *group.pairs[p];
-    Member &first = *members_[pair.first], &second = *members_[pair.second];
+    const std::array<int, 2>& places = work.places[p];
     std::uint64_t carry[2] = {};
     for (std::size_t k = work.firsts[p]; k < work.firsts[p + 1]; ++k)
     {
@@ -271,16 +271,19 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
       return;
     }
     // Whole numbers: their sum is the same in any order.
-    std::atomic_ref(carriers[first.place]).fetch_add(carry[0], std::memory_order_relaxed);
-    std::atomic_ref(carriers[second.place]).fetch_add(carry[1], std::memory_order_relaxed);
-    std::atomic_ref(first.touchesOthers).store(true, std::memory_order_relaxed);
-    std::atomic_ref(second.touchesOthers).store(true, std::memory_order_relaxed);
+    for (const int side : { 0, 1 })
+    {
+      const std::size_t place = std::size_t(places[std::size_t(side)]);
+      std::atomic_ref(carriers[place]).fetch_add(carry[side], std::memory_order_relaxed);
+      std::atomic_ref(work.touchesOthers[place]).store(1, std::memory_order_relaxed);
+    }
     // What was found overlapping is pressed out slowly.
-    const Block &a = first.sim.block_, &b = second.sim.block_;
-    const double mass = std::min(a.mass(), b.mass());
+    const Workspace::Side& a = work.sides[std::size_t(pair.first)];
+    const Workspace::Side& b = work.sides[std::size_t(pair.second)];
+    const double mass = std::min(a.mass, b.mass);
     const double slow =
       std::min(kPressOut * h, 0.5 * mass * parameters_.gravity / parameters_.normalPenalty);
-    const double loose = kLooseOverlap * std::min(a.radius(), b.radius());
+    const double loose = kLooseOverlap * std::min(a.radius, b.radius);
     for (Contact& c : pair.contacts)
     {
       pressOut(c, h, slow, kind == StepKind::Lasting, loose);
@@ -304,10 +307,11 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     if (c.closed())
     {
       pair.touched = true;
-      Member &first = *members_[pair.first], &second = *members_[pair.second];
-      first.touchesOthers = second.touchesOthers = true;
-      carriers[std::size_t(first.place)] += keyOf(c) * std::uint64_t(pair.second + 2);
-      carriers[std::size_t(second.place)] += keyOf(c) * std::uint64_t(pair.first + 2);
+      const std::size_t first = std::size_t(work.placeOf[std::size_t(pair.first)]);
+      const std::size_t second = std::size_t(work.placeOf[std::size_t(pair.second)]);
+      work.touchesOthers[first] = work.touchesOthers[second] = 1;
+      carriers[first] += keyOf(c) * std::uint64_t(pair.second + 2);
+      carriers[second] += keyOf(c) * std::uint64_t(pair.first + 2);
     }
     pair.contacts.push_back(c);
   }
@@ -325,7 +329,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
   for (const std::size_t p : work.touching)
   {
     RockPair& pair = *group.pairs[p];
-    if (pair.impact.pending && (!pair.touched || kind == StepKind::Lasting))
+    if (pair.strikes && (!pair.touched || kind == StepKind::Lasting))
     {
       this->finishPairImpact(pair);
     }
@@ -350,7 +354,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     outcome.normalEnergy = body.normalEnergy;
     m.sim.absorb(kind, outcome, work.energyBefore[b], body.given);
     const std::vector<Contact>& c = m.sim.contacts_;
-    const bool carried = m.touchesOthers ||
+    const bool carried = work.touchesOthers[std::size_t(b)] ||
       std::any_of(c.begin(), c.end(), [](const Contact& touch) { return touch.closed(); });
     // In a crowd some contact opens or closes in every step, and the acceleration of one step says
     // little of the next: carried on it would keep the pile in motion for ever.

@@ -112,8 +112,29 @@ struct MassFall::Workspace
   std::vector<int> placeOf; ///< By rock, of those in the group.
   /// Pairs that have contacts, or an impact under way. Most are only near each other.
   std::vector<std::size_t> touching;
-  std::vector<Vec3> spins;   ///< By place, angular velocity in world axes, rad/s.
+  std::vector<char> touchesOthers; ///< By place, in the end.
   std::vector<char> arrived; ///< By place, whether the step has been looked at where it ended.
+  /// What those who go over pairs ask of each of the two rocks, in two lines of the cache.
+  struct alignas(kCacheLine) Side
+  {
+    Vec3 velocity;  ///< m/s
+    Vec3 spin;      ///< World axes, rad/s.
+    Vec3 position;  ///< m
+    double radius;  ///< m
+    double rim;     ///< Speed at most by turning, m/s.
+    double mass;    ///< kg
+    double resting; ///< Below it a touch is no impact, m/s.
+    double pushed;  ///< What others may add to its speed within a step of a crowd, m/s.
+    bool done;
+
+    void set(const RockSimulator& sim);
+  };
+  std::vector<Side> sides; ///< By rock, where its group's step begins.
+  PairMotion motionOf(const RockPair& pair) const
+  {
+    const Side &a = sides[std::size_t(pair.first)], &b = sides[std::size_t(pair.second)];
+    return { a.velocity - b.velocity, { a.spin, b.spin }, { a.position, b.position } };
+  }
   /// What the summary of each rock counts in the step at hand.
   std::int64_t iterations = 0, cuts = 0, unsettled = 0, tries = 0;
   void count(RockSimulator& sim) const;
@@ -128,6 +149,20 @@ struct MassFall::Workspace
   };
   std::vector<Way> ways;
 };
+
+inline void MassFall::Workspace::Side::set(const RockSimulator& sim)
+{
+  const BlockState& state = sim.state_;
+  velocity = state.velocity;
+  spin = state.angularVelocity();
+  position = state.position;
+  radius = sim.block_.radius();
+  rim = state.spin.norm() * radius;
+  mass = sim.block_.mass();
+  resting = sim.restingSpeed_;
+  pushed = 0.0;
+  done = sim.done_;
+}
 
 inline void MassFall::Workspace::count(RockSimulator& sim) const
 {
