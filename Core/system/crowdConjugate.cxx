@@ -19,7 +19,7 @@ namespace
 {
 
 /// Rocks, or batches of contacts, that are gone over at once.
-constexpr std::size_t kBlock = 64;
+constexpr std::size_t kBlock = 64, kGrain = 4;
 
 } // namespace
 
@@ -40,17 +40,18 @@ void CrowdSolver::begin()
 
 void CrowdSolver::goFurther()
 {
-  const std::size_t movers = work_.size();
-  const auto inBlocks = [](std::size_t count, auto&& go)
+  const std::size_t movers = work_.size(), forces = forces_.size();
+  const auto blocksOf = [](std::size_t count) { return (count + kBlock - 1) / kBlock; };
+  const auto inBlock = [](std::size_t block, std::size_t count, auto&& go)
+  { go(block * kBlock, std::min((block + 1) * kBlock, count) - block * kBlock); };
+  changes_.resize(blocksOf(movers));
+  const auto compare = [&](std::size_t block)
   {
-    const auto goBlock = [&](std::size_t block)
-    { go(block, block * kBlock, std::min((block + 1) * kBlock, count) - block * kBlock); };
-    forEach((count + kBlock - 1) / kBlock, 4, goBlock);
+    const auto changeOf = [&](std::size_t first, std::size_t count)
+    { changes_[block] = kernel_->changeOf(&movers_[first], &before_[first], int(count)); };
+    inBlock(block, movers, changeOf);
   };
-  changes_.resize((movers + kBlock - 1) / kBlock);
-  const auto changeOf = [&](std::size_t block, std::size_t first, std::size_t count)
-  { changes_[block] = kernel_->changeOf(&movers_[first], &before_[first], int(count)); };
-  inBlocks(movers, changeOf);
+  forEach(changes_.size(), kGrain, compare);
   const double change = std::accumulate(changes_.begin(), changes_.end(), 0.0);
   // Where it does not get smaller it begins anew.
   const bool first = lastChange_ < 0.0, anew = !first && !(change <= lastChange_);
@@ -60,15 +61,26 @@ void CrowdSolver::goFurther()
   further.quiet = quiet_;
   further.number = sweep_ - 1; // since the last visit
   lastChange_ = change;
-  const auto goForces = [&](std::size_t, std::size_t from, std::size_t count)
+  const auto goForces = [&](std::size_t from, std::size_t count)
   { kernel_->goForces(further, &forces_[from], &forcesBefore_[from], &forcesAlong_[from], count); };
-  inBlocks(forces_.size(), goForces);
-  const auto goMovers = [&](std::size_t, std::size_t from, std::size_t count)
+  const auto goMovers = [&](std::size_t from, std::size_t count)
   {
     kernel_->goMovers(
       further, &movers_[from], &before_[from], &along_[from], &changed_[from], count);
   };
-  inBlocks(movers, goMovers);
+  const std::size_t ofMovers = changes_.size();
+  const auto go = [&](std::size_t block)
+  {
+    if (block < ofMovers)
+    {
+      inBlock(block, movers, goMovers);
+    }
+    else
+    {
+      inBlock(block - ofMovers, forces, goForces);
+    }
+  };
+  forEach(ofMovers + blocksOf(forces), kGrain, go);
 }
 
 } // namespace rockfall
