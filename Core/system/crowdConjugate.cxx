@@ -18,8 +18,8 @@ namespace rockfall
 namespace
 {
 
-/// Rocks, or batches of contacts, that are gone over at once.
-constexpr std::size_t kBlock = 64, kGrain = 4;
+/// Rocks of a share of what is gone over, and shares at most.
+constexpr std::size_t kRocks = 64, kMostShares = 64;
 
 } // namespace
 
@@ -40,18 +40,22 @@ void CrowdSolver::begin()
 
 void CrowdSolver::goFurther()
 {
-  const std::size_t movers = work_.size(), forces = forces_.size();
-  const auto blocksOf = [](std::size_t count) { return (count + kBlock - 1) / kBlock; };
-  const auto inBlock = [](std::size_t block, std::size_t count, auto&& go)
-  { go(block * kBlock, std::min((block + 1) * kBlock, count) - block * kBlock); };
-  changes_.resize(blocksOf(movers));
-  const auto compare = [&](std::size_t block)
+  // Rocks and batches are both in order along the group: who goes over a share of the ones has the
+  // same of the others, and of the parts that are swept.
+  const std::size_t shares = std::clamp(work_.size() / kRocks, std::size_t(1), kMostShares);
+  const auto ofShare = [shares](std::size_t share, std::size_t count, auto&& go)
+  {
+    const std::size_t first = share * count / shares;
+    go(first, (share + 1) * count / shares - first);
+  };
+  changes_.resize(shares);
+  const auto compare = [&](std::size_t share)
   {
     const auto changeOf = [&](std::size_t first, std::size_t count)
-    { changes_[block] = kernel_->changeOf(&movers_[first], &before_[first], int(count)); };
-    inBlock(block, movers, changeOf);
+    { changes_[share] = kernel_->changeOf(&movers_[first], &before_[first], int(count)); };
+    ofShare(share, work_.size(), changeOf);
   };
-  forEach(changes_.size(), kGrain, compare);
+  forEach(shares, 1, compare);
   const double change = std::accumulate(changes_.begin(), changes_.end(), 0.0);
   // Where it does not get smaller it begins anew.
   const bool first = lastChange_ < 0.0, anew = !first && !(change <= lastChange_);
@@ -68,19 +72,12 @@ void CrowdSolver::goFurther()
     kernel_->goMovers(
       further, &movers_[from], &before_[from], &along_[from], &changed_[from], count);
   };
-  const std::size_t ofMovers = changes_.size();
-  const auto go = [&](std::size_t block)
+  const auto go = [&](std::size_t share)
   {
-    if (block < ofMovers)
-    {
-      inBlock(block, movers, goMovers);
-    }
-    else
-    {
-      inBlock(block - ofMovers, forces, goForces);
-    }
+    ofShare(share, work_.size(), goMovers);
+    ofShare(share, forces_.size(), goForces);
   };
-  forEach(ofMovers + blocksOf(forces), kGrain, go);
+  forEach(shares, 1, go);
 }
 
 } // namespace rockfall
