@@ -90,7 +90,8 @@ private:
   void turnAs(Work& work, const Vec3& spun) const; ///< turned, mean and turn.
   /// Where a body goes without contacts, for the turn that it has.
   std::array<Vec3, 2> freeMotion(const GroupBody& body, const Work& work) const;
-  void lineUp(); ///< Movers in order, and the number of parts.
+  /// Movers in order, and the number of parts.
+  void lineUp(const std::vector<GroupBody>& bodies);
   void arrange(const std::vector<GroupContact>& contacts); ///< Batches of each part.
   /// Whose contacts a batch will hold.
   struct Hand
@@ -229,7 +230,7 @@ private:
   // in which it goes on, by batch and by mover.
   std::vector<crowd::Forces> forcesBefore_, forcesAlong_;
   std::vector<crowd::Way> before_, along_;
-  std::vector<double> changes_; ///< By block of movers.
+  std::vector<double> changes_; ///< By share of the movers.
   double lastChange_ = 0.0;     ///< Of the sweep before; negative: there was none.
   const crowd::Kernel* kernel_ = nullptr;
   // Of the step at hand.

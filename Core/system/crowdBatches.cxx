@@ -18,6 +18,8 @@ namespace
 /// Rocks of a part of the group, and parts at most.
 constexpr int kPart = 56;
 constexpr int kMostParts = 64;
+/// To so many watched contacts of a part there is an empty batch for those that close.
+constexpr std::size_t kWatchedPerSpare = 32;
 /// Batches that are filled at the same time.
 constexpr int kOpen = 32;
 
@@ -64,18 +66,23 @@ Of CrowdSolver::Hand::idle() const
   return batch;
 }
 
-void CrowdSolver::lineUp()
+void CrowdSolver::lineUp(const std::vector<GroupBody>& bodies)
 {
-  parts_ = std::clamp(int(work_.size()) / kPart, 1, kMostParts);
-  parts_ -= parts_ > 4 ? parts_ % 4 : 0; // two threads get the same number of every second part
   Vec3 low = work_.front().position, high = low;
-  for (const Work& w : work_)
+  double radii = 0.0;
+  for (std::size_t i = 0; i < work_.size(); ++i)
   {
-    low = low.cwiseMin(w.position);
-    high = high.cwiseMax(w.position);
+    low = low.cwiseMin(work_[i].position);
+    high = high.cwiseMax(work_[i].position);
+    radii += bodies[i].block->radius();
   }
   int axis = 0;
-  (high - low).maxCoeff(&axis);
+  const double length = (high - low).maxCoeff(&axis);
+  // Narrower than two rocks that touch, and contacts would reach further than to the next part.
+  const double width = 2.0 * radii / double(work_.size());
+  const double most = std::min(double(kMostParts), length / width);
+  parts_ = std::clamp(int(work_.size()) / kPart, 1, std::max(1, int(most)));
+  parts_ -= parts_ > 4 ? parts_ % 4 : 0; // two threads get the same number of every second part
   // Nearly in order they are from the last step, mostly.
   const bool lined = line_.size() == work_.size();
   line_.resize(work_.size());
@@ -138,6 +145,12 @@ void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
       starts_[key] = int(hands.size());
       this->deal(contacts, order_.data() + this->firstOf(key), order_.data() + ends_[key],
         bodies + part, hands);
+      if (part < parts_)
+      {
+        const std::size_t watching = std::size_t(part * kKinds + Watching);
+        hands.insert(hands.end(),
+          1 + (ends_[watching] - this->firstOf(watching)) / kWatchedPerSpare, Hand(bodies + part));
+      }
     }
     starts_[std::size_t(part * kKinds + Watching)] = int(hands.size());
   };

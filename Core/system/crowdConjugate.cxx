@@ -18,8 +18,8 @@ namespace rockfall
 namespace
 {
 
-/// Rocks, or batches of contacts, that are gone over at once.
-constexpr std::size_t kBlock = 64;
+/// Rocks of a share of what is gone over, and shares at most.
+constexpr std::size_t kRocks = 64, kMostShares = 64;
 
 } // namespace
 
@@ -40,17 +40,22 @@ void CrowdSolver::begin()
 
 void CrowdSolver::goFurther()
 {
-  const std::size_t movers = work_.size();
-  const auto inBlocks = [](std::size_t count, auto&& go)
+  // Rocks and batches are both in order along the group: who goes over a share of the ones has the
+  // same of the others, and of the parts that are swept.
+  const std::size_t shares = std::clamp(work_.size() / kRocks, std::size_t(1), kMostShares);
+  const auto ofShare = [shares](std::size_t share, std::size_t count, auto&& go)
   {
-    const auto goBlock = [&](std::size_t block)
-    { go(block, block * kBlock, std::min((block + 1) * kBlock, count) - block * kBlock); };
-    forEach((count + kBlock - 1) / kBlock, 4, goBlock);
+    const std::size_t first = share * count / shares;
+    go(first, (share + 1) * count / shares - first);
   };
-  changes_.resize((movers + kBlock - 1) / kBlock);
-  const auto changeOf = [&](std::size_t block, std::size_t first, std::size_t count)
-  { changes_[block] = kernel_->changeOf(&movers_[first], &before_[first], int(count)); };
-  inBlocks(movers, changeOf);
+  changes_.resize(shares);
+  const auto compare = [&](std::size_t share)
+  {
+    const auto changeOf = [&](std::size_t first, std::size_t count)
+    { changes_[share] = kernel_->changeOf(&movers_[first], &before_[first], int(count)); };
+    ofShare(share, work_.size(), changeOf);
+  };
+  forEach(shares, 1, compare);
   const double change = std::accumulate(changes_.begin(), changes_.end(), 0.0);
   // Where it does not get smaller it begins anew.
   const bool first = lastChange_ < 0.0, anew = !first && !(change <= lastChange_);
@@ -60,15 +65,19 @@ void CrowdSolver::goFurther()
   further.quiet = quiet_;
   further.number = sweep_ - 1; // since the last visit
   lastChange_ = change;
-  const auto goForces = [&](std::size_t, std::size_t from, std::size_t count)
+  const auto goForces = [&](std::size_t from, std::size_t count)
   { kernel_->goForces(further, &forces_[from], &forcesBefore_[from], &forcesAlong_[from], count); };
-  inBlocks(forces_.size(), goForces);
-  const auto goMovers = [&](std::size_t, std::size_t from, std::size_t count)
+  const auto goMovers = [&](std::size_t from, std::size_t count)
   {
     kernel_->goMovers(
       further, &movers_[from], &before_[from], &along_[from], &changed_[from], count);
   };
-  inBlocks(movers, goMovers);
+  const auto go = [&](std::size_t share)
+  {
+    ofShare(share, work_.size(), goMovers);
+    ofShare(share, forces_.size(), goForces);
+  };
+  forEach(shares, 1, go);
 }
 
 } // namespace rockfall

@@ -61,7 +61,7 @@ void CrowdSolver::append(const std::vector<GroupBody>& bodies, std::vector<Group
 
 bool CrowdSolver::watch(int sweep)
 {
-  constexpr std::size_t kBlock = 64; // fours at once
+  constexpr std::size_t kBlock = 16; // fours at once
   constexpr std::size_t kCloseGrain = 8;
   const auto look = [&](std::size_t block)
   {

@@ -191,7 +191,7 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
   bodies_ = &bodies;
   contacts_ = &contacts;
   this->prepareBodies(request, bodies);
-  this->lineUp();
+  this->lineUp(bodies);
   this->arrange(contacts);
   this->startMovers(bodies);
   this->prepareRows(bodies, contacts);
