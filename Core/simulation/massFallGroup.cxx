@@ -4,7 +4,6 @@
 
 #include "base/parallel.h"
 #include "contact/motion.h"
-#include "simulation/impactMode.h"
 #include "simulation/pressOut.h"
 
 #include <algorithm>
@@ -16,9 +15,6 @@ namespace rockfall
 namespace
 {
 
-/// However fast two rocks meet, their contact is stiff enough to stop them in this part of the
-/// smaller radius.
-constexpr double kDeepestImpact = 0.01;
 /// Steps per half period of an impact, as for single rocks.
 constexpr double kStepsPerImpact = 8.0;
 /// Steps that the smallest rock of a group may ask of all in one of Δt; if it asks for more, so
@@ -28,7 +24,6 @@ constexpr int kFew = 4;
 /// In a crowd a step is this much longer than rocks that resolve their impacts may take: where they
 /// would end is looked at.
 constexpr double kCrowdTravel = 2.0;
-constexpr double kShearDamping = 5.0; // as for single rocks
 /// What comes near within a step may do so faster than when it begins, by this factor.
 constexpr double kFaster = 1.5;
 /// In a crowd contacts are reckoned with that may close at the speed at which they come in, or are
@@ -38,69 +33,6 @@ constexpr double kFaster = 1.5;
 constexpr double kSurely = 3e-2;
 /// The same on the slope, where what pushes and turns rocks is reckoned with.
 constexpr double kSurelyOnSlope = 1e-2;
-
-/// Gives contacts of a pair what they are made of, along the normal and across it side by side;
-/// what only the normal decides is found once.
-class PairArming
-{
-public:
-  PairArming(const PlacedBlock& a, const BlockState& s, const PlacedBlock& b, const BlockState& t,
-    const PairLaw& law, const SimulationParameters& parameters)
-    : rigid_(parameters.rigid)
-    , dampings_(std::max(0.0, law.damping), kShearDamping)
-    , sides_{ { { &a.block(), a.rotation(), s.position, {} },
-        { &b.block(), b.rotation(), t.position, {} } } }
-  {
-    const double mass = 1.0 / (1.0 / a.block().mass() + 1.0 / b.block().mass());
-    const double depth = kDeepestImpact * std::min(a.block().radius(), b.block().radius());
-    const double speed = (s.velocity - t.velocity).norm();
-    const double penalty =
-      std::max(parameters.normalPenalty, mass * speed * speed / (depth * depth));
-    penalties_ = { penalty, penalty * parameters.shearRatio };
-  }
-  void arm(Contact& c)
-  {
-    if (c.normal != normal_)
-    {
-      normal_ = c.normal;
-      const Vec3 along = normal_.unitOrthogonal();
-      for (Side& side : sides_)
-      {
-        side.ways = twoWays(side.turn.transpose() * normal_, side.turn.transpose() * along);
-      }
-    }
-    Two soft = Two::Zero(), mobile = Two::Zero();
-    for (const Side& side : sides_)
-    {
-      const Vec3 x = side.turn.transpose() * (c.point - side.position);
-      soft += rigid_ ? Two(Two::Zero()) : side.block->compliance(side.ways, x);
-      mobile += side.block->mobility(side.ways, x);
-    }
-    const Two stiffnesses = penalties_ / (1.0 + penalties_ * soft);
-    const Two dashpots = 2.0 * dampings_ * (stiffnesses / mobile).sqrt();
-    c.stiffness = stiffnesses[0];
-    c.shearStiffness = stiffnesses[1];
-    c.frequency2 = c.stiffness * mobile[0];
-    c.stopped = 1.0 / mobile[0];
-    c.dashpot = dashpots[0];
-    c.shearDashpot = dashpots[1];
-  }
-
-private:
-  using Two = Eigen::Array2d;
-  struct Side
-  {
-    const Block* block;
-    Mat3 turn; ///< Body to world axes.
-    Vec3 position;
-    TwoWays ways; ///< The normal and a direction across it, body axes.
-  };
-  bool rigid_;
-  Two dampings_;
-  Two penalties_; ///< N/m
-  Vec3 normal_ = Vec3::Zero();
-  std::array<Side, 2> sides_;
-};
 
 } // namespace
 
@@ -250,44 +182,6 @@ void MassFall::gatherContacts(const Group& group, double h, Workspace& work) con
     }
   };
   forEach(group.pairs.size(), kPairGrain, eachOther);
-}
-
-void MassFall::armPair(RockPair& pair, double h) const
-{
-  Contact* k = pair.contacts.data();
-  Contact* const end = k + pair.contacts.size();
-  while (k != end && k->closed())
-  {
-    ++k;
-  }
-  if (k == end)
-  {
-    return;
-  }
-  const RockSimulator &a = members_[pair.first]->sim, &b = members_[pair.second]->sim;
-  PairArming arming(a.placed_, a.state_, b.placed_, b.state_, pair.law, parameters_);
-  for (; k != end; ++k)
-  {
-    if (!k->closed())
-    {
-      arming.arm(*k);
-    }
-  }
-  if (pair.law.damping > 0.0)
-  {
-    tuneDashpots(
-      pair.contacts, h,
-      [motion = this->motionOf(pair)](const Contact& c)
-      { return -c.normal.dot(motion.at(c.point)); },
-      [&](const Vec3& force, const Vec3& moment, const Vec3& at)
-      { return response(a.placed_, force, moment, at) + response(b.placed_, force, moment, at); });
-  }
-}
-
-void MassFall::armContact(const RockPair& pair, Contact& c) const
-{
-  const RockSimulator &a = members_[pair.first]->sim, &b = members_[pair.second]->sim;
-  PairArming(a.placed_, a.state_, b.placed_, b.state_, pair.law, parameters_).arm(c);
 }
 
 bool MassFall::isCalm(const Group& group) const

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// What massFallGroup.cxx, massFallPlaces.cxx and massFallStep.cxx share.
+/// What the files of a step of a group share, massFallGroup.cxx and those that it calls.
 
 #include "base/cache.h"
 #include "simulation/MassFall.h"

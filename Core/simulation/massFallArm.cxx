@@ -1,0 +1,125 @@
+// What contacts between rocks are made of: springs and dashpots.
+
+#include "simulation/massFallWork.h"
+
+#include "contact/motion.h"
+#include "simulation/impactMode.h"
+
+#include <algorithm>
+#include <array>
+
+namespace rockfall
+{
+
+namespace
+{
+
+/// However fast two rocks meet, their contact is stiff enough to stop them in this part of the
+/// smaller radius.
+constexpr double kDeepestImpact = 0.01;
+constexpr double kShearDamping = 5.0; // as for single rocks
+
+/// Gives contacts of a pair what they are made of, along the normal and across it side by side;
+/// what only the normal decides is found once.
+class PairArming
+{
+public:
+  PairArming(const PlacedBlock& a, const BlockState& s, const PlacedBlock& b, const BlockState& t,
+    const PairLaw& law, const SimulationParameters& parameters)
+    : rigid_(parameters.rigid)
+    , dampings_(std::max(0.0, law.damping), kShearDamping)
+    , sides_{ { { &a.block(), a.rotation(), s.position, {} },
+        { &b.block(), b.rotation(), t.position, {} } } }
+  {
+    const double mass = 1.0 / (1.0 / a.block().mass() + 1.0 / b.block().mass());
+    const double depth = kDeepestImpact * std::min(a.block().radius(), b.block().radius());
+    const double speed = (s.velocity - t.velocity).norm();
+    const double penalty =
+      std::max(parameters.normalPenalty, mass * speed * speed / (depth * depth));
+    penalties_ = { penalty, penalty * parameters.shearRatio };
+  }
+  void arm(Contact& c)
+  {
+    if (c.normal != normal_)
+    {
+      normal_ = c.normal;
+      const Vec3 along = normal_.unitOrthogonal();
+      for (Side& side : sides_)
+      {
+        side.ways = twoWays(side.turn.transpose() * normal_, side.turn.transpose() * along);
+      }
+    }
+    Two soft = Two::Zero(), mobile = Two::Zero();
+    for (const Side& side : sides_)
+    {
+      const Vec3 x = side.turn.transpose() * (c.point - side.position);
+      soft += rigid_ ? Two(Two::Zero()) : side.block->compliance(side.ways, x);
+      mobile += side.block->mobility(side.ways, x);
+    }
+    const Two stiffnesses = penalties_ / (1.0 + penalties_ * soft);
+    const Two dashpots = 2.0 * dampings_ * (stiffnesses / mobile).sqrt();
+    c.stiffness = stiffnesses[0];
+    c.shearStiffness = stiffnesses[1];
+    c.frequency2 = c.stiffness * mobile[0];
+    c.stopped = 1.0 / mobile[0];
+    c.dashpot = dashpots[0];
+    c.shearDashpot = dashpots[1];
+  }
+
+private:
+  using Two = Eigen::Array2d;
+  struct Side
+  {
+    const Block* block;
+    Mat3 turn; ///< Body to world axes.
+    Vec3 position;
+    TwoWays ways; ///< The normal and a direction across it, body axes.
+  };
+  bool rigid_;
+  Two dampings_;
+  Two penalties_; ///< N/m
+  Vec3 normal_ = Vec3::Zero();
+  std::array<Side, 2> sides_;
+};
+
+} // namespace
+
+void MassFall::armPair(RockPair& pair, double h) const
+{
+  Contact* k = pair.contacts.data();
+  Contact* const end = k + pair.contacts.size();
+  while (k != end && k->closed())
+  {
+    ++k;
+  }
+  if (k == end)
+  {
+    return;
+  }
+  const RockSimulator &a = members_[pair.first]->sim, &b = members_[pair.second]->sim;
+  PairArming arming(a.placed_, a.state_, b.placed_, b.state_, pair.law, parameters_);
+  for (; k != end; ++k)
+  {
+    if (!k->closed())
+    {
+      arming.arm(*k);
+    }
+  }
+  if (pair.law.damping > 0.0)
+  {
+    tuneDashpots(
+      pair.contacts, h,
+      [motion = this->motionOf(pair)](const Contact& c)
+      { return -c.normal.dot(motion.at(c.point)); },
+      [&](const Vec3& force, const Vec3& moment, const Vec3& at)
+      { return response(a.placed_, force, moment, at) + response(b.placed_, force, moment, at); });
+  }
+}
+
+void MassFall::armContact(const RockPair& pair, Contact& c) const
+{
+  const RockSimulator &a = members_[pair.first]->sim, &b = members_[pair.second]->sim;
+  PairArming(a.placed_, a.state_, b.placed_, b.state_, pair.law, parameters_).arm(c);
+}
+
+} // namespace rockfall
