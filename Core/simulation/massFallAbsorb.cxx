@@ -30,6 +30,8 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
   std::vector<std::uint64_t>& carriers = work.carriers;
   carriers.assign(work.bodies.size(), 0);
   work.touchesOthers.assign(work.bodies.size(), 0);
+  std::vector<char>& strike = work.flags; // by pair, of those that touch
+  strike.resize(std::max(strike.size(), group.pairs.size()));
   const auto book = [&](RockPair& pair, const GroupContact& taken)
   {
     const Contact& c = *taken.contact;
@@ -72,6 +74,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
         carry[1] += keyOf(c) * std::uint64_t(pair.first + 2);
       }
     }
+    strike[p] = pair.strikes;
     if (!pair.touched)
     {
       return;
@@ -110,6 +113,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     RockPair& pair = *group.pairs[added.of];
     this->findKnock(pair, work.contacts[work.firsts.back() + k], h);
     book(pair, work.contacts[work.firsts.back() + k]);
+    strike[added.of] = pair.strikes;
     if (c.closed())
     {
       pair.touched = true;
@@ -134,10 +138,9 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
   }
   for (const std::size_t p : work.touching)
   {
-    RockPair& pair = *group.pairs[p];
-    if (pair.strikes && (!pair.touched || kind == StepKind::Lasting))
+    if (strike[p] && (kind == StepKind::Lasting || !group.pairs[p]->touched))
     {
-      this->finishPairImpact(pair);
+      this->finishPairImpact(*group.pairs[p]);
     }
   }
   const bool crowd = group.crowd;

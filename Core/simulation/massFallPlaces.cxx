@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 
 namespace rockfall
 {
@@ -22,21 +21,6 @@ constexpr std::size_t kPart = 128;
 std::size_t partsOf(std::size_t count)
 {
   return (count + kPart - 1) / kPart;
-}
-
-/// The larger of the two, whoever else raises it at the same time.
-void raise(double& value, double to, bool alone)
-{
-  const std::atomic_ref<double> shared(value);
-  double was = shared.load(std::memory_order_relaxed);
-  if (alone)
-  {
-    shared.store(std::max(was, to), std::memory_order_relaxed);
-    return;
-  }
-  while (was < to && !shared.compare_exchange_weak(was, to, std::memory_order_relaxed))
-  {
-  }
 }
 
 } // namespace
@@ -195,23 +179,19 @@ void MassFall::settleBounces(bool lasting, Workspace& work) const
 
 void MassFall::findPushes(const Group& group, Workspace& work)
 {
-  const bool alone = parallel::threads() == 1;
-  const auto strike = [alone, pairs = group.pairs.data(), last = group.pairs.size() - 1,
-                        of = work.sides.data()](std::size_t p)
+  for (const RockPair* pair : group.pairs)
   {
-    constexpr std::size_t kAhead = 8;
-    __builtin_prefetch(pairs[std::min(p + kAhead, last)]);
-    Workspace::Side &a = of[pairs[p]->first], &b = of[pairs[p]->second];
+    Workspace::Side& a = work.sides[std::size_t(pair->first)];
+    Workspace::Side& b = work.sides[std::size_t(pair->second)];
     if (a.done || b.done)
     {
-      return;
+      continue;
     }
     // What meets elastically changes its velocity by twice the closing one's share.
     const double shared = 2.0 * (a.velocity - b.velocity).norm() / (a.mass + b.mass);
-    raise(a.pushed, shared * b.mass, alone);
-    raise(b.pushed, shared * a.mass, alone);
-  };
-  forEach(group.pairs.size(), kPart, strike);
+    a.pushed = std::max(a.pushed, shared * b.mass);
+    b.pushed = std::max(b.pushed, shared * a.mass);
+  }
 }
 
 } // namespace rockfall

@@ -162,8 +162,9 @@ private:
   bool sweepTo(double goal, int most, bool conjugate, GroupOutcome& outcome);
   /// A run of sweeps over everything, or around what has changed; whether all has settled.
   bool sweeps(int most, bool everywhere, GroupOutcome& outcome);
-  void begin();     ///< Before the first of a run of sweeps.
-  void goFurther(); ///< Between two sweeps of a run: along a conjugate direction.
+  void begin();             ///< Before the first of a run of sweeps.
+  void goFurther();         ///< Between two sweeps of a run: along a conjugate direction,
+  void goFurther(int part); ///< and the forces of a part that is swept next.
   /// Sweeps, and again as long as bounces give energy.
   void settle(
     int most, bool everywhere, std::vector<GroupContact>& contacts, GroupOutcome& outcome);
@@ -232,6 +233,8 @@ private:
   std::vector<crowd::Way> before_, along_;
   std::vector<double> changes_; ///< By share of the movers.
   double lastChange_ = 0.0;     ///< Of the sweep before; negative: there was none.
+  crowd::Further further_ = {};
+  bool goingFurther_ = false; ///< In the sweep at hand.
   const crowd::Kernel* kernel_ = nullptr;
   // Of the step at hand.
   const std::vector<GroupBody>* bodies_ = nullptr;

@@ -296,13 +296,17 @@ bool CrowdSolver::findEmptyLane(const GroupContact& contact, Row& row)
   {
     crowd::Batch& batch = batches_[std::size_t(k)];
     int& filled = filled_[std::size_t(k)];
-    bool has = filled == crowd::kLanes;
-    for (int lane = 0; lane < crowd::kLanes && !has; ++lane)
+    if (filled == crowd::kLanes)
+    {
+      continue;
+    }
+    int has = 0;
+    for (int lane = 0; lane < crowd::kLanes; ++lane)
     {
       const int first = batch.body[0][lane], second = batch.body[1][lane];
-      has = first == a || first == c || second == a || second == c;
+      has |= int(first == a) | int(first == c) | int(second == a) | int(second == c);
     }
-    if (!has)
+    if (has == 0)
     {
       row.batch = k;
       row.lane = filled++;

@@ -18,7 +18,7 @@ namespace rockfall
 namespace
 {
 
-/// Rocks of a share of what is gone over, and shares at most.
+/// Rocks of a share of them all, and shares at most.
 constexpr std::size_t kRocks = 64, kMostShares = 64;
 
 } // namespace
@@ -40,8 +40,7 @@ void CrowdSolver::begin()
 
 void CrowdSolver::goFurther()
 {
-  // Rocks and batches are both in order along the group: who goes over a share of the ones has the
-  // same of the others, and of the parts that are swept.
+  // Rocks are in order along the group: who goes over a share of them has the same parts to sweep.
   const std::size_t shares = std::clamp(work_.size() / kRocks, std::size_t(1), kMostShares);
   const auto ofShare = [shares](std::size_t share, std::size_t count, auto&& go)
   {
@@ -59,25 +58,31 @@ void CrowdSolver::goFurther()
   const double change = std::accumulate(changes_.begin(), changes_.end(), 0.0);
   // Where it does not get smaller it begins anew.
   const bool first = lastChange_ < 0.0, anew = !first && !(change <= lastChange_);
-  crowd::Further further;
+  crowd::Further& further = further_;
   further.share = first || anew || change <= 0.0 ? 0.0 : change / lastChange_;
   further.anew = anew;
   further.quiet = quiet_;
   further.number = sweep_ - 1; // since the last visit
   lastChange_ = change;
-  const auto goForces = [&](std::size_t from, std::size_t count)
-  { kernel_->goForces(further, &forces_[from], &forcesBefore_[from], &forcesAlong_[from], count); };
-  const auto goMovers = [&](std::size_t from, std::size_t count)
-  {
-    kernel_->goMovers(
-      further, &movers_[from], &before_[from], &along_[from], &changed_[from], count);
-  };
   const auto go = [&](std::size_t share)
   {
+    const auto goMovers = [&](std::size_t from, std::size_t count)
+    {
+      kernel_->goMovers(
+        further, &movers_[from], &before_[from], &along_[from], &changed_[from], count);
+    };
     ofShare(share, work_.size(), goMovers);
-    ofShare(share, forces_.size(), goForces);
   };
   forEach(shares, 1, go);
+  goingFurther_ = true; // forces follow part by part, where they are visited next
+}
+
+void CrowdSolver::goFurther(int part)
+{
+  const std::size_t key = std::size_t(part * kKinds);
+  const std::size_t first = std::size_t(starts_[key]), end = std::size_t(starts_[key + Watching]);
+  kernel_->goForces(further_, forces_.data() + first, forcesBefore_.data() + first,
+    forcesAlong_.data() + first, end - first);
 }
 
 } // namespace rockfall

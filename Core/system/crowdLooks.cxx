@@ -25,10 +25,7 @@ void CrowdSolver::noteChange(const GroupContact& contact)
 
 void CrowdSolver::assembleFresh()
 {
-  for (const int k : fresh_)
-  {
-    this->assemble(std::size_t(k), 1);
-  }
+  forEach(fresh_.size(), 4, [&](std::size_t k) { this->assemble(std::size_t(fresh_[k]), 1); });
 }
 
 void CrowdSolver::append(const std::vector<GroupBody>& bodies, std::vector<GroupContact>& contacts)

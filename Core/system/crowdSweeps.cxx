@@ -41,6 +41,10 @@ constexpr int kAfterWatched = 2;
 
 double CrowdSolver::visit(int part)
 {
+  if (goingFurther_)
+  {
+    this->goFurther(part);
+  }
   crowd::Pass pass;
   pass.backwards = sweep_ % 2 != 0;
   pass.movers = movers_.data();
@@ -64,6 +68,7 @@ double CrowdSolver::sweep()
 {
   most_.assign(std::size_t(parts_) + 1, 0.0);
   this->forParts(sweep_ % 2 != 0, [&](int part) { most_[std::size_t(part)] = this->visit(part); });
+  goingFurther_ = false;
   changed_.back() = kNever; // the slope of the last part, where its contacts are among the others
   return *std::max_element(most_.begin(), most_.end());
 }
