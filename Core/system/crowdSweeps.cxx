@@ -23,7 +23,7 @@ constexpr int kRoughSweeps = 200;
 /// rough, the sweeps go on around it, where things move by more than this share of the longest way.
 /// Forces are not that exact yet anywhere: else each of these runs would go on with all of them.
 constexpr double kNoticed = 3e-3;
-constexpr double kRoughNoticed = 0.5;
+constexpr double kRoughNoticed = 0.1; ///< Of what is rough.
 /// What is found in a second look is met to this many times the tolerance, which is about as exact
 /// as it is found, unless nothing bounces.
 constexpr double kFound = 4.0;
