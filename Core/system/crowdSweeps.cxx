@@ -23,7 +23,7 @@ constexpr int kRoughSweeps = 200;
 /// rough, the sweeps go on around it, where things move by more than this share of the longest way.
 /// Forces are not that exact yet anywhere: else each of these runs would go on with all of them.
 constexpr double kNoticed = 3e-3;
-constexpr double kRoughNoticed = 0.1; ///< Of what is rough.
+constexpr double kRoughNoticed = 0.1; ///< And, of what is rough, less than this share of that.
 /// What is found in a second look is met to this many times the tolerance, which is about as exact
 /// as it is found, unless nothing bounces.
 constexpr double kFound = 4.0;
@@ -115,7 +115,7 @@ bool CrowdSolver::sweeps(int most, bool everywhere, GroupOutcome& outcome)
   if (outcome.residual > rough)
   {
     // Most have settled by then: on around where it is rough.
-    sweepAround(rough, kRoughNoticed * rough, kRoughSweeps * most, false);
+    sweepAround(rough, std::min(noticed, kRoughNoticed * rough), kRoughSweeps * most, false);
     settled = false;
   }
   return settled;
