@@ -295,7 +295,10 @@ void MassFall::Meetings::search(MassFall& fall)
   const std::span<const std::array<int, 2>> found = broad_.pairs();
   const auto behind = near.begin() + std::ptrdiff_t(sorted_);
   std::sort(behind, near.end());
-  std::inplace_merge(near.begin(), behind, near.end());
+  // Not in place: the room that it would take for it knows nothing of their alignment.
+  nextNear_.resize(near.size());
+  std::merge(near.begin(), behind, behind, near.end(), nextNear_.begin());
+  near.swap(nextNear_);
   // What lasts of those that are still near, and of sleepers, which are not looked for.
   nextNear_.clear();
   nextNear_.reserve(std::max(found.size(), near.size()));
