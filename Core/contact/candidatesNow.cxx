@@ -94,19 +94,6 @@ bool mayHold(int triangle, const SurfacePatch::Triangle& of, double s, double t,
     : t - s <= std::numbers::sqrt2 * allowed(0) && s <= 1.0 + allowed(1) && t >= -allowed(2);
 }
 
-/// Whether both ends of a segment are over one face of the rock by more than `distance` (m).
-bool isOverFace(const PairBody& body, const Vec3& a, const Vec3& b, double distance)
-{
-  for (int i = 0; i < body.faceFours(); ++i)
-  {
-    if (body.overFaces(a, i).min(body.overFaces(b, i)).maxCoeff() > distance)
-    {
-      return true;
-    }
-  }
-  return false;
-}
-
 /// In the order in which gatherCandidates comes to them.
 void sortByTriangle(std::vector<CandidatePairs::Pair>& pairs)
 {
@@ -217,7 +204,7 @@ void gatherNow(const PlacedBlock& rock, const PairBody& body, const SurfacePatch
     {
       const int i = row * patch.nodeColumns + column;
       const SurfacePatch::Node& q = nodes[i];
-      if (q.peak && nearNodes.holds(q.position) && !isOverFace(body, q.position, q.position, most))
+      if (q.peak && nearNodes.holds(q.position) && body.overAll(q.position) <= most)
       {
         candidates.peaks.push_back(i);
       }
@@ -323,7 +310,7 @@ void gatherUnder(const PlacedBlock& rock, const PairBody& body, const SurfacePat
     {
       const int i = row * patch.nodeColumns + column;
       const SurfacePatch::Node& q = patch.nodes[i];
-      if (q.peak && box.holds(q.position) && !isOverFace(body, q.position, q.position, -allowed) &&
+      if (q.peak && box.holds(q.position) && body.overAll(q.position) <= -allowed &&
         rock.faceDistance(rock.outermostFace(q.position), q.position) < -allowed)
       {
         candidates.peaks.push_back(i);

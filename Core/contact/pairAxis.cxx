@@ -252,22 +252,11 @@ void offerFaces(const PairBody& first, const PairBody& second, PairAxis& best)
   offer(second, first, PairAxis::Kind::FaceOfSecond);
 }
 
-/// Of all planes of a body the farthest that a point is over one, m; < 0: so deep it is inside.
-double overAll(const PairBody& body, const Vec3& point)
-{
-  PairBody::Four most = body.overFaces(point, 0);
-  for (int i = 1; i < body.faceFours(); ++i)
-  {
-    most = most.max(body.overFaces(point, i));
-  }
-  return most.maxCoeff();
-}
-
 /// Upper bound of the distance of a point from a body. Where it is over a plane by ε, the body
 /// scaled up about its centroid by ε over the radius of the ball in it holds the point.
 double farFrom(const PairBody& body, const Vec3& point)
 {
-  const double over = overAll(body, point);
+  const double over = body.overAll(point);
   return over <= 0.0 ? 0.0 : over * (point - body.position).norm() / body.inside;
 }
 
@@ -303,13 +292,13 @@ struct FacePlane
       return false;
     }
     const double gap = std::max(0.0, over);
-    return limit < 0.0 ? overAll(owner, vertex) <= limit
+    return limit < 0.0 ? owner.overAll(vertex) <= limit
                        : gap + farFrom(owner, vertex - gap * normal) <= limit;
   }
   /// or one of the face.
   bool shows(const Vec3& vertex, double limit) const
   {
-    return (limit < 0.0 ? overAll(other, vertex) : farFrom(other, vertex)) <= limit;
+    return (limit < 0.0 ? other.overAll(vertex) : farFrom(other, vertex)) <= limit;
   }
   /// Whether what showed it last does so again.
   bool shows(int witness, double limit) const

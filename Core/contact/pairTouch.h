@@ -5,6 +5,7 @@
 
 #include "contact/pairs.h"
 
+#include <limits>
 #include <span>
 
 namespace rockfall
@@ -22,9 +23,10 @@ struct Touch
 std::span<const Touch> touchesAlong(
   const PairBody& first, const PairBody& second, const PairAxis& axis, double reach);
 /// What was found along an axis; an overlap that shows none there is looked at along the best axis,
-/// and `axis` is it then.
+/// and `axis` is it then; for those with gaps under `below` (m) only.
 std::span<const Touch> orAlongBest(std::span<const Touch> found, const PairBody& first,
-  const PairBody& second, PairAxis& axis, double reach);
+  const PairBody& second, PairAxis& axis, double reach,
+  double below = std::numeric_limits<double>::infinity());
 
 /// The features that touch.
 struct TouchFeatures

@@ -80,29 +80,23 @@ std::span<const Touch> touchesAlong(
 }
 
 std::span<const Touch> orAlongBest(std::span<const Touch> found, const PairBody& first,
-  const PairBody& second, PairAxis& axis, double reach)
+  const PairBody& second, PairAxis& axis, double reach, double below)
 {
   if (!found.empty() || axis.distance >= 0.0)
   {
     return found;
   }
   axis = bestAxis(first, second, axis);
-  return touchesAlong(first, second, axis, reach);
+  return axis.distance < below ? touchesAlong(first, second, axis, reach)
+                               : std::span<const Touch>();
 }
 
 void findTouches(const PairBody& first, const PairBody& second, PairAxis& axis, double reach,
   std::vector<Contact>& contacts, double below)
 {
   contacts.clear();
-  std::span<const Touch> touches = touchesAlong(first, second, axis, reach);
-  if (touches.empty() && axis.distance < 0.0)
-  {
-    axis = bestAxis(first, second, axis);
-    if (axis.distance < below)
-    {
-      touches = touchesAlong(first, second, axis, reach);
-    }
-  }
+  const std::span<const Touch> touches =
+    orAlongBest(touchesAlong(first, second, axis, reach), first, second, axis, reach, below);
   for (const Touch& touch : touches)
   {
     if (touch.distance < below)

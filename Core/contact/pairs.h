@@ -69,6 +69,16 @@ public:
     const double* of = faceData() + 16 * i;
     return along(point, of) - Eigen::Map<const Four>(of + 12);
   }
+  /// Of all planes the farthest that a point is over one, m; < 0: so deep it is inside.
+  double overAll(const Vec3& point) const
+  {
+    Four most = this->overFaces(point, 0);
+    for (int i = 1; i < faceFours_; ++i)
+    {
+      most = most.max(this->overFaces(point, i));
+    }
+    return most.maxCoeff();
+  }
   /// World, m.
   Vec3 vertex(int i) const
   {
@@ -166,13 +176,8 @@ struct PairMotion
   std::array<Vec3, 2> positions; ///< Of the centroids, m.
 
   PairMotion(const BlockState& first, const BlockState& second)
-    : PairMotion(first, second, first.angularVelocity(), second.angularVelocity())
-  {
-  }
-  PairMotion(const BlockState& first, const BlockState& second, const Vec3& spinOfFirst,
-    const Vec3& spinOfSecond)
-    : PairMotion(first.velocity - second.velocity, { spinOfFirst, spinOfSecond },
-        { first.position, second.position })
+    : PairMotion(first.velocity - second.velocity,
+        { first.angularVelocity(), second.angularVelocity() }, { first.position, second.position })
   {
   }
   PairMotion(const Vec3& passing, const std::array<Vec3, 2>& theirSpins,

@@ -66,20 +66,12 @@ void MassFall::Meetings::unite()
   std::fill(grouped_.begin(), grouped_.end(), char(0));
   int* const heads = heads_.data();
   char* const grouped = grouped_.data();
-  const auto headOf = [heads](int i)
-  {
-    while (heads[i] != i)
-    {
-      i = heads[i] = heads[heads[i]];
-    }
-    return i;
-  };
   const auto uniteTwo = [&](const Linked& l)
   {
     grouped[l.first] = grouped[l.second] = 1;
     if (heads[l.first] != heads[l.second])
     {
-      const int a = headOf(l.first), b = headOf(l.second);
+      const int a = headOf(heads_, l.first), b = headOf(heads_, l.second);
       heads[std::max(a, b)] = std::min(a, b);
     }
   };

@@ -103,6 +103,17 @@ inline bool operator<(const Near& a, const Near& b)
   return a.first != b.first ? a.first < b.first : a.second < b.second;
 }
 
+/// The first one of those that are joined to one, by the one that each is joined to.
+inline int headOf(std::vector<int>& joined, int i)
+{
+  int* const heads = joined.data();
+  while (heads[i] != i)
+  {
+    i = heads[i] = heads[heads[i]];
+  }
+  return i;
+}
+
 /// What a look at two rocks near each other has shown.
 enum class Sight : std::uint8_t
 {

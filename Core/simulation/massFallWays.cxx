@@ -19,11 +19,7 @@ constexpr double kNoMore = 1.0 + 1e-6;
 
 int MassFall::Meetings::root(int i)
 {
-  while (parents_[std::size_t(i)] != i)
-  {
-    i = parents_[std::size_t(i)] = parents_[std::size_t(parents_[std::size_t(i)])];
-  }
-  return i;
+  return headOf(parents_, i);
 }
 
 /// A light rock that a heavy one strikes goes on faster than it, by this factor.

@@ -102,8 +102,8 @@ struct MassFall::Workspace
     std::size_t contacts = 0, touching = 0;
   };
   std::vector<Part> parts;
-  std::vector<std::size_t> meeting;        ///< What each part has chosen, from its beginning.
-  std::vector<char> flags;                 ///< For forThose.
+  std::vector<std::size_t> meeting; ///< What each part has chosen, from its beginning.
+  std::vector<char> flags; ///< For forThose; in the end by pair, whether an impact is under way.
   std::vector<std::size_t> missed;         ///< Pairs or rocks whose contacts were missed.
   std::vector<std::vector<Contact>> found; ///< Of each of them, where it touches.
   bool looked = false;                     ///< Where the step ends.

@@ -42,38 +42,33 @@ void CrowdSolver::goFurther()
 {
   // Rocks are in order along the group: who goes over a share of them has the same parts to sweep.
   const std::size_t shares = std::clamp(work_.size() / kRocks, std::size_t(1), kMostShares);
-  const auto ofShare = [shares](std::size_t share, std::size_t count, auto&& go)
+  const auto forShares = [count = work_.size(), shares](auto&& go)
   {
-    const std::size_t first = share * count / shares;
-    go(first, (share + 1) * count / shares - first);
+    const auto goShare = [&](std::size_t share)
+    {
+      const std::size_t from = share * count / shares;
+      go(share, from, (share + 1) * count / shares - from);
+    };
+    forEach(shares, 1, goShare);
   };
   changes_.resize(shares);
-  const auto compare = [&](std::size_t share)
-  {
-    const auto changeOf = [&](std::size_t first, std::size_t count)
-    { changes_[share] = kernel_->changeOf(&movers_[first], &before_[first], int(count)); };
-    ofShare(share, work_.size(), changeOf);
-  };
-  forEach(shares, 1, compare);
+  const auto changeOf = [&](std::size_t share, std::size_t from, std::size_t count)
+  { changes_[share] = kernel_->changeOf(&movers_[from], &before_[from], int(count)); };
+  forShares(changeOf);
   const double change = std::accumulate(changes_.begin(), changes_.end(), 0.0);
   // Where it does not get smaller it begins anew.
   const bool first = lastChange_ < 0.0, anew = !first && !(change <= lastChange_);
-  crowd::Further& further = further_;
-  further.share = first || anew || change <= 0.0 ? 0.0 : change / lastChange_;
-  further.anew = anew;
-  further.quiet = quiet_;
-  further.number = sweep_ - 1; // since the last visit
+  further_.share = first || anew || change <= 0.0 ? 0.0 : change / lastChange_;
+  further_.anew = anew;
+  further_.quiet = quiet_;
+  further_.number = sweep_ - 1; // since the last visit
   lastChange_ = change;
-  const auto go = [&](std::size_t share)
+  const auto goMovers = [&](std::size_t, std::size_t from, std::size_t count)
   {
-    const auto goMovers = [&](std::size_t from, std::size_t count)
-    {
-      kernel_->goMovers(
-        further, &movers_[from], &before_[from], &along_[from], &changed_[from], count);
-    };
-    ofShare(share, work_.size(), goMovers);
+    kernel_->goMovers(
+      further_, &movers_[from], &before_[from], &along_[from], &changed_[from], count);
   };
-  forEach(shares, 1, go);
+  forShares(goMovers);
   goingFurther_ = true; // forces follow part by part, where they are visited next
 }
 
