@@ -216,14 +216,17 @@ private:
   int parts_ = 1;
   std::vector<std::vector<Hand>> hands_; ///< Of each part.
   std::vector<char> wrong_; ///< By contact, whether a rock of it has turned otherwise than guessed.
-  std::vector<char> gives_; ///< By contact, whether its bounce gives energy.
-  std::vector<char> turned_;        ///< By batch, whether it holds such a contact.
-  std::vector<int> touched_;        ///< Bodies.
-  std::vector<int> closing_;        ///< Watched contacts that have closed,
-  std::vector<int> left_;           ///< and those for which there is no empty lane.
-  std::vector<int> fresh_;          ///< Batches with contacts that are new in them.
-  std::vector<int> keyOf_, order_;  ///< Contacts: part and kind; in order of it.
-  std::vector<int> starts_;         ///< First batch of each part and kind.
+  std::vector<std::size_t> bouncing_; ///< Contacts that are to leave with some speed.
+  std::vector<char> gives_;           ///< Of these, whether the bounce gives energy.
+  std::vector<char> turned_;          ///< By batch, whether it holds such a contact.
+  std::vector<int> touched_;          ///< Bodies.
+  std::vector<int> closing_;          ///< Watched contacts that have closed,
+  std::vector<int> left_;             ///< and those for which there is no empty lane.
+  std::vector<int> fresh_;            ///< Batches with contacts that are new in them.
+  std::vector<int> keyOf_, order_;    ///< Contacts: part and kind; in order of it.
+  // Of each part and kind: its first batch, the end of those that hold any contact, and the first
+  // one that may have an empty lane.
+  std::vector<int> starts_, used_, room_;
   std::vector<std::size_t> ends_;   ///< Behind the last contact of each part and kind in `order_`.
   std::vector<std::uint32_t> open_; ///< By mover: the batches being filled that hold it.
   std::vector<double> most_;        ///< Largest change, by part.

@@ -134,6 +134,7 @@ void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
   rows_.resize(contacts.size());
   open_.assign(work_.size(), 0);
   starts_.resize(keys + 1);
+  used_.resize(keys);
   hands_.resize(std::max(hands_.size(), std::size_t(parts_) + 1));
   const auto dealPart = [&](int part)
   {
@@ -145,6 +146,7 @@ void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
       starts_[key] = int(hands.size());
       this->deal(contacts, order_.data() + this->firstOf(key), order_.data() + ends_[key],
         bodies + part, hands);
+      used_[key] = int(hands.size());
       if (part < parts_)
       {
         const std::size_t watching = std::size_t(part * kKinds + Watching);
@@ -152,7 +154,8 @@ void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
           1 + (ends_[watching] - this->firstOf(watching)) / kWatchedPerSpare, Hand(bodies + part));
       }
     }
-    starts_[std::size_t(part * kKinds + Watching)] = int(hands.size());
+    const std::size_t watching = std::size_t(part * kKinds + Watching);
+    starts_[watching] = used_[watching] = int(hands.size());
   };
   this->forParts(false, dealPart);
   // Part after part.
@@ -160,9 +163,11 @@ void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
   for (std::size_t key = 0; key < keys; ++key)
   {
     starts_[key] += count;
+    used_[key] += count;
     count += (key + 1) % kKinds == 0 ? int(hands_[key / kKinds].size()) : 0;
   }
   starts_[keys] = count;
+  room_ = starts_;
   watchStarts_.assign(std::size_t(parts_) + 2, 0);
   for (std::size_t part = 0; part <= std::size_t(parts_); ++part)
   {
@@ -292,12 +297,13 @@ bool CrowdSolver::findEmptyLane(const GroupContact& contact, Row& row)
   const std::size_t key = std::size_t(part * kKinds + (slope && part < parts_ ? OnSlope : Pairs));
   const int a = int(work_[std::size_t(contact.first)].mover);
   const int c = slope ? a : int(work_[std::size_t(contact.second)].mover);
-  for (int k = starts_[key]; k < starts_[key + 1]; ++k)
+  for (int k = room_[key]; k < starts_[key + 1]; ++k)
   {
     crowd::Batch& batch = batches_[std::size_t(k)];
     int& filled = filled_[std::size_t(k)];
     if (filled == crowd::kLanes)
     {
+      room_[key] += k == room_[key] ? 1 : 0;
       continue;
     }
     int has = 0;
@@ -310,6 +316,7 @@ bool CrowdSolver::findEmptyLane(const GroupContact& contact, Row& row)
     {
       row.batch = k;
       row.lane = filled++;
+      used_[key] = std::max(used_[key], k + 1);
       batch.body[0][row.lane] = a;
       batch.body[1][row.lane] = slope ? batch.body[1][row.lane] : c;
       return true;
@@ -340,10 +347,13 @@ void CrowdSolver::appendBatches(
   forcesBefore_.resize(batches_.size());
   forcesAlong_.resize(batches_.size());
   // They go with what reaches further than to the next part.
-  for (std::size_t key = std::size_t(parts_ * kKinds + Pairs) + 1; key < starts_.size(); ++key)
+  const std::size_t pairs = std::size_t(parts_ * kKinds + Pairs);
+  used_[pairs] = int(batches_.size());
+  for (std::size_t key = pairs + 1; key < starts_.size(); ++key)
   {
-    starts_[key] += int(hands.size());
+    starts_[key] = int(batches_.size());
   }
+  used_[pairs + OnSlope] = used_[pairs + Watching] = int(batches_.size());
 }
 
 void CrowdSolver::layOutWatched(const std::vector<GroupContact>& contacts, int part, int slope)

@@ -74,10 +74,13 @@ void CrowdSolver::goFurther()
 
 void CrowdSolver::goFurther(int part)
 {
-  const std::size_t key = std::size_t(part * kKinds);
-  const std::size_t first = std::size_t(starts_[key]), end = std::size_t(starts_[key + Watching]);
-  kernel_->goForces(further_, forces_.data() + first, forcesBefore_.data() + first,
-    forcesAlong_.data() + first, end - first);
+  for (const Kind kind : { Pairs, OnSlope })
+  {
+    const std::size_t key = std::size_t(part * kKinds + kind);
+    const std::size_t first = std::size_t(starts_[key]), end = std::size_t(used_[key]);
+    kernel_->goForces(further_, forces_.data() + first, forcesBefore_.data() + first,
+      forcesAlong_.data() + first, end - first);
+  }
 }
 
 } // namespace rockfall

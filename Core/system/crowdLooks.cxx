@@ -53,6 +53,10 @@ void CrowdSolver::append(const std::vector<GroupBody>& bodies, std::vector<Group
     {
       this->stiffen(contacts[k], rows_[k]);
     }
+    if (contacts[k].bounce > 0.0)
+    {
+      bouncing_.push_back(k);
+    }
   }
 }
 

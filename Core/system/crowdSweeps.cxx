@@ -36,6 +36,8 @@ constexpr double kWorthALook = 0.25 * kDeepMiss;
 /// In each so many sweeps watched contacts are looked at, and so many follow on one that closes.
 constexpr int kWatchEvery = 2;
 constexpr int kAfterWatched = 2;
+/// Bounces for one thread at a time.
+constexpr std::size_t kBounceGrain = 32;
 
 } // namespace
 
@@ -57,7 +59,7 @@ double CrowdSolver::visit(int part)
     const std::size_t key = std::size_t(part * kKinds + (slope ? OnSlope : Pairs));
     pass.first = batches_.data() + starts_[key];
     pass.forces = forces_.data() + starts_[key];
-    pass.count = starts_[key + 1] - starts_[key];
+    pass.count = used_[key] - starts_[key];
     pass.slope = slope;
     most = std::max(most, kernel_->sweep(pass));
   }
@@ -123,11 +125,12 @@ bool CrowdSolver::sweeps(int most, bool everywhere, GroupOutcome& outcome)
 
 bool CrowdSolver::holdBounces(std::vector<GroupContact>& contacts)
 {
-  const auto gives = [&](std::size_t k)
+  const auto gives = [&](std::size_t b)
   {
+    const std::size_t k = bouncing_[b];
     if (contacts[k].bounce <= 0.0)
     {
-      return false;
+      return false; // held back to nothing before
     }
     const Row& row = rows_[k];
     const Vec3 force = this->forceOf(row);
@@ -147,12 +150,12 @@ bool CrowdSolver::holdBounces(std::vector<GroupContact>& contacts)
     return held >= 0.0;
   };
   bool any = false;
-  const auto goOn = [&](std::size_t k)
+  const auto goOn = [&](std::size_t b)
   {
     any = true;
-    this->noteChange(contacts[k]);
+    this->noteChange(contacts[bouncing_[b]]);
   };
-  forThose(rows_.size(), kRowGrain, gives_, gives, goOn);
+  forThose(bouncing_.size(), kBounceGrain, gives_, gives, goOn);
   return any;
 }
 
@@ -207,9 +210,14 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
   {
     scale = std::max(scale, w.way.norm());
   }
-  for (const GroupContact& k : contacts)
+  bouncing_.clear();
+  for (std::size_t k = 0; k < contacts.size(); ++k)
   {
-    calm = calm && k.bounce < 0.0;
+    calm = calm && contacts[k].bounce < 0.0;
+    if (contacts[k].bounce > 0.0)
+    {
+      bouncing_.push_back(k);
+    }
   }
   scale_ = scale;
   enough_ = tolerance * scale;
