@@ -118,6 +118,9 @@ private:
   template <class Visit>
   void forContacts(int part, Visit&& visit) const;
   std::size_t firstOf(std::size_t key) const { return key == 0 ? 0 : ends_[key - 1]; }
+  /// Batches of a part that hold any contact: go(the first, how many), by kind.
+  template <class Go>
+  void forUsed(int part, Go&& go) const;
   void prepareRow(const std::vector<GroupBody>& bodies, const GroupContact& group, Row& row);
   void stiffen(const GroupContact& group, const Row& row); ///< What bounces.
   /// Directions and levers at mid-step.
@@ -224,8 +227,8 @@ private:
   std::vector<int> left_;             ///< and those for which there is no empty lane.
   std::vector<int> fresh_;            ///< Batches with contacts that are new in them.
   std::vector<int> keyOf_, order_;    ///< Contacts: part and kind; in order of it.
-  // Of each part and kind: its first batch, the end of those that hold any contact, and the first
-  // one that may have an empty lane.
+  // Of each part and kind: its first batch, and where the contacts are that are swept, the end of
+  // those batches that hold any and the first one that may have an empty lane.
   std::vector<int> starts_, used_, room_;
   std::vector<std::size_t> ends_;   ///< Behind the last contact of each part and kind in `order_`.
   std::vector<std::uint32_t> open_; ///< By mover: the batches being filled that hold it.
@@ -267,6 +270,16 @@ void CrowdSolver::forParts(bool backwards, Visit&& visit) const
     visit(parts_);
     visitSecond(1);
     visitSecond(0);
+  }
+}
+
+template <class Go>
+void CrowdSolver::forUsed(int part, Go&& go) const
+{
+  for (const Kind kind : { Pairs, OnSlope })
+  {
+    const std::size_t key = std::size_t(part * kKinds + kind);
+    go(std::size_t(starts_[key]), std::size_t(used_[key] - starts_[key]));
   }
 }
 

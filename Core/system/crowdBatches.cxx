@@ -134,7 +134,7 @@ void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
   rows_.resize(contacts.size());
   open_.assign(work_.size(), 0);
   starts_.resize(keys + 1);
-  used_.resize(keys);
+  used_.assign(keys, 0);
   hands_.resize(std::max(hands_.size(), std::size_t(parts_) + 1));
   const auto dealPart = [&](int part)
   {
@@ -154,8 +154,7 @@ void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
           1 + (ends_[watching] - this->firstOf(watching)) / kWatchedPerSpare, Hand(bodies + part));
       }
     }
-    const std::size_t watching = std::size_t(part * kKinds + Watching);
-    starts_[watching] = used_[watching] = int(hands.size());
+    starts_[std::size_t(part * kKinds + Watching)] = int(hands.size());
   };
   this->forParts(false, dealPart);
   // Part after part.
@@ -353,7 +352,7 @@ void CrowdSolver::appendBatches(
   {
     starts_[key] = int(batches_.size());
   }
-  used_[pairs + OnSlope] = used_[pairs + Watching] = int(batches_.size());
+  used_[pairs + OnSlope] = int(batches_.size()); // it has none
 }
 
 void CrowdSolver::layOutWatched(const std::vector<GroupContact>& contacts, int part, int slope)

@@ -74,13 +74,12 @@ void CrowdSolver::goFurther()
 
 void CrowdSolver::goFurther(int part)
 {
-  for (const Kind kind : { Pairs, OnSlope })
+  const auto go = [&](std::size_t first, std::size_t count)
   {
-    const std::size_t key = std::size_t(part * kKinds + kind);
-    const std::size_t first = std::size_t(starts_[key]), end = std::size_t(used_[key]);
     kernel_->goForces(further_, forces_.data() + first, forcesBefore_.data() + first,
-      forcesAlong_.data() + first, end - first);
-  }
+      forcesAlong_.data() + first, count);
+  };
+  this->forUsed(part, go);
 }
 
 } // namespace rockfall

@@ -82,11 +82,9 @@ void CrowdSolver::prepareRows(
   {
     this->forContacts(
       part, [&](std::size_t k) { this->prepareRow(bodies, contacts[k], rows_[k]); });
+    this->forUsed(
+      part, [&](std::size_t first, std::size_t count) { this->assemble(first, count); });
     const std::size_t key = std::size_t(part * kKinds);
-    for (const std::size_t of : { key + Pairs, key + OnSlope })
-    {
-      this->assemble(std::size_t(starts_[of]), std::size_t(used_[of] - starts_[of]));
-    }
     for (std::size_t at = this->firstOf(key); at < ends_[key + OnSlope]; ++at)
     {
       const std::size_t k = std::size_t(order_[at]);
