@@ -409,6 +409,7 @@ void RockSimulator::endContact()
 
 void RockSimulator::advance(double until, double enough)
 {
+  crowded_ = false; // alone, whatever it was in before
   horizon_ = std::min(until, parameters_.endTime);
   const auto seen = [&]
   {

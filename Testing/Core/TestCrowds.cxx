@@ -143,6 +143,49 @@ TEST(Crowds, ImpactsLoseWhatTheCoefficientOfRestitutionSays)
   }
 }
 
+TEST(Crowds, WhoHasLeftOneReboundsAsWhoNeverWasInOne)
+{
+  // Two posts that part fall on the floor, each by itself, on four corners at once. (A cube's mass
+  // as one of its corners feels it is just a quarter of its own: it would show nothing.)
+  for (const double e : { 0.2, 0.5, 0.8 })
+  {
+    SurfaceMaterial ground = material(e, 0.0);
+    ground.restitutionModel = RestitutionModel::NormalTangential;
+    const auto rebounds = [&](bool met)
+    {
+      Pile pile;
+      pile.ground = makeSlope(
+        9, 5.0, [](double, double) { return 0.0; }, ground);
+      pile.parameters.endTime = 1.0;
+      pile.parameters.rockRestitution = 0.9;
+      const Vec3 post(0.6, 0.6, 2.0);
+      pile.rocks = { brick(post, Vec3(20.0, 20.0, 2.5), 0), brick(post, Vec3(20.7, 20.0, 2.5), 1) };
+      pile.rocks[met ? 0 : 1].velocity = Vec3(4.0, 0.0, 0.0);
+      pile.make();
+      pile.fall->resolved = 0; // groups are stepped as crowds are
+      std::vector<double> ratios;
+      for (const Trajectory& t : pile.fall->run())
+      {
+        const auto floor = std::find_if(t.impacts.begin(), t.impacts.end(),
+          [](const ImpactEvent& i) { return i.normal.z() > 0.9; });
+        EXPECT_NE(floor, t.impacts.end());
+        if (floor != t.impacts.end())
+        {
+          ratios.push_back(-floor->velocityAfter.z() / floor->velocityBefore.z());
+        }
+      }
+      return ratios;
+    };
+    for (const bool met : { false, true })
+    {
+      for (const double ratio : rebounds(met))
+      {
+        EXPECT_NEAR(ratio, e, 0.02) << met; // the impact is resolved with some eight steps
+      }
+    }
+  }
+}
+
 TEST(Crowds, EveryJouleIsBooked)
 {
   Pile pile;
