@@ -140,7 +140,7 @@ struct PairLaw
 struct alignas(64) RockPair
 {
   PairAxis axis;
-  bool touched = false; ///< Has had closed contacts in the last step.
+  bool touched = false; ///< Has had closed contacts in the last step (see touchedAt).
   bool linked = false;  ///< May touch in the step at hand.
   bool known = false;   ///< The axis has been found for where the rocks stand now.
   /// The axis was found at the end of the last step, where the rocks still stand: exact if they
@@ -166,6 +166,7 @@ struct alignas(64) RockPair
   };
   Impact impact;
   double lastingLoss = 0.0; ///< What contacts have taken that is of no impact, springs included, J.
+  double touchedAt = -std::numeric_limits<double>::infinity(); ///< End of the last such step, s.
 };
 
 /// How a rock moves past another.

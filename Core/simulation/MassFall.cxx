@@ -155,6 +155,21 @@ void MassFall::wake(Member& member)
   sim.auditSamples(sim.state_);
 }
 
+bool MassFall::heldLately(const RockPair& pair) const
+{
+  return pair.touchedAt > time_ - kStillTime;
+}
+
+void MassFall::restAnew(int rock)
+{
+  Member& member = *members_[std::size_t(rock)];
+  if (!member.sim.done_)
+  {
+    member.stayed = member.lingered = member.sim.state_;
+    member.sim.quietTime_ = 0.0;
+  }
+}
+
 void MassFall::putToSleep(Member& member)
 {
   member.asleep = true;
@@ -250,7 +265,7 @@ bool MassFall::advanceAll()
         still = false;
         for (int i : group.members)
         {
-          members_[i]->stayed = members_[i]->lingered = members_[i]->sim.state_;
+          this->restAnew(i);
         }
       }
       for (int i : group.members)

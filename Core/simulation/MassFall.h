@@ -142,6 +142,9 @@ private:
   void findGroups(double duration);
   void wake(Member& member);
   void putToSleep(Member& member);
+  /// Whether the two have touched within the time that rest takes.
+  bool heldLately(const RockPair& pair) const;
+  void restAnew(int rock);          ///< As something has gone that it may have lain on or leant on.
   bool stays(Member& member) const; ///< Whether it has been still for long enough.
   bool isCrowd(const Group& group) const;
   bool advanceAll();

@@ -30,6 +30,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
   std::vector<std::uint64_t>& carriers = work.carriers;
   carriers.assign(work.bodies.size(), 0);
   work.touchesOthers.assign(work.bodies.size(), 0);
+  const double end = work.bodies.front().state->time;
   std::vector<char>& strike = work.flags; // by pair, of those that touch
   strike.resize(std::max(strike.size(), group.pairs.size()));
   const auto book = [&](RockPair& pair, const GroupContact& taken)
@@ -79,6 +80,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     {
       return;
     }
+    pair.touchedAt = end;
     // Whole numbers: their sum is the same in any order.
     for (const int side : { 0, 1 })
     {
@@ -117,6 +119,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     if (c.closed())
     {
       pair.touched = true;
+      pair.touchedAt = end;
       const std::size_t first = std::size_t(work.placeOf[std::size_t(pair.first)]);
       const std::size_t second = std::size_t(work.placeOf[std::size_t(pair.second)]);
       work.touchesOthers[first] = work.touchesOthers[second] = 1;

@@ -5,14 +5,19 @@
 #include "base/parallel.h"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 
 namespace rockfall
 {
 
-/// Who is linked, and who no longer is.
-void MassFall::Meetings::settle()
+/// Who is linked, and who no longer is. What has been held by another that is so no longer has to
+/// come to rest anew: the rest of its group may have been still for long, and it has hardly begun
+/// to fall.
+void MassFall::Meetings::settle(MassFall& fall)
 {
+  parted_.assign(movers.size(), 0);
+  std::atomic<bool> any = false;
   const auto part = [&](Near& n)
   {
     if (!(n.holds || n.wasLinked))
@@ -23,6 +28,14 @@ void MassFall::Meetings::settle()
     if (asleep && !n.wasLinked)
     {
       return;
+    }
+    if (n.wasLinked && fall.heldLately(*n.pair))
+    {
+      for (const int i : { n.first, n.second })
+      {
+        std::atomic_ref(parted_[std::size_t(i)]).store(1, std::memory_order_relaxed);
+      }
+      any.store(true, std::memory_order_relaxed);
     }
     n.pair->linked = n.pair->known = false;
     if (!asleep)
@@ -57,6 +70,13 @@ void MassFall::Meetings::settle()
     linkedCounts_[of] = std::size_t(linked - linked_.data()) - first;
   };
   forEach(linkedCounts_.size(), 1, settlePart);
+  for (std::size_t i = 0; any && i < parted_.size(); ++i)
+  {
+    if (parted_[i])
+    {
+      fall.restAnew(int(i));
+    }
+  }
 }
 
 /// Groups are what is linked: a company may have fallen apart.

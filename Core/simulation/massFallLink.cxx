@@ -374,7 +374,7 @@ void MassFall::Meetings::link(MassFall& fall)
   {
     this->tell(fall);
   }
-  this->settle();
+  this->settle(fall);
   this->unite();
 }
 

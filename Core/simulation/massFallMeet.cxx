@@ -212,6 +212,11 @@ void MassFall::Meetings::drop(MassFall& fall, Near& n)
   if (n.pair)
   {
     fall.closePairBooks(*n.pair);
+    if (fall.heldLately(*n.pair))
+    {
+      fall.restAnew(n.first);
+      fall.restAnew(n.second);
+    }
     std::vector<Contact> contacts = std::move(n.pair->contacts);
     contacts.clear();
     *n.pair = RockPair();

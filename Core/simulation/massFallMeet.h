@@ -193,7 +193,7 @@ private:
   bool stays(const Near& near) const;
 
   // What groups they are: massFallGroups.cxx
-  void settle();
+  void settle(MassFall& fall);
   void unite();
 
   // What they pass on to each other: massFallWays.cxx
@@ -238,6 +238,7 @@ private:
   std::vector<std::size_t> linkedCounts_; ///< By part of `near`.
   std::vector<int> heads_;
   std::vector<char> grouped_;
+  std::vector<char> parted_;   ///< By rock: what touched it lately is linked with it no longer.
   std::vector<double> thrown_; ///< By rock: what strikes it may make it faster by this factor.
   std::vector<double> fars_;   ///< By rock, how far it may come towards others, m.
   std::vector<int> firstLink_; ///< By rock, in `links_`.

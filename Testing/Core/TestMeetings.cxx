@@ -198,3 +198,70 @@ TEST(Meetings, WhatLosesItsSupportFalls)
     }
   }
 }
+
+TEST(Meetings, WhatLiesOnAStruckPillarFalls)
+{
+  // A beam on two pillars, awake as something spins on one of them, which is struck out: by the
+  // next step the beam is on its own, and has not gone far as yet.
+  for (const double timeStep : { 0.005, 0.002 })
+  {
+    Pile pile;
+    pile.ground = makeSlope(
+      21, 5.0, [](double, double) { return 0.0; }, material(0.3, 0.0));
+    pile.rocks = { brick(Vec3(1.0, 1.0, 1.0), Vec3(48.5, 50.0, 0.5), 0),
+      brick(Vec3(2.0, 1.0, 1.0), Vec3(52.0, 50.0, 0.5), 1),
+      brick(Vec3(4.0, 0.2, 0.5), Vec3(50.0, 50.0, 1.25), 2),
+      brick(Vec3(0.3, 0.3, 0.3), Vec3(52.7, 50.0, 1.15), 3),
+      brick(Vec3(1.0, 1.0, 1.0), Vec3(52.0, 29.0, 0.5), 4) };
+    pile.rocks[3].angularVelocity = Vec3(0.0, 0.0, 6.0);
+    pile.rocks[4].velocity = Vec3(0.0, 28.0, 0.0); // there after 0.72 s
+    pile.parameters.rockFrictionAngle = 0.0;
+    pile.parameters.rockRestitution = 1.0;
+    pile.parameters.timeStep = timeStep;
+    pile.parameters.endTime = 5.0;
+    pile.awake = false;
+    pile.start();
+    pile.run(5.0);
+    EXPECT_LT(pile.fall->state(2).position.z(), 0.3) << timeStep; // 1.25 m on the pillars
+  }
+}
+
+TEST(Meetings, WhatLeantOnACaughtBoulderSlides)
+{
+  // A cube on an incline on which it slides, held by a boulder at its foot; the boulder, on which
+  // something spins, is struck over the line of a barrier and caught. The cube, alone then, has not
+  // come to rest by how long it was still before.
+  const double slope = radians(18.0), strikes = 1.2;
+  Pile pile;
+  pile.ground = makeSlope(
+    41, 2.5, [&](double x, double) { return 100.0 + std::max(0.0, std::tan(slope) * (50.0 - x)); },
+    material(0.3, 15.0));
+  Structures s;
+  Barrier barrier;
+  barrier.points = { { 50.2, 50.003 }, { 60.0, 50.003 } };
+  barrier.height = 10.0;
+  s.barriers.push_back(barrier);
+  pile.ground.setStructures(s);
+  Rock cube = brick(Vec3(1.0, 1.0, 1.0), Vec3::Zero(), 0);
+  cube.orientation = Quat(Eigen::AngleAxisd(slope, Vec3::UnitY()));
+  const Vec3 top = cube.orientation * Vec3(0.5, 0.0, 0.5);
+  const Vec3 foot = cube.orientation * Vec3(0.5, 0.0, -0.5);
+  const double x = 50.0 - top.x() - 1e-4; // its upper edge at the boulder
+  cube.position =
+    Vec3(x, 50.0, 100.0 + std::tan(slope) * (50.0 - (x + foot.x())) - foot.z() + 1e-5);
+  pile.rocks = { cube, brick(Vec3(2.0, 2.0, 2.0), Vec3(51.0, 50.0, 101.0), 1),
+    brick(Vec3(0.5, 0.5, 0.5), Vec3(51.0, 50.0, 102.25), 2),
+    brick(Vec3(1.6, 2.0, 2.0), Vec3(51.0, 48.0 - 20.0 * strikes, 101.03), 3) };
+  pile.rocks[2].angularVelocity = Vec3(0.0, 0.0, 4.0);
+  pile.rocks[3].velocity = Vec3(0.0, 20.0, 0.5 * kGravity * strikes);
+  pile.parameters.rockFrictionAngle = 0.0;
+  pile.parameters.timeStep = 0.002;
+  pile.parameters.endTime = 5.0;
+  pile.awake = false;
+  pile.start();
+  pile.run(strikes + 0.01);
+  ASSERT_EQ(pile.fall->summary(1).fate, Fate::Caught);
+  const Vec3 held = pile.fall->state(0).position;
+  pile.run(4.0);
+  EXPECT_GT((pile.fall->state(0).position - held).norm(), 0.1);
+}
