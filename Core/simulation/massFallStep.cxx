@@ -45,7 +45,14 @@ GroupContact MassFall::take(const Member& member, Contact& c, double h, bool bou
   k.first = member.place;
   k.friction = c.friction;
   k.cohesion = c.cohesion;
-  k.bounce = bounces && hits(c, approach, sim.restingSpeed_, h) ? e * approach : -1.0;
+  if (bounces && c.closed() && sim.impact_.pending)
+  {
+    k.bounce = bounceLeft(c, approach); // begun where impacts are resolved in time
+  }
+  else if (bounces && hits(c, approach, sim.restingSpeed_, h))
+  {
+    k.bounce = e * approach;
+  }
   k.approach = approach;
   return k;
 }
@@ -68,7 +75,15 @@ GroupContact MassFall::take(RockPair& pair, const PairMotion& motion, Contact& c
   }
   k.approach = -c.normal.dot(motion.at(c.point));
   const bool impacts = hits(c, k.approach, resting, h);
-  k.bounce = bounces && impacts ? pair.law.restitution * k.approach : -1.0;
+  if (bounces && impacts)
+  {
+    k.bounce = pair.law.restitution * k.approach;
+  }
+  else if (bounces && c.closed() && pair.strikes &&
+    pair.impact.time < members_[pair.first]->sim.state_.time)
+  {
+    k.bounce = bounceLeft(c, k.approach); // as on the slope
+  }
   // For the events: what strikes one of two that touch strikes the other through it.
   if (impacts || (c.closed() && k.approach > resting))
   {

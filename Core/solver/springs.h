@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace rockfall
 {
@@ -108,6 +109,40 @@ inline double dampingRatio(double restitution)
     (exponent(middle) < wanted ? low : high) = middle;
   }
   return 0.5 * (low + high);
+}
+
+/// The speed at which a mass (kg) leaves such a spring (N/m) and dashpot (N s/m) that is being
+/// pressed together by `depth` (m) and closes at `approach` (m/s, < 0: opens), m/s: its velocity v
+/// obeys the same equation as its place, and is what it is when the force is no longer a push, v′ =
+/// 0.
+inline double leavingSpeed(
+  double spring, double dashpot, double mass, double depth, double approach)
+{
+  const double w = std::sqrt(spring / mass);
+  double z = dashpot / (2.0 * mass * w);
+  z = std::abs(z - 1.0) < 1e-6 ? 1.0 + 1e-6 : z;
+  const double a = -w * (w * depth + 2.0 * z * approach); // v′ now
+  if (!(w > 0.0) || a > 0.0)
+  {
+    return std::max(0.0, -approach);
+  }
+  const double s = w * std::sqrt(std::abs(1.0 - z * z));
+  const double sine = a * s, cosine = w * (w * approach + z * a);
+  const double along = (a + z * w * approach) / s;
+  if (z < 1.0)
+  {
+    const double turn = std::atan2(sine, cosine) + std::numbers::pi;
+    return std::max(
+      0.0, -std::exp(-z * w * turn / s) * (approach * std::cos(turn) + along * std::sin(turn)));
+  }
+  const double ratio = sine / cosine;
+  if (!(ratio > 0.0 && ratio < 1.0))
+  {
+    return 0.0; // it only creeps out
+  }
+  const double turn = std::atanh(ratio);
+  return std::max(
+    0.0, -std::exp(-z * w * turn / s) * (approach * std::cosh(turn) + along * std::sinh(turn)));
 }
 
 } // namespace rockfall

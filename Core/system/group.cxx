@@ -8,6 +8,7 @@ ContactBooks writeContact(const ContactLaw& law, const std::array<Vec3, 3>& dire
 {
   Contact& c = *contact.contact;
   const Eigen::Vector2d travel = ways.way.tail<2>();
+  const double stored = c.springEnergy();
   c.normalForce = law.force;
   contact.way = ways.way[0];
   c.shearForce = law.shearForce.norm();
@@ -19,7 +20,11 @@ ContactBooks writeContact(const ContactLaw& law, const std::array<Vec3, 3>& dire
   ContactBooks books;
   books.frictionWork = -law.shearForce.dot(across);
   books.dampedWork = -law.force * mean;
-  if (!bounced)
+  if (bounced)
+  {
+    books.dampedWork += stored; // in the spring of an impact that was under way
+  }
+  else
   {
     books.frictionWork += law.shearForce.dot(travel) + law.frictionWork(travel);
     books.dampedWork += law.force * ways.way[0] + law.dampedWork();

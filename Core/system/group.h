@@ -6,6 +6,7 @@
 #include "block/Block.h"
 #include "contact/Contact.h"
 #include "solver/contactLaw.h"
+#include "solver/springs.h"
 
 #include <algorithm>
 #include <array>
@@ -34,7 +35,7 @@ struct GroupContact
   double friction = 0.0; ///< tan φ
   double cohesion = 0.0; ///< N
   /// ≥ 0: leaves with at least this speed along the normal if it closes in a lasting step (Newton's
-  /// law of restitution), m/s.
+  /// law of restitution), or if it is closed and the impact is under way, m/s.
   double bounce = -1.0;
   double approach = 0.0; ///< Speed at which it closes, m/s.
   double work = 0.0;     ///< Out: what it took from the rocks' motion, springs included, J.
@@ -49,6 +50,20 @@ struct GroupContact
 inline bool mayStayOpen(const GroupContact& k, double h)
 {
   return !k.closed && k.bounce < 0.0 && k.contact->gap() > h * k.approach;
+}
+
+/// How fast what a closed contact stops came in, or leaves again if nothing more is lost, m/s: its
+/// spring holds what is missing of it. `approach`: speed at which it closes now.
+inline double elasticSpeed(const Contact& c, double approach)
+{
+  return std::hypot(approach, std::sqrt(c.stiffness / c.stopped) * std::min(0.0, c.gap()));
+}
+
+/// The bounce of a closed contact whose impact is under way, m/s: how it would leave by itself.
+inline double bounceLeft(const Contact& c, double approach)
+{
+  const double depth = -std::min(0.0, c.gap());
+  return leavingSpeed(c.stiffness, c.dashpot, c.stopped, depth, approach);
 }
 
 /// Which solutions of a step are taken.
@@ -107,9 +122,11 @@ inline double heldBounce(
 {
   const Vec3 twice = before + after;
   const double across = force.tail<2>().dot(twice.tail<2>());
-  const double given = across + force[0] * twice[0];
-  const bool gives =
-    contact.bounce > 0.0 && across > 0.0 && given > kBounceGain * force[0] * contact.approach;
+  // What a spring gives back is no gain.
+  const double came =
+    contact.closed ? elasticSpeed(*contact.contact, contact.approach) : contact.approach;
+  const double given = across + force[0] * (twice[0] - (came - contact.approach));
+  const bool gives = contact.bounce > 0.0 && across > 0.0 && given > kBounceGain * force[0] * came;
   return gives ? std::max(0.0, contact.bounce - given / force[0]) : -1.0;
 }
 
