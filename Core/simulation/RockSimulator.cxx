@@ -439,6 +439,7 @@ Trajectory RockSimulator::finish()
   TrajectorySummary& summary = recorder_.trajectory().summary;
   const bool touching =
     std::any_of(contacts_.begin(), contacts_.end(), [](const Contact& c) { return c.closed(); });
+  this->finishImpact(false);
   recorder_.end(state_, touching);
   // One that ends later may have begun earlier.
   std::vector<ImpactEvent>& impacts = recorder_.trajectory().impacts;

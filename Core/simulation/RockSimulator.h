@@ -125,8 +125,10 @@ private:
   bool isCalm() const;          ///< What carries neither comes nor goes.
   bool mayLast(double h) const; ///< A long, damped step is right.
   void pressOut(double h);
-  void followImpact(const BlockState& start, double h);
-  void finishImpact();
+  void followImpact(const BlockState& start, double h, const StepOutcome& outcome);
+  /// An event, if it is one. `over`: else the rock's time ends in the middle of it, and it leaves
+  /// nothing of its speed.
+  void finishImpact(bool over = true);
 
   /// Least and most x and y (m) that a flight comes over.
   std::array<double, 4> boxOfWay(double duration) const;

@@ -384,7 +384,7 @@ void RockSimulator::absorb(
   recorder_.recordBetween(before_, state_, touching);
   this->auditSamples(state_);
   recorder_.follow(state_);
-  this->followImpact(before_, taken);
+  this->followImpact(before_, taken, outcome);
   // A soft block that is still being pressed together leaves its contacts and comes back to them:
   // it has taken off when it has not touched for a period of its own.
   openTime_ = touching ? 0.0 : openTime_ + taken;
@@ -407,7 +407,7 @@ void RockSimulator::pressOut(double h)
   }
 }
 
-void RockSimulator::followImpact(const BlockState& start, double h)
+void RockSimulator::followImpact(const BlockState& start, double h, const StepOutcome& outcome)
 {
   const Vec3 spin = start.angularVelocity();
   for (std::size_t i = 0; i < contacts_.size(); ++i)
@@ -429,10 +429,10 @@ void RockSimulator::followImpact(const BlockState& start, double h)
         {
           impact_ = Impact();
           impact_.pending = true;
-          impact_.frictionBefore = energy_.friction;
+          impact_.frictionBefore = energy_.friction - outcome.frictionWork;
           event.time = start.time;
           event.velocityBefore = start.velocity;
-          impact_.restitutionBefore = energy_.restitution;
+          impact_.restitutionBefore = energy_.restitution - outcome.dampedWork;
         }
         event.approachSpeed = std::max(event.approachSpeed, approach);
       }
@@ -450,7 +450,7 @@ void RockSimulator::followImpact(const BlockState& start, double h)
   }
 }
 
-void RockSimulator::finishImpact()
+void RockSimulator::finishImpact(bool over)
 {
   if (!impact_.pending)
   {
@@ -469,10 +469,11 @@ void RockSimulator::finishImpact()
   const int ground = surface_.restitutionClass(event.cfe);
   event.restitution = surface_.restitutionOf(ground);
   const double before = kineticEnergy(block_, state_);
+  const bool down = comesDown(
+    event.approachSpeed, event.velocityBefore.norm(), parameters_.gravity, block_.radius());
+  const SurfaceMaterial& material = surface_.terrain().restitutionMaterial(ground);
   const Vec3 after =
-    adjustVelocity(surface_.terrain().restitutionMaterial(ground), event, state_.velocity,
-      comesDown(
-        event.approachSpeed, event.velocityBefore.norm(), parameters_.gravity, block_.radius()));
+    over ? adjustVelocity(material, event, state_.velocity, down) : state_.velocity;
   const bool jumps = (after - state_.velocity).norm() > kNoJump * state_.velocity.norm();
   if (jumps)
   {

@@ -262,6 +262,54 @@ TEST(Rebound, OfManyCornersAndOfNearlyNone)
   }
 }
 
+/// A tilted cube that lands, tumbles and lands again, and touches by impacts only: what was taken
+/// is what their events tell, from the first step of each on.
+TEST(Rebound, EventsTellAllThatImpactsTake)
+{
+  for (const RestitutionModel model : { RestitutionModel::Velocity,
+         RestitutionModel::NormalTangential, RestitutionModel::SpeedDependent })
+  {
+    for (const double e : { 0.3, 0.8 })
+    {
+      SurfaceMaterial m = material(e, 30.0);
+      m.restitutionModel = model;
+      const Terrain floor = makePlane(21, 100.0, 0.0, 0.0, m);
+      Rock rock = brick(Vec3(1.0, 1.0, 1.0), Vec3(50.0, 50.0, 105.8), 1);
+      rock.velocity = Vec3(2.0, 0.0, 0.0);
+      rock.orientation = Quat(Eigen::AngleAxisd(0.3, Vec3(1.0, 2.0, 0.0).normalized()));
+      SimulationParameters p;
+      p.endTime = 1.3;
+      const Trajectory t = simulate(floor, rock, p);
+      EXPECT_GE(t.impacts.size(), 2u);
+      double told = 0.0;
+      for (const ImpactEvent& event : t.impacts)
+      {
+        told += event.energyLoss;
+      }
+      const double taken = t.summary.energy.restitution + t.summary.energy.friction;
+      EXPECT_GT(taken, 1e4);
+      EXPECT_NEAR(told, taken, 1e-9 * taken) << int(model) << ' ' << e;
+    }
+  }
+}
+
+TEST(Rebound, WhatIsUnderWayInTheEndIsAnImpact)
+{
+  // The end time comes while the cube is pressed in: what it took is booked, and so told.
+  SurfaceMaterial m = material(0.5, 30.0);
+  m.restitutionModel = RestitutionModel::NormalTangential;
+  const Terrain floor = makePlane(21, 100.0, 0.0, 0.0, m);
+  const Rock rock = brick(Vec3(1.0, 1.0, 1.0), Vec3(50.0, 50.0, 100.5 + 0.5 * kGravity), 1);
+  SimulationParameters p;
+  p.endTime = 1.0012;
+  const Trajectory t = simulate(floor, rock, p);
+  ASSERT_EQ(t.impacts.size(), 1u);
+  EXPECT_EQ(t.summary.impacts, 1);
+  EXPECT_NEAR(t.impacts[0].time, 1.0, 1e-3);
+  EXPECT_NEAR(t.impacts[0].energyLoss, t.summary.energy.restitution + t.summary.energy.friction,
+    1e-9 * t.summary.energy.restitution);
+}
+
 TEST(Rebound, RollingAndSlidingAreNoImpacts)
 {
   // A cube pushed over a floor slides to rest in v² / 2μg, not slowed by Rv = 0.6 on the way.
