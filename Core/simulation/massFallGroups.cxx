@@ -11,13 +11,12 @@
 namespace rockfall
 {
 
-/// Who is linked, and who no longer is. What has been held by another that is so no longer has to
-/// come to rest anew: the rest of its group may have been still for long, and it has hardly begun
-/// to fall.
+/// Who is linked, and who no longer is. Where two that have touched lately no longer are, one may
+/// have carried the other, which has hardly begun to fall: however long it has been still, it has
+/// to come to rest anew.
 void MassFall::Meetings::settle(MassFall& fall)
 {
   parted_.assign(movers.size(), 0);
-  std::atomic<bool> any = false;
   const auto part = [&](Near& n)
   {
     if (!(n.holds || n.wasLinked))
@@ -35,7 +34,6 @@ void MassFall::Meetings::settle(MassFall& fall)
       {
         std::atomic_ref(parted_[std::size_t(i)]).store(1, std::memory_order_relaxed);
       }
-      any.store(true, std::memory_order_relaxed);
     }
     n.pair->linked = n.pair->known = false;
     if (!asleep)
@@ -70,7 +68,7 @@ void MassFall::Meetings::settle(MassFall& fall)
     linkedCounts_[of] = std::size_t(linked - linked_.data()) - first;
   };
   forEach(linkedCounts_.size(), 1, settlePart);
-  for (std::size_t i = 0; any && i < parted_.size(); ++i)
+  for (std::size_t i = 0; i < parted_.size(); ++i)
   {
     if (parted_[i])
     {

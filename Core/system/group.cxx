@@ -8,23 +8,19 @@ ContactBooks writeContact(const ContactLaw& law, const std::array<Vec3, 3>& dire
 {
   Contact& c = *contact.contact;
   const Eigen::Vector2d travel = ways.way.tail<2>();
-  const double stored = c.springEnergy();
+  const bool bounced = contact.bounce >= 0.0;
+  const double stored = bounced ? c.springEnergy() : 0.0; // of an impact that was under way
   c.normalForce = law.force;
   contact.way = ways.way[0];
   c.shearForce = law.shearForce.norm();
   c.distance = gap0 + ways.way[0] + c.offset;
-  const bool bounced = contact.bounce >= 0.0;
   const Vec3 along = ways.means[0] - ways.means[1];
   const double mean = along.dot(directions[0]);
   const Eigen::Vector2d across(along.dot(directions[1]), along.dot(directions[2]));
   ContactBooks books;
   books.frictionWork = -law.shearForce.dot(across);
-  books.dampedWork = -law.force * mean;
-  if (bounced)
-  {
-    books.dampedWork += stored; // in the spring of an impact that was under way
-  }
-  else
+  books.dampedWork = stored - law.force * mean;
+  if (!bounced)
   {
     books.frictionWork += law.shearForce.dot(travel) + law.frictionWork(travel);
     books.dampedWork += law.force * ways.way[0] + law.dampedWork();

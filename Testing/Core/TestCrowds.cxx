@@ -6,7 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include <numeric>
 #include <random>
 
 using namespace rockfall;
@@ -33,34 +32,6 @@ std::vector<Rock> handful(int count, std::uint64_t seed)
     rocks.push_back(rock);
   }
   return rocks;
-}
-
-/// Rocks of the largest group that may touch each other.
-int largestGroup(const Pile& pile)
-{
-  std::vector<int> parent(std::size_t(pile.fall->rocks()));
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int i)
-  {
-    while (parent[std::size_t(i)] != i)
-    {
-      i = parent[std::size_t(i)];
-    }
-    return i;
-  };
-  for (const RockPair* pair : pile.fall->pairs())
-  {
-    if (pair->linked)
-    {
-      parent[std::size_t(root(pair->first))] = root(pair->second);
-    }
-  }
-  std::vector<int> size(parent.size(), 0);
-  for (int i = 0; i < pile.fall->rocks(); ++i)
-  {
-    ++size[std::size_t(root(i))];
-  }
-  return *std::max_element(size.begin(), size.end());
 }
 
 } // namespace
@@ -143,136 +114,6 @@ TEST(Crowds, ImpactsLoseWhatTheCoefficientOfRestitutionSays)
   }
 }
 
-TEST(Crowds, WhoHasLeftOneReboundsAsWhoNeverWasInOne)
-{
-  // Two posts that part fall on the floor, each by itself, on four corners at once. (A cube's mass
-  // as one of its corners feels it is just a quarter of its own: it would show nothing.)
-  for (const double e : { 0.2, 0.5, 0.8 })
-  {
-    SurfaceMaterial ground = material(e, 0.0);
-    ground.restitutionModel = RestitutionModel::NormalTangential;
-    const auto rebounds = [&](bool met)
-    {
-      Pile pile;
-      pile.ground = makeSlope(
-        9, 5.0, [](double, double) { return 0.0; }, ground);
-      pile.parameters.endTime = 1.0;
-      pile.parameters.rockRestitution = 0.9;
-      const Vec3 post(0.6, 0.6, 2.0);
-      pile.rocks = { brick(post, Vec3(20.0, 20.0, 2.5), 0), brick(post, Vec3(20.7, 20.0, 2.5), 1) };
-      pile.rocks[met ? 0 : 1].velocity = Vec3(4.0, 0.0, 0.0);
-      pile.make();
-      pile.fall->resolved = 0; // groups are stepped as crowds are
-      std::vector<double> ratios;
-      for (const Trajectory& t : pile.fall->run())
-      {
-        const auto floor = std::find_if(t.impacts.begin(), t.impacts.end(),
-          [](const ImpactEvent& i) { return i.normal.z() > 0.9; });
-        EXPECT_NE(floor, t.impacts.end());
-        if (floor != t.impacts.end())
-        {
-          ratios.push_back(-floor->velocityAfter.z() / floor->velocityBefore.z());
-        }
-      }
-      return ratios;
-    };
-    for (const bool met : { false, true })
-    {
-      for (const double ratio : rebounds(met))
-      {
-        EXPECT_NEAR(ratio, e, 0.02) << met; // the impact is resolved with some eight steps
-      }
-    }
-  }
-}
-
-TEST(Crowds, ImpactsUnderWayGoOnInOne)
-{
-  // Two cubes meet face on at 10 m/s; a third one that flies past makes them a crowd at 0.1 s, with
-  // these parts of their impact over. So does the slope instead of the second one.
-  constexpr double kJoined = 0.1, kSpeed = 10.0, kDuration = 1.8e-3;
-  for (const double e : { 0.1, 0.5, 0.8, 1.0 })
-  {
-    for (const double over : { 0.1, 0.25, 0.5, 0.7 })
-    {
-      Pile pile;
-      pile.ground = abyss();
-      pile.parameters.gravity = 0.0;
-      pile.parameters.rockRestitution = e;
-      pile.parameters.rockFrictionAngle = 0.0;
-      pile.parameters.endTime = 0.3;
-      const double apart = 0.5 * kSpeed * (kJoined - over * kDuration);
-      pile.rocks = { brick(Vec3(1, 1, 1), Vec3(199.5 - apart, 200.0, 0.0), 0),
-        brick(Vec3(1, 1, 1), Vec3(200.5 + apart, 200.0, 0.0), 1),
-        brick(Vec3(1, 1, 1), Vec3(199.0, 201.02, -1.15 - 60.0 * kJoined), 2) };
-      pile.rocks[0].velocity = Vec3(0.5 * kSpeed, 0.0, 0.0);
-      pile.rocks[1].velocity = Vec3(-0.5 * kSpeed, 0.0, 0.0);
-      pile.rocks[2].velocity = Vec3(0.0, 0.0, 60.0);
-      pile.make();
-      pile.fall->resolved = 2;
-      pile.fall->release();
-      std::size_t together = 0;
-      while (pile.fall->time() < 0.2 && pile.fall->advance())
-      {
-        together = std::max(together, std::size_t(largestGroup(pile)));
-      }
-      EXPECT_EQ(together, 3u);
-      const double parting =
-        (pile.fall->state(1).velocity - pile.fall->state(0).velocity).x() / kSpeed;
-      EXPECT_NEAR(parting, e, 0.005) << over; // of an impact in eight steps
-      EXPECT_EQ(pile.fall->impacts(2).size(), 0u);
-      ASSERT_EQ(pile.fall->impacts(0).size(), 1u) << e << ' ' << over;
-      const double brought = 0.25 * pile.blocks[0].mass() * kSpeed * kSpeed;
-      EXPECT_NEAR(pile.fall->impacts(0)[0].energyLoss, (1.0 - e * e) * brought, 0.01 * brought);
-    }
-  }
-}
-
-TEST(Crowds, ImpactsOnTheSlopeUnderWayGoOnInOne)
-{
-  // A cube falls on its face; another one flies past it while it is pressed in.
-  constexpr double kFaster = 60.0, kDuration = 2.5e-3;
-  for (const RestitutionModel model :
-    { RestitutionModel::Velocity, RestitutionModel::NormalTangential })
-  {
-    for (const double e : { 0.3, 0.6, 1.0 })
-    {
-      for (const double over : { 0.25, 0.5, 0.75 })
-      {
-        SurfaceMaterial ground = material(e, 0.0);
-        ground.restitutionModel = model;
-        Pile pile;
-        pile.ground = makeSlope(
-          9, 150.0, [](double, double) { return 0.0; }, ground);
-        pile.parameters.endTime = 1.1;
-        const double joined = 1.01, touches = joined - over * kDuration;
-        const double drop = 0.5 * kGravity * touches * touches, speed = kGravity * touches;
-        pile.rocks = { brick(Vec3(1, 1, 1), Vec3(500.0, 500.0, 0.5 + drop), 0),
-          brick(Vec3(1, 1, 1),
-            Vec3(501.015, 498.85 - kFaster * joined, 1.6 + 0.5 * kGravity * joined * joined), 1) };
-        pile.rocks[1].velocity = Vec3(0.0, kFaster, 0.0);
-        pile.make();
-        pile.fall->resolved = 0;
-        pile.fall->release();
-        int together = 0;
-        while (pile.fall->time() < 1.07 && pile.fall->advance())
-        {
-          together = std::max(together, largestGroup(pile));
-        }
-        EXPECT_EQ(together, 2);
-        const BlockState& state = pile.fall->state(0);
-        const double up = std::sqrt(
-          state.velocity.z() * state.velocity.z() + 2.0 * kGravity * (state.position.z() - 0.5));
-        EXPECT_GT(state.velocity.z(), 0.0);
-        // Of a step of 5 ms: gravity is in it once.
-        EXPECT_NEAR(up / speed, e, 0.01) << over << ' ' << int(model);
-        ASSERT_EQ(pile.fall->impacts(0).size(), 1u);
-        EXPECT_EQ(pile.fall->impacts(1).size(), 0u);
-      }
-    }
-  }
-}
-
 TEST(Crowds, EveryJouleIsBooked)
 {
   Pile pile;
@@ -316,7 +157,7 @@ TEST(Crowds, SameBitsForAnyNumberOfThreads)
     for (int step = 0; step < 80; ++step)
     {
       pile.fall->advance();
-      largest = std::max(largest, largestGroup(pile));
+      largest = std::max(largest, pile.largestGroup());
     }
     ends.push_back(pile.places());
   }
@@ -380,7 +221,7 @@ TEST(Crowds, CrowdThatMeetsFastDoesNotOverlap)
     {
       pile.fall->advance();
       deepest = std::max(deepest, step % 4 == 0 ? pile.overlap() : 0.0);
-      largest = std::max(largest, step % 4 == 0 ? largestGroup(pile) : 0);
+      largest = std::max(largest, step % 4 == 0 ? pile.largestGroup() : 0);
     }
     EXPECT_GT(largest, 64); // in one step
     EXPECT_LT(deepest, 0.03 * std::cbrt(0.6)) << seed;
@@ -591,7 +432,7 @@ TEST(Crowds, OneSmallRockDoesNotSetTheStepsOfAll)
     {
       const int before = int(pile.fall->summary(0).contactSteps);
       pile.fall->advance();
-      if (largestGroup(pile) == cubes + 1)
+      if (pile.largestGroup() == cubes + 1)
       {
         taken.push_back(int(pile.fall->summary(0).contactSteps) - before);
       }

@@ -7,9 +7,11 @@
 #include "simulation/MassFall.h"
 #include "slopes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <numeric>
 #include <random>
 #include <vector>
 
@@ -132,6 +134,33 @@ struct Pile
     return deepestOverlap(
       fall->rocks(), [&](int i) -> const Block& { return blocks[std::size_t(i)]; },
       [&](int i) -> const BlockState& { return fall->state(i); });
+  }
+  /// Rocks of the largest group that may touch each other.
+  int largestGroup() const
+  {
+    std::vector<int> parent(std::size_t(fall->rocks()));
+    std::iota(parent.begin(), parent.end(), 0);
+    const auto root = [&](int i)
+    {
+      while (parent[std::size_t(i)] != i)
+      {
+        i = parent[std::size_t(i)];
+      }
+      return i;
+    };
+    for (const RockPair* pair : fall->pairs())
+    {
+      if (pair->linked)
+      {
+        parent[std::size_t(root(pair->first))] = root(pair->second);
+      }
+    }
+    std::vector<int> size(parent.size(), 0);
+    for (int i = 0; i < fall->rocks(); ++i)
+    {
+      ++size[std::size_t(root(i))];
+    }
+    return *std::max_element(size.begin(), size.end());
   }
   /// Sum of the slope's forces over the weight.
   double carried() const
