@@ -135,6 +135,7 @@ private:
   };
   struct Workspace;
   struct Meetings;
+  struct Trees;
 
   void comeToRock(const Group& group, std::size_t k) const;
 
@@ -170,7 +171,7 @@ private:
   GroupContact take(const Member& member, Contact& contact, double h, bool bounces) const;
   /// Contacts that nobody reckoned with, seen where a step would end: they are appended. Returns
   /// how deep the deepest is, of the smaller radius; 0: none.
-  double lookAgain(const Group& group, double h, bool bounces, Workspace& work) const;
+  LookOutcome lookAgain(const Group& group, double h, bool bounces, Workspace& work) const;
   double lookAtPairs(const Group& group, double h, bool bounces, Workspace& work) const;
   double lookAtSlope(const Group& group, double h, bool bounces, Workspace& work) const;
   /// Contacts of a rock with the slope where a step would end: those that are reckoned with, then
@@ -178,6 +179,12 @@ private:
   std::size_t touchesOnSlope(const Group& group, std::size_t m, const CandidatePairs& near,
     Workspace& work, std::vector<Contact>& touches) const;
   void add(GroupContact taken, bool bounces, Workspace& work) const;
+  // Trees that rocks are driven into within the step: massFallTrees.cxx.
+  void standTrees(const Group& group, Workspace& work) const; ///< All of them, to begin with.
+  /// Whether any was let go, or set in again.
+  bool lookAtTrees(const Group& group, double h, Workspace& work) const;
+  /// Those that a rock has broken in the step that it has absorbed.
+  void fellTrees(const Group& group, std::size_t member, const Workspace& work) const;
   void absorb(const Group& group, double h, StepKind kind, Workspace& work) const;
   /// An impact of the two, unless one is under way; as they were before it, and where (m).
   void beginPairImpact(

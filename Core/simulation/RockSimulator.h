@@ -100,6 +100,11 @@ private:
   /// Those that it is about to touch within `h`, presses against or has `hit`, and that cannot hold
   /// it; whether there were any.
   bool breakTrees(double h, std::span<const int> hit = {});
+  /// One that the rock at `state_` goes on through. What it holds of the rock's energy (J) has been
+  /// taken already.
+  void breakTree(int tree, double held);
+  bool isGone(int tree) const;
+  void forgetTrees(); ///< Contacts with those that are gone, and all that hangs on them.
   /// Takes a step of `h` back in which it came against trees that cannot hold it, and breaks them.
   bool undoAtTrees(double h);
   void findBarriers(const Way& way); ///< Fills `passages_` with those whose line is passed.

@@ -180,6 +180,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     {
       return; // caught
     }
+    this->fellTrees(group, k, work);
     m.sim.checkLeft();
     m.sim.followRest(h, carried);
     if (!m.sim.done_ && m.sim.state_.time >= parameters_.endTime - kTooShort)

@@ -54,7 +54,7 @@ void carryBack(const PlacedBlock& firstEnd, const PlacedBlock& secondEnd,
 
 } // namespace
 
-double MassFall::lookAgain(const Group& group, double h, bool bounces, Workspace& work) const
+LookOutcome MassFall::lookAgain(const Group& group, double h, bool bounces, Workspace& work) const
 {
   const auto place = [&](std::size_t k)
   {
@@ -79,9 +79,15 @@ double MassFall::lookAgain(const Group& group, double h, bool bounces, Workspace
   };
   forEach(group.members.size(), kRockGrain, place);
   work.looked = true;
-  const double missed = this->lookAtPairs(group, h, bounces, work);
+  LookOutcome seen;
+  seen.missed = this->lookAtPairs(group, h, bounces, work);
   // Who resolves his impacts takes steps so short that what he may reach is known.
-  return group.crowd ? std::max(missed, this->lookAtSlope(group, h, bounces, work)) : missed;
+  if (group.crowd)
+  {
+    seen.missed = std::max(seen.missed, this->lookAtSlope(group, h, bounces, work));
+    seen.again = this->lookAtTrees(group, h, work);
+  }
+  return seen;
 }
 
 void MassFall::add(GroupContact taken, bool bounces, Workspace& work) const
@@ -123,7 +129,7 @@ std::size_t MassFall::touchesOnSlope(const Group& group, std::size_t m, const Ca
   const std::size_t known = touches.size();
   holdOverlap(
     member.end, sim.patch_, near, kLooseOverlap * sim.block_.radius() + 2.0 * pressed, touches);
-  // Whether a tree stands is settled before the step.
+  // Trees that nobody reckoned with are met in the next step.
   const auto behind = touches.begin() + std::ptrdiff_t(known);
   touches.erase(std::remove_if(behind, touches.end(),
                   [&](const Contact& c) { return sim.solid_ && sim.treeOf(c) >= 0; }),

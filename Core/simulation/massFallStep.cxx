@@ -197,6 +197,7 @@ void MassFall::solve(
       work.added.clear();
       work.addedTo.clear();
     }
+    this->standTrees(group, work);
     work.looked = false;
     outcome = work.solver.step(request, work.bodies, work.contacts, take, look);
     work.iterations += outcome.iterations;

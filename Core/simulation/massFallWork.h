@@ -107,6 +107,20 @@ struct MassFall::Workspace
   std::vector<std::size_t> missed;         ///< Pairs or rocks whose contacts were missed.
   std::vector<std::vector<Contact>> found; ///< Of each of them, where it touches.
   bool looked = false;                     ///< Where the step ends.
+  /// A tree that others drive a rock into within the step, and that may not hold.
+  struct Stem
+  {
+    std::size_t member; ///< Number in the group.
+    int tree;
+    enum class Stands : std::uint8_t
+    {
+      Asked, ///< It is let go, and the next look tells.
+      Yes,
+      No,
+    } stands;
+  };
+  std::vector<Stem> stems;
+  int looks = 0; ///< That the step has had.
   /// By pair, the places of the two; −1: gone.
   std::vector<std::array<int, 2>> places;
   std::vector<int> placeOf; ///< By rock, of those in the group.

@@ -119,55 +119,72 @@ bool RockSimulator::breakTrees(double h, std::span<const int> hit)
   for (const Contact& c : contacts_)
   {
     const int tree = this->treeOf(c);
-    if (tree < 0 || std::binary_search(goneTrees_.begin(), goneTrees_.end(), tree))
+    if (tree < 0 || this->isGone(tree))
     {
       continue;
     }
-    const Tree& stem = obstacles_->structures().trees[std::size_t(tree)];
+    const double capacity = obstacles_->structures().trees[std::size_t(tree)].capacity;
     const double energy = rigidKineticEnergy(block_, state_);
     const double approach = -c.normal.dot(state_.velocity + spin.cross(c.point - state_.position));
     const bool meets =
       c.closed() ? approach > restingSpeed_ : approach > 0.0 && c.gap() < approach * h;
-    if (energy <= stem.capacity || !(meets || std::find(hit.begin(), hit.end(), tree) != hit.end()))
+    if (energy <= capacity || !(meets || std::find(hit.begin(), hit.end(), tree) != hit.end()))
     {
       continue;
     }
-    StructureEvent event;
-    event.outcome = StructureOutcome::TreeBroken;
-    event.feature = stem.feature;
-    event.time = state_.time;
-    event.position = state_.position;
-    event.velocity = state_.velocity;
-    event.kineticEnergy = energy;
-    event.heightOverGround =
-      state_.position.z() - surface_.elevation(state_.position.x(), state_.position.y());
-    event.energyTaken = stem.capacity;
-    recorder_.trajectory().structures.push_back(event);
-    // What the springs against the stem hold has been taken already and is not given back.
+    // What the springs against the stem hold is not given back.
     double held = 0.0;
     for (const Contact& other : contacts_)
     {
       held += this->treeOf(other) == tree ? other.springEnergy() : 0.0;
     }
-    slowDown(state_, energy, std::max(0.0, stem.capacity - held));
-    energy_.structures += held + energy - rigidKineticEnergy(block_, state_);
+    this->breakTree(tree, held);
     springEnergy_ = std::max(0.0, springEnergy_ - held);
-    goneTrees_.insert(std::lower_bound(goneTrees_.begin(), goneTrees_.end(), tree), tree);
     any = true;
   }
   if (any)
   {
-    std::erase_if(contacts_,
-      [&](const Contact& c)
-      {
-        const int tree = this->treeOf(c);
-        return tree >= 0 && std::binary_search(goneTrees_.begin(), goneTrees_.end(), tree);
-      });
-    acceleration_.setZero();
-    spinAcceleration_.setZero();
-    this->forgetPatch();
+    this->forgetTrees();
   }
   return any;
+}
+
+void RockSimulator::breakTree(int tree, double held)
+{
+  const Tree& stem = obstacles_->structures().trees[std::size_t(tree)];
+  const double energy = rigidKineticEnergy(block_, state_);
+  StructureEvent event;
+  event.outcome = StructureOutcome::TreeBroken;
+  event.feature = stem.feature;
+  event.time = state_.time;
+  event.position = state_.position;
+  event.velocity = state_.velocity;
+  event.kineticEnergy = energy;
+  event.heightOverGround =
+    state_.position.z() - surface_.elevation(state_.position.x(), state_.position.y());
+  event.energyTaken = stem.capacity;
+  recorder_.trajectory().structures.push_back(event);
+  slowDown(state_, energy, std::max(0.0, stem.capacity - held));
+  energy_.structures += held + energy - rigidKineticEnergy(block_, state_);
+  goneTrees_.insert(std::lower_bound(goneTrees_.begin(), goneTrees_.end(), tree), tree);
+}
+
+bool RockSimulator::isGone(int tree) const
+{
+  return std::binary_search(goneTrees_.begin(), goneTrees_.end(), tree);
+}
+
+void RockSimulator::forgetTrees()
+{
+  std::erase_if(contacts_,
+    [&](const Contact& c)
+    {
+      const int tree = this->treeOf(c);
+      return tree >= 0 && this->isGone(tree);
+    });
+  acceleration_.setZero();
+  spinAcceleration_.setZero();
+  this->forgetPatch();
 }
 
 void RockSimulator::findBarriers(const Way& way)
@@ -315,6 +332,10 @@ void RockSimulator::meetBarrier()
   event.heightOverGround = hit_.heightOverGround;
   event.energyTaken = taken;
   TrajectorySummary& summary = recorder_.trajectory().summary;
+  if (holds)
+  {
+    this->finishImpact(false); // the barrier takes what it would have left
+  }
   recorder_.trajectory().structures.push_back(event);
   recorder_.knot(state_, false);
   this->auditSamples(state_);
@@ -324,7 +345,6 @@ void RockSimulator::meetBarrier()
   {
     summary.fate = Fate::Caught;
     contacts_.clear();
-    impact_.pending = false;
     done_ = true;
     return;
   }

@@ -31,13 +31,15 @@ public:
   /// `take` and `lookAgain`: see GroupSolver::step. Nothing is changed if a displacement is
   /// not finite.
   GroupOutcome step(const StepRequest& request, std::vector<GroupBody>& bodies,
-    std::vector<GroupContact>& contacts, Taken take, const std::function<double()>& lookAgain);
+    std::vector<GroupContact>& contacts, Taken take, const std::function<LookOutcome()>& lookAgain);
 
   // For lookAgain, as GroupSolver has them.
   BlockState end(const std::vector<GroupBody>& bodies, std::size_t i) const;
   double gap(std::size_t contact) const;
   bool setGap(std::size_t contact, double found);
   bool moved(std::size_t body) const { return work_[body].moved; }
+  double force(std::size_t contact) const { return this->forceOf(rows_[contact])[0]; }
+  void setAbsent(const GroupContact& contact, std::size_t k); ///< As the contact says now.
 
   /// Share of the largest displacement to which the sweeps go.
   double tolerance = 1e-4;
@@ -123,6 +125,7 @@ private:
   void forUsed(int part, Go&& go) const;
   void prepareRow(const std::vector<GroupBody>& bodies, const GroupContact& group, Row& row);
   void stiffen(const GroupContact& group, const Row& row); ///< What bounces.
+  void askGap(const GroupContact& group, const Row& row);  ///< Of its lane of a batch.
   /// Directions and levers at mid-step.
   void lever(const std::vector<GroupBody>& bodies, const GroupContact& group, const Row& row);
   void assemble(std::size_t first, std::size_t count); ///< Batches: what forces do along levers.

@@ -145,9 +145,13 @@ BlockState GroupSolver::end(const std::vector<GroupBody>& bodies, std::size_t i)
   {
     return crowd_.end(bodies, i);
   }
+  const Work& w = work_[i];
   BlockState state = *bodies[i].state;
-  state.position += work_[i].d.head<3>();
-  state.orientation = (work_[i].turn * state.orientation).normalized();
+  const Vec6 velocity = rate_ * w.d + w.offset;
+  state.position += w.d.head<3>();
+  state.velocity = velocity.head<3>();
+  state.orientation = (w.turn * state.orientation).normalized();
+  state.spin = w.rotation.transpose() * velocity.tail<3>();
   return state;
 }
 
@@ -177,6 +181,27 @@ bool GroupSolver::setGap(std::size_t contact, double found)
 bool GroupSolver::moved(std::size_t body) const
 {
   return !sweeping_ || crowd_.moved(body);
+}
+
+double GroupSolver::force(std::size_t contact) const
+{
+  return sweeping_ ? crowd_.force(contact) : rows_[contact].law.force;
+}
+
+void GroupSolver::setAbsent(std::vector<GroupContact>& contacts, std::size_t contact, bool absent)
+{
+  contacts[contact].absent = absent;
+  if (sweeping_)
+  {
+    crowd_.setAbsent(contacts[contact], contact);
+    return;
+  }
+  Row& row = rows_[contact];
+  if (absent)
+  {
+    row.asked = row.law.gap0;
+  }
+  row.law.gap0 = absent ? kAbsent : row.asked;
 }
 
 void GroupSolver::levers()

@@ -37,20 +37,24 @@ public:
   ///
   /// `lookAgain` is asked after a solution that has settled, or one by Gauss–Seidel, before it is
   /// written: it may look where the bodies would be (`end`), append contacts that were not reckoned
-  /// with, and correct the gaps of others (`setGap`). It returns how deep what it has found is, of
-  /// the smaller rock's radius; if that is not 0 the step goes on from where it is. The `distance`
-  /// of an appended contact is that at the end, the rest of it as all stands at the start.
+  /// with, correct the gaps of others (`setGap`) and let others go (`setAbsent`). If it has found
+  /// anything the step goes on from where it is. The `distance` of an appended contact is that at
+  /// the end, the rest of it as all stands at the start.
   GroupOutcome step(const StepRequest& request, std::vector<GroupBody>& bodies,
-    std::vector<GroupContact>& contacts, Taken take, const std::function<double()>& lookAgain = {});
+    std::vector<GroupContact>& contacts, Taken take,
+    const std::function<LookOutcome()>& lookAgain = {});
 
   // For lookAgain.
-  /// Where a body would be at the end of the step; its velocity is not set.
+  /// A body at the end of the step.
   BlockState end(const std::vector<GroupBody>& bodies, std::size_t i) const;
   double gap(std::size_t contact) const; ///< At the end of the step as reckoned, m.
   /// The gap is found to be another one (m). No contact is asked to open further than it was.
   /// Returns whether this changes anything.
   bool setGap(std::size_t contact, double found);
-  bool moved(std::size_t body) const; ///< Since lookAgain was asked last.
+  bool moved(std::size_t body) const;      ///< Since lookAgain was asked last.
+  double force(std::size_t contact) const; ///< Along the normal, as reckoned, N.
+  /// Lets a contact go, or sets it in again.
+  void setAbsent(std::vector<GroupContact>& contacts, std::size_t contact, bool absent);
 
   GroupMethod method = GroupMethod::Suited;
   /// Whether a step is solved by Gauss–Seidel from the start.
@@ -81,6 +85,7 @@ private:
     std::array<Vec3, 3> directions; ///< Normal at mid-step, and the two tangents.
     Vec3 fixed = Vec3::Zero();      ///< A point of the slope.
     double gap0 = 0.0;              ///< Without what a bounce asks for, m.
+    double asked = 0.0;             ///< With it, while the contact is let go, m.
   };
   struct Work
   {

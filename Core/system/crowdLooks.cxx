@@ -118,10 +118,27 @@ bool CrowdSolver::watch(int sweep)
 
 BlockState CrowdSolver::end(const std::vector<GroupBody>& bodies, std::size_t i) const
 {
+  const Work& w = work_[i];
   BlockState state = *bodies[i].state;
-  state.position += work_[i].way;
-  state.orientation = (work_[i].turn * state.orientation).normalized();
+  state.position += w.way;
+  state.velocity = w.way / h_ + w.offset;
+  state.orientation = (w.turn * state.orientation).normalized();
+  state.spin = w.rotation.transpose() * (w.spun / h_ + w.spinOffset);
   return state;
+}
+
+void CrowdSolver::setAbsent(const GroupContact& contact, std::size_t k)
+{
+  const Row& row = rows_[k];
+  if (row.isWatched())
+  {
+    watched_[row.fours()].gap[row.lane] = contact.absent ? kAbsent : row.gap0;
+  }
+  else
+  {
+    this->askGap(contact, row);
+  }
+  this->noteChange(contact);
 }
 
 double CrowdSolver::gap(std::size_t contact) const

@@ -29,7 +29,7 @@ void CrowdSolver::prepareRow(
   row.gap0 = c.gap();
   if (row.isWatched())
   {
-    watched_[row.fours()].gap[row.lane] = row.gap0;
+    watched_[row.fours()].gap[row.lane] = group.absent ? kAbsent : row.gap0;
   }
   else
   {
@@ -41,7 +41,7 @@ void CrowdSolver::prepareRow(
     setLane(p.directions[2], lane, v);
     springs.penalty[lane] = c.stiffness;
     springs.shear[lane] = c.shearStiffness;
-    p.gap[lane] = row.gap0;
+    p.gap[lane] = group.absent ? kAbsent : row.gap0;
     p.slip[0][lane] = u.dot(c.slip);
     p.slip[1][lane] = v.dot(c.slip);
     p.friction[lane] = group.friction;
@@ -65,8 +65,24 @@ void CrowdSolver::stiffen(const GroupContact& group, const Row& row)
   const double stiff = kBounceStiffness / p.w[lane];
   springs.penalty[lane] = std::max(springs.penalty[lane], stiff);
   springs.shear[lane] = std::max(springs.shear[lane], stiff);
-  p.gap[lane] = bounceGap(group, h_, springs.penalty[lane] * p.w[lane]);
+  this->askGap(group, row);
   this->assemble(std::size_t(row.batch), 1);
+}
+
+void CrowdSolver::askGap(const GroupContact& group, const Row& row)
+{
+  crowd::Batch& p = batches_[std::size_t(row.batch)];
+  const double penalty = springs_[std::size_t(row.batch)].penalty[row.lane];
+  double& gap = p.gap[row.lane];
+  gap = row.gap0;
+  if (group.absent)
+  {
+    gap = kAbsent;
+  }
+  else if (group.bounce >= 0.0)
+  {
+    gap = bounceGap(group, h_, penalty * p.w[row.lane]);
+  }
 }
 
 void CrowdSolver::assemble(std::size_t first, std::size_t count)

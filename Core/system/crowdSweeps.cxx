@@ -138,14 +138,12 @@ bool CrowdSolver::holdBounces(std::vector<GroupContact>& contacts)
     {
       return false;
     }
-    crowd::Batch& p = batches_[std::size_t(row.batch)];
     const auto [before, after] = this->velocities(row);
     const double held = heldBounce(contacts[k], force, before, after);
     if (held >= 0.0)
     {
       contacts[k].bounce = held;
-      p.gap[row.lane] = bounceGap(
-        contacts[k], h_, springs_[std::size_t(row.batch)].penalty[row.lane] * p.w[row.lane]);
+      this->askGap(contacts[k], row);
     }
     return held >= 0.0;
   };
@@ -187,7 +185,7 @@ void CrowdSolver::collect()
 }
 
 GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody>& bodies,
-  std::vector<GroupContact>& contacts, Taken take, const std::function<double()>& lookAgain)
+  std::vector<GroupContact>& contacts, Taken take, const std::function<LookOutcome()>& lookAgain)
 {
   GroupOutcome outcome;
   if (bodies.empty())
@@ -230,13 +228,13 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
   }
   this->collect();
   this->settle(most, calm, contacts, outcome);
-  double missed = 0.0;
+  LookOutcome seen;
   const auto looksOn = [&](int look)
-  { return look < kLooks || (look == kLooks && missed > kWorthALook); };
+  { return look < kLooks || seen.again || (look == kLooks && seen.missed > kWorthALook); };
   for (int look = 0; lookAgain && looksOn(look); ++look)
   {
-    missed = lookAgain();
-    if (missed <= 0.0)
+    seen = lookAgain();
+    if (!seen.any())
     {
       break;
     }
@@ -251,7 +249,7 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
     }
     enough_ = (calm ? 1.0 : kFound) * tolerance * scale;
     this->append(bodies, contacts);
-    if (look == kLooks)
+    if (look >= kLooks && !seen.again)
     {
       break; // the last one only tells how deep it is
     }
@@ -269,7 +267,7 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
     finite = finite && w.way.allFinite() && w.spun.allFinite();
   }
   const bool near = outcome.settled || outcome.residual <= kRough * enough_;
-  outcome.rough = !near || missed > kDeepMiss;
+  outcome.rough = !near || seen.missed > kDeepMiss;
   const bool fair = take == Taken::NotRough ? !outcome.rough : outcome.settled;
   outcome.taken = finite && (fair || take == Taken::Any);
   if (outcome.taken)

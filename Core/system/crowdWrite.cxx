@@ -64,13 +64,8 @@ void CrowdSolver::write(const StepRequest& request, std::vector<GroupBody>& bodi
   addBooks(contacts, books_, bodies, outcome);
   const auto writeBody = [&](std::size_t i)
   {
-    const Work& w = work_[i];
-    BlockState& state = *bodies[i].state;
-    state.time += request.duration;
-    state.position += w.way;
-    state.velocity = w.way / h_ + w.offset;
-    state.orientation = (w.turn * state.orientation).normalized();
-    state.spin = w.rotation.transpose() * (w.spun / h_ + w.spinOffset);
+    *bodies[i].state = this->end(bodies, i);
+    bodies[i].state->time += request.duration;
   };
   forEach(bodies.size(), kBodyGrain, writeBody);
 }

@@ -43,6 +43,18 @@ struct GroupContact
   /// What contact->closed() says when the step begins; for whoever set the contact up and goes over
   /// all of them.
   bool closed = false;
+  bool absent = false; ///< Let go for this step (GroupSolver::setAbsent): nothing holds it up.
+};
+
+/// The gap of a contact that is let go, m.
+constexpr double kAbsent = 1e3;
+
+/// What a look at where a step would end has found (GroupSolver::step).
+struct LookOutcome
+{
+  double missed = 0.0; ///< How deep the deepest is that nobody reckoned with, of a radius; 0: none.
+  bool again = false;  ///< Contacts were let go or set in again: one more look is due.
+  bool any() const { return missed > 0.0 || again; }
 };
 
 /// Whether it is open and stays so in a step of `h` (s) unless its rocks are pushed: Gauss–Seidel

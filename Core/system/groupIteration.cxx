@@ -133,7 +133,7 @@ bool GroupSolver::isSwept(StepKind kind, std::size_t bodies) const
 }
 
 GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody>& bodies,
-  std::vector<GroupContact>& contacts, Taken take, const std::function<double()>& lookAgain)
+  std::vector<GroupContact>& contacts, Taken take, const std::function<LookOutcome()>& lookAgain)
 {
   const auto sweep = [&]
   {
@@ -150,8 +150,14 @@ GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody
   sweeping_ = false;
   this->prepare(request, bodies, contacts);
   outcome.settled = this->settle(request, bodies, contacts, outcome);
-  for (int look = 0; look < kLooks && outcome.settled && lookAgain && lookAgain() > 0.0; ++look)
+  LookOutcome seen;
+  for (int look = 0; lookAgain && outcome.settled && (look < kLooks || seen.again); ++look)
   {
+    seen = lookAgain();
+    if (!seen.any())
+    {
+      break;
+    }
     this->append(request, bodies, contacts);
     outcome.settled = this->settle(request, bodies, contacts, outcome);
   }
@@ -212,14 +218,8 @@ void GroupSolver::write(const StepRequest& request, std::vector<GroupBody>& bodi
   addBooks(contacts, books_, bodies, outcome);
   const auto writeBody = [&](std::size_t i)
   {
-    const Work& w = work_[i];
-    BlockState& state = *bodies[i].state;
-    const Vec6 velocity = rate_ * w.d + w.offset;
-    state.time += request.duration;
-    state.position += w.d.head<3>();
-    state.velocity = velocity.head<3>();
-    state.orientation = (w.turn * state.orientation).normalized();
-    state.spin = w.rotation.transpose() * velocity.tail<3>();
+    *bodies[i].state = this->end(bodies, i);
+    bodies[i].state->time += request.duration;
   };
   forEach(bodies.size(), kBodyGrain, writeBody);
 }

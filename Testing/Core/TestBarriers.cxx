@@ -153,6 +153,23 @@ TEST(Barriers, CountWhatATouchHolds)
   }
 }
 
+TEST(Barriers, WhatTheyCatchInTheMiddleOfAnImpactHasHadOne)
+{
+  // It comes down on its face just before the barrier; the impact takes some 2.5 ms.
+  const double speed = 20.0, fallen = 0.5 * kGravity * 0.25;
+  for (const double before : { 0.0005, 0.001, 0.002 })
+  {
+    Rock rock = thrown(0.5 + fallen, speed);
+    rock.position.x() -= before * speed; // the barrier comes that much later than the ground
+    const Trajectory t = simulate(withBarrier(8.0, 1e9), rock, rigidParameters(1.0));
+    EXPECT_EQ(t.summary.fate, Fate::Caught);
+    EXPECT_EQ(t.summary.impacts, 1) << before;
+    ASSERT_EQ(t.impacts.size(), 1u) << before;
+    EXPECT_NEAR(t.impacts[0].approachSpeed, 0.5 * kGravity, 0.01);
+    EXPECT_NEAR(t.summary.stop.x(), 60.0, 1e-6);
+  }
+}
+
 TEST(Barriers, CatchAtOnceWhatStartsOnThem)
 {
   // A path is a line all the same.

@@ -1,0 +1,194 @@
+// Trees that the rocks of a crowd are driven into within a step.
+//
+// What comes to a tree by itself is told before the step whether the tree holds it
+// (RockSimulator::breakTrees). In a step as long as Δt others may drive a rock into a tree that it
+// did not come to, and the tree would take all that they give it. So one that carries in the
+// solution and could not hold the rock as it would go without it is let go. If the rock drives on
+// through it then with more than the tree's capacity the tree breaks, else it is set in again.
+
+#include "simulation/massFallWork.h"
+
+#include "block/Block.h"
+
+#include <algorithm>
+
+namespace rockfall
+{
+
+namespace
+{
+
+/// Looks after which no further trees are let go: they hold for the rest of the step. Every second
+/// one lets the rocks go on to what stands behind.
+constexpr int kTreeLooks = 8;
+
+} // namespace
+
+/// Those that the rocks of a group meet in a step.
+struct MassFall::Trees
+{
+  using Stem = Workspace::Stem;
+
+  const MassFall& fall;
+  const Group& group;
+  Workspace& work;
+
+  const Member& memberOf(const Stem& stem) const
+  {
+    return *fall.members_[std::size_t(group.members[stem.member])];
+  }
+  /// use(contact, its number in the system): those of the rock with the tree.
+  template <class Use>
+  void forContacts(const Stem& stem, Use&& use) const
+  {
+    const RockSimulator& sim = this->memberOf(stem).sim;
+    for (std::size_t k = 0; k < sim.contacts_.size(); ++k)
+    {
+      if (sim.treeOf(sim.contacts_[k]) == stem.tree)
+      {
+        use(sim.contacts_[k], work.slopeFirsts[stem.member] + k);
+      }
+    }
+  }
+  void setAbsent(const Stem& stem, bool absent) const
+  {
+    this->forContacts(stem,
+      [&](const Contact&, std::size_t k) { work.solver.setAbsent(work.contacts, k, absent); });
+  }
+  BlockState endOf(const Stem& stem) const
+  {
+    return work.solver.end(work.bodies, std::size_t(this->memberOf(stem).place));
+  }
+  /// The same without what the tree does in a step of `h`, as long as others do as they did.
+  BlockState endWithout(const Stem& stem, double h) const
+  {
+    const RockSimulator& sim = this->memberOf(stem).sim;
+    BlockState end = this->endOf(stem);
+    const auto take = [&](const Contact& c, std::size_t k)
+    {
+      const Vec3 impulse = h * work.solver.force(k) * c.normal;
+      const Mat3 back = end.orientation.toRotationMatrix().transpose();
+      end.velocity -= impulse / sim.block_.mass();
+      end.spin -=
+        sim.block_.inverseInertia() * (back * (c.point - sim.state_.position).cross(impulse));
+    };
+    this->forContacts(stem, take);
+    return end;
+  }
+  /// Whether the tree cannot hold the rock that ends so, and that goes on into it. `through`: it is
+  /// let go.
+  bool cannotHold(const Stem& stem, const BlockState& end, bool through) const
+  {
+    const RockSimulator& sim = this->memberOf(stem).sim;
+    const Tree& tree = sim.obstacles_->structures().trees[std::size_t(stem.tree)];
+    bool meets = false;
+    const auto look = [&](const Contact& c, std::size_t k)
+    {
+      const Vec3 lever = c.point - sim.state_.position;
+      const double approach = -c.normal.dot(end.velocity + end.angularVelocity().cross(lever));
+      meets = meets ||
+        (approach > (c.closed() ? sim.restingSpeed_ : 0.0) &&
+          (!through || work.solver.gap(k) < 0.0));
+    };
+    this->forContacts(stem, look);
+    return meets && rigidKineticEnergy(sim.block_, end) > tree.capacity;
+  }
+  bool isKnown(std::size_t member, int tree) const
+  {
+    return std::any_of(work.stems.begin(), work.stems.end(),
+      [&](const Stem& s) { return s.member == member && s.tree == tree; });
+  }
+};
+
+void MassFall::standTrees(const Group& group, Workspace& work) const
+{
+  const Trees trees{ *this, group, work };
+  for (const Workspace::Stem& stem : work.stems)
+  {
+    trees.forContacts(
+      stem, [&](const Contact&, std::size_t k) { work.contacts[k].absent = false; });
+  }
+  work.stems.clear();
+  work.looks = 0;
+}
+
+bool MassFall::lookAtTrees(const Group& group, double h, Workspace& work) const
+{
+  const Obstacles* obstacles = surface_.terrain().obstacles();
+  if (!obstacles || obstacles->structures().trees.empty())
+  {
+    return false;
+  }
+  using Stem = Workspace::Stem;
+  const Trees trees{ *this, group, work };
+  bool any = false;
+  for (Stem& stem : work.stems)
+  {
+    if (stem.stands == Stem::Stands::Asked)
+    {
+      const bool falls = trees.cannotHold(stem, trees.endOf(stem), true);
+      stem.stands = falls ? Stem::Stands::No : Stem::Stands::Yes;
+      if (!falls)
+      {
+        trees.setAbsent(stem, false);
+        any = true;
+      }
+    }
+  }
+  if (++work.looks >= kTreeLooks)
+  {
+    return any;
+  }
+  for (std::size_t m = 0; m < group.members.size(); ++m)
+  {
+    const Member& member = *members_[std::size_t(group.members[m])];
+    if (member.sim.done_)
+    {
+      continue;
+    }
+    const std::vector<Contact>& contacts = member.sim.contacts_;
+    for (std::size_t k = 0; k < contacts.size(); ++k)
+    {
+      const int tree = member.sim.treeOf(contacts[k]);
+      if (tree < 0 || work.solver.force(work.slopeFirsts[m] + k) <= 0.0 || trees.isKnown(m, tree))
+      {
+        continue;
+      }
+      const Stem stem{ m, tree, Stem::Stands::Asked };
+      if (trees.cannotHold(stem, trees.endWithout(stem, h), false))
+      {
+        work.stems.push_back(stem);
+        trees.setAbsent(stem, true);
+        any = true;
+      }
+    }
+  }
+  return any;
+}
+
+void MassFall::fellTrees(const Group& group, std::size_t member, const Workspace& work) const
+{
+  bool any = false;
+  RockSimulator& sim = members_[std::size_t(group.members[member])]->sim;
+  for (const Workspace::Stem& stem : work.stems)
+  {
+    if (stem.member == member && stem.stands == Workspace::Stem::Stands::No)
+    {
+      // What its springs held when the step began is gone with it.
+      double held = 0.0;
+      for (const Contact& c : sim.contactsBefore_)
+      {
+        held += sim.treeOf(c) == stem.tree ? c.springEnergy() : 0.0;
+      }
+      sim.breakTree(stem.tree, held);
+      sim.energy_.damping -= held;
+      any = true;
+    }
+  }
+  if (any)
+  {
+    sim.forgetTrees();
+  }
+}
+
+} // namespace rockfall
