@@ -172,6 +172,7 @@ private:
   /// Contacts that nobody reckoned with, seen where a step would end: they are appended. Returns
   /// how deep the deepest is, of the smaller radius; 0: none.
   LookOutcome lookAgain(const Group& group, double h, bool bounces, Workspace& work) const;
+  double lookAtPassed(const Group& group, const Workspace& work) const; ///< LookOutcome::passed
   double lookAtPairs(const Group& group, double h, bool bounces, Workspace& work) const;
   double lookAtSlope(const Group& group, double h, bool bounces, Workspace& work) const;
   /// Contacts of a rock with the slope where a step would end: those that are reckoned with, then

@@ -80,6 +80,7 @@ LookOutcome MassFall::lookAgain(const Group& group, double h, bool bounces, Work
   forEach(group.members.size(), kRockGrain, place);
   work.looked = true;
   LookOutcome seen;
+  seen.passed = this->lookAtPassed(group, work);
   seen.missed = this->lookAtPairs(group, h, bounces, work);
   // Who resolves his impacts takes steps so short that what he may reach is known.
   if (group.crowd)
@@ -189,6 +190,25 @@ double MassFall::lookAtSlope(const Group& group, double h, bool bounces, Workspa
     }
   }
   return deepest;
+}
+
+double MassFall::lookAtPassed(const Group& group, const Workspace& work) const
+{
+  double most = 0.0;
+  for (std::size_t k = 0; k < work.added.size(); ++k)
+  {
+    const Workspace::Added& added = work.addedTo[k];
+    const double offset = work.added[k].offset;
+    if (added.onSlope || offset >= 0.0 || group.pairs[added.of]->axis.distance < 0.0)
+    {
+      continue;
+    }
+    const RockPair& pair = *group.pairs[added.of];
+    const double smaller = std::min(
+      work.sides[std::size_t(pair.first)].radius, work.sides[std::size_t(pair.second)].radius);
+    most = std::max(most, -(work.solver.gap(work.firsts.back() + k) + offset) / smaller);
+  }
+  return most;
 }
 
 double MassFall::lookAtPairs(const Group& group, double h, bool bounces, Workspace& work) const

@@ -49,6 +49,7 @@ void CrowdSolver::prepareBodies(const StepRequest& request, const std::vector<Gr
   const double h = h_ = request.duration;
   gravity_ = request.gravity;
   work_.resize(bodies.size());
+  seen_.resize(bodies.size());
   const auto prepareBody = [&](std::size_t i)
   {
     const GroupBody& body = bodies[i];
@@ -56,6 +57,7 @@ void CrowdSolver::prepareBodies(const StepRequest& request, const std::vector<Gr
     const BlockState& state = *body.state;
     Work& w = work_[i];
     w.moved = true;
+    seen_[i].radius = block.radius();
     w.rotation = state.orientation.toRotationMatrix();
     const Mat3 back = w.rotation.transpose();
     w.position = state.position;

@@ -185,11 +185,20 @@ private:
     work.moved = work.moved || !this->isNear(work.way, way);
     work.way = way;
   }
+  void noteSeen();         ///< Where bodies are looked at now;
+  bool haveGoneOn() const; ///< whether any has gone far since.
   void write(const StepRequest& request, std::vector<GroupBody>& bodies,
     std::vector<GroupContact>& contacts, GroupOutcome& outcome);
 
   double h_ = 0.0, gravity_ = 0.0;
   std::vector<Work> work_;
+  /// Of each body, where it was looked at last.
+  struct Seen
+  {
+    Vec3 way, spun;
+    double radius; ///< m
+  };
+  std::vector<Seen> seen_;
   std::vector<Row> rows_;
   std::vector<ContactBooks> books_; ///< Out, by row.
   std::vector<crowd::Batch> batches_;
@@ -251,6 +260,7 @@ private:
   int sweep_ = 0;       ///< Number of the next sweep.
   double scale_ = 0.0;  ///< The longest way in the step, m.
   double enough_ = 0.0; ///< Changes that settle a run, m,
+  double rough_ = 0.0;  ///< those that leave it far from settled,
   double quiet_ = 0.0;  ///< and those that are no reason to visit a contact again.
 };
 

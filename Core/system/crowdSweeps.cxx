@@ -19,6 +19,9 @@ constexpr int kCalmSweeps = 50;
 /// about. It happens where light rocks with sharp corners lie under heavy ones.
 constexpr double kRough = 300.0;
 constexpr int kRoughSweeps = 200;
+/// Or by more than this share of the rocks' radius: what is still pushed to and fro by that may end
+/// several times as deep in another one.
+constexpr double kRoughWay = 2.5e-3;
 /// After what has changed here and there (a bounce held back, a contact found), and where it is
 /// rough, the sweeps go on around it, where things move by more than this share of the longest way.
 /// Forces are not that exact yet anywhere: else each of these runs would go on with all of them.
@@ -27,12 +30,16 @@ constexpr double kRoughNoticed = 0.1; ///< And, of what is rough, less than this
 /// What is found in a second look is met to this many times the tolerance, which is about as exact
 /// as it is found, unless nothing bounces.
 constexpr double kFound = 4.0;
-/// A step whose last look still finds something deeper than this share of a radius is far from
-/// settled.
-constexpr double kDeepMiss = 0.02;
-/// What is less deep than this share of a radius in the look before the last one leaves nothing
-/// deep behind it.
+/// A step whose last look still finds something deeper than this share of a radius, or rocks that
+/// have passed into each other by it, is far from settled.
+constexpr double kDeepMiss = 0.01;
+/// What is less deep than this share of a radius leaves nothing deep behind it: from the second
+/// look on it is no reason for another one.
 constexpr double kWorthALook = 0.25 * kDeepMiss;
+/// What has gone further than this share of its radius since the last look is looked at again, so
+/// often in all; after that it is only told how deep it is.
+constexpr double kGoneOn = 5e-3;
+constexpr int kMostLooks = 4;
 /// In each so many sweeps watched contacts are looked at, and so many follow on one that closes.
 constexpr int kWatchEvery = 2;
 constexpr int kAfterWatched = 2;
@@ -101,7 +108,6 @@ bool CrowdSolver::sweepTo(double goal, int most, bool conjugate, GroupOutcome& o
 
 bool CrowdSolver::sweeps(int most, bool everywhere, GroupOutcome& outcome)
 {
-  const double rough = kRough * enough_;
   const double noticed = kNoticed * scale_;
   const auto sweepAround = [&](double goal, double least, int count, bool conjugate)
   {
@@ -114,10 +120,10 @@ bool CrowdSolver::sweeps(int most, bool everywhere, GroupOutcome& outcome)
   };
   // What goes on as one cannot be left alone here and there.
   bool settled = sweepAround(enough_, everywhere ? 0.0 : noticed, most, everywhere) && everywhere;
-  if (outcome.residual > rough)
+  if (outcome.residual > rough_)
   {
     // Most have settled by then: on around where it is rough.
-    sweepAround(rough, std::min(noticed, kRoughNoticed * rough), kRoughSweeps * most, false);
+    sweepAround(rough_, std::min(noticed, kRoughNoticed * rough_), kRoughSweeps * most, false);
     settled = false;
   }
   return settled;
@@ -184,6 +190,30 @@ void CrowdSolver::collect()
   forEach(work_.size(), kBodyGrain, take);
 }
 
+void CrowdSolver::noteSeen()
+{
+  for (std::size_t i = 0; i < work_.size(); ++i)
+  {
+    seen_[i].way = work_[i].way;
+    seen_[i].spun = work_[i].spun;
+  }
+}
+
+bool CrowdSolver::haveGoneOn() const
+{
+  for (std::size_t i = 0; i < work_.size(); ++i)
+  {
+    const Seen& seen = seen_[i];
+    const double on = (work_[i].way - seen.way).cwiseAbs().maxCoeff() +
+      seen.radius * (work_[i].spun - seen.spun).cwiseAbs().maxCoeff();
+    if (on > kGoneOn * seen.radius)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
 GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody>& bodies,
   std::vector<GroupContact>& contacts, Taken take, const std::function<LookOutcome()>& lookAgain)
 {
@@ -204,9 +234,11 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
   // Displacements matter in relation to how far gravity and the rocks' speed move them in the step.
   double scale = 0.5 * request.gravity * h_ * h_;
   bool calm = true;
-  for (const Work& w : work_)
+  double curvature = 0.0; // sum of 1/r: small rocks have a say
+  for (std::size_t i = 0; i < work_.size(); ++i)
   {
-    scale = std::max(scale, w.way.norm());
+    scale = std::max(scale, work_[i].way.norm());
+    curvature += 1.0 / seen_[i].radius;
   }
   bouncing_.clear();
   for (std::size_t k = 0; k < contacts.size(); ++k)
@@ -219,6 +251,7 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
   }
   scale_ = scale;
   enough_ = tolerance * scale;
+  rough_ = std::min(kRough * enough_, kRoughWay * double(work_.size()) / curvature);
   sweep_ = checked_ = 0;
   const int most = calm ? kCalmSweeps * maxSweeps : maxSweeps;
   outcome.settled = this->sweeps(most, true, outcome);
@@ -230,10 +263,14 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
   this->settle(most, calm, contacts, outcome);
   LookOutcome seen;
   const auto looksOn = [&](int look)
-  { return look < kLooks || seen.again || (look == kLooks && seen.missed > kWorthALook); };
+  {
+    return look < kLooks || seen.again ||
+      (look <= kMostLooks && (seen.missed > kWorthALook || this->haveGoneOn()));
+  };
   for (int look = 0; lookAgain && looksOn(look); ++look)
   {
     seen = lookAgain();
+    this->noteSeen();
     if (!seen.any())
     {
       break;
@@ -249,9 +286,9 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
     }
     enough_ = (calm ? 1.0 : kFound) * tolerance * scale;
     this->append(bodies, contacts);
-    if (look >= kLooks && !seen.again)
+    if (look >= kMostLooks && !seen.again)
     {
-      break; // the last one only tells how deep it is
+      break;
     }
     outcome.settled = this->sweeps(most, calm, outcome);
     if (this->correctTurns(bodies, contacts))
@@ -266,8 +303,8 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
   {
     finite = finite && w.way.allFinite() && w.spun.allFinite();
   }
-  const bool near = outcome.settled || outcome.residual <= kRough * enough_;
-  outcome.rough = !near || seen.missed > kDeepMiss;
+  const bool near = outcome.settled || outcome.residual <= rough_;
+  outcome.rough = !near || std::max(seen.missed, seen.passed) > kDeepMiss;
   const bool fair = take == Taken::NotRough ? !outcome.rough : outcome.settled;
   outcome.taken = finite && (fair || take == Taken::Any);
   if (outcome.taken)

@@ -53,7 +53,10 @@ constexpr double kAbsent = 1e3;
 struct LookOutcome
 {
   double missed = 0.0; ///< How deep the deepest is that nobody reckoned with, of a radius; 0: none.
-  bool again = false;  ///< Contacts were let go or set in again: one more look is due.
+  /// The same of rocks that were apart, where no contact can keep them so: along its normal they
+  /// overlapped in the beginning, too. A shorter step may find another one.
+  double passed = 0.0;
+  bool again = false; ///< Contacts were let go or set in again: one more look is due.
   bool any() const { return missed > 0.0 || again; }
 };
 
@@ -106,7 +109,8 @@ constexpr double kBounceStiffness = 100.0;
 constexpr double kBounceGain = 1e-3;
 constexpr int kHeldBounces = 3;
 
-/// How often missed contacts are looked for in a step (GroupSolver::step, lookAgain).
+/// How often missed contacts are looked for in a step at least, as long as there are any
+/// (GroupSolver::step, lookAgain).
 constexpr int kLooks = 2;
 
 /// The gap at the start of a step of `h` (s) that makes a contact leave as its bounce asks for.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 using namespace rockfall;
@@ -16,12 +17,14 @@ TEST(FastCrowds, RocksThatAnImpactTurnsStayOutOfEachOther)
   // A thousand cubes fall on a floor and on each other, in the end at 17 m/s, a tenth of an edge in
   // a step. Contacts that may close only if an impact turns the rocks are part of the step, too:
   // left to be found where the rocks end, the deepest overlap of a run was 1.1 % of an edge on
-  // average, and more than 1 % in nine of sixteen; so it is 0.6 %, and 0.75 % at most.
+  // average, and more than 1 % in nine of sixteen. What the last sweeps of a step still push about
+  // is looked at again: without that it was more than 1 % in two of these three heaps. So it was
+  // 0.47 % on average in twenty-two heaps, and 0.76 % at most.
   constexpr double kVolume = 0.6;
   const double edge = std::cbrt(kVolume);
   double sum = 0.0;
-  const std::vector<double> frictions = { 10.0, 20.0, 30.0 };
-  for (const double friction : frictions)
+  const std::vector<std::pair<double, int>> heaps = { { 10.0, 3 }, { 30.0, 9 }, { 40.0, 7 } };
+  for (const auto& [friction, seed] : heaps)
   {
     Pile pile;
     pile.ground = makeSlope(
@@ -29,16 +32,16 @@ TEST(FastCrowds, RocksThatAnImpactTurnsStayOutOfEachOther)
     pile.parameters.rockFrictionAngle = radians(friction);
     pile.parameters.rockRestitution = 0.2;
     pile.parameters.timeStep = 0.005;
-    pile.rocks = levelsOfCubes(1000, 10, kVolume, 9);
+    pile.rocks = levelsOfCubes(1000, 10, kVolume, seed);
     pile.start();
     double deepest = 0.0;
-    for (int step = 0; pile.fall->time() < 1.8; ++step)
+    while (pile.fall->time() < 1.8)
     {
       pile.fall->advance();
-      deepest = std::max(deepest, step % 2 == 0 ? pile.overlap() : 0.0);
+      deepest = std::max(deepest, pile.overlap());
     }
-    EXPECT_LT(deepest, 0.012 * edge) << "friction " << friction << "°";
+    EXPECT_LT(deepest, 0.01 * edge) << "friction " << friction << "°";
     sum += deepest;
   }
-  EXPECT_LT(sum / double(frictions.size()), 0.008 * edge);
+  EXPECT_LT(sum / double(heaps.size()), 0.007 * edge);
 }

@@ -65,13 +65,10 @@ Heap drop(int cubes, double friction)
   pile.start();
   Heap heap;
   bool moves = true;
-  for (int step = 0; moves; ++step)
+  while (moves)
   {
     moves = pile.fall->advance();
-    if (step % 10 == 0 || !moves)
-    {
-      heap.overlap = std::max(heap.overlap, pile.overlap() / edge);
-    }
+    heap.overlap = std::max(heap.overlap, pile.overlap() / edge);
   }
   heap.duration = pile.fall->time();
   // Of a cone of angle θ, the centre of gravity is at a quarter of its height, and half of it is
