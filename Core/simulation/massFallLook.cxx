@@ -199,14 +199,16 @@ double MassFall::lookAtPassed(const Group& group, const Workspace& work) const
   {
     const Workspace::Added& added = work.addedTo[k];
     const double offset = work.added[k].offset;
-    if (added.onSlope || offset >= 0.0 || group.pairs[added.of]->axis.distance < 0.0)
+    if (added.onSlope || offset >= 0.0)
     {
       continue;
     }
     const RockPair& pair = *group.pairs[added.of];
     const double smaller = std::min(
       work.sides[std::size_t(pair.first)].radius, work.sides[std::size_t(pair.second)].radius);
-    most = std::max(most, -(work.solver.gap(work.firsts.back() + k) + offset) / smaller);
+    const double before = std::min(0.0, pair.axis.distance);
+    const double deeper = before - (work.solver.gap(work.firsts.back() + k) + offset);
+    most = std::max(most, deeper / smaller);
   }
   return most;
 }

@@ -30,16 +30,8 @@ constexpr double kRoughNoticed = 0.1; ///< And, of what is rough, less than this
 /// What is found in a second look is met to this many times the tolerance, which is about as exact
 /// as it is found, unless nothing bounces.
 constexpr double kFound = 4.0;
-/// A step whose last look still finds something deeper than this share of a radius, or rocks that
-/// have passed into each other by it, is far from settled.
-constexpr double kDeepMiss = 0.01;
-/// What is less deep than this share of a radius leaves nothing deep behind it: from the second
-/// look on it is no reason for another one.
-constexpr double kWorthALook = 0.25 * kDeepMiss;
-/// What has gone further than this share of its radius since the last look is looked at again, so
-/// often in all; after that it is only told how deep it is.
+/// What has gone further than this share of its radius since the last look is looked at again.
 constexpr double kGoneOn = 5e-3;
-constexpr int kMostLooks = 4;
 /// In each so many sweeps watched contacts are looked at, and so many follow on one that closes.
 constexpr int kWatchEvery = 2;
 constexpr int kAfterWatched = 2;
@@ -263,10 +255,7 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
   this->settle(most, calm, contacts, outcome);
   LookOutcome seen;
   const auto looksOn = [&](int look)
-  {
-    return look < kLooks || seen.again ||
-      (look <= kMostLooks && (seen.missed > kWorthALook || this->haveGoneOn()));
-  };
+  { return seen.asksFor(look) || (look <= kMostLooks && this->haveGoneOn()); };
   for (int look = 0; lookAgain && looksOn(look); ++look)
   {
     seen = lookAgain();
@@ -304,7 +293,7 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
     finite = finite && w.way.allFinite() && w.spun.allFinite();
   }
   const bool near = outcome.settled || outcome.residual <= rough_;
-  outcome.rough = !near || std::max(seen.missed, seen.passed) > kDeepMiss;
+  outcome.rough = !near || seen.isDeep();
   const bool fair = take == Taken::NotRough ? !outcome.rough : outcome.settled;
   outcome.taken = finite && (fair || take == Taken::Any);
   if (outcome.taken)

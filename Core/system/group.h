@@ -49,15 +49,30 @@ struct GroupContact
 /// The gap of a contact that is let go, m.
 constexpr double kAbsent = 1e3;
 
+/// How often missed contacts are looked for in a step (GroupSolver::step, lookAgain): so often as
+/// long as there are any, and so often if they are deep. After that it is only told how deep.
+constexpr int kLooks = 2, kMostLooks = 4;
+/// A step whose last look still finds something deeper than this share of a radius, or rocks that
+/// have passed into each other by it, is far from settled.
+constexpr double kDeepMiss = 0.01;
+/// What is less deep than this share of a radius leaves nothing deep behind it.
+constexpr double kWorthALook = 0.25 * kDeepMiss;
+
 /// What a look at where a step would end has found (GroupSolver::step).
 struct LookOutcome
 {
   double missed = 0.0; ///< How deep the deepest is that nobody reckoned with, of a radius; 0: none.
-  /// The same of rocks that were apart, where no contact can keep them so: along its normal they
-  /// overlapped in the beginning, too. A shorter step may find another one.
+  /// By how much, of a radius, rocks have come deeper into each other where no contact can hold
+  /// them: along its normal they were as deep in the beginning, too. A shorter step may find
+  /// another one.
   double passed = 0.0;
   bool again = false; ///< Contacts were let go or set in again: one more look is due.
   bool any() const { return missed > 0.0 || again; }
+  bool asksFor(int look) const ///< Whether one is due after so many.
+  {
+    return look < kLooks || again || (look <= kMostLooks && missed > kWorthALook);
+  }
+  bool isDeep() const { return std::max(missed, passed) > kDeepMiss; }
 };
 
 /// Whether it is open and stays so in a step of `h` (s) unless its rocks are pushed: Gauss–Seidel
@@ -108,10 +123,6 @@ constexpr double kBounceStiffness = 100.0;
 /// often the others are held back in a step.
 constexpr double kBounceGain = 1e-3;
 constexpr int kHeldBounces = 3;
-
-/// How often missed contacts are looked for in a step at least, as long as there are any
-/// (GroupSolver::step, lookAgain).
-constexpr int kLooks = 2;
 
 /// The gap at the start of a step of `h` (s) that makes a contact leave as its bounce asks for.
 /// `turned`: stiffness times mobility along the normal; the spring misses a gap by so much of what

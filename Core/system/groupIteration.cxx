@@ -151,16 +151,17 @@ GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody
   this->prepare(request, bodies, contacts);
   outcome.settled = this->settle(request, bodies, contacts, outcome);
   LookOutcome seen;
-  for (int look = 0; lookAgain && outcome.settled && (look < kLooks || seen.again); ++look)
+  for (int look = 0; lookAgain && outcome.settled && seen.asksFor(look); ++look)
   {
     seen = lookAgain();
-    if (!seen.any())
+    if (!seen.any() || (look >= kMostLooks && !seen.again))
     {
       break;
     }
     this->append(request, bodies, contacts);
     outcome.settled = this->settle(request, bodies, contacts, outcome);
   }
+  outcome.settled = outcome.settled && !seen.isDeep();
   if (!outcome.settled && take == Taken::Any)
   {
     // Newton that has not settled may be anywhere; Gauss–Seidel comes nearer with every sweep, and
