@@ -181,7 +181,7 @@ private:
     Workspace& work, std::vector<Contact>& touches) const;
   void add(GroupContact taken, bool bounces, Workspace& work) const;
   // Trees that rocks are driven into within the step: massFallTrees.cxx.
-  void standTrees(const Group& group, Workspace& work) const; ///< All of them, to begin with.
+  void standTrees(const Group& group, Workspace& work) const; ///< All of them again.
   /// Whether any was let go, or set in again.
   bool lookAtTrees(const Group& group, double h, Workspace& work) const;
   /// Those that a rock has broken in the step that it has absorbed.

@@ -173,6 +173,7 @@ void MassFall::solve(
   }
   work.added.clear();
   work.addedTo.clear();
+  work.stems.clear();
   const auto armLate = [&](std::size_t k)
   {
     const auto behind = std::upper_bound(work.firsts.begin(), work.firsts.end(), k);

@@ -136,6 +136,36 @@ TEST(CrowdTrees, WhatStandsBehindIsMetInTheSameStep)
   }
 }
 
+TEST(CrowdTrees, WhoBreaksOneSaysNothingOfOtherGroups)
+{
+  // The last one of three breaks a tree; the two of another group, which lie on each other, do not.
+  Pile pile;
+  pile.ground = makeSlope(
+    21, 5.0, [](double, double) { return 0.0; }, material(0.3, 0.0));
+  Structures structures;
+  structures.trees = { stem({ 50.0, 50.0 }, 10.0) };
+  pile.ground.setStructures(structures);
+  pile.parameters.endTime = 0.5;
+  pile.parameters.timeStep = 0.002;
+  pile.parameters.rockFrictionAngle = 0.0;
+  const double x = 50.0 - kFlat - 0.002;
+  pile.rocks = { brick(Vec3(1, 1, 1), Vec3(x - 0.5, 51.01, 0.5), 0),
+    brick(Vec3(1, 1, 1), Vec3(x - 1.507, 50.0, 0.5), 1),
+    brick(Vec3(1, 1, 1), Vec3(x - 0.5, 50.0, 0.5), 2),
+    brick(Vec3(1, 1, 1), Vec3(20.0, 20.0, 0.5), 3),
+    brick(Vec3(1, 1, 1), Vec3(20.0, 20.0, 1.5), 4) };
+  pile.rocks[1].velocity = Vec3(10.0, 0.0, 0.0);
+  pile.make();
+  pile.fall->resolved = 0;
+  const std::vector<Trajectory> fall = pile.fall->run();
+  EXPECT_EQ(fall[2].structures.size(), 1u);
+  for (const std::size_t i : { 3, 4 })
+  {
+    EXPECT_TRUE(fall[i].structures.empty());
+    EXPECT_LT((fall[i].summary.stop - fall[i].summary.start).norm(), 1e-3);
+  }
+}
+
 TEST(CrowdTrees, WhatLeansOnATreeDoesNotBreakIt)
 {
   // Twelve cubes behind each other on a steep smooth slope, the first one against a stem that holds
