@@ -172,18 +172,38 @@ void MassFall::fellTrees(const Group& group, std::size_t member, const Workspace
   RockSimulator& sim = members_[std::size_t(group.members[member])]->sim;
   for (const Workspace::Stem& stem : work.stems)
   {
-    if (stem.member == member && stem.stands == Workspace::Stem::Stands::No)
+    if (stem.member != member || stem.stands != Workspace::Stem::Stands::No)
     {
-      // What its springs held when the step began is gone with it.
-      double held = 0.0;
-      for (const Contact& c : sim.contactsBefore_)
-      {
-        held += sim.treeOf(c) == stem.tree ? c.springEnergy() : 0.0;
-      }
-      sim.breakTree(stem.tree, held);
-      sim.energy_.damping -= held;
-      any = true;
+      continue;
     }
+    const Tree& tree = sim.obstacles_->structures().trees[std::size_t(stem.tree)];
+    if (rigidKineticEnergy(sim.block_, sim.state_) <= tree.capacity)
+    {
+      // Others have taken it since: it holds from here on.
+      for (Contact& c : sim.contacts_)
+      {
+        c.offset = sim.treeOf(c) == stem.tree ? std::min(c.offset, c.distance) : c.offset;
+      }
+      continue;
+    }
+    // What its springs held when the step began is gone with it, and booked as a loss of the step.
+    double held = 0.0;
+    for (std::size_t k = 0; k < sim.contactsBefore_.size(); ++k)
+    {
+      const Contact& c = sim.contactsBefore_[k];
+      if (sim.treeOf(c) == stem.tree)
+      {
+        const double all = c.springEnergy();
+        const double shear = c.closed() ? 0.5 * c.shearStiffness * c.slip.squaredNorm() : 0.0;
+        const bool bounced = work.contacts[work.slopeFirsts[member] + k].bounce >= 0.0;
+        held += all;
+        sim.energy_.restitution -= bounced ? all : 0.0;
+        sim.energy_.friction -= bounced ? 0.0 : shear;
+        sim.energy_.damping -= bounced ? 0.0 : all - shear;
+      }
+    }
+    sim.breakTree(stem.tree, held);
+    any = true;
   }
   if (any)
   {

@@ -154,11 +154,15 @@ GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody
   for (int look = 0; lookAgain && outcome.settled && seen.asksFor(look); ++look)
   {
     seen = lookAgain();
-    if (!seen.any() || (look >= kMostLooks && !seen.again))
+    if (!seen.any())
     {
       break;
     }
     this->append(request, bodies, contacts);
+    if (look >= kMostLooks && !seen.again)
+    {
+      break; // it only tells how deep it is
+    }
     outcome.settled = this->settle(request, bodies, contacts, outcome);
   }
   outcome.settled = outcome.settled && !seen.isDeep();

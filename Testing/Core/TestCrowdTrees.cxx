@@ -136,6 +136,27 @@ TEST(CrowdTrees, WhatStandsBehindIsMetInTheSameStep)
   }
 }
 
+TEST(CrowdTrees, WhatOneTreeLeavesTheNextOneHolds)
+{
+  // Two stems side by side, of which the cube's 53 kJ break one.
+  for (const GroupMethod method : { GroupMethod::Suited, GroupMethod::Iterative })
+  {
+    for (const double gap : { 0.002, 0.01, 0.02 })
+    {
+      const std::vector<Trajectory> crowd =
+        drive({ stem({ 50.0, 49.8 }, 4.4e4), stem({ 50.0, 50.2 }, 4.4e4) }, gap, 0, method);
+      EXPECT_EQ(crowd[0].structures.size(), 1u);
+      for (const StructureEvent& e : crowd[0].structures)
+      {
+        EXPECT_GT(e.kineticEnergy, e.energyTaken);
+      }
+      EXPECT_LT(crowd[0].summary.stop.x(), 50.0 - kFlat - 0.5 + 0.05) << gap; // a step of 5 ms
+      EXPECT_LT(crowd[0].summary.maxSpeed, 8.0);
+      EXPECT_LT(std::abs(crowd[0].summary.energy.numerical), 1e-2);
+    }
+  }
+}
+
 TEST(CrowdTrees, WhoBreaksOneSaysNothingOfOtherGroups)
 {
   // The last one of three breaks a tree; the two of another group, which lie on each other, do not.
