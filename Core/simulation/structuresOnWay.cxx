@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <tuple>
 
@@ -40,6 +41,22 @@ void slowDown(BlockState& state, double energy, double taken)
   const double factor = energy > 0.0 ? std::sqrt(std::max(0.0, 1.0 - taken / energy)) : 0.0;
   state.velocity *= factor;
   state.spin *= factor;
+}
+
+/// What a rock does to a structure where it is `at`, with this energy (J) and its centre this high
+/// over the slope (m); nothing is taken of it.
+StructureEvent eventAt(StructureOutcome outcome, std::int64_t feature, const BlockState& at,
+  double energy, double height)
+{
+  StructureEvent event;
+  event.outcome = outcome;
+  event.feature = feature;
+  event.time = at.time;
+  event.position = at.position;
+  event.velocity = at.velocity;
+  event.kineticEnergy = energy;
+  event.heightOverGround = height;
+  return event;
 }
 
 } // namespace
@@ -153,15 +170,10 @@ void RockSimulator::breakTree(int tree, double held)
 {
   const Tree& stem = obstacles_->structures().trees[std::size_t(tree)];
   const double energy = rigidKineticEnergy(block_, state_);
-  StructureEvent event;
-  event.outcome = StructureOutcome::TreeBroken;
-  event.feature = stem.feature;
-  event.time = state_.time;
-  event.position = state_.position;
-  event.velocity = state_.velocity;
-  event.kineticEnergy = energy;
-  event.heightOverGround =
+  const double height =
     state_.position.z() - surface_.elevation(state_.position.x(), state_.position.y());
+  StructureEvent event =
+    eventAt(StructureOutcome::TreeBroken, stem.feature, state_, energy, height);
   event.energyTaken = stem.capacity;
   recorder_.trajectory().structures.push_back(event);
   slowDown(state_, energy, std::max(0.0, stem.capacity - held));
@@ -176,12 +188,7 @@ bool RockSimulator::isGone(int tree) const
 
 void RockSimulator::forgetTrees()
 {
-  std::erase_if(contacts_,
-    [&](const Contact& c)
-    {
-      const int tree = this->treeOf(c);
-      return tree >= 0 && this->isGone(tree);
-    });
+  std::erase_if(contacts_, [&](const Contact& c) { return this->isGone(this->treeOf(c)); });
   acceleration_.setZero();
   spinAcceleration_.setZero();
   this->forgetPatch();
@@ -304,15 +311,8 @@ void RockSimulator::passBarriers(const Way& way, double taken)
     }
     const double came = rigidKineticEnergy(block_, at);
     slowDown(at, came, std::min(taken, came));
-    StructureEvent event;
-    event.outcome = StructureOutcome::BarrierRecorded;
-    event.feature = barrier.feature;
-    event.time = at.time;
-    event.position = at.position;
-    event.velocity = at.velocity;
-    event.kineticEnergy = rigidKineticEnergy(block_, at) + stored;
-    event.heightOverGround = height;
-    recorder_.trajectory().structures.push_back(event);
+    recorder_.trajectory().structures.push_back(eventAt(StructureOutcome::BarrierRecorded,
+      barrier.feature, at, rigidKineticEnergy(block_, at) + stored, height));
   }
 }
 
@@ -322,14 +322,9 @@ void RockSimulator::meetBarrier()
   const double kinetic = rigidKineticEnergy(block_, state_), energy = kinetic + hit_.stored;
   const bool holds = energy <= barrier.capacity;
   const double taken = holds ? energy : barrier.absorbs ? barrier.capacity : 0.0;
-  StructureEvent event;
-  event.outcome = holds ? StructureOutcome::BarrierStopped : StructureOutcome::BarrierBroken;
-  event.feature = barrier.feature;
-  event.time = state_.time;
-  event.position = state_.position;
-  event.velocity = state_.velocity;
-  event.kineticEnergy = energy;
-  event.heightOverGround = hit_.heightOverGround;
+  StructureEvent event =
+    eventAt(holds ? StructureOutcome::BarrierStopped : StructureOutcome::BarrierBroken,
+      barrier.feature, state_, energy, hit_.heightOverGround);
   event.energyTaken = taken;
   TrajectorySummary& summary = recorder_.trajectory().summary;
   if (holds)
@@ -374,14 +369,8 @@ double RockSimulator::endStepAtBarrier(const BlockState& end, double taken, bool
     this->meetBarrier();
     return 0.0;
   }
-  StructureEvent event;
-  event.outcome = StructureOutcome::BarrierBroken;
-  event.feature = barrier.feature;
-  event.time = at.time;
-  event.position = at.position;
-  event.velocity = at.velocity;
-  event.kineticEnergy = energy;
-  event.heightOverGround = hit_.heightOverGround;
+  StructureEvent event =
+    eventAt(StructureOutcome::BarrierBroken, barrier.feature, at, energy, hit_.heightOverGround);
   const double left = rigidKineticEnergy(block_, state_);
   slowDown(state_, left, barrier.absorbs ? std::min(barrier.capacity, left) : 0.0);
   event.energyTaken = left - rigidKineticEnergy(block_, state_);
