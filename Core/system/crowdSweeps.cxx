@@ -275,7 +275,7 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
     }
     enough_ = (calm ? 1.0 : kFound) * tolerance * scale;
     this->append(bodies, contacts);
-    if (look >= kMostLooks && !seen.again)
+    if (seen.onlyTells(look))
     {
       break;
     }

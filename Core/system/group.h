@@ -72,6 +72,8 @@ struct LookOutcome
   {
     return look < kLooks || again || (look <= kMostLooks && missed > kWorthALook);
   }
+  /// Whether the look after so many others finds out only how deep what it has missed is.
+  bool onlyTells(int look) const { return look >= kMostLooks && !again; }
   bool isDeep() const { return std::max(missed, passed) > kDeepMiss; }
 };
 

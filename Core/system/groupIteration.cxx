@@ -159,9 +159,9 @@ GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody
       break;
     }
     this->append(request, bodies, contacts);
-    if (look >= kMostLooks && !seen.again)
+    if (seen.onlyTells(look))
     {
-      break; // it only tells how deep it is
+      break;
     }
     outcome.settled = this->settle(request, bodies, contacts, outcome);
   }
