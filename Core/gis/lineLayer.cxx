@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "gis/FeatureRow.h"
+#include "gis/barrierUnits.h"
 #include "gis/crs.h"
 #include "gis/gdal.h"
 
@@ -45,6 +46,7 @@ public:
     line.name = row.text("name").value_or("");
     line.height = row.notNegative("height");
     line.capacity = row.notNegative("capacity");
+    refuseOtherUnits(row, line.height, line.capacity);
     const OGRGeometry* geometry = feature.GetGeometryRef();
     if (!geometry || geometry->IsEmpty())
     {

@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "gis/FeatureRow.h"
+#include "gis/barrierUnits.h"
 #include "gis/crs.h"
 #include "gis/gdal.h"
 #include "terrain/Obstacles.h"
@@ -351,16 +352,18 @@ void readBarriers(const std::string& fileName, const Terrain& terrain, Structure
       b.feature = count;
       b.name = row.text("name").value_or("");
       b.height = needed(row, "height", "that of the barrier over ground in m");
-      if (const auto capacity = row.notNegative("capacity"))
-      {
-        b.capacity = kJ * *capacity;
-      }
+      const auto capacity = row.notNegative("capacity");
+      b.capacity = capacity ? kJ * *capacity : b.capacity;
       const std::string mode = lowered(row.text("mode").value_or("stop"));
       if (mode != "stop" && mode != "record")
       {
         row.failField("mode", " is \"" + mode + "\", it must be stop or record");
       }
       b.records = mode == "record";
+      if (!b.records) // what records may be as high as it likes
+      {
+        refuseOtherUnits(row, b.height, capacity);
+      }
       b.absorbs = row.ranged({ "absorbs" }, 0.0, 1.0, "1 or 0").value_or(1.0) != 0.0;
       for (std::vector<Eigen::Vector2d>& line : linesOf(row, placing))
       {

@@ -181,6 +181,33 @@ void MassFall::putToSleep(Member& member)
   member.sim.spinAcceleration_.setZero();
 }
 
+void MassFall::tellBroken()
+{
+  if (!surface_.terrain().obstacles())
+  {
+    return;
+  }
+  RockSimulator::Broken all;
+  for (Member& member : members_)
+  {
+    RockSimulator::Broken& one = member.sim.broke_;
+    all.trees.insert(all.trees.end(), one.trees.begin(), one.trees.end());
+    all.barriers.insert(all.barriers.end(), one.barriers.begin(), one.barriers.end());
+    one = {};
+  }
+  if (all.trees.empty() && all.barriers.empty())
+  {
+    return;
+  }
+  for (Member& member : members_)
+  {
+    if (member.sim.hearOf(all) && member.asleep)
+    {
+      this->wake(member);
+    }
+  }
+}
+
 bool MassFall::stays(Member& member) const
 {
   const RockSimulator& sim = member.sim;
@@ -241,6 +268,7 @@ bool MassFall::advanceAll()
   };
   forEach(groups_.size() + alone_.size(), 1, advanceOne);
   time_ = until;
+  this->tellBroken();
   if (!awake)
   {
     for (const Group& group : groups_)

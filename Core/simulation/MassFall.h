@@ -146,6 +146,7 @@ private:
   /// Whether the two have touched within the time that rest takes.
   bool heldLately(const RockPair& pair) const;
   void restAnew(int rock);          ///< As something has gone that it may have lain on or leant on.
+  void tellBroken();                ///< What a rock has broken is gone for all.
   bool stays(Member& member) const; ///< Whether it has been still for long enough.
   bool isCrowd(const Group& group) const;
   bool advanceAll();

@@ -67,6 +67,12 @@ public:
   const BlockState& state() const { return state_; }
   bool done() const { return done_; }
 
+  /// Trees and barriers, by number.
+  struct Broken
+  {
+    std::vector<int> trees, barriers;
+  };
+
 private:
   friend class MassFall; ///< Moves rocks that touch each other.
 
@@ -112,6 +118,8 @@ private:
   /// and fills `hit_` with the first barrier that stops the rock or breaks. After such a one flight
   /// goes on to those at the same place only; its rest is flown anew.
   void passBarriers(const Way& way, double taken);
+  /// What others of its fall have broken is gone for this rock, too. Whether it touched any of it.
+  bool hearOf(const Broken& broken);
   void meetBarrier(); ///< The one in `hit_`, at `state_`.
   /// The one in `hit_`, in a step of contact that would go to `end` and in which others have taken
   /// so much (J); returns what this one takes if it breaks.
@@ -216,7 +224,8 @@ private:
   std::vector<double> dampingRatios_; ///< ζ by restitution class; < 0: not known yet.
   std::vector<int> goneTrees_;        ///< Ascending.
   std::vector<int> brokenBarriers_;   ///< In the order of breaking.
-  double freeUntil_ = 0.0;            ///< Nothing can be touched until then, after a take-off, s.
+  Broken broke_;           ///< What it has broken itself, of which others have not heard yet.
+  double freeUntil_ = 0.0; ///< Nothing can be touched until then, after a take-off, s.
   std::vector<BarrierPassage> passages_; ///< Of the way at hand.
   std::size_t passed_ = 0;               ///< How many of them are dealt with.
   BarrierHit hit_;

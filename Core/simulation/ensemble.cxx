@@ -13,6 +13,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -21,6 +22,7 @@
 #include <memory>
 #include <mutex>
 #include <thread>
+#include <utility>
 
 namespace rockfall
 {
@@ -331,7 +333,7 @@ Trajectory Ensemble::simulate(std::int64_t number, double enough) const
 }
 
 std::vector<Trajectory> Ensemble::simulateUnit(
-  std::int64_t unit, double enough, const std::atomic<bool>& stop) const
+  std::int64_t unit, double enough, const std::function<bool(double)>& goOn) const
 {
   std::vector<Trajectory> trajectories;
   if (!parameters_.rockRockContact)
@@ -354,7 +356,8 @@ std::vector<Trajectory> Ensemble::simulateUnit(
   }
   const Surface surface(terrain_, parameters_.seed, iteration);
   MassFall fall(surface, rocks, blocks, parameters_);
-  trajectories = fall.run([&](double time) { return !stop && time < enough; });
+  const double end = std::min(enough, parameters_.endTime);
+  trajectories = fall.run([&](double time) { return goOn(time / end) && time < enough; });
   for (std::size_t rock = 0; rock < trajectories.size(); ++rock)
   {
     TrajectorySummary& summary = trajectories[rock].summary;
@@ -373,7 +376,8 @@ bool Ensemble::run(
   {
     return true;
   }
-  std::atomic<std::int64_t> next{ 0 }, finished{ 0 };
+  constexpr double kWhole = 1e6; // of a unit: falls of many rocks tell how far they have come
+  std::atomic<std::int64_t> next{ 0 }, done{ 0 };
   std::atomic<bool> stop{ false };
   FirstFailure failure;
   InOrder inOrder(sink);
@@ -382,27 +386,34 @@ bool Ensemble::run(
   {
     for (std::int64_t k = next++; k < total && !stop; k = next++)
     {
+      std::int64_t told = 0;
+      const auto tell = [&](double over)
+      {
+        const std::int64_t now = std::int64_t(kWhole * std::clamp(over, 0.0, 1.0));
+        done += now - std::exchange(told, now);
+        return !stop;
+      };
       try
       {
-        std::vector<Trajectory> done =
-          this->simulateUnit(share.begin + k * share.stride, enough, stop);
-        for (Trajectory& trajectory : done)
+        std::vector<Trajectory> unit =
+          this->simulateUnit(share.begin + k * share.stride, enough, tell);
+        for (Trajectory& trajectory : unit)
         {
           sink.trim(trajectory);
         }
-        inOrder.put(k, std::move(done));
+        inOrder.put(k, std::move(unit));
       }
       catch (...)
       {
         failure.note(k);
         stop = true;
       }
-      ++finished;
+      tell(1.0);
     }
   };
 
   // The caller's thread only reports: a GUI must not be called from any other one.
-  std::atomic<bool> done{ false };
+  std::atomic<bool> ended{ false };
   std::mutex wakeMutex;
   std::condition_variable wake;
   std::thread worker(
@@ -410,19 +421,19 @@ bool Ensemble::run(
     {
       onThreads(parameters_.threads, simulateNext);
       const std::lock_guard<std::mutex> lock(wakeMutex);
-      done = true;
+      ended = true;
       wake.notify_all();
     });
   bool aborted = false;
   {
     std::unique_lock<std::mutex> lock(wakeMutex);
-    while (!done)
+    while (!ended)
     {
       wake.wait_for(lock, std::chrono::milliseconds(50));
-      if (progress && !done && !aborted)
+      if (progress && !ended && !aborted)
       {
         lock.unlock();
-        if (!progress(double(finished) / double(total)))
+        if (!progress(double(done) / (kWhole * double(total))))
         {
           aborted = true;
           stop = true;

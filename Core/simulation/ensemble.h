@@ -9,7 +9,6 @@
 #include "simulation/results.h"
 #include "terrain/Terrain.h"
 
-#include <atomic>
 #include <functional>
 #include <limits>
 #include <mutex>
@@ -132,8 +131,9 @@ public:
     double enough = std::numeric_limits<double>::infinity()) const;
 
 private:
+  /// Of a fall of many rocks, goOn(share of its time that is over) as it goes on.
   std::vector<Trajectory> simulateUnit(
-    std::int64_t unit, double enough, const std::atomic<bool>& stop) const;
+    std::int64_t unit, double enough, const std::function<bool(double)>& goOn) const;
 
   /// The rocks of an iteration that fall together, as they are released. Throws PlacementError if
   /// they overlap and are not to be pushed apart.

@@ -11,6 +11,14 @@
 namespace rockfall
 {
 
+namespace
+{
+
+/// A rock falls 5 cm in it: contacts that are met later are met wrongly.
+constexpr double kMostTimeStep = 0.1; // s
+
+} // namespace
+
 void SimulationParameters::validate() const
 {
   const auto positive = [](double value, const char* field, const char* unit)
@@ -30,6 +38,11 @@ void SimulationParameters::validate() const
     }
   };
   positive(this->timeStep, "TimeStep", "seconds");
+  if (this->timeStep > kMostTimeStep)
+  {
+    throw ParameterError("TimeStep is " + numberText(this->timeStep) + " s, it must be at most " +
+      numberText(kMostTimeStep) + " s: is it in milliseconds?");
+  }
   positive(this->endTime, "EndTime", "seconds");
   positive(this->outputInterval, "OutputInterval", "seconds");
   positive(this->normalPenalty, "NormalPenalty", "N/m");

@@ -237,6 +237,13 @@ std::vector<ReleasePlace> releasePlaces(std::span<const SourceRow> sources, cons
   const ReleaseDefaults& defaults, const std::string& layer)
 {
   defaults.validate();
+  if (layer.empty() && sources.front().geometry == SourceGeometry::Point &&
+    defaults.intensity > 0.0)
+  {
+    throw ParameterError("Intensity is " + number(defaults.intensity) +
+      " rocks per m or m²: the place in Center has neither length nor area, Amount says how many "
+      "rocks it has");
+  }
   std::vector<Sampler> samplers;
   double rocks = 0.0, most = -1.0;
   std::size_t largest = 0;

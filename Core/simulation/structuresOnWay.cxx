@@ -179,6 +179,7 @@ void RockSimulator::breakTree(int tree, double held)
   slowDown(state_, energy, std::max(0.0, stem.capacity - held));
   energy_.structures += held + energy - rigidKineticEnergy(block_, state_);
   goneTrees_.insert(std::lower_bound(goneTrees_.begin(), goneTrees_.end(), tree), tree);
+  broke_.trees.push_back(tree);
 }
 
 bool RockSimulator::isGone(int tree) const
@@ -192,6 +193,59 @@ void RockSimulator::forgetTrees()
   acceleration_.setZero();
   spinAcceleration_.setZero();
   this->forgetPatch();
+}
+
+bool RockSimulator::hearOf(const Broken& broken)
+{
+  for (const int barrier : broken.barriers)
+  {
+    if (std::find(brokenBarriers_.begin(), brokenBarriers_.end(), barrier) == brokenBarriers_.end())
+    {
+      brokenBarriers_.push_back(barrier);
+    }
+  }
+  bool near = false;
+  for (const int tree : broken.trees)
+  {
+    const auto at = std::lower_bound(goneTrees_.begin(), goneTrees_.end(), tree);
+    if (at != goneTrees_.end() && *at == tree)
+    {
+      continue;
+    }
+    goneTrees_.insert(at, tree);
+    const Eigen::Vector2d& place = obstacles_->structures().trees[std::size_t(tree)].position;
+    const double r = obstacles_->treeRadius(tree);
+    near = near ||
+      (place.x() + r >= patch_.xMin && place.x() - r <= patch_.xMax &&
+        place.y() + r >= patch_.yMin && place.y() - r <= patch_.yMax);
+  }
+  if (!near)
+  {
+    return false;
+  }
+  // What the springs against a stem hold goes with it.
+  double held = 0.0;
+  bool touched = false;
+  for (const Contact& c : contacts_)
+  {
+    if (this->isGone(this->treeOf(c)))
+    {
+      held += c.springEnergy();
+      touched = touched || c.closed();
+    }
+  }
+  if (touched)
+  {
+    springEnergy_ = std::max(0.0, springEnergy_ - held);
+    energy_.structures += held;
+    this->forgetTrees();
+  }
+  else
+  {
+    std::erase_if(contacts_, [&](const Contact& c) { return this->isGone(this->treeOf(c)); });
+    this->forgetPatch();
+  }
+  return touched;
 }
 
 void RockSimulator::findBarriers(const Way& way)
@@ -344,6 +398,7 @@ void RockSimulator::meetBarrier()
     return;
   }
   brokenBarriers_.push_back(hit_.barrier);
+  broke_.barriers.push_back(hit_.barrier);
   freeUntil_ = 0.0;
   state_.time += kInstant;
   recorder_.knot(state_, false);
@@ -377,6 +432,7 @@ double RockSimulator::endStepAtBarrier(const BlockState& end, double taken, bool
   energy_.structures += event.energyTaken;
   recorder_.trajectory().structures.push_back(event);
   brokenBarriers_.push_back(hit_.barrier);
+  broke_.barriers.push_back(hit_.barrier);
   return event.energyTaken;
 }
 

@@ -166,6 +166,8 @@ TEST(StructureLayers, TellWhatIsWrong)
     { 1, tree + "-50,50,30,20\n150,50,30,20\n", "none of its 2 trees stands where" },
     { 2, "WKT,capacity\n" + line + ",100\n", "field \"height\" is missing" },
     { 2, net + line + ",4,-5\n", "\"capacity\" is -5" },
+    { 2, net + line + ",400,500\n", "\"height\" is 400 m" },
+    { 2, net + line + ",4,300000\n", "\"capacity\" is 300000 kJ" },
     { 2, "WKT,height,mode\n" + line + ",4,hold\n", "\"mode\" is \"hold\"" },
     { 2, "WKT,height,capacity_kJ\n" + line + ",4,1000\n",
       "its column \"capacity_kJ\" is not read, and there is none \"capacity\"" },

@@ -31,7 +31,7 @@ protected:
       this->WriteFile("trees.csv", "x,y,diameter,height,capacity\n180,10,30,20,\n180,90,30,20,5\n")
         .c_str());
     this->Terrain->SetBarrierFile(
-      this->WriteFile("nets.csv", "WKT,height,capacity\n\"LINESTRING(60 1,60 99)\",50,1000\n")
+      this->WriteFile("nets.csv", "WKT,height,capacity\n\"LINESTRING(60 1,60 99)\",30,1000\n")
         .c_str());
   }
 };

@@ -130,12 +130,12 @@ TEST_F(TestTrajectoryCollector, SharesAndCurves)
 TEST_F(TestTrajectoryCollector, LinesOfAFile)
 {
   this->Filter->SetFileName(
-    this->Json(R"({ "name": "road", "height": 2.0, "capacity": 1e6 })", 500003).c_str());
+    this->Json(R"({ "name": "road", "height": 2.0, "capacity": 1e5 })", 500003).c_str());
   ASSERT_EQ(this->Table(1)->GetNumberOfRows(), 1);
   EXPECT_EQ(this->Table(1)->GetValueByName(0, "LineName").ToString(), "road");
   EXPECT_EQ(this->Number("Rocks"), 5);
   EXPECT_EQ(this->Number("BarrierHeight"), 2.0);
-  EXPECT_EQ(this->Number("BarrierCapacity"), 1e6);
+  EXPECT_EQ(this->Number("BarrierCapacity"), 1e5);
   EXPECT_EQ(this->Number("Caught"), 3);
   this->Filter->SetInputDataObject(1, this->Drawn); // and those that are drawn, before
   ASSERT_EQ(this->Table(1)->GetNumberOfRows(), 2);

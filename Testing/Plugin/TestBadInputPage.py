@@ -225,6 +225,8 @@ structures("a column by another name", "BarrierFile",
            NET.format(60, 4, 1000).replace("capacity", "capacity_kJ"))
 structures("a diameter in metres", "TreeFile", TREE.format(0.35, 20))
 structures("a height in feet, or none of a tree", "TreeFile", TREE.format(35, 328))
+structures("a height of a net in centimetres", "BarrierFile", NET.format(60, 400, 1000))
+structures("a capacity in J", "BarrierFile", NET.format(60, 4, 300000))
 structures("negative", "BarrierFile", NET.format(60, -4, 1000))
 structures("NaN", "EmbankmentFile", DAM.format(20, 80, "nan"))
 structures("a word", "BarrierFile", NET.format(60, 4, "strong"))
