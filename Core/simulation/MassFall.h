@@ -154,6 +154,8 @@ private:
   double groupStep(const Group& group) const;
   void gatherContacts(const Group& group, double h, Workspace& work) const;
   static void findPushes(const Group& group, Workspace& work);
+  /// Springs on the slope into which others press the rock.
+  static void stiffenPressed(RockSimulator& sim);
   void armPair(RockPair& pair, double h) const;
   /// One of a crowd, whose dashpots are not asked for.
   void armContact(const RockPair& pair, Contact& contact) const;

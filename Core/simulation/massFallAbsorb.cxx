@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "contact/motion.h"
 #include "simulation/pressOut.h"
+#include "simulation/pressedIn.h"
 
 #include <algorithm>
 #include <array>
@@ -15,6 +16,17 @@ namespace rockfall
 
 namespace
 {
+
+/// What others press in further than the two rocks could yields, at the force that it has: what its
+/// spring would hold beyond is not given back.
+void yield(Contact& c, double radius, double speed, double mass)
+{
+  if (c.closed() && c.gap() < -kFirm * radius)
+  {
+    const double most = deepestBetween(radius, speed, mass, c.stiffness);
+    c.offset = std::min(c.offset, c.distance + most);
+  }
+}
 
 /// A number for a contact that carries.
 std::uint64_t keyOf(const Contact& c)
@@ -91,12 +103,15 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     // What was found overlapping is pressed out slowly.
     const Workspace::Side& a = work.sides[std::size_t(pair.first)];
     const Workspace::Side& b = work.sides[std::size_t(pair.second)];
-    const double mass = std::min(a.mass, b.mass);
+    const double mass = std::min(a.mass, b.mass), reduced = 1.0 / (1.0 / a.mass + 1.0 / b.mass);
     const double slow =
       std::min(kPressOut * h, 0.5 * mass * parameters_.gravity / parameters_.normalPenalty);
-    const double loose = kLooseOverlap * std::min(a.radius, b.radius);
+    const double smaller = std::min(a.radius, b.radius), loose = kLooseOverlap * smaller;
+    const double speed = std::max(
+      (a.velocity - b.velocity).norm() + a.rim + b.rim, pair.strikes ? pair.impact.approach : 0.0);
     for (Contact& c : pair.contacts)
     {
+      yield(c, smaller, speed, reduced);
       pressOut(c, h, slow, kind == StepKind::Lasting, loose);
     }
   };

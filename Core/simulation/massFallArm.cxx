@@ -4,9 +4,11 @@
 
 #include "contact/motion.h"
 #include "simulation/impactMode.h"
+#include "simulation/pressedIn.h"
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace rockfall
 {
@@ -83,6 +85,36 @@ private:
 };
 
 } // namespace
+
+void MassFall::stiffenPressed(RockSimulator& sim)
+{
+  const double r = sim.block_.radius(), mass = sim.block_.mass();
+  double speed = sim.state_.velocity.norm() + sim.state_.spin.norm() * r;
+  if (sim.impact_.pending)
+  {
+    speed = std::max(speed, sim.impact_.event.velocityBefore.norm());
+  }
+  for (Contact& c : sim.contacts_)
+  {
+    if (!c.closed() || c.gap() >= -kFirm * r)
+    {
+      continue;
+    }
+    const double share = deepestBetween(r, speed, mass, c.stiffness) / -c.gap();
+    if (share < 1.0)
+    {
+      // The same force at less overlap. What the spring held more is not given back.
+      const double lost = 0.5 * c.stiffness * c.gap() * c.gap() * (1.0 - share);
+      c.offset = c.distance - share * c.gap();
+      c.stiffness /= share;
+      c.frequency2 /= share;
+      c.dashpot /= std::sqrt(share);
+      sim.energy_.restitution += lost;
+      sim.springEnergy_ = std::max(0.0, sim.springEnergy_ - lost);
+      sim.normalEnergy_ = std::max(0.0, sim.normalEnergy_ - lost);
+    }
+  }
+}
 
 void MassFall::armPair(RockPair& pair, double h) const
 {

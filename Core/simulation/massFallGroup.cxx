@@ -144,6 +144,7 @@ void MassFall::gatherContacts(const Group& group, double h, Workspace& work) con
       pressed = std::max(pressed, -c.gap());
     }
     holdOverlap(sim.placed_, sim.patch_, *near, kLooseOverlap * r + 2.0 * pressed, sim.contacts_);
+    stiffenPressed(sim);
     sim.armContacts(h);
   };
   forEach(group.members.size(), kRockGrain, onSlope);
