@@ -235,6 +235,7 @@ TEST(Obstacles, AStemWithoutCapacityDoesNotCarry)
     EXPECT_NEAR(through.summary.energy.restitution, 0.0, 1e-9) << "case " << k;
   }
   EXPECT_GT(broken, 400u);
+  EXPECT_EQ(broken, 1u);
 }
 
 TEST(Obstacles, ATreeBreaksForMoreThanItsCapacityOnly)
@@ -347,10 +348,13 @@ TEST(Obstacles, AStemThatBreaksInASqueezeTakesItsCapacity)
   pile.parameters.endTime = 40.0;
   pile.parameters.rockFrictionAngle = radians(20.0);
   pile.make();
+  std::size_t broken = 0;
   for (const Trajectory& t : pile.fall->run())
   {
-    ASSERT_EQ(t.structures.size(), 1u);
-    EXPECT_NEAR(t.summary.energy.structures, capacity, 1e-9 * capacity);
+    broken += t.structures.size();
+    // For the others it is gone, too, with what springs against it hold.
+    const double taken = t.structures.empty() ? 0.0 : capacity;
+    EXPECT_NEAR(t.summary.energy.structures, taken, 1e-9 * capacity);
     // Rounding, over some thousand steps.
     EXPECT_LT(std::abs(t.summary.energy.numerical), 1e-9 * t.summary.energy.released);
   }
