@@ -26,6 +26,8 @@ constexpr std::pair<VolumeLaw, const char*> names[] = {
 
 /// Bounds that leave less than this of a distribution are a mistake, not a choice.
 constexpr double leastShare = 1e-6;
+/// So is a deviation of more than so many means: all but a few rocks would be dust.
+constexpr double mostDeviation = 1e3;
 
 std::string text(double value)
 {
@@ -147,6 +149,11 @@ void VolumeDistribution::validate() const
     fail("Volume", this->mean,
       "within VolumeMinimum and VolumeMaximum, which are " + text(this->minimum) + " and " +
         text(this->maximum));
+  }
+  if (bell && this->deviation > mostDeviation * this->mean)
+  {
+    fail("VolumeDeviation", this->deviation,
+      "at most a thousand times Volume, which is " + text(this->mean));
   }
   if (bell && this->deviation > 0.0)
   {

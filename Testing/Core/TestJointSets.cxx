@@ -54,6 +54,30 @@ std::vector<JointSet> cubeSets()
     jointSet(90.0, 0.0, 1.0, 0.5) };
 }
 
+/// The same body as a file in single precision has it, by polygons or by triangles.
+Polyhedron inSinglePrecision(const Polyhedron& body, bool triangles)
+{
+  std::vector<Vec3> points = body.vertices();
+  for (Vec3& p : points)
+  {
+    p = p.cast<float>().cast<double>();
+  }
+  std::vector<std::vector<int>> faces;
+  for (const std::vector<int>& loop : body.faces())
+  {
+    if (!triangles)
+    {
+      faces.push_back(loop);
+      continue;
+    }
+    for (std::size_t i = 2; i < loop.size(); ++i)
+    {
+      faces.push_back({ loop[0], loop[i - 1], loop[i] });
+    }
+  }
+  return Polyhedron::fromFaces(points, faces, "mass.stl").centred();
+}
+
 template <typename Failure>
 void expectError(const Polyhedron& mass, const std::vector<JointSet>& sets, const MassCut& how,
   const std::vector<std::string>& words)
@@ -298,6 +322,11 @@ TEST(JointSets, BadInput)
   JointSet bad = good;
   bad.spacingDeviation = -1.0;
   expectError<ParameterError>(mass, { bad }, {}, { "spacing deviation is -1" });
+  bad.spacingDeviation = 1e300;
+  expectError<ParameterError>(mass, { bad }, {}, { "spacing deviation is 1e+300", "ten times" });
+  bad = good;
+  bad.offset = 1e17;
+  expectError<ParameterError>(mass, { bad }, {}, { "offset is 1e+17 m", "a million spacings" });
   bad = good;
   bad.orientationDeviation = nan;
   expectError<ParameterError>(mass, { bad }, {}, { "orientation deviation is nan" });
@@ -450,5 +479,29 @@ TEST(JointSets, CollapseThrowsNoWedgeAbout)
     EXPECT_GT(rocks.size(), 64u);
     EXPECT_LT(fastest, 14.0) << "seed " << seed;  // 9.8 m/s by falling freely
     EXPECT_LT(deepest, 0.025) << "seed " << seed; // 0.05 to 0.09 with one look
+  }
+}
+
+TEST(JointSets, CutMassesOfSinglePrecision)
+{
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  const std::vector<JointSet> sets = { jointSet(30.0, 90.0, 1.0), jointSet(75.0, 250.0, 1.3) };
+  MassCut how;
+  how.slivers = SliverRule::Keep;
+  how.leastThickness = how.leastVolume = 0.0;
+  for (int k = 0; k < 40; ++k)
+  {
+    SCOPED_TRACE(k);
+    const Quat turn(u(random), u(random), u(random), u(random));
+    const Vec3 place(20.0 * u(random), 20.0 * u(random), 20.0 * u(random));
+    const Polyhedron body =
+      k % 2 == 0 ? makeBox(Vec3(3, 4, 2)) : makeShape(Shape::Dodecahedron, 27);
+    const Polyhedron mass =
+      inSinglePrecision(body.transformed(1.0, turn.normalized(), place), k % 4 < 2);
+    const CutMass cut = cutMass(mass, sets, how);
+    EXPECT_GE(cut.blocks.size(), 8u);
+    // Points are off their planes by some 1e-6 m.
+    EXPECT_NEAR(sumOf(cut), mass.integrals().volume, 1e-6 * mass.integrals().volume);
   }
 }

@@ -102,6 +102,8 @@ TEST(VolumeDistribution, namesAndErrors)
   EXPECT_TRUE(holds(error(law(VolumeLaw::Fixed, 0, 1, 1, 2)), { "Volume is 0" }));
   EXPECT_TRUE(holds(error(law(VolumeLaw::Normal, NAN, 1, 0, 0)), { "Volume is nan" }));
   EXPECT_TRUE(holds(error(law(VolumeLaw::Normal, 1, -1, 0, 0)), { "VolumeDeviation is -1" }));
+  EXPECT_TRUE(holds(error(law(VolumeLaw::LogNormal, 1, 1e200, 0, 0)),
+    { "VolumeDeviation is 1e+200", "a thousand times Volume, which is 1" }));
   EXPECT_TRUE(holds(error(law(VolumeLaw::Fixed, 1, 1, -1, 0)), { "VolumeMinimum is -1" }));
   EXPECT_TRUE(holds(error(law(VolumeLaw::Uniform, 1, 1, 1, 0)), { "VolumeMaximum is 0" }));
   EXPECT_TRUE(holds(error(law(VolumeLaw::Uniform, 1, 1, 3, 2)), { "VolumeMaximum is 2", "is 3" }));
