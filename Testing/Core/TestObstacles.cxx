@@ -235,7 +235,6 @@ TEST(Obstacles, AStemWithoutCapacityDoesNotCarry)
     EXPECT_NEAR(through.summary.energy.restitution, 0.0, 1e-9) << "case " << k;
   }
   EXPECT_GT(broken, 400u);
-  EXPECT_EQ(broken, 1u);
 }
 
 TEST(Obstacles, ATreeBreaksForMoreThanItsCapacityOnly)
@@ -358,4 +357,5 @@ TEST(Obstacles, AStemThatBreaksInASqueezeTakesItsCapacity)
     // Rounding, over some thousand steps.
     EXPECT_LT(std::abs(t.summary.energy.numerical), 1e-9 * t.summary.energy.released);
   }
+  EXPECT_EQ(broken, 1u);
 }
