@@ -4,6 +4,7 @@
 #include "contact/motion.h"
 #include "simulation/impactMode.h"
 #include "simulation/pressOut.h"
+#include "simulation/pressedIn.h"
 #include "simulation/restitution.h"
 #include "solver/cohesion.h"
 
@@ -400,10 +401,11 @@ void RockSimulator::pressOut(double h)
   // off.
   const double way =
     std::min(kPressOut * h, 0.5 * block_.mass() * parameters_.gravity / parameters_.normalPenalty);
+  // In a crowd a rock may be pushed under the slope within a step; it may be alone soon after.
+  const double loose = (crowded_ ? kLooseOverlap : kFirm) * block_.radius();
   for (Contact& c : contacts_)
   {
-    // In a crowd a rock may be pushed under the slope within a step.
-    rockfall::pressOut(c, h, way, crowded_, kLooseOverlap * block_.radius());
+    rockfall::pressOut(c, h, way, true, loose);
   }
 }
 

@@ -29,6 +29,10 @@ void CrowdSolver::write(const StepRequest& request, std::vector<GroupBody>& bodi
     {
       // Open before and after, as most are.
       c.distance = gap1 + c.offset;
+      if (gap1 < 0.0)
+      {
+        c.offset = c.distance; // as writeContact has it
+      }
       c.normalForce = c.shearForce = group.work = 0.0;
       books_[k] = {};
       return;

@@ -43,6 +43,11 @@ ContactBooks writeContact(const ContactLaw& law, const std::array<Vec3, 3>& dire
   {
     c.state = ContactState::Open;
     c.slip.setZero();
+    if (bounced)
+    {
+      // The bounce stands for the spring: what overlap is left was never pressed in.
+      c.offset = std::min(c.offset, c.distance);
+    }
   }
   return books;
 }

@@ -3,10 +3,12 @@
 
 #include "piles.h"
 #include "simulation/placement.h"
+#include "system/GroupSolver.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <string>
@@ -35,11 +37,9 @@ double deepest(const Trajectory& t)
   return most;
 }
 
-} // namespace
-
-TEST(Pinched, StoneUnderABoulderIsNotShotOut)
+// An icosahedron of 75 t straight down on one so many times smaller that lies on the ground.
+void expectNotShotOut(bool crowd)
 {
-  // An icosahedron of 75 t straight down on one so many times smaller that lies on the ground.
   for (const double ratio : { 5.0, 10.0, 20.0, 50.0, 100.0 })
   {
     for (const double speed : { 10.0, 30.0 })
@@ -74,18 +74,83 @@ TEST(Pinched, StoneUnderABoulderIsNotShotOut)
         boulder.velocity.z() = -speed;
         pile.rocks = { stone, boulder };
         pile.make();
+        pile.fall->resolved = crowd ? 0 : pile.fall->resolved;
         const std::vector<Trajectory> runs = pile.fall->run();
         const Trajectory& t = runs[0];
-        // What a wall that comes at this speed can give it, without loss.
-        EXPECT_LT(t.summary.maxSpeed, 2.0 * speed);
-        EXPECT_LT(deepest(t), 0.25 * r);
-        EXPECT_GT(t.samples.back().heightOverGround, -0.1 * r); // it is still pressed out, 5 mm/s
+        // What a wall that comes at this speed can give it, without loss. In a crowd the boulder
+        // goes further in one step than it is large; it may slip out at the side faster.
+        EXPECT_LT(t.summary.maxSpeed, (crowd ? 4.0 : 2.0) * speed);
+        EXPECT_LT(deepest(t), (crowd ? 1.0 : 0.25) * r);
+        EXPECT_LT((t.samples.back().position - stone.position).norm(), 0.4 * speed);
+        // What went in is pressed out again, which raises the rocks.
+        EXPECT_GT(t.samples.back().heightOverGround, -0.1 * r);
+        const double raised = pile.blocks[0].mass() * kGravity * 0.25 * r;
         for (const Trajectory& one : runs)
         {
           const EnergyAudit& e = one.summary.energy;
-          EXPECT_LT(std::abs(e.numerical), 1e-5 * 75e3 * speed * speed);
+          EXPECT_LT(std::abs(e.numerical), (crowd ? 1e-3 : 1e-5) * 75e3 * speed * speed + raised);
         }
       }
+    }
+  }
+}
+
+} // namespace
+
+TEST(Pinched, StoneUnderABoulderIsNotShotOut)
+{
+  expectNotShotOut(false);
+}
+
+TEST(Pinched, StoneUnderABoulderIsNotShotOutOfACrowd)
+{
+  expectNotShotOut(true);
+}
+
+TEST(Pinched, OverlapThatABounceLeavesHoldsNoEnergy)
+{
+  // A cube in the slope or in another one, open, that leaves by a bounce but is still in there at
+  // the end of the step; once it is pushed by the contact, once it flies up as fast as that anyway.
+  const Block block(makeShape(Shape::Cube, 1.0), 2500.0, 1e9, 0.2);
+  for (int k = 0; k < 8; ++k)
+  {
+    SCOPED_TRACE(k);
+    const bool between = k % 2 == 0, pushed = k % 4 < 2;
+    std::array<BlockState, 2> states;
+    states[0].velocity.z() = pushed ? -1.0 : 5.0;
+    states[1].position.z() = -0.9;
+    Contact c;
+    c.point = Vec3(0.0, 0.0, -0.5);
+    c.normal = Vec3::UnitZ();
+    c.distance = -0.1;
+    c.stiffness = c.shearStiffness = 1e9;
+    std::vector<GroupContact> contacts(1);
+    contacts[0].contact = &c;
+    contacts[0].first = 0;
+    contacts[0].second = between ? 1 : -1;
+    contacts[0].bounce = 0.5;
+    std::vector<GroupBody> bodies(between ? 2 : 1);
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+    {
+      bodies[i].block = &block;
+      bodies[i].state = &states[i];
+    }
+    GroupSolver solver;
+    solver.method = k < 4 ? GroupMethod::Direct : GroupMethod::Iterative;
+    StepRequest request;
+    request.duration = 1e-3;
+    request.kind = StepKind::Lasting;
+    request.gravity = 0.0;
+    request.maxOpenClose = 50;
+    for (const double bounce : { 0.5, -1.0 })
+    {
+      contacts[0].approach = states[1].velocity.z() - states[0].velocity.z();
+      contacts[0].bounce = bounce;
+      contacts[0].closed = c.closed();
+      solver.step(request, bodies, contacts, Taken::Any);
+      EXPECT_NEAR(states[0].velocity.z() - states[1].velocity.z(), pushed ? 0.5 : 5.0, 0.02);
+      EXPECT_LT(c.distance, -0.085);
+      EXPECT_GT(c.gap(), -1e-9);
     }
   }
 }
