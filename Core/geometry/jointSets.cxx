@@ -106,6 +106,15 @@ void checkSets(const Polyhedron& mass, std::span<const JointSet> sets, const Mas
   }
 }
 
+/// What a mean over all offsets did not tell: how many these joints make.
+[[noreturn]] void failCount(
+  const Polyhedron& mass, const std::string& set, double expected, const MassCut& how)
+{
+  throw ParameterError(set + " cuts the rock mass of " + numberText(mass.integrals().volume) +
+    " m³ into more blocks than MaximumRocks, which is " + std::to_string(how.mostBlocks) +
+    "; such joints make some " + numberText(std::round(expected)) + " on average");
+}
+
 /// By how much volumes of the parts may differ from that of the whole, m³: where the points of a
 /// face are off its plane, as single precision leaves them, it depends on how a face is divided.
 double looseVolume(const Polyhedron& mass)
@@ -281,6 +290,7 @@ CutMass cutMass(
   std::vector<ConvexPiece> pieces(1);
   pieces.front().points = mass.vertices();
   pieces.front().faces = mass.faces();
+  std::int64_t made = 1;
   for (std::size_t i = 0; i < sets.size(); ++i)
   {
     const std::vector<CuttingPlane> planes = jointPlanes(mass, sets[i], i, how.seed);
@@ -302,6 +312,10 @@ CutMass cutMass(
             parts[k] = std::move(below);
             parts.push_back(std::move(above));
             cuts = true;
+            if (++made > how.mostBlocks)
+            {
+              failCount(mass, describe(sets[i], i), expectedBlocks(mass, sets), how);
+            }
           }
         }
       }
