@@ -120,7 +120,7 @@ Polyhedron makeBox(const Vec3& lengths)
   {
     if (!(lengths[k] > 0.0) || !std::isfinite(lengths[k]))
     {
-      throw ParameterError(std::string("the ") + "xyz"[k] + " length of the box is " +
+      throw ParameterError(std::string("Lengths: the ") + "xyz"[k] + " length of the box is " +
         numberText(lengths[k]) + " m, it must be positive and finite");
     }
   }
@@ -133,7 +133,16 @@ Polyhedron makeBox(const Vec3& lengths)
   }
   const std::vector<std::vector<int>> faces = { { 0, 4, 6, 2 }, { 1, 3, 7, 5 }, { 0, 1, 5, 4 },
     { 2, 6, 7, 3 }, { 0, 2, 3, 1 }, { 4, 5, 7, 6 } };
-  return Polyhedron::fromFaces(points, faces, "box");
+  try
+  {
+    return Polyhedron::fromFaces(points, faces, "box");
+  }
+  catch (const GeometryError& error)
+  {
+    // What is wrong with the faces says little of the three numbers.
+    throw ParameterError("Lengths are " + numberText(lengths.x()) + ", " + numberText(lengths.y()) +
+      " and " + numberText(lengths.z()) + " m, of which no box can be made (" + error.what() + ")");
+  }
 }
 
 std::string shapeName(Shape shape)

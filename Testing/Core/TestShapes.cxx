@@ -1,6 +1,7 @@
 /// Every shape against its closed form: counts, volume, moments of inertia, radius.
 
 #include "base/errors.h"
+#include "base/numberText.h"
 #include "geometry/shapes.h"
 
 #include <gtest/gtest.h>
@@ -253,10 +254,25 @@ TEST(Shapes, BadVolumesAndLengths)
   }
   catch (const ParameterError& error)
   {
-    EXPECT_NE(std::string(error.what()).find("z length of the box is -0.5"), std::string::npos)
+    EXPECT_NE(
+      std::string(error.what()).find("Lengths: the z length of the box is -0.5"), std::string::npos)
       << error.what();
   }
-  EXPECT_THROW(makeBox({ 1.0, 1.0, 1e-6 }), GeometryError); // a sheet of paper
+  for (const double thin : { 1e-6, 1e-12 }) // a sheet of paper, and one of no faces
+  {
+    try
+    {
+      makeBox({ 1.0, 1.0, thin });
+      FAIL();
+    }
+    catch (const ParameterError& error)
+    {
+      EXPECT_NE(
+        std::string(error.what()).find("Lengths are 1, 1 and " + numberText(thin) + " m, of which"),
+        std::string::npos)
+        << error.what();
+    }
+  }
   EXPECT_THROW(makeShape(Shape::Box, 1.0), ParameterError);
   EXPECT_THROW(makeShape(Shape::File, 1.0), ParameterError);
   EXPECT_THROW(makeShape(Shape(9), 1.0), ParameterError);
