@@ -122,6 +122,7 @@ HeightField heightFieldOf(OGRLayer& layer, const std::string& wanted, const std:
   {
     field.column = column.second;
     field.name = definition.GetFieldDefn(column.second)->GetNameRef();
+    refuseTwin(definition, fileName, column.second);
     const auto endsWith = [&](const std::string& end)
     {
       return column.first.size() > end.size() &&

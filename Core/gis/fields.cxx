@@ -11,6 +11,9 @@
 #include <charconv>
 #include <cmath>
 #include <memory>
+#include <numeric>
+#include <utility>
+#include <vector>
 
 namespace rockfall::gis
 {
@@ -62,47 +65,85 @@ std::string fieldList(const OGRFeatureDefn& definition)
 namespace
 {
 
-/// Whether one letter makes two words of one: wrong, missing, too many, or taken with the next one
-/// in the wrong order. Short words and other first letters do not count: weight is no height.
-bool isSlipOf(const std::string& one, const std::string& other)
+/// Letters that are wrong, missing, too many, or taken with the next one in the wrong order.
+std::size_t slipsBetween(const std::string& one, const std::string& other)
 {
-  const std::string& longer = one.size() >= other.size() ? one : other;
-  const std::string& shorter = one.size() >= other.size() ? other : one;
-  if (shorter.size() < 5 || longer.size() > shorter.size() + 1 || longer[0] != shorter[0])
+  // Rows of the table of prefixes: two before, one before, this one.
+  std::vector<std::size_t> before, last(other.size() + 1), now(other.size() + 1);
+  std::iota(last.begin(), last.end(), std::size_t(0));
+  for (std::size_t i = 1; i <= one.size(); ++i)
   {
-    return false;
+    now[0] = i;
+    for (std::size_t j = 1; j <= other.size(); ++j)
+    {
+      now[j] =
+        std::min({ last[j] + 1, now[j - 1] + 1, last[j - 1] + (one[i - 1] != other[j - 1]) });
+      if (i > 1 && j > 1 && one[i - 1] == other[j - 2] && one[i - 2] == other[j - 1])
+      {
+        now[j] = std::min(now[j], before[j - 2] + 1);
+      }
+    }
+    before = std::exchange(last, now);
   }
-  const auto [a, b] = std::mismatch(shorter.begin(), shorter.end(), longer.begin());
-  if (longer.size() > shorter.size())
-  {
-    return std::equal(a, shorter.end(), b + 1);
-  }
-  if (a == shorter.end())
-  {
-    return false; // the same word
-  }
-  const bool wrong = std::equal(a + 1, shorter.end(), b + 1);
-  const bool turned =
-    shorter.end() - a > 1 && *a == b[1] && a[1] == *b && std::equal(a + 2, shorter.end(), b + 2);
-  return wrong || turned;
+  return last.back();
+}
+
+/// Whether `column` is `name` with a slip, or two where it has eight letters: value is no volume.
+/// Short words and other first letters do not count: weight is no height.
+bool isSlipOf(const std::string& column, const std::string& name)
+{
+  const auto letters = std::count_if(name.begin(), name.end(), [](char c) { return c != '_'; });
+  return std::min(column.size(), name.size()) >= 5 && column[0] == name[0] &&
+    slipsBetween(column, name) <= std::size_t(letters < 8 ? 1 : 2);
+}
+
+/// Whether `column` is `name` cut short within its first word.
+bool isShortFor(const std::string& column, const std::string& name)
+{
+  return name.size() >= 5 && column.size() >= 3 && column.size() < name.size() &&
+    name.starts_with(column) && name[column.size()] != '_';
 }
 
 } // namespace
 
+void refuseTwin(const OGRFeatureDefn& definition, const std::string& fileName, int column)
+{
+  const std::string written = definition.GetFieldDefn(column)->GetNameRef();
+  for (int i = 0; i < definition.GetFieldCount(); ++i)
+  {
+    const std::string other = definition.GetFieldDefn(i)->GetNameRef();
+    if (i != column && lowered(trimmed(other)) == lowered(trimmed(written)))
+    {
+      throw DataError(fileName + ": has two columns \"" + written + "\"" +
+        (other == written ? "" : " and \"" + other + "\", in which upper and lower case are one") +
+        "; leave out or rename one of them");
+    }
+  }
+}
+
 void refuseNearMisses(const OGRFeatureDefn& definition, const std::string& fileName,
-  std::initializer_list<const char*> known)
+  std::initializer_list<const char*> known, std::initializer_list<const char*> others)
 {
   const Columns columns = columnsOf(definition);
+  const auto isRead = [&](const std::string& column)
+  {
+    const auto same = [&](const char* name) { return column == name; };
+    return std::any_of(known.begin(), known.end(), same) ||
+      std::any_of(others.begin(), others.end(), same);
+  };
   const auto goesOn = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); };
   for (const auto& [column, index] : columns)
   {
+    if (isRead(column))
+    {
+      refuseTwin(definition, fileName, index);
+      continue;
+    }
     for (const std::string name : known)
     {
       const bool goneOn =
         column.size() > name.size() && column.starts_with(name) && !goesOn(column[name.size()]);
-      const bool isOther =
-        std::any_of(known.begin(), known.end(), [&](const char* k) { return column == k; });
-      if ((goneOn || isSlipOf(column, name)) && !isOther && !columns.count(name))
+      if ((goneOn || isShortFor(column, name) || isSlipOf(column, name)) && !columns.count(name))
       {
         throw DataError(fileName + ": its column \"" +
           definition.GetFieldDefn(index)->GetNameRef() + "\" is not read, and there is none \"" +
@@ -208,15 +249,24 @@ std::optional<double> Fields::numberAt(int column) const
 
 std::optional<int> Fields::columnOf(std::initializer_list<const char*> names) const
 {
+  std::optional<int> taken;
   for (const char* name : names)
   {
     const auto column = columns_.find(name);
-    if (column != columns_.end() && this->textAt(column->second))
+    const auto text = column != columns_.end() ? this->textAt(column->second) : std::nullopt;
+    if (!text)
     {
-      return column->second;
+      continue;
     }
+    if (taken && *text != *this->textAt(*taken))
+    {
+      this->fail("field \"" + this->nameOf(*taken) + "\" is " + *this->textAt(*taken) +
+        " and field \"" + this->nameOf(column->second) + "\", which is the same by another name, " +
+        *text + "; leave out one of them");
+    }
+    taken = taken ? taken : column->second;
   }
-  return std::nullopt;
+  return taken;
 }
 
 std::optional<std::string> Fields::text(std::initializer_list<const char*> names) const

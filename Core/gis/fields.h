@@ -24,17 +24,22 @@ std::string lowered(std::string text);
 /// All of the text, with a decimal point in every locale; nothing if any of it is no number.
 std::optional<double> parsed(const std::string& text);
 
-/// Field indices by lowered name; of two that differ in case only the first.
+/// Field indices by lowered name; of two that differ in case only the first (see refuseTwin).
 using Columns = std::map<std::string, int>;
 Columns columnsOf(const OGRFeatureDefn& definition);
 /// "a", "b", "c": the fields of a layer, for a message.
 std::string fieldList(const OGRFeatureDefn& definition);
 
+/// Throws DataError if another column has the name of this one, but for case and blanks.
+void refuseTwin(const OGRFeatureDefn& definition, const std::string& fileName, int column);
+
 /// Throws DataError where a column that would not be read begins as one that is not there, as
-/// "capacity_kJ" or "Volume [m3]" do, or is one letter off, as "ammount". `known`: names that are
-/// read.
+/// "capacity_kJ" or "Volume [m3]" do, is short for it, as "coh", or is a slip of it, as "ammount";
+/// and where two columns have the name of one that is read. `known`: names that are read; `others`:
+/// those for which only the second counts, being short, needed, or begun like by foreign columns
+/// ("Shape_Area").
 void refuseNearMisses(const OGRFeatureDefn& definition, const std::string& fileName,
-  std::initializer_list<const char*> known);
+  std::initializer_list<const char*> known, std::initializer_list<const char*> others = {});
 
 /// OGR drops what stands beyond the last column of a CSV file's header, so a table whose decimal
 /// commas split every number in two would be read without a word. Throws DataError naming the row;
@@ -52,7 +57,8 @@ public:
   /// Fails with what was said when the row was read if a word was lost: OGR only warns where a
   /// typed table (.csvt) holds text in a column of numbers, and gives 0.
   void refuseLostText(const Messages& messages) const;
-  /// Of the first of these names that has a value; empty cells are as good as no column.
+  /// Of the first of these names that has a value; empty cells are as good as no column. Fails if
+  /// another one of them has another value.
   std::optional<std::string> text(std::initializer_list<const char*> names) const;
   std::optional<double> number(std::initializer_list<const char*> names) const;
   /// From `low` to `high`, "it must be `range`".

@@ -38,12 +38,14 @@ int classField(OGRLayer& layer, const GroundFiles& files)
       throw DataError(files.layer + ": layer \"" + layer.GetName() + "\" has no field \"" +
         files.field + "\"; its fields are " + fieldList(*layer.GetLayerDefn()));
     }
+    refuseTwin(*layer.GetLayerDefn(), files.layer, column);
     return column;
   }
   for (const char* name : { "class", "name", "code", "type", "unit", "material", "ground" })
   {
     if (const int column = take(name); column >= 0)
     {
+      refuseTwin(*layer.GetLayerDefn(), files.layer, column);
       return column;
     }
   }

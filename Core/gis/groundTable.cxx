@@ -133,7 +133,10 @@ GroundTable readGroundTable(
   refuseNearMisses(*layer.GetLayerDefn(), fileName,
     { "preset", "model", "rv", "rn", "rv_mean", "restitution", "rv_deviation", "rn_deviation",
       "rv_dev", "rv_sd", "rt", "speed", "phi", "phi_mean", "friction_angle", "phi_deviation",
-      "phi_dev", "phi_sd", "friction_angle_deviation", "cohesion" });
+      "phi_dev", "phi_sd", "friction_angle_deviation", "cohesion" },
+    { "class", "name", "restitutionmodel", "restitutioncoefficient", "restitutiondeviation",
+      "tangentialrestitution", "k", "restitutionspeed", "frictionangle", "frictionangledeviation",
+      "c" });
   const Columns columns = columnsOf(*layer.GetLayerDefn());
   if (!columns.count("class") && !columns.count("name"))
   {

@@ -112,7 +112,7 @@ std::vector<LayerLine> readLineLayer(const std::string& fileName, const std::str
   const DatasetPtr dataset = openVector(fileName, messages);
   OGRLayer& layer = firstLayer(*dataset, fileName);
   refuseSurplusCells(*dataset, fileName);
-  refuseNearMisses(*layer.GetLayerDefn(), fileName, { "height", "capacity" });
+  refuseNearMisses(*layer.GetLayerDefn(), fileName, { "height", "capacity" }, { "name" });
   LineReader reader(fileName, layer, targetCrs);
   messages.clear();
   while (const OGRFeatureUniquePtr feature{ layer.GetNextFeature() })

@@ -149,7 +149,9 @@ std::vector<RockContactPair> readRockContacts(
   const DatasetPtr dataset = openVector(fileName, messages);
   OGRLayer& layer = firstLayer(*dataset, fileName, "table");
   refuseSurplusCells(*dataset, fileName);
-  refuseNearMisses(*layer.GetLayerDefn(), fileName, { "cohesion" });
+  refuseNearMisses(*layer.GetLayerDefn(), fileName, { "cohesion" },
+    { "c", "material_a", "material_b", "restitution", "rn", "e", "phi", "friction_angle",
+      "frictionangle" });
   const Columns columns = columnsOf(*layer.GetLayerDefn());
   PairReader reader(fileName, layer, columns, namesOf(materials));
   std::vector<RockContactPair> pairs;

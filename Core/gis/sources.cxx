@@ -131,7 +131,10 @@ SourceLayer readSourceLayer(const std::string& fileName, const SourceOptions& op
   refuseSurplusCells(*dataset, fileName);
   refuseNearMisses(*layer.GetLayerDefn(), fileName,
     { "amount", "intensity", "volume", "vol_law", "vol_dev", "vol_min", "vol_max", "vol_exp",
-      "density", "young", "poisson", "height", "dev_xy", "dev_z", "dev_att" });
+      "material", "mat_name", "density", "young", "poisson", "height", "source_id", "dev_xy",
+      "dev_z", "dev_att" },
+    { "x", "y", "z", "shape", "source", "vx", "vy", "vz", "wx", "wy", "wz", "rx", "ry", "rz", "lx",
+      "ly", "lz" });
   const Columns columns = columnsOf(*layer.GetLayerDefn());
 
   SourcePlacing placing;

@@ -81,7 +81,7 @@ void forEachRow(const std::string& fileName, const Terrain& terrain,
   const DatasetPtr dataset = openVector(fileName, messages);
   OGRLayer& layer = firstLayer(*dataset, fileName);
   refuseSurplusCells(*dataset, fileName);
-  refuseNearMisses(*layer.GetLayerDefn(), fileName, numbers);
+  refuseNearMisses(*layer.GetLayerDefn(), fileName, numbers, { "name", "x", "y" });
   const Columns columns = columnsOf(*layer.GetLayerDefn());
   Placing placing(fileName, layerCrs(layer.GetSpatialRef(), fileName), terrain);
   std::int64_t count = 0;

@@ -448,6 +448,8 @@ TEST(ContourErrors, EachNamesWhatIsWrong)
   file = writeFile(
     "far.csv", "WKT,elev\n\"LINESTRING(0 0,50 0)\",-99999\n\"LINESTRING(0 30,50 30)\",20\n");
   EXPECT_TRUE(holds(message(file), { file, "row 1", "-99999" }));
+  file = writeFile("twice.csv", "WKT,elev,ELEV\n\"LINESTRING(0 0,50 0)\",10,1\n");
+  EXPECT_TRUE(holds(message(file), { file, "two columns \"elev\"", "\"ELEV\"" }));
   file = writeFile("points.csv", "WKT,elev\n\"POINT(0 0)\",10\n\"POINT(0 30)\",20\n");
   EXPECT_TRUE(holds(message(file), { file, "POINT", "lines" }));
   file = writeFile(

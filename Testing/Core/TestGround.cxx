@@ -357,6 +357,9 @@ TEST(GroundErrors, LayersOfTheWrongKind)
   raster.georeferenced = false;
   layer = raster.write();
   EXPECT_TRUE(holds(failure({ layer, rows, "" }), { layer, "georeferencing" }));
+  layer = polygons(box(west, south, west + 80, south + 60, "\"class\":1,\"Class\":2"));
+  EXPECT_TRUE(holds(failure({ layer, rows, "" }), { layer, "two columns \"class\"", "\"Class\"" }));
+  EXPECT_TRUE(holds(failure({ layer, rows, "CLASS" }), { layer, "two columns" }));
   layer = polygons("");
   EXPECT_TRUE(holds(failure({ layer, rows, "" }), { layer, "no polygon" }));
 }
@@ -394,6 +397,11 @@ TEST(GroundErrors, TablesNameRowFieldAndValue)
     { "class,phi,cohesoin\n1,30,5\n2,30,0\n", { "\"cohesoin\"", "\"cohesion\"" },
       GroundKind::Joint },
     { "class,rv,rv_deviatoin\n1,0.5,0\n2,0.5,0\n", { "\"rv_deviatoin\"", "\"rv_deviation\"" } },
+    { "class,phi,coh\n1,30,5\n2,30,0\n", { "\"coh\" is not read", "\"cohesion\"" },
+      GroundKind::Joint },
+    { "class,rv,RV\n1,0.5,0.6\n2,0.5,0.6\n", { "two columns \"rv\"", "\"RV\"" } },
+    { "class,rv,class\n1,0.5,2\n2,0.5,1\n", { "two columns \"class\"" } },
+    { "class,rv,rn\n1,0.5,0.5\n2,0.5,0.6\n", { "row 2", "\"rv\" is 0.5", "\"rn\"", "0.6" } },
     { "class,phi,cohesion\n1,30,-5\n2,30,0\n", { "row 1", "cohesion", "-5" }, GroundKind::Joint },
   };
   for (const auto& c : cases)

@@ -95,6 +95,28 @@ TEST(RockContacts, BadTables)
   expectRefused(header + "granite,slate,0,5,30,0\n", { "row 1", "decimal sign" });
 }
 
+TEST(RockContacts, NamesOfColumns)
+{
+  const std::string row = "granite,slate,0.5,30,1000\n";
+  for (const std::string slip : { "coh", "Cohes", "cohesoin", "kohesion" })
+  {
+    const std::string text = "material_a,material_b,restitution,phi," + slip + "\n" + row;
+    if (slip == "kohesion")
+    {
+      EXPECT_EQ(read(text).size(), 1u); // another first letter
+      continue;
+    }
+    expectRefused(text, { "\"" + slip + "\" is not read", "none \"cohesion\"" });
+  }
+  expectRefused(
+    "material_a,material_b,restitution,phi,PHI\n" + row, { "two columns \"phi\"", "PHI" });
+  expectRefused("material_a,material_b,restitution,phi,rn\ngranite,slate,0.5,30,0.4\n",
+    { "row 1", "\"restitution\" is 0.5", "\"rn\"", "0.4" });
+  EXPECT_EQ(
+    read("material_a,material_b,restitution,phi,rn\ngranite,slate,0.5,30,0.5\n").size(), 1u);
+  EXPECT_EQ(read("material_a,material_b,restitution,phi,rn\ngranite,slate,0.5,30,\n").size(), 1u);
+}
+
 TEST(RockContacts, RocksWithoutMaterial)
 {
   const std::string file = writeFile("pairs.csv", header + "granite,slate,0.5,30,0\n");

@@ -181,6 +181,47 @@ TEST(SourceLayerErrors, rows)
   EXPECT_TRUE(holds(failure(many, few), { many, "more than 2 rows", "MaximumRocks" }));
 }
 
+TEST(SourceLayerErrors, namesOfColumns)
+{
+  struct Slip
+  {
+    const char *column, *meant;
+  };
+  for (const Slip& slip : { Slip{ "materiel", "material" }, { "Mat_Nam", "mat_name" },
+         { "matname", "mat_name" }, { "mat", "material" }, { "vol", "volume" },
+         { "Volum", "volume" }, { "densite", "density" }, { "intensty", "intensity" },
+         { "entensity", "" }, { "intesnty", "intensity" }, { "sourceid", "source_id" } })
+  {
+    const std::string path = writeFile("slip.csv", std::string("x,y,") + slip.column + "\n1,2,\n");
+    if (*slip.meant == 0)
+    {
+      EXPECT_EQ(readSourceLayer(path, onTerrain()).rows.size(), 1u);
+      continue;
+    }
+    EXPECT_TRUE(holds(failure(path),
+      { path, "\"" + std::string(slip.column) + "\" is not read",
+        "none \"" + std::string(slip.meant) + "\"" }));
+  }
+  // Foreign ones, as other programs write them, don't count; nor do names beside those meant.
+  const std::string foreign = "x,y,Shape_Leng,Shape_Area,Shap,weight,value,mass,source_ref,no,fid,"
+                              "mat_code,dev,column,volume,vol\n1,2,,,,,,,,,,,,,3,4\n";
+  const SourceLayer layer = readSourceLayer(writeFile("foreign.csv", foreign), onTerrain());
+  EXPECT_EQ(layer.rows.at(0).volume, 3.0);
+}
+
+TEST(SourceLayerErrors, columnsTwice)
+{
+  EXPECT_TRUE(holds(failure(writeFile("twice.csv", "x,y,volume,volume\n1,2,3,4\n")),
+    { "twice.csv", "two columns \"volume\"" }));
+  EXPECT_TRUE(holds(failure(writeFile("twice.csv", "x,y,volume, Volume\n1,2,3,4\n")),
+    { "twice.csv", "\"volume\"", "Volume\"", "upper and lower case are one" }));
+  EXPECT_TRUE(holds(
+    failure(writeFile("twice.csv", "x,y,shape,SHAPE\n1,2,cube,box\n")), { "\"shape\"", "SHAPE" }));
+  const std::string foreign =
+    writeFile("twice.csv", "x,y,note,note,Shape_Area,Shape_Area\n1,2,,,,\n");
+  EXPECT_EQ(readSourceLayer(foreign, onTerrain()).rows.size(), 1u);
+}
+
 TEST(SourceLayers, decimalCommaOfTheLocaleChangesNothing)
 {
   const std::string path = table(",shape,vol_dev", ",cube:1.5;box:0.25,0.75");

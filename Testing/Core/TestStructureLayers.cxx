@@ -176,6 +176,8 @@ TEST(StructureLayers, TellWhatIsWrong)
     { 2, "WKT,height,capaicty\n" + line + ",4,1000\n", "\"capaicty\"" },
     { 2, "WKT,height,capazity\n" + line + ",4,1000\n", "\"capazity\"" },
     { 2, "WKT,height,capacityy\n" + line + ",4,1000\n", "\"capacityy\"" },
+    { 2, "WKT,height,cap\n" + line + ",4,1000\n", "\"cap\" is not read" },
+    { 2, "WKT,height,Height,capacity\n" + line + ",4,5,1000\n", "two columns \"height\"" },
     { 1, tree.substr(0, tree.size() - 1) + ",Factor [-]\n50,50,30,20,0.5\n", "\"Factor [-]\"" },
     { 2, net + "\"LINESTRING(2000 50,2120 50)\",4,100\n", "does not overlap the terrain" },
   };
