@@ -4,6 +4,7 @@
 #include "base/errors.h"
 #include "base/numberText.h"
 #include "failure.h"
+#include "jointFaces.h"
 #include "keptRun.h"
 #include "pieces.h"
 #include "progressText.h"
@@ -25,6 +26,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <span>
 #include <vector>
 
 vtkStandardNewMacro(vtkRockfallSimulation);
@@ -49,6 +51,20 @@ enum OutputPorts
 
 /// More time steps than this are not listed, only their range is.
 constexpr double mostTimeSteps = 1e6;
+
+/// Blocks that fit together, as those of a cut mass, are meant to hold and push each other.
+void tellApart(std::span<const rockfall::Rock> rocks)
+{
+  const std::int64_t joined = rockfall::filters::countFaceOnFace(rocks);
+  if (joined > 0)
+  {
+    rockfall::filters::showNote("RockRockContact is off: each of the " +
+      std::to_string(rocks.size()) +
+      " blocks falls as if it were alone, through the others, though " + std::to_string(joined) +
+      " of them lie face on face, as the blocks of a rock mass. " +
+      "Switch it on for them to hit and push each other");
+  }
+}
 
 void tellPushed(
   const rockfall::Ensemble& ensemble, const rockfall::PushedApart& pushed, const Ranks& ranks)
@@ -230,6 +246,10 @@ bool vtkRockfallSimulation::Simulate(vtkPolyData* terrainInput, vtkPolyData* roc
   if (run->wholeFits())
   {
     run->parts.wholeIteration = this->FirstIteration + this->ShownIteration;
+  }
+  if (!this->RockRockContact && ranks.rank() == 0)
+  {
+    tellApart(run->frame.rocks);
   }
   // What is the same in all iterations is known before they run.
   const bool anew = run->ensemble->pushesAnew();
