@@ -136,6 +136,11 @@ void vtkJointedRockMass::MakeBlocks(vtkPolyData* terrainInput, vtkPolyData* bloc
     throw ParameterError("ReleaseHeight is " + numberText(this->ReleaseHeight) +
       " m, it must be finite and at least 0");
   }
+  if (this->ReleaseHeight > 0.0 && !this->PlaceOnGround)
+  {
+    filters::showNote("ReleaseHeight is " + numberText(this->ReleaseHeight) +
+      " m, but has no effect: PlaceOnGround is off, so the rock mass is where it is given");
+  }
   if (this->Seed < 0)
   {
     throw ParameterError("Seed is " + std::to_string(this->Seed) + ", it must be at least 0");

@@ -191,6 +191,31 @@ void vtkRockBlockSource::FindPlaces(Sources& sources)
 }
 
 //------------------------------------------------------------------------------
+void vtkRockBlockSource::TellUnused(const Sources& sources) const
+{
+  if (this->ReleaseHeight > 0.0 &&
+    std::none_of(sources.places.begin(), sources.places.end(),
+      [](const rockfall::ReleasePlace& place) { return place.overGround; }))
+  {
+    rockfall::filters::showNote("ReleaseHeight is " + rockfall::numberText(this->ReleaseHeight) +
+      " m, but has no effect: PlaceOnGround is off, and every block is where its z says");
+  }
+  const bool steep = this->SlopeThreshold > 0.0;
+  if (this->ClusterRadius > 0.0 &&
+    (steep ||
+      std::none_of(sources.rows.begin(), sources.rows.end(),
+        [](const rockfall::SourceRow& row)
+        { return row.geometry == rockfall::SourceGeometry::Point; })))
+  {
+    rockfall::filters::showNote("ClusterRadius is " + rockfall::numberText(this->ClusterRadius) +
+      " m, but has no effect: " +
+      (steep ? "SlopeThreshold is " + rockfall::numberText(this->SlopeThreshold) +
+            " degrees, which spreads the blocks over the steep terrain"
+             : "no source is a point"));
+  }
+}
+
+//------------------------------------------------------------------------------
 void vtkRockBlockSource::MakeRocks(Sources& sources)
 {
   sources.rocks.reserve(sources.places.size());
@@ -337,6 +362,7 @@ int vtkRockBlockSource::RequestData(
     {
       rockfall::filters::showNote(note);
     }
+    this->TellUnused(sources);
     output->ShallowCopy(blocks);
     return 1;
   }

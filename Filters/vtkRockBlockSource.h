@@ -437,6 +437,8 @@ private:
   void FindSources(vtkPolyData* terrain, Sources& sources);
   void FindPlaces(Sources& sources);
   void MakeRocks(Sources& sources);
+  /// Notes on lengths that are given and that no block has a use for.
+  void TellUnused(const Sources& sources) const;
   /// Draws places anew until no rock is in another one, or throws.
   void PlaceApart(Sources& sources);
 

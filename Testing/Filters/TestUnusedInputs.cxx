@@ -23,6 +23,13 @@ protected:
     }
     this->Heard->Notes.clear();
   }
+
+  void UpdateRocks(const std::vector<std::string>& words)
+  {
+    this->Rocks->Update();
+    EXPECT_GT(this->Rocks->GetOutput()->GetNumberOfCells(), 0);
+    this->ExpectNote(words);
+  }
 };
 
 } // namespace
@@ -63,4 +70,54 @@ TEST_F(TestUnusedInputs, RocksThatFallOneByOneAreNoMass)
   this->Rocks->SetFileName(two.c_str());
   this->Simulation->Update();
   this->ExpectNote({});
+}
+
+TEST_F(TestUnusedInputs, ReleaseHeightOfRocksWithAPlaceOfTheirOwn)
+{
+  this->Rocks->SetInputConnection(1, this->Terrain->GetOutputPort());
+  this->UpdateRocks({});
+  this->Rocks->SetReleaseHeight(2.0);
+  this->UpdateRocks({ "ReleaseHeight is 2 m", "no effect", "PlaceOnGround is off" });
+  this->Rocks->SetPlaceOnGround(true);
+  this->UpdateRocks({});
+  // A table without z: on the ground in any case. With z for one of two: not for all of them.
+  this->Rocks->SetPlaceOnGround(false);
+  const std::string flat = this->WriteFile("flat.csv", "x,y\n5,50\n");
+  this->Rocks->SetFileName(flat.c_str());
+  this->UpdateRocks({});
+  const std::string some = this->WriteFile("some.csv", "x,y,z\n5,50,\n5,60,58\n");
+  this->Rocks->SetFileName(some.c_str());
+  this->UpdateRocks({});
+  const std::string high = this->WriteFile("high.csv", "x,y,z\n5,50,58\n5,60,58\n");
+  this->Rocks->SetFileName(high.c_str());
+  this->UpdateRocks({ "ReleaseHeight is 2 m", "no effect" });
+  this->Rocks->SetFileName("");
+  this->Rocks->SetSlopeThreshold(20.0);
+  this->UpdateRocks({});
+}
+
+TEST_F(TestUnusedInputs, ReleaseHeightOfAMass)
+{
+  vtkNew<vtkJointedRockMass> mass;
+  mass->SetInputConnection(1, this->Terrain->GetOutputPort());
+  mass->SetReleaseHeight(2.0);
+  mass->Update();
+  this->ExpectNote({ "ReleaseHeight is 2 m", "no effect", "PlaceOnGround is off" });
+  mass->SetPlaceOnGround(true);
+  mass->Update();
+  this->ExpectNote({});
+}
+
+TEST_F(TestUnusedInputs, ClusterRadiusWithoutAPoint)
+{
+  this->Rocks->SetInputConnection(1, this->Terrain->GetOutputPort());
+  this->Rocks->SetClusterRadius(3.0);
+  this->UpdateRocks({});
+  this->Rocks->SetSlopeThreshold(20.0);
+  this->UpdateRocks({ "ClusterRadius is 3 m", "no effect", "SlopeThreshold is 20 degrees" });
+  this->Rocks->SetSlopeThreshold(0.0);
+  const std::string zone =
+    this->WriteFile("zone.csv", "WKT,amount\n\"POLYGON((10 10,20 10,20 20,10 10))\",2\n");
+  this->Rocks->SetFileName(zone.c_str());
+  this->UpdateRocks({ "ClusterRadius is 3 m", "no source is a point" });
 }
