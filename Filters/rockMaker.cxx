@@ -176,9 +176,32 @@ std::int64_t RockMaker::amountOf(
     " m³");
 }
 
+void RockMaker::refuseLengths(const SourceRow& row) const
+{
+  const ShapeMix& shapes = row.shapes ? *row.shapes : defaults_.shapes;
+  std::string names;
+  for (const auto& part : shapes.parts)
+  {
+    if (part.shape == Shape::Box)
+    {
+      return;
+    }
+    names += (names.empty() ? "" : ", ") + shapeName(part.shape);
+  }
+  const Vec3& l = *row.lengths;
+  throw ParameterError("fields \"lx\", \"ly\" and \"lz\" are " + numberText(l.x()) + ", " +
+    numberText(l.y()) + " and " + numberText(l.z()) + " m, but " +
+    (row.shapes ? "field \"shape\"" : "Shape") + " is " + names +
+    ": lengths are those of a box, other shapes have a \"volume\"");
+}
+
 ReleasedRock RockMaker::make(
   const SourceRow& row, std::size_t index, const ReleasePlace& place, std::int64_t blockId)
 {
+  if (row.lengths)
+  {
+    this->refuseLengths(row);
+  }
   ReleasedRock released;
   released.shape = this->kindOf(row, place.draw);
   released.sourceId = row.sourceId.value_or(defaults_.firstSourceId + std::int64_t(index));

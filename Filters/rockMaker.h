@@ -65,6 +65,8 @@ private:
   rockfall::Shape kindOf(const SourceRow& row, std::uint64_t draw) const;
   Polyhedron shape(
     Shape kind, const SourceRow& row, const VolumeDistribution& law, std::uint64_t draw);
+  /// Throws ParameterError unless the row's shape is a box, or may be.
+  void refuseLengths(const SourceRow& row) const;
   void setMaterial(const SourceRow& row, Rock& rock) const;
   void setUncertainty(
     const SourceRow& row, const VolumeDistribution& law, ReleaseUncertainty& unsure) const;

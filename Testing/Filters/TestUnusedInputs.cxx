@@ -121,3 +121,34 @@ TEST_F(TestUnusedInputs, ClusterRadiusWithoutAPoint)
   this->Rocks->SetFileName(zone.c_str());
   this->UpdateRocks({ "ClusterRadius is 3 m", "no source is a point" });
 }
+
+TEST_F(TestUnusedInputs, LengthsOfWhatIsNoBox)
+{
+  const auto refused =
+    [&](const std::string& columns, const std::string& cells, const std::vector<std::string>& words)
+  {
+    const std::string file = this->WriteFile("rocks.csv",
+      "x,y,z" + columns + "\n5,60,58" + std::string(columns.size() > 9 ? ",box" : "") +
+        ",1,2,3\n5,50,58" + cells + "\n");
+    this->Rocks->SetFileName(file.c_str());
+    this->Rocks->Modified();
+    this->Rocks->Update();
+    EXPECT_EQ(this->Rocks->GetOutput()->GetNumberOfCells(), 0);
+    this->ExpectOneError(words);
+  };
+  refused(",shape,lx,ly,lz", ",cube,1,2,3",
+    { "rocks.csv, row 2", "\"lx\", \"ly\" and \"lz\" are 1, 2 and 3 m", "\"shape\" is cube",
+      "\"volume\"" });
+  refused(",shape,lx,ly,lz", ",cube:1;eota111:1,1,2,3", { "row 2", "\"shape\" is cube, eota111" });
+  refused(",lx,ly,lz", ",1,2,3", { "row 1", "Shape is cube" });
+  // Empty cells are as good as none, and a mix may have boxes.
+  for (const char* cells : { "cube,,,", "cube:1;box:1,1,2,3", "box,1,2,3", ",,," })
+  {
+    const std::string good =
+      this->WriteFile("good.csv", "x,y,z,shape,lx,ly,lz\n5,50,58," + std::string(cells) + "\n");
+    this->Rocks->SetFileName(good.c_str());
+    this->Rocks->Modified();
+    this->Rocks->Update();
+    EXPECT_EQ(this->Rocks->GetOutput()->GetNumberOfCells(), 6) << cells;
+  }
+}
