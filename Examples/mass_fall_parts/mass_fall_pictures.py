@@ -132,7 +132,7 @@ def oblique_picture(slopes, simulations, path, end):
     view.ViewTime = end
     look_uphill(view)
     write(view, "41 rocks that have hit each other: on the step, at the foot, on the road and beyond", (0.02, 0.945), 28, bold=True)
-    write(view, "Real shapes in their real size; red: paths; green: crest of the embankment planned; contours: 1 m", (0.02, 0.905), 20)
+    write(view, "Real shapes in their real size\nred: paths\ngreen: crest of the embankment planned\ncontours: 1 m", (0.02, 0.04), 20)
     SaveScreenshot(path, view, ImageResolution=list(view.ViewSize))
     Delete(view)
 
@@ -170,7 +170,7 @@ def stops_picture(stops, path):
     above.axhline(scenario.STEP, color="0.3", lw=0.8, ls=":", label=f"Z = {scenario.STEP} m")
     above.set_ylabel("height (m)")
     above.set_ylim(z.min() - 3.0, z.max() + 2.0)
-    above.legend(loc="upper right", frameon=False)
+    above.legend(loc="upper center", frameon=False)  # between the hillside and the road
     iterations = len(stops["with collisions"]) / scenario.ROCKS
     edges = np.arange(0.0, scenario.LENGTH + 2.0, 2.0)
     for name, colour in (("without collisions", "#3274a1"), ("with collisions", "#c03d3e")):
