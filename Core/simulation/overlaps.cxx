@@ -23,6 +23,12 @@ constexpr double kLaidDown = 1e-6; // of the smaller radius
 /// less than each.
 constexpr double kPush = 1.1;
 constexpr int mostPasses = 5000;
+/// After so many passes masses do not count any more, and of two that lie on each other only the
+/// upper one gives way: a light one that the ground or others hold would be pushed in vain for
+/// ever.
+constexpr int kPatience = 100;
+/// A rock is on the other one where its way out goes up by more than this, the sine of its slope.
+constexpr double kUpward = 0.5;
 
 /// A rock where it stands, as the search for axes takes it.
 struct Standing
@@ -83,6 +89,12 @@ std::vector<RockOverlap> overlapsOf(
     }
   }
   return overlaps;
+}
+
+/// The share of a rock in getting apart from another one; `up`: z of its way out, a unit vector.
+double shareOf(double mass, double otherMass, double up, bool byMass)
+{
+  return byMass ? otherMass / (mass + otherMass) : up > kUpward ? 1.0 : up < -kUpward ? 0.0 : 0.5;
 }
 
 std::string nameOf(const Rock& rock, const Vec3& origin)
@@ -220,12 +232,16 @@ PushedApart pushApart(const Terrain& terrain, std::span<Rock> rocks)
     for (const RockOverlap& overlap : overlaps)
     {
       const std::size_t i = std::size_t(overlap.first), j = std::size_t(overlap.second);
+      const bool byMass = done.passes <= kPatience;
       const double massI = all[i]->block.mass(), massJ = all[j]->block.mass();
+      const double up = overlap.normal.z();
       const Vec3 apart = kPush * overlap.depth * overlap.normal;
-      ways[i] += massJ / (massI + massJ) * apart;
-      ways[j] -= massI / (massI + massJ) * apart;
-      ++pairs[i];
-      ++pairs[j];
+      const double shareI = shareOf(massI, massJ, up, byMass);
+      const double shareJ = shareOf(massJ, massI, -up, byMass);
+      ways[i] += shareI * apart;
+      ways[j] -= shareJ * apart;
+      pairs[i] += shareI > 0.0;
+      pairs[j] += shareJ > 0.0;
     }
     for (std::size_t i = 0; i < rocks.size(); ++i)
     {

@@ -37,7 +37,9 @@ void requireNoOverlap(std::span<const Rock> rocks, const Vec3& origin, const std
 
 /// Moves rocks that overlap apart until none do. In each pass every pair gives way along its
 /// shortest way out, the lighter rock the more, each rock by the mean of what its pairs ask for;
-/// what that brings into the slope as surveyed is raised onto it. Nothing depends on threads.
+/// what that brings into the slope as surveyed is raised onto it. After 100 passes masses do not
+/// count any more, and of two that lie on each other the upper one gives way. Nothing depends on
+/// threads.
 /// Throws PlacementError if a rock leaves the slope or 5000 passes don't do.
 PushedApart pushApart(const Terrain& terrain, std::span<Rock> rocks);
 

@@ -279,3 +279,39 @@ TEST(Overlaps, PlacerSeesWhatFindOverlapsSees)
   beside.position.x() = 1.75; // √3
   EXPECT_TRUE(turning.fits(beside));
 }
+
+TEST(Overlaps, WhatTheGroundAndOthersHoldIsNotPushedInVain)
+{
+  const Terrain ground = flat();
+  const auto pushed = [&](std::vector<Rock>& rocks)
+  {
+    const PushedApart done = pushApart(ground, rocks);
+    EXPECT_TRUE(findOverlaps(rocks).empty());
+    EXPECT_LT(done.passes, 200);
+    return done.farthest;
+  };
+  // A stone of 10 cm under a cube of 10 m, half and wholly in it: the ground holds the stone, so
+  // that the cube goes up; no farther than the push beyond the depth.
+  for (const double height : { 5.05, 5.0 })
+  {
+    const double depth = 5.1 - height;
+    std::vector<Rock> rocks = { cubeAt({ 20.0, 20.0, height }, 0, 1000.0),
+      cubeAt({ 20.0, 20.0, 0.05 }, 1, 1e-3) };
+    EXPECT_LE(pushed(rocks), 1.1 * depth + 1e-9);
+    EXPECT_GE(rocks[0].position.z(), 5.1 - 1e-5);
+  }
+  // The same stone between two such cubes, whose gap is too narrow for it.
+  std::vector<Rock> between = { cubeAt({ 14.96, 20.0, 5.0 }, 0, 1000.0),
+    cubeAt({ 25.04, 20.0, 5.0 }, 1, 1000.0), cubeAt({ 20.0, 20.0, 0.05 }, 2, 1e-3) };
+  EXPECT_LT(pushed(between), 0.02);
+  // Columns that stand in the ground's way: each goes up on the one below.
+  for (const double step : { 0.9, 0.5, 0.2 })
+  {
+    std::vector<Rock> column;
+    for (int k = 0; k < 30; ++k)
+    {
+      column.push_back(cubeAt({ 20.0, 20.0, 0.5 + step * k }, k));
+    }
+    pushed(column);
+  }
+}
