@@ -42,9 +42,8 @@ struct MassCut
 {
   SliverRule slivers = SliverRule::Refuse;
   double leastThickness = 0.01; ///< m, ≥ 0; see thicknessOf.
-  double leastVolume =
-    1e-3; ///< m³, ≥ 0.
-          /// If more are to be expected nothing is cut; if more are made all the same cutting ends.
+  double leastVolume = 1e-3;    ///< m³, ≥ 0.
+  /// If more are to be expected nothing is cut; if more are made all the same cutting ends.
   std::int64_t mostBlocks = 100000;
   std::uint64_t seed = 1; ///< Of the deviations.
 
