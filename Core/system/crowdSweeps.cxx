@@ -137,7 +137,7 @@ bool CrowdSolver::holdBounces(std::vector<GroupContact>& contacts)
       return false;
     }
     const auto [before, after] = this->velocities(row);
-    const double held = heldBounce(contacts[k], force, before, after);
+    const double held = heldBounce(contacts[k], h_, force, before, after);
     if (held >= 0.0)
     {
       contacts[k].bounce = held;

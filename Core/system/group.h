@@ -124,6 +124,8 @@ constexpr double kBounceStiffness = 100.0;
 /// Bounces that give less than this share of what comes in along their normal are let be, and how
 /// often the others are held back in a step.
 constexpr double kBounceGain = 1e-3;
+/// The same of those that go on with an impact: gravity, which they overcome in the step, is in it.
+constexpr double kBounceGainOn = 0.05;
 constexpr int kHeldBounces = 3;
 
 /// The gap at the start of a step of `h` (s) that makes a contact leave as its bounce asks for.
@@ -144,19 +146,22 @@ inline double gapChange(double gap0, double reckoned, double found)
 /// Lower bounce of a contact, m/s, if it gives the rocks energy. Newton's law asks for a speed
 /// along the normal, whatever friction does: where that turns the velocity across the normal round,
 /// as it can under a long lever, both together may give more than was there (Kane & Levinson 1985).
-/// An impulse P does the work P · ½ (v + v′). `force` (N) and velocities before and after (m/s) are
-/// along the normal and the tangents. Negative if nothing is to be changed.
+/// And a bounce that goes on with an impact under way gives back what its spring holds; against the
+/// load of others the same speed would take more. An impulse P does the work P · ½ (v + v′).
+/// `force` (N) and velocities before and after a step of `h` (s; m/s) are along the normal and the
+/// tangents. Negative if nothing is to be changed.
 inline double heldBounce(
-  const GroupContact& contact, const Vec3& force, const Vec3& before, const Vec3& after)
+  const GroupContact& contact, double h, const Vec3& force, const Vec3& before, const Vec3& after)
 {
   const Vec3 twice = before + after;
+  const Contact& c = *contact.contact;
   const double across = force.tail<2>().dot(twice.tail<2>());
-  // What a spring gives back is no gain.
-  const double came =
-    contact.closed ? elasticSpeed(*contact.contact, contact.approach) : contact.approach;
-  const double given = across + force[0] * (twice[0] - (came - contact.approach));
-  const bool gives = contact.bounce > 0.0 && across > 0.0 && given > kBounceGain * force[0] * came;
-  return gives ? std::max(0.0, contact.bounce - given / force[0]) : -1.0;
+  const double came = contact.closed ? elasticSpeed(c, contact.approach) : contact.approach;
+  const double given = across + force[0] * twice[0] - 2.0 * c.springEnergy() / h;
+  const bool may = contact.bounce > 0.0 && (contact.closed || across > 0.0);
+  return may && given > (contact.closed ? kBounceGainOn : kBounceGain) * force[0] * came
+    ? std::max(0.0, contact.bounce - given / force[0])
+    : -1.0;
 }
 
 /// What a contact has done in a step, J.

@@ -103,7 +103,7 @@ bool GroupSolver::holdBounces(double h, std::vector<GroupContact>& contacts)
     along << row.directions[0].transpose(), row.directions[1].transpose(),
       row.directions[2].transpose();
     const Vec3 force(row.law.force, row.law.shearForce[0], row.law.shearForce[1]);
-    const double held = heldBounce(contacts[k], force, along * before, along * after);
+    const double held = heldBounce(contacts[k], h, force, along * before, along * after);
     if (held >= 0.0)
     {
       const double n = row.directions[0].dot(this->mobility(row) * row.directions[0]);

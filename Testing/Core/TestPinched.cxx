@@ -155,6 +155,64 @@ TEST(Pinched, OverlapThatABounceLeavesHoldsNoEnergy)
   }
 }
 
+TEST(Pinched, WhatASpringHoldsIsAllThatALoadGets)
+{
+  // A stone that is pressed into the slope in the middle of an impact, with boulders of up to 1000
+  // times its mass on it: it leaves no faster than the energy of its spring drives all of them.
+  for (const double mass : { 1e-2, 1.0, 30.0, 1000.0 })
+  {
+    for (const GroupMethod method : { GroupMethod::Direct, GroupMethod::Iterative })
+    {
+      SCOPED_TRACE(std::to_string(mass) + ", method " + std::to_string(int(method)));
+      const Block stone(makeShape(Shape::Cube, 0.03), 2500.0, 1e9, 0.2);
+      const Block boulder(makeShape(Shape::Cube, 0.03 * mass), 2500.0, 1e9, 0.2);
+      const double h = 5e-3, half = 0.5 * std::cbrt(0.03), other = 0.5 * std::cbrt(0.03 * mass);
+      std::array<BlockState, 2> states;
+      states[1].position.z() = half + other;
+      std::array<Contact, 2> touches;
+      std::vector<GroupContact> contacts(2);
+      for (std::size_t k = 0; k < 2; ++k)
+      {
+        Contact& c = touches[k];
+        c.normal = Vec3::UnitZ();
+        c.point = Vec3(0.0, 0.0, k == 0 ? -half : half);
+        c.stiffness = c.shearStiffness = 1e9;
+        c.stopped = stone.mass();
+        contacts[k].contact = &c;
+      }
+      touches[0].state = ContactState::Sliding;
+      touches[0].distance = -4e-3;
+      contacts[0].first = 0;
+      contacts[0].closed = true;
+      contacts[0].bounce = bounceLeft(touches[0], 0.0);
+      touches[1].distance = 1e-6;
+      contacts[1].first = 1;
+      contacts[1].second = 0;
+      std::vector<GroupBody> bodies(2);
+      bodies[0].block = &stone;
+      bodies[1].block = &boulder;
+      for (std::size_t i = 0; i < 2; ++i)
+      {
+        bodies[i].state = &states[i];
+      }
+      const double stored = touches[0].springEnergy();
+      EXPECT_NEAR(contacts[0].bounce, std::sqrt(2.0 * stored / stone.mass()), 1e-3);
+      GroupSolver solver;
+      solver.method = method;
+      StepRequest request;
+      request.duration = h;
+      request.kind = StepKind::Lasting;
+      request.gravity = 0.0;
+      request.maxOpenClose = 50;
+      solver.step(request, bodies, contacts, Taken::Any);
+      const double moving =
+        rigidKineticEnergy(stone, states[0]) + rigidKineticEnergy(boulder, states[1]);
+      EXPECT_LT(moving, 1.05 * stored); // what is held back is held in three rounds
+      EXPECT_GE(states[0].velocity.z(), 0.0);
+    }
+  }
+}
+
 TEST(Pinched, StonesAmongFallingBouldersAreNotShotOut)
 {
   // Three boulders of 10 m³ and twelve stones of 1:5 to 1:12 fall 25 m and more onto a bench.
