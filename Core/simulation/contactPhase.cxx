@@ -405,7 +405,7 @@ void RockSimulator::pressOut(double h)
   const double loose = (crowded_ ? kLooseOverlap : kFirm) * block_.radius();
   for (Contact& c : contacts_)
   {
-    rockfall::pressOut(c, h, way, true, loose);
+    rockfall::pressOut(c, h, way, loose);
   }
 }
 

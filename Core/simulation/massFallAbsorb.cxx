@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <limits>
 
 namespace rockfall
 {
@@ -106,13 +107,15 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     const double mass = std::min(a.mass, b.mass), reduced = 1.0 / (1.0 / a.mass + 1.0 / b.mass);
     const double slow =
       std::min(kPressOut * h, 0.5 * mass * parameters_.gravity / parameters_.normalPenalty);
-    const double smaller = std::min(a.radius, b.radius), loose = kLooseOverlap * smaller;
+    const double smaller = std::min(a.radius, b.radius),
+                 loose = kind == StepKind::Lasting ? kLooseOverlap * smaller
+                                                   : std::numeric_limits<double>::infinity();
     const double speed = std::max(
       (a.velocity - b.velocity).norm() + a.rim + b.rim, pair.strikes ? pair.impact.approach : 0.0);
     for (Contact& c : pair.contacts)
     {
       yield(c, smaller, speed, reduced);
-      pressOut(c, h, slow, kind == StepKind::Lasting, loose);
+      pressOut(c, h, slow, loose);
     }
   };
   forEach(work.touching.size(), kPairGrain, absorbPair);

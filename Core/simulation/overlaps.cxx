@@ -94,7 +94,11 @@ std::vector<RockOverlap> overlapsOf(
 /// The share of a rock in getting apart from another one; `up`: z of its way out, a unit vector.
 double shareOf(double mass, double otherMass, double up, bool byMass)
 {
-  return byMass ? otherMass / (mass + otherMass) : up > kUpward ? 1.0 : up < -kUpward ? 0.0 : 0.5;
+  if (byMass)
+  {
+    return otherMass / (mass + otherMass);
+  }
+  return std::abs(up) <= kUpward ? 0.5 : up > 0.0 ? 1.0 : 0.0;
 }
 
 std::string nameOf(const Rock& rock, const Vec3& origin)
@@ -229,10 +233,10 @@ PushedApart pushApart(const Terrain& terrain, std::span<Rock> rocks)
     }
     std::fill(ways.begin(), ways.end(), Vec3::Zero());
     std::fill(pairs.begin(), pairs.end(), 0);
+    const bool byMass = done.passes <= kPatience;
     for (const RockOverlap& overlap : overlaps)
     {
       const std::size_t i = std::size_t(overlap.first), j = std::size_t(overlap.second);
-      const bool byMass = done.passes <= kPatience;
       const double massI = all[i]->block.mass(), massJ = all[j]->block.mass();
       const double up = overlap.normal.z();
       const Vec3 apart = kPush * overlap.depth * overlap.normal;

@@ -4,6 +4,8 @@
 
 #include "base/parallel.h"
 
+#include <algorithm>
+
 namespace rockfall
 {
 
@@ -29,10 +31,7 @@ void CrowdSolver::write(const StepRequest& request, std::vector<GroupBody>& bodi
     {
       // Open before and after, as most are.
       c.distance = gap1 + c.offset;
-      if (gap1 < 0.0)
-      {
-        c.offset = c.distance; // as writeContact has it
-      }
+      c.offset = std::min(c.offset, c.distance); // as after a bounce (writeContact)
       c.normalForce = c.shearForce = group.work = 0.0;
       books_[k] = {};
       return;

@@ -121,12 +121,12 @@ struct GroupOutcome
 /// between others would keep Gauss–Seidel from settling.
 constexpr double kBounceStiffness = 100.0;
 
-/// Bounces that give less than this share of what comes in along their normal are let be, and how
-/// often the others are held back in a step.
+/// Bounces that give less than this share of what comes in along their normal are let be;
 constexpr double kBounceGain = 1e-3;
-/// The same of those that go on with an impact: gravity, which they overcome in the step, is in it.
+/// those that go on with an impact, less than this: gravity, which they overcome in the step, is in
+/// it.
 constexpr double kBounceGainOn = 0.05;
-constexpr int kHeldBounces = 3;
+constexpr int kHeldBounces = 3; ///< How often the others are held back in a step.
 
 /// The gap at the start of a step of `h` (s) that makes a contact leave as its bounce asks for.
 /// `turned`: stiffness times mobility along the normal; the spring misses a gap by so much of what

@@ -1,37 +1,18 @@
 // Joint sets that cannot cut a rock mass, or cut it into what is no block.
 
 #include "base/errors.h"
-#include "geometry/jointSets.h"
 #include "geometry/shapes.h"
+#include "massCuts.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
 using namespace rockfall;
+using namespace rockfall::testing;
 
 namespace
 {
-
-JointSet jointSet(double dip, double dipDirection, double spacing, double offset = 0.0)
-{
-  JointSet set;
-  set.dip = radians(dip);
-  set.dipDirection = radians(dipDirection);
-  set.spacing = spacing;
-  set.offset = offset;
-  return set;
-}
-
-double sumOf(const CutMass& cut)
-{
-  double sum = 0.0;
-  for (const Polyhedron& block : cut.blocks)
-  {
-    sum += block.integrals().volume;
-  }
-  return sum;
-}
 
 template <typename Failure>
 void expectError(const Polyhedron& mass, const std::vector<JointSet>& sets, const MassCut& how,

@@ -1,7 +1,7 @@
 // A rock mass that joint sets cut into blocks: volumes, counts, faces that fit.
 
-#include "geometry/jointSets.h"
 #include "geometry/shapes.h"
+#include "massCuts.h"
 #include "piles.h"
 #include "simulation/MassFall.h"
 #include "simulation/overlaps.h"
@@ -19,31 +19,11 @@ using namespace rockfall::testing;
 namespace
 {
 
-JointSet jointSet(double dip, double dipDirection, double spacing, double offset = 0.0)
-{
-  JointSet set;
-  set.dip = radians(dip);
-  set.dipDirection = radians(dipDirection);
-  set.spacing = spacing;
-  set.offset = offset;
-  return set;
-}
-
 MassCut keeping()
 {
   MassCut how;
   how.slivers = SliverRule::Keep;
   return how;
-}
-
-double sumOf(const CutMass& cut)
-{
-  double sum = 0.0;
-  for (const Polyhedron& block : cut.blocks)
-  {
-    sum += block.integrals().volume;
-  }
-  return sum;
 }
 
 /// Cubes of 1 m that make one of 3 m, about the origin.

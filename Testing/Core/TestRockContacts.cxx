@@ -98,16 +98,13 @@ TEST(RockContacts, BadTables)
 TEST(RockContacts, NamesOfColumns)
 {
   const std::string row = "granite,slate,0.5,30,1000\n";
-  for (const std::string slip : { "coh", "Cohes", "cohesoin", "kohesion" })
+  for (const std::string slip : { "coh", "Cohes", "cohesoin" })
   {
-    const std::string text = "material_a,material_b,restitution,phi," + slip + "\n" + row;
-    if (slip == "kohesion")
-    {
-      EXPECT_EQ(read(text).size(), 1u); // another first letter
-      continue;
-    }
-    expectRefused(text, { "\"" + slip + "\" is not read", "none \"cohesion\"" });
+    expectRefused("material_a,material_b,restitution,phi," + slip + "\n" + row,
+      { "\"" + slip + "\" is not read", "none \"cohesion\"" });
   }
+  // Another first letter.
+  EXPECT_EQ(read("material_a,material_b,restitution,phi,kohesion\n" + row).size(), 1u);
   expectRefused(
     "material_a,material_b,restitution,phi,PHI\n" + row, { "two columns \"phi\"", "PHI" });
   expectRefused("material_a,material_b,restitution,phi,rn\ngranite,slate,0.5,30,0.4\n",
