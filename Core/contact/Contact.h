@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -80,6 +81,13 @@ inline std::ptrdiff_t closedCount(const std::vector<Contact>& contacts)
 {
   return std::count_if(
     contacts.begin(), contacts.end(), [](const Contact& c) { return c.closed(); });
+}
+
+/// In the springs of the closed ones, J.
+inline double springEnergyOf(const std::vector<Contact>& contacts)
+{
+  return std::accumulate(contacts.begin(), contacts.end(), 0.0,
+    [](double sum, const Contact& c) { return sum + c.springEnergy(); });
 }
 
 /// A block as it stands in the world: what contact detection reads.

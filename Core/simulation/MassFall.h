@@ -195,7 +195,9 @@ private:
     RockPair& pair, const BlockState& first, const BlockState& second, const Vec3& point) const;
   /// One that began within a step of `h`: rocks that were apart, and that others drove together.
   void findKnock(RockPair& pair, const GroupContact& taken, double h) const;
-  void finishPairImpact(RockPair& pair) const;
+  /// An event, if it is one. `over`: else time ends in the middle of it, and what the springs hold
+  /// is not lost.
+  void finishPairImpact(RockPair& pair, bool over = true) const;
   void closePairBooks(RockPair& pair) const; ///< What it has lost, to the two rocks.
   PairMotion motionOf(const RockPair& pair) const;
 

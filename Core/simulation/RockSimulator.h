@@ -110,7 +110,8 @@ private:
   /// taken already.
   void breakTree(int tree, double held);
   bool isGone(int tree) const;
-  void forgetTrees(); ///< Contacts with those that are gone, and all that hangs on them.
+  /// Contacts with those that are gone, and all that hangs on them; `touched`: one of them carried.
+  void forgetTrees(bool touched = true);
   /// Takes a step of `h` back in which it came against trees that cannot hold it, and breaks them.
   bool undoAtTrees(double h);
   void findBarriers(const Way& way); ///< Fills `passages_` with those whose line is passed.
@@ -138,6 +139,8 @@ private:
   bool isCalm() const;          ///< What carries neither comes nor goes.
   bool mayLast(double h) const; ///< A long, damped step is right.
   void pressOut(double h);
+
+  // Impacts on the slope, slopeImpacts.cxx
   void followImpact(const BlockState& start, double h, const StepOutcome& outcome);
   /// An event, if it is one. `over`: else the rock's time ends in the middle of it, and it leaves
   /// nothing of its speed.

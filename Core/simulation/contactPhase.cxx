@@ -17,9 +17,6 @@ namespace rockfall
 namespace
 {
 
-/// Velocities that differ by this share only are the same.
-constexpr double kNoJump = 1e-9;
-
 /// Damping ratio of slip at an impact: high, so that a contact that sticks leaves without slip and
 /// not with what its shear spring gives back (rigid-body impact: no tangential restitution).
 constexpr double kShearDamping = 5.0;
@@ -35,17 +32,6 @@ std::uint64_t carriers(const std::vector<Contact>& contacts)
       const std::uint64_t feature = 4 * std::uint64_t(c.rockFeature) + std::uint64_t(c.kind) + 1;
       sum += feature * 0x9e3779b97f4a7c15ull;
     }
-  }
-  return sum;
-}
-
-/// In the springs of the closed contacts, J.
-double springEnergyOf(const std::vector<Contact>& contacts)
-{
-  double sum = 0.0;
-  for (const Contact& c : contacts)
-  {
-    sum += c.springEnergy();
   }
   return sum;
 }
@@ -407,96 +393,6 @@ void RockSimulator::pressOut(double h)
   {
     rockfall::pressOut(c, h, way, loose);
   }
-}
-
-void RockSimulator::followImpact(const BlockState& start, double h, const StepOutcome& outcome)
-{
-  const Vec3 spin = start.angularVelocity();
-  for (std::size_t i = 0; i < contacts_.size(); ++i)
-  {
-    const Contact& now = contacts_[i];
-    const Contact& was = contactsBefore_[i];
-    if (now.normalForce <= 0.0)
-    {
-      continue;
-    }
-    if (!was.closed())
-    {
-      const double approach =
-        -was.normal.dot(start.velocity + spin.cross(was.point - start.position));
-      if (approach > restingSpeed_)
-      {
-        ImpactEvent& event = impact_.event;
-        if (!impact_.pending)
-        {
-          impact_ = Impact();
-          impact_.pending = true;
-          impact_.frictionBefore = energy_.friction - outcome.frictionWork;
-          event.time = start.time;
-          event.velocityBefore = start.velocity;
-          impact_.restitutionBefore = energy_.restitution - outcome.dampedWork;
-        }
-        event.approachSpeed = std::max(event.approachSpeed, approach);
-      }
-    }
-    if (impact_.pending)
-    {
-      impact_.normalImpulse += (h * now.normalForce) * now.normal;
-      if (now.normalForce > impact_.largestForce)
-      {
-        impact_.largestForce = now.normalForce;
-        impact_.event.cfe = now.cfe;
-        impact_.event.position = was.point;
-      }
-    }
-  }
-}
-
-void RockSimulator::finishImpact(bool over)
-{
-  if (!impact_.pending)
-  {
-    return;
-  }
-  impact_.pending = false;
-  ImpactEvent& event = impact_.event;
-  if (!isImpact(event.approachSpeed, event.velocityBefore.norm(), restingSpeed_,
-        parameters_.gravity, block_.radius()))
-  {
-    return;
-  }
-  event.impulse = impact_.normalImpulse.norm();
-  event.normal =
-    event.impulse > 0.0 ? Vec3(impact_.normalImpulse / event.impulse) : Vec3(Vec3::UnitZ());
-  const int ground = surface_.restitutionClass(event.cfe);
-  event.restitution = surface_.restitutionOf(ground);
-  const double before = kineticEnergy(block_, state_);
-  const bool down = comesDown(
-    event.approachSpeed, event.velocityBefore.norm(), parameters_.gravity, block_.radius());
-  const SurfaceMaterial& material = surface_.terrain().restitutionMaterial(ground);
-  const Vec3 after =
-    over ? adjustVelocity(material, event, state_.velocity, down) : state_.velocity;
-  const bool jumps = (after - state_.velocity).norm() > kNoJump * state_.velocity.norm();
-  if (jumps)
-  {
-    recorder_.beforeJump(state_, true);
-    this->auditSamples(state_);
-  }
-  state_.velocity = after;
-  energy_.restitution += before - kineticEnergy(block_, state_);
-  event.velocityAfter = state_.velocity;
-  event.energyLoss =
-    energy_.restitution - impact_.restitutionBefore + energy_.friction - impact_.frictionBefore;
-  if (jumps)
-  {
-    recorder_.afterJump(state_, true);
-    this->auditSamples(state_);
-  }
-  acceleration_.setZero();
-  spinAcceleration_.setZero();
-  Trajectory& trajectory = recorder_.trajectory();
-  trajectory.impacts.push_back(event);
-  ++trajectory.summary.impacts;
 }
 
 } // namespace rockfall

@@ -40,7 +40,7 @@ void MassFall::findKnock(RockPair& pair, const GroupContact& taken, double h) co
   }
 }
 
-void MassFall::finishPairImpact(RockPair& pair) const
+void MassFall::finishPairImpact(RockPair& pair, bool over) const
 {
   RockPair::Impact& impact = pair.impact;
   if (!pair.strikes)
@@ -49,8 +49,9 @@ void MassFall::finishPairImpact(RockPair& pair) const
   }
   pair.strikes = false;
   const double size = impact.impulse.norm();
-  const double loss = size > 0.0 ? std::max(0.0, impact.loss) : 0.0;
-  pair.lastingLoss += impact.loss - loss; // springs that had been compressed before
+  const double held = over ? 0.0 : springEnergyOf(pair.contacts);
+  const double loss = size > 0.0 ? std::max(0.0, impact.loss - held) : 0.0;
+  pair.lastingLoss += impact.loss - loss; // springs that had been compressed before, or are now
   if (size <= 0.0)
   {
     return;
@@ -81,7 +82,7 @@ void MassFall::finishPairImpact(RockPair& pair) const
 
 void MassFall::closePairBooks(RockPair& pair) const
 {
-  this->finishPairImpact(pair);
+  this->finishPairImpact(pair, false);
   for (const int i : { pair.first, pair.second })
   {
     members_[i]->sim.recorder_.trajectory().summary.lastingLoss += 0.5 * pair.lastingLoss;

@@ -187,11 +187,14 @@ bool RockSimulator::isGone(int tree) const
   return std::binary_search(goneTrees_.begin(), goneTrees_.end(), tree);
 }
 
-void RockSimulator::forgetTrees()
+void RockSimulator::forgetTrees(bool touched)
 {
   std::erase_if(contacts_, [&](const Contact& c) { return this->isGone(this->treeOf(c)); });
-  acceleration_.setZero();
-  spinAcceleration_.setZero();
+  if (touched)
+  {
+    acceleration_.setZero();
+    spinAcceleration_.setZero();
+  }
   this->forgetPatch();
 }
 
@@ -234,17 +237,9 @@ bool RockSimulator::hearOf(const Broken& broken)
       touched = touched || c.closed();
     }
   }
-  if (touched)
-  {
-    springEnergy_ = std::max(0.0, springEnergy_ - held);
-    energy_.structures += held;
-    this->forgetTrees();
-  }
-  else
-  {
-    std::erase_if(contacts_, [&](const Contact& c) { return this->isGone(this->treeOf(c)); });
-    this->forgetPatch();
-  }
+  springEnergy_ = std::max(0.0, springEnergy_ - held);
+  energy_.structures += held;
+  this->forgetTrees(touched);
   return touched;
 }
 

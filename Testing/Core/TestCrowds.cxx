@@ -272,10 +272,7 @@ TEST(Crowds, SpinOfASlabMakesNoEnergy)
   const Vec3 momentum = angularMomentum(block, state);
   GroupSolver solver;
   solver.method = GroupMethod::Iterative;
-  StepRequest request;
-  request.duration = 0.005;
-  request.kind = StepKind::Lasting;
-  request.gravity = 0.0;
+  const StepRequest request = lastingStep(0.005, 0.0, 12);
   std::vector<GroupContact> contacts;
   for (int step = 0; step < 200; ++step)
   {
@@ -318,9 +315,7 @@ TEST(Crowds, WhatHasNotSettledIsNotTaken)
     solver.method = GroupMethod::Iterative;
     solver.tolerance = 1e-13;
     solver.maxSweeps = 0;
-    StepRequest request;
-    request.duration = 0.005;
-    request.kind = StepKind::Lasting;
+    const StepRequest request = lastingStep(0.005, kGravity, 12);
     EXPECT_FALSE(
       solver.step(request, bodies, contacts, takeAnyway ? Taken::Any : Taken::Settled).settled);
     EXPECT_EQ(state.time, takeAnyway ? 0.005 : 0.0);

@@ -170,3 +170,28 @@ TEST(PairBooks, SlidingIsLastingContact)
   EXPECT_NEAR(books.lasting, brought, 0.02 * brought);
   EXPECT_NEAR(runs[0].summary.lastingLoss, runs[1].summary.lastingLoss, 1e-9 * brought);
 }
+
+TEST(PairBooks, WhatSpringsHoldAtTheEndIsNotLost)
+{
+  // Two cubes that meet elastically, face on face; time ends in the middle of it.
+  double mostHeld = 0.0;
+  for (int k = 0; k < 10; ++k)
+  {
+    Pile pile;
+    pile.ground = abyss();
+    pile.parameters.gravity = 0.0;
+    pile.parameters.endTime = 0.04 + 3e-4 * k;
+    pile.parameters.rockRestitution = 1.0;
+    pile.rocks = { brick(Vec3(1, 1, 1), Vec3(20.0, 20.0, 0.0), 0),
+      brick(Vec3(1, 1, 1), Vec3(21.2, 20.0, 0.0), 1) };
+    pile.rocks[0].velocity.x() = 5.0;
+    pile.make();
+    const std::vector<Trajectory> runs = pile.fall->run();
+    const double brought = 0.5 * runs[0].summary.mass * 25.0;
+    const Books books = booksOf(runs);
+    EXPECT_NEAR(books.impacts + books.lasting, books.given, 1e-9 * brought);
+    EXPECT_NEAR(books.impacts, 0.0, 0.01 * brought) << pile.parameters.endTime;
+    mostHeld = std::max(mostHeld, books.lasting / brought);
+  }
+  EXPECT_GT(mostHeld, 0.4); // half of it where both are as fast
+}

@@ -338,11 +338,7 @@ TEST(Piles, DirectAndIterativeSolutionAgree)
         group[k].friction = sides[k][1] < 0 ? std::tan(radians(sliding ? 10.0 : 35.0))
                                             : std::tan(pile.parameters.rockFrictionAngle);
       }
-      StepRequest request;
-      request.duration = 0.005;
-      request.kind = StepKind::Lasting;
-      request.gravity = pile.parameters.gravity;
-      request.maxOpenClose = 50;
+      const StepRequest request = lastingStep(0.005, pile.parameters.gravity);
       GroupSolver solver;
       solver.method = method;
       solver.tolerance = 1e-14;

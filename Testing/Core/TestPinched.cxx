@@ -137,11 +137,7 @@ TEST(Pinched, OverlapThatABounceLeavesHoldsNoEnergy)
     }
     GroupSolver solver;
     solver.method = k < 4 ? GroupMethod::Direct : GroupMethod::Iterative;
-    StepRequest request;
-    request.duration = 1e-3;
-    request.kind = StepKind::Lasting;
-    request.gravity = 0.0;
-    request.maxOpenClose = 50;
+    const StepRequest request = lastingStep(1e-3, 0.0);
     for (const double bounce : { 0.5, -1.0 })
     {
       contacts[0].approach = states[1].velocity.z() - states[0].velocity.z();
@@ -199,11 +195,7 @@ TEST(Pinched, WhatASpringHoldsIsAllThatALoadGets)
       EXPECT_NEAR(contacts[0].bounce, std::sqrt(2.0 * stored / stone.mass()), 1e-3);
       GroupSolver solver;
       solver.method = method;
-      StepRequest request;
-      request.duration = h;
-      request.kind = StepKind::Lasting;
-      request.gravity = 0.0;
-      request.maxOpenClose = 50;
+      const StepRequest request = lastingStep(h, 0.0);
       solver.step(request, bodies, contacts, Taken::Any);
       const double moving =
         rigidKineticEnergy(stone, states[0]) + rigidKineticEnergy(boulder, states[1]);

@@ -255,11 +255,7 @@ TEST(Splinters, BounceMakesNoEnergy)
       }
       GroupSolver solver;
       solver.method = method;
-      StepRequest request;
-      request.duration = 1e-4; // so short that nothing turns
-      request.kind = StepKind::Lasting;
-      request.gravity = 0.0;
-      request.maxOpenClose = 50;
+      const StepRequest request = lastingStep(1e-4, 0.0); // so short that nothing turns
       solver.step(request, bodies, contacts, Taken::Any);
       for (std::size_t i = 0; i < bodies.size(); ++i)
       {

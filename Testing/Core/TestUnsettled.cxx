@@ -41,9 +41,7 @@ GroupOutcome sweepOnce(double tolerance, Taken take)
   solver.method = GroupMethod::Iterative;
   solver.tolerance = tolerance;
   solver.maxSweeps = 2;
-  StepRequest request;
-  request.duration = 0.005;
-  request.kind = StepKind::Lasting;
+  const StepRequest request = lastingStep(0.005, kGravity, 12);
   return solver.step(request, bodies, contacts, take);
 }
 

@@ -49,10 +49,7 @@ struct Hanging
         corners[k].stiffness = corners[k].shearStiffness = kPenalty;
         armed.push_back(k);
       });
-    StepRequest request;
-    request.duration = kStep;
-    request.kind = StepKind::Lasting;
-    request.gravity = gravity;
+    const StepRequest request = lastingStep(kStep, gravity, 12);
     return solver.step(request, bodies, contacts, Taken::NotRough);
   }
 };

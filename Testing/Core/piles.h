@@ -18,6 +18,17 @@
 namespace rockfall::testing
 {
 
+/// A lasting step of so many seconds, under so much gravity (m/s²).
+inline StepRequest lastingStep(double duration, double gravity, int maxOpenClose = 50)
+{
+  StepRequest request;
+  request.duration = duration;
+  request.kind = StepKind::Lasting;
+  request.gravity = gravity;
+  request.maxOpenClose = maxOpenClose;
+  return request;
+}
+
 inline std::vector<Block> blocksOf(const std::vector<Rock>& rocks)
 {
   std::vector<Block> blocks;
