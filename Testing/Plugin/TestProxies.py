@@ -79,20 +79,36 @@ assert abs(standing.GetDataInformation().GetBounds()[4] - 57.5) < 1e-9
 simple.Delete(standing)
 
 # What a restitution model has no use for is not shown with it.
-def shown_for(name):
-    """The value that decides, and whether it shows or hides the property."""
-    hints = dem.GetProperty(name).SMProperty.GetHints()
-    decorator = hints.FindNestedElementByName("PropertyWidgetDecorator")
-    assert decorator.GetAttribute("type") == "GenericDecorator", name
-    assert decorator.GetAttribute("mode") == "visibility", name
-    assert decorator.GetAttribute("property") == "RestitutionModel", name
-    return decorator.GetAttribute("value"), decorator.GetAttribute("inverse") or "0"
+def decorators(proxy, name, mode):
+    """Of each decorator the property and the values that decide, and whether they do so inversely."""
+    hints = proxy.GetProperty(name).SMProperty.GetHints()
+    nested = [hints.GetNestedElement(k) for k in range(hints.GetNumberOfNestedElements())] if hints else []
+    found = [d for d in nested if d.GetName() == "PropertyWidgetDecorator"]
+    assert all(d.GetAttribute("type") == "GenericDecorator" for d in found), name
+    return [(d.GetAttribute("property"), d.GetAttribute("value") or d.GetAttribute("values"),
+             d.GetAttribute("inverse") or "0") for d in found if d.GetAttribute("mode") == mode]
 
 
 assert dem.GetProperty("RestitutionModel").Available == \
     ["Whole velocity", "Normal and tangential", "Speed-dependent"]
-assert shown_for("TangentialRestitution") == ("0", "1")
-assert shown_for("RestitutionSpeed") == ("2", "0")
+assert decorators(dem, "TangentialRestitution", "visibility") == [("RestitutionModel", "0", "1")]
+assert decorators(dem, "RestitutionSpeed", "visibility") == [("RestitutionModel", "2", "0")]
+# What a preset replaces is grey beside one.
+replaced = ["RestitutionModel", "RestitutionCoefficient", "RestitutionDeviation", "TangentialRestitution",
+            "RestitutionSpeed", "FrictionAngle", "FrictionAngleDeviation"]
+for name in replaced + ["Cohesion"]:
+    wanted = [("Preset", "0", "0")] if name in replaced else []
+    assert decorators(dem, name, "enabled_state") == wanted, name
+# Only some laws have a deviation.
+assert rocks.GetProperty("VolumeLaw").Available[2:4] == ["Normal", "Log-normal"]
+assert decorators(rocks, "VolumeDeviation", "visibility") == [("VolumeLaw", "2 3", "0")]
+# Tables open no view of their own, but for the one that is all that there is to see of its filter.
+for proxy, ports in ((simulation, {"3"}), (collector, {"1", "2"}), (merged, {"1", "2"})):
+    hints = proxy.SMProxy.GetHints()
+    views = [hints.GetNestedElement(k) for k in range(hints.GetNumberOfNestedElements())]
+    silent = {v.GetAttribute("port") for v in views
+              if v.GetName() == "View" and v.GetAttribute("type") == "None"}
+    assert silent == ports, (proxy, silent)
 
 # Defaults run as they stand.
 assert rocks.Shape == "Cube" and rocks.Volume == 1.0 and list(rocks.Orientation) == [0, 0, 0]
