@@ -1,0 +1,56 @@
+#pragma once
+
+/// @file
+/// The ground, and how it is simulated, by names that a command line or a search gives.
+
+#include "simulation/parameters.h"
+#include "terrain/material.h"
+
+#include <string>
+#include <vector>
+
+namespace rockfall::calibration
+{
+
+/// A user's mistake: the text says which argument.
+class UsageError : public std::runtime_error
+{
+public:
+  using std::runtime_error::runtime_error;
+};
+
+/// What a run needs beside the data.
+struct GroundSettings
+{
+  SurfaceMaterial material;
+  Roughness roughness;
+  SimulationParameters simulation;
+  double cellSize = 0.5;       ///< Of the nodes that the data's grid is resampled to, m.
+  double density = 2700.0;     ///< Of the rocks where the data has none, kg/m³.
+  double placeDeviation = 0.1; ///< Of the place of a single impact, each way, m.
+
+  /// Sets the parameter of this name. Throws UsageError that lists the names, or ParameterError.
+  void set(const std::string& name, double value);
+  /// From "name=value".
+  void set(const std::string& assignment);
+};
+
+/// The names, in order, with unit.
+std::vector<std::string> settingNames();
+
+/// The command line `program FOLDER [--set name=value]… [--iterations N] [--seed N] [--threads N]`
+/// and switches of the program's own.
+struct Arguments
+{
+  std::string folder;
+  std::string output; ///< After --output; empty: none.
+  std::vector<std::string> switches;
+  GroundSettings settings;
+
+  bool has(const std::string& name) const;
+};
+/// Throws UsageError.
+Arguments parseArguments(
+  int count, char** words, GroundSettings defaults, const std::vector<std::string>& switches);
+
+} // namespace rockfall::calibration

@@ -1,0 +1,118 @@
+// What the calibration programs compute: scores, rocks, single impacts, names.
+
+#include "GroundSettings.h"
+#include "SingleImpact.h"
+#include "fieldScores.h"
+#include "fieldTables.h"
+
+#include "Core/slopes.h"
+#include "base/errors.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+using namespace rockfall;
+using namespace rockfall::calibration;
+
+TEST(FieldScores, CrpsOfAUniformForecast)
+{
+  // Of a uniform distribution over 0 … 1 at its middle: mean |x − ½| − ½ mean |x − x'| = ¼ − ⅙.
+  std::vector<double> sample;
+  for (int k = 0; k < 1000; ++k)
+  {
+    sample.push_back((k + 0.5) / 1000.0);
+  }
+  EXPECT_NEAR(crps(sample, 0.5), 1.0 / 12.0, 2e-4); // 1/n: pairs of different x only
+  EXPECT_DOUBLE_EQ(rankOf(sample, 0.25), 0.25);
+}
+
+TEST(FieldScores, EnergyScoreOnALineIsTheCrps)
+{
+  const std::vector<double> sample = { 3.0, -1.0, 4.0, 1.0, 5.5 };
+  std::vector<std::array<double, 2>> places;
+  for (const double x : sample)
+  {
+    places.push_back({ 0.6 * x, 0.8 * x });
+  }
+  EXPECT_NEAR(energyScore(places, { 1.2, 1.6 }), crps(sample, 2.0), 1e-12);
+  // A forecast that is sure is as good as it is near.
+  EXPECT_DOUBLE_EQ(crps({ 7.0, 7.0, 7.0 }, 4.0), 3.0);
+}
+
+TEST(FieldRocks, HaveTheirMassAndSize)
+{
+  const Vec3 size(0.5, 0.3, 0.39);
+  const Polyhedron rock = makeCutBox(size, 79.0 / 2700.0);
+  EXPECT_NEAR(rock.integrals().volume, 79.0 / 2700.0, 1e-9);
+  EXPECT_EQ(rock.faces().size(), 26u);
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    double most = 0.0;
+    for (const Vec3& v : rock.vertices())
+    {
+      most = std::max(most, v[axis]);
+    }
+    EXPECT_NEAR(most, 0.5 * size[axis], 1e-9);
+  }
+  EXPECT_THROW(makeCutBox(size, 1.01 * size.prod()), DataError);
+}
+
+TEST(SingleImpact, FlatDropKeepsTheSquareOfTheRestitution)
+{
+  SurfaceMaterial ground = rockfall::testing::material(0.5, 40.0);
+  ground.restitutionModel = RestitutionModel::NormalTangential;
+  const Terrain terrain = rockfall::testing::makePlane(21, 20.0, 0.0, 0.0, ground);
+  Rock rock;
+  rock.shape = makeShape(Shape::Cube, 1.0);
+  rock.position = Vec3(10.0, 10.0, 100.5);
+  rock.velocity = Vec3(0.0, 0.0, -6.0);
+  SimulationParameters p;
+  p.endTime = 1.5;
+  p.outputInterval = 0.01;
+  const Rock before = heldBack(terrain, rock, p.gravity);
+  EXPECT_GT(before.position.z(), rock.position.z());
+  // The same parabola: height and speed go together.
+  EXPECT_NEAR(0.5 * before.velocity.squaredNorm() + p.gravity * before.position.z(),
+    18.0 + p.gravity * 100.5, 1e-9);
+  const ImpactOutcome outcome = simulateImpact(terrain, before, p, 0);
+  ASSERT_TRUE(outcome.touched && outcome.tookOff);
+  EXPECT_NEAR(outcome.velocityAfter.z(), 3.0, 0.03); // 1 % for the vibration left in the block
+  EXPECT_NEAR(outcome.energyAfter / outcome.energyBefore, 0.25, 0.01);
+  EXPECT_LT(outcome.spinAfter, 1e-3 * outcome.energyAfter);
+}
+
+TEST(SingleImpact, ShortHopsArePartOfIt)
+{
+  // A cube that falls on one edge turns over onto the others within a few hundredths of a second.
+  SurfaceMaterial ground = rockfall::testing::material(0.2, 40.0);
+  ground.restitutionModel = RestitutionModel::NormalTangential;
+  const Terrain terrain = rockfall::testing::makePlane(21, 20.0, 0.0, 0.0, ground);
+  Rock rock;
+  rock.shape = makeShape(Shape::Cube, 1.0);
+  rock.orientation = Quat(Eigen::AngleAxisd(0.1, Vec3::UnitY()));
+  rock.position = Vec3(10.0, 10.0, 100.7);
+  rock.velocity = Vec3(0.0, 0.0, -6.0);
+  SimulationParameters p;
+  p.endTime = 1.5;
+  p.outputInterval = 0.01;
+  const ImpactOutcome outcome = simulateImpact(terrain, rock, p, 0);
+  ASSERT_TRUE(outcome.touched);
+  // Both edges of its face have hit: it is not on its way down any more.
+  EXPECT_GE(outcome.velocityAfter.z(), -0.05);
+  EXPECT_LT(outcome.energyAfter, 0.3 * outcome.energyBefore);
+}
+
+TEST(GroundSettings, ByName)
+{
+  GroundSettings s;
+  s.set("tangentialRestitution=0.7");
+  s.set("frictionAngle=30");
+  EXPECT_DOUBLE_EQ(s.material.tangentialRestitution, 0.7);
+  EXPECT_DOUBLE_EQ(s.material.frictionAngle, radians(30.0));
+  EXPECT_THROW(s.set("stickiness=1"), UsageError);
+  EXPECT_THROW(s.set("frictionAngle=steep"), UsageError);
+  EXPECT_THROW(s.set("frictionAngle"), UsageError);
+  EXPECT_THROW(s.set("tangentialRestitution=1.5"), ParameterError);
+}

@@ -1,0 +1,245 @@
+// Runs of a field test with single rocks against where the rocks stopped, for one set of
+// parameters: per rock the mean run-out, the CRPS, and how many observed run-outs lie within the
+// simulated quantiles of 5 and 95 %. The folder is that of Examples/validation/field_test.py.
+//
+//   calibrateTschamut FOLDER [--set name=value]… [--iterations N] [--seed N] [--output runs.csv]
+
+#include "GroundSettings.h"
+#include "fieldScores.h"
+#include "fieldTables.h"
+
+#include "base/errors.h"
+#include "gis/raster.h"
+#include "simulation/ensemble.h"
+#include "statistics/sample.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <map>
+
+using namespace rockfall;
+using namespace rockfall::calibration;
+
+namespace
+{
+
+constexpr double kGap = 0.05;    // m, under the lowest vertex at the release
+constexpr double kStarted = 1.0; // m; a rock that stops nearer to its release is no run
+
+struct Run
+{
+  std::string id, block;
+  std::array<double, 2> stop{}; ///< Observed, m.
+  double runOut = 0.0;          ///< Observed, m.
+  std::vector<std::array<double, 2>> stops;
+  std::vector<double> runOuts;
+};
+
+struct Experiment
+{
+  Terrain terrain;
+  std::vector<Rock> rocks; ///< One per run.
+  std::vector<Run> runs;
+};
+
+/// The grid's nodes stand at its corner, which GDAL takes for the corner of a pixel.
+Terrain readTerrain(const std::string& fileName, const GroundSettings& s)
+{
+  const double fileCell = readRaster(fileName).geometry.cellSize;
+  RasterSurface surface = readRaster(fileName, { s.cellSize });
+  surface.geometry.xOrigin -= 0.5 * fileCell;
+  surface.geometry.yOrigin -= 0.5 * fileCell;
+  return Terrain(surface.geometry, std::move(surface.heights), s.material, s.roughness);
+}
+
+Experiment readExperiment(const std::string& folder, const GroundSettings& s)
+{
+  Experiment e;
+  e.terrain = readTerrain(folder + "/terrain.asc", s);
+  const Vec3 origin = e.terrain.geometry().origin();
+  const FieldTable blocks(folder + "/block_metadata.csv");
+  std::map<std::string, Polyhedron> shapes;
+  for (std::size_t k = 0; k < blocks.size(); ++k)
+  {
+    shapes[blocks.text(k, "block_id")] =
+      makeCutBox(blocks.vector(k, "size_", "_m"), blocks.number(k, "mass_kg") / s.density);
+  }
+  const FieldTable stops(folder + "/observed_deposition.csv");
+  std::map<std::string, std::size_t> stopOf;
+  for (std::size_t k = 0; k < stops.size(); ++k)
+  {
+    stopOf[stops.text(k, "trajectory_id")] = k;
+  }
+  const FieldTable releases(folder + "/release_points.csv");
+  for (std::size_t k = 0; k < releases.size(); ++k)
+  {
+    Run run;
+    run.id = releases.text(k, "trajectory_id");
+    run.block = releases.text(k, "block_id");
+    const std::size_t at = stopOf.at(run.id);
+    run.stop = { stops.number(at, "x_m") - origin.x(), stops.number(at, "y_m") - origin.y() };
+    Rock rock;
+    rock.blockId = std::int64_t(k) + 1;
+    rock.shape = shapes.at(run.block);
+    rock.density = s.density;
+    rock.velocity = releases.vector(k, "v", "_mps");
+    rock.uncertainty.attitude = AttitudeLaw::Random;
+    rock.position = Vec3(releases.number(k, "x_m"), releases.number(k, "y_m"), 0.0) - origin;
+    double lift = -1e9;
+    for (const Vec3& v : rock.shape.vertices())
+    {
+      lift = std::max(
+        lift, e.terrain.elevation(rock.position.x() + v.x(), rock.position.y() + v.y()) - v.z());
+    }
+    rock.position.z() = lift + kGap;
+    run.runOut = std::hypot(run.stop[0] - rock.position.x(), run.stop[1] - rock.position.y());
+    e.rocks.push_back(std::move(rock));
+    e.runs.push_back(std::move(run));
+  }
+  return e;
+}
+
+/// What is kept of all trajectories.
+class Stops : public TrajectorySink
+{
+public:
+  void trim(Trajectory& t) const override
+  {
+    t.samples.clear();
+    t.impacts.clear();
+  }
+  void consume(Trajectory&& t) override { all.push_back(t.summary); }
+
+  std::vector<TrajectorySummary> all;
+};
+
+/// Figures over some runs.
+struct Figures
+{
+  int runs = 0, inside = 0, below = 0;
+  double observed = 0.0, simulated = 0.0, crps = 0.0, energyScore = 0.0, without = 0.0;
+
+  void print(const char* name) const
+  {
+    const double n = runs;
+    std::printf("%-14s %4d %9.1f %9.1f %+8.1f %%  %6.2f %8.2f %9.2f %9.0f %% %9.0f %%\n", name,
+      runs, observed / n, simulated / n, 100.0 * (simulated / observed - 1.0), crps / n,
+      without / n, energyScore / n, 100.0 * inside / n, 100.0 * below / n);
+  }
+};
+
+void compare(Experiment& e, const std::vector<TrajectorySummary>& all, const Arguments& arguments,
+  double seconds)
+{
+  int left = 0, moving = 0, stood = 0;
+  std::vector<double> speeds, times;
+  for (const TrajectorySummary& t : all)
+  {
+    Run& run = e.runs[std::size_t(t.rock)];
+    left += t.fate == Fate::LeftDomain;
+    moving += t.fate == Fate::Moving;
+    stood += t.runOut < kStarted;
+    if (t.runOut >= kStarted)
+    {
+      run.stops.push_back({ t.stop.x(), t.stop.y() });
+      run.runOuts.push_back(t.runOut);
+      speeds.push_back(t.maxSpeed);
+      times.push_back(t.endTime);
+    }
+  }
+  std::ofstream table;
+  if (!arguments.output.empty())
+  {
+    table.open(arguments.output);
+    table << "Run,Block,ObservedRunOut,MeanRunOut,CRPS,EnergyScore,Rank\n";
+  }
+  std::map<std::string, Figures> figures;
+  for (std::size_t k = 0; k < e.runs.size(); ++k)
+  {
+    Run& run = e.runs[k];
+    if (run.runOuts.size() < 2)
+    {
+      throw DataError("run " + run.id + ": the ground holds all of its rocks at the release");
+    }
+    std::vector<double> others;
+    for (const Run& other : e.runs)
+    {
+      if (&other != &run)
+      {
+        others.push_back(other.runOut);
+      }
+    }
+    const double rank = rankOf(run.runOuts, run.runOut), simulated = mean(run.runOuts);
+    const double ownCrps = crps(run.runOuts, run.runOut), score = energyScore(run.stops, run.stop);
+    for (const std::string& name : { run.block, std::string("~all") })
+    {
+      Figures& f = figures[name];
+      ++f.runs;
+      f.inside += rank >= 0.05 && rank <= 0.95;
+      f.below += rank < 0.05;
+      f.observed += run.runOut;
+      f.simulated += simulated;
+      f.crps += ownCrps;
+      f.energyScore += score;
+      f.without += crps(others, run.runOut);
+    }
+    if (table)
+    {
+      table << run.id << ',' << run.block << ',' << run.runOut << ',' << simulated << ',' << ownCrps
+            << ',' << score << ',' << rank << '\n';
+    }
+  }
+  std::printf("%-14s %4s %9s %9s %10s  %6s %8s %9s %11s %11s\n", "rock", "runs", "observed",
+    "simulated", "error", "CRPS", "no model", "ES", "in 5-95", "below 5");
+  for (const auto& [name, f] : figures)
+  {
+    f.print(name == "~all" ? "all" : name.c_str());
+  }
+  std::ranges::sort(speeds);
+  std::ranges::sort(times);
+  std::printf("greatest speed %.1f m/s mean, %.1f 95 %%; time to rest %.1f s median, %.1f 95 %%; "
+              "left %d, moving %d, not started %d of %zu; %.1f s\n",
+    mean(speeds), quantile(speeds, 0.95), quantile(times, 0.5), quantile(times, 0.95), left, moving,
+    stood, all.size(), seconds);
+}
+
+int run(int count, char** words)
+{
+  GroundSettings defaults;
+  defaults.material.restitutionModel = RestitutionModel::NormalTangential;
+  defaults.material.restitution = 0.3;
+  defaults.material.tangentialRestitution = 0.875;
+  defaults.material.frictionAngle = radians(46.0);
+  defaults.roughness.deviation = 0.041;
+  defaults.simulation.iterations = 50;
+  defaults.simulation.endTime = 60.0;
+  Arguments arguments = parseArguments(count, words, defaults, {});
+  SimulationParameters& p = arguments.settings.simulation;
+  p.outputInterval = p.endTime;
+  Experiment e = readExperiment(arguments.folder, arguments.settings);
+  const auto begin = std::chrono::steady_clock::now();
+  Stops stops;
+  runEnsemble(e.terrain, e.rocks, p, stops);
+  compare(e, stops.all, arguments,
+    std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  return 0;
+}
+
+} // namespace
+
+int main(int count, char** words)
+{
+  try
+  {
+    return run(count, words);
+  }
+  catch (const std::exception& error)
+  {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}
