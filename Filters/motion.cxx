@@ -37,7 +37,8 @@ Sample sampleAt(const Trajectory& trajectory, double time)
   for (double EnergyAudit::*term :
     { &EnergyAudit::released, &EnergyAudit::kinetic, &EnergyAudit::strain, &EnergyAudit::friction,
       &EnergyAudit::restitution, &EnergyAudit::vibration, &EnergyAudit::damping,
-      &EnergyAudit::structures, &EnergyAudit::exchanged, &EnergyAudit::numerical })
+      &EnergyAudit::structures, &EnergyAudit::scars, &EnergyAudit::rolling, &EnergyAudit::exchanged,
+      &EnergyAudit::numerical })
   {
     result.energy.*term = mix(a.energy.*term, b.energy.*term);
   }

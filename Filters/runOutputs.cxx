@@ -49,7 +49,7 @@ struct MotionArrays
 struct EnergyArrays
 {
   vtkSmartPointer<vtkDoubleArray> potential, strain, friction, restitution, vibration, damping,
-    structures, exchanged, numerical;
+    structures, scars, rolling, exchanged, numerical;
 
   explicit EnergyArrays(vtkFieldData* data)
     : potential(addArray<vtkDoubleArray>(data, "PotentialEnergy"))
@@ -59,6 +59,8 @@ struct EnergyArrays
     , vibration(addArray<vtkDoubleArray>(data, "VibrationLoss"))
     , damping(addArray<vtkDoubleArray>(data, "DampingLoss"))
     , structures(addArray<vtkDoubleArray>(data, "StructureLoss"))
+    , scars(addArray<vtkDoubleArray>(data, "ScarLoss"))
+    , rolling(addArray<vtkDoubleArray>(data, "RollingLoss"))
     , exchanged(addArray<vtkDoubleArray>(data, "GivenToRocks"))
     , numerical(addArray<vtkDoubleArray>(data, "NumericalLoss"))
   {
@@ -75,6 +77,8 @@ struct EnergyArrays
     this->vibration->InsertNextValue(sample.energy.vibration);
     this->damping->InsertNextValue(sample.energy.damping);
     this->structures->InsertNextValue(sample.energy.structures);
+    this->scars->InsertNextValue(sample.energy.scars);
+    this->rolling->InsertNextValue(sample.energy.rolling);
     this->exchanged->InsertNextValue(sample.energy.exchanged);
     this->numerical->InsertNextValue(sample.energy.numerical);
   }
@@ -248,6 +252,8 @@ struct ImpactPoints::Arrays
   vtkSmartPointer<vtkDoubleArray> after = addArray<vtkDoubleArray>(fields, "VelocityAfter", 3);
   vtkSmartPointer<vtkDoubleArray> loss = addArray<vtkDoubleArray>(fields, "EnergyLoss");
   vtkSmartPointer<vtkDoubleArray> restitution = addArray<vtkDoubleArray>(fields, "Restitution");
+  vtkSmartPointer<vtkDoubleArray> scarDepth = addArray<vtkDoubleArray>(fields, "ScarDepth");
+  vtkSmartPointer<vtkDoubleArray> scarLength = addArray<vtkDoubleArray>(fields, "ScarLength");
   vtkSmartPointer<vtkIntArray> otherRock = addArray<vtkIntArray>(fields, "OtherRockId");
   vtkSmartPointer<vtkIdTypeArray> otherBlock = addArray<vtkIdTypeArray>(fields, "OtherBlockId");
 };
@@ -279,6 +285,8 @@ void ImpactPoints::append(const Trajectory& trajectory)
     a.after->InsertNextTuple(impact.velocityAfter.data());
     a.loss->InsertNextValue(impact.energyLoss);
     a.restitution->InsertNextValue(impact.restitution);
+    a.scarDepth->InsertNextValue(impact.scarDepth);
+    a.scarLength->InsertNextValue(impact.scarLength);
     a.otherRock->InsertNextValue(impact.otherRock);
     a.otherBlock->InsertNextValue(impact.otherBlockId);
   }
@@ -389,6 +397,8 @@ constexpr Column numberColumns[] = {
   { "EnergyVibration", [](S s, V) { return s.energy.vibration; } },
   { "EnergyDamping", [](S s, V) { return s.energy.damping; } },
   { "EnergyStructures", [](S s, V) { return s.energy.structures; } },
+  { "EnergyScars", [](S s, V) { return s.energy.scars; } },
+  { "EnergyRolling", [](S s, V) { return s.energy.rolling; } },
   { "EnergyExchanged", [](S s, V) { return s.energy.exchanged; } },
   { "EnergyNumerical", [](S s, V) { return s.energy.numerical; } },
   { "LastingLoss", [](S s, V) { return s.lastingLoss; } },

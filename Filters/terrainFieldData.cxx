@@ -31,6 +31,7 @@ constexpr char heightsName[] = "TerrainHeights";
 constexpr char gridName[] = "TerrainGrid";
 constexpr char crsName[] = "TerrainCRS";
 constexpr char materialName[] = "TerrainMaterial";
+constexpr char yieldingName[] = "TerrainYielding";
 constexpr char originName[] = "LocalOrigin";
 
 /// Names of the arrays of the two kinds of classes.
@@ -173,6 +174,50 @@ void takeJoint(const double* numbers, SurfaceMaterial& m)
   m.cohesion = numbers[2];
 }
 
+/// What yields: as typed, class 0 first, then those of the restitution layer.
+void writeYielding(const Terrain& terrain, vtkFieldData* fieldData)
+{
+  if (!terrain.yields())
+  {
+    return;
+  }
+  const auto fields = yieldingFields();
+  vtkNew<vtkDoubleArray> table;
+  table->SetName(yieldingName);
+  table->SetNumberOfComponents(int(fields.size()));
+  for (int k = 0; k <= terrain.restitutionClasses().count(); ++k)
+  {
+    std::vector<double> row;
+    for (const YieldingField& field : fields)
+    {
+      row.push_back(field.typed(terrain.restitutionMaterial(k).yielding));
+    }
+    table->InsertNextTuple(row.data());
+  }
+  fieldData->AddArray(table);
+}
+
+/// Hard ground everywhere if there is no such array.
+std::vector<YieldingGround> readYielding(vtkFieldData* fieldData, int classes)
+{
+  std::vector<YieldingGround> grounds(std::size_t(classes) + 1);
+  if (!fieldData->GetAbstractArray(yieldingName))
+  {
+    return grounds;
+  }
+  const auto fields = yieldingFields();
+  const std::vector<double> values =
+    numbers(fieldData, yieldingName, int(fields.size() * grounds.size()));
+  for (std::size_t k = 0; k < grounds.size(); ++k)
+  {
+    for (std::size_t f = 0; f < fields.size(); ++f)
+    {
+      fields[f].set(grounds[k], values[k * fields.size() + f]);
+    }
+  }
+  return grounds;
+}
+
 template <typename Numbers>
 void writeClasses(const MaterialClasses& classes, const ClassNames& arrays, int count,
   Numbers&& numbersOf, const std::shared_ptr<const Terrain>& terrain, vtkFieldData* fieldData)
@@ -304,6 +349,7 @@ void writeTerrain(std::shared_ptr<const Terrain> terrain, int stride, vtkFieldDa
   fieldData->AddArray(crs);
   writeClasses(terrain->restitutionClasses(), restitutionNames, restitutionNumbers, restitutionOf,
     terrain, fieldData);
+  writeYielding(*terrain, fieldData);
   writeClasses(terrain->jointClasses(), jointNames, jointNumbers, jointOf, terrain, fieldData);
   writeStructures(*terrain, fieldData);
   vtkNew<SharedHeights> heights;
@@ -347,9 +393,17 @@ Terrain readTerrain(vtkPolyData* mesh, bool withMesh)
     heights->GetPointer(0), std::size_t(heights->GetNumberOfValues()));
   // The smart pointer lives in the deleter: the terrain keeps the array, not a copy of it.
   std::shared_ptr<const void> owner(view.data(), [heights](const void*) {});
-  Terrain terrain(std::move(grid), view, std::move(owner), materialOf(m), roughness);
-  terrain.setRestitutionClasses(readClasses(
-    fieldData, restitutionNames, restitutionNumbers, takeRestitution, terrain.material()));
+  SurfaceMaterial material = materialOf(m);
+  MaterialClasses restitution =
+    readClasses(fieldData, restitutionNames, restitutionNumbers, takeRestitution, material);
+  const std::vector<YieldingGround> yielding = readYielding(fieldData, restitution.count());
+  material.yielding = yielding[0];
+  for (int k = 0; k < restitution.count(); ++k)
+  {
+    restitution.materials[std::size_t(k)].yielding = yielding[std::size_t(k) + 1];
+  }
+  Terrain terrain(std::move(grid), view, std::move(owner), material, roughness);
+  terrain.setRestitutionClasses(std::move(restitution));
   terrain.setJointClasses(
     readClasses(fieldData, jointNames, jointNumbers, takeJoint, terrain.material()));
   terrain.setStructures(readStructures(fieldData));

@@ -59,6 +59,14 @@ rockfall::SurfaceMaterial vtkDEMToCFESource::MakeMaterial() const
   material.frictionAngle = rockfall::radians(this->FrictionAngle);
   material.frictionAngleDeviation = rockfall::radians(this->FrictionAngleDeviation);
   material.cohesion = this->Cohesion;
+  const double yielding[] = { this->GroundModulus, this->ScarDepthFactor, this->GroundDensity,
+    this->ScarCompaction, this->ScarSpinDrag, this->SlipFrictionMin, this->SlipFrictionMax,
+    this->SlipFrictionGrowth, this->SlipFrictionDecay, this->RollingResistance };
+  const auto fields = rockfall::yieldingFields();
+  for (std::size_t k = 0; k < fields.size(); ++k)
+  {
+    fields[k].set(material.yielding, yielding[k]);
+  }
   if (this->Preset > 0)
   {
     material.validate(); // what it replaces must not be wrong in silence
@@ -213,6 +221,16 @@ void vtkDEMToCFESource::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "RestitutionDeviation: " << this->RestitutionDeviation << "\n";
   os << indent << "TangentialRestitution: " << this->TangentialRestitution << "\n";
   os << indent << "RestitutionSpeed: " << this->RestitutionSpeed << "\n";
+  os << indent << "GroundModulus: " << this->GroundModulus << "\n";
+  os << indent << "ScarDepthFactor: " << this->ScarDepthFactor << "\n";
+  os << indent << "GroundDensity: " << this->GroundDensity << "\n";
+  os << indent << "ScarCompaction: " << this->ScarCompaction << "\n";
+  os << indent << "ScarSpinDrag: " << this->ScarSpinDrag << "\n";
+  os << indent << "SlipFrictionMin: " << this->SlipFrictionMin << "\n";
+  os << indent << "SlipFrictionMax: " << this->SlipFrictionMax << "\n";
+  os << indent << "SlipFrictionGrowth: " << this->SlipFrictionGrowth << "\n";
+  os << indent << "SlipFrictionDecay: " << this->SlipFrictionDecay << "\n";
+  os << indent << "RollingResistance: " << this->RollingResistance << "\n";
   os << indent << "FrictionAngle: " << this->FrictionAngle << "\n";
   os << indent << "FrictionAngleDeviation: " << this->FrictionAngleDeviation << "\n";
   os << indent << "Cohesion: " << this->Cohesion << "\n";

@@ -187,6 +187,87 @@ public:
 
   ///@{
   /**
+   * M_E, the strength of ground that gives way, in MN/m²; 0 (the default): hard ground, no scars.
+   * Lu et al. (2019) found 10 to 25 for an alpine meadow.
+   */
+  vtkSetMacro(GroundModulus, double);
+  vtkGetMacro(GroundModulus, double);
+  ///@}
+
+  ///@{
+  /**
+   * Factor of the depth of a scar, 0.1 M^(1/3) M_E^-0.4 w^0.8 (m, kg, kN/m², m/s). Default 0.1.
+   */
+  vtkSetMacro(ScarDepthFactor, double);
+  vtkGetMacro(ScarDepthFactor, double);
+  ///@}
+
+  ///@{
+  /**
+   * Density of the ground that a scar displaces, in kg/m³. Default 1700.
+   */
+  vtkSetMacro(GroundDensity, double);
+  vtkGetMacro(GroundDensity, double);
+  ///@}
+
+  ///@{
+  /**
+   * C_s: the drag in a scar is 1 + C_s, without unit. Default 0.
+   */
+  vtkSetMacro(ScarCompaction, double);
+  vtkGetMacro(ScarCompaction, double);
+  ///@}
+
+  ///@{
+  /**
+   * Drag of the ground in a scar on the rotation, without unit. Default 0.
+   */
+  vtkSetMacro(ScarSpinDrag, double);
+  vtkGetMacro(ScarSpinDrag, double);
+  ///@}
+
+  ///@{
+  /**
+   * μ_min of the slip-dependent friction, without unit. Default 0.
+   */
+  vtkSetMacro(SlipFrictionMin, double);
+  vtkGetMacro(SlipFrictionMin, double);
+  ///@}
+
+  ///@{
+  /**
+   * μ_max of the slip-dependent friction, without unit; 0 (the default): FrictionAngle instead.
+   */
+  vtkSetMacro(SlipFrictionMax, double);
+  vtkGetMacro(SlipFrictionMax, double);
+  ///@}
+
+  ///@{
+  /**
+   * κ: how fast the friction grows with the way, in 1/m. Default 0.
+   */
+  vtkSetMacro(SlipFrictionGrowth, double);
+  vtkGetMacro(SlipFrictionGrowth, double);
+  ///@}
+
+  ///@{
+  /**
+   * β: how fast it is forgotten without touch, in 1/s. Default 0.
+   */
+  vtkSetMacro(SlipFrictionDecay, double);
+  vtkGetMacro(SlipFrictionDecay, double);
+  ///@}
+
+  ///@{
+  /**
+   * μ_r: the moment against rolling by force and radius, without unit. Default 0.
+   */
+  vtkSetMacro(RollingResistance, double);
+  vtkGetMacro(RollingResistance, double);
+  ///@}
+
+  ///@{
+  /**
    * Friction angle between rock and slope in degrees, 0 to 89. Default 15.
    */
   vtkSetMacro(FrictionAngle, double);
@@ -274,6 +355,16 @@ private:
   double FrictionAngle = 15.0;
   double FrictionAngleDeviation = 0.0;
   double Cohesion = 0.0;
+  double GroundModulus = 0.0;
+  double ScarDepthFactor = 0.1;
+  double GroundDensity = 1700.0;
+  double ScarCompaction = 0.0;
+  double ScarSpinDrag = 0.0;
+  double SlipFrictionMin = 0.0;
+  double SlipFrictionMax = 0.0;
+  double SlipFrictionGrowth = 0.0;
+  double SlipFrictionDecay = 0.0;
+  double RollingResistance = 0.0;
   double RoughnessMean = 0.0;
   double RoughnessDeviation = 0.0;
   vtkIdType MaximumDisplayCells = 4000000;

@@ -80,6 +80,14 @@ void readRestitution(const Fields& row, const Columns& columns, bool preset, Sur
                          .ranged({ "speed", "k", "restitutionspeed" },
                            std::numeric_limits<double>::min(), 1e6, "above 0, in m/s")
                          .value_or(m.restitutionSpeed);
+  for (const YieldingField& field : yieldingFields())
+  {
+    if (const auto typed = row.ranged({ field.column, lowered(field.property).c_str() }, 0.0,
+          std::numeric_limits<double>::max(), "a finite number, not negative"))
+    {
+      field.set(m.yielding, *typed);
+    }
+  }
 }
 
 void readJoint(const Fields& row, const Columns& columns, bool preset, SurfaceMaterial& m)

@@ -82,6 +82,7 @@ RockSimulator::RockSimulator(
   const double contacts = std::sqrt(p.normalPenalty * block.largestMobility());
   obstacles_ = surface.terrain().obstacles();
   solid_ = obstacles_ && obstacles_->solid();
+  yields_ = surface.terrain().yields();
   barriers_ = obstacles_ && !obstacles_->structures().barriers.empty();
   stiff_ =
     p.rigid || block.strainFrequency() >= std::min(kStiffBesideContacts * contacts, kFastVibration);
@@ -136,7 +137,7 @@ EnergyAudit RockSimulator::auditAt(const BlockState& state) const
   audit.released = energyAtStart_ - block_.mass() * parameters_.gravity * state.position.z();
   audit.numerical = audit.released -
     (audit.kinetic + audit.strain + audit.friction + audit.restitution + audit.vibration +
-      audit.damping + audit.structures + audit.exchanged);
+      audit.damping + audit.structures + audit.scars + audit.rolling + audit.exchanged);
   return audit;
 }
 
@@ -207,15 +208,27 @@ void RockSimulator::advanceInFlight(double duration)
   }
   const double end = start.time + duration;
   BlockState at = start;
-  while (recorder_.nextTime() <= end)
+  while (!scar_.open() && recorder_.nextTime() <= end)
   {
     at = fly(block_, at, parameters_.gravity, std::max(0.0, recorder_.nextTime() - at.time));
     recorder_.record(at, false);
     this->auditSamples(at);
   }
-  state_ = fly(block_, start, parameters_.gravity, duration);
-  state_.time = end;
-  recorder_.followFlight(start, state_);
+  if (scar_.open())
+  {
+    this->flyThroughSoil(duration);
+    state_.time = end;
+    recorder_.recordBetween(start, state_, false);
+    this->auditSamples(state_);
+    recorder_.follow(state_);
+  }
+  else
+  {
+    state_ = fly(block_, start, parameters_.gravity, duration);
+    state_.time = end;
+    recorder_.followFlight(start, state_);
+  }
+  this->forgetSlip(duration);
   while (barriers_ && !done_ && hit_.barrier >= 0)
   {
     this->meetBarrier();
@@ -225,7 +238,7 @@ void RockSimulator::advanceInFlight(double duration)
 
 void RockSimulator::flyUntilNear()
 {
-  while (!done_ && !this->arrived())
+  while (!done_ && !this->arrived() && !scar_.open())
   {
     // Up to the edge of the slope, where the rock is let go.
     double remaining = horizon_ - state_.time;

@@ -6,6 +6,7 @@
 
 #include "contact/Contact.h"
 #include "simulation/Recorder.h"
+#include "simulation/Scar.h"
 #include "simulation/ensemble.h"
 #include "solver/StepSolver.h"
 #include "terrain/Obstacles.h"
@@ -85,6 +86,7 @@ private:
     double largestForce = 0.0;         ///< N
     double frictionBefore = 0.0;       ///< Friction work when it began, J.
     double restitutionBefore = 0.0;    ///< What restitution had taken by then, J.
+    double yieldedBefore = 0.0;        ///< What scars and rolling resistance had, J.
   };
 
   /// Straight up, at the start, as far as roughness and embankments make it needed.
@@ -140,7 +142,23 @@ private:
   bool mayLast(double h) const; ///< A long, damped step is right.
   void pressOut(double h);
 
+  // Ground that gives way, groundYields.cxx
+  const YieldingGround& yieldingAt(std::int64_t cfe) const;
+  /// Λ sinks under what comes down within a step of `h` (s), or rises with the rock. Whether it
+  /// did: contacts and candidates are then out of date.
+  bool followScar(double h);
+  bool sinkUnder(double h);
+  bool riseWithRock();
+  void closeScar(); ///< The rock is out of the ground.
+  void raiseScar(double by);
+  void lowerPatch(double by);           ///< m; < 0: raises it.
+  void flyThroughSoil(double duration); ///< As `fly`, braked.
+  void plough(double volume);       ///< Takes what a swept volume (m³) takes from speed and spin.
+  void forgetSlip(double duration); ///< Time (s) without touch.
+  void yieldInStep(double h);       ///< A step of contact from `before_` to `state_`.
+
   // Impacts on the slope, slopeImpacts.cxx
+  void beginImpact(const BlockState& at, double frictionBefore, double restitutionBefore);
   void followImpact(const BlockState& start, double h, const StepOutcome& outcome);
   /// An event, if it is one. `over`: else the rock's time ends in the middle of it, and it leaves
   /// nothing of its speed.
@@ -195,6 +213,7 @@ private:
   bool stiff_ = false;   ///< The block's strain follows its contacts without inertia.
   bool solid_ = false;   ///< There are embankments or trees.
   bool barriers_ = false;
+  bool yields_ = false;                   ///< Some class of the ground does.
   StepKind steppedAs_ = StepKind::Impact; ///< In the last step.
   double restingSpeed_ = 0.0;             ///< Below it a touch is no impact, m/s.
   BlockState state_;
@@ -219,6 +238,9 @@ private:
   Recorder recorder_;
   CandidatePairs candidates_;
   Impact impact_;
+  Scar scar_;
+  double slip_ = 0.0; ///< s of the slip-dependent friction, m.
+  int touched_ = 0;   ///< Class of the ground that it touched last.
   SurfacePatch patch_;
   HeightWindow window_;
   SurfacePatch holed_;    ///< Under the way of a flight that comes over holes.

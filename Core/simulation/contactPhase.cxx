@@ -124,6 +124,10 @@ void RockSimulator::stayInContact()
     {
       continue;
     }
+    if (yields_ && this->followScar(h))
+    {
+      continue;
+    }
     if (kind == StepKind::Impact && !anyClosed(contacts_) && openTime_ >= ringing_)
     {
       if (!stiff_ && !(state_.strain.isZero(0.0) && state_.strainRate.isZero(0.0)))
@@ -142,7 +146,7 @@ void RockSimulator::stayInContact()
           horizon_ - state_.time);
       const double free =
         timeToClose(placed_, state_, patch_, candidates_, parameters_.gravity, served);
-      if (free >= served && served > small)
+      if (free >= served && served > small && !scar_.open())
       {
         contacts_.clear();
         if (!stiff_)
@@ -153,10 +157,10 @@ void RockSimulator::stayInContact()
         this->endContact();
         return;
       }
-      if (free > small)
+      if (const double sure = std::min(free, served); sure > small)
       {
         contacts_.clear();
-        this->advanceInFlight(free);
+        this->advanceInFlight(sure);
         this->checkEnd(0.0);
         continue;
       }
@@ -228,6 +232,10 @@ void RockSimulator::armContact(Contact& c)
 {
   c.friction = surface_.frictionAt(c.cfe);
   c.cohesion = surface_.cohesionAt(c.cfe);
+  if (yields_ && this->yieldingAt(c.cfe).slips())
+  {
+    c.friction = this->yieldingAt(c.cfe).frictionAfter(slip_);
+  }
   if (c.closed())
   {
     return;
@@ -350,6 +358,10 @@ void RockSimulator::absorb(
     spinAcceleration_ = (state_.spin - before_.spin) / taken;
     carrying_ = 0;
   }
+  if (yields_)
+  {
+    this->yieldInStep(taken);
+  }
   steppedAs_ = kind;
   const bool touching = anyClosed(contacts_);
   if (barriers_)
@@ -375,7 +387,7 @@ void RockSimulator::absorb(
   // A soft block that is still being pressed together leaves its contacts and comes back to them:
   // it has taken off when it has not touched for a period of its own.
   openTime_ = touching ? 0.0 : openTime_ + taken;
-  if (lasting || (!touching && stiff_))
+  if (lasting || (!touching && stiff_ && !scar_.open()))
   {
     this->finishImpact();
   }

@@ -39,6 +39,10 @@ void RockSimulator::ensurePatch(double margin)
       obstacles_->append(patch_.xMin - ring, patch_.xMax + ring, patch_.yMin - ring,
         patch_.yMax + ring, goneTrees_, patch_);
     }
+    if (scar_.open())
+    {
+      this->lowerPatch(scar_.depth());
+    }
     candidates_.distance = -1.0;
   }
 }

@@ -111,6 +111,7 @@ void MassFall::gatherContacts(const Group& group, double h, Workspace& work) con
     // Twice: beyond a concave edge planes serve a little further than their triangles.
     if (crowd && sim.isHigh(2.0 * reach))
     {
+      sim.closeScar();
       sim.armContacts(h);
       return;
     }
@@ -131,6 +132,10 @@ void MassFall::gatherContacts(const Group& group, double h, Workspace& work) con
     };
     const CandidatePairs* near = &findThem();
     while (sim.solid_ && sim.breakTrees(h))
+    {
+      near = &findThem();
+    }
+    while (sim.yields_ && sim.followScar(h))
     {
       near = &findThem();
     }

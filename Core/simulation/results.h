@@ -14,8 +14,8 @@ namespace rockfall
 
 /// Where the energy went, J. Their sum is what the numerics kept; `numerical` is the remainder:
 /// released = kinetic + strain + friction + restitution + vibration + damping + structures +
-/// exchanged + numerical. What two rocks exchange does not add up to nothing: the rest is lost, or
-/// held, between them.
+/// scars + rolling + exchanged + numerical. What two rocks exchange does not add up to nothing: the
+/// rest is lost, or held, between them.
 struct EnergyAudit
 {
   double released = 0.0;    ///< Start's kinetic energy plus potential energy given up.
@@ -26,6 +26,8 @@ struct EnergyAudit
   double vibration = 0.0;   ///< Strain energy left in a block when it took off.
   double damping = 0.0;     ///< Dissipated by the damped step of lasting contact.
   double structures = 0.0;  ///< Taken by barriers and by trees that broke.
+  double scars = 0.0;       ///< Taken by ground that gives way.
+  double rolling = 0.0;     ///< Taken by rolling resistance.
   double exchanged = 0.0;   ///< Given to other rocks by contact (−: received).
   double numerical = 0.0;   ///< Gained (−) or lost (+) by the numerics.
 };
@@ -63,14 +65,16 @@ struct ImpactEvent
 {
   double time = 0.0;            ///< Of the first touch, s.
   Vec3 position = Vec3::Zero(); ///< Of the contact, m.
-  Vec3 normal = Vec3::Zero();   ///< Of the slope there.
+  Vec3 normal = Vec3::UnitZ();  ///< Of the slope there.
   std::int64_t cfe = 0;         ///< Number of the CFE with the largest force.
   double impulse = 0.0;         ///< Normal, N s.
   double approachSpeed = 0.0;   ///< Of the contact point along the normal, m/s.
   Vec3 velocityBefore = Vec3::Zero();
   Vec3 velocityAfter = Vec3::Zero();
-  double energyLoss = 0.0;        ///< By friction and restitution, J.
+  double energyLoss = 0.0;        ///< By friction, restitution, scar and rolling resistance, J.
   double restitution = 1.0;       ///< The coefficient that was applied.
+  double scarDepth = 0.0;         ///< Straight under the surface, m; 0: hard ground.
+  double scarLength = 0.0;        ///< Along the surface, m.
   int otherRock = -1;             ///< Index of the rock that was hit, −1: the slope.
   std::int64_t otherBlockId = -1; ///< Its number.
 };

@@ -17,6 +17,18 @@ constexpr double kNoJump = 1e-9;
 
 } // namespace
 
+void RockSimulator::beginImpact(
+  const BlockState& at, double frictionBefore, double restitutionBefore)
+{
+  impact_ = Impact();
+  impact_.pending = true;
+  impact_.frictionBefore = frictionBefore;
+  impact_.restitutionBefore = restitutionBefore;
+  impact_.yieldedBefore = energy_.scars + energy_.rolling;
+  impact_.event.time = at.time;
+  impact_.event.velocityBefore = at.velocity;
+}
+
 void RockSimulator::followImpact(const BlockState& start, double h, const StepOutcome& outcome)
 {
   const Vec3 spin = start.angularVelocity();
@@ -37,12 +49,8 @@ void RockSimulator::followImpact(const BlockState& start, double h, const StepOu
         ImpactEvent& event = impact_.event;
         if (!impact_.pending)
         {
-          impact_ = Impact();
-          impact_.pending = true;
-          impact_.frictionBefore = energy_.friction - outcome.frictionWork;
-          event.time = start.time;
-          event.velocityBefore = start.velocity;
-          impact_.restitutionBefore = energy_.restitution - outcome.dampedWork;
+          this->beginImpact(start, energy_.friction - outcome.frictionWork,
+            energy_.restitution - outcome.dampedWork);
         }
         event.approachSpeed = std::max(event.approachSpeed, approach);
       }
@@ -74,8 +82,7 @@ void RockSimulator::finishImpact(bool over)
     return;
   }
   event.impulse = impact_.normalImpulse.norm();
-  event.normal =
-    event.impulse > 0.0 ? Vec3(impact_.normalImpulse / event.impulse) : Vec3(Vec3::UnitZ());
+  event.normal = event.impulse > 0.0 ? Vec3(impact_.normalImpulse / event.impulse) : event.normal;
   const int ground = surface_.restitutionClass(event.cfe);
   event.restitution = surface_.restitutionOf(ground);
   const double before = kineticEnergy(block_, state_);
@@ -93,8 +100,8 @@ void RockSimulator::finishImpact(bool over)
   state_.velocity = after;
   energy_.restitution += before - kineticEnergy(block_, state_);
   event.velocityAfter = state_.velocity;
-  event.energyLoss =
-    energy_.restitution - impact_.restitutionBefore + energy_.friction - impact_.frictionBefore;
+  event.energyLoss = energy_.restitution - impact_.restitutionBefore + energy_.friction -
+    impact_.frictionBefore + (energy_.scars + energy_.rolling - impact_.yieldedBefore);
   if (jumps)
   {
     recorder_.afterJump(state_, true);

@@ -290,4 +290,17 @@ Terrain makeBiplanarSlope(double cellSize)
   return Terrain(std::move(geometry), std::move(heights));
 }
 
+bool Terrain::yields() const
+{
+  const int built = obstacles_ ? int(obstacles_->structures().materials.size()) : 0;
+  for (int k = 0; k <= restitutionClasses_.count() + built; ++k)
+  {
+    if (this->restitutionMaterial(k).yielding.yields())
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
 } // namespace rockfall

@@ -120,6 +120,8 @@ public:
       : number <= jointClasses_.count() ? jointClasses_.materials[std::size_t(number) - 1]
                                         : this->obstacleMaterial(number - jointClasses_.count());
   }
+  /// Whether any of the ground gives way under a rock.
+  bool yields() const;
   /// The class of a CFE, also of one of an obstacle.
   int restitutionClassOf(std::int64_t cfe) const
   {

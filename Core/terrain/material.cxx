@@ -54,6 +54,7 @@ void SurfaceMaterial::validate() const
   }
   requireRange(this->cohesion, 0.0, std::numeric_limits<double>::max(), "Cohesion",
     "a finite number of newtons, not negative");
+  this->yielding.validate();
 }
 
 void Roughness::validate() const

@@ -1,0 +1,137 @@
+#include "simulation/Scar.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace rockfall
+{
+
+namespace
+{
+
+/// Ways that are none, m.
+constexpr double kNoWay = 1e-9;
+/// Corners that pass the surface so near to each other (share of the motion) pass it together.
+constexpr double kSamePlace = 1e-9;
+/// Pieces that a long motion is followed in at most, and one.
+constexpr std::size_t kMostBreaks = 13;
+
+} // namespace
+
+void Scar::sink(double depth, int ground, const Contact& contact)
+{
+  if (!this->open())
+  {
+    *this = Scar();
+    area_ = 0.0;
+  }
+  surface_.normal = contact.normal;
+  surface_.offset =
+    contact.normal.dot(contact.point - contact.distance * contact.normal + depth_ * Vec3::UnitZ());
+  depth_ = depth;
+  deepest_ = std::max(deepest_, depth);
+  ground_ = ground;
+  turned_ = false;
+}
+
+void Scar::rise(double by)
+{
+  depth_ = std::max(0.0, depth_ - by);
+}
+
+void Scar::touch(const Contact& contact)
+{
+  turned_ = true;
+  if (contact.kind == ContactKind::VertexFace)
+  {
+    surface_.normal = contact.normal;
+  }
+  const Vec3 place = contact.point - contact.distance * contact.normal + depth_ * Vec3::UnitZ();
+  surface_.offset = surface_.normal.dot(place);
+}
+
+double Scar::book(double volume, const Vec3& way, double areaAtEnd)
+{
+  area_ = areaAtEnd;
+  swept_ += volume;
+  if (volume > 0.0)
+  {
+    length_ += (way - way.dot(surface_.normal) * surface_.normal).norm();
+  }
+  return volume;
+}
+
+double Scar::sweep(const PlacedBlock& from, const PlacedBlock& to)
+{
+  const Vec3 way = to.position() - from.position();
+  const double s = way.norm();
+  if (!(s > kNoWay))
+  {
+    return 0.0;
+  }
+  const double start = submergedArea(from, surface_, way / s);
+  const double end = submergedArea(to, surface_, way / s);
+  return this->book(0.5 * (start + end) * s, way, end);
+}
+
+double Scar::sweep(const std::function<const PlacedBlock&(double)>& at)
+{
+  // Heights of the corners over the surface at both ends tell where they pass it.
+  const auto heightsOf = [&](const PlacedBlock& rock)
+  {
+    std::vector<double> heights;
+    for (const Vec3& v : rock.vertices())
+    {
+      heights.push_back(surface_.normal.dot(v) - surface_.offset);
+    }
+    return heights;
+  };
+  const PlacedBlock& first = at(0.0);
+  const Vec3 start = first.position();
+  const std::vector<double> before = heightsOf(first);
+  const PlacedBlock& last = at(1.0);
+  const Vec3 way = last.position() - start;
+  const double s = way.norm();
+  if (!(s > kNoWay))
+  {
+    return 0.0;
+  }
+  const std::vector<double> after = heightsOf(last);
+  std::vector<double> breaks = { 0.0, 1.0 };
+  for (std::size_t v = 0; v < before.size(); ++v)
+  {
+    if ((before[v] < 0.0) != (after[v] < 0.0))
+    {
+      breaks.push_back(before[v] / (before[v] - after[v]));
+    }
+  }
+  std::sort(breaks.begin(), breaks.end());
+  if (breaks.size() > kMostBreaks)
+  {
+    breaks.resize(kMostBreaks); // a sphere: so many corners that none of them matters
+    for (std::size_t k = 0; k < kMostBreaks; ++k)
+    {
+      breaks[k] = double(k) / double(kMostBreaks - 1);
+    }
+  }
+  const Vec3 direction = way / s;
+  double volume = 0.0, area = submergedArea(at(0.0), surface_, direction), end = area;
+  for (std::size_t k = 1; k < breaks.size(); ++k)
+  {
+    const double length = breaks[k] - breaks[k - 1];
+    if (length < kSamePlace && k + 1 < breaks.size())
+    {
+      continue;
+    }
+    // Simpson: exact for what is quadratic. Just inside of a break, where a face may dive in at
+    // once.
+    const double inside = kSamePlace * length;
+    const double low = submergedArea(at(breaks[k - 1] + inside), surface_, direction);
+    const double mid = submergedArea(at(0.5 * (breaks[k - 1] + breaks[k])), surface_, direction);
+    end = submergedArea(at(breaks[k] - inside), surface_, direction);
+    volume += s * length * (low + 4.0 * mid + end) / 6.0;
+  }
+  return this->book(volume, way, end);
+}
+
+} // namespace rockfall

@@ -1,0 +1,238 @@
+// Ground that gives way under a rock: where its hard surface lies, and what it takes.
+
+#include "simulation/RockSimulator.h"
+
+#include "block/flight.h"
+#include "simulation/rollingResistance.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rockfall
+{
+
+namespace
+{
+
+/// Λ sinks if it is deeper by this share of its depth, and of the rock's radius.
+constexpr double kDeeper = 0.1;
+constexpr double kShallow = 0.01;
+/// Λ rises if this share of its depth is gained.
+constexpr double kHigher = 0.1;
+/// Steeper ground than this (vertical part of its normal) has no scars: walls, trees.
+constexpr double kSteepest = 0.3;
+/// Share of the radius that Λ stays away from a rock that it rises under.
+constexpr double kApart = 1e-6;
+/// A flight through soil is followed in pieces that leave at least this share of the speed.
+constexpr double kLeast = 0.8;
+/// Shortest piece, s.
+constexpr double kShortest = 1e-6;
+
+} // namespace
+
+const YieldingGround& RockSimulator::yieldingAt(std::int64_t cfe) const
+{
+  return surface_.terrain().restitutionMaterial(surface_.restitutionClass(cfe)).yielding;
+}
+
+bool RockSimulator::followScar(double h)
+{
+  return this->sinkUnder(h) || this->riseWithRock();
+}
+
+bool RockSimulator::sinkUnder(double h)
+{
+  const Vec3 spin = state_.angularVelocity();
+  const Contact* under = nullptr;
+  double deepest =
+           std::max((1.0 + kDeeper) * scar_.depth(), scar_.depth() + kShallow * block_.radius()),
+         fastest = 0.0;
+  for (const Contact& c : contacts_)
+  {
+    const double approach = -c.normal.dot(state_.velocity + spin.cross(c.point - state_.position));
+    if (c.closed() || approach <= restingSpeed_ || c.gap() > approach * h ||
+      c.normal.z() < kSteepest)
+    {
+      continue;
+    }
+    const double depth = this->yieldingAt(c.cfe).scarDepth(block_.mass(), approach / c.normal.z());
+    if (depth > deepest)
+    {
+      deepest = depth;
+      fastest = approach;
+      under = &c;
+    }
+  }
+  if (!under)
+  {
+    return false;
+  }
+  if (!impact_.pending)
+  {
+    this->beginImpact(state_, energy_.friction, energy_.restitution);
+    impact_.event.cfe = under->cfe;
+    impact_.event.position = under->point;
+    impact_.event.normal = under->normal;
+  }
+  impact_.event.approachSpeed = std::max(impact_.event.approachSpeed, fastest);
+  const double before = scar_.depth();
+  scar_.sink(deepest, surface_.restitutionClass(under->cfe), *under);
+  // What else was pressed in loses its hold.
+  const double held = springEnergyOf(contacts_);
+  for (Contact& c : contacts_)
+  {
+    c.distance += (deepest - before) * c.normal.z();
+  }
+  springEnergy_ = springEnergyOf(contacts_);
+  energy_.scars += held - springEnergy_;
+  this->lowerPatch(deepest - before);
+  return true;
+}
+
+bool RockSimulator::riseWithRock()
+{
+  if (!scar_.open() || !scar_.turned() || closedCount(contacts_) > 0)
+  {
+    return false;
+  }
+  const double away = clearance(placed_, state_, patch_, parameters_.gravity, 0.0).distance;
+  const double by = std::min(scar_.depth(), away - kApart * block_.radius());
+  if (by < kHigher * scar_.depth())
+  {
+    return false;
+  }
+  contacts_.clear();
+  this->raiseScar(by);
+  return true;
+}
+
+void RockSimulator::closeScar()
+{
+  if (scar_.open())
+  {
+    this->raiseScar(scar_.depth());
+  }
+}
+
+void RockSimulator::raiseScar(double by)
+{
+  this->lowerPatch(-by);
+  scar_.rise(by);
+  if (!scar_.open())
+  {
+    this->finishImpact();
+  }
+}
+
+void RockSimulator::lowerPatch(double by)
+{
+  for (SurfacePatch::Node& node : patch_.nodes)
+  {
+    node.position.z() -= by;
+  }
+  for (SurfacePatch::Triangle& triangle : patch_.triangles)
+  {
+    triangle.offset -= by * triangle.normal.z();
+  }
+  patch_.highest -= by;
+  candidates_.distance = -1.0;
+}
+
+void RockSimulator::plough(double volume)
+{
+  if (!(volume > 0.0))
+  {
+    return;
+  }
+  const YieldingGround& ground = surface_.terrain().restitutionMaterial(scar_.ground()).yielding;
+  const double before = rigidKineticEnergy(block_, state_);
+  state_.velocity *= ground.speedLeft(volume, block_.mass());
+  state_.spin *= ground.spinLeft(volume, block_.mass());
+  energy_.scars += before - rigidKineticEnergy(block_, state_);
+  impact_.event.scarDepth = scar_.deepest();
+  impact_.event.scarLength = scar_.length();
+}
+
+void RockSimulator::flyThroughSoil(double duration)
+{
+  const YieldingGround& ground = surface_.terrain().restitutionMaterial(scar_.ground()).yielding;
+  thread_local PlacedBlock placed;
+  for (double left = duration; left > 0.0;)
+  {
+    const BlockState start = state_;
+    const Scar before = scar_;
+    for (double piece = left;; piece *= 0.5)
+    {
+      const auto at = [&](double fraction) -> const PlacedBlock&
+      {
+        placed.place(block_, fly(block_, start, parameters_.gravity, fraction * piece));
+        return placed;
+      };
+      const double volume = scar_.sweep(at);
+      if (piece > kShortest && ground.speedLeft(volume, block_.mass()) < kLeast)
+      {
+        scar_ = before;
+        continue;
+      }
+      state_ = fly(block_, start, parameters_.gravity, piece);
+      this->plough(volume);
+      left = piece < left ? left - piece : 0.0;
+      break;
+    }
+  }
+  if (scar_.cleared() && state_.velocity.dot(scar_.normal()) > 0.0)
+  {
+    scar_.leave();
+  }
+}
+
+void RockSimulator::forgetSlip(double duration)
+{
+  if (slip_ > 0.0)
+  {
+    slip_ *=
+      std::exp(-surface_.terrain().restitutionMaterial(touched_).yielding.frictionDecay * duration);
+  }
+}
+
+void RockSimulator::yieldInStep(double h)
+{
+  const Contact* most = nullptr;
+  for (const Contact& c : contacts_)
+  {
+    if (c.normalForce > 0.0 && (!most || c.normalForce > most->normalForce))
+    {
+      most = &c;
+    }
+  }
+  if (most)
+  {
+    touched_ = surface_.restitutionClass(most->cfe);
+    slip_ += h * state_.velocity.norm();
+  }
+  else
+  {
+    this->forgetSlip(h);
+  }
+  if (scar_.open())
+  {
+    if (most)
+    {
+      scar_.touch(*most);
+    }
+    thread_local PlacedBlock from, to;
+    from.place(block_, before_);
+    to.place(block_, state_);
+    this->plough(scar_.sweep(from, to));
+  }
+  if (most)
+  {
+    const double rolling = this->yieldingAt(most->cfe).rollingResistance;
+    if (rolling > 0.0)
+    {
+      energy_.rolling += resistRolling(block_, contacts_, rolling, h, state_);
+    }
+  }
+}
+
+} // namespace rockfall

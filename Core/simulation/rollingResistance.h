@@ -1,0 +1,23 @@
+#pragma once
+
+/// @file
+/// Rolling resistance of a rock on the slope (Azzoni, La Barbera & Zaninetti 1995; the rolling
+/// friction cone of contact mechanics): |M_r| ≤ μ_r R λ against the rotation; what holds while the
+/// rotation is zero.
+
+#include "contact/Contact.h"
+
+#include <vector>
+
+namespace rockfall
+{
+
+/// Takes the moment's impulse of a step of `h` (s) from the motion and returns the energy that it
+/// took, J, ≥ 0. `coefficient`: μ_r. The contacts bring the mean normal forces of the step.
+///
+/// What sticks turns about where the slope carries it, so that speed goes with the spin; what
+/// slides loses spin alone. The rotation is never reversed.
+double resistRolling(const Block& block, const std::vector<Contact>& contacts, double coefficient,
+  double h, BlockState& state);
+
+} // namespace rockfall
