@@ -83,11 +83,23 @@ std::vector<std::string> settingNames()
   {
     names.push_back(s.name + (*s.unit ? " (" + std::string(s.unit) + ")" : std::string()));
   }
+  for (const YieldingField& f : yieldingFields())
+  {
+    names.push_back(f.property + (*f.unit ? " (" + std::string(f.unit) + ")" : std::string()));
+  }
   return names;
 }
 
 void GroundSettings::set(const std::string& name, double value)
 {
+  const auto yielding = std::ranges::find_if(
+    yieldingFields(), [&](const YieldingField& field) { return field.property == name; });
+  if (yielding != yieldingFields().end())
+  {
+    yielding->set(material.yielding, value);
+    material.validate();
+    return;
+  }
   const auto found =
     std::ranges::find_if(settings(), [&](const Setting& s) { return s.name == name; });
   if (found == settings().end())
