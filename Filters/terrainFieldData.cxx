@@ -177,10 +177,6 @@ void takeJoint(const double* numbers, SurfaceMaterial& m)
 /// What yields: as typed, class 0 first, then those of the restitution layer.
 void writeYielding(const Terrain& terrain, vtkFieldData* fieldData)
 {
-  if (!terrain.yields())
-  {
-    return;
-  }
   const auto fields = yieldingFields();
   vtkNew<vtkDoubleArray> table;
   table->SetName(yieldingName);

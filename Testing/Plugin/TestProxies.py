@@ -7,7 +7,9 @@ PROXIES = [
     ("DEM to CFE Mesh", "DEMtoCFEMesh", "sources",
      "FileName CellSize RestitutionModel RestitutionCoefficient RestitutionDeviation "
      "TangentialRestitution RestitutionSpeed FrictionAngle "
-     "FrictionAngleDeviation Cohesion RoughnessMean RoughnessDeviation"),
+     "FrictionAngleDeviation Cohesion RoughnessMean RoughnessDeviation GroundModulus "
+     "ScarDepthFactor GroundDensity ScarCompaction ScarSpinDrag SlipFrictionMin SlipFrictionMax "
+     "SlipFrictionGrowth SlipFrictionDecay RollingResistance"),
     ("Rock Blocks", "RockBlocks", "sources",
      "Shape Volume Center Orientation Velocity AngularVelocity Density YoungModulus PoissonRatio "
      "FileName Terrain Amount Intensity SlopeThreshold ShapeMix VolumeLaw Material TotalVolume "
@@ -95,7 +97,9 @@ assert decorators(dem, "TangentialRestitution", "visibility") == [("RestitutionM
 assert decorators(dem, "RestitutionSpeed", "visibility") == [("RestitutionModel", "2", "0")]
 # What a preset replaces is grey beside one.
 replaced = ["RestitutionModel", "RestitutionCoefficient", "RestitutionDeviation", "TangentialRestitution",
-            "RestitutionSpeed", "FrictionAngle", "FrictionAngleDeviation"]
+            "RestitutionSpeed", "FrictionAngle", "FrictionAngleDeviation", "GroundModulus",
+            "ScarDepthFactor", "GroundDensity", "ScarCompaction", "ScarSpinDrag", "SlipFrictionMin",
+            "SlipFrictionMax", "SlipFrictionGrowth", "SlipFrictionDecay", "RollingResistance"]
 for name in replaced + ["Cohesion"]:
     wanted = [("Preset", "0", "0")] if name in replaced else []
     assert decorators(dem, name, "enabled_state") == wanted, name
