@@ -16,12 +16,13 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 SCRIPT = os.path.join(ROOT, "Examples", "validation", "tschamut.py")
-sys.path[:0] = [os.path.dirname(SCRIPT), os.path.dirname(os.path.dirname(SCRIPT))]
+EXAMPLES = os.path.dirname(os.path.dirname(SCRIPT))
+sys.path[:0] = [os.path.dirname(SCRIPT), EXAMPLES, os.path.join(EXAMPLES, "calibrate_parts")]
 
-import field_fit
 import field_rocks
-import field_scores
 import field_test
+import site_scores
+import site_search
 
 # 30 m of 35° slope, then flat: 17 x 9 nodes of 5 m. The south-west node is at (0, 0).
 HEIGHTS = [[round(max(0.0, 30.0 - 5.0 * column) * 0.7, 3) for column in range(17)]] * 9
@@ -114,28 +115,31 @@ said, message = run(folder, "--output", "fit", *FEW, "--calibrate", "4")
 tried = table("fit/candidates.csv")
 least = min(tried, key=lambda row: float(row["EnergyScore_m"]))
 expect(message is None and len(tried) == 4, f"calibration: {message}, {len(tried)} candidates")
-expect("Ground: " + ", ".join(f"{name} {least[name]}" for name in field_fit.NAMES) in said,
+searched = ("TangentialRestitution", "FrictionAngle", "RoughnessDeviation")
+expect(", ".join(f"{name} {least[name]}" for name in searched) in said.split("Ground: ")[1],
        f"the best candidate {least} was not used: {said}")
-expect("Held out, 2 folds with runs of every block" in said and
-       "Held out, one block left out at a time" in said, f"no runs were held out: {said}")
+expect("Held out, 2 folds with runs of every group" in said and
+       "Held out, one group left out at a time" in said, f"no runs were held out: {said}")
 
 # --- The scores. Two points one on either side: mean distance 1, less half of the distance 2.
-expect(abs(field_scores.energy_score([[0.0], [2.0]], [1.0])) < 1e-12, "energy score of two points")
-expect(abs(field_scores.energy_score([[3.0, 4.0]] * 3, [0.0, 0.0]) - 5.0) < 1e-12, "of a sure forecast")
+expect(abs(site_scores.energy_score([[0.0], [2.0]], [1.0])) < 1e-12, "energy score of two points")
+expect(abs(site_scores.energy_score([[3.0, 4.0]] * 3, [0.0, 0.0]) - 5.0) < 1e-12, "of a sure forecast")
 
 # A run that is in the table twice is held out together with its copy.
 copied = make_folder("copied", release_points=("d,7,20,18", "d,6,25,19"),
                      observed_deposition=("d,37,20", "d,30,25"))
-observed = field_scores.Observed(field_test.FieldTest(copied))
-fold = field_fit.folds(observed, 2)
+runs = field_test.FieldTest(copied).runs
+observed = site_scores.Observed([run.start[:2] for run in runs], [run.stop for run in runs], range(4),
+                                [run.block for run in runs])
+fold = site_search.folds(observed, 2)
 expect(fold[2] == fold[3] and fold[0] != fold[1], f"folds {fold}")
 
 # Held out means held out: candidate 0 suits all runs but the last, which is predicted by what suits
 # the others.
-scores = np.zeros((2, 4, 3))
-scores[0, 3, field_fit.ES], scores[1, :3, field_fit.ES], scores[1, :, field_fit.MEAN] = 100.0, 1.0, 9.0
-predicted, chosen = field_fit.held_out(scores, observed, np.arange(4))
-expect(chosen.tolist() == [1, 1, 1, 0] and predicted[3, field_fit.ES] == 100.0, f"held out by {chosen}")
+scores = np.zeros((2, 4, 4))
+scores[0, 3, site_scores.ES], scores[1, :3, site_scores.ES], scores[1, :, site_scores.MEAN] = 100.0, 1.0, 9.0
+predicted, chosen = site_search.held_out(scores, np.arange(4))
+expect(chosen.tolist() == [1, 1, 1, 0] and predicted[3, site_scores.ES] == 100.0, f"held out by {chosen}")
 
 # --- The rocks have the mass of the table: hulls of the points, at the density. 9 decimals are written.
 for block in field_test.FieldTest(folder).blocks.values():

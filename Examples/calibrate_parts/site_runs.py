@@ -1,0 +1,161 @@
+"""From a slope, its rocks and the deposits to a comparison, a search and a report in a folder.
+
+Whoever has a slope (a proxy of DEM to CFE Mesh), rocks (a proxy of what goes into Rockfall
+Simulation), the observations and the number of each rock's forecast can call `compare`; calibrate.py
+takes them from layers, validation/tschamut.py from the tables of a field test.
+"""
+import csv
+import os
+import time
+
+import numpy as np
+from paraview.simple import RockfallSimulation
+
+import site_map
+import site_scores as scores
+from rockfall_ground import Ground
+from rockfall_tables import columns_of
+from site_search import Fit, Search
+
+started = time.time()
+
+
+def say(text):
+    print(f"[{time.time() - started:6.1f} s] {text}", flush=True)
+
+
+def made_by(proxy, port=0):
+    """What a filter made; pvbatch is its own server, so nothing is copied."""
+    data = proxy.GetClientSideObject().GetOutputDataObject(port)
+    if data is None or data.GetNumberOfElements(6 if data.IsA("vtkTable") else 0) == 0:
+        raise SystemExit(f"{proxy.GetXMLLabel()} made nothing; the message above says why.")
+    return data
+
+
+class Site:
+    """The pipeline of one place: `forecast` has for each rock the number of its forecast."""
+
+    def __init__(self, slope, rocks, observed, forecast, simulation):
+        self.slope, self.observed, self.forecast = slope, observed, np.asarray(forecast)
+        self.ground = Ground(made_by(slope))
+        self.simulation = RockfallSimulation(Terrain=slope, Rocks=rocks)
+        simulation = dict(simulation)
+        # Samples under way are of no use here.
+        simulation.setdefault("OutputInterval", simulation.get("EndTime", self.simulation.EndTime))
+        for name, value in simulation.items():
+            setattr(self.simulation, name, value)
+
+    def run(self, values):
+        """Simulates with properties {name: value} of the slope."""
+        for name, value in values.items():
+            setattr(self.slope, name, float(value))
+        self.simulation.UpdatePipeline(0.0)
+        columns = columns_of(made_by(self.simulation, 3))
+        # The columns belong to the filter, which reuses their memory.
+        columns = {name: np.array(column) for name, column in columns.items()}
+        return scores.Simulated(self.observed, self.forecast[columns["RockId"]], columns)
+
+
+def search(site, ranges, count, folds, seed, output):
+    """The fit of `count` candidates within ranges {property: (low, high)}."""
+    found = Search(ranges, ranges.values(), count)
+    for k, values in enumerate(found.values):
+        score = site.run(dict(zip(found.names, values))).scores(site.observed)
+        found.add(score)
+        found.write(os.path.join(output, "candidates.csv"))
+        say(f"  candidate {k + 1} of {count}: " + ", ".join(f"{v:g}" for v in values) +
+            f": run-out {score[:, scores.MEAN].mean():.1f} m, "
+            f"energy score {score[:, scores.ES].mean():.2f} m")
+    fit = Fit(found, site.observed, folds, seed)
+    text = "\n".join(fit.lines())
+    print(text)
+    with open(os.path.join(output, "calibration.txt"), "w", encoding="utf-8") as file:
+        file.write(text + "\n")
+    site_map.draw_search(os.path.join(output, "search.png"), fit)
+    return fit
+
+
+def write_table(path, header, rows):
+    with open(path + ".part", "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(header)
+        writer.writerows(rows)
+    os.replace(path + ".part", path)
+
+
+def number(value):
+    return "" if value is None else f"{value:.3f}"
+
+
+def write_results(site, simulated, own, table, names, output):
+    """`names` are those of the deposits, `own` their scores."""
+    path = lambda name: os.path.join(output, name)
+    write_table(path("comparison.csv"), ["What", "Unit", "Observed", "Simulated"],
+                [[what, unit, number(seen), number(made)] for what, unit, seen, made in table])
+    rows, observed = [], site.observed
+    for k, score in enumerate(own):
+        values = simulated.run_out[simulated.of(observed.forecast[k])]
+        rows.append([names[k], observed.group[k], number(observed.run_out[k]), number(score[scores.MEAN])] +
+                    [number(np.percentile(values, q)) for q in scores.QUANTILES] +
+                    [number(score[column]) for column in (scores.CRPS, scores.ES, scores.RANK)])
+    write_table(path("runs.csv"),
+                ["Run", "Group", "ObservedRunOut_m", "MeanRunOut_m"] +
+                [f"RunOut{q}_m" for q in scores.QUANTILES] + ["CRPS_m", "EnergyScore_m", "Rank"], rows)
+    name_of = dict(zip(observed.forecast.tolist(), names))
+    if len(name_of) < len(names):  # a forecast of several deposits has no deposit's name
+        name_of = {forecast: forecast for forecast in name_of}
+    write_table(path("stops.csv"), ["Run", "X", "Y", "RunOut_m", "Started", "FateCode"],
+                [[name_of[forecast], f"{x:.3f}", f"{y:.3f}", f"{run:.3f}", int(moved), fate]
+                 for forecast, (x, y), run, moved, fate in zip(
+                     simulated.forecast.tolist(), simulated.stop, simulated.run_out, simulated.started,
+                     simulated.fate)])
+
+
+def print_table(table):
+    print(f"\n{'':46}{'observed':>10}{'simulated':>11}")
+    for what, unit, seen, made in table:
+        print(f"{what + ', ' + unit:46}{'' if seen is None else f'{seen:.1f}':>10}{made:11.1f}")
+
+
+def report(path, title, ground, table, summary, fit):
+    """The whole of it as a page."""
+    lines = [f"# {title}", "", summary, "", "![Stopping points and run-outs](map.png)", "",
+             "| ground | value | 90 % of the bootstrap |", "|---|---|---|"]
+    spread = {name: f"{low:.4g} to {high:.4g}" for name, _, low, high, _ in fit.parameters()} \
+        if fit else {}
+    lines += [f"| {name} | {value:g} | {spread.get(name, 'not searched')} |"
+              for name, value in ground.items()]
+    if fit:
+        lines += ["", "![Scores of the candidates](search.png)", "", "```text", *fit.lines(), "```"]
+    lines += ["", "| | observed | simulated |", "|---|---|---|"]
+    lines += [f"| {what}, {unit} | {'' if seen is None else f'{seen:.1f}'} | {made:.1f} |"
+              for what, unit, seen, made in table]
+    with open(path + ".part", "w", encoding="utf-8") as file:
+        file.write("\n".join(lines) + "\n")
+    os.replace(path + ".part", path)
+
+
+def compare(site, values, names, title, output, fit=None):
+    """Simulates with these values, prints, draws and writes everything into the folder."""
+    simulated = site.run(values)
+    say("Ground: " + ", ".join(f"{name} {value:g}" for name, value in values.items()))
+    if not simulated.started.any():
+        raise SystemExit(f"No rock ran farther than {scores.STARTED:g} m: nothing to compare.")
+    observed = site.observed
+    drop = np.array([site.ground.height(*start) - site.ground.height(*stop)
+                     for start, stop in zip(observed.start, observed.stop)])
+    table = scores.comparison(observed, simulated, drop)
+    print_table(table)
+    own = simulated.scores(observed)
+    error = 100 * (table[0][3] / table[0][2] - 1)
+    summary = (f"Mean run-out: {error:+.1f} % of the observed one. CRPS of the run-out "
+               f"{own[:, scores.CRPS].mean():.1f} m (without a model {scores.climatology(observed):.1f} "
+               f"m), energy score of the stopping points {own[:, scores.ES].mean():.1f} m; "
+               f"{100 * scores.covered(own):.0f} % of the observed run-outs within 5 to 95 % of the "
+               "simulated ones")
+    print("\n" + summary)
+    write_results(site, simulated, own, table, names, output)
+    site_map.draw(os.path.join(output, "map.png"), site.ground, observed, simulated,
+                  f"{title}: {len(names)} observed, {simulated.started.sum()} simulated")
+    report(os.path.join(output, "report.md"), title, values, table, summary + ".", fit)
+    say(f"Written to {output}: report.md, map.png, comparison.csv, runs.csv, stops.csv")
