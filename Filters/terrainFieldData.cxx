@@ -432,6 +432,12 @@ void checkSameCrs(vtkFieldData* fieldData, const std::string& who, vtkFieldData*
     throw DataError(
       who + " in " + labelOfCrs(own) + ", but the Terrain is in " + labelOfCrs(ground));
   }
+  if (const std::string heights = own == ground ? std::string() : differentHeights(own, ground);
+      !heights.empty())
+  {
+    throw DataError(who + " in another height system than the Terrain: their heights refer to " +
+      heights + "; connect the Terrain where the layer is read, which brings them to its own");
+  }
 }
 
 void writeCoordinateSystem(const std::string& wkt, const Vec3& origin, vtkFieldData* fieldData)

@@ -9,7 +9,8 @@
 /// | TerrainHeights   | rows × columns node heights, north row first, NaN for nodata, m           |
 /// | TerrainGrid      | columns, rows, cell size (m), easting and northing of the south-west node |
 /// |                  | (m), stride of the shown mesh (1 = every CFE is shown)                    |
-/// | TerrainCRS       | WKT of the coordinate system, empty for a local one                       |
+/// | TerrainCRS       | WKT of the coordinate system, empty for a local one; with a vertical part |
+/// |                  | if the file says what its heights refer to                                |
 /// | TerrainMaterial  | restitution, its deviation, φ (rad), its deviation, cohesion (N),         |
 /// |                  | roughness mean and deviation (m), number of the restitution model,        |
 /// |                  | tangential restitution, speed of the speed-dependent model (m/s). Files   |

@@ -92,6 +92,14 @@ void vtkRockBlockSource::FindSources(vtkPolyData* terrainInput, Sources& sources
         "\", but the terrain is in " + rockfall::labelOfCrs(terrain->geometry().crs) +
         "; leave TargetCRS empty where there is a terrain");
     }
+    if (const std::string heights =
+          rockfall::differentHeights(terrain->geometry().crs, this->TargetCRS);
+        !heights.empty())
+    {
+      throw rockfall::ParameterError("TargetCRS is \"" + this->TargetCRS +
+        "\", but heights of the terrain and of TargetCRS refer to " + heights +
+        "; leave TargetCRS empty where there is a terrain");
+    }
     sources.crs = terrain->geometry().crs;
   }
 
@@ -161,6 +169,10 @@ void vtkRockBlockSource::FindSources(vtkPolyData* terrainInput, Sources& sources
     }
     sources.rows = std::move(layer.rows);
     sources.crs = std::move(layer.crs);
+    for (const std::string& note : layer.notes)
+    {
+      rockfall::filters::showNote(note);
+    }
   }
 }
 

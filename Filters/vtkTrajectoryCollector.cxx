@@ -83,7 +83,13 @@ std::vector<CollectorLine> readLines(const std::string& fileName, vtkPolyData* t
   const std::string crs = rockfall::filters::readCrs(trajectories->GetFieldData());
   Box2 all;
   std::vector<CollectorLine> lines;
-  for (rockfall::LayerLine& read : rockfall::readLineLayer(fileName, crs))
+  std::vector<std::string> notes;
+  std::vector<rockfall::LayerLine> layer = rockfall::readLineLayer(fileName, crs, &notes);
+  for (const std::string& note : notes)
+  {
+    rockfall::filters::showNote(note);
+  }
+  for (rockfall::LayerLine& read : layer)
   {
     CollectorLine& line = lines.emplace_back();
     line.name = read.name.empty() ? "feature " + std::to_string(read.feature) : read.name;

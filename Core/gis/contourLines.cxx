@@ -41,7 +41,7 @@ bool isLineType(OGRwkbGeometryType type)
   }
 }
 
-void addLine(const OGRLineString& line, double height, const HeightField& field,
+void addLine(const OGRLineString& line, double height, double plane, const HeightField& field,
   const Fields& fields, Contours& contours)
 {
   if (field.column < 0 && !line.Is3D())
@@ -51,12 +51,12 @@ void addLine(const OGRLineString& line, double height, const HeightField& field,
   Line added{ contours.x.size(), 0 };
   for (int i = 0; i < line.getNumPoints(); ++i)
   {
-    const double z = field.column < 0 ? line.getZ(i) * field.unit : height;
+    const double z = field.column < 0 ? field.heights.metres(line.getZ(i)) : height;
     if (field.guessed && line.Is3D() && line.getZ(i) != 0.0 &&
-      std::abs(line.getZ(i) * field.unit - height) > sameHeight)
+      std::abs(field.heights.metres(line.getZ(i)) - height) > sameHeight)
     {
       fields.fail("the line's z is " + number(line.getZ(i)) + ", its field \"" + field.name +
-        "\" " + number(height / field.unit) +
+        "\" " + number(height / field.heights.scale) +
         "; say in ElevationField that it is this field, or leave the field out of the file");
     }
     if (!std::isfinite(line.getX(i)) || !std::isfinite(line.getY(i)) || !std::isfinite(z))
@@ -68,8 +68,8 @@ void addLine(const OGRLineString& line, double height, const HeightField& field,
     {
       fields.fail("the height " + number(z) + " m is none: a mark for no data, or another unit?");
     }
-    contours.x.push_back(line.getX(i));
-    contours.y.push_back(line.getY(i));
+    contours.x.push_back(line.getX(i) * plane);
+    contours.y.push_back(line.getY(i) * plane);
     contours.z.push_back(z);
     ++added.count;
   }
@@ -112,23 +112,19 @@ OGRLayer& lineLayerOf(GDALDataset& dataset, const std::string& fileName)
   return *open;
 }
 
-HeightField heightFieldOf(OGRLayer& layer, const std::string& wanted, const std::string& fileName)
+HeightField heightFieldOf(OGRLayer& layer, const LayerHeights& heights, const std::string& wanted,
+  const std::string& fileName)
 {
   const OGRFeatureDefn& definition = *layer.GetLayerDefn();
   const Columns columns = columnsOf(definition);
   HeightField field;
-  field.unit = verticalUnit(layer.GetSpatialRef());
+  field.heights = heights;
   const auto take = [&](const Columns::value_type& column)
   {
     field.column = column.second;
     field.name = definition.GetFieldDefn(column.second)->GetNameRef();
     refuseTwin(definition, fileName, column.second);
-    const auto endsWith = [&](const std::string& end)
-    {
-      return column.first.size() > end.size() &&
-        column.first.compare(column.first.size() - end.size(), end.size(), end) == 0;
-    };
-    field.unit = endsWith("_ft") || endsWith("_feet") ? 0.3048 : endsWith("_m") ? 1.0 : field.unit;
+    field.heights = heights.ofColumn(field.name);
   };
   if (!wanted.empty())
   {
@@ -160,8 +156,8 @@ HeightField heightFieldOf(OGRLayer& layer, const std::string& wanted, const std:
   return field;
 }
 
-Contours readLines(OGRLayer& layer, const HeightField& field, const ContourOptions& options,
-  const std::string& fileName, Messages& messages)
+Contours readLines(OGRLayer& layer, const LayerHeights& heights, const HeightField& field,
+  const ContourOptions& options, const std::string& fileName, Messages& messages)
 {
   const Columns columns = columnsOf(*layer.GetLayerDefn());
   Contours contours;
@@ -188,24 +184,33 @@ Contours readLines(OGRLayer& layer, const HeightField& field, const ContourOptio
       {
         fields.fail("field \"" + field.name + "\" is empty, it must be the contour's height");
       }
-      height = *value * field.unit;
+      height = field.heights.metres(*value);
     }
     else if (!geometry->Is3D())
     {
       fields.fail("the line has no z, and the layer no field with a usual name for its height (" +
         fieldList(*layer.GetLayerDefn()) + "); say which field it is in ElevationField");
     }
+    else if (const Altitude over = altitudeOf(heights, fields); over == Altitude::Ground)
+    {
+      fields.fail("its altitudeMode is relativeToGround, so its altitudes are no heights of the "
+                  "ground");
+    }
+    else
+    {
+      contours.clamped += over == Altitude::None;
+    }
     const std::unique_ptr<OGRGeometry> straight(geometry->getLinearGeometry());
     if (wkbFlatten(straight->getGeometryType()) == wkbMultiLineString)
     {
       for (const OGRLineString* line : *straight->toMultiLineString())
       {
-        addLine(*line, height, field, fields, contours);
+        addLine(*line, height, heights.plane, field, fields, contours);
       }
     }
     else
     {
-      addLine(*straight->toLineString(), height, field, fields, contours);
+      addLine(*straight->toLineString(), height, heights.plane, field, fields, contours);
     }
     if (std::int64_t(contours.x.size()) > options.largestVertices)
     {

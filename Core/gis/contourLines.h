@@ -5,6 +5,7 @@
 
 #include "gis/contours.h"
 #include "gis/gdal.h"
+#include "gis/heights.h"
 
 #include <cstdint>
 #include <string>
@@ -20,20 +21,22 @@ struct Line
   std::size_t first = 0, count = 0; ///< Of its vertices.
 };
 
-/// The lines as they are in the file, in its CRS but with heights in metres.
+/// The lines as they are in the file, in its CRS but with heights, and local coordinates, in
+/// metres.
 struct Contours
 {
   std::vector<double> x, y, z;
   std::vector<Line> lines;
   std::int64_t features = 0, empty = 0;
+  std::int64_t clamped = 0; ///< Features of a KML file whose altitude is said not to be used.
 };
 
-/// Where the heights are, and what they are multiplied by.
+/// Where the heights are, and what they mean.
 struct HeightField
 {
   int column = -1; ///< −1: the lines' own z.
   std::string name;
-  double unit = 1.0;    ///< m
+  Heights heights;      ///< What its numbers mean.
   bool guessed = false; ///< By its name.
 };
 
@@ -41,11 +44,12 @@ struct HeightField
 OGRLayer& lineLayerOf(GDALDataset& dataset, const std::string& fileName);
 
 /// Throws DataError if `wanted` is no field of the layer.
-HeightField heightFieldOf(OGRLayer& layer, const std::string& wanted, const std::string& fileName);
+HeightField heightFieldOf(OGRLayer& layer, const LayerHeights& heights, const std::string& wanted,
+  const std::string& fileName);
 
 /// Throws DataError naming row, field and value; see readContours.
-Contours readLines(OGRLayer& layer, const HeightField& field, const ContourOptions& options,
-  const std::string& fileName, Messages& messages);
+Contours readLines(OGRLayer& layer, const LayerHeights& heights, const HeightField& field,
+  const ContourOptions& options, const std::string& fileName, Messages& messages);
 
 [[noreturn]] void refuseVertices(
   const std::string& fileName, double vertices, std::int64_t largest, const std::string& remedy);

@@ -3,6 +3,8 @@
 #include "base/errors.h"
 #include "gis/contourLines.h"
 #include "gis/fields.h"
+#include "gis/heightReference.h"
+#include "gis/heights.h"
 #include "gis/metric.h"
 #include "gis/tin.h"
 #include "terrain/flats.h"
@@ -49,9 +51,10 @@ double lengthOf(const Contours& contours)
 constexpr double narrowest = 1e-3;
 
 /// To metres on the ground.
-void toMetric(
-  Contours& contours, const CrsPtr& crs, RasterSurface& result, const std::string& fileName)
+void toMetric(Contours& contours, const LayerHeights& heights, RasterSurface& result,
+  const std::string& fileName)
 {
+  const CrsPtr& crs = heights.horizontal;
   const Box box = boxOf(contours);
   const double wide = box.xMax - box.xMin, deep = box.yMax - box.yMin;
   if (!(std::min(wide, deep) > narrowest * std::max(wide, deep)))
@@ -68,7 +71,7 @@ void toMetric(
     return;
   }
   const Destination to = destination(gridOf(box), crs, fileName);
-  result.geometry.crs = crsWkt(to.target ? *to.target : *crs);
+  result.geometry.crs = crsWkt(to.target ? to.target : crs, heights.reference);
   if (to.target)
   {
     if (!CrsChange(crs, to.target)
@@ -224,13 +227,25 @@ RasterSurface readContours(const std::string& fileName, const ContourOptions& op
   const DatasetPtr dataset = openVector(fileName, messages);
   refuseSurplusCells(*dataset, fileName);
   OGRLayer& layer = lineLayerOf(*dataset, fileName);
-  const HeightField field = heightFieldOf(layer, options.elevationField, fileName);
   RasterSurface result;
-  Contours contours = readLines(layer, field, options, fileName, messages);
+  LayerHeights heights = heightsOf(*dataset, layer, fileName, result.notes);
+  const HeightField field = heightFieldOf(layer, heights, options.elevationField, fileName);
+  Contours contours = readLines(layer, heights, field, options, fileName, messages);
   const std::string where = field.column < 0 ? "the lines' own z" : "field \"" + field.name + "\"";
-  if (field.unit != 1.0)
+  if (field.heights.scale != heights.scale)
   {
-    result.notes.push_back("Heights were multiplied by " + number(field.unit) + " to be metres.");
+    result.notes.push_back("Heights of " + where + " were multiplied by " +
+      number(field.heights.scale) + " to be metres.");
+  }
+  else
+  {
+    heights.tell(result.notes);
+  }
+  if (contours.clamped > 0)
+  {
+    result.notes.push_back(std::to_string(contours.clamped) +
+      " lines are clamped to the ground by their altitudeMode, or by none, so that their altitudes "
+      "are not to be used; they were taken as heights all the same.");
   }
   if (contours.empty > 0)
   {
@@ -243,7 +258,7 @@ RasterSurface readContours(const std::string& fileName, const ContourOptions& op
     throw DataError(fileName + ": all " + std::to_string(contours.lines.size()) +
       " contours have the height " + number(*low) + " m (" + where + "), that is no slope");
   }
-  toMetric(contours, horizontalCrs(layer.GetSpatialRef()), result, fileName);
+  toMetric(contours, heights, result, fileName);
 
   const Box box = boxOf(contours);
   const double length = lengthOf(contours);

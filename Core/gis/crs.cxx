@@ -76,7 +76,9 @@ CrsPtr crsFromEpsg(int code)
 CrsPtr crsFromText(const std::string& text)
 {
   auto crs = empty();
-  if (crs->SetFromUserInput(text.c_str()) != OGRERR_NONE)
+  // No names of files, no addresses.
+  if (crs->SetFromUserInput(
+        text.c_str(), OGRSpatialReference::SET_FROM_USER_INPUT_LIMITATIONS_get()) != OGRERR_NONE)
   {
     throw DataError("\"" + text + "\" is not a coordinate reference system that PROJ knows");
   }
@@ -127,16 +129,6 @@ int utmCode(double longitude, double latitude)
     zone = wrapped < 9.0 ? 31 : wrapped < 21.0 ? 33 : wrapped < 33.0 ? 35 : 37; // Svalbard
   }
   return (latitude < 0.0 ? 32700 : 32600) + zone;
-}
-
-double verticalUnit(const OGRSpatialReference* crs)
-{
-  if (!crs || !crs->IsCompound())
-  {
-    return 1.0;
-  }
-  const double unit = crs->GetTargetLinearUnits("VERT_CS", nullptr);
-  return unit > 0.0 ? unit : 1.0;
 }
 
 CrsChange::CrsChange(const CrsPtr& from, const CrsPtr& to, double tolerance)

@@ -33,9 +33,6 @@ std::string crsWkt(const OGRSpatialReference& crs);
 /// Svalbard; beyond 84° N and 80° S polar stereographic (UPS), where UTM is not defined.
 int utmCode(double longitude, double latitude);
 
-/// Metres per unit of the vertical part, 1 if there is none.
-double verticalUnit(const OGRSpatialReference* crs);
-
 /// The way from one CRS to another and back; between equal or null ones it changes nothing.
 class CrsChange
 {

@@ -53,6 +53,7 @@ public:
   Fields(const std::string& fileName, const Columns& columns, const OGRFeature& feature,
     std::int64_t row);
 
+  const std::string& fileName() const { return fileName_; }
   [[noreturn]] void fail(const std::string& what) const;
   /// Fails with what was said when the row was read if a word was lost: OGR only warns where a
   /// typed table (.csvt) holds text in a column of numbers, and gives 0.

@@ -4,6 +4,7 @@
 #include "base/errors.h"
 #include "gis/fields.h"
 #include "gis/gdal.h"
+#include "gis/heights.h"
 
 #include <cpl_string.h>
 #include <gdal_alg.h>
@@ -140,6 +141,30 @@ private:
   std::int64_t vertices_ = 0;
 };
 
+/// Multiplies the coordinates of polygons.
+void stretch(OGRGeometry& geometry, double factor)
+{
+  if (factor == 1.0)
+  {
+    return;
+  }
+  if (wkbFlatten(geometry.getGeometryType()) == wkbMultiPolygon)
+  {
+    for (OGRPolygon* part : *geometry.toMultiPolygon())
+    {
+      stretch(*part, factor);
+    }
+    return;
+  }
+  for (OGRLinearRing* ring : *geometry.toPolygon())
+  {
+    for (int k = 0; k < ring->getNumPoints(); ++k)
+    {
+      ring->setPoint(k, ring->getX(k) * factor, ring->getY(k) * factor);
+    }
+  }
+}
+
 } // namespace
 
 std::vector<std::uint8_t> fromPolygons(const GroundFiles& files, const GroundTable& table,
@@ -156,7 +181,8 @@ std::vector<std::uint8_t> fromPolygons(const GroundFiles& files, const GroundTab
   const int column = classField(layer, files);
   const std::string fieldName = layer.GetLayerDefn()->GetFieldDefn(column)->GetNameRef();
   const Columns columns = columnsOf(*layer.GetLayerDefn());
-  const CrsPtr from = layerCrs(layer.GetSpatialRef(), files.layer);
+  const LayerHeights units = heightsOf(*dataset, layer, files.layer, notes);
+  const CrsPtr& from = units.horizontal;
   noteCrs(from, cells, files.layer, notes);
   std::unique_ptr<OGRCoordinateTransformation> change;
   if (from && cells.crs && !from->IsSame(cells.crs.get()))
@@ -190,6 +216,7 @@ std::vector<std::uint8_t> fromPolygons(const GroundFiles& files, const GroundTab
       fields.fail(std::string("geometry is a ") + written->getGeometryName() +
         ", classes are polygons or a raster");
     }
+    stretch(*geometry, units.plane);
     if (change && geometry->transform(change.get()) != OGRERR_NONE)
     {
       fields.fail(

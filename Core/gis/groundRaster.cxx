@@ -91,7 +91,7 @@ std::vector<std::uint8_t> fromRaster(const GroundFiles& files, const GroundTable
     std::to_string(cells.columns), std::to_string(cells.rows) });
   if (from && cells.crs)
   {
-    add({ "-t_srs", cells.terrain.geometry().crs });
+    add({ "-t_srs", crsWkt(*cells.crs) }); // classes are no heights: no vertical part
   }
   const std::unique_ptr<GDALWarpAppOptions, void (*)(GDALWarpAppOptions*)> how(
     GDALWarpAppOptionsNew(options.List(), nullptr), GDALWarpAppOptionsFree);

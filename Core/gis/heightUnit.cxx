@@ -1,9 +1,9 @@
 #include "gis/heightUnit.h"
 
-#include <cpl_port.h>
-#include <ogr_spatialref.h>
+#include "gis/fields.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <initializer_list>
 
@@ -13,56 +13,96 @@ namespace rockfall::gis
 namespace
 {
 
-constexpr double foot = 0.3048;                // m, international
-constexpr double surveyFoot = 1200.0 / 3937.0; // m, United States
+struct Unit
+{
+  double metres;
+  std::initializer_list<const char*> names; // lowered, blanks for underscores
+};
+
+/// A length by the name of its unit alone.
+std::optional<double> byName(const std::string& name)
+{
+  static const Unit units[] = {
+    { 1.0, { "m", "metre", "metres", "meter", "meters", "gpm" } },
+    { kFoot,
+      { "ft", "foot", "feet", "international foot", "international feet", "foot (international)",
+        "feet (international)" } },
+    { kSurveyFoot,
+      { "us survey foot", "us survey feet", "us-ft", "ftus", "sft", "foot us", "feet us", "us foot",
+        "us feet", "u.s. survey foot", "u.s. survey feet", "survey foot", "survey feet",
+        "foot (us)", "feet (us)", "ft us", "us ft", "usft", "ft (us)", "foot (us survey)",
+        "us survey foot (ftus)" } },
+    { 0.01, { "cm", "centimetre", "centimeter", "centimetres", "centimeters" } },
+    { 0.1, { "dm", "decimetre", "decimeter", "decimetres", "decimeters" } },
+    { 0.001, { "mm", "millimetre", "millimeter", "millimetres", "millimeters" } },
+    { 1000.0, { "km", "kilometre", "kilometer", "kilometres", "kilometers" } },
+    { 3.0 * kFoot, { "yd", "yard", "yards" } },
+    { kFoot / 12.0, { "in", "inch", "inches" } },
+  };
+  for (const Unit& unit : units)
+  {
+    for (const char* known : unit.names)
+    {
+      if (name == known)
+      {
+        return unit.metres;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+/// Lowered, without brackets about it, with blanks for underscores and without what it is over.
+std::string plain(const std::string& unit)
+{
+  std::string name = lowered(trimmed(unit));
+  if (name.size() > 2 && name.front() == '[' && name.back() == ']')
+  {
+    name = trimmed(name.substr(1, name.size() - 2));
+  }
+  std::replace(name.begin(), name.end(), '_', ' ');
+  for (const char* over : { " above mean sea level", " above sea level", " above msl", " a.s.l.",
+         " a.s.l", " asl", " amsl" })
+  {
+    if (name.ends_with(over))
+    {
+      return trimmed(name.substr(0, name.size() - std::string(over).size()));
+    }
+  }
+  return name;
+}
 
 } // namespace
 
 std::optional<double> metresPer(const std::string& unit)
 {
-  const auto is = [&unit](std::initializer_list<const char*> names)
+  const std::string name = plain(unit);
+  if (const auto metres = byName(name))
   {
-    return std::any_of(
-      names.begin(), names.end(), [&unit](const char* name) { return EQUAL(unit.c_str(), name); });
-  };
-  if (is({ "m", "[m]", "metre", "metres", "meter", "meters" }))
-  {
-    return 1.0;
+    return metres;
   }
-  if (is({ "ft", "foot", "feet", "[ft]", "international foot", "international feet",
-        "foot (international)", "feet (international)" }))
+  double factor = 0.0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), factor);
+  if (error != std::errc() || !(factor > 0.0) || !std::isfinite(factor))
   {
-    return foot;
+    return std::nullopt;
   }
-  if (is({ "us survey foot", "us survey feet", "us_survey_foot", "us-ft", "ftus", "sft", "foot_us",
-        "us foot", "u.s. survey foot", "survey foot", "foot (us)", "feet (us)", "ft us", "usft",
-        "ft (us)", "foot (us survey)", "us survey foot (ftus)" }))
-  {
-    return surveyFoot;
-  }
-  if (is({ "cm", "centimetre", "centimeter", "centimetres", "centimeters" }))
-  {
-    return 0.01;
-  }
-  if (is({ "dm", "decimetre", "decimeter", "decimetres", "decimeters" }))
-  {
-    return 0.1;
-  }
-  if (is({ "mm", "millimetre", "millimeter" }))
-  {
-    return 0.001;
-  }
-  if (is({ "km", "kilometre", "kilometer", "kilometres", "kilometers" }))
-  {
-    return 1000.0;
-  }
-  return std::nullopt;
+  std::string rest = trimmed(std::string(end, name.data() + name.size()));
+  rest = rest.starts_with("*") ? trimmed(rest.substr(1)) : rest;
+  const auto metres = byName(rest);
+  return metres ? std::optional(factor * *metres) : std::nullopt;
 }
 
-bool isInFeet(const OGRSpatialReference& crs)
+bool isNoUnit(const std::string& unit)
 {
-  const double metres = crs.IsProjected() ? crs.GetLinearUnits() : 1.0;
-  return std::abs(metres - foot) < 1e-3 * foot;
+  const std::string name = plain(unit);
+  return name.empty() || name == "unknown" || name == "unspecified" || name == "none" ||
+    name == "undefined" || name == "n/a";
+}
+
+bool isFoot(double metres)
+{
+  return std::abs(metres - kFoot) < 1e-3 * kFoot;
 }
 
 } // namespace rockfall::gis

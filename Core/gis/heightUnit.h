@@ -6,8 +6,6 @@
 #include <optional>
 #include <string>
 
-class OGRSpatialReference;
-
 namespace rockfall::gis
 {
 
@@ -17,10 +15,17 @@ constexpr double kHighest = 20000.0; // m
 /// Deeper than any land, as −9999 is.
 constexpr double kDeepest = -1000.0; // m
 
-/// Metres per unit of height by the unit's name; nothing for a name that is not known.
+constexpr double kFoot = 0.3048;                // m, international
+constexpr double kSurveyFoot = 1200.0 / 3937.0; // m, United States
+
+/// Metres per unit of height by the unit's name, which may have a number before it ("0.1 m") and
+/// what it is over behind it ("m a.s.l."); nothing for a name that is not known.
 std::optional<double> metresPer(const std::string& unit);
 
-/// Whether a map's coordinates are in some foot.
-bool isInFeet(const OGRSpatialReference& crs);
+/// Whether a unit says nothing: empty, "unknown", "unspecified", "none", "undefined".
+bool isNoUnit(const std::string& unit);
+
+/// Whether so many metres are some foot.
+bool isFoot(double metres);
 
 } // namespace rockfall::gis

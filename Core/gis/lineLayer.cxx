@@ -5,6 +5,7 @@
 #include "gis/barrierUnits.h"
 #include "gis/crs.h"
 #include "gis/gdal.h"
+#include "gis/heights.h"
 
 #include <ogrsf_frmts.h>
 
@@ -24,10 +25,12 @@ constexpr std::size_t mostLines = 10'000;
 class LineReader
 {
 public:
-  LineReader(const std::string& fileName, OGRLayer& layer, const std::string& targetCrs)
+  LineReader(const std::string& fileName, OGRLayer& layer, const LayerHeights& heights,
+    const std::string& targetCrs)
     : fileName_(fileName)
     , columns_(columnsOf(*layer.GetLayerDefn()))
-    , from_(layerCrs(layer.GetSpatialRef(), fileName))
+    , plane_(heights.plane)
+    , from_(heights.horizontal)
   {
     if (!targetCrs.empty() && from_)
     {
@@ -80,6 +83,7 @@ private:
     {
       Eigen::Vector2d place(part.getX(k), part.getY(k));
       const Eigen::Vector2d written = place;
+      place *= plane_;
       if (!place.allFinite() || !change_.forth(1, &place.x(), &place.y()))
       {
         row.fail("the point " + gis::number(written.x()) + ", " + gis::number(written.y()) +
@@ -99,6 +103,7 @@ private:
 
   const std::string& fileName_;
   Columns columns_;
+  double plane_;
   CrsPtr from_, to_;
   CrsChange change_;
   std::int64_t number_ = 0;
@@ -106,14 +111,21 @@ private:
 
 } // namespace
 
-std::vector<LayerLine> readLineLayer(const std::string& fileName, const std::string& targetCrs)
+std::vector<LayerLine> readLineLayer(
+  const std::string& fileName, const std::string& targetCrs, std::vector<std::string>* notes)
 {
+  std::vector<std::string> told;
   Messages messages;
   const DatasetPtr dataset = openVector(fileName, messages);
   OGRLayer& layer = firstLayer(*dataset, fileName);
   refuseSurplusCells(*dataset, fileName);
   refuseNearMisses(*layer.GetLayerDefn(), fileName, { "height", "capacity" }, { "name" });
-  LineReader reader(fileName, layer, targetCrs);
+  const LayerHeights heights = heightsOf(*dataset, layer, fileName, told);
+  if (!heights.doubt.empty())
+  {
+    told.push_back(heights.doubt);
+  }
+  LineReader reader(fileName, layer, heights, targetCrs);
   messages.clear();
   while (const OGRFeatureUniquePtr feature{ layer.GetNextFeature() })
   {
@@ -132,6 +144,10 @@ std::vector<LayerLine> readLineLayer(const std::string& fileName, const std::str
   if (reader.lines.empty())
   {
     throw DataError(fileName + ": layer \"" + layer.GetName() + "\" has no line");
+  }
+  if (notes)
+  {
+    notes->insert(notes->end(), told.begin(), told.end());
   }
   return std::move(reader.lines);
 }

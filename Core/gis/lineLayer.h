@@ -25,12 +25,12 @@ struct LayerLine
 
 /// Reads the lines of the first layer of anything OGR opens, brought to `targetCrs` (WKT) if that
 /// is given and the layer has a CRS. Column names without regard to case; empty cells are as good
-/// as no column.
+/// as no column. `notes`, if given, gets what was done to the data.
 ///
 /// Throws FileError (missing, a folder, a raster, unreadable) or DataError naming file, feature,
 /// field and value: a geometry that is no line, a line of one place, no feature, a number that is
 /// none, negative or not finite, a place that has none in the other CRS. Prints nothing.
-std::vector<LayerLine> readLineLayer(
-  const std::string& fileName, const std::string& targetCrs = {});
+std::vector<LayerLine> readLineLayer(const std::string& fileName, const std::string& targetCrs = {},
+  std::vector<std::string>* notes = nullptr);
 
 } // namespace rockfall

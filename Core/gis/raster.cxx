@@ -3,6 +3,7 @@
 #include "base/errors.h"
 #include "gis/crs.h"
 #include "gis/gdal.h"
+#include "gis/heightReference.h"
 #include "gis/metric.h"
 #include "gis/rasterFile.h"
 #include "gis/resample.h"
@@ -121,7 +122,6 @@ void reproject(SourceGrid& grid, const CrsPtr& crs, const Destination& to, doubl
   }
   result.geometry = layOut(grid, change, how, fileName);
   result.heights = resample(grid, change, how, result.geometry);
-  result.geometry.crs = crsWkt(*to.target);
 
   const char* unit = nullptr;
   crs->IsGeographic() ? crs->GetAngularUnits(&unit) : crs->GetLinearUnits(&unit);
@@ -195,13 +195,15 @@ RasterSurface readRaster(const std::string& fileName, const RasterOptions& optio
   }
 
   const Destination to = destination(grid, file.crs(), fileName);
+  const CrsPtr& reference = file.reference();
   if (to.target)
   {
     reproject(grid, file.crs(), to, wanted, fileName, result);
+    result.geometry.crs = crsWkt(to.target, reference);
   }
   else
   {
-    result.geometry.crs = file.crs() ? crsWkt(*file.crs()) : "";
+    result.geometry.crs = crsWkt(file.crs(), reference);
     if (grid.isNorthUp() && grid.isSquare() &&
       (wanted == 0.0 || sameCell(wanted, grid.columnStep())))
     {

@@ -20,7 +20,9 @@ struct RasterOptions
 /// Node heights as read, before any material is put on them.
 struct RasterSurface
 {
-  GridGeometry geometry;          ///< `crs` is WKT2:2019, horizontal, or empty for local metres.
+  // `geometry.crs` is WKT2:2019: the horizontal CRS, with a vertical part, in metres upwards, if
+  // the file says what its heights refer to; empty for local metres.
+  GridGeometry geometry;          ///< `crs`: see below.
   std::vector<double> heights;    ///< NaN where the file has nodata.
   std::vector<std::string> notes; ///< One sentence per thing that was done to the data.
 };

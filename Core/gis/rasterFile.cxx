@@ -125,7 +125,8 @@ RasterFile::RasterFile(
   }
   checkRawSize(*dataset_, fileName);
   this->findPlace();
-  this->findUnits();
+  heights_ = heightsOf(*dataset_, *band_, fileName_, notes_);
+  this->noteColours();
 }
 
 void RasterFile::findPlace()
@@ -184,64 +185,8 @@ void RasterFile::findPlace()
   }
 }
 
-void RasterFile::findUnits()
+void RasterFile::noteColours()
 {
-  int has = 0;
-  const double scale = band_->GetScale(&has);
-  scale_ = has ? scale : 1.0;
-  const double offset = band_->GetOffset(&has);
-  offset_ = has ? offset : 0.0;
-  if (!std::isfinite(scale_) || scale_ == 0.0 || !std::isfinite(offset_))
-  {
-    throw DataError(fileName_ + ": band " + std::to_string(bandNumber_) + " has scale " +
-      number(scale_) + " and offset " + number(offset_));
-  }
-  if (scale_ != 1.0 || offset_ != 0.0)
-  {
-    notes_.push_back(
-      "The band's scale " + number(scale_) + " and offset " + number(offset_) + " were applied.");
-  }
-
-  const std::string unit = band_->GetUnitType() ? band_->GetUnitType() : "";
-  double metres = 1.0;
-  if (unit.empty())
-  {
-    metres = verticalUnit(dataset_->GetSpatialRef());
-    if (metres != 1.0)
-    {
-      notes_.push_back(
-        "Heights were multiplied by " + number(metres) + ", the unit of the vertical CRS.");
-    }
-  }
-  else if (const auto known = metresPer(unit))
-  {
-    metres = *known;
-    if (metres != 1.0)
-    {
-      notes_.push_back(
-        "Heights in \"" + unit + "\" were multiplied by " + number(metres) + " to be metres.");
-    }
-  }
-  else
-  {
-    throw DataError(fileName_ + ": the heights of band " + std::to_string(bandNumber_) +
-      " have the unit \"" + unit +
-      "\", which is not known (gdal_edit.py -units m, or ft, says which it is)");
-  }
-  if (unit.empty() && metres == 1.0 && crs_ && isInFeet(*crs_) &&
-    !dataset_->GetSpatialRef()->IsCompound())
-  {
-    notes_.push_back("The CRS " + crsLabel(*crs_) +
-      " is in feet, and nothing says what its heights are in; they were taken as metres. If they "
-      "are "
-      "feet, gdal_edit.py -units ft says so");
-  }
-  if (metres != 1.0)
-  {
-    scale_ *= metres;
-    offset_ *= metres;
-  }
-
   const GDALColorInterp colour = band_->GetColorInterpretation();
   if (colour == GCI_PaletteIndex || (colour >= GCI_RedBand && colour <= GCI_BlueBand))
   {
@@ -395,7 +340,7 @@ void RasterFile::readRows(int first, int count, double* values)
       values[i] = std::numeric_limits<double>::quiet_NaN();
       continue;
     }
-    values[i] = raw * scale_ + offset_;
+    values[i] = heights_.metres(raw);
     if (!(values[i] >= kDeepest && values[i] <= kHighest))
     {
       this->check(first + int(i / columns_), int(i % columns_), raw, values[i]);

@@ -5,6 +5,7 @@
 
 #include "gis/crs.h"
 #include "gis/gdal.h"
+#include "gis/heights.h"
 #include "gis/resample.h"
 
 #include <string>
@@ -25,6 +26,8 @@ public:
 
   /// The horizontal CRS; null if the file has none or only an engineering one.
   const CrsPtr& crs() const { return crs_; }
+  /// What the heights refer to; see heightCrs. Null if the file does not say it.
+  const CrsPtr& reference() const { return heights_.reference; }
   /// False for a picture without world coordinates, which is given cells of 1 m.
   bool georeferenced() const { return georeferenced_; }
 
@@ -34,7 +37,7 @@ public:
 
 private:
   void findPlace();
-  void findUnits();
+  void noteColours();
   /// Throws where parts of the file hold nothing and would be read as 0.
   void requireCoverage();
   /// Says what looks like a nodata value of 0 that nobody declared.
@@ -54,8 +57,7 @@ private:
   std::array<double, 6> affine_{};
   CrsPtr crs_;
   bool georeferenced_ = true;
-  double scale_ = 1.0; ///< height = raw · scale + offset, m.
-  double offset_ = 0.0;
+  Heights heights_;
 };
 
 } // namespace rockfall::gis

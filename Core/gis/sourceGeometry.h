@@ -5,6 +5,8 @@
 
 #include "gis/FeatureRow.h"
 #include "gis/crs.h"
+#include "gis/heightReference.h"
+#include "gis/heights.h"
 #include "gis/sources.h"
 
 namespace rockfall::gis
@@ -16,16 +18,29 @@ struct SourcePlacing
   CrsPtr from;
   CrsPtr to;
   CrsChange change;
-  double heightUnit = 1.0; ///< Of the layer's z, m.
+  LayerHeights heights; ///< What the layer's numbers mean.
+  /// WKT of what the heights are brought to; nothing: they are left as they are.
+  std::optional<std::string> target;
   bool haveTerrain = false;
 
   /// Fills geometry, position, parts and height of `source`. Throws DataError.
-  void place(const FeatureRow& row, SourceRow& source) const;
+  void place(const FeatureRow& row, SourceRow& source);
+  /// What was done to heights, if there were any.
+  void tell(const std::string& fileName, std::vector<std::string>& notes) const;
 
 private:
   Vec3 world(const FeatureRow& row, double x, double y, double z) const;
-  void placePoint(const FeatureRow& row, const OGRPoint* point, SourceRow& source) const;
-  void placeParts(const FeatureRow& row, const OGRGeometry& geometry, SourceRow& source) const;
+  std::optional<double> column(const FeatureRow& row);
+  double own(const FeatureRow& row, double x, double y, double z);
+  double changed(const FeatureRow& row, double x, double y, double height);
+  void requireTerrain(const FeatureRow& row) const;
+  void placePoint(const FeatureRow& row, const OGRPoint* point, SourceRow& source);
+  void placeParts(const FeatureRow& row, const OGRGeometry& geometry, SourceRow& source);
+
+  std::optional<HeightChange> heightChange_; ///< Made for the first height.
+  std::vector<std::string> notes_;           ///< Of the heights.
+  bool anyHeight_ = false;
+  std::int64_t clamped_ = 0; ///< Rows of KML that have an altitude that is not to be used.
 };
 
 } // namespace rockfall::gis

@@ -5,6 +5,7 @@
 #include "gis/FeatureRow.h"
 #include "gis/crs.h"
 #include "gis/gdal.h"
+#include "gis/heightReference.h"
 #include "gis/sourceGeometry.h"
 
 #include <cmath>
@@ -107,8 +108,7 @@ void readRelease(const FeatureRow& row, SourceRow& source)
 std::string wktOfCrs(const std::string& text)
 {
   Messages messages;
-  const CrsPtr crs = text.empty() ? nullptr : crsFromText(text);
-  return crs ? crsWkt(*crs) : std::string();
+  return text.empty() ? std::string() : crsWkt(crsFromText(text), heightCrsFromText(text));
 }
 
 std::string labelOfCrs(const std::string& text)
@@ -121,6 +121,14 @@ bool sameCrs(const std::string& one, const std::string& other)
 {
   Messages messages;
   return one.empty() || other.empty() || crsFromText(one)->IsSame(crsFromText(other).get());
+}
+
+std::string differentHeights(const std::string& one, const std::string& other)
+{
+  Messages messages;
+  const CrsPtr a = heightCrsFromText(one), b = heightCrsFromText(other);
+  return a && b && !sameReference(*a, *b) ? referenceLabel(*a) + " and " + referenceLabel(*b)
+                                          : std::string();
 }
 
 SourceLayer readSourceLayer(const std::string& fileName, const SourceOptions& options)
@@ -137,17 +145,21 @@ SourceLayer readSourceLayer(const std::string& fileName, const SourceOptions& op
       "ly", "lz" });
   const Columns columns = columnsOf(*layer.GetLayerDefn());
 
+  SourceLayer result;
   SourcePlacing placing;
-  placing.from = layerCrs(layer.GetSpatialRef(), fileName);
-  placing.heightUnit = verticalUnit(layer.GetSpatialRef());
+  placing.heights = heightsOf(*dataset, layer, fileName, result.notes);
+  placing.from = placing.heights.horizontal;
   placing.haveTerrain = options.haveTerrain;
   if (!options.targetCrs.empty())
   {
     placing.to = crsFromText(options.targetCrs);
     placing.change = layerChange(fileName, placing.from, placing.to);
   }
+  if (options.haveTerrain || !options.targetCrs.empty())
+  {
+    placing.target = options.targetCrs;
+  }
 
-  SourceLayer result;
   result.ownCrs = placing.from ? crsLabel(*placing.from) : std::string();
   bool allHaveGeometry = true;
   messages.clear();
@@ -181,7 +193,9 @@ SourceLayer readSourceLayer(const std::string& fileName, const SourceOptions& op
       fileName + ": layer \"" + layer.GetName() + "\" has no row, so there is no rock");
   }
   const CrsPtr placed = placing.to ? placing.to : allHaveGeometry ? placing.from : nullptr;
-  result.crs = placed ? crsWkt(*placed) : std::string();
+  result.crs =
+    crsWkt(placed, placing.to ? heightCrsFromText(options.targetCrs) : placing.heights.reference);
+  placing.tell(fileName, result.notes);
   return result;
 }
 

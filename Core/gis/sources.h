@@ -61,7 +61,8 @@ struct SourceRow
 /// How a source layer is to be read.
 struct SourceOptions
 {
-  /// WKT or "EPSG:n": what has a CRS is brought to it. Empty: coordinates are taken as they are.
+  /// WKT or "EPSG:n": what has a CRS is brought to it, heights to its vertical part if both have
+  /// one. Empty: coordinates are taken as they are.
   std::string targetCrs;
   /// There is a terrain to stand on: z may be missing.
   bool haveTerrain = false;
@@ -78,13 +79,16 @@ struct SourceLayer
   std::string crs;
   /// The layer's own CRS by name, for messages; empty if it has none.
   std::string ownCrs;
+  std::vector<std::string> notes; ///< One sentence per thing that was done to the data.
 };
 
 /// Reads the first layer of anything OGR opens. Columns are listed in docs/RockBlocks.md, without
 /// regard to upper and lower case; other columns are ignored, and an empty cell is as good as no
 /// column. Points, lines and polygons; multipoints of one point; rows of a table without geometry
-/// have x, y and z. Where a geometry has its own z, that goes before the column z. z keeps its
-/// datum and becomes metres.
+/// have x, y and z. Where a geometry has its own z, that goes before the column z (or z_m, z_ft).
+/// Heights become metres upwards, and those of the target's vertical datum; where the target or the
+/// layer does not say what its heights refer to, they are taken as they are. Of KML, altitudeMode
+/// says what an altitude is over.
 ///
 /// Throws FileError (missing, a folder, a raster, unreadable) or DataError naming file, row, field
 /// and value. Prints nothing; safe on several threads at once.
@@ -94,7 +98,8 @@ SourceLayer readSourceLayer(const std::string& fileName, const SourceOptions& op
 std::vector<SourceRow> readSources(
   const std::string& fileName, const std::string& targetCrs = {}, std::string* crs = nullptr);
 
-/// WKT2:2019 on one line of a CRS given as "EPSG:n", WKT or PROJ string; empty for empty text.
+/// WKT2:2019 on one line of a CRS given as "EPSG:n", WKT or PROJ string, with its vertical part, if
+/// it has one, in metres upwards; empty for empty text.
 /// Throws DataError naming the text. Prints nothing.
 std::string wktOfCrs(const std::string& text);
 
@@ -103,5 +108,9 @@ std::string labelOfCrs(const std::string& text);
 
 /// Whether two CRS (WKT or "EPSG:n") have the same horizontal part; an empty one is that of all.
 bool sameCrs(const std::string& one, const std::string& other);
+
+/// What the heights of two CRS (WKT or "EPSG:n") refer to, "a and b", if both say it and it is not
+/// the same; else empty.
+std::string differentHeights(const std::string& one, const std::string& other);
 
 } // namespace rockfall

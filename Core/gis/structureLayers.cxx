@@ -5,6 +5,8 @@
 #include "gis/barrierUnits.h"
 #include "gis/crs.h"
 #include "gis/gdal.h"
+#include "gis/heightReference.h"
+#include "gis/heights.h"
 #include "terrain/Obstacles.h"
 #include "terrain/Terrain.h"
 
@@ -15,6 +17,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <optional>
 
 namespace rockfall
 {
@@ -34,9 +37,15 @@ constexpr std::int64_t kMostRows = 1000000;
 class Placing
 {
 public:
-  Placing(const std::string& fileName, const CrsPtr& from, const Terrain& terrain)
-    : origin_(terrain.geometry().origin().head<2>())
+  Placing(const std::string& fileName, const LayerHeights& heights, const Terrain& terrain,
+    std::vector<std::string>& notes)
+    : heights_(heights)
+    , fileName_(fileName)
+    , targetCrs_(terrain.geometry().crs)
+    , notes_(notes)
+    , origin_(terrain.geometry().origin().head<2>())
   {
+    const CrsPtr& from = heights.horizontal;
     if (from && !terrain.geometry().crs.empty())
     {
       change_ = layerChange(fileName, from, crsFromText(terrain.geometry().crs));
@@ -50,7 +59,7 @@ public:
 
   Eigen::Vector2d local(const FeatureRow& row, double x, double y)
   {
-    Eigen::Vector2d p(x, y);
+    Eigen::Vector2d p = Eigen::Vector2d(x, y) * heights_.plane;
     if (!p.allFinite() || !change_.forth(1, &p.x(), &p.y()))
     {
       row.fail("the point " + number(x) + ", " + number(y) +
@@ -61,12 +70,37 @@ public:
     return p - origin_;
   }
 
+  /// Elevation over what the terrain's refer to, m, of a column's number, at the row's place.
+  double elevation(const FeatureRow& row, const char* column, double number)
+  {
+    OGREnvelope box;
+    if (const OGRGeometry* geometry = row.geometry())
+    {
+      geometry->getEnvelope(&box);
+    }
+    if (!heightChange_)
+    {
+      if (!heights_.note.empty())
+      {
+        notes_.push_back(heights_.note);
+      }
+      heightChange_.emplace(fileName_, heights_.reference, targetCrs_, heights_.kml, notes_);
+    }
+    return (*heightChange_)(0.5 * (box.MinX + box.MaxX), 0.5 * (box.MinY + box.MaxY),
+      heights_.ofColumn(column).metres(number));
+  }
+
   const std::string& assumed() const { return assumed_; }
 
   Eigen::Vector2d least = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
   Eigen::Vector2d most = -least;
 
 private:
+  const LayerHeights& heights_;
+  const std::string& fileName_;
+  std::string targetCrs_;
+  std::vector<std::string>& notes_;
+  std::optional<HeightChange> heightChange_; ///< Made for the first elevation.
   CrsChange change_;
   std::string assumed_; ///< For the message.
   Eigen::Vector2d origin_;
@@ -74,7 +108,7 @@ private:
 
 /// Calls `use` for every row, then tells a layer beside the terrain.
 void forEachRow(const std::string& fileName, const Terrain& terrain,
-  std::initializer_list<const char*> numbers,
+  std::vector<std::string>& notes, std::initializer_list<const char*> numbers,
   const std::function<void(const FeatureRow&, std::int64_t, Placing&)>& use)
 {
   Messages messages;
@@ -83,7 +117,12 @@ void forEachRow(const std::string& fileName, const Terrain& terrain,
   refuseSurplusCells(*dataset, fileName);
   refuseNearMisses(*layer.GetLayerDefn(), fileName, numbers, { "name", "x", "y" });
   const Columns columns = columnsOf(*layer.GetLayerDefn());
-  Placing placing(fileName, layerCrs(layer.GetSpatialRef(), fileName), terrain);
+  const LayerHeights heights = heightsOf(*dataset, layer, fileName, notes);
+  if (!heights.doubt.empty())
+  {
+    notes.push_back(heights.doubt);
+  }
+  Placing placing(fileName, heights, terrain, notes);
   std::int64_t count = 0;
   messages.clear();
   while (const OGRFeatureUniquePtr feature{ layer.GetNextFeature() })
@@ -243,10 +282,10 @@ std::vector<std::vector<Eigen::Vector2d>> linesOf(const FeatureRow& row, Placing
   return lines;
 }
 
-void readEmbankments(
-  const std::string& fileName, const Terrain& terrain, OwnMaterials& own, Structures& all)
+void readEmbankments(const std::string& fileName, const Terrain& terrain, OwnMaterials& own,
+  Structures& all, std::vector<std::string>& notes)
 {
-  forEachRow(fileName, terrain,
+  forEachRow(fileName, terrain, notes,
     { "height", "crest", "width", "slope", "slope_up", "slope_down", "rv", "rn", "rt", "phi",
       "cohesion" },
     [&](const FeatureRow& row, std::int64_t count, Placing& placing)
@@ -261,7 +300,7 @@ void readEmbankments(
                         : "has no \"height\" over ground and no \"crest\" elevation, in m");
       }
       e.height = height.value_or(e.height);
-      e.elevation = crest.value_or(e.elevation);
+      e.elevation = crest ? placing.elevation(row, "crest", *crest) : e.elevation;
       e.crestWidth = needed(row, "width", "the width of the crest in m");
       const auto both = slopeOf(row, "slope"), up = slopeOf(row, "slope_up"),
                  down = slopeOf(row, "slope_down");
@@ -285,7 +324,7 @@ void readTrees(const StructureFiles& files, const Terrain& terrain, OwnMaterials
   Structures& all, std::vector<std::string>& notes)
 {
   std::int64_t outside = 0;
-  forEachRow(files.trees, terrain,
+  forEachRow(files.trees, terrain, notes,
     { "diameter", "height", "factor", "capacity", "rv", "rn", "rt", "phi", "cohesion" },
     [&](const FeatureRow& row, std::int64_t count, Placing& placing)
     {
@@ -343,9 +382,10 @@ void readTrees(const StructureFiles& files, const Terrain& terrain, OwnMaterials
   }
 }
 
-void readBarriers(const std::string& fileName, const Terrain& terrain, Structures& all)
+void readBarriers(const std::string& fileName, const Terrain& terrain, Structures& all,
+  std::vector<std::string>& notes)
 {
-  forEachRow(fileName, terrain, { "height", "capacity", "mode", "absorbs" },
+  forEachRow(fileName, terrain, notes, { "height", "capacity", "mode", "absorbs" },
     [&](const FeatureRow& row, std::int64_t count, Placing& placing)
     {
       Barrier b;
@@ -395,7 +435,7 @@ Structures readStructures(
   OwnMaterials own(terrain, all.materials);
   if (!files.embankments.empty())
   {
-    readEmbankments(files.embankments, terrain, own, all);
+    readEmbankments(files.embankments, terrain, own, all, notes);
     tryOut(files.embankments, { all.embankments, {}, {}, all.materials }, terrain);
   }
   if (!files.trees.empty())
@@ -405,7 +445,7 @@ Structures readStructures(
   }
   if (!files.barriers.empty())
   {
-    readBarriers(files.barriers, terrain, all);
+    readBarriers(files.barriers, terrain, all, notes);
     tryOut(files.barriers, { {}, {}, all.barriers, {} }, terrain);
   }
   return all;

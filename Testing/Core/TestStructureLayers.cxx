@@ -113,7 +113,7 @@ TEST(StructureLayers, BarriersMayReachOverBothEdges)
   EXPECT_EQ(readStructures(files, site(), notes).barriers.size(), 1u);
 }
 
-TEST(StructureLayers, LocalCoordinatesInFeetAreRefused)
+TEST(StructureLayers, LocalCoordinatesInFeetBecomeMetres)
 {
   StructureFiles files;
   const std::string table = writeFile("trees.csv", "x,y,diameter,height\n50,50,30,20\n");
@@ -125,9 +125,11 @@ TEST(StructureLayers, LocalCoordinatesInFeetAreRefused)
       "\"</SrcSQL><GeometryType>wkbPoint</GeometryType><LayerSRS>LOCAL_CS[\"site\",UNIT[\"foot\","
       "0.3048],AXIS[\"x\",EAST],AXIS[\"y\",NORTH]]</LayerSRS><GeometryField "
       "encoding=\"PointFromColumns\" x=\"x\" y=\"y\"/></OGRVRTLayer></OGRVRTDataSource>");
-  const std::string message = messageOf(files);
-  EXPECT_EQ(
-    message, files.trees + ": its local coordinates are in \"foot\"; bring them to metres first");
+  std::vector<std::string> notes;
+  const Structures read = readStructures(files, site(), notes);
+  EXPECT_DOUBLE_EQ(read.trees.at(0).position.x(), 50.0 * 0.3048);
+  EXPECT_EQ(notes.at(0),
+    files.trees + ": its local coordinates were multiplied by 0.3048 to be metres.");
 }
 
 TEST(StructureLayers, TellWhatIsWrong)
