@@ -132,7 +132,7 @@ bool Arguments::has(const std::string& name) const
 }
 
 Arguments parseArguments(int argumentCount, char** words, GroundSettings defaults,
-  const std::vector<std::string>& switches)
+  const std::vector<std::string>& switches, bool data)
 {
   Arguments result;
   result.settings = std::move(defaults);
@@ -172,7 +172,7 @@ Arguments parseArguments(int argumentCount, char** words, GroundSettings default
     {
       result.switches.push_back(word);
     }
-    else if (word.starts_with("--") || !result.folder.empty())
+    else if (word.starts_with("--") || !data || !result.folder.empty())
     {
       throw UsageError("\"" + word + "\" is not understood");
     }
@@ -181,7 +181,7 @@ Arguments parseArguments(int argumentCount, char** words, GroundSettings default
       result.folder = word;
     }
   }
-  if (result.folder.empty())
+  if (data && result.folder.empty())
   {
     throw UsageError("the folder of the field data is missing");
   }

@@ -49,8 +49,8 @@ struct Arguments
 
   bool has(const std::string& name) const;
 };
-/// Throws UsageError.
-Arguments parseArguments(
-  int count, char** words, GroundSettings defaults, const std::vector<std::string>& switches);
+/// Throws UsageError. Without data there is no folder.
+Arguments parseArguments(int count, char** words, GroundSettings defaults,
+  const std::vector<std::string>& switches, bool data = true);
 
 } // namespace rockfall::calibration

@@ -109,7 +109,6 @@ ImpactOutcome simulateImpact(
     {
       break;
     }
-    result.depth = std::max(result.depth, -samples[k].heightOverGround);
   }
   const auto translation = [&](const Sample& s)
   { return 0.5 * block.mass() * s.velocity.squaredNorm(); };
@@ -122,6 +121,11 @@ ImpactOutcome simulateImpact(
   result.rateAfter = end.angularVelocity.norm();
   result.velocityAfter = end.velocity;
   result.duration = end.time - before.time;
+  if (!t.impacts.empty())
+  {
+    result.scarDepth = t.impacts.front().scarDepth;
+    result.scarLength = t.impacts.front().scarLength;
+  }
   result.way = (end.position - before.position).head<2>().norm();
   return result;
 }

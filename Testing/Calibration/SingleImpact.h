@@ -27,7 +27,8 @@ struct ImpactOutcome
   Vec3 velocityAfter = Vec3::Zero(); ///< m/s
   double duration = 0.0;             ///< From the touch to the take-off, s.
   double way = 0.0;                  ///< Horizontal, of the centroid, in that time, m.
-  double depth = 0.0;                ///< Least height of a vertex over the slope, downward, m.
+  double scarDepth = 0.0;            ///< Of the first impact, m.
+  double scarLength = 0.0;           ///< m
 };
 
 /// A rock on its parabola before a place at which it would have a velocity: as far back as is

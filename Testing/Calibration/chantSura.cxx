@@ -233,7 +233,7 @@ int run(int count, char** words)
         rates.push_back(o.rateAfter);
         durations.push_back(o.duration);
         ways.push_back(o.way);
-        depths.push_back(o.depth);
+        depths.push_back(o.scarDepth);
         flies += o.tookOff;
       }
     }
