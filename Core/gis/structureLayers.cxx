@@ -213,6 +213,7 @@ public:
       return 0;
     }
     SurfaceMaterial m = base_;
+    m.yielding = {}; // built ground of its own is hard
     m.restitution = rv.value_or(m.restitution);
     m.tangentialRestitution = rt.value_or(m.tangentialRestitution);
     m.frictionAngle = phi ? radians(*phi) : m.frictionAngle;

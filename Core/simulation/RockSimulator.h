@@ -143,7 +143,7 @@ private:
   void pressOut(double h);
 
   // Ground that gives way, groundYields.cxx
-  const YieldingGround& yieldingAt(std::int64_t cfe) const;
+  const YieldingGround& yieldingAt(const Contact& contact) const; ///< Hard on trees.
   /// Λ sinks under what comes down within a step of `h` (s), or rises with the rock. Whether it
   /// did: contacts and candidates are then out of date.
   bool followScar(double h);

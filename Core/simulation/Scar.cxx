@@ -69,7 +69,7 @@ double Scar::sweep(const PlacedBlock& from, const PlacedBlock& to)
   {
     return 0.0;
   }
-  const double start = submergedArea(from, surface_, way / s);
+  const double start = area_ >= 0.0 ? area_ : submergedArea(from, surface_, way / s);
   const double end = submergedArea(to, surface_, way / s);
   return this->book(0.5 * (start + end) * s, way, end);
 }
@@ -97,6 +97,12 @@ double Scar::sweep(const std::function<const PlacedBlock&(double)>& at)
     return 0.0;
   }
   const std::vector<double> after = heightsOf(last);
+  const auto isOut = [](double height) { return height >= 0.0; };
+  if (std::all_of(before.begin(), before.end(), isOut) &&
+    std::all_of(after.begin(), after.end(), isOut))
+  {
+    return this->book(0.0, way, 0.0);
+  }
   std::vector<double> breaks = { 0.0, 1.0 };
   for (std::size_t v = 0; v < before.size(); ++v)
   {
@@ -115,7 +121,7 @@ double Scar::sweep(const std::function<const PlacedBlock&(double)>& at)
     }
   }
   const Vec3 direction = way / s;
-  double volume = 0.0, area = submergedArea(at(0.0), surface_, direction), end = area;
+  double volume = 0.0, end = 0.0;
   for (std::size_t k = 1; k < breaks.size(); ++k)
   {
     const double length = breaks[k] - breaks[k - 1];

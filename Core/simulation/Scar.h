@@ -42,7 +42,8 @@ public:
   void rise(double by);
   /// Where the rock is on Λ now; its plane follows the ground.
   void touch(const Contact& contact);
-  /// Follows a short motion from one pose to another: returns the volume swept, m³.
+  /// Follows a short motion from one pose to another, by the areas at its ends: returns the volume
+  /// swept, m³. Begins with the area that the last motion ended with.
   double sweep(const PlacedBlock& from, const PlacedBlock& to);
   /// The same of a long one: exact without rotation, as between the places where a corner passes
   /// the surface the area is quadratic. `at`: the pose at a fraction of the motion, 0 … 1.

@@ -232,9 +232,9 @@ void RockSimulator::armContact(Contact& c)
 {
   c.friction = surface_.frictionAt(c.cfe);
   c.cohesion = surface_.cohesionAt(c.cfe);
-  if (yields_ && this->yieldingAt(c.cfe).slips())
+  if (yields_ && this->yieldingAt(c).slips())
   {
-    c.friction = this->yieldingAt(c.cfe).frictionAfter(slip_);
+    c.friction = this->yieldingAt(c).frictionAfter(slip_);
   }
   if (c.closed())
   {

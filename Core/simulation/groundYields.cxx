@@ -18,7 +18,7 @@ namespace
 constexpr double kDeeper = 0.1;
 constexpr double kShallow = 0.01;
 /// Λ rises if this share of its depth is gained.
-constexpr double kHigher = 0.1;
+constexpr double kHigher = 0.3;
 /// Steeper ground than this (vertical part of its normal) has no scars: walls, trees.
 constexpr double kSteepest = 0.3;
 /// Share of the radius that Λ stays away from a rock that it rises under.
@@ -30,8 +30,14 @@ constexpr double kShortest = 1e-6;
 
 } // namespace
 
-const YieldingGround& RockSimulator::yieldingAt(std::int64_t cfe) const
+const YieldingGround& RockSimulator::yieldingAt(const Contact& contact) const
 {
+  static const YieldingGround hard;
+  const std::int64_t cfe = contact.cfe;
+  if (solid_ && this->treeOf(contact) >= 0)
+  {
+    return hard;
+  }
   return surface_.terrain().restitutionMaterial(surface_.restitutionClass(cfe)).yielding;
 }
 
@@ -55,7 +61,7 @@ bool RockSimulator::sinkUnder(double h)
     {
       continue;
     }
-    const double depth = this->yieldingAt(c.cfe).scarDepth(block_.mass(), approach / c.normal.z());
+    const double depth = this->yieldingAt(c).scarDepth(block_.mass(), approach / c.normal.z());
     if (depth > deepest)
     {
       deepest = depth;
@@ -227,7 +233,7 @@ void RockSimulator::yieldInStep(double h)
   }
   if (most)
   {
-    const double rolling = this->yieldingAt(most->cfe).rollingResistance;
+    const double rolling = this->yieldingAt(*most).rollingResistance;
     if (rolling > 0.0)
     {
       energy_.rolling += resistRolling(block_, contacts_, rolling, h, state_);

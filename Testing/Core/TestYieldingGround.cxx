@@ -217,10 +217,10 @@ TEST(YieldingGround, EveryImpactTellsItsScar)
   EXPECT_EQ(t.summary.fate, Fate::Rested);
 }
 
-// Azzoni, La Barbera & Zaninetti (1995): v² = v₀² + 2 A g cosθ (tanθ − μ_r) d, A = 1/(1 + k²/R²).
-TEST(YieldingGround, RollsToRestAtAzzonisDistance)
+// No creep: what has bounced its last is at rest within seconds on slopes gentler than μ_r.
+// Azzoni's distance, with a finer ball: Testing/Verification/VerifyRolling.cxx.
+TEST(YieldingGround, ComesToRestOnGentleSlopes)
 {
-  // Bars and their reasons: Testing/Verification/VerifyRolling.cxx has the finer ball.
   Rock rock;
   rock.shape = makeShape(Shape::Eota111, 1.0);
   for (const double slope : { 10.0, 15.0 })

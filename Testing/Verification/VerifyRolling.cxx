@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 using namespace rockfall;
 using namespace rockfall::verification;
@@ -327,5 +328,35 @@ TEST(Rolling, ObliqueImpactSticksOrSlides)
     recordAtMost({ subject, head + "sticking: velocity of the contact afterwards, share of v_t", "",
                    "zero: it sticks; 3.5 times the error of v_t', of which 1 % is allowed" },
       rest, 0.035);
+  }
+}
+
+// Azzoni, La Barbera & Zaninetti (1995): v² = v₀² + 2 A g cosθ (tanθ − μ_r) d, A = 1/(1 + k²/R²).
+// On hard ground, so slow that setting down faces takes next to nothing.
+TEST(Rolling, StopsAtAzzonisDistance)
+{
+  const double speed = 1.0, resistance = 0.4;
+  for (const double degrees : { 0.0, 8.0, 15.0 })
+  {
+    const double angle = radians(degrees);
+    Ball ball = makeRollingBall(4);
+    layOn(ball.rock, angle);
+    const Vec3 down(std::cos(angle), 0.0, -std::sin(angle));
+    ball.rock.velocity = speed * down;
+    ball.rock.angularVelocity = Vec3(0.0, speed / ball.radius, 0.0);
+    SurfaceMaterial ground = surface(0.8, 60.0);
+    ground.yielding.rollingResistance = resistance;
+    SimulationParameters p;
+    p.endTime = 10.0;
+    const Trajectory t =
+      rockfall::testing::simulate(makePlane(2, kSize, angle, 0.0, ground), ball.rock, p);
+    // The moment's arm is the radius of the sphere of equal volume.
+    const double arm = std::cbrt(0.75 * t.summary.volume / std::numbers::pi) / ball.radius;
+    const double exact = speed * speed * (1.0 + ball.ratio) /
+      (2.0 * kGravity * std::cos(angle) * (resistance * arm - std::tan(angle)));
+    record({ "Rolling", "5120 faces, " + text(degrees) + "°, μ_r 0.4, from 1 m/s: distance to rest",
+             "m", "Azzoni et al. (1995); what setting down faces takes is within the bar" },
+      (t.summary.stop - t.summary.start).dot(down), exact, 0.02 * exact);
+    EXPECT_EQ(t.summary.fate, Fate::Rested);
   }
 }
