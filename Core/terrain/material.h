@@ -43,7 +43,7 @@ struct SurfaceMaterial
   double frictionAngle = radians(15.0); ///< φ, rad, 0° … 89°.
   double frictionAngleDeviation = 0.0;  ///< Standard deviation of φ, rad, 0° … 89°.
   double cohesion = 0.0;                ///< c, N per contact point, ≥ 0.
-  YieldingGround yielding; ///< Hard as by default. Goes with the restitution, by class.
+  YieldingGround yielding = {}; ///< Hard as by default. Goes with the restitution, by class.
 
   void validate() const; ///< Throws ParameterError naming field and value.
 };

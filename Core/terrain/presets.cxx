@@ -20,26 +20,69 @@ constexpr const char* hoek = "Hoek (1987)";
 /// 1–54; checked as reprinted in Mechanics of Asphalt: Microstructure and Micromechanics,
 /// table 2.5.
 constexpr const char* barton = "Barton & Choubey (1977)";
-/// Loose angular rock rests at 35° to 39°: M.A. Carson (1977), Angles of repose, angles of shearing
-/// resistance and angles of talus slopes, Earth Surface Processes 2, 363–380. From memory, not
-/// checked; works of reference give talus 30° to 40°, coarse scree 32° to 36°.
-constexpr const char* carson = "Carson (1977)";
 /// No published value for rocks on such ground was found.
 constexpr const char* assumed = "assumed";
 
-/// The deviation of Rn is that of a uniform spread of ±10 % of it: Rn · 0.1/√3, at three decimals.
-/// This and the deviations of φ are choices, not published values.
+/// G. Lu, A. Caviezel, M. Christen, Y. Bühler & P. Bartelt (2019), Landslides 16, 2353: an alpine
+/// meadow, M_E 10 to 25 MN/m², C_s 0.1 to 4, friction 0.55 to 2. Rolling resistance: chosen on
+/// single impacts and run-outs of docs/validation.md.
+constexpr const char* lu = "Lu et al. (2019)";
+
+/// Slip-dependent friction and drag of Lu et al. (2019).
+constexpr YieldingGround yields(double modulus, double rollingResistance)
+{
+  YieldingGround ground;
+  ground.modulus = modulus;
+  ground.depthFactor = 0.125; // the scars that they computed are deeper than their equation
+  ground.compaction = 1.5;
+  ground.frictionLeast = 0.55;
+  ground.frictionMost = 2.0;
+  ground.frictionGrowth = 3.0;
+  ground.frictionDecay = 185.0;
+  ground.rollingResistance = rollingResistance;
+  return ground;
+}
+
+/// Hard ground on which rocks do not roll on for ever.
+constexpr YieldingGround holds(double rollingResistance)
+{
+  YieldingGround ground;
+  ground.rollingResistance = rollingResistance;
+  return ground;
+}
+
+using enum PresetSupport;
+
+/// The deviations of φ are choices, and those of Hoek's Rn those of a uniform spread of ±10 %.
 constexpr GroundPreset presets[] = {
-  { "rock", 0.53, 0.99, 0.031, 30.0, 2.5, hoek, barton },
-  { "asphalt", 0.40, 0.90, 0.023, 33.0, 2.5, hoek, assumed },
-  { "bedrock with boulders", 0.35, 0.85, 0.020, 35.0, 2.5, hoek, assumed },
-  { "talus", 0.32, 0.82, 0.018, 37.0, 2.0, hoek, carson },
-  { "talus with vegetation", 0.32, 0.80, 0.018, 37.0, 2.0, hoek, carson },
-  { "soil", 0.30, 0.80, 0.017, 30.0, 3.0, hoek, assumed },
-  { "meadow", 0.30, 0.80, 0.017, 30.0, 3.0, "assumed, as soil", assumed },
+  { "rock", "Rock", 0.53, 0.99, 0.031, 30.0, 2.5, holds(0.1), Memory, hoek, barton, assumed },
+  { "asphalt", "Asphalt", 0.40, 0.90, 0.023, 33.0, 2.5, holds(0.05), Memory, hoek, assumed,
+    assumed },
+  { "bedrock with boulders", "Bedrock with boulders", 0.35, 0.85, 0.020, 35.0, 2.5, holds(0.15),
+    Memory, hoek, assumed, assumed },
+  { "talus", "Talus", 0.35, 1.0, 0.15, 37.0, 2.0, yields(25e6, 0.2), Assumption, assumed, lu, lu },
+  { "talus with vegetation", "Talus with vegetation", 0.35, 1.0, 0.15, 37.0, 2.0, yields(20e6, 0.2),
+    Assumption, assumed, lu, lu },
+  { "soil", "Soil", 0.3, 1.0, 0.15, 30.0, 3.0, yields(10e6, 0.25), Assumption, assumed, lu, lu },
+  { "meadow", "Meadow", 0.4, 1.0, 0.2, 30.0, 3.0, yields(15e6, 0.2), FieldData,
+    "docs/validation.md", lu, lu },
 };
 
 } // namespace
+
+const char* supportName(PresetSupport support)
+{
+  switch (support)
+  {
+    case FieldData:
+      return "field data";
+    case Assumption:
+      return "assumed";
+    case Memory:
+      return "from memory";
+  }
+  return "";
+}
 
 SurfaceMaterial GroundPreset::material() const
 {
@@ -50,6 +93,7 @@ SurfaceMaterial GroundPreset::material() const
   material.restitutionDeviation = this->restitutionDeviation;
   material.frictionAngle = radians(this->frictionAngleDegrees);
   material.frictionAngleDeviation = radians(this->frictionDeviationDegrees);
+  material.yielding = this->yielding;
   return material;
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// Common kinds of ground with coefficients quoted from publications. Which of them were checked
-/// stands in docs/DEMtoCFEMesh.md, Presets.
+/// Common kinds of ground, each with every parameter of the law and what supports it. The same with
+/// all sources: docs/DEMtoCFEMesh.md, Presets.
 
 #include "terrain/material.h"
 
@@ -12,18 +12,31 @@
 namespace rockfall
 {
 
-/// A kind of ground. The restitution is normal and tangential; what it has of a
-/// `SurfaceMaterial` else is as by default.
+/// What the numbers of a preset rest on.
+enum class PresetSupport
+{
+  FieldData,  ///< Held against field data that did not choose them (docs/validation.md).
+  Assumption, ///< Chosen here, between kinds that are supported.
+  Memory,     ///< Quoted from publications that were not at hand.
+};
+/// As panels say it: "field data", "assumed", "from memory".
+const char* supportName(PresetSupport support);
+
+/// A kind of ground.
 struct GroundPreset
 {
   const char* name;                ///< Lower case, as in tables.
+  const char* label;               ///< As in the panel, without its support.
   double normalRestitution;        ///< Rn
-  double tangentialRestitution;    ///< Rt
+  double tangentialRestitution;    ///< Rt; 1 where slip-dependent friction acts.
   double restitutionDeviation;     ///< Of Rn.
-  double frictionAngleDegrees;     ///< φ
+  double frictionAngleDegrees;     ///< φ; without effect where slip-dependent friction acts.
   double frictionDeviationDegrees; ///< Of φ.
+  YieldingGround yielding;
+  PresetSupport support; ///< Of the weakest of its numbers that matter.
   const char* restitutionSource;
   const char* frictionSource;
+  const char* yieldingSource;
 
   SurfaceMaterial material() const;
 };

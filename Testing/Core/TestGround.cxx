@@ -268,7 +268,15 @@ TEST(Ground, Presets)
   for (const GroundPreset& preset : groundPresets())
   {
     EXPECT_NO_THROW(preset.material().validate()) << preset.name;
-    EXPECT_NE(std::string(preset.restitutionSource), "");
+    for (const char* source :
+      { preset.restitutionSource, preset.frictionSource, preset.yieldingSource })
+    {
+      EXPECT_NE(std::string(source), "") << preset.name;
+    }
+    // Friction by slip takes what Rt stands for.
+    const SurfaceMaterial m = preset.material();
+    EXPECT_TRUE(!m.yielding.slips() || m.tangentialRestitution == 1.0) << preset.name;
+    EXPECT_GT(m.yielding.rollingResistance, 0.0) << preset.name << " would let rocks creep";
     EXPECT_EQ(&groundPreset(preset.name), &preset);
   }
   EXPECT_TRUE(holds(messageOf<DataError>([] { groundPreset("cheese"); }),

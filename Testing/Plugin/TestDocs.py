@@ -176,6 +176,12 @@ for path in sorted(glob.glob(os.path.join(DOCS, "*.md"))):
         expect(os.path.exists(os.path.join(DOCS, target)),
                f"{os.path.basename(path)} links to {target}, which is not there")
 
+# The panel says of each preset what supports it, as the page does.
+presets = [f"{row[0]} ({row[1]})" for row in rows_of(read(os.path.join(DOCS, "DEMtoCFEMesh.md")), "Preset", "Support")]
+labels = [entry.get("text") for entry in
+          proxies["DEMToCFEMesh"].iterfind("IntVectorProperty[@name='Preset']/EnumerationDomain/Entry")][1:]
+expect(presets == labels, f"DEMtoCFEMesh.md has the presets {presets}, the panel {labels}")
+
 if failures:
     raise SystemExit("\n".join(failures))
 print("the pages say what there is")
