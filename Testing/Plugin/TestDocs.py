@@ -176,6 +176,14 @@ for path in sorted(glob.glob(os.path.join(DOCS, "*.md"))):
         expect(os.path.exists(os.path.join(DOCS, target)),
                f"{os.path.basename(path)} links to {target}, which is not there")
 
+# What the code cites as METHOD n or n.m is a section of the page, or a numbered line of it.
+sections = dict(re.findall(r"^## (\d+)\. [^\n]*\n(.*?)(?=^## |\Z)", read(os.path.join(DOCS, "method.md")),
+                           re.MULTILINE | re.DOTALL))
+for path in glob.glob(os.path.join(ROOT, "Core", "*", "*.[hc]*")):
+    for section, line in re.findall(r"METHOD (\d+)(?:\.(\d+))?", read(path)):
+        expect(section in sections and (not line or re.search(rf"^(\| )?{line}[.]? ", sections[section], re.MULTILINE)),
+               f"{path} cites METHOD {section}{'.' + line if line else ''}, which docs/method.md does not have")
+
 # The panel says of each preset what supports it, as the page does.
 presets = [f"{row[0]} ({row[1]})" for row in rows_of(read(os.path.join(DOCS, "DEMtoCFEMesh.md")), "Preset", "Support")]
 labels = [entry.get("text") for entry in
