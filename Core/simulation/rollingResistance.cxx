@@ -44,6 +44,12 @@ double energyOf(const Block& block, const Vec3& velocity, const Vec3& spin)
 
 } // namespace
 
+double rollingArm(const Block& block)
+{
+  const double round = block.shape().layout().inside / block.radius();
+  return round * std::cbrt(0.75 * block.volume() / std::numbers::pi);
+}
+
 double resistRolling(const Block& block, const std::vector<Contact>& contacts, double coefficient,
   double h, BlockState& state)
 {
@@ -52,8 +58,7 @@ double resistRolling(const Block& block, const std::vector<Contact>& contacts, d
   {
     return 0.0;
   }
-  const double radius = std::cbrt(0.75 * block.volume() / std::numbers::pi);
-  const double impulse = coefficient * radius * support.force * h; // N m s
+  const double impulse = coefficient * rollingArm(block) * support.force * h; // N m s
   const double before = energyOf(block, state.velocity, state.spin);
   const Vec3 turning = block.inertia() * state.spin; // body axes
   const Vec3 lever = state.orientation.conjugate() * (state.position - support.point);

@@ -12,6 +12,11 @@
 namespace rockfall
 {
 
+/// R, m: the radius of the sphere of equal volume, by how round the block is (its inscribed radius
+/// over its circumscribed one). What is not round sets down faces instead, which takes a part of
+/// its own.
+double rollingArm(const Block& block);
+
 /// Takes the moment's impulse of a step of `h` (s) from the motion and returns the energy that it
 /// took, J, ≥ 0. `coefficient`: μ_r. The contacts bring the mean normal forces of the step.
 ///

@@ -18,8 +18,9 @@
 /// 32, 241, doi:10.1007/s11044-013-9393-4. μ(s) = μ_min + (2/π)(μ_max − μ_min) arctan(κ s), with
 /// ds/dt = |v| while the rock touches and −β s while it does not.
 ///
-/// Rolling resistance: |M_r| ≤ μ_r R λ against the rotation, R the radius of the sphere of equal
-/// volume, λ the normal force (Azzoni, La Barbera & Zaninetti 1995).
+/// Rolling resistance: |M_r| ≤ μ_r R λ against the rotation, λ the normal force (Azzoni, La Barbera
+/// & Zaninetti 1995). R is the radius of the sphere of equal volume, times inscribed over
+/// circumscribed radius: the less round a rock, the more setting down its faces takes already.
 
 #include <limits>
 #include <span>

@@ -8,11 +8,11 @@
 #include "verification.h"
 
 #include "block/Block.h"
+#include "simulation/rollingResistance.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 using namespace rockfall;
 using namespace rockfall::verification;
@@ -350,8 +350,8 @@ TEST(Rolling, StopsAtAzzonisDistance)
     p.endTime = 10.0;
     const Trajectory t =
       rockfall::testing::simulate(makePlane(2, kSize, angle, 0.0, ground), ball.rock, p);
-    // The moment's arm is the radius of the sphere of equal volume.
-    const double arm = std::cbrt(0.75 * t.summary.volume / std::numbers::pi) / ball.radius;
+    const Block block(ball.rock.shape, ball.rock.density, 1e10, 0.1);
+    const double arm = rollingArm(block) / ball.radius;
     const double exact = speed * speed * (1.0 + ball.ratio) /
       (2.0 * kGravity * std::cos(angle) * (resistance * arm - std::tan(angle)));
     record({ "Rolling", "5120 faces, " + text(degrees) + "°, μ_r 0.4, from 1 m/s: distance to rest",
