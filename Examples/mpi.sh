@@ -13,7 +13,7 @@ script=$2
 shift 2
 [ -f "$script" ] || fail "there is no script $script"
 
-setup
+setup plugin
 # Open MPI asks for this where everything is root's, as in a container.
 [ "$(id -u)" -ne 0 ] || export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 

@@ -15,7 +15,7 @@ if [ ! -f "$script" ]; then
   script=$rockfall_root/Examples/$script
 fi
 
-setup
+setup plugin
 
 # Rendering needs an X server; without -noreset a fresh one may vanish between two clients.
 exec xvfb-run -a -s "-screen 0 1400x1000x24 -noreset" pvbatch "$script" "$@" </dev/null

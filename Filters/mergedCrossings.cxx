@@ -31,7 +31,8 @@ std::string numbered(std::size_t input)
   return "The Input's part " + std::to_string(input + 1);
 }
 
-vtkDataArray* numbers(vtkFieldData* data, const char* name, int components, std::size_t input)
+vtkDataArray* crossingNumbers(
+  vtkFieldData* data, const char* name, int components, std::size_t input)
 {
   vtkDataArray* array = data->GetArray(name);
   if (!array || array->GetNumberOfComponents() != components)
@@ -46,7 +47,7 @@ vtkDataArray* numbers(vtkFieldData* data, const char* name, int components, std:
 std::vector<CollectorLine> linesOf(vtkFieldData* field, std::size_t input)
 {
   auto* names = vtkStringArray::SafeDownCast(field->GetAbstractArray("CollectorLineName"));
-  vtkDataArray* barriers = numbers(field, "CollectorBarrier", 2, input);
+  vtkDataArray* barriers = crossingNumbers(field, "CollectorBarrier", 2, input);
   if (!names || names->GetNumberOfValues() != barriers->GetNumberOfTuples())
   {
     throw DataError(numbered(input) +
@@ -91,10 +92,11 @@ void appendPlaces(
   vtkPolyData* data, std::size_t input, std::size_t lines, std::vector<Place>& places)
 {
   vtkFieldData* fields = data->GetPointData();
-  const auto one = [&](const char* name) { return numbers(fields, name, 1, input); };
+  const auto one = [&](const char* name) { return crossingNumbers(fields, name, 1, input); };
   vtkDataArray *line = one("Line"), *iteration = one("Iteration"), *rock = one("RockId"),
                *number = one("Passing"), *energy = one("KineticEnergy"),
-               *height = one("HeightOverGround"), *velocity = numbers(fields, "Velocity", 3, input);
+               *height = one("HeightOverGround"),
+               *velocity = crossingNumbers(fields, "Velocity", 3, input);
   for (vtkIdType id = 0; id < data->GetNumberOfPoints(); ++id)
   {
     Place& place = places.emplace_back();
@@ -171,7 +173,7 @@ MergedCrossings mergeCrossings(std::span<vtkPolyData* const> inputs, vtkPolyData
     {
       throw DataError(numbered(k) + " has another CRS than the first");
     }
-    vtkDataArray* released = numbers(field, "CollectorRocks", 2, k);
+    vtkDataArray* released = crossingNumbers(field, "CollectorRocks", 2, k);
     for (vtkIdType i = 0; i < released->GetNumberOfTuples(); ++i)
     {
       rocks.push_back({ int(released->GetComponent(i, 0)), int(released->GetComponent(i, 1)) });

@@ -4,5 +4,5 @@
 #   bash Testing/run.sh [ctest arguments]
 source "$(dirname -- "${BASH_SOURCE[0]}")/setup.sh"
 
-setup
+setup all
 exec ctest --test-dir "$rockfall_build" --output-on-failure --parallel "$(nproc)" "$@" </dev/null

@@ -12,9 +12,9 @@ rockfall_packages=(
   g++ cmake ninja-build
   paraview paraview-dev python3-paraview libopenmpi-dev libdouble-conversion-dev
   libeigen3-dev libgdal-dev gdal-bin libtbb-dev librandom123-dev libqhull-dev libboost-dev
-  libgtest-dev libbenchmark-dev
   xvfb xauth locales python3-matplotlib python-matplotlib-data
   libqt5svg5) # without it ParaView's window has no icons: no eyes, no Play
+rockfall_test_packages=(libgtest-dev)
 
 fail() {
   echo "RockfallDDA: $*" >&2
@@ -69,9 +69,13 @@ cached() {
   sed -n "s/^$1:[A-Z]*=//p" "$rockfall_build/CMakeCache.txt" 2>/dev/null || true
 }
 
-# Configures (with ROCKFALL_CMAKE_ARGS, if any) and builds.
-build_all() {
-  local fresh=()
+# configure_and_build plugin|all: configures (with ROCKFALL_CMAKE_ARGS, if any) and builds the plugin
+# alone, or all that is tested too. A folder that has been configured for the tests stays so.
+configure_and_build() {
+  local fresh=() testing=OFF
+  if [ "$1" = all ] || [ "$(cached ROCKFALL_TESTING)" = ON ]; then
+    testing=ON
+  fi
   if [ -n "$(cached CMAKE_HOME_DIRECTORY)" ] &&
     [ "$(cached CMAKE_HOME_DIRECTORY)" != "$rockfall_root" ]; then
     fresh=(--fresh) # the folder was moved or copied
@@ -80,19 +84,24 @@ build_all() {
   local arguments=(${ROCKFALL_CMAKE_ARGS:-})
   if [ ! -f "$rockfall_build/build.ninja" ] || [ ${#fresh[@]} -gt 0 ] ||
     [ ${#arguments[@]} -gt 0 ] || [ "$(cached ROCKFALL_PLUGIN)" != ON ] ||
-    [ "$(cached ROCKFALL_TESTING)" != ON ]; then
+    [ "$(cached ROCKFALL_TESTING)" != "$testing" ]; then
     echo "Configuring in $rockfall_build"
     logged cmake -S "$rockfall_root" -B "$rockfall_build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
-      -DROCKFALL_PLUGIN=ON -DROCKFALL_TESTING=ON "${fresh[@]}" "${arguments[@]}" ||
+      -DROCKFALL_PLUGIN=ON -DROCKFALL_TESTING=$testing -DROCKFALL_BENCHMARKS=OFF \
+      "${fresh[@]}" "${arguments[@]}" ||
       fail "configuring failed; all of it is in $rockfall_log"
   fi
   echo "Building"
-  build || fail "the build failed; all of it is in $rockfall_log"
+  build "$1" || fail "the build failed; all of it is in $rockfall_log"
 }
 
-# Builds, says at every tenth how far it is, and shows the end of the log if it fails.
+# build plugin|all: builds, says at every tenth how far it is, and shows the end of the log if it
+# fails.
 build() {
-  NINJA_STATUS='[%p] ' cmake --build "$rockfall_build" --parallel "$(nproc)" 2>&1 </dev/null |
+  local target=all
+  [ "$1" = all ] || target=RockfallDDA
+  NINJA_STATUS='[%p] ' cmake --build "$rockfall_build" --target $target --parallel "$(nproc)" \
+    2>&1 </dev/null |
     tee -- "$rockfall_log" |
     awk '/^\[ *[0-9]+%\]/ {
       tenth = int(substr($0, 2) / 10)
@@ -100,10 +109,12 @@ build() {
     }' || { tail -n 40 -- "$rockfall_log" >&2; return 1; }
 }
 
-# Packages and build, and where ParaView finds the plugin.
+# setup plugin|all: packages and build, and where ParaView finds the plugin.
 setup() {
-  install_packages "${rockfall_packages[@]}"
-  build_all
+  local packages=("${rockfall_packages[@]}")
+  [ "$1" = plugin ] || packages+=("${rockfall_test_packages[@]}")
+  install_packages "${packages[@]}"
+  configure_and_build "$1"
   local plugin
   plugin=$(find "$rockfall_build/lib" -name RockfallDDA.so -print -quit)
   [ -n "$plugin" ] || fail "the build made no RockfallDDA.so in $rockfall_build/lib"

@@ -46,11 +46,11 @@ struct CellRange
 };
 
 /// A box with sides along the axes.
-struct Box
+struct RockBox
 {
   Vec3 lower, upper;
 
-  explicit Box(const PairBody& body)
+  explicit RockBox(const PairBody& body)
   {
     lower = upper = body.vertex(0);
     for (int v = 1; v < body.vertices(); ++v)
@@ -60,7 +60,7 @@ struct Box
       upper = upper.cwiseMax(p);
     }
   }
-  Box(const Box& of, double distance)
+  RockBox(const RockBox& of, double distance)
     : lower(of.lower.array() - distance)
     , upper(of.upper.array() + distance)
   {
@@ -144,13 +144,13 @@ void gatherNow(const PlacedBlock& rock, const PairBody& body, const SurfacePatch
   const double inverse = 1.0 / patch.cellSize;
   const double deepest = 1.01 * 0.1 * rock.block().radius(); // what is deeper is no entrance
   const int cellColumns = patch.nodeColumns - 1;
-  const Box box(body);
+  const RockBox box(body);
   // What may close along the normal of each triangle.
   thread_local std::vector<double> reaches;
   reaches.resize(patch.triangles.size());
   double* const reachOf = reaches.data();
   double most = 0.0;
-  const CellRange around = Box(box, kBeyondCorner * reach.most).cells(patch, inverse);
+  const CellRange around = RockBox(box, kBeyondCorner * reach.most).cells(patch, inverse);
   for (int row = around.row0; row <= around.row1; ++row)
   {
     const int end = 2 * (row * cellColumns + around.column1 + 1);
@@ -196,7 +196,7 @@ void gatherNow(const PlacedBlock& rock, const PairBody& body, const SurfacePatch
     }
   }
   sortByTriangle(candidates.vertexFace);
-  const Box nearNodes(box, most), nearRidges(box, kOfBothSides * most);
+  const RockBox nearNodes(box, most), nearRidges(box, kOfBothSides * most);
   const CellRange cells = nearRidges.cells(patch, inverse);
   for (int row = cells.row0; row <= cells.row1 + 1; ++row)
   {
@@ -302,7 +302,7 @@ void gatherUnder(const PlacedBlock& rock, const PairBody& body, const SurfacePat
     }
   }
   sortByTriangle(candidates.vertexFace);
-  const Box box(body);
+  const RockBox box(body);
   const CellRange cells = box.cells(patch, inverse);
   for (int row = cells.row0; row <= cells.row1 + 1; ++row)
   {

@@ -167,7 +167,7 @@ double released(const Contact& c)
 }
 
 /// What was in springs that are gone goes into those that are new, or else into those that stay.
-void handOver(std::span<const char> taken, std::span<const Match> matches,
+void handOverAll(std::span<const char> taken, std::span<const Match> matches,
   std::span<const Contact> before, std::span<Contact> now)
 {
   double energy = 0.0;
@@ -345,7 +345,7 @@ void updatePair(const PairBody& first, const PairBody& second, double reach, Roc
   pair.contacts.resize(std::size_t(to - pair.contacts.data()));
   if (hands)
   {
-    handOver({ taken, olds }, { matches, touches }, copies, pair.contacts);
+    handOverAll({ taken, olds }, { matches, touches }, copies, pair.contacts);
     if (all)
     {
       std::erase_if(pair.contacts, [&](const Contact& c) { return !mayClose(c, *all); });

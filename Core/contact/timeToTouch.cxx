@@ -16,10 +16,10 @@ namespace
 /// c = a·w − w_z + s |w|, c₂ ≥ 0 likewise with its acceleration, and j from the largest third
 /// derivative of a turning body. Between two places of the rock's surface over one CFE the gap is
 /// linear and these rates are convex: the places where either has a corner are enough.
-class Touch
+class FirstTouch
 {
 public:
-  Touch(const PlacedBlock& rock, const BlockState& state, const HeightWindow& window,
+  FirstTouch(const PlacedBlock& rock, const BlockState& state, const HeightWindow& window,
     double gravity, double horizon)
     : position_(rock.position())
     , velocity_(state.velocity)
@@ -154,7 +154,7 @@ double timeToNear(const BlockState& state, double radius, const HeightWindow& wi
 double timeToTouch(const PlacedBlock& rock, const BlockState& state, const HeightWindow& window,
   double gravity, double horizon)
 {
-  Touch touch(rock, state, window, gravity, horizon);
+  FirstTouch touch(rock, state, window, gravity, horizon);
   const auto over = [&](const Vec3& p) { touch.visit(p, p.z() - window.elevation(p.x(), p.y())); };
   // Height over the plane that no node is above: a gap is at least that.
   const auto room = [&](const Vec3& p)

@@ -21,7 +21,7 @@ namespace
 {
 
 /// A header is not longer than this, whatever the file says.
-constexpr int mostLines = 100'000;
+constexpr int mostHeaderLines = 100'000;
 constexpr int longestLine = 100'000; // bytes
 
 /// Calls `use` for each line until it returns false or the file ends.
@@ -29,7 +29,7 @@ void forEachLine(const std::string& fileName, const std::function<bool(const std
 {
   const std::unique_ptr<VSILFILE, int (*)(VSILFILE*)> file(
     VSIFOpenL(fileName.c_str(), "rb"), VSIFCloseL);
-  for (int i = 0; file && i < mostLines; ++i)
+  for (int i = 0; file && i < mostHeaderLines; ++i)
   {
     const char* line = CPLReadLine2L(file.get(), longestLine, nullptr);
     if (!line || !use(line))

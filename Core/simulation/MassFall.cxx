@@ -2,6 +2,7 @@
 
 #include "base/parallel.h"
 #include "contact/motion.h"
+#include "simulation/contactConstants.h"
 #include "simulation/massFallMeet.h"
 #include "simulation/raising.h"
 
@@ -16,13 +17,11 @@ namespace rockfall
 namespace
 {
 
-/// A group sleeps when for this long, s, each of its rocks has gone no further than it would at a
-/// speed of this share of √(g r). Not the speeds decide: in a pile that lies some rock always
-/// trembles, by less than its springs are compressed.
-constexpr double kStillTime = 0.5;
-constexpr double kStillSpeed = 1e-3;
-/// So it does when for this long, s, each has kept within this share of its radius: contacts are
-/// points without a moment, and a rock that is wedged between two may swing about them for ever.
+/// A group sleeps when for kStillTime each of its rocks has gone no further than it would at
+/// kStillSpeed √(g r). Not the speeds decide: in a pile that lies some rock always trembles, by
+/// less than its springs are compressed. So it does when for this long, s, each has kept within
+/// this share of its radius: contacts are points without a moment, and a rock that is wedged
+/// between two may swing about them for ever.
 constexpr double kLingerTime = 3.0;
 constexpr double kLingerWay = 0.03;
 /// Turning counts for that from this share of √(g r) on, as the speed of its rim. What turns more

@@ -1,6 +1,7 @@
 #include "simulation/RockSimulator.h"
 
 #include "block/flight.h"
+#include "simulation/contactConstants.h"
 #include "simulation/placement.h"
 #include "solver/springs.h"
 #include "terrain/walls.h"
@@ -16,19 +17,9 @@ namespace rockfall
 namespace
 {
 
-/// Steps per half period of a vertex on its penalty spring: the impact is then resolved well enough
-/// for the order in which several vertices touch, and energy does not depend on it at all.
-constexpr double kStepsPerImpact = 8.0;
 /// Of many springs a motion feels about this part of what all their frequencies, squared, add up
 /// to.
 constexpr double kOneMotion = 0.25;
-/// Largest part of the rock's radius, and largest angle (rad), covered in a step of contact.
-constexpr double kTravelPerStep = 0.1;
-/// A rock lies still when it has been slower than this share of √(g r) for this long (s).
-constexpr double kStillSpeed = 1e-3;
-constexpr double kStillTime = 0.5;
-/// A touch slower than this share of √(g r) is no impact: r is the rock's radius.
-constexpr double kRestingSpeed = 1e-2;
 /// Longest flight that is looked at at once, s.
 constexpr double kLongFlight = 1.0;
 /// Way over which heights are gathered, in radii or cells, whichever is larger.

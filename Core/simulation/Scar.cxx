@@ -12,7 +12,7 @@ namespace
 /// Ways that are none, m.
 constexpr double kNoWay = 1e-9;
 /// Corners that pass the surface so near to each other (share of the motion) pass it together.
-constexpr double kSamePlace = 1e-9;
+constexpr double kSameBreak = 1e-9;
 /// Pieces that a long motion is followed in at most, and one.
 constexpr std::size_t kMostBreaks = 13;
 
@@ -125,13 +125,13 @@ double Scar::sweep(const std::function<const PlacedBlock&(double)>& at)
   for (std::size_t k = 1; k < breaks.size(); ++k)
   {
     const double length = breaks[k] - breaks[k - 1];
-    if (length < kSamePlace && k + 1 < breaks.size())
+    if (length < kSameBreak && k + 1 < breaks.size())
     {
       continue;
     }
     // Simpson: exact for what is quadratic. Just inside of a break, where a face may dive in at
     // once.
-    const double inside = kSamePlace * length;
+    const double inside = kSameBreak * length;
     const double low = submergedArea(at(breaks[k - 1] + inside), surface_, direction);
     const double mid = submergedArea(at(0.5 * (breaks[k - 1] + breaks[k])), surface_, direction);
     end = submergedArea(at(breaks[k] - inside), surface_, direction);

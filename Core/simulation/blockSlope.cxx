@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "simulation/Recorder.h"
+#include "simulation/contactConstants.h"
 #include "solver/BlockSystem.h"
 
 #include <algorithm>
@@ -15,12 +16,8 @@ namespace rockfall
 namespace
 {
 
-// As on CFEs, see RockSimulator.
-constexpr double kStepsPerImpact = 10.0;
-constexpr double kTravelPerStep = 0.1;
-constexpr double kStillSpeed = 1e-3;
-constexpr double kStillTime = 0.5;
-constexpr double kRestingSpeed = 1e-2;
+/// Steps per half period of an impact on the springs between blocks.
+constexpr double kBlockStepsPerImpact = 10.0;
 
 class BlockSlopeSimulator
 {
@@ -87,7 +84,7 @@ double BlockSlopeSimulator::longStep() const
 double BlockSlopeSimulator::impactStep() const
 {
   const double frequency = std::sqrt(parameters_.normalPenalty * block_.largestMobility());
-  return std::min(this->longStep(), std::numbers::pi / (kStepsPerImpact * frequency));
+  return std::min(this->longStep(), std::numbers::pi / (kBlockStepsPerImpact * frequency));
 }
 
 double BlockSlopeSimulator::energy() const

@@ -2,6 +2,7 @@
 
 #include "block/flight.h"
 #include "contact/motion.h"
+#include "simulation/contactConstants.h"
 #include "simulation/impactMode.h"
 #include "simulation/pressOut.h"
 #include "simulation/pressedIn.h"
@@ -16,10 +17,6 @@ namespace rockfall
 
 namespace
 {
-
-/// Damping ratio of slip at an impact: high, so that a contact that sticks leaves without slip and
-/// not with what its shear spring gives back (rigid-body impact: no tangential restitution).
-constexpr double kShearDamping = 5.0;
 
 /// Which features of the rock carry, as a number that any change changes.
 std::uint64_t carriers(const std::vector<Contact>& contacts)

@@ -3,6 +3,7 @@
 #include "simulation/massFallWork.h"
 
 #include "contact/motion.h"
+#include "simulation/contactConstants.h"
 #include "simulation/impactMode.h"
 #include "simulation/pressedIn.h"
 
@@ -18,8 +19,7 @@ namespace
 
 /// However fast two rocks meet, their contact is stiff enough to stop them in this part of the
 /// smaller radius.
-constexpr double kDeepestImpact = 0.01;
-constexpr double kShearDamping = 5.0; // as for single rocks
+constexpr double kDeepestPairImpact = 0.01;
 
 /// Gives contacts of a pair what they are made of, along the normal and across it side by side;
 /// what only the normal decides is found once.
@@ -34,7 +34,7 @@ public:
         { &b.block(), b.rotation(), t.position, {} } } }
   {
     const double mass = 1.0 / (1.0 / a.block().mass() + 1.0 / b.block().mass());
-    const double depth = kDeepestImpact * std::min(a.block().radius(), b.block().radius());
+    const double depth = kDeepestPairImpact * std::min(a.block().radius(), b.block().radius());
     const double speed = (s.velocity - t.velocity).norm();
     const double penalty =
       std::max(parameters.normalPenalty, mass * speed * speed / (depth * depth));

@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "contact/motion.h"
+#include "simulation/contactConstants.h"
 #include "simulation/pressOut.h"
 
 #include <algorithm>
@@ -15,8 +16,6 @@ namespace rockfall
 namespace
 {
 
-/// Steps per half period of an impact, as for single rocks.
-constexpr double kStepsPerImpact = 8.0;
 /// Steps that the smallest rock of a group may ask of all in one of Δt; if it asks for more, so
 /// many times fewer rocks resolve their impacts, but a few always do.
 constexpr double kMostSteps = 100.0;

@@ -18,7 +18,7 @@ namespace
 constexpr std::size_t kLookGrain = 16;
 
 /// So many pairs ahead the cache is asked for one.
-constexpr std::size_t kAhead = 8;
+constexpr std::size_t kNearsAhead = 8;
 
 /// Largest component along the normal of a velocity in a box.
 double most(const Company& c, const Vec3& normal)
@@ -138,8 +138,8 @@ void MassFall::Meetings::look(MassFall& fall)
     std::size_t* other = others_.data() + first;
     for (std::size_t k = first; k < last; ++k)
     {
-      __builtin_prefetch(nears + std::min(k + 3 * kAhead, count - 1));
-      __builtin_prefetch(nears[std::min(k + kAhead, last - 1)].pair);
+      __builtin_prefetch(nears + std::min(k + 3 * kNearsAhead, count - 1));
+      __builtin_prefetch(nears[std::min(k + kNearsAhead, last - 1)].pair);
       Near& n = nears[k];
       const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
       const Mover &a = rocks[i], &b = rocks[j];

@@ -28,10 +28,10 @@ namespace rockfall
 namespace
 {
 
-constexpr std::size_t kRockGrain = 64;
+constexpr std::size_t kFollowGrain = 64;
 
 /// So many rocks ahead the cache is asked for what follows here, in so many lines.
-constexpr std::size_t kAhead = 4;
+constexpr std::size_t kMembersAhead = 4;
 constexpr int kLinesAsked = 5;
 
 /// Steps that a rock may go on in its ball as it moves past the others now, and what it may go
@@ -82,7 +82,7 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
     const Member& member = *fall.members_[i];
     const RockSimulator& sim = member.sim;
     const char* const ahead =
-      reinterpret_cast<const char*>(&fall.members_[std::min(i + kAhead, last)]->asleep);
+      reinterpret_cast<const char*>(&fall.members_[std::min(i + kMembersAhead, last)]->asleep);
     for (int line = 0; line < kLinesAsked; ++line)
     {
       __builtin_prefetch(ahead + 64 * line);
@@ -128,7 +128,7 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
     m.known = kWider * std::max(pace.own, m.way) + fall_;
     m.way = fars_[i] = pace.own;
   };
-  forEach(count, kRockGrain, followRock);
+  forEach(count, kFollowGrain, followRock);
   sleepers_ = 0;
   int present = 0;
   drift_.setZero();
@@ -244,7 +244,7 @@ void MassFall::Meetings::findNear(MassFall& fall)
 {
   chosen_.clear();
   forThose(
-    movers.size(), kRockGrain, answers_,
+    movers.size(), kFollowGrain, answers_,
     [&](std::size_t i)
     {
       this->share(i);

@@ -10,7 +10,7 @@ namespace
 {
 
 /// Open–close has settled when no state changes and gaps move by less than this share of their way.
-constexpr double kGapTolerance = 1e-9;
+constexpr double kBlockGapTolerance = 1e-9;
 
 } // namespace
 
@@ -213,7 +213,7 @@ SystemOutcome BlockSystem::step(
       change = std::max(change, std::abs(rows_[i].gap1 - before[i]));
       scale = std::max(scale, std::abs(rows_[i].gap1 - rows_[i].gap0));
     }
-    outcome.settled = share == 1.0 && !changed && change <= kGapTolerance * scale + 1e-15 &&
+    outcome.settled = share == 1.0 && !changed && change <= kBlockGapTolerance * scale + 1e-15 &&
       correction.segment<3>(kRotation).norm() <= 1e-10 * (1.0 + d.segment<3>(kRotation).norm());
   }
   if (!d.allFinite() || (!outcome.settled && !takeAnyway))

@@ -16,7 +16,7 @@ namespace
 {
 
 /// Rocks of a part of the group, and parts at most.
-constexpr int kPart = 56;
+constexpr int kLeastPart = 56;
 constexpr int kMostParts = 64;
 /// To so many watched contacts of a part there is an empty batch for those that close.
 constexpr std::size_t kWatchedPerSpare = 32;
@@ -81,7 +81,7 @@ void CrowdSolver::lineUp(const std::vector<GroupBody>& bodies)
   // Narrower than two rocks that touch, and contacts would reach further than to the next part.
   const double width = 2.0 * radii / double(work_.size());
   const double most = std::min(double(kMostParts), length / width);
-  parts_ = std::clamp(int(work_.size()) / kPart, 1, std::max(1, int(most)));
+  parts_ = std::clamp(int(work_.size()) / kLeastPart, 1, std::max(1, int(most)));
   parts_ -= parts_ > 4 ? parts_ % 4 : 0; // two threads get the same number of every second part
   // Nearly in order they are from the last step, mostly.
   const bool lined = line_.size() == work_.size();

@@ -16,8 +16,6 @@ namespace rockfall
 namespace
 {
 
-/// As in a patch of the slope.
-constexpr double flatBend = 1e-7;
 /// Keys of the slope's features are far below.
 constexpr std::int64_t firstKey = std::int64_t(1) << 60;
 /// How deep under the ground a stem begins, m, and per metre of its diameter.

@@ -14,10 +14,6 @@ namespace rockfall
 namespace
 {
 
-/// Edges that bend by less than this (sine of the angle) are flat. It is above the rounding of a
-/// plane's node heights (1e-12) and below any slope that a survey can tell.
-constexpr double flatBend = 1e-7;
-
 /// A number for a node or cell, also for those of the apron.
 constexpr std::int64_t gridKey(int row, int column)
 {

@@ -14,6 +14,10 @@
 namespace rockfall
 {
 
+/// Edges that bend by less than this (sine of the angle) are flat. It is above the rounding of a
+/// plane's node heights (1e-12) and below any slope that a survey can tell.
+constexpr double flatBend = 1e-7;
+
 /// A terrain with the random numbers of one iteration put on it (METHOD 7). A value: two surfaces
 /// of the same terrain, seed and iteration are the same.
 class Surface

@@ -10,10 +10,8 @@ namespace rockfall
 namespace
 {
 
-/// As between triangles of the slope.
-constexpr double flatBend = 1e-7;
 /// Keys of the slope's features are below, those of obstacles above.
-constexpr std::int64_t firstKey = std::int64_t(1) << 58;
+constexpr std::int64_t firstWallKey = std::int64_t(1) << 58;
 /// Far deeper than a rock comes into a hole until it has left, m.
 constexpr double kWallDepth = 1000.0;
 
@@ -87,7 +85,7 @@ void addWalls(std::span<const Rim> rims, SurfacePatch& patch)
       const SurfacePatch::Node& top = patch.nodes[n];
       SurfacePatch::Node bottom{};
       bottom.position = top.position - kWallDepth * Vec3::UnitZ();
-      bottom.key = firstKey + top.key;
+      bottom.key = firstWallKey + top.key;
       patch.nodes.push_back(bottom);
     }
     return bottoms[n];
@@ -106,7 +104,7 @@ void addWalls(std::span<const Rim> rims, SurfacePatch& patch)
     wall.normal = Vec3(along.y(), -along.x(), 0.0).normalized();
     wall.offset = wall.normal.dot(patch.nodes[a].position);
     wall.cfe = t.cfe;
-    wall.key = firstKey + 2 * side;
+    wall.key = firstWallKey + 2 * side;
     wall.ridges.fill(-1);
     wall.nodes = { a, underA, b };
     wall.neighbours = { -1, i + 1, rim.triangle };
@@ -152,7 +150,7 @@ void addWalls(std::span<const Rim> rims, SurfacePatch& patch)
     if (one.bends[2] > 0)
     {
       patch.ridges.push_back(
-        { { b, bottoms[b] }, { i, j }, { a, c }, firstKey + 3 * t.key + rim.side });
+        { { b, bottoms[b] }, { i, j }, { a, c }, firstWallKey + 3 * t.key + rim.side });
     }
   }
 }

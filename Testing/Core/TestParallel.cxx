@@ -20,6 +20,12 @@ using namespace rockfall;
 namespace
 {
 
+#ifdef __SANITIZE_THREAD__
+constexpr int kRounds = 10; // each takes twenty times as long
+#else
+constexpr int kRounds = 400;
+#endif
+
 /// work() in an arena of `threads`, whatever the machine has.
 template <class Work>
 void withThreads(int threads, Work&& work)
@@ -73,7 +79,7 @@ TEST(Parallel, EachTurnIsTakenOnce)
           standBy(standing,
             [&]
             {
-              for (int k = 0; k < 400; ++k)
+              for (int k = 0; k < kRounds; ++k)
               {
                 const std::size_t count = random() % 60, grain = 1 + random() % 9;
                 std::vector<std::atomic<int>> turns(count);
@@ -130,7 +136,7 @@ TEST(Parallel, AThreadFinishesItsTurnBeforeTheNextOfTheSameLoop)
           []
           {
             std::atomic<int> mixed = 0;
-            for (int k = 0; k < 200; ++k)
+            for (int k = 0; k < kRounds; ++k)
             {
               forEach(12, 1,
                 [&](std::size_t)

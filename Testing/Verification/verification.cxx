@@ -1,5 +1,7 @@
 #include "verification.h"
 
+#include "form.h"
+
 #include "block/Block.h"
 
 #include <gtest/gtest.h>
@@ -128,8 +130,7 @@ void writeFigure(const char* kind, const Figure& f, double value, const std::str
 
 bool full()
 {
-  const char* form = std::getenv("ROCKFALL_VERIFICATION");
-  return form && std::string(form) == "full";
+  return rockfall::testing::isFullForm();
 }
 
 int count(int reduced, int whole)

@@ -1,0 +1,46 @@
+# Builds that take less: files compiled together, and headers compiled once.
+#
+# Both are for builds from nothing. With ccache each file by itself is found again, and a precompiled
+# header, whose bits depend on its folder, is not.
+set(from_nothing ON)
+if(CMAKE_CXX_COMPILER_LAUNCHER MATCHES "ccache")
+  set(from_nothing OFF)
+endif()
+# Names in anonymous namespaces must differ within a folder.
+option(ROCKFALL_UNITY "Compile several files of a folder together" ${from_nothing})
+option(ROCKFALL_PRECOMPILE "Compile the most used headers once" ${from_nothing})
+
+# rockfall_precompile(<target> [<header>...]): Eigen, the most used of the standard library, and these.
+function(rockfall_precompile target)
+  if(ROCKFALL_PRECOMPILE)
+    target_precompile_headers(${target} PRIVATE
+      <Eigen/Dense>
+      <algorithm> <array> <cmath> <cstdint> <functional> <limits> <map> <memory> <numbers> <numeric>
+      <optional> <random> <span> <sstream> <string> <vector>
+      ${ARGN})
+  endif()
+endfunction()
+
+# rockfall_unity(<target> <size> <source>...): each folder's sources, at most <size> together. To be
+# called in the target's own folder, after properties of single sources have been set.
+function(rockfall_unity target size)
+  if(NOT ROCKFALL_UNITY)
+    return()
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  foreach(source IN LISTS ARGN)
+    get_filename_component(folder "${source}" DIRECTORY)
+    get_filename_component(folder "${folder}" NAME)
+    math(EXPR group "0${${folder}_files} / ${size}")
+    math(EXPR ${folder}_files "0${${folder}_files} + 1")
+    set_source_files_properties("${source}" PROPERTIES UNITY_GROUP "${folder}_${group}")
+  endforeach()
+endfunction()
+
+# rockfall_unity_group(<name> <source>...): these sources of this folder together, in targets with the
+# property UNITY_BUILD and the mode GROUP.
+function(rockfall_unity_group name)
+  if(ROCKFALL_UNITY)
+    set_source_files_properties(${ARGN} PROPERTIES UNITY_GROUP "${name}")
+  endif()
+endfunction()

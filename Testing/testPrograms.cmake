@@ -1,0 +1,25 @@
+# rockfall_test_program(<name> PREFIX <prefix> SOURCES <source>... LIBRARIES <library>...
+#   [PROPERTIES <property> <value>...])
+#
+# One program of all these GoogleTest sources, and each of its tests as <prefix>.<suite>.<test> in
+# ctest. Each source is a program of its own too, TestFoo of TestFoo.cxx, which is built only when
+# asked for: for work on one file.
+find_package(GTest REQUIRED)
+include(GoogleTest)
+
+function(rockfall_test_program name)
+  cmake_parse_arguments(arg "" "PREFIX" "SOURCES;LIBRARIES;PROPERTIES" ${ARGN})
+  add_executable(${name} ${arg_SOURCES})
+  target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} rockfall_warnings GTest::gtest_main)
+  set_target_properties(${name} PROPERTIES UNITY_BUILD ${ROCKFALL_UNITY} UNITY_BUILD_MODE GROUP)
+  rockfall_precompile(${name} <gtest/gtest.h>)
+  gtest_discover_tests(${name} TEST_PREFIX "${arg_PREFIX}." DISCOVERY_MODE PRE_TEST
+    DISCOVERY_TIMEOUT 60
+    WORKING_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}"
+    PROPERTIES ${arg_PROPERTIES})
+  foreach(source ${arg_SOURCES})
+    get_filename_component(single ${source} NAME_WE)
+    add_executable(${single} EXCLUDE_FROM_ALL ${source})
+    target_link_libraries(${single} PRIVATE ${arg_LIBRARIES} rockfall_warnings GTest::gtest_main)
+  endforeach()
+endfunction()
