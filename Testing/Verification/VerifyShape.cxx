@@ -244,8 +244,9 @@ TEST(ShapeTest, TheRounderTheNarrower)
 
 TEST(ShapeTest, WhatTheReleaseAndFrictionDecide)
 {
-  // The paper gives neither the height nor the attitude of the release: θ is reported only. All come
-  // to an end, no energy is lost, and what sliding took is no more than there was and not nothing.
+  // The paper gives neither the height nor the attitude of the release: θ is reported only. All
+  // come to an end, no energy is lost, and what sliding took is no more than there was and not
+  // nothing.
   const int iterations = count(20, 200);
   std::mt19937 random(3);
   for (double friction : { 15.0, 22.5, 30.0 })
