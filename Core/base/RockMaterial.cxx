@@ -1,8 +1,7 @@
 #include "base/RockMaterial.h"
 
 #include "base/errors.h"
-
-#include <algorithm>
+#include "base/nameKey.h"
 
 namespace rockfall
 {
@@ -27,28 +26,13 @@ std::span<const RockMaterial> rockMaterials()
   return materials;
 }
 
-std::string materialKey(const std::string& name)
-{
-  const char* const blanks = " \t\r\n";
-  const auto first = name.find_first_not_of(blanks);
-  if (first == std::string::npos)
-  {
-    return {};
-  }
-  std::string key = name.substr(first, name.find_last_not_of(blanks) - first + 1);
-  // ASCII only: what a locale makes of capitals must not matter.
-  std::transform(key.begin(), key.end(), key.begin(),
-    [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
-  return key;
-}
-
 const RockMaterial& rockMaterialFromName(const std::string& name)
 {
-  const std::string lower = materialKey(name);
+  const std::string wanted = nameKey(name);
   std::string choices;
   for (const RockMaterial& material : materials)
   {
-    if (lower == material.name)
+    if (wanted == material.name)
     {
       return material;
     }

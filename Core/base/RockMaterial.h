@@ -26,7 +26,4 @@ std::span<const RockMaterial> rockMaterials();
 /// Ignores case; throws ParameterError naming the word and the choices.
 const RockMaterial& rockMaterialFromName(const std::string& name);
 
-/// Materials whose names have one key are one: without regard to A … Z and to blanks at the ends.
-std::string materialKey(const std::string& name);
-
 } // namespace rockfall

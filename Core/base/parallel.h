@@ -3,6 +3,8 @@
 /// @file
 /// Loops whose turns don't depend on each other, for what may itself run on one of many threads.
 
+#include "base/abort.h"
+
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -48,26 +50,33 @@ void standBy(int most, const std::function<void()>& work);
 template <class Work>
 void forEach(std::size_t count, std::size_t grain, Work&& work)
 {
+  struct Shared
+  {
+    const std::remove_reference_t<Work>* work;
+    const AbortScope* scope; ///< Who shares the loop can give up what its turns do.
+  };
   const auto run = [](const void* of, std::size_t begin, std::size_t end)
   {
-    const auto& turn = *static_cast<const std::remove_reference_t<Work>*>(of);
+    const auto& shared = *static_cast<const Shared*>(of);
+    const AbortScope::Borrowed scope(shared.scope);
     for (std::size_t i = begin; i < end; ++i)
     {
-      turn(i);
+      (*shared.work)(i);
     }
   };
+  const Shared shared{ &work, AbortScope::current() };
   if (count < 2 || count < 2 * grain || parallel::threads() == 1)
   {
-    run(&work, 0, count);
+    run(&shared, 0, count);
   }
-  else if (!parallel::share({ run, &work, count, grain }))
+  else if (!parallel::share({ run, &shared, count, grain }))
   {
     tbb::this_task_arena::isolate(
       [&]
       {
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain),
           [&](const tbb::blocked_range<std::size_t>& part)
-          { run(&work, part.begin(), part.end()); });
+          { run(&shared, part.begin(), part.end()); });
       });
   }
 }

@@ -21,6 +21,10 @@ enum class Draw : std::uint32_t
   Roughness = 1,
   Restitution = 2,
   FrictionAngle = 3,
+  // Of a square of the map; the index is the square's.
+  RoughField = 4,
+  ObstaclePlace = 5,
+  ObstacleHeight = 6,
   // Of a rock in an iteration; the index is the rock's.
   StartPosition = 16,
   StartHeight = 17,

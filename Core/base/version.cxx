@@ -1,0 +1,11 @@
+#include "base/version.h"
+
+namespace rockfall
+{
+
+std::string versionText()
+{
+  return "RockfallDDA " ROCKFALL_VERSION;
+}
+
+} // namespace rockfall

@@ -1,0 +1,14 @@
+#pragma once
+
+/// @file
+/// Which version this is.
+
+#include <string>
+
+namespace rockfall
+{
+
+/// "RockfallDDA 1.2.3", as it stands in files that are written.
+std::string versionText();
+
+} // namespace rockfall

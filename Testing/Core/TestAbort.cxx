@@ -1,0 +1,181 @@
+// Long work of every kind is given up soon after it is no longer wanted.
+
+#include "base/abort.h"
+#include "base/parallel.h"
+#include "randomScenes.h"
+#include "simulation/overlaps.h"
+#include "slopes.h"
+#include "statistics/HazardRaster.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+
+using namespace rockfall;
+using namespace rockfall::testing;
+
+namespace
+{
+
+constexpr double kWanted = 0.2; // s
+constexpr double kHeard = 1.0;  // s
+
+double secondsSince(std::chrono::steady_clock::time_point start)
+{
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// How long it takes until work is given up that is no longer wanted after kWanted, s; negative if
+/// it ended before.
+template <class Work>
+double heardAfter(const Work& work)
+{
+  const auto start = std::chrono::steady_clock::now();
+  const AbortScope scope([&] { return secondsSince(start) < kWanted; });
+  try
+  {
+    work();
+  }
+  catch (const Aborted&)
+  {
+    return secondsSince(start) - kWanted;
+  }
+  return -1.0;
+}
+
+/// Grit of some milligrams that lies on stiff ground: a second of its way takes hours.
+std::vector<Rock> grit(int count, double apart)
+{
+  std::vector<Rock> rocks;
+  for (int k = 0; k < count; ++k)
+  {
+    Rock rock;
+    rock.blockId = k;
+    rock.shape = makeBox(Vec3(2e-3, 1e-3, 1e-3));
+    rock.position = Vec3(5.0 + apart * (k % 10), 5.0 + apart * (k / 10), 100.01);
+    rock.velocity = Vec3(1.0, 0.0, 0.0);
+    rock.angularVelocity = Vec3(3.0, 200.0, 1.0);
+    rocks.push_back(rock);
+  }
+  return rocks;
+}
+
+SimulationParameters longRun(bool together)
+{
+  SimulationParameters p;
+  p.timeStep = 0.02;
+  p.endTime = 1000.0;
+  p.outputInterval = 1.0;
+  p.normalPenalty = 5e11;
+  p.rockRockContact = p.pushRocksApart = together;
+  p.rockRestitution = 1.0;
+  return p;
+}
+
+Terrain bouncy()
+{
+  return makePlane(2, 2000.0, radians(0.0), 0.0, material(1.0, 0.0));
+}
+
+double runUntilHeard(const std::vector<Rock>& rocks, const SimulationParameters& p)
+{
+  const Terrain terrain = bouncy();
+  TrajectoryStore store(int(rocks.size()), 1);
+  const auto start = std::chrono::steady_clock::now();
+  const bool finished =
+    runEnsemble(terrain, rocks, p, store, [&](double) { return secondsSince(start) < kWanted; });
+  return finished ? -1.0 : secondsSince(start) - kWanted;
+}
+
+} // namespace
+
+TEST(Abort, OfARockAlone)
+{
+  const double heard = runUntilHeard(grit(1, 0.0), longRun(false));
+  EXPECT_GE(heard, 0.0);
+  EXPECT_LE(heard, kHeard);
+}
+
+TEST(Abort, OfRocksThatFallTogether)
+{
+  const double heard = runUntilHeard(grit(60, 1.5e-3), longRun(true));
+  EXPECT_GE(heard, 0.0);
+  EXPECT_LE(heard, kHeard);
+}
+
+TEST(Abort, OfPushingRocksApart)
+{
+  // All in one place, but for a hair.
+  std::vector<Rock> rocks = grit(3000, 1e-6);
+  const Terrain terrain = bouncy();
+  const double heard = heardAfter([&] { pushApart(terrain, rocks); });
+  EXPECT_GE(heard, 0.0);
+  EXPECT_LE(heard, kHeard);
+}
+
+TEST(Abort, OfAHazardMap)
+{
+  CellGrid grid;
+  grid.columns = grid.rows = 1000;
+  grid.cellSize = 1.0;
+  RockPath path;
+  path.mass = 1.0;
+  std::vector<PathPoint> points;
+  for (int k = 0; k <= 2000; ++k)
+  {
+    PathPoint point;
+    point.time = 0.1 * k;
+    point.position = Vec3(0.4 * k + 1.0, 500.0 + 400.0 * std::sin(0.1 * k), 0.0);
+    point.velocity = Vec3(4.0, 0.0, 0.0);
+    points.push_back(point);
+  }
+  path.points = points;
+  HazardRaster raster(grid);
+  const double heard = heardAfter(
+    [&]
+    {
+      for (path.rock = 0; path.rock < 1000000; ++path.rock)
+      {
+        raster.add(path);
+      }
+    });
+  EXPECT_GE(heard, 0.0);
+  EXPECT_LE(heard, kHeard);
+}
+
+TEST(Abort, OfLoopsThatSeveralThreadsShare)
+{
+  std::atomic<int> asked{ 0 };
+  const auto work = [&]
+  {
+    forEach(1000, 1,
+      [&](std::size_t)
+      {
+        const auto start = std::chrono::steady_clock::now();
+        while (secondsSince(start) < 0.01)
+        {
+          stayWanted();
+        }
+        ++asked;
+      });
+  };
+  const double heard = heardAfter(work);
+  EXPECT_GE(heard, 0.0);
+  EXPECT_LE(heard, kHeard);
+  EXPECT_GT(asked, 0);
+  EXPECT_LT(asked, 1000);
+}
+
+TEST(Abort, LeavesNothingBehind)
+{
+  EXPECT_GE(heardAfter(
+              []
+              {
+                for (;;)
+                  stayWanted();
+              }),
+    0.0);
+  stayWanted(); // no scope: goes on
+  EXPECT_EQ(AbortScope::current(), nullptr);
+}
