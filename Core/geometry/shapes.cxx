@@ -1,10 +1,10 @@
 #include "geometry/shapes.h"
 
 #include "base/errors.h"
+#include "base/nameKey.h"
 #include "base/numberText.h"
 #include "geometry/shell.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -160,14 +160,11 @@ std::string shapeName(Shape shape)
 
 Shape shapeFromName(const std::string& name)
 {
-  // ASCII only: what a locale makes of capitals must not matter.
-  std::string lower = name;
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-    [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+  const std::string wanted = nameKey(name);
   std::string choices;
   for (const NamedShape& named : names)
   {
-    if (lower == named.name)
+    if (wanted == named.name)
     {
       return named.shape;
     }

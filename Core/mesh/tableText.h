@@ -1,0 +1,54 @@
+#pragma once
+
+/// @file
+/// Lines and cells of a table of points: encoding, comments, what parts the columns, decimals.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rockfall
+{
+
+/// As UTF-8 without a byte order mark; of UTF-16 if such a mark says so. Throws FileError for bytes
+/// that are no text.
+std::string decodeText(std::string_view bytes, const std::string& name);
+
+/// A line that is neither empty nor a comment.
+struct TableLine
+{
+  std::string_view text;
+  int number = 0; ///< From 1.
+};
+
+struct TableLines
+{
+  std::vector<TableLine> lines;
+  std::string_view comment; ///< The last one before the first line, without its mark.
+  char separator = '\0';    ///< That of a line sep=;
+};
+/// `text` must outlive the result.
+TableLines splitLines(std::string_view text);
+
+/// Whether all that stands between blanks, commas and semicolons are numbers.
+bool isNumeric(std::string_view line);
+
+/// What parts the columns of a line: ';', '\t', ',' or ' ' for any number of blanks; '\0' if nobody
+/// can tell, as of 1,5, 2,5, 3,5.
+char separatorOf(std::string_view line);
+
+/// Trimmed and without quotes.
+std::vector<std::string> splitCells(std::string_view line, char separator);
+
+enum class DecimalMark
+{
+  None,
+  Point,
+  Comma,
+  Wrong ///< No number.
+};
+/// The number of a cell and what it has for its decimal mark. `word` becomes the number with a
+/// point.
+DecimalMark parseCell(const std::string& cell, std::string& word, double& value);
+
+} // namespace rockfall
