@@ -1,9 +1,12 @@
 #include "gis/contourLines.h"
 
 #include "base/errors.h"
+#include "base/nameKey.h"
+#include "gis/FeatureRow.h"
 #include "gis/crs.h"
 #include "gis/fields.h"
 #include "gis/heightUnit.h"
+#include "gis/lines.h"
 
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
@@ -21,25 +24,10 @@ namespace
 constexpr double sameHeight = 1.0;
 
 /// Names under which contour files have their heights, most telling first.
-constexpr const char* usualNames[] = { "elev", "elevation", "contour", "z", "height", "ele",
+constexpr const char* usualHeightNames[] = { "elev", "elevation", "contour", "z", "height", "ele",
   "altitude", "alt", "level", "z_value", "elev_m", "elevation_m", "contour_m", "height_m",
   "contourele", "hoehe", "kote", "cote", "quota", "cota", "elev_ft", "elevation_ft", "contour_ft",
   "height_ft" };
-
-bool isLineType(OGRwkbGeometryType type)
-{
-  switch (wkbFlatten(type))
-  {
-    case wkbLineString:
-    case wkbMultiLineString:
-    case wkbCircularString:
-    case wkbCompoundCurve:
-    case wkbMultiCurve:
-      return true;
-    default:
-      return false;
-  }
-}
 
 void addLine(const OGRLineString& line, double height, double plane, const HeightField& field,
   const Fields& fields, Contours& contours)
@@ -63,6 +51,11 @@ void addLine(const OGRLineString& line, double height, double plane, const Heigh
     {
       fields.fail("the vertex " + number(line.getX(i)) + ", " + number(line.getY(i)) + ", " +
         number(z) + " is not finite");
+    }
+    if (std::abs(line.getX(i) * plane) > kFarthest || std::abs(line.getY(i) * plane) > kFarthest)
+    {
+      fields.fail("the vertex " + number(line.getX(i)) + ", " + number(line.getY(i)) +
+        " is no place on earth");
     }
     if (z < kDeepest || z > kHighest)
     {
@@ -88,28 +81,16 @@ void refuseVertices(
     number(std::floor(vertices)) + "), a TIN of them does not fit in memory; " + remedy);
 }
 
-OGRLayer& lineLayerOf(GDALDataset& dataset, const std::string& fileName)
+LayerWish contourWish(const std::string& fileName, const ContourOptions& options)
 {
-  OGRLayer* open = nullptr; // of any geometry
-  std::string others;
-  for (int i = 0; i < dataset.GetLayerCount(); ++i)
-  {
-    OGRLayer* layer = dataset.GetLayer(i);
-    if (isLineType(layer->GetGeomType()))
-    {
-      return *layer;
-    }
-    const auto type = wkbFlatten(layer->GetGeomType());
-    open = !open && (type == wkbUnknown || type == wkbGeometryCollection) ? layer : open;
-    others += (i ? ", \"" : "\"") + std::string(layer->GetName()) + "\" (" +
-      OGRGeometryTypeToName(layer->GetGeomType()) + ")";
-  }
-  if (!open)
-  {
-    throw DataError(fileName + ": has no layer of lines" +
-      (others.empty() ? "" : ", only " + others) + "; contours are lines, a DEM is a raster");
-  }
-  return *open;
+  LayerWish wish{ fileName, options.layer };
+  wish.what = "layer of lines";
+  wish.kinds = kLines;
+  wish.heights = true;
+  wish.columns = { options.elevationField.empty()
+      ? ColumnChoice(std::begin(usualHeightNames), std::end(usualHeightNames))
+      : ColumnChoice{ options.elevationField } };
+  return wish;
 }
 
 HeightField heightFieldOf(OGRLayer& layer, const LayerHeights& heights, const std::string& wanted,
@@ -128,7 +109,7 @@ HeightField heightFieldOf(OGRLayer& layer, const LayerHeights& heights, const st
   };
   if (!wanted.empty())
   {
-    const auto column = columns.find(lowered(trimmed(wanted)));
+    const auto column = columns.find(nameKey(wanted));
     if (column == columns.end())
     {
       throw DataError(fileName + ": layer \"" + layer.GetName() + "\" has no field \"" + wanted +
@@ -137,7 +118,7 @@ HeightField heightFieldOf(OGRLayer& layer, const LayerHeights& heights, const st
     take(*column);
     return field;
   }
-  for (const char* name : usualNames)
+  for (const char* name : usualHeightNames)
   {
     const auto column = columns.find(name);
     if (column == columns.end())
@@ -156,61 +137,51 @@ HeightField heightFieldOf(OGRLayer& layer, const LayerHeights& heights, const st
   return field;
 }
 
-Contours readLines(OGRLayer& layer, const LayerHeights& heights, const HeightField& field,
-  const ContourOptions& options, const std::string& fileName, Messages& messages)
+Contours readLines(LayerFile& file, const LayerHeights& heights, const HeightField& field,
+  const ContourOptions& options, const Messages& messages)
 {
-  const Columns columns = columnsOf(*layer.GetLayerDefn());
+  const std::string& fileName = file.fileName();
+  const Columns columns = columnsOf(file.definition());
   Contours contours;
-  messages.clear();
-  while (const OGRFeatureUniquePtr feature{ layer.GetNextFeature() })
+  while (const OGRFeatureUniquePtr feature = file.next())
   {
-    const Fields fields(fileName, columns, *feature, ++contours.features);
-    const OGRGeometry* geometry = feature->GetGeometryRef();
-    if (!geometry || geometry->IsEmpty())
+    const FeatureRow row(fileName, columns, *feature, file.number());
+    row.refuseLostText(messages);
+    ++contours.features;
+    const OGRGeometry* geometry = row.geometry();
+    if (!geometry)
     {
       ++contours.empty;
       continue;
     }
-    if (!isLineType(geometry->getGeometryType()))
-    {
-      fields.fail(
-        std::string("geometry is a ") + geometry->getGeometryName() + ", contours are lines");
-    }
+    const std::vector<const OGRLineString*> lines = linesIn(row);
     double height = 0.0;
     if (field.column >= 0)
     {
-      const auto value = fields.numberAt(field.column);
+      const auto value = row.numberAt(field.column);
       if (!value)
       {
-        fields.fail("field \"" + field.name + "\" is empty, it must be the contour's height");
+        row.fail("field \"" + field.name + "\" is empty, it must be the contour's height");
       }
       height = field.heights.metres(*value);
     }
     else if (!geometry->Is3D())
     {
-      fields.fail("the line has no z, and the layer no field with a usual name for its height (" +
-        fieldList(*layer.GetLayerDefn()) + "); say which field it is in ElevationField");
+      row.fail("the line has no z, and the layer no field with a usual name for its height (" +
+        fieldList(file.definition()) + "); say which field it is in ElevationField");
     }
-    else if (const Altitude over = altitudeOf(heights, fields); over == Altitude::Ground)
+    else if (const Altitude over = altitudeOf(heights, row); over == Altitude::Ground)
     {
-      fields.fail("its altitudeMode is relativeToGround, so its altitudes are no heights of the "
-                  "ground");
+      row.fail("its altitudeMode is relativeToGround, so its altitudes are no heights of the "
+               "ground");
     }
     else
     {
       contours.clamped += over == Altitude::None;
     }
-    const std::unique_ptr<OGRGeometry> straight(geometry->getLinearGeometry());
-    if (wkbFlatten(straight->getGeometryType()) == wkbMultiLineString)
+    for (const OGRLineString* line : lines)
     {
-      for (const OGRLineString* line : *straight->toMultiLineString())
-      {
-        addLine(*line, height, heights.plane, field, fields, contours);
-      }
-    }
-    else
-    {
-      addLine(*straight->toLineString(), height, heights.plane, field, fields, contours);
+      addLine(*line, height, heights.plane, field, row, contours);
     }
     if (std::int64_t(contours.x.size()) > options.largestVertices)
     {
@@ -218,14 +189,10 @@ Contours readLines(OGRLayer& layer, const LayerHeights& heights, const HeightFie
         "cut out the slope or simplify the lines first, e.g. with ogr2ogr -clipsrc or -simplify");
     }
   }
-  if (!messages.failure().empty())
-  {
-    throw FileError(fileName + ": row " + std::to_string(contours.features + 1) +
-      " cannot be read: " + messages.failure());
-  }
   if (contours.x.empty())
   {
-    throw DataError(fileName + ": layer \"" + layer.GetName() + "\" has no line with vertices");
+    throw DataError(
+      fileName + ": layer \"" + file.layer().GetName() + "\" has no line with vertices");
   }
   return contours;
 }

@@ -3,6 +3,7 @@
 /// @file
 /// The lines of a contour file, before anything is made of them.
 
+#include "gis/LayerFile.h"
 #include "gis/contours.h"
 #include "gis/gdal.h"
 #include "gis/heights.h"
@@ -10,8 +11,6 @@
 #include <cstdint>
 #include <string>
 #include <vector>
-
-class OGRLayer;
 
 namespace rockfall::gis
 {
@@ -40,16 +39,16 @@ struct HeightField
   bool guessed = false; ///< By its name.
 };
 
-/// The first layer of lines, else the first of any geometry. Throws DataError if there is none.
-OGRLayer& lineLayerOf(GDALDataset& dataset, const std::string& fileName);
+/// Lines with heights.
+LayerWish contourWish(const std::string& fileName, const ContourOptions& options);
 
 /// Throws DataError if `wanted` is no field of the layer.
 HeightField heightFieldOf(OGRLayer& layer, const LayerHeights& heights, const std::string& wanted,
   const std::string& fileName);
 
 /// Throws DataError naming row, field and value; see readContours.
-Contours readLines(OGRLayer& layer, const LayerHeights& heights, const HeightField& field,
-  const ContourOptions& options, const std::string& fileName, Messages& messages);
+Contours readLines(LayerFile& file, const LayerHeights& heights, const HeightField& field,
+  const ContourOptions& options, const Messages& messages);
 
 [[noreturn]] void refuseVertices(
   const std::string& fileName, double vertices, std::int64_t largest, const std::string& remedy);

@@ -1,11 +1,13 @@
 #include "gis/contours.h"
 
 #include "base/errors.h"
+#include "gis/contourLevels.h"
 #include "gis/contourLines.h"
-#include "gis/fields.h"
+#include "gis/fileContent.h"
 #include "gis/heightReference.h"
 #include "gis/heights.h"
 #include "gis/metric.h"
+#include "gis/nodata.h"
 #include "gis/tin.h"
 #include "terrain/flats.h"
 
@@ -174,46 +176,19 @@ void unite(TinPoints& points, double x0, double y0, std::vector<std::string>& no
   points = std::move(united);
 }
 
-/// The heights of the lines that keep one.
-std::vector<double> levelsOf(const Contours& contours)
-{
-  std::vector<double> levels;
-  for (const Line& line : contours.lines)
-  {
-    const auto first = contours.z.begin() + std::ptrdiff_t(line.first);
-    if (std::all_of(
-          first, first + std::ptrdiff_t(line.count), [&](double z) { return z == *first; }))
-    {
-      levels.push_back(*first);
-    }
-  }
-  std::sort(levels.begin(), levels.end());
-  levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
-  return levels;
-}
-
 } // namespace
 
-bool isVectorFile(const std::string& fileName)
+RasterSurface readSlope(const std::string& fileName, const std::string& layer,
+  const RasterOptions& raster, const ContourOptions& contours)
 {
-  Messages messages;
-  try
-  {
-    openRaster(fileName, messages);
-    return false;
-  }
-  catch (const FileError&)
-  {
-  }
-  try
-  {
-    openVector(fileName, messages);
-    return true;
-  }
-  catch (const FileError&)
-  {
-    return false;
-  }
+  ContourOptions lines = contours;
+  lines.layer = layer;
+  std::vector<std::string> notes;
+  const FileContent content = contentOf(contourWish(fileName, lines), notes);
+  RasterSurface surface =
+    content.vector ? readContours(fileName, lines) : readRaster(content.raster, raster);
+  surface.notes.insert(surface.notes.begin(), notes.begin(), notes.end());
+  return surface;
 }
 
 RasterSurface readContours(const std::string& fileName, const ContourOptions& options)
@@ -224,13 +199,15 @@ RasterSurface readContours(const std::string& fileName, const ContourOptions& op
       ", it must be a positive number of metres, or 0 for half the distance between contours");
   }
   Messages messages;
-  const DatasetPtr dataset = openVector(fileName, messages);
-  refuseSurplusCells(*dataset, fileName);
-  OGRLayer& layer = lineLayerOf(*dataset, fileName);
+  LayerFile file(contourWish(fileName, options), messages);
+  OGRLayer& layer = file.layer();
   RasterSurface result;
-  LayerHeights heights = heightsOf(*dataset, layer, fileName, result.notes);
+  LayerHeights heights = heightsOf(file.dataset(), layer, fileName, result.notes);
   const HeightField field = heightFieldOf(layer, heights, options.elevationField, fileName);
-  Contours contours = readLines(layer, heights, field, options, fileName, messages);
+  Contours contours = readLines(file, heights, field, options, messages);
+  file.tell(result.notes, false);
+  leaveOutFrames(contours, file.isOfDrawing(), result.notes);
+  refuseStrayZeros(contours, fileName);
   const std::string where = field.column < 0 ? "the lines' own z" : "field \"" + field.name + "\"";
   if (field.heights.scale != heights.scale)
   {
@@ -258,10 +235,17 @@ RasterSurface readContours(const std::string& fileName, const ContourOptions& op
     throw DataError(fileName + ": all " + std::to_string(contours.lines.size()) +
       " contours have the height " + number(*low) + " m (" + where + "), that is no slope");
   }
+  noteMarks(contours.z, {}, "vertices of the lines",
+    "leave these lines out, e.g. with ogr2ogr -where", result.notes);
   toMetric(contours, heights, result, fileName);
 
   const Box box = boxOf(contours);
   const double length = lengthOf(contours);
+  if (!(length > 0.0))
+  {
+    throw DataError(
+      fileName + ": its " + std::to_string(contours.lines.size()) + " lines have no length");
+  }
   const double area = (box.xMax - box.xMin) * (box.yMax - box.yMin);
   GridGeometry& grid = result.geometry;
   grid.cellSize = options.cellSize > 0.0 ? options.cellSize : threeDigits(area / (2.0 * length));
@@ -269,7 +253,7 @@ RasterSurface readContours(const std::string& fileName, const ContourOptions& op
   grid.yOrigin = box.yMin;
   const double columns = std::floor((box.xMax - box.xMin) / grid.cellSize + 1e-6) + 1.0;
   const double rows = std::floor((box.yMax - box.yMin) / grid.cellSize + 1e-6) + 1.0;
-  if (columns < 2.0 || rows < 2.0)
+  if (!(columns >= 2.0 && rows >= 2.0))
   {
     throw DataError(fileName + ": a cell size of " + number(grid.cellSize) + " m leaves " +
       number(columns) + " x " + number(rows) + " nodes, at least 2 x 2 are needed");

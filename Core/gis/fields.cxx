@@ -1,6 +1,7 @@
 #include "gis/fields.h"
 
 #include "base/errors.h"
+#include "base/nameKey.h"
 #include "gis/gdal.h"
 
 #include <cpl_csv.h>
@@ -26,13 +27,6 @@ std::string trimmed(const std::string& text)
                                     : text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
-std::string lowered(std::string text)
-{
-  std::transform(text.begin(), text.end(), text.begin(),
-    [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
-  return text;
-}
-
 std::optional<double> parsed(const std::string& text)
 {
   const char* first = text.data() + (text.size() > 1 && text[0] == '+' ? 1 : 0);
@@ -47,7 +41,7 @@ Columns columnsOf(const OGRFeatureDefn& definition)
   Columns columns;
   for (int i = 0; i < definition.GetFieldCount(); ++i)
   {
-    columns.emplace(lowered(trimmed(definition.GetFieldDefn(i)->GetNameRef())), i);
+    columns.emplace(nameKey(definition.GetFieldDefn(i)->GetNameRef()), i);
   }
   return columns;
 }
@@ -112,7 +106,7 @@ void refuseTwin(const OGRFeatureDefn& definition, const std::string& fileName, i
   for (int i = 0; i < definition.GetFieldCount(); ++i)
   {
     const std::string other = definition.GetFieldDefn(i)->GetNameRef();
-    if (i != column && lowered(trimmed(other)) == lowered(trimmed(written)))
+    if (i != column && nameKey(other) == nameKey(written))
     {
       throw DataError(fileName + ": has two columns \"" + written + "\"" +
         (other == written ? "" : " and \"" + other + "\", in which upper and lower case are one") +
@@ -160,7 +154,7 @@ void refuseSurplusCells(GDALDataset& dataset, const std::string& fileName)
     return;
   }
   const std::unique_ptr<VSILFILE, int (*)(VSILFILE*)> file(
-    VSIFOpenL(fileName.c_str(), "rb"), VSIFCloseL);
+    VSIFOpenL(dataset.GetDescription(), "rb"), VSIFCloseL);
   const char* first = file ? CPLReadLineL(file.get()) : nullptr;
   if (!first)
   {
@@ -219,6 +213,12 @@ std::optional<std::string> Fields::textAt(int column) const
     return std::nullopt;
   }
   const std::string value = trimmed(feature_.GetFieldAsString(column));
+  if (!isUtf8(value))
+  {
+    this->fail("field \"" + this->nameOf(column) +
+      "\": its text is not UTF-8; save the file so, or name its encoding, as windows-1252, in a "
+      ".cpg file beside it");
+  }
   return value.empty() ? std::nullopt : std::optional(value);
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// The fields of a layer's features as text and numbers, by names that are not case-sensitive.
+/// The fields of a layer's features as text and numbers, by names as nameKey has them.
 
 #include <cstdint>
 #include <initializer_list>
@@ -19,18 +19,16 @@ namespace rockfall::gis
 class Messages;
 
 std::string trimmed(const std::string& text);
-/// A … Z become a … z, whatever the locale.
-std::string lowered(std::string text);
 /// All of the text, with a decimal point in every locale; nothing if any of it is no number.
 std::optional<double> parsed(const std::string& text);
 
-/// Field indices by lowered name; of two that differ in case only the first (see refuseTwin).
+/// Field indices by nameKey; of two with one key only the first (see refuseTwin).
 using Columns = std::map<std::string, int>;
 Columns columnsOf(const OGRFeatureDefn& definition);
 /// "a", "b", "c": the fields of a layer, for a message.
 std::string fieldList(const OGRFeatureDefn& definition);
 
-/// Throws DataError if another column has the name of this one, but for case and blanks.
+/// Throws DataError if another column has the name of this one (nameKey).
 void refuseTwin(const OGRFeatureDefn& definition, const std::string& fileName, int column);
 
 /// Throws DataError where a column that would not be read begins as one that is not there, as

@@ -1,15 +1,20 @@
 #include "gis/gdal.h"
 
 #include "base/errors.h"
+#include "gis/reach.h"
+#include "gis/tableFile.h"
 
 #include <cpl_conv.h>
 #include <cpl_error.h>
 #include <cpl_string.h>
 #include <cpl_vsi.h>
 #include <gdal_priv.h>
+#include <ogrsf_frmts.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstring>
+#include <iterator>
 #include <mutex>
 
 namespace rockfall::gis
@@ -52,22 +57,37 @@ DatasetPtr tryOpen(const std::string& fileName, Kind kind)
   // Tables: every column as text. A column that GDAL took for numbers would turn words into zeros.
   // GeoJSON: a text like 3:2 stays one; GDAL would make a time of day of it. Other drivers do not
   // know these options and say so in a warning that nobody sees.
-  const char* const tableOptions[] = { "AUTODETECT_TYPE=NO", "DATE_AS_STRING=YES", nullptr };
+  // GML: no schema from an address that the file names, unless that is allowed.
+  const char* const tableOptions[] = { "AUTODETECT_TYPE=NO", "DATE_AS_STRING=YES",
+    openingDrivers() ? "DOWNLOAD_SCHEMA=NO" : nullptr, nullptr };
+  // The vertical part of a GeoTIFF's CRS, also of the old versions that GDAL takes it away from.
+  const CPLConfigOptionSetter vertical("GTIFF_REPORT_COMPD_CS", "YES", true);
+  // Spreadsheets: GDAL takes a first row for a header only if the next one is not all text as well.
+  const CPLConfigOptionSetter headers[] = { { "OGR_XLSX_HEADERS", "FORCE", false },
+    { "OGR_ODS_HEADERS", "FORCE", false }, { "OGR_XLS_HEADERS", "FORCE", false } };
   const unsigned flags = GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR |
     (kind == Kind::Raster ? GDAL_OF_RASTER : GDAL_OF_VECTOR);
-  return DatasetPtr(GDALDataset::Open(
-    fileName.c_str(), flags, nullptr, kind == Kind::Vector ? tableOptions : nullptr));
+  DatasetPtr dataset(GDALDataset::Open(
+    fileName.c_str(), flags, openingDrivers(), kind == Kind::Vector ? tableOptions : nullptr));
+  for (int i = 0; kind == Kind::Vector && dataset && i < dataset->GetLayerCount(); ++i)
+  {
+    dataset->GetLayer(i)->GetLayerDefn(); // sheets look for their header only when they are asked
+  }
+  return dataset;
 }
 
-DatasetPtr open(const std::string& fileName, Kind kind, Messages& messages)
+/// `path`: where the file is read from, if that is not under its own name.
+DatasetPtr open(
+  const std::string& fileName, Kind kind, Messages& messages, const std::string& path = {})
 {
   registerDrivers();
   if (fileName.empty())
   {
     throw FileError("No file name was given");
   }
+  refuseReferences(fileName, GDAL_OF_RASTER | GDAL_OF_VECTOR);
   messages.clear();
-  DatasetPtr dataset = tryOpen(fileName, kind);
+  DatasetPtr dataset = tryOpen(path.empty() ? fileName : path, kind);
   if (dataset)
   {
     messages.clear();
@@ -113,6 +133,10 @@ Messages::~Messages()
 void CloseDataset::operator()(GDALDataset* dataset) const
 {
   GDALClose(dataset);
+  if (!folder.empty())
+  {
+    VSIRmdirRecursive(folder.c_str());
+  }
 }
 
 DatasetPtr openRaster(const std::string& fileName, Messages& messages)
@@ -120,18 +144,30 @@ DatasetPtr openRaster(const std::string& fileName, Messages& messages)
   return open(fileName, Kind::Raster, messages);
 }
 
-DatasetPtr openVector(const std::string& fileName, Messages& messages)
+DatasetPtr openVector(
+  const std::string& fileName, Messages& messages, std::vector<std::string>* notes)
 {
-  return open(fileName, Kind::Vector, messages);
-}
-
-OGRLayer& firstLayer(GDALDataset& dataset, const std::string& fileName, const char* what)
-{
-  if (dataset.GetLayerCount() == 0)
+  // Before any of it is read: its name may be an address.
+  registerDrivers();
+  refuseReferences(fileName, GDAL_OF_RASTER | GDAL_OF_VECTOR);
+  std::vector<std::string> made;
+  const TableFile table = readableTable(fileName, made);
+  if (notes)
   {
-    throw DataError(fileName + ": has no " + what);
+    std::move(made.begin(), made.end(), std::back_inserter(*notes));
   }
-  return *dataset.GetLayer(0);
+  CloseDataset closing{ table.folder };
+  try
+  {
+    DatasetPtr dataset = open(fileName, Kind::Vector, messages, table.path);
+    dataset.get_deleter() = std::move(closing);
+    return dataset;
+  }
+  catch (const Error&)
+  {
+    closing(nullptr);
+    throw;
+  }
 }
 
 std::string number(double value)

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 class GDALDataset;
 class OGRLayer;
@@ -46,18 +47,19 @@ private:
 
 struct CloseDataset
 {
+  std::string folder = {}; ///< In memory, removed with it; empty: none.
   void operator()(GDALDataset* dataset) const;
 };
 using DatasetPtr = std::unique_ptr<GDALDataset, CloseDataset>;
 
 /// Opens for reading. Throws FileError that says which of the usual mistakes it is: no name, no
-/// such file, a folder, the other kind of data, or nothing that GDAL knows.
+/// such file, a folder, the other kind of data, or nothing that GDAL knows; also where the file
+/// reaches out (see reach.h).
 DatasetPtr openRaster(const std::string& fileName, Messages& messages);
-DatasetPtr openVector(const std::string& fileName, Messages& messages);
-
-/// The one that is read of a vector file. Throws DataError naming the file if it has none; `what`
-/// is what the user calls it.
-OGRLayer& firstLayer(GDALDataset& dataset, const std::string& fileName, const char* what = "layer");
+/// Tables are brought to UTF-8 first (tableFile.h) and spreadsheets have a header in any case.
+/// `notes`: what was done to the text. Throws DataError naming file and line for text that is none.
+DatasetPtr openVector(
+  const std::string& fileName, Messages& messages, std::vector<std::string>* notes = nullptr);
 
 /// A number for a message, with a decimal point in every locale.
 std::string number(double value);

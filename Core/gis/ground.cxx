@@ -1,7 +1,8 @@
 #include "gis/ground.h"
 
 #include "base/errors.h"
-#include "gis/contours.h"
+#include "gis/LayerFile.h"
+#include "gis/fileContent.h"
 #include "gis/gdal.h"
 #include "gis/groundCells.h"
 
@@ -53,7 +54,7 @@ void noteShares(const GroundFiles& files, const GroundTable& table, const Cells&
 MaterialClasses readGround(GroundKind kind, const GroundFiles& files, const Terrain& terrain,
   std::vector<std::string>& notes)
 {
-  const std::string name = kind == GroundKind::Restitution ? "Restitution" : "Joint";
+  const std::string name = kindName(kind);
   if (files.layer.empty() && files.table.empty())
   {
     return {};
@@ -68,15 +69,18 @@ MaterialClasses readGround(GroundKind kind, const GroundFiles& files, const Terr
     throw ParameterError(name + "Layer is " + files.layer + ", but there is no " + name +
       "Table that says what its classes are");
   }
-  const GroundTable table = readGroundTable(kind, files.table, terrain.material());
+  const GroundTable table =
+    readGroundTable(kind, files, terrain.material(), terrain.roughness(), notes);
   const Cells cells(terrain);
-  auto classes = std::make_shared<std::vector<std::uint8_t>>(isVectorFile(files.layer)
-      ? fromPolygons(files, table, cells, notes)
-      : fromRaster(files, table, cells, notes));
+  const FileContent content = contentOf(polygonWish(kind, files), notes);
+  auto classes = std::make_shared<std::vector<std::uint8_t>>(content.vector
+      ? fromPolygons(kind, files, table, cells, notes)
+      : fromRaster(files, content.raster, table, cells, notes));
   noteShares(files, table, cells, *classes, notes);
   MaterialClasses result;
   result.names = table.names;
   result.materials = table.materials;
+  result.roughness = table.roughness;
   result.cells = *classes;
   result.owner = std::move(classes);
   return result;

@@ -14,7 +14,7 @@ namespace rockfall
 /// Which of a material's numbers a table has.
 enum class GroundKind
 {
-  Restitution, ///< Rv or Rn, its deviation, model, Rt, K.
+  Restitution, ///< Rv or Rn, its deviation, model, Rt, K, roughness.
   Joint,       ///< φ, its deviation, cohesion.
 };
 
@@ -24,6 +24,8 @@ struct GroundFiles
   std::string layer; ///< Raster or polygons; empty: no classes.
   std::string table; ///< Anything OGR opens.
   std::string field; ///< Of the polygons, with the class; empty looks for class, name, code, …
+  std::string layerName = {};  ///< Of the layer's file (gis/LayerFile.h); empty: what will do.
+  std::string tableSheet = {}; ///< Of the table's file; empty: what will do.
 };
 
 /// Reads classes and brings them to the cells of a terrain, each cell by its centre. Layers of any
@@ -33,7 +35,8 @@ struct GroundFiles
 ///
 /// Columns of the table, case-insensitive: class (the raster's value or the polygons' text), name,
 /// preset (see terrain/presets.h); for restitution rv (or rn, restitution), rv_deviation, model (0
-/// to 2 or its name), rt, speed (m/s); for joints phi, phi_deviation (degrees), cohesion (N). What
+/// to 2 or its name), rt, speed (m/s), roughness_mean, roughness (its deviation), roughness_length,
+/// rg70, rg20, rg10 (m); for joints phi, phi_deviation (degrees), cohesion (N). What
 /// is empty is the preset's if there is one; else rv and phi are needed, and of the others the
 /// deviations are 0 and the rest is the terrain's own material's.
 ///

@@ -16,6 +16,8 @@
 namespace rockfall::gis
 {
 
+struct LayerWish;
+
 /// The terrain's cells as a raster.
 struct Cells
 {
@@ -60,12 +62,16 @@ void noteCrs(const CrsPtr& from, const Cells& cells, const std::string& fileName
 /// Where a layer's box is in the terrain's CRS, for the message that it is elsewhere.
 std::string extentText(Box box, const CrsPtr& from, const Cells& cells);
 
-/// A raster of classes, nearest value at the centre of every cell.
-std::vector<std::uint8_t> fromRaster(const GroundFiles& files, const GroundTable& table,
-  const Cells& cells, std::vector<std::string>& notes);
+/// A raster of classes, nearest value at the centre of every cell. `raster`: the name under which
+/// GDAL opens it.
+std::vector<std::uint8_t> fromRaster(const GroundFiles& files, const std::string& raster,
+  const GroundTable& table, const Cells& cells, std::vector<std::string>& notes);
+
+/// Polygons with a field that may have their class.
+LayerWish polygonWish(GroundKind kind, const GroundFiles& files);
 
 /// Polygons with their class in a field; of those that overlap the last one counts.
-std::vector<std::uint8_t> fromPolygons(const GroundFiles& files, const GroundTable& table,
-  const Cells& cells, std::vector<std::string>& notes);
+std::vector<std::uint8_t> fromPolygons(GroundKind kind, const GroundFiles& files,
+  const GroundTable& table, const Cells& cells, std::vector<std::string>& notes);
 
 } // namespace rockfall::gis

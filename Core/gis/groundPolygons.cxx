@@ -2,6 +2,8 @@
 #include "gis/groundCells.h"
 
 #include "base/errors.h"
+#include "base/nameKey.h"
+#include "gis/LayerFile.h"
 #include "gis/fields.h"
 #include "gis/gdal.h"
 #include "gis/heights.h"
@@ -23,12 +25,15 @@ namespace
 /// Polygons are burnt in portions of about so many vertices: each takes a walk over all cells.
 constexpr std::int64_t verticesAtOnce = 2'000'000;
 
+/// Under which maps have their classes, most telling first.
+const ColumnChoice usualNames = { "class", "name", "code", "type", "unit", "material", "ground" };
+
 int classField(OGRLayer& layer, const GroundFiles& files)
 {
   const Columns columns = columnsOf(*layer.GetLayerDefn());
   const auto take = [&](const std::string& name)
   {
-    const auto found = columns.find(lowered(trimmed(name)));
+    const auto found = columns.find(nameKey(name));
     return found == columns.end() ? -1 : found->second;
   };
   if (!files.field.empty())
@@ -42,7 +47,7 @@ int classField(OGRLayer& layer, const GroundFiles& files)
     refuseTwin(*layer.GetLayerDefn(), files.layer, column);
     return column;
   }
-  for (const char* name : { "class", "name", "code", "type", "unit", "material", "ground" })
+  for (const std::string& name : usualNames)
   {
     if (const int column = take(name); column >= 0)
     {
@@ -167,13 +172,21 @@ void stretch(OGRGeometry& geometry, double factor)
 
 } // namespace
 
-std::vector<std::uint8_t> fromPolygons(const GroundFiles& files, const GroundTable& table,
-  const Cells& cells, std::vector<std::string>& notes)
+LayerWish polygonWish(GroundKind kind, const GroundFiles& files)
+{
+  LayerWish wish{ files.layer, files.layerName, kindName(kind) + "LayerName" };
+  wish.what = "layer of polygons";
+  wish.kinds = kPolygons;
+  wish.columns = { files.field.empty() ? usualNames : ColumnChoice{ files.field } };
+  return wish;
+}
+
+std::vector<std::uint8_t> fromPolygons(GroundKind kind, const GroundFiles& files,
+  const GroundTable& table, const Cells& cells, std::vector<std::string>& notes)
 {
   Messages messages;
-  const DatasetPtr dataset = openVector(files.layer, messages);
-  OGRLayer& layer = firstLayer(*dataset, files.layer);
-  refuseSurplusCells(*dataset, files.layer);
+  LayerFile file(polygonWish(kind, files), messages);
+  OGRLayer& layer = file.layer();
   if (layer.GetFeatureCount() == 0)
   {
     throw DataError(files.layer + ": layer \"" + layer.GetName() + "\" has no polygon");
@@ -181,8 +194,9 @@ std::vector<std::uint8_t> fromPolygons(const GroundFiles& files, const GroundTab
   const int column = classField(layer, files);
   const std::string fieldName = layer.GetLayerDefn()->GetFieldDefn(column)->GetNameRef();
   const Columns columns = columnsOf(*layer.GetLayerDefn());
-  const LayerHeights units = heightsOf(*dataset, layer, files.layer, notes);
+  const LayerHeights units = heightsOf(file.dataset(), layer, files.layer, notes);
   const CrsPtr& from = units.horizontal;
+  file.refuseDegrees(from, cells.terrain.geometry().crs);
   noteCrs(from, cells, files.layer, notes);
   std::unique_ptr<OGRCoordinateTransformation> change;
   if (from && cells.crs && !from->IsSame(cells.crs.get()))
@@ -199,11 +213,9 @@ std::vector<std::uint8_t> fromPolygons(const GroundFiles& files, const GroundTab
   Burner burner(cells, classes);
   OGREnvelope all;
   bool overlaps = false;
-  std::int64_t number = 0;
-  messages.clear();
-  while (const OGRFeatureUniquePtr feature{ layer.GetNextFeature() })
+  while (const OGRFeatureUniquePtr feature = file.next())
   {
-    const Fields fields(files.layer, columns, *feature, ++number);
+    const Fields fields(files.layer, columns, *feature, file.number());
     const OGRGeometry* written = feature->GetGeometryRef();
     if (!written || written->IsEmpty())
     {
@@ -239,16 +251,12 @@ std::vector<std::uint8_t> fromPolygons(const GroundFiles& files, const GroundTab
     const int row = table.rowOf(*text);
     if (row == 0)
     {
-      failClass(files.layer + ", row " + std::to_string(number),
+      failClass(files.layer + ", row " + std::to_string(file.number()),
         "class \"" + *text + "\" (field \"" + fieldName + "\")", files.table, table);
     }
     burner.add(std::move(geometry), row);
   }
-  if (!messages.failure().empty())
-  {
-    throw FileError(files.layer + ": row " + std::to_string(number + 1) +
-      " cannot be read: " + messages.failure());
-  }
+  file.tell(notes, true);
   if (!all.IsInit())
   {
     throw DataError(files.layer + ": layer \"" + layer.GetName() + "\" has no polygon");

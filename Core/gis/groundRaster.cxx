@@ -21,6 +21,9 @@ namespace rockfall::gis
 namespace
 {
 
+/// Centres this near to the edge of a class's cell are on it, in cells of the terrain.
+constexpr double edge = 1e-6;
+
 /// The first band with its mask or transparency, and no other one: what these hold would count as
 /// data of the first where that has none.
 DatasetPtr firstBandOf(GDALDataset& source, const std::string& fileName, const Messages& messages)
@@ -51,11 +54,11 @@ DatasetPtr firstBandOf(GDALDataset& source, const std::string& fileName, const M
 
 } // namespace
 
-std::vector<std::uint8_t> fromRaster(const GroundFiles& files, const GroundTable& table,
-  const Cells& cells, std::vector<std::string>& notes)
+std::vector<std::uint8_t> fromRaster(const GroundFiles& files, const std::string& raster,
+  const GroundTable& table, const Cells& cells, std::vector<std::string>& notes)
 {
   Messages messages;
-  const DatasetPtr source = openRaster(files.layer, messages);
+  const DatasetPtr source = openRaster(raster, messages);
   if (source->GetRasterCount() == 0)
   {
     throw FileError(files.layer + ": has no raster band");
@@ -86,9 +89,12 @@ std::vector<std::uint8_t> fromRaster(const GroundFiles& files, const GroundTable
     }
   };
   const auto digits = [](double value) { return CPLString().Printf("%.17g", value); };
-  add({ "-of", "VRT", "-r", "near", "-dstalpha", "-te", digits(cells.box.xMin),
-    digits(cells.box.yMin), digits(cells.box.xMax), digits(cells.box.yMax), "-ts",
-    std::to_string(cells.columns), std::to_string(cells.rows) });
+  // A centre on the edge between two of the layer's cells is in the eastern one, in the southern
+  // one, in whichever order they are stored.
+  const double size = cells.terrain.geometry().cellSize, aside = edge * size;
+  add({ "-of", "VRT", "-r", "near", "-dstalpha", "-te", digits(cells.box.xMin + aside),
+    digits(cells.box.yMin - aside), digits(cells.box.xMax + aside), digits(cells.box.yMax - aside),
+    "-ts", std::to_string(cells.columns), std::to_string(cells.rows) });
   if (from && cells.crs)
   {
     add({ "-t_srs", crsWkt(*cells.crs) }); // classes are no heights: no vertical part

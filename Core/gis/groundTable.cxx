@@ -1,6 +1,8 @@
 #include "gis/groundTable.h"
 
 #include "base/errors.h"
+#include "base/nameKey.h"
+#include "gis/LayerFile.h"
 #include "gis/fields.h"
 #include "gis/gdal.h"
 #include "terrain/presets.h"
@@ -8,6 +10,8 @@
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
 
+#include <algorithm>
+#include <initializer_list>
 #include <limits>
 #include <optional>
 
@@ -20,7 +24,7 @@ namespace
 /// "1", "1.0" and " 01" are one class; "15E2" is a name.
 std::string keyOf(const std::string& text)
 {
-  const std::string key = lowered(trimmed(text));
+  const std::string key = nameKey(text);
   const auto value = parsed(key);
   return value && key.find_first_not_of("+-.0123456789") == std::string::npos ? exactly(*value)
                                                                               : key;
@@ -29,7 +33,7 @@ std::string keyOf(const std::string& text)
 RestitutionModel modelFrom(const Fields& row, const std::string& text)
 {
   std::string letters;
-  for (const char c : lowered(text))
+  for (const char c : nameKey(text))
   {
     letters += (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') ? std::string(1, c) : "";
   }
@@ -82,7 +86,7 @@ void readRestitution(const Fields& row, const Columns& columns, bool preset, Sur
                          .value_or(m.restitutionSpeed);
   for (const YieldingField& field : yieldingFields())
   {
-    if (const auto typed = row.ranged({ field.column, lowered(field.property).c_str() }, 0.0,
+    if (const auto typed = row.ranged({ field.column, nameKey(field.property).c_str() }, 0.0,
           std::numeric_limits<double>::max(), "a finite number, not negative"))
     {
       field.set(m.yielding, *typed);
@@ -109,7 +113,44 @@ void readJoint(const Fields& row, const Columns& columns, bool preset, SurfaceMa
                  .value_or(m.cohesion);
 }
 
+Roughness roughnessFrom(const Fields& row, const Roughness& usual)
+{
+  Roughness r = usual;
+  const double most = std::numeric_limits<double>::max();
+  const auto height = [&](std::initializer_list<const char*> names, double otherwise)
+  { return row.ranged(names, 0.0, most, "a number of metres, not negative").value_or(otherwise); };
+  r.mean = row.ranged({ "roughness_mean", "roughnessmean" }, -most, most, "a number of metres")
+             .value_or(r.mean);
+  r.deviation =
+    height({ "roughness", "roughness_deviation", "roughness_dev", "roughness_sd" }, r.deviation);
+  r.length = height({ "roughness_length", "roughnesslength" }, r.length);
+  r.obstacles = { height({ "rg70" }, r.obstacles[0]), height({ "rg20" }, r.obstacles[1]),
+    height({ "rg10" }, r.obstacles[2]) };
+  try
+  {
+    r.validate();
+  }
+  catch (const Error& error)
+  {
+    row.fail(error.what());
+  }
+  return r;
+}
+
+/// Whether a table says anything of roughness.
+bool hasRoughness(const Columns& columns)
+{
+  return std::any_of(columns.begin(), columns.end(),
+    [](const auto& column)
+    { return column.first.starts_with("roughness") || column.first.starts_with("rg"); });
+}
+
 } // namespace
+
+std::string kindName(GroundKind kind)
+{
+  return kind == GroundKind::Restitution ? "Restitution" : "Joint";
+}
 
 int GroundTable::rowOf(const std::string& key) const
 {
@@ -131,20 +172,26 @@ std::string GroundTable::keys() const
   return list;
 }
 
-GroundTable readGroundTable(
-  GroundKind kind, const std::string& fileName, const SurfaceMaterial& usual)
+GroundTable readGroundTable(GroundKind kind, const GroundFiles& files, const SurfaceMaterial& usual,
+  const Roughness& usualRoughness, std::vector<std::string>& notes)
 {
+  const std::string& fileName = files.table;
   Messages messages;
-  const DatasetPtr dataset = openVector(fileName, messages);
-  OGRLayer& layer = firstLayer(*dataset, fileName, "table");
-  refuseSurplusCells(*dataset, fileName);
+  LayerWish wish{ fileName, files.tableSheet, kindName(kind) + "TableSheet" };
+  wish.what = "table with a column \"class\" or \"name\"";
+  wish.kinds = kRows;
+  wish.columns = { { "class", "name" } };
+  LayerFile file(wish, messages);
+  OGRLayer& layer = file.layer();
   refuseNearMisses(*layer.GetLayerDefn(), fileName,
     { "preset", "model", "rv", "rn", "rv_mean", "restitution", "rv_deviation", "rn_deviation",
       "rv_dev", "rv_sd", "rt", "speed", "phi", "phi_mean", "friction_angle", "phi_deviation",
-      "phi_dev", "phi_sd", "friction_angle_deviation", "cohesion" },
+      "phi_dev", "phi_sd", "friction_angle_deviation", "cohesion", "roughness", "roughness_mean",
+      "roughness_deviation", "roughness_dev", "roughness_sd", "roughness_length", "rg70", "rg20",
+      "rg10" },
     { "class", "name", "restitutionmodel", "restitutioncoefficient", "restitutiondeviation",
       "tangentialrestitution", "k", "restitutionspeed", "frictionangle", "frictionangledeviation",
-      "c" });
+      "c", "roughnessmean", "roughnesslength" });
   const Columns columns = columnsOf(*layer.GetLayerDefn());
   if (!columns.count("class") && !columns.count("name"))
   {
@@ -152,9 +199,9 @@ GroundTable readGroundTable(
       fieldList(*layer.GetLayerDefn()));
   }
   GroundTable table;
+  const bool rough = kind == GroundKind::Restitution && hasRoughness(columns);
   std::vector<std::string> classes;
-  messages.clear();
-  while (const OGRFeatureUniquePtr feature{ layer.GetNextFeature() })
+  while (const OGRFeatureUniquePtr feature = file.next())
   {
     const int number = int(table.names.size()) + 1;
     const Fields row(fileName, columns, *feature, number);
@@ -194,12 +241,12 @@ GroundTable readGroundTable(
                                     : readJoint(row, columns, bool(preset), material);
     table.names.push_back(name.value_or(*(written ? written : name)));
     table.materials.push_back(material);
+    if (rough)
+    {
+      table.roughness.push_back(roughnessFrom(row, usualRoughness));
+    }
   }
-  if (!messages.failure().empty())
-  {
-    throw FileError(fileName + ": row " + std::to_string(table.names.size() + 1) +
-      " cannot be read: " + messages.failure());
-  }
+  file.tell(notes, true);
   if (table.names.empty())
   {
     throw DataError(fileName + ": has no row");

@@ -17,6 +17,7 @@ struct GroundTable
 {
   std::vector<std::string> names;         ///< Row by row.
   std::vector<SurfaceMaterial> materials; ///< Row by row.
+  std::vector<Roughness> roughness;       ///< Row by row; empty if the table has none.
   std::map<std::string, int> rows;        ///< From class (and name, if no class has it), from 1.
 
   /// 0 if there is none. Numbers are one, however they are written.
@@ -25,8 +26,11 @@ struct GroundTable
   std::string keys() const;
 };
 
-/// See readGround. `usual`: what is taken for empty cells.
-GroundTable readGroundTable(
-  GroundKind kind, const std::string& fileName, const SurfaceMaterial& usual);
+/// As properties begin: "Restitution" or "Joint".
+std::string kindName(GroundKind kind);
+
+/// The table of `files`, see readGround. `usual`, `usualRoughness`: what is taken for empty cells.
+GroundTable readGroundTable(GroundKind kind, const GroundFiles& files, const SurfaceMaterial& usual,
+  const Roughness& usualRoughness, std::vector<std::string>& notes);
 
 } // namespace rockfall::gis

@@ -1,5 +1,6 @@
 #include "gis/headers.h"
 
+#include "base/nameKey.h"
 #include "gis/fields.h"
 #include "gis/heightUnit.h"
 
@@ -94,8 +95,7 @@ Header sagaHeader(GDALDataset& dataset)
         const auto equals = line.find('=');
         if (equals != std::string::npos)
         {
-          header.emplace(
-            lowered(trimmed(line.substr(0, equals))), trimmed(line.substr(equals + 1)));
+          header.emplace(nameKey(line.substr(0, equals)), trimmed(line.substr(equals + 1)));
         }
         return true;
       });
@@ -114,7 +114,7 @@ Header grassHeader(const std::string& fileName)
       {
         return trimmed(line).empty();
       }
-      header.emplace(lowered(trimmed(line.substr(0, colon))), trimmed(line.substr(colon + 1)));
+      header.emplace(nameKey(line.substr(0, colon)), trimmed(line.substr(colon + 1)));
       return true;
     });
   return header;
@@ -132,7 +132,7 @@ PrjHeights prjHeights(GDALDataset& dataset)
   forEachLine(path,
     [&](const std::string& line)
     {
-      const std::string low = lowered(trimmed(line));
+      const std::string low = nameKey(line);
       if (low.starts_with("zunits"))
       {
         heights.unit = trimmed(low.substr(6));

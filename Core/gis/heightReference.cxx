@@ -1,6 +1,7 @@
 #include "gis/heightReference.h"
 
 #include "base/errors.h"
+#include "base/nameKey.h"
 #include "gis/fields.h"
 #include "gis/gdal.h"
 
@@ -18,7 +19,7 @@ namespace
 std::string key(const char* name)
 {
   std::string result;
-  for (const char c : lowered(name ? name : ""))
+  for (const char c : nameKey(name ? name : ""))
   {
     if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'))
     {

@@ -1,5 +1,6 @@
 #include "gis/heightUnit.h"
 
+#include "base/nameKey.h"
 #include "gis/fields.h"
 
 #include <algorithm>
@@ -55,7 +56,7 @@ std::optional<double> byName(const std::string& name)
 /// Lowered, without brackets about it, with blanks for underscores and without what it is over.
 std::string plain(const std::string& unit)
 {
-  std::string name = lowered(trimmed(unit));
+  std::string name = nameKey(unit);
   if (name.size() > 2 && name.front() == '[' && name.back() == ']')
   {
     name = trimmed(name.substr(1, name.size() - 2));

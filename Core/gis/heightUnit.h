@@ -15,6 +15,9 @@ constexpr double kHighest = 20000.0; // m
 /// Deeper than any land, as −9999 is.
 constexpr double kDeepest = -1000.0; // m
 
+/// No coordinate of a map is so large, not even in Gauss-Krüger zones before which a number stands.
+constexpr double kFarthest = 1e9; // m
+
 constexpr double kFoot = 0.3048;                // m, international
 constexpr double kSurveyFoot = 1200.0 / 3937.0; // m, United States
 

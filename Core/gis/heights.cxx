@@ -1,6 +1,7 @@
 #include "gis/heights.h"
 
 #include "base/errors.h"
+#include "base/nameKey.h"
 #include "gis/headers.h"
 #include "gis/heightReference.h"
 #include "gis/heightUnit.h"
@@ -201,7 +202,7 @@ private:
       value =
         dataset_.GetMetadataItem(variable ? (std::string(variable) + "#" + name).c_str() : name);
     }
-    return lowered(trimmed(value ? value : ""));
+    return nameKey(value ? value : "");
   }
 
   bool isDown(std::optional<bool> axis)
@@ -277,7 +278,7 @@ Heights heightsOf(GDALDataset& dataset, GDALRasterBand& band, const std::string&
 Heights LayerHeights::ofColumn(const std::string& name) const
 {
   Heights heights = *this;
-  const std::string low = lowered(trimmed(name));
+  const std::string low = nameKey(name);
   const double sign = scale < 0.0 ? -1.0 : 1.0;
   if (low.ends_with("_ft") || low.ends_with("_feet"))
   {
@@ -380,7 +381,7 @@ Altitude altitudeOf(const LayerHeights& heights, const Fields& row)
   {
     return Altitude::Datum;
   }
-  const std::string mode = lowered(row.text({ "altitudemode" }).value_or("clamptoground"));
+  const std::string mode = nameKey(row.text({ "altitudemode" }).value_or("clamptoground"));
   return mode == "absolute"        ? Altitude::Datum
     : mode.starts_with("relative") ? Altitude::Ground
                                    : Altitude::None;

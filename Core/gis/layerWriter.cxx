@@ -1,6 +1,7 @@
 #include "gis/layerWriter.h"
 
 #include "base/errors.h"
+#include "base/version.h"
 #include "gis/crs.h"
 #include "gis/gdal.h"
 #include "gis/outputFile.h"
@@ -86,6 +87,10 @@ LayerWriter::LayerWriter(const std::string& fileName, const std::string& crs)
   if (!state_->dataset)
   {
     state_->fail();
+  }
+  if (!state_->csv)
+  {
+    state_->dataset->SetMetadataItem("SOFTWARE", versionText().c_str());
   }
 }
 

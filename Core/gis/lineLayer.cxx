@@ -2,10 +2,12 @@
 
 #include "base/errors.h"
 #include "gis/FeatureRow.h"
+#include "gis/LayerFile.h"
 #include "gis/barrierUnits.h"
 #include "gis/crs.h"
 #include "gis/gdal.h"
 #include "gis/heights.h"
+#include "gis/lines.h"
 
 #include <ogrsf_frmts.h>
 
@@ -39,41 +41,22 @@ public:
     }
   }
 
-  void read(const OGRFeature& feature, const Messages& messages)
+  void read(const OGRFeature& feature, std::int64_t number, const Messages& messages)
   {
-    ++number_;
     LayerLine line;
-    line.feature = number_;
-    const FeatureRow row(fileName_, columns_, feature, number_);
+    line.feature = number;
+    const FeatureRow row(fileName_, columns_, feature, number);
     row.refuseLostText(messages);
     line.name = row.text("name").value_or("");
     line.height = row.notNegative("height");
     line.capacity = row.notNegative("capacity");
     refuseOtherUnits(row, line.height, line.capacity);
-    const OGRGeometry* geometry = feature.GetGeometryRef();
-    if (!geometry || geometry->IsEmpty())
+    for (const OGRLineString* part : linesIn(row))
     {
-      row.fail("has no geometry, a line is needed");
-    }
-    const auto type = wkbFlatten(geometry->getGeometryType());
-    if (type == wkbLineString)
-    {
-      this->add(row, *geometry->toLineString(), line);
-    }
-    else if (type == wkbMultiLineString)
-    {
-      for (const OGRLineString* part : *geometry->toMultiLineString())
-      {
-        this->add(row, *part, line);
-      }
-    }
-    else
-    {
-      row.fail(std::string("is a ") + geometry->getGeometryName() + ", a LINESTRING is needed");
+      this->add(row, *part, line);
     }
   }
 
-  std::int64_t number() const { return number_; }
   std::vector<LayerLine> lines;
 
 private:
@@ -106,47 +89,48 @@ private:
   double plane_;
   CrsPtr from_, to_;
   CrsChange change_;
-  std::int64_t number_ = 0;
 };
 
 } // namespace
 
-std::vector<LayerLine> readLineLayer(
-  const std::string& fileName, const std::string& targetCrs, std::vector<std::string>* notes)
+std::vector<LayerLine> readLineLayer(const std::string& fileName, const std::string& targetCrs,
+  const std::string& layerName, std::vector<std::string>* notes)
 {
   std::vector<std::string> told;
   Messages messages;
-  const DatasetPtr dataset = openVector(fileName, messages);
-  OGRLayer& layer = firstLayer(*dataset, fileName);
-  refuseSurplusCells(*dataset, fileName);
-  refuseNearMisses(*layer.GetLayerDefn(), fileName, { "height", "capacity" }, { "name" });
-  const LayerHeights heights = heightsOf(*dataset, layer, fileName, told);
+  LayerWish wish{ fileName, layerName };
+  wish.what = "layer of lines";
+  wish.kinds = kLines;
+  LayerFile file(wish, messages);
+  OGRLayer& layer = file.layer();
+  refuseNearMisses(file.definition(), fileName, { "height", "capacity" }, { "name" });
+  const LayerHeights heights = heightsOf(file.dataset(), layer, fileName, told);
   if (!heights.doubt.empty())
   {
     told.push_back(heights.doubt);
   }
+  file.refuseDegrees(heights.horizontal, targetCrs);
   LineReader reader(fileName, layer, heights, targetCrs);
-  messages.clear();
-  while (const OGRFeatureUniquePtr feature{ layer.GetNextFeature() })
+  while (const OGRFeatureUniquePtr feature = file.next())
   {
-    reader.read(*feature, messages);
+    reader.read(*feature, file.number(), messages);
     if (reader.lines.size() > mostLines)
     {
       throw DataError(fileName + ": layer \"" + layer.GetName() + "\" has more than " +
         std::to_string(mostLines) + " lines; leave out those that no rock can reach");
     }
   }
-  if (!messages.failure().empty())
-  {
-    throw FileError(fileName + ": row " + std::to_string(reader.number() + 1) +
-      " cannot be read: " + messages.failure());
-  }
   if (reader.lines.empty())
   {
     throw DataError(fileName + ": layer \"" + layer.GetName() + "\" has no line");
   }
+  for (LayerLine& line : reader.lines)
+  {
+    line.layer = layer.GetName();
+  }
   if (notes)
   {
+    file.tell(*notes, true);
     notes->insert(notes->end(), told.begin(), told.end());
   }
   return std::move(reader.lines);

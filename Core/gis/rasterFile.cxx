@@ -1,8 +1,10 @@
 #include "gis/rasterFile.h"
 
+#include "base/abort.h"
 #include "base/errors.h"
-#include "gis/asciiGrid.h"
+#include "gis/gridAxes.h"
 #include "gis/heightUnit.h"
+#include "gis/nodata.h"
 #include "gis/rawSize.h"
 
 #include <cpl_string.h>
@@ -37,45 +39,6 @@ GDALRasterBand* alphaBand(GDALDataset& dataset, const GDALRasterBand* heights)
   }
   return nullptr;
 }
-
-/// The band's own nodata value, met in raw values.
-class Nodata
-{
-public:
-  explicit Nodata(GDALRasterBand& band)
-    : single_(band.GetRasterDataType() == GDT_Float32)
-  {
-    int has = 0;
-    const double value = band.GetNoDataValue(&has);
-    if (has)
-    {
-      value_ = value;
-    }
-  }
-
-  bool operator()(double raw) const
-  {
-    if (!value_)
-    {
-      return false;
-    }
-    if (std::isnan(raw))
-    {
-      return std::isnan(*value_);
-    }
-    if (raw == *value_)
-    {
-      return true;
-    }
-    // Single precision: the value was written as a decimal number, −9999.9 or the famous
-    // −3.4028235e38, which do not come back as the float that stands in the cells.
-    return single_ && std::abs(raw - *value_) <= 2.0 * FLT_EPSILON * std::abs(*value_);
-  }
-
-private:
-  bool single_;
-  std::optional<double> value_;
-};
 
 } // namespace
 
@@ -119,10 +82,8 @@ RasterFile::RasterFile(
     throw DataError(fileName + ": has " + std::to_string(columns_) + " columns and " +
       std::to_string(rows_) + " rows, at least 2 of each are needed");
   }
-  if (dataset_->GetDriver() && EQUAL(dataset_->GetDriver()->GetDescription(), "AAIGrid"))
-  {
-    checkAsciiGrid(fileName, columns_, rows_);
-  }
+  requireSubstance(*dataset_, fileName);
+  text_ = checkTextGrid(*dataset_, fileName);
   checkRawSize(*dataset_, fileName);
   this->findPlace();
   heights_ = heightsOf(*dataset_, *band_, fileName_, notes_);
@@ -132,7 +93,14 @@ RasterFile::RasterFile(
 void RasterFile::findPlace()
 {
   crs_ = horizontalCrs(dataset_->GetSpatialRef());
-  if (dataset_->GetGeoTransform(affine_.data()) != CE_None)
+  const bool placed = dataset_->GetGeoTransform(affine_.data()) == CE_None;
+  const auto axes = checkAxes(*dataset_, *band_, placed, fileName_, notes_);
+  if (!placed && axes)
+  {
+    affine_ = axes->affine;
+    crs_ = crs_ ? crs_ : axes->inDegrees ? crsFromEpsg(4326) : nullptr;
+  }
+  else if (!placed)
   {
     if (dataset_->GetGCPCount() > 0)
     {
@@ -259,6 +227,7 @@ SourceGrid RasterFile::read()
   const int step = int(std::min<std::int64_t>(std::int64_t(blocks) * blockRows, rows_));
   for (std::int64_t first = 0; first < rows_; first += step)
   {
+    stayWanted();
     const int count = int(std::min<std::int64_t>(step, rows_ - first));
     this->readRows(int(first), count, grid.heights.data() + first * columns_);
     // No block is asked for twice: GDAL's cache would only be a second copy.
@@ -272,6 +241,8 @@ SourceGrid RasterFile::read()
   }
 
   this->noteZeros(grid.heights);
+  noteMarks(grid.heights, heights_, "nodes of band " + std::to_string(bandNumber_),
+    "gdal_edit.py -a_nodata ", notes_);
 
   if (affine_[2] == 0.0 && affine_[4] == 0.0 && affine_[5] > 0.0)
   {
@@ -306,7 +277,7 @@ void RasterFile::readRows(int first, int count, double* values)
   }
 
   // A mask made from the nodata value says nothing new, unless the value has 64 bits and is not a
-  // double. Real masks and alpha bands do.
+  // double, or is one of all bands together. Real masks and alpha bands do.
   const int flags = band_->GetMaskFlags();
   const GDALDataType type = band_->GetRasterDataType();
   const bool wide = type == GDT_Int64 || type == GDT_UInt64;
@@ -321,7 +292,7 @@ void RasterFile::readRows(int first, int count, double* values)
       fail();
     }
   }
-  if (!(flags & GMF_ALL_VALID) && (!(flags & GMF_NODATA) || wide))
+  if (!(flags & GMF_ALL_VALID) && (!(flags & GMF_NODATA) || wide || (flags & GMF_PER_DATASET)))
   {
     mask.resize(std::size_t(count) * columns_);
     if (band_->GetMaskBand()->RasterIO(GF_Read, 0, first, columns_, count, mask.data(), columns_,
@@ -331,11 +302,17 @@ void RasterFile::readRows(int first, int count, double* values)
     }
   }
 
-  const Nodata nodata(*band_);
+  const Nodata nodata(*dataset_, *band_, heights_);
+  const auto isNull = [&](std::size_t i)
+  {
+    return text_.ownNulls
+      ? !text_.nulls.empty() && text_.nulls[std::size_t(first) * columns_ + i] != 0
+      : nodata(values[i]);
+  };
   for (std::size_t i = 0; i < std::size_t(count) * columns_; ++i)
   {
     const double raw = values[i];
-    if ((!mask.empty() && mask[i] == 0) || (!alpha.empty() && alpha[i] == 0.0) || nodata(raw))
+    if ((!mask.empty() && mask[i] == 0) || (!alpha.empty() && alpha[i] == 0.0) || isNull(i))
     {
       values[i] = std::numeric_limits<double>::quiet_NaN();
       continue;
@@ -358,7 +335,7 @@ void RasterFile::check(int row, int column, double raw, double height) const
       " and that is not the file's nodata value");
   }
   throw DataError(fileName_ + ": the height" + where + " is " + number(height) +
-    " m; a nodata value that the file does not declare? (gdal_edit.py -a_nodata " + number(raw) +
+    " m; a nodata value that the file does not declare? (gdal_edit.py -a_nodata " + exactly(raw) +
     " declares it)");
 }
 

@@ -7,6 +7,7 @@
 #include "gis/gdal.h"
 #include "gis/heights.h"
 #include "gis/resample.h"
+#include "gis/textGrid.h"
 
 #include <string>
 #include <vector>
@@ -58,6 +59,7 @@ private:
   CrsPtr crs_;
   bool georeferenced_ = true;
   Heights heights_;
+  TextGrid text_;
 };
 
 } // namespace rockfall::gis

@@ -1,6 +1,7 @@
 #include "gis/rasterWriter.h"
 
 #include "base/errors.h"
+#include "base/version.h"
 #include "gis/crs.h"
 #include "gis/gdal.h"
 #include "gis/outputFile.h"
@@ -42,6 +43,7 @@ DatasetPtr inMemory(const std::string& fileName, const MapImage& map, Messages& 
     dataset->SetSpatialRef(crsFromText(map.crs).get());
   }
   dataset->SetMetadataItem("AREA_OR_POINT", "Area");
+  dataset->SetMetadataItem("TIFFTAG_SOFTWARE", versionText().c_str());
   for (const auto& [name, text] : map.metadata)
   {
     dataset->SetMetadataItem(name.c_str(), text.c_str());

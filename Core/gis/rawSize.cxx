@@ -134,7 +134,33 @@ void check(GDALDataset& dataset, const std::string& fileName, int depth)
   }
 }
 
+/// Nodes of a raster that nobody minds, 100 MB.
+constexpr double fewNodes = 1.25e7;
+/// Most nodes for each byte of its files: the best compression of a plain of one height has some
+/// 1000.
+constexpr double mostPerByte = 2000.0;
+
 } // namespace
+
+void requireSubstance(GDALDataset& dataset, const std::string& fileName)
+{
+  const double columns = dataset.GetRasterXSize(), rows = dataset.GetRasterYSize();
+  const CPLStringList files(dataset.GetFileList());
+  double bytes = 0.0;
+  for (int k = 0; k < files.size(); ++k)
+  {
+    VSIStatBufL status;
+    bytes += VSIStatL(files[k], &status) == 0 ? double(status.st_size) : 0.0;
+  }
+  if (columns * rows > fewNodes && bytes > 0.0 && columns * rows > mostPerByte * bytes)
+  {
+    throw DataError(fileName + ": its " + gis::number(columns) + " x " + gis::number(rows) +
+      " nodes need " + gis::number(columns * rows * sizeof(double) / 1e9) +
+      " GB of memory, but all of it is in " + gis::number(bytes) +
+      " bytes, so that nearly nothing of it can be data; cut out what is, e.g. with "
+      "gdal_translate -projwin");
+  }
+}
 
 void checkRawSize(GDALDataset& dataset, const std::string& fileName)
 {

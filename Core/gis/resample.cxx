@@ -1,5 +1,6 @@
 #include "gis/resample.h"
 
+#include "base/abort.h"
 #include "base/errors.h"
 #include "gis/gdal.h"
 
@@ -139,7 +140,8 @@ GridGeometry layOut(const SourceGrid& source, const CrsChange& change, const Res
     throw DataError(fileName + ": a cell size of " + number(how.cellSize) + " m leaves " +
       number(columns) + " x " + number(rows) + " nodes, at least 2 x 2 are needed");
   }
-  requireMemory(columns * rows, fileName);
+  // The source's nodes stay until the target's are made.
+  requireMemory(columns * rows + double(source.heights.size()), fileName);
   if (std::max(columns, rows) > std::numeric_limits<int>::max())
   {
     throw DataError(fileName + ": a cell size of " + number(how.cellSize) + " m gives " +
@@ -168,6 +170,7 @@ std::vector<double> resample(const SourceGrid& source, const CrsChange& change,
   std::vector<double> x(std::size_t(count), 0.0), y(x), heights(std::size_t(target.nodeCount()));
   for (int row = 0; row < target.rows; ++row)
   {
+    stayWanted();
     const double nodeY = target.yOrigin + (target.rows - 1 - row) * how.cellSize;
     double* nodes = heights.data() + std::size_t(row) * target.columns;
     for (int line = 0; line < samples; ++line)

@@ -1,7 +1,8 @@
 #include "gis/rockContacts.h"
 
-#include "base/RockMaterial.h"
 #include "base/errors.h"
+#include "base/nameKey.h"
+#include "gis/LayerFile.h"
 #include "gis/fields.h"
 #include "gis/gdal.h"
 #include "terrain/material.h"
@@ -32,7 +33,7 @@ Names namesOf(std::span<const std::string> materials)
   Names names;
   for (const std::string& material : materials)
   {
-    const std::string key = materialKey(material);
+    const std::string key = nameKey(material);
     if (!key.empty())
     {
       names.emplace(key, trimmed(material));
@@ -41,7 +42,7 @@ Names namesOf(std::span<const std::string> materials)
   return names;
 }
 
-std::string listOf(const Names& names)
+std::string nameList(const Names& names)
 {
   std::string list;
   for (const auto& [key, name] : names)
@@ -82,7 +83,7 @@ public:
     RockContactPair pair;
     pair.first = this->material(row, "material_a");
     pair.second = this->material(row, "material_b");
-    std::pair<std::string, std::string> key = { materialKey(pair.first), materialKey(pair.second) };
+    std::pair<std::string, std::string> key = { nameKey(pair.first), nameKey(pair.second) };
     if (key.second < key.first)
     {
       std::swap(key.first, key.second);
@@ -125,12 +126,12 @@ private:
   std::string material(const Fields& row, const char* column) const
   {
     const std::string text = needed(row, column, row.text({ column }));
-    const auto found = materials_.find(materialKey(text));
+    const auto found = materials_.find(nameKey(text));
     if (found == materials_.end())
     {
       row.fail(std::string("field \"") + column + "\" is \"" + text + "\", which no rock is of; " +
         (materials_.empty() ? "the rocks have no Material"
-                            : "the rocks are of " + listOf(materials_)));
+                            : "the rocks are of " + nameList(materials_)));
     }
     return found->second;
   }
@@ -142,35 +143,35 @@ private:
 
 } // namespace
 
-std::vector<RockContactPair> readRockContacts(
-  const std::string& fileName, double usualCohesion, std::span<const std::string> materials)
+std::vector<RockContactPair> readRockContacts(const std::string& fileName, double usualCohesion,
+  std::span<const std::string> materials, const std::string& layerName,
+  std::vector<std::string>* notes)
 {
   Messages messages;
-  const DatasetPtr dataset = openVector(fileName, messages);
-  OGRLayer& layer = firstLayer(*dataset, fileName, "table");
-  refuseSurplusCells(*dataset, fileName);
-  refuseNearMisses(*layer.GetLayerDefn(), fileName, { "cohesion" },
+  LayerWish wish{ fileName, layerName, "RockContactSheet" };
+  wish.what = "table with \"material_a\" and \"material_b\"";
+  wish.kinds = kRows;
+  wish.columns = { { "material_a" }, { "material_b" } };
+  LayerFile file(wish, messages);
+  refuseNearMisses(file.definition(), fileName, { "cohesion" },
     { "c", "material_a", "material_b", "restitution", "rn", "e", "phi", "friction_angle",
       "frictionangle" });
-  const Columns columns = columnsOf(*layer.GetLayerDefn());
-  PairReader reader(fileName, layer, columns, namesOf(materials));
+  const Columns columns = columnsOf(file.definition());
+  PairReader reader(fileName, file.layer(), columns, namesOf(materials));
   std::vector<RockContactPair> pairs;
-  messages.clear();
-  while (const OGRFeatureUniquePtr feature{ layer.GetNextFeature() })
+  while (const OGRFeatureUniquePtr feature = file.next())
   {
-    const int number = int(pairs.size()) + 1;
-    const Fields row(fileName, columns, *feature, number);
+    const Fields row(fileName, columns, *feature, file.number());
     row.refuseLostText(messages);
-    pairs.push_back(reader.read(row, number, usualCohesion));
-  }
-  if (!messages.failure().empty())
-  {
-    throw FileError(fileName + ": row " + std::to_string(pairs.size() + 1) +
-      " cannot be read: " + messages.failure());
+    pairs.push_back(reader.read(row, int(file.number()), usualCohesion));
   }
   if (pairs.empty())
   {
     throw DataError(fileName + ": has no row");
+  }
+  if (notes)
+  {
+    file.tell(*notes, true);
   }
   return pairs;
 }

@@ -1,7 +1,9 @@
 #include "gis/sourceGeometry.h"
 
 #include "base/errors.h"
+#include "gis/LayerFile.h"
 #include "gis/gdal.h"
+#include "gis/lines.h"
 
 #include <ogr_spatialref.h>
 
@@ -16,25 +18,20 @@ namespace
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-/// Corners of the lines in a geometry, of the rings in its polygons.
-void gatherCurves(const OGRGeometry& geometry, std::vector<const OGRLineString*>& curves)
+/// Rings of one polygon or several.
+void gatherRings(const OGRGeometry& geometry, std::vector<const OGRLineString*>& curves)
 {
-  switch (wkbFlatten(geometry.getGeometryType()))
+  if (wkbFlatten(geometry.getGeometryType()) == wkbPolygon)
   {
-    case wkbLineString:
-      curves.push_back(geometry.toLineString());
-      break;
-    case wkbPolygon:
-      for (const OGRLinearRing* ring : *geometry.toPolygon())
-      {
-        curves.push_back(ring);
-      }
-      break;
-    default:
-      for (const OGRGeometry* part : *geometry.toGeometryCollection())
-      {
-        gatherCurves(*part, curves);
-      }
+    for (const OGRLinearRing* ring : *geometry.toPolygon())
+    {
+      curves.push_back(ring);
+    }
+    return;
+  }
+  for (const OGRGeometry* part : *geometry.toGeometryCollection())
+  {
+    gatherRings(*part, curves);
   }
 }
 
@@ -207,7 +204,7 @@ void SourcePlacing::placeParts(
       " that is not valid: its outline crosses or touches itself");
   }
   std::vector<const OGRLineString*> curves;
-  gatherCurves(geometry, curves);
+  line ? void(curves = linesIn(row)) : gatherRings(geometry, curves);
   for (const OGRLineString* curve : curves)
   {
     std::vector<Vec3>& part = source.parts.emplace_back();
@@ -235,6 +232,12 @@ void SourcePlacing::place(const FeatureRow& row, SourceRow& source)
     this->placePoint(row, nullptr, source);
     return;
   }
+  if (kindOf(geometry) == kLines)
+  {
+    source.geometry = SourceGeometry::Line;
+    this->placeParts(row, *geometry, source);
+    return;
+  }
   switch (wkbFlatten(geometry->getGeometryType()))
   {
     case wkbPoint:
@@ -252,11 +255,6 @@ void SourcePlacing::place(const FeatureRow& row, SourceRow& source)
       this->placePoint(row, points.getGeometryRef(0), source);
       break;
     }
-    case wkbLineString:
-    case wkbMultiLineString:
-      source.geometry = SourceGeometry::Line;
-      this->placeParts(row, *geometry, source);
-      break;
     case wkbPolygon:
     case wkbMultiPolygon:
       source.geometry = SourceGeometry::Polygon;

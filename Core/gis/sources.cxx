@@ -3,6 +3,7 @@
 #include "base/RockMaterial.h"
 #include "base/errors.h"
 #include "gis/FeatureRow.h"
+#include "gis/LayerFile.h"
 #include "gis/crs.h"
 #include "gis/gdal.h"
 #include "gis/heightReference.h"
@@ -134,9 +135,14 @@ std::string differentHeights(const std::string& one, const std::string& other)
 SourceLayer readSourceLayer(const std::string& fileName, const SourceOptions& options)
 {
   Messages messages;
-  const DatasetPtr dataset = openVector(fileName, messages);
-  OGRLayer& layer = firstLayer(*dataset, fileName);
-  refuseSurplusCells(*dataset, fileName);
+  LayerWish wish{ fileName, options.layer };
+  wish.what = "layer of points, lines or polygons, nor a table with x and y";
+  wish.kinds = kPoints | kLines | kPolygons | kRows;
+  wish.better = kPoints | kRows;
+  wish.columns = { { "amount", "intensity", "volume", "vol_law", "shape", "source", "source_id",
+    "density", "dev_xy", "dev_att" } };
+  LayerFile file(wish, messages);
+  OGRLayer& layer = file.layer();
   refuseNearMisses(*layer.GetLayerDefn(), fileName,
     { "amount", "intensity", "volume", "vol_law", "vol_dev", "vol_min", "vol_max", "vol_exp",
       "material", "mat_name", "density", "young", "poisson", "height", "source_id", "dev_xy",
@@ -147,9 +153,13 @@ SourceLayer readSourceLayer(const std::string& fileName, const SourceOptions& op
 
   SourceLayer result;
   SourcePlacing placing;
-  placing.heights = heightsOf(*dataset, layer, fileName, result.notes);
+  placing.heights = heightsOf(file.dataset(), layer, fileName, result.notes);
   placing.from = placing.heights.horizontal;
   placing.haveTerrain = options.haveTerrain;
+  if (options.haveTerrain)
+  {
+    file.refuseDegrees(placing.from, options.targetCrs);
+  }
   if (!options.targetCrs.empty())
   {
     placing.to = crsFromText(options.targetCrs);
@@ -162,12 +172,11 @@ SourceLayer readSourceLayer(const std::string& fileName, const SourceOptions& op
 
   result.ownCrs = placing.from ? crsLabel(*placing.from) : std::string();
   bool allHaveGeometry = true;
-  messages.clear();
-  while (const OGRFeatureUniquePtr feature{ layer.GetNextFeature() })
+  while (const OGRFeatureUniquePtr feature = file.next())
   {
     SourceRow source;
-    source.row = std::int64_t(result.rows.size()) + 1;
-    if (source.row > options.mostRocks)
+    source.row = file.number();
+    if (std::int64_t(result.rows.size()) >= options.mostRocks)
     {
       throw DataError(fileName + ": layer \"" + layer.GetName() + "\" has more than " +
         std::to_string(options.mostRocks) +
@@ -182,11 +191,7 @@ SourceLayer readSourceLayer(const std::string& fileName, const SourceOptions& op
     readRelease(row, source);
     result.rows.push_back(std::move(source));
   }
-  if (!messages.failure().empty())
-  {
-    throw FileError(fileName + ": row " + std::to_string(result.rows.size() + 1) +
-      " cannot be read: " + messages.failure());
-  }
+  file.tell(result.notes, true);
   if (result.rows.empty())
   {
     throw DataError(

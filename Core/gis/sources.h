@@ -64,6 +64,8 @@ struct SourceOptions
   /// WKT or "EPSG:n": what has a CRS is brought to it, heights to its vertical part if both have
   /// one. Empty: coordinates are taken as they are.
   std::string targetCrs;
+  /// By name (gis/LayerFile.h); empty: the one that will do.
+  std::string layer = {};
   /// There is a terrain to stand on: z may be missing.
   bool haveTerrain = false;
   /// More rows are an error, and so are more rocks.
@@ -82,7 +84,7 @@ struct SourceLayer
   std::vector<std::string> notes; ///< One sentence per thing that was done to the data.
 };
 
-/// Reads the first layer of anything OGR opens. Columns are listed in docs/RockBlocks.md, without
+/// Reads one layer of anything OGR opens. Columns are listed in docs/RockBlocks.md, without
 /// regard to upper and lower case; other columns are ignored, and an empty cell is as good as no
 /// column. Points, lines and polygons; multipoints of one point; rows of a table without geometry
 /// have x, y and z. Where a geometry has its own z, that goes before the column z (or z_m, z_ft).

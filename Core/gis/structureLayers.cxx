@@ -1,12 +1,15 @@
 #include "gis/structureLayers.h"
 
 #include "base/errors.h"
+#include "base/nameKey.h"
 #include "gis/FeatureRow.h"
+#include "gis/LayerFile.h"
 #include "gis/barrierUnits.h"
 #include "gis/crs.h"
 #include "gis/gdal.h"
 #include "gis/heightReference.h"
 #include "gis/heights.h"
+#include "gis/lines.h"
 #include "terrain/Obstacles.h"
 #include "terrain/Terrain.h"
 
@@ -107,25 +110,25 @@ private:
 };
 
 /// Calls `use` for every row, then tells a layer beside the terrain.
-void forEachRow(const std::string& fileName, const Terrain& terrain,
-  std::vector<std::string>& notes, std::initializer_list<const char*> numbers,
+void forEachRow(const LayerWish& wish, const Terrain& terrain, std::vector<std::string>& notes,
+  std::initializer_list<const char*> numbers,
   const std::function<void(const FeatureRow&, std::int64_t, Placing&)>& use)
 {
+  const std::string& fileName = wish.fileName;
   Messages messages;
-  const DatasetPtr dataset = openVector(fileName, messages);
-  OGRLayer& layer = firstLayer(*dataset, fileName);
-  refuseSurplusCells(*dataset, fileName);
-  refuseNearMisses(*layer.GetLayerDefn(), fileName, numbers, { "name", "x", "y" });
+  LayerFile file(wish, messages);
+  OGRLayer& layer = file.layer();
+  refuseNearMisses(file.definition(), fileName, numbers, { "name", "x", "y" });
   const Columns columns = columnsOf(*layer.GetLayerDefn());
-  const LayerHeights heights = heightsOf(*dataset, layer, fileName, notes);
+  const LayerHeights heights = heightsOf(file.dataset(), layer, fileName, notes);
   if (!heights.doubt.empty())
   {
     notes.push_back(heights.doubt);
   }
+  file.refuseDegrees(heights.horizontal, terrain.geometry().crs);
   Placing placing(fileName, heights, terrain, notes);
   std::int64_t count = 0;
-  messages.clear();
-  while (const OGRFeatureUniquePtr feature{ layer.GetNextFeature() })
+  while (const OGRFeatureUniquePtr feature = file.next())
   {
     ++count;
     if (count > kMostRows)
@@ -134,15 +137,11 @@ void forEachRow(const std::string& fileName, const Terrain& terrain,
         std::to_string(kMostRows) +
         " rows. Is it the right layer? Cut out what stands on the terrain");
     }
-    const FeatureRow row(fileName, columns, *feature, count);
+    const FeatureRow row(fileName, columns, *feature, file.number());
     row.refuseLostText(messages);
-    use(row, count, placing);
+    use(row, file.number(), placing);
   }
-  if (!messages.failure().empty())
-  {
-    throw FileError(
-      fileName + ": row " + std::to_string(count + 1) + " cannot be read: " + messages.failure());
-  }
+  file.tell(notes, true);
   if (count == 0)
   {
     throw DataError(fileName + ": layer \"" + layer.GetName() + "\" has no row");
@@ -241,30 +240,8 @@ private:
 /// The lines of a row, each in the local frame.
 std::vector<std::vector<Eigen::Vector2d>> linesOf(const FeatureRow& row, Placing& placing)
 {
-  const OGRGeometry* geometry = row.geometry();
-  if (!geometry)
-  {
-    row.fail("has no geometry, a line is needed");
-  }
-  std::vector<const OGRLineString*> parts;
-  const auto type = wkbFlatten(geometry->getGeometryType());
-  if (type == wkbLineString)
-  {
-    parts.push_back(geometry->toLineString());
-  }
-  else if (type == wkbMultiLineString)
-  {
-    for (const OGRLineString* part : *geometry->toMultiLineString())
-    {
-      parts.push_back(part);
-    }
-  }
-  else
-  {
-    row.fail(std::string("is a ") + geometry->getGeometryName() + ", a LINESTRING is needed");
-  }
   std::vector<std::vector<Eigen::Vector2d>> lines;
-  for (const OGRLineString* part : parts)
+  for (const OGRLineString* part : linesIn(row))
   {
     std::vector<Eigen::Vector2d>& line = lines.emplace_back();
     for (int k = 0; k < part->getNumPoints(); ++k)
@@ -283,10 +260,20 @@ std::vector<std::vector<Eigen::Vector2d>> linesOf(const FeatureRow& row, Placing
   return lines;
 }
 
-void readEmbankments(const std::string& fileName, const Terrain& terrain, OwnMaterials& own,
+LayerWish wishFor(const std::string& fileName, const std::string& layer, const char* property)
+{
+  LayerWish wish{ fileName, layer, property };
+  wish.what = "layer of lines";
+  wish.kinds = kLines;
+  return wish;
+}
+
+void readEmbankments(const StructureFiles& files, const Terrain& terrain, OwnMaterials& own,
   Structures& all, std::vector<std::string>& notes)
 {
-  forEachRow(fileName, terrain, notes,
+  LayerWish wish = wishFor(files.embankments, files.embankmentLayer, "EmbankmentLayerName");
+  wish.columns = { { "width" }, { "height", "crest" } };
+  forEachRow(wish, terrain, notes,
     { "height", "crest", "width", "slope", "slope_up", "slope_down", "rv", "rn", "rt", "phi",
       "cohesion" },
     [&](const FeatureRow& row, std::int64_t count, Placing& placing)
@@ -325,7 +312,11 @@ void readTrees(const StructureFiles& files, const Terrain& terrain, OwnMaterials
   Structures& all, std::vector<std::string>& notes)
 {
   std::int64_t outside = 0;
-  forEachRow(files.trees, terrain, notes,
+  LayerWish wish{ files.trees, files.treeLayer, "TreeLayerName" };
+  wish.what = "layer of points";
+  wish.kinds = kPoints | kRows;
+  wish.columns = { { "diameter" }, { "height" } };
+  forEachRow(wish, terrain, notes,
     { "diameter", "height", "factor", "capacity", "rv", "rn", "rt", "phi", "cohesion" },
     [&](const FeatureRow& row, std::int64_t count, Placing& placing)
     {
@@ -383,10 +374,12 @@ void readTrees(const StructureFiles& files, const Terrain& terrain, OwnMaterials
   }
 }
 
-void readBarriers(const std::string& fileName, const Terrain& terrain, Structures& all,
+void readBarriers(const StructureFiles& files, const Terrain& terrain, Structures& all,
   std::vector<std::string>& notes)
 {
-  forEachRow(fileName, terrain, notes, { "height", "capacity", "mode", "absorbs" },
+  LayerWish wish = wishFor(files.barriers, files.barrierLayer, "BarrierLayerName");
+  wish.columns = { { "height" } };
+  forEachRow(wish, terrain, notes, { "height", "capacity", "mode", "absorbs" },
     [&](const FeatureRow& row, std::int64_t count, Placing& placing)
     {
       Barrier b;
@@ -395,7 +388,7 @@ void readBarriers(const std::string& fileName, const Terrain& terrain, Structure
       b.height = needed(row, "height", "that of the barrier over ground in m");
       const auto capacity = row.notNegative("capacity");
       b.capacity = capacity ? kJ * *capacity : b.capacity;
-      const std::string mode = lowered(row.text("mode").value_or("stop"));
+      const std::string mode = nameKey(row.text("mode").value_or("stop"));
       if (mode != "stop" && mode != "record")
       {
         row.failField("mode", " is \"" + mode + "\", it must be stop or record");
@@ -436,7 +429,7 @@ Structures readStructures(
   OwnMaterials own(terrain, all.materials);
   if (!files.embankments.empty())
   {
-    readEmbankments(files.embankments, terrain, own, all, notes);
+    readEmbankments(files, terrain, own, all, notes);
     tryOut(files.embankments, { all.embankments, {}, {}, all.materials }, terrain);
   }
   if (!files.trees.empty())
@@ -446,7 +439,7 @@ Structures readStructures(
   }
   if (!files.barriers.empty())
   {
-    readBarriers(files.barriers, terrain, all, notes);
+    readBarriers(files, terrain, all, notes);
     tryOut(files.barriers, { {}, {}, all.barriers, {} }, terrain);
   }
   return all;

@@ -22,11 +22,13 @@ struct StructureFiles
   /// Trees without a capacity of their own break at that of their diameter (stemCapacity); else
   /// they never break.
   bool treesBreak = false;
+  /// The layer of each file by name (gis/LayerFile.h); empty: the one that will do.
+  std::string embankmentLayer, treeLayer, barrierLayer;
 
   bool any() const { return !embankments.empty() || !trees.empty() || !barriers.empty(); }
 };
 
-/// Reads the first layer of each, brought to the terrain's CRS; without a CRS on either side the
+/// Reads one layer of each, brought to the terrain's CRS; without a CRS on either side the
 /// coordinates are taken as they are. Column names without regard to case; empty cells are as good
 /// as no column. Sides' slopes are metres across per metre down, as a number or as "3:2".
 ///

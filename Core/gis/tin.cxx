@@ -1,5 +1,6 @@
 #include "gis/tin.h"
 
+#include "base/abort.h"
 #include "base/errors.h"
 #include "gis/gdal.h"
 
@@ -88,6 +89,7 @@ TinNodes interpolateTin(const TinPoints& points, const GridGeometry& target, dou
   const double north = south + (target.rows - 1) * target.cellSize;
   for (int k = 0; k < tin->nFacets; ++k)
   {
+    stayWanted();
     double x[3], y[3], z[3];
     for (int i = 0; i < 3; ++i)
     {

@@ -41,13 +41,24 @@ std::string geoJson(const std::vector<Contour>& contours, const std::string& pro
   {
     text += i ? ",\n" : "\n";
     text += "{\"type\":\"Feature\",\"properties\":{";
-    text += property.empty() ? "" : "\"" + property + "\":" + exactText(contours[i].height);
+    if (!property.empty())
+    {
+      text += '"';
+      text += property;
+      text += "\":" + exactText(contours[i].height);
+    }
     text += "},\"geometry\":{\"type\":\"LineString\",\"coordinates\":[";
     for (std::size_t k = 0; k < contours[i].points.size(); ++k)
     {
       const Point& p = contours[i].points[k];
-      text += (k ? ",[" : "[") + exactText(p.x) + "," + exactText(p.y) +
-        (property.empty() ? "," + exactText(contours[i].height) : "") + "]";
+      text += k ? ",[" : "[";
+      text += exactText(p.x) + "," + exactText(p.y);
+      if (property.empty())
+      {
+        text += ',';
+        text += exactText(contours[i].height);
+      }
+      text += "]";
     }
     text += "]}}";
   }
@@ -451,7 +462,7 @@ TEST(ContourErrors, EachNamesWhatIsWrong)
   file = writeFile("twice.csv", "WKT,elev,ELEV\n\"LINESTRING(0 0,50 0)\",10,1\n");
   EXPECT_TRUE(holds(message(file), { file, "two columns \"elev\"", "\"ELEV\"" }));
   file = writeFile("points.csv", "WKT,elev\n\"POINT(0 0)\",10\n\"POINT(0 30)\",20\n");
-  EXPECT_TRUE(holds(message(file), { file, "POINT", "lines" }));
+  EXPECT_TRUE(holds(message(file), { file, "POINT", "LINESTRING" }));
   file = writeFile(
     "straight.csv", "WKT,elev\n\"LINESTRING(0 0,50 50)\",10\n\"LINESTRING(60 60,90 90)\",20\n");
   EXPECT_TRUE(holds(message(file), { file, "triangulation" }));
@@ -460,9 +471,11 @@ TEST(ContourErrors, EachNamesWhatIsWrong)
 TEST(ContourErrors, WhatIsNoLayerOfLines)
 {
   const std::string text = writeFile("notes.txt", "no layer at all\n");
-  EXPECT_FALSE(isVectorFile(text));
-  EXPECT_FALSE(isVectorFile(writeAscii({ "1 2", "3 4" }, 2)));
-  EXPECT_TRUE(isVectorFile(geoJson(smallHill())));
+  EXPECT_TRUE(
+    holds(messageOf<FileError>([&] { readSlope(text, "", {}, {}); }), { text, "is not a raster" }));
+  EXPECT_EQ(readSlope(writeAscii({ "1 2", "3 4" }, 2), "", {}, {}).heights.size(), 4u);
+  EXPECT_EQ(
+    readSlope(geoJson(smallHill()), "", {}, {}).notes, readContours(geoJson(smallHill())).notes);
   EXPECT_TRUE(
     holds(messageOf<FileError>([&] { readContours(text); }), { text, "not a vector layer" }));
 }

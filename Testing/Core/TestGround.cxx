@@ -82,6 +82,61 @@ std::string box(double x0, double y0, double x1, double y1, const std::string& p
 
 } // namespace
 
+TEST(Ground, ClassesOnHalfCellsAreTheSameHoweverTheyAreStored)
+{
+  const Terrain terrain = slope();
+  for (const double shift : { 5.0, 0.0, 2.5 })
+  {
+    for (const double size : { 10.0, 5.0, 20.0 })
+    {
+      // Cells of the layer whose edges are on the centres of the terrain's, or not.
+      RawRaster north;
+      north.columns = north.rows = 24;
+      north.affine = { west + shift - 8.0 * size, size, 0.0, south + shift + 16.0 * size, 0.0,
+        -size };
+      north.crs = "EPSG:32632";
+      north.type = "Byte";
+      north.fill(
+        [&](double x, double y)
+        {
+          return 1.0 +
+            double(
+              (std::int64_t(std::floor(x / size)) * 7 + std::int64_t(std::floor(y / size)) * 5) %
+              3 % 2);
+        });
+      // Row r and column c of a raster that is stored from the other sides.
+      const auto stored = [&](bool southUp, bool mirrored)
+      {
+        RawRaster raster = north;
+        for (int r = 0; r < 24; ++r)
+        {
+          for (int c = 0; c < 24; ++c)
+          {
+            raster.values[std::size_t(r * 24 + c)] =
+              north.values[std::size_t((southUp ? 23 - r : r) * 24 + (mirrored ? 23 - c : c))];
+          }
+        }
+        if (southUp)
+        {
+          raster.affine[3] -= 24.0 * size;
+          raster.affine[5] = size;
+        }
+        if (mirrored)
+        {
+          raster.affine[0] += 24.0 * size;
+          raster.affine[1] = -size;
+        }
+        const MaterialClasses classes = read({ raster.write(), table(), "" }, terrain);
+        return std::vector<std::uint8_t>(classes.cells.begin(), classes.cells.end());
+      };
+      const std::vector<std::uint8_t> expected = stored(false, false);
+      EXPECT_EQ(stored(true, false), expected) << shift << ", " << size;
+      EXPECT_EQ(stored(false, true), expected) << shift << ", " << size;
+      EXPECT_EQ(stored(true, true), expected) << shift << ", " << size;
+    }
+  }
+}
+
 TEST(Ground, RasterOnAnotherGrid)
 {
   const Terrain terrain = slope();
@@ -190,7 +245,9 @@ TEST(Ground, PolygonsInDegrees)
 
 TEST(Ground, JointTableAndModels)
 {
-  const Terrain terrain = slope("EPSG:32632", { .cohesion = 7.0 });
+  SurfaceMaterial sticky;
+  sticky.cohesion = 7.0;
+  const Terrain terrain = slope("EPSG:32632", sticky);
   const MaterialClasses joints = read(
     { halves().write(), table("class;phi;phi_deviation;cohesion\n1;35;2;\n2;20.5;;100\n"), "" },
     terrain, GroundKind::Joint);
@@ -211,11 +268,36 @@ TEST(Ground, JointTableAndModels)
   EXPECT_EQ(models.materials[1].restitutionModel, RestitutionModel::NormalTangential);
 }
 
+TEST(Ground, RoughnessOfClasses)
+{
+  Terrain terrain = slope();
+  terrain = Terrain(terrain, {}, { 0.05, 0.1, 2.0, {} });
+  const MaterialClasses plain = read({ halves().write(), table(), "" }, terrain);
+  EXPECT_TRUE(plain.roughness.empty());
+  const MaterialClasses rough =
+    read({ halves().write(),
+           table("class,rv,roughness_mean,roughness,roughness_length,rg70,rg20,rg10\n1,0.9,,,,,,\n"
+                 "2,0.5,-0.2,0.3,1.5,0.1,0.25,0.6\n"),
+           "" },
+      terrain);
+  ASSERT_EQ(rough.roughness.size(), 2u);
+  EXPECT_EQ(rough.roughness[0], terrain.roughness());
+  EXPECT_EQ(rough.roughness[1], (Roughness{ -0.2, 0.3, 1.5, { 0.1, 0.25, 0.6 } }));
+  const auto said = [](const std::string& row)
+  {
+    return failure(
+      { halves().write(), table("class,rv,roughness,roughness_length,rg10\n" + row), "" });
+  };
+  EXPECT_NE(said("1,0.9,-1,,\n").find("\"roughness\" is -1"), std::string::npos);
+  EXPECT_NE(said("1,0.9,,0,0.5\n").find("RoughnessLength is 0"), std::string::npos);
+}
+
 TEST(Ground, EachClassDrawsItsOwnNumbers)
 {
-  const SurfaceMaterial own{
-    .restitution = 0.7, .restitutionDeviation = 0.1, .frictionAngleDeviation = radians(3.0)
-  };
+  SurfaceMaterial own;
+  own.restitution = 0.7;
+  own.restitutionDeviation = 0.1;
+  own.frictionAngleDeviation = radians(3.0);
   const Terrain plain = slope("EPSG:32632", own);
   Terrain terrain = slope("EPSG:32632", own);
   terrain.setRestitutionClasses(read({ halves().write(), table(), "" }, terrain));
@@ -230,15 +312,15 @@ TEST(Ground, EachClassDrawsItsOwnNumbers)
     // What the slope draws for itself is what it drew without classes, bit for bit.
     ASSERT_EQ(surface.restitution(), before.restitution());
     ASSERT_EQ(surface.friction(), before.friction());
-    const double r[2] = { surface.restitutionOf(surface.restitutionClass(1)),
-      surface.restitutionOf(surface.restitutionClass(15)) };
+    const double r[2] = { surface.restitutionAt({ .cfe = 1 }),
+      surface.restitutionAt({ .cfe = 15 }) };
     for (int k = 0; k < 2; ++k)
     {
       sum[k] += r[k] / n;
       square[k] += r[k] * r[k] / n;
     }
     cross += (r[0] - 0.9) * (r[1] - 0.5) / n;
-    frictions += surface.frictionAt(1) == surface.frictionAt(15);
+    frictions += surface.frictionAt({ .cfe = 1 }) == surface.frictionAt({ .cfe = 15 });
   }
   // Of n draws the mean deviates by σ/√n; four of that. Class 1 is cut at 1, two σ away: its mean
   // is 0.0085 σ less.
@@ -248,8 +330,8 @@ TEST(Ground, EachClassDrawsItsOwnNumbers)
   EXPECT_NEAR(cross, 0.0, 4 * 0.05 * 0.1 / std::sqrt(n)); // independent
   EXPECT_EQ(frictions, 0.0);
   const Surface mean = Surface::asSurveyed(terrain);
-  EXPECT_EQ(mean.restitutionOf(1), 0.9);
-  EXPECT_DOUBLE_EQ(mean.frictionAt(15), std::tan(radians(30.0)));
+  EXPECT_EQ(mean.restitutionAt({ .cfe = 1 }), 0.9);
+  EXPECT_DOUBLE_EQ(mean.frictionAt({ .cfe = 15 }), std::tan(radians(30.0)));
 }
 
 TEST(Ground, DecimalCommasChangeNothing)

@@ -380,7 +380,8 @@ TEST(Heights, ofTreesAndLinesBesideCoordinatesInFeetAreNoted)
   readStructures(files, Terrain(g, std::vector<double>(std::size_t(g.nodeCount()), 60.0)), notes);
   EXPECT_TRUE(holds(joined(notes), { "nothing says what its heights are in" }));
   notes.clear();
-  readLineLayer(layer("WKT,height\n\"LINESTRING(0 0,10 0)\",4\n", "EPSG:2274", lines), "", &notes);
+  readLineLayer(
+    layer("WKT,height\n\"LINESTRING(0 0,10 0)\",4\n", "EPSG:2274", lines), "", "", &notes);
   EXPECT_TRUE(holds(joined(notes), { "nothing says what its heights are in" }));
 }
 
@@ -397,6 +398,7 @@ TEST(Heights, ofKmlAreOverWhatTheirModeSays)
 {
   SourceOptions options;
   options.haveTerrain = true;
+  options.targetCrs = "EPSG:4326";
   SourceLayer read = readSourceLayer(kml("absolute"), options);
   EXPECT_EQ(read.rows.at(0).position.z(), 12.0);
   read = readSourceLayer(kml("relativeToGround"), options);

@@ -128,8 +128,8 @@ TEST(StructureLayers, LocalCoordinatesInFeetBecomeMetres)
   std::vector<std::string> notes;
   const Structures read = readStructures(files, site(), notes);
   EXPECT_DOUBLE_EQ(read.trees.at(0).position.x(), 50.0 * 0.3048);
-  EXPECT_EQ(notes.at(0),
-    files.trees + ": its local coordinates were multiplied by 0.3048 to be metres.");
+  EXPECT_EQ(
+    notes.at(0), files.trees + ": its local coordinates were multiplied by 0.3048 to be metres.");
 }
 
 TEST(StructureLayers, TellWhatIsWrong)

@@ -1,0 +1,50 @@
+#pragma once
+
+/// @file
+/// Drawings (DXF): one layer for OGR, in which every entity says of which of the drawing's own
+/// layers it is. Internal to gis/: needs GDAL's headers.
+
+#include <ogrsf_frmts.h>
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+class GDALDataset;
+
+namespace rockfall::gis
+{
+
+struct LayerWish;
+
+bool isDrawing(GDALDataset& dataset);
+/// The drawing's layer that an entity is of.
+std::string drawingLayerOf(const OGRFeature& entity);
+bool isText(const OGRFeature& entity);  ///< A label.
+bool isPaper(const OGRFeature& entity); ///< Of a sheet to be plotted, not of the model.
+
+/// What the layers of a drawing hold.
+class DrawingLayers
+{
+public:
+  explicit DrawingLayers(OGRLayer& entities);
+
+  /// Those that are read. `notes`: which, and which were left out. Throws DataError as LayerFile
+  /// does, naming the drawing's layers.
+  std::set<std::string> choose(const LayerWish& wish, std::vector<std::string>& notes) const;
+
+private:
+  struct Holding
+  {
+    std::map<unsigned, std::int64_t> count; ///< Entities by kind.
+    bool heights = false;                   ///< Some z is not 0.
+  };
+  std::set<std::string> named(const LayerWish& wish) const;
+  std::string list() const;
+
+  std::map<std::string, Holding> layers_;
+};
+
+} // namespace rockfall::gis

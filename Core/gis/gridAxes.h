@@ -1,0 +1,31 @@
+#pragma once
+
+/// @file
+/// The axes of netCDF grids, of which GDAL's rasters keep a first place and a step. Internal to
+/// gis/.
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+class GDALDataset;
+class GDALRasterBand;
+
+namespace rockfall::gis
+{
+
+/// What the axes say where GDAL finds no place for the raster, as of GMT's Cartesian grids.
+struct AxesPlace
+{
+  std::array<double, 6> affine{}; ///< GDAL's order.
+  bool inDegrees = false;
+};
+
+/// Throws DataError for an axis that is not evenly spaced, and for a variable whose rows run along
+/// x; a note says which places of further axes a band stands for. Does nothing for other formats.
+/// `placed`: GDAL has a place for the raster.
+std::optional<AxesPlace> checkAxes(GDALDataset& dataset, GDALRasterBand& band, bool placed,
+  const std::string& fileName, std::vector<std::string>& notes);
+
+} // namespace rockfall::gis

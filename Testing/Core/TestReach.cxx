@@ -1,0 +1,261 @@
+/// @file
+/// Files that reach out, to the network or to other files of the machine, and rasters that would
+/// take more memory than they are worth.
+
+#include "base/errors.h"
+#include "gis/contours.h"
+#include "gis/lineLayer.h"
+#include "gis/raster.h"
+#include "gis/reach.h"
+#include "gis/sources.h"
+#include "gisFiles.h"
+
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+namespace rockfall
+{
+
+namespace
+{
+
+using namespace rockfall::testing;
+
+std::string refusal(const std::string& file)
+{
+  return messageOf<FileError>([&] { readRaster(file); });
+}
+
+/// A virtual raster of one band with this inside.
+std::string virtualRaster(const std::string& inside, const std::string& subClass = "")
+{
+  return writeFile("reach.vrt",
+    "<VRTDataset rasterXSize=\"2\" rasterYSize=\"2\"><GeoTransform>0,5,0,100,0,-5</GeoTransform>"
+    "<VRTRasterBand dataType=\"Byte\" band=\"1\"" +
+      subClass + ">" + inside + "</VRTRasterBand></VRTDataset>");
+}
+
+std::string source(const std::string& name)
+{
+  return "<SimpleSource><SourceFilename>" + name +
+    "</SourceFilename><SourceBand>1</SourceBand></SimpleSource>";
+}
+
+TEST(Reach, addressesAreRefused)
+{
+  for (const char* name : { "/vsicurl/http://127.0.0.1:9/a.tif", "http://127.0.0.1:9/a.tif",
+         "/vsis3/bucket/a.tif", "/vsizip//vsicurl/https://127.0.0.1:9/a.zip",
+         "NETCDF:\"https://127.0.0.1:9/a.nc\":z", "PG:host=127.0.0.1", "WFS:http://127.0.0.1:9" })
+  {
+    EXPECT_TRUE(holds(refusal(name), { name, "AllowReferences" }));
+    EXPECT_TRUE(
+      holds(messageOf<FileError>([&] { readSourceLayer(name, {}); }), { "AllowReferences" }));
+    EXPECT_TRUE(holds(messageOf<FileError>([&] { readLineLayer(name); }), { "AllowReferences" }));
+  }
+}
+
+/// A port of this machine on which somebody listens.
+class Listener
+{
+public:
+  Listener()
+    : socket_(socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0))
+  {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof(address);
+    auto* const name = reinterpret_cast<sockaddr*>(&address);
+    good_ = bind(socket_, name, size) == 0 && listen(socket_, 16) == 0 &&
+      getsockname(socket_, name, &size) == 0;
+    url_ = "http://127.0.0.1:" + std::to_string(ntohs(address.sin_port)) + "/";
+  }
+  ~Listener() { close(socket_); }
+  Listener(const Listener&) = delete;
+  Listener& operator=(const Listener&) = delete;
+
+  bool good() const { return good_; }
+  const std::string& url() const { return url_; }
+  /// Whether anybody has called.
+  bool called() const
+  {
+    const int call = accept(socket_, nullptr, nullptr);
+    if (call >= 0)
+    {
+      close(call);
+    }
+    return call >= 0;
+  }
+
+private:
+  int socket_;
+  bool good_ = false;
+  std::string url_;
+};
+
+TEST(Reach, nobodyIsCalled)
+{
+  setenv("GDAL_HTTP_TIMEOUT", "1", 1); // for the day when somebody is
+  setenv("GDAL_HTTP_CONNECTTIMEOUT", "1", 1);
+  const Listener listener;
+  ASSERT_TRUE(listener.good());
+  // Tables are looked into before GDAL opens them.
+  for (const char* name : { "a.csv", "a.tif", "a.geojson", "a.xlsx", "a.vrt", "a.gml" })
+  {
+    const std::string url = "/vsicurl/" + listener.url() + name;
+    EXPECT_THROW(readRaster(url), FileError);
+    EXPECT_THROW(readContours(url), FileError);
+    EXPECT_THROW(readSourceLayer(url, {}), FileError);
+    EXPECT_THROW(readLineLayer(url), FileError);
+    EXPECT_FALSE(listener.called()) << url;
+  }
+  const std::string inside = virtualRaster(source("/vsicurl/" + listener.url() + "a.tif"));
+  EXPECT_THROW(readRaster(inside), FileError);
+  EXPECT_FALSE(listener.called());
+}
+
+TEST(Reach, servicesInFilesAreRefused)
+{
+  const std::string wms = writeFile("map.xml",
+    "<GDAL_WMS><Service name=\"TMS\"><ServerUrl>http://127.0.0.1:9/${z}/${x}/${y}.png</ServerUrl>"
+    "</Service><DataWindow><UpperLeftX>0</UpperLeftX><UpperLeftY>10</UpperLeftY><LowerRightX>10"
+    "</LowerRightX><LowerRightY>0</LowerRightY><SizeX>100</SizeX><SizeY>100</SizeY></DataWindow>"
+    "<BandsCount>1</BandsCount></GDAL_WMS>");
+  EXPECT_TRUE(holds(refusal(wms), { wms, "driver WMS", "AllowReferences" }));
+  EXPECT_TRUE(holds(refusal(virtualRaster(source(wms))), { "names", "map.xml", "driver WMS" }));
+  const std::string mrf = writeFile("tiles.mrf",
+    "<MRF_META><Raster><Size x=\"2\" y=\"2\" "
+    "c=\"1\"/><DataType>Byte</DataType><DataFile>/etc/hostname"
+    "</DataFile><Compression>NONE</Compression></Raster></MRF_META>");
+  EXPECT_TRUE(holds(refusal(mrf), { "driver MRF" }));
+  EXPECT_TRUE(holds(refusal("<GDAL_WMS><Service name=\"TMS\"/></GDAL_WMS>"), { "driver WMS" }));
+}
+
+TEST(Reach, virtualRastersNameWhatIsBesideThemOnly)
+{
+  const std::string raw = " subClass=\"VRTRawRasterBand\"";
+  for (const char* name :
+    { "/etc/hostname", "../../../../../../../../../../etc/hostname",
+      "/vsicurl/http://127.0.0.1:9/a.tif", "http://127.0.0.1:9/a.tif", "NETCDF:/etc/hostname:z" })
+  {
+    EXPECT_TRUE(holds(refusal(virtualRaster(source(name))), { name, "beside it" }));
+    EXPECT_TRUE(holds(refusal(virtualRaster("<SourceFilename>" + std::string(name) +
+                          "</SourceFilename><PixelOffset>1</PixelOffset><LineOffset>2</LineOffset>",
+                        raw)),
+      { name }));
+  }
+  EXPECT_TRUE(
+    holds(refusal("<VRTDataset rasterXSize=\"2\" rasterYSize=\"2\"><VRTRasterBand dataType="
+                  "\"Byte\" band=\"1\">" +
+            source("/etc/hostname") + "</VRTRasterBand></VRTDataset>"),
+      { "/etc/hostname" }));
+  EXPECT_TRUE(holds(refusal("vrt:///etc/hostname"), { "AllowReferences" }));
+  // A link to elsewhere is elsewhere.
+  const std::string link = pathOf("link");
+  std::filesystem::remove(link);
+  std::filesystem::create_symlink("/etc/hostname", link);
+  EXPECT_TRUE(holds(refusal(virtualRaster(source(link))), { "not beside it" }));
+  // A virtual raster of a virtual raster.
+  const std::string inner = virtualRaster(source("/etc/hostname"));
+  const std::string outer = writeFile("outer.vrt",
+    "<VRTDataset rasterXSize=\"2\" rasterYSize=\"2\"><VRTRasterBand dataType=\"Byte\" band=\"1\">" +
+      source(inner) + "</VRTRasterBand></VRTDataset>");
+  EXPECT_TRUE(holds(refusal(outer), { outer, "/etc/hostname" }));
+}
+
+TEST(Reach, virtualLayersNameWhatIsBesideThemOnly)
+{
+  const auto layer = [](const std::string& inside)
+  {
+    const std::string path = writeFile("layer.vrt",
+      "<OGRVRTDataSource><OGRVRTLayer name=\"a\">" + inside + "</OGRVRTLayer></OGRVRTDataSource>");
+    return messageOf<FileError>([&] { readSourceLayer(path, {}); });
+  };
+  EXPECT_TRUE(holds(layer("<SrcDataSource>/etc/passwd</SrcDataSource>"), { "/etc/passwd" }));
+  EXPECT_TRUE(holds(layer("<SrcDataSource>PG:host=127.0.0.1</SrcDataSource>"), { "PG:host" }));
+  EXPECT_TRUE(holds(layer("<SrcDataSource>http://127.0.0.1:9/a.json</SrcDataSource>"), { "http" }));
+  const std::string table = writeFile("a.csv", "x,y,z\n1,2,3\n");
+  EXPECT_TRUE(holds(layer("<SrcDataSource>" + table +
+                      "</SrcDataSource><SrcSQL dialect=\"SQLITE\">SELECT * FROM "
+                      "ogr_layer_Extent('/etc/passwd')</SrcSQL>"),
+    { "SQL" }));
+}
+
+TEST(Reach, isAllowedWhereItIsAskedFor)
+{
+  // The numbers of a raster in another folder.
+  const std::string folder = pathOf("elsewhere");
+  std::filesystem::create_directories(folder);
+  const std::string numbers = folder + "/numbers.raw";
+  std::ofstream(numbers, std::ios::binary) << std::string("\x01\x02\x03\x04");
+  std::filesystem::create_directories(pathOf("here"));
+  const std::string path = pathOf("here") + "/a.vrt";
+  std::ofstream(path)
+    << "<VRTDataset rasterXSize=\"2\" rasterYSize=\"2\"><GeoTransform>0,5,0,100,0,"
+       "-5</GeoTransform><VRTRasterBand dataType=\"Byte\" band=\"1\" subClass="
+       "\"VRTRawRasterBand\"><SourceFilename>"
+    << numbers
+    << "</SourceFilename><PixelOffset>1</PixelOffset><LineOffset>2</LineOffset>"
+       "</VRTRasterBand></VRTDataset>";
+  EXPECT_TRUE(holds(refusal(path), { numbers, "not beside it" }));
+  {
+    const AllowReferences allow(true);
+    EXPECT_EQ(readRaster(path).heights, (std::vector<double>{ 1.0, 2.0, 3.0, 4.0 }));
+    {
+      const AllowReferences not_(false);
+      EXPECT_TRUE(holds(refusal(path), { "not beside it" }));
+    }
+    EXPECT_NO_THROW(readRaster(path));
+  }
+  EXPECT_TRUE(holds(refusal(path), { "not beside it" }));
+}
+
+TEST(Limits, ofMemoryAreInProportionToTheFile)
+{
+  const std::string sparse =
+    writeFile("sparse.asc", "ncne8 98 96 N01\n1.5 2 -\n1e1 2 6\n4e8 5 6\n");
+  EXPECT_THROW(readRaster(sparse), Error);
+  const std::string points = writeFile("points.xyz", "0 0 1\n1 0 2\n0 1 3\n40000000 1 4\n");
+  EXPECT_TRUE(holds(messageOf<Error>([&] { readRaster(points); }), { "points.xyz" }));
+  const std::string huge = writeFile("huge.vrt",
+    "<VRTDataset rasterXSize=\"40000\" rasterYSize=\"40000\"><GeoTransform>0,5,0,100,0,-5"
+    "</GeoTransform><VRTRasterBand dataType=\"Float32\" band=\"1\"><NoDataValue>-9999</NoDataValue>"
+    "</VRTRasterBand></VRTDataset>");
+  EXPECT_TRUE(
+    holds(messageOf<DataError>([&] { readRaster(huge); }), { "12.8 GB", "40000 x 40000" }));
+  const std::string header =
+    writeAscii({ "1 2 3", "4 5 6" }, 30000, "xllcorner 0\nyllcorner 0\n", "1");
+  EXPECT_THROW(readRaster(header), FileError);
+  const std::string tile = writeAscii({ "1 2", "3 4" }, 2, "xllcorner 0\nyllcorner 90\n", "5");
+  const std::string mosaic = writeFile("mosaic.vrt",
+    "<VRTDataset rasterXSize=\"40000\" rasterYSize=\"40000\"><GeoTransform>0,5,0,100,0,-5"
+    "</GeoTransform><VRTRasterBand dataType=\"Float32\" band=\"1\"><NoDataValue>-9999</NoDataValue>"
+    "<SimpleSource><SourceFilename>" +
+      tile +
+      "</SourceFilename><SourceBand>1</SourceBand><SrcRect xOff=\"0\" yOff=\"0\" xSize=\"2\" ySize="
+      "\"2\"/><DstRect xOff=\"0\" yOff=\"0\" xSize=\"2\" ySize=\"2\"/></SimpleSource>"
+      "</VRTRasterBand></VRTDataset>");
+  EXPECT_TRUE(holds(messageOf<DataError>([&] { readRaster(mosaic); }), { "-projwin" }));
+}
+
+TEST(Limits, ofContoursThatAreNoPlace)
+{
+  for (const char* text : { "WKT,elev\n\"LINESTRING(2 1)\",10\n\"LINESTRING(16 5)\",20\n",
+         "WKT,elev\n\"LINESTRING(0 0,1e308 0)\",10\n\"LINESTRING(-1e308 5,3 5)\",20\n",
+         "WKT,elev\n\"LINESTRING(0 0,1e200 1e200)\",10\n\"LINESTRING(0 5,3 5)\",20\n",
+         "WKT,elev\n\"LINESTRING(2 1shap0 0)\",10\n\"LINESTRING(16 555)\",20\n\"LIN,2LINEe\n" })
+  {
+    const std::string path = writeFile("lines.csv", text);
+    EXPECT_THROW(readContours(path), Error) << text;
+    EXPECT_THROW(readContours(path, { .cellSize = 1e-300 }), Error) << text;
+  }
+}
+
+} // namespace
+
+} // namespace rockfall
