@@ -10,11 +10,10 @@ namespace rockfall
 void HeightWindow::gather(
   const Surface& surface, double xMin, double xMax, double yMin, double yMax)
 {
-  const Terrain& terrain = surface.terrain();
-  const GridGeometry& g = terrain.geometry();
+  const Surface::Grid& g = surface.grid();
   cellSize_ = g.cellSize;
   inverse_ = 1.0 / g.cellSize;
-  const double north = terrain.height();
+  const double north = g.height();
   const auto cell = [&](double v) { return int(std::floor(std::clamp(v * inverse_, -1e6, 2e9))); };
   const int wantColumn0 = cell(xMin), wantColumn1 = cell(xMax);
   const int wantRow0 = cell(north - yMax), wantRow1 = cell(north - yMin);

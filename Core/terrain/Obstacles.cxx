@@ -212,8 +212,7 @@ Obstacles::Obstacles(Structures structures, const Terrain& terrain)
   meshIndex_ = BoxIndex(boxes);
 
   boxes.clear();
-  const Roughness& rough = terrain.roughness();
-  const double lowered = std::max(0.0, -(rough.mean - 9.0 * rough.deviation));
+  const double lowered = terrain.roughnessDepth();
   for (std::size_t k = 0; k < structures_.trees.size(); ++k)
   {
     const Tree& t = structures_.trees[k];

@@ -1,7 +1,5 @@
 #include "terrain/Surface.h"
 
-#include "base/random.h"
-#include "terrain/Obstacles.h"
 #include "terrain/walls.h"
 
 #include <algorithm>
@@ -21,41 +19,13 @@ constexpr std::int64_t gridKey(int row, int column)
   return ((row + apron) << 32) + column + apron;
 }
 
-/// The mean, or the number of a realisation if there is one to draw it for.
-struct Realisation
-{
-  std::uint64_t seed;
-  std::uint32_t iteration;
-  bool drawn;
-
-  double restitution(const SurfaceMaterial& m, int number) const
-  {
-    if (!drawn || !(m.restitutionDeviation > 0.0))
-    {
-      return m.restitution;
-    }
-    const double deviate = normalDeviate(seed, iteration, Draw::Restitution, std::uint64_t(number));
-    return std::clamp(m.restitution + m.restitutionDeviation * deviate, 0.0, 1.0);
-  }
-  double friction(const SurfaceMaterial& m, int number) const
-  {
-    if (!drawn || !(m.frictionAngleDeviation > 0.0))
-    {
-      return std::tan(m.frictionAngle);
-    }
-    const double deviate =
-      normalDeviate(seed, iteration, Draw::FrictionAngle, std::uint64_t(number));
-    const double angle = m.frictionAngle + m.frictionAngleDeviation * deviate;
-    return std::tan(std::clamp(angle, 0.0, radians(89.0)));
-  }
-};
-
 } // namespace
 
 Surface::Surface(const Terrain& terrain)
   : terrain_(&terrain)
+  , grid_{ terrain.geometry().columns, terrain.geometry().rows, terrain.geometry().cellSize, 1 }
 {
-  this->drawMaterials(false);
+  this->drawMaterials();
 }
 
 Surface Surface::asSurveyed(const Terrain& terrain)
@@ -67,63 +37,106 @@ Surface::Surface(const Terrain& terrain, std::uint64_t seed, int iteration)
   : terrain_(&terrain)
   , seed_(seed)
   , iteration_(std::uint32_t(iteration))
+  , drawn_(true)
+  , per_(terrain.deviationPer())
 {
-  const Roughness& r = terrain.roughness();
-  rough_ = r.any();
-  roughnessBound_ = rough_ ? std::max(0.0, r.mean + largestDeviate * r.deviation) : 0.0;
-  this->drawMaterials(true);
+  for (int k = 0; k <= terrain.restitutionClasses().count(); ++k)
+  {
+    const Roughness& r = terrain.roughnessOf(k);
+    rough_ = rough_ || (r.any() && !r.isField());
+    field_ = field_ || r.isField();
+  }
+  roughnessBound_ = terrain.roughnessHeight();
+  const GridGeometry& g = terrain.geometry();
+  const int parts = terrain.refinement();
+  grid_ = { (g.columns - 1) * parts + 1, (g.rows - 1) * parts + 1, g.cellSize / parts, parts };
+  this->drawMaterials();
 }
 
-void Surface::drawMaterials(bool drawn)
+const Roughness& Surface::roughnessIn(int row, int column) const
 {
-  const Realisation realisation{ seed_, iteration_, drawn };
-  restitution_ = realisation.restitution(terrain_->material(), 0);
-  friction_ = realisation.friction(terrain_->material(), 0);
-  const Obstacles* const obstacles = terrain_->obstacles();
-  const int built = obstacles ? int(obstacles->structures().materials.size()) : 0;
-  for (int k = 1; k <= terrain_->restitutionClasses().count() + built; ++k)
+  const GridGeometry& g = terrain_->geometry();
+  const MaterialClasses& classes = terrain_->restitutionClasses();
+  if (classes.roughness.empty() || classes.cells.empty())
   {
-    restitutions_.push_back(realisation.restitution(terrain_->restitutionMaterial(k), k));
+    return terrain_->roughness();
   }
-  for (int k = 1; k <= terrain_->jointClasses().count() + built; ++k)
-  {
-    frictions_.push_back(realisation.friction(terrain_->jointMaterial(k), k));
-  }
+  // A node on a border is of the cell to its south-east.
+  const std::size_t cell = std::size_t(std::min(row, g.rows - 2)) * std::size_t(g.columns - 1) +
+    std::size_t(std::min(column, g.columns - 2));
+  return terrain_->roughnessOf(classes.cells[cell]);
 }
 
-double Surface::nodeHeight(int row, int column) const
+double Surface::surveyedNode(int row, int column) const
 {
   double z = terrain_->nodeHeight(row, column);
   if (rough_)
   {
-    const std::uint64_t index = std::uint64_t(row) * terrain_->geometry().columns + column;
-    const Roughness& r = terrain_->roughness();
-    z += r.mean + r.deviation * normalDeviate(seed_, iteration_, Draw::Roughness, index);
+    const Roughness& r = this->roughnessIn(row, column);
+    if (!(r.length > 0.0))
+    {
+      const std::uint64_t index = std::uint64_t(row) * terrain_->geometry().columns + column;
+      z += r.mean + r.deviation * normalDeviate(seed_, iteration_, Draw::Roughness, index);
+    }
+  }
+  return z;
+}
+
+double Surface::nodeHeight(int row, int column) const
+{
+  const int p = grid_.parts;
+  if (p == 1 && !field_)
+  {
+    return this->surveyedNode(row, column);
+  }
+  // On the triangle of the survey that the node is in; a corner that has no share in it may be
+  // nodata.
+  const int r = row / p, c = column / p, t = row % p, s = column % p;
+  double z;
+  if (s == 0 && t == 0)
+  {
+    z = this->surveyedNode(r, c);
+  }
+  else
+  {
+    const bool upper = s > t;
+    const auto share = [&](int weight, int down, int right)
+    { return weight == 0 ? 0.0 : double(weight) / p * this->surveyedNode(r + down, c + right); };
+    z = share(p - std::max(s, t), 0, 0) + share(std::min(s, t), 1, 1) +
+      (upper ? share(s - t, 0, 1) : share(t - s, 1, 0));
+  }
+  if (field_)
+  {
+    const Roughness& rough = this->roughnessIn(r, c);
+    if (rough.isField())
+    {
+      const GridGeometry& g = terrain_->geometry();
+      z += RoughField{ seed_, iteration_ }.height(g.xOrigin + column * grid_.cellSize,
+        g.yOrigin + (grid_.rows - 1 - row) * grid_.cellSize, rough);
+    }
   }
   return z;
 }
 
 double Surface::elevation(double x, double y) const
 {
-  if (!rough_)
+  if (!rough_ && !field_)
   {
     return terrain_->elevation(x, y);
   }
-  const std::int64_t id = terrain_->cfeAt(x, y);
-  if (id == 0)
+  const double s = x / grid_.cellSize, t = (grid_.height() - y) / grid_.cellSize;
+  if (!(s >= 0.0 && t >= 0.0 && s <= grid_.columns - 1 && t <= grid_.rows - 1))
   {
     return std::numeric_limits<double>::quiet_NaN();
   }
-  const int columns = terrain_->geometry().columns;
-  std::array<Vec3, 3> p;
-  const auto nodes = terrain_->cfeNodes(id);
-  for (int k = 0; k < 3; ++k)
-  {
-    const int row = int(nodes[k] / columns);
-    const int column = int(nodes[k] % columns);
-    p[k] = terrain_->node(row, column);
-    p[k].z() = this->nodeHeight(row, column);
-  }
+  const int column = std::min(int(s), grid_.columns - 2), row = std::min(int(t), grid_.rows - 2);
+  const bool lower = t - row > s - column;
+  const auto node = [&](int r, int c) {
+    return Vec3(c * grid_.cellSize, (grid_.rows - 1 - r) * grid_.cellSize, this->nodeHeight(r, c));
+  };
+  const std::array<Vec3, 3> p = lower
+    ? std::array<Vec3, 3>{ node(row, column), node(row + 1, column), node(row + 1, column + 1) }
+    : std::array<Vec3, 3>{ node(row, column), node(row + 1, column + 1), node(row, column + 1) };
   const Vec3 n = (p[1] - p[0]).cross(p[2] - p[0]);
   return p[0].z() - (n.x() * (x - p[0].x()) + n.y() * (y - p[0].y())) / n.z();
 }
@@ -151,13 +164,12 @@ void SurfacePatch::findTop()
 void gatherPatch(
   const Surface& surface, double xMin, double xMax, double yMin, double yMax, SurfacePatch& patch)
 {
-  const Terrain& terrain = surface.terrain();
-  const GridGeometry& g = terrain.geometry();
+  const Surface::Grid& g = surface.grid();
   patch.nodes.clear();
   patch.triangles.clear();
   patch.ridges.clear();
   const double inverse = 1.0 / g.cellSize;
-  const double north = terrain.height();
+  const double north = g.height();
   const auto cell = [&](double v) { return int(std::floor(std::clamp(v * inverse, -1e6, 2e9))); };
   const int wantColumn0 = cell(xMin), wantColumn1 = cell(xMax);
   const int wantRow0 = cell(north - yMax), wantRow1 = cell(north - yMin);
@@ -216,7 +228,6 @@ void gatherPatch(
       const int lower = 2 * (r * cellColumns + c);
       const int row = std::clamp(row0 + r, 0, g.rows - 2);
       const int column = std::clamp(column0 + c, 0, g.columns - 2);
-      const std::int64_t id = 2 * (std::int64_t(row) * (g.columns - 1) + column) + 1;
       const std::int64_t key = 2 * gridKey(row0 + r, column0 + c);
       // Edges of the lower triangle: west, south, diagonal; of the upper: diagonal, east, north.
       SurfacePatch::Triangle* t = &patch.triangles[lower];
@@ -237,7 +248,7 @@ void gatherPatch(
       {
         t[k].normal = up[k] * (1.0 / std::sqrt(up[k].squaredNorm()));
         t[k].offset = t[k].normal.dot(patch.nodes[upperLeft].position);
-        t[k].cfe = std::isnan(t[k].offset) ? 0 : id + k;
+        t[k].cfe = std::isnan(t[k].offset) ? 0 : surface.cfeOf(row, column, k == 1);
         t[k].key = key + k;
         t[k].bends.fill(0);
         t[k].ridges.fill(-1);

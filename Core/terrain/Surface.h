@@ -3,7 +3,9 @@
 /// @file
 /// The slope as one realisation sees it, and the small explicit piece of it under a rock.
 
+#include "base/random.h"
 #include "terrain/Terrain.h"
+#include "terrain/scatter.h"
 
 #include <algorithm>
 #include <array>
@@ -28,27 +30,45 @@ public:
   static Surface asSurveyed(const Terrain& terrain);
 
   const Terrain& terrain() const { return *terrain_; }
-  double restitution() const { return restitution_; } ///< Rv drawn, clamped to 0 … 1.
-  double friction() const { return friction_; }       ///< tan φ of the φ drawn.
+  // What is drawn per iteration, of class 0.
+  double restitution() const { return restitution_; }               ///< Rv, clamped to 0 … 1.
+  double friction() const { return friction_; }                     ///< tan φ
   double cohesion() const { return terrain_->material().cohesion; } ///< N
 
-  // The same of the ground under a CFE. Each class draws its own numbers; class 0 draws those
-  // above.
+  // The ground at a touch: the numbers of its class, drawn for what the slope's deviations are
+  // drawn for. Per iteration each class draws its own.
   int restitutionClass(std::int64_t cfe) const { return terrain_->restitutionClassOf(cfe); }
-  double restitutionOf(int restitutionClass) const
-  {
-    return restitutionClass == 0 ? restitution_ : restitutions_[std::size_t(restitutionClass) - 1];
-  }
-  double frictionAt(std::int64_t cfe) const
-  {
-    const int joint = terrain_->jointClassOf(cfe);
-    return joint == 0 ? friction_ : frictions_[std::size_t(joint) - 1];
-  }
+  DeviationPer deviationPer() const { return per_; } ///< Iteration if nothing is drawn.
+  double restitutionAt(const GroundTouch& touch) const;
+  double frictionAt(const GroundTouch& touch) const; ///< tan φ
+  /// Standard normal deviate of a number of this class, for any that the ground has at a touch: the
+  /// mean plus this times its deviation is the number there. 0 on a slope as surveyed.
+  double deviate(Draw purpose, int number, const GroundTouch& touch) const;
+  /// No touch of the slope itself has more.
+  double largestRestitution() const;
   double cohesionAt(std::int64_t cfe) const
   {
     return terrain_->jointMaterial(terrain_->jointClassOf(cfe)).cohesion;
   }
 
+  /// The nodes as rocks meet them: the terrain's, or finer ones that show its roughness, cut into
+  /// triangles as those.
+  struct Grid
+  {
+    int columns, rows;
+    double cellSize; ///< m
+    int parts;       ///< Of the side of one of the terrain's cells.
+    double height() const { return (rows - 1) * cellSize; } ///< Extent in y, m.
+  };
+  const Grid& grid() const { return grid_; }
+  /// Number of the CFE that holds the lower or the upper triangle of a cell of the grid.
+  std::int64_t cfeOf(int row, int column, bool upper) const
+  {
+    const int p = grid_.parts, r = row % p, c = column % p;
+    const std::int64_t cell =
+      std::int64_t(row / p) * (terrain_->geometry().columns - 1) + column / p;
+    return 2 * cell + (c > r || (c == r && upper) ? 2 : 1);
+  }
   double nodeHeight(int row, int column) const; ///< With roughness, NaN for nodata, m.
   double elevation(double x, double y) const;   ///< With roughness, NaN outside, m.
   /// The same, and beyond the edge of the slope what makes a rock leave it as it would go on: where
@@ -56,7 +76,7 @@ public:
   /// elsewhere it goes on level. So nothing out there is higher than the edge.
   double apronHeight(int row, int column) const
   {
-    const GridGeometry& g = terrain_->geometry();
+    const Grid& g = grid_;
     const int r = std::clamp(row, 0, g.rows - 1), c = std::clamp(column, 0, g.columns - 1);
     const double edge = this->nodeHeight(r, c);
     if (r == row && c == column)
@@ -75,12 +95,23 @@ public:
 
 private:
   explicit Surface(const Terrain& terrain);
-  void drawMaterials(bool drawn); ///< Means if not `drawn`.
+  double surveyedNode(int row, int column) const; ///< With what each node is drawn, m.
+  /// Of a cell of the terrain.
+  const Roughness& roughnessIn(int row, int column) const;
+  void drawMaterials();
+  double restitutionOf(int restitutionClass) const ///< Drawn per iteration.
+  {
+    return restitutionClass == 0 ? restitution_ : restitutions_[std::size_t(restitutionClass) - 1];
+  }
 
   const Terrain* terrain_;
   std::uint64_t seed_ = 0;
   std::uint32_t iteration_ = 0;
-  bool rough_ = false;
+  bool drawn_ = false; ///< Else all numbers are means.
+  DeviationPer per_ = DeviationPer::Iteration;
+  Grid grid_;
+  bool rough_ = false; ///< Nodes are drawn.
+  bool field_ = false; ///< There are fields over the map.
   double roughnessBound_ = 0.0;
   double restitution_ = 0.0;
   double friction_ = 0.0;            ///< tan φ

@@ -11,6 +11,15 @@
 namespace rockfall
 {
 
+namespace
+{
+
+/// Parts of the side of a cell, and nodes along that of a slope: keys of triangles, ridges and
+/// walls have room for them.
+constexpr double kMostParts = 200.0, kMostNodes = 1e7;
+
+} // namespace
+
 Terrain::Terrain(GridGeometry geometry, std::span<const double> heights,
   std::shared_ptr<const void> owner, SurfaceMaterial material, Roughness roughness)
   : geometry_(std::move(geometry))
@@ -36,6 +45,7 @@ Terrain::Terrain(GridGeometry geometry, std::span<const double> heights,
   }
   material_.validate();
   roughness_.validate();
+  this->findRefinement();
   this->buildPyramid();
 }
 
@@ -56,18 +66,73 @@ Terrain::Terrain(const Terrain& other, SurfaceMaterial material, Roughness rough
   roughness_.validate();
   restitutionClasses_ = jointClasses_ = {};
   obstacles_.reset();
+  this->findRefinement();
 }
 
 void Terrain::setRestitutionClasses(MaterialClasses classes)
 {
   classes.validate(geometry_.cellCount(), "restitution");
   restitutionClasses_ = std::move(classes);
+  this->findRefinement();
 }
 
 void Terrain::setJointClasses(MaterialClasses classes)
 {
   classes.validate(geometry_.cellCount(), "joint");
   jointClasses_ = std::move(classes);
+}
+
+double Terrain::roughnessHeight() const
+{
+  double most = 0.0;
+  for (int k = 0; k <= restitutionClasses_.count(); ++k)
+  {
+    most = std::max(most, this->roughnessOf(k).highest());
+  }
+  return most;
+}
+
+double Terrain::roughnessDepth() const
+{
+  double most = 0.0;
+  for (int k = 0; k <= restitutionClasses_.count(); ++k)
+  {
+    most = std::max(most, this->roughnessOf(k).deepest());
+  }
+  return most;
+}
+
+bool Terrain::draws() const
+{
+  const auto deviates = [](const SurfaceMaterial& m)
+  { return m.restitutionDeviation > 0.0 || m.frictionAngleDeviation > 0.0; };
+  const auto any = [&](const std::vector<SurfaceMaterial>& materials)
+  { return std::any_of(materials.begin(), materials.end(), deviates); };
+  bool drawn = deviates(material_) || any(restitutionClasses_.materials) ||
+    any(jointClasses_.materials) || (obstacles_ && any(obstacles_->structures().materials));
+  for (int k = 0; k <= restitutionClasses_.count(); ++k)
+  {
+    drawn = drawn || this->roughnessOf(k).varies();
+  }
+  return drawn;
+}
+
+void Terrain::findRefinement()
+{
+  refinement_ = 1;
+  for (int k = 0; k <= restitutionClasses_.count(); ++k)
+  {
+    const double spacing = this->roughnessOf(k).resolvedBy();
+    const double parts = spacing > 0.0 ? std::ceil(geometry_.cellSize / spacing - 1e-9) : 1.0;
+    const double nodes = parts * std::max(geometry_.rows, geometry_.columns);
+    if (parts > kMostParts || nodes > kMostNodes)
+    {
+      throw ParameterError("RoughnessLength is " + numberText(this->roughnessOf(k).length) +
+        " m on cells of " + numberText(geometry_.cellSize) +
+        " m, which it would cut into too many: take a smaller CellSize or a longer length");
+    }
+    refinement_ = std::max(refinement_, int(parts));
+  }
 }
 
 void Terrain::buildPyramid()

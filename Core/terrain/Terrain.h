@@ -10,6 +10,7 @@
 
 #include "base/types.h"
 #include "terrain/material.h"
+#include "terrain/scatter.h"
 
 #include <array>
 #include <memory>
@@ -67,6 +68,20 @@ public:
   /// Of all cells that no class says anything else of.
   const SurfaceMaterial& material() const { return material_; }
   const Roughness& roughness() const { return roughness_; }
+  /// Of a class of restitution.
+  const Roughness& roughnessOf(int restitutionClass) const
+  {
+    return restitutionClass == 0 || restitutionClasses_.roughness.empty()
+      ? roughness_
+      : restitutionClasses_.roughness[std::size_t(restitutionClass) - 1];
+  }
+  /// Most by which roughness raises and lowers a node, m, ≥ 0.
+  double roughnessHeight() const;
+  double roughnessDepth() const;
+  /// Whether anything of it differs between iterations.
+  bool draws() const;
+  /// Into how many parts the side of a cell is cut for what is rough to show, ≥ 1.
+  int refinement() const { return refinement_; }
   double width() const { return (geometry_.columns - 1) * geometry_.cellSize; } ///< Extent in x, m.
   double height() const { return (geometry_.rows - 1) * geometry_.cellSize; }   ///< Extent in y, m.
 
@@ -122,6 +137,9 @@ public:
   }
   /// Whether any of the ground gives way under a rock.
   bool yields() const;
+  /// For what the deviations of materials are drawn. To be called before the terrain is used.
+  void setDeviationPer(DeviationPer per) { deviationPer_ = per; }
+  DeviationPer deviationPer() const { return deviationPer_; }
   /// The class of a CFE, also of one of an obstacle.
   int restitutionClassOf(std::int64_t cfe) const
   {
@@ -146,6 +164,8 @@ public:
 
 private:
   void buildPyramid();
+  /// Throws ParameterError if cells would have to be cut into too many.
+  void findRefinement();
   int obstacleClass(std::int64_t cfe, int layerClasses) const;
   const SurfaceMaterial& obstacleMaterial(int number) const; ///< From 1.
 
@@ -154,8 +174,10 @@ private:
   std::shared_ptr<const void> owner_;
   SurfaceMaterial material_;
   Roughness roughness_;
+  int refinement_ = 1;
   MaterialClasses restitutionClasses_;
   MaterialClasses jointClasses_;
+  DeviationPer deviationPer_ = DeviationPer::Iteration;
   std::shared_ptr<const Obstacles> obstacles_;
 
   struct Level

@@ -56,8 +56,7 @@ public:
     : it_(embankment)
     , terrain_(terrain)
   {
-    const Roughness& r = terrain.roughness();
-    margin_ = kFootDepth + std::max(0.0, -(r.mean - 9.0 * r.deviation));
+    margin_ = kFootDepth + terrain.roughnessDepth();
     this->placeStations();
     this->chooseSides();
     for (std::size_t i = 0; i + 1 < stations_.size(); ++i)

@@ -57,16 +57,6 @@ void SurfaceMaterial::validate() const
   this->yielding.validate();
 }
 
-void Roughness::validate() const
-{
-  if (!std::isfinite(this->mean))
-  {
-    throw ParameterError("RoughnessMean is " + numberText(this->mean) + ", it must be finite");
-  }
-  requireRange(this->deviation, 0.0, std::numeric_limits<double>::max(), "RoughnessDeviation",
-    "a finite number of metres, not negative");
-}
-
 void MaterialClasses::validate(std::int64_t cellCount, const char* kind) const
 {
   const std::string what = std::string(kind) + " classes";
@@ -75,6 +65,11 @@ void MaterialClasses::validate(std::int64_t cellCount, const char* kind) const
     throw DataError("there are " + std::to_string(materials.size()) + " materials and " +
       std::to_string(names.size()) + " names of " + what + "; at most " + std::to_string(largest) +
       " are possible");
+  }
+  if (!roughness.empty() && roughness.size() != materials.size())
+  {
+    throw DataError("there are " + std::to_string(roughness.size()) + " roughnesses for " +
+      std::to_string(materials.size()) + " " + what);
   }
   if (!cells.empty() && std::int64_t(cells.size()) != cellCount)
   {
@@ -92,6 +87,10 @@ void MaterialClasses::validate(std::int64_t cellCount, const char* kind) const
     try
     {
       materials[k].validate();
+      if (!roughness.empty())
+      {
+        roughness[k].validate();
+      }
     }
     catch (const ParameterError& error)
     {

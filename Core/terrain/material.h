@@ -5,6 +5,7 @@
 /// layer of its own over the cells (METHOD 6).
 
 #include "base/types.h"
+#include "terrain/roughness.h"
 #include "terrain/yieldingGround.h"
 
 #include <cstdint>
@@ -48,15 +49,6 @@ struct SurfaceMaterial
   void validate() const; ///< Throws ParameterError naming field and value.
 };
 
-/// Random elevation added to every node, drawn per iteration (METHOD 7).
-struct Roughness
-{
-  double mean = 0.0;      ///< m
-  double deviation = 0.0; ///< m, ≥ 0.
-  bool any() const { return this->mean != 0.0 || this->deviation != 0.0; }
-  void validate() const;
-};
-
 /// Classes of one kind, and which class each cell belongs to. One byte per cell, nothing where
 /// there is no layer: 1e8 cells fit.
 struct MaterialClasses
@@ -68,6 +60,8 @@ struct MaterialClasses
   /// Of the classes 1, 2, …: a restitution layer has its say on restitution only, a joint layer on
   /// friction and cohesion only.
   std::vector<SurfaceMaterial> materials;
+  /// Of the classes 1, 2, … of a restitution layer; empty: all are as rough as the slope.
+  std::vector<Roughness> roughness;
   std::span<const std::uint8_t> cells; ///< Class per cell, in the order of the cells.
   std::shared_ptr<const void> owner;   ///< Keeps `cells` alive.
 

@@ -1,8 +1,7 @@
 #include "terrain/presets.h"
 
 #include "base/errors.h"
-
-#include <algorithm>
+#include "base/nameKey.h"
 
 namespace rockfall
 {
@@ -24,18 +23,19 @@ constexpr const char* barton = "Barton & Choubey (1977)";
 constexpr const char* assumed = "assumed";
 
 /// G. Lu, A. Caviezel, M. Christen, Y. Bühler & P. Bartelt (2019), Landslides 16, 2353: an alpine
-/// meadow, M_E 10 to 25 MN/m², C_s 0.1 to 4, friction 0.55 to 2. Rolling resistance: chosen on
-/// single impacts and run-outs of docs/validation.md.
+/// meadow, M_E 10 to 25 MN/m², C_s 0.1 to 4, friction 0.55 to 2. Which of these, and the rolling
+/// resistance, was chosen on single impacts and run-outs: docs/validation.md.
 constexpr const char* lu = "Lu et al. (2019)";
 
-/// Slip-dependent friction and drag of Lu et al. (2019).
-constexpr YieldingGround yields(double modulus, double rollingResistance)
+/// Scars and slip-dependent friction of Lu et al. (2019).
+constexpr YieldingGround yields(
+  double modulus, double compaction, double frictionLeast, double rollingResistance)
 {
   YieldingGround ground;
   ground.modulus = modulus;
   ground.depthFactor = 0.125; // the scars that they computed are deeper than their equation
-  ground.compaction = 1.5;
-  ground.frictionLeast = 0.55;
+  ground.compaction = compaction;
+  ground.frictionLeast = frictionLeast;
   ground.frictionMost = 2.0;
   ground.frictionGrowth = 3.0;
   ground.frictionDecay = 185.0;
@@ -60,11 +60,13 @@ constexpr GroundPreset presets[] = {
     assumed },
   { "bedrock with boulders", "Bedrock with boulders", 0.35, 0.85, 0.020, 35.0, 2.5, holds(0.15),
     Memory, hoek, assumed, assumed },
-  { "talus", "Talus", 0.35, 1.0, 0.15, 37.0, 2.0, yields(25e6, 0.2), Assumption, assumed, lu, lu },
-  { "talus with vegetation", "Talus with vegetation", 0.35, 1.0, 0.15, 37.0, 2.0, yields(20e6, 0.2),
-    Assumption, assumed, lu, lu },
-  { "soil", "Soil", 0.3, 1.0, 0.15, 30.0, 3.0, yields(10e6, 0.25), Assumption, assumed, lu, lu },
-  { "meadow", "Meadow", 0.4, 1.0, 0.2, 30.0, 3.0, yields(15e6, 0.2), FieldData,
+  { "talus", "Talus", 0.32, 1.0, 0.15, 37.0, 2.0, yields(10e6, 2.0, 0.6, 0.25), Assumption, assumed,
+    lu, "assumed: speeds and jumps on long slopes as observed" },
+  { "talus with vegetation", "Talus with vegetation", 0.32, 1.0, 0.15, 37.0, 2.0,
+    yields(10e6, 2.0, 0.6, 0.27), Assumption, assumed, lu, "assumed, as talus" },
+  { "soil", "Soil", 0.3, 1.0, 0.15, 30.0, 3.0, yields(10e6, 1.5, 0.6, 0.3), Assumption, assumed, lu,
+    lu },
+  { "meadow", "Meadow", 0.4, 1.0, 0.3, 30.0, 3.0, yields(25e6, 0.85, 0.6, 0.24), FieldData,
     "docs/validation.md", lu, lu },
 };
 
@@ -104,9 +106,8 @@ std::span<const GroundPreset> groundPresets()
 
 const GroundPreset& groundPreset(const std::string& name)
 {
-  std::string wanted = name, names;
-  std::transform(wanted.begin(), wanted.end(), wanted.begin(),
-    [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+  const std::string wanted = nameKey(name);
+  std::string names;
   for (const GroundPreset& preset : presets)
   {
     if (wanted == preset.name)

@@ -5,6 +5,7 @@
 /// all sources: docs/DEMtoCFEMesh.md, Presets.
 
 #include "terrain/material.h"
+#include "terrain/scatter.h"
 
 #include <span>
 #include <string>
@@ -39,6 +40,12 @@ struct GroundPreset
   const char* yieldingSource;
 
   SurfaceMaterial material() const;
+  /// Ground that yields scatters from impact to impact; the others' deviations are of a whole
+  /// slope.
+  DeviationPer deviationPer() const
+  {
+    return yielding.scars() ? DeviationPer::Impact : DeviationPer::Iteration;
+  }
 };
 
 /// All presets, in the order of the enumeration of the DEM source's property.

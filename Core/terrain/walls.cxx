@@ -157,7 +157,7 @@ void addWalls(std::span<const Rim> rims, SurfacePatch& patch)
 
 double lowestNode(const Surface& surface, double x0, double x1, double y0, double y1)
 {
-  const GridGeometry& g = surface.terrain().geometry();
+  const Surface::Grid& g = surface.grid();
   const auto within = [&](double cells, int last)
   { return int(std::clamp(cells, 0.0, double(last))); };
   const int column0 = within(std::floor(x0 / g.cellSize), g.columns - 1);

@@ -1,0 +1,129 @@
+// The numbers of materials that a realisation draws, per iteration, impact or place.
+
+#include "terrain/Surface.h"
+
+#include "base/errors.h"
+#include "base/numberText.h"
+#include "terrain/Obstacles.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rockfall
+{
+
+namespace
+{
+
+double restitutionOf(const SurfaceMaterial& m, double deviate)
+{
+  return std::clamp(m.restitution + m.restitutionDeviation * deviate, 0.0, 1.0);
+}
+
+double frictionOf(const SurfaceMaterial& m, double deviate)
+{
+  const double angle = m.frictionAngle + m.frictionAngleDeviation * deviate;
+  return std::tan(std::clamp(angle, 0.0, radians(89.0)));
+}
+
+} // namespace
+
+DeviationPer deviationPerFrom(double number)
+{
+  if (number != 0.0 && number != 1.0 && number != 2.0)
+  {
+    throw ParameterError("DeviationPer is " + numberText(number) +
+      ", it must be 0 (iteration), 1 (impact) or 2 (place)");
+  }
+  return DeviationPer(int(number));
+}
+
+void Surface::drawMaterials()
+{
+  const auto deviate = [&](Draw purpose, double deviation, int number)
+  {
+    return drawn_ && deviation > 0.0
+      ? normalDeviate(seed_, iteration_, purpose, std::uint64_t(number))
+      : 0.0;
+  };
+  const auto restitution = [&](const SurfaceMaterial& m, int k)
+  { return rockfall::restitutionOf(m, deviate(Draw::Restitution, m.restitutionDeviation, k)); };
+  const auto friction = [&](const SurfaceMaterial& m, int k)
+  { return frictionOf(m, deviate(Draw::FrictionAngle, m.frictionAngleDeviation, k)); };
+  restitution_ = restitution(terrain_->material(), 0);
+  friction_ = friction(terrain_->material(), 0);
+  const Obstacles* const obstacles = terrain_->obstacles();
+  const int built = obstacles ? int(obstacles->structures().materials.size()) : 0;
+  for (int k = 1; k <= terrain_->restitutionClasses().count() + built; ++k)
+  {
+    restitutions_.push_back(restitution(terrain_->restitutionMaterial(k), k));
+  }
+  for (int k = 1; k <= terrain_->jointClasses().count() + built; ++k)
+  {
+    frictions_.push_back(friction(terrain_->jointMaterial(k), k));
+  }
+}
+
+double Surface::deviate(Draw purpose, int number, const GroundTouch& touch) const
+{
+  if (!drawn_)
+  {
+    return 0.0;
+  }
+  // A stream of its own for each of the three; what a touch is drawn for has one number, whatever
+  // classes meet there.
+  const auto stream = [&](DeviationPer per)
+  { return Draw(std::uint32_t(purpose) | std::uint32_t(per) << 8); };
+  switch (per_)
+  {
+    case DeviationPer::Iteration:
+      break;
+    case DeviationPer::Impact:
+      return normalDeviate(
+        seed_, iteration_, stream(per_), std::uint64_t(touch.rock) << 32 | touch.impact);
+    case DeviationPer::Place:
+    {
+      const GridGeometry& g = terrain_->geometry();
+      return normalDeviate(seed_, iteration_, stream(per_),
+        squareAt(g.xOrigin + touch.position.x(), g.yOrigin + touch.position.y(), kPlaceSize));
+    }
+  }
+  return normalDeviate(seed_, iteration_, purpose, std::uint64_t(number));
+}
+
+double Surface::restitutionAt(const GroundTouch& touch) const
+{
+  const int number = terrain_->restitutionClassOf(touch.cfe);
+  const SurfaceMaterial& m = terrain_->restitutionMaterial(number);
+  if (per_ == DeviationPer::Iteration || !(m.restitutionDeviation > 0.0))
+  {
+    return this->restitutionOf(number);
+  }
+  return rockfall::restitutionOf(m, this->deviate(Draw::Restitution, number, touch));
+}
+
+double Surface::frictionAt(const GroundTouch& touch) const
+{
+  const int number = terrain_->jointClassOf(touch.cfe);
+  const SurfaceMaterial& m = terrain_->jointMaterial(number);
+  if (per_ == DeviationPer::Iteration || !(m.frictionAngleDeviation > 0.0))
+  {
+    return number == 0 ? friction_ : frictions_[std::size_t(number) - 1];
+  }
+  return frictionOf(m, this->deviate(Draw::FrictionAngle, number, touch));
+}
+
+double Surface::largestRestitution() const
+{
+  double largest = 0.0;
+  for (int k = 0; k <= terrain_->restitutionClasses().count(); ++k)
+  {
+    const SurfaceMaterial& m = terrain_->restitutionMaterial(k);
+    largest = std::max(largest,
+      per_ == DeviationPer::Iteration ? this->restitutionOf(k)
+                                      : rockfall::restitutionOf(m, largestDeviate));
+  }
+  return largest;
+}
+
+} // namespace rockfall

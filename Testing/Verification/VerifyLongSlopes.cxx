@@ -1,0 +1,162 @@
+// Long slopes of ground that yields: speeds, jumps and reach angles as field surveys have them, and
+// rocks that come to rest on gentle meadows. The presets as they are.
+//
+// Field figures: speeds mostly below 30 m/s, jumps of some metres, reach angles of single
+// rocks 27.5° to 40° (Heim's fahrböschung, from the release to the stop).
+
+#include "verification.h"
+
+#include "terrain/presets.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <random>
+
+using namespace rockfall;
+using namespace rockfall::verification;
+
+namespace
+{
+
+constexpr double kNode = 2.0;     // m
+constexpr double kWidth = 120.0;  // m
+constexpr double kAbove = 20.0;   // from the edge to the top, m
+constexpr double kBeyond = 300.0; // of flat ground, m
+
+/// A slope of this length and angle (rad) with a flat foot; the foot is of another ground.
+Terrain makeLongSlope(double length, double angle, const char* upper, const char* lower)
+{
+  const double foot = kAbove + length * std::cos(angle);
+  GridGeometry grid;
+  grid.columns = int((foot + kBeyond) / kNode) + 1;
+  grid.rows = int(kWidth / kNode) + 1;
+  grid.cellSize = kNode;
+  std::vector<double> heights;
+  auto cells = std::make_shared<std::vector<std::uint8_t>>();
+  for (int row = 0; row < grid.rows; ++row)
+  {
+    for (int column = 0; column < grid.columns; ++column)
+    {
+      const double x = kNode * column;
+      heights.push_back(std::max(0.0, foot - x) * std::tan(angle));
+      if (row + 1 < grid.rows && column + 1 < grid.columns)
+      {
+        cells->push_back(x >= foot ? 1 : 0);
+      }
+    }
+  }
+  Roughness roughness;
+  roughness.deviation = 0.1;
+  Terrain terrain(grid, std::move(heights), groundPreset(upper).material(), roughness);
+  MaterialClasses classes;
+  classes.names = { "foot" };
+  classes.materials = { groundPreset(lower).material() };
+  classes.cells = *cells;
+  classes.owner = cells;
+  terrain.setRestitutionClasses(classes);
+  terrain.setJointClasses(classes);
+  terrain.setDeviationPer(groundPreset(upper).deviationPer());
+  return terrain;
+}
+
+/// EOTA rocks and cubes of 0.2 to 2 m³, let go at the top at 1.5 m/s.
+std::vector<Rock> releaseAtTop(const Terrain& terrain, int count)
+{
+  std::mt19937_64 generator(7);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  std::vector<Rock> rocks;
+  for (int k = 0; k < count; ++k)
+  {
+    Rock rock;
+    const Shape shape = k % 3 == 0 ? Shape::Eota111 : k % 3 == 1 ? Shape::Cube : Shape::Eota221;
+    rock.shape = makeShape(shape, 0.2 * std::pow(10.0, unit(generator)));
+    const double y = 0.5 * kWidth + 6.0 * (unit(generator) - 0.5);
+    rock.position = Vec3(kAbove + 8.0, y, terrain.elevation(kAbove + 8.0, y) + 2.0);
+    const double u = unit(generator), v = unit(generator), w = unit(generator);
+    rock.orientation = uniformAttitude(u, v, w);
+    rock.velocity = Vec3(1.5, 0.6 * (unit(generator) - 0.5), 0.0);
+    rock.blockId = k;
+    rocks.push_back(rock);
+  }
+  return rocks;
+}
+
+double quantile(std::vector<double> values, double share)
+{
+  std::sort(values.begin(), values.end());
+  return values[std::min(values.size() - 1, std::size_t(share * double(values.size())))];
+}
+
+} // namespace
+
+TEST(LongSlopes, SpeedsJumpsAndReachAngles)
+{
+  struct Case
+  {
+    double angle, length;
+  };
+  for (const Case& c : { Case{ 40.0, 150.0 }, Case{ 35.0, 450.0 } })
+  {
+    const Terrain terrain = makeLongSlope(c.length, radians(c.angle), "talus", "meadow");
+    SimulationParameters p;
+    p.endTime = 300.0;
+    p.outputInterval = 0.5;
+    std::vector<double> speeds, jumps, reach;
+    for (const Trajectory& t : simulateAll(terrain, releaseAtTop(terrain, count(40, 300)), p))
+    {
+      const TrajectorySummary& s = t.summary;
+      speeds.push_back(s.maxSpeed);
+      jumps.push_back(s.maxHeightOverGround);
+      reach.push_back(degrees(std::atan2(s.start.z() - s.stop.z(), s.runOut)));
+    }
+    const std::string head =
+      text(c.length) + " m of talus at " + text(c.angle) + "°, then flat meadow: ";
+    recordAtMost(
+      { "Long slopes", head + "greatest speed, 95 %", "m/s", "field surveys: mostly below 30 m/s" },
+      quantile(speeds, 0.95), 30.0);
+    recordAtMost({ "Long slopes", head + "greatest height over ground, 95 %", "m",
+                   "field surveys: some metres on soft ground" },
+      quantile(jumps, 0.95), 8.0);
+    recordAtLeast({ "Long slopes", head + "reach angle, 5 %", "°",
+                    "field surveys: few single rocks below 27.5°" },
+      quantile(reach, 0.05), 27.0);
+    report({ "Long slopes", head + "reach angle, median", "°", "field surveys: 27.5° to 40°" },
+      quantile(reach, 0.5));
+  }
+}
+
+TEST(LongSlopes, NothingCreepsOnAMeadow)
+{
+  for (const double angle : { 10.0, 15.0 })
+  {
+    const Terrain meadow = rockfall::testing::makePlane(
+      2, 600.0, radians(angle), 0.0, groundPreset("meadow").material());
+    std::vector<Rock> rocks;
+    for (int k = 0; k < count(20, 100); ++k)
+    {
+      Rock rock;
+      rock.shape = makeShape(Shape::Eota111, 0.2 + 0.05 * (k % 10));
+      rock.position = Vec3(100.0, 300.0, meadow.elevation(100.0, 300.0) + 3.0);
+      rock.orientation = uniformAttitude(0.137 * k - int(0.137 * k), 0.61 * k - int(0.61 * k), 0.3);
+      rock.velocity = Vec3(10.0, 0.2 * (k % 5), 0.0);
+      rocks.push_back(rock);
+    }
+    SimulationParameters p;
+    p.endTime = 120.0;
+    p.outputInterval = 1.0;
+    double longest = 0.0;
+    for (const Trajectory& t : simulateAll(meadow, rocks, p))
+    {
+      EXPECT_EQ(t.summary.fate, Fate::Rested);
+      longest = std::max(longest, t.summary.endTime - t.impacts.back().time);
+    }
+    recordAtMost({ "Long slopes",
+                   "EOTA 111 on a smooth meadow of " + text(angle) +
+                     "°: longest time from the last bounce to rest",
+                   "s", "rocks roll on for seconds, not minutes" },
+      longest, 10.0);
+  }
+}

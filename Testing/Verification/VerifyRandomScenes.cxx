@@ -1,0 +1,46 @@
+// Random rocks on random ground, many of them: no energy from nowhere, nothing deep in the ground,
+// the same bits on one thread and on two, and no scene without an end.
+
+#include "verification.h"
+
+#include "Core/randomScenes.h"
+
+#include <gtest/gtest.h>
+
+using namespace rockfall;
+using namespace rockfall::testing;
+using namespace rockfall::verification;
+
+TEST(RandomScenes, MakeNoEnergyAndStayOutOfTheGround)
+{
+  // Others than those of the project's tests.
+  const long first = fromEnvironment("ROCKFALL_FIRST_SCENE", 1000);
+  const long scenes = fromEnvironment("ROCKFALL_SCENES", count(20, 2000));
+  double made = 0.0, deepest = 0.0;
+  double heard = 0.0;
+  int longer = 0, otherBits = 0, run = 0;
+  for (long seed = first; seed < first + scenes; ++seed)
+  {
+    const SceneOutcome outcome =
+      runScene(randomScene(std::uint64_t(seed), 20, 2.0), count(20, 120));
+    run += !outcome.refused;
+    longer += outcome.givenUp;
+    heard = std::max(heard, outcome.heard);
+    otherBits += !outcome.sameBits;
+    made = std::max(made, outcome.released > 0.0 ? outcome.made / outcome.released : 0.0);
+    deepest = std::max(deepest, outcome.tooDeep);
+    EXPECT_LE(outcome.made, 0.01 * outcome.released) << "scene " << seed;
+    EXPECT_EQ(outcome.tooDeep, 0.0) << "scene " << seed << ", " << outcome.worst;
+  }
+  const std::string subject = "Random scenes", all = std::to_string(scenes) + " scenes";
+  recordAtLeast(
+    { subject, "scenes that could be run, of " + all, "", "" }, run, 0.9 * double(scenes));
+  recordAtMost(
+    { subject, "energy made, of that released, at most", "", "books of a scene" }, made, 0.01);
+  recordAtMost({ subject, "depth of a vertex beyond what springs explain, of the radius", "", "" },
+    deepest, 0.0);
+  report({ subject, "scenes given up, as they take too long", "", "" }, longer);
+  recordAtMost({ subject, "time until that is heard", "s", "" }, heard, 1.0);
+  recordAtMost(
+    { subject, "scenes that differ between one thread and two", "", "" }, otherBits, 0.0);
+}
