@@ -215,7 +215,7 @@ void gatherUnder(const PlacedBlock& rock, const PairBody& body, const SurfacePat
 
 /// Brings the closed contacts of the last step, and the open ones that still overlap, to where the
 /// rock stands now, hands them over between neighbouring features, and adds every pair of the
-/// candidates that can close within `reach` (m).
+/// candidates that can close within `reach` (m), and within `turn` (rad) of the rock.
 ///
 /// A pair enters only through a valid configuration, with the normal inside both features' normal
 /// cones and the projection inside both features, at a gap of about zero; once closed it stays,
@@ -223,7 +223,8 @@ void gatherUnder(const PlacedBlock& rock, const PairBody& body, const SurfacePat
 /// flip (METHOD 10.6). Flat and concave edges of the slope are no features, so a smooth plane cut
 /// into many CFEs gives the contacts of one (METHOD 10.5).
 void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch,
-  const CandidatePairs& candidates, double reach, std::vector<Contact>& contacts);
+  const CandidatePairs& candidates, double reach, std::vector<Contact>& contacts,
+  double turn = 0.0);
 
 /// Lower bound of the time (s, at most `horizon`) in which a pair of the candidates that is apart
 /// now can close in free flight. 0 where the rock overlaps the slope.

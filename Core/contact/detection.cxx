@@ -123,7 +123,7 @@ void findOtherSides(
 } // namespace
 
 void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch,
-  const CandidatePairs& candidates, double reach, std::vector<Contact>& contacts)
+  const CandidatePairs& candidates, double reach, std::vector<Contact>& contacts, double turn)
 {
   // What carries stays, as long as it is somewhere.
   std::size_t kept = 0;
@@ -174,7 +174,7 @@ void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch,
     {
       continue;
     }
-    if (const auto c = vertexFace(rock, pair.rock, patch, pair.patch, reach))
+    if (const auto c = vertexFace(rock, pair.rock, patch, pair.patch, reach, -1, turn))
     {
       admit(patch, *c, contacts);
     }

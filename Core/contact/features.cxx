@@ -149,7 +149,7 @@ bool inEdgeCones(const PlacedBlock& rock, int edge, const SurfacePatch& patch, i
 }
 
 std::optional<Contact> vertexFace(const PlacedBlock& rock, int vertex, const SurfacePatch& patch,
-  int triangle, double reach, int from)
+  int triangle, double reach, int from, double turn)
 {
   const SurfacePatch::Triangle& t = patch.triangles[triangle];
   const Vec3& p = rock.vertices()[vertex];
@@ -160,7 +160,7 @@ std::optional<Contact> vertexFace(const PlacedBlock& rock, int vertex, const Sur
   {
     return std::nullopt;
   }
-  if (!inVertexCone(rock, vertex, t.normal, kConeSlack) ||
+  if (!inVertexCone(rock, vertex, t.normal, kConeSlack + turn) ||
     !cameThrough(patch, triangle, p, distance))
   {
     return std::nullopt;

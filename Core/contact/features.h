@@ -36,9 +36,10 @@ bool cameThrough(const SurfacePatch& patch, int triangle, const Vec3& point, dou
 /// it.
 bool cameAcross(const PlacedBlock& rock, const SurfacePatch& patch, int ridge, double distance);
 
-/// Entrance of a rock vertex into a CFE, if the pair is valid; `from` as for projectsInside.
+/// Entrance of a rock vertex into a CFE, if the pair is valid or becomes so within `turn` (rad) of
+/// the rock; `from` as for projectsInside.
 std::optional<Contact> vertexFace(const PlacedBlock& rock, int vertex, const SurfacePatch& patch,
-  int triangle, double reach, int from = -1);
+  int triangle, double reach, int from = -1, double turn = 0.0);
 
 /// Entrance of a peak of the slope into a face of the rock.
 std::optional<Contact> faceVertex(

@@ -1,5 +1,6 @@
 #include "simulation/MassFall.h"
 
+#include "base/abort.h"
 #include "base/parallel.h"
 #include "contact/motion.h"
 #include "simulation/contactConstants.h"
@@ -44,7 +45,8 @@ MassFall::MassFall(const Surface& surface, std::span<const Rock> rocks,
   members_.reserve(rocks.size());
   for (std::size_t i = 0; i < rocks.size(); ++i)
   {
-    RockSimulator& sim = members_.add(surface, rocks[i], blocks[i], parameters).sim;
+    RockSimulator& sim =
+      members_.add(surface, rocks[i], blocks[i], parameters, std::uint32_t(i)).sim;
     sim.stiff_ = true; // strain follows the contacts of a group as at rest
     sim.ringing_ = 0.0;
   }
@@ -100,6 +102,7 @@ void MassFall::release()
   std::vector<double> lifts; // of each by itself, m
   for (Member& member : members_)
   {
+    stayWanted();
     RockSimulator& sim = member.sim;
     const BlockState given = sim.state_;
     sim.liftOntoGround();

@@ -69,8 +69,8 @@ private:
   struct Member
   {
     Member(const Surface& surface, const Rock& rock, const Block& block,
-      const SimulationParameters& parameters)
-      : sim(surface, rock, block, parameters)
+      const SimulationParameters& parameters, std::uint32_t number)
+      : sim(surface, rock, block, parameters, number)
     {
     }
     /// `sim.placed_` and `body` for where the rock stands, unless they are.
@@ -162,8 +162,16 @@ private:
   bool isCalm(const Group& group) const;
   bool mayLast(const Group& group, double h) const;
   double freeTime(const Group& group, double most) const;
+  /// For how long, at most `most`, nothing touches those of a calm group that nothing carries yet.
+  /// A lasting step must end before: its contacts are those of where it begins, and what falls or
+  /// spins within it would come past them.
+  double freeOfFlying(const Group& group, double most, Workspace& work) const;
+  double freeOfSlope(RockSimulator& sim, double most) const;
+  double freeOfEachOther(const RockPair& pair, double gravity) const;
   void fly(const Group& group, double duration) const;
   void solve(const Group& group, double h, StepKind kind, bool bounces, Workspace& work) const;
+  /// Deep overlaps of the two, before a lasting step.
+  void pressOutDeep(RockPair& pair, double h, bool crowd, const Workspace& work) const;
   /// Gives rocks, pairs and contacts their places in the system; returns how many rocks have one.
   std::size_t layOut(const Group& group, Workspace& work) const;
   /// No bounce for what meets several (mayBounce).

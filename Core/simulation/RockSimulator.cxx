@@ -1,8 +1,10 @@
 #include "simulation/RockSimulator.h"
 
+#include "base/abort.h"
 #include "block/flight.h"
 #include "simulation/contactConstants.h"
 #include "simulation/placement.h"
+#include "simulation/pressOut.h"
 #include "solver/springs.h"
 #include "terrain/walls.h"
 
@@ -55,12 +57,13 @@ struct ImpactFrequency
 
 } // namespace
 
-RockSimulator::RockSimulator(
-  const Surface& surface, const Rock& rock, const Block& block, const SimulationParameters& p)
+RockSimulator::RockSimulator(const Surface& surface, const Rock& rock, const Block& block,
+  const SimulationParameters& p, std::uint32_t number)
   : surface_(surface)
   , rock_(rock)
   , block_(block)
   , parameters_(p)
+  , number_(number)
   , recorder_(surface, block, p.outputInterval)
 {
   state_.position = rock.position;
@@ -231,6 +234,7 @@ void RockSimulator::flyUntilNear()
 {
   while (!done_ && !this->arrived() && !scar_.open())
   {
+    stayWanted();
     // Up to the edge of the slope, where the rock is let go.
     double remaining = horizon_ - state_.time;
     const double extent[2] = { surface_.terrain().width(), surface_.terrain().height() };
@@ -250,8 +254,7 @@ void RockSimulator::flyUntilNear()
     {
       // A window over some of the way: nearer than its plane only the rock itself is looked at.
       const double across = state_.velocity.head<2>().norm();
-      const double way =
-        kWindow * std::max(block_.radius(), surface_.terrain().geometry().cellSize);
+      const double way = kWindow * std::max(block_.radius(), surface_.grid().cellSize);
       duration = std::min(duration, across * duration > way ? way / across : duration);
       this->ensureWindow(duration);
       const double near =
@@ -356,7 +359,10 @@ void RockSimulator::liftOntoGround()
   placed_.place(block_, state_);
   this->ensurePatch(step);
   double depth = penetration(placed_, patch_);
-  for (int k = 0; k < 1000 && depth > 1e-6 * block_.radius(); ++k)
+  // What starts in the ground by rounding alone is set onto it by what follows.
+  const double worldZ = state_.position.z() + surface_.terrain().geometry().origin().z();
+  const double least = std::max(1e-6 * block_.radius(), startRounding(worldZ, block_.radius()));
+  for (int k = 0; k < 1000 && depth > least; ++k)
   {
     state_.position.z() += std::max(depth, step);
     placed_.place(block_, state_);
@@ -413,7 +419,11 @@ void RockSimulator::endContact()
 
 void RockSimulator::advance(double until, double enough)
 {
-  crowded_ = false; // alone, whatever it was in before
+  if (crowded_)
+  {
+    crowded_ = false; // alone, and what others have pressed in is theirs
+    this->letDeepBe(kLooseOverlap * block_.radius());
+  }
   horizon_ = std::min(until, parameters_.endTime);
   const auto seen = [&]
   {

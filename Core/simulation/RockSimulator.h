@@ -51,8 +51,9 @@ class PairBody;
 class RockSimulator
 {
 public:
-  RockSimulator(
-    const Surface& surface, const Rock& rock, const Block& block, const SimulationParameters& p);
+  RockSimulator(const Surface& surface, const Rock& rock, const Block& block,
+    const SimulationParameters& p,
+    std::uint32_t number = 0); ///< `number` of the rock in its iteration.
 
   /// Runs to rest, to the edge of the slope or to the end time. Stops earlier if there is a sample
   /// at `enough` (s) or later: what it has by then is as in the whole run, bit for bit, but the
@@ -140,7 +141,14 @@ private:
   void absorb(StepKind kind, const StepOutcome& outcome, double energyBefore, double given);
   bool isCalm() const;          ///< What carries neither comes nor goes.
   bool mayLast(double h) const; ///< A long, damped step is right.
+  /// Overlaps that were found, not made (pressOut.h): loose ones after a step, deep ones before a
+  /// lasting one. `held`: others may hold the rock.
   void pressOut(double h);
+  void pressOutDeep(double h, bool held);
+  double looseOverlap() const; ///< m
+  /// No spring in a deep overlap holds more than those of a rock that lies still and alone.
+  void letDeepBe(double loose);
+  double settledSpeed() const; ///< What the springs of such a rock could give it, m/s.
 
   // Ground that gives way, groundYields.cxx
   const YieldingGround& yieldingAt(const Contact& contact) const; ///< Hard on trees.
@@ -190,7 +198,12 @@ private:
   }
   void armContacts(double h); ///< Gives new contacts their springs and dashpots, for a step of h.
   void armContact(Contact& contact);
-  double dampingRatioOf(int restitutionClass); ///< ζ for the restitution of a class.
+  /// What the ground's numbers at a place are drawn for, now.
+  GroundTouch touchAt(std::int64_t cfe, const Vec3& place) const
+  {
+    return { cfe, place, number_, impactsOver_ };
+  }
+  double dampingRatioFor(const GroundTouch& touch); ///< ζ for the restitution there.
   double impactStep() const;
   double travelLimit() const;
   /// What the contacts that are closed or close within a step of `h` allow of it, s.
@@ -205,10 +218,13 @@ private:
   const Rock& rock_;
   const Block& block_;
   const SimulationParameters& parameters_;
+  std::uint32_t number_ = 0;      ///< In its iteration.
+  std::uint32_t impactsOver_ = 0; ///< Touches that began as impacts and are over.
   // In the order of their use in the step of a crowd, which goes from rock to rock: what it needs
   // lies together, and in one page.
   bool done_ = false;
   bool inContact_ = false;
+  bool pressed_ = false; ///< A deep overlap is pressed out in the step at hand.
   bool crowded_ = false; ///< Its step is that of a crowd, as long as Δt.
   bool stiff_ = false;   ///< The block's strain follows its contacts without inertia.
   bool solid_ = false;   ///< There are embankments or trees.
@@ -246,9 +262,10 @@ private:
   SurfacePatch holed_;    ///< Under the way of a flight that comes over holes.
   double softness_ = 0.0; ///< Of a contact and the block behind it, m/N.
   double ringing_ = 0.0;  ///< Period of a soft block's slowest strain, 0 for a stiff one, s.
-  std::vector<double> dampingRatios_; ///< ζ by restitution class; < 0: not known yet.
-  std::vector<int> goneTrees_;        ///< Ascending.
-  std::vector<int> brokenBarriers_;   ///< In the order of breaking.
+  std::vector<double> dampingRatios_;      ///< ζ by restitution class; < 0: not known yet.
+  double dampedFor_ = -1.0, damped_ = 0.0; ///< The restitution looked up last, and its ζ.
+  std::vector<int> goneTrees_;             ///< Ascending.
+  std::vector<int> brokenBarriers_;        ///< In the order of breaking.
   Broken broke_;           ///< What it has broken itself, of which others have not heard yet.
   double freeUntil_ = 0.0; ///< Nothing can be touched until then, after a take-off, s.
   std::vector<BarrierPassage> passages_; ///< Of the way at hand.

@@ -1,5 +1,6 @@
 #include "simulation/RockSimulator.h"
 
+#include "base/abort.h"
 #include "block/flight.h"
 #include "contact/motion.h"
 #include "simulation/contactConstants.h"
@@ -71,12 +72,16 @@ bool RockSimulator::mayLast(double h) const
   return any;
 }
 
+double RockSimulator::settledSpeed() const
+{
+  return restingSpeed_ + 4.0 * parameters_.gravity * std::sqrt(block_.mass() * softness_);
+}
+
 bool RockSimulator::isCalm() const
 {
   // At the turning point of an impact nothing moves either, but the springs hold its energy; at
   // rest they hold the weight's, ½ m v² with v = g √(m/p), several times that when the rock rolls.
-  const double settled =
-    restingSpeed_ + 4.0 * parameters_.gravity * std::sqrt(block_.mass() * softness_);
+  const double settled = this->settledSpeed();
   const double held = normalEnergy_ + (stiff_ ? 0.0 : strainEnergy(block_, state_));
   if (held > 0.5 * block_.mass() * settled * settled)
   {
@@ -95,6 +100,7 @@ void RockSimulator::stayInContact()
 {
   while (!done_ && !this->arrived())
   {
+    stayWanted();
     const double small = this->impactStep();
     const double large = std::min(parameters_.timeStep, this->travelLimit());
     placed_.place(block_, state_);
@@ -182,19 +188,34 @@ void RockSimulator::stayInContact()
         this->armContacts(h);
       }
     }
+    if (kind == StepKind::Lasting)
+    {
+      this->pressOutDeep(h, false);
+    }
     this->takeStep(h, kind);
     this->checkEnd(state_.time - before_.time);
   }
 }
 
-double RockSimulator::dampingRatioOf(int restitutionClass)
+double RockSimulator::dampingRatioFor(const GroundTouch& touch)
 {
+  if (surface_.deviationPer() != DeviationPer::Iteration)
+  {
+    const double restitution = surface_.restitutionAt(touch);
+    if (restitution != dampedFor_)
+    {
+      dampedFor_ = restitution;
+      damped_ = dampingRatio(restitution);
+    }
+    return damped_;
+  }
   // Solved for when a rock meets the class for the first time.
-  dampingRatios_.resize(std::max(dampingRatios_.size(), std::size_t(restitutionClass) + 1), -1.0);
-  double& ratio = dampingRatios_[std::size_t(restitutionClass)];
+  const auto number = std::size_t(surface_.restitutionClass(touch.cfe));
+  dampingRatios_.resize(std::max(dampingRatios_.size(), number + 1), -1.0);
+  double& ratio = dampingRatios_[number];
   if (ratio < 0.0)
   {
-    ratio = dampingRatio(surface_.restitutionOf(restitutionClass));
+    ratio = dampingRatio(surface_.restitutionAt(touch));
   }
   return ratio;
 }
@@ -227,7 +248,8 @@ void RockSimulator::armContacts(double h)
 
 void RockSimulator::armContact(Contact& c)
 {
-  c.friction = surface_.frictionAt(c.cfe);
+  const GroundTouch touch = this->touchAt(c.cfe, c.point);
+  c.friction = surface_.frictionAt(touch);
   c.cohesion = surface_.cohesionAt(c.cfe);
   if (yields_ && this->yieldingAt(c).slips())
   {
@@ -251,7 +273,7 @@ void RockSimulator::armContact(Contact& c)
     approach > restingSpeed_ && comesDown(approach, speed, parameters_.gravity, block_.radius());
   const int ground = surface_.restitutionClass(c.cfe);
   const double damped = contactDamping(surface_.terrain().restitutionMaterial(ground),
-    surface_.restitutionOf(ground), this->dampingRatioOf(ground), approach, down);
+    surface_.restitutionAt(touch), this->dampingRatioFor(touch), approach, down);
   const double mobility = block_.mobility(n, y);
   c.frequency2 = c.stiffness * mobility;
   c.stopped = 1.0 / mobility;
@@ -318,6 +340,10 @@ void RockSimulator::takeStep(double h, StepKind kind)
     }
   }
   this->absorb(kind, outcome, energyBefore, 0.0);
+  if (lasting)
+  {
+    this->letDeepBe(this->looseOverlap());
+  }
 }
 
 void RockSimulator::absorb(
@@ -332,8 +358,11 @@ void RockSimulator::absorb(
   normalEnergy_ = outcome.normalEnergy;
   if (lasting)
   {
-    energy_.damping += energyBefore - this->mechanicalEnergy() - springEnergy_ -
+    const double damped = energyBefore - this->mechanicalEnergy() - springEnergy_ -
       outcome.frictionWork - outcome.dampedWork - given;
+    // What pressing out gives a rock comes from nowhere, and is booked as that.
+    energy_.damping += pressed_ ? std::max(0.0, damped) : damped;
+    pressed_ = false;
     // The lag of the next lasting step. What an impact left is no acceleration to go on with, nor
     // is that under other contacts: a rock that rattles would be fed by it.
     const double bound = 3.0 * parameters_.gravity;
@@ -390,17 +419,45 @@ void RockSimulator::absorb(
   }
 }
 
+double RockSimulator::looseOverlap() const
+{
+  // In a crowd a rock may be pushed under the slope within a step; it may be alone soon after.
+  return (crowded_ ? kLooseOverlap : kFirm) * block_.radius();
+}
+
 void RockSimulator::pressOut(double h)
 {
   // No more per step than half the weight's compression, or a stiff spring would throw the rock
   // off.
   const double way =
     std::min(kPressOut * h, 0.5 * block_.mass() * parameters_.gravity / parameters_.normalPenalty);
-  // In a crowd a rock may be pushed under the slope within a step; it may be alone soon after.
-  const double loose = (crowded_ ? kLooseOverlap : kFirm) * block_.radius();
+  const double loose = this->looseOverlap();
   for (Contact& c : contacts_)
   {
-    rockfall::pressOut(c, h, way, loose);
+    pressOutLoose(c, way, loose);
+  }
+}
+
+void RockSimulator::pressOutDeep(double h, bool held)
+{
+  pressed_ = false;
+  const double speed = deepSpeed(parameters_.gravity, block_.radius());
+  const double loose = this->looseOverlap();
+  for (Contact& c : contacts_)
+  {
+    const double way = held ? gentleWay(c, h, speed) : speed * h;
+    pressed_ = rockfall::pressOutDeep(c, way, loose) || pressed_;
+  }
+}
+
+void RockSimulator::letDeepBe(double loose)
+{
+  for (Contact& c : contacts_)
+  {
+    const double most = this->settledSpeed() * std::sqrt(block_.mass() / c.stiffness);
+    const double held = letBe(c, most, loose);
+    springEnergy_ = std::max(0.0, springEnergy_ - held);
+    normalEnergy_ = std::max(0.0, normalEnergy_ - held);
   }
 }
 

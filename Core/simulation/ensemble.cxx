@@ -1,5 +1,6 @@
 #include "simulation/ensemble.h"
 
+#include "base/abort.h"
 #include "base/errors.h"
 #include "base/numberText.h"
 #include "geometry/shell.h"
@@ -37,10 +38,34 @@ constexpr double kHighest = 500.0;
 /// and energy gets lost.
 constexpr double kDeepestAtRest = 0.02;
 
+/// What no rock has, and what would not end or not fit into numbers.
+///@{
+constexpr double kMostSpeed = 1000.0; ///< m/s; also of the outermost point as it turns.
+constexpr double kMostSpin = 1e4;     ///< rad/s
+constexpr double kMostDensity = 1e5;  ///< kg/m³; the densest metal has 2.3e4.
+constexpr double kMostModulus = 1e15; ///< Pa; diamond has 1.2e12.
+constexpr double kMostVolume = 1e9;   ///< m³
+///@}
+
 std::string where(const Vec3& world)
 {
-  return "(" + numberText(world.x()) + ", " + numberText(world.y()) + ", " + numberText(world.z()) +
-    ")";
+  std::string text = "(";
+  text += numberText(world.x()) + ", " + numberText(world.y()) + ", " + numberText(world.z());
+  return text + ")";
+}
+
+/// How deep the rock is in the slope as surveyed, m: roughness belongs to an iteration.
+double depthOf(const Terrain& terrain, const Rock& rock, const Block& block)
+{
+  BlockState state;
+  state.position = rock.position;
+  state.orientation = rock.orientation.normalized();
+  PlacedBlock placed;
+  placed.place(block, state);
+  SurfacePatch patch;
+  gatherPatch(Surface::asSurveyed(terrain), placed.lower().x(), placed.upper().x(),
+    placed.lower().y(), placed.upper().y(), patch);
+  return liftOut(placed, patch);
 }
 
 void checkPlacement(const Terrain& terrain, const Rock& rock, const Block& block)
@@ -63,17 +88,9 @@ void checkPlacement(const Terrain& terrain, const Rock& rock, const Block& block
     throw ParameterError(name + ": HorizontalDeviation is " +
       numberText(rock.uncertainty.horizontalDeviation) + " m, more than the slope is wide");
   }
-  BlockState state;
-  state.position = rock.position;
-  state.orientation = rock.orientation.normalized();
-  PlacedBlock placed;
-  placed.place(block, state);
-  SurfacePatch patch;
-  // The check is on the slope as surveyed: roughness belongs to an iteration.
-  gatherPatch(Surface::asSurveyed(terrain), placed.lower().x(), placed.upper().x(),
-    placed.lower().y(), placed.upper().y(), patch);
-  const double depth = liftOut(placed, patch);
-  if (depth > 0.0)
+  const double depth = depthOf(terrain, rock, block);
+  // What is in it by rounding alone is set onto it when it is released.
+  if (depth > startRounding(world.z(), block.radius()))
   {
     throw PlacementError(
       name + " starts inside the slope, by " + numberText(depth, 4) + " m; raise its centre");
@@ -99,22 +116,27 @@ void checkPenalty(const Rock& rock, const Block& block, const SimulationParamete
 void Rock::validate() const
 {
   const std::string name = "block " + std::to_string(this->blockId) + ": ";
-  const auto positive = [&](double value, const char* field, const char* unit)
+  const auto positive = [&](double value, double most, const char* field, const char* unit)
   {
     if (!(value > 0.0) || !std::isfinite(value))
     {
       throw ParameterError(name + field + " is " + numberText(value) +
         ", it must be a positive, finite number of " + unit);
     }
+    if (value > most)
+    {
+      throw ParameterError(name + field + " is " + numberText(value) + " " + unit +
+        ", no rock has more than " + numberText(most));
+    }
   };
-  positive(this->density, "Density", "kg/m³");
-  positive(this->youngModulus, "YoungModulus", "Pa");
+  positive(this->density, kMostDensity, "Density", "kg/m³");
+  positive(this->youngModulus, kMostModulus, "YoungModulus", "Pa");
   if (!(this->poissonRatio >= 0.0 && this->poissonRatio <= 0.49))
   {
     throw ParameterError(
       name + "PoissonRatio is " + numberText(this->poissonRatio) + ", it must be 0 to 0.49");
   }
-  positive(this->shape.integrals().volume, "Volume", "m³");
+  positive(this->shape.integrals().volume, kMostVolume, "Volume", "m³");
   const auto finite = [&](const Vec3& value, const char* field)
   {
     if (!value.allFinite())
@@ -125,6 +147,19 @@ void Rock::validate() const
   finite(this->position, "Center");
   finite(this->velocity, "Velocity");
   finite(this->angularVelocity, "AngularVelocity");
+  const auto atMost = [&](double value, double most, const char* what, const char* unit)
+  {
+    if (value > most)
+    {
+      throw ParameterError(name + what + " is " + numberText(value) + " " + unit +
+        ", no rock has more than " + numberText(most));
+    }
+  };
+  const double spin = this->angularVelocity.stableNorm();
+  atMost(this->velocity.stableNorm(), kMostSpeed, "Velocity", "m/s");
+  atMost(spin, kMostSpin, "AngularVelocity", "rad/s");
+  atMost(spin * this->shape.radius(), kMostSpeed,
+    "AngularVelocity times the radius, the speed of its outermost point,", "m/s");
   if (!this->orientation.coeffs().allFinite() || this->orientation.norm() < 1e-6)
   {
     throw ParameterError(name + "Orientation is not a rotation");
@@ -232,6 +267,21 @@ Block blockOf(const Rock& rock)
 
 } // namespace
 
+void setOntoSlope(const Terrain& terrain, Rock& rock, double most)
+{
+  if (terrain.cfeAt(rock.position.x(), rock.position.y()) == 0)
+  {
+    return; // the ensemble says so
+  }
+  // A grid of single precision is rounded; twice that much is a hair.
+  const double hair = 4.0 * std::ldexp(std::max(50.0, std::abs(rock.position.z())), -24);
+  const double depth = depthOf(terrain, rock, blockOf(rock));
+  if (depth <= std::max(most, hair))
+  {
+    rock.position.z() += depth;
+  }
+}
+
 Ensemble::Ensemble(
   const Terrain& terrain, std::span<const Rock> rocks, const SimulationParameters& p)
   : terrain_(terrain)
@@ -321,7 +371,7 @@ Trajectory Ensemble::simulate(std::int64_t number, double enough) const
   const auto release = [&](const Rock& released)
   {
     const Block block = blockOf(released);
-    return RockSimulator(surface, released, block, parameters_).run(enough);
+    return RockSimulator(surface, released, block, parameters_, std::uint32_t(rock)).run(enough);
   };
   Trajectory trajectory = given.uncertainty.any()
     ? release(realise(terrain_, given, parameters_.seed, iteration, std::uint64_t(rock)))
@@ -384,6 +434,7 @@ bool Ensemble::run(
   // In order, too, are they begun: so few wait for their turn.
   const auto simulateNext = [&]
   {
+    const AbortScope scope(stop);
     for (std::int64_t k = next++; k < total && !stop; k = next++)
     {
       std::int64_t told = 0;
@@ -402,6 +453,10 @@ bool Ensemble::run(
           sink.trim(trajectory);
         }
         inOrder.put(k, std::move(unit));
+      }
+      catch (const Aborted&)
+      {
+        return; // of all
       }
       catch (...)
       {
@@ -450,8 +505,16 @@ bool Ensemble::run(
 bool runEnsemble(const Terrain& terrain, std::span<const Rock> rocks,
   const SimulationParameters& parameters, TrajectorySink& sink, const Progress& progress)
 {
-  const Ensemble ensemble(terrain, rocks, parameters);
-  return ensemble.run(ensemble.whole(), sink, progress);
+  try
+  {
+    const AbortScope scope([&] { return !progress || progress(0.0); });
+    const Ensemble ensemble(terrain, rocks, parameters);
+    return ensemble.run(ensemble.whole(), sink, progress);
+  }
+  catch (const Aborted&)
+  {
+    return false; // rocks were still being checked or pushed apart
+  }
 }
 
 } // namespace rockfall

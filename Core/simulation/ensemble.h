@@ -35,8 +35,15 @@ struct Rock
   std::string material;                ///< Its name, for contacts of rocks; empty: none.
   ReleaseUncertainty uncertainty;      ///< What is drawn in each iteration.
 
-  void validate() const; ///< Throws ParameterError naming block, field and value.
+  /// Throws ParameterError naming block, field and value, also for values beyond any rock's: more
+  /// than 1000 m/s or 10,000 rad/s.
+  void validate() const;
 };
+
+/// Sets a rock onto the slope that starts in it by no more than the rounding of a grid of single
+/// precision (1e-5 m at 50 m, 1 mm at 4000 m), or by no more than `most` (m): one that a simulation
+/// left in contact presses the springs. Any other is left as it is.
+void setOntoSlope(const Terrain& terrain, Rock& rock, double most = 0.0);
 
 /// What pushing rocks apart before they fall has done: the most of any iteration.
 struct PushedApart

@@ -115,7 +115,7 @@ void MassFall::absorb(const Group& group, double h, StepKind kind, Workspace& wo
     for (Contact& c : pair.contacts)
     {
       yield(c, smaller, speed, reduced);
-      pressOut(c, h, slow, loose);
+      pressOutLoose(c, slow, loose);
     }
   };
   forEach(work.touching.size(), kPairGrain, absorbPair);

@@ -2,6 +2,7 @@
 
 #include "simulation/massFallWork.h"
 
+#include "base/abort.h"
 #include "base/parallel.h"
 #include "contact/motion.h"
 #include "simulation/contactConstants.h"
@@ -126,7 +127,9 @@ void MassFall::gatherContacts(const Group& group, double h, Workspace& work) con
             { sim.state_.velocity, spread, kFaster * h,
               parameters_.gravity * h * h + kSurelyOnSlope * r, reach })
         : sim.candidates_;
-      updateContacts(sim.placed_, sim.patch_, near, reach, sim.contacts_);
+      // A step as long as Δt may turn a rock that is held at a corner onto a face.
+      const double turn = crowd ? 0.0 : sim.state_.spin.norm() * h;
+      updateContacts(sim.placed_, sim.patch_, near, reach, sim.contacts_, turn);
       return near;
     };
     const CandidatePairs* near = &findThem();
@@ -264,37 +267,76 @@ bool MassFall::mayLast(const Group& group, double h) const
   return true;
 }
 
+double MassFall::freeOfSlope(RockSimulator& sim, double most) const
+{
+  if (sim.crowded_)
+  {
+    sim.ensureCandidates(0.0, true); // what is high over the ground had no need yet
+  }
+  const double room = sim.candidates_.room(sim.state_, sim.block_.radius(), 0.0);
+  const double speed = sim.state_.velocity.norm() + sim.block_.largestRimSpeed(sim.state_.spin);
+  const double free = std::min(most, timeToCover(room, speed, parameters_.gravity));
+  return timeToClose(
+    sim.placed_, sim.state_, sim.patch_, sim.candidates_, parameters_.gravity, free);
+}
+
+double MassFall::freeOfEachOther(const RockPair& pair, double gravity) const
+{
+  // Along the axis that tells them apart they come no nearer than this.
+  const RockSimulator &a = members_[pair.first]->sim, &b = members_[pair.second]->sim;
+  const double closing = -pair.axis.normal.dot(a.state_.velocity - b.state_.velocity) +
+    a.block_.largestRimSpeed(a.state_.spin) + b.block_.largestRimSpeed(b.state_.spin);
+  return timeToCover(pair.axis.distance, closing, gravity);
+}
+
 double MassFall::freeTime(const Group& group, double most) const
 {
   double free = most;
   for (int i : group.members)
   {
-    const RockSimulator& sim = members_[i]->sim;
-    if (sim.done_)
-    {
-      continue;
-    }
-    if (sim.crowded_)
-    {
-      members_[i]->sim.ensureCandidates(0.0, true); // what is high over the ground had no need yet
-    }
-    const double room = sim.candidates_.room(sim.state_, sim.block_.radius(), 0.0);
-    const double rim = sim.block_.largestRimSpeed(sim.state_.spin);
-    free = std::min(free, timeToCover(room, sim.state_.velocity.norm() + rim, parameters_.gravity));
-    free =
-      timeToClose(sim.placed_, sim.state_, sim.patch_, sim.candidates_, parameters_.gravity, free);
+    RockSimulator& sim = members_[i]->sim;
+    free = sim.done_ ? free : this->freeOfSlope(sim, free);
   }
   for (const RockPair* pair : group.pairs)
   {
-    const RockSimulator &a = members_[pair->first]->sim, &b = members_[pair->second]->sim;
-    if (a.done_ || b.done_)
+    if (!members_[pair->first]->sim.done_ && !members_[pair->second]->sim.done_)
     {
-      continue;
+      free = std::min(free, this->freeOfEachOther(*pair, 0.0)); // both fall alike
     }
-    // Both fall alike; along the axis that tells them apart they come no nearer than this.
-    const double closing = -pair->axis.normal.dot(a.state_.velocity - b.state_.velocity) +
-      a.block_.largestRimSpeed(a.state_.spin) + b.block_.largestRimSpeed(b.state_.spin);
-    free = std::min(free, timeToCover(pair->axis.distance, closing, 0.0));
+  }
+  return free;
+}
+
+double MassFall::freeOfFlying(const Group& group, double most, Workspace& work) const
+{
+  const auto isClosed = [](const Contact& c) { return c.closed(); };
+  work.flying.assign(members_.size(), 0);
+  for (int i : group.members)
+  {
+    const RockSimulator& sim = members_[i]->sim;
+    const double rim = sim.block_.largestRimSpeed(sim.state_.spin);
+    work.flying[std::size_t(i)] = !sim.done_ &&
+      sim.state_.velocity.norm() + rim > sim.restingSpeed_ &&
+      std::none_of(sim.contacts_.begin(), sim.contacts_.end(), isClosed);
+  }
+  for (const RockPair* pair : group.pairs)
+  {
+    if (std::any_of(pair->contacts.begin(), pair->contacts.end(), isClosed))
+    {
+      work.flying[std::size_t(pair->first)] = work.flying[std::size_t(pair->second)] = 0;
+    }
+  }
+  double free = most;
+  for (int i : group.members)
+  {
+    free = work.flying[std::size_t(i)] ? this->freeOfSlope(members_[i]->sim, free) : free;
+  }
+  for (const RockPair* pair : group.pairs)
+  {
+    if (work.flying[std::size_t(pair->first)] || work.flying[std::size_t(pair->second)])
+    {
+      free = std::min(free, this->freeOfEachOther(*pair, parameters_.gravity));
+    }
   }
   return free;
 }
@@ -347,6 +389,7 @@ void MassFall::advanceGroup(const Group& group, double until) const
   };
   while (now() < until - kTooShort)
   {
+    stayWanted();
     double travel = parameters_.timeStep;
     for (int i : group.members)
     {
@@ -389,13 +432,17 @@ void MassFall::advanceGroup(const Group& group, double until) const
     {
       this->solve(group, large, StepKind::Lasting, true, work);
     }
-    else if (calm && any && this->mayLast(group, large))
-    {
-      this->solve(group, large, StepKind::Lasting, false, work);
-    }
     else
     {
-      this->solve(group, small, StepKind::Impact, false, work);
+      const double lasting = calm && any ? this->freeOfFlying(group, large, work) : 0.0;
+      if ((lasting == large || lasting > small) && this->mayLast(group, lasting))
+      {
+        this->solve(group, lasting, StepKind::Lasting, false, work);
+      }
+      else
+      {
+        this->solve(group, small, StepKind::Impact, false, work);
+      }
     }
   }
 }

@@ -69,11 +69,7 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
     }
     bounciest_ = fall.contacts_.largestRestitution();
   }
-  double ground = fall.surface_.restitution();
-  for (int k = 1; k <= fall.surface_.terrain().restitutionClasses().count(); ++k)
-  {
-    ground = std::max(ground, fall.surface_.restitutionOf(k));
-  }
+  const double ground = fall.surface_.largestRestitution();
   const std::size_t last = count - 1;
   const auto followRock = [&](std::size_t i)
   {

@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "contact/motion.h"
+#include "simulation/pressOut.h"
 #include "simulation/restitution.h"
 #include "solver/cohesion.h"
 
@@ -30,7 +31,7 @@ GroupContact MassFall::take(const Member& member, Contact& c, double h, bool bou
     comesDown(approach, state.velocity.norm(), parameters_.gravity, sim.block_.radius());
   const int ground = surface_.restitutionClass(c.cfe);
   const SurfaceMaterial& material = surface_.terrain().restitutionMaterial(ground);
-  double e = surface_.restitutionOf(ground);
+  double e = surface_.restitutionAt(sim.touchAt(c.cfe, c.point));
   if (material.restitutionModel == RestitutionModel::Velocity && down)
   {
     e = 1.0; // Rv is taken off the whole velocity when the impact is over
@@ -97,6 +98,17 @@ GroupContact MassFall::take(RockPair& pair, const PairMotion& motion, Contact& c
   return k;
 }
 
+void MassFall::pressOutDeep(RockPair& pair, double h, bool crowd, const Workspace& work) const
+{
+  const double smaller = std::min(
+    work.sides[std::size_t(pair.first)].radius, work.sides[std::size_t(pair.second)].radius);
+  const double speed = deepSpeed(parameters_.gravity, smaller);
+  for (Contact& c : pair.contacts)
+  {
+    rockfall::pressOutDeep(c, crowd ? speed * h : gentleWay(c, h, speed), kLooseOverlap * smaller);
+  }
+}
+
 void MassFall::solve(
   const Group& group, double h, StepKind kind, bool bounces, Workspace& work) const
 {
@@ -124,6 +136,10 @@ void MassFall::solve(
     sim.springEnergyBefore_ = sim.springEnergy_;
     sim.contactsBefore_ = sim.contacts_;
     work.energyBefore[member.place] = sim.mechanicalEnergy() + sim.springEnergy_;
+    if (lasting)
+    {
+      sim.pressOutDeep(h, !group.crowd);
+    }
     GroupBody& body = work.bodies[member.place];
     body = {};
     body.block = &sim.block_;
@@ -155,6 +171,10 @@ void MassFall::solve(
       return;
     }
     const PairMotion motion = work.motionOf(pair);
+    if (lasting)
+    {
+      this->pressOutDeep(pair, h, crowd, work);
+    }
     std::size_t next = work.firsts[p];
     for (Contact& c : pair.contacts)
     {

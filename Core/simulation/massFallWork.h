@@ -107,6 +107,7 @@ struct MassFall::Workspace
   std::vector<std::size_t> missed;         ///< Pairs or rocks whose contacts were missed.
   std::vector<std::vector<Contact>> found; ///< Of each of them, where it touches.
   bool looked = false;                     ///< Where the step ends.
+  std::vector<char> flying;                ///< By rock, of those that freeOfFlying asks.
   /// A tree that others drive a rock into within the step, and that may not hold.
   struct Stem
   {

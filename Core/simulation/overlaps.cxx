@@ -1,5 +1,6 @@
 #include "simulation/overlaps.h"
 
+#include "base/abort.h"
 #include "base/errors.h"
 #include "base/numberText.h"
 #include "contact/pairs.h"
@@ -76,6 +77,7 @@ std::vector<RockOverlap> overlapsOf(
   std::vector<RockOverlap> overlaps;
   for (const std::array<int, 2>& ij : findNear(boxes))
   {
+    stayWanted();
     const std::size_t i = std::size_t(ij[0]), j = std::size_t(ij[1]);
     const double smaller = std::min(boxes[i].radius, boxes[j].radius);
     if (findAxis(all[i]->body, all[j]->body, {}, 0.0).distance >= -kLaidDown * smaller)
@@ -249,6 +251,7 @@ PushedApart pushApart(const Terrain& terrain, std::span<Rock> rocks)
     }
     for (std::size_t i = 0; i < rocks.size(); ++i)
     {
+      stayWanted();
       if (pairs[i] == 0)
       {
         continue;

@@ -3,6 +3,7 @@
 #include "contact/features.h"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <limits>
 
@@ -197,6 +198,12 @@ double touchingHeight(
   const double r = shape.radius();
   gatherPatch(surface, x - r, x + r, y - r, y + r, patch);
   return std::max(lift, liftOverNodesAndEdges(body, patch));
+}
+
+double startRounding(double z, double radius)
+{
+  // Half a unit in the last place for the slope and one for the rock, and as much again.
+  return std::min(2.0 * FLT_EPSILON * std::max(1.0, std::abs(z)), 1e-3 * radius);
 }
 
 double liftOut(const PlacedBlock& rock, const SurfacePatch& patch)

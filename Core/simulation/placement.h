@@ -24,4 +24,8 @@ double touchingHeight(
 /// the rock's outline. An unstrained rock is taken.
 double liftOut(const PlacedBlock& rock, const SurfacePatch& patch);
 
+/// How deep (m) a rock may start in the slope by rounding alone: heights that were kept in single
+/// precision, at the height `z` (m, world coordinates). A thousandth of the rock's radius at most.
+double startRounding(double z, double radius);
+
 } // namespace rockfall

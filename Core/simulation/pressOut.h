@@ -2,23 +2,67 @@
 
 /// @file
 /// How an overlap that was found, not made, is pressed out of a lasting contact.
+///
+/// A loose overlap goes by less than the compression of the weight in each step, and the spring
+/// hardly notices. A deep one goes at a stated speed: the spring is compressed by the way of one
+/// lasting step just before it, the step takes the rock that far, and damps what the spring would
+/// give besides. Such a compression must not outlast the step. It holds ½ k d², thousands of times
+/// what a light rock on a stiff spring ever had, and an impact step would give that back.
 
 #include "contact/Contact.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace rockfall
 {
 
 constexpr double kPressOut = 0.005;    ///< Speed, m/s.
-constexpr double kPressOutDeep = 0.1;  ///< The same beyond a loose overlap, m/s.
 constexpr double kLooseOverlap = 1e-3; ///< Share of the radius.
+/// Speed beyond a loose overlap, m/s, and at most this share of √(g r).
+constexpr double kPressOutDeep = 0.1;
 
-/// A step of `h` (s): by `slow` (m), or fast if deeper than `loose` (m).
-inline void pressOut(Contact& c, double h, double slow, double loose)
+/// Speed at which a deep overlap of a rock of this radius (m) is pressed out, m/s.
+inline double deepSpeed(double gravity, double radius)
 {
-  const double way = c.offset < -loose ? kPressOutDeep * h : slow;
-  c.offset = c.offset < 0.0 ? std::min(0.0, c.offset + way) : std::max(0.0, c.offset - way);
+  return kPressOutDeep * std::min(1.0, std::sqrt(std::max(gravity, 1e-3) * radius));
+}
+
+/// After a step: a loose overlap, by `slow` (m).
+inline void pressOutLoose(Contact& c, double slow, double loose)
+{
+  if (c.offset >= -loose)
+  {
+    c.offset = c.offset < 0.0 ? std::min(0.0, c.offset + slow) : std::max(0.0, c.offset - slow);
+  }
+}
+
+/// Before a lasting step: an overlap deeper than `loose` (m), by `way` (m). Returns whether it is.
+inline bool pressOutDeep(Contact& c, double way, double loose)
+{
+  const bool deep = c.offset < -loose;
+  c.offset = deep ? std::min(0.0, c.offset + way) : c.offset;
+  return deep;
+}
+
+/// The same where others may hold the two: by no more than the spring needs to give what it stops
+/// `speed` (m/s), or a pinched stone would lift what lies on it.
+inline double gentleWay(const Contact& c, double h, double speed)
+{
+  return std::min(h, std::sqrt(c.stopped / c.stiffness)) * speed;
+}
+
+/// Lets a deep overlap be where a step has left its spring compressed by more than `most` (m).
+/// Returns the energy that the spring then no longer holds, J.
+inline double letBe(Contact& c, double most, double loose)
+{
+  const double gap = c.gap();
+  if (!c.closed() || c.offset >= -loose || gap >= -most)
+  {
+    return 0.0;
+  }
+  c.offset = c.distance + most;
+  return 0.5 * c.stiffness * (gap * gap - most * most);
 }
 
 } // namespace rockfall

@@ -1,5 +1,6 @@
 #include "simulation/raising.h"
 
+#include "base/abort.h"
 #include "contact/pairs.h"
 #include "system/broadPhase.h"
 
@@ -122,6 +123,7 @@ void raiseOthers(std::span<RaisedRock> rocks)
   Climbing climbing, standing;
   while (!left.empty())
   {
+    stayWanted();
     const auto [lift, i] = left.top();
     left.pop();
     const RaisedRock& rock = rocks[std::size_t(i)];

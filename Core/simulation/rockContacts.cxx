@@ -2,6 +2,7 @@
 
 #include "base/RockMaterial.h"
 #include "base/errors.h"
+#include "base/nameKey.h"
 #include "base/numberText.h"
 #include "geometry/shell.h"
 #include "solver/springs.h"
@@ -41,7 +42,7 @@ void validateRockContacts(std::span<const RockContactPair> pairs)
   for (const RockContactPair& pair : pairs)
   {
     const std::string name = "the contact of \"" + pair.first + "\" and \"" + pair.second + "\"";
-    std::string a = materialKey(pair.first), b = materialKey(pair.second);
+    std::string a = nameKey(pair.first), b = nameKey(pair.second);
     if (a.empty() || b.empty())
     {
       throw ParameterError(name + " is of a material without a name");
@@ -82,7 +83,7 @@ RockContacts::RockContacts(std::span<const Rock> rocks, const SimulationParamete
   {
     for (const std::string* name : { &pair.first, &pair.second })
     {
-      kinds.emplace(materialKey(*name), int(kinds.size()) + 1);
+      kinds.emplace(nameKey(*name), int(kinds.size()) + 1);
     }
   }
   kinds_ = kinds.size() + 1;
@@ -90,15 +91,15 @@ RockContacts::RockContacts(std::span<const Rock> rocks, const SimulationParamete
   for (const Rock& rock : rocks)
   {
     const auto kind =
-      kinds.empty() || rock.material.empty() ? kinds.end() : kinds.find(materialKey(rock.material));
+      kinds.empty() || rock.material.empty() ? kinds.end() : kinds.find(nameKey(rock.material));
     kindOf_.push_back(kind == kinds.end() ? 0 : kind->second);
   }
   laws_.assign(kinds_ * kinds_,
     lawOf({ parameters.rockRestitution, parameters.rockFrictionAngle, parameters.rockCohesion }));
   for (const RockContactPair& pair : parameters.rockContactPairs)
   {
-    const std::size_t a = std::size_t(kinds.at(materialKey(pair.first)));
-    const std::size_t b = std::size_t(kinds.at(materialKey(pair.second)));
+    const std::size_t a = std::size_t(kinds.at(nameKey(pair.first)));
+    const std::size_t b = std::size_t(kinds.at(nameKey(pair.second)));
     laws_[a * kinds_ + b] = laws_[b * kinds_ + a] = lawOf(pair.contact);
   }
 }

@@ -76,6 +76,8 @@ void RockSimulator::finishImpact(bool over)
   }
   impact_.pending = false;
   ImpactEvent& event = impact_.event;
+  const GroundTouch touch = this->touchAt(event.cfe, event.position);
+  ++impactsOver_;
   if (!isImpact(event.approachSpeed, event.velocityBefore.norm(), restingSpeed_,
         parameters_.gravity, block_.radius()))
   {
@@ -84,7 +86,7 @@ void RockSimulator::finishImpact(bool over)
   event.impulse = impact_.normalImpulse.norm();
   event.normal = event.impulse > 0.0 ? Vec3(impact_.normalImpulse / event.impulse) : event.normal;
   const int ground = surface_.restitutionClass(event.cfe);
-  event.restitution = surface_.restitutionOf(ground);
+  event.restitution = surface_.restitutionAt(touch);
   const double before = kineticEnergy(block_, state_);
   const bool down = comesDown(
     event.approachSpeed, event.velocityBefore.norm(), parameters_.gravity, block_.radius());

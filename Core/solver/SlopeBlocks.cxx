@@ -78,7 +78,7 @@ SlopeBlocks makeSlopeBlocks(
   {
     const int row = int(node / grid.columns), column = int(node % grid.columns);
     Vec3 p = terrain.node(row, column);
-    p.z() = surface.nodeHeight(row, column);
+    p.z() = surface.nodeHeight(row * surface.grid().parts, column * surface.grid().parts);
     return p;
   };
   for (std::int64_t cfe = 1; cfe <= terrain.cfeCapacity(); ++cfe)

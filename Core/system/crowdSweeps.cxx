@@ -2,6 +2,8 @@
 
 #include "system/CrowdSolver.h"
 
+#include "base/abort.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -83,6 +85,7 @@ bool CrowdSolver::sweepTo(double goal, int most, bool conjugate, GroupOutcome& o
     {
       this->goFurther();
     }
+    stayWanted();
     ++outcome.iterations;
     outcome.residual = this->sweep();
     reached = outcome.residual <= goal;

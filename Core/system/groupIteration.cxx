@@ -2,6 +2,7 @@
 
 #include "system/GroupSolver.h"
 
+#include "base/abort.h"
 #include "base/parallel.h"
 
 #include <algorithm>
@@ -32,6 +33,7 @@ bool GroupSolver::newton(
   double share = 1.0; // of the correction that is taken
   for (int iteration = 0; iteration < request.maxOpenClose; ++iteration)
   {
+    stayWanted();
     ++outcome.iterations;
     this->loads(request, bodies);
     if (!this->solveDirect(next))

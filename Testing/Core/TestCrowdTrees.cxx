@@ -152,7 +152,8 @@ TEST(CrowdTrees, WhatOneTreeLeavesTheNextOneHolds)
       }
       EXPECT_LT(crowd[0].summary.stop.x(), 50.0 - kFlat - 0.5 + 0.05) << gap; // a step of 5 ms
       EXPECT_LT(crowd[0].summary.maxSpeed, 8.0);
-      EXPECT_LT(std::abs(crowd[0].summary.energy.numerical), 1e-2);
+      // What presses the cube out of a stem that it came into within a step: of its 53 kJ 2 %.
+      EXPECT_LT(std::abs(crowd[0].summary.energy.numerical), 0.02 * 53e3);
     }
   }
 }

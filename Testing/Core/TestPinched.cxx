@@ -88,7 +88,9 @@ void expectNotShotOut(bool crowd)
         for (const Trajectory& one : runs)
         {
           const EnergyAudit& e = one.summary.energy;
-          EXPECT_LT(std::abs(e.numerical), (crowd ? 1e-3 : 1e-5) * 75e3 * speed * speed + raised);
+          // In a crowd what lifts a boulder off a deep overlap comes from nowhere, and is booked as
+          // that: less than 1 % of what the boulder brought.
+          EXPECT_LT(std::abs(e.numerical), (crowd ? 1e-2 : 1e-5) * 75e3 * speed * speed + raised);
         }
       }
     }

@@ -249,6 +249,42 @@ TEST(Starts, WhatOnlyTouchesAWallStaysDown)
   }
 }
 
+/// A slope whose heights, and a rock whose height, were kept in single precision.
+TEST(Starts, AHairInTheSlopeByRoundingIsSetOntoIt)
+{
+  for (const double base : { 0.0, 450.0, 3000.0 })
+  {
+    const auto height = [&](double x, double) { return base + 60.0 - 0.57 * x; };
+    const Terrain terrain = makeSlope(
+      11, 10.0, [&](double x, double y) { return double(float(height(x, y))); },
+      material(0.5, 30.0));
+    const double rounding = 6e-8 * (base + 60.0);
+    for (const Shape shape : { Shape::Cube, Shape::Icosahedron, Shape::Tetrahedron })
+    {
+      for (const double x : { 33.3, 50.0, 61.7 })
+      {
+        Rock rock;
+        rock.shape = makeShape(shape, 1.0);
+        rock.position = Vec3(x, 47.0, 0.0);
+        const double touching = touchingHeight(Surface::asSurveyed(terrain), rock.shape,
+          rock.orientation, rock.position.x(), rock.position.y());
+        SimulationParameters p;
+        p.endTime = 0.05;
+        for (const double deep : { rounding, 0.5 * rounding, 1e-6 })
+        {
+          rock.position.z() = touching - deep;
+          const double start = simulate(terrain, rock, p).samples.front().position.z();
+          EXPECT_GE(start, touching - 3e-6) << base << ", " << x << ", " << deep;
+          EXPECT_LE(start, touching + 1e-5) << base << ", " << x << ", " << deep;
+        }
+        // What is no rounding stays an error.
+        rock.position.z() = touching - 2e-3;
+        EXPECT_THROW(simulate(terrain, rock, p), PlacementError) << base << ", " << x;
+      }
+    }
+  }
+}
+
 /// A ridge of the ground cuts an edge of a rock as a crest does.
 TEST(Starts, RoughGroundIsClearOfEdgesToo)
 {

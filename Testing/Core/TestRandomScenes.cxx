@@ -1,0 +1,25 @@
+// Random rocks on random ground: no energy from nowhere, nothing in the ground, the same bits on
+// one thread and on two. The full form is VerifyRandomScenes.
+
+#include "randomScenes.h"
+
+#include <gtest/gtest.h>
+
+using namespace rockfall;
+using namespace rockfall::testing;
+
+class RandomScenes : public ::testing::TestWithParam<int>
+{
+};
+
+TEST_P(RandomScenes, MakeNoEnergyAndStayOutOfTheGround)
+{
+  const SceneOutcome outcome = runScene(randomScene(std::uint64_t(GetParam()), 12, 1.0), 240.0);
+  ASSERT_FALSE(outcome.refused || outcome.givenUp);
+  EXPECT_TRUE(outcome.sameBits);
+  EXPECT_LE(outcome.made, 0.01 * outcome.released);
+  EXPECT_EQ(outcome.tooDeep, 0.0) << outcome.worst;
+}
+
+// Rocks alone, and falls of up to twelve; in 131 some are thrown into pits and wedged.
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomScenes, ::testing::Values(41, 44, 47, 50, 53, 56, 131));
