@@ -1,5 +1,6 @@
 #include "statistics/HazardRaster.h"
 
+#include "base/abort.h"
 #include "base/errors.h"
 #include "terrain/Terrain.h"
 
@@ -209,6 +210,7 @@ void HazardRaster::addPiece(const PathPiece& piece, std::array<double, 2> ground
 
 void HazardRaster::add(const RockPath& path)
 {
+  stayWanted();
   checkPath(path);
   ++released_;
   ++releasedIn_[path.iteration];
@@ -295,6 +297,7 @@ void HazardRaster::summarize(const UseCell& use)
   CellSummarizer summarizer(releasedIn_, use);
   for (const Passage& passage : this->sorted())
   {
+    stayWanted();
     summarizer.add(passage);
   }
   summarizer.finish();

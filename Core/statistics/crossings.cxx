@@ -1,5 +1,6 @@
 #include "statistics/crossings.h"
 
+#include "base/abort.h"
 #include "terrain/Terrain.h"
 
 #include <algorithm>
@@ -324,6 +325,7 @@ void appendOf(const RockPath& path, const Segment& segment, const Terrain* terra
 void appendCrossings(const RockPath& path, const CollectorLine& line, int lineNumber,
   const Terrain* terrain, std::vector<Crossing>& crossings)
 {
+  stayWanted();
   checkPath(path);
   if (path.points.size() < 2)
   {

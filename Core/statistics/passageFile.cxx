@@ -1,14 +1,15 @@
 #include "statistics/passageFile.h"
 
 #include "base/errors.h"
-#include "gis/outputFile.h"
-#include "statistics/HazardRaster.h"
+#include "base/numberText.h"
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <queue>
 #include <tuple>
 
@@ -20,15 +21,8 @@ namespace
 
 static_assert(std::endian::native == std::endian::little && sizeof(Passage) == 48);
 
-constexpr char magic[8] = { 'R', 'F', 'P', 'A', 'S', 'S', '0', '1' };
 constexpr std::uint64_t memory = 64'000'000;    ///< For the passages of all files at once, bytes.
 constexpr std::uint64_t longestCrs = 1'000'000; ///< Bytes; more is no CRS but a damaged file.
-
-template <typename T>
-void put(std::ostream& out, const T& value)
-{
-  out.write(reinterpret_cast<const char*>(&value), sizeof(T));
-}
 
 template <typename T>
 T get(std::istream& in)
@@ -36,6 +30,64 @@ T get(std::istream& in)
   T value{};
   in.read(reinterpret_cast<char*>(&value), sizeof(T));
   return value;
+}
+
+[[noreturn]] void failDamaged(const std::string& fileName, const std::string& what)
+{
+  throw FileError(fileName + ": is damaged: " + what);
+}
+
+/// What the header says must be what a run can have.
+void checkHeader(const PassageFile& file)
+{
+  const CellGrid& g = file.grid;
+  const auto finite = [&](double value, const char* what)
+  {
+    if (!std::isfinite(value))
+    {
+      failDamaged(file.fileName, std::string(what) + " is " + numberText(value));
+    }
+  };
+  if (g.columns < 1 || g.rows < 1 || g.cellCount() > std::int64_t(UINT32_MAX))
+  {
+    failDamaged(file.fileName,
+      "it has " + std::to_string(g.columns) + " x " + std::to_string(g.rows) + " cells");
+  }
+  finite(g.cellSize, "the cell size");
+  if (g.cellSize <= 0.0)
+  {
+    failDamaged(file.fileName, "the cell size is " + numberText(g.cellSize));
+  }
+  for (const double place : { g.west, g.south, file.origin.x(), file.origin.y(), file.origin.z() })
+  {
+    finite(place, "a coordinate of the map");
+  }
+}
+
+/// Iterations and how many rocks were released in each.
+void readReleases(std::istream& in, PassageFile& file)
+{
+  const auto iterations = get<std::uint64_t>(in);
+  for (std::uint64_t k = 0; k < iterations && in; ++k)
+  {
+    const auto iteration = get<std::int64_t>(in);
+    const auto count = get<std::int64_t>(in);
+    if (!in)
+    {
+      return; // told by the length
+    }
+    if (iteration < 0 || iteration > std::numeric_limits<int>::max() || count < 0 ||
+      count > std::numeric_limits<int>::max())
+    {
+      failDamaged(file.fileName,
+        "in iteration " + std::to_string(iteration) + " " + std::to_string(count) +
+          " rocks were released");
+    }
+    if (!file.releases.emplace(int(iteration), count).second)
+    {
+      failDamaged(file.fileName, "iteration " + std::to_string(iteration) + " is there twice");
+    }
+  }
 }
 
 /// The passages of one file, some at a time. No file stays open: there may be more than a process
@@ -78,14 +130,36 @@ private:
       throw FileError(file_.fileName + ": cannot be read to its end");
     }
     read_ += buffer_.size();
-    const std::int64_t cells = file_.grid.cellCount();
     for (const Passage& passage : buffer_)
     {
-      if (passage.cell >= cells)
+      this->check(passage);
+    }
+  }
+
+  void check(const Passage& passage) const
+  {
+    const std::int64_t cells = file_.grid.cellCount();
+    if (passage.cell >= cells)
+    {
+      failDamaged(file_.fileName,
+        "there is no cell " + std::to_string(passage.cell) + " in a map of " +
+          std::to_string(cells));
+    }
+    for (const double maximum : passage.maxima)
+    {
+      if (std::isnan(maximum) || maximum == std::numeric_limits<double>::infinity())
       {
-        throw FileError(file_.fileName + ": is damaged: there is no cell " +
-          std::to_string(passage.cell) + " in a map of " + std::to_string(cells));
+        failDamaged(file_.fileName,
+          "a rock in cell " + std::to_string(passage.cell) + " has the value " +
+            numberText(maximum));
       }
+    }
+    if (passage.entries == 0 || passage.iteration < 0 || passage.rock < 0)
+    {
+      failDamaged(file_.fileName,
+        "in cell " + std::to_string(passage.cell) + " rock " + std::to_string(passage.rock) +
+          " of iteration " + std::to_string(passage.iteration) + " came in " +
+          std::to_string(passage.entries) + " times");
     }
   }
 
@@ -98,40 +172,6 @@ private:
 
 } // namespace
 
-void writePassages(
-  HazardRaster& raster, const Vec3& origin, const std::string& crs, const std::string& fileName)
-{
-  gis::OutputFile file(fileName);
-  std::ofstream out(file.temporary(), std::ios::binary);
-  const CellGrid& grid = raster.grid();
-  out.write(magic, sizeof(magic));
-  put(out, std::int32_t(grid.columns));
-  put(out, std::int32_t(grid.rows));
-  for (const double value : { grid.cellSize, origin.x() + grid.west, origin.y() + grid.south,
-         origin.x(), origin.y(), origin.z() })
-  {
-    put(out, value);
-  }
-  put(out, std::uint64_t(crs.size()));
-  out.write(crs.data(), std::streamsize(crs.size()));
-  put(out, std::uint64_t(raster.releases().size()));
-  for (const auto& [iteration, count] : raster.releases())
-  {
-    put(out, std::int64_t(iteration));
-    put(out, count);
-  }
-  const std::vector<Passage>& passages = raster.sorted();
-  put(out, std::uint64_t(passages.size()));
-  out.write(reinterpret_cast<const char*>(passages.data()),
-    std::streamsize(passages.size() * sizeof(Passage)));
-  out.close();
-  if (!out)
-  {
-    throw FileError(fileName + ": cannot be written: " + std::strerror(errno));
-  }
-  file.commit();
-}
-
 PassageFile readPassageFile(const std::string& fileName)
 {
   std::error_code error;
@@ -141,9 +181,9 @@ PassageFile readPassageFile(const std::string& fileName)
   {
     throw FileError(fileName + ": cannot be opened");
   }
-  char start[sizeof(magic)] = {};
+  char start[sizeof(passageMagic)] = {};
   in.read(start, sizeof(start));
-  if (!in || std::memcmp(start, magic, sizeof(magic)) != 0)
+  if (!in || std::memcmp(start, passageMagic, sizeof(passageMagic)) != 0)
   {
     throw FileError(fileName + ": is no file of passages of this version");
   }
@@ -162,20 +202,15 @@ PassageFile readPassageFile(const std::string& fileName)
     file.crs.resize(length);
     in.read(file.crs.data(), std::streamsize(length));
   }
-  const auto iterations = get<std::uint64_t>(in);
-  for (std::uint64_t k = 0; k < iterations && in; ++k)
-  {
-    const auto iteration = get<std::int64_t>(in);
-    file.releases[int(iteration)] = get<std::int64_t>(in);
-  }
+  readReleases(in, file);
   file.passages = get<std::uint64_t>(in);
   file.begin = in ? std::uint64_t(in.tellg()) : 0;
-  if (!in || length > longestCrs || file.grid.columns < 1 || file.grid.rows < 1 ||
-    !(file.grid.cellSize > 0.0) || file.passages > size ||
+  if (!in || length > longestCrs || file.passages > size ||
     size != file.begin + file.passages * sizeof(Passage))
   {
-    throw FileError(fileName + ": is damaged: it is not as long as it must be");
+    failDamaged(fileName, "it is not as long as it must be");
   }
+  checkHeader(file);
   return file;
 }
 

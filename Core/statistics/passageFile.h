@@ -23,6 +23,9 @@ namespace rockfall
 
 class HazardRaster;
 
+/// The first bytes of a file.
+constexpr char passageMagic[8] = { 'R', 'F', 'P', 'A', 'S', 'S', '0', '1' };
+
 /// What a file says of itself.
 struct PassageFile
 {
@@ -41,7 +44,7 @@ void writePassages(
   HazardRaster& raster, const Vec3& origin, const std::string& crs, const std::string& fileName);
 
 /// Reads all but the passages. Throws FileError that names the file if it is none, of another
-/// version, or not of the length that it must have.
+/// version, not of the length that it must have, or of numbers that no run has.
 PassageFile readPassageFile(const std::string& fileName);
 
 /// Several files as one. Whatever the passages are shared out over files, the results are the same

@@ -82,6 +82,13 @@ void CellSummarizer::add(const Passage& passage)
     counts_.push_back({ 0.0, double(released->second) });
   }
   ++counts_.back().rocks;
+  if (counts_.back().rocks > counts_.back().released ||
+    std::int64_t(summary_.passages) + passage.entries > std::numeric_limits<int>::max())
+  {
+    throw DataError("Cell " + std::to_string(passage.cell) + " has more passages than can be: " +
+      name() + " is one too many of the " + std::to_string(std::int64_t(counts_.back().released)) +
+      " rocks that were released, or came in too often");
+  }
   summary_.passages += int(passage.entries);
   summary_.stops += int(passage.stopped);
   ++summary_.rocks;
