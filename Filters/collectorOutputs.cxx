@@ -208,6 +208,7 @@ void writeExceedance(
   vtkFieldData* data = output->GetRowData();
   const auto line = addArray<vtkIntArray>(data, "Line");
   const auto energy = addArray<vtkDoubleArray>(data, "KineticEnergy");
+  const auto kilojoules = addArray<vtkDoubleArray>(data, "EnergyInKilojoules");
   const auto height = addArray<vtkDoubleArray>(data, "HeightOverGround");
   const auto ofPassing = addArray<vtkDoubleArray>(data, "ShareOfPassing");
   const auto ofReleased = addArray<vtkDoubleArray>(data, "ShareOfReleased");
@@ -223,6 +224,7 @@ void writeExceedance(
     {
       line->InsertNextValue(int(k));
       energy->InsertNextValue(descending(summary.energies, rank));
+      kilojoules->InsertNextValue(1e-3 * descending(summary.energies, rank));
       height->InsertNextValue(descending(summary.heights, rank));
       ofPassing->InsertNextValue(double(rank + 1) / double(summary.rocks));
       ofReleased->InsertNextValue(double(rank + 1) / double(released));

@@ -91,4 +91,18 @@ void showNote(const std::string& note)
   vtkOutputWindowDisplayText((note + "\n").c_str());
 }
 
+void showNotes(const std::vector<std::string>& notes, vtkFieldData* fieldData)
+{
+  if (notes.empty())
+  {
+    return;
+  }
+  const auto kept = addArray<vtkStringArray>(fieldData, "Notes");
+  for (const std::string& note : notes)
+  {
+    showNote(note);
+    kept->InsertNextValue(note);
+  }
+}
+
 } // namespace rockfall::filters

@@ -4,9 +4,11 @@
 /// How a filter tells its user what is wrong, and what was done.
 
 #include <string>
+#include <vector>
 
 class vtkAlgorithm;
 class vtkDataObject;
+class vtkFieldData;
 
 namespace rockfall::filters
 {
@@ -32,5 +34,8 @@ bool inheritFailure(vtkDataObject* input, vtkAlgorithm* algorithm);
 /// Shows a line that is neither an error nor a warning, in ParaView's output messages and on the
 /// terminal of a batch run.
 void showNote(const std::string& note);
+
+/// Shows each, and keeps them in the field array Notes of an output if there are any.
+void showNotes(const std::vector<std::string>& notes, vtkFieldData* fieldData);
 
 } // namespace rockfall::filters

@@ -78,8 +78,9 @@ CellGrid gridOf(vtkPolyData* trajectories, const Terrain* terrain, const HazardM
   }
   if (options.cellSize == 0.0 && !terrain)
   {
-    throw ParameterError("CellSize is 0, which takes the cells of the Terrain, but no Terrain is "
-                         "connected: give a CellSize or connect the slope");
+    throw ParameterError(
+      "CellSize is 0, which takes the cells of the slope, but none came with the "
+      "trajectories: give a CellSize or connect the Terrain");
   }
   CellGrid grid;
   grid.cellSize = options.cellSize > 0.0 ? options.cellSize : terrain->geometry().cellSize;
@@ -245,13 +246,10 @@ void makeHazardImage(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
   const HazardMapOptions& options, vtkImageData* image)
 {
   checkLines(trajectories);
-  std::optional<Terrain> terrain;
+  const std::optional<Terrain> terrain = slopeUnder(trajectories, terrainMesh);
   Vec3 origin = Vec3::Zero();
-  if (terrainMesh)
+  if (terrain)
   {
-    terrain.emplace(readTerrain(terrainMesh));
-    checkSameCrs(trajectories->GetFieldData(), "The trajectories of the Input are",
-      terrainMesh->GetFieldData());
     origin = terrain->geometry().origin();
   }
   else

@@ -2,7 +2,10 @@
 
 #include "arrays.h"
 #include "base/errors.h"
+#include "failure.h"
 #include "gis/rockContacts.h"
+#include "inputContent.h"
+#include "motion.h"
 #include "terrainFieldData.h"
 
 #include "vtkDoubleArray.h"
@@ -39,13 +42,73 @@ int rankOf(const Ranks& ranks, vtkPolyData* input, const char* name)
   return int(std::max_element(has.begin(), has.end()) - has.begin());
 }
 
+/// Blocks that a simulation before had let go cannot go on.
+void tellGone(std::int64_t gone, std::int64_t others, const Ranks& ranks)
+{
+  if (gone > 0 && others == 0)
+  {
+    throw DataError("All " + std::to_string(gone) +
+      " blocks of the Rocks input had left the slope (State 3) when a simulation left them");
+  }
+  if (gone > 0 && ranks.rank() == 0)
+  {
+    showNote(std::to_string(gone) + " of " + std::to_string(gone + others) +
+      " blocks of the Rocks input had left the slope (State 3) and are left out");
+  }
+}
+
 } // namespace
 
-bool KeptRun::isLike(const KeptRun& other) const
+std::uint64_t KeptRun::contentOfRocks(vtkPolyData* rocksInput, const Ranks& ranks) const
 {
-  return terrain == other.terrain && rocks == other.rocks &&
-    parts.retention == other.parts.retention && parts.impacts == other.parts.impacts &&
-    contactFile == other.contactFile && runKey(parameters) == runKey(other.parameters);
+  if (ranks.count() > 1)
+  {
+    return filters::rocksContent(rocksInput, {});
+  }
+  return parameters.rockRockContact && !contactFile.empty()
+    ? filters::rocksContent(rocksInput, { "SourceName" })
+    : filters::rocksContent(rocksInput, { "SourceName", "Material" });
+}
+
+bool KeptRun::hasPropertiesOf(const KeptRun& other) const
+{
+  return parts.retention == other.parts.retention && parts.impacts == other.parts.impacts &&
+    contactFile == other.contactFile && contactSheet == other.contactSheet &&
+    runKey(parameters) == runKey(other.parameters);
+}
+
+bool KeptRun::takesOver(
+  const KeptRun& other, vtkPolyData* terrainInput, vtkPolyData* rocksInput, const Ranks& ranks)
+{
+  if (!this->hasPropertiesOf(other))
+  {
+    return false;
+  }
+  const bool sameTerrain = terrain == other.terrain, sameRocks = rocks == other.rocks;
+  if ((!sameTerrain && terrainContent != filters::terrainContent(terrainInput)) ||
+    (!sameRocks && rocksContent != this->contentOfRocks(rocksInput, ranks)))
+  {
+    return false;
+  }
+  if (!sameTerrain && terrainInput != rocksInput && terrainInput->GetNumberOfCells() > 0)
+  {
+    readTerrain(terrainInput); // what is shown must be the slope
+  }
+  if (!sameRocks && ranks.count() == 1)
+  {
+    std::vector<ReleasedRock> released = readRocks(rocksInput, frame.origin);
+    std::erase_if(released,
+      [](const ReleasedRock& rock) { return rock.state == int(MotionState::LeftDomain); });
+    for (std::size_t k = 0; k < released.size(); ++k)
+    {
+      frame.rocks[k].material = released[k].rock.material;
+      frame.sourceNames[k] = released[k].sourceName;
+    }
+    renameSources(frame, summary);
+  }
+  terrain = other.terrain;
+  rocks = other.rocks;
+  return true;
 }
 
 bool KeptRun::wholeFits() const
@@ -56,6 +119,7 @@ bool KeptRun::wholeFits() const
 void KeptRun::dropInputs()
 {
   ensemble.reset();
+  ground->Initialize();
   frame = {};
   slope = {};
 }
@@ -63,6 +127,20 @@ void KeptRun::dropInputs()
 void KeptRun::prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const Ranks& ranks,
   const std::string& noMemory)
 {
+  terrainContent = filters::terrainContent(terrainInput);
+  rocksContent = this->contentOfRocks(rocksInput, ranks);
+  const bool brought = terrainInput == rocksInput; // the rocks brought it
+  ranks.together(
+    [&]
+    {
+      if (brought && rocksInput->GetNumberOfCells() > 0 && !hasTerrain(rocksInput->GetFieldData()))
+      {
+        throw DataError(
+          "The Terrain input is missing, and the Rocks did not bring one: connect the "
+          "slope to the simulation or to the source of the rocks");
+      }
+    },
+    noMemory);
   // Wherever they are; nowhere is the first rank's business.
   const int terrainRank = rankOf(ranks, terrainInput, "Terrain");
   const int rocksRank = rankOf(ranks, rocksInput, "Rocks");
@@ -72,7 +150,7 @@ void KeptRun::prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const 
     {
       if (ranks.rank() == terrainRank)
       {
-        read = readTerrain(terrainInput);
+        read = readTerrain(terrainInput, !brought);
       }
     },
     noMemory);
@@ -84,10 +162,12 @@ void KeptRun::prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const 
   if (ranks.rank() == rocksRank)
   {
     released->ShallowCopy(rocksInput);
+    dropTerrain(released->GetFieldData()); // it has a way of its own
   }
   ranks.broadcast(bare, terrainRank);
   ranks.broadcast(released, rocksRank);
   copyCoordinateSystem(bare->GetFieldData(), coordinates);
+  carryTerrain(bare->GetFieldData(), ground);
   ranks.together(
     [&]
     {
@@ -95,13 +175,22 @@ void KeptRun::prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const 
       checkSameCrs(released->GetFieldData(), "The Rocks are", bare->GetFieldData());
       frame.origin = slope.geometry().origin();
       frame.gravity = parameters.gravity;
+      std::int64_t gone = 0;
       for (ReleasedRock& rock : readRocks(released, frame.origin))
       {
+        if (rock.state == int(MotionState::LeftDomain))
+        {
+          ++gone;
+          continue;
+        }
+        // Mid-impact a rock may be deep in the springs.
+        setOntoSlope(slope, rock.rock, rock.state >= 0 ? 0.5 * rock.rock.shape.radius() : 0.0);
         frame.rocks.push_back(std::move(rock.rock));
         frame.shapes.push_back(rock.shape);
         frame.sourceIds.push_back(rock.sourceId);
         frame.sourceNames.push_back(std::move(rock.sourceName));
       }
+      tellGone(gone, std::int64_t(frame.rocks.size()), ranks);
     },
     noMemory);
   if (parameters.rockRockContact && !contactFile.empty())
@@ -110,6 +199,27 @@ void KeptRun::prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const 
   }
   ranks.together(
     [&] { ensemble = std::make_unique<Ensemble>(slope, frame.rocks, parameters); }, noMemory);
+}
+
+void KeptRun::takeResults(RunSink& sink)
+{
+  sink.finish(trajectories, impacts, summary, structures);
+  whole = std::move(sink.whole());
+  wholeIteration = whole.size() == frame.rocks.size() ? parts.wholeIteration : -1;
+  stateHash = sink.stateHash();
+  addArray<vtkStringArray>(summary->GetFieldData(), "StateHash")->InsertNextValue(stateHash);
+  this->describe();
+}
+
+void KeptRun::describe()
+{
+  for (vtkDataObject* output :
+    { static_cast<vtkDataObject*>(trajectories), static_cast<vtkDataObject*>(impacts),
+      static_cast<vtkDataObject*>(summary), static_cast<vtkDataObject*>(structures) })
+  {
+    copyCoordinateSystem(coordinates, output->GetFieldData());
+  }
+  carryTerrain(ground, trajectories->GetFieldData()); // maps and collectors need no other input
 }
 
 void KeptRun::readContacts(const Ranks& ranks, const std::string& noMemory)
@@ -131,8 +241,11 @@ void KeptRun::readContacts(const Ranks& ranks, const std::string& noMemory)
       {
         materials.push_back(rock.material);
       }
-      for (const RockContactPair& pair :
-        readRockContacts(contactFile, parameters.rockCohesion, materials))
+      std::vector<std::string> notes;
+      const std::vector<RockContactPair> pairs =
+        readRockContacts(contactFile, parameters.rockCohesion, materials, contactSheet, &notes);
+      std::for_each(notes.begin(), notes.end(), showNote);
+      for (const RockContactPair& pair : pairs)
       {
         first->InsertNextValue(pair.first);
         second->InsertNextValue(pair.second);

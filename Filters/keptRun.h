@@ -36,13 +36,17 @@ struct Stamp
 struct KeptRun
 {
   SimulationParameters parameters;
-  std::string contactFile; ///< Of pairs of materials; empty: none.
+  std::string contactFile;  ///< Of pairs of materials; empty: none.
+  std::string contactSheet; ///< Of the file; empty: the one that will do.
   KeptParts parts;
   Stamp terrain, rocks; ///< The inputs.
+  /// What of them decides the run (inputContent.h).
+  std::uint64_t terrainContent = 0, rocksContent = 0;
 
   Terrain slope;
   RunFrame frame;
   vtkNew<vtkFieldData> coordinates;   ///< CRS and origin.
+  vtkNew<vtkFieldData> ground;        ///< The slope as it came.
   std::unique_ptr<Ensemble> ensemble; ///< Of `slope` and the rocks of `frame`.
 
   vtkNew<vtkPolyData> trajectories, impacts, structures;
@@ -51,8 +55,17 @@ struct KeptRun
   int wholeIteration = -1;
   std::string stateHash; ///< Over the bits of all motion.
 
-  /// Whether the other one would come out the same.
-  bool isLike(const KeptRun& other) const;
+  /// Whether another one of these properties computes the same.
+  bool hasPropertiesOf(const KeptRun& other) const;
+  /// The same, of the same inputs as they are.
+  bool isLike(const KeptRun& other) const
+  {
+    return terrain == other.terrain && rocks == other.rocks && this->hasPropertiesOf(other);
+  }
+  /// Whether another one of these properties and inputs would come out the same, on this rank. If
+  /// so, takes over what only shows: stamps and names. Throws Error where the inputs do not hold.
+  bool takesOver(
+    const KeptRun& other, vtkPolyData* terrainInput, vtkPolyData* rocksInput, const Ranks& ranks);
   /// Whether all samples of one iteration may be kept beside the outputs, some 400 MB at most.
   bool wholeFits() const;
 
@@ -62,6 +75,12 @@ struct KeptRun
   /// Reads the pairs of materials on the first rank, for all. Collective. Throws Error on all
   /// ranks.
   void readContacts(const Ranks& ranks, const std::string& noMemory);
+  /// Cell arrays of the rocks that only show; in a parallel run none, as names are on one rank.
+  std::uint64_t contentOfRocks(vtkPolyData* rocksInput, const Ranks& ranks) const;
+  /// Takes what a sink was given, perhaps not all of it.
+  void takeResults(RunSink& sink);
+  /// Lets the outputs know in which coordinates they stand, and the trajectories their slope.
+  void describe();
   /// Lets go of what only `show` needs.
   void dropInputs();
   /// Writes the blocks of an iteration (counted from the run's first one) as they are at `time`, s.

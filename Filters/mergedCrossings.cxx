@@ -88,10 +88,11 @@ auto key(const Place& p)
   return std::tie(c.iteration, c.rock, c.line, c.number);
 }
 
-void appendPlaces(
-  vtkPolyData* data, std::size_t input, std::size_t lines, std::vector<Place>& places)
+void appendPlaces(vtkPolyData* data, std::size_t input, const std::vector<CollectorLine>& lines,
+  std::vector<Place>& places)
 {
-  vtkFieldData* fields = data->GetPointData();
+  vtkPointData* fields = data->GetPointData();
+  auto* names = vtkStringArray::SafeDownCast(fields->GetAbstractArray("LineName"));
   const auto one = [&](const char* name) { return crossingNumbers(fields, name, 1, input); };
   vtkDataArray *line = one("Line"), *iteration = one("Iteration"), *rock = one("RockId"),
                *number = one("Passing"), *energy = one("KineticEnergy"),
@@ -110,10 +111,17 @@ void appendPlaces(
     c.kineticEnergy = energy->GetTuple1(id);
     c.heightOverGround = height->GetTuple1(id);
     velocity->GetTuple(id, c.velocity.data());
-    if (c.line < 0 || std::size_t(c.line) >= lines)
+    if (c.line < 0 || std::size_t(c.line) >= lines.size())
     {
       throw DataError(numbered(input) + " has a crossing of line " + std::to_string(c.line) +
-        ", but only " + std::to_string(lines) + " lines");
+        ", but only " + std::to_string(lines.size()) + " lines");
+    }
+    // Crossings of another collector, appended to these, count lines of their own.
+    if (names && names->GetValue(id) != lines[std::size_t(c.line)].name)
+    {
+      throw DataError(numbered(input) + " has a crossing of line " + std::to_string(c.line) +
+        " called \"" + names->GetValue(id) + "\", but its line of that number is \"" +
+        lines[std::size_t(c.line)].name + "\": were crossings of several collectors appended?");
     }
   }
 }
@@ -180,7 +188,7 @@ MergedCrossings mergeCrossings(std::span<vtkPolyData* const> inputs, vtkPolyData
     }
     if (inputs[k]->GetNumberOfPoints() > 0)
     {
-      appendPlaces(inputs[k], k, lines.size(), places);
+      appendPlaces(inputs[k], k, lines, places);
       pattern = pattern ? pattern : inputs[k];
     }
   }

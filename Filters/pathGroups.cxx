@@ -95,6 +95,11 @@ std::vector<PathGroup> groupPaths(
     {
       vtkVariant value =
         array ? array->GetVariantValue(cell * array->GetNumberOfComponents()) : vtkVariant(0);
+      if (value.IsNumeric() && std::isnan(value.ToDouble()))
+      {
+        throw DataError("The Input's cell array \"" + arrayName + "\" has nan at cell " +
+          std::to_string(cell) + ", which is in no group");
+      }
       if (classes)
       {
         const auto above = std::upper_bound(limits.begin(), limits.end(), value.ToDouble());

@@ -16,23 +16,24 @@ constexpr double printInterval = 10.0; // s
 /// A share of so many is whole but for this.
 constexpr double kRounding = 1e-3;
 
-/// With commas between thousands, whatever the locale.
-std::string countText(std::int64_t count)
-{
-  std::string text = std::to_string(count);
-  for (int at = int(text.size()) - 3; at > 0; at -= 3)
-  {
-    text.insert(std::size_t(at), ",");
-  }
-  return text;
-}
-
 std::string twoDigits(std::int64_t number)
 {
   return (number < 10 ? "0" : "") + std::to_string(number);
 }
 
 } // namespace
+
+std::string countText(std::int64_t count)
+{
+  const std::string digits = std::to_string(count);
+  std::string text;
+  for (std::size_t k = 0; k < digits.size(); ++k)
+  {
+    text += k > 0 && (digits.size() - k) % 3 == 0 ? "," : "";
+    text += digits[k];
+  }
+  return text;
+}
 
 std::string durationText(double seconds)
 {

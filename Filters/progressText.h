@@ -15,6 +15,9 @@ namespace rockfall::filters
 /// Whole seconds, minutes and seconds, or hours and minutes: "42 s", "3 min 20 s", "2 h 05 min".
 std::string durationText(double seconds);
 
+/// With commas between thousands, whatever the locale.
+std::string countText(std::int64_t count);
+
 /// "12,300 of 100,000 trajectories (12 %), about 3 min 20 s left". `share`: done, 0 … 1; `units`:
 /// of what there are `total`, and only whole ones are done; `elapsed`: time that this took, s. The
 /// rest is taken to go at the same pace; nothing is said of it before one second or a thousandth

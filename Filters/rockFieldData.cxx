@@ -4,6 +4,7 @@
 #include "base/errors.h"
 #include "base/numberText.h"
 #include "geometry/shell.h"
+#include "mesh/precision.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
@@ -37,7 +38,8 @@ struct Faces
   std::map<vtkIdType, int> numbers; ///< From the polydata's points to `points`.
 };
 
-std::vector<Faces> groupByBlock(vtkPolyData* input, const Vec3& origin)
+/// In world coordinates.
+std::vector<Faces> groupByBlock(vtkPolyData* input)
 {
   vtkDataArray* blockIds = input->GetCellData()->GetArray("BlockId");
   // A polydata's cells are its vertices, its lines, its polygons and its strips, in this order.
@@ -77,12 +79,25 @@ std::vector<Faces> groupByBlock(vtkPolyData* input, const Vec3& origin)
       {
         Vec3 p;
         input->GetPoint(ids[k], p.data());
-        block.points.push_back(p - origin);
+        block.points.push_back(p);
       }
       loop.push_back(number.first->second);
     }
   }
   return blocks;
+}
+
+/// Sources of shapes and readers of meshes make single precision: a box is 0.44 m³ instead of 0.82
+/// then at a northing of 5,200,000 m.
+void checkBlockPrecision(vtkPolyData* input, const Faces& block)
+{
+  if (input->GetPoints()->GetDataType() == VTK_FLOAT || lookSingle(block.points))
+  {
+    checkRounding(block.points, singleRounding(largestCoordinate(block.points)),
+      "The Rocks input's block " + std::to_string(block.blockId), "in single precision",
+      "Take Rock Blocks instead, whose Shape may be a file saved near the origin and whose Center "
+      "is its place, or a source of double precision");
+  }
 }
 
 void readNumber(vtkPolyData* input, const char* name, vtkIdType cell, double& value)
@@ -236,8 +251,12 @@ void writeRocks(std::span<const ReleasedRock> rocks, vtkPolyData* output)
   const auto shape = addArray<vtkIntArray>(cells, "Shape");
   const auto sourceId = addArray<vtkIdTypeArray>(cells, "SourceId");
   UncertaintyArrays uncertainty(cells);
-  const auto names = addArray<vtkStringArray>(output->GetFieldData(), "ShapeName");
-  const auto sourceNames = addArray<vtkStringArray>(output->GetFieldData(), "SourceName");
+  const auto sourceName = addArray<vtkStringArray>(cells, "SourceName");
+  const auto shapeNames = addArray<vtkStringArray>(output->GetFieldData(), "ShapeName");
+  for (int number = int(Shape::Cube); number <= int(Shape::File); ++number)
+  {
+    shapeNames->InsertNextValue(shapeName(Shape(number)));
+  }
   for (const ReleasedRock& released : rocks)
   {
     const Rock& rock = released.rock;
@@ -254,10 +273,9 @@ void writeRocks(std::span<const ReleasedRock> rocks, vtkPolyData* output)
       rotation->InsertNextTuple(rock.angularVelocity.data());
       shape->InsertNextValue(int(released.shape));
       sourceId->InsertNextValue(released.sourceId);
+      sourceName->InsertNextValue(released.sourceName);
       uncertainty.append(rock.uncertainty);
     }
-    names->InsertNextValue(shapeName(released.shape));
-    sourceNames->InsertNextValue(released.sourceName);
   }
   output->SetPoints(points);
   output->SetPolys(polygons);
@@ -270,16 +288,14 @@ std::vector<ReleasedRock> readRocks(vtkPolyData* input, const Vec3& origin)
     throw DataError("The Rocks input has no polygons, so there is no rock in it");
   }
   std::vector<ReleasedRock> rocks;
-  const std::vector<Faces> blocks = groupByBlock(input, origin);
-  // Names that are not one for each block belong to others: sources were appended, blocks left out.
-  auto* sourceNames =
-    vtkStringArray::SafeDownCast(input->GetFieldData()->GetAbstractArray("SourceName"));
-  if (sourceNames && sourceNames->GetNumberOfValues() != vtkIdType(blocks.size()))
+  std::vector<Faces> blocks = groupByBlock(input);
+  for (Faces& block : blocks)
   {
-    sourceNames = nullptr;
-  }
-  for (const Faces& block : blocks)
-  {
+    checkBlockPrecision(input, block);
+    for (Vec3& p : block.points)
+    {
+      p -= origin;
+    }
     const std::string name = "block " + std::to_string(block.blockId);
     ReleasedRock released;
     Polyhedron placed;
@@ -311,6 +327,9 @@ std::vector<ReleasedRock> readRocks(vtkPolyData* input, const Vec3& origin)
     {
       released.shape = Shape(int(shape));
     }
+    double state = -1.0;
+    readNumber(input, "State", block.firstCell, state);
+    released.state = int(state);
     readUncertainty(input, block.firstCell, rock.uncertainty);
     double source = 0.0;
     readNumber(input, "SourceId", block.firstCell, source);
@@ -320,8 +339,11 @@ std::vector<ReleasedRock> readRocks(vtkPolyData* input, const Vec3& origin)
         ", it must be a whole number");
     }
     released.sourceId = std::int64_t(source);
-    released.sourceName = sourceNames ? std::string(sourceNames->GetValue(vtkIdType(rocks.size())))
-                                      : "source " + std::to_string(released.sourceId);
+    released.sourceName = nameOf(input, "SourceName", block.firstCell);
+    if (released.sourceName.empty())
+    {
+      released.sourceName = "source " + std::to_string(released.sourceId);
+    }
     rocks.push_back(std::move(released));
   }
   return rocks;

@@ -14,9 +14,9 @@
 /// | Velocity        | cells | at release, m/s                                         |
 /// | AngularVelocity | cells | at release, about the world's axes, rad/s               |
 /// | Shape           | cells | number of the shape as in the rock source               |
-/// | ShapeName       | field | name of the shape, one per block in order of appearance |
+/// | ShapeName       | field | names of all shapes, that of shape n at place n         |
 /// | SourceId        | cells | number of the source that the block is of               |
-/// | SourceName      | field | its name, one per block in order of appearance          |
+/// | SourceName      | cells | its name                                                |
 ///
 /// and what is drawn in each iteration (ReleaseUncertainty):
 ///
@@ -52,6 +52,7 @@ struct ReleasedRock
   Shape shape = Shape::File;
   std::int64_t sourceId = 0;
   std::string sourceName;
+  int state = -1; ///< MotionState in which a simulation left it; −1: it comes from none.
 };
 
 /// Appends the faces of a block, placed with x ↦ rotation · x + shift.
@@ -63,7 +64,8 @@ void writeRocks(std::span<const ReleasedRock> rocks, vtkPolyData* output);
 
 /// Reads rocks from polygons; `origin` is taken off the world coordinates first. Polydata without
 /// BlockId is one block; properties without an array have their defaults. Throws DataError or
-/// GeometryError, naming the block.
+/// GeometryError, naming the block, DataError also for points of single precision that are rounded
+/// by more than a thousandth of the block. Blocks of a simulation's output have a `state`.
 std::vector<ReleasedRock> readRocks(vtkPolyData* input, const Vec3& origin);
 
 } // namespace rockfall::filters

@@ -5,7 +5,7 @@
 #include "base/numberText.h"
 #include "base/random.h"
 #include "geometry/shell.h"
-#include "shapeFile.h"
+#include "mesh/shapeFile.h"
 #include "simulation/placement.h"
 
 #include <cmath>
@@ -133,6 +133,12 @@ void RockMaker::setUncertainty(
   const SourceRow& row, const VolumeDistribution& law, ReleaseUncertainty& unsure) const
 {
   unsure = defaults_.uncertainty;
+  if (defaults_.randomUnlessGiven)
+  {
+    const bool given =
+      row.orientation || defaults_.randomOrientation || !defaults_.orientation.isZero(0.0);
+    unsure.attitude = given ? AttitudeLaw::AsGiven : AttitudeLaw::Random;
+  }
   unsure.horizontalDeviation = row.horizontalDeviation.value_or(unsure.horizontalDeviation);
   unsure.verticalDeviation = row.verticalDeviation.value_or(unsure.verticalDeviation);
   if (row.randomAttitude)

@@ -34,6 +34,8 @@ struct RockDefaults
   bool randomOrientation = false; ///< The attitude is drawn once, instead of `orientation`.
   bool redrawVolume = false;      ///< The volume is drawn in each iteration.
   ReleaseUncertainty uncertainty; ///< But for the volume.
+  /// The attitude is drawn in each iteration where neither a row nor what is above gives one.
+  bool randomUnlessGiven = false;
   std::int64_t firstSourceId = 1;
   std::string sourceName; ///< Of sources without a name; empty: "source n".
   std::uint64_t seed = 1;

@@ -34,6 +34,7 @@ vtkDataArray* needed(vtkFieldData* data, const char* kind, const char* name, int
 }
 
 constexpr char retentionName[] = "TrajectoryOutput";
+constexpr char runningName[] = "RunGoesOn";
 
 } // namespace
 
@@ -41,6 +42,16 @@ void writeRetention(Retention retention, vtkFieldData* data)
 {
   constexpr const char* names[] = { "Nothing", "Stopping Points", "Events", "Thinned", "Full" };
   addArray<vtkStringArray>(data, retentionName)->InsertNextValue(names[int(retention)]);
+}
+
+void markRunning(vtkFieldData* data)
+{
+  addArray<vtkStringArray>(data, runningName)->InsertNextValue("There are more to come");
+}
+
+bool isRunning(vtkFieldData* data)
+{
+  return data->GetAbstractArray(runningName) != nullptr;
 }
 
 void forEachPath(vtkPolyData* trajectories, const Vec3& origin,

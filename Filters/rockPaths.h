@@ -17,6 +17,11 @@ namespace rockfall::filters
 /// A field array that says what is kept of the trajectories.
 void writeRetention(Retention retention, vtkFieldData* data);
 
+/// Marks trajectories of a run that goes on: there will be more, and that there is none yet is no
+/// error.
+void markRunning(vtkFieldData* data);
+bool isRunning(vtkFieldData* data);
+
 /// Calls `use` for every polyline, with its number among the cells. `origin` is subtracted from the
 /// points. The span of the path's points is good during the call only. Needs the point arrays Time,
 /// Velocity, RotationRate, KineticEnergy and HeightOverGround and the cell arrays Iteration,

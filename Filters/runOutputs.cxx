@@ -105,6 +105,38 @@ struct IdentityArrays
   }
 };
 
+/// What a rock needs beside its motion to be released again as it is.
+struct ReleaseArrays
+{
+  vtkSmartPointer<vtkDoubleArray> density, young, poisson, rotation;
+  vtkSmartPointer<vtkStringArray> material, sourceName;
+  vtkSmartPointer<vtkIdTypeArray> sourceId;
+
+  explicit ReleaseArrays(vtkFieldData* data)
+    : density(addArray<vtkDoubleArray>(data, "Density"))
+    , young(addArray<vtkDoubleArray>(data, "YoungModulus"))
+    , poisson(addArray<vtkDoubleArray>(data, "PoissonRatio"))
+    , rotation(addArray<vtkDoubleArray>(data, "AngularVelocity", 3))
+    , material(addArray<vtkStringArray>(data, "Material"))
+    , sourceName(addArray<vtkStringArray>(data, "SourceName"))
+    , sourceId(addArray<vtkIdTypeArray>(data, "SourceId"))
+  {
+  }
+
+  void append(const RunFrame& frame, const ShownRock& shown)
+  {
+    const auto number = std::size_t(shown.rock);
+    const Rock& rock = frame.rocks[number];
+    this->density->InsertNextValue(rock.density);
+    this->young->InsertNextValue(rock.youngModulus);
+    this->poisson->InsertNextValue(rock.poissonRatio);
+    this->rotation->InsertNextTuple(shown.sample.angularVelocity.data());
+    this->material->InsertNextValue(rock.material);
+    this->sourceName->InsertNextValue(frame.sourceNames[number]);
+    this->sourceId->InsertNextValue(frame.sourceIds[number]);
+  }
+};
+
 vtkSmartPointer<vtkPoints> doublePoints()
 {
   auto points = vtkSmartPointer<vtkPoints>::New();
@@ -137,6 +169,7 @@ void writeRocks(const RunFrame& frame, std::span<const ShownRock> rocks, vtkPoly
   const auto state = addArray<vtkIntArray>(output->GetCellData(), "State");
   const auto shape = addArray<vtkIntArray>(output->GetCellData(), "Shape");
   const auto volume = addArray<vtkDoubleArray>(output->GetCellData(), "Volume");
+  ReleaseArrays release(output->GetCellData());
   for (const ShownRock& shown : rocks)
   {
     const Rock& rock = frame.rocks[std::size_t(shown.rock)];
@@ -153,6 +186,7 @@ void writeRocks(const RunFrame& frame, std::span<const ShownRock> rocks, vtkPoly
       state->InsertNextValue(shown.state);
       shape->InsertNextValue(int(frame.shapes[std::size_t(shown.rock)]));
       volume->InsertNextValue(body.integrals().volume);
+      release.append(frame, shown);
     }
   }
   output->SetPoints(points);
@@ -175,6 +209,14 @@ struct TrajectoryLines::Arrays
   vtkSmartPointer<vtkIntArray> fate = addArray<vtkIntArray>(data->GetCellData(), "Fate");
   vtkSmartPointer<vtkIdTypeArray> source =
     addArray<vtkIdTypeArray>(data->GetCellData(), "SourceId");
+
+  void compose()
+  {
+    data->GetPointData()->SetActiveScalars("Speed"); // the colour that a viewer begins with
+    data->SetPoints(points);
+    data->SetLines(lines);
+    data->SetVerts(vertices);
+  }
 };
 
 TrajectoryLines::TrajectoryLines(const RunFrame& frame, bool withLosses)
@@ -221,6 +263,12 @@ void TrajectoryLines::append(const Trajectory& trajectory)
   a.source->InsertNextValue(frame_.sourceIds[std::size_t(summary.rock)]);
 }
 
+void TrajectoryLines::copy(vtkPolyData* output) const
+{
+  arrays_->compose();
+  output->DeepCopy(arrays_->data);
+}
+
 void TrajectoryLines::finish(vtkPolyData* output)
 {
   Arrays& a = *arrays_;
@@ -228,10 +276,7 @@ void TrajectoryLines::finish(vtkPolyData* output)
   squeeze(a.data->GetCellData());
   a.points->Squeeze();
   a.lines->Squeeze();
-  a.data->GetPointData()->SetActiveScalars("Speed"); // the colour that a viewer begins with
-  a.data->SetPoints(a.points);
-  a.data->SetLines(a.lines);
-  a.data->SetVerts(a.vertices);
+  a.compose();
   output->ShallowCopy(a.data);
 }
 
@@ -292,6 +337,13 @@ void ImpactPoints::append(const Trajectory& trajectory)
   }
 }
 
+void ImpactPoints::copy(vtkPolyData* output) const
+{
+  arrays_->data->SetPoints(arrays_->points);
+  arrays_->data->SetVerts(arrays_->vertices);
+  output->DeepCopy(arrays_->data);
+}
+
 void ImpactPoints::finish(vtkPolyData* output)
 {
   Arrays& a = *arrays_;
@@ -348,6 +400,13 @@ void StructurePoints::append(const Trajectory& trajectory)
     a.height->InsertNextValue(event.heightOverGround);
     a.taken->InsertNextValue(event.energyTaken);
   }
+}
+
+void StructurePoints::copy(vtkPolyData* output) const
+{
+  arrays_->data->SetPoints(arrays_->points);
+  arrays_->data->SetVerts(arrays_->vertices);
+  output->DeepCopy(arrays_->data);
 }
 
 void StructurePoints::finish(vtkPolyData* output)
@@ -464,10 +523,32 @@ void SummaryRows::append(const TrajectorySummary& summary)
   a.unsettled->InsertNextValue(summary.unsettledSteps);
 }
 
+void SummaryRows::copy(vtkTable* output) const
+{
+  output->DeepCopy(arrays_->data);
+}
+
 void SummaryRows::finish(vtkTable* output)
 {
   squeeze(arrays_->fields);
   output->ShallowCopy(arrays_->data);
+}
+
+void renameSources(const RunFrame& frame, vtkTable* summary)
+{
+  vtkDataArray* rocks = vtkDataArray::SafeDownCast(summary->GetColumnByName("RockId"));
+  if (!rocks || !summary->GetColumnByName("SourceName"))
+  {
+    return; // of no trajectory
+  }
+  // Another array: whoever has the table of before keeps its names.
+  vtkNew<vtkStringArray> names;
+  names->SetName("SourceName");
+  for (vtkIdType row = 0; row < rocks->GetNumberOfTuples(); ++row)
+  {
+    names->InsertNextValue(frame.sourceNames[std::size_t(rocks->GetComponent(row, 0))]);
+  }
+  summary->GetRowData()->AddArray(names);
 }
 
 } // namespace rockfall::filters

@@ -39,7 +39,8 @@ public:
   TrajectoryLines(const RunFrame& frame, bool withLosses);
   ~TrajectoryLines();
   void append(const Trajectory& trajectory);
-  void finish(vtkPolyData* output); ///< Nothing can be appended after it.
+  void copy(vtkPolyData* output) const; ///< What was appended so far.
+  void finish(vtkPolyData* output);     ///< Nothing can be appended after it.
 
 private:
   struct Arrays;
@@ -54,6 +55,7 @@ public:
   explicit ImpactPoints(const RunFrame& frame);
   ~ImpactPoints();
   void append(const Trajectory& trajectory);
+  void copy(vtkPolyData* output) const;
   void finish(vtkPolyData* output);
 
 private:
@@ -69,6 +71,7 @@ public:
   explicit StructurePoints(const RunFrame& frame);
   ~StructurePoints();
   void append(const Trajectory& trajectory);
+  void copy(vtkPolyData* output) const;
   void finish(vtkPolyData* output);
 
 private:
@@ -84,6 +87,7 @@ public:
   explicit SummaryRows(const RunFrame& frame);
   ~SummaryRows();
   void append(const TrajectorySummary& summary);
+  void copy(vtkTable* output) const;
   void finish(vtkTable* output);
 
 private:
@@ -91,6 +95,9 @@ private:
   const RunFrame& frame_;
   std::unique_ptr<Arrays> arrays_;
 };
+
+/// Puts the names that the sources of `frame` have now into a table of summaries.
+void renameSources(const RunFrame& frame, vtkTable* summary);
 
 /// A rock at a time.
 struct ShownRock

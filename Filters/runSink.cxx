@@ -45,6 +45,16 @@ void RunSink::consume(Trajectory&& trajectory)
   lines_.append(trajectory);
 }
 
+void RunSink::copy(
+  vtkPolyData* trajectories, vtkPolyData* impacts, vtkTable* summary, vtkPolyData* structures) const
+{
+  structures_.copy(structures);
+  lines_.copy(trajectories);
+  writeRetention(kept_.retention, trajectories->GetFieldData());
+  impacts_.copy(impacts);
+  rows_.copy(summary);
+}
+
 void RunSink::finish(
   vtkPolyData* trajectories, vtkPolyData* impacts, vtkTable* summary, vtkPolyData* structures)
 {

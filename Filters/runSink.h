@@ -32,6 +32,9 @@ public:
   void trim(Trajectory& trajectory) const override { kept_.trim(trajectory); }
   void consume(Trajectory&& trajectory) override;
 
+  /// What was consumed so far.
+  void copy(vtkPolyData* trajectories, vtkPolyData* impacts, vtkTable* summary,
+    vtkPolyData* structures) const;
   /// Nothing is consumed after it.
   void finish(vtkPolyData* trajectories, vtkPolyData* impacts, vtkTable* summary,
     vtkPolyData* structures = nullptr);

@@ -14,6 +14,7 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -71,6 +72,20 @@ struct Rows
   }
   vtkIdType count() const { return array ? array->GetNumberOfTuples() : 0; }
   double at(vtkIdType row, int column) const { return array->GetComponent(row, column); }
+  std::int64_t whole(vtkIdType row, int column) const
+  {
+    const double value = this->at(row, column);
+    if (!(std::abs(value) < 0x1p53) || value != std::floor(value))
+    {
+      failTogether();
+    }
+    return std::int64_t(value);
+  }
+  int number(vtkIdType row, int column) const
+  {
+    const std::int64_t value = this->whole(row, column);
+    return int(std::clamp<std::int64_t>(value, -1, std::numeric_limits<int>::max()));
+  }
 
   vtkDataArray* array;
 };
@@ -136,6 +151,15 @@ void writeStructures(const Terrain& terrain, vtkFieldData* fieldData)
   }
 }
 
+void dropStructures(vtkFieldData* fieldData)
+{
+  for (const char* name : { embankmentsName, embankmentPointsName, treesName, barriersName,
+         barrierPointsName, materialsName })
+  {
+    fieldData->RemoveArray(name);
+  }
+}
+
 Structures readStructures(vtkFieldData* fieldData)
 {
   const Rows embankments(fieldData, embankmentsName, 8), trees(fieldData, treesName, 7),
@@ -147,30 +171,30 @@ Structures readStructures(vtkFieldData* fieldData)
   for (vtkIdType k = 0; k < embankments.count(); ++k)
   {
     Embankment& e = s.embankments.emplace_back();
-    e.feature = std::int64_t(embankments.at(k, 0));
+    e.feature = embankments.whole(k, 0);
     const bool high = embankments.at(k, 1) > 0.0;
     (high ? e.height : e.elevation) = embankments.at(k, high ? 1 : 2);
     e.crestWidth = embankments.at(k, 3);
     e.mountainSlope = embankments.at(k, 4);
     e.valleySlope = embankments.at(k, 5);
-    e.material = int(embankments.at(k, 6));
+    e.material = embankments.number(k, 6);
     e.points = takePoints(embankmentPoints, embankments.at(k, 7), next);
   }
   for (vtkIdType k = 0; k < trees.count(); ++k)
   {
     Tree& t = s.trees.emplace_back();
-    t.feature = std::int64_t(trees.at(k, 0));
+    t.feature = trees.whole(k, 0);
     t.position = { trees.at(k, 1), trees.at(k, 2) };
     t.diameter = trees.at(k, 3);
     t.height = trees.at(k, 4);
     t.capacity = readCapacity(trees.at(k, 5));
-    t.material = int(trees.at(k, 6));
+    t.material = trees.number(k, 6);
   }
   next = 0;
   for (vtkIdType k = 0; k < barriers.count(); ++k)
   {
     Barrier& b = s.barriers.emplace_back();
-    b.feature = std::int64_t(barriers.at(k, 0));
+    b.feature = barriers.whole(k, 0);
     b.height = barriers.at(k, 1);
     b.capacity = readCapacity(barriers.at(k, 2));
     b.absorbs = barriers.at(k, 3) != 0.0;
@@ -182,7 +206,7 @@ Structures readStructures(vtkFieldData* fieldData)
     SurfaceMaterial& m = s.materials.emplace_back();
     m.restitution = materials.at(k, 0);
     m.restitutionDeviation = materials.at(k, 1);
-    m.restitutionModel = RestitutionModel(int(materials.at(k, 2)));
+    m.restitutionModel = RestitutionModel(materials.number(k, 2));
     m.tangentialRestitution = materials.at(k, 3);
     m.restitutionSpeed = materials.at(k, 4);
     m.frictionAngle = materials.at(k, 5);

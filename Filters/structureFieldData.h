@@ -33,6 +33,9 @@ namespace rockfall::filters
 /// Nothing if there are none.
 void writeStructures(const Terrain& terrain, vtkFieldData* fieldData);
 
+/// Takes all their arrays out.
+void dropStructures(vtkFieldData* fieldData);
+
 /// None if there are no such arrays. Throws DataError if they do not belong together.
 Structures readStructures(vtkFieldData* fieldData);
 

@@ -5,6 +5,7 @@
 #include "base/numberText.h"
 #include "geometry/shell.h"
 #include "gis/sources.h"
+#include "roughnessFieldData.h"
 #include "structureFieldData.h"
 #include "terrainMesh.h"
 
@@ -70,6 +71,13 @@ private:
 using SharedHeights = Shared<vtkDoubleArray, double>;
 using SharedClasses = Shared<vtkUnsignedCharArray, std::uint8_t>;
 
+/// Arrays of the slope and its structures begin alike.
+bool isOfTerrain(vtkAbstractArray* array)
+{
+  const std::string name = array->GetName() ? array->GetName() : "";
+  return name.rfind("Terrain", 0) == 0 || name == originName;
+}
+
 void addNumbers(vtkFieldData* fieldData, const char* name, std::initializer_list<double> values)
 {
   vtkNew<vtkDoubleArray> array;
@@ -100,6 +108,12 @@ std::vector<double> numbers(vtkFieldData* fieldData, const char* name, int count
     for (int component = 0; component < array->GetNumberOfComponents(); ++component)
     {
       values.push_back(array->GetComponent(tuple, component));
+      if (!std::isfinite(values.back()))
+      {
+        throw DataError("The Terrain input's field array " + std::string(name) + " has " +
+          numberText(values.back()) + " at place " + std::to_string(values.size() - 1) +
+          ", it must be finite");
+      }
     }
   }
   return values;
@@ -347,6 +361,7 @@ void writeTerrain(std::shared_ptr<const Terrain> terrain, int stride, vtkFieldDa
     terrain, fieldData);
   writeYielding(*terrain, fieldData);
   writeClasses(terrain->jointClasses(), jointNames, jointNumbers, jointOf, terrain, fieldData);
+  writeRoughness(*terrain, fieldData);
   writeStructures(*terrain, fieldData);
   vtkNew<SharedHeights> heights;
   heights->SetName(heightsName);
@@ -375,6 +390,7 @@ Terrain readTerrain(vtkPolyData* mesh, bool withMesh)
   Roughness roughness;
   roughness.mean = m[5];
   roughness.deviation = m[6];
+  roughness = readRoughness(fieldData, roughness);
 
   vtkSmartPointer<vtkDoubleArray> heights =
     vtkDoubleArray::SafeDownCast(fieldData->GetArray(heightsName));
@@ -398,8 +414,10 @@ Terrain readTerrain(vtkPolyData* mesh, bool withMesh)
   {
     restitution.materials[std::size_t(k)].yielding = yielding[std::size_t(k) + 1];
   }
+  restitution.roughness = readClassRoughness(fieldData, restitution.count());
   Terrain terrain(std::move(grid), view, std::move(owner), material, roughness);
   terrain.setRestitutionClasses(std::move(restitution));
+  terrain.setDeviationPer(readDeviationPer(fieldData));
   terrain.setJointClasses(
     readClasses(fieldData, jointNames, jointNumbers, takeJoint, terrain.material()));
   terrain.setStructures(readStructures(fieldData));
@@ -408,6 +426,51 @@ Terrain readTerrain(vtkPolyData* mesh, bool withMesh)
     checkMesh(mesh, terrain, stride);
   }
   return terrain;
+}
+
+void carryTerrain(vtkFieldData* from, vtkFieldData* to)
+{
+  for (int k = 0; k < from->GetNumberOfArrays(); ++k)
+  {
+    vtkAbstractArray* array = from->GetAbstractArray(k);
+    if (isOfTerrain(array))
+    {
+      to->AddArray(array);
+    }
+  }
+}
+
+void dropTerrain(vtkFieldData* data)
+{
+  for (int k = data->GetNumberOfArrays() - 1; k >= 0; --k)
+  {
+    vtkAbstractArray* array = data->GetAbstractArray(k);
+    if (isOfTerrain(array) && array->GetName() != std::string(crsName))
+    {
+      data->RemoveArray(k);
+    }
+  }
+}
+
+bool hasTerrain(vtkFieldData* fieldData)
+{
+  return fieldData->GetArray(heightsName) && fieldData->GetArray(gridName);
+}
+
+std::optional<Terrain> slopeUnder(vtkPolyData* trajectories, vtkPolyData* mesh)
+{
+  if (mesh)
+  {
+    std::optional<Terrain> terrain(readTerrain(mesh));
+    checkSameCrs(
+      trajectories->GetFieldData(), "The trajectories of the Input are", mesh->GetFieldData());
+    return terrain;
+  }
+  if (hasTerrain(trajectories->GetFieldData()))
+  {
+    return readTerrain(trajectories, false);
+  }
+  return {};
 }
 
 void writeCrs(const std::string& wkt, vtkFieldData* fieldData)

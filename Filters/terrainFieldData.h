@@ -30,6 +30,7 @@
 #include "terrain/Terrain.h"
 
 #include <memory>
+#include <optional>
 #include <string>
 
 class vtkFieldData;
@@ -46,11 +47,24 @@ void writeTerrain(std::shared_ptr<const Terrain> terrain, int stride, vtkFieldDa
 /// not what the rocks would fall on. Without `withMesh` the field data are all that is looked at.
 Terrain readTerrain(vtkPolyData* mesh, bool withMesh = true);
 
+/// Lets what stands in the coordinates of a slope know that slope: all its arrays, shared.
+void carryTerrain(vtkFieldData* from, vtkFieldData* to);
+
+/// Takes out what carryTerrain brings, but for the CRS.
+void dropTerrain(vtkFieldData* data);
+
+/// Whether a slope came with the data.
+bool hasTerrain(vtkFieldData* fieldData);
+
 /// Puts TerrainCRS alone there; nothing if `wkt` is empty, because nothing is known then.
 void writeCrs(const std::string& wkt, vtkFieldData* fieldData);
 
 /// TerrainCRS as WKT; empty if it is not there.
 std::string readCrs(vtkFieldData* fieldData);
+
+/// The slope that trajectories fell on: that of `mesh`, which may be null, else the one that came
+/// with them, if any. Throws DataError as readTerrain and checkSameCrs.
+std::optional<Terrain> slopeUnder(vtkPolyData* trajectories, vtkPolyData* mesh);
 
 /// Throws DataError if both have a TerrainCRS and not the same one. `who` begins the message: "The
 /// Rocks are".

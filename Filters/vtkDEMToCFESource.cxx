@@ -1,5 +1,6 @@
 #include "vtkDEMToCFESource.h"
 
+#include "base/abort.h"
 #include "base/errors.h"
 #include "base/numberText.h"
 #include "failure.h"
@@ -7,6 +8,7 @@
 #include "gis/contours.h"
 #include "gis/ground.h"
 #include "gis/raster.h"
+#include "gis/reach.h"
 #include "gis/structureLayers.h"
 #include "structureFieldData.h"
 #include "terrain/Terrain.h"
@@ -79,24 +81,80 @@ rockfall::SurfaceMaterial vtkDEMToCFESource::MakeMaterial() const
 //------------------------------------------------------------------------------
 rockfall::Terrain vtkDEMToCFESource::ReadSlope(std::vector<std::string>& notes) const
 {
-  rockfall::RasterSurface surface;
-  if (rockfall::isVectorFile(this->FileName))
-  {
-    rockfall::ContourOptions options;
-    options.cellSize = this->CellSize;
-    options.elevationField = this->ElevationField;
-    options.relaxFlats = this->RelaxFlats != 0;
-    surface = rockfall::readContours(this->FileName, options);
-  }
-  else
-  {
-    rockfall::RasterOptions options;
-    options.cellSize = this->CellSize;
-    options.band = this->Band;
-    surface = rockfall::readRaster(this->FileName, options);
-  }
+  rockfall::ContourOptions contours;
+  contours.cellSize = this->CellSize;
+  contours.elevationField = this->ElevationField;
+  contours.relaxFlats = this->RelaxFlats != 0;
+  rockfall::RasterOptions raster;
+  raster.cellSize = this->CellSize;
+  raster.band = this->Band;
+  rockfall::RasterSurface surface =
+    rockfall::readSlope(this->FileName, this->LayerName, raster, contours);
   notes = std::move(surface.notes);
   return rockfall::Terrain(std::move(surface.geometry), std::move(surface.heights));
+}
+
+//------------------------------------------------------------------------------
+void vtkDEMToCFESource::SetMaximumDisplayCells(vtkIdType cells)
+{
+  if (cells != this->MaximumDisplayCells)
+  {
+    const bool read = this->SlopeTime == this->GetMTime();
+    this->MaximumDisplayCells = cells;
+    this->Modified();
+    this->SlopeTime = read ? this->GetMTime() : 0; // the slope is still that of the properties
+  }
+}
+
+//------------------------------------------------------------------------------
+std::shared_ptr<const rockfall::Terrain> vtkDEMToCFESource::MakeSlope(
+  std::vector<std::string>& notes)
+{
+  if (this->Slope && this->SlopeTime == this->GetMTime())
+  {
+    notes = this->SlopeNotes;
+    return this->Slope;
+  }
+  this->Slope.reset();
+  const rockfall::AllowReferences references(this->AllowReferences != 0);
+  const rockfall::SurfaceMaterial material = this->MakeMaterial();
+  material.validate();
+  rockfall::Roughness roughness;
+  roughness.mean = this->RoughnessMean;
+  roughness.deviation = this->RoughnessDeviation;
+  roughness.length = this->RoughnessLength;
+  roughness.obstacles = { this->ObstacleHeight70, this->ObstacleHeight20, this->ObstacleHeight10 };
+  roughness.validate();
+  if (!(this->CellSize >= 0.0))
+  {
+    throw rockfall::ParameterError(
+      "CellSize is " + rockfall::numberText(this->CellSize) + " m, it must be 0 or positive");
+  }
+  rockfall::Terrain slope = this->FileName.empty()
+    ? rockfall::makeBiplanarSlope(this->CellSize > 0.0 ? this->CellSize : testSlopeCellSize)
+    : this->ReadSlope(notes);
+  slope = rockfall::Terrain(slope, material, roughness);
+  const rockfall::DeviationPer chosen = rockfall::deviationPerFrom(this->DeviationPer);
+  slope.setDeviationPer(this->Preset > 0
+      ? rockfall::groundPresets()[std::size_t(this->Preset) - 1].deviationPer()
+      : chosen);
+  this->UpdateProgress(0.6);
+  slope.setRestitutionClasses(readGround(rockfall::GroundKind::Restitution,
+    { this->RestitutionLayer, this->RestitutionTable, this->RestitutionField,
+      this->RestitutionLayerName, this->RestitutionTableSheet },
+    slope, notes));
+  slope.setJointClasses(readGround(rockfall::GroundKind::Joint,
+    { this->JointLayer, this->JointTable, this->JointField, this->JointLayerName,
+      this->JointTableSheet },
+    slope, notes));
+  slope.setStructures(
+    readStructures({ this->EmbankmentFile, this->TreeFile, this->BarrierFile, this->TreesBreak != 0,
+                     this->EmbankmentLayerName, this->TreeLayerName, this->BarrierLayerName },
+      slope, notes));
+  this->Slope = std::make_shared<const rockfall::Terrain>(std::move(slope));
+  this->SlopeNotes = notes;
+  this->SlopeTime = this->GetMTime();
+  return this->Slope;
 }
 
 //------------------------------------------------------------------------------
@@ -104,19 +162,9 @@ int vtkDEMToCFESource::RequestData(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
   vtkPolyData* output = vtkPolyData::GetData(outputVector);
+  const rockfall::AbortScope scope([this] { return !this->CheckAbort(); });
   try
   {
-    const rockfall::SurfaceMaterial material = this->MakeMaterial();
-    material.validate();
-    rockfall::Roughness roughness;
-    roughness.mean = this->RoughnessMean;
-    roughness.deviation = this->RoughnessDeviation;
-    roughness.validate();
-    if (!(this->CellSize >= 0.0))
-    {
-      throw rockfall::ParameterError(
-        "CellSize is " + rockfall::numberText(this->CellSize) + " m, it must be 0 or positive");
-    }
     if (this->MaximumDisplayCells < 2)
     {
       throw rockfall::ParameterError("MaximumDisplayCells is " +
@@ -124,19 +172,7 @@ int vtkDEMToCFESource::RequestData(
     }
 
     std::vector<std::string> notes;
-    rockfall::Terrain slope = this->FileName.empty()
-      ? rockfall::makeBiplanarSlope(this->CellSize > 0.0 ? this->CellSize : testSlopeCellSize)
-      : this->ReadSlope(notes);
-    slope = rockfall::Terrain(slope, material, roughness);
-    this->UpdateProgress(0.6);
-    slope.setRestitutionClasses(readGround(rockfall::GroundKind::Restitution,
-      { this->RestitutionLayer, this->RestitutionTable, this->RestitutionField }, slope, notes));
-    slope.setJointClasses(readGround(rockfall::GroundKind::Joint,
-      { this->JointLayer, this->JointTable, this->JointField }, slope, notes));
-    slope.setStructures(readStructures(
-      { this->EmbankmentFile, this->TreeFile, this->BarrierFile, this->TreesBreak != 0 }, slope,
-      notes));
-    const auto terrain = std::make_shared<const rockfall::Terrain>(std::move(slope));
+    const std::shared_ptr<const rockfall::Terrain> terrain = this->MakeSlope(notes);
     if (this->CheckAbort())
     {
       return 1;
@@ -174,6 +210,10 @@ int vtkDEMToCFESource::RequestData(
     output->ShallowCopy(mesh);
     return 1;
   }
+  catch (const rockfall::Aborted&)
+  {
+    return 1; // nothing is left of it
+  }
   catch (const rockfall::Error& error)
   {
     // What the terrain itself says does not know the file.
@@ -201,10 +241,19 @@ void vtkDEMToCFESource::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "FileName: " << (this->FileName.empty() ? "(none)" : this->FileName) << "\n";
+  os << indent << "LayerName: " << this->LayerName << "\n";
+  os << indent << "RestitutionLayerName: " << this->RestitutionLayerName << "\n";
+  os << indent << "RestitutionTableSheet: " << this->RestitutionTableSheet << "\n";
+  os << indent << "JointLayerName: " << this->JointLayerName << "\n";
+  os << indent << "JointTableSheet: " << this->JointTableSheet << "\n";
+  os << indent << "EmbankmentLayerName: " << this->EmbankmentLayerName << "\n";
+  os << indent << "TreeLayerName: " << this->TreeLayerName << "\n";
+  os << indent << "BarrierLayerName: " << this->BarrierLayerName << "\n";
   os << indent << "CellSize: " << this->CellSize << "\n";
   os << indent << "Band: " << this->Band << "\n";
   os << indent << "ElevationField: " << this->ElevationField << "\n";
   os << indent << "RelaxFlats: " << this->RelaxFlats << "\n";
+  os << indent << "AllowReferences: " << this->AllowReferences << "\n";
   os << indent << "Preset: " << this->Preset << "\n";
   os << indent << "RestitutionLayer: " << this->RestitutionLayer << "\n";
   os << indent << "RestitutionTable: " << this->RestitutionTable << "\n";
@@ -236,5 +285,10 @@ void vtkDEMToCFESource::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Cohesion: " << this->Cohesion << "\n";
   os << indent << "RoughnessMean: " << this->RoughnessMean << "\n";
   os << indent << "RoughnessDeviation: " << this->RoughnessDeviation << "\n";
+  os << indent << "RoughnessLength: " << this->RoughnessLength << "\n";
+  os << indent << "ObstacleHeight70: " << this->ObstacleHeight70 << "\n";
+  os << indent << "ObstacleHeight20: " << this->ObstacleHeight20 << "\n";
+  os << indent << "ObstacleHeight10: " << this->ObstacleHeight10 << "\n";
+  os << indent << "DeviationPer: " << this->DeviationPer << "\n";
   os << indent << "MaximumDisplayCells: " << this->MaximumDisplayCells << "\n";
 }

@@ -25,6 +25,7 @@
 #include "RockfallFiltersModule.h"
 #include "vtkPolyDataAlgorithm.h"
 
+#include <memory> // for the slope
 #include <string> // for FileName
 #include <vector> // for notes
 
@@ -52,6 +53,31 @@ public:
 
   ///@{
   /**
+   * Which layer or raster of a file with several: its name. Empty (the default): the one that will
+   * do; if several would, that is an error which lists them. Of a drawing (DXF) names of its layers
+   * with commas between them, or * for all. The others are those of the further files; sheets are
+   * those of tables.
+   */
+  vtkSetStdStringFromCharMacro(LayerName);
+  vtkGetCharFromStdStringMacro(LayerName);
+  vtkSetStdStringFromCharMacro(RestitutionLayerName);
+  vtkGetCharFromStdStringMacro(RestitutionLayerName);
+  vtkSetStdStringFromCharMacro(RestitutionTableSheet);
+  vtkGetCharFromStdStringMacro(RestitutionTableSheet);
+  vtkSetStdStringFromCharMacro(JointLayerName);
+  vtkGetCharFromStdStringMacro(JointLayerName);
+  vtkSetStdStringFromCharMacro(JointTableSheet);
+  vtkGetCharFromStdStringMacro(JointTableSheet);
+  vtkSetStdStringFromCharMacro(EmbankmentLayerName);
+  vtkGetCharFromStdStringMacro(EmbankmentLayerName);
+  vtkSetStdStringFromCharMacro(TreeLayerName);
+  vtkGetCharFromStdStringMacro(TreeLayerName);
+  vtkSetStdStringFromCharMacro(BarrierLayerName);
+  vtkGetCharFromStdStringMacro(BarrierLayerName);
+  ///@}
+
+  ///@{
+  /**
    * Distance between nodes in metres, not negative. 0 (the default) keeps the file's; for the test
    * slope it means 5 m, for contours half their mean distance.
    */
@@ -74,6 +100,18 @@ public:
    */
   vtkSetStdStringFromCharMacro(ElevationField);
   vtkGetCharFromStdStringMacro(ElevationField);
+  ///@}
+
+  ///@{
+  /**
+   * Whether files may name network addresses and other files of the machine: virtual rasters and
+   * layers that are made of files elsewhere, services, lists of tiles. Off by default, because a
+   * file that came from somebody else could have any file read, or an address called. Virtual
+   * rasters of files beside them need no leave.
+   */
+  vtkSetMacro(AllowReferences, int);
+  vtkGetMacro(AllowReferences, int);
+  vtkBooleanMacro(AllowReferences, int);
   ///@}
 
   ///@{
@@ -161,7 +199,7 @@ public:
 
   ///@{
   /**
-   * Standard deviation of RestitutionCoefficient between iterations, 0 to 1. Default 0.
+   * Standard deviation of RestitutionCoefficient, 0 to 1. Default 0.05.
    */
   vtkSetMacro(RestitutionDeviation, double);
   vtkGetMacro(RestitutionDeviation, double);
@@ -292,7 +330,7 @@ public:
 
   ///@{
   /**
-   * Mean of the random elevation added to every node in each iteration, in metres. Default 0.
+   * Mean of the random elevation added to the slope in each iteration, in metres. Default 0.1.
    */
   vtkSetMacro(RoughnessMean, double);
   vtkGetMacro(RoughnessMean, double);
@@ -300,11 +338,51 @@ public:
 
   ///@{
   /**
-   * Standard deviation of the random elevation added to every node, in metres, not negative.
-   * Default 0.
+   * Standard deviation of the random elevation added to the slope, in metres, not negative.
+   * Default 0.1.
    */
   vtkSetMacro(RoughnessDeviation, double);
   vtkGetMacro(RoughnessDeviation, double);
+  ///@}
+
+  ///@{
+  /**
+   * Correlation length of the roughness in metres: where the correlation of two places has come
+   * down to 1/e, and the distance of obstacles. Wider cells are cut as rocks meet them, so that
+   * run-out does not depend on the cell size. 0, the default: every node is drawn independently.
+   */
+  vtkSetMacro(RoughnessLength, double);
+  vtkGetMacro(RoughnessLength, double);
+  ///@}
+
+  ///@{
+  /**
+   * Heights in metres of 70, 20 and 10 % of the obstacles on the ground (rg70, rg20, rg10), not
+   * negative. They need a RoughnessLength. Default 0: there are none.
+   */
+  vtkSetMacro(ObstacleHeight70, double);
+  vtkGetMacro(ObstacleHeight70, double);
+  vtkSetMacro(ObstacleHeight20, double);
+  vtkGetMacro(ObstacleHeight20, double);
+  vtkSetMacro(ObstacleHeight10, double);
+  vtkGetMacro(ObstacleHeight10, double);
+  ///@}
+
+  enum DeviationPerType
+  {
+    PER_ITERATION = 0,
+    PER_IMPACT = 1,
+    PER_PLACE = 2
+  };
+
+  ///@{
+  /**
+   * For what the deviations of restitution and friction are drawn: once per iteration and class
+   * (PER_ITERATION, the default), for each impact of each rock, or for each square metre of the
+   * map.
+   */
+  vtkSetMacro(DeviationPer, int);
+  vtkGetMacro(DeviationPer, int);
   ///@}
 
   ///@{
@@ -314,7 +392,7 @@ public:
    * CFEId of a triangle of such a coarse mesh is that of the CFE in the full network that shares
    * its north-west node and lies on the same side of the diagonal. Default 4 million.
    */
-  vtkSetMacro(MaximumDisplayCells, vtkIdType);
+  void SetMaximumDisplayCells(vtkIdType cells);
   vtkGetMacro(MaximumDisplayCells, vtkIdType);
   ///@}
 
@@ -330,12 +408,22 @@ protected:
 private:
   rockfall::SurfaceMaterial MakeMaterial() const;
   rockfall::Terrain ReadSlope(std::vector<std::string>& notes) const;
+  std::shared_ptr<const rockfall::Terrain> MakeSlope(std::vector<std::string>& notes);
 
   std::string FileName;
+  std::string LayerName;
+  std::string RestitutionLayerName;
+  std::string RestitutionTableSheet;
+  std::string JointLayerName;
+  std::string JointTableSheet;
+  std::string EmbankmentLayerName;
+  std::string TreeLayerName;
+  std::string BarrierLayerName;
   double CellSize = 0.0;
   int Band = 1;
   std::string ElevationField;
   int RelaxFlats = 1;
+  int AllowReferences = 0;
   int Preset = 0;
   std::string RestitutionLayer;
   std::string RestitutionTable;
@@ -349,7 +437,7 @@ private:
   std::string BarrierFile;
   int RestitutionModel = WHOLE_VELOCITY;
   double RestitutionCoefficient = 0.8;
-  double RestitutionDeviation = 0.0;
+  double RestitutionDeviation = 0.05;
   double TangentialRestitution = 1.0;
   double RestitutionSpeed = 9.144;
   double FrictionAngle = 15.0;
@@ -365,9 +453,19 @@ private:
   double SlipFrictionGrowth = 0.0;
   double SlipFrictionDecay = 0.0;
   double RollingResistance = 0.0;
-  double RoughnessMean = 0.0;
-  double RoughnessDeviation = 0.0;
+  double RoughnessMean = 0.1;
+  double RoughnessDeviation = 0.1;
+  double RoughnessLength = 0.0;
+  double ObstacleHeight70 = 0.0;
+  double ObstacleHeight20 = 0.0;
+  double ObstacleHeight10 = 0.0;
+  int DeviationPer = PER_ITERATION;
   vtkIdType MaximumDisplayCells = 4000000;
+
+  /// What was read when this was last changed otherwise than in what is shown.
+  std::shared_ptr<const rockfall::Terrain> Slope;
+  std::vector<std::string> SlopeNotes;
+  vtkMTimeType SlopeTime = 0;
 };
 
 #endif

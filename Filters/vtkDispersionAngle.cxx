@@ -3,9 +3,11 @@
 #include "arrays.h"
 #include "base/errors.h"
 #include "failure.h"
+#include "inputs.h"
 #include "pathGroups.h"
 #include "pieces.h"
 #include "ranks.h"
+#include "rockPaths.h"
 #include "statistics/dispersion.h"
 #include "statistics/sample.h"
 #include "terrainFieldData.h"
@@ -127,6 +129,13 @@ private:
   std::vector<vtkSmartPointer<vtkDoubleArray>> Columns;
 };
 
+/// Of an angle from +x, rad, counter-clockwise: degrees clockwise from north.
+double compass(double angle)
+{
+  const double azimuth = std::fmod(90.0 - rockfall::degrees(angle), 360.0);
+  return azimuth < 0.0 ? azimuth + 360.0 : azimuth;
+}
+
 } // namespace
 
 //------------------------------------------------------------------------------
@@ -156,7 +165,7 @@ vtkDispersionAngle::~vtkDispersionAngle() = default;
 //------------------------------------------------------------------------------
 int vtkDispersionAngle::FillInputPortInformation(int, vtkInformation* info)
 {
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  rockfall::filters::acceptPolyData(info);
   return 1;
 }
 
@@ -173,7 +182,8 @@ int vtkDispersionAngle::RequestData(
 {
   try
   {
-    vtkPolyData* input = vtkPolyData::GetData(inputVector[0]);
+    rockfall::filters::Input taken(rockfall::filters::InputKind::Trajectories);
+    vtkPolyData* input = taken.take(inputVector[0]);
     const std::string spread = rockfall::filters::spreadOf(input);
     if (!spread.empty())
     {
@@ -183,8 +193,11 @@ int vtkDispersionAngle::RequestData(
     {
       throw rockfall::DataError("The Input is missing");
     }
+    taken.require();
     if (rockfall::filters::inheritFailure(input, this) ||
-      (input->GetNumberOfLines() == 0 && rockfall::filters::isFurtherPiece(outputVector)))
+      (input->GetNumberOfLines() == 0 &&
+        (rockfall::filters::isFurtherPiece(outputVector) ||
+          rockfall::filters::isRunning(input->GetFieldData()))))
     {
       return 1;
     }
@@ -236,7 +249,7 @@ int vtkDispersionAngle::RequestData(
       lateralMin->InsertNextValue(dispersion.lateralMin);
       lateralMax->InsertNextValue(dispersion.lateralMax);
       deviation->InsertNextValue(dispersion.lateralDeviation);
-      direction->InsertNextValue(rockfall::degrees(azimuth));
+      direction->InsertNextValue(compass(azimuth));
       runOuts.Append(group.paths);
     }
     for (vtkDataObject* made :

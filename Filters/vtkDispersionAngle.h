@@ -8,7 +8,7 @@
  *
  * Output port 0 is a table with one row per group: Group, Trajectories, L, W (m), Theta (degrees),
  * LateralMin, LateralMax, LateralDeviation (m; the standard deviation of where the trajectories
- * end), Azimuth (degrees from +x, counter-clockwise), and RunOutMean, RunOutDeviation, RunOut50,
+ * end), Azimuth (degrees, clockwise from north), and RunOutMean, RunOutDeviation, RunOut50,
  * RunOut90, RunOut95, RunOut99 and RunOutMaximum (m), the run-out being the horizontal distance
  * from the start to the end of a trajectory. Output port 1 shows the same as lines, a wedge per
  * group: from the mean start to both ends of the dispersion width and to its middle, and across;

@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "gis/rasterWriter.h"
+#include "inputs.h"
 #include "pieces.h"
 #include "terrainFieldData.h"
 
@@ -46,6 +47,8 @@ rockfall::MapImage mapOf(vtkImageData* image)
   image->GetExtent(extent);
   image->GetOrigin(origin);
   image->GetSpacing(spacing);
+  rockfall::filters::checkTuples(
+    image->GetCellData(), image->GetNumberOfCells(), "The Input", "cell");
   rockfall::MapImage map;
   map.columns = extent[1] - extent[0];
   map.rows = extent[3] - extent[2];
@@ -89,6 +92,7 @@ vtkHazardMapWriter::~vtkHazardMapWriter() = default;
 int vtkHazardMapWriter::FillInputPortInformation(int, vtkInformation* info)
 {
   info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
   return 1;
 }
 
@@ -107,13 +111,13 @@ vtkTypeBool vtkHazardMapWriter::ProcessRequest(
 //------------------------------------------------------------------------------
 void vtkHazardMapWriter::WriteData()
 {
-  auto* image = vtkImageData::SafeDownCast(this->GetInput());
-  if (!image || (image->GetNumberOfCells() == 0 && rockfall::filters::isFurtherRank()))
-  {
-    return; // the first rank has it all
-  }
   try
   {
+    vtkImageData* image = rockfall::filters::oneImage(this->GetInput(), "The Input");
+    if (!image || (image->GetNumberOfCells() == 0 && rockfall::filters::isFurtherRank()))
+    {
+      return; // the first rank has it all
+    }
     rockfall::writeGeoTiff(this->FileName, mapOf(image));
   }
   catch (const rockfall::Error& error)

@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "hazardImage.h"
+#include "inputs.h"
 #include "pieces.h"
 #include "ranks.h"
 
@@ -27,7 +28,7 @@ vtkHazardPassageWriter::~vtkHazardPassageWriter() = default;
 //------------------------------------------------------------------------------
 int vtkHazardPassageWriter::FillInputPortInformation(int, vtkInformation* info)
 {
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  rockfall::filters::acceptPolyData(info);
   return 1;
 }
 
@@ -51,8 +52,10 @@ vtkTypeBool vtkHazardPassageWriter::ProcessRequest(
 //------------------------------------------------------------------------------
 void vtkHazardPassageWriter::WriteData()
 {
-  auto* trajectories = vtkPolyData::SafeDownCast(this->GetInputDataObject(0, 0));
-  auto* terrain = vtkPolyData::SafeDownCast(this->GetInputDataObject(1, 0));
+  rockfall::filters::Input taken(rockfall::filters::InputKind::Trajectories);
+  rockfall::filters::Input takenTerrain(rockfall::filters::InputKind::Terrain);
+  vtkPolyData* trajectories = taken.take(this->GetInputDataObject(0, 0));
+  vtkPolyData* terrain = takenTerrain.take(this->GetInputDataObject(1, 0));
   const std::string spread = rockfall::filters::spreadOf(trajectories);
   if (!spread.empty())
   {
@@ -64,7 +67,8 @@ void vtkHazardPassageWriter::WriteData()
     return;
   }
   if (!trajectories || !terrain ||
-    (trajectories->GetNumberOfLines() == 0 && rockfall::filters::isFurtherRank()))
+    (trajectories->GetNumberOfLines() == 0 && taken.problem().empty() &&
+      rockfall::filters::isFurtherRank()))
   {
     return; // the first rank has it all
   }
@@ -78,6 +82,8 @@ void vtkHazardPassageWriter::WriteData()
   }
   try
   {
+    taken.require();
+    takenTerrain.require();
     rockfall::filters::writeHazardPassages(trajectories, terrain, this->CellSize, this->FileName);
   }
   catch (const rockfall::Error& error)

@@ -6,9 +6,10 @@
 #include "failure.h"
 #include "geometry/jointSets.h"
 #include "geometry/shell.h"
+#include "inputs.h"
+#include "mesh/shapeFile.h"
 #include "pieces.h"
 #include "rockMaker.h"
-#include "shapeFile.h"
 #include "simulation/placement.h"
 #include "terrainFieldData.h"
 
@@ -47,7 +48,12 @@ rockfall::Polyhedron readMass(const std::string& fileName)
   }
   try
   {
-    return rockfall::filters::readShape(fileName, true, notes);
+    rockfall::Polyhedron mass = rockfall::readShape(fileName, true, notes);
+    for (const std::string& note : notes)
+    {
+      rockfall::filters::showNote(note);
+    }
+    return mass;
   }
   catch (const rockfall::GeometryError& error)
   {
@@ -74,7 +80,7 @@ vtkJointedRockMass::~vtkJointedRockMass() = default;
 //------------------------------------------------------------------------------
 int vtkJointedRockMass::FillInputPortInformation(int, vtkInformation* info)
 {
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  rockfall::filters::acceptPolyData(info);
   info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   return 1;
 }
@@ -223,6 +229,10 @@ void vtkJointedRockMass::MakeBlocks(vtkPolyData* terrainInput, vtkPolyData* bloc
   }
   filters::writeRocks(rocks, blocks);
   filters::writeCrs(terrain ? terrain->geometry().crs : std::string(), blocks->GetFieldData());
+  if (terrain)
+  {
+    filters::carryTerrain(terrainInput->GetFieldData(), blocks->GetFieldData());
+  }
   filters::addArray<vtkIdTypeArray>(blocks->GetFieldData(), "SliverCount")
     ->InsertNextValue(cut.slivers);
   filters::addArray<vtkDoubleArray>(blocks->GetFieldData(), "SliverVolume")
@@ -243,13 +253,15 @@ int vtkJointedRockMass::RequestData(
   {
     return 1;
   }
-  vtkPolyData* terrain = vtkPolyData::GetData(inputVector[TERRAIN]);
+  rockfall::filters::Input taken(rockfall::filters::InputKind::Terrain);
+  vtkPolyData* terrain = taken.take(inputVector[TERRAIN]);
   if (terrain && rockfall::filters::inheritFailure(terrain, this))
   {
     return 1;
   }
   try
   {
+    taken.require();
     vtkNew<vtkPolyData> blocks;
     this->MakeBlocks(terrain, blocks);
     vtkPolyData::GetData(outputVector)->ShallowCopy(blocks);

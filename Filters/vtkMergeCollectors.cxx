@@ -3,6 +3,7 @@
 #include "base/errors.h"
 #include "collectorOutputs.h"
 #include "failure.h"
+#include "inputs.h"
 #include "mergedCrossings.h"
 #include "pieces.h"
 #include "terrainFieldData.h"
@@ -30,7 +31,7 @@ vtkMergeCollectors::~vtkMergeCollectors() = default;
 //------------------------------------------------------------------------------
 int vtkMergeCollectors::FillInputPortInformation(int, vtkInformation* info)
 {
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  rockfall::filters::acceptPolyData(info);
   info->Set(vtkAlgorithm::INPUT_IS_REPEATABLE(), 1);
   return 1;
 }
@@ -53,14 +54,24 @@ int vtkMergeCollectors::RequestData(
   }
   try
   {
+    // The parts of composite data are as good as inputs of their own.
     std::vector<vtkPolyData*> inputs;
     for (int k = 0; k < inputVector[0]->GetNumberOfInformationObjects(); ++k)
     {
-      inputs.push_back(vtkPolyData::GetData(inputVector[0], k));
-      if (filters::inheritFailure(inputs.back(), this))
+      for (vtkDataObject* part : filters::leavesOf(vtkDataObject::GetData(inputVector[0], k)))
       {
-        return 1;
+        filters::Input taken(filters::InputKind::Crossings, int(inputs.size()) + 1);
+        inputs.push_back(taken.take(part));
+        taken.require();
+        if (filters::inheritFailure(inputs.back(), this))
+        {
+          return 1;
+        }
       }
+    }
+    if (inputs.empty())
+    {
+      throw rockfall::DataError("The Input is empty");
     }
     // New ones: the outputs already have the field data of the first input.
     vtkNew<vtkPolyData> points;

@@ -2,8 +2,11 @@
 
 #include "base/errors.h"
 #include "base/numberText.h"
+#include "drawnSource.h"
 #include "failure.h"
 #include "geometry/shell.h"
+#include "gis/reach.h"
+#include "inputs.h"
 #include "pieces.h"
 #include "rockMaker.h"
 #include "simulation/overlaps.h"
@@ -17,6 +20,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <new>
 #include <numeric>
 #include <optional>
@@ -33,6 +38,7 @@ struct vtkRockBlockSource::Sources
   std::string crs; ///< WKT of the places, empty if it is not known.
   std::optional<rockfall::filters::RockMaker> maker;
   std::vector<rockfall::filters::ReleasedRock> rocks; ///< One for each place.
+  std::vector<std::string> notes;
 
   const rockfall::Terrain* ground() const { return terrain ? &*terrain : nullptr; }
 };
@@ -41,6 +47,9 @@ namespace
 {
 
 constexpr int TERRAIN = 1;
+
+/// On the test slope.
+constexpr double kDefaultCenter[3] = { 5.0, 50.0, 58.0 };
 
 /// Places drawn for a rock until it is in no other one.
 constexpr std::uint32_t MOST_PLACES = 1000;
@@ -70,7 +79,7 @@ vtkRockBlockSource::~vtkRockBlockSource() = default;
 //------------------------------------------------------------------------------
 int vtkRockBlockSource::FillInputPortInformation(int, vtkInformation* info)
 {
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  rockfall::filters::acceptPolyData(info);
   info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
   return 1;
 }
@@ -154,12 +163,13 @@ void vtkRockBlockSource::FindSources(vtkPolyData* terrainInput, Sources& sources
   }
   if (this->FileName.empty())
   {
-    sources.rows.emplace_back().position = vec3(this->Center);
+    this->FindDrawn(sources);
   }
   else
   {
     rockfall::SourceOptions options;
     options.targetCrs = sources.crs;
+    options.layer = this->LayerName;
     options.haveTerrain = terrain != nullptr;
     options.mostRocks = this->MaximumRocks;
     rockfall::SourceLayer layer = rockfall::readSourceLayer(this->FileName, options);
@@ -167,12 +177,77 @@ void vtkRockBlockSource::FindSources(vtkPolyData* terrainInput, Sources& sources
     {
       rockfall::requireOverlap(layer.rows, *terrain, this->FileName, layer.ownCrs);
     }
+    sources.notes = std::move(layer.notes);
     sources.rows = std::move(layer.rows);
     sources.crs = std::move(layer.crs);
-    for (const std::string& note : layer.notes)
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkRockBlockSource::FindDrawn(Sources& sources)
+{
+  const rockfall::Terrain* terrain = sources.ground();
+  const auto isDefault = [this]
+  { return std::equal(this->Center, this->Center + 3, std::begin(kDefaultCenter)); };
+  const auto onSlope = [&]
+  {
+    const rockfall::Vec3 local = vec3(this->Center) - terrain->geometry().origin();
+    return terrain->cfeAt(local.x(), local.y()) != 0;
+  };
+  if (this->Draw == NOTHING && terrain && isDefault() && !onSlope())
+  {
+    const std::array<double, 6> line = rockfall::filters::steepLine(*terrain);
+    rockfall::SourceRow& row = sources.rows.emplace_back();
+    row.row = 1;
+    row.position = { 0.5 * (line[0] + line[3]), 0.5 * (line[1] + line[4]),
+      std::numeric_limits<double>::quiet_NaN() };
+    rockfall::filters::showNote(
+      "Center was left as it is, which is not on this slope: the block is "
+      "released at " +
+      rockfall::numberText(row.position.x()) + ", " + rockfall::numberText(row.position.y()) +
+      ", the highest of its steep places");
+    return;
+  }
+  if (this->Draw == NOTHING)
+  {
+    if (terrain && vec3(this->Center).allFinite() && !onSlope())
     {
-      rockfall::filters::showNote(note);
+      throw rockfall::PlacementError("Center: the block at " +
+        rockfall::numberText(this->Center[0]) + ", " + rockfall::numberText(this->Center[1]) +
+        rockfall::whyNoGround(*terrain, this->Center[0], this->Center[1]));
     }
+    sources.rows.emplace_back().position = vec3(this->Center);
+    return;
+  }
+  if (this->Draw < NOTHING || this->Draw > AREA)
+  {
+    refuse("Draw", this->Draw, "0 (nothing), 1 (points), 2 (line) or 3 (area)");
+  }
+  std::vector<std::array<double, 3>> points = this->Points;
+  if (points.empty() && terrain)
+  {
+    const std::array<double, 6> placed = rockfall::filters::steepLine(*terrain);
+    std::copy(placed.begin(), placed.end(), this->PlacedLine);
+    points = { { placed[0], placed[1], placed[2] }, { placed[3], placed[4], placed[5] } };
+  }
+  sources.rows =
+    rockfall::filters::drawnRows(rockfall::SourceGeometry(this->Draw - POINTS), points, terrain);
+}
+
+//------------------------------------------------------------------------------
+void vtkRockBlockSource::AddPoint(double x, double y, double z)
+{
+  this->Points.push_back({ x, y, z });
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+void vtkRockBlockSource::ClearPoints()
+{
+  if (!this->Points.empty())
+  {
+    this->Points.clear();
+    this->Modified();
   }
 }
 
@@ -305,7 +380,8 @@ int vtkRockBlockSource::RequestData(
   {
     return 1;
   }
-  vtkPolyData* terrain = vtkPolyData::GetData(inputVector[TERRAIN]);
+  rockfall::filters::Input taken(rockfall::filters::InputKind::Terrain);
+  vtkPolyData* terrain = taken.take(inputVector[TERRAIN]);
   if (terrain && rockfall::filters::inheritFailure(terrain, this))
   {
     return 1;
@@ -313,6 +389,7 @@ int vtkRockBlockSource::RequestData(
   vtkPolyData* output = vtkPolyData::GetData(outputVector);
   try
   {
+    taken.require();
     rockfall::filters::RockDefaults defaults;
     rockfall::shapeName(rockfall::Shape(this->Shape)); // throws if there is no such shape
     defaults.shapes = this->ShapeMix.empty() ? rockfall::ShapeMix(rockfall::Shape(this->Shape))
@@ -345,7 +422,14 @@ int vtkRockBlockSource::RequestData(
     defaults.scaleToVolume = this->ScaleToVolume;
     defaults.uncertainty.horizontalDeviation = this->HorizontalDeviation;
     defaults.uncertainty.verticalDeviation = this->VerticalDeviation;
-    defaults.uncertainty.attitude = rockfall::AttitudeLaw(this->AttitudeLaw);
+    if (this->AttitudeLaw < AS_GIVEN || this->AttitudeLaw > RANDOM_UNLESS_GIVEN)
+    {
+      refuse("AttitudeLaw", this->AttitudeLaw, "0 to 3");
+    }
+    defaults.randomUnlessGiven = this->AttitudeLaw == RANDOM_UNLESS_GIVEN;
+    defaults.uncertainty.attitude = defaults.randomUnlessGiven
+      ? rockfall::AttitudeLaw::AsGiven
+      : rockfall::AttitudeLaw(this->AttitudeLaw);
     defaults.uncertainty.attitudeDeviation = rockfall::radians(this->AttitudeDeviation);
     defaults.uncertainty.validate();
     if (this->Seed < 0)
@@ -358,6 +442,7 @@ int vtkRockBlockSource::RequestData(
 
     defaults.randomOrientation = this->RandomOrientation;
 
+    const rockfall::AllowReferences references(this->AllowReferences != 0);
     Sources sources;
     this->FindSources(terrain, sources);
     sources.maker.emplace(defaults, sources.ground());
@@ -370,10 +455,13 @@ int vtkRockBlockSource::RequestData(
     vtkNew<vtkPolyData> blocks;
     rockfall::filters::writeRocks(sources.rocks, blocks);
     rockfall::filters::writeCrs(sources.crs, blocks->GetFieldData());
-    for (const std::string& note : sources.maker->notes())
+    if (terrain)
     {
-      rockfall::filters::showNote(note);
+      rockfall::filters::carryTerrain(terrain->GetFieldData(), blocks->GetFieldData());
     }
+    const std::vector<std::string>& made = sources.maker->notes();
+    sources.notes.insert(sources.notes.end(), made.begin(), made.end());
+    rockfall::filters::showNotes(sources.notes, blocks->GetFieldData());
     this->TellUnused(sources);
     output->ShallowCopy(blocks);
     return 1;
@@ -409,6 +497,16 @@ void vtkRockBlockSource::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "YoungModulus: " << this->YoungModulus << "\n";
   os << indent << "PoissonRatio: " << this->PoissonRatio << "\n";
   os << indent << "FileName: " << (this->FileName.empty() ? "(none)" : this->FileName) << "\n";
+  os << indent << "AllowReferences: " << this->AllowReferences << "\n";
+  os << indent << "LayerName: " << (this->LayerName.empty() ? "(none)" : this->LayerName) << "\n";
+  os << indent << "Draw: " << this->Draw << "\n";
+  os << indent << "Points: " << this->Points.size() << "\n";
+  os << indent << "PlacedLine:";
+  for (const double number : this->PlacedLine)
+  {
+    os << " " << number;
+  }
+  os << "\n";
   os << indent << "TargetCRS: " << (this->TargetCRS.empty() ? "(none)" : this->TargetCRS) << "\n";
   os << indent << "FirstBlockId: " << this->FirstBlockId << "\n";
   os << indent << "ShapeMix: " << (this->ShapeMix.empty() ? "(none)" : this->ShapeMix) << "\n";

@@ -21,7 +21,9 @@
 #include "RockfallFiltersModule.h"
 #include "vtkPolyDataAlgorithm.h"
 
+#include <array>  // for points
 #include <string> // for FileName
+#include <vector> // for points
 
 class ROCKFALLFILTERS_EXPORT vtkRockBlockSource : public vtkPolyDataAlgorithm
 {
@@ -234,6 +236,15 @@ public:
 
   ///@{
   /**
+   * Which layer or sheet of a file with several: its name. Empty (the default): the one that will
+   * do; if several would, that is an error which lists them.
+   */
+  vtkSetStdStringFromCharMacro(LayerName);
+  vtkGetCharFromStdStringMacro(LayerName);
+  ///@}
+
+  ///@{
+  /**
    * Rockfall sources: a layer of points, lines or polygons of any kind that OGR opens, or a CSV
    * table with columns x, y, z. What a row does not say is as the properties say; the columns are
    * in docs/RockBlocks.md. Empty (the default): the source is the point Center, or the steep part
@@ -241,6 +252,49 @@ public:
    */
   vtkSetStdStringFromCharMacro(FileName);
   vtkGetCharFromStdStringMacro(FileName);
+  ///@}
+
+  enum DrawnSource
+  {
+    NOTHING = 0,
+    POINTS = 1,
+    LINE = 2,
+    AREA = 3
+  };
+  ///@{
+  /**
+   * What is drawn through Points, one of DrawnSource, as the source. NOTHING (the default): the
+   * source is Center, a file or the steep part of the terrain.
+   */
+  vtkSetMacro(Draw, int);
+  vtkGetMacro(Draw, int);
+  ///@}
+
+  ///@{
+  /**
+   * Points of the source that is drawn, in world coordinates; with a terrain they stand on it. None
+   * (the default): with a terrain, the ends of a level line across the highest of its steep places.
+   */
+  void AddPoint(double x, double y, double z);
+  void ClearPoints();
+  int GetNumberOfPoints() const { return int(this->Points.size()); }
+  ///@}
+
+  /**
+   * Ends of the line that the last run took because no point was given, on the ground.
+   */
+  vtkGetVector6Macro(PlacedLine, double);
+
+  ///@{
+  /**
+   * Whether files may name network addresses and other files of the machine: virtual rasters and
+   * layers that are made of files elsewhere, services, lists of tiles. Off by default, because a
+   * file that came from somebody else could have any file read, or an address called. Virtual
+   * rasters of files beside them need no leave.
+   */
+  vtkSetMacro(AllowReferences, int);
+  vtkGetMacro(AllowReferences, int);
+  vtkBooleanMacro(AllowReferences, int);
   ///@}
 
   ///@{
@@ -349,12 +403,15 @@ public:
   {
     AS_GIVEN = 0,
     RANDOM = 1,
-    DEVIATING = 2
+    DEVIATING = 2,
+    RANDOM_UNLESS_GIVEN = 3
   };
 
   ///@{
   /**
-   * Attitude in each iteration of a simulation, one of AttitudeLawType. Default AS_GIVEN.
+   * Attitude in each iteration of a simulation, one of AttitudeLawType. RANDOM_UNLESS_GIVEN, the
+   * default, is AS_GIVEN where there is an Orientation other than 0, RandomOrientation or one of
+   * the row, and RANDOM elsewhere.
    */
   vtkSetMacro(AttitudeLaw, int);
   vtkGetMacro(AttitudeLaw, int);
@@ -437,6 +494,8 @@ private:
   void FindSources(vtkPolyData* terrain, Sources& sources);
   void FindPlaces(Sources& sources);
   void MakeRocks(Sources& sources);
+  /// The sources that are drawn, or Center.
+  void FindDrawn(Sources& sources);
   /// Notes on lengths that are given and that no block has a use for.
   void TellUnused(const Sources& sources) const;
   /// Draws places anew until no rock is in another one, or throws.
@@ -456,7 +515,12 @@ private:
   double YoungModulus = 1e10;
   double PoissonRatio = 0.1;
   std::string FileName;
+  std::string LayerName;
+  int Draw = NOTHING;
+  std::vector<std::array<double, 3>> Points;
+  double PlacedLine[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
   std::string TargetCRS;
+  int AllowReferences = 0;
   vtkIdType FirstBlockId = 1;
   std::string ShapeMix;
   int VolumeLaw = FIXED;
@@ -477,7 +541,7 @@ private:
   double ReleaseHeight = 0.0;
   double HorizontalDeviation = 0.0;
   double VerticalDeviation = 0.0;
-  int AttitudeLaw = AS_GIVEN;
+  int AttitudeLaw = RANDOM_UNLESS_GIVEN;
   double AttitudeDeviation = 10.0;
   bool RedrawVolume = false;
   int Seed = 1;

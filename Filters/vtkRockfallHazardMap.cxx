@@ -1,10 +1,13 @@
 #include "vtkRockfallHazardMap.h"
 
 #include "base/errors.h"
+#include "drapedMap.h"
 #include "failure.h"
 #include "hazardImage.h"
+#include "inputs.h"
 #include "pieces.h"
 #include "ranks.h"
+#include "rockPaths.h"
 
 #include "vtkAlgorithmOutput.h"
 #include "vtkImageData.h"
@@ -22,6 +25,17 @@
 
 vtkStandardNewMacro(vtkRockfallHazardMap);
 
+namespace
+{
+
+enum OutputPorts
+{
+  MAP = 0,
+  DRAPED = 1
+};
+
+} // namespace
+
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
 /// The map, or why there is none, and of what it was made.
@@ -31,13 +45,27 @@ struct vtkRockfallHazardMap::Result
   vtkPolyData* terrain = nullptr;
   vtkMTimeType time = 0; ///< Of the latest change of the filter and its inputs.
   vtkNew<vtkImageData> image;
+  vtkNew<vtkPolyData> draped;
   std::string error;
+};
+
+struct vtkRockfallHazardMap::Inputs
+{
+  rockfall::filters::Input trajectories{ rockfall::filters::InputKind::Trajectories };
+  rockfall::filters::Input terrain{ rockfall::filters::InputKind::Terrain };
+
+  const std::string& problem() const
+  {
+    return this->terrain.problem().empty() ? this->trajectories.problem() : this->terrain.problem();
+  }
 };
 
 //------------------------------------------------------------------------------
 vtkRockfallHazardMap::vtkRockfallHazardMap()
+  : Taken(std::make_unique<Inputs>())
 {
   this->SetNumberOfInputPorts(2);
+  this->SetNumberOfOutputPorts(2);
 }
 
 //------------------------------------------------------------------------------
@@ -46,7 +74,7 @@ vtkRockfallHazardMap::~vtkRockfallHazardMap() = default;
 //------------------------------------------------------------------------------
 int vtkRockfallHazardMap::FillInputPortInformation(int port, vtkInformation* info)
 {
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  rockfall::filters::acceptPolyData(info);
   if (port == 1)
   {
     info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
@@ -55,10 +83,17 @@ int vtkRockfallHazardMap::FillInputPortInformation(int port, vtkInformation* inf
 }
 
 //------------------------------------------------------------------------------
+int vtkRockfallHazardMap::FillOutputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == DRAPED ? "vtkPolyData" : "vtkImageData");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
 void vtkRockfallHazardMap::Prepare(vtkInformationVector** inputVector)
 {
-  vtkPolyData* trajectories = vtkPolyData::GetData(inputVector[0]);
-  vtkPolyData* terrain = vtkPolyData::GetData(inputVector[1]);
+  vtkPolyData* trajectories = this->Taken->trajectories.take(inputVector[0]);
+  vtkPolyData* terrain = this->Taken->terrain.take(inputVector[1]);
   vtkMTimeType time = this->GetMTime();
   for (vtkPolyData* input : { trajectories, terrain })
   {
@@ -81,15 +116,18 @@ void vtkRockfallHazardMap::Prepare(vtkInformationVector** inputVector)
   {
     rockfall::filters::makeHazardImage(
       trajectories, terrain, { this->CellSize, this->CropToTrajectories }, this->Made->image);
+    rockfall::filters::drapeMap(this->Made->image, this->Made->draped);
   }
   catch (const rockfall::Error& error)
   {
     this->Made->image->Initialize();
+    this->Made->draped->Initialize();
     this->Made->error = error.what();
   }
   catch (const std::bad_alloc&)
   {
     this->Made->image->Initialize();
+    this->Made->draped->Initialize();
     this->Made->error = "There is not enough memory for the map: give a larger CellSize, or switch "
                         "CropToTrajectories on";
   }
@@ -119,7 +157,7 @@ int vtkRockfallHazardMap::RequestInformation(
     }
   }
   // Every rank comes here, but one without a part of the image perhaps not to its data.
-  this->Spread = rockfall::filters::spreadOf(vtkPolyData::GetData(inputVector[0]));
+  this->Spread = rockfall::filters::spreadOf(this->Taken->trajectories.take(inputVector[0]));
   if (this->Spread.empty())
   {
     this->Prepare(inputVector);
@@ -148,8 +186,8 @@ int vtkRockfallHazardMap::RequestUpdateExtent(
 int vtkRockfallHazardMap::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkPolyData* trajectories = vtkPolyData::GetData(inputVector[0]);
-  vtkPolyData* terrain = vtkPolyData::GetData(inputVector[1]);
+  vtkPolyData* trajectories = this->Taken->trajectories.take(inputVector[0]);
+  vtkPolyData* terrain = this->Taken->terrain.take(inputVector[1]);
   if (!trajectories)
   {
     return rockfall::filters::fail(this, "The Input is missing");
@@ -163,9 +201,15 @@ int vtkRockfallHazardMap::RequestData(
   {
     return 1;
   }
-  if (trajectories->GetNumberOfLines() == 0 && rockfall::filters::isFurtherPiece(outputVector))
+  if (!this->Taken->problem().empty())
   {
-    rockfall::filters::markEmptyMap(vtkImageData::GetData(outputVector, 0));
+    return rockfall::filters::fail(this, this->Taken->problem());
+  }
+  if (trajectories->GetNumberOfLines() == 0 &&
+    (rockfall::filters::isFurtherPiece(outputVector) ||
+      rockfall::filters::isRunning(trajectories->GetFieldData())))
+  {
+    rockfall::filters::markEmptyMap(vtkImageData::GetData(outputVector, MAP));
     return 1;
   }
   if (trajectories->GetNumberOfLines() == 0)
@@ -178,7 +222,8 @@ int vtkRockfallHazardMap::RequestData(
   {
     return rockfall::filters::fail(this, this->Made->error);
   }
-  vtkImageData::GetData(outputVector, 0)->ShallowCopy(this->Made->image);
+  vtkImageData::GetData(outputVector, MAP)->ShallowCopy(this->Made->image);
+  vtkPolyData::GetData(outputVector, DRAPED)->ShallowCopy(this->Made->draped);
   return 1;
 }
 

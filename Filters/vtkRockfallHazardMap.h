@@ -3,9 +3,10 @@
  * @brief   maps what passes: how many rocks, how fast, how high, with what energy
  *
  * Input port 0 has one polyline per trajectory, as port 1 of vtkRockfallSimulation; port 1 is the
- * terrain of vtkDEMToCFESource, optional. The output is a vtkImageData in world coordinates with
- * cell data. A path is cut exactly at the borders of the cells, along the cubic curve between its
- * points.
+ * terrain of vtkDEMToCFESource, optional: trajectories bring the slope that they fell on. Output
+ * port 0 is a vtkImageData in world coordinates with cell data; port 1 has those of its cells that
+ * anything passed as polydata on the slope. A path is cut exactly at the borders of the cells,
+ * along the cubic curve between its points.
  *
  * Cell arrays: Passages, Rocks, StoppingPoints, ReachProbability, ReachProbabilityError,
  * ReachProbabilityErrorOfIterations, and of KineticEnergy (J), Speed (m/s), HeightOverGround (m)
@@ -42,7 +43,7 @@ public:
   ///@{
   /**
    * Whether the map ends where the trajectories do instead of covering the whole terrain. Its cells
-   * are the same. Off by default; without a terrain it always does.
+   * are the same. On by default; without a slope it always does.
    */
   vtkSetMacro(CropToTrajectories, bool);
   vtkGetMacro(CropToTrajectories, bool);
@@ -57,6 +58,7 @@ protected:
   ~vtkRockfallHazardMap() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
+  int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
@@ -65,10 +67,12 @@ private:
   void Prepare(vtkInformationVector** inputVector);
 
   double CellSize = 0.0;
-  bool CropToTrajectories = false;
+  bool CropToTrajectories = true;
   std::string Spread; // why trajectories on several ranks make no map
   struct Result;
+  struct Inputs;
   std::unique_ptr<Result> Made;
+  std::unique_ptr<Inputs> Taken;
 };
 
 #endif

@@ -4,8 +4,10 @@
 #include "base/errors.h"
 #include "base/numberText.h"
 #include "failure.h"
+#include "inputs.h"
 #include "jointFaces.h"
 #include "keptRun.h"
+#include "liveRun.h"
 #include "pieces.h"
 #include "progressText.h"
 #include "sharedRun.h"
@@ -23,6 +25,7 @@
 #include "vtkTable.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -37,8 +40,15 @@ namespace
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 using rockfall::filters::addArray;
 using rockfall::filters::KeptRun;
+using rockfall::filters::LiveRun;
 using rockfall::filters::Ranks;
 using rockfall::filters::Stamp;
+
+enum InputPorts
+{
+  TERRAIN_INPUT = 0,
+  ROCKS_INPUT = 1
+};
 
 enum OutputPorts
 {
@@ -52,6 +62,28 @@ enum OutputPorts
 /// More time steps than this are not listed, only their range is.
 constexpr double mostTimeSteps = 1e6;
 
+/// A run that is watched shows what it has after so long, s: a short one is then over.
+constexpr double kAtOnce = 0.3;
+/// Looks at a run take a fifth of the window's time, and come once a second at most.
+constexpr double kLookInterval = 1.0, kLookShare = 4.0;
+
+/// "finished: 1,000 trajectories in 12 s", "stopped: 12,300 of …", or how far it is.
+std::string statusOf(const LiveRun& live)
+{
+  const rockfall::Ensemble& ensemble = *live.run().ensemble;
+  const std::string units = ensemble.parameters().rockRockContact ? "iterations" : "trajectories";
+  if (!live.over())
+  {
+    return (live.stopped() ? "stopping: " : "running: ") +
+      rockfall::filters::progressText(live.share(), ensemble.size(), units, live.elapsed());
+  }
+  const std::int64_t made = live.trajectories() / ensemble.trajectoriesPerUnit();
+  const std::string total = rockfall::filters::countText(ensemble.size()) + " " + units;
+  return made < ensemble.size() ? "stopped by its user after " +
+      rockfall::filters::countText(made) + " of " + total + "; Run Again makes all of them"
+                                : "finished: " + total;
+}
+
 /// Blocks that fit together, as those of a cut mass, are meant to hold and push each other.
 void tellApart(std::span<const rockfall::Rock> rocks)
 {
@@ -63,6 +95,21 @@ void tellApart(std::span<const rockfall::Rock> rocks)
       " blocks falls as if it were alone, through the others, though " + std::to_string(joined) +
       " of them lie face on face, as the blocks of a rock mass. " +
       "Switch it on for them to hit and push each other");
+  }
+}
+
+/// Realisations that nothing makes differ are one.
+void tellAlike(
+  const rockfall::Terrain& terrain, std::span<const rockfall::Rock> rocks, int iterations)
+{
+  const bool drawn = terrain.draws() ||
+    std::any_of(rocks.begin(), rocks.end(),
+      [](const rockfall::Rock& rock) { return rock.uncertainty.any(); });
+  if (iterations > 1 && !drawn)
+  {
+    rockfall::filters::showNote("All " + std::to_string(iterations) +
+      " iterations are alike: nothing of the slope or of the blocks is drawn. Give DEM to CFE Mesh "
+      "a roughness or a deviation, or Rock Blocks an attitude law, for them to differ");
   }
 }
 
@@ -83,10 +130,6 @@ void tellPushed(
 
 } // namespace
 
-struct vtkRockfallSimulation::Cache : KeptRun
-{
-};
-
 /// An error that was reported. Until something changes it is not reported again: an animation asks
 /// for every one of its times.
 struct vtkRockfallSimulation::Failure
@@ -96,8 +139,20 @@ struct vtkRockfallSimulation::Failure
   std::string message;
 };
 
+struct vtkRockfallSimulation::Inputs
+{
+  rockfall::filters::Input terrain{ rockfall::filters::InputKind::Terrain };
+  rockfall::filters::Input rocks{ rockfall::filters::InputKind::Rocks };
+
+  const std::string& problem() const
+  {
+    return this->terrain.problem().empty() ? this->rocks.problem() : this->terrain.problem();
+  }
+};
+
 //------------------------------------------------------------------------------
 vtkRockfallSimulation::vtkRockfallSimulation()
+  : Taken(std::make_unique<Inputs>())
 {
   this->SetNumberOfInputPorts(2);
   this->SetNumberOfOutputPorts(5);
@@ -107,9 +162,13 @@ vtkRockfallSimulation::vtkRockfallSimulation()
 vtkRockfallSimulation::~vtkRockfallSimulation() = default;
 
 //------------------------------------------------------------------------------
-int vtkRockfallSimulation::FillInputPortInformation(int, vtkInformation* info)
+int vtkRockfallSimulation::FillInputPortInformation(int port, vtkInformation* info)
 {
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  rockfall::filters::acceptPolyData(info);
+  if (port == TERRAIN_INPUT)
+  {
+    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1); // rocks may bring it
+  }
   return 1;
 }
 
@@ -173,7 +232,7 @@ int vtkRockfallSimulation::RequestUpdateExtent(
 }
 
 //------------------------------------------------------------------------------
-void vtkRockfallSimulation::TakeProperties(Cache& run)
+void vtkRockfallSimulation::TakeProperties(KeptRun& run)
 {
   rockfall::SimulationParameters& p = run.parameters;
   p.timeStep = this->TimeStep;
@@ -188,6 +247,7 @@ void vtkRockfallSimulation::TakeProperties(Cache& run)
   p.rockFrictionAngle = rockfall::radians(this->RockFrictionAngle);
   p.rockCohesion = this->RockCohesion;
   run.contactFile = this->RockContactFile;
+  run.contactSheet = this->RockContactSheet;
   p.pushRocksApart = this->PushRocksApart;
   p.iterations = this->Iterations;
   p.firstIteration = this->FirstIteration;
@@ -198,7 +258,7 @@ void vtkRockfallSimulation::TakeProperties(Cache& run)
 }
 
 //------------------------------------------------------------------------------
-void vtkRockfallSimulation::CheckProperties(const Cache& run) const
+void vtkRockfallSimulation::CheckProperties(const KeptRun& run) const
 {
   const auto inRange = [](int value, int least, int most, const char* name)
   {
@@ -227,17 +287,26 @@ std::string vtkRockfallSimulation::NoMemory() const
 bool vtkRockfallSimulation::Simulate(vtkPolyData* terrainInput, vtkPolyData* rocksInput)
 {
   const Ranks ranks;
-  auto run = std::make_unique<Cache>();
+  auto run = std::make_unique<KeptRun>();
   run->terrain = Stamp(terrainInput);
   run->rocks = Stamp(rocksInput);
   this->TakeProperties(*run);
   ranks.together([&] { this->CheckProperties(*run); }, this->NoMemory());
-  const std::vector<int> kept = ranks.gather(this->Kept && this->Kept->isLike(*run) ? 1 : 0);
+  bool same = false;
+  ranks.together([&]
+    { same = this->Kept && this->Kept->takesOver(*run, terrainInput, rocksInput, ranks); },
+    this->NoMemory());
+  const std::vector<int> kept = ranks.gather(same ? 1 : 0);
   if (std::find(kept.begin(), kept.end(), 0) == kept.end())
   {
     this->StateHash = this->Kept->stateHash;
     return true;
   }
+  if (this->Live && this->Live->run().isLike(*run))
+  {
+    return this->Follow();
+  }
+  this->Live.reset();
   this->Kept.reset();
   this->StateHash.clear();
   const int threads = ranks.threads();
@@ -251,11 +320,22 @@ bool vtkRockfallSimulation::Simulate(vtkPolyData* terrainInput, vtkPolyData* roc
   {
     tellApart(run->frame.rocks);
   }
+  if (ranks.rank() == 0)
+  {
+    tellAlike(run->slope, run->frame.rocks, run->parameters.iterations);
+  }
   // What is the same in all iterations is known before they run.
   const bool anew = run->ensemble->pushesAnew();
   if (!anew)
   {
     tellPushed(*run->ensemble, run->ensemble->pushed(), ranks);
+  }
+  if (this->Watched && ranks.count() == 1)
+  {
+    ++this->NumberOfRuns;
+    this->Live = std::make_unique<LiveRun>(std::move(run), this->NoMemory());
+    this->Live->wait(kAtOnce);
+    return this->Follow();
   }
   rockfall::filters::RunSink sink(run->frame, run->parts);
   rockfall::filters::ProgressReport report(this, run->ensemble->size(),
@@ -272,18 +352,8 @@ bool vtkRockfallSimulation::Simulate(vtkPolyData* terrainInput, vtkPolyData* roc
   }
   if (ranks.rank() == 0)
   {
-    sink.finish(run->trajectories, run->impacts, run->summary, run->structures);
-    run->whole = std::move(sink.whole());
-    run->wholeIteration = run->parts.wholeIteration;
-    this->StateHash = sink.stateHash();
-    addArray<vtkStringArray>(run->summary->GetFieldData(), "StateHash")
-      ->InsertNextValue(this->StateHash);
-    for (vtkDataObject* output :
-      { static_cast<vtkDataObject*>(run->trajectories), static_cast<vtkDataObject*>(run->impacts),
-        static_cast<vtkDataObject*>(run->summary), static_cast<vtkDataObject*>(run->structures) })
-    {
-      rockfall::filters::copyCoordinateSystem(run->coordinates, output->GetFieldData());
-    }
+    run->takeResults(sink);
+    this->StateHash = run->stateHash;
   }
   else
   {
@@ -297,8 +367,98 @@ bool vtkRockfallSimulation::Simulate(vtkPolyData* terrainInput, vtkPolyData* roc
 }
 
 //------------------------------------------------------------------------------
+bool vtkRockfallSimulation::Follow()
+{
+  if (!this->Live->over())
+  {
+    this->Live->look();
+    this->Looked = this->Live->trajectories();
+    return true;
+  }
+  const std::unique_ptr<LiveRun> live = std::move(this->Live);
+  const std::string how = statusOf(*live);
+  this->Kept = live->take();
+  const KeptRun& run = *this->Kept;
+  this->StateHash = run.stateHash;
+  this->RunStatus = how;
+  if (run.ensemble->pushesAnew())
+  {
+    tellPushed(*run.ensemble, run.ensemble->pushed(), Ranks());
+  }
+  if (run.summary->GetNumberOfRows() < run.ensemble->size() * run.ensemble->trajectoriesPerUnit())
+  {
+    rockfall::filters::showNote("Rockfall Simulation was " + how);
+  }
+  return true;
+}
+
+//------------------------------------------------------------------------------
+void vtkRockfallSimulation::SetRocksConnection(vtkAlgorithmOutput* rocks)
+{
+  this->SetInputConnection(ROCKS_INPUT, rocks);
+}
+
+//------------------------------------------------------------------------------
+void vtkRockfallSimulation::SetTerrainConnection(int, vtkAlgorithmOutput* terrain)
+{
+  this->SetInputConnection(TERRAIN_INPUT, terrain);
+}
+
+//------------------------------------------------------------------------------
+void vtkRockfallSimulation::Stop()
+{
+  if (this->Live)
+  {
+    this->Live->stop();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkRockfallSimulation::RunAgain()
+{
+  this->Forget();
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+bool vtkRockfallSimulation::GetNeedsUpdate()
+{
+  using Clock = std::chrono::steady_clock;
+  this->Watched = true;
+  if (!this->Live)
+  {
+    return false;
+  }
+  const Clock::time_point now = Clock::now();
+  if (this->Drawn < this->Asked)
+  {
+    this->Drawn = now; // the first time that the window is free again
+  }
+  const std::chrono::duration<double> cost = this->Drawn - this->Asked, since = now - this->Drawn;
+  const bool news = since.count() > std::max(kLookInterval, kLookShare * cost.count()) &&
+    this->Live->trajectories() > this->Looked;
+  if (news || this->Live->over())
+  {
+    this->Modified();
+    return true;
+  }
+  return false;
+}
+
+//------------------------------------------------------------------------------
+const char* vtkRockfallSimulation::GetRunStatus()
+{
+  if (this->Live)
+  {
+    this->RunStatus = statusOf(*this->Live);
+  }
+  return this->RunStatus.c_str();
+}
+
+//------------------------------------------------------------------------------
 void vtkRockfallSimulation::Forget()
 {
+  this->Live.reset();
   this->Kept.reset();
   this->StateHash.clear();
 }
@@ -325,13 +485,15 @@ int vtkRockfallSimulation::RequestData(
   {
     return 1;
   }
-  vtkPolyData* terrain = vtkPolyData::GetData(inputVector[0]);
-  vtkPolyData* rocks = vtkPolyData::GetData(inputVector[1]);
-  if (!terrain || !rocks)
+  vtkPolyData* rocks = this->Taken->rocks.take(inputVector[ROCKS_INPUT]);
+  if (!rocks)
   {
-    return first ? rockfall::filters::fail(
-                     this, std::string(terrain ? "The Rocks" : "The Terrain") + " input is missing")
-                 : 1;
+    return first ? rockfall::filters::fail(this, "The Rocks input is missing") : 1;
+  }
+  vtkPolyData* terrain = this->Taken->terrain.take(inputVector[TERRAIN_INPUT]);
+  if (!terrain)
+  {
+    terrain = rocks; // may have brought it
   }
   const bool inherited = rockfall::filters::inheritFailure(terrain, this) ||
     rockfall::filters::inheritFailure(rocks, this);
@@ -353,9 +515,12 @@ int vtkRockfallSimulation::RequestData(
     return 1;
   }
   this->Failed.reset();
+  this->Asked = std::chrono::steady_clock::now();
   try
   {
+    ranks.agree(this->Taken->problem());
     bool finished = this->Simulate(terrain, rocks);
+    KeptRun* run = this->Live ? &this->Live->run() : this->Kept.get();
     vtkInformation* info = outputVector->GetInformationObject(ROCKS);
     double time = 0.0;
     if (info->Has(Pipeline::UPDATE_TIME_STEP()))
@@ -369,8 +534,10 @@ int vtkRockfallSimulation::RequestData(
         if (finished && first)
         {
           vtkNew<vtkPolyData> shown;
-          finished = this->Kept->show(
-            this->ShownIteration, time, [this](double) { return !this->CheckAbort(); }, shown);
+          // While a run goes on its blocks stand where they are released.
+          finished = run->show(
+            this->ShownIteration, this->Live ? 0.0 : time,
+            [this](double) { return !this->CheckAbort(); }, shown);
           output->ShallowCopy(shown);
         }
       },
@@ -383,10 +550,10 @@ int vtkRockfallSimulation::RequestData(
     }
     // On every rank, or those without would be asked again when the first one is not.
     output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
-    vtkPolyData::GetData(outputVector, TRAJECTORIES)->ShallowCopy(this->Kept->trajectories);
-    vtkPolyData::GetData(outputVector, IMPACTS)->ShallowCopy(this->Kept->impacts);
-    vtkPolyData::GetData(outputVector, STRUCTURES)->ShallowCopy(this->Kept->structures);
-    vtkTable::GetData(outputVector, SUMMARY)->ShallowCopy(this->Kept->summary);
+    vtkPolyData::GetData(outputVector, TRAJECTORIES)->ShallowCopy(run->trajectories);
+    vtkPolyData::GetData(outputVector, IMPACTS)->ShallowCopy(run->impacts);
+    vtkPolyData::GetData(outputVector, STRUCTURES)->ShallowCopy(run->structures);
+    vtkTable::GetData(outputVector, SUMMARY)->ShallowCopy(run->summary);
     return 1;
   }
   catch (const rockfall::Error& error)
@@ -415,6 +582,7 @@ void vtkRockfallSimulation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent
      << "RockContactFile: " << (this->RockContactFile.empty() ? "(none)" : this->RockContactFile)
      << "\n";
+  os << indent << "RockContactSheet: " << this->RockContactSheet << "\n";
   os << indent << "PushRocksApart: " << this->PushRocksApart << "\n";
   os << indent << "Rigid: " << this->Rigid << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
@@ -423,6 +591,7 @@ void vtkRockfallSimulation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "KeepImpacts: " << this->KeepImpacts << "\n";
   os << indent << "PrintProgress: " << this->PrintProgress << "\n";
   os << indent << "StateHash: " << this->StateHash << "\n";
+  os << indent << "RunStatus: " << this->RunStatus << "\n";
   os << indent << "NumberOfRuns: " << this->NumberOfRuns << "\n";
   os << indent << "Kept: " << (this->Kept ? "a finished run" : "(none)") << "\n";
 }

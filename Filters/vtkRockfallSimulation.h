@@ -38,8 +38,19 @@
 #include "RockfallFiltersModule.h"
 #include "vtkPolyDataAlgorithm.h"
 
-#include <memory> // for the run that is kept
-#include <string> // for messages
+#include <chrono>  // for looks at a run
+#include <cstdint> // for counts
+#include <memory>  // for the run that is kept
+#include <string>  // for messages
+
+namespace rockfall
+{
+namespace filters // VTK's wrappers read no nested name
+{
+struct KeptRun;
+class LiveRun;
+}
+}
 
 class ROCKFALLFILTERS_EXPORT vtkRockfallSimulation : public vtkPolyDataAlgorithm
 {
@@ -152,10 +163,13 @@ public:
   /**
    * A table of pairs of materials that have another restitution, friction angle and cohesion than
    * the three above: anything OGR opens, see docs/mass_falls.md. Empty (the default): none. Read
-   * when a run is made, with RockRockContact only.
+   * when a run is made, with RockRockContact only. The sheet is that of a file with several tables
+   * that would do.
    */
   vtkSetStdStringFromCharMacro(RockContactFile);
   vtkGetCharFromStdStringMacro(RockContactFile);
+  vtkSetStdStringFromCharMacro(RockContactSheet);
+  vtkGetCharFromStdStringMacro(RockContactSheet);
   ///@}
 
   ///@{
@@ -239,6 +253,33 @@ public:
    */
   const char* GetStateHash() const { return this->StateHash.c_str(); }
 
+  ///@{
+  /**
+   * The inputs for ParaView, whose Python connects whatever is active to the first input of a
+   * proxy: to it that is the rocks. The number is its, and does not count.
+   */
+  void SetRocksConnection(vtkAlgorithmOutput* rocks);
+  void SetTerrainConnection(int, vtkAlgorithmOutput* terrain);
+  void RemoveRocks() { this->SetRocksConnection(nullptr); }
+  void RemoveTerrain() { this->SetTerrainConnection(0, nullptr); }
+  ///@}
+
+  ///@{
+  /**
+   * A window that goes on asking whether there is news (ParaView's live sources) is not kept
+   * waiting: the run has threads of its own, outputs have the trajectories made so far, and there
+   * is news about once a second until it is over. What then comes out is the same, bit for bit.
+   * Whoever never asks, as scripts, waits for the end of the run. So do several ranks.
+   */
+  bool GetNeedsUpdate();
+  /// Ends a run that goes on; the trajectories made so far stay.
+  void Stop();
+  /// Makes all trajectories anew, as after a Stop.
+  void RunAgain();
+  /// What the run does: "running: 12,300 of 100,000 trajectories (12 %), about 3 min 20 s left".
+  const char* GetRunStatus();
+  ///@}
+
   /**
    * How often this filter has simulated since it was made.
    */
@@ -258,16 +299,18 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
 private:
-  struct Cache;
   struct Failure;
+  struct Inputs;
 
   void Forget(); ///< The kept run, as it is not what the outputs have.
   /// Reports an error of this execution, once for all ranks, and remembers of what it is the error.
   int Fail(vtkPolyData* terrain, vtkPolyData* rocks, const std::string& message);
   /// Simulates unless the kept run is that of these inputs and properties. False if aborted.
   bool Simulate(vtkPolyData* terrain, vtkPolyData* rocks);
-  void TakeProperties(Cache& run);
-  void CheckProperties(const Cache& run) const; ///< Throws ParameterError.
+  /// Looks at the run that goes on, and keeps it when it is over.
+  bool Follow();
+  void TakeProperties(rockfall::filters::KeptRun& run);
+  void CheckProperties(const rockfall::filters::KeptRun& run) const; ///< Throws ParameterError.
   std::string NoMemory() const;
 
   double TimeStep = 0.005;
@@ -283,6 +326,7 @@ private:
   double RockFrictionAngle = 30.0;
   double RockCohesion = 0.0;
   std::string RockContactFile;
+  std::string RockContactSheet;
   bool PushRocksApart = false;
   bool Rigid = false;
   int NumberOfThreads = 0;
@@ -293,8 +337,14 @@ private:
   bool KeepImpacts = true;
   bool PrintProgress = false;
   std::string StateHash;
-  std::unique_ptr<Cache> Kept;
+  std::string RunStatus;
+  std::unique_ptr<rockfall::filters::KeptRun> Kept;
+  std::unique_ptr<rockfall::filters::LiveRun> Live; ///< A run that goes on. Then none is kept.
+  bool Watched = false;                             ///< Whether somebody asks for news.
+  std::int64_t Looked = 0;                          ///< Trajectories at the last look.
+  std::chrono::steady_clock::time_point Asked, Drawn;
   std::unique_ptr<Failure> Failed;
+  std::unique_ptr<Inputs> Taken;
 };
 
 #endif

@@ -6,6 +6,10 @@
 #include "failure.h"
 #include "geometry/shell.h"
 #include "gis/lineLayer.h"
+#include "gis/reach.h"
+#include "inputs.h"
+#include "lineWalls.h"
+#include "mesh/precision.h"
 #include "pieces.h"
 #include "ranks.h"
 #include "rockPaths.h"
@@ -15,6 +19,7 @@
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkTable.h"
 
@@ -35,6 +40,14 @@ enum InputPorts
   TRAJECTORIES = 0,
   LINES = 1,
   TERRAIN = 2
+};
+
+enum OutputPorts
+{
+  CROSSINGS = 0,
+  SUMMARIES = 1,
+  EXCEEDANCE = 2,
+  WALLS = 3
 };
 
 void checkSize(double value, const char* name)
@@ -60,6 +73,21 @@ Box2 boxOf(vtkPolyData* data)
   return { Eigen::Vector2d(b[0], b[2]), Eigen::Vector2d(b[1], b[3]) };
 }
 
+/// ParaView's sources of lines make single precision.
+void tellRounding(vtkPolyData* lines)
+{
+  double b[6];
+  lines->GetBounds(b);
+  const double rounding = rockfall::singleRounding(
+    std::max({ std::abs(b[0]), std::abs(b[1]), std::abs(b[2]), std::abs(b[3]) }));
+  if (lines->GetPoints() && lines->GetPoints()->GetDataType() == VTK_FLOAT && rounding > 0.1)
+  {
+    rockfall::filters::showNote("The Lines input is in single precision, so its points are rounded "
+                                "by up to " +
+      rockfall::numberText(rounding, 3) + " m; a line of a file is not");
+  }
+}
+
 void requireNear(const Box2& lines, const Box2& rocks, const std::string& whose)
 {
   if (lines.exteriorDistance(rocks) > std::max(kElsewhere, 10.0 * rocks.diagonal().norm()))
@@ -77,20 +105,17 @@ void requireNear(const Box2& lines, const Box2& rocks, const std::string& whose)
 
 /// The lines of a file, which must be where the trajectories are. What they do not say of their
 /// barrier is `barrier`'s.
-std::vector<CollectorLine> readLines(const std::string& fileName, vtkPolyData* trajectories,
-  const Vec3& origin, const CollectorLine& barrier)
+std::vector<CollectorLine> readLines(const std::string& fileName, const std::string& layerName,
+  vtkPolyData* trajectories, const Box2& site, const Vec3& origin, const CollectorLine& barrier,
+  std::vector<std::string>& notes)
 {
   const std::string crs = rockfall::filters::readCrs(trajectories->GetFieldData());
   Box2 all;
+  std::string layer;
   std::vector<CollectorLine> lines;
-  std::vector<std::string> notes;
-  std::vector<rockfall::LayerLine> layer = rockfall::readLineLayer(fileName, crs, &notes);
-  for (const std::string& note : notes)
+  for (rockfall::LayerLine& read : rockfall::readLineLayer(fileName, crs, layerName, &notes))
   {
-    rockfall::filters::showNote(note);
-  }
-  for (rockfall::LayerLine& read : layer)
-  {
+    layer = read.layer;
     CollectorLine& line = lines.emplace_back();
     line.name = read.name.empty() ? "feature " + std::to_string(read.feature) : read.name;
     line.barrierHeight = read.height.value_or(barrier.barrierHeight);
@@ -101,17 +126,64 @@ std::vector<CollectorLine> readLines(const std::string& fileName, vtkPolyData* t
       line.points.push_back(place - origin.head<2>());
     }
   }
-  requireNear(all, boxOf(trajectories), fileName + ": its lines");
+  requireNear(all, site, fileName + ": its lines of layer \"" + layer + "\"");
   return lines;
+}
+
+/// The line through drawn points, which must be where the trajectories are.
+CollectorLine lineThrough(const std::vector<std::array<double, 3>>& points, const Box2& rocks,
+  const Vec3& origin, const CollectorLine& barrier)
+{
+  CollectorLine line = barrier;
+  line.name = "drawn line";
+  Box2 box;
+  for (const auto& [x, y, z] : points)
+  {
+    const Eigen::Vector2d place(x, y);
+    if (!place.allFinite())
+    {
+      throw rockfall::ParameterError("Points: a point of the drawn line is " +
+        rockfall::numberText(x) + ", " + rockfall::numberText(y) + ", it must be finite");
+    }
+    box.extend(place);
+    if (line.points.empty() || line.points.back() != Eigen::Vector2d(place - origin.head<2>()))
+    {
+      line.points.push_back(place - origin.head<2>());
+    }
+  }
+  if (line.points.size() < 2)
+  {
+    throw rockfall::ParameterError(
+      "Points: the drawn line has no two different places in the plane, it must have two at least");
+  }
+  requireNear(box, rocks, "Points: the drawn line");
+  return line;
 }
 
 } // namespace
 
 //------------------------------------------------------------------------------
+void vtkTrajectoryCollector::AddPoint(double x, double y, double z)
+{
+  this->Points.push_back({ x, y, z });
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+void vtkTrajectoryCollector::ClearPoints()
+{
+  if (!this->Points.empty())
+  {
+    this->Points.clear();
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
 vtkTrajectoryCollector::vtkTrajectoryCollector()
 {
   this->SetNumberOfInputPorts(3);
-  this->SetNumberOfOutputPorts(3);
+  this->SetNumberOfOutputPorts(4);
 }
 
 //------------------------------------------------------------------------------
@@ -120,7 +192,7 @@ vtkTrajectoryCollector::~vtkTrajectoryCollector() = default;
 //------------------------------------------------------------------------------
 int vtkTrajectoryCollector::FillInputPortInformation(int port, vtkInformation* info)
 {
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  rockfall::filters::acceptPolyData(info);
   if (port != TRAJECTORIES)
   {
     info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
@@ -131,7 +203,8 @@ int vtkTrajectoryCollector::FillInputPortInformation(int port, vtkInformation* i
 //------------------------------------------------------------------------------
 int vtkTrajectoryCollector::FillOutputPortInformation(int port, vtkInformation* info)
 {
-  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkPolyData" : "vtkTable");
+  info->Set(vtkDataObject::DATA_TYPE_NAME(),
+    port == CROSSINGS || port == WALLS ? "vtkPolyData" : "vtkTable");
   return 1;
 }
 
@@ -142,9 +215,11 @@ int vtkTrajectoryCollector::RequestData(
   namespace filters = rockfall::filters;
   try
   {
-    vtkPolyData* trajectories = vtkPolyData::GetData(inputVector[TRAJECTORIES]);
-    vtkPolyData* drawn = vtkPolyData::GetData(inputVector[LINES]);
-    vtkPolyData* mesh = vtkPolyData::GetData(inputVector[TERRAIN]);
+    filters::Input takenTrajectories(filters::InputKind::Trajectories),
+      takenLines(filters::InputKind::Lines), takenTerrain(filters::InputKind::Terrain);
+    vtkPolyData* trajectories = takenTrajectories.take(inputVector[TRAJECTORIES]);
+    vtkPolyData* drawn = takenLines.take(inputVector[LINES]);
+    vtkPolyData* mesh = takenTerrain.take(inputVector[TERRAIN]);
     const std::string spread = filters::spreadOf(trajectories);
     if (!spread.empty())
     {
@@ -153,6 +228,10 @@ int vtkTrajectoryCollector::RequestData(
     if (!trajectories)
     {
       throw rockfall::DataError("The Input is missing");
+    }
+    for (const filters::Input* taken : { &takenTrajectories, &takenLines, &takenTerrain })
+    {
+      taken->require();
     }
     for (vtkPolyData* input : { trajectories, drawn, mesh })
     {
@@ -163,7 +242,7 @@ int vtkTrajectoryCollector::RequestData(
     }
     if (trajectories->GetNumberOfLines() == 0)
     {
-      if (filters::isFurtherPiece(outputVector))
+      if (filters::isFurtherPiece(outputVector) || filters::isRunning(trajectories->GetFieldData()))
       {
         return 1;
       }
@@ -172,14 +251,12 @@ int vtkTrajectoryCollector::RequestData(
     }
     checkSize(this->BarrierHeight, "BarrierHeight");
     checkSize(this->BarrierCapacity, "BarrierCapacity");
-    std::optional<rockfall::Terrain> terrain;
+    const std::optional<rockfall::Terrain> terrain = filters::slopeUnder(trajectories, mesh);
     const Box2 rocks = boxOf(trajectories);
+    Box2 site = rocks; // where lines may be
     Vec3 origin(std::floor(rocks.min().x()), std::floor(rocks.min().y()), 0.0);
-    if (mesh)
+    if (terrain)
     {
-      terrain.emplace(filters::readTerrain(mesh));
-      filters::checkSameCrs(
-        trajectories->GetFieldData(), "The trajectories of the Input are", mesh->GetFieldData());
       origin = terrain->geometry().origin();
       const Eigen::Vector2d corner = origin.head<2>();
       const Eigen::Vector2d size(terrain->width(), terrain->height());
@@ -188,30 +265,42 @@ int vtkTrajectoryCollector::RequestData(
         throw rockfall::DataError(
           "No trajectory of the Input is over the Terrain: they do not belong together");
       }
+      site.extend(Box2(corner, corner + size));
     }
     CollectorLine barrier;
     barrier.barrierHeight = this->BarrierHeight;
     barrier.barrierCapacity = this->BarrierCapacity * 1000.0;
     std::vector<CollectorLine> lines;
+    std::vector<std::string> notes;
     if (drawn)
     {
       if (drawn->GetNumberOfPoints() > 0)
       {
-        requireNear(boxOf(drawn), rocks, "The lines of the Lines input");
+        requireNear(boxOf(drawn), site, "The lines of the Lines input");
+        tellRounding(drawn);
       }
       lines = filters::linesOf(drawn, origin, barrier);
     }
     if (!this->FileName.empty())
     {
-      for (CollectorLine& line : readLines(this->FileName, trajectories, origin, barrier))
+      const rockfall::AllowReferences references(this->AllowReferences != 0);
+      for (CollectorLine& line :
+        readLines(this->FileName, this->LayerName, trajectories, site, origin, barrier, notes))
       {
         lines.push_back(std::move(line));
       }
     }
-    else if (!drawn)
+    std::vector<std::array<double, 3>> points = this->Points;
+    if (points.empty() && lines.empty())
     {
-      throw rockfall::ParameterError(
-        "There is no line: connect some to the Lines input or give a FileName");
+      const std::array<double, 6> placed =
+        filters::lineAcross(trajectories, terrain ? &*terrain : nullptr, origin);
+      std::copy(placed.begin(), placed.end(), this->PlacedLine);
+      points = { { placed[0], placed[1], placed[2] }, { placed[3], placed[4], placed[5] } };
+    }
+    if (!points.empty())
+    {
+      lines.push_back(lineThrough(points, rocks, origin, barrier));
     }
     std::vector<filters::CollectedCrossing> crossings;
     std::vector<rockfall::Crossing> all, found;
@@ -239,19 +328,24 @@ int vtkTrajectoryCollector::RequestData(
         rockfall::summarizeLine(lines[k], int(k), all, std::int64_t(released.size())));
     }
 
-    vtkNew<vtkPolyData> points;
-    filters::writeCrossings(crossings, lines, released, origin, trajectories, points);
+    vtkNew<vtkPolyData> passings, walls;
+    filters::writeCrossings(crossings, lines, released, origin, trajectories, passings);
+    filters::writeWalls(lines, summaries, terrain ? &*terrain : nullptr,
+      trajectories->GetBounds()[4] - origin.z(), origin, walls);
+    filters::showNotes(notes, passings->GetFieldData());
     vtkNew<vtkTable> table, exceedance;
     filters::writeLines(summaries, lines, table);
     filters::writeExceedance(summaries, std::int64_t(released.size()), exceedance);
-    for (vtkDataObject* made : { static_cast<vtkDataObject*>(points),
-           static_cast<vtkDataObject*>(table), static_cast<vtkDataObject*>(exceedance) })
+    for (vtkDataObject* made :
+      { static_cast<vtkDataObject*>(passings), static_cast<vtkDataObject*>(walls),
+        static_cast<vtkDataObject*>(table), static_cast<vtkDataObject*>(exceedance) })
     {
       filters::copyCoordinateSystem(trajectories->GetFieldData(), made->GetFieldData());
     }
-    vtkPolyData::GetData(outputVector, 0)->ShallowCopy(points);
-    vtkTable::GetData(outputVector, 1)->ShallowCopy(table);
-    vtkTable::GetData(outputVector, 2)->ShallowCopy(exceedance);
+    vtkPolyData::GetData(outputVector, CROSSINGS)->ShallowCopy(passings);
+    vtkTable::GetData(outputVector, SUMMARIES)->ShallowCopy(table);
+    vtkTable::GetData(outputVector, EXCEEDANCE)->ShallowCopy(exceedance);
+    vtkPolyData::GetData(outputVector, WALLS)->ShallowCopy(walls);
     return 1;
   }
   catch (const rockfall::Error& error)
@@ -265,6 +359,15 @@ void vtkTrajectoryCollector::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "FileName: " << this->FileName << "\n";
+  os << indent << "AllowReferences: " << this->AllowReferences << "\n";
+  os << indent << "LayerName: " << this->LayerName << "\n";
+  os << indent << "Points: " << this->Points.size() << "\n";
+  os << indent << "PlacedLine:";
+  for (const double number : this->PlacedLine)
+  {
+    os << " " << number;
+  }
+  os << "\n";
   os << indent << "BarrierHeight: " << this->BarrierHeight << "\n";
   os << indent << "BarrierCapacity: " << this->BarrierCapacity << "\n";
 }

@@ -3,15 +3,17 @@
  * @brief   collects what passes lines, such as a road or a planned barrier
  *
  * Input port 0 has one polyline per trajectory, as port 1 of vtkRockfallSimulation; port 1 has
- * lines as polydata, optional, further lines come from FileName; port 2 is the terrain of
- * vtkDEMToCFESource, optional. A line stands for the vertical planes through its segments. A
- * passing is found exactly, along the cubic curve between two points of a trajectory.
+ * lines as polydata, optional, further lines come from Points and FileName; port 2 is the terrain
+ * of vtkDEMToCFESource, optional: trajectories bring the slope that they fell on. Without any line
+ * there is one across the middle of the trajectories. A line stands for the vertical planes through
+ * its segments. A passing is found exactly, along the cubic curve between two points of a
+ * trajectory.
  *
  * Output port 0 has a vertex for every passing, with what the rock does there and the cell arrays
  * of its trajectory. Port 1 is a table with a row for each line: how many rocks passed, mean,
  * deviation, maximum and quantiles of their energy, height over ground and speed, and the share
  * that a barrier of BarrierHeight and BarrierCapacity would catch. Port 2 is a table of exceedance
- * curves.
+ * curves. Port 3 has the walls that stand on the lines, as high as their barriers.
  */
 #ifndef vtkTrajectoryCollector_h
 #define vtkTrajectoryCollector_h
@@ -19,7 +21,9 @@
 #include "RockfallFiltersModule.h"
 #include "vtkPolyDataAlgorithm.h"
 
+#include <array>  // for points
 #include <string> // for FileName
+#include <vector> // for points
 
 class ROCKFALLFILTERS_EXPORT vtkTrajectoryCollector : public vtkPolyDataAlgorithm
 {
@@ -30,11 +34,46 @@ public:
 
   ///@{
   /**
+   * Which layer of a file with several: its name. Empty (the default): the one layer of lines; if
+   * there are several, that is an error which lists them.
+   */
+  vtkSetStdStringFromCharMacro(LayerName);
+  vtkGetCharFromStdStringMacro(LayerName);
+  ///@}
+
+  ///@{
+  /**
    * File of lines: anything OGR opens. Brought to the CRS of the trajectories. Empty by default.
    */
   vtkSetStdStringFromCharMacro(FileName);
   vtkGetCharFromStdStringMacro(FileName);
   ///@}
+
+  ///@{
+  /**
+   * Whether files may name network addresses and other files of the machine: virtual rasters and
+   * layers that are made of files elsewhere, services, lists of tiles. Off by default, because a
+   * file that came from somebody else could have any file read, or an address called. Virtual
+   * rasters of files beside them need no leave.
+   */
+  vtkSetMacro(AllowReferences, int);
+  vtkGetMacro(AllowReferences, int);
+  vtkBooleanMacro(AllowReferences, int);
+  ///@}
+
+  ///@{
+  /**
+   * Points of a line that is drawn, in world coordinates; their z does not count. None by default.
+   */
+  void AddPoint(double x, double y, double z);
+  void ClearPoints();
+  int GetNumberOfPoints() const { return int(this->Points.size()); }
+  ///@}
+
+  /**
+   * Ends of the line that the last run took because none was given, on the ground.
+   */
+  vtkGetVector6Macro(PlacedLine, double);
 
   ///@{
   /**
@@ -67,6 +106,10 @@ protected:
 
 private:
   std::string FileName;
+  int AllowReferences = 0;
+  std::string LayerName;
+  std::vector<std::array<double, 3>> Points;
+  double PlacedLine[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
   double BarrierHeight = 4.0;
   double BarrierCapacity = 1000.0;
 };

@@ -3,6 +3,7 @@
 #include "base/errors.h"
 #include "base/types.h"
 #include "gis/layerWriter.h"
+#include "inputs.h"
 #include "pieces.h"
 #include "terrainFieldData.h"
 
@@ -54,10 +55,17 @@ public:
       const int components = array->GetNumberOfComponents();
       for (int c = 0; c < components; ++c)
       {
-        const std::string ending = components == 1 ? std::string()
-          : components == 3                        ? std::string(1, "XYZ"[c])
-                                                   : "_" + std::to_string(c);
-        this->Fields.push_back({ name + ending,
+        std::string full = name;
+        if (components == 3)
+        {
+          full += "XYZ"[c];
+        }
+        else if (components > 1)
+        {
+          full += '_';
+          full += std::to_string(c);
+        }
+        this->Fields.push_back({ full,
           texts    ? FieldType::Text
             : real ? FieldType::Real
                    : FieldType::Integer });
@@ -205,7 +213,7 @@ vtkTrajectoryLayerWriter::~vtkTrajectoryLayerWriter() = default;
 //------------------------------------------------------------------------------
 int vtkTrajectoryLayerWriter::FillInputPortInformation(int, vtkInformation* info)
 {
-  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkPolyData");
+  rockfall::filters::acceptPolyData(info);
   return 1;
 }
 
@@ -224,13 +232,17 @@ vtkTypeBool vtkTrajectoryLayerWriter::ProcessRequest(
 //------------------------------------------------------------------------------
 void vtkTrajectoryLayerWriter::WriteData()
 {
-  auto* data = vtkPolyData::SafeDownCast(this->GetInput());
-  if (!data || (data->GetNumberOfPoints() == 0 && rockfall::filters::isFurtherRank()))
+  rockfall::filters::Input taken(rockfall::filters::InputKind::Any);
+  vtkPolyData* data = taken.take(this->GetInput());
+  if (!data ||
+    (data->GetNumberOfPoints() == 0 && taken.problem().empty() &&
+      rockfall::filters::isFurtherRank()))
   {
     return; // the first rank has it all
   }
   try
   {
+    taken.require();
     if (data->GetNumberOfLines() == 0 && data->GetNumberOfVerts() == 0)
     {
       throw rockfall::DataError(

@@ -150,6 +150,37 @@ TEST_F(TestDEMToCFESource, RestitutionTravelsInTheFieldData)
   EXPECT_EQ(value(data, "TerrainMaterial", 0, 9), 5.0);
 }
 
+TEST_F(TestDEMToCFESource, RoughnessAndScatterTravelInTheFieldData)
+{
+  const std::string zones =
+    this->WriteFile("zones.csv", "WKT,class\n\"POLYGON((0 0,100 0,100 100,0 100,0 0))\",scree\n");
+  const std::string table = this->WriteFile("table.csv", "class,rv,rg70\nscree,0.5,0.2\n");
+  this->Source->SetRestitutionLayer(zones.c_str());
+  this->Source->SetRestitutionTable(table.c_str());
+  this->Source->SetRoughnessMean(0.1);
+  this->Source->SetRoughnessDeviation(0.3);
+  this->Source->SetRoughnessLength(2.0);
+  this->Source->SetObstacleHeight70(0.4);
+  this->Source->SetObstacleHeight20(0.5);
+  this->Source->SetObstacleHeight10(0.6);
+  this->Source->SetDeviationPer(vtkDEMToCFESource::PER_PLACE);
+  const rockfall::Terrain read = rockfall::filters::readTerrain(this->Update());
+  EXPECT_EQ(read.roughness(), (rockfall::Roughness{ 0.1, 0.3, 2.0, { 0.4, 0.5, 0.6 } }));
+  EXPECT_EQ(read.roughnessOf(1), (rockfall::Roughness{ 0.1, 0.3, 2.0, { 0.2, 0.5, 0.6 } }));
+  EXPECT_EQ(read.deviationPer(), rockfall::DeviationPer::Place);
+  EXPECT_EQ(read.refinement(), 10); // cells of 5 m, obstacles 2 m apart
+  // As files had it before.
+  vtkFieldData* data = this->Source->GetOutput()->GetFieldData();
+  for (const char* name :
+    { "TerrainRoughness", "TerrainRestitutionRoughness", "TerrainDeviationPer" })
+  {
+    data->RemoveArray(name);
+  }
+  const rockfall::Terrain old = rockfall::filters::readTerrain(this->Source->GetOutput());
+  EXPECT_EQ(old.roughnessOf(1), (rockfall::Roughness{ 0.1, 0.3 }));
+  EXPECT_EQ(old.deviationPer(), rockfall::DeviationPer::Iteration);
+}
+
 TEST_F(TestDEMToCFESource, HeightsOutliveTheSource)
 {
   vtkNew<vtkPolyData> copy;

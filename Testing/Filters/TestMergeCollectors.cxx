@@ -170,4 +170,10 @@ TEST_F(TestMergeCollectors, BadInput)
   poorer->DeepCopy(whole->GetOutput());
   poorer->GetPointData()->RemoveArray("Velocity");
   expect(poorer, { "part 2", "Velocity" });
+  // Crossings of another collector, appended: their numbers are those of its lines.
+  vtkNew<vtkPolyData> appended;
+  appended->DeepCopy(this->Collect(2, 1)->GetOutput());
+  vtkStringArray::SafeDownCast(appended->GetPointData()->GetAbstractArray("LineName"))
+    ->SetValue(3, "its own road");
+  expect(appended, { "part 2", "\"its own road\"", "collectors appended" });
 }

@@ -86,6 +86,7 @@ TEST_F(TestReleaseUncertainty, SourcesAreInTheOutputs)
 TEST_F(TestReleaseUncertainty, SurvivesAppendingAndSaving)
 {
   vtkNew<vtkRockBlockSource> sure;
+  sure->SetAttitudeLaw(vtkRockBlockSource::AS_GIVEN);
   sure->SetFirstBlockId(2);
   sure->SetFirstSourceId(2);
   sure->SetCenter(5.0, 30.0, 58.0);
@@ -116,4 +117,50 @@ TEST_F(TestReleaseUncertainty, SurvivesAppendingAndSaving)
     EXPECT_EQ(value(rows, "SourceId", 2 * iteration + 1), 2);
   }
   EXPECT_EQ(this->Text("SourceName", 1), "source 2");
+}
+
+TEST_F(TestReleaseUncertainty, DefaultsDifferBetweenIterations)
+{
+  vtkNew<vtkDEMToCFESource> slope;
+  vtkNew<vtkRockBlockSource> rock;
+  this->Simulation->SetInputConnection(0, slope->GetOutputPort());
+  this->Simulation->SetInputConnection(1, rock->GetOutputPort());
+  this->Simulation->SetIterations(2);
+  this->Simulation->SetEndTime(3.0);
+  vtkFieldData* rows = this->Summary()->GetRowData();
+  EXPECT_NE(value(rows, "StopX", 0), value(rows, "StopX", 1));
+  EXPECT_TRUE(this->Heard->Notes.empty());
+  EXPECT_EQ(value(rock->GetOutput()->GetCellData(), "AttitudeLaw"), vtkRockBlockSource::RANDOM);
+  // An attitude that is given is kept.
+  rock->SetOrientation(0.0, 0.0, 30.0);
+  rock->Update();
+  EXPECT_EQ(value(rock->GetOutput()->GetCellData(), "AttitudeLaw"), vtkRockBlockSource::AS_GIVEN);
+  rock->SetOrientation(0.0, 0.0, 0.0);
+  const std::string table =
+    this->WriteFile("sources.csv", "x,y,z,rx,ry,rz\n5,50,58,0,0,0\n5,60,58,,,\n");
+  rock->SetFileName(table.c_str());
+  rock->Update();
+  vtkCellData* cells = rock->GetOutput()->GetCellData();
+  const vtkIdType last = rock->GetOutput()->GetNumberOfCells() - 1;
+  EXPECT_EQ(value(cells, "AttitudeLaw", 0), vtkRockBlockSource::AS_GIVEN);
+  EXPECT_EQ(value(cells, "AttitudeLaw", last), vtkRockBlockSource::RANDOM);
+}
+
+TEST_F(TestReleaseUncertainty, ANoteSaysWhereNothingDiffers)
+{
+  vtkNew<vtkRockBlockSource> sure;
+  sure->SetAttitudeLaw(vtkRockBlockSource::AS_GIVEN);
+  this->Simulation->SetInputConnection(1, sure->GetOutputPort());
+  this->Simulation->SetEndTime(0.1);
+  this->Simulation->SetIterations(1);
+  this->Simulation->Update();
+  EXPECT_TRUE(this->Heard->Notes.empty());
+  this->Simulation->SetIterations(3);
+  this->Simulation->Update();
+  ASSERT_EQ(this->Heard->Notes.size(), 1u);
+  EXPECT_NE(this->Heard->Notes[0].find("All 3 iterations are alike"), std::string::npos);
+  this->Heard->Notes.clear();
+  this->Terrain->SetFrictionAngleDeviation(2.0);
+  this->Simulation->Update();
+  EXPECT_TRUE(this->Heard->Notes.empty());
 }

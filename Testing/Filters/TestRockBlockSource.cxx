@@ -179,19 +179,18 @@ TEST_F(TestRockBlockSource, TableRowsOverrideProperties)
   EXPECT_EQ(value(data, "Density", 8), 3000);
   auto* names = vtkStringArray::SafeDownCast(blocks->GetFieldData()->GetAbstractArray("ShapeName"));
   ASSERT_TRUE(names);
-  ASSERT_EQ(names->GetNumberOfValues(), 2);
-  EXPECT_EQ(names->GetValue(0), "octahedron");
-  EXPECT_EQ(names->GetValue(1), "cube");
+  EXPECT_EQ(names->GetValue(vtkIdType(value(data, "Shape", 0))), "octahedron");
+  EXPECT_EQ(names->GetValue(vtkIdType(value(data, "Shape", 8))), "cube");
 }
 
 TEST_F(TestRockBlockSource, ShapeFromPointsIsTheirHull)
 {
   this->Source->SetShape(vtkRockBlockSource::FROM_FILE);
   this->Source->SetScaleToVolume(false);
-  // A cube of edge 2 and its middle; a header, and both kinds of separators.
+  // A cube of edge 2 and its middle.
   this->Source->SetShapeFileName(this
                                    ->WriteFile("points.csv",
-                                     "x,y,z\n0,0,0\n2;0;0\n0 2 0\n2,2,0\n0,0,2\n2,0,2\n0,2,2\n"
+                                     "x,y,z\n0,0,0\n2,0,0\n0,2,0\n2,2,0\n0,0,2\n2,0,2\n0,2,2\n"
                                      "2,2,2\n1,1,1\n")
                                    .c_str());
   vtkPolyData* block = this->Update();
@@ -343,16 +342,18 @@ TEST_F(TestRockBlockSource, SourcesOnTheGround)
   vtkPolyData* blocks = this->Update();
   vtkCellData* data = blocks->GetCellData();
   vtkFieldData* field = blocks->GetFieldData();
-  auto* names = vtkStringArray::SafeDownCast(field->GetAbstractArray("SourceName"));
+  auto* names = vtkStringArray::SafeDownCast(data->GetAbstractArray("SourceName"));
   auto* shapes = vtkStringArray::SafeDownCast(field->GetAbstractArray("ShapeName"));
   ASSERT_TRUE(names && shapes);
-  ASSERT_EQ(names->GetNumberOfValues(), 45);
+  ASSERT_EQ(names->GetNumberOfValues(), blocks->GetNumberOfCells());
   EXPECT_EQ(names->GetValue(0), "cliff");
-  EXPECT_EQ(names->GetValue(44), "source 9");
+  EXPECT_EQ(names->GetValue(blocks->GetNumberOfCells() - 1), "source 9");
   int octahedra = 0;
-  for (vtkIdType k = 0; k < 40; ++k)
+  for (vtkIdType cell = 0; cell < blocks->GetNumberOfCells(); ++cell)
   {
-    octahedra += shapes->GetValue(k) == "octahedron";
+    const bool begins =
+      cell == 0 || value(data, "BlockId", cell) != value(data, "BlockId", cell - 1);
+    octahedra += begins && shapes->GetValue(vtkIdType(value(data, "Shape", cell))) == "octahedron";
   }
   EXPECT_NEAR(octahedra, 30, 11); // four standard deviations of √(40 · ¾ · ¼)
   EXPECT_EQ(value(data, "SourceId", 0), 1);
@@ -452,8 +453,8 @@ TEST_F(TestRockBlockSource, BadValuesOfSources)
   this->Source->SetMaterial(8);
   refused({ "Material is 8" });
   this->Source->SetMaterial(0);
-  this->Source->SetAttitudeLaw(3);
-  refused({ "AttitudeLaw is 3" });
+  this->Source->SetAttitudeLaw(4);
+  refused({ "AttitudeLaw is 4" });
   this->Source->SetAttitudeLaw(0);
   this->Source->SetHorizontalDeviation(std::nan(""));
   refused({ "HorizontalDeviation is nan" });

@@ -32,6 +32,7 @@ protected:
     this->Rocks->SetCenter(40, 50, 60);
     this->Rocks->SetVelocity(5, 0, 0);
     this->Rocks->SetMaterial(1);
+    this->Other->SetAttitudeLaw(vtkRockBlockSource::AS_GIVEN);
     this->Other->SetCenter(44, 50, 60);
     this->Other->SetVelocity(-3, 0, 0);
     this->Other->SetMaterialName("Slag");

@@ -1,6 +1,7 @@
 #include "helpers.h"
 #include "trajectories.h"
 
+#include "vtkCell.h"
 #include "vtkDEMToCFESource.h"
 #include "vtkHazardMapWriter.h"
 #include "vtkHazardPassageWriter.h"
@@ -91,6 +92,7 @@ TEST_F(TestRockfallHazardMap, CellsOfTheTerrain)
   vtkNew<vtkDEMToCFESource> slope; // the default slope: 250 × 100 m, cells of 5 m
   this->Filter->SetInputConnection(1, slope->GetOutputPort());
   this->Paths.AddLevel(0, 0, { 101, 52, 80 }, 20, 10);
+  this->Filter->CropToTrajectoriesOff();
   vtkImageData* map = this->Map();
   double slopeBounds[6], bounds[6];
   vtkPolyData* mesh = slope->GetOutput();
@@ -115,6 +117,55 @@ TEST_F(TestRockfallHazardMap, CellsOfTheTerrain)
   EXPECT_EQ(bounds[2], 50.0);
   EXPECT_EQ(bounds[3], 55.0);
   EXPECT_EQ(this->At("Rocks", 103, 53), 1.0);
+}
+
+TEST_F(TestRockfallHazardMap, TrajectoriesBringTheirSlope)
+{
+  vtkNew<vtkDEMToCFESource> slope;
+  slope->Update();
+  this->Paths.AddLevel(0, 0, { 51, 52, 80 }, 20, 10);
+  vtkFieldData* fields = this->Paths.Data->GetFieldData();
+  for (int k = 0; k < slope->GetOutput()->GetFieldData()->GetNumberOfArrays(); ++k)
+  {
+    fields->AddArray(slope->GetOutput()->GetFieldData()->GetAbstractArray(k));
+  }
+  vtkImageData* map = this->Map(); // no cell size, no terrain
+  EXPECT_EQ(map->GetNumberOfCells(), 5);
+  EXPECT_EQ(map->GetSpacing()[0], 5.0);
+  EXPECT_TRUE(map->GetPointData()->GetArray("Elevation"));
+}
+
+TEST_F(TestRockfallHazardMap, DrapedOnTheSlope)
+{
+  vtkNew<vtkDEMToCFESource> slope;
+  this->Filter->SetInputConnection(1, slope->GetOutputPort());
+  this->Paths.AddLevel(0, 0, { 51, 52, 80 }, 20, 10);
+  this->Paths.AddLevel(0, 1, { 51, 72, 80 }, 20, 20);
+  vtkImageData* map = this->Map();
+  EXPECT_EQ(map->GetNumberOfCells(), 25);
+  auto* draped = vtkPolyData::SafeDownCast(this->Filter->GetOutputDataObject(1));
+  ASSERT_TRUE(draped);
+  ASSERT_EQ(draped->GetNumberOfCells(), 10); // without those that nothing passed
+  EXPECT_EQ(draped->GetPoints()->GetDataType(), VTK_DOUBLE);
+  EXPECT_EQ(draped->GetNumberOfPoints(), 24);
+  EXPECT_FALSE(draped->GetFieldData()->GetArray("HazardMap"));
+  EXPECT_STREQ(draped->GetCellData()->GetScalars()->GetName(), "ReachProbability");
+  EXPECT_EQ(value(draped->GetCellData(), "Speed50", 0), 10.0);
+  EXPECT_EQ(value(draped->GetCellData(), "Speed50", 5), 20.0);
+  double b[6];
+  draped->GetBounds(b);
+  const double top = 57.7 * (1.0 - 0.50), foot = 57.7 * (1.0 - 0.75), lift = 0.05 * 5.0;
+  EXPECT_EQ(b[0], 50.0);
+  EXPECT_EQ(b[1], 75.0);
+  EXPECT_EQ(b[2], 50.0);
+  EXPECT_EQ(b[3], 75.0);
+  EXPECT_NEAR(b[5], top + lift, 1e-4); // heights of the map are floats
+  EXPECT_NEAR(b[4], foot + lift, 1e-4);
+  double from[3], to[3];
+  draped->GetPoint(draped->GetCell(0)->GetPointId(0), from);
+  draped->GetPoint(draped->GetCell(0)->GetPointId(2), to);
+  EXPECT_EQ(from[1] - to[1], 5.0); // cut from the north-west to the south-east, as the slope is
+  EXPECT_EQ(to[0] - from[0], 5.0);
 }
 
 TEST_F(TestRockfallHazardMap, WrittenAsGeoTiff)
@@ -169,7 +220,7 @@ TEST_F(TestRockfallHazardMap, BadInput)
   this->Filter->SetInputDataObject(0, far.Data);
   this->Filter->SetInputConnection(1, slope->GetOutputPort());
   expect({ "No trajectory" });
-  this->Filter->CropToTrajectoriesOn();
+  this->Filter->CropToTrajectoriesOff();
   expect({ "No trajectory" });
 }
 

@@ -142,10 +142,10 @@ TEST_F(TestStructures, AMaterialTravelsWithTheSlope)
   EXPECT_DOUBLE_EQ(read.frictionAngle, radians(35.0));
   EXPECT_EQ(read.frictionAngleDeviation, 0.0);
   EXPECT_EQ(read.cohesion, 7.0);
-  const int number = terrain.restitutionClassOf(terrain.cfeCapacity() + 1);
-  EXPECT_EQ(number, 1);
+  const GroundTouch onDam{ .cfe = terrain.cfeCapacity() + 1 };
+  EXPECT_EQ(terrain.restitutionClassOf(onDam.cfe), 1);
   EXPECT_NE(
-    Surface(terrain, 1, 1).restitutionOf(number), Surface(terrain, 1, 2).restitutionOf(number));
+    Surface(terrain, 1, 1).restitutionAt(onDam), Surface(terrain, 1, 2).restitutionAt(onDam));
 }
 
 TEST_F(TestStructures, ABarrierCatchesTheRock)

@@ -103,6 +103,37 @@ TEST_F(TestTrajectoryCollector, EveryPassingIsARow)
   EXPECT_TRUE(crossings->GetFieldData()->GetAbstractArray("TerrainCRS"));
 }
 
+TEST_F(TestTrajectoryCollector, LinesAreDrawnOrAcrossThePaths)
+{
+  // Without any line: square to the mean way, (4 × 30 + 5 + 30) / 6 m along x, in its middle, and a
+  // little beyond y = 5100000 … 5100040.
+  this->Paths.AddLevel(2, 5, { 500000, 5100040, 50 }, 30, 5.0);
+  EXPECT_EQ(this->Table(1)->GetNumberOfRows(), 1);
+  const double* placed = this->Filter->GetPlacedLine();
+  EXPECT_NEAR(placed[0], 500000.0 + 155.0 / 12.0, 1e-6);
+  EXPECT_NEAR(placed[3], placed[0], 1e-6);
+  EXPECT_NEAR(placed[1], 5100000.0 - 2.0, 1e-6);
+  EXPECT_NEAR(placed[4], 5100040.0 + 2.0, 1e-6);
+  EXPECT_EQ(this->Crossings()->GetNumberOfPoints(), 5); // one path is too short
+  this->Filter->AddPoint(500010, 5099990, 99);
+  this->Filter->AddPoint(500010, 5100100, -7);
+  vtkPolyData* crossings = this->Crossings();
+  ASSERT_EQ(crossings->GetNumberOfPoints(), 5);
+  EXPECT_NEAR(value(crossings->GetPointData(), "Distance", 1), 20.0, 1e-9);
+  EXPECT_EQ(this->Table(1)->GetValueByName(0, "LineName").ToString(), "drawn line");
+  auto* walls = vtkPolyData::SafeDownCast(this->Filter->GetOutputDataObject(3));
+  ASSERT_TRUE(walls);
+  ASSERT_EQ(walls->GetNumberOfCells(), 1); // no slope to follow
+  EXPECT_NEAR(value(walls->GetCellData(), "Share"), 5.0 / 6.0, 1e-12);
+  double b[6];
+  walls->GetBounds(b);
+  EXPECT_EQ(b[5] - b[4], 4.0); // BarrierHeight
+  // Beside lines that are connected.
+  this->Filter->SetInputDataObject(1, this->Drawn);
+  EXPECT_EQ(this->Table(1)->GetNumberOfRows(), 2);
+  EXPECT_NEAR(this->Number("EnergyInKilojoules", 0, 2), 200.1, 1e-9);
+}
+
 TEST_F(TestTrajectoryCollector, SharesAndCurves)
 {
   this->Filter->SetInputDataObject(1, this->Drawn);
@@ -161,7 +192,13 @@ TEST_F(TestTrajectoryCollector, BadInput)
     EXPECT_EQ(this->Table(1)->GetNumberOfRows(), 0);
     this->Heard->Errors.clear();
   };
-  expect({ "no line", "FileName" });
+  this->Filter->AddPoint(500010, 5100000, 0);
+  expect({ "Points", "no two different places" });
+  this->Filter->ClearPoints();
+  this->Filter->AddPoint(700000, 5100000, 0);
+  this->Filter->AddPoint(700010, 5100000, 0);
+  expect({ "drawn line", "far from the trajectories", "700010" });
+  this->Filter->ClearPoints();
   this->Filter->SetFileName(this->Json("{}", 600003).c_str());
   expect({ "lines.geojson", "far from the trajectories", "600003" });
   this->Filter->SetFileName("missing.gpkg");

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// The fixture of the simulation's tests: the default slope and rock, 3 s of it.
+/// The fixture of the simulation's tests: the default slope and rock without chance, 3 s of it.
 
 #include "helpers.h"
 
@@ -56,6 +56,10 @@ protected:
     this->Simulation->SetInputConnection(0, this->Terrain->GetOutputPort());
     this->Simulation->SetInputConnection(1, this->Rocks->GetOutputPort());
     this->Simulation->SetEndTime(3.0);
+    this->Terrain->SetRoughnessMean(0.0);
+    this->Terrain->SetRoughnessDeviation(0.0);
+    this->Terrain->SetRestitutionDeviation(0.0);
+    this->Rocks->SetAttitudeLaw(vtkRockBlockSource::AS_GIVEN);
   }
 
   vtkPolyData* RocksAt(double time)

@@ -1,0 +1,22 @@
+#pragma once
+
+/// @file
+/// What of an input decides a run, as one number: an input that was made again, or that looks
+/// otherwise, is the same if its number is.
+
+#include <cstdint>
+#include <initializer_list>
+#include <string_view>
+
+class vtkPolyData;
+
+namespace rockfall::filters
+{
+
+/// Of a slope: its field data but for notes, names of classes, and how many of its nodes are shown.
+std::uint64_t terrainContent(vtkPolyData* terrain);
+
+/// Of rocks: faces and cell data, and the CRS. `names`: cell arrays that decide nothing.
+std::uint64_t rocksContent(vtkPolyData* rocks, std::initializer_list<std::string_view> names);
+
+} // namespace rockfall::filters

@@ -1,0 +1,98 @@
+#pragma once
+
+/// @file
+/// What comes by pipeline: made one polydata and looked at once, before any filter uses it.
+///
+/// A reader of the file formats of others checks little, and a filter may be fed by any code: cells
+/// that point at points which are not there, arrays shorter than what they belong to, NaN for the
+/// number of a block. Composite data (Group Datasets, multi-block files, partitioned data sets) are
+/// taken as if their parts had been appended, but rocks, which are one polydata or one part.
+
+#include "vtkSmartPointer.h"
+#include "vtkType.h"
+
+#include <string>
+#include <vector>
+
+class vtkDataObject;
+class vtkFieldData;
+class vtkImageData;
+class vtkInformation;
+class vtkInformationVector;
+class vtkPolyData;
+
+namespace rockfall::filters
+{
+
+/// What an input is to a filter, which decides what its arrays must hold.
+enum class InputKind
+{
+  Terrain,
+  Rocks,
+  Trajectories, ///< "The Input"
+  Lines,        ///< To be drawn across trajectories.
+  Crossings,    ///< Of a collector: "The Input's part 1".
+  Any,          ///< "The Input", of which arrays need hold nothing.
+};
+
+/// Lets a port take polydata, by themselves or in composite data, which come in one piece then
+/// instead of leaf by leaf.
+void acceptPolyData(vtkInformation* port);
+
+/// The latest change of a data object, and of the parts of composite data.
+vtkMTimeType timeOf(vtkDataObject* data);
+
+/// One input of a filter, taken again only if it has changed.
+class Input
+{
+public:
+  /// `number` is that of a repeated input, from 1; 0 if there is one only.
+  explicit Input(InputKind kind, int number = 0)
+    : kind_(kind)
+    , number_(number)
+  {
+  }
+
+  /// Takes what is connected; null if nothing is. Never throws: ranks have to agree first. Is there
+  /// a problem, what is returned can be asked for its cells and field data all the same: it is
+  /// empty.
+  vtkPolyData* take(vtkInformationVector* connections, int connection = 0);
+  vtkPolyData* take(vtkDataObject* data);
+
+  /// What is wrong with it; empty if nothing is. A message without an end.
+  const std::string& problem() const { return problem_; }
+  /// Throws DataError if there is a problem.
+  void require() const;
+
+private:
+  std::string name() const;
+
+  InputKind kind_;
+  int number_;
+  vtkDataObject* data_ = nullptr;     ///< That was taken ...
+  vtkMTimeType time_ = 0;             ///< ... as it was then.
+  vtkSmartPointer<vtkPolyData> made_; ///< Of parts, or in the place of what is damaged.
+  std::string problem_;
+};
+
+/// Throws DataError, beginning with `name` ("The Rocks input"), unless every cell is of points that
+/// are there and finite, every array has a tuple for each, and those of this kind hold what they
+/// must.
+void checkPolyData(vtkPolyData* data, InputKind kind, const std::string& name);
+
+/// Throws DataError unless each array has a tuple for each of `count` points or cells (`of`).
+void checkTuples(vtkFieldData* data, vtkIdType count, const std::string& name, const char* of);
+
+/// The parts of composite data that are not empty; of other data they themselves, of null none.
+std::vector<vtkDataObject*> leavesOf(vtkDataObject* data);
+
+/// The image that it is, or that its parts have one of; null if it is null. Throws DataError,
+/// beginning with `name`, if there are several or other parts.
+vtkImageData* oneImage(vtkDataObject* data, const std::string& name);
+
+/// The parts of composite data as one. Throws DataError, beginning with `name`, if they are not
+/// alike. `data` may be a polydata itself.
+vtkSmartPointer<vtkPolyData> onePolyData(
+  vtkDataObject* data, InputKind kind, const std::string& name);
+
+} // namespace rockfall::filters

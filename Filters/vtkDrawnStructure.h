@@ -1,0 +1,122 @@
+/**
+ * @class   vtkDrawnStructure
+ * @brief   puts a net, an embankment or a forest on a slope where it is drawn
+ *
+ * Input and output port 0 are a slope as of vtkDEMToCFESource; the output has one more structure,
+ * and can be the input of another filter of this kind. Output port 1 shows all its structures.
+ *
+ * All values are taken as they come and checked when the filter runs.
+ */
+#ifndef vtkDrawnStructure_h
+#define vtkDrawnStructure_h
+
+#include "RockfallFiltersModule.h"
+#include "vtkPolyDataAlgorithm.h"
+
+#include <array>  // for points
+#include <vector> // for points
+
+class ROCKFALLFILTERS_EXPORT vtkDrawnStructure : public vtkPolyDataAlgorithm
+{
+public:
+  static vtkDrawnStructure* New();
+  vtkTypeMacro(vtkDrawnStructure, vtkPolyDataAlgorithm);
+  void PrintSelf(ostream& os, vtkIndent indent) override;
+
+  enum KindOfStructure
+  {
+    NET = 0,
+    EMBANKMENT = 1,
+    FOREST = 2
+  };
+  ///@{
+  /**
+   * What stands there, one of KindOfStructure. Default NET.
+   */
+  vtkSetMacro(Kind, int);
+  vtkGetMacro(Kind, int);
+  ///@}
+
+  ///@{
+  /**
+   * Points of the line of a net or an embankment, or corners of a forest, in world coordinates;
+   * their z does not count. None (the default): a level line through the middle of the slope.
+   */
+  void AddPoint(double x, double y, double z);
+  void ClearPoints();
+  int GetNumberOfPoints() const { return int(this->Points.size()); }
+  ///@}
+
+  /**
+   * Ends of the line that the last run took because no point was given, on the ground.
+   */
+  vtkGetVector6Macro(PlacedLine, double);
+
+  ///@{
+  /**
+   * Height over ground of a net, of the crest of an embankment, or of trees, m, positive.
+   * Default 4.
+   */
+  vtkSetMacro(Height, double);
+  vtkGetMacro(Height, double);
+  ///@}
+
+  ///@{
+  /**
+   * Energy that a net takes, kJ, not negative. Default 1000.
+   */
+  vtkSetMacro(Capacity, double);
+  vtkGetMacro(Capacity, double);
+  ///@}
+
+  ///@{
+  /**
+   * Of an embankment: width of its crest, m, positive, and horizontal way per vertical of its
+   * sides, not negative. Default 2 and 1.5.
+   */
+  vtkSetMacro(CrestWidth, double);
+  vtkGetMacro(CrestWidth, double);
+  vtkSetMacro(SideSlope, double);
+  vtkGetMacro(SideSlope, double);
+  ///@}
+
+  ///@{
+  /**
+   * Of a forest: stems per hectare, positive, their diameter, cm, positive, and whether they break
+   * at the energy of their diameter. Default 300, 30 and on.
+   */
+  vtkSetMacro(StemsPerHectare, double);
+  vtkGetMacro(StemsPerHectare, double);
+  vtkSetMacro(Diameter, double);
+  vtkGetMacro(Diameter, double);
+  vtkSetMacro(TreesBreak, bool);
+  vtkGetMacro(TreesBreak, bool);
+  vtkBooleanMacro(TreesBreak, bool);
+  ///@}
+
+  vtkDrawnStructure(const vtkDrawnStructure&) = delete;
+  void operator=(const vtkDrawnStructure&) = delete;
+
+protected:
+  vtkDrawnStructure();
+  ~vtkDrawnStructure() override;
+
+  int FillInputPortInformation(int port, vtkInformation* info) override;
+  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+
+private:
+  void CheckProperties() const; ///< Throws ParameterError.
+
+  int Kind = NET;
+  std::vector<std::array<double, 3>> Points;
+  double PlacedLine[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
+  double Height = 4.0;
+  double Capacity = 1000.0;
+  double CrestWidth = 2.0;
+  double SideSlope = 1.5;
+  double StemsPerHectare = 300.0;
+  double Diameter = 30.0;
+  bool TreesBreak = true;
+};
+
+#endif

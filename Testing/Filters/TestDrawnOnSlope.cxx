@@ -1,0 +1,173 @@
+#include "simulationTest.h"
+
+#include "vtkDrawnStructure.h"
+#include "vtkPointData.h"
+
+#include "structureFieldData.h"
+#include "terrainFieldData.h"
+
+#include <cmath>
+
+namespace
+{
+
+/// The test slope: 57.7 m high and 100 m long, then flat, 100 m wide.
+class TestDrawnOnSlope : public FilterTest
+{
+protected:
+  void SetUp() override
+  {
+    this->FilterTest::SetUp();
+    this->Rocks->SetInputConnection(1, this->Slope->GetOutputPort());
+    this->Structure->SetInputConnection(this->Slope->GetOutputPort());
+  }
+  vtkPolyData* Blocks()
+  {
+    this->Rocks->Update();
+    return this->Rocks->GetOutput();
+  }
+  rockfall::Structures Standing()
+  {
+    this->Structure->Update();
+    return rockfall::filters::readStructures(this->Structure->GetOutput()->GetFieldData());
+  }
+
+  vtkNew<vtkDEMToCFESource> Slope;
+  vtkNew<vtkRockBlockSource> Rocks;
+  vtkNew<vtkDrawnStructure> Structure;
+};
+
+} // namespace
+
+TEST_F(TestDrawnOnSlope, PointsAreSources)
+{
+  this->Rocks->SetDraw(vtkRockBlockSource::POINTS);
+  this->Rocks->AddPoint(50, 20, -99); // on a slope z does not count
+  this->Rocks->AddPoint(50, 80, 99);
+  ASSERT_EQ(this->Blocks()->GetNumberOfCells(), 12);
+  double b[6];
+  this->Blocks()->GetBounds(b);
+  EXPECT_NEAR(b[2], 19.5, 1e-9);
+  EXPECT_NEAR(b[3], 80.5, 1e-9);
+  EXPECT_NEAR(b[4], 57.7 * (1.0 - 0.495), 1e-9); // a cube of 1 m stands on its upper edge
+  // The slope goes with them.
+  EXPECT_TRUE(rockfall::filters::hasTerrain(this->Blocks()->GetFieldData()));
+}
+
+TEST_F(TestDrawnOnSlope, LinesAndAreasHaveTheirAmount)
+{
+  this->Rocks->SetAmount(7);
+  this->Rocks->SetDraw(vtkRockBlockSource::LINE);
+  this->Rocks->AddPoint(40, 20, 0);
+  this->Rocks->AddPoint(40, 80, 0);
+  EXPECT_EQ(this->Blocks()->GetNumberOfCells(), 7 * 6);
+  double b[6];
+  this->Blocks()->GetBounds(b);
+  EXPECT_NEAR(b[0], 39.5, 1e-9);
+  EXPECT_NEAR(b[1], 40.5, 1e-9);
+  this->Rocks->SetDraw(vtkRockBlockSource::AREA);
+  this->Blocks();
+  this->ExpectOneError({ "Points has 2 points", "area needs 3" });
+  this->Rocks->AddPoint(60, 50, 0);
+  EXPECT_EQ(this->Blocks()->GetNumberOfCells(), 7 * 6);
+  this->Blocks()->GetBounds(b);
+  EXPECT_GT(b[1] - b[0], 2.0);
+  this->Rocks->AddPoint(60, 150, 0);
+  this->Blocks();
+  this->ExpectOneError({ "drawn point 60, 150", "outside the slope" });
+  this->Rocks->SetDraw(4);
+  this->Blocks();
+  this->ExpectOneError({ "Draw is 4" });
+}
+
+TEST_F(TestDrawnOnSlope, NothingDrawnIsTheHighestSteepPlace)
+{
+  this->Rocks->SetDraw(vtkRockBlockSource::LINE);
+  this->Rocks->SetAmount(3);
+  EXPECT_EQ(this->Blocks()->GetNumberOfCells(), 3 * 6);
+  const double* line = this->Rocks->GetPlacedLine();
+  EXPECT_EQ(line[0], line[3]);                        // level
+  EXPECT_LE(line[0], 10.0);                           // high up
+  EXPECT_NEAR(0.5 * (line[1] + line[4]), 50.0, 1e-9); // in the middle of an even slope
+  EXPECT_NEAR(line[2], 57.7 * (1.0 - line[0] / 100.0), 1e-9);
+}
+
+TEST_F(TestDrawnOnSlope, ABlockOffTheSlopeIsTold)
+{
+  this->Rocks->SetCenter(5, 500, 58);
+  this->Blocks();
+  this->ExpectOneError({ "Center", "5, 500", "outside the slope" });
+}
+
+TEST_F(TestDrawnOnSlope, ANetHoldsRocks)
+{
+  this->Structure->AddPoint(70, 1, 0);
+  this->Structure->AddPoint(70, 99, 0);
+  this->Structure->SetCapacity(1e6);
+  const rockfall::Structures standing = this->Standing();
+  ASSERT_EQ(standing.barriers.size(), 1U);
+  EXPECT_EQ(standing.barriers[0].height, 4.0);
+  EXPECT_EQ(standing.barriers[0].capacity, 1e9);
+  auto* shown = vtkPolyData::SafeDownCast(this->Structure->GetOutputDataObject(1));
+  EXPECT_GT(shown->GetNumberOfCells(), 0);
+  vtkNew<vtkRockfallSimulation> fall;
+  this->Rocks->SetInputConnection(1, this->Structure->GetOutputPort());
+  this->Rocks->SetDraw(vtkRockBlockSource::POINTS);
+  this->Rocks->AddPoint(60, 50, 0);
+  fall->SetInputConnection(1, this->Rocks->GetOutputPort()); // the slope comes with the rocks
+  fall->SetEndTime(20.0);
+  fall->Update();
+  auto* met = vtkPolyData::SafeDownCast(fall->GetOutputDataObject(4));
+  ASSERT_EQ(met->GetNumberOfPoints(), 1);
+  EXPECT_EQ(value(met->GetPointData(), "Outcome"), 0); // stopped
+}
+
+TEST_F(TestDrawnOnSlope, StructuresFollowEachOther)
+{
+  vtkNew<vtkDrawnStructure> dam, forest;
+  dam->SetInputConnection(this->Structure->GetOutputPort());
+  dam->SetKind(vtkDrawnStructure::EMBANKMENT);
+  dam->AddPoint(120, 10, 0);
+  dam->AddPoint(120, 90, 0);
+  forest->SetInputConnection(dam->GetOutputPort());
+  forest->SetKind(vtkDrawnStructure::FOREST);
+  forest->SetHeight(20.0);
+  forest->SetStemsPerHectare(500.0);
+  for (const auto& [x, y] :
+    { std::pair(10.0, 10.0), std::pair(90.0, 10.0), std::pair(90.0, 90.0), std::pair(10.0, 90.0) })
+  {
+    forest->AddPoint(x, y, 0);
+  }
+  forest->Update();
+  const rockfall::Structures all =
+    rockfall::filters::readStructures(forest->GetOutput()->GetFieldData());
+  EXPECT_EQ(all.barriers.size(), 1U);
+  ASSERT_EQ(all.embankments.size(), 1U);
+  EXPECT_EQ(all.embankments[0].crestWidth, 2.0);
+  EXPECT_NEAR(double(all.trees.size()), 500.0 * 0.64, 1.0);
+  EXPECT_NEAR(all.trees[0].capacity, rockfall::stemCapacity(0.3), 1e-6);
+  // The slope's own output is as it was.
+  EXPECT_FALSE(rockfall::filters::readStructures(this->Slope->GetOutput()->GetFieldData()).any());
+}
+
+TEST_F(TestDrawnOnSlope, BadValues)
+{
+  const auto refuse = [this](const std::vector<std::string>& words)
+  {
+    this->Structure->Update();
+    EXPECT_EQ(this->Structure->GetOutput()->GetNumberOfCells(), 0);
+    this->ExpectOneError(words);
+  };
+  this->Structure->SetHeight(0.0);
+  refuse({ "Height is 0 m" });
+  this->Structure->SetHeight(4.0);
+  this->Structure->SetCapacity(-1.0);
+  refuse({ "Capacity is -1 kJ" });
+  this->Structure->SetCapacity(0.0);
+  this->Structure->SetKind(3);
+  refuse({ "Kind is 3" });
+  this->Structure->SetKind(vtkDrawnStructure::NET);
+  this->Structure->AddPoint(1000, 50, 0);
+  this->Structure->AddPoint(1000, 60, 0);
+  refuse({ "Points", "1000, 50", "outside the slope" });
+}
