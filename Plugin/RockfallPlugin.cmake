@@ -2,30 +2,72 @@
 # with ROCKFALL_PLUGIN=OFF needs neither VTK nor ParaView.
 include(GNUInstallDirs)
 
+include("${CMAKE_CURRENT_LIST_DIR}/DebianPython.cmake")
+
 # Named components only: a bare find_package(ParaView) asks for Qt's development packages too.
 find_package(ParaView 5.11 REQUIRED COMPONENTS
   RemotingCore RemotingServerManager VTKExtensionsCore WrapClientServer ProcessXML)
+
+# What only the window needs takes Qt; a batch run does without.
+option(ROCKFALL_WINDOW "Build the Rockfall menu and looks of ParaView's window, if Qt is there" ON)
+set(ROCKFALL_QT Qt5)
+if(ParaView_VERSION VERSION_GREATER_EQUAL 5.13)
+  set(ROCKFALL_QT Qt6)
+endif()
+if(ROCKFALL_WINDOW)
+  find_package(${ROCKFALL_QT} QUIET COMPONENTS Widgets)
+endif()
+set(ROCKFALL_HAS_WINDOW OFF)
+if(ROCKFALL_WINDOW AND TARGET ${ROCKFALL_QT}::Widgets AND TARGET ParaView::pqApplicationComponents)
+  set(ROCKFALL_HAS_WINDOW ON)
+else()
+  message(STATUS "No ${ROCKFALL_QT} (Debian: qtbase5-dev or qt6-base-dev), so no Rockfall menu")
+endif()
 
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_BINDIR}")
 set(CMAKE_LIBRARY_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}")
 set(CMAKE_ARCHIVE_OUTPUT_DIRECTORY "${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}")
 
+set(plugin_files "${CMAKE_CURRENT_LIST_DIR}/paraview.plugin")
+if(ROCKFALL_HAS_WINDOW)
+  list(APPEND plugin_files "${CMAKE_CURRENT_LIST_DIR}/window/paraview.plugin")
+endif()
 paraview_plugin_scan(
-  PLUGIN_FILES "${CMAKE_CURRENT_LIST_DIR}/paraview.plugin"
+  PLUGIN_FILES ${plugin_files}
   PROVIDES_PLUGINS rockfall_plugins
   ENABLE_BY_DEFAULT ON
   HIDE_PLUGINS_FROM_CACHE ON)
 
-# Without XML documentation: the HTML help wants Qt's help generator, and every text of it is in the
-# property panel already.
+# The pages that ? opens want Qt's help generator and xmlpatterns.
+find_program(ROCKFALL_XMLPATTERNS xmlpatterns PATHS /usr/lib/qt5/bin)
+find_program(ROCKFALL_QHELPGENERATOR qhelpgenerator PATHS /usr/lib/qt5/bin /usr/lib/qt6/libexec)
+set(no_pages ON)
+if(ROCKFALL_HAS_WINDOW AND ROCKFALL_XMLPATTERNS AND ROCKFALL_QHELPGENERATOR)
+  set(no_pages OFF)
+endif()
 paraview_plugin_build(
   PLUGINS ${rockfall_plugins}
   AUTOLOAD ${rockfall_plugins}
   LIBRARY_SUBDIRECTORY "${PARAVIEW_PLUGIN_SUBDIR}"
   PLUGINS_FILE_NAME "rockfall.xml"
   INSTALL_HEADERS OFF
-  DISABLE_XML_DOCUMENTATION ON)
+  DISABLE_XML_DOCUMENTATION ${no_pages})
 
-# The folder to name in PV_PLUGIN_PATH.
+# The folders to name in PV_PLUGIN_PATH, of the plugin and of what only a window needs.
 set(ROCKFALL_PLUGIN_FOLDER
   "${CMAKE_LIBRARY_OUTPUT_DIRECTORY}/${PARAVIEW_PLUGIN_SUBDIR}/RockfallDDA")
+set(ROCKFALL_WINDOW_FOLDER "")
+if(ROCKFALL_HAS_WINDOW)
+  set(ROCKFALL_WINDOW_FOLDER
+    "${CMAKE_LIBRARY_OUTPUT_DIRECTORY}/${PARAVIEW_PLUGIN_SUBDIR}/RockfallWindow")
+  # In a folder of their own: ParaView takes every script beside a plugin for a plugin.
+  set(scripts "${CMAKE_CURRENT_LIST_DIR}/window/rockfall_study.py"
+    "${PROJECT_SOURCE_DIR}/Examples/sample_dem.py")
+  set(script_folder "${CMAKE_LIBRARY_OUTPUT_DIRECTORY}/${PARAVIEW_PLUGIN_SUBDIR}/RockfallScripts")
+  file(MAKE_DIRECTORY "${script_folder}")
+  foreach(script ${scripts})
+    configure_file("${script}" "${script_folder}" COPYONLY)
+  endforeach()
+  install(FILES ${scripts}
+    DESTINATION "${CMAKE_INSTALL_LIBDIR}/${PARAVIEW_PLUGIN_SUBDIR}/RockfallScripts")
+endif()

@@ -1,0 +1,30 @@
+# Debian 13's paraview-dev names the files of ParaView's Python modules without the ending that python3-paraview
+# gives them, and find_package stops at files that are not there. Nothing here uses these modules: where such a
+# file is missing, the targets of its list are defined beforehand, and ParaView then skips the list.
+file(GLOB lists
+  "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/paraview-5.1[3-9]/*Python*-targets.cmake"
+  "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/paraview-5.1[3-9]/vtk/*Python*-targets.cmake")
+foreach(list IN LISTS lists)
+  string(REPLACE "-targets.cmake" "-targets-*.cmake" configurations "${list}")
+  file(GLOB configurations "${configurations}")
+  set(missing OFF)
+  foreach(configuration IN LISTS configurations)
+    file(STRINGS "${configuration}" lines REGEX "_cmake_import_check_files_for_.*_IMPORT_PREFIX")
+    foreach(line IN LISTS lines)
+      string(REGEX MATCH "_IMPORT_PREFIX}(/[^\"]+)" found "${line}")
+      if(found AND NOT EXISTS "/usr${CMAKE_MATCH_1}")
+        set(missing ON)
+      endif()
+    endforeach()
+  endforeach()
+  if(missing)
+    file(STRINGS "${list}" line REGEX "_cmake_expected_target IN ITEMS")
+    string(REGEX REPLACE ".*IN ITEMS ([^)]*)\\).*" "\\1" targets "${line}")
+    string(REPLACE " " ";" targets "${targets}")
+    foreach(target IN LISTS targets)
+      if(NOT TARGET "${target}")
+        add_library("${target}" SHARED IMPORTED)
+      endif()
+    endforeach()
+  endif()
+endforeach()

@@ -1,0 +1,384 @@
+#include "pqRockfallWindow.h"
+
+#include "looks.h"
+#include "slopeView.h"
+
+#include "pqApplicationCore.h"
+#include "pqCoreUtilities.h"
+#include "pqDataRepresentation.h"
+#include "pqFileDialog.h"
+#include "pqPVApplicationCore.h"
+#include "pqPipelineSource.h"
+#include "pqPropertyWidget.h"
+#include "pqPythonManager.h"
+#include "pqServer.h"
+#include "pqServerManagerModel.h"
+#include "pqView.h"
+#include "vtkAlgorithm.h"
+#include "vtkDataArray.h"
+#include "vtkDataObject.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkFieldData.h"
+#include "vtkNew.h"
+#include "vtkPVXMLElement.h"
+#include "vtkSMParaViewPipelineControllerWithRendering.h"
+#include "vtkSMProperty.h"
+#include "vtkSMPropertyHelper.h"
+#include "vtkSMRenderViewProxy.h"
+#include "vtkSMSession.h"
+#include "vtkSMSourceProxy.h"
+#include "vtkStringArray.h"
+#include "vtkTable.h"
+
+#include <QCoreApplication>
+#include <QDesktopServices>
+#include <QDir>
+#include <QFileInfo>
+#include <QGridLayout>
+#include <QLabel>
+#include <QMainWindow>
+#include <QMenu>
+#include <QMenuBar>
+#include <QPointer>
+#include <QStatusBar>
+#include <QUrl>
+
+#include <dlfcn.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+namespace
+{
+
+constexpr int kLookAtRuns = 500;   // ms
+constexpr int kLookForWindow = 20; // ms
+constexpr int kReadNotes = 30000;  // ms
+
+QMainWindow* mainWindow()
+{
+  return qobject_cast<QMainWindow*>(pqCoreUtilities::mainWidget());
+}
+
+/// The folder of the scripts, beside that of this plugin: ParaView would take them for plugins
+/// there.
+QString scriptFolder()
+{
+  Dl_info info;
+  return dladdr(reinterpret_cast<void*>(&scriptFolder), &info) && info.dli_fname
+    ? QFileInfo(QString::fromLocal8Bit(info.dli_fname)).absolutePath() + "/../RockfallScripts"
+    : QString();
+}
+
+bool isNamed(vtkSMProxy* proxy, std::initializer_list<const char*> names)
+{
+  return proxy && proxy->GetXMLName() &&
+    std::any_of(names.begin(), names.end(),
+      [&](const char* name) { return proxy->GetXMLName() == std::string(name); });
+}
+
+/// Whether nothing else of ours is shown yet.
+bool isFirstSlope(vtkSMProxy* representation)
+{
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  for (pqDataRepresentation* other : model->findItems<pqDataRepresentation*>())
+  {
+    const rockfall::window::Shown shown = rockfall::window::shownBy(other->getProxy());
+    if (other->getProxy() != representation && isNamed(shown.source, { "DEMToCFEMesh" }) &&
+      shown.port == 0)
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Draws the line that a filter takes where nothing is drawn, so that the mouse finds one to move.
+void drawPlaced(vtkSMSourceProxy* proxy)
+{
+  vtkSMPropertyHelper points(proxy, "Points");
+  if (points.GetNumberOfElements() > 0)
+  {
+    return;
+  }
+  std::vector<double> placed = { 5.0, 45.0, 58.0, 5.0, 55.0, 58.0 }; // on the test slope
+  if (!isNamed(proxy, { "RockBlocks" }))
+  {
+    proxy->UpdateVTKObjects();
+    proxy->UpdatePipeline();
+    proxy->UpdatePropertyInformation();
+    placed = vtkSMPropertyHelper(proxy, "PlacedLine").GetDoubleArray();
+  }
+  if (placed.size() == 6 &&
+    std::any_of(placed.begin(), placed.end(), [](double x) { return x != 0.0; }))
+  {
+    points.Set(placed.data(), unsigned(placed.size()));
+    proxy->UpdateVTKObjects();
+  }
+}
+
+/// Units behind the captions of the panel, from the properties' hints: a caption in the XML is the
+/// property's name in Python, where a unit would have to be part of it.
+void showUnits(QMainWindow* window)
+{
+  for (pqPropertyWidget* widget : window->findChildren<pqPropertyWidget*>())
+  {
+    vtkPVXMLElement* hints = widget->property() ? widget->property()->GetHints() : nullptr;
+    vtkPVXMLElement* unit = hints ? hints->FindNestedElementByName("Unit") : nullptr;
+    QWidget* parent = widget->parentWidget();
+    auto* grid = parent ? qobject_cast<QGridLayout*>(parent->layout()) : nullptr;
+    const int index = grid ? grid->indexOf(widget) : -1;
+    if (!unit || index < 0)
+    {
+      continue;
+    }
+    int row = 0, column = 0, rows = 0, columns = 0;
+    grid->getItemPosition(index, &row, &column, &rows, &columns);
+    QLayoutItem* item = grid->itemAtPosition(row, 0);
+    auto* label = item ? qobject_cast<QLabel*>(item->widget()) : nullptr;
+    const QString text =
+      QString::fromUtf8(" (%1)").arg(QString::fromUtf8(unit->GetAttribute("text")));
+    if (label && !label->text().endsWith(text))
+    {
+      label->setText(label->text() + text);
+    }
+  }
+}
+
+/// What a slope's source has to say: reprojected, resampled, nodata.
+QString notesOf(vtkSMSourceProxy* slope)
+{
+  auto* algorithm = vtkAlgorithm::SafeDownCast(slope->GetClientSideObject());
+  vtkDataObject* data = algorithm ? algorithm->GetOutputDataObject(0) : nullptr;
+  auto* notes =
+    vtkStringArray::SafeDownCast(data ? data->GetFieldData()->GetAbstractArray("Notes") : nullptr);
+  QStringList all;
+  for (vtkIdType k = 0; notes && k < notes->GetNumberOfValues(); ++k)
+  {
+    all << QString::fromUtf8(notes->GetValue(k).c_str());
+  }
+  return all.join("; ");
+}
+
+/// When the last rock of a run came to its end, s; 0 if it is not known here.
+double lastEnd(vtkSMSourceProxy* run)
+{
+  auto* algorithm = vtkAlgorithm::SafeDownCast(run->GetClientSideObject());
+  auto* table = algorithm ? vtkTable::SafeDownCast(algorithm->GetOutputDataObject(3)) : nullptr;
+  vtkDataArray* ends = table ? table->GetRowData()->GetArray("EndTime") : nullptr;
+  return ends && ends->GetNumberOfTuples() > 0 ? ends->GetRange(0)[1] : 0.0;
+}
+
+} // namespace
+
+//-----------------------------------------------------------------------------
+pqRockfallWindow::pqRockfallWindow(QObject* parent)
+  : Superclass(parent)
+{
+}
+
+//-----------------------------------------------------------------------------
+void pqRockfallWindow::begin()
+{
+  QMainWindow* window = pqApplicationCore::instance() ? mainWindow() : nullptr;
+  if (!window || window->menuBar()->actions().isEmpty())
+  {
+    QTimer::singleShot(kLookForWindow, this, [this] { this->begin(); });
+    return;
+  }
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  this->connect(model, &pqServerManagerModel::sourceAdded, this, &pqRockfallWindow::onSource);
+  this->connect(
+    model, &pqServerManagerModel::representationAdded, this, &pqRockfallWindow::onRepresentation);
+  this->connect(&this->Clock, &QTimer::timeout, this, &pqRockfallWindow::tellRuns);
+  this->connect(&this->Clock, &QTimer::timeout, [window] { showUnits(window); });
+  this->Clock.start(kLookAtRuns);
+  this->makeMenu(window);
+}
+
+//-----------------------------------------------------------------------------
+void pqRockfallWindow::makeMenu(QMainWindow* window)
+{
+  auto* menu = new QMenu(tr("&Rockfall"), window->menuBar());
+  menu->setObjectName("menuRockfall");
+  QAction* before = nullptr;
+  for (QAction* action : window->menuBar()->actions())
+  {
+    if (action->menu() && action->menu()->objectName() == "menuTools")
+    {
+      before = action;
+    }
+  }
+  window->menuBar()->insertMenu(before, menu);
+  menu
+    ->addAction(tr("New Study of an Elevation File..."), this,
+      [this]
+      {
+        pqFileDialog dialog(nullptr, mainWindow(), tr("Elevations of the slope"), QString(),
+          tr("Elevation files (*.tif *.tiff *.asc *.dem *.hgt *.img *.nc *.grd *.vrt *.bil *.flt "
+             "*.xyz "
+             "*.gpkg *.shp *.geojson *.dxf);;All files (*)"));
+        dialog.setObjectName("RockfallStudyDialog");
+        dialog.setFileMode(pqFileDialog::ExistingFile);
+        if (dialog.exec() == QDialog::Accepted && !dialog.getSelectedFiles().isEmpty())
+        {
+          QString file = dialog.getSelectedFiles().first();
+          this->runPython("new_study('" + file.replace("\\", "\\\\").replace("'", "\\'") + "')");
+        }
+      })
+    ->setObjectName("actionNewStudy");
+  menu->addAction(tr("Example: Test Slope"), this, [this] { this->runPython("new_study('')"); })
+    ->setObjectName("actionTestSlope");
+  menu->addAction(tr("Example: Jacksboro Fault"), this, [this] { this->runPython("jacksboro()"); })
+    ->setObjectName("actionJacksboro");
+  menu->addSeparator();
+  menu->addAction(tr("Clock"), this, [this] { this->runPython("clock()"); })
+    ->setObjectName("actionClock");
+  // Pictures for the documentation, taken by tests.
+  const QString folder = qEnvironmentVariable("ROCKFALL_PICTURES");
+  if (!folder.isEmpty())
+  {
+    window->resize(1400, 900);
+    menu
+      ->addAction("Picture", this,
+        [this, window, folder]
+        { window->grab().save(folder + "/window-" + QString::number(++this->Pictures) + ".png"); })
+      ->setObjectName("actionPicture");
+  }
+}
+
+//-----------------------------------------------------------------------------
+void pqRockfallWindow::runPython(const QString& statement)
+{
+  auto* python = pqPVApplicationCore::instance()->pythonManager();
+  if (!python)
+  {
+    qCritical("ParaView was built without Python: Rockfall studies cannot be made from the menu");
+    return;
+  }
+  const QString folder = scriptFolder();
+  const QString code = "import sys\nif '" + folder + "' not in sys.path: sys.path.insert(0, '" +
+    folder + "')\nimport rockfall_study\nrockfall_study." + statement + "\n";
+  python->executeCode(code.toUtf8());
+}
+
+//-----------------------------------------------------------------------------
+void pqRockfallWindow::onSource(pqPipelineSource* source)
+{
+  if (isNamed(source->getProxy(),
+        { "RockRelease", "RockBlocks", "TrajectoryCollector", "DrawnStructure" }))
+  {
+    drawPlaced(source->getSourceProxy());
+  }
+  if (isNamed(source->getProxy(), { "RockfallSimulation", "RockfallHazardMap", "DEMToCFEMesh" }))
+  {
+    this->connect(
+      source, SIGNAL(dataUpdated(pqPipelineSource*)), this, SLOT(onData(pqPipelineSource*)));
+  }
+}
+
+//-----------------------------------------------------------------------------
+void pqRockfallWindow::onRepresentation(pqRepresentation* added)
+{
+  vtkSMProxy* representation = added->getProxy();
+  const rockfall::window::Shown shown = rockfall::window::shownBy(representation);
+  rockfall::window::style(representation);
+  const bool first = shown.source && shown.port == 0 && isNamed(shown.source, { "DEMToCFEMesh" }) &&
+    isFirstSlope(representation);
+  // Legends and cameras are set by ParaView after it has made a representation.
+  QPointer<pqRepresentation> later = added;
+  QTimer::singleShot(0, this,
+    [later, shown, first]
+    {
+      pqView* view = later ? later->getView() : nullptr;
+      if (!view)
+      {
+        return;
+      }
+      rockfall::window::styleIn(later->getProxy(), view->getViewProxy());
+      if (first)
+      {
+        rockfall::window::lookFromValley(shown.source, view->getViewProxy());
+      }
+      view->render();
+    });
+}
+
+//-----------------------------------------------------------------------------
+void pqRockfallWindow::onData(pqPipelineSource* source)
+{
+  if (isNamed(source->getProxy(), { "RockfallSimulation", "RockfallHazardMap" }))
+  {
+    // Palettes go with what is made: the first paths of a run are not the range of all.
+    QPointer<pqPipelineSource> later = source;
+    QTimer::singleShot(0, this,
+      [later]
+      {
+        for (int port = 0; later && port < later->getNumberOfOutputPorts(); ++port)
+        {
+          for (pqDataRepresentation* shown : later->getRepresentations(port, nullptr))
+          {
+            rockfall::window::rescale(shown->getProxy());
+          }
+        }
+      });
+  }
+  vtkSMSourceProxy* proxy = source->getSourceProxy();
+  if (isNamed(proxy, { "DEMToCFEMesh" }))
+  {
+    const QString notes = notesOf(proxy);
+    if (QMainWindow* window = mainWindow(); window && !notes.isEmpty())
+    {
+      window->statusBar()->showMessage(source->getSMName() + ": " + notes, kReadNotes);
+    }
+  }
+  else if (isNamed(proxy, { "RockfallSimulation" }))
+  {
+    // An animation ends with the last rock, not with the time that it would have had.
+    const double end = lastEnd(proxy);
+    vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
+    vtkSMProxy* scene = controller->GetAnimationScene(source->getServer()->session());
+    if (scene && end > 0.0 && vtkSMPropertyHelper(scene, "EndTime").GetAsDouble() > end)
+    {
+      vtkSMPropertyHelper(scene, "EndTime").Set(end);
+      vtkSMPropertyHelper(scene, "LockEndTime").Set(1);
+      scene->UpdateVTKObjects();
+    }
+  }
+}
+
+//-----------------------------------------------------------------------------
+void pqRockfallWindow::tellRuns()
+{
+  QMainWindow* window = mainWindow();
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  for (pqPipelineSource* source : model->findItems<pqPipelineSource*>())
+  {
+    vtkSMProxy* proxy = source->getProxy();
+    if (!isNamed(proxy, { "RockfallSimulation" }) ||
+      source->modifiedState() == pqProxy::UNINITIALIZED)
+    {
+      continue;
+    }
+    proxy->UpdatePropertyInformation(proxy->GetProperty("RunStatus"));
+    const QString status = QString::fromUtf8(vtkSMPropertyHelper(proxy, "RunStatus").GetAsString());
+    const QString name = source->getSMName();
+    const bool running = status.startsWith("running") || status.startsWith("stopping");
+    if (window && (running || this->Running.contains(name)))
+    {
+      window->statusBar()->showMessage(name + ": " + status, running ? 0 : 10000);
+    }
+    if (running)
+    {
+      this->Running.insert(name);
+    }
+    else if (this->Running.remove(name))
+    {
+      // The last look, also where ParaView does not ask, as while tests are played.
+      proxy->InvokeCommand("Watch");
+      proxy->MarkDirty(nullptr);
+      pqApplicationCore::instance()->render();
+    }
+  }
+}

@@ -1,0 +1,139 @@
+"""Studies in a few clicks: the whole pipeline of a slope, with views set up.
+
+ParaView's menu Rockfall runs these functions; so can a script or ParaView's Python shell.
+"""
+
+import os
+import tempfile
+import time
+
+from paraview import simple
+
+ROCKS = 20  # of the release line
+ITERATIONS = 10
+
+
+def new_study(file_name=""):
+    """A slope, a release line across its highest steep place, the fall of its rocks, a map and what passes
+    a line; without a file on the test slope. Returns the five by name."""
+    slope = simple.DEMtoCFEMesh(registrationName="Slope", FileName=file_name)
+    slope.UpdatePipeline()
+    if slope.GetDataInformation().GetNumberOfCells() == 0:
+        return {}  # the message says why
+    view = _render_view()
+    simple.Show(slope, view)
+    simple.ResetCamera(view)
+
+    release = simple.RockRelease(registrationName="Release", Terrain=slope)
+    release.Amount = ROCKS
+    _draw_placed(release)
+    simple.Show(release, view)
+
+    fall = simple.RockfallSimulation(registrationName="Fall", Rocks=release)
+    fall.Iterations = ITERATIONS
+    fall.SMProxy.InvokeCommand("Watch")  # a window is not kept waiting
+    paths = simple.OutputPort(fall, 1)
+    simple.Show(paths, view)
+    simple.Show(simple.OutputPort(fall, 0), view)
+    _await_paths(fall)
+
+    line = simple.TrajectoryCollector(registrationName="Line", Input=paths)
+    _draw_placed(line)
+    hazard = simple.RockfallHazardMap(registrationName="Map", Input=paths)
+    simple.Show(simple.OutputPort(line, 3), view)
+    simple.Show(simple.OutputPort(hazard, 1), view)
+    simple.Hide(paths, view)
+    _show_chart(line, view)
+    clock(view)
+    frame(fall, view)
+    simple.SetActiveView(view)
+    simple.SetActiveSource(release)
+    simple.RenderAllViews()
+    return {"slope": slope, "release": release, "fall": fall, "map": hazard, "line": line}
+
+
+def frame(fall=None, view=None):
+    """Looks at the paths from where the view looks at the slope: on slopes of many kilometres they are small."""
+    view = view or _render_view()
+    fall = fall or simple.FindSource("Fall")
+    if not fall:
+        return
+    low_x, high_x, low_y, high_y, low_z, high_z = fall[1].GetDataInformation().GetBounds()
+    if low_x > high_x:
+        return
+    centre = [0.5 * (low_x + high_x), 0.5 * (low_y + high_y), 0.5 * (low_z + high_z)]
+    away = [p - f for p, f in zip(view.CameraPosition, view.CameraFocalPoint)]
+    if abs(away[0]) + abs(away[1]) < 1e-6 * abs(away[2]):
+        away = [0.0, -0.82, 0.57]  # straight from above, as before the first look: from the south
+    length = sum(d * d for d in away) ** 0.5
+    reach = max(2.5 * ((high_x - low_x) ** 2 + (high_y - low_y) ** 2 + (high_z - low_z) ** 2) ** 0.5, 50.0)
+    view.CameraPosition = [c + reach * d / length for c, d in zip(centre, away)]
+    view.CameraFocalPoint = centre
+    view.CameraViewUp = [0.0, 0.0, 1.0]
+    view.CenterOfRotation = centre
+    simple.Render(view)
+
+
+def clock(view=None):
+    """The time of the animation in a corner of the view."""
+    view = view or _render_view()
+    annotation = simple.AnnotateTime(registrationName="Clock", Format="Time: {time:.1f} s")
+    display = simple.Show(annotation, view)
+    display.WindowLocation = "Upper Left Corner"
+    display.FontSize = 12
+    return annotation
+
+
+def jacksboro():
+    """A study of the Jacksboro fault, Tennessee, whose elevations come with matplotlib."""
+    import sample_dem
+    path = os.path.join(tempfile.mkdtemp(prefix="rockfall-"), "jacksboro.tif")
+    sample_dem.write_geotiff(sample_dem.find_sample("jacksboro_fault_dem.npz"), path)
+    return new_study(path)
+
+
+def _render_view():
+    view = simple.GetActiveView()
+    return view if view and view.GetXMLName() == "RenderView" else simple.GetActiveViewOrCreate("RenderView")
+
+
+def _await_paths(fall, patience=15.0):
+    """Until all are made, or some after a while: a line is put across them, and the view looks at them."""
+    start = time.time()
+    over = False
+    while True:
+        fall.UpdatePipeline()
+        some = fall[1].GetDataInformation().GetNumberOfCells() > 0
+        if over or (some and time.time() - start > patience) or time.time() - start > 10 * patience:
+            return
+        time.sleep(0.1)
+        fall.UpdatePropertyInformation()
+        over = not fall.GetProperty("RunStatus").GetElement(0).startswith("running")
+        fall.SMProxy.InvokeCommand("Watch")
+
+
+def _draw_placed(proxy):
+    """Makes the line that the filter takes before anything is drawn the drawn one."""
+    proxy.UpdatePipeline()
+    proxy.UpdatePropertyInformation()
+    placed = list(proxy.GetProperty("PlacedLine"))
+    if len(proxy.Points) == 0 and any(placed):
+        proxy.Points = placed
+        proxy.UpdatePipeline()
+
+
+def _show_chart(line, view):
+    # Points: a line of one rock would be an error to VTK.
+    chart = simple.CreateView("XYPointChartView")
+    layout = simple.GetLayout(view)
+    if layout:
+        simple.AssignViewToLayout(view=chart, layout=layout, hint=0)
+    curve = simple.Show(simple.OutputPort(line, 2), chart)
+    curve.UseIndexForXAxis = 0
+    curve.XArrayName = "EnergyInKilojoules"
+    curve.SeriesVisibility = ["ShareOfPassing"]
+    curve.SeriesLabel = ["ShareOfPassing", "Share of the rocks that pass"]
+    chart.ChartTitle = "Energy at the line"
+    chart.BottomAxisTitle = "Kinetic energy (kJ)"
+    chart.LeftAxisTitle = "Share with at least this energy"
+    return chart
