@@ -24,6 +24,7 @@ from paraview.simple import *
 import rockfall_pictures as pictures
 import rockfall_release as release
 import rockfall_tables as tables
+import sample_dem
 from rockfall_ground import Ground, hillshade
 
 CELL = 10.0  # m
@@ -112,13 +113,14 @@ def main():
     in_folder = lambda name: os.path.join(chosen.output, name)
 
     dem = in_folder("jacksboro.tif")
-    rows, columns, elevation = release.write_geotiff(
-        release.find_sample("jacksboro_fault_dem.npz"), dem)
+    rows, columns, elevation = sample_dem.write_geotiff(
+        sample_dem.find_sample("jacksboro_fault_dem.npz"), dem)
     say(f"DEM: {rows} x {columns} cells, {elevation.min()} to {elevation.max()} m, written as {dem}")
 
     # The triangles are only looked at from afar here; the rocks fall on every CFE.
     slope = DEMtoCFEMesh(FileName=dem, CellSize=CELL, RestitutionCoefficient=RESTITUTION,
-                         FrictionAngle=FRICTION, MaximumDisplayCells=400000)
+                         RestitutionDeviation=0, FrictionAngle=FRICTION, RoughnessMean=0,
+                         RoughnessDeviation=0, MaximumDisplayCells=400000)
     slope.UpdatePipeline()
     ground = Ground(result(slope))
     say(f"Slope: {ground.rows} x {ground.columns} nodes of {ground.cell:g} m, Rv {RESTITUTION}, "

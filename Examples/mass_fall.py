@@ -67,7 +67,7 @@ def make_slope(folder, name, with_embankment):
     slope = DEMtoCFEMesh(
         FileName=grid, RestitutionCoefficient=scenario.RESTITUTION,
         RestitutionDeviation=scenario.RESTITUTION_DEVIATION, FrictionAngle=scenario.FRICTION,
-        FrictionAngleDeviation=scenario.FRICTION_DEVIATION)
+        FrictionAngleDeviation=scenario.FRICTION_DEVIATION, RoughnessMean=0, RoughnessDeviation=0)
     UpdatePipeline(proxy=slope)
     return slope
 
@@ -77,7 +77,7 @@ def make_rocks(folder, slope):
     aim = scenario.START
     for _ in range(6):
         table = scenario.write_rocks(os.path.join(folder, "rocks.csv"), aim)
-        rocks = RockBlocks(Terrain=slope, FileName=table, TargetCRS="")
+        rocks = RockBlocks(Terrain=slope, FileName=table, TargetCRS="", AttitudeLaw="As given")
         height = RockfallSimulation(Terrain=slope, Rocks=rocks, EndTime=1e-3, TrajectoryOutput="Nothing")
         UpdatePipeline(proxy=height)
         mean = columns_of(result(height, 3))["StartZ"].mean()

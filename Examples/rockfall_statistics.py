@@ -179,13 +179,13 @@ def main():
     slope = DEMtoCFEMesh(FileName=write_slope(in_folder("slope.asc")), RestitutionCoefficient=0.75,
                          RestitutionDeviation=0.05, FrictionAngle=25, FrictionAngleDeviation=3,
                          RoughnessDeviation=0.1)
-    rocks = RockBlocks(FileName=write_sources(in_folder("sources.csv")))
+    rocks = RockBlocks(FileName=write_sources(in_folder("sources.csv")), AttitudeLaw="As given")
     fall = RockfallSimulation(Terrain=slope, Rocks=rocks, EndTime=60, Iterations=chosen.iterations,
                               OutputInterval=0.1)
     paths = tables.Trajectories(result(fall, 1))
     print(f"{len(paths.block)} trajectories")
 
-    hazard = RockfallHazardMap(Input=OutputPort(fall, 1), Terrain=slope, CellSize=4)
+    hazard = RockfallHazardMap(Input=OutputPort(fall, 1), CellSize=4, CropToTrajectories=0)
     reach_map(result(hazard), in_folder("reach.png"))
     road = PolyLineSource(Points=[ROAD, SOUTH, 0, ROAD, SOUTH + CELL * (ROWS - 1), 0])
     collector = TrajectoryCollector(Input=OutputPort(fall, 1), Lines=road, Terrain=slope,

@@ -102,7 +102,7 @@ def main():
         slope = DEMtoCFEMesh(FileName=dem, RestitutionCoefficient=0.7, RestitutionDeviation=0.05,
                              FrictionAngle=25, FrictionAngleDeviation=3, RoughnessDeviation=0.15,
                              TreesBreak=1, **{kind: layers[kind] for kind in kinds})
-        rocks = RockBlocks(FileName=sources, Terrain=slope)
+        rocks = RockBlocks(FileName=sources, Terrain=slope, AttitudeLaw="As given")
         fall = RockfallSimulation(Terrain=slope, Rocks=rocks, EndTime=END, Iterations=chosen.iterations,
                                   Seed=SEED)
         counts[name] = on_road(fall, slope, road, chosen.iterations)

@@ -40,20 +40,25 @@ and when all chunks are there
     study.json                  the state hash of every chunk and of the whole
 """
 import argparse
-import csv
 import hashlib
-import io
 import json
 import os
-import zipfile
+import sys
+
+here = os.path.dirname(os.path.abspath(__file__))
+sys.path[:0] = [os.path.join(here, "study_parts")]
 
 import numpy as np
 from paraview import servermanager
 from paraview.simple import *
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
-from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLPolyDataWriter
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
+
+import schema
+import wholefile
+from wholefile import write_csv, write_npz, write_polydata, write_text
 
 FILES = ("FileName", "File", "Layer", "Table")  # a property whose name ends so is a file
 # What belongs to a file: with its ending instead of the file's own, or behind it.
@@ -63,7 +68,8 @@ controller = vtkMultiProcessController.GetGlobalController()
 # Without --sym the first rank alone runs the script.
 symmetric = controller is not None and controller.GetNumberOfProcesses() > 1 and \
     servermanager.vtkProcessModule.GetProcessModule().GetSymmetricMPIMode()
-PARTS = ("terrain", "rocks", "simulation", "map", "lines")  # of a study: properties of proxies
+PARTS = tuple(schema.PROXIES)  # of a study: properties of proxies
+lock = None  # of the folder, on the first rank
 first_rank = not symmetric or controller.GetLocalProcessId() == 0
 
 
@@ -90,25 +96,8 @@ def refuse(text):
 
 def read_study(path):
     """The study with full paths."""
-    try:
-        with open(path, encoding="utf-8") as file:
-            study = json.load(file)
-    except OSError as error:
-        refuse(f"{path}: {error.strerror}")
-    except ValueError as error:
-        refuse(f"{path} is not JSON: {error}")
-    if not isinstance(study, dict):
-        refuse(f"{path} must be an object with terrain, rocks, simulation, iterations and chunk")
-    known = {**dict.fromkeys(PARTS, dict), "trajectories": bool, "iterations": int, "chunk": int}
-    for key, value in study.items():
-        if key not in known:
-            refuse(f"{path}: there is no \"{key}\" in a study, it knows {', '.join(known)}")
-        if type(value) is not known[key]:
-            kind = {dict: "an object", bool: "true or false", int: "a whole number"}[known[key]]
-            refuse(f"{path}: \"{key}\" is {json.dumps(value)}, it must be {kind}")
-    for key in ("iterations", "chunk"):
-        if study.get(key, 0) < 1:
-            refuse(f"{path}: \"{key}\" is {study.get(key, 'missing')}, it must be at least 1")
+    study = schema.load(path)
+    schema.check(path, study)
     for key in ("Iterations", "FirstIteration", "ShownIteration", "NumberOfThreads"):
         if key in study.get("simulation", {}):
             refuse(f"{path}: \"{key}\" of simulation is this script's; use \"iterations\", \"chunk\" "
@@ -167,36 +156,18 @@ def differences(old, new, where=""):
     return names
 
 
-def whole(path, write):
-    """Calls write(other name), then renames: there is never half a file of this name."""
-    head, tail = os.path.split(os.path.abspath(path))
-    other = os.path.join(head, ".unfinished-" + tail)
-    write(other)
-    with open(other, "rb") as file:
-        os.fsync(file.fileno())
-    os.replace(other, path)
-    folder = os.open(head, os.O_RDONLY)  # the new name, too, has to be on the disk
-    try:
-        os.fsync(folder)
-    finally:
-        os.close(folder)
-
-
-def write_text(path, text):
-    def write(other):
-        with open(other, "w", encoding="utf-8") as file:
-            file.write(text)
-    whole(path, write)
-
-
 def from_first_rank(work):
     """What work() gives there, on every rank: no other one looks at files. A refusal ends all."""
     answer = ""
     if first_rank:
         try:
             answer = json.dumps([None, work()])
-        except (Refused, OSError) as refusal:
+        except (Refused, schema.Bad) as refusal:
             answer = json.dumps([str(refusal), None])
+        except OSError as error:
+            answer = json.dumps([f"{error.filename}: {error.strerror or type(error).__name__}", None])
+        except MemoryError:
+            answer = json.dumps(["There is not enough memory for this chunk: take a smaller one", None])
     if symmetric:
         array = vtkUnsignedCharArray()
         for byte in answer.encode():
@@ -204,7 +175,7 @@ def from_first_rank(work):
         controller.Broadcast(array, 0)
         answer = bytes(array.GetValue(k) for k in range(array.GetNumberOfValues())).decode()
     refusal, result = json.loads(answer)
-    if refusal:
+    if refusal is not None:
         raise SystemExit(refusal if first_rank else 1)
     return result
 
@@ -214,8 +185,9 @@ def output(proxy, port=0):
     data = proxy.GetClientSideObject().GetOutputDataObject(port)
 
     def check():
-        if data.GetFieldData().GetAbstractArray("Error"):
-            refuse("The study cannot be done; the message above says why.")
+        error = data.GetFieldData().GetAbstractArray("Error")
+        if error:
+            refuse(f"The study cannot be done: {error.GetValue(0)}")
 
     from_first_rank(check)
     return data
@@ -237,59 +209,23 @@ def columns_of(fields):
     return columns
 
 
-def write_csv(path, tables):
-    """Tables of the same columns as one."""
-    names = list(tables[0])
-
-    def write(other):
-        with open(other, "w", encoding="utf-8", newline="") as file:
-            writer = csv.writer(file, lineterminator="\n")
-            writer.writerow(names)
-            for table in tables:
-                writer.writerows(zip(*(table[name].tolist() for name in names)))
-
-    whole(path, write)
-
-
-def write_npz(path, columns):
-    """np.savez puts the time of day into its file; this does not."""
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, values in columns.items():
-            data = io.BytesIO()
-            np.save(data, values)
-            archive.writestr(zipfile.ZipInfo(name + ".npy", (1980, 1, 1, 0, 0, 0)), data.getvalue(),
-                             compress_type=zipfile.ZIP_DEFLATED)
-
-
-def write_polydata(path, data):
-    def write(other):
-        writer = vtkXMLPolyDataWriter()
-        writer.SetInputData(data)
-        writer.SetFileName(other)
-        writer.SetDataModeToBinary()
-        if writer.Write() != 1:
-            raise OSError(f"{other} could not be written")
-
-    whole(path, write)
-
-
 def write_by(writer, path):
     """Has a writer's proxy write its file, on the first rank; the other ranks take part."""
-    head, tail = os.path.split(os.path.abspath(path))
-    unfinished = os.path.join(head, ".unfinished-" + tail)
+    unfinished = wholefile.unfinished(path)
 
     def remove():
         if os.path.exists(unfinished):
             os.remove(unfinished)
 
-    def check(other):
-        if not os.path.exists(other):
+    def keep():
+        if not os.path.exists(unfinished):
             refuse(f"{path} could not be made; the message above says why.")
+        wholefile.keep(path)
 
     from_first_rank(remove)
     writer.FileName = unfinished
     writer.UpdatePipeline()
-    from_first_rank(lambda: whole(path, check))
+    from_first_rank(keep)
 
 
 class Pipeline:
@@ -311,6 +247,25 @@ class Pipeline:
             self.crossings = make(TrajectoryCollector, "lines", {
                 **study["lines"], "Input": lines, "Terrain": self.slope})
 
+    def check(self, folder):
+        """Reads every input and makes everything once, of one iteration's first moment: what is wrong
+        with a file is told before the first chunk, not after it."""
+        simulation = self.simulation
+        kept = simulation.EndTime, simulation.PrintProgress
+        simulation.FirstIteration, simulation.Iterations = 0, 1
+        simulation.EndTime = min(simulation.EndTime, simulation.TimeStep)
+        simulation.PrintProgress = 0
+        UpdatePipeline(0.0, simulation)
+        output(simulation, 3)
+        if self.passages:
+            path = os.path.join(folder, ".unfinished-check.passages")
+            write_by(self.passages, path)
+            from_first_rank(lambda: os.remove(path))
+        if self.crossings:
+            UpdatePipeline(proxy=self.crossings)
+            output(self.crossings)
+        simulation.EndTime, simulation.PrintProgress = kept
+
     def write_chunk(self, stem, first, iterations):
         """A chunk is there when its table is, so that comes last."""
         self.simulation.FirstIteration = first
@@ -330,7 +285,7 @@ class Pipeline:
         def write_table():
             columns = columns_of(table.GetRowData())
             state = table.GetFieldData().GetAbstractArray("StateHash").GetValue(0)
-            whole(stem + ".npz", lambda other: write_npz(other, {**columns, "StateHash": state}))
+            write_npz(stem + ".npz", {**columns, "StateHash": state})
 
         from_first_rank(write_table)
 
@@ -383,37 +338,51 @@ def combine(study, folder, stems):
             {"chunks": hashes, "whole": hashlib.sha256("".join(hashes).encode()).hexdigest()},
             indent=1) + "\n")
         for name in os.listdir(folder):  # what a killed run left
-            if name.startswith(".unfinished-"):
+            if name.startswith(wholefile.UNFINISHED) and name != wholefile.LOCK:
                 os.remove(os.path.join(folder, name))
 
     from_first_rank(finish)
 
 
+def manifest_of(chosen):
+    return os.path.join(chosen.folder, "manifest.json")
+
+
 def begin(chosen):
-    """Checks everything; gives the study, and which chunks are there."""
+    """Checks what can be without reading the inputs; gives the study, and which chunks are there."""
+    global lock
     if "RockfallSimulation" not in globals():
         refuse("The plugin RockfallDDA is not loaded: run this with bash Examples/run.sh, or set "
                "PV_PLUGIN_PATH.")
     study = read_study(chosen.study)
     this = identity(study)
-    manifest = os.path.join(chosen.folder, "manifest.json")
+    manifest = manifest_of(chosen)
+    chunks = -(-study["iterations"] // study["chunk"])
     try:
         os.makedirs(chosen.folder, exist_ok=True)
+        lock = wholefile.Lock(chosen.folder)
         if not os.path.exists(manifest):
             for name in sorted(os.listdir(chosen.folder)):
-                if not name.startswith(".unfinished-"):
+                if not name.startswith(wholefile.UNFINISHED):
                     refuse(f"{chosen.folder} has no manifest.json but a file {name} that is not of a "
                            "study. Take another folder.")
-            write_text(manifest, json.dumps(this, indent=1) + "\n")
+            return study, [False] * chunks
+    except BlockingIOError as error:
+        refuse(f"{chosen.folder} is being written by another study ({error.strerror}). Wait for it, or "
+               "take another folder.")
     except OSError as error:
         refuse(f"{error.filename}: {error.strerror}")
-    with open(manifest, encoding="utf-8") as file:
-        there = json.load(file)
+    there = schema.load(manifest)
     if there != this:
         refuse(f"{chosen.folder} has the results of another study: changed are "
                f"{', '.join(differences(there, this))}. Take another folder, or remove this one.")
-    chunks = -(-study["iterations"] // study["chunk"])
     return study, [os.path.exists(stem_of(chosen, k) + ".npz") for k in range(chunks)]
+
+
+def claim(chosen, study):
+    """The folder is this study's from here on: its inputs are good."""
+    if not os.path.exists(manifest_of(chosen)):
+        write_text(manifest_of(chosen), json.dumps(identity(study), indent=1) + "\n")
 
 
 def stem_of(chosen, number):
@@ -437,7 +406,10 @@ def main():
     for k, there in enumerate(done):
         if there:
             continue
-        pipeline = pipeline or Pipeline(study, chosen.threads)
+        if not pipeline:
+            pipeline = Pipeline(study, chosen.threads)
+            pipeline.check(chosen.folder)
+            from_first_rank(lambda: claim(chosen, study))
         first = k * study["chunk"]
         iterations = min(study["chunk"], study["iterations"] - first)
         pipeline.write_chunk(stem_of(chosen, k), first, iterations)
@@ -446,4 +418,8 @@ def main():
     say(f"Done: {chosen.folder}")
 
 
-main()
+try:
+    main()
+finally:
+    if lock:
+        lock.release()

@@ -43,6 +43,13 @@ const std::vector<Setting>& settings()
     ROCKFALL_MATERIAL(cohesion, "N"),
     { "roughnessMean", "m", [](GroundSettings& s, double v) { s.roughness.mean = v; } },
     { "roughnessDeviation", "m", [](GroundSettings& s, double v) { s.roughness.deviation = v; } },
+    { "roughnessLength", "m, 0: of the nodes",
+      [](GroundSettings& s, double v) { s.roughness.length = v; } },
+    { "obstacles70", "m", [](GroundSettings& s, double v) { s.roughness.obstacles[0] = v; } },
+    { "obstacles20", "m", [](GroundSettings& s, double v) { s.roughness.obstacles[1] = v; } },
+    { "obstacles10", "m", [](GroundSettings& s, double v) { s.roughness.obstacles[2] = v; } },
+    { "deviationPer", "0 iteration, 1 impact, 2 place",
+      [](GroundSettings& s, double v) { s.deviationPer = deviationPerFrom(v); } },
     { "cellSize", "m", [](GroundSettings& s, double v) { s.cellSize = v; } },
     { "density", "kg/m³", [](GroundSettings& s, double v) { s.density = v; } },
     { "placeDeviation", "m", [](GroundSettings& s, double v) { s.placeDeviation = v; } },
@@ -75,6 +82,14 @@ int count(const std::string& text, const std::string& argument, int least)
 }
 
 } // namespace
+
+Terrain makeTerrain(
+  const GroundSettings& settings, GridGeometry geometry, std::vector<double> heights)
+{
+  Terrain terrain(std::move(geometry), std::move(heights), settings.material, settings.roughness);
+  terrain.setDeviationPer(settings.deviationPer);
+  return terrain;
+}
 
 std::vector<std::string> settingNames()
 {

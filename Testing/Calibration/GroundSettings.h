@@ -4,6 +4,7 @@
 /// The ground, and how it is simulated, by names that a command line or a search gives.
 
 #include "simulation/parameters.h"
+#include "terrain/Terrain.h"
 #include "terrain/material.h"
 
 #include <string>
@@ -24,6 +25,7 @@ struct GroundSettings
 {
   SurfaceMaterial material;
   Roughness roughness;
+  DeviationPer deviationPer = DeviationPer::Iteration;
   SimulationParameters simulation;
   double cellSize = 0.5;       ///< Of the nodes that the data's grid is resampled to, m.
   double density = 2700.0;     ///< Of the rocks where the data has none, kg/m³.
@@ -34,6 +36,10 @@ struct GroundSettings
   /// From "name=value".
   void set(const std::string& assignment);
 };
+
+/// A slope of these nodes with the ground on it.
+Terrain makeTerrain(
+  const GroundSettings& settings, GridGeometry geometry, std::vector<double> heights);
 
 /// The names, in order, with unit.
 std::vector<std::string> settingNames();

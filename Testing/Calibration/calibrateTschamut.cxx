@@ -53,7 +53,7 @@ Terrain readTerrain(const std::string& fileName, const GroundSettings& s)
   RasterSurface surface = readRaster(fileName, { s.cellSize });
   surface.geometry.xOrigin -= 0.5 * fileCell;
   surface.geometry.yOrigin -= 0.5 * fileCell;
-  return Terrain(surface.geometry, std::move(surface.heights), s.material, s.roughness);
+  return makeTerrain(s, surface.geometry, std::move(surface.heights));
 }
 
 Experiment readExperiment(const std::string& folder, const GroundSettings& s)
@@ -137,13 +137,20 @@ void compare(Experiment& e, const std::vector<TrajectorySummary>& all, const Arg
 {
   int left = 0, moving = 0, stood = 0;
   std::vector<double> speeds, times;
+  // Rocks that did not start are left out, unless most did not: then the ground holds them.
+  std::vector<std::array<int, 2>> starts(e.runs.size());
+  for (const TrajectorySummary& t : all)
+  {
+    ++starts[std::size_t(t.rock)][t.runOut >= kStarted];
+  }
   for (const TrajectorySummary& t : all)
   {
     Run& run = e.runs[std::size_t(t.rock)];
+    const auto [stay, start] = starts[std::size_t(t.rock)];
     left += t.fate == Fate::LeftDomain;
     moving += t.fate == Fate::Moving;
     stood += t.runOut < kStarted;
-    if (t.runOut >= kStarted)
+    if (t.runOut >= kStarted || start < std::max(2, stay))
     {
       run.stops.push_back({ t.stop.x(), t.stop.y() });
       run.runOuts.push_back(t.runOut);
@@ -161,10 +168,6 @@ void compare(Experiment& e, const std::vector<TrajectorySummary>& all, const Arg
   for (std::size_t k = 0; k < e.runs.size(); ++k)
   {
     Run& run = e.runs[k];
-    if (run.runOuts.size() < 2)
-    {
-      throw DataError("run " + run.id + ": the ground holds all of its rocks at the release");
-    }
     std::vector<double> others;
     for (const Run& other : e.runs)
     {

@@ -152,7 +152,7 @@ Terrain groundAt(
       heights.push_back(z);
     }
   }
-  return Terrain(g, std::move(heights), s.material, s.roughness);
+  return makeTerrain(s, g, std::move(heights));
 }
 
 /// Rocks of one impact with attitudes, places and, where it is not known, spins that are drawn.

@@ -67,7 +67,7 @@ Terrain makeGround(const GroundSettings& s, double degrees)
       heights.push_back(100.0 - std::tan(radians(degrees)) * column * g.cellSize);
     }
   }
-  return Terrain(g, std::move(heights), s.material, s.roughness);
+  return makeTerrain(s, g, std::move(heights));
 }
 
 std::vector<Rock> drawRocks(const Published& impact, const Terrain& ground, const GroundSettings& s)

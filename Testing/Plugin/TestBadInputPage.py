@@ -100,6 +100,21 @@ dem("a mosaic of tiles with a gap, and no nodata value", FileName=write_text("mo
 dem("NaN", FileName=write_grid("nan.asc", [[1.5, 2, 3], [4, "nan", 6], [7, 8, 9]]))
 dem("infinite", FileName=write_grid("inf.asc", [[1.5, 2, 3], [4, "inf", 6], [7, 8, 9]]))
 dem("a word", FileName=write_grid("word.asc", [[1.5, 2, 3], [4, "high", 6], [7, 8, 9]]))
+dem("a word in a GRASS grid", FileName=write_text(
+    "grass.txt", "north: 4000020\nsouth: 4000000\neast: 700030\nwest: 700000\nrows: 2\ncols: 3\n"
+    "1 high 3\n4 5 6\n"))
+dem("a factor that is none", FileName=write_text(
+    "grass.txt", "north: 4000020\nsouth: 4000000\neast: 700030\nwest: 700000\nrows: 2\ncols: 3\n"
+    "multiplier: ten\n1 2 3\n4 5 6\n"))
+dem("a virtual raster of a file that is not beside it", FileName=write_text("reach.vrt", (
+    '<VRTDataset rasterXSize="2" rasterYSize="2"><VRTRasterBand dataType="Byte" band="1">'
+    '<SimpleSource><SourceFilename>/etc/hostname</SourceFilename></SimpleSource></VRTRasterBand>'
+    '</VRTDataset>')))
+dem("an address", FileName="/vsicurl/http://127.0.0.1:9/dem.tif")
+dem("a raster that is empty but for its size", FileName=write_text("huge.vrt", (
+    '<VRTDataset rasterXSize="40000" rasterYSize="40000"><GeoTransform>0,5,0,100,0,-5'
+    '</GeoTransform><VRTRasterBand dataType="Float32" band="1"><NoDataValue>-9999</NoDataValue>'
+    '</VRTRasterBand></VRTDataset>')))
 comma = DEMtoCFEMesh(FileName=write_grid("comma.asc", [[1, 2, 3], [4, "9,75", 6], [7, 8, 9]]))
 UpdatePipeline(proxy=comma)
 if comma.GetDataInformation().GetBounds()[5] != 9.75:
@@ -348,8 +363,18 @@ shape("missing", "missing.stl")
 shape("empty", "empty.stl", "")
 shape("empty points", "empty.xyz", "")
 shape("truncated", "cut.ply", PLY + "0 0 0\n1 0 0\n")
+shape("a list of negative length", "list.ply", PLY + "0 0 0\n1 0 0\n0 1 0\n0 0 1\n-5 1 2 3\n")
 shape("wrong type", "rock.doc", "0 0 0\n")
 shape("words", "words.csv", "x,y,z\n0,0,0\n1,two,3\n")
+shape("no columns x, y and z", "axes.csv", "a,b,c\n0,0,0\n")
+shape("coordinates in feet", "feet.csv", "x [ft],y [ft],z [ft]\n0,0,0\n")
+shape("comma as decimal mark between commas", "commas.csv", "x,y,z\n0,5,0,5,0,5\n")
+shape("the same without a header", "commas.xyz", "0,5,0,5,0,5\n")
+shape("numbers of the points, and no header", "count.xyz", "1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n")
+shape("single precision far from the origin", "far.ply", PLY.replace("float", "double") +
+      "500123.375 5200456 812.130005\n500124.375 5200456 812.130005\n500123.375 5200457 812.130005\n"
+      "500123.375 5200456 813.130005\n3 0 2 1\n")
+shape("six digits", "six.obj", "v 500123 5.20046e+06 812.13\nv 500124 5.20046e+06 812.13\n")
 shape("NaN", "nan.csv", "x,y,z\n0,0,0\n1,nan,3\n1,0,0\n0,1,0\n0,0,1\n")
 shape("all in a plane", "flat.csv", "0,0,0\n1,0,0\n0,1,0\n1,1,0\n")
 shape("open", "open.obj", CORNERS + "f 1 3 2\nf 1 2 4\nf 1 4 3\n")
@@ -362,7 +387,7 @@ fall = RockfallSimulation(Terrain=slope, Rocks=RockBlocks(), EndTime=2.0, Iterat
 
 def lines(wrong, text, name="lines.csv"):
     file = name if text is None else write_text(name, text)
-    one(wrong, TrajectoryCollector(Input=OutputPort(fall, 1), FileName=file), ports=3)
+    one(wrong, TrajectoryCollector(Input=OutputPort(fall, 1), FileName=file), ports=4)
 
 
 ROAD = 'WKT,name,height\n"LINESTRING({0} 0,{0} 100)",road,{1}\n'
@@ -377,17 +402,17 @@ lines("negative", ROAD.format(8, -3))
 lines("NaN", ROAD.format(8, "nan"))
 lines("comma as decimal mark", ROAD.format(8, '"4,5"'))
 lines("10⁷ features", "WKT,name\n" + '"LINESTRING(8 0,8 100)",road\n' * 10_001)
-one("no lines at all", TrajectoryCollector(Input=OutputPort(fall, 1)), ports=3)
+one("a drawn line of one point", TrajectoryCollector(
+    Input=OutputPort(fall, 1), Points=[100, 50, 0]), ports=4)
 one("a barrier that is negative", TrajectoryCollector(
     Input=OutputPort(fall, 1), FileName=write_text("lines.csv", ROAD.format(8, "")),
-    BarrierHeight=-1.0), ports=3)
+    BarrierHeight=-1.0), ports=4)
 
 section("Trajectories")
 one("the wrong output of the simulation", RockfallHazardMap(Input=OutputPort(fall, 0), Terrain=slope))
 one("a slope that they did not fall on", RockfallHazardMap(
     Input=OutputPort(fall, 1), Terrain=site, CropToTrajectories=1))
 one("a cell size that is negative", RockfallHazardMap(Input=OutputPort(fall, 1), CellSize=-1.0))
-one("no cell size and no slope", RockfallHazardMap(Input=OutputPort(fall, 1)))
 
 section("Passages and crossings of several runs")
 writer = servermanager.writers.HazardPassageWriter(

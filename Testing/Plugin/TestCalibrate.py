@@ -56,7 +56,9 @@ SOURCES = [(10 + 2 * (k % 3), 20 + 4 * k) for k in range(6)]
 write_text("sources.csv", "x,y,height,source_id\n" +
            "".join(f"{x},{y},0.3,{11 + k}\n" for k, (x, y) in enumerate(SOURCES)))
 TRUE, TERRAIN = 0.85, {"FileName": "dem.asc", "CellSize": 1.0, "RestitutionCoefficient": 0.3,
-                      "RestitutionModel": "Normal and tangential", "FrictionAngle": 45.0}
+                      "RestitutionModel": "Normal and tangential", "FrictionAngle": 45.0,
+                      "RestitutionDeviation": 0.0, "FrictionAngleDeviation": 0.0,
+                      "RoughnessMean": 0.0, "RoughnessDeviation": 0.0}
 ROCKS = {"FileName": "sources.csv", "Volume": 0.1, "AttitudeLaw": "Random"}
 
 # What was observed: six runs of each source on ground of a known Rt, by other random numbers.

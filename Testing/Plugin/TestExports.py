@@ -24,9 +24,9 @@ def run(*command, text=None):
 # A slope in UTM zone 16 that falls along +x; nodes at the centres of the cells, from (700005, 4000005).
 dem = DEMtoCFEMesh(FileName=write_grid("slope.asc", incline(drop=5.0)), FrictionAngle=20,
                    RoughnessDeviation=0.05)
-rocks = RockBlocks(Center=[700035, 4000105, 140], Volume=1)
+rocks = RockBlocks(Center=[700035, 4000105, 140], Volume=1, AttitudeLaw="As given")
 fall = RockfallSimulation(Terrain=dem, Rocks=rocks, EndTime=20, Iterations=8)
-hazard = RockfallHazardMap(Input=OutputPort(fall, 1), Terrain=dem)
+hazard = RockfallHazardMap(Input=OutputPort(fall, 1), CropToTrajectories=0)
 road = PolyLineSource(Points=[700100, 4000000, 0, 700100, 4000210, 0])
 collector = TrajectoryCollector(Input=OutputPort(fall, 1), Lines=road, Terrain=dem)
 for old in {*glob.glob("*.tif*"), *glob.glob("*.gpkg"), *glob.glob("paths.*")}:
@@ -38,6 +38,7 @@ assert "ERR|" not in said, said
 info = json.loads(run("gdalinfo", "-json", "map.tif"))
 assert info["driverShortName"] == "GTiff"
 assert info["metadata"]["IMAGE_STRUCTURE"]["LAYOUT"] == "COG", info["metadata"]
+assert re.match(r"RockfallDDA \d+\.\d+\.\d+$", info["metadata"][""]["TIFFTAG_SOFTWARE"]), info["metadata"]
 assert info["size"] == [30, 20], info["size"]
 assert info["geoTransform"] == [700005, 10, 0, 4000205, 0, -10], info["geoTransform"]
 assert "UTM zone 16N" in info["coordinateSystem"]["wkt"]

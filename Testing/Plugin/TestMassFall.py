@@ -50,11 +50,11 @@ def slope_of(name, bank):
     return DEMtoCFEMesh(FileName=scenario.write_grid(os.path.abspath(name), bank),
                         RestitutionCoefficient=scenario.RESTITUTION,
                         RestitutionDeviation=scenario.RESTITUTION_DEVIATION, FrictionAngle=scenario.FRICTION,
-                        FrictionAngleDeviation=scenario.FRICTION_DEVIATION)
+                        FrictionAngleDeviation=scenario.FRICTION_DEVIATION, RoughnessMean=0, RoughnessDeviation=0)
 
 
 slope = slope_of("slope.asc", False)
-rocks = RockBlocks(Terrain=slope, FileName=scenario.write_rocks(os.path.abspath("rocks.csv")))
+rocks = RockBlocks(Terrain=slope, AttitudeLaw="As given", FileName=scenario.write_rocks(os.path.abspath("rocks.csv")))
 table, alone, met = run(slope, rocks, 0)
 assert len(table["Volume"]) == 41 * ITERATIONS and met == 0
 assert abs(sum(table["Mass"][:41]) - 63957.0) < 0.1 and abs(sum(table["Volume"][:41]) - 25.6) < 1e-4

@@ -19,8 +19,8 @@ from vtkmodules.vtkIOImage import vtkPNGReader
 EAST, NORTH = 700000, 4000000
 
 dem = DEMtoCFEMesh(FileName=write_grid("incline.asc", incline(), corner=(EAST, NORTH)))
-dem.RoughnessDeviation = 0.2
-rocks = RockBlocks(FileName=write_text(
+dem.RoughnessMean, dem.RoughnessDeviation, dem.RestitutionDeviation = 0, 0.2, 0
+rocks = RockBlocks(AttitudeLaw="As given", FileName=write_text(
     "sources.csv", "x,y,z,shape,volume\n" +
     "\n".join(f"{EAST + 25},{NORTH + 60 + 10 * k},{145 + k},{shape},{0.5 + 0.25 * k}"
               for k, shape in enumerate(["cube", "icosahedron", "eota111", "eota221"])) + "\n"))

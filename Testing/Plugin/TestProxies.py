@@ -14,6 +14,8 @@ PROXIES = [
      "Shape Volume Center Orientation Velocity AngularVelocity Density YoungModulus PoissonRatio "
      "FileName Terrain Amount Intensity SlopeThreshold ShapeMix VolumeLaw Material TotalVolume "
      "ClusterRadius KeepApart RandomOrientation MaterialName"),
+    ("Rock Release", "RockRelease", "filters", "Terrain Draw Points Amount Shape Volume"),
+    ("Drawn Structure", "DrawnStructure", "filters", "Terrain Kind Points Height Capacity"),
     ("Jointed Rock Mass", "JointedRockMass", "sources",
      "Terrain MassShape Center Lengths Orientation MassFileName JointSets Slivers MinimumThickness "
      "MinimumVolume MaximumRocks Seed PlaceOnGround Density"),
@@ -24,13 +26,15 @@ PROXIES = [
      "Input Direction Length GroupBy ClassLimits"),
     ("Rockfall Hazard Map", "RockfallHazardMap", "filters", "Input Terrain CellSize"),
     ("Trajectory Collector", "TrajectoryCollector", "filters",
-     "Input Lines FileName BarrierHeight BarrierCapacity"),
+     "Input Lines FileName Points BarrierHeight BarrierCapacity"),
     ("Hazard Passage Reader", "HazardPassageReader", "sources", "FileNames"),
     ("Merge Collectors", "MergeCollectors", "filters", "Input"),
 ]
 
 dem = simple.DEMtoCFEMesh()
 rocks = simple.RockBlocks()
+release = simple.RockRelease(Terrain=dem)
+structure = simple.DrawnStructure(Terrain=dem)
 mass = simple.JointedRockMass()
 simulation = simple.RockfallSimulation(Terrain=dem, Rocks=rocks)
 simulation.EndTime = 1.0
@@ -41,7 +45,7 @@ passages = simple.HazardPassageReader()
 merged = simple.MergeCollectors(Input=[collector])
 
 for (label, name, group, properties), proxy in zip(
-        PROXIES, (dem, rocks, mass, simulation, dispersion, hazard, collector, passages, merged)):
+        PROXIES, (dem, rocks, release, structure, mass, simulation, dispersion, hazard, collector, passages, merged)):
     assert hasattr(simple, name), name
     assert proxy.GetXMLGroup() == group, (name, proxy.GetXMLGroup())
     assert proxy.GetXMLLabel() == label, (name, proxy.GetXMLLabel())
@@ -99,22 +103,34 @@ assert decorators(dem, "RestitutionSpeed", "visibility") == [("RestitutionModel"
 replaced = ["RestitutionModel", "RestitutionCoefficient", "RestitutionDeviation", "TangentialRestitution",
             "RestitutionSpeed", "FrictionAngle", "FrictionAngleDeviation", "GroundModulus",
             "ScarDepthFactor", "GroundDensity", "ScarCompaction", "ScarSpinDrag", "SlipFrictionMin",
-            "SlipFrictionMax", "SlipFrictionGrowth", "SlipFrictionDecay", "RollingResistance"]
+            "SlipFrictionMax", "SlipFrictionGrowth", "SlipFrictionDecay", "RollingResistance", "DeviationPer"]
 for name in replaced + ["Cohesion"]:
     wanted = [("Preset", "0", "0")] if name in replaced else []
     assert decorators(dem, name, "enabled_state") == wanted, name
 # Only some laws have a deviation.
 assert rocks.GetProperty("VolumeLaw").Available[2:4] == ["Normal", "Log-normal"]
 assert decorators(rocks, "VolumeDeviation", "visibility") == [("VolumeLaw", "2 3", "0")]
-# Tables open no view of their own, but for the one that is all that there is to see of its filter.
-for proxy, ports in ((simulation, {"3"}), (collector, {"1", "2"}), (merged, {"1", "2"})):
+# Tables open no view of their own, but for charts and the one that is all there is to see of its filter;
+# impacts hide the paths, and the raster of a map lies under the slope.
+for proxy, ports in ((simulation, {"2", "3"}), (hazard, {"0"}), (collector, {"1"}), (merged, {"1", "2"})):
     hints = proxy.SMProxy.GetHints()
     views = [hints.GetNestedElement(k) for k in range(hints.GetNumberOfNestedElements())]
     silent = {v.GetAttribute("port") for v in views
               if v.GetName() == "View" and v.GetAttribute("type") == "None"}
     assert silent == ports, (proxy, silent)
 
-# Defaults run as they stand.
+# Defaults run as they stand, also of maps and collectors that nothing but trajectories is given to.
+for proxy, port in ((simple.RockfallHazardMap(Input=simple.OutputPort(simulation, 1)), 1),
+                    (simple.TrajectoryCollector(Input=simple.OutputPort(simulation, 1)), 3)):
+    proxy.UpdatePipeline()
+    assert proxy[port].GetDataInformation().GetNumberOfCells() > 0, proxy
+release.UpdatePipeline()
+assert release[0].GetDataInformation().GetNumberOfCells() == 60  # ten cubes
+# Rocks of a slope bring it to the simulation.
+alone = simple.RockfallSimulation(Rocks=release, EndTime=0.2)
+alone.UpdatePipeline()
+assert alone[1].GetDataInformation().GetNumberOfCells() == 10
+assert not alone.Terrain
 assert rocks.Shape == "Cube" and rocks.Volume == 1.0 and list(rocks.Orientation) == [0, 0, 0]
 assert dispersion.GroupBy == "Shape", dispersion.GroupBy
 dispersion.UpdatePipeline()

@@ -9,8 +9,8 @@ from helpers import errors_of, is_empty
 
 import paraview.simple
 from paraview.simple import (
-    DEMtoCFEMesh, Delete, DispersionAngle, JointedRockMass, OutputPort, PolyLineSource, RockBlocks, RockfallHazardMap,
-    RockfallSimulation, TrajectoryCollector)
+    DEMtoCFEMesh, Delete, DispersionAngle, DrawnStructure, JointedRockMass, OutputPort, PolyLineSource, RockBlocks, RockfallHazardMap,
+    RockfallSimulation, RockRelease, TrajectoryCollector)
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 ABOVE_ZERO = 1e-300  # how the XML says it
@@ -36,10 +36,23 @@ def collector():
     return TrajectoryCollector(Input=OutputPort(simulation(), 1), Lines=PolyLineSource())
 
 
+def release():
+    return RockRelease(Terrain=DEMtoCFEMesh(), Points=CORNERS)
+
+
+def structure():
+    # A gentle bend, for an embankment, and an area.
+    return DrawnStructure(Terrain=DEMtoCFEMesh(), Points=[110, 20, 0, 125, 50, 0, 110, 80, 0])
+
+
+CORNERS = [5, 45, 58, 15, 45, 58, 10, 55, 58]  # of an area that is drawn
+
 # Where a property counts only together with others.
 MAKERS = {
     "DEMToCFEMesh": DEMtoCFEMesh,
     "RockBlocks": RockBlocks,
+    "RockRelease": release,
+    "DrawnStructure": structure,
     "JointedRockMass": JointedRockMass,
     "RockfallSimulation": simulation,
     "DispersionAngle": dispersion,
@@ -49,6 +62,7 @@ MAKERS = {
 TOGETHER_WITH = {
     ("DEMToCFEMesh", "Band"): None,  # only rasters have bands
     ("RockBlocks", "Lengths"): {"Shape": "Box"},
+    ("RockBlocks", "Draw"): {"Points": CORNERS},
     ("RockBlocks", "SlopeThreshold"): None,  # needs a terrain as steep: TestBadInput
     ("JointedRockMass", "MaximumRocks"): None,  # a cut makes more than 1: TestRockMasses
     ("RockfallSimulation", "ShownIteration"): {"Iterations": 2},

@@ -14,11 +14,12 @@ controller = vtkMultiProcessController.GetGlobalController()
 rank = controller.GetLocalProcessId()
 assert controller.GetNumberOfProcesses() == 2, controller.GetNumberOfProcesses()
 
-dem = DEMtoCFEMesh()
-rocks = RockBlocks()
+# A path that is known: nothing is drawn.
+dem = DEMtoCFEMesh(RoughnessMean=0, RoughnessDeviation=0, RestitutionDeviation=0)
+rocks = RockBlocks(AttitudeLaw="As given")
 simulation = RockfallSimulation(Terrain=dem, Rocks=rocks, EndTime=2.0)
 dispersion = DispersionAngle(Input=OutputPort(simulation, 1))
-hazard = RockfallHazardMap(Input=OutputPort(simulation, 1), Terrain=dem)
+hazard = RockfallHazardMap(Input=OutputPort(simulation, 1), CropToTrajectories=0)
 collector = TrajectoryCollector(
     Input=OutputPort(simulation, 1), Lines=PolyLineSource(Points=[8, 0, 0, 8, 100, 0]))
 merged = MergeCollectors(Input=[collector])
@@ -33,7 +34,7 @@ meeting = RockfallSimulation(
     Terrain=dem, Rocks=RockBlocks(FileName="meeting.csv"), RockRockContact=1, Iterations=2, EndTime=1.0,
     RockContactFile="contacts.csv" if rank == 0 else "elsewhere.csv")
 proxies = {"terrain": (dem, 1), "rocks": (rocks, 1), "simulation": (simulation, 4),
-           "dispersion": (dispersion, 2), "hazard map": (hazard, 1), "collector": (collector, 3),
+           "dispersion": (dispersion, 2), "hazard map": (hazard, 2), "collector": (collector, 4),
            "merged collectors": (merged, 3), "meeting": (meeting, 4)}
 
 

@@ -148,7 +148,7 @@ slope = DEMtoCFEMesh(FileName=terrain, RoughnessDeviation=0.2)
 fall = RockfallSimulation(Terrain=slope, Rocks=RockBlocks(FileName=rocks, Terrain=slope), EndTime=6.0,
                           TrajectoryOutput="Thinned", Iterations=11)
 SaveData("hazard.tif", proxy=RockfallHazardMap(
-    Input=OutputPort(fall, 1), Terrain=slope, CellSize=5.0))
+    Input=OutputPort(fall, 1), CellSize=5.0, CropToTrajectories=0))
 with open("hazard.tif", "rb") as file:
     assert file.read() == calm["hazard.tif"], "the map is not that of Rockfall Hazard Map"
 collector = TrajectoryCollector(Input=OutputPort(fall, 1), Terrain=slope, FileName=road,
@@ -209,6 +209,36 @@ for xml in glob.glob(os.path.join(os.path.dirname(SCRIPT), "..", "Plugin", "xml"
     for prop in ElementTree.parse(xml).iter("StringVectorProperty"):
         if prop.find("FileListDomain") is not None and not prop.get("name").endswith(("Field", "FileNames")):
             assert prop.get("name").endswith(endings), prop.get("name")
+
+# Every input is read before the first chunk: nothing is left of a study that cannot be done, and what was
+# put right does not make it another one.
+TABLE = "x,y,z,source\n700025,4000060,146,H\u00f6hle\n"
+CONTACTS = "material_a,material_b,restitution,phi\ngranite,granite,{},30\n"
+for part, name, content, word in (
+        ("rocks", "rocks.csv", (TABLE + "700025,4000070,146,").encode() + b"H\xf6hle\n", "rocks.csv, line 3"),
+        ("rocks", "rocks.csv", TABLE.replace("146", "much").encode(), '"much" is not a number'),
+        ("lines", "lines.csv", b'WKT,height\n"POINT(700045 4000060)",3\n', "a LINESTRING is needed"),
+        ("lines", "lines.csv", b'WKT,height\n"LINESTRING(0 0,9 9)",3\n', "are far from the trajectories"),
+        ("terrain", "nets.csv", b'WKT,height\n"LINESTRING(700045 4000000,700045 4000200)",high\n', '"high"'),
+        ("simulation", "contacts.csv", CONTACTS.format("hard").encode(), '"hard" is not a number')):
+    with open(name, "wb") as file:
+        file.write(content)
+    prop = {"terrain": "BarrierFile", "simulation": "RockContactFile"}.get(part, "FileName")
+    more = {"RockRockContact": 1} if part == "simulation" else {}
+    write_study("checked.json", iterations=2, chunk=1, **{part: {**study[part], prop: name, **more}})
+    if part == "simulation":
+        write_study("checked.json", iterations=2, chunk=1, rocks={**study["rocks"], "Material": 1},
+                    simulation={**study[part], prop: name, **more})
+    code, said = run("results-checked", "checked.json")
+    assert code != 0 and word in said and name in said, (name, said)
+    assert os.listdir("results-checked") == [], os.listdir("results-checked")
+with open("rocks.csv", "wb") as file:
+    file.write(TABLE.encode("latin-1"))
+write_study("checked.json", iterations=2, chunk=1, rocks={"FileName": "rocks.csv"})
+code, said = run("results-checked", "checked.json")
+assert code == 0, said
+with open("results-checked/summary.csv", encoding="utf-8") as file:
+    assert {row["SourceName"] for row in csv.DictReader(file)} == {"H\u00f6hle"}
 
 # Bad descriptions.
 for bad, word in (("", "is not JSON"), ("{", "is not JSON"), ("[]", "must be an object"),

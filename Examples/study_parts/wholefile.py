@@ -1,0 +1,125 @@
+"""Files that are whole when they have their name, whatever happens: written beside it, looked at, and
+renamed. And the lock of a folder that one study at a time may write into."""
+import csv
+import errno
+import fcntl
+import io
+import os
+import socket
+import zipfile
+
+import numpy as np
+from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+
+UNFINISHED = ".unfinished-"
+LOCK = UNFINISHED + "lock"
+XML_END = b"</VTKFile>"
+
+
+def unfinished(path):
+    head, tail = os.path.split(os.path.abspath(path))
+    return os.path.join(head, UNFINISHED + tail)
+
+
+def keep(path):
+    """Gives an unfinished file its name. It is on the disk before, and its name after."""
+    other = unfinished(path)
+    with open(other, "rb") as file:
+        if os.fstat(file.fileno()).st_size == 0:
+            raise OSError(errno.EIO, "nothing was written", path)
+        os.fsync(file.fileno())
+    os.replace(other, path)
+    folder = os.open(os.path.dirname(other), os.O_RDONLY)
+    try:
+        os.fsync(folder)
+    finally:
+        os.close(folder)
+
+
+def whole(path, data):
+    """Writes bytes: all of them, or none under this name."""
+    other = unfinished(path)
+    try:
+        with open(other, "wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+            size = os.fstat(file.fileno()).st_size
+        if size != len(data):
+            raise OSError(errno.EIO, f"only {size} of {len(data)} bytes were written", path)
+        keep(path)
+    except OSError as error:
+        if os.path.exists(other):
+            os.remove(other)
+        raise OSError(error.errno, error.strerror, path) from None
+
+
+def write_text(path, text):
+    whole(path, text.encode())
+
+
+def write_csv(path, tables):
+    """Tables of the same columns as one."""
+    names = list(tables[0])
+    text = io.StringIO(newline="")
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(names)
+    for table in tables:
+        writer.writerows(zip(*(table[name].tolist() for name in names)))
+    write_text(path, text.getvalue())
+
+
+def write_npz(path, columns):
+    """np.savez puts the time of day into its file; this does not."""
+    made = io.BytesIO()
+    with zipfile.ZipFile(made, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, values in columns.items():
+            data = io.BytesIO()
+            np.save(data, values)
+            archive.writestr(zipfile.ZipInfo(name + ".npy", (1980, 1, 1, 0, 0, 0)), data.getvalue(),
+                             compress_type=zipfile.ZIP_DEFLATED)
+    whole(path, made.getvalue())
+
+
+def write_polydata(path, data):
+    """VTK's writer makes the text; on a full disk it ends the process, or says that all is well."""
+    writer = vtkXMLPolyDataWriter()
+    writer.SetInputData(data)
+    writer.WriteToOutputStringOn()
+    writer.SetDataModeToBinary()
+    made = writer.Write() == 1 and writer.GetOutputString()
+    made = made.encode() if isinstance(made, str) else made
+    if not made or not made.rstrip().endswith(XML_END):
+        raise OSError(errno.ENOMEM, "VTK could not make its text", path)
+    whole(path, made)
+
+
+class Lock:
+    """Of a folder. It goes with its process, however that ends."""
+
+    def __init__(self, folder):
+        self.path = os.path.join(folder, LOCK)
+        while True:
+            self.file = open(self.path, "a+", encoding="utf-8")
+            try:
+                fcntl.flock(self.file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except OSError as error:
+                if error.errno not in (errno.EAGAIN, errno.EACCES):
+                    raise OSError(error.errno, error.strerror, self.path) from None
+                self.file.seek(0)
+                raise BlockingIOError(errno.EAGAIN, self.file.read().strip(), self.path) from None
+            try:
+                if os.path.samestat(os.fstat(self.file.fileno()), os.stat(self.path)):
+                    break  # else somebody removed it while this waited
+            except FileNotFoundError:
+                pass
+            self.file.close()
+        self.file.truncate(0)
+        self.file.write(f"process {os.getpid()} on {socket.gethostname()}\n")
+        self.file.flush()
+
+    def release(self):
+        """Once only: the next one may have made its own by then."""
+        if not self.file.closed:
+            os.remove(self.path)
+            self.file.close()

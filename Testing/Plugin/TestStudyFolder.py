@@ -1,0 +1,120 @@
+"""A study with odd JSON, twice in one folder, and on a disk that is full: one line that says what is
+wrong, and no file under its name that is not whole."""
+
+import contextlib
+import io
+import json
+import os
+import resource
+import runpy
+import shutil
+import sys
+
+from helpers import incline, write_grid, write_text
+
+from paraview.simple import Delete, GetSources
+
+EXAMPLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Examples")
+SCRIPT = os.path.join(EXAMPLES, "study.py")
+sys.path[:0] = [os.path.join(EXAMPLES, "study_parts")]
+import schema
+import wholefile
+
+write_grid("folder.asc", incline())
+write_text("folder.csv", "x,y,z,shape,volume\n" + "\n".join(
+    f"700025,{4000060 + k},{146 + 0.2 * k},cube,0.01" for k in range(0, 40, 8)) + "\n")
+study = {
+    "terrain": {"FileName": "folder.asc"}, "rocks": {"FileName": "folder.csv"},
+    "simulation": {"EndTime": 4.0, "TrajectoryOutput": "Thinned"}, "map": {"CellSize": 5.0},
+    "iterations": 4, "chunk": 2}
+
+
+def run(folder, largest=resource.RLIM_INFINITY):
+    """Exit code and what was said; no file grows beyond `largest` (bytes)."""
+    said = io.StringIO()
+    kept, sys.argv = sys.argv, [SCRIPT, folder, "folder.json"]
+    most = resource.getrlimit(resource.RLIMIT_FSIZE)[1]
+    resource.setrlimit(resource.RLIMIT_FSIZE, (largest, most))  # Python ignores the signal
+    try:
+        with contextlib.redirect_stdout(said):
+            runpy.run_path(SCRIPT, run_name="__main__")
+        return 0, said.getvalue()
+    except SystemExit as end:
+        return 1, said.getvalue() + str(end)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
+        sys.argv = kept
+        for source in list(GetSources().values()):
+            Delete(source)
+
+
+def files_of(folder):
+    result = {}
+    for name in sorted(os.listdir(folder)):
+        with open(os.path.join(folder, name), "rb") as file:
+            result[name] = file.read()
+    return result
+
+
+def refusal(text):
+    """What is wrong with a study of this text, in one line."""
+    with open("odd.json", "wb") as file:
+        file.write(text if isinstance(text, bytes) else text.encode())
+    try:
+        schema.check("odd.json", schema.load("odd.json"))
+    except schema.Bad as bad:
+        said = str(bad)
+        assert said.startswith("odd.json") and "\n" not in said and len(said) < 300, said
+        return said
+    return ""
+
+
+def odd(part=None, **changes):
+    whole = {**study, **changes} if part is None else {**study, part: {**study[part], **changes}}
+    return json.dumps(whole)
+
+
+assert refusal(json.dumps(study)) == ""
+for text, word in (
+        (odd("terrain", FileName=3), "must be a text"), (odd("terrain", FileName=["a"]), "single value"),
+        (odd("terrain", FileName={"a": 1}), "single value"), (odd("terrain", FileName=None), "text"),
+        (odd("terrain", FileName="a\0.asc"), "character"), (odd("terrain", FileName="a\ud800"), "character"),
+        (odd("simulation", EndTime="60"), "number"), (odd("simulation", EndTime=[60]), "single value"),
+        (odd("simulation", EndTime=-1), "at least"), (odd("simulation", EndTime=True), "number"),
+        (odd("simulation", EndTime=10**400), "a number can be"), (odd("simulation", Seed=1.5), "whole"),
+        (odd("simulation", TrajectoryOutput="All"), "one of"), (odd("simulation", Rocks=1), "script sets"),
+        (odd("simulation", EndTimes=1), "EndTimes"), (odd(iterations=1e30), "whole number"),
+        (odd(iterations=10**30), "at most"), (odd(iterations=10**9, chunk=1), "chunks"),
+        (odd(iterations=None), "null"), (odd(lines=[]), "an object"), (odd(trajectories=1), "true or false"),
+        (odd().replace("4.0", "NaN"), "NaN"), (odd().replace("4.0", "-Infinity"), "-Infinity"),
+        (odd()[:-1] + ', "chunk": 3}', "twice"), ("[" * 100000, "deep"), ('{"a":' * 100000, "deep"),
+        (b"\xff\xfe{", "not JSON"), (b"{\0}", "not JSON"), ("3", "object"), ("", "not JSON")):
+    assert word in refusal(text), (text[:200], word, refusal(text))
+assert refusal(b"\xef\xbb\xbf" + json.dumps(study).encode()) == ""  # some editors begin a text so
+
+for folder in ("folder-calm", "folder-full"):
+    shutil.rmtree(folder, ignore_errors=True)
+write_text("folder.json", json.dumps(study))
+code, said = run("folder-calm")
+assert code == 0, said
+calm = files_of("folder-calm")
+assert not [name for name in calm if name.startswith(".")], sorted(calm)
+
+# Another one is at it.
+lock = wholefile.Lock("folder-calm")
+code, said = run("folder-calm")
+assert code != 0 and "folder-calm is being written by another study (process " in said, said
+lock.release()
+assert files_of("folder-calm") == calm
+
+# The disk is full when the table, the trajectories or the map is written: each is the largest once.
+sizes = sorted({len(data) for name, data in calm.items() if not name.endswith(".json")})
+for largest in (sizes[0] - 1, sizes[len(sizes) // 2] - 1, sizes[-1] - 1):
+    code, said = run("folder-full", largest)
+    assert code != 0, f"nothing was too large for {largest} bytes"
+    assert "folder-full" in said and "Traceback" not in said, said
+    for name, data in files_of("folder-full").items():
+        assert name.startswith(wholefile.UNFINISHED) or data == calm[name], f"{name} is not whole"
+code, said = run("folder-full")
+assert code == 0 and files_of("folder-full") == calm, said
+print("a study's files are whole or not there")
