@@ -11,10 +11,16 @@ rockfall_log=$rockfall_build/setup.log
 rockfall_packages=(
   g++ cmake ninja-build
   paraview paraview-dev python3-paraview libopenmpi-dev libdouble-conversion-dev
-  libeigen3-dev libgdal-dev gdal-bin libtbb-dev librandom123-dev libqhull-dev libboost-dev
-  xvfb xauth locales python3-matplotlib python-matplotlib-data
-  libqt5svg5) # without it ParaView's window has no icons: no eyes, no Play
+  libeigen3-dev libgdal-dev gdal-bin libicu-dev libtbb-dev librandom123-dev libqhull-dev libboost-dev
+  zlib1g-dev
+  xvfb xauth locales python3-matplotlib python-matplotlib-data)
 rockfall_test_packages=(libgtest-dev)
+
+# Of Qt: icons, without which ParaView's window has no eyes and no Play; and what the Rockfall menu is built with.
+case $(. /etc/os-release 2>/dev/null && echo "${VERSION_CODENAME:-}") in
+  trixie) rockfall_packages+=(qt6-svg-plugins qt6-base-dev libpython3-dev) ;;
+  *) rockfall_packages+=(libqt5svg5 qtbase5-dev) ;;
+esac
 
 fail() {
   echo "RockfallDDA: $*" >&2

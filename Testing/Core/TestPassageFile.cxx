@@ -188,3 +188,67 @@ TEST_F(TestPassageFile, BadInput)
   expectError({ good, bad }, "bad: its cells or its CRS are not those of");
   EXPECT_THROW(writePassages(raster, origin, "", fileName("no/such")), FileError);
 }
+
+TEST_F(TestPassageFile, HeadersAndPassagesThatNoRunHasAreDamage)
+{
+  // Three rocks of iteration 0, which all come into the only cell but one.
+  HazardRaster raster({ 4, 3, 5.0, 0.0, 0.0 });
+  for (int rock = 0; rock < 3; ++rock)
+  {
+    PathPoint from, to;
+    from.position = Vec3(1.0, 1.0, 0.0);
+    to.position = Vec3(2.0, 1.0, 0.0);
+    to.time = 1.0;
+    const std::vector<PathPoint> points = { from, to };
+    RockPath path;
+    path.rock = rock;
+    path.points = points;
+    raster.add(path);
+  }
+  const std::string bad = fileName("bad");
+  writePassages(raster, origin, "", bad);
+  const std::string good = read(bad);
+  PassageFiles({ bad }).summarize([](const CellSummary&) {});
+  const auto put = [&](std::size_t at, auto value)
+  {
+    std::string bytes = good;
+    std::memcpy(bytes.data() + at, &value, sizeof value);
+    std::ofstream(bad, std::ios::binary) << bytes;
+  };
+  const double inf = std::numeric_limits<double>::infinity();
+  constexpr std::size_t cellSize = 16, west = 24, z = 56, iterations = 72, count = 88,
+                        firstPassage = 104;
+  put(8, std::int32_t(-4));
+  expectError({ bad }, "bad: is damaged: it has -4 x 3 cells");
+  put(8, std::int32_t(2147483647));
+  expectError({ bad }, "bad: is damaged: it has 2147483647 x 3 cells");
+  for (const double size : { inf, std::nan(""), -5.0, 0.0 })
+  {
+    put(cellSize, size);
+    expectError({ bad }, "bad: is damaged: the cell size is");
+  }
+  put(west, inf);
+  expectError({ bad }, "bad: is damaged: a coordinate of the map is inf");
+  put(z, std::nan(""));
+  expectError({ bad }, "bad: is damaged: a coordinate of the map is nan");
+  put(iterations, std::uint64_t(1) << 60);
+  expectError({ bad }, "bad: is damaged");
+  put(count, std::int64_t(-5));
+  expectError({ bad }, "bad: is damaged: in iteration 0 -5 rocks were released");
+  put(count, std::int64_t(0));
+  expectError({ bad }, "more passages than can be");
+  put(count, std::int64_t(2)); // a probability of 1.5
+  expectError({ bad }, "more passages than can be");
+  put(count - 8, std::int64_t(-1));
+  expectError({ bad }, "bad: is damaged: in iteration -1");
+  put(count - 8, std::int64_t(1) << 40);
+  expectError({ bad }, "bad: is damaged: in iteration 1099511627776");
+  put(firstPassage + 4, std::uint32_t(0x7fffffff)); // entries: with another rock's more than an int
+  expectError({ bad }, "came in too often");
+  put(firstPassage + 4, std::uint32_t(0));
+  expectError({ bad }, "came in 0 times");
+  put(firstPassage + 12, std::int32_t(-7));
+  expectError({ bad }, "rock -7");
+  put(firstPassage + 16, inf);
+  expectError({ bad }, "has the value inf");
+}
