@@ -192,7 +192,8 @@ TEST(Scatter, TheImpactsOfOneRunDiffer)
   const auto coefficients = [](DeviationPer per)
   {
     std::set<double> all;
-    for (const ImpactEvent& impact : runs(slope(per), 1, 0, 1).front().impacts)
+    const auto trajectories = runs(slope(per), 1, 0, 1);
+    for (const ImpactEvent& impact : trajectories.front().impacts)
     {
       all.insert(impact.restitution);
     }

@@ -34,7 +34,7 @@ inline std::uint32_t checksum(const std::string& bytes)
 
 inline std::string zipOf(const Entries& entries)
 {
-  const auto word = [](std::uint32_t value, int bytes)
+  const auto word = [](std::uint64_t value, int bytes)
   {
     std::string text;
     for (int k = 0; k < bytes; ++k)
