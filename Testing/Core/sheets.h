@@ -39,7 +39,8 @@ inline std::string zipOf(const Entries& entries)
     std::string text;
     for (int k = 0; k < bytes; ++k)
     {
-      text += char(value >> 8 * k & 0xff);
+      text += char(value & 0xff);
+      value >>= 8;
     }
     return text;
   };
