@@ -151,6 +151,7 @@ private:
   double settledSpeed() const; ///< What the springs of such a rock could give it, m/s.
 
   // Ground that gives way, groundYields.cxx
+  const YieldingGround& yieldingOf(int restitutionClass) const;
   const YieldingGround& yieldingAt(const Contact& contact) const; ///< Hard on trees.
   /// Λ sinks under what comes down within a step of `h` (s), or rises with the rock. Whether it
   /// did: contacts and candidates are then out of date.

@@ -53,7 +53,6 @@ void Scar::touch(const Contact& contact)
 double Scar::book(double volume, const Vec3& way, double areaAtEnd)
 {
   area_ = areaAtEnd;
-  swept_ += volume;
   if (volume > 0.0)
   {
     length_ += (way - way.dot(surface_.normal) * surface_.normal).norm();

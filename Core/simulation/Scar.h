@@ -29,7 +29,6 @@ public:
   double depth() const { return depth_; }     ///< Of Λ now, straight down, m.
   double deepest() const { return deepest_; } ///< Of Λ so far, m.
   double length() const { return length_; }   ///< Way along the surface so far, m.
-  double swept() const { return swept_; }     ///< Volume so far, m³.
   /// Whether the rock has been down on Λ, or on its way out.
   bool turned() const { return turned_; }
   const Vec3& normal() const { return surface_.normal; } ///< Of the ground under it.
@@ -56,7 +55,7 @@ private:
   /// Books the volume (m³) of a way (m) that ends with this area (m²) inside.
   double book(double volume, const Vec3& way, double areaAtEnd);
 
-  double depth_ = 0.0, deepest_ = 0.0, length_ = 0.0, swept_ = 0.0;
+  double depth_ = 0.0, deepest_ = 0.0, length_ = 0.0;
   double area_ = 0.0; ///< At the end of the last motion, m²; < 0: unknown.
   int ground_ = 0;
   bool turned_ = false;

@@ -30,15 +30,19 @@ constexpr double kShortest = 1e-6;
 
 } // namespace
 
+const YieldingGround& RockSimulator::yieldingOf(int restitutionClass) const
+{
+  return surface_.terrain().restitutionMaterial(restitutionClass).yielding;
+}
+
 const YieldingGround& RockSimulator::yieldingAt(const Contact& contact) const
 {
   static const YieldingGround hard;
-  const std::int64_t cfe = contact.cfe;
   if (solid_ && this->treeOf(contact) >= 0)
   {
     return hard;
   }
-  return surface_.terrain().restitutionMaterial(surface_.restitutionClass(cfe)).yielding;
+  return this->yieldingOf(surface_.restitutionClass(contact.cfe));
 }
 
 bool RockSimulator::followScar(double h)
@@ -150,7 +154,7 @@ void RockSimulator::plough(double volume)
   {
     return;
   }
-  const YieldingGround& ground = surface_.terrain().restitutionMaterial(scar_.ground()).yielding;
+  const YieldingGround& ground = this->yieldingOf(scar_.ground());
   const double before = rigidKineticEnergy(block_, state_);
   state_.velocity *= ground.speedLeft(volume, block_.mass());
   state_.spin *= ground.spinLeft(volume, block_.mass());
@@ -161,7 +165,7 @@ void RockSimulator::plough(double volume)
 
 void RockSimulator::flyThroughSoil(double duration)
 {
-  const YieldingGround& ground = surface_.terrain().restitutionMaterial(scar_.ground()).yielding;
+  const YieldingGround& ground = this->yieldingOf(scar_.ground());
   thread_local PlacedBlock placed;
   for (double left = duration; left > 0.0;)
   {
@@ -196,8 +200,7 @@ void RockSimulator::forgetSlip(double duration)
 {
   if (slip_ > 0.0)
   {
-    slip_ *=
-      std::exp(-surface_.terrain().restitutionMaterial(touched_).yielding.frictionDecay * duration);
+    slip_ *= std::exp(-this->yieldingOf(touched_).frictionDecay * duration);
   }
 }
 

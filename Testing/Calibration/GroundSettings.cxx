@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 
 namespace rockfall::calibration
 {
@@ -201,6 +202,19 @@ Arguments parseArguments(int argumentCount, char** words, GroundSettings default
     throw UsageError("the folder of the field data is missing");
   }
   return result;
+}
+
+int runProgram(int (*run)(int, char**), int count, char** words)
+{
+  try
+  {
+    return run(count, words);
+  }
+  catch (const std::exception& error)
+  {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
 }
 
 } // namespace rockfall::calibration

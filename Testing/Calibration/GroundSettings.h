@@ -59,4 +59,7 @@ struct Arguments
 Arguments parseArguments(int count, char** words, GroundSettings defaults,
   const std::vector<std::string>& switches, bool data = true);
 
+/// What a program's main returns: an exception is its message on standard error, and 1.
+int runProgram(int (*run)(int, char**), int count, char** words);
+
 } // namespace rockfall::calibration

@@ -154,13 +154,5 @@ int run(int count, char** words)
 
 int main(int count, char** words)
 {
-  try
-  {
-    return run(count, words);
-  }
-  catch (const std::exception& error)
-  {
-    std::fprintf(stderr, "%s\n", error.what());
-    return 1;
-  }
+  return runProgram(run, count, words);
 }
