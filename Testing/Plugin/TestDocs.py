@@ -175,11 +175,36 @@ for row in symbols:
     for name in re.findall(r"`(\w+)`", row[2]):
         expect(name in known, f"notation.md: {name} is no property, array or column")
 
-# Links between the pages.
-for path in sorted(glob.glob(os.path.join(DOCS, "*.md"))):
-    for target in re.findall(r"\]\(([^)#:]+)\)", read(path)):
-        expect(os.path.exists(os.path.join(DOCS, target)),
-               f"{os.path.basename(path)} links to {target}, which is not there")
+# Links between the pages, and to their headings.
+def anchors_of(text):
+    """Anchors of a page's headings, as GitHub makes them."""
+    headings = re.findall(r"^#+ (.*)$", re.sub(r"^```.*?^```", "", text, flags=re.MULTILINE | re.DOTALL), re.MULTILINE)
+    return {re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+pages = {os.path.basename(path): read(path) for path in sorted(glob.glob(os.path.join(DOCS, "*.md")))}
+for page, text in pages.items():
+    for target, anchor in re.findall(r"\]\(([^)#:\s]*)(?:#([^)]*))?\)", text):
+        expect(os.path.exists(os.path.join(DOCS, target)), f"{page} links to {target}, which is not there")
+        if anchor and (target or page) in pages:
+            expect(anchor in anchors_of(pages[target or page]),
+                   f"{page} links to {target}#{anchor}, which is no heading there")
+
+
+# People read pages that are short. Signs of tables are no words.
+def words_in(text):
+    return sum(any(c.isalnum() for c in word) for word in text.split())
+
+
+LONG = {"architecture.md": 2500, "method.md": 1800, "performance.md": 800, "validation.md": 1700,
+        "DEMtoCFEMesh.md": 6000, "RockBlocks.md": 4000, "RockfallHazardMap.md": 1900, "RockfallSimulation.md": 5500,
+        "TrajectoryCollector.md": 1800, "bad_input.md": 5000, "structures.md": 1600, "verification.md": 18500}
+for page, text in pages.items():
+    most = LONG.get(page, 1500)
+    expect(words_in(text) <= most, f"{page} has {words_in(text)} words, at most {most} are read")
+    for paragraph in re.split(r"\n\s*\n|\n(?=[-*|] |\d+\. )", text):
+        if not paragraph.startswith(("|", "    ", "```")):
+            expect(words_in(paragraph) <= 200, f"{page} has a paragraph of {words_in(paragraph)} words: {paragraph[:60]}")
 
 # What the code cites as METHOD n or n.m is a section of the page, or a numbered line of it.
 sections = dict(re.findall(r"^## (\d+)\. [^\n]*\n(.*?)(?=^## |\Z)", read(os.path.join(DOCS, "method.md")),
