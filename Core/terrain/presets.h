@@ -2,7 +2,7 @@
 
 /// @file
 /// Common kinds of ground, each with every parameter of the law and what supports it. The same with
-/// all sources: docs/DEMtoCFEMesh.md, Presets.
+/// all sources: docs/materials.md, Presets.
 
 #include "terrain/material.h"
 #include "terrain/scatter.h"

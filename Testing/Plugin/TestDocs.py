@@ -197,8 +197,8 @@ def words_in(text):
 
 
 LONG = {"architecture.md": 2500, "method.md": 1800, "performance.md": 800, "validation.md": 1700,
-        "DEMtoCFEMesh.md": 6000, "RockBlocks.md": 4000, "RockfallHazardMap.md": 1900, "RockfallSimulation.md": 5500,
-        "TrajectoryCollector.md": 1800, "bad_input.md": 5000, "structures.md": 1600, "verification.md": 18500}
+        "RockBlocks.md": 4000, "RockfallHazardMap.md": 1900, "RockfallSimulation.md": 5500,
+        "TrajectoryCollector.md": 1800, "bad_input.md": 5000, "verification.md": 18500}
 for page, text in pages.items():
     most = LONG.get(page, 1500)
     expect(words_in(text) <= most, f"{page} has {words_in(text)} words, at most {most} are read")
@@ -215,10 +215,10 @@ for path in glob.glob(os.path.join(ROOT, "Core", "*", "*.[hc]*")):
                f"{path} cites METHOD {section}{'.' + line if line else ''}, which docs/method.md does not have")
 
 # The panel says of each preset what supports it, as the page does.
-presets = [f"{row[0]} ({row[1]})" for row in rows_of(read(os.path.join(DOCS, "DEMtoCFEMesh.md")), "Preset", "Support")]
+presets = [f"{row[0]} ({row[1]})" for row in rows_of(read(os.path.join(DOCS, "materials.md")), "Preset", "Support")]
 labels = [entry.get("text") for entry in
           proxies["DEMToCFEMesh"].iterfind("IntVectorProperty[@name='Preset']/EnumerationDomain/Entry")][1:]
-expect(presets == labels, f"DEMtoCFEMesh.md has the presets {presets}, the panel {labels}")
+expect(presets == labels, f"materials.md has the presets {presets}, the panel {labels}")
 
 if failures:
     raise SystemExit("\n".join(failures))
