@@ -1,8 +1,9 @@
-"""docs/bad_input.md says for every input what a user is told when it is bad. Each row is made here: the
-input is given to ParaView, there is one error and no result, and the row has its words. When they differ,
-the page as it should be is left in this test's folder as bad_input.md."""
+"""docs/bad_input.md says for every message about bad input what to do. Each mistake is made here: the input is
+given to ParaView, there is one error and no result. docs/data/bad_input.csv has the messages word by word; when
+they differ, the table as it should be is left in this test's folder."""
 
 import contextlib
+import csv
 import difflib
 import io
 import json
@@ -22,7 +23,7 @@ from paraview import servermanager
 HERE = os.path.dirname(os.path.abspath(__file__))
 PAGE = os.path.join(HERE, "..", "..", "docs", "bad_input.md")
 STUDY = os.path.join(HERE, "..", "..", "Examples", "study.py")
-MARK = "<!-- From here on made by Testing/Plugin/TestBadInputPage.py. -->\n"
+TABLE = os.path.join(HERE, "..", "..", "docs", "data", "bad_input.csv")
 
 sections = []  # (title, [(what is wrong, message)])
 failures = []
@@ -36,7 +37,7 @@ def row(wrong, text):
     text = re.sub(r"^\w+ \(0x[0-9a-f]+\): ", "", text)
     text = text.replace(os.getcwd() + "/", "")
     text = re.sub(r"this machine has [\d.]+ GB", "this machine has … GB", text)
-    sections[-1][1].append((wrong, text.replace("|", "\\|").replace("\n", " ")))
+    sections[-1][1].append((wrong, text.replace("\n", " ")))
 
 
 def one(wrong, proxy, ports=1, own=None):
@@ -479,17 +480,31 @@ run("lines without a file", lines={})
 run(None, folder="results")
 run("another study in the folder", folder="results", chunk=2)
 
-made = MARK
+# What the program says, word by word.
+made = io.StringIO()
+table = csv.writer(made, lineterminator="\n")
+table.writerow(["input", "wrong", "message"])
 for title, rows in sections:
-    made += f"\n## {title}\n\n| What is wrong | What the user is told |\n|---|---|\n"
-    made += "".join(f"| {wrong} | {text} |\n" for wrong, text in rows)
+    for wrong, text in rows:
+        table.writerow([title, wrong, text])
+with open(TABLE, encoding="utf-8", newline="") as file:
+    told = file.read()
+if told != made.getvalue():
+    write_text("bad_input.csv", made.getvalue())
+    failures.append("docs/data/bad_input.csv is not what the program says, this test's folder has it as it should be:\n" +
+                    "".join(difflib.unified_diff(told.splitlines(True), made.getvalue().splitlines(True),
+                                                 "docs", "made", n=0)))
+
+# Who sees a message finds its words on the page, with what to do. … stands for anything.
 with open(PAGE, encoding="utf-8") as file:
     page = file.read()
-head, mark, told = page.partition(MARK)
-if mark + told != made:
-    write_text("bad_input.md", head + made)
-    failures.append("bad_input.md is not what the program says:\n" + "".join(difflib.unified_diff(
-        (mark + told).splitlines(True), made.splitlines(True), "docs", "made", n=0)))
+words = [re.compile(".*".join(re.escape(piece) for piece in phrase.split("…")), re.IGNORECASE)
+         for line in page.splitlines() if line.startswith("| *")
+         for phrase in re.findall(r"\*([^*]+)\*", line.split(" | ")[0])]
+for title, rows in sections:
+    for wrong, text in rows:
+        if not text.startswith("no error") and not any(phrase.search(text) for phrase in words):
+            failures.append(f"bad_input.md does not say what to do about {title}, {wrong}: {text}")
 if failures:
     raise SystemExit("\n".join(failures))
 print(sum(len(rows) for _, rows in sections), "kinds of bad input, one message each")

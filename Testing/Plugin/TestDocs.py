@@ -102,8 +102,8 @@ def arrays_of(data):
 
 
 def documented_arrays(section):
-    result = {(row[1], name_in(row[0])): row[2]
-              for row in rows_of(section, "Array", "On", "Type", "Unit")}
+    result = {(where, name_in(row[0])): row[2]
+              for row in rows_of(section, "Array", "On", "Type", "Unit") for where in row[1].split(", ")}
     result.update({("row", name_in(row[0])): row[1]
                    for row in rows_of(section, "Column", "Type", "Unit")})
     return result
@@ -119,6 +119,8 @@ expect(set(proxies) == {proxy for _, proxy, _ in PAGES},
 known = set()  # every property, array and column
 for page, proxy, variable in PAGES:
     text = read(os.path.join(DOCS, page + ".md"))
+    output = os.path.join(DOCS, page + "Output.md")  # where there are many arrays
+    output = read(output) if os.path.exists(output) else text
 
     rows = rows_of(text, "Property", "Unit", "Default", "Meaning")
     documented = {name_in(row[0]): row[2] for row in rows}
@@ -143,8 +145,9 @@ for page, proxy, variable in PAGES:
     for script in scripts:
         exec(compile(script, page + ".md", "exec"), scope)
     result = scope[variable].GetClientSideObject()
-    sections = re.split(r"^### Port (\d+)", text.split("\n## Output")[1].split("\n## ")[0],
-                        flags=re.MULTILINE)[1:]
+    shared, *sections = re.split(r"^### Port (\d+)", output.split("\n## Output")[1].split("\n## ")[0], flags=re.MULTILINE)
+    shared = documented_arrays(shared)  # what several ports have, told once
+    used = set()
     expect([int(n) for n in sections[::2]] == list(range(result.GetNumberOfOutputPorts())),
            f"{page}.md describes the ports {sections[::2]}")
     for number, section in zip(sections[::2], sections[1::2]):
@@ -152,6 +155,8 @@ for page, proxy, variable in PAGES:
         expect("Empty without" in section or data.GetNumberOfElements(6 if data.IsA("vtkTable") else 1) > 0,
                f"{page}.md: its script leaves port {number} empty")
         made, told = arrays_of(data), documented_arrays(section)
+        used |= set(shared) & set(made)
+        told = {**{key: kind for key, kind in shared.items() if key in made}, **told}
         known |= {name for _, name in made}
         if "slope's field arrays" in section:  # which are on the page of slopes
             made = {key: kind for key, kind in made.items()
@@ -160,6 +165,7 @@ for page, proxy, variable in PAGES:
             expect(made.get(key) == told.get(key),
                    f"{page}.md, port {number}: {' array '.join(key)} is {told.get(key)}, "
                    f"the filter makes {made.get(key)}")
+    expect(used == set(shared), f"{page}.md: no port has {sorted(set(shared) - used)}")
     for source in list(paraview.simple.GetSources().values()):
         paraview.simple.Delete(source)
 
@@ -198,13 +204,24 @@ def words_in(text):
 
 LONG = {"architecture.md": 2500, "method.md": 1800, "performance.md": 800, "validation.md": 1700,
         "RockBlocks.md": 4000, "RockfallHazardMap.md": 1900, "RockfallSimulation.md": 5500,
-        "TrajectoryCollector.md": 1800, "bad_input.md": 5000, "verification.md": 18500}
+        "TrajectoryCollector.md": 1800, "verification.md": 18500}
 for page, text in pages.items():
     most = LONG.get(page, 1500)
     expect(words_in(text) <= most, f"{page} has {words_in(text)} words, at most {most} are read")
     for paragraph in re.split(r"\n\s*\n|\n(?=[-*|] |\d+\. )", text):
         if not paragraph.startswith(("|", "    ", "```")):
             expect(words_in(paragraph) <= 200, f"{page} has a paragraph of {words_in(paragraph)} words: {paragraph[:60]}")
+
+# Messages on the page of bad input are in the code. … stands for what is put in.
+sources = [path for folder in ("Core", "Filters", "Examples")
+           for path in glob.glob(os.path.join(ROOT, folder, "**", "*.*"), recursive=True)
+           if path.endswith((".cxx", ".h", ".py"))]
+spoken = "\n".join(map(read, sources)) + read(os.path.join(DOCS, "data", "bad_input.csv"))
+spoken = re.sub(r'"\s*\n\s*f?"', "", spoken).replace('\\"', '"').replace('""', '"').lower()
+for line in pages["bad_input.md"].splitlines():
+    for phrase in re.findall(r"\*([^*]+)\*", line.split(" | ")[0]) if line.startswith("| *") else []:
+        for piece in phrase.split("…"):
+            expect(piece.strip().lower() in spoken, f"bad_input.md: nothing says {piece.strip()}")
 
 # What the code cites as METHOD n or n.m is a section of the page, or a numbered line of it.
 sections = dict(re.findall(r"^## (\d+)\. [^\n]*\n(.*?)(?=^## |\Z)", read(os.path.join(DOCS, "method.md")),
