@@ -247,7 +247,7 @@ public:
   /**
    * Rockfall sources: a layer of points, lines or polygons of any kind that OGR opens, or a CSV
    * table with columns x, y, z. What a row does not say is as the properties say; the columns are
-   * in docs/RockBlocks.md. Empty (the default): the source is the point Center, or the steep part
+   * in docs/sources.md. Empty (the default): the source is the point Center, or the steep part
    * of the terrain if SlopeThreshold is above 0.
    */
   vtkSetStdStringFromCharMacro(FileName);

@@ -84,7 +84,7 @@ struct SourceLayer
   std::vector<std::string> notes; ///< One sentence per thing that was done to the data.
 };
 
-/// Reads one layer of anything OGR opens. Columns are listed in docs/RockBlocks.md, without
+/// Reads one layer of anything OGR opens. Columns are listed in docs/sources.md, without
 /// regard to upper and lower case; other columns are ignored, and an empty cell is as good as no
 /// column. Points, lines and polygons; multipoints of one point; rows of a table without geometry
 /// have x, y and z. Where a geometry has its own z, that goes before the column z (or z_m, z_ft).
