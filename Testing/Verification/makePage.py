@@ -1,157 +1,91 @@
-#!/usr/bin/python3
-"""Runs the verification programs and makes docs/verification.md and its pictures of their results.
+"""Runs the verification programs and makes of their results docs/data/verification.csv, with every figure,
+docs/verification.md, with the worst of each claim, and the pictures.
 
     makePage.py --results FOLDER --form full|reduced [--docs FOLDER] [--run PROGRAM ...]
+    makePage.py --docs FOLDER          the page anew, of the figures in docs/data/verification.csv
 
-Every number on the page comes from the lines of JSON that the programs write; the words beside them
-are here and in the programs. A program that fails or hangs does not keep the page from being made:
-it is on the page.
+Every number on the page comes from the lines of JSON that the programs write; the words beside them are here and
+in the programs. A program that fails or hangs does not keep the page from being made: it is on the page.
 """
 
 import argparse
 import collections
+import csv
 import datetime
 import json
 import math
 import os
 import pathlib
+import re
 import subprocess
 import sys
 
 GUARD = 4 * 3600  # s, of one program in the full form
+COLUMNS = ["case", "test", "quantity", "value", "unit", "kind", "expected", "tolerance", "passed", "reason"]
 
-# Subject (as the programs name it), what it is about, pictures of it. In the order of the page.
-CHAPTERS = [
-    ("Projectile with spin",
-     "A spinning block released at 28 m/s flies for 10 s. Its centroid has to be on the parabola whatever Δt: flight "
-     "is not "
-     "stepped.", []),
-    ("Torque-free rotation",
-     "Angular momentum, kinetic energy and volume are invariants of free rotation (METHOD 10.3, 10.4). A plate with "
-     "two equal "
-     "moments has its attitude in closed form, a box of three different moments turns over about its intermediate "
-     "axis with a "
-     "period that is an elliptic integral.", ["flips"]),
-    ("Elastic rebound",
-     "A cube of 1 m³ falls face down on a horizontal slope, elastic (METHOD 9.1, 10.1; paper figs 12 and 13). The "
-     "ratio of rebound "
-     "to incident speed is taken from samples in free flight, brought to the floor along the parabola. The reference "
-     "curves are "
-     "the same block on the same springs, its four variables of a face-down fall integrated by velocity Verlet until "
-     "it has left "
-     "for good, nothing dissipated.", ["velocity-history", "rebound"]),
-    ("Slope as blocks",
-     "What a step costs if the slope is a system of fixed blocks, as before CFEs. For comparison only.", ["block-cost"]),
-    ("Elastic drop in any attitude",
-     "Six shapes in random attitudes, turning, fall 3 m without friction and with Rv 1 on planes, a ridge and a "
-     "peak. What they "
-     "have of mechanical energy when they fly again is compared with what they had; on a plane, angular momentum "
-     "about its normal "
-     "and momentum along it must stay.", []),
-    ("Restitution",
-     "The paper's adjustment, (Vx, Vy, Vz) ← Rv (Vx, Vy, Vz) once per impact (METHOD 4): a bounce keeps Rv² of the "
-     "height, and the "
-     "bounces end with the geometric series. Sliding and rolling are no impacts.", ["restitution"]),
-    ("Sliding",
-     "A cube on a plane of 30° (METHOD 9.2; paper fig. 14), in 16 azimuths, over one pair of CFEs and over 10⁴ of "
-     "them; and at rest "
-     "below the friction angle.", ["sliding"]),
-    ("Slide or topple",
-     "A block b long and h high on an incline is stable, slides, topples or does both. The boundaries are found by "
-     "bisection: "
-     "sliding counts from 5 mm, toppling from 3° on.", ["topple-map"]),
-    ("Rocking block",
-     "A block of half-sizes 0.25 × 1 m, tilted about an edge and let go: the time until it stands upright is a "
-     "quarter of Housner's "
-     "(1963) period.", ["rocking"]),
-    ("Rolling",
-     "A ball of flat faces, an icosahedron cut up and blown up to a sphere. Limits of the closed form: beyond √(g "
-     "r), 2.5 m/s, a "
-     "polyhedron hops from vertex to vertex; each vertex that sets down without rebound takes δ²/1.4 of the energy "
-     "of rolling, δ "
-     "the angle between vertices (8° for 1280 faces, 4° for 5120); and a ball that lies on a face has to be tipped "
-     "over its edge "
-     "first. Hence short runs from rest, 5120 faces beside 1280, and bars only where the ball is round enough.",
-     ["rolling", "slip-to-roll", "ball"]),
-    ("Oblique impact of a ball",
-     "The ball lands on a vertex straight below its centroid, without spin, restitution on the normal component "
-     "only. Below "
-     "v_t/v_n = 3.5 μ (1+e) the contact sticks, above it slides all the way.", ["oblique"]),
-    ("Convergence",
-     "Δt halved and contact stiffness multiplied by ten, in four problems with a known answer.", ["convergence-Δt",
-                                                                                              "convergence-penalty"]),
-    ("Tunnelling",
-     "Shots at jagged ground: noise, ridges, pits and spikes, terraces with steep walls, cells of 0.1 to 5 m. A shot "
-     "counts as "
-     "through if the centroid gets under the surface. The target `verification-tunnelling` fires a million.", []),
-    ("Internal edges",
-     "A plane whose heights are exact in binary, cut into two CFEs and into 32,768 (METHOD 10.5).", []),
-    ("CFE search",
-     "Patch, candidates and contacts of a cube on rough ground, from 100 to 10⁶ cells (METHOD 5); brute force "
-     "beside it.",
-     ["search"]),
-    ("Shape test",
-     "The paper's bi-planar slope (METHOD 9.3; figs 15, 16): cube and icosahedron of 1 m³, roughness 0.1 ± 0.1 m, Rv "
-     "0.8, φ 15°, Δt "
-     "0.005 s. θ = arctan(W/2L), with W the range of the lateral places and L the longest run of the group. Ten "
-     "iterations as in the "
-     "paper, drawn a thousand times from all that were run, give the mean and the 95 % interval.",
-     ["paths", "theta"]),
-    ("Shape test, variants",
-     "The same with what the paper leaves open (height and attitude of the release) and with other friction "
-     "angles.", []),
-    ("Energy audit",
-     "Released = kinetic + strain + friction + restitution + vibration + damping + numerical, over every trajectory "
-     "of the shape "
-     "test.", []),
-    ("Piles that stand",
-     "A column of ten cubes, a wall of 10 × 5 bricks and a dry-stone arch, every contact awake: nothing may creep, "
-     "and the floor carries the weight.", []),
-    ("Heaps",
-     "Cubes of 0.6 m³, turned at random, fall onto a floor and on each other: no overlap, rest, and a heap that is "
-     "the steeper the more friction there is.", ["heap-repose"]),
-    ("Crowds",
-     "The same rocks fall twice: with every impact resolved in time, as in groups of up to 64 rocks, and all stepped as "
-     "in a large crowd. They go as far, and lose their energy to the same.", []),
-    ("Robustness",
-     "Unreasonable input. Every case is a test of its own under a guard of 120 s of wall time, so that a hang "
-     "is a failure.", []),
+# Claim, case as the programs name it, quantities that show it (a pattern), picture. In the order of the page.
+# A claim may stand for several figures: the page shows the one that is nearest to its bar.
+CLAIMS = [
+    ("A block in flight is on its parabola, whatever Δt (relative error).", "Projectile with spin", "relative error", None),
+    ("Free rotation keeps angular momentum (relative change).", "Torque-free rotation", "angular momentum", None),
+    ("… and energy (relative change).", "Torque-free rotation", "energy", None),
+    ("… and does not swell (METHOD 10.3).", "Torque-free rotation", "volume", None),
+    ("A turning plate has the attitude of the closed form.", "Torque-free rotation", "attitude", None),
+    ("A box flips about its middle axis on time.", "Torque-free rotation", "period of two flips", "flips"),
+    ("An elastic rebound has the speed of its fall, whatever Δt and penalty (METHOD 9.1).", "Elastic rebound",
+     "least ratio|mean ratio at E 1e11", "rebound"),
+    ("No rebound makes energy (ratio of speeds).", "Elastic rebound", "greatest ratio", None),
+    ("CFEs give the velocity history of a slope of blocks (share of the speed).", "Elastic rebound", "slope as block",
+     "velocity-history"),
+    ("Elastic drops of any shape in any attitude keep energy (share of the fall).", "Elastic drop in any attitude",
+     "change of mechanical energy", None),
+    ("… and, on planes, angular momentum.", "Elastic drop in any attitude", "change of angular momentum", None),
+    ("A bounce keeps Rv² of the height.", "Restitution", "first bounce", "restitution"),
+    ("Sliding and rolling are no impacts.", "Restitution", "way until it rests|way over that", None),
+    ("Sliding follows ½ (g sin α − g cos α tan φ) t² in every direction (METHOD 9.2).", "Sliding", "error of the way",
+     "sliding"),
+    ("Below the friction angle nothing creeps.", "Sliding", "drift", None),
+    ("A block slides, topples or stands by the closed forms.", "Slide or topple", ".", "topple-map"),
+    ("A rocking block has Housner's (1963) quarter period.", "Rocking block", "first impact$", "rocking"),
+    ("A round body rolls with 5/7 g sin α.", "Rolling", "acceleration", "rolling"),
+    ("A ball that is pushed off slips, then rolls with 5/7 v₀.", "Rolling", "speed over v₀", "slip-to-roll"),
+    ("Rolling resistance stops it at Azzoni's distance.", "Rolling", "distance to rest", None),
+    ("A ball that lands obliquely sticks or slides by the closed form.", "Oblique impact of a ball", "error of v_t|v_n'/e",
+     "oblique"),
+    ("The finest Δt and the stiffest penalty give the known answer (relative error).", "Convergence", "relative error at",
+     "convergence-Δt"),
+    ("… and errors do not grow on the way there (last over first).", "Convergence", "over that at the first", "convergence-penalty"),
+    ("No shot at jagged ground goes through.", "Tunnelling", "under the surface$|number that is none", None),
+    ("One triangle and thousands are one plane.", "Internal edges", ".", None),
+    ("The search looks at as many CFEs on 10⁶ cells as on 100.", "CFE search", "CFEs looked at", "search"),
+    ("Run-outs are those of the ground, not of its cells (largest over smallest).", "Roughness and cells",
+     "largest over smallest", None),
+    ("Every joule is booked (remainder of what is released).", "Energy audit", "remainder", None),
+    ("Columns, walls and arches stand.", "Piles that stand", "drift", None),
+    ("… and the floor carries their weight.", "Piles that stand", "weight", None),
+    ("Heaps of 1000 cubes overlap by less than 1 % of an edge.", "Heaps", "deepest overlap", "heap-repose"),
+    ("… and all come to rest.", "Heaps", "at rest", None),
+    ("Crowds go as far as rocks whose impacts are resolved.", "Crowds", "mean way", None),
+    ("… and lose their energy to the same.", "Crowds", "share of the energy", None),
+    ("Random scenes of many rocks make no energy.", "Random scenes", "energy made", None),
+    ("… and have the same bits on one thread and two.", "Random scenes", "differ", None),
+    ("Rocks on long slopes of talus are as fast as field surveys say.", "Long slopes", "speed", None),
+    ("… jump as high,", "Long slopes", "height over ground", None),
+    ("… and get as far (reach angle).", "Long slopes", "reach angle, 5 %", None),
+    ("Nothing creeps on a meadow.", "Long slopes", "meadow at|rest", None),
+    ("Unreasonable input ends with numbers, above the ground.", "Robustness", "number that is none|under the ground", None),
+    ("… and makes no energy (share of that released).", "Robustness", "energy made", None),
 ]
 
-# What a reader has to know about the figures of a case, whatever they are.
-COMMENTS = {
-    "Heaps":
-        "The full form, 1000 cubes at four friction angles, takes some two minutes of two cores; the reduced one (45 "
-        "cubes at two) runs with the other tests.",
-    "Elastic rebound":
-        "Where the block is softer than its contact (E L < p) the outcome depends on what becomes of the block's "
-        "vibration between the touches that follow one another within milliseconds. Where it is far stiffer, its strain "
-        "follows the contact without inertia and the ratio is 1 to rounding; the reference keeps a little vibration there.",
-    "Rolling":
-        "The figures approach those of a sphere as the faces become smaller; at 1280 faces the deviation is the "
-        "polyhedron's.",
-    "Shape test":
-        "θ is an extreme-value statistic (a range over a longest run): it grows with the number of iterations, and ten of "
-        "them leave an interval as wide as the difference that the paper reports. The paper gives neither the height nor "
-        "the attitude of the release; see the variants for what they do.",
-}
-
-# What it means that a bar of a case is missed.
-WHEN_MISSED = {
-    "Oblique impact of a ball":
-        "Sticking is a shear spring with damping of its own. When the normal contact opens it has not quite come to rest, "
-        "and the slip velocity left over depends on where in its swing that is: it scatters about zero by a few per cent "
-        "of v_t, and v_t' by 2/7 of that.",
-    "Elastic drop in any attitude":
-        "Where energy is left in springs in flight, a contact was dropped while it was still compressed: near a peak it came "
-        "to the end of its feature and no neighbour took it over. Damped steps are taken where a step of lasting contact "
-        "falls between two touches of one impact.",
-    "Shape test":
-        "The order of the two shapes is not the paper's. At φ 15° on 30° a cube that lies on a face slides, and as "
-        "tan φ < b/h it cannot trip: friction takes more of its energy than impacts do and keeps it in the fall line. An "
-        "icosahedron goes on rolling and bouncing, and is turned aside at each touch. The variants show that the cube "
-        "spreads wider than the icosahedron where it tumbles, that is with more friction and a higher release.",
-}
+# What cannot be claimed: case, quantities that show it, words.
+NOT_SHOWN = [
+    ("Shape test", "mean θ of 10 cubes over", "The paper's cubes spread twice as wide as its icosahedra (METHOD 9.3). Here cubes "
+     "that lie on a face slide, keep to the fall line and spread less; they spread wider where friction or release make them "
+     "tumble. θ is a range over ten paths."),
+    ("Rolling", "speed after 4 s", "Beyond √(g r) a polyhedron hops from vertex to vertex; speed over that of a sphere."),
+    ("Slope as blocks", "128 CFEs: time per step, slope as blocks", "What a step costs if the slope is fixed blocks, as before "
+     "CFEs; for comparison only."),
+]
 
 PICTURES = {
     "flips": ("Torque-free rotation of a box of 2.5 × 3 × 1 m", "time, s", "spin about x, rad/s", {}),
@@ -169,6 +103,7 @@ PICTURES = {
     "convergence-Δt": ("Convergence in the time step", "Δt, s", "relative error", {"x": "log", "y": "log", "marks": 1}),
     "convergence-penalty": ("Convergence in the penalty", "penalty, N/m", "relative error", {"x": "log", "y": "log",
                                                                                           "marks": True}),
+    "heap-repose": ("Heaps of cubes of 0.6 m³", "friction angle, °", "slope of the heap, °", {"marks": 1}),
     "search": ("Search for contacts", "cells of the slope", "time per call, µs", {"x": "log", "y": "log", "marks": 1}),
     "theta": ("Dispersion angle of 10 iterations", "θ, °", "share of draws below", {}),
 }
@@ -208,7 +143,7 @@ def number(value):
     size = abs(value)
     if 1e-3 <= size < 1e5:
         digits = max(0, 4 - int(math.floor(math.log10(size))) - 1)
-        return f"{value:.{digits + 1}f}".rstrip("0").rstrip(".") if size < 1e4 else f"{value:.0f}"
+        return f"{value:.{digits}f}".rstrip("0").rstrip(".") if size < 1e4 else f"{value:.0f}"
     return f"{value:.2e}"
 
 
@@ -223,24 +158,25 @@ def bar(line):
     return f"({number(line['expected'])})" if line["expected"] is not None else ""
 
 
-def verdict(line):
-    if line["kind"] == "report":
-        return "–"
-    return "pass" if line["passed"] else "**FAIL**"
-
-
 def cell(text):
     return text.replace("|", "\\|").replace("\n", " ")
 
 
-def table(lines):
-    """Rows; the common beginning of neighbouring quantities stays, so that each row can be read alone."""
-    rows = ["| quantity | measured | expected | | why this bar |", "|---|---|---|---|---|"]
-    for line in lines:
-        unit = f" {line['unit']}" if line["unit"] else ""
-        rows.append("| " + " | ".join([cell(line["quantity"]), number(line["value"]) + unit, bar(line), verdict(line),
-                                       cell(line["reason"])]) + " |")
-    return rows
+def nearness(line):
+    """How near a figure is to its bar: 1 is on it, more is beyond."""
+    value, expected = line["value"], line["expected"]
+    if value is None:
+        return math.inf
+    if line["kind"] == "within":
+        return abs(value - expected) / line["tolerance"] if line["tolerance"] else (0.0 if value == expected else math.inf)
+    if line["kind"] == "atMost":
+        return value / expected if expected else (0.0 if value <= 0.0 else math.inf)
+    return expected / value if value else math.inf
+
+
+def figure(line):
+    unit = f" {line['unit']}" if line["unit"] else ""
+    return number(line["value"]) + unit
 
 
 def draw(curves, folder):
@@ -341,65 +277,97 @@ def draw_paths(shapes, plt, save, clean):
     save(figure, "paths")
 
 
-def write_page(lines, tests, form, docs):
-    pictures = docs / "images" / "verification"
-    pictures.mkdir(parents=True, exist_ok=True)
-    made = draw([line for line in lines if line["kind"] == "curve"], pictures)
-    figures = collections.defaultdict(list)
-    for line in lines:
-        if line["kind"] != "curve":
-            figures[line["subject"]].append(line)
-    bars = [line for group in figures.values() for line in group if line["kind"] != "report"]
-    failed = [line for line in bars if not line["passed"]]
-    cut_off = [name for name, ending in tests.items() if ending is None]
-    others = [(name, ending["message"]) for name, ending in tests.items() if ending and ending["message"]]
+def write_data(lines, path):
+    """Every figure, one a row."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    with open(path, "w", encoding="utf-8", newline="") as file:
+        rows = csv.writer(file, lineterminator="\n")
+        rows.writerow(COLUMNS)
+        for line in lines:
+            if line["kind"] != "curve":
+                rows.writerow([line["subject"], line["test"], line["quantity"], line["value"], line["unit"], line["kind"],
+                               line["expected"], line["tolerance"], int(line["passed"]), line["reason"]])
 
+
+def read_data(path):
+    """Of such a table the lines as the programs write them."""
+    def value_of(text):
+        return float(text) if text else None
+
+    with open(path, encoding="utf-8", newline="") as file:
+        return [{"subject": row["case"], "test": row["test"], "quantity": row["quantity"], "value": value_of(row["value"]),
+                 "unit": row["unit"], "kind": row["kind"], "expected": value_of(row["expected"]),
+                 "tolerance": value_of(row["tolerance"]), "passed": row["passed"] == "1", "reason": row["reason"]}
+                for row in csv.DictReader(file)]
+
+
+def tests_in(lines):
+    """Names of their tests, those of one suite together: `Flight.A, B`."""
+    suites = collections.defaultdict(list)
+    for line in lines:
+        suite, _, name = line["test"].rpartition("/")[2].partition(".")
+        name = name.partition("-")[0]
+        if name not in suites[suite]:
+            suites[suite].append(name)
+    return ", ".join(f"`{suite}.{names[0] if len(names) == 1 else '*'}`" for suite, names in suites.items())
+
+
+def page_of(lines, cut_off, others):
+    """The page's text. `lines` without curves; `cut_off`: tests that did not end; `others`: (test, message)."""
+    bars = [line for line in lines if line["kind"] != "report"]
+    failed = [line for line in bars if not line["passed"]]
     page = ["# Verification", "",
-            "What the engine computes beside closed forms and published figures. Every number and picture on this "
-            "page is made by "
-            "`ninja verification` from the runs themselves (`Testing/Verification/`); `ctest -L Verification` runs "
-            "the reduced forms of "
-            "the same cases. Regenerate the page, don't edit it.", "",
-            f"Form: {form}. Figures with a bar: {len(bars)}; met: {len(bars) - len(failed)}; missed: {len(failed)}. Tests that did not "
+            "What the engine computes beside closed forms and published figures. The page is made by "
+            "`ninja -C build verification`: don't edit it.", "",
+            "## How to", "",
+            "- `ctest -L Verification` runs the reduced forms of all cases, in minutes.",
+            "- `ninja -C build verification` runs the full ones and makes this page, its pictures and "
+            "[data/verification.csv](data/verification.csv), which has every figure, its bar and the reason for the bar.",
+            "- A claim may stand for many figures; the table has the one that is nearest to its bar. *METHOD* is "
+            "[method.md](method.md).", "",
+            f"Figures with a bar: {len(bars)}. Met: {len(bars) - len(failed)}. Missed: {len(failed)}. Tests that did not "
             f"end: {len(cut_off)}.", "",
-            "*Measured* is this code's figure. *Expected* is the closed form or the published one, with its "
-            "tolerance; in brackets it is "
-            "only there to compare with. A dash instead of a verdict: reported, without a bar. METHOD is the "
-            "restatement of the method "
-            "that the code follows, *the paper* Zheng et al. (2014), doi:10.1080/17486025.2013.871070.", ""]
-    page += ["## Summary", "", "| case | figures with a bar | met | missed |", "|---|---|---|---|"]
-    known = [subject for subject, _, _ in CHAPTERS] + sorted(s for s in figures if s not in {c[0] for c in CHAPTERS})
-    for subject in known:
-        barred = [line for line in figures.get(subject, []) if line["kind"] != "report"]
-        missed = sum(not line["passed"] for line in barred)
-        link = "#" + "".join(c for c in subject.lower().replace(" ", "-") if c.isalnum() or c == "-")
-        state = f"**{missed}**" if missed else "0"
-        if not figures.get(subject):
-            page.append(f"| [{subject}]({link}) | no results | | |")
-        else:
-            page.append(f"| [{subject}]({link}) | {len(barred)} | {len(barred) - missed} | {state} |")
+            "## Claims", "", "| claim | worst figure | bar | of | test |", "|---|---|---|---|---|"]
+    for claim, subject, pattern, picture in CLAIMS:
+        shown = [line for line in bars if line["subject"] == subject and re.search(pattern, line["quantity"])]
+        words = f"[{claim}](images/verification/{file_of(picture)})" if picture else claim
+        if not shown:
+            page.append(f"| {words} | no results | | | |")
+            continue
+        worst = max(shown, key=nearness)
+        mark = "" if all(line["passed"] for line in shown) else " **missed**"
+        page.append(f"| {words} | {figure(worst)}{mark} | {bar(worst)} | {len(shown)} | {tests_in(shown)} |")
+    page += ["", "Claims with a picture are links to it.", "", "## Limits", "", "| what is not shown | figure | compare |", "|---|---|---|"]
+    for subject, pattern, words in NOT_SHOWN:
+        for line in lines:
+            if line["subject"] == subject and re.search(pattern, line["quantity"]):
+                page.append(f"| {words} ({cell(line['quantity'].split(':')[0])}) | {figure(line)} | {bar(line)} |")
+    if failed:
+        page += ["", "## Missed", "", "| case | quantity | measured | expected |", "|---|---|---|---|"]
+        page += [f"| {line['subject']} | {cell(line['quantity'])} | {figure(line)} | {bar(line)} |" for line in failed]
     if cut_off or others:
-        page += ["", "Beside the figures:", ""]
+        page += ["", "## Beside the figures", ""]
         page += [f"- `{name}` did not end: it crashed, or hung and was stopped." for name in cut_off]
         page += [f"- `{name}`: {cell(message.strip())[:300]}" for name, message in others]
-    texts = {subject: (words, images) for subject, words, images in CHAPTERS}
-    for subject in known:
-        words, images = texts.get(subject, ("", []))
-        page += ["", f"## {subject}", "", words, ""]
-        if subject in COMMENTS:
-            page += [COMMENTS[subject], ""]
-        if subject in WHEN_MISSED and any(not line["passed"] for line in figures.get(subject, [])):
-            page += [WHEN_MISSED[subject], ""]
-        if figures.get(subject):
-            page += table(figures[subject])
-        else:
-            page.append("No results: the test did not get there.")
-        for image in images:
-            if image in made:
-                title = PICTURES[image][0] if image in PICTURES else "Paper fig. 16"
-                page += ["", f"![{title}](images/verification/{file_of(image)})"]
-    (docs / "verification.md").write_text("\n".join(page) + "\n", encoding="utf-8")
-    print(f"{docs / 'verification.md'}: {len(bars)} bars, {len(failed)} missed, {len(cut_off)} tests did not end")
+    page += ["", "## Pictures", ""]
+    for name, title in (("rebound", "Paper fig. 13: rebound by modulus and penalty"), ("sliding", "Paper fig. 14: sliding on 30°"),
+                        ("paths", "Paper fig. 16: paths of cube and icosahedron"), ("topple-map", "Block on an incline, φ 25°"),
+                        ("theta", "Dispersion angle of 10 iterations")):
+        page.append(f"![{title}](images/verification/{file_of(name)})")
+    return "\n".join(page) + "\n"
+
+
+def write_page(lines, tests, docs):
+    pictures = docs / "images" / "verification"
+    pictures.mkdir(parents=True, exist_ok=True)
+    draw([line for line in lines if line["kind"] == "curve"], pictures)
+    figures = [line for line in lines if line["kind"] != "curve"]
+    write_data(figures, docs / "data" / "verification.csv")
+    cut_off = [name for name, ending in tests.items() if ending is None]
+    others = [(name, ending["message"]) for name, ending in tests.items() if ending and ending["message"]]
+    (docs / "verification.md").write_text(page_of(figures, cut_off, others), encoding="utf-8")
+    failed = [line for line in figures if line["kind"] != "report" and not line["passed"]]
+    print(f"{docs / 'verification.md'}: {len(figures)} figures, {len(failed)} missed, {len(cut_off)} tests did not end")
     for line in failed:
         print(f"  FAIL {line['subject']}: {line['quantity']}: {number(line['value'])}, expected {bar(line)}")
 
@@ -435,12 +403,17 @@ def run(programs, results, form, guard):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--results", type=pathlib.Path, required=True, help="folder of the programs' results")
+    parser.add_argument("--results", type=pathlib.Path, help="folder of the programs' results; without it the page is made "
+                        "of the table in docs")
     parser.add_argument("--form", choices=("full", "reduced"), default="full")
     parser.add_argument("--docs", type=pathlib.Path, help="folder of the page; without it none is made")
     parser.add_argument("--guard", type=float, default=GUARD, help="seconds that one test may take")
     parser.add_argument("--run", nargs="*", default=[], metavar="PROGRAM", help="programs to run first")
     arguments = parser.parse_args()
+    if not arguments.results:
+        text = page_of(read_data(arguments.docs / "data" / "verification.csv"), [], [])
+        (arguments.docs / "verification.md").write_text(text, encoding="utf-8")
+        return
     folder = arguments.results / arguments.form
     if arguments.run:
         if folder.is_dir():
@@ -451,7 +424,7 @@ def main():
     if not tests:
         sys.exit(f"no results in {folder}")
     if arguments.docs:
-        write_page(lines, tests, arguments.form, arguments.docs)
+        write_page(lines, tests, arguments.docs)
 
 
 if __name__ == "__main__":
