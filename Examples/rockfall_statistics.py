@@ -57,12 +57,16 @@ def profile(x):
                      [120 + 0, 120 - 49, 120 - 51.2, 120 - 116.1, 120 - 116.1])
 
 
+def slope_heights():
+    """Heights of the nodes from south to north, m, and their eastings and northings."""
+    x, y = CELL * np.arange(COLUMNS), CELL * np.arange(ROWS)
+    gully = 3.0 * np.exp(-((y - 80.0) / 25.0) ** 2)[:, None] * np.clip((195 - x) / 195, 0, 1)[None, :]
+    return profile(x)[None, :] - gully, WEST + x, SOUTH + y
+
+
 def write_slope(path):
     """An ESRI ASCII grid, with a gully that gathers the rocks."""
-    x = CELL * np.arange(COLUMNS)
-    y = CELL * np.arange(ROWS)[::-1]
-    gully = 3.0 * np.exp(-((y - 80.0) / 25.0) ** 2)[:, None] * np.clip((195 - x) / 195, 0, 1)[None, :]
-    heights = profile(x)[None, :] - gully
+    heights = slope_heights()[0][::-1]
     with open(path, "w") as file:
         file.write(f"ncols {COLUMNS}\nnrows {ROWS}\nxllcenter {WEST}\nyllcenter {SOUTH}\n"
                    f"cellsize {CELL}\nNODATA_value -9999\n")
@@ -166,9 +170,14 @@ def reach_map(image, path):
     figure, axes = plt.subplots(figsize=(9, 4.5), layout="constrained")
     shown = axes.imshow(np.where(reach > 0, 100 * reach, np.nan), origin="lower", cmap="YlOrRd",
                         extent=bounds[:4], vmin=0)
+    heights, east, north = slope_heights()
+    lines = axes.contour(east, north, heights, np.arange(10, 120, 10), colors="0.45", linewidths=0.6)
+    x = CELL * np.arange(COLUMNS)
+    labels = [(WEST + np.interp(level, profile(x)[::-1], x[::-1]), SOUTH + 16) for level in lines.levels]
+    axes.clabel(lines, fontsize=7, fmt="%d m", manual=labels)
     axes.axvline(ROAD, color=INK, linestyle="--", linewidth=1)
     axes.ticklabel_format(useOffset=False, style="plain")
-    axes.set(xlabel="Easting, m", ylabel="Northing, m", title="Reach probability; dashed: the road")
+    axes.set(xlabel="Easting, m", ylabel="Northing, m", title="Reach probability; dashed: the road; contours: 10 m")
     figure.colorbar(shown, label="%", shrink=0.7)
     finish(figure, path)
 

@@ -84,6 +84,12 @@ def write(view, text, position, size=22, colour=INK, bold=False, centred=False):
     return source
 
 
+def write_lines(view, lines, position, size=18):
+    """Lines of text one under the other, the last one with its lower left corner there."""
+    for k, line in enumerate(reversed(lines)):
+        write(view, line, (position[0], position[1] + 1.5 * k * size / view.ViewSize[1]), size)
+
+
 def seen_at(view, point):
     """Share of the picture's width and height at which a point of the world is seen."""
     x, y, _, w = projection(view) @ [*point, 1.0]

@@ -10,9 +10,9 @@ import scenario
 from rockfall_ground import Ground, cells, hillshade, make_polydata
 from rockfall_tables import Trajectories
 from rockfall_view import (INK, RELEASED, SANDSTONE, cast_shadows, flat, new_view, plain, produce,
-                           python_filter, seen_at, show_slope, write)
+                           python_filter, seen_at, show_slope, write, write_lines)
 
-ROAD_COLOUR, BANK_COLOUR, PATH = [0.32, 0.33, 0.36], [0.13, 0.45, 0.25], [0.75, 0.12, 0.08]
+ROAD_COLOUR, BANK_COLOUR, PATH = [0.32, 0.33, 0.36], [0.13, 0.45, 0.25], [0.45, 0.05, 0.45]
 SKY = (0.86, 0.91, 0.97)
 
 
@@ -95,14 +95,14 @@ def map_picture(slopes, simulations, stops, path):
     focus = [scenario.LENGTH * 0.5 + 22.0, 0.5 * tall + 0.02 * tall]
     view.CameraFocalPoint, view.CameraPosition = focus + [0.0], focus + [1000.0]
     view.CameraViewUp = [0.0, 1.0, 0.0]
-    write(view, "41 rocks of one iteration: paths (red) and where they end (black)", (0.02, 0.95), 26, bold=True)
+    write(view, "41 rocks of one iteration: paths (purple) and where they end (black)", (0.02, 0.95), 26, bold=True)
     right = scenario.LENGTH + 3.0
     for k, name in enumerate(("with collisions", "without collisions")):
         count = int((stops[name][:scenario.ROCKS, 0] >= scenario.ROAD[0]).sum())
         u, v = seen_at(view, (right, k * (scenario.WIDTH + gap) + 0.55 * scenario.WIDTH, 0.0))
         write(view, f"{name}:\n{count} come to the road", (u, v), 24, bold=True)
         u, v = seen_at(view, (right, k * (scenario.WIDTH + gap) + 0.2 * scenario.WIDTH, 0.0))
-        write(view, "grey: road\ngreen: crest of the\nembankment planned\ncontours: 2 m", (u, v), 18)
+        write_lines(view, ["grey: road", "green: crest of the", "embankment planned", "contours: 2 m"], (u, v), 20)
     bar = make_polydata([[0.0, -2.5, 70.0], [20.0, -2.5, 70.0]])
     bar.SetLines(cells([[0, 1]]))
     flat(produce(bar), view, INK, LineWidth=6)
@@ -132,7 +132,9 @@ def oblique_picture(slopes, simulations, path, end):
     view.ViewTime = end
     look_uphill(view)
     write(view, "41 rocks that have hit each other: on the step, at the foot, on the road and beyond", (0.02, 0.945), 28, bold=True)
-    write(view, "Real shapes in their real size\nred: paths\ngreen: crest of the embankment planned\ncontours: 1 m", (0.02, 0.04), 20)
+    wide = scenario.ROAD[1] - scenario.ROAD[0]
+    write_lines(view, ["Rocks in their real shape and size", "purple: paths", "green: crest of the embankment planned",
+                       f"grey: road, {wide:g} m wide", "contours: 1 m"], (0.02, 0.04), 22)
     SaveScreenshot(path, view, ImageResolution=list(view.ViewSize))
     Delete(view)
 

@@ -230,7 +230,10 @@ def draw(curves, folder):
             if low < 1e-12:
                 axes.set_ylim(1e-16, high)
         axes.set(title=title, xlabel=x_label, ylabel=y_label)
-        axes.legend()
+        if name == "topple-map":  # points are everywhere
+            axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0))
+        else:
+            axes.legend()
         save(figure, name)
     shapes = [n for n in by_plot if n.startswith("paths-")]
     if shapes:
@@ -312,8 +315,13 @@ def tests_in(lines):
     return ", ".join(f"`{suite}.{names[0] if len(names) == 1 else '*'}`" for suite, names in suites.items())
 
 
-def page_of(lines, cut_off, others):
-    """The page's text. `lines` without curves; `cut_off`: tests that did not end; `others`: (test, message)."""
+def page_of(lines, cut_off, others, pictures):
+    """The page's text. `lines` without curves; `cut_off`: tests that did not end; `others`: (test, message);
+    `pictures`: their folder."""
+    def is_drawn(name):
+        return name and (pictures / file_of(name)).exists()
+
+    without = []
     bars = [line for line in lines if line["kind"] != "report"]
     failed = [line for line in bars if not line["passed"]]
     page = ["# Verification", "",
@@ -330,14 +338,17 @@ def page_of(lines, cut_off, others):
             "## Claims", "", "| claim | worst figure | bar | of | test |", "|---|---|---|---|---|"]
     for claim, subject, pattern, picture in CLAIMS:
         shown = [line for line in bars if line["subject"] == subject and re.search(pattern, line["quantity"])]
-        words = f"[{claim}](images/verification/{file_of(picture)})" if picture else claim
+        words = f"[{claim}](images/verification/{file_of(picture)})" if is_drawn(picture) else claim
         if not shown:
-            page.append(f"| {words} | no results | | | |")
+            without.append(subject)
             continue
         worst = max(shown, key=nearness)
         mark = "" if all(line["passed"] for line in shown) else " **missed**"
         page.append(f"| {words} | {figure(worst)}{mark} | {bar(worst)} | {len(shown)} | {tests_in(shown)} |")
-    page += ["", "Claims with a picture are links to it.", "", "## Limits", "", "| what is not shown | figure | compare |", "|---|---|---|"]
+    page += ["", "Claims with a picture are links to it."]
+    if without:
+        page += ["", "Cases without figures in this run: " + ", ".join(dict.fromkeys(without)) + "."]
+    page += ["", "## Limits", "", "| what is not shown | figure | compare |", "|---|---|---|"]
     for subject, pattern, words in NOT_SHOWN:
         for line in lines:
             if line["subject"] == subject and re.search(pattern, line["quantity"]):
@@ -353,7 +364,8 @@ def page_of(lines, cut_off, others):
     for name, title in (("rebound", "Paper fig. 13: rebound by modulus and penalty"), ("sliding", "Paper fig. 14: sliding on 30°"),
                         ("paths", "Paper fig. 16: paths of cube and icosahedron"), ("topple-map", "Block on an incline, φ 25°"),
                         ("theta", "Dispersion angle of 10 iterations")):
-        page.append(f"![{title}](images/verification/{file_of(name)})")
+        if is_drawn(name):
+            page.append(f"![{title}](images/verification/{file_of(name)})")
     return "\n".join(page) + "\n"
 
 
@@ -365,7 +377,7 @@ def write_page(lines, tests, docs):
     write_data(figures, docs / "data" / "verification.csv")
     cut_off = [name for name, ending in tests.items() if ending is None]
     others = [(name, ending["message"]) for name, ending in tests.items() if ending and ending["message"]]
-    (docs / "verification.md").write_text(page_of(figures, cut_off, others), encoding="utf-8")
+    (docs / "verification.md").write_text(page_of(figures, cut_off, others, pictures), encoding="utf-8")
     failed = [line for line in figures if line["kind"] != "report" and not line["passed"]]
     print(f"{docs / 'verification.md'}: {len(figures)} figures, {len(failed)} missed, {len(cut_off)} tests did not end")
     for line in failed:
@@ -411,7 +423,8 @@ def main():
     parser.add_argument("--run", nargs="*", default=[], metavar="PROGRAM", help="programs to run first")
     arguments = parser.parse_args()
     if not arguments.results:
-        text = page_of(read_data(arguments.docs / "data" / "verification.csv"), [], [])
+        text = page_of(read_data(arguments.docs / "data" / "verification.csv"), [], [],
+                       arguments.docs / "images" / "verification")
         (arguments.docs / "verification.md").write_text(text, encoding="utf-8")
         return
     folder = arguments.results / arguments.form
