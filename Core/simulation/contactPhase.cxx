@@ -111,7 +111,9 @@ void RockSimulator::stayInContact()
     const bool calm = this->isCalm();
     const double reach = reachOf(calm ? large : small);
     this->ensureCandidates(reach);
-    updateContacts(placed_, patch_, candidates_, reach, contacts_);
+    // A step as long as Δt may turn a rock that is held at a corner onto a face.
+    const double turn = calm ? state_.spin.norm() * large : 0.0;
+    updateContacts(placed_, patch_, candidates_, reach, contacts_, turn);
     springEnergy_ = springEnergyOf(contacts_); // what has gone with a contact shows as numerical
 
     double h = std::min(large, horizon_ - state_.time);

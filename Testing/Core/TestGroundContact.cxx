@@ -1,4 +1,6 @@
 // Rocks on a slope of several classes: the contact takes what lies under it.
+#include "randomScenes.h"
+#include "simulation/pressOut.h"
 #include "slopes.h"
 #include "terrain/Surface.h"
 
@@ -146,5 +148,39 @@ TEST(GroundContact, OneClassEverywhereIsTheUniformSlope)
       after.trajectories()[std::size_t(i)].summary.stop);
     EXPECT_EQ(before.trajectories()[std::size_t(i)].summary.pathLength,
       after.trajectories()[std::size_t(i)].summary.pathLength);
+  }
+}
+
+TEST(GroundContact, APlateThatTopplesOntoItsFaceStaysOnTheGround)
+{
+  // In one step of lasting contact it turns from an edge onto the face, and all of that is late.
+  const Terrain plane = makePlane(9, 40.0, 0.0, 0.0, material(0.3, 40.0));
+  for (const double edge : { 0.024, 0.1, 0.5, 2.0 })
+  {
+    for (const double step : { 0.002, 0.005, 0.013, 0.03 })
+    {
+      Rock plate;
+      plate.shape = makeBox(edge * Vec3(1.0, 1.2, 0.1));
+      const double lean = radians(25.0);
+      plate.orientation = Quat(Eigen::AngleAxisd(lean, Vec3::UnitY()));
+      plate.position = Vec3(
+        20.0, 20.0, 100.0 + 0.5 * edge * (std::sin(lean) + 0.1 * std::cos(lean)) + 1e-6 * edge);
+      SimulationParameters p;
+      p.timeStep = step;
+      p.endTime = 2.0;
+      p.outputInterval = 2e-4;
+      p.rigid = true;
+      const Trajectory t = simulate(plane, plate, p);
+      double deepest = 0.0;
+      for (const Sample& s : t.samples)
+      {
+        deepest = std::max(deepest, -s.heightOverGround);
+      }
+      // What is met too late may be as deep as a contact that carries nothing.
+      const double allowed = std::max(kLooseOverlap * plate.shape.radius(),
+        1.5 * explainedDepth(plate, p, t.summary.maxKineticEnergy, t.summary.mass));
+      EXPECT_LE(deepest, allowed) << "edge " << edge << " m, step " << step << " s";
+      EXPECT_GT(t.summary.maxKineticEnergy, 0.0);
+    }
   }
 }

@@ -221,15 +221,14 @@ struct SceneOutcome
   std::string worst;     ///< Which one that is.
 };
 
-/// How deep springs let a rock be pressed into the ground, m: it comes at `speed`, and all of
-/// `rocks` may lie on it.
+/// How deep springs let a rock be pressed into the ground, m: by what it comes with itself or by
+/// another of `largestEnergy` (J) on it, at the weight of `load` (kg).
 inline double explainedDepth(
-  const Rock& rock, const SimulationParameters& p, double speed, std::size_t rocks)
+  const Rock& rock, const SimulationParameters& p, double largestEnergy, double load)
 {
   const Block block(rock.shape, rock.density, rock.youngModulus, rock.poissonRatio);
   const double soft = 1.0 / p.normalPenalty + (p.rigid ? 0.0 : block.largestCompliance());
-  const double m = block.mass();
-  return speed * std::sqrt(m * soft) + 2.0 * double(rocks) * m * p.gravity * soft;
+  return std::sqrt(2.0 * largestEnergy * soft) + 2.0 * load * p.gravity * soft;
 }
 
 /// Runs a scene on one thread and on two, each for at most `patience` (s).
@@ -267,6 +266,12 @@ inline SceneOutcome runScene(const RandomScene& scene, double patience)
     trajectories = store.take();
   }
   outcome.sameBits = hashes[0] == hashes[1];
+  double largestEnergy = 0.0, load = 0.0;
+  for (const Trajectory& t : trajectories)
+  {
+    largestEnergy = std::max(largestEnergy, t.summary.maxKineticEnergy);
+    load += t.summary.mass;
+  }
   for (const Trajectory& t : trajectories)
   {
     const TrajectorySummary& s = t.summary;
@@ -274,9 +279,8 @@ inline SceneOutcome runScene(const RandomScene& scene, double patience)
     const double r = rock.shape.radius();
     outcome.released += s.energy.released;
     outcome.made -= s.energy.numerical;
-    const double speed = s.maxSpeed + r * rock.angularVelocity.norm();
     const double allowed =
-      std::max(0.02 * r, 1.5 * explainedDepth(rock, scene.parameters, speed, scene.rocks.size()));
+      std::max(0.02 * r, 1.5 * explainedDepth(rock, scene.parameters, largestEnergy, load));
     for (const Sample& x : t.samples)
     {
       for (const Vec3& v :
