@@ -98,17 +98,15 @@ def draw(shown, shares, path):
     view.CameraPosition = (middle + 530.0 * away / np.linalg.norm(away)).tolist()
     speed_bar(view, (0.925, 0.30), 0.42)
     write(view, "The same rocks of one iteration, without structures and with them", (0.02, 0.95), 26, bold=True)
-    write(view, "dots: where rocks end; green: stems; ochre: embankment; blue: net; grey: road; contours: 5 m",
-          (0.02, 0.915), 20)
+    write(view, "dots: where rocks end; green: stems; ochre: embankment; blue: net; grey: road; contours: 5 m; bar: 50 m across; "
+          "downhill is towards the viewer", (0.02, 0.915), 20)
     foot = site.LENGTH + 3.0
     scale = make_polydata([[foot, 0.0, 0.5], [foot, 50.0, 0.5]])
     scale.SetLines(cells([[0, 1]]))
     flat(produce(scale), view, INK, LineWidth=6)
-    u, v = seen_at(view, (foot, 0.0, 0.0))
-    write(view, "50 m across; downhill is towards the viewer", (u, v - 0.035), 18)
     for k, (name, _, _) in enumerate(shown):
         u, v = seen_at(view, (site.LENGTH, k * (site.WIDTH + GAP) + 0.5 * site.WIDTH, 0.0))
-        write(view, f"{name}: {shares[name]:.0f} % of all iterations' rocks come to the road", (u, v - 0.085), 20,
+        write(view, f"{name}: {shares[name]:.0f} % of all iterations' rocks come to the road", (u, v - 0.055), 20,
               bold=True, centred=True)
     SaveScreenshot(path, view, ImageResolution=list(view.ViewSize))
     Delete(view)

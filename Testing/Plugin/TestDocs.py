@@ -3,7 +3,9 @@ the arrays and columns that come out of them, names that are in the code, links 
 
 import glob
 import os
+import pathlib
 import re
+import sys
 import xml.etree.ElementTree as ElementTree
 
 import paraview.simple
@@ -239,6 +241,15 @@ for line in pages["bad_input.md"].splitlines():
     for phrase in re.findall(r"\*([^*]+)\*", line.split(" | ")[0]) if line.startswith("| *") else []:
         for piece in phrase.split("…"):
             expect(piece.strip().lower() in spoken, f"bad_input.md: nothing says {piece.strip()}")
+
+# The page of verification is what its maker makes of the table beside it.
+sys.path.insert(0, os.path.join(ROOT, "Testing", "Verification"))
+import makePage  # noqa: E402
+
+figures = makePage.read_data(os.path.join(DOCS, "data", "verification.csv"))
+page = makePage.page_of(figures, [], [], pathlib.Path(DOCS, "images", "verification"))
+expect("## Beside the figures" in pages["verification.md"] or page == pages["verification.md"],
+       "verification.md is not of its table: python3 Testing/Verification/makePage.py --docs docs")
 
 # What the code cites as METHOD n or n.m is a section of the page, or a numbered line of it.
 sections = dict(re.findall(r"^## (\d+)\. [^\n]*\n(.*?)(?=^## |\Z)", read(os.path.join(DOCS, "method.md")),

@@ -308,8 +308,8 @@ def tests_in(lines):
     """Names of their tests, those of one suite together: `Flight.A, B`."""
     suites = collections.defaultdict(list)
     for line in lines:
-        suite, _, name = line["test"].rpartition("/")[2].partition(".")
-        name = name.partition("-")[0]
+        suite, _, name = line["test"].partition(".")
+        suite, name = suite.rpartition("-")[2], name.partition("-")[0]  # Kinds-Suite.Test-0
         if name not in suites[suite]:
             suites[suite].append(name)
     return ", ".join(f"`{suite}.{names[0] if len(names) == 1 else '*'}`" for suite, names in suites.items())
