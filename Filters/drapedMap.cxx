@@ -8,6 +8,8 @@
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
 
+#include <algorithm>
+#include <array>
 #include <vector>
 
 namespace rockfall::filters
@@ -16,8 +18,10 @@ namespace rockfall::filters
 namespace
 {
 
-/// Over the slope, as a share of a cell: enough for the depth buffer, too little to be seen.
+/// Over the slope, as a share of a cell and at most in m: enough for the depth buffer, and under
+/// the paths of rocks that roll.
 constexpr double kLift = 0.05;
+constexpr double kMostLift = 0.1;
 
 } // namespace
 
@@ -30,7 +34,7 @@ void drapeMap(vtkImageData* map, vtkPolyData* output)
   }
   vtkDataArray* heights = map->GetPointData()->GetArray("Elevation");
   const int columns = map->GetDimensions()[0] - 1;
-  const double lift = heights ? kLift * map->GetSpacing()[0] : 0.0;
+  const double lift = heights ? std::min(kLift * map->GetSpacing()[0], kMostLift) : 0.0;
 
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
@@ -49,8 +53,15 @@ void drapeMap(vtkImageData* map, vtkPolyData* output)
   };
   vtkNew<vtkCellArray> cells;
   vtkCellData* data = output->GetCellData();
+  // Room for the cells that something passed: without a size, for all of a map that may be mostly
+  // empty.
+  vtkIdType passed = 0;
+  for (vtkIdType cell = 0; cell < map->GetNumberOfCells(); ++cell)
+  {
+    passed += passages->GetTuple1(cell) > 0.0 ? 1 : 0;
+  }
   data->CopyAllOn();
-  data->CopyAllocate(map->GetCellData());
+  data->CopyAllocate(map->GetCellData(), std::max<vtkIdType>(2 * passed, 1));
   for (vtkIdType cell = 0; cell < map->GetNumberOfCells(); ++cell)
   {
     if (!(passages->GetTuple1(cell) > 0.0))
@@ -58,10 +69,14 @@ void drapeMap(vtkImageData* map, vtkPolyData* output)
       continue;
     }
     const vtkIdType south = cell + cell / columns, north = south + columns + 1;
-    // From the north-west: viewers cut a quadrilateral there, as the slope's cells are cut.
-    const vtkIdType corners[4] = { point(north), point(south), point(south + 1), point(north + 1) };
-    const vtkIdType made = cells->InsertNextCell(4, corners);
-    data->CopyData(map->GetCellData(), cell, made);
+    // Cut as the slope's cells are: a viewer would cut a quadrilateral along the shorter diagonal,
+    // metres above or below the slope.
+    const vtkIdType ends[4] = { point(north), point(south), point(south + 1), point(north + 1) };
+    for (const std::array<int, 3>& corners : { std::array{ 0, 1, 2 }, std::array{ 0, 2, 3 } })
+    {
+      const vtkIdType triangle[3] = { ends[corners[0]], ends[corners[1]], ends[corners[2]] };
+      data->CopyData(map->GetCellData(), cell, cells->InsertNextCell(3, triangle));
+    }
   }
   data->Squeeze();
   points->Squeeze();

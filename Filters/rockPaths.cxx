@@ -54,7 +54,11 @@ bool isRunning(vtkFieldData* data)
   return data->GetAbstractArray(runningName) != nullptr;
 }
 
-void forEachPath(vtkPolyData* trajectories, const Vec3& origin,
+namespace
+{
+
+/// The lines from `first` on, at most `count`.
+void readPaths(vtkPolyData* trajectories, const Vec3& origin, vtkIdType first, vtkIdType count,
   const std::function<void(const RockPath& path, std::int64_t cell)>& use)
 {
   auto* kept =
@@ -83,9 +87,11 @@ void forEachPath(vtkPolyData* trajectories, const Vec3& origin,
   vtkDataArray* mass = cells->GetArray("Mass");
 
   std::vector<PathPoint> path;
-  vtkIdType cell = trajectories->GetNumberOfVerts(); // polydata's cells begin with its vertices
+  // Polydata's cells begin with its vertices.
+  vtkIdType cell = trajectories->GetNumberOfVerts() + first;
   auto lines = vtk::TakeSmartPointer(trajectories->GetLines()->NewIterator());
-  for (lines->GoToFirstCell(); !lines->IsDoneWithTraversal(); lines->GoToNextCell(), ++cell)
+  for (lines->GoToCell(first); count > 0 && !lines->IsDoneWithTraversal();
+       lines->GoToNextCell(), ++cell, --count)
   {
     vtkIdType size = 0;
     const vtkIdType* ids = nullptr;
@@ -115,6 +121,21 @@ void forEachPath(vtkPolyData* trajectories, const Vec3& origin,
     rockPath.points = path;
     use(rockPath, cell);
   }
+}
+
+} // namespace
+
+void forEachPath(vtkPolyData* trajectories, const Vec3& origin,
+  const std::function<void(const RockPath& path, std::int64_t cell)>& use)
+{
+  readPaths(trajectories, origin, 0, trajectories->GetNumberOfLines(), use);
+}
+
+void forPath(
+  vtkPolyData* trajectories, vtkIdType line, const std::function<void(const RockPath& path)>& use)
+{
+  readPaths(
+    trajectories, Vec3::Zero(), line, 1, [&use](const RockPath& path, std::int64_t) { use(path); });
 }
 
 } // namespace rockfall::filters

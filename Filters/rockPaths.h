@@ -6,6 +6,8 @@
 #include "simulation/retention.h"
 #include "statistics/path.h"
 
+#include "vtkType.h"
+
 #include <functional>
 
 class vtkFieldData;
@@ -29,5 +31,9 @@ bool isRunning(vtkFieldData* data);
 /// Throws DataError that names what is missing, or if only events are kept.
 void forEachPath(vtkPolyData* trajectories, const Vec3& origin,
   const std::function<void(const RockPath& path, std::int64_t cell)>& use);
+
+/// The same for the polyline of this number alone, in the coordinates of the polydata.
+void forPath(
+  vtkPolyData* trajectories, vtkIdType line, const std::function<void(const RockPath& path)>& use);
 
 } // namespace rockfall::filters

@@ -38,20 +38,14 @@ paraview_plugin_scan(
   ENABLE_BY_DEFAULT ON
   HIDE_PLUGINS_FROM_CACHE ON)
 
-# The pages that ? opens want Qt's help generator and xmlpatterns.
-find_program(ROCKFALL_XMLPATTERNS xmlpatterns PATHS /usr/lib/qt5/bin)
-find_program(ROCKFALL_QHELPGENERATOR qhelpgenerator PATHS /usr/lib/qt5/bin /usr/lib/qt6/libexec)
-set(no_pages ON)
-if(ROCKFALL_HAS_WINDOW AND ROCKFALL_XMLPATTERNS AND ROCKFALL_QHELPGENERATOR)
-  set(no_pages OFF)
-endif()
 paraview_plugin_build(
   PLUGINS ${rockfall_plugins}
   AUTOLOAD ${rockfall_plugins}
   LIBRARY_SUBDIRECTORY "${PARAVIEW_PLUGIN_SUBDIR}"
   PLUGINS_FILE_NAME "rockfall.xml"
   INSTALL_HEADERS OFF
-  DISABLE_XML_DOCUMENTATION ${no_pages})
+  # The pages behind ? are those of docs/, see below.
+  DISABLE_XML_DOCUMENTATION ON)
 
 # The folders to name in PV_PLUGIN_PATH, of the plugin and of what only a window needs.
 set(ROCKFALL_PLUGIN_FOLDER
@@ -70,4 +64,25 @@ if(ROCKFALL_HAS_WINDOW)
   endforeach()
   install(FILES ${scripts}
     DESTINATION "${CMAKE_INSTALL_LIBDIR}/${PARAVIEW_PLUGIN_SUBDIR}/RockfallScripts")
+
+  # The pages behind ?, of docs/: one file that the window opens. It wants Qt's help generator.
+  find_program(ROCKFALL_QHELPGENERATOR qhelpgenerator PATHS /usr/lib/qt5/bin /usr/lib/qt6/bin /usr/lib/qt6/libexec)
+  find_package(Python3 QUIET COMPONENTS Interpreter)
+  if(ROCKFALL_QHELPGENERATOR AND Python3_FOUND)
+    set(pages "${script_folder}/RockfallDDA.qch")
+    file(GLOB page_sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/docs/*.md" "${CMAKE_CURRENT_LIST_DIR}/xml/*.xml")
+    add_custom_command(
+      OUTPUT "${pages}"
+      COMMAND Python3::Interpreter "${CMAKE_CURRENT_LIST_DIR}/help/makePages.py" "${PROJECT_SOURCE_DIR}/docs"
+        "${CMAKE_CURRENT_LIST_DIR}/xml" "${CMAKE_BINARY_DIR}/pages"
+      COMMAND "${ROCKFALL_QHELPGENERATOR}" "${CMAKE_BINARY_DIR}/pages/RockfallDDA.qhp" -o "${pages}"
+      DEPENDS ${page_sources} "${CMAKE_CURRENT_LIST_DIR}/help/makePages.py"
+      COMMENT "Making the pages behind ?"
+      VERBATIM)
+    add_custom_target(RockfallPages ALL DEPENDS "${pages}")
+    add_dependencies(RockfallWindow RockfallPages)
+    install(FILES "${pages}" DESTINATION "${CMAKE_INSTALL_LIBDIR}/${PARAVIEW_PLUGIN_SUBDIR}/RockfallScripts")
+  else()
+    message(STATUS "No qhelpgenerator (Debian: qttools5-dev-tools), so no pages behind ?")
+  endif()
 endif()

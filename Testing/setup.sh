@@ -18,8 +18,14 @@ rockfall_test_packages=(libgtest-dev)
 
 # Of Qt: icons, without which ParaView's window has no eyes and no Play; and what the Rockfall menu is built with.
 case $(. /etc/os-release 2>/dev/null && echo "${VERSION_CODENAME:-}") in
-  trixie) rockfall_packages+=(qt6-svg-plugins qt6-base-dev libpython3-dev) ;;
-  *) rockfall_packages+=(libqt5svg5 qtbase5-dev) ;;
+  trixie)
+    rockfall_packages+=(qt6-svg-plugins qt6-base-dev libpython3-dev)
+    rockfall_test_packages+=(qt6-documentation-tools) # the pages behind ?
+    ;;
+  *)
+    rockfall_packages+=(libqt5svg5 qtbase5-dev)
+    rockfall_test_packages+=(qttools5-dev-tools)
+    ;;
 esac
 
 fail() {

@@ -1,5 +1,8 @@
 #include "looks.h"
 
+#include "vtkPVArrayInformation.h"
+#include "vtkPVDataInformation.h"
+#include "vtkPVDataSetAttributesInformation.h"
 #include "vtkSMIntVectorProperty.h"
 #include "vtkSMPVRepresentationProxy.h"
 #include "vtkSMPropertyHelper.h"
@@ -8,6 +11,7 @@
 #include "vtkSMTransferFunctionProxy.h"
 #include "vtkSMViewProxy.h"
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -25,9 +29,10 @@ constexpr Colour kRelease = { 0.10, 0.25, 0.55 };
 constexpr Colour kRock = { 0.55, 0.27, 0.07 };
 constexpr Colour kBuilt = { 0.20, 0.42, 0.24 };
 constexpr Colour kLine = { 0.05, 0.05, 0.05 };
-constexpr double kPathWidth = 3.0;   ///< px
-constexpr double kMarkerWidth = 5.0; ///< px, of edges of blocks, so that they are seen from afar
-constexpr double kPointSize = 6.0;   ///< px
+constexpr double kPathWidth = 3.0;  ///< px
+constexpr double kMarkerSize = 8.0; ///< px, of blocks from afar
+constexpr double kPointSize = 6.0;  ///< px
+constexpr const char* kDisc = "4";  ///< Of a chart's markers.
 
 /// From low to high, as red, green, blue.
 using Palette = std::array<Colour, 4>;
@@ -85,7 +90,7 @@ void setColour(vtkSMProxy* proxy, const Colour& colour)
   vtkSMPVRepresentationProxy::SetScalarColoring(proxy, nullptr, 0);
 }
 
-/// Blocks of a metre on slopes of kilometres: edges of some pixels are seen from everywhere.
+/// A body with its edges; a dot from afar (markers.h).
 void setMarker(vtkSMProxy* proxy, const Colour& colour)
 {
   setColour(proxy, colour);
@@ -93,8 +98,10 @@ void setMarker(vtkSMProxy* proxy, const Colour& colour)
   {
     representation->SetRepresentationType("Surface With Edges");
   }
-  set(proxy, "EdgeColor", colour[0], colour[1], colour[2]);
-  set(proxy, "LineWidth", kMarkerWidth);
+  constexpr double dark = 0.5;
+  set(proxy, "EdgeColor", dark * colour[0], dark * colour[1], dark * colour[2]);
+  set(proxy, "PointSize", kMarkerSize);
+  set(proxy, "RenderPointsAsSpheres", 1);
 }
 
 const Quantity* quantityOf(const std::string& array)
@@ -135,12 +142,66 @@ std::string colouredBy(vtkSMProxy* proxy)
   return array ? array : "";
 }
 
-bool is(const Shown& shown, const char* name, int port)
+bool is(const Shown& shown, const char* className, int port)
 {
-  return shown.source && shown.source->GetXMLName() == std::string(name) && shown.port == port;
+  return isOf(shown.source, { className }) && shown.port == port;
+}
+
+/// Speed and height on the left axis, energy on the right one, along the way.
+void styleProfile(vtkSMProxy* representation, vtkSMViewProxy* view)
+{
+  struct Series
+  {
+    const char* column;
+    const char* label; ///< Null for what is not drawn.
+    const char* corner;
+    Colour colour;
+  };
+  constexpr Series all[] = {
+    { "Time", nullptr, "0", {} },
+    { "Distance", nullptr, "0", {} },
+    { "Elevation", nullptr, "0", {} },
+    { "Speed", "Speed (m/s)", "0", { 0.19, 0.41, 0.56 } },
+    { "EnergyInKilojoules", "Kinetic energy (kJ)", "1", { 0.86, 0.15, 0.12 } },
+    { "HeightOverGround", "Height over ground (m)", "0", { 0.35, 0.35, 0.35 } },
+  };
+  vtkSMPropertyHelper(representation, "UseIndexForXAxis").Set(0);
+  vtkSMPropertyHelper(representation, "XArrayName").Set("Distance");
+  for (const Series& series : all)
+  {
+    vtkSMPropertyHelper(representation, "SeriesVisibility")
+      .SetStatus(series.column, series.label ? 1 : 0);
+    if (series.label)
+    {
+      Colour colour = series.colour; // SetStatus wants it without const
+      vtkSMPropertyHelper(representation, "SeriesLabel").SetStatus(series.column, series.label);
+      vtkSMPropertyHelper(representation, "SeriesPlotCorner")
+        .SetStatus(series.column, series.corner);
+      vtkSMPropertyHelper(representation, "SeriesColor")
+        .SetStatus(series.column, colour.data(), int(colour.size()));
+      vtkSMPropertyHelper(representation, "SeriesLineThickness").SetStatus(series.column, "2");
+    }
+  }
+  representation->UpdateVTKObjects();
+  vtkSMPropertyHelper title(view, "ChartTitle");
+  if (const char* given = title.GetAsString(); !given || !*given)
+  {
+    title.Set("One rock along its way");
+  }
+  vtkSMPropertyHelper(view, "BottomAxisTitle").Set("Horizontal distance from the release (m)");
+  vtkSMPropertyHelper(view, "LeftAxisTitle").Set("Speed (m/s), height over ground (m)");
+  vtkSMPropertyHelper(view, "RightAxisTitle").Set("Kinetic energy (kJ)");
+  view->UpdateVTKObjects();
 }
 
 } // namespace
+
+bool isOf(vtkSMProxy* proxy, std::initializer_list<const char*> classNames)
+{
+  return proxy && proxy->GetVTKClassName() &&
+    std::any_of(classNames.begin(), classNames.end(),
+      [&](const char* name) { return proxy->GetVTKClassName() == std::string(name); });
+}
 
 Shown shownBy(vtkSMProxy* representation)
 {
@@ -163,32 +224,37 @@ void style(vtkSMProxy* representation)
   {
     return;
   }
-  if (is(shown, "DEMToCFEMesh", 0) || is(shown, "DrawnStructure", 0))
+  if (is(shown, "vtkDEMToCFESource", 0) || is(shown, "vtkDrawnStructure", 0))
   {
     setColour(representation, kSlope);
     set(representation, "Specular", 0.0);
   }
-  else if (is(shown, "RockRelease", 0) || is(shown, "RockBlocks", 0) ||
-    is(shown, "JointedRockMass", 0))
+  else if (is(shown, "vtkRockBlockSource", 0) || is(shown, "vtkJointedRockMass", 0))
   {
     setMarker(representation, kRelease);
   }
-  else if (is(shown, "RockfallSimulation", 0))
+  else if (is(shown, "vtkRockfallSimulation", 0))
   {
     setMarker(representation, kRock);
   }
-  else if (is(shown, "RockfallSimulation", 1) || is(shown, "RockPaths", 0))
+  else if (is(shown, "vtkRockfallSimulation", 1) || is(shown, "vtkGrowingPaths", 0))
   {
     set(representation, "LineWidth", kPathWidth);
     set(representation, "RenderLinesAsTubes", 1);
   }
-  else if (is(shown, "RockfallSimulation", 4) || is(shown, "TrajectoryCollector", 0))
+  else if (is(shown, "vtkTrajectoryProfile", 1))
+  {
+    setColour(representation, kPicked);
+    set(representation, "LineWidth", kPickedWidth);
+    set(representation, "RenderLinesAsTubes", 1);
+  }
+  else if (is(shown, "vtkRockfallSimulation", 4) || is(shown, "vtkTrajectoryCollector", 0))
   {
     setColour(representation, kLine);
     set(representation, "PointSize", kPointSize);
     set(representation, "RenderPointsAsSpheres", 1);
   }
-  else if (is(shown, "TrajectoryCollector", 3))
+  else if (is(shown, "vtkTrajectoryCollector", 3))
   {
     setColour(representation, kLine);
     if (auto* walls = vtkSMRepresentationProxy::SafeDownCast(representation))
@@ -198,11 +264,11 @@ void style(vtkSMProxy* representation)
     set(representation, "EdgeColor", kLine[0], kLine[1], kLine[2]);
     set(representation, "LineWidth", kPathWidth);
   }
-  else if (is(shown, "DEMToCFEMesh", 1) || is(shown, "DrawnStructure", 1))
+  else if (is(shown, "vtkDEMToCFESource", 1) || is(shown, "vtkDrawnStructure", 1))
   {
     setColour(representation, kBuilt);
   }
-  else if (is(shown, "RockfallHazardMap", 1))
+  else if (is(shown, "vtkRockfallHazardMap", 1))
   {
     set(representation, "Specular", 0.0);
   }
@@ -211,16 +277,37 @@ void style(vtkSMProxy* representation)
 
 void rescale(vtkSMProxy* representation)
 {
-  if (quantityOf(colouredBy(representation)))
+  const std::string array = colouredBy(representation);
+  if (!quantityOf(array))
   {
-    vtkSMPVRepresentationProxy::RescaleTransferFunctionToDataRange(representation, false, false);
+    return;
   }
+  const Shown shown = shownBy(representation);
+  if (is(shown, "vtkGrowingPaths", 0))
+  {
+    // Of the whole paths, not of what is drawn of them so far.
+    vtkSMPropertyHelper input(shown.source, "Input");
+    auto* paths = vtkSMSourceProxy::SafeDownCast(input.GetAsProxy());
+    vtkPVArrayInformation* values = paths ? paths->GetDataInformation(input.GetOutputPort())
+                                              ->GetPointDataInformation()
+                                              ->GetArrayInformation(array.c_str())
+                                          : nullptr;
+    vtkSMProxy* table = vtkSMPropertyHelper(representation, "LookupTable").GetAsProxy();
+    if (values && table && values->GetNumberOfComponents() == 1)
+    {
+      const double* range = values->GetComponentRange(0);
+      vtkSMTransferFunctionProxy::RescaleTransferFunction(table, range[0], range[1], false);
+      table->UpdateVTKObjects();
+    }
+    return;
+  }
+  vtkSMPVRepresentationProxy::RescaleTransferFunctionToDataRange(representation, false, false);
 }
 
 void styleIn(vtkSMProxy* representation, vtkSMViewProxy* view)
 {
   const Shown shown = shownBy(representation);
-  if (is(shown, "TrajectoryCollector", 2) || is(shown, "MergeCollectors", 2))
+  if (is(shown, "vtkTrajectoryCollector", 2) || is(shown, "vtkMergeCollectors", 2))
   {
     if (!representation->GetProperty("XArrayName"))
     {
@@ -237,12 +324,21 @@ void styleIn(vtkSMProxy* representation, vtkSMViewProxy* view)
     visible.SetStatus("ShareOfPassing", 1);
     vtkSMPropertyHelper(representation, "SeriesLabel")
       .SetStatus("ShareOfPassing", "Share of the rocks that pass");
-    vtkSMPropertyHelper(representation, "SeriesLineThickness").SetStatus("ShareOfPassing", "2");
+    vtkSMPropertyHelper(representation, "SeriesMarkerStyle").SetStatus("ShareOfPassing", kDisc);
+    vtkSMPropertyHelper(representation, "SeriesMarkerSize").SetStatus("ShareOfPassing", "6");
     representation->UpdateVTKObjects();
     vtkSMPropertyHelper(view, "ChartTitle").Set("Energy at the line");
     vtkSMPropertyHelper(view, "BottomAxisTitle").Set("Kinetic energy (kJ)");
     vtkSMPropertyHelper(view, "LeftAxisTitle").Set("Share with at least this energy");
     view->UpdateVTKObjects();
+    return;
+  }
+  if (is(shown, "vtkTrajectoryProfile", 0))
+  {
+    if (representation->GetProperty("XArrayName"))
+    {
+      styleProfile(representation, view);
+    }
     return;
   }
   const std::string array = colouredBy(representation);
@@ -266,7 +362,7 @@ void styleIn(vtkSMProxy* representation, vtkSMViewProxy* view)
   vtkSMPropertyHelper(table, "RGBPoints").Set(points.data(), unsigned(points.size()));
   vtkSMPropertyHelper(table, "ColorSpace").Set(0); // RGB
   table->UpdateVTKObjects();
-  vtkSMPVRepresentationProxy::RescaleTransferFunctionToDataRange(representation, false, false);
+  rescale(representation);
   if (vtkSMPropertyHelper(representation, "Visibility").GetAsInt() == 0)
   {
     return;

@@ -3,6 +3,8 @@
 /// @file
 /// How what the plugin makes looks when it is first shown.
 
+#include <initializer_list>
+
 class vtkSMProxy;
 class vtkSMSourceProxy;
 class vtkSMViewProxy;
@@ -10,7 +12,10 @@ class vtkSMViewProxy;
 namespace rockfall::window
 {
 
-/// What is shown: the source's name in the XML, and its output port.
+/// Whether a proxy is of one of these classes, under whatever name.
+bool isOf(vtkSMProxy* proxy, std::initializer_list<const char*> classNames);
+
+/// What is shown, and its output port.
 struct Shown
 {
   vtkSMSourceProxy* source = nullptr;

@@ -1,20 +1,28 @@
 #include "pqRockfallWindow.h"
 
 #include "looks.h"
+#include "markers.h"
+#include "pqPathPicker.h"
+#include "presetValues.h"
 #include "slopeView.h"
 
+#include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
 #include "pqCoreUtilities.h"
 #include "pqDataRepresentation.h"
 #include "pqFileDialog.h"
+#include "pqHelpReaction.h"
+#include "pqOutputPort.h"
 #include "pqPVApplicationCore.h"
 #include "pqPipelineSource.h"
 #include "pqPropertyWidget.h"
 #include "pqPythonManager.h"
+#include "pqRenderView.h"
 #include "pqServer.h"
 #include "pqServerManagerModel.h"
 #include "pqView.h"
 #include "vtkAlgorithm.h"
+#include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
@@ -52,6 +60,8 @@
 namespace
 {
 
+using rockfall::window::isOf;
+
 constexpr int kLookAtRuns = 500;   // ms
 constexpr int kLookForWindow = 20; // ms
 constexpr int kReadNotes = 30000;  // ms
@@ -71,11 +81,10 @@ QString scriptFolder()
     : QString();
 }
 
-bool isNamed(vtkSMProxy* proxy, std::initializer_list<const char*> names)
+/// A text of Python.
+QString quoted(QString text)
 {
-  return proxy && proxy->GetXMLName() &&
-    std::any_of(names.begin(), names.end(),
-      [&](const char* name) { return proxy->GetXMLName() == std::string(name); });
+  return "'" + text.replace("\\", "\\\\").replace("'", "\\'") + "'";
 }
 
 /// Whether nothing else of ours is shown yet.
@@ -85,7 +94,7 @@ bool isFirstSlope(vtkSMProxy* representation)
   for (pqDataRepresentation* other : model->findItems<pqDataRepresentation*>())
   {
     const rockfall::window::Shown shown = rockfall::window::shownBy(other->getProxy());
-    if (other->getProxy() != representation && isNamed(shown.source, { "DEMToCFEMesh" }) &&
+    if (other->getProxy() != representation && isOf(shown.source, { "vtkDEMToCFESource" }) &&
       shown.port == 0)
     {
       return false;
@@ -103,7 +112,7 @@ void drawPlaced(vtkSMSourceProxy* proxy)
     return;
   }
   std::vector<double> placed = { 5.0, 45.0, 58.0, 5.0, 55.0, 58.0 }; // on the test slope
-  if (!isNamed(proxy, { "RockBlocks" }))
+  if (proxy->GetXMLName() != std::string("RockBlocks"))
   {
     proxy->UpdateVTKObjects();
     proxy->UpdatePipeline();
@@ -116,6 +125,20 @@ void drawPlaced(vtkSMSourceProxy* proxy)
     points.Set(placed.data(), unsigned(placed.size()));
     proxy->UpdateVTKObjects();
   }
+}
+
+/// Rocks of a file stand on the slope that is there, as those of Rock Release do.
+void standOnSlope(pqPipelineSource* rocks)
+{
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  for (pqPipelineSource* slope : model->findItems<pqPipelineSource*>(rocks->getServer()))
+  {
+    if (isOf(slope->getProxy(), { "vtkDEMToCFESource", "vtkDrawnStructure" }))
+    {
+      vtkSMPropertyHelper(rocks->getProxy(), "Terrain").Set(slope->getProxy(), 0);
+    }
+  }
+  rocks->getProxy()->UpdateVTKObjects();
 }
 
 /// Units behind the captions of the panel, from the properties' hints: a caption in the XML is the
@@ -142,6 +165,25 @@ void showUnits(QMainWindow* window)
     if (label && !label->text().endsWith(text))
     {
       label->setText(label->text() + text);
+    }
+  }
+}
+
+void fitMarkers()
+{
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  for (pqView* view : model->findItems<pqView*>())
+  {
+    bool changed = false;
+    for (pqRepresentation* shown : view->getRepresentations())
+    {
+      changed = (shown->isVisible() &&
+                  rockfall::window::fitMarker(shown->getProxy(), view->getViewProxy())) ||
+        changed;
+    }
+    if (changed)
+    {
+      view->render();
     }
   }
 }
@@ -175,6 +217,7 @@ double lastEnd(vtkSMSourceProxy* run)
 //-----------------------------------------------------------------------------
 pqRockfallWindow::pqRockfallWindow(QObject* parent)
   : Superclass(parent)
+  , Picker(new pqPathPicker(this))
 {
 }
 
@@ -193,8 +236,17 @@ void pqRockfallWindow::begin()
     model, &pqServerManagerModel::representationAdded, this, &pqRockfallWindow::onRepresentation);
   this->connect(&this->Clock, &QTimer::timeout, this, &pqRockfallWindow::tellRuns);
   this->connect(&this->Clock, &QTimer::timeout, [window] { showUnits(window); });
+  this->connect(&this->Clock, &QTimer::timeout, &fitMarkers);
   this->Clock.start(kLookAtRuns);
+  this->connect(this->Picker, &pqPathPicker::picked, this, &pqRockfallWindow::onPicked);
+  this->connect(this->Picker, &pqPathPicker::missed, this,
+    [this] { this->tell(tr("There is no trajectory where you clicked")); });
   this->makeMenu(window);
+  const QString pages = scriptFolder() + "/RockfallDDA.qch";
+  if (QFileInfo::exists(pages))
+  {
+    pqApplicationCore::instance()->registerDocumentation(pages);
+  }
 }
 
 //-----------------------------------------------------------------------------
@@ -223,8 +275,7 @@ void pqRockfallWindow::makeMenu(QMainWindow* window)
         dialog.setFileMode(pqFileDialog::ExistingFile);
         if (dialog.exec() == QDialog::Accepted && !dialog.getSelectedFiles().isEmpty())
         {
-          QString file = dialog.getSelectedFiles().first();
-          this->runPython("new_study('" + file.replace("\\", "\\\\").replace("'", "\\'") + "')");
+          this->runPython("new_study(" + quoted(dialog.getSelectedFiles().first()) + ")");
         }
       })
     ->setObjectName("actionNewStudy");
@@ -233,6 +284,12 @@ void pqRockfallWindow::makeMenu(QMainWindow* window)
   menu->addAction(tr("Example: Jacksboro Fault"), this, [this] { this->runPython("jacksboro()"); })
     ->setObjectName("actionJacksboro");
   menu->addSeparator();
+  menu->addAction(tr("Pick a Trajectory"), this, [this] { this->pickTrajectory(); })
+    ->setObjectName("actionPickTrajectory");
+  menu
+    ->addAction(tr("Documentation"), this,
+      [] { pqHelpReaction::showHelp("qthelp://RockfallDDA.pages/RockfallDDA/README.html"); })
+    ->setObjectName("actionDocumentation");
   menu->addAction(tr("Clock"), this, [this] { this->runPython("clock()"); })
     ->setObjectName("actionClock");
   // Pictures for the documentation, taken by tests.
@@ -266,15 +323,86 @@ void pqRockfallWindow::runPython(const QString& statement)
 //-----------------------------------------------------------------------------
 void pqRockfallWindow::onSource(pqPipelineSource* source)
 {
-  if (isNamed(source->getProxy(),
-        { "RockRelease", "RockBlocks", "TrajectoryCollector", "DrawnStructure" }))
+  vtkSMProxy* proxy = source->getProxy();
+  if (proxy->GetXMLName() == std::string("RockSourceReader"))
+  {
+    standOnSlope(source);
+  }
+  else if (isOf(proxy, { "vtkRockBlockSource", "vtkTrajectoryCollector", "vtkDrawnStructure" }))
   {
     drawPlaced(source->getSourceProxy());
   }
-  if (isNamed(source->getProxy(), { "RockfallSimulation", "RockfallHazardMap", "DEMToCFEMesh" }))
+  if (isOf(proxy, { "vtkDEMToCFESource" }))
+  {
+    for (const int event :
+      { int(vtkCommand::UncheckedPropertyModifiedEvent), int(vtkCommand::ModifiedEvent) })
+    {
+      pqCoreUtilities::connect(
+        proxy->GetProperty("Preset"), event, this, SLOT(onPreset(vtkObject*, unsigned long)));
+    }
+  }
+  if (isOf(proxy,
+        { "vtkRockfallSimulation", "vtkRockfallHazardMap", "vtkDEMToCFESource",
+          "vtkGrowingPaths" }))
   {
     this->connect(
       source, SIGNAL(dataUpdated(pqPipelineSource*)), this, SLOT(onData(pqPipelineSource*)));
+  }
+}
+
+//-----------------------------------------------------------------------------
+void pqRockfallWindow::onPreset(vtkObject* property, unsigned long event)
+{
+  auto* preset = vtkSMProperty::SafeDownCast(property);
+  vtkSMProxy* slope = preset ? preset->GetParent() : nullptr;
+  if (!slope)
+  {
+    return;
+  }
+  // Numbers of the panel until Apply, those of the slope then or from a script.
+  const bool panel = event == vtkCommand::UncheckedPropertyModifiedEvent;
+  vtkSMPropertyHelper chosen(preset);
+  chosen.SetUseUnchecked(panel);
+  for (const auto& [name, value] : rockfall::window::presetValues(chosen.GetAsInt()))
+  {
+    vtkSMPropertyHelper number(slope, name.c_str());
+    number.SetUseUnchecked(panel);
+    if (number.GetAsDouble() != value)
+    {
+      number.Set(value);
+    }
+  }
+}
+
+//-----------------------------------------------------------------------------
+void pqRockfallWindow::pickTrajectory()
+{
+  if (auto* view = qobject_cast<pqRenderView*>(pqActiveObjects::instance().activeView()))
+  {
+    this->Picker->begin(view);
+    this->tell(tr("Click a trajectory"));
+  }
+  else
+  {
+    this->tell(tr("Click into the view of the slope first"));
+  }
+}
+
+//-----------------------------------------------------------------------------
+void pqRockfallWindow::onPicked(pqOutputPort* port, int cell)
+{
+  this->runPython(QString("profile(%1, %2, %3)")
+                    .arg(quoted(port->getSource()->getSMName()))
+                    .arg(port->getPortNumber())
+                    .arg(cell));
+}
+
+//-----------------------------------------------------------------------------
+void pqRockfallWindow::tell(const QString& message)
+{
+  if (QMainWindow* window = mainWindow())
+  {
+    window->statusBar()->showMessage(message, kReadNotes);
   }
 }
 
@@ -284,8 +412,8 @@ void pqRockfallWindow::onRepresentation(pqRepresentation* added)
   vtkSMProxy* representation = added->getProxy();
   const rockfall::window::Shown shown = rockfall::window::shownBy(representation);
   rockfall::window::style(representation);
-  const bool first = shown.source && shown.port == 0 && isNamed(shown.source, { "DEMToCFEMesh" }) &&
-    isFirstSlope(representation);
+  const bool first = shown.source && shown.port == 0 &&
+    isOf(shown.source, { "vtkDEMToCFESource" }) && isFirstSlope(representation);
   // Legends and cameras are set by ParaView after it has made a representation.
   QPointer<pqRepresentation> later = added;
   QTimer::singleShot(0, this,
@@ -308,7 +436,8 @@ void pqRockfallWindow::onRepresentation(pqRepresentation* added)
 //-----------------------------------------------------------------------------
 void pqRockfallWindow::onData(pqPipelineSource* source)
 {
-  if (isNamed(source->getProxy(), { "RockfallSimulation", "RockfallHazardMap" }))
+  if (isOf(
+        source->getProxy(), { "vtkRockfallSimulation", "vtkRockfallHazardMap", "vtkGrowingPaths" }))
   {
     // Palettes go with what is made: the first paths of a run are not the range of all.
     QPointer<pqPipelineSource> later = source;
@@ -325,7 +454,7 @@ void pqRockfallWindow::onData(pqPipelineSource* source)
       });
   }
   vtkSMSourceProxy* proxy = source->getSourceProxy();
-  if (isNamed(proxy, { "DEMToCFEMesh" }))
+  if (isOf(proxy, { "vtkDEMToCFESource" }))
   {
     const QString notes = notesOf(proxy);
     if (QMainWindow* window = mainWindow(); window && !notes.isEmpty())
@@ -333,19 +462,40 @@ void pqRockfallWindow::onData(pqPipelineSource* source)
       window->statusBar()->showMessage(source->getSMName() + ": " + notes, kReadNotes);
     }
   }
-  else if (isNamed(proxy, { "RockfallSimulation" }))
+  else if (isOf(proxy, { "vtkRockfallSimulation" }))
   {
-    // An animation ends with the last rock, not with the time that it would have had.
-    const double end = lastEnd(proxy);
-    vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
-    vtkSMProxy* scene = controller->GetAnimationScene(source->getServer()->session());
-    if (scene && end > 0.0 && vtkSMPropertyHelper(scene, "EndTime").GetAsDouble() > end)
+    this->endWithLastRock(source->getServer());
+  }
+}
+
+//-----------------------------------------------------------------------------
+void pqRockfallWindow::endWithLastRock(pqServer* server)
+{
+  double end = 0.0;
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  for (pqPipelineSource* run : model->findItems<pqPipelineSource*>(server))
+  {
+    if (isOf(run->getProxy(), { "vtkRockfallSimulation" }))
     {
-      vtkSMPropertyHelper(scene, "EndTime").Set(end);
-      vtkSMPropertyHelper(scene, "LockEndTime").Set(1);
-      scene->UpdateVTKObjects();
+      end = std::max(end, lastEnd(run->getSourceProxy()));
     }
   }
+  vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
+  vtkSMProxy* scene = controller->GetAnimationScene(server->session());
+  if (!scene || !(end > 0.0))
+  {
+    return;
+  }
+  // A time that the user has locked stays.
+  if (vtkSMPropertyHelper(scene, "LockEndTime").GetAsInt() &&
+    vtkSMPropertyHelper(scene, "EndTime").GetAsDouble() != this->LastEnd)
+  {
+    return;
+  }
+  this->LastEnd = end;
+  vtkSMPropertyHelper(scene, "LockEndTime").Set(1);
+  vtkSMPropertyHelper(scene, "EndTime").Set(end);
+  scene->UpdateVTKObjects();
 }
 
 //-----------------------------------------------------------------------------
@@ -356,7 +506,7 @@ void pqRockfallWindow::tellRuns()
   for (pqPipelineSource* source : model->findItems<pqPipelineSource*>())
   {
     vtkSMProxy* proxy = source->getProxy();
-    if (!isNamed(proxy, { "RockfallSimulation" }) ||
+    if (!isOf(proxy, { "vtkRockfallSimulation" }) ||
       source->modifiedState() == pqProxy::UNINITIALIZED)
     {
       continue;

@@ -7,14 +7,19 @@
 #include <QTimer>
 
 class QMainWindow;
+class pqOutputPort;
+class pqPathPicker;
 class pqPipelineSource;
 class pqRepresentation;
+class pqServer;
 class pqView;
+class vtkObject;
 
 /**
  * What the plugin does in a window: the Rockfall menu; the looks of what is shown first; drawn
- * lines that begin where the slope or the paths are; the state of runs in the status bar;
- * animations that end with the last rock.
+ * lines that begin where the slope or the paths are; the numbers of presets in the panel; a chart
+ * of the trajectory that is clicked; the state of runs in the status bar; animations in real time
+ * that end with the last rock.
  */
 class pqRockfallWindow : public QObject
 {
@@ -31,14 +36,22 @@ private Q_SLOTS:
   void onSource(pqPipelineSource* source);
   void onRepresentation(pqRepresentation* representation);
   void onData(pqPipelineSource* source);
+  void onPreset(vtkObject* property, unsigned long event);
+  void onPicked(pqOutputPort* port, int cell);
   void tellRuns();
 
 private:
   void makeMenu(QMainWindow* window);
+  void endWithLastRock(pqServer* server);
   void runPython(const QString& statement);
+  void pickTrajectory();
+  void tell(const QString& message);
 
+  pqPathPicker* Picker;
   QTimer Clock;
   int Pictures = 0;      // that were taken
+  double LastEnd = -1.0; // that animations were given, s
+  bool Picking = false;  // a trajectory, with the next click
   QSet<QString> Running; // names of the runs that were told of last
 };
 

@@ -7,7 +7,7 @@ import os
 import tempfile
 import time
 
-from paraview import simple
+from paraview import servermanager, simple
 
 ROCKS = 20  # of the release line
 ITERATIONS = 10
@@ -15,7 +15,7 @@ ITERATIONS = 10
 
 def new_study(file_name=""):
     """A slope, a release line across its highest steep place, the fall of its rocks, a map and what passes
-    a line; without a file on the test slope. Returns the five by name."""
+    a line; without a file on the test slope. Returns its parts by name."""
     slope = simple.DEMtoCFEMesh(registrationName="Slope", FileName=file_name)
     slope.UpdatePipeline()
     if slope.GetDataInformation().GetNumberOfCells() == 0:
@@ -33,23 +33,23 @@ def new_study(file_name=""):
     fall.Iterations = ITERATIONS
     fall.SMProxy.InvokeCommand("Watch")  # a window is not kept waiting
     paths = simple.OutputPort(fall, 1)
-    simple.Show(paths, view)
     simple.Show(simple.OutputPort(fall, 0), view)
     _await_paths(fall)
+    growing = simple.GrowingPaths(registrationName="Paths", Input=paths)
+    simple.Show(growing, view)
 
     line = simple.TrajectoryCollector(registrationName="Line", Input=paths)
     _draw_placed(line)
     hazard = simple.RockfallHazardMap(registrationName="Map", Input=paths)
     simple.Show(simple.OutputPort(line, 3), view)
     simple.Show(simple.OutputPort(hazard, 1), view)
-    simple.Hide(paths, view)
     _show_chart(line, view)
     clock(view)
     frame(fall, view)
     simple.SetActiveView(view)
     simple.SetActiveSource(release)
     simple.RenderAllViews()
-    return {"slope": slope, "release": release, "fall": fall, "map": hazard, "line": line}
+    return {"slope": slope, "release": release, "fall": fall, "paths": growing, "map": hazard, "line": line}
 
 
 def frame(fall=None, view=None):
@@ -72,6 +72,36 @@ def frame(fall=None, view=None):
     view.CameraViewUp = [0.0, 0.0, 1.0]
     view.CenterOfRotation = centre
     simple.Render(view)
+
+
+def profile(source_name, port, trajectory):
+    """A chart of one trajectory of this output, or the chart that is there with this one."""
+    source = simple.FindSource(source_name)
+    made = next((s for s in simple.GetSources().values()
+                 if s.GetXMLName() == "TrajectoryProfile" and s.Input.SMProxy == source.SMProxy), None)
+    if made:
+        made.Trajectory = trajectory
+    else:
+        view = simple.GetActiveView()
+        made = simple.TrajectoryProfile(registrationName="Profile", Input=simple.OutputPort(source, port),
+                                        Trajectory=trajectory)
+        chart = simple.CreateView("XYChartView")
+        layout = simple.GetLayout(view) if view else None
+        if layout:
+            simple.AssignViewToLayout(view=chart, layout=layout, hint=0)
+        simple.Show(made, chart)
+        simple.Show(simple.OutputPort(made, 1), view)
+        simple.SetActiveView(view)
+    made.UpdatePipeline()
+    field = servermanager.Fetch(made).GetFieldData()
+    if field.GetArray("RockId"):
+        title = (f"Rock {int(field.GetArray('RockId').GetTuple1(0))}, "
+                 f"iteration {int(field.GetArray('Iteration').GetTuple1(0))}")
+        for chart in simple.GetViews(viewtype="XYChartView"):
+            if any(shown.Input.SMProxy == made.SMProxy for shown in chart.Representations):
+                chart.ChartTitle = title
+    simple.RenderAllViews()
+    return made
 
 
 def clock(view=None):
@@ -133,6 +163,8 @@ def _show_chart(line, view):
     curve.XArrayName = "EnergyInKilojoules"
     curve.SeriesVisibility = ["ShareOfPassing"]
     curve.SeriesLabel = ["ShareOfPassing", "Share of the rocks that pass"]
+    curve.SeriesMarkerStyle = ["ShareOfPassing", "4"]  # discs
+    curve.SeriesMarkerSize = ["ShareOfPassing", "6"]
     chart.ChartTitle = "Energy at the line"
     chart.BottomAxisTitle = "Kinetic energy (kJ)"
     chart.LeftAxisTitle = "Share with at least this energy"

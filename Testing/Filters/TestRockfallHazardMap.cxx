@@ -10,6 +10,7 @@
 
 #include "gis/raster.h"
 
+#include <array>
 #include <cmath>
 
 namespace
@@ -145,27 +146,32 @@ TEST_F(TestRockfallHazardMap, DrapedOnTheSlope)
   EXPECT_EQ(map->GetNumberOfCells(), 25);
   auto* draped = vtkPolyData::SafeDownCast(this->Filter->GetOutputDataObject(1));
   ASSERT_TRUE(draped);
-  ASSERT_EQ(draped->GetNumberOfCells(), 10); // without those that nothing passed
+  ASSERT_EQ(
+    draped->GetNumberOfCells(), 20); // two triangles each, without those that nothing passed
   EXPECT_EQ(draped->GetPoints()->GetDataType(), VTK_DOUBLE);
   EXPECT_EQ(draped->GetNumberOfPoints(), 24);
   EXPECT_FALSE(draped->GetFieldData()->GetArray("HazardMap"));
   EXPECT_STREQ(draped->GetCellData()->GetScalars()->GetName(), "ReachProbability");
   EXPECT_EQ(value(draped->GetCellData(), "Speed50", 0), 10.0);
-  EXPECT_EQ(value(draped->GetCellData(), "Speed50", 5), 20.0);
+  EXPECT_EQ(value(draped->GetCellData(), "Speed50", 10), 20.0);
   double b[6];
   draped->GetBounds(b);
-  const double top = 57.7 * (1.0 - 0.50), foot = 57.7 * (1.0 - 0.75), lift = 0.05 * 5.0;
+  const double top = 57.7 * (1.0 - 0.50), foot = 57.7 * (1.0 - 0.75), lift = 0.1;
   EXPECT_EQ(b[0], 50.0);
   EXPECT_EQ(b[1], 75.0);
   EXPECT_EQ(b[2], 50.0);
   EXPECT_EQ(b[3], 75.0);
   EXPECT_NEAR(b[5], top + lift, 1e-4); // heights of the map are floats
   EXPECT_NEAR(b[4], foot + lift, 1e-4);
-  double from[3], to[3];
-  draped->GetPoint(draped->GetCell(0)->GetPointId(0), from);
-  draped->GetPoint(draped->GetCell(0)->GetPointId(2), to);
-  EXPECT_EQ(from[1] - to[1], 5.0); // cut from the north-west to the south-east, as the slope is
-  EXPECT_EQ(to[0] - from[0], 5.0);
+  // Cut from the north-west to the south-east, as the slope is.
+  for (const auto& [cell, first, second] : { std::array{ 0, 0, 2 }, std::array{ 1, 0, 1 } })
+  {
+    double from[3], to[3];
+    draped->GetPoint(draped->GetCell(cell)->GetPointId(first), from);
+    draped->GetPoint(draped->GetCell(cell)->GetPointId(second), to);
+    EXPECT_EQ(from[1] - to[1], 5.0);
+    EXPECT_EQ(to[0] - from[0], 5.0);
+  }
 }
 
 TEST_F(TestRockfallHazardMap, WrittenAsGeoTiff)

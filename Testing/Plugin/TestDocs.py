@@ -24,6 +24,8 @@ PAGES = [
     ("DispersionAngle", "DispersionAngle", "angle"),
     ("RockfallHazardMap", "RockfallHazardMap", "hazard"),
     ("TrajectoryCollector", "TrajectoryCollector", "collector"),
+    ("TrajectoryProfile", "TrajectoryProfile", "profile"),
+    ("GrowingPaths", "GrowingPaths", "paths"),
     ("HazardPassages", "HazardPassageReader", "hazard"),
     ("MergeCollectors", "MergeCollectors", "merged"),
 ]
@@ -122,18 +124,20 @@ def outputs_of(page):
 
 
 def borrowed_arrays(section, port):
-    """Those of another page, where a section says so: Arrays of [Rock Blocks](RockBlocks.md)."""
-    found = re.search(r"Arrays of \[[^]]*\]\((\w+)\.md", section)
+    """Those of another page, where a section says so: Arrays of [Rock Blocks](RockBlocks.md), or Arrays of port 1
+    of [Rockfall Simulation](RockfallSimulationOutput.md)."""
+    found = re.search(r"Arrays of (?:port (\d+) of )?\[[^]]*\]\((\w+)\.md", section)
     if not found:
         return {}
-    shared, sections = outputs_of(found.group(1))
-    return {**shared, **documented_arrays(dict(sections)[port])}
+    shared, sections = outputs_of(found.group(2))
+    return {**shared, **documented_arrays(dict(sections)[int(found.group(1) or port)])}
 
 
 proxies = {}
 for path in glob.glob(os.path.join(ROOT, "Plugin", "xml", "*.xml")):
     for found in ElementTree.parse(path).getroot().iter("SourceProxy"):
-        proxies[found.get("name")] = found
+        if not (found.get("base_proxyname") and found.find("Hints/ReaderFactory") is not None):  # another name only
+            proxies[found.get("name")] = found
 expect(set(proxies) == {proxy for _, proxy, _ in PAGES},
        f"the XML has the proxies {sorted(proxies)}, there are pages for {[p[1] for p in PAGES]}")
 

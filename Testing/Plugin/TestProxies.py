@@ -27,6 +27,8 @@ PROXIES = [
     ("Rockfall Hazard Map", "RockfallHazardMap", "filters", "Input Terrain CellSize"),
     ("Trajectory Collector", "TrajectoryCollector", "filters",
      "Input Lines FileName Points BarrierHeight BarrierCapacity"),
+    ("Growing Paths", "GrowingPaths", "filters", "Input"),
+    ("Trajectory Profile", "TrajectoryProfile", "filters", "Input Trajectory"),
     ("Hazard Passage Reader", "HazardPassageReader", "sources", "FileNames"),
     ("Merge Collectors", "MergeCollectors", "filters", "Input"),
 ]
@@ -41,11 +43,14 @@ simulation.EndTime = 1.0
 dispersion = simple.DispersionAngle(Input=simple.OutputPort(simulation, 1))
 hazard = simple.RockfallHazardMap(Input=simple.OutputPort(simulation, 1), Terrain=dem)
 collector = simple.TrajectoryCollector(Input=simple.OutputPort(simulation, 1))
+growing = simple.GrowingPaths(Input=simple.OutputPort(simulation, 1))
+profile = simple.TrajectoryProfile(Input=simple.OutputPort(simulation, 1))
 passages = simple.HazardPassageReader()
 merged = simple.MergeCollectors(Input=[collector])
 
 for (label, name, group, properties), proxy in zip(
-        PROXIES, (dem, rocks, release, structure, mass, simulation, dispersion, hazard, collector, passages, merged)):
+        PROXIES, (dem, rocks, release, structure, mass, simulation, dispersion, hazard, collector, growing, profile,
+                  passages, merged)):
     assert hasattr(simple, name), name
     assert proxy.GetXMLGroup() == group, (name, proxy.GetXMLGroup())
     assert proxy.GetXMLLabel() == label, (name, proxy.GetXMLLabel())
@@ -136,6 +141,13 @@ assert dispersion.GroupBy == "Shape", dispersion.GroupBy
 dispersion.UpdatePipeline()
 table = servermanager.Fetch(dispersion)
 assert table.GetNumberOfRows() == 1 and table.GetValueByName(0, "Group").ToString() == "cube"
+
+# What File > Open makes of a file has all the properties of its source, and no entry in a menu.
+for reader, source in ((simple.RockfallSlopeReader, dem), (simple.RockfallSourceReader, rocks)):
+    made = reader()
+    assert made.ListProperties() == source.ListProperties(), reader
+    assert made.GetHints().FindNestedElementByName("ReaderFactory"), reader
+    assert made.SMProxy.GetVTKClassName() == source.SMProxy.GetVTKClassName()
 
 names = [simulation.SMProxy.GetOutputPortName(k) for k in range(4)]
 assert names == ["Rocks", "Trajectories", "Impacts", "Summary"], names

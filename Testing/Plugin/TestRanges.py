@@ -10,7 +10,7 @@ from helpers import errors_of, is_empty
 import paraview.simple
 from paraview.simple import (
     DEMtoCFEMesh, Delete, DispersionAngle, DrawnStructure, JointedRockMass, OutputPort, PolyLineSource, RockBlocks, RockfallHazardMap,
-    RockfallSimulation, RockRelease, TrajectoryCollector)
+    RockfallSimulation, RockRelease, TrajectoryCollector, TrajectoryProfile)
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 ABOVE_ZERO = 1e-300  # how the XML says it
@@ -21,6 +21,10 @@ failures = []
 def simulation():
     # In free flight: whatever the numbers are, there is little to compute.
     return RockfallSimulation(Terrain=DEMtoCFEMesh(), Rocks=RockBlocks(), EndTime=0.1)
+
+
+def profile():
+    return TrajectoryProfile(Input=OutputPort(simulation(), 1))
 
 
 def dispersion():
@@ -58,6 +62,7 @@ MAKERS = {
     "DispersionAngle": dispersion,
     "RockfallHazardMap": hazard,
     "TrajectoryCollector": collector,
+    "TrajectoryProfile": profile,
 }
 TOGETHER_WITH = {
     ("DEMToCFEMesh", "Band"): None,  # only rasters have bands
