@@ -7,7 +7,6 @@
 #include "pieces.h"
 #include "ranks.h"
 #include "rockPaths.h"
-#include "terrainFieldData.h"
 
 #include "vtkCellArray.h"
 #include "vtkDataSetAttributes.h"
@@ -138,7 +137,6 @@ int vtkTrajectoryProfile::RequestData(
         writeProfile(path, table);
         writeLine(path, line);
       });
-    rockfall::filters::copyCoordinateSystem(input->GetFieldData(), line->GetFieldData());
     return 1;
   }
   catch (const rockfall::Error& error)

@@ -29,10 +29,12 @@ constexpr Colour kRelease = { 0.10, 0.25, 0.55 };
 constexpr Colour kRock = { 0.55, 0.27, 0.07 };
 constexpr Colour kBuilt = { 0.20, 0.42, 0.24 };
 constexpr Colour kLine = { 0.05, 0.05, 0.05 };
-constexpr double kPathWidth = 3.0;  ///< px
-constexpr double kMarkerSize = 8.0; ///< px, of blocks from afar
-constexpr double kPointSize = 6.0;  ///< px
-constexpr const char* kDisc = "4";  ///< Of a chart's markers.
+constexpr Colour kPicked = { 0.85, 0.05, 0.55 };
+constexpr double kPickedWidth = 6.0; ///< px
+constexpr double kPathWidth = 3.0;   ///< px
+constexpr double kMarkerSize = 8.0;  ///< px, of blocks from afar
+constexpr double kPointSize = 6.0;   ///< px
+constexpr const char* kDisc = "4";   ///< Of a chart's markers.
 
 /// From low to high, as red, green, blue.
 using Palette = std::array<Colour, 4>;
