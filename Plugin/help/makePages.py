@@ -2,8 +2,8 @@
 
     makePages.py docs Plugin/xml folder
 
-Writes <group>.<proxy>.html for each source, filter and reader, <page>.html for the other pages, the pictures
-and RockfallDDA.qhp, of which Qt's qhelpgenerator makes the file that the window opens."""
+Writes <group>.<proxy>.html for each source, filter and reader, <page>.html for the other pages, the pictures,
+the tables and RockfallDDA.qhp, of which Qt's qhelpgenerator makes the file that the window opens."""
 
 import glob
 import html
@@ -129,7 +129,11 @@ def main(docs, xml_folder, folder):
     for picture in pictures:
         os.makedirs(os.path.dirname(os.path.join(folder, picture)), exist_ok=True)
         shutil.copy(os.path.join(docs, picture), os.path.join(folder, picture))
-    files = [name + ".html" for name in pages + sorted(names)] + sorted(pictures)
+    tables = sorted(os.path.relpath(path, docs) for path in glob.glob(os.path.join(docs, "data", "*.csv")))
+    for table in tables:
+        os.makedirs(os.path.dirname(os.path.join(folder, table)), exist_ok=True)
+        shutil.copy(os.path.join(docs, table), os.path.join(folder, table))
+    files = [name + ".html" for name in pages + sorted(names)] + sorted(pictures) + tables
     contents = "\n".join(f'<section title="{html.escape(titles[page])}" ref="{page}.html"/>'
                          for page in pages if page != "README")
     with open(os.path.join(folder, "RockfallDDA.qhp"), "w", encoding="utf-8") as file:
