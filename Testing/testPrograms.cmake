@@ -4,8 +4,26 @@
 # One program of all these GoogleTest sources, and each of its tests as <prefix>.<suite>.<test> in
 # ctest. Each source is a program of its own too, TestFoo of TestFoo.cxx, which is built only when
 # asked for: for work on one file.
+#
+# Under sanitizers a start takes a third of a second, so ctest has shards of the program there,
+# <prefix>.shard<k>, with many tests each. What fails is named at the end of a shard's output; what
+# crashes or hangs is the last test that it names. GTEST_FILTER leaves tests out.
 find_package(GTest REQUIRED)
 include(GoogleTest)
+# More than processors, so that all of these have something to do to the end.
+set(ROCKFALL_SHARDS 16 CACHE STRING "Parts of a test program under sanitizers")
+
+# rockfall_shards(<name> <prefix> <property> <value>...)
+function(rockfall_shards name prefix)
+  math(EXPR last "${ROCKFALL_SHARDS} - 1")
+  foreach(shard RANGE ${last})
+    set(test "${prefix}.shard${shard}")
+    add_test(NAME ${test} COMMAND ${name} WORKING_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}")
+    set_tests_properties(${test} PROPERTIES ${ARGN})
+    set_property(TEST ${test} APPEND PROPERTY ENVIRONMENT
+      GTEST_TOTAL_SHARDS=${ROCKFALL_SHARDS} GTEST_SHARD_INDEX=${shard})
+  endforeach()
+endfunction()
 
 function(rockfall_test_program name)
   cmake_parse_arguments(arg "" "PREFIX" "SOURCES;LIBRARIES;PROPERTIES" ${ARGN})
@@ -15,10 +33,14 @@ function(rockfall_test_program name)
   target_compile_options(${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds>)
   set_target_properties(${name} PROPERTIES UNITY_BUILD ${ROCKFALL_UNITY} UNITY_BUILD_MODE GROUP)
   rockfall_precompile(${name} <gtest/gtest.h>)
-  gtest_discover_tests(${name} TEST_PREFIX "${arg_PREFIX}." DISCOVERY_MODE PRE_TEST
-    DISCOVERY_TIMEOUT 60
-    WORKING_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}"
-    PROPERTIES ${arg_PROPERTIES})
+  if(ROCKFALL_SANITIZE)
+    rockfall_shards(${name} ${arg_PREFIX} ${arg_PROPERTIES})
+  else()
+    gtest_discover_tests(${name} TEST_PREFIX "${arg_PREFIX}." DISCOVERY_MODE PRE_TEST
+      DISCOVERY_TIMEOUT 60
+      WORKING_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}"
+      PROPERTIES ${arg_PROPERTIES})
+  endif()
   foreach(source ${arg_SOURCES})
     get_filename_component(single ${source} NAME_WE)
     add_executable(${single} EXCLUDE_FROM_ALL ${source})
