@@ -1,6 +1,7 @@
 #include "collectorOutputs.h"
 
 #include "arrays.h"
+#include "base/abort.h"
 #include "base/errors.h"
 
 #include "vtkCellArray.h"
@@ -121,6 +122,7 @@ void writeCrossings(std::span<const CollectedCrossing> crossings,
   }
   for (const CollectedCrossing& collected : crossings)
   {
+    stayWanted();
     const Crossing& crossing = collected.crossing;
     const Vec3 world = crossing.position + origin;
     const vtkIdType id = points->InsertNextPoint(world.data());

@@ -3,6 +3,7 @@
 #include "arrays.h"
 #include "base/errors.h"
 #include "failure.h"
+#include "gis/reach.h"
 #include "gis/rockContacts.h"
 #include "inputContent.h"
 #include "motion.h"
@@ -183,6 +184,7 @@ void KeptRun::prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const 
           ++gone;
           continue;
         }
+        rock.rock.validate(); // with its own names, before anything is computed of it
         // Mid-impact a rock may be deep in the springs.
         setOntoSlope(slope, rock.rock, rock.state >= 0 ? 0.5 * rock.rock.shape.radius() : 0.0);
         frame.rocks.push_back(std::move(rock.rock));
@@ -242,6 +244,7 @@ void KeptRun::readContacts(const Ranks& ranks, const std::string& noMemory)
         materials.push_back(rock.material);
       }
       std::vector<std::string> notes;
+      const AllowReferences references(allowReferences);
       const std::vector<RockContactPair> pairs =
         readRockContacts(contactFile, parameters.rockCohesion, materials, contactSheet, &notes);
       std::for_each(notes.begin(), notes.end(), showNote);

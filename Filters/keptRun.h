@@ -36,8 +36,9 @@ struct Stamp
 struct KeptRun
 {
   SimulationParameters parameters;
-  std::string contactFile;  ///< Of pairs of materials; empty: none.
-  std::string contactSheet; ///< Of the file; empty: the one that will do.
+  std::string contactFile;      ///< Of pairs of materials; empty: none.
+  std::string contactSheet;     ///< Of the file; empty: the one that will do.
+  bool allowReferences = false; ///< The file may name addresses and other files.
   KeptParts parts;
   Stamp terrain, rocks; ///< The inputs.
   /// What of them decides the run (inputContent.h).

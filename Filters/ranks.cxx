@@ -1,5 +1,6 @@
 #include "ranks.h"
 
+#include "base/abort.h"
 #include "base/errors.h"
 
 #include "vtkCellArray.h"
@@ -99,9 +100,14 @@ void Ranks::agree(const std::string& problem) const
 void Ranks::together(const std::function<void()>& work, const std::string& noMemory) const
 {
   std::string problem;
+  bool aborted = false;
   try
   {
     work();
+  }
+  catch (const Aborted&)
+  {
+    aborted = true;
   }
   catch (const Error& error)
   {
@@ -110,6 +116,11 @@ void Ranks::together(const std::function<void()>& work, const std::string& noMem
   catch (const std::bad_alloc&)
   {
     problem = noMemory;
+  }
+  const std::vector<int> all = this->gather(aborted ? 1 : 0);
+  if (std::find(all.begin(), all.end(), 1) != all.end())
+  {
+    throw Aborted();
   }
   this->agree(problem);
 }

@@ -33,7 +33,7 @@ public:
   /// If any rank has a problem all of them throw Error, with the text of the lowest such rank.
   void agree(const std::string& problem) const;
   /// Does the work on every rank and agrees on how it went. Error and bad_alloc are problems;
-  /// `noMemory` is the text for the latter.
+  /// `noMemory` is the text for the latter. If any rank gives up, all throw Aborted.
   void together(const std::function<void()>& work, const std::string& noMemory) const;
 
   /// What `text` is on rank 0.

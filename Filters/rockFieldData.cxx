@@ -1,6 +1,7 @@
 #include "rockFieldData.h"
 
 #include "arrays.h"
+#include "base/abort.h"
 #include "base/errors.h"
 #include "base/numberText.h"
 #include "geometry/shell.h"
@@ -33,6 +34,7 @@ struct Faces
 {
   std::int64_t blockId = 0;
   vtkIdType firstCell = 0; ///< Its cell data are the block's.
+  std::vector<vtkIdType> furtherCells;
   std::vector<Vec3> points;
   std::vector<std::vector<int>> loops;
   std::map<vtkIdType, int> numbers; ///< From the polydata's points to `points`.
@@ -50,6 +52,7 @@ std::vector<Faces> groupByBlock(vtkPolyData* input)
   for (polygons->GoToFirstCell(); !polygons->IsDoneWithTraversal();
        polygons->GoToNextCell(), ++cell)
   {
+    stayWanted();
     double id = 0.0;
     if (blockIds)
     {
@@ -68,6 +71,10 @@ std::vector<Faces> groupByBlock(vtkPolyData* input)
       blocks.back().firstCell = cell;
     }
     Faces& block = blocks[place.first->second];
+    if (!place.second)
+    {
+      block.furtherCells.push_back(cell);
+    }
     vtkIdType size = 0;
     const vtkIdType* ids = nullptr;
     polygons->GetCurrentCell(size, ids);
@@ -97,6 +104,44 @@ void checkBlockPrecision(vtkPolyData* input, const Faces& block)
       "The Rocks input's block " + std::to_string(block.blockId), "in single precision",
       "Take Rock Blocks instead, whose Shape may be a file saved near the origin and whose Center "
       "is its place, or a source of double precision");
+  }
+}
+
+/// What is read of a block's cells, and so has one value for all of them.
+constexpr const char* kOfBlocks[] = { "Density", "YoungModulus", "PoissonRatio", "Material",
+  "Velocity", "AngularVelocity", "Shape", "SourceId", "SourceName", "State", "PositionDeviation",
+  "AttitudeLaw", "AttitudeDeviation", "VolumeLaw", "VolumeParameters" };
+
+/// Throws DataError where two cells of a block say different things of it.
+void checkOneBlock(vtkPolyData* input, const Faces& block)
+{
+  for (const char* name : kOfBlocks)
+  {
+    vtkAbstractArray* array = input->GetCellData()->GetAbstractArray(name);
+    auto* numbers = vtkDataArray::SafeDownCast(array);
+    auto* names = vtkStringArray::SafeDownCast(array);
+    const auto refuse = [&](const std::string& one, const std::string& other, vtkIdType cell)
+    {
+      throw DataError("The Rocks input's cell array " + std::string(name) + " has " + one +
+        " in cell " + std::to_string(block.firstCell) + " and " + other + " in cell " +
+        std::to_string(cell) + ", which both are of block " + std::to_string(block.blockId));
+    };
+    for (const vtkIdType cell : block.furtherCells)
+    {
+      for (int k = 0; numbers && k < numbers->GetNumberOfComponents(); ++k)
+      {
+        const double one = numbers->GetComponent(block.firstCell, k),
+                     other = numbers->GetComponent(cell, k);
+        if (one != other && !(std::isnan(one) && std::isnan(other)))
+        {
+          refuse(numberText(one), numberText(other), cell);
+        }
+      }
+      if (names && names->GetValue(block.firstCell) != names->GetValue(cell))
+      {
+        refuse(names->GetValue(block.firstCell), names->GetValue(cell), cell);
+      }
+    }
   }
 }
 
@@ -259,6 +304,7 @@ void writeRocks(std::span<const ReleasedRock> rocks, vtkPolyData* output)
   }
   for (const ReleasedRock& released : rocks)
   {
+    stayWanted();
     const Rock& rock = released.rock;
     appendFaces(rock.shape, rock.orientation.toRotationMatrix(), rock.position, points, polygons);
     for (std::size_t face = 0; face < rock.shape.faces().size(); ++face)
@@ -291,6 +337,7 @@ std::vector<ReleasedRock> readRocks(vtkPolyData* input, const Vec3& origin)
   std::vector<Faces> blocks = groupByBlock(input);
   for (Faces& block : blocks)
   {
+    stayWanted();
     checkBlockPrecision(input, block);
     for (Vec3& p : block.points)
     {
@@ -311,6 +358,7 @@ std::vector<ReleasedRock> readRocks(vtkPolyData* input, const Vec3& origin)
             ? ""
             : ". (Where rock sources were appended, each needs its own First Block Id)"));
     }
+    checkOneBlock(input, block);
     Rock& rock = released.rock;
     rock.blockId = block.blockId;
     rock.position = placed.integrals().centroid;

@@ -1,6 +1,7 @@
 #include "rockMaker.h"
 
 #include "base/RockMaterial.h"
+#include "base/abort.h"
 #include "base/errors.h"
 #include "base/numberText.h"
 #include "base/random.h"
@@ -169,6 +170,7 @@ std::int64_t RockMaker::amountOf(
   double sum = 0.0;
   for (std::int64_t amount = 1; amount <= most; ++amount)
   {
+    stayWanted();
     const std::uint64_t draw = firstDraw + std::uint64_t(amount) - 1;
     const double volume = this->shape(this->kindOf(row, draw), row, law, draw).integrals().volume;
     if (sum + volume >= totalVolume)
@@ -204,6 +206,7 @@ void RockMaker::refuseLengths(const SourceRow& row) const
 ReleasedRock RockMaker::make(
   const SourceRow& row, std::size_t index, const ReleasePlace& place, std::int64_t blockId)
 {
+  stayWanted();
   if (row.lengths)
   {
     this->refuseLengths(row);

@@ -1,6 +1,7 @@
 #include "rockPaths.h"
 
 #include "arrays.h"
+#include "base/abort.h"
 #include "base/errors.h"
 #include "simulation/results.h"
 
@@ -93,6 +94,7 @@ void readPaths(vtkPolyData* trajectories, const Vec3& origin, vtkIdType first, v
   for (lines->GoToCell(first); count > 0 && !lines->IsDoneWithTraversal();
        lines->GoToNextCell(), ++cell, --count)
   {
+    stayWanted();
     vtkIdType size = 0;
     const vtkIdType* ids = nullptr;
     lines->GetCurrentCell(size, ids);

@@ -1,6 +1,6 @@
 #include "vtkDEMToCFESource.h"
 
-#include "base/abort.h"
+#include "attempt.h"
 #include "base/errors.h"
 #include "base/numberText.h"
 #include "failure.h"
@@ -162,9 +162,9 @@ int vtkDEMToCFESource::RequestData(
   vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector)
 {
   vtkPolyData* output = vtkPolyData::GetData(outputVector);
-  const rockfall::AbortScope scope([this] { return !this->CheckAbort(); });
   try
   {
+    const rockfall::filters::HeardAbort heard(this);
     if (this->MaximumDisplayCells < 2)
     {
       throw rockfall::ParameterError("MaximumDisplayCells is " +
@@ -173,10 +173,7 @@ int vtkDEMToCFESource::RequestData(
 
     std::vector<std::string> notes;
     const std::shared_ptr<const rockfall::Terrain> terrain = this->MakeSlope(notes);
-    if (this->CheckAbort())
-    {
-      return 1;
-    }
+    rockfall::stayWanted();
 
     const int stride = rockfall::filters::displayStride(*terrain, this->MaximumDisplayCells);
     if (stride > 1)
@@ -212,7 +209,7 @@ int vtkDEMToCFESource::RequestData(
   }
   catch (const rockfall::Aborted&)
   {
-    return 1; // nothing is left of it
+    return rockfall::filters::giveUp(this);
   }
   catch (const rockfall::Error& error)
   {

@@ -1,6 +1,7 @@
 #include "vtkDispersionAngle.h"
 
 #include "arrays.h"
+#include "attempt.h"
 #include "base/errors.h"
 #include "failure.h"
 #include "inputs.h"
@@ -180,91 +181,89 @@ int vtkDispersionAngle::FillOutputPortInformation(int port, vtkInformation* info
 int vtkDispersionAngle::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  try
-  {
-    rockfall::filters::Input taken(rockfall::filters::InputKind::Trajectories);
-    vtkPolyData* input = taken.take(inputVector[0]);
-    const std::string spread = rockfall::filters::spreadOf(input);
-    if (!spread.empty())
+  return rockfall::filters::attempt(this,
+    "The trajectories and their dispersion do not fit in memory",
+    [&]
     {
-      return rockfall::filters::failTogether(this, spread);
-    }
-    if (!input)
-    {
-      throw rockfall::DataError("The Input is missing");
-    }
-    taken.require();
-    if (rockfall::filters::inheritFailure(input, this) ||
-      (input->GetNumberOfLines() == 0 &&
-        (rockfall::filters::isFurtherPiece(outputVector) ||
-          rockfall::filters::isRunning(input->GetFieldData()))))
-    {
-      return 1;
-    }
-    const auto groups = rockfall::filters::groupPaths(
-      input, this->UseGroups ? this->GroupBy : std::string(), this->ClassLimits);
+      rockfall::filters::Input taken(rockfall::filters::InputKind::Trajectories);
+      vtkPolyData* input = taken.take(inputVector[0]);
+      const std::string spread = rockfall::filters::spreadOf(input);
+      if (!spread.empty())
+      {
+        return rockfall::filters::failTogether(this, spread);
+      }
+      if (!input)
+      {
+        throw rockfall::DataError("The Input is missing");
+      }
+      taken.require();
+      if (rockfall::filters::inheritFailure(input, this) ||
+        (input->GetNumberOfLines() == 0 &&
+          (rockfall::filters::isFurtherPiece(outputVector) ||
+            rockfall::filters::isRunning(input->GetFieldData()))))
+      {
+        return 1;
+      }
+      const auto groups = rockfall::filters::groupPaths(
+        input, this->UseGroups ? this->GroupBy : std::string(), this->ClassLimits);
 
-    double azimuth = std::atan2(this->Direction[1], this->Direction[0]);
-    if (this->AutomaticDirection)
-    {
-      Paths all;
+      double azimuth = std::atan2(this->Direction[1], this->Direction[0]);
+      if (this->AutomaticDirection)
+      {
+        Paths all;
+        for (const auto& group : groups)
+        {
+          all.insert(all.end(), group.paths.begin(), group.paths.end());
+        }
+        azimuth = rockfall::meanAzimuth(all);
+      }
+      else if (!(std::hypot(this->Direction[0], this->Direction[1]) > 0.0))
+      {
+        throw rockfall::ParameterError(
+          "Direction has no horizontal part, so it gives no cross-section");
+      }
+
+      using rockfall::filters::addArray;
+      vtkNew<vtkTable> table;
+      vtkFieldData* rows = table->GetRowData();
+      const auto name = addArray<vtkStringArray>(rows, "Group");
+      const auto count = addArray<vtkIntArray>(rows, "Trajectories");
+      const auto length = addArray<vtkDoubleArray>(rows, "L");
+      const auto width = addArray<vtkDoubleArray>(rows, "W");
+      const auto theta = addArray<vtkDoubleArray>(rows, "Theta");
+      const auto lateralMin = addArray<vtkDoubleArray>(rows, "LateralMin");
+      const auto lateralMax = addArray<vtkDoubleArray>(rows, "LateralMax");
+      const auto deviation = addArray<vtkDoubleArray>(rows, "LateralDeviation");
+      const auto direction = addArray<vtkDoubleArray>(rows, "Azimuth");
+      RunOuts runOuts(rows);
+      vtkNew<vtkPolyData> lines;
+      Wedges wedges(lines);
       for (const auto& group : groups)
       {
-        all.insert(all.end(), group.paths.begin(), group.paths.end());
+        const rockfall::Dispersion dispersion =
+          rockfall::measureDispersion(group.paths, azimuth, this->Length, this->RelativeToStart);
+        wedges.Append(
+          int(name->GetNumberOfValues()), dispersion, azimuth, meanEndHeight(group.paths));
+        name->InsertNextValue(group.name);
+        count->InsertNextValue(dispersion.trajectories);
+        length->InsertNextValue(dispersion.length);
+        width->InsertNextValue(dispersion.width);
+        theta->InsertNextValue(rockfall::degrees(dispersion.angle));
+        lateralMin->InsertNextValue(dispersion.lateralMin);
+        lateralMax->InsertNextValue(dispersion.lateralMax);
+        deviation->InsertNextValue(dispersion.lateralDeviation);
+        direction->InsertNextValue(compass(azimuth));
+        runOuts.Append(group.paths);
       }
-      azimuth = rockfall::meanAzimuth(all);
-    }
-    else if (!(std::hypot(this->Direction[0], this->Direction[1]) > 0.0))
-    {
-      throw rockfall::ParameterError(
-        "Direction has no horizontal part, so it gives no cross-section");
-    }
-
-    using rockfall::filters::addArray;
-    vtkNew<vtkTable> table;
-    vtkFieldData* rows = table->GetRowData();
-    const auto name = addArray<vtkStringArray>(rows, "Group");
-    const auto count = addArray<vtkIntArray>(rows, "Trajectories");
-    const auto length = addArray<vtkDoubleArray>(rows, "L");
-    const auto width = addArray<vtkDoubleArray>(rows, "W");
-    const auto theta = addArray<vtkDoubleArray>(rows, "Theta");
-    const auto lateralMin = addArray<vtkDoubleArray>(rows, "LateralMin");
-    const auto lateralMax = addArray<vtkDoubleArray>(rows, "LateralMax");
-    const auto deviation = addArray<vtkDoubleArray>(rows, "LateralDeviation");
-    const auto direction = addArray<vtkDoubleArray>(rows, "Azimuth");
-    RunOuts runOuts(rows);
-    vtkNew<vtkPolyData> lines;
-    Wedges wedges(lines);
-    for (const auto& group : groups)
-    {
-      const rockfall::Dispersion dispersion =
-        rockfall::measureDispersion(group.paths, azimuth, this->Length, this->RelativeToStart);
-      wedges.Append(
-        int(name->GetNumberOfValues()), dispersion, azimuth, meanEndHeight(group.paths));
-      name->InsertNextValue(group.name);
-      count->InsertNextValue(dispersion.trajectories);
-      length->InsertNextValue(dispersion.length);
-      width->InsertNextValue(dispersion.width);
-      theta->InsertNextValue(rockfall::degrees(dispersion.angle));
-      lateralMin->InsertNextValue(dispersion.lateralMin);
-      lateralMax->InsertNextValue(dispersion.lateralMax);
-      deviation->InsertNextValue(dispersion.lateralDeviation);
-      direction->InsertNextValue(compass(azimuth));
-      runOuts.Append(group.paths);
-    }
-    for (vtkDataObject* made :
-      { static_cast<vtkDataObject*>(table), static_cast<vtkDataObject*>(lines) })
-    {
-      rockfall::filters::copyCoordinateSystem(input->GetFieldData(), made->GetFieldData());
-    }
-    vtkTable::GetData(outputVector, 0)->ShallowCopy(table);
-    vtkPolyData::GetData(outputVector, 1)->ShallowCopy(lines);
-    return 1;
-  }
-  catch (const rockfall::Error& error)
-  {
-    return rockfall::filters::fail(this, error.what());
-  }
+      for (vtkDataObject* made :
+        { static_cast<vtkDataObject*>(table), static_cast<vtkDataObject*>(lines) })
+      {
+        rockfall::filters::copyCoordinateSystem(input->GetFieldData(), made->GetFieldData());
+      }
+      vtkTable::GetData(outputVector, 0)->ShallowCopy(table);
+      vtkPolyData::GetData(outputVector, 1)->ShallowCopy(lines);
+      return 1;
+    });
 }
 
 //------------------------------------------------------------------------------

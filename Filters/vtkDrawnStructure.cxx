@@ -1,5 +1,6 @@
 #include "vtkDrawnStructure.h"
 
+#include "attempt.h"
 #include "base/errors.h"
 #include "base/numberText.h"
 #include "drawnSource.h"
@@ -137,93 +138,90 @@ int vtkDrawnStructure::RequestData(
   {
     return 1;
   }
-  try
-  {
-    taken.require();
-    this->CheckProperties();
-    filters::readTerrain(input); // says if it is no slope, or no longer the one it was
-    Structures structures = filters::readStructures(input->GetFieldData());
-    vtkNew<vtkPolyData> bare;
-    for (int k = 0; k < input->GetFieldData()->GetNumberOfArrays(); ++k)
+  return filters::attempt(this, "The slope with the drawn structure does not fit in memory",
+    [&]
     {
-      bare->GetFieldData()->AddArray(input->GetFieldData()->GetAbstractArray(k));
-    }
-    filters::dropStructures(bare->GetFieldData());
-    Terrain slope = filters::readTerrain(bare, false);
-
-    std::vector<std::array<double, 3>> points = this->Points;
-    if (points.empty())
-    {
-      const std::array<double, 6> placed = filters::middleLine(slope);
-      std::copy(placed.begin(), placed.end(), this->PlacedLine);
-      points = { { placed[0], placed[1], placed[2] }, { placed[3], placed[4], placed[5] } };
-    }
-    const std::vector<SourceRow> rows = filters::drawnRows(
-      this->Kind == FOREST ? SourceGeometry::Polygon : SourceGeometry::Line, points, &slope);
-    if (this->Kind == NET)
-    {
-      rockfall::Barrier net;
-      net.feature = nextFeature(structures.barriers);
-      net.name = "drawn net";
-      net.points = placesOf(rows.front(), slope);
-      net.height = this->Height;
-      net.capacity = this->Capacity * 1000.0;
-      structures.barriers.push_back(std::move(net));
-    }
-    else if (this->Kind == EMBANKMENT)
-    {
-      rockfall::Embankment dam;
-      dam.feature = nextFeature(structures.embankments);
-      dam.name = "drawn embankment";
-      dam.points = placesOf(rows.front(), slope);
-      dam.height = this->Height;
-      dam.crestWidth = this->CrestWidth;
-      dam.mountainSlope = dam.valleySlope = this->SideSlope;
-      structures.embankments.push_back(std::move(dam));
-    }
-    else
-    {
-      rockfall::ReleaseDefaults density;
-      density.intensity = this->StemsPerHectare / kHectare;
-      rockfall::Tree tree;
-      tree.feature = nextFeature(structures.trees);
-      tree.diameter = 0.01 * this->Diameter;
-      tree.height = this->Height;
-      if (this->TreesBreak)
+      taken.require();
+      this->CheckProperties();
+      filters::readTerrain(input); // says if it is no slope, or no longer the one it was
+      Structures structures = filters::readStructures(input->GetFieldData());
+      vtkNew<vtkPolyData> bare;
+      for (int k = 0; k < input->GetFieldData()->GetNumberOfArrays(); ++k)
       {
-        tree.capacity = rockfall::stemCapacity(tree.diameter);
+        bare->GetFieldData()->AddArray(input->GetFieldData()->GetAbstractArray(k));
       }
-      for (const rockfall::ReleasePlace& place :
-        rockfall::releasePlaces(rows, &slope, density, "Points"))
-      {
-        tree.position = (place.position - slope.geometry().origin()).head<2>();
-        structures.trees.push_back(tree);
-        ++tree.feature;
-      }
-    }
-    slope.setStructures(std::move(structures));
-    const auto terrain = std::make_shared<const Terrain>(std::move(slope));
+      filters::dropStructures(bare->GetFieldData());
+      Terrain slope = filters::readTerrain(bare, false);
 
-    vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
-    output->ShallowCopy(input);
-    vtkNew<vtkFieldData> fields;
-    vtkFieldData* old = bare->GetFieldData();
-    for (int k = 0; k < old->GetNumberOfArrays(); ++k)
-    {
-      fields->AddArray(old->GetAbstractArray(k));
-    }
-    filters::writeStructures(*terrain, fields);
-    output->SetFieldData(fields);
-    vtkNew<vtkPolyData> shown;
-    filters::makeStructureMesh(*terrain, kMostShown, shown);
-    filters::copyCoordinateSystem(fields, shown->GetFieldData());
-    vtkPolyData::GetData(outputVector, 1)->ShallowCopy(shown);
-    return 1;
-  }
-  catch (const rockfall::Error& error)
-  {
-    return filters::fail(this, error.what());
-  }
+      std::vector<std::array<double, 3>> points = this->Points;
+      if (points.empty())
+      {
+        const std::array<double, 6> placed = filters::middleLine(slope);
+        std::copy(placed.begin(), placed.end(), this->PlacedLine);
+        points = { { placed[0], placed[1], placed[2] }, { placed[3], placed[4], placed[5] } };
+      }
+      const std::vector<SourceRow> rows = filters::drawnRows(
+        this->Kind == FOREST ? SourceGeometry::Polygon : SourceGeometry::Line, points, &slope);
+      if (this->Kind == NET)
+      {
+        rockfall::Barrier net;
+        net.feature = nextFeature(structures.barriers);
+        net.name = "drawn net";
+        net.points = placesOf(rows.front(), slope);
+        net.height = this->Height;
+        net.capacity = this->Capacity * 1000.0;
+        structures.barriers.push_back(std::move(net));
+      }
+      else if (this->Kind == EMBANKMENT)
+      {
+        rockfall::Embankment dam;
+        dam.feature = nextFeature(structures.embankments);
+        dam.name = "drawn embankment";
+        dam.points = placesOf(rows.front(), slope);
+        dam.height = this->Height;
+        dam.crestWidth = this->CrestWidth;
+        dam.mountainSlope = dam.valleySlope = this->SideSlope;
+        structures.embankments.push_back(std::move(dam));
+      }
+      else
+      {
+        rockfall::ReleaseDefaults density;
+        density.intensity = this->StemsPerHectare / kHectare;
+        rockfall::Tree tree;
+        tree.feature = nextFeature(structures.trees);
+        tree.diameter = 0.01 * this->Diameter;
+        tree.height = this->Height;
+        if (this->TreesBreak)
+        {
+          tree.capacity = rockfall::stemCapacity(tree.diameter);
+        }
+        for (const rockfall::ReleasePlace& place :
+          rockfall::releasePlaces(rows, &slope, density, "Points"))
+        {
+          tree.position = (place.position - slope.geometry().origin()).head<2>();
+          structures.trees.push_back(tree);
+          ++tree.feature;
+        }
+      }
+      slope.setStructures(std::move(structures));
+      const auto terrain = std::make_shared<const Terrain>(std::move(slope));
+
+      vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
+      output->ShallowCopy(input);
+      vtkNew<vtkFieldData> fields;
+      vtkFieldData* old = bare->GetFieldData();
+      for (int k = 0; k < old->GetNumberOfArrays(); ++k)
+      {
+        fields->AddArray(old->GetAbstractArray(k));
+      }
+      filters::writeStructures(*terrain, fields);
+      output->SetFieldData(fields);
+      vtkNew<vtkPolyData> shown;
+      filters::makeStructureMesh(*terrain, kMostShown, shown);
+      filters::copyCoordinateSystem(fields, shown->GetFieldData());
+      vtkPolyData::GetData(outputVector, 1)->ShallowCopy(shown);
+      return 1;
+    });
 }
 
 //------------------------------------------------------------------------------

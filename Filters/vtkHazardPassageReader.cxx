@@ -1,5 +1,6 @@
 #include "vtkHazardPassageReader.h"
 
+#include "attempt.h"
 #include "base/errors.h"
 #include "failure.h"
 #include "hazardImage.h"
@@ -101,19 +102,12 @@ int vtkHazardPassageReader::RequestData(
     rockfall::filters::markEmptyMap(image);
     return 1;
   }
-  try
-  {
-    rockfall::filters::makeHazardImage(rockfall::PassageFiles(this->FileNames), image);
-    return 1;
-  }
-  catch (const rockfall::Error& error)
-  {
-    return rockfall::filters::fail(this, error.what());
-  }
-  catch (const std::bad_alloc&)
-  {
-    return rockfall::filters::fail(this, "There is not enough memory for the map");
-  }
+  return rockfall::filters::attempt(this, "There is not enough memory for the map",
+    [&]
+    {
+      rockfall::filters::makeHazardImage(rockfall::PassageFiles(this->FileNames), image);
+      return 1;
+    });
 }
 
 //------------------------------------------------------------------------------

@@ -1,6 +1,7 @@
 #include "vtkJointedRockMass.h"
 
 #include "arrays.h"
+#include "attempt.h"
 #include "base/errors.h"
 #include "base/numberText.h"
 #include "failure.h"
@@ -259,22 +260,15 @@ int vtkJointedRockMass::RequestData(
   {
     return 1;
   }
-  try
-  {
-    taken.require();
-    vtkNew<vtkPolyData> blocks;
-    this->MakeBlocks(terrain, blocks);
-    vtkPolyData::GetData(outputVector)->ShallowCopy(blocks);
-    return 1;
-  }
-  catch (const rockfall::Error& error)
-  {
-    return rockfall::filters::fail(this, error.what());
-  }
-  catch (const std::bad_alloc&)
-  {
-    return rockfall::filters::fail(this, "The blocks of the rock mass do not fit in memory");
-  }
+  return rockfall::filters::attempt(this, "The blocks of the rock mass do not fit in memory",
+    [&]
+    {
+      taken.require();
+      vtkNew<vtkPolyData> blocks;
+      this->MakeBlocks(terrain, blocks);
+      vtkPolyData::GetData(outputVector)->ShallowCopy(blocks);
+      return 1;
+    });
 }
 
 //------------------------------------------------------------------------------

@@ -1,5 +1,6 @@
 #include "vtkMergeCollectors.h"
 
+#include "attempt.h"
 #include "base/errors.h"
 #include "collectorOutputs.h"
 #include "failure.h"
@@ -52,52 +53,49 @@ int vtkMergeCollectors::RequestData(
   {
     return 1;
   }
-  try
-  {
-    // The parts of composite data are as good as inputs of their own.
-    std::vector<vtkPolyData*> inputs;
-    for (int k = 0; k < inputVector[0]->GetNumberOfInformationObjects(); ++k)
+  return filters::attempt(this, "The merged crossings do not fit in memory",
+    [&]
     {
-      for (vtkDataObject* part : filters::leavesOf(vtkDataObject::GetData(inputVector[0], k)))
+      // The parts of composite data are as good as inputs of their own.
+      std::vector<vtkPolyData*> inputs;
+      for (int k = 0; k < inputVector[0]->GetNumberOfInformationObjects(); ++k)
       {
-        filters::Input taken(filters::InputKind::Crossings, int(inputs.size()) + 1);
-        inputs.push_back(taken.take(part));
-        taken.require();
-        if (filters::inheritFailure(inputs.back(), this))
+        for (vtkDataObject* part : filters::leavesOf(vtkDataObject::GetData(inputVector[0], k)))
         {
-          return 1;
+          filters::Input taken(filters::InputKind::Crossings, int(inputs.size()) + 1);
+          inputs.push_back(taken.take(part));
+          taken.require();
+          if (filters::inheritFailure(inputs.back(), this))
+          {
+            return 1;
+          }
         }
       }
-    }
-    if (inputs.empty())
-    {
-      throw rockfall::DataError("The Input is empty");
-    }
-    // New ones: the outputs already have the field data of the first input.
-    vtkNew<vtkPolyData> points;
-    const filters::MergedCrossings merged = filters::mergeCrossings(inputs, points);
-    std::vector<rockfall::LineSummary> summaries;
-    for (std::size_t k = 0; k < merged.lines.size(); ++k)
-    {
-      summaries.push_back(
-        rockfall::summarizeLine(merged.lines[k], int(k), merged.crossings, merged.released));
-    }
-    vtkNew<vtkTable> table, exceedance;
-    filters::writeLines(summaries, merged.lines, table);
-    filters::writeExceedance(summaries, merged.released, exceedance);
-    for (vtkTable* made : { table.Get(), exceedance.Get() })
-    {
-      filters::copyCoordinateSystem(points->GetFieldData(), made->GetFieldData());
-    }
-    vtkPolyData::GetData(outputVector, 0)->ShallowCopy(points);
-    vtkTable::GetData(outputVector, 1)->ShallowCopy(table);
-    vtkTable::GetData(outputVector, 2)->ShallowCopy(exceedance);
-    return 1;
-  }
-  catch (const rockfall::Error& error)
-  {
-    return filters::fail(this, error.what());
-  }
+      if (inputs.empty())
+      {
+        throw rockfall::DataError("The Input is empty");
+      }
+      // New ones: the outputs already have the field data of the first input.
+      vtkNew<vtkPolyData> points;
+      const filters::MergedCrossings merged = filters::mergeCrossings(inputs, points);
+      std::vector<rockfall::LineSummary> summaries;
+      for (std::size_t k = 0; k < merged.lines.size(); ++k)
+      {
+        summaries.push_back(
+          rockfall::summarizeLine(merged.lines[k], int(k), merged.crossings, merged.released));
+      }
+      vtkNew<vtkTable> table, exceedance;
+      filters::writeLines(summaries, merged.lines, table);
+      filters::writeExceedance(summaries, merged.released, exceedance);
+      for (vtkTable* made : { table.Get(), exceedance.Get() })
+      {
+        filters::copyCoordinateSystem(points->GetFieldData(), made->GetFieldData());
+      }
+      vtkPolyData::GetData(outputVector, 0)->ShallowCopy(points);
+      vtkTable::GetData(outputVector, 1)->ShallowCopy(table);
+      vtkTable::GetData(outputVector, 2)->ShallowCopy(exceedance);
+      return 1;
+    });
 }
 
 //------------------------------------------------------------------------------

@@ -1,5 +1,6 @@
 #include "vtkRockBlockSource.h"
 
+#include "attempt.h"
 #include "base/errors.h"
 #include "base/numberText.h"
 #include "drawnSource.h"
@@ -387,93 +388,86 @@ int vtkRockBlockSource::RequestData(
     return 1;
   }
   vtkPolyData* output = vtkPolyData::GetData(outputVector);
-  try
-  {
-    taken.require();
-    rockfall::filters::RockDefaults defaults;
-    rockfall::shapeName(rockfall::Shape(this->Shape)); // throws if there is no such shape
-    defaults.shapes = this->ShapeMix.empty() ? rockfall::ShapeMix(rockfall::Shape(this->Shape))
-                                             : rockfall::ShapeMix::fromText(this->ShapeMix);
-    defaults.volume.deviation = this->VolumeDeviation;
-    defaults.volume.minimum = this->VolumeMinimum;
-    defaults.volume.maximum = this->VolumeMaximum;
-    defaults.volume.exponent = this->VolumeExponent;
-    defaults.volume.validate(); // signs, also of what the law has no use for
-    defaults.volume.mean = this->Volume;
-    defaults.volume.law = rockfall::VolumeLaw(this->VolumeLaw);
-    rockfall::volumeLawName(defaults.volume.law); // throws if there is no such law
-    defaults.redrawVolume = this->RedrawVolume;
-    defaults.lengths = vec3(this->Lengths);
-    defaults.orientation = vec3(this->Orientation);
-    defaults.velocity = vec3(this->Velocity);
-    defaults.angularVelocity = vec3(this->AngularVelocity);
-    defaults.density = this->Density;
-    defaults.youngModulus = this->YoungModulus;
-    defaults.poissonRatio = this->PoissonRatio;
-    defaults.material = this->MaterialName;
-    rockfall::filters::takeMaterial(this->Material, defaults.density, defaults.youngModulus,
-      defaults.poissonRatio, defaults.material);
-    defaults.shapeFile = this->ShapeFileName;
-    if (this->ShapeFileMode != CONVEX_HULL && this->ShapeFileMode != AS_IT_IS)
+  return rockfall::filters::attempt(this, "The rock blocks do not fit in memory",
+    [&]
     {
-      refuse("ShapeFileMode", this->ShapeFileMode, "0 (convex hull) or 1 (as it is)");
-    }
-    defaults.shapeFileAsItIs = this->ShapeFileMode == AS_IT_IS;
-    defaults.scaleToVolume = this->ScaleToVolume;
-    defaults.uncertainty.horizontalDeviation = this->HorizontalDeviation;
-    defaults.uncertainty.verticalDeviation = this->VerticalDeviation;
-    if (this->AttitudeLaw < AS_GIVEN || this->AttitudeLaw > RANDOM_UNLESS_GIVEN)
-    {
-      refuse("AttitudeLaw", this->AttitudeLaw, "0 to 3");
-    }
-    defaults.randomUnlessGiven = this->AttitudeLaw == RANDOM_UNLESS_GIVEN;
-    defaults.uncertainty.attitude = defaults.randomUnlessGiven
-      ? rockfall::AttitudeLaw::AsGiven
-      : rockfall::AttitudeLaw(this->AttitudeLaw);
-    defaults.uncertainty.attitudeDeviation = rockfall::radians(this->AttitudeDeviation);
-    defaults.uncertainty.validate();
-    if (this->Seed < 0)
-    {
-      refuse("Seed", this->Seed, "at least 0");
-    }
-    defaults.seed = std::uint64_t(this->Seed);
-    defaults.sourceName = this->SourceName;
-    defaults.firstSourceId = this->FirstSourceId;
+      taken.require();
+      rockfall::filters::RockDefaults defaults;
+      rockfall::shapeName(rockfall::Shape(this->Shape)); // throws if there is no such shape
+      defaults.shapes = this->ShapeMix.empty() ? rockfall::ShapeMix(rockfall::Shape(this->Shape))
+                                               : rockfall::ShapeMix::fromText(this->ShapeMix);
+      defaults.volume.deviation = this->VolumeDeviation;
+      defaults.volume.minimum = this->VolumeMinimum;
+      defaults.volume.maximum = this->VolumeMaximum;
+      defaults.volume.exponent = this->VolumeExponent;
+      defaults.volume.validate(); // signs, also of what the law has no use for
+      defaults.volume.mean = this->Volume;
+      defaults.volume.law = rockfall::VolumeLaw(this->VolumeLaw);
+      rockfall::volumeLawName(defaults.volume.law); // throws if there is no such law
+      defaults.redrawVolume = this->RedrawVolume;
+      defaults.lengths = vec3(this->Lengths);
+      defaults.orientation = vec3(this->Orientation);
+      defaults.velocity = vec3(this->Velocity);
+      defaults.angularVelocity = vec3(this->AngularVelocity);
+      defaults.density = this->Density;
+      defaults.youngModulus = this->YoungModulus;
+      defaults.poissonRatio = this->PoissonRatio;
+      defaults.material = this->MaterialName;
+      rockfall::filters::takeMaterial(this->Material, defaults.density, defaults.youngModulus,
+        defaults.poissonRatio, defaults.material);
+      defaults.shapeFile = this->ShapeFileName;
+      if (this->ShapeFileMode != CONVEX_HULL && this->ShapeFileMode != AS_IT_IS)
+      {
+        refuse("ShapeFileMode", this->ShapeFileMode, "0 (convex hull) or 1 (as it is)");
+      }
+      defaults.shapeFileAsItIs = this->ShapeFileMode == AS_IT_IS;
+      defaults.scaleToVolume = this->ScaleToVolume;
+      defaults.uncertainty.horizontalDeviation = this->HorizontalDeviation;
+      defaults.uncertainty.verticalDeviation = this->VerticalDeviation;
+      if (this->AttitudeLaw < AS_GIVEN || this->AttitudeLaw > RANDOM_UNLESS_GIVEN)
+      {
+        refuse("AttitudeLaw", this->AttitudeLaw, "0 to 3");
+      }
+      defaults.randomUnlessGiven = this->AttitudeLaw == RANDOM_UNLESS_GIVEN;
+      defaults.uncertainty.attitude = defaults.randomUnlessGiven
+        ? rockfall::AttitudeLaw::AsGiven
+        : rockfall::AttitudeLaw(this->AttitudeLaw);
+      defaults.uncertainty.attitudeDeviation = rockfall::radians(this->AttitudeDeviation);
+      defaults.uncertainty.validate();
+      if (this->Seed < 0)
+      {
+        refuse("Seed", this->Seed, "at least 0");
+      }
+      defaults.seed = std::uint64_t(this->Seed);
+      defaults.sourceName = this->SourceName;
+      defaults.firstSourceId = this->FirstSourceId;
 
-    defaults.randomOrientation = this->RandomOrientation;
+      defaults.randomOrientation = this->RandomOrientation;
 
-    const rockfall::AllowReferences references(this->AllowReferences != 0);
-    Sources sources;
-    this->FindSources(terrain, sources);
-    sources.maker.emplace(defaults, sources.ground());
-    this->FindPlaces(sources);
-    this->MakeRocks(sources);
-    if (this->KeepApart)
-    {
-      this->PlaceApart(sources);
-    }
-    vtkNew<vtkPolyData> blocks;
-    rockfall::filters::writeRocks(sources.rocks, blocks);
-    rockfall::filters::writeCrs(sources.crs, blocks->GetFieldData());
-    if (terrain)
-    {
-      rockfall::filters::carryTerrain(terrain->GetFieldData(), blocks->GetFieldData());
-    }
-    const std::vector<std::string>& made = sources.maker->notes();
-    sources.notes.insert(sources.notes.end(), made.begin(), made.end());
-    rockfall::filters::showNotes(sources.notes, blocks->GetFieldData());
-    this->TellUnused(sources);
-    output->ShallowCopy(blocks);
-    return 1;
-  }
-  catch (const rockfall::Error& error)
-  {
-    return rockfall::filters::fail(this, error.what());
-  }
-  catch (const std::bad_alloc&)
-  {
-    return rockfall::filters::fail(this, "The rock blocks do not fit in memory");
-  }
+      const rockfall::AllowReferences references(this->AllowReferences != 0);
+      Sources sources;
+      this->FindSources(terrain, sources);
+      sources.maker.emplace(defaults, sources.ground());
+      this->FindPlaces(sources);
+      this->MakeRocks(sources);
+      if (this->KeepApart)
+      {
+        this->PlaceApart(sources);
+      }
+      vtkNew<vtkPolyData> blocks;
+      rockfall::filters::writeRocks(sources.rocks, blocks);
+      rockfall::filters::writeCrs(sources.crs, blocks->GetFieldData());
+      if (terrain)
+      {
+        rockfall::filters::carryTerrain(terrain->GetFieldData(), blocks->GetFieldData());
+      }
+      const std::vector<std::string>& made = sources.maker->notes();
+      sources.notes.insert(sources.notes.end(), made.begin(), made.end());
+      rockfall::filters::showNotes(sources.notes, blocks->GetFieldData());
+      this->TellUnused(sources);
+      output->ShallowCopy(blocks);
+      return 1;
+    });
 }
 
 //------------------------------------------------------------------------------

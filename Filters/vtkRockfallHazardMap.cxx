@@ -1,5 +1,6 @@
 #include "vtkRockfallHazardMap.h"
 
+#include "attempt.h"
 #include "base/errors.h"
 #include "drapedMap.h"
 #include "failure.h"
@@ -47,6 +48,7 @@ struct vtkRockfallHazardMap::Result
   vtkNew<vtkImageData> image;
   vtkNew<vtkPolyData> draped;
   std::string error;
+  bool aborted = false; ///< Nobody wanted it any more.
 };
 
 struct vtkRockfallHazardMap::Inputs
@@ -114,9 +116,16 @@ void vtkRockfallHazardMap::Prepare(vtkInformationVector** inputVector)
   }
   try
   {
+    const rockfall::filters::HeardAbort heard(this);
     rockfall::filters::makeHazardImage(
       trajectories, terrain, { this->CellSize, this->CropToTrajectories }, this->Made->image);
     rockfall::filters::drapeMap(this->Made->image, this->Made->draped);
+  }
+  catch (const rockfall::Aborted&)
+  {
+    this->Made->image->Initialize();
+    this->Made->draped->Initialize();
+    this->Made->aborted = true;
   }
   catch (const rockfall::Error& error)
   {
@@ -218,6 +227,12 @@ int vtkRockfallHazardMap::RequestData(
       this, "The Input has no lines; the trajectories of Rockfall Simulation are wanted");
   }
   this->Prepare(inputVector);
+  if (this->Made->aborted)
+  {
+    this->Made = std::make_unique<Result>();
+    this->Modified(); // the extent as well is to be found anew
+    return rockfall::filters::giveUp(this);
+  }
   if (!this->Made->error.empty())
   {
     return rockfall::filters::fail(this, this->Made->error);

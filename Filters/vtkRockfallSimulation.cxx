@@ -1,6 +1,7 @@
 #include "vtkRockfallSimulation.h"
 
 #include "arrays.h"
+#include "attempt.h"
 #include "base/errors.h"
 #include "base/numberText.h"
 #include "failure.h"
@@ -248,6 +249,7 @@ void vtkRockfallSimulation::TakeProperties(KeptRun& run)
   p.rockCohesion = this->RockCohesion;
   run.contactFile = this->RockContactFile;
   run.contactSheet = this->RockContactSheet;
+  run.allowReferences = this->AllowReferences != 0;
   p.pushRocksApart = this->PushRocksApart;
   p.iterations = this->Iterations;
   p.firstIteration = this->FirstIteration;
@@ -518,6 +520,7 @@ int vtkRockfallSimulation::RequestData(
   this->Asked = std::chrono::steady_clock::now();
   try
   {
+    const rockfall::filters::HeardAbort heard(this);
     ranks.agree(this->Taken->problem());
     bool finished = this->Simulate(terrain, rocks);
     KeptRun* run = this->Live ? &this->Live->run() : this->Kept.get();
@@ -544,9 +547,7 @@ int vtkRockfallSimulation::RequestData(
       this->NoMemory());
     if (ranks.gather(finished ? 1 : 0).front() == 0)
     {
-      output->Initialize();
-      this->SetAbortOutput(true); // on the others as on the one that was told to
-      return 1;                   // the outputs stay empty
+      return rockfall::filters::giveUp(this); // on the others as on the one that was told to
     }
     // On every rank, or those without would be asked again when the first one is not.
     output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), time);
@@ -555,6 +556,10 @@ int vtkRockfallSimulation::RequestData(
     vtkPolyData::GetData(outputVector, STRUCTURES)->ShallowCopy(run->structures);
     vtkTable::GetData(outputVector, SUMMARY)->ShallowCopy(run->summary);
     return 1;
+  }
+  catch (const rockfall::Aborted&)
+  {
+    return rockfall::filters::giveUp(this); // on all ranks
   }
   catch (const rockfall::Error& error)
   {
@@ -583,6 +588,7 @@ void vtkRockfallSimulation::PrintSelf(ostream& os, vtkIndent indent)
      << "RockContactFile: " << (this->RockContactFile.empty() ? "(none)" : this->RockContactFile)
      << "\n";
   os << indent << "RockContactSheet: " << this->RockContactSheet << "\n";
+  os << indent << "AllowReferences: " << this->AllowReferences << "\n";
   os << indent << "PushRocksApart: " << this->PushRocksApart << "\n";
   os << indent << "Rigid: " << this->Rigid << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";

@@ -174,6 +174,17 @@ public:
 
   ///@{
   /**
+   * Whether RockContactFile may name network addresses and other files of the machine. Off by
+   * default, because a file that came from somebody else could have any file read, or an address
+   * called. Files beside it need no leave.
+   */
+  vtkSetMacro(AllowReferences, int);
+  vtkGetMacro(AllowReferences, int);
+  vtkBooleanMacro(AllowReferences, int);
+  ///@}
+
+  ///@{
+  /**
    * Whether rocks that overlap at the start are pushed apart instead of being an error. Used with
    * RockRockContact only. Default off.
    */
@@ -327,6 +338,7 @@ private:
   double RockCohesion = 0.0;
   std::string RockContactFile;
   std::string RockContactSheet;
+  int AllowReferences = 0;
   bool PushRocksApart = false;
   bool Rigid = false;
   int NumberOfThreads = 0;

@@ -1,5 +1,6 @@
 #include "vtkTrajectoryCollector.h"
 
+#include "attempt.h"
 #include "base/errors.h"
 #include "base/numberText.h"
 #include "collectorOutputs.h"
@@ -213,145 +214,143 @@ int vtkTrajectoryCollector::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   namespace filters = rockfall::filters;
-  try
-  {
-    filters::Input takenTrajectories(filters::InputKind::Trajectories),
-      takenLines(filters::InputKind::Lines), takenTerrain(filters::InputKind::Terrain);
-    vtkPolyData* trajectories = takenTrajectories.take(inputVector[TRAJECTORIES]);
-    vtkPolyData* drawn = takenLines.take(inputVector[LINES]);
-    vtkPolyData* mesh = takenTerrain.take(inputVector[TERRAIN]);
-    const std::string spread = filters::spreadOf(trajectories);
-    if (!spread.empty())
+  return filters::attempt(this, "The crossings do not fit in memory",
+    [&]
     {
-      return filters::failTogether(this, spread);
-    }
-    if (!trajectories)
-    {
-      throw rockfall::DataError("The Input is missing");
-    }
-    for (const filters::Input* taken : { &takenTrajectories, &takenLines, &takenTerrain })
-    {
-      taken->require();
-    }
-    for (vtkPolyData* input : { trajectories, drawn, mesh })
-    {
-      if (input && filters::inheritFailure(input, this))
+      filters::Input takenTrajectories(filters::InputKind::Trajectories),
+        takenLines(filters::InputKind::Lines), takenTerrain(filters::InputKind::Terrain);
+      vtkPolyData* trajectories = takenTrajectories.take(inputVector[TRAJECTORIES]);
+      vtkPolyData* drawn = takenLines.take(inputVector[LINES]);
+      vtkPolyData* mesh = takenTerrain.take(inputVector[TERRAIN]);
+      const std::string spread = filters::spreadOf(trajectories);
+      if (!spread.empty())
       {
-        return 1;
+        return filters::failTogether(this, spread);
       }
-    }
-    if (trajectories->GetNumberOfLines() == 0)
-    {
-      if (filters::isFurtherPiece(outputVector) || filters::isRunning(trajectories->GetFieldData()))
+      if (!trajectories)
       {
-        return 1;
+        throw rockfall::DataError("The Input is missing");
       }
-      throw rockfall::DataError(
-        "The Input has no lines; the trajectories of Rockfall Simulation are wanted");
-    }
-    checkSize(this->BarrierHeight, "BarrierHeight");
-    checkSize(this->BarrierCapacity, "BarrierCapacity");
-    const std::optional<rockfall::Terrain> terrain = filters::slopeUnder(trajectories, mesh);
-    const Box2 rocks = boxOf(trajectories);
-    Box2 site = rocks; // where lines may be
-    Vec3 origin(std::floor(rocks.min().x()), std::floor(rocks.min().y()), 0.0);
-    if (terrain)
-    {
-      origin = terrain->geometry().origin();
-      const Eigen::Vector2d corner = origin.head<2>();
-      const Eigen::Vector2d size(terrain->width(), terrain->height());
-      if (!rocks.intersects(Box2(corner, corner + size)))
+      for (const filters::Input* taken : { &takenTrajectories, &takenLines, &takenTerrain })
       {
-        throw rockfall::DataError(
-          "No trajectory of the Input is over the Terrain: they do not belong together");
+        taken->require();
       }
-      site.extend(Box2(corner, corner + size));
-    }
-    CollectorLine barrier;
-    barrier.barrierHeight = this->BarrierHeight;
-    barrier.barrierCapacity = this->BarrierCapacity * 1000.0;
-    std::vector<CollectorLine> lines;
-    std::vector<std::string> notes;
-    if (drawn)
-    {
-      if (drawn->GetNumberOfPoints() > 0)
+      for (vtkPolyData* input : { trajectories, drawn, mesh })
       {
-        requireNear(boxOf(drawn), site, "The lines of the Lines input");
-        tellRounding(drawn);
-      }
-      lines = filters::linesOf(drawn, origin, barrier);
-    }
-    if (!this->FileName.empty())
-    {
-      const rockfall::AllowReferences references(this->AllowReferences != 0);
-      for (CollectorLine& line :
-        readLines(this->FileName, this->LayerName, trajectories, site, origin, barrier, notes))
-      {
-        lines.push_back(std::move(line));
-      }
-    }
-    std::vector<std::array<double, 3>> points = this->Points;
-    if (points.empty() && lines.empty())
-    {
-      const std::array<double, 6> placed =
-        filters::lineAcross(trajectories, terrain ? &*terrain : nullptr, origin);
-      std::copy(placed.begin(), placed.end(), this->PlacedLine);
-      points = { { placed[0], placed[1], placed[2] }, { placed[3], placed[4], placed[5] } };
-    }
-    if (!points.empty())
-    {
-      lines.push_back(lineThrough(points, rocks, origin, barrier));
-    }
-    std::vector<filters::CollectedCrossing> crossings;
-    std::vector<rockfall::Crossing> all, found;
-    filters::ReleasedRocks released;
-    filters::forEachPath(trajectories, origin,
-      [&](const rockfall::RockPath& path, std::int64_t cell)
-      {
-        released.push_back({ path.iteration, path.rock });
-        for (std::size_t k = 0; k < lines.size(); ++k)
+        if (input && filters::inheritFailure(input, this))
         {
-          found.clear();
-          rockfall::appendCrossings(path, lines[k], int(k), terrain ? &*terrain : nullptr, found);
-          for (const rockfall::Crossing& crossing : found)
-          {
-            crossings.push_back({ crossing, cell });
-            all.push_back(crossing);
-          }
+          return 1;
         }
-      });
-    filters::checkReleased(released);
-    std::vector<rockfall::LineSummary> summaries;
-    for (std::size_t k = 0; k < lines.size(); ++k)
-    {
-      summaries.push_back(
-        rockfall::summarizeLine(lines[k], int(k), all, std::int64_t(released.size())));
-    }
+      }
+      if (trajectories->GetNumberOfLines() == 0)
+      {
+        if (filters::isFurtherPiece(outputVector) ||
+          filters::isRunning(trajectories->GetFieldData()))
+        {
+          return 1;
+        }
+        throw rockfall::DataError(
+          "The Input has no lines; the trajectories of Rockfall Simulation are wanted");
+      }
+      checkSize(this->BarrierHeight, "BarrierHeight");
+      checkSize(this->BarrierCapacity, "BarrierCapacity");
+      const std::optional<rockfall::Terrain> terrain = filters::slopeUnder(trajectories, mesh);
+      const Box2 rocks = boxOf(trajectories);
+      Box2 site = rocks; // where lines may be
+      Vec3 origin(std::floor(rocks.min().x()), std::floor(rocks.min().y()), 0.0);
+      if (terrain)
+      {
+        origin = terrain->geometry().origin();
+        const Eigen::Vector2d corner = origin.head<2>();
+        const Eigen::Vector2d size(terrain->width(), terrain->height());
+        if (!rocks.intersects(Box2(corner, corner + size)))
+        {
+          throw rockfall::DataError(
+            "No trajectory of the Input is over the Terrain: they do not belong together");
+        }
+        site.extend(Box2(corner, corner + size));
+      }
+      CollectorLine barrier;
+      barrier.barrierHeight = this->BarrierHeight;
+      barrier.barrierCapacity = this->BarrierCapacity * 1000.0;
+      std::vector<CollectorLine> lines;
+      std::vector<std::string> notes;
+      if (drawn)
+      {
+        if (drawn->GetNumberOfPoints() > 0)
+        {
+          requireNear(boxOf(drawn), site, "The lines of the Lines input");
+          tellRounding(drawn);
+        }
+        lines = filters::linesOf(drawn, origin, barrier);
+      }
+      if (!this->FileName.empty())
+      {
+        const rockfall::AllowReferences references(this->AllowReferences != 0);
+        for (CollectorLine& line :
+          readLines(this->FileName, this->LayerName, trajectories, site, origin, barrier, notes))
+        {
+          lines.push_back(std::move(line));
+        }
+      }
+      std::vector<std::array<double, 3>> points = this->Points;
+      if (points.empty() && lines.empty())
+      {
+        const std::array<double, 6> placed =
+          filters::lineAcross(trajectories, terrain ? &*terrain : nullptr, origin);
+        std::copy(placed.begin(), placed.end(), this->PlacedLine);
+        points = { { placed[0], placed[1], placed[2] }, { placed[3], placed[4], placed[5] } };
+      }
+      if (!points.empty())
+      {
+        lines.push_back(lineThrough(points, rocks, origin, barrier));
+      }
+      std::vector<filters::CollectedCrossing> crossings;
+      std::vector<rockfall::Crossing> all, found;
+      filters::ReleasedRocks released;
+      filters::forEachPath(trajectories, origin,
+        [&](const rockfall::RockPath& path, std::int64_t cell)
+        {
+          released.push_back({ path.iteration, path.rock });
+          for (std::size_t k = 0; k < lines.size(); ++k)
+          {
+            found.clear();
+            rockfall::appendCrossings(path, lines[k], int(k), terrain ? &*terrain : nullptr, found);
+            for (const rockfall::Crossing& crossing : found)
+            {
+              crossings.push_back({ crossing, cell });
+              all.push_back(crossing);
+            }
+          }
+        });
+      filters::checkReleased(released);
+      std::vector<rockfall::LineSummary> summaries;
+      for (std::size_t k = 0; k < lines.size(); ++k)
+      {
+        summaries.push_back(
+          rockfall::summarizeLine(lines[k], int(k), all, std::int64_t(released.size())));
+      }
 
-    vtkNew<vtkPolyData> passings, walls;
-    filters::writeCrossings(crossings, lines, released, origin, trajectories, passings);
-    filters::writeWalls(lines, summaries, terrain ? &*terrain : nullptr,
-      trajectories->GetBounds()[4] - origin.z(), origin, walls);
-    filters::showNotes(notes, passings->GetFieldData());
-    vtkNew<vtkTable> table, exceedance;
-    filters::writeLines(summaries, lines, table);
-    filters::writeExceedance(summaries, std::int64_t(released.size()), exceedance);
-    for (vtkDataObject* made :
-      { static_cast<vtkDataObject*>(passings), static_cast<vtkDataObject*>(walls),
-        static_cast<vtkDataObject*>(table), static_cast<vtkDataObject*>(exceedance) })
-    {
-      filters::copyCoordinateSystem(trajectories->GetFieldData(), made->GetFieldData());
-    }
-    vtkPolyData::GetData(outputVector, CROSSINGS)->ShallowCopy(passings);
-    vtkTable::GetData(outputVector, SUMMARIES)->ShallowCopy(table);
-    vtkTable::GetData(outputVector, EXCEEDANCE)->ShallowCopy(exceedance);
-    vtkPolyData::GetData(outputVector, WALLS)->ShallowCopy(walls);
-    return 1;
-  }
-  catch (const rockfall::Error& error)
-  {
-    return rockfall::filters::fail(this, error.what());
-  }
+      vtkNew<vtkPolyData> passings, walls;
+      filters::writeCrossings(crossings, lines, released, origin, trajectories, passings);
+      filters::writeWalls(lines, summaries, terrain ? &*terrain : nullptr,
+        trajectories->GetBounds()[4] - origin.z(), origin, walls);
+      filters::showNotes(notes, passings->GetFieldData());
+      vtkNew<vtkTable> table, exceedance;
+      filters::writeLines(summaries, lines, table);
+      filters::writeExceedance(summaries, std::int64_t(released.size()), exceedance);
+      for (vtkDataObject* made :
+        { static_cast<vtkDataObject*>(passings), static_cast<vtkDataObject*>(walls),
+          static_cast<vtkDataObject*>(table), static_cast<vtkDataObject*>(exceedance) })
+      {
+        filters::copyCoordinateSystem(trajectories->GetFieldData(), made->GetFieldData());
+      }
+      vtkPolyData::GetData(outputVector, CROSSINGS)->ShallowCopy(passings);
+      vtkTable::GetData(outputVector, SUMMARIES)->ShallowCopy(table);
+      vtkTable::GetData(outputVector, EXCEEDANCE)->ShallowCopy(exceedance);
+      vtkPolyData::GetData(outputVector, WALLS)->ShallowCopy(walls);
+      return 1;
+    });
 }
 
 //------------------------------------------------------------------------------

@@ -1,12 +1,15 @@
 #include "geometry/shell.h"
 
 #include "base/errors.h"
+#include "base/leave.h"
 
 #include <libqhull_r/qhull_ra.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <string>
+#include <utility>
 
 namespace rockfall
 {
@@ -135,6 +138,28 @@ private:
   int code_ = 0;
 };
 
+/// So many points take Qhull a second or so.
+constexpr std::size_t manyPoints = 50000;
+
+struct HullRun
+{
+  std::vector<std::vector<int>> loops;
+  std::string fault; ///< Empty: none.
+};
+
+HullRun runQhull(std::vector<double>& coordinates)
+{
+  // Only the numbers of the points are taken, never Qhull's coordinates. Pp: no warnings.
+  Hull hull(coordinates, "qhull Pp");
+  if (!hull.good())
+  {
+    return { {}, hull.message() };
+  }
+  std::vector<std::vector<int>> loops = hull.loops();
+  const bool closed = !loops.empty() && DirectedEdges(loops).closed();
+  return { std::move(loops), closed ? "" : "its facets do not close" };
+}
+
 } // namespace
 
 std::vector<std::vector<int>> hullFaces(std::span<const Vec3> points, const std::string& name)
@@ -144,23 +169,16 @@ std::vector<std::vector<int>> hullFaces(std::span<const Vec3> points, const std:
   {
     coordinates.insert(coordinates.end(), { point.x(), point.y(), point.z() });
   }
-  // Only the numbers of the points are taken, never Qhull's coordinates. Pp: no warnings.
-  Hull hull(coordinates, "qhull Pp");
-  std::string fault = "its facets do not close";
-  if (hull.good())
+  HullRun run = points.size() < manyPoints
+    ? runQhull(coordinates)
+    : leaveIfUnwanted(
+        [coordinates = std::move(coordinates)]() mutable { return runQhull(coordinates); });
+  if (!run.fault.empty())
   {
-    std::vector<std::vector<int>> loops = hull.loops();
-    if (!loops.empty() && DirectedEdges(loops).closed())
-    {
-      return loops;
-    }
+    throw GeometryError(name + ": no convex hull of its " + std::to_string(points.size()) +
+      " points is found (" + run.fault + ")");
   }
-  else
-  {
-    fault = hull.message();
-  }
-  throw GeometryError(name + ": no convex hull of its " + std::to_string(points.size()) +
-    " points is found (" + fault + ")");
+  return std::move(run.loops);
 }
 
 } // namespace rockfall

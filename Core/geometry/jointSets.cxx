@@ -1,5 +1,6 @@
 #include "geometry/jointSets.h"
 
+#include "base/abort.h"
 #include "base/errors.h"
 #include "base/numberText.h"
 #include "base/random.h"
@@ -302,6 +303,7 @@ CutMass cutMass(
       parts.push_back(std::move(piece));
       for (const CuttingPlane& plane : planes)
       {
+        stayWanted();
         // Joints of one set that are parallel meet the last part only.
         const std::size_t count = parts.size();
         for (std::size_t k = sets[i].orientationDeviation > 0.0 ? 0 : count - 1; k < count; ++k)
@@ -336,6 +338,7 @@ CutMass cutMass(
   double least = INFINITY, total = 0.0;
   for (const ConvexPiece& piece : pieces)
   {
+    stayWanted();
     const VolumeIntegrals integrals = integrateSimplices(piece.points, piece.faces);
     const double thickness = thicknessOf(piece);
     const auto name = [&]

@@ -1,5 +1,6 @@
 #include "gis/LayerFile.h"
 
+#include "base/abort.h"
 #include "base/errors.h"
 #include "base/nameKey.h"
 #include "gis/drawing.h"
@@ -19,10 +20,10 @@ namespace
 /// Features of a layer without a declared kind that are looked at to find it.
 constexpr int lookedAt = 100;
 
-/// Kinds that a layer declares; 0 if it declares none.
-unsigned declaredKinds(const OGRLayer& layer)
+/// Kinds of a type of geometry; 0 for collections and for what nothing is read of.
+unsigned kindOfType(OGRwkbGeometryType type)
 {
-  switch (wkbFlatten(const_cast<OGRLayer&>(layer).GetGeomType()))
+  switch (wkbFlatten(type))
   {
     case wkbPoint:
     case wkbMultiPoint:
@@ -45,6 +46,12 @@ unsigned declaredKinds(const OGRLayer& layer)
     default:
       return 0;
   }
+}
+
+/// Kinds that a layer declares; 0 if it declares none.
+unsigned declaredKinds(const OGRLayer& layer)
+{
+  return kindOfType(const_cast<OGRLayer&>(layer).GetGeomType());
 }
 
 /// What a layer has, by what it declares or by its first features.
@@ -100,35 +107,17 @@ unsigned kindOf(const OGRGeometry* geometry)
   {
     return kRows;
   }
-  switch (wkbFlatten(geometry->getGeometryType()))
+  if (wkbFlatten(geometry->getGeometryType()) != wkbGeometryCollection)
   {
-    case wkbPoint:
-    case wkbMultiPoint:
-      return kPoints;
-    case wkbLineString:
-    case wkbMultiLineString:
-    case wkbCircularString:
-    case wkbCompoundCurve:
-    case wkbMultiCurve:
-      return kLines;
-    case wkbGeometryCollection:
-    {
-      // A collection is what all of its parts are.
-      unsigned kinds = 0;
-      for (const OGRGeometry* part : *geometry->toGeometryCollection())
-      {
-        kinds |= part->IsEmpty() ? 0u : kindOf(part);
-      }
-      return kinds == kLines || kinds == kPoints || kinds == kPolygons ? kinds : 0u;
-    }
-    case wkbPolygon:
-    case wkbMultiPolygon:
-    case wkbCurvePolygon:
-    case wkbMultiSurface:
-      return kPolygons;
-    default:
-      return 0;
+    return kindOfType(geometry->getGeometryType());
   }
+  // A collection is what all of its parts are.
+  unsigned kinds = 0;
+  for (const OGRGeometry* part : *geometry->toGeometryCollection())
+  {
+    kinds |= part->IsEmpty() ? 0u : kindOf(part);
+  }
+  return kinds == kLines || kinds == kPoints || kinds == kPolygons ? kinds : 0u;
 }
 
 std::string layerList(GDALDataset& dataset)
@@ -291,6 +280,7 @@ OGRFeatureUniquePtr LayerFile::next()
 {
   while (OGRFeatureUniquePtr feature{ layer_->GetNextFeature() })
   {
+    stayWanted();
     ++number_;
     if (!drawing_)
     {

@@ -1,6 +1,7 @@
 #include "gis/contours.h"
 
 #include "base/errors.h"
+#include "base/leave.h"
 #include "gis/contourLevels.h"
 #include "gis/contourLines.h"
 #include "gis/fileContent.h"
@@ -132,9 +133,15 @@ TinPoints pointsOf(const Contours& contours, double x0, double y0, double spacin
   return points;
 }
 
+struct UnitedPoints
+{
+  TinPoints points;
+  std::string note; ///< Empty: nothing to tell.
+};
+
 /// One point where several stand. Contours of different heights that meet there get their mean, and
 /// a note.
-void unite(TinPoints& points, double x0, double y0, std::vector<std::string>& notes)
+UnitedPoints unite(const TinPoints& points, double x0, double y0)
 {
   std::vector<std::size_t> order(points.x.size());
   std::iota(order.begin(), order.end(), std::size_t(0));
@@ -144,7 +151,8 @@ void unite(TinPoints& points, double x0, double y0, std::vector<std::string>& no
       return std::tie(points.x[a], points.y[a], points.z[a]) <
         std::tie(points.x[b], points.y[b], points.z[b]);
     });
-  TinPoints united;
+  UnitedPoints result;
+  TinPoints& united = result.points;
   std::int64_t meetings = 0;
   std::string first;
   for (std::size_t i = 0; i < order.size();)
@@ -170,10 +178,10 @@ void unite(TinPoints& points, double x0, double y0, std::vector<std::string>& no
   }
   if (meetings > 0)
   {
-    notes.push_back("Contours of different heights meet at " + std::to_string(meetings) +
-      " vertices, the first of " + first + "; their mean was taken.");
+    result.note = "Contours of different heights meet at " + std::to_string(meetings) +
+      " vertices, the first of " + first + "; their mean was taken.";
   }
-  points = std::move(united);
+  return result;
 }
 
 } // namespace
@@ -268,9 +276,16 @@ RasterSurface readContours(const std::string& fileName, const ContourOptions& op
   grid.rows = int(rows);
 
   const double x0 = 0.5 * (box.xMin + box.xMax), y0 = 0.5 * (box.yMin + box.yMax);
-  TinPoints points = pointsOf(contours, x0, y0, grid.cellSize, options, fileName);
-  unite(points, x0, y0, result.notes);
-  TinNodes nodes = interpolateTin(points, grid, box.xMin - x0, box.yMin - y0, fileName);
+  UnitedPoints united =
+    leaveIfUnwanted([points = pointsOf(contours, x0, y0, grid.cellSize, options, fileName), x0, y0]
+      { return unite(points, x0, y0); });
+  if (!united.note.empty())
+  {
+    result.notes.push_back(united.note);
+  }
+  const std::size_t pointCount = united.points.x.size();
+  TinNodes nodes =
+    interpolateTin(std::move(united.points), grid, box.xMin - x0, box.yMin - y0, fileName);
   const auto flat = std::count(nodes.flat.begin(), nodes.flat.end(), 1);
   const std::vector<double> levels = levelsOf(contours);
   const std::int64_t relaxed =
@@ -286,8 +301,8 @@ RasterSurface readContours(const std::string& fileName, const ContourOptions& op
   result.notes.push_back("Made from contours: " + std::to_string(contours.lines.size()) +
     " lines of " + std::to_string(contours.x.size()) + " vertices, heights from " + where +
     " between " + number(*low) + " m and " + number(*high) + " m; TIN of " +
-    std::to_string(points.x.size()) + " points; " + sizeText(grid.columns, grid.rows) +
-    " nodes of " + number(grid.cellSize) + " m" +
+    std::to_string(pointCount) + " points; " + sizeText(grid.columns, grid.rows) + " nodes of " +
+    number(grid.cellSize) + " m" +
     (options.cellSize > 0.0 ? "" : ", half the mean distance between contours") + ".");
   if (flat > 0)
   {

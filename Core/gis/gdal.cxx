@@ -1,7 +1,7 @@
 #include "gis/gdal.h"
 
 #include "base/errors.h"
-#include "gis/reach.h"
+#include "base/leave.h"
 #include "gis/tableFile.h"
 
 #include <cpl_conv.h>
@@ -52,28 +52,48 @@ enum class Kind
   Vector
 };
 
-DatasetPtr tryOpen(const std::string& fileName, Kind kind)
+/// What comes of opening a file.
+struct Opened
 {
+  DatasetPtr dataset;
+  std::string failure; ///< GDAL's reason where there is none.
+};
+
+/// Some drivers read all of a file to open it (XYZ, GeoJSON, KML, spreadsheets) and ask nobody.
+Opened tryOpen(const std::string& fileName, Kind kind)
+{
+  const char* const* drivers = openingDrivers();
   // Tables: every column as text. A column that GDAL took for numbers would turn words into zeros.
   // GeoJSON: a text like 3:2 stays one; GDAL would make a time of day of it. Other drivers do not
   // know these options and say so in a warning that nobody sees.
   // GML: no schema from an address that the file names, unless that is allowed.
   const char* const tableOptions[] = { "AUTODETECT_TYPE=NO", "DATE_AS_STRING=YES",
-    openingDrivers() ? "DOWNLOAD_SCHEMA=NO" : nullptr, nullptr };
+    drivers ? "DOWNLOAD_SCHEMA=NO" : nullptr, nullptr };
   // The vertical part of a GeoTIFF's CRS, also of the old versions that GDAL takes it away from.
   const CPLConfigOptionSetter vertical("GTIFF_REPORT_COMPD_CS", "YES", true);
   // Spreadsheets: GDAL takes a first row for a header only if the next one is not all text as well.
   const CPLConfigOptionSetter headers[] = { { "OGR_XLSX_HEADERS", "FORCE", false },
     { "OGR_ODS_HEADERS", "FORCE", false }, { "OGR_XLS_HEADERS", "FORCE", false } };
+  Messages messages;
   const unsigned flags = GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR |
     (kind == Kind::Raster ? GDAL_OF_RASTER : GDAL_OF_VECTOR);
   DatasetPtr dataset(GDALDataset::Open(
-    fileName.c_str(), flags, openingDrivers(), kind == Kind::Vector ? tableOptions : nullptr));
+    fileName.c_str(), flags, drivers, kind == Kind::Vector ? tableOptions : nullptr));
   for (int i = 0; kind == Kind::Vector && dataset && i < dataset->GetLayerCount(); ++i)
   {
     dataset->GetLayer(i)->GetLayerDefn(); // sheets look for their header only when they are asked
   }
-  return dataset;
+  return { std::move(dataset), messages.failure() };
+}
+
+Opened openOrLeave(const std::string& fileName, Kind kind)
+{
+  return leaveIfUnwanted(
+    [fileName, kind, all = openingDrivers() == nullptr]
+    {
+      const AllowReferences allow(all); // of the thread that this runs on
+      return tryOpen(fileName, kind);
+    });
 }
 
 /// `path`: where the file is read from, if that is not under its own name.
@@ -87,15 +107,14 @@ DatasetPtr open(
   }
   refuseReferences(fileName, GDAL_OF_RASTER | GDAL_OF_VECTOR);
   messages.clear();
-  DatasetPtr dataset = tryOpen(path.empty() ? fileName : path, kind);
-  if (dataset)
+  Opened opened = openOrLeave(path.empty() ? fileName : path, kind);
+  if (opened.dataset)
   {
-    messages.clear();
-    return dataset;
+    return std::move(opened.dataset);
   }
 
   // Only now: names like NETCDF:"a.nc":z and /vsizip/ are no files, and some formats are folders.
-  const std::string reason = messages.failure();
+  const std::string& reason = opened.failure;
   VSIStatBufL status;
   if (VSIStatExL(fileName.c_str(), &status, VSI_STAT_EXISTS_FLAG | VSI_STAT_NATURE_FLAG) != 0)
   {
@@ -106,7 +125,7 @@ DatasetPtr open(
     throw FileError(fileName + ": is a folder, not a file");
   }
   const Kind other = kind == Kind::Raster ? Kind::Vector : Kind::Raster;
-  if (tryOpen(fileName, other))
+  if (openOrLeave(fileName, other).dataset)
   {
     throw FileError(fileName +
       (kind == Kind::Raster ? ": is a vector layer, a raster is needed"
@@ -163,7 +182,7 @@ DatasetPtr openVector(
     dataset.get_deleter() = std::move(closing);
     return dataset;
   }
-  catch (const Error&)
+  catch (...)
   {
     closing(nullptr);
     throw;

@@ -4,6 +4,8 @@
 /// What the readers of this folder share. GDAL's own headers stay in the sources: whoever includes
 /// this header needs GDAL's library, not its headers.
 
+#include "gis/reach.h"
+
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -15,8 +17,9 @@ class OGRLayer;
 namespace rockfall::gis
 {
 
-/// While it lives, what GDAL has to say on this thread is kept here instead of printed. One per
-/// public call, declared before any dataset, so that closing is silent, too.
+/// While it lives, what GDAL has to say on this thread is kept here instead of printed, and GDAL
+/// keeps to local files (reach.h). One per public call, declared before any dataset, so that
+/// closing is silent, too.
 class Messages
 {
 public:
@@ -43,6 +46,7 @@ public:
 
 private:
   Kept kept_;
+  StayLocal local_;
 };
 
 struct CloseDataset

@@ -151,8 +151,28 @@ bool isTurnedOver(const ArrayPtr& array, GDALRasterBand& band)
     same(rowOf(array, std::size_t(band.GetYSize()) - 1, band.GetBand(), columns));
 }
 
+/// The unit of both axes.
+void findUnit(
+  const ArrayPtr& xAxis, const ArrayPtr& yAxis, const std::string& fileName, GridAxes& axes)
+{
+  const std::string one = xAxis ? attributeOf(xAxis, "units") : std::string(),
+                    other = yAxis ? attributeOf(yAxis, "units") : std::string();
+  const auto metres = metresPer(one), otherMetres = metresPer(other);
+  if (!metres || !otherMetres)
+  {
+    return; // degrees, or nothing that says a length
+  }
+  if (*metres != *otherMetres)
+  {
+    throw DataError(fileName + ": its axis \"" + xAxis->GetName() + "\" is in " + one + ", \"" +
+      yAxis->GetName() + "\" in " + other + "; bring both to one unit first");
+  }
+  axes.metres = *metres;
+  axes.unit = one;
+}
+
 AxesPlace placeOf(const ArrayPtr& array, GDALRasterBand& band, const ArrayPtr& xAxis,
-  const std::vector<double>& x, const ArrayPtr& yAxis, std::vector<double> y)
+  const std::vector<double>& x, const ArrayPtr& yAxis, std::vector<double> y, double metres)
 {
   AxesPlace place;
   if (isTurnedOver(array, band))
@@ -161,25 +181,22 @@ AxesPlace placeOf(const ArrayPtr& array, GDALRasterBand& band, const ArrayPtr& x
   }
   place.inDegrees = attributeOf(xAxis, "units").starts_with("degree") &&
     attributeOf(yAxis, "units").starts_with("degree");
-  const auto unit = [&](const ArrayPtr& axis)
-  { return place.inDegrees ? 1.0 : metresPer(attributeOf(axis, "units")).value_or(1.0); };
-  const double dx = (x.back() - x.front()) / double(x.size() - 1) * unit(xAxis);
-  const double dy = (y.back() - y.front()) / double(y.size() - 1) * unit(yAxis);
-  place.affine = { x.front() * unit(xAxis) - 0.5 * dx, dx, 0.0, y.front() * unit(yAxis) - 0.5 * dy,
-    0.0, dy };
+  const double dx = (x.back() - x.front()) / double(x.size() - 1) * metres;
+  const double dy = (y.back() - y.front()) / double(y.size() - 1) * metres;
+  place.affine = { x.front() * metres - 0.5 * dx, dx, 0.0, y.front() * metres - 0.5 * dy, 0.0, dy };
   return place;
 }
 
 } // namespace
 
-std::optional<AxesPlace> checkAxes(GDALDataset& dataset, GDALRasterBand& band, bool placed,
+GridAxes checkAxes(GDALDataset& dataset, GDALRasterBand& band, bool placed,
   const std::string& fileName, std::vector<std::string>& notes)
 {
   const char* variable = band.GetMetadataItem("NETCDF_VARNAME");
   const CPLStringList files(dataset.GetFileList());
   if (!isOfDriver(dataset, "netCDF") || !variable || files.size() == 0)
   {
-    return std::nullopt;
+    return {};
   }
   const char* const drivers[] = { "netCDF", nullptr };
   const DatasetPtr whole(GDALDataset::Open(
@@ -194,7 +211,7 @@ std::optional<AxesPlace> checkAxes(GDALDataset& dataset, GDALRasterBand& band, b
   }
   if (!array || array->GetDimensionCount() < 2)
   {
-    return std::nullopt;
+    return {};
   }
   const auto& dimensions = array->GetDimensions();
   const ArrayPtr xAxis = dimensions.back()->GetIndexingVariable(),
@@ -222,14 +239,17 @@ std::optional<AxesPlace> checkAxes(GDALDataset& dataset, GDALRasterBand& band, b
   const std::vector<double> x = placesOf(xAxis), y = placesOf(yAxis);
   requireEven(xAxis, x, fileName);
   requireEven(yAxis, y, fileName);
+  GridAxes axes;
+  findUnit(xAxis, yAxis, fileName, axes);
   if (placed || x.size() != std::size_t(band.GetXSize()) ||
     y.size() != std::size_t(band.GetYSize()) || x.size() < 2 || y.size() < 2)
   {
-    return std::nullopt;
+    return axes;
   }
   notes.push_back("The file's place is that of its axes \"" + xAxis->GetName() + "\" and \"" +
     yAxis->GetName() + "\".");
-  return placeOf(array, band, xAxis, x, yAxis, y);
+  axes.place = placeOf(array, band, xAxis, x, yAxis, y, axes.metres);
+  return axes;
 }
 
 } // namespace rockfall::gis

@@ -22,10 +22,18 @@ struct AxesPlace
   bool inDegrees = false;
 };
 
-/// Throws DataError for an axis that is not evenly spaced, and for a variable whose rows run along
-/// x; a note says which places of further axes a band stands for. Does nothing for other formats.
-/// `placed`: GDAL has a place for the raster.
-std::optional<AxesPlace> checkAxes(GDALDataset& dataset, GDALRasterBand& band, bool placed,
+/// What the axes of a raster say.
+struct GridAxes
+{
+  std::optional<AxesPlace> place; ///< In metres or degrees; nothing where GDAL has a place.
+  double metres = 1.0;            ///< Per unit that both axes declare; 1 for degrees and for none.
+  std::string unit;               ///< As it is written; empty for degrees and for none.
+};
+
+/// Throws DataError for an axis that is not evenly spaced, for axes of two units, and for a
+/// variable whose rows run along x; a note says which places of further axes a band stands for.
+/// Does nothing for other formats. `placed`: GDAL has a place for the raster.
+GridAxes checkAxes(GDALDataset& dataset, GDALRasterBand& band, bool placed,
   const std::string& fileName, std::vector<std::string>& notes);
 
 } // namespace rockfall::gis

@@ -1,12 +1,14 @@
 // Polygons with classes.
 #include "gis/groundCells.h"
 
+#include "base/abort.h"
 #include "base/errors.h"
 #include "base/nameKey.h"
 #include "gis/LayerFile.h"
 #include "gis/fields.h"
 #include "gis/gdal.h"
 #include "gis/heights.h"
+#include "gis/progress.h"
 
 #include <cpl_string.h>
 #include <gdal_alg.h>
@@ -127,9 +129,11 @@ public:
       handles.push_back(OGRGeometry::ToHandle(geometry.get()));
     }
     int band = 1;
-    if (GDALRasterizeGeometries(GDALDataset::ToHandle(dataset_.get()), 1, &band,
-          int(handles.size()), handles.data(), nullptr, nullptr, values_.data(), nullptr, nullptr,
-          nullptr) != CE_None)
+    const CPLErr result =
+      GDALRasterizeGeometries(GDALDataset::ToHandle(dataset_.get()), 1, &band, int(handles.size()),
+        handles.data(), nullptr, nullptr, values_.data(), nullptr, isWanted, nullptr);
+    stayWanted();
+    if (result != CE_None)
     {
       throw DataError("GDAL cannot rasterise the polygons");
     }

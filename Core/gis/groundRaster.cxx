@@ -3,6 +3,7 @@
 
 #include "base/errors.h"
 #include "gis/gdal.h"
+#include "gis/progress.h"
 #include "gis/resample.h"
 
 #include <cpl_string.h>
@@ -92,7 +93,8 @@ std::vector<std::uint8_t> fromRaster(const GroundFiles& files, const std::string
   // A centre on the edge between two of the layer's cells is in the eastern one, in the southern
   // one, in whichever order they are stored.
   const double size = cells.terrain.geometry().cellSize, aside = edge * size;
-  add({ "-of", "VRT", "-r", "near", "-dstalpha", "-te", digits(cells.box.xMin + aside),
+  // Overviews of classes may hold means of their numbers.
+  add({ "-of", "VRT", "-r", "near", "-ovr", "NONE", "-dstalpha", "-te", digits(cells.box.xMin + aside),
     digits(cells.box.yMin - aside), digits(cells.box.xMax + aside), digits(cells.box.yMax - aside),
     "-ts", std::to_string(cells.columns), std::to_string(cells.rows) });
   if (from && cells.crs)
@@ -128,10 +130,8 @@ std::vector<std::uint8_t> fromRaster(const GroundFiles& files, const std::string
   {
     const int count = std::min(step, cells.rows - first);
     messages.clear();
-    if (values->RasterIO(GF_Read, 0, first, cells.columns, count, value.data(), cells.columns,
-          count, GDT_Float64, 0, 0, nullptr) != CE_None ||
-      covered->RasterIO(GF_Read, 0, first, cells.columns, count, alpha.data(), cells.columns, count,
-        GDT_Byte, 0, 0, nullptr) != CE_None)
+    if (!readRows(*values, first, count, GDT_Float64, value.data()) ||
+      !readRows(*covered, first, count, GDT_Byte, alpha.data()))
     {
       throw FileError(files.layer + ": cannot be read: " + messages.failure());
     }

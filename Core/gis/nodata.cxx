@@ -1,5 +1,6 @@
 #include "gis/nodata.h"
 
+#include "base/abort.h"
 #include "gis/fields.h"
 #include "gis/headers.h"
 #include "gis/heightUnit.h"
@@ -57,8 +58,13 @@ std::vector<Group> groupsOf(const std::vector<double>& heights)
 {
   constexpr int bins = int((kHighest - kDeepest) / split) + 1;
   std::vector<Group> all(bins);
+  std::size_t seen = 0;
   for (const double height : heights)
   {
+    if (++seen % 65536 == 0)
+    {
+      stayWanted();
+    }
     if (!(height >= kDeepest && height <= kHighest))
     {
       continue;

@@ -5,6 +5,7 @@
 #include "gis/gridAxes.h"
 #include "gis/heightUnit.h"
 #include "gis/nodata.h"
+#include "gis/progress.h"
 #include "gis/rawSize.h"
 
 #include <cpl_string.h>
@@ -94,11 +95,20 @@ void RasterFile::findPlace()
 {
   crs_ = horizontalCrs(dataset_->GetSpatialRef());
   const bool placed = dataset_->GetGeoTransform(affine_.data()) == CE_None;
-  const auto axes = checkAxes(*dataset_, *band_, placed, fileName_, notes_);
-  if (!placed && axes)
+  const GridAxes axes = checkAxes(*dataset_, *band_, placed, fileName_, notes_);
+  if (placed && !crs_ && axes.metres != 1.0)
   {
-    affine_ = axes->affine;
-    crs_ = crs_ ? crs_ : axes->inDegrees ? crsFromEpsg(4326) : nullptr;
+    std::for_each(affine_.begin(), affine_.end(), [&axes](double& a) { a *= axes.metres; });
+  }
+  if (!crs_ && axes.metres != 1.0)
+  {
+    notes_.push_back("The coordinates in \"" + axes.unit + "\" were multiplied by " +
+      number(axes.metres) + " to be metres.");
+  }
+  if (!placed && axes.place)
+  {
+    affine_ = axes.place->affine;
+    crs_ = crs_ ? crs_ : axes.place->inDegrees ? crsFromEpsg(4326) : nullptr;
   }
   else if (!placed)
   {
@@ -189,6 +199,7 @@ void RasterFile::noteZeros(const std::vector<double>& heights)
   const auto high = [&](std::size_t i) { return std::abs(heights[i]) > suspectStep; };
   for (int row = 0; row < rows_; ++row)
   {
+    stayWanted();
     for (int column = 0; column < columns_; ++column)
     {
       const std::size_t i = std::size_t(row) * columns_ + column;
@@ -269,9 +280,7 @@ void RasterFile::readRows(int first, int count, double* values)
       " cannot be read: " + messages_.failure());
   };
   messages_.clear();
-  if (band_->RasterIO(GF_Read, 0, first, columns_, count, values, columns_, count, GDT_Float64, 0,
-        0, nullptr) != CE_None ||
-    !messages_.failure().empty())
+  if (!gis::readRows(*band_, first, count, GDT_Float64, values) || !messages_.failure().empty())
   {
     fail();
   }
@@ -286,8 +295,7 @@ void RasterFile::readRows(int first, int count, double* values)
   if (alpha_ && !(flags & GMF_ALPHA))
   {
     alpha.resize(std::size_t(count) * columns_);
-    if (alpha_->RasterIO(GF_Read, 0, first, columns_, count, alpha.data(), columns_, count,
-          GDT_Float64, 0, 0, nullptr) != CE_None)
+    if (!gis::readRows(*alpha_, first, count, GDT_Float64, alpha.data()))
     {
       fail();
     }
@@ -295,8 +303,7 @@ void RasterFile::readRows(int first, int count, double* values)
   if (!(flags & GMF_ALL_VALID) && (!(flags & GMF_NODATA) || wide || (flags & GMF_PER_DATASET)))
   {
     mask.resize(std::size_t(count) * columns_);
-    if (band_->GetMaskBand()->RasterIO(GF_Read, 0, first, columns_, count, mask.data(), columns_,
-          count, GDT_Byte, 0, 0, nullptr) != CE_None)
+    if (!gis::readRows(*band_->GetMaskBand(), first, count, GDT_Byte, mask.data()))
     {
       fail();
     }

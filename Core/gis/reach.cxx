@@ -3,6 +3,7 @@
 #include "base/errors.h"
 #include "base/nameKey.h"
 #include "gis/fields.h"
+#include "gis/hdf5References.h"
 
 #include <cpl_conv.h>
 #include <cpl_minixml.h>
@@ -13,7 +14,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <system_error>
+#include <vector>
 
 namespace rockfall
 {
@@ -48,19 +51,20 @@ constexpr int mostNested = 4;
 constexpr GIntBig largestXml = 256 << 20; // bytes
 
 /// Drivers that read the file that is named and what lies beside it under its name. Not: those of
-/// network services and databases, those whose header names the file of the numbers (MRF, PDS,
-/// SNODAS, …), lists of tiles, and GPSBabel, which runs a program. VRTs are looked into.
+/// network services and databases, those whose header may name the file of the numbers (MRF, PDS,
+/// SNODAS, PCIDSK, HDF4, …), lists of tiles, and GPSBabel, which runs a program. VRTs and HDF5 are
+/// looked into.
 const char* const known[] = { "VRT", "OGR_VRT",
   // rasters
   "GTiff", "COG", "HFA", "AIG", "AAIGrid", "GRASSASCIIGrid", "ISG", "SDTS", "DTED", "PNG", "JPEG",
-  "MEM", "JDEM", "GIF", "BIGGIF", "FITS", "BSB", "XPM", "BMP", "PCIDSK", "PCRaster", "ILWIS", "SGI",
-  "SRTMHGT", "Leveller", "Terragen", "netCDF", "HDF4", "HDF4Image", "JP2OpenJPEG", "JP2ECW",
-  "JP2KAK", "JP2Lura", "JP2MrSID", "ECW", "MrSID", "JPEGXL", "GRIB", "RMF", "RST", "GSAG", "GSBG",
-  "GS7BG", "R", "WEBP", "MBTiles", "PNM", "BT", "LAN", "EIR", "LCP", "GTX", "LOSLAS", "NTv2",
-  "CTable2", "ACE2", "KRO", "ROI_PAC", "RRASTER", "BYN", "ARG", "RIK", "USGSDEM", "GXF", "KEA",
-  "BAG", "S102", "S104", "S111", "HDF5", "HDF5Image", "NWT_GRD", "NWT_GRC", "SAGA", "XYZ", "HF2",
-  "CTG", "ZMap", "NGSGEOID", "SIGDEM", "HEIF", "TGA", "GPKG", "GenBin", "ENVI", "EHdr", "GMT",
-  "NOAA_B", "NSIDCbin", "E00GRID", "ESAT", "OZI", "TIFF", "LIBERTIFF", "Zarr",
+  "MEM", "JDEM", "GIF", "BIGGIF", "FITS", "BSB", "XPM", "BMP", "PCRaster", "ILWIS", "SGI",
+  "SRTMHGT", "Leveller", "Terragen", "netCDF", "JP2OpenJPEG", "JP2ECW", "JP2KAK", "JP2Lura",
+  "JP2MrSID", "ECW", "MrSID", "JPEGXL", "GRIB", "RMF", "RST", "GSAG", "GSBG", "GS7BG", "R", "WEBP",
+  "MBTiles", "PNM", "BT", "LAN", "EIR", "LCP", "GTX", "LOSLAS", "NTv2", "CTable2", "ACE2", "KRO",
+  "ROI_PAC", "RRASTER", "BYN", "ARG", "RIK", "USGSDEM", "GXF", "KEA", "BAG", "S102", "S104", "S111",
+  "HDF5", "HDF5Image", "NWT_GRD", "NWT_GRC", "SAGA", "XYZ", "HF2", "CTG", "ZMap", "NGSGEOID",
+  "SIGDEM", "HEIF", "TGA", "GPKG", "GenBin", "ENVI", "EHdr", "GMT", "NOAA_B", "NSIDCbin", "E00GRID",
+  "ESAT", "OZI", "TIFF", "LIBERTIFF", "Zarr",
   // layers
   "ESRI Shapefile", "MapInfo File", "UK .NTF", "LVBAG", "OGR_SDTS", "S57", "DGN", "DGNv8", "DWG",
   "Memory", "CSV", "NAS", "GML", "GPX", "LIBKML", "KML", "GeoJSON", "GeoJSONSeq", "ESRIJSON",
@@ -130,12 +134,100 @@ bool isWithin(const std::string& fileName, const std::string& folder)
 
 void refuseDriver(const std::string& fileName, const std::string& whole, unsigned flags, int depth);
 
+std::string folderOf(const std::string& fileName)
+{
+  return std::string(CPLGetPath(fileName.c_str()));
+}
+
+/// The file of a name like NETCDF:"a.nc":z or HDF5:a.h5://z; other names as they are.
+std::string fileWithin(const std::string& name)
+{
+  const auto colon = name.find(':'), quote = name.find('"');
+  if (colon == std::string::npos || name.find_first_of("/\\.") < colon)
+  {
+    return name;
+  }
+  if (quote != std::string::npos)
+  {
+    return name.substr(quote + 1, name.find('"', quote + 1) - quote - 1);
+  }
+  VSIStatBufL status;
+  for (auto end = name.size(); end != std::string::npos && end > colon;
+       end = name.rfind(':', end - 1))
+  {
+    const std::string file = name.substr(colon + 1, end - colon - 1);
+    if (VSIStatL(file.c_str(), &status) == 0)
+    {
+      return file;
+    }
+  }
+  return name;
+}
+
+/// What an HDF5 file names, as virtual rasters do.
+void refuseHdf5References(const std::string& fileName, const std::string& whole, int depth)
+{
+  if (fileName.starts_with("/vsi"))
+  {
+    throw FileError(whole +
+      ": is HDF5 in an archive or in memory, which cannot be looked into; "
+      "unpack it first" +
+      remedy);
+  }
+  const std::optional<std::vector<std::string>> names = hdf5References(fileName);
+  if (!names)
+  {
+    throw FileError(
+      whole + ": is HDF5 that cannot be looked into: damaged, or of another version" + remedy);
+  }
+  for (const std::string& written : *names)
+  {
+    if (written.empty() || written == ".")
+    {
+      continue; // the file itself
+    }
+    const std::string folder = folderOf(fileName);
+    const bool absolute = std::filesystem::path(written).is_absolute();
+    const std::string name =
+      absolute ? written : CPLFormFilename(folder.c_str(), written.c_str(), nullptr);
+    if (isAddress(written) || !isWithin(name, folder))
+    {
+      throw FileError(whole + ": names " + written + ", which is not beside it" + remedy);
+    }
+    if (depth == mostNested)
+    {
+      throw FileError(whole + ": is made of files that are made of others, deeper than " +
+        std::to_string(mostNested) + remedy);
+    }
+    if (isHdf5(name) && name != fileName)
+    {
+      refuseHdf5References(name, whole, depth + 1);
+    }
+  }
+}
+
+/// Links among the files of a store that lead out of its folder.
+void refuseLinksOut(const std::string& folder, const std::string& whole)
+{
+  namespace fs = std::filesystem;
+  std::error_code failed;
+  for (fs::recursive_directory_iterator at(folder, failed), end; !failed && at != end;
+       at.increment(failed))
+  {
+    if (at->is_symlink(failed) && !isWithin(at->path().string(), folder))
+    {
+      throw FileError(whole + ": has a link " + at->path().filename().string() +
+        " to a file that is not within it" + remedy);
+    }
+  }
+}
+
 /// What a virtual dataset names; `whole` is the file that the user named.
 class References
 {
 public:
   References(const std::string& fileName, const std::string& whole, int depth)
-    : folder_(isXml(fileName) ? std::string() : std::string(CPLGetPath(fileName.c_str())))
+    : folder_(isXml(fileName) ? std::string() : folderOf(fileName))
     , inlineText_(isXml(fileName))
     , whole_(whole)
     , depth_(depth)
@@ -226,6 +318,15 @@ void refuseDriver(const std::string& fileName, const std::string& whole, unsigne
       "is read by GDAL's driver " + name + ", which may open network addresses or other files" +
       remedy);
   }
+  const std::string file = fileWithin(fileName);
+  if (isHdf5(file))
+  {
+    refuseHdf5References(file, whole, depth);
+  }
+  if (EQUAL(name, "Zarr"))
+  {
+    refuseLinksOut(file, whole);
+  }
   if (!EQUAL(name, "VRT") && !EQUAL(name, "OGR_VRT"))
   {
     return;
@@ -248,13 +349,41 @@ const char* const* openingDrivers()
   return allowed ? nullptr : known;
 }
 
+StayLocal::StayLocal()
+{
+  if (allowed)
+  {
+    return;
+  }
+  constexpr std::pair<const char*, const char*> options[] = {
+    // An ending that no address has: all others are refused.
+    { "CPL_VSIL_CURL_ALLOWED_EXTENSIONS", ".nothing-is-allowed" },
+    // VirtualText, VirtualShape and their kin are modules of SpatiaLite.
+    { "SPATIALITE_LOAD", "NO" },
+  };
+  for (const auto& [name, value] : options)
+  {
+    const char* old = CPLGetThreadLocalConfigOption(name, nullptr);
+    before_.emplace_back(name, old ? std::optional<std::string>(old) : std::nullopt);
+    CPLSetThreadLocalConfigOption(name, value);
+  }
+}
+
+StayLocal::~StayLocal()
+{
+  for (const auto& [name, old] : before_)
+  {
+    CPLSetThreadLocalConfigOption(name, old ? old->c_str() : nullptr);
+  }
+}
+
 void refuseReferences(const std::string& fileName, unsigned flags)
 {
   if (allowed)
   {
     return;
   }
-  if (!isXml(fileName) && isAddress(fileName))
+  if (!isXml(fileName) && isAddress(fileWithin(fileName)))
   {
     throw FileError(fileName + ": is an address" + remedy);
   }

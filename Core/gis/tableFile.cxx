@@ -1,6 +1,7 @@
 #include "gis/tableFile.h"
 
 #include "base/nameKey.h"
+#include "base/tableText.h"
 #include "gis/tableText.h"
 
 #include <cpl_conv.h>

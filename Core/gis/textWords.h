@@ -3,6 +3,8 @@
 /// @file
 /// Words and lines of files of text that may be large. Internal to gis/.
 
+#include "base/abort.h"
+
 #include <cpl_vsi.h>
 
 #include <memory>
@@ -62,6 +64,7 @@ public:
   {
     if (at_ == filled_)
     {
+      stayWanted();
       at_ = 0;
       filled_ = VSIFReadL(buffer_.data(), 1, buffer_.size(), file_.get());
     }

@@ -1,7 +1,7 @@
 #include "gis/tin.h"
 
-#include "base/abort.h"
 #include "base/errors.h"
+#include "base/leave.h"
 #include "gis/gdal.h"
 
 #include <gdal_alg.h>
@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <utility>
 
 namespace rockfall::gis
 {
@@ -65,17 +66,24 @@ struct Freed
 
 } // namespace
 
-TinNodes interpolateTin(const TinPoints& points, const GridGeometry& target, double west,
-  double south, const std::string& fileName)
+TinNodes interpolateTin(TinPoints given, const GridGeometry& target, double west, double south,
+  const std::string& fileName)
 {
   Messages messages;
+  const auto held = std::make_shared<const TinPoints>(std::move(given));
+  const TinPoints& points = *held;
   if (areCollinear(points))
   {
     throw DataError(fileName + ": its " + std::to_string(points.x.size()) +
       " vertices lie on one straight line and have no triangulation");
   }
-  const std::unique_ptr<GDALTriangulation, Freed> tin(
-    GDALTriangulationCreateDelaunay(int(points.x.size()), points.x.data(), points.y.data()));
+  const auto tin = leaveIfUnwanted(
+    [held]
+    {
+      Messages silent;
+      return std::unique_ptr<GDALTriangulation, Freed>(
+        GDALTriangulationCreateDelaunay(int(held->x.size()), held->x.data(), held->y.data()));
+    });
   if (!tin || tin->nFacets == 0)
   {
     throw DataError(

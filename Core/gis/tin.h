@@ -31,7 +31,7 @@ struct TinNodes
 /// target `cellSize`, `columns` and `rows` are used; its lower left node stands at (west, south).
 /// Neighbours on a contour are taken to be a cell apart at most. No two points may stand at the
 /// same place. Throws DataError, beginning with `fileName`, if they have no triangulation.
-TinNodes interpolateTin(const TinPoints& points, const GridGeometry& target, double west,
-  double south, const std::string& fileName);
+TinNodes interpolateTin(TinPoints points, const GridGeometry& target, double west, double south,
+  const std::string& fileName);
 
 } // namespace rockfall::gis

@@ -1,6 +1,7 @@
 #include "mesh/pointTable.h"
 
 #include "base/errors.h"
+#include "base/tableText.h"
 #include "mesh/MeshBuilder.h"
 #include "mesh/meshFile.h"
 #include "mesh/tableText.h"
@@ -279,11 +280,16 @@ private:
 
 Mesh parsePointTable(std::string_view bytes, const std::string& name)
 {
-  const std::string text = decodeText(bytes, name);
+  std::vector<std::string> notes;
+  const std::string text = asUtf8(std::string(bytes), "", name, notes);
   Mesh mesh = PointTable(text, name).read();
   if (mesh.points.empty())
   {
     throw FileError(name + ": has no points, so no shape can be made of it");
+  }
+  for (const std::string& note : notes)
+  {
+    mesh.notes.push_back(name + ": " + note);
   }
   return mesh;
 }

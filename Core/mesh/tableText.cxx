@@ -1,6 +1,6 @@
 #include "mesh/tableText.h"
 
-#include "base/errors.h"
+#include "base/tableText.h"
 #include "mesh/words.h"
 
 #include <algorithm>
@@ -10,42 +10,6 @@ namespace rockfall
 
 namespace
 {
-
-/// Appends a code point of the basic plane, or a half of a pair as "?": coordinates have none.
-void appendUtf8(std::string& text, unsigned code)
-{
-  if (code < 0x80)
-  {
-    text += char(code);
-  }
-  else if (code < 0x800)
-  {
-    text += char(0xC0 | code >> 6);
-    text += char(0x80 | (code & 0x3F));
-  }
-  else if (code >= 0xD800 && code < 0xE000)
-  {
-    text += '?';
-  }
-  else
-  {
-    text += char(0xE0 | code >> 12);
-    text += char(0x80 | (code >> 6 & 0x3F));
-    text += char(0x80 | (code & 0x3F));
-  }
-}
-
-std::string fromUtf16(std::string_view bytes, bool big)
-{
-  std::string text;
-  for (std::size_t k = 2; k + 1 < bytes.size(); k += 2)
-  {
-    const unsigned first = static_cast<unsigned char>(bytes[k]);
-    const unsigned second = static_cast<unsigned char>(bytes[k + 1]);
-    appendUtf8(text, big ? first << 8 | second : second << 8 | first);
-  }
-  return text;
-}
 
 /// Length of the mark that makes a comment of the line; 0 if it is none.
 std::size_t commentMark(std::string_view line)
@@ -64,32 +28,6 @@ bool hasInnerBlank(std::string_view line, char separator)
 
 } // namespace
 
-std::string decodeText(std::string_view bytes, const std::string& name)
-{
-  std::string text;
-  const std::string_view mark = bytes.substr(0, 2);
-  if (bytes.substr(0, 3) == "\xEF\xBB\xBF")
-  {
-    text = bytes.substr(3);
-  }
-  else if (mark == "\xFF\xFE" || mark == "\xFE\xFF")
-  {
-    text = fromUtf16(bytes, mark == "\xFE\xFF");
-  }
-  else
-  {
-    text = bytes;
-  }
-  const std::size_t zero = text.find('\0');
-  if (zero != std::string::npos)
-  {
-    throw FileError(name + ", line " +
-      std::to_string(1 + std::count(text.begin(), text.begin() + std::ptrdiff_t(zero), '\n')) +
-      ": is no text, or UTF-16 without a byte order mark: save it as UTF-8");
-  }
-  return text;
-}
-
 TableLines splitLines(std::string_view text)
 {
   TableLines table;
@@ -104,12 +42,8 @@ TableLines splitLines(std::string_view text)
     {
       table.comment = trimmed(line.substr(mark));
     }
-    const bool says =
-      table.lines.empty() && line.size() >= 5 && lowerCase(line.substr(0, 4)) == "sep=";
-    if (says)
-    {
-      table.separator = line[4];
-    }
+    const auto says = table.lines.empty() ? separatorLine(line) : std::nullopt;
+    table.separator = says.value_or(table.separator);
     if (mark == 0 && !says && !line.empty())
     {
       table.lines.push_back({ line, number });
@@ -171,44 +105,16 @@ char separatorOf(std::string_view line)
 
 std::vector<std::string> splitCells(std::string_view line, char separator)
 {
+  if (separator != ' ')
+  {
+    return quotedCells(line, separator);
+  }
   std::vector<std::string> cells;
-  if (separator == ' ')
+  Words words(line, "");
+  for (std::string_view word = words.next(); !word.empty(); word = words.next())
   {
-    Words words(line, "");
-    for (std::string_view word = words.next(); !word.empty(); word = words.next())
-    {
-      cells.emplace_back(word);
-    }
-  }
-  else
-  {
-    bool inQuotes = false;
-    std::string cell;
-    const auto finish = [&]
-    {
-      cells.emplace_back(trimmed(cell));
-      cell.clear();
-    };
-    for (const char c : line)
-    {
-      inQuotes = c == '"' ? !inQuotes : inQuotes;
-      if (c == separator && !inQuotes)
-      {
-        finish();
-      }
-      else
-      {
-        cell += c;
-      }
-    }
-    finish();
-  }
-  for (std::string& cell : cells)
-  {
-    if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"')
-    {
-      cell = trimmed(std::string_view(cell).substr(1, cell.size() - 2));
-    }
+    const bool quoted = word.size() >= 2 && word.front() == '"' && word.back() == '"';
+    cells.emplace_back(quoted ? trimmed(word.substr(1, word.size() - 2)) : word);
   }
   return cells;
 }

@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file
-/// Lines and cells of a table of points: encoding, comments, what parts the columns, decimals.
+/// Lines and cells of a table of points: comments, what parts the columns, decimals. Its encoding:
+/// base/tableText.h.
 
 #include <string>
 #include <string_view>
@@ -9,10 +10,6 @@
 
 namespace rockfall
 {
-
-/// As UTF-8 without a byte order mark; of UTF-16 if such a mark says so. Throws FileError for bytes
-/// that are no text.
-std::string decodeText(std::string_view bytes, const std::string& name);
 
 /// A line that is neither empty nor a comment.
 struct TableLine

@@ -1,5 +1,6 @@
 #include "simulation/releasePlaces.h"
 
+#include "base/abort.h"
 #include "base/errors.h"
 #include "base/random.h"
 #include "geometry/planeSampling.h"
@@ -270,6 +271,7 @@ std::vector<ReleasePlace> releasePlaces(std::span<const SourceRow> sources, cons
     const bool point = samplers[k].isPlace();
     for (std::uint64_t i = 0; i < std::uint64_t(samplers[k].rocks()); ++i)
     {
+      stayWanted();
       ReleasePlace place;
       place.source = k;
       place.draw = (std::uint64_t(source.row) << 32) + i;
@@ -352,6 +354,7 @@ std::vector<ReleasePlace> steepPlaces(
   std::int64_t steep = 0;
   for (std::int64_t cfe = 1; cfe <= terrain.cfeCapacity(); ++cfe)
   {
+    stayWanted();
     steep += isSteep(terrain, cfe, cosine);
   }
   if (steep == 0)
@@ -386,6 +389,7 @@ std::vector<ReleasePlace> steepPlaces(
   std::int64_t ordinal = 0;
   for (std::int64_t cfe = 1; cfe <= terrain.cfeCapacity() && next != wanted.end(); ++cfe)
   {
+    stayWanted();
     if (!isSteep(terrain, cfe, cosine))
     {
       continue;

@@ -1,5 +1,6 @@
 #include "terrain/flats.h"
 
+#include "base/abort.h"
 #include "base/types.h"
 
 #include <Eigen/SparseCholesky>
@@ -100,6 +101,7 @@ struct Plate
       seen[start] = 1;
       for (std::size_t next = 0; next < area.size(); ++next)
       {
+        stayWanted();
         this->forEachBend(area[next],
           [&](const Bend& bend)
           {
@@ -128,6 +130,7 @@ void solve(Plate& plate, const std::vector<std::int64_t>& area)
   const auto numberOf = [&](std::int64_t node) -> int& { return plate.number[std::size_t(node)]; };
   for (int round = 0; round <= mostBounds; ++round)
   {
+    stayWanted();
     int unknowns = 0;
     for (std::size_t i = 0; i < area.size(); ++i)
     {
@@ -256,6 +259,7 @@ void refine(Plate& plate, const std::vector<std::int64_t>& area)
   {
     for (const std::int64_t node : area)
     {
+      stayWanted();
       double slope = 0.0, curvature = 0.0; // of the energy
       plate.forEachBend(node,
         [&](const Bend& bend)

@@ -1,9 +1,15 @@
 // Long work of every kind is given up soon after it is no longer wanted.
 
 #include "base/abort.h"
+#include "base/leave.h"
 #include "base/parallel.h"
+#include "geometry/shell.h"
+#include "gis/raster.h"
+#include "gis/tin.h"
+#include "gisFiles.h"
 #include "randomScenes.h"
 #include "simulation/overlaps.h"
+#include "simulation/releasePlaces.h"
 #include "slopes.h"
 #include "statistics/HazardRaster.h"
 
@@ -11,6 +17,11 @@
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <thread>
 
 using namespace rockfall;
 using namespace rockfall::testing;
@@ -165,6 +176,98 @@ TEST(Abort, OfLoopsThatSeveralThreadsShare)
   EXPECT_LE(heard, kHeard);
   EXPECT_GT(asked, 0);
   EXPECT_LT(asked, 1000);
+}
+
+TEST(Abort, OfWorkThatAsksNobody)
+{
+  // The work is left, and keeps what it owns to its end.
+  const auto owned = std::make_shared<int>(1);
+  const std::weak_ptr<int> seen = owned;
+  const double heard = heardAfter(
+    [owned]
+    {
+      leaveIfUnwanted(
+        [owned]
+        {
+          std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+          return *owned;
+        });
+    });
+  EXPECT_GE(heard, 0.0);
+  EXPECT_LE(heard, kHeard);
+  EXPECT_GE(seen.use_count(), 2);
+}
+
+TEST(Abort, WorkThatIsWantedGivesWhatItGives)
+{
+  EXPECT_EQ(leaveIfUnwanted([] { return 3; }), 3); // on this thread
+  const AbortScope scope([] { return true; });
+  EXPECT_EQ(leaveIfUnwanted([] { return 4; }), 4);
+  EXPECT_THROW(
+    leaveIfUnwanted([]() -> int { throw std::runtime_error("a fault"); }), std::runtime_error);
+  EXPECT_EQ(*leaveIfUnwanted([] { return std::make_unique<int>(5); }), 5);
+}
+
+TEST(Abort, OfATriangulation)
+{
+  gis::TinPoints points;
+  for (int k = 0; k < 500000; ++k)
+  {
+    points.x.push_back(std::fmod(k * 0.754877666, 1.0) * 1000.0);
+    points.y.push_back(std::fmod(k * 0.569840291, 1.0) * 1000.0);
+    points.z.push_back(k % 100);
+  }
+  GridGeometry target;
+  target.columns = target.rows = 10;
+  target.cellSize = 100.0;
+  const double heard =
+    heardAfter([&] { gis::interpolateTin(std::move(points), target, 0.0, 0.0, "points"); });
+  EXPECT_GE(heard, 0.0);
+  EXPECT_LE(heard, kHeard);
+}
+
+TEST(Abort, OfAHull)
+{
+  std::vector<Vec3> points; // all of them corners
+  for (int k = 0; k < 300000; ++k)
+  {
+    const double z = std::fmod(k * 0.754877666, 1.0) * 2.0 - 1.0, angle = 2.399963 * k;
+    const double r = std::sqrt(1.0 - z * z);
+    points.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
+  }
+  const double heard = heardAfter([&] { hullFaces(points, "points"); });
+  EXPECT_GE(heard, 0.0);
+  EXPECT_LE(heard, kHeard);
+}
+
+TEST(Abort, OfReadingARaster)
+{
+  constexpr int size = 3000;
+  std::string text = "ncols 3000\nnrows 3000\nxllcorner 0\nyllcorner 0\ncellsize 1\n";
+  for (int row = 0; row < size; ++row)
+  {
+    for (int column = 0; column < size; ++column)
+    {
+      text += "12.5 ";
+    }
+    text += "\n";
+  }
+  const std::string path = writeFile("large.asc", text);
+  const double heard = heardAfter([&] { readRaster(path); });
+  EXPECT_GE(heard, 0.0);
+  EXPECT_LE(heard, kHeard);
+  std::filesystem::remove(path);
+}
+
+TEST(Abort, OfSpreadingRocksOverSteepGround)
+{
+  const Terrain terrain = makePlane(3000, 1.0, radians(40.0), 0.0, material(0.3, 0.3));
+  ReleaseDefaults many;
+  many.amount = 5'000'000;
+  many.mostRocks = 10'000'000;
+  const double heard = heardAfter([&] { steepPlaces(terrain, radians(30.0), many); });
+  EXPECT_GE(heard, 0.0);
+  EXPECT_LE(heard, kHeard);
 }
 
 TEST(Abort, LeavesNothingBehind)

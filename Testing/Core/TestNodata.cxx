@@ -344,6 +344,36 @@ TEST(GridAxes, ofCartesianGmtGridsAreTheirPlace)
   EXPECT_TRUE(holds(messageOf<DataError>([&] { readRaster(uneven.write()); }), { "not evenly" }));
 }
 
+TEST(GridAxes, haveTheUnitThatTheyDeclare)
+{
+  // Where GDAL knows them for axes, and nothing names a CRS.
+  const std::vector<double> values = { 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12 };
+  for (const auto& [unit, metres] : { std::pair<const char*, double>("km", 1000.0), { "cm", 0.01 },
+         { "m", 1.0 }, { "ft", 0.3048 } })
+  {
+    NetCdf file = gridOfHeights(values, 4);
+    const char* const names[] = { "projection_x_coordinate", "projection_y_coordinate" };
+    for (int axis = 0; axis < 2; ++axis)
+    {
+      file.variables[axis].attributes = { { "standard_name", names[axis] }, { "units", unit } };
+      for (double& place : file.variables[axis].values)
+      {
+        place /= metres;
+      }
+    }
+    file.variables[2].attributes = { { "units", "m" } };
+    const RasterSurface surface = readRaster(file.write());
+    EXPECT_NEAR(surface.geometry.cellSize, 10.0, 1e-6) << unit;
+    EXPECT_NEAR(surface.geometry.xOrigin, 600005.0, 1e-4) << unit;
+    EXPECT_NEAR(surface.geometry.yOrigin, 5100005.0, 1e-4) << unit;
+    EXPECT_EQ(joined(surface.notes).find("were multiplied") != std::string::npos, metres != 1.0);
+    file.variables[0].attributes[1] = { "units", "km" };
+    file.variables[1].attributes[1] = { "units", "m" };
+    EXPECT_TRUE(holds(messageOf<DataError>([&] { readRaster(file.write()); }),
+      { "axis \"x\" is in km, \"y\" in m" }));
+  }
+}
+
 TEST(GridAxes, thatAreTurnedAreErrorsAndFurtherOnesAreNoted)
 {
   const std::vector<double> values = { 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12 };

@@ -49,7 +49,7 @@ void expectError(const std::string& text, const std::vector<std::string>& words)
     const Mesh mesh = parsePointTable(text, "table");
     ADD_FAILURE() << "read as " << mesh.points[0].transpose() << ": " << text.substr(0, 80);
   }
-  catch (const FileError& error)
+  catch (const Error& error)
   {
     const std::string message = error.what();
     EXPECT_EQ(message.rfind("table", 0), 0u) << message;
@@ -152,7 +152,15 @@ TEST(PointTables, EncodingsAndLineEnds)
   expectPoints(windows);
   expectPoints(mac);
   expectPoints(table("h\xF6he,x,y,z\n", "1,%.3f,%.3f,%.3f\n")); // Latin-1
-  expectError(utf16(plain, false).substr(2), { "line 1", "UTF-16" });
+  expectPoints(table("Punkt;Rechtswert;Hochwert;H\xF6he\n", "%4$d;%1$.3f;%2$.3f;%3$.3f\n"));
+  expectPoints(utf16(plain, false).substr(2)); // without a mark that says so
+  expectPoints(utf16(plain, true).substr(2));
+  EXPECT_EQ(parsePointTable(utf16(plain, true).substr(2), "table").notes.size(), 1u);
+  // Of several encodings, or no text at all.
+  expectError(table("h\xC3\xB6he,x,y,z,w\n", "1,%.3f,%.3f,%.3f,\xF6\n"), { "line 2", "UTF-8" });
+  std::string holed = plain;
+  holed[plain.size() / 2] = '\0';
+  expectError(holed, { "byte 0" });
 }
 
 TEST(PointTables, BadLinesAreNamed)

@@ -186,6 +186,81 @@ TEST(Reach, virtualLayersNameWhatIsBesideThemOnly)
     { "SQL" }));
 }
 
+/// A number of SQLite's: seven bits a byte.
+std::string varint(std::size_t value)
+{
+  std::string bytes(1, char(value & 0x7f));
+  for (value >>= 7; value > 0; value >>= 7)
+  {
+    bytes.insert(0, 1, char(0x80 | (value & 0x7f)));
+  }
+  return bytes;
+}
+
+std::string bigEnd(std::size_t value, int bytes)
+{
+  std::string text;
+  for (int k = bytes - 1; k >= 0; --k)
+  {
+    text += char(value >> 8 * k & 0xff);
+  }
+  return text;
+}
+
+/// A database of one page whose one table is what a module of SpatiaLite reads of `file`.
+std::string virtualTable(const std::string& name, const std::string& file)
+{
+  constexpr std::size_t page = 4096;
+  const std::string sql =
+    "CREATE VIRTUAL TABLE leak USING VirtualText('" + file + "','UTF-8',1,POINT,DOUBLEQUOTE,',')";
+  const auto type = [](std::size_t length) { return varint(2 * length + 13); };
+  std::string types = type(5) + type(4) + type(4) + char(8) + type(sql.size());
+  types = varint(types.size() + 1) + types;
+  const std::string row = types + "tableleakleak" + sql;
+  const std::string cell = varint(row.size()) + varint(1) + row;
+
+  std::string bytes("SQLite format 3\0", 16);
+  bytes += bigEnd(page, 2) + std::string("\1\1\0\100\40\40", 6) + bigEnd(1, 4) + bigEnd(1, 4);
+  bytes += bigEnd(0, 8) + bigEnd(1, 4) + bigEnd(4, 4) + bigEnd(0, 8) + bigEnd(1, 4);
+  bytes += std::string(32, '\0') + bigEnd(1, 4) + bigEnd(3040001, 4);
+  // The page's own head, and where its one cell is.
+  bytes += std::string("\15\0\0\0\1", 5) + bigEnd(page - cell.size(), 2) + '\0';
+  bytes += bigEnd(page - cell.size(), 2);
+  bytes.resize(page - cell.size(), '\0');
+  return writeFile(name, bytes + cell);
+}
+
+TEST(Reach, namesOfOverviewsAreNotCalled)
+{
+  setenv("GDAL_HTTP_TIMEOUT", "1", 1);
+  setenv("GDAL_HTTP_CONNECTTIMEOUT", "1", 1);
+  const Listener listener;
+  ASSERT_TRUE(listener.good());
+  RawRaster heights;
+  heights.columns = heights.rows = 8;
+  heights.affine = { 0.0, 5.0, 0.0, 100.0, 0.0, -5.0 };
+  heights.values.assign(64, 12.0);
+  const std::string path = heights.write("a");
+  writeFile("a.vrt.aux.xml",
+    "<PAMDataset><Metadata domain=\"OVERVIEWS\"><MDI key=\"OVERVIEW_FILE\">/vsicurl/" +
+      listener.url() + "a.tif</MDI></Metadata></PAMDataset>");
+  EXPECT_NO_THROW(readRaster(path));
+  EXPECT_FALSE(listener.called());
+}
+
+TEST(Reach, tablesOfADatabaseAreItsOwn)
+{
+  // A table that a module of SpatiaLite makes of a file elsewhere, in a database of one page.
+  const std::string secret = writeFile("secret.csv", "x,y,z\n1,2,3\n");
+  const std::string path = virtualTable("leak.sqlite", secret);
+  SourceOptions table;
+  table.layer = "leak";
+  const std::string message = messageOf<Error>([&] { readSourceLayer(path, table); });
+  EXPECT_TRUE(holds(message, { path })) << message;
+  const AllowReferences allow(true);
+  EXPECT_EQ(readSourceLayer(path, table).rows.size(), 1u);
+}
+
 TEST(Reach, isAllowedWhereItIsAskedFor)
 {
   // The numbers of a raster in another folder.

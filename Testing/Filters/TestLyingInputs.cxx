@@ -12,6 +12,7 @@
 #include "vtkMergeCollectors.h"
 #include "vtkPointData.h"
 #include "vtkRockfallHazardMap.h"
+#include "vtkStringArray.h"
 #include "vtkTrajectoryCollector.h"
 #include "vtkTrajectoryLayerWriter.h"
 
@@ -81,6 +82,26 @@ Lie number(bool ofPoints, const char* name, double value)
   };
 }
 
+/// Of all cells.
+Lie all(const char* name, double value)
+{
+  return [=](vtkPolyData* data)
+  {
+    vtkDataArray* array = data->GetCellData()->GetArray(name);
+    array->Fill(value);
+  };
+}
+
+/// Of the last cell.
+Lie lastName(const char* of, const char* value)
+{
+  return [=](vtkPolyData* data)
+  {
+    auto* names = vtkStringArray::SafeDownCast(data->GetCellData()->GetAbstractArray(of));
+    names->SetValue(names->GetNumberOfValues() - 1, value);
+  };
+}
+
 Lie pointOf(double x)
 {
   return [x](vtkPolyData* data)
@@ -136,6 +157,12 @@ TEST_F(TestLyingInputs, RocksAreRefusedByName)
       { "a half block", number(false, "BlockId", 1.5), { rocks, "BlockId", "1.5" } },
       { "a source of 1e300", number(false, "SourceId", 1e300), { rocks, "SourceId", "1e+300" } },
       { "an infinite shape", number(false, "Shape", inf), { rocks, "Shape", "inf" } },
+      { "two densities", number(false, "Density", 1000.0), { rocks, "Density", "1000", "block" } },
+      { "two velocities", number(false, "Velocity", 3.0), { rocks, "Velocity", "0 in cell", "3" } },
+      { "two materials", lastName("Material", "slag"), { rocks, "Material", "slag" } },
+      { "no density", all("Density", 0.0), { "block", "Density is 0" } },
+      { "a negative density", all("Density", -2700.0), { "block", "Density is -2700" } },
+      { "no modulus", all("YoungModulus", 0.0), { "block", "YoungModulus is 0" } },
       { "no points at all", [](vtkPolyData* data) { data->SetPoints(nullptr); }, { rocks } },
     });
 }

@@ -180,6 +180,22 @@ TEST_F(TestRockContactFile, WhatTheTableDoesNotChangeStaysTheSame)
   EXPECT_EQ(this->Summary()->GetNumberOfRows(), 2);
 }
 
+TEST_F(TestRockContactFile, MayReachOutWhereThatIsAllowed)
+{
+  // A table that is not beside the virtual layer that names it.
+  const std::string table = this->WriteFile("pairs.csv", header + "granite,slag,0.2,30,0\n");
+  const std::string folder = std::filesystem::path(table).parent_path().string() + "/elsewhere";
+  std::filesystem::create_directories(folder);
+  const std::string layer = folder + "/pairs.vrt";
+  std::ofstream(layer) << "<OGRVRTDataSource><OGRVRTLayer name=\"pairs\"><SrcDataSource>" << table
+                       << "</SrcDataSource></OGRVRTLayer></OGRVRTDataSource>";
+  this->Simulation->SetRockContactFile(layer.c_str());
+  this->Simulation->Update();
+  this->ExpectOneError({ layer, table, "AllowReferences" });
+  this->Simulation->AllowReferencesOn();
+  EXPECT_DOUBLE_EQ(this->Restitution(), 0.2);
+}
+
 TEST_F(TestRockContactFile, BadTablesAreOneError)
 {
   const struct
