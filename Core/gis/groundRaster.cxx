@@ -94,9 +94,10 @@ std::vector<std::uint8_t> fromRaster(const GroundFiles& files, const std::string
   // one, in whichever order they are stored.
   const double size = cells.terrain.geometry().cellSize, aside = edge * size;
   // Overviews of classes may hold means of their numbers.
-  add({ "-of", "VRT", "-r", "near", "-ovr", "NONE", "-dstalpha", "-te", digits(cells.box.xMin + aside),
-    digits(cells.box.yMin - aside), digits(cells.box.xMax + aside), digits(cells.box.yMax - aside),
-    "-ts", std::to_string(cells.columns), std::to_string(cells.rows) });
+  add({ "-of", "VRT", "-r", "near", "-ovr", "NONE", "-dstalpha", "-te",
+    digits(cells.box.xMin + aside), digits(cells.box.yMin - aside), digits(cells.box.xMax + aside),
+    digits(cells.box.yMax - aside), "-ts", std::to_string(cells.columns),
+    std::to_string(cells.rows) });
   if (from && cells.crs)
   {
     add({ "-t_srs", crsWkt(*cells.crs) }); // classes are no heights: no vertical part

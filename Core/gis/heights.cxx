@@ -11,7 +11,6 @@
 #include <ogr_spatialref.h>
 #include <ogrsf_frmts.h>
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -303,45 +302,10 @@ void LayerHeights::tell(std::vector<std::string>& notes) const
   }
 }
 
-namespace
-{
-
-/// Beyond any longitude, in degrees or in the half degrees past the date line that maps have.
-constexpr double farthestDegree = 720.0;
-
-/// GeoJSON is in degrees wherever it names no CRS, and is written in metres all the same.
-bool areNoDegrees(GDALDataset& dataset, OGRLayer& layer, const std::string& fileName,
-  std::vector<std::string>& notes)
-{
-  const char* driver = dataset.GetDriver() ? dataset.GetDriver()->GetDescription() : "";
-  const OGRSpatialReference* crs = layer.GetSpatialRef();
-  OGREnvelope box;
-  if (!std::string(driver).starts_with("GeoJSON") || !crs || !crs->IsGeographic() ||
-    layer.GetExtent(&box, TRUE) != OGRERR_NONE)
-  {
-    return false;
-  }
-  const double most =
-    std::max({ std::abs(box.MinX), std::abs(box.MaxX), std::abs(box.MinY), std::abs(box.MaxY) });
-  if (!(most > farthestDegree))
-  {
-    return false;
-  }
-  notes.push_back(fileName + ": its coordinates, of up to " + number(most) +
-    ", are no degrees, in which GeoJSON is that names no CRS; they were taken as they are.");
-  return true;
-}
-
-} // namespace
-
 LayerHeights heightsOf(GDALDataset& dataset, OGRLayer& layer, const std::string& fileName,
   std::vector<std::string>& notes)
 {
   const OGRSpatialReference* crs = layer.GetSpatialRef();
-  if (areNoDegrees(dataset, layer, fileName, notes))
-  {
-    crs = nullptr;
-  }
   LayerHeights heights;
   heights.horizontal = horizontalCrs(crs);
   heights.reference = heightCrs(crs);

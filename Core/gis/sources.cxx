@@ -159,6 +159,12 @@ SourceLayer readSourceLayer(const std::string& fileName, const SourceOptions& op
   if (options.haveTerrain)
   {
     file.refuseDegrees(placing.from, options.targetCrs);
+    if (options.targetCrs.empty() && placing.from && placing.from->IsGeographic())
+    {
+      // GeoJSON that names no CRS: its degrees are believed to be the slope's coordinates.
+      placing.from.reset();
+      placing.heights.reference.reset();
+    }
   }
   if (!options.targetCrs.empty())
   {
