@@ -238,6 +238,13 @@ bool MassFall::stays(Member& member) const
   return time_ - member.stayed.time >= kStillTime || time_ - member.lingered.time >= kLingerTime;
 }
 
+void MassFall::advanceAlone(Member& member, double until) const
+{
+  member.sim.advance(until);
+  member.asleep =
+    member.sim.done_ && member.sim.recorder_.trajectory().summary.fate == Fate::Rested;
+}
+
 bool MassFall::advance()
 {
   bool moving = false;
@@ -264,9 +271,8 @@ bool MassFall::advanceAll()
       return;
     }
     Member& m = *members_[std::size_t(alone_[k - groups_.size()])];
-    m.sim.advance(until);
+    this->advanceAlone(m, until);
     this->stays(m); // to know when it comes back to a group
-    m.asleep = m.sim.done_ && m.sim.recorder_.trajectory().summary.fate == Fate::Rested;
   };
   forEach(groups_.size() + alone_.size(), 1, advanceOne);
   time_ = until;

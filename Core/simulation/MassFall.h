@@ -27,6 +27,8 @@
 namespace rockfall
 {
 
+struct Pace;
+
 class MassFall
 {
 public:
@@ -133,9 +135,15 @@ private:
     std::vector<RockPair*> pairs;
     bool crowd = false; ///< Too large to resolve its impacts in time.
   };
+  struct PartOfGroup
+  {
+    Group group;
+    std::vector<std::size_t> sights; ///< Of its pairs (Parting::sights).
+  };
   struct Workspace;
   struct Meetings;
   struct Trees;
+  struct Parting;
 
   void comeToRock(const Group& group, std::size_t k) const;
 
@@ -151,6 +159,23 @@ private:
   bool isCrowd(const Group& group) const;
   bool advanceAll();
   void advanceGroup(const Group& group, double until) const;
+  /// As one system all the way, or only as long as its steps last. Returns the time reached, s.
+  double advanceTogether(const Group& group, double until, bool lastingOnly) const;
+  double timeOf(const Group& group, double until) const; ///< s; `until` if all are gone.
+  void advanceAlone(Member& member, double until) const;
+  // A group over its step in parts: massFallParts.cxx.
+  void advanceParts(const PartOfGroup& part, double from, double until, Parting& parting) const;
+  /// Those that may meet each other within a duration (s), and those that meet no other.
+  std::vector<PartOfGroup> fallApart(
+    const PartOfGroup& whole, double duration, Parting& parting) const;
+  /// Whether it touches all through: no part of it moves by itself.
+  bool isOne(const Group& group, Parting& parting) const;
+  bool isCarried(const Group& group) const; ///< Whether something carries each of it.
+  double gapAlong(const RockPair& pair, const Parting& parting, std::size_t sight) const;
+  /// Finds the axis of two rocks where they stand.
+  void sight(RockPair& pair, double reach, Parting& parting, std::size_t sight) const;
+  /// How a rock may move within a duration (s) if no other strikes it.
+  void foresee(const RockSimulator& sim, double duration, Pace& pace) const;
   double groupStep(const Group& group) const;
   void gatherContacts(const Group& group, double h, Workspace& work) const;
   static void findPushes(const Group& group, Workspace& work);

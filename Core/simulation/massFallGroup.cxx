@@ -21,6 +21,9 @@ namespace
 /// many times fewer rocks resolve their impacts, but a few always do.
 constexpr double kMostSteps = 100.0;
 constexpr int kFew = 4;
+/// As kStepsPerImpact, of two rocks. An impact begins anywhere in a step: of faces that meet at a
+/// restitution of 0.8 the loss is off by 2.3 % at most with eight, by 1.4 % with ten.
+constexpr double kStepsPerPairImpact = 10.0;
 /// In a crowd a step is this much longer than rocks that resolve their impacts may take: where they
 /// would end is looked at.
 constexpr double kCrowdTravel = 2.0;
@@ -64,6 +67,10 @@ double MassFall::groupStep(const Group& group) const
   }
   for (const RockPair* pair : group.pairs)
   {
+    if (pair->contacts.empty())
+    {
+      continue;
+    }
     double sum = 0.0;
     for (const Contact& c : pair->contacts)
     {
@@ -72,7 +79,7 @@ double MassFall::groupStep(const Group& group) const
     const Block& a = members_[pair->first]->sim.block_;
     const Block& b = members_[pair->second]->sim.block_;
     const double all = parameters_.normalPenalty * (a.largestMobility() + b.largestMobility());
-    h = std::min(h, std::numbers::pi / (kStepsPerImpact * std::sqrt(std::max(sum, all))));
+    h = std::min(h, std::numbers::pi / (kStepsPerPairImpact * std::sqrt(std::max(sum, all))));
   }
   return h;
 }
@@ -371,22 +378,24 @@ void MassFall::fly(const Group& group, double duration) const
   }
 }
 
-void MassFall::advanceGroup(const Group& group, double until) const
+double MassFall::timeOf(const Group& group, double until) const
+{
+  for (int i : group.members)
+  {
+    if (!members_[i]->sim.done_)
+    {
+      return members_[i]->sim.state_.time;
+    }
+  }
+  return until;
+}
+
+double MassFall::advanceTogether(const Group& group, double until, bool lastingOnly) const
 {
   thread_local Workspace work;
   work.solver.method = method;
   const bool inTime = !group.crowd;
-  const auto now = [&]
-  {
-    for (int i : group.members)
-    {
-      if (!members_[i]->sim.done_)
-      {
-        return members_[i]->sim.state_.time;
-      }
-    }
-    return until;
-  };
+  const auto now = [&] { return this->timeOf(group, until); };
   while (now() < until - kTooShort)
   {
     stayWanted();
@@ -439,12 +448,17 @@ void MassFall::advanceGroup(const Group& group, double until) const
       {
         this->solve(group, lasting, StepKind::Lasting, false, work);
       }
+      else if (lastingOnly)
+      {
+        return now();
+      }
       else
       {
         this->solve(group, small, StepKind::Impact, false, work);
       }
     }
   }
+  return until;
 }
 
 } // namespace rockfall

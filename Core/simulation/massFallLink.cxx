@@ -20,12 +20,6 @@ constexpr std::size_t kLookGrain = 16;
 /// So many pairs ahead the cache is asked for one.
 constexpr std::size_t kNearsAhead = 8;
 
-/// Largest component along the normal of a velocity in a box.
-double most(const Company& c, const Vec3& normal)
-{
-  return normal.cwiseProduct(c.lower).cwiseMax(normal.cwiseProduct(c.upper)).sum();
-}
-
 } // namespace
 
 /// From now on the gap is bounded along the pair's axis.
@@ -53,17 +47,8 @@ double MassFall::Meetings::apart(const Near& n) const
 inline double MassFall::Meetings::closing(const Near& n) const
 {
   const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
-  const Company& first = companies_[std::size_t(roots_[i])];
-  const Company& second = companies_[std::size_t(roots_[j])];
-  if (&first == &second)
-  {
-    return n.normal.cwiseAbs().dot(first.upper - first.lower);
-  }
-  const double towards =
-    first.size > 1 ? most(first, -n.normal) : paces_[i].spread - n.normal.dot(paces_[i].middle);
-  const double against =
-    second.size > 1 ? most(second, n.normal) : paces_[j].spread + n.normal.dot(paces_[j].middle);
-  return std::max(0.0, towards + against);
+  return closingSpeed(companies_[std::size_t(roots_[i])], paces_[i],
+    companies_[std::size_t(roots_[j])], paces_[j], n.normal);
 }
 
 /// The widest gap over which the two may meet.

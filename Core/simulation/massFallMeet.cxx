@@ -43,6 +43,25 @@ constexpr std::size_t kMostOut = 4;
 
 } // namespace
 
+void MassFall::foresee(const RockSimulator& sim, double duration, Pace& pace) const
+{
+  const BlockState& s = sim.state_;
+  const double speed = s.velocity.norm(), rim = sim.block_.largestRimSpeed(s.spin);
+  // What springs hold in the middle of an impact they give back.
+  const double held = std::sqrt(2.0 * sim.springEnergy_ * sim.block_.largestMobility());
+  pace.own = (speed + rim + held) * duration + parameters_.gravity * duration * duration;
+  // What stands farther off than it may come has no say.
+  const double way = sim.block_.radius() + pace.own;
+  const Vec3& p = s.position;
+  const bool obstructed =
+    sim.obstacles_ && sim.obstacles_->anyIn(p.x() - way, p.x() + way, p.y() - way, p.y() + way);
+  const bool flies = !obstructed && sim.contacts_.empty() && sim.clearFor(duration);
+  // Velocities that an impact on the slope leaves, with any normal.
+  const double e = obstructed ? 1.0 : surface_.largestRestitution();
+  pace.middle = flies ? s.velocity : Vec3(0.5 * (1.0 - e) * s.velocity);
+  pace.spread = rim + held + (flies ? 0.0 : 0.5 * (1.0 + e) * speed);
+}
+
 void MassFall::Meetings::follow(MassFall& fall, double duration)
 {
   const std::size_t count = fall.members_.size();
@@ -69,7 +88,6 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
     }
     bounciest_ = fall.contacts_.largestRestitution();
   }
-  const double ground = fall.surface_.largestRestitution();
   const std::size_t last = count - 1;
   const auto followRock = [&](std::size_t i)
   {
@@ -107,19 +125,8 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
       pace.spread = pace.own = m.way = m.known = 0.0;
       return;
     }
-    const double speed = s.velocity.norm(), rim = sim.block_.largestRimSpeed(s.spin);
     pace.velocity = s.velocity;
-    pace.own = (speed + rim) * duration + fall_;
-    // What stands farther off than it may come has no say.
-    const double way = m.radius + pace.own;
-    const Vec3& p = m.position;
-    const bool obstructed =
-      sim.obstacles_ && sim.obstacles_->anyIn(p.x() - way, p.x() + way, p.y() - way, p.y() + way);
-    const bool flies = !obstructed && sim.contacts_.empty() && sim.clearFor(duration);
-    // Velocities that an impact on the slope leaves, with any normal.
-    const double e = obstructed ? 1.0 : ground;
-    pace.middle = flies ? s.velocity : Vec3(0.5 * (1.0 - e) * s.velocity);
-    pace.spread = rim + (flies ? 0.0 : 0.5 * (1.0 + e) * speed);
+    fall.foresee(sim, duration, pace);
     // It is struck by much the same ones as in the last step.
     m.known = kWider * std::max(pace.own, m.way) + fall_;
     m.way = fars_[i] = pace.own;

@@ -47,8 +47,8 @@ struct alignas(64) Mover
 /// What else decides how a rock moves in the step.
 struct Pace
 {
-  double own = 0.0; ///< The longest way if nothing strikes it, m.
-  double mass;      ///< kg
+  double own = 0.0;  ///< The longest way if nothing strikes it, m.
+  double mass = 0.0; ///< kg
   /// All velocities that points of it may have until it meets another rock are in a ball, m/s:
   /// about its velocity if it flies clear of the slope; else the slope may stop it or throw it
   /// back.
@@ -72,6 +72,18 @@ struct Company
   double longest;    ///< Way of one of them if nothing else strikes it, m.
   int size;
 
+  /// A light rock that a heavy one strikes goes on faster than it, by this factor. `bounciest`:
+  /// the largest restitution of rocks on each other.
+  double thrown(double mass, double bounciest) const
+  {
+    return bounciest * heaviest > mass ? (1.0 + bounciest) * heaviest / (heaviest + mass) : 1.0;
+  }
+  /// Largest component along the normal of a velocity of one of its rocks, m/s.
+  double most(const Vec3& normal, const Pace& pace) const
+  {
+    return size > 1 ? normal.cwiseProduct(lower).cwiseMax(normal.cwiseProduct(upper)).sum()
+                    : pace.spread + normal.dot(pace.middle);
+  }
   void take(const Company& other)
   {
     lower = lower.cwiseMin(other.lower);
@@ -81,6 +93,15 @@ struct Company
     size += other.size;
   }
 };
+
+/// How fast the gap of two rocks of these companies may close along a normal, m/s.
+inline double closingSpeed(const Company& first, const Pace& firstPace, const Company& second,
+  const Pace& secondPace, const Vec3& normal)
+{
+  return &first == &second
+    ? normal.cwiseAbs().dot(first.upper - first.lower)
+    : std::max(0.0, first.most(-normal, firstPace) + second.most(normal, secondPace));
+}
 
 /// Two rocks that are near each other, or may come near each other soon; in one line of the cache.
 struct alignas(64) Near

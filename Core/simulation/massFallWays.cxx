@@ -22,12 +22,9 @@ int MassFall::Meetings::root(int i)
   return headOf(parents_, i);
 }
 
-/// A light rock that a heavy one strikes goes on faster than it, by this factor.
 double MassFall::Meetings::thrown(std::size_t rock) const
 {
-  const double heaviest = companies_[std::size_t(roots_[rock])].heaviest;
-  const double mass = paces_[rock].mass;
-  return bounciest_ * heaviest > mass ? (1.0 + bounciest_) * heaviest / (heaviest + mass) : 1.0;
+  return companies_[std::size_t(roots_[rock])].thrown(paces_[rock].mass, bounciest_);
 }
 
 /// Links two; `known`: their axis has been found for where they stand. Returns whether that tells

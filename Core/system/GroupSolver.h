@@ -124,8 +124,9 @@ private:
     std::vector<GroupContact>& contacts, GroupOutcome& outcome);
   bool holdBounces(double h, std::vector<GroupContact>& contacts); ///< Whether any gives energy.
   bool solveDirect(Eigen::VectorXd& next);
+  /// `places`: of bodies in the system, −1 for those that no contact acts on.
   template <class Add>
-  void assemble(Eigen::VectorXd& right, Add&& add) const;
+  void assemble(const std::vector<int>& places, Eigen::VectorXd& right, Add&& add) const;
   void write(const StepRequest& request, std::vector<GroupBody>& bodies,
     std::vector<GroupContact>& contacts, GroupOutcome& outcome);
 

@@ -8,17 +8,20 @@ namespace rockfall
 {
 
 template <class Add>
-void GroupSolver::assemble(Eigen::VectorXd& right, Add&& add) const
+void GroupSolver::assemble(const std::vector<int>& places, Eigen::VectorXd& right, Add&& add) const
 {
-  right.resize(6 * Eigen::Index(work_.size()));
   for (std::size_t i = 0; i < work_.size(); ++i)
   {
+    if (places[i] < 0)
+    {
+      continue;
+    }
     const Work& w = work_[i];
     Mat6 a = Mat6::Zero();
     a.diagonal().head<3>().setConstant(1.0 / w.inverseMass);
     a.bottomRightCorner<3, 3>() = w.inertia;
-    add(int(i), int(i), a);
-    right.segment<6>(6 * Eigen::Index(i)) = w.load;
+    add(places[i], places[i], a);
+    right.segment<6>(6 * Eigen::Index(places[i])) = w.load;
   }
   for (const Row& row : rows_)
   {
@@ -50,18 +53,18 @@ void GroupSolver::assemble(Eigen::VectorXd& right, Add&& add) const
     const std::array<Eigen::Matrix<double, 6, 3>, 2> j = { jacobian(0), jacobian(1) };
     for (int s = 0; s < 2; ++s)
     {
-      const int i = row.sides[s].body;
-      if (i < 0)
+      if (row.sides[s].body < 0)
       {
         continue;
       }
-      right.segment<6>(6 * i) += j[s] * f;
+      const int i = places[std::size_t(row.sides[s].body)];
+      right.segment<6>(6 * Eigen::Index(i)) += j[s] * f;
       const Eigen::Matrix<double, 6, 3> jt = j[s] * t;
       for (int other = 0; other < 2; ++other)
       {
         if (row.sides[other].body >= 0)
         {
-          add(i, row.sides[other].body, Mat6(jt * j[other].transpose()));
+          add(i, places[std::size_t(row.sides[other].body)], Mat6(jt * j[other].transpose()));
         }
       }
     }
@@ -78,23 +81,61 @@ constexpr double kResidual = 1e-9;
 
 bool GroupSolver::solveDirect(Eigen::VectorXd& next)
 {
-  const int n = int(work_.size());
-  Eigen::VectorXd right;
-  blocks_.reset(n);
-  this->assemble(right, [&](int i, int j, const Mat6& k) { blocks_.at(i, j) += k; });
-  kept_.copy(blocks_);
-  next = right;
-  if (blocks_.solve(next))
+  // Most of a group do not touch: what no contact acts on goes as if it were alone.
+  thread_local std::vector<int> places;
+  places.assign(work_.size(), -1);
+  for (const Row& row : rows_)
   {
-    const double left = (right - kept_.times(next)).cwiseAbs().maxCoeff();
-    if (left <= kResidual * right.cwiseAbs().maxCoeff())
+    for (const Side& side : row.sides)
     {
-      return true;
+      if (side.body >= 0 && row.law.acts())
+      {
+        places[std::size_t(side.body)] = 0;
+      }
     }
   }
-  // Friction makes K unsymmetric: where elimination by blocks does not hold, pivots are sought
-  // everywhere.
-  next = kept_.dense().partialPivLu().solve(right);
+  int n = 0;
+  next.resize(6 * Eigen::Index(work_.size()));
+  for (std::size_t i = 0; i < work_.size(); ++i)
+  {
+    if (places[i] < 0)
+    {
+      next.segment<6>(6 * Eigen::Index(i)) = work_[i].free;
+    }
+    else
+    {
+      places[i] = n++;
+    }
+  }
+  if (n == 0)
+  {
+    return next.allFinite();
+  }
+  thread_local Eigen::VectorXd right, found;
+  right.resize(6 * Eigen::Index(n));
+  blocks_.reset(n);
+  this->assemble(places, right, [&](int i, int j, const Mat6& k) { blocks_.at(i, j) += k; });
+  kept_.copy(blocks_);
+  found = right;
+  bool solved = blocks_.solve(found);
+  if (solved)
+  {
+    const double left = (right - kept_.times(found)).cwiseAbs().maxCoeff();
+    solved = left <= kResidual * right.cwiseAbs().maxCoeff();
+  }
+  if (!solved)
+  {
+    // Friction makes K unsymmetric: where elimination by blocks does not hold, pivots are sought
+    // everywhere.
+    found = kept_.dense().partialPivLu().solve(right);
+  }
+  for (std::size_t i = 0; i < work_.size(); ++i)
+  {
+    if (places[i] >= 0)
+    {
+      next.segment<6>(6 * Eigen::Index(i)) = found.segment<6>(6 * Eigen::Index(places[i]));
+    }
+  }
   return next.allFinite();
 }
 
