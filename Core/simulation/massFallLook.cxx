@@ -86,8 +86,8 @@ LookOutcome MassFall::lookAgain(const Group& group, double h, bool bounces, Work
   if (group.crowd)
   {
     seen.missed = std::max(seen.missed, this->lookAtSlope(group, h, bounces, work));
-    seen.again = this->lookAtTrees(group, h, work);
   }
+  seen.again = this->lookAtTrees(group, h, work);
   return seen;
 }
 

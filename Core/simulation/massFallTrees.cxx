@@ -1,10 +1,10 @@
-// Trees that the rocks of a crowd are driven into within a step.
+// Trees that the rocks of a group are driven into within a step.
 //
 // What comes to a tree by itself is told before the step whether the tree holds it
-// (RockSimulator::breakTrees). In a step as long as Δt others may drive a rock into a tree that it
-// did not come to, and the tree would take all that they give it. So one that carries in the
-// solution and could not hold the rock as it would go without it is let go. If the rock drives on
-// through it then with more than the tree's capacity the tree breaks, else it is set in again.
+// (RockSimulator::breakTrees). Others may drive a rock into a tree that it did not come to, and the
+// tree would take all that they give it. So one that carries in the solution and could not hold the
+// rock as it would go without it is let go. If the rock drives on through it then with more than
+// the tree's capacity the tree breaks, else it is set in again.
 
 #include "simulation/massFallWork.h"
 

@@ -245,7 +245,7 @@ TEST(Barriers, WhatNobodyMeetsLeavesAMassFallAlone)
       Vec3(20.0 + k % 3, 48.0 + 1.1 * (k / 3 % 2), 128.0 + 1.2 * (k / 6));
   }
   SimulationParameters p;
-  p.endTime = 4.0;
+  p.endTime = 6.0;
   p.rockRockContact = true;
   const auto endsOn = [&](const std::vector<Barrier>& barriers, const std::vector<Tree>& trees)
   {

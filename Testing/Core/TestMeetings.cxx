@@ -121,6 +121,43 @@ TEST(Meetings, FieldOfSleepersIsNotWokenByOneRock)
   EXPECT_LE(linked, 5);
 }
 
+TEST(Meetings, WhoTouchesNoneOfAGroupBouncesAsAlone)
+{
+  // Cubes 60 mm apart may meet in any step in which one of them strikes the floor, and never do.
+  constexpr int count = 5;
+  const auto fall = [](double apart)
+  {
+    Pile pile;
+    pile.ground = makeSlope(
+      41, 5.0, [](double, double) { return 0.0; }, material(0.5, 20.0));
+    pile.parameters.rockRestitution = 0.8;
+    for (int k = 0; k < count; ++k)
+    {
+      Rock rock = brick(Vec3(1, 1, 1), Vec3(50.0 + apart * k, 100.0, 0.8 + 0.1 * k), k);
+      rock.velocity = Vec3(0.0, 3.0, -4.0);
+      pile.rocks.push_back(rock);
+    }
+    pile.start();
+    pile.run(0.6);
+    std::vector<Vec3> places = pile.places();
+    for (int k = 0; k < count; ++k)
+    {
+      EXPECT_GE(pile.fall->impacts(k).size(), 1u);
+      for (const ImpactEvent& event : pile.fall->impacts(k))
+      {
+        EXPECT_EQ(event.otherRock, -1);
+      }
+      places[std::size_t(k)].x() -= apart * k;
+    }
+    return places;
+  };
+  const std::vector<Vec3> near = fall(1.06), far = fall(20.0);
+  for (int k = 0; k < count; ++k)
+  {
+    EXPECT_LT((near[std::size_t(k)] - far[std::size_t(k)]).norm(), 2e-3) << k; // of 1.5 m
+  }
+}
+
 TEST(Meetings, WhatMeetsNoOtherFallsAsWithoutCollisions)
 {
   // Not bit for bit, as the steps of an impact are cut where those of the fall end, but no way is
