@@ -168,12 +168,11 @@ int vtkGrowingPaths::RequestData(
     vtkPolyData* output = vtkPolyData::GetData(info);
     // Its range was that of older trajectories if they have just been made.
     writeTimeRange(input, info);
-    double until = std::numeric_limits<double>::infinity();
-    if (info->Has(Pipeline::UPDATE_TIME_STEP()))
-    {
-      until = info->Get(Pipeline::UPDATE_TIME_STEP());
-      output->GetInformation()->Set(vtkDataObject::DATA_TIME_STEP(), until);
-    }
+    // The time is not written to the data: the executive would take those of any time for good
+    // beyond the range.
+    const double until = info->Has(Pipeline::UPDATE_TIME_STEP())
+      ? info->Get(Pipeline::UPDATE_TIME_STEP())
+      : std::numeric_limits<double>::infinity();
     output->GetFieldData()->ShallowCopy(input->GetFieldData());
     if (input->GetNumberOfLines() == 0)
     {

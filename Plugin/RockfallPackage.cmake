@@ -2,10 +2,7 @@
 # the ParaView that it was built for and with no other one, so there is a package for each release of
 # Debian, made on it: dpkg-shlibdeps names the exact libraries.
 # Of use to nobody who only loads the plugin.
-install(CODE "file(GLOB unused \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/lib*/libRockfallFiltersCS.a\")
-  if(unused)
-    file(REMOVE \${unused})
-  endif()")
+install(CODE "file(REMOVE \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_LIBDIR}/libRockfallFiltersCS.a\")")
 install(FILES LICENSE README.md CHANGELOG.md CITATION.cff
   DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/rockfalldda")
 install(DIRECTORY docs/ DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/rockfalldda/docs")

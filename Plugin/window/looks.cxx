@@ -31,10 +31,12 @@ constexpr Colour kBuilt = { 0.20, 0.42, 0.24 };
 constexpr Colour kLine = { 0.05, 0.05, 0.05 };
 constexpr Colour kPicked = { 0.85, 0.05, 0.55 };
 constexpr double kPickedWidth = 6.0; ///< px
-constexpr double kPathWidth = 3.0;   ///< px
-constexpr double kMarkerSize = 8.0;  ///< px, of blocks from afar
-constexpr double kPointSize = 6.0;   ///< px
-constexpr const char* kDisc = "4";   ///< Of a chart's markers.
+/// Lines are flat: drawn as tubes, ParaView hides those on a slope behind it.
+constexpr double kPathWidth = 3.0;  ///< px
+constexpr double kMarkerSize = 8.0; ///< px, of blocks from afar
+constexpr double kPointSize = 6.0;  ///< px
+constexpr int kTopLeft = 3;         ///< Of a chart's legend.
+constexpr const char* kDisc = "4";  ///< Of a chart's markers.
 
 /// From low to high, as red, green, blue.
 using Palette = std::array<Colour, 4>;
@@ -103,7 +105,6 @@ void setMarker(vtkSMProxy* proxy, const Colour& colour)
   constexpr double dark = 0.5;
   set(proxy, "EdgeColor", dark * colour[0], dark * colour[1], dark * colour[2]);
   set(proxy, "PointSize", kMarkerSize);
-  set(proxy, "RenderPointsAsSpheres", 1);
 }
 
 const Quantity* quantityOf(const std::string& array)
@@ -193,6 +194,7 @@ void styleProfile(vtkSMProxy* representation, vtkSMViewProxy* view)
   vtkSMPropertyHelper(view, "BottomAxisTitle").Set("Horizontal distance from the release (m)");
   vtkSMPropertyHelper(view, "LeftAxisTitle").Set("Speed (m/s), height over ground (m)");
   vtkSMPropertyHelper(view, "RightAxisTitle").Set("Kinetic energy (kJ)");
+  vtkSMPropertyHelper(view, "LegendLocation").Set(kTopLeft); // where curves begin low
   view->UpdateVTKObjects();
 }
 
@@ -242,19 +244,16 @@ void style(vtkSMProxy* representation)
   else if (is(shown, "vtkRockfallSimulation", 1) || is(shown, "vtkGrowingPaths", 0))
   {
     set(representation, "LineWidth", kPathWidth);
-    set(representation, "RenderLinesAsTubes", 1);
   }
   else if (is(shown, "vtkTrajectoryProfile", 1))
   {
     setColour(representation, kPicked);
     set(representation, "LineWidth", kPickedWidth);
-    set(representation, "RenderLinesAsTubes", 1);
   }
   else if (is(shown, "vtkRockfallSimulation", 4) || is(shown, "vtkTrajectoryCollector", 0))
   {
     setColour(representation, kLine);
     set(representation, "PointSize", kPointSize);
-    set(representation, "RenderPointsAsSpheres", 1);
   }
   else if (is(shown, "vtkTrajectoryCollector", 3))
   {

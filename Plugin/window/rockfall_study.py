@@ -77,6 +77,8 @@ def frame(fall=None, view=None):
 def profile(source_name, port, trajectory):
     """A chart of one trajectory of this output, or the chart that is there with this one."""
     source = simple.FindSource(source_name)
+    if source.GetXMLName() == "GrowingPaths":  # the whole path, not as far as the rock is now
+        source, port = source.Input, source.Input.Port
     made = next((s for s in simple.GetSources().values()
                  if s.GetXMLName() == "TrajectoryProfile" and s.Input.SMProxy == source.SMProxy), None)
     if made:

@@ -57,7 +57,10 @@ TEST_F(TestGrowingPaths, AreWholeWithoutATimeAndAfterTheLast)
   this->Filter->GetOutput()->GetBounds(bounds);
   EXPECT_DOUBLE_EQ(bounds[1], 310.0);
   EXPECT_EQ(this->Filter->GetOutput()->GetNumberOfPoints(), 4);
-  EXPECT_EQ(this->At(100.0)->GetNumberOfPoints(), 4);
+  this->At(1.0)->GetBounds(bounds);
+  EXPECT_DOUBLE_EQ(bounds[1], 305.0);
+  this->At(100.0)->GetBounds(bounds);
+  EXPECT_DOUBLE_EQ(bounds[1], 310.0);
 }
 
 TEST_F(TestGrowingPaths, KeepTheirNumbersBeforeTheyBegin)
