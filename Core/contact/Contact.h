@@ -4,6 +4,7 @@
 /// A contact between a rock and the slope (METHOD 3), and the rock's geometry as it stands.
 
 #include "block/Block.h"
+#include "law/ContactState.h"
 #include "terrain/Surface.h"
 
 #include <algorithm>
@@ -21,14 +22,6 @@ enum class ContactKind : std::uint8_t
   VertexFace, ///< A vertex of the rock on a CFE.
   FaceVertex, ///< A face of the rock on a node of the slope.
   EdgeEdge,   ///< An edge of the rock on a ridge of the slope.
-};
-
-/// Shi's contact states.
-enum class ContactState : std::uint8_t
-{
-  Open,
-  Sliding,
-  Locked,
 };
 
 /// Four lines of the cache, in the order of their use: most who go over many contacts need the

@@ -3,7 +3,7 @@
 #include "base/abort.h"
 #include "base/parallel.h"
 #include "contact/motion.h"
-#include "simulation/contactConstants.h"
+#include "law/settings.h"
 #include "simulation/massFallMeet.h"
 #include "simulation/raising.h"
 

@@ -2,10 +2,10 @@
 
 #include "base/abort.h"
 #include "block/flight.h"
-#include "simulation/contactConstants.h"
+#include "law/settings.h"
+#include "law/springs.h"
 #include "simulation/placement.h"
 #include "simulation/pressOut.h"
-#include "solver/springs.h"
 #include "terrain/walls.h"
 
 #include <algorithm>

@@ -3,12 +3,12 @@
 #include "base/abort.h"
 #include "block/flight.h"
 #include "contact/motion.h"
-#include "simulation/contactConstants.h"
+#include "law/cohesion.h"
+#include "law/settings.h"
 #include "simulation/impactMode.h"
 #include "simulation/pressOut.h"
 #include "simulation/pressedIn.h"
 #include "simulation/restitution.h"
-#include "solver/cohesion.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include "simulation/massFallWork.h"
 
 #include "contact/motion.h"
-#include "simulation/contactConstants.h"
+#include "law/settings.h"
 #include "simulation/impactMode.h"
 #include "simulation/pressedIn.h"
 

@@ -4,9 +4,9 @@
 
 #include "base/parallel.h"
 #include "contact/motion.h"
+#include "law/cohesion.h"
 #include "simulation/pressOut.h"
 #include "simulation/restitution.h"
-#include "solver/cohesion.h"
 
 #include <algorithm>
 

@@ -8,8 +8,8 @@
 /// at the contact only: a dashpot beside the contact's spring. So have all touches in the other
 /// models.
 
+#include "law/springs.h"
 #include "simulation/results.h"
-#include "solver/springs.h"
 #include "terrain/Terrain.h"
 
 #include <cmath>

@@ -5,7 +5,7 @@
 #include "base/nameKey.h"
 #include "base/numberText.h"
 #include "geometry/shell.h"
-#include "solver/springs.h"
+#include "law/springs.h"
 
 #include <algorithm>
 #include <cmath>

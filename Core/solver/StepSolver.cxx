@@ -2,9 +2,7 @@
 
 #include "block/cayley.h"
 #include "contact/features.h"
-#include "solver/cohesion.h"
 #include "solver/linear.h"
-#include "solver/springs.h"
 
 #include <Eigen/LU>
 
@@ -109,18 +107,19 @@ void BlockStep<N>::prepareRows(const Block& block, const BlockState& state,
     row.tangent[0] = row.n.unitOrthogonal();
     row.tangent[1] = row.n.cross(row.tangent[0]);
     const Vec3 slip = rotation_.transpose() * c.slip;
-    row.slip0 = { row.tangent[0].dot(slip), row.tangent[1].dot(slip) };
-    row.gap0 = c.gap();
-    row.penalty = c.stiffness > 0.0 ? c.stiffness : request.normalPenalty;
-    row.shearPenalty = c.stiffness > 0.0 ? c.shearStiffness : request.shearPenalty;
+    ContactLaw& law = row.law;
+    law.slip0 = { row.tangent[0].dot(slip), row.tangent[1].dot(slip) };
+    law.gap0 = c.gap();
+    law.penalty = c.stiffness > 0.0 ? c.stiffness : request.normalPenalty;
+    law.shearPenalty = c.stiffness > 0.0 ? c.shearStiffness : request.shearPenalty;
     const bool impact = request.kind == StepKind::Impact;
-    row.dashpot = impact ? dashpotOver(request.duration, c.dashpot, c.stopped) : 0.0;
-    row.shearLag = impact ? c.shearDashpot / row.shearPenalty : 0.0;
-    row.friction = c.friction >= 0.0 ? c.friction : request.friction;
-    row.cohesion = c.cohesion >= 0.0 ? c.cohesion : request.cohesion;
-    row.state = c.state;
-    row.share = 1.0;
-    row.direction.setZero();
+    law.dashpot = impact ? dashpotOver(request.duration, c.dashpot, c.stopped) : 0.0;
+    law.shearLag = impact ? c.shearDashpot / law.shearPenalty : 0.0;
+    law.friction = c.friction >= 0.0 ? c.friction : request.friction;
+    law.cohesion = c.cohesion >= 0.0 ? c.cohesion : request.cohesion;
+    law.state = c.state;
+    law.share = 1.0;
+    law.direction.setZero();
   }
 }
 
@@ -186,54 +185,9 @@ bool BlockStep<N>::evaluate(const StepRequest& request, const VecN& d)
   const bool lasting = request.kind == StepKind::Lasting;
   for (Row& row : rows_)
   {
-    row.gap1 = row.gap0 + row.normal.dot(d);
-    const NormalSpring normal = lasting
-      ? endSpring(row.penalty, row.gap1)
-      : dampedSpring(row.penalty, row.dashpot / request.duration, row.gap0, row.gap1);
-    row.force = normal.force;
-    row.stiffness = normal.stiffness;
-    row.share = normal.share;
-    row.shearForce.setZero();
-    row.shearStiffness.setZero();
-    row.shearCoupling.setZero();
-    row.slip1 = row.slip0;
-    ContactState state = ContactState::Open;
-    if (row.force > 0.0)
-    {
-      const Eigen::Vector2d travel(row.shear[0].dot(d), row.shear[1].dot(d));
-      const auto [limit, slope] = coulombLimit(row.friction, row.cohesion, row.force);
-      const double weight = row.share * ((lasting ? 1.0 : 0.5) + row.shearLag / request.duration);
-      const Eigen::Vector2d stretch = row.slip0 + weight * travel;
-      const double length = stretch.norm();
-      // A slip that has reversed from one iteration to the next has passed through rest: it locks
-      // and is judged again, or the two directions would alternate for ever.
-      const bool reversed = row.direction.dot(stretch) < 0.0;
-      row.direction.setZero();
-      if (reversed || row.shearPenalty * length <= limit)
-      {
-        changed = changed || reversed;
-        state = ContactState::Locked;
-        row.shearForce = -row.shearPenalty * stretch;
-        row.shearStiffness = row.shearPenalty * weight * Eigen::Matrix2d::Identity();
-        row.slip1 = row.slip0 + row.share * travel;
-      }
-      else
-      {
-        // Radial return onto the Coulomb cone; the spring stretches no further than what carries
-        // it.
-        state = ContactState::Sliding;
-        const Eigen::Vector2d direction = stretch / length;
-        row.direction = direction;
-        row.shearForce = -limit * direction;
-        row.shearStiffness = (limit * weight / length) *
-          (Eigen::Matrix2d::Identity() - direction * direction.transpose());
-        row.shearCoupling = -slope * row.stiffness * direction;
-        const double part = weight > row.share ? row.share / weight : 1.0;
-        row.slip1 = row.slip0 + part * (direction * (limit / row.shearPenalty) - row.slip0);
-      }
-    }
-    changed = changed || state != row.state;
-    row.state = state;
+    const double gap = row.law.gap0 + row.normal.dot(d);
+    const Eigen::Vector2d travel(row.shear[0].dot(d), row.shear[1].dot(d));
+    changed = row.law.evaluate(lasting, request.duration, gap, travel) || changed;
   }
   return changed;
 }
@@ -244,21 +198,21 @@ typename BlockStep<N>::VecN BlockStep<N>::solveOne(
 {
   // In the contact's own directions: (I + F W) f = f(D) + F J (D − A⁻¹ load), W = J A⁻¹ Jᵀ.
   const VecN free = inverse_ * load;
-  if (row.state == ContactState::Open)
+  if (row.law.state == ContactState::Open)
   {
     const VecN a = inverse_ * row.normal;
-    const double f = (row.force + row.stiffness * row.normal.dot(d - free)) /
-      (1.0 + row.stiffness * row.normal.dot(a));
+    const double f = (row.law.force + row.law.stiffness * row.normal.dot(d - free)) /
+      (1.0 + row.law.stiffness * row.normal.dot(a));
     return free + f * a;
   }
   Eigen::Matrix<double, N, 3> j;
   j << row.normal, row.shear[0], row.shear[1];
   const Eigen::Matrix<double, N, 3> a = inverse_ * j;
   Mat3 tangent = Mat3::Zero();
-  tangent(0, 0) = row.stiffness;
-  tangent.block<2, 1>(1, 0) = row.shearCoupling;
-  tangent.block<2, 2>(1, 1) = row.shearStiffness;
-  const Vec3 at(row.force, row.shearForce[0], row.shearForce[1]);
+  tangent(0, 0) = row.law.stiffness;
+  tangent.block<2, 1>(1, 0) = row.law.shearCoupling;
+  tangent.block<2, 2>(1, 1) = row.law.shearStiffness;
+  const Vec3 at(row.law.force, row.law.shearForce[0], row.law.shearForce[1]);
   const Mat3 system = Mat3::Identity() + tangent * (j.transpose() * a);
   const Vec3 f = system.inverse() * (at + tangent * (j.transpose() * (d - free)));
   return free + a * f;
@@ -271,7 +225,7 @@ typename BlockStep<N>::VecN BlockStep<N>::solve(const VecN& load, const VecN& d)
   int acting = 0;
   for (const Row& row : rows_)
   {
-    if (row.acts())
+    if (row.law.acts())
     {
       only = &row;
       ++acting;
@@ -289,25 +243,25 @@ typename BlockStep<N>::VecN BlockStep<N>::solve(const VecN& load, const VecN& d)
   VecN right = load;
   for (const Row& row : rows_)
   {
-    if (!row.acts())
+    if (!row.law.acts())
     {
       continue;
     }
     // Newton: f(D') ≈ f(D) − k nᵀT (D' − D)
     const VecN& n = row.normal;
-    matrix.noalias() += (row.stiffness * n) * n.transpose();
-    right += (row.force + row.stiffness * n.dot(d)) * n;
-    if (row.state == ContactState::Open)
+    matrix.noalias() += (row.law.stiffness * n) * n.transpose();
+    right += (row.law.force + row.law.stiffness * n.dot(d)) * n;
+    if (row.law.state == ContactState::Open)
     {
       continue;
     }
     for (int a = 0; a < 2; ++a)
     {
-      VecN gradient = row.shearCoupling[a] * n;
-      gradient += row.shearStiffness(a, 0) * row.shear[0];
-      gradient += row.shearStiffness(a, 1) * row.shear[1];
+      VecN gradient = row.law.shearCoupling[a] * n;
+      gradient += row.law.shearStiffness(a, 0) * row.shear[0];
+      gradient += row.law.shearStiffness(a, 1) * row.shear[1];
       matrix.noalias() += row.shear[a] * gradient.transpose();
-      right += (row.shearForce[a] + gradient.dot(d)) * row.shear[a];
+      right += (row.law.shearForce[a] + gradient.dot(d)) * row.shear[a];
     }
   }
   return solveInPlace<N>(matrix, right);
@@ -394,7 +348,7 @@ StepOutcome BlockStep<N>::step(const Block& block, const StepRequest& request,
     for (const Row& row : rows_)
     {
       const double way = row.normal.dot(d);
-      change = std::max(change, std::abs(row.gap0 + way - row.gap1));
+      change = std::max(change, std::abs(row.law.gap0 + way - row.law.gap1));
       scale = std::max(scale, std::abs(way));
     }
     const bool changed = this->evaluate(request, d);
@@ -411,7 +365,7 @@ StepOutcome BlockStep<N>::step(const Block& block, const StepRequest& request,
     return outcome;
   }
 
-  this->write(request, d, contacts, outcome);
+  this->write(d, contacts, outcome);
   const VecN velocity1 = rate * d + offset;
   state.time += h;
   state.position += rotation_ * Vec3(d.template head<3>());
@@ -427,35 +381,26 @@ StepOutcome BlockStep<N>::step(const Block& block, const StepRequest& request,
 }
 
 template <int N>
-void BlockStep<N>::write(const StepRequest& request, const VecN& d, std::vector<Contact>& contacts,
-  StepOutcome& outcome) const
+void BlockStep<N>::write(const VecN& d, std::vector<Contact>& contacts, StepOutcome& outcome) const
 {
   for (std::size_t i = 0; i < contacts.size(); ++i)
   {
     const Row& row = rows_[i];
     Contact& c = contacts[i];
-    c.normalForce = row.force;
-    c.shearForce = row.shearForce.norm();
-    c.distance = row.gap1 + c.offset;
-    const bool closedAtEnd = row.gap1 < 0.0;
-    const double shear = closedAtEnd ? 0.5 * row.shearPenalty * row.slip1.squaredNorm() : 0.0;
+    const ContactLaw& law = row.law;
+    c.normalForce = law.force;
+    c.shearForce = law.shearForce.norm();
+    c.distance = law.gap1 + c.offset;
     const Eigen::Vector2d travel(row.shear[0].dot(d), row.shear[1].dot(d));
-    outcome.frictionWork +=
-      0.5 * row.shearPenalty * row.slip0.squaredNorm() - shear - row.shearForce.dot(travel);
-    const double compressed0 = std::min(row.gap0, 0.0), compressed1 = std::min(row.gap1, 0.0);
-    const double normal = 0.5 * row.penalty * compressed1 * compressed1;
-    if (row.dashpot > 0.0)
-    {
-      outcome.dampedWork +=
-        0.5 * row.penalty * compressed0 * compressed0 - normal - row.force * (row.gap1 - row.gap0);
-    }
-    if (closedAtEnd)
+    outcome.frictionWork += law.frictionWork(travel);
+    outcome.dampedWork += law.dampedWork();
+    if (law.gap1 < 0.0)
     {
       outcome.anyClosed = true;
-      c.state = row.state == ContactState::Open ? ContactState::Sliding : row.state;
-      c.slip = rotation_ * Vec3(row.tangent[0] * row.slip1[0] + row.tangent[1] * row.slip1[1]);
-      outcome.normalEnergy += normal;
-      outcome.springEnergy += normal + shear;
+      c.state = law.state == ContactState::Open ? ContactState::Sliding : law.state;
+      c.slip = rotation_ * Vec3(row.tangent[0] * law.slip1[0] + row.tangent[1] * law.slip1[1]);
+      outcome.normalEnergy += law.normalEnergy();
+      outcome.springEnergy += law.normalEnergy() + law.shearEnergy();
     }
     else
     {
@@ -463,7 +408,6 @@ void BlockStep<N>::write(const StepRequest& request, const VecN& d, std::vector<
       c.slip.setZero();
     }
   }
-  (void)request;
 }
 
 template class BlockStep<6>;

@@ -16,10 +16,11 @@
 ///   high frequency (|λ| = 0.71 as Δt → ∞).
 /// - With 6 unknowns the strain has no inertia: what a contact force strains at its point is part
 /// of
-///   that contact's spring (springs.h).
+///   that contact's spring (law/springs.h).
 /// - One contact is solved in its own three directions, W = J A⁻¹ Jᵀ; several in D.
 
 #include "contact/Contact.h"
+#include "law/contactLaw.h"
 
 #include <vector>
 
@@ -85,28 +86,7 @@ private:
     Vec3 x;                      ///< Material point.
     Vec3 y0;                     ///< Its place about the centroid at the start, body axes.
     std::array<Vec3, 2> ridge;   ///< EdgeEdge: point and direction about the centroid, body axes.
-    Eigen::Vector2d slip0;
-    double gap0 = 0.0;
-    double penalty = 0.0;      ///< pₙ, N/m.
-    double shearPenalty = 0.0; ///< pₛ, N/m.
-    double dashpot = 0.0;      ///< Normal, N s/m.
-    double shearLag = 0.0;     ///< cₛ/pₛ, s.
-    double friction = 0.0;     ///< tan φ
-    double cohesion = 0.0;     ///< N
-    // As of the last evaluation:
-    double gap1 = 0.0;
-    double force = 0.0;
-    double stiffness = 0.0;
-    double share = 1.0; ///< Part of the step in which it is closed.
-    Eigen::Vector2d shearForce = Eigen::Vector2d::Zero();
-    Eigen::Matrix2d shearStiffness = Eigen::Matrix2d::Zero();
-    Eigen::Vector2d shearCoupling = Eigen::Vector2d::Zero(); ///< −∂(shear)/∂(gap1)
-    Eigen::Vector2d slip1 = Eigen::Vector2d::Zero();
-    Eigen::Vector2d direction =
-      Eigen::Vector2d::Zero(); ///< Of the slip while it slides, else zero.
-    ContactState state = ContactState::Open;
-
-    bool acts() const { return this->force > 0.0 || this->stiffness > 0.0; }
+    ContactLaw law;
   };
 
   void prepareInertia(const Block& block, double h, double rate, double stress);
@@ -118,8 +98,7 @@ private:
   /// Newton's next D from springs linearised about `d`; `load`: all other forces.
   VecN solve(const VecN& load, const VecN& d);
   VecN solveOne(const Row& row, const VecN& load, const VecN& d) const;
-  void write(const StepRequest& request, const VecN& d, std::vector<Contact>& contacts,
-    StepOutcome& outcome) const;
+  void write(const VecN& d, std::vector<Contact>& contacts, StepOutcome& outcome) const;
 
   std::vector<Row> rows_;
   MatN mass_ = MatN::Zero();

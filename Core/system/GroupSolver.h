@@ -9,8 +9,8 @@
 /// coupled by contacts only. Force and moment of a contact act on both rocks at one point of
 /// mid-step, so that momentum and angular momentum are kept to rounding.
 
+#include "law/contactLaw.h"
 #include "solver/StepSolver.h"
-#include "solver/contactLaw.h"
 #include "system/BlockMatrix.h"
 #include "system/CrowdSolver.h"
 

@@ -1,7 +1,7 @@
 // The loops of crowd::kAnywhere, kAvx2 and kAvx512: included by the files that compile it. No
 // function with external linkage may be used here, or the linker could take one of these for all.
 
-#include "solver/cohesion.h"
+#include "law/cohesion.h"
 #include "system/crowdKernel.h"
 #include "system/crowdLanes.h"
 

@@ -5,8 +5,8 @@
 
 #include "block/Block.h"
 #include "contact/Contact.h"
-#include "solver/contactLaw.h"
-#include "solver/springs.h"
+#include "law/contactLaw.h"
+#include "law/springs.h"
 
 #include <algorithm>
 #include <array>

@@ -1,8 +1,8 @@
 // One step against the method's equations, written out here a second time (METHOD 2, 3).
 
 #include "geometry/shapes.h"
+#include "law/springs.h"
 #include "solver/StepSolver.h"
-#include "solver/springs.h"
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>

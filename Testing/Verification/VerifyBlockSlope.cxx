@@ -3,7 +3,7 @@
 
 #include "verification.h"
 
-#include "simulation/blockSlope.h"
+#include "BlockSlope/blockSlope.h"
 
 #include <gtest/gtest.h>
 

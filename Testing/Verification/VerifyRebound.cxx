@@ -209,9 +209,8 @@ TEST(Rebound, FallsBelowOneGigapascal)
 
 TEST(Rebound, VelocityHistory)
 {
-  // Paper fig. 12: the velocity against time through two bounces. The slope made of CFEs; the same
-  // with the slope as a fixed block belongs here as soon as the Core has it (simulateOnBlockSlope):
-  // see VerifyBlockSlope.cxx.
+  // Paper fig. 12: the velocity against time through two bounces. The slope made of CFEs;
+  // VerifyBlockSlope.cxx has the slope as a fixed block.
   const Terrain floor = flatGround(20.0, surface(1.0, 15.0), 5);
   for (double timeStep : { 0.01, 0.005 })
   {

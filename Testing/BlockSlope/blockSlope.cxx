@@ -1,9 +1,9 @@
-#include "simulation/blockSlope.h"
+#include "BlockSlope/blockSlope.h"
 
+#include "BlockSlope/BlockSystem.h"
 #include "base/errors.h"
+#include "law/settings.h"
 #include "simulation/Recorder.h"
-#include "simulation/contactConstants.h"
-#include "solver/BlockSystem.h"
 
 #include <algorithm>
 #include <chrono>

@@ -1,4 +1,4 @@
-#include "solver/BlockSystem.h"
+#include "BlockSlope/BlockSystem.h"
 
 #include <algorithm>
 #include <cmath>
@@ -116,20 +116,20 @@ void BlockSystem::assembleContacts(const Eigen::VectorXd& d)
   std::vector<int> pattern;
   for (const Row& row : rows_)
   {
-    if (row.force <= 0.0 && row.stiffness <= 0.0)
+    if (!row.law.acts())
     {
       continue;
     }
     // Newton: f(D') ≈ f(D) − k r (D' − D), for the normal and, if closed, the two shear directions.
     const Vec24 both = this->pick(row, d);
-    Eigen::Matrix<double, 24, 24> k = row.stiffness * row.normal * row.normal.transpose();
-    Vec24 f = (row.force + row.stiffness * row.normal.dot(both)) * row.normal;
-    for (int a = 0; a < 2 && row.state != ContactState::Open; ++a)
+    Eigen::Matrix<double, 24, 24> k = row.law.stiffness * row.normal * row.normal.transpose();
+    Vec24 f = (row.law.force + row.law.stiffness * row.normal.dot(both)) * row.normal;
+    for (int a = 0; a < 2 && row.law.state != ContactState::Open; ++a)
     {
-      const Vec24 gradient = row.shearCoupling[a] * row.normal +
-        row.shearStiffness(a, 0) * row.shear[0] + row.shearStiffness(a, 1) * row.shear[1];
+      const Vec24 gradient = row.law.shearCoupling[a] * row.normal +
+        row.law.shearStiffness(a, 0) * row.shear[0] + row.law.shearStiffness(a, 1) * row.shear[1];
       k += row.shear[a] * gradient.transpose();
-      f += (row.shearForce[a] + gradient.dot(both)) * row.shear[a];
+      f += (row.law.shearForce[a] + gradient.dot(both)) * row.shear[a];
     }
     const int j = row.block + 1;
     this->add(0, 0, k.topLeftCorner<12, 12>());     // Kii
@@ -167,7 +167,7 @@ SystemOutcome BlockSystem::step(
 {
   SystemOutcome outcome;
   const double h = request.duration;
-  this->prepareRows(state, contacts);
+  this->prepareRows(request, state, contacts);
   this->assembleBlocks(request, state);
 
   // First guess: the rock in free flight, the slope at rest.
@@ -204,14 +204,14 @@ SystemOutcome BlockSystem::step(
     std::vector<double> before;
     for (const Row& row : rows_)
     {
-      before.push_back(row.gap1);
+      before.push_back(row.law.gap1);
     }
     const bool changed = this->evaluate(request, d);
     double change = 0.0, scale = 0.0;
     for (std::size_t i = 0; i < rows_.size(); ++i)
     {
-      change = std::max(change, std::abs(rows_[i].gap1 - before[i]));
-      scale = std::max(scale, std::abs(rows_[i].gap1 - rows_[i].gap0));
+      change = std::max(change, std::abs(rows_[i].law.gap1 - before[i]));
+      scale = std::max(scale, std::abs(rows_[i].law.gap1 - rows_[i].law.gap0));
     }
     outcome.settled = share == 1.0 && !changed && change <= kBlockGapTolerance * scale + 1e-15 &&
       correction.segment<3>(kRotation).norm() <= 1e-10 * (1.0 + d.segment<3>(kRotation).norm());
@@ -221,7 +221,7 @@ SystemOutcome BlockSystem::step(
     return outcome;
   }
 
-  this->writeContacts(request, contacts, outcome);
+  this->writeContacts(contacts, outcome);
   const Eigen::VectorXd velocity = rate_ * d + offset_;
   state.time += h;
   state.position += rotation_ * Vec3(d.head<3>());

@@ -4,8 +4,8 @@
 /// A rock on a slope of DDA blocks, to show the paper's two claims for CFEs: the same motion (figs
 /// 12 and 14), at a cost that does not grow with the slope. For verification; nothing else uses it.
 
+#include "BlockSlope/SlopeBlocks.h"
 #include "simulation/ensemble.h"
-#include "solver/SlopeBlocks.h"
 
 namespace rockfall
 {

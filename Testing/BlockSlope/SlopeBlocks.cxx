@@ -1,4 +1,4 @@
-#include "solver/SlopeBlocks.h"
+#include "BlockSlope/SlopeBlocks.h"
 
 #include "base/errors.h"
 #include "base/numberText.h"

@@ -1,9 +1,9 @@
 // The slope as fixed DDA blocks against the slope as CFEs: the paper's comparison (2.3.1; figs 12
 // and 14). The motion is the same; the cost is not.
 
+#include "BlockSlope/blockSlope.h"
+#include "Core/slopes.h"
 #include "base/errors.h"
-#include "simulation/blockSlope.h"
-#include "slopes.h"
 
 #include <gtest/gtest.h>
 

@@ -2,16 +2,16 @@
 
 /// @file
 /// One step of a rock on a slope of DDA blocks: K D = F with 12 unknowns for each of the n + 1
-/// blocks, contact terms in Kii, Kij, Kji and Kjj (METHOD 3), open–close iteration. For
-/// verification only: it is what CFEs replace, and the cost of which the paper speaks.
+/// blocks, contact terms in Kii, Kij, Kji and Kjj (METHOD 3), open–close iteration. CFEs replace
+/// this engine; it is there to be compared with.
 ///
-/// What makes an impact come out right is that of the CFEs' step, so that only the slope differs:
-/// the impulse of a normal spring is the discrete gradient of its potential, rotation is a Cayley
-/// map with levers at mid-step, and lasting contact is damped. An edge on a ridge keeps the normal
-/// of the step's start, good to second order.
+/// Contact law, Cayley map, levers at mid-step and damping of lasting contact are those of the step
+/// on CFEs, so that only the slope differs. An edge on a ridge keeps the normal of the step's
+/// start, good to second order.
 
+#include "BlockSlope/SlopeBlocks.h"
 #include "contact/Contact.h"
-#include "solver/SlopeBlocks.h"
+#include "law/contactLaw.h"
 
 #include <Eigen/SparseCore>
 #include <Eigen/SparseLU>
@@ -77,20 +77,8 @@ private:
     Vec3 x = Vec3::Zero();        ///< Material point of the rock.
     Vec3 y0 = Vec3::Zero();       ///< Its place at the start, rock's axes.
     bool fixedToSlope = false;    ///< FaceVertex: the point is the slope's.
-    Eigen::Vector2d slip0 = Eigen::Vector2d::Zero();
-    double gap0 = 0.0;
-    // As of the last evaluation:
-    double gap1 = 0.0;
-    double force = 0.0;
-    double stiffness = 0.0; ///< −∂force/∂gap1
-    double share = 0.0;     ///< Part of the step in which it is closed.
+    ContactLaw law;
     Eigen::Vector2d travel = Eigen::Vector2d::Zero();
-    Eigen::Vector2d shearForce = Eigen::Vector2d::Zero();
-    Eigen::Matrix2d shearStiffness = Eigen::Matrix2d::Zero();
-    Eigen::Vector2d shearCoupling = Eigen::Vector2d::Zero();
-    Eigen::Vector2d slip1 = Eigen::Vector2d::Zero();
-    Eigen::Vector2d direction = Eigen::Vector2d::Zero(); ///< Of the slip while it slides.
-    ContactState state = ContactState::Open;
   };
 
   /// The Cayley map of a rotation vector.
@@ -98,17 +86,16 @@ private:
   {
     return Quat(1.0, 0.5 * r.x(), 0.5 * r.y(), 0.5 * r.z()).normalized();
   }
-  void prepareRows(const BlockState& state, const std::vector<Contact>& contacts);
+  void prepareRows(
+    const SystemRequest& request, const BlockState& state, const std::vector<Contact>& contacts);
   void levers(const Vec12& rock);
   Vec24 pick(const Row& row, const Eigen::VectorXd& d) const;
   bool evaluate(const SystemRequest& request, const Eigen::VectorXd& d);
-  void evaluateShear(const SystemRequest& request, Row& row, bool& changed) const;
   void assembleBlocks(const SystemRequest& request, const BlockState& state);
   void assembleContacts(const Eigen::VectorXd& d);
   bool solve(Eigen::VectorXd& next);
   void add(int row, int column, const Mat12& part);
-  void writeContacts(
-    const SystemRequest& request, std::vector<Contact>& contacts, SystemOutcome& outcome) const;
+  void writeContacts(std::vector<Contact>& contacts, SystemOutcome& outcome) const;
 
   const Block& rock_;
   SlopeBlocks slope_;

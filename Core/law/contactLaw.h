@@ -1,17 +1,36 @@
 #pragma once
 
 /// @file
-/// What one contact does over a step, given where its two sides go: normal spring, dashpot, shear
-/// spring and Coulomb's limit (METHOD 3).
+/// The law of one contact over a step of h (s), the only one (METHOD 3): normal spring, dashpot,
+/// shear spring and Coulomb's limit. A single rock, a small group and the slope as blocks evaluate
+/// it; the sweeps of a crowd have it in vector form (system/crowdSweep.h), tested against it.
+///
+/// Along the normal n, gaps d₀ and d₁ at the start and the end (m; < 0: overlap), V(d) = ½ pₙ
+/// min(d, 0)²:
+///
+///     impact    N = −(V(d₁) − V(d₀)) / (d₁ − d₀) + (cₙ/h) (min(d₀, 0) − min(d₁, 0))
+///     lasting   N = −pₙ min(d₁, 0)
+///     always    N ≥ 0
+///
+/// Along the two tangents, with the elongation s₀ at the start, the travel t over the step (m) and
+/// the share a of the step in which the contact is closed:
+///
+///     trial     s = s₀ + a (½ + cₛ/(pₛ h)) t in an impact, s₀ + a t in lasting contact
+///     limit     L = μ N + min(c, 20 N)        (cohesion.h)
+///     locked    pₛ |s| ≤ L:  T = −pₛ s,        s₁ = s₀ + a t
+///     sliding   else:        T = −L s / |s|,  s₁ = (L/pₛ) s / |s|, less what the dashpot carries
+///
+/// N > 0 pushes the rock along n; T acts against the slip of the rock on what it touches.
 
-#include "contact/Contact.h"
-#include "solver/cohesion.h"
-#include "solver/springs.h"
+#include "base/types.h"
+#include "law/ContactState.h"
+#include "law/cohesion.h"
+#include "law/springs.h"
 
 namespace rockfall
 {
 
-/// A contact's springs over a step: what it begins with, and what the last evaluation gave.
+/// The springs of a contact over a step: the start, and the result of the last evaluation.
 struct ContactLaw
 {
   double gap0 = 0.0;                               ///< At the start of the step, m.
