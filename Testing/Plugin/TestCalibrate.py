@@ -1,16 +1,12 @@
 """Examples/calibrate.py on a place that is made here: it finds the ground that its deposits were made
 with, holds deposits out, writes its files, and says what of a site it cannot use."""
 
-import contextlib
-import csv
-import io
 import json
 import os
-import runpy
 import sys
 
 import numpy as np
-from helpers import write_text
+from helpers import rows_of, run_script, write_text
 from paraview.simple import DEMtoCFEMesh, RockBlocks, RockfallSimulation
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
@@ -31,22 +27,7 @@ def expect(condition, text):
 
 
 def run(*arguments):
-    """What the script prints, and its exit message."""
-    told, argv, message = io.StringIO(), sys.argv, None
-    sys.argv = [SCRIPT, *arguments]
-    try:
-        with contextlib.redirect_stdout(told), contextlib.redirect_stderr(told):
-            runpy.run_path(SCRIPT, run_name="__main__")
-    except SystemExit as ended:
-        message = str(ended)
-    finally:
-        sys.argv = argv
-    return told.getvalue(), message
-
-
-def table(path):
-    with open(path, newline="") as file:
-        return list(csv.DictReader(file))
+    return run_script(SCRIPT, *arguments)
 
 
 # 60 m of 35° slope, then flat: 31 x 13 nodes of 5 m.
@@ -93,7 +74,7 @@ for by_source in (True, False):
     for name in ("report.md", "map.png", "search.png", "candidates.csv", "calibration.txt",
                  "comparison.csv", "runs.csv", "stops.csv"):
         expect(os.path.isfile(os.path.join(output, name)), f"no {name}")
-    tried = table(os.path.join(output, "candidates.csv"))
+    tried = rows_of(os.path.join(output, "candidates.csv"))
     least = min(tried, key=lambda row: float(row["EnergyScore_m"]))
     found = json.loads(said[said.index("Ground to use: ") + len("Ground to use: "):])
     value = found["terrain"]["TangentialRestitution"]
@@ -102,7 +83,7 @@ for by_source in (True, False):
     expect(abs(value - TRUE) <= 0.05, f"by source {by_source}: Rt {value} for {TRUE}")
     expect("Held out, 5 folds" in said, f"no deposits were held out: {said}")
     expect(("one group left out" in said) == by_source, "sources are held out where they are known")
-    compared = {row["What"]: row for row in table(os.path.join(output, "comparison.csv"))}
+    compared = {row["What"]: row for row in rows_of(os.path.join(output, "comparison.csv"))}
     if by_source:
         # Places are written with three decimals.
         expect(abs(float(compared["run-out, mean"]["Observed"]) - run_out.mean()) < 0.01,
@@ -110,7 +91,7 @@ for by_source in (True, False):
     made_mean = float(compared["run-out, mean"]["Simulated"])
     expect(abs(made_mean / float(compared["run-out, mean"]["Observed"]) - 1) < 0.15,
            f"simulated mean {compared['run-out, mean']}")
-    expect(len(table(os.path.join(output, "runs.csv"))) == 36, "a row for each deposit")
+    expect(len(rows_of(os.path.join(output, "runs.csv"))) == 36, "a row for each deposit")
 
 # --- Without a search the ground is compared as it is.
 said, message = run(write_site(), "--output", "plain", "--candidates", "0")

@@ -1,16 +1,12 @@
 """Examples/validation/tschamut.py on a folder that is made here: what it computes and writes, and
 what it says of folders that cannot be used."""
 
-import contextlib
-import csv
-import io
 import os
-import runpy
 import shutil
 import sys
 
 import numpy as np
-from helpers import write_text
+from helpers import rows_of, run_script, write_text
 from paraview.simple import RockBlocks
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
@@ -62,22 +58,7 @@ def make_folder(name, **changes):
 
 
 def run(*arguments):
-    """What the script prints, and its exit message."""
-    told, argv, message = io.StringIO(), sys.argv, None
-    sys.argv = [SCRIPT, *arguments]
-    try:
-        with contextlib.redirect_stdout(told), contextlib.redirect_stderr(told):
-            runpy.run_path(SCRIPT, run_name="__main__")
-    except SystemExit as ended:
-        message = str(ended)
-    finally:
-        sys.argv = argv
-    return told.getvalue(), message
-
-
-def table(path):
-    with open(path, newline="") as file:
-        return list(csv.DictReader(file))
+    return run_script(SCRIPT, *arguments)
 
 
 # --- A run: its files, its numbers.
@@ -87,18 +68,18 @@ said, message = run(folder, "--output", "out", *FEW)
 expect(message is None, f"the good folder: {message}")
 for name in ("map.png", "comparison.csv", "runs.csv", "stops.csv"):
     expect(os.path.isfile(os.path.join("out", name)), f"no {name}")
-compared = {row["What"]: row for row in table("out/comparison.csv")}
+compared = {row["What"]: row for row in rows_of("out/comparison.csv")}
 seen = [np.hypot(30, 1), np.hypot(34, 2), 24.0, 30.0]
 # Three decimals are written.
 expect(abs(float(compared["run-out, mean"]["Observed"]) - np.mean(seen)) < 1e-3,
        f"observed mean {compared['run-out, mean']}")
 expect("Mean run-out:" in said and "CRPS" in said, f"the table was not printed: {said}")
-stops = table("out/stops.csv")
+stops = rows_of("out/stops.csv")
 expect([stop["Run"] for stop in stops] == ["a", "a", "b", "b", "c", "c", "d", "d"] * 2,
        "each run has two rocks, iteration by iteration")
 moved = np.array([float(stop["RunOut_m"]) for stop in stops])
 expect(moved.max() > 15, f"no rock came down the slope: {moved}")
-expect([row["Run"] for row in table("out/runs.csv")] == list("abcd"), "runs.csv")
+expect([row["Run"] for row in rows_of("out/runs.csv")] == list("abcd"), "runs.csv")
 
 again = run(folder, "--output", "again", *FEW)
 expect(open("again/stops.csv").read() == open("out/stops.csv").read(), "the same seed, other stops")
@@ -109,12 +90,12 @@ for tangential in ("0.95", "0.6"):
     run(folder, "--output", "option", *FEW, "--tangential", tangential, "--restitution", "0.3",
         "--modulus", "0", "--most-friction", "0", "--least-friction", "0", "--friction", "45",
         "--rolling", "0")
-    means.append(float(table("option/comparison.csv")[0]["Simulated"]))
+    means.append(float(rows_of("option/comparison.csv")[0]["Simulated"]))
 expect(means[0] > means[1] + 1.0, f"run-outs at Rt 0.95 and 0.6: {means}")
 
 # --- Calibration: the candidate of the least energy score is taken, runs are held out.
 said, message = run(folder, "--output", "fit", *FEW, "--calibrate", "4")
-tried = table("fit/candidates.csv")
+tried = rows_of("fit/candidates.csv")
 least = min(tried, key=lambda row: float(row["EnergyScore_m"]))
 expect(message is None and len(tried) == 4, f"calibration: {message}, {len(tried)} candidates")
 searched = ("ScarCompaction", "RollingResistance")

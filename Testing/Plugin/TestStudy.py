@@ -3,7 +3,6 @@ the same files, byte for byte, as one that nobody disturbed: table, hazard map a
 They are what the filters make of all trajectories at once. A changed study is refused."""
 
 import ast
-import contextlib
 import csv
 import glob
 import io
@@ -11,15 +10,14 @@ import json
 import os
 import random
 import re
-import runpy
 import shutil
 import signal
 import subprocess
-import sys
 import time
 import xml.etree.ElementTree as ElementTree
 
-from helpers import incline, outside_mpi, write_grid, write_text
+from helpers import (
+    delete_sources, files_of, incline, outside_mpi, run_script, write_grid, write_text)
 
 from paraview.simple import (
     DEMtoCFEMesh, GetSources, Delete, OutputPort, RockBlocks, RockfallHazardMap, RockfallSimulation,
@@ -59,26 +57,9 @@ def run(folder, path="study.json", ranks=0):
         done = subprocess.run(command(folder, path, ranks), stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT, text=True, timeout=200, env=outside_mpi())
         return done.returncode, done.stdout
-    said = io.StringIO()
-    kept, sys.argv = sys.argv, [SCRIPT, folder, path]
-    try:
-        with contextlib.redirect_stdout(said):
-            runpy.run_path(SCRIPT, run_name="__main__")
-        return 0, said.getvalue()
-    except SystemExit as end:
-        return 1, said.getvalue() + str(end)
-    finally:
-        sys.argv = kept
-        for source in list(GetSources().values()):
-            Delete(source)
-
-
-def files_of(folder):
-    result = {}
-    for name in sorted(os.listdir(folder)):
-        with open(os.path.join(folder, name), "rb") as file:
-            result[name] = file.read()
-    return result
+    said, message = run_script(SCRIPT, folder, path)
+    delete_sources()
+    return (0, said) if message is None else (1, said + message)
 
 
 def expect_same(folder, what):

@@ -1,18 +1,13 @@
 """A study with odd JSON, twice in one folder, and on a disk that is full: one line that says what is
 wrong, and no file under its name that is not whole."""
 
-import contextlib
-import io
 import json
 import os
 import resource
-import runpy
 import shutil
 import sys
 
-from helpers import incline, write_grid, write_text
-
-from paraview.simple import Delete, GetSources
+from helpers import delete_sources, files_of, incline, run_script, write_grid, write_text
 
 EXAMPLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Examples")
 SCRIPT = os.path.join(EXAMPLES, "study.py")
@@ -31,29 +26,14 @@ study = {
 
 def run(folder, largest=resource.RLIM_INFINITY):
     """Exit code and what was said; no file grows beyond `largest` (bytes)."""
-    said = io.StringIO()
-    kept, sys.argv = sys.argv, [SCRIPT, folder, "folder.json"]
     most = resource.getrlimit(resource.RLIMIT_FSIZE)[1]
     resource.setrlimit(resource.RLIMIT_FSIZE, (largest, most))  # Python ignores the signal
     try:
-        with contextlib.redirect_stdout(said):
-            runpy.run_path(SCRIPT, run_name="__main__")
-        return 0, said.getvalue()
-    except SystemExit as end:
-        return 1, said.getvalue() + str(end)
+        said, message = run_script(SCRIPT, folder, "folder.json")
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))
-        sys.argv = kept
-        for source in list(GetSources().values()):
-            Delete(source)
-
-
-def files_of(folder):
-    result = {}
-    for name in sorted(os.listdir(folder)):
-        with open(os.path.join(folder, name), "rb") as file:
-            result[name] = file.read()
-    return result
+        delete_sources()
+    return (0, said) if message is None else (1, said + message)
 
 
 def refusal(text):

@@ -1,11 +1,15 @@
 """What the plugin's tests share."""
 
+import contextlib
+import csv
+import io
 import os
 import re
+import runpy
 import sys
 import tempfile
 
-from paraview.simple import UpdatePipeline
+from paraview.simple import Delete, GetSources, UpdatePipeline
 
 UTM16 = ('PROJCS["WGS 84 / UTM zone 16N",GEOGCS["WGS 84",DATUM["WGS_1984",'
          'SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],'
@@ -88,4 +92,40 @@ def columns_of(table):
         result[table.GetColumnName(c)] = [
             table.GetValue(r, c).ToString() if not table.GetValue(r, c).IsNumeric()
             else table.GetValue(r, c).ToDouble() for r in range(table.GetNumberOfRows())]
+    return result
+
+
+def run_script(script, *arguments):
+    """Runs a script in this process, which is quicker than another one: what it prints, and its exit
+    message (None: it came to its end)."""
+    told, argv, message = io.StringIO(), sys.argv, None
+    sys.argv = [script, *arguments]
+    try:
+        with contextlib.redirect_stdout(told), contextlib.redirect_stderr(told):
+            runpy.run_path(script, run_name="__main__")
+    except SystemExit as ended:
+        message = str(ended)
+    finally:
+        sys.argv = argv
+    return told.getvalue(), message
+
+
+def delete_sources():
+    """Deletes all sources of the pipeline."""
+    for source in list(GetSources().values()):
+        Delete(source)
+
+
+def rows_of(path):
+    """A CSV file as a list of {column name: text}."""
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def files_of(folder):
+    """The bytes of every file of a folder, by name."""
+    result = {}
+    for name in sorted(os.listdir(folder)):
+        with open(os.path.join(folder, name), "rb") as file:
+            result[name] = file.read()
     return result
