@@ -3,7 +3,7 @@
 /// @file
 /// Which rocks lie on each other face on face, as the blocks of a cut rock mass do.
 
-#include "simulation/ensemble.h"
+#include "simulation/Rock.h"
 
 #include <cstdint>
 #include <span>

@@ -5,6 +5,7 @@
 
 #include "ranks.h"
 #include "runSink.h"
+#include "simulation/ensemble.h"
 
 #include "vtkFieldData.h"
 #include "vtkNew.h"

@@ -4,7 +4,7 @@
 /// Where finished trajectories go: into the outputs as they come, so that none is kept twice.
 
 #include "runOutputs.h"
-#include "simulation/ensemble.h"
+#include "simulation/TrajectorySink.h"
 #include "simulation/retention.h"
 #include "simulation/stateHash.h"
 

@@ -1,4 +1,4 @@
-#include "contact/Contact.h"
+#include "contact/PlacedBlock.h"
 
 #include <Eigen/LU>
 

@@ -1,5 +1,7 @@
 #include "contact/features.h"
 #include "contact/motion.h"
+#include "contact/timeToTouch.h"
+#include "law/settings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -119,7 +121,7 @@ double timeToClose(const PlacedBlock& rock, const BlockState& state, const Surfa
         {
           return 0.0;
         }
-        // They pass each other beside one of their ends, unless it is not even sure which of the
+        // Edges pass each other beside one of their ends, unless it is not even sure which of the
         // two is the upper one.
         if (faced || n.dot(out) > 0.2)
         {
@@ -283,7 +285,7 @@ void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const Su
   }
   // Walls and obstacles. They have a far side, whose planes are above all of the rock: only what
   // comes in from outside is a pair, and what is less deep than contacts ever are.
-  const double deepest = 0.1 * rock.block().radius();
+  const double deepest = kDeepestEntrance * rock.block().radius();
   for (int i = patch.slopeTriangles; i < int(patch.triangles.size()); ++i)
   {
     const SurfacePatch::Triangle& t = patch.triangles[i];

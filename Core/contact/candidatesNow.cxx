@@ -4,8 +4,10 @@
 // soon be gathered again. So what may close is found in each step: vertices by the cells that they
 // are over, edges side by side.
 
+#include "contact/candidates.h"
 #include "contact/features.h"
 #include "contact/pairs.h"
+#include "law/settings.h"
 
 #include <algorithm>
 #include <array>
@@ -17,16 +19,6 @@ namespace rockfall
 
 namespace
 {
-
-/// Slack of what is told before it is looked at closely, in cells.
-constexpr double kLoosely = 1e-6;
-/// The same of where lines cross, of their lengths.
-constexpr double kBeyondEnd = 1e-6;
-/// How far beyond a corner between two concave edges planes serve, in reaches, seen from above: the
-/// corners have 45° at least. Another half is what the plane leans.
-constexpr double kBeyondCorner = 3.0;
-/// A direction between the normals of a ridge's sides is as much of the two together.
-constexpr double kOfBothSides = 1.1;
 
 using Four = ShapeLayout::Four;
 
@@ -88,7 +80,7 @@ struct RockBox
 /// triangles (0: the lower one), or beyond edge k by no more than `slack` cells if it is concave.
 bool mayHold(int triangle, const SurfacePatch::Triangle& of, double s, double t, double slack)
 {
-  const auto allowed = [&](int k) { return kLoosely + (of.bends[k] < 0 ? slack : 0.0); };
+  const auto allowed = [&](int k) { return kCoarseSlack + (of.bends[k] < 0 ? slack : 0.0); };
   return triangle == 0
     ? s >= -allowed(0) && t <= 1.0 + allowed(1) && s - t <= std::numbers::sqrt2 * allowed(2)
     : t - s <= std::numbers::sqrt2 * allowed(0) && s <= 1.0 + allowed(1) && t >= -allowed(2);
@@ -142,10 +134,11 @@ void gatherNow(const PlacedBlock& rock, const PairBody& body, const SurfacePatch
   const SurfacePatch::Triangle* const triangles = patch.triangles.data();
   const SurfacePatch::Node* const nodes = patch.nodes.data();
   const double inverse = 1.0 / patch.cellSize;
-  const double deepest = 1.01 * 0.1 * rock.block().radius(); // what is deeper is no entrance
+  const double deepest =
+    1.01 * kDeepestEntrance * rock.block().radius(); // what is deeper is no entrance
   const int cellColumns = patch.nodeColumns - 1;
   const RockBox box(body);
-  // What may close along the normal of each triangle.
+  // Gaps that may close along the normal of each triangle.
   thread_local std::vector<double> reaches;
   reaches.resize(patch.triangles.size());
   double* const reachOf = reaches.data();
@@ -182,7 +175,7 @@ void gatherNow(const PlacedBlock& rock, const PairBody& body, const SurfacePatch
         {
           continue;
         }
-        // What has slipped under the slope must be found however deep it is (holdOverlap).
+        // A vertex that has slipped under the slope must be found however deep it is (holdOverlap).
         const double s = east - (i / 2 - row * cellColumns), t = south - row;
         const double lean = height * inverse;
         if ((height >= -deepest &&

@@ -1,6 +1,8 @@
-#include "contact/Contact.h"
+#include "contact/clearance.h"
+#include "contact/detection.h"
 #include "contact/features.h"
 #include "contact/motion.h"
+#include "law/settings.h"
 
 #include <algorithm>
 #include <cmath>

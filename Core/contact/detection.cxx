@@ -1,4 +1,4 @@
-#include "contact/Contact.h"
+#include "contact/detection.h"
 
 #include "contact/features.h"
 #include "contact/handover.h"
@@ -30,8 +30,8 @@ bool onOneLine(const SurfacePatch& patch, int a, int b)
   return joined && std::abs(direction(x).dot(direction(y))) > 0.999;
 }
 
-/// What carries stays, and so does what has opened where the two still overlap: lost and found
-/// again some steps later, it would be forgiven all that the rock has sunk meanwhile.
+/// A contact that carries stays, and so does one that has opened where the two still overlap: lost
+/// and found again some steps later, it would be forgiven all that the rock has sunk meanwhile.
 bool stays(const Contact& c)
 {
   return c.closed() || c.distance < 0.0;
@@ -125,7 +125,7 @@ void findOtherSides(
 void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch,
   const CandidatePairs& candidates, double reach, std::vector<Contact>& contacts, double turn)
 {
-  // What carries stays, as long as it is somewhere.
+  // A contact that carries stays, as long as it is somewhere.
   std::size_t kept = 0;
   for (std::size_t i = 0; i < contacts.size(); ++i)
   {
@@ -159,7 +159,7 @@ void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch,
   }
   contacts.resize(kept);
 
-  // What is there already is not looked at again.
+  // Contacts that are there already are not looked at again.
   const auto isThere = [&](ContactKind kind, int onRock, std::int64_t key)
   {
     return std::any_of(contacts.begin(), contacts.end(),

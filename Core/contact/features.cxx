@@ -1,5 +1,7 @@
 #include "contact/features.h"
 
+#include "law/settings.h"
+
 #include <cmath>
 
 namespace rockfall
@@ -154,7 +156,7 @@ std::optional<Contact> vertexFace(const PlacedBlock& rock, int vertex, const Sur
   const SurfacePatch::Triangle& t = patch.triangles[triangle];
   const Vec3& p = rock.vertices()[vertex];
   const double distance = t.normal.dot(p) - t.offset;
-  const double depth = 0.1 * rock.block().radius();
+  const double depth = kDeepestEntrance * rock.block().radius();
   if (distance > reach || distance < -depth ||
     !projectsInside(patch, triangle, p, reach, 1e-9 * rock.block().radius(), from))
   {
@@ -204,7 +206,7 @@ std::optional<Contact> faceVertex(
     return std::nullopt;
   }
   const double distance = rock.faceDistance(face, q.position);
-  const double depth = 0.1 * rock.block().radius();
+  const double depth = kDeepestEntrance * rock.block().radius();
   if (distance > reach || distance < -depth ||
     !insideRockFace(rock, face, q.position, 1e-9 * rock.block().radius()))
   {
@@ -277,7 +279,7 @@ std::optional<Contact> edgeEdge(
   }
   const Vec3 onRock = p + s * u;
   const double distance = n.dot(onRock - (q + t * w));
-  const double depth = 0.1 * rock.block().radius();
+  const double depth = kDeepestEntrance * rock.block().radius();
   if (distance > reach || distance < -depth)
   {
     return std::nullopt;

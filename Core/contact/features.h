@@ -4,16 +4,13 @@
 /// The geometric tests of single pairs, shared by the pruned and the brute-force search.
 
 #include "contact/Contact.h"
+#include "contact/PlacedBlock.h"
+#include "terrain/Surface.h"
 
 #include <optional>
 
 namespace rockfall
 {
-
-/// Slack of the normal cones, sine of an angle: a normal that leaves a cone by less than a degree
-/// is still a good direction, and pairs do not get lost between two cones by rounding or by the
-/// small penetration of the pairs that already carry.
-constexpr double kConeSlack = 0.02;
 
 /// Whether the projection of a point on the triangle's plane lies inside it. Beyond a concave edge
 /// the plane is still a valid constraint and is extended by `reach`; so a vertex that runs into a

@@ -1,6 +1,7 @@
 #include "contact/handover.h"
 
 #include "contact/features.h"
+#include "law/settings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,20 +12,6 @@ namespace rockfall
 
 namespace
 {
-
-/// Across an edge that bends by less than this the nearer of the two planes is the exit: the depth
-/// is then continuous when a vertex crosses the edge. Across a sharper edge the exit stays the
-/// entrance.
-constexpr double kSmoothTurn = 0.5; // cosine
-
-/// How far past its end an edge may serve, in depths of the overlap: where two exits that meet
-/// under 60° are equally deep lies within this of their common end.
-constexpr double kExtension = 2.0;
-
-/// A contact that has run off its feature with nothing there to take over lives on, on the
-/// feature's plane or line produced, while it has run off by less than this many times its
-/// compression: a spring that is dropped would take its energy with it.
-constexpr double kRunOff = 50.0;
 
 /// The spring keeps its compression, and so its force and energy, when a contact goes over to a
 /// neighbouring feature.
@@ -211,7 +198,7 @@ bool leaveBest(
   const Polyhedron::Edge& e = shape.edges()[contact.rockFeature];
   const SurfacePatch::Ridge& g = patch.ridges[contact.patchFeature];
   const double same = 1e-9 * rock.block().radius(); // depths that differ by rounding only
-  const double reach = -kExtension * contact.distance;
+  const double reach = -kEdgeExtension * contact.distance;
   Contact best = contact;
   double highest = -std::numeric_limits<double>::infinity();
   double bestBeyond = 0.0;

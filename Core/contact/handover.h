@@ -1,9 +1,11 @@
 #pragma once
 
 /// @file
-/// What becomes of a closed contact as the rock moves over the slope.
+/// Hand-over of a closed contact between features as the rock moves over the slope.
 
 #include "contact/Contact.h"
+#include "contact/PlacedBlock.h"
+#include "terrain/Surface.h"
 
 namespace rockfall
 {

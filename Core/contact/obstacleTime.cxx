@@ -1,5 +1,6 @@
-#include "contact/Contact.h"
+#include "contact/clearance.h"
 #include "contact/motion.h"
+#include "contact/timeToTouch.h"
 #include "terrain/Obstacles.h"
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 #include "contact/pairs.h"
 
 #include "contact/features.h"
+#include "law/settings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,11 +13,6 @@ namespace rockfall
 namespace
 {
 
-/// An axis must be better than the last one by this share of the smaller radius to take its place,
-/// edges by twice as much.
-constexpr double kHysteresis = 1e-3;
-/// Edges are a pair only if they are farther from parallel than this sine.
-constexpr double kParallel = 1e-3;
 /// Where no vertex shows that an axis is best, none is looked for so many times.
 constexpr std::int16_t kNoWitness = std::numeric_limits<std::int16_t>::min(), kSearches = 4;
 
@@ -152,7 +148,7 @@ PairAxis edgeAxis(const PairBody& first, const PairBody& second, int e, int f)
   const Vec3 w = second.vertex(other.vertices[1]) - q0;
   Vec3 n = u.cross(w);
   const double square = n.squaredNorm();
-  if (square < kParallel * kParallel * u.squaredNorm() * w.squaredNorm())
+  if (square < kParallelEdges * kParallelEdges * u.squaredNorm() * w.squaredNorm())
   {
     return axis;
   }
@@ -182,7 +178,7 @@ bool showsLess(const ArcEdge& e, const ArcEdge& f, const Vec3& center, double le
   const Vec3 n = e.along.cross(f.along);
   const double outward = n.dot(f.start - center), apart = n.dot(e.start - f.start);
   const double gap = outward < 0.0 ? -apart : apart;
-  // What rounding may turn round is left to the full test.
+  // A case that rounding may turn round is left to the full test.
   const double gap2 = gap * gap, least2 = least * least * n.squaredNorm();
   return gap > 0.0 ? least > 0.0 && gap2 < least2 * (1.0 - 1e-9)
                    : least >= 0.0 || gap2 > least2 * (1.0 + 1e-9);
@@ -394,8 +390,8 @@ PairAxis findAxis(const PairBody& first, const PairBody& second, const PairAxis&
       last.kind == PairAxis::Kind::FaceOfFirst ? last.first : last.second);
     kept.witness = last.witness;
   }
-  // It stays unless another one is better by so much.
-  const double better = kHysteresis * std::min(first.radius, second.radius);
+  // The axis stays unless another one is better by so much.
+  const double better = kAxisHysteresis * std::min(first.radius, second.radius);
   PairAxis best = kept;
   best.distance = -std::numeric_limits<double>::infinity();
   if (kept.kind != PairAxis::Kind::None)

@@ -17,7 +17,7 @@ template <class T, std::size_t N>
 class Room
 {
 public:
-  /// What was there is lost.
+  /// Elements before are lost.
   T* of(std::size_t count)
   {
     if (count <= N)
@@ -28,7 +28,7 @@ public:
     return many_.get();
   }
 
-  /// What was there goes with it: `used` of them, from where they are.
+  /// Elements before go with it: `used` of them, from where they are.
   T* more(const T* there, std::size_t used, std::size_t count)
   {
     auto many = std::make_unique_for_overwrite<T[]>(count);
@@ -78,7 +78,7 @@ private:
   std::size_t room_ = 0;      ///< Of each of these.
   Corner* corners_ = nullptr; ///< All that ever were.
   int made_ = 0;
-  int* order_ = nullptr; ///< Those of the polygon, the first one again behind them.
+  int* order_ = nullptr; ///< Corners of the polygon, the first one again behind them.
   int* other_ = nullptr;
   int at_ = 0; ///< Where they are of the two.
   std::size_t size_ = 0;

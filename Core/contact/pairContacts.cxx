@@ -2,6 +2,7 @@
 
 #include "contact/pairClip.h"
 #include "contact/pairTouch.h"
+#include "law/settings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,12 +14,6 @@ namespace rockfall
 namespace
 {
 
-/// A point that has moved by less than this share of the smaller radius on its rock since the last
-/// step is the same.
-constexpr double kSamePoint = 0.05;
-/// What is deeper than reckoned by more than this share of the smaller radius is no compression.
-constexpr double kMisreckoned = 1e-4;
-
 /// Whether the point is where an edge is cut, and no vertex.
 bool isCut(const Contact& c)
 {
@@ -27,13 +22,13 @@ bool isCut(const Contact& c)
     : c.kind == ContactKind::FaceVertex && c.surfaceFeature < 0;
 }
 
-/// What a touch was before.
+/// The contact of a touch in the last step.
 struct Match
 {
   int old;     ///< Number of a contact, −1: none.
   bool itself; ///< Between the same features.
   bool near;   ///< Where it was.
-  bool comes;  ///< It becomes a contact.
+  bool comes;  ///< The touch becomes a contact.
 };
 
 /// Finds for each touch which of the old contacts it is; points nearer than `same` (m) may be one.
@@ -97,7 +92,7 @@ bool areSame(std::span<const Touch> found, const PairAxis& axis, std::span<const
   return i == olds.size();
 }
 
-/// What is deeper than reckoned by more than `far` (m) is no compression: a step reckons with
+/// Depth beyond the reckoned one by more than `far` (m) is no compression: a step reckons with
 /// levers of its middle, and where the rocks have turned far they end up deeper.
 void letGo(double oldGap, double far, Contact& c)
 {
@@ -159,14 +154,14 @@ void goOn(const Touch& touch, const PairBody& second, const PairAxis& axis, cons
   letGo(oldGap, far, c);
 }
 
-/// What is in a spring that is gone, J.
+/// Energy of a spring that is gone, J.
 double released(const Contact& c)
 {
   const double compressed = std::min(0.0, c.gap());
   return c.closed() ? 0.5 * c.stiffness * compressed * compressed : 0.0;
 }
 
-/// What was in springs that are gone goes into those that are new, or else into those that stay.
+/// Energy of springs that are gone goes into those that are new, or else into those that stay.
 void handOverAll(std::span<const char> taken, std::span<const Match> matches,
   std::span<const Contact> before, std::span<Contact> now)
 {

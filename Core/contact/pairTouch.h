@@ -22,8 +22,8 @@ struct Touch
 /// The points of touch along an axis, valid until the next call on this thread.
 std::span<const Touch> touchesAlong(
   const PairBody& first, const PairBody& second, const PairAxis& axis, double reach);
-/// What was found along an axis; an overlap that shows none there is looked at along the best axis,
-/// and `axis` is it then; for those with gaps under `below` (m) only.
+/// Result of a search along an axis; an overlap that shows none there is looked at along the best
+/// axis, and `axis` is it then; for those with gaps under `below` (m) only.
 std::span<const Touch> orAlongBest(std::span<const Touch> found, const PairBody& first,
   const PairBody& second, PairAxis& axis, double reach,
   double below = std::numeric_limits<double>::infinity());

@@ -2,6 +2,7 @@
 
 #include "contact/features.h"
 #include "contact/pairClip.h"
+#include "law/settings.h"
 
 #include <algorithm>
 #include <array>
@@ -13,9 +14,6 @@ namespace rockfall
 
 namespace
 {
-
-/// Points nearer than this share of the smaller radius are one.
-constexpr double kOnePoint = 1e-3;
 
 /// Room for as many as there can be, which never shrinks: kept by thread.
 template <class T>

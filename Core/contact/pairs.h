@@ -9,6 +9,7 @@
 /// each other, these are the corners of the polygon that they share.
 
 #include "contact/Contact.h"
+#include "contact/PlacedBlock.h"
 
 #include <algorithm>
 #include <array>
@@ -30,9 +31,9 @@ struct PairAxis
     Edges,
   };
   Kind kind = Kind::None;
-  /// What showed last that no direction is better than that of the face: a vertex of the other
-  /// rock, or −2 − i: vertex i of the face's loop; −1: not looked for, less than all of these:
-  /// nothing did (see pairAxis.cxx).
+  /// The proof, when last asked, that no direction is better than that of the face: a vertex of the
+  /// other rock, or −2 − i: vertex i of the face's loop; −1: not looked for, less than all of
+  /// these: nothing did (see pairAxis.cxx).
   std::int16_t witness = -1;
   int first = -1;              ///< Face or edge of the first rock.
   int second = -1;             ///< Of the second one.
@@ -126,7 +127,7 @@ PairAxis bestAxis(const PairBody& first, const PairBody& second, const PairAxis&
 void findTouches(const PairBody& first, const PairBody& second, PairAxis& axis, double reach,
   std::vector<Contact>& contacts, double below = std::numeric_limits<double>::infinity());
 
-/// What rules the contacts of two rocks.
+/// The law of the contacts of two rocks.
 struct PairLaw
 {
   double restitution = 0.0; ///< Dimensionless, 0 … 1.
@@ -153,7 +154,7 @@ struct alignas(64) RockPair
   PairAxis before; ///< The axis of the last step, if known or seen.
   PairAxis end;    ///< At the end of the step at hand, as long as it is being solved.
   PairLaw law;     ///< Of the materials that meet.
-  /// What is under way between the first touch and parting or settling.
+  /// The impact under way between the first touch and parting or settling.
   struct Impact
   {
     double time = 0.0;                               ///< Of the first touch, s.
@@ -165,7 +166,7 @@ struct alignas(64) RockPair
     Vec3 before[2] = { Vec3::Zero(), Vec3::Zero() }; ///< Velocities, m/s.
   };
   Impact impact;
-  double lastingLoss = 0.0; ///< What contacts have taken that is of no impact, springs included, J.
+  double lastingLoss = 0.0; ///< Taken by contacts outside of impacts, springs included, J.
   double touchedAt = -std::numeric_limits<double>::infinity(); ///< End of the last such step, s.
 };
 

@@ -3,7 +3,7 @@
 /// @file
 /// The part of a rock under a plane.
 
-#include "contact/Contact.h"
+#include "contact/PlacedBlock.h"
 
 namespace rockfall
 {

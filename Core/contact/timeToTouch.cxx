@@ -1,4 +1,4 @@
-#include "contact/Contact.h"
+#include "contact/timeToTouch.h"
 #include "contact/motion.h"
 
 #include <algorithm>

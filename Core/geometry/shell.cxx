@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "base/numberText.h"
+#include "base/pointText.h"
 #include "geometry/simplexIntegration.h"
 
 #include <algorithm>
@@ -13,12 +14,6 @@ namespace rockfall
 
 namespace
 {
-
-std::string pointText(const Vec3& point)
-{
-  return "(" + numberText(point.x()) + ", " + numberText(point.y()) + ", " + numberText(point.z()) +
-    ")";
-}
 
 /// For every point the first one that it coincides with, itself if none.
 std::vector<int> coincident(std::span<const Vec3> points, double distance)

@@ -1,23 +1,389 @@
 #pragma once
 
 /// @file
-/// Constants of contact and rest that single rocks, groups and slopes of blocks have in common.
+/// Every physical and numerical constant of the engine, once: unit, value, and what changes if it
+/// is changed. A share or a factor is dimensionless; r is the radius of a rock, of two rocks the
+/// smaller radius; g is gravity. Parameters that a user sets, with their defaults and `validate()`,
+/// are in simulation/parameters.h, terrain/material.h and terrain/yieldingGround.h.
+///
+/// Not here: grain sizes of loops and cache lines (beside the loops), tolerances of readers (gis/,
+/// mesh/, geometry/), the deviates of roughness.h and scatter.h, which go with what they draw, and
+/// guards against underflow (beside their formulas).
 
 namespace rockfall
 {
 
-/// Steps per half period of a vertex on its penalty spring: the impact is then resolved well enough
-/// for the order in which several vertices touch, and energy does not depend on it at all.
-constexpr double kStepsPerImpact = 8.0;
-/// Largest part of the rock's radius, and largest angle (rad), covered in a step of contact.
-constexpr double kTravelPerStep = 0.1;
-/// A rock lies still when it has been slower than this share of √(g r) for this long (s).
-constexpr double kStillSpeed = 1e-3;
-constexpr double kStillTime = 0.5;
-/// A touch slower than this share of √(g r) is no impact: r is the rock's radius.
-constexpr double kRestingSpeed = 1e-2;
-/// Damping ratio of slip at an impact: high, so that a contact that sticks leaves without slip and
-/// not with what its shear spring gives back (rigid-body impact: no tangential restitution).
-constexpr double kShearDamping = 5.0;
+// ---------------------------------------------------------------------------------------------
+// 1  Law of a contact
+
+/// Coulomb's limit is μ N + c from where the normal force N is c over this, μ N + this · N below.
+/// At the literal limit a contact that carries next to nothing holds by all of c and one that opens
+/// by nothing. Higher: nearer to the literal limit; open–close goes round in circles between the
+/// two.
+inline constexpr double kCohesionPerForce = 20.0;
+/// Contact points of the same two bodies that have all of c each; more share what so many have. Two
+/// faces have four points where edges are parallel, eight where rounding turns them. Higher:
+/// cohesion of a joint hangs on rounding.
+inline constexpr int kCohesivePoints = 4;
+/// Least coefficient of restitution of a dashpot; below, a contact behaves as at this one. Lower:
+/// damping beyond any that matters, and contacts that creep open.
+inline constexpr double kLeastRestitution = 0.01;
+/// Damping ratio of slip at an impact. High, so that a contact that sticks leaves without slip
+/// (rigid-body impact: no tangential restitution). Lower: shear springs give slip back.
+inline constexpr double kShearDamping = 5.0;
+
+// ---------------------------------------------------------------------------------------------
+// 2  Step of contact
+
+/// Steps per half period of a vertex on its penalty spring. More: the order in which vertices touch
+/// is resolved finer, at that cost; energy does not depend on it.
+inline constexpr double kStepsPerImpact = 8.0;
+/// Largest displacement in a step of contact as a share of r, and largest rotation, rad. Larger:
+/// faster, levers and normals of mid-step less exact.
+inline constexpr double kTravelPerStep = 0.1;
+/// Impact depth, share of r, in which a contact with the slope stops a rock however fast it comes:
+/// the spring is stiffened to that. Larger: softer and cheaper impacts, deeper overlap.
+inline constexpr double kDeepestImpact = 0.1;
+/// The same as a share of the thickness, which rules for slabs and splinters.
+inline constexpr double kDeepestOfThin = 0.25;
+/// The same between two rocks, share of r. Larger: stones pressed into each other.
+inline constexpr double kDeepestPairImpact = 0.01;
+/// Share of the sum of all squared frequencies that one motion on many springs feels. Lower: longer
+/// steps, impacts on several corners less resolved.
+inline constexpr double kOneMotionShare = 0.25;
+/// Least squared frequency of an impact on several points as a share of a point's own, however
+/// their forces cancel. Lower: dashpots without bound.
+inline constexpr double kLowestImpactMode = 0.05;
+/// Strain that vibrates this many times faster than the contact springs follows the contact forces
+/// as at rest (6 unknowns). Higher: more rocks with 12 unknowns, slower.
+inline constexpr double kStiffBesideContacts = 4.0;
+/// The same for strain faster than this, rad/s. Rocks that strike rock touch for T = 2.9 (m² / (R
+/// E*² v))^⅕ (Hertz), some 3 ms for 1 m³: 30 rad and more of any vibration of a rock, which is not
+/// excited then. A penalty spring is stiffer, and would excite it.
+inline constexpr double kFastVibration = 1000.0;
+/// Gravity in √(g r) at least, m/s², so that speeds of rest exist without gravity.
+inline constexpr double kLeastGravity = 1e-3;
+/// Longest Δt, s. A rock falls 5 cm in it; contacts of a longer one are met wrongly.
+inline constexpr double kMostTimeStep = 0.1;
+
+// ---------------------------------------------------------------------------------------------
+// 3  Open–close iteration
+
+/// Open–close has settled when no state changes and gaps move by less than this share of their
+/// change over the step. The energy error of a step is of the order of this share of its work.
+inline constexpr double kGapTolerance = 1e-7;
+/// The same share of a rotation, in groups: the gyroscopic moment converges linearly, and so keeps
+/// angular momentum to 1e-12.
+inline constexpr double kTurnTolerance = 1e-9;
+/// A correction turns back if its product with the last one is below −this times the square of the
+/// last: part of it is taken then. Lower: damping of corrections that converge.
+inline constexpr double kTurnsBack = 0.25;
+/// Least part of a correction that is taken. Lower: slower where the iteration cycles.
+inline constexpr double kLeastCorrection = 0.125;
+/// Largest group solved directly, rocks. Larger: cost grows with the square.
+inline constexpr int kDirectGroup = 60;
+/// Least pivot of a block of K as a share of its largest entry; below, the step is cut.
+inline constexpr double kSingularPivot = 1e-14;
+/// Largest residual of a direct solution as a share of the largest load; above, the step is cut.
+inline constexpr double kDirectResidual = 1e-9;
+
+// ---------------------------------------------------------------------------------------------
+// 4  Impacts and rest
+
+/// A touch comes down if its point approaches at more than this share of the speed of the rock
+/// (20.5°); else it glances or rolls. A polyhedron of 1280 faces that rolls sets down at up to 0.24
+/// of its speed. Lower: rolling is adjusted as impacts.
+inline constexpr double kComesDown = 0.35;
+/// A touch comes down, too, if as fast as from a drop of this share of r.
+inline constexpr double kFallsDown = 0.25;
+/// A touch is an event if its point approaches at more than this share of the speed (11.5°), or as
+/// from a drop of this share of r. Lower: more events, same motion.
+inline constexpr double kSteepTouch = 0.2;
+inline constexpr double kDropOfTouch = 0.05;
+/// A touch slower than this share of √(g r) is no impact. Higher: low rebounds are damped away.
+inline constexpr double kRestingSpeed = 1e-2;
+/// A rock lies still that has been slower than this share of √(g r) for this time, s. Higher speed
+/// or shorter time: creeping rocks stop early.
+inline constexpr double kStillSpeed = 1e-3;
+inline constexpr double kStillTime = 0.5;
+/// A group sleeps, too, when each rock has stayed within this share of r for this time, s: contacts
+/// are points without a moment, and a rock wedged between two may swing about them for ever.
+/// Longer: piles that never sleep.
+inline constexpr double kLingerTime = 3.0;
+inline constexpr double kLingerWay = 0.03;
+/// Rotation counts against that from this share of √(g r) at the rim on. Rock that breaks at 50 MPa
+/// bears a cube on a patch of 0.016 r^1.5 (SI), whose friction at μ = 0.7 takes 0.3 √r m/s off the
+/// rim in a second: 0.03 √r m/s stops in a tenth of one, whatever the size.
+inline constexpr double kLingerRim = 0.01;
+/// Velocities that differ by this share only are the same.
+inline constexpr double kSameVelocity = 1e-9;
+
+// ---------------------------------------------------------------------------------------------
+// 5  Overlap and its recovery
+
+/// Speed at which a loose overlap is recovered, m/s. Faster: pinched stones are shot out.
+inline constexpr double kPressOut = 0.005;
+/// Deepest loose overlap, share of r.
+inline constexpr double kLooseOverlap = 1e-3;
+/// Speed at which a deeper overlap is recovered, m/s, and at most this share of √(g r).
+inline constexpr double kPressOutDeep = 0.1;
+/// Compression that a spring holds in any case, share of r; beyond, it holds what its two sides
+/// brought to it. Larger: others press rocks into each other, and springs shoot them out.
+inline constexpr double kFirm = 0.02;
+/// Factor on what two sides brought, for what gravity and rounding add while they stop each other.
+inline constexpr double kSomeMore = 1.1;
+
+// ---------------------------------------------------------------------------------------------
+// 6  Contact detection on the slope
+
+/// Edges that bend by less are flat and no feature, sine of the angle. Above the rounding of node
+/// heights of a plane (1e-12), below any slope that a survey can tell.
+inline constexpr double kFlatBend = 1e-7;
+/// Slack of the normal cones, sine of the angle: pairs do not get lost between two cones by
+/// rounding or by small penetration. Larger: wrong entrances at edges.
+inline constexpr double kConeSlack = 0.02;
+/// Deepest overlap at which a pair still enters, share of r.
+inline constexpr double kDeepestEntrance = 0.1;
+/// Displacement, share of r, until the pairs that can touch are gathered again. Larger: rarer
+/// searches over more pairs; no result depends on it.
+inline constexpr double kCandidateSlack = 0.05;
+/// The same of a rock among others with nothing of the slope near.
+inline constexpr double kFarCandidateSlack = 0.4;
+/// Displacement in r until the height of the ground under a rock among others is looked up again.
+inline constexpr double kGroundLid = 4.0;
+/// Displacement over which heights are gathered in flight, in r or cells, whichever is larger.
+inline constexpr double kHeightWindow = 4.0;
+/// Longest flight that is looked at at once, s.
+inline constexpr double kLongFlight = 1.0;
+/// Across an edge that bends by less than this (cosine) the nearer of two planes is the exit, so
+/// that depth is continuous when a vertex crosses it; across a sharper one the entrance stays.
+inline constexpr double kSmoothTurn = 0.5;
+/// Reach of an edge past its end, in depths of the overlap: where two exits under 60° are equally
+/// deep lies within.
+inline constexpr double kEdgeExtension = 2.0;
+/// Reach of a contact past its feature with nothing there to take over, in its compressions.
+/// Smaller: springs that are dropped lose their energy.
+inline constexpr double kRunOff = 50.0;
+/// Slack of coarse tests before close ones, in cells, and where lines cross, share of their length.
+inline constexpr double kCoarseSlack = 1e-6;
+inline constexpr double kBeyondEnd = 1e-6;
+/// Reach of planes beyond a corner between two concave edges (45° at least), in reaches, seen from
+/// above.
+inline constexpr double kBeyondCorner = 3.0;
+/// A direction between the normals of the sides of a ridge is at most this of the two together.
+inline constexpr double kOfBothSides = 1.1;
+
+// ---------------------------------------------------------------------------------------------
+// 7  Contact detection between rocks
+
+/// An axis replaces the last one if its gap is larger by this share of r, edges by twice as much.
+/// Smaller: axes that alternate from step to step, springs that lose their compression.
+inline constexpr double kAxisHysteresis = 1e-3;
+/// Edges nearer to parallel than this sine are no pair.
+inline constexpr double kParallelEdges = 1e-3;
+/// Points nearer than this share of r are one.
+inline constexpr double kOnePoint = 1e-3;
+/// A point that has moved on its rock by less than this share of r since the last step is the same.
+inline constexpr double kSamePoint = 0.05;
+/// Depth beyond the predicted one that is no compression, share of r.
+inline constexpr double kMisreckoned = 1e-4;
+
+// ---------------------------------------------------------------------------------------------
+// 8  Mass fall: pairs and steps
+
+/// Neighbours are near within this many times the displacement that is known, which may yet grow.
+inline constexpr double kWider = 1.1;
+/// Steps that a rock may go on in its ball as it passes others now, and otherwise, of the known
+/// displacement. More: rarer searches over more pairs.
+inline constexpr double kBallSteps = 9.0, kBallOtherwise = 0.5;
+/// Longest displacement that is not passed on, as a factor.
+inline constexpr double kNoMore = 1.0 + 1e-6;
+/// Factor on the speed of approach at the start of a step for what comes near within it. Larger:
+/// more contacts, fewer found late.
+inline constexpr double kFasterApproach = 1.5;
+/// Steps of one Δt that the smallest rock of a group may ask of all; if it asks for more, so many
+/// times fewer rocks resolve their impacts, but this number always does.
+inline constexpr double kMostSteps = 100.0;
+inline constexpr int kAlwaysResolved = 4;
+/// As kStepsPerImpact, of two rocks. An impact begins anywhere in a step: of faces that meet at a
+/// restitution of 0.8 the loss is off by 2.3 % at most with eight, by 1.4 % with ten.
+inline constexpr double kStepsPerPairImpact = 10.0;
+/// Steps of an impact that half of a part of a step must hold for the part to be halved. Fewer:
+/// parts that cut more steps short than they spare (41 and 100 cubes, by processor time).
+inline constexpr double kLeastStepsOfPart = 2.0;
+/// Step of a large group in steps of rocks that resolve their impacts. Longer: faster, more cuts.
+inline constexpr double kCrowdTravel = 2.0;
+/// Cuts of the step of a large group that is far from settled.
+inline constexpr int kCrowdCuts = 4;
+/// In a large group a contact is made for a gap below this share of r. An impact turns rocks within
+/// the step, and what is found only at its end may be past by then (cubes at 17 m/s, Δt 5 ms: mean
+/// deepest overlap 0.6 % of an edge, with 2e-3 1.1 %).
+inline constexpr double kSurely = 3e-2;
+/// The same on the slope.
+inline constexpr double kSurelyOnSlope = 1e-2;
+/// Depth beyond the predicted one that was missed, share of r.
+inline constexpr double kMissed = 5e-5;
+/// Looks after which no further trees are let go: they hold for the rest of the step.
+inline constexpr int kTreeLooks = 8;
+/// Shortest step, s.
+inline constexpr double kTooShort = 1e-9;
+
+// ---------------------------------------------------------------------------------------------
+// 9  Mass fall: looks at the end of a step, bounces
+
+/// Looks for missed contacts in a step: this many as long as any are missed, this many if deep.
+inline constexpr int kMissLooks = 2, kMostMissLooks = 4;
+/// A step whose last look finds more than this share of r is far from settled.
+inline constexpr double kDeepMiss = 0.01;
+/// Depth that leaves nothing deep behind it, share of r.
+inline constexpr double kWorthALook = 0.25 * kDeepMiss;
+/// Gap of a contact that is let go, m.
+inline constexpr double kAbsent = 1e3;
+/// Stiffness of a bounce over mass. Much higher: what bounces between others keeps Gauss–Seidel
+/// from settling.
+inline constexpr double kBounceStiffness = 100.0;
+/// Gain of energy, share of what comes in along the normal, up to which a bounce is let be; and of
+/// one that goes on with an impact, with gravity in it.
+inline constexpr double kBounceGain = 1e-3;
+inline constexpr double kBounceGainOn = 0.05;
+/// Passes in a step that hold bounces back.
+inline constexpr int kHeldBounces = 3;
+
+// ---------------------------------------------------------------------------------------------
+// 10  Mass fall: sweeps of projected Gauss–Seidel
+
+/// Changes below this share of the tolerance are none.
+inline constexpr double kQuiet = 0.3;
+/// Factor on the number of sweeps where nothing bounces: forces are to be exact there.
+inline constexpr int kCalmSweeps = 50;
+/// A step is rough if the last sweep has moved something by more than this many times the tolerance
+/// (3 % of the longest displacement): forces as wrong as that throw light rocks about. Factor on
+/// the number of sweeps then.
+inline constexpr double kRough = 300.0;
+inline constexpr int kRoughSweeps = 200;
+/// Or by more than this share of r: it may end several times as deep in another rock.
+inline constexpr double kRoughWay = 2.5e-3;
+/// Sweeps after a local change (a bounce held back, a contact found) and in a rough place go no
+/// further than where things move by this share of the longest displacement;
+inline constexpr double kNoticed = 3e-3;
+/// and by this share of what is rough.
+inline constexpr double kRoughNoticed = 0.1;
+/// Tolerance of what a second look has found, in tolerances.
+inline constexpr double kFoundTolerance = 4.0;
+/// Displacement since the last look, share of r, from which a rock is looked at again.
+inline constexpr double kGoneOn = 5e-3;
+/// Sweeps from look to look at watched contacts, and sweeps that follow on one that closes.
+inline constexpr int kWatchEvery = 2;
+inline constexpr int kAfterWatched = 2;
+/// Passes over the rotation of a free body for the first guess of a step.
+inline constexpr int kFreeTurns = 2;
+/// Rotation beyond the guessed one from which levers and gyroscopic moments are brought up to date,
+/// rad: gaps are right to the square of it.
+inline constexpr double kTurnGuessed = 0.02;
+
+// ---------------------------------------------------------------------------------------------
+// 11  Ground that yields
+
+/// Λ sinks if deeper by this share of its depth and of r. Smaller: more steps in which Λ moves.
+inline constexpr double kDeeperScar = 0.1;
+inline constexpr double kShallowScar = 0.01;
+/// Λ rises if this share of its depth is gained.
+inline constexpr double kHigherScar = 0.3;
+/// Least vertical part of the normal of ground with scars: not walls, not trees.
+inline constexpr double kSteepestScar = 0.3;
+/// Clearance of Λ from a rock that it rises under, share of r.
+inline constexpr double kScarClearance = 1e-6;
+/// Least share of the speed that is left by a piece of a flight through soil. Larger: finer pieces.
+inline constexpr double kLeastLeft = 0.8;
+/// Shortest piece, s.
+inline constexpr double kShortestPiece = 1e-6;
+/// Displacements that are none, m, and passages of corners through the surface, share of the
+/// motion, that are one.
+inline constexpr double kNoWay = 1e-9;
+inline constexpr double kSameBreak = 1e-9;
+
+// ---------------------------------------------------------------------------------------------
+// 12  Slope, roughness, structures
+
+/// Largest friction angle, degrees, drawn ones too: tan φ is 57 here.
+inline constexpr double kSteepestFriction = 89.0;
+/// Distance of the knots of a rough field in correlation lengths ℓ. The cubic B-spline, as a kernel
+/// on white noise, has the variance of exp(−2 r²/ℓ²) at √3/2; here the correlation is within 0.011
+/// of exp(−(r/ℓ)²) at all lags, and the slope within 1 % of √2 σ/ℓ.
+inline constexpr double kFieldKnots = 0.84;
+/// Nodes per length. At ½ ℓ the facets have 94 % of the root mean square slope of the field, at ¼ ℓ
+/// 98 %; an obstacle is ℓ across.
+inline constexpr double kNodesOfField = 2.0;
+inline constexpr double kNodesOfObstacles = 4.0;
+/// Shares of the obstacles of the first height, and of the first two (rg70, rg20, rg10).
+inline constexpr double kMostObstacles = 0.7, kManyObstacles = 0.9;
+/// Depth of a wall at a hole of nodata, m: far deeper than a rock comes until it has left.
+inline constexpr double kWallDepth = 1000.0;
+/// Depth of the foot of an embankment under the ground and what roughness lowers it by, m.
+inline constexpr double kFootDepth = 0.5;
+/// Height of a crest in which a side must have come to the ground, m.
+inline constexpr double kLongestSide = 200.0;
+/// Share of its height by which a crest may be off the ground that it follows. Smaller: more
+/// stations.
+inline constexpr double kCrestTolerance = 0.05;
+/// Longest mitre in widths; a longer one folds.
+inline constexpr double kLongestMitre = 5.0;
+/// Deviation of the faces of a side in a bend with one common foot, share of its slope.
+inline constexpr double kFanTolerance = 0.5;
+/// Depth of a stem under the ground, m, and per metre of its diameter.
+inline constexpr double kRootDepth = 2.0;
+inline constexpr double kRootPerDiameter = 3.0;
+/// Barriers passed within this displacement are at one place, m.
+inline constexpr double kSamePlace = 1e-6;
+/// End of the line of a piece of a barrier, share of its length.
+inline constexpr double kPieceEnd = 1e-9;
+
+// ---------------------------------------------------------------------------------------------
+// 13  Recording
+
+/// Time between the knots before and after a velocity changes at once, s: a path has one point at a
+/// time.
+inline constexpr double kInstant = 1e-9;
+/// Samples no further apart are at one time, s.
+inline constexpr double kOneTime = 0.5 * kInstant;
+/// Deviation of the path between two samples from the motion, in r. Smaller: more samples.
+inline constexpr double kPathTolerance = 0.01;
+
+// ---------------------------------------------------------------------------------------------
+// 14  Release
+
+/// Largest height over the slope, m: 1000 m read as feet are 2000 m too high.
+inline constexpr double kHighestRelease = 500.0;
+/// Depth under its own weight, share of r; deeper, rocks do not always come to rest and energy gets
+/// lost: pₙ is refused.
+inline constexpr double kDeepestAtRest = 0.02;
+/// Limits beyond any rock, or beyond what ends and fits into numbers.
+///@{
+inline constexpr double kMostSpeed = 1000.0; ///< m/s; also of the outermost point by rotation.
+inline constexpr double kMostSpin = 1e4;     ///< rad/s
+inline constexpr double kMostDensity = 1e5;  ///< kg/m³; the densest metal has 2.3e4.
+inline constexpr double kMostModulus = 1e15; ///< Pa; diamond has 1.2e12.
+inline constexpr double kMostVolume = 1e9;   ///< m³
+///@}
+/// Overlap that only touches, share of r: rounding of rocks laid down by computed coordinates.
+inline constexpr double kTouch = 1e-6;
+/// Vertical part of the normal of a triangle on which nothing stands but on its edges.
+inline constexpr double kUpright = 1e-9;
+/// End of a lift, between these, in touches.
+inline constexpr double kEndsAt = -0.9, kEndsBelow = -0.8;
+/// Axes that a lift uses at most: none is used twice, and few are.
+inline constexpr int kMostAxes = 1000;
+/// Displacement in depths by which rocks are pushed apart, so that it ends: the mean of several
+/// displacements is less than each.
+inline constexpr double kPushApart = 1.1;
+inline constexpr int kMostPasses = 5000;
+/// Passes after which masses no longer count, and of two that lie on each other the upper one gives
+/// way.
+inline constexpr int kPushPatience = 100;
+/// A rock is on another one where its way out rises by more, sine of its slope.
+inline constexpr double kUpward = 0.5;
+/// Places drawn for one rock until it is on the slope: about a release, and of a source.
+inline constexpr int kMostDraws = 1000;
+inline constexpr int kMostDrawsOfSource = 10000;
 
 } // namespace rockfall

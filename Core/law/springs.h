@@ -4,6 +4,8 @@
 /// The one-sided normal spring of a contact over a step, with the dashpot that makes a coefficient
 /// of restitution of it.
 
+#include "law/settings.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -101,7 +103,7 @@ inline double dampingRatio(double restitution)
   {
     return 0.0;
   }
-  const double wanted = -std::log(std::max(restitution, 0.01));
+  const double wanted = -std::log(std::max(restitution, kLeastRestitution));
   double low = 0.0, high = 8.0;
   for (int k = 0; k < 50; ++k)
   {

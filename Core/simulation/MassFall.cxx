@@ -18,18 +18,6 @@ namespace rockfall
 namespace
 {
 
-/// A group sleeps when for kStillTime each of its rocks has gone no further than it would at
-/// kStillSpeed √(g r). Not the speeds decide: in a pile that lies some rock always trembles, by
-/// less than its springs are compressed. So it does when for this long, s, each has kept within
-/// this share of its radius: contacts are points without a moment, and a rock that is wedged
-/// between two may swing about them for ever.
-constexpr double kLingerTime = 3.0;
-constexpr double kLingerWay = 0.03;
-/// Turning counts for that from this share of √(g r) on, as the speed of its rim. What turns more
-/// slowly on two points, its centroid between them, would do so for ever. Rock that breaks at 50
-/// MPa bears a cube on a patch of 0.016 r^1.5 (SI units), whose friction at μ = 0.7 takes 0.3 √r
-/// m/s off its rim in a second: it stops this, 0.03 √r m/s, in a tenth of one, whatever the size.
-constexpr double kLingerRim = 0.01;
 /// Fewer are not worth a thread of their own.
 constexpr std::size_t kRocksPerThread = 32, kStayGrain = 64;
 
@@ -222,7 +210,7 @@ bool MassFall::stays(Member& member) const
   { return (sim.state_.position - place.position).norm(); };
   const auto turnFrom = [&](const Member::Place& place)
   { return r * sim.state_.orientation.angularDistance(place.orientation); };
-  const double unit = std::sqrt(std::max(parameters_.gravity, 1e-3) * r); // m/s
+  const double unit = std::sqrt(std::max(parameters_.gravity, kLeastGravity) * r); // m/s
   // Most go so far that how far they turn does not matter.
   const double still = kStillSpeed * unit * kStillTime, way = wayFrom(member.stayed);
   if (way > still || way + turnFrom(member.stayed) > still)

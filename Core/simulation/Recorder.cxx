@@ -1,5 +1,7 @@
 #include "simulation/Recorder.h"
 
+#include "law/settings.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,12 +11,6 @@ namespace rockfall
 
 namespace
 {
-
-/// How far the path between two samples may be from the motion, in radii of the rock.
-constexpr double kPathTolerance = 0.01;
-/// Samples that are no further apart are at one time, s. Steps that should end at a time of
-/// sampling may miss it by rounding.
-constexpr double kOneTime = 0.5 * kInstant;
 
 /// Of a flight of this time (s) between two velocities, m: Simpson's rule in pieces.
 double parabolaLength(double duration, const Vec3& from, const Vec3& to)
@@ -212,7 +208,7 @@ void Recorder::end(const BlockState& state, bool contact)
   if (trajectory_.samples.size() > 1 && this->isAt(state.time) &&
     trajectory_.samples.back().kind == SampleKind::Even)
   {
-    // This state itself: the way to the sample went over others, and rounded otherwise.
+    // The state itself: the way to the sample went over others, and rounded otherwise.
     this->dropLast();
   }
   // A path has two points at least, also of a rock that is caught at once.

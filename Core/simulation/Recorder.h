@@ -10,10 +10,6 @@
 namespace rockfall
 {
 
-/// Between the knots before and after a velocity changes at once, in an impact or at a barrier that
-/// breaks, s: a path has one point at a time.
-constexpr double kInstant = 1e-9;
-
 class Recorder
 {
 public:
@@ -63,7 +59,7 @@ private:
   Sample makeSample(const BlockState& state, bool contact);
   bool follows(const BlockState& state) const; ///< The last knot's uniform acceleration leads here.
 
-  /// What of a state tells whether the motion since then is a uniform acceleration.
+  /// The part of a state that tells whether the motion since then is a uniform acceleration.
   struct Knot
   {
     double time = 0.0;            ///< s
@@ -83,9 +79,9 @@ private:
   const Block& block_;
   double interval_;
   std::int64_t next_ = 0;
-  Vec3 last_ = Vec3::Zero();           ///< That was reached.
+  Vec3 last_ = Vec3::Zero();           ///< The last position reached.
   Knot knot_;                          ///< The last one.
-  SampleKind jump_ = SampleKind::Knot; ///< What the sample after a jump is.
+  SampleKind jump_ = SampleKind::Knot; ///< Kind of the sample after a jump.
   std::size_t audited_ = 0;            ///< Samples that have their audit.
   Trajectory trajectory_;
 };

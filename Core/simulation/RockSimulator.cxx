@@ -2,6 +2,9 @@
 
 #include "base/abort.h"
 #include "block/flight.h"
+#include "contact/clearance.h"
+#include "contact/detection.h"
+#include "contact/timeToTouch.h"
 #include "law/settings.h"
 #include "law/springs.h"
 #include "simulation/placement.h"
@@ -19,24 +22,6 @@ namespace rockfall
 namespace
 {
 
-/// Of many springs a motion feels about this part of what all their frequencies, squared, add up
-/// to.
-constexpr double kOneMotion = 0.25;
-/// Longest flight that is looked at at once, s.
-constexpr double kLongFlight = 1.0;
-/// Way over which heights are gathered, in radii or cells, whichever is larger.
-constexpr double kWindow = 4.0;
-/// Strain that vibrates faster than this many times the contacts' springs, or than this (rad/s),
-/// follows the contact forces as at rest. Rocks that strike rock touch for T = 2.9 (m² / (R E*²
-/// v))^⅕ (Hertz), some 3 ms for 1 m³: 30 rad and more of any rock's vibration, which it does not
-/// excite. A penalty spring is stiffer, and would.
-constexpr double kStiffBesideContacts = 4.0;
-constexpr double kFastVibration = 1000.0;
-/// However fast a rock comes in, a contact is stiff enough to stop it in this part of its radius,
-/// and of its thickness.
-constexpr double kDeepestImpact = 0.1;
-constexpr double kDeepestOfThin = 0.25;
-
 /// Frequencies of a block on the springs of several contacts, squared, 1/s².
 struct ImpactFrequency
 {
@@ -51,7 +36,7 @@ struct ImpactFrequency
   /// `one`: of one where the block is turned best.
   double ofAll(double one) const
   {
-    return std::min(this->sum, std::max({ one, kOneMotion * this->sum, this->together }));
+    return std::min(this->sum, std::max({ one, kOneMotionShare * this->sum, this->together }));
   }
 };
 
@@ -70,7 +55,7 @@ RockSimulator::RockSimulator(const Surface& surface, const Rock& rock, const Blo
   state_.orientation = rock.orientation.normalized();
   state_.velocity = rock.velocity;
   state_.spin = state_.orientation.conjugate() * rock.angularVelocity;
-  const double g = std::max(p.gravity, 1e-3);
+  const double g = std::max(p.gravity, kLeastGravity);
   restingSpeed_ = kRestingSpeed * std::sqrt(g * block.radius());
   penalty_ = p.normalPenalty;
   const double contacts = std::sqrt(p.normalPenalty * block.largestMobility());
@@ -167,7 +152,7 @@ double RockSimulator::timeToGround(double duration)
   {
     return timeToTouch(placed_, state_, window_, parameters_.gravity, duration);
   }
-  // What is over a hole has no gap to close: it comes to a rim or a wall from beside.
+  // A rock over a hole has no gap to close: it comes to a rim or a wall from beside.
   const auto [x0, x1, y0, y1] = this->boxOfWay(duration);
   if (!holed_.covers(x0, x1, y0, y1))
   {
@@ -254,7 +239,7 @@ void RockSimulator::flyUntilNear()
     {
       // A window over some of the way: nearer than its plane only the rock itself is looked at.
       const double across = state_.velocity.head<2>().norm();
-      const double way = kWindow * std::max(block_.radius(), surface_.grid().cellSize);
+      const double way = kHeightWindow * std::max(block_.radius(), surface_.grid().cellSize);
       duration = std::min(duration, across * duration > way ? way / across : duration);
       this->ensureWindow(duration);
       const double near =
@@ -318,7 +303,7 @@ void RockSimulator::followRest(double h, bool touching)
 {
   const double r = block_.radius();
   const double speed = state_.velocity.norm() + state_.spin.norm() * r;
-  const double still = kStillSpeed * std::sqrt(std::max(parameters_.gravity, 1e-3) * r);
+  const double still = kStillSpeed * std::sqrt(std::max(parameters_.gravity, kLeastGravity) * r);
   quietTime_ = touching && speed < still ? quietTime_ + h : 0.0;
 }
 
@@ -359,7 +344,7 @@ void RockSimulator::liftOntoGround()
   placed_.place(block_, state_);
   this->ensurePatch(step);
   double depth = penetration(placed_, patch_);
-  // What starts in the ground by rounding alone is set onto it by what follows.
+  // A rock that starts in the ground by rounding alone is set onto it by what follows.
   const double worldZ = state_.position.z() + surface_.terrain().geometry().origin().z();
   const double least = std::max(1e-6 * block_.radius(), startRounding(worldZ, block_.radius()));
   for (int k = 0; k < 1000 && depth > least; ++k)

@@ -5,9 +5,11 @@
 /// in steps, restitution as events.
 
 #include "contact/Contact.h"
+#include "contact/candidates.h"
 #include "simulation/Recorder.h"
+#include "simulation/Rock.h"
 #include "simulation/Scar.h"
-#include "simulation/ensemble.h"
+#include "simulation/parameters.h"
 #include "solver/StepSolver.h"
 #include "terrain/Obstacles.h"
 
@@ -19,7 +21,7 @@
 namespace rockfall
 {
 
-/// What a rock goes at once: a parabola, or a step of contact.
+/// One piece of the path: a parabola, or a step of contact.
 struct Way
 {
   const BlockState& from;
@@ -78,7 +80,7 @@ public:
 private:
   friend class MassFall; ///< Moves rocks that touch each other.
 
-  /// What is under way between the first touch and the take-off or settling.
+  /// The impact under way between the first touch and the take-off or settling.
   struct Impact
   {
     bool pending = false;
@@ -86,8 +88,8 @@ private:
     Vec3 normalImpulse = Vec3::Zero(); ///< N s, world.
     double largestForce = 0.0;         ///< N
     double frictionBefore = 0.0;       ///< Friction work when it began, J.
-    double restitutionBefore = 0.0;    ///< What restitution had taken by then, J.
-    double yieldedBefore = 0.0;        ///< What scars and rolling resistance had, J.
+    double restitutionBefore = 0.0;    ///< Taken by restitution until then, J.
+    double yieldedBefore = 0.0;        ///< Taken by scars and rolling resistance, J.
   };
 
   /// Straight up, at the start, as far as roughness and embankments make it needed.
@@ -106,7 +108,7 @@ private:
   double freeOfObstacles(double duration);  ///< For how long, at most this, nothing is touched, s.
   void clearTrees();                        ///< Where the rock is released there is none.
   int treeOf(const Contact& contact) const; ///< −1: it is on none.
-  /// Those that it is about to touch within `h`, presses against or has `hit`, and that cannot hold
+  /// Trees that it is about to touch within `h`, presses against or has `hit`, and that cannot hold
   /// it; whether there were any.
   bool breakTrees(double h, std::span<const int> hit = {});
   /// One that the rock at `state_` goes on through. What it holds of the rock's energy (J) has been
@@ -122,7 +124,8 @@ private:
   /// and fills `hit_` with the first barrier that stops the rock or breaks. After such a one flight
   /// goes on to those at the same place only; its rest is flown anew.
   void passBarriers(const Way& way, double taken);
-  /// What others of its fall have broken is gone for this rock, too. Whether it touched any of it.
+  /// Structures that others of its fall have broken are gone for this rock, too. Whether it touched
+  /// any.
   bool hearOf(const Broken& broken);
   void meetBarrier(); ///< The one in `hit_`, at `state_`.
   /// The one in `hit_`, in a step of contact that would go to `end` and in which others have taken
@@ -131,7 +134,7 @@ private:
   void forgetPatch();
 
   // Contact, contactPhase.cxx
-  double stoppingPenalty() const; ///< That stops it in time, N/m.
+  double stoppingPenalty() const; ///< Stiffness that stops it in time, N/m.
   void beginContact();
   void stayInContact(); ///< Returns after take-off, at the horizon or at the end.
   void endContact();
@@ -139,7 +142,7 @@ private:
   /// Books a step that has been taken from `before_` to `state_`. `given`: work done on other
   /// rocks, J.
   void absorb(StepKind kind, const StepOutcome& outcome, double energyBefore, double given);
-  bool isCalm() const;          ///< What carries neither comes nor goes.
+  bool isCalm() const;          ///< Contacts that carry neither approach nor part.
   bool mayLast(double h) const; ///< A long, damped step is right.
   /// Overlaps that were found, not made (pressOut.h): loose ones after a step, deep ones before a
   /// lasting one. `held`: others may hold the rock.
@@ -148,7 +151,7 @@ private:
   double looseOverlap() const; ///< m
   /// No spring in a deep overlap holds more than those of a rock that lies still and alone.
   void letDeepBe(double loose);
-  double settledSpeed() const; ///< What the springs of such a rock could give it, m/s.
+  double settledSpeed() const; ///< Speed that the springs of such a rock could give it, m/s.
 
   // Ground that gives way, groundYields.cxx
   const YieldingGround& yieldingOf(int restitutionClass) const;
@@ -179,11 +182,10 @@ private:
   /// Lower bound of the time to the first touch of the ground in free flight, s.
   double timeToGround(double duration);
   void ensurePatch(double margin);
-  /// How far, in radii, the rock may go on until the pairs that can touch are looked for again.
-  static constexpr double kCandidateSlack = 0.05;
   void ensureCandidates(double reach, bool among = false); ///< `among`: many others.
-  /// Those of a rock among many others, for where it stands in this step only if there is nothing
-  /// but the slope near it; `body` stands there, too. They serve until this thread asks again.
+  /// Candidates of a rock among many others, for where it stands in this step only if there is
+  /// nothing but the slope near it; `body` stands there, too. They serve until this thread asks
+  /// again.
   const CandidatePairs& candidatesNow(const PairBody& body, const SlopeReach& reach);
   /// Where a step would end, by a way (m), those that would overlap by more than `allowed` (m); in
   /// doubt others, too.
@@ -199,7 +201,7 @@ private:
   }
   void armContacts(double h); ///< Gives new contacts their springs and dashpots, for a step of h.
   void armContact(Contact& contact);
-  /// What the ground's numbers at a place are drawn for, now.
+  /// Key of the deviates of the ground at a place, now.
   GroundTouch touchAt(std::int64_t cfe, const Vec3& place) const
   {
     return { cfe, place, number_, impactsOver_ };
@@ -207,7 +209,7 @@ private:
   double dampingRatioFor(const GroundTouch& touch); ///< ζ for the restitution there.
   double impactStep() const;
   double travelLimit() const;
-  /// What the contacts that are closed or close within a step of `h` allow of it, s.
+  /// Part of a step of `h` that contacts which are closed or close in it allow, s.
   double touchdownStep(double h) const;
   /// Whether the horizon is reached, but for what is too short to be a step.
   bool arrived() const { return state_.time >= horizon_ - 1e-9; }
@@ -226,7 +228,7 @@ private:
   bool done_ = false;
   bool inContact_ = false;
   bool pressed_ = false; ///< A deep overlap is pressed out in the step at hand.
-  bool crowded_ = false; ///< Its step is that of a crowd, as long as Δt.
+  bool crowded_ = false; ///< The step is that of a crowd, as long as Δt.
   bool stiff_ = false;   ///< The block's strain follows its contacts without inertia.
   bool solid_ = false;   ///< There are embankments or trees.
   bool barriers_ = false;
@@ -247,7 +249,7 @@ private:
   double openTime_ = 0.0;                ///< Since it touched, s.
   double horizon_ = 0.0;                 ///< Up to which it is to advance, s.
   double penalty_ = 0.0;                 ///< pₙ of the contacts that are made now, N/m.
-  std::uint64_t carrying_ = 0;           ///< What carried in the last lasting step.
+  std::uint64_t carrying_ = 0;           ///< The features that carried in the last lasting step.
   const Obstacles* obstacles_ = nullptr; ///< Null if there are none.
   EnergyAudit energy_;
   double energyAtStart_ = 0.0; ///< Kinetic and potential, J.
@@ -267,7 +269,7 @@ private:
   double dampedFor_ = -1.0, damped_ = 0.0; ///< The restitution looked up last, and its ζ.
   std::vector<int> goneTrees_;             ///< Ascending.
   std::vector<int> brokenBarriers_;        ///< In the order of breaking.
-  Broken broke_;           ///< What it has broken itself, of which others have not heard yet.
+  Broken broke_;           ///< Structures that it has broken, of which others have not heard yet.
   double freeUntil_ = 0.0; ///< Nothing can be touched until then, after a take-off, s.
   std::vector<BarrierPassage> passages_; ///< Of the way at hand.
   std::size_t passed_ = 0;               ///< How many of them are dealt with.

@@ -1,5 +1,7 @@
 #include "simulation/Scar.h"
 
+#include "law/settings.h"
+
 #include <algorithm>
 #include <vector>
 
@@ -9,10 +11,6 @@ namespace rockfall
 namespace
 {
 
-/// Ways that are none, m.
-constexpr double kNoWay = 1e-9;
-/// Corners that pass the surface so near to each other (share of the motion) pass it together.
-constexpr double kSameBreak = 1e-9;
 /// Pieces that a long motion is followed in at most, and one.
 constexpr std::size_t kMostBreaks = 13;
 

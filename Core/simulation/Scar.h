@@ -14,6 +14,7 @@
 ///   corner that it sets down;
 /// - it is the surface again when the rock is out of the ground.
 
+#include "contact/Contact.h"
 #include "contact/submerged.h"
 #include "terrain/yieldingGround.h"
 

@@ -2,7 +2,9 @@
 
 #include "base/abort.h"
 #include "block/flight.h"
+#include "contact/detection.h"
 #include "contact/motion.h"
+#include "contact/timeToTouch.h"
 #include "law/cohesion.h"
 #include "law/settings.h"
 #include "simulation/impactMode.h"
@@ -19,7 +21,7 @@ namespace rockfall
 namespace
 {
 
-/// Which features of the rock carry, as a number that any change changes.
+/// The features of the rock that carry, as a number that any change changes.
 std::uint64_t carriers(const std::vector<Contact>& contacts)
 {
   std::uint64_t sum = 0;
@@ -137,8 +139,8 @@ void RockSimulator::stayInContact()
     {
       if (!stiff_ && !(state_.strain.isZero(0.0) && state_.strainRate.isZero(0.0)))
       {
-        // It has taken off, and what flies does not strain. How long it is free is asked of what
-        // it is then.
+        // The rock has taken off, and what flies does not strain. How long it is free is asked of
+        // what it is then.
         energy_.vibration += relaxStrain(block_, state_);
         this->finishImpact();
         continue;
@@ -170,8 +172,8 @@ void RockSimulator::stayInContact()
         continue;
       }
     }
-    // What carries may be pressed in, and its neighbourhood with it; anything deeper slipped
-    // through.
+    // A vertex that carries may be pressed in, and its neighbourhood with it; anything deeper
+    // slipped through.
     double pressed = 0.0;
     for (const Contact& c : contacts_)
     {
@@ -224,7 +226,7 @@ double RockSimulator::dampingRatioFor(const GroundTouch& touch)
 
 void RockSimulator::armContacts(double h)
 {
-  // What slides into something may be faster than when its contact began.
+  // A rock that slides into something may be faster than when its contact began.
   penalty_ = std::max(penalty_, this->stoppingPenalty());
   for (Contact& c : contacts_)
   {
@@ -362,7 +364,7 @@ void RockSimulator::absorb(
   {
     const double damped = energyBefore - this->mechanicalEnergy() - springEnergy_ -
       outcome.frictionWork - outcome.dampedWork - given;
-    // What pressing out gives a rock comes from nowhere, and is booked as that.
+    // Energy that recovery of an overlap gives a rock comes from nowhere, and is booked as that.
     energy_.damping += pressed_ ? std::max(0.0, damped) : damped;
     pressed_ = false;
     // The lag of the next lasting step. What an impact left is no acceleration to go on with, nor

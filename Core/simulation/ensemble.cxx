@@ -2,13 +2,9 @@
 
 #include "base/abort.h"
 #include "base/errors.h"
-#include "base/numberText.h"
-#include "geometry/shell.h"
 #include "simulation/MassFall.h"
 #include "simulation/RockSimulator.h"
-#include "simulation/overlaps.h"
-#include "simulation/placement.h"
-#include "simulation/releasePlaces.h"
+#include "simulation/releaseChecks.h"
 #include "simulation/stateHash.h"
 
 #include <tbb/parallel_for.h>
@@ -17,7 +13,6 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cmath>
 #include <condition_variable>
 #include <map>
 #include <memory>
@@ -27,152 +22,6 @@
 
 namespace rockfall
 {
-
-namespace
-{
-
-/// Over the slope, m. Rocks start on the slope or a fall over it; 1000 m read as feet are 2000 m
-/// too high.
-constexpr double kHighest = 500.0;
-/// Deeper than this share of their radius under their own weight rocks do not always come to rest,
-/// and energy gets lost.
-constexpr double kDeepestAtRest = 0.02;
-
-/// What no rock has, and what would not end or not fit into numbers.
-///@{
-constexpr double kMostSpeed = 1000.0; ///< m/s; also of the outermost point as it turns.
-constexpr double kMostSpin = 1e4;     ///< rad/s
-constexpr double kMostDensity = 1e5;  ///< kg/m³; the densest metal has 2.3e4.
-constexpr double kMostModulus = 1e15; ///< Pa; diamond has 1.2e12.
-constexpr double kMostVolume = 1e9;   ///< m³
-///@}
-
-std::string where(const Vec3& world)
-{
-  std::string text = "(";
-  text += numberText(world.x()) + ", " + numberText(world.y()) + ", " + numberText(world.z());
-  return text + ")";
-}
-
-/// How deep the rock is in the slope as surveyed, m: roughness belongs to an iteration.
-double depthOf(const Terrain& terrain, const Rock& rock, const Block& block)
-{
-  BlockState state;
-  state.position = rock.position;
-  state.orientation = rock.orientation.normalized();
-  PlacedBlock placed;
-  placed.place(block, state);
-  SurfacePatch patch;
-  gatherPatch(Surface::asSurveyed(terrain), placed.lower().x(), placed.upper().x(),
-    placed.lower().y(), placed.upper().y(), patch);
-  return liftOut(placed, patch);
-}
-
-void checkPlacement(const Terrain& terrain, const Rock& rock, const Block& block)
-{
-  const Vec3 world = rock.position + terrain.geometry().origin();
-  const std::string name = "block " + std::to_string(rock.blockId) + " at " + where(world);
-  if (terrain.cfeAt(rock.position.x(), rock.position.y()) == 0)
-  {
-    throw PlacementError(name + whyNoGround(terrain, world.x(), world.y()));
-  }
-  const double height = rock.position.z() - terrain.elevation(rock.position.x(), rock.position.y());
-  if (height > kHighest)
-  {
-    throw PlacementError(name + " is " + numberText(height, 4) + " m over the slope, more than " +
-      std::to_string(int(kHighest)) +
-      " m: is its height in feet, or that of another reference than the slope's?");
-  }
-  if (rock.uncertainty.horizontalDeviation > std::hypot(terrain.width(), terrain.height()))
-  {
-    throw ParameterError(name + ": HorizontalDeviation is " +
-      numberText(rock.uncertainty.horizontalDeviation) + " m, more than the slope is wide");
-  }
-  const double depth = depthOf(terrain, rock, block);
-  // What is in it by rounding alone is set onto it when it is released.
-  if (depth > startRounding(world.z(), block.radius()))
-  {
-    throw PlacementError(
-      name + " starts inside the slope, by " + numberText(depth, 4) + " m; raise its centre");
-  }
-}
-
-void checkPenalty(const Rock& rock, const Block& block, const SimulationParameters& p)
-{
-  const double weight = block.mass() * p.gravity;
-  const double most = kDeepestAtRest * block.radius();
-  if (weight > most * p.normalPenalty)
-  {
-    throw ParameterError("NormalPenalty is " + numberText(p.normalPenalty) +
-      " N/m, too soft for block " + std::to_string(rock.blockId) + ": at rest its " +
-      numberText(block.mass()) + " kg would lie " + numberText(weight / p.normalPenalty) +
-      " m deep in the ground, more than " + numberText(100.0 * kDeepestAtRest) +
-      " % of its radius; it needs " + numberText(weight / most) + " N/m or more");
-  }
-}
-
-} // namespace
-
-void Rock::validate() const
-{
-  const std::string name = "block " + std::to_string(this->blockId) + ": ";
-  const auto positive = [&](double value, double most, const char* field, const char* unit)
-  {
-    if (!(value > 0.0) || !std::isfinite(value))
-    {
-      throw ParameterError(name + field + " is " + numberText(value) +
-        ", it must be a positive, finite number of " + unit);
-    }
-    if (value > most)
-    {
-      throw ParameterError(name + field + " is " + numberText(value) + " " + unit +
-        ", no rock has more than " + numberText(most));
-    }
-  };
-  positive(this->density, kMostDensity, "Density", "kg/m³");
-  positive(this->youngModulus, kMostModulus, "YoungModulus", "Pa");
-  if (!(this->poissonRatio >= 0.0 && this->poissonRatio <= 0.49))
-  {
-    throw ParameterError(
-      name + "PoissonRatio is " + numberText(this->poissonRatio) + ", it must be 0 to 0.49");
-  }
-  positive(this->shape.integrals().volume, kMostVolume, "Volume", "m³");
-  const auto finite = [&](const Vec3& value, const char* field)
-  {
-    if (!value.allFinite())
-    {
-      throw ParameterError(name + field + " is " + where(value) + ", it must be finite");
-    }
-  };
-  finite(this->position, "Center");
-  finite(this->velocity, "Velocity");
-  finite(this->angularVelocity, "AngularVelocity");
-  const auto atMost = [&](double value, double most, const char* what, const char* unit)
-  {
-    if (value > most)
-    {
-      throw ParameterError(name + what + " is " + numberText(value) + " " + unit +
-        ", no rock has more than " + numberText(most));
-    }
-  };
-  const double spin = this->angularVelocity.stableNorm();
-  atMost(this->velocity.stableNorm(), kMostSpeed, "Velocity", "m/s");
-  atMost(spin, kMostSpin, "AngularVelocity", "rad/s");
-  atMost(spin * this->shape.radius(), kMostSpeed,
-    "AngularVelocity times the radius, the speed of its outermost point,", "m/s");
-  if (!this->orientation.coeffs().allFinite() || this->orientation.norm() < 1e-6)
-  {
-    throw ParameterError(name + "Orientation is not a rotation");
-  }
-  try
-  {
-    this->uncertainty.validate();
-  }
-  catch (const ParameterError& error)
-  {
-    throw ParameterError(name + error.what());
-  }
-}
 
 namespace
 {
@@ -260,27 +109,7 @@ void onThreads(int threads, const Work& work)
     });
 }
 
-Block blockOf(const Rock& rock)
-{
-  return Block(rock.shape, rock.density, rock.youngModulus, rock.poissonRatio);
-}
-
 } // namespace
-
-void setOntoSlope(const Terrain& terrain, Rock& rock, double most)
-{
-  if (terrain.cfeAt(rock.position.x(), rock.position.y()) == 0)
-  {
-    return; // the ensemble says so
-  }
-  // A grid of single precision is rounded; twice that much is a hair.
-  const double hair = 4.0 * std::ldexp(std::max(50.0, std::abs(rock.position.z())), -24);
-  const double depth = depthOf(terrain, rock, blockOf(rock));
-  if (depth <= std::max(most, hair))
-  {
-    rock.position.z() += depth;
-  }
-}
 
 Ensemble::Ensemble(
   const Terrain& terrain, std::span<const Rock> rocks, const SimulationParameters& p)
@@ -304,8 +133,8 @@ Ensemble::Ensemble(
         {
           rocks[std::size_t(k)].validate();
           const Block& block = blockOf(rocks[std::size_t(k)]);
-          checkPlacement(terrain, rocks[std::size_t(k)], block);
-          checkPenalty(rocks[std::size_t(k)], block, p);
+          requireOnSlope(terrain, rocks[std::size_t(k)], block);
+          requireStiff(rocks[std::size_t(k)], block, p);
         }
         catch (...)
         {

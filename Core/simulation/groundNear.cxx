@@ -1,8 +1,9 @@
-// What of the slope is near a rock, and that nothing of it is.
+// The part of the slope near a rock, and the proof that none is.
 
 #include "simulation/RockSimulator.h"
 
 #include "contact/pairs.h"
+#include "law/settings.h"
 
 #include <algorithm>
 
@@ -11,11 +12,6 @@ namespace rockfall
 
 namespace
 {
-
-/// As kCandidateSlack, of a rock among others that has nothing of the slope near it.
-constexpr double kFarSlack = 0.4;
-/// How far, in radii, a rock among others may go on until the height of the ground is looked up.
-constexpr double kLid = 4.0;
 
 CandidatePairs& workSpace()
 {
@@ -52,7 +48,7 @@ void RockSimulator::ensureCandidates(double reach, bool among)
   if (candidates_.room(state_, block_.radius(), reach) < 0.0)
   {
     // Where nothing was near at the last look there is little that a wider one finds.
-    const double slack = among && candidates_.empty() ? kFarSlack : kCandidateSlack;
+    const double slack = among && candidates_.empty() ? kFarCandidateSlack : kCandidateSlack;
     const double distance = std::max(2.0 * reach, reach + slack * block_.radius());
     this->ensurePatch(distance);
     gatherCandidates(placed_, state_, patch_, distance, candidates_);
@@ -112,7 +108,7 @@ bool RockSimulator::isHigh(double reach)
   if (!lid_.covers(p, r + reach))
   {
     thread_local HeightWindow window;
-    const double half = r + reach + kLid * r;
+    const double half = r + reach + kGroundLid * r;
     window.gather(surface_, p.x() - half, p.x() + half, p.y() - half, p.y() + half);
     lid_ = GroundLid(window);
   }

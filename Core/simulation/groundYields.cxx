@@ -3,6 +3,8 @@
 #include "simulation/RockSimulator.h"
 
 #include "block/flight.h"
+#include "contact/clearance.h"
+#include "law/settings.h"
 #include "simulation/rollingResistance.h"
 
 #include <algorithm>
@@ -10,25 +12,6 @@
 
 namespace rockfall
 {
-
-namespace
-{
-
-/// Λ sinks if it is deeper by this share of its depth, and of the rock's radius.
-constexpr double kDeeper = 0.1;
-constexpr double kShallow = 0.01;
-/// Λ rises if this share of its depth is gained.
-constexpr double kHigher = 0.3;
-/// Steeper ground than this (vertical part of its normal) has no scars: walls, trees.
-constexpr double kSteepest = 0.3;
-/// Share of the radius that Λ stays away from a rock that it rises under.
-constexpr double kApart = 1e-6;
-/// A flight through soil is followed in pieces that leave at least this share of the speed.
-constexpr double kLeast = 0.8;
-/// Shortest piece, s.
-constexpr double kShortest = 1e-6;
-
-} // namespace
 
 const YieldingGround& RockSimulator::yieldingOf(int restitutionClass) const
 {
@@ -54,14 +37,14 @@ bool RockSimulator::sinkUnder(double h)
 {
   const Vec3 spin = state_.angularVelocity();
   const Contact* under = nullptr;
-  double deepest =
-           std::max((1.0 + kDeeper) * scar_.depth(), scar_.depth() + kShallow * block_.radius()),
+  double deepest = std::max(
+           (1.0 + kDeeperScar) * scar_.depth(), scar_.depth() + kShallowScar * block_.radius()),
          fastest = 0.0;
   for (const Contact& c : contacts_)
   {
     const double approach = -c.normal.dot(state_.velocity + spin.cross(c.point - state_.position));
     if (c.closed() || approach <= restingSpeed_ || c.gap() > approach * h ||
-      c.normal.z() < kSteepest)
+      c.normal.z() < kSteepestScar)
     {
       continue;
     }
@@ -106,8 +89,8 @@ bool RockSimulator::riseWithRock()
     return false;
   }
   const double away = clearance(placed_, state_, patch_, parameters_.gravity, 0.0).distance;
-  const double by = std::min(scar_.depth(), away - kApart * block_.radius());
-  if (by < kHigher * scar_.depth())
+  const double by = std::min(scar_.depth(), away - kScarClearance * block_.radius());
+  if (by < kHigherScar * scar_.depth())
   {
     return false;
   }
@@ -179,7 +162,7 @@ void RockSimulator::flyThroughSoil(double duration)
         return placed;
       };
       const double volume = scar_.sweep(at);
-      if (piece > kShortest && ground.speedLeft(volume, block_.mass()) < kLeast)
+      if (piece > kShortestPiece && ground.speedLeft(volume, block_.mass()) < kLeastLeft)
       {
         scar_ = before;
         continue;

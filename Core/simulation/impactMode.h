@@ -11,6 +11,8 @@
 /// forces k v of all of them. Dashpots in proportion to the springs then damp nothing else.
 
 #include "contact/Contact.h"
+#include "contact/PlacedBlock.h"
+#include "law/settings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +21,7 @@
 namespace rockfall
 {
 
-/// What a force and its moment about `at` (N, N m) do to a body: fᵀ M⁻¹ f, N² / kg.
+/// Response of a body to a force and its moment about `at` (N, N m): fᵀ M⁻¹ f, N² / kg.
 inline double response(
   const PlacedBlock& body, const Vec3& force, const Vec3& moment, const Vec3& at)
 {
@@ -34,8 +36,6 @@ template <typename Approach, typename Response>
 void tuneDashpots(
   std::vector<Contact>& contacts, double h, const Approach& approachOf, const Response& responseTo)
 {
-  // However the forces cancel, no frequency is taken to be lower than this part of a point's own.
-  constexpr double kLowest = 0.05;
   const auto stops = [h](const Contact& c, double approach)
   { return c.closed() || (approach > 0.0 && c.gap() < approach * h); };
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero(), at = Vec3::Zero();
@@ -65,7 +65,7 @@ void tuneDashpots(
   {
     if (!c.closed() && stops(c, approachOf(c)))
     {
-      const double together2 = std::max(frequency2, kLowest * c.frequency2);
+      const double together2 = std::max(frequency2, kLowestImpactMode * c.frequency2);
       c.dashpot *= std::sqrt(c.frequency2 / together2);
       c.stopped = c.stiffness / together2;
     }

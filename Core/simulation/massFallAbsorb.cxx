@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "contact/motion.h"
+#include "law/settings.h"
 #include "simulation/pressOut.h"
 #include "simulation/pressedIn.h"
 

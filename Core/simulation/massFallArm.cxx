@@ -17,10 +17,6 @@ namespace rockfall
 namespace
 {
 
-/// However fast two rocks meet, their contact is stiff enough to stop them in this part of the
-/// smaller radius.
-constexpr double kDeepestPairImpact = 0.01;
-
 /// Gives contacts of a pair what they are made of, along the normal and across it side by side;
 /// what only the normal decides is found once.
 class PairArming

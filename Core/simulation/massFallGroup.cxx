@@ -4,7 +4,9 @@
 
 #include "base/abort.h"
 #include "base/parallel.h"
+#include "contact/detection.h"
 #include "contact/motion.h"
+#include "contact/timeToTouch.h"
 #include "law/settings.h"
 #include "simulation/pressOut.h"
 
@@ -13,31 +15,6 @@
 
 namespace rockfall
 {
-
-namespace
-{
-
-/// Steps that the smallest rock of a group may ask of all in one of Δt; if it asks for more, so
-/// many times fewer rocks resolve their impacts, but a few always do.
-constexpr double kMostSteps = 100.0;
-constexpr int kFew = 4;
-/// As kStepsPerImpact, of two rocks. An impact begins anywhere in a step: of faces that meet at a
-/// restitution of 0.8 the loss is off by 2.3 % at most with eight, by 1.4 % with ten.
-constexpr double kStepsPerPairImpact = 10.0;
-/// In a crowd a step is this much longer than rocks that resolve their impacts may take: where they
-/// would end is looked at.
-constexpr double kCrowdTravel = 2.0;
-/// What comes near within a step may do so faster than when it begins, by this factor.
-constexpr double kFaster = 1.5;
-/// In a crowd contacts are reckoned with that may close at the speed at which they come in, or are
-/// nearer than this share of the smaller radius: an impact turns rocks within the step, and what is
-/// found only where they end may be past each other by then, and stays as deep as it is (cubes that
-/// meet at 17 m/s, Δt 5 ms: the deepest by 0.6 % of an edge on average; with 2e-3 by 1.1 %).
-constexpr double kSurely = 3e-2;
-/// The same on the slope, where what pushes and turns rocks is reckoned with.
-constexpr double kSurelyOnSlope = 1e-2;
-
-} // namespace
 
 PairMotion MassFall::motionOf(const RockPair& pair) const
 {
@@ -54,7 +31,7 @@ bool MassFall::isCrowd(const Group& group) const
   const double frequency = std::sqrt(parameters_.normalPenalty * stiffest);
   const double steps = parameters_.timeStep * kStepsPerImpact * frequency / std::numbers::pi;
   const int size = int(group.members.size());
-  return size > resolved || (size > kFew && size * steps > kMostSteps * resolved);
+  return size > resolved || (size > kAlwaysResolved && size * steps > kMostSteps * resolved);
 }
 
 double MassFall::groupStep(const Group& group) const
@@ -87,7 +64,7 @@ double MassFall::groupStep(const Group& group) const
 void MassFall::gatherContacts(const Group& group, double h, Workspace& work) const
 {
   const auto reachOf = [&](double speed, double radius)
-  { return kFaster * speed * h + parameters_.gravity * h * h + 1e-6 * radius; };
+  { return kFasterApproach * speed * h + parameters_.gravity * h * h + 1e-6 * radius; };
   const bool crowd = group.crowd;
   work.sides.resize(members_.size());
   const auto stand = [&](std::size_t k)
@@ -131,7 +108,7 @@ void MassFall::gatherContacts(const Group& group, double h, Workspace& work) con
       const double spread = sim.state_.spin.norm() * r + pushed;
       const CandidatePairs& near = crowd
         ? sim.candidatesNow(m.body,
-            { sim.state_.velocity, spread, kFaster * h,
+            { sim.state_.velocity, spread, kFasterApproach * h,
               parameters_.gravity * h * h + kSurelyOnSlope * r, reach })
         : sim.candidates_;
       // A step as long as Δt may turn a rock that is held at a corner onto a face.
@@ -183,7 +160,7 @@ void MassFall::gatherContacts(const Group& group, double h, Workspace& work) con
     if (crowd)
     {
       // The second look finds the others, should they be needed.
-      const ClosingGaps closing = { motion, kFaster * h,
+      const ClosingGaps closing = { motion, kFasterApproach * h,
         parameters_.gravity * h * h + kSurely * smaller, rims };
       updatePair(first, second, reach, *pair, &closing);
     }

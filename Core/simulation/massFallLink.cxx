@@ -5,6 +5,7 @@
 #include "simulation/massFallMeet.h"
 
 #include "base/parallel.h"
+#include "law/settings.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,9 @@
 #include "simulation/massFallWork.h"
 
 #include "base/parallel.h"
+#include "contact/detection.h"
 #include "contact/motion.h"
+#include "law/settings.h"
 #include "simulation/pressOut.h"
 
 #include <algorithm>
@@ -19,9 +21,6 @@ namespace rockfall
 
 namespace
 {
-
-/// What is deeper than reckoned by more than this share of the smaller radius was missed.
-constexpr double kMissed = 5e-5;
 
 constexpr std::size_t kMissedGrain = 4;
 

@@ -18,6 +18,7 @@
 
 #include "base/parallel.h"
 #include "contact/motion.h"
+#include "law/settings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,10 +34,6 @@ constexpr std::size_t kFollowGrain = 64;
 /// So many rocks ahead the cache is asked for what follows here, in so many lines.
 constexpr std::size_t kMembersAhead = 4;
 constexpr int kLinesAsked = 5;
-
-/// Steps that a rock may go on in its ball as it moves past the others now, and what it may go
-/// otherwise, of the way that is known.
-constexpr double kSteps = 9.0, kOtherwise = 0.5;
 
 /// All are looked for anew when this share of them have come out of their balls.
 constexpr std::size_t kMostOut = 4;
@@ -270,8 +267,8 @@ void MassFall::Meetings::findNear(MassFall& fall)
 /// How much wider a rock's ball is than it need be in the step, m.
 double MassFall::Meetings::spare(int rock) const
 {
-  return kSteps * duration_ * (paces_[std::size_t(rock)].velocity - mean_).norm() +
-    kOtherwise * movers[std::size_t(rock)].known;
+  return kBallSteps * duration_ * (paces_[std::size_t(rock)].velocity - mean_).norm() +
+    kBallOtherwise * movers[std::size_t(rock)].known;
 }
 
 /// For all, from where they stand.

@@ -20,9 +20,6 @@ namespace rockfall
 /// Gap of two rocks along no axis yet.
 constexpr double kNoAxis = -std::numeric_limits<double>::infinity();
 
-/// Neighbours are near within this many times the way that is known, which may yet grow.
-constexpr double kWider = 1.1;
-
 /// A rock as the others meet it in the step at hand: what every look at a pair asks for, in one
 /// line of the cache.
 struct alignas(64) Mover

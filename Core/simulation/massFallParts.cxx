@@ -3,6 +3,7 @@
 // meets no other within such a part of the step goes on by himself meanwhile.
 
 #include "contact/motion.h"
+#include "law/settings.h"
 #include "simulation/massFallMeet.h"
 
 #include <algorithm>
@@ -16,10 +17,6 @@ namespace rockfall
 
 namespace
 {
-
-/// A part of a step is not halved if less than so many steps of an impact would be left: shorter
-/// parts cut more steps short than they spare (41 and 100 cubes, by processor time).
-constexpr double kLeastSteps = 2.0;
 
 } // namespace
 
@@ -242,7 +239,7 @@ void MassFall::advanceParts(
     return;
   }
   const double half = 0.5 * (until - from);
-  if (this->isOne(group, parting) || half < kLeastSteps * this->groupStep(group))
+  if (this->isOne(group, parting) || half < kLeastStepsOfPart * this->groupStep(group))
   {
     this->advanceTogether(group, until, false);
     return;

@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "contact/motion.h"
 #include "law/cohesion.h"
+#include "law/settings.h"
 #include "simulation/pressOut.h"
 #include "simulation/restitution.h"
 
@@ -12,14 +13,6 @@
 
 namespace rockfall
 {
-
-namespace
-{
-
-/// How often the step of a crowd is halved that is far from settled.
-constexpr int kCrowdCuts = 4;
-
-} // namespace
 
 GroupContact MassFall::take(const Member& member, Contact& c, double h, bool bounces) const
 {

@@ -9,20 +9,12 @@
 #include "simulation/massFallWork.h"
 
 #include "block/Block.h"
+#include "law/settings.h"
 
 #include <algorithm>
 
 namespace rockfall
 {
-
-namespace
-{
-
-/// Looks after which no further trees are let go: they hold for the rest of the step. Every second
-/// one lets the rocks go on to what stands behind.
-constexpr int kTreeLooks = 8;
-
-} // namespace
 
 /// Those that the rocks of a group meet in a step.
 struct MassFall::Trees

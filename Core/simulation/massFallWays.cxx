@@ -3,19 +3,13 @@
 
 #include "simulation/massFallMeet.h"
 
+#include "law/settings.h"
+
 #include <algorithm>
 #include <utility>
 
 namespace rockfall
 {
-
-namespace
-{
-
-/// A way that is longer by no more than this factor is not passed on.
-constexpr double kNoMore = 1.0 + 1e-6;
-
-} // namespace
 
 int MassFall::Meetings::root(int i)
 {

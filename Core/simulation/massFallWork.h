@@ -12,8 +12,6 @@
 namespace rockfall
 {
 
-constexpr double kTooShort = 1e-9; // s
-
 /// What a rock meets in the step (MassFall::Workspace::partners), if not one other rock or the
 /// slope (−1).
 constexpr int kMeetsSeveral = -2, kMeetsNone = -3;

@@ -4,6 +4,7 @@
 #include "base/errors.h"
 #include "base/numberText.h"
 #include "contact/pairs.h"
+#include "law/settings.h"
 #include "simulation/placement.h"
 #include "system/broadPhase.h"
 
@@ -16,20 +17,6 @@ namespace rockfall
 
 namespace
 {
-
-/// Shallower overlaps are rounding: rocks laid on each other by computed coordinates.
-constexpr double kLaidDown = 1e-6; // of the smaller radius
-
-/// Pushing goes on by this much more than the depth, so that it ends: the mean of several ways is
-/// less than each.
-constexpr double kPush = 1.1;
-constexpr int mostPasses = 5000;
-/// After so many passes masses do not count any more, and of two that lie on each other only the
-/// upper one gives way: a light one that the ground or others hold would be pushed in vain for
-/// ever.
-constexpr int kPatience = 100;
-/// A rock is on the other one where its way out goes up by more than this, the sine of its slope.
-constexpr double kUpward = 0.5;
 
 /// A rock where it stands, as the search for axes takes it.
 struct Standing
@@ -53,7 +40,7 @@ struct Standing
   }
 };
 
-/// They refer to their own blocks, so they stay where they are.
+/// Bodies refer to their own blocks, and stay where they are.
 std::vector<std::unique_ptr<Standing>> standing(std::span<const Rock> rocks)
 {
   std::vector<std::unique_ptr<Standing>> all;
@@ -80,12 +67,12 @@ std::vector<RockOverlap> overlapsOf(
     stayWanted();
     const std::size_t i = std::size_t(ij[0]), j = std::size_t(ij[1]);
     const double smaller = std::min(boxes[i].radius, boxes[j].radius);
-    if (findAxis(all[i]->body, all[j]->body, {}, 0.0).distance >= -kLaidDown * smaller)
+    if (findAxis(all[i]->body, all[j]->body, {}, 0.0).distance >= -kTouch * smaller)
     {
       continue;
     }
     const PairAxis axis = bestAxis(all[i]->body, all[j]->body);
-    if (axis.distance < -kLaidDown * smaller)
+    if (axis.distance < -kTouch * smaller)
     {
       overlaps.push_back({ ij[0], ij[1], -axis.distance, axis.normal });
     }
@@ -125,7 +112,7 @@ std::string others(std::size_t overlaps)
 
 bool isSame(const Rock& a, const Rock& b)
 {
-  const double rounding = kLaidDown * a.shape.radius();
+  const double rounding = kTouch * a.shape.radius();
   if ((a.position - b.position).norm() > rounding ||
     a.shape.vertices().size() != b.shape.vertices().size())
   {
@@ -152,7 +139,7 @@ std::vector<RockOverlap> findOverlaps(std::span<const Rock> rocks)
 
 void requireEachOnce(std::span<const Rock> rocks, const Vec3& origin)
 {
-  // Those that are one stand beside each other along x.
+  // Rocks that are one stand beside each other along x.
   std::vector<std::size_t> order(rocks.size());
   for (std::size_t i = 0; i < order.size(); ++i)
   {
@@ -167,7 +154,7 @@ void requireEachOnce(std::span<const Rock> rocks, const Vec3& origin)
   for (std::size_t i = 0; i < order.size(); ++i)
   {
     const Rock& a = rocks[order[i]];
-    const double rounding = kLaidDown * a.shape.radius();
+    const double rounding = kTouch * a.shape.radius();
     for (std::size_t j = i + 1; j < order.size(); ++j)
     {
       const Rock& b = rocks[order[j]];
@@ -225,23 +212,23 @@ PushedApart pushApart(const Terrain& terrain, std::span<Rock> rocks)
   std::vector<RockOverlap> overlaps = overlapsOf(rocks, all);
   for (; !overlaps.empty(); overlaps = overlapsOf(rocks, all))
   {
-    if (++done.passes > mostPasses)
+    if (++done.passes > kMostPasses)
     {
       const RockOverlap& worst = deepest(overlaps);
       throw PlacementError(nameOf(rocks[std::size_t(worst.first)], origin) + " and " +
         nameOf(rocks[std::size_t(worst.second)], origin) + " cannot be pushed apart: after " +
-        std::to_string(mostPasses) + " passes they still overlap, by " +
+        std::to_string(kMostPasses) + " passes they still overlap, by " +
         numberText(worst.depth, 4) + " m" + others(overlaps.size()));
     }
     std::fill(ways.begin(), ways.end(), Vec3::Zero());
     std::fill(pairs.begin(), pairs.end(), 0);
-    const bool byMass = done.passes <= kPatience;
+    const bool byMass = done.passes <= kPushPatience;
     for (const RockOverlap& overlap : overlaps)
     {
       const std::size_t i = std::size_t(overlap.first), j = std::size_t(overlap.second);
       const double massI = all[i]->block.mass(), massJ = all[j]->block.mass();
       const double up = overlap.normal.z();
-      const Vec3 apart = kPush * overlap.depth * overlap.normal;
+      const Vec3 apart = kPushApart * overlap.depth * overlap.normal;
       const double shareI = shareOf(massI, massJ, up, byMass);
       const double shareJ = shareOf(massJ, massI, -up, byMass);
       ways[i] += shareI * apart;

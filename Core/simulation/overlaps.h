@@ -3,7 +3,8 @@
 /// @file
 /// Rocks that are in each other when they are released: found, kept from it, or pushed apart.
 
-#include "simulation/ensemble.h"
+#include "simulation/Rock.h"
+#include "terrain/Terrain.h"
 
 #include <array>
 #include <map>
@@ -34,6 +35,17 @@ void requireEachOnce(std::span<const Rock> rocks, const Vec3& origin);
 /// Throws PlacementError if rocks overlap, naming the two that do it the deepest. `when` goes
 /// before the advice, as " in iteration 3".
 void requireNoOverlap(std::span<const Rock> rocks, const Vec3& origin, const std::string& when);
+
+/// Result of pushing rocks apart before they fall: the most of any iteration.
+struct PushedApart
+{
+  std::int64_t rocks = 0; ///< How many were moved.
+  double farthest = 0.0;  ///< The longest way of one, m.
+  int passes = 0;
+  std::int64_t iterations = 0; ///< In how many any were moved.
+
+  void add(const PushedApart& others); ///< Of other iterations.
+};
 
 /// Moves rocks that overlap apart until none do. In each pass every pair gives way along its
 /// shortest way out, the lighter rock the more, each rock by the mean of what its pairs ask for;

@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "base/numberText.h"
+#include "law/settings.h"
 #include "simulation/rockContacts.h"
 
 #include <cmath>
@@ -10,14 +11,6 @@
 
 namespace rockfall
 {
-
-namespace
-{
-
-/// A rock falls 5 cm in it: contacts that are met later are met wrongly.
-constexpr double kMostTimeStep = 0.1; // s
-
-} // namespace
 
 void SimulationParameters::validate() const
 {

@@ -1,6 +1,7 @@
 #include "simulation/placement.h"
 
 #include "contact/features.h"
+#include "law/settings.h"
 
 #include <algorithm>
 #include <cfloat>
@@ -14,12 +15,6 @@ namespace
 {
 
 constexpr double none = -std::numeric_limits<double>::infinity();
-
-/// A rock that is in something by no more than this share of its radius only touches it: rounding,
-/// of one that was laid down by computed coordinates.
-constexpr double kTouch = 1e-6;
-/// Over a triangle that is steeper than this (z of its normal) nothing stands but its edges.
-constexpr double kUpright = 1e-9;
 
 /// A convex body where it is to stand, its centroid at height 0.
 struct Body

@@ -3,7 +3,7 @@
 /// @file
 /// Where a rock stands on the slope.
 
-#include "contact/Contact.h"
+#include "contact/PlacedBlock.h"
 #include "geometry/Polyhedron.h"
 #include "terrain/Surface.h"
 

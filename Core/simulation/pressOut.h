@@ -10,6 +10,7 @@
 /// what a light rock on a stiff spring ever had, and an impact step would give that back.
 
 #include "contact/Contact.h"
+#include "law/settings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,15 +18,10 @@
 namespace rockfall
 {
 
-constexpr double kPressOut = 0.005;    ///< Speed, m/s.
-constexpr double kLooseOverlap = 1e-3; ///< Share of the radius.
-/// Speed beyond a loose overlap, m/s, and at most this share of √(g r).
-constexpr double kPressOutDeep = 0.1;
-
 /// Speed at which a deep overlap of a rock of this radius (m) is pressed out, m/s.
 inline double deepSpeed(double gravity, double radius)
 {
-  return kPressOutDeep * std::min(1.0, std::sqrt(std::max(gravity, 1e-3) * radius));
+  return kPressOutDeep * std::min(1.0, std::sqrt(std::max(gravity, kLeastGravity) * radius));
 }
 
 /// After a step: a loose overlap, by `slow` (m).

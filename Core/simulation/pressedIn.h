@@ -7,16 +7,13 @@
 /// the boulder's energy, at an overlap as large as the stone, and give it to the stone: hundreds of
 /// m/s. In nature the stone is crushed.
 
+#include "law/settings.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace rockfall
 {
-
-/// This share of the smaller radius is held in any case.
-constexpr double kFirm = 0.02;
-/// For what gravity and rounding add while two stop each other.
-constexpr double kSomeMore = 1.1;
 
 /// The deepest overlap (m) at which a spring (N/m) holds no more energy than two that meet at
 /// `speed` (m/s) have between them. `mass`: the reduced one, kg; `radius`: the smaller one, m. What

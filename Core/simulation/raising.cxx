@@ -2,6 +2,7 @@
 
 #include "base/abort.h"
 #include "contact/pairs.h"
+#include "law/settings.h"
 #include "system/broadPhase.h"
 
 #include <algorithm>
@@ -14,14 +15,6 @@ namespace rockfall
 
 namespace
 {
-
-/// Deeper in each other than this rocks overlap; faces no farther from each other lie on each
-/// other.
-constexpr double kTouchShare = 1e-6; // of the smaller radius
-/// Where a lift ends: between these, as shares of that.
-constexpr double kEndsAt = -0.9, kEndsBelow = -0.8;
-/// No axis is used twice, and few are; whatever rounding does, it ends.
-constexpr int kMostAxes = 1000;
 
 /// A rock somewhere over where it stands.
 class Climbing
@@ -64,7 +57,7 @@ bool isJoined(const PairBody& first, const PairBody& second, double touch)
 double roomAbove(const RaisedRock& rock, const RaisedRock& other, double most, Climbing& climbing,
   Climbing& standing)
 {
-  const double touch = kTouchShare * std::min(rock.block->radius(), other.block->radius());
+  const double touch = kTouch * std::min(rock.block->radius(), other.block->radius());
   standing.set(other, 0.0);
   climbing.set(rock, 0.0);
   if (isJoined(climbing.body(), standing.body(), touch))
@@ -115,7 +108,7 @@ void raiseOthers(std::span<RaisedRock> rocks)
   for (std::size_t i = 0; i < rocks.size(); ++i)
   {
     boxes[i].center = rocks[i].state.position;
-    boxes[i].radius = (1.0 + kTouchShare) * rocks[i].block->radius();
+    boxes[i].radius = (1.0 + kTouch) * rocks[i].block->radius();
   }
   BroadPhase near;
   near.place(boxes);

@@ -4,7 +4,8 @@
 #include "base/numberText.h"
 #include "base/random.h"
 #include "geometry/shell.h"
-#include "simulation/ensemble.h"
+#include "law/settings.h"
+#include "simulation/Rock.h"
 #include "simulation/placement.h"
 #include "terrain/Surface.h"
 
@@ -17,9 +18,6 @@ namespace rockfall
 
 namespace
 {
-
-/// Places that are drawn until one is on the slope.
-constexpr int mostPlaces = 1000;
 
 Quat rotationOf(const Vec3& vector)
 {
@@ -89,14 +87,14 @@ Rock realise(
     int attempt = 0;
     do
     {
-      if (attempt == mostPlaces)
+      if (attempt == kMostDraws)
       {
         throw PlacementError("block " + std::to_string(rock.blockId) + ": HorizontalDeviation " +
           numberText(unsure.horizontalDeviation) + " m puts it outside the slope " +
-          std::to_string(mostPlaces) + " times in a row in iteration " + std::to_string(iteration));
+          std::to_string(kMostDraws) + " times in a row in iteration " + std::to_string(iteration));
       }
       const auto [x, y] = normalDeviates(
-        seed, realisation, Draw::StartPosition, index * mostPlaces + std::uint64_t(attempt));
+        seed, realisation, Draw::StartPosition, index * kMostDraws + std::uint64_t(attempt));
       drawn.position.head<2>() =
         rock.position.head<2>() + unsure.horizontalDeviation * Eigen::Vector2d(x, y);
       ++attempt;

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// What of a rock's release is drawn in each iteration: place, attitude, volume (METHOD 7).
+/// The part of a release that is drawn in each iteration: place, attitude, volume (METHOD 7).
 
 #include "base/VolumeDistribution.h"
 #include "base/types.h"
@@ -48,7 +48,7 @@ Quat randomRotation(double u, double v, double w);
 /// The rock as it is released in this iteration: a function of (seed, iteration, index) alone,
 /// `index` being that of the rock in the run.
 ///
-/// Its height over ground goes with it: a rock that is moved, turned or grown is as far over the
+/// Height over ground goes with the rock: a rock that is moved, turned or grown is as far over the
 /// slope (as surveyed) at its new place as the given one at its own, plus the deviation of the
 /// height, and never inside the slope: where that would put it into the ground it stands on it. A
 /// place outside of the slope is drawn again, so that the deviation is cut off at the edge. Throws

@@ -5,6 +5,7 @@
 #include "base/random.h"
 #include "geometry/planeSampling.h"
 #include "gis/gdal.h"
+#include "law/settings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,8 +22,6 @@ namespace
 
 using gis::number;
 
-/// Places drawn for one rock until it is on the slope.
-constexpr std::uint32_t mostAttempts = 10000;
 /// What a rock takes until it is released, B: its polyhedron and its faces with their arrays.
 constexpr double bytesPerRock = 8000.0;
 
@@ -283,7 +282,7 @@ std::vector<ReleasePlace> releasePlaces(std::span<const SourceRow> sources, cons
       place.height = source.height.value_or(defaults.height);
       // A point that is given with its z is left to the simulation, which says what is wrong.
       bool placed = !terrain || (point && !place.overGround) || onTerrain(*terrain, place.position);
-      while (!placed && !point && !samplers[k].byIntensity() && ++attempt < mostAttempts)
+      while (!placed && !point && !samplers[k].byIntensity() && ++attempt < kMostDrawsOfSource)
       {
         place.position = samplers[k].at(defaults.seed, attempt, place.draw, place.overGround);
         placed = onTerrain(*terrain, place.position);
@@ -298,7 +297,7 @@ std::vector<ReleasePlace> releasePlaces(std::span<const SourceRow> sources, cons
         throw DataError(point ? name + ": the point " + number(source.position.x()) + ", " +
               number(source.position.y()) +
               whyNoGround(*terrain, source.position.x(), source.position.y())
-                              : name + ": none of " + std::to_string(mostAttempts) +
+                              : name + ": none of " + std::to_string(kMostDrawsOfSource) +
               " places is on the terrain: the source spans " + extentOf({ &source, 1 }).text() +
               ", the terrain " + extentOf(*terrain).text());
       }
@@ -342,7 +341,7 @@ bool PlaceRedrawer::hasOthers(const ReleasePlace& place) const
 bool PlaceRedrawer::redraw(ReleasePlace& place, std::uint32_t attempt) const
 {
   place.position = samplers_->samplers[place.source].at(
-    samplers_->seed, mostAttempts + attempt, place.draw, place.overGround);
+    samplers_->seed, kMostDrawsOfSource + attempt, place.draw, place.overGround);
   return !samplers_->terrain || onTerrain(*samplers_->terrain, place.position);
 }
 

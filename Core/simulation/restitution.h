@@ -1,13 +1,14 @@
 #pragma once
 
 /// @file
-/// What an impact is, and what it takes (METHOD 4; paper 3.1).
+/// Impacts: which touches are one, and restitution (METHOD 4; paper 3.1).
 ///
 /// The paper's way, (Vx, Vy, Vz) ← Rv (Vx, Vy, Vz) after an impact that was elastic, is kept for
 /// what comes down on the slope. Whatever glances, rolls or rattles has Rv on the normal velocity
 /// at the contact only: a dashpot beside the contact's spring. So have all touches in the other
 /// models.
 
+#include "law/settings.h"
 #include "law/springs.h"
 #include "simulation/results.h"
 #include "terrain/Terrain.h"
@@ -16,13 +17,6 @@
 
 namespace rockfall
 {
-
-/// A touch comes down if the contact point comes in at more than this share of the rock's speed
-/// (20.5°), or as from a drop of this part of the rock's radius; else it glances or rolls. A
-/// sphere-like polyhedron of 1280 faces that rolls hops from vertex to vertex and sets down at up
-/// to 0.24 of its speed.
-constexpr double kComesDown = 0.35;
-constexpr double kFallsDown = 0.25;
 
 /// Speeds in m/s, gravity in m/s², radius of the rock in m.
 inline bool comesDown(double approachSpeed, double speed, double gravity, double radius)
@@ -37,8 +31,8 @@ inline bool comesDown(double approachSpeed, double speed, double gravity, double
 inline bool isImpact(
   double approachSpeed, double speed, double restingSpeed, double gravity, double radius)
 {
-  const bool fast = approachSpeed * approachSpeed > 2.0 * gravity * 0.05 * radius;
-  const bool steep = approachSpeed > 0.2 * speed;
+  const bool fast = approachSpeed * approachSpeed > 2.0 * gravity * kDropOfTouch * radius;
+  const bool steep = approachSpeed > kSteepTouch * speed;
   return approachSpeed > restingSpeed && (fast || steep);
 }
 

@@ -4,7 +4,8 @@
 /// The laws of contact of all pairs of rocks, by their materials.
 
 #include "contact/pairs.h"
-#include "simulation/ensemble.h"
+#include "simulation/Rock.h"
+#include "simulation/parameters.h"
 
 #include <span>
 #include <vector>

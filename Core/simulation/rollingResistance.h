@@ -5,6 +5,7 @@
 /// friction cone of contact mechanics): |M_r| ≤ μ_r R λ against the rotation; what holds while the
 /// rotation is zero.
 
+#include "block/Block.h"
 #include "contact/Contact.h"
 
 #include <vector>
@@ -20,8 +21,8 @@ double rollingArm(const Block& block);
 /// Takes the moment's impulse of a step of `h` (s) from the motion and returns the energy that it
 /// took, J, ≥ 0. `coefficient`: μ_r. The contacts bring the mean normal forces of the step.
 ///
-/// What sticks turns about where the slope carries it, so that speed goes with the spin; what
-/// slides loses spin alone. The rotation is never reversed.
+/// A rock that sticks turns about where the slope carries it, so that speed goes with the spin; one
+/// that slides loses spin alone. The rotation is never reversed.
 double resistRolling(const Block& block, const std::vector<Contact>& contacts, double coefficient,
   double h, BlockState& state);
 

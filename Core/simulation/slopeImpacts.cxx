@@ -2,20 +2,13 @@
 
 #include "simulation/RockSimulator.h"
 
+#include "law/settings.h"
 #include "simulation/restitution.h"
 
 #include <algorithm>
 
 namespace rockfall
 {
-
-namespace
-{
-
-/// Velocities that differ by this share only are the same.
-constexpr double kNoJump = 1e-9;
-
-} // namespace
 
 void RockSimulator::beginImpact(
   const BlockState& at, double frictionBefore, double restitutionBefore)
@@ -93,7 +86,7 @@ void RockSimulator::finishImpact(bool over)
   const SurfaceMaterial& material = surface_.terrain().restitutionMaterial(ground);
   const Vec3 after =
     over ? adjustVelocity(material, event, state_.velocity, down) : state_.velocity;
-  const bool jumps = (after - state_.velocity).norm() > kNoJump * state_.velocity.norm();
+  const bool jumps = (after - state_.velocity).norm() > kSameVelocity * state_.velocity.norm();
   if (jumps)
   {
     recorder_.beforeJump(state_, true);

@@ -1,6 +1,9 @@
-// What a rock meets besides the slope: obstacles in flight, trees that break, barriers.
+// Structures that a rock meets: obstacles in flight, trees that break, barriers.
 
 #include "block/flight.h"
+#include "contact/clearance.h"
+#include "contact/timeToTouch.h"
+#include "law/settings.h"
 #include "simulation/RockSimulator.h"
 
 #include <algorithm>
@@ -29,12 +32,6 @@ BlockState between(const BlockState& from, const BlockState& to, double s)
   return at;
 }
 
-/// Barriers are at one place if they are passed within this way, m: lines that are the same on the
-/// map but for rounding.
-constexpr double kSamePlace = 1e-6;
-/// Where the line of a barrier's piece ends, as a share of its length.
-constexpr double kPieceEnd = 1e-9;
-
 /// Takes kinetic energy: all velocities become smaller by the same factor.
 void slowDown(BlockState& state, double energy, double taken)
 {
@@ -43,7 +40,7 @@ void slowDown(BlockState& state, double energy, double taken)
   state.spin *= factor;
 }
 
-/// What a rock does to a structure where it is `at`, with this energy (J) and its centre this high
+/// Outcome for a structure where the rock is `at`, with this energy (J) and its centre this high
 /// over the slope (m); nothing is taken of it.
 StructureEvent eventAt(StructureOutcome outcome, std::int64_t feature, const BlockState& at,
   double energy, double height)
@@ -149,7 +146,7 @@ bool RockSimulator::breakTrees(double h, std::span<const int> hit)
     {
       continue;
     }
-    // What the springs against the stem hold is not given back.
+    // Energy of the springs against the stem is not given back.
     double held = 0.0;
     for (const Contact& other : contacts_)
     {
@@ -226,7 +223,7 @@ bool RockSimulator::hearOf(const Broken& broken)
   {
     return false;
   }
-  // What the springs against a stem hold goes with it.
+  // Energy of the springs against a stem goes with it.
   double held = 0.0;
   bool touched = false;
   for (const Contact& c : contacts_)
@@ -300,8 +297,8 @@ void RockSimulator::findBarriers(const Way& way)
   {
     return;
   }
-  // What is at one place is passed at once: first all that record, then, in their order, those that
-  // stop the rock or break.
+  // Barriers at one place are passed at once: first all that record, then, in their order, those
+  // that stop the rock or break.
   const auto earlier = [this](const BarrierPassage& a, const BarrierPassage& b)
   {
     const auto stops = [this](const BarrierPassage& x)
@@ -350,7 +347,7 @@ void RockSimulator::passBarriers(const Way& way, double taken)
     {
       continue; // over it, or where there is no ground to stand on
     }
-    // What the ground holds in a touch it gives back in a moment.
+    // Energy that the ground holds in a touch it gives back in a moment.
     const double stored =
       way.flight ? 0.0 : (1.0 - fraction) * springEnergyBefore_ + fraction * springEnergy_;
     if (!barrier.records)

@@ -2,6 +2,7 @@
 
 #include "block/cayley.h"
 #include "contact/features.h"
+#include "law/settings.h"
 #include "solver/linear.h"
 
 #include <Eigen/LU>
@@ -14,11 +15,6 @@ namespace rockfall
 
 namespace
 {
-
-/// Open–close has settled when no state changes and the gaps move by less than this share of their
-/// change over the step: the energy error of a step is then of the order of 1e-7 of the work done
-/// in it.
-constexpr double kGapTolerance = 1e-7;
 
 template <int N>
 Eigen::Matrix<double, N, 1> rowOf(const Vec3& n, const Vec3& lever, const Vec3& x)
@@ -332,9 +328,9 @@ StepOutcome BlockStep<N>::step(const Block& block, const StepRequest& request,
     // to the other for ever: when a correction turns back, only part of it is taken.
     const VecN correction = next - d;
     const double back = correction.template head<6>().dot(last.template head<6>());
-    if (iteration > 1 && back < -0.25 * last.template head<6>().squaredNorm())
+    if (iteration > 1 && back < -kTurnsBack * last.template head<6>().squaredNorm())
     {
-      share = std::max(0.5 * share, 0.125);
+      share = std::max(0.5 * share, kLeastCorrection);
     }
     else
     {

@@ -19,6 +19,7 @@
 ///   that contact's spring (law/springs.h).
 /// - One contact is solved in its own three directions, W = J A⁻¹ Jᵀ; several in D.
 
+#include "block/Block.h"
 #include "contact/Contact.h"
 #include "law/contactLaw.h"
 
@@ -84,7 +85,7 @@ private:
     std::array<Vec3, 2> tangent; ///< Body axes.
     Vec3 n;                      ///< Body axes of the step's start.
     Vec3 x;                      ///< Material point.
-    Vec3 y0;                     ///< Its place about the centroid at the start, body axes.
+    Vec3 y0;                     ///< Place of x about the centroid at the start, body axes.
     std::array<Vec3, 2> ridge;   ///< EdgeEdge: point and direction about the centroid, body axes.
     ContactLaw law;
   };

@@ -1,19 +1,12 @@
 #include "system/BlockMatrix.h"
 
+#include "law/settings.h"
 #include "solver/linear.h"
 
 #include <algorithm>
 
 namespace rockfall
 {
-
-namespace
-{
-
-/// Least share of a pivot block's largest entry that a pivot may have.
-constexpr double kSingular = 1e-14;
-
-} // namespace
 
 void BlockMatrix::reset(int n)
 {
@@ -113,7 +106,7 @@ bool BlockMatrix::solve(Eigen::VectorXd& x)
     const std::vector<int>& near = neighbours_[pivot];
     Mat6& inverse = pivots_[pivot];
     inverse = this->at(pivot, pivot);
-    if (!invertInPlace<6>(inverse, kSingular))
+    if (!invertInPlace<6>(inverse, kSingularPivot))
     {
       return false;
     }

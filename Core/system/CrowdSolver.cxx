@@ -1,23 +1,13 @@
 #include "system/CrowdSolver.h"
 
 #include "block/cayley.h"
+#include "law/settings.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace rockfall
 {
-
-namespace
-{
-
-/// How often the turn of a free body is gone over for the first guess of a step.
-constexpr int kFreeTurns = 2;
-/// Levers and gyroscopic moments are brought up to date where a rock has turned otherwise than
-/// guessed by more than this, rad: gaps are right to the square of it.
-constexpr double kTurnGuessed = 0.02;
-
-} // namespace
 
 void CrowdSolver::turnAs(Work& w, const Vec3& spun) const
 {
@@ -188,7 +178,7 @@ bool CrowdSolver::correctTurns(
     }
   };
   forEach(turned_.size(), kRowGrain, assembleTurned);
-  // What others press on has been moved with them.
+  // Rocks that others press on have been moved with them.
   touched_.clear();
   for (std::size_t k = 0; k < rows_.size(); ++k)
   {

@@ -11,6 +11,7 @@
 
 #include "base/cache.h"
 #include "base/parallel.h"
+#include "law/settings.h"
 #include "solver/StepSolver.h"
 #include "system/crowdKernel.h"
 #include "system/group.h"
@@ -48,8 +49,6 @@ public:
   std::function<void(std::size_t contact)> arm;
 
 private:
-  /// Changes below this share of the tolerance are none.
-  static constexpr double kQuiet = 0.3;
   static constexpr int kNever = -2;                              ///< A sweep before all others.
   static constexpr std::size_t kBodyGrain = 64, kRowGrain = 256; ///< For one thread at a time.
 
@@ -69,7 +68,7 @@ private:
     bool moved;              ///< Since lookAgain was asked.
     Mat3 inverseInertia;     ///< h² I⁻¹
   };
-  /// What is not in its lane of a batch.
+  /// The part of a contact that is not in its lane of a batch.
   struct Row
   {
     int batch = 0; ///< ~i: it is watched, in fours i.
@@ -95,7 +94,7 @@ private:
   /// Movers in order, and the number of parts.
   void lineUp(const std::vector<GroupBody>& bodies);
   void arrange(const std::vector<GroupContact>& contacts); ///< Batches of each part.
-  /// Whose contacts a batch will hold.
+  /// The rocks whose contacts a batch will hold.
   struct Hand
   {
     explicit Hand(int slope);
@@ -124,7 +123,7 @@ private:
   template <class Go>
   void forUsed(int part, Go&& go) const;
   void prepareRow(const std::vector<GroupBody>& bodies, const GroupContact& group, Row& row);
-  void stiffen(const GroupContact& group, const Row& row); ///< What bounces.
+  void stiffen(const GroupContact& group, const Row& row); ///< A contact that bounces.
   void askGap(const GroupContact& group, const Row& row);  ///< Of its lane of a batch.
   /// Directions and levers at mid-step.
   void lever(const std::vector<GroupBody>& bodies, const GroupContact& group, const Row& row);
@@ -155,9 +154,9 @@ private:
   bool findEmptyLane(const GroupContact& contact, Row& row);
   void appendBatches(const std::vector<GroupContact>& contacts, const std::vector<int>& added);
   void assembleFresh();
-  /// Which one a contact belongs to.
+  /// The part that a contact belongs to.
   int partOf(const GroupContact& contact) const;
-  void noteChange(const GroupContact& contact); ///< Its rocks' contacts are to be visited.
+  void noteChange(const GroupContact& contact); ///< Contacts of its rocks are to be visited.
   /// Makes those of the watched contacts ready that are closed where the rocks go now; whether
   /// there were any.
   /// `sweep` is the next one.

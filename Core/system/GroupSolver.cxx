@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "block/cayley.h"
 #include "contact/features.h"
+#include "law/settings.h"
 
 #include <algorithm>
 #include <atomic>

@@ -134,7 +134,7 @@ private:
   std::vector<ContactBooks> books_; ///< Out, by row.
   std::vector<Work> work_;
   CrowdSolver crowd_;
-  bool sweeping_ = false; ///< It is crowd_ that solves the step at hand.
+  bool sweeping_ = false; ///< crowd_ solves the step at hand.
   double rate_ = 0.0;
   BlockMatrix blocks_, kept_;
 };

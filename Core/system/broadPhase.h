@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// Which rocks are near each other, by the map that finds the slope under a rock (paper 2.3.2), in
+/// Rocks near each other, by the map that finds the slope under a rock (paper 2.3.2), in
 /// space: cells no smaller than the rocks that stand in them.
 
 #include "base/types.h"
@@ -33,7 +33,7 @@ public:
   /// All pairs whose spheres overlap, smaller index first, in ascending order; until the next call.
   std::span<const std::array<int, 2>> pairs();
 
-  /// Those whose spheres overlap a ball, whether they move or not, in ascending order.
+  /// Rocks whose spheres overlap a ball, whether they move or not, in ascending order.
   void within(const Vec3& center, double radius, std::vector<int>& found) const;
 
 private:

@@ -345,7 +345,7 @@ void CrowdSolver::appendBatches(
   forces_.resize(batches_.size());
   forcesBefore_.resize(batches_.size());
   forcesAlong_.resize(batches_.size());
-  // They go with what reaches further than to the next part.
+  // Contacts go with what reaches further than to the next part.
   const std::size_t pairs = std::size_t(parts_ * kKinds + Pairs);
   used_[pairs] = int(batches_.size());
   for (std::size_t key = pairs + 1; key < starts_.size(); ++key)

@@ -13,7 +13,7 @@ namespace rockfall::crowd
 
 constexpr int kLanes = 8;
 
-/// What a sweep meets of a rock.
+/// The part of a rock that a sweep meets.
 struct alignas(64) Mover
 {
   double way[4];     ///< Displacement of the centroid, m; h²/m, m/N.
@@ -21,7 +21,7 @@ struct alignas(64) Mover
   double inertia[8]; ///< h² I⁻¹, world: xx, yy, zz, xy, xz, yz, 1/(N m); unused.
 };
 
-/// What a sweep meets of the contacts of a batch; the last index is the contact.
+/// The part of the contacts of a batch that a sweep meets; the last index is the contact.
 struct alignas(64) Batch
 {
   double directions[3][3][kLanes]; ///< Normal and two tangents; their x, y, z.
@@ -38,7 +38,7 @@ struct alignas(64) Batch
   int body[2][kLanes];             ///< Index of the mover.
 };
 
-/// What springs they have, for `assemble`; 0 in lanes that hold none.
+/// Springs of a batch, for `assemble`; 0 in lanes that hold none.
 struct alignas(64) Springs
 {
   double penalty[kLanes]; ///< pₙ, N/m
@@ -79,9 +79,9 @@ struct Watch
 {
   const Watched* first;
   std::size_t count;
-  Mover* movers;      ///< Read only.
-  const int* changed; ///< By mover, as for a pass.
-  int since;          ///< Those of which no rock has moved in this sweep or later stay as they are.
+  Mover* movers;         ///< Read only.
+  const int* changed;    ///< By mover, as for a pass.
+  int since;             ///< Contacts of which no rock has moved since this sweep stay as they are.
   unsigned char* closes; ///< Out, by batch: a bit for each one that is closed where the rocks go.
 };
 
@@ -98,7 +98,7 @@ struct Further
 {
   double share;
   bool anew;    ///< From here on another direction begins.
-  double quiet; ///< What goes further than this (m, rad) counts as moved
+  double quiet; ///< A mover that goes further than this (m, rad) counts as moved
   int number;   ///< in this sweep.
 };
 

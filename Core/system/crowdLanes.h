@@ -12,7 +12,7 @@ namespace
 
 using rockfall::crowd::kLanes;
 
-/// What a mover has, and contacts side by side: as many as a register holds.
+/// Numbers of a mover, and contacts side by side: as many as a register holds.
 using Four = double __attribute__((vector_size(32), may_alias));
 using FourMask = long long __attribute__((vector_size(32)));
 #ifdef __AVX512F__
@@ -143,7 +143,7 @@ ROCKFALL_INLINE Four absolute4(Four v)
   return v < 0.0 ? -v : v;
 }
 
-/// Which lanes are set, as bits.
+/// The lanes that are set, as bits.
 ROCKFALL_INLINE int bits(Mask m)
 {
 #if defined(__AVX512F__)

@@ -1,7 +1,9 @@
-// What the second look of a crowd's step asks for: where it would end, and contacts that nobody
+// Answers to the second look of a crowd's step: where it would end, and contacts that nobody
 // reckoned with.
 
 #include "system/CrowdSolver.h"
+
+#include "law/settings.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,6 +3,7 @@
 #include "system/CrowdSolver.h"
 
 #include "contact/features.h"
+#include "law/settings.h"
 
 #include <algorithm>
 #include <cmath>

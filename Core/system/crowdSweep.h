@@ -44,7 +44,7 @@ ROCKFALL_INLINE void take(Mover* movers, const int* body, Side& side)
   gather(side.turn, side.turns);
 }
 
-/// What a force does to its rocks.
+/// Adds a force to the displacements of its rocks.
 ROCKFALL_INLINE void push(Side& side, const Triple& lever, const Triple& force)
 {
   side.ways[0] += side.ways[3] * force.x;
@@ -195,7 +195,7 @@ double sweepHere(const Pass& pass)
   return pass.slope ? sweepAll<true>(pass) : sweepAll<false>(pass);
 }
 
-/// What forces along three directions do along them and along each other, by way of one rock.
+/// Mobility of one rock along three directions and between them, m/N.
 struct Mobility
 {
   Lanes nn, nu, nv, uu, vv, uv;
@@ -347,7 +347,7 @@ void goMoversHere(
 {
   for (std::size_t k = 0; k < count; ++k)
   {
-    // What is no displacement does not change.
+    // Numbers that are no displacement do not change.
     const Four way = go(further, now[k].way, before[k].way, along[k].way);
     const Four turn = go(further, now[k].turn, before[k].turn, along[k].turn);
     const FourMask moved = (absolute4(way) > further.quiet) | (absolute4(turn) > further.quiet);

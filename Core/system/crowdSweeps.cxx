@@ -3,6 +3,7 @@
 #include "system/CrowdSolver.h"
 
 #include "base/abort.h"
+#include "law/settings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,30 +14,6 @@ namespace rockfall
 namespace
 {
 
-/// Where nothing bounces forces are to be exact, and few contacts still change: so many times more
-/// sweeps.
-constexpr int kCalmSweeps = 50;
-/// As long as the last sweep has moved something by more than this many times the tolerance, 3 % of
-/// the longest way, so many times more sweeps are made: forces as wrong as that would throw rocks
-/// about. It happens where light rocks with sharp corners lie under heavy ones.
-constexpr double kRough = 300.0;
-constexpr int kRoughSweeps = 200;
-/// Or by more than this share of the rocks' radius: what is still pushed to and fro by that may end
-/// several times as deep in another one.
-constexpr double kRoughWay = 2.5e-3;
-/// After what has changed here and there (a bounce held back, a contact found), and where it is
-/// rough, the sweeps go on around it, where things move by more than this share of the longest way.
-/// Forces are not that exact yet anywhere: else each of these runs would go on with all of them.
-constexpr double kNoticed = 3e-3;
-constexpr double kRoughNoticed = 0.1; ///< And, of what is rough, less than this share of that.
-/// What is found in a second look is met to this many times the tolerance, which is about as exact
-/// as it is found, unless nothing bounces.
-constexpr double kFound = 4.0;
-/// What has gone further than this share of its radius since the last look is looked at again.
-constexpr double kGoneOn = 5e-3;
-/// In each so many sweeps watched contacts are looked at, and so many follow on one that closes.
-constexpr int kWatchEvery = 2;
-constexpr int kAfterWatched = 2;
 /// Bounces for one thread at a time.
 constexpr std::size_t kBounceGrain = 32;
 
@@ -89,7 +66,7 @@ bool CrowdSolver::sweepTo(double goal, int most, bool conjugate, GroupOutcome& o
     ++outcome.iterations;
     outcome.residual = this->sweep();
     reached = outcome.residual <= goal;
-    // What closes in the end gets some sweeps more, once.
+    // Contacts that close in the end get some sweeps more, once.
     const bool last = reached || k + 1 == most;
     if ((last ? !extended : k % kWatchEvery == 0) && this->watch(sweep_ + 1))
     {
@@ -113,7 +90,7 @@ bool CrowdSolver::sweeps(int most, bool everywhere, GroupOutcome& outcome)
     }
     return this->sweepTo(goal, count, conjugate, outcome);
   };
-  // What goes on as one cannot be left alone here and there.
+  // A group that goes on as one cannot be left alone here and there.
   bool settled = sweepAround(enough_, everywhere ? 0.0 : noticed, most, everywhere) && everywhere;
   if (outcome.residual > rough_)
   {
@@ -258,7 +235,7 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
   this->settle(most, calm, contacts, outcome);
   LookOutcome seen;
   const auto looksOn = [&](int look)
-  { return seen.asksFor(look) || (look <= kMostLooks && this->haveGoneOn()); };
+  { return seen.asksFor(look) || (look <= kMostMissLooks && this->haveGoneOn()); };
   for (int look = 0; lookAgain && looksOn(look); ++look)
   {
     seen = lookAgain();
@@ -276,7 +253,7 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
     {
       w.moved = false;
     }
-    enough_ = (calm ? 1.0 : kFound) * tolerance * scale;
+    enough_ = (calm ? 1.0 : kFoundTolerance) * tolerance * scale;
     this->append(bodies, contacts);
     if (seen.onlyTells(look))
     {

@@ -1,4 +1,4 @@
-// What comes of a crowd's step: into the bodies' states and the contacts' springs.
+// The end of a crowd's step: into the states of the bodies and the springs of the contacts.
 
 #include "system/CrowdSolver.h"
 

@@ -1,11 +1,12 @@
 #pragma once
 
 /// @file
-/// What a step of rocks that touch each other is asked with and answers: bodies and contacts.
+/// Bodies and contacts of a step of rocks that touch each other, as asked and as answered.
 
 #include "block/Block.h"
 #include "contact/Contact.h"
 #include "law/contactLaw.h"
+#include "law/settings.h"
 #include "law/springs.h"
 
 #include <algorithm>
@@ -40,25 +41,13 @@ struct GroupContact
   double approach = 0.0; ///< Speed at which it closes, m/s.
   double work = 0.0;     ///< Out: what it took from the rocks' motion, springs included, J.
   double way = 0.0;      ///< Out, if it carried: how far it opened along the normal, m.
-  /// What contact->closed() says when the step begins; for whoever set the contact up and goes over
+  /// Value of contact->closed() when the step begins; for whoever set the contact up and goes over
   /// all of them.
   bool closed = false;
   bool absent = false; ///< Let go for this step (GroupSolver::setAbsent): nothing holds it up.
 };
 
-/// The gap of a contact that is let go, m.
-constexpr double kAbsent = 1e3;
-
-/// How often missed contacts are looked for in a step (GroupSolver::step, lookAgain): so often as
-/// long as there are any, and so often if they are deep. After that it is only told how deep.
-constexpr int kLooks = 2, kMostLooks = 4;
-/// A step whose last look still finds something deeper than this share of a radius, or rocks that
-/// have passed into each other by it, is far from settled.
-constexpr double kDeepMiss = 0.01;
-/// What is less deep than this share of a radius leaves nothing deep behind it.
-constexpr double kWorthALook = 0.25 * kDeepMiss;
-
-/// What a look at where a step would end has found (GroupSolver::step).
+/// Result of a look at where a step would end (GroupSolver::step).
 struct LookOutcome
 {
   double missed = 0.0; ///< How deep the deepest is that nobody reckoned with, of a radius; 0: none.
@@ -70,10 +59,10 @@ struct LookOutcome
   bool any() const { return missed > 0.0 || again; }
   bool asksFor(int look) const ///< Whether one is due after so many.
   {
-    return look < kLooks || again || (look <= kMostLooks && missed > kWorthALook);
+    return look < kMissLooks || again || (look <= kMostMissLooks && missed > kWorthALook);
   }
   /// Whether the look after so many others finds out only how deep what it has missed is.
-  bool onlyTells(int look) const { return look >= kMostLooks && !again; }
+  bool onlyTells(int look) const { return look >= kMostMissLooks && !again; }
   bool isDeep() const { return std::max(missed, passed) > kDeepMiss; }
 };
 
@@ -98,11 +87,11 @@ inline double bounceLeft(const Contact& c, double approach)
   return leavingSpeed(c.stiffness, c.dashpot, c.stopped, depth, approach);
 }
 
-/// Which solutions of a step are taken.
+/// The solutions of a step that are taken.
 enum class Taken : std::uint8_t
 {
   Settled,
-  NotRough, ///< Those of Gauss–Seidel, too, that are not far from it.
+  NotRough, ///< Solutions of Gauss–Seidel, too, that are not far from settled.
   Any,
 };
 
@@ -116,17 +105,6 @@ struct GroupOutcome
   double frictionWork = 0.0; ///< Between rocks, J.
   double dampedWork = 0.0;   ///< Between rocks, J.
 };
-
-/// A bounce is this much stiffer than the rocks are heavy. Much more, and what bounces to and fro
-/// between others would keep Gauss–Seidel from settling.
-constexpr double kBounceStiffness = 100.0;
-
-/// Bounces that give less than this share of what comes in along their normal are let be;
-constexpr double kBounceGain = 1e-3;
-/// those that go on with an impact, less than this: gravity, which they overcome in the step, is in
-/// it.
-constexpr double kBounceGainOn = 0.05;
-constexpr int kHeldBounces = 3; ///< How often the others are held back in a step.
 
 /// The gap at the start of a step of `h` (s) that makes a contact leave as its bounce asks for.
 /// `turned`: stiffness times mobility along the normal; the spring misses a gap by so much of what
@@ -164,7 +142,7 @@ inline double heldBounce(
     : -1.0;
 }
 
-/// What a contact has done in a step, J.
+/// Energies of a contact in a step, J.
 struct ContactBooks
 {
   std::array<double, 2> done = {}; ///< Work of its force on the two rocks, if it is between rocks.

@@ -4,25 +4,13 @@
 
 #include "base/abort.h"
 #include "base/parallel.h"
+#include "law/settings.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace rockfall
 {
-
-namespace
-{
-
-/// Largest group that is solved directly.
-constexpr std::size_t kDirect = 60;
-/// As in the step of a single rock.
-constexpr double kGapTolerance = 1e-7;
-/// The gyroscopic moment converges linearly: to this share of a turn it keeps angular momentum to
-/// 1e-12.
-constexpr double kTurnTolerance = 1e-9;
-
-} // namespace
 
 bool GroupSolver::newton(
   const StepRequest& request, const std::vector<GroupBody>& bodies, GroupOutcome& outcome)
@@ -50,8 +38,8 @@ bool GroupSolver::newton(
       before += w.last.squaredNorm();
       w.last = correction;
     }
-    share = iteration > 1 && back < -0.25 * before ? std::max(0.5 * share, 0.125)
-                                                   : std::min(1.0, 2.0 * share);
+    share = iteration > 1 && back < -kTurnsBack * before ? std::max(0.5 * share, kLeastCorrection)
+                                                         : std::min(1.0, 2.0 * share);
     double turned = 0.0, turn = 0.0;
     for (Work& w : work_)
     {
@@ -131,7 +119,8 @@ bool GroupSolver::settle(const StepRequest& request, const std::vector<GroupBody
 bool GroupSolver::isSwept(StepKind kind, std::size_t bodies) const
 {
   return kind == StepKind::Lasting &&
-    (method == GroupMethod::Iterative || (method == GroupMethod::Suited && bodies > kDirect));
+    (method == GroupMethod::Iterative ||
+      (method == GroupMethod::Suited && bodies > std::size_t(kDirectGroup)));
 }
 
 GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody>& bodies,

@@ -2,6 +2,8 @@
 
 #include "system/GroupSolver.h"
 
+#include "law/settings.h"
+
 #include <Eigen/LU>
 
 namespace rockfall
@@ -71,14 +73,6 @@ void GroupSolver::assemble(const std::vector<int>& places, Eigen::VectorXd& righ
   }
 }
 
-namespace
-{
-
-/// The direct solution is checked: what is left over, as a share of the largest load.
-constexpr double kResidual = 1e-9;
-
-} // namespace
-
 bool GroupSolver::solveDirect(Eigen::VectorXd& next)
 {
   // Most of a group do not touch: what no contact acts on goes as if it were alone.
@@ -121,7 +115,7 @@ bool GroupSolver::solveDirect(Eigen::VectorXd& next)
   if (solved)
   {
     const double left = (right - kept_.times(found)).cwiseAbs().maxCoeff();
-    solved = left <= kResidual * right.cwiseAbs().maxCoeff();
+    solved = left <= kDirectResidual * right.cwiseAbs().maxCoeff();
   }
   if (!solved)
   {

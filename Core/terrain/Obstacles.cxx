@@ -3,6 +3,7 @@
 #include "base/errors.h"
 #include "base/numberText.h"
 #include "geometry/shell.h"
+#include "law/settings.h"
 #include "terrain/Surface.h"
 #include "terrain/Terrain.h"
 
@@ -18,9 +19,6 @@ namespace
 
 /// Keys of the slope's features are far below.
 constexpr std::int64_t firstKey = std::int64_t(1) << 60;
-/// How deep under the ground a stem begins, m, and per metre of its diameter.
-constexpr double kRootDepth = 2.0;
-constexpr double kRootPerDiameter = 3.0;
 
 FlatBox boxOf(const ObstacleMesh& mesh, const ObstacleMesh::Triangle& t)
 {
@@ -116,7 +114,7 @@ void ObstacleMesh::connect(std::size_t from)
       const int a = t.nodes[k], b = t.nodes[(k + 1) % 3], wing = other.nodes[(back + 2) % 3];
       const Vec3 arm = nodes[wing].position - nodes[a].position;
       const double drop = -t.normal.dot(arm);
-      const bool flat = drop * drop <= flatBend * flatBend * arm.squaredNorm();
+      const bool flat = drop * drop <= kFlatBend * kFlatBend * arm.squaredNorm();
       t.bends[k] = other.bends[back] = flat ? 0 : (drop > 0.0 ? 1 : -1);
       if (flat)
       {
@@ -330,7 +328,7 @@ void Obstacles::append(double xMin, double xMax, double yMin, double yMax,
 namespace
 {
 
-/// What numbers of a mesh become in the patch.
+/// Numbers of a mesh in the patch.
 struct Numbering
 {
   int nodes, triangles; ///< First of each in the patch.

@@ -1,5 +1,6 @@
 #include "terrain/Surface.h"
 
+#include "law/settings.h"
 #include "terrain/walls.h"
 
 #include <algorithm>
@@ -288,7 +289,7 @@ void gatherPatch(
       // Depth of the other triangle's wing below this plane, per its distance.
       const Vec3 arm = patch.nodes[wing].position - patch.nodes[t.nodes[k]].position;
       const double drop = -t.normal.dot(arm);
-      const bool flat = drop * drop <= flatBend * flatBend * arm.squaredNorm();
+      const bool flat = drop * drop <= kFlatBend * kFlatBend * arm.squaredNorm();
       const signed char sign = flat ? 0 : (drop > 0.0 ? 1 : -1);
       t.bends[k] = sign;
       other.bends[back[k]] = sign;

@@ -16,10 +16,6 @@
 namespace rockfall
 {
 
-/// Edges that bend by less than this (sine of the angle) are flat. It is above the rounding of a
-/// plane's node heights (1e-12) and below any slope that a survey can tell.
-constexpr double flatBend = 1e-7;
-
 /// A terrain with the random numbers of one iteration put on it (METHOD 7). A value: two surfaces
 /// of the same terrain, seed and iteration are the same.
 class Surface
@@ -30,7 +26,7 @@ public:
   static Surface asSurveyed(const Terrain& terrain);
 
   const Terrain& terrain() const { return *terrain_; }
-  // What is drawn per iteration, of class 0.
+  // Deviates drawn per iteration, of class 0.
   double restitution() const { return restitution_; }               ///< Rv, clamped to 0 … 1.
   double friction() const { return friction_; }                     ///< tan φ
   double cohesion() const { return terrain_->material().cohesion; } ///< N
@@ -133,7 +129,7 @@ struct SurfacePatch
     double offset;             ///< normal · x on the plane, m.
     std::int64_t cfe;          ///< 0: touches nodata. On the apron that of the nearest cell.
     std::int64_t key;          ///< The same triangle has the same key in every patch.
-    std::array<int, 3> ridges; ///< That a lower triangle counts as its own, −1: none.
+    std::array<int, 3> ridges; ///< Ridges that a lower triangle counts as its own, −1: none.
   };
   /// A convex edge between two triangles: the only kind that an edge of a rock can touch. At the
   /// rim of a hole the ground goes down in an upright wall, so that rims are ridges, too.

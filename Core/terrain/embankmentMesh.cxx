@@ -6,6 +6,7 @@
 #include "base/errors.h"
 #include "base/numberText.h"
 #include "geometry/shell.h"
+#include "law/settings.h"
 #include "terrain/Obstacles.h"
 #include "terrain/Terrain.h"
 
@@ -19,19 +20,6 @@ namespace
 {
 
 using Vec2 = Eigen::Vector2d;
-
-/// How deep under the ground a foot goes, m, beyond what roughness may lower the ground by.
-constexpr double kFootDepth = 0.5;
-/// How far below its crest a side must have come to the ground, m.
-constexpr double kLongestSide = 200.0;
-/// A crest that is to follow the ground gets a station where it would be off by more than this part
-/// of its height.
-constexpr double kCrestTolerance = 0.05;
-/// A mitre longer than this many widths folds.
-constexpr double kLongestMitre = 5.0;
-/// How far from the slope of a side, as a part of it, its faces may be in a bend whose points have
-/// one foot in common.
-constexpr double kFanTolerance = 0.5;
 
 struct Station
 {

@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "base/numberText.h"
+#include "law/settings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,9 +13,6 @@ namespace rockfall
 
 namespace
 {
-
-/// tan φ is 57 here; beyond it only grows. Drawn angles are kept below it, too.
-constexpr double steepestFriction = radians(89.0);
 
 void requireRange(double value, double low, double high, const char* field, const char* range)
 {
@@ -42,12 +40,13 @@ void SurfaceMaterial::validate() const
     throw ParameterError("RestitutionSpeed is " + numberText(this->restitutionSpeed) +
       ", it must be a positive, finite number of metres per second");
   }
-  if (!(this->frictionAngle >= 0.0 && this->frictionAngle <= steepestFriction))
+  if (!(this->frictionAngle >= 0.0 && this->frictionAngle <= radians(kSteepestFriction)))
   {
     throw ParameterError("FrictionAngle is " + numberText(degrees(this->frictionAngle)) +
       " degrees, it must be 0 to 89");
   }
-  if (!(this->frictionAngleDeviation >= 0.0 && this->frictionAngleDeviation <= steepestFriction))
+  if (!(this->frictionAngleDeviation >= 0.0 &&
+        this->frictionAngleDeviation <= radians(kSteepestFriction)))
   {
     throw ParameterError("FrictionAngleDeviation is " +
       numberText(degrees(this->frictionAngleDeviation)) + " degrees, it must be 0 to 89");

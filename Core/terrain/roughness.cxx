@@ -3,6 +3,7 @@
 #include "base/errors.h"
 #include "base/numberText.h"
 #include "base/random.h"
+#include "law/settings.h"
 #include "terrain/scatter.h"
 
 #include <algorithm>
@@ -16,20 +17,9 @@ namespace rockfall
 namespace
 {
 
-/// Distance of the knots of F in correlation lengths. The cubic B-spline, as a kernel on white
-/// noise, has the variance of exp(−2 r²/ℓ²), whose field is wanted, at √3/2; here the correlation
-/// is within 0.011 of exp(−(r/ℓ)²) at all lags, and the slope within 1 % of √2 σ/ℓ.
-constexpr double kKnots = 0.84;
-/// Nodes per length. At ½ ℓ the facets have 94 % of the field's root mean square slope, at ¼ ℓ 98
-/// %; an obstacle is ℓ across.
-constexpr double kNodesOfField = 2.0;
-constexpr double kNodesOfObstacles = 4.0;
-/// Shares of the obstacles of the first height, and of the first two.
-constexpr double kMost = 0.7, kMany = 0.9;
-
 using Drawn = std::array<double, 3>;
 
-/// What is drawn for a square of the map, remembered for its neighbours: a function all the same.
+/// Numbers drawn for a square of the map, remembered for its neighbours: a function all the same.
 template <typename Draw>
 const Drawn& remembered(std::uint64_t seed, std::uint32_t iteration, rockfall::Draw purpose,
   std::uint64_t index, Draw&& draw)
@@ -55,7 +45,7 @@ struct Knots
 {
   std::int64_t first;            ///< Of four.
   std::array<double, 4> weights; ///< Of the cubic B-spline.
-  double norm = 0.0;             ///< Their squares' sum.
+  double norm = 0.0;             ///< Sum of their squares.
 
   explicit Knots(double u)
   {
@@ -129,7 +119,7 @@ void Roughness::validate() const
 
 double RoughField::gaussian(double easting, double northing, double length) const
 {
-  const double inverse = 1.0 / (kKnots * length);
+  const double inverse = 1.0 / (kFieldKnots * length);
   const Knots x(easting * inverse), y(northing * inverse);
   double sum = 0.0;
   for (int j = 0; j < 4; ++j)
@@ -167,7 +157,9 @@ double RoughField::obstacles(double easting, double northing, const Roughness& r
       const double in = 1.0 - 4.0 * (dx * dx + dy * dy); // (r/w)² with w = ℓ/2
       if (in > 0.0)
       {
-        const double h = roughness.obstacles[o[2] < kMost ? 0 : o[2] < kMany ? 1 : 2];
+        const double h = roughness.obstacles[o[2] < kMostObstacles ? 0
+            : o[2] < kManyObstacles                                ? 1
+                                                                   : 2];
         highest = std::max(highest, h * in * in);
       }
     }

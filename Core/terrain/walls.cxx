@@ -1,5 +1,7 @@
 #include "terrain/walls.h"
 
+#include "law/settings.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,8 +14,6 @@ namespace
 
 /// Keys of the slope's features are below, those of obstacles above.
 constexpr std::int64_t firstWallKey = std::int64_t(1) << 58;
-/// Far deeper than a rock comes into a hole until it has left, m.
-constexpr double kWallDepth = 1000.0;
 
 /// The side at which a fan of triangles around the end of `rim` ends in the next rim; its triangle
 /// is −1 if that is not in the patch.
@@ -143,7 +143,7 @@ void addWalls(std::span<const Rim> rims, SurfacePatch& patch)
     SurfacePatch::Triangle& other = patch.triangles[j];
     const Vec3 arm = patch.nodes[c].position - patch.nodes[b].position;
     const double drop = -one.normal.dot(arm);
-    const bool flat = drop * drop <= flatBend * flatBend * arm.squaredNorm();
+    const bool flat = drop * drop <= kFlatBend * kFlatBend * arm.squaredNorm();
     one.neighbours[2] = j;
     other.neighbours[0] = i;
     one.bends[2] = other.bends[0] = flat ? 0 : (drop > 0.0 ? 1 : -1);

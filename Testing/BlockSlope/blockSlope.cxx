@@ -2,6 +2,7 @@
 
 #include "BlockSlope/BlockSystem.h"
 #include "base/errors.h"
+#include "contact/detection.h"
 #include "law/settings.h"
 #include "simulation/Recorder.h"
 

@@ -112,6 +112,18 @@ struct RawRaster
   }
 };
 
+/// 3 columns, 2 rows, cells of 10 m, in UTM zone 32.
+inline RawRaster smallRaster()
+{
+  RawRaster raster;
+  raster.columns = 3;
+  raster.rows = 2;
+  raster.affine = { 600000.0, 10.0, 0.0, 5100020.0, 0.0, -10.0 };
+  raster.crs = "EPSG:32632";
+  raster.values = { 1.0, 2.0, 3.0, 4.0, 5.0, 6.0 };
+  return raster;
+}
+
 /// An ESRI ASCII grid of 10 m cells; `rows` are lines of numbers, the northern one first.
 inline std::string writeAscii(const std::vector<std::string>& rows, int columns,
   const std::string& corner = "xllcorner 600000\nyllcorner 5100000\n",

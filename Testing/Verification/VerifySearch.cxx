@@ -3,7 +3,7 @@
 
 #include "verification.h"
 
-#include "contact/Contact.h"
+#include "contact/detection.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,6 @@
 // Many rocks at once: what must not be lost, not overlap, come to rest and be the same again.
 
+#include "cubeOnCorners.h"
 #include "piles.h"
 
 #include <tbb/global_control.h>
@@ -288,39 +289,15 @@ TEST(Crowds, SpinOfASlabMakesNoEnergy)
 
 TEST(Crowds, WhatHasNotSettledIsNotTaken)
 {
-  // A cube on the corners of its lower face, one of them higher than the others: four springs that
-  // hang together.
-  const Rock cube = brick(Vec3(1.0, 1.0, 1.0), Vec3(0.0, 0.0, 0.5), 0);
-  const Block block(cube.shape, cube.density, cube.youngModulus, cube.poissonRatio);
   for (const bool takeAnyway : { false, true })
   {
-    BlockState state;
-    state.position.z() = 0.5;
-    std::vector<Contact> corners(4);
-    std::vector<GroupContact> contacts(4);
-    for (int k = 0; k < 4; ++k)
-    {
-      Contact& c = corners[std::size_t(k)];
-      c.point = Vec3(k % 2 - 0.5, k / 2 - 0.5, 0.0);
-      c.distance = k == 0 ? 1e-5 : 0.0;
-      c.stiffness = c.shearStiffness = 1e9;
-      contacts[std::size_t(k)].contact = &c;
-      contacts[std::size_t(k)].first = 0;
-      contacts[std::size_t(k)].friction = 0.5;
-    }
-    std::vector<GroupBody> bodies(1);
-    bodies[0].block = &block;
-    bodies[0].state = &state;
-    GroupSolver solver;
-    solver.method = GroupMethod::Iterative;
-    solver.tolerance = 1e-13;
-    solver.maxSweeps = 0;
-    const StepRequest request = lastingStep(0.005, kGravity, 12);
-    EXPECT_FALSE(
-      solver.step(request, bodies, contacts, takeAnyway ? Taken::Any : Taken::Settled).settled);
-    EXPECT_EQ(state.time, takeAnyway ? 0.005 : 0.0);
-    EXPECT_EQ(state.position.z() == 0.5, !takeAnyway);
-    EXPECT_EQ(corners[1].closed(), takeAnyway);
+    CubeOnCorners on;
+    on.solver.tolerance = 1e-13;
+    on.solver.maxSweeps = 0;
+    EXPECT_FALSE(on.step(takeAnyway ? Taken::Any : Taken::Settled).settled);
+    EXPECT_EQ(on.state.time, takeAnyway ? 0.005 : 0.0);
+    EXPECT_EQ(on.state.position.z() == 0.5, !takeAnyway);
+    EXPECT_EQ(on.corners[1].closed(), takeAnyway);
   }
 }
 

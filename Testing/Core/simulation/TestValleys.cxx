@@ -2,7 +2,7 @@
 // short flights between its walls makes energy. Where they fall from a common top, it does not
 // pierce what comes down on it.
 
-#include "../form.h"
+#include "form.h"
 #include "piles.h"
 #include "simulation/placement.h"
 

@@ -2,7 +2,7 @@
 
 #include "base/errors.h"
 #include "base/random.h"
-#include "contact/Contact.h"
+#include "contact/detection.h"
 #include "gisFiles.h"
 #include "simulation/placement.h"
 #include "slopes.h"

@@ -18,18 +18,6 @@ using namespace rockfall::testing;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// 3 columns, 2 rows, cells of 10 m, in UTM zone 32.
-RawRaster small()
-{
-  RawRaster raster;
-  raster.columns = 3;
-  raster.rows = 2;
-  raster.affine = { 600000.0, 10.0, 0.0, 5100020.0, 0.0, -10.0 };
-  raster.crs = "EPSG:32632";
-  raster.values = { 1.0, 2.0, 3.0, 4.0, 5.0, 6.0 };
-  return raster;
-}
-
 std::string joined(const RasterSurface& surface)
 {
   std::string text;
@@ -42,20 +30,20 @@ std::string joined(const RasterSurface& surface)
 
 TEST(Raster, nodesArePixelCentresNorthFirst)
 {
-  const RasterSurface surface = readRaster(small().write());
+  const RasterSurface surface = readRaster(smallRaster().write());
   EXPECT_EQ(surface.geometry.columns, 3);
   EXPECT_EQ(surface.geometry.rows, 2);
   EXPECT_EQ(surface.geometry.cellSize, 10.0);
   EXPECT_EQ(surface.geometry.xOrigin, 600005.0);
   EXPECT_EQ(surface.geometry.yOrigin, 5100005.0);
-  EXPECT_EQ(surface.heights, small().values);
+  EXPECT_EQ(surface.heights, smallRaster().values);
   EXPECT_TRUE(surface.notes.empty()) << joined(surface);
   EXPECT_TRUE(holds(surface.geometry.crs, { "PROJCRS[", "zone 32N", "32632" }));
 }
 
 TEST(Raster, twoByTwoNodesAreOneCell)
 {
-  RawRaster raster = small();
+  RawRaster raster = smallRaster();
   raster.columns = 2;
   raster.values = { 1.0, 2.0, 3.0, 4.0 };
   const RasterSurface surface = readRaster(raster.write());
@@ -85,14 +73,14 @@ TEST(Raster, smallLocalSlopeIsNoLongitude)
 
 TEST(Raster, doublesAreNotRounded)
 {
-  RawRaster raster = small();
+  RawRaster raster = smallRaster();
   raster.values[4] = 1234.0 + 0x1p-40;
   EXPECT_EQ(readRaster(raster.write()).heights[4], 1234.0 + 0x1p-40);
 }
 
 TEST(Raster, southUpIsTurnedOver)
 {
-  RawRaster raster = small();
+  RawRaster raster = smallRaster();
   raster.affine = { 600000.0, 10.0, 0.0, 5100000.0, 0.0, 10.0 };
   const RasterSurface surface = readRaster(raster.write());
   EXPECT_EQ(surface.heights, (std::vector<double>{ 4.0, 5.0, 6.0, 1.0, 2.0, 3.0 }));
@@ -102,20 +90,20 @@ TEST(Raster, southUpIsTurnedOver)
 
 TEST(Raster, pictureWithoutPlaceKeepsItsOrder)
 {
-  RawRaster raster = small();
+  RawRaster raster = smallRaster();
   raster.georeferenced = false;
   raster.crs = "";
   raster.type = "Byte";
   raster.band = "<ColorInterp>Red</ColorInterp>";
   const RasterSurface surface = readRaster(raster.write());
-  EXPECT_EQ(surface.heights, small().values);
+  EXPECT_EQ(surface.heights, smallRaster().values);
   EXPECT_EQ(surface.geometry.cellSize, 1.0);
   EXPECT_TRUE(holds(joined(surface), { "no georeferencing", "picture's colour (Red)" }));
 }
 
 TEST(Raster, scaleAndOffsetAreApplied)
 {
-  RawRaster raster = small();
+  RawRaster raster = smallRaster();
   raster.type = "Int16";
   raster.values[0] = -32768;
   raster.band = "<NoDataValue>-32768</NoDataValue><Offset>1000</Offset><Scale>0.5</Scale>";
@@ -136,13 +124,13 @@ TEST(Raster, feetBecomeMetres)
   for (const Case& feet : { Case{ "ft", 0.3048 }, Case{ "Foot", 0.3048 },
          Case{ "US survey foot", 1200.0 / 3937.0 }, Case{ "m", 1.0 }, Case{ "metre", 1.0 } })
   {
-    RawRaster raster = small();
+    RawRaster raster = smallRaster();
     raster.band = std::string("<UnitType>") + feet.unit + "</UnitType>";
     const RasterSurface surface = readRaster(raster.write());
     EXPECT_DOUBLE_EQ(surface.heights[5], 6.0 * feet.metres) << feet.unit;
     EXPECT_EQ(surface.notes.size(), feet.metres == 1.0 ? 0u : 1u) << joined(surface);
   }
-  RawRaster raster = small();
+  RawRaster raster = smallRaster();
   raster.band = "<UnitType>fathom</UnitType>";
   EXPECT_TRUE(holds(messageOf<DataError>([&] { readRaster(raster.write()); }),
     { "band 1", "\"fathom\"", "not known", "gdal_edit.py -units" }));
@@ -150,7 +138,7 @@ TEST(Raster, feetBecomeMetres)
 
 TEST(Raster, transparencyOfRealNumbersIsAMask)
 {
-  RawRaster raster = small();
+  RawRaster raster = smallRaster();
   std::string bytes;
   for (const double alpha : { 255.0, 255.0, 0.0, 255.0, 255.0, 255.0 })
   {
@@ -170,7 +158,7 @@ TEST(Raster, transparencyOfRealNumbersIsAMask)
 
 TEST(Raster, zerosBesideHighGroundAreNoted)
 {
-  RawRaster raster = small();
+  RawRaster raster = smallRaster();
   raster.values = { 0.0, 50.0, 0.0, 3.0, 700.0, 0.0 };
   EXPECT_TRUE(holds(joined(readRaster(raster.write())),
     { "3 nodes of band 1 are exactly 0 m, 1 of them", "-a_nodata 0" }));
@@ -180,7 +168,7 @@ TEST(Raster, zerosBesideHighGroundAreNoted)
 
 TEST(Raster, verticalCrsInFeet)
 {
-  RawRaster raster = small();
+  RawRaster raster = smallRaster();
   raster.crs = "EPSG:32632+6360"; // NAVD88 height (ftUS)
   const RasterSurface surface = readRaster(raster.write());
   EXPECT_NEAR(surface.heights[5], 6.0 * 1200.0 / 3937.0, 1e-11); // PROJ rounds its unit
@@ -192,7 +180,7 @@ TEST(Raster, verticalCrsInFeet)
 
 TEST(Raster, nodataAsNan)
 {
-  RawRaster raster = small();
+  RawRaster raster = smallRaster();
   raster.values[1] = nan;
   raster.band = "<NoDataValue>nan</NoDataValue>";
   const RasterSurface surface = readRaster(raster.write());
@@ -204,7 +192,7 @@ TEST(Raster, nodataOfSinglePrecisionWrittenAsDecimal)
 {
   for (const char* text : { "-9999.9", "-3.4028235e+38", "-3.4028234663852886e+38", "1e-30" })
   {
-    RawRaster raster = small();
+    RawRaster raster = smallRaster();
     raster.type = "Float32";
     raster.values[1] = double(float(std::stof(text)));
     raster.band = std::string("<NoDataValue>") + text + "</NoDataValue>";
@@ -216,12 +204,12 @@ TEST(Raster, nodataOfSinglePrecisionWrittenAsDecimal)
 
 TEST(Raster, maskBandIsNodata)
 {
-  RawRaster mask = small();
+  RawRaster mask = smallRaster();
   mask.type = "Byte";
   mask.values = { 255, 255, 0, 255, 255, 255 };
   mask.write("mask");
   const std::string maskFile = pathOf("mask.raw");
-  RawRaster raster = small();
+  RawRaster raster = smallRaster();
   raster.values[0] = -9999.0; // beside the mask, a nodata value of its own
   raster.band = "<NoDataValue>-9999</NoDataValue>";
   raster.dataset = "<MaskBand><VRTRasterBand dataType=\"Byte\" subClass=\"VRTRawRasterBand\">"
@@ -238,7 +226,7 @@ TEST(Raster, maskBandIsNodata)
 
 TEST(Raster, localUnitsAreMultiplied)
 {
-  RawRaster raster = small();
+  RawRaster raster = smallRaster();
   raster.crs = "LOCAL_CS[\"mine\",UNIT[\"foot\",0.3048]]";
   const RasterSurface surface = readRaster(raster.write());
   EXPECT_DOUBLE_EQ(surface.geometry.cellSize, 3.048);
@@ -262,13 +250,13 @@ TEST(Raster, manyRowsAreReadInBlocks)
 
 TEST(Raster, decimalCommaOfTheLocaleChangesNothing)
 {
-  const std::string path = small().write();
+  const std::string path = smallRaster().write();
   const std::string ascii =
     writeAscii({ "1.5 2.25 3", "4 5 6" }, 3, "xllcorner 600000.5\nyllcorner 5100000.5\n", "2.5");
   const CommaLocale comma;
   const RasterSurface surface = readRaster(path);
   EXPECT_EQ(surface.geometry.xOrigin, 600005.0);
-  EXPECT_EQ(surface.heights, small().values);
+  EXPECT_EQ(surface.heights, smallRaster().values);
   const RasterSurface text = readRaster(ascii);
   EXPECT_EQ(text.heights, (std::vector<double>{ 1.5, 2.25, 3.0, 4.0, 5.0, 6.0 }));
   EXPECT_EQ(text.geometry.cellSize, 2.5);

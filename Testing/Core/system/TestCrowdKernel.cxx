@@ -3,6 +3,8 @@
 
 #include "system/crowdKernel.h"
 
+#include "law/contactLaw.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -405,4 +407,62 @@ TEST(CrowdKernel, MomentumIsKeptAndSpringsAreMet)
   }
   EXPECT_GT(pressed, 20);
   EXPECT_GT(sliding, 5);
+}
+
+/// Where the sweeps have settled, forces are those of the one law of a contact for the gap and the
+/// travel of its rocks.
+TEST(CrowdKernel, SettlesOnTheLawOfTheContact)
+{
+  for (const bool slope : { false, true })
+  {
+    Crowd crowd = randomCrowd(40, 30, slope, 5);
+    for (Batch& batch : crowd.batches)
+    {
+      for (int lane = 0; lane < kLanes; lane += 2)
+      {
+        batch.friction[lane] = 0.7; // more of these lock
+      }
+    }
+    run(crowd, suitedKernel(), slope, 3000);
+    int locked = 0, sliding = 0, open = 0;
+    for (std::size_t at = 0; at < crowd.batches.size(); ++at)
+    {
+      const Batch& b = crowd.batches[at];
+      for (int lane = 0; lane < kLanes; ++lane)
+      {
+        double along[3] = {}; // displacement of the first rock less the second
+        for (int side = 0; side < 2; ++side)
+        {
+          const Mover& m = crowd.movers[std::size_t(b.body[side][lane])];
+          for (int k = 0; k < 3; ++k)
+          {
+            const int i = (k + 1) % 3, j = (k + 2) % 3;
+            const double way =
+              m.way[k] + m.turn[i] * b.lever[side][j][lane] - m.turn[j] * b.lever[side][i][lane];
+            for (int direction = 0; direction < 3; ++direction)
+            {
+              along[direction] += (side == 0 ? way : -way) * b.directions[direction][k][lane];
+            }
+          }
+        }
+        rockfall::ContactLaw law;
+        law.penalty = law.shearPenalty = 1e9;
+        law.friction = b.friction[lane];
+        law.cohesion = b.cohesion[lane];
+        law.slip0 = { b.slip[0][lane], b.slip[1][lane] };
+        law.evaluate(true, 0.005, b.gap[lane] + along[0], { along[1], along[2] });
+        // Stiffness 1e9 N/m times displacements settled to 1e-9 m.
+        const auto& forces = crowd.forces[at].along;
+        EXPECT_NEAR(forces[0][lane], law.force, 1.0 + 1e-6 * law.force);
+        EXPECT_NEAR(forces[1][lane], law.shearForce[0], 1.0 + 1e-5 * law.force);
+        EXPECT_NEAR(forces[2][lane], law.shearForce[1], 1.0 + 1e-5 * law.force);
+        locked += law.state == rockfall::ContactState::Locked;
+        sliding += law.state == rockfall::ContactState::Sliding;
+        open += law.state == rockfall::ContactState::Open;
+      }
+    }
+    EXPECT_GT(locked, 2);
+    EXPECT_GT(sliding, 5);
+    EXPECT_GT(open, 5);
+  }
 }

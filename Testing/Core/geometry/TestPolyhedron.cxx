@@ -1,6 +1,7 @@
 /// Polyhedra from faces and as hulls: topology, oracles, transformations, large coordinates.
 
 #include "base/errors.h"
+#include "cubeFaces.h"
 #include "geometry/shapes.h"
 
 #include <gtest/gtest.h>
@@ -17,26 +18,13 @@ namespace rockfall
 namespace
 {
 
-using Faces = std::vector<std::vector<int>>;
+using namespace rockfall::testing;
 
 // Some hundred products and sums of numbers near 1.
 constexpr double rounding = 1e-13;
 const Vec3 utm(5e5, 4e6, 1024.0); // m
 // Doubles near 4e6 are 2⁻³¹ m apart.
 constexpr double utmRounding = 0x1p-31;
-
-const Faces cubeFaces = { { 0, 4, 6, 2 }, { 1, 3, 7, 5 }, { 0, 1, 5, 4 }, { 2, 6, 7, 3 },
-  { 0, 2, 3, 1 }, { 4, 5, 7, 6 } };
-
-std::vector<Vec3> cubePoints()
-{
-  std::vector<Vec3> points;
-  for (int i = 0; i < 8; ++i)
-  {
-    points.emplace_back(i & 1, i >> 1 & 1, i >> 2 & 1);
-  }
-  return points;
-}
 
 Faces triangulated(const Faces& faces)
 {
@@ -330,13 +318,13 @@ TEST(Polyhedron, HullIsShiftInvariant)
 
 TEST(Polyhedron, HullIsSilent)
 {
-  testing::internal::CaptureStdout();
-  testing::internal::CaptureStderr();
+  ::testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStderr();
   Polyhedron::convexHull(randomPoints(500, 8, true));
   Polyhedron::convexHull(cubePoints());
   EXPECT_THROW(Polyhedron::convexHull(std::vector<Vec3>(10, Vec3::Zero())), GeometryError);
-  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
 TEST(Polyhedron, Transformed)

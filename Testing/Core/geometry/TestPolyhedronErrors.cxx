@@ -1,6 +1,7 @@
 /// Every way in which a polyhedron can fail to be made, and what the message says.
 
 #include "base/errors.h"
+#include "cubeFaces.h"
 #include "geometry/Polyhedron.h"
 
 #include <gtest/gtest.h>
@@ -15,20 +16,7 @@ namespace rockfall
 namespace
 {
 
-using Faces = std::vector<std::vector<int>>;
-
-const Faces cubeFaces = { { 0, 4, 6, 2 }, { 1, 3, 7, 5 }, { 0, 1, 5, 4 }, { 2, 6, 7, 3 },
-  { 0, 2, 3, 1 }, { 4, 5, 7, 6 } };
-
-std::vector<Vec3> cubePoints()
-{
-  std::vector<Vec3> points;
-  for (int i = 0; i < 8; ++i)
-  {
-    points.emplace_back(i & 1, i >> 1 & 1, i >> 2 & 1);
-  }
-  return points;
-}
+using namespace rockfall::testing;
 
 /// Runs a maker that must throw GeometryError with these words.
 template <typename Maker>

@@ -1,5 +1,6 @@
 // Which steps are counted as taken although they had not settled.
 
+#include "cubeOnCorners.h"
 #include "piles.h"
 
 #include <gtest/gtest.h>
@@ -12,37 +13,19 @@ using namespace rockfall::testing;
 namespace
 {
 
-/// A cube lies on three corners of its lower face and comes down on the fourth: four springs that
-/// hang together, and few sweeps. Nothing of it is settled to `tolerance`.
+/// A cube lies on three corners of its lower face and comes down on the fourth, with few sweeps.
+/// Nothing of it is settled to `tolerance`.
 GroupOutcome sweepOnce(double tolerance, Taken take)
 {
-  const Rock cube = brick(Vec3(1.0, 1.0, 1.0), Vec3(0.0, 0.0, 0.5), 0);
-  const Block block(cube.shape, cube.density, cube.youngModulus, cube.poissonRatio);
-  BlockState state;
-  state.position.z() = 0.5;
-  state.velocity.z() = -0.1;
-  std::vector<Contact> corners(4);
-  std::vector<GroupContact> contacts(4);
+  CubeOnCorners on;
+  on.state.velocity.z() = -0.1;
   for (int k = 0; k < 4; ++k)
   {
-    Contact& c = corners[std::size_t(k)];
-    c.point = Vec3(k % 2 - 0.5, k / 2 - 0.5, 0.0);
-    c.distance = k == 0 ? 1e-5 : 0.0;
-    c.stiffness = c.shearStiffness = 1e9;
-    contacts[std::size_t(k)].contact = &c;
-    contacts[std::size_t(k)].first = 0;
-    contacts[std::size_t(k)].friction = 0.5;
-    contacts[std::size_t(k)].bounce = k == 3 ? 0.0 : -1.0; // so that it is not calm
+    on.contacts[std::size_t(k)].bounce = k == 3 ? 0.0 : -1.0; // so that it is not calm
   }
-  std::vector<GroupBody> bodies(1);
-  bodies[0].block = &block;
-  bodies[0].state = &state;
-  GroupSolver solver;
-  solver.method = GroupMethod::Iterative;
-  solver.tolerance = tolerance;
-  solver.maxSweeps = 2;
-  const StepRequest request = lastingStep(0.005, kGravity, 12);
-  return solver.step(request, bodies, contacts, take);
+  on.solver.tolerance = tolerance;
+  on.solver.maxSweeps = 2;
+  return on.step(take);
 }
 
 } // namespace

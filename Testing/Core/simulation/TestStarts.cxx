@@ -2,7 +2,7 @@
 // it: as far as it takes and no farther, at the rims of holes as well.
 
 #include "base/errors.h"
-#include "contact/Contact.h"
+#include "contact/clearance.h"
 #include "contact/features.h"
 #include "gisFiles.h"
 #include "simulation/placement.h"

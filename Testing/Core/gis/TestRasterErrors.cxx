@@ -18,17 +18,6 @@ namespace
 
 using namespace rockfall::testing;
 
-RawRaster small()
-{
-  RawRaster raster;
-  raster.columns = 3;
-  raster.rows = 2;
-  raster.affine = { 600000.0, 10.0, 0.0, 5100020.0, 0.0, -10.0 };
-  raster.crs = "EPSG:32632";
-  raster.values = { 1.0, 2.0, 3.0, 4.0, 5.0, 6.0 };
-  return raster;
-}
-
 template <class Expected>
 std::string failure(const std::string& path, const RasterOptions& options = {})
 {
@@ -104,14 +93,14 @@ TEST(RasterErrors, containerWithoutBand)
 
 TEST(RasterErrors, wrongBand)
 {
-  const std::string path = small().write();
+  const std::string path = smallRaster().write();
   EXPECT_TRUE(holds(failure<DataError>(path, { .band = 3 }), { path, "band 3", "1 band" }));
   EXPECT_TRUE(holds(failure<DataError>(path, { .band = 0 }), { path, "band 0" }));
 }
 
 TEST(RasterErrors, complexNumbers)
 {
-  RawRaster raster = small();
+  RawRaster raster = smallRaster();
   raster.type = "CFloat32";
   const std::string path = raster.write();
   EXPECT_TRUE(holds(failure<DataError>(path), { path, "complex", "CFloat32" }));
@@ -160,7 +149,7 @@ TEST(RasterErrors, truncatedEnvi)
 
 TEST(RasterErrors, truncatedRawBandOfAVrt)
 {
-  const std::string path = small().write();
+  const std::string path = smallRaster().write();
   EXPECT_EQ(readRaster(path).geometry.columns, 3);
   const std::string raw = writeFile("raster.raw", std::string(47, '\0'));
   EXPECT_TRUE(holds(failure<FileError>(path),
@@ -185,7 +174,7 @@ TEST(RasterErrors, truncatedRawBandOfAVrt)
 
 TEST(RasterErrors, truncatedMaskOfAVrt)
 {
-  RawRaster raster = small();
+  RawRaster raster = smallRaster();
   const std::string mask = writeFile("mask.raw", std::string(5, '\1'));
   raster.dataset = "<MaskBand><VRTRasterBand dataType=\"Byte\" subClass=\"VRTRawRasterBand\">"
                    "<SourceFilename relativeToVRT=\"0\">" +
@@ -232,7 +221,7 @@ TEST(RasterErrors, wordsInAnAsciiGrid)
 
 TEST(RasterErrors, tooSmall)
 {
-  RawRaster raster = small();
+  RawRaster raster = smallRaster();
   raster.rows = 1;
   raster.values.resize(3);
   const std::string path = raster.write();
@@ -241,7 +230,7 @@ TEST(RasterErrors, tooSmall)
 
 TEST(RasterErrors, allNodata)
 {
-  RawRaster raster = small();
+  RawRaster raster = smallRaster();
   raster.values.assign(6, -9999.0);
   raster.band = "<NoDataValue>-9999</NoDataValue>";
   const std::string path = raster.write();
@@ -251,7 +240,7 @@ TEST(RasterErrors, allNodata)
 TEST(RasterErrors, nothingLeftAfterResampling)
 {
   // A chessboard of nodata: no new node between has four neighbours.
-  RawRaster raster = small();
+  RawRaster raster = smallRaster();
   raster.columns = raster.rows = 4;
   raster.values.assign(16, 5.0);
   for (int i = 0; i < 16; ++i)
@@ -265,7 +254,7 @@ TEST(RasterErrors, nothingLeftAfterResampling)
 
 TEST(RasterErrors, heightsThatAreNotNumbers)
 {
-  RawRaster raster = small();
+  RawRaster raster = smallRaster();
   raster.values[5] = std::numeric_limits<double>::quiet_NaN();
   const std::string undeclared = raster.write("nan");
   EXPECT_TRUE(holds(failure<DataError>(undeclared), { undeclared, "row 2, column 3", "nan" }));
@@ -285,7 +274,7 @@ TEST(RasterErrors, heightsThatAreNotNumbers)
 
 TEST(RasterErrors, absurdHeight)
 {
-  RawRaster raster = small();
+  RawRaster raster = smallRaster();
   raster.values[2] = -32768.0;
   const std::string path = raster.write();
   EXPECT_TRUE(
@@ -294,7 +283,7 @@ TEST(RasterErrors, absurdHeight)
 
 TEST(RasterErrors, usualNodataThatIsNotDeclared)
 {
-  RawRaster raster = small();
+  RawRaster raster = smallRaster();
   raster.values[4] = -9999.0;
   EXPECT_TRUE(
     holds(failure<DataError>(raster.write()), { "row 2, column 2", "-9999 m", "-a_nodata -9999" }));
@@ -306,7 +295,7 @@ TEST(RasterErrors, usualNodataThatIsNotDeclared)
 
 TEST(RasterErrors, gapsOfAMosaic)
 {
-  const std::string tile = small().write("tile");
+  const std::string tile = smallRaster().write("tile");
   const auto mosaic = [&](const std::string& nodata)
   {
     return writeFile("mosaic.vrt",
@@ -337,7 +326,7 @@ TEST(RasterErrors, degreesWithoutCrs)
 
 TEST(RasterErrors, metresCalledDegrees)
 {
-  RawRaster raster = small();
+  RawRaster raster = smallRaster();
   raster.crs = "EPSG:4326";
   const std::string path = raster.write();
   EXPECT_TRUE(holds(failure<DataError>(path), { path, "EPSG:4326", "geographic", "600005" }));
@@ -345,7 +334,7 @@ TEST(RasterErrors, metresCalledDegrees)
 
 TEST(RasterErrors, halfTheWorld)
 {
-  RawRaster raster = small();
+  RawRaster raster = smallRaster();
   raster.crs = "EPSG:4326";
   raster.affine = { 0.0, 20.0, 0.0, 60.0, 0.0, -20.0 };
   const std::string path = raster.write();
@@ -354,7 +343,7 @@ TEST(RasterErrors, halfTheWorld)
 
 TEST(RasterErrors, geocentric)
 {
-  RawRaster raster = small();
+  RawRaster raster = smallRaster();
   raster.crs = "EPSG:4978";
   const std::string path = raster.write();
   EXPECT_TRUE(holds(failure<DataError>(path), { path, "EPSG:4978", "geocentric" }));
@@ -362,7 +351,7 @@ TEST(RasterErrors, geocentric)
 
 TEST(RasterErrors, cellSize)
 {
-  const std::string path = small().write();
+  const std::string path = smallRaster().write();
   EXPECT_TRUE(holds(failure<ParameterError>(path, { .cellSize = -5.0 }), { "CellSize", "-5" }));
   EXPECT_TRUE(holds(failure<ParameterError>(path, { .cellSize = std::nan("") }), { "nan" }));
   // Coarser than the raster is wide, and finer than any memory.
@@ -372,7 +361,7 @@ TEST(RasterErrors, cellSize)
 
 TEST(RasterErrors, cellsWithoutArea)
 {
-  RawRaster raster = small();
+  RawRaster raster = smallRaster();
   raster.affine = { 600000.0, 0.0, 0.0, 5100020.0, 0.0, -10.0 };
   const std::string path = raster.write();
   EXPECT_TRUE(holds(failure<DataError>(path), { path, "no area", "600000" }));
@@ -380,7 +369,7 @@ TEST(RasterErrors, cellsWithoutArea)
 
 TEST(RasterErrors, threadsDoNotMixTheirMessages)
 {
-  const std::string good = small().write();
+  const std::string good = smallRaster().write();
   const std::string bad = writeFile("letter.tif", "Dear reader");
   std::vector<std::thread> threads;
   std::array<int, 4> right{};

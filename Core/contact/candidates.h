@@ -1,0 +1,72 @@
+#pragma once
+
+/// @file
+/// The pairs of features of a rock and the slope that can touch.
+
+#include "contact/PlacedBlock.h"
+#include "terrain/Surface.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+namespace rockfall
+{
+
+/// The pairs of features that can touch while the rock stays near where it stood: found once, then
+/// looked through at every step.
+struct CandidatePairs
+{
+  struct Pair
+  {
+    int rock;  ///< Vertex or edge.
+    int patch; ///< Triangle or ridge.
+  };
+  std::vector<Pair> vertexFace;
+  std::vector<Pair> edgeEdge;
+  std::vector<int> peaks; ///< Nodes of the patch.
+  /// Work space: per triangle the vertices, modulo 64, that are not far over its plane.
+  std::vector<std::uint64_t> under;
+  double distance = -1.0;       ///< Within which they were gathered, m; < 0: not at all.
+  Vec3 position = Vec3::Zero(); ///< Of the rock then.
+  Quat orientation = Quat::Identity();
+
+  /// How much further the rock (of this radius) may move until a pair within `reach` of it might
+  /// not be among them, m; < 0: it might not be now.
+  double room(const BlockState& state, double radius, double reach) const;
+  bool empty() const { return vertexFace.empty() && edgeEdge.empty() && peaks.empty(); }
+};
+
+/// Finds all pairs within `distance` (m).
+void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
+  double distance, CandidatePairs& candidates);
+
+class PairBody;
+
+/// Gaps between a rock and the slope that may close within a step.
+struct SlopeReach
+{
+  Vec3 velocity; ///< Of the rock's centroid, m/s.
+  double speed;  ///< Rotation and other rocks may add this to it in any direction, m/s.
+  double time;   ///< For which it goes on, s.
+  double least;  ///< Gaps that may close however it moves, m.
+  double most;   ///< No gap that is wider does, m.
+
+  /// The widest one along a normal of the slope, m.
+  double along(const Vec3& normal) const
+  {
+    return std::min(most, least + time * std::max(0.0, speed - normal.dot(velocity)));
+  }
+};
+
+/// Finds the pairs that can be contacts where the rock stands now and may close within a step, and
+/// few others: for one that goes on so far in a step that candidates would not serve the next. Only
+/// on a patch that is all slope.
+void gatherNow(const PlacedBlock& rock, const PairBody& body, const SurfacePatch& patch,
+  const SlopeReach& reach, CandidatePairs& candidates);
+/// The same of vertices that are straight under the slope, and peaks in the rock, by more than
+/// `allowed` (m).
+void gatherUnder(const PlacedBlock& rock, const PairBody& body, const SurfacePatch& patch,
+  double allowed, CandidatePairs& candidates);
+
+} // namespace rockfall
