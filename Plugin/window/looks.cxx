@@ -91,7 +91,10 @@ void setColour(vtkSMProxy* proxy, const Colour& colour)
   {
     set(proxy, property, colour[0], colour[1], colour[2]);
   }
-  vtkSMPVRepresentationProxy::SetScalarColoring(proxy, nullptr, 0);
+  if (auto* drawn = vtkSMPVRepresentationProxy::SafeDownCast(proxy))
+  {
+    drawn->SetScalarColoring(nullptr, 0);
+  }
 }
 
 /// A body with its edges; a dot from afar (markers.h).
@@ -137,7 +140,8 @@ std::string titleOf(const std::string& array, const Quantity& quantity)
 
 std::string colouredBy(vtkSMProxy* proxy)
 {
-  if (!vtkSMPVRepresentationProxy::GetUsingScalarColoring(proxy))
+  auto* drawn = vtkSMPVRepresentationProxy::SafeDownCast(proxy);
+  if (!drawn || !drawn->GetUsingScalarColoring())
   {
     return {};
   }
@@ -302,7 +306,10 @@ void rescale(vtkSMProxy* representation)
     }
     return;
   }
-  vtkSMPVRepresentationProxy::RescaleTransferFunctionToDataRange(representation, false, false);
+  if (auto* drawn = vtkSMPVRepresentationProxy::SafeDownCast(representation))
+  {
+    drawn->RescaleTransferFunctionToDataRange(false, false);
+  }
 }
 
 void styleIn(vtkSMProxy* representation, vtkSMViewProxy* view)
@@ -344,8 +351,8 @@ void styleIn(vtkSMProxy* representation, vtkSMViewProxy* view)
   }
   const std::string array = colouredBy(representation);
   const Quantity* quantity = quantityOf(array);
-  if (!shown.source || array.empty() || !quantity ||
-    !vtkSMPVRepresentationProxy::SafeDownCast(representation))
+  auto* drawn = vtkSMPVRepresentationProxy::SafeDownCast(representation);
+  if (!shown.source || array.empty() || !quantity || !drawn)
   {
     return;
   }
@@ -368,7 +375,7 @@ void styleIn(vtkSMProxy* representation, vtkSMViewProxy* view)
   {
     return;
   }
-  vtkSMPVRepresentationProxy::SetScalarBarVisibility(representation, view, true);
+  drawn->SetScalarBarVisibility(view, true);
   if (vtkSMProxy* bar = vtkSMTransferFunctionProxy::FindScalarBarRepresentation(table, view))
   {
     vtkSMPropertyHelper(bar, "Title").Set(titleOf(array, *quantity).c_str());
