@@ -168,6 +168,15 @@ void MassFall::fellTrees(const Group& group, std::size_t member, const Workspace
     {
       continue;
     }
+    for (const Contact& c : sim.contactsBefore_)
+    {
+      // A lasting step books what is left over as damped; one of an impact does not.
+      const bool closed = c.closed() && sim.steppedAs_ == StepKind::Impact;
+      if (closed && sim.treeOf(c) == stem.tree)
+      {
+        sim.energy_.damping += c.springEnergy() - 0.5 * c.shearStiffness * c.slip.squaredNorm();
+      }
+    }
     const Tree& tree = sim.obstacles_->structures().trees[std::size_t(stem.tree)];
     if (rigidKineticEnergy(sim.block_, sim.state_) <= tree.capacity)
     {
