@@ -128,7 +128,8 @@ void RockSimulator::lowerPatch(double by)
     triangle.offset -= by * triangle.normal.z();
   }
   patch_.highest -= by;
-  candidates_.distance = -1.0;
+  // For the pairs that can touch the rock has moved the other way.
+  candidates_.position.z() -= by;
 }
 
 void RockSimulator::plough(double volume)
@@ -156,9 +157,21 @@ void RockSimulator::flyThroughSoil(double duration)
     const Scar before = scar_;
     for (double piece = left;; piece *= 0.5)
     {
+      if (piece > kShortestPiece && start.spin.norm() * piece > kTravelPerStep)
+      {
+        continue;
+      }
+      const BlockState end = fly(block_, start, parameters_.gravity, piece);
+      // Between the ends of so small a turn it is a steady one.
       const auto at = [&](double fraction) -> const PlacedBlock&
       {
-        placed.place(block_, fly(block_, start, parameters_.gravity, fraction * piece));
+        BlockState between = fraction < 1.0 ? start : end;
+        if (fraction > 0.0 && fraction < 1.0)
+        {
+          between.position = placeInFlight(start, parameters_.gravity, fraction * piece);
+          between.orientation = start.orientation.slerp(fraction, end.orientation);
+        }
+        placed.place(block_, between);
         return placed;
       };
       const double volume = scar_.sweep(at);
@@ -167,7 +180,7 @@ void RockSimulator::flyThroughSoil(double duration)
         scar_ = before;
         continue;
       }
-      state_ = fly(block_, start, parameters_.gravity, piece);
+      state_ = end;
       this->plough(volume);
       left = piece < left ? left - piece : 0.0;
       break;

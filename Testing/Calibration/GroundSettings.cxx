@@ -184,6 +184,10 @@ Arguments parseArguments(int argumentCount, char** words, GroundSettings default
     {
       result.output = next();
     }
+    else if (word == "--stops")
+    {
+      result.stops = next();
+    }
     else if (std::ranges::find(switches, word) != switches.end())
     {
       result.switches.push_back(word);

@@ -50,6 +50,7 @@ struct Arguments
 {
   std::string folder;
   std::string output; ///< After --output; empty: none.
+  std::string stops;  ///< After --stops; empty: none.
   std::vector<std::string> switches;
   GroundSettings settings;
 

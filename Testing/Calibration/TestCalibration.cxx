@@ -4,6 +4,7 @@
 #include "SingleImpact.h"
 #include "fieldScores.h"
 #include "fieldTables.h"
+#include "trackedGround.h"
 
 #include "Core/slopes.h"
 #include "base/errors.h"
@@ -39,6 +40,20 @@ TEST(FieldScores, EnergyScoreOnALineIsTheCrps)
   EXPECT_NEAR(energyScore(places, { 1.2, 1.6 }), crps(sample, 2.0), 1e-12);
   // A forecast that is sure is as good as it is near.
   EXPECT_DOUBLE_EQ(crps({ 7.0, 7.0, 7.0 }, 4.0), 3.0);
+}
+
+TEST(TrackedGround, CutsWaysAtTheWidenedHull)
+{
+  const std::vector<Place> places = { { 0, 0 }, { 4, 0 }, { 1, 1 }, { 4, 2 }, { 0, 2 }, { 2, 0 } };
+  const TrackedGround tracked(places, 0.5);
+  EXPECT_TRUE(tracked.holds({ 4.4, 1.0 }));
+  EXPECT_FALSE(tracked.holds({ 4.6, 1.0 }));
+  const Place inside = tracked.cut({ 1, 1 }, { 3, 1.5 }), beyond = tracked.cut({ 1, 1 }, { 8, 1 });
+  EXPECT_EQ(inside, (Place{ 3, 1.5 }));
+  EXPECT_NEAR(beyond[0], 4.5, 1e-12);
+  EXPECT_NEAR(beyond[1], 1.0, 1e-12);
+  const std::vector<Place> line = { { 0, 0 }, { 1, 1 }, { 2, 2 } };
+  EXPECT_THROW(TrackedGround(line, 1.0), DataError);
 }
 
 TEST(FieldRocks, HaveTheirMassAndSize)

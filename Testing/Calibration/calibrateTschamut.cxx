@@ -1,12 +1,18 @@
 // Runs of a field test with single rocks against where the rocks stopped, for one set of
-// parameters: per rock the mean run-out, the CRPS, and how many observed run-outs lie within the
-// simulated quantiles of 5 and 95 %. The folder is that of Examples/validation/field_test.py.
+// parameters: per rock the mean run-out and its deviation, the CRPS, how many observed run-outs lie
+// within the simulated quantiles of 5 and 95 %, and in which fifth of the simulated ones. The folder
+// is that of Examples/validation/field_test.py.
 //
-//   calibrateTschamut FOLDER [--set name=value]… [--iterations N] [--seed N] [--output runs.csv]
+//   calibrateTschamut FOLDER [--set name=value]… [--iterations N] [--seed N]
+//     [--output runs.csv] [--stops stops.csv]
+//
+// All of it twice: as simulated, and with run-outs beyond the tracked ground cut off at its edge.
+// That is the convex hull of releases and observed stops, widened by a cell of the folder's grid.
 
 #include "GroundSettings.h"
 #include "fieldScores.h"
 #include "fieldTables.h"
+#include "trackedGround.h"
 
 #include "base/errors.h"
 #include "gis/raster.h"
@@ -33,23 +39,27 @@ constexpr double kStarted = 1.0; // m; a rock that stops nearer to its release i
 struct Run
 {
   std::string id, block;
-  std::array<double, 2> stop{}; ///< Observed, m.
-  double runOut = 0.0;          ///< Observed, m.
-  std::vector<std::array<double, 2>> stops;
-  std::vector<double> runOuts;
+  Place start{}, stop{};    ///< Observed, m.
+  double runOut = 0.0;      ///< Observed, m.
+  std::vector<Place> stops; ///< Simulated, m.
 };
 
 struct Experiment
 {
   Terrain terrain;
+  double fileCell = 0.0;   ///< Of the folder's grid, m.
   std::vector<Rock> rocks; ///< One per run.
   std::vector<Run> runs;
 };
 
-/// The grid's nodes stand at its corner, which GDAL takes for the corner of a pixel.
-Terrain readTerrain(const std::string& fileName, const GroundSettings& s)
+double distance(const Place& a, const Place& b)
 {
-  const double fileCell = readRaster(fileName).geometry.cellSize;
+  return std::hypot(a[0] - b[0], a[1] - b[1]);
+}
+
+/// The grid's nodes stand at its corner, which GDAL takes for the corner of a pixel.
+Terrain readTerrain(const std::string& fileName, double fileCell, const GroundSettings& s)
+{
   RasterSurface surface = readRaster(fileName, { s.cellSize });
   surface.geometry.xOrigin -= 0.5 * fileCell;
   surface.geometry.yOrigin -= 0.5 * fileCell;
@@ -59,7 +69,9 @@ Terrain readTerrain(const std::string& fileName, const GroundSettings& s)
 Experiment readExperiment(const std::string& folder, const GroundSettings& s)
 {
   Experiment e;
-  e.terrain = readTerrain(folder + "/terrain.asc", s);
+  const std::string grid = folder + "/terrain.asc";
+  e.fileCell = readRaster(grid).geometry.cellSize;
+  e.terrain = readTerrain(grid, e.fileCell, s);
   const Vec3 origin = e.terrain.geometry().origin();
   const FieldTable blocks(folder + "/block_metadata.csv");
   std::map<std::string, Polyhedron> shapes;
@@ -96,7 +108,8 @@ Experiment readExperiment(const std::string& folder, const GroundSettings& s)
         lift, e.terrain.elevation(rock.position.x() + v.x(), rock.position.y() + v.y()) - v.z());
     }
     rock.position.z() = lift + kGap;
-    run.runOut = std::hypot(run.stop[0] - rock.position.x(), run.stop[1] - rock.position.y());
+    run.start = { rock.position.x(), rock.position.y() };
+    run.runOut = distance(run.start, run.stop);
     e.rocks.push_back(std::move(rock));
     e.runs.push_back(std::move(run));
   }
@@ -120,20 +133,80 @@ public:
 /// Figures over some runs.
 struct Figures
 {
-  int runs = 0, inside = 0, below = 0;
-  double observed = 0.0, simulated = 0.0, crps = 0.0, energyScore = 0.0, without = 0.0;
+  int runs = 0, inside = 0;
+  std::array<int, 5> fifths = {}; ///< In which fifth of the simulated ones the observed are.
+  double observed = 0.0, simulated = 0.0, variance = 0.0, crps = 0.0, energyScore = 0.0,
+         without = 0.0;
 
   void print(const char* name) const
   {
     const double n = runs;
-    std::printf("%-14s %4d %9.1f %9.1f %+8.1f %%  %6.2f %8.2f %9.2f %9.0f %% %9.0f %%\n", name,
-      runs, observed / n, simulated / n, 100.0 * (simulated / observed - 1.0), crps / n,
-      without / n, energyScore / n, 100.0 * inside / n, 100.0 * below / n);
+    std::printf("%-14s %4d %9.1f %9.1f %+8.1f %%  %6.1f %6.2f %8.2f %6.2f %7.0f %%   ", name, runs,
+      observed / n, simulated / n, 100.0 * (simulated / observed - 1.0), std::sqrt(variance / n),
+      crps / n, without / n, energyScore / n, 100.0 * inside / n);
+    for (const int count : fifths)
+    {
+      std::printf(" %3d", count);
+    }
+    std::printf("\n");
   }
 };
 
-void compare(Experiment& e, const std::vector<TrajectorySummary>& all, const Arguments& arguments,
-  double seconds)
+/// Prints them per rock and in all, and a row per run into `table` if it is open.
+void compare(const std::vector<Run>& runs, std::ofstream& table, const char* title)
+{
+  std::map<std::string, Figures> figures;
+  for (const Run& run : runs)
+  {
+    std::vector<double> others, runOuts;
+    for (const Run& other : runs)
+    {
+      if (&other != &run)
+      {
+        others.push_back(other.runOut);
+      }
+    }
+    for (const Place& stop : run.stops)
+    {
+      runOuts.push_back(distance(run.start, stop));
+    }
+    const double rank = rankOf(runOuts, run.runOut), simulated = mean(runOuts);
+    double variance = 0.0;
+    for (const double r : runOuts)
+    {
+      variance += (r - simulated) * (r - simulated) / double(runOuts.size() - 1);
+    }
+    const double ownCrps = crps(runOuts, run.runOut), score = energyScore(run.stops, run.stop);
+    for (const std::string& name : { run.block, std::string("~all") })
+    {
+      Figures& f = figures[name];
+      ++f.runs;
+      f.inside += rank >= 0.05 && rank <= 0.95;
+      ++f.fifths[std::size_t(std::min(4.0, 5.0 * rank))];
+      f.observed += run.runOut;
+      f.simulated += simulated;
+      f.variance += variance;
+      f.crps += ownCrps;
+      f.energyScore += score;
+      f.without += crps(others, run.runOut);
+    }
+    if (table.is_open())
+    {
+      table << title << ',' << run.id << ',' << run.block << ',' << run.runOut << ',' << simulated
+            << ',' << ownCrps << ',' << score << ',' << rank << '\n';
+    }
+  }
+  std::printf("%s\n%-14s %4s %9s %9s %10s  %6s %6s %8s %6s %9s    %s\n", title, "rock", "runs",
+    "observed", "simulated", "error", "dev.", "CRPS", "no model", "ES", "in 5-95",
+    "runs by fifth");
+  for (const auto& [name, f] : figures)
+  {
+    f.print(name == "~all" ? "all" : name.c_str());
+  }
+}
+
+/// Gives the runs their simulated stops, and prints how rocks moved.
+void sortStops(Experiment& e, const std::vector<TrajectorySummary>& all, double seconds)
 {
   int left = 0, moving = 0, stood = 0;
   std::vector<double> speeds, times;
@@ -145,62 +218,16 @@ void compare(Experiment& e, const std::vector<TrajectorySummary>& all, const Arg
   }
   for (const TrajectorySummary& t : all)
   {
-    Run& run = e.runs[std::size_t(t.rock)];
     const auto [stay, start] = starts[std::size_t(t.rock)];
     left += t.fate == Fate::LeftDomain;
     moving += t.fate == Fate::Moving;
     stood += t.runOut < kStarted;
     if (t.runOut >= kStarted || start < std::max(2, stay))
     {
-      run.stops.push_back({ t.stop.x(), t.stop.y() });
-      run.runOuts.push_back(t.runOut);
+      e.runs[std::size_t(t.rock)].stops.push_back({ t.stop.x(), t.stop.y() });
       speeds.push_back(t.maxSpeed);
       times.push_back(t.endTime);
     }
-  }
-  std::ofstream table;
-  if (!arguments.output.empty())
-  {
-    table.open(arguments.output);
-    table << "Run,Block,ObservedRunOut,MeanRunOut,CRPS,EnergyScore,Rank\n";
-  }
-  std::map<std::string, Figures> figures;
-  for (std::size_t k = 0; k < e.runs.size(); ++k)
-  {
-    Run& run = e.runs[k];
-    std::vector<double> others;
-    for (const Run& other : e.runs)
-    {
-      if (&other != &run)
-      {
-        others.push_back(other.runOut);
-      }
-    }
-    const double rank = rankOf(run.runOuts, run.runOut), simulated = mean(run.runOuts);
-    const double ownCrps = crps(run.runOuts, run.runOut), score = energyScore(run.stops, run.stop);
-    for (const std::string& name : { run.block, std::string("~all") })
-    {
-      Figures& f = figures[name];
-      ++f.runs;
-      f.inside += rank >= 0.05 && rank <= 0.95;
-      f.below += rank < 0.05;
-      f.observed += run.runOut;
-      f.simulated += simulated;
-      f.crps += ownCrps;
-      f.energyScore += score;
-      f.without += crps(others, run.runOut);
-    }
-    if (table)
-    {
-      table << run.id << ',' << run.block << ',' << run.runOut << ',' << simulated << ',' << ownCrps
-            << ',' << score << ',' << rank << '\n';
-    }
-  }
-  std::printf("%-14s %4s %9s %9s %10s  %6s %8s %9s %11s %11s\n", "rock", "runs", "observed",
-    "simulated", "error", "CRPS", "no model", "ES", "in 5-95", "below 5");
-  for (const auto& [name, f] : figures)
-  {
-    f.print(name == "~all" ? "all" : name.c_str());
   }
   std::ranges::sort(speeds);
   std::ranges::sort(times);
@@ -208,6 +235,48 @@ void compare(Experiment& e, const std::vector<TrajectorySummary>& all, const Arg
               "left %d, moving %d, not started %d of %zu; %.1f s\n",
     mean(speeds), quantile(speeds, 0.95), quantile(times, 0.5), quantile(times, 0.95), left, moving,
     stood, all.size(), seconds);
+}
+
+/// Cuts run-outs off at the edge of the tracked ground; returns the share that goes beyond.
+double keepToTracked(Experiment& e)
+{
+  std::vector<Place> places;
+  for (const Run& run : e.runs)
+  {
+    places.push_back(run.start);
+    places.push_back(run.stop);
+  }
+  const TrackedGround tracked(places, e.fileCell);
+  int beyond = 0, all = 0;
+  for (Run& run : e.runs)
+  {
+    for (Place& stop : run.stops)
+    {
+      ++all;
+      beyond += !tracked.holds(stop);
+      stop = tracked.cut(run.start, stop);
+    }
+  }
+  return double(beyond) / double(all);
+}
+
+void writeStops(const std::string& fileName, const Experiment& e)
+{
+  if (fileName.empty())
+  {
+    return;
+  }
+  const Vec3 origin = e.terrain.geometry().origin();
+  std::ofstream table(fileName);
+  table << "Run,Block,ObservedRunOut,X,Y,RunOut\n";
+  for (const Run& run : e.runs)
+  {
+    for (const Place& stop : run.stops)
+    {
+      table << run.id << ',' << run.block << ',' << run.runOut << ',' << stop[0] + origin.x() << ','
+            << stop[1] + origin.y() << ',' << distance(run.start, stop) << '\n';
+    }
+  }
 }
 
 int run(int count, char** words)
@@ -227,8 +296,19 @@ int run(int count, char** words)
   const auto begin = std::chrono::steady_clock::now();
   Stops stops;
   runEnsemble(e.terrain, e.rocks, p, stops);
-  compare(e, stops.all, arguments,
+  sortStops(e, stops.all,
     std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  writeStops(arguments.stops, e);
+  std::ofstream table;
+  if (!arguments.output.empty())
+  {
+    table.open(arguments.output);
+    table << "Scored,Run,Block,ObservedRunOut,MeanRunOut,CRPS,EnergyScore,Rank\n";
+  }
+  compare(e.runs, table, "as simulated");
+  const double beyond = keepToTracked(e);
+  compare(e.runs, table, "within the tracked ground");
+  std::printf("%.1f %% of the rocks go beyond the tracked ground\n", 100.0 * beyond);
   return 0;
 }
 
