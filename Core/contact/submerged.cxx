@@ -6,7 +6,8 @@
 namespace rockfall
 {
 
-double submergedArea(const PlacedBlock& rock, const Plane& plane, const Vec3& direction)
+double submergedArea(
+  const PlacedBlock& rock, const Plane& plane, const Vec3& direction, SurfaceMark* mark)
 {
   const std::vector<Vec3>& vertices = rock.vertices();
   thread_local std::vector<double> heights; // over the plane, m
@@ -31,6 +32,10 @@ double submergedArea(const PlacedBlock& rock, const Plane& plane, const Vec3& di
     int corners = 0;
     const auto add = [&](const Vec3& p)
     {
+      if (mark)
+      {
+        mark->add(p);
+      }
       if (corners == 0)
       {
         first = p;

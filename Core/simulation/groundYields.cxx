@@ -225,10 +225,9 @@ void RockSimulator::yieldInStep(double h)
     {
       scar_.touch(*most);
     }
-    thread_local PlacedBlock from, to;
-    from.place(block_, before_);
+    thread_local PlacedBlock to;
     to.place(block_, state_);
-    this->plough(scar_.sweep(from, to));
+    this->plough(scar_.sweep(before_.position, to));
   }
   if (most)
   {

@@ -66,7 +66,7 @@ constexpr GroundPreset presets[] = {
     yields(10e6, 2.0, 0.6, 0.27), Assumption, assumed, lu, "assumed, as talus" },
   { "soil", "Soil", 0.3, 1.0, 0.15, 30.0, 3.0, yields(10e6, 1.5, 0.6, 0.3), Assumption, assumed, lu,
     lu },
-  { "meadow", "Meadow", 0.4, 1.0, 0.3, 30.0, 3.0, yields(25e6, 0.85, 0.6, 0.24), FieldData,
+  { "meadow", "Meadow", 0.4, 1.0, 0.25, 30.0, 3.0, yields(25e6, 0.85, 0.85, 0.24), FieldData,
     "docs/validation.md", lu, lu },
 };
 

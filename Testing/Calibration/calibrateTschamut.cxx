@@ -1,7 +1,7 @@
 // Runs of a field test with single rocks against where the rocks stopped, for one set of
 // parameters: per rock the mean run-out and its deviation, the CRPS, how many observed run-outs lie
-// within the simulated quantiles of 5 and 95 %, and in which fifth of the simulated ones. The folder
-// is that of Examples/validation/field_test.py.
+// within the simulated quantiles of 5 and 95 %, and in which fifth of the simulated ones. The
+// folder is that of Examples/validation/field_test.py.
 //
 //   calibrateTschamut FOLDER [--set name=value]… [--iterations N] [--seed N]
 //     [--output runs.csv] [--stops stops.csv]
@@ -197,8 +197,7 @@ void compare(const std::vector<Run>& runs, std::ofstream& table, const char* tit
     }
   }
   std::printf("%s\n%-14s %4s %9s %9s %10s  %6s %6s %8s %6s %9s    %s\n", title, "rock", "runs",
-    "observed", "simulated", "error", "dev.", "CRPS", "no model", "ES", "in 5-95",
-    "runs by fifth");
+    "observed", "simulated", "error", "dev.", "CRPS", "no model", "ES", "in 5-95", "runs by fifth");
   for (const auto& [name, f] : figures)
   {
     f.print(name == "~all" ? "all" : name.c_str());
@@ -296,8 +295,8 @@ int run(int count, char** words)
   const auto begin = std::chrono::steady_clock::now();
   Stops stops;
   runEnsemble(e.terrain, e.rocks, p, stops);
-  sortStops(e, stops.all,
-    std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  sortStops(
+    e, stops.all, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   writeStops(arguments.stops, e);
   std::ofstream table;
   if (!arguments.output.empty())

@@ -59,8 +59,8 @@ TrackedGround::TrackedGround(std::span<const Place> places, double margin)
 
 bool TrackedGround::holds(const Place& place) const
 {
-  return std::ranges::all_of(sides_, [&](const Side& s)
-    { return s.outward[0] * place[0] + s.outward[1] * place[1] <= s.offset; });
+  return std::ranges::all_of(sides_,
+    [&](const Side& s) { return s.outward[0] * place[0] + s.outward[1] * place[1] <= s.offset; });
 }
 
 Place TrackedGround::cut(const Place& from, const Place& to) const

@@ -98,7 +98,7 @@ said, message = run(folder, "--output", "fit", *FEW, "--calibrate", "4")
 tried = rows_of("fit/candidates.csv")
 least = min(tried, key=lambda row: float(row["EnergyScore_m"]))
 expect(message is None and len(tried) == 4, f"calibration: {message}, {len(tried)} candidates")
-searched = ("ScarCompaction", "RollingResistance")
+searched = ("SlipFrictionMin", "RollingResistance")
 expect(all(f"{name} {least[name]}," in said.split("Ground: ")[1] for name in searched),
        f"the best candidate {least} was not used: {said}")
 expect("Held out, 2 folds with runs of every group" in said and
