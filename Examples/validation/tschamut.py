@@ -31,8 +31,8 @@ from site_scores import Observed
 # The ground: property, option, default, and the range that a calibration searches; one without a range
 # keeps its value. The restitution is normal and tangential (RestitutionModel 1), friction that of slip.
 PARAMETERS = (
-    ("RestitutionCoefficient", "--restitution", 0.3, None, "Rn, 0 to 1"),
-    ("RestitutionDeviation", "--restitution-deviation", 0.2, None, "of Rn"),
+    ("RestitutionCoefficient", "--restitution", 0.4, None, "Rn, 0 to 1"),
+    ("RestitutionDeviation", "--restitution-deviation", 0.25, None, "of Rn"),
     ("TangentialRestitution", "--tangential", 1.0, None, "Rt, 0 to 1"),
     ("GroundModulus", "--modulus", 25.0, None, "ME in MN/m2, 0 for hard ground"),
     ("ScarDepthFactor", "--depth-factor", 0.125, None, "of the scar's depth"),
@@ -43,7 +43,7 @@ PARAMETERS = (
     ("SlipFrictionGrowth", "--friction-growth", 3.0, None, "in 1/m"),
     ("SlipFrictionDecay", "--friction-decay", 185.0, None, "in 1/s"),
     ("FrictionAngle", "--friction", 30.0, None, "in degrees, if no friction of slip is given"),
-    ("RollingResistance", "--rolling", 0.2, (0.16, 0.22), "of the rock's radius"),
+    ("RollingResistance", "--rolling", 0.24, (0.16, 0.26), "of the rock's radius"),
     ("RoughnessDeviation", "--roughness", 0.03, None, "deviation of the ground's height in m"),
     ("RoughnessLength", "--roughness-length", 0.5, None, "its correlation length in m, 0 for the nodes'"),
 )
