@@ -6,8 +6,7 @@
 namespace rockfall
 {
 
-double submergedArea(
-  const PlacedBlock& rock, const Plane& plane, const Vec3& direction, SurfaceMark* mark)
+double submergedArea(const PlacedBlock& rock, const Plane& plane, const Vec3& direction)
 {
   const std::vector<Vec3>& vertices = rock.vertices();
   thread_local std::vector<double> heights; // over the plane, m
@@ -32,10 +31,6 @@ double submergedArea(
     int corners = 0;
     const auto add = [&](const Vec3& p)
     {
-      if (mark)
-      {
-        mark->add(p);
-      }
       if (corners == 0)
       {
         first = p;

@@ -21,6 +21,7 @@ void Scar::sink(double depth, int ground, const Contact& contact)
   if (!this->open())
   {
     *this = Scar();
+    area_ = 0.0;
   }
   surface_.normal = contact.normal;
   surface_.offset =
@@ -47,26 +48,27 @@ void Scar::touch(const Contact& contact)
   surface_.offset = surface_.normal.dot(place);
 }
 
-SurfaceMark* Scar::markAlong(const Vec3& way)
+double Scar::book(double volume, const Vec3& way, double areaAtEnd)
 {
-  if (mark_.along.isZero(0.0))
+  area_ = areaAtEnd;
+  if (volume > 0.0)
   {
-    mark_.along = (way - way.dot(surface_.normal) * surface_.normal).normalized();
+    length_ += (way - way.dot(surface_.normal) * surface_.normal).norm();
   }
-  return mark_.along.isZero(0.0) ? nullptr : &mark_;
+  return volume;
 }
 
-double Scar::sweep(const Vec3& from, const PlacedBlock& to)
+double Scar::sweep(const PlacedBlock& from, const PlacedBlock& to)
 {
-  const Vec3 way = to.position() - from;
+  const Vec3 way = to.position() - from.position();
   const double s = way.norm();
   if (!(s > kNoWay))
   {
     return 0.0;
   }
-  const double before = area_;
-  area_ = submergedArea(to, surface_, way / s, this->markAlong(way));
-  return 0.5 * (before + area_) * s;
+  const double start = area_ >= 0.0 ? area_ : submergedArea(from, surface_, way / s);
+  const double end = submergedArea(to, surface_, way / s);
+  return this->book(0.5 * (start + end) * s, way, end);
 }
 
 double Scar::sweep(const std::function<const PlacedBlock&(double)>& at)
@@ -96,10 +98,8 @@ double Scar::sweep(const std::function<const PlacedBlock&(double)>& at)
   if (std::all_of(before.begin(), before.end(), isOut) &&
     std::all_of(after.begin(), after.end(), isOut))
   {
-    area_ = 0.0;
-    return 0.0;
+    return this->book(0.0, way, 0.0);
   }
-  SurfaceMark* const mark = this->markAlong(way);
   std::vector<double> breaks = { 0.0, 1.0 };
   for (std::size_t v = 0; v < before.size(); ++v)
   {
@@ -118,7 +118,7 @@ double Scar::sweep(const std::function<const PlacedBlock&(double)>& at)
     }
   }
   const Vec3 direction = way / s;
-  double volume = 0.0;
+  double volume = 0.0, end = 0.0;
   for (std::size_t k = 1; k < breaks.size(); ++k)
   {
     const double length = breaks[k] - breaks[k - 1];
@@ -129,13 +129,12 @@ double Scar::sweep(const std::function<const PlacedBlock&(double)>& at)
     // Simpson: exact for what is quadratic. Just inside of a break, where a face may dive in at
     // once.
     const double inside = kSameBreak * length;
-    const double low = submergedArea(at(breaks[k - 1] + inside), surface_, direction, mark);
-    const double mid =
-      submergedArea(at(0.5 * (breaks[k - 1] + breaks[k])), surface_, direction, mark);
-    area_ = submergedArea(at(breaks[k] - inside), surface_, direction, mark);
-    volume += s * length * (low + 4.0 * mid + area_) / 6.0;
+    const double low = submergedArea(at(breaks[k - 1] + inside), surface_, direction);
+    const double mid = submergedArea(at(0.5 * (breaks[k - 1] + breaks[k])), surface_, direction);
+    end = submergedArea(at(breaks[k] - inside), surface_, direction);
+    volume += s * length * (low + 4.0 * mid + end) / 6.0;
   }
-  return volume;
+  return this->book(volume, way, end);
 }
 
 } // namespace rockfall

@@ -29,8 +29,7 @@ public:
   bool open() const { return depth_ > 0.0; }
   double depth() const { return depth_; }     ///< Of Λ now, straight down, m.
   double deepest() const { return deepest_; } ///< Of Λ so far, m.
-  /// Of the mark on the surface, along the way of the first touch, m.
-  double length() const { return mark_.length(); }
+  double length() const { return length_; }   ///< Way along the surface so far, m.
   /// Whether the rock has been down on Λ, or on its way out.
   bool turned() const { return turned_; }
   const Vec3& normal() const { return surface_.normal; } ///< Of the ground under it.
@@ -43,9 +42,9 @@ public:
   void rise(double by);
   /// Where the rock is on Λ now; its plane follows the ground.
   void touch(const Contact& contact);
-  /// Follows a short motion from a place to a pose, by the areas at its ends: returns the volume
+  /// Follows a short motion from one pose to another, by the areas at its ends: returns the volume
   /// swept, m³. Begins with the area that the last motion ended with.
-  double sweep(const Vec3& from, const PlacedBlock& to);
+  double sweep(const PlacedBlock& from, const PlacedBlock& to);
   /// The same of a long one: exact without rotation, as between the places where a corner passes
   /// the surface the area is quadratic. `at`: the pose at a fraction of the motion, 0 … 1.
   double sweep(const std::function<const PlacedBlock&(double)>& at);
@@ -54,15 +53,14 @@ public:
   bool cleared() const { return area_ == 0.0; }
 
 private:
-  /// The mark, which the first way along the surface gives its direction; null before.
-  SurfaceMark* markAlong(const Vec3& way);
+  /// Books the volume (m³) of a way (m) that ends with this area (m²) inside.
+  double book(double volume, const Vec3& way, double areaAtEnd);
 
-  double depth_ = 0.0, deepest_ = 0.0;
-  double area_ = 0.0; ///< At the end of the last motion, m².
+  double depth_ = 0.0, deepest_ = 0.0, length_ = 0.0;
+  double area_ = 0.0; ///< At the end of the last motion, m²; < 0: unknown.
   int ground_ = 0;
   bool turned_ = false;
   Plane surface_; ///< Under the rock.
-  SurfaceMark mark_;
 };
 
 } // namespace rockfall

@@ -225,9 +225,10 @@ void RockSimulator::yieldInStep(double h)
     {
       scar_.touch(*most);
     }
-    thread_local PlacedBlock to;
+    thread_local PlacedBlock from, to;
+    from.place(block_, before_);
     to.place(block_, state_);
-    this->plough(scar_.sweep(before_.position, to));
+    this->plough(scar_.sweep(from, to));
   }
   if (most)
   {

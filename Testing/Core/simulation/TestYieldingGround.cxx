@@ -123,23 +123,6 @@ TEST(YieldingGround, SubmergedAreaOfACube)
   EXPECT_EQ(submergedArea(placed, ground, -Vec3::UnitZ()), 0.0);
 }
 
-// A mark is as long as the rock's way and the rock itself.
-TEST(YieldingGround, MarkOfACubeThatGoesThroughTheGround)
-{
-  const Block block(makeShape(Shape::Cube, 1.0), 2500.0, 1e10, 0.2);
-  SurfaceMark mark;
-  mark.along = Vec3::UnitX();
-  PlacedBlock placed;
-  for (const double x : { 3.0, 3.4, 4.5, 9.0 })
-  {
-    BlockState state;
-    state.position = Vec3(x, -2.0, x < 5.0 ? 0.2 : 0.6); // in the air at last
-    placed.place(block, state);
-    submergedArea(placed, Plane(), Vec3::UnitX(), &mark);
-  }
-  EXPECT_NEAR(mark.length(), 1.5 + 1.0, 1e-12);
-}
-
 // A rock that goes straight down without gravity sweeps the volume that is under the surface, as
 // long as its widest section is above it: E/E₀ = exp(−C_d ρ V / m).
 TEST(YieldingGround, ScarTakesWhatTheSweptVolumeSays)
