@@ -7,10 +7,10 @@ install(FILES LICENSE README.md CHANGELOG.md CITATION.cff
   DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/rockfalldda")
 install(DIRECTORY docs/ DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/rockfalldda/docs")
 
-# ParaView looks for plugins in a folder of its own on Debian 13, and nowhere on Debian 12: there the
-# package's script adds the line that makes it known to paraview.conf.
-set(plugins "/usr/${CMAKE_INSTALL_LIBDIR}/${PARAVIEW_PLUGIN_SUBDIR}")
-set(config "${plugins}/rockfall.xml")
+# ParaView loads by itself what its list of plugins names: the package's script adds a line.
+set(paraview "/usr/${CMAKE_INSTALL_LIBDIR}/${PARAVIEW_PLUGIN_SUBDIR}")
+set(config "${paraview}/rockfall.xml")
+cmake_path(GET paraview PARENT_PATH paraview)
 configure_file(Plugin/package/postinst.in "${CMAKE_BINARY_DIR}/package/postinst" @ONLY)
 configure_file(Plugin/package/prerm.in "${CMAKE_BINARY_DIR}/package/prerm" @ONLY)
 
