@@ -29,8 +29,6 @@ function(rockfall_test_program name)
   cmake_parse_arguments(arg "" "PREFIX" "SOURCES;LIBRARIES;PROPERTIES" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} GTest::gtest_main)
-  # GCC 12 sees bounds in sums of strings that are not there (its bug 105651).
-  target_compile_options(${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds>)
   set_target_properties(${name} PROPERTIES UNITY_BUILD ${ROCKFALL_UNITY} UNITY_BUILD_MODE GROUP)
   rockfall_precompile(${name} <gtest/gtest.h>)
   if(ROCKFALL_SANITIZE)
