@@ -196,7 +196,7 @@ std::string decoded(std::string text, const std::string& declared, const std::st
   }
   else if (const int end = unmarkedUtf16(view); end >= 0)
   {
-    notes.push_back("The table's text is UTF-16 without a mark that says so.");
+    notes.emplace_back("The table's text is UTF-16 without a mark that says so.");
     return fromUtf16(view, end == 1);
   }
   if (const auto zero = text.find('\0'); zero != std::string::npos)
