@@ -295,7 +295,7 @@ std::vector<std::vector<char>> Ranks::collect(
     return all;
   }
   controller_->Send(&size, 1, 0, sizeTag);
-  this->agree({});
+  this->together([] {}, noMemory);
   for (std::size_t at = 0; at < bytes.size(); at += slice)
   {
     controller_->Send(
