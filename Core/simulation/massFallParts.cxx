@@ -15,11 +15,6 @@
 namespace rockfall
 {
 
-namespace
-{
-
-} // namespace
-
 /// What is known of a group whose step is gone over in parts.
 struct MassFall::Parting
 {
