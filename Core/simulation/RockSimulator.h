@@ -138,6 +138,9 @@ private:
   void beginContact();
   void stayInContact(); ///< Returns after take-off, at the horizon or at the end.
   void endContact();
+  /// Contacts with the slope within `reach` (m). A step of `h` (s) may turn a rock that is held at
+  /// a corner onto a face; with 0 no contact is looked for there.
+  void findContacts(const CandidatePairs& candidates, double reach, double h);
   void takeStep(double h, StepKind kind);
   /// Books a step that has been taken from `before_` to `state_`. `given`: work done on other
   /// rocks, J.

@@ -113,9 +113,7 @@ void RockSimulator::stayInContact()
     const bool calm = this->isCalm();
     const double reach = reachOf(calm ? large : small);
     this->ensureCandidates(reach);
-    // A step as long as Δt may turn a rock that is held at a corner onto a face.
-    const double turn = calm ? state_.spin.norm() * large : 0.0;
-    updateContacts(placed_, patch_, candidates_, reach, contacts_, turn);
+    this->findContacts(candidates_, reach, calm ? large : 0.0);
     springEnergy_ = springEnergyOf(contacts_); // what has gone with a contact shows as numerical
 
     double h = std::min(large, horizon_ - state_.time);
@@ -199,6 +197,11 @@ void RockSimulator::stayInContact()
     this->takeStep(h, kind);
     this->checkEnd(state_.time - before_.time);
   }
+}
+
+void RockSimulator::findContacts(const CandidatePairs& candidates, double reach, double h)
+{
+  updateContacts(placed_, patch_, candidates, reach, contacts_, state_.spin.norm() * h);
 }
 
 double RockSimulator::dampingRatioFor(const GroundTouch& touch)

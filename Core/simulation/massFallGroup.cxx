@@ -111,9 +111,7 @@ void MassFall::gatherContacts(const Group& group, double h, Workspace& work) con
             { sim.state_.velocity, spread, kFasterApproach * h,
               parameters_.gravity * h * h + kSurelyOnSlope * r, reach })
         : sim.candidates_;
-      // A step as long as Δt may turn a rock that is held at a corner onto a face.
-      const double turn = crowd ? 0.0 : sim.state_.spin.norm() * h;
-      updateContacts(sim.placed_, sim.patch_, near, reach, sim.contacts_, turn);
+      sim.findContacts(near, reach, crowd ? 0.0 : h);
       return near;
     };
     const CandidatePairs* near = &findThem();
