@@ -16,9 +16,9 @@ namespace rockfall::filters
 namespace
 {
 
-/// The steep places of a slope are looked for among about so many nodes along each side, over
+/// Nodes along each side, about, among which the steep places of a slope are looked for, over
 /// distances of one of these steps: a single rough cell is no steep place.
-constexpr int kLooks = 200;
+constexpr int kNodesAcross = 200;
 /// Places with at least this share of the steepest gradient are steep.
 constexpr double kSteep = 0.9;
 /// Half a line's length, in cells, and as a share of the slope's shorter side at most.
@@ -34,7 +34,7 @@ struct SlopePlace
 std::vector<SlopePlace> look(const Terrain& terrain)
 {
   const GridGeometry& grid = terrain.geometry();
-  const int step = std::max(1, std::min(grid.columns, grid.rows) / kLooks);
+  const int step = std::max(1, std::min(grid.columns, grid.rows) / kNodesAcross);
   std::vector<SlopePlace> places;
   for (int row = step; row + step < grid.rows; row += step)
   {

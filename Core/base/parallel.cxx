@@ -22,7 +22,7 @@ namespace
 /// Loops within loops; further down a thread goes on by itself.
 constexpr int kLevels = 3;
 /// Looks for something to do before other programs get their turn.
-constexpr int kLooks = 2000;
+constexpr int kIdleLooks = 2000;
 
 void pause()
 {
@@ -122,7 +122,7 @@ void spin(Done&& done, Other&& other)
     {
       looks = 0;
     }
-    else if (++looks < kLooks)
+    else if (++looks < kIdleLooks)
     {
       pause();
     }

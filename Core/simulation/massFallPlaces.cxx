@@ -15,12 +15,12 @@ namespace rockfall
 namespace
 {
 
-/// So many rocks or pairs are one part.
-constexpr std::size_t kPart = 128;
+/// Rocks, pairs or contacts of one part.
+constexpr std::size_t kPartSize = 128;
 
 std::size_t partsOf(std::size_t count)
 {
-  return (count + kPart - 1) / kPart;
+  return (count + kPartSize - 1) / kPartSize;
 }
 
 } // namespace
@@ -36,7 +36,7 @@ std::size_t MassFall::layOut(const Group& group, Workspace& work) const
   const auto countRocks = [&](std::size_t part)
   {
     Workspace::Part counted;
-    for (std::size_t k = part * kPart; k < std::min(rocks, (part + 1) * kPart); ++k)
+    for (std::size_t k = part * kPartSize; k < std::min(rocks, (part + 1) * kPartSize); ++k)
     {
       this->comeToRock(group, k);
       const RockSimulator& sim = members_[group.members[k]]->sim;
@@ -66,7 +66,7 @@ std::size_t MassFall::layOut(const Group& group, Workspace& work) const
   const auto placeRocks = [&](std::size_t part)
   {
     const Workspace::Part& before = work.parts[part];
-    for (std::size_t k = part * kPart; k < std::min(rocks, (part + 1) * kPart); ++k)
+    for (std::size_t k = part * kPartSize; k < std::min(rocks, (part + 1) * kPartSize); ++k)
     {
       int& place = work.placeOf[std::size_t(group.members[k])];
       place += place < 0 ? 0 : before.places;
@@ -82,7 +82,7 @@ std::size_t MassFall::layOut(const Group& group, Workspace& work) const
   const auto countPairs = [&](std::size_t part)
   {
     Workspace::Part counted;
-    const std::size_t begin = part * kPart, end = std::min(pairs, begin + kPart);
+    const std::size_t begin = part * kPartSize, end = std::min(pairs, begin + kPartSize);
     std::size_t* const meeting = work.meeting.data() + begin;
     std::size_t* const firsts = work.firsts.data();
     std::array<int, 2>* const places = work.places.data();
@@ -104,11 +104,11 @@ std::size_t MassFall::layOut(const Group& group, Workspace& work) const
   goOn(pairParts);
   for (std::size_t part = 0; part < pairParts; ++part)
   {
-    const std::size_t* const from = work.meeting.data() + part * kPart;
+    const std::size_t* const from = work.meeting.data() + part * kPartSize;
     work.touching.insert(work.touching.end(), from, from + work.parts[part].touching);
     std::size_t* const firsts = work.firsts.data();
     const std::size_t before = work.parts[part].contacts;
-    for (std::size_t p = part * kPart, end = std::min(pairs, p + kPart); p < end; ++p)
+    for (std::size_t p = part * kPartSize, end = std::min(pairs, p + kPartSize); p < end; ++p)
     {
       firsts[p] += before;
     }
@@ -130,21 +130,21 @@ void MassFall::settleBounces(bool lasting, Workspace& work) const
   work.meeting.resize(std::max(contacts, work.meeting.size()));
   const auto choose = [&](std::size_t part)
   {
-    std::size_t* to = work.meeting.data() + part * kPart;
-    for (std::size_t k = part * kPart, end = std::min(contacts, k + kPart); k < end; ++k)
+    std::size_t* to = work.meeting.data() + part * kPartSize;
+    for (std::size_t k = part * kPartSize, end = std::min(contacts, k + kPartSize); k < end; ++k)
     {
       const GroupContact& c = work.contacts[k];
       *to = k;
       to += c.bounce >= 0.0 || c.closed;
     }
-    work.parts[part].contacts = std::size_t(to - work.meeting.data()) - part * kPart;
+    work.parts[part].contacts = std::size_t(to - work.meeting.data()) - part * kPartSize;
   };
   forEach(parts, 1, choose);
   const auto forChosen = [&](auto&& visit)
   {
     for (std::size_t part = 0; part < parts; ++part)
     {
-      const std::size_t* const first = work.meeting.data() + part * kPart;
+      const std::size_t* const first = work.meeting.data() + part * kPartSize;
       for (const std::size_t *k = first, *end = first + work.parts[part].contacts; k != end; ++k)
       {
         visit(work.contacts[*k]);

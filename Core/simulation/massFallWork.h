@@ -52,19 +52,19 @@ constexpr std::size_t kHotLines = 14;
 
 inline void comeToPair(const std::vector<RockPair*>& pairs, std::size_t p)
 {
-  constexpr std::size_t kAhead = 6;
-  if (p + kAhead < pairs.size())
+  constexpr std::size_t kPairsAhead = 6;
+  if (p + kPairsAhead < pairs.size())
   {
-    askCache<4>(pairs[p + kAhead]); // all but the impact
+    askCache<4>(pairs[p + kPairsAhead]); // all but the impact
   }
 }
 
 inline void MassFall::comeToRock(const Group& group, std::size_t k) const
 {
-  constexpr std::size_t kAhead = 2;
-  if (k + kAhead < group.members.size())
+  constexpr std::size_t kRocksAhead = 2;
+  if (k + kRocksAhead < group.members.size())
   {
-    const Member& m = *members_[std::size_t(group.members[k + kAhead])];
+    const Member& m = *members_[std::size_t(group.members[k + kRocksAhead])];
     askCache<kHotLines>(&m.sim);
     askCache<6>(&m.body);
   }
@@ -191,10 +191,10 @@ inline void MassFall::Workspace::count(RockSimulator& sim) const
 
 inline void MassFall::Workspace::comeToTouching(const Group& group, std::size_t t) const
 {
-  constexpr std::size_t kAhead = 3;
-  if (t + kAhead < touching.size())
+  constexpr std::size_t kTouchingAhead = 3;
+  if (t + kTouchingAhead < touching.size())
   {
-    askCache<6>(group.pairs[touching[t + kAhead]]);
+    askCache<6>(group.pairs[touching[t + kTouchingAhead]]);
   }
 }
 

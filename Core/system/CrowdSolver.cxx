@@ -96,7 +96,7 @@ void CrowdSolver::startMover(const GroupBody& body, std::size_t i)
 
 void CrowdSolver::startMovers(const std::vector<GroupBody>& bodies)
 {
-  movers_.assign(work_.size() + std::size_t(parts_) + 1, crowd::Mover{});
+  movers_.assign(work_.size() + std::size_t(strips_) + 1, crowd::Mover{});
   changed_.assign(movers_.size(), 0);
   std::fill(changed_.begin() + std::ptrdiff_t(work_.size()), changed_.end(), kNever);
   forEach(work_.size(), kBodyGrain, [&](std::size_t i) { this->startMover(bodies[i], i); });
@@ -140,7 +140,7 @@ bool CrowdSolver::correctTurns(
         change(k);
       }
     };
-    this->forParts(false, [&](int part) { this->forRows(part, ifWrong); });
+    this->forStrips(false, [&](int strip) { this->forRows(strip, ifWrong); });
     for (std::size_t k = order_.size(); k < rows_.size(); ++k)
     {
       ifWrong(k);

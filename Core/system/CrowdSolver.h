@@ -49,8 +49,7 @@ public:
   std::function<void(std::size_t contact)> arm;
 
 private:
-  static constexpr int kNever = -2;                              ///< A sweep before all others.
-  static constexpr std::size_t kBodyGrain = 64, kRowGrain = 256; ///< For one thread at a time.
+  static constexpr int kNever = -2; ///< A sweep before all others.
 
   /// World axes. A rotation over the step is the Cayley vector of its turn.
   struct Work
@@ -91,9 +90,9 @@ private:
   void turnAs(Work& work, const Vec3& spun) const; ///< turned, mean and turn.
   /// Where a body goes without contacts, for the turn that it has.
   std::array<Vec3, 2> freeMotion(const GroupBody& body, const Work& work) const;
-  /// Movers in order, and the number of parts.
+  /// Movers in order, and the number of strips.
   void lineUp(const std::vector<GroupBody>& bodies);
-  void arrange(const std::vector<GroupContact>& contacts); ///< Batches of each part.
+  void arrange(const std::vector<GroupContact>& contacts); ///< Batches of each strip.
   /// The rocks whose contacts a batch will hold.
   struct Hand
   {
@@ -107,21 +106,21 @@ private:
   /// Deals contacts out to batches; `slope`: the mover that stands for it.
   void deal(const std::vector<GroupContact>& contacts, const int* first, const int* last, int slope,
     std::vector<Hand>& hands);
-  void layOutWatched(const std::vector<GroupContact>& contacts, int part, int slope);
-  /// visit(part): every second part, the others, and what reaches further, or backwards. Parts that
-  /// are visited at the same time share no rock.
+  void layOutWatched(const std::vector<GroupContact>& contacts, int strip, int slope);
+  /// visit(strip): every second strip, the others, and what reaches further, or backwards. Strips
+  /// that are visited at the same time share no rock.
   template <class Visit>
-  void forParts(bool backwards, Visit&& visit) const;
-  /// visit(row) of a part, without those that were appended.
+  void forStrips(bool backwards, Visit&& visit) const;
+  /// visit(row) of a strip, without those that were appended.
   template <class Visit>
-  void forRows(int part, Visit&& visit) const;
+  void forRows(int strip, Visit&& visit) const;
   /// The same where contacts themselves are read or written: they are asked for ahead.
   template <class Visit>
-  void forContacts(int part, Visit&& visit) const;
+  void forContacts(int strip, Visit&& visit) const;
   std::size_t firstOf(std::size_t key) const { return key == 0 ? 0 : ends_[key - 1]; }
-  /// Batches of a part that hold any contact: go(the first, how many), by kind.
+  /// Batches of a strip that hold any contact: go(the first, how many), by kind.
   template <class Go>
-  void forUsed(int part, Go&& go) const;
+  void forUsed(int strip, Go&& go) const;
   void prepareRow(const std::vector<GroupBody>& bodies, const GroupContact& group, Row& row);
   void stiffen(const GroupContact& group, const Row& row); ///< A contact that bounces.
   void askGap(const GroupContact& group, const Row& row);  ///< Of its lane of a batch.
@@ -148,28 +147,28 @@ private:
   bool correctTurns(
     const std::vector<GroupBody>& bodies, const std::vector<GroupContact>& contacts);
   void append(const std::vector<GroupBody>& bodies, std::vector<GroupContact>& contacts);
-  /// Lanes for further contacts: those that are still empty in batches of their part, or else in
+  /// Lanes for further contacts: those that are still empty in batches of their strip, or else in
   /// batches behind all others. `fresh_` are the batches that they are in.
   void findLanes(const std::vector<GroupContact>& contacts, const std::vector<int>& added);
   bool findEmptyLane(const GroupContact& contact, Row& row);
   void appendBatches(const std::vector<GroupContact>& contacts, const std::vector<int>& added);
   void assembleFresh();
-  /// The part that a contact belongs to.
-  int partOf(const GroupContact& contact) const;
+  /// The strip that a contact belongs to.
+  int stripOf(const GroupContact& contact) const;
   void noteChange(const GroupContact& contact); ///< Contacts of its rocks are to be visited.
   /// Makes those of the watched contacts ready that are closed where the rocks go now; whether
   /// there were any.
   /// `sweep` is the next one.
   bool watch(int sweep);
-  double visit(int part);
+  double visit(int strip);
   double sweep();
   /// Sweeps until none changes anything by more than `goal`, m; whether they get there.
   bool sweepTo(double goal, int most, bool conjugate, GroupOutcome& outcome);
   /// A run of sweeps over everything, or around what has changed; whether all has settled.
   bool sweeps(int most, bool everywhere, GroupOutcome& outcome);
-  void begin();             ///< Before the first of a run of sweeps.
-  void goFurther();         ///< Between two sweeps of a run: along a conjugate direction,
-  void goFurther(int part); ///< and the forces of a part that is swept next.
+  void begin();              ///< Before the first of a run of sweeps.
+  void goFurther();          ///< Between two sweeps of a run: along a conjugate direction,
+  void goFurther(int strip); ///< and the forces of a strip that is swept next.
   /// Sweeps, and again as long as bounces give energy.
   void settle(
     int most, bool everywhere, std::vector<GroupContact>& contacts, GroupOutcome& outcome);
@@ -206,19 +205,19 @@ private:
   std::vector<int> filled_;             ///< Lanes of each batch that hold a contact.
   std::vector<crowd::Watched> watched_;
   std::vector<int> watchedContacts_; ///< By fours and lane; −1: none.
-  std::vector<int> watchStarts_;     ///< First fours of each part.
+  std::vector<int> watchStarts_;     ///< First fours of each strip.
   std::vector<unsigned char> closes_;
   int checked_ = 0; ///< Sweep before which watched contacts were last looked at.
   /// In order along the group's largest extent, so that what threads work on lies apart; the slope
-  /// is one more of each part, which nothing moves.
+  /// is one more of each strip, which nothing moves.
   std::vector<crowd::Mover> movers_;
   std::vector<std::pair<double, int>> line_; ///< Place along the group and body, by mover.
   std::vector<int> changed_;
-  // Parts are strips across the group, and contacts belong to the lower part of their two rocks:
-  // those of every second part share no rock, and are swept at the same time. The last part holds
+  // Strips lie across the group, and contacts belong to the lower strip of their two rocks: those
+  // of every second strip share no rock, and are swept at the same time. The last strip holds
   // what reaches further than to the next strip, and what turns up while the sweeps go on (watched
-  // contacts that close, and those of a second look) if no batch of its part has an empty lane for
-  // it. In each part contacts between rocks come before those with the slope, but in the last one
+  // contacts that close, and those of a second look) if no batch of its strip has an empty lane for
+  // it. In each strip contacts between rocks come before those with the slope, but in the last one
   // they are mixed; what is watched is swept by none.
   static constexpr int kKinds = 3;
   enum Kind
@@ -227,8 +226,8 @@ private:
     OnSlope,
     Watching,
   };
-  int parts_ = 1;
-  std::vector<std::vector<Hand>> hands_; ///< Of each part.
+  int strips_ = 1;
+  std::vector<std::vector<Hand>> hands_; ///< Of each strip.
   std::vector<char> wrong_; ///< By contact, whether a rock of it has turned otherwise than guessed.
   std::vector<std::size_t> bouncing_; ///< Contacts that are to leave with some speed.
   std::vector<char> gives_;           ///< Of these, whether the bounce gives energy.
@@ -237,13 +236,13 @@ private:
   std::vector<int> closing_;          ///< Watched contacts that have closed,
   std::vector<int> left_;             ///< and those for which there is no empty lane.
   std::vector<int> fresh_;            ///< Batches with contacts that are new in them.
-  std::vector<int> keyOf_, order_;    ///< Contacts: part and kind; in order of it.
-  // Of each part and kind: its first batch, and where the contacts are that are swept, the end of
+  std::vector<int> keyOf_, order_;    ///< Contacts: strip and kind; in order of it.
+  // Of each strip and kind: its first batch, and where the contacts are that are swept, the end of
   // those batches that hold any and the first one that may have an empty lane.
   std::vector<int> starts_, used_, room_;
-  std::vector<std::size_t> ends_;   ///< Behind the last contact of each part and kind in `order_`.
+  std::vector<std::size_t> ends_;   ///< Behind the last contact of each strip and kind in `order_`.
   std::vector<std::uint32_t> open_; ///< By mover: the batches being filled that hold it.
-  std::vector<double> most_;        ///< Largest change, by part.
+  std::vector<double> most_;        ///< Largest change, by strip.
   // Of the run of sweeps at hand (goFurther): what it was before the last sweep, and the direction
   // in which it goes on, by batch and by mover.
   std::vector<crowd::Forces> forcesBefore_, forcesAlong_;
@@ -264,41 +263,41 @@ private:
 };
 
 template <class Visit>
-void CrowdSolver::forParts(bool backwards, Visit&& visit) const
+void CrowdSolver::forStrips(bool backwards, Visit&& visit) const
 {
   const auto visitSecond = [&](int first)
   {
     forEach(
-      std::size_t(parts_ - first + 1) / 2, 1, [&](std::size_t k) { visit(first + 2 * int(k)); });
+      std::size_t(strips_ - first + 1) / 2, 1, [&](std::size_t k) { visit(first + 2 * int(k)); });
   };
   if (!backwards)
   {
     visitSecond(0);
     visitSecond(1);
-    visit(parts_);
+    visit(strips_);
   }
   else
   {
-    visit(parts_);
+    visit(strips_);
     visitSecond(1);
     visitSecond(0);
   }
 }
 
 template <class Go>
-void CrowdSolver::forUsed(int part, Go&& go) const
+void CrowdSolver::forUsed(int strip, Go&& go) const
 {
   for (const Kind kind : { Pairs, OnSlope })
   {
-    const std::size_t key = std::size_t(part * kKinds + kind);
+    const std::size_t key = std::size_t(strip * kKinds + kind);
     go(std::size_t(starts_[key]), std::size_t(used_[key] - starts_[key]));
   }
 }
 
 template <class Visit>
-void CrowdSolver::forRows(int part, Visit&& visit) const
+void CrowdSolver::forRows(int strip, Visit&& visit) const
 {
-  const std::size_t key = std::size_t(part * kKinds);
+  const std::size_t key = std::size_t(strip * kKinds);
   for (std::size_t k = this->firstOf(key); k < ends_[key + kKinds - 1]; ++k)
   {
     visit(std::size_t(order_[k]));
@@ -306,15 +305,16 @@ void CrowdSolver::forRows(int part, Visit&& visit) const
 }
 
 template <class Visit>
-void CrowdSolver::forContacts(int part, Visit&& visit) const
+void CrowdSolver::forContacts(int strip, Visit&& visit) const
 {
-  constexpr std::size_t kAhead = 6;
-  const std::size_t key = std::size_t(part * kKinds), end = ends_[key + kKinds - 1];
+  constexpr std::size_t kContactsAhead = 6;
+  const std::size_t key = std::size_t(strip * kKinds), end = ends_[key + kKinds - 1];
   for (std::size_t k = this->firstOf(key); k < end; ++k)
   {
-    if (k + kAhead < end)
+    if (k + kContactsAhead < end)
     {
-      askCache<sizeof(Contact) / kCacheLine>((*contacts_)[std::size_t(order_[k + kAhead])].contact);
+      askCache<sizeof(Contact) / kCacheLine>(
+        (*contacts_)[std::size_t(order_[k + kContactsAhead])].contact);
     }
     visit(std::size_t(order_[k]));
   }

@@ -66,8 +66,6 @@ public:
   int maxSweeps = 6;
 
 private:
-  static constexpr std::size_t kBodyGrain = 64, kRowGrain = 256; ///< For one thread at a time.
-
   // Everything in world axes. A rotation over the step is the Cayley vector of its turn.
   struct Side
   {

@@ -11,11 +11,12 @@ namespace rockfall
 namespace
 {
 
-constexpr std::size_t kPart = 256; // rocks that one thread looks after at a time
+/// Rocks that one thread looks after at a time.
+constexpr std::size_t kRocksOfTask = 256;
 
 /// Cells of a map along an axis at most; the three numbers of a cell are one of 63 bits.
 constexpr int kBits = 21;
-constexpr double kMostCells = double((1 << kBits) - 4);
+constexpr double kMostCellsOfAxis = double((1 << kBits) - 4);
 
 std::int64_t cellNumber(std::int64_t x, std::int64_t y, std::int64_t z)
 {
@@ -37,7 +38,7 @@ std::array<std::int64_t, 3> BroadPhase::cellOf(const Map& map, const Vec3& x) co
   {
     // From 1 on: there is a cell before the first one, and one behind the last.
     const double number = std::floor((x[axis] - lower_[axis]) / map.size);
-    cell[axis] = 1 + std::int64_t(std::clamp(number, -1.0, kMostCells));
+    cell[axis] = 1 + std::int64_t(std::clamp(number, -1.0, kMostCellsOfAxis));
   }
   return cell;
 }
@@ -90,7 +91,7 @@ void BroadPhase::place(std::span<const BroadBox> boxes)
     }
     // A hair more than a diameter, so that rounding puts nothing two cells away.
     map.size = std::max({ 2.0 * map.largestRadius * (1.0 + 1e-9), 1e-9,
-      (upper - lower_).maxCoeff() / (kMostCells - 4.0) });
+      (upper - lower_).maxCoeff() / (kMostCellsOfAxis - 4.0) });
     for (std::size_t k = map.first; k < map.last; ++k)
     {
       const auto cell = this->cellOf(map, boxes[std::size_t(order_[k][2])].center);
@@ -176,14 +177,15 @@ void BroadPhase::searchLarger(
 std::span<const std::array<int, 2>> BroadPhase::pairs()
 {
   // Rocks of each map and of all maps of smaller ones look for those of this map.
-  const std::size_t parts = (entries_.size() + kPart - 1) / kPart;
+  const std::size_t parts = (entries_.size() + kRocksOfTask - 1) / kRocksOfTask;
   parts_.resize(std::max(parts, parts_.size()));
   forEach(parts, 1,
     [&](std::size_t part)
     {
       Found& found = parts_[part];
       found.clear();
-      const std::size_t first = part * kPart, last = std::min(entries_.size(), first + kPart);
+      const std::size_t first = part * kRocksOfTask,
+                        last = std::min(entries_.size(), first + kRocksOfTask);
       for (const Map& map : maps_)
       {
         const std::size_t from = std::max(first, map.first), to = std::min(last, map.last);
@@ -219,7 +221,7 @@ std::span<const std::array<int, 2>> BroadPhase::pairs()
       pairs_[firsts_[std::size_t(pair[0])]++] = pair;
     }
   }
-  forEach(count_, kPart,
+  forEach(count_, kRocksOfTask,
     [&](std::size_t i)
     {
       const std::size_t first = i == 0 ? 0 : firsts_[i - 1]; // each is at the end of its list now

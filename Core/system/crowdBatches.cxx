@@ -1,4 +1,4 @@
-// How the contacts of a crowd are dealt out: into parts across the group, batches of which no two
+// How the contacts of a crowd are dealt out: into strips across the group, batches of which no two
 // share a rock, and what is only watched.
 
 #include "system/CrowdSolver.h"
@@ -15,10 +15,10 @@ namespace rockfall
 namespace
 {
 
-/// Rocks of a part of the group, and parts at most.
-constexpr int kLeastPart = 56;
-constexpr int kMostParts = 64;
-/// To so many watched contacts of a part there is an empty batch for those that close.
+/// Rocks of a strip of the group, and strips at most.
+constexpr int kLeastStrip = 56;
+constexpr int kMostStrips = 64;
+/// To so many watched contacts of a strip there is an empty batch for those that close.
 constexpr std::size_t kWatchedPerSpare = 32;
 /// Batches that are filled at the same time.
 constexpr int kOpen = 32;
@@ -78,11 +78,11 @@ void CrowdSolver::lineUp(const std::vector<GroupBody>& bodies)
   }
   int axis = 0;
   const double length = (high - low).maxCoeff(&axis);
-  // Narrower than two rocks that touch, and contacts would reach further than to the next part.
+  // Narrower than two rocks that touch, and contacts would reach further than to the next strip.
   const double width = 2.0 * radii / double(work_.size());
-  const double most = std::min(double(kMostParts), length / width);
-  parts_ = std::clamp(int(work_.size()) / kLeastPart, 1, std::max(1, int(most)));
-  parts_ -= parts_ > 4 ? parts_ % 4 : 0; // two threads get the same number of every second part
+  const double most = std::min(double(kMostStrips), length / width);
+  strips_ = std::clamp(int(work_.size()) / kLeastStrip, 1, std::max(1, int(most)));
+  strips_ -= strips_ > 4 ? strips_ % 4 : 0; // two threads get the same number of every second strip
   // Nearly in order they are from the last step, mostly.
   const bool lined = line_.size() == work_.size();
   line_.resize(work_.size());
@@ -99,13 +99,13 @@ void CrowdSolver::lineUp(const std::vector<GroupBody>& bodies)
   }
 }
 
-int CrowdSolver::partOf(const GroupContact& contact) const
+int CrowdSolver::stripOf(const GroupContact& contact) const
 {
-  const auto partOfRock = [&](int body)
-  { return int(work_[std::size_t(body)].mover * std::size_t(parts_) / work_.size()); };
-  const int a = partOfRock(contact.first);
-  const int b = contact.second < 0 ? a : partOfRock(contact.second);
-  return std::abs(a - b) <= 1 ? std::min(a, b) : parts_;
+  const auto stripOfRock = [&](int body)
+  { return int(work_[std::size_t(body)].mover * std::size_t(strips_) / work_.size()); };
+  const int a = stripOfRock(contact.first);
+  const int b = contact.second < 0 ? a : stripOfRock(contact.second);
+  return std::abs(a - b) <= 1 ? std::min(a, b) : strips_;
 }
 
 void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
@@ -113,11 +113,11 @@ void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
   const int bodies = int(work_.size());
   const auto keyOf = [&](const GroupContact& k)
   {
-    const int part = this->partOf(k);
+    const int strip = this->stripOf(k);
     const bool open = !k.contact->closed() && mayStayOpen(k, h_);
-    return part * kKinds + (open ? Watching : k.second < 0 && part < parts_ ? OnSlope : Pairs);
+    return strip * kKinds + (open ? Watching : k.second < 0 && strip < strips_ ? OnSlope : Pairs);
   };
-  const std::size_t keys = std::size_t(parts_ + 1) * kKinds;
+  const std::size_t keys = std::size_t(strips_ + 1) * kKinds;
   keyOf_.resize(contacts.size());
   ends_.assign(keys + 1, 0);
   forEach(contacts.size(), kRowGrain, [&](std::size_t k) { keyOf_[k] = keyOf(contacts[k]); });
@@ -135,29 +135,29 @@ void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
   open_.assign(work_.size(), 0);
   starts_.resize(keys + 1);
   used_.assign(keys, 0);
-  hands_.resize(std::max(hands_.size(), std::size_t(parts_) + 1));
-  const auto dealPart = [&](int part)
+  hands_.resize(std::max(hands_.size(), std::size_t(strips_) + 1));
+  const auto dealStrip = [&](int strip)
   {
-    std::vector<Hand>& hands = hands_[std::size_t(part)];
+    std::vector<Hand>& hands = hands_[std::size_t(strip)];
     hands.clear();
     for (const Kind kind : { Pairs, OnSlope })
     {
-      const std::size_t key = std::size_t(part * kKinds + kind);
+      const std::size_t key = std::size_t(strip * kKinds + kind);
       starts_[key] = int(hands.size());
       this->deal(contacts, order_.data() + this->firstOf(key), order_.data() + ends_[key],
-        bodies + part, hands);
+        bodies + strip, hands);
       used_[key] = int(hands.size());
-      if (part < parts_)
+      if (strip < strips_)
       {
-        const std::size_t watching = std::size_t(part * kKinds + Watching);
+        const std::size_t watching = std::size_t(strip * kKinds + Watching);
         hands.insert(hands.end(),
-          1 + (ends_[watching] - this->firstOf(watching)) / kWatchedPerSpare, Hand(bodies + part));
+          1 + (ends_[watching] - this->firstOf(watching)) / kWatchedPerSpare, Hand(bodies + strip));
       }
     }
-    starts_[std::size_t(part * kKinds + Watching)] = int(hands.size());
+    starts_[std::size_t(strip * kKinds + Watching)] = int(hands.size());
   };
-  this->forParts(false, dealPart);
-  // Part after part.
+  this->forStrips(false, dealStrip);
+  // Strip after strip.
   int count = 0;
   for (std::size_t key = 0; key < keys; ++key)
   {
@@ -167,11 +167,11 @@ void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
   }
   starts_[keys] = count;
   room_ = starts_;
-  watchStarts_.assign(std::size_t(parts_) + 2, 0);
-  for (std::size_t part = 0; part <= std::size_t(parts_); ++part)
+  watchStarts_.assign(std::size_t(strips_) + 2, 0);
+  for (std::size_t strip = 0; strip <= std::size_t(strips_); ++strip)
   {
-    const std::size_t key = part * kKinds + Watching;
-    watchStarts_[part + 1] = watchStarts_[part] +
+    const std::size_t key = strip * kKinds + Watching;
+    watchStarts_[strip + 1] = watchStarts_[strip] +
       int((ends_[key] - this->firstOf(key) + crowd::kLanes - 1) / crowd::kLanes);
   }
   watched_.resize(std::size_t(watchStarts_.back()));
@@ -181,11 +181,11 @@ void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
   filled_.resize(std::size_t(count));
   springs_.assign(std::size_t(count), crowd::Springs{});
   forces_.assign(std::size_t(count), crowd::Forces{});
-  const auto layOut = [&](int part)
+  const auto layOut = [&](int strip)
   {
-    const std::size_t key = std::size_t(part * kKinds);
+    const std::size_t key = std::size_t(strip * kKinds);
     std::size_t at = std::size_t(starts_[key]);
-    for (const Hand& hand : hands_[std::size_t(part)])
+    for (const Hand& hand : hands_[std::size_t(strip)])
     {
       batches_[at] = hand.idle<crowd::Batch>();
       filled_[at++] = hand.filled;
@@ -194,9 +194,9 @@ void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
     {
       rows_[std::size_t(order_[k])].batch += starts_[key];
     }
-    this->layOutWatched(contacts, part, bodies + part);
+    this->layOutWatched(contacts, strip, bodies + strip);
   };
-  this->forParts(false, layOut);
+  this->forStrips(false, layOut);
 }
 
 void CrowdSolver::deal(const std::vector<GroupContact>& contacts, const int* first, const int* last,
@@ -291,9 +291,10 @@ void CrowdSolver::findLanes(
 
 bool CrowdSolver::findEmptyLane(const GroupContact& contact, Row& row)
 {
-  const int part = this->partOf(contact);
+  const int strip = this->stripOf(contact);
   const bool slope = contact.second < 0;
-  const std::size_t key = std::size_t(part * kKinds + (slope && part < parts_ ? OnSlope : Pairs));
+  const std::size_t key =
+    std::size_t(strip * kKinds + (slope && strip < strips_ ? OnSlope : Pairs));
   const int a = int(work_[std::size_t(contact.first)].mover);
   const int c = slope ? a : int(work_[std::size_t(contact.second)].mover);
   for (int k = room_[key]; k < starts_[key + 1]; ++k)
@@ -331,7 +332,7 @@ void CrowdSolver::appendBatches(
   std::vector<Hand>& hands = hands_.back();
   hands.clear();
   this->deal(
-    contacts, added.data(), added.data() + added.size(), int(work_.size()) + parts_, hands);
+    contacts, added.data(), added.data() + added.size(), int(work_.size()) + strips_, hands);
   for (const int k : added)
   {
     rows_[std::size_t(k)].batch += int(before);
@@ -345,8 +346,8 @@ void CrowdSolver::appendBatches(
   forces_.resize(batches_.size());
   forcesBefore_.resize(batches_.size());
   forcesAlong_.resize(batches_.size());
-  // Contacts go with what reaches further than to the next part.
-  const std::size_t pairs = std::size_t(parts_ * kKinds + Pairs);
+  // Contacts go with what reaches further than to the next strip.
+  const std::size_t pairs = std::size_t(strips_ * kKinds + Pairs);
   used_[pairs] = int(batches_.size());
   for (std::size_t key = pairs + 1; key < starts_.size(); ++key)
   {
@@ -355,13 +356,13 @@ void CrowdSolver::appendBatches(
   used_[pairs + OnSlope] = int(batches_.size()); // it has none
 }
 
-void CrowdSolver::layOutWatched(const std::vector<GroupContact>& contacts, int part, int slope)
+void CrowdSolver::layOutWatched(const std::vector<GroupContact>& contacts, int strip, int slope)
 {
-  const auto first = watched_.begin() + watchStarts_[std::size_t(part)];
-  std::for_each(first, watched_.begin() + watchStarts_[std::size_t(part) + 1],
+  const auto first = watched_.begin() + watchStarts_[std::size_t(strip)];
+  std::for_each(first, watched_.begin() + watchStarts_[std::size_t(strip) + 1],
     [&](crowd::Watched& four) { four = Hand(slope).idle<crowd::Watched>(); });
-  const std::size_t key = std::size_t(part * kKinds + Watching);
-  std::size_t at = std::size_t(watchStarts_[std::size_t(part)]) * crowd::kLanes;
+  const std::size_t key = std::size_t(strip * kKinds + Watching);
+  std::size_t at = std::size_t(watchStarts_[std::size_t(strip)]) * crowd::kLanes;
   for (std::size_t k = this->firstOf(key); k < ends_[key]; ++k, ++at)
   {
     const int contact = order_[k];

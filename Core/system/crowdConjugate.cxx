@@ -40,7 +40,7 @@ void CrowdSolver::begin()
 
 void CrowdSolver::goFurther()
 {
-  // Rocks are in order along the group: who goes over a share of them has the same parts to sweep.
+  // Rocks are in order along the group: who goes over a share of them has the same strips to sweep.
   const std::size_t shares = std::clamp(work_.size() / kRocks, std::size_t(1), kMostShares);
   const auto forShares = [count = work_.size(), shares](auto&& go)
   {
@@ -69,17 +69,17 @@ void CrowdSolver::goFurther()
       further_, &movers_[from], &before_[from], &along_[from], &changed_[from], count);
   };
   forShares(goMovers);
-  goingFurther_ = true; // forces follow part by part, where they are visited next
+  goingFurther_ = true; // forces follow strip by strip, where they are visited next
 }
 
-void CrowdSolver::goFurther(int part)
+void CrowdSolver::goFurther(int strip)
 {
   const auto go = [&](std::size_t first, std::size_t count)
   {
     kernel_->goForces(further_, forces_.data() + first, forcesBefore_.data() + first,
       forcesAlong_.data() + first, count);
   };
-  this->forUsed(part, go);
+  this->forUsed(strip, go);
 }
 
 } // namespace rockfall

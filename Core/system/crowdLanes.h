@@ -16,13 +16,13 @@ using rockfall::crowd::kLanes;
 using Four = double __attribute__((vector_size(32), may_alias));
 using FourMask = long long __attribute__((vector_size(32)));
 #ifdef __AVX512F__
-constexpr int kWidth = 8;
+constexpr int kRegister = 8;
 #else
-constexpr int kWidth = 4;
+constexpr int kRegister = 4;
 #endif
-using Lanes = double __attribute__((vector_size(8 * kWidth), may_alias));
-using Mask = long long __attribute__((vector_size(8 * kWidth)));
-static_assert(kLanes % kWidth == 0);
+using Lanes = double __attribute__((vector_size(8 * kRegister), may_alias));
+using Mask = long long __attribute__((vector_size(8 * kRegister)));
+static_assert(kLanes % kRegister == 0);
 
 struct Triple
 {
@@ -95,7 +95,7 @@ ROCKFALL_INLINE void transpose(Lanes (&m)[4])
 }
 
 /// Four numbers of each of as many movers as there are lanes: `m[k]` has their number k.
-ROCKFALL_INLINE void gather(const double* const (&from)[kWidth], Lanes (&m)[4])
+ROCKFALL_INLINE void gather(const double* const (&from)[kRegister], Lanes (&m)[4])
 {
   for (int i = 0; i < 4; ++i)
   {
@@ -109,7 +109,7 @@ ROCKFALL_INLINE void gather(const double* const (&from)[kWidth], Lanes (&m)[4])
   transpose(m);
 }
 
-ROCKFALL_INLINE void scatter(Lanes (&m)[4], double* const (&to)[kWidth])
+ROCKFALL_INLINE void scatter(Lanes (&m)[4], double* const (&to)[kRegister])
 {
   transpose(m);
   for (int i = 0; i < 4; ++i)

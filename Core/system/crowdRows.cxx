@@ -94,14 +94,14 @@ void CrowdSolver::assemble(std::size_t first, std::size_t count)
 void CrowdSolver::prepareRows(
   const std::vector<GroupBody>& bodies, const std::vector<GroupContact>& contacts)
 {
-  // Part by part, as long as it lies in the cache.
-  const auto preparePart = [&](int part)
+  // Strip by strip, as long as it lies in the cache.
+  const auto prepareStrip = [&](int strip)
   {
     this->forContacts(
-      part, [&](std::size_t k) { this->prepareRow(bodies, contacts[k], rows_[k]); });
+      strip, [&](std::size_t k) { this->prepareRow(bodies, contacts[k], rows_[k]); });
     this->forUsed(
-      part, [&](std::size_t first, std::size_t count) { this->assemble(first, count); });
-    const std::size_t key = std::size_t(part * kKinds);
+      strip, [&](std::size_t first, std::size_t count) { this->assemble(first, count); });
+    const std::size_t key = std::size_t(strip * kKinds);
     for (std::size_t at = this->firstOf(key); at < ends_[key + OnSlope]; ++at)
     {
       const std::size_t k = std::size_t(order_[at]);
@@ -112,7 +112,7 @@ void CrowdSolver::prepareRows(
       this->pushed(rows_[k], 1.0);
     }
   };
-  this->forParts(false, preparePart);
+  this->forStrips(false, prepareStrip);
 }
 
 void CrowdSolver::lever(

@@ -22,17 +22,17 @@ using rockfall::crowd::Way;
 /// One side of the contacts.
 struct Side
 {
-  double* way[kWidth];
-  double* turn[kWidth];
-  const double* inertia[kWidth];
-  const double* others[kWidth]; ///< Off the diagonal of the inertia.
+  double* way[kRegister];
+  double* turn[kRegister];
+  const double* inertia[kRegister];
+  const double* others[kRegister]; ///< Off the diagonal of the inertia.
   Lanes ways[4], turns[4];
 };
 
 /// `body`: from the first lane on.
 ROCKFALL_INLINE void take(Mover* movers, const int* body, Side& side)
 {
-  for (int i = 0; i < kWidth; ++i)
+  for (int i = 0; i < kRegister; ++i)
   {
     Mover& m = movers[body[i]];
     side.way[i] = m.way;
@@ -141,7 +141,7 @@ ROCKFALL_INLINE Lanes relax(const Batch& batch, Forces& forces, const Pass& pass
   }
   const Lanes change = w * (absolute(more) + absolute(slide1) + absolute(slide2));
   const int moved = bits(change > pass.quiet);
-  for (int i = 0; i < kWidth; ++i)
+  for (int i = 0; i < kRegister; ++i)
   {
     int& first = pass.changed[batch.body[0][at + i]];
     int& second = pass.changed[batch.body[1][at + i]];
@@ -176,14 +176,14 @@ ROCKFALL_INLINE double sweepAll(const Pass& pass)
     {
       continue;
     }
-    for (int lane = 0; lane < kLanes; lane += kWidth)
+    for (int lane = 0; lane < kLanes; lane += kRegister)
     {
       const Lanes change = relax<onSlope>(batch, pass.forces[at], pass, lane);
       most = change > most ? change : most;
     }
   }
   double largest = 0.0;
-  for (int i = 0; i < kWidth; ++i)
+  for (int i = 0; i < kRegister; ++i)
   {
     largest = most[i] > largest ? most[i] : largest;
   }
@@ -237,7 +237,7 @@ void assembleHere(Batch* batches, const Springs* springs, Mover* movers, std::si
   for (std::size_t k = 0; k < count; ++k)
   {
     Batch& batch = batches[k];
-    for (int at = 0; at < kLanes; at += kWidth)
+    for (int at = 0; at < kLanes; at += kRegister)
     {
       const Triple directions[3] = { load3(batch.directions[0], at), load3(batch.directions[1], at),
         load3(batch.directions[2], at) };
@@ -285,7 +285,7 @@ bool watchHere(const Watch& watch)
       continue;
     }
     int closes = 0;
-    for (int at = 0; at < kLanes; at += kWidth)
+    for (int at = 0; at < kLanes; at += kRegister)
     {
       const Triple a = wayOf(watch.movers, of.body[0], of.lever[0], at);
       const Triple b = wayOf(watch.movers, of.body[1], of.lever[1], at);

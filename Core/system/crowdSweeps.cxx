@@ -19,11 +19,11 @@ constexpr std::size_t kBounceGrain = 32;
 
 } // namespace
 
-double CrowdSolver::visit(int part)
+double CrowdSolver::visit(int strip)
 {
   if (goingFurther_)
   {
-    this->goFurther(part);
+    this->goFurther(strip);
   }
   crowd::Pass pass;
   pass.backwards = sweep_ % 2 != 0;
@@ -34,7 +34,7 @@ double CrowdSolver::visit(int part)
   double most = 0.0;
   for (const bool slope : { pass.backwards, !pass.backwards })
   {
-    const std::size_t key = std::size_t(part * kKinds + (slope ? OnSlope : Pairs));
+    const std::size_t key = std::size_t(strip * kKinds + (slope ? OnSlope : Pairs));
     pass.first = batches_.data() + starts_[key];
     pass.forces = forces_.data() + starts_[key];
     pass.count = used_[key] - starts_[key];
@@ -46,10 +46,11 @@ double CrowdSolver::visit(int part)
 
 double CrowdSolver::sweep()
 {
-  most_.assign(std::size_t(parts_) + 1, 0.0);
-  this->forParts(sweep_ % 2 != 0, [&](int part) { most_[std::size_t(part)] = this->visit(part); });
+  most_.assign(std::size_t(strips_) + 1, 0.0);
+  this->forStrips(
+    sweep_ % 2 != 0, [&](int strip) { most_[std::size_t(strip)] = this->visit(strip); });
   goingFurther_ = false;
-  changed_.back() = kNever; // the slope of the last part, where its contacts are among the others
+  changed_.back() = kNever; // the slope of the last strip, where its contacts are among the others
   return *std::max_element(most_.begin(), most_.end());
 }
 

@@ -59,7 +59,7 @@ void CrowdSolver::write(const StepRequest& request, std::vector<GroupBody>& bodi
         laneOf(p.directions[2], lane) },
       ways, row.gap0, group);
   };
-  this->forParts(false, [&](int part) { this->forContacts(part, writeRow); });
+  this->forStrips(false, [&](int strip) { this->forContacts(strip, writeRow); });
   for (std::size_t k = order_.size(); k < contacts.size(); ++k)
   {
     writeRow(k);

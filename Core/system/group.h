@@ -17,6 +17,9 @@
 namespace rockfall
 {
 
+/// Bodies and rows that one thread looks after at a time.
+constexpr std::size_t kBodyGrain = 64, kRowGrain = 256;
+
 struct GroupBody
 {
   const Block* block = nullptr;

@@ -8,7 +8,8 @@ namespace
 
 /// Boxes spread evenly fill 0.63 of as many cells; below this part of them the extent is sparse.
 constexpr double kSparse = 0.3;
-constexpr double kMostCells = 16.0;
+/// Cells that the box of a tree or an embankment lies in at most.
+constexpr double kMostCellsOfBox = 16.0;
 
 } // namespace
 
@@ -28,8 +29,8 @@ BoxIndex::BoxIndex(std::span<const FlatBox> boxes)
     north_ = std::max(north_, b.yMax);
   }
   // About as many cells as boxes. Where most of the extent is empty (woods far apart, one tree by
-  // itself) as many in what is occupied, but neither more than kMostCells for a box nor smaller
-  // than the boxes are.
+  // itself) as many in what is occupied, but neither more than kMostCellsOfBox for a box nor
+  // smaller than the boxes are.
   const double width = east_ - west_, height = north_ - south_;
   double size = std::max({ std::sqrt(width * height / double(boxes.size())),
     std::max(width, height) / double(boxes.size() + 1), 1e-3 });
@@ -41,7 +42,8 @@ BoxIndex::BoxIndex(std::span<const FlatBox> boxes)
     {
       extent += std::max(b.xMax - b.xMin, b.yMax - b.yMin) / double(boxes.size());
     }
-    size = std::min(size, std::max(size * std::sqrt(std::max(filled, 1.0 / kMostCells)), extent));
+    size =
+      std::min(size, std::max(size * std::sqrt(std::max(filled, 1.0 / kMostCellsOfBox)), extent));
   }
   inverse_ = 1.0 / size;
   columns_ = int(width * inverse_) + 1;
