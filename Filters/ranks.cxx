@@ -41,7 +41,12 @@ enum ArrayKind
 } // namespace
 
 Ranks::Ranks()
-  : controller_(vtkMultiProcessController::GetGlobalController())
+  : Ranks(vtkMultiProcessController::GetGlobalController())
+{
+}
+
+Ranks::Ranks(vtkMultiProcessController* controller)
+  : controller_(controller)
 {
   if (controller_)
   {
@@ -84,15 +89,18 @@ int Ranks::threads() const
   return std::max(1, bound ? own : own / here);
 }
 
-void Ranks::agree(const std::string& problem) const
+void Ranks::settle(State own, const std::string& problem) const
 {
-  const std::vector<int> lengths = this->gather(int(problem.size()));
-  const auto first =
-    std::find_if(lengths.begin(), lengths.end(), [](int length) { return length > 0; });
-  if (first != lengths.end())
+  const std::vector<int> states = this->gather(int(own));
+  const auto has = [&](State state) { return std::find(states.begin(), states.end(), int(state)); };
+  if (has(State::GivenUp) != states.end())
+  {
+    throw Aborted();
+  }
+  if (const auto first = has(State::Failed); first != states.end())
   {
     std::string text = problem;
-    this->broadcastText(text, int(first - lengths.begin()));
+    this->broadcastText(text, int(first - states.begin()));
     throw Error(text);
   }
 }
@@ -100,29 +108,26 @@ void Ranks::agree(const std::string& problem) const
 void Ranks::together(const std::function<void()>& work, const std::string& noMemory) const
 {
   std::string problem;
-  bool aborted = false;
+  State state = State::Well;
   try
   {
     work();
   }
   catch (const Aborted&)
   {
-    aborted = true;
+    state = State::GivenUp;
   }
   catch (const Error& error)
   {
     problem = error.what();
+    state = State::Failed;
   }
   catch (const std::bad_alloc&)
   {
     problem = noMemory;
+    state = State::Failed;
   }
-  const std::vector<int> all = this->gather(aborted ? 1 : 0);
-  if (std::find(all.begin(), all.end(), 1) != all.end())
-  {
-    throw Aborted();
-  }
-  this->agree(problem);
+  this->settle(state, problem);
 }
 
 void Ranks::broadcastBytes(void* bytes, std::size_t count, int root) const

@@ -23,6 +23,8 @@ class Ranks
 {
 public:
   Ranks();
+  /// The processes of this controller; null: one.
+  explicit Ranks(vtkMultiProcessController* controller);
   int count() const { return count_; }
   int rank() const { return rank_; }
 
@@ -31,9 +33,13 @@ public:
   std::vector<double> gather(double value) const;
 
   /// If any rank has a problem all of them throw Error, with the text of the lowest such rank.
-  void agree(const std::string& problem) const;
+  void agree(const std::string& problem) const
+  {
+    this->settle(problem.empty() ? State::Well : State::Failed, problem);
+  }
   /// Does the work on every rank and agrees on how it went. Error and bad_alloc are problems;
-  /// `noMemory` is the text for the latter. If any rank gives up, all throw Aborted.
+  /// `noMemory` is the text for the latter. If any rank gives up, all throw Aborted. Some ranks may
+  /// call `agree` instead: both send the same messages.
   void together(const std::function<void()>& work, const std::string& noMemory) const;
 
   /// What `text` is on rank 0.
@@ -51,6 +57,15 @@ public:
     std::vector<char>&& bytes, const std::string& noMemory) const;
 
 private:
+  /// What a rank tells the others of its work. The worst counts for all.
+  enum class State
+  {
+    Well,
+    Failed,
+    GivenUp
+  };
+  /// The one gather in which ranks agree. Throws on all ranks alike.
+  void settle(State own, const std::string& problem) const;
   void broadcastBytes(void* bytes, std::size_t count, int root) const;
   void broadcastText(std::string& text, int root) const;
   vtkSmartPointer<vtkAbstractArray> broadcast(vtkAbstractArray* array, int root) const;
