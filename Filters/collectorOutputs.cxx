@@ -222,14 +222,27 @@ void writeExceedance(
       return rank < ascending.size() ? ascending[ascending.size() - 1 - rank]
                                      : std::numeric_limits<double>::quiet_NaN();
     };
-    for (std::size_t rank = 0; rank < summary.energies.size(); ++rank)
+    const auto add = [&](double joules, double metres, std::size_t rocks)
     {
       line->InsertNextValue(int(k));
-      energy->InsertNextValue(descending(summary.energies, rank));
-      kilojoules->InsertNextValue(1e-3 * descending(summary.energies, rank));
-      height->InsertNextValue(descending(summary.heights, rank));
-      ofPassing->InsertNextValue(double(rank + 1) / double(summary.rocks));
-      ofReleased->InsertNextValue(double(rank + 1) / double(released));
+      energy->InsertNextValue(joules);
+      kilojoules->InsertNextValue(1e-3 * joules);
+      height->InsertNextValue(metres);
+      ofPassing->InsertNextValue(double(rocks) / double(summary.rocks));
+      ofReleased->InsertNextValue(double(rocks) / double(released));
+    };
+    const std::size_t rocks = summary.energies.size();
+    for (std::size_t rank = 0; rank < rocks; ++rank)
+    {
+      add(descending(summary.energies, rank), descending(summary.heights, rank), rank + 1);
+    }
+    if (rocks > 0)
+    {
+      // All have at least nothing: where the curve begins, and what makes one of a single rock.
+      const bool all = summary.heights.size() == rocks;
+      add(0.0,
+        all ? std::min(0.0, summary.heights.front()) : std::numeric_limits<double>::quiet_NaN(),
+        rocks);
     }
   }
 }

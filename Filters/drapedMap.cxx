@@ -38,18 +38,22 @@ void drapeMap(vtkImageData* map, vtkPolyData* output)
 
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
-  std::vector<int> pointOf(std::size_t(map->GetNumberOfPoints()), -1);
+  // Of the corners in the row at hand and the next one: an image has far more than are drawn.
+  std::array<std::vector<vtkIdType>, 2> pointOf;
+  pointOf.fill(std::vector<vtkIdType>(std::size_t(columns) + 1, -1));
+  vtkIdType row = 0;
   const auto point = [&](vtkIdType node)
   {
-    int& id = pointOf[std::size_t(node)];
+    const vtkIdType nodeRow = node / (columns + 1);
+    vtkIdType& id = pointOf[std::size_t(nodeRow % 2)][std::size_t(node % (columns + 1))];
     if (id < 0)
     {
       double place[3];
       map->GetPoint(node, place);
       place[2] = lift + (heights ? heights->GetTuple1(node) : 0.0);
-      id = int(points->InsertNextPoint(place));
+      id = points->InsertNextPoint(place);
     }
-    return vtkIdType(id);
+    return id;
   };
   vtkNew<vtkCellArray> cells;
   vtkCellData* data = output->GetCellData();
@@ -68,7 +72,11 @@ void drapeMap(vtkImageData* map, vtkPolyData* output)
     {
       continue;
     }
-    const vtkIdType south = cell + cell / columns, north = south + columns + 1;
+    for (; row < cell / columns; ++row)
+    {
+      std::fill(pointOf[std::size_t(row % 2)].begin(), pointOf[std::size_t(row % 2)].end(), -1);
+    }
+    const vtkIdType south = cell + row, north = south + columns + 1;
     // Cut as the slope's cells are: a viewer would cut a quadrilateral along the shorter diagonal,
     // metres above or below the slope.
     const vtkIdType ends[4] = { point(north), point(south), point(south + 1), point(north + 1) };

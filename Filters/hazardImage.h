@@ -4,8 +4,10 @@
 /// The map of hazards as an image.
 
 #include "base/types.h"
+#include "statistics/sample.h"
 
 #include <string>
+#include <vector>
 
 class vtkImageData;
 class vtkPolyData;
@@ -18,10 +20,32 @@ class PassageFiles;
 namespace rockfall::filters
 {
 
+/// A statistic over the rocks of a cell, of each quantity that is mapped: the end of an array's
+/// name.
+struct MapStatistic
+{
+  const char* name;
+  double (*value)(const SampleStatistics& of);
+};
+inline constexpr MapStatistic mapStatistics[] = {
+  { "Mean", [](const SampleStatistics& of) { return of.mean; } },
+  { "Maximum", [](const SampleStatistics& of) { return of.maximum; } },
+  { "50", [](const SampleStatistics& of) { return of.quantiles[0]; } },
+  { "90", [](const SampleStatistics& of) { return of.quantiles[1]; } },
+  { "95", [](const SampleStatistics& of) { return of.quantiles[2]; } },
+  { "99", [](const SampleStatistics& of) { return of.quantiles[3]; } },
+};
+
+/// Numbers of mapStatistics. Each costs an array of four bytes a cell for each quantity; a map of
+/// 10⁷ cells with all of them takes 1.2 GB.
+using ChosenStatistics = std::vector<int>;
+inline const ChosenStatistics usualStatistics = { 0, 1, 4 }; ///< Mean, maximum, 95 %.
+
 struct HazardMapOptions
 {
   double cellSize = 0.0; ///< m; 0 = the terrain's.
   bool crop = false;     ///< To what the trajectories reach.
+  ChosenStatistics statistics = usualStatistics;
 };
 
 /// Fills `image`: see vtkRockfallHazardMap. `terrain` may be null. Throws rockfall::Error.
@@ -29,7 +53,8 @@ void makeHazardImage(vtkPolyData* trajectories, vtkPolyData* terrain,
   const HazardMapOptions& options, vtkImageData* image);
 
 /// The same of files of passages, without the heights of the slope.
-void makeHazardImage(const PassageFiles& files, vtkImageData* image);
+void makeHazardImage(
+  const PassageFiles& files, const ChosenStatistics& statistics, vtkImageData* image);
 
 /// Writes the passages that the map of the whole terrain would be made of; `cellSize` as above.
 /// Throws rockfall::Error.

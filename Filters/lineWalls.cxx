@@ -27,11 +27,11 @@ constexpr double kMostPanels = 10000.0;
 /// How far a line across paths goes beyond them, as a share of their width or length.
 constexpr double kBeyond = 0.05;
 
-/// The ground under a place in the plane, local frame, m.
+/// The ground under a place in the plane, local frame, m; NaN beyond the slope and in its holes,
+/// `level` everywhere without a slope.
 double groundAt(const Terrain* terrain, double level, const Eigen::Vector2d& place)
 {
-  const double ground = terrain ? terrain->elevation(place.x(), place.y()) : level;
-  return std::isnan(ground) ? level : ground;
+  return terrain ? terrain->elevation(place.x(), place.y()) : level;
 }
 
 /// Places along a line at which its wall follows the ground, cell by cell.
@@ -76,7 +76,13 @@ void writeWalls(std::span<const CollectorLine> lines, std::span<const LineSummar
     vtkIdType before = -1;
     for (const Eigen::Vector2d& place : stepsOf(line, terrain))
     {
-      const Vec3 foot = origin + Vec3(place.x(), place.y(), groundAt(terrain, level, place));
+      const double ground = groundAt(terrain, level, place);
+      if (std::isnan(ground))
+      {
+        before = -1; // nothing to stand on
+        continue;
+      }
+      const Vec3 foot = origin + Vec3(place.x(), place.y(), ground);
       const vtkIdType here = points->InsertNextPoint(foot.data());
       points->InsertNextPoint(foot.x(), foot.y(), foot.z() + line.barrierHeight);
       if (before >= 0)
@@ -140,8 +146,8 @@ std::array<double, 6> lineAcross(
   for (std::size_t end = 0; end < 2; ++end)
   {
     const double level = trajectories->GetBounds()[4] - origin.z();
-    const double ground =
-      groundAt(terrain, level, Eigen::Vector2d(ends[end] - origin.head<2>())) + origin.z();
+    const double found = groundAt(terrain, level, Eigen::Vector2d(ends[end] - origin.head<2>()));
+    const double ground = (std::isnan(found) ? level : found) + origin.z();
     line[3 * end] = ends[end].x();
     line[3 * end + 1] = ends[end].y();
     line[3 * end + 2] = ground;

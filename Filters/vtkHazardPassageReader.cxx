@@ -19,6 +19,7 @@ vtkStandardNewMacro(vtkHazardPassageReader);
 
 //------------------------------------------------------------------------------
 vtkHazardPassageReader::vtkHazardPassageReader()
+  : Statistics(rockfall::filters::usualStatistics)
 {
   this->SetNumberOfInputPorts(0);
 }
@@ -42,6 +43,23 @@ void vtkHazardPassageReader::RemoveAllFileNames()
   if (!this->FileNames.empty())
   {
     this->FileNames.clear();
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkHazardPassageReader::AddStatistic(int statistic)
+{
+  this->Statistics.push_back(statistic);
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+void vtkHazardPassageReader::RemoveAllStatistics()
+{
+  if (!this->Statistics.empty())
+  {
+    this->Statistics.clear();
     this->Modified();
   }
 }
@@ -102,10 +120,12 @@ int vtkHazardPassageReader::RequestData(
     rockfall::filters::markEmptyMap(image);
     return 1;
   }
-  return rockfall::filters::attempt(this, "There is not enough memory for the map",
+  return rockfall::filters::attempt(this,
+    "There is not enough memory for the map: choose fewer Statistics",
     [&]
     {
-      rockfall::filters::makeHazardImage(rockfall::PassageFiles(this->FileNames), image);
+      rockfall::filters::makeHazardImage(
+        rockfall::PassageFiles(this->FileNames), this->Statistics, image);
       return 1;
     });
 }
@@ -118,6 +138,11 @@ void vtkHazardPassageReader::PrintSelf(ostream& os, vtkIndent indent)
   for (const std::string& name : this->FileNames)
   {
     os << " " << name;
+  }
+  os << "\n" << indent << "Statistics:";
+  for (const int statistic : this->Statistics)
+  {
+    os << " " << statistic;
   }
   os << "\n";
 }

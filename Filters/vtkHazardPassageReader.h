@@ -13,7 +13,7 @@
 #include "vtkImageAlgorithm.h"
 
 #include <string> // for FileNames
-#include <vector> // for FileNames
+#include <vector> // for FileNames, Statistics
 
 class ROCKFALLFILTERS_EXPORT vtkHazardPassageReader : public vtkImageAlgorithm
 {
@@ -28,6 +28,14 @@ public:
    */
   void AddFileName(const char* fileName);
   void RemoveAllFileNames();
+  ///@}
+
+  ///@{
+  /**
+   * As of vtkRockfallHazardMap.
+   */
+  void AddStatistic(int statistic);
+  void RemoveAllStatistics();
   ///@}
 
   /// 1 if the file is whole and one of passages, else 0.
@@ -45,6 +53,7 @@ protected:
 
 private:
   std::vector<std::string> FileNames;
+  std::vector<int> Statistics;
 };
 
 #endif

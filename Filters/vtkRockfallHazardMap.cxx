@@ -64,7 +64,8 @@ struct vtkRockfallHazardMap::Inputs
 
 //------------------------------------------------------------------------------
 vtkRockfallHazardMap::vtkRockfallHazardMap()
-  : Taken(std::make_unique<Inputs>())
+  : Statistics(rockfall::filters::usualStatistics)
+  , Taken(std::make_unique<Inputs>())
 {
   this->SetNumberOfInputPorts(2);
   this->SetNumberOfOutputPorts(2);
@@ -117,8 +118,8 @@ void vtkRockfallHazardMap::Prepare(vtkInformationVector** inputVector)
   try
   {
     const rockfall::filters::HeardAbort heard(this);
-    rockfall::filters::makeHazardImage(
-      trajectories, terrain, { this->CellSize, this->CropToTrajectories }, this->Made->image);
+    rockfall::filters::makeHazardImage(trajectories, terrain,
+      { this->CellSize, this->CropToTrajectories, this->Statistics }, this->Made->image);
     rockfall::filters::drapeMap(this->Made->image, this->Made->draped);
   }
   catch (const rockfall::Aborted&)
@@ -137,8 +138,8 @@ void vtkRockfallHazardMap::Prepare(vtkInformationVector** inputVector)
   {
     this->Made->image->Initialize();
     this->Made->draped->Initialize();
-    this->Made->error = "There is not enough memory for the map: give a larger CellSize, or switch "
-                        "CropToTrajectories on";
+    this->Made->error = "There is not enough memory for the map: give a larger CellSize, fewer "
+                        "Statistics, or switch CropToTrajectories on";
   }
 }
 
@@ -243,9 +244,32 @@ int vtkRockfallHazardMap::RequestData(
 }
 
 //------------------------------------------------------------------------------
+void vtkRockfallHazardMap::AddStatistic(int statistic)
+{
+  this->Statistics.push_back(statistic);
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+void vtkRockfallHazardMap::RemoveAllStatistics()
+{
+  if (!this->Statistics.empty())
+  {
+    this->Statistics.clear();
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
 void vtkRockfallHazardMap::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "CellSize: " << this->CellSize << "\n";
   os << indent << "CropToTrajectories: " << this->CropToTrajectories << "\n";
+  os << indent << "Statistics:";
+  for (const int statistic : this->Statistics)
+  {
+    os << " " << statistic;
+  }
+  os << "\n";
 }

@@ -10,8 +10,8 @@
  *
  * Cell arrays: Passages, Rocks, StoppingPoints, ReachProbability, ReachProbabilityError,
  * ReachProbabilityErrorOfIterations, and of KineticEnergy (J), Speed (m/s), HeightOverGround (m)
- * and RotationRate (rad/s) the Mean, Maximum, 50, 90, 95 and 99 % quantiles over the rocks, such as
- * SpeedMean and Speed95. Counts are 0 and the others NaN where nothing passed, probabilities 0.
+ * and RotationRate (rad/s) the chosen Statistics over the rocks, such as SpeedMean and Speed95.
+ * Counts are 0 and the others NaN where nothing passed, probabilities 0.
  *
  * How large the image is depends on the data, and a pipeline wants to know it before: the inputs
  * are brought up to date when information is asked for.
@@ -24,6 +24,7 @@
 
 #include <memory> // for the result
 #include <string> // for an error
+#include <vector> // for Statistics
 
 class ROCKFALLFILTERS_EXPORT vtkRockfallHazardMap : public vtkImageAlgorithm
 {
@@ -50,6 +51,16 @@ public:
   vtkBooleanMacro(CropToTrajectories, bool);
   ///@}
 
+  ///@{
+  /**
+   * The statistics over the rocks of a cell that the map has of each quantity: 0 the mean, 1 the
+   * maximum, 2 to 5 the 50, 90, 95 and 99 % quantiles. Mean, maximum and 95 % by default. Each
+   * takes 16 bytes a cell.
+   */
+  void AddStatistic(int statistic);
+  void RemoveAllStatistics();
+  ///@}
+
   vtkRockfallHazardMap(const vtkRockfallHazardMap&) = delete;
   void operator=(const vtkRockfallHazardMap&) = delete;
 
@@ -68,6 +79,7 @@ private:
 
   double CellSize = 0.0;
   bool CropToTrajectories = true;
+  std::vector<int> Statistics;
   std::string Spread; // why trajectories on several ranks make no map
   struct Result;
   struct Inputs;

@@ -7,6 +7,7 @@
 #include "gis/outputFile.h"
 
 #include <cpl_string.h>
+#include <gdal_pam.h>
 #include <gdal_priv.h>
 
 #include <limits>
@@ -25,48 +26,86 @@ namespace
     (messages.failure().empty() ? "" : ": " + messages.failure()));
 }
 
-DatasetPtr inMemory(const std::string& fileName, const MapImage& map, Messages& messages)
+/// A band whose values are asked for row by row, so that no second copy of a map is made.
+class Band : public GDALPamRasterBand
 {
-  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("MEM");
-  DatasetPtr dataset(driver
-      ? driver->Create("", map.columns, map.rows, int(map.bands.size()), GDT_Float32, nullptr)
-      : nullptr);
-  if (!dataset)
+public:
+  Band(GDALDataset* dataset, const MapImage& map, const MapBand& band)
+    : rows_(map.rows)
+    , band_(band)
   {
-    fail(fileName, messages);
+    this->poDS = dataset;
+    this->eDataType = GDT_Float32;
+    this->nBlockXSize = map.columns;
+    this->nBlockYSize = 1;
+    this->SetDescription(band.name.c_str());
+    this->SetUnitType(band.unit.c_str());
+    this->SetNoDataValue(std::numeric_limits<double>::quiet_NaN());
   }
-  double affine[6] = { map.west, map.cellSize, 0.0, map.south + map.rows * map.cellSize, 0.0,
-    -map.cellSize };
-  dataset->SetGeoTransform(affine);
-  if (!map.crs.empty())
+
+protected:
+  CPLErr IReadBlock(int, int row, void* values) override
   {
-    dataset->SetSpatialRef(crsFromText(map.crs).get());
+    band_.fill(rows_ - 1 - row, { static_cast<float*>(values), std::size_t(this->nBlockXSize) });
+    return CE_None;
   }
-  dataset->SetMetadataItem("AREA_OR_POINT", "Area");
-  dataset->SetMetadataItem("TIFFTAG_SOFTWARE", versionText().c_str());
-  for (const auto& [name, text] : map.metadata)
+
+  /// Past GDAL's cache of blocks, which would become a copy of the map.
+  CPLErr IRasterIO(GDALRWFlag flag, int x, int y, int width, int height, void* values, int columns,
+    int rows, GDALDataType type, GSpacing step, GSpacing lineStep,
+    GDALRasterIOExtraArg* extra) override
   {
-    dataset->SetMetadataItem(name.c_str(), text.c_str());
-  }
-  std::vector<float> row(std::size_t(map.columns));
-  for (std::size_t k = 0; k < map.bands.size(); ++k)
-  {
-    GDALRasterBand& band = *dataset->GetRasterBand(int(k) + 1);
-    band.SetDescription(map.bands[k].name.c_str());
-    band.SetUnitType(map.bands[k].unit.c_str());
-    band.SetNoDataValue(std::numeric_limits<double>::quiet_NaN());
-    for (int y = 0; y < map.rows; ++y)
+    if (flag != GF_Read || width != columns || height != rows)
     {
-      map.bands[k].fill(map.rows - 1 - y, row);
-      if (band.RasterIO(GF_Write, 0, y, map.columns, 1, row.data(), map.columns, 1, GDT_Float32, 0,
-            0, nullptr) != CE_None)
-      {
-        fail(fileName, messages);
-      }
+      return GDALPamRasterBand::IRasterIO(
+        flag, x, y, width, height, values, columns, rows, type, step, lineStep, extra);
+    }
+    row_.resize(std::size_t(this->nBlockXSize));
+    for (int k = 0; k < height; ++k)
+    {
+      band_.fill(rows_ - 1 - y - k, row_);
+      GDALCopyWords(row_.data() + x, GDT_Float32, int(sizeof(float)),
+        static_cast<char*>(values) + k * lineStep, type, int(step), width);
+    }
+    return CE_None;
+  }
+
+private:
+  std::vector<float> row_;
+  int rows_;
+  const MapBand& band_;
+};
+
+/// The map as GDAL's drivers read it. What it says of itself goes into the copy and not into a file
+/// beside.
+class Map : public GDALPamDataset
+{
+public:
+  explicit Map(const MapImage& map)
+  {
+    this->nPamFlags |= GPF_NOSAVE;
+    this->eAccess = GA_ReadOnly;
+    this->nRasterXSize = map.columns;
+    this->nRasterYSize = map.rows;
+    double affine[6] = { map.west, map.cellSize, 0.0, map.south + map.rows * map.cellSize, 0.0,
+      -map.cellSize };
+    this->SetGeoTransform(affine);
+    if (!map.crs.empty())
+    {
+      this->SetSpatialRef(crsFromText(map.crs).get());
+    }
+    this->SetMetadataItem("AREA_OR_POINT", "Area");
+    this->SetMetadataItem("TIFFTAG_SOFTWARE", versionText().c_str());
+    for (const auto& [name, text] : map.metadata)
+    {
+      this->SetMetadataItem(name.c_str(), text.c_str());
+    }
+    for (std::size_t k = 0; k < map.bands.size(); ++k)
+    {
+      this->SetBand(int(k) + 1, new Band(this, map, map.bands[k])); // the dataset's from now on
     }
   }
-  return dataset;
-}
+};
 
 } // namespace
 
@@ -80,7 +119,7 @@ std::string writeGeoTiff(const std::string& fileName, const MapImage& map)
   Messages messages;
   GDALAllRegister();
   OutputFile file(fileName);
-  const DatasetPtr memory = inMemory(fileName, map, messages);
+  Map source(map);
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("COG");
   CPLStringList options;
   options.SetNameValue("COMPRESS", "DEFLATE");
@@ -101,8 +140,8 @@ std::string writeGeoTiff(const std::string& fileName, const MapImage& map)
     throw FileError(fileName + ": cannot be written: this GDAL has no GeoTIFF driver");
   }
   messages.clear();
-  DatasetPtr written(driver->CreateCopy(
-    file.temporary().c_str(), memory.get(), FALSE, options.List(), nullptr, nullptr));
+  DatasetPtr written(
+    driver->CreateCopy(file.temporary().c_str(), &source, FALSE, options.List(), nullptr, nullptr));
   const bool made = bool(written);
   written.reset(); // what is left to be written is written now
   if (!made || !messages.failure().empty())

@@ -37,6 +37,8 @@ constexpr double kMarkerSize = 8.0; ///< px, of blocks from afar
 constexpr double kPointSize = 6.0;  ///< px
 constexpr int kTopLeft = 3;         ///< Of a chart's legend.
 constexpr const char* kDisc = "4";  ///< Of a chart's markers.
+constexpr const char* kNoMarker = "0";
+constexpr const char* kShare = "ShareOfPassing"; ///< What a chart of exceedance shows.
 
 /// From low to high, as red, green, blue.
 using Palette = std::array<Colour, 4>;
@@ -154,6 +156,11 @@ bool is(const Shown& shown, const char* className, int port)
   return isOf(shown.source, { className }) && shown.port == port;
 }
 
+bool isExceedance(const Shown& shown)
+{
+  return is(shown, "vtkTrajectoryCollector", 2) || is(shown, "vtkMergeCollectors", 2);
+}
+
 /// Speed and height on the left axis, energy on the right one, along the way.
 void styleProfile(vtkSMProxy* representation, vtkSMViewProxy* view)
 {
@@ -200,6 +207,57 @@ void styleProfile(vtkSMProxy* representation, vtkSMViewProxy* view)
   vtkSMPropertyHelper(view, "RightAxisTitle").Set("Kinetic energy (kJ)");
   vtkSMPropertyHelper(view, "LegendLocation").Set(kTopLeft); // where curves begin low
   view->UpdateVTKObjects();
+}
+
+/// What hangs on the table: the title says where nothing passes; several lines are points, as a
+/// curve would go on from one to the next.
+void followExceedance(const Shown& shown, vtkSMProxy* representation, vtkSMViewProxy* view)
+{
+  vtkPVDataInformation* data = shown.source->GetDataInformation(unsigned(shown.port));
+  vtkPVArrayInformation* lines = data->GetRowDataInformation()->GetArrayInformation("Line");
+  const bool any = data->GetNumberOfRows() > 0;
+  const bool several =
+    any && lines && lines->GetComponentRange(0)[1] > lines->GetComponentRange(0)[0];
+  vtkSMPropertyHelper(representation, "SeriesLineStyle").SetStatus(kShare, several ? "0" : "1");
+  vtkSMPropertyHelper(representation, "SeriesMarkerStyle")
+    .SetStatus(kShare, several ? kDisc : kNoMarker);
+  representation->UpdateVTKObjects();
+  constexpr const char* usual = "Energy at the line";
+  constexpr const char* none = "No rock passes the line";
+  vtkSMPropertyHelper title(view, "ChartTitle");
+  const std::string given = title.GetAsString() ? title.GetAsString() : "";
+  if (given.empty() || given == usual || given == none)
+  {
+    title.Set(any ? usual : none);
+  }
+  view->UpdateVTKObjects();
+}
+
+/// Share over energy, a curve from (0, 1) to the largest energy.
+void styleExceedance(const Shown& shown, vtkSMProxy* representation, vtkSMViewProxy* view)
+{
+  vtkSMPropertyHelper(representation, "UseIndexForXAxis").Set(0);
+  vtkSMPropertyHelper(representation, "XArrayName").Set("EnergyInKilojoules");
+  vtkSMPropertyHelper visible(representation, "SeriesVisibility");
+  for (const char* column :
+    { "Line", "KineticEnergy", "EnergyInKilojoules", "HeightOverGround", "ShareOfReleased" })
+  {
+    visible.SetStatus(column, 0);
+  }
+  visible.SetStatus(kShare, 1);
+  Colour colour = { 0.86, 0.15, 0.12 }; // SetStatus wants it without const
+  vtkSMPropertyHelper(representation, "SeriesColor")
+    .SetStatus(kShare, colour.data(), int(colour.size()));
+  vtkSMPropertyHelper(representation, "SeriesLabel")
+    .SetStatus(kShare, "Share of the rocks that pass");
+  vtkSMPropertyHelper(representation, "SeriesLineThickness").SetStatus(kShare, "2");
+  vtkSMPropertyHelper(representation, "SeriesMarkerSize").SetStatus(kShare, "6");
+  vtkSMPropertyHelper(view, "BottomAxisTitle").Set("Kinetic energy (kJ)");
+  vtkSMPropertyHelper(view, "LeftAxisTitle").Set("Share with at least this energy");
+  set(view, "LeftAxisUseCustomRange", 1);
+  set(view, "LeftAxisRangeMinimum", 0.0);
+  set(view, "LeftAxisRangeMaximum", 1.0);
+  followExceedance(shown, representation, view);
 }
 
 } // namespace
@@ -280,6 +338,10 @@ void style(vtkSMProxy* representation)
   representation->UpdateVTKObjects();
 }
 
+namespace
+{
+
+/// The palette's range is that of what is shown.
 void rescale(vtkSMProxy* representation)
 {
   const std::string array = colouredBy(representation);
@@ -312,33 +374,55 @@ void rescale(vtkSMProxy* representation)
   }
 }
 
+/// Before anything has moved there is nothing in a legend's colours. It comes back with the paths,
+/// unless it was hidden by hand.
+void showLegendOfPaths(vtkSMProxy* representation, vtkSMViewProxy* view)
+{
+  constexpr const char* hidden = "RockfallLegendWaits";
+  auto* drawn = vtkSMPVRepresentationProxy::SafeDownCast(representation);
+  if (!drawn || !drawn->GetUsingScalarColoring())
+  {
+    return;
+  }
+  const double time = vtkSMPropertyHelper(view, "ViewTime").GetAsDouble();
+  if (time <= 0.0 && drawn->IsScalarBarVisible(view))
+  {
+    drawn->SetScalarBarVisibility(view, false);
+    drawn->SetAnnotation(hidden, "1");
+  }
+  else if (time > 0.0 && drawn->HasAnnotation(hidden))
+  {
+    drawn->RemoveAnnotation(hidden);
+    drawn->SetScalarBarVisibility(view, true);
+  }
+}
+
+} // namespace
+
+void follow(vtkSMProxy* representation, vtkSMViewProxy* view)
+{
+  const Shown shown = shownBy(representation);
+  if (isExceedance(shown) && representation->GetProperty("XArrayName"))
+  {
+    followExceedance(shown, representation, view);
+    return;
+  }
+  rescale(representation);
+  if (is(shown, "vtkGrowingPaths", 0))
+  {
+    showLegendOfPaths(representation, view);
+  }
+}
+
 void styleIn(vtkSMProxy* representation, vtkSMViewProxy* view)
 {
   const Shown shown = shownBy(representation);
-  if (is(shown, "vtkTrajectoryCollector", 2) || is(shown, "vtkMergeCollectors", 2))
+  if (isExceedance(shown))
   {
-    if (!representation->GetProperty("XArrayName"))
+    if (representation->GetProperty("XArrayName")) // else a table, not a chart
     {
-      return; // a table, not a chart
+      styleExceedance(shown, representation, view);
     }
-    vtkSMPropertyHelper(representation, "UseIndexForXAxis").Set(0);
-    vtkSMPropertyHelper(representation, "XArrayName").Set("EnergyInKilojoules");
-    vtkSMPropertyHelper visible(representation, "SeriesVisibility");
-    for (const char* column :
-      { "Line", "KineticEnergy", "EnergyInKilojoules", "HeightOverGround", "ShareOfReleased" })
-    {
-      visible.SetStatus(column, 0);
-    }
-    visible.SetStatus("ShareOfPassing", 1);
-    vtkSMPropertyHelper(representation, "SeriesLabel")
-      .SetStatus("ShareOfPassing", "Share of the rocks that pass");
-    vtkSMPropertyHelper(representation, "SeriesMarkerStyle").SetStatus("ShareOfPassing", kDisc);
-    vtkSMPropertyHelper(representation, "SeriesMarkerSize").SetStatus("ShareOfPassing", "6");
-    representation->UpdateVTKObjects();
-    vtkSMPropertyHelper(view, "ChartTitle").Set("Energy at the line");
-    vtkSMPropertyHelper(view, "BottomAxisTitle").Set("Kinetic energy (kJ)");
-    vtkSMPropertyHelper(view, "LeftAxisTitle").Set("Share with at least this energy");
-    view->UpdateVTKObjects();
     return;
   }
   if (is(shown, "vtkTrajectoryProfile", 0))
@@ -382,6 +466,10 @@ void styleIn(vtkSMProxy* representation, vtkSMViewProxy* view)
     vtkSMPropertyHelper(bar, "ComponentTitle").Set("");
     vtkSMPropertyHelper(bar, "RangeLabelFormat").Set("%.3g");
     bar->UpdateVTKObjects();
+  }
+  if (is(shown, "vtkGrowingPaths", 0))
+  {
+    showLegendOfPaths(representation, view);
   }
 }
 

@@ -27,8 +27,8 @@ Shown shownBy(vtkSMProxy* representation);
 /// ours.
 void style(vtkSMProxy* representation);
 
-/// The palette's range is that of what is shown.
-void rescale(vtkSMProxy* representation);
+/// What hangs on the data, when they are new: the range of a palette, what a chart says.
+void follow(vtkSMProxy* representation, vtkSMViewProxy* view);
 
 /// The same for what a view decides: legends, titles of charts. To be called when it is in `view`.
 void styleIn(vtkSMProxy* representation, vtkSMViewProxy* view);

@@ -2,6 +2,7 @@
 
 #include "looks.h"
 #include "markers.h"
+#include "pqMessageBar.h"
 #include "pqPathPicker.h"
 #include "presetValues.h"
 #include "slopeView.h"
@@ -20,13 +21,13 @@
 #include "pqRenderView.h"
 #include "pqServer.h"
 #include "pqServerManagerModel.h"
+#include "pqSettings.h"
 #include "pqView.h"
 #include "vtkAlgorithm.h"
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
-#include "vtkFieldData.h"
 #include "vtkNew.h"
 #include "vtkPVXMLElement.h"
 #include "vtkSMParaViewPipelineControllerWithRendering.h"
@@ -35,12 +36,12 @@
 #include "vtkSMRenderViewProxy.h"
 #include "vtkSMSession.h"
 #include "vtkSMSourceProxy.h"
-#include "vtkStringArray.h"
 #include "vtkTable.h"
 
 #include <QCoreApplication>
 #include <QDesktopServices>
 #include <QDir>
+#include <QDockWidget>
 #include <QFileInfo>
 #include <QGridLayout>
 #include <QLabel>
@@ -169,6 +170,24 @@ void showUnits(QMainWindow* window)
   }
 }
 
+/// Once for each user: panels as wide as coordinates of seven digits need.
+void widenPanels(QMainWindow* window)
+{
+  constexpr int wide = 400; // px
+  constexpr const char* done = "RockfallPanelsWidened";
+  pqSettings* settings = pqApplicationCore::instance()->settings();
+  auto* panel = window->findChild<QDockWidget*>("propertiesDock");
+  if (settings->contains(done) || !panel || window->width() < 3 * wide)
+  {
+    return;
+  }
+  settings->setValue(done, true);
+  if (panel->width() < wide)
+  {
+    window->resizeDocks({ panel }, { wide }, Qt::Horizontal);
+  }
+}
+
 void fitMarkers()
 {
   auto* model = pqApplicationCore::instance()->getServerManagerModel();
@@ -186,21 +205,6 @@ void fitMarkers()
       view->render();
     }
   }
-}
-
-/// What a slope's source has to say: reprojected, resampled, nodata.
-QString notesOf(vtkSMSourceProxy* slope)
-{
-  auto* algorithm = vtkAlgorithm::SafeDownCast(slope->GetClientSideObject());
-  vtkDataObject* data = algorithm ? algorithm->GetOutputDataObject(0) : nullptr;
-  auto* notes =
-    vtkStringArray::SafeDownCast(data ? data->GetFieldData()->GetAbstractArray("Notes") : nullptr);
-  QStringList all;
-  for (vtkIdType k = 0; notes && k < notes->GetNumberOfValues(); ++k)
-  {
-    all << QString::fromUtf8(notes->GetValue(k).c_str());
-  }
-  return all.join("; ");
 }
 
 /// When the last rock of a run came to its end, s; 0 if it is not known here.
@@ -237,11 +241,14 @@ void pqRockfallWindow::begin()
   this->connect(&this->Clock, &QTimer::timeout, this, &pqRockfallWindow::tellRuns);
   this->connect(&this->Clock, &QTimer::timeout, [window] { showUnits(window); });
   this->connect(&this->Clock, &QTimer::timeout, &fitMarkers);
+  auto* messages = new pqMessageBar(window);
+  this->connect(&this->Clock, &QTimer::timeout, messages, &pqMessageBar::look);
   this->Clock.start(kLookAtRuns);
   this->connect(this->Picker, &pqPathPicker::picked, this, &pqRockfallWindow::onPicked);
   this->connect(this->Picker, &pqPathPicker::missed, this,
     [this] { this->tell(tr("There is no trajectory where you clicked")); });
   this->makeMenu(window);
+  widenPanels(window);
   const QString pages = scriptFolder() + "/RockfallDDA.qch";
   if (QFileInfo::exists(pages))
   {
@@ -342,8 +349,8 @@ void pqRockfallWindow::onSource(pqPipelineSource* source)
     }
   }
   if (isOf(proxy,
-        { "vtkRockfallSimulation", "vtkRockfallHazardMap", "vtkDEMToCFESource",
-          "vtkGrowingPaths" }))
+        { "vtkRockfallSimulation", "vtkRockfallHazardMap", "vtkDEMToCFESource", "vtkGrowingPaths",
+          "vtkTrajectoryCollector", "vtkMergeCollectors" }))
   {
     this->connect(
       source, SIGNAL(dataUpdated(pqPipelineSource*)), this, SLOT(onData(pqPipelineSource*)));
@@ -436,8 +443,7 @@ void pqRockfallWindow::onRepresentation(pqRepresentation* added)
 //-----------------------------------------------------------------------------
 void pqRockfallWindow::onData(pqPipelineSource* source)
 {
-  if (isOf(
-        source->getProxy(), { "vtkRockfallSimulation", "vtkRockfallHazardMap", "vtkGrowingPaths" }))
+  if (!isOf(source->getProxy(), { "vtkDEMToCFESource" }))
   {
     // Palettes go with what is made: the first paths of a run are not the range of all.
     QPointer<pqPipelineSource> later = source;
@@ -448,21 +454,16 @@ void pqRockfallWindow::onData(pqPipelineSource* source)
         {
           for (pqDataRepresentation* shown : later->getRepresentations(port, nullptr))
           {
-            rockfall::window::rescale(shown->getProxy());
+            if (pqView* view = shown->getView())
+            {
+              rockfall::window::follow(shown->getProxy(), view->getViewProxy());
+            }
           }
         }
       });
   }
   vtkSMSourceProxy* proxy = source->getSourceProxy();
-  if (isOf(proxy, { "vtkDEMToCFESource" }))
-  {
-    const QString notes = notesOf(proxy);
-    if (QMainWindow* window = mainWindow(); window && !notes.isEmpty())
-    {
-      window->statusBar()->showMessage(source->getSMName() + ": " + notes, kReadNotes);
-    }
-  }
-  else if (isOf(proxy, { "vtkRockfallSimulation" }))
+  if (isOf(proxy, { "vtkRockfallSimulation" }))
   {
     this->endWithLastRock(source->getServer());
   }
@@ -492,9 +493,15 @@ void pqRockfallWindow::endWithLastRock(pqServer* server)
   {
     return;
   }
+  vtkSMPropertyHelper now(scene, "AnimationTime");
+  const bool atEnd = this->LastEnd > 0.0 && now.GetAsDouble() == this->LastEnd;
   this->LastEnd = end;
   vtkSMPropertyHelper(scene, "LockEndTime").Set(1);
   vtkSMPropertyHelper(scene, "EndTime").Set(end);
+  if (atEnd || now.GetAsDouble() > end)
+  {
+    now.Set(end); // whoever looks at whole paths goes on doing so
+  }
   scene->UpdateVTKObjects();
 }
 

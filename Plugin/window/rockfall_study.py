@@ -45,6 +45,7 @@ def new_study(file_name=""):
     simple.Show(simple.OutputPort(hazard, 1), view)
     _show_chart(line, view)
     clock(view)
+    simple.GetAnimationScene().GoToLast()  # the paths as a whole; Play begins anew from there
     frame(fall, view)
     simple.SetActiveView(view)
     simple.SetActiveSource(release)
@@ -155,8 +156,7 @@ def _draw_placed(proxy):
 
 
 def _show_chart(line, view):
-    # Points: a line of one rock would be an error to VTK.
-    chart = simple.CreateView("XYPointChartView")
+    chart = simple.CreateView("XYChartView")
     layout = simple.GetLayout(view)
     if layout:
         simple.AssignViewToLayout(view=chart, layout=layout, hint=0)
@@ -165,8 +165,6 @@ def _show_chart(line, view):
     curve.XArrayName = "EnergyInKilojoules"
     curve.SeriesVisibility = ["ShareOfPassing"]
     curve.SeriesLabel = ["ShareOfPassing", "Share of the rocks that pass"]
-    curve.SeriesMarkerStyle = ["ShareOfPassing", "4"]  # discs
-    curve.SeriesMarkerSize = ["ShareOfPassing", "6"]
     chart.ChartTitle = "Energy at the line"
     chart.BottomAxisTitle = "Kinetic energy (kJ)"
     chart.LeftAxisTitle = "Share with at least this energy"

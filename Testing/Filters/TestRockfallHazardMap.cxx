@@ -25,6 +25,14 @@ protected:
     this->Filter->SetInputDataObject(0, this->Paths.Data);
   }
 
+  /// Those that the map has beside the usual ones.
+  void AddStatistics(std::initializer_list<int> numbers)
+  {
+    for (const int number : numbers)
+    {
+      this->Filter->AddStatistic(number);
+    }
+  }
   vtkImageData* Map()
   {
     this->Filter->Update();
@@ -57,6 +65,7 @@ TEST_F(TestRockfallHazardMap, CellsOfTheWorld)
   this->Paths.AddLevel(1, 0, { 500001, 4000003, 50 }, 9, 20);
   this->Paths.AddLevel(1, 1, { 500001, 4000013, 50 }, 20, 5);
   this->Filter->SetCellSize(5.0);
+  this->AddStatistics({ 2, 3, 5 });
   vtkImageData* map = this->Map();
   EXPECT_EQ(map->GetDataObjectType(), VTK_IMAGE_DATA);
   const int* size = map->GetDimensions();
@@ -142,6 +151,7 @@ TEST_F(TestRockfallHazardMap, DrapedOnTheSlope)
   this->Filter->SetInputConnection(1, slope->GetOutputPort());
   this->Paths.AddLevel(0, 0, { 51, 52, 80 }, 20, 10);
   this->Paths.AddLevel(0, 1, { 51, 72, 80 }, 20, 20);
+  this->AddStatistics({ 2 });
   vtkImageData* map = this->Map();
   EXPECT_EQ(map->GetNumberOfCells(), 25);
   auto* draped = vtkPolyData::SafeDownCast(this->Filter->GetOutputDataObject(1));
@@ -172,6 +182,33 @@ TEST_F(TestRockfallHazardMap, DrapedOnTheSlope)
     EXPECT_EQ(from[1] - to[1], 5.0);
     EXPECT_EQ(to[0] - from[0], 5.0);
   }
+}
+
+TEST_F(TestRockfallHazardMap, HasTheStatisticsThatAreChosen)
+{
+  this->Paths.AddLevel(0, 0, { 1, 3, 50 }, 20, 10);
+  this->Filter->SetCellSize(5.0);
+  const auto names = [this]
+  {
+    vtkCellData* data = this->Map()->GetCellData();
+    std::vector<std::string> all;
+    for (int k = 6; k < data->GetNumberOfArrays(); ++k) // after counts and probabilities
+    {
+      all.emplace_back(data->GetArrayName(k));
+    }
+    return all;
+  };
+  ASSERT_EQ(names().size(), 12u);
+  EXPECT_EQ(names()[0], "KineticEnergyMean");
+  EXPECT_EQ(names()[1], "KineticEnergyMaximum");
+  EXPECT_EQ(names()[2], "KineticEnergy95");
+  this->Filter->RemoveAllStatistics();
+  EXPECT_TRUE(names().empty());
+  this->AddStatistics({ 5, 1, 5 }); // each once, in the order of the numbers
+  EXPECT_EQ(names(),
+    (std::vector<std::string>{ "KineticEnergyMaximum", "KineticEnergy99", "SpeedMaximum", "Speed99",
+      "HeightOverGroundMaximum", "HeightOverGround99", "RotationRateMaximum", "RotationRate99" }));
+  EXPECT_EQ(value(this->Map()->GetCellData(), "SpeedMaximum", 1), 10.0);
 }
 
 TEST_F(TestRockfallHazardMap, WrittenAsGeoTiff)
@@ -214,6 +251,9 @@ TEST_F(TestRockfallHazardMap, BadInput)
   this->Filter->SetCellSize(1e-7);
   expect({ "more than 50000000", "CellSize", "CropToTrajectories" });
   this->Filter->SetCellSize(5.0);
+  this->AddStatistics({ 6 });
+  expect({ "Statistics has 6", "0 to 5" });
+  this->Filter->RemoveAllStatistics();
   EXPECT_EQ(this->Map()->GetNumberOfCells(), 5);
   this->Paths.AddLevel(0, 0, { 1, 3, 50 }, 20, 10);
   expect({ "iteration 0, rock 0", "twice" });

@@ -149,11 +149,17 @@ TEST_F(TestTrajectoryCollector, SharesAndCurves)
   EXPECT_NEAR(this->Number("SpeedMean"), 12.5, 1e-9);
   EXPECT_NEAR(this->Number("HeightOverGround50"), 2.5, 1e-12);
   EXPECT_NEAR(this->Number("KineticEnergyMaximum"), 200100.0, 1e-6);
-  ASSERT_EQ(this->Table(2)->GetNumberOfRows(), 4);
+  ASSERT_EQ(this->Table(2)->GetNumberOfRows(), 5);
   EXPECT_NEAR(this->Number("KineticEnergy", 1, 2), 112600.0, 1e-6);
   EXPECT_NEAR(this->Number("HeightOverGround", 1, 2), 3.0, 1e-12);
   EXPECT_NEAR(this->Number("ShareOfPassing", 1, 2), 0.5, 1e-12);
   EXPECT_NEAR(this->Number("ShareOfReleased", 1, 2), 0.4, 1e-12);
+  // All have at least nothing.
+  EXPECT_EQ(this->Number("KineticEnergy", 4, 2), 0.0);
+  EXPECT_EQ(this->Number("EnergyInKilojoules", 4, 2), 0.0);
+  EXPECT_EQ(this->Number("HeightOverGround", 4, 2), 0.0);
+  EXPECT_EQ(this->Number("ShareOfPassing", 4, 2), 1.0);
+  EXPECT_NEAR(this->Number("ShareOfReleased", 4, 2), 0.8, 1e-12);
   this->Filter->SetBarrierHeight(1.5);
   EXPECT_EQ(this->Number("Caught"), 1);
 }

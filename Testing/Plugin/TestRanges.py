@@ -8,9 +8,11 @@ import xml.etree.ElementTree as ElementTree
 from helpers import errors_of, is_empty
 
 import paraview.simple
+from paraview import servermanager
 from paraview.simple import (
-    DEMtoCFEMesh, Delete, DispersionAngle, DrawnStructure, JointedRockMass, OutputPort, PolyLineSource, RockBlocks, RockfallHazardMap,
-    RockfallSimulation, RockRelease, TrajectoryCollector, TrajectoryProfile)
+    DEMtoCFEMesh, Delete, DispersionAngle, DrawnStructure, HazardPassageReader, JointedRockMass, OutputPort,
+    PolyLineSource, RockBlocks, RockfallHazardMap, RockfallSimulation, RockRelease, TrajectoryCollector,
+    TrajectoryProfile)
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 ABOVE_ZERO = 1e-300  # how the XML says it
@@ -34,6 +36,14 @@ def dispersion():
 def hazard():
     fall = simulation()
     return RockfallHazardMap(Input=OutputPort(fall, 1), Terrain=fall.Terrain)
+
+
+def passages():
+    fall = simulation()
+    writer = servermanager.writers.HazardPassageWriter(
+        Input=OutputPort(fall, 1), Terrain=fall.Terrain, FileName=os.path.abspath("ranges.passages"))
+    writer.UpdatePipeline()
+    return HazardPassageReader(FileNames=[os.path.abspath("ranges.passages")])
 
 
 def collector():
@@ -61,6 +71,7 @@ MAKERS = {
     "RockfallSimulation": simulation,
     "DispersionAngle": dispersion,
     "RockfallHazardMap": hazard,
+    "HazardPassageReader": passages,
     "TrajectoryCollector": collector,
     "TrajectoryProfile": profile,
 }

@@ -1,0 +1,120 @@
+#include "pqMessageBar.h"
+
+#include "pqApplicationCore.h"
+#include "pqPipelineSource.h"
+#include "pqServerManagerModel.h"
+#include "vtkAlgorithm.h"
+#include "vtkDataObject.h"
+#include "vtkFieldData.h"
+#include "vtkSMSourceProxy.h"
+#include "vtkStringArray.h"
+
+#include <QAction>
+#include <QLabel>
+#include <QMainWindow>
+#include <QStringList>
+
+#include <algorithm>
+
+namespace
+{
+
+constexpr int kLeastWidth = 400; // px, before the first look at it
+
+/// The texts of a field array of any output; nothing if the data are on another machine.
+QStringList textsOf(vtkSMSourceProxy* source, const char* array)
+{
+  QStringList all;
+  auto* algorithm = vtkAlgorithm::SafeDownCast(source->GetClientSideObject());
+  for (int port = 0; algorithm && port < algorithm->GetNumberOfOutputPorts(); ++port)
+  {
+    vtkDataObject* data = algorithm->GetOutputDataObject(port);
+    auto* texts =
+      vtkStringArray::SafeDownCast(data ? data->GetFieldData()->GetAbstractArray(array) : nullptr);
+    for (vtkIdType k = 0; texts && k < texts->GetNumberOfValues(); ++k)
+    {
+      all << QString::fromUtf8(texts->GetValue(k).c_str());
+    }
+  }
+  all.removeDuplicates();
+  return all;
+}
+
+} // namespace
+
+//-----------------------------------------------------------------------------
+pqMessageBar::pqMessageBar(QMainWindow* window)
+  : Superclass(tr("Rockfall Messages"), window)
+  , Text(new QLabel(this))
+{
+  this->setObjectName("rockfallMessages");
+  this->setMovable(false);
+  this->Text->setObjectName("text");
+  this->Text->setWordWrap(true);
+  this->Text->setTextInteractionFlags(Qt::TextSelectableByMouse);
+  this->Text->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
+  this->addWidget(this->Text);
+  this->connect(
+    this->addAction(tr("Close")), &QAction::triggered, this, [this] { this->setVisible(false); });
+  window->addToolBar(Qt::BottomToolBarArea, this);
+  this->setVisible(false);
+}
+
+//-----------------------------------------------------------------------------
+void pqMessageBar::look()
+{
+  QStringList lines, told;
+  bool failed = false;
+  for (const char* array : { "Error", "Notes" })
+  {
+    for (pqPipelineSource* source :
+      pqApplicationCore::instance()->getServerManagerModel()->findItems<pqPipelineSource*>())
+    {
+      vtkSMSourceProxy* proxy = source->getSourceProxy();
+      const bool ours = proxy && QString(proxy->GetXMLGroup()) != "extended_sources" &&
+        source->modifiedState() != pqProxy::UNINITIALIZED;
+      const QStringList texts = ours ? textsOf(proxy, array) : QStringList();
+      QStringList fresh;
+      for (const QString& text : texts)
+      {
+        // What comes after a failed filter has the same text: the first one says it.
+        if (!told.contains(text))
+        {
+          told << text;
+          fresh << text.toHtmlEscaped();
+        }
+      }
+      if (!fresh.isEmpty())
+      {
+        lines << "<b>" + source->getSMName().toHtmlEscaped() + "</b>: " + fresh.join(" ");
+        failed = failed || QString(array) == "Error";
+      }
+    }
+  }
+  const QString text = lines.join("<br>");
+  if (text == this->Shown)
+  {
+    return;
+  }
+  this->Shown = text;
+  this->Text->setText(text);
+  this->Text->setStyleSheet(failed ? "QLabel { background: #ffd9a8; color: black; padding: 4px; }"
+                                   : "QLabel { padding: 4px; }");
+  this->setVisible(!text.isEmpty());
+  this->fit();
+}
+
+//-----------------------------------------------------------------------------
+void pqMessageBar::resizeEvent(QResizeEvent* event)
+{
+  this->Superclass::resizeEvent(event);
+  this->fit();
+}
+
+//-----------------------------------------------------------------------------
+void pqMessageBar::fit()
+{
+  // A tool bar gives a text of several lines far more than these.
+  this->Text->setFixedHeight(
+    this->Text->heightForWidth(std::max(kLeastWidth, this->Text->width())));
+}
