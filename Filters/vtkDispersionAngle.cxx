@@ -1,17 +1,13 @@
 #include "vtkDispersionAngle.h"
 
 #include "arrays.h"
-#include "attempt.h"
 #include "base/errors.h"
-#include "failure.h"
 #include "inputs.h"
 #include "pathGroups.h"
-#include "pieces.h"
-#include "ranks.h"
-#include "rockPaths.h"
 #include "statistics/dispersion.h"
 #include "statistics/sample.h"
 #include "terrainFieldData.h"
+#include "trajectoriesInput.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -181,29 +177,10 @@ int vtkDispersionAngle::FillOutputPortInformation(int port, vtkInformation* info
 int vtkDispersionAngle::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  return rockfall::filters::attempt(this,
+  return rockfall::filters::attemptTrajectories(this, inputVector[0], outputVector,
     "The trajectories and their dispersion do not fit in memory",
-    [&]
+    [&](vtkPolyData* input)
     {
-      rockfall::filters::Input taken(rockfall::filters::InputKind::Trajectories);
-      vtkPolyData* input = taken.take(inputVector[0]);
-      const std::string spread = rockfall::filters::spreadOf(input);
-      if (!spread.empty())
-      {
-        return rockfall::filters::failTogether(this, spread);
-      }
-      if (!input)
-      {
-        throw rockfall::DataError("The Input is missing");
-      }
-      taken.require();
-      if (rockfall::filters::inheritFailure(input, this) ||
-        (input->GetNumberOfLines() == 0 &&
-          (rockfall::filters::isFurtherPiece(outputVector) ||
-            rockfall::filters::isRunning(input->GetFieldData()))))
-      {
-        return 1;
-      }
       const auto groups = rockfall::filters::groupPaths(
         input, this->UseGroups ? this->GroupBy : std::string(), this->ClassLimits);
 

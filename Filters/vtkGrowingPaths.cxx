@@ -1,5 +1,6 @@
 #include "vtkGrowingPaths.h"
 
+#include "attempt.h"
 #include "base/errors.h"
 #include "failure.h"
 #include "inputs.h"
@@ -151,65 +152,62 @@ int vtkGrowingPaths::RequestUpdateExtent(
 int vtkGrowingPaths::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  try
-  {
-    rockfall::filters::Input taken(rockfall::filters::InputKind::Trajectories);
-    vtkPolyData* input = taken.take(inputVector[0]);
-    if (!input)
+  return rockfall::filters::attempt(this, "The growing paths do not fit in memory",
+    [&]
     {
-      throw rockfall::DataError("The Input is missing");
-    }
-    taken.require();
-    if (rockfall::filters::inheritFailure(input, this))
-    {
-      return 1;
-    }
-    vtkInformation* info = outputVector->GetInformationObject(0);
-    vtkPolyData* output = vtkPolyData::GetData(info);
-    // Its range was that of older trajectories if they have just been made.
-    writeTimeRange(input, info);
-    // The time is not written to the data: the executive would take those of any time for good
-    // beyond the range.
-    const double until = info->Has(Pipeline::UPDATE_TIME_STEP())
-      ? info->Get(Pipeline::UPDATE_TIME_STEP())
-      : std::numeric_limits<double>::infinity();
-    output->GetFieldData()->ShallowCopy(input->GetFieldData());
-    if (input->GetNumberOfLines() == 0)
-    {
-      return 1; // of a run that has made none yet, or of a rank that has none
-    }
-    vtkDataArray* times = timesOf(input);
-    if (!times)
-    {
-      throw rockfall::DataError(
-        "The Input has no point array Time of 1 component; the trajectories "
-        "of Rockfall Simulation are wanted");
-    }
-
-    Growth growth(input, times, until);
-    output->GetCellData()->CopyAllocate(input->GetCellData());
-    vtkIdType cell = input->GetNumberOfVerts(); // polydata's cells begin with its vertices
-    vtkIdType made = 0;
-    auto lines = vtk::TakeSmartPointer(input->GetLines()->NewIterator());
-    for (lines->GoToFirstCell(); !lines->IsDoneWithTraversal(); lines->GoToNextCell(), ++cell)
-    {
-      vtkIdType size = 0;
-      const vtkIdType* ids = nullptr;
-      lines->GetCurrentCell(size, ids);
-      if (size == 0)
+      rockfall::filters::Input taken(rockfall::filters::InputKind::Trajectories);
+      vtkPolyData* input = taken.take(inputVector[0]);
+      if (!input)
       {
-        continue;
+        throw rockfall::DataError("The Input is missing");
       }
-      growth.Append(size, ids);
-      output->GetCellData()->CopyData(input->GetCellData(), cell, made++);
-    }
-    growth.Finish(output);
-    return 1;
-  }
-  catch (const rockfall::Error& error)
-  {
-    return rockfall::filters::fail(this, error.what());
-  }
+      taken.require();
+      if (rockfall::filters::inheritFailure(input, this))
+      {
+        return 1;
+      }
+      vtkInformation* info = outputVector->GetInformationObject(0);
+      vtkPolyData* output = vtkPolyData::GetData(info);
+      // Its range was that of older trajectories if they have just been made.
+      writeTimeRange(input, info);
+      // The time is not written to the data: the executive would take those of any time for good
+      // beyond the range.
+      const double until = info->Has(Pipeline::UPDATE_TIME_STEP())
+        ? info->Get(Pipeline::UPDATE_TIME_STEP())
+        : std::numeric_limits<double>::infinity();
+      output->GetFieldData()->ShallowCopy(input->GetFieldData());
+      if (input->GetNumberOfLines() == 0)
+      {
+        return 1; // of a run that has made none yet, or of a rank that has none
+      }
+      vtkDataArray* times = timesOf(input);
+      if (!times)
+      {
+        throw rockfall::DataError(
+          "The Input has no point array Time of 1 component; the trajectories "
+          "of Rockfall Simulation are wanted");
+      }
+
+      Growth growth(input, times, until);
+      output->GetCellData()->CopyAllocate(input->GetCellData());
+      vtkIdType cell = input->GetNumberOfVerts(); // polydata's cells begin with its vertices
+      vtkIdType made = 0;
+      auto lines = vtk::TakeSmartPointer(input->GetLines()->NewIterator());
+      for (lines->GoToFirstCell(); !lines->IsDoneWithTraversal(); lines->GoToNextCell(), ++cell)
+      {
+        vtkIdType size = 0;
+        const vtkIdType* ids = nullptr;
+        lines->GetCurrentCell(size, ids);
+        if (size == 0)
+        {
+          continue;
+        }
+        growth.Append(size, ids);
+        output->GetCellData()->CopyData(input->GetCellData(), cell, made++);
+      }
+      growth.Finish(output);
+      return 1;
+    });
 }
 
 //------------------------------------------------------------------------------

@@ -6,9 +6,8 @@
 #include "failure.h"
 #include "hazardImage.h"
 #include "inputs.h"
-#include "pieces.h"
 #include "ranks.h"
-#include "rockPaths.h"
+#include "trajectoriesInput.h"
 
 #include "vtkAlgorithmOutput.h"
 #include "vtkImageData.h"
@@ -215,9 +214,7 @@ int vtkRockfallHazardMap::RequestData(
   {
     return rockfall::filters::fail(this, this->Taken->problem());
   }
-  if (trajectories->GetNumberOfLines() == 0 &&
-    (rockfall::filters::isFurtherPiece(outputVector) ||
-      rockfall::filters::isRunning(trajectories->GetFieldData())))
+  if (rockfall::filters::noneYet(trajectories, outputVector))
   {
     rockfall::filters::markEmptyMap(vtkImageData::GetData(outputVector, MAP));
     return 1;

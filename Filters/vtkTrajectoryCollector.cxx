@@ -1,6 +1,5 @@
 #include "vtkTrajectoryCollector.h"
 
-#include "attempt.h"
 #include "base/errors.h"
 #include "base/numberText.h"
 #include "collectorOutputs.h"
@@ -11,10 +10,9 @@
 #include "inputs.h"
 #include "lineWalls.h"
 #include "mesh/precision.h"
-#include "pieces.h"
-#include "ranks.h"
 #include "rockPaths.h"
 #include "terrainFieldData.h"
+#include "trajectoriesInput.h"
 
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -161,6 +159,70 @@ CollectorLine lineThrough(const std::vector<std::array<double, 3>>& points, cons
   return line;
 }
 
+/// Where lines may be, in world coordinates, and the origin to reckon from.
+struct Site
+{
+  Box2 box;
+  Vec3 origin = Vec3::Zero();
+};
+
+/// The place of the trajectories and of the slope under them. Throws DataError if they have none
+/// in common.
+Site siteOf(const Box2& rocks, const rockfall::Terrain* terrain)
+{
+  Site site{ rocks, { std::floor(rocks.min().x()), std::floor(rocks.min().y()), 0.0 } };
+  if (terrain)
+  {
+    site.origin = terrain->geometry().origin();
+    const Eigen::Vector2d corner = site.origin.head<2>();
+    const Box2 slope(corner, corner + Eigen::Vector2d(terrain->width(), terrain->height()));
+    if (!rocks.intersects(slope))
+    {
+      throw rockfall::DataError(
+        "No trajectory of the Input is over the Terrain: they do not belong together");
+    }
+    site.box.extend(slope);
+  }
+  return site;
+}
+
+struct Collected
+{
+  std::vector<rockfall::filters::CollectedCrossing> crossings;
+  rockfall::filters::ReleasedRocks released;
+  std::vector<rockfall::LineSummary> summaries; ///< Of each line.
+};
+
+/// All crossings of all lines.
+Collected collect(vtkPolyData* trajectories, const std::vector<CollectorLine>& lines,
+  const Vec3& origin, const rockfall::Terrain* terrain)
+{
+  Collected collected;
+  std::vector<rockfall::Crossing> all, found;
+  rockfall::filters::forEachPath(trajectories, origin,
+    [&](const rockfall::RockPath& path, std::int64_t cell)
+    {
+      collected.released.push_back({ path.iteration, path.rock });
+      for (std::size_t k = 0; k < lines.size(); ++k)
+      {
+        found.clear();
+        rockfall::appendCrossings(path, lines[k], int(k), terrain, found);
+        for (const rockfall::Crossing& crossing : found)
+        {
+          collected.crossings.push_back({ crossing, cell });
+          all.push_back(crossing);
+        }
+      }
+    });
+  rockfall::filters::checkReleased(collected.released);
+  for (std::size_t k = 0; k < lines.size(); ++k)
+  {
+    collected.summaries.push_back(
+      rockfall::summarizeLine(lines[k], int(k), all, std::int64_t(collected.released.size())));
+  }
+  return collected;
+}
+
 } // namespace
 
 //------------------------------------------------------------------------------
@@ -214,62 +276,33 @@ int vtkTrajectoryCollector::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   namespace filters = rockfall::filters;
-  return filters::attempt(this, "The crossings do not fit in memory",
-    [&]
+  return filters::attemptTrajectories(this, inputVector[TRAJECTORIES], outputVector,
+    "The crossings do not fit in memory",
+    [&](vtkPolyData* trajectories)
     {
-      filters::Input takenTrajectories(filters::InputKind::Trajectories),
-        takenLines(filters::InputKind::Lines), takenTerrain(filters::InputKind::Terrain);
-      vtkPolyData* trajectories = takenTrajectories.take(inputVector[TRAJECTORIES]);
+      filters::Input takenLines(filters::InputKind::Lines);
+      filters::Input takenTerrain(filters::InputKind::Terrain);
       vtkPolyData* drawn = takenLines.take(inputVector[LINES]);
       vtkPolyData* mesh = takenTerrain.take(inputVector[TERRAIN]);
-      const std::string spread = filters::spreadOf(trajectories);
-      if (!spread.empty())
+      takenLines.require();
+      takenTerrain.require();
+      if ((drawn && filters::inheritFailure(drawn, this)) ||
+        (mesh && filters::inheritFailure(mesh, this)))
       {
-        return filters::failTogether(this, spread);
-      }
-      if (!trajectories)
-      {
-        throw rockfall::DataError("The Input is missing");
-      }
-      for (const filters::Input* taken : { &takenTrajectories, &takenLines, &takenTerrain })
-      {
-        taken->require();
-      }
-      for (vtkPolyData* input : { trajectories, drawn, mesh })
-      {
-        if (input && filters::inheritFailure(input, this))
-        {
-          return 1;
-        }
+        return 1;
       }
       if (trajectories->GetNumberOfLines() == 0)
       {
-        if (filters::isFurtherPiece(outputVector) ||
-          filters::isRunning(trajectories->GetFieldData()))
-        {
-          return 1;
-        }
         throw rockfall::DataError(
           "The Input has no lines; the trajectories of Rockfall Simulation are wanted");
       }
       checkSize(this->BarrierHeight, "BarrierHeight");
       checkSize(this->BarrierCapacity, "BarrierCapacity");
       const std::optional<rockfall::Terrain> terrain = filters::slopeUnder(trajectories, mesh);
+      const rockfall::Terrain* slope = terrain ? &*terrain : nullptr;
       const Box2 rocks = boxOf(trajectories);
-      Box2 site = rocks; // where lines may be
-      Vec3 origin(std::floor(rocks.min().x()), std::floor(rocks.min().y()), 0.0);
-      if (terrain)
-      {
-        origin = terrain->geometry().origin();
-        const Eigen::Vector2d corner = origin.head<2>();
-        const Eigen::Vector2d size(terrain->width(), terrain->height());
-        if (!rocks.intersects(Box2(corner, corner + size)))
-        {
-          throw rockfall::DataError(
-            "No trajectory of the Input is over the Terrain: they do not belong together");
-        }
-        site.extend(Box2(corner, corner + size));
-      }
+      const Site site = siteOf(rocks, slope);
+      const Vec3& origin = site.origin;
       CollectorLine barrier;
       barrier.barrierHeight = this->BarrierHeight;
       barrier.barrierCapacity = this->BarrierCapacity * 1000.0;
@@ -279,7 +312,7 @@ int vtkTrajectoryCollector::RequestData(
       {
         if (drawn->GetNumberOfPoints() > 0)
         {
-          requireNear(boxOf(drawn), site, "The lines of the Lines input");
+          requireNear(boxOf(drawn), site.box, "The lines of the Lines input");
           tellRounding(drawn);
         }
         lines = filters::linesOf(drawn, origin, barrier);
@@ -287,8 +320,8 @@ int vtkTrajectoryCollector::RequestData(
       if (!this->FileName.empty())
       {
         const rockfall::AllowReferences references(this->AllowReferences != 0);
-        for (CollectorLine& line :
-          readLines(this->FileName, this->LayerName, trajectories, site, origin, barrier, notes))
+        for (CollectorLine& line : readLines(
+               this->FileName, this->LayerName, trajectories, site.box, origin, barrier, notes))
         {
           lines.push_back(std::move(line));
         }
@@ -296,8 +329,7 @@ int vtkTrajectoryCollector::RequestData(
       std::vector<std::array<double, 3>> points = this->Points;
       if (points.empty() && lines.empty())
       {
-        const std::array<double, 6> placed =
-          filters::lineAcross(trajectories, terrain ? &*terrain : nullptr, origin);
+        const std::array<double, 6> placed = filters::lineAcross(trajectories, slope, origin);
         std::copy(placed.begin(), placed.end(), this->PlacedLine);
         points = { { placed[0], placed[1], placed[2] }, { placed[3], placed[4], placed[5] } };
       }
@@ -305,40 +337,18 @@ int vtkTrajectoryCollector::RequestData(
       {
         lines.push_back(lineThrough(points, rocks, origin, barrier));
       }
-      std::vector<filters::CollectedCrossing> crossings;
-      std::vector<rockfall::Crossing> all, found;
-      filters::ReleasedRocks released;
-      filters::forEachPath(trajectories, origin,
-        [&](const rockfall::RockPath& path, std::int64_t cell)
-        {
-          released.push_back({ path.iteration, path.rock });
-          for (std::size_t k = 0; k < lines.size(); ++k)
-          {
-            found.clear();
-            rockfall::appendCrossings(path, lines[k], int(k), terrain ? &*terrain : nullptr, found);
-            for (const rockfall::Crossing& crossing : found)
-            {
-              crossings.push_back({ crossing, cell });
-              all.push_back(crossing);
-            }
-          }
-        });
-      filters::checkReleased(released);
-      std::vector<rockfall::LineSummary> summaries;
-      for (std::size_t k = 0; k < lines.size(); ++k)
-      {
-        summaries.push_back(
-          rockfall::summarizeLine(lines[k], int(k), all, std::int64_t(released.size())));
-      }
+      const Collected collected = collect(trajectories, lines, origin, slope);
+      const auto released = std::int64_t(collected.released.size());
 
       vtkNew<vtkPolyData> passings, walls;
-      filters::writeCrossings(crossings, lines, released, origin, trajectories, passings);
-      filters::writeWalls(lines, summaries, terrain ? &*terrain : nullptr,
+      filters::writeCrossings(
+        collected.crossings, lines, collected.released, origin, trajectories, passings);
+      filters::writeWalls(lines, collected.summaries, slope,
         trajectories->GetBounds()[4] - origin.z(), origin, walls);
       filters::showNotes(notes, passings->GetFieldData());
       vtkNew<vtkTable> table, exceedance;
-      filters::writeLines(summaries, lines, table);
-      filters::writeExceedance(summaries, std::int64_t(released.size()), exceedance);
+      filters::writeLines(collected.summaries, lines, table);
+      filters::writeExceedance(collected.summaries, released, exceedance);
       for (vtkDataObject* made :
         { static_cast<vtkDataObject*>(passings), static_cast<vtkDataObject*>(walls),
           static_cast<vtkDataObject*>(table), static_cast<vtkDataObject*>(exceedance) })

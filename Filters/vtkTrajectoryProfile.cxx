@@ -2,11 +2,9 @@
 
 #include "arrays.h"
 #include "base/errors.h"
-#include "failure.h"
 #include "inputs.h"
-#include "pieces.h"
-#include "ranks.h"
 #include "rockPaths.h"
+#include "trajectoriesInput.h"
 
 #include "vtkCellArray.h"
 #include "vtkDataSetAttributes.h"
@@ -102,47 +100,26 @@ int vtkTrajectoryProfile::FillOutputPortInformation(int port, vtkInformation* in
 int vtkTrajectoryProfile::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  try
-  {
-    rockfall::filters::Input taken(rockfall::filters::InputKind::Trajectories);
-    vtkPolyData* input = taken.take(inputVector[0]);
-    const std::string spread = rockfall::filters::spreadOf(input);
-    if (!spread.empty())
+  return rockfall::filters::attemptTrajectories(this, inputVector[0], outputVector,
+    "The trajectory's profile does not fit in memory",
+    [&](vtkPolyData* input)
     {
-      return rockfall::filters::failTogether(this, spread);
-    }
-    if (!input)
-    {
-      throw rockfall::DataError("The Input is missing");
-    }
-    taken.require();
-    if (rockfall::filters::inheritFailure(input, this) ||
-      (input->GetNumberOfLines() == 0 &&
-        (rockfall::filters::isFurtherPiece(outputVector) ||
-          rockfall::filters::isRunning(input->GetFieldData()))))
-    {
-      return 1;
-    }
-    const vtkIdType lines = input->GetNumberOfLines();
-    if (this->Trajectory < 0 || (lines > 0 && this->Trajectory >= lines))
-    {
-      throw rockfall::ParameterError("Trajectory is " + std::to_string(this->Trajectory) +
-        ", it must be 0 to " + std::to_string(lines - 1) + ", the last of the Input");
-    }
-    vtkTable* table = vtkTable::GetData(outputVector, 0);
-    vtkPolyData* line = vtkPolyData::GetData(outputVector, 1);
-    rockfall::filters::forPath(input, this->Trajectory,
-      [table, line](const rockfall::RockPath& path)
+      const vtkIdType lines = input->GetNumberOfLines();
+      if (this->Trajectory < 0 || (lines > 0 && this->Trajectory >= lines))
       {
-        writeProfile(path, table);
-        writeLine(path, line);
-      });
-    return 1;
-  }
-  catch (const rockfall::Error& error)
-  {
-    return rockfall::filters::fail(this, error.what());
-  }
+        throw rockfall::ParameterError("Trajectory is " + std::to_string(this->Trajectory) +
+          ", it must be 0 to " + std::to_string(lines - 1) + ", the last of the Input");
+      }
+      vtkTable* table = vtkTable::GetData(outputVector, 0);
+      vtkPolyData* line = vtkPolyData::GetData(outputVector, 1);
+      rockfall::filters::forPath(input, this->Trajectory,
+        [table, line](const rockfall::RockPath& path)
+        {
+          writeProfile(path, table);
+          writeLine(path, line);
+        });
+      return 1;
+    });
 }
 
 //------------------------------------------------------------------------------
