@@ -34,8 +34,8 @@ void checkReleased(ReleasedRocks& rocks);
 std::vector<CollectorLine> linesOf(
   vtkPolyData* input, const Vec3& origin, const CollectorLine& barrier);
 
-/// One vertex per passing. Other cell arrays of the trajectories go along. The field data say what
-/// the tables need beside: CollectorReleased, CollectorRocks, CollectorLineName and
+/// Writes a vertex per passing. Other cell arrays of the trajectories go along. The field data say
+/// what the tables need beside: CollectorReleased, CollectorRocks, CollectorLineName and
 /// CollectorBarrier.
 void writeCrossings(std::span<const CollectedCrossing> crossings,
   std::span<const CollectorLine> lines, const ReleasedRocks& released, const Vec3& origin,
@@ -43,7 +43,7 @@ void writeCrossings(std::span<const CollectedCrossing> crossings,
 
 void writeReleased(const ReleasedRocks& released, vtkFieldData* field);
 
-/// One row per line.
+/// Writes a row per line.
 void writeLines(
   std::span<const LineSummary> summaries, std::span<const CollectorLine> lines, vtkTable* output);
 

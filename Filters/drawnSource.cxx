@@ -30,7 +30,7 @@ struct SlopePlace
   Eigen::Vector2d gradient = Eigen::Vector2d::Zero();
 };
 
-/// What there is at nodes that are a step from the border and have no nodata around them.
+/// Places at nodes that are a step from the border and have no nodata around them.
 std::vector<SlopePlace> look(const Terrain& terrain)
 {
   const GridGeometry& grid = terrain.geometry();

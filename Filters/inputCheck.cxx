@@ -1,4 +1,4 @@
-// What the points, cells and arrays of an input must be.
+// Requirements on the points, cells and arrays of an input.
 
 #include "base/errors.h"
 #include "base/numberText.h"

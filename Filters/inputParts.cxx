@@ -37,7 +37,7 @@ std::string partName(const std::string& name, const Part& part)
   return name + " is composite, its part " + std::to_string(part.number);
 }
 
-/// Those that are not empty, and those that say why they are.
+/// Parts that are not empty, and parts that say why they are.
 std::vector<Part> partsOf(vtkCompositeDataSet* composite, const std::string& name)
 {
   std::vector<Part> parts;

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// What comes by pipeline: made one polydata and looked at once, before any filter uses it.
+/// Inputs that come by pipeline: made one polydata and looked at once, before any filter uses it.
 ///
 /// A reader of the file formats of others checks little, and a filter may be fed by any code: cells
 /// that point at points which are not there, arrays shorter than what they belong to, NaN for the
@@ -24,7 +24,7 @@ class vtkPolyData;
 namespace rockfall::filters
 {
 
-/// What an input is to a filter, which decides what its arrays must hold.
+/// Role of an input, which decides what its arrays must hold.
 enum class InputKind
 {
   Terrain,
@@ -42,7 +42,7 @@ void acceptPolyData(vtkInformation* port);
 /// The latest change of a data object, and of the parts of composite data.
 vtkMTimeType timeOf(vtkDataObject* data);
 
-/// One input of a filter, taken again only if it has changed.
+/// An input of a filter, taken again only if it has changed.
 class Input
 {
 public:
@@ -59,7 +59,7 @@ public:
   vtkPolyData* take(vtkInformationVector* connections, int connection = 0);
   vtkPolyData* take(vtkDataObject* data);
 
-  /// What is wrong with it; empty if nothing is. A message without an end.
+  /// Message of what is wrong with the input, without an end; empty if nothing is.
   const std::string& problem() const { return problem_; }
   /// Throws DataError if there is a problem.
   void require() const;
@@ -69,7 +69,7 @@ private:
 
   InputKind kind_;
   int number_;
-  vtkDataObject* data_ = nullptr;     ///< That was taken ...
+  vtkDataObject* data_ = nullptr;     ///< The one that was taken ...
   vtkMTimeType time_ = 0;             ///< ... as it was then.
   vtkSmartPointer<vtkPolyData> made_; ///< Of parts, or in the place of what is damaged.
   std::string problem_;

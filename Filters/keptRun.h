@@ -42,7 +42,7 @@ struct KeptRun
   bool allowReferences = false; ///< The file may name addresses and other files.
   KeptParts parts;
   Stamp terrain, rocks; ///< The inputs.
-  /// What of them decides the run (inputContent.h).
+  /// Content of the inputs that decides the run (inputContent.h).
   std::uint64_t terrainContent = 0, rocksContent = 0;
 
   Terrain slope;
@@ -53,7 +53,7 @@ struct KeptRun
 
   vtkNew<vtkPolyData> trajectories, impacts, structures;
   vtkNew<vtkTable> summary;
-  std::vector<Trajectory> whole; ///< Those of `wholeIteration`, with all samples.
+  std::vector<Trajectory> whole; ///< Trajectories of `wholeIteration`, with all samples.
   int wholeIteration = -1;
   std::string stateHash; ///< Over the bits of all motion.
 

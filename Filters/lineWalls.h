@@ -14,7 +14,7 @@ class vtkPolyData;
 namespace rockfall::filters
 {
 
-/// One strip of quadrilaterals for each line, from the ground up to the height of its barrier, with
+/// A strip of quadrilaterals for each line, from the ground up to the height of its barrier, with
 /// what passed it as cell arrays. Without a `terrain` the ground is at `level`, m. `origin` leads
 /// from the lines' frame to the world.
 void writeWalls(std::span<const CollectorLine> lines, std::span<const LineSummary> summaries,

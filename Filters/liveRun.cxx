@@ -17,7 +17,7 @@ constexpr std::int64_t kMostPoints = 1'000'000;
 
 } // namespace
 
-/// One thread at a time writes or reads.
+/// A single thread at a time writes or reads.
 class LiveRun::Sink : public TrajectorySink
 {
 public:

@@ -17,7 +17,7 @@ struct MergedCrossings
 {
   std::vector<CollectorLine> lines; ///< Name and barrier only.
   std::int64_t released = 0;
-  std::vector<Crossing> crossings; ///< What summarizeLine needs of them.
+  std::vector<Crossing> crossings; ///< As summarizeLine needs them.
 };
 
 /// Fills `output` with the points of all `inputs`, crossings of Trajectory Collector, in the order

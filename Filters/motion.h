@@ -9,7 +9,7 @@
 namespace rockfall::filters
 {
 
-/// What a rock is doing.
+/// Motion of a rock.
 enum class MotionState
 {
   Flying = 0,

@@ -33,7 +33,7 @@ namespace
 struct Faces
 {
   std::int64_t blockId = 0;
-  vtkIdType firstCell = 0; ///< Its cell data are the block's.
+  vtkIdType firstCell = 0; ///< The one whose cell data are the block's.
   std::vector<vtkIdType> furtherCells;
   std::vector<Vec3> points;
   std::vector<std::vector<int>> loops;
@@ -107,7 +107,7 @@ void checkBlockPrecision(vtkPolyData* input, const Faces& block)
   }
 }
 
-/// What is read of a block's cells, and so has one value for all of them.
+/// Values that are read of a block's cells, one for all of them.
 constexpr const char* kOfBlocks[] = { "Density", "YoungModulus", "PoissonRatio", "Material",
   "Velocity", "AngularVelocity", "Shape", "SourceId", "SourceName", "State", "PositionDeviation",
   "AttitudeLaw", "AttitudeDeviation", "VolumeLaw", "VolumeParameters" };

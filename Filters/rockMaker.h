@@ -15,7 +15,7 @@
 namespace rockfall::filters
 {
 
-/// What a row may say, as the source's properties say it.
+/// Fields of a row, as the source's properties say it.
 struct RockDefaults
 {
   ShapeMix shapes = Shape::Cube;
@@ -27,13 +27,13 @@ struct RockDefaults
   double density = 2500.0;
   double youngModulus = 1e10;
   double poissonRatio = 0.1;
-  std::string material; ///< Its name, for contacts of rocks; empty: none.
+  std::string material; ///< Name of the material, for contacts of rocks; empty: none.
   std::string shapeFile;
   bool shapeFileAsItIs = false;
   bool scaleToVolume = true;
   bool randomOrientation = false; ///< The attitude is drawn once, instead of `orientation`.
   bool redrawVolume = false;      ///< The volume is drawn in each iteration.
-  ReleaseUncertainty uncertainty; ///< But for the volume.
+  ReleaseUncertainty uncertainty; ///< Of all but the volume.
   /// The attitude is drawn in each iteration where neither a row nor what is above gives one.
   bool randomUnlessGiven = false;
   std::int64_t firstSourceId = 1;
@@ -59,7 +59,7 @@ public:
   /// > 0), as nearly as whole rocks can; at least 1, and at most `most`.
   std::int64_t amountOf(
     const SourceRow& row, std::uint64_t firstDraw, double totalVolume, std::int64_t most);
-  /// What was done to the shape file, one sentence each.
+  /// Notes on the shape file, one sentence each.
   const std::vector<std::string>& notes() const { return notes_; }
 
 private:

@@ -105,7 +105,7 @@ struct IdentityArrays
   }
 };
 
-/// What a rock needs beside its motion to be released again as it is.
+/// State of a rock beside its motion, to be released again as it is.
 struct ReleaseArrays
 {
   vtkSmartPointer<vtkDoubleArray> density, young, poisson, rotation;

@@ -18,7 +18,7 @@ class vtkTable;
 namespace rockfall::filters
 {
 
-/// What was released, and where.
+/// Rocks that were released, and where.
 struct RunFrame
 {
   std::vector<Rock> rocks;
@@ -39,7 +39,7 @@ public:
   TrajectoryLines(const RunFrame& frame, bool withLosses);
   ~TrajectoryLines();
   void append(const Trajectory& trajectory);
-  void copy(vtkPolyData* output) const; ///< What was appended so far.
+  void copy(vtkPolyData* output) const; ///< All that was appended so far.
   void finish(vtkPolyData* output);     ///< Nothing can be appended after it.
 
 private:

@@ -13,7 +13,7 @@
 namespace rockfall::filters
 {
 
-/// What of each trajectory is kept.
+/// Parts of each trajectory that are kept.
 struct KeptParts
 {
   Retention retention = Retention::Full;
@@ -32,7 +32,7 @@ public:
   void trim(Trajectory& trajectory) const override { kept_.trim(trajectory); }
   void consume(Trajectory&& trajectory) override;
 
-  /// What was consumed so far.
+  /// Trajectories that were consumed so far.
   void copy(vtkPolyData* trajectories, vtkPolyData* impacts, vtkTable* summary,
     vtkPolyData* structures) const;
   /// Nothing is consumed after it.
@@ -40,7 +40,7 @@ public:
     vtkPolyData* structures = nullptr);
 
   std::string stateHash() const { return hash_.text(); }
-  /// Those of `wholeIteration`, with all samples.
+  /// Trajectories of `wholeIteration`, with all samples.
   std::vector<Trajectory>& whole() { return whole_; }
 
 private:

@@ -39,7 +39,7 @@ void dropStructures(vtkFieldData* fieldData);
 /// None if there are no such arrays. Throws DataError if they do not belong together.
 Structures readStructures(vtkFieldData* fieldData);
 
-/// What stands on the slope as triangles and quads in world coordinates, with the cell arrays
+/// Structures on the slope as triangles and quads in world coordinates, with the cell arrays
 /// StructureKind (0 embankment, 1 tree, 2 barrier), StructureId (number in its layer) and CFEId (0
 /// for barriers, which are no CFEs). Trees take at most `mostCells` triangles: of more, every
 /// second, third … is there, which is what is returned; else 1.

@@ -129,7 +129,7 @@ void makeTerrainMesh(const Terrain& terrain, int stride, vtkPolyData* mesh)
   const CoarseGrid coarse(terrain, stride);
   const GridGeometry& grid = terrain.geometry();
 
-  // Which nodes are used, then their point numbers.
+  // Nodes that are used, then their point numbers.
   std::vector<vtkIdType> pointOf(std::size_t(coarse.columns) * coarse.rows, -1);
   vtkIdType triangles = 0;
   coarse.forEachTriangle(

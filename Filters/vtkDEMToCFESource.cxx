@@ -213,7 +213,7 @@ int vtkDEMToCFESource::RequestData(
   }
   catch (const rockfall::Error& error)
   {
-    // What the terrain itself says does not know the file.
+    // Messages of the terrain itself do not know the file.
     std::string message = error.what();
     const auto names = [&](const std::string& file)
     { return !file.empty() && message.find(file) != std::string::npos; };

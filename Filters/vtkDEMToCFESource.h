@@ -462,7 +462,7 @@ private:
   int DeviationPer = PER_ITERATION;
   vtkIdType MaximumDisplayCells = 4000000;
 
-  /// What was read when this was last changed otherwise than in what is shown.
+  /// Slope that was read when this was last changed otherwise than in what is shown.
   std::shared_ptr<const rockfall::Terrain> Slope;
   std::vector<std::string> SlopeNotes;
   vtkMTimeType SlopeTime = 0;

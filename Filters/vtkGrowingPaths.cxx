@@ -168,7 +168,7 @@ int vtkGrowingPaths::RequestData(
       }
       vtkInformation* info = outputVector->GetInformationObject(0);
       vtkPolyData* output = vtkPolyData::GetData(info);
-      // Its range was that of older trajectories if they have just been made.
+      // The range was that of older trajectories if these have just been made.
       writeTimeRange(input, info);
       // The time is not written to the data: the executive would take those of any time for good
       // beyond the range.

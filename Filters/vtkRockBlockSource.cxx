@@ -29,7 +29,7 @@
 
 vtkStandardNewMacro(vtkRockBlockSource);
 
-/// What is released from where.
+/// Rocks and where they are released.
 struct vtkRockBlockSource::Sources
 {
   std::optional<rockfall::Terrain> terrain;
@@ -38,7 +38,7 @@ struct vtkRockBlockSource::Sources
   std::vector<rockfall::ReleasePlace> places;
   std::string crs; ///< WKT of the places, empty if it is not known.
   std::optional<rockfall::filters::RockMaker> maker;
-  std::vector<rockfall::filters::ReleasedRock> rocks; ///< One for each place.
+  std::vector<rockfall::filters::ReleasedRock> rocks; ///< A rock for each place.
   std::vector<std::string> notes;
 
   const rockfall::Terrain* ground() const { return terrain ? &*terrain : nullptr; }

@@ -326,7 +326,7 @@ bool vtkRockfallSimulation::Simulate(vtkPolyData* terrainInput, vtkPolyData* roc
   {
     tellAlike(run->slope, run->frame.rocks, run->parameters.iterations);
   }
-  // What is the same in all iterations is known before they run.
+  // Rocks that are the same in all iterations are known before they run.
   const bool anew = run->ensemble->pushesAnew();
   if (!anew)
   {
@@ -501,7 +501,7 @@ int vtkRockfallSimulation::RequestData(
     rockfall::filters::inheritFailure(rocks, this);
   const bool again = this->Failed && this->Failed->filter == this->GetMTime() &&
     this->Failed->terrain == Stamp(terrain) && this->Failed->rocks == Stamp(rocks);
-  // Whatever one rank decided alone would leave the others waiting.
+  // A decision of one rank alone would leave the others waiting.
   const std::vector<int> known = ranks.gather(inherited ? 2 : (again ? 1 : 0));
   if (*std::max_element(known.begin(), known.end()) == 2)
   {

@@ -287,7 +287,7 @@ public:
   void Stop();
   /// Makes all trajectories anew, as after a Stop.
   void RunAgain();
-  /// What the run does: "running: 12,300 of 100,000 trajectories (12 %), about 3 min 20 s left".
+  /// State of the run: "running: 12,300 of 100,000 trajectories (12 %), about 3 min 20 s left".
   const char* GetRunStatus();
   ///@}
 

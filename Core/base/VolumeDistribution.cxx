@@ -26,7 +26,7 @@ constexpr std::pair<VolumeLaw, const char*> names[] = {
 
 /// Bounds that leave less than this of a distribution are a mistake, not a choice.
 constexpr double leastShare = 1e-6;
-/// So is a deviation of more than so many means: all but a few rocks would be dust.
+/// Deviation in means beyond which a distribution is refused: all but a few rocks would be dust.
 constexpr double mostDeviation = 1e3;
 
 std::string text(double value)

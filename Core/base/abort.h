@@ -54,7 +54,7 @@ public:
 
 private:
   std::function<bool()> wanted_;
-  const void* owner_ = nullptr; ///< What tells its thread from others.
+  const void* owner_ = nullptr; ///< Tells its thread from others.
   mutable std::chrono::steady_clock::time_point asked_;
   mutable std::atomic<bool> over_ = false;
   const std::atomic<bool>* stop_ = nullptr;

@@ -71,7 +71,8 @@ private:
     }
 
     std::atomic<bool> open{ false };
-    alignas(kCacheLine) std::atomic<int> inside{ 0 }; ///< Who may be at it, besides the owner.
+    alignas(
+      kCacheLine) std::atomic<int> inside{ 0 }; ///< Threads that may be at it, besides the owner.
     parallel::Loop loop{};
     std::vector<Range> ranges;
     std::atomic<bool> failed{ false };

@@ -53,7 +53,7 @@ void forEach(std::size_t count, std::size_t grain, Work&& work)
   struct Shared
   {
     const std::remove_reference_t<Work>* work;
-    const AbortScope* scope; ///< Who shares the loop can give up what its turns do.
+    const AbortScope* scope; ///< By which threads that share the loop can give up, too.
   };
   const auto run = [](const void* of, std::size_t begin, std::size_t end)
   {

@@ -15,7 +15,7 @@
 namespace rockfall
 {
 
-/// What a number is drawn for; one stream each.
+/// Purposes of random numbers; one stream each.
 enum class Draw : std::uint32_t
 {
   Roughness = 1,

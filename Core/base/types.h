@@ -26,7 +26,7 @@ constexpr double radians(double degrees)
   return degrees * (std::numbers::pi / 180.0);
 }
 
-/// And the one way out.
+/// The one way out.
 constexpr double degrees(double radians)
 {
   return radians * (180.0 / std::numbers::pi);

@@ -37,7 +37,7 @@ bool stays(const Contact& c)
   return c.closed() || c.distance < 0.0;
 }
 
-/// One that has opened, as if it had just been found: what it has come out stays out.
+/// A contact that has opened, as if it had just been found: the overlap that it lost stays lost.
 void reopen(Contact& c)
 {
   c.offset = c.distance;

@@ -122,7 +122,7 @@ double timeToObstacle(PlacedBlock& rock, const BlockState& state, const Block& b
   {
     return time;
   }
-  // So near that the rock's own shape counts.
+  // Near enough for the rock's own shape to count.
   std::sort(triangles.begin(), triangles.end());
   std::sort(trees.begin(), trees.end());
   thread_local SurfacePatch patch;

@@ -97,7 +97,7 @@ private:
   /// From a shell that has passed every check.
   static Polyhedron fromShell(
     const Shell& shell, std::span<const Vec3> points, const std::string& name);
-  /// What a polyhedron without faces is made of.
+  /// Ingredients of a polyhedron without faces.
   static const std::shared_ptr<const Parts>& nothing();
 
   std::shared_ptr<const Parts> parts_; ///< Of all copies: a thousand alike take up the room of one.

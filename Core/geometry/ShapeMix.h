@@ -11,7 +11,7 @@
 namespace rockfall
 {
 
-/// One or more shapes, each with its weight.
+/// Shapes, each with its weight; at least one.
 struct ShapeMix
 {
   struct Part

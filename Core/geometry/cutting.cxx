@@ -40,7 +40,7 @@ public:
   /// Closes it along the points in the plane, and leaves out those that it has none of.
   void close(const std::vector<Vec3>& points, const std::vector<char>& inPlane, ConvexPiece& piece)
   {
-    // What has a face on one side only is the rim of the cut.
+    // Edges with a face on one side only are the rim of the cut.
     std::set<std::array<int, 2>> sides;
     for (const std::vector<int>& loop : faces_)
     {

@@ -138,7 +138,7 @@ private:
   int code_ = 0;
 };
 
-/// So many points take Qhull a second or so.
+/// Points that take Qhull a second or so.
 constexpr std::size_t manyPoints = 50000;
 
 struct HullRun

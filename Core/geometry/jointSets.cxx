@@ -24,7 +24,7 @@ constexpr double mostSpacings = 1e6;
 /// Of spacings to their mean.
 constexpr double mostDeviation = 10.0;
 
-/// What a block takes until it is released, B: its polyhedron and its faces with their arrays.
+/// Memory of a block until it is released, B: its polyhedron and its faces with their arrays.
 constexpr double bytesPerBlock = 8000.0;
 
 std::string setName(std::size_t number)
@@ -107,7 +107,7 @@ void checkSets(const Polyhedron& mass, std::span<const JointSet> sets, const Mas
   }
 }
 
-/// What a mean over all offsets did not tell: how many these joints make.
+/// Blocks that these joints make; a mean over all offsets does not tell.
 [[noreturn]] void failCount(
   const Polyhedron& mass, const std::string& set, double expected, const MassCut& how)
 {

@@ -30,12 +30,12 @@ struct JointSet
   void validate(const std::string& name) const; ///< Throws ParameterError naming set and value.
 };
 
-/// What to do with blocks that are too thin or too small.
+/// Treatment of blocks that are too thin or too small.
 enum class SliverRule
 {
-  Refuse = 0, ///< They are an error.
-  Drop = 1,   ///< They are left out.
-  Keep = 2,   ///< They are blocks like the others.
+  Refuse = 0, ///< An error.
+  Drop = 1,   ///< Left out.
+  Keep = 2,   ///< Blocks like the others.
 };
 
 struct MassCut

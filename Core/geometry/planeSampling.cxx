@@ -11,7 +11,7 @@ namespace rockfall
 namespace
 {
 
-/// Which of the pieces a share of all belongs to, and where in it, 0 to 1.
+/// The piece that a share of all belongs to, and the place in it, 0 to 1.
 std::pair<std::size_t, double> pick(const std::vector<double>& cumulated, double share)
 {
   const double wanted = share * cumulated.back();

@@ -139,7 +139,7 @@ Polyhedron makeBox(const Vec3& lengths)
   }
   catch (const GeometryError& error)
   {
-    // What is wrong with the faces says little of the three numbers.
+    // Errors of the faces say little of the three numbers.
     throw ParameterError("Lengths are " + numberText(lengths.x()) + ", " + numberText(lengths.y()) +
       " and " + numberText(lengths.z()) + " m, of which no box can be made (" + error.what() + ")");
   }

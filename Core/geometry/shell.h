@@ -20,7 +20,8 @@ namespace rockfall
 ///@{
 /// Points closer than this are one; above the rounding of a 1 m block at UTM coordinates (5e-10).
 constexpr double weldTolerance = 1e-9;
-/// What stands off a plane by less lies in it; ten times the rounding of single-precision files.
+/// Distance from a plane below which a point lies in it: ten times the rounding of files in single
+/// precision.
 constexpr double planeTolerance = 1e-6;
 /// Least 3 V / A, the radius of an inscribed sphere were there one; thinner is a sliver, whose
 /// faces the plane tolerance could not tell apart.
@@ -76,7 +77,7 @@ void checkPlanar(const Shell& shell, const std::string& name);
 void checkClosed(const Shell& shell, const std::string& name);
 /// Positive volume, not a sliver.
 void checkVolume(const Shell& shell, const std::string& name);
-/// What keeps the shell from being a convex body with a plane for each face; empty if nothing does.
+/// Reason why the shell is no convex body with a plane for each face; empty if it is one.
 std::string convexityFault(const Shell& shell);
 
 /// Merges neighbouring faces that lie within `tolerance` (m) of one plane and drops the vertices

@@ -54,7 +54,7 @@ unsigned declaredKinds(const OGRLayer& layer)
   return kindOfType(const_cast<OGRLayer&>(layer).GetGeomType());
 }
 
-/// What a layer has, by what it declares or by its first features.
+/// Content of a layer, as declared or by its first features.
 struct Content
 {
   unsigned kinds = 0;

@@ -18,7 +18,7 @@
 namespace rockfall::gis
 {
 
-/// What features are: bits of LayerWish::kinds.
+/// Kinds of features: bits of LayerWish::kinds.
 enum FeatureKind : unsigned
 {
   kPoints = 1,
@@ -32,7 +32,7 @@ unsigned kindOf(const OGRGeometry* geometry);
 /// Names of columns of which one must be there.
 using ColumnChoice = std::vector<std::string>;
 
-/// What a reader can take.
+/// Layers that a reader can take.
 struct LayerWish
 {
   std::string fileName;
@@ -40,7 +40,7 @@ struct LayerWish
   /// own layers, with commas between them, or * for all.
   std::string layer;
   std::string property = "LayerName"; ///< In which the user gives it.
-  const char* what = "layer";         ///< That will do, for messages: "layer of lines".
+  const char* what = "layer";         ///< For messages: "layer of lines".
   unsigned kinds = 0;
   /// A layer that has one column of each choice will do better than those that have not.
   std::vector<ColumnChoice> columns = {};
@@ -83,7 +83,7 @@ public:
   /// Of the feature that came last, from 1.
   std::int64_t number() const { return number_; }
 
-  /// What was done to the text, which layer was taken, what was left out; complete when next() has
+  /// Notes on the text, the layer that was taken and what was left out; complete when next() has
   /// given null. `named`: each note begins with the file's name.
   void tell(std::vector<std::string>& notes, bool named) const;
 

@@ -35,7 +35,7 @@ struct HeightField
 {
   int column = -1; ///< −1: the lines' own z.
   std::string name;
-  Heights heights;      ///< What its numbers mean.
+  Heights heights;      ///< Meaning of its numbers.
   bool guessed = false; ///< By its name.
 };
 

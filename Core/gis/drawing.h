@@ -25,14 +25,14 @@ std::string drawingLayerOf(const OGRFeature& entity);
 bool isText(const OGRFeature& entity);  ///< A label.
 bool isPaper(const OGRFeature& entity); ///< Of a sheet to be plotted, not of the model.
 
-/// What the layers of a drawing hold.
+/// Content of the layers of a drawing.
 class DrawingLayers
 {
 public:
   explicit DrawingLayers(OGRLayer& entities);
 
-  /// Those that are read. `notes`: which, and which were left out. Throws DataError as LayerFile
-  /// does, naming the drawing's layers.
+  /// Layers that are read. `notes` names them and those that were left out. Throws DataError as
+  /// LayerFile does, naming the drawing's layers.
   std::set<std::string> choose(const LayerWish& wish, std::vector<std::string>& notes) const;
 
 private:

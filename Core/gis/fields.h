@@ -44,7 +44,7 @@ void refuseNearMisses(const OGRFeatureDefn& definition, const std::string& fileN
 /// does nothing for other formats.
 void refuseSurplusCells(GDALDataset& dataset, const std::string& fileName);
 
-/// One feature of a layer. Errors are DataError and name file, row (from 1), field and value.
+/// A feature of a layer. Errors are DataError and name file, row (from 1), field and value.
 class Fields
 {
 public:

@@ -143,7 +143,7 @@ FileContent contentOf(const LayerWish& wish, std::vector<std::string>& notes)
   const DatasetPtr dataset = opened(wish.fileName, messages, false);
   if (!dataset)
   {
-    // What is neither is a raster's business: its message says so.
+    // Other contents are a raster's business: its message says so.
     return { bool(opened(wish.fileName, messages, true)), wish.fileName };
   }
   const std::vector<NamedRaster> rasters = rastersIn(*dataset);

@@ -11,7 +11,7 @@ namespace rockfall::gis
 
 struct LayerWish;
 
-/// What is read of a file.
+/// Content that is read of a file.
 struct FileContent
 {
   bool vector = false;

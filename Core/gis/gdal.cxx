@@ -52,7 +52,7 @@ enum class Kind
   Vector
 };
 
-/// What comes of opening a file.
+/// Result of opening a file.
 struct Opened
 {
   DatasetPtr dataset;

@@ -15,14 +15,14 @@ class GDALRasterBand;
 namespace rockfall::gis
 {
 
-/// What the axes say where GDAL finds no place for the raster, as of GMT's Cartesian grids.
+/// Place that the axes give where GDAL finds none for the raster, as of GMT's Cartesian grids.
 struct AxesPlace
 {
   std::array<double, 6> affine{}; ///< GDAL's order.
   bool inDegrees = false;
 };
 
-/// What the axes of a raster say.
+/// Statements of the axes of a raster.
 struct GridAxes
 {
   std::optional<AxesPlace> place; ///< In metres or degrees; nothing where GDAL has a place.

@@ -11,7 +11,7 @@
 namespace rockfall
 {
 
-/// Which of a material's numbers a table has.
+/// The material's numbers that a table has.
 enum class GroundKind
 {
   Restitution, ///< Rv or Rn, its deviation, model, Rt, K, roughness.

@@ -21,7 +21,7 @@ Header sagaHeader(GDALDataset& dataset);
 /// The lines before the numbers of a GRASS ASCII grid.
 Header grassHeader(const std::string& fileName);
 
-/// What a .prj file beside the data says beyond its CRS.
+/// Statements of a .prj file beside the data, beyond its CRS.
 struct PrjHeights
 {
   std::string unit;           ///< Of a Zunits line; empty if there is none.

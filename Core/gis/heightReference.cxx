@@ -34,7 +34,7 @@ bool isCompound(const OGRSpatialReference& crs)
   return crs.IsCompound();
 }
 
-/// What the heights refer to; empty if it is not said.
+/// Datum of the heights; empty if it is not said.
 std::string datumOf(const OGRSpatialReference& crs)
 {
   const CrsPtr flat = horizontalCrs(&crs);

@@ -52,7 +52,7 @@ std::string lengthText(double metres)
   return isFoot(metres) ? "feet" : "units of " + number(metres) + " m";
 }
 
-/// What is said of the heights of one band, one declaration after the other.
+/// Declarations of the heights of one band, one after the other.
 class BandHeights
 {
 public:
@@ -192,7 +192,7 @@ private:
     return metres;
   }
 
-  /// What a variable's attribute says, whatever GDAL puts before its name.
+  /// Text of a variable's attribute, whatever GDAL puts before its name.
   std::string attribute(const char* name) const
   {
     const char* value = band_.GetMetadataItem(name);

@@ -56,7 +56,7 @@ struct LayerHeights : Heights
 LayerHeights heightsOf(GDALDataset& dataset, OGRLayer& layer, const std::string& fileName,
   std::vector<std::string>& notes);
 
-/// What the altitude of a feature of a KML file is over, by its altitudeMode.
+/// Reference of the altitude of a feature of a KML file, by its altitudeMode.
 enum class Altitude
 {
   Datum,  ///< Absolute, as in all other files.

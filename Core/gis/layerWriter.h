@@ -52,7 +52,7 @@ public:
   /// Throws FileError, also for a second layer of a CSV file.
   void beginLayer(
     const std::string& name, Geometry geometry, const std::vector<LayerField>& fields);
-  /// One feature; `values` as many as fields. A point has one place, a line one measure for each.
+  /// A feature; `values` as many as fields. A point has one place, a line one measure for each.
   void add(std::span<const Vec3> places, std::span<const double> measures,
     std::span<const FieldValue> values);
   /// Closes the file and gives it its name. Throws FileError.

@@ -13,7 +13,7 @@
 namespace rockfall
 {
 
-/// One line of a layer; a feature of several parts gives several.
+/// A line of a layer; a feature of several parts gives several.
 struct LayerLine
 {
   std::int64_t feature = 0; ///< Number of the feature in the file, from 1.

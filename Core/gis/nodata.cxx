@@ -161,8 +161,8 @@ bool Nodata::matches(double raw, double declared) const
   {
     return true;
   }
-  // What is no height anyway may have been rounded to six digits, 1.70141e+38, and the extremes of
-  // double precision beyond what it holds.
+  // A number that is no height anyway may have been rounded to six digits, 1.70141e+38, and the
+  // extremes of double precision beyond what it holds.
   const double height = heights_.metres(raw);
   if (height >= kDeepest && height <= kHighest)
   {

@@ -30,7 +30,7 @@ private:
   Heights heights_;
   std::vector<double> values_;
   std::vector<std::pair<double, double>> ranges_; ///< From, to, both of them nodata.
-  double least_, most_;                           ///< What is valid.
+  double least_, most_;                           ///< Limits of valid heights.
 };
 
 /// Adds a note for heights (m, NaN for nodata) that stand off from all others by more than these

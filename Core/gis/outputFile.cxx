@@ -74,7 +74,7 @@ void OutputFile::commit()
   std::error_code error;
   for (const std::string& extension : companions_)
   {
-    // One of an older file must not stay beside the new one.
+    // A sidecar of an older file must not stay beside the new one.
     const fs::path made = with(temporary_, extension), final = with(fileName_, extension);
     if (fs::exists(made, error))
     {

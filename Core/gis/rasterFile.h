@@ -27,7 +27,7 @@ public:
 
   /// The horizontal CRS; null if the file has none or only an engineering one.
   const CrsPtr& crs() const { return crs_; }
-  /// What the heights refer to; see heightCrs. Null if the file does not say it.
+  /// CRS of the heights; see heightCrs. Null if the file does not say it.
   const CrsPtr& reference() const { return heights_.reference; }
   /// False for a picture without world coordinates, which is given cells of 1 m.
   bool georeferenced() const { return georeferenced_; }

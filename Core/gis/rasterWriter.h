@@ -12,10 +12,10 @@
 namespace rockfall
 {
 
-/// One layer of a map.
+/// A layer of a map.
 struct MapBand
 {
-  std::string name; ///< Its description in the file.
+  std::string name; ///< Description in the file.
   std::string unit; ///< Empty if it has none.
   /// Fills in the values of a row, counted from the south; NaN for nodata.
   std::function<void(int row, std::span<float> values)> fill;

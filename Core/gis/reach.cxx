@@ -164,7 +164,7 @@ std::string fileWithin(const std::string& name)
   return name;
 }
 
-/// What an HDF5 file names, as virtual rasters do.
+/// Files that an HDF5 file names, as virtual rasters do.
 void refuseHdf5References(const std::string& fileName, const std::string& whole, int depth)
 {
   if (fileName.starts_with("/vsi"))
@@ -222,7 +222,7 @@ void refuseLinksOut(const std::string& folder, const std::string& whole)
   }
 }
 
-/// What a virtual dataset names; `whole` is the file that the user named.
+/// Files that a virtual dataset names; `whole` is the file that the user named.
 class References
 {
 public:

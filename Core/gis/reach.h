@@ -29,7 +29,7 @@ private:
 namespace gis
 {
 
-/// Which drivers of GDAL may open a file, as GDAL wants them; null: all.
+/// Drivers of GDAL that may open a file, as GDAL wants them; null: all.
 const char* const* openingDrivers();
 
 /// While it lives, GDAL opens no address on this thread, whatever a file names (overviews of a

@@ -56,7 +56,7 @@ std::string nameList(const Names& names)
   return list;
 }
 
-/// One row at a time into a pair.
+/// Reads a row into a pair.
 class PairReader
 {
 public:

@@ -18,14 +18,14 @@ struct SourcePlacing
   CrsPtr from;
   CrsPtr to;
   CrsChange change;
-  LayerHeights heights; ///< What the layer's numbers mean.
+  LayerHeights heights; ///< Meaning of the layer's numbers.
   /// WKT of what the heights are brought to; nothing: they are left as they are.
   std::optional<std::string> target;
   bool haveTerrain = false;
 
   /// Fills geometry, position, parts and height of `source`. Throws DataError.
   void place(const FeatureRow& row, SourceRow& source);
-  /// What was done to heights, if there were any.
+  /// Conversion of the heights, if there were any.
   void tell(const std::string& fileName, std::vector<std::string>& notes) const;
 
 private:

@@ -21,7 +21,8 @@ enum class SourceGeometry
   Polygon
 };
 
-/// One row of a source layer. What the layer does not say stays empty; the caller has the defaults.
+/// A row of a source layer. Fields that the layer does not have stay empty; the caller has the
+/// defaults.
 struct SourceRow
 {
   std::int64_t row = 0; ///< In the file, from 1 (not counting a header).
@@ -72,7 +73,7 @@ struct SourceOptions
   std::int64_t mostRocks = 1000000;
 };
 
-/// What is said of a layer as a whole.
+/// Statements of a layer as a whole.
 struct SourceLayer
 {
   std::vector<SourceRow> rows;
@@ -111,7 +112,7 @@ std::string labelOfCrs(const std::string& text);
 /// Whether two CRS (WKT or "EPSG:n") have the same horizontal part; an empty one is that of all.
 bool sameCrs(const std::string& one, const std::string& other);
 
-/// What the heights of two CRS (WKT or "EPSG:n") refer to, "a and b", if both say it and it is not
+/// Datums of the heights of two CRS (WKT or "EPSG:n"), "a and b", if both say it and it is not
 /// the same; else empty.
 std::string differentHeights(const std::string& one, const std::string& other);
 

@@ -407,7 +407,7 @@ void readBarriers(const StructureFiles& files, const Terrain& terrain, Structure
     });
 }
 
-/// What cannot be built says which file it is from.
+/// Errors of structures that cannot be built name the file.
 void tryOut(const std::string& fileName, Structures part, const Terrain& terrain)
 {
   try

@@ -87,7 +87,7 @@ bool isBlank(std::string_view line)
   return line.find_first_not_of(" \t\r\n") == std::string_view::npos;
 }
 
-/// What comes before the rows.
+/// Lines before the rows.
 struct TableHead
 {
   std::optional<char> said; ///< The separator, by a line of its own.

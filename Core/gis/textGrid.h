@@ -14,7 +14,7 @@ class GDALDataset;
 namespace rockfall::gis
 {
 
-/// What GDAL does not say of a grid of text.
+/// Statements of a grid of text that GDAL does not pass on.
 struct TextGrid
 {
   /// Whether `nulls` says what is nodata, and the band does not: where the file has a word for it.

@@ -21,7 +21,7 @@ struct Mesh
   /// the digits that a text has. 0 where every number is exact as far as anybody can tell.
   double rounding = 0.0;
   std::string stored;             ///< Why they are rounded: "in single precision".
-  std::vector<std::string> notes; ///< What was taken for granted, one sentence each.
+  std::vector<std::string> notes; ///< Assumptions, one sentence each.
 };
 
 /// More points or faces than these are no shape of a rock.

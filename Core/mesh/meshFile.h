@@ -24,7 +24,7 @@ Mesh readMesh(const std::string& fileName);
 /// The same of bytes in memory; `name` is for messages.
 Mesh parseMesh(std::string_view extension, std::string_view bytes, const std::string& name);
 
-/// One of each format. Faces may still point at points that are not there.
+/// A reader for each format. Faces may still point at points that are not there.
 ///@{
 Mesh parsePly(std::string_view bytes, const std::string& name);
 Mesh parseStl(std::string_view bytes, const std::string& name);

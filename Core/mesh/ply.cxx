@@ -143,7 +143,7 @@ private:
     elements_.back().properties.push_back(property);
   }
 
-  /// What the header announces must have room in what follows.
+  /// Elements that the header announces must have room in the rest of the file.
   void checkCount(const Element& element)
   {
     std::size_t least = 0; // bytes of a record

@@ -239,7 +239,7 @@ private:
     mesh_.addPoint(point);
   }
 
-  /// What a table without a header leaves open.
+  /// Questions that a table without a header leaves open.
   void checkGuess()
   {
     if (!guessed_ || cells_ == 3)

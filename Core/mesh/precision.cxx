@@ -12,7 +12,7 @@ namespace rockfall
 namespace
 {
 
-/// What streams and %g write unless they are told otherwise.
+/// Digits that streams and %g write unless they are told otherwise.
 constexpr int kUsualDigits = 6;
 
 /// Of words that tell single precision, which has 7 digits, from double.

@@ -13,7 +13,7 @@
 namespace rockfall
 {
 
-/// What a text's numbers say of how they were written. A program that writes six digits gives
+/// Precision in which a text's numbers were written. A program that writes six digits gives
 /// 812.13 for z and 5.20046e+06 for a northing.
 class WrittenDigits
 {
@@ -37,7 +37,7 @@ private:
   double exponentLargest_ = 0.0, largest_ = 0.0;
   bool any_ = false, paddedDecimals_ = false, sixWithDecimals_ = false;
   int single_ = 0;      ///< Long words that are of single precision, and not round.
-  bool double_ = false; ///< One that is not.
+  bool double_ = false; ///< A number that is not was met.
 };
 
 /// Half the distance between two numbers of single precision at this magnitude, m.

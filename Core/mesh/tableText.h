@@ -22,7 +22,7 @@ struct TableLines
 {
   std::vector<TableLine> lines;
   std::string_view comment; ///< The last one before the first line, without its mark.
-  char separator = '\0';    ///< That of a line sep=;
+  char separator = '\0';    ///< Separator of a line sep=;
 };
 /// `text` must outlive the result.
 TableLines splitLines(std::string_view text);
@@ -30,8 +30,8 @@ TableLines splitLines(std::string_view text);
 /// Whether all that stands between blanks, commas and semicolons are numbers.
 bool isNumeric(std::string_view line);
 
-/// What parts the columns of a line: ';', '\t', ',' or ' ' for any number of blanks; '\0' if nobody
-/// can tell, as of 1,5, 2,5, 3,5.
+/// Separator of the columns of a line: ';', '\t', ',' or ' ' for any number of blanks; '\0' if
+/// nobody can tell, as of 1,5, 2,5, 3,5.
 char separatorOf(std::string_view line);
 
 /// Trimmed and without quotes.

@@ -14,7 +14,7 @@
 namespace rockfall
 {
 
-/// What holds for all arrays of a file.
+/// Properties of all arrays of a file.
 struct VtkEncoding
 {
   std::string name; ///< Of the file, for messages.
@@ -25,8 +25,8 @@ struct VtkEncoding
   bool appendedBase64 = false;
   std::size_t fileSize = 0;
 
-  /// What all arrays together can have: points that compress to less are no body's, and a file
-  /// could ask for any memory.
+  /// Values that all arrays together can have: points that compress to less are no body's, and a
+  /// file could ask for any memory.
   std::size_t mostBytes() const
   {
     constexpr std::size_t mostPacking = 200, small = 1 << 20;

@@ -222,7 +222,7 @@ private:
     return values;
   }
 
-  /// One of the two lists of a newer file.
+  /// Reads one of the two lists of a newer file.
   std::vector<std::int64_t> wholes(std::int64_t count, std::string_view keyword)
   {
     if (lowerCase(words_.next()) != keyword)

@@ -44,7 +44,7 @@ public:
   std::string_view next();
   /// The next word of this line; empty at its end, where the walk stays.
   std::string_view nextInLine();
-  /// What is left of this line, without its end, behind which the walk goes on.
+  /// Rest of this line, without its end, behind which the walk goes on.
   std::string_view restOfLine();
 
   /// The next word as a number; throws FileError if it is none, or if the text is over.

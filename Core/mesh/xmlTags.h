@@ -48,7 +48,7 @@ public:
   /// The next tag; nothing at the end of the file. Comments and declarations are passed over.
   /// Throws FileError for what is no XML.
   std::optional<XmlTag> next();
-  /// What stands behind the tag that was read last, to the end of the file.
+  /// Text behind the tag that was read last, to the end of the file.
   std::string_view rest() const { return text_.substr(at_); }
 
 private:

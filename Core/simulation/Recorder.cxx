@@ -86,7 +86,7 @@ void Recorder::record(const BlockState& state, bool contact)
 void Recorder::knot(const BlockState& state, bool contact)
 {
   knot_ = state;
-  // One sample at a time: what an impact left takes the place of what it began to leave.
+  // There is one sample at a time: the state after an impact replaces the one before it.
   const SampleKind kind = this->knotAt(state.time);
   trajectory_.samples.push_back(this->makeSample(state, contact));
   trajectory_.samples.back().kind = kind;

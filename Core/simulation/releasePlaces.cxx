@@ -22,7 +22,7 @@ namespace
 
 using gis::number;
 
-/// What a rock takes until it is released, B: its polyhedron and its faces with their arrays.
+/// Memory of a rock until it is released, B: its polyhedron and its faces with their arrays.
 constexpr double bytesPerRock = 8000.0;
 
 std::string rowName(const std::string& layer, const SourceRow& row)
@@ -62,7 +62,7 @@ Vec3 inBall(double u, double v, double w)
   return r * Vec3(across * std::cos(angle), across * std::sin(angle), z);
 }
 
-/// One source with all that is needed to draw places from it.
+/// A source with all that is needed to draw places from it.
 class Sampler
 {
 public:
@@ -374,7 +374,7 @@ std::vector<ReleasePlace> steepPlaces(
       number(area) + " m² that SlopeThreshold takes");
   }
 
-  // One pass more gives every rock its CFE, without a list of them all.
+  // A further pass gives every rock its CFE, without a list of them all.
   std::vector<ReleasePlace> places((std::size_t(rocks)));
   std::vector<std::pair<std::int64_t, std::size_t>> wanted;
   for (std::size_t i = 0; i < places.size(); ++i)

@@ -16,7 +16,7 @@
 namespace rockfall
 {
 
-/// What holds for all sources that do not say otherwise.
+/// Defaults of sources that do not say otherwise.
 struct ReleaseDefaults
 {
   std::int64_t amount = 1; ///< Rocks of a source, ≥ 1.

@@ -12,7 +12,7 @@
 namespace rockfall
 {
 
-/// Where the energy went, J. Their sum is what the numerics kept; `numerical` is the remainder:
+/// Losses of energy, J. Their sum is what the numerics kept; `numerical` is the remainder:
 /// released = kinetic + strain + friction + restitution + vibration + damping + structures +
 /// scars + rolling + exchanged + numerical. What two rocks exchange does not add up to nothing: the
 /// rest is lost, or held, between them.
@@ -59,7 +59,7 @@ struct Sample
   EnergyAudit energy;
 };
 
-/// One impact: the rock came from flight, touched, and left or settled. Another rock may also
+/// An impact: the rock came from flight, touched, and left or settled. Another rock may also
 /// strike it through one that it touches.
 struct ImpactEvent
 {
@@ -76,15 +76,15 @@ struct ImpactEvent
   double scarDepth = 0.0;         ///< Straight under the surface, m; 0: hard ground.
   double scarLength = 0.0;        ///< Along the surface, m.
   int otherRock = -1;             ///< Index of the rock that was hit, −1: the slope.
-  std::int64_t otherBlockId = -1; ///< Its number.
+  std::int64_t otherBlockId = -1; ///< Number of that rock.
 };
 
-/// What became of a structure that a rock met.
+/// Fate of a structure that a rock met.
 enum class StructureOutcome
 {
-  BarrierStopped = 0,  ///< It holds the rock.
+  BarrierStopped = 0,  ///< Holds the rock.
   BarrierBroken = 1,   ///< The rock went through, and lost the barrier's capacity.
-  BarrierRecorded = 2, ///< It only records; nothing happened to the rock.
+  BarrierRecorded = 2, ///< Only records; nothing happened to the rock.
   TreeBroken = 3,      ///< The rock broke it, and lost its capacity.
 };
 
@@ -135,8 +135,9 @@ struct TrajectorySummary
   /// Steps taken although open–close had not settled, in a crowd: was far from it.
   std::int64_t unsettledSteps = 0;
   EnergyAudit energy;
-  /// What contacts with other rocks took while no impact was under way, half of it for each of the
-  /// two, J: the sum over rocks, and the losses of impacts between rocks, are that of `exchanged`.
+  /// Energy that contacts with other rocks took while no impact was under way, half of it for each
+  /// of the two, J: the sum over rocks, and the losses of impacts between rocks, are that of
+  /// `exchanged`.
   double lastingLoss = 0.0;
   std::uint64_t hash = 0; ///< Of the motion: `motionHash`, given by the ensemble.
 };

@@ -19,7 +19,7 @@ enum class Retention
   Full = 4,           ///< All samples.
 };
 
-/// Which samples `retention` keeps: indices, rising.
+/// Samples that `retention` keeps: indices, rising.
 std::vector<std::size_t> keptSamples(const std::vector<Sample>& samples, Retention retention);
 
 /// Drops the other samples of a trajectory and gives their memory back.

@@ -83,7 +83,7 @@ std::int64_t HazardRaster::cellAt(double x, double y) const
   const auto index = [this](double place, double start, int count)
   {
     const double found = std::floor((place - start) / grid_.cellSize);
-    // What lies on the outer border is on the map.
+    // A point on the outer border is on the map.
     return found == count && place <= start + count * grid_.cellSize ? count - 1.0 : found;
   };
   const double column = index(x, grid_.west, grid_.columns);
@@ -198,7 +198,8 @@ void HazardRaster::addPiece(const PathPiece& piece, std::array<double, 2> ground
   }
   if (!visited)
   {
-    // It stays on a border but for rounding: in the cell where the rock was, else in any of them.
+    // A rock that stays on a border but for rounding: in the cell where the rock was, else in any
+    // of them.
     std::int64_t cell = here_;
     for (std::size_t k = cuts_.size(); cell < 0 && k > 0; --k)
     {

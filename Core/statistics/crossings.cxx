@@ -18,8 +18,8 @@ namespace
 /// A path whose end is no further from a line ends on it, m.
 constexpr double kOnLine = 1e-6;
 
-/// What passes a vertex of a line nearer than this is looked at from this far, where it is clear on
-/// which side of the line it is, m.
+/// A path that passes a vertex of a line nearer than this is looked at from this far, where it is
+/// clear on which side of the line it is, m.
 constexpr double kAtVertex = 1e-6;
 
 /// As far from a line as rounding leaves what lies in it, m.
@@ -185,7 +185,7 @@ bool isLeft(const Vec2& place, const Segment& in, const Segment& out)
   return in.normal.dot(out.along) > 0.0 ? ofIn && ofOut : ofIn || ofOut;
 }
 
-/// One stay of the path in the surroundings of a vertex.
+/// A stay of the path in the surroundings of a vertex.
 struct Visit
 {
   const Segment* in;
@@ -216,7 +216,7 @@ int passingOf(const RockPath& path, const PathPlace& place, const Segment& in, c
   bool wasLeft = isLeft(*from, in, out);
   if (const Segment* under = segmentUnder(*from, in, out))
   {
-    // It came in the line: where it was before.
+    // A path that comes in the line: where it was before.
     std::size_t k = visit.first.first;
     const auto sideOf = [&](std::size_t point)
     { return under->side(path.points[point].position.x(), path.points[point].position.y()); };
@@ -272,7 +272,7 @@ void appendOf(const RockPath& path, const Segment& segment, const Terrain* terra
   for (std::size_t k = 1; k < path.points.size(); ++k)
   {
     const PathPoint &a = path.points[k - 1], &b = path.points[k];
-    // What ends on the line, caught by a net there, has not crossed it.
+    // A path that ends on the line, caught by a net there, has not crossed it.
     const bool last = k + 1 == path.points.size();
     const double side = sideOf(b);
     const double end = last && std::abs(side) < kOnLine ? 0.0 : side;

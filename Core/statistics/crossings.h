@@ -24,7 +24,7 @@ struct CollectorLine
   double barrierCapacity = 0.0;        ///< J; infinite if energy does not matter.
 };
 
-/// One passing: the path goes from one side of a segment's vertical plane to the other; at a vertex
+/// A passing: the path goes from one side of a segment's vertical plane to the other; at a vertex
 /// of the line, from one side of the line to the other.
 struct Crossing
 {
@@ -55,7 +55,7 @@ struct Crossing
 void appendCrossings(const RockPath& path, const CollectorLine& line, int lineNumber,
   const Terrain* terrain, std::vector<Crossing>& crossings);
 
-/// What passed one line, and what a barrier of its height and capacity would catch.
+/// Passings of one line, and what a barrier of its height and capacity would catch.
 struct LineSummary
 {
   int rocks = 0;     ///< Rocks (iteration × rock) that passed.

@@ -37,7 +37,7 @@ T get(std::istream& in)
   throw FileError(fileName + ": is damaged: " + what);
 }
 
-/// What the header says must be what a run can have.
+/// The header must state what a run can have.
 void checkHeader(const PassageFile& file)
 {
   const CellGrid& g = file.grid;

@@ -26,7 +26,7 @@ class HazardRaster;
 /// The first bytes of a file.
 constexpr char passageMagic[8] = { 'R', 'F', 'P', 'A', 'S', 'S', '0', '1' };
 
-/// What a file says of itself.
+/// Statements of a file on itself.
 struct PassageFile
 {
   std::string fileName;

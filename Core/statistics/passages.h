@@ -37,7 +37,7 @@ enum class Hazard
 constexpr int hazardCount = 4;
 std::string hazardName(Hazard hazard); ///< In PascalCase.
 
-/// One cell that something passed.
+/// A cell that something passed.
 struct CellSummary
 {
   std::int64_t cell = 0; ///< row · columns + column, rows from the south.
@@ -56,7 +56,7 @@ struct CellSummary
   std::array<SampleStatistics, hazardCount> statistics;
 };
 
-/// One rock in one iteration in one cell.
+/// A rock in one iteration in one cell.
 struct Passage
 {
   std::uint32_t cell = 0;

@@ -16,7 +16,7 @@
 namespace rockfall
 {
 
-/// One point of a trajectory.
+/// A point of a trajectory.
 struct PathPoint
 {
   double time = 0.0;                ///< s

@@ -13,7 +13,7 @@ namespace rockfall
 /// The quantiles that hazard maps and tables have: 50, 90, 95 and 99 %.
 constexpr std::array<double, 4> hazardQuantiles = { 0.50, 0.90, 0.95, 0.99 };
 
-/// What a sample says. All NaN for an empty one.
+/// Statistics of a sample. All NaN for an empty one.
 struct SampleStatistics
 {
   double mean = 0.0;

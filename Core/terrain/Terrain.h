@@ -40,7 +40,7 @@ struct GridGeometry
   Vec3 origin() const { return { xOrigin, yOrigin, 0.0 }; }
 };
 
-/// One triangle, as looked up by its number.
+/// A triangle, as looked up by its number.
 struct Cfe
 {
   std::array<Vec3, 3> nodes; ///< Counter-clockwise seen from above, local frame.
@@ -120,7 +120,7 @@ public:
   void setJointClasses(MaterialClasses classes);
   const MaterialClasses& restitutionClasses() const { return restitutionClasses_; }
   const MaterialClasses& jointClasses() const { return jointClasses_; }
-  /// What a class of either kind is made of; class 0 is material(), and the materials of obstacles
+  /// Material of a class of either kind; class 0 is material(), and the materials of obstacles
   /// follow those of the layer.
   const SurfaceMaterial& restitutionMaterial(int number) const
   {

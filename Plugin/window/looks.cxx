@@ -49,10 +49,10 @@ constexpr Palette kFlow = { { { 0.27, 0.00, 0.33 }, { 0.19, 0.41, 0.56 }, { 0.21
 constexpr Palette kHeights = { { { 0.84, 0.89, 0.97 }, { 0.54, 0.71, 0.86 }, { 0.20, 0.45, 0.71 },
   { 0.03, 0.19, 0.42 } } };
 
-/// One sequential palette for each quantity, and how a legend calls it.
+/// A sequential palette for each quantity, and how a legend calls it.
 struct Quantity
 {
-  const char* array; ///< What the array's name begins with.
+  const char* array; ///< Beginning of the array's name.
   const char* title;
   const Palette& palette;
 };

@@ -15,7 +15,7 @@ namespace rockfall::window
 /// Whether a proxy is of one of these classes, under whatever name.
 bool isOf(vtkSMProxy* proxy, std::initializer_list<const char*> classNames);
 
-/// What is shown, and its output port.
+/// Content of the view, and its output port.
 struct Shown
 {
   vtkSMSourceProxy* source = nullptr;

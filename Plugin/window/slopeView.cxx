@@ -18,7 +18,7 @@ namespace
 constexpr double kElevation = 35.0 * 3.14159265358979 / 180.0; ///< Of the camera, rad.
 /// From the slope's centre, in half diagonals: all of it is in the picture.
 constexpr double kDistance = 2.1;
-constexpr vtkIdType kMostPoints = 20000; ///< That the plane is fitted to.
+constexpr vtkIdType kMostPoints = 20000; ///< Of those that the plane is fitted to.
 
 struct Way
 {
