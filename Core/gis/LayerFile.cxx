@@ -1,6 +1,7 @@
 #include "gis/LayerFile.h"
 
 #include "base/abort.h"
+#include "base/columnName.h"
 #include "base/errors.h"
 #include "base/nameKey.h"
 #include "gis/drawing.h"
@@ -88,7 +89,13 @@ struct Content
 bool hasOneOf(const Columns& columns, const ColumnChoice& names)
 {
   return std::any_of(names.begin(), names.end(),
-    [&](const std::string& name) { return columns.count(nameKey(name)) > 0; });
+    [&](const std::string& name)
+    {
+      const std::string key = nameKey(name);
+      return columns.count(key) > 0 ||
+        std::any_of(columns.begin(), columns.end(),
+          [&](const Columns::value_type& column) { return ColumnName(column.first).name == key; });
+    });
 }
 
 bool hasFeatures(OGRLayer& layer)

@@ -1,5 +1,6 @@
 #include "gis/contourLines.h"
 
+#include "base/columnName.h"
 #include "base/errors.h"
 #include "base/nameKey.h"
 #include "gis/FeatureRow.h"
@@ -23,11 +24,10 @@ namespace
 /// A line's z and its field may differ by so much, m: one of them may be rounded.
 constexpr double sameHeight = 1.0;
 
-/// Names under which contour files have their heights, most telling first.
+/// Names under which contour files have their heights, but for units; most telling first.
 constexpr const char* usualHeightNames[] = { "elev", "elevation", "contour", "z", "height", "ele",
-  "altitude", "alt", "level", "z_value", "elev_m", "elevation_m", "contour_m", "height_m",
-  "contourele", "hoehe", "kote", "cote", "quota", "cota", "elev_ft", "elevation_ft", "contour_ft",
-  "height_ft" };
+  "altitude", "alt", "level", "z_value", "contourele", "contourelevation", "contour_elevation",
+  "hoehe", "höhe", "kote", "cote", "quota", "cota" };
 
 void addLine(const OGRLineString& line, double height, double plane, const HeightField& field,
   const Fields& fields, Contours& contours)
@@ -120,19 +120,21 @@ HeightField heightFieldOf(OGRLayer& layer, const LayerHeights& heights, const st
   }
   for (const char* name : usualHeightNames)
   {
-    const auto column = columns.find(name);
-    if (column == columns.end())
+    for (const Columns::value_type& column : columns)
     {
-      continue;
+      if (ColumnName(definition.GetFieldDefn(column.second)->GetNameRef()).name != name)
+      {
+        continue;
+      }
+      if (field.column >= 0)
+      {
+        throw DataError(fileName + ": layer \"" + layer.GetName() +
+          "\" has two fields that may be " + "heights, \"" + field.name + "\" and \"" +
+          definition.GetFieldDefn(column.second)->GetNameRef() + "\"; say which in ElevationField");
+      }
+      take(column);
+      field.guessed = true;
     }
-    if (field.column >= 0)
-    {
-      throw DataError(fileName + ": layer \"" + layer.GetName() + "\" has two fields that may be " +
-        "heights, \"" + field.name + "\" and \"" +
-        definition.GetFieldDefn(column->second)->GetNameRef() + "\"; say which in ElevationField");
-    }
-    take(*column);
-    field.guessed = true;
   }
   return field;
 }

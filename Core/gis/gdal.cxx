@@ -69,6 +69,8 @@ Opened tryOpen(const std::string& fileName, Kind kind)
   // GML: no schema from an address that the file names, unless that is allowed.
   const char* const tableOptions[] = { "AUTODETECT_TYPE=NO", "DATE_AS_STRING=YES",
     drivers ? "DOWNLOAD_SCHEMA=NO" : nullptr, nullptr };
+  // Text grids: GDAL takes one without a point for integers, and reads nan, inf and the like as 0.
+  const char* const rasterOptions[] = { "DATATYPE=Float64", nullptr };
   // The vertical part of a GeoTIFF's CRS, also of the old versions that GDAL takes it away from.
   const CPLConfigOptionSetter vertical("GTIFF_REPORT_COMPD_CS", "YES", true);
   // Spreadsheets: GDAL takes a first row for a header only if the next one is not all text as well.
@@ -78,7 +80,7 @@ Opened tryOpen(const std::string& fileName, Kind kind)
   const unsigned flags = GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR |
     (kind == Kind::Raster ? GDAL_OF_RASTER : GDAL_OF_VECTOR);
   DatasetPtr dataset(GDALDataset::Open(
-    fileName.c_str(), flags, drivers, kind == Kind::Vector ? tableOptions : nullptr));
+    fileName.c_str(), flags, drivers, kind == Kind::Vector ? tableOptions : rasterOptions));
   for (int i = 0; kind == Kind::Vector && dataset && i < dataset->GetLayerCount(); ++i)
   {
     dataset->GetLayer(i)->GetLayerDefn(); // sheets look for their header only when they are asked

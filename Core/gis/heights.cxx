@@ -1,5 +1,6 @@
 #include "gis/heights.h"
 
+#include "base/columnName.h"
 #include "base/errors.h"
 #include "base/nameKey.h"
 #include "gis/headers.h"
@@ -278,15 +279,9 @@ Heights heightsOf(GDALDataset& dataset, GDALRasterBand& band, const std::string&
 Heights LayerHeights::ofColumn(const std::string& name) const
 {
   Heights heights = *this;
-  const std::string low = nameKey(name);
-  const double sign = scale < 0.0 ? -1.0 : 1.0;
-  if (low.ends_with("_ft") || low.ends_with("_feet"))
+  if (const auto metres = metresPer(ColumnName(name).unit))
   {
-    heights.scale = sign * kFoot;
-  }
-  else if (low.ends_with("_m"))
-  {
-    heights.scale = sign;
+    heights.scale = scale < 0.0 ? -*metres : *metres;
   }
   return heights;
 }

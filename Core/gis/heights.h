@@ -46,7 +46,7 @@ struct LayerHeights : Heights
   std::string doubt;  ///< To be told where heights are read that may be feet; else empty.
   bool kml = false;   ///< Each feature says what its altitude is over; see altitudeOf.
 
-  /// Of a column, by the end of its name: _ft, _feet, _m; else as all of them.
+  /// Of a column, by the unit in its name (base/columnName.h); else as all of them.
   Heights ofColumn(const std::string& name) const;
   /// Adds `note` and `doubt` to the notes.
   void tell(std::vector<std::string>& notes) const;

@@ -1,6 +1,7 @@
 #include "gis/sourceGeometry.h"
 
 #include "base/errors.h"
+#include "base/nameKey.h"
 #include "gis/LayerFile.h"
 #include "gis/gdal.h"
 #include "gis/lines.h"
@@ -57,15 +58,13 @@ std::optional<double> SourcePlacing::column(const FeatureRow& row)
 {
   std::optional<double> height;
   std::string first;
-  for (const char* name : { "z", "z_m", "z_ft", "z_feet" })
+  for (const std::string& name : heightColumns)
   {
-    const auto number = row.number(name);
+    const auto number = row.number(nameKey(name).c_str());
     if (number && height)
     {
-      row.failField(first,
-        " and field \"" + std::string(name) +
-          "\" both say its height; leave "
-          "out one of them");
+      row.failField(
+        first, " and field \"" + name + "\" both say its height; leave out one of them");
     }
     if (number)
     {

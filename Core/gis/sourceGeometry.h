@@ -22,6 +22,7 @@ struct SourcePlacing
   /// WKT of what the heights are brought to; nothing: they are left as they are.
   std::optional<std::string> target;
   bool haveTerrain = false;
+  std::vector<std::string> heightColumns = {}; ///< z, with whatever unit in its name.
 
   /// Fills geometry, position, parts and height of `source`. Throws DataError.
   void place(const FeatureRow& row, SourceRow& source);

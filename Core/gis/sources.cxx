@@ -1,7 +1,9 @@
 #include "gis/sources.h"
 
 #include "base/RockMaterial.h"
+#include "base/columnName.h"
 #include "base/errors.h"
+#include "base/nameKey.h"
 #include "gis/FeatureRow.h"
 #include "gis/LayerFile.h"
 #include "gis/crs.h"
@@ -9,7 +11,9 @@
 #include "gis/heightReference.h"
 #include "gis/sourceGeometry.h"
 
+#include <algorithm>
 #include <cmath>
+#include <initializer_list>
 
 namespace rockfall
 {
@@ -18,6 +22,54 @@ namespace
 {
 
 using namespace gis;
+
+const std::initializer_list<const char*> kColumns = { "amount", "intensity", "volume", "vol_law",
+  "vol_dev", "vol_min", "vol_max", "vol_exp", "material", "mat_name", "density", "young", "poisson",
+  "height", "source_id", "dev_xy", "dev_z", "dev_att" };
+const std::initializer_list<const char*> kShortColumns = { "x", "y", "z", "shape", "source", "vx",
+  "vy", "vz", "wx", "wy", "wz", "rx", "ry", "rz", "lx", "ly", "lz" };
+
+/// Columns whose name, but for a unit, is z.
+std::vector<std::string> heightColumnsOf(const OGRFeatureDefn& definition)
+{
+  std::vector<std::string> names;
+  for (int i = 0; i < definition.GetFieldCount(); ++i)
+  {
+    const std::string written = definition.GetFieldDefn(i)->GetNameRef();
+    if (ColumnName(written).name == "z")
+    {
+      names.push_back(written);
+    }
+  }
+  return names;
+}
+
+/// What somebody may expect to be read, by the name of its column but for a unit.
+const std::initializer_list<const char*> kTempting = { "mass", "weight", "speed", "velocity",
+  "spin", "diameter", "size", "length", "width", "elevation", "elev", "altitude", "restitution",
+  "friction" };
+
+/// One note of the columns that are not read although they sound as if they were.
+void tellUnread(
+  const OGRFeatureDefn& definition, const std::string& fileName, std::vector<std::string>& notes)
+{
+  std::string list;
+  int count = 0;
+  for (int i = 0; i < definition.GetFieldCount(); ++i)
+  {
+    const std::string written = definition.GetFieldDefn(i)->GetNameRef();
+    const std::string name = ColumnName(written).name;
+    if (std::find(kTempting.begin(), kTempting.end(), name) != kTempting.end())
+    {
+      list += (count++ ? ", \"" : "\"") + written + "\"";
+    }
+  }
+  if (count > 0)
+  {
+    notes.push_back(fileName +
+      (count > 1 ? ": not read are its columns " : ": not read is its column ") + list + ".");
+  }
+}
 
 /// Words and ranges that other parts of the Core check, with the row and the field before.
 template <class Make>
@@ -143,19 +195,16 @@ SourceLayer readSourceLayer(const std::string& fileName, const SourceOptions& op
     "density", "dev_xy", "dev_att" } };
   LayerFile file(wish, messages);
   OGRLayer& layer = file.layer();
-  refuseNearMisses(*layer.GetLayerDefn(), fileName,
-    { "amount", "intensity", "volume", "vol_law", "vol_dev", "vol_min", "vol_max", "vol_exp",
-      "material", "mat_name", "density", "young", "poisson", "height", "source_id", "dev_xy",
-      "dev_z", "dev_att" },
-    { "x", "y", "z", "shape", "source", "vx", "vy", "vz", "wx", "wy", "wz", "rx", "ry", "rz", "lx",
-      "ly", "lz" });
-  const Columns columns = columnsOf(*layer.GetLayerDefn());
+  const OGRFeatureDefn& definition = *layer.GetLayerDefn();
+  refuseNearMisses(definition, fileName, kColumns, kShortColumns);
+  const Columns columns = columnsOf(definition);
 
   SourceLayer result;
   SourcePlacing placing;
   placing.heights = heightsOf(file.dataset(), layer, fileName, result.notes);
   placing.from = placing.heights.horizontal;
   placing.haveTerrain = options.haveTerrain;
+  placing.heightColumns = heightColumnsOf(definition);
   if (options.haveTerrain)
   {
     file.refuseDegrees(placing.from, options.targetCrs);
@@ -207,6 +256,7 @@ SourceLayer readSourceLayer(const std::string& fileName, const SourceOptions& op
   result.crs =
     crsWkt(placed, placing.to ? heightCrsFromText(options.targetCrs) : placing.heights.reference);
   placing.tell(fileName, result.notes);
+  tellUnread(definition, fileName, result.notes);
   return result;
 }
 

@@ -24,7 +24,7 @@ bool isNumber(std::string word)
   std::replace(word.begin(), word.end(), ',', '.');
   char* end = nullptr;
   CPLStrtod(word.c_str(), &end); // a point in every locale; nan and inf in all their spellings
-  return end != word.c_str() && *end == '\0';
+  return end != word.c_str() && *end == '\0' && word.find_first_of("xX") == std::string::npos;
 }
 
 namespace

@@ -1,5 +1,6 @@
 #include "mesh/pointTable.h"
 
+#include "base/columnName.h"
 #include "base/errors.h"
 #include "base/tableText.h"
 #include "mesh/MeshBuilder.h"
@@ -31,39 +32,12 @@ constexpr std::array<std::string_view, 3> kAxes[] = { { "x", "y", "z" },
   { "pos_x", "pos_y", "pos_z" }, { "points_0", "points_1", "points_2" },
   { "points:0", "points:1", "points:2" }, { "rechtswert", "hochwert", "höhe" } };
 
-/// "X [m]", "x (m)" and "x_m" are x, in m.
-struct ColumnName
+bool isInMetres(const ColumnName& column)
 {
-  std::string name, unit;
-
-  explicit ColumnName(const std::string& cell)
-    : name(lowerCase(cell))
-  {
-    const std::size_t open = name.find_first_of("[(");
-    if (open != std::string::npos && open > 0)
-    {
-      unit = trimmed(std::string_view(name).substr(open + 1));
-      unit.erase(std::min(unit.find_first_of("])"), unit.size()));
-      name = trimmed(std::string_view(name).substr(0, open));
-      return;
-    }
-    for (const std::string_view ending : { "_m", "_mm", "_cm", "_km", "_ft", "_in" })
-    {
-      if (name.size() > ending.size() && std::string_view(name).ends_with(ending))
-      {
-        unit = ending.substr(1);
-        name.erase(name.size() - ending.size());
-        return;
-      }
-    }
-  }
-
-  bool inMetres() const
-  {
-    return unit.empty() || unit == "m" || unit == "metre" || unit == "meter" || unit == "metres" ||
-      unit == "meters";
-  }
-};
+  const std::string& unit = column.unit;
+  return unit.empty() || unit == "m" || unit == "metre" || unit == "meter" || unit == "metres" ||
+    unit == "meters";
+}
 
 std::string listOf(const std::vector<std::string>& cells)
 {
@@ -105,7 +79,7 @@ std::optional<Columns> findAxes(const std::vector<std::string>& header, const st
     }
     for (const std::size_t column : columns)
     {
-      if (!names[column].inMetres())
+      if (!isInMetres(names[column]))
       {
         throw FileError(place + ": column " + inQuotes(header[column]) + " is in " +
           names[column].unit + ", coordinates in metres are needed");

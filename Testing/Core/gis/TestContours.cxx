@@ -356,16 +356,35 @@ TEST(Contours, WhatTheHeightIsMustBePlain)
 TEST(Contours, FeetBecomeMetres)
 {
   const RasterSurface metres = readContours(geoJson(smallHill()), { .cellSize = 2.0 });
-  const RasterSurface feet = readContours(geoJson(smallHill(), "elev_ft"), { .cellSize = 2.0 });
-  EXPECT_TRUE(holds(feet.notes[0], { "0.3048" }));
-  ASSERT_EQ(metres.heights.size(), feet.heights.size());
-  for (std::size_t i = 0; i < feet.heights.size(); ++i)
+  for (const char* name :
+    { "elev_ft", "Elevation (ft)", "elevFeet", "contour in feet", "ELEV_FT_MSL" })
   {
-    if (!std::isnan(metres.heights[i]))
+    const RasterSurface feet = readContours(geoJson(smallHill(), name), { .cellSize = 2.0 });
+    EXPECT_TRUE(holds(feet.notes[0], { "0.3048" })) << name;
+    ASSERT_EQ(metres.heights.size(), feet.heights.size());
+    for (std::size_t i = 0; i < feet.heights.size(); ++i)
     {
-      // The plate is linear in the heights.
-      EXPECT_NEAR(feet.heights[i], 0.3048 * metres.heights[i], 1e-6);
+      if (!std::isnan(metres.heights[i]))
+      {
+        // The plate is linear in the heights.
+        EXPECT_NEAR(feet.heights[i], 0.3048 * metres.heights[i], 1e-6) << name;
+      }
     }
+  }
+}
+
+TEST(Contours, UnitInTheNameOfAnyField)
+{
+  for (const auto& [name, metres] :
+    { std::pair("foo (ft)", 0.3048), std::pair("foo_usft", 1200.0 / 3937.0),
+      std::pair("foo [cm]", 0.01), std::pair("foo_dm", 0.1), std::pair("foo [NHN]", 1.0) })
+  {
+    const RasterSurface s =
+      readContours(geoJson(smallHill(), name), { .cellSize = 2.0, .elevationField = name });
+    const RasterSurface plain = readContours(geoJson(smallHill()), { .cellSize = 2.0 });
+    ASSERT_EQ(s.heights.size(), plain.heights.size());
+    const std::size_t middle = s.heights.size() / 2;
+    EXPECT_NEAR(s.heights[middle], metres * plain.heights[middle], 1e-6) << name;
   }
 }
 

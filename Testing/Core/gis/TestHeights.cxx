@@ -269,6 +269,14 @@ TEST(Heights, ofPoints)
   }
   const SourceLayer table = readSourceLayer(writeFile("rocks.csv", "x,y,z_ft\n1,2,300\n"), {});
   EXPECT_NEAR(table.rows.at(0).position.z(), 300.0 * foot, 1e-9);
+  // The unit may be written otherwise, and what is not read is said.
+  for (const char* name : { "z [ft]", "Z (ft)", "zFt", "z in feet" })
+  {
+    const SourceLayer other = readSourceLayer(
+      writeFile("rocks.csv", "x,y," + std::string(name) + ",mass\n1,2,300,5\n"), {});
+    EXPECT_NEAR(other.rows.at(0).position.z(), 300.0 * foot, 1e-9) << name;
+    EXPECT_TRUE(holds(joined(other.notes), { "not read is its column \"mass\"" })) << name;
+  }
 }
 
 TEST(Heights, ofPointsBesideCoordinatesInFeetAreNoted)

@@ -185,6 +185,24 @@ TEST(Nodata, ofEsriIsAWord)
     { "\"null\"" }));
 }
 
+TEST(TextGrids, whatIsNoHeightIsNotZeroAmongWholeNumbers)
+{
+  // GDAL takes such grids for integers, and reads these words as 0.
+  for (const char* word : { "nan", "NaN", "-nan", "inf", "-Inf", "1.#QNAN", "0x10" })
+  {
+    const std::string esri = writeAscii({ "10 " + std::string(word) + " 30", "40 50 60" }, 3);
+    EXPECT_TRUE(holds(messageOf<DataError>([&] { readRaster(esri); }), { "row 1, column 2" }))
+      << word;
+    const std::string other = grass("", "10 " + std::string(word) + " 30\n40 50 60\n");
+    EXPECT_TRUE(holds(messageOf<DataError>([&] { readRaster(other); }), { "row 1, column 2" }))
+      << word;
+  }
+  const RasterSurface declared = readRaster(writeAscii({ "10 nan 30", "0 50 60" }, 3,
+    "xllcorner 600000\nyllcorner 5100000\n", "10", "NODATA_value nan\n"));
+  EXPECT_EQ(holesOf(declared), 1);
+  EXPECT_TRUE(std::isnan(declared.heights[1]));
+}
+
 TEST(TextGrids, wordsAreErrors)
 {
   // GDAL looks at the first thousand bytes itself.
