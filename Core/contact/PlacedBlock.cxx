@@ -11,6 +11,8 @@ void PlacedBlock::place(const Block& block, const BlockState& state)
 {
   block_ = &block;
   position_ = state.position;
+  orientation_ = state.orientation;
+  strain_ = state.strain;
   rotation_ = state.orientation.toRotationMatrix();
   map_ = rotation_;
   undeform_.setIdentity();
@@ -21,6 +23,15 @@ void PlacedBlock::place(const Block& block, const BlockState& state)
     map_ = rotation_ * deform;
   }
   found_ = false;
+}
+
+void PlacedBlock::move(const Block& block, const BlockState& state)
+{
+  if (block_ != &block || position_ != state.position ||
+    orientation_.coeffs() != state.orientation.coeffs() || strain_ != state.strain)
+  {
+    this->place(block, state);
+  }
 }
 
 void PlacedBlock::placeVertices() const

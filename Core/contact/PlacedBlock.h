@@ -15,6 +15,8 @@ class PlacedBlock
 {
 public:
   void place(const Block& block, const BlockState& state);
+  /// The same; nothing to do where this block stands there already.
+  void move(const Block& block, const BlockState& state);
 
   const Block& block() const { return *block_; }
   const Vec3& position() const { return position_; }
@@ -68,6 +70,8 @@ private:
 
   const Block* block_ = nullptr;
   Vec3 position_ = Vec3::Zero();
+  Quat orientation_ = Quat::Identity();
+  Eigen::Matrix<double, 6, 1> strain_ = Eigen::Matrix<double, 6, 1>::Zero();
   Mat3 rotation_ = Mat3::Identity();
   Mat3 map_ = Mat3::Identity();
   Mat3 undeform_ = Mat3::Identity(); ///< (I + ε)⁻¹

@@ -1,66 +1,85 @@
 #include "contact/submerged.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 namespace rockfall
 {
 
-double submergedArea(const PlacedBlock& rock, const Plane& plane, const Vec3& direction)
+Submerged submerged(const PlacedBlock& rock, const Plane& plane, const Vec3& direction)
 {
-  const std::vector<Vec3>& vertices = rock.vertices();
-  thread_local std::vector<double> heights; // over the plane, m
-  heights.resize(vertices.size());
-  bool any = false;
+  /// A corner as seen along the direction, m.
+  struct Corner
+  {
+    double height, x, y;
+  };
+  // All in the rock's own axes: its corners need not be placed.
+  const Vec3 across = direction.unitOrthogonal();
+  Mat3 axes; // rows: up from the plane, and two across the direction
+  axes.row(0) = plane.normal.transpose() * rock.map();
+  axes.row(1) = across.transpose() * rock.map();
+  axes.row(2) = direction.cross(across).transpose() * rock.map();
+  const double offset = plane.offset - plane.normal.dot(rock.position());
+  const std::vector<Vec3>& vertices = rock.block().shape().vertices();
+  thread_local std::vector<Corner> corners;
+  corners.resize(vertices.size());
+  Submerged result;
   for (std::size_t v = 0; v < vertices.size(); ++v)
   {
-    heights[v] = plane.normal.dot(vertices[v]) - plane.offset;
-    any = any || heights[v] < 0.0;
+    const Vec3 seen = axes * vertices[v];
+    corners[v] = { seen[0] - offset, seen[1], seen[2] };
+    result.lowest = std::min(result.lowest, corners[v].height);
   }
-  if (!any)
+  if (!(result.lowest < 0.0))
   {
-    return 0.0;
+    return result;
   }
   // Twice the areas, as seen along the direction. The lid that the plane cuts closes the body.
   double sum = 0.0, lid = 0.0;
   const ShapeLayout& layout = rock.block().shape().layout();
   for (int f = 0; f < layout.faces; ++f)
   {
-    const std::span<const int> loop = layout.loop(f);
-    Vec3 area = Vec3::Zero(), first = Vec3::Zero(), last = Vec3::Zero();
-    int corners = 0;
-    const auto add = [&](const Vec3& p)
+    double seen = 0.0, firstX = 0.0, firstY = 0.0, lastX = 0.0, lastY = 0.0;
+    bool any = false;
+    const auto add = [&](double x, double y)
     {
-      if (corners == 0)
+      if (any)
       {
-        first = p;
+        seen += lastX * y - x * lastY;
       }
-      else if (corners > 1)
+      else
       {
-        area += (last - first).cross(p - first);
+        firstX = x, firstY = y;
+        any = true;
       }
-      last = p;
-      ++corners;
+      lastX = x, lastY = y;
     };
-    for (std::size_t k = 0; k < loop.size(); ++k)
+    const std::span<const int> loop = layout.loop(f);
+    const Corner* a = &corners[std::size_t(loop.back())];
+    for (const int next : loop)
     {
-      const std::size_t a = std::size_t(loop[k]);
-      const std::size_t b = std::size_t(loop[k + 1 < loop.size() ? k + 1 : 0]);
-      if (heights[a] < 0.0)
+      const Corner* b = &corners[std::size_t(next)];
+      if ((a->height < 0.0) != (b->height < 0.0))
       {
-        add(vertices[a]);
+        const double t = a->height / (a->height - b->height);
+        add(a->x + t * (b->x - a->x), a->y + t * (b->y - a->y));
       }
-      if ((heights[a] < 0.0) != (heights[b] < 0.0))
+      if (b->height < 0.0)
       {
-        const double t = heights[a] / (heights[a] - heights[b]);
-        add(vertices[a] + t * (vertices[b] - vertices[a]));
+        add(b->x, b->y);
       }
+      a = b;
     }
-    const double seen = area.dot(direction);
-    sum += std::abs(seen);
-    lid -= seen;
+    if (any)
+    {
+      seen += lastX * firstY - firstX * lastY;
+      sum += std::abs(seen);
+      lid -= seen;
+    }
   }
-  return 0.25 * (sum + std::abs(lid));
+  result.area = 0.25 * (sum + std::abs(lid));
+  return result;
 }
 
 } // namespace rockfall

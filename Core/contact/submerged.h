@@ -5,6 +5,8 @@
 
 #include "contact/PlacedBlock.h"
 
+#include <limits>
+
 namespace rockfall
 {
 
@@ -15,8 +17,16 @@ struct Plane
   double offset = 0.0;         ///< m
 };
 
-/// Area (m²) of what of the rock is under the plane, seen along `direction` (unit):
-/// A = ½ Σ A_f |n_f · direction| over the faces of the clipped, closed body.
-double submergedArea(const PlacedBlock& rock, const Plane& plane, const Vec3& direction);
+/// What of a rock is under a plane.
+struct Submerged
+{
+  double area = 0.0; ///< Seen along a direction, m².
+  /// Of the lowest corner over the plane, m.
+  double lowest = std::numeric_limits<double>::infinity();
+};
+
+/// A = ½ Σ A_f |n_f · direction| over the faces of the part under the plane, a closed body;
+/// `direction`: unit.
+Submerged submerged(const PlacedBlock& rock, const Plane& plane, const Vec3& direction);
 
 } // namespace rockfall

@@ -287,7 +287,7 @@ inline constexpr double kTurnGuessed = 0.02;
 /// Λ sinks if deeper by this share of its depth and of r. Smaller: more steps in which Λ moves.
 inline constexpr double kDeeperScar = 0.1;
 inline constexpr double kShallowScar = 0.01;
-/// Λ rises if this share of its depth is gained.
+/// Λ rises if this share of its greatest depth is gained.
 inline constexpr double kHigherScar = 0.3;
 /// Least vertical part of the normal of ground with scars: not walls, not trees.
 inline constexpr double kSteepestScar = 0.3;
@@ -295,6 +295,10 @@ inline constexpr double kSteepestScar = 0.3;
 inline constexpr double kScarClearance = 1e-6;
 /// Least share of the speed that is left by a piece of a flight through soil. Larger: finer pieces.
 inline constexpr double kLeastLeft = 0.8;
+/// Share of the speed that soil may take until a rock that leaves it is looked at again.
+inline constexpr double kLostOverScar = 0.1;
+/// Turn of a rock in such a piece, rad. Larger: coarser volumes.
+inline constexpr double kTurnInSoil = 0.2;
 /// Shortest piece, s.
 inline constexpr double kShortestPiece = 1e-6;
 /// Displacements that are none, m, and passages of corners through the surface, share of the

@@ -164,6 +164,9 @@ private:
   bool followScar(double h);
   bool sinkUnder(double h);
   bool riseWithRock();
+  /// Goes on through soil, over nothing but the slope and far from Λ for steps of `small` (s).
+  /// Whether anything was done.
+  bool flyOverScar(double small);
   void closeScar(); ///< The rock is out of the ground.
   void raiseScar(double by);
   void lowerPatch(double by);           ///< m; < 0: raises it.

@@ -21,7 +21,7 @@ void Scar::sink(double depth, int ground, const Contact& contact)
   if (!this->open())
   {
     *this = Scar();
-    area_ = 0.0;
+    lowest_ = std::max(0.0, contact.distance);
   }
   surface_.normal = contact.normal;
   surface_.offset =
@@ -48,9 +48,10 @@ void Scar::touch(const Contact& contact)
   surface_.offset = surface_.normal.dot(place);
 }
 
-double Scar::book(double volume, const Vec3& way, double areaAtEnd)
+double Scar::book(double volume, const Vec3& way, const Submerged& end)
 {
-  area_ = areaAtEnd;
+  area_ = end.area;
+  lowest_ = end.lowest;
   if (volume > 0.0)
   {
     length_ += (way - way.dot(surface_.normal) * surface_.normal).norm();
@@ -58,20 +59,50 @@ double Scar::book(double volume, const Vec3& way, double areaAtEnd)
   return volume;
 }
 
-double Scar::sweep(const PlacedBlock& from, const PlacedBlock& to)
+double Scar::sweep(const Vec3& from, const PlacedBlock& rock)
 {
-  const Vec3 way = to.position() - from.position();
+  const Vec3 way = rock.position() - from;
   const double s = way.norm();
   if (!(s > kNoWay))
   {
     return 0.0;
   }
-  const double start = area_ >= 0.0 ? area_ : submergedArea(from, surface_, way / s);
-  const double end = submergedArea(to, surface_, way / s);
-  return this->book(0.5 * (start + end) * s, way, end);
+  const double start = area_;
+  const Submerged end = submerged(rock, surface_, way / s);
+  return this->book(0.5 * (start + end.area) * s, way, end);
 }
 
-double Scar::sweep(const std::function<const PlacedBlock&(double)>& at)
+double Scar::sweep(const Poses& at, bool turns)
+{
+  return turns ? this->sweepTurning(at) : this->sweepStraight(at);
+}
+
+double Scar::sweepTurning(const Poses& at)
+{
+  const double before = lowest_, areaBefore = area_;
+  const Vec3 start = at(0.0).position();
+  const PlacedBlock& last = at(1.0);
+  const Vec3 way = last.position() - start;
+  const double s = way.norm();
+  if (!(s > kNoWay))
+  {
+    return 0.0;
+  }
+  const Vec3 direction = way / s;
+  const Submerged end = submerged(last, surface_, direction);
+  if (before >= 0.0 && end.lowest >= 0.0)
+  {
+    return this->book(0.0, way, end);
+  }
+  // From where the lowest corner is level the area grows as the square of the way.
+  const double passed = before / (before - end.lowest);
+  const double volume = before >= 0.0 ? (1.0 - passed) * end.area / 3.0
+    : end.lowest >= 0.0               ? passed * areaBefore / 3.0
+                                      : 0.5 * (areaBefore + end.area);
+  return this->book(s * volume, way, end);
+}
+
+double Scar::sweepStraight(const Poses& at)
 {
   // Heights of the corners over the surface at both ends tell where they pass it.
   const auto heightsOf = [&](const PlacedBlock& rock)
@@ -93,13 +124,8 @@ double Scar::sweep(const std::function<const PlacedBlock&(double)>& at)
   {
     return 0.0;
   }
+  const Vec3 direction = way / s;
   const std::vector<double> after = heightsOf(last);
-  const auto isOut = [](double height) { return height >= 0.0; };
-  if (std::all_of(before.begin(), before.end(), isOut) &&
-    std::all_of(after.begin(), after.end(), isOut))
-  {
-    return this->book(0.0, way, 0.0);
-  }
   std::vector<double> breaks = { 0.0, 1.0 };
   for (std::size_t v = 0; v < before.size(); ++v)
   {
@@ -117,8 +143,7 @@ double Scar::sweep(const std::function<const PlacedBlock&(double)>& at)
       breaks[k] = double(k) / double(kMostBreaks - 1);
     }
   }
-  const Vec3 direction = way / s;
-  double volume = 0.0, end = 0.0;
+  double volume = 0.0;
   for (std::size_t k = 1; k < breaks.size(); ++k)
   {
     const double length = breaks[k] - breaks[k - 1];
@@ -129,12 +154,13 @@ double Scar::sweep(const std::function<const PlacedBlock&(double)>& at)
     // Simpson: exact for what is quadratic. Just inside of a break, where a face may dive in at
     // once.
     const double inside = kSameBreak * length;
-    const double low = submergedArea(at(breaks[k - 1] + inside), surface_, direction);
-    const double mid = submergedArea(at(0.5 * (breaks[k - 1] + breaks[k])), surface_, direction);
-    end = submergedArea(at(breaks[k] - inside), surface_, direction);
-    volume += s * length * (low + 4.0 * mid + end) / 6.0;
+    const auto areaAt = [&](double fraction)
+    { return submerged(at(fraction), surface_, direction).area; };
+    const double low = areaAt(breaks[k - 1] + inside);
+    const double middle = areaAt(0.5 * (breaks[k - 1] + breaks[k]));
+    volume += s * length * (low + 4.0 * middle + areaAt(breaks[k] - inside)) / 6.0;
   }
-  return this->book(volume, way, end);
+  return this->book(volume, way, submerged(at(1.0), surface_, direction));
 }
 
 } // namespace rockfall

@@ -33,6 +33,7 @@ public:
   /// Whether the rock has been down on Λ, or on its way out.
   bool turned() const { return turned_; }
   const Vec3& normal() const { return surface_.normal; } ///< Of the ground under it.
+  double area() const { return area_; }                  ///< Of the rock's part inside, m².
   /// The class of ground that it is in, as restitution classes count.
   int ground() const { return ground_; }
 
@@ -42,22 +43,28 @@ public:
   void rise(double by);
   /// Where the rock is on Λ now; its plane follows the ground.
   void touch(const Contact& contact);
-  /// Follows a short motion from one pose to another, by the areas at its ends: returns the volume
-  /// swept, m³. Begins with the area that the last motion ended with.
-  double sweep(const PlacedBlock& from, const PlacedBlock& to);
-  /// The same of a long one: exact without rotation, as between the places where a corner passes
-  /// the surface the area is quadratic. `at`: the pose at a fraction of the motion, 0 … 1.
-  double sweep(const std::function<const PlacedBlock&(double)>& at);
+  /// Follows a step of contact to `rock`: returns the volume swept, m³, by the areas at its ends.
+  double sweep(const Vec3& from, const PlacedBlock& rock);
+  /// Follows a flight. `at`: the pose at a fraction of it, 0 … 1. Without rotation exact: between
+  /// the places where a corner passes the surface the area is quadratic. With it by the areas at
+  /// its ends, and quadratic from where the first corner dips in or to where the last one is out:
+  /// such a flight must turn the rock by little (kTurnInSoil).
+  using Poses = std::function<const PlacedBlock&(double)>;
+  double sweep(const Poses& at, bool turns);
   void leave() { turned_ = true; }
   /// The rock is above the surface as a whole, as far as its plane tells.
-  bool cleared() const { return area_ == 0.0; }
+  bool cleared() const { return lowest_ >= 0.0; }
 
 private:
-  /// Books the volume (m³) of a way (m) that ends with this area (m²) inside.
-  double book(double volume, const Vec3& way, double areaAtEnd);
+  double sweepStraight(const Poses& at);
+  double sweepTurning(const Poses& at);
+  /// Books the volume (m³) of a way (m), and what of the rock is inside at its end.
+  double book(double volume, const Vec3& way, const Submerged& end);
 
   double depth_ = 0.0, deepest_ = 0.0, length_ = 0.0;
-  double area_ = 0.0; ///< At the end of the last motion, m²; < 0: unknown.
+  // At the end of the last motion.
+  double area_ = 0.0;   ///< Of the part inside, m².
+  double lowest_ = 0.0; ///< Height of the lowest corner over the surface, m.
   int ground_ = 0;
   bool turned_ = false;
   Plane surface_; ///< Under the rock.

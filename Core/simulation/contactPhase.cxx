@@ -105,7 +105,11 @@ void RockSimulator::stayInContact()
     stayWanted();
     const double small = this->impactStep();
     const double large = std::min(parameters_.timeStep, this->travelLimit());
-    placed_.place(block_, state_);
+    placed_.move(block_, state_);
+    if (scar_.open() && contacts_.empty() && this->flyOverScar(small))
+    {
+      continue;
+    }
     const double speed = state_.velocity.norm() + state_.spin.norm() * block_.radius();
     const auto reachOf = [&](double h)
     { return 1.5 * speed * h + parameters_.gravity * h * h + 1e-6 * block_.radius(); };

@@ -49,7 +49,9 @@ void RockSimulator::ensureCandidates(double reach, bool among)
   {
     // Where nothing was near at the last look there is little that a wider one finds.
     const double slack = among && candidates_.empty() ? kFarCandidateSlack : kCandidateSlack;
-    const double distance = std::max(2.0 * reach, reach + slack * block_.radius());
+    // In a scar the ground moves under the rock as well.
+    const double room = std::max(slack * block_.radius(), scar_.depth());
+    const double distance = std::max(2.0 * reach, reach + room);
     this->ensurePatch(distance);
     gatherCandidates(placed_, state_, patch_, distance, candidates_);
   }

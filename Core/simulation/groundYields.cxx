@@ -3,7 +3,8 @@
 #include "simulation/RockSimulator.h"
 
 #include "block/flight.h"
-#include "contact/clearance.h"
+#include "contact/headroom.h"
+#include "contact/timeToTouch.h"
 #include "law/settings.h"
 #include "simulation/rollingResistance.h"
 
@@ -12,6 +13,18 @@
 
 namespace rockfall
 {
+
+namespace
+{
+
+/// Between two attitudes that differ by little, at a fraction of the turn.
+Quat turnedBetween(const Quat& from, const Quat& to, double fraction)
+{
+  const double way = from.dot(to) < 0.0 ? -fraction : fraction; // q and −q are one attitude
+  return Quat(((1.0 - fraction) * from.coeffs() + way * to.coeffs()).normalized());
+}
+
+} // namespace
 
 const YieldingGround& RockSimulator::yieldingOf(int restitutionClass) const
 {
@@ -88,14 +101,57 @@ bool RockSimulator::riseWithRock()
   {
     return false;
   }
-  const double away = clearance(placed_, state_, patch_, parameters_.gravity, 0.0).distance;
-  const double by = std::min(scar_.depth(), away - kScarClearance * block_.radius());
-  if (by < kHigherScar * scar_.depth())
+  const double clear = kScarClearance * block_.radius();
+  const double by = headroom(placed_, patch_, scar_.depth() + clear) - clear;
+  if (by < std::min(scar_.depth(), kHigherScar * scar_.deepest()))
   {
     return false;
   }
   contacts_.clear();
   this->raiseScar(by);
+  return true;
+}
+
+bool RockSimulator::flyOverScar(double small)
+{
+  if (solid_ || !(state_.strain.isZero(0.0) && state_.strainRate.isZero(0.0)))
+  {
+    return false;
+  }
+  this->ensurePatch(0.0);
+  if (this->riseWithRock())
+  {
+    return true;
+  }
+  const double speed = state_.velocity.norm();
+  double duration = horizon_ - state_.time;
+  duration = std::min(duration, speed * duration > block_.radius() ? block_.radius() / speed : 1.0);
+  const double away = state_.velocity.dot(scar_.normal());
+  if (away > 0.0)
+  {
+    // What drag takes brings Λ nearer than a free flight has it.
+    const double rate =
+      this->yieldingOf(scar_.ground()).speedLost(scar_.area() * speed, block_.mass());
+    duration = rate * duration > kLostOverScar ? kLostOverScar / rate : duration;
+  }
+  this->ensureWindow(duration);
+  if (!window_.whole())
+  {
+    return false;
+  }
+  // As far over Λ as a rock higher up would be over the slope.
+  thread_local PlacedBlock raised;
+  BlockState up = state_;
+  up.position.z() += scar_.depth();
+  raised.place(block_, up);
+  double free = timeToTouch(raised, up, window_, parameters_.gravity, duration);
+  free *= away > 0.0 ? 1.0 - kLostOverScar : 1.0;
+  if (!(free > small))
+  {
+    return false;
+  }
+  this->advanceInFlight(free);
+  this->checkEnd(0.0);
   return true;
 }
 
@@ -151,16 +207,14 @@ void RockSimulator::flyThroughSoil(double duration)
 {
   const YieldingGround& ground = this->yieldingOf(scar_.ground());
   thread_local PlacedBlock placed;
+  const double spin = state_.spin.norm();
+  const double longest = spin > 0.0 ? std::max(kShortestPiece, kTurnInSoil / spin) : duration;
   for (double left = duration; left > 0.0;)
   {
     const BlockState start = state_;
     const Scar before = scar_;
-    for (double piece = left;; piece *= 0.5)
+    for (double piece = std::min(left, longest);; piece *= 0.5)
     {
-      if (piece > kShortestPiece && start.spin.norm() * piece > kTravelPerStep)
-      {
-        continue;
-      }
       const BlockState end = fly(block_, start, parameters_.gravity, piece);
       // Between the ends of so small a turn it is a steady one.
       const auto at = [&](double fraction) -> const PlacedBlock&
@@ -169,12 +223,12 @@ void RockSimulator::flyThroughSoil(double duration)
         if (fraction > 0.0 && fraction < 1.0)
         {
           between.position = placeInFlight(start, parameters_.gravity, fraction * piece);
-          between.orientation = start.orientation.slerp(fraction, end.orientation);
+          between.orientation = turnedBetween(start.orientation, end.orientation, fraction);
         }
         placed.place(block_, between);
         return placed;
       };
-      const double volume = scar_.sweep(at);
+      const double volume = scar_.sweep(at, spin > 0.0);
       if (piece > kShortestPiece && ground.speedLeft(volume, block_.mass()) < kLeastLeft)
       {
         scar_ = before;
@@ -225,10 +279,8 @@ void RockSimulator::yieldInStep(double h)
     {
       scar_.touch(*most);
     }
-    thread_local PlacedBlock from, to;
-    from.place(block_, before_);
-    to.place(block_, state_);
-    this->plough(scar_.sweep(from, to));
+    placed_.move(block_, state_);
+    this->plough(scar_.sweep(before_.position, placed_));
   }
   if (most)
   {

@@ -29,7 +29,12 @@ double YieldingGround::frictionAfter(double s) const
 
 double YieldingGround::speedLeft(double volume, double mass) const
 {
-  return std::exp(-0.5 * (1.0 + this->compaction) * this->density * volume / mass);
+  return std::exp(-this->speedLost(volume, mass));
+}
+
+double YieldingGround::speedLost(double volume, double mass) const
+{
+  return 0.5 * (1.0 + this->compaction) * this->density * volume / mass;
 }
 
 double YieldingGround::spinLeft(double volume, double mass) const

@@ -54,6 +54,8 @@ struct YieldingGround
   /// What is left of the speed, and of the spin, after a volume (m³) has been swept by a mass (kg).
   double speedLeft(double volume, double mass) const;
   double spinLeft(double volume, double mass) const;
+  /// Share of the speed that goes with a volume (m³) that is small.
+  double speedLost(double volume, double mass) const;
 
   void validate() const; ///< Throws ParameterError naming field and value.
 

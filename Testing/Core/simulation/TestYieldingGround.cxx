@@ -5,8 +5,10 @@
 
 #include "base/errors.h"
 #include "block/Block.h"
+#include "contact/headroom.h"
 #include "contact/submerged.h"
 #include "simulation/MassFall.h"
+#include "simulation/Scar.h"
 #include "simulation/stateHash.h"
 
 #include <gtest/gtest.h>
@@ -114,13 +116,76 @@ TEST(YieldingGround, SubmergedAreaOfACube)
   PlacedBlock placed;
   placed.place(block, state);
   const Plane ground;
-  EXPECT_NEAR(submergedArea(placed, ground, -Vec3::UnitZ()), 1.0, 1e-12);
-  EXPECT_NEAR(submergedArea(placed, ground, Vec3::UnitX()), 0.3, 1e-12);
+  EXPECT_NEAR(submerged(placed, ground, -Vec3::UnitZ()).area, 1.0, 1e-12);
+  EXPECT_NEAR(submerged(placed, ground, Vec3::UnitX()).area, 0.3, 1e-12);
   const Vec3 slanted = Vec3(1.0, 0.0, -1.0).normalized();
-  EXPECT_NEAR(submergedArea(placed, ground, slanted), (1.0 + 0.3) / std::sqrt(2.0), 1e-12);
+  EXPECT_NEAR(submerged(placed, ground, slanted).area, (1.0 + 0.3) / std::sqrt(2.0), 1e-12);
   state.position.z() = 0.51;
   placed.place(block, state);
-  EXPECT_EQ(submergedArea(placed, ground, -Vec3::UnitZ()), 0.0);
+  EXPECT_EQ(submerged(placed, ground, -Vec3::UnitZ()).area, 0.0);
+}
+
+// The ground may rise until it touches the rock, whatever the size of the cells.
+TEST(YieldingGround, HeadroomDoesNotDependOnCells)
+{
+  const Block block(makeShape(Shape::Cube, 1.0), 2500.0, 1e10, 0.2);
+  const double slope = radians(30.0), over = 0.4;
+  for (const int nodes : { 9, 41, 161 })
+  {
+    const Terrain terrain = makePlane(nodes, 40.0, slope, 0.0, SurfaceMaterial());
+    const Surface surface = Surface::asSurveyed(terrain);
+    // Flat on the slope, and then straight up.
+    BlockState state;
+    state.orientation = Quat(Eigen::AngleAxisd(slope, Vec3::UnitY()));
+    state.position = Vec3(20.0, 20.0, terrain.elevation(20.0, 20.0) + 0.5 / std::cos(slope) + over);
+    PlacedBlock placed;
+    placed.place(block, state);
+    SurfacePatch patch;
+    gatherPatch(surface, 19.0, 21.0, 19.0, 21.0, patch);
+    EXPECT_NEAR(headroom(placed, patch, 10.0), over, 1e-9) << nodes << " nodes";
+    EXPECT_EQ(headroom(placed, patch, 0.1), 0.1);
+    state.position.z() -= over + 0.05;
+    placed.place(block, state);
+    EXPECT_LT(headroom(placed, patch, 10.0), 0.0);
+  }
+}
+
+// A turn in pieces of a flight sweeps what many small ones do: the areas at their ends tell within
+// 3 %, a tenth of what the drag itself is known to.
+TEST(YieldingGround, PiecesOfATurnSweepTheSame)
+{
+  const Block block(makeShape(Shape::Eota111, 1.0), 2500.0, 1e10, 0.2);
+  const double down = 0.25, turn = 0.8;
+  const auto volume = [&](int pieces)
+  {
+    Contact touch;
+    touch.normal = Vec3::UnitZ();
+    Scar scar;
+    scar.sink(1.0, 0, touch);
+    const auto poseAt = [&](double share)
+    {
+      BlockState state;
+      state.orientation = Quat(Eigen::AngleAxisd(turn * share, Vec3::UnitY()));
+      // Its lowest corner is level with the surface at first.
+      state.position = Vec3(2.0 * share, 0.0, block.radius() - down * share);
+      return state;
+    };
+    PlacedBlock placed;
+    double sum = 0.0;
+    for (int k = 0; k < pieces; ++k)
+    {
+      const auto at = [&](double fraction) -> const PlacedBlock&
+      {
+        placed.place(block, poseAt((k + fraction) / pieces));
+        return placed;
+      };
+      sum += scar.sweep(at, true);
+    }
+    return sum;
+  };
+  const double fine = volume(4000);
+  EXPECT_GT(fine, 0.01);
+  EXPECT_NEAR(volume(int(std::ceil(turn / 0.2)) * 2), fine, 0.03 * fine);
 }
 
 // A rock that goes straight down without gravity sweeps the volume that is under the surface, as
