@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file
-/// Tests in two forms: reduced with every run of the tests, full with `ninja verification`.
+/// Tests in three forms: reduced with every run of the tests, full with `ninja verification`, small
+/// under sanitizers, where every line should run, and what takes minutes decides nothing more.
 
 #include <cstdlib>
 #include <cstring>
@@ -9,10 +10,18 @@
 namespace rockfall::testing
 {
 
-inline bool isFullForm()
+inline bool isForm(const char* name)
 {
   const char* form = std::getenv("ROCKFALL_VERIFICATION");
-  return form && std::strcmp(form, "full") == 0;
+  return form && std::strcmp(form, name) == 0;
+}
+inline bool isFullForm()
+{
+  return isForm("full");
+}
+inline bool isSmallForm()
+{
+  return isForm("small");
 }
 
 } // namespace rockfall::testing

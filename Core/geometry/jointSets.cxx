@@ -218,9 +218,8 @@ std::vector<CuttingPlane> jointPlanes(
   const Polyhedron& mass, const JointSet& set, std::size_t number, std::uint64_t seed)
 {
   const Vec3 normal = set.normal(), centre = mass.integrals().centroid;
-  auto [low, high] = span(mass, normal);
-  low -= normal.dot(centre);
-  high -= normal.dot(centre);
+  const std::array<double, 2> ends = span(mass, normal);
+  double low = ends[0] - normal.dot(centre), high = ends[1] - normal.dot(centre);
   if (set.orientationDeviation > 0.0)
   {
     // A tilted joint enters the mass from beside it.

@@ -83,7 +83,7 @@ std::string DrawingLayers::list() const
   for (const auto& [name, holding] : layers_)
   {
     std::string what;
-    const auto add = [&](unsigned kind, const char* one, const char* several)
+    const auto add = [&, &holding = holding](unsigned kind, const char* one, const char* several)
     {
       if (const auto found = holding.count.find(kind); found != holding.count.end())
       {

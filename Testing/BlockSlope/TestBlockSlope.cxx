@@ -4,6 +4,7 @@
 #include "BlockSlope/blockSlope.h"
 #include "Core/slopes.h"
 #include "base/errors.h"
+#include "form.h"
 
 #include <gtest/gtest.h>
 
@@ -194,9 +195,10 @@ TEST(BlockSlope, RidgesAndPeaksReboundAsOnCfes)
     9, 2.0, [](double x, double y) { return 100.0 - 0.4 * std::hypot(x - 8.0, y - 8.0); },
     material(1.0, 0.0));
   double largest = 0.0;
+  const int attitudes = isSmallForm() ? 1 : 6;
   for (const Terrain* slope : { &ridge, &peak })
   {
-    for (int k = 0; k < 6; ++k)
+    for (int k = 0; k < attitudes; ++k)
     {
       Rock rock = cubeAt(Vec3(8.0 + 0.05 * k, 8.0 - 0.03 * k, 102.5), 1e11);
       rock.orientation = Quat(Eigen::AngleAxisd(0.5 * k, Vec3(1.0, 2.0, -1.0).normalized()));

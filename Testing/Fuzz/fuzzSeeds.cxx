@@ -83,6 +83,12 @@ std::vector<std::string> grids()
   return { std::string(1, '\0') + esri + "1 2 3\n4 5 6\n",
     std::string(1, '\0') + esri + "NODATA_value -9999\n1 nan 3\n4,5 5 x\n",
     "\1north: 2\nsouth: 0\neast: 3\nwest: 0\nrows: 2\ncols: 3\nnull: *\n1 * 3\n4 5 6\n",
+    "\1north: 2\nsouth: 0\neast: 3\nwest: 0\nrows: 2\ncols: 3\ntype: float\nmultiplier: 0.1\n"
+    "null: -1\n1 -1 3\n4 5,5 6\n",
+    "\2begin_of_head ====\nmodel name : m\nmodel type : gravimetric\nunits : meters\n"
+    "reference : WGS84\nlat min = 0.0\nlat max = 2.0\nlon min = 0.0\nlon max = 3.0\n"
+    "delta lat = 1.0\ndelta lon = 1.0\nnrows = 2\nncols = 3\nnodata = -9999\n"
+    "ISG format = 1.0\nend_of_head ====\n1 2 3\n4 -9999 x\n",
     "\3"
     "0 0 1\n1 0 2\n0 1 3\n1 1 4\n",
     "\3x,y,z\n0,0,1\n1,0,2\n0,1,3\n1,1,word\n" };

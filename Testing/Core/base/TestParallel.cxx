@@ -20,7 +20,7 @@ using namespace rockfall;
 namespace
 {
 
-#ifdef __SANITIZE_THREAD__
+#ifdef ROCKFALL_THREAD_SANITIZER
 constexpr int kRounds = 10; // each takes twenty times as long
 #else
 constexpr int kRounds = 400;

@@ -463,7 +463,9 @@ TEST(Heights, ofReferencesWithoutAWayAreAnError)
     const std::string path = layer("e,n,h\n9,45,300\n", own, points);
     std::vector<std::string> parts = names;
     parts.push_back(path);
-    EXPECT_TRUE(holds(messageOf<DataError>([&] { readSourceLayer(path, onSite(ground)); }), parts));
+    EXPECT_TRUE(
+      holds(messageOf<DataError>([&, &ground = ground] { readSourceLayer(path, onSite(ground)); }),
+        parts));
   }
 }
 

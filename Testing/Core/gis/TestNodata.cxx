@@ -10,7 +10,6 @@
 
 #include <cfloat>
 #include <cmath>
-#include <limits>
 
 namespace rockfall
 {
@@ -19,8 +18,6 @@ namespace
 {
 
 using namespace rockfall::testing;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 std::string joined(const std::vector<std::string>& notes)
 {

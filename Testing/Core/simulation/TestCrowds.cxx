@@ -1,6 +1,7 @@
 // Many rocks at once: what must not be lost, not overlap, come to rest and be the same again.
 
 #include "cubeOnCorners.h"
+#include "form.h"
 #include "piles.h"
 
 #include <tbb/global_control.h>
@@ -180,7 +181,7 @@ TEST(Crowds, HandfulComesToRestWithoutOverlap)
     pile.ground = floorSlope();
     pile.awake = false;
     pile.parameters.endTime = 20.0;
-    pile.rocks = handful(54, seed);
+    pile.rocks = handful(isSmallForm() ? 18 : 54, seed);
     pile.start();
     double deepest = 0.0;
     bool moves = true;
@@ -201,7 +202,7 @@ TEST(Crowds, CrowdThatMeetsFastDoesNotOverlap)
   // are events of one step, holds them apart in it all the same. How deep the deepest overlap ever
   // is hangs on chance: of 60 seeds 0.87 % of the edge on average, with a standard deviation of 0.3
   // %, and 2.2 % at worst.
-  constexpr int seeds = 6;
+  const std::uint64_t seeds = isSmallForm() ? 1 : 6;
   double sum = 0.0;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed)
   {
@@ -228,7 +229,10 @@ TEST(Crowds, CrowdThatMeetsFastDoesNotOverlap)
     EXPECT_LT(deepest, 0.03 * std::cbrt(0.6)) << seed;
     sum += deepest;
   }
-  EXPECT_LT(sum / seeds, 0.012 * std::cbrt(0.6));
+  if (seeds > 1) // of one it may be any
+  {
+    EXPECT_LT(sum / double(seeds), 0.012 * std::cbrt(0.6));
+  }
 }
 
 TEST(Crowds, SleepersAreNotPushedIntoEachOther)
@@ -316,7 +320,8 @@ TEST(Crowds, HighFrictionMakesNoEnergy)
   pile.parameters.rockRestitution = 0.0;
   pile.parameters.rockFrictionAngle = radians(85.0);
   pile.parameters.timeStep = 0.005;
-  for (int k = 0; k < 100; ++k)
+  const int count = isSmallForm() ? 50 : 100; // two layers, or four
+  for (int k = 0; k < count; ++k)
   {
     Rock rock;
     rock.blockId = k;

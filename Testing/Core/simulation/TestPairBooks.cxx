@@ -24,9 +24,12 @@ std::vector<Rock> cluster(int count, double height, std::uint64_t seed)
     Rock rock;
     rock.blockId = k;
     rock.shape = makeShape(shapes[std::size_t(k) % 3], 0.5 * std::pow(4.0, u(random)));
-    rock.position = Vec3(20.0 + 2.3 * (k % 3) + 0.1 * u(random),
-      100.0 + 2.3 * (k / 3 % 3) + 0.1 * u(random), height + 2.0 + 2.3 * (k / 9));
-    rock.orientation = Quat(u(random), u(random), u(random), u(random)).normalized();
+    // Drawn one by one: the order of a call's arguments is each compiler's own.
+    const double y = u(random), x = u(random);
+    rock.position = Vec3(20.0 + 2.3 * (k % 3) + 0.1 * x, 100.0 + 2.3 * (k / 3 % 3) + 0.1 * y,
+      height + 2.0 + 2.3 * (k / 9));
+    const double qz = u(random), qy = u(random), qx = u(random), qw = u(random);
+    rock.orientation = Quat(qw, qx, qy, qz).normalized();
     rocks.push_back(rock);
   }
   return rocks;

@@ -1,5 +1,6 @@
 // Rocks that lie on each other: they stand, slide and fall as they must.
 
+#include "form.h"
 #include "piles.h"
 
 #include <gtest/gtest.h>
@@ -250,13 +251,15 @@ TEST(Piles, CubeOnCubeSlidesByItsMaterials)
 
 TEST(Piles, DominoesFallAtTheSpeedOfSmallSteps)
 {
-  const auto speed = [](double step)
+  // The small form's row is too short for one speed all along it.
+  const int count = isSmallForm() ? 10 : 20, begin = count / 4, end = count - 2;
+  const auto speed = [&](double step)
   {
     Pile pile;
     pile.ground = floorSlope();
     pile.parameters.timeStep = step;
     pile.parameters.rockRestitution = 0.0;
-    for (int k = 0; k < 20; ++k)
+    for (int k = 0; k < count; ++k)
     {
       pile.rocks.push_back(brick(Vec3(0.2, 0.5, 1.0), Vec3(15.0 + 0.5 * k, 20.0, 0.5), k));
     }
@@ -269,13 +272,13 @@ TEST(Piles, DominoesFallAtTheSpeedOfSmallSteps)
     {
       pile.fall->advance();
       const auto leans = [&](int k) { return pile.fall->state(k).position.z() < 0.49; };
-      first = first == 0.0 && leans(5) ? pile.fall->time() : first;
-      last = last == 0.0 && leans(18) ? pile.fall->time() : last;
+      first = first == 0.0 && leans(begin) ? pile.fall->time() : first;
+      last = last == 0.0 && leans(end) ? pile.fall->time() : last;
     }
-    return 13 * 0.5 / (last - first);
+    return (end - begin) * 0.5 / (last - first);
   };
   const double converged = speed(0.0025); // that of 0.00125 s is within 0.1 % of it
-  EXPECT_NEAR(speed(0.005), converged, 0.05 * converged);
+  EXPECT_NEAR(speed(0.005), converged, (isSmallForm() ? 0.2 : 0.05) * converged);
 }
 
 // The same step in D by elimination and in the contacts' own directions by Gauss–Seidel.

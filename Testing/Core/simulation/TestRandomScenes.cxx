@@ -1,6 +1,7 @@
 // Random rocks on random ground: no energy from nowhere, nothing in the ground, the same bits on
 // one thread and on two. The full form is VerifyRandomScenes.
 
+#include "form.h"
 #include "randomScenes.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +15,8 @@ class RandomScenes : public ::testing::TestWithParam<int>
 
 TEST_P(RandomScenes, MakeNoEnergyAndStayOutOfTheGround)
 {
-  const SceneOutcome outcome = runScene(randomScene(std::uint64_t(GetParam()), 12, 1.0), 240.0);
+  const double seconds = isSmallForm() ? 0.5 : 1.0;
+  const SceneOutcome outcome = runScene(randomScene(std::uint64_t(GetParam()), 12, seconds), 240.0);
   ASSERT_FALSE(outcome.refused || outcome.givenUp);
   EXPECT_TRUE(outcome.sameBits);
   EXPECT_LE(outcome.made, 0.01 * outcome.released);

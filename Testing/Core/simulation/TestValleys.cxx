@@ -117,7 +117,7 @@ TEST(Valleys, StonesThatAreStruckAreNotWorkedUnderTheGround)
   constexpr double allowed = 0.06;
   std::uniform_real_distribution<double> u(-1.0, 1.0), v(0.0, 1.0);
   const bool all = isFullForm();
-  for (int k = all ? 0 : 64; k < 86; k += all ? 1 : 7)
+  for (int k = all ? 0 : 64; k < (isSmallForm() ? 65 : 86); k += all ? 1 : 7)
   {
     std::mt19937 random(std::uint32_t(k) + 1);
     const double wall = std::tan(radians(20.0 + 30.0 * v(random))), along = 0.15 * v(random);
@@ -240,9 +240,10 @@ TEST(Valleys, SlabsAreNotPierced)
     const double speed = k % 4 < 2 ? 30.0 : 60.0;
     Pile pile;
     pile.ground = makeSlope(61, cell, height, material(0.3, 30.0));
-    pile.rocks.push_back(
-      brick(Vec3(4.0, 4.0, thickness), Vec3(45.0 + u(random), 45.0 + u(random), 6.0), 0));
-    pile.rocks[0].orientation = Quat(1.0, 0.1 * u(random), 0.1 * u(random), 0.0).normalized();
+    // Drawn one by one: the order of a call's arguments is each compiler's own.
+    const double north = u(random), east = u(random), qy = u(random), qx = u(random);
+    pile.rocks.push_back(brick(Vec3(4.0, 4.0, thickness), Vec3(45.0 + east, 45.0 + north, 6.0), 0));
+    pile.rocks[0].orientation = Quat(1.0, 0.1 * qx, 0.1 * qy, 0.0).normalized();
     pile.rocks[0].velocity = Vec3(0.0, 0.0, -speed);
     pile.parameters.timeStep = 0.001;
     pile.parameters.endTime = 1.0;
