@@ -35,7 +35,6 @@ constexpr double kPickedWidth = 6.0; ///< px
 constexpr double kPathWidth = 3.0;  ///< px
 constexpr double kMarkerSize = 8.0; ///< px, of blocks from afar
 constexpr double kPointSize = 6.0;  ///< px
-constexpr int kTopLeft = 3;         ///< Of a chart's legend.
 constexpr const char* kDisc = "4";  ///< Of a chart's markers.
 constexpr const char* kNoMarker = "0";
 constexpr const char* kShare = "ShareOfPassing"; ///< What a chart of exceedance shows.
@@ -203,9 +202,32 @@ void styleProfile(vtkSMProxy* representation, vtkSMViewProxy* view)
     title.Set("One rock along its way");
   }
   vtkSMPropertyHelper(view, "BottomAxisTitle").Set("Horizontal distance from the release (m)");
-  vtkSMPropertyHelper(view, "LeftAxisTitle").Set("Speed (m/s), height over ground (m)");
+  vtkSMPropertyHelper(view, "LeftAxisTitle").Set("Speed (m/s), height (m)");
   vtkSMPropertyHelper(view, "RightAxisTitle").Set("Kinetic energy (kJ)");
-  vtkSMPropertyHelper(view, "LegendLocation").Set(kTopLeft); // where curves begin low
+  view->UpdateVTKObjects();
+}
+
+/// The largest value of a column that is drawn; 0 without one.
+double most(vtkPVDataInformation* data, const char* column)
+{
+  vtkPVArrayInformation* values = data->GetRowDataInformation()->GetArrayInformation(column);
+  return values ? values->GetComponentRange(0)[1] : 0.0;
+}
+
+/// Both axes from 0: a rock that touches the ground is some millimetres in it.
+void followProfile(const Shown& shown, vtkSMViewProxy* view)
+{
+  constexpr double room = 1.05;
+  vtkPVDataInformation* data = shown.source->GetDataInformation(unsigned(shown.port));
+  const double left = std::max(most(data, "Speed"), most(data, "HeightOverGround"));
+  const double right = most(data, "EnergyInKilojoules");
+  for (const auto& [axis, end] : { std::pair{ "Left", left }, std::pair{ "Right", right } })
+  {
+    const std::string name = axis;
+    set(view, (name + "AxisUseCustomRange").c_str(), end > 0.0);
+    set(view, (name + "AxisRangeMinimum").c_str(), 0.0);
+    set(view, (name + "AxisRangeMaximum").c_str(), room * end);
+  }
   view->UpdateVTKObjects();
 }
 
@@ -368,15 +390,23 @@ void rescale(vtkSMProxy* representation)
     }
     return;
   }
-  if (auto* drawn = vtkSMPVRepresentationProxy::SafeDownCast(representation))
+  auto* drawn = vtkSMPVRepresentationProxy::SafeDownCast(representation);
+  if (drawn && shown.source->GetDataInformation(unsigned(shown.port))->GetNumberOfCells() > 0)
   {
     drawn->RescaleTransferFunctionToDataRange(false, false);
   }
 }
 
-/// Before anything has moved there is nothing in a legend's colours. It comes back with the paths,
-/// unless it was hidden by hand.
-void showLegendOfPaths(vtkSMProxy* representation, vtkSMViewProxy* view)
+/// What is in a legend's colours: nothing before anything has moved, or where the source failed.
+bool showsColours(const Shown& shown, vtkSMViewProxy* view)
+{
+  return shown.source->GetDataInformation(unsigned(shown.port))->GetNumberOfCells() > 0 &&
+    (!is(shown, "vtkGrowingPaths", 0) || vtkSMPropertyHelper(view, "ViewTime").GetAsDouble() > 0.0);
+}
+
+/// A legend without anything in its colours is hidden, and comes back with it, unless it was hidden
+/// by hand.
+void followLegend(const Shown& shown, vtkSMProxy* representation, vtkSMViewProxy* view)
 {
   constexpr const char* hidden = "RockfallLegendWaits";
   auto* drawn = vtkSMPVRepresentationProxy::SafeDownCast(representation);
@@ -384,13 +414,13 @@ void showLegendOfPaths(vtkSMProxy* representation, vtkSMViewProxy* view)
   {
     return;
   }
-  const double time = vtkSMPropertyHelper(view, "ViewTime").GetAsDouble();
-  if (time <= 0.0 && drawn->IsScalarBarVisible(view))
+  const bool any = showsColours(shown, view);
+  if (!any && drawn->IsScalarBarVisible(view))
   {
     drawn->SetScalarBarVisibility(view, false);
     drawn->SetAnnotation(hidden, "1");
   }
-  else if (time > 0.0 && drawn->HasAnnotation(hidden))
+  else if (any && drawn->HasAnnotation(hidden))
   {
     drawn->RemoveAnnotation(hidden);
     drawn->SetScalarBarVisibility(view, true);
@@ -407,10 +437,15 @@ void follow(vtkSMProxy* representation, vtkSMViewProxy* view)
     followExceedance(shown, representation, view);
     return;
   }
-  rescale(representation);
-  if (is(shown, "vtkGrowingPaths", 0))
+  if (is(shown, "vtkTrajectoryProfile", 0) && representation->GetProperty("XArrayName"))
   {
-    showLegendOfPaths(representation, view);
+    followProfile(shown, view);
+    return;
+  }
+  if (shown.source && quantityOf(colouredBy(representation)))
+  {
+    rescale(representation);
+    followLegend(shown, representation, view);
   }
 }
 
@@ -430,6 +465,7 @@ void styleIn(vtkSMProxy* representation, vtkSMViewProxy* view)
     if (representation->GetProperty("XArrayName"))
     {
       styleProfile(representation, view);
+      followProfile(shown, view);
     }
     return;
   }
@@ -467,10 +503,7 @@ void styleIn(vtkSMProxy* representation, vtkSMViewProxy* view)
     vtkSMPropertyHelper(bar, "RangeLabelFormat").Set("%.3g");
     bar->UpdateVTKObjects();
   }
-  if (is(shown, "vtkGrowingPaths", 0))
-  {
-    showLegendOfPaths(representation, view);
-  }
+  followLegend(shown, representation, view);
 }
 
 } // namespace rockfall::window

@@ -1,5 +1,6 @@
 #include "pqRockfallWindow.h"
 
+#include "handles.h"
 #include "looks.h"
 #include "markers.h"
 #include "pqMessageBar.h"
@@ -241,6 +242,8 @@ void pqRockfallWindow::begin()
   this->connect(&this->Clock, &QTimer::timeout, this, &pqRockfallWindow::tellRuns);
   this->connect(&this->Clock, &QTimer::timeout, [window] { showUnits(window); });
   this->connect(&this->Clock, &QTimer::timeout, &fitMarkers);
+  this->connect(&this->Clock, &QTimer::timeout,
+    [] { rockfall::window::layHandles(pqActiveObjects::instance().activeSource()); });
   auto* messages = new pqMessageBar(window);
   this->connect(&this->Clock, &QTimer::timeout, messages, &pqMessageBar::look);
   this->Clock.start(kLookAtRuns);
@@ -350,7 +353,7 @@ void pqRockfallWindow::onSource(pqPipelineSource* source)
   }
   if (isOf(proxy,
         { "vtkRockfallSimulation", "vtkRockfallHazardMap", "vtkDEMToCFESource", "vtkGrowingPaths",
-          "vtkTrajectoryCollector", "vtkMergeCollectors" }))
+          "vtkTrajectoryCollector", "vtkMergeCollectors", "vtkTrajectoryProfile" }))
   {
     this->connect(
       source, SIGNAL(dataUpdated(pqPipelineSource*)), this, SLOT(onData(pqPipelineSource*)));

@@ -130,7 +130,7 @@ def _render_view():
     return view if view and view.GetXMLName() == "RenderView" else simple.GetActiveViewOrCreate("RenderView")
 
 
-def _await_paths(fall, patience=15.0):
+def _await_paths(fall, patience=30.0):
     """Until all are made, or some after a while: a line is put across them, and the view looks at them."""
     start = time.time()
     over = False

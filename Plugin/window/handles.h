@@ -1,0 +1,16 @@
+#pragma once
+
+/// @file
+/// Handles of drawn lines lie on the slope: the mouse drags them in the plane of the picture, into
+/// the ground or off it.
+
+class pqPipelineSource;
+
+namespace rockfall::window
+{
+
+/// Lays the drawn points of a source or filter that were moved, and are not applied yet, on the
+/// slope. Nothing while a button of the mouse is pressed.
+void layHandles(pqPipelineSource* source);
+
+} // namespace rockfall::window
