@@ -4,36 +4,15 @@
 #include "pieces.h"
 
 #include "vtkAlgorithm.h"
-#include "vtkCommand.h"
 #include "vtkDataObject.h"
-#include "vtkExecutive.h"
-#include "vtkMultiProcessController.h"
-#include "vtkNew.h"
 #include "vtkOutputWindow.h"
 #include "vtkStringArray.h"
-
-#include <cstring>
 
 namespace rockfall::filters
 {
 
 namespace
 {
-
-/// Listens to an executive's errors and passes on all but "returned failure for request".
-class FailureEcho : public vtkCommand
-{
-public:
-  static FailureEcho* New() { return new FailureEcho; }
-  void Execute(vtkObject*, unsigned long, void* data) override
-  {
-    const char* text = static_cast<const char*>(data);
-    if (text && !std::strstr(text, "returned failure for request"))
-    {
-      vtkOutputWindowDisplayErrorText(text);
-    }
-  }
-};
 
 constexpr char errorName[] = "Error";
 
@@ -55,14 +34,7 @@ int fail(vtkAlgorithm* algorithm, const std::string& message)
 {
   vtkErrorWithObjectMacro(algorithm, << message);
   leaveError(algorithm, message);
-  vtkExecutive* executive = algorithm->GetExecutive();
-  if (!executive->HasObserver(vtkCommand::ErrorEvent))
-  {
-    vtkNew<FailureEcho> echo;
-    executive->AddObserver(vtkCommand::ErrorEvent, echo);
-  }
-  vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
-  return controller && controller->GetNumberOfProcesses() > 1 ? 1 : 0;
+  return 1;
 }
 
 int failTogether(vtkAlgorithm* algorithm, const std::string& message)

@@ -13,11 +13,11 @@ class vtkFieldData;
 namespace rockfall::filters
 {
 
-/// Reports `message` as the one error of this execution, empties every output and returns 0, to be
-/// returned from RequestData; 1 where several ranks run the pipeline: the others know of no error,
-/// and would go on to filters that this rank would not reach. The executive's own report that the
-/// request failed is dropped: it says nothing that the message does not, and a user would have two
-/// errors to read for one cause. The message stays in the field array "Error" of the outputs.
+/// Reports `message` as the one error of this execution, empties every output and returns 1, to be
+/// returned from RequestData. 0 would stop the pipeline: representations of ParaView would go on
+/// showing what was before the error, also when it is mended, other ranks would go on to filters
+/// that this one would not reach, and the executive would report a second error for one cause. The
+/// message stays in the field array "Error" of the outputs.
 int fail(vtkAlgorithm* algorithm, const std::string& message);
 
 /// As fail, for what every rank finds at once: the first one reports it.
@@ -26,9 +26,8 @@ int failTogether(vtkAlgorithm* algorithm, const std::string& message);
 /// Empties the outputs but for the message, without a report.
 void leaveError(vtkAlgorithm* algorithm, const std::string& message);
 
-/// True if `input` is what a failed filter left, and then passes its "Error" on to the outputs.
-/// ParaView updates a pipeline more than once, and the second time a failed source counts as up to
-/// date: whoever comes after it must not report its emptiness as another error.
+/// True if `input` is what a failed filter left, and then passes its "Error" on to the outputs: who
+/// comes after it must not report its emptiness as another error.
 bool inheritFailure(vtkDataObject* input, vtkAlgorithm* algorithm);
 
 /// Shows a line that is neither an error nor a warning, in ParaView's output messages and on the

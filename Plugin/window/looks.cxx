@@ -363,37 +363,35 @@ void style(vtkSMProxy* representation)
 namespace
 {
 
-/// The palette's range is that of what is shown.
-void rescale(vtkSMProxy* representation)
+/// The palette's range is that of what is shown; of growing paths that of the whole ones. The
+/// source knows it before a representation does.
+void rescale(const Shown& shown, vtkSMProxy* representation)
 {
-  const std::string array = colouredBy(representation);
-  if (!quantityOf(array))
+  vtkSMSourceProxy* source = shown.source;
+  int port = shown.port;
+  if (is(shown, "vtkGrowingPaths", 0))
+  {
+    vtkSMPropertyHelper input(source, "Input");
+    source = vtkSMSourceProxy::SafeDownCast(input.GetAsProxy());
+    port = int(input.GetOutputPort());
+  }
+  vtkSMProxy* table = vtkSMPropertyHelper(representation, "LookupTable").GetAsProxy();
+  if (!source || !table)
   {
     return;
   }
-  const Shown shown = shownBy(representation);
-  if (is(shown, "vtkGrowingPaths", 0))
+  vtkPVDataInformation* data = source->GetDataInformation(unsigned(port));
+  const std::string array = colouredBy(representation);
+  for (vtkPVDataSetAttributesInformation* arrays :
+    { data->GetPointDataInformation(), data->GetCellDataInformation() })
   {
-    // Of the whole paths, not of what is drawn of them so far.
-    vtkSMPropertyHelper input(shown.source, "Input");
-    auto* paths = vtkSMSourceProxy::SafeDownCast(input.GetAsProxy());
-    vtkPVArrayInformation* values = paths ? paths->GetDataInformation(input.GetOutputPort())
-                                              ->GetPointDataInformation()
-                                              ->GetArrayInformation(array.c_str())
-                                          : nullptr;
-    vtkSMProxy* table = vtkSMPropertyHelper(representation, "LookupTable").GetAsProxy();
-    if (values && table && values->GetNumberOfComponents() == 1)
+    vtkPVArrayInformation* values = arrays->GetArrayInformation(array.c_str());
+    if (values && values->GetNumberOfComponents() == 1 && values->GetNumberOfTuples() > 0)
     {
-      const double* range = values->GetComponentRange(0);
+      const double* range = values->GetComponentFiniteRange(0);
       vtkSMTransferFunctionProxy::RescaleTransferFunction(table, range[0], range[1], false);
       table->UpdateVTKObjects();
     }
-    return;
-  }
-  auto* drawn = vtkSMPVRepresentationProxy::SafeDownCast(representation);
-  if (drawn && shown.source->GetDataInformation(unsigned(shown.port))->GetNumberOfCells() > 0)
-  {
-    drawn->RescaleTransferFunctionToDataRange(false, false);
   }
 }
 
@@ -444,7 +442,7 @@ void follow(vtkSMProxy* representation, vtkSMViewProxy* view)
   }
   if (shown.source && quantityOf(colouredBy(representation)))
   {
-    rescale(representation);
+    rescale(shown, representation);
     followLegend(shown, representation, view);
   }
 }
@@ -490,7 +488,7 @@ void styleIn(vtkSMProxy* representation, vtkSMViewProxy* view)
   vtkSMPropertyHelper(table, "RGBPoints").Set(points.data(), unsigned(points.size()));
   vtkSMPropertyHelper(table, "ColorSpace").Set(0); // RGB
   table->UpdateVTKObjects();
-  rescale(representation);
+  rescale(shown, representation);
   if (vtkSMPropertyHelper(representation, "Visibility").GetAsInt() == 0)
   {
     return;
