@@ -287,7 +287,7 @@ inline constexpr double kTurnGuessed = 0.02;
 /// Λ sinks if deeper by this share of its depth and of r. Smaller: more steps in which Λ moves.
 inline constexpr double kDeeperScar = 0.1;
 inline constexpr double kShallowScar = 0.01;
-/// Λ rises if this share of its greatest depth is gained.
+/// Λ rises if this share of its depth is gained.
 inline constexpr double kHigherScar = 0.3;
 /// Least vertical part of the normal of ground with scars: not walls, not trees.
 inline constexpr double kSteepestScar = 0.3;

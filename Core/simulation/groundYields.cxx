@@ -3,7 +3,7 @@
 #include "simulation/RockSimulator.h"
 
 #include "block/flight.h"
-#include "contact/headroom.h"
+#include "contact/clearance.h"
 #include "contact/timeToTouch.h"
 #include "law/settings.h"
 #include "simulation/rollingResistance.h"
@@ -102,8 +102,9 @@ bool RockSimulator::riseWithRock()
     return false;
   }
   const double clear = kScarClearance * block_.radius();
-  const double by = headroom(placed_, patch_, scar_.depth() + clear) - clear;
-  if (by < std::min(scar_.depth(), kHigherScar * scar_.deepest()))
+  const double away = clearance(placed_, state_, patch_, parameters_.gravity, 0.0).distance;
+  const double by = std::min(scar_.depth(), away - clear);
+  if (by < kHigherScar * scar_.depth())
   {
     return false;
   }

@@ -5,7 +5,6 @@
 
 #include "base/errors.h"
 #include "block/Block.h"
-#include "contact/headroom.h"
 #include "contact/submerged.h"
 #include "simulation/MassFall.h"
 #include "simulation/Scar.h"
@@ -123,31 +122,6 @@ TEST(YieldingGround, SubmergedAreaOfACube)
   state.position.z() = 0.51;
   placed.place(block, state);
   EXPECT_EQ(submerged(placed, ground, -Vec3::UnitZ()).area, 0.0);
-}
-
-// The ground may rise until it touches the rock, whatever the size of the cells.
-TEST(YieldingGround, HeadroomDoesNotDependOnCells)
-{
-  const Block block(makeShape(Shape::Cube, 1.0), 2500.0, 1e10, 0.2);
-  const double slope = radians(30.0), over = 0.4;
-  for (const int nodes : { 9, 41, 161 })
-  {
-    const Terrain terrain = makePlane(nodes, 40.0, slope, 0.0, SurfaceMaterial());
-    const Surface surface = Surface::asSurveyed(terrain);
-    // Flat on the slope, and then straight up.
-    BlockState state;
-    state.orientation = Quat(Eigen::AngleAxisd(slope, Vec3::UnitY()));
-    state.position = Vec3(20.0, 20.0, terrain.elevation(20.0, 20.0) + 0.5 / std::cos(slope) + over);
-    PlacedBlock placed;
-    placed.place(block, state);
-    SurfacePatch patch;
-    gatherPatch(surface, 19.0, 21.0, 19.0, 21.0, patch);
-    EXPECT_NEAR(headroom(placed, patch, 10.0), over, 1e-9) << nodes << " nodes";
-    EXPECT_EQ(headroom(placed, patch, 0.1), 0.1);
-    state.position.z() -= over + 0.05;
-    placed.place(block, state);
-    EXPECT_LT(headroom(placed, patch, 10.0), 0.0);
-  }
 }
 
 // A turn in pieces of a flight sweeps what many small ones do: the areas at their ends tell within
