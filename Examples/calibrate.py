@@ -19,7 +19,9 @@ SITE.json, all paths from where it stands:
 
 "terrain", "rocks" and "simulation" are properties of DEM to CFE Mesh, Rock Blocks and Rockfall
 Simulation. "deposits" are points, read as a layer of sources is. With "BySource" each has a column
-`source_id`, and is foretold by the rocks of that source; without it by the rocks of all. "search" has
+`source_id`, and is foretold by the rocks of that source; without it by the rocks of all. With
+"TrackedMargin" (m) run-outs count to the edge of the tracked ground: what lies so far around the sources
+and deposits, beyond which the terrain is a guess. "search" has
 numbers of the slope with their ranges, ten at most; the rest of the ground is as "terrain" says.
 
 The results are in output/NAME of SITE.json: report.md with map.png and search.png, candidates.csv,

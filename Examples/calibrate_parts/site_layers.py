@@ -48,10 +48,14 @@ def read_site(path):
                 if not os.path.isfile(site[part][name]):
                     refuse(f"{path}: {part} {name}: there is no file {site[part][name]}")
     for name in site["deposits"]:
-        if name not in ("FileName", "BySource"):
-            refuse(f'{path}: "deposits" knows FileName and BySource, not {name}')
+        if name not in ("FileName", "BySource", "TrackedMargin"):
+            refuse(f'{path}: "deposits" knows FileName, BySource and TrackedMargin, not {name}')
     if not isinstance(site["deposits"].setdefault("BySource", False), bool):
         refuse(f'{path}: "BySource" of "deposits" must be true or false')
+    margin = site["deposits"].get("TrackedMargin", 0)
+    if type(margin) not in (int, float) or not np.isfinite(margin) or margin < 0:
+        refuse(f'{path}: "TrackedMargin" of "deposits" is {json.dumps(margin)}, it must be a number of '
+               "metres that is not negative")
     for name in ("Seed", "NumberOfThreads"):
         if name in site["simulation"]:
             refuse(f'{path}: "{name}" of "simulation" is an option of this script')
@@ -111,6 +115,7 @@ def make_site(description, seed, threads):
         "Volume": 0.001})
     stops, key = blocks_of(layer)
     names = [str(k + 1) for k in range(len(stops))]
+    margin = description["deposits"].get("TrackedMargin")
     if description["deposits"]["BySource"]:
         for k, number in enumerate(key):
             if number not in source:
@@ -123,10 +128,10 @@ def make_site(description, seed, threads):
             group = ["all"] * len(group)
         forecast = source
         # Rocks of sources without a deposit foretell none.
-        observed = Observed(start, stops, key, group)
+        observed = Observed(start, stops, key, group, margin)
     else:
         start = np.broadcast_to(centres.mean(axis=0), stops.shape)
-        observed = Observed(start, stops, np.zeros(len(stops), int), ["all"] * len(stops))
+        observed = Observed(start, stops, np.zeros(len(stops), int), ["all"] * len(stops), margin)
         forecast = np.zeros(len(centres), int)
     return Site(slope, rocks, observed, forecast,
                 {**description["simulation"], "Seed": seed, "NumberOfThreads": threads}), names

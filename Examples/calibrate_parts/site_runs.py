@@ -60,7 +60,7 @@ def search(site, ranges, count, folds, seed, output):
     """The fit of `count` candidates within ranges {property: (low, high)}."""
     found = Search(ranges, ranges.values(), count)
     for k, values in enumerate(found.values):
-        score = site.run(dict(zip(found.names, values))).scores(site.observed)
+        score = site.run(dict(zip(found.names, values))).as_scored(site.observed).scores(site.observed)
         found.add(score)
         found.write(os.path.join(output, "candidates.csv"))
         say(f"  candidate {k + 1} of {count}: " + ", ".join(f"{v:g}" for v in values) +
@@ -146,13 +146,17 @@ def compare(site, values, names, title, output, fit=None):
                      for start, stop in zip(observed.start, observed.stop)])
     table = scores.comparison(observed, simulated, drop)
     print_table(table)
-    own = simulated.scores(observed)
+    own = simulated.as_scored(observed).scores(observed)
     error = 100 * (table[0][3] / table[0][2] - 1)
     summary = (f"Mean run-out: {error:+.1f} % of the observed one. CRPS of the run-out "
                f"{own[:, scores.CRPS].mean():.1f} m (without a model {scores.climatology(observed):.1f} "
                f"m), energy score of the stopping points {own[:, scores.ES].mean():.1f} m; "
                f"{100 * scores.covered(own):.0f} % of the observed run-outs within 5 to 95 % of the "
                "simulated ones")
+    if observed.tracked:
+        within = 100 * (own[:, scores.MEAN].mean() / observed.run_out.mean() - 1)
+        summary += (f". Scores within the tracked ground, where the mean run-out is {within:+.1f} %; "
+                    f"{100 * simulated.beyond(observed):.0f} % of the rocks go beyond it")
     print("\n" + summary)
     write_results(site, simulated, own, table, names, output)
     site_map.draw(os.path.join(output, "map.png"), site.ground, observed, simulated,

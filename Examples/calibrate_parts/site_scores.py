@@ -9,7 +9,11 @@ to score better than the distribution that y comes from. In one dimension, for t
 continuous ranked probability score (CRPS). Gneiting T., Raftery A.E. (2007), Strictly proper scoring
 rules, prediction, and estimation, Journal of the American Statistical Association 102, 359-378.
 """
+import copy
+
 import numpy as np
+
+from site_tracked import TrackedGround
 
 QUANTILES = (5, 25, 50, 75, 95)
 STARTED = 1.0  # m. A rock that stopped nearer to its release was not let go in the field either.
@@ -39,11 +43,15 @@ def energy_score(points, observed, spread=None):
 
 class Observed:
     """The deposits as arrays, in m. `forecast` says by which simulated rocks a deposit is forecast:
-    those of the same number. `group` is a name under which deposits are reported together."""
+    those of the same number. `group` is a name under which deposits are reported together. `margin`,
+    m: beyond the tracked ground, which is widened by so much, run-outs count to its edge; None: the
+    whole terrain counts."""
 
-    def __init__(self, start, stop, forecast, group):
+    def __init__(self, start, stop, forecast, group, margin=None):
         self.start, self.stop = np.asarray(start, float), np.asarray(stop, float)
         self.forecast, self.group = np.asarray(forecast), np.asarray(group)
+        self.tracked = None if margin is None else TrackedGround(
+            np.vstack([self.start, self.stop]), margin)
         way = self.stop - self.start
         self.run_out = np.hypot(*way.T)
         # Runs are told apart by where they began and ended: one that is there twice counts as one
@@ -80,6 +88,21 @@ class Simulated:
         self.across = way @ [-observed.down[1], observed.down[0]]
         self.started = np.hypot(self.stop[:, 0] - columns["StartX"],
                                 self.stop[:, 1] - columns["StartY"]) >= STARTED
+
+    def as_scored(self, observed):
+        """The same with run-outs to the edge of the tracked ground, if there is one."""
+        if observed.tracked is None:
+            return self
+        scored = copy.copy(self)
+        scored.stop = observed.tracked.cut(self.start, self.stop)
+        way = scored.stop - self.start
+        scored.run_out = np.hypot(*way.T)
+        scored.across = way @ [-observed.down[1], observed.down[0]]
+        return scored
+
+    def beyond(self, observed):
+        """Share of the rocks that go beyond the tracked ground."""
+        return float(np.mean(~observed.tracked.holds(self.stop))) if observed.tracked else 0.0
 
     def of(self, number):
         """Which rocks make a forecast: those that started; all of them if less than half did: then it

@@ -2,7 +2,8 @@
 
 Given a folder of a field test with single rocks (see field_test.py for its four files), every run is
 simulated with many attitudes and many realisations of the ground; the run-outs and stopping points
-are compared with the observed ones, as a table and as a map.
+are compared with the observed ones, as a table and as a map. Scores are within the tracked ground, which
+ends a cell of the grid beyond what was observed.
 
     bash Examples/run.sh validation/tschamut.py FOLDER [--output FOLDER] [--calibrate N] ...
 
@@ -96,7 +97,8 @@ def make_site(test, chosen):
     sources.rocks.UpdatePipeline()
     made_by(sources.rocks)
     observed = Observed([run.start[:2] for run in test.runs], [run.stop for run in test.runs],
-                        range(len(test.runs)), [test.blocks[run.block].name for run in test.runs])
+                        range(len(test.runs)), [test.blocks[run.block].name for run in test.runs],
+                        float(test.header["cellsize"]))
     site = site_runs.Site(slope, sources.rocks, observed, sources.run, {
         "EndTime": END, "Iterations": chosen.iterations, "Seed": chosen.seed,
         "NumberOfThreads": chosen.threads})

@@ -119,6 +119,7 @@ BAD = [
     (dict(terrain={"Colour": 3}), ['"terrain" Colour', "cannot be set"]),
     (dict(terrain={"FileName": "nowhere.tif"}), ["there is no file", "nowhere.tif"]),
     (dict(deposits={"Column": "id"}), ["BySource", "Column"]),
+    (dict(deposits={"TrackedMargin": -1}), ["TrackedMargin", "-1"]),
     (dict(simulation={"Seed": 4}), ['"Seed"', "option"]),
     (dict(deposits=[1]), ['"deposits" is [1]', "object"]),
     (dict(places={}), ['"places"']),

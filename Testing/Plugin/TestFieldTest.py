@@ -19,6 +19,7 @@ import field_rocks
 import field_test
 import site_scores
 import site_search
+import site_tracked
 
 # 30 m of 35° slope, then flat: 17 x 9 nodes of 5 m. The south-west node is at (0, 0).
 HEIGHTS = [[round(max(0.0, 30.0 - 5.0 * column) * 0.7, 3) for column in range(17)]] * 9
@@ -103,6 +104,14 @@ expect(all(f"{name} {least[name]}," in said.split("Ground: ")[1] for name in sea
        f"the best candidate {least} was not used: {said}")
 expect("Held out, 2 folds with runs of every group" in said and
        "Held out, one group left out at a time" in said, f"no runs were held out: {said}")
+
+# --- Tracked ground: a square of 10 m, widened by 1 m.
+square = site_tracked.TrackedGround([[0, 0], [10, 0], [10, 10], [0, 10], [5, 0], [5, 5]], 1.0)
+expect(len(square.offset) == 4, f"a square has {len(square.offset)} sides")
+expect(square.holds([[10.9, 5.0], [11.1, 5.0], [-0.9, -0.9]]).tolist() == [True, False, True], "holds")
+cut = square.cut(np.array([[5.0, 5.0]] * 3), np.array([[8.0, 5.0], [17.0, 5.0], [5.0, -25.0]]))
+expect(np.abs(cut - [[8, 5], [11, 5], [5, -1]]).max() < 1e-12, f"cut off at {cut}")
+expect("of the rocks go beyond it" in said, f"nothing is said of the tracked ground: {said}")
 
 # --- The scores. Two points one on either side: mean distance 1, less half of the distance 2.
 expect(abs(site_scores.energy_score([[0.0], [2.0]], [1.0])) < 1e-12, "energy score of two points")
