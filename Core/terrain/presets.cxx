@@ -66,8 +66,8 @@ constexpr GroundPreset presets[] = {
     yields(10e6, 2.0, 0.6, 0.27), Assumption, assumed, lu, "assumed, as talus" },
   { "soil", "Soil", 0.3, 1.0, 0.15, 30.0, 3.0, yields(10e6, 1.5, 0.6, 0.3), Assumption, assumed, lu,
     lu },
-  { "meadow", "Meadow", 0.4, 1.0, 0.25, 30.0, 3.0, yields(25e6, 0.85, 0.85, 0.24), FieldData,
-    "docs/validation.md", lu, lu },
+  { "meadow", "Meadow", 0.73, 1.0, 0.34, 30.0, 3.0, yields(15e6, 0.9, 0.98, 0.24), FieldData,
+    "docs/validation.md", lu, lu, 8.0 },
 };
 
 } // namespace
@@ -90,6 +90,11 @@ SurfaceMaterial GroundPreset::material() const
 {
   SurfaceMaterial material;
   material.restitutionModel = RestitutionModel::NormalTangential;
+  if (this->restitutionSpeed > 0.0)
+  {
+    material.restitutionModel = RestitutionModel::SpeedDependent;
+    material.restitutionSpeed = this->restitutionSpeed;
+  }
   material.restitution = this->normalRestitution;
   material.tangentialRestitution = this->tangentialRestitution;
   material.restitutionDeviation = this->restitutionDeviation;

@@ -38,6 +38,7 @@ struct GroundPreset
   const char* restitutionSource;
   const char* frictionSource;
   const char* yieldingSource;
+  double restitutionSpeed = 0.0; ///< K of the speed-dependent model, m/s; 0: Rn at every speed.
 
   SurfaceMaterial material() const;
   /// Ground that yields scatters from impact to impact; the others' deviations are of a whole

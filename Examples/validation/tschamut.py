@@ -30,16 +30,17 @@ from site_runs import made_by, say
 from site_scores import Observed
 
 # The ground: property, option, default, and the range that a calibration searches; one without a range
-# keeps its value. The restitution is normal and tangential (RestitutionModel 1), friction that of slip.
+# keeps its value. The restitution is speed-dependent (RestitutionModel 2), friction that of slip.
 PARAMETERS = (
-    ("RestitutionCoefficient", "--restitution", 0.4, None, "Rn, 0 to 1"),
-    ("RestitutionDeviation", "--restitution-deviation", 0.25, None, "of Rn"),
+    ("RestitutionCoefficient", "--restitution", 0.73, None, "Rn, 0 to 1"),
+    ("RestitutionDeviation", "--restitution-deviation", 0.34, None, "of Rn"),
+    ("RestitutionSpeed", "--restitution-speed", 8.0, None, "normal speed at which half of Rn is left, m/s"),
     ("TangentialRestitution", "--tangential", 1.0, None, "Rt, 0 to 1"),
-    ("GroundModulus", "--modulus", 25.0, None, "ME in MN/m2, 0 for hard ground"),
+    ("GroundModulus", "--modulus", 15.0, None, "ME in MN/m2, 0 for hard ground"),
     ("ScarDepthFactor", "--depth-factor", 0.125, None, "of the scar's depth"),
-    ("ScarCompaction", "--compaction", 0.85, None, "Cs"),
+    ("ScarCompaction", "--compaction", 0.9, None, "Cs"),
     ("ScarSpinDrag", "--spin-drag", 0.0, None, "Cw"),
-    ("SlipFrictionMin", "--least-friction", 0.85, (0.65, 0.95), "friction without slip"),
+    ("SlipFrictionMin", "--least-friction", 0.98, (0.75, 1.1), "friction without slip"),
     ("SlipFrictionMax", "--most-friction", 2.0, None, "friction after much slip, 0 for a constant one"),
     ("SlipFrictionGrowth", "--friction-growth", 3.0, None, "in 1/m"),
     ("SlipFrictionDecay", "--friction-decay", 185.0, None, "in 1/s"),
@@ -91,7 +92,7 @@ def make_site(test, chosen):
     grid = os.path.join(chosen.output, "terrain.asc")
     test.write_terrain(grid, chosen.pixels)
     slope = DEMtoCFEMesh(FileName=grid, CellSize=CELL, RestitutionDeviation=0, RoughnessMean=0,
-                         RestitutionModel="Normal and tangential")
+                         RestitutionModel="Speed-dependent")
     slope.UpdatePipeline()
     sources = Sources(test, Ground(made_by(slope)), chosen.attitudes, chosen.seed, chosen.output)
     sources.rocks.UpdatePipeline()

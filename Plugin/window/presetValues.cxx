@@ -21,6 +21,7 @@ std::vector<std::pair<std::string, double>> presetValues(int preset)
     { "RestitutionCoefficient", material.restitution },
     { "RestitutionDeviation", material.restitutionDeviation },
     { "TangentialRestitution", material.tangentialRestitution },
+    { "RestitutionSpeed", material.restitutionSpeed },
     { "FrictionAngle", ground.frictionAngleDegrees },
     { "FrictionAngleDeviation", ground.frictionDeviationDegrees },
     { "DeviationPer", double(int(ground.deviationPer())) },
