@@ -92,7 +92,7 @@ def make_site(test, chosen):
     grid = os.path.join(chosen.output, "terrain.asc")
     test.write_terrain(grid, chosen.pixels)
     slope = DEMtoCFEMesh(FileName=grid, CellSize=CELL, RestitutionDeviation=0, RoughnessMean=0,
-                         RestitutionModel="Speed-dependent")
+                         RestitutionModel="Speed-dependent", DeviationPer="Impact")
     slope.UpdatePipeline()
     sources = Sources(test, Ground(made_by(slope)), chosen.attitudes, chosen.seed, chosen.output)
     sources.rocks.UpdatePipeline()
