@@ -47,9 +47,9 @@ std::vector<Word> wordsOf(std::string_view name)
   return words;
 }
 
-bool isOneOf(std::string_view word, std::initializer_list<std::string_view> names)
+bool isOneOf(std::string_view word, std::initializer_list<std::string_view> known)
 {
-  return std::find(names.begin(), names.end(), word) != names.end();
+  return std::find(known.begin(), known.end(), word) != known.end();
 }
 
 bool isUnit(std::string_view word)
