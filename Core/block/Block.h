@@ -18,15 +18,15 @@ constexpr int kRotation = 3;
 constexpr int kStrain = 6;
 
 /// Two directions side by side, coordinate by coordinate.
-using TwoWays = std::array<Eigen::Array2d, 3>;
+using TwoDirections = std::array<Eigen::Array2d, 3>;
 
-inline TwoWays twoWays(const Vec3& first, const Vec3& second)
+inline TwoDirections twoDirections(const Vec3& first, const Vec3& second)
 {
   return { Eigen::Array2d(first.x(), second.x()), Eigen::Array2d(first.y(), second.y()),
     Eigen::Array2d(first.z(), second.z()) };
 }
 
-/// What of a block never changes.
+/// Part of a block that never changes.
 class Block
 {
 public:
@@ -48,7 +48,7 @@ public:
   const Mat3& inverseInertia() const { return inverseInertia_; } ///< 1/(kg m²)
   /// Principal moments of inertia, rising, kg m².
   const Vec3& principalMoments() const { return principal_; }
-  /// Their axes as columns, right-handed: from principal to body axes.
+  /// Principal axes as columns, right-handed: from principal to body axes.
   const Mat3& principalAxes() const { return axes_; }
   /// All three principal moments equal (to 1e-9): free rotation is then steady.
   bool isotropic() const { return isotropic_; }
@@ -70,9 +70,9 @@ public:
       (youngModulus_ * volume_);
   }
   // The same for two directions at once.
-  Eigen::Array2d mobility(const TwoWays& n, const Vec3& x) const
+  Eigen::Array2d mobility(const TwoDirections& n, const Vec3& x) const
   {
-    const TwoWays m = { x.y() * n[2] - x.z() * n[1], x.z() * n[0] - x.x() * n[2],
+    const TwoDirections m = { x.y() * n[2] - x.z() * n[1], x.z() * n[0] - x.x() * n[2],
       x.x() * n[1] - x.y() * n[0] };
     const Mat3& j = inverseInertia_;
     const Eigen::Array2d turned[3] = { j(0, 0) * m[0] + j(0, 1) * m[1] + j(0, 2) * m[2],
@@ -80,14 +80,14 @@ public:
       j(2, 0) * m[0] + (j(2, 1) * m[1] + j(2, 2) * m[2]) };
     return 1.0 / mass_ + (m[0] * turned[0] + m[1] * turned[1] + m[2] * turned[2]);
   }
-  Eigen::Array2d compliance(const TwoWays& n, const Vec3& x) const
+  Eigen::Array2d compliance(const TwoDirections& n, const Vec3& x) const
   {
     const Eigen::Array2d along = n[0] * x.x() + n[1] * x.y() + n[2] * x.z();
     return ((1.0 + poissonRatio_) * 0.5 * (x.squaredNorm() + along * along) -
              poissonRatio_ * along * along) /
       (youngModulus_ * this->volume());
   }
-  /// Its largest value, at the vertex that is farthest out and along its radius, m/N.
+  /// Largest mobility, at the vertex that is farthest out and along its radius, m/N.
   double largestCompliance() const { return radius_ * radius_ / (youngModulus_ * volume_); }
   /// Lowest angular frequency of the uniform strains of the free block, rad/s.
   double strainFrequency() const { return strainFrequency_; }
@@ -101,7 +101,7 @@ public:
   double largestRimSpeed(const Vec3& spin) const;
 
 private:
-  // What every step asks for lies together.
+  // Members that every step asks for lie together.
   Polyhedron shape_;
   double radius_ = 0.0; ///< The shape's, m.
   double volume_ = 0.0; ///< The shape's, m³.
@@ -122,7 +122,7 @@ private:
   Mat6 elasticity_ = Mat6::Zero();
 };
 
-/// What of a block moves. Translation in world axes, strain in body axes.
+/// Motion of a block. Translation in world axes, strain in body axes.
 struct BlockState
 {
   double time = 0.0;                   ///< s

@@ -9,6 +9,12 @@ namespace rockfall
 
 void PlacedBlock::place(const Block& block, const BlockState& state)
 {
+  this->placeFrame(block, state);
+  this->placeVertices();
+}
+
+void PlacedBlock::placeFrame(const Block& block, const BlockState& state)
+{
   block_ = &block;
   position_ = state.position;
   orientation_ = state.orientation;
@@ -22,7 +28,7 @@ void PlacedBlock::place(const Block& block, const BlockState& state)
     undeform_ = deform.inverse();
     map_ = rotation_ * deform;
   }
-  found_ = false;
+  placed_ = false;
 }
 
 void PlacedBlock::move(const Block& block, const BlockState& state)
@@ -30,12 +36,17 @@ void PlacedBlock::move(const Block& block, const BlockState& state)
   if (block_ != &block || position_ != state.position ||
     orientation_.coeffs() != state.orientation.coeffs() || strain_ != state.strain)
   {
-    this->place(block, state);
+    this->placeFrame(block, state);
   }
+  this->placeVertices();
 }
 
-void PlacedBlock::placeVertices() const
+void PlacedBlock::placeVertices()
 {
+  if (placed_)
+  {
+    return;
+  }
   const std::vector<Vec3>& reference = block_->shape().vertices();
   vertices_.resize(reference.size());
   const Mat3 map = map_;
@@ -50,7 +61,7 @@ void PlacedBlock::placeVertices() const
   }
   lower_ = lower;
   upper_ = upper;
-  found_ = true;
+  placed_ = true;
 }
 
 int PlacedBlock::outermostFace(const Vec3& world) const

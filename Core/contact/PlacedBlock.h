@@ -5,6 +5,7 @@
 
 #include "block/Block.h"
 
+#include <cassert>
 #include <vector>
 
 namespace rockfall
@@ -17,26 +18,29 @@ public:
   void place(const Block& block, const BlockState& state);
   /// The same; nothing to do where this block stands there already.
   void move(const Block& block, const BlockState& state);
+  /// The same in two steps, for a rock that is mostly far from the slope: pose, map and normals
+  /// first; vertices and box when they are needed, unless they are there.
+  void placeFrame(const Block& block, const BlockState& state);
+  void placeVertices();
 
   const Block& block() const { return *block_; }
   const Vec3& position() const { return position_; }
   const Mat3& rotation() const { return rotation_; }
   /// Of the reference shape, strained, to world axes.
   const Mat3& map() const { return map_; }
-  // Found when they are asked for first, by whoever has the block: not by several threads at once.
   const std::vector<Vec3>& vertices() const ///< World, m.
   {
-    this->findVertices();
+    assert(placed_);
     return vertices_;
   }
   Vec3 lower() const ///< Corner of the bounding box, m.
   {
-    this->findVertices();
+    assert(placed_);
     return lower_;
   }
   Vec3 upper() const
   {
-    this->findVertices();
+    assert(placed_);
     return upper_;
   }
   Vec3 normal(int face) const ///< World, outward, unit.
@@ -59,15 +63,6 @@ public:
   }
 
 private:
-  void findVertices() const
-  {
-    if (!found_)
-    {
-      this->placeVertices();
-    }
-  }
-  void placeVertices() const;
-
   const Block* block_ = nullptr;
   Vec3 position_ = Vec3::Zero();
   Quat orientation_ = Quat::Identity();
@@ -75,10 +70,10 @@ private:
   Mat3 rotation_ = Mat3::Identity();
   Mat3 map_ = Mat3::Identity();
   Mat3 undeform_ = Mat3::Identity(); ///< (I + ε)⁻¹
-  mutable bool found_ = true;        ///< The members that follow are.
-  mutable std::vector<Vec3> vertices_;
-  mutable Vec3 lower_ = Vec3::Zero();
-  mutable Vec3 upper_ = Vec3::Zero();
+  bool placed_ = true;               ///< The members that follow are for this pose.
+  std::vector<Vec3> vertices_;
+  Vec3 lower_ = Vec3::Zero();
+  Vec3 upper_ = Vec3::Zero();
 };
 
 } // namespace rockfall

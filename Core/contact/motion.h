@@ -30,7 +30,7 @@ inline double timeToCover(double distance, double rate, double acceleration)
 
 /// Longest way of a point within `radius` (m) of the centre of a turn from one orientation to
 /// another, m: no less than it is, and hardly more if the turn is small.
-inline double wayOfTurn(const Quat& from, const Quat& to, double radius)
+inline double rimTravel(const Quat& from, const Quat& to, double radius)
 {
   return 2.0 * radius *
     std::min((to.coeffs() - from.coeffs()).norm(), (to.coeffs() + from.coeffs()).norm());

@@ -72,7 +72,7 @@ inline constexpr double kMostTimeStep = 0.1;
 /// Open–close has settled when no state changes and gaps move by less than this share of their
 /// change over the step. The energy error of a step is of the order of this share of its work.
 inline constexpr double kGapTolerance = 1e-7;
-/// The same share of a rotation, in groups: the gyroscopic moment converges linearly, and so keeps
+/// The same share of a rotation, in islands: the gyroscopic moment converges linearly, and so keeps
 /// angular momentum to 1e-12.
 inline constexpr double kTurnTolerance = 1e-9;
 /// A correction turns back if its product with the last one is below −this times the square of the
@@ -80,8 +80,8 @@ inline constexpr double kTurnTolerance = 1e-9;
 inline constexpr double kTurnsBack = 0.25;
 /// Least part of a correction that is taken. Lower: slower where the iteration cycles.
 inline constexpr double kLeastCorrection = 0.125;
-/// Largest group solved directly, rocks. Larger: cost grows with the square.
-inline constexpr int kDirectGroup = 60;
+/// Largest island solved directly, rocks. Larger: cost grows with the square.
+inline constexpr int kDirectIsland = 60;
 /// Least pivot of a block of K as a share of its largest entry; below, the step is cut.
 inline constexpr double kSingularPivot = 1e-14;
 /// Largest residual of a direct solution as a share of the largest load; above, the step is cut.
@@ -106,9 +106,9 @@ inline constexpr double kRestingSpeed = 1e-2;
 /// or shorter time: creeping rocks stop early.
 inline constexpr double kStillSpeed = 1e-3;
 inline constexpr double kStillTime = 0.5;
-/// A group sleeps, too, when each rock has stayed within this share of r for this time, s: contacts
-/// are points without a moment, and a rock wedged between two may swing about them for ever.
-/// Longer: piles that never sleep.
+/// An island sleeps, too, when each rock has stayed within this share of r for this time, s:
+/// contacts are points without a moment, and a rock wedged between two may swing about them for
+/// ever. Longer: piles that never sleep.
 inline constexpr double kLingerTime = 3.0;
 inline constexpr double kLingerWay = 0.03;
 /// Rotation counts against that from this share of √(g r) at the rim on. Rock that breaks at 50 MPa
@@ -201,7 +201,7 @@ inline constexpr double kNoMore = 1.0 + 1e-6;
 /// Factor on the speed of approach at the start of a step for what comes near within it. Larger:
 /// more contacts, fewer found late.
 inline constexpr double kFasterApproach = 1.5;
-/// Steps of one Δt that the smallest rock of a group may ask of all; if it asks for more, so many
+/// Steps of one Δt that the smallest rock of an island may ask of all; if it asks for more, so many
 /// times fewer rocks resolve their impacts, but this number always does.
 inline constexpr double kMostSteps = 100.0;
 inline constexpr int kAlwaysResolved = 4;
@@ -211,13 +211,13 @@ inline constexpr double kStepsPerPairImpact = 10.0;
 /// Steps of an impact that half of a part of a step must hold for the part to be halved. Fewer:
 /// parts that cut more steps short than they spare (41 and 100 cubes, by processor time).
 inline constexpr double kLeastStepsOfPart = 2.0;
-/// Step of a large group in steps of rocks that resolve their impacts. Longer: faster, more cuts.
+/// Step of a large island in steps of rocks that resolve their impacts. Longer: faster, more cuts.
 inline constexpr double kCrowdTravel = 2.0;
-/// Cuts of the step of a large group that is far from settled.
+/// Cuts of the step of a large island that is far from settled.
 inline constexpr int kCrowdCuts = 4;
-/// In a large group a contact is made for a gap below this share of r. An impact turns rocks within
-/// the step, and what is found only at its end may be past by then (cubes at 17 m/s, Δt 5 ms: mean
-/// deepest overlap 0.6 % of an edge, with 2e-3 1.1 %).
+/// In a large island a contact is made for a gap below this share of r. An impact turns rocks
+/// within the step, and what is found only at its end may be past by then (cubes at 17 m/s, Δt 5
+/// ms: mean deepest overlap 0.6 % of an edge, with 2e-3 1.1 %).
 inline constexpr double kSurely = 3e-2;
 /// The same on the slope.
 inline constexpr double kSurelyOnSlope = 1e-2;
@@ -256,25 +256,25 @@ inline constexpr int kHeldBounces = 3;
 inline constexpr double kQuiet = 0.3;
 /// Factor on the number of sweeps where nothing bounces: forces are to be exact there.
 inline constexpr int kCalmSweeps = 50;
-/// A step is rough if the last sweep has moved something by more than this many times the tolerance
-/// (3 % of the longest displacement): forces as wrong as that throw light rocks about. Factor on
-/// the number of sweeps then.
-inline constexpr double kRough = 300.0;
-inline constexpr int kRoughSweeps = 200;
-/// Or by more than this share of r: it may end several times as deep in another rock.
-inline constexpr double kRoughWay = 2.5e-3;
-/// Sweeps after a local change (a bounce held back, a contact found) and in a rough place go no
-/// further than where things move by this share of the longest displacement;
+/// A step is unconverged if the last sweep has moved something by more than this many times the
+/// tolerance (3 % of the longest displacement): forces as wrong as that throw light rocks about.
+/// Factor on the number of sweeps then.
+inline constexpr double kUnconverged = 300.0;
+inline constexpr int kUnconvergedSweeps = 200;
+/// The same as a share of r: it may end several times as deep in another rock.
+inline constexpr double kUnconvergedDisplacement = 2.5e-3;
+/// Sweeps after a local change (a bounce held back, a contact found) and in a unconverged place go
+/// no further than where things move by this share of the longest displacement;
 inline constexpr double kNoticed = 3e-3;
-/// and by this share of what is rough.
-inline constexpr double kRoughNoticed = 0.1;
+/// and by this share of what is unconverged.
+inline constexpr double kUnconvergedNoticed = 0.1;
 /// Tolerance of what a second look has found, in tolerances.
 inline constexpr double kFoundTolerance = 4.0;
 /// Displacement since the last look, share of r, from which a rock is looked at again.
 inline constexpr double kGoneOn = 5e-3;
-/// Sweeps from look to look at watched contacts, and sweeps that follow on one that closes.
-inline constexpr int kWatchEvery = 2;
-inline constexpr int kAfterWatched = 2;
+/// Sweeps from look to look at speculative contacts, and sweeps that follow on one that closes.
+inline constexpr int kSpeculativeEvery = 2;
+inline constexpr int kAfterSpeculative = 2;
 /// Passes over the rotation of a free body for the first guess of a step.
 inline constexpr int kFreeTurns = 2;
 /// Rotation beyond the guessed one from which levers and gyroscopic moments are brought up to date,
@@ -311,9 +311,9 @@ inline constexpr double kSameBreak = 1e-9;
 
 /// Largest friction angle, degrees, drawn ones too: tan φ is 57 here.
 inline constexpr double kSteepestFriction = 89.0;
-/// Distance of the knots of a rough field in correlation lengths ℓ. The cubic B-spline, as a kernel
-/// on white noise, has the variance of exp(−2 r²/ℓ²) at √3/2; here the correlation is within 0.011
-/// of exp(−(r/ℓ)²) at all lags, and the slope within 1 % of √2 σ/ℓ.
+/// Distance of the knots of a unconverged field in correlation lengths ℓ. The cubic B-spline, as a
+/// kernel on white noise, has the variance of exp(−2 r²/ℓ²) at √3/2; here the correlation is within
+/// 0.011 of exp(−(r/ℓ)²) at all lags, and the slope within 1 % of √2 σ/ℓ.
 inline constexpr double kFieldKnots = 0.84;
 /// Nodes per length. At ½ ℓ the facets have 94 % of the root mean square slope of the field, at ¼ ℓ
 /// 98 %; an obstacle is ℓ across.

@@ -35,7 +35,7 @@ MassFall::MassFall(const Surface& surface, std::span<const Rock> rocks,
   {
     RockSimulator& sim =
       members_.add(surface, rocks[i], blocks[i], parameters, std::uint32_t(i)).sim;
-    sim.stiff_ = true; // strain follows the contacts of a group as at rest
+    sim.stiff_ = true; // strain follows the contacts of an island as at rest
     sim.ringing_ = 0.0;
   }
 }
@@ -62,7 +62,7 @@ void MassFall::Member::stand()
   const bool placed = sim.placed_.position() == s.position && sim.placed_.rotation() == rotation;
   if (!placed)
   {
-    sim.placed_.place(sim.block_, s);
+    sim.placed_.placeFrame(sim.block_, s);
   }
   if (!placed || body.position != s.position || body.rotation != rotation)
   {
@@ -198,7 +198,7 @@ void MassFall::tellBroken()
   }
 }
 
-bool MassFall::stays(Member& member) const
+bool MassFall::stays(Member& member)
 {
   const RockSimulator& sim = member.sim;
   if (sim.done_)
@@ -206,18 +206,19 @@ bool MassFall::stays(Member& member) const
     return true;
   }
   const double r = sim.block_.radius();
-  const auto wayFrom = [&](const Member::Place& place)
+  const auto displacementFrom = [&](const Member::Place& place)
   { return (sim.state_.position - place.position).norm(); };
   const auto turnFrom = [&](const Member::Place& place)
   { return r * sim.state_.orientation.angularDistance(place.orientation); };
   const double unit = std::sqrt(std::max(parameters_.gravity, kLeastGravity) * r); // m/s
   // Most go so far that how far they turn does not matter.
-  const double still = kStillSpeed * unit * kStillTime, way = wayFrom(member.stayed);
-  if (way > still || way + turnFrom(member.stayed) > still)
+  const double still = kStillSpeed * unit * kStillTime,
+               displacement = displacementFrom(member.stayed);
+  if (displacement > still || displacement + turnFrom(member.stayed) > still)
   {
     member.stayed = sim.state_;
   }
-  const double near = kLingerWay * r, further = wayFrom(member.lingered);
+  const double near = kLingerWay * r, further = displacementFrom(member.lingered);
   const auto turns = [&] { return r * sim.state_.spin.norm() > kLingerRim * unit; };
   if (further > near || (turns() && further + turnFrom(member.lingered) > near))
   {
@@ -226,7 +227,7 @@ bool MassFall::stays(Member& member) const
   return time_ - member.stayed.time >= kStillTime || time_ - member.lingered.time >= kLingerTime;
 }
 
-void MassFall::advanceAlone(Member& member, double until) const
+void MassFall::advanceAlone(Member& member, double until)
 {
   member.sim.advance(until);
   member.asleep =
@@ -244,35 +245,35 @@ bool MassFall::advanceAll()
 {
   const double until = std::min(time_ + parameters_.timeStep, parameters_.endTime);
   const double before = time_;
-  this->findGroups(until - time_);
-  // What takes longest first.
-  turns_.resize(groups_.size());
-  std::iota(turns_.begin(), turns_.end(), 0);
-  std::stable_sort(turns_.begin(), turns_.end(),
+  this->findIslands(until - time_);
+  // The largest first: they take longest.
+  order_.resize(islands_.size());
+  std::iota(order_.begin(), order_.end(), 0);
+  std::stable_sort(order_.begin(), order_.end(),
     [&](int a, int b)
-    { return groups_[std::size_t(a)].members.size() > groups_[std::size_t(b)].members.size(); });
+    { return islands_[std::size_t(a)].members.size() > islands_[std::size_t(b)].members.size(); });
   const auto advanceOne = [&](std::size_t k)
   {
-    if (k < groups_.size())
+    if (k < islands_.size())
     {
-      this->advanceGroup(groups_[std::size_t(turns_[k])], until);
+      this->advanceIsland(islands_[std::size_t(order_[k])], until);
       return;
     }
-    Member& m = *members_[std::size_t(alone_[k - groups_.size()])];
+    Member& m = *members_[std::size_t(alone_[k - islands_.size()])];
     this->advanceAlone(m, until);
-    this->stays(m); // to know when it comes back to a group
+    this->stays(m); // to know when it comes back to an island
   };
-  forEach(groups_.size() + alone_.size(), 1, advanceOne);
+  forEach(islands_.size() + alone_.size(), 1, advanceOne);
   time_ = until;
   this->tellBroken();
   if (!awake)
   {
-    for (const Group& group : groups_)
+    for (const Island& island : islands_)
     {
       std::atomic<bool> still = true, gone = false;
       const auto look = [&](std::size_t k)
       {
-        Member& m = *members_[std::size_t(group.members[k])];
+        Member& m = *members_[std::size_t(island.members[k])];
         if (!this->stays(m))
         {
           still.store(false, std::memory_order_relaxed);
@@ -282,17 +283,18 @@ bool MassFall::advanceAll()
           gone.store(true, std::memory_order_relaxed);
         }
       };
-      forEach(group.members.size(), kStayGrain, look);
+      forEach(island.members.size(), kStayGrain, look);
       if (gone)
       {
-        // Left the slope or was caught in this step: what it carried has yet to fall.
+        // A rock that left the slope or was caught in this step: rocks that it carried have yet to
+        // fall.
         still = false;
-        for (int i : group.members)
+        for (int i : island.members)
         {
           this->restAnew(i);
         }
       }
-      for (int i : group.members)
+      for (int i : island.members)
       {
         if (still && !members_[i]->sim.done_)
         {

@@ -3,20 +3,20 @@
 /// @file
 /// Rocks of one iteration that fall together and hit each other [paper 3.4].
 ///
-/// Time goes on in steps of Δt. In each, rocks that can touch within the step are groups; every
-/// group is a system of its own (system/GroupSolver.h), and whatever is alone goes on as if it were
-/// the only rock (RockSimulator): flight costs nothing, and without a meeting a stiff rock's way is
-/// the one that it has without collisions. One that is soft enough to ring in an impact does so
-/// only when it falls without collisions.
+/// Time goes on in steps of Δt. In each, rocks that can touch within the step are islands; every
+/// island is a system of its own (system/IslandSolver.h), and whatever is alone goes on as if it
+/// were the only rock (RockSimulator): flight costs nothing, and without a meeting a stiff rock's
+/// displacement is the one that it has without collisions. One that is soft enough to ring in an
+/// impact does so only when it falls without collisions.
 ///
-/// Small groups resolve their impacts in time like single rocks. In large ones an impact is an
+/// Small islands resolve their impacts in time like single rocks. In large ones an impact is an
 /// event of one step: what closes leaves with e times its speed of approach (Newton's law of
-/// restitution). Groups that have come to rest sleep until something touches them.
+/// restitution). Islands that have come to rest sleep until something touches them.
 
 #include "contact/pairs.h"
 #include "simulation/RockSimulator.h"
 #include "simulation/rockContacts.h"
-#include "system/GroupSolver.h"
+#include "system/IslandSolver.h"
 
 #include <functional>
 #include <memory>
@@ -43,7 +43,7 @@ public:
 
   // The same in parts.
   void release();
-  bool advance(); ///< One step of Δt; false when nothing moves any more.
+  bool advance(); ///< By Δt; false when nothing moves any more.
   double time() const { return time_; }
   int rocks() const { return int(members_.size()); }
   const BlockState& state(int rock) const { return members_[rock]->sim.state(); }
@@ -56,14 +56,14 @@ public:
   {
     return members_[rock]->sim.recorder_.trajectory().summary;
   }
-  /// Those near each other whose axis was ever looked for, by (first, second).
+  /// Pairs near each other whose axis was ever looked for, by (first, second).
   std::vector<const RockPair*> pairs() const;
   std::span<const Contact> slopeContacts(int rock) const { return members_[rock]->sim.contacts_; }
 
   /// Rocks never sleep: for tests of how still a pile stands.
   bool awake = false;
-  GroupMethod method = GroupMethod::Suited;
-  /// Largest group that resolves its impacts in time; fewer rocks if the smallest of them needs
+  IslandMethod method = IslandMethod::Suited;
+  /// Largest island that resolves its impacts in time; fewer rocks if the smallest of them needs
   /// more than a hundred steps in one of Δt.
   int resolved = 64;
 
@@ -80,7 +80,7 @@ private:
     /// Takes on `end` as where it stands, and returns whether it does.
     bool arrive();
 
-    /// Where, and since when, s, it has not gone far from.
+    /// A place from which the rock has not gone far since a time, s.
     struct Place
     {
       double time = 0.0;
@@ -96,15 +96,15 @@ private:
       }
     };
 
-    // What the step of a crowd needs of a rock lies together, before and behind where `sim` begins.
+    // Members that the step of a crowd needs lie together, before and behind where `sim` begins.
     Place stayed;
     Place lingered;  ///< The same, further and for longer.
     PlacedBlock end; ///< Of the step at hand, as long as it is being solved.
     PairBody body;
     PairBody endBody;
-    double turned = 0.0;        ///< Longest way about the centroid until then, by its turn, m.
-    std::uint64_t carriers = 0; ///< Which contacts with others carry.
-    int place = -1;             ///< Among the bodies of its group in the step at hand.
+    double rimTravel = 0.0; ///< Longest displacement about the centroid until then, by its turn, m.
+    std::uint64_t carriers = 0; ///< A number for the contacts with others that carry.
+    int place = -1;             ///< Among the bodies of its island in the step at hand.
     bool asleep = false;
     RockSimulator sim;
   };
@@ -120,24 +120,27 @@ private:
       first_ = all_.data();
       return added;
     }
-    Member* operator[](std::size_t i) const { return first_ + i; }
+    Member* operator[](std::size_t i) { return first_ + i; }
+    const Member* operator[](std::size_t i) const { return first_ + i; }
     std::size_t size() const { return all_.size(); }
-    Member* begin() const { return first_; }
-    Member* end() const { return first_ + all_.size(); }
+    Member* begin() { return first_; }
+    Member* end() { return first_ + all_.size(); }
+    const Member* begin() const { return first_; }
+    const Member* end() const { return first_ + all_.size(); }
 
   private:
     std::vector<Member> all_;
     Member* first_ = nullptr;
   };
-  struct Group
+  struct Island
   {
     std::vector<int> members;
     std::vector<RockPair*> pairs;
     bool crowd = false; ///< Too large to resolve its impacts in time.
   };
-  struct PartOfGroup
+  struct PartOfIsland
   {
-    Group group;
+    Island island;
     std::vector<std::size_t> sights; ///< Of its pairs (Parting::sights).
   };
   struct Workspace;
@@ -145,93 +148,110 @@ private:
   struct Trees;
   struct Parting;
 
-  void comeToRock(const Group& group, std::size_t k) const;
+  void comeToRock(const Island& island, std::size_t k) const;
 
-  /// Who may meet whom within the step: massFallMeet.cxx to massFallGroups.cxx.
-  void findGroups(double duration);
+  /// Islands of rocks that may meet within the step: massFallMeet.cxx to massFallIslands.cxx.
+  void findIslands(double duration);
   void wake(Member& member);
   void putToSleep(Member& member);
   /// Whether the two have touched within the time that rest takes.
   bool heldLately(const RockPair& pair) const;
-  void restAnew(int rock);          ///< As something has gone that it may have lain on or leant on.
-  void tellBroken();                ///< What a rock has broken is gone for all.
-  bool stays(Member& member) const; ///< Whether it has been still for long enough.
-  bool isCrowd(const Group& group) const;
+  void restAnew(int rock);    ///< As something has gone that it may have lain on or leant on.
+  void tellBroken();          ///< Structures that a rock has broken are gone for all.
+  bool stays(Member& member); ///< Whether it has been still for long enough.
+  bool isCrowd(const Island& island) const;
   bool advanceAll();
-  void advanceGroup(const Group& group, double until) const;
+  void advanceIsland(const Island& island, double until);
   /// As one system all the way, or only as long as its steps last. Returns the time reached, s.
-  double advanceTogether(const Group& group, double until, bool lastingOnly) const;
-  double timeOf(const Group& group, double until) const; ///< s; `until` if all are gone.
-  void advanceAlone(Member& member, double until) const;
-  // A group over its step in parts: massFallParts.cxx.
-  void advanceParts(const PartOfGroup& part, double from, double until, Parting& parting) const;
-  /// Those that may meet each other within a duration (s), and those that meet no other.
-  std::vector<PartOfGroup> fallApart(
-    const PartOfGroup& whole, double duration, Parting& parting) const;
+  double advanceTogether(const Island& island, double until, bool lastingOnly);
+  double timeOf(const Island& island, double until) const; ///< s; `until` if all are gone.
+  void advanceAlone(Member& member, double until);
+  // An island over its step in parts: massFallParts.cxx.
+  void advanceParts(const PartOfIsland& part, double from, double until, Parting& parting);
+  /// Parts of rocks that may meet each other within a duration (s), and rocks that meet no other.
+  std::vector<PartOfIsland> fallApart(const PartOfIsland& whole, double duration, Parting& parting);
   /// Whether it touches all through: no part of it moves by itself.
-  bool isOne(const Group& group, Parting& parting) const;
-  bool isCarried(const Group& group) const; ///< Whether something carries each of it.
+  bool isOne(const Island& island, Parting& parting) const;
+  bool isCarried(const Island& island) const; ///< Whether something carries each of it.
   double gapAlong(const RockPair& pair, const Parting& parting, std::size_t sight) const;
   /// Finds the axis of two rocks where they stand.
-  void sight(RockPair& pair, double reach, Parting& parting, std::size_t sight) const;
+  void sight(RockPair& pair, double reach, Parting& parting, std::size_t sight);
   /// How a rock may move within a duration (s) if no other strikes it.
   void foresee(const RockSimulator& sim, double duration, Pace& pace) const;
-  double groupStep(const Group& group) const;
-  void gatherContacts(const Group& group, double h, Workspace& work) const;
-  static void findPushes(const Group& group, Workspace& work);
+  double islandStep(const Island& island) const;
+  void gatherContacts(const Island& island, double h, Workspace& work);
+  static void findPushes(const Island& island, Workspace& work);
   /// Springs on the slope into which others press the rock.
   static void stiffenPressed(RockSimulator& sim);
-  void armPair(RockPair& pair, double h) const;
-  /// One of a crowd, whose dashpots are not asked for.
-  void armContact(const RockPair& pair, Contact& contact) const;
-  bool isCalm(const Group& group) const;
-  bool mayLast(const Group& group, double h) const;
-  double freeTime(const Group& group, double most) const;
-  /// For how long, at most `most`, nothing touches those of a calm group that nothing carries yet.
+  void setPairSprings(RockPair& pair, double h);
+  /// Springs of a contact in a crowd, whose dashpots are not asked for.
+  void setSprings(const RockPair& pair, Contact& contact);
+  bool isCalm(const Island& island) const;
+  bool mayLast(const Island& island, double h) const;
+  double freeTime(const Island& island, double most);
+  /// For how long, at most `most`, nothing touches those of a calm island that nothing carries yet.
   /// A lasting step must end before: its contacts are those of where it begins, and what falls or
   /// spins within it would come past them.
-  double freeOfFlying(const Group& group, double most, Workspace& work) const;
-  double freeOfSlope(RockSimulator& sim, double most) const;
+  double freeOfFlying(const Island& island, double most, Workspace& work);
+  double freeOfSlope(RockSimulator& sim, double most);
   double freeOfEachOther(const RockPair& pair, double gravity) const;
-  void fly(const Group& group, double duration) const;
-  void solve(const Group& group, double h, StepKind kind, bool bounces, Workspace& work) const;
+  void fly(const Island& island, double duration);
+  void solve(const Island& island, double h, StepKind kind, bool bounces, Workspace& work);
   /// Deep overlaps of the two, before a lasting step.
-  void pressOutDeep(RockPair& pair, double h, bool crowd, const Workspace& work) const;
+  void pressOutDeep(RockPair& pair, double h, bool crowd, const Workspace& work);
   /// Gives rocks, pairs and contacts their places in the system; returns how many rocks have one.
-  std::size_t layOut(const Group& group, Workspace& work) const;
+  std::size_t layOut(const Island& island, Workspace& work);
   /// No bounce for what meets several (mayBounce).
   void settleBounces(bool lasting, Workspace& work) const;
-  /// What a contact is in a step of `h`; between rocks an impact begins with it if it closes fast.
-  GroupContact take(RockPair& pair, const PairMotion& motion, Contact& contact, double h,
-    bool bounces, const Workspace& work) const;
-  GroupContact take(const Member& member, Contact& contact, double h, bool bounces) const;
-  /// Contacts that nobody reckoned with, seen where a step would end: they are appended. Returns
-  /// how deep the deepest is, of the smaller radius; 0: none.
-  LookOutcome lookAgain(const Group& group, double h, bool bounces, Workspace& work) const;
-  double lookAtPassed(const Group& group, const Workspace& work) const; ///< LookOutcome::passed
-  double lookAtPairs(const Group& group, double h, bool bounces, Workspace& work) const;
-  double lookAtSlope(const Group& group, double h, bool bounces, Workspace& work) const;
+  /// A contact in a step of `h`, for the solver; between rocks an impact begins with it if it
+  /// closes fast.
+  IslandContact islandContact(RockPair& pair, const PairMotion& motion, Contact& contact, double h,
+    bool bounces, const Workspace& work);
+  IslandContact islandContact(const Member& member, Contact& contact, double h, bool bounces) const;
+  /// Appends contacts that show only where a step would end. Returns the depth of the deepest, of
+  /// the smaller radius; 0: none.
+  LookOutcome lookAgain(const Island& island, double h, bool bounces, Workspace& work);
+  double lookAtPassed(const Island& island, const Workspace& work) const; ///< LookOutcome::passed
+  double lookAtPairs(const Island& island, double h, bool bounces, Workspace& work);
+  /// Whether two rocks overlap where the step would end, deeper than a contact of theirs; finds
+  /// their axis there.
+  bool findMissed(const Island& island, std::size_t p, const Workspace& work);
+  /// Contacts of the missed pair of this number.
+  double addMissed(const Island& island, std::size_t m, double h, bool bounces, Workspace& work);
+  static double smallerRadius(const RockPair& pair, const Workspace& work); ///< m
+  /// Gap of a contact where the step would end, without its offset, m.
+  static double overlapAt(std::size_t contact, const Workspace& work);
+  /// Least of a pair's, at most 0, m.
+  static double deepestOf(std::size_t pair, const Workspace& work);
+  double lookAtSlope(const Island& island, double h, bool bounces, Workspace& work);
   /// Contacts of a rock with the slope where a step would end: those that are reckoned with, then
   /// those that are not. Returns how many the former are.
-  std::size_t touchesOnSlope(const Group& group, std::size_t m, const CandidatePairs& near,
+  std::size_t touchesOnSlope(const Island& island, std::size_t m, const CandidatePairs& near,
     Workspace& work, std::vector<Contact>& touches) const;
-  void add(GroupContact taken, bool bounces, Workspace& work) const;
+  void add(IslandContact touch, bool bounces, Workspace& work) const;
   // Trees that rocks are driven into within the step: massFallTrees.cxx.
-  void standTrees(const Group& group, Workspace& work) const; ///< All of them again.
+  void standTrees(const Island& island, Workspace& work) const; ///< All of them again.
   /// Whether any was let go, or set in again.
-  bool lookAtTrees(const Group& group, double h, Workspace& work) const;
-  /// Those that a rock has broken in the step that it has absorbed.
-  void fellTrees(const Group& group, std::size_t member, const Workspace& work) const;
-  void absorb(const Group& group, double h, StepKind kind, Workspace& work) const;
+  bool lookAtTrees(const Island& island, double h, Workspace& work) const;
+  /// Breaks trees that could not hold a rock in the step that it has gone.
+  void fellTrees(const Island& island, std::size_t member, const Workspace& work);
+  void applyStep(const Island& island, double h, StepKind kind, Workspace& work);
+  // Its parts: a pair, by number among those that touch; contacts that were missed at first; a rock
+  // of the island; the axis of a pair where the step ends, if it was looked at there.
+  void applyToPair(const Island& island, std::size_t t, double h, StepKind kind, Workspace& work);
+  static void bookContact(RockPair& pair, const IslandContact& touch, double h);
+  void applyMissed(const Island& island, double h, StepKind kind, Workspace& work);
+  void applyToRock(const Island& island, std::size_t k, double h, StepKind kind, Workspace& work);
+  void keepAxis(const Island& island, std::size_t p, const Workspace& work);
   /// An impact of the two, unless one is under way; as they were before it, and where (m).
   void beginPairImpact(
-    RockPair& pair, const BlockState& first, const BlockState& second, const Vec3& point) const;
-  /// One that began within a step of `h`: rocks that were apart, and that others drove together.
-  void findKnock(RockPair& pair, const GroupContact& taken, double h) const;
+    RockPair& pair, const BlockState& first, const BlockState& second, const Vec3& point);
+  /// An impact that began within a step of `h`: others drove rocks together that were apart.
+  void findKnock(RockPair& pair, const IslandContact& touch, double h);
   /// An event, if it is one. `over`: else time ends in the middle of it, and what the springs hold
   /// is not lost.
-  void finishPairImpact(RockPair& pair, bool over = true) const;
-  void closePairBooks(RockPair& pair) const; ///< What it has lost, to the two rocks.
+  void finishPairImpact(RockPair& pair, bool over = true);
+  void closePairBooks(RockPair& pair); ///< Books its losses on the two rocks.
   PairMotion motionOf(const RockPair& pair) const;
 
   const Surface& surface_;
@@ -240,10 +260,10 @@ private:
   RockContacts contacts_;
   Members members_;
   std::unique_ptr<Meetings> meetings_;
-  std::vector<Group> groups_;
+  std::vector<Island> islands_;
   std::vector<int> alone_;
-  std::vector<int> turns_;   ///< Groups in the order in which they are gone over.
-  std::vector<int> groupOf_; ///< By the first rock of a group.
+  std::vector<int> order_;    ///< Islands in the order in which they are gone over.
+  std::vector<int> islandOf_; ///< By the first rock of an island.
 };
 
 } // namespace rockfall

@@ -49,6 +49,7 @@ public:
   void end(const BlockState& state, bool contact);
 
   Trajectory& trajectory() { return trajectory_; }
+  const Trajectory& trajectory() const { return trajectory_; }
 
 private:
   bool isAt(double time) const; ///< Whether the last sample is.

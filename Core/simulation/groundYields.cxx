@@ -226,7 +226,11 @@ void RockSimulator::flyThroughSoil(double duration)
           between.position = placeInFlight(start, parameters_.gravity, fraction * piece);
           between.orientation = turnedBetween(start.orientation, end.orientation, fraction);
         }
-        placed.place(block_, between);
+        placed.placeFrame(block_, between);
+        if (spin == 0.0)
+        {
+          placed.placeVertices(); // a straight way looks at corners
+        }
         return placed;
       };
       const double volume = scar_.sweep(at, spin > 0.0);

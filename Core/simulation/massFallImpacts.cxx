@@ -8,7 +8,7 @@ namespace rockfall
 {
 
 void MassFall::beginPairImpact(
-  RockPair& pair, const BlockState& first, const BlockState& second, const Vec3& point) const
+  RockPair& pair, const BlockState& first, const BlockState& second, const Vec3& point)
 {
   RockPair::Impact& impact = pair.impact;
   if (pair.strikes)
@@ -23,16 +23,16 @@ void MassFall::beginPairImpact(
   impact.point = point;
 }
 
-void MassFall::findKnock(RockPair& pair, const GroupContact& taken, double h) const
+void MassFall::findKnock(RockPair& pair, const IslandContact& touch, double h)
 {
-  const Contact& c = *taken.contact;
-  if (taken.closed || c.normalForce <= 0.0)
+  const Contact& c = *touch.contact;
+  if (touch.closed || c.normalForce <= 0.0)
   {
     return;
   }
   const RockSimulator &a = members_[pair.first]->sim, &b = members_[pair.second]->sim;
   const double resting = std::min(a.restingSpeed_, b.restingSpeed_);
-  const double closing = -taken.way / h;
+  const double closing = -touch.opening / h;
   if (closing > resting + parameters_.gravity * h)
   {
     this->beginPairImpact(pair, a.before_, b.before_, c.point);
@@ -40,7 +40,7 @@ void MassFall::findKnock(RockPair& pair, const GroupContact& taken, double h) co
   }
 }
 
-void MassFall::finishPairImpact(RockPair& pair, bool over) const
+void MassFall::finishPairImpact(RockPair& pair, bool over)
 {
   RockPair::Impact& impact = pair.impact;
   if (!pair.strikes)
@@ -80,7 +80,7 @@ void MassFall::finishPairImpact(RockPair& pair, bool over) const
   }
 }
 
-void MassFall::closePairBooks(RockPair& pair) const
+void MassFall::closePairBooks(RockPair& pair)
 {
   this->finishPairImpact(pair, false);
   for (const int i : { pair.first, pair.second })

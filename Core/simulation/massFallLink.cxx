@@ -1,6 +1,5 @@
-// Which of the rocks that are near each other may meet within the step: massFallMeet.cxx says by
-// what bounds, massFallWays.cxx what they pass on to each other, massFallGroups.cxx what groups
-// they are.
+// Pairs of rocks near each other that may meet within the step, by the bounds of massFallMeet.cxx;
+// velocities and displacements that rocks pass on: massFallReach.cxx; islands: massFallIslands.cxx.
 
 #include "simulation/massFallMeet.h"
 
@@ -18,7 +17,7 @@ namespace
 
 constexpr std::size_t kLookGrain = 16;
 
-/// So many pairs ahead the cache is asked for one.
+/// Pairs that the cache is asked for ahead.
 constexpr std::size_t kNearsAhead = 8;
 
 } // namespace
@@ -28,28 +27,29 @@ void MassFall::Meetings::lookAlong(Near& n) const
 {
   const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
   n.normal = n.pair->axis.normal;
-  n.offset = n.pair->axis.distance - n.normal.dot(a.position - b.position) + a.turned + b.turned;
+  n.offset =
+    n.pair->axis.distance - n.normal.dot(a.position - b.position) + a.rimTravel + b.rimTravel;
 }
 
 double MassFall::Meetings::gap(const Near& n) const
 {
   const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
-  return n.offset + n.normal.dot(a.position - b.position) - a.turned - b.turned;
+  return n.offset + n.normal.dot(a.position - b.position) - a.rimTravel - b.rimTravel;
 }
 
-/// How far apart they are at least, along the axis and by their bounding spheres, m.
+/// Least distance of the two, along the axis and by their bounding spheres, m.
 double MassFall::Meetings::apart(const Near& n) const
 {
   const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
   return std::max(this->gap(n), (a.position - b.position).norm() - a.radius - b.radius);
 }
 
-/// How fast the gap may close along its normal, m/s.
+/// Speed at which the gap may close along its normal, m/s.
 inline double MassFall::Meetings::closing(const Near& n) const
 {
   const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
-  return closingSpeed(companies_[std::size_t(roots_[i])], paces_[i],
-    companies_[std::size_t(roots_[j])], paces_[j], n.normal);
+  return closingSpeed(bounds_[std::size_t(roots_[i])], paces_[i], bounds_[std::size_t(roots_[j])],
+    paces_[j], n.normal);
 }
 
 /// The widest gap over which the two may meet.
@@ -63,7 +63,7 @@ inline double MassFall::Meetings::reach(const Near& n) const
 
 bool MassFall::Meetings::mayMeet(const Open& o) const
 {
-  // By their ways alone first: that tells most of them apart.
+  // By their displacements alone first: that tells most of them apart.
   return o.apart <= fars_[std::size_t(o.first)] + fars_[std::size_t(o.second)] + fall_ &&
     o.apart <= this->reach(near[std::size_t(o.near)]);
 }
@@ -105,8 +105,8 @@ bool MassFall::Meetings::meet(const MassFall& fall, std::size_t k)
   }
 }
 
-/// What has to be known of all that are near each other before the first of them are linked. Of a
-/// crowd the ways are known by now: its rocks are linked here.
+/// Looks at all pairs near each other before the first of them are linked. Displacements of a crowd
+/// are known by now: its rocks are linked here.
 void MassFall::Meetings::look(MassFall& fall)
 {
   const std::size_t count = near.size(), parts = (count + kNearPart - 1) / kNearPart;
@@ -145,17 +145,17 @@ void MassFall::Meetings::look(MassFall& fall)
       n.linked = false;
       n.looked = -1.0;
       n.seen = n.holds && n.pair->seen; // found where they stand
-      const double turned = a.turned + b.turned;
+      const double rimTravel = a.rimTravel + b.rimTravel;
       bool overlap = false;
       if (n.seen)
       {
         const PairAxis& axis = n.pair->axis;
         n.normal = axis.normal;
-        n.offset = axis.distance - n.normal.dot(between) + turned;
+        n.offset = axis.distance - n.normal.dot(between) + rimTravel;
         overlap = axis.distance <= 0.0;
       }
       const double apart =
-        std::max(n.offset + n.normal.dot(between) - turned, std::sqrt(distance2) - radii);
+        std::max(n.offset + n.normal.dot(between) - rimTravel, std::sqrt(distance2) - radii);
       aparts[k] = apart;
       if (asleep || (!overlap && apart > known))
       {
@@ -207,7 +207,7 @@ MassFall::Meetings::Open MassFall::Meetings::openOf(std::size_t k) const
   return { aparts_[k], near[k].first, near[k].second, int(k) };
 }
 
-/// Takes up those about rocks whose ways have outgrown what was known.
+/// Takes up those about rocks whose displacements have outgrown what was known.
 void MassFall::Meetings::widen()
 {
   for (std::size_t k = states_.size(); k < near.size(); ++k)
@@ -245,22 +245,22 @@ bool MassFall::Meetings::sweep(MassFall& fall)
     // Parents come before their children.
     roots_[i] = parents_[i] = roots_[std::size_t(parents_[i])];
     Mover& m = movers[i];
-    const Company& company = companies_[std::size_t(roots_[i])];
-    if (company.size == 1)
+    const IslandBounds& bounds = bounds_[std::size_t(roots_[i])];
+    if (bounds.size == 1)
     {
       continue;
     }
     thrown_[i] = this->thrown(i);
-    if (m.shares && m.way < company.longest)
+    if (m.shares && m.displacement < bounds.longest)
     {
-      m.way = company.longest;
+      m.displacement = bounds.longest;
       if (firstLink_[i] >= 0)
       {
-        turns_.add(int(i), m.way);
+        queue_.add(int(i), m.displacement);
         any = true;
       }
     }
-    fars_[i] = thrown_[i] * m.way;
+    fars_[i] = thrown_[i] * m.displacement;
     if (fars_[i] + fall_ > m.known && m.present && !m.asleep)
     {
       m.known = kWider * (fars_[i] + fall_);
@@ -303,7 +303,7 @@ bool MassFall::Meetings::sweep(MassFall& fall)
     Near& n = near[k];
     if (n.pair && n.looked < 0.0 && (this->stays(n) || this->root(n.first) == this->root(n.second)))
     {
-      // Of one company they are: how far apart is looked at when their contacts are.
+      // Of one island they are: how far apart is looked at when their contacts are.
       any |= this->join(fall, k, false);
       continue;
     }
@@ -353,7 +353,7 @@ void MassFall::Meetings::link(MassFall& fall)
   firstLink_.assign(movers.size(), -1);
   links_.clear();
   links_.reserve(near.size());
-  turns_.reset(movers.size(), longest_);
+  queue_.reset(movers.size(), longest_);
   this->look(fall);
   this->tell(fall);
   while (this->sweep(fall))

@@ -53,57 +53,58 @@ void carryBack(const PlacedBlock& firstEnd, const PlacedBlock& secondEnd,
 
 } // namespace
 
-LookOutcome MassFall::lookAgain(const Group& group, double h, bool bounces, Workspace& work) const
+LookOutcome MassFall::lookAgain(const Island& island, double h, bool bounces, Workspace& work)
 {
   const auto place = [&](std::size_t k)
   {
-    this->comeToRock(group, k);
-    Member& m = *members_[group.members[k]];
+    this->comeToRock(island, k);
+    Member& m = *members_[island.members[k]];
     if (m.sim.done_)
     {
       return;
     }
     const std::size_t at = std::size_t(m.place);
-    Workspace::Way& way = work.ways[at];
-    way.moved = work.solver.moved(at);
-    if (way.moved)
+    Workspace::Motion& motion = work.motions[at];
+    motion.moved = work.solver.moved(at);
+    if (motion.moved)
     {
       const BlockState end = work.solver.end(work.bodies, at);
-      m.end.place(m.sim.block_, end);
+      m.end.placeFrame(m.sim.block_, end);
       m.endBody.update(m.end);
-      way.way = end.position - m.sim.state_.position;
-      way.turned = wayOfTurn(m.sim.state_.orientation, end.orientation, m.sim.block_.radius());
-      way.low = m.sim.solid_ || !m.sim.isHighAt(end.position, 0.0);
+      motion.displacement = end.position - m.sim.state_.position;
+      motion.rimTravel =
+        rimTravel(m.sim.state_.orientation, end.orientation, m.sim.block_.radius());
+      motion.low = m.sim.solid_ || !m.sim.isHighAt(end.position, 0.0);
     }
   };
-  forEach(group.members.size(), kRockGrain, place);
+  forEach(island.members.size(), kRockGrain, place);
   work.looked = true;
   LookOutcome seen;
-  seen.passed = this->lookAtPassed(group, work);
-  seen.missed = this->lookAtPairs(group, h, bounces, work);
-  // Who resolves his impacts takes steps so short that what he may reach is known.
-  if (group.crowd)
+  seen.passed = this->lookAtPassed(island, work);
+  seen.missed = this->lookAtPairs(island, h, bounces, work);
+  // Steps that resolve impacts are so short that all they may reach is known.
+  if (island.crowd)
   {
-    seen.missed = std::max(seen.missed, this->lookAtSlope(group, h, bounces, work));
+    seen.missed = std::max(seen.missed, this->lookAtSlope(island, h, bounces, work));
   }
-  seen.again = this->lookAtTrees(group, h, work);
+  seen.again = this->lookAtTrees(island, h, work);
   return seen;
 }
 
-void MassFall::add(GroupContact taken, bool bounces, Workspace& work) const
+void MassFall::add(IslandContact touch, bool bounces, Workspace& work) const
 {
   if (bounces)
   {
-    meet(work.partners, taken);
-    taken.bounce = mayBounce(work.partners, taken) ? taken.bounce : -1.0;
+    meet(work.partners, touch);
+    touch.bounce = mayBounce(work.partners, touch) ? touch.bounce : -1.0;
   }
-  work.contacts.push_back(taken);
+  work.contacts.push_back(touch);
 }
 
-std::size_t MassFall::touchesOnSlope(const Group& group, std::size_t m, const CandidatePairs& near,
-  Workspace& work, std::vector<Contact>& touches) const
+std::size_t MassFall::touchesOnSlope(const Island& island, std::size_t m,
+  const CandidatePairs& near, Workspace& work, std::vector<Contact>& touches) const
 {
-  const Member& member = *members_[group.members[m]];
+  const Member& member = *members_[island.members[m]];
   const RockSimulator& sim = member.sim;
   touches.clear();
   double pressed = 0.0;
@@ -137,24 +138,27 @@ std::size_t MassFall::touchesOnSlope(const Group& group, std::size_t m, const Ca
   return known;
 }
 
-double MassFall::lookAtSlope(const Group& group, double h, bool bounces, Workspace& work) const
+double MassFall::lookAtSlope(const Island& island, double h, bool bounces, Workspace& work)
 {
   const auto candidatesOf = [&](std::size_t m) -> const CandidatePairs&
   {
-    Member& member = *members_[group.members[m]];
+    Member& member = *members_[island.members[m]];
     const std::size_t place = std::size_t(member.place);
-    const Workspace::Way& way = work.ways[place];
+    const Workspace::Motion& motion = work.motions[place];
+    member.sim.placed_.placeVertices();
+    member.end.placeVertices();
     return member.sim.candidatesAt(work.solver.end(work.bodies, place), member.end, member.endBody,
-      way.way.norm() + way.turned, kLooseOverlap * member.sim.block_.radius());
+      motion.displacement.norm() + motion.rimTravel, kLooseOverlap * member.sim.block_.radius());
   };
   const auto isMissed = [&](std::size_t m)
   {
-    const int place = work.placeOf[std::size_t(group.members[m])];
-    if (place < 0 || !work.ways[std::size_t(place)].moved || !work.ways[std::size_t(place)].low)
+    const int place = work.placeOf[std::size_t(island.members[m])];
+    if (place < 0 || !work.motions[std::size_t(place)].moved ||
+      !work.motions[std::size_t(place)].low)
     {
       return false;
     }
-    const Member& member = *members_[group.members[m]];
+    const Member& member = *members_[island.members[m]];
     const RockSimulator& sim = member.sim;
     const CandidatePairs& near = candidatesOf(m);
     if (!overlaps(member.end, sim.patch_, near, kLooseOverlap * sim.block_.radius()))
@@ -162,19 +166,19 @@ double MassFall::lookAtSlope(const Group& group, double h, bool bounces, Workspa
       return false;
     }
     thread_local std::vector<Contact> touches;
-    const std::size_t known = this->touchesOnSlope(group, m, near, work, touches);
+    const std::size_t known = this->touchesOnSlope(island, m, near, work, touches);
     return touches.size() > known;
   };
   double deepest = 0.0;
   work.missed.clear();
-  forThose(group.members.size(), kRockGrain, work.flags, isMissed,
+  forThose(island.members.size(), kRockGrain, work.flags, isMissed,
     [&](std::size_t m) { work.missed.push_back(m); });
   work.found.resize(std::max<std::size_t>(1, work.found.size()));
   std::vector<Contact>& touches = work.found.front();
   for (const std::size_t m : work.missed)
   {
-    Member& member = *members_[group.members[m]];
-    for (std::size_t k = this->touchesOnSlope(group, m, candidatesOf(m), work, touches);
+    Member& member = *members_[island.members[m]];
+    for (std::size_t k = this->touchesOnSlope(island, m, candidatesOf(m), work, touches);
          k < touches.size(); ++k)
     {
       Contact& c = touches[k];
@@ -185,13 +189,13 @@ double MassFall::lookAtSlope(const Group& group, double h, bool bounces, Workspa
       member.sim.armContact(c);
       work.added.push_back(c);
       work.addedTo.push_back({ true, m, c });
-      this->add(this->take(member, work.added.back(), h, bounces), bounces, work);
+      this->add(this->islandContact(member, work.added.back(), h, bounces), bounces, work);
     }
   }
   return deepest;
 }
 
-double MassFall::lookAtPassed(const Group& group, const Workspace& work) const
+double MassFall::lookAtPassed(const Island& island, const Workspace& work) const
 {
   double most = 0.0;
   for (std::size_t k = 0; k < work.added.size(); ++k)
@@ -202,7 +206,7 @@ double MassFall::lookAtPassed(const Group& group, const Workspace& work) const
     {
       continue;
     }
-    const RockPair& pair = *group.pairs[added.of];
+    const RockPair& pair = *island.pairs[added.of];
     const double smaller = std::min(
       work.sides[std::size_t(pair.first)].radius, work.sides[std::size_t(pair.second)].radius);
     const double before = std::min(0.0, pair.axis.distance);
@@ -212,134 +216,150 @@ double MassFall::lookAtPassed(const Group& group, const Workspace& work) const
   return most;
 }
 
-double MassFall::lookAtPairs(const Group& group, double h, bool bounces, Workspace& work) const
+double MassFall::smallerRadius(const RockPair& pair, const Workspace& work)
 {
-  const auto smaller = [&](const RockPair& pair)
+  return std::min(
+    work.sides[std::size_t(pair.first)].radius, work.sides[std::size_t(pair.second)].radius);
+}
+
+double MassFall::overlapAt(std::size_t contact, const Workspace& work)
+{
+  return work.solver.gap(contact) + work.contacts[contact].contact->offset;
+}
+
+double MassFall::deepestOf(std::size_t pair, const Workspace& work)
+{
+  double least = 0.0;
+  for (std::size_t k = work.firsts[pair]; k < work.firsts[pair + 1]; ++k)
   {
-    return std::min(
-      work.sides[std::size_t(pair.first)].radius, work.sides[std::size_t(pair.second)].radius);
-  };
-  const auto allowed = [&](const RockPair& pair) { return kMissed * smaller(pair); };
+    least = std::min(least, overlapAt(k, work));
+  }
+  return least;
+}
+
+bool MassFall::findMissed(const Island& island, std::size_t p, const Workspace& work)
+{
+  comeToPair(island.pairs, p);
+  RockPair& pair = *island.pairs[p];
+  const std::array<int, 2>& places = work.places[p];
+  if (places[0] < 0 || places[1] < 0)
+  {
+    return false;
+  }
+  const Workspace::Motion& first = work.motions[std::size_t(places[0])];
+  const Workspace::Motion& second = work.motions[std::size_t(places[1])];
+  if (!first.moved && !second.moved)
+  {
+    return false;
+  }
+  bool touches = false;
+  const IslandContact* const end = work.contacts.data() + work.firsts[p + 1];
+  for (const IslandContact* k = work.contacts.data() + work.firsts[p]; k != end && !touches; ++k)
+  {
+    touches = k->closed;
+  }
+  if (!touches)
+  {
+    // Along the axis where the step began they may still be apart.
+    const double gap = pair.axis.distance +
+      pair.axis.normal.dot(first.displacement - second.displacement) - first.rimTravel -
+      second.rimTravel;
+    if (gap > 0.0)
+    {
+      pair.end = pair.axis;
+      pair.end.distance = gap;
+      return false;
+    }
+  }
+  pair.end =
+    findAxis(members_[pair.first]->endBody, members_[pair.second]->endBody, pair.axis, 0.0);
+  const double deep = -kMissed * smallerRadius(pair, work);
+  if (pair.end.kind == PairAxis::Kind::None || !(pair.end.distance < deep))
+  {
+    return false;
+  }
+  // Mostly one of the contacts is as deep.
+  std::size_t k = work.firsts[p];
+  while (k < work.firsts[p + 1] && pair.end.distance < overlapAt(k, work) + deep)
+  {
+    ++k;
+  }
+  return k == work.firsts[p + 1];
+}
+
+double MassFall::addMissed(
+  const Island& island, std::size_t m, double h, bool bounces, Workspace& work)
+{
+  double most = 0.0;
   const std::size_t firstAdded = work.firsts.back();
-  const auto gapAt = [&](std::size_t k)
-  { return work.solver.gap(k) + work.contacts[k].contact->offset; };
-  const auto deepest = [&](std::size_t p)
+  const auto isAddedTo = [&](std::size_t k, std::size_t p)
+  { return !work.addedTo[k].onSlope && work.addedTo[k].of == p; };
+  const std::size_t p = work.missed[m];
+  RockPair& pair = *island.pairs[p];
+  const Member &a = *members_[pair.first], &b = *members_[pair.second];
+  const PairMotion motion = work.motionOf(pair);
+  for (Contact& c : work.found[m])
   {
-    double least = 0.0;
-    for (std::size_t k = work.firsts[p]; k < work.firsts[p + 1]; ++k)
+    // A contact that is there already was reckoned wrong.
+    const auto same = [&](std::size_t k)
     {
-      least = std::min(least, gapAt(k));
+      const Contact& old = *work.contacts[k].contact;
+      return old.kind == c.kind && old.rockFeature == c.rockFeature &&
+        old.surfaceFeature == c.surfaceFeature;
+    };
+    std::size_t known = work.firsts[p];
+    while (known < work.firsts[p + 1] && !same(known))
+    {
+      ++known;
     }
-    return least;
-  };
-  const auto compare = [&](std::size_t p)
-  {
-    comeToPair(group.pairs, p);
-    RockPair& pair = *group.pairs[p];
-    const std::array<int, 2>& places = work.places[p];
-    if (places[0] < 0 || places[1] < 0)
+    if (known == work.firsts[p + 1])
     {
-      return false;
-    }
-    const Workspace::Way& first = work.ways[std::size_t(places[0])];
-    const Workspace::Way& second = work.ways[std::size_t(places[1])];
-    if (!first.moved && !second.moved)
-    {
-      return false;
-    }
-    bool touches = false;
-    const GroupContact* const end = work.contacts.data() + work.firsts[p + 1];
-    for (const GroupContact* k = work.contacts.data() + work.firsts[p]; k != end && !touches; ++k)
-    {
-      touches = k->closed;
-    }
-    if (!touches)
-    {
-      // Along the axis where the step began they may still be apart.
-      const double gap = pair.axis.distance + pair.axis.normal.dot(first.way - second.way) -
-        first.turned - second.turned;
-      if (gap > 0.0)
+      known = firstAdded;
+      while (known < work.contacts.size() && !(isAddedTo(known - firstAdded, p) && same(known)))
       {
-        pair.end = pair.axis;
-        pair.end.distance = gap;
-        return false;
+        ++known;
       }
     }
-    pair.end =
-      findAxis(members_[pair.first]->endBody, members_[pair.second]->endBody, pair.axis, 0.0);
-    const double deep = -allowed(pair);
-    if (pair.end.kind == PairAxis::Kind::None || !(pair.end.distance < deep))
+    if (known < work.contacts.size())
     {
-      return false;
+      const double gap = c.distance - work.contacts[known].contact->offset;
+      const double wrong = std::abs(work.solver.gap(known) - gap) / smallerRadius(pair, work);
+      most = work.solver.setGap(known, gap) ? std::max(most, wrong) : most;
+      continue;
     }
-    // Mostly one of the contacts is as deep.
-    std::size_t k = work.firsts[p];
-    while (k < work.firsts[p + 1] && pair.end.distance < gapAt(k) + deep)
-    {
-      ++k;
-    }
-    return k == work.firsts[p + 1];
-  };
+    most = std::max(most, (deepestOf(p, work) - c.distance) / smallerRadius(pair, work));
+    carryBack(a.end, b.end, a.sim.placed_, b.sim.placed_, c);
+    this->setSprings(pair, c);
+    work.added.push_back(c);
+    work.addedTo.push_back({ false, p, c });
+    this->add(
+      this->islandContact(pair, motion, work.added.back(), h, bounces, work), bounces, work);
+  }
+  return most;
+}
+
+double MassFall::lookAtPairs(const Island& island, double h, bool bounces, Workspace& work)
+{
   work.missed.clear();
-  forThose(group.pairs.size(), kPairGrain, work.flags, compare,
+  forThose(
+    island.pairs.size(), kPairGrain, work.flags,
+    [&](std::size_t p) { return this->findMissed(island, p, work); },
     [&](std::size_t p) { work.missed.push_back(p); });
   work.found.resize(std::max(work.found.size(), work.missed.size()));
   const auto findThem = [&](std::size_t m)
   {
-    RockPair& pair = *group.pairs[work.missed[m]];
+    RockPair& pair = *island.pairs[work.missed[m]];
     const Member &a = *members_[pair.first], &b = *members_[pair.second];
-    const double limit = deepest(work.missed[m]) - allowed(pair);
+    const double limit = deepestOf(work.missed[m], work) - kMissed * smallerRadius(pair, work);
     findTouches(a.endBody, b.endBody, pair.end, 0.0, work.found[m], limit);
   };
   forEach(work.missed.size(), kMissedGrain, findThem);
-  const auto isAddedTo = [&](std::size_t k, std::size_t p)
-  { return !work.addedTo[k].onSlope && work.addedTo[k].of == p; };
   double most = 0.0;
   for (std::size_t m = 0; m < work.missed.size(); ++m)
   {
-    if (work.found[m].empty())
+    if (!work.found[m].empty())
     {
-      continue;
-    }
-    const std::size_t p = work.missed[m];
-    RockPair& pair = *group.pairs[p];
-    const Member &a = *members_[pair.first], &b = *members_[pair.second];
-    const PairMotion motion = work.motionOf(pair);
-    for (Contact& c : work.found[m])
-    {
-      // One that is there already was reckoned wrong.
-      const auto same = [&](std::size_t k)
-      {
-        const Contact& old = *work.contacts[k].contact;
-        return old.kind == c.kind && old.rockFeature == c.rockFeature &&
-          old.surfaceFeature == c.surfaceFeature;
-      };
-      std::size_t known = work.firsts[p];
-      while (known < work.firsts[p + 1] && !same(known))
-      {
-        ++known;
-      }
-      if (known == work.firsts[p + 1])
-      {
-        known = firstAdded;
-        while (known < work.contacts.size() && !(isAddedTo(known - firstAdded, p) && same(known)))
-        {
-          ++known;
-        }
-      }
-      if (known < work.contacts.size())
-      {
-        const double gap = c.distance - work.contacts[known].contact->offset;
-        const double wrong = std::abs(work.solver.gap(known) - gap) / smaller(pair);
-        most = work.solver.setGap(known, gap) ? std::max(most, wrong) : most;
-        continue;
-      }
-      most = std::max(most, (deepest(p) - c.distance) / smaller(pair));
-      carryBack(a.end, b.end, a.sim.placed_, b.sim.placed_, c);
-      this->armContact(pair, c);
-      work.added.push_back(c);
-      work.addedTo.push_back({ false, p, c });
-      this->add(this->take(pair, motion, work.added.back(), h, bounces, work), bounces, work);
+      most = std::max(most, this->addMissed(island, m, h, bounces, work));
     }
   }
   return most;

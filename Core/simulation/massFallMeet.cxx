@@ -1,18 +1,18 @@
-// Which rocks are near each other in a step; which of them may meet: massFallLink.cxx.
+// Rocks that are near each other in a step; those of them that may meet: massFallLink.cxx.
 //
-// Those near each other are looked for in balls about the rocks wide enough for a few steps, and
-// again when a rock may come out of its own: for this one alone, or, if there are many such, for
-// all.
+// Neighbours are looked for in balls about the rocks, wide enough for a few steps, and again when a
+// rock may come out of its own: for this one alone, or, if there are many such, for all.
 //
 // Two rocks may meet if their gap can close within the step. How fast it closes follows from what
 // their velocities can become: those of a rock that flies are known; what touches the slope may be
-// stopped or thrown back; and what belongs to a company of rocks that may touch each other may get
+// stopped or thrown back; and what belongs to a island of rocks that may touch each other may get
 // any velocity that is among theirs, by impacts from rock to rock. On the other hand no rock goes
-// further than its own way, or than what is left of the way of the one that strikes it, less the
-// gaps that had to be crossed before. The smaller of the two bounds holds.
+// further than its own displacement, or than what is left of the displacement of the one that
+// strikes it, less the gaps that had to be crossed before. The smaller of the two bounds holds.
 //
-// In a crowd the gaps are mostly none, and all get about the longest way of all: rocks that were
-// one crowd in the last step are one company from the beginning, and share its longest way.
+// In a crowd the gaps are mostly none, and all get about the longest displacement of all: rocks
+// that were one crowd in the last step are one island from the beginning, and share its longest
+// displacement.
 
 #include "simulation/massFallMeet.h"
 
@@ -31,7 +31,7 @@ namespace
 
 constexpr std::size_t kFollowGrain = 64;
 
-/// So many rocks ahead the cache is asked for what follows here, in so many lines.
+/// Rocks that the cache is asked for ahead, and lines of each.
 constexpr std::size_t kMembersAhead = 4;
 constexpr int kLinesAsked = 5;
 
@@ -44,14 +44,15 @@ void MassFall::foresee(const RockSimulator& sim, double duration, Pace& pace) co
 {
   const BlockState& s = sim.state_;
   const double speed = s.velocity.norm(), rim = sim.block_.largestRimSpeed(s.spin);
-  // What springs hold in the middle of an impact they give back.
+  // Springs give back what they hold in the middle of an impact.
   const double held = std::sqrt(2.0 * sim.springEnergy_ * sim.block_.largestMobility());
   pace.own = (speed + rim + held) * duration + parameters_.gravity * duration * duration;
-  // What stands farther off than it may come has no say.
-  const double way = sim.block_.radius() + pace.own;
+  // Structures farther off than it may come have no say.
+  const double displacement = sim.block_.radius() + pace.own;
   const Vec3& p = s.position;
-  const bool obstructed =
-    sim.obstacles_ && sim.obstacles_->anyIn(p.x() - way, p.x() + way, p.y() - way, p.y() + way);
+  const bool obstructed = sim.obstacles_ &&
+    sim.obstacles_->anyIn(
+      p.x() - displacement, p.x() + displacement, p.y() - displacement, p.y() + displacement);
   const bool flies = !obstructed && sim.contacts_.empty() && sim.clearFor(duration);
   // Velocities that an impact on the slope leaves, with any normal.
   const double e = obstructed ? 1.0 : surface_.largestRestitution();
@@ -68,14 +69,14 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
   {
     movers.resize(count);
     paces_.resize(count);
-    companies_.resize(count);
+    bounds_.resize(count);
     parents_.resize(count);
     roots_.resize(count);
     boxes_.resize(count);
     fars_.resize(count);
     thrown_.resize(count);
     heads_.resize(count);
-    grouped_.resize(count);
+    inIsland_.resize(count);
     later_.resize(count);
     marks_.resize(count, 0);
     for (std::size_t i = 0; i < count; ++i)
@@ -106,12 +107,12 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
     fars_[i] = 0.0;
     if (!m.present || (slept && m.asleep))
     {
-      m.way = m.known = 0.0;
+      m.displacement = m.known = 0.0;
       return;
     }
     const BlockState& s = sim.state_;
     m.position = s.position;
-    m.turned += wayOfTurn(pace.orientation, s.orientation, m.radius) +
+    m.rimTravel += rimTravel(pace.orientation, s.orientation, m.radius) +
       m.radius * (s.strain - pace.strain).norm();
     pace.orientation = s.orientation;
     pace.strain = s.strain;
@@ -119,14 +120,14 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
     {
       pace.middle.setZero();
       pace.velocity.setZero();
-      pace.spread = pace.own = m.way = m.known = 0.0;
+      pace.spread = pace.own = m.displacement = m.known = 0.0;
       return;
     }
     pace.velocity = s.velocity;
     fall.foresee(sim, duration, pace);
-    // It is struck by much the same ones as in the last step.
-    m.known = kWider * std::max(pace.own, m.way) + fall_;
-    m.way = fars_[i] = pace.own;
+    // Much the same rocks strike it as in the last step.
+    m.known = kWider * std::max(pace.own, m.displacement) + fall_;
+    m.displacement = fars_[i] = pace.own;
   };
   forEach(count, kFollowGrain, followRock);
   sleepers_ = 0;
@@ -138,14 +139,14 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
   {
     const Mover& m = movers[i];
     const Pace& pace = paces_[i];
-    longest_ = std::max(longest_, m.way);
+    longest_ = std::max(longest_, m.displacement);
     sleepers_ += m.present && m.asleep;
-    companies_[i] = { pace.middle.array() - pace.spread, pace.middle.array() + pace.spread,
-      pace.mass, m.way, 1 };
+    bounds_[i] = { pace.middle.array() - pace.spread, pace.middle.array() + pace.spread, pace.mass,
+      m.displacement, 1 };
     parents_[i] = roots_[i] = int(i);
     if (m.shares)
     {
-      // What was a crowd in the last step is one company from the beginning.
+      // A crowd of the last step is one island from the beginning.
       crowds_.resize(std::max(crowds_.size(), std::size_t(m.crowd) + 1), -1);
       int& first = crowds_[std::size_t(m.crowd)];
       if (first < 0)
@@ -155,7 +156,7 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
       else
       {
         parents_[i] = roots_[i] = first;
-        companies_[std::size_t(first)].take(companies_[i]);
+        bounds_[std::size_t(first)].add(bounds_[i]);
       }
     }
     if (m.present)
@@ -169,7 +170,7 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
   {
     if (crowds_[c] >= 0)
     {
-      const Company& all = companies_[std::size_t(crowds_[c])];
+      const IslandBounds& all = bounds_[std::size_t(crowds_[c])];
       surely_[c] = all.size > 1 ? (all.upper - all.lower).minCoeff() * duration : 0.0;
     }
   }
@@ -180,15 +181,15 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
   }
 }
 
-/// Gives a rock of a crowd the way of its company.
+/// Gives a rock of a crowd the displacement of its island.
 void MassFall::Meetings::share(std::size_t i)
 {
   Mover& m = movers[i];
   if (m.shares)
   {
-    m.way = companies_[std::size_t(roots_[i])].longest;
+    m.displacement = bounds_[std::size_t(roots_[i])].longest;
     thrown_[i] = this->thrown(i);
-    fars_[i] = thrown_[i] * m.way;
+    fars_[i] = thrown_[i] * m.displacement;
     m.known = fars_[i] + fall_;
   }
 }
@@ -304,7 +305,7 @@ void MassFall::Meetings::search(MassFall& fall)
   nextNear_.resize(near.size());
   std::merge(near.begin(), behind, behind, near.end(), nextNear_.begin());
   near.swap(nextNear_);
-  // What lasts of those that are still near, and of sleepers, which are not looked for.
+  // Pairs that are still near stay, and pairs of sleepers, which are not looked for.
   nextNear_.clear();
   nextNear_.reserve(std::max(found.size(), near.size()));
   auto old = near.begin();

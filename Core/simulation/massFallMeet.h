@@ -1,11 +1,11 @@
 #pragma once
 
 /// @file
-/// What decides which rocks may meet within a step, kept in compact arrays: there are several times
-/// more rocks near each other than touch.
+/// Rocks that may meet within a step: pairs near each other, in compact arrays, as there are
+/// several times more of them than touch.
 
 #include "simulation/MassFall.h"
-#include "simulation/turns.h"
+#include "simulation/RockQueue.h"
 #include "system/broadPhase.h"
 
 #include <algorithm>
@@ -26,25 +26,26 @@ struct alignas(64) Mover
 {
   Vec3 position; ///< m
   double radius; ///< m
-  double turned =
-    0.0;        ///< Longest way about the centroid since the release, by turns and strain, m.
-  double way;   ///< The longest way of a point of it in the step, m, if it is struck by others.
-  double known; ///< Rocks nearer than such a way, less their own, are its neighbours.
+  double rimTravel =
+    0.0; ///< Longest displacement about the centroid since the release, by turns and strain, m.
+  double displacement; ///< The longest displacement of a point of it in the step, m, if it is
+                       ///< struck by others.
+  double known; ///< Rocks nearer than such a displacement, less their own, are its neighbours.
   bool present = false; ///< Neither gone nor stopped by the end time.
   bool asleep = false;
-  /// Goes as far as any rock of its company may: it was in a crowd in the last step. There nearly
-  /// every rock's way is the one of some faster rock, and to pass it on from rock to rock tells no
-  /// more.
+  /// Goes as far as any rock of its island may: it was in a crowd in the last step. There nearly
+  /// every rock's displacement is the one of some faster rock, and to pass it on from rock to rock
+  /// tells no more.
   bool shares = false;
   int crowd = -1; ///< Of the last step, −1: none.
 
   bool isOneCrowdWith(const Mover& o) const { return shares && o.shares && crowd == o.crowd; }
 };
 
-/// What else decides how a rock moves in the step.
+/// Velocities that a rock may have in the step.
 struct Pace
 {
-  double own = 0.0;  ///< The longest way if nothing strikes it, m.
+  double own = 0.0;  ///< The longest displacement if nothing strikes it, m.
   double mass = 0.0; ///< kg
   /// All velocities that points of it may have until it meets another rock are in a ball, m/s:
   /// about its velocity if it flies clear of the slope; else the slope may stop it or throw it
@@ -54,19 +55,19 @@ struct Pace
   Vec3 velocity = Vec3::Zero();        ///< m/s
   Quat orientation = Quat::Identity(); ///< For which `turned` stands.
   Vec6 strain = Vec6::Zero();
-  /// Those in a ball about it have been looked for, which was here when it was where all have gone
-  /// on from together since, m.
+  /// Centre of the ball in which neighbours have been looked for, less the drift of all rocks
+  /// since, m.
   Vec3 covered = Vec3::Zero();
   double cover = 0.0; ///< Radius of the ball, m.
   bool slept = true;  ///< Then: others that did were no neighbours.
 };
 
 /// Rocks that may touch within the step, or one alone.
-struct Company
+struct IslandBounds
 {
   Vec3 lower, upper; ///< Velocities of its points, m/s.
   double heaviest;   ///< kg
-  double longest;    ///< Way of one of them if nothing else strikes it, m.
+  double longest;    ///< Displacement of one of them if nothing else strikes it, m.
   int size;
 
   /// A light rock that a heavy one strikes goes on faster than it, by this factor. `bounciest`:
@@ -81,7 +82,7 @@ struct Company
     return size > 1 ? normal.cwiseProduct(lower).cwiseMax(normal.cwiseProduct(upper)).sum()
                     : pace.spread + normal.dot(pace.middle);
   }
-  void take(const Company& other)
+  void add(const IslandBounds& other)
   {
     lower = lower.cwiseMin(other.lower);
     upper = upper.cwiseMax(other.upper);
@@ -91,9 +92,9 @@ struct Company
   }
 };
 
-/// How fast the gap of two rocks of these companies may close along a normal, m/s.
-inline double closingSpeed(const Company& first, const Pace& firstPace, const Company& second,
-  const Pace& secondPace, const Vec3& normal)
+/// Speed at which the gap of two rocks of these islands may close along a normal, m/s.
+inline double closingSpeed(const IslandBounds& first, const Pace& firstPace,
+  const IslandBounds& second, const Pace& secondPace, const Vec3& normal)
 {
   return &first == &second
     ? normal.cwiseAbs().dot(first.upper - first.lower)
@@ -132,14 +133,14 @@ inline int headOf(std::vector<int>& joined, int i)
   return i;
 }
 
-/// What a look at two rocks near each other has shown.
+/// State of two rocks near each other.
 enum class Sight : std::uint8_t
 {
-  Open,     ///< They may meet if they go as far as is known;
-  Shut,     ///< they don't, or both sleep;
-  Apart,    ///< they don't, and nothing lasts of them;
-  Overlaps, ///< they overlap;
-  Linked,   ///< or they may meet for sure.
+  Open,     ///< May meet if they go as far as is known;
+  Shut,     ///< may not, or both sleep;
+  Apart,    ///< may not, and nothing lasts of them;
+  Overlaps, ///< overlap;
+  Linked,   ///< or may meet for sure.
 };
 
 struct MassFall::Meetings
@@ -150,20 +151,20 @@ struct MassFall::Meetings
   void follow(MassFall& fall, double duration); ///< The rocks, to where they stand now.
   void findNear(MassFall& fall);
   void link(MassFall& fall);
-  int head(int rock) const { return heads_[std::size_t(rock)]; } ///< The first of its group.
-  bool isAlone(int rock) const { return !grouped_[std::size_t(rock)]; }
+  int head(int rock) const { return heads_[std::size_t(rock)]; } ///< The first of its island.
+  bool isAlone(int rock) const { return !inIsland_[std::size_t(rock)]; }
   template <class Visit>
   void forLinked(Visit&& visit) const; ///< In the order of `near`.
 
 private:
-  /// Two that are not linked and no farther apart than ways go that are known.
+  /// A pair that is not linked and no farther apart than known displacements go.
   struct Open
   {
     double apart; ///< No nearer than that, m.
     int first, second;
-    int near; ///< Which one of `near`.
+    int near; ///< Index into `near`.
   };
-  /// One that a rock is linked with, in a list.
+  /// A rock that another is linked with, in a list.
   struct Link
   {
     double gap; ///< At least, m.
@@ -177,13 +178,13 @@ private:
     int first, second;
     RockPair* pair;
   };
-  /// How many a part of `near` has left behind, each from its own beginning on.
+  /// Numbers of entries that a part of `near` has left, each from its own beginning on.
   struct Left
   {
     std::size_t open, others;
   };
 
-  // Who is near: massFallMeet.cxx
+  // Neighbours: massFallMeet.cxx
   void share(std::size_t rock);
   void search(MassFall& fall);
   void cover(int rock);
@@ -195,7 +196,7 @@ private:
   template <class Visit>
   void forNeighbours(int rock, Visit&& visit);
 
-  // Who may meet: massFallLink.cxx
+  // Pairs that may meet: massFallLink.cxx
   double gap(const Near& near) const; ///< At least, along the axis, m.
   double apart(const Near& near) const;
   double closing(const Near& near) const;
@@ -210,12 +211,12 @@ private:
   bool sweep(MassFall& fall);
   bool stays(const Near& near) const;
 
-  // What groups they are: massFallGroups.cxx
+  // Islands: massFallIslands.cxx
   void settle(MassFall& fall);
   void unite();
 
-  // What they pass on to each other: massFallWays.cxx
-  int root(int rock); ///< The first one of its company.
+  // Velocities and displacements passed on: massFallReach.cxx
+  int root(int rock); ///< The first one of its island.
   double thrown(std::size_t rock) const;
   bool join(MassFall& fall, std::size_t near, bool known);
   void wakeAbout(MassFall& fall, int rock);
@@ -223,7 +224,7 @@ private:
   void tell(MassFall& fall);
 
   double duration_ = 0.0;
-  double fall_ = 0.0;         ///< What gravity may add to a way, m.
+  double fall_ = 0.0;         ///< Displacement that gravity may add, m.
   double bounciest_ = 0.0;    ///< Largest restitution of rocks on each other.
   double widened_ = 0.0;      ///< Most that a rock's ball reaches beyond that of the search, m.
   Vec3 drift_ = Vec3::Zero(); ///< How far all have gone on together since, m.
@@ -236,7 +237,7 @@ private:
   std::vector<Near> nextNear_;
   std::deque<RockPair> pairs_;
   std::vector<RockPair*> spare_;
-  std::vector<Company> companies_; ///< By root.
+  std::vector<IslandBounds> bounds_; ///< By root.
   std::vector<int> parents_, roots_;
   std::vector<int> crowds_; ///< First rock of each crowd of the last step.
   std::vector<double>
@@ -255,16 +256,16 @@ private:
   std::vector<Linked> linked_;
   std::vector<std::size_t> linkedCounts_; ///< By part of `near`.
   std::vector<int> heads_;
-  std::vector<char> grouped_;
+  std::vector<char> inIsland_;
   std::vector<char> parted_;   ///< By rock: what touched it lately is linked with it no longer.
   std::vector<double> thrown_; ///< By rock: what strikes it may make it faster by this factor.
   std::vector<double> fars_;   ///< By rock, how far it may come towards others, m.
   std::vector<int> firstLink_; ///< By rock, in `links_`.
   std::vector<Link> links_;
   int sleepers_ = 0;
-  std::vector<int> wider_; ///< Rocks whose ways have outgrown what was known.
-  double longest_ = 0.0;   ///< Way of all, m.
-  Turns turns_;            ///< Of those that others have to be told of.
+  std::vector<int> wider_; ///< Rocks whose displacements have outgrown what was known.
+  double longest_ = 0.0;   ///< Displacement of all, m.
+  RockQueue queue_;        ///< Of those that others have to be told of.
   std::vector<int> found_;
   std::vector<char> marks_;
   std::vector<char> answers_;
@@ -272,7 +273,7 @@ private:
   std::vector<int> placed_;
 };
 
-/// So many of `near` are one part.
+/// Pairs of a part of `near`.
 constexpr std::size_t kNearPart = 256;
 
 template <class Visit>

@@ -1,6 +1,6 @@
-// A group over its step. It is all that may meet within Δt; few of it touch at a time, and most
-// only come near. So the step is halved, and again, as long as rocks fall apart by it: whoever
-// meets no other within such a part of the step goes on by himself meanwhile.
+// An island over its step. An island is all that may meet within Δt; few of its rocks touch at a
+// time, and most only come near. The step is halved, and again, as long as rocks fall apart by it:
+// a rock that meets no other within such a part of the step goes on by itself meanwhile.
 
 #include "contact/motion.h"
 #include "law/settings.h"
@@ -15,7 +15,7 @@
 namespace rockfall
 {
 
-/// What is known of a group whose step is gone over in parts.
+/// State of an island whose step is gone over in parts.
 struct MassFall::Parting
 {
   /// Two rocks as they stood when their axis was found. At any other time their gap is no less than
@@ -28,13 +28,13 @@ struct MassFall::Parting
     std::array<Vec6, 2> strains;
   };
 
-  std::vector<Sight> sights; ///< By pair of the whole group.
+  std::vector<Sight> sights; ///< By pair of the whole island.
   // By rock, of those of the part at hand:
   std::vector<Pace> paces;
   std::vector<int> heads;
-  std::vector<Company> companies; ///< By head.
-  std::vector<int> places;        ///< Of a head, among the parts.
-  std::vector<char> linked;       ///< By pair of the part.
+  std::vector<IslandBounds> bounds; ///< By head.
+  std::vector<int> places;          ///< Of a head, among the parts.
+  std::vector<char> linked;         ///< By pair of the part.
 };
 
 double MassFall::gapAlong(const RockPair& pair, const Parting& parting, std::size_t sight) const
@@ -50,7 +50,7 @@ double MassFall::gapAlong(const RockPair& pair, const Parting& parting, std::siz
       const BlockState& s = sim.state_;
       const double r = sim.block_.radius();
       gap += sign * seen.normal.dot(s.position) -
-        wayOfTurn(seen.orientations[std::size_t(side)], s.orientation, r) -
+        rimTravel(seen.orientations[std::size_t(side)], s.orientation, r) -
         r * (s.strain - seen.strains[std::size_t(side)]).norm();
       sign = -1.0;
     }
@@ -58,7 +58,7 @@ double MassFall::gapAlong(const RockPair& pair, const Parting& parting, std::siz
   return gap;
 }
 
-void MassFall::sight(RockPair& pair, double reach, Parting& parting, std::size_t sight) const
+void MassFall::sight(RockPair& pair, double reach, Parting& parting, std::size_t sight)
 {
   Member &a = *members_[std::size_t(pair.first)], &b = *members_[std::size_t(pair.second)];
   a.stand();
@@ -78,19 +78,19 @@ void MassFall::sight(RockPair& pair, double reach, Parting& parting, std::size_t
   seen.strains = { s.strain, t.strain };
 }
 
-std::vector<MassFall::PartOfGroup> MassFall::fallApart(
-  const PartOfGroup& whole, double duration, Parting& parting) const
+std::vector<MassFall::PartOfIsland> MassFall::fallApart(
+  const PartOfIsland& whole, double duration, Parting& parting)
 {
-  const Group& group = whole.group;
+  const Island& island = whole.island;
   const double fall = parameters_.gravity * duration * duration;
   const double bounciest = contacts_.largestRestitution();
-  for (const int i : group.members)
+  for (const int i : island.members)
   {
     const std::size_t k = std::size_t(i);
     Pace& pace = parting.paces[k];
     pace.mass = members_[k]->sim.block_.mass();
     this->foresee(members_[k]->sim, duration, pace);
-    parting.companies[k] = { pace.middle.array() - pace.spread, pace.middle.array() + pace.spread,
+    parting.bounds[k] = { pace.middle.array() - pace.spread, pace.middle.array() + pace.spread,
       pace.mass, pace.own, 1 };
     parting.heads[k] = i;
     parting.places[k] = -1;
@@ -100,16 +100,16 @@ std::vector<MassFall::PartOfGroup> MassFall::fallApart(
     const int a = headOf(parting.heads, pair.first), b = headOf(parting.heads, pair.second);
     if (a != b)
     {
-      Company& first = parting.companies[std::size_t(std::min(a, b))];
-      first.take(parting.companies[std::size_t(std::max(a, b))]);
+      IslandBounds& first = parting.bounds[std::size_t(std::min(a, b))];
+      first.add(parting.bounds[std::size_t(std::max(a, b))]);
       parting.heads[std::size_t(std::max(a, b))] = std::min(a, b);
     }
   };
-  const std::size_t pairs = group.pairs.size();
+  const std::size_t pairs = island.pairs.size();
   parting.linked.assign(pairs, 0);
   for (std::size_t p = 0; p < pairs; ++p)
   {
-    const RockPair& pair = *group.pairs[p];
+    const RockPair& pair = *island.pairs[p];
     if (pair.touched || pair.strikes)
     {
       parting.linked[p] = 1;
@@ -119,8 +119,8 @@ std::vector<MassFall::PartOfGroup> MassFall::fallApart(
   const auto reachOf = [&](const RockPair& pair, const Vec3& normal)
   {
     const std::size_t i = std::size_t(pair.first), j = std::size_t(pair.second);
-    const Company& a = parting.companies[std::size_t(headOf(parting.heads, pair.first))];
-    const Company& b = parting.companies[std::size_t(headOf(parting.heads, pair.second))];
+    const IslandBounds& a = parting.bounds[std::size_t(headOf(parting.heads, pair.first))];
+    const IslandBounds& b = parting.bounds[std::size_t(headOf(parting.heads, pair.second))];
     const double faster = std::max(
       a.thrown(parting.paces[i].mass, bounciest), b.thrown(parting.paces[j].mass, bounciest));
     return faster * closingSpeed(a, parting.paces[i], b, parting.paces[j], normal) * duration +
@@ -152,16 +152,16 @@ std::vector<MassFall::PartOfGroup> MassFall::fallApart(
     any = false;
     for (std::size_t p = 0; p < pairs; ++p)
     {
-      if (!parting.linked[p] && mayMeet(*group.pairs[p], whole.sights[p]))
+      if (!parting.linked[p] && mayMeet(*island.pairs[p], whole.sights[p]))
       {
         parting.linked[p] = 1;
-        join(*group.pairs[p]);
+        join(*island.pairs[p]);
         any = true;
       }
     }
   }
-  std::vector<PartOfGroup> parts;
-  for (const int i : group.members)
+  std::vector<PartOfIsland> parts;
+  for (const int i : island.members)
   {
     int& place = parting.places[std::size_t(headOf(parting.heads, i))];
     if (place < 0)
@@ -169,11 +169,11 @@ std::vector<MassFall::PartOfGroup> MassFall::fallApart(
       place = int(parts.size());
       parts.emplace_back();
     }
-    parts[std::size_t(place)].group.members.push_back(i);
+    parts[std::size_t(place)].island.members.push_back(i);
   }
   for (std::size_t p = 0; p < pairs; ++p)
   {
-    RockPair& pair = *group.pairs[p];
+    RockPair& pair = *island.pairs[p];
     if (!parting.linked[p])
     {
       // Both move away from where their axis was found.
@@ -182,20 +182,20 @@ std::vector<MassFall::PartOfGroup> MassFall::fallApart(
       continue;
     }
     const int place = parting.places[std::size_t(headOf(parting.heads, pair.first))];
-    parts[std::size_t(place)].group.pairs.push_back(&pair);
+    parts[std::size_t(place)].island.pairs.push_back(&pair);
     parts[std::size_t(place)].sights.push_back(whole.sights[p]);
   }
   return parts;
 }
 
-bool MassFall::isOne(const Group& group, Parting& parting) const
+bool MassFall::isOne(const Island& island, Parting& parting) const
 {
-  for (const int i : group.members)
+  for (const int i : island.members)
   {
     parting.heads[std::size_t(i)] = i;
   }
-  std::size_t parts = group.members.size();
-  for (const RockPair* pair : group.pairs)
+  std::size_t parts = island.members.size();
+  for (const RockPair* pair : island.pairs)
   {
     if (pair->touched || pair->strikes)
     {
@@ -207,7 +207,7 @@ bool MassFall::isOne(const Group& group, Parting& parting) const
   return parts == 1;
 }
 
-bool MassFall::isCarried(const Group& group) const
+bool MassFall::isCarried(const Island& island) const
 {
   const auto carries = [&](int i)
   {
@@ -217,49 +217,48 @@ bool MassFall::isCarried(const Group& group) const
     return sim.done_ ||
       std::any_of(
         sim.contacts_.begin(), sim.contacts_.end(), [](const Contact& c) { return c.closed(); }) ||
-      std::any_of(group.pairs.begin(), group.pairs.end(), touches);
+      std::any_of(island.pairs.begin(), island.pairs.end(), touches);
   };
-  return std::all_of(group.members.begin(), group.members.end(), carries);
+  return std::all_of(island.members.begin(), island.members.end(), carries);
 }
 
-void MassFall::advanceParts(
-  const PartOfGroup& part, double from, double until, Parting& parting) const
+void MassFall::advanceParts(const PartOfIsland& part, double from, double until, Parting& parting)
 {
-  const Group& group = part.group;
-  if (group.members.size() == 1)
+  const Island& island = part.island;
+  if (island.members.size() == 1)
   {
-    Member& member = *members_[std::size_t(group.members.front())];
-    member.sim.quietTime_ = 0.0; // the group comes to rest as a whole
+    Member& member = *members_[std::size_t(island.members.front())];
+    member.sim.quietTime_ = 0.0; // the island comes to rest as a whole
     this->advanceAlone(member, until);
     return;
   }
   const double half = 0.5 * (until - from);
-  if (this->isOne(group, parting) || half < kLeastStepsOfPart * this->groupStep(group))
+  if (this->isOne(island, parting) || half < kLeastStepsOfPart * this->islandStep(island))
   {
-    this->advanceTogether(group, until, false);
+    this->advanceTogether(island, until, false);
     return;
   }
   for (const double end : { from + half, until })
   {
-    for (const PartOfGroup& one : this->fallApart(part, half, parting))
+    for (const PartOfIsland& one : this->fallApart(part, half, parting))
     {
       this->advanceParts(one, end - half, end, parting);
     }
   }
 }
 
-void MassFall::advanceGroup(const Group& group, double until) const
+void MassFall::advanceIsland(const Island& island, double until)
 {
-  if (group.crowd)
+  if (island.crowd)
   {
-    this->advanceTogether(group, until, false);
+    this->advanceTogether(island, until, false);
     return;
   }
   double from = time_;
-  if (this->isCarried(group) && this->isCalm(group))
+  if (this->isCarried(island) && this->isCalm(island))
   {
-    // One step for all of them, if it may last.
-    from = this->advanceTogether(group, until, true);
+    // A single step for all, if it may last.
+    from = this->advanceTogether(island, until, true);
   }
   thread_local Parting parting;
   const std::size_t rocks = members_.size();
@@ -268,11 +267,11 @@ void MassFall::advanceGroup(const Group& group, double until) const
     of->resize(rocks);
   }
   parting.paces.resize(rocks);
-  parting.companies.resize(rocks);
-  parting.sights.assign(group.pairs.size(), {});
-  PartOfGroup whole;
-  whole.group = group;
-  whole.sights.resize(group.pairs.size());
+  parting.bounds.resize(rocks);
+  parting.sights.assign(island.pairs.size(), {});
+  PartOfIsland whole;
+  whole.island = island;
+  whole.sights.resize(island.pairs.size());
   std::iota(whole.sights.begin(), whole.sights.end(), std::size_t(0));
   this->advanceParts(whole, from, until, parting);
 }

@@ -1,5 +1,5 @@
-// What has to be known of all rocks and pairs of a group before each of them is taken for itself:
-// their places in the system of a step, whether they may bounce, and what rocks may add to each
+// Facts of all rocks and pairs of an island that come before the loops over each of them: their
+// places in the system of a step, whether they may bounce, and what rocks may add to each
 // other's speed.
 
 #include "simulation/massFallWork.h"
@@ -25,9 +25,9 @@ std::size_t partsOf(std::size_t count)
 
 } // namespace
 
-std::size_t MassFall::layOut(const Group& group, Workspace& work) const
+std::size_t MassFall::layOut(const Island& island, Workspace& work)
 {
-  const std::size_t rocks = group.members.size(), pairs = group.pairs.size();
+  const std::size_t rocks = island.members.size(), pairs = island.pairs.size();
   const std::size_t rockParts = partsOf(rocks), pairParts = partsOf(pairs);
   work.parts.resize(std::max(rockParts, pairParts));
   work.placeOf.resize(members_.size());
@@ -38,9 +38,9 @@ std::size_t MassFall::layOut(const Group& group, Workspace& work) const
     Workspace::Part counted;
     for (std::size_t k = part * kPartSize; k < std::min(rocks, (part + 1) * kPartSize); ++k)
     {
-      this->comeToRock(group, k);
-      const RockSimulator& sim = members_[group.members[k]]->sim;
-      work.placeOf[std::size_t(group.members[k])] = sim.done_ ? -1 : counted.places++;
+      this->comeToRock(island, k);
+      const RockSimulator& sim = members_[island.members[k]]->sim;
+      work.placeOf[std::size_t(island.members[k])] = sim.done_ ? -1 : counted.places++;
       work.slopeFirsts[k] = counted.contacts;
       counted.contacts += sim.done_ ? 0 : sim.contacts_.size();
     }
@@ -68,10 +68,10 @@ std::size_t MassFall::layOut(const Group& group, Workspace& work) const
     const Workspace::Part& before = work.parts[part];
     for (std::size_t k = part * kPartSize; k < std::min(rocks, (part + 1) * kPartSize); ++k)
     {
-      int& place = work.placeOf[std::size_t(group.members[k])];
+      int& place = work.placeOf[std::size_t(island.members[k])];
       place += place < 0 ? 0 : before.places;
       work.slopeFirsts[k] += before.contacts;
-      members_[group.members[k]]->place = place;
+      members_[island.members[k]]->place = place;
     }
   };
   forEach(rockParts, 1, placeRocks);
@@ -89,8 +89,8 @@ std::size_t MassFall::layOut(const Group& group, Workspace& work) const
     const int* const placeOf = work.placeOf.data();
     for (std::size_t p = begin; p < end; ++p)
     {
-      comeToPair(group.pairs, p);
-      RockPair& pair = *group.pairs[p];
+      comeToPair(island.pairs, p);
+      RockPair& pair = *island.pairs[p];
       places[p] = { placeOf[pair.first], placeOf[pair.second] };
       firsts[p] = counted.contacts;
       counted.contacts += pair.contacts.size();
@@ -115,7 +115,7 @@ std::size_t MassFall::layOut(const Group& group, Workspace& work) const
   }
   work.firsts.back() = contacts;
   work.bodies.resize(std::size_t(all));
-  work.ways.resize(std::size_t(all));
+  work.motions.resize(std::size_t(all));
   work.arrived.resize(std::size_t(all));
   work.energyBefore.resize(std::size_t(all));
   work.contacts.resize(contacts);
@@ -133,7 +133,7 @@ void MassFall::settleBounces(bool lasting, Workspace& work) const
     std::size_t* to = work.meeting.data() + part * kPartSize;
     for (std::size_t k = part * kPartSize, end = std::min(contacts, k + kPartSize); k < end; ++k)
     {
-      const GroupContact& c = work.contacts[k];
+      const IslandContact& c = work.contacts[k];
       *to = k;
       to += c.bounce >= 0.0 || c.closed;
     }
@@ -152,8 +152,8 @@ void MassFall::settleBounces(bool lasting, Workspace& work) const
     }
   };
   work.partners.assign(work.bodies.size(), kMeetsNone);
-  forChosen([&](const GroupContact& k) { meet(work.partners, k); });
-  const auto settle = [&](GroupContact& k)
+  forChosen([&](const IslandContact& k) { meet(work.partners, k); });
+  const auto settle = [&](IslandContact& k)
   {
     if (k.bounce < 0.0)
     {
@@ -164,7 +164,7 @@ void MassFall::settleBounces(bool lasting, Workspace& work) const
     {
       return;
     }
-    // What bounces has no acceleration to go on with.
+    // Rocks that bounce have no acceleration to go on with.
     for (const int b : { k.first, k.second })
     {
       if (b >= 0)
@@ -177,9 +177,9 @@ void MassFall::settleBounces(bool lasting, Workspace& work) const
   forChosen(settle);
 }
 
-void MassFall::findPushes(const Group& group, Workspace& work)
+void MassFall::findPushes(const Island& island, Workspace& work)
 {
-  for (const RockPair* pair : group.pairs)
+  for (const RockPair* pair : island.pairs)
   {
     Workspace::Side& a = work.sides[std::size_t(pair->first)];
     Workspace::Side& b = work.sides[std::size_t(pair->second)];
@@ -187,7 +187,7 @@ void MassFall::findPushes(const Group& group, Workspace& work)
     {
       continue;
     }
-    // What meets elastically changes its velocity by twice the closing one's share.
+    // Rocks that meet elastically change their velocities by twice their shares of the closing one.
     const double shared = 2.0 * (a.velocity - b.velocity).norm() / (a.mass + b.mass);
     a.pushed = std::max(a.pushed, shared * b.mass);
     b.pushed = std::max(b.pushed, shared * a.mass);

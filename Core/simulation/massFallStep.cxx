@@ -1,4 +1,4 @@
-// One step of a group: contacts into the system. Back what comes of it: massFallAbsorb.cxx.
+// A step of an island: contacts into the system. Results back: massFallApply.cxx.
 
 #include "simulation/massFallWork.h"
 
@@ -14,7 +14,8 @@
 namespace rockfall
 {
 
-GroupContact MassFall::take(const Member& member, Contact& c, double h, bool bounces) const
+IslandContact MassFall::islandContact(
+  const Member& member, Contact& c, double h, bool bounces) const
 {
   const RockSimulator& sim = member.sim;
   const BlockState& state = sim.state_;
@@ -33,7 +34,7 @@ GroupContact MassFall::take(const Member& member, Contact& c, double h, bool bou
   {
     e = restitutionAtSpeed(e, approach, material.restitutionSpeed);
   }
-  GroupContact k;
+  IslandContact k;
   k.contact = &c;
   k.closed = c.closed();
   k.first = member.place;
@@ -51,12 +52,12 @@ GroupContact MassFall::take(const Member& member, Contact& c, double h, bool bou
   return k;
 }
 
-GroupContact MassFall::take(RockPair& pair, const PairMotion& motion, Contact& c, double h,
-  bool bounces, const Workspace& work) const
+IslandContact MassFall::islandContact(RockPair& pair, const PairMotion& motion, Contact& c,
+  double h, bool bounces, const Workspace& work)
 {
   const double resting = std::min(
     work.sides[std::size_t(pair.first)].resting, work.sides[std::size_t(pair.second)].resting);
-  GroupContact k;
+  IslandContact k;
   k.contact = &c;
   k.closed = c.closed();
   k.first = work.placeOf[std::size_t(pair.first)];
@@ -91,7 +92,7 @@ GroupContact MassFall::take(RockPair& pair, const PairMotion& motion, Contact& c
   return k;
 }
 
-void MassFall::pressOutDeep(RockPair& pair, double h, bool crowd, const Workspace& work) const
+void MassFall::pressOutDeep(RockPair& pair, double h, bool crowd, const Workspace& work)
 {
   const double smaller = std::min(
     work.sides[std::size_t(pair.first)].radius, work.sides[std::size_t(pair.second)].radius);
@@ -102,8 +103,7 @@ void MassFall::pressOutDeep(RockPair& pair, double h, bool crowd, const Workspac
   }
 }
 
-void MassFall::solve(
-  const Group& group, double h, StepKind kind, bool bounces, Workspace& work) const
+void MassFall::solve(const Island& island, double h, StepKind kind, bool bounces, Workspace& work)
 {
   const bool lasting = kind == StepKind::Lasting;
   StepRequest request;
@@ -112,14 +112,14 @@ void MassFall::solve(
   request.gravity = parameters_.gravity;
   request.maxOpenClose = parameters_.maxOpenClose;
   // Places first, then each rock and each pair for itself.
-  if (this->layOut(group, work) == 0)
+  if (this->layOut(island, work) == 0)
   {
     return; // the last of them was caught just now
   }
-  const auto takeRock = [&](std::size_t m)
+  const auto addRock = [&](std::size_t m)
   {
-    this->comeToRock(group, m);
-    Member& member = *members_[group.members[m]];
+    this->comeToRock(island, m);
+    Member& member = *members_[island.members[m]];
     RockSimulator& sim = member.sim;
     if (sim.done_)
     {
@@ -131,9 +131,9 @@ void MassFall::solve(
     work.energyBefore[member.place] = sim.mechanicalEnergy() + sim.springEnergy_;
     if (lasting)
     {
-      sim.pressOutDeep(h, !group.crowd);
+      sim.pressOutDeep(h, !island.crowd);
     }
-    GroupBody& body = work.bodies[member.place];
+    IslandBody& body = work.bodies[member.place];
     body = {};
     body.block = &sim.block_;
     body.state = &sim.state_;
@@ -149,16 +149,16 @@ void MassFall::solve(
     std::size_t next = work.slopeFirsts[m];
     for (Contact& c : sim.contacts_)
     {
-      work.contacts[next++] = this->take(member, c, h, bounces);
+      work.contacts[next++] = this->islandContact(member, c, h, bounces);
     }
   };
-  forEach(group.members.size(), kRockGrain, takeRock);
-  const bool crowd = group.crowd, swept = work.solver.isSwept(kind, work.bodies.size());
-  const auto takePair = [&](std::size_t t)
+  forEach(island.members.size(), kRockGrain, addRock);
+  const bool crowd = island.crowd, swept = work.solver.isSwept(kind, work.bodies.size());
+  const auto addPair = [&](std::size_t t)
   {
-    work.comeToTouching(group, t);
+    work.comeToTouching(island, t);
     const std::size_t p = work.touching[t];
-    RockPair& pair = *group.pairs[p];
+    RockPair& pair = *island.pairs[p];
     if (pair.contacts.empty())
     {
       return;
@@ -171,15 +171,15 @@ void MassFall::solve(
     std::size_t next = work.firsts[p];
     for (Contact& c : pair.contacts)
     {
-      const GroupContact& taken = work.contacts[next++] =
-        this->take(pair, motion, c, h, bounces, work);
-      if (crowd && !taken.closed && !(swept && mayStayOpen(taken, h)))
+      const IslandContact& touch = work.contacts[next++] =
+        this->islandContact(pair, motion, c, h, bounces, work);
+      if (crowd && !touch.closed && !(swept && mayStayOpen(touch, h)))
       {
-        this->armContact(pair, c);
+        this->setSprings(pair, c);
       }
     }
   };
-  forEach(work.touching.size(), kPairGrain, takePair);
+  forEach(work.touching.size(), kPairGrain, addPair);
   if (bounces)
   {
     this->settleBounces(lasting, work);
@@ -187,57 +187,57 @@ void MassFall::solve(
   work.added.clear();
   work.addedTo.clear();
   work.stems.clear();
-  const auto armLate = [&](std::size_t k)
+  const auto setSpringsLate = [&](std::size_t k)
   {
     const auto behind = std::upper_bound(work.firsts.begin(), work.firsts.end(), k);
     if (crowd && behind != work.firsts.begin() && behind != work.firsts.end())
     {
-      const RockPair& pair = *group.pairs[std::size_t(behind - work.firsts.begin()) - 1];
-      this->armContact(pair, *work.contacts[k].contact);
+      const RockPair& pair = *island.pairs[std::size_t(behind - work.firsts.begin()) - 1];
+      this->setSprings(pair, *work.contacts[k].contact);
     }
   };
-  work.solver.armLate(armLate);
-  const auto look = [&] { return this->lookAgain(group, request.duration, bounces, work); };
-  GroupOutcome outcome;
+  work.solver.setSpringsLate(setSpringsLate);
+  const auto look = [&] { return this->lookAgain(island, request.duration, bounces, work); };
+  IslandOutcome outcome;
   work.iterations = work.cuts = work.unsettled = work.tries = 0;
   for (int cut = 0;; ++cut)
   {
-    // What a large group leaves to settle is small; if it is not, a shorter step is taken.
+    // A large island leaves little to settle; if it leaves more, a shorter step is taken.
     const bool last = cut >= (crowd ? kCrowdCuts : parameters_.maxCuts);
-    const Taken take = last ? Taken::Any : crowd ? Taken::NotRough : Taken::Settled;
+    const Accept accept = last ? Accept::Any : crowd ? Accept::Converging : Accept::Settled;
     if (!work.added.empty())
     {
       work.contacts.resize(work.firsts.back());
       work.added.clear();
       work.addedTo.clear();
     }
-    this->standTrees(group, work);
+    this->standTrees(island, work);
     work.looked = false;
-    outcome = work.solver.step(request, work.bodies, work.contacts, take, look);
+    outcome = work.solver.step(request, work.bodies, work.contacts, accept, look);
     work.iterations += outcome.iterations;
-    work.cuts += !outcome.taken && !last;
-    work.unsettled += outcome.rough && (outcome.taken || last);
+    work.cuts += !outcome.accepted && !last;
+    work.unsettled += outcome.unconverged && (outcome.accepted || last);
     ++work.tries;
-    if (outcome.taken || last)
+    if (outcome.accepted || last)
     {
       break;
     }
     request.duration *= 0.5;
   }
-  work.solver.armLate({}); // it knows this step only
-  const GroupBody& one = work.bodies.front();
-  const double start = members_[group.members.front()]->sim.before_.time;
-  if (one.state->time <= start && !members_[group.members.front()]->sim.done_)
+  work.solver.setSpringsLate({}); // it knows this step only
+  const IslandBody& one = work.bodies.front();
+  const double start = members_[island.members.front()]->sim.before_.time;
+  if (one.state->time <= start && !members_[island.members.front()]->sim.done_)
   {
     // Not even a finite displacement: the contacts are let go for this step.
-    for (int i : group.members)
+    for (int i : island.members)
     {
       work.count(members_[i]->sim);
     }
-    this->fly(group, request.duration);
+    this->fly(island, request.duration);
     return;
   }
-  this->absorb(group, request.duration, kind, work);
+  this->applyStep(island, request.duration, kind, work);
 }
 
 } // namespace rockfall

@@ -1,6 +1,6 @@
-// Trees that the rocks of a group are driven into within a step.
+// Trees that the rocks of an island are driven into within a step.
 //
-// What comes to a tree by itself is told before the step whether the tree holds it
+// A rock that comes to a tree by itself is told before the step whether the tree holds it
 // (RockSimulator::breakTrees). Others may drive a rock into a tree that it did not come to, and the
 // tree would take all that they give it. So one that carries in the solution and could not hold the
 // rock as it would go without it is let go. If the rock drives on through it then with more than
@@ -16,18 +16,18 @@
 namespace rockfall
 {
 
-/// Those that the rocks of a group meet in a step.
+/// Trees that the rocks of an island meet in a step.
 struct MassFall::Trees
 {
   using Stem = Workspace::Stem;
 
   const MassFall& fall;
-  const Group& group;
+  const Island& island;
   Workspace& work;
 
   const Member& memberOf(const Stem& stem) const
   {
-    return *fall.members_[std::size_t(group.members[stem.member])];
+    return *fall.members_[std::size_t(island.members[stem.member])];
   }
   /// use(contact, its number in the system): those of the rock with the tree.
   template <class Use>
@@ -92,9 +92,9 @@ struct MassFall::Trees
   }
 };
 
-void MassFall::standTrees(const Group& group, Workspace& work) const
+void MassFall::standTrees(const Island& island, Workspace& work) const
 {
-  const Trees trees{ *this, group, work };
+  const Trees trees{ *this, island, work };
   for (const Workspace::Stem& stem : work.stems)
   {
     trees.forContacts(
@@ -104,7 +104,7 @@ void MassFall::standTrees(const Group& group, Workspace& work) const
   work.looks = 0;
 }
 
-bool MassFall::lookAtTrees(const Group& group, double h, Workspace& work) const
+bool MassFall::lookAtTrees(const Island& island, double h, Workspace& work) const
 {
   const Obstacles* obstacles = surface_.terrain().obstacles();
   if (!obstacles || obstacles->structures().trees.empty())
@@ -112,7 +112,7 @@ bool MassFall::lookAtTrees(const Group& group, double h, Workspace& work) const
     return false;
   }
   using Stem = Workspace::Stem;
-  const Trees trees{ *this, group, work };
+  const Trees trees{ *this, island, work };
   bool any = false;
   for (Stem& stem : work.stems)
   {
@@ -131,9 +131,9 @@ bool MassFall::lookAtTrees(const Group& group, double h, Workspace& work) const
   {
     return any;
   }
-  for (std::size_t m = 0; m < group.members.size(); ++m)
+  for (std::size_t m = 0; m < island.members.size(); ++m)
   {
-    const Member& member = *members_[std::size_t(group.members[m])];
+    const Member& member = *members_[std::size_t(island.members[m])];
     if (member.sim.done_)
     {
       continue;
@@ -158,10 +158,10 @@ bool MassFall::lookAtTrees(const Group& group, double h, Workspace& work) const
   return any;
 }
 
-void MassFall::fellTrees(const Group& group, std::size_t member, const Workspace& work) const
+void MassFall::fellTrees(const Island& island, std::size_t member, const Workspace& work)
 {
   bool any = false;
-  RockSimulator& sim = members_[std::size_t(group.members[member])]->sim;
+  RockSimulator& sim = members_[std::size_t(island.members[member])]->sim;
   for (const Workspace::Stem& stem : work.stems)
   {
     if (stem.member != member || stem.stands != Workspace::Stem::Stands::No)
@@ -187,7 +187,8 @@ void MassFall::fellTrees(const Group& group, std::size_t member, const Workspace
       }
       continue;
     }
-    // What its springs held when the step began is gone with it, and booked as a loss of the step.
+    // Energy that its springs held when the step began is gone with it, and booked as a loss of the
+    // step.
     double held = 0.0;
     for (std::size_t k = 0; k < sim.contactsBefore_.size(); ++k)
     {

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// What the files of a step of a group share, massFallGroup.cxx and those that it calls.
+/// Working memory of a step of an island: massFallIsland.cxx and the files that it calls.
 
 #include "base/cache.h"
 #include "simulation/MassFall.h"
@@ -12,14 +12,14 @@
 namespace rockfall
 {
 
-/// What a rock meets in the step (MassFall::Workspace::partners), if not one other rock or the
+/// Partners of a rock in the step (MassFall::Workspace::partners), if not one other rock or the
 /// slope (−1).
 constexpr int kMeetsSeveral = -2, kMeetsNone = -3;
 
 /// Newton's law of restitution asked of a rock by several others at once may make energy. It holds
 /// for what meets one other only; rocks that are hit on several sides, or lie on something, come
 /// to rest against each other.
-inline void meet(std::vector<int>& partners, const GroupContact& k)
+inline void meet(std::vector<int>& partners, const IslandContact& k)
 {
   const auto meets = [&](int body, int other)
   {
@@ -33,7 +33,7 @@ inline void meet(std::vector<int>& partners, const GroupContact& k)
   meets(k.second, k.first);
 }
 
-inline bool mayBounce(const std::vector<int>& partners, const GroupContact& k)
+inline bool mayBounce(const std::vector<int>& partners, const IslandContact& k)
 {
   return partners[std::size_t(k.first)] != kMeetsSeveral ||
     (k.second >= 0 && partners[std::size_t(k.second)] != kMeetsSeveral);
@@ -48,7 +48,7 @@ inline bool hits(const Contact& c, double approach, double resting, double h)
 /// Of a RockSimulator, what the step of a crowd needs of every rock.
 constexpr std::size_t kHotLines = 14;
 
-// Asks the cache for what a loop over the pairs or rocks of a group comes to soon.
+// Asks the cache for what a loop over the pairs or rocks of an island comes to soon.
 
 inline void comeToPair(const std::vector<RockPair*>& pairs, std::size_t p)
 {
@@ -59,26 +59,26 @@ inline void comeToPair(const std::vector<RockPair*>& pairs, std::size_t p)
   }
 }
 
-inline void MassFall::comeToRock(const Group& group, std::size_t k) const
+inline void MassFall::comeToRock(const Island& island, std::size_t k) const
 {
   constexpr std::size_t kRocksAhead = 2;
-  if (k + kRocksAhead < group.members.size())
+  if (k + kRocksAhead < island.members.size())
   {
-    const Member& m = *members_[std::size_t(group.members[k + kRocksAhead])];
+    const Member& m = *members_[std::size_t(island.members[k + kRocksAhead])];
     askCache<kHotLines>(&m.sim);
     askCache<6>(&m.body);
   }
 }
 
-/// What is worth handing to another thread.
+/// Rocks and pairs that one thread looks after at a time.
 constexpr std::size_t kRockGrain = 16, kPairGrain = 32;
 
-/// What a step of a group needs, kept by thread.
+/// Working memory of a step of an island, kept by thread.
 struct MassFall::Workspace
 {
-  GroupSolver solver;
-  std::vector<GroupBody> bodies;
-  std::vector<GroupContact> contacts;
+  IslandSolver solver;
+  std::vector<IslandBody> bodies;
+  std::vector<IslandContact> contacts;
   std::vector<double> energyBefore;
   std::vector<int> partners;
   std::vector<std::uint64_t> carriers; ///< By place, what carries it.
@@ -89,7 +89,7 @@ struct MassFall::Workspace
   struct Added
   {
     bool onSlope;
-    std::size_t of; ///< Number in the group, of a pair or of a rock.
+    std::size_t of; ///< Number in the island, of a pair or of a rock.
     Contact before; ///< As it was before the step.
   };
   std::vector<Added> addedTo;
@@ -100,7 +100,7 @@ struct MassFall::Workspace
     std::size_t contacts = 0, touching = 0;
   };
   std::vector<Part> parts;
-  std::vector<std::size_t> meeting; ///< What each part has chosen, from its beginning.
+  std::vector<std::size_t> meeting; ///< Choice of each part, from its beginning.
   std::vector<char> flags; ///< For forThose; in the end by pair, whether an impact is under way.
   std::vector<std::size_t> missed;         ///< Pairs or rocks whose contacts were missed.
   std::vector<std::vector<Contact>> found; ///< Of each of them, where it touches.
@@ -109,25 +109,25 @@ struct MassFall::Workspace
   /// A tree that others drive a rock into within the step, and that may not hold.
   struct Stem
   {
-    std::size_t member; ///< Number in the group.
+    std::size_t member; ///< Number in the island.
     int tree;
     enum class Stands : std::uint8_t
     {
-      Asked, ///< It is let go, and the next look tells.
+      Asked, ///< Let go; the next look tells.
       Yes,
       No,
     } stands;
   };
   std::vector<Stem> stems;
-  int looks = 0; ///< That the step has had.
+  int looks = 0; ///< Number that the step has had.
   /// By pair, the places of the two; −1: gone.
   std::vector<std::array<int, 2>> places;
-  std::vector<int> placeOf; ///< By rock, of those in the group.
+  std::vector<int> placeOf; ///< By rock, of those in the island.
   /// Pairs that have contacts, or an impact under way. Most are only near each other.
   std::vector<std::size_t> touching;
   std::vector<char> touchesOthers; ///< By place, in the end.
   std::vector<char> arrived; ///< By place, whether the step has been looked at where it ended.
-  /// What those who go over pairs ask of each of the two rocks, in two lines of the cache.
+  /// A rock as loops over pairs see it, in two lines of the cache.
   struct alignas(kCacheLine) Side
   {
     Vec3 velocity;  ///< m/s
@@ -137,30 +137,30 @@ struct MassFall::Workspace
     double rim;     ///< Speed at most by turning, m/s.
     double mass;    ///< kg
     double resting; ///< Below it a touch is no impact, m/s.
-    double pushed;  ///< What others may add to its speed within a step of a crowd, m/s.
+    double pushed;  ///< Speed that others may add within a step of a crowd, m/s.
     bool done;
 
     void set(const RockSimulator& sim);
   };
-  std::vector<Side> sides; ///< By rock, where its group's step begins.
+  std::vector<Side> sides; ///< By rock, where its island's step begins.
   PairMotion motionOf(const RockPair& pair) const
   {
     const Side &a = sides[std::size_t(pair.first)], &b = sides[std::size_t(pair.second)];
     return { a.velocity - b.velocity, { a.spin, b.spin }, { a.position, b.position } };
   }
-  /// What the summary of each rock counts in the step at hand.
+  /// Counts of the step at hand for the summary of each rock.
   std::int64_t iterations = 0, cuts = 0, unsettled = 0, tries = 0;
   void count(RockSimulator& sim) const;
-  void comeToTouching(const Group& group, std::size_t t) const; ///< As comeToPair.
-  /// By place, how a rock goes in the step.
-  struct Way
+  void comeToTouching(const Island& island, std::size_t t) const; ///< As comeToPair.
+  /// Motion of a rock in the step; by place.
+  struct Motion
   {
-    Vec3 way;      ///< Of the centroid, m.
-    double turned; ///< Longest way about it, m.
-    bool moved;    ///< Since the last look.
-    bool low;      ///< May be at the slope in the end.
+    Vec3 displacement; ///< Of the centroid, m.
+    double rimTravel;  ///< Longest displacement about it, m.
+    bool moved;        ///< Since the last look.
+    bool low;          ///< May be at the slope in the end.
   };
-  std::vector<Way> ways;
+  std::vector<Motion> motions;
 };
 
 inline void MassFall::Workspace::Side::set(const RockSimulator& sim)
@@ -189,12 +189,12 @@ inline void MassFall::Workspace::count(RockSimulator& sim) const
   }
 }
 
-inline void MassFall::Workspace::comeToTouching(const Group& group, std::size_t t) const
+inline void MassFall::Workspace::comeToTouching(const Island& island, std::size_t t) const
 {
   constexpr std::size_t kTouchingAhead = 3;
   if (t + kTouchingAhead < touching.size())
   {
-    askCache<6>(group.pairs[touching[t + kTouchingAhead]]);
+    askCache<6>(island.pairs[touching[t + kTouchingAhead]]);
   }
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// A square matrix of 6 × 6 blocks, most of them empty, with a symmetric pattern: K of a group of
+/// A square matrix of 6 × 6 blocks, most of them empty, with a symmetric pattern: K of an island of
 /// rocks. Solved by elimination of blocks in the order of least neighbours.
 
 #include "base/types.h"

@@ -17,24 +17,24 @@ void CrowdSolver::turnAs(Work& w, const Vec3& spun) const
   w.mean.diagonal().array() += 0.5;
 }
 
-std::array<Vec3, 2> CrowdSolver::freeMotion(const GroupBody& body, const Work& w) const
+std::array<Vec3, 2> CrowdSolver::freeMotion(const IslandBody& body, const Work& w) const
 {
-  Vec3 way = h_ * (w.velocity0 - w.offset);
-  way.z() -= h_ * h_ * gravity_;
+  Vec3 displacement = h_ * (w.velocity0 - w.offset);
+  displacement.z() -= h_ * h_ * gravity_;
   const Vec3 steady = h_ * (w.spin0 - w.spinOffset);
   if (body.block->isotropic())
   {
-    return { way, steady };
+    return { displacement, steady };
   }
   // The momentum of rotation is carried to the end of the step: R₁ p₁ − R₀ p₀ = h τ (METHOD 10.4).
   const Mat3 back = w.rotation.transpose();
   const Vec3 spin = w.spun / h_ + w.spinOffset;
   const Vec3 momentum = w.rotation * (body.block->inertia() * (back * spin));
   const Vec3 gained = back * (w.turned * momentum - momentum);
-  return { way, steady - h_ * (w.rotation * (body.block->inverseInertia() * gained)) };
+  return { displacement, steady - h_ * (w.rotation * (body.block->inverseInertia() * gained)) };
 }
 
-void CrowdSolver::prepareBodies(const StepRequest& request, const std::vector<GroupBody>& bodies)
+void CrowdSolver::prepareBodies(const StepRequest& request, const std::vector<IslandBody>& bodies)
 {
   const double h = h_ = request.duration;
   gravity_ = request.gravity;
@@ -42,7 +42,7 @@ void CrowdSolver::prepareBodies(const StepRequest& request, const std::vector<Gr
   seen_.resize(bodies.size());
   const auto prepareBody = [&](std::size_t i)
   {
-    const GroupBody& body = bodies[i];
+    const IslandBody& body = bodies[i];
     const Block& block = *body.block;
     const BlockState& state = *body.state;
     Work& w = work_[i];
@@ -61,7 +61,7 @@ void CrowdSolver::prepareBodies(const StepRequest& request, const std::vector<Gr
       ? Mat3((h * h) * block.inverseInertia())
       : Mat3(w.rotation * ((h * h) * block.inverseInertia()) * back);
     // First guess: as the last step went.
-    w.way = h * w.velocity0 + (0.5 * h * h) * body.acceleration;
+    w.displacement = h * w.velocity0 + (0.5 * h * h) * body.acceleration;
     w.spun = h * w.spin0 + (0.5 * h * h) * spinAcceleration;
     const bool gyrates = !block.isotropic() && body.spinAcceleration.isZero(0.0);
     for (int k = 0; k < kFreeTurns && gyrates; ++k)
@@ -76,7 +76,7 @@ void CrowdSolver::prepareBodies(const StepRequest& request, const std::vector<Gr
   forEach(bodies.size(), kBodyGrain, prepareBody);
 }
 
-void CrowdSolver::startMover(const GroupBody& body, std::size_t i)
+void CrowdSolver::startMover(const IslandBody& body, std::size_t i)
 {
   const Work& w = work_[i];
   crowd::Mover& m = movers_[w.mover];
@@ -84,17 +84,17 @@ void CrowdSolver::startMover(const GroupBody& body, std::size_t i)
   const Mat3& inertia = w.inverseInertia;
   for (int k = 0; k < 3; ++k)
   {
-    m.way[k] = free[0][k];
+    m.displacement[k] = free[0][k];
     m.turn[k] = free[1][k];
     m.inertia[k] = inertia(k, k);
   }
-  m.way[3] = w.inverseMass;
+  m.displacement[3] = w.inverseMass;
   m.inertia[3] = inertia(0, 1);
   m.inertia[4] = inertia(0, 2);
   m.inertia[5] = inertia(1, 2);
 }
 
-void CrowdSolver::startMovers(const std::vector<GroupBody>& bodies)
+void CrowdSolver::startMovers(const std::vector<IslandBody>& bodies)
 {
   movers_.assign(work_.size() + std::size_t(strips_) + 1, crowd::Mover{});
   changed_.assign(movers_.size(), 0);
@@ -103,7 +103,7 @@ void CrowdSolver::startMovers(const std::vector<GroupBody>& bodies)
 }
 
 bool CrowdSolver::correctTurns(
-  const std::vector<GroupBody>& bodies, const std::vector<GroupContact>& contacts)
+  const std::vector<IslandBody>& bodies, const std::vector<IslandContact>& contacts)
 {
   bool any = false;
   for (std::size_t i = 0; i < work_.size(); ++i)
@@ -124,7 +124,7 @@ bool CrowdSolver::correctTurns(
   // Levers lie between places that are of one kind, guessed or solved.
   for (std::size_t i = 0; i < work_.size(); ++i)
   {
-    this->goTo(work_[i], Eigen::Map<const Vec3>(movers_[work_[i].mover].way));
+    this->goTo(work_[i], Eigen::Map<const Vec3>(movers_[work_[i].mover].displacement));
   }
   const auto wrong = [&](int i)
   { return i >= 0 && changed_[work_[std::size_t(i)].mover] == sweep_; };
@@ -165,7 +165,7 @@ bool CrowdSolver::correctTurns(
   turned_.assign(batches_.size(), 0);
   for (std::size_t k = 0; k < rows_.size(); ++k)
   {
-    if (wrong_[k] && !rows_[k].isWatched())
+    if (wrong_[k] && !rows_[k].isSpeculative())
     {
       turned_[std::size_t(rows_[k].batch)] = 1;
     }

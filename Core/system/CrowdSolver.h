@@ -4,17 +4,17 @@
 /// A lasting step of many rocks that touch each other: open–close iteration as projected
 /// Gauss–Seidel over the contacts, in their own three directions.
 ///
-/// The same unknowns, springs and integration as in system/GroupSolver.h, which uses this for what
+/// The same unknowns, springs and integration as in system/IslandSolver.h, which uses this for what
 /// is too large to eliminate. Contacts lie in memory as the sweeps meet them
 /// (system/crowdKernel.h), and nothing else of them is kept. Most contacts of a crowd are open and
-/// stay so: they are only watched, and are made ready when they close.
+/// stay so: they are speculative, stay out of the sweeps, and are made ready when they close.
 
 #include "base/cache.h"
 #include "base/parallel.h"
 #include "law/settings.h"
 #include "solver/StepSolver.h"
 #include "system/crowdKernel.h"
-#include "system/group.h"
+#include "system/island.h"
 
 #include <array>
 #include <cstdint>
@@ -29,24 +29,25 @@ class CrowdSolver
 {
 public:
   /// Advances the bodies' states and the contacts' springs by `request.duration`, as if it lasted.
-  /// `take` and `lookAgain`: see GroupSolver::step. Nothing is changed if a displacement is
+  /// `accept` and `lookAgain`: see IslandSolver::step. Nothing is changed if a displacement is
   /// not finite.
-  GroupOutcome step(const StepRequest& request, std::vector<GroupBody>& bodies,
-    std::vector<GroupContact>& contacts, Taken take, const std::function<LookOutcome()>& lookAgain);
+  IslandOutcome step(const StepRequest& request, std::vector<IslandBody>& bodies,
+    std::vector<IslandContact>& contacts, Accept accept,
+    const std::function<LookOutcome()>& lookAgain);
 
-  // For lookAgain, as GroupSolver has them.
-  BlockState end(const std::vector<GroupBody>& bodies, std::size_t i) const;
+  // For lookAgain, as IslandSolver has them.
+  BlockState end(const std::vector<IslandBody>& bodies, std::size_t i) const;
   double gap(std::size_t contact) const;
   bool setGap(std::size_t contact, double found);
   bool moved(std::size_t body) const { return work_[body].moved; }
   double force(std::size_t contact) const { return this->forceOf(rows_[contact])[0]; }
-  void setAbsent(const GroupContact& contact, std::size_t k); ///< As the contact says now.
+  void setAbsent(const IslandContact& contact, std::size_t k); ///< As the contact says now.
 
   /// Share of the largest displacement to which the sweeps go.
   double tolerance = 1e-4;
   int maxSweeps = 6;
-  /// Gives a contact its springs that was watched and closes, unless it has them.
-  std::function<void(std::size_t contact)> arm;
+  /// Gives a speculative contact that closes its springs, unless it has them.
+  std::function<void(std::size_t contact)> setSprings;
 
 private:
   static constexpr int kNever = -2; ///< A sweep before all others.
@@ -54,14 +55,14 @@ private:
   /// World axes. A rotation over the step is the Cayley vector of its turn.
   struct Work
   {
-    Mat3 rotation;  ///< At the start.
-    Mat3 turned;    ///< As turned for which levers and loads hold, and at last as solved.
-    Mat3 mean;      ///< ½ (I + turned): a material vector, averaged over the step.
-    Quat turn;      ///< Of `turned`.
-    Vec3 position;  ///< Of the centroid at the start.
-    Vec3 way, spun; ///< Displacement and Cayley vector.
+    Mat3 rotation;           ///< At the start.
+    Mat3 turned;             ///< As turned for which levers and loads hold, and at last as solved.
+    Mat3 mean;               ///< ½ (I + turned): a material vector, averaged over the step.
+    Quat turn;               ///< Of `turned`.
+    Vec3 position;           ///< Of the centroid at the start.
+    Vec3 displacement, spun; ///< Displacement and Cayley vector.
     Vec3 velocity0, spin0;
-    Vec3 offset, spinOffset; ///< Velocity at the end is way/h + offset.
+    Vec3 offset, spinOffset; ///< Velocity at the end is displacement/h + offset.
     double inverseMass;      ///< h²/m
     std::size_t mover;       ///< Among movers_.
     bool moved;              ///< Since lookAgain was asked.
@@ -70,10 +71,10 @@ private:
   /// The part of a contact that is not in its lane of a batch.
   struct Row
   {
-    int batch = 0; ///< ~i: it is watched, in fours i.
+    int batch = 0; ///< ~i: it is speculative, in fours i.
     int lane = 0;
     double gap0 = 0.0; ///< Without what a bounce asks for, m.
-    bool isWatched() const { return batch < 0; }
+    bool isSpeculative() const { return batch < 0; }
     std::size_t fours() const { return std::size_t(~batch); }
   };
 
@@ -83,16 +84,16 @@ private:
   }
   Vec3 forceOf(const Row& row) const ///< Along the normal and the tangents, N.
   {
-    return row.isWatched() ? Vec3(Vec3::Zero())
-                           : laneOf(forces_[std::size_t(row.batch)].along, row.lane);
+    return row.isSpeculative() ? Vec3(Vec3::Zero())
+                               : laneOf(forces_[std::size_t(row.batch)].along, row.lane);
   }
-  void prepareBodies(const StepRequest& request, const std::vector<GroupBody>& bodies);
+  void prepareBodies(const StepRequest& request, const std::vector<IslandBody>& bodies);
   void turnAs(Work& work, const Vec3& spun) const; ///< turned, mean and turn.
   /// Where a body goes without contacts, for the turn that it has.
-  std::array<Vec3, 2> freeMotion(const GroupBody& body, const Work& work) const;
+  std::array<Vec3, 2> freeMotion(const IslandBody& body, const Work& work) const;
   /// Movers in order, and the number of strips.
-  void lineUp(const std::vector<GroupBody>& bodies);
-  void arrange(const std::vector<GroupContact>& contacts); ///< Batches of each strip.
+  void lineUp(const std::vector<IslandBody>& bodies);
+  void arrange(const std::vector<IslandContact>& contacts); ///< Batches of each strip.
   /// The rocks whose contacts a batch will hold.
   struct Hand
   {
@@ -104,9 +105,9 @@ private:
     int filled = 0;             ///< Lanes.
   };
   /// Deals contacts out to batches; `slope`: the mover that stands for it.
-  void deal(const std::vector<GroupContact>& contacts, const int* first, const int* last, int slope,
-    std::vector<Hand>& hands);
-  void layOutWatched(const std::vector<GroupContact>& contacts, int strip, int slope);
+  void deal(const std::vector<IslandContact>& contacts, const int* first, const int* last,
+    int slope, std::vector<Hand>& hands);
+  void layOutSpeculative(const std::vector<IslandContact>& contacts, int strip, int slope);
   /// visit(strip): every second strip, the others, and what reaches further, or backwards. Strips
   /// that are visited at the same time share no rock.
   template <class Visit>
@@ -121,79 +122,79 @@ private:
   /// Batches of a strip that hold any contact: go(the first, how many), by kind.
   template <class Go>
   void forUsed(int strip, Go&& go) const;
-  void prepareRow(const std::vector<GroupBody>& bodies, const GroupContact& group, Row& row);
-  void stiffen(const GroupContact& group, const Row& row); ///< A contact that bounces.
-  void askGap(const GroupContact& group, const Row& row);  ///< Of its lane of a batch.
+  void prepareRow(const std::vector<IslandBody>& bodies, const IslandContact& asked, Row& row);
+  void stiffen(const IslandContact& asked, const Row& row); ///< A contact that bounces.
+  void askGap(const IslandContact& asked, const Row& row);  ///< Of its lane of a batch.
   /// Directions and levers at mid-step.
-  void lever(const std::vector<GroupBody>& bodies, const GroupContact& group, const Row& row);
+  void lever(const std::vector<IslandBody>& bodies, const IslandContact& asked, const Row& row);
   void assemble(std::size_t first, std::size_t count); ///< Batches: what forces do along levers.
   void pushed(const Row& row, double sign);            ///< Movers by the row's force.
   const Work* workOf(const Row& row, int side) const;  ///< Null: the slope.
   Vec3 leverOf(const Row& row, int side) const;        ///< m
   /// Of the first rock's point of force less the second one's, as the sweeps have it, m.
-  Vec3 wayOf(const int (&body)[2][crowd::kLanes], const double (&lever)[2][3][crowd::kLanes],
-    int lane) const;
+  Vec3 displacementOf(const int (&body)[2][crowd::kLanes],
+    const double (&lever)[2][3][crowd::kLanes], int lane) const;
   /// Of a rock's point of force at the mean of the velocities before and after the step, m.
-  Vec3 meanWayOf(const Row& row, int side) const;
+  Vec3 meanDisplacementOf(const Row& row, int side) const;
   double opened(const Row& row) const; ///< Along the normal, m.
   Vec3 travel(const Row& row) const;   ///< Along the normal and the tangents, m.
   /// Velocities before and after the step along the normal and the tangents, m/s.
   std::array<Vec3, 2> velocities(const Row& row) const;
-  void startMover(const GroupBody& body, std::size_t i);
-  void startMovers(const std::vector<GroupBody>& bodies); ///< As if there were no contacts.
+  void startMover(const IslandBody& body, std::size_t i);
+  void startMovers(const std::vector<IslandBody>& bodies); ///< As if there were no contacts.
   /// All rows, and what they do to the movers to begin with.
-  void prepareRows(const std::vector<GroupBody>& bodies, const std::vector<GroupContact>& contacts);
+  void prepareRows(
+    const std::vector<IslandBody>& bodies, const std::vector<IslandContact>& contacts);
   /// Turns that were guessed wrong, and the levers that go with them.
   bool correctTurns(
-    const std::vector<GroupBody>& bodies, const std::vector<GroupContact>& contacts);
-  void append(const std::vector<GroupBody>& bodies, std::vector<GroupContact>& contacts);
+    const std::vector<IslandBody>& bodies, const std::vector<IslandContact>& contacts);
+  void append(const std::vector<IslandBody>& bodies, std::vector<IslandContact>& contacts);
   /// Lanes for further contacts: those that are still empty in batches of their strip, or else in
   /// batches behind all others. `fresh_` are the batches that they are in.
-  void findLanes(const std::vector<GroupContact>& contacts, const std::vector<int>& added);
-  bool findEmptyLane(const GroupContact& contact, Row& row);
-  void appendBatches(const std::vector<GroupContact>& contacts, const std::vector<int>& added);
+  void findLanes(const std::vector<IslandContact>& contacts, const std::vector<int>& added);
+  bool findEmptyLane(const IslandContact& contact, Row& row);
+  void appendBatches(const std::vector<IslandContact>& contacts, const std::vector<int>& added);
   void assembleFresh();
   /// The strip that a contact belongs to.
-  int stripOf(const GroupContact& contact) const;
-  void noteChange(const GroupContact& contact); ///< Contacts of its rocks are to be visited.
-  /// Makes those of the watched contacts ready that are closed where the rocks go now; whether
-  /// there were any.
-  /// `sweep` is the next one.
-  bool watch(int sweep);
+  int stripOf(const IslandContact& contact) const;
+  void noteChange(const IslandContact& contact); ///< Contacts of its rocks are to be visited.
+  /// Makes speculative contacts ready that are closed where the rocks go now; whether there were
+  /// any. `sweep` is the next one.
+  bool closeSpeculative(int sweep);
   double visit(int strip);
   double sweep();
   /// Sweeps until none changes anything by more than `goal`, m; whether they get there.
-  bool sweepTo(double goal, int most, bool conjugate, GroupOutcome& outcome);
+  bool sweepTo(double goal, int most, bool conjugate, IslandOutcome& outcome);
   /// A run of sweeps over everything, or around what has changed; whether all has settled.
-  bool sweeps(int most, bool everywhere, GroupOutcome& outcome);
+  bool sweeps(int most, bool everywhere, IslandOutcome& outcome);
   void begin();              ///< Before the first of a run of sweeps.
   void goFurther();          ///< Between two sweeps of a run: along a conjugate direction,
   void goFurther(int strip); ///< and the forces of a strip that is swept next.
   /// Sweeps, and again as long as bounces give energy.
   void settle(
-    int most, bool everywhere, std::vector<GroupContact>& contacts, GroupOutcome& outcome);
-  bool holdBounces(std::vector<GroupContact>& contacts); ///< Whether any gives energy.
-  void collect();                                        ///< Displacements from movers.
+    int most, bool everywhere, std::vector<IslandContact>& contacts, IslandOutcome& outcome);
+  bool holdBounces(std::vector<IslandContact>& contacts); ///< Whether any gives energy.
+  void collect();                                         ///< Displacements from movers.
   bool isNear(const Vec3& a, const Vec3& b) const
   {
     return (a - b).cwiseAbs().maxCoeff() <= kQuiet * enough_;
   }
-  void goTo(Work& work, const Vec3& way) const
+  void goTo(Work& work, const Vec3& displacement) const
   {
-    work.moved = work.moved || !this->isNear(work.way, way);
-    work.way = way;
+    work.moved = work.moved || !this->isNear(work.displacement, displacement);
+    work.displacement = displacement;
   }
   void noteSeen();         ///< Where bodies are looked at now;
   bool haveGoneOn() const; ///< whether any has gone far since.
-  void write(const StepRequest& request, std::vector<GroupBody>& bodies,
-    std::vector<GroupContact>& contacts, GroupOutcome& outcome);
+  void write(const StepRequest& request, std::vector<IslandBody>& bodies,
+    std::vector<IslandContact>& contacts, IslandOutcome& outcome);
 
   double h_ = 0.0, gravity_ = 0.0;
   std::vector<Work> work_;
   /// Of each body, where it was looked at last.
   struct Seen
   {
-    Vec3 way, spun;
+    Vec3 displacement, spun;
     double radius; ///< m
   };
   std::vector<Seen> seen_;
@@ -203,28 +204,28 @@ private:
   std::vector<crowd::Springs> springs_; ///< Of each batch.
   std::vector<crowd::Forces> forces_;   ///< Of the contacts of each batch.
   std::vector<int> filled_;             ///< Lanes of each batch that hold a contact.
-  std::vector<crowd::Watched> watched_;
-  std::vector<int> watchedContacts_; ///< By fours and lane; −1: none.
-  std::vector<int> watchStarts_;     ///< First fours of each strip.
+  std::vector<crowd::Speculative> speculative_;
+  std::vector<int> speculativeContacts_; ///< By fours and lane; −1: none.
+  std::vector<int> speculativeStarts_;   ///< First fours of each strip.
   std::vector<unsigned char> closes_;
-  int checked_ = 0; ///< Sweep before which watched contacts were last looked at.
-  /// In order along the group's largest extent, so that what threads work on lies apart; the slope
+  int checked_ = 0; ///< Sweep before which speculative contacts were last looked at.
+  /// In order along the island's largest extent, so that what threads work on lies apart; the slope
   /// is one more of each strip, which nothing moves.
   std::vector<crowd::Mover> movers_;
-  std::vector<std::pair<double, int>> line_; ///< Place along the group and body, by mover.
+  std::vector<std::pair<double, int>> line_; ///< Place along the island and body, by mover.
   std::vector<int> changed_;
-  // Strips lie across the group, and contacts belong to the lower strip of their two rocks: those
+  // Strips lie across the island, and contacts belong to the lower strip of their two rocks: those
   // of every second strip share no rock, and are swept at the same time. The last strip holds
-  // what reaches further than to the next strip, and what turns up while the sweeps go on (watched
-  // contacts that close, and those of a second look) if no batch of its strip has an empty lane for
-  // it. In each strip contacts between rocks come before those with the slope, but in the last one
-  // they are mixed; what is watched is swept by none.
+  // what reaches further than to the next strip, and what turns up while the sweeps go on
+  // (speculative contacts that close, and those of a second look) if no batch of its strip has an
+  // empty lane for it. In each strip contacts between rocks come before those with the slope, but
+  // in the last one they are mixed; what is speculative is swept by none.
   static constexpr int kKinds = 3;
   enum Kind
   {
     Pairs,
     OnSlope,
-    Watching,
+    Speculative,
   };
   int strips_ = 1;
   std::vector<std::vector<Hand>> hands_; ///< Of each strip.
@@ -233,7 +234,7 @@ private:
   std::vector<char> gives_;           ///< Of these, whether the bounce gives energy.
   std::vector<char> turned_;          ///< By batch, whether it holds such a contact.
   std::vector<int> touched_;          ///< Bodies.
-  std::vector<int> closing_;          ///< Watched contacts that have closed,
+  std::vector<int> closing_;          ///< Speculative contacts that have closed,
   std::vector<int> left_;             ///< and those for which there is no empty lane.
   std::vector<int> fresh_;            ///< Batches with contacts that are new in them.
   std::vector<int> keyOf_, order_;    ///< Contacts: strip and kind; in order of it.
@@ -246,20 +247,20 @@ private:
   // Of the run of sweeps at hand (goFurther): what it was before the last sweep, and the direction
   // in which it goes on, by batch and by mover.
   std::vector<crowd::Forces> forcesBefore_, forcesAlong_;
-  std::vector<crowd::Way> before_, along_;
+  std::vector<crowd::Motion> before_, along_;
   std::vector<double> changes_; ///< By share of the movers.
   double lastChange_ = 0.0;     ///< Of the sweep before; negative: there was none.
   crowd::Further further_ = {};
   bool goingFurther_ = false; ///< In the sweep at hand.
   const crowd::Kernel* kernel_ = nullptr;
   // Of the step at hand.
-  const std::vector<GroupBody>* bodies_ = nullptr;
-  const std::vector<GroupContact>* contacts_ = nullptr;
-  int sweep_ = 0;       ///< Number of the next sweep.
-  double scale_ = 0.0;  ///< The longest way in the step, m.
-  double enough_ = 0.0; ///< Changes that settle a run, m,
-  double rough_ = 0.0;  ///< those that leave it far from settled,
-  double quiet_ = 0.0;  ///< and those that are no reason to visit a contact again.
+  const std::vector<IslandBody>* bodies_ = nullptr;
+  const std::vector<IslandContact>* contacts_ = nullptr;
+  int sweep_ = 0;            ///< Number of the next sweep.
+  double scale_ = 0.0;       ///< The longest displacement in the step, m.
+  double enough_ = 0.0;      ///< Changes that settle a run, m,
+  double unconverged_ = 0.0; ///< those that leave it far from settled,
+  double quiet_ = 0.0;       ///< and those that are no reason to visit a contact again.
 };
 
 template <class Visit>

@@ -1,5 +1,5 @@
-// How the contacts of a crowd are dealt out: into strips across the group, batches of which no two
-// share a rock, and what is only watched.
+// How the contacts of a crowd are dealt out: into strips across the island, batches of which no two
+// share a rock, and what is only speculative.
 
 #include "system/CrowdSolver.h"
 
@@ -15,11 +15,11 @@ namespace rockfall
 namespace
 {
 
-/// Rocks of a strip of the group, and strips at most.
+/// Rocks of a strip of the island, and strips at most.
 constexpr int kLeastStrip = 56;
 constexpr int kMostStrips = 64;
-/// To so many watched contacts of a strip there is an empty batch for those that close.
-constexpr std::size_t kWatchedPerSpare = 32;
+/// To so many speculative contacts of a strip there is an empty batch for those that close.
+constexpr std::size_t kSpeculativePerSpare = 32;
 /// Batches that are filled at the same time.
 constexpr int kOpen = 32;
 
@@ -66,7 +66,7 @@ Of CrowdSolver::Hand::idle() const
   return batch;
 }
 
-void CrowdSolver::lineUp(const std::vector<GroupBody>& bodies)
+void CrowdSolver::lineUp(const std::vector<IslandBody>& bodies)
 {
   Vec3 low = work_.front().position, high = low;
   double radii = 0.0;
@@ -99,7 +99,7 @@ void CrowdSolver::lineUp(const std::vector<GroupBody>& bodies)
   }
 }
 
-int CrowdSolver::stripOf(const GroupContact& contact) const
+int CrowdSolver::stripOf(const IslandContact& contact) const
 {
   const auto stripOfRock = [&](int body)
   { return int(work_[std::size_t(body)].mover * std::size_t(strips_) / work_.size()); };
@@ -108,14 +108,17 @@ int CrowdSolver::stripOf(const GroupContact& contact) const
   return std::abs(a - b) <= 1 ? std::min(a, b) : strips_;
 }
 
-void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
+void CrowdSolver::arrange(const std::vector<IslandContact>& contacts)
 {
   const int bodies = int(work_.size());
-  const auto keyOf = [&](const GroupContact& k)
+  const auto keyOf = [&](const IslandContact& k)
   {
     const int strip = this->stripOf(k);
     const bool open = !k.contact->closed() && mayStayOpen(k, h_);
-    return strip * kKinds + (open ? Watching : k.second < 0 && strip < strips_ ? OnSlope : Pairs);
+    return strip * kKinds +
+      (open                                 ? Speculative
+          : k.second < 0 && strip < strips_ ? OnSlope
+                                            : Pairs);
   };
   const std::size_t keys = std::size_t(strips_ + 1) * kKinds;
   keyOf_.resize(contacts.size());
@@ -149,12 +152,13 @@ void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
       used_[key] = int(hands.size());
       if (strip < strips_)
       {
-        const std::size_t watching = std::size_t(strip * kKinds + Watching);
+        const std::size_t speculative = std::size_t(strip * kKinds + Speculative);
         hands.insert(hands.end(),
-          1 + (ends_[watching] - this->firstOf(watching)) / kWatchedPerSpare, Hand(bodies + strip));
+          1 + (ends_[speculative] - this->firstOf(speculative)) / kSpeculativePerSpare,
+          Hand(bodies + strip));
       }
     }
-    starts_[std::size_t(strip * kKinds + Watching)] = int(hands.size());
+    starts_[std::size_t(strip * kKinds + Speculative)] = int(hands.size());
   };
   this->forStrips(false, dealStrip);
   // Strip after strip.
@@ -167,16 +171,16 @@ void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
   }
   starts_[keys] = count;
   room_ = starts_;
-  watchStarts_.assign(std::size_t(strips_) + 2, 0);
+  speculativeStarts_.assign(std::size_t(strips_) + 2, 0);
   for (std::size_t strip = 0; strip <= std::size_t(strips_); ++strip)
   {
-    const std::size_t key = strip * kKinds + Watching;
-    watchStarts_[strip + 1] = watchStarts_[strip] +
+    const std::size_t key = strip * kKinds + Speculative;
+    speculativeStarts_[strip + 1] = speculativeStarts_[strip] +
       int((ends_[key] - this->firstOf(key) + crowd::kLanes - 1) / crowd::kLanes);
   }
-  watched_.resize(std::size_t(watchStarts_.back()));
-  watchedContacts_.assign(watched_.size() * crowd::kLanes, -1);
-  closes_.resize(watched_.size());
+  speculative_.resize(std::size_t(speculativeStarts_.back()));
+  speculativeContacts_.assign(speculative_.size() * crowd::kLanes, -1);
+  closes_.resize(speculative_.size());
   batches_.resize(std::size_t(count));
   filled_.resize(std::size_t(count));
   springs_.assign(std::size_t(count), crowd::Springs{});
@@ -194,13 +198,13 @@ void CrowdSolver::arrange(const std::vector<GroupContact>& contacts)
     {
       rows_[std::size_t(order_[k])].batch += starts_[key];
     }
-    this->layOutWatched(contacts, strip, bodies + strip);
+    this->layOutSpeculative(contacts, strip, bodies + strip);
   };
   this->forStrips(false, layOut);
 }
 
-void CrowdSolver::deal(const std::vector<GroupContact>& contacts, const int* first, const int* last,
-  int slope, std::vector<Hand>& hands)
+void CrowdSolver::deal(const std::vector<IslandContact>& contacts, const int* first,
+  const int* last, int slope, std::vector<Hand>& hands)
 {
   // Each contact goes to the first batch that is being filled and holds neither of its rocks.
   std::array<int, kOpen> batch{};
@@ -223,7 +227,7 @@ void CrowdSolver::deal(const std::vector<GroupContact>& contacts, const int* fir
   };
   for (const int* k = first; k != last; ++k)
   {
-    const GroupContact& contact = contacts[std::size_t(*k)];
+    const IslandContact& contact = contacts[std::size_t(*k)];
     const std::size_t a = work_[std::size_t(contact.first)].mover;
     const std::size_t c = contact.second < 0 ? a : work_[std::size_t(contact.second)].mover;
     const std::uint32_t taken = open_[a] | open_[c];
@@ -261,7 +265,7 @@ void CrowdSolver::deal(const std::vector<GroupContact>& contacts, const int* fir
 }
 
 void CrowdSolver::findLanes(
-  const std::vector<GroupContact>& contacts, const std::vector<int>& added)
+  const std::vector<IslandContact>& contacts, const std::vector<int>& added)
 {
   fresh_.clear();
   left_.clear();
@@ -289,7 +293,7 @@ void CrowdSolver::findLanes(
   }
 }
 
-bool CrowdSolver::findEmptyLane(const GroupContact& contact, Row& row)
+bool CrowdSolver::findEmptyLane(const IslandContact& contact, Row& row)
 {
   const int strip = this->stripOf(contact);
   const bool slope = contact.second < 0;
@@ -326,7 +330,7 @@ bool CrowdSolver::findEmptyLane(const GroupContact& contact, Row& row)
 }
 
 void CrowdSolver::appendBatches(
-  const std::vector<GroupContact>& contacts, const std::vector<int>& added)
+  const std::vector<IslandContact>& contacts, const std::vector<int>& added)
 {
   const std::size_t before = batches_.size();
   std::vector<Hand>& hands = hands_.back();
@@ -356,24 +360,25 @@ void CrowdSolver::appendBatches(
   used_[pairs + OnSlope] = int(batches_.size()); // it has none
 }
 
-void CrowdSolver::layOutWatched(const std::vector<GroupContact>& contacts, int strip, int slope)
+void CrowdSolver::layOutSpeculative(
+  const std::vector<IslandContact>& contacts, int strip, int slope)
 {
-  const auto first = watched_.begin() + watchStarts_[std::size_t(strip)];
-  std::for_each(first, watched_.begin() + watchStarts_[std::size_t(strip) + 1],
-    [&](crowd::Watched& four) { four = Hand(slope).idle<crowd::Watched>(); });
-  const std::size_t key = std::size_t(strip * kKinds + Watching);
-  std::size_t at = std::size_t(watchStarts_[std::size_t(strip)]) * crowd::kLanes;
+  const auto first = speculative_.begin() + speculativeStarts_[std::size_t(strip)];
+  std::for_each(first, speculative_.begin() + speculativeStarts_[std::size_t(strip) + 1],
+    [&](crowd::Speculative& four) { four = Hand(slope).idle<crowd::Speculative>(); });
+  const std::size_t key = std::size_t(strip * kKinds + Speculative);
+  std::size_t at = std::size_t(speculativeStarts_[std::size_t(strip)]) * crowd::kLanes;
   for (std::size_t k = this->firstOf(key); k < ends_[key]; ++k, ++at)
   {
     const int contact = order_[k];
-    const GroupContact& group = contacts[std::size_t(contact)];
+    const IslandContact& asked = contacts[std::size_t(contact)];
     Row& row = rows_[std::size_t(contact)];
     row.batch = ~int(at / crowd::kLanes);
     row.lane = int(at % crowd::kLanes);
-    crowd::Watched& four = watched_[row.fours()];
-    four.body[0][row.lane] = int(work_[std::size_t(group.first)].mover);
-    four.body[1][row.lane] = group.second < 0 ? slope : int(work_[std::size_t(group.second)].mover);
-    watchedContacts_[at] = contact;
+    crowd::Speculative& four = speculative_[row.fours()];
+    four.body[0][row.lane] = int(work_[std::size_t(asked.first)].mover);
+    four.body[1][row.lane] = asked.second < 0 ? slope : int(work_[std::size_t(asked.second)].mover);
+    speculativeContacts_[at] = contact;
   }
 }
 

@@ -28,11 +28,11 @@ void CrowdSolver::begin()
   forcesBefore_ = forces_;
   forcesAlong_.assign(forces_.size(), crowd::Forces{});
   before_.resize(work_.size());
-  along_.assign(work_.size(), crowd::Way{});
+  along_.assign(work_.size(), crowd::Motion{});
   for (std::size_t i = 0; i < work_.size(); ++i)
   {
     const crowd::Mover& m = movers_[i];
-    std::copy(std::begin(m.way), std::end(m.way), before_[i].way);
+    std::copy(std::begin(m.displacement), std::end(m.displacement), before_[i].displacement);
     std::copy(std::begin(m.turn), std::end(m.turn), before_[i].turn);
   }
   lastChange_ = -1.0;
@@ -40,7 +40,8 @@ void CrowdSolver::begin()
 
 void CrowdSolver::goFurther()
 {
-  // Rocks are in order along the group: who goes over a share of them has the same strips to sweep.
+  // Rocks are in order along the island: who goes over a share of them has the same strips to
+  // sweep.
   const std::size_t shares = std::clamp(work_.size() / kRocks, std::size_t(1), kMostShares);
   const auto forShares = [count = work_.size(), shares](auto&& go)
   {

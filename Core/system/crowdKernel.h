@@ -16,9 +16,9 @@ constexpr int kLanes = 8;
 /// The part of a rock that a sweep meets.
 struct alignas(64) Mover
 {
-  double way[4];     ///< Displacement of the centroid, m; h²/m, m/N.
-  double turn[4];    ///< Cayley vector of the turn, rad; unused.
-  double inertia[8]; ///< h² I⁻¹, world: xx, yy, zz, xy, xz, yz, 1/(N m); unused.
+  double displacement[4]; ///< Displacement of the centroid, m; h²/m, m/N.
+  double turn[4];         ///< Cayley vector of the turn, rad; unused.
+  double inertia[8];      ///< h² I⁻¹, world: xx, yy, zz, xy, xz, yz, 1/(N m); unused.
 };
 
 /// The part of the contacts of a batch that a sweep meets; the last index is the contact.
@@ -46,7 +46,7 @@ struct alignas(64) Springs
 };
 
 /// Contacts that may stay open: all that tells whether they do.
-struct alignas(64) Watched
+struct alignas(64) Speculative
 {
   double normal[3][kLanes];
   double lever[2][3][kLanes]; ///< From the rocks' centroids, m.
@@ -74,10 +74,10 @@ struct Pass
   double quiet; ///< m
 };
 
-/// A look at contacts that are watched.
-struct Watch
+/// A look at contacts that are speculative.
+struct SpeculativePass
 {
-  const Watched* first;
+  const Speculative* first;
   std::size_t count;
   Mover* movers;         ///< Read only.
   const int* changed;    ///< By mover, as for a pass.
@@ -86,9 +86,9 @@ struct Watch
 };
 
 /// Displacement (m) and Cayley vector (rad) of a mover, as they lie in it.
-struct alignas(32) Way
+struct alignas(32) Motion
 {
-  double way[4];
+  double displacement[4];
   double turn[4];
 };
 
@@ -110,15 +110,15 @@ struct Kernel
   /// Fills in `w`, `coupling`, `stiffness`, `shear` and `gain` from directions, levers, springs and
   /// the movers' mobility.
   void (*assemble)(Batch* batches, const Springs* springs, Mover* movers, std::size_t count);
-  bool (*watch)(const Watch& watch); ///< Whether any closes.
+  bool (*findClosing)(const SpeculativePass& pass); ///< Whether any closes.
   /// How far movers have come since `before`, in the norm of kinetic energy with a ball's inertia
   /// for that of each rock, N m.
-  double (*changeOf)(const Mover* movers, const Way* before, int count);
+  double (*changeOf)(const Mover* movers, const Motion* before, int count);
   /// `now`, `before` and `along` are gone over together.
   void (*goForces)(
     const Further& further, Forces* now, Forces* before, Forces* along, std::size_t count);
-  void (*goMovers)(
-    const Further& further, Mover* now, Way* before, Way* along, int* changed, std::size_t count);
+  void (*goMovers)(const Further& further, Mover* now, Motion* before, Motion* along, int* changed,
+    std::size_t count);
 };
 extern const Kernel kAnywhere, kAvx2, kAvx512;
 

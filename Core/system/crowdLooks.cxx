@@ -14,7 +14,7 @@
 namespace rockfall
 {
 
-void CrowdSolver::noteChange(const GroupContact& contact)
+void CrowdSolver::noteChange(const IslandContact& contact)
 {
   for (const int body : { contact.first, contact.second })
   {
@@ -30,7 +30,8 @@ void CrowdSolver::assembleFresh()
   forEach(fresh_.size(), 4, [&](std::size_t k) { this->assemble(std::size_t(fresh_[k]), 1); });
 }
 
-void CrowdSolver::append(const std::vector<GroupBody>& bodies, std::vector<GroupContact>& contacts)
+void CrowdSolver::append(
+  const std::vector<IslandBody>& bodies, std::vector<IslandContact>& contacts)
 {
   const std::size_t first = rows_.size();
   rows_.resize(contacts.size());
@@ -39,7 +40,7 @@ void CrowdSolver::append(const std::vector<GroupBody>& bodies, std::vector<Group
   this->findLanes(contacts, added);
   for (std::size_t k = first; k < rows_.size(); ++k)
   {
-    // The gap at the start from which this way leads to the one at the end.
+    // The gap at the start from which this displacement leads to the one at the end.
     Row& row = rows_[k];
     Contact& c = *contacts[k].contact;
     this->prepareRow(bodies, contacts[k], row);
@@ -62,33 +63,33 @@ void CrowdSolver::append(const std::vector<GroupBody>& bodies, std::vector<Group
   }
 }
 
-bool CrowdSolver::watch(int sweep)
+bool CrowdSolver::closeSpeculative(int sweep)
 {
   constexpr std::size_t kBlock = 16; // fours at once
   constexpr std::size_t kCloseGrain = 8;
   const auto look = [&](std::size_t block)
   {
     const std::size_t first = block * kBlock;
-    crowd::Watch watch;
-    watch.first = &watched_[first];
-    watch.count = std::min(kBlock, watched_.size() - first);
-    watch.movers = movers_.data();
-    watch.changed = changed_.data();
-    watch.since = checked_ - 1; // going further counts for the sweep before
-    watch.closes = &closes_[first];
-    kernel_->watch(watch);
+    crowd::SpeculativePass pass;
+    pass.first = &speculative_[first];
+    pass.count = std::min(kBlock, speculative_.size() - first);
+    pass.movers = movers_.data();
+    pass.changed = changed_.data();
+    pass.since = checked_ - 1; // going further counts for the sweep before
+    pass.closes = &closes_[first];
+    kernel_->findClosing(pass);
   };
-  forEach((watched_.size() + kBlock - 1) / kBlock, 4, look);
+  forEach((speculative_.size() + kBlock - 1) / kBlock, 4, look);
   checked_ = sweep;
   closing_.clear();
-  for (std::size_t k = 0; k < watched_.size(); ++k)
+  for (std::size_t k = 0; k < speculative_.size(); ++k)
   {
     for (int lane = 0; closes_[k] != 0 && lane < crowd::kLanes; ++lane)
     {
       if ((closes_[k] >> lane & 1) != 0)
       {
-        closing_.push_back(watchedContacts_[k * crowd::kLanes + std::size_t(lane)]);
-        watched_[k].gap[lane] = std::numeric_limits<double>::max();
+        closing_.push_back(speculativeContacts_[k * crowd::kLanes + std::size_t(lane)]);
+        speculative_[k].gap[lane] = std::numeric_limits<double>::max();
       }
     }
   }
@@ -102,9 +103,9 @@ bool CrowdSolver::watch(int sweep)
     const std::size_t k = std::size_t(closing_[c]);
     Row& row = rows_[k];
     const double gap0 = row.gap0; // may have been set right by a look
-    if (arm)
+    if (setSprings)
     {
-      arm(k);
+      setSprings(k);
     }
     this->prepareRow(*bodies_, (*contacts_)[k], row);
     row.gap0 = batches_[std::size_t(row.batch)].gap[row.lane] = gap0;
@@ -118,23 +119,23 @@ bool CrowdSolver::watch(int sweep)
   return true;
 }
 
-BlockState CrowdSolver::end(const std::vector<GroupBody>& bodies, std::size_t i) const
+BlockState CrowdSolver::end(const std::vector<IslandBody>& bodies, std::size_t i) const
 {
   const Work& w = work_[i];
   BlockState state = *bodies[i].state;
-  state.position += w.way;
-  state.velocity = w.way / h_ + w.offset;
+  state.position += w.displacement;
+  state.velocity = w.displacement / h_ + w.offset;
   state.orientation = (w.turn * state.orientation).normalized();
   state.spin = w.rotation.transpose() * (w.spun / h_ + w.spinOffset);
   return state;
 }
 
-void CrowdSolver::setAbsent(const GroupContact& contact, std::size_t k)
+void CrowdSolver::setAbsent(const IslandContact& contact, std::size_t k)
 {
   const Row& row = rows_[k];
-  if (row.isWatched())
+  if (row.isSpeculative())
   {
-    watched_[row.fours()].gap[row.lane] = contact.absent ? kAbsent : row.gap0;
+    speculative_[row.fours()].gap[row.lane] = contact.absent ? kAbsent : row.gap0;
   }
   else
   {
@@ -151,8 +152,8 @@ double CrowdSolver::gap(std::size_t contact) const
 bool CrowdSolver::setGap(std::size_t contact, double found)
 {
   Row& row = rows_[contact];
-  double& asked = row.isWatched() ? watched_[row.fours()].gap[row.lane]
-                                  : batches_[std::size_t(row.batch)].gap[row.lane];
+  double& asked = row.isSpeculative() ? speculative_[row.fours()].gap[row.lane]
+                                      : batches_[std::size_t(row.batch)].gap[row.lane];
   const double change = gapChange(row.gap0, this->gap(contact), found);
   if (std::abs(change) <= kQuiet * enough_)
   {

@@ -24,13 +24,13 @@ void setLane(double (&of)[3][crowd::kLanes], int lane, const Vec3& to)
 } // namespace
 
 void CrowdSolver::prepareRow(
-  const std::vector<GroupBody>& bodies, const GroupContact& group, Row& row)
+  const std::vector<IslandBody>& bodies, const IslandContact& asked, Row& row)
 {
-  const Contact& c = *group.contact;
+  const Contact& c = *asked.contact;
   row.gap0 = c.gap();
-  if (row.isWatched())
+  if (row.isSpeculative())
   {
-    watched_[row.fours()].gap[row.lane] = group.absent ? kAbsent : row.gap0;
+    speculative_[row.fours()].gap[row.lane] = asked.absent ? kAbsent : row.gap0;
   }
   else
   {
@@ -42,23 +42,23 @@ void CrowdSolver::prepareRow(
     setLane(p.directions[2], lane, v);
     springs.penalty[lane] = c.stiffness;
     springs.shear[lane] = c.shearStiffness;
-    p.gap[lane] = group.absent ? kAbsent : row.gap0;
+    p.gap[lane] = asked.absent ? kAbsent : row.gap0;
     p.slip[0][lane] = u.dot(c.slip);
     p.slip[1][lane] = v.dot(c.slip);
-    p.friction[lane] = group.friction;
-    p.cohesion[lane] = group.cohesion;
+    p.friction[lane] = asked.friction;
+    p.cohesion[lane] = asked.cohesion;
     // The sweeps start from the forces of the last step.
-    if (c.closed() && group.bounce < 0.0 && c.normalForce > 0.0)
+    if (c.closed() && asked.bounce < 0.0 && c.normalForce > 0.0)
     {
       setLane(forces_[std::size_t(row.batch)].along, lane,
         { c.normalForce, -c.shearStiffness * p.slip[0][lane],
           -c.shearStiffness * p.slip[1][lane] });
     }
   }
-  this->lever(bodies, group, row);
+  this->lever(bodies, asked, row);
 }
 
-void CrowdSolver::stiffen(const GroupContact& group, const Row& row)
+void CrowdSolver::stiffen(const IslandContact& asked, const Row& row)
 {
   crowd::Batch& p = batches_[std::size_t(row.batch)];
   crowd::Springs& springs = springs_[std::size_t(row.batch)];
@@ -66,23 +66,23 @@ void CrowdSolver::stiffen(const GroupContact& group, const Row& row)
   const double stiff = kBounceStiffness / p.w[lane];
   springs.penalty[lane] = std::max(springs.penalty[lane], stiff);
   springs.shear[lane] = std::max(springs.shear[lane], stiff);
-  this->askGap(group, row);
+  this->askGap(asked, row);
   this->assemble(std::size_t(row.batch), 1);
 }
 
-void CrowdSolver::askGap(const GroupContact& group, const Row& row)
+void CrowdSolver::askGap(const IslandContact& asked, const Row& row)
 {
   crowd::Batch& p = batches_[std::size_t(row.batch)];
   const double penalty = springs_[std::size_t(row.batch)].penalty[row.lane];
   double& gap = p.gap[row.lane];
   gap = row.gap0;
-  if (group.absent)
+  if (asked.absent)
   {
     gap = kAbsent;
   }
-  else if (group.bounce >= 0.0)
+  else if (asked.bounce >= 0.0)
   {
-    gap = bounceGap(group, h_, penalty * p.w[row.lane]);
+    gap = bounceGap(asked, h_, penalty * p.w[row.lane]);
   }
 }
 
@@ -92,7 +92,7 @@ void CrowdSolver::assemble(std::size_t first, std::size_t count)
 }
 
 void CrowdSolver::prepareRows(
-  const std::vector<GroupBody>& bodies, const std::vector<GroupContact>& contacts)
+  const std::vector<IslandBody>& bodies, const std::vector<IslandContact>& contacts)
 {
   // Strip by strip, as long as it lies in the cache.
   const auto prepareStrip = [&](int strip)
@@ -116,14 +116,14 @@ void CrowdSolver::prepareRows(
 }
 
 void CrowdSolver::lever(
-  const std::vector<GroupBody>& bodies, const GroupContact& group, const Row& row)
+  const std::vector<IslandBody>& bodies, const IslandContact& asked, const Row& row)
 {
-  const Contact& c = *group.contact;
+  const Contact& c = *asked.contact;
   const int lane = row.lane;
-  const Work& a = work_[std::size_t(group.first)];
-  const Work* b = group.second < 0 ? nullptr : &work_[std::size_t(group.second)];
-  const Vec3 middleA = a.position + 0.5 * a.way;
-  const Vec3 middleB = b ? Vec3(b->position + 0.5 * b->way) : Vec3(Vec3::Zero());
+  const Work& a = work_[std::size_t(asked.first)];
+  const Work* b = asked.second < 0 ? nullptr : &work_[std::size_t(asked.second)];
+  const Vec3 middleA = a.position + 0.5 * a.displacement;
+  const Vec3 middleB = b ? Vec3(b->position + 0.5 * b->displacement) : Vec3(Vec3::Zero());
   const auto onA = [&](const Vec3& at) -> Vec3 { return middleA + a.mean * (at - a.position); };
   const auto onB = [&](const Vec3& at) -> Vec3
   { return b ? Vec3(middleB + b->mean * (at - b->position)) : at; };
@@ -140,7 +140,7 @@ void CrowdSolver::lever(
       break;
     case ContactKind::EdgeEdge:
     {
-      const Polyhedron& shape = bodies[std::size_t(group.first)].block->shape();
+      const Polyhedron& shape = bodies[std::size_t(asked.first)].block->shape();
       const std::array<int, 2>& ends = shape.edges()[c.rockFeature].vertices;
       const Vec3 u =
         a.mean * (a.rotation * (shape.vertices()[ends[1]] - shape.vertices()[ends[0]]));
@@ -158,10 +158,10 @@ void CrowdSolver::lever(
     }
   }
   const Vec3 armA = x - middleA, armB = b ? Vec3(x - middleB) : Vec3(Vec3::Zero());
-  auto* const normal =
-    row.isWatched() ? watched_[row.fours()].normal : batches_[std::size_t(row.batch)].directions[0];
+  auto* const normal = row.isSpeculative() ? speculative_[row.fours()].normal
+                                           : batches_[std::size_t(row.batch)].directions[0];
   auto* const levers =
-    row.isWatched() ? watched_[row.fours()].lever : batches_[std::size_t(row.batch)].lever;
+    row.isSpeculative() ? speculative_[row.fours()].lever : batches_[std::size_t(row.batch)].lever;
   for (int k = 0; k < 3; ++k)
   {
     normal[k][lane] = n[k];
@@ -172,7 +172,7 @@ void CrowdSolver::lever(
 
 void CrowdSolver::pushed(const Row& row, double sign)
 {
-  if (row.isWatched())
+  if (row.isSpeculative())
   {
     return;
   }
@@ -200,7 +200,7 @@ void CrowdSolver::pushed(const Row& row, double sign)
     const Vec3 moment = inertia * laneOf(p.lever[side], lane).cross(force);
     for (int k = 0; k < 3; ++k)
     {
-      m.way[k] += m.way[3] * force[k];
+      m.displacement[k] += m.displacement[3] * force[k];
       m.turn[k] += moment[k];
     }
     force = -force;
@@ -210,61 +210,62 @@ void CrowdSolver::pushed(const Row& row, double sign)
 const CrowdSolver::Work* CrowdSolver::workOf(const Row& row, int side) const
 {
   const auto& body =
-    row.isWatched() ? watched_[row.fours()].body : batches_[std::size_t(row.batch)].body;
+    row.isSpeculative() ? speculative_[row.fours()].body : batches_[std::size_t(row.batch)].body;
   const std::size_t i = std::size_t(body[side][row.lane]);
   return i < work_.size() ? &work_[std::size_t(line_[i].second)] : nullptr;
 }
 
 Vec3 CrowdSolver::leverOf(const Row& row, int side) const
 {
-  return laneOf(row.isWatched() ? watched_[row.fours()].lever[side]
-                                : batches_[std::size_t(row.batch)].lever[side],
+  return laneOf(row.isSpeculative() ? speculative_[row.fours()].lever[side]
+                                    : batches_[std::size_t(row.batch)].lever[side],
     row.lane);
 }
 
-Vec3 CrowdSolver::meanWayOf(const Row& row, int side) const
+Vec3 CrowdSolver::meanDisplacementOf(const Row& row, int side) const
 {
   const Work* w = this->workOf(row, side);
   if (!w)
   {
     return Vec3::Zero();
   }
-  const Vec3 way = 0.5 * (h_ * (w->velocity0 + w->offset) + w->way);
+  const Vec3 displacement = 0.5 * (h_ * (w->velocity0 + w->offset) + w->displacement);
   const Vec3 spun = 0.5 * (h_ * (w->spin0 + w->spinOffset) + w->spun);
-  return way + spun.cross(this->leverOf(row, side));
+  return displacement + spun.cross(this->leverOf(row, side));
 }
 
-Vec3 CrowdSolver::wayOf(
+Vec3 CrowdSolver::displacementOf(
   const int (&body)[2][crowd::kLanes], const double (&lever)[2][3][crowd::kLanes], int lane) const
 {
-  const auto wayOn = [&](int side) -> Vec3
+  const auto displacementOn = [&](int side) -> Vec3
   {
     const crowd::Mover& m = movers_[std::size_t(body[side][lane])]; // the slope's goes nowhere
-    return Eigen::Map<const Vec3>(m.way) +
+    return Eigen::Map<const Vec3>(m.displacement) +
       Eigen::Map<const Vec3>(m.turn).cross(laneOf(lever[side], lane));
   };
-  return wayOn(0) - wayOn(1);
+  return displacementOn(0) - displacementOn(1);
 }
 
 double CrowdSolver::opened(const Row& row) const
 {
   const int lane = row.lane;
-  if (row.isWatched())
+  if (row.isSpeculative())
   {
-    const crowd::Watched& four = watched_[row.fours()];
-    return laneOf(four.normal, lane).dot(this->wayOf(four.body, four.lever, lane));
+    const crowd::Speculative& four = speculative_[row.fours()];
+    return laneOf(four.normal, lane).dot(this->displacementOf(four.body, four.lever, lane));
   }
   const crowd::Batch& p = batches_[std::size_t(row.batch)];
-  return laneOf(p.directions[0], lane).dot(this->wayOf(p.body, p.lever, lane));
+  return laneOf(p.directions[0], lane).dot(this->displacementOf(p.body, p.lever, lane));
 }
 
 Vec3 CrowdSolver::travel(const Row& row) const
 {
   const crowd::Batch& p = batches_[std::size_t(row.batch)];
   const int lane = row.lane;
-  const Vec3 way = this->wayOf(p.body, p.lever, lane);
-  return { laneOf(p.directions[0], lane).dot(way), laneOf(p.directions[1], lane).dot(way),
-    laneOf(p.directions[2], lane).dot(way) };
+  const Vec3 displacement = this->displacementOf(p.body, p.lever, lane);
+  return { laneOf(p.directions[0], lane).dot(displacement),
+    laneOf(p.directions[1], lane).dot(displacement),
+    laneOf(p.directions[2], lane).dot(displacement) };
 }
 
 std::array<Vec3, 2> CrowdSolver::velocities(const Row& row) const
@@ -279,7 +280,8 @@ std::array<Vec3, 2> CrowdSolver::velocities(const Row& row) const
       const Vec3 lever = this->leverOf(row, side);
       const double sign = side == 0 ? 1.0 : -1.0;
       before += sign * (w->velocity0 + w->spin0.cross(lever));
-      after += sign * (w->way / h_ + w->offset + (w->spun / h_ + w->spinOffset).cross(lever));
+      after +=
+        sign * (w->displacement / h_ + w->offset + (w->spun / h_ + w->spinOffset).cross(lever));
     }
   }
   Mat3 along;

@@ -12,21 +12,21 @@ using rockfall::crowd::Batch;
 using rockfall::crowd::Forces;
 using rockfall::crowd::Further;
 using rockfall::crowd::Kernel;
+using rockfall::crowd::Motion;
 using rockfall::crowd::Mover;
 using rockfall::crowd::Pass;
+using rockfall::crowd::Speculative;
+using rockfall::crowd::SpeculativePass;
 using rockfall::crowd::Springs;
-using rockfall::crowd::Watch;
-using rockfall::crowd::Watched;
-using rockfall::crowd::Way;
 
 /// One side of the contacts.
 struct Side
 {
-  double* way[kRegister];
+  double* displacement[kRegister];
   double* turn[kRegister];
   const double* inertia[kRegister];
   const double* others[kRegister]; ///< Off the diagonal of the inertia.
-  Lanes ways[4], turns[4];
+  Lanes displacements[4], turns[4];
 };
 
 /// `body`: from the first lane on.
@@ -35,21 +35,21 @@ ROCKFALL_INLINE void take(Mover* movers, const int* body, Side& side)
   for (int i = 0; i < kRegister; ++i)
   {
     Mover& m = movers[body[i]];
-    side.way[i] = m.way;
+    side.displacement[i] = m.displacement;
     side.turn[i] = m.turn;
     side.inertia[i] = m.inertia;
     side.others[i] = m.inertia + 4;
   }
-  gather(side.way, side.ways);
+  gather(side.displacement, side.displacements);
   gather(side.turn, side.turns);
 }
 
 /// Adds a force to the displacements of its rocks.
 ROCKFALL_INLINE void push(Side& side, const Triple& lever, const Triple& force)
 {
-  side.ways[0] += side.ways[3] * force.x;
-  side.ways[1] += side.ways[3] * force.y;
-  side.ways[2] += side.ways[3] * force.z;
+  side.displacements[0] += side.displacements[3] * force.x;
+  side.displacements[1] += side.displacements[3] * force.y;
+  side.displacements[2] += side.displacements[3] * force.z;
   const Triple moment = cross(lever, force);
   Lanes diagonal[4], others[4];
   gather(side.inertia, diagonal);
@@ -59,7 +59,7 @@ ROCKFALL_INLINE void push(Side& side, const Triple& lever, const Triple& force)
   side.turns[0] += xx * moment.x + xy * moment.y + xz * moment.z;
   side.turns[1] += xy * moment.x + yy * moment.y + yz * moment.z;
   side.turns[2] += xz * moment.x + yz * moment.y + zz * moment.z;
-  scatter(side.ways, side.way);
+  scatter(side.displacements, side.displacement);
   scatter(side.turns, side.turn);
 }
 
@@ -70,19 +70,19 @@ ROCKFALL_INLINE Lanes relax(const Batch& batch, Forces& forces, const Pass& pass
   Side a, b;
   take(pass.movers, batch.body[0] + at, a);
   const Triple leverA = load3(batch.lever[0], at);
-  Triple way = cross({ a.turns[0], a.turns[1], a.turns[2] }, leverA);
-  way.x += a.ways[0];
-  way.y += a.ways[1];
-  way.z += a.ways[2];
+  Triple displacement = cross({ a.turns[0], a.turns[1], a.turns[2] }, leverA);
+  displacement.x += a.displacements[0];
+  displacement.y += a.displacements[1];
+  displacement.z += a.displacements[2];
   Triple leverB = leverA;
   if (!onSlope)
   {
     take(pass.movers, batch.body[1] + at, b);
     leverB = load3(batch.lever[1], at);
     const Triple turned = cross({ b.turns[0], b.turns[1], b.turns[2] }, leverB);
-    way.x -= b.ways[0] + turned.x;
-    way.y -= b.ways[1] + turned.y;
-    way.z -= b.ways[2] + turned.z;
+    displacement.x -= b.displacements[0] + turned.x;
+    displacement.y -= b.displacements[1] + turned.y;
+    displacement.z -= b.displacements[2] + turned.z;
   }
   const Triple n = load3(batch.directions[0], at);
   const Lanes before = load(forces.along[0] + at);
@@ -102,7 +102,7 @@ ROCKFALL_INLINE Lanes relax(const Batch& batch, Forces& forces, const Pass& pass
   const Mask against = slid & (across > zero) & (held > zero);
   const Lanes tied = against ? across / (against ? held : one) : zero;
   // The gap that the others leave, and the spring that closes it.
-  const Lanes open = load(batch.gap + at) + dot(n, way) - (w + tied) * before;
+  const Lanes open = load(batch.gap + at) + dot(n, displacement) - (w + tied) * before;
   const Mask closes = open < zero;
   const Lanes stiffness = load(batch.stiffness + at);
   const Lanes normal = closes ? -stiffness * open / (one + stiffness * tied) : zero;
@@ -115,8 +115,8 @@ ROCKFALL_INLINE Lanes relax(const Batch& batch, Forces& forces, const Pass& pass
   // One step towards the locked spring, then back onto the Coulomb cone.
   const Triple u = load3(batch.directions[1], at), v = load3(batch.directions[2], at);
   const Lanes shear = load(batch.shear + at), gain = load(batch.gain + at);
-  Lanes s = load(batch.slip[0] + at) + dot(u, way) + coupling1 * more;
-  Lanes t = load(batch.slip[1] + at) + dot(v, way) + coupling2 * more;
+  Lanes s = load(batch.slip[0] + at) + dot(u, displacement) + coupling1 * more;
+  Lanes t = load(batch.slip[1] + at) + dot(v, displacement) + coupling2 * more;
   s = before1 - gain * (s + before1 * shear);
   t = before2 - gain * (t + before2 * shear);
   const Lanes holds = normal * rockfall::kCohesionPerForce;
@@ -217,7 +217,7 @@ ROCKFALL_INLINE void addMobility(
   Lanes diagonal[4], others[4];
   gather(side.inertia, diagonal);
   gather(side.others, others);
-  const Lanes mass = side.ways[3];
+  const Lanes mass = side.displacements[3];
   const Lanes inertia[6] = { diagonal[0], diagonal[1], diagonal[2], diagonal[3], others[0],
     others[1] };
   const Triple jn = cross(lever, directions[0]), ju = cross(lever, directions[1]);
@@ -257,60 +257,62 @@ void assembleHere(Batch* batches, const Springs* springs, Mover* movers, std::si
 }
 
 /// How the points of contacts on one of their rocks go; from lane `at` on.
-ROCKFALL_INLINE Triple wayOf(
+ROCKFALL_INLINE Triple displacementOf(
   Mover* movers, const int (&body)[kLanes], const double (&lever)[3][kLanes], int at)
 {
   Side side;
   take(movers, body + at, side);
   const Triple turned = cross({ side.turns[0], side.turns[1], side.turns[2] }, load3(lever, at));
-  return { side.ways[0] + turned.x, side.ways[1] + turned.y, side.ways[2] + turned.z };
+  return { side.displacements[0] + turned.x, side.displacements[1] + turned.y,
+    side.displacements[2] + turned.z };
 }
 
-bool watchHere(const Watch& watch)
+bool findClosingHere(const SpeculativePass& pass)
 {
   bool any = false;
-  for (std::size_t k = 0; k < watch.count; ++k)
+  for (std::size_t k = 0; k < pass.count; ++k)
   {
-    const Watched& of = watch.first[k];
-    watch.closes[k] = 0;
-    int last = watch.changed[of.body[0][0]];
+    const Speculative& of = pass.first[k];
+    pass.closes[k] = 0;
+    int last = pass.changed[of.body[0][0]];
     for (int i = 0; i < kLanes; ++i)
     {
-      const int a = watch.changed[of.body[0][i]], b = watch.changed[of.body[1][i]];
+      const int a = pass.changed[of.body[0][i]], b = pass.changed[of.body[1][i]];
       last = a > last ? a : last;
       last = b > last ? b : last;
     }
-    if (last < watch.since)
+    if (last < pass.since)
     {
       continue;
     }
     int closes = 0;
     for (int at = 0; at < kLanes; at += kRegister)
     {
-      const Triple a = wayOf(watch.movers, of.body[0], of.lever[0], at);
-      const Triple b = wayOf(watch.movers, of.body[1], of.lever[1], at);
+      const Triple a = displacementOf(pass.movers, of.body[0], of.lever[0], at);
+      const Triple b = displacementOf(pass.movers, of.body[1], of.lever[1], at);
       const Lanes gap =
         load(of.gap + at) + dot(load3(of.normal, at), { a.x - b.x, a.y - b.y, a.z - b.z });
       closes |= bits(gap < all(0.0)) << at;
     }
-    watch.closes[k] = static_cast<unsigned char>(closes);
+    pass.closes[k] = static_cast<unsigned char>(closes);
     any = any || closes != 0;
   }
   return any;
 }
 
-double changeHere(const Mover* movers, const Way* before, int count)
+double changeHere(const Mover* movers, const Motion* before, int count)
 {
   double sum = 0.0;
   for (int i = 0; i < count; ++i)
   {
     const Mover& m = movers[i];
-    Four way = loadFour(m.way) - loadFour(before[i].way);
+    Four displacement = loadFour(m.displacement) - loadFour(before[i].displacement);
     Four turn = loadFour(m.turn) - loadFour(before[i].turn);
-    way *= way;
+    displacement *= displacement;
     turn *= turn;
     const double mobile = m.inertia[0] + m.inertia[1] + m.inertia[2];
-    sum += (way[0] + way[1] + way[2]) / m.way[3] + 3.0 * (turn[0] + turn[1] + turn[2]) / mobile;
+    sum += (displacement[0] + displacement[1] + displacement[2]) / m.displacement[3] +
+      3.0 * (turn[0] + turn[1] + turn[2]) / mobile;
   }
   return sum;
 }
@@ -342,15 +344,17 @@ void goForcesHere(
   }
 }
 
-void goMoversHere(
-  const Further& further, Mover* now, Way* before, Way* along, int* changed, std::size_t count)
+void goMoversHere(const Further& further, Mover* now, Motion* before, Motion* along, int* changed,
+  std::size_t count)
 {
   for (std::size_t k = 0; k < count; ++k)
   {
     // Numbers that are no displacement do not change.
-    const Four way = go(further, now[k].way, before[k].way, along[k].way);
+    const Four displacement =
+      go(further, now[k].displacement, before[k].displacement, along[k].displacement);
     const Four turn = go(further, now[k].turn, before[k].turn, along[k].turn);
-    const FourMask moved = (absolute4(way) > further.quiet) | (absolute4(turn) > further.quiet);
+    const FourMask moved =
+      (absolute4(displacement) > further.quiet) | (absolute4(turn) > further.quiet);
     if ((moved[0] | moved[1] | moved[2] | moved[3]) != 0)
     {
       changed[k] = further.number;
@@ -358,7 +362,7 @@ void goMoversHere(
   }
 }
 
-constexpr Kernel kernelHere = { sweepHere, assembleHere, watchHere, changeHere, goForcesHere,
+constexpr Kernel kernelHere = { sweepHere, assembleHere, findClosingHere, changeHere, goForcesHere,
   goMoversHere };
 
 } // namespace

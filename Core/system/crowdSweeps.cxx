@@ -54,7 +54,7 @@ double CrowdSolver::sweep()
   return *std::max_element(most_.begin(), most_.end());
 }
 
-bool CrowdSolver::sweepTo(double goal, int most, bool conjugate, GroupOutcome& outcome)
+bool CrowdSolver::sweepTo(double goal, int most, bool conjugate, IslandOutcome& outcome)
 {
   bool reached = false, extended = false;
   for (int k = 0; k < most && !reached; ++k, ++sweep_)
@@ -69,17 +69,17 @@ bool CrowdSolver::sweepTo(double goal, int most, bool conjugate, GroupOutcome& o
     reached = outcome.residual <= goal;
     // Contacts that close in the end get some sweeps more, once.
     const bool last = reached || k + 1 == most;
-    if ((last ? !extended : k % kWatchEvery == 0) && this->watch(sweep_ + 1))
+    if ((last ? !extended : k % kSpeculativeEvery == 0) && this->closeSpeculative(sweep_ + 1))
     {
       reached = false;
-      most = std::max(most, k + 1 + kAfterWatched);
+      most = std::max(most, k + 1 + kAfterSpeculative);
       extended = last;
     }
   }
   return reached;
 }
 
-bool CrowdSolver::sweeps(int most, bool everywhere, GroupOutcome& outcome)
+bool CrowdSolver::sweeps(int most, bool everywhere, IslandOutcome& outcome)
 {
   const double noticed = kNoticed * scale_;
   const auto sweepAround = [&](double goal, double least, int count, bool conjugate)
@@ -91,18 +91,19 @@ bool CrowdSolver::sweeps(int most, bool everywhere, GroupOutcome& outcome)
     }
     return this->sweepTo(goal, count, conjugate, outcome);
   };
-  // A group that goes on as one cannot be left alone here and there.
+  // An island that goes on as one cannot be left alone here and there.
   bool settled = sweepAround(enough_, everywhere ? 0.0 : noticed, most, everywhere) && everywhere;
-  if (outcome.residual > rough_)
+  if (outcome.residual > unconverged_)
   {
     // Most have settled by then: on around where it is rough.
-    sweepAround(rough_, std::min(noticed, kRoughNoticed * rough_), kRoughSweeps * most, false);
+    sweepAround(unconverged_, std::min(noticed, kUnconvergedNoticed * unconverged_),
+      kUnconvergedSweeps * most, false);
     settled = false;
   }
   return settled;
 }
 
-bool CrowdSolver::holdBounces(std::vector<GroupContact>& contacts)
+bool CrowdSolver::holdBounces(std::vector<IslandContact>& contacts)
 {
   const auto gives = [&](std::size_t b)
   {
@@ -137,7 +138,7 @@ bool CrowdSolver::holdBounces(std::vector<GroupContact>& contacts)
 }
 
 void CrowdSolver::settle(
-  int most, bool everywhere, std::vector<GroupContact>& contacts, GroupOutcome& outcome)
+  int most, bool everywhere, std::vector<IslandContact>& contacts, IslandOutcome& outcome)
 {
   for (int k = 0; k < kHeldBounces && this->holdBounces(contacts); ++k)
   {
@@ -148,26 +149,26 @@ void CrowdSolver::settle(
 
 void CrowdSolver::collect()
 {
-  const auto take = [&](std::size_t i)
+  const auto collectBody = [&](std::size_t i)
   {
     Work& w = work_[i];
     const crowd::Mover& m = movers_[w.mover];
     const Eigen::Map<const Vec3> spun(m.turn);
-    this->goTo(w, Eigen::Map<const Vec3>(m.way));
+    this->goTo(w, Eigen::Map<const Vec3>(m.displacement));
     if (w.spun != spun)
     {
       w.moved = w.moved || !this->isNear(w.spun, spun);
       this->turnAs(w, w.spun = spun);
     }
   };
-  forEach(work_.size(), kBodyGrain, take);
+  forEach(work_.size(), kBodyGrain, collectBody);
 }
 
 void CrowdSolver::noteSeen()
 {
   for (std::size_t i = 0; i < work_.size(); ++i)
   {
-    seen_[i].way = work_[i].way;
+    seen_[i].displacement = work_[i].displacement;
     seen_[i].spun = work_[i].spun;
   }
 }
@@ -177,7 +178,7 @@ bool CrowdSolver::haveGoneOn() const
   for (std::size_t i = 0; i < work_.size(); ++i)
   {
     const Seen& seen = seen_[i];
-    const double on = (work_[i].way - seen.way).cwiseAbs().maxCoeff() +
+    const double on = (work_[i].displacement - seen.displacement).cwiseAbs().maxCoeff() +
       seen.radius * (work_[i].spun - seen.spun).cwiseAbs().maxCoeff();
     if (on > kGoneOn * seen.radius)
     {
@@ -187,13 +188,14 @@ bool CrowdSolver::haveGoneOn() const
   return false;
 }
 
-GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody>& bodies,
-  std::vector<GroupContact>& contacts, Taken take, const std::function<LookOutcome()>& lookAgain)
+IslandOutcome CrowdSolver::step(const StepRequest& request, std::vector<IslandBody>& bodies,
+  std::vector<IslandContact>& contacts, Accept accept,
+  const std::function<LookOutcome()>& lookAgain)
 {
-  GroupOutcome outcome;
+  IslandOutcome outcome;
   if (bodies.empty())
   {
-    outcome.settled = outcome.taken = true;
+    outcome.settled = outcome.accepted = true;
     return outcome;
   }
   kernel_ = &crowd::suitedKernel();
@@ -210,7 +212,7 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
   double curvature = 0.0; // sum of 1/r: small rocks have a say
   for (std::size_t i = 0; i < work_.size(); ++i)
   {
-    scale = std::max(scale, work_[i].way.norm());
+    scale = std::max(scale, work_[i].displacement.norm());
     curvature += 1.0 / seen_[i].radius;
   }
   bouncing_.clear();
@@ -224,7 +226,8 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
   }
   scale_ = scale;
   enough_ = tolerance * scale;
-  rough_ = std::min(kRough * enough_, kRoughWay * double(work_.size()) / curvature);
+  unconverged_ =
+    std::min(kUnconverged * enough_, kUnconvergedDisplacement * double(work_.size()) / curvature);
   sweep_ = checked_ = 0;
   const int most = calm ? kCalmSweeps * maxSweeps : maxSweeps;
   outcome.settled = this->sweeps(most, true, outcome);
@@ -271,13 +274,13 @@ GroupOutcome CrowdSolver::step(const StepRequest& request, std::vector<GroupBody
   bool finite = true;
   for (const Work& w : work_)
   {
-    finite = finite && w.way.allFinite() && w.spun.allFinite();
+    finite = finite && w.displacement.allFinite() && w.spun.allFinite();
   }
-  const bool near = outcome.settled || outcome.residual <= rough_;
-  outcome.rough = !near || seen.isDeep();
-  const bool fair = take == Taken::NotRough ? !outcome.rough : outcome.settled;
-  outcome.taken = finite && (fair || take == Taken::Any);
-  if (outcome.taken)
+  const bool near = outcome.settled || outcome.residual <= unconverged_;
+  outcome.unconverged = !near || seen.isDeep();
+  const bool fair = accept == Accept::Converging ? !outcome.unconverged : outcome.settled;
+  outcome.accepted = finite && (fair || accept == Accept::Any);
+  if (outcome.accepted)
   {
     this->write(request, bodies, contacts, outcome);
   }

@@ -9,30 +9,31 @@
 namespace rockfall
 {
 
-void CrowdSolver::write(const StepRequest& request, std::vector<GroupBody>& bodies,
-  std::vector<GroupContact>& contacts, GroupOutcome& outcome)
+void CrowdSolver::write(const StepRequest& request, std::vector<IslandBody>& bodies,
+  std::vector<IslandContact>& contacts, IslandOutcome& outcome)
 {
   books_.resize(contacts.size());
   const auto writeRow = [&](std::size_t k)
   {
     const Row& row = rows_[k];
-    GroupContact& group = contacts[k];
-    Contact& c = *group.contact;
+    IslandContact& asked = contacts[k];
+    Contact& c = *asked.contact;
     const Vec3 force = this->forceOf(row);
     const double gap1 = row.gap0 + this->opened(row);
     // Where its rock has carried it: by this the next step knows it again.
-    const int carrier = c.kind == ContactKind::FaceVertex ? group.second : group.first;
+    const int carrier = c.kind == ContactKind::FaceVertex ? asked.second : asked.first;
     if (carrier >= 0)
     {
       const Work& w = work_[std::size_t(carrier)];
-      c.point = w.position + w.way + w.turned * (c.point - w.position);
+      c.point = w.position + w.displacement + w.turned * (c.point - w.position);
     }
-    if (row.isWatched() || (force[0] == 0.0 && !c.closed() && (group.bounce >= 0.0 || gap1 >= 0.0)))
+    if (row.isSpeculative() ||
+      (force[0] == 0.0 && !c.closed() && (asked.bounce >= 0.0 || gap1 >= 0.0)))
     {
       // Open before and after, as most are.
       c.distance = gap1 + c.offset;
       c.offset = std::min(c.offset, c.distance); // as after a bounce (writeContact)
-      c.normalForce = c.shearForce = group.work = 0.0;
+      c.normalForce = c.shearForce = asked.work = 0.0;
       books_[k] = {};
       return;
     }
@@ -41,23 +42,24 @@ void CrowdSolver::write(const StepRequest& request, std::vector<GroupBody>& bodi
     const crowd::Batch& p = batches_[std::size_t(row.batch)];
     const crowd::Springs& springs = springs_[std::size_t(row.batch)];
     const int lane = row.lane;
-    ContactWays ways;
-    ways.way = this->travel(row);
+    ContactMotion displacements;
+    displacements.displacement = this->travel(row);
     ContactLaw law;
     law.gap0 = row.gap0;
     law.penalty = springs.penalty[lane];
     law.shearPenalty = springs.shear[lane];
-    law.friction = group.friction;
-    law.cohesion = group.cohesion;
+    law.friction = asked.friction;
+    law.cohesion = asked.cohesion;
     law.slip0 = { p.slip[0][lane], p.slip[1][lane] };
-    law.evaluate(true, h_, p.gap[lane] + ways.way[0], ways.way.tail<2>());
+    law.evaluate(
+      true, h_, p.gap[lane] + displacements.displacement[0], displacements.displacement.tail<2>());
     law.force = force[0];
     law.shearForce = force.tail<2>();
-    ways.means = { this->meanWayOf(row, 0), this->meanWayOf(row, 1) };
+    displacements.means = { this->meanDisplacementOf(row, 0), this->meanDisplacementOf(row, 1) };
     books_[k] = writeContact(law,
       { laneOf(p.directions[0], lane), laneOf(p.directions[1], lane),
         laneOf(p.directions[2], lane) },
-      ways, row.gap0, group);
+      displacements, row.gap0, asked);
   };
   this->forStrips(false, [&](int strip) { this->forContacts(strip, writeRow); });
   for (std::size_t k = order_.size(); k < contacts.size(); ++k)

@@ -6,7 +6,7 @@
 
 #include "piles.h"
 
-#include "system/GroupSolver.h"
+#include "system/IslandSolver.h"
 
 #include <vector>
 
@@ -20,9 +20,9 @@ struct CubeOnCorners
   Block block{ cube.shape, cube.density, cube.youngModulus, cube.poissonRatio };
   BlockState state;
   std::vector<Contact> corners{ 4 };
-  std::vector<GroupContact> contacts{ 4 };
-  std::vector<GroupBody> bodies{ 1 };
-  GroupSolver solver; ///< Gauss–Seidel.
+  std::vector<IslandContact> contacts{ 4 };
+  std::vector<IslandBody> bodies{ 1 };
+  IslandSolver solver; ///< Gauss–Seidel.
 
   CubeOnCorners()
   {
@@ -39,14 +39,14 @@ struct CubeOnCorners
     }
     bodies[0].block = &block;
     bodies[0].state = &state;
-    solver.method = GroupMethod::Iterative;
+    solver.method = IslandMethod::Iterative;
   }
   CubeOnCorners(const CubeOnCorners&) = delete;
   CubeOnCorners& operator=(const CubeOnCorners&) = delete;
 
-  GroupOutcome step(Taken take)
+  IslandOutcome step(Accept accept)
   {
-    return solver.step(lastingStep(0.005, kGravity, 12), bodies, contacts, take);
+    return solver.step(lastingStep(0.005, kGravity, 12), bodies, contacts, accept);
   }
 };
 

@@ -147,7 +147,7 @@ struct Pile
       [&](int i) -> const BlockState& { return fall->state(i); });
   }
   /// Rocks of the largest group that may touch each other.
-  int largestGroup() const
+  int largestIsland() const
   {
     std::vector<int> parent(std::size_t(fall->rocks()));
     std::iota(parent.begin(), parent.end(), 0);

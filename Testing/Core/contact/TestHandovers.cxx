@@ -20,7 +20,7 @@ int mostTogether(Pile& pile, double until)
   int most = 0;
   while (pile.fall->time() < until && pile.fall->advance())
   {
-    most = std::max(most, pile.largestGroup());
+    most = std::max(most, pile.largestIsland());
   }
   return most;
 }

@@ -33,7 +33,7 @@ Tree stem(const Eigen::Vector2d& position, double capacity)
 /// A cube stands before stems, its face so far off (m); another one hits it at 10 m/s. In small
 /// groups the impact is resolved in time.
 std::vector<Trajectory> drive(const std::vector<Tree>& stems, double gap, int resolved,
-  GroupMethod method = GroupMethod::Suited)
+  IslandMethod method = IslandMethod::Suited)
 {
   Pile pile;
   pile.ground = makeSlope(
@@ -85,7 +85,7 @@ void expectAlike(const std::vector<Trajectory>& crowd, const std::vector<Traject
 TEST(CrowdTrees, WhoIsDrivenIntoATreeGoesOnIfItCannotHold)
 {
   // Driven on, the cube has 53 kJ.
-  for (const GroupMethod method : { GroupMethod::Suited, GroupMethod::Iterative })
+  for (const IslandMethod method : { IslandMethod::Suited, IslandMethod::Iterative })
   {
     for (const double gap : { 0.001, 0.002, 0.005, 0.01, 0.02, 0.04 })
     {
@@ -128,7 +128,7 @@ TEST(CrowdTrees, WhatStandsBehindIsMetInTheSameStep)
   {
     row.push_back(stem({ 50.0 + 0.004 * k, 49.65 + 0.31 * k - 0.115 }, 1e3));
   }
-  for (const GroupMethod method : { GroupMethod::Suited, GroupMethod::Iterative })
+  for (const IslandMethod method : { IslandMethod::Suited, IslandMethod::Iterative })
   {
     const std::vector<Trajectory> crowd = drive(row, 0.002, 0, method);
     EXPECT_EQ(crowd[0].structures.size(), 4u);
@@ -139,7 +139,7 @@ TEST(CrowdTrees, WhatStandsBehindIsMetInTheSameStep)
 TEST(CrowdTrees, WhatOneTreeLeavesTheNextOneHolds)
 {
   // Two stems side by side, of which the cube's 53 kJ break one.
-  for (const GroupMethod method : { GroupMethod::Suited, GroupMethod::Iterative })
+  for (const IslandMethod method : { IslandMethod::Suited, IslandMethod::Iterative })
   {
     for (const double gap : { 0.002, 0.01, 0.02 })
     {

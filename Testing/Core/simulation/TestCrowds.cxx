@@ -159,7 +159,7 @@ TEST(Crowds, SameBitsForAnyNumberOfThreads)
     for (int step = 0; step < 80; ++step)
     {
       pile.fall->advance();
-      largest = std::max(largest, pile.largestGroup());
+      largest = std::max(largest, pile.largestIsland());
     }
     ends.push_back(pile.places());
   }
@@ -223,7 +223,7 @@ TEST(Crowds, CrowdThatMeetsFastDoesNotOverlap)
     {
       pile.fall->advance();
       deepest = std::max(deepest, step % 4 == 0 ? pile.overlap() : 0.0);
-      largest = std::max(largest, step % 4 == 0 ? pile.largestGroup() : 0);
+      largest = std::max(largest, step % 4 == 0 ? pile.largestIsland() : 0);
     }
     EXPECT_GT(largest, 64); // in one step
     EXPECT_LT(deepest, 0.03 * std::cbrt(0.6)) << seed;
@@ -275,16 +275,16 @@ TEST(Crowds, SpinOfASlabMakesNoEnergy)
   state.spin = 20.0 * Vec3(1, 1, 1).normalized();
   const double energy = rigidKineticEnergy(block, state);
   const Vec3 momentum = angularMomentum(block, state);
-  GroupSolver solver;
-  solver.method = GroupMethod::Iterative;
+  IslandSolver solver;
+  solver.method = IslandMethod::Iterative;
   const StepRequest request = lastingStep(0.005, 0.0, 12);
-  std::vector<GroupContact> contacts;
+  std::vector<IslandContact> contacts;
   for (int step = 0; step < 200; ++step)
   {
-    std::vector<GroupBody> bodies(1);
+    std::vector<IslandBody> bodies(1);
     bodies[0].block = &block;
     bodies[0].state = &state;
-    EXPECT_TRUE(solver.step(request, bodies, contacts, Taken::Any).settled);
+    EXPECT_TRUE(solver.step(request, bodies, contacts, Accept::Any).settled);
   }
   // The end of a step rules it, as always in lasting steps: energy is lost (a seventh), never made.
   EXPECT_LT(rigidKineticEnergy(block, state), energy);
@@ -298,7 +298,7 @@ TEST(Crowds, WhatHasNotSettledIsNotTaken)
     CubeOnCorners on;
     on.solver.tolerance = 1e-13;
     on.solver.maxSweeps = 0;
-    EXPECT_FALSE(on.step(takeAnyway ? Taken::Any : Taken::Settled).settled);
+    EXPECT_FALSE(on.step(takeAnyway ? Accept::Any : Accept::Settled).settled);
     EXPECT_EQ(on.state.time, takeAnyway ? 0.005 : 0.0);
     EXPECT_EQ(on.state.position.z() == 0.5, !takeAnyway);
     EXPECT_EQ(on.corners[1].closed(), takeAnyway);
@@ -409,7 +409,7 @@ TEST(Crowds, OneSmallRockDoesNotSetTheStepsOfAll)
     {
       const int before = int(pile.fall->summary(0).contactSteps);
       pile.fall->advance();
-      if (pile.largestGroup() == cubes + 1)
+      if (pile.largestIsland() == cubes + 1)
       {
         taken.push_back(int(pile.fall->summary(0).contactSteps) - before);
       }

@@ -304,8 +304,8 @@ TEST(Piles, DirectAndIterativeSolutionAgree)
     pile.start();
     pile.run(0.3);
     const int n = pile.fall->rocks();
-    const auto step = [&](
-                        GroupMethod method, std::vector<BlockState>& states, GroupOutcome& outcome)
+    const auto step =
+      [&](IslandMethod method, std::vector<BlockState>& states, IslandOutcome& outcome)
     {
       std::vector<Contact> contacts;
       std::vector<std::array<int, 2>> sides;
@@ -326,13 +326,13 @@ TEST(Piles, DirectAndIterativeSolutionAgree)
           sides.push_back({ pair->first, pair->second });
         }
       }
-      std::vector<GroupBody> bodies(n);
+      std::vector<IslandBody> bodies(n);
       for (int i = 0; i < n; ++i)
       {
         bodies[i].block = &pile.blocks[i];
         bodies[i].state = &states[i];
       }
-      std::vector<GroupContact> group(contacts.size());
+      std::vector<IslandContact> group(contacts.size());
       for (std::size_t k = 0; k < contacts.size(); ++k)
       {
         group[k].contact = &contacts[k];
@@ -342,16 +342,16 @@ TEST(Piles, DirectAndIterativeSolutionAgree)
                                             : std::tan(pile.parameters.rockFrictionAngle);
       }
       const StepRequest request = lastingStep(0.005, pile.parameters.gravity);
-      GroupSolver solver;
+      IslandSolver solver;
       solver.method = method;
       solver.tolerance = 1e-14;
       solver.maxSweeps = 200000;
-      outcome = solver.step(request, bodies, group, Taken::Settled);
+      outcome = solver.step(request, bodies, group, Accept::Settled);
     };
     std::vector<BlockState> direct, iterative;
-    GroupOutcome one, other;
-    step(GroupMethod::Direct, direct, one);
-    step(GroupMethod::Iterative, iterative, other);
+    IslandOutcome one, other;
+    step(IslandMethod::Direct, direct, one);
+    step(IslandMethod::Iterative, iterative, other);
     EXPECT_TRUE(one.settled);
     EXPECT_TRUE(other.settled) << other.residual;
     double way = 0.0, apart = 0.0;

@@ -3,7 +3,7 @@
 
 #include "piles.h"
 #include "simulation/placement.h"
-#include "system/GroupSolver.h"
+#include "system/IslandSolver.h"
 
 #include <gtest/gtest.h>
 
@@ -126,26 +126,26 @@ TEST(Pinched, OverlapThatABounceLeavesHoldsNoEnergy)
     c.normal = Vec3::UnitZ();
     c.distance = -0.1;
     c.stiffness = c.shearStiffness = 1e9;
-    std::vector<GroupContact> contacts(1);
+    std::vector<IslandContact> contacts(1);
     contacts[0].contact = &c;
     contacts[0].first = 0;
     contacts[0].second = between ? 1 : -1;
     contacts[0].bounce = 0.5;
-    std::vector<GroupBody> bodies(between ? 2 : 1);
+    std::vector<IslandBody> bodies(between ? 2 : 1);
     for (std::size_t i = 0; i < bodies.size(); ++i)
     {
       bodies[i].block = &block;
       bodies[i].state = &states[i];
     }
-    GroupSolver solver;
-    solver.method = k < 4 ? GroupMethod::Direct : GroupMethod::Iterative;
+    IslandSolver solver;
+    solver.method = k < 4 ? IslandMethod::Direct : IslandMethod::Iterative;
     const StepRequest request = lastingStep(1e-3, 0.0);
     for (const double bounce : { 0.5, -1.0 })
     {
       contacts[0].approach = states[1].velocity.z() - states[0].velocity.z();
       contacts[0].bounce = bounce;
       contacts[0].closed = c.closed();
-      solver.step(request, bodies, contacts, Taken::Any);
+      solver.step(request, bodies, contacts, Accept::Any);
       EXPECT_NEAR(states[0].velocity.z() - states[1].velocity.z(), pushed ? 0.5 : 5.0, 0.02);
       EXPECT_LT(c.distance, -0.085);
       EXPECT_GT(c.gap(), -1e-9);
@@ -159,7 +159,7 @@ TEST(Pinched, WhatASpringHoldsIsAllThatALoadGets)
   // times its mass on it: it leaves no faster than the energy of its spring drives all of them.
   for (const double mass : { 1e-2, 1.0, 30.0, 1000.0 })
   {
-    for (const GroupMethod method : { GroupMethod::Direct, GroupMethod::Iterative })
+    for (const IslandMethod method : { IslandMethod::Direct, IslandMethod::Iterative })
     {
       SCOPED_TRACE(std::to_string(mass) + ", method " + std::to_string(int(method)));
       const Block stone(makeShape(Shape::Cube, 0.03), 2500.0, 1e9, 0.2);
@@ -168,7 +168,7 @@ TEST(Pinched, WhatASpringHoldsIsAllThatALoadGets)
       std::array<BlockState, 2> states;
       states[1].position.z() = half + other;
       std::array<Contact, 2> touches;
-      std::vector<GroupContact> contacts(2);
+      std::vector<IslandContact> contacts(2);
       for (std::size_t k = 0; k < 2; ++k)
       {
         Contact& c = touches[k];
@@ -186,7 +186,7 @@ TEST(Pinched, WhatASpringHoldsIsAllThatALoadGets)
       touches[1].distance = 1e-6;
       contacts[1].first = 1;
       contacts[1].second = 0;
-      std::vector<GroupBody> bodies(2);
+      std::vector<IslandBody> bodies(2);
       bodies[0].block = &stone;
       bodies[1].block = &boulder;
       for (std::size_t i = 0; i < 2; ++i)
@@ -195,10 +195,10 @@ TEST(Pinched, WhatASpringHoldsIsAllThatALoadGets)
       }
       const double stored = touches[0].springEnergy();
       EXPECT_NEAR(contacts[0].bounce, std::sqrt(2.0 * stored / stone.mass()), 1e-3);
-      GroupSolver solver;
+      IslandSolver solver;
       solver.method = method;
       const StepRequest request = lastingStep(h, 0.0);
-      solver.step(request, bodies, contacts, Taken::Any);
+      solver.step(request, bodies, contacts, Accept::Any);
       const double moving =
         rigidKineticEnergy(stone, states[0]) + rigidKineticEnergy(boulder, states[1]);
       EXPECT_LT(moving, 1.05 * stored); // what is held back is held in three rounds

@@ -1,7 +1,7 @@
 // Thin and long rocks with sharp points, of very different sizes: what cubes do not show.
 
 #include "piles.h"
-#include "system/GroupSolver.h"
+#include "system/IslandSolver.h"
 
 #include <gtest/gtest.h>
 
@@ -229,7 +229,7 @@ TEST(Splinters, BounceMakesNoEnergy)
       continue;
     }
     ++bounced;
-    for (const GroupMethod method : { GroupMethod::Direct, GroupMethod::Iterative })
+    for (const IslandMethod method : { IslandMethod::Direct, IslandMethod::Iterative })
     {
       std::array<BlockState, 2> states = before;
       Contact c;
@@ -237,7 +237,7 @@ TEST(Splinters, BounceMakesNoEnergy)
       c.normal = Vec3::UnitZ();
       c.distance = 1e-6;
       c.stiffness = c.shearStiffness = 1e9;
-      std::vector<GroupContact> contacts(1);
+      std::vector<IslandContact> contacts(1);
       contacts[0].contact = &c;
       contacts[0].first = 0;
       contacts[0].second = between ? 1 : -1;
@@ -245,7 +245,7 @@ TEST(Splinters, BounceMakesNoEnergy)
       contacts[0].approach = approach;
       contacts[0].bounce = (k % 8 < 4 ? 1.0 : 0.8) * approach;
       const double asked = contacts[0].bounce;
-      std::vector<GroupBody> bodies(between ? 2 : 1);
+      std::vector<IslandBody> bodies(between ? 2 : 1);
       double energy = 0.0;
       for (std::size_t i = 0; i < bodies.size(); ++i)
       {
@@ -253,10 +253,10 @@ TEST(Splinters, BounceMakesNoEnergy)
         bodies[i].state = &states[i];
         energy -= rigidKineticEnergy(blocks[i], states[i]);
       }
-      GroupSolver solver;
+      IslandSolver solver;
       solver.method = method;
       const StepRequest request = lastingStep(1e-4, 0.0); // so short that nothing turns
-      solver.step(request, bodies, contacts, Taken::Any);
+      solver.step(request, bodies, contacts, Accept::Any);
       for (std::size_t i = 0; i < bodies.size(); ++i)
       {
         energy += rigidKineticEnergy(blocks[i], states[i]);

@@ -15,7 +15,7 @@ namespace
 
 /// A cube lies on three corners of its lower face and comes down on the fourth, with few sweeps.
 /// Nothing of it is settled to `tolerance`.
-GroupOutcome sweepOnce(double tolerance, Taken take)
+IslandOutcome sweepOnce(double tolerance, Accept accept)
 {
   CubeOnCorners on;
   on.state.velocity.z() = -0.1;
@@ -25,24 +25,24 @@ GroupOutcome sweepOnce(double tolerance, Taken take)
   }
   on.solver.tolerance = tolerance;
   on.solver.maxSweeps = 2;
-  return on.step(take);
+  return on.step(accept);
 }
 
 } // namespace
 
 TEST(Unsettled, WhatIsNearlySettledIsNotRough)
 {
-  const GroupOutcome near = sweepOnce(1e-4, Taken::NotRough);
+  const IslandOutcome near = sweepOnce(1e-4, Accept::Converging);
   EXPECT_FALSE(near.settled);
-  EXPECT_FALSE(near.rough);
-  EXPECT_TRUE(near.taken);
+  EXPECT_FALSE(near.unconverged);
+  EXPECT_TRUE(near.accepted);
   // The same to a tolerance that rounding does not reach.
-  const GroupOutcome far = sweepOnce(1e-22, Taken::NotRough);
-  EXPECT_TRUE(far.rough);
-  EXPECT_FALSE(far.taken);
-  const GroupOutcome anyway = sweepOnce(1e-22, Taken::Any);
-  EXPECT_TRUE(anyway.rough);
-  EXPECT_TRUE(anyway.taken);
+  const IslandOutcome far = sweepOnce(1e-22, Accept::Converging);
+  EXPECT_TRUE(far.unconverged);
+  EXPECT_FALSE(far.accepted);
+  const IslandOutcome anyway = sweepOnce(1e-22, Accept::Any);
+  EXPECT_TRUE(anyway.unconverged);
+  EXPECT_TRUE(anyway.accepted);
 }
 
 TEST(Unsettled, HeapsThatFallAndRestHaveNone)

@@ -40,11 +40,11 @@ Crowd randomCrowd(int rocks, int batches, bool slope, unsigned seed)
     Mover& m = crowd.movers[std::size_t(i)];
     for (int k = 0; k < 3; ++k)
     {
-      m.way[k] = 1e-2 * u(random);
+      m.displacement[k] = 1e-2 * u(random);
       m.turn[k] = 1e-2 * u(random);
       m.inertia[k] = 1e-7 * (1.5 + u(random));
     }
-    m.way[3] = 2e-8 * (1.5 + u(random));
+    m.displacement[3] = 2e-8 * (1.5 + u(random));
     m.inertia[3] = 1e-8 * u(random);
     m.inertia[4] = 1e-8 * u(random);
     m.inertia[5] = 1e-8 * u(random);
@@ -173,7 +173,7 @@ TEST(CrowdKernel, GoesFurtherInTheSameBits)
   // Against the plain formulas.
   const Crowd start = randomCrowd(37, 29, false, 3);
   std::mt19937_64 random(4);
-  std::normal_distribution<double> force(0.0, 1e4), way(0.0, 1e-2);
+  std::normal_distribution<double> force(0.0, 1e4), displacement(0.0, 1e-2);
   for (const bool anew : { false, true })
   {
     for (const Kernel* kernel : kernelsHere())
@@ -181,7 +181,7 @@ TEST(CrowdKernel, GoesFurtherInTheSameBits)
       Crowd crowd = start;
       const std::size_t rocks = 37, count = crowd.forces.size();
       std::vector<Forces> forcesBefore(count), forcesAlong(count);
-      std::vector<Way> before(rocks), along(rocks);
+      std::vector<Motion> before(rocks), along(rocks);
       for (std::size_t k = 0; k < count; ++k)
       {
         for (Forces* f : { &crowd.forces[k], &forcesBefore[k], &forcesAlong[k] })
@@ -196,28 +196,32 @@ TEST(CrowdKernel, GoesFurtherInTheSameBits)
       {
         for (int k = 0; k < 3; ++k)
         {
-          before[i].way[k] = way(random), before[i].turn[k] = way(random);
-          along[i].way[k] = way(random), along[i].turn[k] = i % 5 == 0 ? 0.0 : way(random);
-          along[i].way[k] *= i % 5 == 0 ? 0.0 : 1.0;
+          before[i].displacement[k] = displacement(random),
+          before[i].turn[k] = displacement(random);
+          along[i].displacement[k] = displacement(random),
+          along[i].turn[k] = i % 5 == 0 ? 0.0 : displacement(random);
+          along[i].displacement[k] *= i % 5 == 0 ? 0.0 : 1.0;
         }
-        before[i].way[3] = crowd.movers[i].way[3];
+        before[i].displacement[3] = crowd.movers[i].displacement[3];
       }
       double change = 0.0;
       for (std::size_t i = 0; i < rocks; ++i)
       {
         const Mover& m = crowd.movers[i];
-        double ways = 0.0, turns = 0.0;
+        double displacements = 0.0, turns = 0.0;
         for (int k = 0; k < 3; ++k)
         {
-          ways += (m.way[k] - before[i].way[k]) * (m.way[k] - before[i].way[k]);
+          displacements += (m.displacement[k] - before[i].displacement[k]) *
+            (m.displacement[k] - before[i].displacement[k]);
           turns += (m.turn[k] - before[i].turn[k]) * (m.turn[k] - before[i].turn[k]);
         }
-        change += ways / m.way[3] + 3.0 * turns / (m.inertia[0] + m.inertia[1] + m.inertia[2]);
+        change += displacements / m.displacement[3] +
+          3.0 * turns / (m.inertia[0] + m.inertia[1] + m.inertia[2]);
       }
       EXPECT_EQ(kernel->changeOf(crowd.movers.data(), before.data(), int(rocks)), change);
       const Crowd was = crowd;
       const std::vector<Forces> forcesWere = forcesBefore, forcesWent = forcesAlong;
-      const std::vector<Way> waysWere = before, waysWent = along;
+      const std::vector<Motion> motionsWere = before, motionsWent = along;
       const Further further = { 0.7, anew, 1e-9, 11 };
       kernel->goForces(
         further, crowd.forces.data(), forcesBefore.data(), forcesAlong.data(), count);
@@ -244,27 +248,28 @@ TEST(CrowdKernel, GoesFurtherInTheSameBits)
       {
         for (int k = 0; k < 3; ++k)
         {
-          expect(crowd.movers[i].way[k], waysWere[i].way[k], waysWent[i].way[k],
-            was.movers[i].way[k], along[i].way[k]);
-          expect(crowd.movers[i].turn[k], waysWere[i].turn[k], waysWent[i].turn[k],
+          expect(crowd.movers[i].displacement[k], motionsWere[i].displacement[k],
+            motionsWent[i].displacement[k], was.movers[i].displacement[k],
+            along[i].displacement[k]);
+          expect(crowd.movers[i].turn[k], motionsWere[i].turn[k], motionsWent[i].turn[k],
             was.movers[i].turn[k], along[i].turn[k]);
           EXPECT_EQ(before[i].turn[k], crowd.movers[i].turn[k]);
         }
-        EXPECT_EQ(crowd.movers[i].way[3], was.movers[i].way[3]);
+        EXPECT_EQ(crowd.movers[i].displacement[3], was.movers[i].displacement[3]);
         EXPECT_EQ(crowd.changed[i], i % 5 == 0 ? 0 : 11);
       }
     }
   }
 }
 
-TEST(CrowdKernel, MobilityAndWatchedGapsAreThoseOfThePlainFormulas)
+TEST(CrowdKernel, MobilityAndSpeculativeGapsAreThoseOfThePlainFormulas)
 {
   Crowd crowd = randomCrowd(40, 20, false, 8);
   // Of a contact by itself: the change of the gap per force, and the gap where the rocks go.
   std::mt19937_64 random(9);
   std::uniform_real_distribution<double> stiff(1e8, 1e9);
   std::vector<Springs> springs(crowd.batches.size());
-  std::vector<Watched> watched(crowd.batches.size());
+  std::vector<Speculative> speculative(crowd.batches.size());
   for (std::size_t k = 0; k < springs.size(); ++k)
   {
     const Batch& b = crowd.batches[k];
@@ -272,14 +277,14 @@ TEST(CrowdKernel, MobilityAndWatchedGapsAreThoseOfThePlainFormulas)
     {
       springs[k].penalty[lane] = stiff(random);
       springs[k].shear[lane] = lane == 1 ? 0.0 : stiff(random); // no contact: no number either
-      watched[k].gap[lane] = b.gap[lane];
+      speculative[k].gap[lane] = b.gap[lane];
       for (int side = 0; side < 2; ++side)
       {
-        watched[k].body[side][lane] = b.body[side][lane];
+        speculative[k].body[side][lane] = b.body[side][lane];
         for (int i = 0; i < 3; ++i)
         {
-          watched[k].normal[i][lane] = b.directions[0][i][lane];
-          watched[k].lever[side][i][lane] = b.lever[side][i][lane];
+          speculative[k].normal[i][lane] = b.directions[0][i][lane];
+          speculative[k].lever[side][i][lane] = b.lever[side][i][lane];
         }
       }
     }
@@ -289,10 +294,10 @@ TEST(CrowdKernel, MobilityAndWatchedGapsAreThoseOfThePlainFormulas)
   {
     std::vector<Batch> batches = before;
     kernel->assemble(batches.data(), springs.data(), crowd.movers.data(), batches.size());
-    std::vector<unsigned char> closes(watched.size());
-    const Watch watch = { watched.data(), watched.size(), crowd.movers.data(), crowd.changed.data(),
-      0, closes.data() };
-    EXPECT_TRUE(kernel->watch(watch));
+    std::vector<unsigned char> closes(speculative.size());
+    const SpeculativePass pass = { speculative.data(), speculative.size(), crowd.movers.data(),
+      crowd.changed.data(), 0, closes.data() };
+    EXPECT_TRUE(kernel->findClosing(pass));
     int closed = 0;
     for (std::size_t k = 0; k < batches.size(); ++k)
     {
@@ -319,12 +324,12 @@ TEST(CrowdKernel, MobilityAndWatchedGapsAreThoseOfThePlainFormulas)
           for (int i = 0; i < 3; ++i)
           {
             gap += (side == 0 ? 1.0 : -1.0) *
-              (m.way[i] * b.directions[0][i][lane] + m.turn[i] * moment[0][i]);
+              (m.displacement[i] * b.directions[0][i][lane] + m.turn[i] * moment[0][i]);
             for (int d = 0; d < 3; ++d)
             {
               for (int e = 0; e < 3; ++e)
               {
-                w[d][e] += m.way[3] * b.directions[d][i][lane] * b.directions[e][i][lane];
+                w[d][e] += m.displacement[3] * b.directions[d][i][lane] * b.directions[e][i][lane];
                 for (int j = 0; j < 3; ++j)
                 {
                   w[d][e] += moment[d][i] * inertia[i][j] * moment[e][j];
@@ -349,9 +354,9 @@ TEST(CrowdKernel, MobilityAndWatchedGapsAreThoseOfThePlainFormulas)
     EXPECT_GT(closed, 20);
     EXPECT_LT(closed, 20 * kLanes - 20);
     // Around what has not moved since nothing is looked at.
-    Watch still = watch;
+    SpeculativePass still = pass;
     still.since = 1;
-    EXPECT_FALSE(kernel->watch(still));
+    EXPECT_FALSE(kernel->findClosing(still));
   }
 }
 
@@ -364,7 +369,7 @@ TEST(CrowdKernel, MomentumIsKeptAndSpringsAreMet)
     for (int i = 0; i < 40; ++i)
     {
       const Mover& m = crowd.movers[std::size_t(i)];
-      sum += m.way[k] / m.way[3];
+      sum += m.displacement[k] / m.displacement[3];
     }
     return sum;
   };
@@ -391,8 +396,8 @@ TEST(CrowdKernel, MomentumIsKeptAndSpringsAreMet)
         for (int k = 0; k < 3; ++k)
         {
           const int i = (k + 1) % 3, j = (k + 2) % 3;
-          const double way = m.way[k] + m.turn[i] * l[j] - m.turn[j] * l[i];
-          gap += (side == 0 ? way : -way) * b.directions[0][k][lane];
+          const double displacement = m.displacement[k] + m.turn[i] * l[j] - m.turn[j] * l[i];
+          gap += (side == 0 ? displacement : -displacement) * b.directions[0][k][lane];
         }
       }
       const double normal = forces.along[0][lane];
@@ -437,11 +442,12 @@ TEST(CrowdKernel, SettlesOnTheLawOfTheContact)
           for (int k = 0; k < 3; ++k)
           {
             const int i = (k + 1) % 3, j = (k + 2) % 3;
-            const double way =
-              m.way[k] + m.turn[i] * b.lever[side][j][lane] - m.turn[j] * b.lever[side][i][lane];
+            const double displacement = m.displacement[k] + m.turn[i] * b.lever[side][j][lane] -
+              m.turn[j] * b.lever[side][i][lane];
             for (int direction = 0; direction < 3; ++direction)
             {
-              along[direction] += (side == 0 ? way : -way) * b.directions[direction][k][lane];
+              along[direction] +=
+                (side == 0 ? displacement : -displacement) * b.directions[direction][k][lane];
             }
           }
         }

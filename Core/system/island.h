@@ -20,7 +20,7 @@ namespace rockfall
 /// Bodies and rows that one thread looks after at a time.
 constexpr std::size_t kBodyGrain = 64, kRowGrain = 256;
 
-struct GroupBody
+struct IslandBody
 {
   const Block* block = nullptr;
   BlockState* state = nullptr;
@@ -31,7 +31,7 @@ struct GroupBody
   double springEnergy = 0.0, normalEnergy = 0.0; ///< Out: of its contacts with the slope, J.
 };
 
-struct GroupContact
+struct IslandContact
 {
   Contact* contact = nullptr;
   int first = -1;
@@ -43,19 +43,19 @@ struct GroupContact
   double bounce = -1.0;
   double approach = 0.0; ///< Speed at which it closes, m/s.
   double work = 0.0;     ///< Out: what it took from the rocks' motion, springs included, J.
-  double way = 0.0;      ///< Out, if it carried: how far it opened along the normal, m.
+  double opening = 0.0;  ///< Out, if it carried: how far it opened along the normal, m.
   /// Value of contact->closed() when the step begins; for whoever set the contact up and goes over
   /// all of them.
   bool closed = false;
-  bool absent = false; ///< Let go for this step (GroupSolver::setAbsent): nothing holds it up.
+  bool absent = false; ///< Let go for this step (IslandSolver::setAbsent): nothing holds it up.
 };
 
-/// Result of a look at where a step would end (GroupSolver::step).
+/// Result of a look at where a step would end (IslandSolver::step).
 struct LookOutcome
 {
-  double missed = 0.0; ///< How deep the deepest is that nobody reckoned with, of a radius; 0: none.
-  /// By how much, of a radius, rocks have come deeper into each other where no contact can hold
-  /// them: along its normal they were as deep in the beginning, too. A shorter step may find
+  double missed = 0.0; ///< Deepest overlap without a contact, of a radius; 0: none.
+  /// Overlap, of a radius, by which rocks have come deeper into each other where no contact can
+  /// hold them: along its normal they were as deep in the beginning, too. A shorter step may find
   /// another one.
   double passed = 0.0;
   bool again = false; ///< Contacts were let go or set in again: one more look is due.
@@ -69,15 +69,15 @@ struct LookOutcome
   bool isDeep() const { return std::max(missed, passed) > kDeepMiss; }
 };
 
-/// Whether it is open and stays so in a step of `h` (s) unless its rocks are pushed: Gauss–Seidel
-/// only watches it, and it needs no springs before it closes.
-inline bool mayStayOpen(const GroupContact& k, double h)
+/// Whether a contact is open and stays so in a step of `h` (s) unless its rocks are pushed: for
+/// Gauss–Seidel it is speculative, and it needs no springs before it closes.
+inline bool mayStayOpen(const IslandContact& k, double h)
 {
   return !k.closed && k.bounce < 0.0 && k.contact->gap() > h * k.approach;
 }
 
-/// How fast what a closed contact stops came in, or leaves again if nothing more is lost, m/s: its
-/// spring holds what is missing of it. `approach`: speed at which it closes now.
+/// Speed at which the mass that a closed contact stops came in, or leaves again if nothing more is
+/// lost, m/s: the spring holds what is missing of it. `approach`: speed at which it closes now.
 inline double elasticSpeed(const Contact& c, double approach)
 {
   return std::hypot(approach, std::sqrt(c.stiffness / c.stopped) * std::min(0.0, c.gap()));
@@ -90,19 +90,19 @@ inline double bounceLeft(const Contact& c, double approach)
   return leavingSpeed(c.stiffness, c.dashpot, c.stopped, depth, approach);
 }
 
-/// The solutions of a step that are taken.
-enum class Taken : std::uint8_t
+/// Solutions of a step that are accepted.
+enum class Accept : std::uint8_t
 {
   Settled,
-  NotRough, ///< Solutions of Gauss–Seidel, too, that are not far from settled.
+  Converging, ///< Solutions of Gauss–Seidel, too, that are not far from settled.
   Any,
 };
 
-struct GroupOutcome
+struct IslandOutcome
 {
   bool settled = false;
-  bool rough = false;        ///< Far from settled: what is taken so is counted.
-  bool taken = false;        ///< Bodies and contacts are those at the end of the step.
+  bool unconverged = false;  ///< Far from settled; counted where it is accepted.
+  bool accepted = false;     ///< Bodies and contacts are those at the end of the step.
   int iterations = 0;        ///< Of open–close.
   double residual = 0.0;     ///< Largest |Δ gap| of the last correction, m.
   double frictionWork = 0.0; ///< Between rocks, J.
@@ -112,12 +112,12 @@ struct GroupOutcome
 /// The gap at the start of a step of `h` (s) that makes a contact leave as its bounce asks for.
 /// `turned`: stiffness times mobility along the normal; the spring misses a gap by so much of what
 /// it has to turn round, which is added to it.
-inline double bounceGap(const GroupContact& contact, double h, double turned)
+inline double bounceGap(const IslandContact& contact, double h, double turned)
 {
   return -h * (contact.bounce + (contact.approach + contact.bounce) / turned);
 }
 
-/// By how much a gap at the start (m) changes if the one at the end is found to be another one than
+/// Change of a gap at the start (m) if the one at the end is found to be another one than
 /// reckoned. No contact is asked to open further than it was.
 inline double gapChange(double gap0, double reckoned, double found)
 {
@@ -132,7 +132,7 @@ inline double gapChange(double gap0, double reckoned, double found)
 /// `force` (N) and velocities before and after a step of `h` (s; m/s) are along the normal and the
 /// tangents. Negative if nothing is to be changed.
 inline double heldBounce(
-  const GroupContact& contact, double h, const Vec3& force, const Vec3& before, const Vec3& after)
+  const IslandContact& contact, double h, const Vec3& force, const Vec3& before, const Vec3& after)
 {
   const Vec3 twice = before + after;
   const Contact& c = *contact.contact;
@@ -153,24 +153,25 @@ struct ContactBooks
   double normalEnergy = 0.0, springEnergy = 0.0; ///< In it at the end.
 };
 
-/// How its point moves on the two rocks of a contact in a step.
-struct ContactWays
+/// Motion of a contact's point on its two rocks in a step.
+struct ContactMotion
 {
-  std::array<Vec3, 2> means; ///< ½ h (v₀ + v₁), m: a force over the step does its work on this way.
-  Vec3 way = Vec3::Zero(); ///< First less second along the normal and the tangents, m.
+  std::array<Vec3, 2> means; ///< ½ h (v₀ + v₁), m: a force over the step does its work on it.
+  Vec3 displacement = Vec3::Zero(); ///< First less second along the normal and the tangents, m.
 };
 
 /// Writes a contact after a step: forces, gap, state and slip. `law` is as evaluated, with the
 /// forces that the rocks were moved with; `directions` its normal and tangents; `gap0` the gap at
 /// the start without what a bounce asks for.
 ///
-/// A lasting step's way is h v₁. What an impulse P takes from rocks that move at v₀ and leave at v₁
-/// is −P · ½ (v₀ + v₁), though; the rest is booked as damped along the normal, as friction across.
+/// A lasting step's displacement is h v₁. What an impulse P takes from rocks that move at v₀ and
+/// leave at v₁ is −P · ½ (v₀ + v₁), though; the rest is booked as damped along the normal, as
+/// friction across.
 ContactBooks writeContact(const ContactLaw& law, const std::array<Vec3, 3>& directions,
-  const ContactWays& ways, double gap0, GroupContact& contact);
+  const ContactMotion& motion, double gap0, IslandContact& contact);
 
 /// Adds the books of all contacts, in their order, to those of the bodies.
-void addBooks(const std::vector<GroupContact>& contacts, const std::vector<ContactBooks>& books,
-  std::vector<GroupBody>& bodies, GroupOutcome& outcome);
+void addBooks(const std::vector<IslandContact>& contacts, const std::vector<ContactBooks>& books,
+  std::vector<IslandBody>& bodies, IslandOutcome& outcome);
 
 } // namespace rockfall

@@ -1,4 +1,4 @@
-// The groups that rocks are that may meet within the step, once it is known which do.
+// The islands that rocks are that may meet within the step, once it is known which do.
 
 #include "simulation/massFallMeet.h"
 
@@ -11,9 +11,9 @@
 namespace rockfall
 {
 
-/// Who is linked, and who no longer is. Where two that have touched lately no longer are, one may
-/// have carried the other, which has hardly begun to fall: however long it has been still, it has
-/// to come to rest anew.
+/// Lists pairs that are linked, and parts those that no longer are. Of two that have touched lately
+/// one may have carried the other, which has hardly begun to fall: however long it has been still,
+/// it has to come to rest anew.
 void MassFall::Meetings::settle(MassFall& fall)
 {
   parted_.assign(movers.size(), 0);
@@ -38,7 +38,7 @@ void MassFall::Meetings::settle(MassFall& fall)
     n.pair->linked = n.pair->known = false;
     if (!asleep)
     {
-      // Who is awake and not linked moves by himself, away from where the axis was found.
+      // A rock that is awake and not linked moves by itself, away from where the axis was found.
       n.pair->seen = n.pair->touched = n.holds = false;
       n.pair->contacts.clear();
     }
@@ -77,16 +77,16 @@ void MassFall::Meetings::settle(MassFall& fall)
   }
 }
 
-/// Groups are what is linked: a company may have fallen apart.
+/// Islands are what is linked: a island may have fallen apart.
 void MassFall::Meetings::unite()
 {
   std::iota(heads_.begin(), heads_.end(), 0);
-  std::fill(grouped_.begin(), grouped_.end(), char(0));
+  std::fill(inIsland_.begin(), inIsland_.end(), char(0));
   int* const heads = heads_.data();
-  char* const grouped = grouped_.data();
+  char* const inIsland = inIsland_.data();
   const auto uniteTwo = [&](const Linked& l)
   {
-    grouped[l.first] = grouped[l.second] = 1;
+    inIsland[l.first] = inIsland[l.second] = 1;
     if (heads[l.first] != heads[l.second])
     {
       const int a = headOf(heads_, l.first), b = headOf(heads_, l.second);
@@ -100,17 +100,17 @@ void MassFall::Meetings::unite()
   }
 }
 
-void MassFall::findGroups(double duration)
+void MassFall::findIslands(double duration)
 {
   Meetings& meet = *meetings_;
   meet.follow(*this, duration);
   meet.findNear(*this);
   meet.link(*this);
-  std::vector<int>& place = groupOf_;
+  std::vector<int>& place = islandOf_;
   place.assign(members_.size(), -1);
-  // What lists of the last step's groups hold in memory serves again.
-  std::vector<Group> old = std::move(groups_);
-  groups_.clear();
+  // Memory of the last step's islands serves again.
+  std::vector<Island> old = std::move(islands_);
+  islands_.clear();
   alone_.clear();
   for (std::size_t i = 0; i < members_.size(); ++i)
   {
@@ -128,23 +128,23 @@ void MassFall::findGroups(double duration)
     const std::size_t head = std::size_t(meet.head(int(i)));
     if (place[head] < 0)
     {
-      place[head] = int(groups_.size());
-      groups_.push_back(groups_.size() < old.size() ? std::move(old[groups_.size()]) : Group());
-      groups_.back().members.clear();
-      groups_.back().pairs.clear();
+      place[head] = int(islands_.size());
+      islands_.push_back(islands_.size() < old.size() ? std::move(old[islands_.size()]) : Island());
+      islands_.back().members.clear();
+      islands_.back().pairs.clear();
     }
     place[i] = place[head];
-    groups_[std::size_t(place[head])].members.push_back(int(i));
+    islands_[std::size_t(place[head])].members.push_back(int(i));
   }
   meet.forLinked([&](const auto& l)
-    { groups_[std::size_t(place[std::size_t(l.first)])].pairs.push_back(l.pair); });
-  for (std::size_t g = 0; g < groups_.size(); ++g)
+    { islands_[std::size_t(place[std::size_t(l.first)])].pairs.push_back(l.pair); });
+  for (std::size_t g = 0; g < islands_.size(); ++g)
   {
-    Group& group = groups_[g];
-    group.crowd = this->isCrowd(group);
-    for (const int i : group.members)
+    Island& island = islands_[g];
+    island.crowd = this->isCrowd(island);
+    for (const int i : island.members)
     {
-      meet.movers[std::size_t(i)].crowd = group.crowd ? int(g) : -1;
+      meet.movers[std::size_t(i)].crowd = island.crowd ? int(g) : -1;
     }
   }
 }

@@ -1,4 +1,4 @@
-// One group of rocks that touch each other, over one step of Δt: when to look, how long a step.
+// An island of rocks that touch each other, over one step of Δt: contacts, and the length of steps.
 
 #include "simulation/massFallWork.h"
 
@@ -21,28 +21,28 @@ PairMotion MassFall::motionOf(const RockPair& pair) const
   return { members_[pair.first]->sim.state_, members_[pair.second]->sim.state_ };
 }
 
-bool MassFall::isCrowd(const Group& group) const
+bool MassFall::isCrowd(const Island& island) const
 {
   double stiffest = 0.0;
-  for (int i : group.members)
+  for (int i : island.members)
   {
     stiffest = std::max(stiffest, members_[i]->sim.block_.largestMobility());
   }
   const double frequency = std::sqrt(parameters_.normalPenalty * stiffest);
   const double steps = parameters_.timeStep * kStepsPerImpact * frequency / std::numbers::pi;
-  const int size = int(group.members.size());
+  const int size = int(island.members.size());
   return size > resolved || (size > kAlwaysResolved && size * steps > kMostSteps * resolved);
 }
 
-double MassFall::groupStep(const Group& group) const
+double MassFall::islandStep(const Island& island) const
 {
   double h = parameters_.timeStep;
-  for (int i : group.members)
+  for (int i : island.members)
   {
     const RockSimulator& sim = members_[i]->sim;
     h = sim.done_ ? h : std::min(h, sim.impactStep());
   }
-  for (const RockPair* pair : group.pairs)
+  for (const RockPair* pair : island.pairs)
   {
     if (pair->contacts.empty())
     {
@@ -61,26 +61,26 @@ double MassFall::groupStep(const Group& group) const
   return h;
 }
 
-void MassFall::gatherContacts(const Group& group, double h, Workspace& work) const
+void MassFall::gatherContacts(const Island& island, double h, Workspace& work)
 {
   const auto reachOf = [&](double speed, double radius)
   { return kFasterApproach * speed * h + parameters_.gravity * h * h + 1e-6 * radius; };
-  const bool crowd = group.crowd;
+  const bool crowd = island.crowd;
   work.sides.resize(members_.size());
   const auto stand = [&](std::size_t k)
   {
-    const int i = group.members[k];
+    const int i = island.members[k];
     work.sides[std::size_t(i)].set(members_[std::size_t(i)]->sim);
   };
-  forEach(group.members.size(), kRockGrain, stand);
+  forEach(island.members.size(), kRockGrain, stand);
   if (crowd)
   {
-    findPushes(group, work);
+    findPushes(island, work);
   }
   const auto onSlope = [&](std::size_t k)
   {
-    this->comeToRock(group, k);
-    Member& m = *members_[group.members[k]];
+    this->comeToRock(island, k);
+    Member& m = *members_[island.members[k]];
     RockSimulator& sim = m.sim;
     if (sim.done_)
     {
@@ -88,7 +88,7 @@ void MassFall::gatherContacts(const Group& group, double h, Workspace& work) con
     }
     m.stand();
     const double r = sim.block_.radius();
-    const double pushed = work.sides[std::size_t(group.members[k])].pushed;
+    const double pushed = work.sides[std::size_t(island.members[k])].pushed;
     const double reach =
       reachOf(sim.state_.velocity.norm() + sim.state_.spin.norm() * r + pushed, r);
     sim.crowded_ = crowd;
@@ -99,6 +99,7 @@ void MassFall::gatherContacts(const Group& group, double h, Workspace& work) con
       sim.armContacts(h);
       return;
     }
+    sim.placed_.placeVertices();
     const auto findThem = [&]() -> const CandidatePairs&
     {
       if (!crowd)
@@ -136,11 +137,11 @@ void MassFall::gatherContacts(const Group& group, double h, Workspace& work) con
     stiffenPressed(sim);
     sim.armContacts(h);
   };
-  forEach(group.members.size(), kRockGrain, onSlope);
+  forEach(island.members.size(), kRockGrain, onSlope);
   const auto eachOther = [&](std::size_t k)
   {
-    comeToPair(group.pairs, k);
-    RockPair* pair = group.pairs[k];
+    comeToPair(island.pairs, k);
+    RockPair* pair = island.pairs[k];
     const Workspace::Side& a = work.sides[std::size_t(pair->first)];
     const Workspace::Side& b = work.sides[std::size_t(pair->second)];
     if (a.done || b.done)
@@ -168,15 +169,15 @@ void MassFall::gatherContacts(const Group& group, double h, Workspace& work) con
     }
     if (!crowd)
     {
-      this->armPair(*pair, h); // in a crowd what may close is armed when it is taken
+      this->setPairSprings(*pair, h); // in a crowd what may close is given springs when it is taken
     }
   };
-  forEach(group.pairs.size(), kPairGrain, eachOther);
+  forEach(island.pairs.size(), kPairGrain, eachOther);
 }
 
-bool MassFall::isCalm(const Group& group) const
+bool MassFall::isCalm(const Island& island) const
 {
-  for (int i : group.members)
+  for (int i : island.members)
   {
     const RockSimulator& sim = members_[i]->sim;
     if (!sim.done_ && !sim.isCalm())
@@ -184,7 +185,7 @@ bool MassFall::isCalm(const Group& group) const
       return false;
     }
   }
-  for (const RockPair* pair : group.pairs)
+  for (const RockPair* pair : island.pairs)
   {
     const RockSimulator &a = members_[pair->first]->sim, &b = members_[pair->second]->sim;
     const double resting = std::min(a.restingSpeed_, b.restingSpeed_);
@@ -203,7 +204,7 @@ bool MassFall::isCalm(const Group& group) const
       }
       // Beyond what the weights of a pile can hold, it is the turning point of an impact.
       const double weight =
-        double(group.members.size()) * parameters_.gravity * (a.block_.mass() + b.block_.mass());
+        double(island.members.size()) * parameters_.gravity * (a.block_.mass() + b.block_.mass());
       const double settled = 4.0 * weight / c.stiffness;
       held += c.gap() < -settled ? 0.5 * c.stiffness * c.gap() * c.gap() : 0.0;
     }
@@ -215,12 +216,12 @@ bool MassFall::isCalm(const Group& group) const
   return true;
 }
 
-bool MassFall::mayLast(const Group& group, double h) const
+bool MassFall::mayLast(const Island& island, double h) const
 {
-  // Whatever is about to close must not come in as an impact.
+  // A contact that is about to close must not come in as an impact.
   const auto impact = [&](const Contact& c, const Vec3& velocity, double resting)
   { return hits(c, -c.normal.dot(velocity), resting, h); };
-  for (int i : group.members)
+  for (int i : island.members)
   {
     const RockSimulator& sim = members_[i]->sim;
     const Vec3 spin = sim.state_.angularVelocity();
@@ -233,7 +234,7 @@ bool MassFall::mayLast(const Group& group, double h) const
       }
     }
   }
-  for (const RockPair* pair : group.pairs)
+  for (const RockPair* pair : island.pairs)
   {
     const double resting =
       std::min(members_[pair->first]->sim.restingSpeed_, members_[pair->second]->sim.restingSpeed_);
@@ -249,8 +250,9 @@ bool MassFall::mayLast(const Group& group, double h) const
   return true;
 }
 
-double MassFall::freeOfSlope(RockSimulator& sim, double most) const
+double MassFall::freeOfSlope(RockSimulator& sim, double most)
 {
+  sim.placed_.placeVertices();
   if (sim.crowded_)
   {
     sim.ensureCandidates(0.0, true); // what is high over the ground had no need yet
@@ -271,15 +273,15 @@ double MassFall::freeOfEachOther(const RockPair& pair, double gravity) const
   return timeToCover(pair.axis.distance, closing, gravity);
 }
 
-double MassFall::freeTime(const Group& group, double most) const
+double MassFall::freeTime(const Island& island, double most)
 {
   double free = most;
-  for (int i : group.members)
+  for (int i : island.members)
   {
     RockSimulator& sim = members_[i]->sim;
     free = sim.done_ ? free : this->freeOfSlope(sim, free);
   }
-  for (const RockPair* pair : group.pairs)
+  for (const RockPair* pair : island.pairs)
   {
     if (!members_[pair->first]->sim.done_ && !members_[pair->second]->sim.done_)
     {
@@ -289,11 +291,11 @@ double MassFall::freeTime(const Group& group, double most) const
   return free;
 }
 
-double MassFall::freeOfFlying(const Group& group, double most, Workspace& work) const
+double MassFall::freeOfFlying(const Island& island, double most, Workspace& work)
 {
   const auto isClosed = [](const Contact& c) { return c.closed(); };
   work.flying.assign(members_.size(), 0);
-  for (int i : group.members)
+  for (int i : island.members)
   {
     const RockSimulator& sim = members_[i]->sim;
     const double rim = sim.block_.largestRimSpeed(sim.state_.spin);
@@ -301,7 +303,7 @@ double MassFall::freeOfFlying(const Group& group, double most, Workspace& work) 
       sim.state_.velocity.norm() + rim > sim.restingSpeed_ &&
       std::none_of(sim.contacts_.begin(), sim.contacts_.end(), isClosed);
   }
-  for (const RockPair* pair : group.pairs)
+  for (const RockPair* pair : island.pairs)
   {
     if (std::any_of(pair->contacts.begin(), pair->contacts.end(), isClosed))
     {
@@ -309,11 +311,11 @@ double MassFall::freeOfFlying(const Group& group, double most, Workspace& work) 
     }
   }
   double free = most;
-  for (int i : group.members)
+  for (int i : island.members)
   {
     free = work.flying[std::size_t(i)] ? this->freeOfSlope(members_[i]->sim, free) : free;
   }
-  for (const RockPair* pair : group.pairs)
+  for (const RockPair* pair : island.pairs)
   {
     if (work.flying[std::size_t(pair->first)] || work.flying[std::size_t(pair->second)])
     {
@@ -323,9 +325,9 @@ double MassFall::freeOfFlying(const Group& group, double most, Workspace& work) 
   return free;
 }
 
-void MassFall::fly(const Group& group, double duration) const
+void MassFall::fly(const Island& island, double duration)
 {
-  for (int i : group.members)
+  for (int i : island.members)
   {
     RockSimulator& sim = members_[i]->sim;
     if (!sim.done_)
@@ -345,7 +347,7 @@ void MassFall::fly(const Group& group, double duration) const
       sim.quietTime_ = 0.0;
     }
   }
-  for (RockPair* pair : group.pairs)
+  for (RockPair* pair : island.pairs)
   {
     pair->contacts.clear();
     pair->touched = pair->seen = false;
@@ -353,9 +355,9 @@ void MassFall::fly(const Group& group, double duration) const
   }
 }
 
-double MassFall::timeOf(const Group& group, double until) const
+double MassFall::timeOf(const Island& island, double until) const
 {
-  for (int i : group.members)
+  for (int i : island.members)
   {
     if (!members_[i]->sim.done_)
     {
@@ -365,17 +367,17 @@ double MassFall::timeOf(const Group& group, double until) const
   return until;
 }
 
-double MassFall::advanceTogether(const Group& group, double until, bool lastingOnly) const
+double MassFall::advanceTogether(const Island& island, double until, bool lastingOnly)
 {
   thread_local Workspace work;
   work.solver.method = method;
-  const bool inTime = !group.crowd;
-  const auto now = [&] { return this->timeOf(group, until); };
+  const bool inTime = !island.crowd;
+  const auto now = [&] { return this->timeOf(island, until); };
   while (now() < until - kTooShort)
   {
     stayWanted();
     double travel = parameters_.timeStep;
-    for (int i : group.members)
+    for (int i : island.members)
     {
       RockSimulator& sim = members_[i]->sim;
       if (!sim.inContact_)
@@ -387,41 +389,41 @@ double MassFall::advanceTogether(const Group& group, double until, bool lastingO
     }
     const double remaining = until - now();
     const double large = std::min(remaining, travel);
-    double small = inTime ? std::min(remaining, this->groupStep(group)) : large;
-    const bool calm = inTime && this->isCalm(group);
-    this->gatherContacts(group, calm || !inTime ? large : small, work);
-    // How stiff they are is known now: the faster rocks meet, the stiffer.
-    small = inTime ? std::min(small, this->groupStep(group)) : small;
+    double small = inTime ? std::min(remaining, this->islandStep(island)) : large;
+    const bool calm = inTime && this->isCalm(island);
+    this->gatherContacts(island, calm || !inTime ? large : small, work);
+    // Stiffnesses are known now: the faster rocks meet, the stiffer.
+    small = inTime ? std::min(small, this->islandStep(island)) : small;
     bool any = false;
-    for (int i : group.members)
+    for (int i : island.members)
     {
       const std::vector<Contact>& c = members_[i]->sim.contacts_;
       any = any || std::any_of(c.begin(), c.end(), [](const Contact& k) { return k.closed(); });
     }
-    for (const RockPair* pair : group.pairs)
+    for (const RockPair* pair : island.pairs)
     {
       const std::vector<Contact>& c = pair->contacts;
       any = any || std::any_of(c.begin(), c.end(), [](const Contact& k) { return k.closed(); });
     }
     if (!any)
     {
-      const double free = this->freeTime(group, remaining);
+      const double free = this->freeTime(island, remaining);
       if (free > small)
       {
-        this->fly(group, free);
+        this->fly(island, free);
         continue;
       }
     }
     if (!inTime)
     {
-      this->solve(group, large, StepKind::Lasting, true, work);
+      this->solve(island, large, StepKind::Lasting, true, work);
     }
     else
     {
-      const double lasting = calm && any ? this->freeOfFlying(group, large, work) : 0.0;
-      if ((lasting == large || lasting > small) && this->mayLast(group, lasting))
+      const double lasting = calm && any ? this->freeOfFlying(island, large, work) : 0.0;
+      if ((lasting == large || lasting > small) && this->mayLast(island, lasting))
       {
-        this->solve(group, lasting, StepKind::Lasting, false, work);
+        this->solve(island, lasting, StepKind::Lasting, false, work);
       }
       else if (lastingOnly)
       {
@@ -429,7 +431,7 @@ double MassFall::advanceTogether(const Group& group, double until, bool lastingO
       }
       else
       {
-        this->solve(group, small, StepKind::Impact, false, work);
+        this->solve(island, small, StepKind::Impact, false, work);
       }
     }
   }

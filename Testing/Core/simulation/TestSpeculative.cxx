@@ -1,4 +1,4 @@
-// Contacts of a crowd that may stay open: they are only watched until they close.
+// Contacts of a crowd that may stay open: speculative, out of the sweeps, until they close.
 
 #include "piles.h"
 
@@ -22,11 +22,11 @@ struct Hanging
   Block block{ cube.shape, cube.density, cube.youngModulus, cube.poissonRatio };
   BlockState state;
   std::vector<Contact> corners = std::vector<Contact>(4);
-  std::vector<GroupContact> contacts = std::vector<GroupContact>(4);
-  std::vector<GroupBody> bodies = std::vector<GroupBody>(1);
+  std::vector<IslandContact> contacts = std::vector<IslandContact>(4);
+  std::vector<IslandBody> bodies = std::vector<IslandBody>(1);
   std::vector<std::size_t> armed; ///< In the order of closing.
 
-  GroupOutcome step(double gravity)
+  IslandOutcome step(double gravity)
   {
     state.position.z() = 0.5 + kGap;
     for (std::size_t k = 0; k < 4; ++k)
@@ -41,26 +41,26 @@ struct Hanging
     }
     bodies[0].block = &block;
     bodies[0].state = &state;
-    GroupSolver solver;
-    solver.method = GroupMethod::Iterative;
-    solver.armLate(
+    IslandSolver solver;
+    solver.method = IslandMethod::Iterative;
+    solver.setSpringsLate(
       [&](std::size_t k)
       {
         corners[k].stiffness = corners[k].shearStiffness = kPenalty;
         armed.push_back(k);
       });
     const StepRequest request = lastingStep(kStep, gravity, 12);
-    return solver.step(request, bodies, contacts, Taken::NotRough);
+    return solver.step(request, bodies, contacts, Accept::Converging);
   }
 };
 
 } // namespace
 
-TEST(Watched, WhatClosesGetsItsSpringsAndCarries)
+TEST(Speculative, GetsItsSpringsAndCarriesWhenItCloses)
 {
   Hanging cube;
-  const GroupOutcome outcome = cube.step(kGravity);
-  EXPECT_TRUE(outcome.taken);
+  const IslandOutcome outcome = cube.step(kGravity);
+  EXPECT_TRUE(outcome.accepted);
   EXPECT_EQ(cube.armed.size(), 4u);
   // m (g + way/h²) = F and F = 4 p (−way − gap).
   const double m = cube.block.mass();
@@ -78,11 +78,11 @@ TEST(Watched, WhatClosesGetsItsSpringsAndCarries)
   EXPECT_NEAR(cube.state.position.z(), 0.5 - 0.25 * force / kPenalty, 1e-7);
 }
 
-TEST(Watched, WhatStaysOpenNeedsNone)
+TEST(Speculative, NeedsNoSpringsAsLongAsItIsOpen)
 {
   Hanging cube;
-  const GroupOutcome outcome = cube.step(0.9 * kGap / (kStep * kStep));
-  EXPECT_TRUE(outcome.taken);
+  const IslandOutcome outcome = cube.step(0.9 * kGap / (kStep * kStep));
+  EXPECT_TRUE(outcome.accepted);
   EXPECT_TRUE(cube.armed.empty());
   for (const Contact& c : cube.corners)
   {

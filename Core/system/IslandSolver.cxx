@@ -1,4 +1,4 @@
-#include "system/GroupSolver.h"
+#include "system/IslandSolver.h"
 
 #include "base/parallel.h"
 #include "block/cayley.h"
@@ -12,8 +12,8 @@
 namespace rockfall
 {
 
-void GroupSolver::prepare(const StepRequest& request, const std::vector<GroupBody>& bodies,
-  const std::vector<GroupContact>& contacts)
+void IslandSolver::prepare(const StepRequest& request, const std::vector<IslandBody>& bodies,
+  const std::vector<IslandContact>& contacts)
 {
   const double h = request.duration;
   const bool lasting = request.kind == StepKind::Lasting;
@@ -21,7 +21,7 @@ void GroupSolver::prepare(const StepRequest& request, const std::vector<GroupBod
   work_.resize(bodies.size());
   const auto prepareBody = [&](std::size_t i)
   {
-    const GroupBody& body = bodies[i];
+    const IslandBody& body = bodies[i];
     const Block& block = *body.block;
     const BlockState& state = *body.state;
     Work& w = work_[i];
@@ -51,23 +51,23 @@ void GroupSolver::prepare(const StepRequest& request, const std::vector<GroupBod
   this->startRows(request, contacts, 0);
 }
 
-void GroupSolver::prepareRows(const StepRequest& request, const std::vector<GroupBody>& bodies,
-  const std::vector<GroupContact>& contacts, std::size_t first)
+void IslandSolver::prepareRows(const StepRequest& request, const std::vector<IslandBody>& bodies,
+  const std::vector<IslandContact>& contacts, std::size_t first)
 {
   const bool lasting = request.kind == StepKind::Lasting;
   rows_.resize(contacts.size());
   const auto prepareRow = [&](std::size_t further)
   {
     const std::size_t k = first + further;
-    const GroupContact& group = contacts[k];
-    const Contact& c = *group.contact;
+    const IslandContact& asked = contacts[k];
+    const Contact& c = *asked.contact;
     Row& row = rows_[k];
     row.kind = c.kind;
     row.n = row.directions[0] = c.normal;
     row.directions[1] = c.normal.unitOrthogonal();
     row.directions[2] = c.normal.cross(row.directions[1]);
-    row.sides[0].body = group.first;
-    row.sides[1].body = group.second;
+    row.sides[0].body = asked.first;
+    row.sides[1].body = asked.second;
     row.fixed = c.kind == ContactKind::EdgeEdge ? c.ridge[0] : c.point;
     row.sides[1].edge = c.ridge[1];
     for (int s = 0; s < 2; ++s)
@@ -94,16 +94,16 @@ void GroupSolver::prepareRows(const StepRequest& request, const std::vector<Grou
     law.shearPenalty = c.shearStiffness;
     law.dashpot = lasting ? 0.0 : dashpotOver(request.duration, c.dashpot, c.stopped);
     law.shearLag = lasting ? 0.0 : c.shearDashpot / c.shearStiffness;
-    law.friction = group.friction;
-    law.cohesion = group.cohesion;
+    law.friction = asked.friction;
+    law.cohesion = asked.cohesion;
     law.slip0 = { row.directions[1].dot(c.slip), row.directions[2].dot(c.slip) };
     law.state = c.state;
   };
   forEach(contacts.size() - first, kRowGrain, prepareRow);
 }
 
-void GroupSolver::startRows(
-  const StepRequest& request, const std::vector<GroupContact>& contacts, std::size_t first)
+void IslandSolver::startRows(
+  const StepRequest& request, const std::vector<IslandContact>& contacts, std::size_t first)
 {
   const double h = request.duration;
   const auto start = [&](std::size_t further)
@@ -122,14 +122,14 @@ void GroupSolver::startRows(
   forEach(contacts.size() - first, kRowGrain, start);
 }
 
-void GroupSolver::append(const StepRequest& request, const std::vector<GroupBody>& bodies,
-  std::vector<GroupContact>& contacts)
+void IslandSolver::append(const StepRequest& request, const std::vector<IslandBody>& bodies,
+  std::vector<IslandContact>& contacts)
 {
   const std::size_t first = rows_.size();
   this->prepareRows(request, bodies, contacts, first);
   for (std::size_t k = first; k < rows_.size(); ++k)
   {
-    // The gap at the start from which this way leads to the one at the end.
+    // The gap at the start from which this displacement leads to the one at the end.
     Row& row = rows_[k];
     Contact& c = *contacts[k].contact;
     this->lever(row);
@@ -140,7 +140,7 @@ void GroupSolver::append(const StepRequest& request, const std::vector<GroupBody
   this->startRows(request, contacts, first);
 }
 
-BlockState GroupSolver::end(const std::vector<GroupBody>& bodies, std::size_t i) const
+BlockState IslandSolver::end(const std::vector<IslandBody>& bodies, std::size_t i) const
 {
   if (sweeping_)
   {
@@ -156,7 +156,7 @@ BlockState GroupSolver::end(const std::vector<GroupBody>& bodies, std::size_t i)
   return state;
 }
 
-double GroupSolver::gap(std::size_t contact) const
+double IslandSolver::gap(std::size_t contact) const
 {
   if (sweeping_)
   {
@@ -166,7 +166,7 @@ double GroupSolver::gap(std::size_t contact) const
   return row.gap0 + this->travel(row)[0];
 }
 
-bool GroupSolver::setGap(std::size_t contact, double found)
+bool IslandSolver::setGap(std::size_t contact, double found)
 {
   if (sweeping_)
   {
@@ -179,17 +179,17 @@ bool GroupSolver::setGap(std::size_t contact, double found)
   return change != 0.0;
 }
 
-bool GroupSolver::moved(std::size_t body) const
+bool IslandSolver::moved(std::size_t body) const
 {
   return !sweeping_ || crowd_.moved(body);
 }
 
-double GroupSolver::force(std::size_t contact) const
+double IslandSolver::force(std::size_t contact) const
 {
   return sweeping_ ? crowd_.force(contact) : rows_[contact].law.force;
 }
 
-void GroupSolver::setAbsent(std::vector<GroupContact>& contacts, std::size_t contact, bool absent)
+void IslandSolver::setAbsent(std::vector<IslandContact>& contacts, std::size_t contact, bool absent)
 {
   contacts[contact].absent = absent;
   if (sweeping_)
@@ -205,7 +205,7 @@ void GroupSolver::setAbsent(std::vector<GroupContact>& contacts, std::size_t con
   row.law.gap0 = absent ? kAbsent : row.asked;
 }
 
-void GroupSolver::levers()
+void IslandSolver::levers()
 {
   const auto turnBody = [&](std::size_t i)
   {
@@ -217,7 +217,7 @@ void GroupSolver::levers()
   forEach(rows_.size(), kRowGrain, [&](std::size_t k) { this->lever(rows_[k]); });
 }
 
-void GroupSolver::lever(Row& row) const
+void IslandSolver::lever(Row& row) const
 {
   // A material vector of a body, averaged over the step.
   const auto mean = [&](const Side& side, const Vec3& y)
@@ -263,7 +263,7 @@ void GroupSolver::lever(Row& row) const
   }
 }
 
-Mat3 GroupSolver::mobility(const Row& row) const
+Mat3 IslandSolver::mobility(const Row& row) const
 {
   Mat3 sum = Mat3::Zero();
   for (const Side& side : row.sides)
@@ -281,42 +281,43 @@ Mat3 GroupSolver::mobility(const Row& row) const
   return sum;
 }
 
-Vec3 GroupSolver::wayOf(const Side& side) const
+Vec3 IslandSolver::displacementOf(const Side& side) const
 {
   const Vec6& d = work_[side.body].d;
   return d.head<3>() + d.tail<3>().cross(side.lever);
 }
 
-Vec3 GroupSolver::meanWayOf(double h, const Side& side) const
+Vec3 IslandSolver::meanDisplacementOf(double h, const Side& side) const
 {
   const Work& w = work_[side.body];
   const Vec6 mean = (0.5 * h) * (w.velocity0 + rate_ * w.d + w.offset);
   return mean.head<3>() + mean.tail<3>().cross(side.lever);
 }
 
-Vec3 GroupSolver::travel(const Row& row) const
+Vec3 IslandSolver::travel(const Row& row) const
 {
-  Vec3 way = Vec3::Zero();
+  Vec3 displacement = Vec3::Zero();
   double sign = 1.0;
   for (const Side& side : row.sides)
   {
     if (side.body >= 0)
     {
-      way += sign * this->wayOf(side);
+      displacement += sign * this->displacementOf(side);
     }
     sign = -1.0;
   }
-  return { row.directions[0].dot(way), row.directions[1].dot(way), row.directions[2].dot(way) };
+  return { row.directions[0].dot(displacement), row.directions[1].dot(displacement),
+    row.directions[2].dot(displacement) };
 }
 
-bool GroupSolver::evaluate(double h, bool lasting)
+bool IslandSolver::evaluate(double h, bool lasting)
 {
   std::atomic<bool> changed = false;
   const auto evaluateRow = [&](std::size_t k)
   {
     Row& row = rows_[k];
-    const Vec3 way = this->travel(row);
-    if (row.law.evaluate(lasting, h, row.law.gap0 + way[0], way.tail<2>()))
+    const Vec3 displacement = this->travel(row);
+    if (row.law.evaluate(lasting, h, row.law.gap0 + displacement[0], displacement.tail<2>()))
     {
       changed.store(true, std::memory_order_relaxed);
     }
@@ -325,7 +326,7 @@ bool GroupSolver::evaluate(double h, bool lasting)
   return changed;
 }
 
-void GroupSolver::loads(const StepRequest& request, const std::vector<GroupBody>& bodies)
+void IslandSolver::loads(const StepRequest& request, const std::vector<IslandBody>& bodies)
 {
   const double h = request.duration;
   const auto loadBody = [&](std::size_t i)

@@ -1,6 +1,6 @@
-// K D = F of a group: assembled from the contacts' springs, solved directly.
+// K D = F of an island: assembled from the contacts' springs, solved directly.
 
-#include "system/GroupSolver.h"
+#include "system/IslandSolver.h"
 
 #include "law/settings.h"
 
@@ -10,7 +10,7 @@ namespace rockfall
 {
 
 template <class Add>
-void GroupSolver::assemble(const std::vector<int>& places, Eigen::VectorXd& right, Add&& add) const
+void IslandSolver::assemble(const std::vector<int>& places, Eigen::VectorXd& right, Add&& add) const
 {
   for (std::size_t i = 0; i < work_.size(); ++i)
   {
@@ -73,9 +73,9 @@ void GroupSolver::assemble(const std::vector<int>& places, Eigen::VectorXd& righ
   }
 }
 
-bool GroupSolver::solveDirect(Eigen::VectorXd& next)
+bool IslandSolver::solveDirect(Eigen::VectorXd& next)
 {
-  // Most of a group do not touch: what no contact acts on goes as if it were alone.
+  // Most of an island do not touch: what no contact acts on goes as if it were alone.
   thread_local std::vector<int> places;
   places.assign(work_.size(), -1);
   for (const Row& row : rows_)

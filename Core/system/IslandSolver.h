@@ -22,31 +22,31 @@ namespace rockfall
 {
 
 /// How the linear systems are solved.
-enum class GroupMethod : std::uint8_t
+enum class IslandMethod : std::uint8_t
 {
   Suited,    ///< Direct up to a size, iterative beyond.
   Direct,    ///< Elimination of K's blocks.
   Iterative, ///< Gauss–Seidel over the contacts of a lasting step (system/CrowdSolver.h).
 };
 
-class GroupSolver
+class IslandSolver
 {
 public:
   /// Advances the bodies' states and the contacts' springs by `request.duration`. If open–close
-  /// does not settle nothing is changed, unless `take` says so.
+  /// does not settle nothing is changed, unless `accept` says so.
   ///
   /// `lookAgain` is asked after a solution that has settled, or one by Gauss–Seidel, before it is
   /// written: it may look where the bodies would be (`end`), append contacts that were not reckoned
   /// with, correct the gaps of others (`setGap`) and let others go (`setAbsent`). If it has found
   /// anything the step goes on from where it is. The `distance` of an appended contact is that at
   /// the end, the rest of it as all stands at the start.
-  GroupOutcome step(const StepRequest& request, std::vector<GroupBody>& bodies,
-    std::vector<GroupContact>& contacts, Taken take,
+  IslandOutcome step(const StepRequest& request, std::vector<IslandBody>& bodies,
+    std::vector<IslandContact>& contacts, Accept accept,
     const std::function<LookOutcome()>& lookAgain = {});
 
   // For lookAgain.
   /// A body at the end of the step.
-  BlockState end(const std::vector<GroupBody>& bodies, std::size_t i) const;
+  BlockState end(const std::vector<IslandBody>& bodies, std::size_t i) const;
   double gap(std::size_t contact) const; ///< At the end of the step as reckoned, m.
   /// The gap is found to be another one (m). No contact is asked to open further than it was.
   /// Returns whether this changes anything.
@@ -54,13 +54,16 @@ public:
   bool moved(std::size_t body) const;      ///< Since lookAgain was asked last.
   double force(std::size_t contact) const; ///< Along the normal, as reckoned, N.
   /// Lets a contact go, or sets it in again.
-  void setAbsent(std::vector<GroupContact>& contacts, std::size_t contact, bool absent);
+  void setAbsent(std::vector<IslandContact>& contacts, std::size_t contact, bool absent);
 
-  GroupMethod method = GroupMethod::Suited;
+  IslandMethod method = IslandMethod::Suited;
   /// Whether a step is solved by Gauss–Seidel from the start.
   bool isSwept(StepKind kind, std::size_t bodies) const;
   /// For contacts without springs that mayStayOpen, if it is: gives one its springs when it closes.
-  void armLate(std::function<void(std::size_t contact)> arm) { crowd_.arm = std::move(arm); }
+  void setSpringsLate(std::function<void(std::size_t contact)> setSprings)
+  {
+    crowd_.setSprings = std::move(setSprings);
+  }
   /// Share of the largest displacement to which Gauss–Seidel goes.
   double tolerance = 1e-4;
   int maxSweeps = 6;
@@ -96,37 +99,37 @@ private:
     Mat3 inertia;        ///< rate/h · I
     Vec3 position;       ///< Of the centroid at the start.
   };
-  void prepare(const StepRequest& request, const std::vector<GroupBody>& bodies,
-    const std::vector<GroupContact>& contacts);
+  void prepare(const StepRequest& request, const std::vector<IslandBody>& bodies,
+    const std::vector<IslandContact>& contacts);
   /// Rows of the contacts from `first` on.
-  void prepareRows(const StepRequest& request, const std::vector<GroupBody>& bodies,
-    const std::vector<GroupContact>& contacts, std::size_t first);
+  void prepareRows(const StepRequest& request, const std::vector<IslandBody>& bodies,
+    const std::vector<IslandContact>& contacts, std::size_t first);
   void startRows(
-    const StepRequest& request, const std::vector<GroupContact>& contacts, std::size_t first);
+    const StepRequest& request, const std::vector<IslandContact>& contacts, std::size_t first);
   /// Rows of the contacts that lookAgain has appended.
-  void append(const StepRequest& request, const std::vector<GroupBody>& bodies,
-    std::vector<GroupContact>& contacts);
+  void append(const StepRequest& request, const std::vector<IslandBody>& bodies,
+    std::vector<IslandContact>& contacts);
   void lever(Row& row) const;
-  void levers();                       ///< Rotations and levers as the displacements are.
-  Mat3 mobility(const Row& row) const; ///< J A⁻¹ Jᵀ of a force at the contact, m/N.
-  Vec3 wayOf(const Side& side) const;  ///< Of a rock's point of force, m.
+  void levers();                               ///< Rotations and levers as the displacements are.
+  Mat3 mobility(const Row& row) const;         ///< J A⁻¹ Jᵀ of a force at the contact, m/N.
+  Vec3 displacementOf(const Side& side) const; ///< Of a rock's point of force, m.
   /// The same at the mean of the velocities before and after the step, m.
-  Vec3 meanWayOf(double h, const Side& side) const;
+  Vec3 meanDisplacementOf(double h, const Side& side) const;
   Vec3 travel(const Row& row) const; ///< J D: along the normal and the two tangents, m.
   bool evaluate(double h, bool lasting);
-  void loads(const StepRequest& request, const std::vector<GroupBody>& bodies);
+  void loads(const StepRequest& request, const std::vector<IslandBody>& bodies);
   bool newton(
-    const StepRequest& request, const std::vector<GroupBody>& bodies, GroupOutcome& outcome);
+    const StepRequest& request, const std::vector<IslandBody>& bodies, IslandOutcome& outcome);
   /// Newton, and again as long as bounces give energy; returns whether it has settled.
-  bool settle(const StepRequest& request, const std::vector<GroupBody>& bodies,
-    std::vector<GroupContact>& contacts, GroupOutcome& outcome);
-  bool holdBounces(double h, std::vector<GroupContact>& contacts); ///< Whether any gives energy.
+  bool settle(const StepRequest& request, const std::vector<IslandBody>& bodies,
+    std::vector<IslandContact>& contacts, IslandOutcome& outcome);
+  bool holdBounces(double h, std::vector<IslandContact>& contacts); ///< Whether any gives energy.
   bool solveDirect(Eigen::VectorXd& next);
   /// `places`: of bodies in the system, −1 for those that no contact acts on.
   template <class Add>
   void assemble(const std::vector<int>& places, Eigen::VectorXd& right, Add&& add) const;
-  void write(const StepRequest& request, std::vector<GroupBody>& bodies,
-    std::vector<GroupContact>& contacts, GroupOutcome& outcome);
+  void write(const StepRequest& request, std::vector<IslandBody>& bodies,
+    std::vector<IslandContact>& contacts, IslandOutcome& outcome);
 
   std::vector<Row> rows_;
   std::vector<ContactBooks> books_; ///< Out, by row.

@@ -1,5 +1,5 @@
-// What rocks that may meet pass on to each other: the velocities of their company, and what is left
-// of their ways.
+// Velocities of their island and rest of their displacements, which rocks that may meet pass on to
+// each other.
 
 #include "simulation/massFallMeet.h"
 
@@ -18,7 +18,7 @@ int MassFall::Meetings::root(int i)
 
 double MassFall::Meetings::thrown(std::size_t rock) const
 {
-  return companies_[std::size_t(roots_[rock])].thrown(paces_[rock].mass, bounciest_);
+  return bounds_[std::size_t(roots_[rock])].thrown(paces_[rock].mass, bounciest_);
 }
 
 /// Links two; `known`: their axis has been found for where they stand. Returns whether that tells
@@ -41,7 +41,7 @@ bool MassFall::Meetings::join(MassFall& fall, std::size_t k, bool known)
       m.asleep = false;
       --sleepers_;
     }
-    turns_.add(i, m.way);
+    queue_.add(i, m.displacement);
   };
   const bool share = movers[std::size_t(n.first)].shares && movers[std::size_t(n.second)].shares;
   if (!share)
@@ -53,7 +53,7 @@ bool MassFall::Meetings::join(MassFall& fall, std::size_t k, bool known)
   if (a != b)
   {
     parents_[std::size_t(std::max(a, b))] = std::min(a, b);
-    companies_[std::size_t(std::min(a, b))].take(companies_[std::size_t(std::max(a, b))]);
+    bounds_[std::size_t(std::min(a, b))].add(bounds_[std::size_t(std::max(a, b))]);
   }
   return a != b || !share;
 }
@@ -84,44 +84,46 @@ void MassFall::Meetings::wakeAbout(MassFall& fall, int rock)
   this->forNeighbours(rock, visit);
 }
 
-/// What is left of a rock's way, to those that it is linked with and that do not share it.
+/// Passes the rest of a rock's displacement on to those that it is linked with and that do not
+/// share it.
 void MassFall::Meetings::passOn(int rock)
 {
   Mover* const rocks = movers.data();
-  const double way = rocks[rock].way;
+  const double displacement = rocks[rock].displacement;
   const Link* const links = links_.data();
   for (int l = firstLink_[std::size_t(rock)]; l >= 0; l = links[l].next)
   {
     Mover& other = rocks[links[l].other];
-    if (way > other.way * kNoMore && !other.shares)
+    if (displacement > other.displacement * kNoMore && !other.shares)
     {
       // The gap must be crossed first, by both together.
       const double own = paces_[std::size_t(links[l].other)].own;
-      const double left = way - std::max(0.0, links[l].gap) * way / std::max(way + own, 1e-12);
-      if (left > other.way * kNoMore)
+      const double left = displacement -
+        std::max(0.0, links[l].gap) * displacement / std::max(displacement + own, 1e-12);
+      if (left > other.displacement * kNoMore)
       {
-        other.way = left;
-        turns_.add(links[l].other, left);
+        other.displacement = left;
+        queue_.add(links[l].other, left);
       }
     }
   }
 }
 
-/// Carries on what each rock that has been joined may do to those that it may meet: the longest way
-/// first, so that few have their turn twice.
+/// Carries on what each rock that has been joined may do to those that it may meet: the longest
+/// displacement first, so that few have their turn twice.
 void MassFall::Meetings::tell(MassFall& fall)
 {
-  for (int i = turns_.take(); i >= 0; i = turns_.take())
+  for (int i = queue_.next(); i >= 0; i = queue_.next())
   {
     const std::size_t rock = std::size_t(i);
     roots_[rock] = this->root(i);
     Mover& m = movers[rock];
     if (m.shares)
     {
-      m.way = companies_[std::size_t(roots_[rock])].longest;
+      m.displacement = bounds_[std::size_t(roots_[rock])].longest;
     }
     thrown_[rock] = this->thrown(rock);
-    fars_[rock] = thrown_[rock] * m.way;
+    fars_[rock] = thrown_[rock] * m.displacement;
     if (sleepers_ > 0)
     {
       this->wakeAbout(fall, i);

@@ -1,4 +1,4 @@
-// What contacts between rocks are made of: springs and dashpots.
+// Springs and dashpots of contacts between rocks.
 
 #include "simulation/massFallWork.h"
 
@@ -19,10 +19,10 @@ namespace
 
 /// Gives contacts of a pair what they are made of, along the normal and across it side by side;
 /// what only the normal decides is found once.
-class PairArming
+class PairSprings
 {
 public:
-  PairArming(const PlacedBlock& a, const BlockState& s, const PlacedBlock& b, const BlockState& t,
+  PairSprings(const PlacedBlock& a, const BlockState& s, const PlacedBlock& b, const BlockState& t,
     const PairLaw& law, const SimulationParameters& parameters)
     : rigid_(parameters.rigid)
     , dampings_(std::max(0.0, law.damping), kShearDamping)
@@ -36,7 +36,7 @@ public:
       std::max(parameters.normalPenalty, mass * speed * speed / (depth * depth));
     penalties_ = { penalty, penalty * parameters.shearRatio };
   }
-  void arm(Contact& c)
+  void set(Contact& c)
   {
     if (c.normal != normal_)
     {
@@ -44,15 +44,16 @@ public:
       const Vec3 along = normal_.unitOrthogonal();
       for (Side& side : sides_)
       {
-        side.ways = twoWays(side.turn.transpose() * normal_, side.turn.transpose() * along);
+        side.motions =
+          twoDirections(side.turn.transpose() * normal_, side.turn.transpose() * along);
       }
     }
     Two soft = Two::Zero(), mobile = Two::Zero();
     for (const Side& side : sides_)
     {
       const Vec3 x = side.turn.transpose() * (c.point - side.position);
-      soft += rigid_ ? Two(Two::Zero()) : side.block->compliance(side.ways, x);
-      mobile += side.block->mobility(side.ways, x);
+      soft += rigid_ ? Two(Two::Zero()) : side.block->compliance(side.motions, x);
+      mobile += side.block->mobility(side.motions, x);
     }
     const Two stiffnesses = penalties_ / (1.0 + penalties_ * soft);
     const Two dashpots = 2.0 * dampings_ * (stiffnesses / mobile).sqrt();
@@ -71,7 +72,7 @@ private:
     const Block* block;
     Mat3 turn; ///< Body to world axes.
     Vec3 position;
-    TwoWays ways; ///< The normal and a direction across it, body axes.
+    TwoDirections motions; ///< The normal and a direction across it, body axes.
   };
   bool rigid_;
   Two dampings_;
@@ -112,7 +113,7 @@ void MassFall::stiffenPressed(RockSimulator& sim)
   }
 }
 
-void MassFall::armPair(RockPair& pair, double h) const
+void MassFall::setPairSprings(RockPair& pair, double h)
 {
   Contact* k = pair.contacts.data();
   Contact* const end = k + pair.contacts.size();
@@ -125,12 +126,12 @@ void MassFall::armPair(RockPair& pair, double h) const
     return;
   }
   const RockSimulator &a = members_[pair.first]->sim, &b = members_[pair.second]->sim;
-  PairArming arming(a.placed_, a.state_, b.placed_, b.state_, pair.law, parameters_);
+  PairSprings springs(a.placed_, a.state_, b.placed_, b.state_, pair.law, parameters_);
   for (; k != end; ++k)
   {
     if (!k->closed())
     {
-      arming.arm(*k);
+      springs.set(*k);
     }
   }
   if (pair.law.damping > 0.0)
@@ -144,10 +145,10 @@ void MassFall::armPair(RockPair& pair, double h) const
   }
 }
 
-void MassFall::armContact(const RockPair& pair, Contact& c) const
+void MassFall::setSprings(const RockPair& pair, Contact& c)
 {
   const RockSimulator &a = members_[pair.first]->sim, &b = members_[pair.second]->sim;
-  PairArming(a.placed_, a.state_, b.placed_, b.state_, pair.law, parameters_).arm(c);
+  PairSprings(a.placed_, a.state_, b.placed_, b.state_, pair.law, parameters_).set(c);
 }
 
 } // namespace rockfall

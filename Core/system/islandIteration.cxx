@@ -1,6 +1,6 @@
-// The step of a group: open–close iteration as Newton with a direct solver, and what comes of it.
+// The step of an island: open–close iteration as Newton with a direct solver, and what comes of it.
 
-#include "system/GroupSolver.h"
+#include "system/IslandSolver.h"
 
 #include "base/abort.h"
 #include "base/parallel.h"
@@ -12,8 +12,8 @@
 namespace rockfall
 {
 
-bool GroupSolver::newton(
-  const StepRequest& request, const std::vector<GroupBody>& bodies, GroupOutcome& outcome)
+bool IslandSolver::newton(
+  const StepRequest& request, const std::vector<IslandBody>& bodies, IslandOutcome& outcome)
 {
   const bool lasting = request.kind == StepKind::Lasting;
   this->evaluate(request.duration, lasting);
@@ -51,9 +51,9 @@ bool GroupSolver::newton(
     double change = 0.0, scale = 0.0;
     for (const Row& row : rows_)
     {
-      const double way = this->travel(row)[0];
-      change = std::max(change, std::abs(row.law.gap0 + way - row.law.gap1));
-      scale = std::max(scale, std::abs(way));
+      const double displacement = this->travel(row)[0];
+      change = std::max(change, std::abs(row.law.gap0 + displacement - row.law.gap1));
+      scale = std::max(scale, std::abs(displacement));
     }
     const bool changed = this->evaluate(request.duration, lasting);
     outcome.residual = change;
@@ -66,7 +66,7 @@ bool GroupSolver::newton(
   return false;
 }
 
-bool GroupSolver::holdBounces(double h, std::vector<GroupContact>& contacts)
+bool IslandSolver::holdBounces(double h, std::vector<IslandContact>& contacts)
 {
   bool any = false;
   for (std::size_t k = 0; k < rows_.size(); ++k)
@@ -105,8 +105,8 @@ bool GroupSolver::holdBounces(double h, std::vector<GroupContact>& contacts)
   return any;
 }
 
-bool GroupSolver::settle(const StepRequest& request, const std::vector<GroupBody>& bodies,
-  std::vector<GroupContact>& contacts, GroupOutcome& outcome)
+bool IslandSolver::settle(const StepRequest& request, const std::vector<IslandBody>& bodies,
+  std::vector<IslandContact>& contacts, IslandOutcome& outcome)
 {
   bool settled = this->newton(request, bodies, outcome);
   for (int k = 0; k < kHeldBounces && settled && this->holdBounces(request.duration, contacts); ++k)
@@ -116,28 +116,29 @@ bool GroupSolver::settle(const StepRequest& request, const std::vector<GroupBody
   return settled;
 }
 
-bool GroupSolver::isSwept(StepKind kind, std::size_t bodies) const
+bool IslandSolver::isSwept(StepKind kind, std::size_t bodies) const
 {
   return kind == StepKind::Lasting &&
-    (method == GroupMethod::Iterative ||
-      (method == GroupMethod::Suited && bodies > std::size_t(kDirectGroup)));
+    (method == IslandMethod::Iterative ||
+      (method == IslandMethod::Suited && bodies > std::size_t(kDirectIsland)));
 }
 
-GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody>& bodies,
-  std::vector<GroupContact>& contacts, Taken take, const std::function<LookOutcome()>& lookAgain)
+IslandOutcome IslandSolver::step(const StepRequest& request, std::vector<IslandBody>& bodies,
+  std::vector<IslandContact>& contacts, Accept accept,
+  const std::function<LookOutcome()>& lookAgain)
 {
   const auto sweep = [&]
   {
     sweeping_ = true;
     crowd_.tolerance = tolerance;
     crowd_.maxSweeps = maxSweeps;
-    return crowd_.step(request, bodies, contacts, take, lookAgain);
+    return crowd_.step(request, bodies, contacts, accept, lookAgain);
   };
   if (this->isSwept(request.kind, bodies.size()))
   {
     return sweep();
   }
-  GroupOutcome outcome;
+  IslandOutcome outcome;
   sweeping_ = false;
   this->prepare(request, bodies, contacts);
   outcome.settled = this->settle(request, bodies, contacts, outcome);
@@ -157,11 +158,11 @@ GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody
     outcome.settled = this->settle(request, bodies, contacts, outcome);
   }
   outcome.settled = outcome.settled && !seen.isDeep();
-  if (!outcome.settled && take == Taken::Any)
+  if (!outcome.settled && accept == Accept::Any)
   {
     // Newton that has not settled may be anywhere; Gauss–Seidel comes nearer with every sweep, and
     // a lasting step makes no energy.
-    for (GroupBody& body : bodies)
+    for (IslandBody& body : bodies)
     {
       body.acceleration.setZero();
       body.spinAcceleration.setZero();
@@ -170,7 +171,7 @@ GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody
     outcome = sweep();
     outcome.iterations += iterations;
     outcome.settled = false;
-    outcome.rough = true;
+    outcome.unconverged = true;
     return outcome;
   }
   bool finite = true;
@@ -178,30 +179,31 @@ GroupOutcome GroupSolver::step(const StepRequest& request, std::vector<GroupBody
   {
     finite = finite && w.d.allFinite();
   }
-  outcome.rough = !outcome.settled;
+  outcome.unconverged = !outcome.settled;
   if (finite && outcome.settled)
   {
     this->write(request, bodies, contacts, outcome);
-    outcome.taken = true;
+    outcome.accepted = true;
   }
   return outcome;
 }
 
-void GroupSolver::write(const StepRequest& request, std::vector<GroupBody>& bodies,
-  std::vector<GroupContact>& contacts, GroupOutcome& outcome)
+void IslandSolver::write(const StepRequest& request, std::vector<IslandBody>& bodies,
+  std::vector<IslandContact>& contacts, IslandOutcome& outcome)
 {
   books_.resize(contacts.size());
   const auto writeRow = [&](std::size_t k)
   {
     const Row& row = rows_[k];
-    ContactWays ways;
-    ways.way = this->travel(row);
+    ContactMotion displacements;
+    displacements.displacement = this->travel(row);
     for (int side = 0; side < 2; ++side)
     {
       const Side& of = row.sides[side];
-      ways.means[side] = of.body < 0 ? Vec3(Vec3::Zero()) : this->meanWayOf(request.duration, of);
+      displacements.means[side] =
+        of.body < 0 ? Vec3(Vec3::Zero()) : this->meanDisplacementOf(request.duration, of);
     }
-    books_[k] = writeContact(row.law, row.directions, ways, row.gap0, contacts[k]);
+    books_[k] = writeContact(row.law, row.directions, displacements, row.gap0, contacts[k]);
     // Where its rock has carried it: by this the next step knows it again.
     const Side& carrier = row.sides[row.kind == ContactKind::FaceVertex ? 1 : 0];
     if (carrier.body >= 0)

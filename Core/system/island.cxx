@@ -1,20 +1,20 @@
-#include "system/group.h"
+#include "system/island.h"
 
 namespace rockfall
 {
 
 ContactBooks writeContact(const ContactLaw& law, const std::array<Vec3, 3>& directions,
-  const ContactWays& ways, double gap0, GroupContact& contact)
+  const ContactMotion& motion, double gap0, IslandContact& contact)
 {
   Contact& c = *contact.contact;
-  const Eigen::Vector2d travel = ways.way.tail<2>();
+  const Eigen::Vector2d travel = motion.displacement.tail<2>();
   const bool bounced = contact.bounce >= 0.0;
   const double stored = bounced ? c.springEnergy() : 0.0; // of an impact that was under way
   c.normalForce = law.force;
-  contact.way = ways.way[0];
+  contact.opening = motion.displacement[0];
   c.shearForce = law.shearForce.norm();
-  c.distance = gap0 + ways.way[0] + c.offset;
-  const Vec3 along = ways.means[0] - ways.means[1];
+  c.distance = gap0 + motion.displacement[0] + c.offset;
+  const Vec3 along = motion.means[0] - motion.means[1];
   const double mean = along.dot(directions[0]);
   const Eigen::Vector2d across(along.dot(directions[1]), along.dot(directions[2]));
   ContactBooks books;
@@ -23,13 +23,13 @@ ContactBooks writeContact(const ContactLaw& law, const std::array<Vec3, 3>& dire
   if (!bounced)
   {
     books.frictionWork += law.shearForce.dot(travel) + law.frictionWork(travel);
-    books.dampedWork += law.force * ways.way[0] + law.dampedWork();
+    books.dampedWork += law.force * motion.displacement[0] + law.dampedWork();
   }
   if (contact.second >= 0)
   {
     const Vec3 force = law.force * directions[0] + law.shearForce[0] * directions[1] +
       law.shearForce[1] * directions[2];
-    books.done = { force.dot(ways.means[0]), -force.dot(ways.means[1]) };
+    books.done = { force.dot(motion.means[0]), -force.dot(motion.means[1]) };
     contact.work = -books.done[0] - books.done[1];
   }
   if (!bounced && law.gap1 < 0.0)
@@ -52,10 +52,10 @@ ContactBooks writeContact(const ContactLaw& law, const std::array<Vec3, 3>& dire
   return books;
 }
 
-void addBooks(const std::vector<GroupContact>& contacts, const std::vector<ContactBooks>& books,
-  std::vector<GroupBody>& bodies, GroupOutcome& outcome)
+void addBooks(const std::vector<IslandContact>& contacts, const std::vector<ContactBooks>& books,
+  std::vector<IslandBody>& bodies, IslandOutcome& outcome)
 {
-  for (GroupBody& body : bodies)
+  for (IslandBody& body : bodies)
   {
     body.given = body.frictionWork = body.dampedWork = 0.0;
     body.springEnergy = body.normalEnergy = 0.0;
@@ -63,7 +63,7 @@ void addBooks(const std::vector<GroupContact>& contacts, const std::vector<Conta
   for (std::size_t k = 0; k < contacts.size(); ++k)
   {
     const ContactBooks& of = books[k];
-    GroupBody& first = bodies[std::size_t(contacts[k].first)];
+    IslandBody& first = bodies[std::size_t(contacts[k].first)];
     if (contacts[k].second < 0)
     {
       first.frictionWork += of.frictionWork;

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// Rocks that wait for their turn, those of long ways first.
+/// Rocks that wait for their turn, those of long displacements first.
 
 #include <algorithm>
 #include <array>
@@ -11,20 +11,20 @@
 namespace rockfall
 {
 
-/// By ranges of ways: within one of them the order is any, but the same in every run.
-class Turns
+/// By ranges of displacements: within one of them the order is any, but the same in every run.
+class RockQueue
 {
 public:
-  /// For so many rocks, none of which has its turn, and ways up to `most` (m).
+  /// For so many rocks, none of which has its turn, and displacements up to `most` (m).
   void reset(std::size_t count, double most)
   {
     scale_ = most > 0.0 ? double(kRanges - 1) / most : 0.0;
     places_.resize(count);
   }
-  /// Once each; who waits already is moved up to where his way belongs.
-  void add(int rock, double way)
+  /// Once each; who waits already is moved up to where his displacement belongs.
+  void add(int rock, double displacement)
   {
-    const int range = std::clamp(int(way * scale_), 0, kRanges - 1);
+    const int range = std::clamp(int(displacement * scale_), 0, kRanges - 1);
     Place& place = places_[std::size_t(rock)];
     if (place.range >= 0)
     {
@@ -41,7 +41,7 @@ public:
     highest_ = std::max(highest_, range);
   }
   /// −1: none waits.
-  int take()
+  int next()
   {
     for (; highest_ >= 0; --highest_)
     {
