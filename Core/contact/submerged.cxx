@@ -10,7 +10,7 @@ namespace rockfall
 Submerged submerged(const PlacedBlock& rock, const Plane& plane, const Vec3& direction)
 {
   /// A corner as seen along the direction, m.
-  struct Corner
+  struct SeenCorner
   {
     double height, x, y;
   };
@@ -22,7 +22,7 @@ Submerged submerged(const PlacedBlock& rock, const Plane& plane, const Vec3& dir
   axes.row(2) = direction.cross(across).transpose() * rock.map();
   const double offset = plane.offset - plane.normal.dot(rock.position());
   const std::vector<Vec3>& vertices = rock.block().shape().vertices();
-  thread_local std::vector<Corner> corners;
+  thread_local std::vector<SeenCorner> corners;
   corners.resize(vertices.size());
   Submerged result;
   for (std::size_t v = 0; v < vertices.size(); ++v)
@@ -56,10 +56,10 @@ Submerged submerged(const PlacedBlock& rock, const Plane& plane, const Vec3& dir
       lastX = x, lastY = y;
     };
     const std::span<const int> loop = layout.loop(f);
-    const Corner* a = &corners[std::size_t(loop.back())];
+    const SeenCorner* a = &corners[std::size_t(loop.back())];
     for (const int next : loop)
     {
-      const Corner* b = &corners[std::size_t(next)];
+      const SeenCorner* b = &corners[std::size_t(next)];
       if ((a->height < 0.0) != (b->height < 0.0))
       {
         const double t = a->height / (a->height - b->height);
