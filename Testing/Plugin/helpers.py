@@ -2,6 +2,7 @@
 
 import contextlib
 import csv
+import ctypes
 import io
 import os
 import re
@@ -42,10 +43,16 @@ def incline(columns=31, rows=21, drop=5.0):
     return [[round(drop * (columns - 1 - c), 3) for c in range(columns)] for _ in range(rows)]
 
 
-def messages_of(action):
-    """Runs action() and returns all that the process wrote meanwhile."""
+def flush_all():
+    """What Python has written, and what C++ has: std::cout is C's stdout, which waits in a buffer."""
     sys.stdout.flush()
     sys.stderr.flush()
+    ctypes.CDLL(None).fflush(None)
+
+
+def messages_of(action):
+    """Runs action() and returns all that the process wrote meanwhile."""
+    flush_all()
     with tempfile.TemporaryFile() as caught:
         kept = [os.dup(1), os.dup(2)]
         os.dup2(caught.fileno(), 1)
@@ -53,8 +60,7 @@ def messages_of(action):
         try:
             action()
         finally:
-            sys.stdout.flush()
-            sys.stderr.flush()
+            flush_all()
             for number, old in enumerate(kept, start=1):
                 os.dup2(old, number)
                 os.close(old)
