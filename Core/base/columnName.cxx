@@ -1,5 +1,6 @@
 #include "base/columnName.h"
 
+#include "base/lengthUnit.h"
 #include "base/nameKey.h"
 
 #include <algorithm>
@@ -47,25 +48,6 @@ std::vector<Word> wordsOf(std::string_view name)
   return words;
 }
 
-bool isOneOf(std::string_view word, std::initializer_list<std::string_view> known)
-{
-  return std::find(known.begin(), known.end(), word) != known.end();
-}
-
-bool isUnit(std::string_view word)
-{
-  return isOneOf(word,
-    { "m", "metre", "metres", "meter", "meters", "cm", "centimetres", "centimeters", "dm",
-      "decimetres", "decimeters", "mm", "millimetres", "millimeters", "km", "kilometres",
-      "kilometers", "ft", "foot", "feet", "ftus", "usft", "yd", "yard", "yards", "inch",
-      "inches" });
-}
-
-bool isSurvey(std::string_view word)
-{
-  return isOneOf(word, { "us", "survey" });
-}
-
 } // namespace
 
 ColumnName::ColumnName(const std::string& written)
@@ -86,17 +68,18 @@ ColumnName::ColumnName(const std::string& written)
   name = nameKey(written);
   for (std::size_t k = words.size(); k-- > 1;)
   {
-    if (!isUnit(keys[k]) && !(keys[k] == "in" && k + 1 == keys.size()))
+    const bool last = k + 1 == keys.size(); // else "in" is no inch
+    if (!lengthUnit(keys[k]) || (keys[k] == "in" && !last))
     {
       continue;
     }
     std::size_t first = k;
     unit = keys[k];
-    for (; first > 1 && isSurvey(keys[first - 1]); --first)
+    for (; first > 1 && (keys[first - 1] == "us" || keys[first - 1] == "survey"); --first)
     {
       unit = keys[first - 1] + " " + unit;
     }
-    if (first == k && k + 1 < keys.size() && keys[k + 1] == "us")
+    if (first == k && !last && keys[k + 1] == "us")
     {
       unit += " us";
     }

@@ -16,9 +16,8 @@ struct ColumnName
   explicit ColumnName(const std::string& written);
 
   std::string name; ///< What stands before the unit, as nameKey has it.
-  /// In small letters: what is in the brackets, or one of m, metre, cm, dm, mm, km, ft, foot, feet,
-  /// yd, yard, in, inch and their plurals, with "us" or "survey" beside them, or these in one word
-  /// (ftus, usft). Empty: none.
+  /// In small letters: what is in the brackets, or a unit of base/lengthUnit.h, with "us" or
+  /// "survey" beside it. Empty: none.
   std::string unit;
 };
 

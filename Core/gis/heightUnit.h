@@ -3,6 +3,8 @@
 /// @file
 /// The units in which files have their heights, and what is none. Internal to gis/.
 
+#include "base/lengthUnit.h"
+
 #include <optional>
 #include <string>
 
@@ -17,9 +19,6 @@ constexpr double kDeepest = -1000.0; // m
 
 /// No coordinate of a map is so large, not even in Gauss-Krüger zones before which a number stands.
 constexpr double kFarthest = 1e9; // m
-
-constexpr double kFoot = 0.3048;                // m, international
-constexpr double kSurveyFoot = 1200.0 / 3937.0; // m, United States
 
 /// Metres per unit of height by the unit's name, which may have a number before it ("0.1 m") and
 /// what it is over behind it ("m a.s.l."); nothing for a name that is not known.

@@ -2,6 +2,7 @@
 
 #include "base/columnName.h"
 #include "base/errors.h"
+#include "base/lengthUnit.h"
 #include "base/tableText.h"
 #include "mesh/MeshBuilder.h"
 #include "mesh/meshFile.h"
@@ -34,9 +35,7 @@ constexpr std::array<std::string_view, 3> kAxes[] = { { "x", "y", "z" },
 
 bool isInMetres(const ColumnName& column)
 {
-  const std::string& unit = column.unit;
-  return unit.empty() || unit == "m" || unit == "metre" || unit == "meter" || unit == "metres" ||
-    unit == "meters";
+  return column.unit.empty() || lengthUnit(column.unit) == 1.0;
 }
 
 std::string listOf(const std::vector<std::string>& cells)

@@ -28,6 +28,7 @@ TEST(ColumnName, hasItsUnitInBracketsOrAsAWordOfItsOwn)
     { "elev_ftUS", "elev", "ft us" },
     { "elev_us_ft", "elev", "us ft" },
     { "elev_us_survey_feet", "elev", "us survey feet" },
+    { "elev_centimetre", "elev", "centimetre" },
     { "ft", "ft", "" },
     { "m", "m", "" },
     { "shaft", "shaft", "" },
