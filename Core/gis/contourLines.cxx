@@ -13,6 +13,7 @@
 #include <ogrsf_frmts.h>
 
 #include <cmath>
+#include <map>
 #include <memory>
 
 namespace rockfall::gis
@@ -118,18 +119,22 @@ HeightField heightFieldOf(OGRLayer& layer, const LayerHeights& heights, const st
     take(*column);
     return field;
   }
+  // Names without their units, each with its columns in order.
+  std::multimap<std::string, Columns::value_type> named;
+  for (const Columns::value_type& column : columns)
+  {
+    named.emplace(ColumnName(definition.GetFieldDefn(column.second)->GetNameRef()).name, column);
+  }
   for (const char* name : usualHeightNames)
   {
-    for (const Columns::value_type& column : columns)
+    const auto [first, last] = named.equal_range(name);
+    for (auto found = first; found != last; ++found)
     {
-      if (ColumnName(definition.GetFieldDefn(column.second)->GetNameRef()).name != name)
-      {
-        continue;
-      }
+      const Columns::value_type& column = found->second;
       if (field.column >= 0)
       {
         throw DataError(fileName + ": layer \"" + layer.GetName() +
-          "\" has two fields that may be " + "heights, \"" + field.name + "\" and \"" +
+          "\" has two fields that may be heights, \"" + field.name + "\" and \"" +
           definition.GetFieldDefn(column.second)->GetNameRef() + "\"; say which in ElevationField");
       }
       take(column);
