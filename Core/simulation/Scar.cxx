@@ -72,24 +72,20 @@ double Scar::sweep(const Vec3& from, const PlacedBlock& rock)
   return this->book(0.5 * (start + end.area) * s, way, end);
 }
 
-double Scar::sweep(const Poses& at, bool turns)
+double Scar::sweep(const Vec3& way, const Poses& at, bool turns)
 {
-  return turns ? this->sweepTurning(at) : this->sweepStraight(at);
-}
-
-double Scar::sweepTurning(const Poses& at)
-{
-  const double before = lowest_, areaBefore = area_;
-  const Vec3 start = at(0.0).position();
-  const PlacedBlock& last = at(1.0);
-  const Vec3 way = last.position() - start;
-  const double s = way.norm();
-  if (!(s > kNoWay))
+  if (!(way.norm() > kNoWay))
   {
     return 0.0;
   }
-  const Vec3 direction = way / s;
-  const Submerged end = submerged(last, surface_, direction);
+  return turns ? this->sweepTurning(way, at(1.0)) : this->sweepStraight(way, at);
+}
+
+double Scar::sweepTurning(const Vec3& way, const PlacedBlock& rock)
+{
+  const double before = lowest_, areaBefore = area_;
+  const double s = way.norm();
+  const Submerged end = submerged(rock, surface_, way / s);
   if (before >= 0.0 && end.lowest >= 0.0)
   {
     return this->book(0.0, way, end);
@@ -102,8 +98,10 @@ double Scar::sweepTurning(const Poses& at)
   return this->book(s * volume, way, end);
 }
 
-double Scar::sweepStraight(const Poses& at)
+double Scar::sweepStraight(const Vec3& way, const Poses& at)
 {
+  const double s = way.norm();
+  const Vec3 direction = way / s;
   // Heights of the corners over the surface at both ends tell where they pass it.
   const auto heightsOf = [&](const PlacedBlock& rock)
   {
@@ -114,18 +112,7 @@ double Scar::sweepStraight(const Poses& at)
     }
     return heights;
   };
-  const PlacedBlock& first = at(0.0);
-  const Vec3 start = first.position();
-  const std::vector<double> before = heightsOf(first);
-  const PlacedBlock& last = at(1.0);
-  const Vec3 way = last.position() - start;
-  const double s = way.norm();
-  if (!(s > kNoWay))
-  {
-    return 0.0;
-  }
-  const Vec3 direction = way / s;
-  const std::vector<double> after = heightsOf(last);
+  const std::vector<double> before = heightsOf(at(0.0)), after = heightsOf(at(1.0));
   std::vector<double> breaks = { 0.0, 1.0 };
   for (std::size_t v = 0; v < before.size(); ++v)
   {

@@ -45,19 +45,19 @@ public:
   void touch(const Contact& contact);
   /// Follows a step of contact to `rock`: returns the volume swept, m³, by the areas at its ends.
   double sweep(const Vec3& from, const PlacedBlock& rock);
-  /// Follows a flight. `at`: the pose at a fraction of it, 0 … 1. Without rotation exact: between
-  /// the places where a corner passes the surface the area is quadratic. With it by the areas at
-  /// its ends, and quadratic from where the first corner dips in or to where the last one is out:
-  /// such a flight must turn the rock by little (kTurnInSoil).
+  /// Follows a flight along `way` (m). `at`: the pose at a fraction of it, 0 … 1. Without rotation
+  /// exact: between the places where a corner passes the surface the area is quadratic. With it by
+  /// the areas at its ends, and quadratic from where the first corner dips in or to where the last
+  /// one is out: such a flight must turn the rock by little (kTurnInSoil).
   using Poses = std::function<const PlacedBlock&(double)>;
-  double sweep(const Poses& at, bool turns);
+  double sweep(const Vec3& way, const Poses& at, bool turns);
   void leave() { turned_ = true; }
   /// The rock is above the surface as a whole, as far as its plane tells.
   bool cleared() const { return lowest_ >= 0.0; }
 
 private:
-  double sweepStraight(const Poses& at);
-  double sweepTurning(const Poses& at);
+  double sweepStraight(const Vec3& way, const Poses& at);
+  double sweepTurning(const Vec3& way, const PlacedBlock& rock); ///< As it is at the end.
   /// Books the volume (m³) of a way (m), and what of the rock is inside at its end.
   double book(double volume, const Vec3& way, const Submerged& end);
 

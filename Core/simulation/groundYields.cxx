@@ -101,9 +101,8 @@ bool RockSimulator::riseWithRock()
   {
     return false;
   }
-  const double clear = kScarClearance * block_.radius();
   const double away = clearance(placed_, state_, patch_, parameters_.gravity, 0.0).distance;
-  const double by = std::min(scar_.depth(), away - clear);
+  const double by = std::min(scar_.depth(), away - kScarClearance * block_.radius());
   if (by < kHigherScar * scar_.depth())
   {
     return false;
@@ -233,7 +232,7 @@ void RockSimulator::flyThroughSoil(double duration)
         }
         return placed;
       };
-      const double volume = scar_.sweep(at, spin > 0.0);
+      const double volume = scar_.sweep(end.position - start.position, at, spin > 0.0);
       if (piece > kShortestPiece && ground.speedLeft(volume, block_.mass()) < kLeastLeft)
       {
         scar_ = before;

@@ -153,7 +153,8 @@ TEST(YieldingGround, PiecesOfATurnSweepTheSame)
         placed.place(block, poseAt((k + fraction) / pieces));
         return placed;
       };
-      sum += scar.sweep(at, true);
+      const Vec3 way = poseAt((k + 1.0) / pieces).position - poseAt(double(k) / pieces).position;
+      sum += scar.sweep(way, at, true);
     }
     return sum;
   };
