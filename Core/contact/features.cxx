@@ -2,10 +2,23 @@
 
 #include "law/settings.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace rockfall
 {
+
+namespace
+{
+
+/// Deeper, a feature belongs to the far side of what has come in elsewhere, m.
+double deepestEntrance(const Block& block)
+{
+  return std::min(
+    kDeepestEntrance * block.radius(), kDeepestEntranceOfThin * block.thickness());
+}
+
+} // namespace
 
 bool projectsInside(const SurfacePatch& patch, int triangle, const Vec3& point, double reach,
   double tolerance, int from)
@@ -156,7 +169,7 @@ std::optional<Contact> vertexFace(const PlacedBlock& rock, int vertex, const Sur
   const SurfacePatch::Triangle& t = patch.triangles[triangle];
   const Vec3& p = rock.vertices()[vertex];
   const double distance = t.normal.dot(p) - t.offset;
-  const double depth = kDeepestEntrance * rock.block().radius();
+  const double depth = deepestEntrance(rock.block());
   if (distance > reach || distance < -depth ||
     !projectsInside(patch, triangle, p, reach, 1e-9 * rock.block().radius(), from))
   {
@@ -206,7 +219,7 @@ std::optional<Contact> faceVertex(
     return std::nullopt;
   }
   const double distance = rock.faceDistance(face, q.position);
-  const double depth = kDeepestEntrance * rock.block().radius();
+  const double depth = deepestEntrance(rock.block());
   if (distance > reach || distance < -depth ||
     !insideRockFace(rock, face, q.position, 1e-9 * rock.block().radius()))
   {
@@ -279,7 +292,7 @@ std::optional<Contact> edgeEdge(
   }
   const Vec3 onRock = p + s * u;
   const double distance = n.dot(onRock - (q + t * w));
-  const double depth = kDeepestEntrance * rock.block().radius();
+  const double depth = deepestEntrance(rock.block());
   if (distance > reach || distance < -depth)
   {
     return std::nullopt;

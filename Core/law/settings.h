@@ -144,6 +144,9 @@ inline constexpr double kFlatBend = 1e-7;
 inline constexpr double kConeSlack = 0.02;
 /// Deepest overlap at which a pair still enters, share of r.
 inline constexpr double kDeepestEntrance = 0.1;
+/// The same as a share of the thickness, which rules for slabs and splinters. Larger: a ridge whose
+/// end touches one side of a slab is taken for one that has come in on the other side.
+inline constexpr double kDeepestEntranceOfThin = 0.5;
 /// Displacement, share of r, until the pairs that can touch are gathered again. Larger: rarer
 /// searches over more pairs; no result depends on it.
 inline constexpr double kCandidateSlack = 0.05;

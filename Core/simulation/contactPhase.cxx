@@ -463,13 +463,16 @@ void RockSimulator::pressOutDeep(double h, bool held)
 
 void RockSimulator::letDeepBe(double loose)
 {
+  const bool deep = anyDeep(contacts_, loose);
+  double held = 0.0;
   for (Contact& c : contacts_)
   {
-    const double most = this->settledSpeed() * std::sqrt(block_.mass() / c.stiffness);
-    const double held = letBe(c, most, loose);
-    springEnergy_ = std::max(0.0, springEnergy_ - held);
-    normalEnergy_ = std::max(0.0, normalEnergy_ - held);
+    const double still = this->settledSpeed() * std::sqrt(block_.mass());
+    const double normal = letBe(c, still / std::sqrt(c.stiffness), loose);
+    normalEnergy_ = std::max(0.0, normalEnergy_ - normal);
+    held += normal + (deep ? letSlipBe(c, still / std::sqrt(c.shearStiffness)) : 0.0);
   }
+  springEnergy_ = std::max(0.0, springEnergy_ - held);
 }
 
 } // namespace rockfall

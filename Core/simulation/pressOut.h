@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace rockfall
 {
@@ -59,6 +60,27 @@ inline double letBe(Contact& c, double most, double loose)
   }
   c.offset = c.distance + most;
   return 0.5 * c.stiffness * (gap * gap - most * most);
+}
+
+/// Whether one overlaps deeper than `loose` (m).
+inline bool anyDeep(const std::vector<Contact>& contacts, double loose)
+{
+  return std::any_of(contacts.begin(), contacts.end(),
+    [&](const Contact& c) { return c.closed() && c.offset < -loose; });
+}
+
+/// The same for the shear spring of any contact beside a deep overlap. A rock that is jammed
+/// between two cannot follow what presses one of them out, and would wind up the other's spring by
+/// a little in every step.
+inline double letSlipBe(Contact& c, double most)
+{
+  const double slip = c.slip.norm();
+  if (!c.closed() || !(slip > most))
+  {
+    return 0.0;
+  }
+  c.slip *= most / slip;
+  return 0.5 * c.shearStiffness * (slip * slip - most * most);
 }
 
 } // namespace rockfall

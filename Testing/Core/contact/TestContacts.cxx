@@ -172,3 +172,22 @@ TEST(Contacts, ClearanceIsALowerBound)
     }
   }
 }
+
+// A slab of 0.2 m stands aslant on a peak that is a millimetre in its lower side, near its end. The
+// ridge that falls away from the peak is 0.36 m "under" the far edge of that end, with a normal
+// that is in both cones: it never came in there, and pressing it out would wind the slab up.
+TEST(Contacts, ARidgeThatTouchesOneSideOfASlabHasNotComeInOnTheOther)
+{
+  const Terrain terrain = makeSlope(
+    21, 1.0, [](double x, double y) { return x == 10.0 && y == 10.0 ? 4.0 : 0.0; });
+  SurfacePatch patch;
+  gatherPatch(Surface::asSurveyed(terrain), 0.0, terrain.width(), 0.0, terrain.height(), patch);
+  const Quat tilt(Eigen::AngleAxisd(std::asin(0.8), Vec3::UnitY()));
+  const Vec3 peak(10.0, 10.0, 4.0), in(3.7, 0.0, -0.099);
+  Placed p(makeBox(Vec3(8.0, 8.0, 0.2)), peak - tilt * in, tilt);
+  std::vector<Contact> contacts;
+  findEntrancesBruteForce(p.rock, patch, 0.01, contacts);
+  ASSERT_EQ(contacts.size(), 1u);
+  EXPECT_EQ(contacts[0].kind, ContactKind::FaceVertex);
+  EXPECT_NEAR(contacts[0].distance, -0.001, 1e-9);
+}
