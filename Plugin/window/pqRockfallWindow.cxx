@@ -30,6 +30,7 @@
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkNew.h"
+#include "vtkPVDataInformation.h"
 #include "vtkPVXMLElement.h"
 #include "vtkSMParaViewPipelineControllerWithRendering.h"
 #include "vtkSMProperty.h"
@@ -56,6 +57,7 @@
 #include <dlfcn.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -105,6 +107,31 @@ bool isFirstSlope(vtkSMProxy* representation)
   return true;
 }
 
+/// Rock Blocks on a slope begin where their block is released, as long as they have the centre of
+/// the test slope; a line that they may be told to draw begins there, too.
+void standWhereReleased(vtkSMSourceProxy* proxy)
+{
+  vtkSMPropertyHelper draw(proxy, "Draw");
+  if (draw.GetAsInt() != 0 || !proxy->GetProperty("Center")->IsValueDefault())
+  {
+    return;
+  }
+  constexpr int line = 2;
+  std::array<double, 6> b{};
+  proxy->GetDataInformation(0)->GetBounds(b.data());
+  if (b[0] > b[1])
+  {
+    return; // the message says why
+  }
+  const std::array<double, 3> centre = { 0.5 * (b[0] + b[1]), 0.5 * (b[2] + b[3]),
+    0.5 * (b[4] + b[5]) };
+  draw.Set(line);
+  proxy->UpdateVTKObjects();
+  proxy->UpdatePipeline();
+  draw.Set(0);
+  vtkSMPropertyHelper(proxy, "Center").Set(centre.data(), unsigned(centre.size()));
+}
+
 /// Draws the line that a filter takes where nothing is drawn, so that the mouse finds one to move.
 void drawPlaced(vtkSMSourceProxy* proxy)
 {
@@ -114,10 +141,17 @@ void drawPlaced(vtkSMSourceProxy* proxy)
     return;
   }
   std::vector<double> placed = { 5.0, 45.0, 58.0, 5.0, 55.0, 58.0 }; // on the test slope
-  if (proxy->GetXMLName() != std::string("RockBlocks"))
+  vtkSMPropertyHelper terrain(proxy, "Terrain", true);
+  const bool onSlope = terrain.GetNumberOfElements() > 0 && terrain.GetAsProxy();
+  const bool blocks = proxy->GetXMLName() == std::string("RockBlocks");
+  if (onSlope || !blocks)
   {
     proxy->UpdateVTKObjects();
     proxy->UpdatePipeline();
+    if (blocks)
+    {
+      standWhereReleased(proxy);
+    }
     proxy->UpdatePropertyInformation();
     placed = vtkSMPropertyHelper(proxy, "PlacedLine").GetDoubleArray();
   }
@@ -125,19 +159,25 @@ void drawPlaced(vtkSMSourceProxy* proxy)
     std::any_of(placed.begin(), placed.end(), [](double x) { return x != 0.0; }))
   {
     points.Set(placed.data(), unsigned(placed.size()));
-    proxy->UpdateVTKObjects();
   }
+  proxy->UpdateVTKObjects();
 }
 
-/// Rocks of a file stand on the slope that is there, as those of Rock Release do.
+/// Rocks stand on the slope that is there, as those of Rock Release do, unless they have one.
 void standOnSlope(pqPipelineSource* rocks)
 {
+  vtkSMPropertyHelper terrain(rocks->getProxy(), "Terrain");
+  if (pqApplicationCore::instance()->isLoadingState() ||
+    (terrain.GetNumberOfElements() > 0 && terrain.GetAsProxy()))
+  {
+    return;
+  }
   auto* model = pqApplicationCore::instance()->getServerManagerModel();
   for (pqPipelineSource* slope : model->findItems<pqPipelineSource*>(rocks->getServer()))
   {
     if (isOf(slope->getProxy(), { "vtkDEMToCFESource", "vtkDrawnStructure" }))
     {
-      vtkSMPropertyHelper(rocks->getProxy(), "Terrain").Set(slope->getProxy(), 0);
+      terrain.Set(slope->getProxy(), 0);
     }
   }
   rocks->getProxy()->UpdateVTKObjects();
@@ -208,6 +248,48 @@ void fitMarkers()
   }
 }
 
+/// Whether ParaView is in the middle of an update: timers go on in it, and what they ask for is
+/// lost.
+bool isUpdating()
+{
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  for (pqServer* server : model->findItems<pqServer*>())
+  {
+    if (server->session() && server->session()->GetPendingProgress())
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Palettes, legends and charts go with the data that are shown.
+void followShown()
+{
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  for (pqView* view : model->findItems<pqView*>())
+  {
+    for (pqRepresentation* shown : view->getRepresentations())
+    {
+      if (shown->isVisible())
+      {
+        rockfall::window::follow(shown->getProxy(), view->getViewProxy());
+      }
+    }
+    view->render();
+  }
+}
+
+/// All views, with what is new in their pipelines, before this returns.
+void renderNow()
+{
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  for (pqView* view : model->findItems<pqView*>())
+  {
+    view->forceRender();
+  }
+}
+
 /// When the last rock of a run came to its end, s; 0 if it is not known here.
 double lastEnd(vtkSMSourceProxy* run)
 {
@@ -215,6 +297,27 @@ double lastEnd(vtkSMSourceProxy* run)
   auto* table = algorithm ? vtkTable::SafeDownCast(algorithm->GetOutputDataObject(3)) : nullptr;
   vtkDataArray* ends = table ? table->GetRowData()->GetArray("EndTime") : nullptr;
   return ends && ends->GetNumberOfTuples() > 0 ? ends->GetRange(0)[1] : 0.0;
+}
+
+/// The same of all runs.
+double lastEnd(pqServer* server)
+{
+  double end = 0.0;
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  for (pqPipelineSource* run : model->findItems<pqPipelineSource*>(server))
+  {
+    if (isOf(run->getProxy(), { "vtkRockfallSimulation" }))
+    {
+      end = std::max(end, lastEnd(run->getSourceProxy()));
+    }
+  }
+  return end;
+}
+
+vtkSMProxy* sceneOf(pqServer* server)
+{
+  vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
+  return controller->GetAnimationScene(server->session());
 }
 
 } // namespace
@@ -334,11 +437,13 @@ void pqRockfallWindow::runPython(const QString& statement)
 void pqRockfallWindow::onSource(pqPipelineSource* source)
 {
   vtkSMProxy* proxy = source->getProxy();
-  if (proxy->GetXMLName() == std::string("RockSourceReader"))
+  const std::string name = proxy->GetXMLName();
+  if (name == "RockSourceReader" || name == "RockBlocks")
   {
     standOnSlope(source);
   }
-  else if (isOf(proxy, { "vtkRockBlockSource", "vtkTrajectoryCollector", "vtkDrawnStructure" }))
+  if (name != "RockSourceReader" &&
+    isOf(proxy, { "vtkRockBlockSource", "vtkTrajectoryCollector", "vtkDrawnStructure" }))
   {
     drawPlaced(source->getSourceProxy());
   }
@@ -475,17 +580,8 @@ void pqRockfallWindow::onData(pqPipelineSource* source)
 //-----------------------------------------------------------------------------
 void pqRockfallWindow::endWithLastRock(pqServer* server)
 {
-  double end = 0.0;
-  auto* model = pqApplicationCore::instance()->getServerManagerModel();
-  for (pqPipelineSource* run : model->findItems<pqPipelineSource*>(server))
-  {
-    if (isOf(run->getProxy(), { "vtkRockfallSimulation" }))
-    {
-      end = std::max(end, lastEnd(run->getSourceProxy()));
-    }
-  }
-  vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
-  vtkSMProxy* scene = controller->GetAnimationScene(server->session());
+  const double end = lastEnd(server);
+  vtkSMProxy* scene = sceneOf(server);
   if (!scene || !(end > 0.0))
   {
     return;
@@ -497,7 +593,7 @@ void pqRockfallWindow::endWithLastRock(pqServer* server)
     return;
   }
   vtkSMPropertyHelper now(scene, "AnimationTime");
-  const bool atEnd = this->LastEnd > 0.0 && now.GetAsDouble() == this->LastEnd;
+  const bool atEnd = this->LastEnd > 0.0 && (this->AtEnd || now.GetAsDouble() == this->LastEnd);
   this->LastEnd = end;
   vtkSMPropertyHelper(scene, "LockEndTime").Set(1);
   vtkSMPropertyHelper(scene, "EndTime").Set(end);
@@ -509,8 +605,38 @@ void pqRockfallWindow::endWithLastRock(pqServer* server)
 }
 
 //-----------------------------------------------------------------------------
+void pqRockfallWindow::lookAtTime()
+{
+  pqServer* server = pqActiveObjects::instance().activeServer();
+  vtkSMProxy* scene = server ? sceneOf(server) : nullptr;
+  const double end = server ? lastEnd(server) : 0.0;
+  // While there are no rocks ParaView sets times of its own, which tell of nobody's wish.
+  if (!scene || !(end > 0.0) || !this->Running.isEmpty())
+  {
+    this->Waiting = true;
+    return;
+  }
+  if (!this->Waiting)
+  {
+    this->AtEnd = vtkSMPropertyHelper(scene, "AnimationTime").GetAsDouble() == this->LastEnd;
+  }
+  else if (this->AtEnd && end == this->LastEnd)
+  {
+    scene->InvokeCommand("GoToLast"); // views may be elsewhere than its time says
+    renderNow();
+  }
+  this->Waiting = false;
+}
+
+//-----------------------------------------------------------------------------
 void pqRockfallWindow::tellRuns()
 {
+  if (isUpdating())
+  {
+    return;
+  }
+  this->lookAtTime();
+  bool settled = false;
   QMainWindow* window = mainWindow();
   auto* model = pqApplicationCore::instance()->getServerManagerModel();
   for (pqPipelineSource* source : model->findItems<pqPipelineSource*>())
@@ -538,7 +664,12 @@ void pqRockfallWindow::tellRuns()
       // The last look, also where ParaView does not ask, as while tests are played.
       proxy->InvokeCommand("Watch");
       proxy->MarkDirty(nullptr);
-      pqApplicationCore::instance()->render();
+      settled = true;
     }
+  }
+  if (settled)
+  {
+    renderNow();
+    followShown();
   }
 }

@@ -43,6 +43,7 @@ private Q_SLOTS:
 private:
   void makeMenu(QMainWindow* window);
   void endWithLastRock(pqServer* server);
+  void lookAtTime();
   void runPython(const QString& statement);
   void pickTrajectory();
   void tell(const QString& message);
@@ -51,6 +52,8 @@ private:
   QTimer Clock;
   int Pictures = 0;      // that were taken
   double LastEnd = -1.0; // that animations were given, s
+  bool AtEnd = false;    // whether somebody looks at that time, and so at whole paths
+  bool Waiting = true;   // for rocks that came to their end
   bool Picking = false;  // a trajectory, with the next click
   QSet<QString> Running; // names of the runs that were told of last
 };
