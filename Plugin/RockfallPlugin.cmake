@@ -86,3 +86,6 @@ if(ROCKFALL_HAS_WINDOW)
     message(STATUS "No qhelpgenerator (Debian: qttools5-dev-tools), so no pages behind ?")
   endif()
 endif()
+
+# All that ParaView loads, with or without a window.
+add_custom_target(RockfallPlugins DEPENDS ${rockfall_plugins})

@@ -1,6 +1,7 @@
 # shellcheck shell=bash
-# Sourced by Examples/run.sh and Testing/run.sh: whatever is still missing of packages, configuration
-# and build. Quick when nothing is. Defines rockfall_root, rockfall_build and the functions below.
+# Sourced by Examples/run.sh, Examples/window.sh and Testing/run.sh: whatever is still missing of
+# packages, configuration and build. Quick when nothing is. Defines rockfall_root, rockfall_build and
+# the functions below.
 
 set -euo pipefail
 
@@ -111,7 +112,7 @@ configure_and_build() {
 # fails.
 build() {
   local target=all
-  [ "$1" = all ] || target=RockfallDDA
+  [ "$1" = all ] || target=RockfallPlugins
   NINJA_STATUS='[%p] ' cmake --build "$rockfall_build" --target $target --parallel "$(nproc)" \
     2>&1 </dev/null |
     tee -- "$rockfall_log" |
@@ -121,7 +122,8 @@ build() {
     }' || { tail -n 40 -- "$rockfall_log" >&2; return 1; }
 }
 
-# setup plugin|all: packages and build, and where ParaView finds the plugin.
+# setup plugin|all: packages and build, and where ParaView finds the plugin; rockfall_window is the
+# folder of what only a window loads.
 setup() {
   local packages=("${rockfall_packages[@]}")
   [ "$1" = plugin ] || packages+=("${rockfall_test_packages[@]}")
@@ -131,4 +133,5 @@ setup() {
   plugin=$(find "$rockfall_build/lib" -name RockfallDDA.so -print -quit)
   [ -n "$plugin" ] || fail "the build made no RockfallDDA.so in $rockfall_build/lib"
   export PV_PLUGIN_PATH="${plugin%/*}${PV_PLUGIN_PATH:+:$PV_PLUGIN_PATH}"
+  rockfall_window=${plugin%/*/*}/RockfallWindow
 }
