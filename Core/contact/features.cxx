@@ -14,8 +14,7 @@ namespace
 /// Deeper, a feature belongs to the far side of what has come in elsewhere, m.
 double deepestEntrance(const Block& block)
 {
-  return std::min(
-    kDeepestEntrance * block.radius(), kDeepestEntranceOfThin * block.thickness());
+  return std::min(kDeepestEntrance * block.radius(), kDeepestEntranceOfThin * block.thickness());
 }
 
 } // namespace

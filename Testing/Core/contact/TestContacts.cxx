@@ -178,8 +178,8 @@ TEST(Contacts, ClearanceIsALowerBound)
 // that is in both cones: it never came in there, and pressing it out would wind the slab up.
 TEST(Contacts, ARidgeThatTouchesOneSideOfASlabHasNotComeInOnTheOther)
 {
-  const Terrain terrain = makeSlope(
-    21, 1.0, [](double x, double y) { return x == 10.0 && y == 10.0 ? 4.0 : 0.0; });
+  const Terrain terrain =
+    makeSlope(21, 1.0, [](double x, double y) { return x == 10.0 && y == 10.0 ? 4.0 : 0.0; });
   SurfacePatch patch;
   gatherPatch(Surface::asSurveyed(terrain), 0.0, terrain.width(), 0.0, terrain.height(), patch);
   const Quat tilt(Eigen::AngleAxisd(std::asin(0.8), Vec3::UnitY()));
