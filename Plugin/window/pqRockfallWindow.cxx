@@ -290,13 +290,22 @@ void renderNow()
   }
 }
 
-/// When the last rock of a run came to its end, s; 0 if it is not known here.
+/// The time step by which the last rock of a run has come to its end, s; 0 if it is not known here.
+/// ParaView goes from step to step: with an end between two it would go past it, and begin anew.
 double lastEnd(vtkSMSourceProxy* run)
 {
   auto* algorithm = vtkAlgorithm::SafeDownCast(run->GetClientSideObject());
   auto* table = algorithm ? vtkTable::SafeDownCast(algorithm->GetOutputDataObject(3)) : nullptr;
   vtkDataArray* ends = table ? table->GetRowData()->GetArray("EndTime") : nullptr;
-  return ends && ends->GetNumberOfTuples() > 0 ? ends->GetRange(0)[1] : 0.0;
+  if (!ends || ends->GetNumberOfTuples() == 0)
+  {
+    return 0.0;
+  }
+  const double end = ends->GetRange(0)[1];
+  const std::vector<double> steps =
+    vtkSMPropertyHelper(run, "TimestepValues", true).GetDoubleArray();
+  const auto step = std::lower_bound(steps.begin(), steps.end(), end);
+  return step == steps.end() ? end : *step;
 }
 
 /// The same of all runs.
@@ -358,7 +367,16 @@ void pqRockfallWindow::begin()
   const QString pages = scriptFolder() + "/RockfallDDA.qch";
   if (QFileInfo::exists(pages))
   {
-    pqApplicationCore::instance()->registerDocumentation(pages);
+    pqApplicationCore* application = pqApplicationCore::instance();
+#if QT_VERSION >= QT_VERSION_CHECK(6, 0, 0)
+    // ParaView leaves Qt 6's help engine as it begins, read only, and its help window empty. The
+    // engine is known by name here; it is the first base of its class.
+    if (auto* engine = reinterpret_cast<QObject*>(application->helpEngine()))
+    {
+      engine->setProperty("readOnly", false);
+    }
+#endif
+    application->registerDocumentation(pages);
   }
 }
 
