@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "base/numberText.h"
+#include "failure.h"
 #include "simulation/releasePlaces.h"
 
 #include <algorithm>
@@ -160,6 +161,23 @@ std::array<double, 6> steepLine(const Terrain& terrain)
   }
   return best ? levelLine(terrain, best->position.head<2>(), best->gradient)
               : levelLine(terrain, middle, Eigen::Vector2d::Zero()); // too small to look at
+}
+
+std::optional<Vec3> placeByDefault(
+  const Terrain& terrain, const double* center, const std::string& what)
+{
+  const Vec3 local = Vec3(center[0], center[1], center[2]) - terrain.geometry().origin();
+  if (!std::equal(kDefaultCenter.begin(), kDefaultCenter.end(), center) ||
+    terrain.cfeAt(local.x(), local.y()) != 0)
+  {
+    return std::nullopt;
+  }
+  const std::array<double, 6> line = steepLine(terrain);
+  const Vec3 place(
+    0.5 * (line[0] + line[3]), 0.5 * (line[1] + line[4]), std::numeric_limits<double>::quiet_NaN());
+  showNote("Center was left as it is, which is not on this slope: " + what + " is released at " +
+    numberText(place.x()) + ", " + numberText(place.y()) + ", the highest of its steep places");
+  return place;
 }
 
 std::array<double, 6> middleLine(const Terrain& terrain)

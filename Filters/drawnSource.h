@@ -7,6 +7,8 @@
 #include "terrain/Terrain.h"
 
 #include <array>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace rockfall::filters
@@ -21,6 +23,14 @@ std::vector<SourceRow> drawnRows(SourceGeometry geometry,
 /// A level line across the highest of the steep places of a slope, some cells from its border, as
 /// x, y, z of its two ends, in the world, on the ground.
 std::array<double, 6> steepLine(const Terrain& terrain);
+
+/// Centre of what nobody has placed: over the test slope, m.
+inline constexpr std::array<double, 3> kDefaultCenter = { 5.0, 50.0, 58.0 };
+/// Where what still has that centre stands on a slope without ground there, m, z unknown: at the
+/// highest of the steep places, which a note says of `what`. Nothing for other centres and slopes.
+std::optional<Vec3> placeByDefault(
+  const Terrain& terrain, const double* center, const std::string& what);
+
 /// The same through the middle of the slope, square to its mean gradient.
 std::array<double, 6> middleLine(const Terrain& terrain);
 

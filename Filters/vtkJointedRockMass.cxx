@@ -4,6 +4,7 @@
 #include "attempt.h"
 #include "base/errors.h"
 #include "base/numberText.h"
+#include "drawnSource.h"
 #include "failure.h"
 #include "geometry/jointSets.h"
 #include "geometry/shell.h"
@@ -156,8 +157,16 @@ void vtkJointedRockMass::MakeBlocks(vtkPolyData* terrainInput, vtkPolyData* bloc
   // About its centroid, where the numbers are small.
   Polyhedron mass;
   Vec3 centre = vec3(this->Center);
+  bool onGround = this->PlaceOnGround;
   if (this->MassShape == BOX)
   {
+    if (const auto place =
+          terrain ? filters::placeByDefault(*terrain, this->Center, "the mass") : std::nullopt)
+    {
+      centre = *place;
+      centre.z() = this->Center[2];
+      onGround = true;
+    }
     filters::requireFinite(centre, "Center");
     filters::requireFinite(vec3(this->Orientation), "Orientation");
     mass =
@@ -175,7 +184,7 @@ void vtkJointedRockMass::MakeBlocks(vtkPolyData* terrainInput, vtkPolyData* bloc
     throw ParameterError(
       "MassShape is " + std::to_string(this->MassShape) + ", it must be 0 (box) or 1 (from file)");
   }
-  if (this->PlaceOnGround)
+  if (onGround)
   {
     const Vec3 local = centre - terrain->geometry().origin();
     const double height =

@@ -49,9 +49,6 @@ namespace
 
 constexpr int TERRAIN = 1;
 
-/// On the test slope.
-constexpr double kDefaultCenter[3] = { 5.0, 50.0, 58.0 };
-
 /// Places drawn for a rock until it is in no other one.
 constexpr std::uint32_t MOST_PLACES = 1000;
 
@@ -188,26 +185,20 @@ void vtkRockBlockSource::FindSources(vtkPolyData* terrainInput, Sources& sources
 void vtkRockBlockSource::FindDrawn(Sources& sources)
 {
   const rockfall::Terrain* terrain = sources.ground();
-  const auto isDefault = [this]
-  { return std::equal(this->Center, this->Center + 3, std::begin(kDefaultCenter)); };
   const auto onSlope = [&]
   {
     const rockfall::Vec3 local = vec3(this->Center) - terrain->geometry().origin();
     return terrain->cfeAt(local.x(), local.y()) != 0;
   };
-  if (this->Draw == NOTHING && terrain && isDefault() && !onSlope())
+  if (this->Draw == NOTHING && terrain)
   {
-    const std::array<double, 6> line = rockfall::filters::steepLine(*terrain);
-    rockfall::SourceRow& row = sources.rows.emplace_back();
-    row.row = 1;
-    row.position = { 0.5 * (line[0] + line[3]), 0.5 * (line[1] + line[4]),
-      std::numeric_limits<double>::quiet_NaN() };
-    rockfall::filters::showNote(
-      "Center was left as it is, which is not on this slope: the block is "
-      "released at " +
-      rockfall::numberText(row.position.x()) + ", " + rockfall::numberText(row.position.y()) +
-      ", the highest of its steep places");
-    return;
+    if (const auto place = rockfall::filters::placeByDefault(*terrain, this->Center, "the block"))
+    {
+      rockfall::SourceRow& row = sources.rows.emplace_back();
+      row.row = 1;
+      row.position = *place;
+      return;
+    }
   }
   if (this->Draw == NOTHING)
   {

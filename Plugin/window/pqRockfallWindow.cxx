@@ -456,7 +456,7 @@ void pqRockfallWindow::onSource(pqPipelineSource* source)
 {
   vtkSMProxy* proxy = source->getProxy();
   const std::string name = proxy->GetXMLName();
-  if (name == "RockSourceReader" || name == "RockBlocks")
+  if (name == "RockSourceReader" || name == "RockBlocks" || name == "JointedRockMass")
   {
     standOnSlope(source);
   }

@@ -1,12 +1,14 @@
 #include "simulationTest.h"
 
 #include "vtkDrawnStructure.h"
+#include "vtkJointedRockMass.h"
 #include "vtkPointData.h"
 
 #include "structureFieldData.h"
 #include "terrainFieldData.h"
 
 #include <cmath>
+#include <string>
 
 namespace
 {
@@ -90,6 +92,37 @@ TEST_F(TestDrawnOnSlope, NothingDrawnIsTheHighestSteepPlace)
   EXPECT_LE(line[0], 10.0);                           // high up
   EXPECT_NEAR(0.5 * (line[1] + line[4]), 50.0, 1e-9); // in the middle of an even slope
   EXPECT_NEAR(line[2], 57.7 * (1.0 - line[0] / 100.0), 1e-9);
+}
+
+// A slope of 45° in the coordinates of a country, steepest everywhere: what has the centre of the
+// test slope would lie 2800 km away.
+TEST_F(TestDrawnOnSlope, WhatNobodyPlacedStandsOnTheSlope)
+{
+  std::string grid = "ncols 41\nnrows 41\nxllcorner 2600000\nyllcorner 1200000\ncellsize 5\n";
+  for (int row = 0; row < 41; ++row)
+  {
+    for (int column = 0; column < 41; ++column)
+    {
+      grid += std::to_string(1000 - 5 * column) + " ";
+    }
+    grid += "\n";
+  }
+  this->Slope->SetFileName(this->WriteFile("country.asc", grid).c_str());
+  vtkNew<vtkJointedRockMass> mass;
+  mass->SetInputConnection(1, this->Slope->GetOutputPort());
+  mass->Update();
+  double terrain[6], block[6], cut[6];
+  this->Blocks()->GetBounds(block);
+  this->Slope->GetOutput()->GetBounds(terrain);
+  mass->GetOutput()->GetBounds(cut);
+  for (const double* b : { block, cut })
+  {
+    EXPECT_GT(b[0], terrain[0]);
+    EXPECT_LT(b[1], terrain[0] + 0.25 * (terrain[1] - terrain[0])); // high up
+    EXPECT_GT(b[2], terrain[2]);
+    EXPECT_LT(b[3], terrain[3]);
+    EXPECT_NEAR(b[4], 1000.0 - (b[0] - 2600002.5), 1e-6); // on its upper edge, which touches
+  }
 }
 
 TEST_F(TestDrawnOnSlope, ABlockOffTheSlopeIsTold)
