@@ -21,7 +21,7 @@ rockfall_test_packages=(libgtest-dev)
 case $(. /etc/os-release 2>/dev/null && echo "${VERSION_CODENAME:-}") in
   trixie)
     rockfall_packages+=(qt6-svg-plugins qt6-base-dev libpython3-dev)
-    rockfall_test_packages+=(qt6-documentation-tools) # the pages behind ?
+    rockfall_test_packages+=(qt6-documentation-tools qt6-tools-dev) # the pages behind ?
     ;;
   *)
     rockfall_packages+=(libqt5svg5 qtbase5-dev)

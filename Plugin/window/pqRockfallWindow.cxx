@@ -46,6 +46,9 @@
 #include <QDockWidget>
 #include <QFileInfo>
 #include <QGridLayout>
+#ifdef ROCKFALL_OPENS_HELP
+#include <QHelpEngine>
+#endif
 #include <QLabel>
 #include <QMainWindow>
 #include <QMenu>
@@ -368,13 +371,11 @@ void pqRockfallWindow::begin()
   if (QFileInfo::exists(pages))
   {
     pqApplicationCore* application = pqApplicationCore::instance();
-#if QT_VERSION >= QT_VERSION_CHECK(6, 0, 0)
-    // ParaView leaves Qt 6's help engine as it begins, read only, and its help window empty. The
-    // engine is known by name here; it is the first base of its class.
-    if (auto* engine = reinterpret_cast<QObject*>(application->helpEngine()))
-    {
-      engine->setProperty("readOnly", false);
-    }
+#ifdef ROCKFALL_OPENS_HELP
+    // Qt 6's engine begins read only, and ParaView leaves it so.
+    QHelpEngine* help = application->helpEngine();
+    help->setReadOnly(false);
+    help->setupData();
 #endif
     application->registerDocumentation(pages);
   }
