@@ -40,6 +40,11 @@ Submerged submerged(const PlacedBlock& rock, const Plane& plane, const Vec3& dir
   const ShapeLayout& layout = rock.block().shape().layout();
   for (int f = 0; f < layout.faces; ++f)
   {
+    const std::span<const int> loop = layout.loop(f);
+    if (std::ranges::none_of(loop, [&](int v) { return corners[std::size_t(v)].height < 0.0; }))
+    {
+      continue; // most of a rock is over the surface
+    }
     double seen = 0.0, firstX = 0.0, firstY = 0.0, lastX = 0.0, lastY = 0.0;
     bool any = false;
     const auto add = [&](double x, double y)
@@ -55,7 +60,6 @@ Submerged submerged(const PlacedBlock& rock, const Plane& plane, const Vec3& dir
       }
       lastX = x, lastY = y;
     };
-    const std::span<const int> loop = layout.loop(f);
     const SeenCorner* a = &corners[std::size_t(loop.back())];
     for (const int next : loop)
     {

@@ -151,11 +151,16 @@ double timeToNear(const BlockState& state, double radius, const HeightWindow& wi
   return std::min(horizon, timeToCover(room, rate, gravity));
 }
 
-double timeToTouch(const PlacedBlock& rock, const BlockState& state, const HeightWindow& window,
-  double gravity, double horizon)
+namespace
 {
-  FirstTouch touch(rock, state, window, gravity, horizon);
-  const auto over = [&](const Vec3& p) { touch.visit(p, p.z() - window.elevation(p.x(), p.y())); };
+
+/// visit(place, gap) of every place where the gap along the vertical can be least, but for those
+/// where it is no less than far(), which visits may make smaller.
+template <class Far, class Visit>
+void visitLowPlaces(
+  const PlacedBlock& rock, const HeightWindow& window, const Far& far, const Visit& visit)
+{
+  const auto over = [&](const Vec3& p) { visit(p, p.z() - window.elevation(p.x(), p.y())); };
   // Height over the plane that no node is above: a gap is at least that.
   const auto room = [&](const Vec3& p)
   { return p.z() - window.tilt().dot(p.head<2>()) - window.highest(); };
@@ -171,14 +176,14 @@ double timeToTouch(const PlacedBlock& rock, const BlockState& state, const Heigh
       lowest = i;
     }
   }
-  if (least >= touch.far())
+  if (least >= far())
   {
-    return touch.time();
+    return;
   }
   over(vertices[lowest]); // most likely the first to touch: the rest is soon too far
   for (const Vec3& p : vertices)
   {
-    if (room(p) < touch.far())
+    if (room(p) < far())
     {
       over(p);
     }
@@ -195,12 +200,12 @@ double timeToTouch(const PlacedBlock& rock, const BlockState& state, const Heigh
     for (int column = column0; column <= column1; ++column)
     {
       const Vec3 node(window.x(column), window.y(row), window.z(row, column));
-      if (least + window.highest() + window.tilt().dot(node.head<2>()) - node.z() < touch.far())
+      if (least + window.highest() + window.tilt().dot(node.head<2>()) - node.z() < far())
       {
         const double gap = entersAt(rock, node);
-        if (gap < touch.far())
+        if (gap < far())
         {
-          touch.visit(Vec3(node.x(), node.y(), node.z() + gap), gap);
+          visit(Vec3(node.x(), node.y(), node.z() + gap), gap);
         }
       }
     }
@@ -212,7 +217,7 @@ double timeToTouch(const PlacedBlock& rock, const BlockState& state, const Heigh
   {
     const Vec3& p = vertices[e.vertices[0]];
     const Vec3& q = vertices[e.vertices[1]];
-    if (std::min(room(p), room(q)) >= touch.far() ||
+    if (std::min(room(p), room(q)) >= far() ||
       (up.dot(shape.normals()[e.faces[0]]) > 0.0 && up.dot(shape.normals()[e.faces[1]]) > 0.0))
     {
       continue;
@@ -236,14 +241,35 @@ double timeToTouch(const PlacedBlock& rock, const BlockState& state, const Heigh
       for (int k = k0; k <= k1; ++k)
       {
         const Vec3 x = p + std::clamp((k - from[family]) * scale, 0.0, 1.0) * along;
-        if (room(x) < touch.far())
+        if (room(x) < far())
         {
           over(x);
         }
       }
     }
   }
+}
+
+} // namespace
+
+double timeToTouch(const PlacedBlock& rock, const BlockState& state, const HeightWindow& window,
+  double gravity, double horizon)
+{
+  FirstTouch touch(rock, state, window, gravity, horizon);
+  visitLowPlaces(
+    rock, window, [&] { return touch.far(); },
+    [&](const Vec3& place, double gap) { touch.visit(place, gap); });
   return touch.time();
+}
+
+double heightOver(const PlacedBlock& rock, const HeightWindow& window, double least)
+{
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  double height = infinity;
+  visitLowPlaces(
+    rock, window, [&] { return height > least ? height : -infinity; },
+    [&](const Vec3&, double gap) { height = gap < height ? gap : height; }); // NaN is not
+  return height;
 }
 
 } // namespace rockfall

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// Lower bounds of the time to the first touch in free flight.
+/// How far a rock is from touching: lower bounds of the time in free flight, height.
 
 #include "contact/candidates.h"
 #include "terrain/Obstacles.h"
@@ -23,7 +23,10 @@ double timeToClose(const PlacedBlock& rock, const BlockState& state, const Surfa
 /// where the two overlap.
 double timeToTouch(const PlacedBlock& rock, const BlockState& state, const HeightWindow& window,
   double gravity, double horizon);
-/// The same for the bounding sphere over the plane that no node of the window is above.
+/// Height of the rock over the window's ground, along the vertical, m; < 0: it overlaps it. What is
+/// not more than `least` is told as something that is not.
+double heightOver(const PlacedBlock& rock, const HeightWindow& window, double least);
+/// Time as above for the bounding sphere over the plane that no node of the window is above.
 double timeToNear(const BlockState& state, double radius, const HeightWindow& window,
   double gravity, double horizon);
 

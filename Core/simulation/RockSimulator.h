@@ -212,7 +212,7 @@ private:
   {
     return { cfe, place, number_, impactsOver_ };
   }
-  double dampingRatioFor(const GroundTouch& touch); ///< ζ for the restitution there.
+  double dampingRatioFor(int ground, double restitution); ///< ζ of a class of ground, now.
   double impactStep() const;
   double travelLimit() const;
   /// Part of a step of `h` that contacts which are closed or close in it allow, s.

@@ -208,11 +208,10 @@ void RockSimulator::findContacts(const CandidatePairs& candidates, double reach,
   updateContacts(placed_, patch_, candidates, reach, contacts_, state_.spin.norm() * h);
 }
 
-double RockSimulator::dampingRatioFor(const GroundTouch& touch)
+double RockSimulator::dampingRatioFor(int ground, double restitution)
 {
   if (surface_.deviationPer() != DeviationPer::Iteration)
   {
-    const double restitution = surface_.restitutionAt(touch);
     if (restitution != dampedFor_)
     {
       dampedFor_ = restitution;
@@ -221,12 +220,12 @@ double RockSimulator::dampingRatioFor(const GroundTouch& touch)
     return damped_;
   }
   // Solved for when a rock meets the class for the first time.
-  const auto number = std::size_t(surface_.restitutionClass(touch.cfe));
+  const auto number = std::size_t(ground);
   dampingRatios_.resize(std::max(dampingRatios_.size(), number + 1), -1.0);
   double& ratio = dampingRatios_[number];
   if (ratio < 0.0)
   {
-    ratio = dampingRatio(surface_.restitutionAt(touch));
+    ratio = dampingRatio(restitution);
   }
   return ratio;
 }
@@ -260,12 +259,9 @@ void RockSimulator::armContacts(double h)
 void RockSimulator::armContact(Contact& c)
 {
   const GroundTouch touch = this->touchAt(c.cfe, c.point);
-  c.friction = surface_.frictionAt(touch);
+  const bool slips = yields_ && this->yieldingAt(c).slips();
+  c.friction = slips ? this->yieldingAt(c).frictionAfter(slip_) : surface_.frictionAt(touch);
   c.cohesion = surface_.cohesionAt(c.cfe);
-  if (yields_ && this->yieldingAt(c).slips())
-  {
-    c.friction = this->yieldingAt(c).frictionAfter(slip_);
-  }
   if (c.closed())
   {
     return;
@@ -283,8 +279,9 @@ void RockSimulator::armContact(Contact& c)
   const bool down =
     approach > restingSpeed_ && comesDown(approach, speed, parameters_.gravity, block_.radius());
   const int ground = surface_.restitutionClass(c.cfe);
-  const double damped = contactDamping(surface_.terrain().restitutionMaterial(ground),
-    surface_.restitutionAt(touch), this->dampingRatioFor(touch), approach, down);
+  const double restitution = surface_.restitutionAt(touch);
+  const double damped = contactDamping(surface_.terrain().restitutionMaterial(ground), restitution,
+    this->dampingRatioFor(ground, restitution), approach, down);
   const double mobility = block_.mobility(n, y);
   c.frequency2 = c.stiffness * mobility;
   c.stopped = 1.0 / mobility;

@@ -17,6 +17,9 @@ namespace rockfall
 namespace
 {
 
+/// Share of r by which rounding does not make a distance larger.
+constexpr double kSureClearance = 1e-9;
+
 /// Between two attitudes that differ by little, at a fraction of the turn.
 Quat turnedBetween(const Quat& from, const Quat& to, double fraction)
 {
@@ -101,8 +104,18 @@ bool RockSimulator::riseWithRock()
   {
     return false;
   }
+  const double close = kScarClearance * block_.radius();
+  const double least = kHigherScar * scar_.depth() + close; // over Λ
+  // One corner that is too near says so at less cost.
+  const double enough = least - kSureClearance * block_.radius() - scar_.depth();
+  const Vec3 lower = placed_.lower(), upper = placed_.upper();
+  if (!solid_ && window_.covers(lower.x(), upper.x(), lower.y(), upper.y()) &&
+    heightOver(placed_, window_, enough) < enough)
+  {
+    return false;
+  }
   const double away = clearance(placed_, state_, patch_, parameters_.gravity, 0.0).distance;
-  const double by = std::min(scar_.depth(), away - kScarClearance * block_.radius());
+  const double by = std::min(scar_.depth(), away - close);
   if (by < kHigherScar * scar_.depth())
   {
     return false;

@@ -269,44 +269,69 @@ bool Terrain::hasCfe(std::int64_t id) const
   return true;
 }
 
-Cfe Terrain::cfe(std::int64_t id) const
+namespace
 {
-  Cfe result;
-  const auto nodes = this->cfeNodes(id);
-  for (int k = 0; k < 3; ++k)
+
+/// A CFE by its cell; row −1: none.
+struct CellHalf
+{
+  int row = -1, column = 0;
+  bool lower = false; ///< Triangle of the cell.
+};
+
+CellHalf cellHalfAt(const GridGeometry& geometry, double x, double y)
+{
+  const double width = (geometry.columns - 1) * geometry.cellSize;
+  const double height = (geometry.rows - 1) * geometry.cellSize;
+  if (!(x >= 0.0 && y >= 0.0 && x <= width && y <= height))
   {
-    result.nodes[k] =
-      this->node(int(nodes[k] / geometry_.columns), int(nodes[k] % geometry_.columns));
+    return {};
   }
+  const double s = x / geometry.cellSize;
+  const double t = (height - y) / geometry.cellSize; // grows with the row
+  const int column = std::clamp(int(s), 0, geometry.columns - 2);
+  const int row = std::clamp(int(t), 0, geometry.rows - 2);
+  // The diagonal runs from upper left to lower right: below it the row part is the larger one.
+  return { row, column, t - row > s - column };
+}
+
+Cfe cfeOf(const Terrain& terrain, const CellHalf& half)
+{
+  const auto [row, column, lower] = half;
+  Cfe result;
+  result.nodes[0] = terrain.node(row, column);
+  result.nodes[1] = terrain.node(row + 1, lower ? column : column + 1);
+  result.nodes[2] = terrain.node(lower ? row + 1 : row, column + 1);
   result.normal =
     (result.nodes[1] - result.nodes[0]).cross(result.nodes[2] - result.nodes[0]).normalized();
   return result;
 }
 
+} // namespace
+
+Cfe Terrain::cfe(std::int64_t id) const
+{
+  const std::int64_t cell = (id - 1) / 2, columns = geometry_.columns - 1;
+  return cfeOf(*this, { int(cell / columns), int(cell % columns), id % 2 == 1 });
+}
+
 std::int64_t Terrain::cfeAt(double x, double y) const
 {
-  if (!(x >= 0.0 && y >= 0.0 && x <= this->width() && y <= this->height()))
-  {
-    return 0;
-  }
-  const double s = x / geometry_.cellSize;
-  const double t = (this->height() - y) / geometry_.cellSize; // grows with the row
-  const int column = std::clamp(int(s), 0, geometry_.columns - 2);
-  const int row = std::clamp(int(t), 0, geometry_.rows - 2);
-  // The diagonal runs from upper left to lower right: below it the row part is the larger one.
-  const std::int64_t lower = 2 * (std::int64_t(row) * (geometry_.columns - 1) + column) + 1;
-  const std::int64_t id = (t - row > s - column) ? lower : lower + 1;
+  const CellHalf half = cellHalfAt(geometry_, x, y);
+  const std::int64_t lower = 2 * (std::int64_t(half.row) * (geometry_.columns - 1) + half.column);
+  const std::int64_t id = half.row < 0 ? 0 : half.lower ? lower + 1 : lower + 2;
   return this->hasCfe(id) ? id : 0;
 }
 
 double Terrain::elevation(double x, double y) const
 {
-  const std::int64_t id = this->cfeAt(x, y);
-  if (id == 0)
+  // Without a division for a number: rocks ask for the height under each corner.
+  const CellHalf half = cellHalfAt(geometry_, x, y);
+  if (half.row < 0)
   {
     return std::numeric_limits<double>::quiet_NaN();
   }
-  const Cfe face = this->cfe(id);
+  const Cfe face = cfeOf(*this, half); // NaN if one of its nodes is
   const Vec3& n = face.normal;
   const Vec3& a = face.nodes[0];
   return a.z() - (n.x() * (x - a.x()) + n.y() * (y - a.y())) / n.z();
