@@ -125,6 +125,10 @@ std::shared_ptr<const rockfall::Terrain> vtkDEMToCFESource::MakeSlope(
   roughness.length = this->RoughnessLength;
   roughness.obstacles = { this->ObstacleHeight70, this->ObstacleHeight20, this->ObstacleHeight10 };
   roughness.validate();
+  if (this->Preset > 0)
+  {
+    roughness = rockfall::groundPresets()[std::size_t(this->Preset) - 1].roughness;
+  }
   if (!(this->CellSize >= 0.0))
   {
     throw rockfall::ParameterError(

@@ -199,8 +199,8 @@ GroundTable readGroundTable(GroundKind kind, const GroundFiles& files, const Sur
       fieldList(*layer.GetLayerDefn()));
   }
   GroundTable table;
-  const bool rough = kind == GroundKind::Restitution && hasRoughness(columns);
-  std::vector<std::string> classes;
+  const bool restitution = kind == GroundKind::Restitution;
+  bool rough = restitution && hasRoughness(columns);
   while (const OGRFeatureUniquePtr feature = file.next())
   {
     const int number = int(table.names.size()) + 1;
@@ -223,28 +223,33 @@ GroundTable readGroundTable(GroundKind kind, const GroundFiles& files, const Sur
         "class \"" + key + "\" is in row " + std::to_string(table.rows.at(key)) + " already");
     }
     SurfaceMaterial material = usual;
+    Roughness roughness = usualRoughness;
     material.restitutionDeviation = material.frictionAngleDeviation = 0.0;
     const auto preset = row.text({ "preset" });
     if (preset)
     {
       try
       {
-        material = groundPreset(*preset).material();
+        const GroundPreset& ground = groundPreset(*preset);
+        material = ground.material();
         material.cohesion = usual.cohesion;
+        roughness = ground.roughness;
+        rough = restitution;
       }
       catch (const Error& error)
       {
         row.fail(std::string("field \"preset\": ") + error.what());
       }
     }
-    kind == GroundKind::Restitution ? readRestitution(row, columns, bool(preset), material)
-                                    : readJoint(row, columns, bool(preset), material);
+    restitution ? readRestitution(row, columns, bool(preset), material)
+                : readJoint(row, columns, bool(preset), material);
     table.names.push_back(name.value_or(*(written ? written : name)));
     table.materials.push_back(material);
-    if (rough)
-    {
-      table.roughness.push_back(roughnessFrom(row, usualRoughness));
-    }
+    table.roughness.push_back(roughnessFrom(row, roughness));
+  }
+  if (!rough)
+  {
+    table.roughness.clear(); // that of the slope
   }
   file.tell(notes, true);
   if (table.names.empty())

@@ -51,23 +51,47 @@ constexpr YieldingGround holds(double rollingResistance)
   return ground;
 }
 
+/// Smooth beyond its survey.
+constexpr Roughness smooth;
+
+/// Stones that lie on the ground, one in each square: heights of 70, 20 and 10 % of them.
+constexpr Roughness stones(double distance, double small, double medium, double large)
+{
+  Roughness roughness;
+  roughness.length = distance;
+  roughness.obstacles = { small, medium, large };
+  return roughness;
+}
+
+/// Humps and hollows.
+constexpr Roughness waves(double deviation, double length)
+{
+  Roughness roughness;
+  roughness.deviation = deviation;
+  roughness.length = length;
+  return roughness;
+}
+
 using enum PresetSupport;
 
 /// The deviations of φ are choices, and those of Hoek's Rn those of a uniform spread of ±10 %.
 constexpr GroundPreset presets[] = {
-  { "rock", "Rock", 0.53, 0.99, 0.031, 30.0, 2.5, holds(0.1), Memory, hoek, barton, assumed },
-  { "asphalt", "Asphalt", 0.40, 0.90, 0.023, 33.0, 2.5, holds(0.05), Memory, hoek, assumed,
-    assumed },
+  { "rock", "Rock", 0.53, 0.99, 0.031, 30.0, 2.5, holds(0.1), Memory, hoek, barton, assumed,
+    waves(0.05, 2.0), assumed },
+  { "asphalt", "Asphalt", 0.40, 0.90, 0.023, 33.0, 2.5, holds(0.05), Memory, hoek, assumed, assumed,
+    smooth, assumed },
   { "bedrock with boulders", "Bedrock with boulders", 0.35, 0.85, 0.020, 35.0, 2.5, holds(0.15),
-    Memory, hoek, assumed, assumed },
+    Memory, hoek, assumed, assumed, stones(2.0, 0.05, 0.2, 0.4), assumed },
   { "talus", "Talus", 0.32, 1.0, 0.15, 37.0, 2.0, yields(10e6, 2.0, 0.6, 0.25), Assumption, assumed,
-    lu, "assumed: speeds and jumps on long slopes as observed" },
+    lu, "assumed: speeds and jumps on long slopes as observed", stones(2.0, 0.05, 0.1, 0.2),
+    assumed },
   { "talus with vegetation", "Talus with vegetation", 0.32, 1.0, 0.15, 37.0, 2.0,
-    yields(10e6, 2.0, 0.6, 0.27), Assumption, assumed, lu, "assumed, as talus" },
+    yields(10e6, 2.0, 0.6, 0.27), Assumption, assumed, lu, "assumed, as talus",
+    stones(2.0, 0.05, 0.1, 0.2), assumed },
   { "soil", "Soil", 0.3, 1.0, 0.15, 30.0, 3.0, yields(10e6, 1.5, 0.6, 0.3), Assumption, assumed, lu,
-    lu },
+    lu, waves(0.05, 2.0), assumed },
   { "meadow", "Meadow", 0.73, 1.0, 0.34, 30.0, 3.0, yields(15e6, 0.9, 0.98, 0.24), FieldData,
-    "docs/validation.md", lu, lu, 8.0 },
+    "docs/validation.md", lu, lu, smooth, "docs/validation.md", 8.0 },
 };
 
 } // namespace

@@ -5,6 +5,7 @@
 /// all sources: docs/materials.md, Presets.
 
 #include "terrain/material.h"
+#include "terrain/roughness.h"
 #include "terrain/scatter.h"
 
 #include <span>
@@ -38,6 +39,9 @@ struct GroundPreset
   const char* restitutionSource;
   const char* frictionSource;
   const char* yieldingSource;
+  /// Never node by node: whatever the cells, rocks meet the same ground.
+  Roughness roughness;
+  const char* roughnessSource;
   double restitutionSpeed = 0.0; ///< K of the speed-dependent model, m/s; 0: Rn at every speed.
 
   SurfaceMaterial material() const;

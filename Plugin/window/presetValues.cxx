@@ -25,6 +25,12 @@ std::vector<std::pair<std::string, double>> presetValues(int preset)
     { "FrictionAngle", ground.frictionAngleDegrees },
     { "FrictionAngleDeviation", ground.frictionDeviationDegrees },
     { "DeviationPer", double(int(ground.deviationPer())) },
+    { "RoughnessMean", ground.roughness.mean },
+    { "RoughnessDeviation", ground.roughness.deviation },
+    { "RoughnessLength", ground.roughness.length },
+    { "ObstacleHeight70", ground.roughness.obstacles[0] },
+    { "ObstacleHeight20", ground.roughness.obstacles[1] },
+    { "ObstacleHeight10", ground.roughness.obstacles[2] },
   };
   for (const YieldingField& field : yieldingFields())
   {

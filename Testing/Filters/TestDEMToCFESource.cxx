@@ -1,6 +1,7 @@
 #include "helpers.h"
 
 #include "base/errors.h"
+#include "terrain/presets.h"
 #include "terrainFieldData.h"
 
 #include "vtkCellData.h"
@@ -323,6 +324,11 @@ TEST_F(TestDEMToCFESource, ContoursAndPresets)
   EXPECT_EQ(value(mesh->GetPointData(), "Elevation"), 20.0);
   EXPECT_EQ(value(mesh->GetCellData(), "RestitutionCoefficient"), 0.32);
   EXPECT_EQ(value(mesh->GetFieldData(), "TerrainMaterial", 0, 7), 1.0);
+  // Its stones, not the roughness of the fields that it replaces.
+  const rockfall::Roughness& stones = rockfall::groundPresets()[3].roughness;
+  EXPECT_EQ(value(mesh->GetFieldData(), "TerrainRoughness", 0, 0), 0.0);
+  EXPECT_EQ(value(mesh->GetFieldData(), "TerrainRoughness", 0, 2), stones.length);
+  EXPECT_EQ(value(mesh->GetFieldData(), "TerrainRoughness", 0, 5), stones.obstacles[2]);
   this->Source->SetElevationField("height");
   EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
   this->ExpectOneError({ "contours.csv", "height", "ElevationField", "elev" });

@@ -108,9 +108,14 @@ assert decorators(dem, "RestitutionSpeed", "visibility") == [("RestitutionModel"
 replaced = ["RestitutionModel", "RestitutionCoefficient", "RestitutionDeviation", "TangentialRestitution",
             "RestitutionSpeed", "FrictionAngle", "FrictionAngleDeviation", "GroundModulus",
             "ScarDepthFactor", "GroundDensity", "ScarCompaction", "ScarSpinDrag", "SlipFrictionMin",
-            "SlipFrictionMax", "SlipFrictionGrowth", "SlipFrictionDecay", "RollingResistance", "DeviationPer"]
+            "SlipFrictionMax", "SlipFrictionGrowth", "SlipFrictionDecay", "RollingResistance", "DeviationPer",
+            "RoughnessMean", "RoughnessDeviation", "RoughnessLength"]
+stones = ["ObstacleHeight70", "ObstacleHeight20", "ObstacleHeight10"]
 for name in replaced + ["Cohesion"]:
     wanted = [("Preset", "0", "0")] if name in replaced else []
+    assert decorators(dem, name, "enabled_state") == wanted, name
+for name in stones:
+    wanted = [("Preset", "0", "0"), ("RoughnessLength", "0", "1")]
     assert decorators(dem, name, "enabled_state") == wanted, name
 # Only some laws have a deviation.
 assert rocks.GetProperty("VolumeLaw").Available[2:4] == ["Normal", "Log-normal"]

@@ -48,12 +48,12 @@ Terrain makeLongSlope(double length, double angle, const char* upper, const char
       }
     }
   }
-  Roughness roughness;
-  roughness.deviation = 0.1;
-  Terrain terrain(grid, std::move(heights), groundPreset(upper).material(), roughness);
+  Terrain terrain(
+    grid, std::move(heights), groundPreset(upper).material(), groundPreset(upper).roughness);
   MaterialClasses classes;
   classes.names = { "foot" };
   classes.materials = { groundPreset(lower).material() };
+  classes.roughness = { groundPreset(lower).roughness };
   classes.cells = *cells;
   classes.owner = cells;
   terrain.setRestitutionClasses(classes);

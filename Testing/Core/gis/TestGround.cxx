@@ -283,6 +283,14 @@ TEST(Ground, RoughnessOfClasses)
   ASSERT_EQ(rough.roughness.size(), 2u);
   EXPECT_EQ(rough.roughness[0], terrain.roughness());
   EXPECT_EQ(rough.roughness[1], (Roughness{ -0.2, 0.3, 1.5, { 0.1, 0.25, 0.6 } }));
+  // That of a preset, where the row does not say otherwise.
+  const MaterialClasses preset =
+    read({ halves().write(), table("class,preset,rv,rg10\n1,,0.9,\n2,talus,,0.3\n"), "" }, terrain);
+  ASSERT_EQ(preset.roughness.size(), 2u);
+  EXPECT_EQ(preset.roughness[0], terrain.roughness());
+  Roughness talus = groundPreset("talus").roughness;
+  talus.obstacles[2] = 0.3;
+  EXPECT_EQ(preset.roughness[1], talus);
   const auto said = [](const std::string& row)
   {
     return failure(
@@ -360,6 +368,10 @@ TEST(Ground, Presets)
     EXPECT_TRUE(!m.yielding.slips() || m.tangentialRestitution == 1.0) << preset.name;
     EXPECT_GT(m.yielding.rollingResistance, 0.0) << preset.name << " would let rocks creep";
     EXPECT_EQ(&groundPreset(preset.name), &preset);
+    EXPECT_NO_THROW(preset.roughness.validate()) << preset.name;
+    EXPECT_EQ(preset.roughness.any(), preset.roughness.isField())
+      << preset.name << " would be another ground on other cells";
+    EXPECT_NE(std::string(preset.roughnessSource), "") << preset.name;
   }
   EXPECT_TRUE(holds(messageOf<DataError>([] { groundPreset("cheese"); }),
     { "cheese", "rock", "talus", "meadow", "asphalt" }));
