@@ -227,8 +227,9 @@ private:
   const Rock& rock_;
   const Block& block_;
   const SimulationParameters& parameters_;
-  std::uint32_t number_ = 0;      ///< In its iteration.
-  std::uint32_t impactsOver_ = 0; ///< Touches that began as impacts and are over.
+  std::uint32_t number_ = 0; ///< In its iteration.
+  /// Touches that began as impacts and are over, and hops in a scar that come late.
+  std::uint32_t impactsOver_ = 0;
   // In the order of their use in the step of a crowd, which goes from rock to rock: what it needs
   // lies together, and in one page.
   bool done_ = false;

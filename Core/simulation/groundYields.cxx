@@ -20,6 +20,10 @@ namespace
 /// Share of r by which rounding does not make a distance larger.
 constexpr double kSureClearance = 1e-9;
 
+/// For how long hops in one scar are one impact, s. Beyond it each draws its restitution anew: a
+/// rock whose impact had drawn 1 would hop on its face for ever.
+constexpr double kOneImpact = 1.0;
+
 /// Between two attitudes that differ by little, at a fraction of the turn.
 Quat turnedBetween(const Quat& from, const Quat& to, double fraction)
 {
@@ -162,6 +166,10 @@ bool RockSimulator::flyOverScar(double small)
   if (!(free > small))
   {
     return false;
+  }
+  if (scar_.turned() && state_.time - impact_.event.time > kOneImpact)
+  {
+    ++impactsOver_;
   }
   this->advanceInFlight(free);
   this->checkEnd(0.0);

@@ -132,8 +132,9 @@ TEST(LongSlopes, NothingCreepsOnAMeadow)
 {
   for (const double angle : { 10.0, 15.0 })
   {
-    const Terrain meadow = rockfall::testing::makePlane(
+    Terrain meadow = rockfall::testing::makePlane(
       2, 600.0, radians(angle), 0.0, groundPreset("meadow").material());
+    meadow.setDeviationPer(groundPreset("meadow").deviationPer());
     std::vector<Rock> rocks;
     for (int k = 0; k < count(20, 100); ++k)
     {
