@@ -34,19 +34,19 @@ from site_scores import Observed
 PARAMETERS = (
     ("RestitutionCoefficient", "--restitution", 0.73, None, "Rn, 0 to 1"),
     ("RestitutionDeviation", "--restitution-deviation", 0.34, None, "of Rn"),
-    ("RestitutionSpeed", "--restitution-speed", 8.0, None, "normal speed at which half of Rn is left, m/s"),
+    ("RestitutionSpeed", "--restitution-speed", 9.0, None, "normal speed at which half of Rn is left, m/s"),
     ("TangentialRestitution", "--tangential", 1.0, None, "Rt, 0 to 1"),
     ("GroundModulus", "--modulus", 15.0, None, "ME in MN/m2, 0 for hard ground"),
     ("ScarDepthFactor", "--depth-factor", 0.125, None, "of the scar's depth"),
     ("ScarCompaction", "--compaction", 0.9, None, "Cs"),
     ("ScarSpinDrag", "--spin-drag", 0.0, None, "Cw"),
-    ("SlipFrictionMin", "--least-friction", 0.98, (0.75, 1.1), "friction without slip"),
+    ("SlipFrictionMin", "--least-friction", 1.05, (0.75, 1.3), "friction without slip"),
     ("SlipFrictionMax", "--most-friction", 2.0, None, "friction after much slip, 0 for a constant one"),
     ("SlipFrictionGrowth", "--friction-growth", 3.0, None, "in 1/m"),
     ("SlipFrictionDecay", "--friction-decay", 185.0, None, "in 1/s"),
     ("FrictionAngle", "--friction", 30.0, None, "in degrees, if no friction of slip is given"),
-    ("RollingResistance", "--rolling", 0.24, (0.16, 0.26), "of the rock's radius"),
-    ("RoughnessDeviation", "--roughness", 0.03, None, "deviation of the ground's height in m"),
+    ("RollingResistance", "--rolling", 0.22, (0.16, 0.26), "of the rock's radius"),
+    ("RoughnessDeviation", "--roughness", 0.0, None, "deviation of the ground's height in m"),
     ("RoughnessLength", "--roughness-length", 0.5, None, "its correlation length in m, 0 for the nodes'"),
 )
 CELL = 0.5  # m: about the size of the rocks, for which the ground is rough
