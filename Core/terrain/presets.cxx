@@ -90,8 +90,8 @@ constexpr GroundPreset presets[] = {
     stones(2.0, 0.05, 0.1, 0.2), assumed },
   { "soil", "Soil", 0.3, 1.0, 0.15, 30.0, 3.0, yields(10e6, 1.5, 0.6, 0.3), Assumption, assumed, lu,
     lu, waves(0.05, 2.0), assumed },
-  { "meadow", "Meadow", 0.73, 1.0, 0.34, 30.0, 3.0, yields(15e6, 0.9, 1.05, 0.22), FieldData,
-    "docs/validation.md", lu, lu, smooth, "docs/validation.md", 9.0 },
+  { "meadow", "Meadow", 0.73, 1.0, 0.34, 30.0, 3.0, yields(15e6, 0.9, 0.98, 0.24), FieldData,
+    "docs/validation.md", lu, lu, smooth, "docs/validation.md", 8.0 },
 };
 
 } // namespace
