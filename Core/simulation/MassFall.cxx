@@ -35,8 +35,7 @@ MassFall::MassFall(const Surface& surface, std::span<const Rock> rocks,
   {
     RockSimulator& sim =
       members_.add(surface, rocks[i], blocks[i], parameters, std::uint32_t(i)).sim;
-    sim.stiff_ = true; // strain follows the contacts of an island as at rest
-    sim.ringing_ = 0.0;
+    sim.letStrainFollow();
   }
 }
 
@@ -57,27 +56,28 @@ std::vector<const RockPair*> MassFall::pairs() const
 
 void MassFall::Member::stand()
 {
-  const BlockState& s = sim.state_;
+  const BlockState& s = sim.body().state;
   const Mat3 rotation = s.orientation.toRotationMatrix();
-  const bool placed = sim.placed_.position() == s.position && sim.placed_.rotation() == rotation;
+  const bool placed =
+    sim.body().placed.position() == s.position && sim.body().placed.rotation() == rotation;
   if (!placed)
   {
-    sim.placed_.placeFrame(sim.block_, s);
+    sim.body().placed.placeFrame(sim.body().block, s);
   }
   if (!placed || body.position != s.position || body.rotation != rotation)
   {
-    body.update(sim.placed_);
+    body.update(sim.body().placed);
   }
 }
 
 bool MassFall::Member::arrive()
 {
-  const BlockState& s = sim.state_;
+  const BlockState& s = sim.body().state;
   const bool there =
     endBody.position == s.position && endBody.rotation == s.orientation.toRotationMatrix();
   if (there)
   {
-    std::swap(sim.placed_, end);
+    std::swap(sim.body().placed, end);
     std::swap(body, endBody);
   }
   return there;
@@ -92,9 +92,10 @@ void MassFall::release()
   {
     stayWanted();
     RockSimulator& sim = member.sim;
-    const BlockState given = sim.state_;
+    const BlockState given = sim.body().state;
     sim.liftOntoGround();
-    raised.push_back({ &sim.block_, given, sim.state_.position.z() - given.position.z() });
+    raised.push_back(
+      { &sim.body().block, given, sim.body().state.position.z() - given.position.z() });
     lifts.push_back(raised.back().lift);
   }
   raiseOthers(raised);
@@ -103,8 +104,8 @@ void MassFall::release()
     RockSimulator& sim = members_[i]->sim;
     if (raised[i].lift > lifts[i])
     {
-      sim.state_.position.z() = raised[i].state.position.z() + raised[i].lift;
-      sim.placed_.place(sim.block_, sim.state_);
+      sim.body().state.position.z() = raised[i].state.position.z() + raised[i].lift;
+      sim.body().placed.place(sim.body().block, sim.body().state);
     }
     sim.begin();
   }
@@ -134,15 +135,9 @@ std::vector<Trajectory> MassFall::run(const std::function<bool(double)>& goOn)
 
 void MassFall::wake(Member& member)
 {
-  RockSimulator& sim = member.sim;
   member.asleep = false;
-  sim.done_ = false;
-  sim.quietTime_ = 0.0;
-  sim.state_.time = time_;
-  member.stayed = member.lingered = sim.state_;
-  sim.recorder_.trajectory().summary.fate = Fate::Moving;
-  sim.recorder_.resume(sim.state_);
-  sim.auditSamples(sim.state_);
+  member.sim.wake(time_);
+  member.stayed = member.lingered = member.sim.state();
 }
 
 bool MassFall::heldLately(const RockPair& pair) const
@@ -153,22 +148,21 @@ bool MassFall::heldLately(const RockPair& pair) const
 void MassFall::restAnew(int rock)
 {
   Member& member = *members_[std::size_t(rock)];
-  if (!member.sim.done_)
+  if (!member.sim.body().done)
   {
-    member.stayed = member.lingered = member.sim.state_;
-    member.sim.quietTime_ = 0.0;
+    member.stayed = member.lingered = member.sim.body().state;
+    member.sim.body().quietTime = 0.0;
   }
 }
 
 void MassFall::putToSleep(Member& member)
 {
   member.asleep = true;
-  member.sim.done_ = true;
-  member.sim.recorder_.trajectory().summary.fate = Fate::Rested;
-  member.sim.state_.velocity.setZero();
-  member.sim.state_.spin.setZero();
-  member.sim.acceleration_.setZero();
-  member.sim.spinAcceleration_.setZero();
+  member.sim.end(Fate::Rested);
+  member.sim.body().state.velocity.setZero();
+  member.sim.body().state.spin.setZero();
+  member.sim.body().acceleration.setZero();
+  member.sim.body().spinAcceleration.setZero();
 }
 
 void MassFall::tellBroken()
@@ -180,10 +174,9 @@ void MassFall::tellBroken()
   RockSimulator::Broken all;
   for (Member& member : members_)
   {
-    RockSimulator::Broken& one = member.sim.broke_;
+    const RockSimulator::Broken one = member.sim.takeBroken();
     all.trees.insert(all.trees.end(), one.trees.begin(), one.trees.end());
     all.barriers.insert(all.barriers.end(), one.barriers.begin(), one.barriers.end());
-    one = {};
   }
   if (all.trees.empty() && all.barriers.empty())
   {
@@ -201,28 +194,28 @@ void MassFall::tellBroken()
 bool MassFall::stays(Member& member)
 {
   const RockSimulator& sim = member.sim;
-  if (sim.done_)
+  if (sim.body().done)
   {
     return true;
   }
-  const double r = sim.block_.radius();
+  const double r = sim.body().block.radius();
   const auto displacementFrom = [&](const Member::Place& place)
-  { return (sim.state_.position - place.position).norm(); };
+  { return (sim.body().state.position - place.position).norm(); };
   const auto turnFrom = [&](const Member::Place& place)
-  { return r * sim.state_.orientation.angularDistance(place.orientation); };
+  { return r * sim.body().state.orientation.angularDistance(place.orientation); };
   const double unit = std::sqrt(std::max(parameters_.gravity, kLeastGravity) * r); // m/s
   // Most go so far that how far they turn does not matter.
   const double still = kStillSpeed * unit * kStillTime,
                displacement = displacementFrom(member.stayed);
   if (displacement > still || displacement + turnFrom(member.stayed) > still)
   {
-    member.stayed = sim.state_;
+    member.stayed = sim.body().state;
   }
   const double near = kLingerWay * r, further = displacementFrom(member.lingered);
-  const auto turns = [&] { return r * sim.state_.spin.norm() > kLingerRim * unit; };
+  const auto turns = [&] { return r * sim.body().state.spin.norm() > kLingerRim * unit; };
   if (further > near || (turns() && further + turnFrom(member.lingered) > near))
   {
-    member.lingered = sim.state_;
+    member.lingered = sim.body().state;
   }
   return time_ - member.stayed.time >= kStillTime || time_ - member.lingered.time >= kLingerTime;
 }
@@ -230,8 +223,7 @@ bool MassFall::stays(Member& member)
 void MassFall::advanceAlone(Member& member, double until)
 {
   member.sim.advance(until);
-  member.asleep =
-    member.sim.done_ && member.sim.recorder_.trajectory().summary.fate == Fate::Rested;
+  member.asleep = member.sim.body().done && member.sim.trajectory().summary.fate == Fate::Rested;
 }
 
 bool MassFall::advance()
@@ -278,7 +270,7 @@ bool MassFall::advanceAll()
         {
           still.store(false, std::memory_order_relaxed);
         }
-        if (m.sim.done_ && !m.asleep && m.sim.state_.time > before)
+        if (m.sim.body().done && !m.asleep && m.sim.body().state.time > before)
         {
           gone.store(true, std::memory_order_relaxed);
         }
@@ -296,15 +288,15 @@ bool MassFall::advanceAll()
       }
       for (int i : island.members)
       {
-        if (still && !members_[i]->sim.done_)
+        if (still && !members_[i]->sim.body().done)
         {
           this->putToSleep(*members_[i]);
         }
       }
     }
   }
-  const bool moving =
-    std::any_of(members_.begin(), members_.end(), [](const Member& m) { return !m.sim.done_; });
+  const bool moving = std::any_of(
+    members_.begin(), members_.end(), [](const Member& m) { return !m.sim.body().done; });
   return moving && time_ < parameters_.endTime - 1e-9;
 }
 

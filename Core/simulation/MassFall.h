@@ -50,15 +50,18 @@ public:
   // Of a rock, so far.
   const std::vector<ImpactEvent>& impacts(int rock) const
   {
-    return members_[rock]->sim.recorder_.trajectory().impacts;
+    return members_[rock]->sim.trajectory().impacts;
   }
   const TrajectorySummary& summary(int rock) const
   {
-    return members_[rock]->sim.recorder_.trajectory().summary;
+    return members_[rock]->sim.trajectory().summary;
   }
   /// Pairs near each other whose axis was ever looked for, by (first, second).
   std::vector<const RockPair*> pairs() const;
-  std::span<const Contact> slopeContacts(int rock) const { return members_[rock]->sim.contacts_; }
+  std::span<const Contact> slopeContacts(int rock) const
+  {
+    return members_[rock]->sim.body().contacts;
+  }
 
   /// Rocks never sleep: for tests of how still a pile stands.
   bool awake = false;
@@ -75,7 +78,7 @@ private:
       : sim(surface, rock, block, parameters, number)
     {
     }
-    /// `sim.placed_` and `body` for where the rock stands, unless they are.
+    /// `sim.body().placed` and `body` for where the rock stands, unless they are.
     void stand();
     /// Takes on `end` as where it stands, and returns whether it does.
     bool arrive();

@@ -2,7 +2,6 @@
 
 #include "base/abort.h"
 #include "block/flight.h"
-#include "contact/clearance.h"
 #include "contact/detection.h"
 #include "contact/timeToTouch.h"
 #include "law/settings.h"
@@ -46,17 +45,17 @@ RockSimulator::RockSimulator(const Surface& surface, const Rock& rock, const Blo
   const SimulationParameters& p, std::uint32_t number)
   : surface_(surface)
   , rock_(rock)
-  , block_(block)
   , parameters_(p)
   , number_(number)
+  , body_(block)
   , recorder_(surface, block, p.outputInterval)
 {
-  state_.position = rock.position;
-  state_.orientation = rock.orientation.normalized();
-  state_.velocity = rock.velocity;
-  state_.spin = state_.orientation.conjugate() * rock.angularVelocity;
+  body_.state.position = rock.position;
+  body_.state.orientation = rock.orientation.normalized();
+  body_.state.velocity = rock.velocity;
+  body_.state.spin = body_.state.orientation.conjugate() * rock.angularVelocity;
   const double g = std::max(p.gravity, kLeastGravity);
-  restingSpeed_ = kRestingSpeed * std::sqrt(g * block.radius());
+  body_.restingSpeed = kRestingSpeed * std::sqrt(g * block.radius());
   penalty_ = p.normalPenalty;
   const double contacts = std::sqrt(p.normalPenalty * block.largestMobility());
   obstacles_ = surface.terrain().obstacles();
@@ -71,19 +70,20 @@ RockSimulator::RockSimulator(const Surface& surface, const Rock& rock, const Blo
 
 double RockSimulator::travelLimit() const
 {
-  const double rim = state_.spin.norm() * block_.radius();
-  const double speed = state_.velocity.norm() + rim + parameters_.gravity * parameters_.timeStep;
-  return speed > 0.0 ? kTravelPerStep * block_.radius() / speed : parameters_.timeStep;
+  const double rim = body_.state.spin.norm() * body_.block.radius();
+  const double speed =
+    body_.state.velocity.norm() + rim + parameters_.gravity * parameters_.timeStep;
+  return speed > 0.0 ? kTravelPerStep * body_.block.radius() / speed : parameters_.timeStep;
 }
 
 double RockSimulator::impactStep() const
 {
   ImpactFrequency closed;
-  for (const Contact& c : contacts_)
+  for (const Contact& c : body_.contacts)
   {
     closed.add(c, c.closed());
   }
-  const double one = penalty_ * block_.largestMobility();
+  const double one = penalty_ * body_.block.largestMobility();
   const double frequency2 = closed.sum > 0.0 ? closed.ofAll(one) : one;
   const double resolved = std::numbers::pi / (kStepsPerImpact * std::sqrt(frequency2));
   return std::min({ parameters_.timeStep, resolved, this->travelLimit() });
@@ -92,28 +92,29 @@ double RockSimulator::impactStep() const
 double RockSimulator::touchdownStep(double h) const
 {
   ImpactFrequency closing;
-  const Vec3 spin = state_.angularVelocity();
-  for (const Contact& c : contacts_)
+  const Vec3 spin = body_.state.angularVelocity();
+  for (const Contact& c : body_.contacts)
   {
-    const double approach = -c.normal.dot(state_.velocity + spin.cross(c.point - state_.position));
+    const double approach =
+      -c.normal.dot(body_.state.velocity + spin.cross(c.point - body_.state.position));
     closing.add(c, c.closed() || c.gap() < approach * h);
   }
-  const double frequency2 = closing.ofAll(penalty_ * block_.largestMobility());
+  const double frequency2 = closing.ofAll(penalty_ * body_.block.largestMobility());
   return std::min(h, std::numbers::pi / (kStepsPerImpact * std::sqrt(frequency2)));
 }
 
 double RockSimulator::mechanicalEnergy() const
 {
-  return kineticEnergy(block_, state_) + strainEnergy(block_, state_) +
-    block_.mass() * parameters_.gravity * state_.position.z();
+  return kineticEnergy(body_.block, body_.state) + strainEnergy(body_.block, body_.state) +
+    body_.block.mass() * parameters_.gravity * body_.state.position.z();
 }
 
 EnergyAudit RockSimulator::auditAt(const BlockState& state) const
 {
-  EnergyAudit audit = energy_;
-  audit.kinetic = kineticEnergy(block_, state);
-  audit.strain = strainEnergy(block_, state) + springEnergy_;
-  audit.released = energyAtStart_ - block_.mass() * parameters_.gravity * state.position.z();
+  EnergyAudit audit = body_.energy;
+  audit.kinetic = kineticEnergy(body_.block, state);
+  audit.strain = strainEnergy(body_.block, state) + body_.springEnergy;
+  audit.released = energyAtStart_ - body_.block.mass() * parameters_.gravity * state.position.z();
   audit.numerical = audit.released -
     (audit.kinetic + audit.strain + audit.friction + audit.restitution + audit.vibration +
       audit.damping + audit.structures + audit.scars + audit.rolling + audit.exchanged);
@@ -128,54 +129,9 @@ void RockSimulator::auditSamples(const BlockState& state)
   }
 }
 
-std::array<double, 4> RockSimulator::boxOfWay(double duration) const
-{
-  const double r = block_.radius();
-  const Vec3& p = state_.position;
-  const Vec3 end = p + duration * state_.velocity;
-  return { std::min(p.x(), end.x()) - r, std::max(p.x(), end.x()) + r, std::min(p.y(), end.y()) - r,
-    std::max(p.y(), end.y()) + r };
-}
-
-void RockSimulator::ensureWindow(double duration)
-{
-  const auto [x0, x1, y0, y1] = this->boxOfWay(duration);
-  if (!window_.covers(x0, x1, y0, y1))
-  {
-    window_.gather(surface_, x0, x1, y0, y1);
-  }
-}
-
-double RockSimulator::timeToGround(double duration)
-{
-  if (window_.whole())
-  {
-    return timeToTouch(placed_, state_, window_, parameters_.gravity, duration);
-  }
-  // A rock over a hole has no gap to close: it comes to a rim or a wall from beside.
-  const auto [x0, x1, y0, y1] = this->boxOfWay(duration);
-  if (!holed_.covers(x0, x1, y0, y1))
-  {
-    gatherPatch(surface_, x0, x1, y0, y1, holed_);
-  }
-  return clearance(placed_, state_, holed_, parameters_.gravity, duration).time;
-}
-
-bool RockSimulator::clearFor(double duration) const
-{
-  const double r = block_.radius();
-  const Vec3& p = state_.position;
-  const Vec3 end = p + duration * state_.velocity;
-  const double zEnd = end.z() - 0.5 * parameters_.gravity * duration * duration;
-  // The parabola is concave: its lowest point is at one of its ends.
-  const double lowest = std::min(p.z(), zEnd) - r;
-  return surface_.maxHeight(std::min(p.x(), end.x()) - r, std::max(p.x(), end.x()) + r,
-           std::min(p.y(), end.y()) - r, std::max(p.y(), end.y()) + r) < lowest;
-}
-
 void RockSimulator::advanceInFlight(double duration)
 {
-  const BlockState start = state_;
+  const BlockState start = body_.state;
   BlockState reached = start;
   const Way way{ start, reached, duration, true };
   if (barriers_)
@@ -189,73 +145,92 @@ void RockSimulator::advanceInFlight(double duration)
   BlockState at = start;
   while (!scar_.open() && recorder_.nextTime() <= end)
   {
-    at = fly(block_, at, parameters_.gravity, std::max(0.0, recorder_.nextTime() - at.time));
+    at = fly(body_.block, at, parameters_.gravity, std::max(0.0, recorder_.nextTime() - at.time));
     recorder_.record(at, false);
     this->auditSamples(at);
   }
   if (scar_.open())
   {
     this->flyThroughSoil(duration);
-    state_.time = end;
-    recorder_.recordBetween(start, state_, false);
-    this->auditSamples(state_);
-    recorder_.follow(state_);
+    body_.state.time = end;
+    recorder_.recordBetween(start, body_.state, false);
+    this->auditSamples(body_.state);
+    recorder_.follow(body_.state);
   }
   else
   {
-    state_ = fly(block_, start, parameters_.gravity, duration);
-    state_.time = end;
-    recorder_.followFlight(start, state_);
+    body_.state = fly(body_.block, start, parameters_.gravity, duration);
+    body_.state.time = end;
+    recorder_.followFlight(start, body_.state);
   }
   this->forgetSlip(duration);
-  while (barriers_ && !done_ && hit_.barrier >= 0)
+  while (barriers_ && !body_.done && hit_.barrier >= 0)
   {
     this->meetBarrier();
     this->passBarriers(way, 0.0);
   }
 }
 
+void RockSimulator::flyFree(double duration)
+{
+  body_.contacts.clear();
+  this->finishImpact();
+  const double end = body_.state.time + duration;
+  this->advanceInFlight(duration);
+  while (barriers_ && !body_.done && body_.state.time < end)
+  {
+    this->advanceInFlight(end - body_.state.time); // through a barrier that broke
+  }
+  if (!body_.done)
+  {
+    this->checkLeft();
+  }
+  body_.quietTime = 0.0;
+}
+
 void RockSimulator::flyUntilNear()
 {
-  while (!done_ && !this->arrived() && !scar_.open())
+  while (!body_.done && !this->arrived() && !scar_.open())
   {
     stayWanted();
     // Up to the edge of the slope, where the rock is let go.
-    double remaining = horizon_ - state_.time;
+    double remaining = horizon_ - body_.state.time;
     const double extent[2] = { surface_.terrain().width(), surface_.terrain().height() };
     for (int axis = 0; axis < 2; ++axis)
     {
-      const double v = state_.velocity[axis];
-      const double way = v > 0.0 ? extent[axis] - state_.position[axis] : state_.position[axis];
+      const double v = body_.state.velocity[axis];
+      const double way =
+        v > 0.0 ? extent[axis] - body_.state.position[axis] : body_.state.position[axis];
       if (v != 0.0)
       {
         // A hair beyond, so that the edge is passed and not met for ever.
-        remaining =
-          std::min(remaining, (way + 1e-9 * block_.radius() + 1e-15 * extent[axis]) / std::abs(v));
+        remaining = std::min(
+          remaining, (way + 1e-9 * body_.block.radius() + 1e-15 * extent[axis]) / std::abs(v));
       }
     }
     double duration = std::min(kLongFlight, remaining);
     if (!this->clearFor(duration))
     {
       // A window over some of the way: nearer than its plane only the rock itself is looked at.
-      const double across = state_.velocity.head<2>().norm();
-      const double way = kHeightWindow * std::max(block_.radius(), surface_.grid().cellSize);
+      const double across = body_.state.velocity.head<2>().norm();
+      const double way = kHeightWindow * std::max(body_.block.radius(), surface_.grid().cellSize);
       duration = std::min(duration, across * duration > way ? way / across : duration);
       this->ensureWindow(duration);
       const double near =
-        timeToNear(state_, block_.radius(), window_, parameters_.gravity, duration);
+        timeToNear(body_.state, body_.block.radius(), window_, parameters_.gravity, duration);
       if (near > this->impactStep())
       {
         duration = near;
       }
       else
       {
-        placed_.place(block_, state_);
-        const double sure = std::max(0.0, freeUntil_ - state_.time);
+        body_.placed.place(body_.block, body_.state);
+        const double sure = std::max(0.0, freeUntil_ - body_.state.time);
         const double touch = std::max(sure, this->timeToGround(duration));
         // So near that the pairs that can touch tell more.
-        const double speed = state_.velocity.norm() + block_.largestRimSpeed(state_.spin);
-        const double close = 0.5 * kCandidateSlack * block_.radius() / std::max(speed, 1e-9);
+        const double speed =
+          body_.state.velocity.norm() + body_.block.largestRimSpeed(body_.state.spin);
+        const double close = 0.5 * kCandidateSlack * body_.block.radius() / std::max(speed, 1e-9);
         if (sure == 0.0 && touch < std::min(duration, std::max(close, this->impactStep())))
         {
           return;
@@ -280,8 +255,8 @@ void RockSimulator::flyUntilNear()
 void RockSimulator::checkLeft()
 {
   const Terrain& terrain = surface_.terrain();
-  const Vec3& p = state_.position;
-  const double r = block_.radius();
+  const Vec3& p = body_.state.position;
+  const double r = body_.block.radius();
   bool left =
     !(p.x() >= 0.0 && p.y() >= 0.0 && p.x() <= terrain.width() && p.y() <= terrain.height());
   if (!left && !this->isHighAt(p, 0.0) && terrain.cfeAt(p.x(), p.y()) == 0)
@@ -294,41 +269,38 @@ void RockSimulator::checkLeft()
   }
   if (left)
   {
-    recorder_.trajectory().summary.fate = Fate::LeftDomain;
-    done_ = true;
+    this->end(Fate::LeftDomain);
   }
 }
 
 void RockSimulator::followRest(double h, bool touching)
 {
-  const double r = block_.radius();
-  const double speed = state_.velocity.norm() + state_.spin.norm() * r;
+  const double r = body_.block.radius();
+  const double speed = body_.state.velocity.norm() + body_.state.spin.norm() * r;
   const double still = kStillSpeed * std::sqrt(std::max(parameters_.gravity, kLeastGravity) * r);
-  quietTime_ = touching && speed < still ? quietTime_ + h : 0.0;
+  body_.quietTime = touching && speed < still ? body_.quietTime + h : 0.0;
 }
 
 void RockSimulator::checkEnd(double h)
 {
-  if (!done_)
+  if (!body_.done)
   {
     this->checkLeft();
   }
-  if (done_)
+  if (body_.done)
   {
     return;
   }
-  TrajectorySummary& summary = recorder_.trajectory().summary;
   this->followRest(h,
-    std::any_of(contacts_.begin(), contacts_.end(), [](const Contact& c) { return c.closed(); }));
-  if (quietTime_ >= kStillTime)
+    std::any_of(
+      body_.contacts.begin(), body_.contacts.end(), [](const Contact& c) { return c.closed(); }));
+  if (body_.quietTime >= kStillTime)
   {
-    summary.fate = Fate::Rested;
-    done_ = true;
+    this->end(Fate::Rested);
   }
-  else if (state_.time >= parameters_.endTime - 1e-9)
+  else if (body_.state.time >= parameters_.endTime - 1e-9)
   {
-    summary.fate = Fate::Moving;
-    done_ = true;
+    this->end(Fate::Moving);
   }
 }
 
@@ -336,26 +308,49 @@ void RockSimulator::liftOntoGround()
 {
   // The placement was checked on the slope as surveyed; roughness can raise the ground into the
   // rock. By steps, so it ends a hair over the ground.
-  const double step = 0.01 * block_.radius();
+  const double step = 0.01 * body_.block.radius();
   if (solid_)
   {
     this->clearTrees();
   }
-  placed_.place(block_, state_);
+  body_.placed.place(body_.block, body_.state);
   this->ensurePatch(step);
-  double depth = penetration(placed_, patch_);
+  double depth = penetration(body_.placed, patch_);
   // A rock that starts in the ground by rounding alone is set onto it by what follows.
-  const double worldZ = state_.position.z() + surface_.terrain().geometry().origin().z();
-  const double least = std::max(1e-6 * block_.radius(), startRounding(worldZ, block_.radius()));
+  const double worldZ = body_.state.position.z() + surface_.terrain().geometry().origin().z();
+  const double least =
+    std::max(1e-6 * body_.block.radius(), startRounding(worldZ, body_.block.radius()));
   for (int k = 0; k < 1000 && depth > least; ++k)
   {
-    state_.position.z() += std::max(depth, step);
-    placed_.place(block_, state_);
-    depth = penetration(placed_, patch_);
+    body_.state.position.z() += std::max(depth, step);
+    body_.placed.place(body_.block, body_.state);
+    depth = penetration(body_.placed, patch_);
   }
   // Edges across each other are not seen by that, and embankments may be upright walls.
-  state_.position.z() += liftOut(placed_, patch_);
-  placed_.place(block_, state_);
+  body_.state.position.z() += liftOut(body_.placed, patch_);
+  body_.placed.place(body_.block, body_.state);
+}
+
+void RockSimulator::letStrainFollow()
+{
+  stiff_ = true;
+  ringing_ = 0.0;
+}
+
+void RockSimulator::end(Fate fate)
+{
+  this->trajectory().summary.fate = fate;
+  body_.done = true;
+}
+
+void RockSimulator::wake(double time)
+{
+  body_.done = false;
+  body_.quietTime = 0.0;
+  body_.state.time = time;
+  this->trajectory().summary.fate = Fate::Moving;
+  recorder_.resume(body_.state);
+  this->auditSamples(body_.state);
 }
 
 void RockSimulator::release()
@@ -368,11 +363,11 @@ void RockSimulator::begin()
 {
   TrajectorySummary& summary = recorder_.trajectory().summary;
   summary.blockId = rock_.blockId;
-  summary.mass = block_.mass();
-  summary.volume = block_.volume();
+  summary.mass = body_.block.mass();
+  summary.volume = body_.block.volume();
   energyAtStart_ = this->mechanicalEnergy();
-  recorder_.begin(state_);
-  this->auditSamples(state_);
+  recorder_.begin(body_.state);
+  this->auditSamples(body_.state);
   this->checkEnd(0.0);
 }
 
@@ -380,34 +375,38 @@ double RockSimulator::stoppingPenalty() const
 {
   // All that moves in one spring.
   const double depth =
-    std::min(kDeepestImpact * block_.radius(), kDeepestOfThin * block_.thickness());
-  return std::max(
-    parameters_.normalPenalty, 2.0 * rigidKineticEnergy(block_, state_) / (depth * depth));
+    std::min(kDeepestImpact * body_.block.radius(), kDeepestOfThin * body_.block.thickness());
+  return std::max(parameters_.normalPenalty,
+    2.0 * rigidKineticEnergy(body_.block, body_.state) / (depth * depth));
 }
 
 void RockSimulator::beginContact()
 {
+  if (inContact_)
+  {
+    return;
+  }
   penalty_ = this->stoppingPenalty();
-  steppedAs_ = StepKind::Lasting; // no impact's step to go by yet
+  body_.steppedAs = StepKind::Lasting; // no impact's step to go by yet
   openTime_ = ringing_;
   inContact_ = true;
-  recorder_.knot(state_, false);
-  this->auditSamples(state_);
+  recorder_.knot(body_.state, false);
+  this->auditSamples(body_.state);
 }
 
 void RockSimulator::endContact()
 {
   inContact_ = false;
-  recorder_.knot(state_, false);
-  this->auditSamples(state_);
+  recorder_.knot(body_.state, false);
+  this->auditSamples(body_.state);
 }
 
 void RockSimulator::advance(double until, double enough)
 {
-  if (crowded_)
+  if (body_.crowded)
   {
-    crowded_ = false; // alone, and what others have pressed in is theirs
-    this->letDeepBe(kLooseOverlap * block_.radius());
+    body_.crowded = false; // alone, and what others have pressed in is theirs
+    this->letDeepBe(kLooseOverlap * body_.block.radius());
   }
   horizon_ = std::min(until, parameters_.endTime);
   const auto seen = [&]
@@ -418,12 +417,12 @@ void RockSimulator::advance(double until, double enough)
     return samples[last].kind != SampleKind::Knot ? samples[last].time >= enough
                                                   : last > 0 && samples[last - 1].time >= enough;
   };
-  while (!done_ && !this->arrived() && !seen())
+  while (!body_.done && !this->arrived() && !seen())
   {
     if (!inContact_)
     {
       this->flyUntilNear();
-      if (done_ || this->arrived())
+      if (body_.done || this->arrived())
       {
         return;
       }
@@ -436,19 +435,19 @@ void RockSimulator::advance(double until, double enough)
 Trajectory RockSimulator::finish()
 {
   TrajectorySummary& summary = recorder_.trajectory().summary;
-  const bool touching =
-    std::any_of(contacts_.begin(), contacts_.end(), [](const Contact& c) { return c.closed(); });
+  const bool touching = std::any_of(
+    body_.contacts.begin(), body_.contacts.end(), [](const Contact& c) { return c.closed(); });
   this->finishImpact(false);
-  recorder_.end(state_, touching);
+  recorder_.end(body_.state, touching);
   // One that ends later may have begun earlier.
   std::vector<ImpactEvent>& impacts = recorder_.trajectory().impacts;
   std::stable_sort(impacts.begin(), impacts.end(),
     [](const ImpactEvent& a, const ImpactEvent& b) { return a.time < b.time; });
-  summary.stop = state_.position;
-  summary.endTime = state_.time;
-  summary.runOut = (state_.position - summary.start).head<2>().norm();
-  this->auditSamples(state_);
-  summary.energy = this->auditAt(state_);
+  summary.stop = body_.state.position;
+  summary.endTime = body_.state.time;
+  summary.runOut = (body_.state.position - summary.start).head<2>().norm();
+  this->auditSamples(body_.state);
+  summary.energy = this->auditAt(body_.state);
   return std::move(recorder_.trajectory());
 }
 

@@ -46,27 +46,27 @@ bool anyClosed(const std::vector<Contact>& contacts)
 bool RockSimulator::mayLast(double h) const
 {
   bool any = false;
-  const Vec3 spin = state_.angularVelocity();
-  for (const Contact& c : contacts_)
+  const Vec3 spin = body_.state.angularVelocity();
+  for (const Contact& c : body_.contacts)
   {
-    const Vec3 v = state_.velocity + spin.cross(c.point - state_.position);
+    const Vec3 v = body_.state.velocity + spin.cross(c.point - body_.state.position);
     const double approach = -c.normal.dot(v);
     if (c.closed())
     {
       any = true;
-      if (std::abs(approach) > restingSpeed_)
+      if (std::abs(approach) > body_.restingSpeed)
       {
         return false;
       }
     }
-    else if (approach > restingSpeed_)
+    else if (approach > body_.restingSpeed)
     {
       if (c.gap() < approach * h)
       {
         return false;
       }
     }
-    else if (c.gap() <= 0.5 * parameters_.gravity * h * h && approach > -restingSpeed_)
+    else if (c.gap() <= 0.5 * parameters_.gravity * h * h && approach > -body_.restingSpeed)
     {
       any = true; // laid down, not thrown
     }
@@ -76,7 +76,7 @@ bool RockSimulator::mayLast(double h) const
 
 double RockSimulator::settledSpeed() const
 {
-  return restingSpeed_ + 4.0 * parameters_.gravity * std::sqrt(block_.mass() * softness_);
+  return body_.restingSpeed + 4.0 * parameters_.gravity * std::sqrt(body_.block.mass() * softness_);
 }
 
 bool RockSimulator::isCalm() const
@@ -84,50 +84,53 @@ bool RockSimulator::isCalm() const
   // At the turning point of an impact nothing moves either, but the springs hold its energy; at
   // rest they hold the weight's, ½ m v² with v = g √(m/p), several times that when the rock rolls.
   const double settled = this->settledSpeed();
-  const double held = normalEnergy_ + (stiff_ ? 0.0 : strainEnergy(block_, state_));
-  if (held > 0.5 * block_.mass() * settled * settled)
+  const double held = body_.normalEnergy + (stiff_ ? 0.0 : strainEnergy(body_.block, body_.state));
+  if (held > 0.5 * body_.block.mass() * settled * settled)
   {
     return false;
   }
-  const Vec3 spin = state_.angularVelocity();
-  return std::all_of(contacts_.begin(), contacts_.end(),
+  const Vec3 spin = body_.state.angularVelocity();
+  return std::all_of(body_.contacts.begin(), body_.contacts.end(),
     [&](const Contact& c)
     {
-      const Vec3 v = state_.velocity + spin.cross(c.point - state_.position);
-      return !c.closed() || std::abs(c.normal.dot(v)) <= restingSpeed_;
+      const Vec3 v = body_.state.velocity + spin.cross(c.point - body_.state.position);
+      return !c.closed() || std::abs(c.normal.dot(v)) <= body_.restingSpeed;
     });
 }
 
 void RockSimulator::stayInContact()
 {
-  while (!done_ && !this->arrived())
+  while (!body_.done && !this->arrived())
   {
     stayWanted();
     const double small = this->impactStep();
     const double large = std::min(parameters_.timeStep, this->travelLimit());
-    placed_.move(block_, state_);
-    if (scar_.open() && contacts_.empty() && this->flyOverScar(small))
+    body_.placed.move(body_.block, body_.state);
+    if (scar_.open() && body_.contacts.empty() && this->flyOverScar(small))
     {
       continue;
     }
-    const double speed = state_.velocity.norm() + state_.spin.norm() * block_.radius();
+    const double speed =
+      body_.state.velocity.norm() + body_.state.spin.norm() * body_.block.radius();
     const auto reachOf = [&](double h)
-    { return 1.5 * speed * h + parameters_.gravity * h * h + 1e-6 * block_.radius(); };
+    { return 1.5 * speed * h + parameters_.gravity * h * h + 1e-6 * body_.block.radius(); };
     // A long step is worth a look only when what carries is at rest along its normal.
     const bool calm = this->isCalm();
     const double reach = reachOf(calm ? large : small);
     this->ensureCandidates(reach);
     this->findContacts(candidates_, reach, calm ? large : 0.0);
-    springEnergy_ = springEnergyOf(contacts_); // what has gone with a contact shows as numerical
+    body_.springEnergy =
+      springEnergyOf(body_.contacts); // what has gone with a contact shows as numerical
 
-    double h = std::min(large, horizon_ - state_.time);
+    double h = std::min(large, horizon_ - body_.state.time);
     StepKind kind = StepKind::Lasting;
     if (!calm || !this->mayLast(h))
     {
       kind = StepKind::Impact;
       h = std::min(h, small);
       const double near = reachOf(h);
-      std::erase_if(contacts_, [&](const Contact& c) { return !c.closed() && c.gap() > near; });
+      std::erase_if(
+        body_.contacts, [&](const Contact& c) { return !c.closed() && c.gap() > near; });
     }
     if (solid_ && this->breakTrees(h))
     {
@@ -137,38 +140,38 @@ void RockSimulator::stayInContact()
     {
       continue;
     }
-    if (kind == StepKind::Impact && !anyClosed(contacts_) && openTime_ >= ringing_)
+    if (kind == StepKind::Impact && !anyClosed(body_.contacts) && openTime_ >= ringing_)
     {
-      if (!stiff_ && !(state_.strain.isZero(0.0) && state_.strainRate.isZero(0.0)))
+      if (!stiff_ && !(body_.state.strain.isZero(0.0) && body_.state.strainRate.isZero(0.0)))
       {
         // The rock has taken off, and what flies does not strain. How long it is free is asked of
         // what it is then.
-        energy_.vibration += relaxStrain(block_, state_);
+        body_.energy.vibration += relaxStrain(body_.block, body_.state);
         this->finishImpact();
         continue;
       }
       // Free until a pair closes, or until others than the candidates might.
-      const double room = candidates_.room(state_, block_.radius(), 0.0);
-      const double rim = block_.largestRimSpeed(state_.spin);
+      const double room = candidates_.room(body_.state, body_.block.radius(), 0.0);
+      const double rim = body_.block.largestRimSpeed(body_.state.spin);
       const double served =
-        std::min(timeToCover(room, state_.velocity.norm() + rim, parameters_.gravity),
-          horizon_ - state_.time);
+        std::min(timeToCover(room, body_.state.velocity.norm() + rim, parameters_.gravity),
+          horizon_ - body_.state.time);
       const double free =
-        timeToClose(placed_, state_, patch_, candidates_, parameters_.gravity, served);
+        timeToClose(body_.placed, body_.state, patch_, candidates_, parameters_.gravity, served);
       if (free >= served && served > small && !scar_.open())
       {
-        contacts_.clear();
+        body_.contacts.clear();
         if (!stiff_)
         {
           this->finishImpact();
         }
-        freeUntil_ = state_.time + served;
+        freeUntil_ = body_.state.time + served;
         this->endContact();
         return;
       }
       if (const double sure = std::min(free, served); sure > small)
       {
-        contacts_.clear();
+        body_.contacts.clear();
         this->advanceInFlight(sure);
         this->checkEnd(0.0);
         continue;
@@ -177,15 +180,15 @@ void RockSimulator::stayInContact()
     // A vertex that carries may be pressed in, and its neighbourhood with it; anything deeper
     // slipped through.
     double pressed = 0.0;
-    for (const Contact& c : contacts_)
+    for (const Contact& c : body_.contacts)
     {
       pressed = std::max(pressed, -c.gap());
     }
-    holdOverlap(
-      placed_, patch_, candidates_, kLooseOverlap * block_.radius() + 2.0 * pressed, contacts_);
+    holdOverlap(body_.placed, patch_, candidates_,
+      kLooseOverlap * body_.block.radius() + 2.0 * pressed, body_.contacts);
     h = std::max(h, 1e-12);
     this->armContacts(h);
-    if (kind == StepKind::Impact && contacts_.size() > 1)
+    if (kind == StepKind::Impact && body_.contacts.size() > 1)
     {
       const double touchdown = this->touchdownStep(h);
       if (touchdown < (1.0 - 1e-9) * h)
@@ -199,13 +202,14 @@ void RockSimulator::stayInContact()
       this->pressOutDeep(h, false);
     }
     this->takeStep(h, kind);
-    this->checkEnd(state_.time - before_.time);
+    this->checkEnd(body_.state.time - body_.before.time);
   }
 }
 
 void RockSimulator::findContacts(const CandidatePairs& candidates, double reach, double h)
 {
-  updateContacts(placed_, patch_, candidates, reach, contacts_, state_.spin.norm() * h);
+  updateContacts(
+    body_.placed, patch_, candidates, reach, body_.contacts, body_.state.spin.norm() * h);
 }
 
 double RockSimulator::dampingRatioFor(int ground, double restitution)
@@ -234,25 +238,25 @@ void RockSimulator::armContacts(double h)
 {
   // A rock that slides into something may be faster than when its contact began.
   penalty_ = std::max(penalty_, this->stoppingPenalty());
-  for (Contact& c : contacts_)
+  for (Contact& c : body_.contacts)
   {
     this->armContact(c);
   }
-  if (const std::ptrdiff_t points = closedCount(contacts_); points > kCohesivePoints)
+  if (const std::ptrdiff_t points = closedCount(body_.contacts); points > kCohesivePoints)
   {
-    for (Contact& c : contacts_)
+    for (Contact& c : body_.contacts)
     {
       c.cohesion = sharedCohesion(c.cohesion, points);
     }
   }
-  if (!crowded_)
+  if (!body_.crowded)
   {
     tuneDashpots(
-      contacts_, h,
-      [this, spin = state_.angularVelocity()](const Contact& c)
-      { return -c.normal.dot(state_.velocity + spin.cross(c.point - state_.position)); },
+      body_.contacts, h,
+      [this, spin = body_.state.angularVelocity()](const Contact& c)
+      { return -c.normal.dot(body_.state.velocity + spin.cross(c.point - body_.state.position)); },
       [this](const Vec3& force, const Vec3& moment, const Vec3& at)
-      { return response(placed_, force, moment, at); });
+      { return response(body_.placed, force, moment, at); });
   }
 }
 
@@ -266,33 +270,34 @@ void RockSimulator::armContact(Contact& c)
   {
     return;
   }
-  const Vec3 lever = c.point - state_.position;
-  const Vec3 y = placed_.rotation().transpose() * lever;
-  const Vec3 n = placed_.rotation().transpose() * c.normal;
+  const Vec3 lever = c.point - body_.state.position;
+  const Vec3 y = body_.placed.rotation().transpose() * lever;
+  const Vec3 n = body_.placed.rotation().transpose() * c.normal;
   const Vec3 t = n.unitOrthogonal();
   const double shear = penalty_ * parameters_.shearRatio;
   const bool strains = stiff_ && !parameters_.rigid;
-  c.stiffness = penalty_ / (1.0 + (strains ? penalty_ * block_.compliance(n, y) : 0.0));
-  c.shearStiffness = shear / (1.0 + (strains ? shear * block_.compliance(t, y) : 0.0));
-  const double speed = state_.velocity.norm();
-  const double approach = -c.normal.dot(state_.velocity + state_.angularVelocity().cross(lever));
-  const bool down =
-    approach > restingSpeed_ && comesDown(approach, speed, parameters_.gravity, block_.radius());
+  c.stiffness = penalty_ / (1.0 + (strains ? penalty_ * body_.block.compliance(n, y) : 0.0));
+  c.shearStiffness = shear / (1.0 + (strains ? shear * body_.block.compliance(t, y) : 0.0));
+  const double speed = body_.state.velocity.norm();
+  const double approach =
+    -c.normal.dot(body_.state.velocity + body_.state.angularVelocity().cross(lever));
+  const bool down = approach > body_.restingSpeed &&
+    comesDown(approach, speed, parameters_.gravity, body_.block.radius());
   const int ground = surface_.restitutionClass(c.cfe);
   const double restitution = surface_.restitutionAt(touch);
   const double damped = contactDamping(surface_.terrain().restitutionMaterial(ground), restitution,
     this->dampingRatioFor(ground, restitution), approach, down);
-  const double mobility = block_.mobility(n, y);
+  const double mobility = body_.block.mobility(n, y);
   c.frequency2 = c.stiffness * mobility;
   c.stopped = 1.0 / mobility;
   c.dashpot = damped > 0.0 ? 2.0 * damped * std::sqrt(c.stiffness / mobility) : 0.0;
-  c.shearDashpot = 2.0 * kShearDamping * std::sqrt(c.shearStiffness / block_.mobility(t, y));
+  c.shearDashpot = 2.0 * kShearDamping * std::sqrt(c.shearStiffness / body_.block.mobility(t, y));
 }
 
 void RockSimulator::takeStep(double h, StepKind kind)
 {
-  before_ = state_;
-  springEnergyBefore_ = springEnergy_;
+  body_.before = body_.state;
+  body_.springEnergyBefore = body_.springEnergy;
   const bool lasting = kind == StepKind::Lasting;
   TrajectorySummary& summary = recorder_.trajectory().summary;
   StepRequest request;
@@ -305,24 +310,24 @@ void RockSimulator::takeStep(double h, StepKind kind)
   request.cohesion = surface_.cohesion();
   request.rigid = stiff_;
   request.maxOpenClose = parameters_.maxOpenClose;
-  if (steppedAs_ == kind)
+  if (body_.steppedAs == kind)
   {
-    request.acceleration = acceleration_;
-    request.spinAcceleration = spinAcceleration_;
+    request.acceleration = body_.acceleration;
+    request.spinAcceleration = body_.spinAcceleration;
   }
   else if (!lasting)
   {
     request.acceleration.z() = -parameters_.gravity;
   }
-  contactsBefore_ = contacts_;
+  body_.contactsBefore = body_.contacts;
   thread_local StepSolver solver; // its work space is as large as the rest of a rock
-  const double energyBefore = lasting ? this->mechanicalEnergy() + springEnergy_ : 0.0;
+  const double energyBefore = lasting ? this->mechanicalEnergy() + body_.springEnergy : 0.0;
 
   StepOutcome outcome;
   for (int cut = 0;; ++cut)
   {
     const bool last = cut >= parameters_.maxCuts;
-    outcome = solver.step(block_, request, contacts_, state_, last);
+    outcome = solver.step(body_.block, request, body_.contacts, body_.state, last);
     summary.openCloseIterations += outcome.iterations;
     if (outcome.settled || last)
     {
@@ -339,12 +344,12 @@ void RockSimulator::takeStep(double h, StepKind kind)
   if (!outcome.settled)
   {
     ++summary.unsettledSteps;
-    if (state_.time <= before_.time)
+    if (body_.state.time <= body_.before.time)
     {
       // Not even a finite displacement: the contacts are let go for this step.
-      state_ = fly(block_, state_, parameters_.gravity, request.duration);
-      contacts_.clear();
-      contactsBefore_.clear();
+      body_.state = fly(body_.block, body_.state, parameters_.gravity, request.duration);
+      body_.contacts.clear();
+      body_.contactsBefore.clear();
     }
   }
   this->absorb(kind, outcome, energyBefore, 0.0);
@@ -358,66 +363,67 @@ void RockSimulator::absorb(
   StepKind kind, const StepOutcome& outcome, double energyBefore, double given)
 {
   const bool lasting = kind == StepKind::Lasting;
-  const double taken = state_.time - before_.time;
-  energy_.exchanged += given;
-  energy_.friction += outcome.frictionWork;
-  energy_.restitution += outcome.dampedWork;
-  springEnergy_ = outcome.springEnergy;
-  normalEnergy_ = outcome.normalEnergy;
+  const double taken = body_.state.time - body_.before.time;
+  body_.energy.exchanged += given;
+  body_.energy.friction += outcome.frictionWork;
+  body_.energy.restitution += outcome.dampedWork;
+  body_.springEnergy = outcome.springEnergy;
+  body_.normalEnergy = outcome.normalEnergy;
   if (lasting)
   {
-    const double damped = energyBefore - this->mechanicalEnergy() - springEnergy_ -
+    const double damped = energyBefore - this->mechanicalEnergy() - body_.springEnergy -
       outcome.frictionWork - outcome.dampedWork - given;
     // Energy that recovery of an overlap gives a rock comes from nowhere, and is booked as that.
-    energy_.damping += pressed_ ? std::max(0.0, damped) : damped;
+    body_.energy.damping += pressed_ ? std::max(0.0, damped) : damped;
     pressed_ = false;
     // The lag of the next lasting step. What an impact left is no acceleration to go on with, nor
     // is that under other contacts: a rock that rattles would be fed by it.
     const double bound = 3.0 * parameters_.gravity;
-    const std::uint64_t carrying = carriers(contacts_);
+    const std::uint64_t carrying = carriers(body_.contacts);
     const bool same = carrying == carrying_;
     carrying_ = carrying;
-    acceleration_ = (state_.velocity - before_.velocity) / taken;
-    spinAcceleration_ = (state_.spin - before_.spin) / taken;
-    if (!same || acceleration_.norm() > bound || spinAcceleration_.norm() * block_.radius() > bound)
+    body_.acceleration = (body_.state.velocity - body_.before.velocity) / taken;
+    body_.spinAcceleration = (body_.state.spin - body_.before.spin) / taken;
+    if (!same || body_.acceleration.norm() > bound ||
+      body_.spinAcceleration.norm() * body_.block.radius() > bound)
     {
-      acceleration_.setZero();
-      spinAcceleration_.setZero();
+      body_.acceleration.setZero();
+      body_.spinAcceleration.setZero();
     }
     this->pressOut(taken);
   }
   else
   {
-    acceleration_ = (state_.velocity - before_.velocity) / taken;
-    spinAcceleration_ = (state_.spin - before_.spin) / taken;
+    body_.acceleration = (body_.state.velocity - body_.before.velocity) / taken;
+    body_.spinAcceleration = (body_.state.spin - body_.before.spin) / taken;
     carrying_ = 0;
   }
   if (yields_)
   {
     this->yieldInStep(taken);
   }
-  steppedAs_ = kind;
-  const bool touching = anyClosed(contacts_);
+  body_.steppedAs = kind;
+  const bool touching = anyClosed(body_.contacts);
   if (barriers_)
   {
     // Behind one that breaks there may be others.
-    const BlockState end = state_;
+    const BlockState end = body_.state;
     double lost = 0.0;
-    const Way way{ before_, end, end.time - before_.time, false };
+    const Way way{ body_.before, end, end.time - body_.before.time, false };
     this->findBarriers(way);
     for (this->passBarriers(way, lost); hit_.barrier >= 0; this->passBarriers(way, lost))
     {
       lost += this->endStepAtBarrier(end, lost, touching);
-      if (done_)
+      if (body_.done)
       {
         return;
       }
     }
   }
-  recorder_.recordBetween(before_, state_, touching);
-  this->auditSamples(state_);
-  recorder_.follow(state_);
-  this->followImpact(before_, taken, outcome);
+  recorder_.recordBetween(body_.before, body_.state, touching);
+  this->auditSamples(body_.state);
+  recorder_.follow(body_.state);
+  this->followImpact(body_.before, taken, outcome);
   // A soft block that is still being pressed together leaves its contacts and comes back to them:
   // it has taken off when it has not touched for a period of its own.
   openTime_ = touching ? 0.0 : openTime_ + taken;
@@ -430,17 +436,17 @@ void RockSimulator::absorb(
 double RockSimulator::looseOverlap() const
 {
   // In a crowd a rock may be pushed under the slope within a step; it may be alone soon after.
-  return (crowded_ ? kLooseOverlap : kFirm) * block_.radius();
+  return (body_.crowded ? kLooseOverlap : kFirm) * body_.block.radius();
 }
 
 void RockSimulator::pressOut(double h)
 {
   // No more per step than half the weight's compression, or a stiff spring would throw the rock
   // off.
-  const double way =
-    std::min(kPressOut * h, 0.5 * block_.mass() * parameters_.gravity / parameters_.normalPenalty);
+  const double way = std::min(
+    kPressOut * h, 0.5 * body_.block.mass() * parameters_.gravity / parameters_.normalPenalty);
   const double loose = this->looseOverlap();
-  for (Contact& c : contacts_)
+  for (Contact& c : body_.contacts)
   {
     pressOutLoose(c, way, loose);
   }
@@ -449,9 +455,9 @@ void RockSimulator::pressOut(double h)
 void RockSimulator::pressOutDeep(double h, bool held)
 {
   pressed_ = false;
-  const double speed = deepSpeed(parameters_.gravity, block_.radius());
+  const double speed = deepSpeed(parameters_.gravity, body_.block.radius());
   const double loose = this->looseOverlap();
-  for (Contact& c : contacts_)
+  for (Contact& c : body_.contacts)
   {
     const double way = held ? gentleWay(c, h, speed) : speed * h;
     pressed_ = rockfall::pressOutDeep(c, way, loose) || pressed_;
@@ -460,16 +466,16 @@ void RockSimulator::pressOutDeep(double h, bool held)
 
 void RockSimulator::letDeepBe(double loose)
 {
-  const bool deep = anyDeep(contacts_, loose);
+  const bool deep = anyDeep(body_.contacts, loose);
   double held = 0.0;
-  for (Contact& c : contacts_)
+  for (Contact& c : body_.contacts)
   {
-    const double still = this->settledSpeed() * std::sqrt(block_.mass());
+    const double still = this->settledSpeed() * std::sqrt(body_.block.mass());
     const double normal = letBe(c, still / std::sqrt(c.stiffness), loose);
-    normalEnergy_ = std::max(0.0, normalEnergy_ - normal);
+    body_.normalEnergy = std::max(0.0, body_.normalEnergy - normal);
     held += normal + (deep ? letSlipBe(c, still / std::sqrt(c.shearStiffness)) : 0.0);
   }
-  springEnergy_ = std::max(0.0, springEnergy_ - held);
+  body_.springEnergy = std::max(0.0, body_.springEnergy - held);
 }
 
 } // namespace rockfall

@@ -55,20 +55,21 @@ bool RockSimulator::followScar(double h)
 
 bool RockSimulator::sinkUnder(double h)
 {
-  const Vec3 spin = state_.angularVelocity();
+  const Vec3 spin = body_.state.angularVelocity();
   const Contact* under = nullptr;
-  double deepest = std::max(
-           (1.0 + kDeeperScar) * scar_.depth(), scar_.depth() + kShallowScar * block_.radius()),
+  double deepest = std::max((1.0 + kDeeperScar) * scar_.depth(),
+           scar_.depth() + kShallowScar * body_.block.radius()),
          fastest = 0.0;
-  for (const Contact& c : contacts_)
+  for (const Contact& c : body_.contacts)
   {
-    const double approach = -c.normal.dot(state_.velocity + spin.cross(c.point - state_.position));
-    if (c.closed() || approach <= restingSpeed_ || c.gap() > approach * h ||
+    const double approach =
+      -c.normal.dot(body_.state.velocity + spin.cross(c.point - body_.state.position));
+    if (c.closed() || approach <= body_.restingSpeed || c.gap() > approach * h ||
       c.normal.z() < kSteepestScar)
     {
       continue;
     }
-    const double depth = this->yieldingAt(c).scarDepth(block_.mass(), approach / c.normal.z());
+    const double depth = this->yieldingAt(c).scarDepth(body_.block.mass(), approach / c.normal.z());
     if (depth > deepest)
     {
       deepest = depth;
@@ -82,7 +83,7 @@ bool RockSimulator::sinkUnder(double h)
   }
   if (!impact_.pending)
   {
-    this->beginImpact(state_, energy_.friction, energy_.restitution);
+    this->beginImpact(body_.state, body_.energy.friction, body_.energy.restitution);
     impact_.event.cfe = under->cfe;
     impact_.event.position = under->point;
     impact_.event.normal = under->normal;
@@ -91,47 +92,48 @@ bool RockSimulator::sinkUnder(double h)
   const double before = scar_.depth();
   scar_.sink(deepest, surface_.restitutionClass(under->cfe), *under);
   // What else was pressed in loses its hold.
-  const double held = springEnergyOf(contacts_);
-  for (Contact& c : contacts_)
+  const double held = springEnergyOf(body_.contacts);
+  for (Contact& c : body_.contacts)
   {
     c.distance += (deepest - before) * c.normal.z();
   }
-  springEnergy_ = springEnergyOf(contacts_);
-  energy_.scars += held - springEnergy_;
+  body_.springEnergy = springEnergyOf(body_.contacts);
+  body_.energy.scars += held - body_.springEnergy;
   this->lowerPatch(deepest - before);
   return true;
 }
 
 bool RockSimulator::riseWithRock()
 {
-  if (!scar_.open() || !scar_.turned() || closedCount(contacts_) > 0)
+  if (!scar_.open() || !scar_.turned() || closedCount(body_.contacts) > 0)
   {
     return false;
   }
-  const double close = kScarClearance * block_.radius();
+  const double close = kScarClearance * body_.block.radius();
   const double least = kHigherScar * scar_.depth() + close; // over Λ
   // One corner that is too near says so at less cost.
-  const double enough = least - kSureClearance * block_.radius() - scar_.depth();
-  const Vec3 lower = placed_.lower(), upper = placed_.upper();
+  const double enough = least - kSureClearance * body_.block.radius() - scar_.depth();
+  const Vec3 lower = body_.placed.lower(), upper = body_.placed.upper();
   if (!solid_ && window_.covers(lower.x(), upper.x(), lower.y(), upper.y()) &&
-    heightOver(placed_, window_, enough) < enough)
+    heightOver(body_.placed, window_, enough) < enough)
   {
     return false;
   }
-  const double away = clearance(placed_, state_, patch_, parameters_.gravity, 0.0).distance;
+  const double away =
+    clearance(body_.placed, body_.state, patch_, parameters_.gravity, 0.0).distance;
   const double by = std::min(scar_.depth(), away - close);
   if (by < kHigherScar * scar_.depth())
   {
     return false;
   }
-  contacts_.clear();
+  body_.contacts.clear();
   this->raiseScar(by);
   return true;
 }
 
 bool RockSimulator::flyOverScar(double small)
 {
-  if (solid_ || !(state_.strain.isZero(0.0) && state_.strainRate.isZero(0.0)))
+  if (solid_ || !(body_.state.strain.isZero(0.0) && body_.state.strainRate.isZero(0.0)))
   {
     return false;
   }
@@ -140,15 +142,16 @@ bool RockSimulator::flyOverScar(double small)
   {
     return true;
   }
-  const double speed = state_.velocity.norm();
-  double duration = horizon_ - state_.time;
-  duration = std::min(duration, speed * duration > block_.radius() ? block_.radius() / speed : 1.0);
-  const double away = state_.velocity.dot(scar_.normal());
+  const double speed = body_.state.velocity.norm();
+  double duration = horizon_ - body_.state.time;
+  duration = std::min(
+    duration, speed * duration > body_.block.radius() ? body_.block.radius() / speed : 1.0);
+  const double away = body_.state.velocity.dot(scar_.normal());
   if (away > 0.0)
   {
     // What drag takes brings Λ nearer than a free flight has it.
     const double rate =
-      this->yieldingOf(scar_.ground()).speedLost(scar_.area() * speed, block_.mass());
+      this->yieldingOf(scar_.ground()).speedLost(scar_.area() * speed, body_.block.mass());
     duration = rate * duration > kLostOverScar ? kLostOverScar / rate : duration;
   }
   this->ensureWindow(duration);
@@ -158,9 +161,9 @@ bool RockSimulator::flyOverScar(double small)
   }
   // As far over Λ as a rock higher up would be over the slope.
   thread_local PlacedBlock raised;
-  BlockState up = state_;
+  BlockState up = body_.state;
   up.position.z() += scar_.depth();
-  raised.place(block_, up);
+  raised.place(body_.block, up);
   double free = timeToTouch(raised, up, window_, parameters_.gravity, duration);
   free *= away > 0.0 ? 1.0 - kLostOverScar : 1.0;
   if (!(free > small))
@@ -216,10 +219,10 @@ void RockSimulator::plough(double volume)
     return;
   }
   const YieldingGround& ground = this->yieldingOf(scar_.ground());
-  const double before = rigidKineticEnergy(block_, state_);
-  state_.velocity *= ground.speedLeft(volume, block_.mass());
-  state_.spin *= ground.spinLeft(volume, block_.mass());
-  energy_.scars += before - rigidKineticEnergy(block_, state_);
+  const double before = rigidKineticEnergy(body_.block, body_.state);
+  body_.state.velocity *= ground.speedLeft(volume, body_.block.mass());
+  body_.state.spin *= ground.spinLeft(volume, body_.block.mass());
+  body_.energy.scars += before - rigidKineticEnergy(body_.block, body_.state);
   impact_.event.scarDepth = scar_.deepest();
   impact_.event.scarLength = scar_.length();
 }
@@ -228,15 +231,15 @@ void RockSimulator::flyThroughSoil(double duration)
 {
   const YieldingGround& ground = this->yieldingOf(scar_.ground());
   thread_local PlacedBlock placed;
-  const double spin = state_.spin.norm();
+  const double spin = body_.state.spin.norm();
   const double longest = spin > 0.0 ? std::max(kShortestPiece, kTurnInSoil / spin) : duration;
   for (double left = duration; left > 0.0;)
   {
-    const BlockState start = state_;
+    const BlockState start = body_.state;
     const Scar before = scar_;
     for (double piece = std::min(left, longest);; piece *= 0.5)
     {
-      const BlockState end = fly(block_, start, parameters_.gravity, piece);
+      const BlockState end = fly(body_.block, start, parameters_.gravity, piece);
       // Between the ends of so small a turn it is a steady one.
       const auto at = [&](double fraction) -> const PlacedBlock&
       {
@@ -246,7 +249,7 @@ void RockSimulator::flyThroughSoil(double duration)
           between.position = placeInFlight(start, parameters_.gravity, fraction * piece);
           between.orientation = turnedBetween(start.orientation, end.orientation, fraction);
         }
-        placed.placeFrame(block_, between);
+        placed.placeFrame(body_.block, between);
         if (spin == 0.0)
         {
           placed.placeVertices(); // a straight way looks at corners
@@ -254,18 +257,18 @@ void RockSimulator::flyThroughSoil(double duration)
         return placed;
       };
       const double volume = scar_.sweep(end.position - start.position, at, spin > 0.0);
-      if (piece > kShortestPiece && ground.speedLeft(volume, block_.mass()) < kLeastLeft)
+      if (piece > kShortestPiece && ground.speedLeft(volume, body_.block.mass()) < kLeastLeft)
       {
         scar_ = before;
         continue;
       }
-      state_ = end;
+      body_.state = end;
       this->plough(volume);
       left = piece < left ? left - piece : 0.0;
       break;
     }
   }
-  if (scar_.cleared() && state_.velocity.dot(scar_.normal()) > 0.0)
+  if (scar_.cleared() && body_.state.velocity.dot(scar_.normal()) > 0.0)
   {
     scar_.leave();
   }
@@ -282,7 +285,7 @@ void RockSimulator::forgetSlip(double duration)
 void RockSimulator::yieldInStep(double h)
 {
   const Contact* most = nullptr;
-  for (const Contact& c : contacts_)
+  for (const Contact& c : body_.contacts)
   {
     if (c.normalForce > 0.0 && (!most || c.normalForce > most->normalForce))
     {
@@ -292,7 +295,7 @@ void RockSimulator::yieldInStep(double h)
   if (most)
   {
     touched_ = surface_.restitutionClass(most->cfe);
-    slip_ += h * state_.velocity.norm();
+    slip_ += h * body_.state.velocity.norm();
   }
   else
   {
@@ -304,15 +307,15 @@ void RockSimulator::yieldInStep(double h)
     {
       scar_.touch(*most);
     }
-    placed_.move(block_, state_);
-    this->plough(scar_.sweep(before_.position, placed_));
+    body_.placed.move(body_.block, body_.state);
+    this->plough(scar_.sweep(body_.before.position, body_.placed));
   }
   if (most)
   {
     const double rolling = this->yieldingAt(*most).rollingResistance;
     if (rolling > 0.0)
     {
-      energy_.rolling += resistRolling(block_, contacts_, rolling, h, state_);
+      body_.energy.rolling += resistRolling(body_.block, body_.contacts, rolling, h, body_.state);
     }
   }
 }

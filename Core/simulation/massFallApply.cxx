@@ -129,8 +129,8 @@ void MassFall::applyMissed(const Island& island, double h, StepKind kind, Worksp
     if (added.onSlope)
     {
       RockSimulator& sim = members_[island.members[added.of]]->sim;
-      sim.contacts_.push_back(c);
-      sim.contactsBefore_.push_back(added.before);
+      sim.body().contacts.push_back(c);
+      sim.body().contactsBefore.push_back(added.before);
       continue;
     }
     RockPair& pair = *island.pairs[added.of];
@@ -176,7 +176,7 @@ void MassFall::applyToRock(
   const bool crowd = island.crowd;
   this->comeToRock(island, k);
   Member& m = *members_[island.members[k]];
-  if (m.sim.done_)
+  if (m.sim.body().done)
   {
     return;
   }
@@ -190,35 +190,34 @@ void MassFall::applyToRock(
   outcome.springEnergy = body.springEnergy;
   outcome.normalEnergy = body.normalEnergy;
   m.sim.absorb(kind, outcome, work.energyBefore[b], body.given);
-  const std::vector<Contact>& c = m.sim.contacts_;
+  const std::vector<Contact>& c = m.sim.body().contacts;
   const bool carried = work.touchesOthers[std::size_t(b)] ||
     std::any_of(c.begin(), c.end(), [](const Contact& touch) { return touch.closed(); });
   // In a crowd some contact opens or closes in every step, and the acceleration of one step says
   // little of the next: carried on it would keep the pile in motion for ever.
   if (carriers[b] != m.carriers || (crowd && carried))
   {
-    m.sim.acceleration_.setZero();
-    m.sim.spinAcceleration_.setZero();
+    m.sim.body().acceleration.setZero();
+    m.sim.body().spinAcceleration.setZero();
     m.carriers = carriers[b];
   }
-  if (m.sim.done_)
+  if (m.sim.body().done)
   {
     return; // caught
   }
   this->fellTrees(island, k, work);
   m.sim.checkLeft();
   m.sim.followRest(h, carried);
-  if (!m.sim.done_ && m.sim.state_.time >= parameters_.endTime - kTooShort)
+  if (!m.sim.body().done && m.sim.body().state.time >= parameters_.endTime - kTooShort)
   {
-    m.sim.recorder_.trajectory().summary.fate = Fate::Moving;
-    m.sim.done_ = true;
+    m.sim.end(Fate::Moving);
   }
   const bool arrived = work.looked && m.arrive();
   work.arrived[std::size_t(b)] = arrived;
   if (crowd && !arrived)
   {
-    const BlockState &from = m.sim.before_, &to = m.sim.state_;
-    const double r = m.sim.block_.radius();
+    const BlockState &from = m.sim.body().before, &to = m.sim.body().state;
+    const double r = m.sim.body().block.radius();
     Workspace::Motion& motion = work.motions[std::size_t(b)];
     motion.displacement = to.position - from.position;
     motion.rimTravel =
@@ -238,8 +237,8 @@ void MassFall::keepAxis(const Island& island, std::size_t p, const Workspace& wo
     pair.before = pair.axis;
     pair.axis = pair.end;
   }
-  else if (island.crowd && both && !pair.touched && !members_[pair.first]->sim.done_ &&
-    !members_[pair.second]->sim.done_)
+  else if (island.crowd && both && !pair.touched && !members_[pair.first]->sim.body().done &&
+    !members_[pair.second]->sim.body().done)
   {
     // The look was before the last sweeps; the two may still be apart as they were.
     const Workspace::Motion& motion = work.motions[std::size_t(a)];

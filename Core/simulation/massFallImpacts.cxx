@@ -30,12 +30,12 @@ void MassFall::findKnock(RockPair& pair, const IslandContact& touch, double h)
   {
     return;
   }
-  const RockSimulator &a = members_[pair.first]->sim, &b = members_[pair.second]->sim;
-  const double resting = std::min(a.restingSpeed_, b.restingSpeed_);
+  const RockBody &a = members_[pair.first]->sim.body(), &b = members_[pair.second]->sim.body();
+  const double resting = std::min(a.restingSpeed, b.restingSpeed);
   const double closing = -touch.opening / h;
   if (closing > resting + parameters_.gravity * h)
   {
-    this->beginPairImpact(pair, a.before_, b.before_, c.point);
+    this->beginPairImpact(pair, a.before, b.before, c.point);
     pair.impact.approach = std::max(pair.impact.approach, closing);
   }
 }
@@ -69,12 +69,12 @@ void MassFall::finishPairImpact(RockPair& pair, bool over)
     event.impulse = size;
     event.approachSpeed = impact.approach;
     event.velocityBefore = impact.before[side];
-    event.velocityAfter = sim.state_.velocity;
+    event.velocityAfter = sim.body().state.velocity;
     event.energyLoss = loss;
     event.restitution = pair.law.restitution;
     event.otherRock = other;
-    event.otherBlockId = members_[other]->sim.rock_.blockId;
-    Trajectory& trajectory = sim.recorder_.trajectory();
+    event.otherBlockId = members_[other]->sim.trajectory().summary.blockId;
+    Trajectory& trajectory = sim.trajectory();
     trajectory.impacts.push_back(event);
     ++trajectory.summary.impacts;
   }
@@ -85,7 +85,7 @@ void MassFall::closePairBooks(RockPair& pair)
   this->finishPairImpact(pair, false);
   for (const int i : { pair.first, pair.second })
   {
-    members_[i]->sim.recorder_.trajectory().summary.lastingLoss += 0.5 * pair.lastingLoss;
+    members_[i]->sim.trajectory().summary.lastingLoss += 0.5 * pair.lastingLoss;
   }
   pair.lastingLoss = 0.0;
 }

@@ -18,7 +18,7 @@ namespace rockfall
 
 PairMotion MassFall::motionOf(const RockPair& pair) const
 {
-  return { members_[pair.first]->sim.state_, members_[pair.second]->sim.state_ };
+  return { members_[pair.first]->sim.body().state, members_[pair.second]->sim.body().state };
 }
 
 bool MassFall::isCrowd(const Island& island) const
@@ -26,7 +26,7 @@ bool MassFall::isCrowd(const Island& island) const
   double stiffest = 0.0;
   for (int i : island.members)
   {
-    stiffest = std::max(stiffest, members_[i]->sim.block_.largestMobility());
+    stiffest = std::max(stiffest, members_[i]->sim.body().block.largestMobility());
   }
   const double frequency = std::sqrt(parameters_.normalPenalty * stiffest);
   const double steps = parameters_.timeStep * kStepsPerImpact * frequency / std::numbers::pi;
@@ -40,7 +40,7 @@ double MassFall::islandStep(const Island& island) const
   for (int i : island.members)
   {
     const RockSimulator& sim = members_[i]->sim;
-    h = sim.done_ ? h : std::min(h, sim.impactStep());
+    h = sim.body().done ? h : std::min(h, sim.impactStep());
   }
   for (const RockPair* pair : island.pairs)
   {
@@ -53,8 +53,8 @@ double MassFall::islandStep(const Island& island) const
     {
       sum += c.frequency2;
     }
-    const Block& a = members_[pair->first]->sim.block_;
-    const Block& b = members_[pair->second]->sim.block_;
+    const Block& a = members_[pair->first]->sim.body().block;
+    const Block& b = members_[pair->second]->sim.body().block;
     const double all = parameters_.normalPenalty * (a.largestMobility() + b.largestMobility());
     h = std::min(h, std::numbers::pi / (kStepsPerPairImpact * std::sqrt(std::max(sum, all))));
   }
@@ -82,16 +82,16 @@ void MassFall::gatherContacts(const Island& island, double h, Workspace& work)
     this->comeToRock(island, k);
     Member& m = *members_[island.members[k]];
     RockSimulator& sim = m.sim;
-    if (sim.done_)
+    if (sim.body().done)
     {
       return;
     }
     m.stand();
-    const double r = sim.block_.radius();
+    const double r = sim.body().block.radius();
     const double pushed = work.sides[std::size_t(island.members[k])].pushed;
     const double reach =
-      reachOf(sim.state_.velocity.norm() + sim.state_.spin.norm() * r + pushed, r);
-    sim.crowded_ = crowd;
+      reachOf(sim.body().state.velocity.norm() + sim.body().state.spin.norm() * r + pushed, r);
+    sim.body().crowded = crowd;
     // Twice: beyond a concave edge planes serve a little further than their triangles.
     if (crowd && sim.isHigh(2.0 * reach))
     {
@@ -99,41 +99,42 @@ void MassFall::gatherContacts(const Island& island, double h, Workspace& work)
       sim.armContacts(h);
       return;
     }
-    sim.placed_.placeVertices();
+    sim.body().placed.placeVertices();
     const auto findThem = [&]() -> const CandidatePairs&
     {
       if (!crowd)
       {
         sim.ensureCandidates(reach);
       }
-      const double spread = sim.state_.spin.norm() * r + pushed;
+      const double spread = sim.body().state.spin.norm() * r + pushed;
       const CandidatePairs& near = crowd
         ? sim.candidatesNow(m.body,
-            { sim.state_.velocity, spread, kFasterApproach * h,
+            { sim.body().state.velocity, spread, kFasterApproach * h,
               parameters_.gravity * h * h + kSurelyOnSlope * r, reach })
-        : sim.candidates_;
+        : sim.candidates();
       sim.findContacts(near, reach, crowd ? 0.0 : h);
       return near;
     };
     const CandidatePairs* near = &findThem();
-    while (sim.solid_ && sim.breakTrees(h))
+    while (sim.meetsSolids() && sim.breakTrees(h))
     {
       near = &findThem();
     }
-    while (sim.yields_ && sim.followScar(h))
+    while (sim.meetsYielding() && sim.followScar(h))
     {
       near = &findThem();
     }
-    if (sim.solid_)
+    if (sim.meetsSolids())
     {
       stand(k); // what broke has taken speed
     }
     double pressed = 0.0;
-    for (const Contact& c : sim.contacts_)
+    for (const Contact& c : sim.body().contacts)
     {
       pressed = std::max(pressed, -c.gap());
     }
-    holdOverlap(sim.placed_, sim.patch_, *near, kLooseOverlap * r + 2.0 * pressed, sim.contacts_);
+    holdOverlap(sim.body().placed, sim.patch(), *near, kLooseOverlap * r + 2.0 * pressed,
+      sim.body().contacts);
     stiffenPressed(sim);
     sim.armContacts(h);
   };
@@ -180,16 +181,16 @@ bool MassFall::isCalm(const Island& island) const
   for (int i : island.members)
   {
     const RockSimulator& sim = members_[i]->sim;
-    if (!sim.done_ && !sim.isCalm())
+    if (!sim.body().done && !sim.isCalm())
     {
       return false;
     }
   }
   for (const RockPair* pair : island.pairs)
   {
-    const RockSimulator &a = members_[pair->first]->sim, &b = members_[pair->second]->sim;
-    const double resting = std::min(a.restingSpeed_, b.restingSpeed_);
-    const double mass = 1.0 / (1.0 / a.block_.mass() + 1.0 / b.block_.mass());
+    const RockBody &a = members_[pair->first]->sim.body(), &b = members_[pair->second]->sim.body();
+    const double resting = std::min(a.restingSpeed, b.restingSpeed);
+    const double mass = 1.0 / (1.0 / a.block.mass() + 1.0 / b.block.mass());
     const PairMotion motion = this->motionOf(*pair);
     double held = 0.0;
     for (const Contact& c : pair->contacts)
@@ -204,7 +205,7 @@ bool MassFall::isCalm(const Island& island) const
       }
       // Beyond what the weights of a pile can hold, it is the turning point of an impact.
       const double weight =
-        double(island.members.size()) * parameters_.gravity * (a.block_.mass() + b.block_.mass());
+        double(island.members.size()) * parameters_.gravity * (a.block.mass() + b.block.mass());
       const double settled = 4.0 * weight / c.stiffness;
       held += c.gap() < -settled ? 0.5 * c.stiffness * c.gap() * c.gap() : 0.0;
     }
@@ -224,11 +225,11 @@ bool MassFall::mayLast(const Island& island, double h) const
   for (int i : island.members)
   {
     const RockSimulator& sim = members_[i]->sim;
-    const Vec3 spin = sim.state_.angularVelocity();
-    for (const Contact& c : sim.contacts_)
+    const Vec3 spin = sim.body().state.angularVelocity();
+    for (const Contact& c : sim.body().contacts)
     {
-      if (impact(
-            c, sim.state_.velocity + spin.cross(c.point - sim.state_.position), sim.restingSpeed_))
+      if (impact(c, sim.body().state.velocity + spin.cross(c.point - sim.body().state.position),
+            sim.body().restingSpeed))
       {
         return false;
       }
@@ -236,8 +237,8 @@ bool MassFall::mayLast(const Island& island, double h) const
   }
   for (const RockPair* pair : island.pairs)
   {
-    const double resting =
-      std::min(members_[pair->first]->sim.restingSpeed_, members_[pair->second]->sim.restingSpeed_);
+    const double resting = std::min(members_[pair->first]->sim.body().restingSpeed,
+      members_[pair->second]->sim.body().restingSpeed);
     const PairMotion motion = this->motionOf(*pair);
     for (const Contact& c : pair->contacts)
     {
@@ -252,24 +253,25 @@ bool MassFall::mayLast(const Island& island, double h) const
 
 double MassFall::freeOfSlope(RockSimulator& sim, double most)
 {
-  sim.placed_.placeVertices();
-  if (sim.crowded_)
+  sim.body().placed.placeVertices();
+  if (sim.body().crowded)
   {
     sim.ensureCandidates(0.0, true); // what is high over the ground had no need yet
   }
-  const double room = sim.candidates_.room(sim.state_, sim.block_.radius(), 0.0);
-  const double speed = sim.state_.velocity.norm() + sim.block_.largestRimSpeed(sim.state_.spin);
+  const double room = sim.candidates().room(sim.body().state, sim.body().block.radius(), 0.0);
+  const double speed =
+    sim.body().state.velocity.norm() + sim.body().block.largestRimSpeed(sim.body().state.spin);
   const double free = std::min(most, timeToCover(room, speed, parameters_.gravity));
   return timeToClose(
-    sim.placed_, sim.state_, sim.patch_, sim.candidates_, parameters_.gravity, free);
+    sim.body().placed, sim.body().state, sim.patch(), sim.candidates(), parameters_.gravity, free);
 }
 
 double MassFall::freeOfEachOther(const RockPair& pair, double gravity) const
 {
   // Along the axis that tells them apart they come no nearer than this.
-  const RockSimulator &a = members_[pair.first]->sim, &b = members_[pair.second]->sim;
-  const double closing = -pair.axis.normal.dot(a.state_.velocity - b.state_.velocity) +
-    a.block_.largestRimSpeed(a.state_.spin) + b.block_.largestRimSpeed(b.state_.spin);
+  const RockBody &a = members_[pair.first]->sim.body(), &b = members_[pair.second]->sim.body();
+  const double closing = -pair.axis.normal.dot(a.state.velocity - b.state.velocity) +
+    a.block.largestRimSpeed(a.state.spin) + b.block.largestRimSpeed(b.state.spin);
   return timeToCover(pair.axis.distance, closing, gravity);
 }
 
@@ -279,11 +281,11 @@ double MassFall::freeTime(const Island& island, double most)
   for (int i : island.members)
   {
     RockSimulator& sim = members_[i]->sim;
-    free = sim.done_ ? free : this->freeOfSlope(sim, free);
+    free = sim.body().done ? free : this->freeOfSlope(sim, free);
   }
   for (const RockPair* pair : island.pairs)
   {
-    if (!members_[pair->first]->sim.done_ && !members_[pair->second]->sim.done_)
+    if (!members_[pair->first]->sim.body().done && !members_[pair->second]->sim.body().done)
     {
       free = std::min(free, this->freeOfEachOther(*pair, 0.0)); // both fall alike
     }
@@ -298,10 +300,10 @@ double MassFall::freeOfFlying(const Island& island, double most, Workspace& work
   for (int i : island.members)
   {
     const RockSimulator& sim = members_[i]->sim;
-    const double rim = sim.block_.largestRimSpeed(sim.state_.spin);
-    work.flying[std::size_t(i)] = !sim.done_ &&
-      sim.state_.velocity.norm() + rim > sim.restingSpeed_ &&
-      std::none_of(sim.contacts_.begin(), sim.contacts_.end(), isClosed);
+    const double rim = sim.body().block.largestRimSpeed(sim.body().state.spin);
+    work.flying[std::size_t(i)] = !sim.body().done &&
+      sim.body().state.velocity.norm() + rim > sim.body().restingSpeed &&
+      std::none_of(sim.body().contacts.begin(), sim.body().contacts.end(), isClosed);
   }
   for (const RockPair* pair : island.pairs)
   {
@@ -330,21 +332,9 @@ void MassFall::fly(const Island& island, double duration)
   for (int i : island.members)
   {
     RockSimulator& sim = members_[i]->sim;
-    if (!sim.done_)
+    if (!sim.body().done)
     {
-      sim.contacts_.clear();
-      sim.finishImpact();
-      const double end = sim.state_.time + duration;
-      sim.advanceInFlight(duration);
-      while (sim.barriers_ && !sim.done_ && sim.state_.time < end)
-      {
-        sim.advanceInFlight(end - sim.state_.time); // through a barrier that broke
-      }
-      if (!sim.done_)
-      {
-        sim.checkLeft();
-      }
-      sim.quietTime_ = 0.0;
+      sim.flyFree(duration);
     }
   }
   for (RockPair* pair : island.pairs)
@@ -359,9 +349,9 @@ double MassFall::timeOf(const Island& island, double until) const
 {
   for (int i : island.members)
   {
-    if (!members_[i]->sim.done_)
+    if (!members_[i]->sim.body().done)
     {
-      return members_[i]->sim.state_.time;
+      return members_[i]->sim.body().state.time;
     }
   }
   return until;
@@ -380,12 +370,9 @@ double MassFall::advanceTogether(const Island& island, double until, bool lastin
     for (int i : island.members)
     {
       RockSimulator& sim = members_[i]->sim;
-      if (!sim.inContact_)
-      {
-        sim.beginContact();
-      }
+      sim.beginContact();
       const double limit = (inTime ? 1.0 : kCrowdTravel) * sim.travelLimit();
-      travel = sim.done_ ? travel : std::min(travel, limit);
+      travel = sim.body().done ? travel : std::min(travel, limit);
     }
     const double remaining = until - now();
     const double large = std::min(remaining, travel);
@@ -397,7 +384,7 @@ double MassFall::advanceTogether(const Island& island, double until, bool lastin
     bool any = false;
     for (int i : island.members)
     {
-      const std::vector<Contact>& c = members_[i]->sim.contacts_;
+      const std::vector<Contact>& c = members_[i]->sim.body().contacts;
       any = any || std::any_of(c.begin(), c.end(), [](const Contact& k) { return k.closed(); });
     }
     for (const RockPair* pair : island.pairs)

@@ -59,7 +59,7 @@ LookOutcome MassFall::lookAgain(const Island& island, double h, bool bounces, Wo
   {
     this->comeToRock(island, k);
     Member& m = *members_[island.members[k]];
-    if (m.sim.done_)
+    if (m.sim.body().done)
     {
       return;
     }
@@ -69,12 +69,12 @@ LookOutcome MassFall::lookAgain(const Island& island, double h, bool bounces, Wo
     if (motion.moved)
     {
       const BlockState end = work.solver.end(work.bodies, at);
-      m.end.placeFrame(m.sim.block_, end);
+      m.end.placeFrame(m.sim.body().block, end);
       m.endBody.update(m.end);
-      motion.displacement = end.position - m.sim.state_.position;
+      motion.displacement = end.position - m.sim.body().state.position;
       motion.rimTravel =
-        rimTravel(m.sim.state_.orientation, end.orientation, m.sim.block_.radius());
-      motion.low = m.sim.solid_ || !m.sim.isHighAt(end.position, 0.0);
+        rimTravel(m.sim.body().state.orientation, end.orientation, m.sim.body().block.radius());
+      motion.low = m.sim.meetsSolids() || !m.sim.isHighAt(end.position, 0.0);
     }
   };
   forEach(island.members.size(), kRockGrain, place);
@@ -116,7 +116,7 @@ std::size_t MassFall::touchesOnSlope(const Island& island, std::size_t m,
     c.distance = gap + c.offset;
     touches.push_back(c);
   };
-  for (std::size_t k = 0; k < sim.contacts_.size(); ++k)
+  for (std::size_t k = 0; k < sim.body().contacts.size(); ++k)
   {
     reckoned(work.slopeFirsts[m] + k);
   }
@@ -128,12 +128,12 @@ std::size_t MassFall::touchesOnSlope(const Island& island, std::size_t m,
     }
   }
   const std::size_t known = touches.size();
-  holdOverlap(
-    member.end, sim.patch_, near, kLooseOverlap * sim.block_.radius() + 2.0 * pressed, touches);
+  holdOverlap(member.end, sim.patch(), near,
+    kLooseOverlap * sim.body().block.radius() + 2.0 * pressed, touches);
   // Trees that nobody reckoned with are met in the next step.
   const auto behind = touches.begin() + std::ptrdiff_t(known);
   touches.erase(std::remove_if(behind, touches.end(),
-                  [&](const Contact& c) { return sim.solid_ && sim.treeOf(c) >= 0; }),
+                  [&](const Contact& c) { return sim.meetsSolids() && sim.treeOf(c) >= 0; }),
     touches.end());
   return known;
 }
@@ -145,10 +145,11 @@ double MassFall::lookAtSlope(const Island& island, double h, bool bounces, Works
     Member& member = *members_[island.members[m]];
     const std::size_t place = std::size_t(member.place);
     const Workspace::Motion& motion = work.motions[place];
-    member.sim.placed_.placeVertices();
+    member.sim.body().placed.placeVertices();
     member.end.placeVertices();
     return member.sim.candidatesAt(work.solver.end(work.bodies, place), member.end, member.endBody,
-      motion.displacement.norm() + motion.rimTravel, kLooseOverlap * member.sim.block_.radius());
+      motion.displacement.norm() + motion.rimTravel,
+      kLooseOverlap * member.sim.body().block.radius());
   };
   const auto isMissed = [&](std::size_t m)
   {
@@ -161,7 +162,7 @@ double MassFall::lookAtSlope(const Island& island, double h, bool bounces, Works
     const Member& member = *members_[island.members[m]];
     const RockSimulator& sim = member.sim;
     const CandidatePairs& near = candidatesOf(m);
-    if (!overlaps(member.end, sim.patch_, near, kLooseOverlap * sim.block_.radius()))
+    if (!overlaps(member.end, sim.patch(), near, kLooseOverlap * sim.body().block.radius()))
     {
       return false;
     }
@@ -182,9 +183,9 @@ double MassFall::lookAtSlope(const Island& island, double h, bool bounces, Works
          k < touches.size(); ++k)
     {
       Contact& c = touches[k];
-      deepest = std::max(deepest, -c.distance / member.sim.block_.radius());
+      deepest = std::max(deepest, -c.distance / member.sim.body().block.radius());
       const PlacedBlock slope;
-      carryBack(member.end, slope, member.sim.placed_, slope, c);
+      carryBack(member.end, slope, member.sim.body().placed, slope, c);
       c.offset = 0.0;
       member.sim.armContact(c);
       work.added.push_back(c);
@@ -328,7 +329,7 @@ double MassFall::addMissed(
       continue;
     }
     most = std::max(most, (deepestOf(p, work) - c.distance) / smallerRadius(pair, work));
-    carryBack(a.end, b.end, a.sim.placed_, b.sim.placed_, c);
+    carryBack(a.end, b.end, a.sim.body().placed, b.sim.body().placed, c);
     this->setSprings(pair, c);
     work.added.push_back(c);
     work.addedTo.push_back({ false, p, c });

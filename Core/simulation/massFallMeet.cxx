@@ -42,18 +42,19 @@ constexpr std::size_t kMostOut = 4;
 
 void MassFall::foresee(const RockSimulator& sim, double duration, Pace& pace) const
 {
-  const BlockState& s = sim.state_;
-  const double speed = s.velocity.norm(), rim = sim.block_.largestRimSpeed(s.spin);
+  const BlockState& s = sim.body().state;
+  const double speed = s.velocity.norm(), rim = sim.body().block.largestRimSpeed(s.spin);
   // Springs give back what they hold in the middle of an impact.
-  const double held = std::sqrt(2.0 * sim.springEnergy_ * sim.block_.largestMobility());
+  const double held = std::sqrt(2.0 * sim.body().springEnergy * sim.body().block.largestMobility());
   pace.own = (speed + rim + held) * duration + parameters_.gravity * duration * duration;
   // Structures farther off than it may come have no say.
-  const double displacement = sim.block_.radius() + pace.own;
+  const double displacement = sim.body().block.radius() + pace.own;
   const Vec3& p = s.position;
-  const bool obstructed = sim.obstacles_ &&
-    sim.obstacles_->anyIn(
+  const Obstacles* obstacles = surface_.terrain().obstacles();
+  const bool obstructed = obstacles &&
+    obstacles->anyIn(
       p.x() - displacement, p.x() + displacement, p.y() - displacement, p.y() + displacement);
-  const bool flies = !obstructed && sim.contacts_.empty() && sim.clearFor(duration);
+  const bool flies = !obstructed && sim.body().contacts.empty() && sim.clearFor(duration);
   // Velocities that an impact on the slope leaves, with any normal.
   const double e = obstructed ? 1.0 : surface_.largestRestitution();
   pace.middle = flies ? s.velocity : Vec3(0.5 * (1.0 - e) * s.velocity);
@@ -81,8 +82,8 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
     marks_.resize(count, 0);
     for (std::size_t i = 0; i < count; ++i)
     {
-      movers[i].radius = fall.members_[i]->sim.block_.radius();
-      paces_[i].mass = fall.members_[i]->sim.block_.mass();
+      movers[i].radius = fall.members_[i]->sim.body().block.radius();
+      paces_[i].mass = fall.members_[i]->sim.body().block.mass();
     }
     bounciest_ = fall.contacts_.largestRestitution();
   }
@@ -101,7 +102,7 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
     }
     const bool slept = m.asleep;
     m.asleep = member.asleep;
-    m.present = !sim.done_ || m.asleep;
+    m.present = !sim.body().done || m.asleep;
     m.shares = m.present && !m.asleep && m.crowd >= 0;
     thrown_[i] = 1.0;
     fars_[i] = 0.0;
@@ -110,7 +111,7 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
       m.displacement = m.known = 0.0;
       return;
     }
-    const BlockState& s = sim.state_;
+    const BlockState& s = sim.body().state;
     m.position = s.position;
     m.rimTravel += rimTravel(pace.orientation, s.orientation, m.radius) +
       m.radius * (s.strain - pace.strain).norm();

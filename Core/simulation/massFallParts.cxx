@@ -47,8 +47,8 @@ double MassFall::gapAlong(const RockPair& pair, const Parting& parting, std::siz
     for (const int side : { 0, 1 })
     {
       const RockSimulator& sim = members_[std::size_t(side == 0 ? pair.first : pair.second)]->sim;
-      const BlockState& s = sim.state_;
-      const double r = sim.block_.radius();
+      const BlockState& s = sim.body().state;
+      const double r = sim.body().block.radius();
       gap += sign * seen.normal.dot(s.position) -
         rimTravel(seen.orientations[std::size_t(side)], s.orientation, r) -
         r * (s.strain - seen.strains[std::size_t(side)]).norm();
@@ -71,7 +71,7 @@ void MassFall::sight(RockPair& pair, double reach, Parting& parting, std::size_t
   pair.known = true;
   pair.seen = false;
   Parting::Sight& seen = parting.sights[sight];
-  const BlockState &s = a.sim.state_, &t = b.sim.state_;
+  const BlockState &s = a.sim.body().state, &t = b.sim.body().state;
   seen.normal = pair.axis.normal;
   seen.offset = pair.axis.distance - seen.normal.dot(s.position - t.position);
   seen.orientations = { s.orientation, t.orientation };
@@ -88,7 +88,7 @@ std::vector<MassFall::PartOfIsland> MassFall::fallApart(
   {
     const std::size_t k = std::size_t(i);
     Pace& pace = parting.paces[k];
-    pace.mass = members_[k]->sim.block_.mass();
+    pace.mass = members_[k]->sim.body().block.mass();
     this->foresee(members_[k]->sim, duration, pace);
     parting.bounds[k] = { pace.middle.array() - pace.spread, pace.middle.array() + pace.spread,
       pace.mass, pace.own, 1 };
@@ -128,8 +128,8 @@ std::vector<MassFall::PartOfIsland> MassFall::fallApart(
   };
   const auto mayMeet = [&](RockPair& pair, std::size_t sight)
   {
-    if (members_[std::size_t(pair.first)]->sim.done_ ||
-      members_[std::size_t(pair.second)]->sim.done_)
+    if (members_[std::size_t(pair.first)]->sim.body().done ||
+      members_[std::size_t(pair.second)]->sim.body().done)
     {
       return false;
     }
@@ -214,9 +214,9 @@ bool MassFall::isCarried(const Island& island) const
     const RockSimulator& sim = members_[std::size_t(i)]->sim;
     const auto touches = [&](const RockPair* pair)
     { return pair->touched && (pair->first == i || pair->second == i); };
-    return sim.done_ ||
-      std::any_of(
-        sim.contacts_.begin(), sim.contacts_.end(), [](const Contact& c) { return c.closed(); }) ||
+    return sim.body().done ||
+      std::any_of(sim.body().contacts.begin(), sim.body().contacts.end(),
+        [](const Contact& c) { return c.closed(); }) ||
       std::any_of(island.pairs.begin(), island.pairs.end(), touches);
   };
   return std::all_of(island.members.begin(), island.members.end(), carries);
@@ -228,7 +228,7 @@ void MassFall::advanceParts(const PartOfIsland& part, double from, double until,
   if (island.members.size() == 1)
   {
     Member& member = *members_[std::size_t(island.members.front())];
-    member.sim.quietTime_ = 0.0; // the island comes to rest as a whole
+    member.sim.body().quietTime = 0.0; // the island comes to rest as a whole
     this->advanceAlone(member, until);
     return;
   }

@@ -40,9 +40,9 @@ std::size_t MassFall::layOut(const Island& island, Workspace& work)
     {
       this->comeToRock(island, k);
       const RockSimulator& sim = members_[island.members[k]]->sim;
-      work.placeOf[std::size_t(island.members[k])] = sim.done_ ? -1 : counted.places++;
+      work.placeOf[std::size_t(island.members[k])] = sim.body().done ? -1 : counted.places++;
       work.slopeFirsts[k] = counted.contacts;
-      counted.contacts += sim.done_ ? 0 : sim.contacts_.size();
+      counted.contacts += sim.body().done ? 0 : sim.body().contacts.size();
     }
     work.parts[part] = counted;
   };

@@ -85,13 +85,13 @@ private:
 
 void MassFall::stiffenPressed(RockSimulator& sim)
 {
-  const double r = sim.block_.radius(), mass = sim.block_.mass();
-  double speed = sim.state_.velocity.norm() + sim.state_.spin.norm() * r;
-  if (sim.impact_.pending)
+  const double r = sim.body().block.radius(), mass = sim.body().block.mass();
+  double speed = sim.body().state.velocity.norm() + sim.body().state.spin.norm() * r;
+  if (const ImpactEvent* impact = sim.impactUnderWay())
   {
-    speed = std::max(speed, sim.impact_.event.velocityBefore.norm());
+    speed = std::max(speed, impact->velocityBefore.norm());
   }
-  for (Contact& c : sim.contacts_)
+  for (Contact& c : sim.body().contacts)
   {
     if (!c.closed() || c.gap() >= -kFirm * r)
     {
@@ -106,9 +106,9 @@ void MassFall::stiffenPressed(RockSimulator& sim)
       c.stiffness /= share;
       c.frequency2 /= share;
       c.dashpot /= std::sqrt(share);
-      sim.energy_.restitution += lost;
-      sim.springEnergy_ = std::max(0.0, sim.springEnergy_ - lost);
-      sim.normalEnergy_ = std::max(0.0, sim.normalEnergy_ - lost);
+      sim.body().energy.restitution += lost;
+      sim.body().springEnergy = std::max(0.0, sim.body().springEnergy - lost);
+      sim.body().normalEnergy = std::max(0.0, sim.body().normalEnergy - lost);
     }
   }
 }
@@ -125,8 +125,8 @@ void MassFall::setPairSprings(RockPair& pair, double h)
   {
     return;
   }
-  const RockSimulator &a = members_[pair.first]->sim, &b = members_[pair.second]->sim;
-  PairSprings springs(a.placed_, a.state_, b.placed_, b.state_, pair.law, parameters_);
+  const RockBody &a = members_[pair.first]->sim.body(), &b = members_[pair.second]->sim.body();
+  PairSprings springs(a.placed, a.state, b.placed, b.state, pair.law, parameters_);
   for (; k != end; ++k)
   {
     if (!k->closed())
@@ -141,14 +141,14 @@ void MassFall::setPairSprings(RockPair& pair, double h)
       [motion = this->motionOf(pair)](const Contact& c)
       { return -c.normal.dot(motion.at(c.point)); },
       [&](const Vec3& force, const Vec3& moment, const Vec3& at)
-      { return response(a.placed_, force, moment, at) + response(b.placed_, force, moment, at); });
+      { return response(a.placed, force, moment, at) + response(b.placed, force, moment, at); });
   }
 }
 
 void MassFall::setSprings(const RockPair& pair, Contact& c)
 {
-  const RockSimulator &a = members_[pair.first]->sim, &b = members_[pair.second]->sim;
-  PairSprings(a.placed_, a.state_, b.placed_, b.state_, pair.law, parameters_).set(c);
+  const RockBody &a = members_[pair.first]->sim.body(), &b = members_[pair.second]->sim.body();
+  PairSprings(a.placed, a.state, b.placed, b.state, pair.law, parameters_).set(c);
 }
 
 } // namespace rockfall

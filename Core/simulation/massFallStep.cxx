@@ -18,11 +18,11 @@ IslandContact MassFall::islandContact(
   const Member& member, Contact& c, double h, bool bounces) const
 {
   const RockSimulator& sim = member.sim;
-  const BlockState& state = sim.state_;
+  const BlockState& state = sim.body().state;
   const Vec3 lever = c.point - state.position;
   const double approach = -c.normal.dot(state.velocity + state.angularVelocity().cross(lever));
   const bool down =
-    comesDown(approach, state.velocity.norm(), parameters_.gravity, sim.block_.radius());
+    comesDown(approach, state.velocity.norm(), parameters_.gravity, sim.body().block.radius());
   const int ground = surface_.restitutionClass(c.cfe);
   const SurfaceMaterial& material = surface_.terrain().restitutionMaterial(ground);
   double e = surface_.restitutionAt(sim.touchAt(c.cfe, c.point));
@@ -40,11 +40,11 @@ IslandContact MassFall::islandContact(
   k.first = member.place;
   k.friction = c.friction;
   k.cohesion = c.cohesion;
-  if (bounces && c.closed() && sim.impact_.pending)
+  if (bounces && c.closed() && sim.impactUnderWay())
   {
     k.bounce = bounceLeft(c, approach); // begun where impacts are resolved in time
   }
-  else if (bounces && hits(c, approach, sim.restingSpeed_, h))
+  else if (bounces && hits(c, approach, sim.body().restingSpeed, h))
   {
     k.bounce = e * approach;
   }
@@ -75,15 +75,15 @@ IslandContact MassFall::islandContact(RockPair& pair, const PairMotion& motion, 
     k.bounce = pair.law.restitution * k.approach;
   }
   else if (bounces && c.closed() && pair.strikes &&
-    pair.impact.time < members_[pair.first]->sim.state_.time)
+    pair.impact.time < members_[pair.first]->sim.body().state.time)
   {
     k.bounce = bounceLeft(c, k.approach); // as on the slope
   }
   // For the events: what strikes one of two that touch strikes the other through it.
   if (impacts || (c.closed() && k.approach > resting))
   {
-    this->beginPairImpact(
-      pair, members_[pair.first]->sim.state_, members_[pair.second]->sim.state_, c.point);
+    this->beginPairImpact(pair, members_[pair.first]->sim.body().state,
+      members_[pair.second]->sim.body().state, c.point);
   }
   if (pair.strikes)
   {
@@ -121,33 +121,33 @@ void MassFall::solve(const Island& island, double h, StepKind kind, bool bounces
     this->comeToRock(island, m);
     Member& member = *members_[island.members[m]];
     RockSimulator& sim = member.sim;
-    if (sim.done_)
+    if (sim.body().done)
     {
       return;
     }
-    sim.before_ = sim.state_;
-    sim.springEnergyBefore_ = sim.springEnergy_;
-    sim.contactsBefore_ = sim.contacts_;
-    work.energyBefore[member.place] = sim.mechanicalEnergy() + sim.springEnergy_;
+    sim.body().before = sim.body().state;
+    sim.body().springEnergyBefore = sim.body().springEnergy;
+    sim.body().contactsBefore = sim.body().contacts;
+    work.energyBefore[member.place] = sim.mechanicalEnergy() + sim.body().springEnergy;
     if (lasting)
     {
       sim.pressOutDeep(h, !island.crowd);
     }
     IslandBody& body = work.bodies[member.place];
     body = {};
-    body.block = &sim.block_;
-    body.state = &sim.state_;
-    if (sim.steppedAs_ == kind)
+    body.block = &sim.body().block;
+    body.state = &sim.body().state;
+    if (sim.body().steppedAs == kind)
     {
-      body.acceleration = sim.acceleration_;
-      body.spinAcceleration = sim.spinAcceleration_;
+      body.acceleration = sim.body().acceleration;
+      body.spinAcceleration = sim.body().spinAcceleration;
     }
     else if (!lasting)
     {
       body.acceleration.z() = -parameters_.gravity;
     }
     std::size_t next = work.slopeFirsts[m];
-    for (Contact& c : sim.contacts_)
+    for (Contact& c : sim.body().contacts)
     {
       work.contacts[next++] = this->islandContact(member, c, h, bounces);
     }
@@ -226,8 +226,8 @@ void MassFall::solve(const Island& island, double h, StepKind kind, bool bounces
   }
   work.solver.setSpringsLate({}); // it knows this step only
   const IslandBody& one = work.bodies.front();
-  const double start = members_[island.members.front()]->sim.before_.time;
-  if (one.state->time <= start && !members_[island.members.front()]->sim.done_)
+  const double start = members_[island.members.front()]->sim.body().before.time;
+  if (one.state->time <= start && !members_[island.members.front()]->sim.body().done)
   {
     // Not even a finite displacement: the contacts are let go for this step.
     for (int i : island.members)

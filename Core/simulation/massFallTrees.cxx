@@ -34,11 +34,11 @@ struct MassFall::Trees
   void forContacts(const Stem& stem, Use&& use) const
   {
     const RockSimulator& sim = this->memberOf(stem).sim;
-    for (std::size_t k = 0; k < sim.contacts_.size(); ++k)
+    for (std::size_t k = 0; k < sim.body().contacts.size(); ++k)
     {
-      if (sim.treeOf(sim.contacts_[k]) == stem.tree)
+      if (sim.treeOf(sim.body().contacts[k]) == stem.tree)
       {
-        use(sim.contacts_[k], work.slopeFirsts[stem.member] + k);
+        use(sim.body().contacts[k], work.slopeFirsts[stem.member] + k);
       }
     }
   }
@@ -60,9 +60,9 @@ struct MassFall::Trees
     {
       const Vec3 impulse = h * work.solver.force(k) * c.normal;
       const Mat3 back = end.orientation.toRotationMatrix().transpose();
-      end.velocity -= impulse / sim.block_.mass();
-      end.spin -=
-        sim.block_.inverseInertia() * (back * (c.point - sim.state_.position).cross(impulse));
+      end.velocity -= impulse / sim.body().block.mass();
+      end.spin -= sim.body().block.inverseInertia() *
+        (back * (c.point - sim.body().state.position).cross(impulse));
     };
     this->forContacts(stem, take);
     return end;
@@ -72,18 +72,19 @@ struct MassFall::Trees
   bool cannotHold(const Stem& stem, const BlockState& end, bool through) const
   {
     const RockSimulator& sim = this->memberOf(stem).sim;
-    const Tree& tree = sim.obstacles_->structures().trees[std::size_t(stem.tree)];
+    const Tree& tree =
+      fall.surface_.terrain().obstacles()->structures().trees[std::size_t(stem.tree)];
     bool meets = false;
     const auto look = [&](const Contact& c, std::size_t k)
     {
-      const Vec3 lever = c.point - sim.state_.position;
+      const Vec3 lever = c.point - sim.body().state.position;
       const double approach = -c.normal.dot(end.velocity + end.angularVelocity().cross(lever));
       meets = meets ||
-        (approach > (c.closed() ? sim.restingSpeed_ : 0.0) &&
+        (approach > (c.closed() ? sim.body().restingSpeed : 0.0) &&
           (!through || work.solver.gap(k) < 0.0));
     };
     this->forContacts(stem, look);
-    return meets && rigidKineticEnergy(sim.block_, end) > tree.capacity;
+    return meets && rigidKineticEnergy(sim.body().block, end) > tree.capacity;
   }
   bool isKnown(std::size_t member, int tree) const
   {
@@ -134,11 +135,11 @@ bool MassFall::lookAtTrees(const Island& island, double h, Workspace& work) cons
   for (std::size_t m = 0; m < island.members.size(); ++m)
   {
     const Member& member = *members_[std::size_t(island.members[m])];
-    if (member.sim.done_)
+    if (member.sim.body().done)
     {
       continue;
     }
-    const std::vector<Contact>& contacts = member.sim.contacts_;
+    const std::vector<Contact>& contacts = member.sim.body().contacts;
     for (std::size_t k = 0; k < contacts.size(); ++k)
     {
       const int tree = member.sim.treeOf(contacts[k]);
@@ -168,20 +169,21 @@ void MassFall::fellTrees(const Island& island, std::size_t member, const Workspa
     {
       continue;
     }
-    for (const Contact& c : sim.contactsBefore_)
+    for (const Contact& c : sim.body().contactsBefore)
     {
       // A lasting step books what is left over as damped; one of an impact does not.
-      const bool closed = c.closed() && sim.steppedAs_ == StepKind::Impact;
+      const bool closed = c.closed() && sim.body().steppedAs == StepKind::Impact;
       if (closed && sim.treeOf(c) == stem.tree)
       {
-        sim.energy_.damping += c.springEnergy() - 0.5 * c.shearStiffness * c.slip.squaredNorm();
+        sim.body().energy.damping +=
+          c.springEnergy() - 0.5 * c.shearStiffness * c.slip.squaredNorm();
       }
     }
-    const Tree& tree = sim.obstacles_->structures().trees[std::size_t(stem.tree)];
-    if (rigidKineticEnergy(sim.block_, sim.state_) <= tree.capacity)
+    const Tree& tree = surface_.terrain().obstacles()->structures().trees[std::size_t(stem.tree)];
+    if (rigidKineticEnergy(sim.body().block, sim.body().state) <= tree.capacity)
     {
       // Others have taken it since: it holds from here on.
-      for (Contact& c : sim.contacts_)
+      for (Contact& c : sim.body().contacts)
       {
         c.offset = sim.treeOf(c) == stem.tree ? std::min(c.offset, c.distance) : c.offset;
       }
@@ -190,18 +192,18 @@ void MassFall::fellTrees(const Island& island, std::size_t member, const Workspa
     // Energy that its springs held when the step began is gone with it, and booked as a loss of the
     // step.
     double held = 0.0;
-    for (std::size_t k = 0; k < sim.contactsBefore_.size(); ++k)
+    for (std::size_t k = 0; k < sim.body().contactsBefore.size(); ++k)
     {
-      const Contact& c = sim.contactsBefore_[k];
+      const Contact& c = sim.body().contactsBefore[k];
       if (sim.treeOf(c) == stem.tree)
       {
         const double all = c.springEnergy();
         const double shear = c.closed() ? 0.5 * c.shearStiffness * c.slip.squaredNorm() : 0.0;
         const bool bounced = work.contacts[work.slopeFirsts[member] + k].bounce >= 0.0;
         held += all;
-        sim.energy_.restitution -= bounced ? all : 0.0;
-        sim.energy_.friction -= bounced ? 0.0 : shear;
-        sim.energy_.damping -= bounced ? 0.0 : all - shear;
+        sim.body().energy.restitution -= bounced ? all : 0.0;
+        sim.body().energy.friction -= bounced ? 0.0 : shear;
+        sim.body().energy.damping -= bounced ? 0.0 : all - shear;
       }
     }
     sim.breakTree(stem.tree, held);

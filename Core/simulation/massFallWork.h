@@ -165,23 +165,23 @@ struct MassFall::Workspace
 
 inline void MassFall::Workspace::Side::set(const RockSimulator& sim)
 {
-  const BlockState& state = sim.state_;
+  const BlockState& state = sim.body().state;
   velocity = state.velocity;
   spin = state.angularVelocity();
   position = state.position;
-  radius = sim.block_.radius();
+  radius = sim.body().block.radius();
   rim = state.spin.norm() * radius;
-  mass = sim.block_.mass();
-  resting = sim.restingSpeed_;
+  mass = sim.body().block.mass();
+  resting = sim.body().restingSpeed;
   pushed = 0.0;
-  done = sim.done_;
+  done = sim.body().done;
 }
 
 inline void MassFall::Workspace::count(RockSimulator& sim) const
 {
-  if (!sim.done_)
+  if (!sim.body().done)
   {
-    TrajectorySummary& summary = sim.recorder_.trajectory().summary;
+    TrajectorySummary& summary = sim.trajectory().summary;
     summary.openCloseIterations += iterations;
     summary.contactSteps += tries;
     summary.cutSteps += cuts;

@@ -17,7 +17,7 @@ void RockSimulator::beginImpact(
   impact_.pending = true;
   impact_.frictionBefore = frictionBefore;
   impact_.restitutionBefore = restitutionBefore;
-  impact_.yieldedBefore = energy_.scars + energy_.rolling;
+  impact_.yieldedBefore = body_.energy.scars + body_.energy.rolling;
   impact_.event.time = at.time;
   impact_.event.velocityBefore = at.velocity;
 }
@@ -25,10 +25,10 @@ void RockSimulator::beginImpact(
 void RockSimulator::followImpact(const BlockState& start, double h, const StepOutcome& outcome)
 {
   const Vec3 spin = start.angularVelocity();
-  for (std::size_t i = 0; i < contacts_.size(); ++i)
+  for (std::size_t i = 0; i < body_.contacts.size(); ++i)
   {
-    const Contact& now = contacts_[i];
-    const Contact& was = contactsBefore_[i];
+    const Contact& now = body_.contacts[i];
+    const Contact& was = body_.contactsBefore[i];
     if (now.normalForce <= 0.0)
     {
       continue;
@@ -37,13 +37,13 @@ void RockSimulator::followImpact(const BlockState& start, double h, const StepOu
     {
       const double approach =
         -was.normal.dot(start.velocity + spin.cross(was.point - start.position));
-      if (approach > restingSpeed_)
+      if (approach > body_.restingSpeed)
       {
         ImpactEvent& event = impact_.event;
         if (!impact_.pending)
         {
-          this->beginImpact(start, energy_.friction - outcome.frictionWork,
-            energy_.restitution - outcome.dampedWork);
+          this->beginImpact(start, body_.energy.friction - outcome.frictionWork,
+            body_.energy.restitution - outcome.dampedWork);
         }
         event.approachSpeed = std::max(event.approachSpeed, approach);
       }
@@ -71,8 +71,8 @@ void RockSimulator::finishImpact(bool over)
   ImpactEvent& event = impact_.event;
   const GroundTouch touch = this->touchAt(event.cfe, event.position);
   ++impactsOver_;
-  if (!isImpact(event.approachSpeed, event.velocityBefore.norm(), restingSpeed_,
-        parameters_.gravity, block_.radius()))
+  if (!isImpact(event.approachSpeed, event.velocityBefore.norm(), body_.restingSpeed,
+        parameters_.gravity, body_.block.radius()))
   {
     return;
   }
@@ -80,30 +80,31 @@ void RockSimulator::finishImpact(bool over)
   event.normal = event.impulse > 0.0 ? Vec3(impact_.normalImpulse / event.impulse) : event.normal;
   const int ground = surface_.restitutionClass(event.cfe);
   event.restitution = surface_.restitutionAt(touch);
-  const double before = kineticEnergy(block_, state_);
+  const double before = kineticEnergy(body_.block, body_.state);
   const bool down = comesDown(
-    event.approachSpeed, event.velocityBefore.norm(), parameters_.gravity, block_.radius());
+    event.approachSpeed, event.velocityBefore.norm(), parameters_.gravity, body_.block.radius());
   const SurfaceMaterial& material = surface_.terrain().restitutionMaterial(ground);
   const Vec3 after =
-    over ? adjustVelocity(material, event, state_.velocity, down) : state_.velocity;
-  const bool jumps = (after - state_.velocity).norm() > kSameVelocity * state_.velocity.norm();
+    over ? adjustVelocity(material, event, body_.state.velocity, down) : body_.state.velocity;
+  const bool jumps =
+    (after - body_.state.velocity).norm() > kSameVelocity * body_.state.velocity.norm();
   if (jumps)
   {
-    recorder_.beforeJump(state_, true);
-    this->auditSamples(state_);
+    recorder_.beforeJump(body_.state, true);
+    this->auditSamples(body_.state);
   }
-  state_.velocity = after;
-  energy_.restitution += before - kineticEnergy(block_, state_);
-  event.velocityAfter = state_.velocity;
-  event.energyLoss = energy_.restitution - impact_.restitutionBefore + energy_.friction -
-    impact_.frictionBefore + (energy_.scars + energy_.rolling - impact_.yieldedBefore);
+  body_.state.velocity = after;
+  body_.energy.restitution += before - kineticEnergy(body_.block, body_.state);
+  event.velocityAfter = body_.state.velocity;
+  event.energyLoss = body_.energy.restitution - impact_.restitutionBefore + body_.energy.friction -
+    impact_.frictionBefore + (body_.energy.scars + body_.energy.rolling - impact_.yieldedBefore);
   if (jumps)
   {
-    recorder_.afterJump(state_, true);
-    this->auditSamples(state_);
+    recorder_.afterJump(body_.state, true);
+    this->auditSamples(body_.state);
   }
-  acceleration_.setZero();
-  spinAcceleration_.setZero();
+  body_.acceleration.setZero();
+  body_.spinAcceleration.setZero();
   Trajectory& trajectory = recorder_.trajectory();
   trajectory.impacts.push_back(event);
   ++trajectory.summary.impacts;

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <iterator>
 #include <tuple>
+#include <utility>
 
 namespace rockfall
 {
@@ -60,9 +61,9 @@ StructureEvent eventAt(StructureOutcome outcome, std::int64_t feature, const Blo
 
 double RockSimulator::freeOfObstacles(double duration)
 {
-  const double sure = std::min(duration, freeUntil_ - state_.time);
-  const double free = timeToObstacle(placed_, state_, block_, *obstacles_, goneTrees_,
-    parameters_.gravity, this->impactStep(), duration);
+  const double sure = std::min(duration, freeUntil_ - body_.state.time);
+  const double free = timeToObstacle(body_.placed, body_.state, body_.block, *obstacles_,
+    goneTrees_, parameters_.gravity, this->impactStep(), duration);
   return std::max(sure, free);
 }
 
@@ -74,9 +75,9 @@ void RockSimulator::forgetPatch()
 
 void RockSimulator::clearTrees()
 {
-  const double r = block_.radius();
-  const Vec3& p = state_.position;
-  placed_.place(block_, state_);
+  const double r = body_.block.radius();
+  const Vec3& p = body_.state.position;
+  body_.placed.place(body_.block, body_.state);
   SurfacePatch stem;
   obstacles_->visitTrees(p.x() - r, p.x() + r, p.y() - r, p.y() + r,
     [&](int k)
@@ -85,7 +86,7 @@ void RockSimulator::clearTrees()
       stem.triangles.clear();
       stem.ridges.clear();
       obstacles_->append({}, std::span<const int>(&k, 1), stem);
-      const double distance = clearance(placed_, state_, stem, 0.0, 0.0).distance;
+      const double distance = clearance(body_.placed, body_.state, stem, 0.0, 0.0).distance;
       const Eigen::Vector2d off =
         p.head<2>() - obstacles_->structures().trees[std::size_t(k)].position;
       const bool inside = off.norm() < obstacles_->treeRadius(k) && p.z() < obstacles_->treeTop(k);
@@ -105,13 +106,13 @@ int RockSimulator::treeOf(const Contact& contact) const
 
 bool RockSimulator::undoAtTrees(double h)
 {
-  const double energy = rigidKineticEnergy(block_, before_);
+  const double energy = rigidKineticEnergy(body_.block, body_.before);
   std::vector<int> hit;
-  for (std::size_t i = 0; i < contactsBefore_.size(); ++i)
+  for (std::size_t i = 0; i < body_.contactsBefore.size(); ++i)
   {
-    const Contact& c = contacts_[i];
+    const Contact& c = body_.contacts[i];
     const int tree = this->treeOf(c);
-    if (tree >= 0 && c.closed() && !contactsBefore_[i].closed() &&
+    if (tree >= 0 && c.closed() && !body_.contactsBefore[i].closed() &&
       energy > obstacles_->structures().trees[std::size_t(tree)].capacity)
     {
       hit.push_back(tree);
@@ -121,16 +122,16 @@ bool RockSimulator::undoAtTrees(double h)
   {
     return false;
   }
-  state_ = before_;
-  contacts_ = contactsBefore_;
+  body_.state = body_.before;
+  body_.contacts = body_.contactsBefore;
   return this->breakTrees(h, hit);
 }
 
 bool RockSimulator::breakTrees(double h, std::span<const int> hit)
 {
   bool any = false;
-  const Vec3 spin = state_.angularVelocity();
-  for (const Contact& c : contacts_)
+  const Vec3 spin = body_.state.angularVelocity();
+  for (const Contact& c : body_.contacts)
   {
     const int tree = this->treeOf(c);
     if (tree < 0 || this->isGone(tree))
@@ -138,22 +139,23 @@ bool RockSimulator::breakTrees(double h, std::span<const int> hit)
       continue;
     }
     const double capacity = obstacles_->structures().trees[std::size_t(tree)].capacity;
-    const double energy = rigidKineticEnergy(block_, state_);
-    const double approach = -c.normal.dot(state_.velocity + spin.cross(c.point - state_.position));
+    const double energy = rigidKineticEnergy(body_.block, body_.state);
+    const double approach =
+      -c.normal.dot(body_.state.velocity + spin.cross(c.point - body_.state.position));
     const bool meets =
-      c.closed() ? approach > restingSpeed_ : approach > 0.0 && c.gap() < approach * h;
+      c.closed() ? approach > body_.restingSpeed : approach > 0.0 && c.gap() < approach * h;
     if (energy <= capacity || !(meets || std::find(hit.begin(), hit.end(), tree) != hit.end()))
     {
       continue;
     }
     // Energy of the springs against the stem is not given back.
     double held = 0.0;
-    for (const Contact& other : contacts_)
+    for (const Contact& other : body_.contacts)
     {
       held += this->treeOf(other) == tree ? other.springEnergy() : 0.0;
     }
     this->breakTree(tree, held);
-    springEnergy_ = std::max(0.0, springEnergy_ - held);
+    body_.springEnergy = std::max(0.0, body_.springEnergy - held);
     any = true;
   }
   if (any)
@@ -166,15 +168,15 @@ bool RockSimulator::breakTrees(double h, std::span<const int> hit)
 void RockSimulator::breakTree(int tree, double held)
 {
   const Tree& stem = obstacles_->structures().trees[std::size_t(tree)];
-  const double energy = rigidKineticEnergy(block_, state_);
-  const double height =
-    state_.position.z() - surface_.elevation(state_.position.x(), state_.position.y());
+  const double energy = rigidKineticEnergy(body_.block, body_.state);
+  const double height = body_.state.position.z() -
+    surface_.elevation(body_.state.position.x(), body_.state.position.y());
   StructureEvent event =
-    eventAt(StructureOutcome::TreeBroken, stem.feature, state_, energy, height);
+    eventAt(StructureOutcome::TreeBroken, stem.feature, body_.state, energy, height);
   event.energyTaken = stem.capacity;
   recorder_.trajectory().structures.push_back(event);
-  slowDown(state_, energy, std::max(0.0, stem.capacity - held));
-  energy_.structures += held + energy - rigidKineticEnergy(block_, state_);
+  slowDown(body_.state, energy, std::max(0.0, stem.capacity - held));
+  body_.energy.structures += held + energy - rigidKineticEnergy(body_.block, body_.state);
   goneTrees_.insert(std::lower_bound(goneTrees_.begin(), goneTrees_.end(), tree), tree);
   broke_.trees.push_back(tree);
 }
@@ -186,13 +188,18 @@ bool RockSimulator::isGone(int tree) const
 
 void RockSimulator::forgetTrees(bool touched)
 {
-  std::erase_if(contacts_, [&](const Contact& c) { return this->isGone(this->treeOf(c)); });
+  std::erase_if(body_.contacts, [&](const Contact& c) { return this->isGone(this->treeOf(c)); });
   if (touched)
   {
-    acceleration_.setZero();
-    spinAcceleration_.setZero();
+    body_.acceleration.setZero();
+    body_.spinAcceleration.setZero();
   }
   this->forgetPatch();
+}
+
+RockSimulator::Broken RockSimulator::takeBroken()
+{
+  return std::exchange(broke_, {});
 }
 
 bool RockSimulator::hearOf(const Broken& broken)
@@ -226,7 +233,7 @@ bool RockSimulator::hearOf(const Broken& broken)
   // Energy of the springs against a stem goes with it.
   double held = 0.0;
   bool touched = false;
-  for (const Contact& c : contacts_)
+  for (const Contact& c : body_.contacts)
   {
     if (this->isGone(this->treeOf(c)))
     {
@@ -234,8 +241,8 @@ bool RockSimulator::hearOf(const Broken& broken)
       touched = touched || c.closed();
     }
   }
-  springEnergy_ = std::max(0.0, springEnergy_ - held);
-  energy_.structures += held;
+  body_.springEnergy = std::max(0.0, body_.springEnergy - held);
+  body_.energy.structures += held;
   this->forgetTrees(touched);
   return touched;
 }
@@ -339,8 +346,9 @@ void RockSimulator::passBarriers(const Way& way, double taken)
     {
       continue;
     }
-    BlockState at = way.flight ? fly(block_, way.from, parameters_.gravity, fraction * way.duration)
-                               : between(way.from, way.to, fraction);
+    BlockState at = way.flight
+      ? fly(body_.block, way.from, parameters_.gravity, fraction * way.duration)
+      : between(way.from, way.to, fraction);
     const Barrier& barrier = obstacles_->structures().barriers[std::size_t(number)];
     const double height = at.position.z() - surface_.elevation(at.position.x(), at.position.y());
     if (!(height < barrier.height))
@@ -348,29 +356,31 @@ void RockSimulator::passBarriers(const Way& way, double taken)
       continue; // over it, or where there is no ground to stand on
     }
     // Energy that the ground holds in a touch it gives back in a moment.
-    const double stored =
-      way.flight ? 0.0 : (1.0 - fraction) * springEnergyBefore_ + fraction * springEnergy_;
+    const double stored = way.flight
+      ? 0.0
+      : (1.0 - fraction) * body_.springEnergyBefore + fraction * body_.springEnergy;
     if (!barrier.records)
     {
       hit_ = { number, fraction, height, stored };
       return;
     }
-    const double came = rigidKineticEnergy(block_, at);
+    const double came = rigidKineticEnergy(body_.block, at);
     slowDown(at, came, std::min(taken, came));
     recorder_.trajectory().structures.push_back(eventAt(StructureOutcome::BarrierRecorded,
-      barrier.feature, at, rigidKineticEnergy(block_, at) + stored, height));
+      barrier.feature, at, rigidKineticEnergy(body_.block, at) + stored, height));
   }
 }
 
 void RockSimulator::meetBarrier()
 {
   const Barrier& barrier = obstacles_->structures().barriers[std::size_t(hit_.barrier)];
-  const double kinetic = rigidKineticEnergy(block_, state_), energy = kinetic + hit_.stored;
+  const double kinetic = rigidKineticEnergy(body_.block, body_.state),
+               energy = kinetic + hit_.stored;
   const bool holds = energy <= barrier.capacity;
   const double taken = holds ? energy : barrier.absorbs ? barrier.capacity : 0.0;
   StructureEvent event =
     eventAt(holds ? StructureOutcome::BarrierStopped : StructureOutcome::BarrierBroken,
-      barrier.feature, state_, energy, hit_.heightOverGround);
+      barrier.feature, body_.state, energy, hit_.heightOverGround);
   event.energyTaken = taken;
   TrajectorySummary& summary = recorder_.trajectory().summary;
   if (holds)
@@ -378,50 +388,52 @@ void RockSimulator::meetBarrier()
     this->finishImpact(false); // the barrier takes what it would have left
   }
   recorder_.trajectory().structures.push_back(event);
-  recorder_.knot(state_, false);
-  this->auditSamples(state_);
-  slowDown(state_, kinetic, std::min(taken, kinetic));
-  energy_.structures += kinetic - rigidKineticEnergy(block_, state_);
+  recorder_.knot(body_.state, false);
+  this->auditSamples(body_.state);
+  slowDown(body_.state, kinetic, std::min(taken, kinetic));
+  body_.energy.structures += kinetic - rigidKineticEnergy(body_.block, body_.state);
   if (holds)
   {
     summary.fate = Fate::Caught;
-    contacts_.clear();
-    done_ = true;
+    body_.contacts.clear();
+    body_.done = true;
     return;
   }
   brokenBarriers_.push_back(hit_.barrier);
   broke_.barriers.push_back(hit_.barrier);
   freeUntil_ = 0.0;
-  state_.time += kInstant;
-  recorder_.knot(state_, false);
-  this->auditSamples(state_);
+  body_.state.time += kInstant;
+  recorder_.knot(body_.state, false);
+  this->auditSamples(body_.state);
 }
 
 double RockSimulator::endStepAtBarrier(const BlockState& end, double taken, bool touching)
 {
   const Barrier& barrier = obstacles_->structures().barriers[std::size_t(hit_.barrier)];
-  BlockState at = between(before_, end, hit_.fraction);
-  const double came = rigidKineticEnergy(block_, at);
+  BlockState at = between(body_.before, end, hit_.fraction);
+  const double came = rigidKineticEnergy(body_.block, at);
   slowDown(at, came, std::min(taken, came));
-  const double energy = rigidKineticEnergy(block_, at) + hit_.stored;
+  const double energy = rigidKineticEnergy(body_.block, at) + hit_.stored;
   if (energy <= barrier.capacity)
   {
     // The rest of the step did not happen; what it booked did. The barrier takes what makes it up.
-    recorder_.recordBetween(before_, at, touching);
-    energy_.structures += kineticEnergy(block_, state_) - kineticEnergy(block_, at) +
-      block_.mass() * parameters_.gravity * (end.position.z() - at.position.z()) + springEnergy_;
-    state_ = at;
-    springEnergy_ = normalEnergy_ = 0.0;
-    recorder_.follow(state_);
+    recorder_.recordBetween(body_.before, at, touching);
+    body_.energy.structures += kineticEnergy(body_.block, body_.state) -
+      kineticEnergy(body_.block, at) +
+      body_.block.mass() * parameters_.gravity * (end.position.z() - at.position.z()) +
+      body_.springEnergy;
+    body_.state = at;
+    body_.springEnergy = body_.normalEnergy = 0.0;
+    recorder_.follow(body_.state);
     this->meetBarrier();
     return 0.0;
   }
   StructureEvent event =
     eventAt(StructureOutcome::BarrierBroken, barrier.feature, at, energy, hit_.heightOverGround);
-  const double left = rigidKineticEnergy(block_, state_);
-  slowDown(state_, left, barrier.absorbs ? std::min(barrier.capacity, left) : 0.0);
-  event.energyTaken = left - rigidKineticEnergy(block_, state_);
-  energy_.structures += event.energyTaken;
+  const double left = rigidKineticEnergy(body_.block, body_.state);
+  slowDown(body_.state, left, barrier.absorbs ? std::min(barrier.capacity, left) : 0.0);
+  event.energyTaken = left - rigidKineticEnergy(body_.block, body_.state);
+  body_.energy.structures += event.energyTaken;
   recorder_.trajectory().structures.push_back(event);
   brokenBarriers_.push_back(hit_.barrier);
   broke_.barriers.push_back(hit_.barrier);
