@@ -46,7 +46,7 @@ TEST(Handovers, WhoHasLeftACrowdReboundsAsWhoNeverWasInOne)
       pile.rocks = { brick(post, Vec3(20.0, 20.0, 2.5), 0), brick(post, Vec3(20.7, 20.0, 2.5), 1) };
       pile.rocks[met ? 0 : 1].velocity = Vec3(4.0, 0.0, 0.0);
       pile.make();
-      pile.fall->resolved = 0; // groups are stepped as crowds are
+      pile.fall->setResolved(0); // groups are stepped as crowds are
       std::vector<double> ratios;
       for (const Trajectory& t : pile.fall->run())
       {
@@ -93,7 +93,7 @@ TEST(Handovers, ImpactsUnderWayGoOnInACrowd)
       pile.rocks[1].velocity = Vec3(-0.5 * kSpeed, 0.0, 0.0);
       pile.rocks[2].velocity = Vec3(0.0, 0.0, 60.0);
       pile.make();
-      pile.fall->resolved = 2;
+      pile.fall->setResolved(2);
       pile.fall->release();
       EXPECT_EQ(mostTogether(pile, 0.2), 3);
       const double parting =
@@ -131,7 +131,7 @@ TEST(Handovers, ImpactsOnTheSlopeUnderWayGoOnInACrowd)
             Vec3(501.015, 498.85 - kFaster * joined, 1.6 + 0.5 * kGravity * joined * joined), 1) };
         pile.rocks[1].velocity = Vec3(0.0, kFaster, 0.0);
         pile.make();
-        pile.fall->resolved = 0;
+        pile.fall->setResolved(0);
         pile.fall->release();
         EXPECT_EQ(mostTogether(pile, 1.07), 2);
         const BlockState& state = pile.fall->state(0);

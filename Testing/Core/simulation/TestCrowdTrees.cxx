@@ -49,8 +49,8 @@ std::vector<Trajectory> drive(const std::vector<Tree>& stems, double gap, int re
     brick(Vec3(1, 1, 1), Vec3(x - 1.507, 50.0, 0.5), 1) };
   pile.rocks[1].velocity = Vec3(10.0, 0.0, 0.0);
   pile.make();
-  pile.fall->resolved = resolved;
-  pile.fall->method = method;
+  pile.fall->setResolved(resolved);
+  pile.fall->setMethod(method);
   return pile.fall->run();
 }
 
@@ -178,7 +178,7 @@ TEST(CrowdTrees, WhoBreaksOneSaysNothingOfOtherGroups)
     brick(Vec3(1, 1, 1), Vec3(20.0, 20.0, 1.5), 4) };
   pile.rocks[1].velocity = Vec3(10.0, 0.0, 0.0);
   pile.make();
-  pile.fall->resolved = 0;
+  pile.fall->setResolved(0);
   const std::vector<Trajectory> fall = pile.fall->run();
   EXPECT_EQ(fall[2].structures.size(), 1u);
   for (const std::size_t i : { 3, 4 })
@@ -215,7 +215,7 @@ TEST(CrowdTrees, WhatLeansOnATreeDoesNotBreakIt)
       pile.rocks.push_back(rock);
     }
     pile.make();
-    pile.fall->resolved = resolved;
+    pile.fall->setResolved(resolved);
     for (const Trajectory& t : pile.fall->run())
     {
       EXPECT_TRUE(t.structures.empty()) << resolved;

@@ -100,7 +100,7 @@ TEST(Crowds, ImpactsLoseWhatTheCoefficientOfRestitutionSays)
       brick(Vec3(1, 1, 1), Vec3(21.3, 20.0, 0.0), 1) };
     pile.rocks[0].velocity = Vec3(6.0, 0.0, 0.0);
     pile.make();
-    pile.fall->resolved = 0;
+    pile.fall->setResolved(0);
     const std::vector<Trajectory> runs = pile.fall->run();
     const double brought = 0.5 * pile.blocks[0].mass() * 36.0;
     const double lost = 0.5 * (1.0 - e * e) * brought; // ½ μ (1 − e²) v²
@@ -125,7 +125,7 @@ TEST(Crowds, EveryJouleIsBooked)
   pile.parameters.rockRestitution = 0.8;
   pile.rocks = handful(108, 8);
   pile.make();
-  pile.fall->resolved = 0;
+  pile.fall->setResolved(0);
   EnergyAudit sum;
   for (const Trajectory& t : pile.fall->run())
   {
@@ -335,7 +335,7 @@ TEST(Crowds, HighFrictionMakesNoEnergy)
     pile.rocks.push_back(rock);
   }
   pile.start();
-  pile.fall->resolved = 0;
+  pile.fall->setResolved(0);
   const auto energy = [&]
   {
     double sum = 0.0;

@@ -75,7 +75,7 @@ std::vector<Trajectory> strikeThrough(double gap, double restitution, bool crowd
   }
   pile.rocks[0].velocity.x() = 5.0;
   pile.make();
-  pile.fall->resolved = crowd ? 0 : pile.fall->resolved;
+  pile.fall->setResolved(crowd ? 0 : pile.fall->resolved());
   return pile.fall->run();
 }
 
@@ -97,7 +97,7 @@ TEST(PairBooks, EveryJouleIsOfAnImpactOrOfLastingContact)
       pile.parameters.rockRestitution = e;
       pile.rocks = cluster(20, 100.0 - 20.0 * fall, 3);
       pile.make();
-      pile.fall->resolved = crowd ? 0 : pile.fall->resolved;
+      pile.fall->setResolved(crowd ? 0 : pile.fall->resolved());
       const Books books = booksOf(pile.fall->run());
       ASSERT_GT(books.given, 1e5);
       EXPECT_NEAR(books.impacts + books.lasting, books.given, 1e-9 * books.given) << e;
@@ -145,7 +145,7 @@ TEST(PairBooks, RestMakesNoImpacts)
     pile.ground = floorSlope();
     pile.rocks = wall(4, 3);
     pile.start();
-    pile.fall->resolved = crowd ? 0 : pile.fall->resolved;
+    pile.fall->setResolved(crowd ? 0 : pile.fall->resolved());
     pile.run(1.0);
     for (int i = 0; i < pile.fall->rocks(); ++i)
     {

@@ -74,7 +74,7 @@ void expectNotShotOut(bool crowd)
         boulder.velocity.z() = -speed;
         pile.rocks = { stone, boulder };
         pile.make();
-        pile.fall->resolved = crowd ? 0 : pile.fall->resolved;
+        pile.fall->setResolved(crowd ? 0 : pile.fall->resolved());
         const std::vector<Trajectory> runs = pile.fall->run();
         const Trajectory& t = runs[0];
         // What a wall that comes at this speed can give it, without loss. In a crowd the boulder

@@ -1,7 +1,7 @@
-// Pairs of rocks near each other that may meet within the step, by the bounds of massFallMeet.cxx;
-// velocities and displacements that rocks pass on: massFallReach.cxx; islands: massFallIslands.cxx.
+// Pairs of rocks near each other that may meet within the step, by the bounds of meetingsNear.cxx;
+// velocities and displacements that rocks pass on: meetingsReach.cxx; islands: Meetings.cxx.
 
-#include "simulation/massFallMeet.h"
+#include "simulation/Meetings.h"
 
 #include "base/parallel.h"
 #include "law/settings.h"
@@ -23,29 +23,29 @@ constexpr std::size_t kNearsAhead = 8;
 } // namespace
 
 /// From now on the gap is bounded along the pair's axis.
-void MassFall::Meetings::lookAlong(Near& n) const
+void Meetings::lookAlong(Near& n) const
 {
-  const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
+  const Mover &a = movers_[std::size_t(n.first)], &b = movers_[std::size_t(n.second)];
   n.normal = n.pair->axis.normal;
   n.offset =
     n.pair->axis.distance - n.normal.dot(a.position - b.position) + a.rimTravel + b.rimTravel;
 }
 
-double MassFall::Meetings::gap(const Near& n) const
+double Meetings::gap(const Near& n) const
 {
-  const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
+  const Mover &a = movers_[std::size_t(n.first)], &b = movers_[std::size_t(n.second)];
   return n.offset + n.normal.dot(a.position - b.position) - a.rimTravel - b.rimTravel;
 }
 
 /// Least distance of the two, along the axis and by their bounding spheres, m.
-double MassFall::Meetings::apart(const Near& n) const
+double Meetings::apart(const Near& n) const
 {
-  const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
+  const Mover &a = movers_[std::size_t(n.first)], &b = movers_[std::size_t(n.second)];
   return std::max(this->gap(n), (a.position - b.position).norm() - a.radius - b.radius);
 }
 
 /// Speed at which the gap may close along its normal, m/s.
-inline double MassFall::Meetings::closing(const Near& n) const
+inline double Meetings::closing(const Near& n) const
 {
   const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
   return closingSpeed(bounds_[std::size_t(roots_[i])], paces_[i], bounds_[std::size_t(roots_[j])],
@@ -53,30 +53,30 @@ inline double MassFall::Meetings::closing(const Near& n) const
 }
 
 /// The widest gap over which the two may meet.
-inline double MassFall::Meetings::reach(const Near& n) const
+inline double Meetings::reach(const Near& n) const
 {
   const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
   const double faster = std::max(thrown_[i], thrown_[j]);
   const double speed = n.offset > kNoAxis ? faster * this->closing(n) : -kNoAxis;
-  return std::min(fars_[i] + fars_[j], speed * duration_) + fall_;
+  return std::min(fars_[i] + fars_[j], speed * duration_) + sag_;
 }
 
-bool MassFall::Meetings::mayMeet(const Open& o) const
+bool Meetings::mayMeet(const Open& o) const
 {
   // By their displacements alone first: that tells most of them apart.
-  return o.apart <= fars_[std::size_t(o.first)] + fars_[std::size_t(o.second)] + fall_ &&
-    o.apart <= this->reach(near[std::size_t(o.near)]);
+  return o.apart <= fars_[std::size_t(o.first)] + fars_[std::size_t(o.second)] + sag_ &&
+    o.apart <= this->reach(near_[std::size_t(o.near)]);
 }
 
-bool MassFall::Meetings::isAsleep(int first, int second) const
+bool Meetings::isAsleep(int first, int second) const
 {
-  return movers[std::size_t(first)].asleep && movers[std::size_t(second)].asleep;
+  return movers_[std::size_t(first)].asleep && movers_[std::size_t(second)].asleep;
 }
 
 /// Whether two rocks that stand may meet; finds their axis as far as that needs it.
-bool MassFall::Meetings::meet(const MassFall& fall, std::size_t k)
+bool Meetings::meet(std::size_t k)
 {
-  Near& n = near[k];
+  Near& n = near_[k];
   RockPair& pair = *n.pair;
   for (;;)
   {
@@ -95,8 +95,8 @@ bool MassFall::Meetings::meet(const MassFall& fall, std::size_t k)
     }
     if (!stands)
     {
-      pair.axis = findAxis(fall.members_[std::size_t(n.first)]->body,
-        fall.members_[std::size_t(n.second)]->body, pair.axis, reach);
+      pair.axis = findAxis(fall_.rocks[std::size_t(n.first)].hull,
+        fall_.rocks[std::size_t(n.second)].hull, pair.axis, reach);
     }
     pair.seen = false;
     n.looked = reach;
@@ -107,17 +107,17 @@ bool MassFall::Meetings::meet(const MassFall& fall, std::size_t k)
 
 /// Looks at all pairs near each other before the first of them are linked. Displacements of a crowd
 /// are known by now: its rocks are linked here.
-void MassFall::Meetings::look(MassFall& fall)
+void Meetings::look()
 {
-  const std::size_t count = near.size(), parts = (count + kNearPart - 1) / kNearPart;
+  const std::size_t count = near_.size(), parts = (count + kNearPart - 1) / kNearPart;
   states_.resize(count);
   aparts_.resize(count);
   sighted_.resize(std::max(count, sighted_.size()));
   others_.resize(std::max(count, others_.size()));
   left_.resize(parts);
-  const auto lookAtPart = [this, count, nears = near.data(), rocks = movers.data(),
+  const auto lookAtPart = [this, count, nears = near_.data(), rocks = movers_.data(),
                             aparts = aparts_.data(), states = states_.data(), fars = fars_.data(),
-                            surely = surely_.data(), most = fall_](std::size_t part)
+                            surely = surely_.data(), most = sag_](std::size_t part)
   {
     const std::size_t first = part * kNearPart, last = std::min(count, first + kNearPart);
     Open* open = sighted_.data() + first;
@@ -192,39 +192,40 @@ void MassFall::Meetings::look(MassFall& fall)
     {
       if (states_[other[k]] == Sight::Overlaps)
       {
-        this->join(fall, other[k], false);
+        this->join(other[k], false);
       }
       else
       {
-        this->drop(fall, near[other[k]]);
+        this->drop(near_[other[k]]);
       }
     }
   }
 }
 
-MassFall::Meetings::Open MassFall::Meetings::openOf(std::size_t k) const
+Meetings::Open Meetings::openOf(std::size_t k) const
 {
-  return { aparts_[k], near[k].first, near[k].second, int(k) };
+  return { aparts_[k], near_[k].first, near_[k].second, int(k) };
 }
 
 /// Takes up those about rocks whose displacements have outgrown what was known.
-void MassFall::Meetings::widen()
+void Meetings::widen()
 {
-  for (std::size_t k = states_.size(); k < near.size(); ++k)
+  for (std::size_t k = states_.size(); k < near_.size(); ++k)
   {
     states_.push_back(Sight::Shut);
-    aparts_.push_back(this->apart(near[k]));
+    aparts_.push_back(this->apart(near_[k]));
   }
   for (const int rock : wider_)
   {
     const auto take = [&](std::size_t k)
     {
-      const Mover &a = movers[std::size_t(near[k].first)], &b = movers[std::size_t(near[k].second)];
+      const Mover &a = movers_[std::size_t(near_[k].first)],
+                  &b = movers_[std::size_t(near_[k].second)];
       if (states_[k] != Sight::Shut && states_[k] != Sight::Apart)
       {
         return;
       }
-      aparts_[k] = a.present && b.present ? this->apart(near[k]) : -kNoAxis;
+      aparts_[k] = a.present && b.present ? this->apart(near_[k]) : -kNoAxis;
       if (aparts_[k] <= a.known + b.known)
       {
         states_[k] = Sight::Open;
@@ -236,15 +237,15 @@ void MassFall::Meetings::widen()
 }
 
 /// Looks at all that are open; returns whether others have to be told of what it has shown.
-bool MassFall::Meetings::sweep(MassFall& fall)
+bool Meetings::sweep()
 {
   bool any = false;
   wider_.clear();
-  for (std::size_t i = 0; i < movers.size(); ++i)
+  for (std::size_t i = 0; i < movers_.size(); ++i)
   {
     // Parents come before their children.
     roots_[i] = parents_[i] = roots_[std::size_t(parents_[i])];
-    Mover& m = movers[i];
+    Mover& m = movers_[i];
     const IslandBounds& bounds = bounds_[std::size_t(roots_[i])];
     if (bounds.size == 1)
     {
@@ -261,9 +262,9 @@ bool MassFall::Meetings::sweep(MassFall& fall)
       }
     }
     fars_[i] = thrown_[i] * m.displacement;
-    if (fars_[i] + fall_ > m.known && m.present && !m.asleep)
+    if (fars_[i] + sag_ > m.known && m.present && !m.asleep)
     {
-      m.known = kWider * (fars_[i] + fall_);
+      m.known = kWider * (fars_[i] + sag_);
       wider_.push_back(int(i));
       if (!this->isCovered(i))
       {
@@ -281,9 +282,9 @@ bool MassFall::Meetings::sweep(MassFall& fall)
   const double* const fars = fars_.data();
   for (const Open *o = first, *end = first + open_.size(); o != end; ++o)
   {
-    if (o->apart <= fars[o->first] + fars[o->second] + fall_)
+    if (o->apart <= fars[o->first] + fars[o->second] + sag_)
     {
-      if (near[std::size_t(o->near)].linked)
+      if (near_[std::size_t(o->near)].linked)
       {
         continue;
       }
@@ -300,14 +301,14 @@ bool MassFall::Meetings::sweep(MassFall& fall)
   for (const std::size_t o : chosen_)
   {
     const std::size_t k = std::size_t(open_[o].near);
-    Near& n = near[k];
+    Near& n = near_[k];
     if (n.pair && n.looked < 0.0 && (this->stays(n) || this->root(n.first) == this->root(n.second)))
     {
       // Of one island they are: how far apart is looked at when their contacts are.
-      any |= this->join(fall, k, false);
+      any |= this->join(k, false);
       continue;
     }
-    n.pair = n.pair ? n.pair : this->newPair(fall, n.first, n.second);
+    n.pair = n.pair ? n.pair : this->newPair(n.first, n.second);
     asked_.push_back(o);
     for (const int i : { n.first, n.second })
     {
@@ -319,10 +320,10 @@ bool MassFall::Meetings::sweep(MassFall& fall)
     }
   }
   forEach(placed_.size(), kLookGrain,
-    [&](std::size_t k) { fall.members_[std::size_t(placed_[k])]->stand(); });
+    [&](std::size_t k) { fall_.rocks[std::size_t(placed_[k])].stand(); });
   answers_.resize(std::max(answers_.size(), asked_.size()));
   forEach(asked_.size(), kLookGrain,
-    [&](std::size_t k) { answers_[k] = this->meet(fall, std::size_t(open_[asked_[k]].near)); });
+    [&](std::size_t k) { answers_[k] = this->meet(std::size_t(open_[asked_[k]].near)); });
   for (const int i : placed_)
   {
     marks_[std::size_t(i)] = 0;
@@ -333,7 +334,7 @@ bool MassFall::Meetings::sweep(MassFall& fall)
     o.apart = aparts_[std::size_t(o.near)];
     if (answers_[a])
     {
-      any |= this->join(fall, std::size_t(o.near), true);
+      any |= this->join(std::size_t(o.near), true);
     }
   }
   return any;
@@ -341,26 +342,26 @@ bool MassFall::Meetings::sweep(MassFall& fall)
 
 /// In a crowd two stay linked as long as they may meet for all that is known of them: their axis is
 /// looked for when their contacts are, within a shorter reach.
-bool MassFall::Meetings::stays(const Near& n) const
+bool Meetings::stays(const Near& n) const
 {
-  const Mover &a = movers[std::size_t(n.first)], &b = movers[std::size_t(n.second)];
+  const Mover &a = movers_[std::size_t(n.first)], &b = movers_[std::size_t(n.second)];
   return n.wasLinked && (n.seen || n.pair->touched) && a.crowd >= 0 && b.crowd >= 0 && !a.asleep &&
     !b.asleep;
 }
 
-void MassFall::Meetings::link(MassFall& fall)
+void Meetings::link()
 {
-  firstLink_.assign(movers.size(), -1);
+  firstLink_.assign(movers_.size(), -1);
   links_.clear();
-  links_.reserve(near.size());
-  queue_.reset(movers.size(), longest_);
-  this->look(fall);
-  this->tell(fall);
-  while (this->sweep(fall))
+  links_.reserve(near_.size());
+  queue_.reset(movers_.size(), longest_);
+  this->look();
+  this->tell();
+  while (this->sweep())
   {
-    this->tell(fall);
+    this->tell();
   }
-  this->settle(fall);
+  this->settle();
   this->unite();
 }
 

@@ -1,9 +1,10 @@
 // Velocities of their island and rest of their displacements, which rocks that may meet pass on to
 // each other.
 
-#include "simulation/massFallMeet.h"
+#include "simulation/Meetings.h"
 
 #include "law/settings.h"
+#include "simulation/sleep.h"
 
 #include <algorithm>
 #include <utility>
@@ -11,21 +12,21 @@
 namespace rockfall
 {
 
-int MassFall::Meetings::root(int i)
+int Meetings::root(int i)
 {
   return headOf(parents_, i);
 }
 
-double MassFall::Meetings::thrown(std::size_t rock) const
+double Meetings::thrown(std::size_t rock) const
 {
   return bounds_[std::size_t(roots_[rock])].thrown(paces_[rock].mass, bounciest_);
 }
 
 /// Links two; `known`: their axis has been found for where they stand. Returns whether that tells
 /// anything new of others.
-bool MassFall::Meetings::join(MassFall& fall, std::size_t k, bool known)
+bool Meetings::join(std::size_t k, bool known)
 {
-  Near& n = near[k];
+  Near& n = near_[k];
   n.linked = n.holds = true;
   states_[k] = Sight::Linked;
   n.pair->linked = true;
@@ -34,16 +35,16 @@ bool MassFall::Meetings::join(MassFall& fall, std::size_t k, bool known)
   {
     const int next = std::exchange(firstLink_[std::size_t(i)], int(links_.size()));
     links_.push_back({ aparts_[k], other, next });
-    Mover& m = movers[std::size_t(i)];
+    Mover& m = movers_[std::size_t(i)];
     if (m.asleep)
     {
-      fall.wake(*fall.members_[std::size_t(i)]);
+      wake(fall_.rocks[std::size_t(i)], fall_.time);
       m.asleep = false;
       --sleepers_;
     }
     queue_.add(i, m.displacement);
   };
-  const bool share = movers[std::size_t(n.first)].shares && movers[std::size_t(n.second)].shares;
+  const bool share = movers_[std::size_t(n.first)].shares && movers_[std::size_t(n.second)].shares;
   if (!share)
   {
     linkTo(n.first, n.second);
@@ -59,12 +60,12 @@ bool MassFall::Meetings::join(MassFall& fall, std::size_t k, bool known)
 }
 
 /// All that lies on each other wakes at once; others have their turn in the next sweep.
-void MassFall::Meetings::wakeAbout(MassFall& fall, int rock)
+void Meetings::wakeAbout(int rock)
 {
   const auto visit = [&](std::size_t k)
   {
-    Near& n = near[k];
-    const Mover& other = movers[std::size_t(n.first == rock ? n.second : n.first)];
+    Near& n = near_[k];
+    const Mover& other = movers_[std::size_t(n.first == rock ? n.second : n.first)];
     if (k >= states_.size() || n.linked || !other.asleep || !other.present)
     {
       return;
@@ -72,12 +73,12 @@ void MassFall::Meetings::wakeAbout(MassFall& fall, int rock)
     aparts_[k] = this->apart(n);
     if (this->mayMeet(this->openOf(k)))
     {
-      n.pair = n.pair ? n.pair : this->newPair(fall, n.first, n.second);
-      fall.members_[std::size_t(n.first)]->stand();
-      fall.members_[std::size_t(n.second)]->stand();
-      if (this->meet(fall, k))
+      n.pair = n.pair ? n.pair : this->newPair(n.first, n.second);
+      fall_.rocks[std::size_t(n.first)].stand();
+      fall_.rocks[std::size_t(n.second)].stand();
+      if (this->meet(k))
       {
-        this->join(fall, k, true);
+        this->join(k, true);
       }
     }
   };
@@ -86,9 +87,9 @@ void MassFall::Meetings::wakeAbout(MassFall& fall, int rock)
 
 /// Passes the rest of a rock's displacement on to those that it is linked with and that do not
 /// share it.
-void MassFall::Meetings::passOn(int rock)
+void Meetings::passOn(int rock)
 {
-  Mover* const rocks = movers.data();
+  Mover* const rocks = movers_.data();
   const double displacement = rocks[rock].displacement;
   const Link* const links = links_.data();
   for (int l = firstLink_[std::size_t(rock)]; l >= 0; l = links[l].next)
@@ -111,13 +112,13 @@ void MassFall::Meetings::passOn(int rock)
 
 /// Carries on what each rock that has been joined may do to those that it may meet: the longest
 /// displacement first, so that few have their turn twice.
-void MassFall::Meetings::tell(MassFall& fall)
+void Meetings::tell()
 {
   for (int i = queue_.next(); i >= 0; i = queue_.next())
   {
     const std::size_t rock = std::size_t(i);
     roots_[rock] = this->root(i);
-    Mover& m = movers[rock];
+    Mover& m = movers_[rock];
     if (m.shares)
     {
       m.displacement = bounds_[std::size_t(roots_[rock])].longest;
@@ -126,7 +127,7 @@ void MassFall::Meetings::tell(MassFall& fall)
     fars_[rock] = thrown_[rock] * m.displacement;
     if (sleepers_ > 0)
     {
-      this->wakeAbout(fall, i);
+      this->wakeAbout(i);
     }
     this->passOn(i);
   }

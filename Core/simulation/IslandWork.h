@@ -1,49 +1,18 @@
 #pragma once
 
 /// @file
-/// Working memory of a step of an island: massFallIsland.cxx and the files that it calls.
+/// Working memory of a step of an island (IslandStep).
 
 #include "base/cache.h"
-#include "simulation/MassFall.h"
+#include "simulation/FallState.h"
+#include "system/IslandSolver.h"
 
+#include <algorithm>
 #include <array>
 #include <deque>
 
 namespace rockfall
 {
-
-/// Partners of a rock in the step (MassFall::Workspace::partners), if not one other rock or the
-/// slope (−1).
-constexpr int kMeetsSeveral = -2, kMeetsNone = -3;
-
-/// Newton's law of restitution asked of a rock by several others at once may make energy. It holds
-/// for what meets one other only; rocks that are hit on several sides, or lie on something, come
-/// to rest against each other.
-inline void meet(std::vector<int>& partners, const IslandContact& k)
-{
-  const auto meets = [&](int body, int other)
-  {
-    if (body >= 0)
-    {
-      int& partner = partners[std::size_t(body)];
-      partner = partner == kMeetsNone || partner == other ? other : kMeetsSeveral;
-    }
-  };
-  meets(k.first, k.second);
-  meets(k.second, k.first);
-}
-
-inline bool mayBounce(const std::vector<int>& partners, const IslandContact& k)
-{
-  return partners[std::size_t(k.first)] != kMeetsSeveral ||
-    (k.second >= 0 && partners[std::size_t(k.second)] != kMeetsSeveral);
-}
-
-/// Whether an open contact comes in as an impact within a step of `h`.
-inline bool hits(const Contact& c, double approach, double resting, double h)
-{
-  return !c.closed() && approach > resting && c.gap() < approach * h;
-}
 
 /// Of a RockSimulator, what the step of a crowd needs of every rock.
 constexpr std::size_t kHotLines = 14;
@@ -59,14 +28,14 @@ inline void comeToPair(const std::vector<RockPair*>& pairs, std::size_t p)
   }
 }
 
-inline void MassFall::comeToRock(const Island& island, std::size_t k) const
+inline void comeToRock(const FallState& fall, const Island& island, std::size_t k)
 {
   constexpr std::size_t kRocksAhead = 2;
   if (k + kRocksAhead < island.members.size())
   {
-    const Member& m = *members_[std::size_t(island.members[k + kRocksAhead])];
-    askCache<kHotLines>(&m.sim);
-    askCache<6>(&m.body);
+    const FallingRock& rock = fall.rocks[std::size_t(island.members[k + kRocksAhead])];
+    askCache<kHotLines>(&rock.sim);
+    askCache<6>(&rock.hull);
   }
 }
 
@@ -74,7 +43,7 @@ inline void MassFall::comeToRock(const Island& island, std::size_t k) const
 constexpr std::size_t kRockGrain = 16, kPairGrain = 32;
 
 /// Working memory of a step of an island, kept by thread.
-struct MassFall::Workspace
+struct IslandWork
 {
   IslandSolver solver;
   std::vector<IslandBody> bodies;
@@ -140,13 +109,17 @@ struct MassFall::Workspace
     double pushed;  ///< Speed that others may add within a step of a crowd, m/s.
     bool done;
 
-    void set(const RockSimulator& sim);
+    void set(const RockBody& body);
   };
   std::vector<Side> sides; ///< By rock, where its island's step begins.
   PairMotion motionOf(const RockPair& pair) const
   {
     const Side &a = sides[std::size_t(pair.first)], &b = sides[std::size_t(pair.second)];
     return { a.velocity - b.velocity, { a.spin, b.spin }, { a.position, b.position } };
+  }
+  double smallerRadius(const RockPair& pair) const ///< m
+  {
+    return std::min(sides[std::size_t(pair.first)].radius, sides[std::size_t(pair.second)].radius);
   }
   /// Counts of the step at hand for the summary of each rock.
   std::int64_t iterations = 0, cuts = 0, unsettled = 0, tries = 0;
@@ -163,21 +136,21 @@ struct MassFall::Workspace
   std::vector<Motion> motions;
 };
 
-inline void MassFall::Workspace::Side::set(const RockSimulator& sim)
+inline void IslandWork::Side::set(const RockBody& body)
 {
-  const BlockState& state = sim.body().state;
+  const BlockState& state = body.state;
   velocity = state.velocity;
   spin = state.angularVelocity();
   position = state.position;
-  radius = sim.body().block.radius();
+  radius = body.block.radius();
   rim = state.spin.norm() * radius;
-  mass = sim.body().block.mass();
-  resting = sim.body().restingSpeed;
+  mass = body.block.mass();
+  resting = body.restingSpeed;
   pushed = 0.0;
-  done = sim.body().done;
+  done = body.done;
 }
 
-inline void MassFall::Workspace::count(RockSimulator& sim) const
+inline void IslandWork::count(RockSimulator& sim) const
 {
   if (!sim.body().done)
   {
@@ -189,7 +162,7 @@ inline void MassFall::Workspace::count(RockSimulator& sim) const
   }
 }
 
-inline void MassFall::Workspace::comeToTouching(const Island& island, std::size_t t) const
+inline void IslandWork::comeToTouching(const Island& island, std::size_t t) const
 {
   constexpr std::size_t kTouchingAhead = 3;
   if (t + kTouchingAhead < touching.size())

@@ -1,13 +1,11 @@
-// Impacts of rocks on each other as events, and what their other contacts take.
-
-#include "simulation/MassFall.h"
+#include "simulation/pairImpacts.h"
 
 #include <algorithm>
 
 namespace rockfall
 {
 
-void MassFall::beginPairImpact(
+void beginPairImpact(
   RockPair& pair, const BlockState& first, const BlockState& second, const Vec3& point)
 {
   RockPair::Impact& impact = pair.impact;
@@ -23,24 +21,24 @@ void MassFall::beginPairImpact(
   impact.point = point;
 }
 
-void MassFall::findKnock(RockPair& pair, const IslandContact& touch, double h)
+void findKnock(const FallState& fall, RockPair& pair, const IslandContact& touch, double h)
 {
   const Contact& c = *touch.contact;
   if (touch.closed || c.normalForce <= 0.0)
   {
     return;
   }
-  const RockBody &a = members_[pair.first]->sim.body(), &b = members_[pair.second]->sim.body();
+  const RockBody &a = fall.rocks[pair.first].body(), &b = fall.rocks[pair.second].body();
   const double resting = std::min(a.restingSpeed, b.restingSpeed);
   const double closing = -touch.opening / h;
-  if (closing > resting + parameters_.gravity * h)
+  if (closing > resting + fall.parameters.gravity * h)
   {
-    this->beginPairImpact(pair, a.before, b.before, c.point);
+    beginPairImpact(pair, a.before, b.before, c.point);
     pair.impact.approach = std::max(pair.impact.approach, closing);
   }
 }
 
-void MassFall::finishPairImpact(RockPair& pair, bool over)
+void finishPairImpact(FallState& fall, RockPair& pair, bool over)
 {
   RockPair::Impact& impact = pair.impact;
   if (!pair.strikes)
@@ -60,7 +58,7 @@ void MassFall::finishPairImpact(RockPair& pair, bool over)
   {
     const int own = side == 0 ? pair.first : pair.second;
     const int other = side == 0 ? pair.second : pair.first;
-    RockSimulator& sim = members_[own]->sim;
+    RockSimulator& sim = fall.rocks[own].sim;
     ImpactEvent event;
     event.time = impact.time;
     event.position = impact.point;
@@ -73,19 +71,19 @@ void MassFall::finishPairImpact(RockPair& pair, bool over)
     event.energyLoss = loss;
     event.restitution = pair.law.restitution;
     event.otherRock = other;
-    event.otherBlockId = members_[other]->sim.trajectory().summary.blockId;
+    event.otherBlockId = fall.rocks[other].sim.trajectory().summary.blockId;
     Trajectory& trajectory = sim.trajectory();
     trajectory.impacts.push_back(event);
     ++trajectory.summary.impacts;
   }
 }
 
-void MassFall::closePairBooks(RockPair& pair)
+void closePairBooks(FallState& fall, RockPair& pair)
 {
-  this->finishPairImpact(pair, false);
+  finishPairImpact(fall, pair, false);
   for (const int i : { pair.first, pair.second })
   {
-    members_[i]->sim.trajectory().summary.lastingLoss += 0.5 * pair.lastingLoss;
+    fall.rocks[i].sim.trajectory().summary.lastingLoss += 0.5 * pair.lastingLoss;
   }
   pair.lastingLoss = 0.0;
 }

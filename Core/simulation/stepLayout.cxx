@@ -1,8 +1,4 @@
-// Facts of all rocks and pairs of an island that come before the loops over each of them: their
-// places in the system of a step, whether they may bounce, and what rocks may add to each
-// other's speed.
-
-#include "simulation/massFallWork.h"
+#include "simulation/stepLayout.h"
 
 #include "base/parallel.h"
 
@@ -12,34 +8,21 @@
 namespace rockfall
 {
 
-namespace
-{
-
-/// Rocks, pairs or contacts of one part.
-constexpr std::size_t kPartSize = 128;
-
-std::size_t partsOf(std::size_t count)
-{
-  return (count + kPartSize - 1) / kPartSize;
-}
-
-} // namespace
-
-std::size_t MassFall::layOut(const Island& island, Workspace& work)
+std::size_t layOut(FallState& fall, const Island& island, IslandWork& work)
 {
   const std::size_t rocks = island.members.size(), pairs = island.pairs.size();
   const std::size_t rockParts = partsOf(rocks), pairParts = partsOf(pairs);
   work.parts.resize(std::max(rockParts, pairParts));
-  work.placeOf.resize(members_.size());
+  work.placeOf.resize(fall.rocks.size());
   work.slopeFirsts.resize(rocks);
   // Each part counts from its own beginning, then from where the parts before it end.
   const auto countRocks = [&](std::size_t part)
   {
-    Workspace::Part counted;
+    IslandWork::Part counted;
     for (std::size_t k = part * kPartSize; k < std::min(rocks, (part + 1) * kPartSize); ++k)
     {
-      this->comeToRock(island, k);
-      const RockSimulator& sim = members_[island.members[k]]->sim;
+      comeToRock(fall, island, k);
+      const RockSimulator& sim = fall.rocks[island.members[k]].sim;
       work.placeOf[std::size_t(island.members[k])] = sim.body().done ? -1 : counted.places++;
       work.slopeFirsts[k] = counted.contacts;
       counted.contacts += sim.body().done ? 0 : sim.body().contacts.size();
@@ -53,8 +36,8 @@ std::size_t MassFall::layOut(const Island& island, Workspace& work)
     int places = 0;
     for (std::size_t part = 0; part < parts; ++part)
     {
-      Workspace::Part& p = work.parts[part];
-      const Workspace::Part counted = p;
+      IslandWork::Part& p = work.parts[part];
+      const IslandWork::Part counted = p;
       p.places = places;
       p.contacts = contacts;
       places += counted.places;
@@ -65,13 +48,13 @@ std::size_t MassFall::layOut(const Island& island, Workspace& work)
   const int all = goOn(rockParts);
   const auto placeRocks = [&](std::size_t part)
   {
-    const Workspace::Part& before = work.parts[part];
+    const IslandWork::Part& before = work.parts[part];
     for (std::size_t k = part * kPartSize; k < std::min(rocks, (part + 1) * kPartSize); ++k)
     {
       int& place = work.placeOf[std::size_t(island.members[k])];
       place += place < 0 ? 0 : before.places;
       work.slopeFirsts[k] += before.contacts;
-      members_[island.members[k]]->place = place;
+      fall.rocks[island.members[k]].place = place;
     }
   };
   forEach(rockParts, 1, placeRocks);
@@ -81,7 +64,7 @@ std::size_t MassFall::layOut(const Island& island, Workspace& work)
   work.touching.clear();
   const auto countPairs = [&](std::size_t part)
   {
-    Workspace::Part counted;
+    IslandWork::Part counted;
     const std::size_t begin = part * kPartSize, end = std::min(pairs, begin + kPartSize);
     std::size_t* const meeting = work.meeting.data() + begin;
     std::size_t* const firsts = work.firsts.data();
@@ -122,67 +105,12 @@ std::size_t MassFall::layOut(const Island& island, Workspace& work)
   return std::size_t(all);
 }
 
-void MassFall::settleBounces(bool lasting, Workspace& work) const
-{
-  // Few contacts have a say: each part looks for its own.
-  const std::size_t contacts = work.contacts.size(), parts = partsOf(contacts);
-  work.parts.resize(std::max(parts, work.parts.size()));
-  work.meeting.resize(std::max(contacts, work.meeting.size()));
-  const auto choose = [&](std::size_t part)
-  {
-    std::size_t* to = work.meeting.data() + part * kPartSize;
-    for (std::size_t k = part * kPartSize, end = std::min(contacts, k + kPartSize); k < end; ++k)
-    {
-      const IslandContact& c = work.contacts[k];
-      *to = k;
-      to += c.bounce >= 0.0 || c.closed;
-    }
-    work.parts[part].contacts = std::size_t(to - work.meeting.data()) - part * kPartSize;
-  };
-  forEach(parts, 1, choose);
-  const auto forChosen = [&](auto&& visit)
-  {
-    for (std::size_t part = 0; part < parts; ++part)
-    {
-      const std::size_t* const first = work.meeting.data() + part * kPartSize;
-      for (const std::size_t *k = first, *end = first + work.parts[part].contacts; k != end; ++k)
-      {
-        visit(work.contacts[*k]);
-      }
-    }
-  };
-  work.partners.assign(work.bodies.size(), kMeetsNone);
-  forChosen([&](const IslandContact& k) { meet(work.partners, k); });
-  const auto settle = [&](IslandContact& k)
-  {
-    if (k.bounce < 0.0)
-    {
-      return;
-    }
-    k.bounce = mayBounce(work.partners, k) ? k.bounce : -1.0;
-    if (!lasting || k.bounce < 0.0)
-    {
-      return;
-    }
-    // Rocks that bounce have no acceleration to go on with.
-    for (const int b : { k.first, k.second })
-    {
-      if (b >= 0)
-      {
-        work.bodies[std::size_t(b)].acceleration.setZero();
-        work.bodies[std::size_t(b)].spinAcceleration.setZero();
-      }
-    }
-  };
-  forChosen(settle);
-}
-
-void MassFall::findPushes(const Island& island, Workspace& work)
+void findPushes(const Island& island, IslandWork& work)
 {
   for (const RockPair* pair : island.pairs)
   {
-    Workspace::Side& a = work.sides[std::size_t(pair->first)];
-    Workspace::Side& b = work.sides[std::size_t(pair->second)];
+    IslandWork::Side& a = work.sides[std::size_t(pair->first)];
+    IslandWork::Side& b = work.sides[std::size_t(pair->second)];
     if (a.done || b.done)
     {
       continue;

@@ -1,4 +1,4 @@
-// Rocks that are near each other in a step; those of them that may meet: massFallLink.cxx.
+// Rocks that are near each other in a step; those of them that may meet: meetingsLink.cxx.
 //
 // Neighbours are looked for in balls about the rocks, wide enough for a few steps, and again when a
 // rock may come out of its own: for this one alone, or, if there are many such, for all.
@@ -14,11 +14,13 @@
 // that were one crowd in the last step are one island from the beginning, and share its longest
 // displacement.
 
-#include "simulation/massFallMeet.h"
+#include "simulation/Meetings.h"
 
 #include "base/parallel.h"
 #include "contact/motion.h"
 #include "law/settings.h"
+#include "simulation/pairImpacts.h"
+#include "simulation/sleep.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,62 +42,20 @@ constexpr std::size_t kMostOut = 4;
 
 } // namespace
 
-void MassFall::foresee(const RockSimulator& sim, double duration, Pace& pace) const
+void Meetings::follow(double duration)
 {
-  const BlockState& s = sim.body().state;
-  const double speed = s.velocity.norm(), rim = sim.body().block.largestRimSpeed(s.spin);
-  // Springs give back what they hold in the middle of an impact.
-  const double held = std::sqrt(2.0 * sim.body().springEnergy * sim.body().block.largestMobility());
-  pace.own = (speed + rim + held) * duration + parameters_.gravity * duration * duration;
-  // Structures farther off than it may come have no say.
-  const double displacement = sim.body().block.radius() + pace.own;
-  const Vec3& p = s.position;
-  const Obstacles* obstacles = surface_.terrain().obstacles();
-  const bool obstructed = obstacles &&
-    obstacles->anyIn(
-      p.x() - displacement, p.x() + displacement, p.y() - displacement, p.y() + displacement);
-  const bool flies = !obstructed && sim.body().contacts.empty() && sim.clearFor(duration);
-  // Velocities that an impact on the slope leaves, with any normal.
-  const double e = obstructed ? 1.0 : surface_.largestRestitution();
-  pace.middle = flies ? s.velocity : Vec3(0.5 * (1.0 - e) * s.velocity);
-  pace.spread = rim + held + (flies ? 0.0 : 0.5 * (1.0 + e) * speed);
-}
-
-void MassFall::Meetings::follow(MassFall& fall, double duration)
-{
-  const std::size_t count = fall.members_.size();
+  const std::size_t count = fall_.rocks.size();
   duration_ = duration;
-  fall_ = fall.parameters_.gravity * duration * duration;
-  if (movers.empty())
-  {
-    movers.resize(count);
-    paces_.resize(count);
-    bounds_.resize(count);
-    parents_.resize(count);
-    roots_.resize(count);
-    boxes_.resize(count);
-    fars_.resize(count);
-    thrown_.resize(count);
-    heads_.resize(count);
-    inIsland_.resize(count);
-    later_.resize(count);
-    marks_.resize(count, 0);
-    for (std::size_t i = 0; i < count; ++i)
-    {
-      movers[i].radius = fall.members_[i]->sim.body().block.radius();
-      paces_[i].mass = fall.members_[i]->sim.body().block.mass();
-    }
-    bounciest_ = fall.contacts_.largestRestitution();
-  }
+  sag_ = fall_.parameters.gravity * duration * duration;
   const std::size_t last = count - 1;
   const auto followRock = [&](std::size_t i)
   {
-    Mover& m = movers[i];
+    Mover& m = movers_[i];
     Pace& pace = paces_[i];
-    const Member& member = *fall.members_[i];
+    const FallingRock& member = fall_.rocks[i];
     const RockSimulator& sim = member.sim;
     const char* const ahead =
-      reinterpret_cast<const char*>(&fall.members_[std::min(i + kMembersAhead, last)]->asleep);
+      reinterpret_cast<const char*>(&fall_.rocks[std::min(i + kMembersAhead, last)].asleep);
     for (int line = 0; line < kLinesAsked; ++line)
     {
       __builtin_prefetch(ahead + 64 * line);
@@ -125,9 +85,9 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
       return;
     }
     pace.velocity = s.velocity;
-    fall.foresee(sim, duration, pace);
+    foresee(fall_, sim, duration, pace);
     // Much the same rocks strike it as in the last step.
-    m.known = kWider * std::max(pace.own, m.displacement) + fall_;
+    m.known = kWider * std::max(pace.own, m.displacement) + sag_;
     m.displacement = fars_[i] = pace.own;
   };
   forEach(count, kFollowGrain, followRock);
@@ -138,7 +98,7 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
   crowds_.clear();
   for (std::size_t i = 0; i < count; ++i)
   {
-    const Mover& m = movers[i];
+    const Mover& m = movers_[i];
     const Pace& pace = paces_[i];
     longest_ = std::max(longest_, m.displacement);
     sleepers_ += m.present && m.asleep;
@@ -183,19 +143,19 @@ void MassFall::Meetings::follow(MassFall& fall, double duration)
 }
 
 /// Gives a rock of a crowd the displacement of its island.
-void MassFall::Meetings::share(std::size_t i)
+void Meetings::share(std::size_t i)
 {
-  Mover& m = movers[i];
+  Mover& m = movers_[i];
   if (m.shares)
   {
     m.displacement = bounds_[std::size_t(roots_[i])].longest;
     thrown_[i] = this->thrown(i);
     fars_[i] = thrown_[i] * m.displacement;
-    m.known = fars_[i] + fall_;
+    m.known = fars_[i] + sag_;
   }
 }
 
-RockPair* MassFall::Meetings::newPair(const MassFall& fall, int first, int second)
+RockPair* Meetings::newPair(int first, int second)
 {
   if (spare_.empty())
   {
@@ -205,19 +165,19 @@ RockPair* MassFall::Meetings::newPair(const MassFall& fall, int first, int secon
   spare_.pop_back();
   pair->first = first;
   pair->second = second;
-  pair->law = fall.contacts_.between(first, second);
+  pair->law = fall_.contacts.between(first, second);
   return pair;
 }
 
-void MassFall::Meetings::drop(MassFall& fall, Near& n)
+void Meetings::drop(Near& n)
 {
   if (n.pair)
   {
-    fall.closePairBooks(*n.pair);
-    if (fall.heldLately(*n.pair))
+    closePairBooks(fall_, *n.pair);
+    if (touchedLately(*n.pair, fall_.time))
     {
-      fall.restAnew(n.first);
-      fall.restAnew(n.second);
+      restAnew(fall_.rocks[n.first]);
+      restAnew(fall_.rocks[n.second]);
     }
     std::vector<Contact> contacts = std::move(n.pair->contacts);
     contacts.clear();
@@ -231,10 +191,10 @@ void MassFall::Meetings::drop(MassFall& fall, Near& n)
   n = fresh;
 }
 
-/// Whether all that it is near, wherever it may go in the step, are among its neighbours.
-bool MassFall::Meetings::isCovered(std::size_t i) const
+/// Whether all that it is near_, wherever it may go in the step, are among its neighbours.
+bool Meetings::isCovered(std::size_t i) const
 {
-  const Mover& m = movers[i];
+  const Mover& m = movers_[i];
   const Pace& pace = paces_[i];
   const double room = pace.cover - m.radius - m.known;
   return !m.present ||
@@ -242,11 +202,11 @@ bool MassFall::Meetings::isCovered(std::size_t i) const
       (m.position - drift_ - pace.covered).squaredNorm() <= room * room);
 }
 
-void MassFall::Meetings::findNear(MassFall& fall)
+void Meetings::findNear()
 {
   chosen_.clear();
   forThose(
-    movers.size(), kFollowGrain, answers_,
+    movers_.size(), kFollowGrain, answers_,
     [&](std::size_t i)
     {
       this->share(i);
@@ -254,9 +214,9 @@ void MassFall::Meetings::findNear(MassFall& fall)
     },
     [&](std::size_t i) { chosen_.push_back(i); });
   out_ += chosen_.size();
-  if (!searched_ || out_ * kMostOut > movers.size())
+  if (!searched_ || out_ * kMostOut > movers_.size())
   {
-    this->search(fall);
+    this->search();
     out_ = 0;
     return;
   }
@@ -267,21 +227,21 @@ void MassFall::Meetings::findNear(MassFall& fall)
 }
 
 /// How much wider a rock's ball is than it need be in the step, m.
-double MassFall::Meetings::spare(int rock) const
+double Meetings::spare(int rock) const
 {
   return kBallSteps * duration_ * (paces_[std::size_t(rock)].velocity - mean_).norm() +
-    kBallOtherwise * movers[std::size_t(rock)].known;
+    kBallOtherwise * movers_[std::size_t(rock)].known;
 }
 
 /// For all, from where they stand.
-void MassFall::Meetings::search(MassFall& fall)
+void Meetings::search()
 {
   searched_ = true;
   mean_.setZero();
   int present = 0;
-  for (std::size_t i = 0; i < movers.size(); ++i)
+  for (std::size_t i = 0; i < movers_.size(); ++i)
   {
-    if (movers[i].present)
+    if (movers_[i].present)
     {
       mean_ += paces_[i].velocity;
       ++present;
@@ -289,9 +249,9 @@ void MassFall::Meetings::search(MassFall& fall)
   }
   mean_ /= std::max(1, present);
   drift_.setZero();
-  for (std::size_t i = 0; i < movers.size(); ++i)
+  for (std::size_t i = 0; i < movers_.size(); ++i)
   {
-    const Mover& m = movers[i];
+    const Mover& m = movers_[i];
     Pace& pace = paces_[i];
     pace.covered = m.position;
     pace.cover = m.radius + m.known + this->spare(int(i));
@@ -300,16 +260,16 @@ void MassFall::Meetings::search(MassFall& fall)
   }
   broad_.place(boxes_);
   const std::span<const std::array<int, 2>> found = broad_.pairs();
-  const auto behind = near.begin() + std::ptrdiff_t(sorted_);
-  std::sort(behind, near.end());
+  const auto behind = near_.begin() + std::ptrdiff_t(sorted_);
+  std::sort(behind, near_.end());
   // Not in place: the room that it would take for it knows nothing of their alignment.
-  nextNear_.resize(near.size());
-  std::merge(near.begin(), behind, behind, near.end(), nextNear_.begin());
-  near.swap(nextNear_);
+  nextNear_.resize(near_.size());
+  std::merge(near_.begin(), behind, behind, near_.end(), nextNear_.begin());
+  near_.swap(nextNear_);
   // Pairs that are still near stay, and pairs of sleepers, which are not looked for.
   nextNear_.clear();
-  nextNear_.reserve(std::max(found.size(), near.size()));
-  auto old = near.begin();
+  nextNear_.reserve(std::max(found.size(), near_.size()));
+  auto old = near_.begin();
   const auto leave = [&](Near& n)
   {
     if (n.pair && this->isAsleep(n.first, n.second))
@@ -318,7 +278,7 @@ void MassFall::Meetings::search(MassFall& fall)
     }
     else
     {
-      this->drop(fall, n);
+      this->drop(n);
     }
   };
   for (const std::array<int, 2>& ij : found)
@@ -326,27 +286,27 @@ void MassFall::Meetings::search(MassFall& fall)
     Near n;
     n.first = ij[0];
     n.second = ij[1];
-    for (; old != near.end() && *old < n; ++old)
+    for (; old != near_.end() && *old < n; ++old)
     {
       leave(*old);
     }
-    const bool there = old != near.end() && !(n < *old);
+    const bool there = old != near_.end() && !(n < *old);
     nextNear_.push_back(there ? *old++ : n);
   }
-  for (; old != near.end(); ++old)
+  for (; old != near_.end(); ++old)
   {
     leave(*old);
   }
-  near.swap(nextNear_);
-  sorted_ = near.size();
+  near_.swap(nextNear_);
+  sorted_ = near_.size();
   widened_ = 0.0;
   this->indexNeighbours();
 }
 
-void MassFall::Meetings::indexNeighbours()
+void Meetings::indexNeighbours()
 {
-  firsts_.assign(movers.size() + 1, 0);
-  for (const Near& n : near)
+  firsts_.assign(movers_.size() + 1, 0);
+  for (const Near& n : near_)
   {
     ++firsts_[std::size_t(n.first)];
     ++firsts_[std::size_t(n.second)];
@@ -358,10 +318,10 @@ void MassFall::Meetings::indexNeighbours()
     first = sum;
   }
   places_.resize(sum);
-  for (std::size_t k = near.size(); k-- > 0;)
+  for (std::size_t k = near_.size(); k-- > 0;)
   {
-    places_[--firsts_[std::size_t(near[k].first)]] = k;
-    places_[--firsts_[std::size_t(near[k].second)]] = k;
+    places_[--firsts_[std::size_t(near_[k].first)]] = k;
+    places_[--firsts_[std::size_t(near_[k].second)]] = k;
   }
   for (const int i : widenedRocks_)
   {
@@ -371,9 +331,9 @@ void MassFall::Meetings::indexNeighbours()
 }
 
 /// Looks for those about a rock that comes out of its ball.
-void MassFall::Meetings::cover(int rock)
+void Meetings::cover(int rock)
 {
-  const Mover& m = movers[std::size_t(rock)];
+  const Mover& m = movers_[std::size_t(rock)];
   Pace& pace = paces_[std::size_t(rock)];
   const BroadBox& searched = boxes_[std::size_t(rock)];
   pace.covered = m.position - drift_;
@@ -383,14 +343,14 @@ void MassFall::Meetings::cover(int rock)
   widened_ =
     std::max(widened_, pace.cover + (pace.covered - searched.center).norm() - searched.radius);
   const auto other = [&](std::size_t k)
-  { return std::size_t(near[k].first == rock ? near[k].second : near[k].first); };
+  { return std::size_t(near_[k].first == rock ? near_[k].second : near_[k].first); };
   this->forNeighbours(rock, [&](std::size_t k) { marks_[other(k)] = 1; });
   marks_[std::size_t(rock)] = 1;
   for (const int j : found_)
   {
     const Pace& o = paces_[std::size_t(j)];
     const double reach = pace.cover + o.cover;
-    if (!marks_[std::size_t(j)] && movers[std::size_t(j)].present &&
+    if (!marks_[std::size_t(j)] && movers_[std::size_t(j)].present &&
       (pace.covered - o.covered).squaredNorm() <= reach * reach)
     {
       Near n;
@@ -398,10 +358,10 @@ void MassFall::Meetings::cover(int rock)
       n.second = std::max(rock, j);
       for (const int i : { rock, j })
       {
-        later_[std::size_t(i)].push_back(near.size());
+        later_[std::size_t(i)].push_back(near_.size());
         widenedRocks_.push_back(i);
       }
-      near.push_back(n);
+      near_.push_back(n);
     }
   }
   this->forNeighbours(rock, [&](std::size_t k) { marks_[other(k)] = 0; });

@@ -4,8 +4,9 @@
 /// Rocks that may meet within a step: pairs near each other, in compact arrays, as there are
 /// several times more of them than touch.
 
-#include "simulation/MassFall.h"
+#include "simulation/FallState.h"
 #include "simulation/RockQueue.h"
+#include "simulation/pace.h"
 #include "system/broadPhase.h"
 
 #include <algorithm>
@@ -42,65 +43,6 @@ struct alignas(64) Mover
   bool isOneCrowdWith(const Mover& o) const { return shares && o.shares && crowd == o.crowd; }
 };
 
-/// Velocities that a rock may have in the step.
-struct Pace
-{
-  double own = 0.0;  ///< The longest displacement if nothing strikes it, m.
-  double mass = 0.0; ///< kg
-  /// All velocities that points of it may have until it meets another rock are in a ball, m/s:
-  /// about its velocity if it flies clear of the slope; else the slope may stop it or throw it
-  /// back.
-  Vec3 middle = Vec3::Zero();
-  double spread = 0.0;
-  Vec3 velocity = Vec3::Zero();        ///< m/s
-  Quat orientation = Quat::Identity(); ///< For which `turned` stands.
-  Vec6 strain = Vec6::Zero();
-  /// Centre of the ball in which neighbours have been looked for, less the drift of all rocks
-  /// since, m.
-  Vec3 covered = Vec3::Zero();
-  double cover = 0.0; ///< Radius of the ball, m.
-  bool slept = true;  ///< Then: others that did were no neighbours.
-};
-
-/// Rocks that may touch within the step, or one alone.
-struct IslandBounds
-{
-  Vec3 lower, upper; ///< Velocities of its points, m/s.
-  double heaviest;   ///< kg
-  double longest;    ///< Displacement of one of them if nothing else strikes it, m.
-  int size;
-
-  /// A light rock that a heavy one strikes goes on faster than it, by this factor. `bounciest`:
-  /// the largest restitution of rocks on each other.
-  double thrown(double mass, double bounciest) const
-  {
-    return bounciest * heaviest > mass ? (1.0 + bounciest) * heaviest / (heaviest + mass) : 1.0;
-  }
-  /// Largest component along the normal of a velocity of one of its rocks, m/s.
-  double most(const Vec3& normal, const Pace& pace) const
-  {
-    return size > 1 ? normal.cwiseProduct(lower).cwiseMax(normal.cwiseProduct(upper)).sum()
-                    : pace.spread + normal.dot(pace.middle);
-  }
-  void add(const IslandBounds& other)
-  {
-    lower = lower.cwiseMin(other.lower);
-    upper = upper.cwiseMax(other.upper);
-    heaviest = std::max(heaviest, other.heaviest);
-    longest = std::max(longest, other.longest);
-    size += other.size;
-  }
-};
-
-/// Speed at which the gap of two rocks of these islands may close along a normal, m/s.
-inline double closingSpeed(const IslandBounds& first, const Pace& firstPace,
-  const IslandBounds& second, const Pace& secondPace, const Vec3& normal)
-{
-  return &first == &second
-    ? normal.cwiseAbs().dot(first.upper - first.lower)
-    : std::max(0.0, first.most(-normal, firstPace) + second.most(normal, secondPace));
-}
-
 /// Two rocks that are near each other, or may come near each other soon; in one line of the cache.
 struct alignas(64) Near
 {
@@ -122,17 +64,6 @@ inline bool operator<(const Near& a, const Near& b)
   return a.first != b.first ? a.first < b.first : a.second < b.second;
 }
 
-/// The first one of those that are joined to one, by the one that each is joined to.
-inline int headOf(std::vector<int>& joined, int i)
-{
-  int* const heads = joined.data();
-  while (heads[i] != i)
-  {
-    i = heads[i] = heads[heads[i]];
-  }
-  return i;
-}
-
 /// State of two rocks near each other.
 enum class Sight : std::uint8_t
 {
@@ -143,18 +74,20 @@ enum class Sight : std::uint8_t
   Linked,   ///< or may meet for sure.
 };
 
-struct MassFall::Meetings
+class Meetings
 {
-  std::vector<Mover> movers;
-  std::vector<Near> near; ///< Ordered by (first, second), but for those found later.
+public:
+  explicit Meetings(FallState& fall);
 
-  void follow(MassFall& fall, double duration); ///< The rocks, to where they stand now.
-  void findNear(MassFall& fall);
-  void link(MassFall& fall);
-  int head(int rock) const { return heads_[std::size_t(rock)]; } ///< The first of its island.
-  bool isAlone(int rock) const { return !inIsland_[std::size_t(rock)]; }
+  /// Islands of rocks that may meet within a duration (s), and rocks that meet no other, in the
+  /// order of their numbers. Wakes what may be met.
+  void find(double duration);
+  const std::vector<Island>& islands() const { return islands_; }
+  const std::vector<int>& alone() const { return alone_; }
+
+  /// Pairs that are near each other and whose axis was ever looked for, by (first, second).
   template <class Visit>
-  void forLinked(Visit&& visit) const; ///< In the order of `near`.
+  void forPairs(Visit&& visit);
 
 private:
   /// A pair that is not linked and no farther apart than known displacements go.
@@ -162,7 +95,7 @@ private:
   {
     double apart; ///< No nearer than that, m.
     int first, second;
-    int near; ///< Index into `near`.
+    int near; ///< Index into `near_`.
   };
   /// A rock that another is linked with, in a list.
   struct Link
@@ -178,25 +111,28 @@ private:
     int first, second;
     RockPair* pair;
   };
-  /// Numbers of entries that a part of `near` has left, each from its own beginning on.
+  /// Numbers of entries that a part of `near_` has left, each from its own beginning on.
   struct Left
   {
     std::size_t open, others;
   };
 
-  // Neighbours: massFallMeet.cxx
+  // Neighbours: meetingsNear.cxx
+  void follow(double duration); ///< The rocks, to where they stand now.
+  void findNear();
   void share(std::size_t rock);
-  void search(MassFall& fall);
+  void search();
   void cover(int rock);
   double spare(int rock) const;
   bool isCovered(std::size_t rock) const;
-  RockPair* newPair(const MassFall& fall, int first, int second);
-  void drop(MassFall& fall, Near& near);
+  RockPair* newPair(int first, int second);
+  void drop(Near& near);
   void indexNeighbours();
   template <class Visit>
   void forNeighbours(int rock, Visit&& visit);
 
-  // Pairs that may meet: massFallLink.cxx
+  // Pairs that may meet: meetingsLink.cxx
+  void link();
   double gap(const Near& near) const; ///< At least, along the axis, m.
   double apart(const Near& near) const;
   double closing(const Near& near) const;
@@ -204,27 +140,36 @@ private:
   bool isAsleep(int first, int second) const; ///< Both.
   void lookAlong(Near& near) const;
   bool mayMeet(const Open& open) const;
-  bool meet(const MassFall& fall, std::size_t near);
-  void look(MassFall& fall);
+  bool meet(std::size_t near);
+  void look();
   Open openOf(std::size_t near) const;
   void widen();
-  bool sweep(MassFall& fall);
+  bool sweep();
   bool stays(const Near& near) const;
 
-  // Islands: massFallIslands.cxx
-  void settle(MassFall& fall);
+  // Islands: Meetings.cxx
+  void settle();
   void unite();
+  void listIslands();
+  template <class Visit>
+  void forLinked(Visit&& visit) const; ///< In the order of `near_`.
 
-  // Velocities and displacements passed on: massFallReach.cxx
+  // Velocities and displacements passed on: meetingsReach.cxx
   int root(int rock); ///< The first one of its island.
   double thrown(std::size_t rock) const;
-  bool join(MassFall& fall, std::size_t near, bool known);
-  void wakeAbout(MassFall& fall, int rock);
+  bool join(std::size_t near, bool known);
+  void wakeAbout(int rock);
   void passOn(int rock);
-  void tell(MassFall& fall);
+  void tell();
 
+  FallState& fall_;
+  std::vector<Mover> movers_;
+  std::vector<Near> near_; ///< Ordered by (first, second), but for those found later.
+  std::vector<Island> islands_;
+  std::vector<int> alone_;
+  std::vector<int> islandOf_; ///< By the first rock of an island.
   double duration_ = 0.0;
-  double fall_ = 0.0;         ///< Displacement that gravity may add, m.
+  double sag_ = 0.0;          ///< Displacement that gravity may add, m.
   double bounciest_ = 0.0;    ///< Largest restitution of rocks on each other.
   double widened_ = 0.0;      ///< Most that a rock's ball reaches beyond that of the search, m.
   Vec3 drift_ = Vec3::Zero(); ///< How far all have gone on together since, m.
@@ -242,19 +187,19 @@ private:
   std::vector<int> crowds_; ///< First rock of each crowd of the last step.
   std::vector<double>
     surely_; ///< Of each of them, its velocities may close such a gap anywhere, m.
-  /// Of each rock, where it is in `near`: those of the search, and those found later.
+  /// Of each rock, where it is in `near_`: those of the search, and those found later.
   std::vector<std::size_t> firsts_, places_;
   std::vector<std::vector<std::size_t>> later_;
   std::vector<int> widenedRocks_;
-  std::size_t sorted_ = 0;     ///< Of `near`; behind it those found later.
-  std::vector<double> aparts_; ///< Of `near`.
-  std::vector<Sight> states_;  ///< Of `near`.
+  std::size_t sorted_ = 0;     ///< Of `near_`; behind it those found later.
+  std::vector<double> aparts_; ///< Of `near_`.
+  std::vector<Sight> states_;  ///< Of `near_`.
   std::vector<Open> open_;
-  std::vector<Open> sighted_; ///< The same as found by each part of `near`, from its beginning.
-  std::vector<std::size_t> others_; ///< Of `near`, what else a look has to see to.
-  std::vector<Left> left_;          ///< By part of `near`.
+  std::vector<Open> sighted_; ///< The same as found by each part of `near_`, from its beginning.
+  std::vector<std::size_t> others_; ///< Of `near_`, what else a look has to see to.
+  std::vector<Left> left_;          ///< By part of `near_`.
   std::vector<Linked> linked_;
-  std::vector<std::size_t> linkedCounts_; ///< By part of `near`.
+  std::vector<std::size_t> linkedCounts_; ///< By part of `near_`.
   std::vector<int> heads_;
   std::vector<char> inIsland_;
   std::vector<char> parted_;   ///< By rock: what touched it lately is linked with it no longer.
@@ -273,11 +218,11 @@ private:
   std::vector<int> placed_;
 };
 
-/// Pairs of a part of `near`.
+/// Pairs of a part of `near_`.
 constexpr std::size_t kNearPart = 256;
 
 template <class Visit>
-void MassFall::Meetings::forLinked(Visit&& visit) const
+void Meetings::forLinked(Visit&& visit) const
 {
   for (std::size_t part = 0; part < linkedCounts_.size(); ++part)
   {
@@ -290,7 +235,19 @@ void MassFall::Meetings::forLinked(Visit&& visit) const
 }
 
 template <class Visit>
-void MassFall::Meetings::forNeighbours(int rock, Visit&& visit)
+void Meetings::forPairs(Visit&& visit)
+{
+  for (const Near& n : near_)
+  {
+    if (n.pair)
+    {
+      visit(*n.pair);
+    }
+  }
+}
+
+template <class Visit>
+void Meetings::forNeighbours(int rock, Visit&& visit)
 {
   for (std::size_t k = firsts_[std::size_t(rock)]; k < firsts_[std::size_t(rock) + 1]; ++k)
   {

@@ -1,6 +1,4 @@
-// Springs and dashpots of contacts between rocks.
-
-#include "simulation/massFallWork.h"
+#include "simulation/pairSprings.h"
 
 #include "contact/motion.h"
 #include "law/settings.h"
@@ -83,7 +81,7 @@ private:
 
 } // namespace
 
-void MassFall::stiffenPressed(RockSimulator& sim)
+void stiffenPressed(RockSimulator& sim)
 {
   const double r = sim.body().block.radius(), mass = sim.body().block.mass();
   double speed = sim.body().state.velocity.norm() + sim.body().state.spin.norm() * r;
@@ -113,7 +111,7 @@ void MassFall::stiffenPressed(RockSimulator& sim)
   }
 }
 
-void MassFall::setPairSprings(RockPair& pair, double h)
+void setPairSprings(const FallState& fall, RockPair& pair, double h)
 {
   Contact* k = pair.contacts.data();
   Contact* const end = k + pair.contacts.size();
@@ -125,8 +123,8 @@ void MassFall::setPairSprings(RockPair& pair, double h)
   {
     return;
   }
-  const RockBody &a = members_[pair.first]->sim.body(), &b = members_[pair.second]->sim.body();
-  PairSprings springs(a.placed, a.state, b.placed, b.state, pair.law, parameters_);
+  const RockBody &a = fall.rocks[pair.first].body(), &b = fall.rocks[pair.second].body();
+  PairSprings springs(a.placed, a.state, b.placed, b.state, pair.law, fall.parameters);
   for (; k != end; ++k)
   {
     if (!k->closed())
@@ -138,17 +136,17 @@ void MassFall::setPairSprings(RockPair& pair, double h)
   {
     tuneDashpots(
       pair.contacts, h,
-      [motion = this->motionOf(pair)](const Contact& c)
+      [motion = motionOf(fall, pair)](const Contact& c)
       { return -c.normal.dot(motion.at(c.point)); },
       [&](const Vec3& force, const Vec3& moment, const Vec3& at)
       { return response(a.placed, force, moment, at) + response(b.placed, force, moment, at); });
   }
 }
 
-void MassFall::setSprings(const RockPair& pair, Contact& c)
+void setSprings(const FallState& fall, const RockPair& pair, Contact& c)
 {
-  const RockBody &a = members_[pair.first]->sim.body(), &b = members_[pair.second]->sim.body();
-  PairSprings(a.placed, a.state, b.placed, b.state, pair.law, parameters_).set(c);
+  const RockBody &a = fall.rocks[pair.first].body(), &b = fall.rocks[pair.second].body();
+  PairSprings(a.placed, a.state, b.placed, b.state, pair.law, fall.parameters).set(c);
 }
 
 } // namespace rockfall
