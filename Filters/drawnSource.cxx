@@ -3,7 +3,7 @@
 #include "base/errors.h"
 #include "base/numberText.h"
 #include "failure.h"
-#include "simulation/releasePlaces.h"
+#include "run/releasePlaces.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 /// @file
 /// Which rocks lie on each other face on face, as the blocks of a cut rock mass do.
 
-#include "simulation/Rock.h"
+#include "rock/Rock.h"
 
 #include <cstdint>
 #include <span>

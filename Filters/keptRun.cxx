@@ -7,7 +7,7 @@
 #include "gis/rockContacts.h"
 #include "inputContent.h"
 #include "motion.h"
-#include "simulation/releaseChecks.h"
+#include "run/releaseChecks.h"
 #include "terrainFieldData.h"
 
 #include "vtkDoubleArray.h"

@@ -4,8 +4,8 @@
 /// A run that a filter keeps, what it was made of, and its outputs that do not depend on time.
 
 #include "ranks.h"
+#include "run/ensemble.h"
 #include "runSink.h"
-#include "simulation/ensemble.h"
 
 #include "vtkFieldData.h"
 #include "vtkNew.h"

@@ -3,8 +3,8 @@
 /// @file
 /// Where a rock is at any time, from its samples.
 
+#include "rock/results.h"
 #include "runOutputs.h"
-#include "simulation/results.h"
 
 namespace rockfall::filters
 {

@@ -32,7 +32,7 @@
 /// append rocks and they stay whole.
 
 #include "geometry/shapes.h"
-#include "simulation/Rock.h"
+#include "rock/Rock.h"
 
 #include <span>
 #include <string>

@@ -7,7 +7,7 @@
 #include "base/random.h"
 #include "geometry/shell.h"
 #include "mesh/shapeFile.h"
-#include "simulation/placement.h"
+#include "rock/placement.h"
 
 #include <cmath>
 

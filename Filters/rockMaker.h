@@ -5,7 +5,7 @@
 
 #include "gis/sources.h"
 #include "rockFieldData.h"
-#include "simulation/releasePlaces.h"
+#include "run/releasePlaces.h"
 
 #include <map>
 #include <optional>

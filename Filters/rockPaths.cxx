@@ -3,7 +3,7 @@
 #include "arrays.h"
 #include "base/abort.h"
 #include "base/errors.h"
-#include "simulation/results.h"
+#include "rock/results.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"

@@ -3,7 +3,7 @@
 /// @file
 /// Trajectories of a polydata as the Core's paths.
 
-#include "simulation/retention.h"
+#include "run/retention.h"
 #include "statistics/path.h"
 
 #include "vtkType.h"

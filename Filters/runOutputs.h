@@ -4,8 +4,8 @@
 /// A run as VTK data, written as its trajectories come: rocks at a time, trajectories, impacts, and
 /// a table of summaries. Positions are local, `RunFrame::origin` leads to the world's.
 
+#include "rock/results.h"
 #include "rockFieldData.h"
-#include "simulation/results.h"
 
 #include <memory>
 #include <span>

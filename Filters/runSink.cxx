@@ -2,7 +2,7 @@
 
 #include "motion.h"
 #include "rockPaths.h"
-#include "simulation/packing.h"
+#include "run/packing.h"
 
 #include "vtkPolyData.h"
 

@@ -3,10 +3,10 @@
 /// @file
 /// Where finished trajectories go: into the outputs as they come, so that none is kept twice.
 
+#include "run/TrajectorySink.h"
+#include "run/retention.h"
+#include "run/stateHash.h"
 #include "runOutputs.h"
-#include "simulation/TrajectorySink.h"
-#include "simulation/retention.h"
-#include "simulation/stateHash.h"
 
 #include <vector>
 

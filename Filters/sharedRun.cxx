@@ -1,6 +1,6 @@
 #include "sharedRun.h"
 
-#include "simulation/packing.h"
+#include "run/packing.h"
 
 #include <algorithm>
 #include <chrono>

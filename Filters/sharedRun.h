@@ -4,8 +4,8 @@
 /// An ensemble shared out over ranks.
 
 #include "ranks.h"
+#include "run/ensemble.h"
 #include "runSink.h"
-#include "simulation/ensemble.h"
 
 namespace rockfall::filters
 {

@@ -7,7 +7,7 @@
 #include "failure.h"
 #include "inputs.h"
 #include "pieces.h"
-#include "simulation/releasePlaces.h"
+#include "run/releasePlaces.h"
 #include "structureFieldData.h"
 #include "terrainFieldData.h"
 

@@ -11,8 +11,8 @@
 #include "inputs.h"
 #include "mesh/shapeFile.h"
 #include "pieces.h"
+#include "rock/placement.h"
 #include "rockMaker.h"
-#include "simulation/placement.h"
 #include "terrainFieldData.h"
 
 #include "vtkDoubleArray.h"

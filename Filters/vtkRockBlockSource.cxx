@@ -10,8 +10,8 @@
 #include "inputs.h"
 #include "pieces.h"
 #include "rockMaker.h"
-#include "simulation/overlaps.h"
-#include "simulation/releasePlaces.h"
+#include "run/overlaps.h"
+#include "run/releasePlaces.h"
 #include "terrainFieldData.h"
 
 #include "vtkInformation.h"

@@ -4,7 +4,7 @@
 /// Every physical and numerical constant of the engine, once: unit, value, and what changes if it
 /// is changed. A share or a factor is dimensionless; r is the radius of a rock, of two rocks the
 /// smaller radius; g is gravity. Parameters that a user sets, with their defaults and `validate()`,
-/// are in simulation/parameters.h, terrain/material.h and terrain/yieldingGround.h.
+/// are in rock/parameters.h, terrain/material.h and terrain/yieldingGround.h.
 ///
 /// Not here: grain sizes of loops and cache lines (beside the loops), tolerances of readers (gis/,
 /// mesh/, geometry/), the deviates of roughness.h and scatter.h, which go with what they draw, and

@@ -12,9 +12,9 @@
 
 #include "block/Block.h"
 #include "geometry/shapes.h"
-#include "simulation/ensemble.h"
-#include "simulation/retention.h"
-#include "simulation/stateHash.h"
+#include "run/ensemble.h"
+#include "run/retention.h"
+#include "run/stateHash.h"
 
 #include <chrono>
 #include <cmath>

@@ -14,9 +14,9 @@
 
 #include "geometry/shapes.h"
 #include "gis/structureLayers.h"
-#include "simulation/ensemble.h"
-#include "simulation/retention.h"
-#include "simulation/stateHash.h"
+#include "run/ensemble.h"
+#include "run/retention.h"
+#include "run/stateHash.h"
 #include "terrain/Obstacles.h"
 #include "terrain/Terrain.h"
 

@@ -6,8 +6,8 @@
 //
 // Run: BenchmarkMassFall [--benchmark_filter=rocks:1000/threads:1]
 
+#include "fall/MassFall.h"
 #include "manyCubes.h"
-#include "simulation/MassFall.h"
 
 #include <tbb/global_control.h>
 

@@ -9,7 +9,7 @@
 
 #include "benchSlope.h"
 #include "geometry/shapes.h"
-#include "simulation/ensemble.h"
+#include "run/ensemble.h"
 
 #include <benchmark/benchmark.h>
 

@@ -7,7 +7,7 @@
 #include "../overlap.h"
 #include "benchSlope.h"
 #include "geometry/shapes.h"
-#include "simulation/ensemble.h"
+#include "run/ensemble.h"
 
 #include <cmath>
 #include <random>

@@ -4,7 +4,7 @@
 #include "base/errors.h"
 #include "contact/detection.h"
 #include "law/settings.h"
-#include "simulation/Recorder.h"
+#include "rock/Recorder.h"
 
 #include <algorithm>
 #include <chrono>

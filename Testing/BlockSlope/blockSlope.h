@@ -5,7 +5,7 @@
 /// 12 and 14), at a cost that does not grow with the slope. For verification; nothing else uses it.
 
 #include "BlockSlope/SlopeBlocks.h"
-#include "simulation/ensemble.h"
+#include "run/ensemble.h"
 
 namespace rockfall
 {

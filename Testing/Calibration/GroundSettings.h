@@ -3,7 +3,7 @@
 /// @file
 /// The ground, and how it is simulated, by names that a command line or a search gives.
 
-#include "simulation/parameters.h"
+#include "rock/parameters.h"
 #include "terrain/Terrain.h"
 #include "terrain/material.h"
 

@@ -1,6 +1,6 @@
 #include "SingleImpact.h"
 
-#include "simulation/RockSimulator.h"
+#include "rock/RockSimulator.h"
 
 #include <algorithm>
 #include <atomic>

@@ -3,7 +3,7 @@
 /// @file
 /// One rock let go just before an impact, and what it has when it takes off again.
 
-#include "simulation/ensemble.h"
+#include "run/ensemble.h"
 
 namespace rockfall::calibration
 {

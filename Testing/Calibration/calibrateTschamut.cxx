@@ -16,7 +16,7 @@
 
 #include "base/errors.h"
 #include "gis/raster.h"
-#include "simulation/ensemble.h"
+#include "run/ensemble.h"
 #include "statistics/sample.h"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 /// Piles of rocks, for the tests of mass falls.
 
 #include "../overlap.h"
-#include "simulation/MassFall.h"
+#include "fall/MassFall.h"
 #include "slopes.h"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 /// Slopes and runs that several tests share.
 
 #include "geometry/shapes.h"
-#include "simulation/ensemble.h"
+#include "run/ensemble.h"
 
 #include <cmath>
 #include <functional>

@@ -8,7 +8,7 @@
 #include "verification.h"
 
 #include "block/Block.h"
-#include "simulation/rollingResistance.h"
+#include "rock/rollingResistance.h"
 
 #include <gtest/gtest.h>
 

@@ -8,8 +8,8 @@
 #include "gis/tin.h"
 #include "gisFiles.h"
 #include "randomScenes.h"
-#include "simulation/overlaps.h"
-#include "simulation/releasePlaces.h"
+#include "run/overlaps.h"
+#include "run/releasePlaces.h"
 #include "slopes.h"
 #include "statistics/HazardRaster.h"
 

@@ -1,6 +1,6 @@
 // Rocks on the rim of a nodata hole, whose corners slip past it or come under it from the side.
 
-#include "simulation/placement.h"
+#include "rock/placement.h"
 #include "slopes.h"
 #include "terrain/Surface.h"
 

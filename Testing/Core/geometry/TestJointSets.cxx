@@ -1,10 +1,10 @@
 // A rock mass that joint sets cut into blocks: volumes, counts, faces that fit.
 
+#include "fall/MassFall.h"
 #include "geometry/shapes.h"
 #include "massCuts.h"
 #include "piles.h"
-#include "simulation/MassFall.h"
-#include "simulation/overlaps.h"
+#include "run/overlaps.h"
 #include "slopes.h"
 
 #include <gtest/gtest.h>

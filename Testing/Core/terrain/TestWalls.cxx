@@ -3,7 +3,7 @@
 
 #include "contact/detection.h"
 #include "piles.h"
-#include "simulation/placement.h"
+#include "rock/placement.h"
 
 #include <gtest/gtest.h>
 

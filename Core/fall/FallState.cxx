@@ -1,0 +1,46 @@
+#include "fall/FallState.h"
+
+#include "contact/motion.h"
+
+#include <utility>
+
+namespace rockfall
+{
+
+void FallingRock::stand()
+{
+  RockBody& of = this->body();
+  const BlockState& s = of.state;
+  const Mat3 rotation = s.orientation.toRotationMatrix();
+  const bool placed = of.placed.position() == s.position && of.placed.rotation() == rotation;
+  if (!placed)
+  {
+    of.placed.placeFrame(of.block, s);
+  }
+  if (!placed || hull.position != s.position || hull.rotation != rotation)
+  {
+    hull.update(of.placed);
+  }
+}
+
+bool FallingRock::arrive()
+{
+  RockBody& of = this->body();
+  const BlockState& s = of.state;
+  const bool there =
+    endHull.position == s.position && endHull.rotation == s.orientation.toRotationMatrix();
+  if (there)
+  {
+    std::swap(of.placed, end);
+    std::swap(hull, endHull);
+  }
+  return there;
+}
+
+PairMotion motionOf(const FallState& fall, const RockPair& pair)
+{
+  return { fall.rocks[std::size_t(pair.first)].sim.state(),
+    fall.rocks[std::size_t(pair.second)].sim.state() };
+}
+
+} // namespace rockfall

@@ -1,0 +1,282 @@
+#include "fall/StepResult.h"
+
+#include "base/parallel.h"
+#include "contact/motion.h"
+#include "fall/StepTrees.h"
+#include "fall/pairImpacts.h"
+#include "fall/pressedIn.h"
+#include "law/settings.h"
+#include "rock/pressOut.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <limits>
+
+namespace rockfall
+{
+
+namespace
+{
+
+/// A contact that others press in further than its two rocks could yields, at the force that it
+/// has: energy that its spring would hold beyond is not given back.
+void yield(Contact& c, double radius, double speed, double mass)
+{
+  if (c.closed() && c.gap() < -kFirm * radius)
+  {
+    const double most = deepestBetween(radius, speed, mass, c.stiffness);
+    c.offset = std::min(c.offset, c.distance + most);
+  }
+}
+
+/// A number for a contact that carries.
+std::uint64_t keyOf(const Contact& c)
+{
+  return (std::uint64_t(c.rockFeature + 1000) * 4 + std::uint64_t(c.kind) + 1) *
+    0x9e3779b97f4a7c15ull;
+}
+
+} // namespace
+
+StepResult::StepResult(
+  FallState& fall, const Island& island, IslandWork& work, double duration, StepKind kind)
+  : fall_(fall)
+  , island_(island)
+  , work_(work)
+  , h_(duration)
+  , kind_(kind)
+{
+}
+
+void StepResult::apply()
+{
+  work_.carriers.assign(work_.bodies.size(), 0);
+  work_.touchesOthers.assign(work_.bodies.size(), 0);
+  work_.flags.resize(std::max(work_.flags.size(), island_.pairs.size()));
+  forEach(work_.touching.size(), kPairGrain, [this](std::size_t t) { this->applyToPair(t); });
+  this->applyAdded();
+  this->finishImpacts();
+  forEach(island_.members.size(), kRockGrain, [this](std::size_t m) { this->applyToRock(m); });
+  forEach(island_.pairs.size(), kPairGrain, [this](std::size_t p) { this->keepAxis(p); });
+}
+
+void StepResult::bookContact(RockPair& pair, const IslandContact& touch) const
+{
+  const Contact& c = *touch.contact;
+  RockPair::Impact& impact = pair.impact;
+  if (!pair.strikes)
+  {
+    pair.lastingLoss += touch.work;
+    return;
+  }
+  if (c.normalForce > 0.0)
+  {
+    impact.impulse += (h_ * c.normalForce) * c.normal;
+    if (c.normalForce > impact.largest)
+    {
+      impact.largest = c.normalForce;
+      impact.point = c.point;
+    }
+  }
+  impact.loss += touch.work;
+}
+
+void StepResult::applyToPair(std::size_t t)
+{
+  work_.comeToTouching(island_, t);
+  const std::size_t p = work_.touching[t];
+  RockPair& pair = *island_.pairs[p];
+  std::array<std::uint64_t, 2> carry = {};
+  for (std::size_t k = work_.firsts[p]; k < work_.firsts[p + 1]; ++k)
+  {
+    findKnock(fall_, pair, work_.contacts[k], h_);
+  }
+  for (std::size_t k = work_.firsts[p]; k < work_.firsts[p + 1]; ++k)
+  {
+    const Contact& c = *work_.contacts[k].contact;
+    this->bookContact(pair, work_.contacts[k]);
+    pair.touched = pair.touched || c.closed();
+    if (c.closed())
+    {
+      carry[0] += keyOf(c) * std::uint64_t(pair.second + 2);
+      carry[1] += keyOf(c) * std::uint64_t(pair.first + 2);
+    }
+  }
+  work_.flags[p] = pair.strikes;
+  if (!pair.touched)
+  {
+    return;
+  }
+  pair.touchedAt = work_.bodies.front().state->time;
+  // Whole numbers: their sum is the same in any order.
+  for (const std::size_t side : { 0, 1 })
+  {
+    const std::size_t place = std::size_t(work_.places[p][side]);
+    std::atomic_ref(work_.carriers[place]).fetch_add(carry[side], std::memory_order_relaxed);
+    std::atomic_ref(work_.touchesOthers[place]).store(1, std::memory_order_relaxed);
+  }
+  this->pressOut(pair);
+}
+
+void StepResult::pressOut(RockPair& pair) const
+{
+  const IslandWork::Side& a = work_.sides[std::size_t(pair.first)];
+  const IslandWork::Side& b = work_.sides[std::size_t(pair.second)];
+  const double mass = std::min(a.mass, b.mass), reduced = 1.0 / (1.0 / a.mass + 1.0 / b.mass);
+  const double slow = std::min(
+    kPressOut * h_, 0.5 * mass * fall_.parameters.gravity / fall_.parameters.normalPenalty);
+  const double smaller = std::min(a.radius, b.radius),
+               loose = kind_ == StepKind::Lasting ? kLooseOverlap * smaller
+                                                  : std::numeric_limits<double>::infinity();
+  const double speed = std::max(
+    (a.velocity - b.velocity).norm() + a.rim + b.rim, pair.strikes ? pair.impact.approach : 0.0);
+  for (Contact& c : pair.contacts)
+  {
+    yield(c, smaller, speed, reduced);
+    pressOutLoose(c, slow, loose);
+  }
+}
+
+void StepResult::applyAdded()
+{
+  const double end = work_.bodies.front().state->time;
+  for (std::size_t k = 0; k < work_.added.size(); ++k)
+  {
+    const Contact& c = work_.added[k];
+    const IslandWork::Added& added = work_.addedTo[k];
+    if (added.onSlope)
+    {
+      RockBody& body = fall_.rocks[std::size_t(island_.members[added.of])].body();
+      body.contacts.push_back(c);
+      body.contactsBefore.push_back(added.before);
+      continue;
+    }
+    RockPair& pair = *island_.pairs[added.of];
+    const IslandContact& touch = work_.contacts[work_.firsts.back() + k];
+    findKnock(fall_, pair, touch, h_);
+    this->bookContact(pair, touch);
+    work_.flags[added.of] = pair.strikes;
+    if (c.closed())
+    {
+      pair.touched = true;
+      pair.touchedAt = end;
+      const std::size_t first = std::size_t(work_.placeOf[std::size_t(pair.first)]);
+      const std::size_t second = std::size_t(work_.placeOf[std::size_t(pair.second)]);
+      work_.touchesOthers[first] = work_.touchesOthers[second] = 1;
+      work_.carriers[first] += keyOf(c) * std::uint64_t(pair.second + 2);
+      work_.carriers[second] += keyOf(c) * std::uint64_t(pair.first + 2);
+    }
+    pair.contacts.push_back(c);
+  }
+}
+
+void StepResult::finishImpacts()
+{
+  for (const IslandWork::Added& added : work_.addedTo)
+  {
+    if (!added.onSlope && work_.firsts[added.of] == work_.firsts[added.of + 1])
+    {
+      work_.touching.push_back(added.of);
+    }
+  }
+  if (!work_.addedTo.empty())
+  {
+    std::sort(work_.touching.begin(), work_.touching.end()); // one may be there twice: it ends once
+  }
+  for (const std::size_t p : work_.touching)
+  {
+    if (work_.flags[p] && (kind_ == StepKind::Lasting || !island_.pairs[p]->touched))
+    {
+      finishPairImpact(fall_, *island_.pairs[p]);
+    }
+  }
+}
+
+void StepResult::applyToRock(std::size_t k)
+{
+  comeToRock(fall_, island_, k);
+  FallingRock& rock = fall_.rocks[std::size_t(island_.members[k])];
+  RockSimulator& sim = rock.sim;
+  RockBody& body = rock.body();
+  if (body.done)
+  {
+    return;
+  }
+  const std::size_t place = std::size_t(rock.place);
+  work_.arrived[place] = false;
+  work_.count(sim);
+  const IslandBody& answer = work_.bodies[place];
+  StepOutcome outcome;
+  outcome.frictionWork = answer.frictionWork;
+  outcome.dampedWork = answer.dampedWork;
+  outcome.springEnergy = answer.springEnergy;
+  outcome.normalEnergy = answer.normalEnergy;
+  sim.absorb(kind_, outcome, work_.energyBefore[place], answer.given);
+  const bool carried = work_.touchesOthers[place] ||
+    std::any_of(
+      body.contacts.begin(), body.contacts.end(), [](const Contact& c) { return c.closed(); });
+  // In a crowd some contact opens or closes in every step, and the acceleration of one step says
+  // little of the next: carried on it would keep the pile in motion for ever.
+  if (work_.carriers[place] != rock.carriers || (island_.crowd && carried))
+  {
+    body.acceleration.setZero();
+    body.spinAcceleration.setZero();
+    rock.carriers = work_.carriers[place];
+  }
+  if (body.done)
+  {
+    return; // caught
+  }
+  StepTrees(fall_, island_, work_).fell(k);
+  sim.checkLeft();
+  sim.followRest(h_, carried);
+  if (!body.done && body.state.time >= fall_.parameters.endTime - kTooShort)
+  {
+    sim.end(Fate::Moving);
+  }
+  const bool arrived = work_.looked && rock.arrive();
+  work_.arrived[place] = arrived;
+  if (island_.crowd && !arrived)
+  {
+    const BlockState &from = body.before, &to = body.state;
+    const double r = body.block.radius();
+    IslandWork::Motion& motion = work_.motions[place];
+    motion.displacement = to.position - from.position;
+    motion.rimTravel =
+      rimTravel(from.orientation, to.orientation, r) + r * (to.strain - from.strain).norm();
+  }
+}
+
+void StepResult::keepAxis(std::size_t p)
+{
+  comeToPair(island_.pairs, p);
+  RockPair& pair = *island_.pairs[p];
+  const auto [a, b] = work_.places[p];
+  const bool both = a >= 0 && b >= 0;
+  pair.seen = both && work_.arrived[std::size_t(a)] && work_.arrived[std::size_t(b)];
+  if (pair.seen)
+  {
+    pair.before = pair.axis;
+    pair.axis = pair.end;
+  }
+  else if (island_.crowd && both && !pair.touched &&
+    !fall_.rocks[std::size_t(pair.first)].sim.done() &&
+    !fall_.rocks[std::size_t(pair.second)].sim.done())
+  {
+    // The look was before the last sweeps; the two may still be apart as they were.
+    const IslandWork::Motion& motion = work_.motions[std::size_t(a)];
+    const IslandWork::Motion& other = work_.motions[std::size_t(b)];
+    const double gap = pair.axis.distance +
+      pair.axis.normal.dot(motion.displacement - other.displacement) - motion.rimTravel -
+      other.rimTravel;
+    pair.seen = gap > 0.0;
+    if (pair.seen)
+    {
+      pair.before = pair.axis;
+      pair.axis.distance = gap;
+    }
+  }
+}
+
+} // namespace rockfall

@@ -1,0 +1,37 @@
+#pragma once
+
+/// @file
+/// Results of an island's step: into its rocks and pairs.
+
+#include "fall/IslandWork.h"
+
+namespace rockfall
+{
+
+class StepResult
+{
+public:
+  /// Of a step that has gone on for a duration (s).
+  StepResult(
+    FallState& fall, const Island& island, IslandWork& work, double duration, StepKind kind);
+
+  void apply();
+
+private:
+  void applyToPair(std::size_t touching); ///< By number among those that touch.
+  void pressOut(RockPair& pair) const;    ///< An overlap that was found is recovered slowly.
+  void bookContact(RockPair& pair, const IslandContact& touch) const;
+  void applyAdded();    ///< Contacts that were missed at first.
+  void finishImpacts(); ///< Of pairs that have parted, or lie on each other.
+  void applyToRock(std::size_t member);
+  /// The axis of a pair where the step ends, if it was looked at there.
+  void keepAxis(std::size_t pair);
+
+  FallState& fall_;
+  const Island& island_;
+  IslandWork& work_;
+  double h_; ///< s
+  StepKind kind_;
+};
+
+} // namespace rockfall

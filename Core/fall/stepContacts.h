@@ -1,0 +1,31 @@
+#pragma once
+
+/// @file
+/// Contacts of an island as its step asks for them: what closes them, and how they bounce.
+
+#include "fall/IslandWork.h"
+
+namespace rockfall
+{
+
+/// Whether an open contact comes in as an impact within a step of `h`.
+inline bool hits(const Contact& c, double approach, double resting, double h)
+{
+  return !c.closed() && approach > resting && c.gap() < approach * h;
+}
+
+/// A contact of a rock with the slope in a step of `h` (s).
+IslandContact touchOnSlope(
+  const FallState& fall, const FallingRock& rock, Contact& contact, double h, bool bounces);
+
+/// A contact of two rocks; an impact begins with it if it closes fast.
+IslandContact touchOfPair(const FallState& fall, RockPair& pair, const PairMotion& motion,
+  Contact& contact, double h, bool bounces, const IslandWork& work);
+
+/// No bounce for what meets several.
+void settleBounces(bool lasting, IslandWork& work);
+
+/// One that shows only where the step would end.
+void appendTouch(IslandContact touch, bool bounces, IslandWork& work);
+
+} // namespace rockfall

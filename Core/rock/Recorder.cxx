@@ -1,0 +1,224 @@
+#include "rock/Recorder.h"
+
+#include "law/settings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rockfall
+{
+
+namespace
+{
+
+/// Of a flight of this time (s) between two velocities, m: Simpson's rule in pieces.
+double parabolaLength(double duration, const Vec3& from, const Vec3& to)
+{
+  constexpr int pieces = 32;
+  double sum = 0.0;
+  for (int k = 0; k <= 2 * pieces; ++k)
+  {
+    const double weight = k == 0 || k == 2 * pieces ? 1.0 : k % 2 == 1 ? 4.0 : 2.0;
+    sum += weight * (from + (0.5 * k / pieces) * (to - from)).norm();
+  }
+  return duration * sum / (6.0 * pieces);
+}
+
+} // namespace
+
+double heightOverGround(const Surface& surface, const Block& block, const BlockState& state)
+{
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Vec3& x : block.shape().vertices())
+  {
+    const Vec3 p = state.position + state.orientation * x;
+    const double ground = surface.elevation(p.x(), p.y());
+    if (!std::isnan(ground))
+    {
+      lowest = std::min(lowest, p.z() - ground);
+    }
+  }
+  return std::isinf(lowest) ? std::numeric_limits<double>::quiet_NaN() : lowest;
+}
+
+Sample Recorder::makeSample(const BlockState& state, bool contact)
+{
+  Sample s;
+  s.time = state.time;
+  s.position = state.position;
+  s.orientation = state.orientation;
+  s.velocity = state.velocity;
+  s.angularVelocity = state.angularVelocity();
+  s.kineticEnergy = rigidKineticEnergy(block_, state);
+  s.heightOverGround = heightOverGround(surface_, block_, state);
+  s.contact = contact;
+  TrajectorySummary& summary = trajectory_.summary;
+  if (s.heightOverGround > summary.maxHeightOverGround)
+  {
+    summary.maxHeightOverGround = s.heightOverGround;
+  }
+  return s;
+}
+
+void Recorder::begin(const BlockState& state)
+{
+  last_ = state.position;
+  knot_ = state;
+  trajectory_.summary.start = state.position;
+  this->follow(state);
+  this->record(state, false);
+}
+
+void Recorder::record(const BlockState& state, bool contact)
+{
+  const bool knot = this->isAt(state.time) && trajectory_.samples.back().kind == SampleKind::Knot;
+  if (knot)
+  {
+    contact = trajectory_.samples.back().contact;
+    this->dropLast();
+  }
+  trajectory_.samples.push_back(this->makeSample(state, contact));
+  trajectory_.samples.back().kind = knot ? SampleKind::EvenKnot : SampleKind::Even;
+  ++next_;
+}
+
+void Recorder::knot(const BlockState& state, bool contact)
+{
+  knot_ = state;
+  // There is one sample at a time: the state after an impact replaces the one before it.
+  const SampleKind kind = this->knotAt(state.time);
+  trajectory_.samples.push_back(this->makeSample(state, contact));
+  trajectory_.samples.back().kind = kind;
+}
+
+void Recorder::beforeJump(const BlockState& state, bool contact)
+{
+  jump_ = this->knotAt(state.time);
+  BlockState before = state;
+  before.time -= kInstant;
+  if (!this->isAt(before.time))
+  {
+    trajectory_.samples.push_back(this->makeSample(before, contact));
+    trajectory_.samples.back().kind = SampleKind::Knot;
+  }
+}
+
+void Recorder::afterJump(const BlockState& state, bool contact)
+{
+  knot_ = state;
+  trajectory_.samples.push_back(this->makeSample(state, contact));
+  trajectory_.samples.back().kind = jump_;
+}
+
+bool Recorder::isAt(double time) const
+{
+  return !trajectory_.samples.empty() && trajectory_.samples.back().time >= time - kOneTime;
+}
+
+SampleKind Recorder::knotAt(double time)
+{
+  if (!this->isAt(time))
+  {
+    return SampleKind::Knot;
+  }
+  const bool even = trajectory_.samples.back().kind != SampleKind::Knot;
+  this->dropLast();
+  return even ? SampleKind::EvenKnot : SampleKind::Knot;
+}
+
+void Recorder::dropLast()
+{
+  trajectory_.samples.pop_back();
+  audited_ = std::min(audited_, trajectory_.samples.size());
+}
+
+void Recorder::resume(const BlockState& state)
+{
+  next_ = std::max(next_, std::int64_t(std::ceil(state.time / interval_)));
+  this->knot(state, true);
+}
+
+void Recorder::audit(const EnergyAudit& audit)
+{
+  for (; audited_ < trajectory_.samples.size(); ++audited_)
+  {
+    trajectory_.samples[audited_].energy = audit;
+  }
+}
+
+bool Recorder::follows(const BlockState& state) const
+{
+  const double h = state.time - knot_.time;
+  const Vec3 bend = state.position - knot_.position - 0.5 * h * (knot_.velocity + state.velocity);
+  const double allowed = kPathTolerance * block_.radius();
+  return bend.squaredNorm() <= allowed * allowed;
+}
+
+void Recorder::recordBetween(const BlockState& from, const BlockState& to, bool contact)
+{
+  const bool even = this->follows(to);
+  if (!even)
+  {
+    this->knot(from, contact);
+  }
+  const double h = to.time - from.time;
+  while (this->nextTime() <= to.time && h > 0.0)
+  {
+    const double s = std::clamp((this->nextTime() - from.time) / h, 0.0, 1.0);
+    const double s2 = s * s, s3 = s2 * s;
+    BlockState between = to;
+    between.time = this->nextTime();
+    between.position = (2 * s3 - 3 * s2 + 1) * from.position +
+      (s3 - 2 * s2 + s) * h * from.velocity + (3 * s2 - 2 * s3) * to.position +
+      (s3 - s2) * h * to.velocity;
+    between.velocity = (1.0 - s) * from.velocity + s * to.velocity;
+    between.spin = (1.0 - s) * from.spin + s * to.spin;
+    between.orientation = from.orientation.slerp(s, to.orientation);
+    this->record(between, contact);
+  }
+  if (!even && !this->follows(to))
+  {
+    this->knot(to, contact);
+  }
+}
+
+void Recorder::follow(const BlockState& state)
+{
+  trajectory_.summary.pathLength += (state.position - last_).norm();
+  this->reach(state);
+}
+
+void Recorder::followFlight(const BlockState& from, const BlockState& to)
+{
+  trajectory_.summary.pathLength += parabolaLength(to.time - from.time, from.velocity, to.velocity);
+  this->reach(to);
+}
+
+void Recorder::reach(const BlockState& state)
+{
+  TrajectorySummary& s = trajectory_.summary;
+  last_ = state.position;
+  s.maxSpeed = std::max(s.maxSpeed, state.velocity.norm());
+  s.maxKineticEnergy = std::max(s.maxKineticEnergy, rigidKineticEnergy(block_, state));
+}
+
+void Recorder::end(const BlockState& state, bool contact)
+{
+  if (trajectory_.samples.size() > 1 && this->isAt(state.time) &&
+    trajectory_.samples.back().kind == SampleKind::Even)
+  {
+    // The state itself: the way to the sample went over others, and rounded otherwise.
+    this->dropLast();
+  }
+  // A path has two points at least, also of a rock that is caught at once.
+  const bool atOnce = trajectory_.samples.size() == 1 && this->isAt(state.time);
+  if (atOnce || !this->isAt(state.time))
+  {
+    trajectory_.samples.push_back(this->makeSample(state, contact));
+    trajectory_.samples.back().time += atOnce ? kInstant : 0.0;
+  }
+  trajectory_.samples.back().kind = SampleKind::End;
+}
+
+} // namespace rockfall

@@ -1,0 +1,93 @@
+#pragma once
+
+/// @file
+/// Turns the states that a rock passes through into samples at even times and a summary.
+
+#include "block/Block.h"
+#include "rock/results.h"
+#include "terrain/Surface.h"
+
+namespace rockfall
+{
+
+class Recorder
+{
+public:
+  Recorder(const Surface& surface, const Block& block, double interval)
+    : surface_(surface)
+    , block_(block)
+    , interval_(interval)
+  {
+  }
+
+  /// The first sample.
+  void begin(const BlockState& state);
+  /// Time of the next sample, s.
+  double nextTime() const { return double(next_) * interval_; }
+  /// Records a sample at exactly this state and moves on to the next time.
+  void record(const BlockState& state, bool contact);
+  /// Records all samples that fall into a step, interpolated (cubic in place, slerp in attitude),
+  /// and knots before and after it where the motion since the last one is no uniform acceleration.
+  void recordBetween(const BlockState& from, const BlockState& to, bool contact);
+  /// A sample at a touch or a take-off.
+  void knot(const BlockState& state, bool contact);
+  /// Knots on both sides of a change of velocity that takes no time: the first one an instant
+  /// before it. What it had until then would else seem to fade since the last knot.
+  void beforeJump(const BlockState& state, bool contact);
+  void afterJump(const BlockState& state, bool contact);
+  /// Goes on at a later time; in between nothing moved.
+  void resume(const BlockState& state);
+  /// Whether there are samples without an audit.
+  bool needsAudit() const { return audited_ < trajectory_.samples.size(); }
+  /// Gives it to all of them.
+  void audit(const EnergyAudit& audit);
+  /// Follows maxima and path length; call for every state that is reached …
+  void follow(const BlockState& state);
+  /// … or once for a whole flight, which is fastest at one of its ends.
+  void followFlight(const BlockState& from, const BlockState& to);
+  /// Adds the last state if it is not at an even time, or the only one.
+  void end(const BlockState& state, bool contact);
+
+  Trajectory& trajectory() { return trajectory_; }
+  const Trajectory& trajectory() const { return trajectory_; }
+
+private:
+  bool isAt(double time) const; ///< Whether the last sample is.
+  /// Drops the last sample if it is at this time; what a knot in its place is.
+  SampleKind knotAt(double time);
+  void dropLast();
+  void reach(const BlockState& state);
+  Sample makeSample(const BlockState& state, bool contact);
+  bool follows(const BlockState& state) const; ///< The last knot's uniform acceleration leads here.
+
+  /// The part of a state that tells whether the motion since then is a uniform acceleration.
+  struct Knot
+  {
+    double time = 0.0;            ///< s
+    Vec3 position = Vec3::Zero(); ///< m
+    Vec3 velocity = Vec3::Zero(); ///< m/s
+
+    Knot() = default;
+    Knot(const BlockState& state)
+      : time(state.time)
+      , position(state.position)
+      , velocity(state.velocity)
+    {
+    }
+  };
+
+  const Surface& surface_;
+  const Block& block_;
+  double interval_;
+  std::int64_t next_ = 0;
+  Vec3 last_ = Vec3::Zero();           ///< The last position reached.
+  Knot knot_;                          ///< The last one.
+  SampleKind jump_ = SampleKind::Knot; ///< Kind of the sample after a jump.
+  std::size_t audited_ = 0;            ///< Samples that have their audit.
+  Trajectory trajectory_;
+};
+
+/// Lowest point of a block over the surface straight below it, m; NaN beyond the slope.
+double heightOverGround(const Surface& surface, const Block& block, const BlockState& state);
+
+} // namespace rockfall

@@ -1,0 +1,45 @@
+#pragma once
+
+/// @file
+/// A rock as a step of contact finds and leaves it.
+
+#include "block/Block.h"
+#include "contact/Contact.h"
+#include "contact/PlacedBlock.h"
+#include "rock/results.h"
+#include "solver/StepSolver.h"
+
+#include <vector>
+
+namespace rockfall
+{
+
+/// Motion, contacts with the slope and books of one rock. Whoever steps it writes them: the rock
+/// itself (RockSimulator), or the island that it belongs to (IslandStep).
+struct RockBody
+{
+  explicit RockBody(const Block& b)
+    : block(b)
+  {
+  }
+
+  const Block& block;
+  bool done = false;                     ///< At rest, gone from the slope or out of time.
+  bool crowded = false;                  ///< The step is that of a crowd, as long as Δt.
+  StepKind steppedAs = StepKind::Impact; ///< In the last step.
+  double restingSpeed = 0.0;             ///< Below it a touch is no impact, m/s.
+  BlockState state;
+  std::vector<Contact> contacts; ///< With the slope.
+  std::vector<Contact> contactsBefore;
+  BlockState before;                    ///< At the start of the last step of contact.
+  Vec3 acceleration = Vec3::Zero();     ///< Of the last step, m/s².
+  Vec3 spinAcceleration = Vec3::Zero(); ///< Body axes, rad/s².
+  double springEnergy = 0.0;            ///< In the contact springs, J.
+  double springEnergyBefore = 0.0;      ///< The same at the start of the last step of contact, J.
+  double normalEnergy = 0.0;            ///< In the normal ones, J.
+  double quietTime = 0.0;               ///< For how long it has been lying still, s.
+  EnergyAudit energy;
+  PlacedBlock placed; ///< Where `state` is, as far as it was asked for.
+};
+
+} // namespace rockfall

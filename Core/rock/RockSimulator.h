@@ -1,0 +1,289 @@
+#pragma once
+
+/// @file
+/// One rock on one realisation of the slope, from release to rest: flight in closed form, contact
+/// in steps, restitution as events.
+
+#include "contact/candidates.h"
+#include "rock/Recorder.h"
+#include "rock/Rock.h"
+#include "rock/RockBody.h"
+#include "rock/Scar.h"
+#include "rock/parameters.h"
+#include "terrain/Obstacles.h"
+
+#include <array>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace rockfall
+{
+
+/// One piece of the path: a parabola, or a step of contact.
+struct Way
+{
+  const BlockState& from;
+  const BlockState& to;
+  double duration; ///< s
+  bool flight;
+};
+
+/// Where the line of a barrier is passed on a way.
+struct BarrierPassage
+{
+  double fraction = 0.0; ///< Of the way; by rounding rather behind the line.
+  int barrier = -1;
+
+  bool operator==(const BarrierPassage&) const = default;
+};
+
+/// Where a rock meets a barrier on a way.
+struct BarrierHit
+{
+  int barrier = -1;      ///< −1: none.
+  double fraction = 0.0; ///< Of the way.
+  double heightOverGround = 0.0;
+  double stored = 0.0; ///< In contact springs at the time, J.
+};
+
+class PairBody;
+
+/// What a rock does alone (`run`), and the same in parts, for rocks that may meet others
+/// (MassFall): those bring each other through a step together, and ask each rock for its part.
+class RockSimulator
+{
+public:
+  RockSimulator(const Surface& surface, const Rock& rock, const Block& block,
+    const SimulationParameters& p,
+    std::uint32_t number = 0); ///< `number` of the rock in its iteration.
+
+  /// Runs to rest, to the edge of the slope or to the end time. Stops earlier if there is a sample
+  /// at `enough` (s) or later: what it has by then is as in the whole run, bit for bit, but the
+  /// summary is not complete.
+  Trajectory run(double enough = std::numeric_limits<double>::infinity());
+
+  // The same in parts.
+  void release(); ///< liftOntoGround, begin.
+  /// Straight up, at the start, as far as roughness and embankments make it needed.
+  void liftOntoGround();
+  void begin(); ///< From where it stands.
+  /// Up to this time (s) or to the end; `enough` as in `run`.
+  void advance(double until, double enough = std::numeric_limits<double>::infinity());
+  Trajectory finish();
+
+  RockBody& body() { return body_; }
+  const RockBody& body() const { return body_; }
+  const BlockState& state() const { return body_.state; }
+  bool done() const { return body_.done; }
+  Trajectory& trajectory() { return recorder_.trajectory(); } ///< So far.
+  const Trajectory& trajectory() const { return recorder_.trajectory(); }
+  void end(Fate fate);
+  void wake(double time); ///< Goes on after an end, from this time on, s.
+
+  // A step in the hands of others, in the order of its parts.
+
+  /// The block's strain follows its contacts as at rest, without inertia.
+  void letStrainFollow();
+  void beginContact();        ///< Unless it has begun.
+  double travelLimit() const; ///< Longest step in which it goes no further than contacts serve, s.
+  double impactStep() const;  ///< Longest step that resolves an impact, s.
+  bool isCalm() const;        ///< Contacts that carry neither approach nor part.
+  bool clearFor(double duration) const; ///< No ground under the way of a flight.
+  /// Whether no ground is within a reach of the rock (m) for sure, among others; looks for how high
+  /// it is where that is not known.
+  bool isHigh(double reach);
+  /// The same where it is known, wherever the rock may be.
+  bool isHighAt(const Vec3& place, double reach) const
+  {
+    return lid_.isUnder(place, body_.block.radius() + reach);
+  }
+  const SurfacePatch& patch() const { return patch_; }
+  const CandidatePairs& candidates() const { return candidates_; } ///< By ensureCandidates.
+  void ensureCandidates(double reach, bool among = false);         ///< `among`: many others.
+  /// Candidates of a rock among many others, for where it stands in this step only if there is
+  /// nothing but the slope near it; `body` stands there, too. They serve until this thread asks
+  /// again.
+  const CandidatePairs& candidatesNow(const PairBody& body, const SlopeReach& reach);
+  /// Where a step would end, by a way (m), those that would overlap by more than `allowed` (m); in
+  /// doubt others, too.
+  const CandidatePairs& candidatesAt(const BlockState& end, const PlacedBlock& placed,
+    const PairBody& body, double way, double allowed);
+  /// Contacts with the slope within `reach` (m). A step of `h` (s) may turn a rock that is held at
+  /// a corner onto a face; with 0 no contact is looked for there.
+  void findContacts(const CandidatePairs& candidates, double reach, double h);
+  bool meetsSolids() const { return solid_; } ///< There are embankments or trees.
+  int treeOf(const Contact& contact) const;   ///< −1: it is on none.
+  /// Trees that it is about to touch within `h`, presses against or has `hit`, and that cannot hold
+  /// it; whether there were any.
+  bool breakTrees(double h, std::span<const int> hit = {});
+  /// One that the rock goes on through. What it holds of the rock's energy (J) has been taken
+  /// already.
+  void breakTree(int tree, double held);
+  /// Contacts with those that are gone, and all that hangs on them; `touched`: one of them carried.
+  void forgetTrees(bool touched = true);
+  bool meetsYielding() const { return yields_; } ///< Some class of the ground does.
+  /// Λ sinks under what comes down within a step of `h` (s), or rises with the rock. Whether it
+  /// did: contacts and candidates are then out of date.
+  bool followScar(double h);
+  void closeScar();           ///< The rock is out of the ground.
+  void armContacts(double h); ///< Gives new contacts their springs and dashpots, for a step of h.
+  void armContact(Contact& contact);
+  /// Key of the deviates of the ground at a place, now.
+  GroundTouch touchAt(std::int64_t cfe, const Vec3& place) const
+  {
+    return { cfe, place, number_, impactsOver_ };
+  }
+  /// Deep overlaps that were found, not made (pressOut.h), before a lasting step. `held`: others
+  /// may hold the rock.
+  void pressOutDeep(double h, bool held);
+  double mechanicalEnergy() const; ///< Without contact springs, J.
+  /// Books a step that has been taken from `before` to `state`. `given`: work done on other rocks,
+  /// J.
+  void absorb(StepKind kind, const StepOutcome& outcome, double energyBefore, double given);
+  void flyFree(double duration); ///< Without contacts, through barriers that break.
+  /// The impact on the slope that is under way, if there is one.
+  const ImpactEvent* impactUnderWay() const { return impact_.pending ? &impact_.event : nullptr; }
+  void checkLeft(); ///< Beyond the slope?
+  void followRest(double h, bool touching);
+
+  /// Trees and barriers, by number.
+  struct Broken
+  {
+    std::vector<int> trees, barriers;
+  };
+  Broken takeBroken(); ///< Structures that it has broken since it was asked last.
+  /// Structures that others of its fall have broken are gone for this rock, too. Whether it touched
+  /// any.
+  bool hearOf(const Broken& broken);
+
+private:
+  /// The impact under way between the first touch and the take-off or settling.
+  struct Impact
+  {
+    bool pending = false;
+    ImpactEvent event;
+    Vec3 normalImpulse = Vec3::Zero(); ///< N s, world.
+    double largestForce = 0.0;         ///< N
+    double frictionBefore = 0.0;       ///< Friction work when it began, J.
+    double restitutionBefore = 0.0;    ///< Taken by restitution until then, J.
+    double yieldedBefore = 0.0;        ///< Taken by scars and rolling resistance, J.
+  };
+
+  // Flight, RockSimulator.cxx
+  void flyUntilNear(); ///< Returns when a touch is possible within a few steps, or at the end.
+  void advanceInFlight(double duration);
+  void checkEnd(double h); ///< Rested, left, or out of time? `h`: time since the last call, s.
+
+  // Structures, structuresOnWay.cxx
+  double freeOfObstacles(double duration); ///< For how long, at most this, nothing is touched, s.
+  void clearTrees();                       ///< Where the rock is released there is none.
+  bool isGone(int tree) const;
+  /// Takes a step of `h` back in which it came against trees that cannot hold it, and breaks them.
+  bool undoAtTrees(double h);
+  void findBarriers(const Way& way); ///< Fills `passages_` with those whose line is passed.
+  /// Goes on along this way, on which barriers have taken so much so far (J): notes what records,
+  /// and fills `hit_` with the first barrier that stops the rock or breaks. After such a one flight
+  /// goes on to those at the same place only; its rest is flown anew.
+  void passBarriers(const Way& way, double taken);
+  void meetBarrier(); ///< The one in `hit_`, where the rock is.
+  /// The one in `hit_`, in a step of contact that would go to `end` and in which others have taken
+  /// so much (J); returns what this one takes if it breaks.
+  double endStepAtBarrier(const BlockState& end, double taken, bool touching);
+  void forgetPatch();
+
+  // Contact, contactPhase.cxx
+  double stoppingPenalty() const; ///< Stiffness that stops it in time, N/m.
+  void stayInContact();           ///< Returns after take-off, at the horizon or at the end.
+  void endContact();
+  void takeStep(double h, StepKind kind);
+  bool mayLast(double h) const; ///< A long, damped step is right.
+  void pressOut(double h);      ///< As pressOutDeep, loose overlaps after a step.
+  double looseOverlap() const;  ///< m
+  /// No spring in a deep overlap holds more than those of a rock that lies still and alone.
+  void letDeepBe(double loose);
+  double settledSpeed() const; ///< Speed that the springs of such a rock could give it, m/s.
+  double dampingRatioFor(int ground, double restitution); ///< ζ of a class of ground, now.
+  /// Part of a step of `h` that contacts which are closed or close in it allow, s.
+  double touchdownStep(double h) const;
+
+  // Ground that gives way, groundYields.cxx
+  const YieldingGround& yieldingOf(int restitutionClass) const;
+  const YieldingGround& yieldingAt(const Contact& contact) const; ///< Hard on trees.
+  bool sinkUnder(double h);
+  bool riseWithRock();
+  /// Goes on through soil, over nothing but the slope and far from Λ for steps of `small` (s).
+  /// Whether anything was done.
+  bool flyOverScar(double small);
+  void raiseScar(double by);
+  void lowerPatch(double by);           ///< m; < 0: raises it.
+  void flyThroughSoil(double duration); ///< As `fly`, braked.
+  void plough(double volume);       ///< Takes what a swept volume (m³) takes from speed and spin.
+  void forgetSlip(double duration); ///< Time (s) without touch.
+  void yieldInStep(double h);       ///< A step of contact from `before` to `state`.
+
+  // Impacts on the slope, slopeImpacts.cxx
+  void beginImpact(const BlockState& at, double frictionBefore, double restitutionBefore);
+  void followImpact(const BlockState& start, double h, const StepOutcome& outcome);
+  /// An event, if it is one. `over`: else the rock's time ends in the middle of it, and it leaves
+  /// nothing of its speed.
+  void finishImpact(bool over = true);
+
+  // Ground near the rock, groundNear.cxx
+  /// Least and most x and y (m) that a flight comes over.
+  std::array<double, 4> boxOfWay(double duration) const;
+  void ensureWindow(double duration); ///< Heights under all of the way of a flight.
+  /// Lower bound of the time to the first touch of the ground in free flight, s.
+  double timeToGround(double duration);
+  void ensurePatch(double margin);
+
+  /// Whether the horizon is reached, but for what is too short to be a step.
+  bool arrived() const { return body_.state.time >= horizon_ - 1e-9; }
+  EnergyAudit auditAt(const BlockState& state) const;
+  void auditSamples(const BlockState& state); ///< Gives new samples their audit.
+
+  const Surface& surface_;
+  const Rock& rock_;
+  const SimulationParameters& parameters_;
+  std::uint32_t number_ = 0; ///< In its iteration.
+  /// Touches that began as impacts and are over, and hops in a scar that come late.
+  std::uint32_t impactsOver_ = 0;
+  // In the order of their use in the step of a crowd, which goes from rock to rock: what it needs
+  // lies together, and in one page.
+  bool inContact_ = false;
+  bool pressed_ = false; ///< A deep overlap is pressed out in the step at hand.
+  bool stiff_ = false;   ///< The block's strain follows its contacts without inertia.
+  bool solid_ = false;   ///< There are embankments or trees.
+  bool barriers_ = false;
+  bool yields_ = false; ///< Some class of the ground does.
+  RockBody body_;
+  GroundLid lid_;
+  double openTime_ = 0.0;                ///< Since it touched, s.
+  double horizon_ = 0.0;                 ///< Up to which it is to advance, s.
+  double penalty_ = 0.0;                 ///< pₙ of the contacts that are made now, N/m.
+  std::uint64_t carrying_ = 0;           ///< The features that carried in the last lasting step.
+  const Obstacles* obstacles_ = nullptr; ///< Null if there are none.
+  double energyAtStart_ = 0.0;           ///< Kinetic and potential, J.
+  Recorder recorder_;
+  CandidatePairs candidates_;
+  Impact impact_;
+  Scar scar_;
+  double slip_ = 0.0; ///< s of the slip-dependent friction, m.
+  int touched_ = 0;   ///< Class of the ground that it touched last.
+  SurfacePatch patch_;
+  HeightWindow window_;
+  SurfacePatch holed_;    ///< Under the way of a flight that comes over holes.
+  double softness_ = 0.0; ///< Of a contact and the block behind it, m/N.
+  double ringing_ = 0.0;  ///< Period of a soft block's slowest strain, 0 for a stiff one, s.
+  std::vector<double> dampingRatios_;      ///< ζ by restitution class; < 0: not known yet.
+  double dampedFor_ = -1.0, damped_ = 0.0; ///< The restitution looked up last, and its ζ.
+  std::vector<int> goneTrees_;             ///< Ascending.
+  std::vector<int> brokenBarriers_;        ///< In the order of breaking.
+  Broken broke_;           ///< Structures that it has broken, of which others have not heard yet.
+  double freeUntil_ = 0.0; ///< Nothing can be touched until then, after a take-off, s.
+  std::vector<BarrierPassage> passages_; ///< Of the way at hand.
+  std::size_t passed_ = 0;               ///< How many of them are dealt with.
+  BarrierHit hit_;
+};
+
+} // namespace rockfall

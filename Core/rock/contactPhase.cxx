@@ -1,0 +1,480 @@
+#include "rock/RockSimulator.h"
+
+#include "base/abort.h"
+#include "block/flight.h"
+#include "contact/detection.h"
+#include "contact/motion.h"
+#include "contact/timeToTouch.h"
+#include "law/cohesion.h"
+#include "law/settings.h"
+#include "rock/impactMode.h"
+#include "rock/pressOut.h"
+#include "rock/restitution.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rockfall
+{
+
+namespace
+{
+
+/// The features of the rock that carry, as a number that any change changes.
+std::uint64_t carriers(const std::vector<Contact>& contacts)
+{
+  std::uint64_t sum = 0;
+  for (const Contact& c : contacts)
+  {
+    if (c.closed())
+    {
+      const std::uint64_t feature = 4 * std::uint64_t(c.rockFeature) + std::uint64_t(c.kind) + 1;
+      sum += feature * 0x9e3779b97f4a7c15ull;
+    }
+  }
+  return sum;
+}
+
+bool anyClosed(const std::vector<Contact>& contacts)
+{
+  return std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.closed(); });
+}
+
+} // namespace
+
+bool RockSimulator::mayLast(double h) const
+{
+  bool any = false;
+  const Vec3 spin = body_.state.angularVelocity();
+  for (const Contact& c : body_.contacts)
+  {
+    const Vec3 v = body_.state.velocity + spin.cross(c.point - body_.state.position);
+    const double approach = -c.normal.dot(v);
+    if (c.closed())
+    {
+      any = true;
+      if (std::abs(approach) > body_.restingSpeed)
+      {
+        return false;
+      }
+    }
+    else if (approach > body_.restingSpeed)
+    {
+      if (c.gap() < approach * h)
+      {
+        return false;
+      }
+    }
+    else if (c.gap() <= 0.5 * parameters_.gravity * h * h && approach > -body_.restingSpeed)
+    {
+      any = true; // laid down, not thrown
+    }
+  }
+  return any;
+}
+
+double RockSimulator::settledSpeed() const
+{
+  return body_.restingSpeed + 4.0 * parameters_.gravity * std::sqrt(body_.block.mass() * softness_);
+}
+
+bool RockSimulator::isCalm() const
+{
+  // At the turning point of an impact nothing moves either, but the springs hold its energy; at
+  // rest they hold the weight's, ½ m v² with v = g √(m/p), several times that when the rock rolls.
+  const double settled = this->settledSpeed();
+  const double held = body_.normalEnergy + (stiff_ ? 0.0 : strainEnergy(body_.block, body_.state));
+  if (held > 0.5 * body_.block.mass() * settled * settled)
+  {
+    return false;
+  }
+  const Vec3 spin = body_.state.angularVelocity();
+  return std::all_of(body_.contacts.begin(), body_.contacts.end(),
+    [&](const Contact& c)
+    {
+      const Vec3 v = body_.state.velocity + spin.cross(c.point - body_.state.position);
+      return !c.closed() || std::abs(c.normal.dot(v)) <= body_.restingSpeed;
+    });
+}
+
+void RockSimulator::stayInContact()
+{
+  while (!body_.done && !this->arrived())
+  {
+    stayWanted();
+    const double small = this->impactStep();
+    const double large = std::min(parameters_.timeStep, this->travelLimit());
+    body_.placed.move(body_.block, body_.state);
+    if (scar_.open() && body_.contacts.empty() && this->flyOverScar(small))
+    {
+      continue;
+    }
+    const double speed =
+      body_.state.velocity.norm() + body_.state.spin.norm() * body_.block.radius();
+    const auto reachOf = [&](double h)
+    { return 1.5 * speed * h + parameters_.gravity * h * h + 1e-6 * body_.block.radius(); };
+    // A long step is worth a look only when what carries is at rest along its normal.
+    const bool calm = this->isCalm();
+    const double reach = reachOf(calm ? large : small);
+    this->ensureCandidates(reach);
+    this->findContacts(candidates_, reach, calm ? large : 0.0);
+    body_.springEnergy =
+      springEnergyOf(body_.contacts); // what has gone with a contact shows as numerical
+
+    double h = std::min(large, horizon_ - body_.state.time);
+    StepKind kind = StepKind::Lasting;
+    if (!calm || !this->mayLast(h))
+    {
+      kind = StepKind::Impact;
+      h = std::min(h, small);
+      const double near = reachOf(h);
+      std::erase_if(
+        body_.contacts, [&](const Contact& c) { return !c.closed() && c.gap() > near; });
+    }
+    if (solid_ && this->breakTrees(h))
+    {
+      continue;
+    }
+    if (yields_ && this->followScar(h))
+    {
+      continue;
+    }
+    if (kind == StepKind::Impact && !anyClosed(body_.contacts) && openTime_ >= ringing_)
+    {
+      if (!stiff_ && !(body_.state.strain.isZero(0.0) && body_.state.strainRate.isZero(0.0)))
+      {
+        // The rock has taken off, and what flies does not strain. How long it is free is asked of
+        // what it is then.
+        body_.energy.vibration += relaxStrain(body_.block, body_.state);
+        this->finishImpact();
+        continue;
+      }
+      // Free until a pair closes, or until others than the candidates might.
+      const double room = candidates_.room(body_.state, body_.block.radius(), 0.0);
+      const double rim = body_.block.largestRimSpeed(body_.state.spin);
+      const double served =
+        std::min(timeToCover(room, body_.state.velocity.norm() + rim, parameters_.gravity),
+          horizon_ - body_.state.time);
+      const double free =
+        timeToClose(body_.placed, body_.state, patch_, candidates_, parameters_.gravity, served);
+      if (free >= served && served > small && !scar_.open())
+      {
+        body_.contacts.clear();
+        if (!stiff_)
+        {
+          this->finishImpact();
+        }
+        freeUntil_ = body_.state.time + served;
+        this->endContact();
+        return;
+      }
+      if (const double sure = std::min(free, served); sure > small)
+      {
+        body_.contacts.clear();
+        this->advanceInFlight(sure);
+        this->checkEnd(0.0);
+        continue;
+      }
+    }
+    // A vertex that carries may be pressed in, and its neighbourhood with it; anything deeper
+    // slipped through.
+    double pressed = 0.0;
+    for (const Contact& c : body_.contacts)
+    {
+      pressed = std::max(pressed, -c.gap());
+    }
+    holdOverlap(body_.placed, patch_, candidates_,
+      kLooseOverlap * body_.block.radius() + 2.0 * pressed, body_.contacts);
+    h = std::max(h, 1e-12);
+    this->armContacts(h);
+    if (kind == StepKind::Impact && body_.contacts.size() > 1)
+    {
+      const double touchdown = this->touchdownStep(h);
+      if (touchdown < (1.0 - 1e-9) * h)
+      {
+        h = touchdown;
+        this->armContacts(h);
+      }
+    }
+    if (kind == StepKind::Lasting)
+    {
+      this->pressOutDeep(h, false);
+    }
+    this->takeStep(h, kind);
+    this->checkEnd(body_.state.time - body_.before.time);
+  }
+}
+
+void RockSimulator::findContacts(const CandidatePairs& candidates, double reach, double h)
+{
+  updateContacts(
+    body_.placed, patch_, candidates, reach, body_.contacts, body_.state.spin.norm() * h);
+}
+
+double RockSimulator::dampingRatioFor(int ground, double restitution)
+{
+  if (surface_.deviationPer() != DeviationPer::Iteration)
+  {
+    if (restitution != dampedFor_)
+    {
+      dampedFor_ = restitution;
+      damped_ = dampingRatio(restitution);
+    }
+    return damped_;
+  }
+  // Solved for when a rock meets the class for the first time.
+  const auto number = std::size_t(ground);
+  dampingRatios_.resize(std::max(dampingRatios_.size(), number + 1), -1.0);
+  double& ratio = dampingRatios_[number];
+  if (ratio < 0.0)
+  {
+    ratio = dampingRatio(restitution);
+  }
+  return ratio;
+}
+
+void RockSimulator::armContacts(double h)
+{
+  // A rock that slides into something may be faster than when its contact began.
+  penalty_ = std::max(penalty_, this->stoppingPenalty());
+  for (Contact& c : body_.contacts)
+  {
+    this->armContact(c);
+  }
+  if (const std::ptrdiff_t points = closedCount(body_.contacts); points > kCohesivePoints)
+  {
+    for (Contact& c : body_.contacts)
+    {
+      c.cohesion = sharedCohesion(c.cohesion, points);
+    }
+  }
+  if (!body_.crowded)
+  {
+    tuneDashpots(
+      body_.contacts, h,
+      [this, spin = body_.state.angularVelocity()](const Contact& c)
+      { return -c.normal.dot(body_.state.velocity + spin.cross(c.point - body_.state.position)); },
+      [this](const Vec3& force, const Vec3& moment, const Vec3& at)
+      { return response(body_.placed, force, moment, at); });
+  }
+}
+
+void RockSimulator::armContact(Contact& c)
+{
+  const GroundTouch touch = this->touchAt(c.cfe, c.point);
+  const bool slips = yields_ && this->yieldingAt(c).slips();
+  c.friction = slips ? this->yieldingAt(c).frictionAfter(slip_) : surface_.frictionAt(touch);
+  c.cohesion = surface_.cohesionAt(c.cfe);
+  if (c.closed())
+  {
+    return;
+  }
+  const Vec3 lever = c.point - body_.state.position;
+  const Vec3 y = body_.placed.rotation().transpose() * lever;
+  const Vec3 n = body_.placed.rotation().transpose() * c.normal;
+  const Vec3 t = n.unitOrthogonal();
+  const double shear = penalty_ * parameters_.shearRatio;
+  const bool strains = stiff_ && !parameters_.rigid;
+  c.stiffness = penalty_ / (1.0 + (strains ? penalty_ * body_.block.compliance(n, y) : 0.0));
+  c.shearStiffness = shear / (1.0 + (strains ? shear * body_.block.compliance(t, y) : 0.0));
+  const double speed = body_.state.velocity.norm();
+  const double approach =
+    -c.normal.dot(body_.state.velocity + body_.state.angularVelocity().cross(lever));
+  const bool down = approach > body_.restingSpeed &&
+    comesDown(approach, speed, parameters_.gravity, body_.block.radius());
+  const int ground = surface_.restitutionClass(c.cfe);
+  const double restitution = surface_.restitutionAt(touch);
+  const double damped = contactDamping(surface_.terrain().restitutionMaterial(ground), restitution,
+    this->dampingRatioFor(ground, restitution), approach, down);
+  const double mobility = body_.block.mobility(n, y);
+  c.frequency2 = c.stiffness * mobility;
+  c.stopped = 1.0 / mobility;
+  c.dashpot = damped > 0.0 ? 2.0 * damped * std::sqrt(c.stiffness / mobility) : 0.0;
+  c.shearDashpot = 2.0 * kShearDamping * std::sqrt(c.shearStiffness / body_.block.mobility(t, y));
+}
+
+void RockSimulator::takeStep(double h, StepKind kind)
+{
+  body_.before = body_.state;
+  body_.springEnergyBefore = body_.springEnergy;
+  const bool lasting = kind == StepKind::Lasting;
+  TrajectorySummary& summary = recorder_.trajectory().summary;
+  StepRequest request;
+  request.duration = h;
+  request.kind = kind;
+  request.gravity = parameters_.gravity;
+  request.normalPenalty = penalty_;
+  request.shearPenalty = penalty_ * parameters_.shearRatio;
+  request.friction = surface_.friction();
+  request.cohesion = surface_.cohesion();
+  request.rigid = stiff_;
+  request.maxOpenClose = parameters_.maxOpenClose;
+  if (body_.steppedAs == kind)
+  {
+    request.acceleration = body_.acceleration;
+    request.spinAcceleration = body_.spinAcceleration;
+  }
+  else if (!lasting)
+  {
+    request.acceleration.z() = -parameters_.gravity;
+  }
+  body_.contactsBefore = body_.contacts;
+  thread_local StepSolver solver; // its work space is as large as the rest of a rock
+  const double energyBefore = lasting ? this->mechanicalEnergy() + body_.springEnergy : 0.0;
+
+  StepOutcome outcome;
+  for (int cut = 0;; ++cut)
+  {
+    const bool last = cut >= parameters_.maxCuts;
+    outcome = solver.step(body_.block, request, body_.contacts, body_.state, last);
+    summary.openCloseIterations += outcome.iterations;
+    if (outcome.settled || last)
+    {
+      break;
+    }
+    ++summary.cutSteps;
+    request.duration *= 0.5;
+  }
+  if (solid_ && this->undoAtTrees(request.duration))
+  {
+    return;
+  }
+  ++summary.contactSteps;
+  if (!outcome.settled)
+  {
+    ++summary.unsettledSteps;
+    if (body_.state.time <= body_.before.time)
+    {
+      // Not even a finite displacement: the contacts are let go for this step.
+      body_.state = fly(body_.block, body_.state, parameters_.gravity, request.duration);
+      body_.contacts.clear();
+      body_.contactsBefore.clear();
+    }
+  }
+  this->absorb(kind, outcome, energyBefore, 0.0);
+  if (lasting)
+  {
+    this->letDeepBe(this->looseOverlap());
+  }
+}
+
+void RockSimulator::absorb(
+  StepKind kind, const StepOutcome& outcome, double energyBefore, double given)
+{
+  const bool lasting = kind == StepKind::Lasting;
+  const double taken = body_.state.time - body_.before.time;
+  body_.energy.exchanged += given;
+  body_.energy.friction += outcome.frictionWork;
+  body_.energy.restitution += outcome.dampedWork;
+  body_.springEnergy = outcome.springEnergy;
+  body_.normalEnergy = outcome.normalEnergy;
+  if (lasting)
+  {
+    const double damped = energyBefore - this->mechanicalEnergy() - body_.springEnergy -
+      outcome.frictionWork - outcome.dampedWork - given;
+    // Energy that recovery of an overlap gives a rock comes from nowhere, and is booked as that.
+    body_.energy.damping += pressed_ ? std::max(0.0, damped) : damped;
+    pressed_ = false;
+    // The lag of the next lasting step. What an impact left is no acceleration to go on with, nor
+    // is that under other contacts: a rock that rattles would be fed by it.
+    const double bound = 3.0 * parameters_.gravity;
+    const std::uint64_t carrying = carriers(body_.contacts);
+    const bool same = carrying == carrying_;
+    carrying_ = carrying;
+    body_.acceleration = (body_.state.velocity - body_.before.velocity) / taken;
+    body_.spinAcceleration = (body_.state.spin - body_.before.spin) / taken;
+    if (!same || body_.acceleration.norm() > bound ||
+      body_.spinAcceleration.norm() * body_.block.radius() > bound)
+    {
+      body_.acceleration.setZero();
+      body_.spinAcceleration.setZero();
+    }
+    this->pressOut(taken);
+  }
+  else
+  {
+    body_.acceleration = (body_.state.velocity - body_.before.velocity) / taken;
+    body_.spinAcceleration = (body_.state.spin - body_.before.spin) / taken;
+    carrying_ = 0;
+  }
+  if (yields_)
+  {
+    this->yieldInStep(taken);
+  }
+  body_.steppedAs = kind;
+  const bool touching = anyClosed(body_.contacts);
+  if (barriers_)
+  {
+    // Behind one that breaks there may be others.
+    const BlockState end = body_.state;
+    double lost = 0.0;
+    const Way way{ body_.before, end, end.time - body_.before.time, false };
+    this->findBarriers(way);
+    for (this->passBarriers(way, lost); hit_.barrier >= 0; this->passBarriers(way, lost))
+    {
+      lost += this->endStepAtBarrier(end, lost, touching);
+      if (body_.done)
+      {
+        return;
+      }
+    }
+  }
+  recorder_.recordBetween(body_.before, body_.state, touching);
+  this->auditSamples(body_.state);
+  recorder_.follow(body_.state);
+  this->followImpact(body_.before, taken, outcome);
+  // A soft block that is still being pressed together leaves its contacts and comes back to them:
+  // it has taken off when it has not touched for a period of its own.
+  openTime_ = touching ? 0.0 : openTime_ + taken;
+  if (lasting || (!touching && stiff_ && !scar_.open()))
+  {
+    this->finishImpact();
+  }
+}
+
+double RockSimulator::looseOverlap() const
+{
+  // In a crowd a rock may be pushed under the slope within a step; it may be alone soon after.
+  return (body_.crowded ? kLooseOverlap : kFirm) * body_.block.radius();
+}
+
+void RockSimulator::pressOut(double h)
+{
+  // No more per step than half the weight's compression, or a stiff spring would throw the rock
+  // off.
+  const double way = std::min(
+    kPressOut * h, 0.5 * body_.block.mass() * parameters_.gravity / parameters_.normalPenalty);
+  const double loose = this->looseOverlap();
+  for (Contact& c : body_.contacts)
+  {
+    pressOutLoose(c, way, loose);
+  }
+}
+
+void RockSimulator::pressOutDeep(double h, bool held)
+{
+  pressed_ = false;
+  const double speed = deepSpeed(parameters_.gravity, body_.block.radius());
+  const double loose = this->looseOverlap();
+  for (Contact& c : body_.contacts)
+  {
+    const double way = held ? gentleWay(c, h, speed) : speed * h;
+    pressed_ = rockfall::pressOutDeep(c, way, loose) || pressed_;
+  }
+}
+
+void RockSimulator::letDeepBe(double loose)
+{
+  const bool deep = anyDeep(body_.contacts, loose);
+  double held = 0.0;
+  for (Contact& c : body_.contacts)
+  {
+    const double still = this->settledSpeed() * std::sqrt(body_.block.mass());
+    const double normal = letBe(c, still / std::sqrt(c.stiffness), loose);
+    body_.normalEnergy = std::max(0.0, body_.normalEnergy - normal);
+    held += normal + (deep ? letSlipBe(c, still / std::sqrt(c.shearStiffness)) : 0.0);
+  }
+  body_.springEnergy = std::max(0.0, body_.springEnergy - held);
+}
+
+} // namespace rockfall

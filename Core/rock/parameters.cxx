@@ -1,0 +1,82 @@
+#include "rock/parameters.h"
+
+#include "base/errors.h"
+#include "base/numberText.h"
+#include "law/settings.h"
+#include "rock/rockContacts.h"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace rockfall
+{
+
+void SimulationParameters::validate() const
+{
+  const auto positive = [](double value, const char* field, const char* unit)
+  {
+    if (!(value > 0.0) || !std::isfinite(value))
+    {
+      throw ParameterError(std::string(field) + " is " + numberText(value) +
+        ", it must be a positive, finite number of " + unit);
+    }
+  };
+  const auto atLeast = [](auto value, auto least, const char* field)
+  {
+    if (!(value >= least))
+    {
+      throw ParameterError(std::string(field) + " is " + numberText(value) +
+        ", it must be at least " + numberText(least));
+    }
+  };
+  positive(this->timeStep, "TimeStep", "seconds");
+  if (this->timeStep > kMostTimeStep)
+  {
+    throw ParameterError("TimeStep is " + numberText(this->timeStep) + " s, it must be at most " +
+      numberText(kMostTimeStep) + " s: is it in milliseconds?");
+  }
+  positive(this->endTime, "EndTime", "seconds");
+  positive(this->outputInterval, "OutputInterval", "seconds");
+  positive(this->normalPenalty, "NormalPenalty", "N/m");
+  positive(this->shearRatio, "ShearPenaltyRatio", "(no unit)");
+  if (!(this->rockRestitution >= 0.0 && this->rockRestitution <= 1.0))
+  {
+    throw ParameterError(
+      "RockRestitution is " + numberText(this->rockRestitution) + ", it must be 0 to 1");
+  }
+  if (!(this->rockFrictionAngle >= 0.0 && this->rockFrictionAngle <= radians(89.0)))
+  {
+    throw ParameterError("RockFrictionAngle is " + numberText(degrees(this->rockFrictionAngle)) +
+      "°, it must be 0 to 89");
+  }
+  if (!(this->rockCohesion >= 0.0) || !std::isfinite(this->rockCohesion))
+  {
+    throw ParameterError("RockCohesion is " + numberText(this->rockCohesion) +
+      " N, it must be finite and not negative");
+  }
+  validateRockContacts(this->rockContactPairs);
+  if (!(this->gravity >= 0.0) || !std::isfinite(this->gravity))
+  {
+    throw ParameterError(
+      "Gravity is " + numberText(this->gravity) + " m/s², it must be finite and not negative");
+  }
+  if (this->endTime / this->outputInterval > 1e7)
+  {
+    throw ParameterError("OutputInterval is " + numberText(this->outputInterval) +
+      " s, which makes more than 10,000,000 samples in EndTime " + numberText(this->endTime) +
+      " s");
+  }
+  atLeast(this->iterations, 1, "Iterations");
+  atLeast(this->firstIteration, 0, "FirstIteration");
+  if (this->firstIteration > std::numeric_limits<int>::max() - this->iterations)
+  {
+    throw ParameterError("FirstIteration is " + std::to_string(this->firstIteration) + ", with " +
+      std::to_string(this->iterations) + " Iterations it goes beyond 2,147,483,647");
+  }
+  atLeast(this->threads, 0, "NumberOfThreads");
+  atLeast(this->maxOpenClose, 2, "MaximumOpenClose");
+  atLeast(this->maxCuts, 0, "MaximumCuts");
+}
+
+} // namespace rockfall

@@ -1,0 +1,443 @@
+// Structures that a rock meets: obstacles in flight, trees that break, barriers.
+
+#include "block/flight.h"
+#include "contact/clearance.h"
+#include "contact/timeToTouch.h"
+#include "law/settings.h"
+#include "rock/RockSimulator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <tuple>
+#include <utility>
+
+namespace rockfall
+{
+
+namespace
+{
+
+/// Within a step of contact: cubic in place, linear in velocity.
+BlockState between(const BlockState& from, const BlockState& to, double s)
+{
+  const double h = to.time - from.time, s2 = s * s, s3 = s2 * s;
+  BlockState at = to;
+  at.time = from.time + s * h;
+  at.position = (2 * s3 - 3 * s2 + 1) * from.position + (s3 - 2 * s2 + s) * h * from.velocity +
+    (3 * s2 - 2 * s3) * to.position + (s3 - s2) * h * to.velocity;
+  at.velocity = (1.0 - s) * from.velocity + s * to.velocity;
+  at.spin = (1.0 - s) * from.spin + s * to.spin;
+  at.orientation = from.orientation.slerp(s, to.orientation);
+  return at;
+}
+
+/// Takes kinetic energy: all velocities become smaller by the same factor.
+void slowDown(BlockState& state, double energy, double taken)
+{
+  const double factor = energy > 0.0 ? std::sqrt(std::max(0.0, 1.0 - taken / energy)) : 0.0;
+  state.velocity *= factor;
+  state.spin *= factor;
+}
+
+/// Outcome for a structure where the rock is `at`, with this energy (J) and its centre this high
+/// over the slope (m); nothing is taken of it.
+StructureEvent eventAt(StructureOutcome outcome, std::int64_t feature, const BlockState& at,
+  double energy, double height)
+{
+  StructureEvent event;
+  event.outcome = outcome;
+  event.feature = feature;
+  event.time = at.time;
+  event.position = at.position;
+  event.velocity = at.velocity;
+  event.kineticEnergy = energy;
+  event.heightOverGround = height;
+  return event;
+}
+
+} // namespace
+
+double RockSimulator::freeOfObstacles(double duration)
+{
+  const double sure = std::min(duration, freeUntil_ - body_.state.time);
+  const double free = timeToObstacle(body_.placed, body_.state, body_.block, *obstacles_,
+    goneTrees_, parameters_.gravity, this->impactStep(), duration);
+  return std::max(sure, free);
+}
+
+void RockSimulator::forgetPatch()
+{
+  patch_.xMax = patch_.xMin - 1.0;
+  candidates_.distance = -1.0;
+}
+
+void RockSimulator::clearTrees()
+{
+  const double r = body_.block.radius();
+  const Vec3& p = body_.state.position;
+  body_.placed.place(body_.block, body_.state);
+  SurfacePatch stem;
+  obstacles_->visitTrees(p.x() - r, p.x() + r, p.y() - r, p.y() + r,
+    [&](int k)
+    {
+      stem.nodes.clear();
+      stem.triangles.clear();
+      stem.ridges.clear();
+      obstacles_->append({}, std::span<const int>(&k, 1), stem);
+      const double distance = clearance(body_.placed, body_.state, stem, 0.0, 0.0).distance;
+      const Eigen::Vector2d off =
+        p.head<2>() - obstacles_->structures().trees[std::size_t(k)].position;
+      const bool inside = off.norm() < obstacles_->treeRadius(k) && p.z() < obstacles_->treeTop(k);
+      if (distance <= 0.0 || inside)
+      {
+        goneTrees_.push_back(k);
+      }
+    });
+  std::sort(goneTrees_.begin(), goneTrees_.end());
+  this->forgetPatch();
+}
+
+int RockSimulator::treeOf(const Contact& contact) const
+{
+  return contact.cfe >= obstacles_->firstCfe() ? obstacles_->treeOf(contact.cfe) : -1;
+}
+
+bool RockSimulator::undoAtTrees(double h)
+{
+  const double energy = rigidKineticEnergy(body_.block, body_.before);
+  std::vector<int> hit;
+  for (std::size_t i = 0; i < body_.contactsBefore.size(); ++i)
+  {
+    const Contact& c = body_.contacts[i];
+    const int tree = this->treeOf(c);
+    if (tree >= 0 && c.closed() && !body_.contactsBefore[i].closed() &&
+      energy > obstacles_->structures().trees[std::size_t(tree)].capacity)
+    {
+      hit.push_back(tree);
+    }
+  }
+  if (hit.empty())
+  {
+    return false;
+  }
+  body_.state = body_.before;
+  body_.contacts = body_.contactsBefore;
+  return this->breakTrees(h, hit);
+}
+
+bool RockSimulator::breakTrees(double h, std::span<const int> hit)
+{
+  bool any = false;
+  const Vec3 spin = body_.state.angularVelocity();
+  for (const Contact& c : body_.contacts)
+  {
+    const int tree = this->treeOf(c);
+    if (tree < 0 || this->isGone(tree))
+    {
+      continue;
+    }
+    const double capacity = obstacles_->structures().trees[std::size_t(tree)].capacity;
+    const double energy = rigidKineticEnergy(body_.block, body_.state);
+    const double approach =
+      -c.normal.dot(body_.state.velocity + spin.cross(c.point - body_.state.position));
+    const bool meets =
+      c.closed() ? approach > body_.restingSpeed : approach > 0.0 && c.gap() < approach * h;
+    if (energy <= capacity || !(meets || std::find(hit.begin(), hit.end(), tree) != hit.end()))
+    {
+      continue;
+    }
+    // Energy of the springs against the stem is not given back.
+    double held = 0.0;
+    for (const Contact& other : body_.contacts)
+    {
+      held += this->treeOf(other) == tree ? other.springEnergy() : 0.0;
+    }
+    this->breakTree(tree, held);
+    body_.springEnergy = std::max(0.0, body_.springEnergy - held);
+    any = true;
+  }
+  if (any)
+  {
+    this->forgetTrees();
+  }
+  return any;
+}
+
+void RockSimulator::breakTree(int tree, double held)
+{
+  const Tree& stem = obstacles_->structures().trees[std::size_t(tree)];
+  const double energy = rigidKineticEnergy(body_.block, body_.state);
+  const double height = body_.state.position.z() -
+    surface_.elevation(body_.state.position.x(), body_.state.position.y());
+  StructureEvent event =
+    eventAt(StructureOutcome::TreeBroken, stem.feature, body_.state, energy, height);
+  event.energyTaken = stem.capacity;
+  recorder_.trajectory().structures.push_back(event);
+  slowDown(body_.state, energy, std::max(0.0, stem.capacity - held));
+  body_.energy.structures += held + energy - rigidKineticEnergy(body_.block, body_.state);
+  goneTrees_.insert(std::lower_bound(goneTrees_.begin(), goneTrees_.end(), tree), tree);
+  broke_.trees.push_back(tree);
+}
+
+bool RockSimulator::isGone(int tree) const
+{
+  return std::binary_search(goneTrees_.begin(), goneTrees_.end(), tree);
+}
+
+void RockSimulator::forgetTrees(bool touched)
+{
+  std::erase_if(body_.contacts, [&](const Contact& c) { return this->isGone(this->treeOf(c)); });
+  if (touched)
+  {
+    body_.acceleration.setZero();
+    body_.spinAcceleration.setZero();
+  }
+  this->forgetPatch();
+}
+
+RockSimulator::Broken RockSimulator::takeBroken()
+{
+  return std::exchange(broke_, {});
+}
+
+bool RockSimulator::hearOf(const Broken& broken)
+{
+  for (const int barrier : broken.barriers)
+  {
+    if (std::find(brokenBarriers_.begin(), brokenBarriers_.end(), barrier) == brokenBarriers_.end())
+    {
+      brokenBarriers_.push_back(barrier);
+    }
+  }
+  bool near = false;
+  for (const int tree : broken.trees)
+  {
+    const auto at = std::lower_bound(goneTrees_.begin(), goneTrees_.end(), tree);
+    if (at != goneTrees_.end() && *at == tree)
+    {
+      continue;
+    }
+    goneTrees_.insert(at, tree);
+    const Eigen::Vector2d& place = obstacles_->structures().trees[std::size_t(tree)].position;
+    const double r = obstacles_->treeRadius(tree);
+    near = near ||
+      (place.x() + r >= patch_.xMin && place.x() - r <= patch_.xMax &&
+        place.y() + r >= patch_.yMin && place.y() - r <= patch_.yMax);
+  }
+  if (!near)
+  {
+    return false;
+  }
+  // Energy of the springs against a stem goes with it.
+  double held = 0.0;
+  bool touched = false;
+  for (const Contact& c : body_.contacts)
+  {
+    if (this->isGone(this->treeOf(c)))
+    {
+      held += c.springEnergy();
+      touched = touched || c.closed();
+    }
+  }
+  body_.springEnergy = std::max(0.0, body_.springEnergy - held);
+  body_.energy.structures += held;
+  this->forgetTrees(touched);
+  return touched;
+}
+
+void RockSimulator::findBarriers(const Way& way)
+{
+  hit_ = {};
+  passages_.clear();
+  passed_ = 0;
+  const Vec3 &p = way.from.position, &q = way.to.position;
+  // In a step of contact the cubic may go a little beyond its ends.
+  const double room =
+    way.flight ? 0.0 : 0.15 * way.duration * (way.from.velocity.norm() + way.to.velocity.norm());
+  obstacles_->visitBarriers(std::min(p.x(), q.x()) - room, std::max(p.x(), q.x()) + room,
+    std::min(p.y(), q.y()) - room, std::max(p.y(), q.y()) + room,
+    [&](const Obstacles::Piece& piece)
+    {
+      const Eigen::Vector2d along = piece.to - piece.from;
+      const Eigen::Vector2d normal = Eigen::Vector2d(-along.y(), along.x()).normalized();
+      const auto side = [&](const Vec3& x) { return normal.dot(x.head<2>() - piece.from); };
+      const double before = side(p), after = side(q);
+      if ((before < 0.0) == (after < 0.0))
+      {
+        return;
+      }
+      // Passed is only what the next way, which may begin there, finds behind it.
+      const auto placeAt = [&](double s)
+      {
+        return way.flight ? placeInFlight(way.from, parameters_.gravity, s * way.duration)
+                          : between(way.from, way.to, s).position;
+      };
+      const auto behind = [&](double s) { return (side(placeAt(s)) < 0.0) == (after < 0.0); };
+      double s = 1.0;
+      if (way.flight)
+      {
+        s = before / (before - after);
+        for (double more = 1e-16; s < 1.0 && !behind(s); more *= 2.0)
+        {
+          s = std::min(s + more, 1.0);
+        }
+      }
+      else
+      {
+        double low = 0.0;
+        for (int k = 0; k < 60; ++k)
+        {
+          const double middle = 0.5 * (low + s);
+          (behind(middle) ? s : low) = middle;
+        }
+      }
+      const Vec3 at = placeAt(s);
+      const double reached = along.dot(at.head<2>() - piece.from) / along.squaredNorm();
+      if (reached >= -kPieceEnd && reached <= 1.0 + kPieceEnd)
+      {
+        passages_.push_back({ s, piece.barrier });
+      }
+    });
+  if (passages_.empty())
+  {
+    return;
+  }
+  // Barriers at one place are passed at once: first all that record, then, in their order, those
+  // that stop the rock or break.
+  const auto earlier = [this](const BarrierPassage& a, const BarrierPassage& b)
+  {
+    const auto stops = [this](const BarrierPassage& x)
+    { return !obstacles_->structures().barriers[std::size_t(x.barrier)].records; };
+    return std::tuple(a.fraction, stops(a), a.barrier) <
+      std::tuple(b.fraction, stops(b), b.barrier);
+  };
+  std::sort(passages_.begin(), passages_.end(), earlier);
+  const double length = (q - p).head<2>().norm();
+  for (auto first = passages_.begin(); first != passages_.end();)
+  {
+    const auto next = std::find_if(first, passages_.end(),
+      [&](const BarrierPassage& x)
+      { return (x.fraction - first->fraction) * length > kSamePlace; });
+    const double last = std::prev(next)->fraction;
+    std::for_each(first, next, [&](BarrierPassage& x) { x.fraction = last; });
+    first = next;
+  }
+  std::sort(passages_.begin(), passages_.end(), earlier);
+  // Two pieces of a barrier meet at one place.
+  passages_.erase(std::unique(passages_.begin(), passages_.end()), passages_.end());
+}
+
+void RockSimulator::passBarriers(const Way& way, double taken)
+{
+  const bool again = hit_.barrier >= 0;
+  const double place = hit_.fraction;
+  hit_ = {};
+  while (passed_ < passages_.size())
+  {
+    const auto [fraction, number] = passages_[passed_];
+    if (way.flight && again && fraction > place)
+    {
+      return;
+    }
+    ++passed_;
+    if (std::find(brokenBarriers_.begin(), brokenBarriers_.end(), number) != brokenBarriers_.end())
+    {
+      continue;
+    }
+    BlockState at = way.flight
+      ? fly(body_.block, way.from, parameters_.gravity, fraction * way.duration)
+      : between(way.from, way.to, fraction);
+    const Barrier& barrier = obstacles_->structures().barriers[std::size_t(number)];
+    const double height = at.position.z() - surface_.elevation(at.position.x(), at.position.y());
+    if (!(height < barrier.height))
+    {
+      continue; // over it, or where there is no ground to stand on
+    }
+    // Energy that the ground holds in a touch it gives back in a moment.
+    const double stored = way.flight
+      ? 0.0
+      : (1.0 - fraction) * body_.springEnergyBefore + fraction * body_.springEnergy;
+    if (!barrier.records)
+    {
+      hit_ = { number, fraction, height, stored };
+      return;
+    }
+    const double came = rigidKineticEnergy(body_.block, at);
+    slowDown(at, came, std::min(taken, came));
+    recorder_.trajectory().structures.push_back(eventAt(StructureOutcome::BarrierRecorded,
+      barrier.feature, at, rigidKineticEnergy(body_.block, at) + stored, height));
+  }
+}
+
+void RockSimulator::meetBarrier()
+{
+  const Barrier& barrier = obstacles_->structures().barriers[std::size_t(hit_.barrier)];
+  const double kinetic = rigidKineticEnergy(body_.block, body_.state),
+               energy = kinetic + hit_.stored;
+  const bool holds = energy <= barrier.capacity;
+  const double taken = holds ? energy : barrier.absorbs ? barrier.capacity : 0.0;
+  StructureEvent event =
+    eventAt(holds ? StructureOutcome::BarrierStopped : StructureOutcome::BarrierBroken,
+      barrier.feature, body_.state, energy, hit_.heightOverGround);
+  event.energyTaken = taken;
+  TrajectorySummary& summary = recorder_.trajectory().summary;
+  if (holds)
+  {
+    this->finishImpact(false); // the barrier takes what it would have left
+  }
+  recorder_.trajectory().structures.push_back(event);
+  recorder_.knot(body_.state, false);
+  this->auditSamples(body_.state);
+  slowDown(body_.state, kinetic, std::min(taken, kinetic));
+  body_.energy.structures += kinetic - rigidKineticEnergy(body_.block, body_.state);
+  if (holds)
+  {
+    summary.fate = Fate::Caught;
+    body_.contacts.clear();
+    body_.done = true;
+    return;
+  }
+  brokenBarriers_.push_back(hit_.barrier);
+  broke_.barriers.push_back(hit_.barrier);
+  freeUntil_ = 0.0;
+  body_.state.time += kInstant;
+  recorder_.knot(body_.state, false);
+  this->auditSamples(body_.state);
+}
+
+double RockSimulator::endStepAtBarrier(const BlockState& end, double taken, bool touching)
+{
+  const Barrier& barrier = obstacles_->structures().barriers[std::size_t(hit_.barrier)];
+  BlockState at = between(body_.before, end, hit_.fraction);
+  const double came = rigidKineticEnergy(body_.block, at);
+  slowDown(at, came, std::min(taken, came));
+  const double energy = rigidKineticEnergy(body_.block, at) + hit_.stored;
+  if (energy <= barrier.capacity)
+  {
+    // The rest of the step did not happen; what it booked did. The barrier takes what makes it up.
+    recorder_.recordBetween(body_.before, at, touching);
+    body_.energy.structures += kineticEnergy(body_.block, body_.state) -
+      kineticEnergy(body_.block, at) +
+      body_.block.mass() * parameters_.gravity * (end.position.z() - at.position.z()) +
+      body_.springEnergy;
+    body_.state = at;
+    body_.springEnergy = body_.normalEnergy = 0.0;
+    recorder_.follow(body_.state);
+    this->meetBarrier();
+    return 0.0;
+  }
+  StructureEvent event =
+    eventAt(StructureOutcome::BarrierBroken, barrier.feature, at, energy, hit_.heightOverGround);
+  const double left = rigidKineticEnergy(body_.block, body_.state);
+  slowDown(body_.state, left, barrier.absorbs ? std::min(barrier.capacity, left) : 0.0);
+  event.energyTaken = left - rigidKineticEnergy(body_.block, body_.state);
+  body_.energy.structures += event.energyTaken;
+  recorder_.trajectory().structures.push_back(event);
+  brokenBarriers_.push_back(hit_.barrier);
+  broke_.barriers.push_back(hit_.barrier);
+  return event.energyTaken;
+}
+
+} // namespace rockfall

@@ -1,0 +1,349 @@
+#include "run/ensemble.h"
+
+#include "base/abort.h"
+#include "base/errors.h"
+#include "fall/MassFall.h"
+#include "rock/RockSimulator.h"
+#include "run/releaseChecks.h"
+#include "run/stateHash.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+namespace rockfall
+{
+
+namespace
+{
+
+/// Hands trajectories on in the order of their numbers, whatever the order in which they come. No
+/// thread waits for another one's delivery: it leaves its trajectory and goes on.
+class InOrder
+{
+public:
+  explicit InOrder(TrajectorySink& sink)
+    : sink_(sink)
+  {
+  }
+
+  void put(std::int64_t number, std::vector<Trajectory>&& trajectories)
+  {
+    std::unique_lock<std::mutex> lock(mutex_);
+    waiting_.emplace(number, std::move(trajectories));
+    if (delivering_)
+    {
+      return;
+    }
+    delivering_ = true;
+    for (auto turn = waiting_.find(next_); turn != waiting_.end(); turn = waiting_.find(next_))
+    {
+      std::vector<Trajectory> delivered = std::move(turn->second);
+      waiting_.erase(turn);
+      ++next_;
+      lock.unlock();
+      for (Trajectory& trajectory : delivered)
+      {
+        sink_.consume(std::move(trajectory)); // if it throws nothing more is delivered
+      }
+      lock.lock();
+    }
+    delivering_ = false;
+  }
+
+private:
+  TrajectorySink& sink_;
+  std::mutex mutex_;
+  std::map<std::int64_t, std::vector<Trajectory>> waiting_;
+  std::int64_t next_ = 0;
+  bool delivering_ = false;
+};
+
+/// The exception of the lowest number among those that several threads met.
+class FirstFailure
+{
+public:
+  void note(std::int64_t number)
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!failure_ || number < number_)
+    {
+      number_ = number;
+      failure_ = std::current_exception();
+    }
+  }
+  void rethrow() const
+  {
+    if (failure_)
+    {
+      std::rethrow_exception(failure_);
+    }
+  }
+
+private:
+  std::mutex mutex_;
+  std::int64_t number_ = 0;
+  std::exception_ptr failure_;
+};
+
+/// Calls `work` on as many threads as asked for (0: all), once each; returns when all came back.
+template <typename Work>
+void onThreads(int threads, const Work& work)
+{
+  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic, 1);
+  arena.execute(
+    [&]
+    {
+      tbb::parallel_for(
+        0, tbb::this_task_arena::max_concurrency(), [&](int) { work(); },
+        tbb::simple_partitioner());
+    });
+}
+
+} // namespace
+
+Ensemble::Ensemble(
+  const Terrain& terrain, std::span<const Rock> rocks, const SimulationParameters& p)
+  : terrain_(terrain)
+  , rocks_(rocks)
+  , parameters_(p)
+{
+  p.validate();
+  if (rocks.empty())
+  {
+    throw ParameterError("there are no rock blocks to simulate");
+  }
+  FirstFailure failure;
+  std::atomic<std::int64_t> next{ 0 };
+  onThreads(p.threads,
+    [&]
+    {
+      for (std::int64_t k = next++; k < std::int64_t(rocks.size()); k = next++)
+      {
+        try
+        {
+          rocks[std::size_t(k)].validate();
+          const Block& block = blockOf(rocks[std::size_t(k)]);
+          requireOnSlope(terrain, rocks[std::size_t(k)], block);
+          requireStiff(rocks[std::size_t(k)], block, p);
+        }
+        catch (...)
+        {
+          failure.note(k);
+        }
+      }
+    });
+  failure.rethrow();
+  if (p.rockRockContact)
+  {
+    if (std::none_of(rocks.begin(), rocks.end(), [](const Rock& r) { return r.uncertainty.any(); }))
+    {
+      requireEachOnce(rocks, terrain.geometry().origin());
+      start_ = this->released(p.firstIteration, pushed_);
+      pushed_.iterations *= p.iterations;
+    }
+    else
+    {
+      PushedApart first;
+      this->released(p.firstIteration, first); // throws what would stop the run at once
+    }
+  }
+}
+
+PushedApart Ensemble::pushed() const
+{
+  const std::lock_guard<std::mutex> lock(pushing_);
+  return pushed_;
+}
+
+std::vector<Rock> Ensemble::released(int iteration, PushedApart& pushed) const
+{
+  std::vector<Rock> rocks(rocks_.begin(), rocks_.end());
+  bool drawn = false;
+  for (std::size_t k = 0; k < rocks.size(); ++k)
+  {
+    if (rocks[k].uncertainty.any())
+    {
+      rocks[k] = realise(terrain_, rocks_[k], parameters_.seed, iteration, std::uint64_t(k));
+      drawn = true;
+    }
+  }
+  if (parameters_.pushRocksApart)
+  {
+    pushed = pushApart(terrain_, rocks);
+  }
+  else
+  {
+    requireNoOverlap(rocks, terrain_.geometry().origin(),
+      drawn ? " in iteration " + std::to_string(iteration) : std::string());
+  }
+  return rocks;
+}
+
+Trajectory Ensemble::simulate(std::int64_t number, double enough) const
+{
+  const int rock = int(number % std::int64_t(rocks_.size()));
+  const int iteration = parameters_.firstIteration + int(number / std::int64_t(rocks_.size()));
+  // The block is made anew: it costs less than a hundredth of what follows, and a hundred thousand
+  // of them would take more memory than all their summaries.
+  const Rock& given = rocks_[std::size_t(rock)];
+  const Surface surface(terrain_, parameters_.seed, iteration);
+  const auto release = [&](const Rock& released)
+  {
+    const Block block = blockOf(released);
+    return RockSimulator(surface, released, block, parameters_, std::uint32_t(rock)).run(enough);
+  };
+  Trajectory trajectory = given.uncertainty.any()
+    ? release(realise(terrain_, given, parameters_.seed, iteration, std::uint64_t(rock)))
+    : release(given);
+  trajectory.summary.rock = rock;
+  trajectory.summary.iteration = iteration;
+  trajectory.summary.hash = motionHash(trajectory);
+  return trajectory;
+}
+
+std::vector<Trajectory> Ensemble::simulateUnit(
+  std::int64_t unit, double enough, const std::function<bool(double)>& goOn) const
+{
+  std::vector<Trajectory> trajectories;
+  if (!parameters_.rockRockContact)
+  {
+    trajectories.push_back(this->simulate(unit, enough));
+    return trajectories;
+  }
+  const int iteration = parameters_.firstIteration + int(unit);
+  PushedApart pushed;
+  const std::vector<Rock> rocks = start_.empty() ? this->released(iteration, pushed) : start_;
+  {
+    const std::lock_guard<std::mutex> lock(pushing_);
+    pushed_.add(pushed);
+  }
+  std::vector<Block> blocks;
+  blocks.reserve(rocks.size());
+  for (const Rock& rock : rocks)
+  {
+    blocks.push_back(blockOf(rock));
+  }
+  const Surface surface(terrain_, parameters_.seed, iteration);
+  MassFall fall(surface, rocks, blocks, parameters_);
+  const double end = std::min(enough, parameters_.endTime);
+  trajectories = fall.run([&](double time) { return goOn(time / end) && time < enough; });
+  for (std::size_t rock = 0; rock < trajectories.size(); ++rock)
+  {
+    TrajectorySummary& summary = trajectories[rock].summary;
+    summary.rock = int(rock);
+    summary.iteration = iteration;
+    summary.hash = motionHash(trajectories[rock]);
+  }
+  return trajectories;
+}
+
+bool Ensemble::run(
+  const EnsembleShare& share, TrajectorySink& sink, const Progress& progress, double enough) const
+{
+  const std::int64_t total = share.count();
+  if (total == 0)
+  {
+    return true;
+  }
+  constexpr double kWhole = 1e6; // of a unit: falls of many rocks tell how far they have come
+  std::atomic<std::int64_t> next{ 0 }, done{ 0 };
+  std::atomic<bool> stop{ false };
+  FirstFailure failure;
+  InOrder inOrder(sink);
+  // In order, too, are they begun: so few wait for their turn.
+  const auto simulateNext = [&]
+  {
+    const AbortScope scope(stop);
+    for (std::int64_t k = next++; k < total && !stop; k = next++)
+    {
+      std::int64_t told = 0;
+      const auto tell = [&](double over)
+      {
+        const std::int64_t now = std::int64_t(kWhole * std::clamp(over, 0.0, 1.0));
+        done += now - std::exchange(told, now);
+        return !stop;
+      };
+      try
+      {
+        std::vector<Trajectory> unit =
+          this->simulateUnit(share.begin + k * share.stride, enough, tell);
+        for (Trajectory& trajectory : unit)
+        {
+          sink.trim(trajectory);
+        }
+        inOrder.put(k, std::move(unit));
+      }
+      catch (const Aborted&)
+      {
+        return; // of all
+      }
+      catch (...)
+      {
+        failure.note(k);
+        stop = true;
+      }
+      tell(1.0);
+    }
+  };
+
+  // The caller's thread only reports: a GUI must not be called from any other one.
+  std::atomic<bool> ended{ false };
+  std::mutex wakeMutex;
+  std::condition_variable wake;
+  std::thread worker(
+    [&]
+    {
+      onThreads(parameters_.threads, simulateNext);
+      const std::lock_guard<std::mutex> lock(wakeMutex);
+      ended = true;
+      wake.notify_all();
+    });
+  bool aborted = false;
+  {
+    std::unique_lock<std::mutex> lock(wakeMutex);
+    while (!ended)
+    {
+      wake.wait_for(lock, std::chrono::milliseconds(50));
+      if (progress && !ended && !aborted)
+      {
+        lock.unlock();
+        if (!progress(double(done) / (kWhole * double(total))))
+        {
+          aborted = true;
+          stop = true;
+        }
+        lock.lock();
+      }
+    }
+  }
+  worker.join();
+  failure.rethrow();
+  return !aborted && (!progress || progress(1.0));
+}
+
+bool runEnsemble(const Terrain& terrain, std::span<const Rock> rocks,
+  const SimulationParameters& parameters, TrajectorySink& sink, const Progress& progress)
+{
+  try
+  {
+    const AbortScope scope([&] { return !progress || progress(0.0); });
+    const Ensemble ensemble(terrain, rocks, parameters);
+    return ensemble.run(ensemble.whole(), sink, progress);
+  }
+  catch (const Aborted&)
+  {
+    return false; // rocks were still being checked or pushed apart
+  }
+}
+
+} // namespace rockfall

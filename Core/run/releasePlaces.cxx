@@ -1,0 +1,416 @@
+#include "run/releasePlaces.h"
+
+#include "base/abort.h"
+#include "base/errors.h"
+#include "base/random.h"
+#include "geometry/planeSampling.h"
+#include "gis/gdal.h"
+#include "law/settings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <optional>
+
+namespace rockfall
+{
+
+namespace
+{
+
+using gis::number;
+
+/// Memory of a rock until it is released, B: its polyhedron and its faces with their arrays.
+constexpr double bytesPerRock = 8000.0;
+
+std::string rowName(const std::string& layer, const SourceRow& row)
+{
+  return layer + ", row " + std::to_string(row.row);
+}
+
+/// A whole number of rocks with this mean.
+double rounded(double mean, std::uint64_t seed, std::uint64_t draw)
+{
+  const double whole = std::floor(mean);
+  return whole + (uniformDeviate(seed, 0, Draw::SourceNumber, draw) < mean - whole ? 1.0 : 0.0);
+}
+
+void refuseTooMany(double rocks, const ReleaseDefaults& defaults, const std::string& what)
+{
+  if (!(rocks <= double(defaults.mostRocks)))
+  {
+    throw ParameterError(what + number(rocks) + " rocks, more than MaximumRocks, which is " +
+      std::to_string(defaults.mostRocks) + "; they would take some " +
+      number(std::ceil(rocks * bytesPerRock / 1e9)) +
+      " GB of memory before the first of them falls");
+  }
+}
+
+/// Places of equal chance in a disc and in a ball of radius 1.
+Vec3 inDisc(double u, double v)
+{
+  const double r = std::sqrt(u), angle = 2.0 * std::numbers::pi * v;
+  return { r * std::cos(angle), r * std::sin(angle), 0.0 };
+}
+
+Vec3 inBall(double u, double v, double w)
+{
+  const double r = std::cbrt(u), z = 2.0 * w - 1.0, angle = 2.0 * std::numbers::pi * v;
+  const double across = std::sqrt(std::max(0.0, 1.0 - z * z));
+  return r * Vec3(across * std::cos(angle), across * std::sin(angle), z);
+}
+
+/// A source with all that is needed to draw places from it.
+class Sampler
+{
+public:
+  Sampler(const SourceRow& row, const ReleaseDefaults& defaults, const std::string& name)
+    : row_(row)
+    , clusterRadius_(defaults.clusterRadius)
+  {
+    double size = 0.0;
+    if (row.geometry == SourceGeometry::Polygon)
+    {
+      polygon_.emplace(row.parts);
+      size = polygon_->area();
+    }
+    else if (row.geometry == SourceGeometry::Line)
+    {
+      line_.emplace(row.parts);
+      size = line_->length();
+    }
+    const bool point = row.geometry == SourceGeometry::Point;
+    if (!point && !(size > 0.0))
+    {
+      throw DataError(name + (polygon_ ? ": the polygon has no area" : ": the line has no length"));
+    }
+    byIntensity_ = !point && !row.amount && (row.intensity || defaults.intensity > 0.0);
+    rocks_ = byIntensity_ ? rounded(row.intensity.value_or(defaults.intensity) * size,
+                              defaults.seed, std::uint64_t(row.row) << 32)
+                          : double(row.amount.value_or(defaults.amount));
+  }
+
+  double rocks() const { return rocks_; }
+  bool byIntensity() const { return byIntensity_; }
+  /// Whether it has one place only.
+  bool isPlace() const { return row_.geometry == SourceGeometry::Point && clusterRadius_ == 0.0; }
+  Vec3 at(std::uint64_t seed, std::uint32_t attempt, std::uint64_t draw, bool overGround) const
+  {
+    if (this->isPlace())
+    {
+      return row_.position;
+    }
+    // Attempts take every second number, so that a place has three of its own.
+    const auto [u, v] = uniformDeviates(seed, 2 * attempt, Draw::SourcePlace, draw);
+    if (row_.geometry == SourceGeometry::Point)
+    {
+      const double w = uniformDeviate(seed, 2 * attempt + 1, Draw::SourcePlace, draw);
+      return row_.position + clusterRadius_ * (overGround ? inDisc(u, v) : inBall(u, v, w));
+    }
+    if (line_)
+    {
+      return line_->at(u);
+    }
+    const double w = uniformDeviate(seed, 2 * attempt + 1, Draw::SourcePlace, draw);
+    const Eigen::Vector2d place = polygon_->at(u, v, w);
+    return { place.x(), place.y(), row_.parts.front().front().z() };
+  }
+
+private:
+  const SourceRow& row_;
+  double clusterRadius_ = 0.0;
+  std::optional<PolygonSampler> polygon_;
+  std::optional<LineSampler> line_;
+  bool byIntensity_ = false;
+  double rocks_ = 0.0;
+};
+
+bool onTerrain(const Terrain& terrain, const Vec3& world)
+{
+  const Vec3 local = world - terrain.geometry().origin();
+  return terrain.cfeAt(local.x(), local.y()) != 0;
+}
+
+bool isSteep(const Terrain& terrain, std::int64_t cfe, double leastCosine)
+{
+  return terrain.hasCfe(cfe) && terrain.cfe(cfe).normal.z() <= leastCosine;
+}
+
+} // namespace
+
+void ReleaseDefaults::validate() const
+{
+  if (this->amount < 1)
+  {
+    throw ParameterError("Amount is " + std::to_string(this->amount) + ", it must be at least 1");
+  }
+  if (!(this->intensity >= 0.0 && std::isfinite(this->intensity)))
+  {
+    throw ParameterError("Intensity is " + number(this->intensity) +
+      " rocks per m or m², it must be finite and at least 0");
+  }
+  if (!(this->height >= 0.0 && std::isfinite(this->height)))
+  {
+    throw ParameterError(
+      "ReleaseHeight is " + number(this->height) + " m, it must be finite and at least 0");
+  }
+  if (!(this->clusterRadius >= 0.0 && std::isfinite(this->clusterRadius)))
+  {
+    throw ParameterError(
+      "ClusterRadius is " + number(this->clusterRadius) + " m, it must be finite and at least 0");
+  }
+  if (this->mostRocks < 1)
+  {
+    throw ParameterError(
+      "MaximumRocks is " + std::to_string(this->mostRocks) + ", it must be at least 1");
+  }
+}
+
+std::string Extent::text() const
+{
+  return "x " + number(xMin) + " to " + number(xMax) + ", y " + number(yMin) + " to " +
+    number(yMax);
+}
+
+Extent extentOf(const Terrain& terrain)
+{
+  const GridGeometry& g = terrain.geometry();
+  return { g.xOrigin, g.yOrigin, g.xOrigin + terrain.width(), g.yOrigin + terrain.height() };
+}
+
+std::string whyNoGround(const Terrain& terrain, double x, double y)
+{
+  const Extent e = extentOf(terrain);
+  return x >= e.xMin && x <= e.xMax && y >= e.yMin && y <= e.yMax
+    ? " lies on nodata of the slope: there is no CFE under it"
+    : " is outside the slope: it spans " + e.text();
+}
+
+Extent extentOf(std::span<const SourceRow> sources)
+{
+  constexpr double far = std::numeric_limits<double>::infinity();
+  Extent all{ far, far, -far, -far };
+  const auto add = [&all](const Vec3& p)
+  {
+    all = { std::min(all.xMin, p.x()), std::min(all.yMin, p.y()), std::max(all.xMax, p.x()),
+      std::max(all.yMax, p.y()) };
+  };
+  for (const SourceRow& source : sources)
+  {
+    if (source.geometry == SourceGeometry::Point)
+    {
+      add(source.position);
+    }
+    for (const std::vector<Vec3>& part : source.parts)
+    {
+      std::for_each(part.begin(), part.end(), add);
+    }
+  }
+  return all;
+}
+
+void requireOverlap(std::span<const SourceRow> sources, const Terrain& terrain,
+  const std::string& layer, const std::string& layerCrs)
+{
+  const Extent a = extentOf(sources), b = extentOf(terrain);
+  if (a.xMin <= b.xMax && a.xMax >= b.xMin && a.yMin <= b.yMax && a.yMax >= b.yMin)
+  {
+    return;
+  }
+  std::string why;
+  if (layerCrs.empty())
+  {
+    why = ". The layer does not say in which CRS it is, so its coordinates were taken as they are";
+  }
+  else if (terrain.geometry().crs.empty())
+  {
+    why = ". The layer is in " + layerCrs +
+      ", the terrain does not say in which CRS it is, so the coordinates were taken as they are";
+  }
+  throw DataError(layer + ": the sources do not overlap the terrain: they span " + a.text() +
+    ", the terrain spans " + b.text() + why);
+}
+
+std::vector<ReleasePlace> releasePlaces(std::span<const SourceRow> sources, const Terrain* terrain,
+  const ReleaseDefaults& defaults, const std::string& layer)
+{
+  defaults.validate();
+  if (layer.empty() && sources.front().geometry == SourceGeometry::Point &&
+    defaults.intensity > 0.0)
+  {
+    throw ParameterError("Intensity is " + number(defaults.intensity) +
+      " rocks per m or m²: the place in Center has neither length nor area, Amount says how many "
+      "rocks it has");
+  }
+  std::vector<Sampler> samplers;
+  double rocks = 0.0, most = -1.0;
+  std::size_t largest = 0;
+  for (std::size_t k = 0; k < sources.size(); ++k)
+  {
+    samplers.emplace_back(sources[k], defaults, rowName(layer, sources[k]));
+    rocks += samplers.back().rocks();
+    if (samplers.back().rocks() > most)
+    {
+      most = samplers.back().rocks();
+      largest = k;
+    }
+  }
+  refuseTooMany(rocks, defaults,
+    layer.empty() ? "Amount makes "
+                  : layer + ": the sources make (row " + std::to_string(sources[largest].row) +
+        " alone " + number(most) + ") ");
+
+  std::vector<ReleasePlace> places;
+  places.reserve(std::size_t(rocks));
+  for (std::size_t k = 0; k < sources.size(); ++k)
+  {
+    const SourceRow& source = sources[k];
+    const bool point = samplers[k].isPlace();
+    for (std::uint64_t i = 0; i < std::uint64_t(samplers[k].rocks()); ++i)
+    {
+      stayWanted();
+      ReleasePlace place;
+      place.source = k;
+      place.draw = (std::uint64_t(source.row) << 32) + i;
+      std::uint32_t attempt = 0;
+      place.overGround = terrain &&
+        (source.height || defaults.onGround ||
+          std::isnan(samplers[k].at(defaults.seed, attempt, place.draw, false).z()));
+      place.position = samplers[k].at(defaults.seed, attempt, place.draw, place.overGround);
+      place.height = source.height.value_or(defaults.height);
+      // A point that is given with its z is left to the simulation, which says what is wrong.
+      bool placed = !terrain || (point && !place.overGround) || onTerrain(*terrain, place.position);
+      while (!placed && !point && !samplers[k].byIntensity() && ++attempt < kMostDrawsOfSource)
+      {
+        place.position = samplers[k].at(defaults.seed, attempt, place.draw, place.overGround);
+        placed = onTerrain(*terrain, place.position);
+      }
+      if (!placed && samplers[k].byIntensity())
+      {
+        continue; // its part of the area is not on the terrain
+      }
+      if (!placed)
+      {
+        const std::string name = layer.empty() ? "Center" : rowName(layer, source);
+        throw DataError(point ? name + ": the point " + number(source.position.x()) + ", " +
+              number(source.position.y()) +
+              whyNoGround(*terrain, source.position.x(), source.position.y())
+                              : name + ": none of " + std::to_string(kMostDrawsOfSource) +
+              " places is on the terrain: the source spans " + extentOf({ &source, 1 }).text() +
+              ", the terrain " + extentOf(*terrain).text());
+      }
+      places.push_back(place);
+    }
+  }
+  if (places.empty())
+  {
+    throw DataError(layer +
+      ": there is no rock: every amount is 0, or intensity times size makes none on the terrain");
+  }
+  return places;
+}
+
+struct PlaceRedrawer::Samplers
+{
+  std::vector<Sampler> samplers;
+  const Terrain* terrain = nullptr;
+  std::uint64_t seed = 0;
+};
+
+PlaceRedrawer::PlaceRedrawer(std::span<const SourceRow> sources, const Terrain* terrain,
+  const ReleaseDefaults& defaults, const std::string& layer)
+  : samplers_(std::make_unique<Samplers>())
+{
+  for (const SourceRow& source : sources)
+  {
+    samplers_->samplers.emplace_back(source, defaults, rowName(layer, source));
+  }
+  samplers_->terrain = terrain;
+  samplers_->seed = defaults.seed;
+}
+
+PlaceRedrawer::~PlaceRedrawer() = default;
+
+bool PlaceRedrawer::hasOthers(const ReleasePlace& place) const
+{
+  return !samplers_->samplers[place.source].isPlace();
+}
+
+bool PlaceRedrawer::redraw(ReleasePlace& place, std::uint32_t attempt) const
+{
+  place.position = samplers_->samplers[place.source].at(
+    samplers_->seed, kMostDrawsOfSource + attempt, place.draw, place.overGround);
+  return !samplers_->terrain || onTerrain(*samplers_->terrain, place.position);
+}
+
+std::vector<ReleasePlace> steepPlaces(
+  const Terrain& terrain, double threshold, const ReleaseDefaults& defaults)
+{
+  defaults.validate();
+  const double cosine = std::cos(threshold);
+  std::int64_t steep = 0;
+  for (std::int64_t cfe = 1; cfe <= terrain.cfeCapacity(); ++cfe)
+  {
+    stayWanted();
+    steep += isSteep(terrain, cfe, cosine);
+  }
+  if (steep == 0)
+  {
+    throw DataError("SlopeThreshold is " + number(degrees(threshold)) +
+      " degrees, and no CFE of the terrain is as steep");
+  }
+  const double cell = terrain.geometry().cellSize;
+  const double area = 0.5 * cell * cell * double(steep);
+  const double rocks = defaults.intensity > 0.0
+    ? rounded(defaults.intensity * area, defaults.seed, 0)
+    : double(defaults.amount);
+  refuseTooMany(rocks, defaults,
+    "SlopeThreshold takes " + number(area) + " m² of the terrain, on which are to be ");
+  if (rocks == 0.0)
+  {
+    throw DataError("Intensity " + number(defaults.intensity) + " makes no rock on the " +
+      number(area) + " m² that SlopeThreshold takes");
+  }
+
+  // A further pass gives every rock its CFE, without a list of them all.
+  std::vector<ReleasePlace> places((std::size_t(rocks)));
+  std::vector<std::pair<std::int64_t, std::size_t>> wanted;
+  for (std::size_t i = 0; i < places.size(); ++i)
+  {
+    places[i].draw = i;
+    const double u = uniformDeviate(defaults.seed, 0, Draw::SourcePlace, i);
+    wanted.emplace_back(std::min(steep - 1, std::int64_t(u * double(steep))), i);
+  }
+  std::sort(wanted.begin(), wanted.end());
+  auto next = wanted.begin();
+  std::int64_t ordinal = 0;
+  for (std::int64_t cfe = 1; cfe <= terrain.cfeCapacity() && next != wanted.end(); ++cfe)
+  {
+    stayWanted();
+    if (!isSteep(terrain, cfe, cosine))
+    {
+      continue;
+    }
+    for (; next != wanted.end() && next->first == ordinal; ++next)
+    {
+      ReleasePlace& place = places[next->second];
+      auto [s, t] = uniformDeviates(defaults.seed, 1, Draw::SourcePlace, place.draw);
+      if (s + t > 1.0)
+      {
+        s = 1.0 - s;
+        t = 1.0 - t;
+      }
+      const auto nodes = terrain.cfe(cfe).nodes;
+      place.position = nodes[0] + s * (nodes[1] - nodes[0]) + t * (nodes[2] - nodes[0]) +
+        terrain.geometry().origin();
+      place.overGround = true;
+      place.height = defaults.height;
+    }
+    ++ordinal;
+  }
+  return places;
+}
+
+} // namespace rockfall

@@ -1,0 +1,28 @@
+#pragma once
+
+/// @file
+/// What is kept of a trajectory once it is finished.
+
+#include "rock/results.h"
+
+#include <vector>
+
+namespace rockfall
+{
+
+enum class Retention
+{
+  Nothing = 0,        ///< The summary only.
+  StoppingPoints = 1, ///< The last sample.
+  Events = 2,         ///< Release, touches, take-offs, end.
+  Thinned = 3,        ///< Release, all knots, end: between them the motion is one cubic.
+  Full = 4,           ///< All samples.
+};
+
+/// Samples that `retention` keeps: indices, rising.
+std::vector<std::size_t> keptSamples(const std::vector<Sample>& samples, Retention retention);
+
+/// Drops the other samples of a trajectory and gives their memory back.
+void thin(Trajectory& trajectory, Retention retention);
+
+} // namespace rockfall

@@ -1,0 +1,201 @@
+// What is kept of a trajectory, its way to another process, and the hash of its motion.
+
+#include "piles.h"
+
+#include "base/errors.h"
+#include "run/packing.h"
+#include "run/retention.h"
+#include "run/stateHash.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+using namespace rockfall;
+using namespace rockfall::testing;
+
+namespace
+{
+
+Sample sampleAt(double time, SampleKind kind, bool contact)
+{
+  Sample sample;
+  sample.time = time;
+  sample.kind = kind;
+  sample.contact = contact;
+  sample.position = Vec3(time, 2.0, 3.0);
+  sample.velocity = Vec3(1.0, time, -1.0);
+  sample.energy.friction = 10.0 * time;
+  return sample;
+}
+
+/// Flies, touches at 0.7, takes off at 0.8, touches at 1.5 and slides round a corner to rest.
+Trajectory fall()
+{
+  using enum SampleKind;
+  Trajectory t;
+  t.samples = { sampleAt(0.0, Even, false), sampleAt(0.5, Even, false), sampleAt(0.7, Knot, false),
+    sampleAt(0.75, Knot, true), sampleAt(0.8, Knot, false), sampleAt(1.0, Even, false),
+    sampleAt(1.5, Knot, false), sampleAt(1.8, Knot, true), sampleAt(2.0, Even, true),
+    sampleAt(2.3, End, true) };
+  t.impacts.resize(2);
+  t.impacts[0].time = 0.7;
+  t.impacts[1].time = 1.5;
+  t.impacts[1].cfe = 77;
+  t.summary.rock = 3;
+  t.summary.iteration = 4;
+  t.summary.blockId = 5;
+  t.summary.impacts = 2;
+  t.summary.maxHeightOverGround = 1.25;
+  return t;
+}
+
+std::vector<double> timesKept(Retention retention)
+{
+  Trajectory t = fall();
+  thin(t, retention);
+  std::vector<double> times;
+  for (const Sample& sample : t.samples)
+  {
+    times.push_back(sample.time);
+  }
+  return times;
+}
+
+} // namespace
+
+TEST(Retention, KeepsWhatItSays)
+{
+  using Times = std::vector<double>;
+  EXPECT_EQ(timesKept(Retention::Nothing), Times());
+  EXPECT_EQ(timesKept(Retention::StoppingPoints), Times({ 2.3 }));
+  EXPECT_EQ(timesKept(Retention::Events), Times({ 0.0, 0.7, 0.8, 1.5, 2.3 }));
+  EXPECT_EQ(timesKept(Retention::Thinned), Times({ 0.0, 0.7, 0.75, 0.8, 1.5, 1.8, 2.3 }));
+  EXPECT_EQ(timesKept(Retention::Full).size(), 10u);
+  // One that never moved is its own end.
+  const std::vector<Sample> one = { sampleAt(0.0, SampleKind::End, false) };
+  EXPECT_TRUE(keptSamples(one, Retention::Nothing).empty());
+  EXPECT_EQ(keptSamples(one, Retention::Events).size(), 1u);
+  EXPECT_TRUE(keptSamples({}, Retention::Full).empty());
+}
+
+TEST(Retention, PathsHaveOnePointAtATime)
+{
+  // Steps of Δt end where samples are due, but for rounding.
+  Pile pile;
+  pile.ground = floorSlope();
+  Rock rock;
+  rock.shape = makeShape(Shape::Icosahedron, 0.3);
+  for (rock.blockId = 0; rock.blockId < 12; ++rock.blockId)
+  {
+    rock.position = Vec3(20.0 + 0.03 * double(rock.blockId), 20.0, 1.0 + double(rock.blockId));
+    pile.rocks.push_back(rock);
+  }
+  pile.parameters.outputInterval = 0.05;
+  pile.parameters.endTime = 3.0;
+  pile.make();
+  int even = 0;
+  for (const Trajectory& t : pile.fall->run())
+  {
+    double fastest = 0.0;
+    for (std::size_t k = 1; k < t.samples.size(); ++k)
+    {
+      EXPECT_GT(t.samples[k].time - t.samples[k - 1].time, 4e-10);
+    }
+    for (const Sample& sample : t.samples)
+    {
+      const double due = std::round(sample.time / 0.05) * 0.05;
+      even += std::abs(sample.time - due) < 1e-9;
+      fastest = std::max(fastest, sample.velocity.norm());
+    }
+    EXPECT_LE(fastest, t.summary.maxSpeed);
+  }
+  EXPECT_GE(even, 12 * 20);
+}
+
+TEST(Packing, IsTheSameOnTheOtherSide)
+{
+  std::vector<char> bytes;
+  Trajectory empty;
+  empty.summary.rock = 9;
+  pack(fall(), bytes);
+  pack(empty, bytes);
+  pack(fall(), bytes);
+  std::span<const char> left(bytes);
+  for (int k = 0; k < 3; ++k)
+  {
+    const Trajectory t = unpack(left);
+    if (k == 1)
+    {
+      EXPECT_EQ(t.summary.rock, 9);
+      EXPECT_TRUE(t.samples.empty() && t.impacts.empty());
+      continue;
+    }
+    EXPECT_EQ(motionHash(t), motionHash(fall()));
+    ASSERT_EQ(t.samples.size(), 10u);
+    EXPECT_EQ(t.samples[3].time, 0.75);
+    EXPECT_EQ(t.samples[3].kind, SampleKind::Knot);
+    EXPECT_TRUE(t.samples[3].contact);
+    EXPECT_EQ(t.samples[3].energy.friction, 7.5);
+    ASSERT_EQ(t.impacts.size(), 2u);
+    EXPECT_EQ(t.impacts[1].cfe, 77);
+    EXPECT_EQ(t.summary.blockId, 5);
+    EXPECT_EQ(t.summary.maxHeightOverGround, 1.25);
+  }
+  EXPECT_TRUE(left.empty());
+}
+
+TEST(Packing, SaysWhereItEnds)
+{
+  std::vector<char> bytes;
+  pack(fall(), bytes);
+  for (std::size_t size : { std::size_t(0), std::size_t(15), std::size_t(40), bytes.size() - 1 })
+  {
+    std::span<const char> part(bytes.data(), size);
+    EXPECT_THROW(unpack(part), DataError) << size;
+  }
+}
+
+TEST(StateHash, TellsEveryBitOfTheMotion)
+{
+  std::set<std::uint64_t> hashes;
+  const auto add = [&](auto change)
+  {
+    Trajectory t = fall();
+    change(t);
+    hashes.insert(motionHash(t));
+  };
+  add([](Trajectory&) {});
+  add([](Trajectory& t) { t.summary.rock = 4; });
+  add([](Trajectory& t) { t.summary.iteration = 5; });
+  add([](Trajectory& t) { t.summary.fate = Fate::Rested; });
+  add([](Trajectory& t) { t.summary.stop.y() = 1e-300; });
+  add([](Trajectory& t) { t.summary.stop.y() = -0.0; });
+  add([](Trajectory& t) { t.summary.energy.friction = 1e-300; });
+  add([](Trajectory& t) { t.summary.contactSteps = 1; });
+  add([](Trajectory& t) { t.samples.back().orientation.x() = 1e-300; });
+  add([](Trajectory& t) { t.samples.back().velocity.x() = std::nextafter(1.0, 2.0); });
+  add([](Trajectory& t) { t.impacts[0].impulse = 1e-300; });
+  add([](Trajectory& t) { t.impacts[1].cfe = 78; });
+  add([](Trajectory& t) { std::swap(t.impacts[0], t.impacts[1]); });
+  add([](Trajectory& t) { t.impacts.pop_back(); });
+  EXPECT_EQ(hashes.size(), 14u);
+  // What is only looked at is not part of it.
+  add([](Trajectory& t) { thin(t, Retention::StoppingPoints); });
+  add([](Trajectory& t) { t.summary.maxHeightOverGround = 9.0; });
+  EXPECT_EQ(hashes.size(), 14u);
+}
+
+TEST(StateHash, DependsOnTheOrderAndHasSixteenDigits)
+{
+  StateHash a, b, none;
+  a.add(1);
+  a.add(2);
+  b.add(2);
+  b.add(1);
+  EXPECT_NE(a.value(), b.value());
+  EXPECT_EQ(none.text(), "0000000000000000");
+  EXPECT_EQ(a.text().size(), 16u);
+  EXPECT_EQ(std::stoull(a.text(), nullptr, 16), a.value());
+  EXPECT_NE(a.text(), b.text());
+}
