@@ -83,10 +83,10 @@ void EndLook::placeRock(std::size_t m)
   }
   const std::size_t place = std::size_t(rock.place);
   IslandWork::Motion& motion = work_.motions[place];
-  motion.moved = work_.solver.moved(place);
+  motion.moved = work_.solver.system().moved(place);
   if (motion.moved)
   {
-    const BlockState end = work_.solver.end(work_.bodies, place);
+    const BlockState end = work_.solver.system().end(place);
     rock.end.placeFrame(body.block, end);
     rock.endHull.update(rock.end);
     motion.displacement = end.position - body.state.position;
@@ -108,7 +108,7 @@ double EndLook::deepestPassed() const
     }
     const RockPair& pair = *island_.pairs[added.of];
     const double before = std::min(0.0, pair.axis.distance);
-    const double deeper = before - (work_.solver.gap(work_.firsts.back() + k) + offset);
+    const double deeper = before - (work_.solver.system().gap(work_.firsts.back() + k) + offset);
     most = std::max(most, deeper / work_.smallerRadius(pair));
   }
   return most;
@@ -116,7 +116,7 @@ double EndLook::deepestPassed() const
 
 double EndLook::overlapAt(std::size_t contact) const
 {
-  return work_.solver.gap(contact) + work_.contacts[contact].contact->offset;
+  return work_.solver.system().gap(contact) + work_.contacts[contact].contact->offset;
 }
 
 double EndLook::deepestOf(std::size_t pair) const
@@ -250,8 +250,8 @@ double EndLook::addMissed(std::size_t m)
     {
       // A contact that is there already was reckoned wrong.
       const double gap = c.distance - work_.contacts[known].contact->offset;
-      const double wrong = std::abs(work_.solver.gap(known) - gap) / smaller;
-      most = work_.solver.setGap(known, gap) ? std::max(most, wrong) : most;
+      const double wrong = std::abs(work_.solver.system().gap(known) - gap) / smaller;
+      most = work_.solver.system().setGap(known, gap) ? std::max(most, wrong) : most;
       continue;
     }
     most = std::max(most, (this->deepestOf(p) - c.distance) / smaller);
@@ -272,7 +272,7 @@ const CandidatePairs& EndLook::candidatesOf(std::size_t m)
   const IslandWork::Motion& motion = work_.motions[place];
   rock.body().placed.placeVertices();
   rock.end.placeVertices();
-  return rock.sim.candidatesAt(work_.solver.end(work_.bodies, place), rock.end, rock.endHull,
+  return rock.sim.candidatesAt(work_.solver.system().end(place), rock.end, rock.endHull,
     motion.displacement.norm() + motion.rimTravel, kLooseOverlap * rock.body().block.radius());
 }
 
@@ -286,7 +286,7 @@ std::size_t EndLook::touchesOnSlope(
   const auto addReckoned = [&](std::size_t k)
   {
     Contact c = *work_.contacts[k].contact;
-    const double gap = work_.solver.gap(k);
+    const double gap = work_.solver.system().gap(k);
     pressed = std::max(pressed, -gap);
     c.distance = gap + c.offset;
     touches.push_back(c);

@@ -39,6 +39,7 @@ IslandStepper::IslandStepper(FallState& fall, const Island& island)
   , work_(workOfThread())
 {
   work_.solver.method = fall.method;
+  work_.solver.stiffness = pairStiffness(fall.parameters);
 }
 
 double IslandStepper::timeReached(double until) const
@@ -204,30 +205,18 @@ void IslandStepper::addPair(std::size_t t, double h, StepKind kind, bool bounces
   std::size_t next = work_.firsts[p];
   for (Contact& c : pair.contacts)
   {
-    const IslandContact& touch = work_.contacts[next++] =
+    IslandContact& touch = work_.contacts[next++] =
       touchOfPair(fall_, pair, motion, c, h, bounces, work_);
-    if (crowd && !touch.closed && !(swept && mayStayOpen(touch, h)))
+    touch.bare = crowd && swept && mayStayOpen(touch, h);
+    if (crowd && !touch.closed && !touch.bare)
     {
       setSprings(fall_, pair, c);
     }
   }
 }
 
-void IslandStepper::setSpringsLate(std::size_t k)
-{
-  const auto behind = std::upper_bound(work_.firsts.begin(), work_.firsts.end(), k);
-  if (island_.crowd && behind != work_.firsts.begin() && behind != work_.firsts.end())
-  {
-    const RockPair& pair = *island_.pairs[std::size_t(behind - work_.firsts.begin()) - 1];
-    setSprings(fall_, pair, *work_.contacts[k].contact);
-  }
-}
-
 void IslandStepper::cutUntilAccepted(StepRequest& request, bool bounces)
 {
-  work_.solver.setSpringsLate([this](std::size_t k) { this->setSpringsLate(k); });
-  const auto look = [&]
-  { return EndLook(fall_, island_, work_, request.duration, bounces).look(); };
   work_.iterations = work_.cuts = work_.unsettled = work_.tries = 0;
   for (int cut = 0;; ++cut)
   {
@@ -243,8 +232,12 @@ void IslandStepper::cutUntilAccepted(StepRequest& request, bool bounces)
     }
     StepTrees(fall_, island_, work_).stand();
     work_.looked = false;
-    const IslandOutcome outcome =
-      work_.solver.step(request, work_.bodies, work_.contacts, accept, look);
+    work_.solver.begin(request, accept, work_.bodies, work_.contacts);
+    while (work_.solver.asksForALook())
+    {
+      work_.solver.goOn(EndLook(fall_, island_, work_, request.duration, bounces).look());
+    }
+    const IslandOutcome outcome = work_.solver.finish();
     work_.iterations += outcome.iterations;
     work_.cuts += !outcome.accepted && !last;
     work_.unsettled += outcome.unconverged && (outcome.accepted || last);
@@ -255,7 +248,6 @@ void IslandStepper::cutUntilAccepted(StepRequest& request, bool bounces)
     }
     request.duration *= 0.5;
   }
-  work_.solver.setSpringsLate({}); // it knows this step only
 }
 
 void IslandStepper::solve(double h, StepKind kind, bool bounces)

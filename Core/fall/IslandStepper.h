@@ -50,7 +50,6 @@ private:
   void addPair(std::size_t touching, double h, StepKind kind, bool bounces);
   /// Deep overlaps of the two, before a lasting step.
   void pressOutDeep(RockPair& pair, double h) const;
-  void setSpringsLate(std::size_t contact); ///< Of a speculative contact that closes.
   /// Halves the step as long as its solution is not accepted.
   void cutUntilAccepted(StepRequest& request, bool bounces);
 

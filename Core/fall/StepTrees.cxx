@@ -42,13 +42,17 @@ void StepTrees::forContacts(const Stem& stem, Use&& use) const
 
 void StepTrees::setAbsent(const Stem& stem, bool absent)
 {
-  this->forContacts(stem,
-    [&](const Contact&, std::size_t k) { work_.solver.setAbsent(work_.contacts, k, absent); });
+  const auto set = [&](const Contact&, std::size_t k)
+  {
+    work_.contacts[k].absent = absent;
+    work_.solver.system().setAbsent(k);
+  };
+  this->forContacts(stem, set);
 }
 
 BlockState StepTrees::endOf(const Stem& stem) const
 {
-  return work_.solver.end(work_.bodies, std::size_t(this->rockOf(stem).place));
+  return work_.solver.system().end(std::size_t(this->rockOf(stem).place));
 }
 
 BlockState StepTrees::endWithout(const Stem& stem, double h) const
@@ -57,7 +61,7 @@ BlockState StepTrees::endWithout(const Stem& stem, double h) const
   BlockState end = this->endOf(stem);
   const auto take = [&](const Contact& c, std::size_t k)
   {
-    const Vec3 impulse = h * work_.solver.force(k) * c.normal;
+    const Vec3 impulse = h * work_.solver.system().force(k) * c.normal;
     const Mat3 back = end.orientation.toRotationMatrix().transpose();
     end.velocity -= impulse / body.block.mass();
     end.spin -=
@@ -77,7 +81,7 @@ bool StepTrees::cannotHold(const Stem& stem, const BlockState& end, bool through
     const double approach = -c.normal.dot(end.velocity + end.angularVelocity().cross(lever));
     meets = meets ||
       (approach > (c.closed() ? body.restingSpeed : 0.0) &&
-        (!through || work_.solver.gap(k) < 0.0));
+        (!through || work_.solver.system().gap(k) < 0.0));
   };
   this->forContacts(stem, look);
   return meets && rigidKineticEnergy(body.block, end) > this->capacity(stem.tree);
@@ -135,7 +139,8 @@ bool StepTrees::look(double h)
     for (std::size_t k = 0; k < contacts.size(); ++k)
     {
       const int tree = rock.sim.treeOf(contacts[k]);
-      if (tree < 0 || work_.solver.force(work_.slopeFirsts[m] + k) <= 0.0 || this->isKnown(m, tree))
+      if (tree < 0 || work_.solver.system().force(work_.slopeFirsts[m] + k) <= 0.0 ||
+        this->isKnown(m, tree))
       {
         continue;
       }

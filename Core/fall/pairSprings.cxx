@@ -6,78 +6,25 @@
 #include "rock/impactMode.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace rockfall
 {
 
+PairStiffness pairStiffness(const SimulationParameters& parameters)
+{
+  return { parameters.normalPenalty, parameters.shearRatio, parameters.rigid };
+}
+
 namespace
 {
 
-/// Gives contacts of a pair what they are made of, along the normal and across it side by side;
-/// what only the normal decides is found once.
-class PairSprings
+PairSprings springsOf(const FallState& fall, const RockPair& pair)
 {
-public:
-  PairSprings(const PlacedBlock& a, const BlockState& s, const PlacedBlock& b, const BlockState& t,
-    const PairLaw& law, const SimulationParameters& parameters)
-    : rigid_(parameters.rigid)
-    , dampings_(std::max(0.0, law.damping), kShearDamping)
-    , sides_{ { { &a.block(), a.rotation(), s.position, {} },
-        { &b.block(), b.rotation(), t.position, {} } } }
-  {
-    const double mass = 1.0 / (1.0 / a.block().mass() + 1.0 / b.block().mass());
-    const double depth = kDeepestPairImpact * std::min(a.block().radius(), b.block().radius());
-    const double speed = (s.velocity - t.velocity).norm();
-    const double penalty =
-      std::max(parameters.normalPenalty, mass * speed * speed / (depth * depth));
-    penalties_ = { penalty, penalty * parameters.shearRatio };
-  }
-  void set(Contact& c)
-  {
-    if (c.normal != normal_)
-    {
-      normal_ = c.normal;
-      const Vec3 along = normal_.unitOrthogonal();
-      for (Side& side : sides_)
-      {
-        side.motions =
-          twoDirections(side.turn.transpose() * normal_, side.turn.transpose() * along);
-      }
-    }
-    Two soft = Two::Zero(), mobile = Two::Zero();
-    for (const Side& side : sides_)
-    {
-      const Vec3 x = side.turn.transpose() * (c.point - side.position);
-      soft += rigid_ ? Two(Two::Zero()) : side.block->compliance(side.motions, x);
-      mobile += side.block->mobility(side.motions, x);
-    }
-    const Two stiffnesses = penalties_ / (1.0 + penalties_ * soft);
-    const Two dashpots = 2.0 * dampings_ * (stiffnesses / mobile).sqrt();
-    c.stiffness = stiffnesses[0];
-    c.shearStiffness = stiffnesses[1];
-    c.frequency2 = c.stiffness * mobile[0];
-    c.stopped = 1.0 / mobile[0];
-    c.dashpot = dashpots[0];
-    c.shearDashpot = dashpots[1];
-  }
-
-private:
-  using Two = Eigen::Array2d;
-  struct Side
-  {
-    const Block* block;
-    Mat3 turn; ///< Body to world axes.
-    Vec3 position;
-    TwoDirections motions; ///< The normal and a direction across it, body axes.
-  };
-  bool rigid_;
-  Two dampings_;
-  Two penalties_; ///< N/m
-  Vec3 normal_ = Vec3::Zero();
-  std::array<Side, 2> sides_;
-};
+  const RockBody& a = fall.rocks[std::size_t(pair.first)].body();
+  const RockBody& b = fall.rocks[std::size_t(pair.second)].body();
+  return { pairStiffness(fall.parameters), pair.law.damping, a.block, a.state, &b.block, &b.state };
+}
 
 } // namespace
 
@@ -124,7 +71,7 @@ void setPairSprings(const FallState& fall, RockPair& pair, double h)
     return;
   }
   const RockBody &a = fall.rocks[pair.first].body(), &b = fall.rocks[pair.second].body();
-  PairSprings springs(a.placed, a.state, b.placed, b.state, pair.law, fall.parameters);
+  PairSprings springs = springsOf(fall, pair);
   for (; k != end; ++k)
   {
     if (!k->closed())
@@ -145,8 +92,7 @@ void setPairSprings(const FallState& fall, RockPair& pair, double h)
 
 void setSprings(const FallState& fall, const RockPair& pair, Contact& c)
 {
-  const RockBody &a = fall.rocks[pair.first].body(), &b = fall.rocks[pair.second].body();
-  PairSprings(a.placed, a.state, b.placed, b.state, pair.law, fall.parameters).set(c);
+  springsOf(fall, pair).set(c);
 }
 
 } // namespace rockfall

@@ -4,9 +4,12 @@
 /// Springs and dashpots of contacts between rocks.
 
 #include "fall/FallState.h"
+#include "system/PairSprings.h"
 
 namespace rockfall
 {
+
+PairStiffness pairStiffness(const SimulationParameters& parameters);
 
 /// Springs on the slope into which others press the rock.
 void stiffenPressed(RockSimulator& sim);

@@ -92,6 +92,7 @@ IslandContact touchOfPair(const FallState& fall, RockPair& pair, const PairMotio
   k.first = work.placeOf[std::size_t(pair.first)];
   k.second = work.placeOf[std::size_t(pair.second)];
   k.friction = pair.law.friction;
+  k.damping = pair.law.damping;
   k.cohesion = pair.law.cohesion;
   if (k.cohesion > 0.0)
   {

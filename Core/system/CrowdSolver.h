@@ -13,41 +13,42 @@
 #include "base/parallel.h"
 #include "law/settings.h"
 #include "solver/StepSolver.h"
+#include "system/IslandSystem.h"
+#include "system/PairSprings.h"
 #include "system/crowdKernel.h"
-#include "system/island.h"
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <utility>
 #include <vector>
 
 namespace rockfall
 {
 
-class CrowdSolver
+class CrowdSolver final : public IslandSystem
 {
 public:
-  /// Advances the bodies' states and the contacts' springs by `request.duration`, as if it lasted.
-  /// `accept` and `lookAgain`: see IslandSolver::step. Nothing is changed if a displacement is
-  /// not finite.
-  IslandOutcome step(const StepRequest& request, std::vector<IslandBody>& bodies,
-    std::vector<IslandContact>& contacts, Accept accept,
-    const std::function<LookOutcome()>& lookAgain);
+  /// Sets the equations up, as if the step lasted, and sweeps.
+  void begin(const StepRequest& request, std::vector<IslandBody>& bodies,
+    std::vector<IslandContact>& contacts) override;
+  bool isWorthALook() const override { return !work_.empty(); }
+  bool haveGoneOn() const override;
+  void append() override;
+  void noteLook() override;
+  void solve() override;
+  IslandOutcome finish(Accept accept, bool deep) override;
 
-  // For lookAgain, as IslandSolver has them.
-  BlockState end(const std::vector<IslandBody>& bodies, std::size_t i) const;
-  double gap(std::size_t contact) const;
-  bool setGap(std::size_t contact, double found);
-  bool moved(std::size_t body) const { return work_[body].moved; }
-  double force(std::size_t contact) const { return this->forceOf(rows_[contact])[0]; }
-  void setAbsent(const IslandContact& contact, std::size_t k); ///< As the contact says now.
+  BlockState end(std::size_t body) const override;
+  bool moved(std::size_t body) const override { return work_[body].moved; }
+  double gap(std::size_t contact) const override;
+  double force(std::size_t contact) const override { return this->forceOf(rows_[contact])[0]; }
+  bool setGap(std::size_t contact, double found) override;
+  void setAbsent(std::size_t contact) override;
 
   /// Share of the largest displacement to which the sweeps go.
   double tolerance = 1e-4;
   int maxSweeps = 6;
-  /// Gives a speculative contact that closes its springs, unless it has them.
-  std::function<void(std::size_t contact)> setSprings;
+  PairStiffness stiffness; ///< See IslandSolver.
 
 private:
   static constexpr int kNever = -2; ///< A sweep before all others.
@@ -65,7 +66,7 @@ private:
     Vec3 offset, spinOffset; ///< Velocity at the end is displacement/h + offset.
     double inverseMass;      ///< h²/m
     std::size_t mover;       ///< Among movers_.
-    bool moved;              ///< Since lookAgain was asked.
+    bool moved;              ///< Since the last look.
     Mat3 inverseInertia;     ///< h² I⁻¹
   };
   /// The part of a contact that is not in its lane of a batch.
@@ -148,7 +149,6 @@ private:
   /// Turns that were guessed wrong, and the levers that go with them.
   bool correctTurns(
     const std::vector<IslandBody>& bodies, const std::vector<IslandContact>& contacts);
-  void append(const std::vector<IslandBody>& bodies, std::vector<IslandContact>& contacts);
   /// Lanes for further contacts: those that are still empty in batches of their strip, or else in
   /// batches behind all others. `fresh_` are the batches that they are in.
   void findLanes(const std::vector<IslandContact>& contacts, const std::vector<int>& added);
@@ -161,6 +161,7 @@ private:
   /// Makes speculative contacts ready that are closed where the rocks go now; whether there were
   /// any. `sweep` is the next one.
   bool closeSpeculative(int sweep);
+  void setSprings(const IslandContact& contact) const; ///< Of one that comes without.
   double visit(int strip);
   double sweep();
   /// Sweeps until none changes anything by more than `goal`, m; whether they get there.
@@ -184,10 +185,8 @@ private:
     work.moved = work.moved || !this->isNear(work.displacement, displacement);
     work.displacement = displacement;
   }
-  void noteSeen();         ///< Where bodies are looked at now;
-  bool haveGoneOn() const; ///< whether any has gone far since.
-  void write(const StepRequest& request, std::vector<IslandBody>& bodies,
-    std::vector<IslandContact>& contacts, IslandOutcome& outcome);
+  void sweepAndCorrect(bool everywhere); ///< Sweeps, and again with turns that were guessed wrong.
+  void write();
 
   double h_ = 0.0, gravity_ = 0.0;
   std::vector<Work> work_;
@@ -254,8 +253,12 @@ private:
   bool goingFurther_ = false; ///< In the sweep at hand.
   const crowd::Kernel* kernel_ = nullptr;
   // Of the step at hand.
-  const std::vector<IslandBody>* bodies_ = nullptr;
-  const std::vector<IslandContact>* contacts_ = nullptr;
+  StepRequest request_;
+  std::vector<IslandBody>* bodies_ = nullptr;
+  std::vector<IslandContact>* contacts_ = nullptr;
+  IslandOutcome outcome_;
+  bool calm_ = false;        ///< No contact is to leave with some speed.
+  int sweepsAllowed_ = 0;    ///< In a run.
   int sweep_ = 0;            ///< Number of the next sweep.
   double scale_ = 0.0;       ///< The longest displacement in the step, m.
   double enough_ = 0.0;      ///< Changes that settle a run, m,

@@ -32,10 +32,10 @@ public:
   virtual IslandOutcome finish(Accept accept, bool deep) = 0;
 
   // What the solution says, by numbers of bodies and contacts.
-  virtual BlockState end(std::size_t body) const = 0;      ///< At the end of the step.
-  virtual bool moved(std::size_t body) const = 0;          ///< Since the last look.
-  virtual double gap(std::size_t contact) const = 0;       ///< At the end of the step, m.
-  virtual double force(std::size_t contact) const = 0;     ///< Along the normal, N.
+  virtual BlockState end(std::size_t body) const = 0;  ///< At the end of the step.
+  virtual bool moved(std::size_t body) const = 0;      ///< Since the last look.
+  virtual double gap(std::size_t contact) const = 0;   ///< At the end of the step, m.
+  virtual double force(std::size_t contact) const = 0; ///< Along the normal, N.
   /// The gap is found to be another one (m). No contact is asked to open further than it was.
   /// Returns whether this changes anything.
   virtual bool setGap(std::size_t contact, double found) = 0;

@@ -30,9 +30,20 @@ void CrowdSolver::assembleFresh()
   forEach(fresh_.size(), 4, [&](std::size_t k) { this->assemble(std::size_t(fresh_[k]), 1); });
 }
 
-void CrowdSolver::append(
-  const std::vector<IslandBody>& bodies, std::vector<IslandContact>& contacts)
+void CrowdSolver::append()
 {
+  const std::vector<IslandBody>& bodies = *bodies_;
+  std::vector<IslandContact>& contacts = *contacts_;
+  // From here it goes on around what was found only.
+  for (int& changed : changed_)
+  {
+    changed = changed < sweep_ ? kNever : changed;
+  }
+  for (Work& w : work_)
+  {
+    w.moved = false;
+  }
+  enough_ = (calm_ ? 1.0 : kFoundTolerance) * tolerance * scale_;
   const std::size_t first = rows_.size();
   rows_.resize(contacts.size());
   std::vector<int> added(rows_.size() - first);
@@ -103,11 +114,12 @@ bool CrowdSolver::closeSpeculative(int sweep)
     const std::size_t k = std::size_t(closing_[c]);
     Row& row = rows_[k];
     const double gap0 = row.gap0; // may have been set right by a look
-    if (setSprings)
+    const IslandContact& contact = (*contacts_)[k];
+    if (contact.bare)
     {
-      setSprings(k);
+      this->setSprings(contact);
     }
-    this->prepareRow(*bodies_, (*contacts_)[k], row);
+    this->prepareRow(*bodies_, contact, row);
     row.gap0 = batches_[std::size_t(row.batch)].gap[row.lane] = gap0;
   };
   forEach(closing_.size(), kCloseGrain, makeReady);
@@ -119,10 +131,20 @@ bool CrowdSolver::closeSpeculative(int sweep)
   return true;
 }
 
-BlockState CrowdSolver::end(const std::vector<IslandBody>& bodies, std::size_t i) const
+void CrowdSolver::setSprings(const IslandContact& contact) const
+{
+  const IslandBody& first = (*bodies_)[std::size_t(contact.first)];
+  const IslandBody* second =
+    contact.second >= 0 ? &(*bodies_)[std::size_t(contact.second)] : nullptr;
+  PairSprings(stiffness, contact.damping, *first.block, *first.state,
+    second ? second->block : nullptr, second ? second->state : nullptr)
+    .set(*contact.contact);
+}
+
+BlockState CrowdSolver::end(std::size_t i) const
 {
   const Work& w = work_[i];
-  BlockState state = *bodies[i].state;
+  BlockState state = *(*bodies_)[i].state;
   state.position += w.displacement;
   state.velocity = w.displacement / h_ + w.offset;
   state.orientation = (w.turn * state.orientation).normalized();
@@ -130,8 +152,9 @@ BlockState CrowdSolver::end(const std::vector<IslandBody>& bodies, std::size_t i
   return state;
 }
 
-void CrowdSolver::setAbsent(const IslandContact& contact, std::size_t k)
+void CrowdSolver::setAbsent(std::size_t k)
 {
+  const IslandContact& contact = (*contacts_)[k];
   const Row& row = rows_[k];
   if (row.isSpeculative())
   {

@@ -164,7 +164,7 @@ void CrowdSolver::collect()
   forEach(work_.size(), kBodyGrain, collectBody);
 }
 
-void CrowdSolver::noteSeen()
+void CrowdSolver::noteLook()
 {
   for (std::size_t i = 0; i < work_.size(); ++i)
   {
@@ -188,103 +188,84 @@ bool CrowdSolver::haveGoneOn() const
   return false;
 }
 
-IslandOutcome CrowdSolver::step(const StepRequest& request, std::vector<IslandBody>& bodies,
-  std::vector<IslandContact>& contacts, Accept accept,
-  const std::function<LookOutcome()>& lookAgain)
+void CrowdSolver::begin(
+  const StepRequest& request, std::vector<IslandBody>& bodies, std::vector<IslandContact>& contacts)
 {
-  IslandOutcome outcome;
-  if (bodies.empty())
-  {
-    outcome.settled = outcome.accepted = true;
-    return outcome;
-  }
-  kernel_ = &crowd::suitedKernel();
+  request_ = request;
   bodies_ = &bodies;
   contacts_ = &contacts;
+  outcome_ = {};
+  kernel_ = &crowd::suitedKernel();
   this->prepareBodies(request, bodies);
+  if (bodies.empty())
+  {
+    outcome_.settled = true;
+    return;
+  }
   this->lineUp(bodies);
   this->arrange(contacts);
   this->startMovers(bodies);
   this->prepareRows(bodies, contacts);
   // Displacements matter in relation to how far gravity and the rocks' speed move them in the step.
-  double scale = 0.5 * request.gravity * h_ * h_;
-  bool calm = true;
+  scale_ = 0.5 * request.gravity * h_ * h_;
   double curvature = 0.0; // sum of 1/r: small rocks have a say
   for (std::size_t i = 0; i < work_.size(); ++i)
   {
-    scale = std::max(scale, work_[i].displacement.norm());
+    scale_ = std::max(scale_, work_[i].displacement.norm());
     curvature += 1.0 / seen_[i].radius;
   }
+  calm_ = true;
   bouncing_.clear();
   for (std::size_t k = 0; k < contacts.size(); ++k)
   {
-    calm = calm && contacts[k].bounce < 0.0;
+    calm_ = calm_ && contacts[k].bounce < 0.0;
     if (contacts[k].bounce > 0.0)
     {
       bouncing_.push_back(k);
     }
   }
-  scale_ = scale;
-  enough_ = tolerance * scale;
+  enough_ = tolerance * scale_;
   unconverged_ =
     std::min(kUnconverged * enough_, kUnconvergedDisplacement * double(work_.size()) / curvature);
   sweep_ = checked_ = 0;
-  const int most = calm ? kCalmSweeps * maxSweeps : maxSweeps;
-  outcome.settled = this->sweeps(most, true, outcome);
-  if (this->correctTurns(bodies, contacts))
+  sweepsAllowed_ = calm_ ? kCalmSweeps * maxSweeps : maxSweeps;
+  this->sweepAndCorrect(true);
+}
+
+void CrowdSolver::sweepAndCorrect(bool everywhere)
+{
+  outcome_.settled = this->sweeps(sweepsAllowed_, everywhere, outcome_);
+  if (this->correctTurns(*bodies_, *contacts_))
   {
-    outcome.settled = this->sweeps(most, calm, outcome);
+    outcome_.settled = this->sweeps(sweepsAllowed_, calm_, outcome_);
   }
   this->collect();
-  this->settle(most, calm, contacts, outcome);
-  LookOutcome seen;
-  const auto looksOn = [&](int look)
-  { return seen.asksFor(look) || (look <= kMostMissLooks && this->haveGoneOn()); };
-  for (int look = 0; lookAgain && looksOn(look); ++look)
+  this->settle(sweepsAllowed_, calm_, *contacts_, outcome_);
+}
+
+void CrowdSolver::solve()
+{
+  this->sweepAndCorrect(calm_);
+}
+
+IslandOutcome CrowdSolver::finish(Accept accept, bool deep)
+{
+  if (work_.empty())
   {
-    seen = lookAgain();
-    this->noteSeen();
-    if (!seen.any())
-    {
-      break;
-    }
-    // From here it goes on around what was found only.
-    for (int& changed : changed_)
-    {
-      changed = changed < sweep_ ? kNever : changed;
-    }
-    for (Work& w : work_)
-    {
-      w.moved = false;
-    }
-    enough_ = (calm ? 1.0 : kFoundTolerance) * tolerance * scale;
-    this->append(bodies, contacts);
-    if (seen.onlyTells(look))
-    {
-      break;
-    }
-    outcome.settled = this->sweeps(most, calm, outcome);
-    if (this->correctTurns(bodies, contacts))
-    {
-      outcome.settled = this->sweeps(most, calm, outcome);
-    }
-    this->collect();
-    this->settle(most, calm, contacts, outcome);
+    outcome_.accepted = true;
+    return outcome_;
   }
-  bool finite = true;
-  for (const Work& w : work_)
+  const bool finite = std::all_of(work_.begin(), work_.end(),
+    [](const Work& w) { return w.displacement.allFinite() && w.spun.allFinite(); });
+  const bool near = outcome_.settled || outcome_.residual <= unconverged_;
+  outcome_.unconverged = !near || deep;
+  const bool fair = accept == Accept::Converging ? !outcome_.unconverged : outcome_.settled;
+  outcome_.accepted = finite && (fair || accept == Accept::Any);
+  if (outcome_.accepted)
   {
-    finite = finite && w.displacement.allFinite() && w.spun.allFinite();
+    this->write();
   }
-  const bool near = outcome.settled || outcome.residual <= unconverged_;
-  outcome.unconverged = !near || seen.isDeep();
-  const bool fair = accept == Accept::Converging ? !outcome.unconverged : outcome.settled;
-  outcome.accepted = finite && (fair || accept == Accept::Any);
-  if (outcome.accepted)
-  {
-    this->write(request, bodies, contacts, outcome);
-  }
-  return outcome;
+  return outcome_;
 }
 
 } // namespace rockfall

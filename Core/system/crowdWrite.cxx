@@ -9,9 +9,10 @@
 namespace rockfall
 {
 
-void CrowdSolver::write(const StepRequest& request, std::vector<IslandBody>& bodies,
-  std::vector<IslandContact>& contacts, IslandOutcome& outcome)
+void CrowdSolver::write()
 {
+  std::vector<IslandBody>& bodies = *bodies_;
+  std::vector<IslandContact>& contacts = *contacts_;
   books_.resize(contacts.size());
   const auto writeRow = [&](std::size_t k)
   {
@@ -66,11 +67,11 @@ void CrowdSolver::write(const StepRequest& request, std::vector<IslandBody>& bod
   {
     writeRow(k);
   }
-  addBooks(contacts, books_, bodies, outcome);
+  addBooks(contacts, books_, bodies, outcome_);
   const auto writeBody = [&](std::size_t i)
   {
-    *bodies[i].state = this->end(bodies, i);
-    bodies[i].state->time += request.duration;
+    *bodies[i].state = this->end(i);
+    bodies[i].state->time += request_.duration;
   };
   forEach(bodies.size(), kBodyGrain, writeBody);
 }

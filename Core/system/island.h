@@ -38,6 +38,7 @@ struct IslandContact
   int second = -1;       ///< −1: the slope.
   double friction = 0.0; ///< tan φ
   double cohesion = 0.0; ///< N
+  double damping = 0.0;  ///< ζ along the normal, if it is between rocks.
   /// ≥ 0: leaves with at least this speed along the normal if it closes in a lasting step (Newton's
   /// law of restitution), or if it is closed and the impact is under way, m/s.
   double bounce = -1.0;
@@ -47,10 +48,13 @@ struct IslandContact
   /// Value of contact->closed() when the step begins; for whoever set the contact up and goes over
   /// all of them.
   bool closed = false;
-  bool absent = false; ///< Let go for this step (IslandSolver::setAbsent): nothing holds it up.
+  bool absent = false; ///< Let go for this step (IslandSystem::setAbsent): nothing holds it up.
+  /// Has no springs: it mayStayOpen, and a solver that takes it for speculative gives it some when
+  /// it closes.
+  bool bare = false;
 };
 
-/// Result of a look at where a step would end (IslandSolver::step).
+/// Result of a look at where a step would end (IslandSolver).
 struct LookOutcome
 {
   double missed = 0.0; ///< Deepest overlap without a contact, of a radius; 0: none.

@@ -1,6 +1,6 @@
 // The step of an island: open–close iteration as Newton with a direct solver, and what comes of it.
 
-#include "system/IslandSolver.h"
+#include "system/NewtonSolver.h"
 
 #include "base/abort.h"
 #include "base/parallel.h"
@@ -12,18 +12,16 @@
 namespace rockfall
 {
 
-bool IslandSolver::newton(
-  const StepRequest& request, const std::vector<IslandBody>& bodies, IslandOutcome& outcome)
+bool NewtonSolver::newton()
 {
-  const bool lasting = request.kind == StepKind::Lasting;
-  this->evaluate(request.duration, lasting);
+  this->evaluate();
   Eigen::VectorXd next;
   double share = 1.0; // of the correction that is taken
-  for (int iteration = 0; iteration < request.maxOpenClose; ++iteration)
+  for (int iteration = 0; iteration < request_.maxOpenClose; ++iteration)
   {
     stayWanted();
-    ++outcome.iterations;
-    this->loads(request, bodies);
+    ++outcome_.iterations;
+    this->loads();
     if (!this->solveDirect(next))
     {
       return false;
@@ -55,8 +53,8 @@ bool IslandSolver::newton(
       change = std::max(change, std::abs(row.law.gap0 + displacement - row.law.gap1));
       scale = std::max(scale, std::abs(displacement));
     }
-    const bool changed = this->evaluate(request.duration, lasting);
-    outcome.residual = change;
+    const bool changed = this->evaluate();
+    outcome_.residual = change;
     if (share == 1.0 && !changed && change <= kGapTolerance * scale + 1e-15 &&
       turned <= kTurnTolerance * turn + 1e-13)
     {
@@ -66,8 +64,10 @@ bool IslandSolver::newton(
   return false;
 }
 
-bool IslandSolver::holdBounces(double h, std::vector<IslandContact>& contacts)
+bool NewtonSolver::holdBounces()
 {
+  const double h = request_.duration;
+  std::vector<IslandContact>& contacts = *contacts_;
   bool any = false;
   for (std::size_t k = 0; k < rows_.size(); ++k)
   {
@@ -105,92 +105,33 @@ bool IslandSolver::holdBounces(double h, std::vector<IslandContact>& contacts)
   return any;
 }
 
-bool IslandSolver::settle(const StepRequest& request, const std::vector<IslandBody>& bodies,
-  std::vector<IslandContact>& contacts, IslandOutcome& outcome)
+void NewtonSolver::solve()
 {
-  bool settled = this->newton(request, bodies, outcome);
-  for (int k = 0; k < kHeldBounces && settled && this->holdBounces(request.duration, contacts); ++k)
+  outcome_.settled = this->newton();
+  for (int k = 0; k < kHeldBounces && outcome_.settled && this->holdBounces(); ++k)
   {
-    settled = this->newton(request, bodies, outcome);
+    outcome_.settled = this->newton();
   }
-  return settled;
 }
 
-bool IslandSolver::isSwept(StepKind kind, std::size_t bodies) const
+IslandOutcome NewtonSolver::finish(Accept, bool deep)
 {
-  return kind == StepKind::Lasting &&
-    (method == IslandMethod::Iterative ||
-      (method == IslandMethod::Suited && bodies > std::size_t(kDirectIsland)));
+  outcome_.settled = outcome_.settled && !deep;
+  outcome_.unconverged = !outcome_.settled;
+  const bool finite =
+    std::all_of(work_.begin(), work_.end(), [](const Work& w) { return w.d.allFinite(); });
+  if (finite && outcome_.settled)
+  {
+    this->write();
+    outcome_.accepted = true;
+  }
+  return outcome_;
 }
 
-IslandOutcome IslandSolver::step(const StepRequest& request, std::vector<IslandBody>& bodies,
-  std::vector<IslandContact>& contacts, Accept accept,
-  const std::function<LookOutcome()>& lookAgain)
+void NewtonSolver::write()
 {
-  const auto sweep = [&]
-  {
-    sweeping_ = true;
-    crowd_.tolerance = tolerance;
-    crowd_.maxSweeps = maxSweeps;
-    return crowd_.step(request, bodies, contacts, accept, lookAgain);
-  };
-  if (this->isSwept(request.kind, bodies.size()))
-  {
-    return sweep();
-  }
-  IslandOutcome outcome;
-  sweeping_ = false;
-  this->prepare(request, bodies, contacts);
-  outcome.settled = this->settle(request, bodies, contacts, outcome);
-  LookOutcome seen;
-  for (int look = 0; lookAgain && outcome.settled && seen.asksFor(look); ++look)
-  {
-    seen = lookAgain();
-    if (!seen.any())
-    {
-      break;
-    }
-    this->append(request, bodies, contacts);
-    if (seen.onlyTells(look))
-    {
-      break;
-    }
-    outcome.settled = this->settle(request, bodies, contacts, outcome);
-  }
-  outcome.settled = outcome.settled && !seen.isDeep();
-  if (!outcome.settled && accept == Accept::Any)
-  {
-    // Newton that has not settled may be anywhere; Gauss–Seidel comes nearer with every sweep, and
-    // a lasting step makes no energy.
-    for (IslandBody& body : bodies)
-    {
-      body.acceleration.setZero();
-      body.spinAcceleration.setZero();
-    }
-    const int iterations = outcome.iterations;
-    outcome = sweep();
-    outcome.iterations += iterations;
-    outcome.settled = false;
-    outcome.unconverged = true;
-    return outcome;
-  }
-  bool finite = true;
-  for (const Work& w : work_)
-  {
-    finite = finite && w.d.allFinite();
-  }
-  outcome.unconverged = !outcome.settled;
-  if (finite && outcome.settled)
-  {
-    this->write(request, bodies, contacts, outcome);
-    outcome.accepted = true;
-  }
-  return outcome;
-}
-
-void IslandSolver::write(const StepRequest& request, std::vector<IslandBody>& bodies,
-  std::vector<IslandContact>& contacts, IslandOutcome& outcome)
-{
+  std::vector<IslandBody>& bodies = *bodies_;
+  std::vector<IslandContact>& contacts = *contacts_;
   books_.resize(contacts.size());
   const auto writeRow = [&](std::size_t k)
   {
@@ -200,8 +141,7 @@ void IslandSolver::write(const StepRequest& request, std::vector<IslandBody>& bo
     for (int side = 0; side < 2; ++side)
     {
       const Side& of = row.sides[side];
-      displacements.means[side] =
-        of.body < 0 ? Vec3(Vec3::Zero()) : this->meanDisplacementOf(request.duration, of);
+      displacements.means[side] = of.body < 0 ? Vec3(Vec3::Zero()) : this->meanDisplacementOf(of);
     }
     books_[k] = writeContact(row.law, row.directions, displacements, row.gap0, contacts[k]);
     // Where its rock has carried it: by this the next step knows it again.
@@ -213,11 +153,11 @@ void IslandSolver::write(const StepRequest& request, std::vector<IslandBody>& bo
     }
   };
   forEach(contacts.size(), kRowGrain, writeRow);
-  addBooks(contacts, books_, bodies, outcome);
+  addBooks(contacts, books_, bodies, outcome_);
   const auto writeBody = [&](std::size_t i)
   {
-    *bodies[i].state = this->end(bodies, i);
-    bodies[i].state->time += request.duration;
+    *bodies[i].state = this->end(i);
+    bodies[i].state->time += request_.duration;
   };
   forEach(bodies.size(), kBodyGrain, writeBody);
 }

@@ -1,6 +1,6 @@
 // K D = F of an island: assembled from the contacts' springs, solved directly.
 
-#include "system/IslandSolver.h"
+#include "system/NewtonSolver.h"
 
 #include "law/settings.h"
 
@@ -10,7 +10,7 @@ namespace rockfall
 {
 
 template <class Add>
-void IslandSolver::assemble(const std::vector<int>& places, Eigen::VectorXd& right, Add&& add) const
+void NewtonSolver::assemble(const std::vector<int>& places, Eigen::VectorXd& right, Add&& add) const
 {
   for (std::size_t i = 0; i < work_.size(); ++i)
   {
@@ -73,7 +73,7 @@ void IslandSolver::assemble(const std::vector<int>& places, Eigen::VectorXd& rig
   }
 }
 
-bool IslandSolver::solveDirect(Eigen::VectorXd& next)
+bool NewtonSolver::solveDirect(Eigen::VectorXd& next)
 {
   // Most of an island do not touch: what no contact acts on goes as if it were alone.
   thread_local std::vector<int> places;
