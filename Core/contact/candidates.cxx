@@ -185,41 +185,42 @@ void gatherEdges(const PlacedBlock& rock, const SurfacePatch& patch, int ridge, 
   }
 }
 
-} // namespace
-
-void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
-  double distance, CandidatePairs& candidates)
+/// Cells of the slope that the box of a rock meets.
+struct CellBox
 {
-  candidates.vertexFace.clear();
-  candidates.edgeEdge.clear();
-  candidates.peaks.clear();
-  candidates.distance = distance;
-  candidates.position = state.position;
-  candidates.orientation = state.orientation;
+  int row0, row1, column0, column1;
+
+  CellBox(const PlacedBlock& rock, const SurfacePatch& patch, double wide)
+  {
+    const double inverse = 1.0 / patch.cellSize;
+    const int cellColumns = patch.nodeColumns - 1, cellRows = patch.nodeRows - 1;
+    const auto index = [&](double v, int last)
+    { return int(std::floor(std::clamp(v * inverse, 0.0, double(last)))); };
+    const Vec3 lower = rock.lower(), upper = rock.upper();
+    column0 = index(lower.x() - wide - patch.west, cellColumns - 1);
+    column1 = index(upper.x() + wide - patch.west, cellColumns - 1);
+    row0 = index(patch.north - upper.y() - wide, cellRows - 1);
+    row1 = index(patch.north - lower.y() + wide, cellRows - 1);
+  }
+};
+
+std::uint64_t bitOf(int vertex)
+{
+  return std::uint64_t(1) << (vertex & 63);
+}
+
+/// Vertices over the triangles of the slope.
+void gatherVertices(const PlacedBlock& rock, const SurfacePatch& patch, const CellBox& cells,
+  double distance, double turn, CandidatePairs& candidates)
+{
   const std::vector<Vec3>& vertices = rock.vertices();
   const Vec3 lower = rock.lower(), upper = rock.upper();
-  // As far as the rock may turn while the candidates serve, sine.
-  const double turn = kConeSlack + distance / rock.block().radius();
-  if (patch.nodeRows < 2)
+  const double wide = kBeyondConcave * distance;
+  const int cellColumns = patch.nodeColumns - 1;
+  for (int row = cells.row0; row <= cells.row1; ++row)
   {
-    return;
-  }
-  // Cells that the box meets. Beyond a concave edge a plane serves a little further than its
-  // triangle: twice the distance takes that in.
-  const double inverse = 1.0 / patch.cellSize, wide = 2.0 * distance;
-  const int cellColumns = patch.nodeColumns - 1, cellRows = patch.nodeRows - 1;
-  const auto index = [&](double v, int last)
-  { return int(std::floor(std::clamp(v * inverse, 0.0, double(last)))); };
-  const int column0 = index(lower.x() - wide - patch.west, cellColumns - 1);
-  const int column1 = index(upper.x() + wide - patch.west, cellColumns - 1);
-  const int row0 = index(patch.north - upper.y() - wide, cellRows - 1);
-  const int row1 = index(patch.north - lower.y() + wide, cellRows - 1);
-  const auto bit = [](int vertex) { return std::uint64_t(1) << (vertex & 63); };
-  std::vector<std::uint64_t>& under = candidates.under;
-  under.assign(patch.triangles.size(), 0);
-  for (int row = row0; row <= row1; ++row)
-  {
-    for (int i = 2 * (row * cellColumns + column0); i < 2 * (row * cellColumns + column1 + 1); ++i)
+    for (int i = 2 * (row * cellColumns + cells.column0);
+         i < 2 * (row * cellColumns + cells.column1 + 1); ++i)
     {
       const SurfacePatch::Triangle& t = patch.triangles[i];
       // How far all of the rock is over the plane; first by the lowest corner of its box.
@@ -242,7 +243,7 @@ void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const Su
         {
           continue;
         }
-        below |= bit(v);
+        below |= bitOf(v);
         // No bound below: what has slipped under the slope must be found (holdOverlap).
         if (near.holds(p.x(), p.y(), std::max(p.z(), least.z())) &&
           (height < 0.0 || inVertexCone(rock, v, t.normal, turn)))
@@ -250,41 +251,31 @@ void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const Su
           candidates.vertexFace.push_back({ v, i });
         }
       }
-      under[i] = below;
+      candidates.under[i] = below;
     }
   }
-  const auto gatherPeak = [&](int i)
+}
+
+void gatherPeak(const PlacedBlock& rock, const SurfacePatch& patch, int node, double distance,
+  CandidatePairs& candidates)
+{
+  const SurfacePatch::Node& q = patch.nodes[node];
+  if (q.peak && boxesMeet(rock.lower(), rock.upper(), q.position, q.position, distance) &&
+    rock.faceDistance(rock.outermostFace(q.position), q.position) <= distance)
   {
-    const SurfacePatch::Node& q = patch.nodes[i];
-    if (q.peak && boxesMeet(lower, upper, q.position, q.position, distance) &&
-      rock.faceDistance(rock.outermostFace(q.position), q.position) <= distance)
-    {
-      candidates.peaks.push_back(i);
-    }
-  };
-  for (int row = row0; row <= row1 + 1; ++row)
-  {
-    for (int column = column0; column <= column1 + 1; ++column)
-    {
-      gatherPeak(row * patch.nodeColumns + column);
-    }
+    candidates.peaks.push_back(node);
   }
-  // The ridges of the cells, and those that the next column and the row above count as theirs.
-  for (int row = std::max(row0 - 1, 0); row <= row1; ++row)
-  {
-    for (int column = column0; column <= std::min(column1 + 1, cellColumns - 1); ++column)
-    {
-      for (int ridge : patch.triangles[2 * (row * cellColumns + column)].ridges)
-      {
-        if (ridge >= 0)
-        {
-          gatherEdges(rock, patch, ridge, distance, turn, candidates);
-        }
-      }
-    }
-  }
-  // Walls and obstacles. They have a far side, whose planes are above all of the rock: only what
-  // comes in from outside is a pair, and what is less deep than contacts ever are.
+}
+
+/// Vertices over the triangles of walls and obstacles. They have a far side, whose planes are above
+/// all of the rock: only what comes in from outside is a pair, and what is less deep than contacts
+/// ever are.
+void gatherVerticesAtObstacles(const PlacedBlock& rock, const SurfacePatch& patch, double distance,
+  double turn, CandidatePairs& candidates)
+{
+  const std::vector<Vec3>& vertices = rock.vertices();
+  const Vec3 lower = rock.lower(), upper = rock.upper();
+  const double wide = kBeyondConcave * distance;
   const double deepest = kDeepestEntrance * rock.block().radius();
   for (int i = patch.slopeTriangles; i < int(patch.triangles.size()); ++i)
   {
@@ -305,7 +296,7 @@ void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const Su
       {
         continue;
       }
-      under[i] |= bit(v);
+      candidates.under[i] |= bitOf(v);
       if (height > -deepest && boxesMeet(least, most, vertices[v], vertices[v], wide) &&
         inVertexCone(rock, v, t.normal, turn))
       {
@@ -313,9 +304,55 @@ void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const Su
       }
     }
   }
+}
+
+} // namespace
+
+void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
+  double distance, CandidatePairs& candidates)
+{
+  candidates.vertexFace.clear();
+  candidates.edgeEdge.clear();
+  candidates.peaks.clear();
+  candidates.distance = distance;
+  candidates.position = state.position;
+  candidates.orientation = state.orientation;
+  if (patch.nodeRows < 2)
+  {
+    return;
+  }
+  // As far as the rock may turn while the candidates serve, sine.
+  const double turn = kConeSlack + distance / rock.block().radius();
+  const int cellColumns = patch.nodeColumns - 1;
+  const CellBox cells(rock, patch, kBeyondConcave * distance);
+  candidates.under.assign(patch.triangles.size(), 0);
+  gatherVertices(rock, patch, cells, distance, turn, candidates);
+  for (int row = cells.row0; row <= cells.row1 + 1; ++row)
+  {
+    for (int column = cells.column0; column <= cells.column1 + 1; ++column)
+    {
+      gatherPeak(rock, patch, row * patch.nodeColumns + column, distance, candidates);
+    }
+  }
+  // The ridges of the cells, and those that the next column and the row above count as theirs.
+  for (int row = std::max(cells.row0 - 1, 0); row <= cells.row1; ++row)
+  {
+    for (int column = cells.column0; column <= std::min(cells.column1 + 1, cellColumns - 1);
+         ++column)
+    {
+      for (int ridge : patch.triangles[2 * (row * cellColumns + column)].ridges)
+      {
+        if (ridge >= 0)
+        {
+          gatherEdges(rock, patch, ridge, distance, turn, candidates);
+        }
+      }
+    }
+  }
+  gatherVerticesAtObstacles(rock, patch, distance, turn, candidates);
   for (int i = patch.slopeNodes; i < int(patch.nodes.size()); ++i)
   {
-    gatherPeak(i);
+    gatherPeak(rock, patch, i, distance, candidates);
   }
   for (int i = patch.slopeRidges; i < int(patch.ridges.size()); ++i)
   {

@@ -119,6 +119,199 @@ std::uint64_t facesAt(
   return faces;
 }
 
+/// Finds the pairs of a rock of a crowd, for one step.
+class NowGatherer
+{
+public:
+  NowGatherer(const PlacedBlock& rock, const PairBody& body, const SurfacePatch& patch,
+    const SlopeReach& reach, CandidatePairs& candidates)
+    : body_(body)
+    , patch_(patch)
+    , reach_(reach)
+    , candidates_(candidates)
+    , inverse_(1.0 / patch.cellSize)
+    , deepest_(1.01 * kDeepestEntrance * rock.block().radius())
+    , cellColumns_(patch.nodeColumns - 1)
+    , box_(body)
+  {
+  }
+
+  void gather()
+  {
+    this->findReaches();
+    this->gatherVertices();
+    sortByTriangle(candidates_.vertexFace);
+    const RockBox ridges(box_, kOfBothSides * most_);
+    const CellRange cells = ridges.cells(patch_, inverse_);
+    this->gatherPeaks(cells);
+    this->gatherEdges(cells, ridges);
+  }
+
+private:
+  /// Gaps that may close along the normal of each triangle.
+  void findReaches();
+  void gatherVertices();
+  void gatherPeaks(const CellRange& cells);
+  void gatherEdges(const CellRange& cells, const RockBox& near);
+  void gatherEdgesAt(int ridge, const RockBox& near);
+
+  const PairBody& body_;
+  const SurfacePatch& patch_;
+  const SlopeReach& reach_;
+  CandidatePairs& candidates_;
+  double inverse_; ///< 1/m, of the size of a cell.
+  double deepest_; ///< What is deeper is no entrance, m.
+  int cellColumns_;
+  RockBox box_;
+  double* reaches_ = nullptr; ///< By triangle, m.
+  double most_ = 0.0;         ///< Of them.
+};
+
+void NowGatherer::findReaches()
+{
+  thread_local std::vector<double> reaches;
+  reaches.resize(patch_.triangles.size());
+  reaches_ = reaches.data();
+  const CellRange around = RockBox(box_, kBeyondCorner * reach_.most).cells(patch_, inverse_);
+  for (int row = around.row0; row <= around.row1; ++row)
+  {
+    const int end = 2 * (row * cellColumns_ + around.column1 + 1);
+    for (int i = 2 * (row * cellColumns_ + around.column0); i < end; ++i)
+    {
+      reaches_[i] = reach_.along(patch_.triangles[i].normal);
+      most_ = std::max(most_, reaches_[i]);
+    }
+  }
+}
+
+void NowGatherer::gatherVertices()
+{
+  const double wide = kBeyondCorner * most_ * inverse_;
+  const double high = kBeyondCorner * most_ * std::sqrt(1.0 + patch_.tilt.squaredNorm());
+  for (int v = 0; v < body_.vertices(); ++v)
+  {
+    const Vec3 p = body_.vertex(v);
+    if (patch_.over(p) > high)
+    {
+      continue;
+    }
+    const double east = (p.x() - patch_.west) * inverse_, south = (patch_.north - p.y()) * inverse_;
+    const CellRange near(patch_, east - wide, east + wide, south - wide, south + wide);
+    for (int row = near.row0; row <= near.row1; ++row)
+    {
+      const int end = 2 * (row * cellColumns_ + near.column1 + 1);
+      for (int i = 2 * (row * cellColumns_ + near.column0); i < end; ++i)
+      {
+        const SurfacePatch::Triangle& of = patch_.triangles[i];
+        const double height = of.normal.dot(p) - of.offset, allowed = reaches_[i];
+        if (!(height <= allowed)) // nor beside a hole
+        {
+          continue;
+        }
+        // A vertex that has slipped under the slope must be found however deep it is (holdOverlap).
+        const double s = east - (i / 2 - row * cellColumns_), t = south - row;
+        const double lean = height * inverse_;
+        if ((height >= -deepest_ &&
+              mayHold(i % 2, of, s - lean * of.normal.x(), t + lean * of.normal.y(),
+                allowed * inverse_)) ||
+          (height < 0.0 && mayHold(i % 2, of, s, t, 0.0)))
+        {
+          candidates_.vertexFace.push_back({ v, i });
+        }
+      }
+    }
+  }
+}
+
+void NowGatherer::gatherPeaks(const CellRange& cells)
+{
+  const RockBox near(box_, most_);
+  for (int row = cells.row0; row <= cells.row1 + 1; ++row)
+  {
+    for (int column = cells.column0; column <= cells.column1 + 1; ++column)
+    {
+      const int i = row * patch_.nodeColumns + column;
+      const SurfacePatch::Node& q = patch_.nodes[i];
+      if (q.peak && near.holds(q.position) && body_.overAll(q.position) <= most_)
+      {
+        candidates_.peaks.push_back(i);
+      }
+    }
+  }
+}
+
+void NowGatherer::gatherEdgesAt(int ridge, const RockBox& near)
+{
+  if (ridge < 0)
+  {
+    return;
+  }
+  const SurfacePatch::Ridge& g = patch_.ridges[std::size_t(ridge)];
+  const Vec3 &q0 = patch_.nodes[g.nodes[0]].position, &q1 = patch_.nodes[g.nodes[1]].position;
+  if (!near.meets(q0, q1))
+  {
+    return;
+  }
+  const Vec3 &a = patch_.triangles[g.triangles[0]].normal,
+             &b = patch_.triangles[g.triangles[1]].normal;
+  const double allowed = kOfBothSides * std::max(reach_.along(a), reach_.along(b));
+  // An edge touches where the ridge is near the planes of both of its faces.
+  const std::uint64_t faces = facesAt(body_, q0, q1, std::max(allowed, deepest_), allowed);
+  if (faces == 0)
+  {
+    return;
+  }
+  const Vec3 w = q1 - q0;
+  for (std::size_t e = 0; e < body_.edges.size(); ++e)
+  {
+    const std::array<int, 2>& of = body_.edges[e].faces;
+    if (((faces >> (of[0] & 63)) & (faces >> (of[1] & 63)) & 1) == 0)
+    {
+      continue;
+    }
+    const Vec3 p = body_.vertex(body_.edges[e].vertices[0]),
+               u = body_.vertex(body_.edges[e].vertices[1]) - p;
+    double s, t;
+    if (!closestOnLines(p, u, q0, w, s, t) || s < -kBeyondEnd || s > 1.0 + kBeyondEnd ||
+      t < -kBeyondEnd || t > 1.0 + kBeyondEnd)
+    {
+      continue;
+    }
+    const Vec3 n = u.cross(w);
+    const double gap = (n.dot(a + b) < 0.0 ? -1.0 : 1.0) * n.dot(p - q0) / n.norm();
+    if (gap <= allowed && gap >= -deepest_)
+    {
+      candidates_.edgeEdge.push_back({ int(e), ridge });
+    }
+  }
+}
+
+void NowGatherer::gatherEdges(const CellRange& cells, const RockBox& near)
+{
+  // All edges of the cells: the northern and the eastern ones are counted as their neighbours'.
+  for (int row = std::max(cells.row0 - 1, 0); row <= cells.row1; ++row)
+  {
+    for (int column = cells.column0; column <= cells.column1; ++column)
+    {
+      const std::array<int, 3>& ridges = patch_.triangles[2 * (row * cellColumns_ + column)].ridges;
+      if (row >= cells.row0)
+      {
+        this->gatherEdgesAt(ridges[0], near);
+      }
+      this->gatherEdgesAt(ridges[1], near);
+      if (row >= cells.row0)
+      {
+        this->gatherEdgesAt(ridges[2], near);
+      }
+    }
+    if (row >= cells.row0 && cells.column1 + 1 < cellColumns_)
+    {
+      this->gatherEdgesAt(
+        patch_.triangles[2 * (row * cellColumns_ + cells.column1 + 1)].ridges[0], near);
+    }
+  }
+}
+
 } // namespace
 
 void gatherNow(const PlacedBlock& rock, const PairBody& body, const SurfacePatch& patch,
@@ -127,146 +320,9 @@ void gatherNow(const PlacedBlock& rock, const PairBody& body, const SurfacePatch
   candidates.vertexFace.clear();
   candidates.edgeEdge.clear();
   candidates.peaks.clear();
-  if (patch.nodeRows < 2)
+  if (patch.nodeRows >= 2)
   {
-    return;
-  }
-  const SurfacePatch::Triangle* const triangles = patch.triangles.data();
-  const SurfacePatch::Node* const nodes = patch.nodes.data();
-  const double inverse = 1.0 / patch.cellSize;
-  const double deepest =
-    1.01 * kDeepestEntrance * rock.block().radius(); // what is deeper is no entrance
-  const int cellColumns = patch.nodeColumns - 1;
-  const RockBox box(body);
-  // Gaps that may close along the normal of each triangle.
-  thread_local std::vector<double> reaches;
-  reaches.resize(patch.triangles.size());
-  double* const reachOf = reaches.data();
-  double most = 0.0;
-  const CellRange around = RockBox(box, kBeyondCorner * reach.most).cells(patch, inverse);
-  for (int row = around.row0; row <= around.row1; ++row)
-  {
-    const int end = 2 * (row * cellColumns + around.column1 + 1);
-    for (int i = 2 * (row * cellColumns + around.column0); i < end; ++i)
-    {
-      reachOf[i] = reach.along(triangles[i].normal);
-      most = std::max(most, reachOf[i]);
-    }
-  }
-  const double wide = kBeyondCorner * most * inverse;
-  const double high = kBeyondCorner * most * std::sqrt(1.0 + patch.tilt.squaredNorm());
-  for (int v = 0; v < body.vertices(); ++v)
-  {
-    const Vec3 p = body.vertex(v);
-    if (patch.over(p) > high)
-    {
-      continue;
-    }
-    const double east = (p.x() - patch.west) * inverse, south = (patch.north - p.y()) * inverse;
-    const CellRange near(patch, east - wide, east + wide, south - wide, south + wide);
-    for (int row = near.row0; row <= near.row1; ++row)
-    {
-      const int end = 2 * (row * cellColumns + near.column1 + 1);
-      for (int i = 2 * (row * cellColumns + near.column0); i < end; ++i)
-      {
-        const SurfacePatch::Triangle& of = triangles[i];
-        const double height = of.normal.dot(p) - of.offset, allowed = reachOf[i];
-        if (!(height <= allowed)) // nor beside a hole
-        {
-          continue;
-        }
-        // A vertex that has slipped under the slope must be found however deep it is (holdOverlap).
-        const double s = east - (i / 2 - row * cellColumns), t = south - row;
-        const double lean = height * inverse;
-        if ((height >= -deepest &&
-              mayHold(i % 2, of, s - lean * of.normal.x(), t + lean * of.normal.y(),
-                allowed * inverse)) ||
-          (height < 0.0 && mayHold(i % 2, of, s, t, 0.0)))
-        {
-          candidates.vertexFace.push_back({ v, i });
-        }
-      }
-    }
-  }
-  sortByTriangle(candidates.vertexFace);
-  const RockBox nearNodes(box, most), nearRidges(box, kOfBothSides * most);
-  const CellRange cells = nearRidges.cells(patch, inverse);
-  for (int row = cells.row0; row <= cells.row1 + 1; ++row)
-  {
-    for (int column = cells.column0; column <= cells.column1 + 1; ++column)
-    {
-      const int i = row * patch.nodeColumns + column;
-      const SurfacePatch::Node& q = nodes[i];
-      if (q.peak && nearNodes.holds(q.position) && body.overAll(q.position) <= most)
-      {
-        candidates.peaks.push_back(i);
-      }
-    }
-  }
-  const std::span<const Polyhedron::Edge> edges = body.edges;
-  const auto lookAt = [&](int ridge)
-  {
-    if (ridge < 0)
-    {
-      return;
-    }
-    const SurfacePatch::Ridge& g = patch.ridges[std::size_t(ridge)];
-    const Vec3 &q0 = nodes[g.nodes[0]].position, &q1 = nodes[g.nodes[1]].position;
-    if (!nearRidges.meets(q0, q1))
-    {
-      return;
-    }
-    const Vec3 &a = triangles[g.triangles[0]].normal, &b = triangles[g.triangles[1]].normal;
-    const double allowed = kOfBothSides * std::max(reach.along(a), reach.along(b));
-    // An edge touches where the ridge is near the planes of both of its faces.
-    const std::uint64_t faces = facesAt(body, q0, q1, std::max(allowed, deepest), allowed);
-    if (faces == 0)
-    {
-      return;
-    }
-    const Vec3 w = q1 - q0;
-    for (std::size_t e = 0; e < edges.size(); ++e)
-    {
-      const std::array<int, 2>& of = edges[e].faces;
-      if (((faces >> (of[0] & 63)) & (faces >> (of[1] & 63)) & 1) == 0)
-      {
-        continue;
-      }
-      const Vec3 p = body.vertex(edges[e].vertices[0]), u = body.vertex(edges[e].vertices[1]) - p;
-      double s, t;
-      if (!closestOnLines(p, u, q0, w, s, t) || s < -kBeyondEnd || s > 1.0 + kBeyondEnd ||
-        t < -kBeyondEnd || t > 1.0 + kBeyondEnd)
-      {
-        continue;
-      }
-      const Vec3 n = u.cross(w);
-      const double gap = (n.dot(a + b) < 0.0 ? -1.0 : 1.0) * n.dot(p - q0) / n.norm();
-      if (gap <= allowed && gap >= -deepest)
-      {
-        candidates.edgeEdge.push_back({ int(e), ridge });
-      }
-    }
-  };
-  // All edges of the cells: the northern and the eastern ones are counted as their neighbours'.
-  for (int row = std::max(cells.row0 - 1, 0); row <= cells.row1; ++row)
-  {
-    for (int column = cells.column0; column <= cells.column1; ++column)
-    {
-      const std::array<int, 3>& ridges = triangles[2 * (row * cellColumns + column)].ridges;
-      if (row >= cells.row0)
-      {
-        lookAt(ridges[0]);
-      }
-      lookAt(ridges[1]);
-      if (row >= cells.row0)
-      {
-        lookAt(ridges[2]);
-      }
-    }
-    if (row >= cells.row0 && cells.column1 + 1 < cellColumns)
-    {
-      lookAt(triangles[2 * (row * cellColumns + cells.column1 + 1)].ridges[0]);
-    }
+    NowGatherer(rock, body, patch, reach, candidates).gather();
   }
 }
 

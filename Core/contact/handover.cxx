@@ -191,121 +191,168 @@ Crossing crossing(
 /// one that is least deep is the shortest exit and takes the load over as soon as it is no deeper
 /// than the old one, so that the depth is continuous. Until then the old crossing serves, even
 /// somewhat past the end of its edge.
-bool leaveBest(
-  const PlacedBlock& rock, const SurfacePatch& patch, const Crossing& at, Contact& contact)
+class WayOut
 {
-  const Polyhedron& shape = rock.block().shape();
-  const Polyhedron::Edge& e = shape.edges()[contact.rockFeature];
-  const SurfacePatch::Ridge& g = patch.ridges[contact.patchFeature];
-  const double same = 1e-9 * rock.block().radius(); // depths that differ by rounding only
-  const double reach = -kEdgeExtension * contact.distance;
-  Contact best = contact;
-  double highest = -std::numeric_limits<double>::infinity();
-  double bestBeyond = 0.0;
-  const auto offer = [&](ContactKind kind, int onRock, int onPatch, std::int64_t key,
-                       std::int64_t cfe, const Vec3& normal, const Vec3& point, double distance,
-                       double beyond)
+public:
+  WayOut(
+    const PlacedBlock& rock, const SurfacePatch& patch, const Crossing& at, const Contact& contact)
+    : rock_(rock)
+    , patch_(patch)
+    , at_(at)
+    , contact_(contact)
+    , edge_(rock.block().shape().edges()[contact.rockFeature])
+    , ridge_(patch.ridges[contact.patchFeature])
+    , same_(1e-9 * rock.block().radius())
+    , reach_(-kEdgeExtension * contact.distance)
+    , best_(contact)
   {
-    const bool tie = std::abs(distance - highest) <= same && beyond < bestBeyond;
-    const bool onSlope = contact.patchFeature < patch.slopeRidges; // obstacles have upright sides
-    if ((onSlope && normal.z() <= 0.0) || normal.dot(contact.normal) < kSmoothTurn ||
-      !(distance > highest + same || tie))
+  }
+
+  /// Takes the best one; false if nothing holds the contact any longer.
+  bool take(Contact& contact)
+  {
+    this->offerEdges();
+    this->offerVertices();
+    if (at_.t < 0.0 || at_.t > 1.0)
+    {
+      this->offerBeyondEnd();
+    }
+    const bool better = highest_ > contact.distance + same_;
+    const bool goesOn = highest_ > contact.distance - same_ && beyond_ < at_.beyond();
+    if (!better && !goesOn && at_.beyond() <= reach_)
+    {
+      contact.normal = at_.normal;
+      contact.point = at_.point;
+      return true;
+    }
+    if (std::isinf(highest_) || highest_ > 0.0)
+    {
+      // Nothing takes it over: it goes on along the lines produced until its spring has given way.
+      contact.normal = at_.normal;
+      contact.point = at_.point;
+      return at_.beyond() <= kRunOff * std::max(0.0, -contact.gap());
+    }
+    contact = best_;
+    return true;
+  }
+
+private:
+  /// A pair that may take over, with its gap and how far it is past the end of a feature, m.
+  struct Offer
+  {
+    ContactKind kind;
+    int onRock, onPatch;
+    std::int64_t key, cfe;
+    Vec3 normal, point;
+    double distance, beyond;
+  };
+
+  void offer(const Offer& of)
+  {
+    const bool tie = std::abs(of.distance - highest_) <= same_ && of.beyond < beyond_;
+    const bool onSlope = contact_.patchFeature < patch_.slopeRidges; // obstacles have upright sides
+    if ((onSlope && of.normal.z() <= 0.0) || of.normal.dot(contact_.normal) < kSmoothTurn ||
+      !(of.distance > highest_ + same_ || tie))
     {
       return;
     }
-    highest = distance;
-    bestBeyond = beyond;
-    best = contact;
-    best.kind = kind;
-    best.rockFeature = onRock;
-    best.patchFeature = onPatch;
-    best.surfaceFeature = key;
-    best.cfe = cfe;
-    best.normal = normal;
-    best.point = point;
-    if (kind == ContactKind::EdgeEdge)
+    highest_ = of.distance;
+    beyond_ = of.beyond;
+    best_ = contact_;
+    best_.kind = of.kind;
+    best_.rockFeature = of.onRock;
+    best_.patchFeature = of.onPatch;
+    best_.surfaceFeature = of.key;
+    best_.cfe = of.cfe;
+    best_.normal = of.normal;
+    best_.point = of.point;
+    if (of.kind == ContactKind::EdgeEdge)
     {
-      setRidge(patch, onPatch, best);
+      setRidge(patch_, of.onPatch, best_);
     }
-    handOver(best, distance);
-  };
-  const auto offerCrossing = [&](int edge, int ridge)
+    handOver(best_, of.distance);
+  }
+  void offerCrossing(int edge, int ridge)
   {
-    const Crossing c = crossing(rock, edge, patch, ridge, contact.normal);
-    if (c.skew && c.beyond() <= reach && inEdgeCones(rock, edge, patch, ridge, c.normal, 0.0))
+    const Crossing c = crossing(rock_, edge, patch_, ridge, contact_.normal);
+    if (c.skew && c.beyond() <= reach_ && inEdgeCones(rock_, edge, patch_, ridge, c.normal, 0.0))
     {
-      const SurfacePatch::Ridge& r = patch.ridges[ridge];
-      offer(ContactKind::EdgeEdge, edge, ridge, r.key, patch.triangles[r.triangles[0]].cfe,
-        c.normal, c.point, c.distance, c.beyond());
-    }
-  };
-  for (int i = 0; i < int(shape.edges().size()); ++i)
-  {
-    const std::array<int, 2>& v = shape.edges()[i].vertices;
-    if (i != contact.rockFeature &&
-      (v[0] == e.vertices[0] || v[1] == e.vertices[0] || v[0] == e.vertices[1] ||
-        v[1] == e.vertices[1]))
-    {
-      offerCrossing(i, contact.patchFeature);
+      const SurfacePatch::Ridge& r = patch_.ridges[ridge];
+      this->offer({ ContactKind::EdgeEdge, edge, ridge, r.key, patch_.triangles[r.triangles[0]].cfe,
+        c.normal, c.point, c.distance, c.beyond() });
     }
   }
-  for (int vertex : e.vertices)
+  /// Other edges of the rock, at the ends of this one.
+  void offerEdges()
   {
-    const Vec3& p = rock.vertices()[vertex];
-    for (int i : g.triangles)
+    const std::vector<Polyhedron::Edge>& edges = rock_.block().shape().edges();
+    const std::array<int, 2>& ends = edge_.vertices;
+    for (int i = 0; i < int(edges.size()); ++i)
     {
-      const SurfacePatch::Triangle& t = patch.triangles[i];
-      if (inVertexCone(rock, vertex, t.normal, 0.0) &&
-        projectsInside(patch, i, p, 0.0, 1e-9 * rock.block().radius()) &&
-        cameThrough(patch, i, p, t.normal.dot(p) - t.offset))
+      const std::array<int, 2>& v = edges[i].vertices;
+      if (i != contact_.rockFeature &&
+        (v[0] == ends[0] || v[1] == ends[0] || v[0] == ends[1] || v[1] == ends[1]))
       {
-        offer(ContactKind::VertexFace, vertex, i, t.key, t.cfe, t.normal, p,
-          t.normal.dot(p) - t.offset, 0.0);
+        this->offerCrossing(i, contact_.patchFeature);
       }
     }
   }
-  if (at.t < 0.0 || at.t > 1.0)
+  /// Ends of the edge on the sides of the ridge.
+  void offerVertices()
   {
-    // Other features of the slope only where this one ends: around a saddle a ridge that is clear
-    // of the rock says nothing of its neighbour.
-    const int node = g.nodes[at.t < 0.0 ? 0 : 1];
-    for (int i = 0; i < int(patch.ridges.size()); ++i)
+    for (int vertex : edge_.vertices)
     {
-      const std::array<int, 2>& n = patch.ridges[i].nodes;
-      if (i != contact.patchFeature && (n[0] == node || n[1] == node))
+      const Vec3& p = rock_.vertices()[vertex];
+      for (int i : ridge_.triangles)
       {
-        offerCrossing(contact.rockFeature, i);
-      }
-    }
-    const SurfacePatch::Node& q = patch.nodes[node];
-    for (int f : e.faces)
-    {
-      if (q.peak && inPeakCone(patch, node, -rock.normal(f), 0.0) &&
-        insideRockFace(rock, f, q.position, 0.0))
-      {
-        offer(ContactKind::FaceVertex, f, node, q.key, q.cfe, -rock.normal(f), q.position,
-          rock.faceDistance(f, q.position), 0.0);
+        const SurfacePatch::Triangle& t = patch_.triangles[i];
+        if (inVertexCone(rock_, vertex, t.normal, 0.0) &&
+          projectsInside(patch_, i, p, 0.0, 1e-9 * rock_.block().radius()) &&
+          cameThrough(patch_, i, p, t.normal.dot(p) - t.offset))
+        {
+          this->offer({ ContactKind::VertexFace, vertex, i, t.key, t.cfe, t.normal, p,
+            t.normal.dot(p) - t.offset, 0.0 });
+        }
       }
     }
   }
-  const bool better = highest > contact.distance + same;
-  const bool goesOn = highest > contact.distance - same && bestBeyond < at.beyond();
-  if (!better && !goesOn && at.beyond() <= reach)
+  /// Other features of the slope only where this one ends: around a saddle a ridge that is clear of
+  /// the rock says nothing of its neighbour.
+  void offerBeyondEnd()
   {
-    contact.normal = at.normal;
-    contact.point = at.point;
-    return true;
+    const int node = ridge_.nodes[at_.t < 0.0 ? 0 : 1];
+    for (int i = 0; i < int(patch_.ridges.size()); ++i)
+    {
+      const std::array<int, 2>& n = patch_.ridges[i].nodes;
+      if (i != contact_.patchFeature && (n[0] == node || n[1] == node))
+      {
+        this->offerCrossing(contact_.rockFeature, i);
+      }
+    }
+    const SurfacePatch::Node& q = patch_.nodes[node];
+    for (int f : edge_.faces)
+    {
+      if (q.peak && inPeakCone(patch_, node, -rock_.normal(f), 0.0) &&
+        insideRockFace(rock_, f, q.position, 0.0))
+      {
+        this->offer({ ContactKind::FaceVertex, f, node, q.key, q.cfe, -rock_.normal(f), q.position,
+          rock_.faceDistance(f, q.position), 0.0 });
+      }
+    }
   }
-  if (std::isinf(highest) || highest > 0.0)
-  {
-    // Nothing takes it over: it goes on along the lines produced until its spring has given way.
-    contact.normal = at.normal;
-    contact.point = at.point;
-    return at.beyond() <= kRunOff * std::max(0.0, -contact.gap());
-  }
-  contact = best;
-  return true;
-}
+
+  const PlacedBlock& rock_;
+  const SurfacePatch& patch_;
+  const Crossing& at_;
+  const Contact contact_; ///< As it was.
+  const Polyhedron::Edge& edge_;
+  const SurfacePatch::Ridge& ridge_;
+  double same_;  ///< Depths that differ by rounding only, m.
+  double reach_; ///< Past the end of an edge, m.
+  Contact best_;
+  double highest_ = -std::numeric_limits<double>::infinity(); ///< Its gap, m.
+  double beyond_ = 0.0;                                       ///< Past its end, m.
+};
 
 bool refreshEdgeEdge(const PlacedBlock& rock, const SurfacePatch& patch, Contact& contact)
 {
@@ -323,7 +370,7 @@ bool refreshEdgeEdge(const PlacedBlock& rock, const SurfacePatch& patch, Contact
   contact.distance = c.distance;
   if (c.distance < 0.0)
   {
-    return leaveBest(rock, patch, c, contact);
+    return WayOut(rock, patch, c, contact).take(contact);
   }
   contact.normal = c.normal;
   contact.point = c.point;

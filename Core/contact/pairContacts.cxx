@@ -211,68 +211,41 @@ bool mayClose(const Contact& c, const ClosingGaps::AtPoints& closing)
   return c.closed() || !(c.gap() > closing.at(c.point));
 }
 
-} // namespace
-
-void updatePair(const PairBody& first, const PairBody& second, double reach, RockPair& pair,
-  const ClosingGaps* closing)
+/// Contacts of touches as they are found where a step begins.
+struct Renewal
 {
-  const PairAxis last = pair.known || pair.seen ? pair.before : pair.axis;
-  const bool stands = pair.seen && (pair.axis.distance <= 0.0 || pair.axis.distance > reach);
-  if (!pair.known && !stands)
+  const PairBody& second;
+  std::span<const Touch> found;
+  bool turned;                                ///< The axis is another one than in the last step.
+  double same;                                ///< Points no farther apart are one, m.
+  double far;                                 ///< m
+  std::optional<ClosingGaps::AtPoints> sieve; ///< What cannot close is left out.
+
+  void stayAll(RockPair& pair) const; ///< The same as in the last step, all of them.
+  void replaceAll(RockPair& pair);
+};
+
+void Renewal::stayAll(RockPair& pair) const
+{
+  Contact* to = pair.contacts.data();
+  for (std::size_t i = 0; i < found.size(); ++i)
   {
-    pair.axis = findAxis(first, second, pair.axis, reach);
-  }
-  pair.known = pair.seen = false;
-  const bool carries = closedCount(pair.contacts) > 0;
-  if (closing && !carries)
-  {
-    reach = std::min(reach, closing->along(pair.axis.normal));
-  }
-  if (pair.axis.distance > reach)
-  {
-    // A spring that is still compressed, as it was found or handed over so, opens by itself.
-    if (!carries)
+    Contact& c = pair.contacts[i];
+    stay(found[i], pair.axis, turned, same * same, far, c);
+    if (!sieve || mayClose(c, *sieve))
     {
-      pair.contacts.clear();
-      pair.touched = false;
-    }
-    return;
-  }
-  std::span<const Touch> found = touchesAlong(first, second, pair.axis, reach);
-  if (found.empty() && carries)
-  {
-    pair.axis = last; // past the end of a feature, with no other one there
-    return;
-  }
-  found = orAlongBest(found, first, second, pair.axis, reach);
-  const double smaller = std::min(first.radius, second.radius);
-  const double same = kSamePoint * smaller, far = kMisreckoned * smaller;
-  const bool turned =
-    last.kind != pair.axis.kind || last.first != pair.axis.first || last.second != pair.axis.second;
-  std::optional<ClosingGaps::AtPoints> sieve;
-  if (closing && !found.empty())
-  {
-    sieve = closing->atPoints(pair.axis.normal);
-  }
-  if (areSame(found, pair.axis, pair.contacts))
-  {
-    Contact* to = pair.contacts.data();
-    for (std::size_t i = 0; i < found.size(); ++i)
-    {
-      Contact& c = pair.contacts[i];
-      stay(found[i], pair.axis, turned, same * same, far, c);
-      if (!sieve || mayClose(c, *sieve))
+      if (to != &c)
       {
-        if (to != &c)
-        {
-          *to = c;
-        }
-        ++to;
+        *to = c;
       }
+      ++to;
     }
-    pair.contacts.resize(std::size_t(to - pair.contacts.data()));
-    return;
   }
+  pair.contacts.resize(std::size_t(to - pair.contacts.data()));
+}
+
+void Renewal::replaceAll(RockPair& pair)
+{
   const std::size_t touches = found.size(), olds = pair.contacts.size();
   Room<Match, 16> matchRoom;
   Room<char, 16> takenRoom;
@@ -345,6 +318,58 @@ void updatePair(const PairBody& first, const PairBody& second, double reach, Roc
     {
       std::erase_if(pair.contacts, [&](const Contact& c) { return !mayClose(c, *all); });
     }
+  }
+}
+
+} // namespace
+
+void updatePair(const PairBody& first, const PairBody& second, double reach, RockPair& pair,
+  const ClosingGaps* closing)
+{
+  const PairAxis last = pair.known || pair.seen ? pair.before : pair.axis;
+  const bool stands = pair.seen && (pair.axis.distance <= 0.0 || pair.axis.distance > reach);
+  if (!pair.known && !stands)
+  {
+    pair.axis = findAxis(first, second, pair.axis, reach);
+  }
+  pair.known = pair.seen = false;
+  const bool carries = closedCount(pair.contacts) > 0;
+  if (closing && !carries)
+  {
+    reach = std::min(reach, closing->along(pair.axis.normal));
+  }
+  if (pair.axis.distance > reach)
+  {
+    // A spring that is still compressed, as it was found or handed over so, opens by itself.
+    if (!carries)
+    {
+      pair.contacts.clear();
+      pair.touched = false;
+    }
+    return;
+  }
+  std::span<const Touch> found = touchesAlong(first, second, pair.axis, reach);
+  if (found.empty() && carries)
+  {
+    pair.axis = last; // past the end of a feature, with no other one there
+    return;
+  }
+  found = orAlongBest(found, first, second, pair.axis, reach);
+  const double smaller = std::min(first.radius, second.radius);
+  const bool turned =
+    last.kind != pair.axis.kind || last.first != pair.axis.first || last.second != pair.axis.second;
+  Renewal renewal = { second, found, turned, kSamePoint * smaller, kMisreckoned * smaller, {} };
+  if (closing && !found.empty())
+  {
+    renewal.sieve = closing->atPoints(pair.axis.normal);
+  }
+  if (areSame(found, pair.axis, pair.contacts))
+  {
+    renewal.stayAll(pair);
+  }
+  else
+  {
+    renewal.replaceAll(pair);
   }
 }
 

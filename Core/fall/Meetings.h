@@ -145,6 +145,8 @@ private:
   Open openOf(std::size_t near) const;
   void widen();
   bool sweep();
+  bool widenIslands();
+  void choose();
   bool stays(const Near& near) const;
 
   // Islands: Meetings.cxx

@@ -236,8 +236,8 @@ void Meetings::widen()
   }
 }
 
-/// Looks at all that are open; returns whether others have to be told of what it has shown.
-bool Meetings::sweep()
+/// Displacements of rocks as their islands have grown; whether others have to be told of any.
+bool Meetings::widenIslands()
 {
   bool any = false;
   wider_.clear();
@@ -276,6 +276,12 @@ bool Meetings::sweep()
   {
     this->widen();
   }
+  return any;
+}
+
+/// Of the pairs that are open, those that may meet.
+void Meetings::choose()
+{
   chosen_.clear();
   Open* const first = open_.data();
   Open* to = first;
@@ -296,6 +302,13 @@ bool Meetings::sweep()
     *to++ = *o;
   }
   open_.resize(std::size_t(to - first));
+}
+
+/// Looks at all that are open; returns whether others have to be told of what it has shown.
+bool Meetings::sweep()
+{
+  bool any = this->widenIslands();
+  this->choose();
   asked_.clear();
   placed_.clear();
   for (const std::size_t o : chosen_)

@@ -173,6 +173,8 @@ inline constexpr double kBeyondEnd = 1e-6;
 /// Reach of planes beyond a corner between two concave edges (45° at least), in reaches, seen from
 /// above.
 inline constexpr double kBeyondCorner = 3.0;
+/// Reach of planes beyond a concave edge, for what is gathered for several steps, in distances.
+inline constexpr double kBeyondConcave = 2.0;
 /// A direction between the normals of the sides of a ridge is at most this of the two together.
 inline constexpr double kOfBothSides = 1.1;
 

@@ -196,6 +196,10 @@ private:
   double stoppingPenalty() const; ///< Stiffness that stops it in time, N/m.
   void stayInContact();           ///< Returns after take-off, at the horizon or at the end.
   void endContact();
+  /// Without contacts that carry: relaxes, takes off, or flies as long as nothing can close within
+  /// steps of `small` (s). Whether anything was done.
+  bool flyFromContact(double small);
+  void holdOverlaps(); ///< Contacts of what has slipped through.
   void takeStep(double h, StepKind kind);
   bool mayLast(double h) const; ///< A long, damped step is right.
   void pressOut(double h);      ///< As pressOutDeep, loose overlaps after a step.

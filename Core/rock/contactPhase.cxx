@@ -97,9 +97,61 @@ bool RockSimulator::isCalm() const
     });
 }
 
+bool RockSimulator::flyFromContact(double small)
+{
+  if (!stiff_ && !(body_.state.strain.isZero(0.0) && body_.state.strainRate.isZero(0.0)))
+  {
+    // The rock has taken off, and what flies does not strain. How long it is free is asked of what
+    // it is then.
+    body_.energy.vibration += relaxStrain(body_.block, body_.state);
+    this->finishImpact();
+    return true;
+  }
+  // Free until a pair closes, or until others than the candidates might.
+  const double gravity = parameters_.gravity;
+  const double room = candidates_.room(body_.state, body_.block.radius(), 0.0);
+  const double rim = body_.block.largestRimSpeed(body_.state.spin);
+  const double served = std::min(
+    timeToCover(room, body_.state.velocity.norm() + rim, gravity), horizon_ - body_.state.time);
+  const double free = timeToClose(body_.placed, body_.state, patch_, candidates_, gravity, served);
+  if (free >= served && served > small && !scar_.open())
+  {
+    body_.contacts.clear();
+    if (!stiff_)
+    {
+      this->finishImpact();
+    }
+    freeUntil_ = body_.state.time + served;
+    this->endContact();
+    return true;
+  }
+  if (const double sure = std::min(free, served); sure > small)
+  {
+    body_.contacts.clear();
+    this->advanceInFlight(sure);
+    this->checkEnd(0.0);
+    return true;
+  }
+  return false;
+}
+
+void RockSimulator::holdOverlaps()
+{
+  // A vertex that carries may be pressed in, and its neighbourhood with it; anything deeper slipped
+  // through.
+  double pressed = 0.0;
+  for (const Contact& c : body_.contacts)
+  {
+    pressed = std::max(pressed, -c.gap());
+  }
+  holdOverlap(body_.placed, patch_, candidates_,
+    kLooseOverlap * body_.block.radius() + 2.0 * pressed, body_.contacts);
+}
+
 void RockSimulator::stayInContact()
 {
-  while (!body_.done && !this->arrived())
+  const double r = body_.block.radius();
+  while (inContact_ && !body_.done && !this->arrived())
   {
     stayWanted();
     const double small = this->impactStep();
@@ -109,17 +161,15 @@ void RockSimulator::stayInContact()
     {
       continue;
     }
-    const double speed =
-      body_.state.velocity.norm() + body_.state.spin.norm() * body_.block.radius();
+    const double speed = body_.state.velocity.norm() + body_.state.spin.norm() * r;
     const auto reachOf = [&](double h)
-    { return 1.5 * speed * h + parameters_.gravity * h * h + 1e-6 * body_.block.radius(); };
+    { return kFasterApproach * speed * h + parameters_.gravity * h * h + 1e-6 * r; };
     // A long step is worth a look only when what carries is at rest along its normal.
     const bool calm = this->isCalm();
     const double reach = reachOf(calm ? large : small);
     this->ensureCandidates(reach);
     this->findContacts(candidates_, reach, calm ? large : 0.0);
-    body_.springEnergy =
-      springEnergyOf(body_.contacts); // what has gone with a contact shows as numerical
+    body_.springEnergy = springEnergyOf(body_.contacts); // what has gone shows as numerical
 
     double h = std::min(large, horizon_ - body_.state.time);
     StepKind kind = StepKind::Lasting;
@@ -131,60 +181,16 @@ void RockSimulator::stayInContact()
       std::erase_if(
         body_.contacts, [&](const Contact& c) { return !c.closed() && c.gap() > near; });
     }
-    if (solid_ && this->breakTrees(h))
+    if ((solid_ && this->breakTrees(h)) || (yields_ && this->followScar(h)))
     {
       continue;
     }
-    if (yields_ && this->followScar(h))
+    if (kind == StepKind::Impact && !anyClosed(body_.contacts) && openTime_ >= ringing_ &&
+      this->flyFromContact(small))
     {
       continue;
     }
-    if (kind == StepKind::Impact && !anyClosed(body_.contacts) && openTime_ >= ringing_)
-    {
-      if (!stiff_ && !(body_.state.strain.isZero(0.0) && body_.state.strainRate.isZero(0.0)))
-      {
-        // The rock has taken off, and what flies does not strain. How long it is free is asked of
-        // what it is then.
-        body_.energy.vibration += relaxStrain(body_.block, body_.state);
-        this->finishImpact();
-        continue;
-      }
-      // Free until a pair closes, or until others than the candidates might.
-      const double room = candidates_.room(body_.state, body_.block.radius(), 0.0);
-      const double rim = body_.block.largestRimSpeed(body_.state.spin);
-      const double served =
-        std::min(timeToCover(room, body_.state.velocity.norm() + rim, parameters_.gravity),
-          horizon_ - body_.state.time);
-      const double free =
-        timeToClose(body_.placed, body_.state, patch_, candidates_, parameters_.gravity, served);
-      if (free >= served && served > small && !scar_.open())
-      {
-        body_.contacts.clear();
-        if (!stiff_)
-        {
-          this->finishImpact();
-        }
-        freeUntil_ = body_.state.time + served;
-        this->endContact();
-        return;
-      }
-      if (const double sure = std::min(free, served); sure > small)
-      {
-        body_.contacts.clear();
-        this->advanceInFlight(sure);
-        this->checkEnd(0.0);
-        continue;
-      }
-    }
-    // A vertex that carries may be pressed in, and its neighbourhood with it; anything deeper
-    // slipped through.
-    double pressed = 0.0;
-    for (const Contact& c : body_.contacts)
-    {
-      pressed = std::max(pressed, -c.gap());
-    }
-    holdOverlap(body_.placed, patch_, candidates_,
-      kLooseOverlap * body_.block.radius() + 2.0 * pressed, body_.contacts);
+    this->holdOverlaps();
     h = std::max(h, 1e-12);
     this->armContacts(h);
     if (kind == StepKind::Impact && body_.contacts.size() > 1)

@@ -264,61 +264,69 @@ typename BlockStep<N>::VecN BlockStep<N>::solve(const VecN& load, const VecN& d)
 }
 
 template <int N>
-StepOutcome BlockStep<N>::step(const Block& block, const StepRequest& request,
-  std::vector<Contact>& contacts, BlockState& state, bool takeAnyway)
+typename BlockStep<N>::Balance BlockStep<N>::balance(
+  const Block& block, const BlockState& state, const StepRequest& request) const
 {
-  StepOutcome outcome;
   const double h = request.duration;
   const bool lasting = request.kind == StepKind::Lasting;
-  // Ḋ¹ = rate·D + offset
-  const double rate = lasting ? 1.0 / h : 2.0 / h;
-  this->prepareInertia(block, h, rate, lasting ? 1.0 : 0.5);
-  this->prepareRows(block, state, request, contacts);
-
-  VecN velocity0;
-  velocity0.template head<3>() = rotation_.transpose() * state.velocity;
-  velocity0.template segment<3>(kRotation) = state.spin;
-  VecN force = VecN::Zero();
-  const Vec3 down = -request.gravity * rotation_.row(2).transpose();
-  force.template head<3>() = block.mass() * down;
+  Balance of;
+  of.rate = lasting ? 1.0 / h : 2.0 / h;
+  of.velocity0.template head<3>() = rotation_.transpose() * state.velocity;
+  of.velocity0.template segment<3>(kRotation) = state.spin;
+  of.load.setZero();
+  of.load.template head<3>() = block.mass() * Vec3(-request.gravity * rotation_.row(2).transpose());
   if constexpr (N == 12)
   {
-    velocity0.template tail<6>() = state.strainRate;
-    force.template tail<6>() -= block.elasticity() * state.strain;
+    of.velocity0.template tail<6>() = state.strainRate;
+    of.load.template tail<6>() -= block.elasticity() * state.strain;
   }
-  VecN offset = -velocity0;
+  of.offset = -of.velocity0;
   if (lasting)
   {
-    offset.setZero();
-    offset.template head<3>() = 0.5 * h * (rotation_.transpose() * request.acceleration);
-    offset.template segment<3>(kRotation) = 0.5 * h * request.spinAcceleration;
+    of.offset.setZero();
+    of.offset.template head<3>() = 0.5 * h * (rotation_.transpose() * request.acceleration);
+    of.offset.template segment<3>(kRotation) = 0.5 * h * request.spinAcceleration;
   }
-  force += mass_ * ((velocity0 - offset) / h);
+  of.load += mass_ * ((of.velocity0 - of.offset) / h);
+  return of;
+}
 
-  // First guess: free flight, or as the last step went.
+template <int N>
+typename BlockStep<N>::VecN BlockStep<N>::firstGuess(
+  const BlockState& state, const StepRequest& request, const Balance& of) const
+{
+  const double h = request.duration;
+  const bool lasting = request.kind == StepKind::Lasting;
+  const Vec3 going = lasting ? Vec3(-request.gravity * rotation_.row(2).transpose())
+                             : Vec3(rotation_.transpose() * request.acceleration);
   VecN d = VecN::Zero();
-  const Vec3 going = lasting ? down : Vec3(rotation_.transpose() * request.acceleration);
-  d.template head<3>() = h * velocity0.template head<3>() + (0.5 * h * h) * going;
+  d.template head<3>() = h * of.velocity0.template head<3>() + (0.5 * h * h) * going;
   d.template segment<3>(kRotation) = h * state.spin;
   if (!lasting)
   {
     d.template segment<3>(kRotation) += (0.5 * h * h) * request.spinAcceleration;
   }
+  return d;
+}
+
+template <int N>
+bool BlockStep<N>::iterate(const Block& block, const StepRequest& request,
+  const std::vector<Contact>& contacts, const Balance& of, VecN& d, int& iterations)
+{
   this->levers(block, contacts, d);
   this->evaluate(request, d);
   Quat turn = cayley(d.template segment<3>(kRotation));
   VecN last = VecN::Zero();
   double share = 1.0; // of the correction that is taken
   bool settled = false;
-  int iteration = 0;
-  for (; iteration < request.maxOpenClose && !settled; ++iteration)
+  for (; iterations < request.maxOpenClose && !settled; ++iterations)
   {
     // The momentum of rotation is carried to the end of the step: R₁ p₁ − R₀ p₀ = h τ
     // (METHOD 10.4).
-    VecN load = force;
-    const VecN velocity1 = rate * d + offset;
+    VecN load = of.load;
+    const VecN velocity1 = of.rate * d + of.offset;
     const Vec3 spinMomentum = mass_.template middleRows<3>(kRotation) * velocity1;
-    load.template segment<3>(kRotation) -= (turn * spinMomentum - spinMomentum) / h;
+    load.template segment<3>(kRotation) -= (turn * spinMomentum - spinMomentum) / request.duration;
     const VecN next = this->solve(load, d);
     if (!next.allFinite())
     {
@@ -328,7 +336,7 @@ StepOutcome BlockStep<N>::step(const Block& block, const StepRequest& request,
     // to the other for ever: when a correction turns back, only part of it is taken.
     const VecN correction = next - d;
     const double back = correction.template head<6>().dot(last.template head<6>());
-    if (iteration > 1 && back < -kTurnsBack * last.template head<6>().squaredNorm())
+    if (iterations > 1 && back < -kTurnsBack * last.template head<6>().squaredNorm())
     {
       share = std::max(0.5 * share, kLeastCorrection);
     }
@@ -354,19 +362,31 @@ StepOutcome BlockStep<N>::step(const Block& block, const StepRequest& request,
     settled = share == 1.0 && !changed && change <= kGapTolerance * scale + 1e-15 &&
       turned <= kGapTolerance * d.template segment<3>(kRotation).norm() + 1e-13;
   }
-  outcome.iterations = iteration;
-  outcome.settled = settled;
-  if (!settled && !(takeAnyway && d.allFinite()))
+  return settled;
+}
+
+template <int N>
+StepOutcome BlockStep<N>::step(const Block& block, const StepRequest& request,
+  std::vector<Contact>& contacts, BlockState& state, bool takeAnyway)
+{
+  StepOutcome outcome;
+  const double h = request.duration;
+  const bool lasting = request.kind == StepKind::Lasting;
+  this->prepareInertia(block, h, lasting ? 1.0 / h : 2.0 / h, lasting ? 1.0 : 0.5);
+  this->prepareRows(block, state, request, contacts);
+  const Balance of = this->balance(block, state, request);
+  VecN d = this->firstGuess(state, request, of);
+  outcome.settled = this->iterate(block, request, contacts, of, d, outcome.iterations);
+  if (!outcome.settled && !(takeAnyway && d.allFinite()))
   {
     return outcome;
   }
-
   this->write(d, contacts, outcome);
-  const VecN velocity1 = rate * d + offset;
+  const VecN velocity1 = of.rate * d + of.offset;
   state.time += h;
   state.position += rotation_ * Vec3(d.template head<3>());
   state.velocity = rotation_ * Vec3(velocity1.template head<3>());
-  state.orientation = (state.orientation * turn).normalized();
+  state.orientation = (state.orientation * cayley(d.template segment<3>(kRotation))).normalized();
   state.spin = velocity1.template segment<3>(kRotation);
   if constexpr (N == 12)
   {

@@ -90,6 +90,20 @@ private:
     ContactLaw law;
   };
 
+  /// What the unknowns D of a step must balance: A D = load + contacts, Ḋ¹ = rate · D + offset.
+  struct Balance
+  {
+    double rate; ///< 1/s
+    VecN velocity0, offset;
+    VecN load;
+  };
+
+  Balance balance(const Block& block, const BlockState& state, const StepRequest& request) const;
+  /// Free flight, or as the last step went.
+  VecN firstGuess(const BlockState& state, const StepRequest& request, const Balance& of) const;
+  /// Open–close from `d` on, which becomes the solution; whether it settles.
+  bool iterate(const Block& block, const StepRequest& request, const std::vector<Contact>& contacts,
+    const Balance& of, VecN& d, int& iterations);
   void prepareInertia(const Block& block, double h, double rate, double stress);
   void prepareRows(const Block& block, const BlockState& state, const StepRequest& request,
     const std::vector<Contact>& contacts);

@@ -162,51 +162,21 @@ void SurfacePatch::findTop()
   }
 }
 
-void gatherPatch(
-  const Surface& surface, double xMin, double xMax, double yMin, double yMax, SurfacePatch& patch)
+namespace
+{
+
+/// The nodes of a patch whose rows and columns are known; beyond the edge they are an apron.
+void layNodes(const Surface& surface, SurfacePatch& patch)
 {
   const Surface::Grid& g = surface.grid();
-  patch.nodes.clear();
-  patch.triangles.clear();
-  patch.ridges.clear();
-  const double inverse = 1.0 / g.cellSize;
-  const double north = g.height();
-  const auto cell = [&](double v) { return int(std::floor(std::clamp(v * inverse, -1e6, 2e9))); };
-  const int wantColumn0 = cell(xMin), wantColumn1 = cell(xMax);
-  const int wantRow0 = cell(north - yMax), wantRow1 = cell(north - yMin);
-  patch.xMin = wantColumn0 * g.cellSize;
-  patch.xMax = (wantColumn1 + 1) * g.cellSize;
-  patch.yMax = north - wantRow0 * g.cellSize;
-  patch.yMin = north - (wantRow1 + 1) * g.cellSize;
-  patch.nodeColumns = patch.nodeRows = 0;
-  patch.row0 = patch.column0 = 0;
-  patch.row1 = patch.column1 = -1;
-  patch.slopeNodes = patch.slopeTriangles = patch.slopeRidges = patch.wallTriangles = 0;
-  if (wantColumn1 < 0 || wantColumn0 > g.columns - 2 || wantRow1 < 0 || wantRow0 > g.rows - 2)
+  patch.nodes.resize(std::size_t(patch.nodeColumns) * patch.nodeRows);
+  for (int r = 0; r < patch.nodeRows; ++r)
   {
-    return;
-  }
-  // The ring makes the neighbours of every edge and node under the rock known. Beyond its edge the
-  // slope goes on as an apron, so that a rock that stands half over the edge is carried as on
-  // ground, and slides on where it slid; it has left when its centroid has.
-  const int column0 = wantColumn0 - 1, column1 = wantColumn1 + 1;
-  const int row0 = wantRow0 - 1, row1 = wantRow1 + 1;
-  patch.row0 = row0, patch.row1 = row1, patch.column0 = column0, patch.column1 = column1;
-  const int nodeColumns = column1 - column0 + 2;
-  const int nodeRows = row1 - row0 + 2;
-  patch.nodeColumns = nodeColumns;
-  patch.nodeRows = nodeRows;
-  patch.west = column0 * g.cellSize;
-  patch.north = (g.rows - 1 - row0) * g.cellSize;
-  patch.cellSize = g.cellSize;
-  patch.nodes.resize(std::size_t(nodeColumns) * nodeRows);
-  for (int r = 0; r < nodeRows; ++r)
-  {
-    const int row = row0 + r;
-    SurfacePatch::Node* node = &patch.nodes[std::size_t(r) * nodeColumns];
-    for (int c = 0; c < nodeColumns; ++c, ++node)
+    const int row = patch.row0 + r;
+    SurfacePatch::Node* node = &patch.nodes[std::size_t(r) * patch.nodeColumns];
+    for (int c = 0; c < patch.nodeColumns; ++c, ++node)
     {
-      const int column = column0 + c;
+      const int column = patch.column0 + c;
       node->position = { column * g.cellSize, (g.rows - 1 - row) * g.cellSize,
         surface.apronHeight(row, column) };
       node->key = gridKey(row, column);
@@ -214,22 +184,25 @@ void gatherPatch(
       node->peak = false;
     }
   }
-  patch.findTop();
-  const int cellColumns = column1 - column0 + 1;
-  const int cellRows = row1 - row0 + 1;
+}
+
+/// Two slots per cell; a slot whose triangle touches nodata is marked by cfe = 0.
+void layTriangles(const Surface& surface, SurfacePatch& patch)
+{
+  const Surface::Grid& g = surface.grid();
+  const int cellColumns = patch.nodeColumns - 1, cellRows = patch.nodeRows - 1;
   const int below = 2 * cellColumns;
-  // Two slots per cell; a slot whose triangle touches nodata is marked by cfe = 0.
   patch.triangles.resize(2 * std::size_t(cellColumns) * cellRows);
   for (int r = 0; r < cellRows; ++r)
   {
     for (int c = 0; c < cellColumns; ++c)
     {
-      const int upperLeft = r * nodeColumns + c;
-      const int lowerLeft = upperLeft + nodeColumns;
+      const int upperLeft = r * patch.nodeColumns + c;
+      const int lowerLeft = upperLeft + patch.nodeColumns;
       const int lower = 2 * (r * cellColumns + c);
-      const int row = std::clamp(row0 + r, 0, g.rows - 2);
-      const int column = std::clamp(column0 + c, 0, g.columns - 2);
-      const std::int64_t key = 2 * gridKey(row0 + r, column0 + c);
+      const int row = std::clamp(patch.row0 + r, 0, g.rows - 2);
+      const int column = std::clamp(patch.column0 + c, 0, g.columns - 2);
+      const std::int64_t key = 2 * gridKey(patch.row0 + r, patch.column0 + c);
       // Edges of the lower triangle: west, south, diagonal; of the upper: diagonal, east, north.
       SurfacePatch::Triangle* t = &patch.triangles[lower];
       t[0].nodes = { upperLeft, lowerLeft, lowerLeft + 1 };
@@ -260,9 +233,14 @@ void gatherPatch(
       }
     }
   }
+}
+
+/// Bends, ridges and the rims of holes.
+std::vector<Rim> findRidges(SurfacePatch& patch)
+{
   std::vector<Rim> rims;
-  // Bends and ridges. Every inner edge is a side of one lower triangle (odd number): `back` is the
-  // same edge in the upper triangle beyond it.
+  // Every inner edge is a side of one lower triangle (odd number): `back` is the same edge in the
+  // upper triangle beyond it.
   constexpr int back[3] = { 1, 2, 0 };
   for (int i = 0; i < int(patch.triangles.size()); i += 2)
   {
@@ -311,7 +289,13 @@ void gatherPatch(
       t.neighbours.fill(-1);
     }
   }
-  // Peaks: nodes on a ridge that have all their six neighbours in the patch.
+  return rims;
+}
+
+/// Nodes on a ridge that have all their six neighbours in the patch.
+void findPeaks(SurfacePatch& patch)
+{
+  const int nodeColumns = patch.nodeColumns, nodeRows = patch.nodeRows;
   for (const SurfacePatch::Ridge& ridge : patch.ridges)
   {
     for (int n : ridge.nodes)
@@ -329,6 +313,50 @@ void gatherPatch(
         [&](int m) { return std::isnan(patch.nodes[m].position.z()); });
     }
   }
+}
+
+} // namespace
+
+void gatherPatch(
+  const Surface& surface, double xMin, double xMax, double yMin, double yMax, SurfacePatch& patch)
+{
+  const Surface::Grid& g = surface.grid();
+  patch.nodes.clear();
+  patch.triangles.clear();
+  patch.ridges.clear();
+  const double inverse = 1.0 / g.cellSize;
+  const double north = g.height();
+  const auto cell = [&](double v) { return int(std::floor(std::clamp(v * inverse, -1e6, 2e9))); };
+  const int wantColumn0 = cell(xMin), wantColumn1 = cell(xMax);
+  const int wantRow0 = cell(north - yMax), wantRow1 = cell(north - yMin);
+  patch.xMin = wantColumn0 * g.cellSize;
+  patch.xMax = (wantColumn1 + 1) * g.cellSize;
+  patch.yMax = north - wantRow0 * g.cellSize;
+  patch.yMin = north - (wantRow1 + 1) * g.cellSize;
+  patch.nodeColumns = patch.nodeRows = 0;
+  patch.row0 = patch.column0 = 0;
+  patch.row1 = patch.column1 = -1;
+  patch.slopeNodes = patch.slopeTriangles = patch.slopeRidges = patch.wallTriangles = 0;
+  if (wantColumn1 < 0 || wantColumn0 > g.columns - 2 || wantRow1 < 0 || wantRow0 > g.rows - 2)
+  {
+    return;
+  }
+  // The ring makes the neighbours of every edge and node under the rock known. Beyond its edge the
+  // slope goes on as an apron, so that a rock that stands half over the edge is carried as on
+  // ground, and slides on where it slid; it has left when its centroid has.
+  const int column0 = wantColumn0 - 1, column1 = wantColumn1 + 1;
+  const int row0 = wantRow0 - 1, row1 = wantRow1 + 1;
+  patch.row0 = row0, patch.row1 = row1, patch.column0 = column0, patch.column1 = column1;
+  patch.nodeColumns = column1 - column0 + 2;
+  patch.nodeRows = row1 - row0 + 2;
+  patch.west = column0 * g.cellSize;
+  patch.north = (g.rows - 1 - row0) * g.cellSize;
+  patch.cellSize = g.cellSize;
+  layNodes(surface, patch);
+  patch.findTop();
+  layTriangles(surface, patch);
+  const std::vector<Rim> rims = findRidges(patch);
+  findPeaks(patch);
   patch.slopeNodes = int(patch.nodes.size());
   patch.slopeTriangles = int(patch.triangles.size());
   patch.slopeRidges = int(patch.ridges.size());
