@@ -170,7 +170,7 @@ bool RockSimulator::flyOverScar(double small)
   {
     return false;
   }
-  if (scar_.turned() && state_.time - impact_.event.time > kOneImpact)
+  if (scar_.turned() && body_.state.time - impact_.event.time > kOneImpact)
   {
     ++impactsOver_;
   }
