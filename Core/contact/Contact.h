@@ -76,6 +76,11 @@ inline std::ptrdiff_t closedCount(const std::vector<Contact>& contacts)
     contacts.begin(), contacts.end(), [](const Contact& c) { return c.closed(); });
 }
 
+inline bool anyClosed(const std::vector<Contact>& contacts)
+{
+  return std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.closed(); });
+}
+
 /// In the springs of the closed ones, J.
 inline double springEnergyOf(const std::vector<Contact>& contacts)
 {

@@ -333,7 +333,7 @@ void updatePair(const PairBody& first, const PairBody& second, double reach, Roc
     pair.axis = findAxis(first, second, pair.axis, reach);
   }
   pair.known = pair.seen = false;
-  const bool carries = closedCount(pair.contacts) > 0;
+  const bool carries = anyClosed(pair.contacts);
   if (closing && !carries)
   {
     reach = std::min(reach, closing->along(pair.axis.normal));

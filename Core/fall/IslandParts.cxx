@@ -25,9 +25,7 @@ bool isCarried(const FallState& fall, const Island& island)
     const RockSimulator& sim = fall.rocks[std::size_t(i)].sim;
     const auto touches = [&](const RockPair* pair)
     { return pair->touched && (pair->first == i || pair->second == i); };
-    return sim.body().done ||
-      std::any_of(sim.body().contacts.begin(), sim.body().contacts.end(),
-        [](const Contact& c) { return c.closed(); }) ||
+    return sim.body().done || anyClosed(sim.body().contacts) ||
       std::any_of(island.pairs.begin(), island.pairs.end(), touches);
   };
   return std::all_of(island.members.begin(), island.members.end(), carries);

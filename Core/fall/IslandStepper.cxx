@@ -26,11 +26,6 @@ IslandWork& workOfThread()
   return work;
 }
 
-bool isAnyClosed(const std::vector<Contact>& contacts)
-{
-  return std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.closed(); });
-}
-
 } // namespace
 
 IslandStepper::IslandStepper(FallState& fall, const Island& island)
@@ -72,12 +67,12 @@ void IslandStepper::fly(double duration)
   }
 }
 
-bool IslandStepper::anyClosed() const
+bool IslandStepper::touches() const
 {
   return std::any_of(island_.members.begin(), island_.members.end(),
-           [&](int i) { return isAnyClosed(fall_.rocks[std::size_t(i)].body().contacts); }) ||
+           [&](int i) { return anyClosed(fall_.rocks[std::size_t(i)].body().contacts); }) ||
     std::any_of(island_.pairs.begin(), island_.pairs.end(),
-      [](const RockPair* pair) { return isAnyClosed(pair->contacts); });
+      [](const RockPair* pair) { return anyClosed(pair->contacts); });
 }
 
 double IslandStepper::beginContacts()
@@ -110,7 +105,7 @@ double IslandStepper::advance(double until, bool lastingOnly)
     this->gatherContacts(calm ? large : small);
     // Stiffnesses are known now: the faster rocks meet, the stiffer.
     small = inTime ? std::min(small, impactStepOf(fall_, island_)) : small;
-    const bool any = this->anyClosed();
+    const bool any = this->touches();
     if (const double free = any ? 0.0 : this->freeTime(remaining); free > small)
     {
       this->fly(free);

@@ -25,7 +25,7 @@ public:
 private:
   double timeReached(double until) const; ///< s; `until` if all are gone.
   double beginContacts();                 ///< Returns the longest step that contacts serve, s.
-  bool anyClosed() const;
+  bool touches() const;                   ///< Whether any contact is closed.
 
   // Contacts where a step of `h` (s) begins, islandContacts.cxx
   void gatherContacts(double h);

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// Working memory of a step of an island (IslandStep).
+/// Working memory of a step of an island (IslandStepper).
 
 #include "base/cache.h"
 #include "fall/FallState.h"

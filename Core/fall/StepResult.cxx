@@ -213,9 +213,7 @@ void StepResult::applyToRock(std::size_t k)
   outcome.springEnergy = answer.springEnergy;
   outcome.normalEnergy = answer.normalEnergy;
   sim.absorb(kind_, outcome, work_.energyBefore[place], answer.given);
-  const bool carried = work_.touchesOthers[place] ||
-    std::any_of(
-      body.contacts.begin(), body.contacts.end(), [](const Contact& c) { return c.closed(); });
+  const bool carried = work_.touchesOthers[place] || anyClosed(body.contacts);
   // In a crowd some contact opens or closes in every step, and the acceleration of one step says
   // little of the next: carried on it would keep the pile in motion for ever.
   if (work_.carriers[place] != rock.carriers || (island_.crowd && carried))

@@ -3,7 +3,6 @@
 #include "fall/IslandStepper.h"
 
 #include "base/parallel.h"
-#include "contact/detection.h"
 #include "fall/pairSprings.h"
 #include "fall/stepLayout.h"
 #include "law/settings.h"
@@ -88,12 +87,7 @@ void IslandStepper::gatherOnSlope(std::size_t k, double h)
   {
     side.set(body); // what broke has taken speed
   }
-  double pressed = 0.0;
-  for (const Contact& c : body.contacts)
-  {
-    pressed = std::max(pressed, -c.gap());
-  }
-  holdOverlap(body.placed, sim.patch(), *near, kLooseOverlap * r + 2.0 * pressed, body.contacts);
+  sim.holdOverlaps(*near);
   stiffenPressed(sim);
   sim.armContacts(h);
 }

@@ -161,7 +161,6 @@ double IslandStepper::freeTime(double most) const
 
 double IslandStepper::freeOfFlying(double most) const
 {
-  const auto isClosed = [](const Contact& c) { return c.closed(); };
   work_.flying.assign(fall_.rocks.size(), 0);
   for (int i : island_.members)
   {
@@ -169,11 +168,11 @@ double IslandStepper::freeOfFlying(double most) const
     const double rim = sim.body().block.largestRimSpeed(sim.body().state.spin);
     work_.flying[std::size_t(i)] = !sim.body().done &&
       sim.body().state.velocity.norm() + rim > sim.body().restingSpeed &&
-      std::none_of(sim.body().contacts.begin(), sim.body().contacts.end(), isClosed);
+      !anyClosed(sim.body().contacts);
   }
   for (const RockPair* pair : island_.pairs)
   {
-    if (std::any_of(pair->contacts.begin(), pair->contacts.end(), isClosed))
+    if (anyClosed(pair->contacts))
     {
       work_.flying[std::size_t(pair->first)] = work_.flying[std::size_t(pair->second)] = 0;
     }

@@ -15,7 +15,7 @@ namespace rockfall
 {
 
 /// Motion, contacts with the slope and books of one rock. Whoever steps it writes them: the rock
-/// itself (RockSimulator), or the island that it belongs to (IslandStep).
+/// itself (RockSimulator), or the island that it belongs to (IslandStepper).
 struct RockBody
 {
   explicit RockBody(const Block& b)

@@ -291,9 +291,7 @@ void RockSimulator::checkEnd(double h)
   {
     return;
   }
-  this->followRest(h,
-    std::any_of(
-      body_.contacts.begin(), body_.contacts.end(), [](const Contact& c) { return c.closed(); }));
+  this->followRest(h, anyClosed(body_.contacts));
   if (body_.quietTime >= kStillTime)
   {
     this->end(Fate::Rested);
@@ -435,8 +433,7 @@ void RockSimulator::advance(double until, double enough)
 Trajectory RockSimulator::finish()
 {
   TrajectorySummary& summary = recorder_.trajectory().summary;
-  const bool touching = std::any_of(
-    body_.contacts.begin(), body_.contacts.end(), [](const Contact& c) { return c.closed(); });
+  const bool touching = anyClosed(body_.contacts);
   this->finishImpact(false);
   recorder_.end(body_.state, touching);
   // One that ends later may have begun earlier.

@@ -112,6 +112,8 @@ public:
   /// Contacts with the slope within `reach` (m). A step of `h` (s) may turn a rock that is held at
   /// a corner onto a face; with 0 no contact is looked for there.
   void findContacts(const CandidatePairs& candidates, double reach, double h);
+  /// Contacts of what has slipped through between others, of those that `findContacts` had.
+  void holdOverlaps(const CandidatePairs& candidates);
   bool meetsSolids() const { return solid_; } ///< There are embankments or trees.
   int treeOf(const Contact& contact) const;   ///< −1: it is on none.
   /// Trees that it is about to touch within `h`, presses against or has `hit`, and that cannot hold
@@ -199,7 +201,6 @@ private:
   /// Without contacts that carry: relaxes, takes off, or flies as long as nothing can close within
   /// steps of `small` (s). Whether anything was done.
   bool flyFromContact(double small);
-  void holdOverlaps(); ///< Contacts of what has slipped through.
   void takeStep(double h, StepKind kind);
   bool mayLast(double h) const; ///< A long, damped step is right.
   void pressOut(double h);      ///< As pressOutDeep, loose overlaps after a step.

@@ -35,11 +35,6 @@ std::uint64_t carriers(const std::vector<Contact>& contacts)
   return sum;
 }
 
-bool anyClosed(const std::vector<Contact>& contacts)
-{
-  return std::any_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.closed(); });
-}
-
 } // namespace
 
 bool RockSimulator::mayLast(double h) const
@@ -135,7 +130,7 @@ bool RockSimulator::flyFromContact(double small)
   return false;
 }
 
-void RockSimulator::holdOverlaps()
+void RockSimulator::holdOverlaps(const CandidatePairs& candidates)
 {
   // A vertex that carries may be pressed in, and its neighbourhood with it; anything deeper slipped
   // through.
@@ -144,7 +139,7 @@ void RockSimulator::holdOverlaps()
   {
     pressed = std::max(pressed, -c.gap());
   }
-  holdOverlap(body_.placed, patch_, candidates_,
+  holdOverlap(body_.placed, patch_, candidates,
     kLooseOverlap * body_.block.radius() + 2.0 * pressed, body_.contacts);
 }
 
@@ -190,7 +185,7 @@ void RockSimulator::stayInContact()
     {
       continue;
     }
-    this->holdOverlaps();
+    this->holdOverlaps(candidates_);
     h = std::max(h, 1e-12);
     this->armContacts(h);
     if (kind == StepKind::Impact && body_.contacts.size() > 1)

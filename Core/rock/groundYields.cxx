@@ -105,7 +105,7 @@ bool RockSimulator::sinkUnder(double h)
 
 bool RockSimulator::riseWithRock()
 {
-  if (!scar_.open() || !scar_.turned() || closedCount(body_.contacts) > 0)
+  if (!scar_.open() || !scar_.turned() || anyClosed(body_.contacts))
   {
     return false;
   }
