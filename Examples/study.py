@@ -61,7 +61,7 @@ import wholefile
 from wholefile import write_csv, write_npz, write_polydata, write_text
 
 FILES = ("FileName", "File", "Layer", "Table")  # a property whose name ends so is a file
-# What belongs to a file: with its ending instead of the file's own, or behind it.
+# Companions of a file: with their ending instead of the file's own, or behind it.
 COMPANIONS = (".dbf", ".shx", ".prj", ".cpg", ".csvt", ".tfw", ".wld"), (".aux.xml", ".msk")
 FORMAT = 2  # of the files here: another one is another study
 controller = vtkMultiProcessController.GetGlobalController()

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// What of an input decides a run, as one number: an input that was made again, or that looks
-/// otherwise, is the same if its number is.
+/// Content of an input that decides a run, as one number: an input that was made again, or that
+/// looks otherwise, is the same if its number is.
 
 #include <cstdint>
 #include <initializer_list>

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// Which rocks lie on each other face on face, as the blocks of a cut rock mass do.
+/// Rocks that lie on each other face on face, as the blocks of a cut rock mass do.
 
 #include "rock/Rock.h"
 

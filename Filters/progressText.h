@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// What a user reads while a run goes on.
+/// Text that a user reads while a run goes on.
 
 #include <chrono>
 #include <cstdint>

@@ -42,7 +42,7 @@ public:
   /// call `agree` instead: both send the same messages.
   void together(const std::function<void()>& work, const std::string& noMemory) const;
 
-  /// What `text` is on rank 0.
+  /// `text` as on rank 0.
   void share(std::string& text) const { this->broadcastText(text, 0); }
 
   /// Threads that a rank should take when its user takes all: those that it may run on, shared out
@@ -57,7 +57,7 @@ public:
     std::vector<char>&& bytes, const std::string& noMemory) const;
 
 private:
-  /// What a rank tells the others of its work. The worst counts for all.
+  /// Outcome of a rank's work, for the others. The worst counts for all.
   enum class State
   {
     Well,

@@ -22,7 +22,7 @@ namespace rockfall::filters
 bool runShared(const Ensemble& ensemble, const KeptParts& kept, TrajectorySink* sink,
   const Ranks& ranks, const Progress& progress, const std::string& noMemory);
 
-/// What pushing rocks apart did on all ranks, if it is done anew in each iteration. Collective.
+/// Rocks pushed apart on all ranks, if that is done anew in each iteration. Collective.
 PushedApart pushedOnAll(const Ensemble& ensemble, const Ranks& ranks);
 
 } // namespace rockfall::filters

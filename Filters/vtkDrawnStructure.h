@@ -31,7 +31,7 @@ public:
   };
   ///@{
   /**
-   * What stands there, one of KindOfStructure. Default NET.
+   * The kind of structure, one of KindOfStructure. Default NET.
    */
   vtkSetMacro(Kind, int);
   vtkGetMacro(Kind, int);

@@ -103,7 +103,7 @@ public:
 
   ///@{
   /**
-   * What is done with blocks that are too thin or too small, one of SliverRule. Default REFUSE:
+   * The rule for blocks that are too thin or too small, one of SliverRule. Default REFUSE:
    * they are an error.
    */
   vtkSetMacro(Slivers, int);

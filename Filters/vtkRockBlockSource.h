@@ -141,8 +141,8 @@ public:
 
   ///@{
   /**
-   * What is taken of a mesh file: its convex hull (the default), or its faces as they are, which
-   * must then be those of a convex polyhedron.
+   * The part of a mesh file that is taken: its convex hull (the default), or its faces as they are,
+   * which must then be those of a convex polyhedron.
    */
   vtkSetMacro(ShapeFileMode, int);
   vtkGetMacro(ShapeFileMode, int);
@@ -203,7 +203,7 @@ public:
 
   ///@{
   /**
-   * What the material is called where rocks hit each other (RockContactFile of
+   * Name of the material where rocks hit each other (RockContactFile of
    * vtkRockfallSimulation). Empty (the default) takes the name of Material, if that is not 0.
    */
   vtkSetStdStringFromCharMacro(MaterialName);
@@ -236,7 +236,7 @@ public:
 
   ///@{
   /**
-   * Which layer or sheet of a file with several: its name. Empty (the default): the one that will
+   * Name of the layer or sheet of a file with several. Empty (the default): the one that will
    * do; if several would, that is an error which lists them.
    */
   vtkSetStdStringFromCharMacro(LayerName);
@@ -263,7 +263,7 @@ public:
   };
   ///@{
   /**
-   * What is drawn through Points, one of DrawnSource, as the source. NOTHING (the default): the
+   * The source that is drawn through Points, one of DrawnSource. NOTHING (the default): the
    * source is Center, a file or the steep part of the terrain.
    */
   vtkSetMacro(Draw, int);

@@ -3,14 +3,13 @@
 #include "arrays.h"
 #include "attempt.h"
 #include "base/errors.h"
-#include "base/numberText.h"
 #include "failure.h"
 #include "inputs.h"
-#include "jointFaces.h"
 #include "keptRun.h"
 #include "liveRun.h"
 #include "pieces.h"
 #include "progressText.h"
+#include "runNotes.h"
 #include "sharedRun.h"
 #include "terrainFieldData.h"
 
@@ -39,7 +38,6 @@ namespace
 {
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
-using rockfall::filters::addArray;
 using rockfall::filters::KeptRun;
 using rockfall::filters::LiveRun;
 using rockfall::filters::Ranks;
@@ -67,67 +65,6 @@ constexpr double mostTimeSteps = 1e6;
 constexpr double kAtOnce = 0.3;
 /// Looks at a run take a fifth of the window's time, and come once a second at most.
 constexpr double kLookInterval = 1.0, kLookShare = 4.0;
-
-/// "finished: 1,000 trajectories in 12 s", "stopped: 12,300 of …", or how far it is.
-std::string statusOf(const LiveRun& live)
-{
-  const rockfall::Ensemble& ensemble = *live.run().ensemble;
-  const std::string units = ensemble.parameters().rockRockContact ? "iterations" : "trajectories";
-  if (!live.over())
-  {
-    return (live.stopped() ? "stopping: " : "running: ") +
-      rockfall::filters::progressText(live.share(), ensemble.size(), units, live.elapsed());
-  }
-  const std::int64_t made = live.trajectories() / ensemble.trajectoriesPerUnit();
-  const std::string total = rockfall::filters::countText(ensemble.size()) + " " + units;
-  return made < ensemble.size() ? "stopped by its user after " +
-      rockfall::filters::countText(made) + " of " + total + "; Run Again makes all of them"
-                                : "finished: " + total;
-}
-
-/// Blocks that fit together, as those of a cut mass, are meant to hold and push each other.
-void tellApart(std::span<const rockfall::Rock> rocks)
-{
-  const std::int64_t joined = rockfall::filters::countFaceOnFace(rocks);
-  if (joined > 0)
-  {
-    rockfall::filters::showNote("RockRockContact is off: each of the " +
-      std::to_string(rocks.size()) +
-      " blocks falls as if it were alone, through the others, though " + std::to_string(joined) +
-      " of them lie face on face, as the blocks of a rock mass. " +
-      "Switch it on for them to hit and push each other");
-  }
-}
-
-/// Realisations that nothing makes differ are one.
-void tellAlike(
-  const rockfall::Terrain& terrain, std::span<const rockfall::Rock> rocks, int iterations)
-{
-  const bool drawn = terrain.draws() ||
-    std::any_of(rocks.begin(), rocks.end(),
-      [](const rockfall::Rock& rock) { return rock.uncertainty.any(); });
-  if (iterations > 1 && !drawn)
-  {
-    rockfall::filters::showNote("All " + std::to_string(iterations) +
-      " iterations are alike: nothing of the slope or of the blocks is drawn. Give DEM to CFE Mesh "
-      "a roughness or a deviation, or Rock Blocks an attitude law, for them to differ");
-  }
-}
-
-void tellPushed(
-  const rockfall::Ensemble& ensemble, const rockfall::PushedApart& pushed, const Ranks& ranks)
-{
-  if (ranks.rank() != 0 || pushed.rocks == 0)
-  {
-    return;
-  }
-  const int iterations = ensemble.parameters().iterations;
-  rockfall::filters::showNote("PushRocksApart moved " +
-    std::string(ensemble.pushesAnew() ? "up to " : "") + std::to_string(pushed.rocks) + " of " +
-    std::to_string(ensemble.trajectoriesPerUnit()) + " blocks, by up to " +
-    rockfall::numberText(pushed.farthest, 4) + " m, in " + std::to_string(pushed.iterations) +
-    " of " + std::to_string(iterations) + " iterations");
-}
 
 } // namespace
 
@@ -233,59 +170,6 @@ int vtkRockfallSimulation::RequestUpdateExtent(
 }
 
 //------------------------------------------------------------------------------
-void vtkRockfallSimulation::TakeProperties(KeptRun& run)
-{
-  rockfall::SimulationParameters& p = run.parameters;
-  p.timeStep = this->TimeStep;
-  p.endTime = this->EndTime;
-  p.outputInterval = this->OutputInterval;
-  p.gravity = this->Gravity;
-  p.normalPenalty = this->NormalPenalty;
-  p.shearRatio = this->ShearPenaltyRatio;
-  p.rigid = this->Rigid;
-  p.rockRockContact = this->RockRockContact;
-  p.rockRestitution = this->RockRestitution;
-  p.rockFrictionAngle = rockfall::radians(this->RockFrictionAngle);
-  p.rockCohesion = this->RockCohesion;
-  run.contactFile = this->RockContactFile;
-  run.contactSheet = this->RockContactSheet;
-  run.allowReferences = this->AllowReferences != 0;
-  p.pushRocksApart = this->PushRocksApart;
-  p.iterations = this->Iterations;
-  p.firstIteration = this->FirstIteration;
-  p.seed = std::uint64_t(this->Seed);
-  p.threads = this->NumberOfThreads;
-  run.parts.retention = rockfall::Retention(this->TrajectoryOutput);
-  run.parts.impacts = this->KeepImpacts;
-}
-
-//------------------------------------------------------------------------------
-void vtkRockfallSimulation::CheckProperties(const KeptRun& run) const
-{
-  const auto inRange = [](int value, int least, int most, const char* name)
-  {
-    if (value < least || value > most)
-    {
-      const bool open = most == std::numeric_limits<int>::max();
-      throw rockfall::ParameterError(std::string(name) + " is " + rockfall::numberText(value) +
-        ", it must be " + (open ? "at least " : "") + rockfall::numberText(least) +
-        (open ? "" : " to " + rockfall::numberText(most)));
-    }
-  };
-  inRange(this->Seed, 0, std::numeric_limits<int>::max(), "Seed");
-  run.parameters.validate();
-  inRange(this->ShownIteration, 0, this->Iterations - 1, "ShownIteration");
-  inRange(this->TrajectoryOutput, NOTHING, FULL, "TrajectoryOutput");
-}
-
-//------------------------------------------------------------------------------
-std::string vtkRockfallSimulation::NoMemory() const
-{
-  return "The results do not fit in memory: Iterations is " + std::to_string(this->Iterations) +
-    "; fewer of them, a longer OutputInterval or a TrajectoryOutput that keeps less take less";
-}
-
-//------------------------------------------------------------------------------
 bool vtkRockfallSimulation::Simulate(vtkPolyData* terrainInput, vtkPolyData* rocksInput)
 {
   const Ranks ranks;
@@ -320,17 +204,17 @@ bool vtkRockfallSimulation::Simulate(vtkPolyData* terrainInput, vtkPolyData* roc
   }
   if (!this->RockRockContact && ranks.rank() == 0)
   {
-    tellApart(run->frame.rocks);
+    rockfall::filters::tellApart(run->frame.rocks);
   }
   if (ranks.rank() == 0)
   {
-    tellAlike(run->slope, run->frame.rocks, run->parameters.iterations);
+    rockfall::filters::tellAlike(run->slope, run->frame.rocks, run->parameters.iterations);
   }
   // Rocks that are the same in all iterations are known before they run.
   const bool anew = run->ensemble->pushesAnew();
   if (!anew)
   {
-    tellPushed(*run->ensemble, run->ensemble->pushed(), ranks);
+    rockfall::filters::tellPushed(*run->ensemble, run->ensemble->pushed(), ranks);
   }
   if (this->Watched && ranks.count() == 1)
   {
@@ -350,7 +234,8 @@ bool vtkRockfallSimulation::Simulate(vtkPolyData* terrainInput, vtkPolyData* roc
   }
   if (anew)
   {
-    tellPushed(*run->ensemble, rockfall::filters::pushedOnAll(*run->ensemble, ranks), ranks);
+    rockfall::filters::tellPushed(
+      *run->ensemble, rockfall::filters::pushedOnAll(*run->ensemble, ranks), ranks);
   }
   if (ranks.rank() == 0)
   {
@@ -378,14 +263,14 @@ bool vtkRockfallSimulation::Follow()
     return true;
   }
   const std::unique_ptr<LiveRun> live = std::move(this->Live);
-  const std::string how = statusOf(*live);
+  const std::string how = rockfall::filters::statusOf(*live);
   this->Kept = live->take();
   const KeptRun& run = *this->Kept;
   this->StateHash = run.stateHash;
   this->RunStatus = how;
   if (run.ensemble->pushesAnew())
   {
-    tellPushed(*run.ensemble, run.ensemble->pushed(), Ranks());
+    rockfall::filters::tellPushed(*run.ensemble, run.ensemble->pushed(), Ranks());
   }
   if (run.summary->GetNumberOfRows() < run.ensemble->size() * run.ensemble->trajectoriesPerUnit())
   {
@@ -452,7 +337,7 @@ const char* vtkRockfallSimulation::GetRunStatus()
 {
   if (this->Live)
   {
-    this->RunStatus = statusOf(*this->Live);
+    this->RunStatus = rockfall::filters::statusOf(*this->Live);
   }
   return this->RunStatus.c_str();
 }
@@ -565,39 +450,4 @@ int vtkRockfallSimulation::RequestData(
   {
     return this->Fail(terrain, rocks, error.what());
   }
-}
-
-//------------------------------------------------------------------------------
-void vtkRockfallSimulation::PrintSelf(ostream& os, vtkIndent indent)
-{
-  this->Superclass::PrintSelf(os, indent);
-  os << indent << "TimeStep: " << this->TimeStep << "\n";
-  os << indent << "EndTime: " << this->EndTime << "\n";
-  os << indent << "OutputInterval: " << this->OutputInterval << "\n";
-  os << indent << "Gravity: " << this->Gravity << "\n";
-  os << indent << "NormalPenalty: " << this->NormalPenalty << "\n";
-  os << indent << "ShearPenaltyRatio: " << this->ShearPenaltyRatio << "\n";
-  os << indent << "Iterations: " << this->Iterations << "\n";
-  os << indent << "FirstIteration: " << this->FirstIteration << "\n";
-  os << indent << "Seed: " << this->Seed << "\n";
-  os << indent << "RockRockContact: " << this->RockRockContact << "\n";
-  os << indent << "RockRestitution: " << this->RockRestitution << "\n";
-  os << indent << "RockFrictionAngle: " << this->RockFrictionAngle << "\n";
-  os << indent << "RockCohesion: " << this->RockCohesion << "\n";
-  os << indent
-     << "RockContactFile: " << (this->RockContactFile.empty() ? "(none)" : this->RockContactFile)
-     << "\n";
-  os << indent << "RockContactSheet: " << this->RockContactSheet << "\n";
-  os << indent << "AllowReferences: " << this->AllowReferences << "\n";
-  os << indent << "PushRocksApart: " << this->PushRocksApart << "\n";
-  os << indent << "Rigid: " << this->Rigid << "\n";
-  os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
-  os << indent << "ShownIteration: " << this->ShownIteration << "\n";
-  os << indent << "TrajectoryOutput: " << this->TrajectoryOutput << "\n";
-  os << indent << "KeepImpacts: " << this->KeepImpacts << "\n";
-  os << indent << "PrintProgress: " << this->PrintProgress << "\n";
-  os << indent << "StateHash: " << this->StateHash << "\n";
-  os << indent << "RunStatus: " << this->RunStatus << "\n";
-  os << indent << "NumberOfRuns: " << this->NumberOfRuns << "\n";
-  os << indent << "Kept: " << (this->Kept ? "a finished run" : "(none)") << "\n";
 }

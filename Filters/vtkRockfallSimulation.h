@@ -213,7 +213,7 @@ public:
 
   ///@{
   /**
-   * Which of the Iterations port 0 shows, counted from 0 (the default) whatever FirstIteration is.
+   * The iteration that port 0 shows, counted from 0 (the default) whatever FirstIteration is.
    * The other ports hold all of them. Changing it does not simulate all again: that iteration at
    * most.
    */
@@ -231,7 +231,7 @@ public:
   };
   ///@{
   /**
-   * What port 1 keeps of each trajectory: NOTHING; STOPPING_POINTS, a vertex where it ended;
+   * The part of each trajectory on port 1: NOTHING; STOPPING_POINTS, a vertex where it ended;
    * EVENTS, a polyline of release, touches, take-offs and end; THINNED, of all points between which
    * the motion is one cubic; FULL (the default), of all samples, with the energy audit.
    */

@@ -34,7 +34,7 @@ public:
 
   ///@{
   /**
-   * Which layer of a file with several: its name. Empty (the default): the one layer of lines; if
+   * Name of the layer of a file with several. Empty (the default): the one layer of lines; if
    * there are several, that is an error which lists them.
    */
   vtkSetStdStringFromCharMacro(LayerName);

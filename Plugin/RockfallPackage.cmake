@@ -1,4 +1,4 @@
-# What `cmake --install` puts beside the plugin, and the .deb that `cpack` makes of it. A plugin works with
+# Files that `cmake --install` puts beside the plugin, and the .deb that `cpack` makes of it. A plugin works with
 # the ParaView that it was built for and with no other one, so there is a package for each release of
 # Debian, made on it: dpkg-shlibdeps names the exact libraries.
 # Of use to nobody who only loads the plugin.

@@ -8,7 +8,7 @@ include("${CMAKE_CURRENT_LIST_DIR}/DebianPython.cmake")
 find_package(ParaView 5.11 REQUIRED COMPONENTS
   RemotingCore RemotingServerManager VTKExtensionsCore WrapClientServer ProcessXML)
 
-# What only the window needs takes Qt; a batch run does without.
+# The window's part takes Qt; a batch run does without.
 option(ROCKFALL_WINDOW "Build the Rockfall menu and looks of ParaView's window, if Qt is there" ON)
 set(ROCKFALL_QT Qt5)
 if(ParaView_VERSION VERSION_GREATER_EQUAL 5.13)

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// What two rocks do to each other where they touch, by what they are made of.
+/// Laws between two rocks where they touch, by their materials.
 
 #include "base/types.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// What rocks are made of, by name.
+/// Materials of rocks, by name.
 
 #include <span>
 #include <string>

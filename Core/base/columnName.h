@@ -15,7 +15,7 @@ struct ColumnName
 {
   explicit ColumnName(const std::string& written);
 
-  std::string name; ///< What stands before the unit, as nameKey has it.
+  std::string name; ///< The part before the unit, as nameKey has it.
   /// In small letters: what is in the brackets, or a unit of base/lengthUnit.h, with "us" or
   /// "survey" beside it. Empty: none.
   std::string unit;

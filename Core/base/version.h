@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// Which version this is.
+/// The version of the program.
 
 #include <string>
 

@@ -63,7 +63,7 @@ private:
   double rate_ = 0.0;             ///< p
   double quarter_ = 0.0;          ///< K
   double u0_ = 0.0;  ///< Phase at the start, within ±K of an even or odd multiple of 2 K.
-  bool odd_ = false; ///< Which of the two.
+  bool odd_ = false; ///< The one of the two.
   int depth_ = 0;    ///< Of the arithmetic–geometric mean of 1 and √(1 − m).
   std::array<double, 20> mean_;
   std::array<double, 20> geometric_;

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// What stands between a list of faces and a Polyhedron: welding, the checks, and the merging of
+/// Steps from a list of faces to a Polyhedron: welding, the checks, and the merging of
 /// coplanar faces. Internal to geometry/.
 
 #include "base/types.h"

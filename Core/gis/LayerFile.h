@@ -55,7 +55,7 @@ struct LayerWish
 ///
 /// A layer will do if its features are of the wished kinds; if several do, those with the wished
 /// columns, else those of the better kinds. Layers without features count if there is no other.
-/// What is left must be one. Where a file has several layers, a note says which was taken. Of a
+/// The rest must be one layer. Where a file has several layers, a note says which was taken. Of a
 /// file with one layer it is that one, whatever it is: its reader knows better what is wrong with
 /// it.
 ///

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// What a file holds, where it may be rasters, vector layers, or both. Internal to gis/.
+/// Content of a file: rasters, vector layers, or both. Internal to gis/.
 
 #include <string>
 #include <vector>

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// What the readers of this folder share. GDAL's own headers stay in the sources: whoever includes
-/// this header needs GDAL's library, not its headers.
+/// Common parts of the readers of this folder. GDAL's own headers stay in the sources: whoever
+/// includes this header needs GDAL's library, not its headers.
 
 #include "gis/reach.h"
 

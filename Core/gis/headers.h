@@ -1,8 +1,9 @@
 #pragma once
 
 /// @file
-/// What the headers of files say of heights and GDAL leaves out: SAGA's Z_FACTOR and UNIT, GRASS's
-/// multiplier, the $INSUNITS of a DXF drawing, Zunits and VERTCS of a .prj file. Internal to gis/.
+/// Headers of files, as far as they speak of heights and GDAL leaves it out: SAGA's Z_FACTOR and
+/// UNIT, GRASS's multiplier, the $INSUNITS of a DXF drawing, Zunits and VERTCS of a .prj file.
+/// Internal to gis/.
 
 #include <map>
 #include <optional>

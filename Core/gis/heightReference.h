@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// What heights refer to, a vertical datum or an ellipsoid, as the CRS of a file says it, and the
-/// way from one reference to another. Internal to gis/.
+/// The reference of heights, a vertical datum or an ellipsoid, as the CRS of a file says it, and
+/// the way from one reference to another. Internal to gis/.
 
 #include "gis/crs.h"
 

@@ -1,11 +1,11 @@
 #pragma once
 
 /// @file
-/// What the numbers for heights in a file mean: their unit, their direction and what they refer to.
+/// Meaning of the numbers for heights in a file: unit, direction and reference.
 /// Every reader asks here, of rasters and layers alike. Internal to gis/.
 ///
-/// What a file declares is taken, and a note says so: the unit of a band, the third axis of a CRS
-/// (a compound one, a 3D one, an engineering one; ESRI's VERTCS), scale and offset, netCDF's
+/// A declaration of the file is taken, and a note says so: the unit of a band, the third axis of a
+/// CRS (a compound one, a 3D one, an engineering one; ESRI's VERTCS), scale and offset, netCDF's
 /// `units`, `positive` and `standard_name`, SAGA's Z_FACTOR and UNIT, GRASS's multiplier, Zunits,
 /// the unit of a drawing, the end of a column's name. Two declarations that contradict each other
 /// are an error. Nothing declared: metres, with a note if the coordinates are in feet.

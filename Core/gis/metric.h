@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// Which metric CRS a layer of any CRS is brought to.
+/// The metric CRS that a layer of any CRS is brought to.
 
 #include "gis/crs.h"
 #include "gis/resample.h"

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// What stands for no data in a band: all values that its file declares, however it writes them,
+/// Signs of no data in a band: all values that its file declares, however it writes them,
 /// and values that look as if they did. Internal to gis/.
 
 #include "gis/heights.h"

@@ -18,7 +18,7 @@ namespace rockfall::gis
 {
 
 /// An open raster whose band has been found fit to be heights: real numbers, 2 × 2 nodes or more.
-/// What it does to the data it says in `notes`.
+/// Changes of the data stand in `notes`.
 class RasterFile
 {
 public:

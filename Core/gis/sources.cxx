@@ -44,7 +44,7 @@ std::vector<std::string> heightColumnsOf(const OGRFeatureDefn& definition)
   return names;
 }
 
-/// What somebody may expect to be read, by the name of its column but for a unit.
+/// Names of columns, but for a unit, that somebody may expect to be read.
 const std::initializer_list<const char*> kTempting = { "mass", "weight", "speed", "velocity",
   "spin", "diameter", "size", "length", "width", "elevation", "elev", "altitude", "restitution",
   "friction" };

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// What spreadsheets and people put before the header of a table (CSV), and between its rows.
+/// Lines that spreadsheets and people put before the header of a table (CSV), and between its rows.
 
 #include <optional>
 #include <string>

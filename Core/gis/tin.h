@@ -18,7 +18,7 @@ struct TinPoints
   std::vector<double> x, y, z;
 };
 
-/// What a TIN makes of the nodes of a raster, in the order of Terrain.
+/// Nodes of a raster as a TIN makes them, in the order of Terrain.
 struct TinNodes
 {
   std::vector<double> heights; ///< m; NaN outside the points' convex hull.

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// What a run hands out: samples, impact events and one summary per rock and iteration.
+/// Results of a run: samples, impact events and one summary per rock and iteration.
 /// Positions are in the terrain's local frame.
 
 #include "base/types.h"

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// What is kept of a trajectory once it is finished.
+/// The part of a trajectory that is kept once it is finished.
 
 #include "rock/results.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// What passes through the cells of a grid: how many rocks, how fast, how high, with what energy.
+/// Passages through the cells of a grid: number of rocks, speeds, heights, energies.
 
 #include "statistics/passages.h"
 #include "statistics/path.h"

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// What passes through the cells of a grid, rock by rock, and what that says of each cell.
+/// Passages through the cells of a grid, rock by rock, and their statistics in each cell.
 
 #include "statistics/sample.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// What the slope is made of: one material, or classes of restitution and of friction, each on a
+/// Materials of the slope: one, or classes of restitution and of friction, each on a
 /// layer of its own over the cells (METHOD 6).
 
 #include "base/types.h"
@@ -17,7 +17,7 @@
 namespace rockfall
 {
 
-/// What the slope's coefficient of restitution acts on after an impact (METHOD 4).
+/// Velocities that the slope's coefficient of restitution acts on after an impact (METHOD 4).
 enum class RestitutionModel
 {
   /// The paper's: (Vx, Vy, Vz) ← Rv (Vx, Vy, Vz), Rv = `restitution`.
@@ -32,7 +32,7 @@ enum class RestitutionModel
   SpeedDependent = 2,
 };
 
-/// What a CFE is made of.
+/// Material of a CFE.
 struct SurfaceMaterial
 {
   double restitution = 0.8;          ///< Rv, or Rn, as the model has it; dimensionless, 0 … 1.

@@ -14,7 +14,7 @@
 namespace rockfall
 {
 
-/// What the numbers of a preset rest on.
+/// Support of a preset's numbers.
 enum class PresetSupport
 {
   FieldData,  ///< Held against field data that did not choose them (docs/validation.md).

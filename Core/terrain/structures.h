@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// What people build and what grows on the slope, as a map has it: embankments, trees and barriers.
+/// Structures on the slope, as a map has them: embankments, trees and barriers.
 /// Places in the local frame of the terrain, m.
 
 #include "base/types.h"

@@ -37,7 +37,7 @@ constexpr double kMarkerSize = 8.0; ///< px, of blocks from afar
 constexpr double kPointSize = 6.0;  ///< px
 constexpr const char* kDisc = "4";  ///< Of a chart's markers.
 constexpr const char* kNoMarker = "0";
-constexpr const char* kShare = "ShareOfPassing"; ///< What a chart of exceedance shows.
+constexpr const char* kShare = "ShareOfPassing"; ///< Values of a chart of exceedance.
 
 /// From low to high, as red, green, blue.
 using Palette = std::array<Colour, 4>;
@@ -231,8 +231,8 @@ void followProfile(const Shown& shown, vtkSMViewProxy* view)
   view->UpdateVTKObjects();
 }
 
-/// What hangs on the table: the title says where nothing passes; several lines are points, as a
-/// curve would go on from one to the next.
+/// Looks of a chart that hang on its table: the title says where nothing passes; several lines are
+/// points, as a curve would go on from one to the next.
 void followExceedance(const Shown& shown, vtkSMProxy* representation, vtkSMViewProxy* view)
 {
   vtkPVDataInformation* data = shown.source->GetDataInformation(unsigned(shown.port));
@@ -395,7 +395,8 @@ void rescale(const Shown& shown, vtkSMProxy* representation)
   }
 }
 
-/// What is in a legend's colours: nothing before anything has moved, or where the source failed.
+/// Whether a legend has colours to explain: none before anything has moved, or where the source
+/// failed.
 bool showsColours(const Shown& shown, vtkSMViewProxy* view)
 {
   return shown.source->GetDataInformation(unsigned(shown.port))->GetNumberOfCells() > 0 &&

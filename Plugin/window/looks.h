@@ -27,7 +27,7 @@ Shown shownBy(vtkSMProxy* representation);
 /// ours.
 void style(vtkSMProxy* representation);
 
-/// What hangs on the data, when they are new: the range of a palette, what a chart says.
+/// Looks that hang on the data, when they are new: the range of a palette, the text of a chart.
 void follow(vtkSMProxy* representation, vtkSMViewProxy* view);
 
 /// The same for what a view decides: legends, titles of charts. To be called when it is in `view`.

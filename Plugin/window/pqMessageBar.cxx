@@ -77,7 +77,7 @@ void pqMessageBar::look()
       QStringList fresh;
       for (const QString& text : texts)
       {
-        // What comes after a failed filter has the same text: the first one says it.
+        // Filters after a failed one have the same text: the first one says it.
         if (!told.contains(text))
         {
           told << text;

@@ -3,6 +3,8 @@
 #include "handles.h"
 #include "looks.h"
 #include "markers.h"
+#include "panel.h"
+#include "placed.h"
 #include "pqMessageBar.h"
 #include "pqPathPicker.h"
 #include "presetValues.h"
@@ -17,39 +19,24 @@
 #include "pqOutputPort.h"
 #include "pqPVApplicationCore.h"
 #include "pqPipelineSource.h"
-#include "pqPropertyWidget.h"
 #include "pqPythonManager.h"
 #include "pqRenderView.h"
 #include "pqServer.h"
 #include "pqServerManagerModel.h"
-#include "pqSettings.h"
 #include "pqView.h"
-#include "vtkAlgorithm.h"
 #include "vtkCommand.h"
-#include "vtkDataArray.h"
-#include "vtkDataObject.h"
-#include "vtkDataSetAttributes.h"
-#include "vtkNew.h"
-#include "vtkPVDataInformation.h"
-#include "vtkPVXMLElement.h"
-#include "vtkSMParaViewPipelineControllerWithRendering.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMRenderViewProxy.h"
-#include "vtkSMSession.h"
 #include "vtkSMSourceProxy.h"
-#include "vtkTable.h"
 
 #include <QCoreApplication>
 #include <QDesktopServices>
 #include <QDir>
-#include <QDockWidget>
 #include <QFileInfo>
-#include <QGridLayout>
 #ifdef ROCKFALL_OPENS_HELP
 #include <QHelpEngine>
 #endif
-#include <QLabel>
 #include <QMainWindow>
 #include <QMenu>
 #include <QMenuBar>
@@ -59,24 +46,17 @@
 
 #include <dlfcn.h>
 
-#include <algorithm>
-#include <array>
 #include <string>
-#include <vector>
 
 namespace
 {
 
 using rockfall::window::isOf;
+using rockfall::window::mainWindow;
 
 constexpr int kLookAtRuns = 500;   // ms
 constexpr int kLookForWindow = 20; // ms
 constexpr int kReadNotes = 30000;  // ms
-
-QMainWindow* mainWindow()
-{
-  return qobject_cast<QMainWindow*>(pqCoreUtilities::mainWidget());
-}
 
 /// The folder of the scripts, beside that of this plugin: ParaView would take them for plugins
 /// there.
@@ -110,128 +90,6 @@ bool isFirstSlope(vtkSMProxy* representation)
   return true;
 }
 
-/// Rock Blocks on a slope begin where their block is released, as long as they have the centre of
-/// the test slope; a line that they may be told to draw begins there, too.
-void standWhereReleased(vtkSMSourceProxy* proxy)
-{
-  vtkSMPropertyHelper draw(proxy, "Draw");
-  if (draw.GetAsInt() != 0 || !proxy->GetProperty("Center")->IsValueDefault())
-  {
-    return;
-  }
-  constexpr int line = 2;
-  std::array<double, 6> b{};
-  proxy->GetDataInformation(0)->GetBounds(b.data());
-  if (b[0] > b[1])
-  {
-    return; // the message says why
-  }
-  const std::array<double, 3> centre = { 0.5 * (b[0] + b[1]), 0.5 * (b[2] + b[3]),
-    0.5 * (b[4] + b[5]) };
-  draw.Set(line);
-  proxy->UpdateVTKObjects();
-  proxy->UpdatePipeline();
-  draw.Set(0);
-  vtkSMPropertyHelper(proxy, "Center").Set(centre.data(), unsigned(centre.size()));
-}
-
-/// Draws the line that a filter takes where nothing is drawn, so that the mouse finds one to move.
-void drawPlaced(vtkSMSourceProxy* proxy)
-{
-  vtkSMPropertyHelper points(proxy, "Points");
-  if (points.GetNumberOfElements() > 0)
-  {
-    return;
-  }
-  std::vector<double> placed = { 5.0, 45.0, 58.0, 5.0, 55.0, 58.0 }; // on the test slope
-  vtkSMPropertyHelper terrain(proxy, "Terrain", true);
-  const bool onSlope = terrain.GetNumberOfElements() > 0 && terrain.GetAsProxy();
-  const bool blocks = proxy->GetXMLName() == std::string("RockBlocks");
-  if (onSlope || !blocks)
-  {
-    proxy->UpdateVTKObjects();
-    proxy->UpdatePipeline();
-    if (blocks)
-    {
-      standWhereReleased(proxy);
-    }
-    proxy->UpdatePropertyInformation();
-    placed = vtkSMPropertyHelper(proxy, "PlacedLine").GetDoubleArray();
-  }
-  if (placed.size() == 6 &&
-    std::any_of(placed.begin(), placed.end(), [](double x) { return x != 0.0; }))
-  {
-    points.Set(placed.data(), unsigned(placed.size()));
-  }
-  proxy->UpdateVTKObjects();
-}
-
-/// Rocks stand on the slope that is there, as those of Rock Release do, unless they have one.
-void standOnSlope(pqPipelineSource* rocks)
-{
-  vtkSMPropertyHelper terrain(rocks->getProxy(), "Terrain");
-  if (pqApplicationCore::instance()->isLoadingState() ||
-    (terrain.GetNumberOfElements() > 0 && terrain.GetAsProxy()))
-  {
-    return;
-  }
-  auto* model = pqApplicationCore::instance()->getServerManagerModel();
-  for (pqPipelineSource* slope : model->findItems<pqPipelineSource*>(rocks->getServer()))
-  {
-    if (isOf(slope->getProxy(), { "vtkDEMToCFESource", "vtkDrawnStructure" }))
-    {
-      terrain.Set(slope->getProxy(), 0);
-    }
-  }
-  rocks->getProxy()->UpdateVTKObjects();
-}
-
-/// Units behind the captions of the panel, from the properties' hints: a caption in the XML is the
-/// property's name in Python, where a unit would have to be part of it.
-void showUnits(QMainWindow* window)
-{
-  for (pqPropertyWidget* widget : window->findChildren<pqPropertyWidget*>())
-  {
-    vtkPVXMLElement* hints = widget->property() ? widget->property()->GetHints() : nullptr;
-    vtkPVXMLElement* unit = hints ? hints->FindNestedElementByName("Unit") : nullptr;
-    QWidget* parent = widget->parentWidget();
-    auto* grid = parent ? qobject_cast<QGridLayout*>(parent->layout()) : nullptr;
-    const int index = grid ? grid->indexOf(widget) : -1;
-    if (!unit || index < 0)
-    {
-      continue;
-    }
-    int row = 0, column = 0, rows = 0, columns = 0;
-    grid->getItemPosition(index, &row, &column, &rows, &columns);
-    QLayoutItem* item = grid->itemAtPosition(row, 0);
-    auto* label = item ? qobject_cast<QLabel*>(item->widget()) : nullptr;
-    const QString text =
-      QString::fromUtf8(" (%1)").arg(QString::fromUtf8(unit->GetAttribute("text")));
-    if (label && !label->text().endsWith(text))
-    {
-      label->setText(label->text() + text);
-    }
-  }
-}
-
-/// Once for each user: panels as wide as coordinates of seven digits need.
-void widenPanels(QMainWindow* window)
-{
-  constexpr int wide = 400; // px
-  constexpr const char* done = "RockfallPanelsWidened";
-  pqSettings* settings = pqApplicationCore::instance()->settings();
-  auto* panel = window->findChild<QDockWidget*>("propertiesDock");
-  if (settings->contains(done) || !panel || window->width() < 3 * wide)
-  {
-    return;
-  }
-  settings->setValue(done, true);
-  if (panel->width() < wide)
-  {
-    window->resizeDocks({ panel }, { wide }, Qt::Horizontal);
-  }
-}
-
 void fitMarkers()
 {
   auto* model = pqApplicationCore::instance()->getServerManagerModel();
@@ -249,87 +107,6 @@ void fitMarkers()
       view->render();
     }
   }
-}
-
-/// Whether ParaView is in the middle of an update: timers go on in it, and what they ask for is
-/// lost.
-bool isUpdating()
-{
-  auto* model = pqApplicationCore::instance()->getServerManagerModel();
-  for (pqServer* server : model->findItems<pqServer*>())
-  {
-    if (server->session() && server->session()->GetPendingProgress())
-    {
-      return true;
-    }
-  }
-  return false;
-}
-
-/// Palettes, legends and charts go with the data that are shown.
-void followShown()
-{
-  auto* model = pqApplicationCore::instance()->getServerManagerModel();
-  for (pqView* view : model->findItems<pqView*>())
-  {
-    for (pqRepresentation* shown : view->getRepresentations())
-    {
-      if (shown->isVisible())
-      {
-        rockfall::window::follow(shown->getProxy(), view->getViewProxy());
-      }
-    }
-    view->render();
-  }
-}
-
-/// All views, with what is new in their pipelines, before this returns.
-void renderNow()
-{
-  auto* model = pqApplicationCore::instance()->getServerManagerModel();
-  for (pqView* view : model->findItems<pqView*>())
-  {
-    view->forceRender();
-  }
-}
-
-/// The time step by which the last rock of a run has come to its end, s; 0 if it is not known here.
-/// ParaView goes from step to step: with an end between two it would go past it, and begin anew.
-double lastEnd(vtkSMSourceProxy* run)
-{
-  auto* algorithm = vtkAlgorithm::SafeDownCast(run->GetClientSideObject());
-  auto* table = algorithm ? vtkTable::SafeDownCast(algorithm->GetOutputDataObject(3)) : nullptr;
-  vtkDataArray* ends = table ? table->GetRowData()->GetArray("EndTime") : nullptr;
-  if (!ends || ends->GetNumberOfTuples() == 0)
-  {
-    return 0.0;
-  }
-  const double end = ends->GetRange(0)[1];
-  const std::vector<double> steps =
-    vtkSMPropertyHelper(run, "TimestepValues", true).GetDoubleArray();
-  const auto step = std::lower_bound(steps.begin(), steps.end(), end);
-  return step == steps.end() ? end : *step;
-}
-
-/// The same of all runs.
-double lastEnd(pqServer* server)
-{
-  double end = 0.0;
-  auto* model = pqApplicationCore::instance()->getServerManagerModel();
-  for (pqPipelineSource* run : model->findItems<pqPipelineSource*>(server))
-  {
-    if (isOf(run->getProxy(), { "vtkRockfallSimulation" }))
-    {
-      end = std::max(end, lastEnd(run->getSourceProxy()));
-    }
-  }
-  return end;
-}
-
-vtkSMProxy* sceneOf(pqServer* server)
-{
-  vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
-  return controller->GetAnimationScene(server->session());
 }
 
 } // namespace
@@ -355,7 +132,7 @@ void pqRockfallWindow::begin()
   this->connect(
     model, &pqServerManagerModel::representationAdded, this, &pqRockfallWindow::onRepresentation);
   this->connect(&this->Clock, &QTimer::timeout, this, &pqRockfallWindow::tellRuns);
-  this->connect(&this->Clock, &QTimer::timeout, [window] { showUnits(window); });
+  this->connect(&this->Clock, &QTimer::timeout, [window] { rockfall::window::showUnits(window); });
   this->connect(&this->Clock, &QTimer::timeout, &fitMarkers);
   this->connect(&this->Clock, &QTimer::timeout,
     [] { rockfall::window::layHandles(pqActiveObjects::instance().activeSource()); });
@@ -366,7 +143,7 @@ void pqRockfallWindow::begin()
   this->connect(this->Picker, &pqPathPicker::missed, this,
     [this] { this->tell(tr("There is no trajectory where you clicked")); });
   this->makeMenu(window);
-  widenPanels(window);
+  rockfall::window::widenPanels(window);
   const QString pages = scriptFolder() + "/RockfallDDA.qch";
   if (QFileInfo::exists(pages))
   {
@@ -459,12 +236,12 @@ void pqRockfallWindow::onSource(pqPipelineSource* source)
   const std::string name = proxy->GetXMLName();
   if (name == "RockSourceReader" || name == "RockBlocks" || name == "JointedRockMass")
   {
-    standOnSlope(source);
+    rockfall::window::standOnSlope(source);
   }
   if (name != "RockSourceReader" &&
     isOf(proxy, { "vtkRockBlockSource", "vtkTrajectoryCollector", "vtkDrawnStructure" }))
   {
-    drawPlaced(source->getSourceProxy());
+    rockfall::window::drawPlaced(source->getSourceProxy());
   }
   if (isOf(proxy, { "vtkDEMToCFESource" }))
   {
@@ -593,102 +370,5 @@ void pqRockfallWindow::onData(pqPipelineSource* source)
   if (isOf(proxy, { "vtkRockfallSimulation" }))
   {
     this->endWithLastRock(source->getServer());
-  }
-}
-
-//-----------------------------------------------------------------------------
-void pqRockfallWindow::endWithLastRock(pqServer* server)
-{
-  const double end = lastEnd(server);
-  vtkSMProxy* scene = sceneOf(server);
-  if (!scene || !(end > 0.0))
-  {
-    return;
-  }
-  // A time that the user has locked stays.
-  if (vtkSMPropertyHelper(scene, "LockEndTime").GetAsInt() &&
-    vtkSMPropertyHelper(scene, "EndTime").GetAsDouble() != this->LastEnd)
-  {
-    return;
-  }
-  vtkSMPropertyHelper now(scene, "AnimationTime");
-  const bool atEnd = this->LastEnd > 0.0 && (this->AtEnd || now.GetAsDouble() == this->LastEnd);
-  this->LastEnd = end;
-  vtkSMPropertyHelper(scene, "LockEndTime").Set(1);
-  vtkSMPropertyHelper(scene, "EndTime").Set(end);
-  if (atEnd || now.GetAsDouble() > end)
-  {
-    now.Set(end); // whoever looks at whole paths goes on doing so
-  }
-  scene->UpdateVTKObjects();
-}
-
-//-----------------------------------------------------------------------------
-void pqRockfallWindow::lookAtTime()
-{
-  pqServer* server = pqActiveObjects::instance().activeServer();
-  vtkSMProxy* scene = server ? sceneOf(server) : nullptr;
-  const double end = server ? lastEnd(server) : 0.0;
-  // While there are no rocks ParaView sets times of its own, which tell of nobody's wish.
-  if (!scene || !(end > 0.0) || !this->Running.isEmpty())
-  {
-    this->Waiting = true;
-    return;
-  }
-  if (!this->Waiting)
-  {
-    this->AtEnd = vtkSMPropertyHelper(scene, "AnimationTime").GetAsDouble() == this->LastEnd;
-  }
-  else if (this->AtEnd && end == this->LastEnd)
-  {
-    scene->InvokeCommand("GoToLast"); // views may be elsewhere than its time says
-    renderNow();
-  }
-  this->Waiting = false;
-}
-
-//-----------------------------------------------------------------------------
-void pqRockfallWindow::tellRuns()
-{
-  if (isUpdating())
-  {
-    return;
-  }
-  this->lookAtTime();
-  bool settled = false;
-  QMainWindow* window = mainWindow();
-  auto* model = pqApplicationCore::instance()->getServerManagerModel();
-  for (pqPipelineSource* source : model->findItems<pqPipelineSource*>())
-  {
-    vtkSMProxy* proxy = source->getProxy();
-    if (!isOf(proxy, { "vtkRockfallSimulation" }) ||
-      source->modifiedState() == pqProxy::UNINITIALIZED)
-    {
-      continue;
-    }
-    proxy->UpdatePropertyInformation(proxy->GetProperty("RunStatus"));
-    const QString status = QString::fromUtf8(vtkSMPropertyHelper(proxy, "RunStatus").GetAsString());
-    const QString name = source->getSMName();
-    const bool running = status.startsWith("running") || status.startsWith("stopping");
-    if (window && (running || this->Running.contains(name)))
-    {
-      window->statusBar()->showMessage(name + ": " + status, running ? 0 : 10000);
-    }
-    if (running)
-    {
-      this->Running.insert(name);
-    }
-    else if (this->Running.remove(name))
-    {
-      // The last look, also where ParaView does not ask, as while tests are played.
-      proxy->InvokeCommand("Watch");
-      proxy->MarkDirty(nullptr);
-      settled = true;
-    }
-  }
-  if (settled)
-  {
-    renderNow();
-    followShown();
   }
 }

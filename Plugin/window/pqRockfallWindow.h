@@ -16,7 +16,7 @@ class pqView;
 class vtkObject;
 
 /**
- * What the plugin does in a window: the Rockfall menu; the looks of what is shown first; drawn
+ * The plugin in a window: the Rockfall menu; the looks of what is shown first; drawn
  * lines that begin where the slope or the paths are; the numbers of presets in the panel; a chart
  * of the trajectory that is clicked; the state of runs in the status bar; animations in real time
  * that end with the last rock.

@@ -50,7 +50,7 @@ struct OdeFall
     dHashSpaceSetLevels(rocks, -1, 3);
     joints = dJointGroupCreate(0);
     friction = std::tan(radians(kRockFriction));
-    // Its height fields have y upwards; rows go against the y of the world.
+    // ODE's height fields have y upwards; rows go against the y of the world.
     heights = dGeomHeightfieldDataCreate();
     dGeomHeightfieldDataBuildDouble(heights, slope.heights().data(), 1, slope.width(),
       slope.height(), kNodes, kNodes, 1.0, 0.0, 1.0, 0);

@@ -75,7 +75,7 @@ private:
     std::array<Vec3, 2> tangent;  ///< Rock's axes.
     Vec3 n = Vec3::Zero();        ///< Rock's axes.
     Vec3 x = Vec3::Zero();        ///< Material point of the rock.
-    Vec3 y0 = Vec3::Zero();       ///< Its place at the start, rock's axes.
+    Vec3 y0 = Vec3::Zero();       ///< Place at the start, rock's axes.
     bool fixedToSlope = false;    ///< FaceVertex: the point is the slope's.
     ContactLaw law;
     Eigen::Vector2d travel = Eigen::Vector2d::Zero();
@@ -104,7 +104,7 @@ private:
   std::size_t blockEntries_ = 0; ///< How many of them are not contacts'.
   Eigen::SparseMatrix<double> matrix_;
   Eigen::SparseLU<Eigen::SparseMatrix<double>> factors_; ///< LU, as friction is unsymmetric.
-  std::vector<int> pattern_; ///< Which blocks the rock touched when it was last analysed.
+  std::vector<int> pattern_; ///< Blocks that the rock touched when it was last analysed.
   Eigen::VectorXd blockLoad_, load_;
   double rate_ = 0.0; ///< Ḋ¹ = rate D + offset
   Eigen::VectorXd offset_;

@@ -22,7 +22,7 @@ enum class SlopeModel : std::uint8_t
   ArtificialBlocks, ///< One convex block per CFE (fig. 4, b).
 };
 
-/// What the blocks of the slope are made of.
+/// Material of the blocks of the slope.
 struct SlopeBlockMaterial
 {
   double density = 2500.0;    ///< kg/m³, > 0.

@@ -121,7 +121,7 @@ TEST(BlockSlope, ADroppedCubeReboundsAsOnCfes)
         // where each corner is on another block.
         const double difference = largestDifference(onCfes, run.trajectory);
         EXPECT_LT(difference, 0.02 * incident) << place.transpose() << ", E " << young;
-        // Its speed on the floor, from where it is when it flies again.
+        // Speed on the floor, from where the block is when it flies again.
         const Sample top = evenSamples(run.trajectory)[128];
         const double rebound =
           std::sqrt(top.velocity.squaredNorm() + 2.0 * kGravity * (top.position.z() - 100.5));

@@ -20,7 +20,7 @@ public:
   using std::runtime_error::runtime_error;
 };
 
-/// What a run needs beside the data.
+/// Settings of a run beside the data.
 struct GroundSettings
 {
   SurfaceMaterial material;
@@ -60,7 +60,7 @@ struct Arguments
 Arguments parseArguments(int count, char** words, GroundSettings defaults,
   const std::vector<std::string>& switches, bool data = true);
 
-/// What a program's main returns: an exception is its message on standard error, and 1.
+/// The return value of a program's main: an exception is its message on standard error, and 1.
 int runProgram(int (*run)(int, char**), int count, char** words);
 
 } // namespace rockfall::calibration

@@ -35,7 +35,7 @@ struct ImpactOutcome
 /// needed for a ball around it to be clear of the slope, or as it is farthest within half a second.
 Rock heldBack(const Terrain& terrain, Rock rock, double gravity);
 
-/// Its first impact on one realisation of the slope.
+/// First impact of a rock on one realisation of the slope.
 ImpactOutcome simulateImpact(
   const Terrain& terrain, const Rock& rock, const SimulationParameters& p, int iteration);
 

@@ -7,7 +7,8 @@
 //     [--output runs.csv] [--stops stops.csv]
 //
 // All of it twice: as simulated, and with run-outs beyond the tracked ground cut off at its edge.
-// That is the convex hull of releases and observed stops, widened by a cell of the folder's grid.
+// The tracked ground is the convex hull of releases and observed stops, widened by a cell of the
+// folder's grid.
 
 #include "GroundSettings.h"
 #include "fieldScores.h"
@@ -116,7 +117,7 @@ Experiment readExperiment(const std::string& folder, const GroundSettings& s)
   return e;
 }
 
-/// What is kept of all trajectories.
+/// Summaries of all trajectories.
 class Stops : public TrajectorySink
 {
 public:

@@ -34,7 +34,7 @@ using namespace rockfall::calibration;
 namespace
 {
 
-/// What was observed at the seam of two flights.
+/// An impact as observed, at the seam of two flights.
 struct Impact
 {
   std::string id, track;

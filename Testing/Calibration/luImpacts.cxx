@@ -81,7 +81,7 @@ std::vector<Rock> drawRocks(const Published& impact, const Terrain& ground, cons
   }
   rock.shape = rock.shape.withVolume(std::pow(0.5 * kSize.x() / half, 3));
   rock.density = kMass / rock.shape.integrals().volume;
-  // Its way is along x here.
+  // The way is along x here.
   rock.velocity = Vec3(impact.velocity.head<2>().norm(), 0.0, impact.velocity.z());
   rock.angularVelocity = impact.rate * Vec3::UnitY();
   rock.position = Vec3(0.4 * kPlane, 0.5 * kPlane, 0.0);

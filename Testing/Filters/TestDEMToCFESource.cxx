@@ -324,7 +324,7 @@ TEST_F(TestDEMToCFESource, ContoursAndPresets)
   EXPECT_EQ(value(mesh->GetPointData(), "Elevation"), 20.0);
   EXPECT_EQ(value(mesh->GetCellData(), "RestitutionCoefficient"), 0.32);
   EXPECT_EQ(value(mesh->GetFieldData(), "TerrainMaterial", 0, 7), 1.0);
-  // Its stones, not the roughness of the fields that it replaces.
+  // The preset's stones, not the roughness of the fields that it replaces.
   const rockfall::Roughness& stones = rockfall::groundPresets()[3].roughness;
   EXPECT_EQ(value(mesh->GetFieldData(), "TerrainRoughness", 0, 0), 0.0);
   EXPECT_EQ(value(mesh->GetFieldData(), "TerrainRoughness", 0, 2), stones.length);

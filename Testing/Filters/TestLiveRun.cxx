@@ -117,7 +117,7 @@ TEST_F(TestLiveRun, StopsAndKeepsWhatIsMade)
     this->Output(1)->GetPoint(k, point);
     ASSERT_EQ(point[2], first[std::size_t(3 * k + 2)]) << k;
   }
-  // It stays so until something changes.
+  // The state stays so until something changes.
   const int runs = this->Simulation->GetNumberOfRuns();
   this->Simulation->Update();
   EXPECT_EQ(this->Simulation->GetNumberOfRuns(), runs);

@@ -65,7 +65,7 @@ protected:
     return -1.0;
   }
 
-  /// That of 2 over 1 before they met, from what they had at the end along x.
+  /// Speed of 2 over that of 1 before they met, from their speeds at the end along x.
   double SpeedsRatio()
   {
     vtkPolyData* moved = this->RocksAt(1.0);

@@ -25,7 +25,7 @@ protected:
     this->Filter->SetInputDataObject(0, this->Paths.Data);
   }
 
-  /// Those that the map has beside the usual ones.
+  /// Adds statistics that the map has beside the usual ones.
   void AddStatistics(std::initializer_list<int> numbers)
   {
     for (const int number : numbers)

@@ -495,7 +495,7 @@ if told != made.getvalue():
                     "".join(difflib.unified_diff(told.splitlines(True), made.getvalue().splitlines(True),
                                                  "docs", "made", n=0)))
 
-# Who sees a message finds its words on the page, with what to do. … stands for anything.
+# Words of a message are on the page, with what to do. … stands for anything.
 with open(PAGE, encoding="utf-8") as file:
     page = file.read()
 words = [re.compile(".*".join(re.escape(piece) for piece in phrase.split("…")), re.IGNORECASE)

@@ -25,7 +25,7 @@ assert interval([3, 3, 3]) == (3.0, 3.0, 3.0)
 assert interval([0, 2]) == (1.0, 0.0, 2.0)
 
 # The rocks of one iteration push each other: their number on the road differs by 6 from one to the next.
-# That more of them are on it if they collide takes the 20 of the full form.
+# More of them on it if they collide: that takes the 20 of the full form.
 FULL = os.environ.get("ROCKFALL_VERIFICATION") == "full"
 ITERATIONS = 20 if FULL else 3
 

@@ -283,7 +283,7 @@ TEST(Ground, RoughnessOfClasses)
   ASSERT_EQ(rough.roughness.size(), 2u);
   EXPECT_EQ(rough.roughness[0], terrain.roughness());
   EXPECT_EQ(rough.roughness[1], (Roughness{ -0.2, 0.3, 1.5, { 0.1, 0.25, 0.6 } }));
-  // That of a preset, where the row does not say otherwise.
+  // A preset's, where the row does not say otherwise.
   const MaterialClasses preset =
     read({ halves().write(), table("class,preset,rv,rg10\n1,,0.9,\n2,talus,,0.3\n"), "" }, terrain);
   ASSERT_EQ(preset.roughness.size(), 2u);

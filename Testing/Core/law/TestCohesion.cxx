@@ -87,7 +87,7 @@ TEST(Cohesion, OnTheGroundIsThatOfFourPoints)
     const Trajectory t = simulate(slope, rock, p);
     const double way = (t.summary.stop - rock.position).norm();
     const double mass = t.summary.mass;
-    // It sinks by the compression of its springs first, of less than a millimetre.
+    // The block sinks by the compression of its springs first, of less than a millimetre.
     EXPECT_NEAR(way, 0.5 * expected(mass) * p.endTime * p.endTime, 0.01) << corners;
   }
 }

@@ -155,7 +155,7 @@ TEST(Barriers, CountWhatATouchHolds)
 
 TEST(Barriers, WhatTheyCatchInTheMiddleOfAnImpactHasHadOne)
 {
-  // It comes down on its face just before the barrier; the impact takes some 2.5 ms.
+  // The rock comes down on its face just before the barrier; the impact takes some 2.5 ms.
   const double speed = 20.0, fallen = 0.5 * kGravity * 0.25;
   for (const double before : { 0.0005, 0.001, 0.002 })
   {

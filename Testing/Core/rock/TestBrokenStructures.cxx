@@ -80,7 +80,7 @@ TEST(BrokenStructures, NetIsGoneForTheNext)
     EXPECT_EQ(follows.summary.fate, Fate::Moving);
     EXPECT_GT(follows.summary.stop.x(), 61.0);
   }
-  // Who comes before it breaks is caught, and stays so.
+  // Rocks that come before it breaks are caught, and stay so.
   const std::vector<Trajectory> runs =
     runTogether(net(400e3), { thrown(kFast, 0.4, 0, beside), thrown(kSlow, 0.3, 1) });
   EXPECT_EQ(runs[0].structures[0].outcome, StructureOutcome::BarrierBroken);
@@ -113,7 +113,7 @@ TEST(BrokenStructures, WhatLeansOnATreeGoesOnWhenAnotherBreaksIt)
   const Vec3 down(std::cos(angle), 0.0, -std::sin(angle));
   leans.position += (axis - 1.5 - leans.position.x()) / down.x() * down;
   leans.blockId = 0;
-  // It comes to the stem across the slope after 5 s, well over the cube.
+  // The late rock comes to the stem across the slope after 5 s, well over the cube.
   Rock late = brick(Vec3(1, 1, 1), Vec3::Zero(), 1);
   const double time = 5.0, speed = 9.0, rise = 0.5 * kGravity * time;
   late.position = leans.position + Vec3(axis - leans.position.x(), -speed * time, 4.0);

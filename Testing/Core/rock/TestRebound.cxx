@@ -79,7 +79,7 @@ TEST(Rebound, FiveMetreDropLosesWhatRvSays)
     const double series = fall * (1.0 + rv) / (1.0 - rv);
     EXPECT_EQ(t.summary.fate, Fate::Rested);
     EXPECT_NEAR(t.summary.endTime, series + 0.5, 0.6);
-    // It stands on the floor, 6e-6 m into the penalty springs.
+    // The block stands on the floor, 6e-6 m into the penalty springs.
     EXPECT_NEAR(t.summary.stop.z(), 100.5, 2e-5);
     EXPECT_LT(std::abs(t.summary.energy.numerical), 0.005 * t.summary.energy.released);
   }

@@ -64,7 +64,7 @@ TEST_P(SlidingTest, FollowsTheClosedForm)
     const double d = (path.back() - path.front()).norm();
     // The bar is 0.1 %. Second order in Δt gives 1e-5; the start-up from zero force costs one step.
     EXPECT_NEAR(d, closedForm(friction, 4.0), 5e-5 * d) << "azimuth " << degrees(azimuth);
-    // It stays in the fall line and on the plane: the settlement under its weight is 6e-6 m.
+    // The block stays in the fall line and on the plane: the settlement under its weight is 6e-6 m.
     const Vec3 downhill(std::cos(radians(30.0)) * std::cos(azimuth),
       std::cos(radians(30.0)) * std::sin(azimuth), -std::sin(radians(30.0)));
     const Vec3 travel = path.back() - path.front();

@@ -165,7 +165,7 @@ TEST(Overlaps, PushedApart)
   {
     EXPECT_EQ(again[i].position, rocks[i].position);
   }
-  // Who is not concerned does not move.
+  // Rocks that are not concerned do not move.
   std::vector<Rock> apart = { cubeAt({ 10.0, 20.0, 9.0 }, 0), cubeAt({ 15.0, 20.0, 9.0 }, 1) };
   EXPECT_EQ(pushApart(ground, apart).rocks, 0);
   // The heavy one moves less, as masses are.

@@ -171,7 +171,7 @@ TEST(Starts, LiftIsWhatItTakesAndNoMore)
           {
             EXPECT_FALSE(isClear(block, state, lift - hair, patch)) << at;
             ++lifted;
-            // That none of its corners is in the body, and none of the body's in it, is common.
+            // Commonly no corner of the rock is in the body, and none of the body's in the rock.
             bool seen = false;
             for (const Vec3& v : rock.vertices())
             {

@@ -1,0 +1,154 @@
+// Impacts, and meetings with structures.
+
+#include "runOutputs.h"
+
+#include "runArrays.h"
+
+#include "vtkCellArray.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+
+namespace rockfall::filters
+{
+
+struct ImpactPoints::Arrays
+{
+  vtkNew<vtkPolyData> data;
+  vtkFieldData* fields = data->GetPointData();
+  vtkSmartPointer<vtkPoints> points = doublePoints();
+  vtkNew<vtkCellArray> vertices;
+  IdentityArrays identity{ fields };
+  vtkSmartPointer<vtkDoubleArray> time = addArray<vtkDoubleArray>(fields, "Time");
+  vtkSmartPointer<vtkDoubleArray> normal = addArray<vtkDoubleArray>(fields, "Normal", 3);
+  vtkSmartPointer<vtkIdTypeArray> cfe = addArray<vtkIdTypeArray>(fields, "CFEId");
+  vtkSmartPointer<vtkDoubleArray> impulse = addArray<vtkDoubleArray>(fields, "Impulse");
+  vtkSmartPointer<vtkDoubleArray> approach = addArray<vtkDoubleArray>(fields, "ApproachSpeed");
+  vtkSmartPointer<vtkDoubleArray> before = addArray<vtkDoubleArray>(fields, "VelocityBefore", 3);
+  vtkSmartPointer<vtkDoubleArray> after = addArray<vtkDoubleArray>(fields, "VelocityAfter", 3);
+  vtkSmartPointer<vtkDoubleArray> loss = addArray<vtkDoubleArray>(fields, "EnergyLoss");
+  vtkSmartPointer<vtkDoubleArray> restitution = addArray<vtkDoubleArray>(fields, "Restitution");
+  vtkSmartPointer<vtkDoubleArray> scarDepth = addArray<vtkDoubleArray>(fields, "ScarDepth");
+  vtkSmartPointer<vtkDoubleArray> scarLength = addArray<vtkDoubleArray>(fields, "ScarLength");
+  vtkSmartPointer<vtkIntArray> otherRock = addArray<vtkIntArray>(fields, "OtherRockId");
+  vtkSmartPointer<vtkIdTypeArray> otherBlock = addArray<vtkIdTypeArray>(fields, "OtherBlockId");
+};
+
+ImpactPoints::ImpactPoints(const RunFrame& frame)
+  : frame_(frame)
+  , arrays_(std::make_unique<Arrays>())
+{
+}
+
+ImpactPoints::~ImpactPoints() = default;
+
+void ImpactPoints::append(const Trajectory& trajectory)
+{
+  Arrays& a = *arrays_;
+  const TrajectorySummary& summary = trajectory.summary;
+  for (const ImpactEvent& impact : trajectory.impacts)
+  {
+    a.vertices->InsertNextCell(1);
+    a.vertices->InsertCellPoint(a.points->GetNumberOfPoints());
+    insertPoint(a.points, impact.position + frame_.origin);
+    a.identity.append(summary.blockId, summary.rock, summary.iteration);
+    a.time->InsertNextValue(impact.time);
+    a.normal->InsertNextTuple(impact.normal.data());
+    a.cfe->InsertNextValue(impact.cfe);
+    a.impulse->InsertNextValue(impact.impulse);
+    a.approach->InsertNextValue(impact.approachSpeed);
+    a.before->InsertNextTuple(impact.velocityBefore.data());
+    a.after->InsertNextTuple(impact.velocityAfter.data());
+    a.loss->InsertNextValue(impact.energyLoss);
+    a.restitution->InsertNextValue(impact.restitution);
+    a.scarDepth->InsertNextValue(impact.scarDepth);
+    a.scarLength->InsertNextValue(impact.scarLength);
+    a.otherRock->InsertNextValue(impact.otherRock);
+    a.otherBlock->InsertNextValue(impact.otherBlockId);
+  }
+}
+
+void ImpactPoints::copy(vtkPolyData* output) const
+{
+  arrays_->data->SetPoints(arrays_->points);
+  arrays_->data->SetVerts(arrays_->vertices);
+  output->DeepCopy(arrays_->data);
+}
+
+void ImpactPoints::finish(vtkPolyData* output)
+{
+  Arrays& a = *arrays_;
+  squeeze(a.fields);
+  a.points->Squeeze();
+  a.vertices->Squeeze();
+  a.data->SetPoints(a.points);
+  a.data->SetVerts(a.vertices);
+  output->ShallowCopy(a.data);
+}
+
+//------------------------------------------------------------------------------
+struct StructurePoints::Arrays
+{
+  vtkNew<vtkPolyData> data;
+  vtkFieldData* fields = data->GetPointData();
+  vtkSmartPointer<vtkPoints> points = doublePoints();
+  vtkNew<vtkCellArray> vertices;
+  IdentityArrays identity{ fields };
+  vtkSmartPointer<vtkIdTypeArray> structure = addArray<vtkIdTypeArray>(fields, "StructureId");
+  vtkSmartPointer<vtkIntArray> outcome = addArray<vtkIntArray>(fields, "Outcome");
+  vtkSmartPointer<vtkDoubleArray> time = addArray<vtkDoubleArray>(fields, "Time");
+  vtkSmartPointer<vtkDoubleArray> velocity = addArray<vtkDoubleArray>(fields, "Velocity", 3);
+  vtkSmartPointer<vtkDoubleArray> speed = addArray<vtkDoubleArray>(fields, "Speed");
+  vtkSmartPointer<vtkDoubleArray> energy = addArray<vtkDoubleArray>(fields, "KineticEnergy");
+  vtkSmartPointer<vtkDoubleArray> height = addArray<vtkDoubleArray>(fields, "HeightOverGround");
+  vtkSmartPointer<vtkDoubleArray> taken = addArray<vtkDoubleArray>(fields, "EnergyTaken");
+};
+
+StructurePoints::StructurePoints(const RunFrame& frame)
+  : frame_(frame)
+  , arrays_(std::make_unique<Arrays>())
+{
+}
+
+StructurePoints::~StructurePoints() = default;
+
+void StructurePoints::append(const Trajectory& trajectory)
+{
+  Arrays& a = *arrays_;
+  const TrajectorySummary& summary = trajectory.summary;
+  for (const StructureEvent& event : trajectory.structures)
+  {
+    a.vertices->InsertNextCell(1);
+    a.vertices->InsertCellPoint(a.points->GetNumberOfPoints());
+    insertPoint(a.points, event.position + frame_.origin);
+    a.identity.append(summary.blockId, summary.rock, summary.iteration);
+    a.structure->InsertNextValue(event.feature);
+    a.outcome->InsertNextValue(int(event.outcome));
+    a.time->InsertNextValue(event.time);
+    a.velocity->InsertNextTuple(event.velocity.data());
+    a.speed->InsertNextValue(event.velocity.norm());
+    a.energy->InsertNextValue(event.kineticEnergy);
+    a.height->InsertNextValue(event.heightOverGround);
+    a.taken->InsertNextValue(event.energyTaken);
+  }
+}
+
+void StructurePoints::copy(vtkPolyData* output) const
+{
+  arrays_->data->SetPoints(arrays_->points);
+  arrays_->data->SetVerts(arrays_->vertices);
+  output->DeepCopy(arrays_->data);
+}
+
+void StructurePoints::finish(vtkPolyData* output)
+{
+  Arrays& a = *arrays_;
+  squeeze(a.fields);
+  a.points->Squeeze();
+  a.vertices->Squeeze();
+  a.data->SetPoints(a.points);
+  a.data->SetVerts(a.vertices);
+  output->ShallowCopy(a.data);
+}
+
+} // namespace rockfall::filters

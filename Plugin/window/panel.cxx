@@ -1,0 +1,67 @@
+#include "panel.h"
+
+#include "pqApplicationCore.h"
+#include "pqCoreUtilities.h"
+#include "pqPropertyWidget.h"
+#include "pqSettings.h"
+#include "vtkPVXMLElement.h"
+#include "vtkSMProperty.h"
+
+#include <QDockWidget>
+#include <QGridLayout>
+#include <QLabel>
+#include <QMainWindow>
+#include <QString>
+
+namespace rockfall::window
+{
+
+QMainWindow* mainWindow()
+{
+  return qobject_cast<QMainWindow*>(pqCoreUtilities::mainWidget());
+}
+
+void showUnits(QMainWindow* window)
+{
+  for (pqPropertyWidget* widget : window->findChildren<pqPropertyWidget*>())
+  {
+    vtkPVXMLElement* hints = widget->property() ? widget->property()->GetHints() : nullptr;
+    vtkPVXMLElement* unit = hints ? hints->FindNestedElementByName("Unit") : nullptr;
+    QWidget* parent = widget->parentWidget();
+    auto* grid = parent ? qobject_cast<QGridLayout*>(parent->layout()) : nullptr;
+    const int index = grid ? grid->indexOf(widget) : -1;
+    if (!unit || index < 0)
+    {
+      continue;
+    }
+    int row = 0, column = 0, rows = 0, columns = 0;
+    grid->getItemPosition(index, &row, &column, &rows, &columns);
+    QLayoutItem* item = grid->itemAtPosition(row, 0);
+    auto* label = item ? qobject_cast<QLabel*>(item->widget()) : nullptr;
+    const QString text =
+      QString::fromUtf8(" (%1)").arg(QString::fromUtf8(unit->GetAttribute("text")));
+    if (label && !label->text().endsWith(text))
+    {
+      label->setText(label->text() + text);
+    }
+  }
+}
+
+void widenPanels(QMainWindow* window)
+{
+  constexpr int wide = 400; // px
+  constexpr const char* done = "RockfallPanelsWidened";
+  pqSettings* settings = pqApplicationCore::instance()->settings();
+  auto* panel = window->findChild<QDockWidget*>("propertiesDock");
+  if (settings->contains(done) || !panel || window->width() < 3 * wide)
+  {
+    return;
+  }
+  settings->setValue(done, true);
+  if (panel->width() < wide)
+  {
+    window->resizeDocks({ panel }, { wide }, Qt::Horizontal);
+  }
+}
+
+} // namespace rockfall::window

@@ -1,0 +1,21 @@
+#pragma once
+
+/// @file
+/// ParaView's window and its properties panel: units of captions, and its width.
+
+class QMainWindow;
+
+namespace rockfall::window
+{
+
+/// ParaView's window, null before there is one.
+QMainWindow* mainWindow();
+
+/// Units behind the captions of the panel, from the properties' hints: a caption in the XML is the
+/// property's name in Python, where a unit would have to be part of it.
+void showUnits(QMainWindow* window);
+
+/// Once for each user: panels as wide as coordinates of seven digits need.
+void widenPanels(QMainWindow* window);
+
+} // namespace rockfall::window

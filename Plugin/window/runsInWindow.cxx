@@ -1,0 +1,216 @@
+// Runs in the window: their state in the status bar, new data in the views, and animations that end
+// with the last rock.
+
+#include "pqRockfallWindow.h"
+
+#include "looks.h"
+#include "panel.h"
+
+#include "pqActiveObjects.h"
+#include "pqApplicationCore.h"
+#include "pqPipelineSource.h"
+#include "pqRepresentation.h"
+#include "pqServer.h"
+#include "pqServerManagerModel.h"
+#include "pqView.h"
+#include "vtkAlgorithm.h"
+#include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkNew.h"
+#include "vtkSMParaViewPipelineControllerWithRendering.h"
+#include "vtkSMProperty.h"
+#include "vtkSMPropertyHelper.h"
+#include "vtkSMSession.h"
+#include "vtkSMSourceProxy.h"
+#include "vtkTable.h"
+
+#include <QMainWindow>
+#include <QStatusBar>
+
+#include <algorithm>
+#include <vector>
+
+namespace
+{
+
+using rockfall::window::isOf;
+
+/// Whether ParaView is in the middle of an update: timers go on in it, and what they ask for is
+/// lost.
+bool isUpdating()
+{
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  for (pqServer* server : model->findItems<pqServer*>())
+  {
+    if (server->session() && server->session()->GetPendingProgress())
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
+/// Palettes, legends and charts go with the data that are shown.
+void followShown()
+{
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  for (pqView* view : model->findItems<pqView*>())
+  {
+    for (pqRepresentation* shown : view->getRepresentations())
+    {
+      if (shown->isVisible())
+      {
+        rockfall::window::follow(shown->getProxy(), view->getViewProxy());
+      }
+    }
+    view->render();
+  }
+}
+
+/// All views, with what is new in their pipelines, before this returns.
+void renderNow()
+{
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  for (pqView* view : model->findItems<pqView*>())
+  {
+    view->forceRender();
+  }
+}
+
+/// The time step by which the last rock of a run has come to its end, s; 0 if it is not known here.
+/// ParaView goes from step to step: with an end between two it would go past it, and begin anew.
+double lastEnd(vtkSMSourceProxy* run)
+{
+  auto* algorithm = vtkAlgorithm::SafeDownCast(run->GetClientSideObject());
+  auto* table = algorithm ? vtkTable::SafeDownCast(algorithm->GetOutputDataObject(3)) : nullptr;
+  vtkDataArray* ends = table ? table->GetRowData()->GetArray("EndTime") : nullptr;
+  if (!ends || ends->GetNumberOfTuples() == 0)
+  {
+    return 0.0;
+  }
+  const double end = ends->GetRange(0)[1];
+  const std::vector<double> steps =
+    vtkSMPropertyHelper(run, "TimestepValues", true).GetDoubleArray();
+  const auto step = std::lower_bound(steps.begin(), steps.end(), end);
+  return step == steps.end() ? end : *step;
+}
+
+/// The same of all runs.
+double lastEnd(pqServer* server)
+{
+  double end = 0.0;
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  for (pqPipelineSource* run : model->findItems<pqPipelineSource*>(server))
+  {
+    if (isOf(run->getProxy(), { "vtkRockfallSimulation" }))
+    {
+      end = std::max(end, lastEnd(run->getSourceProxy()));
+    }
+  }
+  return end;
+}
+
+vtkSMProxy* sceneOf(pqServer* server)
+{
+  vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
+  return controller->GetAnimationScene(server->session());
+}
+
+} // namespace
+
+//-----------------------------------------------------------------------------
+void pqRockfallWindow::endWithLastRock(pqServer* server)
+{
+  const double end = lastEnd(server);
+  vtkSMProxy* scene = sceneOf(server);
+  if (!scene || !(end > 0.0))
+  {
+    return;
+  }
+  // A time that the user has locked stays.
+  if (vtkSMPropertyHelper(scene, "LockEndTime").GetAsInt() &&
+    vtkSMPropertyHelper(scene, "EndTime").GetAsDouble() != this->LastEnd)
+  {
+    return;
+  }
+  vtkSMPropertyHelper now(scene, "AnimationTime");
+  const bool atEnd = this->LastEnd > 0.0 && (this->AtEnd || now.GetAsDouble() == this->LastEnd);
+  this->LastEnd = end;
+  vtkSMPropertyHelper(scene, "LockEndTime").Set(1);
+  vtkSMPropertyHelper(scene, "EndTime").Set(end);
+  if (atEnd || now.GetAsDouble() > end)
+  {
+    now.Set(end); // whoever looks at whole paths goes on doing so
+  }
+  scene->UpdateVTKObjects();
+}
+
+//-----------------------------------------------------------------------------
+void pqRockfallWindow::lookAtTime()
+{
+  pqServer* server = pqActiveObjects::instance().activeServer();
+  vtkSMProxy* scene = server ? sceneOf(server) : nullptr;
+  const double end = server ? lastEnd(server) : 0.0;
+  // While there are no rocks ParaView sets times of its own, which tell of nobody's wish.
+  if (!scene || !(end > 0.0) || !this->Running.isEmpty())
+  {
+    this->Waiting = true;
+    return;
+  }
+  if (!this->Waiting)
+  {
+    this->AtEnd = vtkSMPropertyHelper(scene, "AnimationTime").GetAsDouble() == this->LastEnd;
+  }
+  else if (this->AtEnd && end == this->LastEnd)
+  {
+    scene->InvokeCommand("GoToLast"); // views may be elsewhere than its time says
+    renderNow();
+  }
+  this->Waiting = false;
+}
+
+//-----------------------------------------------------------------------------
+void pqRockfallWindow::tellRuns()
+{
+  if (isUpdating())
+  {
+    return;
+  }
+  this->lookAtTime();
+  bool settled = false;
+  QMainWindow* window = rockfall::window::mainWindow();
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  for (pqPipelineSource* source : model->findItems<pqPipelineSource*>())
+  {
+    vtkSMProxy* proxy = source->getProxy();
+    if (!isOf(proxy, { "vtkRockfallSimulation" }) ||
+      source->modifiedState() == pqProxy::UNINITIALIZED)
+    {
+      continue;
+    }
+    proxy->UpdatePropertyInformation(proxy->GetProperty("RunStatus"));
+    const QString status = QString::fromUtf8(vtkSMPropertyHelper(proxy, "RunStatus").GetAsString());
+    const QString name = source->getSMName();
+    const bool running = status.startsWith("running") || status.startsWith("stopping");
+    if (window && (running || this->Running.contains(name)))
+    {
+      window->statusBar()->showMessage(name + ": " + status, running ? 0 : 10000);
+    }
+    if (running)
+    {
+      this->Running.insert(name);
+    }
+    else if (this->Running.remove(name))
+    {
+      // The last look, also where ParaView does not ask, as while tests are played.
+      proxy->InvokeCommand("Watch");
+      proxy->MarkDirty(nullptr);
+      settled = true;
+    }
+  }
+  if (settled)
+  {
+    renderNow();
+    followShown();
+  }
+}
