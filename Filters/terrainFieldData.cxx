@@ -4,7 +4,6 @@
 #include "base/errors.h"
 #include "base/numberText.h"
 #include "geometry/shell.h"
-#include "gis/sources.h"
 #include "roughnessFieldData.h"
 #include "structureFieldData.h"
 #include "terrainMesh.h"
@@ -30,10 +29,8 @@ namespace
 
 constexpr char heightsName[] = "TerrainHeights";
 constexpr char gridName[] = "TerrainGrid";
-constexpr char crsName[] = "TerrainCRS";
 constexpr char materialName[] = "TerrainMaterial";
 constexpr char yieldingName[] = "TerrainYielding";
-constexpr char originName[] = "LocalOrigin";
 
 /// Names of the arrays of the two kinds of classes.
 struct ClassNames
@@ -75,7 +72,7 @@ using SharedClasses = Shared<vtkUnsignedCharArray, std::uint8_t>;
 bool isOfTerrain(vtkAbstractArray* array)
 {
   const std::string name = array->GetName() ? array->GetName() : "";
-  return name.rfind("Terrain", 0) == 0 || name == originName;
+  return name.rfind("Terrain", 0) == 0 || name == kOriginArray;
 }
 
 void addNumbers(vtkFieldData* fieldData, const char* name, std::initializer_list<double> values)
@@ -352,9 +349,9 @@ void writeTerrain(std::shared_ptr<const Terrain> terrain, int stride, vtkFieldDa
       double(material.restitutionModel), material.tangentialRestitution,
       material.restitutionSpeed });
   const Vec3 origin = grid.origin();
-  addNumbers(fieldData, originName, { origin.x(), origin.y(), origin.z() });
+  addNumbers(fieldData, kOriginArray, { origin.x(), origin.y(), origin.z() });
   vtkNew<vtkStringArray> crs;
-  crs->SetName(crsName);
+  crs->SetName(kCrsArray);
   crs->InsertNextValue(grid.crs);
   fieldData->AddArray(crs);
   writeClasses(terrain->restitutionClasses(), restitutionNames, restitutionNumbers, restitutionOf,
@@ -445,7 +442,7 @@ void dropTerrain(vtkFieldData* data)
   for (int k = data->GetNumberOfArrays() - 1; k >= 0; --k)
   {
     vtkAbstractArray* array = data->GetAbstractArray(k);
-    if (isOfTerrain(array) && array->GetName() != std::string(crsName))
+    if (isOfTerrain(array) && array->GetName() != std::string(kCrsArray))
     {
       data->RemoveArray(k);
     }
@@ -471,53 +468,6 @@ std::optional<Terrain> slopeUnder(vtkPolyData* trajectories, vtkPolyData* mesh)
     return readTerrain(trajectories, false);
   }
   return {};
-}
-
-void writeCrs(const std::string& wkt, vtkFieldData* fieldData)
-{
-  if (!wkt.empty())
-  {
-    addArray<vtkStringArray>(fieldData, crsName)->InsertNextValue(wkt);
-  }
-}
-
-std::string readCrs(vtkFieldData* fieldData)
-{
-  auto* crs = vtkStringArray::SafeDownCast(fieldData->GetAbstractArray(crsName));
-  return crs && crs->GetNumberOfValues() > 0 ? std::string(crs->GetValue(0)) : std::string();
-}
-
-void checkSameCrs(vtkFieldData* fieldData, const std::string& who, vtkFieldData* terrain)
-{
-  const std::string own = readCrs(fieldData), ground = readCrs(terrain);
-  if (own != ground && !sameCrs(own, ground))
-  {
-    throw DataError(
-      who + " in " + labelOfCrs(own) + ", but the Terrain is in " + labelOfCrs(ground));
-  }
-  if (const std::string heights = own == ground ? std::string() : differentHeights(own, ground);
-      !heights.empty())
-  {
-    throw DataError(who + " in another height system than the Terrain: their heights refer to " +
-      heights + "; connect the Terrain where the layer is read, which brings them to its own");
-  }
-}
-
-void writeCoordinateSystem(const std::string& wkt, const Vec3& origin, vtkFieldData* fieldData)
-{
-  addArray<vtkStringArray>(fieldData, crsName)->InsertNextValue(wkt);
-  addNumbers(fieldData, originName, { origin.x(), origin.y(), origin.z() });
-}
-
-void copyCoordinateSystem(vtkFieldData* from, vtkFieldData* to)
-{
-  for (const char* name : { crsName, originName })
-  {
-    if (vtkAbstractArray* array = from->GetAbstractArray(name))
-    {
-      to->AddArray(array);
-    }
-  }
 }
 
 } // namespace rockfall::filters

@@ -15,18 +15,27 @@
 /// |                  | roughness mean and deviation (m), number of the restitution model,        |
 /// |                  | tangential restitution, speed of the speed-dependent model (m/s). Files   |
 /// |                  | of before there were models end with the roughness: whole velocity        |
-/// | TerrainRestitutionClass   | class per cell, row by row from the north, one byte; 0: the | | |
-/// material above. Only where there are classes, as all that follow   | | TerrainRestitutionClasses
-/// | per class restitution, its deviation, number of the model,       | | | tangential restitution,
-/// speed (m/s)                              | | TerrainRestitutionNames   | their names | |
-/// TerrainJointClass, …Classes, …Names | the same of φ (rad), its deviation, cohesion (N)       |
-/// Embankments, trees and barriers: see structureFieldData.h
+/// | TerrainYielding  | per class, the slope's own first, the parameters of yielding ground       |
 /// | LocalOrigin      | world = local + origin, m                                                 |
+///
+/// Only where there are classes:
+///
+/// | array                     | what                                                             |
+/// |---------------------------|------------------------------------------------------------------|
+/// | TerrainRestitutionClass   | class per cell, row by row from the north, one byte; 0: the      |
+/// |                           | material above                                                   |
+/// | TerrainRestitutionClasses | per class restitution, its deviation, number of the model,       |
+/// |                           | tangential restitution, speed (m/s)                              |
+/// | TerrainRestitutionNames   | names of the classes                                             |
+/// | TerrainJointClass, …      | the same of φ (rad), its deviation, cohesion (N)                 |
+///
+/// Embankments, trees and barriers: structureFieldData.h.
 ///
 /// Arrays, so that it survives shallow copies and saving and reopening as .vtp. The heights are
 /// never copied: the array shares the Core's memory on the way out, the Core the array's on the way
 /// in.
 
+#include "coordinateFieldData.h"
 #include "terrain/Terrain.h"
 
 #include <memory>
@@ -56,24 +65,8 @@ void dropTerrain(vtkFieldData* data);
 /// Whether a slope came with the data.
 bool hasTerrain(vtkFieldData* fieldData);
 
-/// Puts TerrainCRS alone there; nothing if `wkt` is empty, because nothing is known then.
-void writeCrs(const std::string& wkt, vtkFieldData* fieldData);
-
-/// TerrainCRS as WKT; empty if it is not there.
-std::string readCrs(vtkFieldData* fieldData);
-
 /// The slope that trajectories fell on: that of `mesh`, which may be null, else the one that came
 /// with them, if any. Throws DataError as readTerrain and checkSameCrs.
 std::optional<Terrain> slopeUnder(vtkPolyData* trajectories, vtkPolyData* mesh);
-
-/// Throws DataError if both have a TerrainCRS and not the same one. `who` begins the message: "The
-/// Rocks are".
-void checkSameCrs(vtkFieldData* fieldData, const std::string& who, vtkFieldData* terrain);
-
-/// Puts TerrainCRS and LocalOrigin there.
-void writeCoordinateSystem(const std::string& wkt, const Vec3& origin, vtkFieldData* fieldData);
-
-/// Copies TerrainCRS and LocalOrigin, for the outputs that stand in the same coordinates.
-void copyCoordinateSystem(vtkFieldData* from, vtkFieldData* to);
 
 } // namespace rockfall::filters
