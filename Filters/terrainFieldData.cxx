@@ -185,7 +185,7 @@ void takeJoint(const double* numbers, SurfaceMaterial& m)
   m.cohesion = numbers[2];
 }
 
-/// What yields: as typed, class 0 first, then those of the restitution layer.
+/// Yielding ground: as typed, class 0 first, then those of the restitution layer.
 void writeYielding(const Terrain& terrain, vtkFieldData* fieldData)
 {
   const auto fields = yieldingFields();
@@ -208,11 +208,14 @@ void writeYielding(const Terrain& terrain, vtkFieldData* fieldData)
 std::vector<YieldingGround> readYielding(vtkFieldData* fieldData, int classes)
 {
   std::vector<YieldingGround> grounds(std::size_t(classes) + 1);
-  if (!fieldData->GetAbstractArray(yieldingName))
+  const vtkAbstractArray* array = fieldData->GetAbstractArray(yieldingName);
+  if (!array)
   {
     return grounds;
   }
-  const auto fields = yieldingFields();
+  // A file of an earlier version has fewer of them, the first ones.
+  const auto fields = yieldingFields().first(
+    std::min(yieldingFields().size(), std::size_t(array->GetNumberOfComponents())));
   const std::vector<double> values =
     numbers(fieldData, yieldingName, int(fields.size() * grounds.size()));
   for (std::size_t k = 0; k < grounds.size(); ++k)

@@ -63,7 +63,8 @@ rockfall::SurfaceMaterial vtkDEMToCFESource::MakeMaterial() const
   material.cohesion = this->Cohesion;
   const double yielding[] = { this->GroundModulus, this->ScarDepthFactor, this->GroundDensity,
     this->ScarCompaction, this->ScarSpinDrag, this->SlipFrictionMin, this->SlipFrictionMax,
-    this->SlipFrictionGrowth, this->SlipFrictionDecay, this->RollingResistance };
+    this->SlipFrictionGrowth, this->SlipFrictionDecay, this->RollingResistance,
+    this->GroundDeviation, this->GroundDeviationLength };
   const auto fields = rockfall::yieldingFields();
   for (std::size_t k = 0; k < fields.size(); ++k)
   {
@@ -281,6 +282,8 @@ void vtkDEMToCFESource::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "SlipFrictionGrowth: " << this->SlipFrictionGrowth << "\n";
   os << indent << "SlipFrictionDecay: " << this->SlipFrictionDecay << "\n";
   os << indent << "RollingResistance: " << this->RollingResistance << "\n";
+  os << indent << "GroundDeviation: " << this->GroundDeviation << "\n";
+  os << indent << "GroundDeviationLength: " << this->GroundDeviationLength << "\n";
   os << indent << "FrictionAngle: " << this->FrictionAngle << "\n";
   os << indent << "FrictionAngleDeviation: " << this->FrictionAngleDeviation << "\n";
   os << indent << "Cohesion: " << this->Cohesion << "\n";

@@ -53,7 +53,7 @@ public:
 
   ///@{
   /**
-   * Which layer or raster of a file with several: its name. Empty (the default): the one that will
+   * Name of the layer or raster of a file with several. Empty (the default): the one that will
    * do; if several would, that is an error which lists them. Of a drawing (DXF) names of its layers
    * with commas between them, or * for all. The others are those of the further files; sheets are
    * those of tables.
@@ -180,7 +180,7 @@ public:
 
   ///@{
   /**
-   * What an impact takes: a part of the whole velocity (WHOLE_VELOCITY, the default), parts of its
+   * Restitution of an impact: of the whole velocity (WHOLE_VELOCITY, the default), parts of its
    * normal and its tangential component (NORMAL_TANGENTIAL), or the same with a normal coefficient
    * that falls with the speed of the impact (SPEED_DEPENDENT; Pfeiffer & Bowen 1989, CRSP).
    */
@@ -302,6 +302,24 @@ public:
    */
   vtkSetMacro(RollingResistance, double);
   vtkGetMacro(RollingResistance, double);
+  ///@}
+
+  ///@{
+  /**
+   * σ: deviation of the logarithm of how soft the ground is, from place to place, without unit, not
+   * negative. Soft ground has a lower modulus and more slip friction. Default 0.
+   */
+  vtkSetMacro(GroundDeviation, double);
+  vtkGetMacro(GroundDeviation, double);
+  ///@}
+
+  ///@{
+  /**
+   * ℓ: length in m, above 0, over which the ground is alike: at ℓ the correlation has come down to
+   * 1/e. Default 30.
+   */
+  vtkSetMacro(GroundDeviationLength, double);
+  vtkGetMacro(GroundDeviationLength, double);
   ///@}
 
   ///@{
@@ -453,6 +471,8 @@ private:
   double SlipFrictionGrowth = 0.0;
   double SlipFrictionDecay = 0.0;
   double RollingResistance = 0.0;
+  double GroundDeviation = 0.0;
+  double GroundDeviationLength = 30.0;
   double RoughnessMean = 0.1;
   double RoughnessDeviation = 0.1;
   double RoughnessLength = 0.0;

@@ -25,6 +25,7 @@ enum class Draw : std::uint32_t
   RoughField = 4,
   ObstaclePlace = 5,
   ObstacleHeight = 6,
+  Softness = 7,
   // Of a rock in an iteration; the index is the rock's.
   StartPosition = 16,
   StartHeight = 17,

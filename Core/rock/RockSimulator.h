@@ -49,7 +49,7 @@ struct BarrierHit
 
 class PairBody;
 
-/// What a rock does alone (`run`), and the same in parts, for rocks that may meet others
+/// The fall of a rock alone (`run`), and the same in parts, for rocks that may meet others
 /// (MassFall): those bring each other through a step together, and ask each rock for its part.
 class RockSimulator
 {
@@ -215,6 +215,11 @@ private:
   // Ground that gives way, groundYields.cxx
   const YieldingGround& yieldingOf(int restitutionClass) const;
   const YieldingGround& yieldingAt(const Contact& contact) const; ///< Hard on trees.
+  /// S of the ground under the rock, of the class at a contact.
+  double softnessAt(const Contact& contact) const
+  {
+    return surface_.softnessAt(surface_.restitutionClass(contact.cfe), body_.state.position);
+  }
   bool sinkUnder(double h);
   bool riseWithRock();
   /// Goes on through soil, over nothing but the slope and far from Λ for steps of `small` (s).

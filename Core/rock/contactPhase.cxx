@@ -264,7 +264,8 @@ void RockSimulator::armContact(Contact& c)
 {
   const GroundTouch touch = this->touchAt(c.cfe, c.point);
   const bool slips = yields_ && this->yieldingAt(c).slips();
-  c.friction = slips ? this->yieldingAt(c).frictionAfter(slip_) : surface_.frictionAt(touch);
+  c.friction = slips ? this->yieldingAt(c).frictionAfter(slip_) * this->softnessAt(c)
+                     : surface_.frictionAt(touch);
   c.cohesion = surface_.cohesionAt(c.cfe);
   if (c.closed())
   {

@@ -69,7 +69,8 @@ bool RockSimulator::sinkUnder(double h)
     {
       continue;
     }
-    const double depth = this->yieldingAt(c).scarDepth(body_.block.mass(), approach / c.normal.z());
+    const double depth = this->yieldingAt(c).scarDepth(
+      body_.block.mass(), approach / c.normal.z(), this->softnessAt(c));
     if (depth > deepest)
     {
       deepest = depth;
@@ -91,7 +92,7 @@ bool RockSimulator::sinkUnder(double h)
   impact_.event.approachSpeed = std::max(impact_.event.approachSpeed, fastest);
   const double before = scar_.depth();
   scar_.sink(deepest, surface_.restitutionClass(under->cfe), *under);
-  // What else was pressed in loses its hold.
+  // Other contacts that were pressed in lose their hold.
   const double held = springEnergyOf(body_.contacts);
   for (Contact& c : body_.contacts)
   {
@@ -149,7 +150,7 @@ bool RockSimulator::flyOverScar(double small)
   const double away = body_.state.velocity.dot(scar_.normal());
   if (away > 0.0)
   {
-    // What drag takes brings Λ nearer than a free flight has it.
+    // Drag brings Λ nearer than a free flight has it.
     const double rate =
       this->yieldingOf(scar_.ground()).speedLost(scar_.area() * speed, body_.block.mass());
     duration = rate * duration > kLostOverScar ? kLostOverScar / rate : duration;

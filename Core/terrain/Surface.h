@@ -37,6 +37,8 @@ public:
   DeviationPer deviationPer() const { return per_; } ///< Iteration if nothing is drawn.
   double restitutionAt(const GroundTouch& touch) const;
   double frictionAt(const GroundTouch& touch) const; ///< tan φ
+  /// S of a restitution class at a place (yieldingGround.h), 1 where it does not deviate.
+  double softnessAt(int restitutionClass, const Vec3& place) const;
   /// Standard normal deviate of a number of this class, for any that the ground has at a touch: the
   /// mean plus this times its deviation is the number there. 0 on a slope as surveyed.
   double deviate(Draw purpose, int number, const GroundTouch& touch) const;

@@ -104,8 +104,9 @@ double Terrain::roughnessDepth() const
 
 bool Terrain::draws() const
 {
-  const auto deviates = [](const SurfaceMaterial& m)
-  { return m.restitutionDeviation > 0.0 || m.frictionAngleDeviation > 0.0; };
+  const auto deviates = [](const SurfaceMaterial& m) {
+    return m.restitutionDeviation > 0.0 || m.frictionAngleDeviation > 0.0 || m.yielding.deviates();
+  };
   const auto any = [&](const std::vector<SurfaceMaterial>& materials)
   { return std::any_of(materials.begin(), materials.end(), deviates); };
   bool drawn = deviates(material_) || any(restitutionClasses_.materials) ||

@@ -117,7 +117,11 @@ void Roughness::validate() const
   }
 }
 
-double RoughField::gaussian(double easting, double northing, double length) const
+namespace
+{
+
+double gaussianOf(
+  const RoughField& field, Draw purpose, double easting, double northing, double length)
 {
   const double inverse = 1.0 / (kFieldKnots * length);
   const Knots x(easting * inverse), y(northing * inverse);
@@ -129,12 +133,24 @@ double RoughField::gaussian(double easting, double northing, double length) cons
     {
       const std::uint64_t index = squareIndex(x.first + i, y.first + j);
       const auto draw = [&]
-      { return Drawn{ normalDeviate(seed, iteration, Draw::RoughField, index) }; };
-      row += x.weights[i] * remembered(seed, iteration, Draw::RoughField, index, draw)[0];
+      { return Drawn{ normalDeviate(field.seed, field.iteration, purpose, index) }; };
+      row += x.weights[i] * remembered(field.seed, field.iteration, purpose, index, draw)[0];
     }
     sum += y.weights[j] * row;
   }
   return std::clamp(sum / std::sqrt(x.norm * y.norm), -kMostDeviates, kMostDeviates);
+}
+
+} // namespace
+
+double RoughField::gaussian(double easting, double northing, double length) const
+{
+  return gaussianOf(*this, Draw::RoughField, easting, northing, length);
+}
+
+double RoughField::softness(double easting, double northing, double length) const
+{
+  return gaussianOf(*this, Draw::Softness, easting, northing, length);
 }
 
 double RoughField::obstacles(double easting, double northing, const Roughness& roughness) const

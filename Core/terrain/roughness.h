@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// What the ground is rough by beyond its survey: random heights, drawn per iteration (METHOD 7).
+/// Roughness of the ground beyond its survey: random heights, drawn per iteration (METHOD 7).
 ///
 /// With a length of 0 every node of the raster gets a height of its own, the paper's way: what
 /// rocks feel of it depends on the distance of the nodes. With a length it is a field over the map,
@@ -49,6 +49,8 @@ struct RoughField
 
   /// F: mean 0, variance 1, correlation exp(−(r/ℓ)²) within 0.011; within ±kMostDeviates.
   double gaussian(double easting, double northing, double length) const;
+  /// Another one of the same kind, of which ground is soft (yieldingGround.h).
+  double softness(double easting, double northing, double length) const;
   /// O: a cap h (1 − (r/w)²)² about a random place of every square, h by chance one of the three, w
   /// = ℓ/2; where caps overlap the highest, m.
   double obstacles(double easting, double northing, const Roughness& roughness) const;

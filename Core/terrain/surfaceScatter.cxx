@@ -113,6 +113,19 @@ double Surface::frictionAt(const GroundTouch& touch) const
   return frictionOf(m, this->deviate(Draw::FrictionAngle, number, touch));
 }
 
+double Surface::softnessAt(int restitutionClass, const Vec3& place) const
+{
+  const YieldingGround& ground = terrain_->restitutionMaterial(restitutionClass).yielding;
+  if (!drawn_ || !ground.deviates())
+  {
+    return 1.0;
+  }
+  const GridGeometry& g = terrain_->geometry();
+  return std::exp(ground.deviation *
+    RoughField{ seed_, iteration_ }.softness(
+      g.xOrigin + place.x(), g.yOrigin + place.y(), ground.deviationLength));
+}
+
 double Surface::largestRestitution() const
 {
   double largest = 0.0;

@@ -10,13 +10,13 @@
 namespace rockfall
 {
 
-double YieldingGround::scarDepth(double mass, double speed) const
+double YieldingGround::scarDepth(double mass, double speed, double softness) const
 {
   if (!this->scars() || !(speed > 0.0))
   {
     return 0.0;
   }
-  const double kiloNewtons = 1e-3 * this->modulus;
+  const double kiloNewtons = 1e-3 * this->modulus / softness;
   return this->depthFactor * std::cbrt(mass) * std::pow(kiloNewtons, -0.4) * std::pow(speed, 0.8);
 }
 
@@ -55,6 +55,11 @@ void YieldingGround::validate() const
         (field.noneIsInfinite ? " (0: hard ground)" : ""));
     }
   }
+  if (this->deviation > 0.0 && !(this->deviationLength > 0.0))
+  {
+    throw ParameterError("GroundDeviationLength is " + numberText(this->deviationLength) +
+      " m, it must be above 0 where GroundDeviation is " + numberText(this->deviation));
+  }
   if (this->slips() && this->frictionLeast > this->frictionMost)
   {
     throw ParameterError("SlipFrictionMin is " + numberText(this->frictionLeast) +
@@ -88,6 +93,8 @@ std::span<const YieldingField> yieldingFields()
     { "SlipFrictionGrowth", "kappa", "1/m", &G::frictionGrowth, 1.0, false },
     { "SlipFrictionDecay", "beta", "1/s", &G::frictionDecay, 1.0, false },
     { "RollingResistance", "mu_r", "", &G::rollingResistance, 1.0, false },
+    { "GroundDeviation", "ground_deviation", "", &G::deviation, 1.0, false },
+    { "GroundDeviationLength", "ground_length", "m", &G::deviationLength, 1.0, false },
   };
   return fields;
 }

@@ -21,6 +21,10 @@
 /// Rolling resistance: |M_r| ≤ μ_r R λ against the rotation, λ the normal force (Azzoni, La Barbera
 /// & Zaninetti 1995). R is the radius of the sphere of equal volume, times inscribed over
 /// circumscribed radius: the less round a rock, the more setting down its faces takes already.
+///
+/// Softness S = exp(σ F) of a place: F a field over the map, drawn per iteration, with mean 0,
+/// variance 1 and the correlation exp(−(r/ℓ)²) (RoughField). Soft ground gives deeper scars and
+/// more friction: M_E / S, μ(s) S. Rolling resistance is the same everywhere, so that rocks stop.
 
 #include <limits>
 #include <span>
@@ -43,15 +47,18 @@ struct YieldingGround
   double frictionGrowth = 0.0;    ///< κ, 1/m, ≥ 0.
   double frictionDecay = 0.0;     ///< β, 1/s, ≥ 0.
   double rollingResistance = 0.0; ///< μ_r, dimensionless, ≥ 0.
+  double deviation = 0.0;         ///< σ of ln S, dimensionless, ≥ 0.
+  double deviationLength = 30.0;  ///< ℓ of S, m, > 0 where S deviates.
 
   bool scars() const { return this->modulus < hard; }
   bool slips() const { return this->frictionMost > 0.0; }
+  bool deviates() const { return (this->scars() || this->slips()) && this->deviation > 0.0; }
   bool yields() const { return this->scars() || this->slips() || this->rollingResistance > 0.0; }
   /// d_max, m, for a rock (kg) whose surface comes down on the ground at `speed` (m/s).
-  double scarDepth(double mass, double speed) const;
-  /// μ after a slip of `s` (m).
+  double scarDepth(double mass, double speed, double softness = 1.0) const;
+  /// μ after a slip of `s` (m), where S is 1.
   double frictionAfter(double s) const;
-  /// What is left of the speed, and of the spin, after a volume (m³) has been swept by a mass (kg).
+  /// Share of the speed, and of the spin, that a volume (m³) swept by a mass (kg) leaves.
   double speedLeft(double volume, double mass) const;
   double spinLeft(double volume, double mass) const;
   /// Share of the speed that goes with a volume (m³) that is small.

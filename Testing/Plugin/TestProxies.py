@@ -9,7 +9,7 @@ PROXIES = [
      "TangentialRestitution RestitutionSpeed FrictionAngle "
      "FrictionAngleDeviation Cohesion RoughnessMean RoughnessDeviation GroundModulus "
      "ScarDepthFactor GroundDensity ScarCompaction ScarSpinDrag SlipFrictionMin SlipFrictionMax "
-     "SlipFrictionGrowth SlipFrictionDecay RollingResistance"),
+     "SlipFrictionGrowth SlipFrictionDecay RollingResistance GroundDeviation GroundDeviationLength"),
     ("Rock Blocks", "RockBlocks", "sources",
      "Shape Volume Center Orientation Velocity AngularVelocity Density YoungModulus PoissonRatio "
      "FileName Terrain Amount Intensity SlopeThreshold ShapeMix VolumeLaw Material TotalVolume "
@@ -108,8 +108,8 @@ assert decorators(dem, "RestitutionSpeed", "visibility") == [("RestitutionModel"
 replaced = ["RestitutionModel", "RestitutionCoefficient", "RestitutionDeviation", "TangentialRestitution",
             "RestitutionSpeed", "FrictionAngle", "FrictionAngleDeviation", "GroundModulus",
             "ScarDepthFactor", "GroundDensity", "ScarCompaction", "ScarSpinDrag", "SlipFrictionMin",
-            "SlipFrictionMax", "SlipFrictionGrowth", "SlipFrictionDecay", "RollingResistance", "DeviationPer",
-            "RoughnessMean", "RoughnessDeviation", "RoughnessLength"]
+            "SlipFrictionMax", "SlipFrictionGrowth", "SlipFrictionDecay", "RollingResistance", "GroundDeviation",
+            "GroundDeviationLength", "DeviationPer", "RoughnessMean", "RoughnessDeviation", "RoughnessLength"]
 stones = ["ObstacleHeight70", "ObstacleHeight20", "ObstacleHeight10"]
 for name in replaced + ["Cohesion"]:
     wanted = [("Preset", "0", "0")] if name in replaced else []

@@ -141,7 +141,7 @@ TEST(YieldingGround, PiecesOfATurnSweepTheSame)
     {
       BlockState state;
       state.orientation = Quat(Eigen::AngleAxisd(turn * share, Vec3::UnitY()));
-      // Its lowest corner is level with the surface at first.
+      // The lowest corner is level with the surface at first.
       state.position = Vec3(2.0 * share, 0.0, block.radius() - down * share);
       return state;
     };
@@ -395,4 +395,93 @@ TEST(YieldingGround, BadNumbersNameTheirField)
   m.yielding = meadow().yielding;
   m.yielding.frictionLeast = 3.0;
   EXPECT_THROW(m.validate(), ParameterError);
+}
+
+TEST(YieldingGround, SoftnessIsAFieldOverTheMap)
+{
+  SurfaceMaterial m = meadow();
+  m.yielding.deviation = 0.5;
+  m.yielding.deviationLength = 20.0;
+  const Terrain terrain = makePlane(2, 2000.0, 0.0, 0.0, m);
+  EXPECT_TRUE(terrain.draws());
+  EXPECT_EQ(Surface::asSurveyed(terrain).softnessAt(0, Vec3(50.0, 50.0, 0.0)), 1.0);
+  double sum = 0.0, squares = 0.0, near = 0.0, far = 0.0;
+  int count = 0;
+  for (int iteration = 0; iteration < 4; ++iteration)
+  {
+    const Surface surface(terrain, 7, iteration);
+    for (double x = 100.0; x < 1900.0; x += 60.0)
+    {
+      for (double y = 100.0; y < 1900.0; y += 60.0)
+      {
+        const auto at = [&](double ahead)
+        { return std::log(surface.softnessAt(0, Vec3(x + ahead, y, 0.0))) / 0.5; };
+        const double f = at(0.0);
+        sum += f;
+        squares += f * f;
+        near += f * at(20.0);
+        far += f * at(60.0);
+        ++count;
+      }
+    }
+  }
+  // 3600 places that are nearly independent: four standard errors.
+  const double error = 4.0 / std::sqrt(double(count));
+  EXPECT_NEAR(sum / count, 0.0, error);
+  EXPECT_NEAR(squares / count, 1.0, std::sqrt(2.0) * error);
+  EXPECT_NEAR(near / count, std::exp(-1.0), 1.2 * error);
+  EXPECT_NEAR(far / count, std::exp(-9.0), error);
+}
+
+TEST(YieldingGround, SoftGroundGivesDeeperScars)
+{
+  const YieldingGround ground = meadow().yielding;
+  EXPECT_NEAR(
+    ground.scarDepth(500.0, 10.0, 3.0) / ground.scarDepth(500.0, 10.0), std::pow(3.0, 0.4), 1e-12);
+  EXPECT_EQ(ground.scarDepth(500.0, 10.0, 1.0), ground.scarDepth(500.0, 10.0));
+}
+
+TEST(YieldingGround, WithoutDeviationNothingIsDrawn)
+{
+  Rock rock;
+  rock.shape = makeShape(Shape::Icosahedron, 0.5);
+  rock.velocity = Vec3(6.0, 0.5, 0.0);
+  const auto hashOf = [&](const SurfaceMaterial& m)
+  {
+    const Terrain terrain = makePlane(41, 80.0, radians(25.0), 0.0, m);
+    rock.position = Vec3(10.0, 40.0, terrain.elevation(10.0, 40.0) + 2.0);
+    SimulationParameters p;
+    p.endTime = 6.0;
+    TrajectoryStore store(1, 1);
+    runEnsemble(terrain, { rock }, p, store);
+    return motionHash(store.trajectories().front());
+  };
+  SurfaceMaterial plain = meadow(), longer = meadow(), deviating = meadow();
+  longer.yielding.deviationLength = 5.0;
+  deviating.yielding.deviation = 0.5;
+  EXPECT_EQ(hashOf(plain), hashOf(longer));
+  EXPECT_NE(hashOf(plain), hashOf(deviating));
+  // Hard ground has nothing that could be soft.
+  SurfaceMaterial hard, deviatingHard;
+  deviatingHard.yielding.deviation = 0.5;
+  EXPECT_EQ(hashOf(hard), hashOf(deviatingHard));
+  EXPECT_FALSE(makePlane(2, 10.0, 0.0, 0.0, deviatingHard).draws());
+}
+
+TEST(YieldingGround, ADeviationNeedsALength)
+{
+  SurfaceMaterial m = meadow();
+  m.yielding.deviationLength = 0.0;
+  EXPECT_NO_THROW(m.validate());
+  m.yielding.deviation = 0.3;
+  try
+  {
+    m.validate();
+    FAIL();
+  }
+  catch (const ParameterError& error)
+  {
+    EXPECT_EQ(std::string(error.what()),
+      "GroundDeviationLength is 0 m, it must be above 0 where GroundDeviation is 0.3");
+  }
 }
