@@ -453,7 +453,7 @@ TEST(YieldingGround, WithoutDeviationNothingIsDrawn)
     SimulationParameters p;
     p.endTime = 6.0;
     TrajectoryStore store(1, 1);
-    runEnsemble(terrain, { rock }, p, store);
+    runEnsemble(terrain, std::vector<Rock>{ rock }, p, store);
     return motionHash(store.trajectories().front());
   };
   SurfaceMaterial plain = meadow(), longer = meadow(), deviating = meadow();
