@@ -99,7 +99,10 @@ struct FallState
   RockContacts contacts; ///< Laws of the rocks on each other.
   FallingRocks rocks;
   double time = 0.0; ///< s
-  int largestSoft = kLargestSoft; ///< Rocks of the largest island that is no crowd.
+  IslandMethod method = IslandMethod::Suited;
+  /// Largest island that resolves its impacts in time; fewer rocks if the smallest of them needs
+  /// more than a hundred steps in one of Δt.
+  int resolved = 64;
 };
 
 /// Rocks that may touch each other within a step, in the order of their numbers.
@@ -107,7 +110,7 @@ struct Island
 {
   std::vector<int> members;
   std::vector<RockPair*> pairs;
-  bool crowd = false; ///< Stepped by the CrowdSolver.
+  bool crowd = false; ///< Too large to resolve its impacts in time.
 };
 
 /// Motion of the points of two rocks against each other, as they are.

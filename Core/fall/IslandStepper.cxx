@@ -13,7 +13,6 @@
 #include "rock/pressOut.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace rockfall
 {
@@ -34,7 +33,7 @@ IslandStepper::IslandStepper(FallState& fall, const Island& island)
   , island_(island)
   , work_(workOfThread())
 {
-  work_.solver.method = island.crowd ? IslandMethod::Crowd : IslandMethod::Soft;
+  work_.solver.method = fall.method;
   work_.solver.stiffness = pairStiffness(fall.parameters);
 }
 
@@ -85,29 +84,53 @@ double IslandStepper::beginContacts()
     sim.beginContact();
     if (!sim.done())
     {
-      travel = std::min(travel, kIslandTravel * sim.travelLimit());
+      travel = std::min(travel, (island_.crowd ? kCrowdTravel : 1.0) * sim.travelLimit());
     }
   }
   return travel;
 }
 
-void IslandStepper::advance(double until)
+double IslandStepper::advance(double until, bool lastingOnly)
 {
-  while (this->timeReached(until) < until - kTooShort)
+  const bool inTime = !island_.crowd;
+  const auto now = [&] { return this->timeReached(until); };
+  while (now() < until - kTooShort)
   {
     stayWanted();
     const double travel = this->beginContacts();
-    const double remaining = until - this->timeReached(until), h = std::min(remaining, travel);
-    this->gatherContacts(h);
-    if (const double free = this->touches() ? 0.0 : this->freeTime(remaining); free > h)
+    const double remaining = until - now();
+    const double large = std::min(remaining, travel);
+    double small = inTime ? std::min(remaining, impactStepOf(fall_, island_)) : large;
+    const bool calm = inTime && isCalm(fall_, island_);
+    this->gatherContacts(calm ? large : small);
+    // Stiffnesses are known now: the faster rocks meet, the stiffer.
+    small = inTime ? std::min(small, impactStepOf(fall_, island_)) : small;
+    const bool any = this->touches();
+    if (const double free = any ? 0.0 : this->freeTime(remaining); free > small)
     {
       this->fly(free);
+      continue;
+    }
+    if (!inTime)
+    {
+      this->solve(large, StepKind::Lasting, true);
+      continue;
+    }
+    const double lasting = calm && any ? this->freeOfFlying(large) : 0.0;
+    if ((lasting == large || lasting > small) && this->mayLast(lasting))
+    {
+      this->solve(lasting, StepKind::Lasting, false);
+    }
+    else if (lastingOnly)
+    {
+      return now();
     }
     else
     {
-      this->solve(h);
+      this->solve(small, StepKind::Impact, false);
     }
   }
+  return until;
 }
 
 void IslandStepper::pressOutDeep(RockPair& pair, double h) const
@@ -116,11 +139,12 @@ void IslandStepper::pressOutDeep(RockPair& pair, double h) const
   const double speed = deepSpeed(fall_.parameters.gravity, smaller);
   for (Contact& c : pair.contacts)
   {
-    rockfall::pressOutDeep(c, speed * h, kLooseOverlap * smaller);
+    const double way = island_.crowd ? speed * h : gentleWay(c, h, speed);
+    rockfall::pressOutDeep(c, way, kLooseOverlap * smaller);
   }
 }
 
-void IslandStepper::addRock(std::size_t m, double h)
+void IslandStepper::addRock(std::size_t m, double h, StepKind kind, bool bounces)
 {
   comeToRock(fall_, island_, m);
   FallingRock& rock = fall_.rocks[std::size_t(island_.members[m])];
@@ -134,27 +158,31 @@ void IslandStepper::addRock(std::size_t m, double h)
   body.springEnergyBefore = body.springEnergy;
   body.contactsBefore = body.contacts;
   work_.energyBefore[place] = rock.sim.mechanicalEnergy() + body.springEnergy;
-  if (island_.crowd)
+  if (kind == StepKind::Lasting)
   {
-    rock.sim.pressOutDeep(h);
+    rock.sim.pressOutDeep(h, !island_.crowd);
   }
   IslandBody& asked = work_.bodies[place];
   asked = {};
   asked.block = &body.block;
   asked.state = &body.state;
-  if (body.steppedAs == StepKind::Lasting)
+  if (body.steppedAs == kind)
   {
     asked.acceleration = body.acceleration;
     asked.spinAcceleration = body.spinAcceleration;
   }
+  else if (kind == StepKind::Impact)
+  {
+    asked.acceleration.z() = -fall_.parameters.gravity;
+  }
   std::size_t next = work_.slopeFirsts[m];
   for (Contact& c : body.contacts)
   {
-    work_.contacts[next++] = touchOnSlope(fall_, rock, c, h);
+    work_.contacts[next++] = touchOnSlope(fall_, rock, c, h, bounces);
   }
 }
 
-void IslandStepper::addPair(std::size_t t, double h)
+void IslandStepper::addPair(std::size_t t, double h, StepKind kind, bool bounces)
 {
   work_.comeToTouching(island_, t);
   const std::size_t p = work_.touching[t];
@@ -163,8 +191,9 @@ void IslandStepper::addPair(std::size_t t, double h)
   {
     return;
   }
+  const bool crowd = island_.crowd, swept = work_.solver.isSwept(kind, work_.bodies.size());
   const PairMotion motion = work_.motionOf(pair);
-  if (island_.crowd)
+  if (kind == StepKind::Lasting)
   {
     this->pressOutDeep(pair, h);
   }
@@ -172,23 +201,24 @@ void IslandStepper::addPair(std::size_t t, double h)
   for (Contact& c : pair.contacts)
   {
     IslandContact& touch = work_.contacts[next++] =
-      touchOfPair(fall_, pair, motion, c, h, work_);
-    touch.bare = !island_.crowd || mayStayOpen(touch, h);
-    if (!touch.closed && !touch.bare)
+      touchOfPair(fall_, pair, motion, c, h, bounces, work_);
+    touch.bare = crowd && swept && mayStayOpen(touch, h);
+    if (crowd && !touch.closed && !touch.bare)
     {
       setSprings(fall_, pair, c);
     }
   }
 }
 
-void IslandStepper::cutUntilAccepted(StepRequest& request)
+void IslandStepper::cutUntilAccepted(StepRequest& request, bool bounces)
 {
   work_.iterations = work_.cuts = work_.unsettled = work_.tries = 0;
   for (int cut = 0;; ++cut)
   {
-    // A step leaves little to settle; if it leaves more, a shorter one is taken.
-    const bool last = cut >= kIslandCuts;
-    const Accept accept = last ? Accept::Any : Accept::Converging;
+    // A large island leaves little to settle; if it leaves more, a shorter step is taken.
+    const bool crowd = island_.crowd;
+    const bool last = cut >= (crowd ? kCrowdCuts : fall_.parameters.maxCuts);
+    const Accept accept = last ? Accept::Any : crowd ? Accept::Converging : Accept::Settled;
     if (!work_.added.empty())
     {
       work_.contacts.resize(work_.firsts.back());
@@ -200,7 +230,7 @@ void IslandStepper::cutUntilAccepted(StepRequest& request)
     work_.solver.begin(request, accept, work_.bodies, work_.contacts);
     while (work_.solver.asksForALook())
     {
-      work_.solver.goOn(EndLook(fall_, island_, work_, request.duration).look());
+      work_.solver.goOn(EndLook(fall_, island_, work_, request.duration, bounces).look());
     }
     const IslandOutcome outcome = work_.solver.finish();
     work_.iterations += outcome.iterations;
@@ -215,7 +245,7 @@ void IslandStepper::cutUntilAccepted(StepRequest& request)
   }
 }
 
-void IslandStepper::solve(double h)
+void IslandStepper::solve(double h, StepKind kind, bool bounces)
 {
   // Places first, then each rock and each pair for itself.
   if (layOut(fall_, island_, work_) == 0)
@@ -223,23 +253,22 @@ void IslandStepper::solve(double h)
     return; // the last of them was caught just now
   }
   forEach(
-    island_.members.size(), kRockGrain, [&](std::size_t m) { this->addRock(m, h); });
+    island_.members.size(), kRockGrain, [&](std::size_t m) { this->addRock(m, h, kind, bounces); });
   forEach(
-    work_.touching.size(), kPairGrain, [&](std::size_t t) { this->addPair(t, h); });
-  if (island_.crowd)
+    work_.touching.size(), kPairGrain, [&](std::size_t t) { this->addPair(t, h, kind, bounces); });
+  if (bounces)
   {
-    settleBounces(work_);
+    settleBounces(kind == StepKind::Lasting, work_);
   }
   work_.added.clear();
   work_.addedTo.clear();
   work_.stems.clear();
   StepRequest request;
   request.duration = h;
-  request.kind = StepKind::Lasting;
+  request.kind = kind;
   request.gravity = fall_.parameters.gravity;
   request.maxOpenClose = fall_.parameters.maxOpenClose;
-  request.substeps = int(std::ceil(kSubsteps * h / fall_.parameters.timeStep - 1e-6));
-  this->cutUntilAccepted(request);
+  this->cutUntilAccepted(request, bounces);
   const RockBody& first = fall_.rocks[std::size_t(island_.members.front())].body();
   if (work_.bodies.front().state->time <= first.before.time && !first.done)
   {
@@ -251,7 +280,7 @@ void IslandStepper::solve(double h)
     this->fly(request.duration);
     return;
   }
-  StepResult(fall_, island_, work_, request.duration).apply();
+  StepResult(fall_, island_, work_, request.duration, kind).apply();
 }
 
 } // namespace rockfall

@@ -12,13 +12,14 @@ class StepResult
 {
 public:
   /// Of a step that has gone on for a duration (s).
-  StepResult(FallState& fall, const Island& island, IslandWork& work, double duration);
+  StepResult(
+    FallState& fall, const Island& island, IslandWork& work, double duration, StepKind kind);
 
   void apply();
 
 private:
   void applyToPair(std::size_t touching); ///< By number among those that touch.
-  void pressOut(RockPair& pair) const;    ///< In a crowd: overlap that was found goes slowly.
+  void pressOut(RockPair& pair) const;    ///< An overlap that was found is recovered slowly.
   void bookContact(RockPair& pair, const IslandContact& touch) const;
   void applyAdded();    ///< Contacts that were missed at first.
   void finishImpacts(); ///< Of pairs that have parted, or lie on each other.
@@ -30,6 +31,7 @@ private:
   const Island& island_;
   IslandWork& work_;
   double h_; ///< s
+  StepKind kind_;
 };
 
 } // namespace rockfall

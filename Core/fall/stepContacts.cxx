@@ -44,7 +44,7 @@ bool mayBounce(const std::vector<int>& partners, const IslandContact& k)
 } // namespace
 
 IslandContact touchOnSlope(
-  const FallState& fall, const FallingRock& member, Contact& c, double h)
+  const FallState& fall, const FallingRock& member, Contact& c, double h, bool bounces)
 {
   const RockSimulator& sim = member.sim;
   const BlockState& state = sim.body().state;
@@ -54,36 +54,35 @@ IslandContact touchOnSlope(
     comesDown(approach, state.velocity.norm(), fall.parameters.gravity, sim.body().block.radius());
   const int ground = fall.surface.restitutionClass(c.cfe);
   const SurfaceMaterial& material = fall.surface.terrain().restitutionMaterial(ground);
-  IslandContact k;
-  k.restitution = fall.surface.restitutionAt(sim.touchAt(c.cfe, c.point));
+  double e = fall.surface.restitutionAt(sim.touchAt(c.cfe, c.point));
   if (material.restitutionModel == RestitutionModel::Velocity && down)
   {
-    k.restitution = 1.0; // Rv is taken off the whole velocity when the impact is over
+    e = 1.0; // Rv is taken off the whole velocity when the impact is over
   }
   else if (material.restitutionModel == RestitutionModel::SpeedDependent)
   {
-    k.restitutionSpeed = material.restitutionSpeed;
+    e = restitutionAtSpeed(e, approach, material.restitutionSpeed);
   }
-  k.resting = sim.body().restingSpeed;
+  IslandContact k;
   k.contact = &c;
   k.closed = c.closed();
   k.first = member.place;
   k.friction = c.friction;
   k.cohesion = c.cohesion;
-  if (c.closed() && sim.impactUnderWay())
+  if (bounces && c.closed() && sim.impactUnderWay())
   {
     k.bounce = bounceLeft(c, approach); // begun where impacts are resolved in time
   }
-  else if (hits(c, approach, sim.body().restingSpeed, h))
+  else if (bounces && hits(c, approach, sim.body().restingSpeed, h))
   {
-    k.bounce = k.restitutionAt(approach) * approach;
+    k.bounce = e * approach;
   }
   k.approach = approach;
   return k;
 }
 
 IslandContact touchOfPair(const FallState& fall, RockPair& pair, const PairMotion& motion,
-  Contact& c, double h, const IslandWork& work)
+  Contact& c, double h, bool bounces, const IslandWork& work)
 {
   const double resting = std::min(
     work.sides[std::size_t(pair.first)].resting, work.sides[std::size_t(pair.second)].resting);
@@ -94,8 +93,6 @@ IslandContact touchOfPair(const FallState& fall, RockPair& pair, const PairMotio
   k.second = work.placeOf[std::size_t(pair.second)];
   k.friction = pair.law.friction;
   k.damping = pair.law.damping;
-  k.restitution = pair.law.restitution;
-  k.resting = resting;
   k.cohesion = pair.law.cohesion;
   if (k.cohesion > 0.0)
   {
@@ -103,18 +100,17 @@ IslandContact touchOfPair(const FallState& fall, RockPair& pair, const PairMotio
   }
   k.approach = -c.normal.dot(motion.at(c.point));
   const bool impacts = hits(c, k.approach, resting, h);
-  if (impacts)
+  if (bounces && impacts)
   {
     k.bounce = pair.law.restitution * k.approach;
   }
-  else if (c.closed() && pair.strikes &&
+  else if (bounces && c.closed() && pair.strikes &&
     pair.impact.time < fall.rocks[pair.first].sim.body().state.time)
   {
     k.bounce = bounceLeft(c, k.approach); // as on the slope
   }
   // For the events: what strikes one of two that touch strikes the other through it.
-  const bool crowd = work.solver.method == IslandMethod::Crowd;
-  if (crowd && (impacts || (c.closed() && k.approach > resting)))
+  if (impacts || (c.closed() && k.approach > resting))
   {
     beginPairImpact(pair, fall.rocks[pair.first].sim.body().state,
       fall.rocks[pair.second].sim.body().state, c.point);
@@ -126,7 +122,7 @@ IslandContact touchOfPair(const FallState& fall, RockPair& pair, const PairMotio
   return k;
 }
 
-void settleBounces(IslandWork& work)
+void settleBounces(bool lasting, IslandWork& work)
 {
   // Few contacts have a say: each part looks for its own.
   const std::size_t contacts = work.contacts.size(), parts = partsOf(contacts);
@@ -164,7 +160,7 @@ void settleBounces(IslandWork& work)
       return;
     }
     k.bounce = mayBounce(work.partners, k) ? k.bounce : -1.0;
-    if (k.bounce < 0.0)
+    if (!lasting || k.bounce < 0.0)
     {
       return;
     }
@@ -181,9 +177,9 @@ void settleBounces(IslandWork& work)
   forChosen(settle);
 }
 
-void appendTouch(IslandContact touch, bool crowd, IslandWork& work)
+void appendTouch(IslandContact touch, bool bounces, IslandWork& work)
 {
-  if (crowd)
+  if (bounces)
   {
     meet(work.partners, touch);
     touch.bounce = mayBounce(work.partners, touch) ? touch.bounce : -1.0;

@@ -199,7 +199,7 @@ void RockSimulator::stayInContact()
     }
     if (kind == StepKind::Lasting)
     {
-      this->pressOutDeep(h);
+      this->pressOutDeep(h, false);
     }
     this->takeStep(h, kind);
     this->checkEnd(body_.state.time - body_.before.time);
@@ -353,7 +353,7 @@ void RockSimulator::takeStep(double h, StepKind kind)
       body_.contactsBefore.clear();
     }
   }
-  this->absorb(kind, outcome, energyBefore, 0.0, true);
+  this->absorb(kind, outcome, energyBefore, 0.0);
   if (lasting)
   {
     this->letDeepBe(this->looseOverlap());
@@ -361,7 +361,7 @@ void RockSimulator::takeStep(double h, StepKind kind)
 }
 
 void RockSimulator::absorb(
-  StepKind kind, const StepOutcome& outcome, double energyBefore, double given, bool pressesOut)
+  StepKind kind, const StepOutcome& outcome, double energyBefore, double given)
 {
   const bool lasting = kind == StepKind::Lasting;
   const double taken = body_.state.time - body_.before.time;
@@ -375,7 +375,7 @@ void RockSimulator::absorb(
     const double damped = energyBefore - this->mechanicalEnergy() - body_.springEnergy -
       outcome.frictionWork - outcome.dampedWork - given;
     // Energy that recovery of an overlap gives a rock comes from nowhere, and is booked as that.
-    body_.energy.damping += pressed_ && pressesOut ? std::max(0.0, damped) : damped;
+    body_.energy.damping += pressed_ ? std::max(0.0, damped) : damped;
     pressed_ = false;
     // The lag of the next lasting step. What an impact left is no acceleration to go on with, nor
     // is that under other contacts: a rock that rattles would be fed by it.
@@ -391,10 +391,7 @@ void RockSimulator::absorb(
       body_.acceleration.setZero();
       body_.spinAcceleration.setZero();
     }
-    if (pressesOut)
-    {
-      this->pressOut(taken);
-    }
+    this->pressOut(taken);
   }
   else
   {
@@ -456,18 +453,19 @@ void RockSimulator::pressOut(double h)
   }
 }
 
-void RockSimulator::pressOutDeep(double h)
+void RockSimulator::pressOutDeep(double h, bool held)
 {
   pressed_ = false;
   const double speed = deepSpeed(parameters_.gravity, body_.block.radius());
   const double loose = this->looseOverlap();
   for (Contact& c : body_.contacts)
   {
-    pressed_ = rockfall::pressOutDeep(c, speed * h, loose) || pressed_;
+    const double way = held ? gentleWay(c, h, speed) : speed * h;
+    pressed_ = rockfall::pressOutDeep(c, way, loose) || pressed_;
   }
 }
 
-double RockSimulator::letDeepBe(double loose)
+void RockSimulator::letDeepBe(double loose)
 {
   const bool deep = anyDeep(body_.contacts, loose);
   double held = 0.0;
@@ -478,9 +476,7 @@ double RockSimulator::letDeepBe(double loose)
     body_.normalEnergy = std::max(0.0, body_.normalEnergy - normal);
     held += normal + (deep ? letSlipBe(c, still / std::sqrt(c.shearStiffness)) : 0.0);
   }
-  const double before = body_.springEnergy;
-  body_.springEnergy = std::max(0.0, before - held);
-  return before - body_.springEnergy;
+  body_.springEnergy = std::max(0.0, body_.springEnergy - held);
 }
 
 } // namespace rockfall
