@@ -12,13 +12,46 @@
 namespace rockfall::filters
 {
 
-struct ImpactPoints::Arrays
+namespace
+{
+
+/// A vertex for each event, with the rock that it happens to.
+struct EventVertices
 {
   vtkNew<vtkPolyData> data;
   vtkFieldData* fields = data->GetPointData();
   vtkSmartPointer<vtkPoints> points = doublePoints();
   vtkNew<vtkCellArray> vertices;
   IdentityArrays identity{ fields };
+
+  void append(const Vec3& world, const TrajectorySummary& summary)
+  {
+    this->vertices->InsertNextCell(1);
+    this->vertices->InsertCellPoint(this->points->GetNumberOfPoints());
+    insertPoint(this->points, world);
+    this->identity.append(summary.blockId, summary.rock, summary.iteration);
+  }
+  void copy(vtkPolyData* output) const
+  {
+    this->data->SetPoints(this->points);
+    this->data->SetVerts(this->vertices);
+    output->DeepCopy(this->data);
+  }
+  void finish(vtkPolyData* output)
+  {
+    squeeze(this->fields);
+    this->points->Squeeze();
+    this->vertices->Squeeze();
+    this->data->SetPoints(this->points);
+    this->data->SetVerts(this->vertices);
+    output->ShallowCopy(this->data);
+  }
+};
+
+} // namespace
+
+struct ImpactPoints::Arrays : EventVertices
+{
   vtkSmartPointer<vtkDoubleArray> time = addArray<vtkDoubleArray>(fields, "Time");
   vtkSmartPointer<vtkDoubleArray> normal = addArray<vtkDoubleArray>(fields, "Normal", 3);
   vtkSmartPointer<vtkIdTypeArray> cfe = addArray<vtkIdTypeArray>(fields, "CFEId");
@@ -45,13 +78,9 @@ ImpactPoints::~ImpactPoints() = default;
 void ImpactPoints::append(const Trajectory& trajectory)
 {
   Arrays& a = *arrays_;
-  const TrajectorySummary& summary = trajectory.summary;
   for (const ImpactEvent& impact : trajectory.impacts)
   {
-    a.vertices->InsertNextCell(1);
-    a.vertices->InsertCellPoint(a.points->GetNumberOfPoints());
-    insertPoint(a.points, impact.position + frame_.origin);
-    a.identity.append(summary.blockId, summary.rock, summary.iteration);
+    a.append(impact.position + frame_.origin, trajectory.summary);
     a.time->InsertNextValue(impact.time);
     a.normal->InsertNextTuple(impact.normal.data());
     a.cfe->InsertNextValue(impact.cfe);
@@ -70,30 +99,17 @@ void ImpactPoints::append(const Trajectory& trajectory)
 
 void ImpactPoints::copy(vtkPolyData* output) const
 {
-  arrays_->data->SetPoints(arrays_->points);
-  arrays_->data->SetVerts(arrays_->vertices);
-  output->DeepCopy(arrays_->data);
+  arrays_->copy(output);
 }
 
 void ImpactPoints::finish(vtkPolyData* output)
 {
-  Arrays& a = *arrays_;
-  squeeze(a.fields);
-  a.points->Squeeze();
-  a.vertices->Squeeze();
-  a.data->SetPoints(a.points);
-  a.data->SetVerts(a.vertices);
-  output->ShallowCopy(a.data);
+  arrays_->finish(output);
 }
 
 //------------------------------------------------------------------------------
-struct StructurePoints::Arrays
+struct StructurePoints::Arrays : EventVertices
 {
-  vtkNew<vtkPolyData> data;
-  vtkFieldData* fields = data->GetPointData();
-  vtkSmartPointer<vtkPoints> points = doublePoints();
-  vtkNew<vtkCellArray> vertices;
-  IdentityArrays identity{ fields };
   vtkSmartPointer<vtkIdTypeArray> structure = addArray<vtkIdTypeArray>(fields, "StructureId");
   vtkSmartPointer<vtkIntArray> outcome = addArray<vtkIntArray>(fields, "Outcome");
   vtkSmartPointer<vtkDoubleArray> time = addArray<vtkDoubleArray>(fields, "Time");
@@ -115,13 +131,9 @@ StructurePoints::~StructurePoints() = default;
 void StructurePoints::append(const Trajectory& trajectory)
 {
   Arrays& a = *arrays_;
-  const TrajectorySummary& summary = trajectory.summary;
   for (const StructureEvent& event : trajectory.structures)
   {
-    a.vertices->InsertNextCell(1);
-    a.vertices->InsertCellPoint(a.points->GetNumberOfPoints());
-    insertPoint(a.points, event.position + frame_.origin);
-    a.identity.append(summary.blockId, summary.rock, summary.iteration);
+    a.append(event.position + frame_.origin, trajectory.summary);
     a.structure->InsertNextValue(event.feature);
     a.outcome->InsertNextValue(int(event.outcome));
     a.time->InsertNextValue(event.time);
@@ -135,20 +147,12 @@ void StructurePoints::append(const Trajectory& trajectory)
 
 void StructurePoints::copy(vtkPolyData* output) const
 {
-  arrays_->data->SetPoints(arrays_->points);
-  arrays_->data->SetVerts(arrays_->vertices);
-  output->DeepCopy(arrays_->data);
+  arrays_->copy(output);
 }
 
 void StructurePoints::finish(vtkPolyData* output)
 {
-  Arrays& a = *arrays_;
-  squeeze(a.fields);
-  a.points->Squeeze();
-  a.vertices->Squeeze();
-  a.data->SetPoints(a.points);
-  a.data->SetVerts(a.vertices);
-  output->ShallowCopy(a.data);
+  arrays_->finish(output);
 }
 
 } // namespace rockfall::filters

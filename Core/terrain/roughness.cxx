@@ -2,7 +2,6 @@
 
 #include "base/errors.h"
 #include "base/numberText.h"
-#include "base/random.h"
 #include "law/settings.h"
 #include "terrain/scatter.h"
 
@@ -117,11 +116,7 @@ void Roughness::validate() const
   }
 }
 
-namespace
-{
-
-double gaussianOf(
-  const RoughField& field, Draw purpose, double easting, double northing, double length)
+double RoughField::gaussian(double easting, double northing, double length, Draw purpose) const
 {
   const double inverse = 1.0 / (kFieldKnots * length);
   const Knots x(easting * inverse), y(northing * inverse);
@@ -132,25 +127,12 @@ double gaussianOf(
     for (int i = 0; i < 4; ++i)
     {
       const std::uint64_t index = squareIndex(x.first + i, y.first + j);
-      const auto draw = [&]
-      { return Drawn{ normalDeviate(field.seed, field.iteration, purpose, index) }; };
-      row += x.weights[i] * remembered(field.seed, field.iteration, purpose, index, draw)[0];
+      const auto draw = [&] { return Drawn{ normalDeviate(seed, iteration, purpose, index) }; };
+      row += x.weights[i] * remembered(seed, iteration, purpose, index, draw)[0];
     }
     sum += y.weights[j] * row;
   }
   return std::clamp(sum / std::sqrt(x.norm * y.norm), -kMostDeviates, kMostDeviates);
-}
-
-} // namespace
-
-double RoughField::gaussian(double easting, double northing, double length) const
-{
-  return gaussianOf(*this, Draw::RoughField, easting, northing, length);
-}
-
-double RoughField::softness(double easting, double northing, double length) const
-{
-  return gaussianOf(*this, Draw::Softness, easting, northing, length);
 }
 
 double RoughField::obstacles(double easting, double northing, const Roughness& roughness) const

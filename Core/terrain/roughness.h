@@ -9,6 +9,8 @@
 /// each square of side ℓ. The field is the same whatever the nodes: cells that are too wide for it
 /// are cut, as rocks meet them, into finer ones (Surface), of which nothing is stored.
 
+#include "base/random.h"
+
 #include <array>
 #include <cstdint>
 
@@ -47,10 +49,10 @@ struct RoughField
   std::uint64_t seed;
   std::uint32_t iteration;
 
-  /// F: mean 0, variance 1, correlation exp(−(r/ℓ)²) within 0.011; within ±kMostDeviates.
-  double gaussian(double easting, double northing, double length) const;
-  /// Another one of the same kind, of which ground is soft (yieldingGround.h).
-  double softness(double easting, double northing, double length) const;
+  /// F: mean 0, variance 1, correlation exp(−(r/ℓ)²) within 0.011; within ±kMostDeviates. Another
+  /// one for each purpose.
+  double gaussian(
+    double easting, double northing, double length, Draw purpose = Draw::RoughField) const;
   /// O: a cap h (1 − (r/w)²)² about a random place of every square, h by chance one of the three, w
   /// = ℓ/2; where caps overlap the highest, m.
   double obstacles(double easting, double northing, const Roughness& roughness) const;

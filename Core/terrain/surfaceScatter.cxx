@@ -122,8 +122,8 @@ double Surface::softnessAt(int restitutionClass, const Vec3& place) const
   }
   const GridGeometry& g = terrain_->geometry();
   return std::exp(ground.deviation *
-    RoughField{ seed_, iteration_ }.softness(
-      g.xOrigin + place.x(), g.yOrigin + place.y(), ground.deviationLength));
+    RoughField{ seed_, iteration_ }.gaussian(
+      g.xOrigin + place.x(), g.yOrigin + place.y(), ground.deviationLength, Draw::Softness));
 }
 
 double Surface::largestRestitution() const
