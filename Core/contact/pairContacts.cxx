@@ -154,55 +154,39 @@ void goOn(const Touch& touch, const PairBody& second, const PairAxis& axis, cons
   letGo(oldGap, far, c);
 }
 
-/// Energy of a spring that is gone, J.
-double released(const Contact& c)
+/// Force of a contact along the normal, N.
+double carried(const Contact& c)
 {
-  const double compressed = std::min(0.0, c.gap());
-  return c.closed() ? 0.5 * c.stiffness * compressed * compressed : 0.0;
+  return c.closed() ? c.stiffness * std::max(0.0, -c.gap()) : 0.0;
 }
 
-/// Energy of springs that are gone goes into those that are new, or else into those that stay.
-void handOverAll(std::span<const char> taken, std::span<const Match> matches,
-  std::span<const Contact> before, std::span<Contact> now)
+/// What a contact that is gone carried, the nearest one carries.
+void handOverAll(
+  std::span<const char> taken, std::span<const Contact> before, std::span<Contact> now)
 {
-  double energy = 0.0;
-  const Contact* strongest = nullptr;
   for (std::size_t k = 0; k < before.size(); ++k)
   {
-    const Contact& c = before[k];
-    if (!taken[k] && c.closed())
-    {
-      energy += released(c);
-      strongest = !strongest || c.normalForce > strongest->normalForce ? &c : strongest;
-    }
-  }
-  const auto isFresh = [](const Match& match) { return match.old < 0; };
-  const auto fresh = std::count_if(matches.begin(), matches.end(), isFresh);
-  const double share =
-    energy / double(fresh > 0 ? fresh : std::max<std::ptrdiff_t>(1, matches.size()));
-  for (std::size_t i = 0; i < now.size(); ++i)
-  {
-    Contact& c = now[i];
-    if (fresh > 0 && !isFresh(matches[i]))
+    const Contact& old = before[k];
+    if (taken[k] || !(carried(old) > 0.0))
     {
       continue;
     }
-    if (isFresh(matches[i]) || c.stiffness == 0.0) // open so far, and without springs
+    const auto nearer = [&](const Contact& a, const Contact& b)
+    { return (a.point - old.point).squaredNorm() < (b.point - old.point).squaredNorm(); };
+    Contact& c = *std::min_element(now.begin(), now.end(), nearer);
+    if (!(c.stiffness > 0.0)) // open so far, and without springs
     {
-      c.state = strongest->state;
-      c.stiffness = strongest->stiffness;
-      c.shearStiffness = strongest->shearStiffness;
-      c.dashpot = strongest->dashpot;
-      c.stopped = strongest->stopped;
-      c.shearDashpot = strongest->shearDashpot;
-      c.frequency2 = strongest->frequency2;
+      c.stiffness = old.stiffness;
+      c.shearStiffness = old.shearStiffness;
+      c.dashpot = old.dashpot;
+      c.stopped = old.stopped;
+      c.shearDashpot = old.shearDashpot;
+      c.frequency2 = old.frequency2;
     }
-    const double compressed = std::min(0.0, c.gap());
-    if (c.stiffness > 0.0)
-    {
-      c.offset = c.distance + std::sqrt(compressed * compressed + 2.0 * share / c.stiffness);
-      c.state = c.closed() ? c.state : ContactState::Sliding;
-    }
+    c.slip = c.closed() ? c.slip : Vec3::Zero();
+    c.slip += (old.shearStiffness / c.shearStiffness) * old.slip;
+    c.offset = c.distance + (carried(c) + carried(old)) / c.stiffness;
+    c.state = c.closed() ? c.state : ContactState::Sliding;
   }
 }
 
@@ -255,7 +239,7 @@ void Renewal::replaceAll(RockPair& pair)
   bool hands = false;
   for (std::size_t k = 0; k < olds; ++k)
   {
-    hands = hands || (!taken[k] && released(pair.contacts[k]) > 0.0);
+    hands = hands || (!taken[k] && carried(pair.contacts[k]) > 0.0);
   }
   const std::optional<ClosingGaps::AtPoints> all = sieve;
   if (hands)
@@ -313,7 +297,7 @@ void Renewal::replaceAll(RockPair& pair)
   pair.contacts.resize(std::size_t(to - pair.contacts.data()));
   if (hands)
   {
-    handOverAll({ taken, olds }, { matches, touches }, copies, pair.contacts);
+    handOverAll({ taken, olds }, copies, pair.contacts);
     if (all)
     {
       std::erase_if(pair.contacts, [&](const Contact& c) { return !mayClose(c, *all); });

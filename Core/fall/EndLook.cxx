@@ -47,12 +47,12 @@ void carryBack(const PlacedBlock& firstEnd, const PlacedBlock& secondEnd,
 } // namespace
 
 EndLook::EndLook(
-  FallState& fall, const Island& island, IslandWork& work, double duration, bool bounces)
+  FallState& fall, const Island& island, IslandWork& work, double duration)
   : fall_(fall)
   , island_(island)
   , work_(work)
   , h_(duration)
-  , bounces_(bounces)
+  , missed_(island.crowd ? kMissedInCrowd : kMissed)
 {
 }
 
@@ -63,11 +63,7 @@ LookOutcome EndLook::look()
   LookOutcome seen;
   seen.passed = this->deepestPassed();
   seen.missed = this->lookAtPairs();
-  // Steps that resolve impacts are so short that all they may reach is known.
-  if (island_.crowd)
-  {
-    seen.missed = std::max(seen.missed, this->lookAtSlope());
-  }
+  seen.missed = std::max(seen.missed, this->lookAtSlope());
   seen.again = StepTrees(fall_, island_, work_).look(h_);
   return seen;
 }
@@ -141,7 +137,7 @@ double EndLook::lookAtPairs()
   const auto findTouchesOf = [this](std::size_t m)
   {
     RockPair& pair = *island_.pairs[work_.missed[m]];
-    const double limit = this->deepestOf(work_.missed[m]) - kMissed * work_.smallerRadius(pair);
+    const double limit = this->deepestOf(work_.missed[m]) - missed_ * work_.smallerRadius(pair);
     findTouches(fall_.rocks[std::size_t(pair.first)].endHull,
       fall_.rocks[std::size_t(pair.second)].endHull, pair.end, 0.0, work_.found[m], limit);
   };
@@ -193,7 +189,7 @@ bool EndLook::isMissed(std::size_t p)
   }
   pair.end = findAxis(fall_.rocks[std::size_t(pair.first)].endHull,
     fall_.rocks[std::size_t(pair.second)].endHull, pair.axis, 0.0);
-  const double deep = -kMissed * work_.smallerRadius(pair);
+  const double deep = -missed_ * work_.smallerRadius(pair);
   if (pair.end.kind == PairAxis::Kind::None || !(pair.end.distance < deep))
   {
     return false;
@@ -260,7 +256,7 @@ double EndLook::addMissed(std::size_t m)
     work_.added.push_back(c);
     work_.addedTo.push_back({ false, p, c });
     appendTouch(
-      touchOfPair(fall_, pair, motion, work_.added.back(), h_, bounces_, work_), bounces_, work_);
+      touchOfPair(fall_, pair, motion, work_.added.back(), h_, work_), island_.crowd, work_);
   }
   return most;
 }
@@ -358,7 +354,7 @@ double EndLook::lookAtSlope()
       rock.sim.armContact(c);
       work_.added.push_back(c);
       work_.addedTo.push_back({ true, m, c });
-      appendTouch(touchOnSlope(fall_, rock, work_.added.back(), h_, bounces_), bounces_, work_);
+      appendTouch(touchOnSlope(fall_, rock, work_.added.back(), h_), island_.crowd, work_);
     }
   }
   return deepest;

@@ -16,7 +16,7 @@ namespace rockfall
 class EndLook
 {
 public:
-  EndLook(FallState& fall, const Island& island, IslandWork& work, double duration, bool bounces);
+  EndLook(FallState& fall, const Island& island, IslandWork& work, double duration);
 
   /// Appends contacts that show only where the step would end, corrects the gaps of others, and
   /// asks trees whether they hold.
@@ -46,8 +46,8 @@ private:
   FallState& fall_;
   const Island& island_;
   IslandWork& work_;
-  double h_; ///< s
-  bool bounces_;
+  double h_;      ///< s
+  double missed_; ///< Depth that is a miss, of the smaller radius.
 };
 
 } // namespace rockfall

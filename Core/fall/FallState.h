@@ -99,10 +99,7 @@ struct FallState
   RockContacts contacts; ///< Laws of the rocks on each other.
   FallingRocks rocks;
   double time = 0.0; ///< s
-  IslandMethod method = IslandMethod::Suited;
-  /// Largest island that resolves its impacts in time; fewer rocks if the smallest of them needs
-  /// more than a hundred steps in one of Δt.
-  int resolved = 64;
+  int largestSoft = kLargestSoft; ///< Rocks of the largest island that is no crowd.
 };
 
 /// Rocks that may touch each other within a step, in the order of their numbers.
@@ -110,7 +107,7 @@ struct Island
 {
   std::vector<int> members;
   std::vector<RockPair*> pairs;
-  bool crowd = false; ///< Too large to resolve its impacts in time.
+  bool crowd = false; ///< Stepped by the CrowdSolver.
 };
 
 /// Motion of the points of two rocks against each other, as they are.

@@ -17,20 +17,6 @@ namespace rockfall
 namespace
 {
 
-/// Whether something carries each rock of an island.
-bool isCarried(const FallState& fall, const Island& island)
-{
-  const auto carries = [&](int i)
-  {
-    const RockSimulator& sim = fall.rocks[std::size_t(i)].sim;
-    const auto touches = [&](const RockPair* pair)
-    { return pair->touched && (pair->first == i || pair->second == i); };
-    return sim.body().done || anyClosed(sim.body().contacts) ||
-      std::any_of(island.pairs.begin(), island.pairs.end(), touches);
-  };
-  return std::all_of(island.members.begin(), island.members.end(), carries);
-}
-
 /// State of an island whose step is gone over in parts.
 class IslandParts
 {
@@ -293,9 +279,10 @@ void IslandParts::advance(const Part& part, double from, double until)
     return;
   }
   const double half = 0.5 * (until - from);
-  if (this->isOne(island) || half < kLeastStepsOfPart * impactStepOf(*fall_, island))
+  const double shortest = kShortestPart * fall_->parameters.timeStep;
+  if (this->isOne(island) || half < (1.0 - 1e-9) * shortest)
   {
-    IslandStepper(*fall_, island).advance(until, false);
+    IslandStepper(*fall_, island).advance(until);
     return;
   }
   for (const double end : { from + half, until })
@@ -317,19 +304,13 @@ void advanceAlone(FallingRock& rock, double until)
 
 void advanceIsland(FallState& fall, const Island& island, double until)
 {
-  double from = fall.time;
   if (island.crowd)
   {
-    IslandStepper(fall, island).advance(until, false);
+    IslandStepper(fall, island).advance(until);
     return;
   }
-  if (isCarried(fall, island) && isCalm(fall, island))
-  {
-    // A single step for all, if it may last.
-    from = IslandStepper(fall, island).advance(until, true);
-  }
   thread_local IslandParts parts; // as much memory as for all rocks
-  parts.advance(fall, island, from, until);
+  parts.advance(fall, island, fall.time, until);
 }
 
 } // namespace rockfall

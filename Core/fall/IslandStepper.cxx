@@ -13,6 +13,7 @@
 #include "rock/pressOut.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace rockfall
 {
@@ -33,7 +34,7 @@ IslandStepper::IslandStepper(FallState& fall, const Island& island)
   , island_(island)
   , work_(workOfThread())
 {
-  work_.solver.method = fall.method;
+  work_.solver.method = island.crowd ? IslandMethod::Crowd : IslandMethod::Soft;
   work_.solver.stiffness = pairStiffness(fall.parameters);
 }
 
@@ -84,53 +85,29 @@ double IslandStepper::beginContacts()
     sim.beginContact();
     if (!sim.done())
     {
-      travel = std::min(travel, (island_.crowd ? kCrowdTravel : 1.0) * sim.travelLimit());
+      travel = std::min(travel, kIslandTravel * sim.travelLimit());
     }
   }
   return travel;
 }
 
-double IslandStepper::advance(double until, bool lastingOnly)
+void IslandStepper::advance(double until)
 {
-  const bool inTime = !island_.crowd;
-  const auto now = [&] { return this->timeReached(until); };
-  while (now() < until - kTooShort)
+  while (this->timeReached(until) < until - kTooShort)
   {
     stayWanted();
     const double travel = this->beginContacts();
-    const double remaining = until - now();
-    const double large = std::min(remaining, travel);
-    double small = inTime ? std::min(remaining, impactStepOf(fall_, island_)) : large;
-    const bool calm = inTime && isCalm(fall_, island_);
-    this->gatherContacts(calm ? large : small);
-    // Stiffnesses are known now: the faster rocks meet, the stiffer.
-    small = inTime ? std::min(small, impactStepOf(fall_, island_)) : small;
-    const bool any = this->touches();
-    if (const double free = any ? 0.0 : this->freeTime(remaining); free > small)
+    const double remaining = until - this->timeReached(until), h = std::min(remaining, travel);
+    this->gatherContacts(h);
+    if (const double free = this->touches() ? 0.0 : this->freeTime(remaining); free > h)
     {
       this->fly(free);
-      continue;
-    }
-    if (!inTime)
-    {
-      this->solve(large, StepKind::Lasting, true);
-      continue;
-    }
-    const double lasting = calm && any ? this->freeOfFlying(large) : 0.0;
-    if ((lasting == large || lasting > small) && this->mayLast(lasting))
-    {
-      this->solve(lasting, StepKind::Lasting, false);
-    }
-    else if (lastingOnly)
-    {
-      return now();
     }
     else
     {
-      this->solve(small, StepKind::Impact, false);
+      this->solve(h);
     }
   }
-  return until;
 }
 
 void IslandStepper::pressOutDeep(RockPair& pair, double h) const
@@ -139,12 +116,11 @@ void IslandStepper::pressOutDeep(RockPair& pair, double h) const
   const double speed = deepSpeed(fall_.parameters.gravity, smaller);
   for (Contact& c : pair.contacts)
   {
-    const double way = island_.crowd ? speed * h : gentleWay(c, h, speed);
-    rockfall::pressOutDeep(c, way, kLooseOverlap * smaller);
+    rockfall::pressOutDeep(c, speed * h, kLooseOverlap * smaller);
   }
 }
 
-void IslandStepper::addRock(std::size_t m, double h, StepKind kind, bool bounces)
+void IslandStepper::addRock(std::size_t m, double h)
 {
   comeToRock(fall_, island_, m);
   FallingRock& rock = fall_.rocks[std::size_t(island_.members[m])];
@@ -158,31 +134,27 @@ void IslandStepper::addRock(std::size_t m, double h, StepKind kind, bool bounces
   body.springEnergyBefore = body.springEnergy;
   body.contactsBefore = body.contacts;
   work_.energyBefore[place] = rock.sim.mechanicalEnergy() + body.springEnergy;
-  if (kind == StepKind::Lasting)
+  if (island_.crowd)
   {
-    rock.sim.pressOutDeep(h, !island_.crowd);
+    rock.sim.pressOutDeep(h);
   }
   IslandBody& asked = work_.bodies[place];
   asked = {};
   asked.block = &body.block;
   asked.state = &body.state;
-  if (body.steppedAs == kind)
+  if (body.steppedAs == StepKind::Lasting)
   {
     asked.acceleration = body.acceleration;
     asked.spinAcceleration = body.spinAcceleration;
   }
-  else if (kind == StepKind::Impact)
-  {
-    asked.acceleration.z() = -fall_.parameters.gravity;
-  }
   std::size_t next = work_.slopeFirsts[m];
   for (Contact& c : body.contacts)
   {
-    work_.contacts[next++] = touchOnSlope(fall_, rock, c, h, bounces);
+    work_.contacts[next++] = touchOnSlope(fall_, rock, c, h);
   }
 }
 
-void IslandStepper::addPair(std::size_t t, double h, StepKind kind, bool bounces)
+void IslandStepper::addPair(std::size_t t, double h)
 {
   work_.comeToTouching(island_, t);
   const std::size_t p = work_.touching[t];
@@ -191,9 +163,8 @@ void IslandStepper::addPair(std::size_t t, double h, StepKind kind, bool bounces
   {
     return;
   }
-  const bool crowd = island_.crowd, swept = work_.solver.isSwept(kind, work_.bodies.size());
   const PairMotion motion = work_.motionOf(pair);
-  if (kind == StepKind::Lasting)
+  if (island_.crowd)
   {
     this->pressOutDeep(pair, h);
   }
@@ -201,24 +172,23 @@ void IslandStepper::addPair(std::size_t t, double h, StepKind kind, bool bounces
   for (Contact& c : pair.contacts)
   {
     IslandContact& touch = work_.contacts[next++] =
-      touchOfPair(fall_, pair, motion, c, h, bounces, work_);
-    touch.bare = crowd && swept && mayStayOpen(touch, h);
-    if (crowd && !touch.closed && !touch.bare)
+      touchOfPair(fall_, pair, motion, c, h, work_);
+    touch.bare = !island_.crowd || mayStayOpen(touch, h);
+    if (!touch.closed && !touch.bare)
     {
       setSprings(fall_, pair, c);
     }
   }
 }
 
-void IslandStepper::cutUntilAccepted(StepRequest& request, bool bounces)
+void IslandStepper::cutUntilAccepted(StepRequest& request)
 {
   work_.iterations = work_.cuts = work_.unsettled = work_.tries = 0;
   for (int cut = 0;; ++cut)
   {
-    // A large island leaves little to settle; if it leaves more, a shorter step is taken.
-    const bool crowd = island_.crowd;
-    const bool last = cut >= (crowd ? kCrowdCuts : fall_.parameters.maxCuts);
-    const Accept accept = last ? Accept::Any : crowd ? Accept::Converging : Accept::Settled;
+    // A step leaves little to settle; if it leaves more, a shorter one is taken.
+    const bool last = cut >= kIslandCuts;
+    const Accept accept = last ? Accept::Any : Accept::Converging;
     if (!work_.added.empty())
     {
       work_.contacts.resize(work_.firsts.back());
@@ -230,7 +200,7 @@ void IslandStepper::cutUntilAccepted(StepRequest& request, bool bounces)
     work_.solver.begin(request, accept, work_.bodies, work_.contacts);
     while (work_.solver.asksForALook())
     {
-      work_.solver.goOn(EndLook(fall_, island_, work_, request.duration, bounces).look());
+      work_.solver.goOn(EndLook(fall_, island_, work_, request.duration).look());
     }
     const IslandOutcome outcome = work_.solver.finish();
     work_.iterations += outcome.iterations;
@@ -245,7 +215,7 @@ void IslandStepper::cutUntilAccepted(StepRequest& request, bool bounces)
   }
 }
 
-void IslandStepper::solve(double h, StepKind kind, bool bounces)
+void IslandStepper::solve(double h)
 {
   // Places first, then each rock and each pair for itself.
   if (layOut(fall_, island_, work_) == 0)
@@ -253,22 +223,23 @@ void IslandStepper::solve(double h, StepKind kind, bool bounces)
     return; // the last of them was caught just now
   }
   forEach(
-    island_.members.size(), kRockGrain, [&](std::size_t m) { this->addRock(m, h, kind, bounces); });
+    island_.members.size(), kRockGrain, [&](std::size_t m) { this->addRock(m, h); });
   forEach(
-    work_.touching.size(), kPairGrain, [&](std::size_t t) { this->addPair(t, h, kind, bounces); });
-  if (bounces)
+    work_.touching.size(), kPairGrain, [&](std::size_t t) { this->addPair(t, h); });
+  if (island_.crowd)
   {
-    settleBounces(kind == StepKind::Lasting, work_);
+    settleBounces(work_);
   }
   work_.added.clear();
   work_.addedTo.clear();
   work_.stems.clear();
   StepRequest request;
   request.duration = h;
-  request.kind = kind;
+  request.kind = StepKind::Lasting;
   request.gravity = fall_.parameters.gravity;
   request.maxOpenClose = fall_.parameters.maxOpenClose;
-  this->cutUntilAccepted(request, bounces);
+  request.substeps = int(std::ceil(kSubsteps * h / fall_.parameters.timeStep - 1e-6));
+  this->cutUntilAccepted(request);
   const RockBody& first = fall_.rocks[std::size_t(island_.members.front())].body();
   if (work_.bodies.front().state->time <= first.before.time && !first.done)
   {
@@ -280,7 +251,7 @@ void IslandStepper::solve(double h, StepKind kind, bool bounces)
     this->fly(request.duration);
     return;
   }
-  StepResult(fall_, island_, work_, request.duration, kind).apply();
+  StepResult(fall_, island_, work_, request.duration).apply();
 }
 
 } // namespace rockfall

@@ -7,6 +7,7 @@
 #include "fall/pairImpacts.h"
 #include "fall/raising.h"
 #include "fall/sleep.h"
+#include "law/settings.h"
 
 #include <algorithm>
 #include <numeric>
@@ -118,7 +119,7 @@ bool MassFall::advanceAll()
 {
   const double before = fall_.time;
   const double until = std::min(before + fall_.parameters.timeStep, fall_.parameters.endTime);
-  meetings_->find(until - before);
+  meetings_->find(kStruckEarly * (until - before));
   const std::vector<Island>& islands = meetings_->islands();
   const std::vector<int>& alone = meetings_->alone();
   // The largest first: they take longest.

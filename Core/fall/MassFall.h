@@ -58,9 +58,8 @@ public:
 
   /// Rocks never sleep: for tests of how still a pile stands.
   bool awake = false;
-  void setMethod(IslandMethod method) { fall_.method = method; }
-  int resolved() const { return fall_.resolved; }
-  void setResolved(int most) { fall_.resolved = most; } ///< FallState::resolved
+  int largestSoft() const { return fall_.largestSoft; }
+  void setLargestSoft(int most) { fall_.largestSoft = most; } ///< FallState::largestSoft
 
 private:
   const RockSimulator& rock(int rock) const { return fall_.rocks[std::size_t(rock)].sim; }

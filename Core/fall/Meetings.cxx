@@ -9,31 +9,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 namespace rockfall
 {
-
-namespace
-{
-
-/// Whether an island is too large to resolve its impacts in time.
-bool isCrowd(const FallState& fall, const Island& island)
-{
-  double stiffest = 0.0;
-  for (const int i : island.members)
-  {
-    stiffest = std::max(stiffest, fall.rocks[std::size_t(i)].body().block.largestMobility());
-  }
-  const double frequency = std::sqrt(fall.parameters.normalPenalty * stiffest);
-  const double steps = fall.parameters.timeStep * kStepsPerImpact * frequency / std::numbers::pi;
-  const int size = int(island.members.size());
-  return size > fall.resolved ||
-    (size > kAlwaysResolved && size * steps > kMostSteps * fall.resolved);
-}
-
-} // namespace
 
 Meetings::Meetings(FallState& fall)
   : fall_(fall)
@@ -194,7 +173,7 @@ void Meetings::listIslands()
   for (std::size_t g = 0; g < islands_.size(); ++g)
   {
     Island& island = islands_[g];
-    island.crowd = isCrowd(fall_, island);
+    island.crowd = int(island.members.size()) > fall_.largestSoft;
     for (const int i : island.members)
     {
       movers_[std::size_t(i)].crowd = island.crowd ? int(g) : -1;

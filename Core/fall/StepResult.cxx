@@ -11,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <limits>
 
 namespace rockfall
 {
@@ -39,13 +38,11 @@ std::uint64_t keyOf(const Contact& c)
 
 } // namespace
 
-StepResult::StepResult(
-  FallState& fall, const Island& island, IslandWork& work, double duration, StepKind kind)
+StepResult::StepResult(FallState& fall, const Island& island, IslandWork& work, double duration)
   : fall_(fall)
   , island_(island)
   , work_(work)
   , h_(duration)
-  , kind_(kind)
 {
 }
 
@@ -54,6 +51,14 @@ void StepResult::apply()
   work_.carriers.assign(work_.bodies.size(), 0);
   work_.touchesOthers.assign(work_.bodies.size(), 0);
   work_.flags.resize(std::max(work_.flags.size(), island_.pairs.size()));
+  for (std::size_t k = 0; k < work_.added.size(); ++k)
+  {
+    if (!work_.addedTo[k].onSlope)
+    {
+      findKnock(
+        fall_, *island_.pairs[work_.addedTo[k].of], work_.contacts[work_.firsts.back() + k], h_);
+    }
+  }
   forEach(work_.touching.size(), kPairGrain, [this](std::size_t t) { this->applyToPair(t); });
   this->applyAdded();
   this->finishImpacts();
@@ -76,7 +81,7 @@ void StepResult::bookContact(RockPair& pair, const IslandContact& touch) const
     if (c.normalForce > impact.largest)
     {
       impact.largest = c.normalForce;
-      impact.point = c.point;
+      impact.point = touch.struck > 0.0 ? touch.struckPoint : c.point;
     }
   }
   impact.loss += touch.work;
@@ -116,7 +121,10 @@ void StepResult::applyToPair(std::size_t t)
     std::atomic_ref(work_.carriers[place]).fetch_add(carry[side], std::memory_order_relaxed);
     std::atomic_ref(work_.touchesOthers[place]).store(1, std::memory_order_relaxed);
   }
-  this->pressOut(pair);
+  if (island_.crowd)
+  {
+    this->pressOut(pair);
+  }
 }
 
 void StepResult::pressOut(RockPair& pair) const
@@ -126,9 +134,7 @@ void StepResult::pressOut(RockPair& pair) const
   const double mass = std::min(a.mass, b.mass), reduced = 1.0 / (1.0 / a.mass + 1.0 / b.mass);
   const double slow = std::min(
     kPressOut * h_, 0.5 * mass * fall_.parameters.gravity / fall_.parameters.normalPenalty);
-  const double smaller = std::min(a.radius, b.radius),
-               loose = kind_ == StepKind::Lasting ? kLooseOverlap * smaller
-                                                  : std::numeric_limits<double>::infinity();
+  const double smaller = std::min(a.radius, b.radius), loose = kLooseOverlap * smaller;
   const double speed = std::max(
     (a.velocity - b.velocity).norm() + a.rim + b.rim, pair.strikes ? pair.impact.approach : 0.0);
   for (Contact& c : pair.contacts)
@@ -154,7 +160,6 @@ void StepResult::applyAdded()
     }
     RockPair& pair = *island_.pairs[added.of];
     const IslandContact& touch = work_.contacts[work_.firsts.back() + k];
-    findKnock(fall_, pair, touch, h_);
     this->bookContact(pair, touch);
     work_.flags[added.of] = pair.strikes;
     if (c.closed())
@@ -186,7 +191,7 @@ void StepResult::finishImpacts()
   }
   for (const std::size_t p : work_.touching)
   {
-    if (work_.flags[p] && (kind_ == StepKind::Lasting || !island_.pairs[p]->touched))
+    if (work_.flags[p])
     {
       finishPairImpact(fall_, *island_.pairs[p]);
     }
@@ -212,11 +217,11 @@ void StepResult::applyToRock(std::size_t k)
   outcome.dampedWork = answer.dampedWork;
   outcome.springEnergy = answer.springEnergy;
   outcome.normalEnergy = answer.normalEnergy;
-  sim.absorb(kind_, outcome, work_.energyBefore[place], answer.given);
+  sim.absorb(StepKind::Lasting, outcome, work_.energyBefore[place], answer.given, island_.crowd);
   const bool carried = work_.touchesOthers[place] || anyClosed(body.contacts);
-  // In a crowd some contact opens or closes in every step, and the acceleration of one step says
-  // little of the next: carried on it would keep the pile in motion for ever.
-  if (work_.carriers[place] != rock.carriers || (island_.crowd && carried))
+  // Some contact of an island opens or closes in every step, and the acceleration of one step says
+  // little of the next: carried on it would keep a pile in motion for ever.
+  if (work_.carriers[place] != rock.carriers || carried)
   {
     body.acceleration.setZero();
     body.spinAcceleration.setZero();
@@ -235,7 +240,7 @@ void StepResult::applyToRock(std::size_t k)
   }
   const bool arrived = work_.looked && rock.arrive();
   work_.arrived[place] = arrived;
-  if (island_.crowd && !arrived)
+  if (!arrived)
   {
     const BlockState &from = body.before, &to = body.state;
     const double r = body.block.radius();
@@ -258,8 +263,7 @@ void StepResult::keepAxis(std::size_t p)
     pair.before = pair.axis;
     pair.axis = pair.end;
   }
-  else if (island_.crowd && both && !pair.touched &&
-    !fall_.rocks[std::size_t(pair.first)].sim.done() &&
+  else if (both && !pair.touched && !fall_.rocks[std::size_t(pair.first)].sim.done() &&
     !fall_.rocks[std::size_t(pair.second)].sim.done())
   {
     // The look was before the last sweeps; the two may still be apart as they were.

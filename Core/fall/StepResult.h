@@ -12,14 +12,13 @@ class StepResult
 {
 public:
   /// Of a step that has gone on for a duration (s).
-  StepResult(
-    FallState& fall, const Island& island, IslandWork& work, double duration, StepKind kind);
+  StepResult(FallState& fall, const Island& island, IslandWork& work, double duration);
 
   void apply();
 
 private:
   void applyToPair(std::size_t touching); ///< By number among those that touch.
-  void pressOut(RockPair& pair) const;    ///< An overlap that was found is recovered slowly.
+  void pressOut(RockPair& pair) const;    ///< In a crowd: overlap that was found goes slowly.
   void bookContact(RockPair& pair, const IslandContact& touch) const;
   void applyAdded();    ///< Contacts that were missed at first.
   void finishImpacts(); ///< Of pairs that have parted, or lie on each other.
@@ -31,7 +30,6 @@ private:
   const Island& island_;
   IslandWork& work_;
   double h_; ///< s
-  StepKind kind_;
 };
 
 } // namespace rockfall

@@ -57,17 +57,23 @@ BlockState StepTrees::endOf(const Stem& stem) const
 
 BlockState StepTrees::endWithout(const Stem& stem, double h) const
 {
-  const RockBody& body = this->rockOf(stem).body();
+  const FallingRock& rock = this->rockOf(stem);
+  const RockBody& body = rock.body();
   BlockState end = this->endOf(stem);
-  const auto take = [&](const Contact& c, std::size_t k)
+  for (std::size_t i = 0; i < body.contacts.size(); ++i)
   {
+    const Contact& c = body.contacts[i];
+    const std::size_t k = work_.slopeFirsts[stem.member] + i;
+    if (rock.sim.treeOf(c) < 0)
+    {
+      continue;
+    }
     const Vec3 impulse = h * work_.solver.system().force(k) * c.normal;
     const Mat3 back = end.orientation.toRotationMatrix().transpose();
     end.velocity -= impulse / body.block.mass();
     end.spin -=
       body.block.inverseInertia() * (back * (c.point - body.state.position).cross(impulse));
-  };
-  this->forContacts(stem, take);
+  }
   return end;
 }
 
@@ -196,10 +202,11 @@ void StepTrees::fell(std::size_t member)
         const double all = c.springEnergy();
         const double shear = c.closed() ? 0.5 * c.shearStiffness * c.slip.squaredNorm() : 0.0;
         const bool bounced = work_.contacts[work_.slopeFirsts[member] + k].bounce >= 0.0;
+        const bool normal = bounced || !island_.crowd; // booked along the normal
         held += all;
-        body.energy.restitution -= bounced ? all : 0.0;
-        body.energy.friction -= bounced ? 0.0 : shear;
-        body.energy.damping -= bounced ? 0.0 : all - shear;
+        body.energy.restitution -= normal ? all : 0.0;
+        body.energy.friction -= normal ? 0.0 : shear;
+        body.energy.damping -= normal ? 0.0 : all - shear;
       }
     }
     sim.breakTree(stem.tree, held);

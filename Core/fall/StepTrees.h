@@ -34,7 +34,7 @@ private:
   void forContacts(const Stem& stem, Use&& use) const;
   void setAbsent(const Stem& stem, bool absent);
   BlockState endOf(const Stem& stem) const;
-  /// The same without what the tree does in a step of `h`, as long as others do as they did.
+  /// The same without what trees do in a step of `h`, as long as others do as they did.
   BlockState endWithout(const Stem& stem, double h) const;
   /// Whether the tree cannot hold the rock that ends so, and that goes on into it. `through`: it is
   /// let go.

@@ -21,10 +21,7 @@ void IslandStepper::gatherContacts(double h)
     work_.sides[i].set(fall_.rocks[i].body());
   };
   forEach(island_.members.size(), kRockGrain, stand);
-  if (island_.crowd)
-  {
-    findPushes(island_, work_);
-  }
+  findPushes(island_, work_);
   forEach(island_.members.size(), kRockGrain, [&](std::size_t k) { this->gatherOnSlope(k, h); });
   forEach(island_.pairs.size(), kPairGrain, [&](std::size_t p) { this->gatherOfPair(p, h); });
 }
@@ -45,15 +42,14 @@ void IslandStepper::gatherOnSlope(std::size_t k, double h)
     return;
   }
   rock.stand();
-  const bool crowd = island_.crowd;
   IslandWork::Side& side = work_.sides[std::size_t(island_.members[k])];
   const double r = body.block.radius();
   const double spread = body.state.spin.norm() * r + side.pushed;
   const double speed = body.state.velocity.norm() + body.state.spin.norm() * r + side.pushed;
   const double reach = this->reachOf(speed, r, h);
-  body.crowded = crowd;
+  body.crowded = true;
   // Twice: beyond a concave edge planes serve a little further than their triangles.
-  if (crowd && sim.isHigh(2.0 * reach))
+  if (sim.isHigh(2.0 * reach))
   {
     sim.closeScar();
     sim.armContacts(h);
@@ -62,12 +58,6 @@ void IslandStepper::gatherOnSlope(std::size_t k, double h)
   body.placed.placeVertices();
   const auto find = [&]() -> const CandidatePairs&
   {
-    if (!crowd)
-    {
-      sim.ensureCandidates(reach);
-      sim.findContacts(sim.candidates(), reach, h);
-      return sim.candidates();
-    }
     const CandidatePairs& near = sim.candidatesNow(rock.hull,
       { body.state.velocity, spread, kFasterApproach * h,
         fall_.parameters.gravity * h * h + kSurelyOnSlope * r, reach });
@@ -109,17 +99,10 @@ void IslandStepper::gatherOfPair(std::size_t p, double h)
   const double reach = this->reachOf(motion.velocity.norm() + rims, smaller, h);
   const PairBody& first = fall_.rocks[std::size_t(pair.first)].hull;
   const PairBody& second = fall_.rocks[std::size_t(pair.second)].hull;
-  if (island_.crowd)
-  {
-    // The second look finds the others, should they be needed; what may close is given springs when
-    // it is taken.
-    const ClosingGaps closing = { motion, kFasterApproach * h,
-      fall_.parameters.gravity * h * h + kSurely * smaller, rims };
-    updatePair(first, second, reach, pair, &closing);
-    return;
-  }
-  updatePair(first, second, reach, pair);
-  setPairSprings(fall_, pair, h);
+  // The look at the end finds the others, should they be needed; what closes is given springs then.
+  const ClosingGaps closing = { motion, kFasterApproach * h,
+    fall_.parameters.gravity * h * h + kSurely * smaller, rims };
+  updatePair(first, second, reach, pair, &closing);
 }
 
 } // namespace rockfall

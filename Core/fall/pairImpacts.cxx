@@ -24,11 +24,20 @@ void beginPairImpact(
 void findKnock(const FallState& fall, RockPair& pair, const IslandContact& touch, double h)
 {
   const Contact& c = *touch.contact;
+  const RockBody &a = fall.rocks[pair.first].body(), &b = fall.rocks[pair.second].body();
+  if (touch.struck > 0.0)
+  {
+    const bool first = !pair.strikes;
+    beginPairImpact(pair, a.before, b.before, c.point);
+    const double time = a.before.time + touch.struckAt;
+    pair.impact.time = first ? time : std::min(pair.impact.time, time);
+    pair.impact.approach = std::max(pair.impact.approach, touch.struck);
+    return;
+  }
   if (touch.closed || c.normalForce <= 0.0)
   {
     return;
   }
-  const RockBody &a = fall.rocks[pair.first].body(), &b = fall.rocks[pair.second].body();
   const double resting = std::min(a.restingSpeed, b.restingSpeed);
   const double closing = -touch.opening / h;
   if (closing > resting + fall.parameters.gravity * h)

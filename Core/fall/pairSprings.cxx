@@ -58,38 +58,6 @@ void stiffenPressed(RockSimulator& sim)
   }
 }
 
-void setPairSprings(const FallState& fall, RockPair& pair, double h)
-{
-  Contact* k = pair.contacts.data();
-  Contact* const end = k + pair.contacts.size();
-  while (k != end && k->closed())
-  {
-    ++k;
-  }
-  if (k == end)
-  {
-    return;
-  }
-  const RockBody &a = fall.rocks[pair.first].body(), &b = fall.rocks[pair.second].body();
-  PairSprings springs = springsOf(fall, pair);
-  for (; k != end; ++k)
-  {
-    if (!k->closed())
-    {
-      springs.set(*k);
-    }
-  }
-  if (pair.law.damping > 0.0)
-  {
-    tuneDashpots(
-      pair.contacts, h,
-      [motion = motionOf(fall, pair)](const Contact& c)
-      { return -c.normal.dot(motion.at(c.point)); },
-      [&](const Vec3& force, const Vec3& moment, const Vec3& at)
-      { return response(a.placed, force, moment, at) + response(b.placed, force, moment, at); });
-  }
-}
-
 void setSprings(const FallState& fall, const RockPair& pair, Contact& c)
 {
   springsOf(fall, pair).set(c);

@@ -14,10 +14,7 @@ PairStiffness pairStiffness(const SimulationParameters& parameters);
 /// Springs on the slope into which others press the rock.
 void stiffenPressed(RockSimulator& sim);
 
-/// Of all open contacts of a pair, for a step of `h` (s).
-void setPairSprings(const FallState& fall, RockPair& pair, double h);
-
-/// Of one contact in a crowd, whose dashpot is not asked for.
+/// Of one contact; its dashpot is not asked for.
 void setSprings(const FallState& fall, const RockPair& pair, Contact& contact);
 
 } // namespace rockfall

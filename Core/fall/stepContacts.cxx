@@ -44,7 +44,7 @@ bool mayBounce(const std::vector<int>& partners, const IslandContact& k)
 } // namespace
 
 IslandContact touchOnSlope(
-  const FallState& fall, const FallingRock& member, Contact& c, double h, bool bounces)
+  const FallState& fall, const FallingRock& member, Contact& c, double h)
 {
   const RockSimulator& sim = member.sim;
   const BlockState& state = sim.body().state;
@@ -54,35 +54,36 @@ IslandContact touchOnSlope(
     comesDown(approach, state.velocity.norm(), fall.parameters.gravity, sim.body().block.radius());
   const int ground = fall.surface.restitutionClass(c.cfe);
   const SurfaceMaterial& material = fall.surface.terrain().restitutionMaterial(ground);
-  double e = fall.surface.restitutionAt(sim.touchAt(c.cfe, c.point));
+  IslandContact k;
+  k.restitution = fall.surface.restitutionAt(sim.touchAt(c.cfe, c.point));
   if (material.restitutionModel == RestitutionModel::Velocity && down)
   {
-    e = 1.0; // Rv is taken off the whole velocity when the impact is over
+    k.restitution = 1.0; // Rv is taken off the whole velocity when the impact is over
   }
   else if (material.restitutionModel == RestitutionModel::SpeedDependent)
   {
-    e = restitutionAtSpeed(e, approach, material.restitutionSpeed);
+    k.restitutionSpeed = material.restitutionSpeed;
   }
-  IslandContact k;
+  k.resting = sim.body().restingSpeed;
   k.contact = &c;
   k.closed = c.closed();
   k.first = member.place;
   k.friction = c.friction;
   k.cohesion = c.cohesion;
-  if (bounces && c.closed() && sim.impactUnderWay())
+  if (c.closed() && sim.impactUnderWay())
   {
     k.bounce = bounceLeft(c, approach); // begun where impacts are resolved in time
   }
-  else if (bounces && hits(c, approach, sim.body().restingSpeed, h))
+  else if (hits(c, approach, sim.body().restingSpeed, h))
   {
-    k.bounce = e * approach;
+    k.bounce = k.restitutionAt(approach) * approach;
   }
   k.approach = approach;
   return k;
 }
 
 IslandContact touchOfPair(const FallState& fall, RockPair& pair, const PairMotion& motion,
-  Contact& c, double h, bool bounces, const IslandWork& work)
+  Contact& c, double h, const IslandWork& work)
 {
   const double resting = std::min(
     work.sides[std::size_t(pair.first)].resting, work.sides[std::size_t(pair.second)].resting);
@@ -93,6 +94,8 @@ IslandContact touchOfPair(const FallState& fall, RockPair& pair, const PairMotio
   k.second = work.placeOf[std::size_t(pair.second)];
   k.friction = pair.law.friction;
   k.damping = pair.law.damping;
+  k.restitution = pair.law.restitution;
+  k.resting = resting;
   k.cohesion = pair.law.cohesion;
   if (k.cohesion > 0.0)
   {
@@ -100,17 +103,18 @@ IslandContact touchOfPair(const FallState& fall, RockPair& pair, const PairMotio
   }
   k.approach = -c.normal.dot(motion.at(c.point));
   const bool impacts = hits(c, k.approach, resting, h);
-  if (bounces && impacts)
+  if (impacts)
   {
     k.bounce = pair.law.restitution * k.approach;
   }
-  else if (bounces && c.closed() && pair.strikes &&
+  else if (c.closed() && pair.strikes &&
     pair.impact.time < fall.rocks[pair.first].sim.body().state.time)
   {
     k.bounce = bounceLeft(c, k.approach); // as on the slope
   }
   // For the events: what strikes one of two that touch strikes the other through it.
-  if (impacts || (c.closed() && k.approach > resting))
+  const bool crowd = work.solver.method == IslandMethod::Crowd;
+  if (crowd && (impacts || (c.closed() && k.approach > resting)))
   {
     beginPairImpact(pair, fall.rocks[pair.first].sim.body().state,
       fall.rocks[pair.second].sim.body().state, c.point);
@@ -122,7 +126,7 @@ IslandContact touchOfPair(const FallState& fall, RockPair& pair, const PairMotio
   return k;
 }
 
-void settleBounces(bool lasting, IslandWork& work)
+void settleBounces(IslandWork& work)
 {
   // Few contacts have a say: each part looks for its own.
   const std::size_t contacts = work.contacts.size(), parts = partsOf(contacts);
@@ -160,7 +164,7 @@ void settleBounces(bool lasting, IslandWork& work)
       return;
     }
     k.bounce = mayBounce(work.partners, k) ? k.bounce : -1.0;
-    if (!lasting || k.bounce < 0.0)
+    if (k.bounce < 0.0)
     {
       return;
     }
@@ -177,9 +181,9 @@ void settleBounces(bool lasting, IslandWork& work)
   forChosen(settle);
 }
 
-void appendTouch(IslandContact touch, bool bounces, IslandWork& work)
+void appendTouch(IslandContact touch, bool crowd, IslandWork& work)
 {
-  if (bounces)
+  if (crowd)
   {
     meet(work.partners, touch);
     touch.bounce = mayBounce(work.partners, touch) ? touch.bounce : -1.0;

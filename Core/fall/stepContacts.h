@@ -16,16 +16,16 @@ inline bool hits(const Contact& c, double approach, double resting, double h)
 
 /// A contact of a rock with the slope in a step of `h` (s).
 IslandContact touchOnSlope(
-  const FallState& fall, const FallingRock& rock, Contact& contact, double h, bool bounces);
+  const FallState& fall, const FallingRock& rock, Contact& contact, double h);
 
 /// A contact of two rocks; an impact begins with it if it closes fast.
 IslandContact touchOfPair(const FallState& fall, RockPair& pair, const PairMotion& motion,
-  Contact& contact, double h, bool bounces, const IslandWork& work);
+  Contact& contact, double h, const IslandWork& work);
 
-/// No bounce for what meets several.
-void settleBounces(bool lasting, IslandWork& work);
+/// In a crowd: no bounce for what meets several.
+void settleBounces(IslandWork& work);
 
 /// One that shows only where the step would end.
-void appendTouch(IslandContact touch, bool bounces, IslandWork& work);
+void appendTouch(IslandContact touch, bool crowd, IslandWork& work);
 
 } // namespace rockfall

@@ -72,20 +72,11 @@ inline constexpr double kMostTimeStep = 0.1;
 /// Open–close has settled when no state changes and gaps move by less than this share of their
 /// change over the step. The energy error of a step is of the order of this share of its work.
 inline constexpr double kGapTolerance = 1e-7;
-/// The same share of a rotation, in islands: the gyroscopic moment converges linearly, and so keeps
-/// angular momentum to 1e-12.
-inline constexpr double kTurnTolerance = 1e-9;
 /// A correction turns back if its product with the last one is below −this times the square of the
 /// last: part of it is taken then. Lower: damping of corrections that converge.
 inline constexpr double kTurnsBack = 0.25;
 /// Least part of a correction that is taken. Lower: slower where the iteration cycles.
 inline constexpr double kLeastCorrection = 0.125;
-/// Largest island solved directly, rocks. Larger: cost grows with the square.
-inline constexpr int kDirectIsland = 60;
-/// Least pivot of a block of K as a share of its largest entry; below, the step is cut.
-inline constexpr double kSingularPivot = 1e-14;
-/// Largest residual of a direct solution as a share of the largest load; above, the step is cut.
-inline constexpr double kDirectResidual = 1e-9;
 
 // ---------------------------------------------------------------------------------------------
 // 4  Impacts and rest
@@ -206,28 +197,27 @@ inline constexpr double kNoMore = 1.0 + 1e-6;
 /// Factor on the speed of approach at the start of a step for what comes near within it. Larger:
 /// more contacts, fewer found late.
 inline constexpr double kFasterApproach = 1.5;
-/// Steps of one Δt that the smallest rock of an island may ask of all; if it asks for more, so many
-/// times fewer rocks resolve their impacts, but this number always does.
-inline constexpr double kMostSteps = 100.0;
-inline constexpr int kAlwaysResolved = 4;
-/// As kStepsPerImpact, of two rocks. An impact begins anywhere in a step: of faces that meet at a
-/// restitution of 0.8 the loss is off by 2.3 % at most with eight, by 1.4 % with ten.
-inline constexpr double kStepsPerPairImpact = 10.0;
-/// Steps of an impact that half of a part of a step must hold for the part to be halved. Fewer:
-/// parts that cut more steps short than they spare (41 and 100 cubes, by processor time).
-inline constexpr double kLeastStepsOfPart = 2.0;
-/// Step of a large island in steps of rocks that resolve their impacts. Longer: faster, more cuts.
-inline constexpr double kCrowdTravel = 2.0;
-/// Cuts of the step of a large island that is far from settled.
-inline constexpr int kCrowdCuts = 4;
-/// In a large island a contact is made for a gap below this share of r. An impact turns rocks
+/// Largest island that is no crowd, rocks. Larger: a crowd's step costs less for each rock.
+inline constexpr int kLargestSoft = 256;
+/// Factor on the step for which rocks that may meet are found. An impact is given at the beginning
+/// of its substep, and what is struck goes further by up to one of them.
+inline constexpr double kStruckEarly = 1.25;
+/// Shortest part of a step, in steps, in which rocks of an island that meet no other go alone.
+/// Shorter: more go alone, and more parts are looked at.
+inline constexpr double kShortestPart = 0.5;
+/// Step of an island in steps of rocks that are alone. Longer: faster, more cuts.
+inline constexpr double kIslandTravel = 2.0;
+/// Cuts of the step of an island that is far from settled.
+inline constexpr int kIslandCuts = 6;
+/// In an island a contact is made for a gap below this share of r. An impact turns rocks
 /// within the step, and what is found only at its end may be past by then (cubes at 17 m/s, Δt 5
 /// ms: mean deepest overlap 0.6 % of an edge, with 2e-3 1.1 %).
 inline constexpr double kSurely = 3e-2;
 /// The same on the slope.
 inline constexpr double kSurelyOnSlope = 1e-2;
-/// Depth beyond the predicted one that was missed, share of r.
-inline constexpr double kMissed = 5e-5;
+/// Depth beyond the predicted one that was missed, share of r, in a crowd and in other islands.
+inline constexpr double kMissedInCrowd = 5e-5;
+inline constexpr double kMissed = 2e-3;
 /// Looks after which no further trees are let go: they hold for the rest of the step.
 inline constexpr int kTreeLooks = 8;
 /// Shortest step, s.
@@ -255,7 +245,38 @@ inline constexpr double kBounceGainOn = 0.05;
 inline constexpr int kHeldBounces = 3;
 
 // ---------------------------------------------------------------------------------------------
-// 10  Mass fall: sweeps of projected Gauss–Seidel
+// 10  Islands: soft rows in substeps (system/SoftSolver.h)
+
+/// Substeps of Δt. Fewer: columns and walls creep (5: 1e-4 m for ten cubes).
+inline constexpr int kSubsteps = 8;
+/// Highest frequency of a row, share of the substep rate. Higher: its force alternates.
+inline constexpr double kSoftFrequency = 0.25;
+/// Damping ratio of a row. Lower: tall columns sway; higher: walls creep.
+inline constexpr double kSoftDamping = 3.0;
+/// Speed at which overlap goes, between rocks and on the slope, m/s.
+inline constexpr double kOverlapGoes = 1.0;
+inline constexpr double kOverlapGoesOnSlope = 10.0;
+/// Sweeps that make forces balance after the rocks have moved. Fewer: walls of 50 cubes never rest.
+inline constexpr int kRelaxSweeps = 3;
+/// Generations of impacts in a substep. Fewer: what rocks in touch pass on to each other at
+/// restitution 0 is left over (half of it with each generation).
+inline constexpr int kGenerations = 12;
+/// Sweeps over the impacts of a generation, until none changes by this share of its speed, or of
+/// the resting speed.
+inline constexpr int kImpactSweeps = 200;
+inline constexpr double kImpactExact = 1e-3;
+inline constexpr double kImpactQuiet = 0.1;
+/// Points of the same two rocks share an impact if they would close in so many substeps.
+inline constexpr double kSharedImpact = 1.5;
+/// Deepest overlap that a step may add, share of r; deeper, it is cut. Less: more cuts.
+inline constexpr double kDeepStep = 0.02;
+/// Motion that is none, share of r.
+inline constexpr double kNoMotion = 1e-7;
+/// Rocks of a strip.
+inline constexpr int kRocksOfStrip = 64;
+
+// ---------------------------------------------------------------------------------------------
+// 11  Crowds: sweeps of projected Gauss–Seidel
 
 /// Changes below this share of the tolerance are none.
 inline constexpr double kQuiet = 0.3;
@@ -287,7 +308,7 @@ inline constexpr int kFreeTurns = 2;
 inline constexpr double kTurnGuessed = 0.02;
 
 // ---------------------------------------------------------------------------------------------
-// 11  Ground that yields
+// 12  Ground that yields
 
 /// Λ sinks if deeper by this share of its depth and of r. Smaller: more steps in which Λ moves.
 inline constexpr double kDeeperScar = 0.1;

@@ -404,7 +404,7 @@ void RockSimulator::advance(double until, double enough)
   if (body_.crowded)
   {
     body_.crowded = false; // alone, and what others have pressed in is theirs
-    this->letDeepBe(kLooseOverlap * body_.block.radius());
+    body_.energy.damping += this->letDeepBe(kLooseOverlap * body_.block.radius());
   }
   horizon_ = std::min(until, parameters_.endTime);
   const auto seen = [&]

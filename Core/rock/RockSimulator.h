@@ -136,13 +136,13 @@ public:
   {
     return { cfe, place, number_, impactsOver_ };
   }
-  /// Deep overlaps that were found, not made (pressOut.h), before a lasting step. `held`: others
-  /// may hold the rock.
-  void pressOutDeep(double h, bool held);
+  /// Deep overlaps that were found, not made (pressOut.h), before a lasting step.
+  void pressOutDeep(double h);
   double mechanicalEnergy() const; ///< Without contact springs, J.
   /// Books a step that has been taken from `before` to `state`. `given`: work done on other rocks,
-  /// J.
-  void absorb(StepKind kind, const StepOutcome& outcome, double energyBefore, double given);
+  /// J. `pressesOut`: loose overlaps go slowly (pressOut.h).
+  void absorb(
+    StepKind kind, const StepOutcome& outcome, double energyBefore, double given, bool pressesOut);
   void flyFree(double duration); ///< Without contacts, through barriers that break.
   /// The impact on the slope that is under way, if there is one.
   const ImpactEvent* impactUnderWay() const { return impact_.pending ? &impact_.event : nullptr; }
@@ -205,8 +205,9 @@ private:
   bool mayLast(double h) const; ///< A long, damped step is right.
   void pressOut(double h);      ///< As pressOutDeep, loose overlaps after a step.
   double looseOverlap() const;  ///< m
-  /// No spring in a deep overlap holds more than those of a rock that lies still and alone.
-  void letDeepBe(double loose);
+  /// No spring in a deep overlap holds more than those of a rock that lies still and alone. Returns
+  /// what it no longer holds, J.
+  double letDeepBe(double loose);
   double settledSpeed() const; ///< Speed that the springs of such a rock could give it, m/s.
   double dampingRatioFor(int ground, double restitution); ///< ζ of a class of ground, now.
   /// Part of a step of `h` that contacts which are closed or close in it allow, s.

@@ -199,7 +199,7 @@ void RockSimulator::stayInContact()
     }
     if (kind == StepKind::Lasting)
     {
-      this->pressOutDeep(h, false);
+      this->pressOutDeep(h);
     }
     this->takeStep(h, kind);
     this->checkEnd(body_.state.time - body_.before.time);
@@ -353,7 +353,7 @@ void RockSimulator::takeStep(double h, StepKind kind)
       body_.contactsBefore.clear();
     }
   }
-  this->absorb(kind, outcome, energyBefore, 0.0);
+  this->absorb(kind, outcome, energyBefore, 0.0, true);
   if (lasting)
   {
     this->letDeepBe(this->looseOverlap());
@@ -361,7 +361,7 @@ void RockSimulator::takeStep(double h, StepKind kind)
 }
 
 void RockSimulator::absorb(
-  StepKind kind, const StepOutcome& outcome, double energyBefore, double given)
+  StepKind kind, const StepOutcome& outcome, double energyBefore, double given, bool pressesOut)
 {
   const bool lasting = kind == StepKind::Lasting;
   const double taken = body_.state.time - body_.before.time;
@@ -375,7 +375,7 @@ void RockSimulator::absorb(
     const double damped = energyBefore - this->mechanicalEnergy() - body_.springEnergy -
       outcome.frictionWork - outcome.dampedWork - given;
     // Energy that recovery of an overlap gives a rock comes from nowhere, and is booked as that.
-    body_.energy.damping += pressed_ ? std::max(0.0, damped) : damped;
+    body_.energy.damping += pressed_ && pressesOut ? std::max(0.0, damped) : damped;
     pressed_ = false;
     // The lag of the next lasting step. What an impact left is no acceleration to go on with, nor
     // is that under other contacts: a rock that rattles would be fed by it.
@@ -391,7 +391,10 @@ void RockSimulator::absorb(
       body_.acceleration.setZero();
       body_.spinAcceleration.setZero();
     }
-    this->pressOut(taken);
+    if (pressesOut)
+    {
+      this->pressOut(taken);
+    }
   }
   else
   {
@@ -453,19 +456,18 @@ void RockSimulator::pressOut(double h)
   }
 }
 
-void RockSimulator::pressOutDeep(double h, bool held)
+void RockSimulator::pressOutDeep(double h)
 {
   pressed_ = false;
   const double speed = deepSpeed(parameters_.gravity, body_.block.radius());
   const double loose = this->looseOverlap();
   for (Contact& c : body_.contacts)
   {
-    const double way = held ? gentleWay(c, h, speed) : speed * h;
-    pressed_ = rockfall::pressOutDeep(c, way, loose) || pressed_;
+    pressed_ = rockfall::pressOutDeep(c, speed * h, loose) || pressed_;
   }
 }
 
-void RockSimulator::letDeepBe(double loose)
+double RockSimulator::letDeepBe(double loose)
 {
   const bool deep = anyDeep(body_.contacts, loose);
   double held = 0.0;
@@ -476,7 +478,9 @@ void RockSimulator::letDeepBe(double loose)
     body_.normalEnergy = std::max(0.0, body_.normalEnergy - normal);
     held += normal + (deep ? letSlipBe(c, still / std::sqrt(c.shearStiffness)) : 0.0);
   }
-  body_.springEnergy = std::max(0.0, body_.springEnergy - held);
+  const double before = body_.springEnergy;
+  body_.springEnergy = std::max(0.0, before - held);
+  return before - body_.springEnergy;
 }
 
 } // namespace rockfall

@@ -42,13 +42,6 @@ inline bool pressOutDeep(Contact& c, double way, double loose)
   return deep;
 }
 
-/// The same where others may hold the two: by no more than the spring needs to give what it stops
-/// `speed` (m/s), or a pinched stone would lift what lies on it.
-inline double gentleWay(const Contact& c, double h, double speed)
-{
-  return std::min(h, std::sqrt(c.stopped / c.stiffness)) * speed;
-}
-
 /// Lets a deep overlap be where a step has left its spring compressed by more than `most` (m).
 /// Returns the energy that the spring then no longer holds, J.
 inline double letBe(Contact& c, double most, double loose)

@@ -45,6 +45,7 @@ struct StepRequest
   double cohesion = 0.0;      ///< N per closed contact.
   bool rigid = false;         ///< Strain rows left out: 6 unknowns.
   int maxOpenClose = 12;
+  int substeps = 8; ///< Of an island (system/SoftSolver.h).
   /// Acceleration of translation (world) and of the spin (body) in the last step: the lag of
   /// Lasting, a first guess for Impact.
   Vec3 acceleration = Vec3::Zero();

@@ -14,33 +14,28 @@
 ///     outcome = solver.finish();
 
 #include "system/CrowdSolver.h"
-#include "system/NewtonSolver.h"
+#include "system/SoftSolver.h"
 
 #include <vector>
 
 namespace rockfall
 {
 
-/// How the linear systems are solved.
 enum class IslandMethod : std::uint8_t
 {
-  Suited,    ///< Direct up to a size, iterative beyond.
-  Direct,    ///< Elimination of K's blocks.
-  Iterative, ///< Gauss–Seidel over the contacts of a lasting step (system/CrowdSolver.h).
+  Soft,  ///< Substeps, impacts within them (system/SoftSolver.h).
+  Crowd, ///< One step, swept over by many threads (system/CrowdSolver.h).
 };
 
 class IslandSolver
 {
 public:
-  IslandMethod method = IslandMethod::Suited;
-  /// Share of the largest displacement to which Gauss–Seidel goes.
+  IslandMethod method = IslandMethod::Soft;
+  /// Share of the largest displacement to which a crowd's sweeps go.
   double tolerance = 1e-4;
   int maxSweeps = 6;
   /// Of contacts that come without springs (IslandContact::bare).
   PairStiffness stiffness;
-
-  /// Whether a step is solved by Gauss–Seidel from the start.
-  bool isSwept(StepKind kind, std::size_t bodies) const;
 
   void begin(const StepRequest& request, Accept accept, std::vector<IslandBody>& bodies,
     std::vector<IslandContact>& contacts);
@@ -48,8 +43,8 @@ public:
   bool asksForALook() const;
   /// Goes on from where it is with what a look has found.
   void goOn(const LookOutcome& seen);
-  /// Advances the bodies' states and the contacts' springs by `request.duration`. If open–close
-  /// has not settled nothing is changed, unless `accept` says so.
+  /// Advances the bodies' states and the contacts by `request.duration`. If the step has not
+  /// settled nothing is changed, unless `accept` says so.
   IslandOutcome finish();
   /// All of it, without a look.
   IslandOutcome step(const StepRequest& request, std::vector<IslandBody>& bodies,
@@ -64,22 +59,14 @@ public:
   const IslandSystem& system() const { return *system_; }
 
 private:
-  void sweep(); ///< From the start.
-  void sweepIfUnsettled();
-
-  NewtonSolver newton_;
+  SoftSolver soft_;
   CrowdSolver crowd_;
   // Of the step at hand.
-  IslandSystem* system_ = &newton_;
-  StepRequest request_;
+  IslandSystem* system_ = &soft_;
   Accept accept_ = Accept::Settled;
-  std::vector<IslandBody>* bodies_ = nullptr;
-  std::vector<IslandContact>* contacts_ = nullptr;
   LookOutcome seen_;
-  int look_ = 0;           ///< Number of the next look.
-  bool looking_ = false;   ///< The last look has left something to solve for.
-  bool unsettled_ = false; ///< Newton's iteration has not settled.
-  int iterations_ = 0;     ///< Then: what it took.
+  int look_ = 0;         ///< Number of the next look.
+  bool looking_ = false; ///< The last look has left something to solve for.
 };
 
 } // namespace rockfall

@@ -39,12 +39,18 @@ struct IslandContact
   double friction = 0.0; ///< tan φ
   double cohesion = 0.0; ///< N
   double damping = 0.0;  ///< ζ along the normal, if it is between rocks.
-  /// ≥ 0: leaves with at least this speed along the normal if it closes in a lasting step (Newton's
-  /// law of restitution), or if it is closed and the impact is under way, m/s.
+  double restitution = 0.0;      ///< Newton's e of what closes faster than `resting`.
+  double restitutionSpeed = 0.0; ///< > 0: K of e / (1 + (v/K)²), m/s.
+  double resting = 0.0;          ///< Below it a touch is no impact, m/s.
+  double approach = 0.0;         ///< Speed at which it closes, m/s.
+  /// ≥ 0: speed along the normal at which it leaves, m/s: closed, the impact is under way; open (in
+  /// a crowd), it closes as an impact.
   double bounce = -1.0;
-  double approach = 0.0; ///< Speed at which it closes, m/s.
   double work = 0.0;     ///< Out: what it took from the rocks' motion, springs included, J.
   double opening = 0.0;  ///< Out, if it carried: how far it opened along the normal, m.
+  double struck = 0.0;   ///< Out: greatest speed at which it closed as an impact, m/s.
+  double struckAt = 0.0; ///< Out: when that was, from the step's beginning, s,
+  Vec3 struckPoint = Vec3::Zero(); ///< and where, m.
   /// Value of contact->closed() when the step begins; for whoever set the contact up and goes over
   /// all of them.
   bool closed = false;
@@ -52,6 +58,12 @@ struct IslandContact
   /// Has no springs: it mayStayOpen, and a solver that takes it for speculative gives it some when
   /// it closes.
   bool bare = false;
+
+  double restitutionAt(double speed) const ///< Of what closes at this speed, m/s.
+  {
+    const double ratio = restitutionSpeed > 0.0 ? speed / restitutionSpeed : 0.0;
+    return restitution / (1.0 + ratio * ratio);
+  }
 };
 
 /// Result of a look at where a step would end (IslandSolver).

@@ -39,7 +39,7 @@ struct CubeOnCorners
     }
     bodies[0].block = &block;
     bodies[0].state = &state;
-    solver.method = IslandMethod::Iterative;
+    solver.method = IslandMethod::Crowd;
   }
   CubeOnCorners(const CubeOnCorners&) = delete;
   CubeOnCorners& operator=(const CubeOnCorners&) = delete;

@@ -129,7 +129,7 @@ Fall rush(int rocks, std::uint64_t seed, int resolved)
     start += x / rocks;
   }
   pile.make();
-  pile.fall->setResolved(resolved);
+  pile.fall->setLargestSoft(resolved);
   Fall fall;
   std::vector<double> stops;
   for (const Trajectory& t : pile.fall->run())

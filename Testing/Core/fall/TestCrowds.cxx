@@ -100,7 +100,7 @@ TEST(Crowds, ImpactsLoseWhatTheCoefficientOfRestitutionSays)
       brick(Vec3(1, 1, 1), Vec3(21.3, 20.0, 0.0), 1) };
     pile.rocks[0].velocity = Vec3(6.0, 0.0, 0.0);
     pile.make();
-    pile.fall->setResolved(0);
+    pile.fall->setLargestSoft(0);
     const std::vector<Trajectory> runs = pile.fall->run();
     const double brought = 0.5 * pile.blocks[0].mass() * 36.0;
     const double lost = 0.5 * (1.0 - e * e) * brought; // ½ μ (1 − e²) v²
@@ -125,7 +125,7 @@ TEST(Crowds, EveryJouleIsBooked)
   pile.parameters.rockRestitution = 0.8;
   pile.rocks = handful(108, 8);
   pile.make();
-  pile.fall->setResolved(0);
+  pile.fall->setLargestSoft(0);
   EnergyAudit sum;
   for (const Trajectory& t : pile.fall->run())
   {
@@ -276,7 +276,7 @@ TEST(Crowds, SpinOfASlabMakesNoEnergy)
   const double energy = rigidKineticEnergy(block, state);
   const Vec3 momentum = angularMomentum(block, state);
   IslandSolver solver;
-  solver.method = IslandMethod::Iterative;
+  solver.method = IslandMethod::Crowd;
   const StepRequest request = lastingStep(0.005, 0.0, 12);
   std::vector<IslandContact> contacts;
   for (int step = 0; step < 200; ++step)
@@ -335,7 +335,7 @@ TEST(Crowds, HighFrictionMakesNoEnergy)
     pile.rocks.push_back(rock);
   }
   pile.start();
-  pile.fall->setResolved(0);
+  pile.fall->setLargestSoft(0);
   const auto energy = [&]
   {
     double sum = 0.0;
@@ -384,8 +384,7 @@ TEST(Crowds, CohesionTakesNoMoreStepsThanNone)
 
 TEST(Crowds, OneSmallRockDoesNotSetTheStepsOfAll)
 {
-  // Springs that stop a stone of 1.5 l ask for 400 steps in one of Δt. With a cube that it falls on
-  // steps of their impact are taken; a column of twenty does not take all of them with it.
+  // Springs that stop a stone of 1.5 l would ask for 400 steps in one of Δt.
   const auto steps = [](int cubes)
   {
     Pile pile;
@@ -417,6 +416,6 @@ TEST(Crowds, OneSmallRockDoesNotSetTheStepsOfAll)
     EXPECT_FALSE(taken.empty());
     return *std::max_element(taken.begin(), taken.end());
   };
-  EXPECT_GT(steps(1), 2);
-  EXPECT_LT(steps(20), 20);
+  EXPECT_LE(steps(1), 2);
+  EXPECT_LE(steps(20), 2);
 }

@@ -1,5 +1,6 @@
 // What rocks lose to each other: every joule is in an impact or in what lasting contact took.
 
+#include "law/settings.h"
 #include "piles.h"
 
 #include <gtest/gtest.h>
@@ -56,7 +57,7 @@ Books booksOf(const std::vector<Trajectory>& runs)
 }
 
 /// Three cubes in a row without gravity, the last two `gap` (m) apart; the first comes at 5 m/s.
-std::vector<Trajectory> strikeThrough(double gap, double restitution, bool crowd)
+std::vector<Trajectory> strikeThrough(double gap, double restitution)
 {
   Pile pile;
   pile.ground = abyss();
@@ -75,7 +76,6 @@ std::vector<Trajectory> strikeThrough(double gap, double restitution, bool crowd
   }
   pile.rocks[0].velocity.x() = 5.0;
   pile.make();
-  pile.fall->setResolved(crowd ? 0 : pile.fall->resolved());
   return pile.fall->run();
 }
 
@@ -97,7 +97,7 @@ TEST(PairBooks, EveryJouleIsOfAnImpactOrOfLastingContact)
       pile.parameters.rockRestitution = e;
       pile.rocks = cluster(20, 100.0 - 20.0 * fall, 3);
       pile.make();
-      pile.fall->setResolved(crowd ? 0 : pile.fall->resolved());
+      pile.fall->setLargestSoft(crowd ? 0 : pile.fall->largestSoft());
       const Books books = booksOf(pile.fall->run());
       ASSERT_GT(books.given, 1e5);
       EXPECT_NEAR(books.impacts + books.lasting, books.given, 1e-9 * books.given) << e;
@@ -112,21 +112,20 @@ TEST(PairBooks, EveryJouleIsOfAnImpactOrOfLastingContact)
 TEST(PairBooks, WhatStrikesThroughATouchIsAnImpact)
 {
   // Touching, or so near that the second meets the third within the step in which it is struck.
-  for (const bool crowd : { false, true })
+  for (const double gap : { 0.0, 1e-3 })
   {
-    for (const double gap : { 0.0, 1e-3 })
     {
-      const std::vector<Trajectory> runs = strikeThrough(gap, 0.0, crowd);
+      const std::vector<Trajectory> runs = strikeThrough(gap, 0.0);
       // All three go on as one, at a third of the speed.
       const double mass = runs[2].summary.mass;
       double impulse = 0.0;
       for (const ImpactEvent& event : runs[2].impacts)
       {
         EXPECT_EQ(event.otherRock, 1);
-        EXPECT_GT(event.approachSpeed, 0.01 * std::sqrt(kGravity * 0.866));
+        EXPECT_GT(event.approachSpeed, 0.01 * std::sqrt(kLeastGravity * 0.866));
         impulse += event.impulse;
       }
-      ASSERT_GE(runs[2].impacts.size(), 1u) << gap << (crowd ? ", crowd" : "");
+      ASSERT_GE(runs[2].impacts.size(), 1u) << gap;
       EXPECT_LT(runs[2].impacts.front().velocityBefore.norm(), 1e-6);
       EXPECT_NEAR(runs[2].impacts.back().velocityAfter.x(), 5.0 / 3.0, 0.03 * 5.0 / 3.0);
       EXPECT_NEAR(impulse, mass * 5.0 / 3.0, 0.03 * mass * 5.0 / 3.0) << gap;
@@ -145,7 +144,7 @@ TEST(PairBooks, RestMakesNoImpacts)
     pile.ground = floorSlope();
     pile.rocks = wall(4, 3);
     pile.start();
-    pile.fall->setResolved(crowd ? 0 : pile.fall->resolved());
+    pile.fall->setLargestSoft(crowd ? 0 : pile.fall->largestSoft());
     pile.run(1.0);
     for (int i = 0; i < pile.fall->rocks(); ++i)
     {
@@ -172,29 +171,4 @@ TEST(PairBooks, SlidingIsLastingContact)
   EXPECT_EQ(runs[1].impacts.size(), 0u);
   EXPECT_NEAR(books.lasting, brought, 0.02 * brought);
   EXPECT_NEAR(runs[0].summary.lastingLoss, runs[1].summary.lastingLoss, 1e-9 * brought);
-}
-
-TEST(PairBooks, WhatSpringsHoldAtTheEndIsNotLost)
-{
-  // Two cubes that meet elastically, face on face; time ends in the middle of it.
-  double mostHeld = 0.0;
-  for (int k = 0; k < 10; ++k)
-  {
-    Pile pile;
-    pile.ground = abyss();
-    pile.parameters.gravity = 0.0;
-    pile.parameters.endTime = 0.04 + 3e-4 * k;
-    pile.parameters.rockRestitution = 1.0;
-    pile.rocks = { brick(Vec3(1, 1, 1), Vec3(20.0, 20.0, 0.0), 0),
-      brick(Vec3(1, 1, 1), Vec3(21.2, 20.0, 0.0), 1) };
-    pile.rocks[0].velocity.x() = 5.0;
-    pile.make();
-    const std::vector<Trajectory> runs = pile.fall->run();
-    const double brought = 0.5 * runs[0].summary.mass * 25.0;
-    const Books books = booksOf(runs);
-    EXPECT_NEAR(books.impacts + books.lasting, books.given, 1e-9 * brought);
-    EXPECT_NEAR(books.impacts, 0.0, 0.01 * brought) << pile.parameters.endTime;
-    mostHeld = std::max(mostHeld, books.lasting / brought);
-  }
-  EXPECT_GT(mostHeld, 0.4); // half of it where both are as fast
 }

@@ -37,8 +37,10 @@ double deepest(const Trajectory& t)
   return most;
 }
 
+} // namespace
+
 // An icosahedron of 75 t straight down on one so many times smaller that lies on the ground.
-void expectNotShotOut(bool crowd)
+TEST(Pinched, StoneUnderABoulderIsNotShotOut)
 {
   for (const double ratio : { 5.0, 10.0, 20.0, 50.0, 100.0 })
   {
@@ -74,13 +76,11 @@ void expectNotShotOut(bool crowd)
         boulder.velocity.z() = -speed;
         pile.rocks = { stone, boulder };
         pile.make();
-        pile.fall->setResolved(crowd ? 0 : pile.fall->resolved());
         const std::vector<Trajectory> runs = pile.fall->run();
         const Trajectory& t = runs[0];
-        // What a wall that comes at this speed can give it, without loss. In a crowd the boulder
-        // goes further in one step than it is large; it may slip out at the side faster.
-        EXPECT_LT(t.summary.maxSpeed, (crowd ? 4.0 : 2.0) * speed);
-        EXPECT_LT(deepest(t), (crowd ? 1.0 : 0.25) * r);
+        // What a wall that comes at this speed can give it, without loss.
+        EXPECT_LT(t.summary.maxSpeed, 2.0 * speed);
+        EXPECT_LT(deepest(t), 0.25 * r);
         EXPECT_LT((t.samples.back().position - stone.position).norm(), 0.4 * speed);
         // What went in is pressed out again, which raises the rocks.
         EXPECT_GT(t.samples.back().heightOverGround, -0.1 * r);
@@ -88,25 +88,11 @@ void expectNotShotOut(bool crowd)
         for (const Trajectory& one : runs)
         {
           const EnergyAudit& e = one.summary.energy;
-          // In a crowd what lifts a boulder off a deep overlap comes from nowhere, and is booked as
-          // that: less than 1 % of what the boulder brought.
-          EXPECT_LT(std::abs(e.numerical), (crowd ? 1e-2 : 1e-5) * 75e3 * speed * speed + raised);
+          EXPECT_LT(std::abs(e.numerical), 1e-5 * 75e3 * speed * speed + raised);
         }
       }
     }
   }
-}
-
-} // namespace
-
-TEST(Pinched, StoneUnderABoulderIsNotShotOut)
-{
-  expectNotShotOut(false);
-}
-
-TEST(Pinched, StoneUnderABoulderIsNotShotOutOfACrowd)
-{
-  expectNotShotOut(true);
 }
 
 TEST(Pinched, OverlapThatABounceLeavesHoldsNoEnergy)
@@ -130,7 +116,7 @@ TEST(Pinched, OverlapThatABounceLeavesHoldsNoEnergy)
     contacts[0].contact = &c;
     contacts[0].first = 0;
     contacts[0].second = between ? 1 : -1;
-    contacts[0].bounce = 0.5;
+    contacts[0].bounce = contacts[0].restitution = 0.5;
     std::vector<IslandBody> bodies(between ? 2 : 1);
     for (std::size_t i = 0; i < bodies.size(); ++i)
     {
@@ -138,7 +124,7 @@ TEST(Pinched, OverlapThatABounceLeavesHoldsNoEnergy)
       bodies[i].state = &states[i];
     }
     IslandSolver solver;
-    solver.method = k < 4 ? IslandMethod::Direct : IslandMethod::Iterative;
+    solver.method = k < 4 ? IslandMethod::Soft : IslandMethod::Crowd;
     const StepRequest request = lastingStep(1e-3, 0.0);
     for (const double bounce : { 0.5, -1.0 })
     {
@@ -147,7 +133,7 @@ TEST(Pinched, OverlapThatABounceLeavesHoldsNoEnergy)
       contacts[0].closed = c.closed();
       solver.step(request, bodies, contacts, Accept::Any);
       EXPECT_NEAR(states[0].velocity.z() - states[1].velocity.z(), pushed ? 0.5 : 5.0, 0.02);
-      EXPECT_LT(c.distance, -0.085);
+      EXPECT_LT(c.distance, -0.075); // goes at 10 m/s at most
       EXPECT_GT(c.gap(), -1e-9);
     }
   }
@@ -159,7 +145,7 @@ TEST(Pinched, WhatASpringHoldsIsAllThatALoadGets)
   // times its mass on it: it leaves no faster than the energy of its spring drives all of them.
   for (const double mass : { 1e-2, 1.0, 30.0, 1000.0 })
   {
-    for (const IslandMethod method : { IslandMethod::Direct, IslandMethod::Iterative })
+    for (const IslandMethod method : { IslandMethod::Soft, IslandMethod::Crowd })
     {
       SCOPED_TRACE(std::to_string(mass) + ", method " + std::to_string(int(method)));
       const Block stone(makeShape(Shape::Cube, 0.03), 2500.0, 1e9, 0.2);
@@ -202,7 +188,7 @@ TEST(Pinched, WhatASpringHoldsIsAllThatALoadGets)
       const double moving =
         rigidKineticEnergy(stone, states[0]) + rigidKineticEnergy(boulder, states[1]);
       EXPECT_LT(moving, 1.05 * stored); // what is held back is held in three rounds
-      EXPECT_GE(states[0].velocity.z(), 0.0);
+      EXPECT_GE(states[0].velocity.z(), -1e-12);
     }
   }
 }

@@ -48,7 +48,7 @@ struct Hanging
     bodies[0].block = &block;
     bodies[0].state = &state;
     IslandSolver solver;
-    solver.method = IslandMethod::Iterative;
+    solver.method = IslandMethod::Crowd;
     solver.stiffness = { kPenalty, 1.0, true };
     const StepRequest request = lastingStep(kStep, gravity, 12);
     return solver.step(request, bodies, contacts, Accept::Converging);

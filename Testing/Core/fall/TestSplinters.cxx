@@ -229,7 +229,7 @@ TEST(Splinters, BounceMakesNoEnergy)
       continue;
     }
     ++bounced;
-    for (const IslandMethod method : { IslandMethod::Direct, IslandMethod::Iterative })
+    for (const IslandMethod method : { IslandMethod::Soft, IslandMethod::Crowd })
     {
       std::array<BlockState, 2> states = before;
       Contact c;
@@ -243,7 +243,8 @@ TEST(Splinters, BounceMakesNoEnergy)
       contacts[0].second = between ? 1 : -1;
       contacts[0].friction = rough ? 1.0 : 0.0;
       contacts[0].approach = approach;
-      contacts[0].bounce = (k % 8 < 4 ? 1.0 : 0.8) * approach;
+      contacts[0].restitution = k % 8 < 4 ? 1.0 : 0.8;
+      contacts[0].bounce = contacts[0].restitution * approach;
       const double asked = contacts[0].bounce;
       std::vector<IslandBody> bodies(between ? 2 : 1);
       double energy = 0.0;
@@ -264,7 +265,7 @@ TEST(Splinters, BounceMakesNoEnergy)
       // A bounce may give up to 1e-3 of what comes in; what is held back is held in three rounds.
       const double incoming = 0.5 * c.normalForce * request.duration * approach;
       EXPECT_LT(energy, 0.01 * incoming) << "case " << k << ", method " << int(method);
-      held += contacts[0].bounce < asked;
+      held += contacts[0].bounce < asked; // of a crowd: the impulses of others become less
       if (!rough)
       {
         EXPECT_EQ(contacts[0].bounce, asked) << "case " << k; // Newton's law alone makes none
@@ -273,5 +274,5 @@ TEST(Splinters, BounceMakesNoEnergy)
     }
   }
   EXPECT_GT(bounced, 300);
-  EXPECT_GT(held, 20);
+  EXPECT_GT(held, 10);
 }

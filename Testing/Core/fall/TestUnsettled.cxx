@@ -69,7 +69,7 @@ TEST(Unsettled, HeapsThatFallAndRestHaveNone)
       pile.rocks.push_back(rock);
     }
     pile.make();
-    pile.fall->setResolved(0);
+    pile.fall->setLargestSoft(0);
     for (const Trajectory& t : pile.fall->run())
     {
       unsettled += t.summary.unsettledSteps;

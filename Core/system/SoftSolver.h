@@ -1,0 +1,182 @@
+#pragma once
+
+/// @file
+/// A step of rocks that touch each other as soft rows in substeps.
+///
+/// A contact is a row: a spring pₙ with critical damping, integrated implicitly (Macklin et al.
+/// 2019, small steps; Catto 2023, soft step), in n substeps of h = Δt/n. Its gap goes on linearly
+/// with the motion of the two rocks; its normal and levers are those of mid-step. In each substep:
+///
+///     impacts   what closes faster than the resting speed and would overlap: Newton's law, by
+///               generations, so that what is struck passes it on within the substep
+///     gravity
+///     warm      the impulses of the last substep
+///     soft      closed: ΔP = −m s (v + max(ω g / s₁, −v_r)) − s₃ P
+///               open:   ΔP = −m (v + g/h);  P ≥ 0
+///     move      turns from the angular momentum
+///     relax     P ← max(0, P − m v); friction within μ P + c h
+///
+/// with m the effective mass, ω² = pₙ/m but no more than a quarter of the substep rate, s₁ = 2 + h
+/// ω, s₂ = h ω s₁, s₃ = 1/(1 + s₂), s = s₂ s₃, and v_r the speed at which overlap goes. At rest the
+/// overlap is P/(h pₙ), as of Shi's spring.
+
+#include "system/IslandSystem.h"
+#include "system/PairSprings.h"
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace rockfall
+{
+
+class SoftSolver final : public IslandSystem
+{
+public:
+  void begin(const StepRequest& request, std::vector<IslandBody>& bodies,
+    std::vector<IslandContact>& contacts) override;
+  bool isWorthALook() const override { return !movers_.empty(); }
+  bool haveGoneOn() const override { return false; }
+  void append() override;
+  void noteLook() override;
+  void solve() override;
+  IslandOutcome finish(Accept accept, bool deep) override;
+
+  BlockState end(std::size_t body) const override;
+  bool moved(std::size_t body) const override { return movers_[body].moved; }
+  double gap(std::size_t contact) const override;
+  double force(std::size_t contact) const override;
+  bool setGap(std::size_t contact, double found) override;
+  void setAbsent(std::size_t contact) override;
+
+  PairStiffness stiffness; ///< See IslandSolver.
+
+private:
+  /// A rock while it is solved for. World axes.
+  struct Mover
+  {
+    Vec3 velocity, spin;
+    Vec3 start;              ///< Centroid where the step begins, from `origin_`, m.
+    Vec3 displacement, turn; ///< Since then; the turn as a sum of small ones.
+    double inverseMass;
+    double inverseMoment; ///< If all three principal moments are equal: of each.
+    bool isotropic;
+    bool touched; ///< In the substep, by a contact that lasts.
+    bool moved;   ///< Since the last look.
+    double noise; ///< To which speed its impacts in the step are exact, m/s.
+    Mat3 inverseInertia;
+    Vec3 momentum; ///< Angular, about the centroid.
+    Quat orientation;
+    const Block* block;
+    Vec3 seenAt, seenTurn; ///< At the last look.
+  };
+  /// A contact while it is solved for, of a point that moves with the rock `a`.
+  struct Row
+  {
+    int a, b;               ///< Movers; b < 0: the slope.
+    int generation;         ///< Of impacts, in which its manifold was last asked.
+    bool flipped;           ///< `a` is the contact's second rock.
+    bool idle;              ///< Stays open in the substep.
+    bool stops;             ///< Stopped what closed: its impulse is not one to go on with.
+    Vec3 normal;            ///< From b to a, at mid-step.
+    Vec3 lever;             ///< From a's centroid, at mid-step, m.
+    double gap0, gap;       ///< Where the step begins, and now, m.
+    double mass, shearMass; ///< Effective, kg.
+    double friction;        ///< tan φ
+    double cohesion;        ///< N s
+    double frequency;       ///< h ω
+    double P;               ///< N s
+    Vec3 T;                 ///< Across, N s.
+    Vec3 speed, speedA;     ///< Behind impacts of the substep, and of a's point alone, m/s.
+    double resting;         ///< Speed below which a touch is no impact, m/s.
+    double before;          ///< Speed along the normal before a generation, m/s.
+    double pending;         ///< ≥ 0: speed at which an impact that was under way leaves, m/s.
+  };
+  /// What a contact did in the step.
+  struct Result
+  {
+    std::size_t contact;
+    Vec3 impulse;        ///< On a, N s.
+    double normalWork;   ///< On both, J.
+    double workOnA;      ///< On a alone, J.
+    double frictionWork; ///< Taken, J.
+    double struck;       ///< Greatest speed at which it closed as an impact, m/s.
+    double struckAt;     ///< When that was, from the step's beginning, s,
+    Vec3 struckPoint;    ///< and where, from `origin_`, m.
+  };
+
+  void startMovers();
+  void startMover(std::size_t i);
+  /// Strips across the island: contacts belong to the lower one of their two rocks, and those of
+  /// every second strip share no rock.
+  void findStrips();
+  int stripOf(const IslandContact& contact) const;
+  /// Rows in order: by strip, pairs before the slope, those of the same two rocks side by side.
+  void arrange();
+  void prepareRow(std::size_t contact, Row& row) const;
+  void prepareImpulses(Row& row, const IslandContact& contact) const;
+  template <class Visit>
+  void forStrips(Visit&& visit) const; ///< visit(strip)
+  template <class Visit>
+  void forBusy(Visit&& visit); ///< visit(row) of those that are not idle, strip by strip
+
+  void substep(int k);
+  void arrive(std::size_t strip, bool last); ///< Gaps, books and who strikes.
+  void book(const Row& row, Result& result, const Vec3& speed, const Vec3& speedA) const;
+  /// Whether an impact is under way, or the gap closes as one within so many substeps.
+  bool closes(const Row& row, double substeps) const;
+  bool strikes(std::size_t manifold); ///< Whether any of its rows does.
+  void strike(std::size_t manifold, std::vector<std::size_t>& struck);
+  void strikeGenerations(double time);
+  double leaves(const Row& row) const; ///< Speed after an impact, m/s.
+  void link();
+  void warm(Row& row);
+  void press(Row& row);
+  void relax(Row& row);
+
+  double gapOf(const Row& row) const;
+  Vec3 leverB(const Row& row) const;
+  Vec3 speedOf(const Row& row) const;
+  Vec3 speedOfA(const Row& row) const;
+  void push(const Row& row, const Vec3& J); ///< J on a, −J on b, N s.
+  static void push(Mover& m, const Vec3& J, const Vec3& lever);
+  static void turn(Mover& m, double h);
+
+  void write(IslandOutcome& outcome);
+  void writeContact(const Row& row, const Result& result);
+  void bookContacts(IslandOutcome& outcome);
+  void writeBody(std::size_t i);
+
+  Vec3 origin_ = Vec3::Zero(); ///< First rock where the step begins, m.
+  double duration_ = 0.0, gravity_ = 0.0;
+  double h_ = 0.0; ///< Of a substep, s.
+  int substeps_ = 0, substep_ = 0;
+  std::vector<IslandBody>* bodies_ = nullptr;
+  std::vector<IslandContact>* contacts_ = nullptr;
+  std::vector<Mover> movers_;
+  std::vector<Row> rows_;
+  std::vector<Result> results_;    ///< By row.
+  std::vector<std::size_t> rowOf_; ///< By contact.
+  std::vector<double> gap0_;       ///< By contact, m.
+  std::vector<int> stripOfBody_;
+  int strips_ = 1;
+  std::vector<std::array<std::size_t, 2>> manifolds_; ///< Rows of the same two rocks.
+  std::vector<std::size_t> firstOfStrip_;             ///< Among manifolds.
+  std::vector<std::vector<std::size_t>> struckOf_;    ///< By strip.
+  std::vector<std::size_t> struck_;                   ///< Rows, in order.
+  std::vector<int> stamp_, moving_;
+  std::vector<std::size_t> firstOf_, manifoldsOf_; ///< Manifolds of each rock.
+  /// Books of a rock.
+  struct Books
+  {
+    double slope;     ///< Work of contacts with the slope on it, J.
+    double rocks;     ///< Work of other rocks on it, J.
+    double held;      ///< In springs on the slope where the step began, J.
+    double strongest; ///< Impulse of a contact, N s.
+    std::size_t by;   ///< That contact's row.
+  };
+  std::vector<Books> books_;
+  bool linked_ = false;
+};
+
+} // namespace rockfall
