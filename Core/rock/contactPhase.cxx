@@ -452,7 +452,10 @@ void RockSimulator::pressOut(double h)
   const double loose = this->looseOverlap();
   for (Contact& c : body_.contacts)
   {
-    pressOutLoose(c, way, loose);
+    // What springs get by it comes from nowhere, and stays numerical.
+    const double lost = std::max(0.0, pressOutLoose(c, way, loose));
+    body_.energy.damping += lost;
+    body_.springEnergy -= lost;
   }
 }
 

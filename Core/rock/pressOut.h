@@ -25,13 +25,16 @@ inline double deepSpeed(double gravity, double radius)
   return kPressOutDeep * std::min(1.0, std::sqrt(std::max(gravity, kLeastGravity) * radius));
 }
 
-/// After a step: a loose overlap, by `slow` (m).
-inline void pressOutLoose(Contact& c, double slow, double loose)
+/// After a step: a loose overlap, by `slow` (m). Returns what the spring holds less by it, J.
+inline double pressOutLoose(Contact& c, double slow, double loose)
 {
-  if (c.offset >= -loose)
+  if (c.offset < -loose || c.offset == 0.0)
   {
-    c.offset = c.offset < 0.0 ? std::min(0.0, c.offset + slow) : std::max(0.0, c.offset - slow);
+    return 0.0;
   }
+  const double held = c.springEnergy();
+  c.offset = c.offset < 0.0 ? std::min(0.0, c.offset + slow) : std::max(0.0, c.offset - slow);
+  return held - c.springEnergy();
 }
 
 /// Before a lasting step: an overlap deeper than `loose` (m), by `way` (m). Returns whether it is.
