@@ -46,8 +46,7 @@ void carryBack(const PlacedBlock& firstEnd, const PlacedBlock& secondEnd,
 
 } // namespace
 
-EndLook::EndLook(
-  FallState& fall, const Island& island, IslandWork& work, double duration)
+EndLook::EndLook(FallState& fall, const Island& island, IslandWork& work, double duration)
   : fall_(fall)
   , island_(island)
   , work_(work)

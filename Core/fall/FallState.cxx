@@ -37,6 +37,12 @@ bool FallingRock::arrive()
   return there;
 }
 
+void FallingRock::advanceAlone(double until)
+{
+  sim.advance(until);
+  asleep = sim.done() && sim.trajectory().summary.fate == Fate::Rested;
+}
+
 PairMotion motionOf(const FallState& fall, const RockPair& pair)
 {
   return { fall.rocks[std::size_t(pair.first)].sim.state(),

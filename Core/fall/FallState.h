@@ -31,6 +31,8 @@ struct FallingRock
   void stand();
   /// Takes `end` and `endHull` on as where it stands, and returns whether it does.
   bool arrive();
+  /// Moves on by itself, meeting no other, to a time (s).
+  void advanceAlone(double until);
 
   /// A place from which the rock has not gone far since a time, s.
   struct Place
@@ -98,7 +100,7 @@ struct FallState
   const SimulationParameters& parameters;
   RockContacts contacts; ///< Laws of the rocks on each other.
   FallingRocks rocks;
-  double time = 0.0; ///< s
+  double time = 0.0;              ///< s
   int largestSoft = kLargestSoft; ///< Rocks of the largest island that is no crowd.
 };
 

@@ -68,14 +68,6 @@ void IslandStepper::fly(double duration)
   }
 }
 
-bool IslandStepper::touches() const
-{
-  return std::any_of(island_.members.begin(), island_.members.end(),
-           [&](int i) { return anyClosed(fall_.rocks[std::size_t(i)].body().contacts); }) ||
-    std::any_of(island_.pairs.begin(), island_.pairs.end(),
-      [](const RockPair* pair) { return anyClosed(pair->contacts); });
-}
-
 double IslandStepper::beginContacts()
 {
   double travel = fall_.parameters.timeStep;
@@ -99,14 +91,7 @@ void IslandStepper::advance(double until)
     const double travel = this->beginContacts();
     const double remaining = until - this->timeReached(until), h = std::min(remaining, travel);
     this->gatherContacts(h);
-    if (const double free = this->touches() ? 0.0 : this->freeTime(remaining); free > h)
-    {
-      this->fly(free);
-    }
-    else
-    {
-      this->solve(h);
-    }
+    this->solve(h);
   }
 }
 
@@ -171,8 +156,7 @@ void IslandStepper::addPair(std::size_t t, double h)
   std::size_t next = work_.firsts[p];
   for (Contact& c : pair.contacts)
   {
-    IslandContact& touch = work_.contacts[next++] =
-      touchOfPair(fall_, pair, motion, c, h, work_);
+    IslandContact& touch = work_.contacts[next++] = touchOfPair(fall_, pair, motion, c, h, work_);
     touch.bare = !island_.crowd || mayStayOpen(touch, h);
     if (!touch.closed && !touch.bare)
     {
@@ -222,10 +206,8 @@ void IslandStepper::solve(double h)
   {
     return; // the last of them was caught just now
   }
-  forEach(
-    island_.members.size(), kRockGrain, [&](std::size_t m) { this->addRock(m, h); });
-  forEach(
-    work_.touching.size(), kPairGrain, [&](std::size_t t) { this->addPair(t, h); });
+  forEach(island_.members.size(), kRockGrain, [&](std::size_t m) { this->addRock(m, h); });
+  forEach(work_.touching.size(), kPairGrain, [&](std::size_t t) { this->addPair(t, h); });
   if (island_.crowd)
   {
     settleBounces(work_);

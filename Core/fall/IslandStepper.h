@@ -18,7 +18,6 @@ public:
 private:
   double timeReached(double until) const; ///< s; `until` if all are gone.
   double beginContacts();                 ///< Returns the longest step that contacts serve, s.
-  bool touches() const;                   ///< Whether any contact is closed.
 
   // Contacts where a step of `h` (s) begins, islandContacts.cxx
   void gatherContacts(double h);
@@ -26,13 +25,8 @@ private:
   void gatherOfPair(std::size_t pair, double h);
   double reachOf(double speed, double radius, double h) const; ///< m
 
-  // How long a step may be, islandTimes.cxx
-  double freeTime(double most) const; ///< For how long, at most `most`, nothing touches, s.
-  double freeOfSlope(RockSimulator& sim, double most) const;
-  double freeOfEachOther(const RockPair& pair, double gravity) const;
-
   // A step
-  void fly(double duration);
+  void fly(double duration); ///< Lets all contacts go.
   void solve(double h);
   void addRock(std::size_t member, double h);
   void addPair(std::size_t touching, double h);

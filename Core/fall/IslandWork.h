@@ -74,7 +74,6 @@ struct IslandWork
   std::vector<std::size_t> missed;         ///< Pairs or rocks whose contacts were missed.
   std::vector<std::vector<Contact>> found; ///< Of each of them, where it touches.
   bool looked = false;                     ///< Where the step ends.
-  std::vector<char> flying;                ///< By rock, of those that freeOfFlying asks.
   /// A tree that others drive a rock into within the step, and that may not hold.
   struct Stem
   {
@@ -95,6 +94,7 @@ struct IslandWork
   /// Pairs that have contacts, or an impact under way. Most are only near each other.
   std::vector<std::size_t> touching;
   std::vector<char> touchesOthers; ///< By place, in the end.
+  std::vector<char> alone;         ///< By place, whether it takes the step by itself.
   std::vector<char> arrived; ///< By place, whether the step has been looked at where it ended.
   /// A rock as loops over pairs see it, in two lines of the cache.
   struct alignas(kCacheLine) Side

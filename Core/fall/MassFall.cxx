@@ -2,7 +2,7 @@
 
 #include "base/abort.h"
 #include "base/parallel.h"
-#include "fall/IslandParts.h"
+#include "fall/IslandStepper.h"
 #include "fall/Meetings.h"
 #include "fall/pairImpacts.h"
 #include "fall/raising.h"
@@ -132,11 +132,11 @@ bool MassFall::advanceAll()
   {
     if (k < islands.size())
     {
-      advanceIsland(fall_, islands[std::size_t(order_[k])], until);
+      IslandStepper(fall_, islands[std::size_t(order_[k])]).advance(until);
       return;
     }
     FallingRock& rock = fall_.rocks[std::size_t(alone[k - islands.size()])];
-    advanceAlone(rock, until);
+    rock.advanceAlone(until);
     isStill(fall_, rock); // to know when it comes back to an island
   };
   forEach(islands.size() + alone.size(), 1, advanceOne);

@@ -59,11 +59,119 @@ void StepResult::apply()
         fall_, *island_.pairs[work_.addedTo[k].of], work_.contacts[work_.firsts.back() + k], h_);
     }
   }
+  this->findLone();
   forEach(work_.touching.size(), kPairGrain, [this](std::size_t t) { this->applyToPair(t); });
   this->applyAdded();
   this->finishImpacts();
   forEach(island_.members.size(), kRockGrain, [this](std::size_t m) { this->applyToRock(m); });
   forEach(island_.pairs.size(), kPairGrain, [this](std::size_t p) { this->keepAxis(p); });
+}
+
+void StepResult::findLone()
+{
+  work_.alone.assign(work_.bodies.size(), 0);
+  if (island_.crowd || !work_.looked)
+  {
+    return;
+  }
+  const auto mark = [&](std::size_t m, const IslandContact& touch)
+  {
+    const FallingRock& rock = fall_.rocks[std::size_t(island_.members[m])];
+    if (touch.struck > 0.0 && !rock.sim.done())
+    {
+      work_.alone[std::size_t(rock.place)] = 1;
+    }
+  };
+  for (std::size_t m = 0; m < island_.members.size(); ++m)
+  {
+    const FallingRock& rock = fall_.rocks[std::size_t(island_.members[m])];
+    const bool done = rock.sim.done();
+    if (!done && rock.sim.impactUnderWay())
+    {
+      work_.alone[std::size_t(rock.place)] = 1;
+    }
+    for (std::size_t k = 0; k < rock.body().contacts.size() && !done; ++k)
+    {
+      mark(m, work_.contacts[work_.slopeFirsts[m] + k]);
+    }
+  }
+  const auto isAlone = [&](int place) { return place >= 0 && work_.alone[std::size_t(place)]; };
+  const auto keep = [&](std::size_t p)
+  {
+    for (const int place : work_.places[p])
+    {
+      if (place >= 0)
+      {
+        work_.alone[std::size_t(place)] = 0;
+      }
+    }
+  };
+  for (std::size_t k = 0; k < work_.addedTo.size(); ++k)
+  {
+    const IslandWork::Added& added = work_.addedTo[k];
+    if (added.onSlope)
+    {
+      mark(added.of, work_.contacts[work_.firsts.back() + k]);
+    }
+    else
+    {
+      keep(added.of);
+    }
+  }
+  for (std::size_t p = 0; p < island_.pairs.size(); ++p)
+  {
+    if ((isAlone(work_.places[p][0]) || isAlone(work_.places[p][1])) && this->isNearAnother(p))
+    {
+      keep(p);
+    }
+  }
+}
+
+bool StepResult::isNearAnother(std::size_t p) const
+{
+  RockPair& pair = *island_.pairs[p];
+  const auto [a, b] = work_.places[p];
+  if (a < 0 || b < 0)
+  {
+    return false;
+  }
+  const IslandContact* const contacts = work_.contacts.data();
+  const auto carries = [](const IslandContact& k)
+  { return k.closed || k.contact->normalForce > 0.0; };
+  if (pair.strikes ||
+    std::any_of(contacts + work_.firsts[p], contacts + work_.firsts[p + 1], carries))
+  {
+    return true;
+  }
+  double way = 0.0;
+  for (const int rock : { pair.first, pair.second })
+  {
+    const IslandWork::Side& side = work_.sides[std::size_t(rock)];
+    way += h_ * (side.velocity.norm() + side.rim + fall_.parameters.gravity * h_);
+  }
+  const double near = kLoneWay * way;
+  if (pair.end.distance <= near)
+  {
+    pair.end = findAxis(fall_.rocks[std::size_t(pair.first)].endHull,
+      fall_.rocks[std::size_t(pair.second)].endHull, pair.end, near);
+  }
+  return !(pair.end.distance > near);
+}
+
+void StepResult::stepAlone(FallingRock& rock)
+{
+  RockBody& body = rock.body();
+  const BlockState from = body.before;
+  body.state = from;
+  body.contacts = body.contactsBefore;
+  body.quietTime = 0.0; // the island comes to rest as a whole
+  rock.advanceAlone(from.time + h_);
+  const BlockState& to = body.state;
+  IslandWork::Motion& motion = work_.motions[std::size_t(rock.place)];
+  const double r = body.block.radius();
+  motion.displacement = to.position - from.position;
+  motion.rimTravel =
+    rimTravel(from.orientation, to.orientation, r) + r * (to.strain - from.strain).norm();
 }
 
 void StepResult::bookContact(RockPair& pair, const IslandContact& touch) const
@@ -153,6 +261,11 @@ void StepResult::applyAdded()
     const IslandWork::Added& added = work_.addedTo[k];
     if (added.onSlope)
     {
+      const FallingRock& rock = fall_.rocks[std::size_t(island_.members[added.of])];
+      if (work_.alone[std::size_t(rock.place)])
+      {
+        continue;
+      }
       RockBody& body = fall_.rocks[std::size_t(island_.members[added.of])].body();
       body.contacts.push_back(c);
       body.contactsBefore.push_back(added.before);
@@ -210,6 +323,11 @@ void StepResult::applyToRock(std::size_t k)
   }
   const std::size_t place = std::size_t(rock.place);
   work_.arrived[place] = false;
+  if (work_.alone[place])
+  {
+    this->stepAlone(rock);
+    return;
+  }
   work_.count(sim);
   const IslandBody& answer = work_.bodies[place];
   StepOutcome outcome;

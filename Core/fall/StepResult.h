@@ -17,6 +17,11 @@ public:
   void apply();
 
 private:
+  /// Rocks that struck the slope and no other rock, nor could have met one if the impact had come
+  /// a little later: they take the step by themselves.
+  void findLone();
+  bool isNearAnother(std::size_t pair) const;
+  void stepAlone(FallingRock& rock);
   void applyToPair(std::size_t touching); ///< By number among those that touch.
   void pressOut(RockPair& pair) const;    ///< In a crowd: overlap that was found goes slowly.
   void bookContact(RockPair& pair, const IslandContact& touch) const;

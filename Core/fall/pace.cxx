@@ -19,7 +19,8 @@ void foresee(const FallState& fall, const RockSimulator& sim, double duration, P
   const bool obstructed = obstacles &&
     obstacles->anyIn(
       p.x() - displacement, p.x() + displacement, p.y() - displacement, p.y() + displacement);
-  const bool flies = !obstructed && sim.body().contacts.empty() && sim.clearFor(duration);
+  // Which open contacts are kept hangs on how the slope was searched.
+  const bool flies = !obstructed && !anyClosed(sim.body().contacts) && sim.clearFor(duration);
   // Velocities that an impact on the slope leaves, with any normal.
   const double e = obstructed ? 1.0 : fall.surface.largestRestitution();
   pace.middle = flies ? s.velocity : Vec3(0.5 * (1.0 - e) * s.velocity);

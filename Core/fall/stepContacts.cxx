@@ -43,8 +43,7 @@ bool mayBounce(const std::vector<int>& partners, const IslandContact& k)
 
 } // namespace
 
-IslandContact touchOnSlope(
-  const FallState& fall, const FallingRock& member, Contact& c, double h)
+IslandContact touchOnSlope(const FallState& fall, const FallingRock& member, Contact& c, double h)
 {
   const RockSimulator& sim = member.sim;
   const BlockState& state = sim.body().state;

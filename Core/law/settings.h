@@ -202,9 +202,13 @@ inline constexpr int kLargestSoft = 256;
 /// Factor on the step for which rocks that may meet are found. An impact is given at the beginning
 /// of its substep, and what is struck goes further by up to one of them.
 inline constexpr double kStruckEarly = 1.25;
-/// Shortest part of a step, in steps, in which rocks of an island that meet no other go alone.
-/// Shorter: more go alone, and more parts are looked at.
-inline constexpr double kShortestPart = 0.5;
+/// Share of a step's way by which a rock of an island that strikes the slope must be away from
+/// others to take the step by itself. Less: it may come to overlap one of them.
+inline constexpr double kLoneWay = 0.25;
+/// Turn (rad), and way past each other (of a radius), from which the rocks of a contact weigh
+/// otherwise than where the step began. Higher: a splinter that spins is pushed by more than it
+/// weighs, and the more the next time.
+inline constexpr double kWeighedTurn = 0.05;
 /// Step of an island in steps of rocks that are alone. Longer: faster, more cuts.
 inline constexpr double kIslandTravel = 2.0;
 /// Cuts of the step of an island that is far from settled.

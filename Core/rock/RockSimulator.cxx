@@ -405,6 +405,8 @@ void RockSimulator::advance(double until, double enough)
   {
     body_.crowded = false; // alone, and what others have pressed in is theirs
     body_.energy.damping += this->letDeepBe(kLooseOverlap * body_.block.radius());
+    candidates_.distance =
+      -1.0; // flight goes by them, and would hang on how the island was looked at
   }
   horizon_ = std::min(until, parameters_.endTime);
   const auto seen = [&]

@@ -2,6 +2,7 @@
 
 #include "base/parallel.h"
 #include "block/cayley.h"
+#include "block/flight.h"
 #include "law/settings.h"
 
 #include <algorithm>
@@ -111,6 +112,7 @@ void SoftSolver::startMover(std::size_t i)
   m.inverseInertia = m.isotropic ? Mat3(m.inverseMoment * Mat3::Identity())
                                  : Mat3(R * block.inverseInertia() * R.transpose());
   m.touched = false;
+  m.flies = true;
   m.noise = 0.0;
 }
 
@@ -172,7 +174,6 @@ void SoftSolver::prepareRow(std::size_t k, Row& row) const
   row.b = row.flipped ? asked.first : asked.second;
   const double half = 0.5 * duration_;
   const BlockState& stateA = *(*bodies_)[std::size_t(row.a)].state;
-  const Mover& a = movers_[std::size_t(row.a)];
   const Mover* b = row.b >= 0 ? &movers_[std::size_t(row.b)] : nullptr;
   const Vec3 spinA = stateA.angularVelocity();
   const Vec3 n = row.flipped ? Vec3(-c.normal) : c.normal;
@@ -189,6 +190,15 @@ void SoftSolver::prepareRow(std::size_t k, Row& row) const
     turning = spinA;
   }
   row.normal = turned(n, half * turning).normalized();
+  row.gap0 = row.gap = asked.absent ? kAbsent : gap0_[k];
+  row.friction = asked.friction;
+  row.cohesion = h_ * asked.cohesion;
+  row.resting = std::max(asked.resting, 2.0 * h_ * gravity_);
+  row.spring = c.stiffness > 0.0 ? c.stiffness : stiffness.normalPenalty;
+}
+
+void SoftSolver::weigh(Row& row) const
+{
   double mobility = 0.0, across = 0.0;
   const auto add = [&](const Mover& m, const Vec3& lever)
   {
@@ -197,20 +207,29 @@ void SoftSolver::prepareRow(std::size_t k, Row& row) const
     across += m.inverseMass +
       (m.isotropic ? m.inverseMoment : m.inverseInertia.trace()) * lever.squaredNorm();
   };
-  add(a, row.lever);
-  if (b)
+  add(movers_[std::size_t(row.a)], row.lever);
+  if (row.b >= 0)
   {
-    add(*b, row.lever + (a.start - b->start));
+    add(movers_[std::size_t(row.b)], this->leverB(row));
   }
   row.mass = 1.0 / mobility;
   row.shearMass = 1.0 / across;
-  row.gap0 = row.gap = asked.absent ? kAbsent : gap0_[k];
-  row.friction = asked.friction;
-  row.cohesion = h_ * asked.cohesion;
-  row.resting = std::max(asked.resting, 2.0 * h_ * gravity_);
-  const double spring = c.stiffness > 0.0 ? c.stiffness : stiffness.normalPenalty;
   row.frequency =
-    std::min(h_ * std::sqrt(spring / row.mass), 2.0 * std::numbers::pi * kSoftFrequency);
+    std::min(h_ * std::sqrt(row.spring / row.mass), 2.0 * std::numbers::pi * kSoftFrequency);
+}
+
+bool SoftSolver::weighsOtherwise(const Row& row) const
+{
+  const Mover& a = movers_[std::size_t(row.a)];
+  const auto turned = [](const Mover& m)
+  { return !m.isotropic && m.turn.squaredNorm() > kWeighedTurn * kWeighedTurn; };
+  if (row.b < 0)
+  {
+    return turned(a);
+  }
+  const Mover& b = movers_[std::size_t(row.b)];
+  const double far = kWeighedTurn * std::min(a.block->radius(), b.block->radius());
+  return turned(a) || turned(b) || (a.displacement - b.displacement).squaredNorm() > far * far;
 }
 
 void SoftSolver::prepareImpulses(Row& row, const IslandContact& asked) const
@@ -287,6 +306,7 @@ void SoftSolver::solve()
   const auto start = [&](std::size_t k)
   {
     Row& row = rows_[k];
+    this->weigh(row);
     this->prepareImpulses(row, (*contacts_)[results_[k].contact]);
     results_[k] = { results_[k].contact, Vec3::Zero(), 0.0, 0.0, 0.0, 0.0, 0.0, Vec3::Zero() };
   };
@@ -346,6 +366,7 @@ Vec3 SoftSolver::speedOf(const Row& r) const
 void SoftSolver::push(Mover& m, const Vec3& J, const Vec3& lever)
 {
   m.touched = true;
+  m.flies = false;
   m.velocity += m.inverseMass * J;
   const Vec3 moment = lever.cross(J);
   if (m.isotropic)
@@ -423,6 +444,10 @@ void SoftSolver::arrive(std::size_t strip, bool last)
       r.before = speed.dot(r.normal);
       r.generation = 0;
       r.idle = r.P == 0.0 && r.gap + 2.0 * h_ * std::min(r.before, -r.resting) > 0.0;
+      if (!r.idle && this->weighsOtherwise(r))
+      {
+        this->weigh(r);
+      }
       any = any || this->closes(r, 1.0);
     }
     if (any && !last)
@@ -806,6 +831,13 @@ BlockState SoftSolver::end(std::size_t i) const
 {
   const Mover& m = movers_[i];
   BlockState state = *(*bodies_)[i].state;
+  if (m.flies)
+  {
+    const double time = state.time;
+    state = fly(*m.block, state, gravity_, duration_);
+    state.time = time;
+    return state;
+  }
   state.position += m.displacement;
   state.velocity = m.velocity;
   state.orientation = m.orientation.normalized();

@@ -62,6 +62,7 @@ private:
     double inverseMoment; ///< If all three principal moments are equal: of each.
     bool isotropic;
     bool touched; ///< In the substep, by a contact that lasts.
+    bool flies;   ///< Nothing has touched it in the step.
     bool moved;   ///< Since the last look.
     double noise; ///< To which speed its impacts in the step are exact, m/s.
     Mat3 inverseInertia;
@@ -84,6 +85,7 @@ private:
     double mass, shearMass; ///< Effective, kg.
     double friction;        ///< tan φ
     double cohesion;        ///< N s
+    double spring;          ///< N/m
     double frequency;       ///< h ω
     double P;               ///< N s
     Vec3 T;                 ///< Across, N s.
@@ -114,6 +116,9 @@ private:
   /// Rows in order: by strip, pairs before the slope, those of the same two rocks side by side.
   void arrange();
   void prepareRow(std::size_t contact, Row& row) const;
+  void weigh(Row& row) const; ///< Effective masses where its rocks are now.
+  /// Whether its rocks have turned, or slid past each other, so far that they weigh otherwise.
+  bool weighsOtherwise(const Row& row) const;
   void prepareImpulses(Row& row, const IslandContact& contact) const;
   template <class Visit>
   void forStrips(Visit&& visit) const; ///< visit(strip)

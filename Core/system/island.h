@@ -35,10 +35,10 @@ struct IslandContact
 {
   Contact* contact = nullptr;
   int first = -1;
-  int second = -1;       ///< −1: the slope.
-  double friction = 0.0; ///< tan φ
-  double cohesion = 0.0; ///< N
-  double damping = 0.0;  ///< ζ along the normal, if it is between rocks.
+  int second = -1;               ///< −1: the slope.
+  double friction = 0.0;         ///< tan φ
+  double cohesion = 0.0;         ///< N
+  double damping = 0.0;          ///< ζ along the normal, if it is between rocks.
   double restitution = 0.0;      ///< Newton's e of what closes faster than `resting`.
   double restitutionSpeed = 0.0; ///< > 0: K of e / (1 + (v/K)²), m/s.
   double resting = 0.0;          ///< Below it a touch is no impact, m/s.

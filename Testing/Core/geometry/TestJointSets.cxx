@@ -359,8 +359,10 @@ TEST(JointSets, CollapseThrowsNoWedgeAbout)
       }
     }
     EXPECT_GT(rocks.size(), 64u);
-    EXPECT_LT(fastest, 14.0) << "seed " << seed;  // 9.8 m/s by falling freely
-    EXPECT_LT(deepest, 0.025) << "seed " << seed; // 0.05 to 0.09 with one look
+    EXPECT_LT(fastest, 14.0) << "seed " << seed; // 9.8 m/s by falling freely
+    // A step may press a rock in by kDeepStep, 0.02, and the next one again; a contact that no look
+    // has found makes 0.05 to 0.09.
+    EXPECT_LT(deepest, 0.04) << "seed " << seed;
   }
 }
 
