@@ -214,7 +214,7 @@ TEST(MassFall, HeapsOfCubes)
 
 TEST(MassFall, CrowdsGoAsFarAsResolved)
 {
-  // The same rocks twice: with all impacts resolved in time, and all stepped as in a large crowd.
+  // The same rocks twice: as islands, with each impact by itself, and all stepped as a crowd.
   const int rocks = 40, runs = count(6, 40);
   struct Kind
   {
@@ -261,9 +261,11 @@ TEST(MassFall, CrowdsGoAsFarAsResolved)
   const EnergyAudit &a = kinds[0].energy, &b = kinds[1].energy;
   const auto shares = [&](const char* what, double EnergyAudit::*part)
   {
+    // A crowd has one impulse for the step in which an impact falls, and friction by how it slides
+    // in the end: of what an impact takes some more is friction's.
     record({ kCrowd, circumstances + "share of the energy that " + what + ", as a crowd", "",
-             "2 % of what was released" },
-      b.*part / b.released, a.*part / a.released, 0.02);
+             "3 % of what was released" },
+      b.*part / b.released, a.*part / a.released, 0.03);
   };
   shares("friction with the slope takes", &EnergyAudit::friction);
   shares("impacts on the slope take", &EnergyAudit::restitution);
