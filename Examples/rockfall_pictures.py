@@ -155,7 +155,7 @@ class Scene:
         levels = np.arange(np.ceil(low / step), np.floor(high / step) + 1) * step
         for every, width in ((levels, 1.0), (levels[levels % (5 * step) == 0], 2.5)):
             lines = Contour(Input=ground, ContourBy=["POINTS", "Elevation"], Isosurfaces=every.tolist())
-            flat(lines, view, [0.42, 0.38, 0.28], LineWidth=width, Position=[0, 0, 0.5])
+            flat(lines, view, [0.42, 0.38, 0.28], LineWidth=width, by=[0, 0, 0.5])
 
     # --- From the side
 

@@ -28,10 +28,16 @@ def new_view(size, background=(1.0, 1.0, 1.0)):
     return view
 
 
-def plain(source, view, colour, **properties):
+def move(display, by):
+    """Shows something elsewhere, m. The property is Translation since ParaView 5.13, Position before."""
+    setattr(display, "Translation" if "Translation" in display.ListProperties() else "Position", list(by))
+
+
+def plain(source, view, colour, by=(0.0, 0.0, 0.0), **properties):
     display = Show(source, view)
     display.ColorArrayName = ["POINTS", ""]
     display.AmbientColor = display.DiffuseColor = list(colour)
+    move(display, by)
     for name, value in properties.items():
         setattr(display, name, value)
     return display

@@ -9,7 +9,7 @@ from paraview.simple import *
 import scenario
 from rockfall_ground import Ground, cells, hillshade, make_polydata
 from rockfall_tables import Trajectories
-from rockfall_view import (INK, RELEASED, SANDSTONE, cast_shadows, flat, new_view, plain, produce,
+from rockfall_view import (INK, RELEASED, SANDSTONE, cast_shadows, flat, move, new_view, plain, produce,
                            python_filter, seen_at, show_slope, write, write_lines)
 
 ROAD_COLOUR, BANK_COLOUR, PATH = [0.32, 0.33, 0.36], [0.13, 0.45, 0.25], [0.45, 0.05, 0.45]
@@ -39,7 +39,7 @@ def show_ground(view, ground, bank):
     levels = np.arange(18.0, 66.0)
     for every, width in ((levels, 1.0), (levels[levels % 5 == 0], 2.5)):
         lines = Contour(Input=patch, ContourBy=["POINTS", "Elevation"], Isosurfaces=every.tolist())
-        flat(lines, view, [0.42, 0.38, 0.28], LineWidth=width, Position=[0, 0, 0.04])
+        flat(lines, view, [0.42, 0.38, 0.28], LineWidth=width, by=[0, 0, 0.04])
     flat(strip(ground, *scenario.ROAD), view, ROAD_COLOUR)
     middle = 0.5 * (scenario.ROAD[0] + scenario.ROAD[1])
     flat(strip(ground, middle - 0.25, middle + 0.25, 0.1), view, [1.0] * 3)
@@ -77,14 +77,14 @@ def map_picture(slopes, simulations, stops, path):
     for k, name in enumerate(("with collisions", "without collisions")):
         up = k * (scenario.WIDTH + gap)
         patch = produce(ground.patch(0.0, scenario.LENGTH, 0.0, scenario.WIDTH, hillshade(60.0, smooth=1)))
-        shift = dict(Position=[0.0, up, 0.0])
-        show_slope(patch, view).Position = [0.0, up, 0.0]
+        shift = dict(by=[0.0, up, 0.0])
+        move(show_slope(patch, view), [0.0, up, 0.0])
         levels = np.arange(18.0, 66.0, 2.0)
         lines = Contour(Input=patch, ContourBy=["POINTS", "Elevation"], Isosurfaces=levels.tolist())
-        flat(lines, view, [0.42, 0.38, 0.28], LineWidth=1.0, Position=[0.0, up, 0.1])
+        flat(lines, view, [0.42, 0.38, 0.28], LineWidth=1.0, by=[0.0, up, 0.1])
         flat(strip(ground, *scenario.ROAD), view, ROAD_COLOUR, **shift)
         flat(strip(ground, scenario.CREST - 0.25, scenario.CREST + 0.25, 0.3), view, BANK_COLOUR, **shift)
-        flat(paths_of(simulations[name], 0), view, PATH, LineWidth=1.5, Position=[0.0, up, 20.0])
+        flat(paths_of(simulations[name], 0), view, PATH, LineWidth=1.5, by=[0.0, up, 20.0])
         own = stops[name][:scenario.ROCKS] + [0.0, up, 60.0]
         dots = make_polydata(own)
         dots.SetVerts(cells(np.arange(len(own))[:, None]))

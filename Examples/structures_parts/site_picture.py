@@ -70,7 +70,7 @@ def show_site(view, slope, fall, across):
     show_slope(patch, view)
     lines = Contour(Input=patch, ContourBy=["POINTS", "Elevation"],
                     Isosurfaces=np.arange(5.0, 120.0, 5.0).tolist())
-    flat(lines, view, [0.45, 0.42, 0.32], LineWidth=1.0, Position=[0.0, 0.0, 0.1])
+    flat(lines, view, [0.45, 0.42, 0.32], LineWidth=1.0, by=[0.0, 0.0, 0.1])
     flat(road_strip(ground, across), view, ROAD)
     data = slope.GetClientSideObject().GetOutputDataObject(1)
     if data.GetNumberOfCells():

@@ -37,6 +37,7 @@ def row(wrong, text):
     text = re.sub(r"^\w+ \(0x[0-9a-f]+\): ", "", text)
     text = text.replace(os.getcwd() + "/", "")
     text = re.sub(r"this machine has [\d.]+ GB", "this machine has … GB", text)
+    text = text.replace("recognized as being in a supported", "recognized as a supported")  # as GDAL 3.6 says it
     sections[-1][1].append((wrong, text.replace("\n", " ")))
 
 
