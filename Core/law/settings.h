@@ -262,6 +262,12 @@ inline constexpr double kOverlapGoes = 1.0;
 inline constexpr double kOverlapGoesOnSlope = 10.0;
 /// Sweeps that make forces balance after the rocks have moved. Fewer: walls of 50 cubes never rest.
 inline constexpr int kRelaxSweeps = 3;
+/// Share to which the spin of an island's rock is right after a substep. Higher: needles that spin
+/// fast gain energy.
+inline constexpr double kTurnExact = 1e-3;
+/// Most sweeps of either kind; they go on while a contact changes by its resting speed. Fewer: a
+/// needle under a heavy rock is spun up.
+inline constexpr int kMostSweeps = 30;
 /// Generations of impacts in a substep. Fewer: what rocks in touch pass on to each other at
 /// restitution 0 is left over (half of it with each generation).
 inline constexpr int kGenerations = 12;

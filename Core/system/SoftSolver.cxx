@@ -1,11 +1,13 @@
 #include "system/SoftSolver.h"
 
 #include "base/parallel.h"
+#include "block/FreeRotation.h"
 #include "block/cayley.h"
 #include "block/flight.h"
 #include "law/settings.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -111,6 +113,10 @@ void SoftSolver::startMover(std::size_t i)
   m.momentum = R * (block.inertia() * body.state->spin);
   m.inverseInertia = m.isotropic ? Mat3(m.inverseMoment * Mat3::Identity())
                                  : Mat3(R * block.inverseInertia() * R.transpose());
+  // The midpoint's turn is off by its cube over 24, and a needle's spin by as much times how much
+  // easier it turns about itself.
+  const double slender = block.inertia().trace() * block.inverseInertia().trace() / 9.0;
+  m.smallTurn = std::cbrt(24.0 * kTurnExact / slender);
   m.touched = false;
   m.flies = true;
   m.noise = 0.0;
@@ -399,10 +405,22 @@ void SoftSolver::turn(Mover& m, double h)
     m.turn += by;
     return;
   }
-  const Quat half = cayley(0.5 * h * m.spin) * m.orientation;
-  const Mat3 R = half.toRotationMatrix();
-  const Vec3 by = h * (R * (m.block->inverseInertia() * (R.transpose() * m.momentum)));
-  m.orientation = (cayley(by) * m.orientation).normalized();
+  Vec3 by;
+  if (h * h * m.spin.squaredNorm() < m.smallTurn * m.smallTurn)
+  {
+    const Quat half = cayley(0.5 * h * m.spin) * m.orientation;
+    const Mat3 R = half.toRotationMatrix();
+    by = h * (R * (m.block->inverseInertia() * (R.transpose() * m.momentum)));
+    m.orientation = (cayley(by) * m.orientation).normalized();
+  }
+  else
+  {
+    const Quat from = m.orientation;
+    const Vec3 spin = from.conjugate() * m.spin;
+    m.orientation = (from * FreeRotation(*m.block, spin).after(h).turn).normalized();
+    const Eigen::AngleAxisd turned(m.orientation * from.conjugate());
+    by = turned.angle() * turned.axis();
+  }
   const Mat3 now = m.orientation.toRotationMatrix();
   m.inverseInertia = now * m.block->inverseInertia() * now.transpose();
   m.spin = m.inverseInertia * m.momentum;
@@ -699,6 +717,7 @@ void SoftSolver::warm(Row& r)
   if (r.stops)
   {
     r.P = 0.0;
+    r.stops = false;
   }
   if (r.P > 0.0)
   {
@@ -710,10 +729,10 @@ void SoftSolver::warm(Row& r)
   }
 }
 
-void SoftSolver::press(Row& r)
+bool SoftSolver::press(Row& r)
 {
   const double v = this->speedOf(r).dot(r.normal);
-  r.stops = v < -r.resting;
+  r.stops = r.stops || v < -r.resting;
   double change = 0.0;
   if (r.gap > 0.0)
   {
@@ -733,13 +752,14 @@ void SoftSolver::press(Row& r)
   {
     this->push(r, dP * r.normal);
   }
+  return std::abs(dP) > r.mass * r.resting;
 }
 
-void SoftSolver::relax(Row& r)
+bool SoftSolver::relax(Row& r)
 {
   if (r.P == 0.0)
   {
-    return;
+    return false;
   }
   const Vec3 u = this->speedOf(r);
   const double v = u.dot(r.normal), P = std::max(0.0, r.P - r.mass * v), dP = P - r.P;
@@ -750,6 +770,26 @@ void SoftSolver::relax(Row& r)
   r.P = P;
   r.T = T;
   this->push(r, dP * r.normal + dT);
+  return std::abs(dP) > r.mass * r.resting;
+}
+
+template <class Sweep>
+void SoftSolver::sweep(int least, Sweep&& row)
+{
+  bool again = true;
+  for (int sweep = 0; sweep < least || (again && sweep < kMostSweeps); ++sweep)
+  {
+    std::atomic<bool> any = false;
+    this->forBusy(
+      [&](Row& r)
+      {
+        if (row(r))
+        {
+          any.store(true, std::memory_order_relaxed);
+        }
+      });
+    again = any;
+  }
 }
 
 void SoftSolver::substep(int k)
@@ -779,7 +819,7 @@ void SoftSolver::substep(int k)
   };
   forEach(movers_.size(), kBodyGrain, fall);
   this->forBusy([&](Row& r) { this->warm(r); });
-  this->forBusy([&](Row& r) { this->press(r); });
+  this->sweep(1, [&](Row& r) { return this->press(r); });
   const auto move = [&](std::size_t i)
   {
     Mover& m = movers_[i];
@@ -792,10 +832,7 @@ void SoftSolver::substep(int k)
     turn(m, h_);
   };
   forEach(movers_.size(), kBodyGrain, move);
-  for (int sweep = 0; sweep < kRelaxSweeps; ++sweep)
-  {
-    this->forBusy([&](Row& r) { this->relax(r); });
-  }
+  this->sweep(kRelaxSweeps, [&](Row& r) { return this->relax(r); });
 }
 
 void SoftSolver::append()

@@ -61,10 +61,11 @@ private:
     double inverseMass;
     double inverseMoment; ///< If all three principal moments are equal: of each.
     bool isotropic;
-    bool touched; ///< In the substep, by a contact that lasts.
-    bool flies;   ///< Nothing has touched it in the step.
-    bool moved;   ///< Since the last look.
-    double noise; ///< To which speed its impacts in the step are exact, m/s.
+    bool touched;     ///< In the substep, by a contact that lasts.
+    bool flies;       ///< Nothing has touched it in the step.
+    bool moved;       ///< Since the last look.
+    double smallTurn; ///< In a substep, that a midpoint does, rad.
+    double noise;     ///< To which speed its impacts in the step are exact, m/s.
     Mat3 inverseInertia;
     Vec3 momentum; ///< Angular, about the centroid.
     Quat orientation;
@@ -136,8 +137,11 @@ private:
   double leaves(const Row& row) const; ///< Speed after an impact, m/s.
   void link();
   void warm(Row& row);
-  void press(Row& row);
-  void relax(Row& row);
+  bool press(Row& row); ///< Whether by more than the resting speed.
+  bool relax(Row& row);
+  /// Sweeps over the rows, at least so many times, until none has changed by more.
+  template <class Sweep>
+  void sweep(int least, Sweep&& row);
 
   double gapOf(const Row& row) const;
   Vec3 leverB(const Row& row) const;
