@@ -34,9 +34,9 @@ from site_scores import Observed
 PARAMETERS = (
     ("RestitutionCoefficient", "--restitution", 0.73, None, "Rn, 0 to 1"),
     ("RestitutionDeviation", "--restitution-deviation", 0.34, None, "of Rn"),
-    ("RestitutionSpeed", "--restitution-speed", 8.0, None, "normal speed at which half of Rn is left, m/s"),
+    ("RestitutionSpeed", "--restitution-speed", 7.0, None, "normal speed at which half of Rn is left, m/s"),
     ("TangentialRestitution", "--tangential", 1.0, None, "Rt, 0 to 1"),
-    ("GroundModulus", "--modulus", 15.0, None, "ME in MN/m2, 0 for hard ground"),
+    ("GroundModulus", "--modulus", 13.0, None, "ME in MN/m2, 0 for hard ground"),
     ("ScarDepthFactor", "--depth-factor", 0.125, None, "of the scar's depth"),
     ("ScarCompaction", "--compaction", 0.9, None, "Cs"),
     ("ScarSpinDrag", "--spin-drag", 0.0, None, "Cw"),
@@ -45,7 +45,9 @@ PARAMETERS = (
     ("SlipFrictionGrowth", "--friction-growth", 3.0, None, "in 1/m"),
     ("SlipFrictionDecay", "--friction-decay", 185.0, None, "in 1/s"),
     ("FrictionAngle", "--friction", 30.0, None, "in degrees, if no friction of slip is given"),
-    ("RollingResistance", "--rolling", 0.24, (0.16, 0.26), "of the rock's radius"),
+    ("RollingResistance", "--rolling", 0.21, (0.16, 0.26), "of the rock's radius"),
+    ("GroundDeviation", "--ground-deviation", 0.45, None, "of ln S, how soft the ground is"),
+    ("GroundDeviationLength", "--ground-length", 30.0, None, "over which it is alike, m"),
     ("RoughnessDeviation", "--roughness", 0.0, None, "deviation of the ground's height in m"),
     ("RoughnessLength", "--roughness-length", 0.5, None, "its correlation length in m, 0 for the nodes'"),
 )
