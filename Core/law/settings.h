@@ -205,9 +205,9 @@ inline constexpr double kStruckEarly = 1.25;
 /// Share of a step's way by which a rock of an island that strikes the slope must be away from
 /// others to take the step by itself. Less: it may come to overlap one of them.
 inline constexpr double kLoneWay = 0.25;
-/// Turn (rad), and way past each other (of a radius), from which the rocks of a contact weigh
-/// otherwise than where the step began. Higher: a splinter that spins is pushed by more than it
-/// weighs, and the more the next time.
+/// Turn (rad, by the root of how slender a rock is), and way past each other (of a radius), from
+/// which the rocks of a contact weigh otherwise than where the step began. Higher: a splinter that
+/// spins is pushed by more than it weighs, and the more the next time.
 inline constexpr double kWeighedTurn = 0.05;
 /// Step of an island in steps of rocks that are alone. Longer: faster, more cuts.
 inline constexpr double kIslandTravel = 2.0;

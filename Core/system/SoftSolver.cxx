@@ -117,6 +117,8 @@ void SoftSolver::startMover(std::size_t i)
   // easier it turns about itself.
   const double slender = block.inertia().trace() * block.inverseInertia().trace() / 9.0;
   m.smallTurn = std::cbrt(24.0 * kTurnExact / slender);
+  m.weighedTurn = kWeighedTurn / std::sqrt(slender);
+  m.turned = false;
   m.touched = false;
   m.flies = true;
   m.noise = 0.0;
@@ -220,22 +222,24 @@ void SoftSolver::weigh(Row& row) const
   }
   row.mass = 1.0 / mobility;
   row.shearMass = 1.0 / across;
-  row.frequency =
+  // Overlap beyond what the force explains goes no faster than sweeps can follow; what the force
+  // explains is that of the spring, however light the rocks.
+  const double frequency =
     std::min(h_ * std::sqrt(row.spring / row.mass), 2.0 * std::numbers::pi * kSoftFrequency);
+  row.rate = frequency / (h_ * (2.0 * kSoftDamping + frequency));
+  row.softness = row.mass * row.rate / (h_ * row.spring);
 }
 
-bool SoftSolver::weighsOtherwise(const Row& row) const
+void SoftSolver::weighAnew(Row& row) const
 {
   const Mover& a = movers_[std::size_t(row.a)];
-  const auto turned = [](const Mover& m)
-  { return !m.isotropic && m.turn.squaredNorm() > kWeighedTurn * kWeighedTurn; };
-  if (row.b < 0)
+  const Mover* b = row.b < 0 ? nullptr : &movers_[std::size_t(row.b)];
+  const double far = b ? kWeighedTurn * std::min(a.block->radius(), b->block->radius()) : 0.0;
+  if (a.turned || (b && b->turned) ||
+    (b && (a.displacement - b->displacement).squaredNorm() > far * far))
   {
-    return turned(a);
+    this->weigh(row);
   }
-  const Mover& b = movers_[std::size_t(row.b)];
-  const double far = kWeighedTurn * std::min(a.block->radius(), b.block->radius());
-  return turned(a) || turned(b) || (a.displacement - b.displacement).squaredNorm() > far * far;
 }
 
 void SoftSolver::prepareImpulses(Row& row, const IslandContact& asked) const
@@ -425,6 +429,7 @@ void SoftSolver::turn(Mover& m, double h)
   m.inverseInertia = now * m.block->inverseInertia() * now.transpose();
   m.spin = m.inverseInertia * m.momentum;
   m.turn += by;
+  m.turned = m.turned || m.turn.squaredNorm() > m.weighedTurn * m.weighedTurn;
 }
 
 /// An impulse over a substep does its work along the mean of the velocities before and after.
@@ -462,9 +467,9 @@ void SoftSolver::arrive(std::size_t strip, bool last)
       r.before = speed.dot(r.normal);
       r.generation = 0;
       r.idle = r.P == 0.0 && r.gap + 2.0 * h_ * std::min(r.before, -r.resting) > 0.0;
-      if (!r.idle && this->weighsOtherwise(r))
+      if (!r.idle)
       {
-        this->weigh(r);
+        this->weighAnew(r);
       }
       any = any || this->closes(r, 1.0);
     }
@@ -699,7 +704,11 @@ void SoftSolver::strikeGenerations(double time)
           r.generation = generation + 1;
           for (std::size_t k = manifolds_[m][0]; k < manifolds_[m][1]; ++k)
           {
-            rows_[k].idle = false;
+            if (rows_[k].idle)
+            {
+              rows_[k].idle = false;
+              this->weighAnew(rows_[k]);
+            }
           }
           if (this->strikes(m))
           {
@@ -740,11 +749,8 @@ bool SoftSolver::press(Row& r)
   }
   else
   {
-    const double s1 = 2.0 * kSoftDamping + r.frequency, s2 = r.frequency * s1,
-                 s3 = 1.0 / (1.0 + s2);
-    const double back =
-      std::max(r.frequency / (h_ * s1) * r.gap, -(r.b >= 0 ? kOverlapGoes : kOverlapGoesOnSlope));
-    change = -r.mass * s2 * s3 * (v + back) - s3 * r.P;
+    const double back = std::max(r.rate * r.gap, -(r.b >= 0 ? kOverlapGoes : kOverlapGoesOnSlope));
+    change = -(r.mass * (v + back) + r.softness * r.P) / (1.0 + r.softness);
   }
   const double P = std::max(0.0, r.P + change), dP = P - r.P;
   r.P = P;
@@ -832,6 +838,7 @@ void SoftSolver::substep(int k)
     turn(m, h_);
   };
   forEach(movers_.size(), kBodyGrain, move);
+  this->forBusy([&](Row& r) { this->weighAnew(r); });
   this->sweep(kRelaxSweeps, [&](Row& r) { return this->relax(r); });
 }
 

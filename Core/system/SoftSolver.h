@@ -11,14 +11,14 @@
 ///               generations, so that what is struck passes it on within the substep
 ///     gravity
 ///     warm      the impulses of the last substep
-///     soft      closed: ΔP = −m s (v + max(ω g / s₁, −v_r)) − s₃ P
+///     soft      closed: ΔP = −(m (v + max(β g, −v_r)) + s P) / (1 + s)
 ///               open:   ΔP = −m (v + g/h);  P ≥ 0
 ///     move      turns from the angular momentum
 ///     relax     P ← max(0, P − m v); friction within μ P + c h
 ///
-/// with m the effective mass, ω² = pₙ/m but no more than a quarter of the substep rate, s₁ = 2 + h
-/// ω, s₂ = h ω s₁, s₃ = 1/(1 + s₂), s = s₂ s₃, and v_r the speed at which overlap goes. At rest the
-/// overlap is P/(h pₙ), as of Shi's spring.
+/// with m the effective mass, β = ω / (2 ζ + h ω), ω² = pₙ/m but no more than a quarter of the
+/// substep rate, s = m β / (h pₙ), and v_r the speed at which overlap goes. At rest the overlap is
+/// P/(h pₙ), as of Shi's spring.
 
 #include "system/IslandSystem.h"
 #include "system/PairSprings.h"
@@ -61,11 +61,13 @@ private:
     double inverseMass;
     double inverseMoment; ///< If all three principal moments are equal: of each.
     bool isotropic;
-    bool touched;     ///< In the substep, by a contact that lasts.
-    bool flies;       ///< Nothing has touched it in the step.
-    bool moved;       ///< Since the last look.
-    double smallTurn; ///< In a substep, that a midpoint does, rad.
-    double noise;     ///< To which speed its impacts in the step are exact, m/s.
+    bool touched;       ///< In the substep, by a contact that lasts.
+    bool flies;         ///< Nothing has touched it in the step.
+    bool moved;         ///< Since the last look.
+    bool turned;        ///< So far in the step that its contacts weigh otherwise.
+    double smallTurn;   ///< In a substep, that a midpoint does, rad.
+    double weighedTurn; ///< In the step, within which its contacts weigh the same, rad.
+    double noise;       ///< To which speed its impacts in the step are exact, m/s.
     Mat3 inverseInertia;
     Vec3 momentum; ///< Angular, about the centroid.
     Quat orientation;
@@ -87,7 +89,8 @@ private:
     double friction;        ///< tan φ
     double cohesion;        ///< N s
     double spring;          ///< N/m
-    double frequency;       ///< h ω
+    double rate;            ///< β, 1/s
+    double softness;        ///< m β / (h pₙ)
     double P;               ///< N s
     Vec3 T;                 ///< Across, N s.
     Vec3 speed, speedA;     ///< Behind impacts of the substep, and of a's point alone, m/s.
@@ -118,8 +121,8 @@ private:
   void arrange();
   void prepareRow(std::size_t contact, Row& row) const;
   void weigh(Row& row) const; ///< Effective masses where its rocks are now.
-  /// Whether its rocks have turned, or slid past each other, so far that they weigh otherwise.
-  bool weighsOtherwise(const Row& row) const;
+  /// If its rocks have turned, or slid past each other, so far that they weigh otherwise.
+  void weighAnew(Row& row) const;
   void prepareImpulses(Row& row, const IslandContact& contact) const;
   template <class Visit>
   void forStrips(Visit&& visit) const; ///< visit(strip)
