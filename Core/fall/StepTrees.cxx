@@ -173,15 +173,6 @@ void StepTrees::fell(std::size_t member)
     {
       continue;
     }
-    for (const Contact& c : body.contactsBefore)
-    {
-      // A lasting step books what is left over as damped; one of an impact does not.
-      const bool closed = c.closed() && body.steppedAs == StepKind::Impact;
-      if (closed && sim.treeOf(c) == stem.tree)
-      {
-        body.energy.damping += c.springEnergy() - 0.5 * c.shearStiffness * c.slip.squaredNorm();
-      }
-    }
     if (rigidKineticEnergy(body.block, body.state) <= this->capacity(stem.tree))
     {
       // Others have taken it since: it holds from here on.

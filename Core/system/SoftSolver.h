@@ -98,6 +98,15 @@ private:
     double before;          ///< Speed along the normal before a generation, m/s.
     double pending;         ///< ≥ 0: speed at which an impact that was under way leaves, m/s.
   };
+  /// A row in a generation of impacts.
+  struct Impact
+  {
+    std::size_t row;
+    double Q;             ///< Impulse along the normal, N s,
+    Vec3 S;               ///< and across.
+    Vec3 before, beforeA; ///< Velocities behind it, of both and of a's point alone, m/s.
+    double leaves;        ///< m/s
+  };
   /// What a contact did in the step.
   struct Result
   {
@@ -132,19 +141,28 @@ private:
   void substep(int k);
   void arrive(std::size_t strip, bool last); ///< Gaps, books and who strikes.
   void book(const Row& row, Result& result, const Vec3& speed, const Vec3& speedA) const;
-  /// Whether an impact is under way, or the gap closes as one within so many substeps.
-  bool closes(const Row& row, double substeps) const;
-  bool strikes(std::size_t manifold); ///< Whether any of its rows does.
-  void strike(std::size_t manifold, std::vector<std::size_t>& struck);
-  void strikeGenerations(double time);
-  double leaves(const Row& row) const; ///< Speed after an impact, m/s.
-  void link();
   void warm(Row& row);
   bool press(Row& row); ///< Whether by more than the resting speed.
   bool relax(Row& row);
   /// Sweeps over the rows, at least so many times, until none has changed by more.
   template <class Sweep>
   void sweep(int least, Sweep&& row);
+
+  // Impacts, softImpacts.cxx
+  /// Whether an impact is under way, or the gap closes as one within so many substeps.
+  bool closes(const Row& row, double substeps) const;
+  bool strikes(std::size_t manifold); ///< Whether any of its rows does.
+  void strike(std::size_t manifold, std::vector<std::size_t>& struck);
+  double leaves(const Row& row) const; ///< Speed after an impact, m/s.
+  void link();
+  void strikeGenerations(double time);
+  double beginImpacts(); ///< Returns what springs of impacts under way hold, J.
+  void settleImpacts();
+  bool settle(Impact& impact); ///< Whether it changed by more than it is exact to.
+  /// The factor on all impulses with which they give no more than was there.
+  double shareOfImpacts(double stored) const;
+  void bookImpacts(double share, double time);
+  void findStruck(int generation); ///< Rows that close by it.
 
   double gapOf(const Row& row) const;
   Vec3 leverB(const Row& row) const;
@@ -153,6 +171,7 @@ private:
   void push(const Row& row, const Vec3& J); ///< J on a, −J on b, N s.
   static void push(Mover& m, const Vec3& J, const Vec3& lever);
   static void turn(Mover& m, double h);
+  static void limitTo(Vec3& T, double most);
 
   void write(IslandOutcome& outcome);
   void writeContact(const Row& row, const Result& result);
@@ -176,7 +195,10 @@ private:
   std::vector<std::size_t> firstOfStrip_;             ///< Among manifolds.
   std::vector<std::vector<std::size_t>> struckOf_;    ///< By strip.
   std::vector<std::size_t> struck_;                   ///< Rows, in order.
-  std::vector<int> stamp_, moving_;
+  std::vector<Impact> impacts_;                       ///< Of a generation.
+  std::vector<int> stamp_;  ///< By mover, the sweep in which an impact last moved it.
+  std::vector<int> moving_; ///< Movers that a generation has moved.
+  int tick_ = 0;            ///< Number of the sweep.
   std::vector<std::size_t> firstOf_, manifoldsOf_; ///< Manifolds of each rock.
   /// Books of a rock.
   struct Books

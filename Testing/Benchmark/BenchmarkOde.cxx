@@ -178,7 +178,7 @@ void odeFall(benchmark::State& state, int count, double h, bool boxes)
 int main(int argc, char** argv)
 {
   benchmark::Initialize(&argc, argv);
-  for (int count : { 1000, 10000 })
+  for (int count : { 41, 100, 1000, 10000 })
   {
     for (const bool boxes : { true, false })
     {

@@ -1,0 +1,264 @@
+// Impacts within a substep: what closes faster than the resting speed leaves by Newton's law, and
+// strikes what closes by it in the next generation.
+
+#include "law/settings.h"
+#include "system/SoftSolver.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rockfall
+{
+
+bool SoftSolver::closes(const Row& r, double substeps) const
+{
+  const double noise =
+    std::max(movers_[std::size_t(r.a)].noise, r.b >= 0 ? movers_[std::size_t(r.b)].noise : 0.0);
+  return r.pending >= 0.0 ||
+    (-r.before > std::max(r.resting, noise) && r.gap + substeps * h_ * r.before < 0.0);
+}
+
+void SoftSolver::strike(std::size_t manifold, std::vector<std::size_t>& struck)
+{
+  for (std::size_t k = manifolds_[manifold][0]; k < manifolds_[manifold][1]; ++k)
+  {
+    const Row& r = rows_[k];
+    if (this->closes(r, kSharedImpact))
+    {
+      struck.push_back(k);
+    }
+  }
+}
+
+bool SoftSolver::strikes(std::size_t manifold)
+{
+  bool any = false;
+  for (std::size_t k = manifolds_[manifold][0]; k < manifolds_[manifold][1]; ++k)
+  {
+    Row& r = rows_[k];
+    r.before = this->speedOf(r).dot(r.normal);
+    r.gap = this->gapOf(r);
+    any = any || this->closes(r, 1.0);
+  }
+  return any;
+}
+
+void SoftSolver::link()
+{
+  firstOf_.assign(movers_.size() + 2, 0);
+  const auto forEnds = [&](std::size_t shift, auto&& visit)
+  {
+    for (std::size_t m = 0; m < manifolds_.size(); ++m)
+    {
+      const Row& r = rows_[manifolds_[m][0]];
+      visit(std::size_t(r.a) + shift, m);
+      if (r.b >= 0)
+      {
+        visit(std::size_t(r.b) + shift, m);
+      }
+    }
+  };
+  forEnds(2, [&](std::size_t i, std::size_t) { ++firstOf_[i]; });
+  for (std::size_t i = 2; i < firstOf_.size(); ++i)
+  {
+    firstOf_[i] += firstOf_[i - 1];
+  }
+  manifoldsOf_.resize(firstOf_.back());
+  forEnds(1, [&](std::size_t i, std::size_t m) { manifoldsOf_[firstOf_[i]++] = m; });
+  linked_ = true;
+}
+
+double SoftSolver::leaves(const Row& r) const
+{
+  if (r.pending >= 0.0)
+  {
+    return r.pending;
+  }
+  const IslandContact& c = (*contacts_)[results_[std::size_t(&r - rows_.data())].contact];
+  return -r.before * c.restitutionAt(-r.before);
+}
+
+void SoftSolver::strikeGenerations(double time)
+{
+  tick_ = 0;
+  stamp_.assign(movers_.size(), -1);
+  for (int generation = 1; !struck_.empty(); ++generation)
+  {
+    const double stored = this->beginImpacts();
+    this->settleImpacts();
+    this->bookImpacts(this->shareOfImpacts(stored), time);
+    struck_.clear();
+    if (generation < kGenerations)
+    {
+      this->findStruck(generation);
+    }
+  }
+}
+
+double SoftSolver::beginImpacts()
+{
+  moving_.clear();
+  impacts_.clear();
+  double stored = 0.0;
+  for (const std::size_t k : struck_)
+  {
+    const Row& r = rows_[k];
+    impacts_.push_back(
+      { k, 0.0, Vec3::Zero(), this->speedOf(r), this->speedOfA(r), this->leaves(r) });
+    // Springs of impacts that were under way give what they hold.
+    stored += r.pending >= 0.0 ? (*contacts_)[results_[k].contact].contact->springEnergy() : 0.0;
+  }
+  return stored;
+}
+
+void SoftSolver::settleImpacts()
+{
+  const int begun = tick_;
+  const auto noteMove = [&](int i)
+  {
+    if (i >= 0)
+    {
+      int& stamp = stamp_[std::size_t(i)];
+      if (stamp < begun)
+      {
+        moving_.push_back(i);
+      }
+      stamp = tick_;
+    }
+  };
+  bool any = true;
+  for (int pass = 0; pass < kImpactSweeps && any; ++pass, ++tick_)
+  {
+    any = false;
+    for (Impact& impact : impacts_)
+    {
+      const Row& r = rows_[impact.row];
+      if (pass > 0 && stamp_[std::size_t(r.a)] < tick_ - 1 &&
+        (r.b < 0 || stamp_[std::size_t(r.b)] < tick_ - 1))
+      {
+        continue;
+      }
+      if (this->settle(impact))
+      {
+        noteMove(r.a);
+        noteMove(r.b);
+        any = true;
+      }
+    }
+  }
+  tick_ += 2;
+}
+
+bool SoftSolver::settle(Impact& impact)
+{
+  const Row& r = rows_[impact.row];
+  const Vec3 u = this->speedOf(r);
+  const double v = u.dot(r.normal);
+  const double Q = std::max(0.0, impact.Q - r.mass * (v - impact.leaves)), dQ = Q - impact.Q;
+  Vec3 S = impact.S - r.shearMass * (u - v * r.normal);
+  limitTo(S, r.friction * Q);
+  const Vec3 dS = S - impact.S;
+  impact.Q = Q;
+  impact.S = S;
+  const double size = std::abs(dQ) + dS.norm();
+  if (size > 0.0)
+  {
+    this->push(r, dQ * r.normal + dS);
+  }
+  return size > r.mass * std::max(kImpactExact * std::abs(r.before), kImpactQuiet * r.resting);
+}
+
+double SoftSolver::shareOfImpacts(double stored) const
+{
+  double along = 0.0, work = 0.0;
+  for (const Impact& impact : impacts_)
+  {
+    const Row& r = rows_[impact.row];
+    const Vec3 J = impact.Q * r.normal + impact.S;
+    along += J.dot(impact.before);
+    work += 0.5 * J.dot(impact.before + this->speedOf(r));
+  }
+  if (work <= stored)
+  {
+    return 1.0;
+  }
+  // The work of a share s is along s + (work − along) s².
+  const double square = work - along;
+  const double root = std::sqrt(std::max(0.0, along * along + 4.0 * square * stored));
+  return std::clamp((-along + root) / (2.0 * square), 0.0, 1.0);
+}
+
+void SoftSolver::bookImpacts(double share, double time)
+{
+  for (const Impact& impact : impacts_)
+  {
+    const Row& r = rows_[impact.row];
+    if (share < 1.0 && impact.Q > 0.0)
+    {
+      this->push(r, (share - 1.0) * (impact.Q * r.normal + impact.S));
+    }
+  }
+  for (const Impact& impact : impacts_)
+  {
+    Row& r = rows_[impact.row];
+    Result& result = results_[impact.row];
+    if (impact.Q > 0.0 && r.pending < 0.0 && -r.before > result.struck)
+    {
+      const Mover& a = movers_[std::size_t(r.a)];
+      result.struck = -r.before;
+      result.struckAt = time;
+      result.struckPoint = a.start + a.displacement + r.lever;
+    }
+    r.pending = -1.0;
+    for (const int i : { r.a, r.b })
+    {
+      if (i >= 0)
+      {
+        double& noise = movers_[std::size_t(i)].noise;
+        noise = std::max(noise, 2.0 * kImpactExact * std::abs(r.before));
+      }
+    }
+    const Vec3 across = share * impact.S, mean = 0.5 * (impact.before + this->speedOf(r));
+    const Vec3 impulse = share * impact.Q * r.normal + across;
+    result.normalWork += share * impact.Q * r.normal.dot(mean);
+    result.frictionWork -= across.dot(mean);
+    result.workOnA += 0.5 * impulse.dot(impact.beforeA + this->speedOfA(r));
+    result.impulse += impulse;
+  }
+}
+
+void SoftSolver::findStruck(int generation)
+{
+  if (!linked_)
+  {
+    this->link();
+  }
+  for (const int i : moving_)
+  {
+    for (std::size_t j = firstOf_[std::size_t(i)]; j < firstOf_[std::size_t(i) + 1]; ++j)
+    {
+      const std::size_t m = manifoldsOf_[j];
+      Row& first = rows_[manifolds_[m][0]];
+      if (first.generation == generation)
+      {
+        continue;
+      }
+      first.generation = generation;
+      for (std::size_t k = manifolds_[m][0]; k < manifolds_[m][1]; ++k)
+      {
+        if (rows_[k].idle)
+        {
+          rows_[k].idle = false;
+          this->weighAnew(rows_[k]);
+        }
+      }
+      if (this->strikes(m))
+      {
+        this->strike(m, struck_);
+      }
+    }
+  }
+  std::sort(struck_.begin(), struck_.end());
+}
+
+} // namespace rockfall
