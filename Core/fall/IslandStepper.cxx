@@ -217,9 +217,7 @@ void IslandStepper::solve(double h)
   work_.stems.clear();
   StepRequest request;
   request.duration = h;
-  request.kind = StepKind::Lasting;
   request.gravity = fall_.parameters.gravity;
-  request.maxOpenClose = fall_.parameters.maxOpenClose;
   request.substeps = int(std::ceil(kSubsteps * h / fall_.parameters.timeStep - 1e-6));
   this->cutUntilAccepted(request);
   const RockBody& first = fall_.rocks[std::size_t(island_.members.front())].body();

@@ -95,6 +95,13 @@ void StepResult::findLone()
       mark(m, work_.contacts[work_.slopeFirsts[m] + k]);
     }
   }
+  for (std::size_t k = 0; k < work_.addedTo.size(); ++k)
+  {
+    if (work_.addedTo[k].onSlope)
+    {
+      mark(work_.addedTo[k].of, work_.contacts[work_.firsts.back() + k]);
+    }
+  }
   const auto isAlone = [&](int place) { return place >= 0 && work_.alone[std::size_t(place)]; };
   const auto keep = [&](std::size_t p)
   {
@@ -106,14 +113,9 @@ void StepResult::findLone()
       }
     }
   };
-  for (std::size_t k = 0; k < work_.addedTo.size(); ++k)
+  for (const IslandWork::Added& added : work_.addedTo)
   {
-    const IslandWork::Added& added = work_.addedTo[k];
-    if (added.onSlope)
-    {
-      mark(added.of, work_.contacts[work_.firsts.back() + k]);
-    }
-    else
+    if (!added.onSlope)
     {
       keep(added.of);
     }
@@ -166,9 +168,14 @@ void StepResult::stepAlone(FallingRock& rock)
   body.contacts = body.contactsBefore;
   body.quietTime = 0.0; // the island comes to rest as a whole
   rock.advanceAlone(from.time + h_);
-  const BlockState& to = body.state;
+  this->noteMotion(rock, from);
+}
+
+void StepResult::noteMotion(const FallingRock& rock, const BlockState& from)
+{
+  const BlockState& to = rock.body().state;
+  const double r = rock.body().block.radius();
   IslandWork::Motion& motion = work_.motions[std::size_t(rock.place)];
-  const double r = body.block.radius();
   motion.displacement = to.position - from.position;
   motion.rimTravel =
     rimTravel(from.orientation, to.orientation, r) + r * (to.strain - from.strain).norm();
@@ -360,12 +367,7 @@ void StepResult::applyToRock(std::size_t k)
   work_.arrived[place] = arrived;
   if (!arrived)
   {
-    const BlockState &from = body.before, &to = body.state;
-    const double r = body.block.radius();
-    IslandWork::Motion& motion = work_.motions[place];
-    motion.displacement = to.position - from.position;
-    motion.rimTravel =
-      rimTravel(from.orientation, to.orientation, r) + r * (to.strain - from.strain).norm();
+    this->noteMotion(rock, body.before);
   }
 }
 

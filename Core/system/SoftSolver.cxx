@@ -9,8 +9,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <numbers>
-#include <numeric>
 
 namespace rockfall
 {
@@ -71,7 +69,7 @@ void SoftSolver::begin(
   }
   this->findStrips();
   this->arrange();
-  this->solve();
+  this->run();
 }
 
 void SoftSolver::startMover(std::size_t i)
@@ -112,6 +110,11 @@ void SoftSolver::startMovers()
 void SoftSolver::solve()
 {
   this->startMovers();
+  this->run();
+}
+
+void SoftSolver::run()
+{
   const auto start = [&](std::size_t k)
   {
     Row& row = rows_[k];
@@ -162,8 +165,7 @@ Vec3 SoftSolver::speedOfA(const Row& r) const
 
 Vec3 SoftSolver::speedOf(const Row& r) const
 {
-  const Mover& a = movers_[std::size_t(r.a)];
-  Vec3 u = a.velocity + a.spin.cross(r.lever);
+  Vec3 u = this->speedOfA(r);
   if (r.b >= 0)
   {
     const Mover& b = movers_[std::size_t(r.b)];
@@ -240,19 +242,13 @@ void SoftSolver::turn(Mover& m, double h)
   m.turned = m.turned || m.turn.squaredNorm() > m.weighedTurn * m.weighedTurn;
 }
 
-/// An impulse over a substep does its work along the mean of the velocities before and after.
-void SoftSolver::book(const Row& r, Result& result, const Vec3& speed, const Vec3& speedA) const
+void SoftSolver::book(const Row& r, double along, const Vec3& across, const Vec3& mean,
+  const Vec3& meanA, Result& result)
 {
-  const double along = r.P;
-  if (along == 0.0 || substep_ == 0)
-  {
-    return;
-  }
-  const Vec3 mean = 0.5 * (r.speed + speed), across = r.T;
   result.normalWork += along * r.normal.dot(mean);
   result.frictionWork -= across.dot(mean);
   const Vec3 impulse = along * r.normal + across;
-  result.workOnA += 0.5 * impulse.dot(r.speedA + speedA);
+  result.workOnA += impulse.dot(meanA);
   result.impulse += impulse;
 }
 
@@ -268,7 +264,10 @@ void SoftSolver::arrive(std::size_t strip, bool last)
       Row& r = rows_[k];
       const Vec3 speed = this->speedOf(r);
       const Vec3 speedA = this->speedOfA(r);
-      this->book(r, results_[k], speed, speedA);
+      if (r.P != 0.0 && substep_ > 0)
+      {
+        book(r, r.P, r.T, 0.5 * (r.speed + speed), 0.5 * (r.speedA + speedA), results_[k]);
+      }
       r.speedA = speedA;
       r.gap = this->gapOf(r);
       r.speed = speed;

@@ -59,31 +59,31 @@ private:
     Vec3 start;              ///< Centroid where the step begins, from `origin_`, m.
     Vec3 displacement, turn; ///< Since then; the turn as a sum of small ones.
     double inverseMass;
-    double inverseMoment; ///< If all three principal moments are equal: of each.
+    double inverseMoment; ///< Each principal one, where all three are equal.
     bool isotropic;
-    bool touched;       ///< In the substep, by a contact that lasts.
+    bool touched;       ///< A contact that lasts has pushed it in the substep.
     bool flies;         ///< Nothing has touched it in the step.
     bool moved;         ///< Since the last look.
     bool turned;        ///< So far in the step that its contacts weigh otherwise.
-    double smallTurn;   ///< In a substep, that a midpoint does, rad.
-    double weighedTurn; ///< In the step, within which its contacts weigh the same, rad.
-    double noise;       ///< To which speed its impacts in the step are exact, m/s.
+    double smallTurn;   ///< Largest one of a substep that a midpoint does, rad.
+    double weighedTurn; ///< Largest one of the step within which its contacts weigh the same, rad.
+    double noise;       ///< Speed to which its impacts in the step are exact, m/s.
     Mat3 inverseInertia;
     Vec3 momentum; ///< Angular, about the centroid.
     Quat orientation;
     const Block* block;
-    Vec3 seenAt, seenTurn; ///< At the last look.
+    Vec3 seenAt, seenTurn; ///< Displacement and turn at the last look.
   };
   /// A contact while it is solved for, of a point that moves with the rock `a`.
   struct Row
   {
     int a, b;               ///< Movers; b < 0: the slope.
-    int generation;         ///< Of impacts, in which its manifold was last asked.
+    int generation;         ///< Generation of impacts in which its manifold was last asked.
     bool flipped;           ///< `a` is the contact's second rock.
     bool idle;              ///< Stays open in the substep.
     bool stops;             ///< Stopped what closed: its impulse is not one to go on with.
-    Vec3 normal;            ///< From b to a, at mid-step.
-    Vec3 lever;             ///< From a's centroid, at mid-step, m.
+    Vec3 normal;            ///< Direction from b to a, at mid-step.
+    Vec3 lever;             ///< Arm from a's centroid, at mid-step, m.
     double gap0, gap;       ///< Where the step begins, and now, m.
     double mass, shearMass; ///< Effective, kg.
     double friction;        ///< tan φ
@@ -120,6 +120,7 @@ private:
     Vec3 struckPoint;    ///< and where, from `origin_`, m.
   };
 
+  void run(); ///< All substeps, from where the movers start.
   void startMovers();
   void startMover(std::size_t i);
   /// Strips across the island: contacts belong to the lower one of their two rocks, and those of
@@ -130,7 +131,7 @@ private:
   void arrange();
   void prepareRow(std::size_t contact, Row& row) const;
   void weigh(Row& row) const; ///< Effective masses where its rocks are now.
-  /// If its rocks have turned, or slid past each other, so far that they weigh otherwise.
+  /// Effective masses of a row whose rocks have turned, or slid past each other, far enough.
   void weighAnew(Row& row) const;
   void prepareImpulses(Row& row, const IslandContact& contact) const;
   template <class Visit>
@@ -140,7 +141,10 @@ private:
 
   void substep(int k);
   void arrive(std::size_t strip, bool last); ///< Gaps, books and who strikes.
-  void book(const Row& row, Result& result, const Vec3& speed, const Vec3& speedA) const;
+  /// Books an impulse `along` the normal and `across` (N s), whose work is along the mean of the
+  /// velocities before and after, of both rocks and of a's point alone (m/s).
+  static void book(const Row& row, double along, const Vec3& across, const Vec3& mean,
+    const Vec3& meanA, Result& result);
   void warm(Row& row);
   bool press(Row& row); ///< Whether by more than the resting speed.
   bool relax(Row& row);

@@ -218,12 +218,8 @@ void SoftSolver::bookImpacts(double share, double time)
         noise = std::max(noise, 2.0 * kImpactExact * std::abs(r.before));
       }
     }
-    const Vec3 across = share * impact.S, mean = 0.5 * (impact.before + this->speedOf(r));
-    const Vec3 impulse = share * impact.Q * r.normal + across;
-    result.normalWork += share * impact.Q * r.normal.dot(mean);
-    result.frictionWork -= across.dot(mean);
-    result.workOnA += 0.5 * impulse.dot(impact.beforeA + this->speedOfA(r));
-    result.impulse += impulse;
+    book(r, share * impact.Q, share * impact.S, 0.5 * (impact.before + this->speedOf(r)),
+      0.5 * (impact.beforeA + this->speedOfA(r)), result);
   }
 }
 

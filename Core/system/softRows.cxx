@@ -123,13 +123,13 @@ void SoftSolver::prepareRow(std::size_t k, Row& row) const
   row.b = row.flipped ? asked.first : asked.second;
   const double half = 0.5 * duration_;
   const BlockState& stateA = *(*bodies_)[std::size_t(row.a)].state;
-  const Mover* b = row.b >= 0 ? &movers_[std::size_t(row.b)] : nullptr;
   const Vec3 spinA = stateA.angularVelocity();
   const Vec3 n = row.flipped ? Vec3(-c.normal) : c.normal;
   const Vec3 arm = c.point - stateA.position;
-  const bool still = c.kind == ContactKind::FaceVertex && !b; // a node of the slope
+  const bool still = c.kind == ContactKind::FaceVertex && row.b < 0; // a node of the slope
   row.lever = still ? Vec3(arm - half * stateA.velocity) : turned(arm, half * spinA);
-  Vec3 turning = b ? (*bodies_)[std::size_t(row.b)].state->angularVelocity() : Vec3(Vec3::Zero());
+  Vec3 turning =
+    row.b < 0 ? Vec3(Vec3::Zero()) : (*bodies_)[std::size_t(row.b)].state->angularVelocity();
   if (c.kind == ContactKind::EdgeEdge)
   {
     turning = 0.5 * (spinA + turning);
