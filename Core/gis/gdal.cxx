@@ -81,6 +81,11 @@ Opened tryOpen(const std::string& fileName, Kind kind)
     (kind == Kind::Raster ? GDAL_OF_RASTER : GDAL_OF_VECTOR);
   DatasetPtr dataset(GDALDataset::Open(
     fileName.c_str(), flags, drivers, kind == Kind::Vector ? tableOptions : rasterOptions));
+  if (dataset)
+  {
+    // Metadata of a GeoPackage that nobody has asked for go to an .aux.xml beside it (GDAL 3.10).
+    dataset->GetMetadata();
+  }
   for (int i = 0; kind == Kind::Vector && dataset && i < dataset->GetLayerCount(); ++i)
   {
     dataset->GetLayer(i)->GetLayerDefn(); // sheets look for their header only when they are asked

@@ -135,6 +135,7 @@ TEST(LayerWriter, PointsOfAGeoPackage)
   EXPECT_EQ(filesBeside(path), 1u);
   std::string crs;
   const auto rows = readSources(path, "", &crs);
+  EXPECT_EQ(filesBeside(path), 1u); // a reader leaves nothing
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_EQ(rows[0].position, Vec3(500000.125, 5100000.25, 712.5));
   EXPECT_EQ(rows[0].volume, 1.5);
