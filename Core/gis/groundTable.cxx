@@ -60,6 +60,24 @@ RestitutionModel modelFrom(const Fields& row, const std::string& text)
     ", and the row has no preset");
 }
 
+/// A message about properties, with the names of their columns.
+std::string inColumns(std::string text)
+{
+  const auto fields = yieldingFields();
+  // Backwards: GroundDeviationLength begins as GroundDeviation does.
+  for (auto field = fields.rbegin(); field != fields.rend(); ++field)
+  {
+    const std::string property = field->property;
+    const std::string column = "\"" + std::string(field->column) + "\"";
+    for (std::size_t at = text.find(property); at != std::string::npos;
+         at = text.find(property, at + column.size()))
+    {
+      text.replace(at, property.size(), column);
+    }
+  }
+  return text;
+}
+
 void readRestitution(const Fields& row, const Columns& columns, bool preset, SurfaceMaterial& m)
 {
   if (const auto model = row.text({ "model", "restitutionmodel" }))
@@ -91,6 +109,14 @@ void readRestitution(const Fields& row, const Columns& columns, bool preset, Sur
     {
       field.set(m.yielding, *typed);
     }
+  }
+  try
+  {
+    m.yielding.validate();
+  }
+  catch (const Error& error)
+  {
+    row.fail("field " + inColumns(error.what()));
   }
 }
 

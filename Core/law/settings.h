@@ -234,6 +234,8 @@ inline constexpr double kTooShort = 1e-9;
 inline constexpr int kMissLooks = 2, kMostMissLooks = 4;
 /// A step whose last look finds more than this share of r is far from settled.
 inline constexpr double kDeepMiss = 0.01;
+/// A step that finds more than this share of r at its end is cut before it is solved again.
+inline constexpr double kCutMiss = 0.1;
 /// Depth that leaves nothing deep behind it, share of r.
 inline constexpr double kWorthALook = 0.25 * kDeepMiss;
 /// Gap of a contact that is let go, m.
@@ -265,9 +267,10 @@ inline constexpr int kRelaxSweeps = 3;
 /// Share to which the spin of an island's rock is right after a substep. Higher: needles that spin
 /// fast gain energy.
 inline constexpr double kTurnExact = 1e-3;
-/// Most sweeps of either kind; they go on while a contact changes by its resting speed. Fewer: a
-/// needle under a heavy rock is spun up.
-inline constexpr int kMostSweeps = 30;
+/// Most sweeps of either kind; they go on around contacts that change by their resting speed.
+/// Fewer: needles under heavy rocks are spun up (10), a stone under a rock of 60 times its mass
+/// goes into the slope (200).
+inline constexpr int kMostSweeps = 1000;
 /// Generations of impacts in a substep. Fewer: what rocks in touch pass on to each other at
 /// restitution 0 is left over (half of it with each generation).
 inline constexpr int kGenerations = 12;

@@ -37,7 +37,9 @@ void IslandSolver::goOn(const LookOutcome& seen)
 {
   seen_ = seen;
   system_->noteLook();
-  looking_ = seen.any();
+  // Rows of what is found at the end are those of a straight way back.
+  const bool cut = accept_ != Accept::Any && seen.missed > kCutMiss;
+  looking_ = seen.any() && !cut;
   if (looking_)
   {
     system_->append();

@@ -1,9 +1,6 @@
 #include "system/SoftSolver.h"
 
 #include "base/parallel.h"
-#include "block/FreeRotation.h"
-#include "block/cayley.h"
-#include "block/flight.h"
 #include "law/settings.h"
 
 #include <algorithm>
@@ -14,32 +11,14 @@ namespace rockfall
 {
 
 template <class Visit>
-void SoftSolver::forStrips(Visit&& visit) const
-{
-  for (const int first : { 0, 1 })
-  {
-    forEach(std::size_t(strips_ - first + 1) / 2, 1,
-      [&](std::size_t k) { visit(std::size_t(first) + 2 * k); });
-  }
-}
-
-template <class Visit>
 void SoftSolver::forBusy(Visit&& visit)
 {
   this->forStrips(
     [&](std::size_t strip)
     {
-      const std::size_t from = firstOfStrip_[strip], to = firstOfStrip_[strip + 1];
-      if (from == to)
+      for (const std::size_t row : busyOf_[strip])
       {
-        return;
-      }
-      for (std::size_t k = manifolds_[from][0]; k < manifolds_[to - 1][1]; ++k)
-      {
-        if (!rows_[k].idle)
-        {
-          visit(rows_[k]);
-        }
+        visit(row);
       }
     });
 }
@@ -54,6 +33,7 @@ void SoftSolver::begin(
   contacts_ = &contacts;
   substeps_ = request.substeps;
   h_ = duration_ / substeps_;
+  motions_.resize(bodies.size());
   movers_.resize(bodies.size());
   this->startMovers();
   for (Mover& m : movers_)
@@ -68,43 +48,10 @@ void SoftSolver::begin(
     gap0_[k] = contacts[k].contact->distance;
   }
   this->findStrips();
+  stamp_.assign(movers_.size(), -1);
+  tick_ = 0;
   this->arrange();
   this->run();
-}
-
-void SoftSolver::startMover(std::size_t i)
-{
-  const IslandBody& body = (*bodies_)[i];
-  const Block& block = *body.block;
-  Mover& m = movers_[i];
-  m.block = &block;
-  m.orientation = body.state->orientation;
-  m.velocity = body.state->velocity;
-  m.start = body.state->position - origin_;
-  m.displacement.setZero();
-  m.turn.setZero();
-  m.inverseMass = 1.0 / block.mass();
-  m.isotropic = block.isotropic();
-  m.inverseMoment = block.inverseInertia()(0, 0);
-  const Mat3 R = m.orientation.toRotationMatrix();
-  m.spin = R * body.state->spin;
-  m.momentum = R * (block.inertia() * body.state->spin);
-  m.inverseInertia = m.isotropic ? Mat3(m.inverseMoment * Mat3::Identity())
-                                 : Mat3(R * block.inverseInertia() * R.transpose());
-  // The midpoint's turn is off by its cube over 24, and a needle's spin by as much times how much
-  // easier it turns about itself.
-  const double slender = block.inertia().trace() * block.inverseInertia().trace() / 9.0;
-  m.smallTurn = std::cbrt(24.0 * kTurnExact / slender);
-  m.weighedTurn = kWeighedTurn / std::sqrt(slender);
-  m.turned = false;
-  m.touched = false;
-  m.flies = true;
-  m.noise = 0.0;
-}
-
-void SoftSolver::startMovers()
-{
-  forEach(movers_.size(), kBodyGrain, [&](std::size_t i) { this->startMover(i); });
 }
 
 void SoftSolver::solve()
@@ -117,9 +64,9 @@ void SoftSolver::run()
 {
   const auto start = [&](std::size_t k)
   {
-    Row& row = rows_[k];
-    this->weigh(row);
-    this->prepareImpulses(row, (*contacts_)[results_[k].contact]);
+    this->place(rows_[k]);
+    this->weigh(k);
+    this->prepareImpulses(k, (*contacts_)[results_[k].contact]);
     results_[k] = { results_[k].contact, Vec3::Zero(), 0.0, 0.0, 0.0, 0.0, 0.0, Vec3::Zero() };
   };
   forEach(rows_.size(), kRowGrain, start);
@@ -139,13 +86,20 @@ void SoftSolver::run()
   forEach(movers_.size(), kBodyGrain, look);
 }
 
-Vec3 SoftSolver::leverB(const Row& r) const
+bool SoftSolver::place(Row& r) const
 {
-  const Mover &a = movers_[std::size_t(r.a)], &b = movers_[std::size_t(r.b)];
-  return r.lever + ((a.start - b.start) + (a.displacement - b.displacement));
+  const Mover& a = movers_[std::size_t(r.a)];
+  if (r.b < 0)
+  {
+    return a.turned;
+  }
+  const Mover& b = movers_[std::size_t(r.b)];
+  const Vec3 slide = a.displacement - b.displacement;
+  r.leverB = r.lever + ((a.start - b.start) + slide);
+  return a.turned || b.turned || slide.squaredNorm() > r.slide2;
 }
 
-double SoftSolver::gapOf(const Row& r) const
+double SoftSolver::gapOf(const Row& r, const RowStart& start) const
 {
   const Mover& a = movers_[std::size_t(r.a)];
   Vec3 motion = a.displacement + a.turn.cross(r.lever);
@@ -154,12 +108,12 @@ double SoftSolver::gapOf(const Row& r) const
     const Mover& b = movers_[std::size_t(r.b)];
     motion -= b.displacement + b.turn.cross(r.lever + (a.start - b.start));
   }
-  return r.gap0 + r.normal.dot(motion);
+  return start.gap0 + r.normal.dot(motion);
 }
 
 Vec3 SoftSolver::speedOfA(const Row& r) const
 {
-  const Mover& a = movers_[std::size_t(r.a)];
+  const Motion& a = motions_[std::size_t(r.a)];
   return a.velocity + a.spin.cross(r.lever);
 }
 
@@ -168,8 +122,8 @@ Vec3 SoftSolver::speedOf(const Row& r) const
   Vec3 u = this->speedOfA(r);
   if (r.b >= 0)
   {
-    const Mover& b = movers_[std::size_t(r.b)];
-    u -= b.velocity + b.spin.cross(this->leverB(r));
+    const Motion& b = motions_[std::size_t(r.b)];
+    u -= b.velocity + b.spin.cross(r.leverB);
   }
   return u;
 }
@@ -183,63 +137,28 @@ void SoftSolver::limitTo(Vec3& T, double most)
   }
 }
 
-void SoftSolver::push(Mover& m, const Vec3& J, const Vec3& lever)
+void SoftSolver::push(int i, const Vec3& J, const Vec3& lever)
 {
-  m.touched = true;
-  m.flies = false;
+  Motion& m = motions_[std::size_t(i)];
   m.velocity += m.inverseMass * J;
   const Vec3 moment = lever.cross(J);
-  if (m.isotropic)
+  if (m.inverseMoment > 0.0)
   {
     m.spin += m.inverseMoment * moment;
+    return;
   }
-  else
-  {
-    m.momentum += moment;
-    m.spin += m.inverseInertia * moment;
-  }
+  Mover& mover = movers_[std::size_t(i)];
+  mover.momentum += moment;
+  m.spin += mover.inverseInertia * moment;
 }
 
 void SoftSolver::push(const Row& r, const Vec3& J)
 {
   if (r.b >= 0)
   {
-    const Vec3 lever = this->leverB(r);
-    push(movers_[std::size_t(r.b)], -J, lever);
+    this->push(r.b, -J, r.leverB);
   }
-  push(movers_[std::size_t(r.a)], J, r.lever);
-}
-
-void SoftSolver::turn(Mover& m, double h)
-{
-  if (m.isotropic)
-  {
-    const Vec3 by = h * m.spin;
-    m.orientation = cayley(by) * m.orientation;
-    m.turn += by;
-    return;
-  }
-  Vec3 by;
-  if (h * h * m.spin.squaredNorm() < m.smallTurn * m.smallTurn)
-  {
-    const Quat half = cayley(0.5 * h * m.spin) * m.orientation;
-    const Mat3 R = half.toRotationMatrix();
-    by = h * (R * (m.block->inverseInertia() * (R.transpose() * m.momentum)));
-    m.orientation = (cayley(by) * m.orientation).normalized();
-  }
-  else
-  {
-    const Quat from = m.orientation;
-    const Vec3 spin = from.conjugate() * m.spin;
-    m.orientation = (from * FreeRotation(*m.block, spin).after(h).turn).normalized();
-    const Eigen::AngleAxisd turned(m.orientation * from.conjugate());
-    by = turned.angle() * turned.axis();
-  }
-  const Mat3 now = m.orientation.toRotationMatrix();
-  m.inverseInertia = now * m.block->inverseInertia() * now.transpose();
-  m.spin = m.inverseInertia * m.momentum;
-  m.turn += by;
-  m.turned = m.turned || m.turn.squaredNorm() > m.weighedTurn * m.weighedTurn;
+  this->push(r.a, J, r.lever);
 }
 
 void SoftSolver::book(const Row& r, double along, const Vec3& across, const Vec3& mean,
@@ -255,30 +174,38 @@ void SoftSolver::book(const Row& r, double along, const Vec3& across, const Vec3
 void SoftSolver::arrive(std::size_t strip, bool last)
 {
   std::vector<std::size_t>& struck = struckOf_[strip];
+  std::vector<std::size_t>& busy = busyOf_[strip];
   struck.clear();
+  busy.clear();
   for (std::size_t m = firstOfStrip_[strip]; m < firstOfStrip_[strip + 1]; ++m)
   {
     bool any = false;
     for (std::size_t k = manifolds_[m][0]; k < manifolds_[m][1]; ++k)
     {
       Row& r = rows_[k];
+      RowStart& start = starts_[k];
+      const bool weighs = this->place(r);
       const Vec3 speed = this->speedOf(r);
       const Vec3 speedA = this->speedOfA(r);
       if (r.P != 0.0 && substep_ > 0)
       {
-        book(r, r.P, r.T, 0.5 * (r.speed + speed), 0.5 * (r.speedA + speedA), results_[k]);
+        book(r, r.P, r.T, 0.5 * (start.speed + speed), 0.5 * (start.speedA + speedA), results_[k]);
       }
-      r.speedA = speedA;
-      r.gap = this->gapOf(r);
-      r.speed = speed;
-      r.before = speed.dot(r.normal);
-      r.generation = 0;
-      r.idle = r.P == 0.0 && r.gap + 2.0 * h_ * std::min(r.before, -r.resting) > 0.0;
+      start.speedA = speedA;
+      start.speed = speed;
+      start.before = speed.dot(r.normal);
+      start.generation = 0;
+      r.gap = this->gapOf(k);
+      r.idle = r.P == 0.0 && r.gap + 2.0 * h_ * std::min(start.before, -r.resting) > 0.0;
       if (!r.idle)
       {
-        this->weighAnew(r);
+        busy.push_back(k);
+        if (weighs)
+        {
+          this->weigh(k);
+        }
       }
-      any = any || this->closes(r, 1.0);
+      any = any || this->closes(k, 1.0);
     }
     if (any && !last)
     {
@@ -304,9 +231,25 @@ void SoftSolver::warm(Row& r)
   }
 }
 
+void SoftSolver::noteTouched(const Row& r)
+{
+  if (r.P > 0.0)
+  {
+    for (const int i : { r.a, r.b })
+    {
+      if (i >= 0)
+      {
+        movers_[std::size_t(i)].touched = true;
+        movers_[std::size_t(i)].flies = false;
+      }
+    }
+  }
+}
+
 bool SoftSolver::press(Row& r)
 {
-  const double v = this->speedOf(r).dot(r.normal);
+  const Vec3 u = this->speedOf(r);
+  const double v = u.dot(r.normal);
   r.stops = r.stops || v < -r.resting;
   double change = 0.0;
   if (r.gap > 0.0)
@@ -319,12 +262,26 @@ bool SoftSolver::press(Row& r)
     change = -(r.mass * (v + back) + r.softness * r.P) / (1.0 + r.softness);
   }
   const double P = std::max(0.0, r.P + change), dP = P - r.P;
-  r.P = P;
-  if (dP != 0.0)
+  if (dP == 0.0)
   {
-    this->push(r, dP * r.normal);
+    return false;
   }
-  return std::abs(dP) > r.mass * r.resting;
+  // What rests has the friction of the last substep; what is squeezed is held by its own.
+  const bool squeezes = std::abs(dP) > r.mass * r.resting;
+  const Vec3 dT = squeezes ? this->rub(r, P, u - v * r.normal) : Vec3(Vec3::Zero());
+  r.P = P;
+  this->push(r, dP * r.normal + dT);
+  return squeezes;
+}
+
+Vec3 SoftSolver::rub(Row& r, double P, const Vec3& across)
+{
+  Vec3 T = r.T - r.shearMass * across;
+  T -= T.dot(r.normal) * r.normal;
+  limitTo(T, r.friction * P + std::min(r.cohesion, 20.0 * P));
+  const Vec3 dT = T - r.T;
+  r.T = T;
+  return dT;
 }
 
 bool SoftSolver::relax(Row& r)
@@ -335,12 +292,8 @@ bool SoftSolver::relax(Row& r)
   }
   const Vec3 u = this->speedOf(r);
   const double v = u.dot(r.normal), P = std::max(0.0, r.P - r.mass * v), dP = P - r.P;
-  Vec3 T = r.T - r.shearMass * (u - v * r.normal);
-  T -= T.dot(r.normal) * r.normal;
-  limitTo(T, r.friction * P + std::min(r.cohesion, 20.0 * P));
-  const Vec3 dT = T - r.T;
+  const Vec3 dT = this->rub(r, P, u - v * r.normal);
   r.P = P;
-  r.T = T;
   this->push(r, dP * r.normal + dT);
   return std::abs(dP) > r.mass * r.resting;
 }
@@ -348,15 +301,27 @@ bool SoftSolver::relax(Row& r)
 template <class Sweep>
 void SoftSolver::sweep(int least, Sweep&& row)
 {
+  tick_ += 2;
+  const auto moves = [this](int i) { return i >= 0 && stamp_[std::size_t(i)] >= tick_ - 1; };
+  const auto note = [this](int i)
+  {
+    if (i >= 0)
+    {
+      stamp_[std::size_t(i)] = tick_;
+    }
+  };
   bool again = true;
-  for (int sweep = 0; sweep < least || (again && sweep < kMostSweeps); ++sweep)
+  for (int sweep = 0; sweep < least || (again && sweep < kMostSweeps); ++sweep, ++tick_)
   {
     std::atomic<bool> any = false;
     this->forBusy(
-      [&](Row& r)
+      [&](std::size_t k)
       {
-        if (row(r))
+        const auto [a, b] = ends_[k];
+        if ((sweep < least || moves(a) || moves(b)) && row(rows_[k]))
         {
+          note(a);
+          note(b);
           any.store(true, std::memory_order_relaxed);
         }
       });
@@ -377,34 +342,43 @@ void SoftSolver::substep(int k)
   if (!struck_.empty())
   {
     this->strikeGenerations(k * h_);
+    this->listWoken();
     const auto speeds = [&](std::size_t row)
     {
-      rows_[row].speed = this->speedOf(rows_[row]);
-      rows_[row].speedA = this->speedOfA(rows_[row]);
+      starts_[row].speed = this->speedOf(rows_[row]);
+      starts_[row].speedA = this->speedOfA(rows_[row]);
     };
-    forEach(rows_.size(), kRowGrain, speeds);
+    this->forBusy(speeds);
   }
   const auto fall = [&](std::size_t i)
   {
-    movers_[i].velocity += h_ * gravity;
+    motions_[i].velocity += h_ * gravity;
     movers_[i].touched = false;
   };
   forEach(movers_.size(), kBodyGrain, fall);
-  this->forBusy([&](Row& r) { this->warm(r); });
+  this->forBusy([&](std::size_t row) { this->warm(rows_[row]); });
   this->sweep(1, [&](Row& r) { return this->press(r); });
+  this->forBusy([&](std::size_t row) { this->noteTouched(rows_[row]); });
   const auto move = [&](std::size_t i)
   {
     Mover& m = movers_[i];
     // What nothing touches falls on its parabola.
-    m.displacement += h_ * m.velocity;
+    m.displacement += h_ * motions_[i].velocity;
     if (!m.touched)
     {
       m.displacement -= 0.5 * h_ * h_ * gravity;
     }
-    turn(m, h_);
+    this->turn(i);
   };
   forEach(movers_.size(), kBodyGrain, move);
-  this->forBusy([&](Row& r) { this->weighAnew(r); });
+  const auto place = [&](std::size_t row)
+  {
+    if (this->place(rows_[row]))
+    {
+      this->weigh(row);
+    }
+  };
+  this->forBusy(place);
   this->sweep(kRelaxSweeps, [&](Row& r) { return this->relax(r); });
 }
 
@@ -417,48 +391,21 @@ void SoftSolver::append()
   {
     // The gap at the start from which this motion leads to the one at the end.
     Row row;
-    this->prepareRow(k, row);
-    row.gap0 = 0.0;
+    RowStart start;
+    this->prepareRow(k, row, start);
+    start.gap0 = 0.0;
     Contact& c = *contacts[k].contact;
-    c.distance -= this->gapOf(row);
+    c.distance -= this->gapOf(row, start);
     c.offset = std::min(0.0, c.distance);
     gap0_[k] = c.distance;
   }
   this->arrange();
 }
 
-void SoftSolver::noteLook()
-{
-  for (Mover& m : movers_)
-  {
-    m.seenAt = m.displacement;
-    m.seenTurn = m.turn;
-    m.moved = false;
-  }
-}
-
-BlockState SoftSolver::end(std::size_t i) const
-{
-  const Mover& m = movers_[i];
-  BlockState state = *(*bodies_)[i].state;
-  if (m.flies)
-  {
-    const double time = state.time;
-    state = fly(*m.block, state, gravity_, duration_);
-    state.time = time;
-    return state;
-  }
-  state.position += m.displacement;
-  state.velocity = m.velocity;
-  state.orientation = m.orientation.normalized();
-  state.spin = state.orientation.conjugate() * m.spin;
-  return state;
-}
-
 double SoftSolver::gap(std::size_t k) const
 {
-  const Row& r = rows_[rowOf_[k]];
-  return this->gapOf(r) - r.gap0 + gap0_[k] - (*contacts_)[k].contact->offset;
+  const std::size_t row = rowOf_[k];
+  return this->gapOf(row) - starts_[row].gap0 + gap0_[k] - (*contacts_)[k].contact->offset;
 }
 
 double SoftSolver::force(std::size_t k) const
@@ -476,13 +423,13 @@ bool SoftSolver::setGap(std::size_t k, double found)
     return false;
   }
   gap0_[k] += change;
-  rows_[rowOf_[k]].gap0 += change;
+  starts_[rowOf_[k]].gap0 += change;
   return true;
 }
 
 void SoftSolver::setAbsent(std::size_t k)
 {
-  rows_[rowOf_[k]].gap0 = (*contacts_)[k].absent ? kAbsent : gap0_[k];
+  starts_[rowOf_[k]].gap0 = (*contacts_)[k].absent ? kAbsent : gap0_[k];
 }
 
 } // namespace rockfall

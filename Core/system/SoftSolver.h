@@ -11,15 +11,17 @@
 ///               generations, so that what is struck passes it on within the substep
 ///     gravity
 ///     warm      the impulses of the last substep
-///     soft      closed: ΔP = −(m (v + max(β g, −v_r)) + s P) / (1 + s)
+///     press     closed: ΔP = −(m (v + max(β g, −v_r)) + s P) / (1 + s)
 ///               open:   ΔP = −m (v + g/h);  P ≥ 0
 ///     move      turns from the angular momentum
 ///     relax     P ← max(0, P − m v); friction within μ P + c h
 ///
+/// Pressing and relaxing go on around rows that change by more than their resting speed.
 /// with m the effective mass, β = ω / (2 ζ + h ω), ω² = pₙ/m but no more than a quarter of the
 /// substep rate, s = m β / (h pₙ), and v_r the speed at which overlap goes. At rest the overlap is
 /// P/(h pₙ), as of Shi's spring.
 
+#include "base/parallel.h"
 #include "system/IslandSystem.h"
 #include "system/PairSprings.h"
 
@@ -52,51 +54,62 @@ public:
   PairStiffness stiffness; ///< See IslandSolver.
 
 private:
-  /// A rock while it is solved for. World axes.
-  struct Mover
+  /// How a rock moves, world axes: what sweeps go over, in one cache line.
+  struct alignas(64) Motion
   {
     Vec3 velocity, spin;
-    Vec3 start;              ///< Centroid where the step begins, from `origin_`, m.
-    Vec3 displacement, turn; ///< Since then; the turn as a sum of small ones.
     double inverseMass;
-    double inverseMoment; ///< Each principal one, where all three are equal.
-    bool isotropic;
-    bool touched;       ///< A contact that lasts has pushed it in the substep.
-    bool flies;         ///< Nothing has touched it in the step.
-    bool moved;         ///< Since the last look.
-    bool turned;        ///< So far in the step that its contacts weigh otherwise.
+    double inverseMoment; ///< Each principal one; 0: they are not all equal.
+  };
+  /// What else of a rock while it is solved for. World axes.
+  struct alignas(64) Mover
+  {
+    Vec3 displacement, turn; ///< Since the step begins; the turn as a sum of small ones.
+    Vec3 start;              ///< Centroid where the step begins, from `origin_`, m.
+    bool turned;             ///< So far in the step that its contacts weigh otherwise.
+    bool touched;            ///< A contact that lasts has pushed it in the substep.
+    bool flies;              ///< Nothing has touched it in the step.
+    bool moved;              ///< Since the last look.
+    double noise;            ///< Speed to which its impacts in the step are exact, m/s.
+    Vec3 momentum;           ///< Angular, about the centroid.
+    Mat3 inverseInertia;
     double smallTurn;   ///< Largest one of a substep that a midpoint does, rad.
     double weighedTurn; ///< Largest one of the step within which its contacts weigh the same, rad.
-    double noise;       ///< Speed to which its impacts in the step are exact, m/s.
-    Mat3 inverseInertia;
-    Vec3 momentum; ///< Angular, about the centroid.
     Quat orientation;
     const Block* block;
     Vec3 seenAt, seenTurn; ///< Displacement and turn at the last look.
   };
-  /// A contact while it is solved for, of a point that moves with the rock `a`.
-  struct Row
+  /// A contact while it is solved for, of a point that moves with the rock `a`: what sweeps go
+  /// over, in three cache lines.
+  struct alignas(64) Row
   {
     int a, b;               ///< Movers; b < 0: the slope.
-    int generation;         ///< Generation of impacts in which its manifold was last asked.
-    bool flipped;           ///< `a` is the contact's second rock.
     bool idle;              ///< Stays open in the substep.
     bool stops;             ///< Stopped what closed: its impulse is not one to go on with.
+    double gap;             ///< Now, m.
+    double mass, shearMass; ///< Effective, kg.
     Vec3 normal;            ///< Direction from b to a, at mid-step.
     Vec3 lever;             ///< Arm from a's centroid, at mid-step, m.
-    double gap0, gap;       ///< Where the step begins, and now, m.
-    double mass, shearMass; ///< Effective, kg.
-    double friction;        ///< tan φ
-    double cohesion;        ///< N s
-    double spring;          ///< N/m
-    double rate;            ///< β, 1/s
-    double softness;        ///< m β / (h pₙ)
+    Vec3 leverB;            ///< Arm from b's centroid to that point now, m.
     double P;               ///< N s
     Vec3 T;                 ///< Across, N s.
-    Vec3 speed, speedA;     ///< Behind impacts of the substep, and of a's point alone, m/s.
+    double friction;        ///< tan φ
+    double cohesion;        ///< N s
+    double rate;            ///< β, 1/s
+    double softness;        ///< m β / (h pₙ)
     double resting;         ///< Speed below which a touch is no impact, m/s.
-    double before;          ///< Speed along the normal before a generation, m/s.
-    double pending;         ///< ≥ 0: speed at which an impact that was under way leaves, m/s.
+    double slide2;          ///< Square of how far its rocks may slide and weigh the same, m².
+  };
+  /// What else of a row.
+  struct RowStart
+  {
+    int generation;     ///< Generation of impacts in which its manifold was last asked.
+    bool flipped;       ///< `a` is the contact's second rock.
+    double gap0;        ///< Where the step begins, m.
+    double spring;      ///< N/m
+    Vec3 speed, speedA; ///< Behind impacts of the substep, and of a's point alone, m/s.
+    double before;      ///< Speed along the normal before a generation, m/s.
+    double pending;     ///< ≥ 0: speed at which an impact that was under way leaves, m/s.
   };
   /// A row in a generation of impacts.
   struct Impact
@@ -129,15 +142,16 @@ private:
   int stripOf(const IslandContact& contact) const;
   /// Rows in order: by strip, pairs before the slope, those of the same two rocks side by side.
   void arrange();
-  void prepareRow(std::size_t contact, Row& row) const;
-  void weigh(Row& row) const; ///< Effective masses where its rocks are now.
-  /// Effective masses of a row whose rocks have turned, or slid past each other, far enough.
-  void weighAnew(Row& row) const;
-  void prepareImpulses(Row& row, const IslandContact& contact) const;
+  void prepareRow(std::size_t contact, Row& row, RowStart& start) const;
+  void weigh(std::size_t row); ///< Effective masses where its rocks are now.
+  /// The arm of its second rock now. Returns whether its rocks have turned, or slid past each
+  /// other, so far that it weighs otherwise.
+  bool place(Row& row) const;
+  void prepareImpulses(std::size_t row, const IslandContact& contact);
   template <class Visit>
   void forStrips(Visit&& visit) const; ///< visit(strip)
   template <class Visit>
-  void forBusy(Visit&& visit); ///< visit(row) of those that are not idle, strip by strip
+  void forBusy(Visit&& visit); ///< visit(row's number) of those that are not idle, strip by strip
 
   void substep(int k);
   void arrive(std::size_t strip, bool last); ///< Gaps, books and who strikes.
@@ -146,18 +160,22 @@ private:
   static void book(const Row& row, double along, const Vec3& across, const Vec3& mean,
     const Vec3& meanA, Result& result);
   void warm(Row& row);
-  bool press(Row& row); ///< Whether by more than the resting speed.
+  void noteTouched(const Row& row); ///< Its rocks, if it pushes them.
+  bool press(Row& row);             ///< Whether by more than the resting speed.
   bool relax(Row& row);
-  /// Sweeps over the rows, at least so many times, until none has changed by more.
+  /// Friction under an impulse P (N s) along the normal. Returns by how much it changes, N s.
+  static Vec3 rub(Row& row, double P, const Vec3& across);
+  /// Sweeps over the busy rows, so many times; then over those of rocks that the last sweep has
+  /// moved, until no row has changed by more.
   template <class Sweep>
   void sweep(int least, Sweep&& row);
 
   // Impacts, softImpacts.cxx
   /// Whether an impact is under way, or the gap closes as one within so many substeps.
-  bool closes(const Row& row, double substeps) const;
+  bool closes(std::size_t row, double substeps) const;
   bool strikes(std::size_t manifold); ///< Whether any of its rows does.
   void strike(std::size_t manifold, std::vector<std::size_t>& struck);
-  double leaves(const Row& row) const; ///< Speed after an impact, m/s.
+  double leaves(std::size_t row) const; ///< Speed after an impact, m/s.
   void link();
   void strikeGenerations(double time);
   double beginImpacts(); ///< Returns what springs of impacts under way hold, J.
@@ -167,18 +185,20 @@ private:
   double shareOfImpacts(double stored) const;
   void bookImpacts(double share, double time);
   void findStruck(int generation); ///< Rows that close by it.
+  void wake(std::size_t manifold); ///< Its rows are idle no more.
+  void listWoken();                ///< Among those that are busy.
 
-  double gapOf(const Row& row) const;
-  Vec3 leverB(const Row& row) const;
+  double gapOf(const Row& row, const RowStart& start) const;
+  double gapOf(std::size_t row) const { return this->gapOf(rows_[row], starts_[row]); }
   Vec3 speedOf(const Row& row) const;
   Vec3 speedOfA(const Row& row) const;
   void push(const Row& row, const Vec3& J); ///< J on a, −J on b, N s.
-  static void push(Mover& m, const Vec3& J, const Vec3& lever);
-  static void turn(Mover& m, double h);
+  void push(int mover, const Vec3& J, const Vec3& lever);
+  void turn(std::size_t mover);
   static void limitTo(Vec3& T, double most);
 
   void write(IslandOutcome& outcome);
-  void writeContact(const Row& row, const Result& result);
+  void writeContact(std::size_t row);
   void bookContacts(IslandOutcome& outcome);
   void writeBody(std::size_t i);
 
@@ -188,21 +208,26 @@ private:
   int substeps_ = 0, substep_ = 0;
   std::vector<IslandBody>* bodies_ = nullptr;
   std::vector<IslandContact>* contacts_ = nullptr;
-  std::vector<Mover> movers_;
+  std::vector<Motion> motions_; ///< By body.
+  std::vector<Mover> movers_;   ///< By body.
   std::vector<Row> rows_;
-  std::vector<Result> results_;    ///< By row.
-  std::vector<std::size_t> rowOf_; ///< By contact.
-  std::vector<double> gap0_;       ///< By contact, m.
+  std::vector<RowStart> starts_;         ///< By row.
+  std::vector<std::array<int, 2>> ends_; ///< By row, its movers.
+  std::vector<Result> results_;          ///< By row.
+  std::vector<std::size_t> rowOf_;       ///< By contact.
+  std::vector<double> gap0_;             ///< By contact, m.
   std::vector<int> stripOfBody_;
   int strips_ = 1;
   std::vector<std::array<std::size_t, 2>> manifolds_; ///< Rows of the same two rocks.
   std::vector<std::size_t> firstOfStrip_;             ///< Among manifolds.
+  std::vector<std::vector<std::size_t>> busyOf_;      ///< By strip, rows that are not idle.
   std::vector<std::vector<std::size_t>> struckOf_;    ///< By strip.
   std::vector<std::size_t> struck_;                   ///< Rows, in order.
   std::vector<Impact> impacts_;                       ///< Of a generation.
-  std::vector<int> stamp_;  ///< By mover, the sweep in which an impact last moved it.
-  std::vector<int> moving_; ///< Movers that a generation has moved.
-  int tick_ = 0;            ///< Number of the sweep.
+  std::vector<std::size_t> woken_; ///< Rows that an impact has woken in the substep.
+  std::vector<int> stamp_;         ///< By mover, the sweep that last moved it.
+  std::vector<int> moving_;        ///< Movers that a generation has moved.
+  int tick_ = 0;                   ///< Number of the sweep.
   std::vector<std::size_t> firstOf_, manifoldsOf_; ///< Manifolds of each rock.
   /// Books of a rock.
   struct Books
@@ -216,5 +241,15 @@ private:
   std::vector<Books> books_;
   bool linked_ = false;
 };
+
+template <class Visit>
+void SoftSolver::forStrips(Visit&& visit) const
+{
+  for (const int first : { 0, 1 })
+  {
+    forEach(std::size_t(strips_ - first + 1) / 2, 1,
+      [&](std::size_t k) { visit(std::size_t(first) + 2 * k); });
+  }
+}
 
 } // namespace rockfall

@@ -10,20 +10,21 @@
 namespace rockfall
 {
 
-bool SoftSolver::closes(const Row& r, double substeps) const
+bool SoftSolver::closes(std::size_t row, double substeps) const
 {
+  const Row& r = rows_[row];
+  const RowStart& start = starts_[row];
   const double noise =
     std::max(movers_[std::size_t(r.a)].noise, r.b >= 0 ? movers_[std::size_t(r.b)].noise : 0.0);
-  return r.pending >= 0.0 ||
-    (-r.before > std::max(r.resting, noise) && r.gap + substeps * h_ * r.before < 0.0);
+  return start.pending >= 0.0 ||
+    (-start.before > std::max(r.resting, noise) && r.gap + substeps * h_ * start.before < 0.0);
 }
 
 void SoftSolver::strike(std::size_t manifold, std::vector<std::size_t>& struck)
 {
   for (std::size_t k = manifolds_[manifold][0]; k < manifolds_[manifold][1]; ++k)
   {
-    const Row& r = rows_[k];
-    if (this->closes(r, kSharedImpact))
+    if (this->closes(k, kSharedImpact))
     {
       struck.push_back(k);
     }
@@ -35,10 +36,9 @@ bool SoftSolver::strikes(std::size_t manifold)
   bool any = false;
   for (std::size_t k = manifolds_[manifold][0]; k < manifolds_[manifold][1]; ++k)
   {
-    Row& r = rows_[k];
-    r.before = this->speedOf(r).dot(r.normal);
-    r.gap = this->gapOf(r);
-    any = any || this->closes(r, 1.0);
+    const Row& r = rows_[k];
+    starts_[k].before = this->speedOf(r).dot(r.normal);
+    any = any || this->closes(k, 1.0);
   }
   return any;
 }
@@ -68,20 +68,19 @@ void SoftSolver::link()
   linked_ = true;
 }
 
-double SoftSolver::leaves(const Row& r) const
+double SoftSolver::leaves(std::size_t row) const
 {
-  if (r.pending >= 0.0)
+  const RowStart& start = starts_[row];
+  if (start.pending >= 0.0)
   {
-    return r.pending;
+    return start.pending;
   }
-  const IslandContact& c = (*contacts_)[results_[std::size_t(&r - rows_.data())].contact];
-  return -r.before * c.restitutionAt(-r.before);
+  const IslandContact& c = (*contacts_)[results_[row].contact];
+  return -start.before * c.restitutionAt(-start.before);
 }
 
 void SoftSolver::strikeGenerations(double time)
 {
-  tick_ = 0;
-  stamp_.assign(movers_.size(), -1);
   for (int generation = 1; !struck_.empty(); ++generation)
   {
     const double stored = this->beginImpacts();
@@ -104,15 +103,17 @@ double SoftSolver::beginImpacts()
   {
     const Row& r = rows_[k];
     impacts_.push_back(
-      { k, 0.0, Vec3::Zero(), this->speedOf(r), this->speedOfA(r), this->leaves(r) });
+      { k, 0.0, Vec3::Zero(), this->speedOf(r), this->speedOfA(r), this->leaves(k) });
     // Springs of impacts that were under way give what they hold.
-    stored += r.pending >= 0.0 ? (*contacts_)[results_[k].contact].contact->springEnergy() : 0.0;
+    stored +=
+      starts_[k].pending >= 0.0 ? (*contacts_)[results_[k].contact].contact->springEnergy() : 0.0;
   }
   return stored;
 }
 
 void SoftSolver::settleImpacts()
 {
+  tick_ += 2;
   const int begun = tick_;
   const auto noteMove = [&](int i)
   {
@@ -146,7 +147,6 @@ void SoftSolver::settleImpacts()
       }
     }
   }
-  tick_ += 2;
 }
 
 bool SoftSolver::settle(Impact& impact)
@@ -165,7 +165,8 @@ bool SoftSolver::settle(Impact& impact)
   {
     this->push(r, dQ * r.normal + dS);
   }
-  return size > r.mass * std::max(kImpactExact * std::abs(r.before), kImpactQuiet * r.resting);
+  return size > r.mass *
+    std::max(kImpactExact * std::abs(starts_[impact.row].before), kImpactQuiet * r.resting);
 }
 
 double SoftSolver::shareOfImpacts(double stored) const
@@ -200,27 +201,60 @@ void SoftSolver::bookImpacts(double share, double time)
   }
   for (const Impact& impact : impacts_)
   {
-    Row& r = rows_[impact.row];
+    const Row& r = rows_[impact.row];
+    RowStart& start = starts_[impact.row];
     Result& result = results_[impact.row];
-    if (impact.Q > 0.0 && r.pending < 0.0 && -r.before > result.struck)
+    if (impact.Q > 0.0 && start.pending < 0.0 && -start.before > result.struck)
     {
       const Mover& a = movers_[std::size_t(r.a)];
-      result.struck = -r.before;
+      result.struck = -start.before;
       result.struckAt = time;
       result.struckPoint = a.start + a.displacement + r.lever;
     }
-    r.pending = -1.0;
+    start.pending = -1.0;
     for (const int i : { r.a, r.b })
     {
       if (i >= 0)
       {
-        double& noise = movers_[std::size_t(i)].noise;
-        noise = std::max(noise, 2.0 * kImpactExact * std::abs(r.before));
+        Mover& m = movers_[std::size_t(i)];
+        m.flies = false;
+        m.noise = std::max(m.noise, 2.0 * kImpactExact * std::abs(start.before));
       }
     }
     book(r, share * impact.Q, share * impact.S, 0.5 * (impact.before + this->speedOf(r)),
       0.5 * (impact.beforeA + this->speedOfA(r)), result);
   }
+}
+
+void SoftSolver::wake(std::size_t manifold)
+{
+  for (std::size_t k = manifolds_[manifold][0]; k < manifolds_[manifold][1]; ++k)
+  {
+    Row& r = rows_[k];
+    if (r.idle)
+    {
+      r.idle = false;
+      woken_.push_back(k);
+      if (this->place(r))
+      {
+        this->weigh(k);
+      }
+    }
+  }
+}
+
+void SoftSolver::listWoken()
+{
+  for (const std::size_t row : woken_)
+  {
+    const auto next = std::upper_bound(firstOfStrip_.begin(), firstOfStrip_.end(), row,
+      [this](std::size_t k, std::size_t manifold)
+      { return manifold == manifolds_.size() || k < manifolds_[manifold][0]; });
+    busyOf_[std::size_t(next - firstOfStrip_.begin()) - 1].push_back(row);
+  }
+  woken_.clear();
+  this->forStrips(
+    [this](std::size_t strip) { std::sort(busyOf_[strip].begin(), busyOf_[strip].end()); });
 }
 
 void SoftSolver::findStruck(int generation)
@@ -234,20 +268,13 @@ void SoftSolver::findStruck(int generation)
     for (std::size_t j = firstOf_[std::size_t(i)]; j < firstOf_[std::size_t(i) + 1]; ++j)
     {
       const std::size_t m = manifoldsOf_[j];
-      Row& first = rows_[manifolds_[m][0]];
+      RowStart& first = starts_[manifolds_[m][0]];
       if (first.generation == generation)
       {
         continue;
       }
       first.generation = generation;
-      for (std::size_t k = manifolds_[m][0]; k < manifolds_[m][1]; ++k)
-      {
-        if (rows_[k].idle)
-        {
-          rows_[k].idle = false;
-          this->weighAnew(rows_[k]);
-        }
-      }
+      this->wake(m);
       if (this->strikes(m))
       {
         this->strike(m, struck_);

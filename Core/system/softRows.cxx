@@ -84,6 +84,8 @@ void SoftSolver::arrange()
   }
   std::sort(keys.begin(), keys.end());
   rows_.resize(contacts.size());
+  starts_.resize(contacts.size());
+  ends_.resize(contacts.size());
   results_.resize(contacts.size());
   rowOf_.resize(contacts.size());
   manifolds_.clear();
@@ -109,22 +111,27 @@ void SoftSolver::arrange()
     firstOfStrip_[s] = std::max(firstOfStrip_[s], firstOfStrip_[s - 1]);
   }
   forEach(rows_.size(), kRowGrain,
-    [&](std::size_t k) { this->prepareRow(results_[k].contact, rows_[k]); });
+    [&](std::size_t k)
+    {
+      this->prepareRow(results_[k].contact, rows_[k], starts_[k]);
+      ends_[k] = { rows_[k].a, rows_[k].b };
+    });
   struckOf_.resize(std::size_t(strips_));
+  busyOf_.resize(std::size_t(strips_));
   linked_ = false;
 }
 
-void SoftSolver::prepareRow(std::size_t k, Row& row) const
+void SoftSolver::prepareRow(std::size_t k, Row& row, RowStart& start) const
 {
   const IslandContact& asked = (*contacts_)[k];
   const Contact& c = *asked.contact;
-  row.flipped = c.kind == ContactKind::FaceVertex && asked.second >= 0;
-  row.a = row.flipped ? asked.second : asked.first;
-  row.b = row.flipped ? asked.first : asked.second;
+  start.flipped = c.kind == ContactKind::FaceVertex && asked.second >= 0;
+  row.a = start.flipped ? asked.second : asked.first;
+  row.b = start.flipped ? asked.first : asked.second;
   const double half = 0.5 * duration_;
   const BlockState& stateA = *(*bodies_)[std::size_t(row.a)].state;
   const Vec3 spinA = stateA.angularVelocity();
-  const Vec3 n = row.flipped ? Vec3(-c.normal) : c.normal;
+  const Vec3 n = start.flipped ? Vec3(-c.normal) : c.normal;
   const Vec3 arm = c.point - stateA.position;
   const bool still = c.kind == ContactKind::FaceVertex && row.b < 0; // a node of the slope
   row.lever = still ? Vec3(arm - half * stateA.velocity) : turned(arm, half * spinA);
@@ -139,65 +146,63 @@ void SoftSolver::prepareRow(std::size_t k, Row& row) const
     turning = spinA;
   }
   row.normal = turned(n, half * turning).normalized();
-  row.gap0 = row.gap = asked.absent ? kAbsent : gap0_[k];
+  start.gap0 = row.gap = asked.absent ? kAbsent : gap0_[k];
+  const double radius = std::min(movers_[std::size_t(row.a)].block->radius(),
+    movers_[std::size_t(row.b < 0 ? row.a : row.b)].block->radius());
+  row.slide2 = kWeighedTurn * kWeighedTurn * radius * radius;
   row.friction = asked.friction;
   row.cohesion = h_ * asked.cohesion;
   row.resting = std::max(asked.resting, 2.0 * h_ * gravity_);
-  row.spring = c.stiffness > 0.0 ? c.stiffness : stiffness.normalPenalty;
+  start.spring = c.stiffness > 0.0 ? c.stiffness : stiffness.normalPenalty;
 }
 
-void SoftSolver::weigh(Row& row) const
+void SoftSolver::weigh(std::size_t k)
 {
+  Row& row = rows_[k];
   double mobility = 0.0, across = 0.0;
-  const auto add = [&](const Mover& m, const Vec3& lever)
+  const auto add = [&](int i, const Vec3& lever)
   {
+    const Motion& motion = motions_[std::size_t(i)];
+    const Mat3& inverseInertia = movers_[std::size_t(i)].inverseInertia;
     const Vec3 moment = lever.cross(row.normal);
-    mobility += m.inverseMass + moment.dot(m.inverseInertia * moment);
-    across += m.inverseMass +
-      (m.isotropic ? m.inverseMoment : m.inverseInertia.trace()) * lever.squaredNorm();
+    mobility += motion.inverseMass + moment.dot(inverseInertia * moment);
+    across += motion.inverseMass +
+      (motion.inverseMoment > 0.0 ? motion.inverseMoment : inverseInertia.trace()) *
+        lever.squaredNorm();
   };
-  add(movers_[std::size_t(row.a)], row.lever);
+  add(row.a, row.lever);
   if (row.b >= 0)
   {
-    add(movers_[std::size_t(row.b)], this->leverB(row));
+    add(row.b, row.leverB);
   }
   row.mass = 1.0 / mobility;
   row.shearMass = 1.0 / across;
   // Overlap beyond what the force explains goes no faster than sweeps can follow; what the force
   // explains is that of the spring, however light the rocks.
+  const double spring = starts_[k].spring;
   const double frequency =
-    std::min(h_ * std::sqrt(row.spring / row.mass), 2.0 * std::numbers::pi * kSoftFrequency);
+    std::min(h_ * std::sqrt(spring / row.mass), 2.0 * std::numbers::pi * kSoftFrequency);
   row.rate = frequency / (h_ * (2.0 * kSoftDamping + frequency));
-  row.softness = row.mass * row.rate / (h_ * row.spring);
+  row.softness = row.mass * row.rate / (h_ * spring);
 }
 
-void SoftSolver::weighAnew(Row& row) const
-{
-  const Mover& a = movers_[std::size_t(row.a)];
-  const Mover* b = row.b < 0 ? nullptr : &movers_[std::size_t(row.b)];
-  const double far = b ? kWeighedTurn * std::min(a.block->radius(), b->block->radius()) : 0.0;
-  if (a.turned || (b && b->turned) ||
-    (b && (a.displacement - b->displacement).squaredNorm() > far * far))
-  {
-    this->weigh(row);
-  }
-}
-
-void SoftSolver::prepareImpulses(Row& row, const IslandContact& asked) const
+void SoftSolver::prepareImpulses(std::size_t k, const IslandContact& asked)
 {
   const Contact& c = *asked.contact;
+  Row& row = rows_[k];
+  RowStart& start = starts_[k];
   row.P = 0.0;
   row.T.setZero();
-  row.speed.setZero();
   row.stops = false;
-  row.speedA.setZero();
-  row.generation = 0;
-  row.before = 0.0;
-  row.pending = c.closed() && !asked.absent && asked.bounce >= 0.0 ? asked.bounce : -1.0;
-  if (c.closed() && row.pending < 0.0 && !asked.absent)
+  start.speed.setZero();
+  start.speedA.setZero();
+  start.generation = 0;
+  start.before = 0.0;
+  start.pending = c.closed() && !asked.absent && asked.bounce >= 0.0 ? asked.bounce : -1.0;
+  if (c.closed() && start.pending < 0.0 && !asked.absent)
   {
     row.P = h_ * c.stiffness * std::max(0.0, -c.gap());
-    row.T = (row.flipped ? h_ : -h_) * c.shearStiffness * c.slip;
+    row.T = (start.flipped ? h_ : -h_) * c.shearStiffness * c.slip;
     row.T -= row.normal * row.normal.dot(row.T);
     limitTo(row.T, row.friction * row.P + row.cohesion);
   }

@@ -18,7 +18,7 @@ IslandOutcome SoftSolver::finish(Accept accept, bool deep)
     const Row& r = rows_[k];
     const double a = movers_[std::size_t(r.a)].block->radius();
     const double radius = r.b < 0 ? a : std::min(a, movers_[std::size_t(r.b)].block->radius());
-    deep = this->gapOf(r) < std::min(0.0, r.gap0) - kDeepStep * radius;
+    deep = this->gapOf(k) < std::min(0.0, starts_[k].gap0) - kDeepStep * radius;
   }
   outcome.settled = !deep;
   outcome.unconverged = deep;
@@ -46,8 +46,7 @@ void SoftSolver::write(IslandOutcome& outcome)
       books_[std::size_t(asked.first)].held += asked.contact->springEnergy();
     }
   }
-  forEach(
-    rows_.size(), kRowGrain, [&](std::size_t k) { this->writeContact(rows_[k], results_[k]); });
+  forEach(rows_.size(), kRowGrain, [&](std::size_t k) { this->writeContact(k); });
   this->bookContacts(outcome);
   for (std::size_t i = 0; i < movers_.size(); ++i)
   {
@@ -55,8 +54,10 @@ void SoftSolver::write(IslandOutcome& outcome)
   }
 }
 
-void SoftSolver::writeContact(const Row& r, const Result& result)
+void SoftSolver::writeContact(std::size_t row)
 {
+  const Row& r = rows_[row];
+  const Result& result = results_[row];
   IslandContact& asked = (*contacts_)[result.contact];
   std::vector<IslandBody>& bodies = *bodies_;
   Contact& c = *asked.contact;
@@ -92,7 +93,7 @@ void SoftSolver::writeContact(const Row& r, const Result& result)
     c.state = r.T.norm() < (1.0 - 1e-9) * limit ? ContactState::Locked : ContactState::Sliding;
     // Springs that carry what it carries.
     c.offset = c.distance + r.P / (h_ * c.stiffness);
-    c.slip = (r.flipped ? 1.0 : -1.0) / (h_ * c.shearStiffness) * r.T;
+    c.slip = (starts_[row].flipped ? 1.0 : -1.0) / (h_ * c.shearStiffness) * r.T;
   }
   else
   {

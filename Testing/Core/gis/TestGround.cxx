@@ -432,6 +432,17 @@ TEST(GroundErrors, ClassesThatAreOnlyAlike)
   EXPECT_TRUE(holds(failure({ broken, rows, "" }), { broken, "row 1", "no geometry" }));
 }
 
+TEST(GroundErrors, ColumnsThatMustFitEachOther)
+{
+  const std::string layer = halves().write();
+  std::string rows = table("class,rv,ground_deviation,ground_length\n1,0.9,0,0\n2,0.8,0.4,0\n");
+  EXPECT_TRUE(holds(failure({ layer, rows, "" }),
+    { rows + ", row 2", "\"ground_length\" is 0 m", "where \"ground_deviation\" is 0.4" }));
+  rows = table("class,rv,me,mu_min,mu_max\n1,0.9,15,0.9,0.6\n2,0.8,15,0.5,2\n");
+  EXPECT_TRUE(holds(failure({ layer, rows, "" }),
+    { rows + ", row 1", "\"mu_min\" is 0.9", "\"mu_max\", which is 0.6" }));
+}
+
 TEST(GroundErrors, LayersElsewhere)
 {
   const std::string rows = table();
