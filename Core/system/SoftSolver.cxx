@@ -266,9 +266,9 @@ bool SoftSolver::press(Row& r)
   {
     return false;
   }
-  // What rests has the friction of the last substep; what is squeezed is held by its own.
+  // What rests has the friction of the last substep; what is squeezed or let go has its own.
   const bool squeezes = std::abs(dP) > r.mass * r.resting;
-  const Vec3 dT = squeezes ? this->rub(r, P, u - v * r.normal) : Vec3(Vec3::Zero());
+  const Vec3 dT = squeezes || P == 0.0 ? this->rub(r, P, u - v * r.normal) : Vec3(Vec3::Zero());
   r.P = P;
   this->push(r, dP * r.normal + dT);
   return squeezes;
