@@ -195,6 +195,48 @@ TEST(Pinched, WhatASpringHoldsIsAllThatALoadGets)
   }
 }
 
+TEST(Pinched, StepThatMissesDeeplyIsCut)
+{
+  // Rows of what a look finds are carried straight back from the end of the step: from deep in a
+  // rock a shorter step is surer.
+  const Block block(makeShape(Shape::Cube, 1.0), 2500.0, 1e9, 0.2);
+  for (const double missed : { 0.5 * kCutMiss, 2.0 * kCutMiss })
+  {
+    for (const Accept accept : { Accept::Converging, Accept::Any })
+    {
+      SCOPED_TRACE(std::to_string(missed) + ", accept " + std::to_string(int(accept)));
+      BlockState state;
+      state.velocity.z() = -1.0;
+      Contact c;
+      c.point = Vec3(0.0, 0.0, -0.5);
+      c.normal = Vec3::UnitZ();
+      c.distance = 0.1;
+      c.stiffness = c.shearStiffness = 1e9;
+      std::vector<IslandContact> contacts(1);
+      contacts[0].contact = &c;
+      contacts[0].first = 0;
+      contacts[0].approach = 1.0;
+      std::vector<IslandBody> bodies(1);
+      bodies[0].block = &block;
+      bodies[0].state = &state;
+      IslandSolver solver;
+      solver.begin(lastingStep(1e-3, 0.0), accept, bodies, contacts);
+      ASSERT_TRUE(solver.asksForALook());
+      LookOutcome seen;
+      seen.missed = missed;
+      solver.goOn(seen);
+      const bool cut = missed > kCutMiss && accept != Accept::Any;
+      EXPECT_EQ(solver.asksForALook(), !cut);
+      if (!cut)
+      {
+        solver.goOn({});
+      }
+      EXPECT_EQ(solver.finish().accepted, !cut);
+      EXPECT_NEAR(state.position.z(), cut ? 0.0 : -1e-3, 1e-12);
+    }
+  }
+}
+
 TEST(Pinched, StonesAmongFallingBouldersAreNotShotOut)
 {
   // Three boulders of 10 m³ and twelve stones of 1:5 to 1:12 fall 25 m and more onto a bench.
