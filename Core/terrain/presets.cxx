@@ -143,7 +143,8 @@ std::span<const GroundPreset> groundPresets()
 
 const GroundPreset& groundPreset(const std::string& name)
 {
-  const std::string wanted = nameKey(name);
+  // Panels say behind it what it rests on: Meadow (field data).
+  const std::string wanted = nameKey(name.substr(0, name.find('(')));
   std::string names;
   for (const GroundPreset& preset : presets)
   {

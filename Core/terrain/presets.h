@@ -55,7 +55,8 @@ struct GroundPreset
 
 /// All presets, in the order of the enumeration of the DEM source's property.
 std::span<const GroundPreset> groundPresets();
-/// By name, not case-sensitive. Throws DataError that lists the names.
+/// By name, not case-sensitive, with or without what panels say in brackets. Throws DataError that
+/// lists the names.
 const GroundPreset& groundPreset(const std::string& name);
 
 } // namespace rockfall

@@ -122,6 +122,7 @@ TEST(Names, MaterialsOfRocks)
   EXPECT_EQ(rockMaterialFromName(" GRANITE ").density, rockMaterialFromName("granite").density);
   EXPECT_EQ(shapeFromName(" Cube"), Shape::Cube);
   EXPECT_STREQ(groundPreset("Talus\u00a0with Vegetation").name, "talus with vegetation");
+  EXPECT_STREQ(groundPreset("Meadow (field data)").name, "meadow"); // as in the panel
 }
 
 TEST(Names, Columns)
