@@ -217,7 +217,7 @@ void SoftSolver::bookImpacts(double share, double time)
       if (i >= 0)
       {
         Mover& m = movers_[std::size_t(i)];
-        m.flies = false;
+        m.flies = m.flies && impact.Q == 0.0;
         m.noise = std::max(m.noise, 2.0 * kImpactExact * std::abs(start.before));
       }
     }
