@@ -278,10 +278,15 @@ Vec3 SoftSolver::rub(Row& r, double P, const Vec3& across)
 {
   Vec3 T = r.T - r.shearMass * across;
   T -= T.dot(r.normal) * r.normal;
-  limitTo(T, r.friction * P + std::min(r.cohesion, 20.0 * P));
+  limitTo(T, frictionLimit(r, P));
   const Vec3 dT = T - r.T;
   r.T = T;
   return dT;
+}
+
+double SoftSolver::frictionLimit(const Row& r, double P)
+{
+  return r.friction * P + std::min(r.cohesion, 20.0 * P);
 }
 
 bool SoftSolver::relax(Row& r)
@@ -302,7 +307,6 @@ template <class Sweep>
 void SoftSolver::sweep(int least, Sweep&& row)
 {
   tick_ += 2;
-  const auto moves = [this](int i) { return i >= 0 && stamp_[std::size_t(i)] >= tick_ - 1; };
   const auto note = [this](int i)
   {
     if (i >= 0)
@@ -318,7 +322,7 @@ void SoftSolver::sweep(int least, Sweep&& row)
       [&](std::size_t k)
       {
         const auto [a, b] = ends_[k];
-        if ((sweep < least || moves(a) || moves(b)) && row(rows_[k]))
+        if ((sweep < least || this->moves(a) || this->moves(b)) && row(rows_[k]))
         {
           note(a);
           note(b);

@@ -16,10 +16,10 @@
 ///     move      turns from the angular momentum
 ///     relax     P ← max(0, P − m v); friction within μ P + c h
 ///
-/// Pressing and relaxing go on around rows that change by more than their resting speed.
 /// with m the effective mass, β = ω / (2 ζ + h ω), ω² = pₙ/m but no more than a quarter of the
 /// substep rate, s = m β / (h pₙ), and v_r the speed at which overlap goes. At rest the overlap is
-/// P/(h pₙ), as of Shi's spring.
+/// P/(h pₙ), as of Shi's spring. Pressing and relaxing go on around rows that change by more than
+/// their resting speed.
 
 #include "base/parallel.h"
 #include "system/IslandSystem.h"
@@ -165,6 +165,9 @@ private:
   bool relax(Row& row);
   /// Friction under an impulse P (N s) along the normal. Returns by how much it changes, N s.
   static Vec3 rub(Row& row, double P, const Vec3& across);
+  static double frictionLimit(const Row& row, double P); ///< N s
+  /// Whether a mover (< 0: the slope) has been moved by this sweep or the last one.
+  bool moves(int i) const { return i >= 0 && stamp_[std::size_t(i)] >= tick_ - 1; }
   /// Sweeps over the busy rows, so many times; then over those of rocks that the last sweep has
   /// moved, until no row has changed by more.
   template <class Sweep>

@@ -134,8 +134,7 @@ void SoftSolver::settleImpacts()
     for (Impact& impact : impacts_)
     {
       const Row& r = rows_[impact.row];
-      if (pass > 0 && stamp_[std::size_t(r.a)] < tick_ - 1 &&
-        (r.b < 0 || stamp_[std::size_t(r.b)] < tick_ - 1))
+      if (pass > 0 && !this->moves(r.a) && !this->moves(r.b))
       {
         continue;
       }
@@ -245,12 +244,14 @@ void SoftSolver::wake(std::size_t manifold)
 
 void SoftSolver::listWoken()
 {
+  if (woken_.empty())
+  {
+    return;
+  }
   for (const std::size_t row : woken_)
   {
-    const auto next = std::upper_bound(firstOfStrip_.begin(), firstOfStrip_.end(), row,
-      [this](std::size_t k, std::size_t manifold)
-      { return manifold == manifolds_.size() || k < manifolds_[manifold][0]; });
-    busyOf_[std::size_t(next - firstOfStrip_.begin()) - 1].push_back(row);
+    const int strip = this->stripOf((*contacts_)[results_[row].contact]);
+    busyOf_[std::size_t(strip)].push_back(row);
   }
   woken_.clear();
   this->forStrips(

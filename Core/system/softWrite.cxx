@@ -89,8 +89,8 @@ void SoftSolver::writeContact(std::size_t row)
         second ? second->block : nullptr, second ? second->state : nullptr)
         .set(c);
     }
-    const double limit = r.friction * r.P + std::min(r.cohesion, 20.0 * r.P);
-    c.state = r.T.norm() < (1.0 - 1e-9) * limit ? ContactState::Locked : ContactState::Sliding;
+    c.state = r.T.norm() < (1.0 - 1e-9) * frictionLimit(r, r.P) ? ContactState::Locked
+                                                                : ContactState::Sliding;
     // Springs that carry what it carries.
     c.offset = c.distance + r.P / (h_ * c.stiffness);
     c.slip = (starts_[row].flipped ? 1.0 : -1.0) / (h_ * c.shearStiffness) * r.T;
