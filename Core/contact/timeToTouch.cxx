@@ -165,14 +165,16 @@ void visitLowPlaces(
   const auto room = [&](const Vec3& p)
   { return p.z() - window.tilt().dot(p.head<2>()) - window.highest(); };
   const std::vector<Vec3>& vertices = rock.vertices();
+  thread_local std::vector<double> rooms; // of the vertices: every edge asks for two
+  rooms.resize(vertices.size());
   double least = std::numeric_limits<double>::infinity();
   std::size_t lowest = 0;
   for (std::size_t i = 0; i < vertices.size(); ++i)
   {
-    const double r = room(vertices[i]);
-    if (r < least)
+    rooms[i] = room(vertices[i]);
+    if (rooms[i] < least)
     {
-      least = r;
+      least = rooms[i];
       lowest = i;
     }
   }
@@ -181,11 +183,11 @@ void visitLowPlaces(
     return;
   }
   over(vertices[lowest]); // most likely the first to touch: the rest is soon too far
-  for (const Vec3& p : vertices)
+  for (std::size_t i = 0; i < vertices.size(); ++i)
   {
-    if (room(p) < far())
+    if (rooms[i] < far())
     {
-      over(p);
+      over(vertices[i]);
     }
   }
   const double inverse = window.inverseCellSize(), west = window.west(), north = window.north();
@@ -215,13 +217,13 @@ void visitLowPlaces(
   const Vec3 up = rock.rotation().row(2).transpose();
   for (const Polyhedron::Edge& e : shape.edges())
   {
-    const Vec3& p = vertices[e.vertices[0]];
-    const Vec3& q = vertices[e.vertices[1]];
-    if (std::min(room(p), room(q)) >= far() ||
+    const auto start = std::size_t(e.vertices[0]), end = std::size_t(e.vertices[1]);
+    if (std::min(rooms[start], rooms[end]) >= far() ||
       (up.dot(shape.normals()[e.faces[0]]) > 0.0 && up.dot(shape.normals()[e.faces[1]]) > 0.0))
     {
       continue;
     }
+    const Vec3 &p = vertices[start], &q = vertices[end];
     const double x0 = (p.x() - west) * inverse, x1 = (q.x() - west) * inverse;
     const double y0 = (north - p.y()) * inverse, y1 = (north - q.y()) * inverse;
     const double from[3] = { x0, y0, x0 - y0 }, to[3] = { x1, y1, x1 - y1 };
