@@ -55,8 +55,10 @@ inline double contactDamping(const SurfaceMaterial& material, double restitution
     case RestitutionModel::NormalTangential:
       return usual;
     case RestitutionModel::SpeedDependent:
-      return dampingRatio(
-        restitutionAtSpeed(restitution, approachSpeed, material.restitutionSpeed));
+    {
+      const double here = restitutionAtSpeed(restitution, approachSpeed, material.restitutionSpeed);
+      return here == restitution ? usual : dampingRatio(here); // what does not approach
+    }
   }
   return usual;
 }
