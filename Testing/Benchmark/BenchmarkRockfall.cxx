@@ -2,14 +2,15 @@
 // terrain of 201 × 201 nodes and 1 m cells, 30° down along x for 100 m, then flat; Gaussian
 // roughness of 0.1 m on each node; 256 rocks of 1 m³, cube or icosahedron, density 2500, random
 // attitudes, lowest point about 2 m over the slope's top, 1 m/s along x; φ 15°; 10 s of motion; one
-// thread. Counters: rock-steps per second (rocks × duration / Δt / wall time) and trajectories per
-// second.
+// thread. The same on ground that yields: presets, without their roughness. Counters: rock-steps
+// per second (rocks × duration / Δt / wall time) and trajectories per second.
 //
 // Run: BenchmarkRockfall [--benchmark_repetitions=5 --benchmark_report_aggregates_only=true]
 
 #include "benchSlope.h"
 #include "geometry/shapes.h"
 #include "run/ensemble.h"
+#include "terrain/presets.h"
 
 #include <benchmark/benchmark.h>
 
@@ -45,10 +46,8 @@ std::vector<Rock> benchRocks(Shape shape, const Terrain& slope)
   return rocks;
 }
 
-void singleRocks(
-  benchmark::State& state, Shape shape, double timeStep, double restitution, RestitutionModel model)
+void singleRocks(benchmark::State& state, Shape shape, double timeStep, const Terrain& slope)
 {
-  const Terrain slope = benchSlope(restitution, model);
   const std::vector<Rock> rocks = benchRocks(shape, slope);
   SimulationParameters p;
   p.timeStep = timeStep;
@@ -84,17 +83,23 @@ int main(int argc, char** argv)
   {
     for (double timeStep : { 0.005, 0.001 })
     {
-      const auto add = [&](double restitution, RestitutionModel model, const char* label)
+      const auto add = [&](const Terrain& slope, const std::string& label)
       {
         const std::string name =
           shapeName(shape) + "/dt:" + (timeStep > 0.002 ? "0.005" : "0.001") + "/" + label;
-        benchmark::RegisterBenchmark(name.c_str(), singleRocks, shape, timeStep, restitution, model)
+        benchmark::RegisterBenchmark(name.c_str(), singleRocks, shape, timeStep, slope)
           ->Unit(benchmark::kMillisecond)
           ->UseRealTime();
       };
-      add(0.8, RestitutionModel::NormalTangential, "normal_0.8");
-      add(0.8, RestitutionModel::Velocity, "velocity_0.8");
-      add(0.0, RestitutionModel::NormalTangential, "normal_0");
+      add(benchSlope(0.8, RestitutionModel::NormalTangential), "normal_0.8");
+      add(benchSlope(0.8, RestitutionModel::Velocity), "velocity_0.8");
+      add(benchSlope(0.0, RestitutionModel::NormalTangential), "normal_0");
+      for (const char* preset : { "meadow", "soil", "talus" })
+      {
+        Terrain slope = benchSlope(groundPreset(preset).material());
+        slope.setDeviationPer(groundPreset(preset).deviationPer());
+        add(slope, preset);
+      }
     }
   }
   benchmark::RunSpecifiedBenchmarks();

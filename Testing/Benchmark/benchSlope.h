@@ -2,7 +2,7 @@
 
 /// @file
 /// The slope of the benchmarks: 201 × 201 nodes and 1 m cells, 30° down along x for 100 m, then
-/// flat; Gaussian roughness of 0.1 m on each node; φ 15°.
+/// flat; Gaussian roughness of 0.1 m on each node; hard with φ 15°, or of another material.
 
 #include "terrain/Terrain.h"
 
@@ -14,7 +14,7 @@ namespace rockfall
 
 constexpr int kNodes = 201;
 
-inline Terrain benchSlope(double restitution, RestitutionModel model)
+inline Terrain benchSlope(const SurfaceMaterial& material)
 {
   GridGeometry g;
   g.columns = g.rows = kNodes;
@@ -31,11 +31,16 @@ inline Terrain benchSlope(double restitution, RestitutionModel model)
       heights[std::size_t(row) * kNodes + column] = z + 0.1 * normal(random);
     }
   }
+  return Terrain(g, std::move(heights), material);
+}
+
+inline Terrain benchSlope(double restitution, RestitutionModel model)
+{
   SurfaceMaterial m;
   m.restitution = restitution;
   m.restitutionModel = model;
   m.frictionAngle = radians(15.0);
-  return Terrain(g, std::move(heights), m);
+  return benchSlope(m);
 }
 
 } // namespace rockfall
