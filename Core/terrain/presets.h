@@ -17,7 +17,7 @@ namespace rockfall
 /// Support of a preset's numbers.
 enum class PresetSupport
 {
-  FieldData,  ///< Held against field data that did not choose them (docs/validation.md).
+  FieldData,  ///< Chosen on field data; parts held out in turn agree (docs/validation.md).
   Assumption, ///< Chosen here, between kinds that are supported.
   Memory,     ///< Quoted from publications that were not at hand.
 };
