@@ -9,9 +9,9 @@
 /// displacement is the one that it has without collisions. One that is soft enough to ring in an
 /// impact does so only when it falls without collisions.
 ///
-/// Small islands resolve their impacts in time like single rocks. In large ones an impact is an
-/// event of one step: what closes leaves with e times its speed of approach (Newton's law of
-/// restitution). Islands that have come to rest sleep until something touches them.
+/// In an island an impact is an event of a substep: what closes leaves with e times its speed of
+/// approach (Newton's law of restitution). Islands that have come to rest sleep until something
+/// touches them.
 
 #include "fall/FallState.h"
 
@@ -58,8 +58,6 @@ public:
 
   /// Rocks never sleep: for tests of how still a pile stands.
   bool awake = false;
-  int largestSoft() const { return fall_.largestSoft; }
-  void setLargestSoft(int most) { fall_.largestSoft = most; } ///< FallState::largestSoft
 
 private:
   const RockSimulator& rock(int rock) const { return fall_.rocks[std::size_t(rock)].sim; }

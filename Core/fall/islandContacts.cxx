@@ -33,7 +33,6 @@ double IslandStepper::reachOf(double speed, double radius, double h) const
 
 void IslandStepper::gatherOnSlope(std::size_t k, double h)
 {
-  comeToRock(fall_, island_, k);
   FallingRock& rock = fall_.rocks[std::size_t(island_.members[k])];
   RockSimulator& sim = rock.sim;
   RockBody& body = rock.body();
@@ -47,7 +46,7 @@ void IslandStepper::gatherOnSlope(std::size_t k, double h)
   const double spread = body.state.spin.norm() * r + side.pushed;
   const double speed = body.state.velocity.norm() + body.state.spin.norm() * r + side.pushed;
   const double reach = this->reachOf(speed, r, h);
-  body.crowded = true;
+  body.inIsland = true;
   // Twice: beyond a concave edge planes serve a little further than their triangles.
   if (sim.isHigh(2.0 * reach))
   {
@@ -84,7 +83,6 @@ void IslandStepper::gatherOnSlope(std::size_t k, double h)
 
 void IslandStepper::gatherOfPair(std::size_t p, double h)
 {
-  comeToPair(island_.pairs, p);
   RockPair& pair = *island_.pairs[p];
   const IslandWork::Side& a = work_.sides[std::size_t(pair.first)];
   const IslandWork::Side& b = work_.sides[std::size_t(pair.second)];

@@ -1,7 +1,6 @@
 #include "fall/pairSprings.h"
 
 #include "contact/motion.h"
-#include "fall/pressedIn.h"
 #include "law/settings.h"
 #include "rock/impactMode.h"
 
@@ -18,6 +17,14 @@ PairStiffness pairStiffness(const SimulationParameters& parameters)
 
 namespace
 {
+
+/// The deepest overlap (m) at which a spring (N/m) holds no more energy than two that meet at
+/// `speed` (m/s) have between them. `mass`: the reduced one, kg; `radius`: the smaller one, m. What
+/// is deeper others have pressed in.
+double deepestBetween(double radius, double speed, double mass, double stiffness)
+{
+  return std::max(kFirm * radius, kSomeMore * speed * std::sqrt(mass / stiffness));
+}
 
 PairSprings springsOf(const FallState& fall, const RockPair& pair)
 {

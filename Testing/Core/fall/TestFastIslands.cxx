@@ -1,4 +1,4 @@
-// Crowds that meet fast: what an impact turns within its step must not come to touch unseen.
+// Many rocks that meet fast: what an impact turns within its step must not come to touch unseen.
 
 #include "form.h"
 #include "piles.h"
@@ -13,14 +13,10 @@
 using namespace rockfall;
 using namespace rockfall::testing;
 
-TEST(FastCrowds, RocksThatAnImpactTurnsStayOutOfEachOther)
+TEST(FastIslands, RocksThatAnImpactTurnsStayOutOfEachOther)
 {
   // A thousand cubes fall on a floor and on each other, in the end at 17 m/s, a tenth of an edge in
-  // a step. Contacts that may close only if an impact turns the rocks are part of the step, too:
-  // left to be found where the rocks end, the deepest overlap of a run was 1.1 % of an edge on
-  // average, and more than 1 % in nine of sixteen. What the last sweeps of a step still push about
-  // is looked at again: without that it was more than 1 % in two of these three heaps. So it was
-  // 0.47 % on average in twenty-two heaps, and 0.76 % at most.
+  // a step. Contacts that may close only if an impact turns the rocks are part of the step, too.
   constexpr double kVolume = 0.6;
   const double edge = std::cbrt(kVolume);
   double sum = 0.0;
