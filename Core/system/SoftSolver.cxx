@@ -10,19 +10,6 @@
 namespace rockfall
 {
 
-template <class Visit>
-void SoftSolver::forBusy(Visit&& visit)
-{
-  this->forStrips(
-    [&](std::size_t strip)
-    {
-      for (const std::size_t row : busyOf_[strip])
-      {
-        visit(row);
-      }
-    });
-}
-
 void SoftSolver::begin(
   const StepRequest& request, std::vector<IslandBody>& bodies, std::vector<IslandContact>& contacts)
 {
@@ -67,15 +54,18 @@ void SoftSolver::run()
     this->place(rows_[k]);
     this->weigh(k);
     this->prepareImpulses(k, (*contacts_)[results_[k].contact]);
+    rows_[k].idle = false;
     results_[k] = { results_[k].contact, Vec3::Zero(), 0.0, 0.0, 0.0, 0.0, 0.0, Vec3::Zero() };
   };
   forEach(rows_.size(), kRowGrain, start);
+  for (Manifold& manifold : manifolds_)
+  {
+    manifold.busy = true;
+  }
   for (int k = 0; k < substeps_; ++k)
   {
     this->substep(k);
   }
-  substep_ = substeps_;
-  this->forStrips([&](std::size_t strip) { this->arrive(strip, true); });
   const auto look = [&](std::size_t i)
   {
     Mover& m = movers_[i];
@@ -111,18 +101,18 @@ double SoftSolver::gapOf(const Row& r, const RowStart& start) const
   return start.gap0 + r.normal.dot(motion);
 }
 
-Vec3 SoftSolver::speedOfA(const Row& r) const
+Vec3 SoftSolver::speedOfA(const Row& r, const std::vector<Motion>& motions)
 {
-  const Motion& a = motions_[std::size_t(r.a)];
+  const Motion& a = motions[std::size_t(r.a)];
   return a.velocity + a.spin.cross(r.lever);
 }
 
-Vec3 SoftSolver::speedOf(const Row& r) const
+Vec3 SoftSolver::speedOf(const Row& r, const std::vector<Motion>& motions)
 {
-  Vec3 u = this->speedOfA(r);
+  Vec3 u = speedOfA(r, motions);
   if (r.b >= 0)
   {
-    const Motion& b = motions_[std::size_t(r.b)];
+    const Motion& b = motions[std::size_t(r.b)];
     u -= b.velocity + b.spin.cross(r.leverB);
   }
   return u;
@@ -171,46 +161,56 @@ void SoftSolver::book(const Row& r, double along, const Vec3& across, const Vec3
   result.impulse += impulse;
 }
 
-void SoftSolver::arrive(std::size_t strip, bool last)
+void SoftSolver::bookForces(std::size_t k)
 {
-  std::vector<std::size_t>& struck = struckOf_[strip];
+  const Row& r = rows_[k];
+  if (r.P != 0.0)
+  {
+    book(r, r.P, r.T, 0.5 * (speedOf(r, before_) + speedOf(r, motions_)),
+      0.5 * (speedOfA(r, before_) + speedOfA(r, motions_)), results_[k]);
+  }
+}
+
+void SoftSolver::arrive(std::size_t strip)
+{
+  std::vector<std::size_t>& struck = generations_[strip].struck;
   std::vector<std::size_t>& busy = busyOf_[strip];
   struck.clear();
   busy.clear();
   for (std::size_t m = firstOfStrip_[strip]; m < firstOfStrip_[strip + 1]; ++m)
   {
-    bool any = false;
-    for (std::size_t k = manifolds_[m][0]; k < manifolds_[m][1]; ++k)
+    Manifold& manifold = manifolds_[m];
+    bool any = false, anyBusy = false;
+    for (std::size_t k = manifold.first; k < manifold.end; ++k)
     {
-      Row& r = rows_[k];
-      RowStart& start = starts_[k];
-      const bool weighs = this->place(r);
-      const Vec3 speed = this->speedOf(r);
-      const Vec3 speedA = this->speedOfA(r);
-      if (r.P != 0.0 && substep_ > 0)
-      {
-        book(r, r.P, r.T, 0.5 * (start.speed + speed), 0.5 * (start.speedA + speedA), results_[k]);
-      }
-      start.speedA = speedA;
-      start.speed = speed;
-      start.before = speed.dot(r.normal);
-      start.generation = 0;
-      r.gap = this->gapOf(k);
-      r.idle = r.P == 0.0 && r.gap + 2.0 * h_ * std::min(start.before, -r.resting) > 0.0;
-      if (!r.idle)
-      {
-        busy.push_back(k);
-        if (weighs)
-        {
-          this->weigh(k);
-        }
-      }
+      this->arriveAt(k, manifold.busy && !rows_[k].idle);
+      anyBusy = anyBusy || !rows_[k].idle;
       any = any || this->closes(k, 1.0);
     }
-    if (any && !last)
+    manifold.busy = anyBusy;
+    if (anyBusy)
+    {
+      busy.push_back(m);
+    }
+    if (any)
     {
       this->strike(m, struck);
     }
+  }
+}
+
+void SoftSolver::arriveAt(std::size_t k, bool placed)
+{
+  Row& r = rows_[k];
+  RowStart& start = starts_[k];
+  const bool weighs = !placed && this->place(r);
+  start.before = this->speedOf(r).dot(r.normal);
+  start.generation = 0;
+  r.gap = this->gapOf(k);
+  r.idle = r.P == 0.0 && this->staysOpen(k);
+  if (!r.idle && weighs)
+  {
+    this->weigh(k);
   }
 }
 
@@ -231,19 +231,30 @@ void SoftSolver::warm(Row& r)
   }
 }
 
-void SoftSolver::noteTouched(const Row& r)
+void SoftSolver::keepPushing(std::size_t strip)
 {
-  if (r.P > 0.0)
+  std::vector<std::size_t>& busy = busyOf_[strip];
+  const auto pushes = [this](std::size_t m)
   {
-    for (const int i : { r.a, r.b })
+    const Manifold& manifold = manifolds_[m];
+    bool any = false;
+    this->forRows(manifold, [&](std::size_t k) { any = any || rows_[k].P > 0.0; });
+    for (const int i : { manifold.a, manifold.b })
     {
-      if (i >= 0)
+      if (any && i >= 0)
       {
         movers_[std::size_t(i)].touched = true;
         movers_[std::size_t(i)].flies = false;
       }
     }
-  }
+    return any;
+  };
+  const auto letGo = [&](std::size_t m)
+  {
+    manifolds_[m].busy = pushes(m);
+    return !manifolds_[m].busy;
+  };
+  std::erase_if(busy, letGo);
 }
 
 bool SoftSolver::press(Row& r)
@@ -303,32 +314,56 @@ bool SoftSolver::relax(Row& r)
   return std::abs(dP) > r.mass * r.resting;
 }
 
+bool SoftSolver::stripMoves(std::size_t strip) const
+{
+  const std::size_t first = strip == 0 ? 0 : strip - 1;
+  const std::size_t end = std::min(strip + 2, std::size_t(strips_));
+  return std::any_of(stampOfStrip_.begin() + std::ptrdiff_t(first),
+    stampOfStrip_.begin() + std::ptrdiff_t(end), [this](int stamp) { return stamp >= tick_ - 1; });
+}
+
+void SoftSolver::noteMoved(const Manifold& manifold)
+{
+  stamp_[std::size_t(manifold.a)] = tick_;
+  if (manifold.b >= 0)
+  {
+    stamp_[std::size_t(manifold.b)] = tick_;
+  }
+}
+
 template <class Sweep>
-void SoftSolver::sweep(int least, Sweep&& row)
+void SoftSolver::sweep(int least, Sweep&& sweepRow)
 {
   tick_ += 2;
-  const auto note = [this](int i)
-  {
-    if (i >= 0)
-    {
-      stamp_[std::size_t(i)] = tick_;
-    }
-  };
   bool again = true;
   for (int sweep = 0; sweep < least || (again && sweep < kMostSweeps); ++sweep, ++tick_)
   {
     std::atomic<bool> any = false;
-    this->forBusy(
-      [&](std::size_t k)
+    const auto sweepStrip = [&](std::size_t strip)
+    {
+      if (sweep >= least && !this->stripMoves(strip))
       {
-        const auto [a, b] = ends_[k];
-        if ((sweep < least || this->moves(a) || this->moves(b)) && row(rows_[k]))
+        return;
+      }
+      for (const std::size_t m : busyOf_[strip])
+      {
+        const Manifold& manifold = manifolds_[m];
+        if (sweep >= least && !this->moves(manifold.a) && !this->moves(manifold.b))
         {
-          note(a);
-          note(b);
+          continue;
+        }
+        bool moved = false;
+        this->forRows(
+          manifold, [&](std::size_t k) { moved = sweepRow(rows_[k]) || moved; });
+        if (moved)
+        {
+          this->noteMoved(manifold);
+          stampOfStrip_[strip] = tick_;
           any.store(true, std::memory_order_relaxed);
         }
-      });
+      }
+    };
+    this->forStrips(sweepStrip);
     again = any;
   }
 }
@@ -337,23 +372,9 @@ void SoftSolver::substep(int k)
 {
   const Vec3 gravity(0.0, 0.0, -gravity_);
   substep_ = k;
-  this->forStrips([&](std::size_t strip) { this->arrive(strip, false); });
-  struck_.clear();
-  for (const std::vector<std::size_t>& struck : struckOf_)
-  {
-    struck_.insert(struck_.end(), struck.begin(), struck.end());
-  }
-  if (!struck_.empty())
-  {
-    this->strikeGenerations(k * h_);
-    this->listWoken();
-    const auto speeds = [&](std::size_t row)
-    {
-      starts_[row].speed = this->speedOf(rows_[row]);
-      starts_[row].speedA = this->speedOfA(rows_[row]);
-    };
-    this->forBusy(speeds);
-  }
+  this->forStrips([&](std::size_t strip) { this->arrive(strip); });
+  this->strikeGenerations(k * h_);
+  before_ = motions_;
   const auto fall = [&](std::size_t i)
   {
     motions_[i].velocity += h_ * gravity;
@@ -362,7 +383,7 @@ void SoftSolver::substep(int k)
   forEach(movers_.size(), kBodyGrain, fall);
   this->forBusy([&](std::size_t row) { this->warm(rows_[row]); });
   this->sweep(1, [&](Row& r) { return this->press(r); });
-  this->forBusy([&](std::size_t row) { this->noteTouched(rows_[row]); });
+  this->forStrips([this](std::size_t strip) { this->keepPushing(strip); });
   const auto move = [&](std::size_t i)
   {
     Mover& m = movers_[i];
@@ -384,6 +405,7 @@ void SoftSolver::substep(int k)
   };
   this->forBusy(place);
   this->sweep(kRelaxSweeps, [&](Row& r) { return this->relax(r); });
+  this->forBusy([this](std::size_t row) { this->bookForces(row); });
 }
 
 void SoftSolver::append()

@@ -94,12 +94,13 @@ private:
     bool idle;              ///< Stays open in the substep.
     bool stops;             ///< Stopped what closed: its impulse is not one to go on with.
     double gap;             ///< Now, m.
-    double mass, shearMass; ///< Effective, kg.
+    double P;               ///< N s
+    double mass;            ///< Effective, kg.
     Vec3 normal;            ///< Direction from b to a, at mid-step.
     Vec3 lever;             ///< Arm from a's centroid, at mid-step, m.
     Vec3 leverB;            ///< Arm from b's centroid to that point now, m.
-    double P;               ///< N s
     Vec3 T;                 ///< Across, N s.
+    double shearMass;       ///< Effective, kg.
     double friction;        ///< tan φ
     double cohesion;        ///< N s
     double rate;            ///< β, 1/s
@@ -114,9 +115,15 @@ private:
     bool flipped;       ///< `a` is the contact's second rock.
     double gap0;        ///< Where the step begins, m.
     double spring;      ///< N/m
-    Vec3 speed, speedA; ///< Behind impacts of the substep, and of a's point alone, m/s.
     double before;      ///< Speed along the normal before a generation, m/s.
     double pending;     ///< ≥ 0: speed at which an impact that was under way leaves, m/s.
+  };
+  /// Rows of the same two rocks.
+  struct Manifold
+  {
+    int a, b; ///< Movers; b < 0: the slope.
+    std::size_t first, end;
+    bool busy; ///< Swept over: rows that are not idle stand where the rocks are.
   };
   /// A row in a generation of impacts.
   struct Impact
@@ -126,6 +133,15 @@ private:
     Vec3 S;               ///< and across.
     Vec3 before, beforeA; ///< Velocities behind it, of both and of a's point alone, m/s.
     double leaves;        ///< m/s
+    double stored;        ///< By the spring of one that was under way, J.
+  };
+  /// A generation of impacts, those of a strip.
+  struct Generation
+  {
+    std::vector<std::size_t> struck; ///< Rows that are to strike, in order.
+    std::vector<Impact> impacts;
+    std::vector<int> moved;         ///< Movers.
+    std::vector<std::size_t> woken; ///< Manifolds that the substep has woken.
   };
   /// What a contact did in the step.
   struct Result
@@ -159,15 +175,19 @@ private:
   void forStrips(Visit&& visit) const; ///< visit(strip)
   template <class Visit>
   void forBusy(Visit&& visit); ///< visit(row's number) of those that are not idle, strip by strip
+  template <class Visit>
+  void forRows(const Manifold& manifold, Visit&& visit); ///< The same of its rows.
 
   void substep(int k);
-  void arrive(std::size_t strip, bool last); ///< Gaps, books and who strikes.
+  void arrive(std::size_t strip); ///< Gaps, books and who strikes.
+  void arriveAt(std::size_t row, bool placed); ///< `placed`: it stands where the rocks are.
+  void bookForces(std::size_t row); ///< The work of its impulses behind impacts.
   /// Books an impulse `along` the normal and `across` (N s), whose work is along the mean of the
   /// velocities before and after, of both rocks and of a's point alone (m/s).
   static void book(const Row& row, double along, const Vec3& across, const Vec3& mean,
     const Vec3& meanA, Result& result);
   void warm(Row& row);
-  void noteTouched(const Row& row); ///< Its rocks, if it pushes them.
+  void keepPushing(std::size_t strip); ///< Among its busy manifolds, and notes their rocks.
   bool press(Row& row);             ///< Whether by more than the resting speed.
   bool relax(Row& row);
   /// Friction under an impulse P (N s) along the normal. Returns by how much it changes, N s.
@@ -175,33 +195,40 @@ private:
   static double frictionLimit(const Row& row, double P); ///< N s
   /// Whether a mover (< 0: the slope) has been moved by this sweep or the last one.
   bool moves(int i) const { return i >= 0 && stamp_[std::size_t(i)] >= tick_ - 1; }
+  bool stripMoves(std::size_t strip) const; ///< Whether one of its rows' rocks may have been.
+  void noteMoved(const Manifold& manifold);
   /// Sweeps over the busy rows, so many times; then over those of rocks that the last sweep has
   /// moved, until no row has changed by more.
   template <class Sweep>
-  void sweep(int least, Sweep&& row);
+  void sweep(int least, Sweep&& sweepRow);
 
   // Impacts, softImpacts.cxx
   /// Whether an impact is under way, or the gap closes as one within so many substeps.
   bool closes(std::size_t row, double substeps) const;
-  bool strikes(std::size_t manifold); ///< Whether any of its rows does.
+  /// Whether any of its rows does, at its speed now. Rows that do not stay open are idle no more.
+  bool strikes(std::size_t manifold, std::vector<std::size_t>& woken);
   void strike(std::size_t manifold, std::vector<std::size_t>& struck);
   double leaves(std::size_t row) const; ///< Speed after an impact, m/s.
   void link();
   void strikeGenerations(double time);
-  double beginImpacts(); ///< Returns what springs of impacts under way hold, J.
+  void beginImpacts(Generation& generation) const;
   void settleImpacts();
   bool settle(Impact& impact); ///< Whether it changed by more than it is exact to.
   /// The factor on all impulses with which they give no more than was there.
-  double shareOfImpacts(double stored) const;
-  void bookImpacts(double share, double time);
-  void findStruck(int generation); ///< Rows that close by it.
-  void wake(std::size_t manifold); ///< Its rows are idle no more.
-  void listWoken();                ///< Among those that are busy.
+  double shareOfImpacts() const;
+  void bookImpacts(const Generation& generation, double share, double time);
+  void takeBack(const Generation& generation, double share); ///< What is over a share.
+  void noteImpact(const Impact& impact, double time); ///< What it was, and whom it struck.
+  void findStruck(std::size_t strip, int number); ///< Rows that close by generation `number`.
+  bool staysOpen(std::size_t row) const; ///< Within the substep, at its speed `before`.
+  void listWoken(std::size_t strip);     ///< Among those that are busy.
 
   double gapOf(const Row& row, const RowStart& start) const;
   double gapOf(std::size_t row) const { return this->gapOf(rows_[row], starts_[row]); }
-  Vec3 speedOf(const Row& row) const;
-  Vec3 speedOfA(const Row& row) const;
+  static Vec3 speedOf(const Row& row, const std::vector<Motion>& motions);
+  static Vec3 speedOfA(const Row& row, const std::vector<Motion>& motions); ///< Of a's point alone.
+  Vec3 speedOf(const Row& row) const { return speedOf(row, motions_); }
+  Vec3 speedOfA(const Row& row) const { return speedOfA(row, motions_); }
   void push(const Row& row, const Vec3& J); ///< J on a, −J on b, N s.
   void push(int mover, const Vec3& J, const Vec3& lever);
   void turn(std::size_t mover);
@@ -219,24 +246,21 @@ private:
   std::vector<IslandBody>* bodies_ = nullptr;
   std::vector<IslandContact>* contacts_ = nullptr;
   std::vector<Motion> motions_; ///< By body.
+  std::vector<Motion> before_;  ///< By body, behind the impacts of the substep.
   std::vector<Mover> movers_;   ///< By body.
   std::vector<Row> rows_;
-  std::vector<RowStart> starts_;         ///< By row.
-  std::vector<std::array<int, 2>> ends_; ///< By row, its movers.
-  std::vector<Result> results_;          ///< By row.
-  std::vector<std::size_t> rowOf_;       ///< By contact.
-  std::vector<double> gap0_;             ///< By contact, m.
+  std::vector<RowStart> starts_;   ///< By row.
+  std::vector<Result> results_;    ///< By row.
+  std::vector<std::size_t> rowOf_; ///< By contact.
+  std::vector<double> gap0_;       ///< By contact, m.
   std::vector<int> stripOfBody_;
   int strips_ = 1;
-  std::vector<std::array<std::size_t, 2>> manifolds_; ///< Rows of the same two rocks.
-  std::vector<std::size_t> firstOfStrip_;             ///< Among manifolds.
-  std::vector<std::vector<std::size_t>> busyOf_;      ///< By strip, rows that are not idle.
-  std::vector<std::vector<std::size_t>> struckOf_;    ///< By strip.
-  std::vector<std::size_t> struck_;                   ///< Rows, in order.
-  std::vector<Impact> impacts_;                       ///< Of a generation.
-  std::vector<std::size_t> woken_; ///< Rows that an impact has woken in the substep.
-  std::vector<int> stamp_;         ///< By mover, the sweep that last moved it.
-  std::vector<int> moving_;        ///< Movers that a generation has moved.
+  std::vector<Manifold> manifolds_;
+  std::vector<std::size_t> firstOfStrip_;          ///< Among manifolds.
+  std::vector<std::vector<std::size_t>> busyOf_; ///< By strip, manifolds.
+  std::vector<Generation> generations_;          ///< By strip.
+  std::vector<int> stampOfStrip_;                ///< The sweep that last moved a rock of its rows.
+  std::vector<int> stamp_;                       ///< By mover, the sweep that last moved it.
   int tick_ = 0;                   ///< Number of the sweep.
   std::vector<std::size_t> firstOf_, manifoldsOf_; ///< Manifolds of each rock.
   /// Books of a rock.
@@ -259,6 +283,31 @@ void SoftSolver::forStrips(Visit&& visit) const
   {
     forEach(std::size_t(strips_ - first + 1) / 2, 1,
       [&](std::size_t k) { visit(std::size_t(first) + 2 * k); });
+  }
+}
+
+template <class Visit>
+void SoftSolver::forBusy(Visit&& visit)
+{
+  this->forStrips(
+    [&](std::size_t strip)
+    {
+      for (const std::size_t m : busyOf_[strip])
+      {
+        this->forRows(manifolds_[m], visit);
+      }
+    });
+}
+
+template <class Visit>
+void SoftSolver::forRows(const Manifold& manifold, Visit&& visit)
+{
+  for (std::size_t k = manifold.first; k < manifold.end; ++k)
+  {
+    if (!rows_[k].idle)
+    {
+      visit(k);
+    }
   }
 }
 

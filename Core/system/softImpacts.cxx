@@ -1,10 +1,12 @@
 // Impacts within a substep: what closes faster than the resting speed leaves by Newton's law, and
 // strikes what closes by it in the next generation.
 
+#include "base/parallel.h"
 #include "law/settings.h"
 #include "system/SoftSolver.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 namespace rockfall
@@ -14,15 +16,15 @@ bool SoftSolver::closes(std::size_t row, double substeps) const
 {
   const Row& r = rows_[row];
   const RowStart& start = starts_[row];
-  const double noise =
-    std::max(movers_[std::size_t(r.a)].noise, r.b >= 0 ? movers_[std::size_t(r.b)].noise : 0.0);
+  const auto isHeard = [&](int i) { return i < 0 || -start.before > movers_[std::size_t(i)].noise; };
   return start.pending >= 0.0 ||
-    (-start.before > std::max(r.resting, noise) && r.gap + substeps * h_ * start.before < 0.0);
+    (-start.before > r.resting && r.gap + substeps * h_ * start.before < 0.0 && isHeard(r.a) &&
+      isHeard(r.b));
 }
 
 void SoftSolver::strike(std::size_t manifold, std::vector<std::size_t>& struck)
 {
-  for (std::size_t k = manifolds_[manifold][0]; k < manifolds_[manifold][1]; ++k)
+  for (std::size_t k = manifolds_[manifold].first; k < manifolds_[manifold].end; ++k)
   {
     if (this->closes(k, kSharedImpact))
     {
@@ -31,30 +33,54 @@ void SoftSolver::strike(std::size_t manifold, std::vector<std::size_t>& struck)
   }
 }
 
-bool SoftSolver::strikes(std::size_t manifold)
+bool SoftSolver::staysOpen(std::size_t row) const
 {
+  const Row& r = rows_[row];
+  return r.gap + 2.0 * h_ * std::min(starts_[row].before, -r.resting) > 0.0;
+}
+
+bool SoftSolver::strikes(std::size_t m, std::vector<std::size_t>& woken)
+{
+  Manifold& manifold = manifolds_[m];
   bool any = false;
-  for (std::size_t k = manifolds_[manifold][0]; k < manifolds_[manifold][1]; ++k)
+  for (std::size_t k = manifold.first; k < manifold.end; ++k)
   {
-    const Row& r = rows_[k];
+    Row& r = rows_[k];
     starts_[k].before = this->speedOf(r).dot(r.normal);
     any = any || this->closes(k, 1.0);
+    if (!r.idle || this->staysOpen(k))
+    {
+      continue;
+    }
+    r.idle = false;
+    if (this->place(r))
+    {
+      this->weigh(k);
+    }
+    if (!manifold.busy)
+    {
+      manifold.busy = true;
+      woken.push_back(m);
+    }
   }
   return any;
 }
 
 void SoftSolver::link()
 {
+  if (linked_)
+  {
+    return;
+  }
   firstOf_.assign(movers_.size() + 2, 0);
   const auto forEnds = [&](std::size_t shift, auto&& visit)
   {
     for (std::size_t m = 0; m < manifolds_.size(); ++m)
     {
-      const Row& r = rows_[manifolds_[m][0]];
-      visit(std::size_t(r.a) + shift, m);
-      if (r.b >= 0)
+      visit(std::size_t(manifolds_[m].a) + shift, m);
+      if (manifolds_[m].b >= 0)
       {
-        visit(std::size_t(r.b) + shift, m);
+        visit(std::size_t(manifolds_[m].b) + shift, m);
       }
     }
   };
@@ -81,60 +107,73 @@ double SoftSolver::leaves(std::size_t row) const
 
 void SoftSolver::strikeGenerations(double time)
 {
-  for (int generation = 1; !struck_.empty(); ++generation)
+  const auto any = [this]
   {
-    const double stored = this->beginImpacts();
+    return std::any_of(generations_.begin(), generations_.end(),
+      [](const Generation& g) { return !g.struck.empty(); });
+  };
+  if (!any())
+  {
+    return;
+  }
+  for (int number = 1; number <= kGenerations && any(); ++number)
+  {
+    forEach(generations_.size(), 1, [this](std::size_t s) { this->beginImpacts(generations_[s]); });
     this->settleImpacts();
-    this->bookImpacts(this->shareOfImpacts(stored), time);
-    struck_.clear();
-    if (generation < kGenerations)
+    const double share = this->shareOfImpacts();
+    if (share < 1.0)
     {
-      this->findStruck(generation);
+      this->forStrips([&](std::size_t s) { this->takeBack(generations_[s], share); });
+    }
+    this->forStrips([&](std::size_t s) { this->bookImpacts(generations_[s], share, time); });
+    if (number < kGenerations)
+    {
+      this->link();
+      this->forStrips([&](std::size_t s) { this->findStruck(s, number); });
     }
   }
+  this->forStrips([this](std::size_t s) { this->listWoken(s); });
 }
 
-double SoftSolver::beginImpacts()
+void SoftSolver::beginImpacts(Generation& generation) const
 {
-  moving_.clear();
-  impacts_.clear();
-  double stored = 0.0;
-  for (const std::size_t k : struck_)
+  generation.moved.clear();
+  generation.impacts.clear();
+  for (const std::size_t k : generation.struck)
   {
     const Row& r = rows_[k];
-    impacts_.push_back(
-      { k, 0.0, Vec3::Zero(), this->speedOf(r), this->speedOfA(r), this->leaves(k) });
-    // Springs of impacts that were under way give what they hold.
-    stored +=
+    const double stored =
       starts_[k].pending >= 0.0 ? (*contacts_)[results_[k].contact].contact->springEnergy() : 0.0;
+    generation.impacts.push_back(
+      { k, 0.0, Vec3::Zero(), this->speedOf(r), this->speedOfA(r), this->leaves(k), stored });
   }
-  return stored;
+  generation.struck.clear();
 }
 
 void SoftSolver::settleImpacts()
 {
   tick_ += 2;
   const int begun = tick_;
-  const auto noteMove = [&](int i)
+  std::atomic<bool> any = true;
+  const auto sweep = [&](std::size_t strip)
   {
-    if (i >= 0)
+    Generation& generation = generations_[strip];
+    const auto noteMove = [&](int i)
     {
-      int& stamp = stamp_[std::size_t(i)];
-      if (stamp < begun)
+      if (i >= 0)
       {
-        moving_.push_back(i);
+        int& stamp = stamp_[std::size_t(i)];
+        if (stamp < begun)
+        {
+          generation.moved.push_back(i);
+        }
+        stamp = tick_;
       }
-      stamp = tick_;
-    }
-  };
-  bool any = true;
-  for (int pass = 0; pass < kImpactSweeps && any; ++pass, ++tick_)
-  {
-    any = false;
-    for (Impact& impact : impacts_)
+    };
+    for (Impact& impact : generation.impacts)
     {
       const Row& r = rows_[impact.row];
-      if (pass > 0 && !this->moves(r.a) && !this->moves(r.b))
+      if (tick_ > begun && !this->moves(r.a) && !this->moves(r.b))
       {
         continue;
       }
@@ -142,9 +181,14 @@ void SoftSolver::settleImpacts()
       {
         noteMove(r.a);
         noteMove(r.b);
-        any = true;
+        any.store(true, std::memory_order_relaxed);
       }
     }
+  };
+  for (int pass = 0; pass < kImpactSweeps && any; ++pass, ++tick_)
+  {
+    any = false;
+    this->forStrips(sweep);
   }
 }
 
@@ -168,15 +212,19 @@ bool SoftSolver::settle(Impact& impact)
     std::max(kImpactExact * std::abs(starts_[impact.row].before), kImpactQuiet * r.resting);
 }
 
-double SoftSolver::shareOfImpacts(double stored) const
+double SoftSolver::shareOfImpacts() const
 {
-  double along = 0.0, work = 0.0;
-  for (const Impact& impact : impacts_)
+  double along = 0.0, work = 0.0, stored = 0.0;
+  for (const Generation& generation : generations_)
   {
-    const Row& r = rows_[impact.row];
-    const Vec3 J = impact.Q * r.normal + impact.S;
-    along += J.dot(impact.before);
-    work += 0.5 * J.dot(impact.before + this->speedOf(r));
+    for (const Impact& impact : generation.impacts)
+    {
+      const Row& r = rows_[impact.row];
+      const Vec3 J = impact.Q * r.normal + impact.S;
+      along += J.dot(impact.before);
+      work += 0.5 * J.dot(impact.before + this->speedOf(r));
+      stored += impact.stored;
+    }
   }
   if (work <= stored)
   {
@@ -188,101 +236,91 @@ double SoftSolver::shareOfImpacts(double stored) const
   return std::clamp((-along + root) / (2.0 * square), 0.0, 1.0);
 }
 
-void SoftSolver::bookImpacts(double share, double time)
+void SoftSolver::takeBack(const Generation& generation, double share)
 {
-  for (const Impact& impact : impacts_)
+  for (const Impact& impact : generation.impacts)
   {
     const Row& r = rows_[impact.row];
-    if (share < 1.0 && impact.Q > 0.0)
+    if (impact.Q > 0.0)
     {
       this->push(r, (share - 1.0) * (impact.Q * r.normal + impact.S));
     }
   }
-  for (const Impact& impact : impacts_)
+}
+
+void SoftSolver::bookImpacts(const Generation& generation, double share, double time)
+{
+  for (const Impact& impact : generation.impacts)
   {
     const Row& r = rows_[impact.row];
-    RowStart& start = starts_[impact.row];
-    Result& result = results_[impact.row];
-    if (impact.Q > 0.0 && start.pending < 0.0 && -start.before > result.struck)
-    {
-      const Mover& a = movers_[std::size_t(r.a)];
-      result.struck = -start.before;
-      result.struckAt = time;
-      result.struckPoint = a.start + a.displacement + r.lever;
-    }
-    start.pending = -1.0;
-    for (const int i : { r.a, r.b })
-    {
-      if (i >= 0)
-      {
-        Mover& m = movers_[std::size_t(i)];
-        m.flies = m.flies && impact.Q == 0.0;
-        m.noise = std::max(m.noise, 2.0 * kImpactExact * std::abs(start.before));
-      }
-    }
+    this->noteImpact(impact, time);
     book(r, share * impact.Q, share * impact.S, 0.5 * (impact.before + this->speedOf(r)),
-      0.5 * (impact.beforeA + this->speedOfA(r)), result);
+      0.5 * (impact.beforeA + this->speedOfA(r)), results_[impact.row]);
   }
 }
 
-void SoftSolver::wake(std::size_t manifold)
+void SoftSolver::noteImpact(const Impact& impact, double time)
 {
-  for (std::size_t k = manifolds_[manifold][0]; k < manifolds_[manifold][1]; ++k)
+  const Row& r = rows_[impact.row];
+  RowStart& start = starts_[impact.row];
+  Result& result = results_[impact.row];
+  if (impact.Q > 0.0 && start.pending < 0.0 && -start.before > result.struck)
   {
-    Row& r = rows_[k];
-    if (r.idle)
+    const Mover& a = movers_[std::size_t(r.a)];
+    result.struck = -start.before;
+    result.struckAt = time;
+    result.struckPoint = a.start + a.displacement + r.lever;
+  }
+  start.pending = -1.0;
+  for (const int i : { r.a, r.b })
+  {
+    if (i >= 0)
     {
-      r.idle = false;
-      woken_.push_back(k);
-      if (this->place(r))
-      {
-        this->weigh(k);
-      }
+      Mover& m = movers_[std::size_t(i)];
+      m.flies = m.flies && impact.Q == 0.0;
+      m.noise = std::max(m.noise, 2.0 * kImpactExact * std::abs(start.before));
     }
   }
 }
 
-void SoftSolver::listWoken()
+void SoftSolver::listWoken(std::size_t strip)
 {
-  if (woken_.empty())
+  std::vector<std::size_t>& woken = generations_[strip].woken;
+  std::vector<std::size_t>& busy = busyOf_[strip];
+  if (!woken.empty())
   {
-    return;
+    busy.insert(busy.end(), woken.begin(), woken.end());
+    std::sort(busy.begin(), busy.end());
+    woken.clear();
   }
-  for (const std::size_t row : woken_)
-  {
-    const int strip = this->stripOf((*contacts_)[results_[row].contact]);
-    busyOf_[std::size_t(strip)].push_back(row);
-  }
-  woken_.clear();
-  this->forStrips(
-    [this](std::size_t strip) { std::sort(busyOf_[strip].begin(), busyOf_[strip].end()); });
 }
 
-void SoftSolver::findStruck(int generation)
+void SoftSolver::findStruck(std::size_t strip, int number)
 {
-  if (!linked_)
+  Generation& generation = generations_[strip];
+  // Movers of its rows are of this strip and of the next one, and noted there or before it.
+  const std::size_t end = std::min(strip + 2, std::size_t(strips_));
+  for (std::size_t s = strip == 0 ? 0 : strip - 1; s < end; ++s)
   {
-    this->link();
-  }
-  for (const int i : moving_)
-  {
-    for (std::size_t j = firstOf_[std::size_t(i)]; j < firstOf_[std::size_t(i) + 1]; ++j)
+    for (const int i : generations_[s].moved)
     {
-      const std::size_t m = manifoldsOf_[j];
-      RowStart& first = starts_[manifolds_[m][0]];
-      if (first.generation == generation)
+      for (std::size_t j = firstOf_[std::size_t(i)]; j < firstOf_[std::size_t(i) + 1]; ++j)
       {
-        continue;
-      }
-      first.generation = generation;
-      this->wake(m);
-      if (this->strikes(m))
-      {
-        this->strike(m, struck_);
+        const std::size_t m = manifoldsOf_[j];
+        if (m < firstOfStrip_[strip] || m >= firstOfStrip_[strip + 1] ||
+          starts_[manifolds_[m].first].generation == number)
+        {
+          continue;
+        }
+        starts_[manifolds_[m].first].generation = number;
+        if (this->strikes(m, generation.woken))
+        {
+          this->strike(m, generation.struck);
+        }
       }
     }
   }
-  std::sort(struck_.begin(), struck_.end());
+  std::sort(generation.struck.begin(), generation.struck.end());
 }
 
 } // namespace rockfall

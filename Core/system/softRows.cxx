@@ -85,7 +85,6 @@ void SoftSolver::arrange()
   std::sort(keys.begin(), keys.end());
   rows_.resize(contacts.size());
   starts_.resize(contacts.size());
-  ends_.resize(contacts.size());
   results_.resize(contacts.size());
   rowOf_.resize(contacts.size());
   manifolds_.clear();
@@ -98,11 +97,11 @@ void SoftSolver::arrange()
     const bool same = k > 0 && keys[k - 1].first == now.first && keys[k - 1].second == now.second;
     if (same)
     {
-      manifolds_.back()[1] = k + 1;
+      manifolds_.back().end = k + 1;
     }
     else
     {
-      manifolds_.push_back({ k, k + 1 });
+      manifolds_.push_back({ now.first, now.second, k, k + 1, false });
       firstOfStrip_[std::size_t(now.strip) + 1] = manifolds_.size();
     }
   }
@@ -111,13 +110,10 @@ void SoftSolver::arrange()
     firstOfStrip_[s] = std::max(firstOfStrip_[s], firstOfStrip_[s - 1]);
   }
   forEach(rows_.size(), kRowGrain,
-    [&](std::size_t k)
-    {
-      this->prepareRow(results_[k].contact, rows_[k], starts_[k]);
-      ends_[k] = { rows_[k].a, rows_[k].b };
-    });
-  struckOf_.resize(std::size_t(strips_));
+    [&](std::size_t k) { this->prepareRow(results_[k].contact, rows_[k], starts_[k]); });
+  generations_.resize(std::size_t(strips_));
   busyOf_.resize(std::size_t(strips_));
+  stampOfStrip_.assign(std::size_t(strips_), -1);
   linked_ = false;
 }
 
@@ -194,8 +190,6 @@ void SoftSolver::prepareImpulses(std::size_t k, const IslandContact& asked)
   row.P = 0.0;
   row.T.setZero();
   row.stops = false;
-  start.speed.setZero();
-  start.speedA.setZero();
   start.generation = 0;
   start.before = 0.0;
   start.pending = c.closed() && !asked.absent && asked.bounce >= 0.0 ? asked.bounce : -1.0;
