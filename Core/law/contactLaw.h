@@ -3,7 +3,7 @@
 /// @file
 /// The law of one contact over a step of h (s), the only one (METHOD 3): normal spring, dashpot,
 /// shear spring and Coulomb's limit. A single rock and the slope as blocks evaluate it; the soft
-/// rows of an island (system/SoftSolver.h) rest at the same forces.
+/// rows of an island (solve/SoftSolver.h) rest at the same forces.
 ///
 /// Along the normal n, gaps d₀ and d₁ at the start and the end (m; < 0: overlap), V(d) = ½ pₙ
 /// min(d, 0)²:

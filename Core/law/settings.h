@@ -239,7 +239,7 @@ inline constexpr double kWorthALook = 0.25 * kDeepMiss;
 inline constexpr double kAbsent = 1e3;
 
 // ---------------------------------------------------------------------------------------------
-// 10  Islands: soft rows in substeps (system/SoftSolver.h)
+// 10  Islands: soft rows in substeps (solve/SoftSolver.h)
 
 /// Substeps of Δt. Fewer: columns and walls creep (5: 1e-4 m for ten cubes).
 inline constexpr int kSubsteps = 8;

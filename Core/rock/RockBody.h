@@ -7,7 +7,7 @@
 #include "contact/Contact.h"
 #include "contact/PlacedBlock.h"
 #include "rock/results.h"
-#include "solver/StepSolver.h"
+#include "solve/StepSolver.h"
 
 #include <vector>
 

@@ -50,7 +50,7 @@ struct BarrierHit
 class PairBody;
 
 /// The fall of a rock alone (`run`), and the same in parts, for rocks that may meet others
-/// (MassFall): those bring each other through a step together, and ask each rock for its part.
+/// (World): those bring each other through a step together, and ask each rock for its part.
 class RockSimulator
 {
 public:

@@ -2,10 +2,9 @@
 
 #include "base/abort.h"
 #include "base/errors.h"
-#include "fall/MassFall.h"
-#include "rock/RockSimulator.h"
 #include "run/releaseChecks.h"
 #include "run/stateHash.h"
+#include "world/World.h"
 
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -189,44 +188,35 @@ std::vector<Rock> Ensemble::released(int iteration, PushedApart& pushed) const
   return rocks;
 }
 
-Trajectory Ensemble::simulate(std::int64_t number, double enough) const
+std::vector<Rock> Ensemble::rocksOf(std::int64_t unit, int iteration) const
 {
-  const int rock = int(number % std::int64_t(rocks_.size()));
-  const int iteration = parameters_.firstIteration + int(number / std::int64_t(rocks_.size()));
-  // The block is made anew: it costs less than a hundredth of what follows, and a hundred thousand
-  // of them would take more memory than all their summaries.
-  const Rock& given = rocks_[std::size_t(rock)];
-  const Surface surface(terrain_, parameters_.seed, iteration);
-  const auto release = [&](const Rock& released)
+  if (parameters_.rockRockContact)
   {
-    const Block block = blockOf(released);
-    return RockSimulator(surface, released, block, parameters_, std::uint32_t(rock)).run(enough);
-  };
-  Trajectory trajectory = given.uncertainty.any()
-    ? release(realise(terrain_, given, parameters_.seed, iteration, std::uint64_t(rock)))
-    : release(given);
-  trajectory.summary.rock = rock;
-  trajectory.summary.iteration = iteration;
-  trajectory.summary.hash = motionHash(trajectory);
-  return trajectory;
-}
-
-std::vector<Trajectory> Ensemble::simulateUnit(
-  std::int64_t unit, double enough, const std::function<bool(double)>& goOn) const
-{
-  std::vector<Trajectory> trajectories;
-  if (!parameters_.rockRockContact)
-  {
-    trajectories.push_back(this->simulate(unit, enough));
-    return trajectories;
-  }
-  const int iteration = parameters_.firstIteration + int(unit);
-  PushedApart pushed;
-  const std::vector<Rock> rocks = start_.empty() ? this->released(iteration, pushed) : start_;
-  {
+    if (!start_.empty())
+    {
+      return start_;
+    }
+    PushedApart pushed;
+    std::vector<Rock> rocks = this->released(iteration, pushed);
     const std::lock_guard<std::mutex> lock(pushing_);
     pushed_.add(pushed);
+    return rocks;
   }
+  const std::int64_t rock = unit % this->unitsPerIteration();
+  const Rock& given = rocks_[std::size_t(rock)];
+  return { given.uncertainty.any()
+      ? realise(terrain_, given, parameters_.seed, iteration, std::uint64_t(rock))
+      : given };
+}
+
+std::vector<Trajectory> Ensemble::simulate(
+  std::int64_t unit, const std::function<bool(double)>& goOn, double enough) const
+{
+  const int first = parameters_.rockRockContact ? 0 : int(unit % this->unitsPerIteration());
+  const int iteration = parameters_.firstIteration + int(unit / this->unitsPerIteration());
+  const std::vector<Rock> rocks = this->rocksOf(unit, iteration);
+  // Blocks are made anew: it costs less than a hundredth of what follows, and a hundred thousand of
+  // them would take more memory than all their summaries.
   std::vector<Block> blocks;
   blocks.reserve(rocks.size());
   for (const Rock& rock : rocks)
@@ -234,15 +224,14 @@ std::vector<Trajectory> Ensemble::simulateUnit(
     blocks.push_back(blockOf(rock));
   }
   const Surface surface(terrain_, parameters_.seed, iteration);
-  MassFall fall(surface, rocks, blocks, parameters_);
-  const double end = std::min(enough, parameters_.endTime);
-  trajectories = fall.run([&](double time) { return goOn(time / end) && time < enough; });
-  for (std::size_t rock = 0; rock < trajectories.size(); ++rock)
+  std::vector<Trajectory> trajectories =
+    World(surface, rocks, blocks, parameters_, first).run(goOn, enough);
+  for (std::size_t k = 0; k < trajectories.size(); ++k)
   {
-    TrajectorySummary& summary = trajectories[rock].summary;
-    summary.rock = int(rock);
+    TrajectorySummary& summary = trajectories[k].summary;
+    summary.rock = first + int(k);
     summary.iteration = iteration;
-    summary.hash = motionHash(trajectories[rock]);
+    summary.hash = motionHash(trajectories[k]);
   }
   return trajectories;
 }
@@ -256,6 +245,7 @@ bool Ensemble::run(
     return true;
   }
   constexpr double kWhole = 1e6; // of a unit: falls of many rocks tell how far they have come
+  const double end = std::min(enough, parameters_.endTime);
   std::atomic<std::int64_t> next{ 0 }, done{ 0 };
   std::atomic<bool> stop{ false };
   FirstFailure failure;
@@ -267,16 +257,15 @@ bool Ensemble::run(
     for (std::int64_t k = next++; k < total && !stop; k = next++)
     {
       std::int64_t told = 0;
-      const auto tell = [&](double over)
+      const auto tell = [&](double time)
       {
-        const std::int64_t now = std::int64_t(kWhole * std::clamp(over, 0.0, 1.0));
+        const std::int64_t now = std::int64_t(kWhole * std::clamp(time / end, 0.0, 1.0));
         done += now - std::exchange(told, now);
         return !stop;
       };
       try
       {
-        std::vector<Trajectory> unit =
-          this->simulateUnit(share.begin + k * share.stride, enough, tell);
+        std::vector<Trajectory> unit = this->simulate(share.begin + k * share.stride, tell, enough);
         for (Trajectory& trajectory : unit)
         {
           sink.trim(trajectory);
@@ -292,7 +281,7 @@ bool Ensemble::run(
         failure.note(k);
         stop = true;
       }
-      tell(1.0);
+      tell(end);
     }
   };
 

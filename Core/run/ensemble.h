@@ -59,9 +59,9 @@ public:
   /// Whether they are pushed anew in each iteration.
   bool pushesAnew() const { return parameters_.pushRocksApart && start_.empty(); }
 
-  /// Simulates one trajectory of a rock that hits no other; `enough` as in RockSimulator::run.
-  Trajectory simulate(
-    std::int64_t number, double enough = std::numeric_limits<double>::infinity()) const;
+  /// The trajectories of a unit, in the order of its rocks; `goOn` and `enough` as in World::run.
+  std::vector<Trajectory> simulate(std::int64_t unit, const std::function<bool(double)>& goOn = {},
+    double enough = std::numeric_limits<double>::infinity()) const;
 
   /// Simulates a share on all threads and hands it to `sink` in order. What comes out does not
   /// depend on the number of threads. Returns false if `progress` aborted; the sink then has a
@@ -71,10 +71,7 @@ public:
     double enough = std::numeric_limits<double>::infinity()) const;
 
 private:
-  /// Of a fall of many rocks, goOn(share of its time that is over) as it goes on.
-  std::vector<Trajectory> simulateUnit(
-    std::int64_t unit, double enough, const std::function<bool(double)>& goOn) const;
-
+  std::vector<Rock> rocksOf(std::int64_t unit, int iteration) const; ///< As they are released.
   /// The rocks of an iteration that fall together, as they are released. Throws PlacementError if
   /// they overlap and are not to be pushed apart.
   std::vector<Rock> released(int iteration, PushedApart& pushed) const;

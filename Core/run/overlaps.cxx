@@ -3,10 +3,10 @@
 #include "base/abort.h"
 #include "base/errors.h"
 #include "base/numberText.h"
+#include "contact/broadPhase.h"
 #include "contact/pairs.h"
 #include "law/settings.h"
 #include "rock/placement.h"
-#include "system/broadPhase.h"
 
 #include <algorithm>
 #include <cmath>

@@ -144,7 +144,7 @@ int main(int argc, char** argv)
         {
           for (std::int64_t n = 0; n < one.size(); ++n)
           {
-            hash.add(one.simulate(n).summary.hash);
+            hash.add(one.simulate(n).front().summary.hash);
           }
         }));
     for (int threads : { 1, 2 })

@@ -6,8 +6,8 @@
 //
 // Run: BenchmarkMassFall [--benchmark_filter=rocks:1000/threads:1]
 
-#include "fall/MassFall.h"
 #include "manyCubes.h"
+#include "world/World.h"
 
 #include <tbb/global_control.h>
 
@@ -45,7 +45,7 @@ void massFall(benchmark::State& state, int count, int threads)
   double meanX = 0.0, unsettled = 0.0, overlap = 0.0;
   for (auto _ : state)
   {
-    MassFall fall(surface, rocks, blocks, p);
+    World fall(surface, rocks, blocks, p);
     int step = 0;
     const auto look = [&](double)
     {

@@ -4,8 +4,8 @@
 /// Piles of rocks, for the tests of mass falls.
 
 #include "../overlap.h"
-#include "fall/MassFall.h"
 #include "slopes.h"
+#include "world/World.h"
 
 #include <algorithm>
 #include <cmath>
@@ -85,16 +85,16 @@ struct Pile
   std::vector<Block> blocks;
   SimulationParameters parameters;
   std::unique_ptr<Surface> surface;
-  std::unique_ptr<MassFall> fall;
+  std::unique_ptr<World> fall;
   bool awake = true; ///< Nothing sleeps.
 
-  /// Up to the release: for whoever runs the fall to its end (MassFall::run).
+  /// Up to the release: for whoever runs the fall to its end (World::run).
   void make()
   {
     blocks = blocksOf(rocks);
     parameters.rockRockContact = true;
     surface = std::make_unique<Surface>(ground, parameters.seed, 0);
-    fall = std::make_unique<MassFall>(*surface, rocks, blocks, parameters);
+    fall = std::make_unique<World>(*surface, rocks, blocks, parameters);
     fall->awake = awake;
   }
   void start()

@@ -1,11 +1,11 @@
 // A rock mass that joint sets cut into blocks: volumes, counts, faces that fit.
 
-#include "fall/MassFall.h"
 #include "geometry/shapes.h"
 #include "massCuts.h"
 #include "piles.h"
 #include "run/overlaps.h"
 #include "slopes.h"
+#include "world/World.h"
 
 #include <gtest/gtest.h>
 
@@ -84,7 +84,7 @@ std::array<double, 2> travel(const Terrain& ground, const std::vector<Rock>& roc
     blocks.emplace_back(r.shape, r.density, r.youngModulus, r.poissonRatio);
   }
   const Surface surface(ground, 1, 0);
-  MassFall fall(surface, rocks, blocks, parameters);
+  World fall(surface, rocks, blocks, parameters);
   fall.awake = true;
   fall.release();
   while (fall.time() < duration - 1e-9 && fall.advance())

@@ -7,9 +7,9 @@
 #include "block/Block.h"
 #include "contact/submerged.h"
 #include "contact/timeToTouch.h"
-#include "fall/MassFall.h"
 #include "rock/Scar.h"
 #include "run/stateHash.h"
+#include "world/World.h"
 
 #include <gtest/gtest.h>
 

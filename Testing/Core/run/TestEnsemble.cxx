@@ -244,7 +244,7 @@ TEST(Ensemble, HandsOnInOrderAndInParts)
   StateHash expected;
   for (int n = 14; n < 35; ++n)
   {
-    expected.add(ensemble.simulate(n).summary.hash);
+    expected.add(ensemble.simulate(n).front().summary.hash);
   }
   p.firstIteration = 12;
   p.iterations = 3;
@@ -268,10 +268,10 @@ TEST(Ensemble, EnoughIsAsInTheWholeRun)
   const Ensemble ensemble(slope, rocks, p);
   for (int rock = 0; rock < 7; ++rock)
   {
-    const Trajectory whole = ensemble.simulate(rock);
+    const Trajectory whole = ensemble.simulate(rock).front();
     for (double enough : { 0.0, 1.0, 3.33, 8.0 })
     {
-      const Trajectory part = ensemble.simulate(rock, enough);
+      const Trajectory part = ensemble.simulate(rock, {}, enough).front();
       // Up to the first sample at that time or later they are the same.
       for (std::size_t k = 0; k == 0 || whole.samples[k - 1].time < enough; ++k)
       {

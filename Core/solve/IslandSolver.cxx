@@ -1,0 +1,38 @@
+#include "solve/IslandSolver.h"
+
+#include "law/settings.h"
+
+namespace rockfall
+{
+
+void IslandSolver::begin(const StepRequest& request, Accept accept, std::vector<IslandBody>& bodies,
+  std::vector<IslandContact>& contacts)
+{
+  accept_ = accept;
+  seen_ = {};
+  look_ = 0;
+  looking_ = true;
+  rows_.stiffness = stiffness;
+  rows_.begin(request, bodies, contacts);
+}
+
+void IslandSolver::goOn(const LookOutcome& seen)
+{
+  seen_ = seen;
+  rows_.noteLook();
+  // Rows of what is found at the end are those of a straight way back.
+  const bool cut = accept_ != Accept::Any && seen.missed > kCutMiss;
+  looking_ = seen.any() && !cut;
+  if (looking_)
+  {
+    rows_.append();
+    looking_ = !seen.onlyTells(look_);
+    if (looking_)
+    {
+      rows_.solve();
+    }
+  }
+  ++look_;
+}
+
+} // namespace rockfall

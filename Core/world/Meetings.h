@@ -1,0 +1,251 @@
+#pragma once
+
+/// @file
+/// Rocks that may meet within a step: pairs near each other, in compact arrays, as there are
+/// several times more of them than touch.
+
+#include "contact/broadPhase.h"
+#include "world/RockQueue.h"
+#include "world/WorldState.h"
+#include "world/pace.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <limits>
+
+namespace rockfall
+{
+
+/// Gap of two rocks along no axis yet.
+constexpr double kNoAxis = -std::numeric_limits<double>::infinity();
+
+/// A rock as the others meet it in the step at hand: what every look at a pair asks for, in one
+/// line of the cache.
+struct alignas(64) Mover
+{
+  Vec3 position; ///< m
+  double radius; ///< m
+  double rimTravel =
+    0.0; ///< Longest displacement about the centroid since the release, by turns and strain, m.
+  double displacement; ///< The longest displacement of a point of it in the step, m, if it is
+                       ///< struck by others.
+  double known; ///< Rocks nearer than such a displacement, less their own, are its neighbours.
+  bool present = false; ///< Neither gone nor stopped by the end time.
+  bool asleep = false;
+};
+
+/// Two rocks that are near each other, or may come near each other soon; in one line of the cache.
+struct alignas(64) Near
+{
+  int first = -1;
+  int second = -1;
+  RockPair* pair = nullptr; ///< None as long as their bounding spheres tell them apart.
+  /// At any later time the gap is no less than offset + normal · (x₁ − x₂) − turned₁ − turned₂.
+  Vec3 normal = Vec3::Zero();
+  double offset = kNoAxis;
+  double looked = -1.0;   ///< Reach within which the axis was looked for in this step, m.
+  bool linked = false;    ///< May touch in this step,
+  bool wasLinked = false; ///< or could in the last one.
+  bool holds = false;     ///< May have contacts.
+};
+
+inline bool operator<(const Near& a, const Near& b)
+{
+  return a.first != b.first ? a.first < b.first : a.second < b.second;
+}
+
+/// State of two rocks near each other.
+enum class Sight : std::uint8_t
+{
+  Open,     ///< May meet if they go as far as is known;
+  Shut,     ///< may not, or both sleep;
+  Apart,    ///< may not, and nothing lasts of them;
+  Overlaps, ///< overlap;
+  Linked,   ///< or may meet for sure.
+};
+
+class Meetings
+{
+public:
+  explicit Meetings(WorldState& world);
+
+  /// Islands of rocks that may meet within a duration (s), and rocks that meet no other, in the
+  /// order of their numbers. Wakes what may be met.
+  void find(double duration);
+  const std::vector<Island>& islands() const { return islands_; }
+  const std::vector<int>& alone() const { return alone_; }
+
+  /// Pairs that are near each other and whose axis was ever looked for, by (first, second).
+  template <class Visit>
+  void forPairs(Visit&& visit);
+
+private:
+  /// A pair that is not linked and no farther apart than known displacements go.
+  struct Open
+  {
+    double apart; ///< No nearer than that, m.
+    int first, second;
+    int near; ///< Index into `near_`.
+  };
+  /// A rock that another is linked with, in a list.
+  struct Link
+  {
+    double gap; ///< At least, m.
+    int other;
+    int next; ///< −1 ends.
+  };
+
+  /// Two that may touch in the step.
+  struct Linked
+  {
+    int first, second;
+    RockPair* pair;
+  };
+  /// Numbers of entries that a part of `near_` has left, each from its own beginning on.
+  struct Left
+  {
+    std::size_t open, others;
+  };
+
+  // Neighbours: meetingsNear.cxx
+  void follow(double duration); ///< The rocks, to where they stand now.
+  void findNear();
+  void search();
+  void cover(int rock);
+  double spare(int rock) const;
+  bool isCovered(std::size_t rock) const;
+  RockPair* newPair(int first, int second);
+  void drop(Near& near);
+  void indexNeighbours();
+  template <class Visit>
+  void forNeighbours(int rock, Visit&& visit);
+
+  // Pairs that may meet: meetingsLink.cxx
+  void link();
+  double gap(const Near& near) const; ///< At least, along the axis, m.
+  double apart(const Near& near) const;
+  double closing(const Near& near) const;
+  double reach(const Near& near) const;
+  bool isAsleep(int first, int second) const; ///< Both.
+  void lookAlong(Near& near) const;
+  bool mayMeet(const Open& open) const;
+  bool meet(std::size_t near);
+  void look();
+  Open openOf(std::size_t near) const;
+  void widen();
+  bool sweep();
+  void widenIslands();
+  void choose();
+
+  // Islands: Meetings.cxx
+  void settle();
+  void unite();
+  void listIslands();
+  template <class Visit>
+  void forLinked(Visit&& visit) const; ///< In the order of `near_`.
+
+  // Velocities and displacements passed on: meetingsReach.cxx
+  int root(int rock); ///< The first one of its island.
+  double thrown(std::size_t rock) const;
+  void join(std::size_t near, bool known);
+  void wakeAbout(int rock);
+  void passOn(int rock);
+  void tell();
+
+  WorldState& world_;
+  std::vector<Mover> movers_;
+  std::vector<Near> near_; ///< Ordered by (first, second), but for those found later.
+  std::vector<Island> islands_;
+  std::vector<int> alone_;
+  std::vector<int> islandOf_; ///< By the first rock of an island.
+  double duration_ = 0.0;
+  double sag_ = 0.0;          ///< Displacement that gravity may add, m.
+  double bounciest_ = 0.0;    ///< Largest restitution of rocks on each other.
+  double widened_ = 0.0;      ///< Most that a rock's ball reaches beyond that of the search, m.
+  Vec3 drift_ = Vec3::Zero(); ///< How far all have gone on together since, m.
+  Vec3 mean_ = Vec3::Zero();  ///< Velocity of all together, m/s.
+  bool searched_ = false;
+  std::size_t out_ = 0; ///< Rocks that have come out of their balls since.
+  BroadPhase broad_;
+  std::vector<BroadBox> boxes_; ///< Of the last search.
+  std::vector<Pace> paces_;
+  std::vector<Near> nextNear_;
+  std::deque<RockPair> pairs_;
+  std::vector<RockPair*> spare_;
+  std::vector<IslandBounds> bounds_; ///< By root.
+  std::vector<int> parents_, roots_;
+  /// Of each rock, where it is in `near_`: those of the search, and those found later.
+  std::vector<std::size_t> firsts_, places_;
+  std::vector<std::vector<std::size_t>> later_;
+  std::vector<int> widenedRocks_;
+  std::size_t sorted_ = 0;     ///< Of `near_`; behind it those found later.
+  std::vector<double> aparts_; ///< Of `near_`.
+  std::vector<Sight> states_;  ///< Of `near_`.
+  std::vector<Open> open_;
+  std::vector<Open> sighted_; ///< The same as found by each part of `near_`, from its beginning.
+  std::vector<std::size_t> others_; ///< Of `near_`, what else a look has to see to.
+  std::vector<Left> left_;          ///< By part of `near_`.
+  std::vector<Linked> linked_;
+  std::vector<std::size_t> linkedCounts_; ///< By part of `near_`.
+  std::vector<int> heads_;
+  std::vector<char> inIsland_;
+  std::vector<char> parted_;   ///< By rock: what touched it lately is linked with it no longer.
+  std::vector<double> thrown_; ///< By rock: what strikes it may make it faster by this factor.
+  std::vector<double> fars_;   ///< By rock, how far it may come towards others, m.
+  std::vector<int> firstLink_; ///< By rock, in `links_`.
+  std::vector<Link> links_;
+  int sleepers_ = 0;
+  std::vector<int> wider_; ///< Rocks whose displacements have outgrown what was known.
+  double longest_ = 0.0;   ///< Displacement of all, m.
+  RockQueue queue_;        ///< Of those that others have to be told of.
+  std::vector<int> found_;
+  std::vector<char> marks_;
+  std::vector<char> answers_;
+  std::vector<std::size_t> chosen_, asked_;
+  std::vector<int> placed_;
+};
+
+/// Pairs of a part of `near_`.
+constexpr std::size_t kNearPart = 256;
+
+template <class Visit>
+void Meetings::forLinked(Visit&& visit) const
+{
+  for (std::size_t part = 0; part < linkedCounts_.size(); ++part)
+  {
+    const Linked* const first = linked_.data() + part * kNearPart;
+    for (const Linked *l = first, *end = first + linkedCounts_[part]; l != end; ++l)
+    {
+      visit(*l);
+    }
+  }
+}
+
+template <class Visit>
+void Meetings::forPairs(Visit&& visit)
+{
+  for (const Near& n : near_)
+  {
+    if (n.pair)
+    {
+      visit(*n.pair);
+    }
+  }
+}
+
+template <class Visit>
+void Meetings::forNeighbours(int rock, Visit&& visit)
+{
+  for (std::size_t k = firsts_[std::size_t(rock)]; k < firsts_[std::size_t(rock) + 1]; ++k)
+  {
+    visit(places_[k]);
+  }
+  for (const std::size_t k : later_[std::size_t(rock)])
+  {
+    visit(k);
+  }
+}
+
+} // namespace rockfall

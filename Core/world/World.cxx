@@ -1,0 +1,182 @@
+#include "world/World.h"
+
+#include "base/abort.h"
+#include "base/parallel.h"
+#include "law/settings.h"
+#include "world/IslandStepper.h"
+#include "world/Meetings.h"
+#include "world/pairImpacts.h"
+#include "world/raising.h"
+#include "world/sleep.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace rockfall
+{
+
+World::World(const Surface& surface, std::span<const Rock> rocks, std::span<const Block> blocks,
+  const SimulationParameters& parameters, int number)
+  : world_(surface, rocks, parameters)
+{
+  world_.rocks.reserve(rocks.size());
+  for (std::size_t i = 0; i < rocks.size(); ++i)
+  {
+    FallingRock& rock = world_.rocks.add(
+      surface, rocks[i], blocks[i], parameters, std::uint32_t(number) + std::uint32_t(i));
+    if (parameters.rockRockContact)
+    {
+      rock.sim.letStrainFollow();
+    }
+  }
+  if (parameters.rockRockContact)
+  {
+    meetings_ = std::make_unique<Meetings>(world_);
+  }
+}
+
+World::~World() = default;
+
+std::vector<const RockPair*> World::pairs() const
+{
+  std::vector<const RockPair*> pairs;
+  meetings_->forPairs([&](const RockPair& pair) { pairs.push_back(&pair); });
+  return pairs;
+}
+
+void World::release()
+{
+  std::vector<RaisedRock> raised;
+  raised.reserve(world_.rocks.size());
+  std::vector<double> lifts; // of each by itself, m
+  for (FallingRock& rock : world_.rocks)
+  {
+    stayWanted();
+    const BlockState given = rock.sim.state();
+    rock.sim.liftOntoGround();
+    raised.push_back(
+      { &rock.body().block, given, rock.sim.state().position.z() - given.position.z() });
+    lifts.push_back(raised.back().lift);
+  }
+  raiseOthers(raised);
+  for (std::size_t i = 0; i < world_.rocks.size(); ++i)
+  {
+    FallingRock& rock = world_.rocks[i];
+    if (raised[i].lift > lifts[i])
+    {
+      RockBody& body = rock.body();
+      body.state.position.z() = raised[i].state.position.z() + raised[i].lift;
+      body.placed.place(body.block, body.state);
+    }
+    rock.sim.begin();
+  }
+}
+
+std::vector<Trajectory> World::run(const std::function<bool(double)>& goOn, double enough)
+{
+  std::vector<Trajectory> trajectories;
+  trajectories.reserve(world_.rocks.size());
+  if (!meetings_)
+  {
+    for (FallingRock& rock : world_.rocks)
+    {
+      trajectories.push_back(rock.sim.run(enough));
+    }
+    return trajectories;
+  }
+  this->release();
+  while (this->advance() && world_.time < enough && (!goOn || goOn(world_.time)))
+  {
+  }
+  meetings_->forPairs([this](RockPair& pair) { closePairBooks(world_, pair); });
+  for (FallingRock& rock : world_.rocks)
+  {
+    trajectories.push_back(rock.sim.finish());
+  }
+  return trajectories;
+}
+
+void World::tellBroken()
+{
+  if (!world_.surface.terrain().obstacles())
+  {
+    return;
+  }
+  RockSimulator::Broken all;
+  for (FallingRock& rock : world_.rocks)
+  {
+    const RockSimulator::Broken one = rock.sim.takeBroken();
+    all.trees.insert(all.trees.end(), one.trees.begin(), one.trees.end());
+    all.barriers.insert(all.barriers.end(), one.barriers.begin(), one.barriers.end());
+  }
+  if (all.trees.empty() && all.barriers.empty())
+  {
+    return;
+  }
+  for (FallingRock& rock : world_.rocks)
+  {
+    if (rock.sim.hearOf(all) && rock.asleep)
+    {
+      wake(rock, world_.time);
+    }
+  }
+}
+
+bool World::advance()
+{
+  constexpr std::size_t kRocksPerThread = 32; // fewer are not worth a thread of their own
+  const SimulationParameters& p = world_.parameters;
+  const double until = std::min(world_.time + p.timeStep, p.endTime);
+  standBy(int(world_.rocks.size() / kRocksPerThread), [&] { this->step(until); });
+  const bool moving = std::any_of(world_.rocks.begin(), world_.rocks.end(),
+    [](const FallingRock& rock) { return !rock.sim.done(); });
+  return moving && world_.time < p.endTime - 1e-9;
+}
+
+void World::step(double until)
+{
+  const double before = world_.time;
+  meetings_->find(kStruckEarly * (until - before));
+  this->advanceAll(until);
+  world_.time = until;
+  this->tellBroken();
+  this->settle(before);
+}
+
+void World::advanceAll(double until)
+{
+  const std::vector<Island>& islands = meetings_->islands();
+  const std::vector<int>& alone = meetings_->alone();
+  // The largest first: they take longest.
+  order_.resize(islands.size());
+  std::iota(order_.begin(), order_.end(), 0);
+  std::stable_sort(order_.begin(), order_.end(),
+    [&](int a, int b)
+    { return islands[std::size_t(a)].members.size() > islands[std::size_t(b)].members.size(); });
+  const auto advanceOne = [&](std::size_t k)
+  {
+    if (k < islands.size())
+    {
+      IslandStepper(world_, islands[std::size_t(order_[k])]).advance(until);
+      return;
+    }
+    FallingRock& rock = world_.rocks[std::size_t(alone[k - islands.size()])];
+    rock.advanceAlone(until);
+    isStill(world_, rock); // to know when it comes back to an island
+  };
+  forEach(islands.size() + alone.size(), 1, advanceOne);
+}
+
+void World::settle(double before)
+{
+  if (awake)
+  {
+    return;
+  }
+  for (const Island& island : meetings_->islands())
+  {
+    settleIsland(world_, island, before);
+  }
+}
+
+} // namespace rockfall

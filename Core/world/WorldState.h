@@ -1,0 +1,116 @@
+#pragma once
+
+/// @file
+/// The rocks of one mass fall, and what they fall on: the data that its parts pass on.
+
+#include "contact/PlacedBlock.h"
+#include "contact/pairs.h"
+#include "rock/RockSimulator.h"
+#include "rock/rockContacts.h"
+#include "solve/IslandSolver.h"
+
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace rockfall
+{
+
+/// A rock of a mass fall: what it does by itself (`sim`), and where the others meet it.
+struct FallingRock
+{
+  FallingRock(const Surface& surface, const Rock& rock, const Block& block,
+    const SimulationParameters& parameters, std::uint32_t number)
+    : sim(surface, rock, block, parameters, number)
+  {
+  }
+  RockBody& body() { return sim.body(); }
+  const RockBody& body() const { return sim.body(); }
+  /// `placed` and `hull` for where the rock is, unless they are.
+  void stand();
+  /// Takes `end` and `endHull` on as where it stands, and returns whether it does.
+  bool arrive();
+  /// Moves on by itself, meeting no other, to a time (s).
+  void advanceAlone(double until);
+
+  /// A place from which the rock has not gone far since a time, s.
+  struct Place
+  {
+    double time = 0.0;
+    Vec3 position = Vec3::Zero();        ///< m
+    Quat orientation = Quat::Identity(); ///< Body to world.
+
+    Place() = default;
+    Place(const BlockState& s)
+      : time(s.time)
+      , position(s.position)
+      , orientation(s.orientation)
+    {
+    }
+  };
+
+  // Members that the step of an island needs lie together, before and behind where `sim` begins.
+  Place stayed;
+  Place lingered;  ///< The same, further and for longer.
+  PlacedBlock end; ///< Of the step at hand, as long as it is being solved.
+  PairBody hull;
+  PairBody endHull;
+  int place = -1;        ///< Among the bodies of its island in the step at hand.
+  bool touching = false; ///< Touched others where its island's last step ended.
+  bool asleep = false;
+  RockSimulator sim;
+};
+
+/// All of them in one piece of memory: a step goes over them again and again, in their order.
+class FallingRocks
+{
+public:
+  void reserve(std::size_t count) { all_.reserve(count); }
+  template <class... Of>
+  FallingRock& add(Of&&... of)
+  {
+    FallingRock& added = all_.emplace_back(std::forward<Of>(of)...);
+    first_ = all_.data();
+    return added;
+  }
+  FallingRock& operator[](std::size_t i) { return first_[i]; }
+  const FallingRock& operator[](std::size_t i) const { return first_[i]; }
+  std::size_t size() const { return all_.size(); }
+  FallingRock* begin() { return first_; }
+  FallingRock* end() { return first_ + all_.size(); }
+  const FallingRock* begin() const { return first_; }
+  const FallingRock* end() const { return first_ + all_.size(); }
+
+private:
+  std::vector<FallingRock> all_;
+  FallingRock* first_ = nullptr;
+};
+
+struct WorldState
+{
+  WorldState(const Surface& s, std::span<const Rock> all, const SimulationParameters& p)
+    : surface(s)
+    , parameters(p)
+    , contacts(all, p)
+  {
+  }
+
+  const Surface& surface;
+  const SimulationParameters& parameters;
+  RockContacts contacts; ///< Laws of the rocks on each other.
+  FallingRocks rocks;
+  double time = 0.0; ///< s
+};
+
+/// Rocks that may touch each other within a step, in the order of their numbers.
+struct Island
+{
+  std::vector<int> members;
+  std::vector<RockPair*> pairs;
+};
+
+/// Motion of the points of two rocks against each other, as they are.
+PairMotion motionOf(const WorldState& world, const RockPair& pair);
+
+} // namespace rockfall

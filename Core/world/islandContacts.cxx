@@ -1,0 +1,106 @@
+// Contacts of an island where a step begins.
+
+#include "world/IslandStepper.h"
+
+#include "base/parallel.h"
+#include "law/settings.h"
+#include "world/pairSprings.h"
+#include "world/stepLayout.h"
+
+#include <algorithm>
+
+namespace rockfall
+{
+
+void IslandStepper::gatherContacts(double h)
+{
+  work_.sides.resize(world_.rocks.size());
+  const auto stand = [&](std::size_t k)
+  {
+    const std::size_t i = std::size_t(island_.members[k]);
+    work_.sides[i].set(world_.rocks[i].body());
+  };
+  forEach(island_.members.size(), kRockGrain, stand);
+  findPushes(island_, work_);
+  forEach(island_.members.size(), kRockGrain, [&](std::size_t k) { this->gatherOnSlope(k, h); });
+  forEach(island_.pairs.size(), kPairGrain, [&](std::size_t p) { this->gatherOfPair(p, h); });
+}
+
+double IslandStepper::reachOf(double speed, double radius, double h) const
+{
+  return kFasterApproach * speed * h + world_.parameters.gravity * h * h + 1e-6 * radius;
+}
+
+void IslandStepper::gatherOnSlope(std::size_t k, double h)
+{
+  FallingRock& rock = world_.rocks[std::size_t(island_.members[k])];
+  RockSimulator& sim = rock.sim;
+  RockBody& body = rock.body();
+  if (body.done)
+  {
+    return;
+  }
+  rock.stand();
+  IslandWork::Side& side = work_.sides[std::size_t(island_.members[k])];
+  const double r = body.block.radius();
+  const double spread = body.state.spin.norm() * r + side.pushed;
+  const double speed = body.state.velocity.norm() + body.state.spin.norm() * r + side.pushed;
+  const double reach = this->reachOf(speed, r, h);
+  body.inIsland = true;
+  // Twice: beyond a concave edge planes serve a little further than their triangles.
+  if (sim.isHigh(2.0 * reach))
+  {
+    sim.closeScar();
+    sim.armContacts(h);
+    return;
+  }
+  body.placed.placeVertices();
+  const auto find = [&]() -> const CandidatePairs&
+  {
+    const CandidatePairs& near = sim.candidatesNow(rock.hull,
+      { body.state.velocity, spread, kFasterApproach * h,
+        world_.parameters.gravity * h * h + kSurelyOnSlope * r, reach });
+    sim.findContacts(near, reach, 0.0);
+    return near;
+  };
+  const CandidatePairs* near = &find();
+  while (sim.meetsSolids() && sim.breakTrees(h))
+  {
+    near = &find();
+  }
+  while (sim.meetsYielding() && sim.followScar(h))
+  {
+    near = &find();
+  }
+  if (sim.meetsSolids())
+  {
+    side.set(body); // what broke has taken speed
+  }
+  sim.holdOverlaps(*near);
+  stiffenPressed(sim);
+  sim.armContacts(h);
+}
+
+void IslandStepper::gatherOfPair(std::size_t p, double h)
+{
+  RockPair& pair = *island_.pairs[p];
+  const IslandWork::Side& a = work_.sides[std::size_t(pair.first)];
+  const IslandWork::Side& b = work_.sides[std::size_t(pair.second)];
+  if (a.done || b.done)
+  {
+    pair.contacts.clear();
+    pair.axis.distance = std::max(0.0, pair.axis.distance);
+    return;
+  }
+  const PairMotion motion = work_.motionOf(pair);
+  const double rims = a.rim + b.rim, smaller = std::min(a.radius, b.radius);
+  const double reach = this->reachOf(motion.velocity.norm() + rims, smaller, h);
+  const PairBody& first = world_.rocks[std::size_t(pair.first)].hull;
+  const PairBody& second = world_.rocks[std::size_t(pair.second)].hull;
+  // The look at the end finds the others, should they be needed; what closes is given springs then.
+  const ClosingGaps closing = { motion, kFasterApproach * h,
+    world_.parameters.gravity * h * h + kSurely * smaller, rims };
+  updatePair(first, second, reach, pair, &closing);
+}
+
+} // namespace rockfall

@@ -1,0 +1,344 @@
+// Pairs of rocks near each other that may meet within the step, by the bounds of meetingsNear.cxx;
+// velocities and displacements that rocks pass on: meetingsReach.cxx; islands: Meetings.cxx.
+
+#include "world/Meetings.h"
+
+#include "base/parallel.h"
+#include "law/settings.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rockfall
+{
+
+namespace
+{
+
+constexpr std::size_t kLookGrain = 16;
+
+} // namespace
+
+/// From now on the gap is bounded along the pair's axis.
+void Meetings::lookAlong(Near& n) const
+{
+  const Mover &a = movers_[std::size_t(n.first)], &b = movers_[std::size_t(n.second)];
+  n.normal = n.pair->axis.normal;
+  n.offset =
+    n.pair->axis.distance - n.normal.dot(a.position - b.position) + a.rimTravel + b.rimTravel;
+}
+
+double Meetings::gap(const Near& n) const
+{
+  const Mover &a = movers_[std::size_t(n.first)], &b = movers_[std::size_t(n.second)];
+  return n.offset + n.normal.dot(a.position - b.position) - a.rimTravel - b.rimTravel;
+}
+
+/// Least distance of the two, along the axis and by their bounding spheres, m.
+double Meetings::apart(const Near& n) const
+{
+  const Mover &a = movers_[std::size_t(n.first)], &b = movers_[std::size_t(n.second)];
+  return std::max(this->gap(n), (a.position - b.position).norm() - a.radius - b.radius);
+}
+
+/// Speed at which the gap may close along its normal, m/s.
+inline double Meetings::closing(const Near& n) const
+{
+  const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
+  return closingSpeed(bounds_[std::size_t(roots_[i])], paces_[i], bounds_[std::size_t(roots_[j])],
+    paces_[j], n.normal);
+}
+
+/// The widest gap over which the two may meet.
+inline double Meetings::reach(const Near& n) const
+{
+  const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
+  const double faster = std::max(thrown_[i], thrown_[j]);
+  const double speed = n.offset > kNoAxis ? faster * this->closing(n) : -kNoAxis;
+  return std::min(fars_[i] + fars_[j], speed * duration_) + sag_;
+}
+
+bool Meetings::mayMeet(const Open& o) const
+{
+  // By their displacements alone first: that tells most of them apart.
+  return o.apart <= fars_[std::size_t(o.first)] + fars_[std::size_t(o.second)] + sag_ &&
+    o.apart <= this->reach(near_[std::size_t(o.near)]);
+}
+
+bool Meetings::isAsleep(int first, int second) const
+{
+  return movers_[std::size_t(first)].asleep && movers_[std::size_t(second)].asleep;
+}
+
+/// Whether two rocks that stand may meet; finds their axis as far as that needs it.
+bool Meetings::meet(std::size_t k)
+{
+  Near& n = near_[k];
+  RockPair& pair = *n.pair;
+  for (;;)
+  {
+    const double reach = this->reach(n);
+    const bool exact = n.looked >= 0.0 && pair.axis.distance <= n.looked;
+    if (exact || n.looked >= reach)
+    {
+      aparts_[k] = this->apart(n);
+      return exact && this->gap(n) <= reach;
+    }
+    const bool stands =
+      n.looked < 0.0 && pair.seen && (pair.axis.distance <= 0.0 || pair.axis.distance > reach);
+    if (n.looked < 0.0 && !pair.seen)
+    {
+      pair.before = pair.axis;
+    }
+    if (!stands)
+    {
+      pair.axis = findAxis(world_.rocks[std::size_t(n.first)].hull,
+        world_.rocks[std::size_t(n.second)].hull, pair.axis, reach);
+    }
+    pair.seen = false;
+    n.looked = reach;
+    this->lookAlong(n);
+    // Along this axis the velocities may tell more, or less: then once more.
+  }
+}
+
+/// Looks at all pairs near each other before the first of them are linked.
+void Meetings::look()
+{
+  const std::size_t count = near_.size(), parts = (count + kNearPart - 1) / kNearPart;
+  states_.resize(count);
+  aparts_.resize(count);
+  sighted_.resize(std::max(count, sighted_.size()));
+  others_.resize(std::max(count, others_.size()));
+  left_.resize(parts);
+  const auto lookAtPart = [this, count, nears = near_.data(), rocks = movers_.data(),
+                            aparts = aparts_.data(), states = states_.data()](std::size_t part)
+  {
+    const std::size_t first = part * kNearPart, last = std::min(count, first + kNearPart);
+    Open* open = sighted_.data() + first;
+    std::size_t* other = others_.data() + first;
+    for (std::size_t k = first; k < last; ++k)
+    {
+      Near& n = nears[k];
+      const Mover &a = rocks[std::size_t(n.first)], &b = rocks[std::size_t(n.second)];
+      const Vec3 between = a.position - b.position;
+      const double distance2 = between.squaredNorm();
+      const double known = a.known + b.known, radii = a.radius + b.radius;
+      const bool asleep = a.asleep && b.asleep;
+      if ((!asleep && distance2 > (radii + known) * (radii + known)) || !a.present || !b.present)
+      {
+        // Without a pair there is nothing to forget.
+        states[k] = Sight::Apart;
+        *other = k;
+        other += n.pair != nullptr;
+        continue;
+      }
+      n.wasLinked = n.linked;
+      n.linked = false;
+      n.looked = -1.0;
+      const double rimTravel = a.rimTravel + b.rimTravel;
+      bool overlap = false;
+      if (n.holds && n.pair->seen) // found where they stand
+      {
+        const PairAxis& axis = n.pair->axis;
+        n.normal = axis.normal;
+        n.offset = axis.distance - n.normal.dot(between) + rimTravel;
+        overlap = axis.distance <= 0.0;
+      }
+      const double apart =
+        std::max(n.offset + n.normal.dot(between) - rimTravel, std::sqrt(distance2) - radii);
+      aparts[k] = apart;
+      if (asleep || (!overlap && apart > known))
+      {
+        states[k] = asleep || n.holds || n.wasLinked ? Sight::Shut : Sight::Apart;
+        continue;
+      }
+      states[k] = overlap ? Sight::Overlaps : Sight::Open;
+      *open = { apart, n.first, n.second, int(k) };
+      open += !overlap;
+      *other = k;
+      other += overlap;
+    }
+    left_[part] = { std::size_t(open - sighted_.data()) - first,
+      std::size_t(other - others_.data()) - first };
+  };
+  forEach(parts, 1, lookAtPart);
+  open_.clear();
+  for (std::size_t part = 0; part < parts; ++part)
+  {
+    const Open* const from = sighted_.data() + part * kNearPart;
+    open_.insert(open_.end(), from, from + left_[part].open);
+    const std::size_t* const other = others_.data() + part * kNearPart;
+    for (std::size_t k = 0; k < left_[part].others; ++k)
+    {
+      if (states_[other[k]] == Sight::Overlaps)
+      {
+        this->join(other[k], false);
+      }
+      else
+      {
+        this->drop(near_[other[k]]);
+      }
+    }
+  }
+}
+
+Meetings::Open Meetings::openOf(std::size_t k) const
+{
+  return { aparts_[k], near_[k].first, near_[k].second, int(k) };
+}
+
+/// Takes up those about rocks whose displacements have outgrown what was known.
+void Meetings::widen()
+{
+  for (std::size_t k = states_.size(); k < near_.size(); ++k)
+  {
+    states_.push_back(Sight::Shut);
+    aparts_.push_back(this->apart(near_[k]));
+  }
+  for (const int rock : wider_)
+  {
+    const auto take = [&](std::size_t k)
+    {
+      const Mover &a = movers_[std::size_t(near_[k].first)],
+                  &b = movers_[std::size_t(near_[k].second)];
+      if (states_[k] != Sight::Shut && states_[k] != Sight::Apart)
+      {
+        return;
+      }
+      aparts_[k] = a.present && b.present ? this->apart(near_[k]) : -kNoAxis;
+      if (aparts_[k] <= a.known + b.known)
+      {
+        states_[k] = Sight::Open;
+        open_.push_back(this->openOf(k));
+      }
+    };
+    this->forNeighbours(rock, take);
+  }
+}
+
+/// Displacements of rocks as their islands have grown.
+void Meetings::widenIslands()
+{
+  wider_.clear();
+  for (std::size_t i = 0; i < movers_.size(); ++i)
+  {
+    // Parents come before their children.
+    roots_[i] = parents_[i] = roots_[std::size_t(parents_[i])];
+    Mover& m = movers_[i];
+    if (bounds_[std::size_t(roots_[i])].size == 1)
+    {
+      continue;
+    }
+    thrown_[i] = this->thrown(i);
+    fars_[i] = thrown_[i] * m.displacement;
+    if (fars_[i] + sag_ > m.known && m.present && !m.asleep)
+    {
+      m.known = kWider * (fars_[i] + sag_);
+      wider_.push_back(int(i));
+      if (!this->isCovered(i))
+      {
+        this->cover(int(i));
+      }
+    }
+  }
+  if (!wider_.empty())
+  {
+    this->widen();
+  }
+}
+
+/// Of the pairs that are open, those that may meet.
+void Meetings::choose()
+{
+  chosen_.clear();
+  Open* const first = open_.data();
+  Open* to = first;
+  const double* const fars = fars_.data();
+  for (const Open *o = first, *end = first + open_.size(); o != end; ++o)
+  {
+    if (o->apart <= fars[o->first] + fars[o->second] + sag_)
+    {
+      if (near_[std::size_t(o->near)].linked)
+      {
+        continue;
+      }
+      if (!this->isAsleep(o->first, o->second) && this->mayMeet(*o))
+      {
+        chosen_.push_back(std::size_t(to - first));
+      }
+    }
+    *to++ = *o;
+  }
+  open_.resize(std::size_t(to - first));
+}
+
+/// Looks at all that are open; returns whether others have to be told of what it has shown.
+bool Meetings::sweep()
+{
+  this->widenIslands();
+  this->choose();
+  bool any = false;
+  asked_.clear();
+  placed_.clear();
+  for (const std::size_t o : chosen_)
+  {
+    const std::size_t k = std::size_t(open_[o].near);
+    Near& n = near_[k];
+    if (n.pair && n.looked < 0.0 && this->root(n.first) == this->root(n.second))
+    {
+      // Of one island they are: how far apart is looked at when their contacts are.
+      this->join(k, false);
+      any = true;
+      continue;
+    }
+    n.pair = n.pair ? n.pair : this->newPair(n.first, n.second);
+    asked_.push_back(o);
+    for (const int i : { n.first, n.second })
+    {
+      if (!marks_[std::size_t(i)])
+      {
+        marks_[std::size_t(i)] = 1;
+        placed_.push_back(i);
+      }
+    }
+  }
+  forEach(placed_.size(), kLookGrain,
+    [&](std::size_t k) { world_.rocks[std::size_t(placed_[k])].stand(); });
+  answers_.resize(std::max(answers_.size(), asked_.size()));
+  forEach(asked_.size(), kLookGrain,
+    [&](std::size_t k) { answers_[k] = this->meet(std::size_t(open_[asked_[k]].near)); });
+  for (const int i : placed_)
+  {
+    marks_[std::size_t(i)] = 0;
+  }
+  for (std::size_t a = 0; a < asked_.size(); ++a)
+  {
+    Open& o = open_[asked_[a]];
+    o.apart = aparts_[std::size_t(o.near)];
+    if (answers_[a])
+    {
+      this->join(std::size_t(o.near), true);
+      any = true;
+    }
+  }
+  return any;
+}
+
+void Meetings::link()
+{
+  firstLink_.assign(movers_.size(), -1);
+  links_.clear();
+  links_.reserve(near_.size());
+  queue_.reset(movers_.size(), longest_);
+  this->look();
+  this->tell();
+  while (this->sweep())
+  {
+    this->tell();
+  }
+  this->settle();
+  this->unite();
+}
+
+} // namespace rockfall

@@ -1,0 +1,124 @@
+// Velocities of their island and rest of their displacements, which rocks that may meet pass on to
+// each other.
+
+#include "world/Meetings.h"
+
+#include "law/settings.h"
+#include "world/sleep.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace rockfall
+{
+
+int Meetings::root(int i)
+{
+  return headOf(parents_, i);
+}
+
+double Meetings::thrown(std::size_t rock) const
+{
+  return bounds_[std::size_t(roots_[rock])].thrown(paces_[rock].mass, bounciest_);
+}
+
+/// Links two; `known`: their axis has been found for where they stand.
+void Meetings::join(std::size_t k, bool known)
+{
+  Near& n = near_[k];
+  n.linked = n.holds = true;
+  states_[k] = Sight::Linked;
+  n.pair->linked = true;
+  n.pair->known = known;
+  const auto linkTo = [&](int i, int other)
+  {
+    const int next = std::exchange(firstLink_[std::size_t(i)], int(links_.size()));
+    links_.push_back({ aparts_[k], other, next });
+    Mover& m = movers_[std::size_t(i)];
+    if (m.asleep)
+    {
+      wake(world_.rocks[std::size_t(i)], world_.time);
+      m.asleep = false;
+      --sleepers_;
+    }
+    queue_.add(i, m.displacement);
+  };
+  linkTo(n.first, n.second);
+  linkTo(n.second, n.first);
+  const int a = this->root(n.first), b = this->root(n.second);
+  if (a != b)
+  {
+    parents_[std::size_t(std::max(a, b))] = std::min(a, b);
+    bounds_[std::size_t(std::min(a, b))].add(bounds_[std::size_t(std::max(a, b))]);
+  }
+}
+
+/// All that lies on each other wakes at once; others have their turn in the next sweep.
+void Meetings::wakeAbout(int rock)
+{
+  const auto visit = [&](std::size_t k)
+  {
+    Near& n = near_[k];
+    const Mover& other = movers_[std::size_t(n.first == rock ? n.second : n.first)];
+    if (k >= states_.size() || n.linked || !other.asleep || !other.present)
+    {
+      return;
+    }
+    aparts_[k] = this->apart(n);
+    if (this->mayMeet(this->openOf(k)))
+    {
+      n.pair = n.pair ? n.pair : this->newPair(n.first, n.second);
+      world_.rocks[std::size_t(n.first)].stand();
+      world_.rocks[std::size_t(n.second)].stand();
+      if (this->meet(k))
+      {
+        this->join(k, true);
+      }
+    }
+  };
+  this->forNeighbours(rock, visit);
+}
+
+/// Passes the rest of a rock's displacement on to those that it is linked with.
+void Meetings::passOn(int rock)
+{
+  Mover* const rocks = movers_.data();
+  const double displacement = rocks[rock].displacement;
+  const Link* const links = links_.data();
+  for (int l = firstLink_[std::size_t(rock)]; l >= 0; l = links[l].next)
+  {
+    Mover& other = rocks[links[l].other];
+    if (displacement > other.displacement * kNoMore)
+    {
+      // The gap must be crossed first, by both together.
+      const double own = paces_[std::size_t(links[l].other)].own;
+      const double left = displacement -
+        std::max(0.0, links[l].gap) * displacement / std::max(displacement + own, 1e-12);
+      if (left > other.displacement * kNoMore)
+      {
+        other.displacement = left;
+        queue_.add(links[l].other, left);
+      }
+    }
+  }
+}
+
+/// Carries on what each rock that has been joined may do to those that it may meet: the longest
+/// displacement first, so that few have their turn twice.
+void Meetings::tell()
+{
+  for (int i = queue_.next(); i >= 0; i = queue_.next())
+  {
+    const std::size_t rock = std::size_t(i);
+    roots_[rock] = this->root(i);
+    thrown_[rock] = this->thrown(rock);
+    fars_[rock] = thrown_[rock] * movers_[rock].displacement;
+    if (sleepers_ > 0)
+    {
+      this->wakeAbout(i);
+    }
+    this->passOn(i);
+  }
+}
+
+} // namespace rockfall

@@ -1,0 +1,107 @@
+#include "world/sleep.h"
+
+#include "base/parallel.h"
+#include "law/settings.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+namespace rockfall
+{
+
+bool isStill(const WorldState& world, FallingRock& rock)
+{
+  const RockBody& body = rock.body();
+  if (body.done)
+  {
+    return true;
+  }
+  const double r = body.block.radius();
+  const auto displacementFrom = [&](const FallingRock::Place& place)
+  { return (body.state.position - place.position).norm(); };
+  const auto turnFrom = [&](const FallingRock::Place& place)
+  { return r * body.state.orientation.angularDistance(place.orientation); };
+  const double unit = std::sqrt(std::max(world.parameters.gravity, kLeastGravity) * r); // m/s
+  // Most go so far that how far they turn does not matter.
+  const double still = kStillSpeed * unit * kStillTime,
+               displacement = displacementFrom(rock.stayed);
+  if (displacement > still || displacement + turnFrom(rock.stayed) > still)
+  {
+    rock.stayed = body.state;
+  }
+  const double near = kLingerWay * r, further = displacementFrom(rock.lingered);
+  const auto turns = [&] { return r * body.state.spin.norm() > kLingerRim * unit; };
+  if (further > near || (turns() && further + turnFrom(rock.lingered) > near))
+  {
+    rock.lingered = body.state;
+  }
+  return world.time - rock.stayed.time >= kStillTime ||
+    world.time - rock.lingered.time >= kLingerTime;
+}
+
+void restAnew(FallingRock& rock)
+{
+  RockBody& body = rock.body();
+  if (!body.done)
+  {
+    rock.stayed = rock.lingered = body.state;
+    body.quietTime = 0.0;
+  }
+}
+
+void putToSleep(FallingRock& rock)
+{
+  rock.asleep = true;
+  rock.sim.end(Fate::Rested);
+  RockBody& body = rock.body();
+  body.state.velocity.setZero();
+  body.state.spin.setZero();
+  body.acceleration.setZero();
+  body.spinAcceleration.setZero();
+}
+
+void wake(FallingRock& rock, double time)
+{
+  rock.asleep = false;
+  rock.sim.wake(time);
+  rock.stayed = rock.lingered = rock.sim.state();
+}
+
+bool touchedLately(const RockPair& pair, double time)
+{
+  return pair.touchedAt > time - kStillTime;
+}
+
+void settleIsland(WorldState& world, const Island& island, double since)
+{
+  constexpr std::size_t kStayGrain = 64;
+  std::atomic<bool> still = true, gone = false;
+  const auto look = [&](std::size_t k)
+  {
+    FallingRock& rock = world.rocks[std::size_t(island.members[k])];
+    if (!isStill(world, rock))
+    {
+      still.store(false, std::memory_order_relaxed);
+    }
+    if (rock.sim.done() && !rock.asleep && rock.sim.state().time > since)
+    {
+      gone.store(true, std::memory_order_relaxed);
+    }
+  };
+  forEach(island.members.size(), kStayGrain, look);
+  for (const int i : island.members)
+  {
+    FallingRock& rock = world.rocks[std::size_t(i)];
+    if (gone)
+    {
+      restAnew(rock);
+    }
+    else if (still && !rock.sim.done())
+    {
+      putToSleep(rock);
+    }
+  }
+}
+
+} // namespace rockfall

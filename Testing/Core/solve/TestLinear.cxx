@@ -1,0 +1,50 @@
+// Small dense systems, beside Eigen's.
+
+#include "base/types.h"
+#include "solve/linear.h"
+
+#include <Eigen/LU>
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+using namespace rockfall;
+
+TEST(Linear, SolvesAndInvertsWhatIsNotSymmetric)
+{
+  std::mt19937 random(4);
+  std::normal_distribution<double> u;
+  for (int k = 0; k < 1000; ++k)
+  {
+    Mat6 a;
+    Vec6 b;
+    for (int i = 0; i < 6; ++i)
+    {
+      b[i] = u(random);
+      for (int j = 0; j < 6; ++j)
+      {
+        // Every third one has a zero where the first pivot would be.
+        a(i, j) = k % 3 == 0 && i == 0 && j == 0 ? 0.0 : u(random);
+      }
+    }
+    const Mat6 expected = a.inverse();
+    const double tolerance = 1e-13 * a.norm() * expected.norm() * expected.norm(); // conditioning
+    Mat6 inverse = a;
+    ASSERT_TRUE(invertInPlace<6>(inverse, 1e-14)) << k;
+    EXPECT_LT((inverse - expected).norm(), tolerance) << k;
+    const Vec6 x = expected * b;
+    Mat6 matrix = a;
+    EXPECT_LT((solveInPlace<6>(matrix, b) - x).norm(), tolerance * b.norm() + tolerance) << k;
+  }
+}
+
+TEST(Linear, SingularMatrixHasNoInverse)
+{
+  Mat6 a = Mat6::Identity();
+  a.row(3) = a.row(2);
+  EXPECT_FALSE(invertInPlace<6>(a, 1e-14));
+  Mat6 nearly = Mat6::Identity();
+  nearly(5, 5) = 1e-15;
+  EXPECT_FALSE(invertInPlace<6>(nearly, 1e-14));
+}
