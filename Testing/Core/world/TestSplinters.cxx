@@ -194,8 +194,8 @@ TEST(Splinters, WhatFliesIsOverTheSlope)
   }
 }
 
-// Newton's law of restitution with friction may make energy under a long lever: a bounce is held
-// back to what makes none.
+// Newton's law of restitution with friction may make energy under a long lever: an impact is scaled
+// down to what makes none.
 TEST(Splinters, BounceMakesNoEnergy)
 {
   std::mt19937 random(41);
@@ -257,7 +257,6 @@ TEST(Splinters, BounceMakesNoEnergy)
     {
       energy += rigidKineticEnergy(blocks[i], states[i]);
     }
-    // A bounce may give up to 1e-3 of what comes in; what is held back is held in three rounds.
     const double incoming = 0.5 * c.normalForce * request.duration * approach;
     EXPECT_LT(energy, 0.01 * incoming) << "case " << k;
     if (!rough)
