@@ -306,7 +306,7 @@ inline constexpr double kSameBreak = 1e-9;
 
 /// Largest friction angle, degrees, drawn ones too: tan φ is 57 here.
 inline constexpr double kSteepestFriction = 89.0;
-/// Distance of the knots of a unconverged field in correlation lengths ℓ. The cubic B-spline, as a
+/// Distance of the knots of a rough field in correlation lengths ℓ. The cubic B-spline, as a
 /// kernel on white noise, has the variance of exp(−2 r²/ℓ²) at √3/2; here the correlation is within
 /// 0.011 of exp(−(r/ℓ)²) at all lags, and the slope within 1 % of √2 σ/ℓ.
 inline constexpr double kFieldKnots = 0.84;

@@ -2,6 +2,7 @@
 
 #include "base/parallel.h"
 #include "law/settings.h"
+#include "solve/softSweep.h"
 
 #include <algorithm>
 #include <atomic>
@@ -99,56 +100,6 @@ double SoftSolver::gapOf(const Row& r, const RowStart& start) const
     motion -= b.displacement + b.turn.cross(r.lever + (a.start - b.start));
   }
   return start.gap0 + r.normal.dot(motion);
-}
-
-Vec3 SoftSolver::speedOfA(const Row& r, const std::vector<Motion>& motions)
-{
-  const Motion& a = motions[std::size_t(r.a)];
-  return a.velocity + a.spin.cross(r.lever);
-}
-
-Vec3 SoftSolver::speedOf(const Row& r, const std::vector<Motion>& motions)
-{
-  Vec3 u = speedOfA(r, motions);
-  if (r.b >= 0)
-  {
-    const Motion& b = motions[std::size_t(r.b)];
-    u -= b.velocity + b.spin.cross(r.leverB);
-  }
-  return u;
-}
-
-void SoftSolver::limitTo(Vec3& T, double most)
-{
-  const double size2 = T.squaredNorm();
-  if (size2 > most * most)
-  {
-    T *= most / std::sqrt(size2);
-  }
-}
-
-void SoftSolver::push(int i, const Vec3& J, const Vec3& lever)
-{
-  Motion& m = motions_[std::size_t(i)];
-  m.velocity += m.inverseMass * J;
-  const Vec3 moment = lever.cross(J);
-  if (m.inverseMoment > 0.0)
-  {
-    m.spin += m.inverseMoment * moment;
-    return;
-  }
-  Mover& mover = movers_[std::size_t(i)];
-  mover.momentum += moment;
-  m.spin += mover.inverseInertia * moment;
-}
-
-void SoftSolver::push(const Row& r, const Vec3& J)
-{
-  if (r.b >= 0)
-  {
-    this->push(r.b, -J, r.leverB);
-  }
-  this->push(r.a, J, r.lever);
 }
 
 void SoftSolver::book(const Row& r, double along, const Vec3& across, const Vec3& mean,
@@ -285,21 +236,6 @@ bool SoftSolver::press(Row& r)
   return squeezes;
 }
 
-Vec3 SoftSolver::rub(Row& r, double P, const Vec3& across)
-{
-  Vec3 T = r.T - r.shearMass * across;
-  T -= T.dot(r.normal) * r.normal;
-  limitTo(T, frictionLimit(r, P));
-  const Vec3 dT = T - r.T;
-  r.T = T;
-  return dT;
-}
-
-double SoftSolver::frictionLimit(const Row& r, double P)
-{
-  return r.friction * P + std::min(r.cohesion, 20.0 * P);
-}
-
 bool SoftSolver::relax(Row& r)
 {
   if (r.P == 0.0)
@@ -335,10 +271,10 @@ template <class Sweep>
 void SoftSolver::sweep(int least, Sweep&& sweepRow)
 {
   tick_ += 2;
-  bool again = true;
-  for (int sweep = 0; sweep < least || (again && sweep < kMostSweeps); ++sweep, ++tick_)
+  std::size_t rows = kRowGrain; // of rocks that have moved, about
+  for (int sweep = 0; sweep < least || (rows > 0 && sweep < kMostSweeps); ++sweep, ++tick_)
   {
-    std::atomic<bool> any = false;
+    std::atomic<std::size_t> moving = 0;
     const auto sweepStrip = [&](std::size_t strip)
     {
       if (sweep >= least && !this->stripMoves(strip))
@@ -358,12 +294,12 @@ void SoftSolver::sweep(int least, Sweep&& sweepRow)
         {
           this->noteMoved(manifold);
           stampOfStrip_[strip] = tick_;
-          any.store(true, std::memory_order_relaxed);
+          moving.fetch_add(manifold.end - manifold.first, std::memory_order_relaxed);
         }
       }
     };
-    this->forStrips(sweepStrip);
-    again = any;
+    this->forStrips(sweepStrip, sweep < least ? kRowGrain : rows);
+    rows = moving;
   }
 }
 

@@ -171,8 +171,9 @@ private:
   /// other, so far that it weighs otherwise.
   bool place(Row& row) const;
   void prepareImpulses(std::size_t row, const IslandContact& contact);
+  /// visit(strip), by the calling thread alone if there are only few rows to go over.
   template <class Visit>
-  void forStrips(Visit&& visit) const; ///< visit(strip)
+  void forStrips(Visit&& visit, std::size_t rows = kRowGrain) const;
   template <class Visit>
   void forBusy(Visit&& visit); ///< visit(row's number) of those that are not idle, strip by strip
   template <class Visit>
@@ -210,9 +211,10 @@ private:
   void strike(std::size_t manifold, std::vector<std::size_t>& struck);
   double leaves(std::size_t row) const; ///< Speed after an impact, m/s.
   void link();
+  std::size_t countStruck() const; ///< Rows that are to strike.
   void strikeGenerations(double time);
   void beginImpacts(Generation& generation) const;
-  void settleImpacts();
+  void settleImpacts(std::size_t count);
   bool settle(Impact& impact); ///< Whether it changed by more than it is exact to.
   /// The factor on all impulses with which they give no more than was there.
   double shareOfImpacts() const;
@@ -277,11 +279,12 @@ private:
 };
 
 template <class Visit>
-void SoftSolver::forStrips(Visit&& visit) const
+void SoftSolver::forStrips(Visit&& visit, std::size_t rows) const
 {
   for (const int first : { 0, 1 })
   {
-    forEach(std::size_t(strips_ - first + 1) / 2, 1,
+    const std::size_t count = std::size_t(strips_ - first + 1) / 2;
+    forEach(count, rows < kRowGrain ? count : 1,
       [&](std::size_t k) { visit(std::size_t(first) + 2 * k); });
   }
 }

@@ -93,8 +93,7 @@ enum class Accept : std::uint8_t
 
 struct IslandOutcome
 {
-  bool settled = false;
-  bool unconverged = false;  ///< Rocks are deep in each other; counted where it is accepted.
+  bool settled = false;      ///< No rocks are deep in each other that were not.
   bool accepted = false;     ///< Bodies and contacts are those at the end of the step.
   int iterations = 0;        ///< Substeps.
   double frictionWork = 0.0; ///< Between rocks, J.

@@ -3,11 +3,12 @@
 
 #include "base/parallel.h"
 #include "law/settings.h"
-#include "solve/SoftSolver.h"
+#include "solve/softSweep.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numeric>
 
 namespace rockfall
 {
@@ -106,34 +107,38 @@ double SoftSolver::leaves(std::size_t row) const
   return -start.before * c.restitutionAt(-start.before);
 }
 
+std::size_t SoftSolver::countStruck() const
+{
+  return std::accumulate(generations_.begin(), generations_.end(), std::size_t(0),
+    [](std::size_t sum, const Generation& g) { return sum + g.struck.size(); });
+}
+
 void SoftSolver::strikeGenerations(double time)
 {
-  const auto any = [this]
-  {
-    return std::any_of(generations_.begin(), generations_.end(),
-      [](const Generation& g) { return !g.struck.empty(); });
-  };
-  if (!any())
+  std::size_t struck = this->countStruck();
+  if (struck == 0)
   {
     return;
   }
-  for (int number = 1; number <= kGenerations && any(); ++number)
+  for (int number = 1; number <= kGenerations && struck > 0; ++number)
   {
-    forEach(generations_.size(), 1, [this](std::size_t s) { this->beginImpacts(generations_[s]); });
-    this->settleImpacts();
+    this->forStrips([this](std::size_t s) { this->beginImpacts(generations_[s]); }, struck);
+    this->settleImpacts(struck);
     const double share = this->shareOfImpacts();
     if (share < 1.0)
     {
-      this->forStrips([&](std::size_t s) { this->takeBack(generations_[s], share); });
+      this->forStrips([&](std::size_t s) { this->takeBack(generations_[s], share); }, struck);
     }
-    this->forStrips([&](std::size_t s) { this->bookImpacts(generations_[s], share, time); });
+    this->forStrips(
+      [&](std::size_t s) { this->bookImpacts(generations_[s], share, time); }, struck);
     if (number < kGenerations)
     {
       this->link();
-      this->forStrips([&](std::size_t s) { this->findStruck(s, number); });
+      this->forStrips([&](std::size_t s) { this->findStruck(s, number); }, struck);
     }
+    struck = this->countStruck();
   }
-  this->forStrips([this](std::size_t s) { this->listWoken(s); });
+  this->forStrips([this](std::size_t s) { this->listWoken(s); }, 0);
 }
 
 void SoftSolver::beginImpacts(Generation& generation) const
@@ -151,7 +156,7 @@ void SoftSolver::beginImpacts(Generation& generation) const
   generation.struck.clear();
 }
 
-void SoftSolver::settleImpacts()
+void SoftSolver::settleImpacts(std::size_t count)
 {
   tick_ += 2;
   const int begun = tick_;
@@ -189,7 +194,7 @@ void SoftSolver::settleImpacts()
   for (int pass = 0; pass < kImpactSweeps && any; ++pass, ++tick_)
   {
     any = false;
-    this->forStrips(sweep);
+    this->forStrips(sweep, count);
   }
 }
 

@@ -6,7 +6,7 @@
 #include "block/cayley.h"
 #include "block/flight.h"
 #include "law/settings.h"
-#include "solve/SoftSolver.h"
+#include "solve/softSweep.h"
 
 #include <cmath>
 

@@ -2,7 +2,7 @@
 
 #include "base/parallel.h"
 #include "law/settings.h"
-#include "solve/SoftSolver.h"
+#include "solve/softSweep.h"
 
 #include <algorithm>
 #include <cmath>

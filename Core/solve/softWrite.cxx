@@ -2,7 +2,7 @@
 
 #include "base/parallel.h"
 #include "law/settings.h"
-#include "solve/SoftSolver.h"
+#include "solve/softSweep.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,6 @@ IslandOutcome SoftSolver::finish(Accept accept, bool deep)
     deep = this->gapOf(k) < std::min(0.0, starts_[k].gap0) - kDeepStep * radius;
   }
   outcome.settled = !deep;
-  outcome.unconverged = deep;
   outcome.iterations = substeps_;
   outcome.accepted = !deep || accept == Accept::Any;
   if (outcome.accepted)

@@ -157,7 +157,7 @@ void IslandStepper::cutUntilAccepted(StepRequest& request)
     const IslandOutcome outcome = work_.solver.finish();
     work_.iterations += outcome.iterations;
     work_.cuts += !outcome.accepted && !last;
-    work_.unsettled += outcome.unconverged && (outcome.accepted || last);
+    work_.unsettled += !outcome.settled && (outcome.accepted || last);
     ++work_.tries;
     if (outcome.accepted || last)
     {

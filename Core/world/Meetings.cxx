@@ -105,7 +105,7 @@ void Meetings::settle()
   }
 }
 
-/// Islands are what is linked: a island may have fallen apart.
+/// Islands are what is linked: an island may have fallen apart.
 void Meetings::unite()
 {
   std::iota(heads_.begin(), heads_.end(), 0);

@@ -5,7 +5,7 @@
 //
 // Two rocks may meet if their gap can close within the step. How fast it closes follows from what
 // their velocities can become: those of a rock that flies are known; what touches the slope may be
-// stopped or thrown back; and what belongs to a island of rocks that may touch each other may get
+// stopped or thrown back; and what belongs to an island of rocks that may touch each other may get
 // any velocity that is among theirs, by impacts from rock to rock. On the other hand no rock goes
 // further than its own displacement, or than what is left of the displacement of the one that
 // strikes it, less the gaps that had to be crossed before. The smaller of the two bounds holds.
