@@ -306,7 +306,6 @@ void SoftSolver::sweep(int least, Sweep&& sweepRow)
 void SoftSolver::substep(int k)
 {
   const Vec3 gravity(0.0, 0.0, -gravity_);
-  substep_ = k;
   this->forStrips([&](std::size_t strip) { this->arrive(strip); });
   this->strikeGenerations(k * h_);
   before_ = motions_;

@@ -3,7 +3,7 @@
 /// @file
 /// A step of rocks that touch each other as soft rows in substeps.
 ///
-/// A contact is a row: a spring pₙ with critical damping, integrated implicitly (Macklin et al.
+/// A contact is a row: a spring pₙ that is damped more than critically, implicit (Macklin et al.
 /// 2019, small steps; Catto 2023, soft step), in n substeps of h = Δt/n. Its gap goes on linearly
 /// with the motion of the two rocks; its normal and levers are those of mid-step. In each substep:
 ///
@@ -244,7 +244,7 @@ private:
   Vec3 origin_ = Vec3::Zero(); ///< First rock where the step begins, m.
   double duration_ = 0.0, gravity_ = 0.0;
   double h_ = 0.0; ///< Of a substep, s.
-  int substeps_ = 0, substep_ = 0;
+  int substeps_ = 0;
   std::vector<IslandBody>* bodies_ = nullptr;
   std::vector<IslandContact>* contacts_ = nullptr;
   std::vector<Motion> motions_; ///< By body.

@@ -4,7 +4,7 @@
 // rock-steps per second (rocks × steps / wall time), how far the rocks got and the deepest overlap
 // of two of them, of their edge. BenchmarkOde does the same with another engine.
 //
-// Run: BenchmarkMassFall [--benchmark_filter=rocks:1000/threads:1]
+// Run: BenchmarkMassFall [--benchmark_filter=rocks:1000/dt:0.005/threads:1]
 
 #include "manyCubes.h"
 #include "world/World.h"
@@ -24,7 +24,7 @@ namespace
 
 constexpr int kLookEvery = 10; // steps
 
-void massFall(benchmark::State& state, int count, int threads)
+void massFall(benchmark::State& state, int count, double timeStep, int threads)
 {
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
   const Terrain slope = benchSlope(0.2, RestitutionModel::NormalTangential);
@@ -35,7 +35,7 @@ void massFall(benchmark::State& state, int count, int threads)
     blocks.emplace_back(r.shape, r.density, r.youngModulus, r.poissonRatio);
   }
   SimulationParameters p;
-  p.timeStep = 0.005;
+  p.timeStep = timeStep;
   p.endTime = fallTime(count);
   p.outputInterval = p.endTime;
   p.rockRockContact = true;
@@ -80,14 +80,17 @@ int main(int argc, char** argv)
   benchmark::Initialize(&argc, argv);
   for (int count : { 10, 41, 100, 1000, 10000 })
   {
-    for (int threads : { 1, 2 })
+    for (const char* timeStep : { "0.005", "0.01" })
     {
-      const std::string name =
-        "rocks:" + std::to_string(count) + "/threads:" + std::to_string(threads);
-      benchmark::RegisterBenchmark(name.c_str(), massFall, count, threads)
-        ->Unit(benchmark::kMillisecond)
-        ->UseRealTime()
-        ->Iterations(1);
+      for (int threads : { 1, 2 })
+      {
+        const std::string name = "rocks:" + std::to_string(count) + "/dt:" + timeStep +
+          "/threads:" + std::to_string(threads);
+        benchmark::RegisterBenchmark(name.c_str(), massFall, count, std::stod(timeStep), threads)
+          ->Unit(benchmark::kMillisecond)
+          ->UseRealTime()
+          ->Iterations(1);
+      }
     }
   }
   benchmark::RunSpecifiedBenchmarks();
