@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <numeric>
 
 namespace rockfall
 {
@@ -37,6 +38,9 @@ void SoftSolver::begin(
   }
   this->findStrips();
   stamp_.assign(movers_.size(), -1);
+  joined_.resize(movers_.size());
+  std::iota(joined_.begin(), joined_.end(), 0);
+  gains_.assign(movers_.size(), {});
   tick_ = 0;
   this->arrange();
   this->run();

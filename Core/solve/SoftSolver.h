@@ -134,6 +134,7 @@ private:
     Vec3 before, beforeA; ///< Velocities behind it, of both and of a's point alone, m/s.
     double leaves;        ///< m/s
     double stored;        ///< By the spring of one that was under way, J.
+    double share = 1.0;   ///< Of its impulse that is given.
   };
   /// A generation of impacts, those of a strip.
   struct Generation
@@ -142,6 +143,15 @@ private:
     std::vector<Impact> impacts;
     std::vector<int> moved;         ///< Movers.
     std::vector<std::size_t> woken; ///< Manifolds that the substep has woken.
+  };
+  /// Works of impacts that share rocks, J.
+  struct Gain
+  {
+    double along = 0.0;  ///< Of their impulses along the velocities before.
+    double work = 0.0;   ///< Of all.
+    double stored = 0.0; ///< By springs of those that were under way.
+
+    double share() const; ///< Factor on the impulses with which they give no more than was there.
   };
   /// What a contact did in the step.
   struct Result
@@ -216,14 +226,14 @@ private:
   void beginImpacts(Generation& generation) const;
   void settleImpacts(std::size_t count);
   bool settle(Impact& impact); ///< Whether it changed by more than it is exact to.
-  /// The factor on all impulses with which they give no more than was there.
-  double shareOfImpacts() const;
-  void bookImpacts(const Generation& generation, double share, double time);
-  void takeBack(const Generation& generation, double share); ///< What is over a share.
-  void noteImpact(const Impact& impact, double time);        ///< What it was, and whom it struck.
-  void findStruck(std::size_t strip, int number); ///< Rows that close by generation `number`.
-  bool staysOpen(std::size_t row) const;          ///< Within the substep, at its speed `before`.
-  void listWoken(std::size_t strip);              ///< Among those that are busy.
+  /// Impacts that share rocks, one with the next, give no more than was there: else a share.
+  void limitGains();
+  void takeBack(const Generation& generation); ///< What is over a share.
+  void bookImpacts(const Generation& generation, double time);
+  void noteImpact(const Impact& impact, double time); ///< What it was, and whom it struck.
+  void findStruck(std::size_t strip, int number);     ///< Rows that close by generation `number`.
+  bool staysOpen(std::size_t row) const; ///< Within the substep, at its speed `before`.
+  void listWoken(std::size_t strip);     ///< Among those that are busy.
 
   double gapOf(const Row& row, const RowStart& start) const;
   double gapOf(std::size_t row) const { return this->gapOf(rows_[row], starts_[row]); }
@@ -265,6 +275,8 @@ private:
   std::vector<int> stamp_;                       ///< By mover, the sweep that last moved it.
   int tick_ = 0;                                 ///< Number of the sweep.
   std::vector<std::size_t> firstOf_, manifoldsOf_; ///< Manifolds of each rock.
+  std::vector<int> joined_;                        ///< By mover, whom impacts join it to.
+  std::vector<Gain> gains_;                        ///< By mover, of those that are joined to it.
   /// Books of a rock.
   struct Books
   {

@@ -1,6 +1,7 @@
 // Impacts within a substep: what closes faster than the resting speed leaves by Newton's law, and
 // strikes what closes by it in the next generation.
 
+#include "base/joined.h"
 #include "base/parallel.h"
 #include "law/settings.h"
 #include "solve/softSweep.h"
@@ -124,13 +125,9 @@ void SoftSolver::strikeGenerations(double time)
   {
     this->forStrips([this](std::size_t s) { this->beginImpacts(generations_[s]); }, struck);
     this->settleImpacts(struck);
-    const double share = this->shareOfImpacts();
-    if (share < 1.0)
-    {
-      this->forStrips([&](std::size_t s) { this->takeBack(generations_[s], share); }, struck);
-    }
-    this->forStrips(
-      [&](std::size_t s) { this->bookImpacts(generations_[s], share, time); }, struck);
+    this->limitGains();
+    this->forStrips([this](std::size_t s) { this->takeBack(generations_[s]); }, struck);
+    this->forStrips([&](std::size_t s) { this->bookImpacts(generations_[s], time); }, struck);
     if (number < kGenerations)
     {
       this->link();
@@ -218,20 +215,8 @@ bool SoftSolver::settle(Impact& impact)
     std::max(kImpactExact * std::abs(starts_[impact.row].before), kImpactQuiet * r.resting);
 }
 
-double SoftSolver::shareOfImpacts() const
+double SoftSolver::Gain::share() const
 {
-  double along = 0.0, work = 0.0, stored = 0.0;
-  for (const Generation& generation : generations_)
-  {
-    for (const Impact& impact : generation.impacts)
-    {
-      const Row& r = rows_[impact.row];
-      const Vec3 J = impact.Q * r.normal + impact.S;
-      along += J.dot(impact.before);
-      work += 0.5 * J.dot(impact.before + this->speedOf(r));
-      stored += impact.stored;
-    }
-  }
   if (work <= stored)
   {
     return 1.0;
@@ -242,26 +227,73 @@ double SoftSolver::shareOfImpacts() const
   return std::clamp((-along + root) / (2.0 * square), 0.0, 1.0);
 }
 
-void SoftSolver::takeBack(const Generation& generation, double share)
+void SoftSolver::limitGains()
+{
+  const auto forImpacts = [this](auto&& visit)
+  {
+    for (Generation& generation : generations_)
+    {
+      for (Impact& impact : generation.impacts)
+      {
+        visit(impact, rows_[impact.row]);
+      }
+    }
+  };
+  const auto joinRocks = [this](const Impact&, const Row& r)
+  {
+    if (r.b >= 0)
+    {
+      joinTwo(joined_, r.a, r.b);
+    }
+  };
+  const auto addWork = [this](const Impact& impact, const Row& r)
+  {
+    const Vec3 J = impact.Q * r.normal + impact.S;
+    Gain& gain = gains_[std::size_t(headOf(joined_, r.a))];
+    gain.along += J.dot(impact.before);
+    gain.work += 0.5 * J.dot(impact.before + this->speedOf(r));
+    gain.stored += impact.stored;
+  };
+  const auto share = [this](Impact& impact, const Row& r)
+  { impact.share = gains_[std::size_t(headOf(joined_, r.a))].share(); };
+  const auto part = [this](const Impact&, const Row& r)
+  {
+    for (const int i : { r.a, r.b })
+    {
+      if (i >= 0)
+      {
+        joined_[std::size_t(i)] = i;
+        gains_[std::size_t(i)] = {};
+      }
+    }
+  };
+  forImpacts(joinRocks);
+  forImpacts(addWork);
+  forImpacts(share);
+  forImpacts(part);
+}
+
+void SoftSolver::takeBack(const Generation& generation)
 {
   for (const Impact& impact : generation.impacts)
   {
     const Row& r = rows_[impact.row];
-    if (impact.Q > 0.0)
+    if (impact.share < 1.0 && impact.Q > 0.0)
     {
-      this->push(r, (share - 1.0) * (impact.Q * r.normal + impact.S));
+      this->push(r, (impact.share - 1.0) * (impact.Q * r.normal + impact.S));
     }
   }
 }
 
-void SoftSolver::bookImpacts(const Generation& generation, double share, double time)
+void SoftSolver::bookImpacts(const Generation& generation, double time)
 {
   for (const Impact& impact : generation.impacts)
   {
     const Row& r = rows_[impact.row];
     this->noteImpact(impact, time);
-    book(r, share * impact.Q, share * impact.S, 0.5 * (impact.before + this->speedOf(r)),
-      0.5 * (impact.beforeA + this->speedOfA(r)), results_[impact.row]);
+    book(r, impact.share * impact.Q, impact.share * impact.S,
+      0.5 * (impact.before + this->speedOf(r)), 0.5 * (impact.beforeA + this->speedOfA(r)),
+      results_[impact.row]);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include "world/Meetings.h"
 
+#include "base/joined.h"
 #include "base/parallel.h"
 #include "law/settings.h"
 #include "world/sleep.h"
@@ -117,8 +118,7 @@ void Meetings::unite()
     inIsland[l.first] = inIsland[l.second] = 1;
     if (heads[l.first] != heads[l.second])
     {
-      const int a = headOf(heads_, l.first), b = headOf(heads_, l.second);
-      heads[std::max(a, b)] = std::min(a, b);
+      joinTwo(heads_, l.first, l.second);
     }
   };
   this->forLinked(uniteTwo);

@@ -3,6 +3,7 @@
 
 #include "world/Meetings.h"
 
+#include "base/joined.h"
 #include "law/settings.h"
 #include "world/sleep.h"
 

@@ -68,17 +68,6 @@ inline double closingSpeed(const IslandBounds& first, const Pace& firstPace,
     : std::max(0.0, first.most(-normal, firstPace) + second.most(normal, secondPace));
 }
 
-/// The first one of those that are joined to one, by the one that each is joined to.
-inline int headOf(std::vector<int>& joined, int i)
-{
-  int* const heads = joined.data();
-  while (heads[i] != i)
-  {
-    i = heads[i] = heads[heads[i]];
-  }
-  return i;
-}
-
 /// How a rock may move within a duration (s) if no other strikes it.
 void foresee(const WorldState& world, const RockSimulator& sim, double duration, Pace& pace);
 
