@@ -1,6 +1,7 @@
 #include "GroundSettings.h"
 
 #include "base/numberText.h"
+#include "terrain/presets.h"
 
 #include <algorithm>
 #include <charconv>
@@ -106,6 +107,26 @@ std::vector<std::string> settingNames()
   return names;
 }
 
+void GroundSettings::setGround(const std::string& name)
+{
+  if (name == "hard")
+  {
+    // Found on 18 of the runs of Tschamut 2014.
+    material = {};
+    material.restitutionModel = RestitutionModel::NormalTangential;
+    material.restitution = 0.3;
+    material.tangentialRestitution = 0.875;
+    material.frictionAngle = radians(46.0);
+    roughness = {};
+    deviationPer = DeviationPer::Iteration;
+    return;
+  }
+  const GroundPreset& preset = groundPreset(name);
+  material = preset.material();
+  roughness = preset.roughness;
+  deviationPer = preset.deviationPer();
+}
+
 void GroundSettings::set(const std::string& name, double value)
 {
   const auto yielding = std::ranges::find_if(
@@ -164,7 +185,11 @@ Arguments parseArguments(int argumentCount, char** words, GroundSettings default
       }
       return std::string(words[k]);
     };
-    if (word == "--set")
+    if (word == "--ground")
+    {
+      result.settings.setGround(next());
+    }
+    else if (word == "--set")
     {
       result.settings.set(next());
     }

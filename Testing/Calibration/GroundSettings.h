@@ -31,6 +31,9 @@ struct GroundSettings
   double density = 2700.0;     ///< Of the rocks where the data has none, kg/m³.
   double placeDeviation = 0.1; ///< Of the place of a single impact, each way, m.
 
+  /// A preset as the panel sets it, roughness and scatter with it; or "hard": the hard ground that
+  /// docs/validation.md holds beside it. Throws DataError that lists the names.
+  void setGround(const std::string& name);
   /// Sets the parameter of this name. Throws UsageError that lists the names, or ParameterError.
   void set(const std::string& name, double value);
   /// From "name=value".
@@ -44,8 +47,8 @@ Terrain makeTerrain(
 /// The names, in order, with unit.
 std::vector<std::string> settingNames();
 
-/// The command line `program FOLDER [--set name=value]… [--iterations N] [--seed N] [--threads N]`
-/// and switches of the program's own.
+/// The command line `program FOLDER [--ground NAME] [--set name=value]… [--iterations N] [--seed N]
+/// [--threads N]` and switches of the program's own. What comes later changes what came before.
 struct Arguments
 {
   std::string folder;

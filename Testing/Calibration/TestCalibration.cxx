@@ -8,6 +8,7 @@
 
 #include "Core/slopes.h"
 #include "base/errors.h"
+#include "terrain/presets.h"
 
 #include <gtest/gtest.h>
 
@@ -130,4 +131,22 @@ TEST(GroundSettings, ByName)
   EXPECT_THROW(s.set("frictionAngle=steep"), UsageError);
   EXPECT_THROW(s.set("frictionAngle"), UsageError);
   EXPECT_THROW(s.set("tangentialRestitution=1.5"), ParameterError);
+}
+
+TEST(GroundSettings, APresetIsAllOfTheGround)
+{
+  GroundSettings s;
+  s.set("roughnessDeviation=0.04");
+  s.setGround("Meadow");
+  const GroundPreset& meadow = groundPreset("meadow");
+  EXPECT_EQ(s.material.yielding, meadow.yielding);
+  EXPECT_EQ(s.material.restitutionModel, RestitutionModel::SpeedDependent);
+  EXPECT_EQ(s.material.restitution, meadow.normalRestitution);
+  EXPECT_EQ(s.material.restitutionDeviation, meadow.restitutionDeviation);
+  EXPECT_EQ(s.roughness, meadow.roughness);
+  EXPECT_EQ(s.deviationPer, DeviationPer::Impact);
+  s.setGround("hard");
+  EXPECT_FALSE(s.material.yielding.yields());
+  EXPECT_EQ(s.deviationPer, DeviationPer::Iteration);
+  EXPECT_THROW(s.setGround("moon"), DataError);
 }

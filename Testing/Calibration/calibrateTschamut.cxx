@@ -3,8 +3,10 @@
 // within the simulated quantiles of 5 and 95 %, and in which fifth of the simulated ones. The
 // folder is that of Examples/validation/field_test.py.
 //
-//   calibrateTschamut FOLDER [--set name=value]… [--iterations N] [--seed N]
+//   calibrateTschamut FOLDER [--ground NAME] [--set name=value]… [--iterations N] [--seed N]
 //     [--output runs.csv] [--stops stops.csv]
+//
+// The ground is the preset Meadow where nothing else is said.
 //
 // All of it twice: as simulated, and with run-outs beyond the tracked ground cut off at its edge.
 // The tracked ground is the convex hull of releases and observed stops, widened by a cell of the
@@ -282,12 +284,8 @@ void writeStops(const std::string& fileName, const Experiment& e)
 int run(int count, char** words)
 {
   GroundSettings defaults;
-  defaults.material.restitutionModel = RestitutionModel::NormalTangential;
-  defaults.material.restitution = 0.3;
-  defaults.material.tangentialRestitution = 0.875;
-  defaults.material.frictionAngle = radians(46.0);
-  defaults.roughness.deviation = 0.041;
-  defaults.simulation.iterations = 50;
+  defaults.setGround("meadow");
+  defaults.simulation.iterations = 80;
   defaults.simulation.endTime = 60.0;
   Arguments arguments = parseArguments(count, words, defaults, {});
   SimulationParameters& p = arguments.settings.simulation;

@@ -2,7 +2,10 @@
 // and of the rotation after it, and where the observed one lies in it. The folder has
 // observed_contact_events.csv, observed_trajectories.csv and a grid terrain*.asc.
 //
-//   chantSura FOLDER [--set name=value]… [--iterations N] [--seed N] [--wheel] [--plane]
+//   chantSura FOLDER [--ground NAME] [--set name=value]… [--iterations N] [--seed N]
+//     [--wheel] [--plane]
+//
+// The ground is the preset Meadow where nothing else is said.
 //
 // Attitudes are uniform over all rotations; with --wheel a plate stands on its rim, its axis along
 // its spin. A spin that was not tracked is drawn between none and rolling. With --plane the ground
@@ -198,12 +201,9 @@ std::vector<Rock> drawRocks(const Impact& impact, const Terrain& ground, const A
 int run(int count, char** words)
 {
   GroundSettings defaults;
-  defaults.material.restitutionModel = RestitutionModel::NormalTangential;
-  defaults.material.restitution = 0.3;
-  defaults.material.tangentialRestitution = 0.875;
-  defaults.material.frictionAngle = radians(46.0);
+  defaults.setGround("meadow");
   defaults.cellSize = 0.1;
-  defaults.simulation.iterations = 100;
+  defaults.simulation.iterations = 200;
   defaults.simulation.endTime = 1.2;
   defaults.simulation.outputInterval = 0.01;
   const Arguments arguments = parseArguments(count, words, defaults, { "--wheel", "--plane" });
