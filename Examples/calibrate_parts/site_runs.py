@@ -117,9 +117,27 @@ def print_table(table):
         print(f"{what + ', ' + unit:46}{'' if seen is None else f'{seen:.1f}':>10}{made:11.1f}")
 
 
-def report(path, title, ground, table, summary, fit):
+def judged_lines(site, simulated):
+    """The figures of validation.md as a table: of all that is simulated, and within the tracked ground."""
+    observed = site.observed
+    seen = observed.run_out.mean()
+    lines = ["| | mean run-out | error | CRPS | energy score | within 5 to 95 % |", "|---|---|---|---|---|---|"]
+    for what, own in scores.judgement(observed, simulated):
+        mean = own[:, scores.MEAN].mean()
+        lines.append(f"| {what} | {mean:.1f} m | {100 * (mean / seen - 1):+.1f} % | "
+                     f"{own[:, scores.CRPS].mean():.1f} m | {own[:, scores.ES].mean():.1f} m | "
+                     f"{100 * scores.covered(own):.0f} % |")
+    lines += [f"| observed | {seen:.1f} m | | | | |",
+              f"| without a model | | | {scores.climatology(observed):.1f} m | | |"]
+    if observed.tracked:
+        lines += ["", f"{100 * simulated.beyond(observed):.0f} % of the rocks go beyond the tracked ground; "
+                      "within it their run-outs count as far as its edge."]
+    return lines
+
+
+def report(path, title, ground, table, judged, fit):
     """The whole of it as a page."""
-    lines = [f"# {title}", "", summary, "", "![Stopping points and run-outs](map.png)", "",
+    lines = [f"# {title}", "", *judged, "", "![Stopping points and run-outs](map.png)", "",
              "| ground | value | 90 % of the bootstrap |", "|---|---|---|"]
     spread = {name: f"{low:.4g} to {high:.4g}" for name, _, low, high, _ in fit.parameters()} \
         if fit else {}
@@ -146,20 +164,10 @@ def compare(site, values, names, title, output, fit=None):
                      for start, stop in zip(observed.start, observed.stop)])
     table = scores.comparison(observed, simulated, drop)
     print_table(table)
-    own = simulated.as_scored(observed).scores(observed)
-    error = 100 * (table[0][3] / table[0][2] - 1)
-    summary = (f"Mean run-out: {error:+.1f} % of the observed one. CRPS of the run-out "
-               f"{own[:, scores.CRPS].mean():.1f} m (without a model {scores.climatology(observed):.1f} "
-               f"m), energy score of the stopping points {own[:, scores.ES].mean():.1f} m; "
-               f"{100 * scores.covered(own):.0f} % of the observed run-outs within 5 to 95 % of the "
-               "simulated ones")
-    if observed.tracked:
-        within = 100 * (own[:, scores.MEAN].mean() / observed.run_out.mean() - 1)
-        summary += (f". Scores within the tracked ground, where the mean run-out is {within:+.1f} %; "
-                    f"{100 * simulated.beyond(observed):.0f} % of the rocks go beyond it")
-    print("\n" + summary)
-    write_results(site, simulated, own, table, names, output)
+    judged = judged_lines(site, simulated)
+    print("", *judged, sep="\n")
+    write_results(site, simulated, simulated.scores(observed), table, names, output)
     site_map.draw(os.path.join(output, "map.png"), site.ground, observed, simulated,
                   f"{title}: {len(names)} observed, {simulated.started.sum()} simulated")
-    report(os.path.join(output, "report.md"), title, values, table, summary + ".", fit)
+    report(os.path.join(output, "report.md"), title, values, table, judged, fit)
     say(f"Written to {output}: report.md, map.png, comparison.csv, runs.csv, stops.csv")

@@ -133,6 +133,15 @@ def covered(scores):
     return float(np.mean((scores[:, RANK] >= INSIDE[0]) & (scores[:, RANK] <= INSIDE[1])))
 
 
+def judgement(observed, simulated):
+    """Rows (what, scores) of the figures by which a simulation is judged: as simulated, and within the
+    tracked ground if there is one."""
+    rows = [("as simulated", simulated.scores(observed))]
+    if observed.tracked:
+        rows.append(("within the tracked ground", simulated.as_scored(observed).scores(observed)))
+    return rows
+
+
 def climatology(observed):
     """Mean CRPS of every run forecast by the run-outs of the others: what a model has to beat."""
     scores = []

@@ -43,29 +43,13 @@ def vertices(block, density=DENSITY):
     return np.array(corners) * np.array(block.size) / 2
 
 
-def random_rotation(random):
-    """A rotation matrix, uniform over all of them, from a random unit quaternion."""
-    w, x, y, z = (q := random.normal(size=4)) / np.linalg.norm(q)
-    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
-
-
-def orientation(rotation):
-    """The angles rx, ry, rz in degrees of R = Rz Rx Ry, as Rock Blocks has them."""
-    return np.degrees([math.asin(np.clip(rotation[2, 1], -1, 1)),
-                       math.atan2(-rotation[2, 0], rotation[2, 2]),
-                       math.atan2(-rotation[0, 1], rotation[1, 1])])
-
-
 class Sources:
-    """The rocks of all runs, each run with a number of attitudes that are drawn at random.
+    """The rocks of all runs, each run with a number of attitudes, drawn anew in each iteration.
 
     `rocks` is the pipeline's object, `run` the number of the run of each of its rocks. A rock stands
     on the terrain; `raised` is how far that is above the release of the table, per run, in m."""
 
-    def __init__(self, test, ground, attitudes, seed, folder):
-        random = np.random.default_rng(seed)
+    def __init__(self, test, ground, attitudes, folder):
         parts, self.run, self.raised = [], [], []
         for block in sorted(test.blocks.values(), key=lambda b: b.id):
             runs = [k for k, run in enumerate(test.runs) if run.block == block.id]
@@ -76,21 +60,19 @@ class Sources:
             np.savetxt(shape, corners, fmt="%.9f", delimiter=",")
             table = os.path.join(folder, f"sources_{len(parts) + 1}.csv")
             with open(table, "w") as file:
-                file.write("x,y,z,shape,vx,vy,vz,rx,ry,rz\n")
+                file.write("x,y,z,shape,vx,vy,vz\n")
                 for k in runs:
                     run = test.runs[k]
                     centre = float(ground.height(*run.start[:2])) + 0.5 * np.mean(block.size)
                     self.raised.append(centre - run.start[2])
-                    for _ in range(attitudes):
-                        rotation = random_rotation(random)
-                        z = self.standing(run, corners @ rotation.T, ground)
-                        numbers = [*run.start[:2], z, *run.velocity, *orientation(rotation)]
-                        words = [f"{n:.9g}" for n in numbers]
-                        file.write(",".join(words[:3] + ["file"] + words[3:]) + "\n")
-                        self.run.append(k)
+                    numbers = [*run.start[:2], self.standing(run, corners, ground), *run.velocity]
+                    words = [f"{n:.9g}" for n in numbers]
+                    file.write((",".join(words[:3] + ["file"] + words[3:]) + "\n") * attitudes)
+                    self.run += [k] * attitudes
             parts.append(RockBlocks(
                 FileName=table, Shape="From File", ShapeFileName=shape, ScaleToVolume=0,
-                Density=DENSITY, FirstBlockId=len(self.run) - len(runs) * attitudes + 1))
+                AttitudeLaw="Random", Density=DENSITY,
+                FirstBlockId=len(self.run) - len(runs) * attitudes + 1))
         self.run = np.array(self.run)
         self.rocks = AppendGeometry(Input=parts)
 

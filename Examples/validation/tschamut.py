@@ -1,9 +1,9 @@
 """Real rocks on real ground: simulated run-outs beside those of a field experiment.
 
 Given a folder of a field test with single rocks (see field_test.py for its four files), every run is
-simulated with many attitudes and many realisations of the ground; the run-outs and stopping points
-are compared with the observed ones, as a table and as a map. Scores are within the tracked ground, which
-ends a cell of the grid beyond what was observed.
+simulated on many realisations of the ground, each with attitudes of its own; the run-outs and stopping
+points are compared with the observed ones, as a table and as a map: as simulated, and within the tracked
+ground, which ends a cell of the grid beyond what was observed.
 
     bash Examples/run.sh validation/tschamut.py FOLDER [--output FOLDER] [--calibrate N] ...
 
@@ -62,8 +62,9 @@ def arguments():
                                        "observed_deposition.csv and terrain.asc")
     parser.add_argument("--output", default=os.path.join(
         os.path.dirname(examples), "output", "tschamut"), help="folder for the results")
-    parser.add_argument("--attitudes", type=int, default=8, help="attitudes at release per run (8)")
-    parser.add_argument("--iterations", type=int, default=10, help="realisations of the ground (10)")
+    parser.add_argument("--attitudes", type=int, default=1,
+                        help="rocks per run in each iteration, with attitudes of their own (1)")
+    parser.add_argument("--iterations", type=int, default=80, help="realisations of the ground (80)")
     parser.add_argument("--seed", type=int, default=1, help="of all random numbers (1)")
     parser.add_argument("--threads", type=int, default=0, help="0, the default, takes all")
     parser.add_argument("--calibrate", type=int, default=0, metavar="N",
@@ -96,7 +97,7 @@ def make_site(test, chosen):
     slope = DEMtoCFEMesh(FileName=grid, CellSize=CELL, RestitutionDeviation=0, RoughnessMean=0,
                          RestitutionModel="Speed-dependent", DeviationPer="Impact")
     slope.UpdatePipeline()
-    sources = Sources(test, Ground(made_by(slope)), chosen.attitudes, chosen.seed, chosen.output)
+    sources = Sources(test, Ground(made_by(slope)), chosen.attitudes, chosen.output)
     sources.rocks.UpdatePipeline()
     made_by(sources.rocks)
     observed = Observed([run.start[:2] for run in test.runs], [run.stop for run in test.runs],
