@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <random>
 
 using namespace rockfall;
@@ -96,9 +97,10 @@ TEST(LongSlopes, SpeedsJumpsAndReachAngles)
 {
   struct Case
   {
-    double angle, length;
+    double angle, length;            // degrees, m
+    std::optional<double> mostReach; // degrees; none: docs/validation.md has what is missed
   };
-  for (const Case& c : { Case{ 40.0, 150.0 }, Case{ 35.0, 450.0 } })
+  for (const Case& c : { Case{ 40.0, 150.0, {} }, Case{ 35.0, 450.0, 35.0 } })
   {
     const Terrain terrain = makeLongSlope(c.length, radians(c.angle), "talus", "meadow");
     SimulationParameters p;
@@ -123,8 +125,16 @@ TEST(LongSlopes, SpeedsJumpsAndReachAngles)
     recordAtLeast({ "Long slopes", head + "reach angle, 5 %", "°",
                     "field surveys: few single rocks below 27.5°" },
       quantile(reach, 0.05), 27.0);
-    report({ "Long slopes", head + "reach angle, median", "°", "field surveys: 27.5° to 40°" },
-      quantile(reach, 0.5));
+    const Figure middle{ "Long slopes", head + "reach angle, median", "°",
+      "field surveys: 27° to 35° on long slopes, to 40° on all" };
+    if (c.mostReach)
+    {
+      recordAtMost(middle, quantile(reach, 0.5), *c.mostReach);
+    }
+    else
+    {
+      report(middle, quantile(reach, 0.5));
+    }
   }
 }
 
