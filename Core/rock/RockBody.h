@@ -25,7 +25,7 @@ struct RockBody
 
   const Block& block;
   bool done = false;                     ///< At rest, gone from the slope or out of time.
-  bool inIsland = false;                 ///< Its last step was that of an island.
+  bool crowded = false;                  ///< Its last step was that of an island.
   StepKind steppedAs = StepKind::Impact; ///< In the last step.
   double restingSpeed = 0.0;             ///< Below it a touch is no impact, m/s.
   BlockState state;

@@ -401,9 +401,9 @@ void RockSimulator::endContact()
 
 void RockSimulator::advance(double until, double enough)
 {
-  if (body_.inIsland)
+  if (body_.crowded)
   {
-    body_.inIsland = false; // alone, and what others have pressed in is theirs
+    body_.crowded = false; // alone, and what others have pressed in is theirs
     body_.energy.damping += this->letDeepBe(kLooseOverlap * body_.block.radius());
     candidates_.distance =
       -1.0; // flight goes by them, and would hang on how the island was looked at

@@ -249,7 +249,7 @@ void RockSimulator::armContacts(double h)
       c.cohesion = sharedCohesion(c.cohesion, points);
     }
   }
-  if (!body_.inIsland)
+  if (!body_.crowded)
   {
     tuneDashpots(
       body_.contacts, h,
@@ -439,8 +439,8 @@ void RockSimulator::absorb(
 
 double RockSimulator::looseOverlap() const
 {
-  // In an island a rock may be pushed under the slope within a step; it may be alone soon after.
-  return (body_.inIsland ? kLooseOverlap : kFirm) * body_.block.radius();
+  // In a crowd a rock may be pushed under the slope within a step; it may be alone soon after.
+  return (body_.crowded ? kLooseOverlap : kFirm) * body_.block.radius();
 }
 
 void RockSimulator::pressOut(double h)

@@ -22,9 +22,8 @@
 /// their resting speed.
 
 #include "base/parallel.h"
+#include "solve/IslandSystem.h"
 #include "solve/PairSprings.h"
-#include "solve/StepSolver.h"
-#include "solve/island.h"
 
 #include <array>
 #include <cstddef>
@@ -33,30 +32,24 @@
 namespace rockfall
 {
 
-class SoftSolver
+class SoftSolver final : public IslandSystem
 {
 public:
-  /// Sets the rows up and solves them. Bodies and contacts stay where they are until `finish`.
   void begin(const StepRequest& request, std::vector<IslandBody>& bodies,
-    std::vector<IslandContact>& contacts);
-  /// Takes up what a look has found: contacts behind those that are known, whose `distance` is that
-  /// at the end, the rest of them as all stands at the start.
-  void append();
-  void noteLook(); ///< The bodies have been looked at where they are now.
-  void solve();    ///< Again.
-  /// Writes bodies and contacts if the solution is accepted. `deep`: the last look found rocks deep
-  /// in each other.
-  IslandOutcome finish(Accept accept, bool deep);
+    std::vector<IslandContact>& contacts) override;
+  bool isWorthALook() const override { return !movers_.empty(); }
+  bool haveGoneOn() const override { return false; }
+  void append() override;
+  void noteLook() override;
+  void solve() override;
+  IslandOutcome finish(Accept accept, bool deep) override;
 
-  // What the solution says, by numbers of bodies and contacts.
-  BlockState end(std::size_t body) const;                            ///< At the end of the step.
-  bool moved(std::size_t body) const { return movers_[body].moved; } ///< Since the last look.
-  double gap(std::size_t contact) const;                             ///< At the end of the step, m.
-  double force(std::size_t contact) const;                           ///< Along the normal, N.
-  /// The gap is found to be another one (m). No contact is asked to open further than it was.
-  /// Returns whether this changes anything.
-  bool setGap(std::size_t contact, double found);
-  void setAbsent(std::size_t contact); ///< Lets go or sets in again, as its `absent` says.
+  BlockState end(std::size_t body) const override;
+  bool moved(std::size_t body) const override { return movers_[body].moved; }
+  double gap(std::size_t contact) const override;
+  double force(std::size_t contact) const override;
+  bool setGap(std::size_t contact, double found) override;
+  void setAbsent(std::size_t contact) override;
 
   PairStiffness stiffness; ///< See IslandSolver.
 

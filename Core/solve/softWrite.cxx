@@ -21,6 +21,7 @@ IslandOutcome SoftSolver::finish(Accept accept, bool deep)
     deep = this->gapOf(k) < std::min(0.0, starts_[k].gap0) - kDeepStep * radius;
   }
   outcome.settled = !deep;
+  outcome.unconverged = deep;
   outcome.iterations = substeps_;
   outcome.accepted = !deep || accept == Accept::Any;
   if (outcome.accepted)

@@ -46,7 +46,8 @@ private:
   WorldState& world_;
   const Island& island_;
   IslandWork& work_;
-  double h_; ///< s
+  double h_;      ///< s
+  double missed_; ///< Depth that is a miss, of the smaller radius.
 };
 
 } // namespace rockfall

@@ -28,8 +28,10 @@ private:
   // A step
   void fly(double duration); ///< Lets all contacts go.
   void solve(double h);
-  void addRock(std::size_t member);
-  void addPair(std::size_t touching);
+  void addRock(std::size_t member, double h);
+  void addPair(std::size_t touching, double h);
+  /// Deep overlaps of the two, before a lasting step.
+  void pressOutDeep(RockPair& pair, double h) const;
   /// Halves the step as long as its solution is not accepted.
   void cutUntilAccepted(StepRequest& request);
 

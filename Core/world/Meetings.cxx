@@ -146,7 +146,8 @@ void Meetings::listIslands()
   alone_.clear();
   for (std::size_t i = 0; i < movers_.size(); ++i)
   {
-    const Mover& m = movers_[i];
+    Mover& m = movers_[i];
+    m.crowd = -1;
     if (!m.present || m.asleep)
     {
       continue;
@@ -169,6 +170,15 @@ void Meetings::listIslands()
   }
   this->forLinked([&](const Linked& l)
     { islands_[std::size_t(place[std::size_t(l.first)])].pairs.push_back(l.pair); });
+  for (std::size_t g = 0; g < islands_.size(); ++g)
+  {
+    Island& island = islands_[g];
+    island.crowd = int(island.members.size()) > world_.largestSoft;
+    for (const int i : island.members)
+    {
+      movers_[std::size_t(i)].crowd = island.crowd ? int(g) : -1;
+    }
+  }
 }
 
 } // namespace rockfall

@@ -34,6 +34,13 @@ struct alignas(64) Mover
   double known; ///< Rocks nearer than such a displacement, less their own, are its neighbours.
   bool present = false; ///< Neither gone nor stopped by the end time.
   bool asleep = false;
+  /// Goes as far as any rock of its island may: it was in a crowd in the last step. There nearly
+  /// every rock's displacement is the one of some faster rock, and to pass it on from rock to rock
+  /// tells no more.
+  bool shares = false;
+  int crowd = -1; ///< Of the last step, −1: none.
+
+  bool isOneCrowdWith(const Mover& o) const { return shares && o.shares && crowd == o.crowd; }
 };
 
 /// Two rocks that are near each other, or may come near each other soon; in one line of the cache.
@@ -49,6 +56,7 @@ struct alignas(64) Near
   bool linked = false;    ///< May touch in this step,
   bool wasLinked = false; ///< or could in the last one.
   bool holds = false;     ///< May have contacts.
+  bool seen = false;      ///< The axis had been found where the step begins.
 };
 
 inline bool operator<(const Near& a, const Near& b)
@@ -112,6 +120,7 @@ private:
   // Neighbours: meetingsNear.cxx
   void follow(double duration); ///< The rocks, to where they stand now.
   void findNear();
+  void share(std::size_t rock);
   void search();
   void cover(int rock);
   double spare(int rock) const;
@@ -136,8 +145,9 @@ private:
   Open openOf(std::size_t near) const;
   void widen();
   bool sweep();
-  void widenIslands();
+  bool widenIslands();
   void choose();
+  bool stays(const Near& near) const;
 
   // Islands: Meetings.cxx
   void settle();
@@ -149,7 +159,7 @@ private:
   // Velocities and displacements passed on: meetingsReach.cxx
   int root(int rock); ///< The first one of its island.
   double thrown(std::size_t rock) const;
-  void join(std::size_t near, bool known);
+  bool join(std::size_t near, bool known);
   void wakeAbout(int rock);
   void passOn(int rock);
   void tell();
@@ -176,6 +186,9 @@ private:
   std::vector<RockPair*> spare_;
   std::vector<IslandBounds> bounds_; ///< By root.
   std::vector<int> parents_, roots_;
+  std::vector<int> crowds_; ///< First rock of each crowd of the last step.
+  std::vector<double>
+    surely_; ///< Of each of them, its velocities may close such a gap anywhere, m.
   /// Of each rock, where it is in `near_`: those of the search, and those found later.
   std::vector<std::size_t> firsts_, places_;
   std::vector<std::vector<std::size_t>> later_;

@@ -25,6 +25,7 @@ private:
   /// Motion of a rock since a state, for those that look at its pairs.
   void noteMotion(const FallingRock& rock, const BlockState& from);
   void applyToPair(std::size_t touching); ///< By number among those that touch.
+  void pressOut(RockPair& pair) const;    ///< In a crowd: overlap that was found goes slowly.
   void bookContact(RockPair& pair, const IslandContact& touch) const;
   void applyAdded();    ///< Contacts that were missed at first.
   void finishImpacts(); ///< Of pairs that have parted, or lie on each other.

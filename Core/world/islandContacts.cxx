@@ -33,6 +33,7 @@ double IslandStepper::reachOf(double speed, double radius, double h) const
 
 void IslandStepper::gatherOnSlope(std::size_t k, double h)
 {
+  comeToRock(world_, island_, k);
   FallingRock& rock = world_.rocks[std::size_t(island_.members[k])];
   RockSimulator& sim = rock.sim;
   RockBody& body = rock.body();
@@ -46,7 +47,7 @@ void IslandStepper::gatherOnSlope(std::size_t k, double h)
   const double spread = body.state.spin.norm() * r + side.pushed;
   const double speed = body.state.velocity.norm() + body.state.spin.norm() * r + side.pushed;
   const double reach = this->reachOf(speed, r, h);
-  body.inIsland = true;
+  body.crowded = true;
   // Twice: beyond a concave edge planes serve a little further than their triangles.
   if (sim.isHigh(2.0 * reach))
   {
@@ -83,6 +84,7 @@ void IslandStepper::gatherOnSlope(std::size_t k, double h)
 
 void IslandStepper::gatherOfPair(std::size_t p, double h)
 {
+  comeToPair(island_.pairs, p);
   RockPair& pair = *island_.pairs[p];
   const IslandWork::Side& a = work_.sides[std::size_t(pair.first)];
   const IslandWork::Side& b = work_.sides[std::size_t(pair.second)];

@@ -23,8 +23,9 @@ double Meetings::thrown(std::size_t rock) const
   return bounds_[std::size_t(roots_[rock])].thrown(paces_[rock].mass, bounciest_);
 }
 
-/// Links two; `known`: their axis has been found for where they stand.
-void Meetings::join(std::size_t k, bool known)
+/// Links two; `known`: their axis has been found for where they stand. Returns whether that tells
+/// anything new of others.
+bool Meetings::join(std::size_t k, bool known)
 {
   Near& n = near_[k];
   n.linked = n.holds = true;
@@ -44,14 +45,19 @@ void Meetings::join(std::size_t k, bool known)
     }
     queue_.add(i, m.displacement);
   };
-  linkTo(n.first, n.second);
-  linkTo(n.second, n.first);
+  const bool share = movers_[std::size_t(n.first)].shares && movers_[std::size_t(n.second)].shares;
+  if (!share)
+  {
+    linkTo(n.first, n.second);
+    linkTo(n.second, n.first);
+  }
   const int a = this->root(n.first), b = this->root(n.second);
   if (a != b)
   {
     parents_[std::size_t(std::max(a, b))] = std::min(a, b);
     bounds_[std::size_t(std::min(a, b))].add(bounds_[std::size_t(std::max(a, b))]);
   }
+  return a != b || !share;
 }
 
 /// All that lies on each other wakes at once; others have their turn in the next sweep.
@@ -80,7 +86,8 @@ void Meetings::wakeAbout(int rock)
   this->forNeighbours(rock, visit);
 }
 
-/// Passes the rest of a rock's displacement on to those that it is linked with.
+/// Passes the rest of a rock's displacement on to those that it is linked with and that do not
+/// share it.
 void Meetings::passOn(int rock)
 {
   Mover* const rocks = movers_.data();
@@ -89,7 +96,7 @@ void Meetings::passOn(int rock)
   for (int l = firstLink_[std::size_t(rock)]; l >= 0; l = links[l].next)
   {
     Mover& other = rocks[links[l].other];
-    if (displacement > other.displacement * kNoMore)
+    if (displacement > other.displacement * kNoMore && !other.shares)
     {
       // The gap must be crossed first, by both together.
       const double own = paces_[std::size_t(links[l].other)].own;
@@ -112,8 +119,13 @@ void Meetings::tell()
   {
     const std::size_t rock = std::size_t(i);
     roots_[rock] = this->root(i);
+    Mover& m = movers_[rock];
+    if (m.shares)
+    {
+      m.displacement = bounds_[std::size_t(roots_[rock])].longest;
+    }
     thrown_[rock] = this->thrown(rock);
-    fars_[rock] = thrown_[rock] * movers_[rock].displacement;
+    fars_[rock] = thrown_[rock] * m.displacement;
     if (sleepers_ > 0)
     {
       this->wakeAbout(i);

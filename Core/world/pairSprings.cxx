@@ -3,6 +3,7 @@
 #include "contact/motion.h"
 #include "law/settings.h"
 #include "rock/impactMode.h"
+#include "world/pressedIn.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,14 +18,6 @@ PairStiffness pairStiffness(const SimulationParameters& parameters)
 
 namespace
 {
-
-/// The deepest overlap (m) at which a spring (N/m) holds no more energy than two that meet at
-/// `speed` (m/s) have between them. `mass`: the reduced one, kg; `radius`: the smaller one, m. What
-/// is deeper others have pressed in.
-double deepestBetween(double radius, double speed, double mass, double stiffness)
-{
-  return std::max(kFirm * radius, kSomeMore * speed * std::sqrt(mass / stiffness));
-}
 
 PairSprings springsOf(const WorldState& world, const RockPair& pair)
 {
