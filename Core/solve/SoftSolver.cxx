@@ -143,6 +143,7 @@ void SoftSolver::arrive(std::size_t strip)
       any = any || this->closes(k, 1.0);
     }
     manifold.busy = anyBusy;
+    manifold.generation = 0;
     if (anyBusy)
     {
       busy.push_back(m);
@@ -160,7 +161,6 @@ void SoftSolver::arriveAt(std::size_t k, bool placed)
   RowStart& start = starts_[k];
   const bool weighs = !placed && this->place(r);
   start.before = this->speedOf(r).dot(r.normal);
-  start.generation = 0;
   r.gap = this->gapOf(k);
   r.idle = r.P == 0.0 && this->staysOpen(k);
   if (!r.idle && weighs)

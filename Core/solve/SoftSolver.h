@@ -104,7 +104,6 @@ private:
   /// What else of a row.
   struct RowStart
   {
-    int generation; ///< Generation of impacts in which its manifold was last asked.
     bool flipped;   ///< `a` is the contact's second rock.
     double gap0;    ///< Where the step begins, m.
     double spring;  ///< N/m
@@ -116,7 +115,8 @@ private:
   {
     int a, b; ///< Movers; b < 0: the slope.
     std::size_t first, end;
-    bool busy; ///< Swept over: rows that are not idle stand where the rocks are.
+    int generation; ///< Of impacts, in which it was last asked.
+    bool busy;      ///< Swept over: rows that are not idle stand where the rocks are.
   };
   /// A row in a generation of impacts.
   struct Impact
@@ -191,7 +191,7 @@ private:
   static void book(const Row& row, double along, const Vec3& across, const Vec3& mean,
     const Vec3& meanA, Result& result);
   void warm(Row& row);
-  void keepPushing(std::size_t strip); ///< Among its busy manifolds, and notes their rocks.
+  void keepPushing(std::size_t strip); ///< Busy manifolds that push; notes their rocks.
   bool press(Row& row);                ///< Whether by more than the resting speed.
   bool relax(Row& row);
   /// Friction under an impulse P (N s) along the normal. Returns by how much it changes, N s.
@@ -221,9 +221,9 @@ private:
   bool settle(Impact& impact); ///< Whether it changed by more than it is exact to.
   /// Impacts that share rocks, one with the next, give no more than was there: else a share.
   void limitGains();
-  void takeBack(const Generation& generation); ///< What is over a share.
+  void takeBack(const Generation& generation); ///< The rest of a share.
   void bookImpacts(const Generation& generation, double time);
-  void noteImpact(const Impact& impact, double time); ///< What it was, and whom it struck.
+  void noteImpact(const Impact& impact, double time); ///< Its speed, and the rocks it struck.
   void findStruck(std::size_t strip, int number);     ///< Rows that close by generation `number`.
   bool staysOpen(std::size_t row) const; ///< Within the substep, at its speed `before`.
   void listWoken(std::size_t strip);     ///< Among those that are busy.

@@ -345,12 +345,12 @@ void SoftSolver::findStruck(std::size_t strip, int number)
       for (std::size_t j = firstOf_[std::size_t(i)]; j < firstOf_[std::size_t(i) + 1]; ++j)
       {
         const std::size_t m = manifoldsOf_[j];
-        if (m < firstOfStrip_[strip] || m >= firstOfStrip_[strip + 1] ||
-          starts_[manifolds_[m].first].generation == number)
+        const bool here = m >= firstOfStrip_[strip] && m < firstOfStrip_[strip + 1];
+        if (!here || manifolds_[m].generation == number)
         {
           continue;
         }
-        starts_[manifolds_[m].first].generation = number;
+        manifolds_[m].generation = number;
         if (this->strikes(m, generation.woken))
         {
           this->strike(m, generation.struck);

@@ -101,7 +101,7 @@ void SoftSolver::arrange()
     }
     else
     {
-      manifolds_.push_back({ now.first, now.second, k, k + 1, false });
+      manifolds_.push_back({ now.first, now.second, k, k + 1, 0, false });
       firstOfStrip_[std::size_t(now.strip) + 1] = manifolds_.size();
     }
   }
@@ -190,7 +190,6 @@ void SoftSolver::prepareImpulses(std::size_t k, const IslandContact& asked)
   row.P = 0.0;
   row.T.setZero();
   row.stops = false;
-  start.generation = 0;
   start.before = 0.0;
   start.pending = c.closed() && !asked.absent && asked.bounce >= 0.0 ? asked.bounce : -1.0;
   if (c.closed() && start.pending < 0.0 && !asked.absent)

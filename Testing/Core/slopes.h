@@ -56,6 +56,19 @@ inline SurfaceMaterial material(double restitution, double frictionDegrees)
   return m;
 }
 
+/// Ground that yields and gives nothing back, without friction that grows with slip.
+inline SurfaceMaterial softGround()
+{
+  SurfaceMaterial m;
+  m.restitutionModel = RestitutionModel::NormalTangential;
+  m.restitution = 0.0;
+  m.yielding.modulus = 15e6;
+  m.yielding.depthFactor = 0.125;
+  m.yielding.compaction = 1.5;
+  m.yielding.rollingResistance = 0.4;
+  return m;
+}
+
 /// The samples at multiples of the output interval, and the end.
 inline std::vector<Sample> evenSamples(const Trajectory& trajectory)
 {

@@ -13,18 +13,6 @@ using namespace rockfall::testing;
 namespace
 {
 
-SurfaceMaterial softGround()
-{
-  SurfaceMaterial m;
-  m.restitutionModel = RestitutionModel::NormalTangential;
-  m.restitution = 0.0;
-  m.yielding.modulus = 15e6;
-  m.yielding.depthFactor = 0.125;
-  m.yielding.compaction = 1.5;
-  m.yielding.rollingResistance = 0.4;
-  return m;
-}
-
 /// A cube of 1 m³ that falls straight down onto the middle of a slope, at 7 m/s or so.
 Trajectory dropOnMiddle(const Terrain& terrain, const Quat& attitude, double height)
 {

@@ -25,18 +25,12 @@ constexpr double kDensity = 1700.0; // of the ground, kg/m³
 
 SurfaceMaterial meadow()
 {
-  SurfaceMaterial m;
-  m.restitutionModel = RestitutionModel::NormalTangential;
-  m.restitution = 0.0;
-  m.yielding.modulus = 15e6;
-  m.yielding.depthFactor = 0.125;
-  m.yielding.compaction = 1.5;
+  SurfaceMaterial m = softGround();
   m.yielding.spinDrag = 1.0;
   m.yielding.frictionLeast = 0.55;
   m.yielding.frictionMost = 2.0;
   m.yielding.frictionGrowth = 3.0;
   m.yielding.frictionDecay = 185.0;
-  m.yielding.rollingResistance = 0.4;
   return m;
 }
 

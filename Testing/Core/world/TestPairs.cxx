@@ -351,22 +351,17 @@ TEST(Pairs, AnImpactIsTheSameBesideOthers)
   };
   const auto energyOf = [](const std::vector<Rock>& rocks, double time)
   {
-    const Terrain ground = abyss();
-    SimulationParameters p;
-    p.gravity = 0.0;
-    p.endTime = 0.02;
-    p.rockRockContact = true;
-    p.rockRestitution = 1.0;
-    p.rockFrictionAngle = radians(80.0);
-    const std::vector<Block> blocks = blocksOf(rocks);
-    const Surface surface(ground, p.seed, 0);
-    World fall(surface, rocks, blocks, p);
-    fall.release();
-    while (fall.time() < time && fall.advance())
-    {
-    }
-    return rigidKineticEnergy(blocks[0], fall.state(0)) +
-      rigidKineticEnergy(blocks[1], fall.state(1));
+    Pile pile;
+    pile.ground = abyss();
+    pile.rocks = rocks;
+    pile.parameters.gravity = 0.0;
+    pile.parameters.endTime = 0.02;
+    pile.parameters.rockRestitution = 1.0;
+    pile.parameters.rockFrictionAngle = radians(80.0);
+    pile.start();
+    pile.run(time);
+    return rigidKineticEnergy(pile.blocks[0], pile.fall->state(0)) +
+      rigidKineticEnergy(pile.blocks[1], pile.fall->state(1));
   };
   int limited = 0;
   for (int k = 0; k < 100; ++k)
