@@ -1,7 +1,7 @@
 #include "base/RockMaterial.h"
 
 #include "base/errors.h"
-#include "base/nameKey.h"
+#include "base/text/nameKey.h"
 
 namespace rockfall
 {

@@ -1,7 +1,7 @@
 #include "block/Block.h"
 
 #include "base/errors.h"
-#include "base/numberText.h"
+#include "base/text/numberText.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>

@@ -1,7 +1,7 @@
 #include "geometry/Polyhedron.h"
 
 #include "base/errors.h"
-#include "base/numberText.h"
+#include "base/text/numberText.h"
 #include "geometry/shell.h"
 
 #include <algorithm>

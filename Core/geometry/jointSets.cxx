@@ -2,7 +2,7 @@
 
 #include "base/abort.h"
 #include "base/errors.h"
-#include "base/numberText.h"
+#include "base/text/numberText.h"
 #include "base/random.h"
 #include "geometry/shell.h"
 

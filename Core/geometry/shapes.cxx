@@ -1,8 +1,8 @@
 #include "geometry/shapes.h"
 
 #include "base/errors.h"
-#include "base/nameKey.h"
-#include "base/numberText.h"
+#include "base/text/nameKey.h"
+#include "base/text/numberText.h"
 #include "geometry/shell.h"
 
 #include <array>

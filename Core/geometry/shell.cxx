@@ -1,8 +1,8 @@
 #include "geometry/shell.h"
 
 #include "base/errors.h"
-#include "base/numberText.h"
-#include "base/pointText.h"
+#include "base/text/numberText.h"
+#include "base/text/pointText.h"
 #include "geometry/simplexIntegration.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "base/numberText.h"
+#include "base/text/numberText.h"
 #include "geometry/shell.h"
 
 #include "base/errors.h"

@@ -3,7 +3,7 @@
 /// @file
 /// The law of one contact over a step of h (s), the only one (METHOD 3): normal spring, dashpot,
 /// shear spring and Coulomb's limit. A single rock, a small group and the slope as blocks evaluate
-/// it; the sweeps of a crowd have it in vector form (solve/crowdSweep.h), tested against it.
+/// it; the sweeps of a crowd have it in vector form (solve/island/crowdSweep.h), tested against it.
 ///
 /// Along the normal n, gaps d₀ and d₁ at the start and the end (m; < 0: overlap), V(d) = ½ pₙ
 /// min(d, 0)²:

@@ -251,7 +251,7 @@ inline constexpr double kBounceGainOn = 0.05;
 inline constexpr int kHeldBounces = 3;
 
 // ---------------------------------------------------------------------------------------------
-// 10  Islands: soft rows in substeps (solve/SoftSolver.h)
+// 10  Islands: soft rows in substeps (solve/island/SoftSolver.h)
 
 /// Substeps of Δt. Fewer: columns and walls creep (5: 1e-4 m for ten cubes).
 inline constexpr int kSubsteps = 8;

@@ -1,9 +1,9 @@
 #include "mesh/pointTable.h"
 
-#include "base/columnName.h"
+#include "base/text/columnName.h"
 #include "base/errors.h"
-#include "base/lengthUnit.h"
-#include "base/tableText.h"
+#include "base/text/lengthUnit.h"
+#include "base/text/tableText.h"
 #include "mesh/MeshBuilder.h"
 #include "mesh/meshFile.h"
 #include "mesh/tableText.h"

@@ -1,7 +1,7 @@
 #include "mesh/precision.h"
 
 #include "base/errors.h"
-#include "base/numberText.h"
+#include "base/text/numberText.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "mesh/tableText.h"
 
-#include "base/tableText.h"
+#include "base/text/tableText.h"
 #include "mesh/words.h"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 
 /// @file
 /// Lines and cells of a table of points: comments, what parts the columns, decimals. Its encoding:
-/// base/tableText.h.
+/// base/text/tableText.h.
 
 #include <string>
 #include <string_view>

@@ -1,8 +1,8 @@
 #include "rock/Rock.h"
 
 #include "base/errors.h"
-#include "base/numberText.h"
-#include "base/pointText.h"
+#include "base/text/numberText.h"
+#include "base/text/pointText.h"
 #include "law/settings.h"
 
 #include <cmath>

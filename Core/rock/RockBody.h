@@ -7,7 +7,7 @@
 #include "contact/Contact.h"
 #include "contact/PlacedBlock.h"
 #include "rock/results.h"
-#include "solve/StepSolver.h"
+#include "solve/step/StepSolver.h"
 
 #include <vector>
 

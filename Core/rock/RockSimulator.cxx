@@ -2,8 +2,8 @@
 
 #include "base/abort.h"
 #include "block/flight.h"
-#include "contact/detection.h"
-#include "contact/timeToTouch.h"
+#include "contact/ground/detection.h"
+#include "contact/ground/timeToTouch.h"
 #include "law/settings.h"
 #include "law/springs.h"
 #include "rock/placement.h"

@@ -4,7 +4,7 @@
 /// One rock on one realisation of the slope, from release to rest: flight in closed form, contact
 /// in steps, restitution as events.
 
-#include "contact/candidates.h"
+#include "contact/ground/candidates.h"
 #include "rock/Recorder.h"
 #include "rock/Rock.h"
 #include "rock/RockBody.h"

@@ -15,7 +15,7 @@
 /// - it is the surface again when the rock is out of the ground.
 
 #include "contact/Contact.h"
-#include "contact/submerged.h"
+#include "contact/ground/submerged.h"
 #include "terrain/yieldingGround.h"
 
 #include <functional>

@@ -2,9 +2,9 @@
 
 #include "base/abort.h"
 #include "block/flight.h"
-#include "contact/detection.h"
-#include "contact/motion.h"
-#include "contact/timeToTouch.h"
+#include "contact/ground/detection.h"
+#include "contact/ground/motion.h"
+#include "contact/ground/timeToTouch.h"
 #include "law/cohesion.h"
 #include "law/settings.h"
 #include "rock/impactMode.h"

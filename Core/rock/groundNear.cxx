@@ -2,9 +2,9 @@
 
 #include "rock/RockSimulator.h"
 
-#include "contact/clearance.h"
+#include "contact/ground/clearance.h"
 #include "contact/pairs.h"
-#include "contact/timeToTouch.h"
+#include "contact/ground/timeToTouch.h"
 #include "law/settings.h"
 
 #include <algorithm>

@@ -3,8 +3,8 @@
 #include "rock/RockSimulator.h"
 
 #include "block/flight.h"
-#include "contact/clearance.h"
-#include "contact/timeToTouch.h"
+#include "contact/ground/clearance.h"
+#include "contact/ground/timeToTouch.h"
 #include "law/settings.h"
 #include "rock/rollingResistance.h"
 

@@ -1,7 +1,7 @@
 #include "rock/parameters.h"
 
 #include "base/errors.h"
-#include "base/numberText.h"
+#include "base/text/numberText.h"
 #include "law/settings.h"
 #include "rock/rockContacts.h"
 

@@ -1,6 +1,6 @@
 #include "rock/placement.h"
 
-#include "contact/features.h"
+#include "contact/ground/features.h"
 #include "law/settings.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "rock/release.h"
 
 #include "base/errors.h"
-#include "base/numberText.h"
+#include "base/text/numberText.h"
 #include "base/random.h"
 #include "geometry/shell.h"
 #include "law/settings.h"

@@ -2,8 +2,8 @@
 
 #include "base/RockMaterial.h"
 #include "base/errors.h"
-#include "base/nameKey.h"
-#include "base/numberText.h"
+#include "base/text/nameKey.h"
+#include "base/text/numberText.h"
 #include "geometry/shell.h"
 #include "law/springs.h"
 

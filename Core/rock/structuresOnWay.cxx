@@ -1,8 +1,8 @@
 // Structures that a rock meets: obstacles in flight, trees that break, barriers.
 
 #include "block/flight.h"
-#include "contact/clearance.h"
-#include "contact/timeToTouch.h"
+#include "contact/ground/clearance.h"
+#include "contact/ground/timeToTouch.h"
 #include "law/settings.h"
 #include "rock/RockSimulator.h"
 

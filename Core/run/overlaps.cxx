@@ -2,8 +2,8 @@
 
 #include "base/abort.h"
 #include "base/errors.h"
-#include "base/numberText.h"
-#include "contact/broadPhase.h"
+#include "base/text/numberText.h"
+#include "contact/pair/broadPhase.h"
 #include "contact/pairs.h"
 #include "law/settings.h"
 #include "rock/placement.h"

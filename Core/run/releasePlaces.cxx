@@ -4,7 +4,7 @@
 #include "base/errors.h"
 #include "base/random.h"
 #include "geometry/planeSampling.h"
-#include "gis/gdal.h"
+#include "gis/base/gdal.h"
 #include "law/settings.h"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 /// From sources to the places of single rocks: so many at each point, along each line, in each
 /// polygon, or where the terrain is steep.
 
-#include "gis/sources.h"
+#include "gis/layers/sources.h"
 #include "terrain/Terrain.h"
 
 #include <cstdint>

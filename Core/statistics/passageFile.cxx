@@ -1,7 +1,7 @@
 #include "statistics/passageFile.h"
 
 #include "base/errors.h"
-#include "base/numberText.h"
+#include "base/text/numberText.h"
 
 #include <algorithm>
 #include <bit>

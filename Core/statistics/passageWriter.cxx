@@ -1,7 +1,7 @@
 // Passages into a file; reading them is in passageFile.cxx.
 
 #include "base/errors.h"
-#include "gis/outputFile.h"
+#include "gis/base/outputFile.h"
 #include "statistics/HazardRaster.h"
 #include "statistics/passageFile.h"
 

@@ -1,7 +1,7 @@
 #include "terrain/Obstacles.h"
 
 #include "base/errors.h"
-#include "base/numberText.h"
+#include "base/text/numberText.h"
 #include "geometry/shell.h"
 #include "law/settings.h"
 #include "terrain/Surface.h"

@@ -1,7 +1,7 @@
 #include "terrain/Terrain.h"
 
 #include "base/errors.h"
-#include "base/numberText.h"
+#include "base/text/numberText.h"
 #include "terrain/Obstacles.h"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 // edge and foot are shorter than the axis: the stations there have one node of them in common.
 
 #include "base/errors.h"
-#include "base/numberText.h"
+#include "base/text/numberText.h"
 #include "geometry/shell.h"
 #include "law/settings.h"
 #include "terrain/Obstacles.h"

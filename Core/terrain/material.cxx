@@ -1,7 +1,7 @@
 #include "terrain/material.h"
 
 #include "base/errors.h"
-#include "base/numberText.h"
+#include "base/text/numberText.h"
 #include "law/settings.h"
 
 #include <algorithm>

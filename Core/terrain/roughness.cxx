@@ -1,7 +1,7 @@
 #include "terrain/roughness.h"
 
 #include "base/errors.h"
-#include "base/numberText.h"
+#include "base/text/numberText.h"
 #include "law/settings.h"
 #include "terrain/scatter.h"
 

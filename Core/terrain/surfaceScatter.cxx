@@ -3,7 +3,7 @@
 #include "terrain/Surface.h"
 
 #include "base/errors.h"
-#include "base/numberText.h"
+#include "base/text/numberText.h"
 #include "terrain/Obstacles.h"
 
 #include <algorithm>

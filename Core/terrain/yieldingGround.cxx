@@ -1,7 +1,7 @@
 #include "terrain/yieldingGround.h"
 
 #include "base/errors.h"
-#include "base/numberText.h"
+#include "base/text/numberText.h"
 
 #include <cmath>
 #include <numbers>

@@ -1,8 +1,8 @@
 #include "world/EndLook.h"
 
 #include "base/parallel.h"
-#include "contact/detection.h"
-#include "contact/motion.h"
+#include "contact/ground/detection.h"
+#include "contact/ground/motion.h"
 #include "law/settings.h"
 #include "world/StepTrees.h"
 #include "world/pairSprings.h"

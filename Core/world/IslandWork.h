@@ -4,7 +4,7 @@
 /// Working memory of a step of an island (IslandStepper).
 
 #include "base/cache.h"
-#include "solve/IslandSolver.h"
+#include "solve/island/IslandSolver.h"
 #include "world/WorldState.h"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 /// Rocks that may meet within a step: pairs near each other, in compact arrays, as there are
 /// several times more of them than touch.
 
-#include "contact/broadPhase.h"
+#include "contact/pair/broadPhase.h"
 #include "world/RockQueue.h"
 #include "world/WorldState.h"
 #include "world/pace.h"

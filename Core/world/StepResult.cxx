@@ -1,7 +1,7 @@
 #include "world/StepResult.h"
 
 #include "base/parallel.h"
-#include "contact/motion.h"
+#include "contact/ground/motion.h"
 #include "law/settings.h"
 #include "rock/pressOut.h"
 #include "world/StepTrees.h"

@@ -1,6 +1,6 @@
 #include "world/WorldState.h"
 
-#include "contact/motion.h"
+#include "contact/ground/motion.h"
 
 #include <utility>
 

@@ -7,7 +7,7 @@
 #include "contact/pairs.h"
 #include "rock/RockSimulator.h"
 #include "rock/rockContacts.h"
-#include "solve/IslandSolver.h"
+#include "solve/island/IslandSolver.h"
 
 #include <cstdint>
 #include <span>

@@ -17,7 +17,7 @@
 #include "world/Meetings.h"
 
 #include "base/parallel.h"
-#include "contact/motion.h"
+#include "contact/ground/motion.h"
 #include "law/settings.h"
 #include "world/pairImpacts.h"
 #include "world/sleep.h"

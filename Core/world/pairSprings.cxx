@@ -1,6 +1,6 @@
 #include "world/pairSprings.h"
 
-#include "contact/motion.h"
+#include "contact/ground/motion.h"
 #include "law/settings.h"
 #include "rock/impactMode.h"
 #include "world/pressedIn.h"

@@ -3,7 +3,7 @@
 /// @file
 /// Springs and dashpots of contacts between rocks.
 
-#include "solve/PairSprings.h"
+#include "solve/island/PairSprings.h"
 #include "world/WorldState.h"
 
 namespace rockfall

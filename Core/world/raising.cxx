@@ -1,7 +1,7 @@
 #include "world/raising.h"
 
 #include "base/abort.h"
-#include "contact/broadPhase.h"
+#include "contact/pair/broadPhase.h"
 #include "contact/pairs.h"
 #include "law/settings.h"
 

@@ -13,7 +13,7 @@
 // Run: BenchmarkForest [iterations]
 
 #include "geometry/shapes.h"
-#include "gis/structureLayers.h"
+#include "gis/layers/structureLayers.h"
 #include "run/ensemble.h"
 #include "run/retention.h"
 #include "run/stateHash.h"

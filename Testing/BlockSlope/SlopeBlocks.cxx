@@ -1,7 +1,7 @@
 #include "BlockSlope/SlopeBlocks.h"
 
 #include "base/errors.h"
-#include "base/numberText.h"
+#include "base/text/numberText.h"
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 
 #include "BlockSlope/BlockSystem.h"
 #include "base/errors.h"
-#include "contact/detection.h"
+#include "contact/ground/detection.h"
 #include "law/settings.h"
 #include "rock/Recorder.h"
 

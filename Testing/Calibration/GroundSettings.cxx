@@ -1,6 +1,6 @@
 #include "GroundSettings.h"
 
-#include "base/numberText.h"
+#include "base/text/numberText.h"
 #include "terrain/presets.h"
 
 #include <algorithm>

@@ -18,7 +18,7 @@
 #include "trackedGround.h"
 
 #include "base/errors.h"
-#include "gis/raster.h"
+#include "gis/raster/raster.h"
 #include "run/ensemble.h"
 #include "statistics/sample.h"
 

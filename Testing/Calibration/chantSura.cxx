@@ -20,7 +20,7 @@
 #include "base/errors.h"
 #include "base/random.h"
 #include "geometry/shapes.h"
-#include "gis/raster.h"
+#include "gis/raster/raster.h"
 #include "statistics/sample.h"
 
 #include <algorithm>

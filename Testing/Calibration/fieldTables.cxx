@@ -1,7 +1,7 @@
 #include "fieldTables.h"
 
 #include "base/errors.h"
-#include "base/numberText.h"
+#include "base/text/numberText.h"
 
 #include <charconv>
 #include <cmath>

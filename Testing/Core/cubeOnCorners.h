@@ -6,7 +6,7 @@
 
 #include "piles.h"
 
-#include "solve/IslandSolver.h"
+#include "solve/island/IslandSolver.h"
 
 #include <vector>
 

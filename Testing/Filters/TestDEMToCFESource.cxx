@@ -2,7 +2,7 @@
 
 #include "base/errors.h"
 #include "terrain/presets.h"
-#include "terrainFieldData.h"
+#include "shared/terrainFieldData.h"
 
 #include "vtkCellData.h"
 #include "vtkDEMToCFESource.h"

@@ -4,8 +4,8 @@
 #include "vtkJointedRockMass.h"
 #include "vtkPointData.h"
 
-#include "structureFieldData.h"
-#include "terrainFieldData.h"
+#include "shared/structureFieldData.h"
+#include "shared/terrainFieldData.h"
 
 #include <cmath>
 #include <string>

@@ -1,6 +1,6 @@
 // How ranks agree on what happened to their work, on threads of this process that stand for them.
 
-#include "ranks.h"
+#include "shared/ranks.h"
 
 #include "base/abort.h"
 #include "base/errors.h"

@@ -8,7 +8,7 @@
 #include "vtkImageData.h"
 #include "vtkRockfallHazardMap.h"
 
-#include "gis/raster.h"
+#include "gis/raster/raster.h"
 
 #include <array>
 #include <cmath>

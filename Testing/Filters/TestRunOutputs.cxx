@@ -1,9 +1,9 @@
 // What a filter writes of a run, from trajectories made by hand: every number in its array.
 
 #include "helpers.h"
-#include "motion.h"
-#include "progressText.h"
-#include "runSink.h"
+#include "simulation/motion.h"
+#include "simulation/progressText.h"
+#include "simulation/runSink.h"
 
 #include "vtkCellData.h"
 #include "vtkPointData.h"

@@ -1,10 +1,10 @@
 // Embankments, trees and barriers on their way through the pipeline.
 
 #include "simulationTest.h"
-#include "structureFieldData.h"
+#include "shared/structureFieldData.h"
 #include "terrain/Obstacles.h"
 #include "terrain/Surface.h"
-#include "terrainFieldData.h"
+#include "shared/terrainFieldData.h"
 
 #include "vtkCellData.h"
 #include "vtkPointData.h"

@@ -6,7 +6,7 @@
 #include "vtkTrajectoryCollector.h"
 #include "vtkTrajectoryLayerWriter.h"
 
-#include "gis/sources.h"
+#include "gis/layers/sources.h"
 
 #include <cmath>
 

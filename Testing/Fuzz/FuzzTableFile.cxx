@@ -1,7 +1,7 @@
 // Tables in any encoding made readable for GDAL.
 
 #include "base/errors.h"
-#include "gis/tableFile.h"
+#include "gis/base/tableFile.h"
 #include "temporaryFile.h"
 
 #include <cpl_error.h>

@@ -1,7 +1,7 @@
 // The second look at grids of text. The first byte says which format GDAL is to take it for.
 
 #include "base/errors.h"
-#include "gis/textGrid.h"
+#include "gis/raster/textGrid.h"
 #include "temporaryFile.h"
 
 #include <gdal_priv.h>

@@ -3,7 +3,7 @@
 
 #include "verification.h"
 
-#include "contact/detection.h"
+#include "contact/ground/detection.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "base/columnName.h"
+#include "base/text/columnName.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Which spheres overlap, against all pairs one by one.
 
-#include "contact/broadPhase.h"
+#include "contact/pair/broadPhase.h"
 
 #include <gtest/gtest.h>
 

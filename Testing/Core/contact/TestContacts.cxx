@@ -1,8 +1,8 @@
 // Contact detection (METHOD 3, 5, 10.5): the indexed, pruned search against brute force, flat
 // edges, clearance.
 
-#include "contact/clearance.h"
-#include "contact/detection.h"
+#include "contact/ground/clearance.h"
+#include "contact/ground/detection.h"
 #include "slopes.h"
 
 #include <gtest/gtest.h>

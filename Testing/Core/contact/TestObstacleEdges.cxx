@@ -62,7 +62,7 @@ TEST(ObstacleEdges, InsideACrestAreNotFeltBySlidingRocks)
     Rock rock;
     rock.shape = shape;
     rock.orientation =
-      Quat::FromTwoVectors(Vec3::UnitZ(), normal) * Quat(Eigen::AngleAxisd(0.3, Vec3::UnitZ()));
+      turnBetween(Vec3::UnitZ(), normal) * Quat(Eigen::AngleAxisd(0.3, Vec3::UnitZ()));
     rock.position = Vec3(kStart, 129.0, 100.0 + kHeight - 0.25 * kStart) + half * normal;
     rock.velocity = 6.0 * Vec3(1.0, 0.0, -0.25).normalized();
     rock.angularVelocity = 1.5 * normal;

@@ -1,7 +1,7 @@
 /// Every shape against its closed form: counts, volume, moments of inertia, radius.
 
 #include "base/errors.h"
-#include "base/numberText.h"
+#include "base/text/numberText.h"
 #include "geometry/shapes.h"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 // terraces.
 #include "base/errors.h"
 #include "form.h"
-#include "gis/contours.h"
+#include "gis/raster/contours.h"
 #include "gisFiles.h"
 
 #include <algorithm>

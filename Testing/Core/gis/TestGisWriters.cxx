@@ -3,11 +3,11 @@
 #include "gisFiles.h"
 
 #include "base/errors.h"
-#include "gis/layerWriter.h"
-#include "gis/lineLayer.h"
-#include "gis/raster.h"
-#include "gis/rasterWriter.h"
-#include "gis/sources.h"
+#include "gis/layers/layerWriter.h"
+#include "gis/layers/lineLayer.h"
+#include "gis/raster/raster.h"
+#include "gis/raster/rasterWriter.h"
+#include "gis/layers/sources.h"
 
 #include <cmath>
 #include <filesystem>

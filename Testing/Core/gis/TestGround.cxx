@@ -1,6 +1,6 @@
 // Classes of ground: grids and polygons of any CRS with their tables, on the cells of a terrain.
 #include "base/errors.h"
-#include "gis/ground.h"
+#include "gis/raster/ground.h"
 #include "gisFiles.h"
 #include "terrain/Surface.h"
 #include "terrain/presets.h"

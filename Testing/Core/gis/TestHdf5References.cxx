@@ -3,9 +3,9 @@
 /// they name is beside them.
 
 #include "base/errors.h"
-#include "gis/hdf5References.h"
-#include "gis/raster.h"
-#include "gis/reach.h"
+#include "gis/base/hdf5References.h"
+#include "gis/raster/raster.h"
+#include "gis/base/reach.h"
 #include "gisFiles.h"
 
 #include <hdf5.h>

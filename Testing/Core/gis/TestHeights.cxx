@@ -3,11 +3,11 @@
 /// of one slope or place whose heights are known in metres.
 
 #include "base/errors.h"
-#include "gis/contours.h"
-#include "gis/lineLayer.h"
-#include "gis/raster.h"
-#include "gis/sources.h"
-#include "gis/structureLayers.h"
+#include "gis/raster/contours.h"
+#include "gis/layers/lineLayer.h"
+#include "gis/raster/raster.h"
+#include "gis/layers/sources.h"
+#include "gis/layers/structureLayers.h"
 #include "gisFiles.h"
 #include "netCdf.h"
 #include "terrain/Terrain.h"

@@ -3,8 +3,8 @@
 /// with words in them, and axes that are no grid's.
 
 #include "base/errors.h"
-#include "gis/contours.h"
-#include "gis/raster.h"
+#include "gis/raster/contours.h"
+#include "gis/raster/raster.h"
 #include "gisFiles.h"
 #include "netCdf.h"
 

@@ -2,7 +2,7 @@
 /// What a raster's numbers become where nothing has to be resampled, and the notes about it.
 
 #include "base/errors.h"
-#include "gis/raster.h"
+#include "gis/raster/raster.h"
 #include "gisFiles.h"
 
 #include <cmath>

@@ -3,7 +3,7 @@
 /// the file and the value. That nothing is printed is seen by `messageOf`.
 
 #include "base/errors.h"
-#include "gis/raster.h"
+#include "gis/raster/raster.h"
 #include "gisFiles.h"
 
 #include <cmath>

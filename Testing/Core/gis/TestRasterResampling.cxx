@@ -2,7 +2,7 @@
 /// Rasters that have to be brought to square north-up metric nodes, against surfaces known in
 /// closed form. The projection is checked against Krüger's series, not against PROJ itself.
 
-#include "gis/raster.h"
+#include "gis/raster/raster.h"
 #include "gisFiles.h"
 
 #include <algorithm>

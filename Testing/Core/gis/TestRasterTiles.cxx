@@ -1,6 +1,6 @@
 // Tiles as a VRT: two rasters beside each other, with an overlap, a hole, or one of them gone.
 #include "base/errors.h"
-#include "gis/raster.h"
+#include "gis/raster/raster.h"
 #include "gisFiles.h"
 
 #include <cmath>

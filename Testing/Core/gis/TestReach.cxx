@@ -3,11 +3,11 @@
 /// take more memory than they are worth.
 
 #include "base/errors.h"
-#include "gis/contours.h"
-#include "gis/lineLayer.h"
-#include "gis/raster.h"
-#include "gis/reach.h"
-#include "gis/sources.h"
+#include "gis/raster/contours.h"
+#include "gis/layers/lineLayer.h"
+#include "gis/raster/raster.h"
+#include "gis/base/reach.h"
+#include "gis/layers/sources.h"
 #include "gisFiles.h"
 
 #include <arpa/inet.h>

@@ -1,6 +1,6 @@
 // The table of pairs of materials of rocks that hit each other.
 #include "base/errors.h"
-#include "gis/rockContacts.h"
+#include "gis/layers/rockContacts.h"
 #include "gisFiles.h"
 
 using namespace rockfall;

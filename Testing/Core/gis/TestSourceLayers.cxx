@@ -3,7 +3,7 @@
 /// deviations, and every way in which one can be wrong.
 
 #include "base/errors.h"
-#include "gis/sources.h"
+#include "gis/layers/sources.h"
 #include "gisFiles.h"
 
 namespace rockfall

@@ -3,7 +3,7 @@
 /// can be wrong.
 
 #include "base/errors.h"
-#include "gis/sources.h"
+#include "gis/layers/sources.h"
 #include "gisFiles.h"
 
 #include <algorithm>

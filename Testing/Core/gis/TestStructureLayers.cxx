@@ -1,7 +1,7 @@
 // Embankments, trees and barriers from layers, and the message of each bad one.
 
 #include "base/errors.h"
-#include "gis/structureLayers.h"
+#include "gis/layers/structureLayers.h"
 #include "gisFiles.h"
 #include "slopes.h"
 #include "terrain/Obstacles.h"

@@ -2,8 +2,8 @@
 // numbers under a locale with a decimal comma.
 
 #include "base/errors.h"
-#include "gis/crs.h"
-#include "gis/structureLayers.h"
+#include "gis/base/crs.h"
+#include "gis/layers/structureLayers.h"
 #include "gisFiles.h"
 #include "slopes.h"
 #include "terrain/Obstacles.h"

@@ -2,7 +2,7 @@
 
 #include "base/errors.h"
 #include "base/random.h"
-#include "contact/detection.h"
+#include "contact/ground/detection.h"
 #include "gisFiles.h"
 #include "rock/placement.h"
 #include "slopes.h"

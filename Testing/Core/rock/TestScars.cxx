@@ -43,7 +43,7 @@ TEST(Scars, AreMadeByCornersEdgesAndFaces)
 {
   const SurfaceMaterial ground = softGround();
   const Quat flat = Quat::Identity();
-  const Quat onCorner = Quat::FromTwoVectors(Vec3(1.0, 1.0, 1.0), Vec3::UnitZ());
+  const Quat onCorner = turnBetween(Vec3(1.0, 1.0, 1.0), Vec3::UnitZ());
   const Quat onEdge(Eigen::AngleAxisd(radians(45.0), Vec3::UnitX())); // along x
   expectScar(dropOnMiddle(makePlane(21, 40.0, 0.0, 0.0, ground), onCorner, 0.0), "corner, plane");
   const Terrain ridge = makeSlope(
@@ -62,7 +62,7 @@ TEST(Scars, AreMadeOnEmbankmentsOfTheSlopesMaterialOnly)
   Embankment e = dam(height, 6.0, 1.5);
   Terrain own = level(softGround());
   own.setStructures(only(e));
-  const Quat tilted = Quat::FromTwoVectors(Vec3(1.0, 0.8, 0.6), Vec3::UnitZ());
+  const Quat tilted = turnBetween(Vec3(1.0, 0.8, 0.6), Vec3::UnitZ());
   expectScar(dropOnMiddle(own, tilted, height), "crest");
   e.material = 1;
   Structures built = only(e);

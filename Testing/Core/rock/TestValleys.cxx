@@ -185,7 +185,7 @@ TEST(Valleys, CubesDoNotFallThroughABend)
       rock.shape = makeShape(Shape::Cube, size * size * size);
       const double angle = std::atan(0.8), x = 175.0;
       const Vec3 normal(std::sin(angle), 0.0, std::cos(angle));
-      rock.orientation = Quat::FromTwoVectors(Vec3::UnitZ(), normal);
+      rock.orientation = turnBetween(Vec3::UnitZ(), normal);
       rock.position = Vec3(x, 200.3, (200.0 - x) * 0.8) + (0.5 * size + 1e-4) * normal;
       pile.rocks = { rock };
       EXPECT_LT(deepestUnderSlope(pile), 0.11) << size << " m, up " << up;

@@ -5,8 +5,8 @@
 
 #include "base/errors.h"
 #include "block/Block.h"
-#include "contact/submerged.h"
-#include "contact/timeToTouch.h"
+#include "contact/ground/submerged.h"
+#include "contact/ground/timeToTouch.h"
 #include "rock/Scar.h"
 #include "run/stateHash.h"
 #include "world/World.h"
@@ -175,7 +175,7 @@ TEST(YieldingGround, ScarTakesWhatTheSweptVolumeSays)
       if (shape == Shape::Tetrahedron)
       {
         // A corner down, so that its section grows.
-        rock.orientation = Quat::FromTwoVectors(rock.shape.vertices()[0], -Vec3::UnitZ());
+        rock.orientation = turnBetween(rock.shape.vertices()[0], -Vec3::UnitZ());
       }
       double lowest = 0.0;
       for (const Vec3& v : rock.shape.vertices())

@@ -2,8 +2,8 @@
 // it: as far as it takes and no farther, at the rims of holes as well.
 
 #include "base/errors.h"
-#include "contact/clearance.h"
-#include "contact/features.h"
+#include "contact/ground/clearance.h"
+#include "contact/ground/features.h"
 #include "gisFiles.h"
 #include "rock/placement.h"
 #include "slopes.h"

@@ -1,7 +1,7 @@
 // The innermost loops of crowds: the same bits on every processor, the plain formulas, momentum
 // kept, and the springs met where it has settled.
 
-#include "solve/crowdKernel.h"
+#include "solve/island/crowdKernel.h"
 
 #include "law/contactLaw.h"
 

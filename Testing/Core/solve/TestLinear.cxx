@@ -1,7 +1,7 @@
 // Small dense systems, beside Eigen's.
 
 #include "base/types.h"
-#include "solve/linear.h"
+#include "solve/step/linear.h"
 
 #include <Eigen/LU>
 

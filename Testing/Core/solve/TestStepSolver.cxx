@@ -2,7 +2,7 @@
 
 #include "geometry/shapes.h"
 #include "law/springs.h"
-#include "solve/StepSolver.h"
+#include "solve/step/StepSolver.h"
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>

@@ -73,7 +73,7 @@ TEST(Obstacles, ACubeSlidesDownTheSideAsCoulombSays)
   {
     Rock rock;
     rock.shape = makeShape(Shape::Cube, 1.0);
-    rock.orientation = Quat::FromTwoVectors(Vec3::UnitZ(), normal);
+    rock.orientation = turnBetween(Vec3::UnitZ(), normal);
     // 3 m below the crest's edge at y = 51 m.
     rock.position = Vec3(x, 51.0 + 4.0, 112.0 - 2.0) + 0.5 * normal;
     const double time = 1.5;
@@ -340,7 +340,7 @@ TEST(Obstacles, AStemThatBreaksInASqueezeTakesItsCapacity)
   {
     const double edge = k == 4 ? 1.5 : 0.6, x = k == 4 ? 20.0 : 98.8 - 0.65 * k;
     Rock rock = brick(Vec3::Constant(edge), Vec3::Zero(), k);
-    rock.orientation = Quat::FromTwoVectors(Vec3::UnitZ(), normal);
+    rock.orientation = turnBetween(Vec3::UnitZ(), normal);
     rock.position =
       Vec3(x, 80.0, 100.0 - (x - 80.0) * std::tan(angle)) + (0.5 * edge + 0.001) * normal;
     pile.rocks.push_back(rock);

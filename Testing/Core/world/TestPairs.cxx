@@ -59,7 +59,7 @@ constexpr std::array<std::pair<Shape, Shape>, 6> kShapes = { {
 /// A rock whose vertex 0 (or face 0) looks along `direction`.
 Quat facing(const Vec3& own, const Vec3& direction)
 {
-  return Quat::FromTwoVectors(own, direction);
+  return turnBetween(own, direction);
 }
 
 struct Meeting

@@ -4,7 +4,7 @@
 #include "law/settings.h"
 #include "piles.h"
 #include "rock/placement.h"
-#include "solve/IslandSolver.h"
+#include "solve/island/IslandSolver.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include "piles.h"
 #include "rock/placement.h"
-#include "solve/IslandSolver.h"
+#include "solve/island/IslandSolver.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,67 @@
+#include "base/text/nameKey.h"
+
+#include <unicode/bytestream.h>
+#include <unicode/normalizer2.h>
+#include <unicode/utf8.h>
+
+#include <algorithm>
+
+namespace rockfall
+{
+
+namespace
+{
+
+std::string_view trimmed(std::string_view text)
+{
+  constexpr std::string_view blanks = " \t\r\n";
+  const auto first = text.find_first_not_of(blanks);
+  return first == std::string_view::npos
+    ? std::string_view()
+    : text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+} // namespace
+
+std::string nameKey(std::string_view name)
+{
+  std::string key;
+  if (std::all_of(name.begin(), name.end(), [](char c) { return (c & 0x80) == 0; }))
+  {
+    key = trimmed(name);
+    // By hand: what a locale makes of capitals must not matter.
+    std::transform(key.begin(), key.end(), key.begin(),
+      [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+    return key;
+  }
+  UErrorCode status = U_ZERO_ERROR;
+  const icu::Normalizer2* folding = icu::Normalizer2::getNFKCCasefoldInstance(status);
+  icu::StringByteSink<std::string> sink(&key);
+  if (U_SUCCESS(status))
+  {
+    folding->normalizeUTF8(
+      0, icu::StringPiece(name.data(), int32_t(name.size())), sink, nullptr, status);
+  }
+  return std::string(trimmed(U_SUCCESS(status) ? std::string_view(key) : name));
+}
+
+bool isUtf8(std::string_view text)
+{
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(text.data());
+  for (std::size_t i = 0; i < text.size();)
+  {
+    // Letters have four bytes at most; the macro counts in 32 bits.
+    const std::uint8_t* letter = bytes + i;
+    int32_t used = 0;
+    UChar32 code = 0;
+    U8_NEXT(letter, used, int32_t(std::min<std::size_t>(4, text.size() - i)), code);
+    if (code < 0)
+    {
+      return false;
+    }
+    i += std::size_t(used);
+  }
+  return true;
+}
+
+} // namespace rockfall

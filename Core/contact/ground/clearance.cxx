@@ -1,0 +1,304 @@
+#include "contact/ground/clearance.h"
+#include "contact/ground/detection.h"
+#include "contact/ground/features.h"
+#include "contact/ground/motion.h"
+#include "law/settings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+namespace rockfall
+{
+
+namespace
+{
+
+/// How fast the rock can come nearer along an axis.
+struct Approach
+{
+  Vec3 velocity;
+  double rim; ///< |ω| r, m/s.
+  double gravity;
+
+  double time(const Vec3& axis, double distance) const
+  {
+    return timeToCover(
+      distance, this->rim - axis.dot(this->velocity), this->gravity * std::max(0.0, axis.z()));
+  }
+};
+
+/// The best separating axis of one triangle so far.
+struct Separation
+{
+  double distance = -std::numeric_limits<double>::infinity();
+  double time = 0.0;
+
+  void improve(const Approach& approach, const Vec3& axis, double along)
+  {
+    this->distance = std::max(this->distance, along);
+    this->time = std::max(this->time, approach.time(axis, along));
+  }
+};
+
+Separation separate(const PlacedBlock& rock, const std::array<Vec3, 3>& q,
+  const SurfacePatch::Triangle& t, const Approach& approach, double horizon)
+{
+  Separation best;
+  const auto low = [&](int axis) { return std::min({ q[0][axis], q[1][axis], q[2][axis] }); };
+  const auto high = [&](int axis) { return std::max({ q[0][axis], q[1][axis], q[2][axis] }); };
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    best.improve(approach, Vec3::Unit(axis), rock.lower()[axis] - high(axis));
+    best.improve(approach, -Vec3::Unit(axis), low(axis) - rock.upper()[axis]);
+  }
+  if (best.time >= horizon)
+  {
+    return best;
+  }
+  const auto lowestAlong = [&](const Vec3& n)
+  {
+    double d = std::numeric_limits<double>::infinity();
+    for (const Vec3& p : rock.vertices())
+    {
+      d = std::min(d, n.dot(p));
+    }
+    return d;
+  };
+  const auto highestAlong = [&](const Vec3& n) {
+    return std::max({ n.dot(q[0]), n.dot(q[1]), n.dot(q[2]) });
+  };
+  best.improve(approach, t.normal, lowestAlong(t.normal) - t.offset);
+  if (best.time >= horizon)
+  {
+    return best;
+  }
+  const Polyhedron& shape = rock.block().shape();
+  for (std::size_t f = 0; f < rock.block().shape().faces().size(); ++f)
+  {
+    const Vec3 n = -rock.normal(f);
+    const double face = n.dot(rock.vertices()[shape.faces()[f][0]]);
+    best.improve(approach, n, face - highestAlong(n));
+  }
+  if (best.time >= horizon)
+  {
+    return best;
+  }
+  for (const Polyhedron::Edge& e : shape.edges())
+  {
+    const Vec3 u = rock.vertices()[e.vertices[1]] - rock.vertices()[e.vertices[0]];
+    for (int k = 0; k < 3; ++k)
+    {
+      Vec3 n = u.cross(q[(k + 1) % 3] - q[k]);
+      const double length = n.norm();
+      if (length < 1e-12)
+      {
+        continue;
+      }
+      n /= length;
+      if (n.dot(rock.position() - q[k]) < 0.0)
+      {
+        n = -n;
+      }
+      // The axis separates best between the two edges themselves; else another one does.
+      const double bound = n.dot(rock.vertices()[e.vertices[0]]) - n.dot(q[k]);
+      if (bound > best.distance)
+      {
+        best.improve(approach, n, lowestAlong(n) - highestAlong(n));
+        if (best.time >= horizon)
+        {
+          return best;
+        }
+      }
+    }
+  }
+  return best;
+}
+
+} // namespace
+
+Clearance clearance(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
+  double gravity, double horizon)
+{
+  Clearance result;
+  result.distance = std::numeric_limits<double>::infinity();
+  result.time = horizon;
+  const Block& block = rock.block();
+  const Approach approach{ state.velocity, block.largestRimSpeed(state.spin), gravity };
+  const Approach ball{ state.velocity, 0.0, gravity }; // the bounding sphere does not turn
+  for (const SurfacePatch::Triangle& t : patch.triangles)
+  {
+    if (t.cfe == 0)
+    {
+      continue;
+    }
+    const double under = t.normal.dot(rock.position()) - t.offset - block.radius();
+    if (under > 0.0 && ball.time(t.normal, under) >= result.time)
+    {
+      result.distance = std::min(result.distance, under);
+      continue;
+    }
+    const std::array<Vec3, 3> nodes = { patch.nodes[t.nodes[0]].position,
+      patch.nodes[t.nodes[1]].position, patch.nodes[t.nodes[2]].position };
+    const Separation s = separate(rock, nodes, t, approach, result.time);
+    result.distance = std::min(result.distance, s.distance);
+    result.time = std::min(result.time, s.time);
+  }
+  return result;
+}
+
+namespace
+{
+
+/// How deep a point of the ground is behind the nearest wall, m; ∞ if it is behind none.
+double depthInWalls(const SurfacePatch& patch, const Vec3& p)
+{
+  double depth = std::numeric_limits<double>::infinity();
+  for (int i = patch.slopeTriangles; i < patch.slopeTriangles + patch.wallTriangles; ++i)
+  {
+    const SurfacePatch::Triangle& t = patch.triangles[i];
+    const double behind = t.offset - t.normal.dot(p);
+    if (behind >= 0.0 && behind < depth && projectsInside(patch, i, p, 0.0, 0.0))
+    {
+      depth = behind;
+    }
+  }
+  return depth;
+}
+
+} // namespace
+
+double penetration(const PlacedBlock& rock, const SurfacePatch& patch)
+{
+  double deepest = 0.0;
+  const Vec3 lower = rock.lower(), upper = rock.upper();
+  for (const SurfacePatch::Triangle& t : std::span(patch.triangles).first(patch.slopeTriangles))
+  {
+    const Vec3& a = patch.nodes[t.nodes[0]].position;
+    const Vec3& b = patch.nodes[t.nodes[1]].position;
+    const Vec3& c = patch.nodes[t.nodes[2]].position;
+    const Vec3 most = a.cwiseMax(b).cwiseMax(c), least = a.cwiseMin(b).cwiseMin(c);
+    if (t.cfe == 0 || (most.head<2>().array() < lower.head<2>().array()).any() ||
+      (least.head<2>().array() > upper.head<2>().array()).any())
+    {
+      continue;
+    }
+    for (const Vec3& p : rock.vertices())
+    {
+      const double depth = t.offset - t.normal.dot(p);
+      if (depth > deepest && isStraightOver(patch, t, p))
+      {
+        deepest = std::max(deepest, std::min(depth, depthInWalls(patch, p)));
+      }
+    }
+  }
+  for (const SurfacePatch::Node& n : std::span(patch.nodes).first(patch.slopeNodes))
+  {
+    if (n.peak && (n.position.array() >= lower.array()).all() &&
+      (n.position.array() <= upper.array()).all())
+    {
+      deepest = std::max(deepest, -rock.faceDistance(rock.outermostFace(n.position), n.position));
+    }
+  }
+  return deepest;
+}
+
+namespace
+{
+
+/// visit(kind, feature of the rock, of the patch, distance) of each candidate vertex and peak that
+/// is too deep, until it returns false. Returns whether it never did.
+template <class Visit>
+bool visitOverlaps(const PlacedBlock& rock, const SurfacePatch& patch,
+  const CandidatePairs& candidates, double allowed, Visit&& visit)
+{
+  for (const CandidatePairs::Pair& pair : candidates.vertexFace)
+  {
+    const SurfacePatch::Triangle& t = patch.triangles[pair.patch];
+    const Vec3& p = rock.vertices()[pair.rock];
+    const double distance = t.normal.dot(p) - t.offset;
+    if (distance < -allowed &&
+      (pair.patch < patch.slopeTriangles ? isStraightOver(patch, t, p)
+                                         : projectsInside(patch, pair.patch, p, 0.0, 0.0) &&
+            inVertexCone(rock, pair.rock, t.normal, kConeSlack)) &&
+      cameThrough(patch, pair.patch, p, distance) &&
+      !visit(ContactKind::VertexFace, pair.rock, pair.patch, distance))
+    {
+      return false;
+    }
+  }
+  for (int node : candidates.peaks)
+  {
+    const Vec3& q = patch.nodes[node].position;
+    const int face = rock.outermostFace(q);
+    const double distance = rock.faceDistance(face, q);
+    // A face that looks up is no way out of the ground.
+    if (distance < -allowed && (node >= patch.slopeNodes || rock.normal(face).z() < 0.0) &&
+      !visit(ContactKind::FaceVertex, face, node, distance))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+} // namespace
+
+void holdOverlap(const PlacedBlock& rock, const SurfacePatch& patch,
+  const CandidatePairs& candidates, double allowed, std::vector<Contact>& contacts)
+{
+  const auto add = [&](ContactKind kind, int onRock, int onPatch, double distance)
+  {
+    Contact c;
+    c.kind = kind;
+    c.rockFeature = onRock;
+    c.patchFeature = onPatch;
+    c.distance = distance;
+    c.offset = distance;
+    if (kind == ContactKind::VertexFace)
+    {
+      c.cfe = patch.triangles[onPatch].cfe;
+      c.surfaceFeature = patch.triangles[onPatch].key;
+      c.normal = patch.triangles[onPatch].normal;
+      c.point = rock.vertices()[onRock];
+    }
+    else
+    {
+      c.cfe = patch.nodes[onPatch].cfe;
+      c.surfaceFeature = patch.nodes[onPatch].key;
+      c.normal = -rock.normal(onRock);
+      c.point = patch.nodes[onPatch].position;
+    }
+    const bool known = std::any_of(contacts.begin(), contacts.end(),
+      [&](const Contact& o)
+      {
+        if (o.kind != c.kind || c.kind != ContactKind::VertexFace)
+        {
+          return o.kind == c.kind && o.surfaceFeature == c.surfaceFeature;
+        }
+        // The plane of a triangle is produced beyond a concave edge: a contact that lives on there
+        // knows of no depth under the triangle that rises behind it.
+        return o.rockFeature == c.rockFeature &&
+          (o.surfaceFeature == c.surfaceFeature || o.distance <= c.distance + allowed);
+      });
+    if (!known)
+    {
+      contacts.push_back(c);
+    }
+  };
+  visitOverlaps(rock, patch, candidates, allowed,
+    [&](ContactKind kind, int onRock, int onPatch, double distance)
+    {
+      add(kind, onRock, onPatch, distance);
+      return true;
+    });
+}
+
+bool overlaps(const PlacedBlock& rock, const SurfacePatch& patch, const CandidatePairs& candidates,
+  double allowed)
+{
+  return !visitOverlaps(rock, patch, candidates, allowed, [](auto&&...) { return false; });
+}
+
+} // namespace rockfall

@@ -1,0 +1,245 @@
+#include "contact/ground/detection.h"
+
+#include "contact/ground/features.h"
+#include "contact/ground/handover.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace rockfall
+{
+
+namespace
+{
+
+bool samePlace(const Contact& a, const Contact& b)
+{
+  return a.kind == b.kind && a.rockFeature == b.rockFeature && a.surfaceFeature == b.surfaceFeature;
+}
+
+/// Whether two ridges are pieces of one straight one.
+bool onOneLine(const SurfacePatch& patch, int a, int b)
+{
+  const SurfacePatch::Ridge& x = patch.ridges[a];
+  const SurfacePatch::Ridge& y = patch.ridges[b];
+  const bool joined = x.nodes[0] == y.nodes[0] || x.nodes[0] == y.nodes[1] ||
+    x.nodes[1] == y.nodes[0] || x.nodes[1] == y.nodes[1];
+  const auto direction = [&](const SurfacePatch::Ridge& r) -> Vec3
+  { return (patch.nodes[r.nodes[1]].position - patch.nodes[r.nodes[0]].position).normalized(); };
+  return joined && std::abs(direction(x).dot(direction(y))) > 0.999;
+}
+
+/// A contact that carries stays, and so does one that has opened where the two still overlap: lost
+/// and found again some steps later, it would be forgiven all that the rock has sunk meanwhile.
+bool stays(const Contact& c)
+{
+  return c.closed() || c.distance < 0.0;
+}
+
+/// A contact that has opened, as if it had just been found: the overlap that it lost stays lost.
+void reopen(Contact& c)
+{
+  c.offset = c.distance;
+  c.slip.setZero();
+  c.normalForce = c.shearForce = 0.0;
+}
+
+/// Adds an entrance unless the contacts that are already there stand for it.
+void admit(const SurfacePatch& patch, const Contact& candidate, std::vector<Contact>& contacts)
+{
+  for (const Contact& c : contacts)
+  {
+    if (samePlace(c, candidate))
+    {
+      return;
+    }
+    if (candidate.kind == ContactKind::EdgeEdge && c.kind == ContactKind::EdgeEdge &&
+      c.rockFeature == candidate.rockFeature &&
+      onOneLine(patch, c.patchFeature, candidate.patchFeature))
+    {
+      return; // the crossing that carries already, at the joint of two pieces
+    }
+    if (candidate.kind != ContactKind::VertexFace || c.kind != ContactKind::VertexFace ||
+      c.rockFeature != candidate.rockFeature)
+    {
+      continue;
+    }
+    // The same vertex on two triangles: both count across a valley, one across a ridge or a flat
+    // edge.
+    const SurfacePatch::Triangle& t = patch.triangles[candidate.patchFeature];
+    bool valley = false, adjacent = false;
+    for (int k = 0; k < 3; ++k)
+    {
+      if (t.neighbours[k] == c.patchFeature)
+      {
+        adjacent = true;
+        valley = t.bends[k] < 0;
+      }
+    }
+    const bool sameNormal = c.normal.dot(candidate.normal) > 1.0 - 1e-12;
+    if (sameNormal || (adjacent && !valley))
+    {
+      return;
+    }
+    const bool alike = (c.patchFeature < patch.slopeTriangles) ==
+      (candidate.patchFeature < patch.slopeTriangles); // both of the slope, or both of obstacles
+    if (alike && !adjacent && c.distance < 0.0 && candidate.distance < c.distance)
+    {
+      return; // deeper under a triangle further off: not where it came in
+    }
+  }
+  contacts.push_back(candidate);
+  contacts.back().offset = std::min(0.0, candidate.distance);
+}
+
+/// Admits the other sides of the valleys in whose bottom a vertex is pressed: it is beside them,
+/// seen square to them, and each step would leave it to go deeper under the one or the other.
+void findOtherSides(
+  const PlacedBlock& rock, const SurfacePatch& patch, double reach, std::vector<Contact>& contacts)
+{
+  for (std::size_t i = 0; i < contacts.size(); ++i) // grows
+  {
+    const int side = contacts[i].patchFeature, vertex = contacts[i].rockFeature;
+    if (contacts[i].kind != ContactKind::VertexFace || contacts[i].distance >= 0.0 ||
+      side >= patch.slopeTriangles)
+    {
+      continue;
+    }
+    for (int k = 0; k < 3; ++k)
+    {
+      const int other = patch.triangles[side].neighbours[k];
+      if (patch.triangles[side].bends[k] < 0 && other >= 0 && patch.triangles[other].cfe != 0)
+      {
+        if (const auto c = vertexFace(rock, vertex, patch, other, reach, side))
+        {
+          admit(patch, *c, contacts);
+        }
+      }
+    }
+  }
+}
+
+} // namespace
+
+void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch,
+  const CandidatePairs& candidates, double reach, std::vector<Contact>& contacts, double turn)
+{
+  // A contact that carries stays, as long as it is somewhere.
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+  {
+    Contact& c = contacts[i];
+    if (!stays(c) || !refreshContact(rock, patch, c) || !stays(c))
+    {
+      continue;
+    }
+    const auto twin = std::find_if(contacts.begin(), contacts.begin() + kept,
+      [&](const Contact& other) { return samePlace(other, c); });
+    if (twin == contacts.begin() + kept)
+    {
+      if (!c.closed())
+      {
+        reopen(c);
+      }
+      if (kept < i)
+      {
+        contacts[kept] = c;
+      }
+      ++kept;
+    }
+    else
+    {
+      // Two have come to the same place: one spring with the energy of both.
+      twin->offset = twin->distance +
+        std::hypot(std::min(0.0, twin->gap()),
+          std::min(0.0, c.gap()) *
+            (twin->stiffness > 0.0 ? std::sqrt(c.stiffness / twin->stiffness) : 1.0));
+    }
+  }
+  contacts.resize(kept);
+
+  // Contacts that are there already are not looked at again.
+  const auto isThere = [&](ContactKind kind, int onRock, std::int64_t key)
+  {
+    return std::any_of(contacts.begin(), contacts.end(),
+      [&](const Contact& c)
+      { return c.rockFeature == onRock && c.surfaceFeature == key && c.kind == kind; });
+  };
+  for (const CandidatePairs::Pair& pair : candidates.vertexFace)
+  {
+    const SurfacePatch::Triangle& t = patch.triangles[pair.patch];
+    if (t.normal.dot(rock.vertices()[pair.rock]) - t.offset > reach ||
+      isThere(ContactKind::VertexFace, pair.rock, t.key))
+    {
+      continue;
+    }
+    if (const auto c = vertexFace(rock, pair.rock, patch, pair.patch, reach, -1, turn))
+    {
+      admit(patch, *c, contacts);
+    }
+  }
+  for (int node : candidates.peaks)
+  {
+    // Only the face over which the node is farthest out can be the entrance.
+    const Vec3& q = patch.nodes[node].position;
+    const int face = rock.outermostFace(q);
+    if (rock.faceDistance(face, q) <= reach)
+    {
+      if (auto c = faceVertex(rock, face, patch, node, reach))
+      {
+        admit(patch, *c, contacts);
+      }
+    }
+  }
+  for (const CandidatePairs::Pair& pair : candidates.edgeEdge)
+  {
+    if (isThere(ContactKind::EdgeEdge, pair.rock, patch.ridges[pair.patch].key))
+    {
+      continue;
+    }
+    if (const auto c = edgeEdge(rock, pair.rock, patch, pair.patch, reach))
+    {
+      admit(patch, *c, contacts);
+    }
+  }
+  findOtherSides(rock, patch, reach, contacts);
+}
+
+void findEntrancesBruteForce(
+  const PlacedBlock& rock, const SurfacePatch& patch, double reach, std::vector<Contact>& contacts)
+{
+  const Polyhedron& shape = rock.block().shape();
+  for (int i = 0; i < int(patch.triangles.size()); ++i)
+  {
+    for (int v = 0; v < int(rock.vertices().size()) && patch.triangles[i].cfe != 0; ++v)
+    {
+      if (auto c = vertexFace(rock, v, patch, i, reach))
+      {
+        admit(patch, *c, contacts);
+      }
+    }
+  }
+  for (int i = 0; i < int(patch.nodes.size()); ++i)
+  {
+    for (int f = 0; f < int(shape.faces().size()); ++f)
+    {
+      if (auto c = faceVertex(rock, f, patch, i, reach))
+      {
+        admit(patch, *c, contacts);
+      }
+    }
+  }
+  for (int i = 0; i < int(patch.ridges.size()); ++i)
+  {
+    for (int e = 0; e < int(shape.edges().size()); ++e)
+    {
+      if (auto c = edgeEdge(rock, e, patch, i, reach))
+      {
+        admit(patch, *c, contacts);
+      }
+    }
+  }
+}
+
+} // namespace rockfall

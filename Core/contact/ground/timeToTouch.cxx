@@ -1,0 +1,277 @@
+#include "contact/ground/timeToTouch.h"
+#include "contact/ground/motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rockfall
+{
+
+namespace
+{
+
+/// The bound while it is made smaller place by place. A material point q of the rock over a slope
+/// with gradient a ± s closes its gap by no more than c t + ½ c₂ t² + j t³/6: with its velocity w,
+/// c = a·w − w_z + s |w|, c₂ ≥ 0 likewise with its acceleration, and j from the largest third
+/// derivative of a turning body. Between two places of the rock's surface over one CFE the gap is
+/// linear and these rates are convex: the places where either has a corner are enough.
+class FirstTouch
+{
+public:
+  FirstTouch(const PlacedBlock& rock, const BlockState& state, const HeightWindow& window,
+    double gravity, double horizon)
+    : position_(rock.position())
+    , velocity_(state.velocity)
+    , spin_(rock.rotation() * state.spin)
+    , tilt_(window.tilt())
+    , relief_(window.relief())
+    , gravity_(gravity)
+    , time_(horizon)
+  {
+    const Block& block = rock.block();
+    const double rim = block.largestRimSpeed(state.spin);
+    const double kappa = std::sqrt(1.0 + tilt_.squaredNorm()) + relief_;
+    double fastest = spin_.norm(), derivatives = 1.0;
+    if (!block.isotropic())
+    {
+      // |ω̇| ≤ |ω|², as no moment of inertia is more than the sum of the others; so |ω̈| ≤ 2 |ω|³ and
+      // the third derivative of a point is at most (2 + 2 + 1 + 1) |ω|³ r.
+      fastest = block.largestSpin(state.spin).norm();
+      derivatives = 6.0;
+      const Vec3 momentum = block.inertia() * state.spin;
+      spinRate_ = rock.rotation() * (block.inverseInertia() * momentum.cross(state.spin));
+    }
+    const double turning = fastest * fastest * block.radius();
+    third_ = kappa * derivatives * turning * fastest / 6.0;
+    fastest_ = this->rate(velocity_) + kappa * rim;
+    acceleration_ = gravity + (block.isotropic() ? 1.0 : 2.0) * kappa * turning;
+    this->updateFar();
+  }
+
+  double time() const { return time_; }
+  /// Gaps beyond this do not matter any more, m.
+  double far() const { return far_; }
+
+  void visit(const Vec3& point, double gap)
+  {
+    if (!(gap < far_)) // nor where there is no ground
+    {
+      return;
+    }
+    if (gap <= 0.0)
+    {
+      time_ = 0.0;
+      far_ = 0.0;
+      return;
+    }
+    const Vec3 lever = point - position_;
+    const Vec3 turning = spin_.cross(lever);
+    const double c = this->rate(velocity_ + turning);
+    const Vec3 bend = spinRate_.cross(lever) + spin_.cross(turning);
+    const double c2 = 0.5 * std::max(0.0, this->rate(bend) + gravity_);
+    const auto closed = [&](double t) { return ((third_ * t + c2) * t + c) * t - gap; };
+    double after = time_, over = closed(after);
+    if (over <= 0.0)
+    {
+      return; // convex, and not closed by then: not sooner
+    }
+    // From both sides of the root: tangents from the right, secants from the left.
+    after = std::min(after, timeToCover(gap, c, 2.0 * c2));
+    over = std::max(closed(after), 1e-300);
+    double before = 0.0, under = -gap;
+    for (int k = 0; k < 8 && before < 0.98 * after; ++k)
+    {
+      after -= over / ((3.0 * third_ * after + 2.0 * c2) * after + c);
+      over = std::max(closed(after), 1e-300);
+      before += (after - before) * under / (under - over);
+      under = std::min(closed(before), -1e-300);
+    }
+    time_ = before;
+    this->updateFar();
+  }
+
+private:
+  double rate(const Vec3& w) const
+  {
+    return tilt_.x() * w.x() + tilt_.y() * w.y() - w.z() +
+      relief_ * std::sqrt(w.x() * w.x() + w.y() * w.y());
+  }
+  void updateFar() { far_ = std::max(0.0, fastest_ * time_) + 0.5 * acceleration_ * time_ * time_; }
+
+  Vec3 position_, velocity_, spin_;
+  Vec3 spinRate_ = Vec3::Zero();
+  Eigen::Vector2d tilt_;
+  double relief_;
+  double gravity_;
+  double time_;
+  double third_ = 0.0; ///< j/6
+  double acceleration_ = 0.0;
+  double fastest_ = 0.0;
+  double far_ = 0.0;
+};
+
+/// Where a vertical line through a world point enters the rock from below, over that point, m; ∞ if
+/// it misses it.
+double entersAt(const PlacedBlock& rock, const Vec3& world)
+{
+  const Polyhedron& shape = rock.block().shape();
+  const Vec3 x = rock.materialPoint(world);
+  const Vec3 up = rock.rotation().row(2).transpose();
+  double low = -std::numeric_limits<double>::infinity(), high = -low;
+  for (std::size_t f = 0; f < shape.normals().size(); ++f)
+  {
+    const Vec3& n = shape.normals()[f];
+    const double rise = n.dot(up), room = shape.offsets()[f] - n.dot(x);
+    if (rise < 0.0)
+    {
+      low = std::max(low, room / rise);
+    }
+    else if (rise > 0.0)
+    {
+      high = std::min(high, room / rise);
+    }
+    else if (room < 0.0)
+    {
+      return high;
+    }
+  }
+  return low <= high ? low : std::numeric_limits<double>::infinity();
+}
+
+} // namespace
+
+double timeToNear(const BlockState& state, double radius, const HeightWindow& window,
+  double gravity, double horizon)
+{
+  const Eigen::Vector2d& tilt = window.tilt();
+  const double up = state.position.z() - tilt.dot(state.position.head<2>()) - window.highest();
+  const double room = up - radius * std::sqrt(1.0 + tilt.squaredNorm());
+  const double rate = tilt.dot(state.velocity.head<2>()) - state.velocity.z();
+  return std::min(horizon, timeToCover(room, rate, gravity));
+}
+
+namespace
+{
+
+/// visit(place, gap) of every place where the gap along the vertical can be least, but for those
+/// where it is no less than far(), which visits may make smaller.
+template <class Far, class Visit>
+void visitLowPlaces(
+  const PlacedBlock& rock, const HeightWindow& window, const Far& far, const Visit& visit)
+{
+  const auto over = [&](const Vec3& p) { visit(p, p.z() - window.elevation(p.x(), p.y())); };
+  // Height over the plane that no node is above: a gap is at least that.
+  const auto room = [&](const Vec3& p)
+  { return p.z() - window.tilt().dot(p.head<2>()) - window.highest(); };
+  const std::vector<Vec3>& vertices = rock.vertices();
+  thread_local std::vector<double> rooms; // of the vertices: every edge asks for two
+  rooms.resize(vertices.size());
+  double least = std::numeric_limits<double>::infinity();
+  std::size_t lowest = 0;
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+  {
+    rooms[i] = room(vertices[i]);
+    if (rooms[i] < least)
+    {
+      least = rooms[i];
+      lowest = i;
+    }
+  }
+  if (least >= far())
+  {
+    return;
+  }
+  over(vertices[lowest]); // most likely the first to touch: the rest is soon too far
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+  {
+    if (rooms[i] < far())
+    {
+      over(vertices[i]);
+    }
+  }
+  const double inverse = window.inverseCellSize(), west = window.west(), north = window.north();
+  const auto index = [&](double v, int count) { return std::clamp(int(std::floor(v)), -1, count); };
+  const int column0 = index((rock.lower().x() - west) * inverse, window.columns()) + 1;
+  const int column1 = index((rock.upper().x() - west) * inverse, window.columns() - 1);
+  const int row0 = index((north - rock.upper().y()) * inverse, window.rows()) + 1;
+  const int row1 = index((north - rock.lower().y()) * inverse, window.rows() - 1);
+  // Nodes of the slope under the rock. The lowest point of the rock is lowest + tilt on the way.
+  for (int row = row0; row <= row1; ++row)
+  {
+    for (int column = column0; column <= column1; ++column)
+    {
+      const Vec3 node(window.x(column), window.y(row), window.z(row, column));
+      if (least + window.highest() + window.tilt().dot(node.head<2>()) - node.z() < far())
+      {
+        const double gap = entersAt(rock, node);
+        if (gap < far())
+        {
+          visit(Vec3(node.x(), node.y(), node.z() + gap), gap);
+        }
+      }
+    }
+  }
+  // Edges of the rock where they pass over edges of the slope: grid lines and diagonals.
+  const Polyhedron& shape = rock.block().shape();
+  const Vec3 up = rock.rotation().row(2).transpose();
+  for (const Polyhedron::Edge& e : shape.edges())
+  {
+    const auto start = std::size_t(e.vertices[0]), end = std::size_t(e.vertices[1]);
+    if (std::min(rooms[start], rooms[end]) >= far() ||
+      (up.dot(shape.normals()[e.faces[0]]) > 0.0 && up.dot(shape.normals()[e.faces[1]]) > 0.0))
+    {
+      continue;
+    }
+    const Vec3 &p = vertices[start], &q = vertices[end];
+    const double x0 = (p.x() - west) * inverse, x1 = (q.x() - west) * inverse;
+    const double y0 = (north - p.y()) * inverse, y1 = (north - q.y()) * inverse;
+    const double from[3] = { x0, y0, x0 - y0 }, to[3] = { x1, y1, x1 - y1 };
+    const int most[3] = { window.columns() - 1, window.rows() - 1, window.columns() - 1 };
+    const int first[3] = { 0, 0, 1 - window.rows() };
+    const Vec3 along = q - p;
+    for (int family = 0; family < 3; ++family)
+    {
+      const double a = std::min(from[family], to[family]), b = std::max(from[family], to[family]);
+      const int k0 = int(std::ceil(std::max(a, double(first[family]))));
+      const int k1 = int(std::floor(std::min(b, double(most[family]))));
+      if (k0 > k1 || a == b)
+      {
+        continue;
+      }
+      const double scale = 1.0 / (to[family] - from[family]);
+      for (int k = k0; k <= k1; ++k)
+      {
+        const Vec3 x = p + std::clamp((k - from[family]) * scale, 0.0, 1.0) * along;
+        if (room(x) < far())
+        {
+          over(x);
+        }
+      }
+    }
+  }
+}
+
+} // namespace
+
+double timeToTouch(const PlacedBlock& rock, const BlockState& state, const HeightWindow& window,
+  double gravity, double horizon)
+{
+  FirstTouch touch(rock, state, window, gravity, horizon);
+  visitLowPlaces(
+    rock, window, [&] { return touch.far(); },
+    [&](const Vec3& place, double gap) { touch.visit(place, gap); });
+  return touch.time();
+}
+
+double heightOver(const PlacedBlock& rock, const HeightWindow& window, double least)
+{
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  double height = infinity;
+  visitLowPlaces(
+    rock, window, [&] { return height > least ? height : -infinity; },
+    [&](const Vec3&, double gap) { height = gap < height ? gap : height; }); // NaN is not
+  return height;
+}
+
+} // namespace rockfall

@@ -1,0 +1,40 @@
+#pragma once
+
+/// @file
+/// How far a rock is from touching: lower bounds of the time in free flight, height.
+
+#include "contact/ground/candidates.h"
+#include "terrain/Obstacles.h"
+
+#include <span>
+
+namespace rockfall
+{
+
+/// Lower bound of the time (s, at most `horizon`) in which a pair of the candidates that is apart
+/// now can close in free flight. 0 where the rock overlaps the slope.
+double timeToClose(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
+  const CandidatePairs& candidates, double gravity, double horizon);
+
+/// Lower bound of the time (s, at most `horizon`) to the first touch in free flight over the
+/// window, which must hold all that the rock can come over until then. For every place where the
+/// gap along the vertical can be least, it is covered at the speed that this point of the rock has,
+/// towards a slope that may differ from the window's mean by as much as any of its CFEs does. 0
+/// where the two overlap.
+double timeToTouch(const PlacedBlock& rock, const BlockState& state, const HeightWindow& window,
+  double gravity, double horizon);
+/// Height of the rock over the window's ground, along the vertical, m; < 0: it overlaps it. What is
+/// not more than `least` is told as something that is not.
+double heightOver(const PlacedBlock& rock, const HeightWindow& window, double least);
+/// Time as above for the bounding sphere over the plane that no node of the window is above.
+double timeToNear(const BlockState& state, double radius, const HeightWindow& window,
+  double gravity, double horizon);
+
+/// Lower bound of the time (s, at most `horizon`) to the first touch of an obstacle in free flight.
+/// Where the bounding sphere comes to one within `close` (s), `rock` is placed there and looked at
+/// itself. Trees that are `gone` (ascending) do not count.
+double timeToObstacle(PlacedBlock& rock, const BlockState& state, const Block& block,
+  const Obstacles& obstacles, std::span<const int> gone, double gravity, double close,
+  double horizon);
+
+} // namespace rockfall

@@ -1,0 +1,18 @@
+#pragma once
+
+/// @file
+/// Lines of features, for every reader of lines alike. Internal to gis/: needs GDAL's headers.
+
+#include "gis/layers/FeatureRow.h"
+
+#include <vector>
+
+namespace rockfall::gis
+{
+
+/// The lines of a feature: parts of several lines and of collections, curves as short straight
+/// pieces; without parts that are empty. The row owns them. Throws DataError naming file and row if
+/// there is none, or something else.
+std::vector<const OGRLineString*> linesIn(const FeatureRow& row);
+
+} // namespace rockfall::gis

@@ -1,0 +1,276 @@
+#include "gis/layers/sources.h"
+
+#include "base/RockMaterial.h"
+#include "base/text/columnName.h"
+#include "base/errors.h"
+#include "base/text/nameKey.h"
+#include "gis/layers/FeatureRow.h"
+#include "gis/layers/LayerFile.h"
+#include "gis/base/crs.h"
+#include "gis/base/gdal.h"
+#include "gis/trust/heightReference.h"
+#include "gis/layers/sourceGeometry.h"
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+
+namespace rockfall
+{
+
+namespace
+{
+
+using namespace gis;
+
+const std::initializer_list<const char*> kColumns = { "amount", "intensity", "volume", "vol_law",
+  "vol_dev", "vol_min", "vol_max", "vol_exp", "material", "mat_name", "density", "young", "poisson",
+  "height", "source_id", "dev_xy", "dev_z", "dev_att" };
+const std::initializer_list<const char*> kShortColumns = { "x", "y", "z", "shape", "source", "vx",
+  "vy", "vz", "wx", "wy", "wz", "rx", "ry", "rz", "lx", "ly", "lz" };
+
+/// Columns whose name, but for a unit, is z.
+std::vector<std::string> heightColumnsOf(const OGRFeatureDefn& definition)
+{
+  std::vector<std::string> names;
+  for (int i = 0; i < definition.GetFieldCount(); ++i)
+  {
+    const std::string written = definition.GetFieldDefn(i)->GetNameRef();
+    if (ColumnName(written).name == "z")
+    {
+      names.push_back(written);
+    }
+  }
+  return names;
+}
+
+/// Names of columns, but for a unit, that somebody may expect to be read.
+const std::initializer_list<const char*> kTempting = { "mass", "weight", "speed", "velocity",
+  "spin", "diameter", "size", "length", "width", "elevation", "elev", "altitude", "restitution",
+  "friction" };
+
+/// One note of the columns that are not read although they sound as if they were.
+void tellUnread(
+  const OGRFeatureDefn& definition, const std::string& fileName, std::vector<std::string>& notes)
+{
+  std::string list;
+  int count = 0;
+  for (int i = 0; i < definition.GetFieldCount(); ++i)
+  {
+    const std::string written = definition.GetFieldDefn(i)->GetNameRef();
+    const std::string name = ColumnName(written).name;
+    if (std::find(kTempting.begin(), kTempting.end(), name) != kTempting.end())
+    {
+      list += (count++ ? ", \"" : "\"") + written + "\"";
+    }
+  }
+  if (count > 0)
+  {
+    notes.push_back(fileName +
+      (count > 1 ? ": not read are its columns " : ": not read is its column ") + list + ".");
+  }
+}
+
+/// Words and ranges that other parts of the Core check, with the row and the field before.
+template <class Make>
+auto checked(const FeatureRow& row, const char* field, Make&& make)
+{
+  try
+  {
+    return make();
+  }
+  catch (const ParameterError& error)
+  {
+    row.failField(field, std::string(": ") + error.what());
+  }
+}
+
+void readNumbers(const FeatureRow& row, SourceRow& source)
+{
+  source.amount = row.count("amount");
+  source.intensity = row.notNegative("intensity");
+  if (source.amount && source.intensity)
+  {
+    row.fail("has an \"amount\" and an \"intensity\"; it must have one of them");
+  }
+  if (source.intensity && source.geometry == SourceGeometry::Point)
+  {
+    row.failField("intensity", " is for lines and polygons; a point needs an \"amount\"");
+  }
+  if (const auto id = row.number("source_id"))
+  {
+    if (*id != std::floor(*id) || std::abs(*id) > 0x1p53)
+    {
+      row.failField("source_id", " is " + number(*id) + ", it must be a whole number");
+    }
+    source.sourceId = std::int64_t(*id);
+  }
+  source.sourceName = row.text("source").value_or("");
+}
+
+void readBody(const FeatureRow& row, SourceRow& source)
+{
+  if (const auto text = row.text("shape"))
+  {
+    source.shapes = checked(row, "shape", [&] { return ShapeMix::fromText(*text); });
+  }
+  source.volume = row.positive("volume");
+  if (const auto text = row.text("vol_law"))
+  {
+    source.volumeLaw = checked(row, "vol_law", [&] { return volumeLawFromName(*text); });
+  }
+  source.volumeDeviation = row.notNegative("vol_dev");
+  source.volumeMinimum = row.notNegative("vol_min");
+  source.volumeMaximum = row.notNegative("vol_max");
+  source.volumeExponent = row.positive("vol_exp");
+  if (const auto text = row.text("material"))
+  {
+    checked(row, "material", [&] { return rockMaterialFromName(*text); });
+    source.material = *text;
+  }
+  source.materialName = row.text("mat_name").value_or("");
+  source.density = row.positive("density");
+  source.youngModulus = row.positive("young");
+  source.poissonRatio = row.notNegative("poisson");
+  if (source.poissonRatio && *source.poissonRatio > 0.49)
+  {
+    row.failField("poisson", " is " + number(*source.poissonRatio) + ", it must be 0 to 0.49");
+  }
+  source.lengths = row.lengths();
+}
+
+void readRelease(const FeatureRow& row, SourceRow& source)
+{
+  source.velocity = row.vector({ "vx", "vy", "vz" });
+  source.angularVelocity = row.vector({ "wx", "wy", "wz" });
+  source.orientation = row.vector({ "rx", "ry", "rz" });
+  source.horizontalDeviation = row.notNegative("dev_xy");
+  source.verticalDeviation = row.notNegative("dev_z");
+  if (const auto text = row.text("dev_att"); text && EQUAL(text->c_str(), "random"))
+  {
+    source.randomAttitude = true;
+  }
+  else
+  {
+    source.attitudeDeviation = row.notNegative("dev_att");
+  }
+}
+
+} // namespace
+
+std::string wktOfCrs(const std::string& text)
+{
+  Messages messages;
+  return text.empty() ? std::string() : crsWkt(crsFromText(text), heightCrsFromText(text));
+}
+
+std::string labelOfCrs(const std::string& text)
+{
+  Messages messages;
+  return text.empty() ? std::string() : crsLabel(*crsFromText(text));
+}
+
+bool sameCrs(const std::string& one, const std::string& other)
+{
+  Messages messages;
+  return one.empty() || other.empty() || crsFromText(one)->IsSame(crsFromText(other).get());
+}
+
+std::string differentHeights(const std::string& one, const std::string& other)
+{
+  Messages messages;
+  const CrsPtr a = heightCrsFromText(one), b = heightCrsFromText(other);
+  return a && b && !sameReference(*a, *b) ? referenceLabel(*a) + " and " + referenceLabel(*b)
+                                          : std::string();
+}
+
+SourceLayer readSourceLayer(const std::string& fileName, const SourceOptions& options)
+{
+  Messages messages;
+  LayerWish wish{ fileName, options.layer };
+  wish.what = "layer of points, lines or polygons, nor a table with x and y";
+  wish.kinds = kPoints | kLines | kPolygons | kRows;
+  wish.better = kPoints | kRows;
+  wish.columns = { { "amount", "intensity", "volume", "vol_law", "shape", "source", "source_id",
+    "density", "dev_xy", "dev_att" } };
+  LayerFile file(wish, messages);
+  OGRLayer& layer = file.layer();
+  const OGRFeatureDefn& definition = *layer.GetLayerDefn();
+  refuseNearMisses(definition, fileName, kColumns, kShortColumns);
+  const Columns columns = columnsOf(definition);
+
+  SourceLayer result;
+  SourcePlacing placing;
+  placing.heights = heightsOf(file.dataset(), layer, fileName, result.notes);
+  placing.from = placing.heights.horizontal;
+  placing.haveTerrain = options.haveTerrain;
+  placing.heightColumns = heightColumnsOf(definition);
+  if (options.haveTerrain)
+  {
+    file.refuseDegrees(placing.from, options.targetCrs);
+    if (options.targetCrs.empty() && placing.from && placing.from->IsGeographic())
+    {
+      // GeoJSON that names no CRS: its degrees are believed to be the slope's coordinates.
+      placing.from.reset();
+      placing.heights.reference.reset();
+    }
+  }
+  if (!options.targetCrs.empty())
+  {
+    placing.to = crsFromText(options.targetCrs);
+    placing.change = layerChange(fileName, placing.from, placing.to);
+  }
+  if (options.haveTerrain || !options.targetCrs.empty())
+  {
+    placing.target = options.targetCrs;
+  }
+
+  result.ownCrs = placing.from ? crsLabel(*placing.from) : std::string();
+  bool allHaveGeometry = true;
+  while (const OGRFeatureUniquePtr feature = file.next())
+  {
+    SourceRow source;
+    source.row = file.number();
+    if (std::int64_t(result.rows.size()) >= options.mostRocks)
+    {
+      throw DataError(fileName + ": layer \"" + layer.GetName() + "\" has more than " +
+        std::to_string(options.mostRocks) +
+        " rows, each a source of rocks. Is it the right layer? MaximumRocks allows more");
+    }
+    const FeatureRow row(fileName, columns, *feature, source.row);
+    row.refuseLostText(messages);
+    placing.place(row, source);
+    allHaveGeometry = allHaveGeometry && row.geometry();
+    readNumbers(row, source);
+    readBody(row, source);
+    readRelease(row, source);
+    result.rows.push_back(std::move(source));
+  }
+  file.tell(result.notes, true);
+  if (result.rows.empty())
+  {
+    throw DataError(
+      fileName + ": layer \"" + layer.GetName() + "\" has no row, so there is no rock");
+  }
+  const CrsPtr placed = placing.to ? placing.to : allHaveGeometry ? placing.from : nullptr;
+  result.crs =
+    crsWkt(placed, placing.to ? heightCrsFromText(options.targetCrs) : placing.heights.reference);
+  placing.tell(fileName, result.notes);
+  tellUnread(definition, fileName, result.notes);
+  return result;
+}
+
+std::vector<SourceRow> readSources(
+  const std::string& fileName, const std::string& targetCrs, std::string* crs)
+{
+  SourceOptions options;
+  options.targetCrs = targetCrs;
+  SourceLayer layer = readSourceLayer(fileName, options);
+  if (crs)
+  {
+    *crs = layer.crs;
+  }
+  return std::move(layer.rows);
+}
+
+} // namespace rockfall

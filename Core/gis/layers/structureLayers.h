@@ -1,0 +1,49 @@
+#pragma once
+
+/// @file
+/// Embankments, trees and barriers from OGR layers (METHOD 6).
+
+#include "terrain/structures.h"
+
+#include <string>
+#include <vector>
+
+namespace rockfall
+{
+
+class Terrain;
+
+/// Layers as the user gives them; empty: there are none.
+struct StructureFiles
+{
+  std::string embankments; ///< Lines.
+  std::string trees;       ///< Points.
+  std::string barriers;    ///< Lines.
+  /// Trees without a capacity of their own break at that of their diameter (stemCapacity); else
+  /// they never break.
+  bool treesBreak = false;
+  /// The layer of each file by name (gis/layers/LayerFile.h); empty: the one that will do.
+  std::string embankmentLayer, treeLayer, barrierLayer;
+
+  bool any() const { return !embankments.empty() || !trees.empty() || !barriers.empty(); }
+};
+
+/// Reads one layer of each, brought to the terrain's CRS; without a CRS on either side the
+/// coordinates are taken as they are. Column names without regard to case; empty cells are as good
+/// as no column. Sides' slopes are metres across per metre down, as a number or as "3:2".
+///
+/// - Embankments: `height` (over ground, m) or `crest` (elevation, m), `width` (of the crest, m),
+///   `slope` (of both sides), or `slope_up` and `slope_down` (of the mountain and the valley side).
+/// - Trees: `diameter` (cm) and `height` (m), `capacity` (kJ), `factor` (of the species).
+/// - Barriers: `height` (m), `capacity` (kJ; empty: holds everything), `mode` (stop or record),
+///   `absorbs` (1 or 0).
+/// - Embankments and trees: `rv`, `rt`, `phi` (degrees), `cohesion` (N); empty: the slope's own.
+///
+/// Trees where the terrain has no ground are left out, with a note; if all do, that is an error.
+/// Throws FileError, DataError or ParameterError naming file, row, field and value: another
+/// geometry, a number missing or out of range, no overlap with the terrain, more than a million
+/// rows, what cannot be built (see Obstacles).
+Structures readStructures(
+  const StructureFiles& files, const Terrain& terrain, std::vector<std::string>& notes);
+
+} // namespace rockfall

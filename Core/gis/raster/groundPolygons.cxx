@@ -1,0 +1,276 @@
+// Polygons with classes.
+#include "gis/raster/groundCells.h"
+
+#include "base/abort.h"
+#include "base/errors.h"
+#include "base/text/nameKey.h"
+#include "gis/layers/LayerFile.h"
+#include "gis/base/fields.h"
+#include "gis/base/gdal.h"
+#include "gis/trust/heights.h"
+#include "gis/base/progress.h"
+
+#include <cpl_string.h>
+#include <gdal_alg.h>
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+#include <ogrsf_frmts.h>
+
+#include <memory>
+
+namespace rockfall::gis
+{
+
+namespace
+{
+
+/// Polygons are burnt in portions of about so many vertices: each takes a walk over all cells.
+constexpr std::int64_t verticesAtOnce = 2'000'000;
+
+/// Under which maps have their classes, most telling first.
+const ColumnChoice usualNames = { "class", "name", "code", "type", "unit", "material", "ground" };
+
+int classField(OGRLayer& layer, const GroundFiles& files)
+{
+  const Columns columns = columnsOf(*layer.GetLayerDefn());
+  const auto take = [&](const std::string& name)
+  {
+    const auto found = columns.find(nameKey(name));
+    return found == columns.end() ? -1 : found->second;
+  };
+  if (!files.field.empty())
+  {
+    const int column = take(files.field);
+    if (column < 0)
+    {
+      throw DataError(files.layer + ": layer \"" + layer.GetName() + "\" has no field \"" +
+        files.field + "\"; its fields are " + fieldList(*layer.GetLayerDefn()));
+    }
+    refuseTwin(*layer.GetLayerDefn(), files.layer, column);
+    return column;
+  }
+  for (const std::string& name : usualNames)
+  {
+    if (const int column = take(name); column >= 0)
+    {
+      refuseTwin(*layer.GetLayerDefn(), files.layer, column);
+      return column;
+    }
+  }
+  throw DataError(files.layer + ": layer \"" + layer.GetName() +
+    "\" has no field \"class\" or the like; say which one has the class; its fields are " +
+    fieldList(*layer.GetLayerDefn()));
+}
+
+std::int64_t vertexCount(const OGRGeometry& geometry)
+{
+  std::int64_t count = 0;
+  const auto polygon = [&](const OGRPolygon& p)
+  {
+    for (const OGRLinearRing* ring : p)
+    {
+      count += ring->getNumPoints();
+    }
+  };
+  if (wkbFlatten(geometry.getGeometryType()) == wkbPolygon)
+  {
+    polygon(*geometry.toPolygon());
+  }
+  else
+  {
+    for (const OGRPolygon* p : *geometry.toMultiPolygon())
+    {
+      polygon(*p);
+    }
+  }
+  return count;
+}
+
+/// Burns polygons into the cells whose centres they cover; a later one over an earlier one.
+class Burner
+{
+public:
+  Burner(const Cells& cells, std::vector<std::uint8_t>& classes)
+    : dataset_(GetGDALDriverManager()->GetDriverByName("MEM")->Create(
+        "", cells.columns, cells.rows, 0, GDT_Byte, nullptr))
+  {
+    char pointer[64] = {};
+    pointer[CPLPrintPointer(pointer, classes.data(), sizeof(pointer) - 1)] = 0;
+    const CPLStringList options(CSLSetNameValue(nullptr, "DATAPOINTER", pointer));
+    const double size = cells.terrain.geometry().cellSize;
+    double affine[6] = { cells.box.xMin, size, 0.0, cells.box.yMax, 0.0, -size };
+    if (!dataset_ || dataset_->AddBand(GDT_Byte, const_cast<char**>(options.List())) != CE_None ||
+      dataset_->SetGeoTransform(affine) != CE_None)
+    {
+      throw DataError("GDAL's raster in memory cannot be made");
+    }
+  }
+
+  void add(std::unique_ptr<OGRGeometry> geometry, int row)
+  {
+    vertices_ += vertexCount(*geometry);
+    geometries_.push_back(std::move(geometry));
+    values_.push_back(row);
+    if (vertices_ > verticesAtOnce)
+    {
+      this->burn();
+    }
+  }
+
+  void burn()
+  {
+    if (geometries_.empty())
+    {
+      return;
+    }
+    std::vector<OGRGeometryH> handles;
+    for (const auto& geometry : geometries_)
+    {
+      handles.push_back(OGRGeometry::ToHandle(geometry.get()));
+    }
+    int band = 1;
+    const CPLErr result =
+      GDALRasterizeGeometries(GDALDataset::ToHandle(dataset_.get()), 1, &band, int(handles.size()),
+        handles.data(), nullptr, nullptr, values_.data(), nullptr, isWanted, nullptr);
+    stayWanted();
+    if (result != CE_None)
+    {
+      throw DataError("GDAL cannot rasterise the polygons");
+    }
+    dataset_->FlushCache();
+    geometries_.clear();
+    values_.clear();
+    vertices_ = 0;
+  }
+
+private:
+  DatasetPtr dataset_;
+  std::vector<std::unique_ptr<OGRGeometry>> geometries_;
+  std::vector<double> values_;
+  std::int64_t vertices_ = 0;
+};
+
+/// Multiplies the coordinates of polygons.
+void stretch(OGRGeometry& geometry, double factor)
+{
+  if (factor == 1.0)
+  {
+    return;
+  }
+  if (wkbFlatten(geometry.getGeometryType()) == wkbMultiPolygon)
+  {
+    for (OGRPolygon* part : *geometry.toMultiPolygon())
+    {
+      stretch(*part, factor);
+    }
+    return;
+  }
+  for (OGRLinearRing* ring : *geometry.toPolygon())
+  {
+    for (int k = 0; k < ring->getNumPoints(); ++k)
+    {
+      ring->setPoint(k, ring->getX(k) * factor, ring->getY(k) * factor);
+    }
+  }
+}
+
+} // namespace
+
+LayerWish polygonWish(GroundKind kind, const GroundFiles& files)
+{
+  LayerWish wish{ files.layer, files.layerName, kindName(kind) + "LayerName" };
+  wish.what = "layer of polygons";
+  wish.kinds = kPolygons;
+  wish.columns = { files.field.empty() ? usualNames : ColumnChoice{ files.field } };
+  return wish;
+}
+
+std::vector<std::uint8_t> fromPolygons(GroundKind kind, const GroundFiles& files,
+  const GroundTable& table, const Cells& cells, std::vector<std::string>& notes)
+{
+  Messages messages;
+  LayerFile file(polygonWish(kind, files), messages);
+  OGRLayer& layer = file.layer();
+  if (layer.GetFeatureCount() == 0)
+  {
+    throw DataError(files.layer + ": layer \"" + layer.GetName() + "\" has no polygon");
+  }
+  const int column = classField(layer, files);
+  const std::string fieldName = layer.GetLayerDefn()->GetFieldDefn(column)->GetNameRef();
+  const Columns columns = columnsOf(*layer.GetLayerDefn());
+  const LayerHeights units = heightsOf(file.dataset(), layer, files.layer, notes);
+  const CrsPtr& from = units.horizontal;
+  file.refuseDegrees(from, cells.terrain.geometry().crs);
+  noteCrs(from, cells, files.layer, notes);
+  std::unique_ptr<OGRCoordinateTransformation> change;
+  if (from && cells.crs && !from->IsSame(cells.crs.get()))
+  {
+    change.reset(OGRCreateCoordinateTransformation(from.get(), cells.crs.get()));
+    if (!change)
+    {
+      throw DataError(
+        files.layer + ": there is no way from " + crsLabel(*from) + " to " + crsLabel(*cells.crs));
+    }
+  }
+
+  std::vector<std::uint8_t> classes(std::size_t(cells.columns) * cells.rows, 0);
+  Burner burner(cells, classes);
+  OGREnvelope all;
+  bool overlaps = false;
+  while (const OGRFeatureUniquePtr feature = file.next())
+  {
+    const Fields fields(files.layer, columns, *feature, file.number());
+    const OGRGeometry* written = feature->GetGeometryRef();
+    if (!written || written->IsEmpty())
+    {
+      fields.fail("has no geometry, a POLYGON is needed");
+    }
+    std::unique_ptr<OGRGeometry> geometry(written->getLinearGeometry());
+    const auto type = wkbFlatten(geometry->getGeometryType());
+    if (type != wkbPolygon && type != wkbMultiPolygon)
+    {
+      fields.fail(std::string("geometry is a ") + written->getGeometryName() +
+        ", classes are polygons or a raster");
+    }
+    stretch(*geometry, units.plane);
+    if (change && geometry->transform(change.get()) != OGRERR_NONE)
+    {
+      fields.fail(
+        "the polygon cannot be brought from " + crsLabel(*from) + " to " + crsLabel(*cells.crs));
+    }
+    OGREnvelope extent;
+    geometry->getEnvelope(&extent);
+    all.Merge(extent);
+    if (extent.MaxX < cells.box.xMin || extent.MinX > cells.box.xMax ||
+      extent.MaxY < cells.box.yMin || extent.MinY > cells.box.yMax)
+    {
+      continue;
+    }
+    overlaps = true;
+    const auto text = fields.textAt(column);
+    if (!text)
+    {
+      fields.fail("field \"" + fieldName + "\" is empty, it must be the class");
+    }
+    const int row = table.rowOf(*text);
+    if (row == 0)
+    {
+      failClass(files.layer + ", row " + std::to_string(file.number()),
+        "class \"" + *text + "\" (field \"" + fieldName + "\")", files.table, table);
+    }
+    burner.add(std::move(geometry), row);
+  }
+  file.tell(notes, true);
+  if (!all.IsInit())
+  {
+    throw DataError(files.layer + ": layer \"" + layer.GetName() + "\" has no polygon");
+  }
+  if (!overlaps)
+  {
+    failOverlap(files.layer, boxText({ all.MinX, all.MaxX, all.MinY, all.MaxY }), cells);
+  }
+  burner.burn();
+  return classes;
+}
+
+} // namespace rockfall::gis

@@ -1,0 +1,349 @@
+#include "gis/raster/rasterFile.h"
+
+#include "base/abort.h"
+#include "base/errors.h"
+#include "gis/trust/gridAxes.h"
+#include "gis/trust/heightUnit.h"
+#include "gis/trust/nodata.h"
+#include "gis/base/progress.h"
+#include "gis/trust/rawSize.h"
+
+#include <cpl_string.h>
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace rockfall::gis
+{
+
+namespace
+{
+
+/// A node of exactly 0 is suspect if the next one is so much higher or deeper.
+constexpr double suspectStep = 100.0; // m
+
+/// The band of transparency, if it is not the mask already: GDAL makes none of one of real numbers.
+GDALRasterBand* alphaBand(GDALDataset& dataset, const GDALRasterBand* heights)
+{
+  for (int band = 1; band <= dataset.GetRasterCount(); ++band)
+  {
+    GDALRasterBand* alpha = dataset.GetRasterBand(band);
+    if (alpha != heights && alpha->GetColorInterpretation() == GCI_AlphaBand)
+    {
+      return alpha;
+    }
+  }
+  return nullptr;
+}
+
+} // namespace
+
+RasterFile::RasterFile(
+  const std::string& fileName, int band, Messages& messages, std::vector<std::string>& notes)
+  : fileName_(fileName)
+  , messages_(messages)
+  , notes_(notes)
+  , dataset_(openRaster(fileName, messages))
+  , bandNumber_(band)
+{
+  const int bands = dataset_->GetRasterCount();
+  if (bands == 0)
+  {
+    // netCDF, HDF5: the file is a container, and the rasters have names of their own.
+    const char* inside =
+      CSLFetchNameValue(dataset_->GetMetadata("SUBDATASETS"), "SUBDATASET_1_NAME");
+    throw FileError(fileName + ": has no raster band" +
+      (inside
+          ? std::string("; it is a container, give one of its rasters as the file name, e.g. ") +
+            inside
+          : ""));
+  }
+  if (band < 1 || band > bands)
+  {
+    throw DataError(fileName + ": band " + std::to_string(band) + " was asked for, the file has " +
+      (bands == 1 ? "1 band" : std::to_string(bands) + " bands"));
+  }
+  band_ = dataset_->GetRasterBand(band);
+  alpha_ = alphaBand(*dataset_, band_);
+  const GDALDataType type = band_->GetRasterDataType();
+  if (GDALDataTypeIsComplex(type))
+  {
+    throw DataError(fileName + ": band " + std::to_string(band) + " is of complex type " +
+      GDALGetDataTypeName(type) + ", heights are real numbers");
+  }
+  columns_ = dataset_->GetRasterXSize();
+  rows_ = dataset_->GetRasterYSize();
+  if (columns_ < 2 || rows_ < 2)
+  {
+    throw DataError(fileName + ": has " + std::to_string(columns_) + " columns and " +
+      std::to_string(rows_) + " rows, at least 2 of each are needed");
+  }
+  requireSubstance(*dataset_, fileName);
+  text_ = checkTextGrid(*dataset_, fileName);
+  checkRawSize(*dataset_, fileName);
+  this->findPlace();
+  heights_ = heightsOf(*dataset_, *band_, fileName_, notes_);
+  this->noteColours();
+}
+
+void RasterFile::findPlace()
+{
+  crs_ = horizontalCrs(dataset_->GetSpatialRef());
+  const bool placed = dataset_->GetGeoTransform(affine_.data()) == CE_None;
+  const GridAxes axes = checkAxes(*dataset_, *band_, placed, fileName_, notes_);
+  if (placed && !crs_ && axes.metres != 1.0)
+  {
+    std::for_each(affine_.begin(), affine_.end(), [&axes](double& a) { a *= axes.metres; });
+  }
+  if (!crs_ && axes.metres != 1.0)
+  {
+    notes_.push_back("The coordinates in \"" + axes.unit + "\" were multiplied by " +
+      number(axes.metres) + " to be metres.");
+  }
+  if (!placed && axes.place)
+  {
+    affine_ = axes.place->affine;
+    crs_ = crs_ ? crs_ : axes.place->inDegrees ? crsFromEpsg(4326) : nullptr;
+  }
+  else if (!placed)
+  {
+    if (dataset_->GetGCPCount() > 0)
+    {
+      if (!GDALGCPsToGeoTransform(
+            dataset_->GetGCPCount(), dataset_->GetGCPs(), affine_.data(), FALSE))
+      {
+        throw DataError(fileName_ + ": its " + std::to_string(dataset_->GetGCPCount()) +
+          " ground control points fit no straight grid; warp it first, e.g. with gdalwarp -tps");
+      }
+      crs_ = horizontalCrs(dataset_->GetGCPSpatialRef());
+    }
+    else if (dataset_->GetMetadata("GEOLOCATION") || dataset_->GetMetadata("RPC"))
+    {
+      throw DataError(fileName_ + ": is placed by a geolocation array or RPCs and not by a grid; " +
+        "warp it first with gdalwarp");
+    }
+    else
+    {
+      georeferenced_ = false;
+      affine_ = { 0.0, 1.0, 0.0, double(rows_), 0.0, -1.0 };
+    }
+  }
+  double unused[6];
+  if (!std::all_of(affine_.begin(), affine_.end(), [](double a) { return std::isfinite(a); }) ||
+    !GDALInvGeoTransform(affine_.data(), unused))
+  {
+    throw DataError(fileName_ + ": its cells have no area: geotransform " + number(affine_[0]) +
+      ", " + number(affine_[1]) + ", " + number(affine_[2]) + ", " + number(affine_[3]) + ", " +
+      number(affine_[4]) + ", " + number(affine_[5]));
+  }
+  if (!crs_)
+  {
+    return;
+  }
+  if (crs_->IsGeocentric())
+  {
+    throw DataError(fileName_ + ": its CRS " + crsLabel(*crs_) + " is geocentric, not a map");
+  }
+  if (crs_->IsLocal())
+  {
+    const char* unit = nullptr;
+    const double metres = crs_->GetLinearUnits(&unit);
+    if (metres > 0.0 && std::abs(metres - 1.0) > 1e-9)
+    {
+      std::for_each(affine_.begin(), affine_.end(), [metres](double& a) { a *= metres; });
+      notes_.push_back("The local coordinates in " + std::string(unit ? unit : "unnamed units") +
+        " were multiplied by " + number(metres) + " to be metres.");
+    }
+    crs_.reset();
+  }
+}
+
+void RasterFile::noteColours()
+{
+  const GDALColorInterp colour = band_->GetColorInterpretation();
+  if (colour == GCI_PaletteIndex || (colour >= GCI_RedBand && colour <= GCI_BlueBand))
+  {
+    notes_.push_back("Band " + std::to_string(bandNumber_) + " is a picture's colour (" +
+      GDALGetColorInterpretationName(colour) + "); its numbers were taken as heights in metres.");
+  }
+}
+
+void RasterFile::requireCoverage()
+{
+  int hasNodata = 0;
+  band_->GetNoDataValue(&hasNodata);
+  if (hasNodata || !(band_->GetMaskFlags() & GMF_ALL_VALID) || alpha_)
+  {
+    return;
+  }
+  double share = 100.0; // of what is there, %
+  const int status = band_->GetDataCoverageStatus(0, 0, columns_, rows_, 0, &share);
+  if (!(status & GDAL_DATA_COVERAGE_STATUS_UNIMPLEMENTED) &&
+    (status & GDAL_DATA_COVERAGE_STATUS_EMPTY))
+  {
+    throw DataError(fileName_ + ": no tile or block holds " + number(100.0 - share) +
+      " % of band " + std::to_string(bandNumber_) +
+      ", and the file declares no nodata value: they would be heights of 0 (gdalbuildvrt "
+      "-vrtnodata -9999, or gdal_edit.py -a_nodata -9999, declares it)");
+  }
+}
+
+void RasterFile::noteZeros(const std::vector<double>& heights)
+{
+  std::int64_t suspect = 0, all = 0;
+  const auto high = [&](std::size_t i) { return std::abs(heights[i]) > suspectStep; };
+  for (int row = 0; row < rows_; ++row)
+  {
+    stayWanted();
+    for (int column = 0; column < columns_; ++column)
+    {
+      const std::size_t i = std::size_t(row) * columns_ + column;
+      if (heights[i] != 0.0)
+      {
+        continue;
+      }
+      ++all;
+      suspect += (column > 0 && high(i - 1)) || (column + 1 < columns_ && high(i + 1)) ||
+        (row > 0 && high(i - columns_)) || (row + 1 < rows_ && high(i + columns_));
+    }
+  }
+  if (suspect > 0)
+  {
+    notes_.push_back(std::to_string(all) + " nodes of band " + std::to_string(bandNumber_) +
+      " are exactly 0 m, " + std::to_string(suspect) + " of them beside ground more than " +
+      number(suspectStep) + " m off. If 0 stands for no data, gdal_edit.py -a_nodata 0 says so");
+  }
+}
+
+SourceGrid RasterFile::read()
+{
+  requireMemory(double(columns_) * rows_, fileName_);
+  this->requireCoverage();
+  SourceGrid grid;
+  grid.columns = columns_;
+  grid.rows = rows_;
+  grid.affine = affine_;
+  grid.heights.resize(std::size_t(columns_) * rows_);
+
+  // Whole blocks of the file, of about 4 million nodes.
+  int blockColumns = 1, blockRows = 1;
+  band_->GetBlockSize(&blockColumns, &blockRows);
+  blockRows = std::clamp(blockRows, 1, rows_);
+  const int blocks = std::max(1, (1 << 22) / columns_ / blockRows);
+  const int step = int(std::min<std::int64_t>(std::int64_t(blocks) * blockRows, rows_));
+  for (std::int64_t first = 0; first < rows_; first += step)
+  {
+    stayWanted();
+    const int count = int(std::min<std::int64_t>(step, rows_ - first));
+    this->readRows(int(first), count, grid.heights.data() + first * columns_);
+    // No block is asked for twice: GDAL's cache would only be a second copy.
+    band_->FlushCache();
+  }
+  if (std::all_of(
+        grid.heights.begin(), grid.heights.end(), [](double height) { return std::isnan(height); }))
+  {
+    throw DataError(fileName_ + ": all " + sizeText(columns_, rows_) + " nodes of band " +
+      std::to_string(bandNumber_) + " are nodata");
+  }
+
+  this->noteZeros(grid.heights);
+  noteMarks(grid.heights, heights_, "nodes of band " + std::to_string(bandNumber_),
+    "gdal_edit.py -a_nodata ", notes_);
+
+  if (affine_[2] == 0.0 && affine_[4] == 0.0 && affine_[5] > 0.0)
+  {
+    for (int row = 0; row < rows_ / 2; ++row)
+    {
+      const auto upper = grid.heights.begin() + std::ptrdiff_t(row) * columns_;
+      const auto lower = grid.heights.begin() + std::ptrdiff_t(rows_ - 1 - row) * columns_;
+      std::swap_ranges(upper, upper + columns_, lower);
+    }
+    grid.affine[3] += rows_ * grid.affine[5];
+    grid.affine[5] = -grid.affine[5];
+    notes_.push_back("The file's " + std::to_string(rows_) +
+      " rows run from south to north; they were turned over.");
+  }
+  return grid;
+}
+
+void RasterFile::readRows(int first, int count, double* values)
+{
+  const auto fail = [&]
+  {
+    throw FileError(fileName_ + ": rows " + std::to_string(first + 1) + " to " +
+      std::to_string(first + count) + " of band " + std::to_string(bandNumber_) +
+      " cannot be read: " + messages_.failure());
+  };
+  messages_.clear();
+  if (!gis::readRows(*band_, first, count, GDT_Float64, values) || !messages_.failure().empty())
+  {
+    fail();
+  }
+
+  // A mask made from the nodata value says nothing new, unless the value has 64 bits and is not a
+  // double, or is one of all bands together. Real masks and alpha bands do.
+  const int flags = band_->GetMaskFlags();
+  const GDALDataType type = band_->GetRasterDataType();
+  const bool wide = type == GDT_Int64 || type == GDT_UInt64;
+  std::vector<GByte> mask;
+  std::vector<double> alpha;
+  if (alpha_ && !(flags & GMF_ALPHA))
+  {
+    alpha.resize(std::size_t(count) * columns_);
+    if (!gis::readRows(*alpha_, first, count, GDT_Float64, alpha.data()))
+    {
+      fail();
+    }
+  }
+  if (!(flags & GMF_ALL_VALID) && (!(flags & GMF_NODATA) || wide || (flags & GMF_PER_DATASET)))
+  {
+    mask.resize(std::size_t(count) * columns_);
+    if (!gis::readRows(*band_->GetMaskBand(), first, count, GDT_Byte, mask.data()))
+    {
+      fail();
+    }
+  }
+
+  const Nodata nodata(*dataset_, *band_, heights_);
+  const auto isNull = [&](std::size_t i)
+  {
+    return text_.ownNulls
+      ? !text_.nulls.empty() && text_.nulls[std::size_t(first) * columns_ + i] != 0
+      : nodata(values[i]);
+  };
+  for (std::size_t i = 0; i < std::size_t(count) * columns_; ++i)
+  {
+    const double raw = values[i];
+    if ((!mask.empty() && mask[i] == 0) || (!alpha.empty() && alpha[i] == 0.0) || isNull(i))
+    {
+      values[i] = std::numeric_limits<double>::quiet_NaN();
+      continue;
+    }
+    values[i] = heights_.metres(raw);
+    if (!(values[i] >= kDeepest && values[i] <= kHighest))
+    {
+      this->check(first + int(i / columns_), int(i % columns_), raw, values[i]);
+    }
+  }
+}
+
+void RasterFile::check(int row, int column, double raw, double height) const
+{
+  const std::string where = " in row " + std::to_string(row + 1) + ", column " +
+    std::to_string(column + 1) + " of band " + std::to_string(bandNumber_);
+  if (!std::isfinite(raw))
+  {
+    throw DataError(fileName_ + ": the height" + where + " is " + number(raw) +
+      " and that is not the file's nodata value");
+  }
+  throw DataError(fileName_ + ": the height" + where + " is " + number(height) +
+    " m; a nodata value that the file does not declare? (gdal_edit.py -a_nodata " + exactly(raw) +
+    " declares it)");
+}
+
+} // namespace rockfall::gis

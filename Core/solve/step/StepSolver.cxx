@@ -1,0 +1,432 @@
+#include "solve/step/StepSolver.h"
+
+#include "block/cayley.h"
+#include "contact/ground/features.h"
+#include "law/settings.h"
+#include "solve/step/linear.h"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rockfall
+{
+
+namespace
+{
+
+template <int N>
+Eigen::Matrix<double, N, 1> rowOf(const Vec3& n, const Vec3& lever, const Vec3& x)
+{
+  Eigen::Matrix<double, N, 1> row;
+  row.template head<3>() = n;
+  row.template segment<3>(kRotation) = lever.cross(n);
+  if constexpr (N == 12)
+  {
+    row.template tail<6>() = strainRow(n, x);
+  }
+  return row;
+}
+
+template <int N>
+Mat3 strainOf(const Eigen::Matrix<double, N, 1>& d)
+{
+  if constexpr (N == 12)
+  {
+    return strainTensor(d.template tail<6>());
+  }
+  return Mat3::Zero();
+}
+
+} // namespace
+
+template <int N>
+void BlockStep<N>::prepareInertia(const Block& block, double h, double rate, double stress)
+{
+  if constexpr (N == 12)
+  {
+    MatN inert = (rate / h) * block.massMatrix();
+    inert.template bottomRightCorner<6, 6>() += stress * block.elasticity();
+    if (inert == inert_)
+    {
+      return;
+    }
+    mass_ = block.massMatrix();
+    inert_ = inert;
+    inverse_ = inert_.inverse();
+  }
+  else
+  {
+    mass_.setZero();
+    mass_.diagonal().template head<3>().setConstant(block.mass());
+    mass_.template bottomRightCorner<3, 3>() = block.inertia();
+    inert_ = (rate / h) * mass_;
+    inverse_.setZero();
+    inverse_.diagonal().template head<3>().setConstant(h / (rate * block.mass()));
+    inverse_.template bottomRightCorner<3, 3>() = (h / rate) * block.inverseInertia();
+  }
+}
+
+template <int N>
+void BlockStep<N>::prepareRows(const Block& block, const BlockState& state,
+  const StepRequest& request, const std::vector<Contact>& contacts)
+{
+  rotation_ = state.orientation.toRotationMatrix();
+  deform_ = Mat3::Identity() + strainTensor(state.strain);
+  Mat3 undeform = Mat3::Identity();
+  if (N == 12)
+  {
+    undeform = deform_.inverse();
+  }
+  rows_.resize(contacts.size());
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+  {
+    const Contact& c = contacts[i];
+    Row& row = rows_[i];
+    row.n = rotation_.transpose() * c.normal;
+    if (c.kind == ContactKind::VertexFace)
+    {
+      row.x = block.shape().vertices()[c.rockFeature];
+      row.y0 = deform_ * row.x;
+    }
+    else
+    {
+      row.y0 = rotation_.transpose() * (c.point - state.position);
+      row.x = undeform * row.y0;
+    }
+    if (c.kind == ContactKind::EdgeEdge)
+    {
+      row.ridge = { rotation_.transpose() * (c.ridge[0] - state.position),
+        rotation_.transpose() * c.ridge[1] };
+    }
+    row.tangent[0] = row.n.unitOrthogonal();
+    row.tangent[1] = row.n.cross(row.tangent[0]);
+    const Vec3 slip = rotation_.transpose() * c.slip;
+    ContactLaw& law = row.law;
+    law.slip0 = { row.tangent[0].dot(slip), row.tangent[1].dot(slip) };
+    law.gap0 = c.gap();
+    law.penalty = c.stiffness > 0.0 ? c.stiffness : request.normalPenalty;
+    law.shearPenalty = c.stiffness > 0.0 ? c.shearStiffness : request.shearPenalty;
+    const bool impact = request.kind == StepKind::Impact;
+    law.dashpot = impact ? dashpotOver(request.duration, c.dashpot, c.stopped) : 0.0;
+    law.shearLag = impact ? c.shearDashpot / law.shearPenalty : 0.0;
+    law.friction = c.friction >= 0.0 ? c.friction : request.friction;
+    law.cohesion = c.cohesion >= 0.0 ? c.cohesion : request.cohesion;
+    law.state = c.state;
+    law.share = 1.0;
+    law.direction.setZero();
+  }
+}
+
+template <int N>
+void BlockStep<N>::levers(const Block& block, const std::vector<Contact>& contacts, const VecN& d)
+{
+  const Vec3 u = d.template head<3>();
+  const Mat3 turn = cayley(d.template segment<3>(kRotation)).toRotationMatrix();
+  const Mat3 strain = strainOf<N>(d);
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+  {
+    Row& row = rows_[i];
+    if (contacts[i].kind == ContactKind::FaceVertex)
+    {
+      // The slope's node rests, the rock's face turns: Δd = n_m·u + r·(y_m × n_m) + … exactly, with
+      // normal and node averaged over the step as the block sees them.
+      const Vec3 n = 0.5 * (row.n + turn * row.n);
+      const Vec3 y = row.y0 - 0.5 * u;
+      row.normal = rowOf<N>(n, y, row.x);
+      for (int k = 0; k < 2; ++k)
+      {
+        row.shear[k] = rowOf<N>(row.tangent[k], y, row.x);
+      }
+      continue;
+    }
+    Vec3 n = row.n, x = row.x, y0 = row.y0;
+    if (contacts[i].kind == ContactKind::EdgeEdge)
+    {
+      // The normal turns with the rock's edge and the crossing moves along it: both as of mid-step,
+      // which leaves an error of third order.
+      const std::array<int, 2>& ends = block.shape().edges()[contacts[i].rockFeature].vertices;
+      const Vec3& x0 = block.shape().vertices()[ends[0]];
+      const Vec3& x1 = block.shape().vertices()[ends[1]];
+      const auto middle = [&](const Vec3& point)
+      {
+        const Vec3 start = deform_ * point;
+        return Vec3(0.5 * (start + turn * (start + strain * point) + u));
+      };
+      const Vec3 p0 = middle(x0), along = middle(x1) - p0;
+      double s, t;
+      if (closestOnLines(p0, along, row.ridge[0], row.ridge[1], s, t))
+      {
+        const Vec3 cross = along.cross(row.ridge[1]).normalized();
+        n = cross.dot(row.n) < 0.0 ? Vec3(-cross) : cross;
+        x = x0 + s * (x1 - x0);
+        y0 = deform_ * x;
+      }
+    }
+    const Vec3 y1 = y0 + strain * x;
+    const Vec3 z = 0.5 * (y1 + turn * y1);
+    row.normal = rowOf<N>(n, z, x);
+    for (int k = 0; k < 2; ++k)
+    {
+      row.shear[k] = rowOf<N>(row.tangent[k], z, x);
+    }
+  }
+}
+
+template <int N>
+bool BlockStep<N>::evaluate(const StepRequest& request, const VecN& d)
+{
+  bool changed = false;
+  const bool lasting = request.kind == StepKind::Lasting;
+  for (Row& row : rows_)
+  {
+    const double gap = row.law.gap0 + row.normal.dot(d);
+    const Eigen::Vector2d travel(row.shear[0].dot(d), row.shear[1].dot(d));
+    changed = row.law.evaluate(lasting, request.duration, gap, travel) || changed;
+  }
+  return changed;
+}
+
+template <int N>
+typename BlockStep<N>::VecN BlockStep<N>::solveOne(
+  const Row& row, const VecN& load, const VecN& d) const
+{
+  // In the contact's own directions: (I + F W) f = f(D) + F J (D − A⁻¹ load), W = J A⁻¹ Jᵀ.
+  const VecN free = inverse_ * load;
+  if (row.law.state == ContactState::Open)
+  {
+    const VecN a = inverse_ * row.normal;
+    const double f = (row.law.force + row.law.stiffness * row.normal.dot(d - free)) /
+      (1.0 + row.law.stiffness * row.normal.dot(a));
+    return free + f * a;
+  }
+  Eigen::Matrix<double, N, 3> j;
+  j << row.normal, row.shear[0], row.shear[1];
+  const Eigen::Matrix<double, N, 3> a = inverse_ * j;
+  Mat3 tangent = Mat3::Zero();
+  tangent(0, 0) = row.law.stiffness;
+  tangent.block<2, 1>(1, 0) = row.law.shearCoupling;
+  tangent.block<2, 2>(1, 1) = row.law.shearStiffness;
+  const Vec3 at(row.law.force, row.law.shearForce[0], row.law.shearForce[1]);
+  const Mat3 system = Mat3::Identity() + tangent * (j.transpose() * a);
+  const Vec3 f = system.inverse() * (at + tangent * (j.transpose() * (d - free)));
+  return free + a * f;
+}
+
+template <int N>
+typename BlockStep<N>::VecN BlockStep<N>::solve(const VecN& load, const VecN& d)
+{
+  const Row* only = nullptr;
+  int acting = 0;
+  for (const Row& row : rows_)
+  {
+    if (row.law.acts())
+    {
+      only = &row;
+      ++acting;
+    }
+  }
+  if (acting == 0)
+  {
+    return inverse_ * load;
+  }
+  if (acting == 1 && !alwaysFull)
+  {
+    return this->solveOne(*only, load, d);
+  }
+  MatN matrix = inert_;
+  VecN right = load;
+  for (const Row& row : rows_)
+  {
+    if (!row.law.acts())
+    {
+      continue;
+    }
+    // Newton: f(D') ≈ f(D) − k nᵀT (D' − D)
+    const VecN& n = row.normal;
+    matrix.noalias() += (row.law.stiffness * n) * n.transpose();
+    right += (row.law.force + row.law.stiffness * n.dot(d)) * n;
+    if (row.law.state == ContactState::Open)
+    {
+      continue;
+    }
+    for (int a = 0; a < 2; ++a)
+    {
+      VecN gradient = row.law.shearCoupling[a] * n;
+      gradient += row.law.shearStiffness(a, 0) * row.shear[0];
+      gradient += row.law.shearStiffness(a, 1) * row.shear[1];
+      matrix.noalias() += row.shear[a] * gradient.transpose();
+      right += (row.law.shearForce[a] + gradient.dot(d)) * row.shear[a];
+    }
+  }
+  return solveInPlace<N>(matrix, right);
+}
+
+template <int N>
+typename BlockStep<N>::Balance BlockStep<N>::balance(
+  const Block& block, const BlockState& state, const StepRequest& request) const
+{
+  const double h = request.duration;
+  const bool lasting = request.kind == StepKind::Lasting;
+  Balance of;
+  of.rate = lasting ? 1.0 / h : 2.0 / h;
+  of.velocity0.template head<3>() = rotation_.transpose() * state.velocity;
+  of.velocity0.template segment<3>(kRotation) = state.spin;
+  of.load.setZero();
+  of.load.template head<3>() = block.mass() * Vec3(-request.gravity * rotation_.row(2).transpose());
+  if constexpr (N == 12)
+  {
+    of.velocity0.template tail<6>() = state.strainRate;
+    of.load.template tail<6>() -= block.elasticity() * state.strain;
+  }
+  of.offset = -of.velocity0;
+  if (lasting)
+  {
+    of.offset.setZero();
+    of.offset.template head<3>() = 0.5 * h * (rotation_.transpose() * request.acceleration);
+    of.offset.template segment<3>(kRotation) = 0.5 * h * request.spinAcceleration;
+  }
+  of.load += mass_ * ((of.velocity0 - of.offset) / h);
+  return of;
+}
+
+template <int N>
+typename BlockStep<N>::VecN BlockStep<N>::firstGuess(
+  const BlockState& state, const StepRequest& request, const Balance& of) const
+{
+  const double h = request.duration;
+  const bool lasting = request.kind == StepKind::Lasting;
+  const Vec3 going = lasting ? Vec3(-request.gravity * rotation_.row(2).transpose())
+                             : Vec3(rotation_.transpose() * request.acceleration);
+  VecN d = VecN::Zero();
+  d.template head<3>() = h * of.velocity0.template head<3>() + (0.5 * h * h) * going;
+  d.template segment<3>(kRotation) = h * state.spin;
+  if (!lasting)
+  {
+    d.template segment<3>(kRotation) += (0.5 * h * h) * request.spinAcceleration;
+  }
+  return d;
+}
+
+template <int N>
+bool BlockStep<N>::iterate(const Block& block, const StepRequest& request,
+  const std::vector<Contact>& contacts, const Balance& of, VecN& d, int& iterations)
+{
+  this->levers(block, contacts, d);
+  this->evaluate(request, d);
+  Quat turn = cayley(d.template segment<3>(kRotation));
+  VecN last = VecN::Zero();
+  double share = 1.0; // of the correction that is taken
+  bool settled = false;
+  for (; iterations < request.maxOpenClose && !settled; ++iterations)
+  {
+    // The momentum of rotation is carried to the end of the step: R₁ p₁ − R₀ p₀ = h τ
+    // (METHOD 10.4).
+    VecN load = of.load;
+    const VecN velocity1 = of.rate * d + of.offset;
+    const Vec3 spinMomentum = mass_.template middleRows<3>(kRotation) * velocity1;
+    load.template segment<3>(kRotation) -= (turn * spinMomentum - spinMomentum) / request.duration;
+    const VecN next = this->solve(load, d);
+    if (!next.allFinite())
+    {
+      break;
+    }
+    // A contact that hardly slips can throw the iteration from one side of the friction cone's tip
+    // to the other for ever: when a correction turns back, only part of it is taken.
+    const VecN correction = next - d;
+    const double back = correction.template head<6>().dot(last.template head<6>());
+    if (iterations > 1 && back < -kTurnsBack * last.template head<6>().squaredNorm())
+    {
+      share = std::max(0.5 * share, kLeastCorrection);
+    }
+    else
+    {
+      share = std::min(1.0, 2.0 * share);
+    }
+    last = correction;
+    d += share * correction;
+    turn = cayley(d.template segment<3>(kRotation));
+    this->levers(block, contacts, d);
+    double change = 0.0, scale = 0.0;
+    for (const Row& row : rows_)
+    {
+      const double way = row.normal.dot(d);
+      change = std::max(change, std::abs(row.law.gap0 + way - row.law.gap1));
+      scale = std::max(scale, std::abs(way));
+    }
+    const bool changed = this->evaluate(request, d);
+    // The rotation itself, for the gyroscopic term, converges with the gaps; without contacts it
+    // alone decides.
+    const double turned = correction.template segment<3>(kRotation).norm();
+    settled = share == 1.0 && !changed && change <= kGapTolerance * scale + 1e-15 &&
+      turned <= kGapTolerance * d.template segment<3>(kRotation).norm() + 1e-13;
+  }
+  return settled;
+}
+
+template <int N>
+StepOutcome BlockStep<N>::step(const Block& block, const StepRequest& request,
+  std::vector<Contact>& contacts, BlockState& state, bool takeAnyway)
+{
+  StepOutcome outcome;
+  const double h = request.duration;
+  const bool lasting = request.kind == StepKind::Lasting;
+  this->prepareInertia(block, h, lasting ? 1.0 / h : 2.0 / h, lasting ? 1.0 : 0.5);
+  this->prepareRows(block, state, request, contacts);
+  const Balance of = this->balance(block, state, request);
+  VecN d = this->firstGuess(state, request, of);
+  outcome.settled = this->iterate(block, request, contacts, of, d, outcome.iterations);
+  if (!outcome.settled && !(takeAnyway && d.allFinite()))
+  {
+    return outcome;
+  }
+  this->write(d, contacts, outcome);
+  const VecN velocity1 = of.rate * d + of.offset;
+  state.time += h;
+  state.position += rotation_ * Vec3(d.template head<3>());
+  state.velocity = rotation_ * Vec3(velocity1.template head<3>());
+  state.orientation = (state.orientation * cayley(d.template segment<3>(kRotation))).normalized();
+  state.spin = velocity1.template segment<3>(kRotation);
+  if constexpr (N == 12)
+  {
+    state.strain += d.template tail<6>();
+    state.strainRate = velocity1.template tail<6>();
+  }
+  return outcome;
+}
+
+template <int N>
+void BlockStep<N>::write(const VecN& d, std::vector<Contact>& contacts, StepOutcome& outcome) const
+{
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+  {
+    const Row& row = rows_[i];
+    Contact& c = contacts[i];
+    const ContactLaw& law = row.law;
+    c.normalForce = law.force;
+    c.shearForce = law.shearForce.norm();
+    c.distance = law.gap1 + c.offset;
+    const Eigen::Vector2d travel(row.shear[0].dot(d), row.shear[1].dot(d));
+    outcome.frictionWork += law.frictionWork(travel);
+    outcome.dampedWork += law.dampedWork();
+    if (law.gap1 < 0.0)
+    {
+      outcome.anyClosed = true;
+      c.state = law.state == ContactState::Open ? ContactState::Sliding : law.state;
+      c.slip = rotation_ * Vec3(row.tangent[0] * law.slip1[0] + row.tangent[1] * law.slip1[1]);
+      outcome.normalEnergy += law.normalEnergy();
+      outcome.springEnergy += law.normalEnergy() + law.shearEnergy();
+    }
+    else
+    {
+      c.state = ContactState::Open;
+      c.slip.setZero();
+    }
+  }
+}
+
+template class BlockStep<6>;
+template class BlockStep<12>;
+
+} // namespace rockfall

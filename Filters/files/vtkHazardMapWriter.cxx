@@ -1,0 +1,135 @@
+#include "vtkHazardMapWriter.h"
+
+#include "base/errors.h"
+#include "gis/raster/rasterWriter.h"
+#include "shared/inputs.h"
+#include "shared/pieces.h"
+#include "shared/terrainFieldData.h"
+
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkErrorCode.h"
+#include "vtkImageData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+vtkStandardNewMacro(vtkHazardMapWriter);
+
+namespace
+{
+
+std::string unitOf(const std::string& name)
+{
+  const std::pair<const char*, const char*> units[] = { { "KineticEnergy", "J" },
+    { "Speed", "m/s" }, { "HeightOverGround", "m" }, { "RotationRate", "rad/s" } };
+  for (const auto& [start, unit] : units)
+  {
+    if (name.rfind(start, 0) == 0)
+    {
+      return unit;
+    }
+  }
+  return {};
+}
+
+rockfall::MapImage mapOf(vtkImageData* image)
+{
+  vtkDataArray* marker = image->GetFieldData()->GetArray("HazardMap");
+  if (!marker || marker->GetNumberOfValues() != 7)
+  {
+    throw rockfall::DataError("The Input is no hazard map: its field data has no array HazardMap "
+                              "of 7 numbers, as Rockfall Hazard Map makes it");
+  }
+  int extent[6];
+  double origin[3], spacing[3];
+  image->GetExtent(extent);
+  image->GetOrigin(origin);
+  image->GetSpacing(spacing);
+  rockfall::filters::checkTuples(
+    image->GetCellData(), image->GetNumberOfCells(), "The Input", "cell");
+  rockfall::MapImage map;
+  map.columns = extent[1] - extent[0];
+  map.rows = extent[3] - extent[2];
+  map.cellSize = spacing[0];
+  map.west = origin[0] + extent[0] * spacing[0];
+  map.south = origin[1] + extent[2] * spacing[1];
+  map.crs = rockfall::filters::readCrs(image->GetFieldData());
+  map.metadata.emplace_back(
+    "Trajectories", std::to_string(std::int64_t(marker->GetComponent(0, 5))));
+  vtkCellData* cells = image->GetCellData();
+  for (int k = 0; k < cells->GetNumberOfArrays(); ++k)
+  {
+    vtkDataArray* array = cells->GetArray(k);
+    if (!array || array->GetNumberOfComponents() != 1 || !array->GetName())
+    {
+      continue;
+    }
+    rockfall::MapBand& band = map.bands.emplace_back();
+    band.name = array->GetName();
+    band.unit = unitOf(band.name);
+    band.fill = [array, columns = map.columns](int row, std::span<float> values)
+    {
+      for (std::size_t c = 0; c < values.size(); ++c)
+      {
+        values[c] = float(array->GetTuple1(vtkIdType(row) * columns + vtkIdType(c)));
+      }
+    };
+  }
+  return map;
+}
+
+} // namespace
+
+//------------------------------------------------------------------------------
+vtkHazardMapWriter::vtkHazardMapWriter() = default;
+
+//------------------------------------------------------------------------------
+vtkHazardMapWriter::~vtkHazardMapWriter() = default;
+
+//------------------------------------------------------------------------------
+int vtkHazardMapWriter::FillInputPortInformation(int, vtkInformation* info)
+{
+  info->Set(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkImageData");
+  info->Append(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), "vtkCompositeDataSet");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+vtkTypeBool vtkHazardMapWriter::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()) &&
+    inputs[0]->GetNumberOfInformationObjects() > 0)
+  {
+    rockfall::filters::requestOwnPiece(inputs[0]->GetInformationObject(0));
+  }
+  return this->Superclass::ProcessRequest(request, inputs, outputs);
+}
+
+//------------------------------------------------------------------------------
+void vtkHazardMapWriter::WriteData()
+{
+  try
+  {
+    vtkImageData* image = rockfall::filters::oneImage(this->GetInput(), "The Input");
+    if (!image || (image->GetNumberOfCells() == 0 && rockfall::filters::isFurtherRank()))
+    {
+      return; // the first rank has it all
+    }
+    rockfall::writeGeoTiff(this->FileName, mapOf(image));
+  }
+  catch (const rockfall::Error& error)
+  {
+    this->SetErrorCode(vtkErrorCode::FileFormatError);
+    vtkErrorMacro(<< error.what());
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkHazardMapWriter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "FileName: " << this->FileName << "\n";
+}

@@ -1,0 +1,102 @@
+#include "vtkHazardPassageWriter.h"
+
+#include "base/errors.h"
+#include "shared/hazardImage.h"
+#include "shared/inputs.h"
+#include "shared/pieces.h"
+#include "shared/ranks.h"
+
+#include "vtkErrorCode.h"
+#include "vtkFieldData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+
+vtkStandardNewMacro(vtkHazardPassageWriter);
+
+//------------------------------------------------------------------------------
+vtkHazardPassageWriter::vtkHazardPassageWriter()
+{
+  this->SetNumberOfInputPorts(2);
+}
+
+//------------------------------------------------------------------------------
+vtkHazardPassageWriter::~vtkHazardPassageWriter() = default;
+
+//------------------------------------------------------------------------------
+int vtkHazardPassageWriter::FillInputPortInformation(int, vtkInformation* info)
+{
+  rockfall::filters::acceptPolyData(info);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+vtkTypeBool vtkHazardPassageWriter::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()))
+  {
+    for (int port = 0; port < 2; ++port)
+    {
+      if (inputs[port]->GetNumberOfInformationObjects() > 0)
+      {
+        rockfall::filters::requestOwnPiece(inputs[port]->GetInformationObject(0));
+      }
+    }
+  }
+  return this->Superclass::ProcessRequest(request, inputs, outputs);
+}
+
+//------------------------------------------------------------------------------
+void vtkHazardPassageWriter::WriteData()
+{
+  rockfall::filters::Input taken(rockfall::filters::InputKind::Trajectories);
+  rockfall::filters::Input takenTerrain(rockfall::filters::InputKind::Terrain);
+  vtkPolyData* trajectories = taken.take(this->GetInputDataObject(0, 0));
+  vtkPolyData* terrain = takenTerrain.take(this->GetInputDataObject(1, 0));
+  const std::string spread = rockfall::filters::spreadOf(trajectories);
+  if (!spread.empty())
+  {
+    this->SetErrorCode(vtkErrorCode::UserError);
+    if (!rockfall::filters::isFurtherRank())
+    {
+      vtkErrorMacro(<< spread);
+    }
+    return;
+  }
+  if (!trajectories || !terrain ||
+    (trajectories->GetNumberOfLines() == 0 && taken.problem().empty() &&
+      rockfall::filters::isFurtherRank()))
+  {
+    return; // the first rank has it all
+  }
+  for (vtkPolyData* input : { trajectories, terrain })
+  {
+    if (input->GetFieldData()->GetAbstractArray("Error"))
+    {
+      this->SetErrorCode(vtkErrorCode::UserError);
+      return; // has been said
+    }
+  }
+  try
+  {
+    taken.require();
+    takenTerrain.require();
+    rockfall::filters::writeHazardPassages(trajectories, terrain, this->CellSize, this->FileName);
+  }
+  catch (const rockfall::Error& error)
+  {
+    this->SetErrorCode(vtkErrorCode::FileFormatError);
+    vtkErrorMacro(<< error.what());
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkHazardPassageWriter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "FileName: " << this->FileName << "\n";
+  os << indent << "CellSize: " << this->CellSize << "\n";
+}

@@ -1,0 +1,283 @@
+#include "vtkTrajectoryLayerWriter.h"
+
+#include "base/errors.h"
+#include "base/types.h"
+#include "gis/layers/layerWriter.h"
+#include "shared/inputs.h"
+#include "shared/pieces.h"
+#include "shared/terrainFieldData.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellArrayIterator.h"
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkErrorCode.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkStringArray.h"
+
+#include <functional>
+
+vtkStandardNewMacro(vtkTrajectoryLayerWriter);
+
+namespace
+{
+
+using rockfall::FieldType;
+using rockfall::FieldValue;
+using rockfall::LayerField;
+using rockfall::LayerWriter;
+using rockfall::Vec3;
+
+/// The arrays of a data set as attributes.
+class Attributes
+{
+public:
+  void Append(vtkFieldData* data)
+  {
+    for (int k = 0; k < data->GetNumberOfArrays(); ++k)
+    {
+      vtkAbstractArray* array = data->GetAbstractArray(k);
+      const std::string name = array->GetName() ? array->GetName() : "Array" + std::to_string(k);
+      auto* texts = vtkStringArray::SafeDownCast(array);
+      auto* numbers = vtkDataArray::SafeDownCast(array);
+      if (!texts && !numbers)
+      {
+        continue;
+      }
+      const bool real =
+        numbers && (numbers->GetDataType() == VTK_DOUBLE || numbers->GetDataType() == VTK_FLOAT);
+      const int components = array->GetNumberOfComponents();
+      for (int c = 0; c < components; ++c)
+      {
+        std::string full = name;
+        if (components == 3)
+        {
+          full += "XYZ"[c];
+        }
+        else if (components > 1)
+        {
+          full += '_';
+          full += std::to_string(c);
+        }
+        this->Fields.push_back({ full,
+          texts    ? FieldType::Text
+            : real ? FieldType::Real
+                   : FieldType::Integer });
+        this->Sources.push_back({ texts, numbers, components, c });
+      }
+    }
+  }
+
+  /// The values of a tuple, behind what is there.
+  void AppendValues(vtkIdType tuple, std::vector<FieldValue>& values) const
+  {
+    for (std::size_t k = 0; k < this->Fields.size(); ++k)
+    {
+      const Source& source = this->Sources[k];
+      if (source.Texts)
+      {
+        values.emplace_back(
+          std::string(source.Texts->GetValue(tuple * source.Components + source.Component)));
+      }
+      else if (this->Fields[k].type == FieldType::Real)
+      {
+        values.emplace_back(source.Numbers->GetComponent(tuple, source.Component));
+      }
+      else
+      {
+        values.emplace_back(std::int64_t(source.Numbers->GetComponent(tuple, source.Component)));
+      }
+    }
+  }
+
+  std::vector<LayerField> Fields;
+
+private:
+  struct Source
+  {
+    vtkStringArray* Texts;
+    vtkDataArray* Numbers;
+    int Components;
+    int Component;
+  };
+  std::vector<Source> Sources;
+};
+
+using UseCell = std::function<void(vtkIdType cell, vtkIdType size, const vtkIdType* ids)>;
+
+void forEachCell(vtkCellArray* cells, vtkIdType first, const UseCell& use)
+{
+  auto iterator = vtk::TakeSmartPointer(cells->NewIterator());
+  for (iterator->GoToFirstCell(); !iterator->IsDoneWithTraversal(); iterator->GoToNextCell())
+  {
+    vtkIdType size = 0;
+    const vtkIdType* ids = nullptr;
+    iterator->GetCurrentCell(size, ids);
+    use(first++, size, ids);
+  }
+}
+
+Vec3 pointOf(vtkPolyData* data, vtkIdType id)
+{
+  Vec3 point;
+  data->GetPoint(id, point.data());
+  return point;
+}
+
+void writeTrajectories(vtkPolyData* data, LayerWriter& writer)
+{
+  Attributes attributes;
+  attributes.Append(data->GetCellData());
+  vtkDataArray* time = data->GetPointData()->GetArray("Time");
+  writer.beginLayer("trajectories", LayerWriter::Geometry::MeasuredLine, attributes.Fields);
+  std::vector<Vec3> places;
+  std::vector<double> measures;
+  std::vector<FieldValue> values;
+  forEachCell(data->GetLines(), data->GetNumberOfVerts(),
+    [&](vtkIdType cell, vtkIdType size, const vtkIdType* ids)
+    {
+      places.clear();
+      measures.clear();
+      values.clear();
+      for (vtkIdType k = 0; k < size; ++k)
+      {
+        places.push_back(pointOf(data, ids[k]));
+        measures.push_back(time ? time->GetTuple1(ids[k]) : double(k));
+      }
+      attributes.AppendValues(cell, values);
+      writer.add(places, measures, values);
+    });
+}
+
+/// The last points of the lines, or all of them, with the attributes of line and point.
+void writeLinePoints(vtkPolyData* data, bool all, LayerWriter& writer)
+{
+  Attributes ofLine, ofPoint;
+  ofLine.Append(data->GetCellData());
+  ofPoint.Append(data->GetPointData());
+  std::vector<LayerField> fields = ofLine.Fields;
+  fields.insert(fields.end(), ofPoint.Fields.begin(), ofPoint.Fields.end());
+  writer.beginLayer(all ? "samples" : "ends", LayerWriter::Geometry::Point, fields);
+  std::vector<FieldValue> values;
+  forEachCell(data->GetLines(), data->GetNumberOfVerts(),
+    [&](vtkIdType cell, vtkIdType size, const vtkIdType* ids)
+    {
+      for (vtkIdType k = all || size == 0 ? 0 : size - 1; k < size; ++k)
+      {
+        const Vec3 place = pointOf(data, ids[k]);
+        values.clear();
+        ofLine.AppendValues(cell, values);
+        ofPoint.AppendValues(ids[k], values);
+        writer.add({ &place, 1 }, {}, values);
+      }
+    });
+}
+
+void writeVertices(vtkPolyData* data, LayerWriter& writer)
+{
+  Attributes ofVertex, ofPoint;
+  ofVertex.Append(data->GetCellData());
+  ofPoint.Append(data->GetPointData());
+  std::vector<LayerField> fields = ofVertex.Fields;
+  fields.insert(fields.end(), ofPoint.Fields.begin(), ofPoint.Fields.end());
+  writer.beginLayer("points", LayerWriter::Geometry::Point, fields);
+  std::vector<FieldValue> values;
+  forEachCell(data->GetVerts(), 0,
+    [&](vtkIdType cell, vtkIdType size, const vtkIdType* ids)
+    {
+      for (vtkIdType k = 0; k < size; ++k)
+      {
+        const Vec3 place = pointOf(data, ids[k]);
+        values.clear();
+        ofVertex.AppendValues(cell, values);
+        ofPoint.AppendValues(ids[k], values);
+        writer.add({ &place, 1 }, {}, values);
+      }
+    });
+}
+
+} // namespace
+
+//------------------------------------------------------------------------------
+vtkTrajectoryLayerWriter::vtkTrajectoryLayerWriter() = default;
+
+//------------------------------------------------------------------------------
+vtkTrajectoryLayerWriter::~vtkTrajectoryLayerWriter() = default;
+
+//------------------------------------------------------------------------------
+int vtkTrajectoryLayerWriter::FillInputPortInformation(int, vtkInformation* info)
+{
+  rockfall::filters::acceptPolyData(info);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+vtkTypeBool vtkTrajectoryLayerWriter::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+{
+  if (request->Has(vtkStreamingDemandDrivenPipeline::REQUEST_UPDATE_EXTENT()) &&
+    inputs[0]->GetNumberOfInformationObjects() > 0)
+  {
+    rockfall::filters::requestOwnPiece(inputs[0]->GetInformationObject(0));
+  }
+  return this->Superclass::ProcessRequest(request, inputs, outputs);
+}
+
+//------------------------------------------------------------------------------
+void vtkTrajectoryLayerWriter::WriteData()
+{
+  rockfall::filters::Input taken(rockfall::filters::InputKind::Any);
+  vtkPolyData* data = taken.take(this->GetInput());
+  if (!data ||
+    (data->GetNumberOfPoints() == 0 && taken.problem().empty() &&
+      rockfall::filters::isFurtherRank()))
+  {
+    return; // the first rank has it all
+  }
+  try
+  {
+    taken.require();
+    if (data->GetNumberOfLines() == 0 && data->GetNumberOfVerts() == 0)
+    {
+      throw rockfall::DataError(
+        this->FileName + ": cannot be written, as the Input has neither lines nor vertices");
+    }
+    LayerWriter writer(this->FileName, rockfall::filters::readCrs(data->GetFieldData()));
+    if (data->GetNumberOfLines() > 0)
+    {
+      writeTrajectories(data, writer);
+      if (writer.manyLayers())
+      {
+        writeLinePoints(data, false, writer);
+      }
+      if (writer.manyLayers() && this->WriteSamples)
+      {
+        writeLinePoints(data, true, writer);
+      }
+    }
+    if (data->GetNumberOfVerts() > 0 && (writer.manyLayers() || data->GetNumberOfLines() == 0))
+    {
+      writeVertices(data, writer);
+    }
+    writer.commit();
+  }
+  catch (const rockfall::Error& error)
+  {
+    this->SetErrorCode(vtkErrorCode::FileFormatError);
+    vtkErrorMacro(<< error.what());
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkTrajectoryLayerWriter::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "FileName: " << this->FileName << "\n";
+  os << indent << "WriteSamples: " << this->WriteSamples << "\n";
+}

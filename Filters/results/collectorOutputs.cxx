@@ -1,0 +1,250 @@
+#include "results/collectorOutputs.h"
+
+#include "shared/arrays.h"
+#include "base/abort.h"
+#include "base/errors.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellArrayIterator.h"
+#include "vtkCellData.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkDoubleArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkIntArray.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkStringArray.h"
+#include "vtkTable.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace rockfall::filters
+{
+
+std::vector<CollectorLine> linesOf(
+  vtkPolyData* input, const Vec3& origin, const CollectorLine& barrier)
+{
+  std::vector<CollectorLine> lines;
+  auto cells = vtk::TakeSmartPointer(input->GetLines()->NewIterator());
+  for (cells->GoToFirstCell(); !cells->IsDoneWithTraversal(); cells->GoToNextCell())
+  {
+    vtkIdType size = 0;
+    const vtkIdType* ids = nullptr;
+    cells->GetCurrentCell(size, ids);
+    CollectorLine& line = lines.emplace_back(barrier);
+    line.name = "line " + std::to_string(lines.size());
+    for (vtkIdType k = 0; k < size; ++k)
+    {
+      Vec3 point;
+      input->GetPoint(ids[k], point.data());
+      const Eigen::Vector2d place = (point - origin).head<2>();
+      if (line.points.empty() || line.points.back() != place)
+      {
+        line.points.push_back(place);
+      }
+    }
+    if (line.points.size() < 2)
+    {
+      throw DataError(
+        "The Lines input's " + line.name + " has no two different places in the plane");
+    }
+  }
+  if (lines.empty())
+  {
+    throw DataError("The Lines input has no lines");
+  }
+  return lines;
+}
+
+void checkReleased(ReleasedRocks& rocks)
+{
+  std::sort(rocks.begin(), rocks.end());
+  const auto twice = std::adjacent_find(rocks.begin(), rocks.end());
+  if (twice != rocks.end())
+  {
+    throw DataError("Rock " + std::to_string((*twice)[1]) + " of iteration " +
+      std::to_string((*twice)[0]) +
+      " is there twice: a run was given twice, or two runs have the same iterations");
+  }
+}
+
+void writeReleased(const ReleasedRocks& released, vtkFieldData* field)
+{
+  addArray<vtkIdTypeArray>(field, "CollectorReleased")->InsertNextValue(vtkIdType(released.size()));
+  const auto rocks = addArray<vtkIntArray>(field, "CollectorRocks", 2);
+  for (const auto& [iteration, rock] : released)
+  {
+    rocks->InsertNextTuple2(iteration, rock);
+  }
+}
+
+void writeCrossings(std::span<const CollectedCrossing> crossings,
+  std::span<const CollectorLine> lines, const ReleasedRocks& released, const Vec3& origin,
+  vtkPolyData* trajectories, vtkPolyData* output)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> vertices;
+  vtkPointData* data = output->GetPointData();
+  // First those of the trajectory: BlockId, RockId, Iteration, Shape, …
+  data->CopyAllOn();
+  data->CopyAllocate(trajectories->GetCellData(), vtkIdType(crossings.size()));
+  const auto line = addArray<vtkIntArray>(data, "Line");
+  const auto name = addArray<vtkStringArray>(data, "LineName");
+  const auto number = addArray<vtkIntArray>(data, "Passing");
+  const auto direction = addArray<vtkIntArray>(data, "Direction");
+  const auto velocity = addArray<vtkDoubleArray>(data, "Velocity", 3);
+  const auto rotation = addArray<vtkDoubleArray>(data, "RotationRate", 3);
+  struct Column
+  {
+    const char* name;
+    double (*value)(const Crossing& crossing);
+  };
+  using C = const Crossing&;
+  static constexpr Column numbers[] = {
+    { "Time", [](C c) { return c.time; } },
+    { "Distance", [](C c) { return c.distance; } },
+    { "Speed", [](C c) { return c.velocity.norm(); } },
+    { "KineticEnergy", [](C c) { return c.kineticEnergy; } },
+    { "TranslationalEnergy", [](C c) { return c.translationalEnergy; } },
+    { "RotationalEnergy", [](C c) { return c.kineticEnergy - c.translationalEnergy; } },
+    { "HeightOverGround", [](C c) { return c.heightOverGround; } },
+    { "HorizontalAngle", [](C c) { return degrees(c.horizontalAngle); } },
+    { "VerticalAngle", [](C c) { return degrees(c.verticalAngle); } },
+  };
+  std::vector<vtkSmartPointer<vtkDoubleArray>> values;
+  for (const Column& column : numbers)
+  {
+    values.push_back(addArray<vtkDoubleArray>(data, column.name));
+  }
+  for (const CollectedCrossing& collected : crossings)
+  {
+    stayWanted();
+    const Crossing& crossing = collected.crossing;
+    const Vec3 world = crossing.position + origin;
+    const vtkIdType id = points->InsertNextPoint(world.data());
+    vertices->InsertNextCell(1, &id);
+    data->CopyData(trajectories->GetCellData(), collected.cell, id);
+    line->InsertNextValue(crossing.line);
+    name->InsertNextValue(lines[std::size_t(crossing.line)].name);
+    number->InsertNextValue(crossing.number);
+    direction->InsertNextValue(crossing.direction);
+    velocity->InsertNextTuple(crossing.velocity.data());
+    rotation->InsertNextTuple(crossing.rotationRate.data());
+    for (std::size_t k = 0; k < values.size(); ++k)
+    {
+      values[k]->InsertNextValue(numbers[k].value(crossing));
+    }
+  }
+  output->SetPoints(points);
+  output->SetVerts(vertices);
+  vtkFieldData* field = output->GetFieldData();
+  writeReleased(released, field);
+  const auto lineNames = addArray<vtkStringArray>(field, "CollectorLineName");
+  const auto barriers = addArray<vtkDoubleArray>(field, "CollectorBarrier", 2);
+  for (const CollectorLine& of : lines)
+  {
+    lineNames->InsertNextValue(of.name);
+    barriers->InsertNextTuple2(of.barrierHeight, of.barrierCapacity / 1000.0);
+  }
+}
+
+void writeLines(
+  std::span<const LineSummary> summaries, std::span<const CollectorLine> lines, vtkTable* output)
+{
+  vtkFieldData* data = output->GetRowData();
+  const auto line = addArray<vtkIntArray>(data, "Line");
+  const auto name = addArray<vtkStringArray>(data, "LineName");
+  const auto rocks = addArray<vtkIntArray>(data, "Rocks");
+  const auto passings = addArray<vtkIntArray>(data, "Passings");
+  const auto caught = addArray<vtkIntArray>(data, "Caught");
+  for (std::size_t k = 0; k < lines.size(); ++k)
+  {
+    line->InsertNextValue(int(k));
+    name->InsertNextValue(lines[k].name);
+    rocks->InsertNextValue(summaries[k].rocks);
+    passings->InsertNextValue(summaries[k].crossings);
+    caught->InsertNextValue(summaries[k].caught);
+  }
+  const auto add = [&](const std::string& column, auto&& value)
+  {
+    const auto values = addArray<vtkDoubleArray>(data, column.c_str());
+    for (std::size_t k = 0; k < lines.size(); ++k)
+    {
+      values->InsertNextValue(value(summaries[k], lines[k]));
+    }
+  };
+  using S = const LineSummary&;
+  using L = const CollectorLine&;
+  add("Share", [](S s, L) { return s.share; });
+  add("ShareError", [](S s, L) { return s.shareError; });
+  add("BarrierHeight", [](S, L l) { return l.barrierHeight; });
+  add("BarrierCapacity", [](S, L l) { return l.barrierCapacity / 1000.0; });
+  add("CaughtShare", [](S s, L) { return s.caughtShare; });
+  add("CaughtShareError", [](S s, L) { return s.caughtShareError; });
+  const std::pair<const char*, SampleStatistics LineSummary::*> quantities[] = {
+    { "KineticEnergy", &LineSummary::energy },
+    { "HeightOverGround", &LineSummary::height },
+    { "Speed", &LineSummary::speed },
+  };
+  for (const auto& [quantity, of] : quantities)
+  {
+    const std::string start = quantity;
+    add(start + "Mean", [of = of](S s, L) { return (s.*of).mean; });
+    add(start + "Deviation", [of = of](S s, L) { return (s.*of).deviation; });
+    add(start + "Maximum", [of = of](S s, L) { return (s.*of).maximum; });
+    const char* const names[] = { "50", "90", "95", "99" };
+    for (std::size_t q = 0; q < hazardQuantiles.size(); ++q)
+    {
+      add(start + names[q], [of = of, q](S s, L) { return (s.*of).quantiles[q]; });
+    }
+  }
+}
+
+void writeExceedance(
+  std::span<const LineSummary> summaries, std::int64_t released, vtkTable* output)
+{
+  vtkFieldData* data = output->GetRowData();
+  const auto line = addArray<vtkIntArray>(data, "Line");
+  const auto energy = addArray<vtkDoubleArray>(data, "KineticEnergy");
+  const auto kilojoules = addArray<vtkDoubleArray>(data, "EnergyInKilojoules");
+  const auto height = addArray<vtkDoubleArray>(data, "HeightOverGround");
+  const auto ofPassing = addArray<vtkDoubleArray>(data, "ShareOfPassing");
+  const auto ofReleased = addArray<vtkDoubleArray>(data, "ShareOfReleased");
+  for (std::size_t k = 0; k < summaries.size(); ++k)
+  {
+    const LineSummary& summary = summaries[k];
+    const auto descending = [](const std::vector<double>& ascending, std::size_t rank)
+    {
+      return rank < ascending.size() ? ascending[ascending.size() - 1 - rank]
+                                     : std::numeric_limits<double>::quiet_NaN();
+    };
+    const auto add = [&](double joules, double metres, std::size_t rocks)
+    {
+      line->InsertNextValue(int(k));
+      energy->InsertNextValue(joules);
+      kilojoules->InsertNextValue(1e-3 * joules);
+      height->InsertNextValue(metres);
+      ofPassing->InsertNextValue(double(rocks) / double(summary.rocks));
+      ofReleased->InsertNextValue(double(rocks) / double(released));
+    };
+    const std::size_t rocks = summary.energies.size();
+    for (std::size_t rank = 0; rank < rocks; ++rank)
+    {
+      add(descending(summary.energies, rank), descending(summary.heights, rank), rank + 1);
+    }
+    if (rocks > 0)
+    {
+      // All have at least nothing: where the curve begins, and what makes one of a single rock.
+      const bool all = summary.heights.size() == rocks;
+      add(0.0,
+        all ? std::min(0.0, summary.heights.front()) : std::numeric_limits<double>::quiet_NaN(),
+        rocks);
+    }
+  }
+}
+
+} // namespace rockfall::filters

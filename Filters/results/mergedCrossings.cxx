@@ -1,0 +1,232 @@
+#include "results/mergedCrossings.h"
+
+#include "shared/arrays.h"
+#include "base/errors.h"
+#include "results/collectorOutputs.h"
+#include "shared/terrainFieldData.h"
+
+#include "vtkAbstractArray.h"
+#include "vtkCellArray.h"
+#include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkIdTypeArray.h"
+#include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkStringArray.h"
+
+#include <algorithm>
+#include <string>
+#include <tuple>
+
+namespace rockfall::filters
+{
+
+namespace
+{
+
+std::string numbered(std::size_t input)
+{
+  return "The Input's part " + std::to_string(input + 1);
+}
+
+vtkDataArray* crossingNumbers(
+  vtkFieldData* data, const char* name, int components, std::size_t input)
+{
+  vtkDataArray* array = data->GetArray(name);
+  if (!array || array->GetNumberOfComponents() != components)
+  {
+    throw DataError(numbered(input) + " has no array " + name + " of " +
+      std::to_string(components) + (components == 1 ? " component" : " components") +
+      "; the crossings of Trajectory Collector are wanted");
+  }
+  return array;
+}
+
+std::vector<CollectorLine> linesOf(vtkFieldData* field, std::size_t input)
+{
+  auto* names = vtkStringArray::SafeDownCast(field->GetAbstractArray("CollectorLineName"));
+  vtkDataArray* barriers = crossingNumbers(field, "CollectorBarrier", 2, input);
+  if (!names || names->GetNumberOfValues() != barriers->GetNumberOfTuples())
+  {
+    throw DataError(numbered(input) +
+      " has no array CollectorLineName of all lines; the crossings of Trajectory Collector are "
+      "wanted");
+  }
+  std::vector<CollectorLine> lines;
+  for (vtkIdType k = 0; k < names->GetNumberOfValues(); ++k)
+  {
+    CollectorLine& line = lines.emplace_back();
+    line.name = names->GetValue(k);
+    line.barrierHeight = barriers->GetComponent(k, 0);
+    line.barrierCapacity = barriers->GetComponent(k, 1) * 1000.0;
+  }
+  return lines;
+}
+
+bool same(const std::vector<CollectorLine>& a, const std::vector<CollectorLine>& b)
+{
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+    [](const CollectorLine& one, const CollectorLine& other)
+    {
+      return std::tie(one.name, one.barrierHeight, one.barrierCapacity) ==
+        std::tie(other.name, other.barrierHeight, other.barrierCapacity);
+    });
+}
+
+struct Place
+{
+  Crossing crossing;
+  std::size_t input;
+  vtkIdType id;
+};
+
+auto key(const Place& p)
+{
+  const Crossing& c = p.crossing;
+  return std::tie(c.iteration, c.rock, c.line, c.number);
+}
+
+void appendPlaces(vtkPolyData* data, std::size_t input, const std::vector<CollectorLine>& lines,
+  std::vector<Place>& places)
+{
+  vtkPointData* fields = data->GetPointData();
+  auto* names = vtkStringArray::SafeDownCast(fields->GetAbstractArray("LineName"));
+  const auto one = [&](const char* name) { return crossingNumbers(fields, name, 1, input); };
+  vtkDataArray *line = one("Line"), *iteration = one("Iteration"), *rock = one("RockId"),
+               *number = one("Passing"), *energy = one("KineticEnergy"),
+               *height = one("HeightOverGround"),
+               *velocity = crossingNumbers(fields, "Velocity", 3, input);
+  for (vtkIdType id = 0; id < data->GetNumberOfPoints(); ++id)
+  {
+    Place& place = places.emplace_back();
+    place.input = input;
+    place.id = id;
+    Crossing& c = place.crossing;
+    c.line = int(line->GetTuple1(id));
+    c.iteration = int(iteration->GetTuple1(id));
+    c.rock = int(rock->GetTuple1(id));
+    c.number = int(number->GetTuple1(id));
+    c.kineticEnergy = energy->GetTuple1(id);
+    c.heightOverGround = height->GetTuple1(id);
+    velocity->GetTuple(id, c.velocity.data());
+    if (c.line < 0 || std::size_t(c.line) >= lines.size())
+    {
+      throw DataError(numbered(input) + " has a crossing of line " + std::to_string(c.line) +
+        ", but only " + std::to_string(lines.size()) + " lines");
+    }
+    // Crossings of another collector, appended to these, count lines of their own.
+    if (names && names->GetValue(id) != lines[std::size_t(c.line)].name)
+    {
+      throw DataError(numbered(input) + " has a crossing of line " + std::to_string(c.line) +
+        " called \"" + names->GetValue(id) + "\", but its line of that number is \"" +
+        lines[std::size_t(c.line)].name + "\": were crossings of several collectors appended?");
+    }
+  }
+}
+
+/// The point arrays of the inputs that have points, in the order of `places`.
+void copyArrays(std::span<vtkPolyData* const> inputs, std::span<const Place> places,
+  vtkFieldData* pattern, vtkPointData* output)
+{
+  std::vector<vtkAbstractArray*> from(inputs.size());
+  for (int k = 0; k < pattern->GetNumberOfArrays(); ++k)
+  {
+    vtkAbstractArray* like = pattern->GetAbstractArray(k);
+    for (std::size_t input = 0; input < inputs.size(); ++input)
+    {
+      from[input] = inputs[input]->GetPointData()->GetAbstractArray(like->GetName());
+      if (inputs[input]->GetNumberOfPoints() > 0 &&
+        (!from[input] || from[input]->GetDataType() != like->GetDataType() ||
+          from[input]->GetNumberOfComponents() != like->GetNumberOfComponents()))
+      {
+        throw DataError(
+          numbered(input) + " has no point array " + like->GetName() + " as the first has it");
+      }
+    }
+    auto array = vtk::TakeSmartPointer(like->NewInstance());
+    array->SetName(like->GetName());
+    array->SetNumberOfComponents(like->GetNumberOfComponents());
+    array->SetNumberOfTuples(vtkIdType(places.size()));
+    for (std::size_t to = 0; to < places.size(); ++to)
+    {
+      array->SetTuple(vtkIdType(to), places[to].id, from[places[to].input]);
+    }
+    output->AddArray(array);
+  }
+}
+
+} // namespace
+
+MergedCrossings mergeCrossings(std::span<vtkPolyData* const> inputs, vtkPolyData* output)
+{
+  MergedCrossings merged;
+  ReleasedRocks rocks;
+  std::vector<Place> places;
+  vtkPolyData* pattern = nullptr; // the first that has points, or the first
+  for (std::size_t k = 0; k < inputs.size(); ++k)
+  {
+    vtkFieldData* field = inputs[k]->GetFieldData();
+    std::vector<CollectorLine> lines = linesOf(field, k);
+    if (k == 0)
+    {
+      merged.lines = lines;
+    }
+    if (!same(lines, merged.lines))
+    {
+      throw DataError(numbered(k) + " has other lines or barriers than the first");
+    }
+    if (readCrs(field) != readCrs(inputs[0]->GetFieldData()))
+    {
+      throw DataError(numbered(k) + " has another CRS than the first");
+    }
+    vtkDataArray* released = crossingNumbers(field, "CollectorRocks", 2, k);
+    for (vtkIdType i = 0; i < released->GetNumberOfTuples(); ++i)
+    {
+      rocks.push_back({ int(released->GetComponent(i, 0)), int(released->GetComponent(i, 1)) });
+    }
+    if (inputs[k]->GetNumberOfPoints() > 0)
+    {
+      appendPlaces(inputs[k], k, lines, places);
+      pattern = pattern ? pattern : inputs[k];
+    }
+  }
+  checkReleased(rocks);
+  merged.released = std::int64_t(rocks.size());
+  std::sort(
+    places.begin(), places.end(), [](const Place& a, const Place& b) { return key(a) < key(b); });
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(vtkIdType(places.size()));
+  vtkNew<vtkCellArray> vertices;
+  for (std::size_t k = 0; k < places.size(); ++k)
+  {
+    const Crossing& c = places[k].crossing;
+    if (k > 0 && key(places[k - 1]) == key(places[k]))
+    {
+      throw DataError("A crossing of rock " + std::to_string(c.rock) + " of iteration " +
+        std::to_string(c.iteration) + " is there twice");
+    }
+    double place[3];
+    inputs[places[k].input]->GetPoint(places[k].id, place);
+    const auto id = vtkIdType(k);
+    points->SetPoint(id, place);
+    vertices->InsertNextCell(1, &id);
+    merged.crossings.push_back(c);
+  }
+  copyArrays(
+    inputs, places, (pattern ? pattern : inputs[0])->GetPointData(), output->GetPointData());
+  output->SetPoints(points);
+  output->SetVerts(vertices);
+  vtkFieldData* field = output->GetFieldData();
+  for (const char* name : { "CollectorLineName", "CollectorBarrier" })
+  {
+    field->AddArray(inputs[0]->GetFieldData()->GetAbstractArray(name));
+  }
+  writeReleased(rocks, field);
+  copyCoordinateSystem(inputs[0]->GetFieldData(), field);
+  return merged;
+}
+
+} // namespace rockfall::filters

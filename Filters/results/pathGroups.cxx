@@ -1,0 +1,134 @@
+#include "results/pathGroups.h"
+
+#include "base/errors.h"
+#include "base/text/numberText.h"
+#include "geometry/shapes.h"
+#include "geometry/shell.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellArrayIterator.h"
+#include "vtkCellData.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+#include "vtkVariant.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace rockfall::filters
+{
+
+namespace
+{
+
+std::string groupName(const std::string& arrayName, const vtkVariant& value)
+{
+  if (arrayName == "Shape" && value.IsNumeric())
+  {
+    const int number = value.ToInt();
+    if (number >= int(Shape::Cube) && number <= int(Shape::File))
+    {
+      return shapeName(Shape(number));
+    }
+  }
+  return value.ToString();
+}
+
+/// Name of the class before the limit of this number.
+std::string className(const std::vector<double>& limits, std::size_t number)
+{
+  if (number == 0)
+  {
+    return "below " + numberText(limits.front());
+  }
+  return number == limits.size()
+    ? numberText(limits.back()) + " and above"
+    : numberText(limits[number - 1]) + " to " + numberText(limits[number]);
+}
+
+void checkLimits(const std::vector<double>& limits)
+{
+  for (std::size_t k = 0; k < limits.size(); ++k)
+  {
+    if (!std::isfinite(limits[k]) || (k > 0 && !(limits[k] > limits[k - 1])))
+    {
+      throw ParameterError("ClassLimits has " + numberText(limits[k]) + " as number " +
+        std::to_string(k + 1) + ", its numbers must be finite and ascend");
+    }
+  }
+}
+
+} // namespace
+
+std::vector<PathGroup> groupPaths(
+  vtkPolyData* input, const std::string& arrayName, const std::vector<double>& limits)
+{
+  checkLimits(limits);
+  if (input->GetNumberOfLines() == 0)
+  {
+    throw DataError("The Input has no lines; the trajectories of Rockfall Simulation are wanted");
+  }
+  vtkAbstractArray* array = nullptr;
+  if (!arrayName.empty())
+  {
+    array = input->GetCellData()->GetAbstractArray(arrayName.c_str());
+    if (!array)
+    {
+      throw DataError("The Input has no cell array \"" + arrayName +
+        "\" to group the trajectories by; an empty Group By takes them all together");
+    }
+  }
+  const bool classes = array && !limits.empty();
+  if (classes && !array->IsNumeric())
+  {
+    throw DataError("The Input's cell array \"" + arrayName +
+      "\" is not of numbers, so ClassLimits cannot divide it");
+  }
+  std::vector<PathGroup> groups;
+  std::map<vtkVariant, std::size_t> order;
+  const auto collect = [&](auto&& use)
+  {
+    vtkIdType cell = input->GetNumberOfVerts(); // polydata's cells begin with its vertices
+    auto lines = vtk::TakeSmartPointer(input->GetLines()->NewIterator());
+    for (lines->GoToFirstCell(); !lines->IsDoneWithTraversal(); lines->GoToNextCell(), ++cell)
+    {
+      vtkVariant value =
+        array ? array->GetVariantValue(cell * array->GetNumberOfComponents()) : vtkVariant(0);
+      if (value.IsNumeric() && std::isnan(value.ToDouble()))
+      {
+        throw DataError("The Input's cell array \"" + arrayName + "\" has nan at cell " +
+          std::to_string(cell) + ", which is in no group");
+      }
+      if (classes)
+      {
+        const auto above = std::upper_bound(limits.begin(), limits.end(), value.ToDouble());
+        value = vtkVariant(int(above - limits.begin()));
+      }
+      use(value, lines);
+    }
+  };
+  collect([&](const vtkVariant& value, auto&) { order.emplace(value, 0); });
+  for (auto& [value, index] : order)
+  {
+    index = groups.size();
+    groups.emplace_back().name = classes ? className(limits, std::size_t(value.ToInt()))
+      : array                            ? groupName(arrayName, value)
+                                         : "all";
+  }
+  collect(
+    [&](const vtkVariant& value, auto& lines)
+    {
+      vtkIdType size = 0;
+      const vtkIdType* ids = nullptr;
+      lines->GetCurrentCell(size, ids);
+      std::vector<Vec3>& path = groups[order.at(value)].paths.emplace_back();
+      for (vtkIdType k = 0; k < size; ++k)
+      {
+        input->GetPoint(ids[k], path.emplace_back().data());
+      }
+    });
+  return groups;
+}
+
+} // namespace rockfall::filters

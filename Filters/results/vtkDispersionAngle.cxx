@@ -1,0 +1,263 @@
+#include "vtkDispersionAngle.h"
+
+#include "shared/arrays.h"
+#include "base/errors.h"
+#include "shared/inputs.h"
+#include "results/pathGroups.h"
+#include "statistics/dispersion.h"
+#include "statistics/sample.h"
+#include "shared/terrainFieldData.h"
+#include "results/trajectoriesInput.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkDoubleArray.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkIntArray.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkStringArray.h"
+#include "vtkTable.h"
+
+#include <cmath>
+
+vtkStandardNewMacro(vtkDispersionAngle);
+
+namespace
+{
+
+using rockfall::Vec3;
+using Paths = std::vector<std::vector<Vec3>>;
+
+double meanEndHeight(const Paths& paths)
+{
+  double sum = 0.0;
+  int count = 0;
+  for (const std::vector<Vec3>& path : paths)
+  {
+    if (!path.empty())
+    {
+      sum += path.back().z();
+      ++count;
+    }
+  }
+  return count > 0 ? sum / count : 0.0;
+}
+
+/// Four lines from the apex and across: what W and L were measured on.
+class Wedges
+{
+public:
+  explicit Wedges(vtkPolyData* output)
+    : Group(rockfall::filters::addArray<vtkIntArray>(output->GetCellData(), "Group"))
+    , Theta(rockfall::filters::addArray<vtkDoubleArray>(output->GetCellData(), "Theta"))
+  {
+    this->Points->SetDataTypeToDouble();
+    output->SetPoints(this->Points);
+    output->SetLines(this->Lines);
+  }
+
+  void Append(int group, const rockfall::Dispersion& dispersion, double azimuth, double farHeight)
+  {
+    const Vec3 along(std::cos(azimuth), std::sin(azimuth), 0.0);
+    const Vec3 across(-along.y(), along.x(), 0.0);
+    Vec3 middle = dispersion.apex + dispersion.length * along;
+    middle.z() = farHeight;
+    const Vec3 right = middle + dispersion.lateralMin * across;
+    const Vec3 left = middle + dispersion.lateralMax * across;
+    const vtkIdType first = this->Points->GetNumberOfPoints();
+    for (const Vec3& point : { dispersion.apex, right, middle, left })
+    {
+      this->Points->InsertNextPoint(point.data());
+    }
+    const vtkIdType ends[4][2] = { { 0, 1 }, { 0, 2 }, { 0, 3 }, { 1, 3 } };
+    for (const auto& line : ends)
+    {
+      this->Lines->InsertNextCell({ first + line[0], first + line[1] });
+      this->Group->InsertNextValue(group);
+      this->Theta->InsertNextValue(rockfall::degrees(dispersion.angle));
+    }
+  }
+
+private:
+  vtkNew<vtkPoints> Points;
+  vtkNew<vtkCellArray> Lines;
+  vtkSmartPointer<vtkIntArray> Group;
+  vtkSmartPointer<vtkDoubleArray> Theta;
+};
+
+/// How far the trajectories of each group got, as columns of a table.
+class RunOuts
+{
+public:
+  explicit RunOuts(vtkFieldData* rows)
+  {
+    for (const char* name : { "RunOutMean", "RunOutDeviation", "RunOut50", "RunOut90", "RunOut95",
+           "RunOut99", "RunOutMaximum" })
+    {
+      this->Columns.push_back(rockfall::filters::addArray<vtkDoubleArray>(rows, name));
+    }
+  }
+
+  void Append(const Paths& paths)
+  {
+    std::vector<double> distances;
+    for (const std::vector<Vec3>& path : paths)
+    {
+      if (!path.empty())
+      {
+        distances.push_back((path.back() - path.front()).head<2>().norm());
+      }
+    }
+    const rockfall::SampleStatistics of = rockfall::statisticsOf(distances);
+    const double values[] = { of.mean, of.deviation, of.quantiles[0], of.quantiles[1],
+      of.quantiles[2], of.quantiles[3], of.maximum };
+    for (std::size_t k = 0; k < this->Columns.size(); ++k)
+    {
+      this->Columns[k]->InsertNextValue(values[k]);
+    }
+  }
+
+private:
+  std::vector<vtkSmartPointer<vtkDoubleArray>> Columns;
+};
+
+/// Of an angle from +x, rad, counter-clockwise: degrees clockwise from north.
+double compass(double angle)
+{
+  const double azimuth = std::fmod(90.0 - rockfall::degrees(angle), 360.0);
+  return azimuth < 0.0 ? azimuth + 360.0 : azimuth;
+}
+
+} // namespace
+
+//------------------------------------------------------------------------------
+void vtkDispersionAngle::AddClassLimit(double limit)
+{
+  this->ClassLimits.push_back(limit);
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+void vtkDispersionAngle::ClearClassLimits()
+{
+  this->ClassLimits.clear();
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+vtkDispersionAngle::vtkDispersionAngle()
+{
+  this->SetNumberOfInputPorts(1);
+  this->SetNumberOfOutputPorts(2);
+}
+
+//------------------------------------------------------------------------------
+vtkDispersionAngle::~vtkDispersionAngle() = default;
+
+//------------------------------------------------------------------------------
+int vtkDispersionAngle::FillInputPortInformation(int, vtkInformation* info)
+{
+  rockfall::filters::acceptPolyData(info);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkDispersionAngle::FillOutputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkTable" : "vtkPolyData");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkDispersionAngle::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  return rockfall::filters::attemptTrajectories(this, inputVector[0], outputVector,
+    "The trajectories and their dispersion do not fit in memory",
+    [&](vtkPolyData* input)
+    {
+      const auto groups = rockfall::filters::groupPaths(
+        input, this->UseGroups ? this->GroupBy : std::string(), this->ClassLimits);
+
+      double azimuth = std::atan2(this->Direction[1], this->Direction[0]);
+      if (this->AutomaticDirection)
+      {
+        Paths all;
+        for (const auto& group : groups)
+        {
+          all.insert(all.end(), group.paths.begin(), group.paths.end());
+        }
+        azimuth = rockfall::meanAzimuth(all);
+      }
+      else if (!(std::hypot(this->Direction[0], this->Direction[1]) > 0.0))
+      {
+        throw rockfall::ParameterError(
+          "Direction has no horizontal part, so it gives no cross-section");
+      }
+
+      using rockfall::filters::addArray;
+      vtkNew<vtkTable> table;
+      vtkFieldData* rows = table->GetRowData();
+      const auto name = addArray<vtkStringArray>(rows, "Group");
+      const auto count = addArray<vtkIntArray>(rows, "Trajectories");
+      const auto length = addArray<vtkDoubleArray>(rows, "L");
+      const auto width = addArray<vtkDoubleArray>(rows, "W");
+      const auto theta = addArray<vtkDoubleArray>(rows, "Theta");
+      const auto lateralMin = addArray<vtkDoubleArray>(rows, "LateralMin");
+      const auto lateralMax = addArray<vtkDoubleArray>(rows, "LateralMax");
+      const auto deviation = addArray<vtkDoubleArray>(rows, "LateralDeviation");
+      const auto direction = addArray<vtkDoubleArray>(rows, "Azimuth");
+      RunOuts runOuts(rows);
+      vtkNew<vtkPolyData> lines;
+      Wedges wedges(lines);
+      for (const auto& group : groups)
+      {
+        const rockfall::Dispersion dispersion =
+          rockfall::measureDispersion(group.paths, azimuth, this->Length, this->RelativeToStart);
+        wedges.Append(
+          int(name->GetNumberOfValues()), dispersion, azimuth, meanEndHeight(group.paths));
+        name->InsertNextValue(group.name);
+        count->InsertNextValue(dispersion.trajectories);
+        length->InsertNextValue(dispersion.length);
+        width->InsertNextValue(dispersion.width);
+        theta->InsertNextValue(rockfall::degrees(dispersion.angle));
+        lateralMin->InsertNextValue(dispersion.lateralMin);
+        lateralMax->InsertNextValue(dispersion.lateralMax);
+        deviation->InsertNextValue(dispersion.lateralDeviation);
+        direction->InsertNextValue(compass(azimuth));
+        runOuts.Append(group.paths);
+      }
+      for (vtkDataObject* made :
+        { static_cast<vtkDataObject*>(table), static_cast<vtkDataObject*>(lines) })
+      {
+        rockfall::filters::copyCoordinateSystem(input->GetFieldData(), made->GetFieldData());
+      }
+      vtkTable::GetData(outputVector, 0)->ShallowCopy(table);
+      vtkPolyData::GetData(outputVector, 1)->ShallowCopy(lines);
+      return 1;
+    });
+}
+
+//------------------------------------------------------------------------------
+void vtkDispersionAngle::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "AutomaticDirection: " << this->AutomaticDirection << "\n";
+  os << indent << "Direction: " << this->Direction[0] << " " << this->Direction[1] << " "
+     << this->Direction[2] << "\n";
+  os << indent << "Length: " << this->Length << "\n";
+  os << indent << "GroupBy: " << this->GroupBy << "\n";
+  os << indent << "ClassLimits:";
+  for (const double limit : this->ClassLimits)
+  {
+    os << " " << limit;
+  }
+  os << "\n";
+  os << indent << "UseGroups: " << this->UseGroups << "\n";
+  os << indent << "RelativeToStart: " << this->RelativeToStart << "\n";
+}

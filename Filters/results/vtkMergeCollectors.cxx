@@ -1,0 +1,105 @@
+#include "vtkMergeCollectors.h"
+
+#include "shared/attempt.h"
+#include "base/errors.h"
+#include "results/collectorOutputs.h"
+#include "shared/failure.h"
+#include "shared/inputs.h"
+#include "results/mergedCrossings.h"
+#include "shared/pieces.h"
+#include "shared/terrainFieldData.h"
+
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
+#include "vtkTable.h"
+
+#include <vector>
+
+vtkStandardNewMacro(vtkMergeCollectors);
+
+//------------------------------------------------------------------------------
+vtkMergeCollectors::vtkMergeCollectors()
+{
+  this->SetNumberOfOutputPorts(3);
+}
+
+//------------------------------------------------------------------------------
+vtkMergeCollectors::~vtkMergeCollectors() = default;
+
+//------------------------------------------------------------------------------
+int vtkMergeCollectors::FillInputPortInformation(int, vtkInformation* info)
+{
+  rockfall::filters::acceptPolyData(info);
+  info->Set(vtkAlgorithm::INPUT_IS_REPEATABLE(), 1);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkMergeCollectors::FillOutputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(), port == 0 ? "vtkPolyData" : "vtkTable");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkMergeCollectors::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  namespace filters = rockfall::filters;
+  if (filters::isFurtherPiece(outputVector))
+  {
+    return 1;
+  }
+  return filters::attempt(this, "The merged crossings do not fit in memory",
+    [&]
+    {
+      // The parts of composite data are as good as inputs of their own.
+      std::vector<vtkPolyData*> inputs;
+      for (int k = 0; k < inputVector[0]->GetNumberOfInformationObjects(); ++k)
+      {
+        for (vtkDataObject* part : filters::leavesOf(vtkDataObject::GetData(inputVector[0], k)))
+        {
+          filters::Input taken(filters::InputKind::Crossings, int(inputs.size()) + 1);
+          inputs.push_back(taken.take(part));
+          taken.require();
+          if (filters::inheritFailure(inputs.back(), this))
+          {
+            return 1;
+          }
+        }
+      }
+      if (inputs.empty())
+      {
+        throw rockfall::DataError("The Input is empty");
+      }
+      // New ones: the outputs already have the field data of the first input.
+      vtkNew<vtkPolyData> points;
+      const filters::MergedCrossings merged = filters::mergeCrossings(inputs, points);
+      std::vector<rockfall::LineSummary> summaries;
+      for (std::size_t k = 0; k < merged.lines.size(); ++k)
+      {
+        summaries.push_back(
+          rockfall::summarizeLine(merged.lines[k], int(k), merged.crossings, merged.released));
+      }
+      vtkNew<vtkTable> table, exceedance;
+      filters::writeLines(summaries, merged.lines, table);
+      filters::writeExceedance(summaries, merged.released, exceedance);
+      for (vtkTable* made : { table.Get(), exceedance.Get() })
+      {
+        filters::copyCoordinateSystem(points->GetFieldData(), made->GetFieldData());
+      }
+      vtkPolyData::GetData(outputVector, 0)->ShallowCopy(points);
+      vtkTable::GetData(outputVector, 1)->ShallowCopy(table);
+      vtkTable::GetData(outputVector, 2)->ShallowCopy(exceedance);
+      return 1;
+    });
+}
+
+//------------------------------------------------------------------------------
+void vtkMergeCollectors::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+}

@@ -1,0 +1,382 @@
+#include "vtkTrajectoryCollector.h"
+
+#include "base/errors.h"
+#include "base/text/numberText.h"
+#include "results/collectorOutputs.h"
+#include "shared/failure.h"
+#include "geometry/shell.h"
+#include "gis/layers/lineLayer.h"
+#include "gis/base/reach.h"
+#include "shared/inputs.h"
+#include "shared/lineWalls.h"
+#include "mesh/precision.h"
+#include "shared/rockPaths.h"
+#include "shared/terrainFieldData.h"
+#include "results/trajectoriesInput.h"
+
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkTable.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+vtkStandardNewMacro(vtkTrajectoryCollector);
+
+namespace
+{
+
+using rockfall::CollectorLine;
+using rockfall::Vec3;
+
+enum InputPorts
+{
+  TRAJECTORIES = 0,
+  LINES = 1,
+  TERRAIN = 2
+};
+
+enum OutputPorts
+{
+  CROSSINGS = 0,
+  SUMMARIES = 1,
+  EXCEEDANCE = 2,
+  WALLS = 3
+};
+
+void checkSize(double value, const char* name)
+{
+  if (!(value >= 0.0) || !std::isfinite(value))
+  {
+    throw rockfall::ParameterError(std::string(name) + " is " + rockfall::numberText(value) +
+      ", it must be finite and not negative");
+  }
+}
+
+/// Lines that are farther from the trajectories than this, m, and than ten times their extent, are
+/// those of another place. Where all rocks stop before a nearer one, none has passed it.
+constexpr double kElsewhere = 1000.0;
+
+using Box2 = Eigen::AlignedBox2d;
+
+/// In plan, world coordinates.
+Box2 boxOf(vtkPolyData* data)
+{
+  double b[6];
+  data->GetBounds(b);
+  return { Eigen::Vector2d(b[0], b[2]), Eigen::Vector2d(b[1], b[3]) };
+}
+
+/// ParaView's sources of lines make single precision.
+void tellRounding(vtkPolyData* lines)
+{
+  double b[6];
+  lines->GetBounds(b);
+  const double rounding = rockfall::singleRounding(
+    std::max({ std::abs(b[0]), std::abs(b[1]), std::abs(b[2]), std::abs(b[3]) }));
+  if (lines->GetPoints() && lines->GetPoints()->GetDataType() == VTK_FLOAT && rounding > 0.1)
+  {
+    rockfall::filters::showNote("The Lines input is in single precision, so its points are rounded "
+                                "by up to " +
+      rockfall::numberText(rounding, 3) + " m; a line of a file is not");
+  }
+}
+
+void requireNear(const Box2& lines, const Box2& rocks, const std::string& whose)
+{
+  if (lines.exteriorDistance(rocks) > std::max(kElsewhere, 10.0 * rocks.diagonal().norm()))
+  {
+    const auto text = [](const Box2& box)
+    {
+      using rockfall::numberText;
+      return "x " + numberText(box.min().x()) + " to " + numberText(box.max().x()) + ", y " +
+        numberText(box.min().y()) + " to " + numberText(box.max().y());
+    };
+    throw rockfall::DataError(
+      whose + " (" + text(lines) + ") are far from the trajectories (" + text(rocks) + ")");
+  }
+}
+
+/// The lines of a file, which must be where the trajectories are. What they do not say of their
+/// barrier is `barrier`'s.
+std::vector<CollectorLine> readLines(const std::string& fileName, const std::string& layerName,
+  vtkPolyData* trajectories, const Box2& site, const Vec3& origin, const CollectorLine& barrier,
+  std::vector<std::string>& notes)
+{
+  const std::string crs = rockfall::filters::readCrs(trajectories->GetFieldData());
+  Box2 all;
+  std::string layer;
+  std::vector<CollectorLine> lines;
+  for (rockfall::LayerLine& read : rockfall::readLineLayer(fileName, crs, layerName, &notes))
+  {
+    layer = read.layer;
+    CollectorLine& line = lines.emplace_back();
+    line.name = read.name.empty() ? "feature " + std::to_string(read.feature) : read.name;
+    line.barrierHeight = read.height.value_or(barrier.barrierHeight);
+    line.barrierCapacity = read.capacity ? *read.capacity * 1000.0 : barrier.barrierCapacity;
+    for (const Eigen::Vector2d& place : read.points)
+    {
+      all.extend(place);
+      line.points.push_back(place - origin.head<2>());
+    }
+  }
+  requireNear(all, site, fileName + ": its lines of layer \"" + layer + "\"");
+  return lines;
+}
+
+/// The line through drawn points, which must be where the trajectories are.
+CollectorLine lineThrough(const std::vector<std::array<double, 3>>& points, const Box2& rocks,
+  const Vec3& origin, const CollectorLine& barrier)
+{
+  CollectorLine line = barrier;
+  line.name = "drawn line";
+  Box2 box;
+  for (const auto& [x, y, z] : points)
+  {
+    const Eigen::Vector2d place(x, y);
+    if (!place.allFinite())
+    {
+      throw rockfall::ParameterError("Points: a point of the drawn line is " +
+        rockfall::numberText(x) + ", " + rockfall::numberText(y) + ", it must be finite");
+    }
+    box.extend(place);
+    if (line.points.empty() || line.points.back() != Eigen::Vector2d(place - origin.head<2>()))
+    {
+      line.points.push_back(place - origin.head<2>());
+    }
+  }
+  if (line.points.size() < 2)
+  {
+    throw rockfall::ParameterError(
+      "Points: the drawn line has no two different places in the plane, it must have two at least");
+  }
+  requireNear(box, rocks, "Points: the drawn line");
+  return line;
+}
+
+/// Where lines may be, in world coordinates, and the origin to reckon from.
+struct Site
+{
+  Box2 box;
+  Vec3 origin = Vec3::Zero();
+};
+
+/// The place of the trajectories and of the slope under them. Throws DataError if they have none
+/// in common.
+Site siteOf(const Box2& rocks, const rockfall::Terrain* terrain)
+{
+  Site site{ rocks, { std::floor(rocks.min().x()), std::floor(rocks.min().y()), 0.0 } };
+  if (terrain)
+  {
+    site.origin = terrain->geometry().origin();
+    const Eigen::Vector2d corner = site.origin.head<2>();
+    const Box2 slope(corner, corner + Eigen::Vector2d(terrain->width(), terrain->height()));
+    if (!rocks.intersects(slope))
+    {
+      throw rockfall::DataError(
+        "No trajectory of the Input is over the Terrain: they do not belong together");
+    }
+    site.box.extend(slope);
+  }
+  return site;
+}
+
+struct Collected
+{
+  std::vector<rockfall::filters::CollectedCrossing> crossings;
+  rockfall::filters::ReleasedRocks released;
+  std::vector<rockfall::LineSummary> summaries; ///< Of each line.
+};
+
+/// All crossings of all lines.
+Collected collect(vtkPolyData* trajectories, const std::vector<CollectorLine>& lines,
+  const Vec3& origin, const rockfall::Terrain* terrain)
+{
+  Collected collected;
+  std::vector<rockfall::Crossing> all, found;
+  rockfall::filters::forEachPath(trajectories, origin,
+    [&](const rockfall::RockPath& path, std::int64_t cell)
+    {
+      collected.released.push_back({ path.iteration, path.rock });
+      for (std::size_t k = 0; k < lines.size(); ++k)
+      {
+        found.clear();
+        rockfall::appendCrossings(path, lines[k], int(k), terrain, found);
+        for (const rockfall::Crossing& crossing : found)
+        {
+          collected.crossings.push_back({ crossing, cell });
+          all.push_back(crossing);
+        }
+      }
+    });
+  rockfall::filters::checkReleased(collected.released);
+  for (std::size_t k = 0; k < lines.size(); ++k)
+  {
+    collected.summaries.push_back(
+      rockfall::summarizeLine(lines[k], int(k), all, std::int64_t(collected.released.size())));
+  }
+  return collected;
+}
+
+} // namespace
+
+//------------------------------------------------------------------------------
+void vtkTrajectoryCollector::AddPoint(double x, double y, double z)
+{
+  this->Points.push_back({ x, y, z });
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+void vtkTrajectoryCollector::ClearPoints()
+{
+  if (!this->Points.empty())
+  {
+    this->Points.clear();
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+vtkTrajectoryCollector::vtkTrajectoryCollector()
+{
+  this->SetNumberOfInputPorts(3);
+  this->SetNumberOfOutputPorts(4);
+}
+
+//------------------------------------------------------------------------------
+vtkTrajectoryCollector::~vtkTrajectoryCollector() = default;
+
+//------------------------------------------------------------------------------
+int vtkTrajectoryCollector::FillInputPortInformation(int port, vtkInformation* info)
+{
+  rockfall::filters::acceptPolyData(info);
+  if (port != TRAJECTORIES)
+  {
+    info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  }
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkTrajectoryCollector::FillOutputPortInformation(int port, vtkInformation* info)
+{
+  info->Set(vtkDataObject::DATA_TYPE_NAME(),
+    port == CROSSINGS || port == WALLS ? "vtkPolyData" : "vtkTable");
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkTrajectoryCollector::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  namespace filters = rockfall::filters;
+  return filters::attemptTrajectories(this, inputVector[TRAJECTORIES], outputVector,
+    "The crossings do not fit in memory",
+    [&](vtkPolyData* trajectories)
+    {
+      filters::Input takenLines(filters::InputKind::Lines);
+      filters::Input takenTerrain(filters::InputKind::Terrain);
+      vtkPolyData* drawn = takenLines.take(inputVector[LINES]);
+      vtkPolyData* mesh = takenTerrain.take(inputVector[TERRAIN]);
+      takenLines.require();
+      takenTerrain.require();
+      if ((drawn && filters::inheritFailure(drawn, this)) ||
+        (mesh && filters::inheritFailure(mesh, this)))
+      {
+        return 1;
+      }
+      if (trajectories->GetNumberOfLines() == 0)
+      {
+        throw rockfall::DataError(
+          "The Input has no lines; the trajectories of Rockfall Simulation are wanted");
+      }
+      checkSize(this->BarrierHeight, "BarrierHeight");
+      checkSize(this->BarrierCapacity, "BarrierCapacity");
+      const std::optional<rockfall::Terrain> terrain = filters::slopeUnder(trajectories, mesh);
+      const rockfall::Terrain* slope = terrain ? &*terrain : nullptr;
+      const Box2 rocks = boxOf(trajectories);
+      const Site site = siteOf(rocks, slope);
+      const Vec3& origin = site.origin;
+      CollectorLine barrier;
+      barrier.barrierHeight = this->BarrierHeight;
+      barrier.barrierCapacity = this->BarrierCapacity * 1000.0;
+      std::vector<CollectorLine> lines;
+      std::vector<std::string> notes;
+      if (drawn)
+      {
+        if (drawn->GetNumberOfPoints() > 0)
+        {
+          requireNear(boxOf(drawn), site.box, "The lines of the Lines input");
+          tellRounding(drawn);
+        }
+        lines = filters::linesOf(drawn, origin, barrier);
+      }
+      if (!this->FileName.empty())
+      {
+        const rockfall::AllowReferences references(this->AllowReferences != 0);
+        for (CollectorLine& line : readLines(
+               this->FileName, this->LayerName, trajectories, site.box, origin, barrier, notes))
+        {
+          lines.push_back(std::move(line));
+        }
+      }
+      std::vector<std::array<double, 3>> points = this->Points;
+      if (points.empty() && lines.empty())
+      {
+        const std::array<double, 6> placed = filters::lineAcross(trajectories, slope, origin);
+        std::copy(placed.begin(), placed.end(), this->PlacedLine);
+        points = { { placed[0], placed[1], placed[2] }, { placed[3], placed[4], placed[5] } };
+      }
+      if (!points.empty())
+      {
+        lines.push_back(lineThrough(points, rocks, origin, barrier));
+      }
+      const Collected collected = collect(trajectories, lines, origin, slope);
+      const auto released = std::int64_t(collected.released.size());
+
+      vtkNew<vtkPolyData> passings, walls;
+      filters::writeCrossings(
+        collected.crossings, lines, collected.released, origin, trajectories, passings);
+      filters::writeWalls(lines, collected.summaries, slope,
+        trajectories->GetBounds()[4] - origin.z(), origin, walls);
+      filters::showNotes(notes, passings->GetFieldData());
+      vtkNew<vtkTable> table, exceedance;
+      filters::writeLines(collected.summaries, lines, table);
+      filters::writeExceedance(collected.summaries, released, exceedance);
+      for (vtkDataObject* made :
+        { static_cast<vtkDataObject*>(passings), static_cast<vtkDataObject*>(walls),
+          static_cast<vtkDataObject*>(table), static_cast<vtkDataObject*>(exceedance) })
+      {
+        filters::copyCoordinateSystem(trajectories->GetFieldData(), made->GetFieldData());
+      }
+      vtkPolyData::GetData(outputVector, CROSSINGS)->ShallowCopy(passings);
+      vtkTable::GetData(outputVector, SUMMARIES)->ShallowCopy(table);
+      vtkTable::GetData(outputVector, EXCEEDANCE)->ShallowCopy(exceedance);
+      vtkPolyData::GetData(outputVector, WALLS)->ShallowCopy(walls);
+      return 1;
+    });
+}
+
+//------------------------------------------------------------------------------
+void vtkTrajectoryCollector::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "FileName: " << this->FileName << "\n";
+  os << indent << "AllowReferences: " << this->AllowReferences << "\n";
+  os << indent << "LayerName: " << this->LayerName << "\n";
+  os << indent << "Points: " << this->Points.size() << "\n";
+  os << indent << "PlacedLine:";
+  for (const double number : this->PlacedLine)
+  {
+    os << " " << number;
+  }
+  os << "\n";
+  os << indent << "BarrierHeight: " << this->BarrierHeight << "\n";
+  os << indent << "BarrierCapacity: " << this->BarrierCapacity << "\n";
+}

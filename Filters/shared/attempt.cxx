@@ -1,0 +1,68 @@
+#include "shared/attempt.h"
+
+#include "base/errors.h"
+#include "shared/failure.h"
+#include "shared/pieces.h"
+
+#include "vtkAlgorithm.h"
+#include "vtkDataObject.h"
+
+#include <new>
+
+namespace rockfall::filters
+{
+
+namespace
+{
+
+bool isWanted(vtkAlgorithm* algorithm)
+{
+  if (!isFurtherRank())
+  {
+    algorithm->UpdateProgress(algorithm->GetProgress());
+  }
+  return !algorithm->CheckAbort();
+}
+
+} // namespace
+
+HeardAbort::HeardAbort(vtkAlgorithm* algorithm)
+  : scope_([algorithm] { return isWanted(algorithm); })
+{
+}
+
+int giveUp(vtkAlgorithm* algorithm)
+{
+  for (int port = 0; port < algorithm->GetNumberOfOutputPorts(); ++port)
+  {
+    if (vtkDataObject* output = algorithm->GetOutputDataObject(port))
+    {
+      output->Initialize();
+    }
+  }
+  algorithm->SetAbortOutput(true);
+  return 1;
+}
+
+int attempt(vtkAlgorithm* algorithm, const std::string& noMemory, const std::function<int()>& work)
+{
+  try
+  {
+    const HeardAbort heard(algorithm);
+    return work();
+  }
+  catch (const Aborted&)
+  {
+    return giveUp(algorithm);
+  }
+  catch (const Error& error)
+  {
+    return fail(algorithm, error.what());
+  }
+  catch (const std::bad_alloc&)
+  {
+    return fail(algorithm, noMemory);
+  }
+}
+
+} // namespace rockfall::filters

@@ -1,0 +1,324 @@
+#include "shared/hazardImage.h"
+
+#include "shared/arrays.h"
+#include "base/errors.h"
+#include "base/text/numberText.h"
+#include "geometry/shell.h"
+#include "shared/rockPaths.h"
+#include "statistics/HazardRaster.h"
+#include "statistics/passageFile.h"
+#include "shared/terrainFieldData.h"
+
+#include "vtkCellData.h"
+#include "vtkDoubleArray.h"
+#include "vtkFloatArray.h"
+#include "vtkImageData.h"
+#include "vtkIntArray.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <initializer_list>
+#include <limits>
+#include <optional>
+#include <string>
+
+namespace rockfall::filters
+{
+
+namespace
+{
+
+/// At 76 bytes each the usual map takes 4 GB.
+constexpr std::int64_t mostCells = 50'000'000;
+
+struct Bounds
+{
+  double xMin, xMax, yMin, yMax;
+};
+
+Bounds boundsOf(vtkPolyData* trajectories, const Vec3& origin)
+{
+  double b[6];
+  trajectories->GetBounds(b);
+  return { b[0] - origin.x(), b[1] - origin.x(), b[2] - origin.y(), b[3] - origin.y() };
+}
+
+/// The cells from `first` to `last` along one axis, counted from the corner of the whole grid.
+struct Range
+{
+  double first, last;
+};
+
+Range rangeOf(double low, double high, double start, double cell)
+{
+  return { std::floor((low - start) / cell), std::floor((high - start) / cell) };
+}
+
+void checkSize(double columns, double rows, double cell)
+{
+  if (!(columns * rows <= double(mostCells)))
+  {
+    throw ParameterError("A map of " + numberText(columns) + " x " + numberText(rows) +
+      " cells of " + numberText(cell) + " m has more than " + std::to_string(mostCells) +
+      ": give a larger CellSize, or switch CropToTrajectories on");
+  }
+}
+
+/// The grid in the local frame.
+CellGrid gridOf(vtkPolyData* trajectories, const Terrain* terrain, const HazardMapOptions& options,
+  const Vec3& origin)
+{
+  if (!(options.cellSize >= 0.0) || !std::isfinite(options.cellSize))
+  {
+    throw ParameterError(
+      "CellSize is " + numberText(options.cellSize) + ", it must be finite and not negative");
+  }
+  if (options.cellSize == 0.0 && !terrain)
+  {
+    throw ParameterError(
+      "CellSize is 0, which takes the cells of the slope, but none came with the "
+      "trajectories: give a CellSize or connect the Terrain");
+  }
+  CellGrid grid;
+  grid.cellSize = options.cellSize > 0.0 ? options.cellSize : terrain->geometry().cellSize;
+  const double cell = grid.cellSize;
+  const Bounds b = boundsOf(trajectories, origin);
+  Range columns = rangeOf(b.xMin, b.xMax, 0.0, cell), rows = rangeOf(b.yMin, b.yMax, 0.0, cell);
+  if (terrain)
+  {
+    // A last cell may reach beyond the slope; not for the sake of rounding, though.
+    const Range all{ 0.0, std::ceil(terrain->width() / cell - 1e-9) - 1.0 };
+    const Range allRows{ 0.0, std::ceil(terrain->height() / cell - 1e-9) - 1.0 };
+    const auto within = [](const Range& part, const Range& whole) {
+      return Range{ std::max(part.first, whole.first), std::min(part.last, whole.last) };
+    };
+    columns = within(columns, all);
+    rows = within(rows, allRows);
+    if (columns.last < columns.first || rows.last < rows.first)
+    {
+      throw DataError(
+        "No trajectory of the Input is over the Terrain: they do not belong together");
+    }
+    if (!options.crop)
+    {
+      columns = all;
+      rows = allRows;
+    }
+  }
+  const double width = columns.last - columns.first + 1.0, depth = rows.last - rows.first + 1.0;
+  checkSize(width, depth, cell);
+  grid.columns = int(width);
+  grid.rows = int(depth);
+  grid.west = columns.first * cell;
+  grid.south = rows.first * cell;
+  return grid;
+}
+
+void checkStatistics(const ChosenStatistics& chosen)
+{
+  for (const int number : chosen)
+  {
+    if (number < 0 || number >= int(std::size(mapStatistics)))
+    {
+      throw ParameterError("Statistics has " + std::to_string(number) + ", they are 0 to " +
+        std::to_string(std::size(mapStatistics) - 1));
+    }
+  }
+}
+
+/// The cell arrays.
+class Layers
+{
+public:
+  Layers(vtkImageData* image, const ChosenStatistics& chosen)
+  {
+    vtkFieldData* data = image->GetCellData();
+    const vtkIdType cells = image->GetNumberOfCells();
+    const auto count = [&](const char* name)
+    {
+      auto array = addArray<vtkIntArray>(data, name);
+      array->SetNumberOfTuples(cells);
+      array->FillValue(0);
+      return array;
+    };
+    const auto number = [&](const std::string& name, float empty)
+    {
+      auto array = addArray<vtkFloatArray>(data, name.c_str());
+      array->SetNumberOfTuples(cells);
+      array->FillValue(empty);
+      return array;
+    };
+    passages_ = count("Passages");
+    rocks_ = count("Rocks");
+    stops_ = count("StoppingPoints");
+    reach_ = number("ReachProbability", 0.0F);
+    reachError_ = number("ReachProbabilityError", 0.0F);
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    reachScatter_ = number("ReachProbabilityErrorOfIterations", 0.0F);
+    for (std::size_t k = 0; k < std::size(mapStatistics); ++k)
+    {
+      if (std::find(chosen.begin(), chosen.end(), int(k)) != chosen.end())
+      {
+        chosen_.push_back(&mapStatistics[k]); // each once, in this order
+      }
+    }
+    for (int h = 0; h < hazardCount; ++h)
+    {
+      for (const MapStatistic* statistic : chosen_)
+      {
+        statistics_.push_back(number(hazardName(Hazard(h)) + statistic->name, nan));
+      }
+    }
+  }
+
+  void set(const CellSummary& cell)
+  {
+    const vtkIdType id = cell.cell;
+    passages_->SetValue(id, cell.passages);
+    rocks_->SetValue(id, cell.rocks);
+    stops_->SetValue(id, cell.stops);
+    reach_->SetValue(id, float(cell.reach));
+    reachError_->SetValue(id, float(cell.reachError));
+    reachScatter_->SetValue(id, float(cell.reachErrorOfIterations));
+    auto array = statistics_.begin();
+    for (const SampleStatistics& of : cell.statistics)
+    {
+      for (const MapStatistic* statistic : chosen_)
+      {
+        (*array++)->SetValue(id, float(statistic->value(of)));
+      }
+    }
+  }
+
+private:
+  vtkSmartPointer<vtkIntArray> passages_, rocks_, stops_;
+  vtkSmartPointer<vtkFloatArray> reach_, reachError_, reachScatter_;
+  std::vector<const MapStatistic*> chosen_;
+  std::vector<vtkSmartPointer<vtkFloatArray>> statistics_;
+};
+
+/// Heights of the slope at the corners of the cells, to drape the map over it.
+void addElevation(const Terrain& terrain, const CellGrid& grid, vtkImageData* image)
+{
+  const auto elevation = addArray<vtkFloatArray>(image->GetPointData(), "Elevation");
+  elevation->SetNumberOfTuples(image->GetNumberOfPoints());
+  vtkIdType id = 0;
+  for (int row = 0; row <= grid.rows; ++row)
+  {
+    for (int column = 0; column <= grid.columns; ++column, ++id)
+    {
+      const double height =
+        terrain.elevation(std::min(grid.west + column * grid.cellSize, terrain.width()),
+          std::min(grid.south + row * grid.cellSize, terrain.height()));
+      elevation->SetValue(id, float(std::isnan(height) ? terrain.lowest() : height));
+    }
+  }
+}
+
+void addMarker(vtkImageData* image, std::initializer_list<double> numbers)
+{
+  addArray<vtkDoubleArray>(image->GetFieldData(), "HazardMap", 7)->InsertNextTuple(numbers.begin());
+}
+
+} // namespace
+
+void markEmptyMap(vtkImageData* image)
+{
+  addMarker(image, { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 });
+}
+
+namespace
+{
+
+/// The map but for its heights and coordinate system. `corner`: the south-western one, in the
+/// world.
+void fillImage(const CellGrid& grid, const Vec3& corner, std::int64_t released, bool withTerrain,
+  const ChosenStatistics& chosen, const std::function<void(const UseCell&)>& summarize,
+  vtkImageData* image)
+{
+  image->Initialize();
+  image->SetExtent(0, grid.columns, 0, grid.rows, 0, 0);
+  image->SetOrigin(corner.x(), corner.y(), 0.0);
+  image->SetSpacing(grid.cellSize, grid.cellSize, grid.cellSize);
+  Layers layers(image, chosen);
+  summarize([&layers](const CellSummary& cell) { layers.set(cell); });
+  image->GetCellData()->SetActiveScalars("ReachProbability"); // what a viewer begins with
+  addMarker(image,
+    { double(grid.columns), double(grid.rows), grid.cellSize, corner.x(), corner.y(),
+      double(released), withTerrain ? 1.0 : 0.0 });
+}
+
+void checkLines(vtkPolyData* trajectories)
+{
+  if (trajectories->GetNumberOfLines() == 0)
+  {
+    throw DataError("The Input has no lines; the trajectories of Rockfall Simulation are wanted");
+  }
+}
+
+} // namespace
+
+void makeHazardImage(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
+  const HazardMapOptions& options, vtkImageData* image)
+{
+  checkLines(trajectories);
+  checkStatistics(options.statistics);
+  const std::optional<Terrain> terrain = slopeUnder(trajectories, terrainMesh);
+  Vec3 origin = Vec3::Zero();
+  if (terrain)
+  {
+    origin = terrain->geometry().origin();
+  }
+  else
+  {
+    // Of maps of one cell size the cells are the same everywhere: multiples of it in the world.
+    const Bounds b = boundsOf(trajectories, origin);
+    const double cell = options.cellSize;
+    if (cell > 0.0 && std::isfinite(cell))
+    {
+      origin = Vec3(std::floor(b.xMin / cell) * cell, std::floor(b.yMin / cell) * cell, 0.0);
+    }
+  }
+  const Terrain* ground = terrain ? &*terrain : nullptr;
+  const CellGrid grid = gridOf(trajectories, ground, options, origin);
+  HazardRaster raster(grid, ground);
+  forEachPath(trajectories, origin, [&](const RockPath& path, std::int64_t) { raster.add(path); });
+  fillImage(
+    grid, origin + Vec3(grid.west, grid.south, 0.0), raster.released(), terrain.has_value(),
+    options.statistics, [&raster](const UseCell& use) { raster.summarize(use); }, image);
+  if (terrain)
+  {
+    addElevation(*terrain, grid, image);
+  }
+  copyCoordinateSystem(trajectories->GetFieldData(), image->GetFieldData());
+}
+
+void makeHazardImage(
+  const PassageFiles& files, const ChosenStatistics& statistics, vtkImageData* image)
+{
+  checkStatistics(statistics);
+  const CellGrid& grid = files.grid();
+  checkSize(grid.columns, grid.rows, grid.cellSize);
+  fillImage(
+    grid, Vec3(grid.west, grid.south, 0.0), files.released(), true, statistics,
+    [&files](const UseCell& use) { files.summarize(use); }, image);
+  writeCoordinateSystem(files.crs(), files.origin(), image->GetFieldData());
+}
+
+void writeHazardPassages(
+  vtkPolyData* trajectories, vtkPolyData* terrainMesh, double cellSize, const std::string& fileName)
+{
+  checkLines(trajectories);
+  const Terrain terrain = readTerrain(terrainMesh);
+  checkSameCrs(
+    trajectories->GetFieldData(), "The trajectories of the Input are", terrainMesh->GetFieldData());
+  const Vec3 origin = terrain.geometry().origin();
+  HazardRaster raster(gridOf(trajectories, &terrain, { cellSize, false, {} }, origin), &terrain);
+  forEachPath(trajectories, origin, [&](const RockPath& path, std::int64_t) { raster.add(path); });
+  writePassages(raster, origin, readCrs(trajectories->GetFieldData()), fileName);
+}
+
+} // namespace rockfall::filters

@@ -1,0 +1,242 @@
+// Requirements on the points, cells and arrays of an input.
+
+#include "base/errors.h"
+#include "base/text/numberText.h"
+#include "shared/inputs.h"
+#include "mesh/precision.h"
+
+#include "vtkAbstractArray.h"
+#include "vtkCellArray.h"
+#include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkDoubleArray.h"
+#include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rockfall::filters
+{
+
+namespace
+{
+
+constexpr double kWhole32 = std::numeric_limits<int>::max();
+constexpr double kWhole53 = 0x1p53;
+
+enum class Holds
+{
+  Finite,
+  NotInfinite, ///< NaN where there is nothing to say.
+  Whole32,
+  Whole53,
+};
+
+struct ArrayRule
+{
+  InputKind kind;
+  bool ofPoints; ///< Else of cells.
+  const char* name;
+  Holds holds;
+};
+
+/// Arrays that filters make numbers of, beyond what the readers of a kind look at themselves.
+constexpr ArrayRule rules[] = {
+  { InputKind::Rocks, false, "BlockId", Holds::Whole53 },
+  { InputKind::Rocks, false, "SourceId", Holds::Whole53 },
+  { InputKind::Rocks, false, "Shape", Holds::Whole32 },
+  { InputKind::Rocks, false, "State", Holds::Whole32 },
+  { InputKind::Trajectories, true, "Time", Holds::Finite },
+  { InputKind::Trajectories, true, "Velocity", Holds::Finite },
+  { InputKind::Trajectories, true, "RotationRate", Holds::Finite },
+  { InputKind::Trajectories, true, "KineticEnergy", Holds::Finite },
+  { InputKind::Trajectories, true, "HeightOverGround", Holds::NotInfinite },
+  { InputKind::Trajectories, false, "Iteration", Holds::Whole32 },
+  { InputKind::Trajectories, false, "RockId", Holds::Whole32 },
+  { InputKind::Trajectories, false, "BlockId", Holds::Whole53 },
+  { InputKind::Trajectories, false, "SourceId", Holds::Whole53 },
+  { InputKind::Trajectories, false, "Shape", Holds::Whole32 },
+  { InputKind::Trajectories, false, "Fate", Holds::Whole32 },
+  { InputKind::Trajectories, false, "Mass", Holds::Finite },
+  { InputKind::Crossings, true, "Line", Holds::Whole32 },
+  { InputKind::Crossings, true, "Iteration", Holds::Whole32 },
+  { InputKind::Crossings, true, "RockId", Holds::Whole32 },
+  { InputKind::Crossings, true, "Passing", Holds::Whole32 },
+  { InputKind::Crossings, true, "KineticEnergy", Holds::Finite },
+  { InputKind::Crossings, true, "HeightOverGround", Holds::NotInfinite },
+  { InputKind::Crossings, true, "Velocity", Holds::Finite },
+};
+
+bool fits(double value, Holds holds)
+{
+  switch (holds)
+  {
+    case Holds::Finite:
+      return std::isfinite(value);
+    case Holds::NotInfinite:
+      return !std::isinf(value);
+    case Holds::Whole32:
+      return std::abs(value) <= kWhole32 && value == std::floor(value);
+    case Holds::Whole53:
+      break;
+  }
+  return std::abs(value) < kWhole53 && value == std::floor(value);
+}
+
+const char* textOf(Holds holds)
+{
+  return holds == Holds::Finite   ? "finite"
+    : holds == Holds::NotInfinite ? "finite, or NaN"
+                                  : "a whole number";
+}
+
+void checkNumbers(vtkDataArray* array, Holds holds, const std::string& name)
+{
+  const int components = array->GetNumberOfComponents();
+  const vtkIdType values = array->GetNumberOfValues();
+  auto* doubles = vtkDoubleArray::SafeDownCast(array);
+  const double* fast = doubles ? doubles->GetPointer(0) : nullptr;
+  for (vtkIdType k = 0; k < values; ++k)
+  {
+    const double value = fast ? fast[k] : array->GetComponent(k / components, int(k % components));
+    if (!fits(value, holds))
+    {
+      throw DataError(name + " has " + numberText(value, 17) + " at place " +
+        std::to_string(k / components) + ", it must be " + textOf(holds));
+    }
+  }
+}
+
+/// Where the cells begin and end, and that their points are there and finite.
+struct CheckCells
+{
+  template <typename State>
+  void operator()(State& state, vtkPoints* points, const std::string& name, const char* kind) const
+  {
+    auto* offsets = state.GetOffsets();
+    auto* ids = state.GetConnectivity();
+    const vtkIdType count = offsets->GetNumberOfValues() - 1, last = ids->GetNumberOfValues();
+    const vtkIdType pointCount = points ? points->GetNumberOfPoints() : 0;
+    if (count < 0 || offsets->GetValue(0) != 0)
+    {
+      throw DataError(name + "'s " + kind + " have no beginning: they are damaged");
+    }
+    for (vtkIdType k = 0; k < count; ++k)
+    {
+      const vtkIdType begin = offsets->GetValue(k), end = offsets->GetValue(k + 1);
+      if (end < begin || end > last)
+      {
+        throw DataError(name + "'s " + kind + " are damaged: number " + std::to_string(k) +
+          " goes from place " + std::to_string(begin) + " to " + std::to_string(end) + " of " +
+          std::to_string(last));
+      }
+      for (vtkIdType at = begin; at < end; ++at)
+      {
+        const vtkIdType id = ids->GetValue(at);
+        if (id < 0 || id >= pointCount)
+        {
+          throw DataError(name + "'s " + kind + " refer to point " + std::to_string(id) +
+            ", there are " + std::to_string(pointCount));
+        }
+        double p[3];
+        points->GetPoint(id, p);
+        if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
+        {
+          throw DataError(name + " has a point " + std::to_string(id) + " at (" + numberText(p[0]) +
+            ", " + numberText(p[1]) + ", " + numberText(p[2]) + "), it must be finite");
+        }
+      }
+    }
+  }
+};
+
+/// Paths of single precision far from the origin are steps of half a metre.
+void checkPrecision(vtkPolyData* data, const std::string& name)
+{
+  if (data->GetNumberOfPoints() == 0 || data->GetPoints()->GetDataType() != VTK_FLOAT)
+  {
+    return;
+  }
+  double bounds[6], largest = 0.0, rock = 1.0;
+  data->GetBounds(bounds);
+  for (const double bound : bounds)
+  {
+    largest = std::max(largest, std::abs(bound));
+  }
+  if (vtkDataArray* volume = data->GetCellData()->GetArray("Volume"))
+  {
+    double range[2];
+    volume->GetRange(range, 0);
+    rock = range[0] > 0.0 ? std::cbrt(range[0]) : rock;
+  }
+  const double rounding = singleRounding(largest);
+  if (rounding > 1e-3 * rock)
+  {
+    throw DataError(name + " has its points, of up to " + numberText(largest, 10) +
+      " m, in single precision: rounded by up to " + numberText(rounding, 3) +
+      " m, more than a thousandth of a rock of " + numberText(rock, 3) +
+      " m. Take the trajectories as Rockfall Simulation makes them, or save them with double "
+      "precision");
+  }
+}
+
+} // namespace
+
+void checkTuples(vtkFieldData* data, vtkIdType count, const std::string& name, const char* of)
+{
+  for (int k = 0; k < data->GetNumberOfArrays(); ++k)
+  {
+    vtkAbstractArray* array = data->GetAbstractArray(k);
+    if (array->GetNumberOfTuples() != count)
+    {
+      throw DataError(name + "'s " + of + " array " +
+        (array->GetName() ? array->GetName() : "number " + std::to_string(k)) + " has " +
+        std::to_string(array->GetNumberOfTuples()) + " tuples for " + std::to_string(count) + " " +
+        of + "s: its file or its source is damaged");
+    }
+  }
+}
+
+void checkPolyData(vtkPolyData* data, InputKind kind, const std::string& name)
+{
+  vtkPoints* points = data->GetPoints();
+  if (points && points->GetData()->GetNumberOfComponents() != 3)
+  {
+    throw DataError(name + "'s points have " +
+      std::to_string(points->GetData()->GetNumberOfComponents()) + " coordinates");
+  }
+  const std::pair<vtkCellArray*, const char*> cells[] = { { data->GetVerts(), "vertices" },
+    { data->GetLines(), "lines" }, { data->GetPolys(), "polygons" },
+    { data->GetStrips(), "strips" } };
+  vtkIdType count = 0;
+  for (const auto& [array, what] : cells)
+  {
+    array->Visit(CheckCells(), points, name, what);
+    count += array->GetNumberOfCells();
+  }
+  checkTuples(data->GetPointData(), data->GetNumberOfPoints(), name, "point");
+  checkTuples(data->GetCellData(), count, name, "cell");
+  if (kind == InputKind::Trajectories)
+  {
+    checkPrecision(data, name);
+  }
+  for (const ArrayRule& rule : rules)
+  {
+    vtkFieldData* arrays = data->GetPointData();
+    if (!rule.ofPoints)
+    {
+      arrays = data->GetCellData();
+    }
+    vtkDataArray* array = rule.kind == kind ? arrays->GetArray(rule.name) : nullptr;
+    if (array)
+    {
+      checkNumbers(array, rule.holds,
+        name + "'s " + (rule.ofPoints ? "point" : "cell") + " array " + rule.name);
+    }
+  }
+}
+
+} // namespace rockfall::filters

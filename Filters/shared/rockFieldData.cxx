@@ -1,0 +1,400 @@
+#include "shared/rockFieldData.h"
+
+#include "shared/arrays.h"
+#include "base/abort.h"
+#include "base/errors.h"
+#include "base/text/numberText.h"
+#include "geometry/shell.h"
+#include "mesh/precision.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellArrayIterator.h"
+#include "vtkCellData.h"
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkIdTypeArray.h"
+#include "vtkIntArray.h"
+#include "vtkNew.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+#include "vtkStringArray.h"
+
+#include <cmath>
+#include <map>
+
+namespace rockfall::filters
+{
+
+namespace
+{
+
+/// The polygons of one block.
+struct Faces
+{
+  std::int64_t blockId = 0;
+  vtkIdType firstCell = 0; ///< The one whose cell data are the block's.
+  std::vector<vtkIdType> furtherCells;
+  std::vector<Vec3> points;
+  std::vector<std::vector<int>> loops;
+  std::map<vtkIdType, int> numbers; ///< From the polydata's points to `points`.
+};
+
+/// In world coordinates.
+std::vector<Faces> groupByBlock(vtkPolyData* input)
+{
+  vtkDataArray* blockIds = input->GetCellData()->GetArray("BlockId");
+  // A polydata's cells are its vertices, its lines, its polygons and its strips, in this order.
+  vtkIdType cell = input->GetNumberOfVerts() + input->GetNumberOfLines();
+  std::vector<Faces> blocks;
+  std::map<std::int64_t, std::size_t> index;
+  auto polygons = vtk::TakeSmartPointer(input->GetPolys()->NewIterator());
+  for (polygons->GoToFirstCell(); !polygons->IsDoneWithTraversal();
+       polygons->GoToNextCell(), ++cell)
+  {
+    stayWanted();
+    double id = 0.0;
+    if (blockIds)
+    {
+      id = blockIds->GetComponent(cell, 0);
+      if (!(std::abs(id) < 0x1p53) || id != std::floor(id))
+      {
+        throw DataError("The Rocks input's BlockId of cell " + std::to_string(cell) + " is " +
+          numberText(id) + ", it must be a whole number");
+      }
+    }
+    const auto place = index.emplace(std::int64_t(id), blocks.size());
+    if (place.second)
+    {
+      blocks.emplace_back();
+      blocks.back().blockId = std::int64_t(id);
+      blocks.back().firstCell = cell;
+    }
+    Faces& block = blocks[place.first->second];
+    if (!place.second)
+    {
+      block.furtherCells.push_back(cell);
+    }
+    vtkIdType size = 0;
+    const vtkIdType* ids = nullptr;
+    polygons->GetCurrentCell(size, ids);
+    std::vector<int>& loop = block.loops.emplace_back();
+    for (vtkIdType k = 0; k < size; ++k)
+    {
+      const auto number = block.numbers.emplace(ids[k], int(block.points.size()));
+      if (number.second)
+      {
+        Vec3 p;
+        input->GetPoint(ids[k], p.data());
+        block.points.push_back(p);
+      }
+      loop.push_back(number.first->second);
+    }
+  }
+  return blocks;
+}
+
+/// Sources of shapes and readers of meshes make single precision: a box is 0.44 m³ instead of 0.82
+/// then at a northing of 5,200,000 m.
+void checkBlockPrecision(vtkPolyData* input, const Faces& block)
+{
+  if (input->GetPoints()->GetDataType() == VTK_FLOAT || lookSingle(block.points))
+  {
+    checkRounding(block.points, singleRounding(largestCoordinate(block.points)),
+      "The Rocks input's block " + std::to_string(block.blockId), "in single precision",
+      "Take Rock Blocks instead, whose Shape may be a file saved near the origin and whose Center "
+      "is its place, or a source of double precision");
+  }
+}
+
+/// Values that are read of a block's cells, one for all of them.
+constexpr const char* kOfBlocks[] = { "Density", "YoungModulus", "PoissonRatio", "Material",
+  "Velocity", "AngularVelocity", "Shape", "SourceId", "SourceName", "State", "PositionDeviation",
+  "AttitudeLaw", "AttitudeDeviation", "VolumeLaw", "VolumeParameters" };
+
+/// Throws DataError where two cells of a block say different things of it.
+void checkOneBlock(vtkPolyData* input, const Faces& block)
+{
+  for (const char* name : kOfBlocks)
+  {
+    vtkAbstractArray* array = input->GetCellData()->GetAbstractArray(name);
+    auto* numbers = vtkDataArray::SafeDownCast(array);
+    auto* names = vtkStringArray::SafeDownCast(array);
+    const auto refuse = [&](const std::string& one, const std::string& other, vtkIdType cell)
+    {
+      throw DataError("The Rocks input's cell array " + std::string(name) + " has " + one +
+        " in cell " + std::to_string(block.firstCell) + " and " + other + " in cell " +
+        std::to_string(cell) + ", which both are of block " + std::to_string(block.blockId));
+    };
+    for (const vtkIdType cell : block.furtherCells)
+    {
+      for (int k = 0; numbers && k < numbers->GetNumberOfComponents(); ++k)
+      {
+        const double one = numbers->GetComponent(block.firstCell, k),
+                     other = numbers->GetComponent(cell, k);
+        if (one != other && !(std::isnan(one) && std::isnan(other)))
+        {
+          refuse(numberText(one), numberText(other), cell);
+        }
+      }
+      if (names && names->GetValue(block.firstCell) != names->GetValue(cell))
+      {
+        refuse(names->GetValue(block.firstCell), names->GetValue(cell), cell);
+      }
+    }
+  }
+}
+
+void readNumber(vtkPolyData* input, const char* name, vtkIdType cell, double& value)
+{
+  if (vtkDataArray* array = input->GetCellData()->GetArray(name))
+  {
+    value = array->GetComponent(cell, 0);
+  }
+}
+
+/// A name, of which a number will do; empty if there is no such array.
+std::string nameOf(vtkPolyData* input, const char* name, vtkIdType cell)
+{
+  vtkAbstractArray* array = input->GetCellData()->GetAbstractArray(name);
+  if (auto* names = vtkStringArray::SafeDownCast(array))
+  {
+    return names->GetValue(cell);
+  }
+  auto* numbers = vtkDataArray::SafeDownCast(array);
+  return numbers ? numberText(numbers->GetComponent(cell, 0)) : std::string();
+}
+
+/// A whole number of an enumeration, as a double that its own check can refuse.
+template <typename Law>
+void readLaw(vtkPolyData* input, const char* name, vtkIdType cell, Law& law)
+{
+  double value = double(law);
+  readNumber(input, name, cell, value);
+  if (!(std::abs(value) < 1e6) || value != std::floor(value))
+  {
+    throw DataError("The Rocks input's cell array " + std::string(name) + " has " +
+      numberText(value) + ", it must be a whole number");
+  }
+  law = Law(int(value));
+}
+
+/// The components of an array, if it is there, into these numbers.
+void readTuple(
+  vtkPolyData* input, const char* name, vtkIdType cell, std::initializer_list<double*> values)
+{
+  vtkDataArray* array = input->GetCellData()->GetArray(name);
+  if (!array)
+  {
+    return;
+  }
+  if (array->GetNumberOfComponents() != int(values.size()))
+  {
+    throw DataError("The Rocks input's cell array " + std::string(name) + " has " +
+      std::to_string(array->GetNumberOfComponents()) + " components, it must have " +
+      std::to_string(values.size()));
+  }
+  int component = 0;
+  for (double* value : values)
+  {
+    *value = array->GetComponent(cell, component++);
+  }
+}
+
+void readUncertainty(vtkPolyData* input, vtkIdType cell, ReleaseUncertainty& unsure)
+{
+  readTuple(
+    input, "PositionDeviation", cell, { &unsure.horizontalDeviation, &unsure.verticalDeviation });
+  readLaw(input, "AttitudeLaw", cell, unsure.attitude);
+  double angle = 0.0;
+  readNumber(input, "AttitudeDeviation", cell, angle);
+  unsure.attitudeDeviation = radians(angle);
+  VolumeDistribution& v = unsure.volume;
+  readLaw(input, "VolumeLaw", cell, v.law);
+  readTuple(input, "VolumeParameters", cell,
+    { &v.mean, &v.deviation, &v.minimum, &v.maximum, &v.exponent });
+}
+
+/// The arrays of what is drawn in each iteration.
+struct UncertaintyArrays
+{
+  vtkSmartPointer<vtkDoubleArray> position, attitude, volume;
+  vtkSmartPointer<vtkIntArray> attitudeLaw, volumeLaw;
+
+  explicit UncertaintyArrays(vtkFieldData* cells)
+    : position(addArray<vtkDoubleArray>(cells, "PositionDeviation", 2))
+    , attitude(addArray<vtkDoubleArray>(cells, "AttitudeDeviation"))
+    , volume(addArray<vtkDoubleArray>(cells, "VolumeParameters", 5))
+    , attitudeLaw(addArray<vtkIntArray>(cells, "AttitudeLaw"))
+    , volumeLaw(addArray<vtkIntArray>(cells, "VolumeLaw"))
+  {
+  }
+
+  void append(const ReleaseUncertainty& unsure)
+  {
+    const VolumeDistribution& v = unsure.volume;
+    const double deviations[] = { unsure.horizontalDeviation, unsure.verticalDeviation };
+    const double parameters[] = { v.mean, v.deviation, v.minimum, v.maximum, v.exponent };
+    this->position->InsertNextTuple(deviations);
+    this->attitudeLaw->InsertNextValue(int(unsure.attitude));
+    this->attitude->InsertNextValue(degrees(unsure.attitudeDeviation));
+    this->volumeLaw->InsertNextValue(int(v.law));
+    this->volume->InsertNextTuple(parameters);
+  }
+};
+
+void readVector(vtkPolyData* input, const char* name, vtkIdType cell, Vec3& value)
+{
+  vtkDataArray* array = input->GetCellData()->GetArray(name);
+  if (!array)
+  {
+    return;
+  }
+  if (array->GetNumberOfComponents() != 3)
+  {
+    throw DataError("The Rocks input's cell array " + std::string(name) + " has " +
+      std::to_string(array->GetNumberOfComponents()) + " components, it must have 3");
+  }
+  array->GetTuple(cell, value.data());
+}
+
+} // namespace
+
+void appendFaces(const Polyhedron& shape, const Mat3& rotation, const Vec3& shift,
+  vtkPoints* points, vtkCellArray* polygons)
+{
+  const vtkIdType first = points->GetNumberOfPoints();
+  for (const Vec3& vertex : shape.vertices())
+  {
+    const Vec3 world = rotation * vertex + shift;
+    points->InsertNextPoint(world.data());
+  }
+  for (const std::vector<int>& loop : shape.faces())
+  {
+    polygons->InsertNextCell(int(loop.size()));
+    for (int vertex : loop)
+    {
+      polygons->InsertCellPoint(first + vertex);
+    }
+  }
+}
+
+void writeRocks(std::span<const ReleasedRock> rocks, vtkPolyData* output)
+{
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  vtkNew<vtkCellArray> polygons;
+  vtkFieldData* cells = output->GetCellData();
+  const auto blockId = addArray<vtkIdTypeArray>(cells, "BlockId");
+  const auto density = addArray<vtkDoubleArray>(cells, "Density");
+  const auto volume = addArray<vtkDoubleArray>(cells, "Volume");
+  const auto young = addArray<vtkDoubleArray>(cells, "YoungModulus");
+  const auto poisson = addArray<vtkDoubleArray>(cells, "PoissonRatio");
+  const auto material = addArray<vtkStringArray>(cells, "Material");
+  const auto velocity = addArray<vtkDoubleArray>(cells, "Velocity", 3);
+  const auto rotation = addArray<vtkDoubleArray>(cells, "AngularVelocity", 3);
+  const auto shape = addArray<vtkIntArray>(cells, "Shape");
+  const auto sourceId = addArray<vtkIdTypeArray>(cells, "SourceId");
+  UncertaintyArrays uncertainty(cells);
+  const auto sourceName = addArray<vtkStringArray>(cells, "SourceName");
+  const auto shapeNames = addArray<vtkStringArray>(output->GetFieldData(), "ShapeName");
+  for (int number = int(Shape::Cube); number <= int(Shape::File); ++number)
+  {
+    shapeNames->InsertNextValue(shapeName(Shape(number)));
+  }
+  for (const ReleasedRock& released : rocks)
+  {
+    stayWanted();
+    const Rock& rock = released.rock;
+    appendFaces(rock.shape, rock.orientation.toRotationMatrix(), rock.position, points, polygons);
+    for (std::size_t face = 0; face < rock.shape.faces().size(); ++face)
+    {
+      blockId->InsertNextValue(rock.blockId);
+      density->InsertNextValue(rock.density);
+      volume->InsertNextValue(rock.shape.integrals().volume);
+      young->InsertNextValue(rock.youngModulus);
+      poisson->InsertNextValue(rock.poissonRatio);
+      material->InsertNextValue(rock.material);
+      velocity->InsertNextTuple(rock.velocity.data());
+      rotation->InsertNextTuple(rock.angularVelocity.data());
+      shape->InsertNextValue(int(released.shape));
+      sourceId->InsertNextValue(released.sourceId);
+      sourceName->InsertNextValue(released.sourceName);
+      uncertainty.append(rock.uncertainty);
+    }
+  }
+  output->SetPoints(points);
+  output->SetPolys(polygons);
+}
+
+std::vector<ReleasedRock> readRocks(vtkPolyData* input, const Vec3& origin)
+{
+  if (input->GetNumberOfPolys() == 0)
+  {
+    throw DataError("The Rocks input has no polygons, so there is no rock in it");
+  }
+  std::vector<ReleasedRock> rocks;
+  std::vector<Faces> blocks = groupByBlock(input);
+  for (Faces& block : blocks)
+  {
+    stayWanted();
+    checkBlockPrecision(input, block);
+    for (Vec3& p : block.points)
+    {
+      p -= origin;
+    }
+    const std::string name = "block " + std::to_string(block.blockId);
+    ReleasedRock released;
+    Polyhedron placed;
+    try
+    {
+      placed = Polyhedron::fromFaces(block.points, block.loops, name);
+    }
+    catch (const GeometryError& error)
+    {
+      // Sources appended without a thought to their numbers look like one block in pieces.
+      throw GeometryError(std::string(error.what()) +
+        (rocks.empty() && block.loops.size() < 4
+            ? ""
+            : ". (Where rock sources were appended, each needs its own First Block Id)"));
+    }
+    checkOneBlock(input, block);
+    Rock& rock = released.rock;
+    rock.blockId = block.blockId;
+    rock.position = placed.integrals().centroid;
+    rock.shape = placed.centred();
+    readNumber(input, "Density", block.firstCell, rock.density);
+    readNumber(input, "YoungModulus", block.firstCell, rock.youngModulus);
+    readNumber(input, "PoissonRatio", block.firstCell, rock.poissonRatio);
+    rock.material = nameOf(input, "Material", block.firstCell);
+    readVector(input, "Velocity", block.firstCell, rock.velocity);
+    readVector(input, "AngularVelocity", block.firstCell, rock.angularVelocity);
+    double shape = double(Shape::File);
+    readNumber(input, "Shape", block.firstCell, shape);
+    if (shape >= double(Shape::Cube) && shape <= double(Shape::File))
+    {
+      released.shape = Shape(int(shape));
+    }
+    double state = -1.0;
+    readNumber(input, "State", block.firstCell, state);
+    released.state = int(state);
+    readUncertainty(input, block.firstCell, rock.uncertainty);
+    double source = 0.0;
+    readNumber(input, "SourceId", block.firstCell, source);
+    if (!(std::abs(source) < 0x1p53))
+    {
+      throw DataError("The Rocks input's SourceId of " + name + " is " + numberText(source) +
+        ", it must be a whole number");
+    }
+    released.sourceId = std::int64_t(source);
+    released.sourceName = nameOf(input, "SourceName", block.firstCell);
+    if (released.sourceName.empty())
+    {
+      released.sourceName = "source " + std::to_string(released.sourceId);
+    }
+    rocks.push_back(std::move(released));
+  }
+  return rocks;
+}
+
+} // namespace rockfall::filters

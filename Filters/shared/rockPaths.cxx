@@ -1,0 +1,143 @@
+#include "shared/rockPaths.h"
+
+#include "shared/arrays.h"
+#include "base/abort.h"
+#include "base/errors.h"
+#include "rock/results.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellArrayIterator.h"
+#include "vtkCellData.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
+#include "vtkStringArray.h"
+
+#include <string>
+#include <vector>
+
+namespace rockfall::filters
+{
+
+namespace
+{
+
+vtkDataArray* needed(vtkFieldData* data, const char* kind, const char* name, int components = 1)
+{
+  vtkDataArray* array = data->GetArray(name);
+  if (!array || array->GetNumberOfComponents() != components)
+  {
+    throw DataError("The Input has no " + std::string(kind) + " array " + name + " of " +
+      std::to_string(components) + (components == 1 ? " component" : " components") +
+      "; the trajectories of Rockfall Simulation are wanted");
+  }
+  return array;
+}
+
+constexpr char retentionName[] = "TrajectoryOutput";
+constexpr char runningName[] = "RunGoesOn";
+
+} // namespace
+
+void writeRetention(Retention retention, vtkFieldData* data)
+{
+  constexpr const char* names[] = { "Nothing", "Stopping Points", "Events", "Thinned", "Full" };
+  addArray<vtkStringArray>(data, retentionName)->InsertNextValue(names[int(retention)]);
+}
+
+void markRunning(vtkFieldData* data)
+{
+  addArray<vtkStringArray>(data, runningName)->InsertNextValue("There are more to come");
+}
+
+bool isRunning(vtkFieldData* data)
+{
+  return data->GetAbstractArray(runningName) != nullptr;
+}
+
+namespace
+{
+
+/// The lines from `first` on, at most `count`.
+void readPaths(vtkPolyData* trajectories, const Vec3& origin, vtkIdType first, vtkIdType count,
+  const std::function<void(const RockPath& path, std::int64_t cell)>& use)
+{
+  auto* kept =
+    vtkStringArray::SafeDownCast(trajectories->GetFieldData()->GetAbstractArray(retentionName));
+  if (kept && kept->GetNumberOfValues() > 0 && kept->GetValue(0) == "Events")
+  {
+    throw DataError("The Input is of a Rockfall Simulation whose TrajectoryOutput is Events: "
+                    "between touches that are far apart its paths say little; Thinned or Full is "
+                    "wanted");
+  }
+  if (trajectories->GetNumberOfLines() == 0)
+  {
+    throw DataError("The Input has no lines; the trajectories of Rockfall Simulation are wanted");
+  }
+  vtkFieldData* points = trajectories->GetPointData();
+  vtkDataArray* time = needed(points, "point", "Time");
+  vtkDataArray* velocity = needed(points, "point", "Velocity", 3);
+  vtkDataArray* rotation = needed(points, "point", "RotationRate", 3);
+  vtkDataArray* energy = needed(points, "point", "KineticEnergy");
+  vtkDataArray* height = needed(points, "point", "HeightOverGround");
+  vtkFieldData* cells = trajectories->GetCellData();
+  vtkDataArray* iteration = needed(cells, "cell", "Iteration");
+  vtkDataArray* rock = needed(cells, "cell", "RockId");
+  vtkDataArray* block = needed(cells, "cell", "BlockId");
+  vtkDataArray* fate = needed(cells, "cell", "Fate");
+  vtkDataArray* mass = cells->GetArray("Mass");
+
+  std::vector<PathPoint> path;
+  // Polydata's cells begin with its vertices.
+  vtkIdType cell = trajectories->GetNumberOfVerts() + first;
+  auto lines = vtk::TakeSmartPointer(trajectories->GetLines()->NewIterator());
+  for (lines->GoToCell(first); count > 0 && !lines->IsDoneWithTraversal();
+       lines->GoToNextCell(), ++cell, --count)
+  {
+    stayWanted();
+    vtkIdType size = 0;
+    const vtkIdType* ids = nullptr;
+    lines->GetCurrentCell(size, ids);
+    path.resize(std::size_t(size));
+    for (vtkIdType k = 0; k < size; ++k)
+    {
+      PathPoint& p = path[std::size_t(k)];
+      p.time = time->GetTuple1(ids[k]);
+      trajectories->GetPoint(ids[k], p.position.data());
+      p.position -= origin;
+      velocity->GetTuple(ids[k], p.velocity.data());
+      rotation->GetTuple(ids[k], p.rotationRate.data());
+      p.kineticEnergy = energy->GetTuple1(ids[k]);
+      p.heightOverGround = height->GetTuple1(ids[k]);
+    }
+    RockPath rockPath;
+    rockPath.iteration = int(iteration->GetTuple1(cell));
+    rockPath.rock = int(rock->GetTuple1(cell));
+    rockPath.blockId = std::int64_t(block->GetTuple1(cell));
+    const int end = int(fate->GetTuple1(cell));
+    rockPath.rested = end == int(Fate::Rested) || end == int(Fate::Caught);
+    if (mass)
+    {
+      rockPath.mass = mass->GetTuple1(cell);
+    }
+    rockPath.points = path;
+    use(rockPath, cell);
+  }
+}
+
+} // namespace
+
+void forEachPath(vtkPolyData* trajectories, const Vec3& origin,
+  const std::function<void(const RockPath& path, std::int64_t cell)>& use)
+{
+  readPaths(trajectories, origin, 0, trajectories->GetNumberOfLines(), use);
+}
+
+void forPath(
+  vtkPolyData* trajectories, vtkIdType line, const std::function<void(const RockPath& path)>& use)
+{
+  readPaths(
+    trajectories, Vec3::Zero(), line, 1, [&use](const RockPath& path, std::int64_t) { use(path); });
+}
+
+} // namespace rockfall::filters

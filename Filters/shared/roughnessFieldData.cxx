@@ -1,0 +1,104 @@
+#include "shared/roughnessFieldData.h"
+
+#include "base/errors.h"
+#include "base/text/numberText.h"
+
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkNew.h"
+
+#include <array>
+#include <cmath>
+
+namespace rockfall::filters
+{
+
+namespace
+{
+
+constexpr char roughnessName[] = "TerrainRoughness";
+constexpr char classRoughnessName[] = "TerrainRestitutionRoughness";
+constexpr char deviationPerName[] = "TerrainDeviationPer";
+constexpr int numbersOfOne = 6;
+
+std::array<double, numbersOfOne> numbersOf(const Roughness& r)
+{
+  return { r.mean, r.deviation, r.length, r.obstacles[0], r.obstacles[1], r.obstacles[2] };
+}
+
+/// As many tuples as there are; nothing if there is no such array.
+std::vector<Roughness> readAll(vtkFieldData* fieldData, const char* name, int count)
+{
+  std::vector<Roughness> all;
+  vtkDataArray* array = fieldData->GetArray(name);
+  if (!array)
+  {
+    return all;
+  }
+  // Files may arrange one tuple as numbers.
+  if (array->GetNumberOfValues() != vtkIdType(count) * numbersOfOne)
+  {
+    throw DataError("The Terrain input's field array " + std::string(name) + " has " +
+      std::to_string(array->GetNumberOfValues()) + " numbers, it must have " +
+      std::to_string(count * numbersOfOne));
+  }
+  const int width = array->GetNumberOfComponents();
+  const auto number = [&](int k) { return array->GetComponent(k / width, k % width); };
+  for (int k = 0; k < count; ++k)
+  {
+    const int at = k * numbersOfOne;
+    all.push_back({ number(at), number(at + 1), number(at + 2),
+      { number(at + 3), number(at + 4), number(at + 5) } });
+    all.back().validate();
+  }
+  return all;
+}
+
+} // namespace
+
+void writeRoughness(const Terrain& terrain, vtkFieldData* fieldData)
+{
+  const auto add = [&](const char* name)
+  {
+    vtkNew<vtkDoubleArray> array;
+    array->SetName(name);
+    fieldData->AddArray(array);
+    return array;
+  };
+  const auto own = add(roughnessName);
+  own->SetNumberOfComponents(numbersOfOne);
+  own->InsertNextTuple(numbersOf(terrain.roughness()).data());
+  if (!terrain.restitutionClasses().roughness.empty())
+  {
+    const auto classes = add(classRoughnessName);
+    classes->SetNumberOfComponents(numbersOfOne);
+    for (const Roughness& r : terrain.restitutionClasses().roughness)
+    {
+      classes->InsertNextTuple(numbersOf(r).data());
+    }
+  }
+  add(deviationPerName)->InsertNextValue(double(terrain.deviationPer()));
+}
+
+Roughness readRoughness(vtkFieldData* fieldData, const Roughness& known)
+{
+  const std::vector<Roughness> own = readAll(fieldData, roughnessName, 1);
+  return own.empty() ? known : own.front();
+}
+
+std::vector<Roughness> readClassRoughness(vtkFieldData* fieldData, int classes)
+{
+  return readAll(fieldData, classRoughnessName, classes);
+}
+
+DeviationPer readDeviationPer(vtkFieldData* fieldData)
+{
+  vtkDataArray* array = fieldData->GetArray(deviationPerName);
+  if (!array || array->GetNumberOfValues() != 1)
+  {
+    return DeviationPer::Iteration; // of a file from before there was a choice
+  }
+  return deviationPerFrom(array->GetComponent(0, 0));
+}
+
+} // namespace rockfall::filters

@@ -1,0 +1,308 @@
+#include "simulation/keptRun.h"
+
+#include "shared/arrays.h"
+#include "base/errors.h"
+#include "shared/failure.h"
+#include "gis/base/reach.h"
+#include "gis/layers/rockContacts.h"
+#include "shared/inputContent.h"
+#include "simulation/motion.h"
+#include "run/releaseChecks.h"
+#include "shared/terrainFieldData.h"
+
+#include "vtkDoubleArray.h"
+#include "vtkStringArray.h"
+
+#include <algorithm>
+#include <optional>
+#include <tuple>
+
+namespace rockfall::filters
+{
+
+namespace
+{
+
+/// Everything that decides what a run gives; the number of threads does not.
+auto runKey(const SimulationParameters& p)
+{
+  return std::make_tuple(p.timeStep, p.endTime, p.outputInterval, p.gravity, p.normalPenalty,
+    p.shearRatio, p.rigid, p.iterations, p.firstIteration, p.seed, p.rockRockContact,
+    p.rockRestitution, p.rockFrictionAngle, p.rockCohesion, p.pushRocksApart);
+}
+
+/// The one rank that has cells of an input, or 0 if none has.
+int rankOf(const Ranks& ranks, vtkPolyData* input, const char* name)
+{
+  const std::vector<int> has = ranks.gather(input->GetNumberOfCells() > 0 ? 1 : 0);
+  if (std::count(has.begin(), has.end(), 1) > 1)
+  {
+    throw DataError("The " + std::string(name) + " input is spread over " +
+      std::to_string(std::count(has.begin(), has.end(), 1)) +
+      " ranks, it must be on one: use it as its source makes it");
+  }
+  return int(std::max_element(has.begin(), has.end()) - has.begin());
+}
+
+/// Blocks that a simulation before had let go cannot go on.
+void tellGone(std::int64_t gone, std::int64_t others, const Ranks& ranks)
+{
+  if (gone > 0 && others == 0)
+  {
+    throw DataError("All " + std::to_string(gone) +
+      " blocks of the Rocks input had left the slope (State 3) when a simulation left them");
+  }
+  if (gone > 0 && ranks.rank() == 0)
+  {
+    showNote(std::to_string(gone) + " of " + std::to_string(gone + others) +
+      " blocks of the Rocks input had left the slope (State 3) and are left out");
+  }
+}
+
+} // namespace
+
+std::uint64_t KeptRun::contentOfRocks(vtkPolyData* rocksInput, const Ranks& ranks) const
+{
+  if (ranks.count() > 1)
+  {
+    return filters::rocksContent(rocksInput, {});
+  }
+  return parameters.rockRockContact && !contactFile.empty()
+    ? filters::rocksContent(rocksInput, { "SourceName" })
+    : filters::rocksContent(rocksInput, { "SourceName", "Material" });
+}
+
+bool KeptRun::hasPropertiesOf(const KeptRun& other) const
+{
+  return parts.retention == other.parts.retention && parts.impacts == other.parts.impacts &&
+    contactFile == other.contactFile && contactSheet == other.contactSheet &&
+    runKey(parameters) == runKey(other.parameters);
+}
+
+bool KeptRun::takesOver(
+  const KeptRun& other, vtkPolyData* terrainInput, vtkPolyData* rocksInput, const Ranks& ranks)
+{
+  if (!this->hasPropertiesOf(other))
+  {
+    return false;
+  }
+  const bool sameTerrain = terrain == other.terrain, sameRocks = rocks == other.rocks;
+  if ((!sameTerrain && terrainContent != filters::terrainContent(terrainInput)) ||
+    (!sameRocks && rocksContent != this->contentOfRocks(rocksInput, ranks)))
+  {
+    return false;
+  }
+  if (!sameTerrain && terrainInput != rocksInput && terrainInput->GetNumberOfCells() > 0)
+  {
+    readTerrain(terrainInput); // what is shown must be the slope
+  }
+  if (!sameRocks && ranks.count() == 1)
+  {
+    std::vector<ReleasedRock> released = readRocks(rocksInput, frame.origin);
+    std::erase_if(released,
+      [](const ReleasedRock& rock) { return rock.state == int(MotionState::LeftDomain); });
+    for (std::size_t k = 0; k < released.size(); ++k)
+    {
+      frame.rocks[k].material = released[k].rock.material;
+      frame.sourceNames[k] = released[k].sourceName;
+    }
+    renameSources(frame, summary);
+  }
+  terrain = other.terrain;
+  rocks = other.rocks;
+  return true;
+}
+
+bool KeptRun::wholeFits() const
+{
+  return double(frame.rocks.size()) * (parameters.endTime / parameters.outputInterval + 2.0) < 2e6;
+}
+
+void KeptRun::dropInputs()
+{
+  ensemble.reset();
+  ground->Initialize();
+  frame = {};
+  slope = {};
+}
+
+void KeptRun::prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const Ranks& ranks,
+  const std::string& noMemory)
+{
+  terrainContent = filters::terrainContent(terrainInput);
+  rocksContent = this->contentOfRocks(rocksInput, ranks);
+  const bool brought = terrainInput == rocksInput; // the rocks brought it
+  ranks.together(
+    [&]
+    {
+      if (brought && rocksInput->GetNumberOfCells() > 0 && !hasTerrain(rocksInput->GetFieldData()))
+      {
+        throw DataError(
+          "The Terrain input is missing, and the Rocks did not bring one: connect the "
+          "slope to the simulation or to the source of the rocks");
+      }
+    },
+    noMemory);
+  // Wherever they are; nowhere is the first rank's business.
+  const int terrainRank = rankOf(ranks, terrainInput, "Terrain");
+  const int rocksRank = rankOf(ranks, rocksInput, "Rocks");
+  std::optional<Terrain> read;
+  ranks.together(
+    [&]
+    {
+      if (ranks.rank() == terrainRank)
+      {
+        read = readTerrain(terrainInput, !brought);
+      }
+    },
+    noMemory);
+  vtkNew<vtkPolyData> bare, released;
+  if (ranks.rank() == terrainRank)
+  {
+    bare->SetFieldData(terrainInput->GetFieldData()); // without the triangles
+  }
+  if (ranks.rank() == rocksRank)
+  {
+    released->ShallowCopy(rocksInput);
+    dropTerrain(released->GetFieldData()); // it has a way of its own
+  }
+  ranks.broadcast(bare, terrainRank);
+  ranks.broadcast(released, rocksRank);
+  copyCoordinateSystem(bare->GetFieldData(), coordinates);
+  carryTerrain(bare->GetFieldData(), ground);
+  ranks.together(
+    [&]
+    {
+      slope = read ? std::move(*read) : readTerrain(bare, false);
+      checkSameCrs(released->GetFieldData(), "The Rocks are", bare->GetFieldData());
+      frame.origin = slope.geometry().origin();
+      frame.gravity = parameters.gravity;
+      std::int64_t gone = 0;
+      for (ReleasedRock& rock : readRocks(released, frame.origin))
+      {
+        if (rock.state == int(MotionState::LeftDomain))
+        {
+          ++gone;
+          continue;
+        }
+        rock.rock.validate(); // with its own names, before anything is computed of it
+        // Mid-impact a rock may be deep in the springs.
+        setOntoSlope(slope, rock.rock, rock.state >= 0 ? 0.5 * rock.rock.shape.radius() : 0.0);
+        frame.rocks.push_back(std::move(rock.rock));
+        frame.shapes.push_back(rock.shape);
+        frame.sourceIds.push_back(rock.sourceId);
+        frame.sourceNames.push_back(std::move(rock.sourceName));
+      }
+      tellGone(gone, std::int64_t(frame.rocks.size()), ranks);
+    },
+    noMemory);
+  if (parameters.rockRockContact && !contactFile.empty())
+  {
+    this->readContacts(ranks, noMemory);
+  }
+  ranks.together(
+    [&] { ensemble = std::make_unique<Ensemble>(slope, frame.rocks, parameters); }, noMemory);
+}
+
+void KeptRun::takeResults(RunSink& sink)
+{
+  sink.finish(trajectories, impacts, summary, structures);
+  whole = std::move(sink.whole());
+  wholeIteration = whole.size() == frame.rocks.size() ? parts.wholeIteration : -1;
+  stateHash = sink.stateHash();
+  addArray<vtkStringArray>(summary->GetFieldData(), "StateHash")->InsertNextValue(stateHash);
+  this->describe();
+}
+
+void KeptRun::describe()
+{
+  for (vtkDataObject* output :
+    { static_cast<vtkDataObject*>(trajectories), static_cast<vtkDataObject*>(impacts),
+      static_cast<vtkDataObject*>(summary), static_cast<vtkDataObject*>(structures) })
+  {
+    copyCoordinateSystem(coordinates, output->GetFieldData());
+  }
+  carryTerrain(ground, trajectories->GetFieldData()); // maps and collectors need no other input
+}
+
+void KeptRun::readContacts(const Ranks& ranks, const std::string& noMemory)
+{
+  // The file need be there for the first rank only. It is taken apart, sent, and put together.
+  vtkNew<vtkPolyData> table;
+  const auto first = addArray<vtkStringArray>(table->GetFieldData(), "First");
+  const auto second = addArray<vtkStringArray>(table->GetFieldData(), "Second");
+  const auto values = addArray<vtkDoubleArray>(table->GetFieldData(), "Values", 3);
+  ranks.together(
+    [&]
+    {
+      if (ranks.rank() != 0)
+      {
+        return;
+      }
+      std::vector<std::string> materials;
+      for (const Rock& rock : frame.rocks)
+      {
+        materials.push_back(rock.material);
+      }
+      std::vector<std::string> notes;
+      const AllowReferences references(allowReferences);
+      const std::vector<RockContactPair> pairs =
+        readRockContacts(contactFile, parameters.rockCohesion, materials, contactSheet, &notes);
+      std::for_each(notes.begin(), notes.end(), showNote);
+      for (const RockContactPair& pair : pairs)
+      {
+        first->InsertNextValue(pair.first);
+        second->InsertNextValue(pair.second);
+        values->InsertNextTuple3(
+          pair.contact.restitution, pair.contact.frictionAngle, pair.contact.cohesion);
+      }
+    },
+    noMemory);
+  ranks.broadcast(table, 0);
+  vtkFieldData* sent = table->GetFieldData();
+  auto* one = vtkStringArray::SafeDownCast(sent->GetAbstractArray("First"));
+  auto* other = vtkStringArray::SafeDownCast(sent->GetAbstractArray("Second"));
+  vtkDataArray* numbers = sent->GetArray("Values");
+  for (vtkIdType k = 0; k < numbers->GetNumberOfTuples(); ++k)
+  {
+    const double* v = numbers->GetTuple(k);
+    parameters.rockContactPairs.push_back(
+      { one->GetValue(k), other->GetValue(k), { v[0], v[1], v[2] } });
+  }
+}
+
+bool KeptRun::show(int shown, double time, const Progress& progress, vtkPolyData* output)
+{
+  const int iteration = parameters.firstIteration + shown;
+  const std::int64_t units = ensemble->unitsPerIteration();
+  const EnsembleShare share{ shown * units, (shown + 1) * units, 1 };
+  MomentSink moment(time);
+  // A realisation is a value: an iteration that is not kept is simulated again, whole if its
+  // samples fit, else only as far as it is looked at. Of a release nothing need be kept.
+  if (wholeIteration != iteration && time > 0.0 && this->wholeFits())
+  {
+    TrajectoryStore store;
+    if (!ensemble->run(share, store, progress))
+    {
+      return false;
+    }
+    whole = store.take();
+    wholeIteration = iteration;
+  }
+  if (wholeIteration == iteration)
+  {
+    for (const Trajectory& trajectory : whole)
+    {
+      moment.show(trajectory);
+    }
+  }
+  else if (!ensemble->run(share, moment, progress, time))
+  {
+    return false;
+  }
+  writeRocks(frame, moment.rocks(), output);
+  copyCoordinateSystem(coordinates, output->GetFieldData());
+  return true;
+}
+
+} // namespace rockfall::filters

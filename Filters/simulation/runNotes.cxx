@@ -1,0 +1,67 @@
+#include "simulation/runNotes.h"
+
+#include "base/text/numberText.h"
+#include "shared/failure.h"
+#include "shared/jointFaces.h"
+#include "simulation/progressText.h"
+
+#include <algorithm>
+
+namespace rockfall::filters
+{
+
+std::string statusOf(const LiveRun& live)
+{
+  const Ensemble& ensemble = *live.run().ensemble;
+  const std::string units = ensemble.parameters().rockRockContact ? "iterations" : "trajectories";
+  if (!live.over())
+  {
+    return (live.stopped() ? "stopping: " : "running: ") +
+      progressText(live.share(), ensemble.size(), units, live.elapsed());
+  }
+  const std::int64_t made = live.trajectories() / ensemble.trajectoriesPerUnit();
+  const std::string total = countText(ensemble.size()) + " " + units;
+  return made < ensemble.size() ? "stopped by its user after " + countText(made) + " of " + total +
+      "; Run Again makes all of them"
+                                : "finished: " + total;
+}
+
+void tellApart(std::span<const Rock> rocks)
+{
+  const std::int64_t joined = countFaceOnFace(rocks);
+  if (joined > 0)
+  {
+    showNote("RockRockContact is off: each of the " + std::to_string(rocks.size()) +
+      " blocks falls as if it were alone, through the others, though " + std::to_string(joined) +
+      " of them lie face on face, as the blocks of a rock mass. " +
+      "Switch it on for them to hit and push each other");
+  }
+}
+
+void tellAlike(const Terrain& terrain, std::span<const Rock> rocks, int iterations)
+{
+  const bool drawn = terrain.draws() ||
+    std::any_of(
+      rocks.begin(), rocks.end(), [](const Rock& rock) { return rock.uncertainty.any(); });
+  if (iterations > 1 && !drawn)
+  {
+    showNote("All " + std::to_string(iterations) +
+      " iterations are alike: nothing of the slope or of the blocks is drawn. Give DEM to CFE Mesh "
+      "a roughness or a deviation, or Rock Blocks an attitude law, for them to differ");
+  }
+}
+
+void tellPushed(const Ensemble& ensemble, const PushedApart& pushed, const Ranks& ranks)
+{
+  if (ranks.rank() != 0 || pushed.rocks == 0)
+  {
+    return;
+  }
+  const int iterations = ensemble.parameters().iterations;
+  showNote("PushRocksApart moved " + std::string(ensemble.pushesAnew() ? "up to " : "") +
+    std::to_string(pushed.rocks) + " of " + std::to_string(ensemble.trajectoriesPerUnit()) +
+    " blocks, by up to " + numberText(pushed.farthest, 4) + " m, in " +
+    std::to_string(pushed.iterations) + " of " + std::to_string(iterations) + " iterations");
+}
+
+} // namespace rockfall::filters

@@ -1,0 +1,30 @@
+#pragma once
+
+/// @file
+/// Text for the user of a simulation: the state of its run, and notes on its inputs.
+
+#include "simulation/liveRun.h"
+#include "shared/ranks.h"
+#include "rock/Rock.h"
+#include "run/ensemble.h"
+#include "terrain/Terrain.h"
+
+#include <span>
+#include <string>
+
+namespace rockfall::filters
+{
+
+/// "finished: 1,000 trajectories in 12 s", "stopped: 12,300 of …", or how far it is.
+std::string statusOf(const LiveRun& live);
+
+/// Note on blocks that fit together, as those of a cut mass, but fall each as if alone.
+void tellApart(std::span<const Rock> rocks);
+
+/// Note on realisations that nothing makes differ.
+void tellAlike(const Terrain& terrain, std::span<const Rock> rocks, int iterations);
+
+/// Note of the first rank on blocks that were pushed apart.
+void tellPushed(const Ensemble& ensemble, const PushedApart& pushed, const Ranks& ranks);
+
+} // namespace rockfall::filters

@@ -1,0 +1,98 @@
+// Properties of a simulation: the parameters that they make, their checks, and how they print.
+
+#include "vtkRockfallSimulation.h"
+
+#include "base/errors.h"
+#include "base/text/numberText.h"
+#include "simulation/keptRun.h"
+
+#include <limits>
+#include <string>
+
+//------------------------------------------------------------------------------
+void vtkRockfallSimulation::TakeProperties(rockfall::filters::KeptRun& run)
+{
+  rockfall::SimulationParameters& p = run.parameters;
+  p.timeStep = this->TimeStep;
+  p.endTime = this->EndTime;
+  p.outputInterval = this->OutputInterval;
+  p.gravity = this->Gravity;
+  p.normalPenalty = this->NormalPenalty;
+  p.shearRatio = this->ShearPenaltyRatio;
+  p.rigid = this->Rigid;
+  p.rockRockContact = this->RockRockContact;
+  p.rockRestitution = this->RockRestitution;
+  p.rockFrictionAngle = rockfall::radians(this->RockFrictionAngle);
+  p.rockCohesion = this->RockCohesion;
+  run.contactFile = this->RockContactFile;
+  run.contactSheet = this->RockContactSheet;
+  run.allowReferences = this->AllowReferences != 0;
+  p.pushRocksApart = this->PushRocksApart;
+  p.iterations = this->Iterations;
+  p.firstIteration = this->FirstIteration;
+  p.seed = std::uint64_t(this->Seed);
+  p.threads = this->NumberOfThreads;
+  run.parts.retention = rockfall::Retention(this->TrajectoryOutput);
+  run.parts.impacts = this->KeepImpacts;
+}
+
+//------------------------------------------------------------------------------
+void vtkRockfallSimulation::CheckProperties(const rockfall::filters::KeptRun& run) const
+{
+  const auto inRange = [](int value, int least, int most, const char* name)
+  {
+    if (value < least || value > most)
+    {
+      const bool open = most == std::numeric_limits<int>::max();
+      throw rockfall::ParameterError(std::string(name) + " is " + rockfall::numberText(value) +
+        ", it must be " + (open ? "at least " : "") + rockfall::numberText(least) +
+        (open ? "" : " to " + rockfall::numberText(most)));
+    }
+  };
+  inRange(this->Seed, 0, std::numeric_limits<int>::max(), "Seed");
+  run.parameters.validate();
+  inRange(this->ShownIteration, 0, this->Iterations - 1, "ShownIteration");
+  inRange(this->TrajectoryOutput, NOTHING, FULL, "TrajectoryOutput");
+}
+
+//------------------------------------------------------------------------------
+std::string vtkRockfallSimulation::NoMemory() const
+{
+  return "The results do not fit in memory: Iterations is " + std::to_string(this->Iterations) +
+    "; fewer of them, a longer OutputInterval or a TrajectoryOutput that keeps less take less";
+}
+
+//------------------------------------------------------------------------------
+void vtkRockfallSimulation::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "TimeStep: " << this->TimeStep << "\n";
+  os << indent << "EndTime: " << this->EndTime << "\n";
+  os << indent << "OutputInterval: " << this->OutputInterval << "\n";
+  os << indent << "Gravity: " << this->Gravity << "\n";
+  os << indent << "NormalPenalty: " << this->NormalPenalty << "\n";
+  os << indent << "ShearPenaltyRatio: " << this->ShearPenaltyRatio << "\n";
+  os << indent << "Iterations: " << this->Iterations << "\n";
+  os << indent << "FirstIteration: " << this->FirstIteration << "\n";
+  os << indent << "Seed: " << this->Seed << "\n";
+  os << indent << "RockRockContact: " << this->RockRockContact << "\n";
+  os << indent << "RockRestitution: " << this->RockRestitution << "\n";
+  os << indent << "RockFrictionAngle: " << this->RockFrictionAngle << "\n";
+  os << indent << "RockCohesion: " << this->RockCohesion << "\n";
+  os << indent
+     << "RockContactFile: " << (this->RockContactFile.empty() ? "(none)" : this->RockContactFile)
+     << "\n";
+  os << indent << "RockContactSheet: " << this->RockContactSheet << "\n";
+  os << indent << "AllowReferences: " << this->AllowReferences << "\n";
+  os << indent << "PushRocksApart: " << this->PushRocksApart << "\n";
+  os << indent << "Rigid: " << this->Rigid << "\n";
+  os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
+  os << indent << "ShownIteration: " << this->ShownIteration << "\n";
+  os << indent << "TrajectoryOutput: " << this->TrajectoryOutput << "\n";
+  os << indent << "KeepImpacts: " << this->KeepImpacts << "\n";
+  os << indent << "PrintProgress: " << this->PrintProgress << "\n";
+  os << indent << "StateHash: " << this->StateHash << "\n";
+  os << indent << "RunStatus: " << this->RunStatus << "\n";
+  os << indent << "NumberOfRuns: " << this->NumberOfRuns << "\n";
+  os << indent << "Kept: " << (this->Kept ? "a finished run" : "(none)") << "\n";
+}

@@ -1,0 +1,213 @@
+// Where rock blocks come from: the rows of sources and the places of their rocks.
+
+#include "sources/rockBlockSources.h"
+
+#include "base/text/numberText.h"
+#include "sources/drawnSource.h"
+#include "shared/failure.h"
+#include "gis/base/reach.h"
+#include "shared/terrainFieldData.h"
+
+#include "vtkPolyData.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+using rockfall::filters::refuseProperty;
+using rockfall::filters::vec3;
+
+//------------------------------------------------------------------------------
+void vtkRockBlockSource::FindSources(vtkPolyData* terrainInput, Sources& sources)
+{
+  if (terrainInput)
+  {
+    sources.terrain = rockfall::filters::readTerrain(terrainInput);
+  }
+  const rockfall::Terrain* terrain = sources.ground();
+  sources.crs = rockfall::wktOfCrs(this->TargetCRS);
+  if (terrain && !terrain->geometry().crs.empty())
+  {
+    if (!rockfall::sameCrs(terrain->geometry().crs, this->TargetCRS))
+    {
+      throw rockfall::ParameterError("TargetCRS is \"" + this->TargetCRS +
+        "\", but the terrain is in " + rockfall::labelOfCrs(terrain->geometry().crs) +
+        "; leave TargetCRS empty where there is a terrain");
+    }
+    if (const std::string heights =
+          rockfall::differentHeights(terrain->geometry().crs, this->TargetCRS);
+        !heights.empty())
+    {
+      throw rockfall::ParameterError("TargetCRS is \"" + this->TargetCRS +
+        "\", but heights of the terrain and of TargetCRS refer to " + heights +
+        "; leave TargetCRS empty where there is a terrain");
+    }
+    sources.crs = terrain->geometry().crs;
+  }
+
+  rockfall::ReleaseDefaults& defaults = sources.defaults;
+  defaults.amount = this->Amount;
+  defaults.intensity = this->Intensity;
+  defaults.height = this->ReleaseHeight;
+  defaults.onGround = this->PlaceOnGround;
+  defaults.seed = std::uint64_t(this->Seed);
+  defaults.mostRocks = this->MaximumRocks;
+  defaults.clusterRadius = this->ClusterRadius;
+  defaults.validate();
+  if (!(this->TotalVolume >= 0.0 && std::isfinite(this->TotalVolume)))
+  {
+    throw rockfall::ParameterError("TotalVolume is " + rockfall::numberText(this->TotalVolume) +
+      " m³, it must be finite and at least 0");
+  }
+  if (this->TotalVolume > 0.0 && this->Intensity > 0.0)
+  {
+    throw rockfall::ParameterError("TotalVolume is " + rockfall::numberText(this->TotalVolume) +
+      " m³ and Intensity is " + rockfall::numberText(this->Intensity) +
+      ": the number of rocks is by the one or the other");
+  }
+  if (this->PlaceOnGround && !terrain)
+  {
+    throw rockfall::ParameterError("PlaceOnGround is on, which needs the Terrain input");
+  }
+  if (!(this->SlopeThreshold >= 0.0 && this->SlopeThreshold <= 89.0))
+  {
+    throw rockfall::ParameterError("SlopeThreshold is " +
+      rockfall::numberText(this->SlopeThreshold) + " degrees, it must be 0 to 89");
+  }
+  if (this->SlopeThreshold > 0.0)
+  {
+    if (!terrain || !this->FileName.empty())
+    {
+      throw rockfall::ParameterError("SlopeThreshold is " +
+        rockfall::numberText(this->SlopeThreshold) +
+        (terrain ? " degrees and FileName is \"" + this->FileName +
+              "\": sources are the one or the other"
+                 : " degrees, which needs the Terrain input"));
+    }
+    rockfall::SourceRow& steep = sources.rows.emplace_back();
+    steep.sourceName = this->SourceName.empty() ? "steep cells" : this->SourceName;
+    if (this->KeepApart)
+    {
+      throw rockfall::ParameterError("KeepApart is on and SlopeThreshold is " +
+        rockfall::numberText(this->SlopeThreshold) +
+        " degrees: rocks of steep terrain cannot be kept apart, take a polygon around it");
+    }
+    return;
+  }
+  if (this->FileName.empty())
+  {
+    this->FindDrawn(sources);
+  }
+  else
+  {
+    rockfall::SourceOptions options;
+    options.targetCrs = sources.crs;
+    options.layer = this->LayerName;
+    options.haveTerrain = terrain != nullptr;
+    options.mostRocks = this->MaximumRocks;
+    rockfall::SourceLayer layer = rockfall::readSourceLayer(this->FileName, options);
+    if (terrain)
+    {
+      rockfall::requireOverlap(layer.rows, *terrain, this->FileName, layer.ownCrs);
+    }
+    sources.notes = std::move(layer.notes);
+    sources.rows = std::move(layer.rows);
+    sources.crs = std::move(layer.crs);
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkRockBlockSource::FindDrawn(Sources& sources)
+{
+  const rockfall::Terrain* terrain = sources.ground();
+  const auto onSlope = [&]
+  {
+    const rockfall::Vec3 local = vec3(this->Center) - terrain->geometry().origin();
+    return terrain->cfeAt(local.x(), local.y()) != 0;
+  };
+  if (this->Draw == NOTHING && terrain)
+  {
+    if (const auto place = rockfall::filters::placeByDefault(*terrain, this->Center, "the block"))
+    {
+      rockfall::SourceRow& row = sources.rows.emplace_back();
+      row.row = 1;
+      row.position = *place;
+      return;
+    }
+  }
+  if (this->Draw == NOTHING)
+  {
+    if (terrain && vec3(this->Center).allFinite() && !onSlope())
+    {
+      throw rockfall::PlacementError("Center: the block at " +
+        rockfall::numberText(this->Center[0]) + ", " + rockfall::numberText(this->Center[1]) +
+        rockfall::whyNoGround(*terrain, this->Center[0], this->Center[1]));
+    }
+    sources.rows.emplace_back().position = vec3(this->Center);
+    return;
+  }
+  if (this->Draw < NOTHING || this->Draw > AREA)
+  {
+    refuseProperty("Draw", this->Draw, "0 (nothing), 1 (points), 2 (line) or 3 (area)");
+  }
+  std::vector<std::array<double, 3>> points = this->Points;
+  if (points.empty() && terrain)
+  {
+    const std::array<double, 6> placed = rockfall::filters::steepLine(*terrain);
+    std::copy(placed.begin(), placed.end(), this->PlacedLine);
+    points = { { placed[0], placed[1], placed[2] }, { placed[3], placed[4], placed[5] } };
+  }
+  sources.rows =
+    rockfall::filters::drawnRows(rockfall::SourceGeometry(this->Draw - POINTS), points, terrain);
+}
+
+//------------------------------------------------------------------------------
+void vtkRockBlockSource::FindPlaces(Sources& sources)
+{
+  const bool steep = this->SlopeThreshold > 0.0;
+  if (this->TotalVolume > 0.0)
+  {
+    for (rockfall::SourceRow& row : sources.rows)
+    {
+      if (!row.amount && !row.intensity)
+      {
+        row.amount = sources.maker->amountOf(
+          row, steep ? 0 : std::uint64_t(row.row) << 32, this->TotalVolume, this->MaximumRocks);
+      }
+    }
+  }
+  if (steep)
+  {
+    sources.defaults.amount = sources.rows.front().amount.value_or(this->Amount);
+    sources.places = rockfall::steepPlaces(
+      *sources.terrain, rockfall::radians(this->SlopeThreshold), sources.defaults);
+    return;
+  }
+  sources.places =
+    rockfall::releasePlaces(sources.rows, sources.ground(), sources.defaults, this->FileName);
+}
+
+//------------------------------------------------------------------------------
+void vtkRockBlockSource::TellUnused(const Sources& sources) const
+{
+  if (this->ReleaseHeight > 0.0 &&
+    std::none_of(sources.places.begin(), sources.places.end(),
+      [](const rockfall::ReleasePlace& place) { return place.overGround; }))
+  {
+    rockfall::filters::showNote("ReleaseHeight is " + rockfall::numberText(this->ReleaseHeight) +
+      " m, but has no effect: PlaceOnGround is off, and every block is where its z says");
+  }
+  const bool steep = this->SlopeThreshold > 0.0;
+  if (this->ClusterRadius > 0.0 &&
+    (steep ||
+      std::none_of(sources.rows.begin(), sources.rows.end(),
+        [](const rockfall::SourceRow& row)
+        { return row.geometry == rockfall::SourceGeometry::Point; })))
+  {
+    rockfall::filters::showNote("ClusterRadius is " + rockfall::numberText(this->ClusterRadius) +
+      " m, but has no effect: " +
+      (steep ? "SlopeThreshold is " + rockfall::numberText(this->SlopeThreshold) +
+            " degrees, which spreads the blocks over the steep terrain"
+             : "no source is a point"));
+  }
+}

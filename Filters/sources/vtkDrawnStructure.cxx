@@ -1,0 +1,246 @@
+#include "vtkDrawnStructure.h"
+
+#include "shared/attempt.h"
+#include "base/errors.h"
+#include "base/text/numberText.h"
+#include "sources/drawnSource.h"
+#include "shared/failure.h"
+#include "shared/inputs.h"
+#include "shared/pieces.h"
+#include "run/releasePlaces.h"
+#include "shared/structureFieldData.h"
+#include "shared/terrainFieldData.h"
+
+#include "vtkDataArray.h"
+#include "vtkFieldData.h"
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+vtkStandardNewMacro(vtkDrawnStructure);
+
+namespace
+{
+
+using rockfall::SourceGeometry;
+using rockfall::SourceRow;
+using rockfall::Structures;
+using rockfall::Terrain;
+
+constexpr vtkIdType kMostShown = 4000000; ///< Triangles of stems.
+constexpr double kHectare = 1e4;          ///< m²
+
+void requirePositive(double value, const char* name, const char* unit, bool zeroToo = false)
+{
+  if (!(zeroToo ? value >= 0.0 : value > 0.0) || !std::isfinite(value))
+  {
+    throw rockfall::ParameterError(std::string(name) + " is " + rockfall::numberText(value) + " " +
+      unit + ", it must be finite and " + (zeroToo ? "not negative" : "positive"));
+  }
+}
+
+/// In plan, in the terrain's frame.
+std::vector<Eigen::Vector2d> placesOf(const SourceRow& row, const Terrain& terrain)
+{
+  std::vector<Eigen::Vector2d> places;
+  for (const rockfall::Vec3& point : row.parts.front())
+  {
+    places.push_back((point - terrain.geometry().origin()).head<2>());
+  }
+  return places;
+}
+
+/// Numbers in a layer go on.
+template <typename Things>
+std::int64_t nextFeature(const Things& things)
+{
+  std::int64_t last = 0;
+  for (const auto& thing : things)
+  {
+    last = std::max(last, thing.feature);
+  }
+  return last + 1;
+}
+
+} // namespace
+
+//------------------------------------------------------------------------------
+vtkDrawnStructure::vtkDrawnStructure()
+{
+  this->SetNumberOfOutputPorts(2);
+}
+
+//------------------------------------------------------------------------------
+vtkDrawnStructure::~vtkDrawnStructure() = default;
+
+//------------------------------------------------------------------------------
+int vtkDrawnStructure::FillInputPortInformation(int, vtkInformation* info)
+{
+  rockfall::filters::acceptPolyData(info);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkDrawnStructure::AddPoint(double x, double y, double z)
+{
+  this->Points.push_back({ x, y, z });
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+void vtkDrawnStructure::ClearPoints()
+{
+  if (!this->Points.empty())
+  {
+    this->Points.clear();
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkDrawnStructure::CheckProperties() const
+{
+  if (this->Kind < NET || this->Kind > FOREST)
+  {
+    throw rockfall::ParameterError("Kind is " + std::to_string(this->Kind) +
+      ", it must be 0 (net), 1 (embankment) or 2 (forest)");
+  }
+  requirePositive(this->Height, "Height", "m");
+  requirePositive(this->Capacity, "Capacity", "kJ", true);
+  requirePositive(this->CrestWidth, "CrestWidth", "m");
+  requirePositive(this->SideSlope, "SideSlope", "m across per m down", true);
+  requirePositive(this->StemsPerHectare, "StemsPerHectare", "stems");
+  requirePositive(this->Diameter, "Diameter", "cm");
+}
+
+//------------------------------------------------------------------------------
+int vtkDrawnStructure::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  namespace filters = rockfall::filters;
+  if (filters::isFurtherPiece(outputVector))
+  {
+    return 1;
+  }
+  filters::Input taken(filters::InputKind::Terrain);
+  vtkPolyData* input = taken.take(inputVector[0]);
+  if (!input)
+  {
+    return filters::fail(this, "The Terrain input is missing");
+  }
+  if (filters::inheritFailure(input, this))
+  {
+    return 1;
+  }
+  return filters::attempt(this, "The slope with the drawn structure does not fit in memory",
+    [&]
+    {
+      taken.require();
+      this->CheckProperties();
+      filters::readTerrain(input); // says if it is no slope, or no longer the one it was
+      Structures structures = filters::readStructures(input->GetFieldData());
+      vtkNew<vtkPolyData> bare;
+      for (int k = 0; k < input->GetFieldData()->GetNumberOfArrays(); ++k)
+      {
+        bare->GetFieldData()->AddArray(input->GetFieldData()->GetAbstractArray(k));
+      }
+      filters::dropStructures(bare->GetFieldData());
+      Terrain slope = filters::readTerrain(bare, false);
+
+      std::vector<std::array<double, 3>> points = this->Points;
+      if (points.empty())
+      {
+        const std::array<double, 6> placed = filters::middleLine(slope);
+        std::copy(placed.begin(), placed.end(), this->PlacedLine);
+        points = { { placed[0], placed[1], placed[2] }, { placed[3], placed[4], placed[5] } };
+      }
+      const std::vector<SourceRow> rows = filters::drawnRows(
+        this->Kind == FOREST ? SourceGeometry::Polygon : SourceGeometry::Line, points, &slope);
+      if (this->Kind == NET)
+      {
+        rockfall::Barrier net;
+        net.feature = nextFeature(structures.barriers);
+        net.name = "drawn net";
+        net.points = placesOf(rows.front(), slope);
+        net.height = this->Height;
+        net.capacity = this->Capacity * 1000.0;
+        structures.barriers.push_back(std::move(net));
+      }
+      else if (this->Kind == EMBANKMENT)
+      {
+        rockfall::Embankment dam;
+        dam.feature = nextFeature(structures.embankments);
+        dam.name = "drawn embankment";
+        dam.points = placesOf(rows.front(), slope);
+        dam.height = this->Height;
+        dam.crestWidth = this->CrestWidth;
+        dam.mountainSlope = dam.valleySlope = this->SideSlope;
+        structures.embankments.push_back(std::move(dam));
+      }
+      else
+      {
+        rockfall::ReleaseDefaults density;
+        density.intensity = this->StemsPerHectare / kHectare;
+        rockfall::Tree tree;
+        tree.feature = nextFeature(structures.trees);
+        tree.diameter = 0.01 * this->Diameter;
+        tree.height = this->Height;
+        if (this->TreesBreak)
+        {
+          tree.capacity = rockfall::stemCapacity(tree.diameter);
+        }
+        for (const rockfall::ReleasePlace& place :
+          rockfall::releasePlaces(rows, &slope, density, "Points"))
+        {
+          tree.position = (place.position - slope.geometry().origin()).head<2>();
+          structures.trees.push_back(tree);
+          ++tree.feature;
+        }
+      }
+      slope.setStructures(std::move(structures));
+      const auto terrain = std::make_shared<const Terrain>(std::move(slope));
+
+      vtkPolyData* output = vtkPolyData::GetData(outputVector, 0);
+      output->ShallowCopy(input);
+      vtkNew<vtkFieldData> fields;
+      vtkFieldData* old = bare->GetFieldData();
+      for (int k = 0; k < old->GetNumberOfArrays(); ++k)
+      {
+        fields->AddArray(old->GetAbstractArray(k));
+      }
+      filters::writeStructures(*terrain, fields);
+      output->SetFieldData(fields);
+      vtkNew<vtkPolyData> shown;
+      filters::makeStructureMesh(*terrain, kMostShown, shown);
+      filters::copyCoordinateSystem(fields, shown->GetFieldData());
+      vtkPolyData::GetData(outputVector, 1)->ShallowCopy(shown);
+      return 1;
+    });
+}
+
+//------------------------------------------------------------------------------
+void vtkDrawnStructure::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "Kind: " << this->Kind << "\n";
+  os << indent << "Points: " << this->Points.size() << "\n";
+  os << indent << "PlacedLine:";
+  for (const double number : this->PlacedLine)
+  {
+    os << " " << number;
+  }
+  os << "\n";
+  os << indent << "Height: " << this->Height << "\n";
+  os << indent << "Capacity: " << this->Capacity << "\n";
+  os << indent << "CrestWidth: " << this->CrestWidth << "\n";
+  os << indent << "SideSlope: " << this->SideSlope << "\n";
+  os << indent << "StemsPerHectare: " << this->StemsPerHectare << "\n";
+  os << indent << "Diameter: " << this->Diameter << "\n";
+  os << indent << "TreesBreak: " << this->TreesBreak << "\n";
+}

@@ -1,0 +1,323 @@
+#include "vtkJointedRockMass.h"
+
+#include "shared/arrays.h"
+#include "shared/attempt.h"
+#include "base/errors.h"
+#include "base/text/numberText.h"
+#include "sources/drawnSource.h"
+#include "shared/failure.h"
+#include "geometry/jointSets.h"
+#include "geometry/shell.h"
+#include "shared/inputs.h"
+#include "mesh/shapeFile.h"
+#include "shared/pieces.h"
+#include "rock/placement.h"
+#include "sources/rockMaker.h"
+#include "shared/terrainFieldData.h"
+
+#include "vtkDoubleArray.h"
+#include "vtkFieldData.h"
+#include "vtkIdTypeArray.h"
+#include "vtkInformation.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
+
+#include <cmath>
+#include <new>
+#include <optional>
+
+vtkStandardNewMacro(vtkJointedRockMass);
+
+namespace
+{
+
+constexpr int TERRAIN = 1;
+
+rockfall::Vec3 vec3(const double v[3])
+{
+  return { v[0], v[1], v[2] };
+}
+
+/// A closed surface as it is: a mass that its hull stood for would be another one.
+rockfall::Polyhedron readMass(const std::string& fileName)
+{
+  std::vector<std::string> notes;
+  if (fileName.empty())
+  {
+    throw rockfall::FileError(
+      "MassFileName is empty: the mass \"from file\" needs a closed surface");
+  }
+  try
+  {
+    rockfall::Polyhedron mass = rockfall::readShape(fileName, true, notes);
+    for (const std::string& note : notes)
+    {
+      rockfall::filters::showNote(note);
+    }
+    return mass;
+  }
+  catch (const rockfall::GeometryError& error)
+  {
+    const std::string text = error.what();
+    throw rockfall::GeometryError(text.find("not convex") == std::string::npos
+        ? text
+        : text + ". A rock mass must be convex: divide it into convex parts, one source for each");
+  }
+}
+
+} // namespace
+
+//------------------------------------------------------------------------------
+vtkJointedRockMass::vtkJointedRockMass()
+  : JointSets{ { 0.0, 0.0, 1.0, 0.5, 0.0, 0.0 }, { 90.0, 90.0, 1.0, 0.5, 0.0, 0.0 },
+    { 90.0, 0.0, 1.0, 0.5, 0.0, 0.0 } }
+{
+  this->SetNumberOfInputPorts(2);
+}
+
+//------------------------------------------------------------------------------
+vtkJointedRockMass::~vtkJointedRockMass() = default;
+
+//------------------------------------------------------------------------------
+int vtkJointedRockMass::FillInputPortInformation(int, vtkInformation* info)
+{
+  rockfall::filters::acceptPolyData(info);
+  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+void vtkJointedRockMass::SetNumberOfJointSets(int number)
+{
+  const std::size_t size = number > 0 ? std::size_t(number) : 0;
+  if (size != this->JointSets.size())
+  {
+    this->JointSets.resize(size);
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+int vtkJointedRockMass::GetNumberOfJointSets()
+{
+  return int(this->JointSets.size());
+}
+
+//------------------------------------------------------------------------------
+void vtkJointedRockMass::SetJointSet(int index, double dip, double dipDirection, double spacing,
+  double offset, double spacingDeviation, double orientationDeviation)
+{
+  if (index < 0)
+  {
+    vtkErrorMacro("There is no joint set " << index);
+    return;
+  }
+  if (std::size_t(index) >= this->JointSets.size())
+  {
+    this->JointSets.resize(std::size_t(index) + 1);
+  }
+  const std::array<double, 6> set = { dip, dipDirection, spacing, offset, spacingDeviation,
+    orientationDeviation };
+  if (this->JointSets[std::size_t(index)] != set)
+  {
+    this->JointSets[std::size_t(index)] = set;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkJointedRockMass::MakeBlocks(vtkPolyData* terrainInput, vtkPolyData* blocks)
+{
+  using namespace rockfall; // all that follows is the Core's
+  std::optional<Terrain> terrain;
+  if (terrainInput)
+  {
+    terrain = filters::readTerrain(terrainInput);
+  }
+  if (this->PlaceOnGround && !terrain)
+  {
+    throw ParameterError("PlaceOnGround is on, which needs the Terrain input");
+  }
+  if (!(this->ReleaseHeight >= 0.0 && std::isfinite(this->ReleaseHeight)))
+  {
+    throw ParameterError("ReleaseHeight is " + numberText(this->ReleaseHeight) +
+      " m, it must be finite and at least 0");
+  }
+  if (this->ReleaseHeight > 0.0 && !this->PlaceOnGround)
+  {
+    filters::showNote("ReleaseHeight is " + numberText(this->ReleaseHeight) +
+      " m, but has no effect: PlaceOnGround is off, so the rock mass is where it is given");
+  }
+  if (this->Seed < 0)
+  {
+    throw ParameterError("Seed is " + std::to_string(this->Seed) + ", it must be at least 0");
+  }
+
+  // About its centroid, where the numbers are small.
+  Polyhedron mass;
+  Vec3 centre = vec3(this->Center);
+  bool onGround = this->PlaceOnGround;
+  if (this->MassShape == BOX)
+  {
+    if (const auto place =
+          terrain ? filters::placeByDefault(*terrain, this->Center, "the mass") : std::nullopt)
+    {
+      centre = *place;
+      centre.z() = this->Center[2];
+      onGround = true;
+    }
+    filters::requireFinite(centre, "Center");
+    filters::requireFinite(vec3(this->Orientation), "Orientation");
+    mass =
+      makeBox(vec3(this->Lengths))
+        .transformed(1.0, filters::orientationFromDegrees(vec3(this->Orientation)), Vec3::Zero());
+  }
+  else if (this->MassShape == FROM_FILE)
+  {
+    mass = readMass(this->MassFileName);
+    centre = mass.integrals().centroid;
+    mass = mass.centred();
+  }
+  else
+  {
+    throw ParameterError(
+      "MassShape is " + std::to_string(this->MassShape) + ", it must be 0 (box) or 1 (from file)");
+  }
+  if (onGround)
+  {
+    const Vec3 local = centre - terrain->geometry().origin();
+    const double height =
+      touchingHeight(Surface::asSurveyed(*terrain), mass, Quat::Identity(), local.x(), local.y());
+    if (std::isnan(height))
+    {
+      throw PlacementError("The rock mass at (" + numberText(centre.x()) + ", " +
+        numberText(centre.y()) + ")" + whyNoGround(*terrain, centre.x(), centre.y()));
+    }
+    centre.z() = height + this->ReleaseHeight;
+  }
+
+  std::vector<JointSet> sets;
+  for (const std::array<double, 6>& row : this->JointSets)
+  {
+    JointSet& set = sets.emplace_back();
+    set.dip = radians(row[0]);
+    set.dipDirection = radians(row[1]);
+    set.spacing = row[2];
+    set.offset = row[3];
+    set.spacingDeviation = row[4];
+    set.orientationDeviation = radians(row[5]);
+  }
+  MassCut how;
+  how.slivers = rockfall::SliverRule(this->Slivers);
+  how.leastThickness = this->MinimumThickness;
+  how.leastVolume = this->MinimumVolume;
+  how.mostBlocks = this->MaximumRocks;
+  how.seed = std::uint64_t(this->Seed);
+  const CutMass cut = cutMass(mass, sets, how, centre);
+
+  filters::ReleasedRock like;
+  like.sourceId = this->SourceId;
+  like.sourceName =
+    this->SourceName.empty() ? "source " + std::to_string(this->SourceId) : this->SourceName;
+  like.rock.density = this->Density;
+  like.rock.youngModulus = this->YoungModulus;
+  like.rock.poissonRatio = this->PoissonRatio;
+  like.rock.velocity = vec3(this->Velocity);
+  like.rock.material = this->MaterialName;
+  filters::takeMaterial(this->Material, like.rock.density, like.rock.youngModulus,
+    like.rock.poissonRatio, like.rock.material);
+  std::vector<filters::ReleasedRock> rocks;
+  rocks.reserve(cut.blocks.size());
+  for (const Polyhedron& block : cut.blocks)
+  {
+    filters::ReleasedRock& released = rocks.emplace_back(like);
+    released.rock.blockId = this->FirstBlockId + std::int64_t(rocks.size()) - 1;
+    released.rock.position = centre + block.integrals().centroid;
+    released.rock.shape = block.centred();
+    released.rock.validate();
+  }
+  filters::writeRocks(rocks, blocks);
+  filters::writeCrs(terrain ? terrain->geometry().crs : std::string(), blocks->GetFieldData());
+  if (terrain)
+  {
+    filters::carryTerrain(terrainInput->GetFieldData(), blocks->GetFieldData());
+  }
+  filters::addArray<vtkIdTypeArray>(blocks->GetFieldData(), "SliverCount")
+    ->InsertNextValue(cut.slivers);
+  filters::addArray<vtkDoubleArray>(blocks->GetFieldData(), "SliverVolume")
+    ->InsertNextValue(cut.sliverVolume);
+  if (cut.slivers > 0)
+  {
+    filters::showNote("The rock mass is cut into " + std::to_string(rocks.size()) + " blocks; " +
+      std::to_string(cut.slivers) + " slivers of " + numberText(cut.sliverVolume) +
+      " m³ in all are " + (how.slivers == rockfall::SliverRule::Drop ? "left out" : "among them"));
+  }
+}
+
+//------------------------------------------------------------------------------
+int vtkJointedRockMass::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  if (rockfall::filters::isFurtherPiece(outputVector))
+  {
+    return 1;
+  }
+  rockfall::filters::Input taken(rockfall::filters::InputKind::Terrain);
+  vtkPolyData* terrain = taken.take(inputVector[TERRAIN]);
+  if (terrain && rockfall::filters::inheritFailure(terrain, this))
+  {
+    return 1;
+  }
+  return rockfall::filters::attempt(this, "The blocks of the rock mass do not fit in memory",
+    [&]
+    {
+      taken.require();
+      vtkNew<vtkPolyData> blocks;
+      this->MakeBlocks(terrain, blocks);
+      vtkPolyData::GetData(outputVector)->ShallowCopy(blocks);
+      return 1;
+    });
+}
+
+//------------------------------------------------------------------------------
+void vtkJointedRockMass::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  const auto printVector = [&](const char* name, const double v[3])
+  { os << indent << name << ": " << v[0] << " " << v[1] << " " << v[2] << "\n"; };
+  os << indent << "MassShape: " << this->MassShape << "\n";
+  printVector("Center", this->Center);
+  printVector("Lengths", this->Lengths);
+  printVector("Orientation", this->Orientation);
+  os << indent << "MassFileName: " << (this->MassFileName.empty() ? "(none)" : this->MassFileName)
+     << "\n";
+  os << indent << "JointSets:";
+  for (const std::array<double, 6>& set : this->JointSets)
+  {
+    for (const double value : set)
+    {
+      os << " " << value;
+    }
+    os << ";";
+  }
+  os << "\n";
+  os << indent << "Slivers: " << this->Slivers << "\n";
+  os << indent << "MinimumThickness: " << this->MinimumThickness << "\n";
+  os << indent << "MinimumVolume: " << this->MinimumVolume << "\n";
+  os << indent << "MaximumRocks: " << this->MaximumRocks << "\n";
+  os << indent << "Seed: " << this->Seed << "\n";
+  os << indent << "PlaceOnGround: " << this->PlaceOnGround << "\n";
+  os << indent << "ReleaseHeight: " << this->ReleaseHeight << "\n";
+  printVector("Velocity", this->Velocity);
+  os << indent << "Material: " << this->Material << "\n";
+  os << indent << "MaterialName: " << (this->MaterialName.empty() ? "(none)" : this->MaterialName)
+     << "\n";
+  os << indent << "Density: " << this->Density << "\n";
+  os << indent << "YoungModulus: " << this->YoungModulus << "\n";
+  os << indent << "PoissonRatio: " << this->PoissonRatio << "\n";
+  os << indent << "SourceName: " << (this->SourceName.empty() ? "(none)" : this->SourceName)
+     << "\n";
+  os << indent << "SourceId: " << this->SourceId << "\n";
+  os << indent << "FirstBlockId: " << this->FirstBlockId << "\n";
+}
