@@ -1,9 +1,9 @@
-# Debian 13's paraview-dev names the files of ParaView's Python modules without the ending that python3-paraview
+# paraview-dev of Debian 13 and later names the files of ParaView's Python modules without the ending that python3-paraview
 # gives them, and find_package stops at files that are not there. Nothing here uses these modules: where such a
 # file is missing, the targets of its list are defined beforehand, and ParaView then skips the list.
 file(GLOB lists
-  "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/paraview-5.1[3-9]/*Python*-targets.cmake"
-  "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/paraview-5.1[3-9]/vtk/*Python*-targets.cmake")
+  "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/paraview-[0-9]*/*Python*-targets.cmake"
+  "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/paraview-[0-9]*/vtk/*Python*-targets.cmake")
 foreach(list IN LISTS lists)
   string(REPLACE "-targets.cmake" "-targets-*.cmake" configurations "${list}")
   file(GLOB configurations "${configurations}")

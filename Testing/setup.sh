@@ -17,18 +17,6 @@ rockfall_packages=(
   xvfb xauth locales python3-matplotlib python-matplotlib-data)
 rockfall_test_packages=(libgtest-dev)
 
-# Of Qt: icons, without which ParaView's window has no eyes and no Play; and what the Rockfall menu is built with.
-case $(. /etc/os-release 2>/dev/null && echo "${VERSION_CODENAME:-}") in
-  trixie)
-    rockfall_packages+=(qt6-svg-plugins qt6-base-dev libpython3-dev)
-    rockfall_test_packages+=(qt6-documentation-tools qt6-tools-dev) # the pages behind ?
-    ;;
-  *)
-    rockfall_packages+=(libqt5svg5 qtbase5-dev)
-    rockfall_test_packages+=(qttools5-dev-tools)
-    ;;
-esac
-
 fail() {
   echo "RockfallDDA: $*" >&2
   exit 1
@@ -40,6 +28,34 @@ logged() {
   if ! "$@" >"$rockfall_log" 2>&1 </dev/null; then
     tail -n 40 -- "$rockfall_log" >&2
     return 1
+  fi
+}
+
+# What apt or dpkg says that a package depends on; fetches package lists where there are none.
+depends_on() {
+  dpkg-query -W -f='${Depends}' "$1" 2>/dev/null && return
+  command -v apt-cache >/dev/null || return 0
+  if ! apt-cache show "$1" >/dev/null 2>&1 && [ "$(id -u)" -eq 0 ]; then
+    logged apt-get -q -y -o DPkg::Lock::Timeout=600 update || true
+  fi
+  apt-cache depends "$1" 2>/dev/null || true
+}
+
+# The packages that hang on this release's ParaView: its Qt and, where it is built on Debian's own VTK,
+# that VTK. Of Qt: icons, without which ParaView's window has no eyes and no Play; what the Rockfall menu
+# is built with; and for the tests the pages behind ?.
+choose_packages() {
+  local paraview
+  paraview=$(depends_on paraview)
+  if [[ $paraview == *libqt6* ]]; then
+    rockfall_packages+=(qt6-svg-plugins qt6-base-dev libpython3-dev)
+    rockfall_test_packages+=(qt6-documentation-tools qt6-tools-dev)
+  else
+    rockfall_packages+=(libqt5svg5 qtbase5-dev)
+    rockfall_test_packages+=(qttools5-dev-tools)
+  fi
+  if [[ $paraview == *libvtk9* ]]; then
+    rockfall_packages+=(libvtk9-dev libvtk9-qt-dev)
   fi
 }
 
@@ -135,3 +151,5 @@ setup() {
   export PV_PLUGIN_PATH="${plugin%/*}${PV_PLUGIN_PATH:+:$PV_PLUGIN_PATH}"
   rockfall_window=${plugin%/*/*}/RockfallWindow
 }
+
+choose_packages
