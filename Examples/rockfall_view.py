@@ -60,10 +60,17 @@ def show_speed(source, view, top):
     display = Show(source, view)
     ColorBy(display, ("POINTS", "Speed"))
     colours = GetColorTransferFunction("Speed")
-    colours.ApplyPreset("Plasma (matplotlib)", True)
+    # ParaView 6 has the short name alone and raises at others, 5.11 ignores what it does not know.
+    long_name = "Plasma (matplotlib)"
+    colours.ApplyPreset(long_name if long_name in GetLookupTableNames() else "Plasma", True)
     colours.RescaleTransferFunction(0.0, top)
     display.Ambient, display.Diffuse = 0.55, 0.5
     return display
+
+
+def number_format(usual, form):
+    """A format in the language of this ParaView's default: printf's before 6.1, {} from then on."""
+    return f"%{form}" if "%" in usual else f"{{:{form}}}"
 
 
 def speed_bar(view, position, length, size=20):
@@ -74,7 +81,7 @@ def speed_bar(view, position, length, size=20):
     bar.AutoOrient, bar.Orientation, bar.HorizontalTitle = 0, "Vertical", 1
     bar.WindowLocation = "Any Location"
     bar.Position, bar.ScalarBarLength, bar.ScalarBarThickness = list(position), length, size
-    bar.LabelFormat = bar.RangeLabelFormat = "%.0f"
+    bar.LabelFormat = bar.RangeLabelFormat = number_format(bar.RangeLabelFormat, ".0f")
     bar.Visibility = 1
 
 

@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -356,7 +357,10 @@ void styleIn(vtkSMProxy* representation, vtkSMViewProxy* view)
   {
     vtkSMPropertyHelper(bar, "Title").Set(titleOf(array, *quantity).c_str());
     vtkSMPropertyHelper(bar, "ComponentTitle").Set("");
-    vtkSMPropertyHelper(bar, "RangeLabelFormat").Set("%.3g");
+    // printf's before ParaView 6.1, {} from then on: as the bar's own default is.
+    const char* usual = vtkSMPropertyHelper(bar, "RangeLabelFormat").GetAsString();
+    const bool printfs = usual == nullptr || std::strchr(usual, '%') != nullptr;
+    vtkSMPropertyHelper(bar, "RangeLabelFormat").Set(printfs ? "%.3g" : "{:.3g}");
     bar->UpdateVTKObjects();
   }
   followLegend(shown, representation, view);
