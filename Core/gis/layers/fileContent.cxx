@@ -48,7 +48,7 @@ std::string labelOf(const std::string& name)
 std::vector<NamedRaster> rastersIn(GDALDataset& dataset)
 {
   std::vector<NamedRaster> rasters;
-  char** const list = dataset.GetMetadata("SUBDATASETS");
+  const CSLConstList list = dataset.GetMetadata("SUBDATASETS");
   for (int k = 1;; ++k)
   {
     const char* name =

@@ -89,7 +89,7 @@ public:
     this->nRasterYSize = map.rows;
     double affine[6] = { map.west, map.cellSize, 0.0, map.south + map.rows * map.cellSize, 0.0,
       -map.cellSize };
-    this->SetGeoTransform(affine);
+    GDALSetGeoTransform(GDALDataset::ToHandle(this), affine);
     if (!map.crs.empty())
     {
       this->SetSpatialRef(crsFromText(map.crs).get());
