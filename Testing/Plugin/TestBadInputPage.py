@@ -113,6 +113,16 @@ dem("a virtual raster of a file that is not beside it", FileName=write_text("rea
     '<SimpleSource><SourceFilename>/etc/hostname</SourceFilename></SimpleSource></VRTRasterBand>'
     '</VRTDataset>')))
 dem("an address", FileName="/vsicurl/http://127.0.0.1:9/dem.tif")
+write_text("good.asc.aux.xml", (
+    '<PAMDataset><Metadata domain="OVERVIEWS"><MDI key="OVERVIEW_FILE">/etc/hostname</MDI></Metadata></PAMDataset>'))
+dem("overviews that are not beside it", FileName="good.asc")
+os.remove("good.asc.aux.xml")
+dem("a CRS that is a link", FileName=write_text("link.geojson", (
+    '{"type":"FeatureCollection","crs":{"type":"link","properties":{"href":"http://127.0.0.1:9/crs"}},"features":['
+    '{"type":"Feature","properties":{"elev":1},"geometry":' + LINE + "}]}")))
+dem("SQL in a virtual layer", FileName=write_text("sql.vrt", (
+    '<OGRVRTDataSource><OGRVRTLayer name="a"><SrcDataSource relativeToVRT="1">link.geojson</SrcDataSource>'
+    '<SrcSQL>SELECT elev FROM link</SrcSQL></OGRVRTLayer></OGRVRTDataSource>')))
 dem("a raster that is empty but for its size", FileName=write_text("huge.vrt", (
     '<VRTDataset rasterXSize="40000" rasterYSize="40000"><GeoTransform>0,5,0,100,0,-5'
     '</GeoTransform><VRTRasterBand dataType="Float32" band="1"><NoDataValue>-9999</NoDataValue>'

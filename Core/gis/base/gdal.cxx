@@ -57,6 +57,7 @@ struct Opened
 {
   DatasetPtr dataset;
   std::string failure; ///< GDAL's reason where there is none.
+  std::string address; ///< Asked for and not opened; empty: none.
 };
 
 /// Some drivers read all of a file to open it (XYZ, GeoJSON, KML, spreadsheets) and ask nobody.
@@ -77,6 +78,7 @@ Opened tryOpen(const std::string& fileName, Kind kind)
   const CPLConfigOptionSetter headers[] = { { "OGR_XLSX_HEADERS", "FORCE", false },
     { "OGR_ODS_HEADERS", "FORCE", false }, { "OGR_XLS_HEADERS", "FORCE", false } };
   Messages messages;
+  takeRefusedAddress();
   const unsigned flags = GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR |
     (kind == Kind::Raster ? GDAL_OF_RASTER : GDAL_OF_VECTOR);
   DatasetPtr dataset(GDALDataset::Open(
@@ -90,7 +92,7 @@ Opened tryOpen(const std::string& fileName, Kind kind)
   {
     dataset->GetLayer(i)->GetLayerDefn(); // sheets look for their header only when they are asked
   }
-  return { std::move(dataset), messages.failure() };
+  return { std::move(dataset), messages.failure(), takeRefusedAddress() };
 }
 
 Opened openOrLeave(const std::string& fileName, Kind kind)
@@ -114,9 +116,18 @@ DatasetPtr open(
   }
   refuseReferences(fileName, GDAL_OF_RASTER | GDAL_OF_VECTOR);
   messages.clear();
-  Opened opened = openOrLeave(path.empty() ? fileName : path, kind);
+  const auto local = [&](Opened opened)
+  {
+    if (!opened.address.empty())
+    {
+      throw FileError(fileName + ": names the address " + opened.address + whereAllowed());
+    }
+    return opened;
+  };
+  Opened opened = local(openOrLeave(path.empty() ? fileName : path, kind));
   if (opened.dataset)
   {
+    refuseNamedFiles(*opened.dataset, fileName);
     return std::move(opened.dataset);
   }
 
@@ -132,7 +143,7 @@ DatasetPtr open(
     throw FileError(fileName + ": is a folder, not a file");
   }
   const Kind other = kind == Kind::Raster ? Kind::Vector : Kind::Raster;
-  if (openOrLeave(fileName, other).dataset)
+  if (local(openOrLeave(fileName, other)).dataset)
   {
     throw FileError(fileName +
       (kind == Kind::Raster ? ": is a vector layer, a raster is needed"

@@ -5,6 +5,7 @@
 /// includes this header needs GDAL's library, not its headers.
 
 #include "gis/base/reach.h"
+#include "gis/base/stayLocal.h"
 
 #include <cstdint>
 #include <memory>
@@ -18,7 +19,7 @@ namespace rockfall::gis
 {
 
 /// While it lives, what GDAL has to say on this thread is kept here instead of printed, and GDAL
-/// keeps to local files (reach.h). One per public call, declared before any dataset, so that
+/// keeps to local files (stayLocal.h). One per public call, declared before any dataset, so that
 /// closing is silent, too.
 class Messages
 {

@@ -2,8 +2,8 @@
 
 #include "base/errors.h"
 #include "base/text/nameKey.h"
-#include "gis/base/fields.h"
 #include "gis/base/hdf5References.h"
+#include "gis/base/writtenName.h"
 
 #include <cpl_conv.h>
 #include <cpl_minixml.h>
@@ -12,6 +12,7 @@
 #include <gdal_priv.h>
 
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -47,8 +48,6 @@ namespace
 
 /// A virtual dataset may be made of others, and these of others again.
 constexpr int mostNested = 4;
-/// A virtual dataset is a page of text, or a mosaic of many thousand tiles.
-constexpr GIntBig largestXml = 256 << 20; // bytes
 
 /// Drivers that read the file that is named and what lies beside it under its name. Not: those of
 /// network services and databases, those whose header may name the file of the numbers (MRF, PDS,
@@ -77,15 +76,6 @@ const char* const known[] = { "VRT", "OGR_VRT",
 const char* const remedy = " (files that name network addresses or other files of the machine are "
                            "read only where AllowReferences is on)";
 
-bool isAddress(const std::string& name)
-{
-  const std::string low = nameKey(name);
-  const auto holds = [&low](const char* part) { return low.find(part) != std::string::npos; };
-  return holds("://") || holds("/vsicurl") || holds("/vsis3") || holds("/vsigs") ||
-    holds("/vsiaz") || holds("/vsiadls") || holds("/vsioss") || holds("/vsiswift") ||
-    holds("/vsihdfs") || holds("/vsiwebhdfs") || holds("/vsistdin") || holds("/vsicrypt");
-}
-
 bool isKnown(const char* driver)
 {
   for (const char* const* name = known; *name; ++name)
@@ -98,71 +88,7 @@ bool isKnown(const char* driver)
   return false;
 }
 
-bool isXml(const std::string& name)
-{
-  return trimmed(name).starts_with("<");
-}
-
-/// All of a file; nothing if it is none, or too large for what it should be.
-std::string xmlOf(const std::string& fileName)
-{
-  GByte* bytes = nullptr;
-  vsi_l_offset size = 0;
-  if (!VSIIngestFile(nullptr, fileName.c_str(), &bytes, &size, largestXml))
-  {
-    return {};
-  }
-  std::string content(reinterpret_cast<const char*>(bytes), std::size_t(size));
-  VSIFree(bytes);
-  return content;
-}
-
-/// Whether a file lies in a folder or below, after all its links.
-bool isWithin(const std::string& fileName, const std::string& folder)
-{
-  if (fileName.starts_with("/vsi") || folder.starts_with("/vsi"))
-  {
-    return fileName.starts_with(folder + "/") && fileName.find("..") == std::string::npos;
-  }
-  std::error_code failed;
-  const auto whole = [&failed](const std::string& path)
-  { return std::filesystem::weakly_canonical(std::filesystem::absolute(path, failed), failed); };
-  const std::filesystem::path inner = whole(fileName), outer = whole(folder.empty() ? "." : folder);
-  return !failed &&
-    std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
-}
-
 void refuseDriver(const std::string& fileName, const std::string& whole, unsigned flags, int depth);
-
-std::string folderOf(const std::string& fileName)
-{
-  return std::string(CPLGetPath(fileName.c_str()));
-}
-
-/// The file of a name like NETCDF:"a.nc":z or HDF5:a.h5://z; other names as they are.
-std::string fileWithin(const std::string& name)
-{
-  const auto colon = name.find(':'), quote = name.find('"');
-  if (colon == std::string::npos || name.find_first_of("/\\.") < colon)
-  {
-    return name;
-  }
-  if (quote != std::string::npos)
-  {
-    return name.substr(quote + 1, name.find('"', quote + 1) - quote - 1);
-  }
-  VSIStatBufL status;
-  for (auto end = name.size(); end != std::string::npos && end > colon;
-       end = name.rfind(':', end - 1))
-  {
-    const std::string file = name.substr(colon + 1, end - colon - 1);
-    if (VSIStatL(file.c_str(), &status) == 0)
-    {
-      return file;
-    }
-  }
-  return name;
-}
 
 /// Files that an HDF5 file names, as virtual rasters do.
 void refuseHdf5References(const std::string& fileName, const std::string& whole, int depth)
@@ -222,11 +148,13 @@ void refuseLinksOut(const std::string& folder, const std::string& whole)
   }
 }
 
-/// Files that a virtual dataset names; `whole` is the file that the user named.
-class References
+/// What a value that may name a file leads to, checked; `whole` is the file that the user named.
+/// Any value, because GDAL's keys for files (sources, masks, overviews, places of nodes, options of
+/// drivers) are many and grow.
+class NamedFiles
 {
 public:
-  References(const std::string& fileName, const std::string& whole, int depth)
+  NamedFiles(const std::string& fileName, const std::string& whole, int depth)
     : folder_(isXml(fileName) ? std::string() : folderOf(fileName))
     , inlineText_(isXml(fileName))
     , whole_(whole)
@@ -234,67 +162,125 @@ public:
   {
   }
 
-  void check(const CPLXMLNode* node)
+  /// All elements and attributes of an XML text.
+  void checkXml(const CPLXMLNode* node)
   {
     for (; node; node = node->psNext)
     {
-      if (node->eType != CXT_Element)
+      const auto is = [node](const char* name)
+      { return node->eType == CXT_Element && EQUAL(node->pszValue, name); };
+      if (is("SrcSQL"))
       {
-        continue;
+        throw FileError(whole_ + ": has an SQL statement, which may name other files" + remedy);
       }
-      const auto is = [node](const char* name) { return EQUAL(node->pszValue, name); };
-      if (is("SourceFilename") || is("SourceDataset") || is("SrcDataSource"))
-      {
-        this->checkName(node);
-      }
-      else if (is("SrcSQL"))
-      {
-        const std::string sql = nameKey(CPLGetXMLValue(node, "", ""));
-        if (sql.find('\'') != std::string::npos || sql.find('(') != std::string::npos)
-        {
-          throw FileError(whole_ + ": has an SQL statement that may name other files" + remedy);
-        }
-      }
-      else if (is("PixelFunctionCode"))
+      if (is("PixelFunctionCode"))
       {
         throw FileError(whole_ + ": has a program in it" + remedy);
       }
-      this->check(node->psChild);
+      if (is("SourceFilename") || is("SourceDataset") || is("SrcDataSource"))
+      {
+        this->checkSource(
+          CPLGetXMLValue(node, "", ""), CPLTestBool(CPLGetXMLValue(node, "relativeToVRT", "0")));
+      }
+      else if (node->eType == CXT_Text)
+      {
+        this->check(node->pszValue);
+      }
+      this->checkXml(node->psChild);
+    }
+  }
+
+  /// A value that may be anything. A name with a driver before it, an XML text and a name of an
+  /// existing file are looked at; addresses that nothing opens are common among metadata.
+  void check(std::string written)
+  {
+    constexpr std::size_t longest = 4096;
+    constexpr const char* base = ":::BASE:::"; // beside the file itself
+    written = written.starts_with(base) ? written.substr(std::strlen(base)) : written;
+    if (isOnOtherSystem(written))
+    {
+      this->refuse(written);
+    }
+    if (isXml(written))
+    {
+      refuseDriver(written, whole_, GDAL_OF_RASTER | GDAL_OF_VECTOR, this->deeper());
+      return;
+    }
+    const bool word = written.find_first_of("/\\.:") == std::string::npos;
+    const bool numbers = written.find_first_not_of("0123456789+-.eE, ") == std::string::npos;
+    if (word || numbers || written.size() > longest ||
+      written.find_first_of("\n<>") != std::string::npos ||
+      written.find("://") != std::string::npos)
+    {
+      return;
+    }
+    for (const bool relative : { false, true })
+    {
+      const std::string name = relative
+        ? std::string(CPLProjectRelativeFilename(folder_.c_str(), written.c_str()))
+        : written;
+      VSIStatBufL status;
+      const std::string file = fileWithin(name);
+      if (VSIStatL(file.c_str(), &status) == 0 && VSI_ISREG(status.st_mode))
+      {
+        if (inlineText_ || !isWithin(file, folder_))
+        {
+          this->refuse(written);
+        }
+        if (file != whole_)
+        {
+          refuseDriver(name, whole_, GDAL_OF_RASTER | GDAL_OF_VECTOR, this->deeper());
+        }
+        return;
+      }
+    }
+    if (written.find(':') != std::string::npos)
+    {
+      // Databases and services: PG:host=…
+      refuseDriver(written, whole_, GDAL_OF_RASTER | GDAL_OF_VECTOR, this->deeper());
     }
   }
 
 private:
-  void checkName(const CPLXMLNode* node)
+  [[noreturn]] void refuse(const std::string& written) const
   {
-    const std::string written = CPLGetXMLValue(node, "", "");
-    std::string name = written;
-    if (CPLTestBool(CPLGetXMLValue(node, "relativeToVRT", "0")))
-    {
-      name = CPLProjectRelativeFilename(folder_.c_str(), written.c_str());
-    }
-    if (written.empty())
-    {
-      return;
-    }
-    if (isAddress(name) || isXml(name) || inlineText_ || !isWithin(name, folder_))
-    {
-      throw FileError(whole_ + ": names " + written + ", which is not beside it" + remedy);
-    }
-    VSIStatBufL status;
-    if (VSIStatExL(name.c_str(), &status, VSI_STAT_EXISTS_FLAG) != 0)
-    {
-      if (written.find(':') != std::string::npos)
-      {
-        throw FileError(whole_ + ": names " + written + ", which is no file beside it" + remedy);
-      }
-      return; // GDAL says so
-    }
+    throw FileError(whole_ + ": names " + written + ", which is not beside it" + remedy);
+  }
+
+  int deeper() const
+  {
     if (depth_ == mostNested)
     {
       throw FileError(whole_ + ": is made of files that are made of others, deeper than " +
         std::to_string(mostNested) + remedy);
     }
-    refuseDriver(name, whole_, GDAL_OF_RASTER | GDAL_OF_VECTOR, depth_ + 1);
+    return depth_ + 1;
+  }
+
+  /// A value that names a file in any case.
+  void checkSource(const std::string& written, bool relative)
+  {
+    if (written.empty())
+    {
+      return;
+    }
+    const std::string name = relative
+      ? std::string(CPLProjectRelativeFilename(folder_.c_str(), written.c_str()))
+      : written;
+    if (isAddress(name) || isXml(name) || inlineText_ || !isWithin(name, folder_))
+    {
+      this->refuse(written);
+    }
+    VSIStatBufL status;
+    if (VSIStatExL(name.c_str(), &status, VSI_STAT_EXISTS_FLAG) == 0)
+    {
+      refuseDriver(name, whole_, GDAL_OF_RASTER | GDAL_OF_VECTOR, this->deeper());
+    }
+    else if (written.find(':') != std::string::npos)
+    {
+      throw FileError(whole_ + ": names " + written + ", which is no file beside it" + remedy);
+    }
+    // Else GDAL says that there is none.
   }
 
   std::string folder_;
@@ -302,6 +288,39 @@ private:
   const std::string& whole_;
   int depth_;
 };
+
+using XmlPtr = std::unique_ptr<CPLXMLNode, void (*)(CPLXMLNode*)>;
+
+XmlPtr xmlTree(const std::string& text)
+{
+  return { text.empty() ? nullptr : CPLParseXMLString(text.c_str()), CPLDestroyXMLNode };
+}
+
+/// The file that GDAL keeps beside another one for what that cannot hold.
+void refuseAuxiliary(const std::string& file, const std::string& whole, int depth)
+{
+  VSIStatBufL status;
+  const std::string name = file + ".aux.xml";
+  if (!isXml(file) && VSIStatExL(name.c_str(), &status, VSI_STAT_EXISTS_FLAG) == 0)
+  {
+    const XmlPtr root = xmlTree(xmlOf(name));
+    NamedFiles(file, whole, depth).checkXml(root.get());
+  }
+}
+
+/// Tables of MapInfo that are views or mosaics of others, which their text names.
+void refuseTableOfTables(const std::string& file, const std::string& whole)
+{
+  if (!EQUAL(CPLGetExtension(file.c_str()), "tab"))
+  {
+    return;
+  }
+  const std::string text = nameKey(xmlOf(file));
+  if (text.find("create view") != std::string::npos || text.find("isseamless") != std::string::npos)
+  {
+    throw FileError(whole + ": is a table of MapInfo that is made of others" + remedy);
+  }
+}
 
 void refuseDriver(const std::string& fileName, const std::string& whole, unsigned flags, int depth)
 {
@@ -323,58 +342,38 @@ void refuseDriver(const std::string& fileName, const std::string& whole, unsigne
   {
     refuseHdf5References(file, whole, depth);
   }
+  refuseAuxiliary(file, whole, depth);
   if (EQUAL(name, "Zarr"))
   {
     refuseLinksOut(file, whole);
+  }
+  if (EQUAL(name, "MapInfo File"))
+  {
+    refuseTableOfTables(file, whole);
   }
   if (!EQUAL(name, "VRT") && !EQUAL(name, "OGR_VRT"))
   {
     return;
   }
-  const std::string text = isXml(fileName) ? fileName : xmlOf(fileName);
-  const std::unique_ptr<CPLXMLNode, void (*)(CPLXMLNode*)> root(
-    text.empty() ? nullptr : CPLParseXMLString(text.c_str()), CPLDestroyXMLNode);
+  const XmlPtr root = xmlTree(isXml(fileName) ? fileName : xmlOf(fileName));
   if (!root)
   {
     // Other ways to say a virtual raster: vrt://file, which names any.
     throw FileError(whole + ": is a virtual raster that cannot be looked into" + remedy);
   }
-  References(fileName, whole, depth).check(root.get());
+  NamedFiles(fileName, whole, depth).checkXml(root.get());
 }
 
 } // namespace
 
+std::string whereAllowed()
+{
+  return remedy;
+}
+
 const char* const* openingDrivers()
 {
   return allowed ? nullptr : known;
-}
-
-StayLocal::StayLocal()
-{
-  if (allowed)
-  {
-    return;
-  }
-  constexpr std::pair<const char*, const char*> options[] = {
-    // An ending that no address has: all others are refused.
-    { "CPL_VSIL_CURL_ALLOWED_EXTENSIONS", ".nothing-is-allowed" },
-    // VirtualText, VirtualShape and their kin are modules of SpatiaLite.
-    { "SPATIALITE_LOAD", "NO" },
-  };
-  for (const auto& [name, value] : options)
-  {
-    const char* old = CPLGetThreadLocalConfigOption(name, nullptr);
-    before_.emplace_back(name, old ? std::optional<std::string>(old) : std::nullopt);
-    CPLSetThreadLocalConfigOption(name, value);
-  }
-}
-
-StayLocal::~StayLocal()
-{
-  for (const auto& [name, old] : before_)
-  {
-    CPLSetThreadLocalConfigOption(name, old ? old->c_str() : nullptr);
-  }
 }
 
 void refuseReferences(const std::string& fileName, unsigned flags)
@@ -388,6 +387,22 @@ void refuseReferences(const std::string& fileName, unsigned flags)
     throw FileError(fileName + ": is an address" + remedy);
   }
   refuseDriver(fileName, fileName, flags, 0);
+}
+
+void refuseNamedFiles(GDALDataset& dataset, const std::string& fileName)
+{
+  if (allowed)
+  {
+    return;
+  }
+  for (const char* domain : { "OVERVIEWS", "GEOLOCATION" })
+  {
+    for (CSLConstList item = dataset.GetMetadata(domain); item && *item; ++item)
+    {
+      const std::string text = *item;
+      NamedFiles(fileWithin(fileName), fileName, 0).check(text.substr(text.find('=') + 1));
+    }
+  }
 }
 
 } // namespace gis

@@ -5,10 +5,9 @@
 /// machine. They are off unless they are asked for, because a file that came by mail could have a
 /// password file read as heights, or tell its sender who opened it.
 
-#include <optional>
 #include <string>
-#include <utility>
-#include <vector>
+
+class GDALDataset;
 
 namespace rockfall
 {
@@ -32,27 +31,20 @@ namespace gis
 /// Drivers of GDAL that may open a file, as GDAL wants them; null: all.
 const char* const* openingDrivers();
 
-/// While it lives, GDAL opens no address on this thread, whatever a file names (overviews of a
-/// raster, say), and SQLite has no modules that read other files as tables. Does nothing where
-/// references are allowed.
-class StayLocal
-{
-public:
-  StayLocal();
-  ~StayLocal();
-  StayLocal(const StayLocal&) = delete;
-  StayLocal& operator=(const StayLocal&) = delete;
-
-private:
-  std::vector<std::pair<const char*, std::optional<std::string>>> before_; ///< Of GDAL's options.
-};
-
 /// Throws FileError, naming the file and what it names, if a name is an address, if the driver that
-/// would read it is none of those that read one file and what lies beside it, and if a virtual
-/// raster or layer, an HDF5 file (netCDF-4) or a link in a Zarr store names anything but files in
-/// its own folder or below. Does nothing where references are allowed. `flags`: of GDAL, raster or
-/// vector.
+/// would read it is none of those that read one file and what lies beside it, and if any value of a
+/// virtual raster or layer or of an .aux.xml, an HDF5 file (netCDF-4) or a link in a Zarr store
+/// names anything but files in its own folder or below; if a virtual layer has SQL, and if a table
+/// of MapInfo is made of others. Does nothing where references are allowed. `flags`: of GDAL,
+/// raster or vector.
 void refuseReferences(const std::string& fileName, unsigned flags);
+
+/// The same of files that an open dataset names: overviews and places of its nodes. Call it before
+/// any use that may look for them.
+void refuseNamedFiles(GDALDataset& dataset, const std::string& fileName);
+
+/// The end of a refusal: where such files are read all the same.
+std::string whereAllowed();
 
 } // namespace gis
 

@@ -3,20 +3,23 @@
 /// take more memory than they are worth.
 
 #include "base/errors.h"
-#include "gis/raster/contours.h"
-#include "gis/layers/lineLayer.h"
-#include "gis/raster/raster.h"
 #include "gis/base/reach.h"
+#include "gis/layers/lineLayer.h"
 #include "gis/layers/sources.h"
+#include "gis/raster/contours.h"
+#include "gis/raster/raster.h"
 #include "gisFiles.h"
 
 #include <arpa/inet.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <thread>
 
 namespace rockfall
 {
@@ -207,12 +210,14 @@ std::string bigEnd(std::size_t value, int bytes)
   return text;
 }
 
-/// A database of one page whose one table is what a module of SpatiaLite reads of `file`.
-std::string virtualTable(const std::string& name, const std::string& file)
+/// A database of one page whose one table is what a module reads of `file`, by default one of
+/// SpatiaLite's.
+std::string virtualTable(const std::string& name, const std::string& file,
+  const std::string& module = "VirtualText('",
+  const std::string& rest = "','UTF-8',1,POINT,DOUBLEQUOTE,',')")
 {
   constexpr std::size_t page = 4096;
-  const std::string sql =
-    "CREATE VIRTUAL TABLE leak USING VirtualText('" + file + "','UTF-8',1,POINT,DOUBLEQUOTE,',')";
+  const std::string sql = "CREATE VIRTUAL TABLE leak USING " + module + file + rest;
   const auto type = [](std::size_t length) { return varint(2 * length + 13); };
   std::string types = type(5) + type(4) + type(4) + char(8) + type(sql.size());
   types = varint(types.size() + 1) + types;
@@ -244,7 +249,7 @@ TEST(Reach, namesOfOverviewsAreNotCalled)
   writeFile("a.vrt.aux.xml",
     "<PAMDataset><Metadata domain=\"OVERVIEWS\"><MDI key=\"OVERVIEW_FILE\">/vsicurl/" +
       listener.url() + "a.tif</MDI></Metadata></PAMDataset>");
-  EXPECT_NO_THROW(readRaster(path));
+  EXPECT_TRUE(holds(refusal(path), { path, "/vsicurl/" + listener.url() }));
   EXPECT_FALSE(listener.called());
 }
 
@@ -288,6 +293,126 @@ TEST(Reach, isAllowedWhereItIsAskedFor)
     EXPECT_NO_THROW(readRaster(path));
   }
   EXPECT_TRUE(holds(refusal(path), { "not beside it" }));
+}
+
+/// A virtual raster, in a folder of its own, with this beside its band.
+std::string rasterWith(const std::string& inside)
+{
+  std::filesystem::create_directories(pathOf("home"));
+  RawRaster raster = smallRaster();
+  raster.dataset = inside;
+  return raster.write("home/with");
+}
+
+/// Each way in which a file names an address; the address is called by GDAL where
+/// references are allowed, and by nobody else.
+TEST(Reach, addressesInFilesAreNotCalled)
+{
+  setenv("GDAL_HTTP_TIMEOUT", "1", 1);
+  setenv("GDAL_HTTP_CONNECTTIMEOUT", "1", 1);
+  const Listener listener;
+  ASSERT_TRUE(listener.good());
+  const std::string url = listener.url();
+  const std::string line = "\"features\":[{\"type\":\"Feature\",\"properties\":{},\"geometry\":"
+                           "{\"type\":\"LineString\",\"coordinates\":[[1,2],[3,4]]}}]}";
+  const std::string link = writeFile("link.geojson",
+    "{\"type\":\"FeatureCollection\",\"crs\":{\"type\":\"link\",\"properties\":{\"href\":\"" + url +
+      "crs.wkt\",\"type\":\"ogcwkt\"}}," + line);
+  EXPECT_TRUE(holds(messageOf<FileError>([&] { readLineLayer(link); }),
+    { link, "names the address " + url, "AllowReferences" }));
+  EXPECT_FALSE(listener.called());
+
+  const std::string inner = virtualRaster("<ColorInterp>Gray</ColorInterp>");
+  for (const std::string& value : std::vector<std::string>{ "/vsicurl/" + url + "a.tif",
+         "/vsicurl_streaming/" + url + "a", "/vsis3_streaming/bucket/a", "/vsioss/bucket/a.tif",
+         "/vsisparse/" + inner, "/vsizip//vsicurl/" + url + "a.zip/a.tif", url + "a.tif",
+         "&lt;GDAL_WMS>&lt;Service name=\"TMS\"/>&lt;/GDAL_WMS>", "PG:host=127.0.0.1" })
+  {
+    const std::string path = rasterWith(
+      "<Metadata domain=\"OVERVIEWS\"><MDI key=\"OVERVIEW_FILE\">" + value + "</MDI></Metadata>");
+    std::string said;
+    try
+    {
+      readRaster(path);
+    }
+    catch (const FileError& error)
+    {
+      said = error.what();
+    }
+    // An address among metadata stands there often, and nothing opens it.
+    EXPECT_EQ(holds(said, { path, "AllowReferences" }), value != url + "a.tif") << value << said;
+    EXPECT_FALSE(listener.called()) << value;
+  }
+  // The same file calls where it may.
+  const AllowReferences allow(true);
+  std::atomic<bool> called = false, done = false;
+  std::thread hangUp(
+    [&]
+    {
+      while (!done)
+      {
+        called = listener.called() || called;
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      }
+    });
+  EXPECT_NO_THROW(readLineLayer(link));
+  done = true;
+  hangUp.join();
+  EXPECT_TRUE(called);
+}
+
+TEST(Reach, anyValueThatNamesAFileIsLookedAt)
+{
+  std::filesystem::create_directories(pathOf("away"));
+  const std::string away = pathOf("away") + "/numbers.txt";
+  std::ofstream(away) << "1 2\n3 4\n";
+  const std::string up = "../" + away.substr(away.find("Reach"));
+  const auto item = [](const std::string& domain, const std::string& key, const std::string& value)
+  {
+    return "<Metadata domain=\"" + domain + "\"><MDI key=\"" + key + "\">" + value +
+      "</MDI></Metadata>";
+  };
+  for (const std::string& inside :
+    std::vector<std::string>{ item("OVERVIEWS", "OVERVIEW_FILE", away),
+      item("GEOLOCATION", "X_DATASET", away),
+      item("OVERVIEWS", "OVERVIEW_FILE", "NETCDF:" + away + ":z"),
+      "<MaskBand><VRTRasterBand dataType=\"Byte\">" + source(away) + "</VRTRasterBand></MaskBand>",
+      "<GDALWarpOptions><Transformer><Option name=\"DEM\">" + away +
+        "</Option></Transformer></GDALWarpOptions>",
+      "<OpenOptions><OOI key=\"XSD\">" + away + "</OOI></OpenOptions>" })
+  {
+    const std::string path = rasterWith(inside);
+    EXPECT_TRUE(holds(refusal(path), { path, "numbers.txt", "not beside it" })) << inside;
+  }
+  // Beside another format, and up from its folder.
+  const std::string raw = smallRaster().write("home/b");
+  writeFile("home/b.vrt.aux.xml",
+    "<PAMDataset>" + item("OVERVIEWS", "OVERVIEW_FILE", ":::BASE:::" + away) + "</PAMDataset>");
+  EXPECT_TRUE(holds(refusal(raw), { raw, away }));
+  std::filesystem::remove(raw + ".aux.xml");
+  // Plain metadata, numbers and a file beside it do no harm.
+  EXPECT_NO_THROW(readRaster(rasterWith("<Metadata><MDI key=\"reference\">https://127.0.0.1/"
+                                        "a</MDI><MDI key=\"made\">2020:01:02 10:00:00</MDI><MDI "
+                                        "key=\"of\">b.vrt</MDI></Metadata>")));
+}
+
+TEST(Reach, tablesThatAreMadeOfOthersAreRefused)
+{
+  writeFile("part.csv", "x,y,z\n1,2,3\n");
+  const std::string sql = writeFile("sql.vrt",
+    "<OGRVRTDataSource><OGRVRTLayer name=\"a\"><SrcDataSource "
+    "relativeToVRT=\"1\">part.csv</SrcDataSource><SrcSQL>SELECT x FROM part</SrcSQL></OGRVRTLayer>"
+    "</OGRVRTDataSource>");
+  EXPECT_TRUE(holds(
+    messageOf<FileError>([&] { readSourceLayer(sql, {}); }), { sql, "SQL", "AllowReferences" }));
+  const std::string view = writeFile("view.tab",
+    "!table\n!version 100\n\nopen table \"/etc/a.tab\"\n\ncreate view view as\nselect x\nfrom a\n");
+  EXPECT_TRUE(holds(messageOf<FileError>([&] { readLineLayer(view); }), { view, "MapInfo" }));
+  // GDAL's own module of SQLite.
+  const std::string own = virtualTable("own.sqlite", pathOf("part.csv"), "VirtualOGR('", "')");
+  SourceOptions table;
+  table.layer = "leak";
+  EXPECT_TRUE(holds(messageOf<Error>([&] { readSourceLayer(own, table); }), { own }));
 }
 
 TEST(Limits, ofMemoryAreInProportionToTheFile)

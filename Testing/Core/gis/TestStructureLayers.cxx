@@ -121,8 +121,8 @@ TEST(StructureLayers, LocalCoordinatesInFeetBecomeMetres)
   const std::string stem = table.substr(first, table.size() - 4 - first);
   files.trees = writeFile("trees.vrt",
     "<OGRVRTDataSource><OGRVRTLayer name=\"trees\"><SrcDataSource>" + table +
-      "</SrcDataSource><SrcSQL>SELECT * FROM \"" + stem +
-      "\"</SrcSQL><GeometryType>wkbPoint</GeometryType><LayerSRS>LOCAL_CS[\"site\",UNIT[\"foot\","
+      "</SrcDataSource><SrcLayer>" + stem +
+      "</SrcLayer><GeometryType>wkbPoint</GeometryType><LayerSRS>LOCAL_CS[\"site\",UNIT[\"foot\","
       "0.3048],AXIS[\"x\",EAST],AXIS[\"y\",NORTH]]</LayerSRS><GeometryField "
       "encoding=\"PointFromColumns\" x=\"x\" y=\"y\"/></OGRVRTLayer></OGRVRTDataSource>");
   std::vector<std::string> notes;

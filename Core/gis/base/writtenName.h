@@ -1,0 +1,31 @@
+#pragma once
+
+/// @file
+/// Names of files as files write them: paths, GDAL's file systems, drivers before a name, XML.
+
+#include <string>
+
+namespace rockfall::gis
+{
+
+/// Whether a name has a file system of GDAL's in it that is neither memory nor a local file.
+bool isOnOtherSystem(const std::string& name);
+
+/// That, or an address (://).
+bool isAddress(const std::string& name);
+
+/// Whether the name is itself the text of a virtual dataset.
+bool isXml(const std::string& name);
+
+/// All of a file; nothing if it is none, or too large for what it should be.
+std::string xmlOf(const std::string& fileName);
+
+/// Whether a file lies in a folder or below, after all its links.
+bool isWithin(const std::string& fileName, const std::string& folder);
+
+std::string folderOf(const std::string& fileName);
+
+/// The file of a name like NETCDF:"a.nc":z or HDF5:a.h5://z; other names as they are.
+std::string fileWithin(const std::string& name);
+
+} // namespace rockfall::gis
