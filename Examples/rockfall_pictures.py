@@ -10,6 +10,8 @@ from paraview.simple import *
 from rockfall_ground import add_array, cells, hillshade, make_polydata
 from rockfall_view import *
 
+kept = {}  # Functions that the animation calls, by name.
+
 ENLARGED = 8.0  # Size of the movie's rocks seen from afar over their real one.
 
 
@@ -357,9 +359,9 @@ class Scene:
 
         kept["tick"] = tick
         cue = PythonAnimationCue()
-        cue.Script = ("import rockfall_view\n"
+        cue.Script = ("import rockfall_pictures\n"
                       "def start_cue(self): pass\n"
-                      "def tick(self): rockfall_view.kept['tick'](self.GetAnimationTime())\n"
+                      "def tick(self): rockfall_pictures.kept['tick'](self.GetAnimationTime())\n"
                       "def end_cue(self): pass\n")
         animation.Cues.append(cue)
         animation.PlayMode = "Sequence"

@@ -176,16 +176,17 @@ def cast_shadows(polydata, ground, light=(-0.35, 0.25, 1.0)):
     return fallen
 
 
-kept = {}  # What the pipeline's Python filters and the animation call, by name.
-
-
 def python_filter(source, name, points_of):
-    """A filter that moves the points of the rocks at any time."""
-    def run(given, made):
+    """A filter, registered as `name`, that moves the points of the rocks at any time. It has a
+    function instead of a script: ParaView runs scripts among the caller's own names, and puts all
+    of numpy's there."""
+    filtered = ProgrammableFilter(registrationName=name, Input=source, CopyArrays=0)
+    algorithm = filtered.GetClientSideObject()
+
+    def run():
+        given, made = algorithm.GetPolyDataInput(), algorithm.GetPolyDataOutput()
         made.ShallowCopy(given)
         if given.GetNumberOfPoints():
             made.SetPoints(make_polydata(points_of(given)).GetPoints())
-    kept[name] = run
-    return ProgrammableFilter(Input=source, CopyArrays=0, Script=(
-        "import rockfall_view\n"
-        f"rockfall_view.kept[{name!r}](self.GetPolyDataInput(), self.GetPolyDataOutput())"))
+    algorithm.SetExecuteMethod(run)
+    return filtered

@@ -1,8 +1,8 @@
 #include "results/collectorOutputs.h"
 
-#include "shared/arrays.h"
 #include "base/abort.h"
 #include "base/errors.h"
+#include "shared/arrays.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
@@ -28,12 +28,8 @@ std::vector<CollectorLine> linesOf(
   vtkPolyData* input, const Vec3& origin, const CollectorLine& barrier)
 {
   std::vector<CollectorLine> lines;
-  auto cells = vtk::TakeSmartPointer(input->GetLines()->NewIterator());
-  for (cells->GoToFirstCell(); !cells->IsDoneWithTraversal(); cells->GoToNextCell())
+  const auto add = [&](vtkIdType size, const vtkIdType* ids, bool closed)
   {
-    vtkIdType size = 0;
-    const vtkIdType* ids = nullptr;
-    cells->GetCurrentCell(size, ids);
     CollectorLine& line = lines.emplace_back(barrier);
     line.name = "line " + std::to_string(lines.size());
     for (vtkIdType k = 0; k < size; ++k)
@@ -50,6 +46,21 @@ std::vector<CollectorLine> linesOf(
     {
       throw DataError(
         "The Lines input's " + line.name + " has no two different places in the plane");
+    }
+    if (closed && line.points.front() != line.points.back())
+    {
+      line.points.push_back(line.points.front());
+    }
+  };
+  for (vtkCellArray* cells : { input->GetLines(), input->GetPolys() })
+  {
+    auto cell = vtk::TakeSmartPointer(cells->NewIterator());
+    for (cell->GoToFirstCell(); !cell->IsDoneWithTraversal(); cell->GoToNextCell())
+    {
+      vtkIdType size = 0;
+      const vtkIdType* ids = nullptr;
+      cell->GetCurrentCell(size, ids);
+      add(size, ids, cells == input->GetPolys());
     }
   }
   if (lines.empty())

@@ -2,17 +2,18 @@
 
 #include "base/errors.h"
 #include "base/text/numberText.h"
-#include "results/collectorOutputs.h"
-#include "shared/failure.h"
 #include "geometry/shell.h"
-#include "gis/layers/lineLayer.h"
 #include "gis/base/reach.h"
+#include "gis/layers/lineLayer.h"
+#include "mesh/precision.h"
+#include "results/collectorOutputs.h"
+#include "results/trajectoriesInput.h"
+#include "shared/drawnPoints.h"
+#include "shared/failure.h"
 #include "shared/inputs.h"
 #include "shared/lineWalls.h"
-#include "mesh/precision.h"
 #include "shared/rockPaths.h"
 #include "shared/terrainFieldData.h"
-#include "results/trajectoriesInput.h"
 
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -228,7 +229,14 @@ Collected collect(vtkPolyData* trajectories, const std::vector<CollectorLine>& l
 //------------------------------------------------------------------------------
 void vtkTrajectoryCollector::AddPoint(double x, double y, double z)
 {
-  this->Points.push_back({ x, y, z });
+  this->Points.insert(this->Points.end(), { x, y, z });
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+void vtkTrajectoryCollector::AddCoordinate(double coordinate)
+{
+  this->Points.push_back(coordinate);
   this->Modified();
 }
 
@@ -326,7 +334,7 @@ int vtkTrajectoryCollector::RequestData(
           lines.push_back(std::move(line));
         }
       }
-      std::vector<std::array<double, 3>> points = this->Points;
+      std::vector<std::array<double, 3>> points = filters::drawnPoints(this->Points);
       if (points.empty() && lines.empty())
       {
         const std::array<double, 6> placed = filters::lineAcross(trajectories, slope, origin);
@@ -370,7 +378,7 @@ void vtkTrajectoryCollector::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "FileName: " << this->FileName << "\n";
   os << indent << "AllowReferences: " << this->AllowReferences << "\n";
   os << indent << "LayerName: " << this->LayerName << "\n";
-  os << indent << "Points: " << this->Points.size() << "\n";
+  os << indent << "Points: " << this->Points.size() / 3 << "\n";
   os << indent << "PlacedLine:";
   for (const double number : this->PlacedLine)
   {

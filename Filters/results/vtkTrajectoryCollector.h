@@ -21,7 +21,6 @@
 #include "RockfallFiltersModule.h"
 #include "vtkPolyDataAlgorithm.h"
 
-#include <array>  // for points
 #include <string> // for FileName
 #include <vector> // for points
 
@@ -66,8 +65,11 @@ public:
    * Points of a line that is drawn, in world coordinates; their z does not count. None by default.
    */
   void AddPoint(double x, double y, double z);
+  /// Numbers one by one, three of them a point: a list whose length is no multiple of three is an
+  /// error of the run.
+  void AddCoordinate(double coordinate);
   void ClearPoints();
-  int GetNumberOfPoints() const { return int(this->Points.size()); }
+  int GetNumberOfPoints() const { return int(this->Points.size() / 3); }
   ///@}
 
   /**
@@ -108,7 +110,7 @@ private:
   std::string FileName;
   int AllowReferences = 0;
   std::string LayerName;
-  std::vector<std::array<double, 3>> Points;
+  std::vector<double> Points; ///< x, y, z of each in turn.
   double PlacedLine[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
   double BarrierHeight = 4.0;
   double BarrierCapacity = 1000.0;

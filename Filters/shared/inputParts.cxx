@@ -13,6 +13,7 @@
 #include "vtkImageData.h"
 #include "vtkNew.h"
 #include "vtkPolyData.h"
+#include "vtkUnstructuredGrid.h"
 #include "vtkVariant.h"
 
 #include <vector>
@@ -28,7 +29,7 @@ constexpr char heightsOfPart[] = "TerrainHeights";
 
 struct Part
 {
-  vtkPolyData* data;
+  vtkSmartPointer<vtkPolyData> data;
   int number; ///< Among all parts, from 1.
 };
 
@@ -45,7 +46,11 @@ std::vector<Part> partsOf(vtkCompositeDataSet* composite, const std::string& nam
   for (vtkDataObject* object : leavesOf(composite))
   {
     ++number;
-    auto* data = vtkPolyData::SafeDownCast(object);
+    vtkSmartPointer<vtkPolyData> data = vtkPolyData::SafeDownCast(object);
+    if (auto* grid = vtkUnstructuredGrid::SafeDownCast(object))
+    {
+      data = polyDataOf(grid, partName(name, { nullptr, number }));
+    }
     if (!data)
     {
       throw DataError(partName(name, { nullptr, number }) + " a " + object->GetClassName() +
@@ -181,6 +186,10 @@ vtkSmartPointer<vtkPolyData> onePolyData(
   if (auto* whole = vtkPolyData::SafeDownCast(data))
   {
     return whole;
+  }
+  if (auto* grid = vtkUnstructuredGrid::SafeDownCast(data))
+  {
+    return polyDataOf(grid, name);
   }
   auto* composite = vtkCompositeDataSet::SafeDownCast(data);
   if (!composite)

@@ -7,6 +7,7 @@
 /// that point at points which are not there, arrays shorter than what they belong to, NaN for the
 /// number of a block. Composite data (Group Datasets, multi-block files, partitioned data sets) are
 /// taken as if their parts had been appended, but rocks, which are one polydata or one part.
+/// Unstructured grids of points, lines and polygons are taken as polydata.
 
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
@@ -20,6 +21,7 @@ class vtkImageData;
 class vtkInformation;
 class vtkInformationVector;
 class vtkPolyData;
+class vtkUnstructuredGrid;
 
 namespace rockfall::filters
 {
@@ -35,8 +37,8 @@ enum class InputKind
   Any,          ///< "The Input", of which arrays need hold nothing.
 };
 
-/// Lets a port take polydata, by themselves or in composite data, which come in one piece then
-/// instead of leaf by leaf.
+/// Lets a port take polydata and unstructured grids, by themselves or in composite data, which come
+/// in one piece then instead of leaf by leaf.
 void acceptPolyData(vtkInformation* port);
 
 /// The latest change of a data object, and of the parts of composite data.
@@ -90,8 +92,12 @@ std::vector<vtkDataObject*> leavesOf(vtkDataObject* data);
 /// beginning with `name`, if there are several or other parts.
 vtkImageData* oneImage(vtkDataObject* data, const std::string& name);
 
+/// An unstructured grid's cells in the order that polydata have: points, lines, polygons. Throws
+/// DataError, beginning with `name`, if there are others.
+vtkSmartPointer<vtkPolyData> polyDataOf(vtkUnstructuredGrid* grid, const std::string& name);
+
 /// The parts of composite data as one. Throws DataError, beginning with `name`, if they are not
-/// alike. `data` may be a polydata itself.
+/// alike. `data` may be a polydata or an unstructured grid itself.
 vtkSmartPointer<vtkPolyData> onePolyData(
   vtkDataObject* data, InputKind kind, const std::string& name);
 

@@ -3,10 +3,11 @@
 #include "sources/rockBlockSources.h"
 
 #include "base/text/numberText.h"
-#include "sources/drawnSource.h"
-#include "shared/failure.h"
 #include "gis/base/reach.h"
+#include "shared/drawnPoints.h"
+#include "shared/failure.h"
 #include "shared/terrainFieldData.h"
+#include "sources/drawnSource.h"
 
 #include "vtkPolyData.h"
 
@@ -150,7 +151,7 @@ void vtkRockBlockSource::FindDrawn(Sources& sources)
   {
     refuseProperty("Draw", this->Draw, "0 (nothing), 1 (points), 2 (line) or 3 (area)");
   }
-  std::vector<std::array<double, 3>> points = this->Points;
+  std::vector<std::array<double, 3>> points = rockfall::filters::drawnPoints(this->Points);
   if (points.empty() && terrain)
   {
     const std::array<double, 6> placed = rockfall::filters::steepLine(*terrain);

@@ -1,15 +1,16 @@
 #include "vtkDrawnStructure.h"
 
-#include "shared/attempt.h"
 #include "base/errors.h"
 #include "base/text/numberText.h"
-#include "sources/drawnSource.h"
+#include "run/releasePlaces.h"
+#include "shared/attempt.h"
+#include "shared/drawnPoints.h"
 #include "shared/failure.h"
 #include "shared/inputs.h"
 #include "shared/pieces.h"
-#include "run/releasePlaces.h"
 #include "shared/structureFieldData.h"
 #include "shared/terrainFieldData.h"
+#include "sources/drawnSource.h"
 
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
@@ -89,7 +90,14 @@ int vtkDrawnStructure::FillInputPortInformation(int, vtkInformation* info)
 //------------------------------------------------------------------------------
 void vtkDrawnStructure::AddPoint(double x, double y, double z)
 {
-  this->Points.push_back({ x, y, z });
+  this->Points.insert(this->Points.end(), { x, y, z });
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+void vtkDrawnStructure::AddCoordinate(double coordinate)
+{
+  this->Points.push_back(coordinate);
   this->Modified();
 }
 
@@ -153,7 +161,7 @@ int vtkDrawnStructure::RequestData(
       filters::dropStructures(bare->GetFieldData());
       Terrain slope = filters::readTerrain(bare, false);
 
-      std::vector<std::array<double, 3>> points = this->Points;
+      std::vector<std::array<double, 3>> points = filters::drawnPoints(this->Points);
       if (points.empty())
       {
         const std::array<double, 6> placed = filters::middleLine(slope);
@@ -229,7 +237,7 @@ void vtkDrawnStructure::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Kind: " << this->Kind << "\n";
-  os << indent << "Points: " << this->Points.size() << "\n";
+  os << indent << "Points: " << this->Points.size() / 3 << "\n";
   os << indent << "PlacedLine:";
   for (const double number : this->PlacedLine)
   {

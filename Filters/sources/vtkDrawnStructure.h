@@ -13,7 +13,6 @@
 #include "RockfallFiltersModule.h"
 #include "vtkPolyDataAlgorithm.h"
 
-#include <array>  // for points
 #include <vector> // for points
 
 class ROCKFALLFILTERS_EXPORT vtkDrawnStructure : public vtkPolyDataAlgorithm
@@ -43,8 +42,11 @@ public:
    * their z does not count. None (the default): a level line through the middle of the slope.
    */
   void AddPoint(double x, double y, double z);
+  /// Numbers one by one, three of them a point: a list whose length is no multiple of three is an
+  /// error of the run.
+  void AddCoordinate(double coordinate);
   void ClearPoints();
-  int GetNumberOfPoints() const { return int(this->Points.size()); }
+  int GetNumberOfPoints() const { return int(this->Points.size() / 3); }
   ///@}
 
   /**
@@ -108,7 +110,7 @@ private:
   void CheckProperties() const; ///< Throws ParameterError.
 
   int Kind = NET;
-  std::vector<std::array<double, 3>> Points;
+  std::vector<double> Points; ///< x, y, z of each in turn.
   double PlacedLine[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
   double Height = 4.0;
   double Capacity = 1000.0;

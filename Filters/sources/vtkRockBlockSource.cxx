@@ -1,18 +1,18 @@
 #include "vtkRockBlockSource.h"
 
-#include "shared/attempt.h"
 #include "base/errors.h"
 #include "base/text/numberText.h"
-#include "shared/failure.h"
 #include "geometry/shell.h"
 #include "gis/base/reach.h"
-#include "shared/inputs.h"
-#include "shared/pieces.h"
-#include "sources/rockBlockSources.h"
-#include "sources/rockMaker.h"
 #include "run/overlaps.h"
 #include "run/releasePlaces.h"
+#include "shared/attempt.h"
+#include "shared/failure.h"
+#include "shared/inputs.h"
+#include "shared/pieces.h"
 #include "shared/terrainFieldData.h"
+#include "sources/rockBlockSources.h"
+#include "sources/rockMaker.h"
 
 #include "vtkInformation.h"
 #include "vtkNew.h"
@@ -61,7 +61,14 @@ int vtkRockBlockSource::FillInputPortInformation(int, vtkInformation* info)
 //------------------------------------------------------------------------------
 void vtkRockBlockSource::AddPoint(double x, double y, double z)
 {
-  this->Points.push_back({ x, y, z });
+  this->Points.insert(this->Points.end(), { x, y, z });
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+void vtkRockBlockSource::AddCoordinate(double coordinate)
+{
+  this->Points.push_back(coordinate);
   this->Modified();
 }
 
@@ -266,7 +273,7 @@ void vtkRockBlockSource::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "AllowReferences: " << this->AllowReferences << "\n";
   os << indent << "LayerName: " << (this->LayerName.empty() ? "(none)" : this->LayerName) << "\n";
   os << indent << "Draw: " << this->Draw << "\n";
-  os << indent << "Points: " << this->Points.size() << "\n";
+  os << indent << "Points: " << this->Points.size() / 3 << "\n";
   os << indent << "PlacedLine:";
   for (const double number : this->PlacedLine)
   {

@@ -21,7 +21,6 @@
 #include "RockfallFiltersModule.h"
 #include "vtkPolyDataAlgorithm.h"
 
-#include <array>  // for points
 #include <string> // for FileName
 #include <vector> // for points
 
@@ -276,8 +275,11 @@ public:
    * (the default): with a terrain, the ends of a level line across the highest of its steep places.
    */
   void AddPoint(double x, double y, double z);
+  /// Numbers one by one, three of them a point: a list whose length is no multiple of three is an
+  /// error of the run.
+  void AddCoordinate(double coordinate);
   void ClearPoints();
-  int GetNumberOfPoints() const { return int(this->Points.size()); }
+  int GetNumberOfPoints() const { return int(this->Points.size() / 3); }
   ///@}
 
   /**
@@ -517,7 +519,7 @@ private:
   std::string FileName;
   std::string LayerName;
   int Draw = NOTHING;
-  std::vector<std::array<double, 3>> Points;
+  std::vector<double> Points; ///< x, y, z of each in turn.
   double PlacedLine[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
   std::string TargetCRS;
   int AllowReferences = 0;

@@ -18,7 +18,6 @@
 #include "vtkRockfallHazardMap.h"
 #include "vtkTrajectoryCollector.h"
 #include "vtkTrajectoryLayerWriter.h"
-#include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -136,14 +135,11 @@ TEST_F(TestCompositeInputs, OnePartThatCannotBeTakenIsOneError)
   vtkNew<vtkMultiBlockDataSet> mixed;
   this->Rocks->Update();
   mixed->SetBlock(0, this->Rocks->GetOutput());
-  vtkNew<vtkUnstructuredGrid> grid;
-  vtkNew<vtkPoints> points;
-  points->InsertNextPoint(0, 0, 0);
-  grid->SetPoints(points);
-  mixed->SetBlock(1, grid);
+  vtkNew<vtkImageData> image;
+  mixed->SetBlock(1, image);
   this->Simulation->SetInputDataObject(1, mixed);
   this->ExpectEmpty();
-  this->ExpectOneError({ "The Rocks input", "part 2", "vtkUnstructuredGrid", "Extract Surface" });
+  this->ExpectOneError({ "The Rocks input", "part 2", "vtkImageData", "Extract Surface" });
 }
 
 TEST_F(TestCompositeInputs, ASlopeAmongOtherParts)

@@ -1,13 +1,13 @@
 #include "gis/layers/lineLayer.h"
 
 #include "base/errors.h"
+#include "gis/base/crs.h"
+#include "gis/base/gdal.h"
 #include "gis/layers/FeatureRow.h"
 #include "gis/layers/LayerFile.h"
 #include "gis/layers/barrierUnits.h"
-#include "gis/base/crs.h"
-#include "gis/base/gdal.h"
-#include "gis/trust/heights.h"
 #include "gis/layers/lines.h"
+#include "gis/trust/heights.h"
 
 #include <ogrsf_frmts.h>
 
@@ -51,13 +51,14 @@ public:
     line.height = row.notNegative("height");
     line.capacity = row.notNegative("capacity");
     refuseOtherUnits(row, line.height, line.capacity);
-    for (const OGRLineString* part : linesIn(row))
+    for (const OGRLineString* part : linesIn(row, &outlines))
     {
       this->add(row, *part, line);
     }
   }
 
   std::vector<LayerLine> lines;
+  std::int64_t outlines = 0; ///< Of polygons, among the lines.
 
 private:
   void add(const FeatureRow& row, const OGRLineString& part, LayerLine line)
@@ -100,7 +101,8 @@ std::vector<LayerLine> readLineLayer(const std::string& fileName, const std::str
   Messages messages;
   LayerWish wish{ fileName, layerName };
   wish.what = "layer of lines";
-  wish.kinds = kLines;
+  wish.kinds = kLines | kPolygons;
+  wish.better = kLines;
   LayerFile file(wish, messages);
   OGRLayer& layer = file.layer();
   refuseNearMisses(file.definition(), fileName, { "height", "capacity" }, { "name" });
@@ -132,6 +134,15 @@ std::vector<LayerLine> readLineLayer(const std::string& fileName, const std::str
   {
     file.tell(*notes, true);
     notes->insert(notes->end(), told.begin(), told.end());
+    if (reader.outlines > 0)
+    {
+      notes->push_back(fileName + ": " + std::to_string(reader.outlines) +
+        (reader.outlines == 1 ? " polygon is taken as its outline"
+                              : " polygons are taken as their outlines") +
+        ": a rock that comes in passes, and passes again as it goes out; one that is released "
+        "inside "
+        "passes as it leaves");
+    }
   }
   return std::move(reader.lines);
 }

@@ -24,13 +24,14 @@ struct LayerLine
   std::optional<double> capacity; ///< Of the column "capacity", kJ.
 };
 
-/// Reads the lines of a layer of anything OGR opens (gis/layers/LayerFile.h has which one; `layer`: by
-/// name), curves as short straight pieces and without empty parts, brought to `targetCrs` (WKT) if
-/// that is given and the layer has a CRS. Column names without regard to case; empty cells are as
-/// good as no column. `notes`, if given, gets what was done to the data.
+/// Reads the lines of a layer, and of polygons the outer rings, of anything OGR opens
+/// (gis/layers/LayerFile.h has which one; `layer`: by name), curves as short straight pieces and
+/// without empty parts, brought to `targetCrs` (WKT) if that is given and the layer has a CRS.
+/// Column names without regard to case; empty cells are as good as no column. `notes`, if given,
+/// gets what was done to the data.
 ///
 /// Throws FileError (missing, a folder, a raster, unreadable) or DataError naming file, feature,
-/// field and value: a geometry that is no line, a line of one place, no feature, a number that is
+/// field and value: a geometry that is neither, a line of one place, no feature, a number that is
 /// none, negative or not finite, a place that has none in the other CRS. Prints nothing.
 std::vector<LayerLine> readLineLayer(const std::string& fileName, const std::string& targetCrs = {},
   const std::string& layer = {}, std::vector<std::string>* notes = nullptr);

@@ -6,8 +6,8 @@ namespace rockfall::gis
 namespace
 {
 
-void gather(
-  const FeatureRow& row, const OGRGeometry& geometry, std::vector<const OGRLineString*>& lines)
+void gather(const FeatureRow& row, const OGRGeometry& geometry, std::int64_t* outlines,
+  std::vector<const OGRLineString*>& lines)
 {
   const auto type = wkbFlatten(geometry.getGeometryType());
   if (geometry.IsEmpty())
@@ -18,11 +18,17 @@ void gather(
   {
     lines.push_back(geometry.toLineString());
   }
-  else if (type == wkbMultiLineString || type == wkbGeometryCollection)
+  else if (type == wkbPolygon && outlines)
+  {
+    lines.push_back(geometry.toPolygon()->getExteriorRing());
+    ++*outlines;
+  }
+  else if (type == wkbMultiLineString || type == wkbGeometryCollection ||
+    (type == wkbMultiPolygon && outlines))
   {
     for (const OGRGeometry* part : *geometry.toGeometryCollection())
     {
-      gather(row, *part, lines);
+      gather(row, *part, outlines, lines);
     }
   }
   else
@@ -33,7 +39,7 @@ void gather(
 
 } // namespace
 
-std::vector<const OGRLineString*> linesIn(const FeatureRow& row)
+std::vector<const OGRLineString*> linesIn(const FeatureRow& row, std::int64_t* outlines)
 {
   const OGRGeometry* geometry = row.geometry();
   if (!geometry)
@@ -41,7 +47,7 @@ std::vector<const OGRLineString*> linesIn(const FeatureRow& row)
     row.fail("has no geometry, a line is needed");
   }
   std::vector<const OGRLineString*> lines;
-  gather(row, *geometry, lines);
+  gather(row, *geometry, outlines, lines);
   return lines;
 }
 

@@ -12,7 +12,8 @@ namespace rockfall::gis
 
 /// The lines of a feature: parts of several lines and of collections, curves as short straight
 /// pieces; without parts that are empty. The row owns them. Throws DataError naming file and row if
-/// there is none, or something else.
-std::vector<const OGRLineString*> linesIn(const FeatureRow& row);
+/// there is none, or something else. `outlines`, if given, lets polygons have their outer rings
+/// taken, and gets how many there were.
+std::vector<const OGRLineString*> linesIn(const FeatureRow& row, std::int64_t* outlines = nullptr);
 
 } // namespace rockfall::gis

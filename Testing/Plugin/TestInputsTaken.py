@@ -1,0 +1,138 @@
+"""Data sets, polygons and lists that ParaView and cadastres give in another form than was thought of:
+taken as they are meant, or one message."""
+
+import os
+import sys
+
+from helpers import columns_of, delete_sources, errors_of, messages_of, write_text
+
+from paraview import servermanager
+from paraview.simple import (
+    AppendDatasets, DEMtoCFEMesh, DispersionAngle, DrawnStructure, GroupDatasets, GrowingPaths,
+    MergeBlocks, OutputPort, Plane, RockBlocks, RockfallHazardMap, RockfallSimulation, RockRelease,
+    SaveData, Threshold, TrajectoryCollector, TrajectoryProfile, UpdatePipeline, Wavelet)
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Examples"))
+import rockfall_view  # noqa: E402
+
+
+def fetch(source, port=0):
+    return servermanager.Fetch(source, idx=port)
+
+
+def notes_of(data):
+    notes = data.GetFieldData().GetAbstractArray("Notes")
+    return [notes.GetValue(k) for k in range(notes.GetNumberOfValues())] if notes else []
+
+
+def all_of(source, name):
+    return Threshold(Input=source, Scalars=["CELLS", name], LowerThreshold=-1, UpperThreshold=1e9)
+
+
+slope = DEMtoCFEMesh(RoughnessDeviation=0, FrictionAngle=25)
+blocks = RockBlocks(Terrain=slope, Amount=2, ClusterRadius=5, PlaceOnGround=1, Center=[5, 50, 0])
+fall = RockfallSimulation(Terrain=slope, Rocks=blocks, EndTime=20, Iterations=2)
+paths = OutputPort(fall, 1)
+
+
+# --- Unstructured grids of polylines, in every filter of trajectories.
+
+def results(given):
+    """What each filter makes of trajectories, as sizes and numbers."""
+    made = []
+    area = RockfallHazardMap(Input=given)
+    area.UpdatePipeline()
+    made.append(fetch(area).GetCellData().GetArray("Rocks").GetRange())
+    made.append(fetch(area).GetNumberOfCells())
+    line = TrajectoryCollector(Input=given, Points=[60, 0, 0, 60, 100, 0])
+    line.UpdatePipeline()
+    made.append(columns_of(fetch(line, 1)))
+    for maker in DispersionAngle, TrajectoryProfile, GrowingPaths:
+        source = maker(Input=given)
+        source.UpdatePipeline()
+        data = fetch(source)
+        made.append(data.GetNumberOfRows() if data.IsA("vtkTable") else data.GetNumberOfCells())
+    return repr(made)
+
+
+expected = results(paths)
+assert "nan" not in expected.split("}")[0].split("Share")[0], expected
+for grid in all_of(paths, "Iteration"), MergeBlocks(Input=GroupDatasets(Input=[paths])), \
+        AppendDatasets(Input=[paths]), GroupDatasets(Input=[all_of(paths, "Iteration")]):
+    made = results(grid)
+    assert made == expected, (made, expected)
+SaveData("paths.gpkg", proxy=all_of(paths, "Iteration"))
+assert os.path.getsize("paths.gpkg") > 0
+some = TrajectoryCollector(Points=[60, 0, 0, 60, 100, 0], Input=Threshold(
+    Input=paths, Scalars=["CELLS", "Iteration"], LowerThreshold=1, UpperThreshold=1))
+some.UpdatePipeline()
+assert columns_of(fetch(some, 1))["Rocks"] == [2], columns_of(fetch(some, 1))
+# Blocks by a value of their cells, as polygons of a grid.
+one = RockfallSimulation(Terrain=slope, EndTime=20, Rocks=Threshold(
+    Input=blocks, Scalars=["CELLS", "BlockId"], LowerThreshold=2, UpperThreshold=2))
+one.UpdatePipeline()
+assert columns_of(fetch(one, 3))["BlockId"] == [2], columns_of(fetch(one, 3))
+# Cells that are neither points, lines nor polygons.
+solid = RockfallHazardMap(Input=AppendDatasets(Input=[Wavelet(WholeExtent=[0, 2] * 3)]))
+errors = errors_of(solid)
+assert len(errors) == 1 and "cell 0" in errors[0] and "vtkVoxel" in errors[0], errors
+
+# --- Polygons for the line.
+
+road = "60 -10,60 110,67 110,67 -10,60 -10"
+write_text("road.csv", f'WKT,name\n"POLYGON(({road}))",road\n')
+write_text("edges.csv", 'WKT,name\n"LINESTRING(60 -10,60 110)",in\n"LINESTRING(67 -10,67 110)",out\n')
+
+
+def line_of(name):
+    collector = TrajectoryCollector(Input=paths, FileName=name)
+    collector.UpdatePipeline()
+    return columns_of(fetch(collector, 1)), notes_of(fetch(collector))
+
+
+rows, notes = line_of("road.csv")
+edges, none = line_of("edges.csv")
+assert rows["Rocks"] == edges["Rocks"][:1] and edges["Rocks"][0] > 0, (rows, edges)
+assert rows["Passings"] == [sum(edges["Passings"])], (rows, edges)
+assert rows["KineticEnergyMean"] == edges["KineticEnergyMean"][:1], (rows, edges)
+assert len(notes) == 1 and "road.csv: 1 polygon is taken as its outline" in notes[0], notes
+assert none == [], none
+# A courtyard is inside the house; both parts of a farm are lines of their own.
+write_text("farm.csv", 'WKT,name\n"MULTIPOLYGON((({0}),(62 10,62 90,65 90,65 10,62 10)),'
+           '((80 0,80 100,85 100,85 0,80 0)))",farm\n'.format(road))
+farm, notes = line_of("farm.csv")
+assert farm["LineName"] == ["farm", "farm"] and farm["Passings"][0] == rows["Passings"][0], farm
+assert "2 polygons" in notes[0], notes
+# Lines and polygons in one layer; polygons of a source in the pipeline.
+write_text("both.csv", f'WKT,name\n"POLYGON(({road}))",road\n"LINESTRING(60 -10,60 110)",in\n')
+both, _ = line_of("both.csv")
+assert both["LineName"] == ["road", "in"] and both["Rocks"] == rows["Rocks"] * 2, both
+face = Plane(Origin=[60, -10, 0], Point1=[60, 110, 0], Point2=[67, -10, 0], XResolution=1, YResolution=1)
+drawn = TrajectoryCollector(Input=paths, Lines=face)
+drawn.UpdatePipeline()
+assert columns_of(fetch(drawn, 1))["Passings"] == rows["Passings"], columns_of(fetch(drawn, 1))
+
+# --- Lists of numbers that are no points.
+
+for proxy, numbers in ((RockRelease(Terrain=slope, Points=[1, 2]), 2),
+                       (RockRelease(Terrain=slope, Points=[5, 45, 58, 15]), 4),
+                       (DrawnStructure(Terrain=slope, Points=[70, 1, 0, 70, 99]), 5),
+                       (TrajectoryCollector(Input=paths, Points=[60, 0]), 2)):
+    errors = errors_of(proxy)
+    assert len(errors) == 1 and f"Points has {numbers} numbers" in errors[0], errors
+proxy = RockRelease(Terrain=slope, Points=[5, 45, 58, 15, 45, 58])
+proxy.UpdatePipeline()
+placed = fetch(proxy).GetNumberOfCells()
+assert placed == 60 and len(proxy.Points) == 6, (placed, proxy.Points)
+
+# --- Names of a script that uses the filters of the examples.
+
+source, e, any_of = fall, 0.8, any
+before = set(globals())
+halved = rockfall_view.python_filter(
+    OutputPort(fall, 0), "halved", lambda data: rockfall_view.rock_points(data)[0] * 0.5)
+for time in 0.0, 1.0:
+    halved.UpdatePipeline(time)
+    assert fetch(halved).GetBounds() == tuple(0.5 * x for x in fetch(fall).GetBounds()), time
+assert source is fall and e == 0.8 and any is any_of, (source, e, any)
+assert set(globals()) - before <= {"halved", "time", "before"}, set(globals()) - before
