@@ -15,5 +15,8 @@ namespace rockfall
 BlockState fly(const Block& block, const BlockState& state, double gravity, double duration);
 /// Where the centroid is then, to the bit.
 Vec3 placeInFlight(const BlockState& state, double gravity, double duration);
+/// Way of a flight of this time (s) between two velocities, m: within 0.1 % of the parabola's
+/// length.
+double flightLength(double duration, const Vec3& from, const Vec3& to);
 
 } // namespace rockfall

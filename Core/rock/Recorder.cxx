@@ -1,5 +1,6 @@
 #include "rock/Recorder.h"
 
+#include "block/flight.h"
 #include "law/settings.h"
 
 #include <algorithm>
@@ -8,24 +9,6 @@
 
 namespace rockfall
 {
-
-namespace
-{
-
-/// Of a flight of this time (s) between two velocities, m: Simpson's rule in pieces.
-double parabolaLength(double duration, const Vec3& from, const Vec3& to)
-{
-  constexpr int pieces = 32;
-  double sum = 0.0;
-  for (int k = 0; k <= 2 * pieces; ++k)
-  {
-    const double weight = k == 0 || k == 2 * pieces ? 1.0 : k % 2 == 1 ? 4.0 : 2.0;
-    sum += weight * (from + (0.5 * k / pieces) * (to - from)).norm();
-  }
-  return duration * sum / (6.0 * pieces);
-}
-
-} // namespace
 
 double heightOverGround(const Surface& surface, const Block& block, const BlockState& state)
 {
@@ -191,7 +174,7 @@ void Recorder::follow(const BlockState& state)
 
 void Recorder::followFlight(const BlockState& from, const BlockState& to)
 {
-  trajectory_.summary.pathLength += parabolaLength(to.time - from.time, from.velocity, to.velocity);
+  trajectory_.summary.pathLength += flightLength(to.time - from.time, from.velocity, to.velocity);
   this->reach(to);
 }
 
