@@ -1,9 +1,9 @@
 #pragma once
 
 /// @file
-/// The law of one contact over a step of h (s), the only one (METHOD 3): normal spring, dashpot,
-/// shear spring and Coulomb's limit. A single rock, a small group and the slope as blocks evaluate
-/// it; the sweeps of a crowd have it in vector form (solve/island/crowdSweep.h), tested against it.
+/// The law of one contact over a step of h (s) (METHOD 3), as single rocks and the slope as blocks
+/// have it. Islands have its springs and limit in impulses of substeps (solve/island/softSweep.h),
+/// crowds all of it in vector form (solve/island/crowdSweep.h), tested against this one.
 ///
 /// Along the normal n, gaps d₀ and d₁ at the start and the end (m; < 0: overlap), V(d) = ½ pₙ
 /// min(d, 0)²:

@@ -346,7 +346,7 @@ inline constexpr double kNoWay = 1e-9;
 inline constexpr double kSameBreak = 1e-9;
 
 // ---------------------------------------------------------------------------------------------
-// 12  Slope, roughness, structures
+// 13  Slope, roughness, structures
 
 /// Largest friction angle, degrees, drawn ones too: tan φ is 57 here.
 inline constexpr double kSteepestFriction = 89.0;
@@ -382,7 +382,7 @@ inline constexpr double kSamePlace = 1e-6;
 inline constexpr double kPieceEnd = 1e-9;
 
 // ---------------------------------------------------------------------------------------------
-// 13  Recording
+// 14  Recording
 
 /// Time between the knots before and after a velocity changes at once, s: a path has one point at a
 /// time.
@@ -393,7 +393,7 @@ inline constexpr double kOneTime = 0.5 * kInstant;
 inline constexpr double kPathTolerance = 0.01;
 
 // ---------------------------------------------------------------------------------------------
-// 14  Release
+// 15  Release
 
 /// Largest height over the slope, m: 1000 m read as feet are 2000 m too high.
 inline constexpr double kHighestRelease = 500.0;

@@ -7,15 +7,15 @@
 /// - The rotation r is applied as a Cayley map, so that a material point moves by exactly
 ///   u + r × Z + Δε X with the lever Z = ½ (X₁ + cay(r) X₁) at mid-step: the gap of a vertex–face
 ///   contact at the end of the step is linear in D without remainder, and the volume does not grow.
-/// - The force of a spring over a step is either its discrete gradient, −(V(d₁) − V(d₀)) / (d₁ −
-/// d₀)
-///   with V(d) = ½ p min(d, 0)², which conserves energy to the last digit for any Δt and any phase
-///   of the impact in the step (Impact), or its value at the end of the step (Lasting), as Shi's.
+/// - The force of a spring over a step is either its discrete gradient
+///       −(V(d₁) − V(d₀)) / (d₁ − d₀),  V(d) = ½ p min(d, 0)²,
+///   which conserves energy to the last digit for any Δt and any phase of the impact in the step
+///   (Impact), or its value at the end of the step (Lasting), as Shi's.
 /// - Velocities: Impact takes Shi's Ḋ¹ = 2 D/Δt − Ḋ⁰. With a stiff contact that leaves the velocity
-///   ringing at ±v for ever, so Lasting takes Ḋ¹ = D/Δt + ½ Δt D̈⁰, second-order too and damped at
-///   high frequency (|λ| = 0.71 as Δt → ∞).
-/// - With 6 unknowns the strain has no inertia: what a contact force strains at its point is part
-/// of
+///   ringing at ±v for ever, so Lasting takes
+///       Ḋ¹ = D/Δt + ½ Δt D̈⁰,
+///   second-order too and damped at high frequency (|λ| = 0.71 as Δt → ∞).
+/// - With 6 unknowns the strain has no inertia: what a contact force strains at its point is part of
 ///   that contact's spring (law/springs.h).
 /// - One contact is solved in its own three directions, W = J A⁻¹ Jᵀ; several in D.
 
