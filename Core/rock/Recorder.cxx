@@ -1,5 +1,6 @@
 #include "rock/Recorder.h"
 
+#include "base/grow.h"
 #include "block/flight.h"
 #include "law/settings.h"
 
@@ -61,7 +62,7 @@ void Recorder::record(const BlockState& state, bool contact)
     contact = trajectory_.samples.back().contact;
     this->dropLast();
   }
-  trajectory_.samples.push_back(this->makeSample(state, contact));
+  append(trajectory_.samples, this->makeSample(state, contact));
   trajectory_.samples.back().kind = knot ? SampleKind::EvenKnot : SampleKind::Even;
   ++next_;
 }
@@ -71,7 +72,7 @@ void Recorder::knot(const BlockState& state, bool contact)
   knot_ = state;
   // There is one sample at a time: the state after an impact replaces the one before it.
   const SampleKind kind = this->knotAt(state.time);
-  trajectory_.samples.push_back(this->makeSample(state, contact));
+  append(trajectory_.samples, this->makeSample(state, contact));
   trajectory_.samples.back().kind = kind;
 }
 
@@ -82,7 +83,7 @@ void Recorder::beforeJump(const BlockState& state, bool contact)
   before.time -= kInstant;
   if (!this->isAt(before.time))
   {
-    trajectory_.samples.push_back(this->makeSample(before, contact));
+    append(trajectory_.samples, this->makeSample(before, contact));
     trajectory_.samples.back().kind = SampleKind::Knot;
   }
 }
@@ -90,7 +91,7 @@ void Recorder::beforeJump(const BlockState& state, bool contact)
 void Recorder::afterJump(const BlockState& state, bool contact)
 {
   knot_ = state;
-  trajectory_.samples.push_back(this->makeSample(state, contact));
+  append(trajectory_.samples, this->makeSample(state, contact));
   trajectory_.samples.back().kind = jump_;
 }
 
@@ -198,7 +199,7 @@ void Recorder::end(const BlockState& state, bool contact)
   const bool atOnce = trajectory_.samples.size() == 1 && this->isAt(state.time);
   if (atOnce || !this->isAt(state.time))
   {
-    trajectory_.samples.push_back(this->makeSample(state, contact));
+    append(trajectory_.samples, this->makeSample(state, contact));
     trajectory_.samples.back().time += atOnce ? kInstant : 0.0;
   }
   trajectory_.samples.back().kind = SampleKind::End;

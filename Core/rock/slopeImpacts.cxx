@@ -2,6 +2,7 @@
 
 #include "rock/RockSimulator.h"
 
+#include "base/grow.h"
 #include "law/settings.h"
 #include "rock/restitution.h"
 
@@ -106,7 +107,7 @@ void RockSimulator::finishImpact(bool over)
   body_.acceleration.setZero();
   body_.spinAcceleration.setZero();
   Trajectory& trajectory = recorder_.trajectory();
-  trajectory.impacts.push_back(event);
+  append(trajectory.impacts, event);
   ++trajectory.summary.impacts;
 }
 

@@ -1,5 +1,7 @@
 #include "world/pairImpacts.h"
 
+#include "base/grow.h"
+
 #include <algorithm>
 
 namespace rockfall
@@ -82,7 +84,7 @@ void finishPairImpact(WorldState& world, RockPair& pair, bool over)
     event.otherRock = other;
     event.otherBlockId = world.rocks[other].sim.trajectory().summary.blockId;
     Trajectory& trajectory = sim.trajectory();
-    trajectory.impacts.push_back(event);
+    append(trajectory.impacts, event);
     ++trajectory.summary.impacts;
   }
 }

@@ -109,6 +109,9 @@ TEST(Retention, PathsHaveOnePointAtATime)
       fastest = std::max(fastest, sample.velocity.norm());
     }
     EXPECT_LE(fastest, t.summary.maxSpeed);
+    // Lists of many thousand rocks have no room that stays empty.
+    EXPECT_LE(4 * t.samples.capacity(), 5 * t.samples.size() + 40);
+    EXPECT_LE(4 * t.impacts.capacity(), 5 * t.impacts.size() + 40);
   }
   EXPECT_GE(even, 12 * 20);
 }
