@@ -20,16 +20,20 @@ class Bad(Exception):
 
 def shown(value):
     """A value as it stands in a message."""
-    text = json.dumps(value, default=str)
+    try:
+        text = json.dumps(value, default=str)
+    except RecursionError:
+        return "nested too deeply"
     return text if len(text) <= 60 else text[:57] + "..."
 
 
 def without_repeats(pairs):
-    names = [name for name, _ in pairs]
-    for name in names:
-        if names.count(name) > 1:
+    result = {}
+    for name, value in pairs:
+        if name in result:
             raise Bad(f"{shown(name)} is there twice")
-    return dict(pairs)
+        result[name] = value
+    return result
 
 
 def no_number(word):

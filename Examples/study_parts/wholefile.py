@@ -58,14 +58,25 @@ def write_text(path, text):
     whole(path, text.encode())
 
 
+def cell(value):
+    """A cell that no spreadsheet takes for a formula: text that begins like one gets a ' before it."""
+    if not isinstance(value, str) or not value.startswith(("=", "+", "-", "@", "\t", "\r")):
+        return value
+    try:
+        float(value)
+        return value
+    except ValueError:
+        return "'" + value
+
+
 def write_csv(path, tables):
     """Tables of the same columns as one."""
     names = list(tables[0])
     text = io.StringIO(newline="")
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(names)
+    writer.writerow(map(cell, names))
     for table in tables:
-        writer.writerows(zip(*(table[name].tolist() for name in names)))
+        writer.writerows(zip(*(map(cell, table[name].tolist()) for name in names)))
     write_text(path, text.getvalue())
 
 
@@ -121,5 +132,8 @@ class Lock:
     def release(self):
         """Once only: the next one may have made its own by then."""
         if not self.file.closed:
-            os.remove(self.path)
+            try:
+                os.remove(self.path)
+            except OSError:
+                pass  # it went with its folder
             self.file.close()

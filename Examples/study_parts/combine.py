@@ -1,0 +1,100 @@
+"""The results of the whole study, from the files of its chunks alone."""
+import hashlib
+import json
+import os
+import zipfile
+
+import numpy as np
+from paraview import servermanager
+from paraview.simple import *
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
+import wholefile
+from together import from_first_rank, refuse, write_by
+from wholefile import write_csv, write_text
+
+RESULTS = "results.json"  # not study.json, which is what a study is called that goes in
+
+
+def columns_of(fields):
+    """Arrays as {name: numbers or texts}, a vector as three columns that end in X, Y and Z."""
+    columns = {}
+    for k in range(fields.GetNumberOfArrays()):
+        array = fields.GetAbstractArray(k)
+        if not array.IsNumeric():
+            columns[array.GetName()] = np.array(
+                [array.GetValue(n) for n in range(array.GetNumberOfValues())], dtype=str)
+        elif array.GetNumberOfComponents() == 1:
+            columns[array.GetName()] = vtk_to_numpy(array).copy()
+        else:
+            for n, values in enumerate(vtk_to_numpy(array).T):
+                columns[array.GetName() + "XYZ"[n]] = values.copy()
+    return columns
+
+
+def chunk_iterations(stem):
+    """How many iterations a chunk has whose files are there; 0 if they are not."""
+    path = stem + ".npz"
+    if not os.path.exists(path):
+        return 0
+    try:
+        with np.load(path) as chunk:
+            return int(chunk["Iterations"])
+    except (ValueError, KeyError, EOFError, zipfile.BadZipFile):
+        refuse(f"{path} is damaged. Remove it, and it is made again.")
+
+
+def combine_tables(folder, stems):
+    """The table of the whole study, from its chunks alone; gives their state hashes."""
+    hashes = []
+    tables = []
+    for stem in stems:
+        with np.load(stem + ".npz") as chunk:
+            tables.append({name: chunk[name] for name in chunk.files
+                           if name not in ("StateHash", "Iterations")})
+            hashes.append(str(chunk["StateHash"]))
+    write_csv(os.path.join(folder, "summary.csv"), tables)
+    return hashes
+
+
+def combine_crossings(folder, stems, merge):
+    """Crossings, and the tables of all of them. `merge` is the filter itself: no other rank takes
+    part, and its inputs have no proxies."""
+    for stem in stems:
+        reader = vtkXMLPolyDataReader()
+        reader.SetFileName(stem + "-crossings.vtp")
+        reader.Update()
+        merge.AddInputDataObject(0, reader.GetOutput())
+    merge.Update()
+    points = merge.GetOutputDataObject(0)
+    if points.GetFieldData().GetAbstractArray("Error"):
+        refuse("The crossings cannot be merged; the message above says why.")
+    places = vtk_to_numpy(points.GetPoints().GetData()).reshape(-1, 3)
+    write_csv(os.path.join(folder, "crossings.csv"),
+              [{**dict(zip("XYZ", places.T)), **columns_of(points.GetPointData())}])
+    for port, name in ((1, "lines.csv"), (2, "exceedance.csv")):
+        write_csv(os.path.join(folder, name),
+                  [columns_of(merge.GetOutputDataObject(port).GetRowData())])
+
+
+def combine(study, folder, stems):
+    """The results of the whole study, from the files of its chunks alone."""
+    hashes = from_first_rank(lambda: combine_tables(folder, stems))
+    if "lines" in study:
+        merge = servermanager.filters.MergeCollectors().GetClientSideObject()
+        from_first_rank(lambda: combine_crossings(folder, stems, merge))
+    if "map" in study:
+        hazard = HazardPassageReader(FileNames=[stem + ".passages" for stem in stems])
+        writer = servermanager.writers.HazardMapWriter(Input=hazard)
+        write_by(writer, os.path.join(folder, "hazard.tif"))
+
+    def finish():
+        write_text(os.path.join(folder, RESULTS), json.dumps(
+            {"iterations": study["iterations"], "chunks": hashes,
+             "whole": hashlib.sha256("".join(hashes).encode()).hexdigest()}, indent=1) + "\n")
+        for name in os.listdir(folder):  # what a killed run left
+            if name.startswith(wholefile.UNFINISHED) and name != wholefile.LOCK:
+                os.remove(os.path.join(folder, name))
+
+    from_first_rank(finish)
