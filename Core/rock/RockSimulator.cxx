@@ -8,6 +8,7 @@
 #include "law/springs.h"
 #include "rock/placement.h"
 #include "rock/pressOut.h"
+#include "terrain/holes.h"
 #include "terrain/walls.h"
 
 #include <algorithm>
@@ -269,7 +270,7 @@ void RockSimulator::checkLeft()
   }
   if (left)
   {
-    this->end(Fate::LeftDomain);
+    this->end(isHole(terrain, p.x(), p.y()) ? Fate::LostInHole : Fate::LeftDomain);
   }
 }
 

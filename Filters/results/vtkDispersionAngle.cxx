@@ -3,6 +3,7 @@
 #include "shared/arrays.h"
 #include "base/errors.h"
 #include "shared/inputs.h"
+#include "shared/lostRocks.h"
 #include "results/pathGroups.h"
 #include "statistics/dispersion.h"
 #include "statistics/sample.h"
@@ -237,6 +238,7 @@ int vtkDispersionAngle::RequestData(
       {
         rockfall::filters::copyCoordinateSystem(input->GetFieldData(), made->GetFieldData());
       }
+      rockfall::filters::tellLost(rockfall::filters::lostOf(input), table->GetFieldData());
       vtkTable::GetData(outputVector, 0)->ShallowCopy(table);
       vtkPolyData::GetData(outputVector, 1)->ShallowCopy(lines);
       return 1;

@@ -4,6 +4,7 @@
 #include "base/errors.h"
 #include "base/text/numberText.h"
 #include "geometry/shell.h"
+#include "shared/lostRocks.h"
 #include "shared/rockPaths.h"
 #include "statistics/HazardRaster.h"
 #include "statistics/passageFile.h"
@@ -294,6 +295,7 @@ void makeHazardImage(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
     addElevation(*terrain, grid, image);
   }
   copyCoordinateSystem(trajectories->GetFieldData(), image->GetFieldData());
+  tellLost(lostOf(trajectories), image->GetFieldData());
 }
 
 void makeHazardImage(

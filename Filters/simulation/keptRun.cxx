@@ -6,6 +6,7 @@
 #include "gis/base/reach.h"
 #include "gis/layers/rockContacts.h"
 #include "shared/inputContent.h"
+#include "shared/lostRocks.h"
 #include "simulation/motion.h"
 #include "run/releaseChecks.h"
 #include "shared/terrainFieldData.h"
@@ -211,6 +212,9 @@ void KeptRun::takeResults(RunSink& sink)
   wholeIteration = whole.size() == frame.rocks.size() ? parts.wholeIteration : -1;
   stateHash = sink.stateHash();
   addArray<vtkStringArray>(summary->GetFieldData(), "StateHash")->InsertNextValue(stateHash);
+  const LostRocks lost = lostOf(summary);
+  tellLost(lost, summary->GetFieldData());
+  writeLost(lost, trajectories->GetFieldData());
   this->describe();
 }
 

@@ -54,7 +54,7 @@ MotionState stateAt(const Trajectory& trajectory, double time)
     {
       return MotionState::Stopped;
     }
-    if (trajectory.summary.fate == Fate::LeftDomain)
+    if (trajectory.summary.fate == Fate::LeftDomain || trajectory.summary.fate == Fate::LostInHole)
     {
       return MotionState::LeftDomain;
     }

@@ -1,4 +1,4 @@
-#include "rock/results.h"
+#include "base/fate.h"
 
 namespace rockfall
 {
@@ -13,6 +13,8 @@ std::string fateName(Fate fate)
       return "left the domain";
     case Fate::Caught:
       return "caught";
+    case Fate::LostInHole:
+      return "lost in nodata";
     case Fate::Moving:
       break;
   }

@@ -1,0 +1,77 @@
+#include "statistics/lost.h"
+
+#include "base/text/numberText.h"
+
+#include <algorithm>
+
+namespace rockfall
+{
+
+void LostRocks::add(Fate fate, double time, double way)
+{
+  ++this->rocks;
+  this->unmoved += way < kLeastWay;
+  switch (fate)
+  {
+    case Fate::Moving:
+      ++this->moving;
+      this->endTime = std::max(this->endTime, time);
+      break;
+    case Fate::LeftDomain:
+      ++this->overEdge;
+      break;
+    case Fate::LostInHole:
+      ++this->inNodata;
+      break;
+    case Fate::Rested:
+    case Fate::Caught:
+      break;
+  }
+}
+
+void LostRocks::add(const LostRocks& other)
+{
+  this->rocks += other.rocks;
+  this->moving += other.moving;
+  this->overEdge += other.overEdge;
+  this->inNodata += other.inNodata;
+  this->unmoved += other.unmoved;
+  this->endTime = std::max(this->endTime, other.endTime);
+}
+
+std::vector<std::string> lostNotes(const LostRocks& lost, const std::string& before)
+{
+  std::vector<std::string> notes;
+  const auto tell = [&](std::int64_t count, const std::string& how, const std::string& what)
+  {
+    if (count > 0)
+    {
+      notes.push_back(std::to_string(count) + " of " + std::to_string(lost.rocks) + " rocks " +
+        how + before + ": " + what);
+    }
+  };
+  if (lost.endTime >= kLeastRun)
+  {
+    tell(lost.moving, "were still moving at EndTime (" + numberText(lost.endTime, 4) + " s)",
+      "they count as if they stopped there; give a larger EndTime");
+  }
+  tell(lost.overEdge, "went over the edge of the DEM",
+    "the danger goes on beyond it; a larger DEM shows how far");
+  tell(lost.inNodata, "were lost in nodata of the DEM",
+    "what lies behind such a hole or seam gets too few; fill it in the DEM");
+  return notes;
+}
+
+std::vector<std::string> stillNotes(const LostRocks& lost)
+{
+  if (lost.rocks == 0 || lost.unmoved < lost.rocks ||
+    (lost.moving > 0 && lost.endTime < kLeastRun))
+  {
+    return {};
+  }
+  return { "None of " + std::to_string(lost.rocks) + " rocks moved farther than " +
+    numberText(kLeastWay) + " m: they lie still where they are released; give them a Velocity, or "
+    "a place that is steeper" };
+}
+
+} // namespace rockfall

@@ -1,0 +1,84 @@
+#include "shared/lostRocks.h"
+
+#include "base/types.h"
+#include "shared/arrays.h"
+#include "shared/failure.h"
+
+#include "vtkCellArray.h"
+#include "vtkCellArrayIterator.h"
+#include "vtkCellData.h"
+#include "vtkIdTypeArray.h"
+#include "vtkPointData.h"
+#include "vtkPolyData.h"
+#include "vtkTable.h"
+
+#include <algorithm>
+
+namespace rockfall::filters
+{
+
+LostRocks lostOf(vtkTable* summary)
+{
+  LostRocks lost;
+  vtkFieldData* rows = summary->GetRowData();
+  vtkDataArray *fate = rows->GetArray("FateCode"), *time = rows->GetArray("EndTime"),
+               *way = rows->GetArray("PathLength");
+  for (vtkIdType k = 0; fate && time && way && k < fate->GetNumberOfTuples(); ++k)
+  {
+    lost.add(Fate(int(fate->GetTuple1(k))), time->GetTuple1(k), way->GetTuple1(k));
+  }
+  return lost;
+}
+
+LostRocks lostOf(vtkPolyData* trajectories)
+{
+  LostRocks lost;
+  vtkDataArray* fate = trajectories->GetCellData()->GetArray("Fate");
+  vtkDataArray* time = trajectories->GetPointData()->GetArray("Time");
+  if (!fate || !time)
+  {
+    return lost;
+  }
+  vtkIdType cell = trajectories->GetNumberOfVerts(); // polydata's cells begin with them
+  auto lines = vtk::TakeSmartPointer(trajectories->GetLines()->NewIterator());
+  for (lines->GoToFirstCell(); !lines->IsDoneWithTraversal(); lines->GoToNextCell(), ++cell)
+  {
+    vtkIdType size = 0;
+    const vtkIdType* ids = nullptr;
+    lines->GetCurrentCell(size, ids);
+    double way = 0.0;
+    Vec3 start, point;
+    for (vtkIdType k = 0; k < size && way < kLeastWay; ++k)
+    {
+      trajectories->GetPoint(ids[k], (k == 0 ? start : point).data());
+      way = k == 0 ? 0.0 : std::max(way, (point - start).norm());
+    }
+    lost.add(
+      Fate(int(fate->GetTuple1(cell))), size > 0 ? time->GetTuple1(ids[size - 1]) : 0.0, way);
+  }
+  return lost;
+}
+
+void writeLost(const LostRocks& lost, vtkFieldData* fieldData)
+{
+  const std::pair<const char*, std::int64_t> counts[] = { { "RocksReleased", lost.rocks },
+    { "RocksMoving", lost.moving }, { "RocksOverEdge", lost.overEdge },
+    { "RocksInNodata", lost.inNodata }, { "RocksUnmoved", lost.unmoved } };
+  for (const auto& [name, count] : counts)
+  {
+    addArray<vtkIdTypeArray>(fieldData, name)->InsertNextValue(vtkIdType(count));
+  }
+}
+
+void tellLost(const LostRocks& lost, vtkFieldData* fieldData)
+{
+  writeLost(lost, fieldData);
+  std::vector<std::string> notes = lostNotes(lost);
+  for (std::string& note : stillNotes(lost))
+  {
+    notes.push_back(std::move(note));
+  }
+  showNotes(notes, fieldData);
+}
+
+} // namespace rockfall::filters
