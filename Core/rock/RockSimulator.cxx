@@ -6,6 +6,7 @@
 #include "contact/ground/timeToTouch.h"
 #include "law/settings.h"
 #include "law/springs.h"
+#include "rock/fates.h"
 #include "rock/placement.h"
 #include "rock/pressOut.h"
 #include "terrain/holes.h"
@@ -270,7 +271,7 @@ void RockSimulator::checkLeft()
   }
   if (left)
   {
-    this->end(isHole(terrain, p.x(), p.y()) ? Fate::LostInHole : Fate::LeftDomain);
+    this->end(isHole(terrain, p.x(), p.y()) ? kLostInNodata : Fate::LeftDomain);
   }
 }
 

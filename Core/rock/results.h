@@ -4,7 +4,6 @@
 /// Results of a run: samples, impact events and one summary per rock and iteration.
 /// Positions are in the terrain's local frame.
 
-#include "base/fate.h"
 #include "base/types.h"
 
 #include <string>
@@ -102,6 +101,15 @@ struct StructureEvent
   double heightOverGround = 0.0; ///< Of the rock's centre over the slope, m.
   double energyTaken = 0.0;      ///< J
 };
+
+enum class Fate
+{
+  Rested = 0,     ///< Lies still on the slope.
+  LeftDomain = 1, ///< Went beyond the slope's edge or over a nodata hole.
+  Moving = 2,     ///< Still moving at the end time.
+  Caught = 3,     ///< Stopped by a barrier.
+};
+std::string fateName(Fate fate);
 
 /// One row per rock and iteration.
 struct TrajectorySummary

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <tuple>
 
 namespace rockfall
@@ -18,11 +19,12 @@ namespace
 
 constexpr double none = -std::numeric_limits<double>::infinity();
 
-/// Between two cuts less than this of the way apart there is no cell, only rounding: a path through
-/// the corner of four cells. m
+/// Between two cuts less than this of the way apart there is no cell, only
+/// rounding: a path through the corner of four cells. m
 constexpr double leastWay = 1e-9;
 
-/// Appends where `value` (of bounds low, high) passes a multiple of `size` from `start` on.
+/// Appends where `value` (of bounds low, high) passes a multiple of `size` from
+/// `start` on.
 void appendCuts(const Cubic& value, std::array<double, 2> bounds, double start, double size,
   double firstLine, double lastLine, double from, double to, std::vector<double>& cuts)
 {
@@ -115,13 +117,15 @@ void HazardRaster::addVisit(std::int64_t cell, const std::array<double, hazardCo
 double HazardRaster::maxHeight(
   const PathPiece& piece, double from, double to, std::array<double, 2> grounds) const
 {
-  // With one end beyond the ground the terrain still is what lies under the rest of the way.
+  // With one end beyond the ground the terrain still is what lies under the
+  // rest of the way.
   if (!terrain_ || (std::isnan(grounds[0]) && std::isnan(grounds[1])))
   {
     const double most = maximum(piece.height(), from, to);
     return std::isnan(most) ? none : most;
   }
-  // Between the sides of the CFEs the ground is a plane under the path, so the height is a cubic.
+  // Between the sides of the CFEs the ground is a plane under the path, so the
+  // height is a cubic.
   const double size = terrain_->geometry().cellSize;
   const double lines = terrain_->geometry().columns + double(terrain_->geometry().rows);
   const Cubic height = piece.height(grounds[0], grounds[1]);
@@ -172,7 +176,8 @@ void HazardRaster::addPiece(const PathPiece& piece, std::array<double, 2> ground
   appendCuts(
     piece.along(1), piece.bounds(1), grid_.south, grid_.cellSize, 0.0, grid_.rows, 0.0, 1.0, cuts_);
   std::sort(cuts_.begin() + 2, cuts_.end());
-  std::rotate(cuts_.begin() + 1, cuts_.begin() + 2, cuts_.end()); // the end behind the crossings
+  std::rotate(cuts_.begin() + 1, cuts_.begin() + 2,
+    cuts_.end()); // the end behind the crossings
   const auto visit = [&](std::int64_t cell, double from, double to)
   {
     std::array<double, hazardCount> maxima{};
@@ -198,8 +203,8 @@ void HazardRaster::addPiece(const PathPiece& piece, std::array<double, 2> ground
   }
   if (!visited)
   {
-    // A rock that stays on a border but for rounding: in the cell where the rock was, else in any
-    // of them.
+    // A rock that stays on a border but for rounding: in the cell where the
+    // rock was, else in any of them.
     std::int64_t cell = here_;
     for (std::size_t k = cuts_.size(); cell < 0 && k > 0; --k)
     {
@@ -215,18 +220,21 @@ void HazardRaster::add(const RockPath& path)
   checkPath(path);
   ++released_;
   ++releasedIn_[path.iteration];
+  if (path.width > grid_.cellSize && !path.points.empty())
+  {
+    this->addSwath(path);
+    return;
+  }
   visits_.clear();
   here_ = -1;
-  const auto ground = [this](const PathPoint& p)
-  { return terrain_ ? terrain_->elevation(p.position.x(), p.position.y()) : 0.0; };
   bool moved = false;
-  double before = path.points.empty() ? 0.0 : ground(path.points.front());
+  double before = path.points.empty() ? 0.0 : this->groundUnder(path.points.front());
   for (std::size_t k = 1; k < path.points.size(); ++k)
   {
     const PathPoint &a = path.points[k - 1], &b = path.points[k];
     if (b.time > a.time)
     {
-      const double after = ground(b);
+      const double after = this->groundUnder(b);
       this->addPiece(PathPiece(a, b, path.mass), { before, after });
       before = after;
       moved = true;
@@ -265,10 +273,187 @@ void HazardRaster::add(const RockPath& path)
       }
       continue;
     }
-    Passage& passage = passages_.emplace_back(visit);
-    passage.iteration = path.iteration;
-    passage.rock = path.rock;
+    this->keep(path, visit);
   }
+}
+
+void HazardRaster::keep(const RockPath& path, const Passage& visit)
+{
+  Passage& passage = passages_.emplace_back(visit);
+  passage.iteration = path.iteration;
+  passage.rock = path.rock;
+  passage.blockId = path.blockId;
+}
+
+double HazardRaster::groundUnder(const PathPoint& point) const
+{
+  return terrain_ ? terrain_->elevation(point.position.x(), point.position.y()) : 0.0;
+}
+
+class HazardRaster::Swath
+{
+public:
+  Swath(const HazardRaster& raster, double radius)
+    : raster_(raster)
+    , radius_(radius)
+  {
+  }
+
+  /// The disc goes straight from a to b.
+  void add(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
+    const std::array<double, hazardCount>& maxima)
+  {
+    ++step_;
+    const CellGrid& grid = raster_.grid_;
+    const auto range = [&](int axis, double start, int count)
+    {
+      const double low = std::min(a[axis], b[axis]) - radius_ - start;
+      const double high = std::max(a[axis], b[axis]) + radius_ - start;
+      return std::pair(std::max(0.0, std::floor(low / grid.cellSize)),
+        std::min(count - 1.0, std::floor(high / grid.cellSize)));
+    };
+    const auto [left, right] = range(0, grid.west, grid.columns);
+    const auto [bottom, top] = range(1, grid.south, grid.rows);
+    for (double row = bottom; row <= top; ++row)
+    {
+      for (double column = left; column <= right; ++column)
+      {
+        const Eigen::Vector2d low(
+          grid.west + column * grid.cellSize, grid.south + row * grid.cellSize);
+        if (this->touches(low, a, b))
+        {
+          this->visit(std::int64_t(row) * grid.columns + std::int64_t(column), maxima);
+        }
+      }
+    }
+  }
+
+  void stop(std::int64_t cell)
+  {
+    const auto found = cells_.find(cell);
+    if (found != cells_.end())
+    {
+      found->second.passage.stopped = 1;
+    }
+  }
+
+  /// In the order of cells.
+  template <class Use>
+  void forEach(Use&& use) const
+  {
+    for (const auto& [cell, visited] : cells_)
+    {
+      use(visited.passage);
+    }
+  }
+
+private:
+  struct Visited
+  {
+    Passage passage;
+    std::int64_t step = 0; ///< The last one that touched it.
+  };
+
+  /// Whether the cell with this corner comes as near as the radius to the way.
+  /// The radius is more than half a cell, so a way across the cell comes as
+  /// near to a corner of it.
+  bool touches(const Eigen::Vector2d& low, const Eigen::Vector2d& a, const Eigen::Vector2d& b) const
+  {
+    const double size = raster_.grid_.cellSize, most = radius_ * radius_;
+    const Eigen::Vector2d high = low + Eigen::Vector2d::Constant(size);
+    for (const Eigen::Vector2d& end : { a, b })
+    {
+      const Eigen::Vector2d inside = end.cwiseMax(low).cwiseMin(high);
+      if ((end - inside).squaredNorm() <= most)
+      {
+        return true;
+      }
+    }
+    const Eigen::Vector2d way = b - a;
+    const double length2 = way.squaredNorm();
+    for (const double x : { low.x(), high.x() })
+    {
+      for (const double y : { low.y(), high.y() })
+      {
+        const Eigen::Vector2d corner(x, y);
+        const double along =
+          length2 > 0.0 ? std::clamp((corner - a).dot(way) / length2, 0.0, 1.0) : 0.0;
+        if ((corner - a - along * way).squaredNorm() <= most)
+        {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  void visit(std::int64_t cell, const std::array<double, hazardCount>& maxima)
+  {
+    const auto [at, isNew] = cells_.try_emplace(cell);
+    Visited& visited = at->second;
+    if (isNew)
+    {
+      visited.passage.cell = std::uint32_t(cell);
+      visited.passage.maxima = maxima;
+    }
+    else
+    {
+      visited.passage.entries += visited.step + 1 < step_ ? 1 : 0;
+      for (std::size_t k = 0; k < maxima.size(); ++k)
+      {
+        visited.passage.maxima[k] = std::max(visited.passage.maxima[k], maxima[k]);
+      }
+    }
+    visited.step = step_;
+  }
+
+  const HazardRaster& raster_;
+  double radius_;
+  std::int64_t step_ = 0;
+  std::map<std::int64_t, Visited> cells_;
+};
+
+void HazardRaster::addSwath(const RockPath& path)
+{
+  Swath swath(*this, 0.5 * path.width);
+  bool moved = false;
+  double before = this->groundUnder(path.points.front());
+  for (std::size_t k = 1; k < path.points.size(); ++k)
+  {
+    const PathPoint &a = path.points[k - 1], &b = path.points[k];
+    if (!(b.time > a.time))
+    {
+      continue;
+    }
+    const double after = this->groundUnder(b);
+    const PathPiece piece(a, b, path.mass);
+    const auto xs = piece.bounds(0), ys = piece.bounds(1);
+    const double longest = std::hypot(xs[1] - xs[0], ys[1] - ys[0]);
+    const int parts = std::max(1, int(std::ceil(2.0 * longest / grid_.cellSize)));
+    for (int part = 0; part < parts; ++part)
+    {
+      const double from = double(part) / parts, to = double(part + 1) / parts;
+      swath.add(piece.position(from).head<2>(), piece.position(to).head<2>(),
+        { piece.maxKineticEnergy(from, to), piece.maxSpeed(from, to),
+          this->maxHeight(piece, from, to, { before, after }), piece.maxRotationRate(from, to) });
+    }
+    before = after;
+    moved = true;
+  }
+  const PathPoint& last = path.points.back();
+  if (!moved)
+  {
+    const Eigen::Vector2d place = last.position.head<2>();
+    swath.add(place, place,
+      { last.kineticEnergy, last.velocity.norm(),
+        std::isnan(last.heightOverGround) ? none : last.heightOverGround,
+        last.rotationRate.norm() });
+  }
+  if (path.rested)
+  {
+    swath.stop(this->cellAt(last.position.x(), last.position.y()));
+  }
+  swath.forEach([&](const Passage& visit) { this->keep(path, visit); });
 }
 
 void HazardRaster::merge(const HazardRaster& other)

@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file
-/// Passages through the cells of a grid: number of rocks, speeds, heights, energies.
+/// Passages through the cells of a grid: number of rocks, speeds, heights,
+/// energies.
 
 #include "statistics/passages.h"
 #include "statistics/path.h"
@@ -13,27 +14,32 @@ namespace rockfall
 
 class Terrain;
 
-/// Keeps one passage per rock, iteration and cell, so that quantiles are exact and parts can be
-/// merged. The results depend on what was added, not on the order or on how it was shared out.
+/// Keeps one passage per rock, iteration and cell, so that quantiles are exact
+/// and parts can be merged. The results depend on what was added, not on the
+/// order or on how it was shared out.
 class HazardRaster
 {
 public:
-  /// `terrain`, if given, is the ground between the points of a path; its local frame is then the
-  /// paths'. Throws ParameterError for a grid without cells or of more than 2³² of them.
+  /// `terrain`, if given, is the ground between the points of a path; its local
+  /// frame is then the paths'. Throws ParameterError for a grid without cells
+  /// or of more than 2³² of them.
   explicit HazardRaster(const CellGrid& grid, const Terrain* terrain = nullptr);
 
   const CellGrid& grid() const { return grid_; }
 
-  /// Cuts the path at the borders of the cells. What is beyond the grid counts as released, not
-  /// more. Throws DataError as checkPath. Not for several threads at once: use one raster each, and
-  /// merge.
+  /// Cuts the path at the borders of the cells. A rock wider than a cell
+  /// touches every cell under the disc of its width, found along pieces of half
+  /// a cell; it stops in the cell of its centre. What is beyond the grid counts
+  /// as released, not more. Throws DataError as checkPath. Not for several
+  /// threads at once: use one raster each, and merge.
   void add(const RockPath& path);
-  /// Takes in what another raster of the same grid has. Throws ParameterError for another grid.
+  /// Takes in what another raster of the same grid has. Throws ParameterError
+  /// for another grid.
   void merge(const HazardRaster& other);
 
   std::int64_t released() const { return released_; }
-  /// Calls `use` for each cell that anything passed, in the order of cells. Throws DataError if a
-  /// rock was added twice for an iteration.
+  /// Calls `use` for each cell that anything passed, in the order of cells.
+  /// Throws DataError if a rock was added twice for an iteration.
   void summarize(const UseCell& use);
 
   /// All passages in their order.
@@ -44,6 +50,11 @@ private:
   std::int64_t cellAt(double x, double y) const; ///< −1 beyond the grid.
   void addPiece(const PathPiece& piece, std::array<double, 2> grounds);
   void addVisit(std::int64_t cell, const std::array<double, hazardCount>& maxima);
+  /// The cells under a disc that goes along the path.
+  class Swath;
+  void addSwath(const RockPath& path);
+  void keep(const RockPath& path, const Passage& visit);
+  double groundUnder(const PathPoint& point) const;
   double maxHeight(
     const PathPiece& piece, double from, double to, std::array<double, 2> grounds) const;
 

@@ -7,24 +7,23 @@
 namespace rockfall
 {
 
-void LostRocks::add(Fate fate, double time, double way)
+void LostRocks::add(Loss loss, double time, double way)
 {
   ++this->rocks;
   this->unmoved += way < kLeastWay;
-  switch (fate)
+  switch (loss)
   {
-    case Fate::Moving:
+    case Loss::Moving:
       ++this->moving;
       this->endTime = std::max(this->endTime, time);
       break;
-    case Fate::LeftDomain:
+    case Loss::OverEdge:
       ++this->overEdge;
       break;
-    case Fate::LostInHole:
+    case Loss::InNodata:
       ++this->inNodata;
       break;
-    case Fate::Rested:
-    case Fate::Caught:
+    case Loss::None:
       break;
   }
 }
@@ -64,13 +63,13 @@ std::vector<std::string> lostNotes(const LostRocks& lost, const std::string& bef
 
 std::vector<std::string> stillNotes(const LostRocks& lost)
 {
-  if (lost.rocks == 0 || lost.unmoved < lost.rocks ||
-    (lost.moving > 0 && lost.endTime < kLeastRun))
+  if (lost.rocks == 0 || lost.unmoved < lost.rocks || (lost.moving > 0 && lost.endTime < kLeastRun))
   {
     return {};
   }
   return { "None of " + std::to_string(lost.rocks) + " rocks moved farther than " +
-    numberText(kLeastWay) + " m: they lie still where they are released; give them a Velocity, or "
+    numberText(kLeastWay) +
+    " m: they lie still where they are released; give them a Velocity, or "
     "a place that is steeper" };
 }
 

@@ -4,7 +4,6 @@
 /// Rocks whose way is not known to its end, and how that is told: the results have less of them
 /// than the slope has.
 
-#include "base/fate.h"
 #include "base/types.h"
 
 #include <span>
@@ -19,6 +18,15 @@ constexpr double kLeastRun = 0.1;
 /// A rock that gets no farther has not moved. m
 constexpr double kLeastWay = 0.1;
 
+/// How a rock's way is not known to its end.
+enum class Loss
+{
+  None,
+  Moving,   ///< Still moving at the end time.
+  OverEdge, ///< Went over the edge of the DEM.
+  InNodata, ///< Fell into a hole of nodata.
+};
+
 /// Rocks × iterations by what was lost of them.
 struct LostRocks
 {
@@ -30,7 +38,7 @@ struct LostRocks
   double endTime = 0.0;      ///< Of the longest of those that still move, s.
 
   /// A rock that ended at `time`, s, and got `way` away from its start, m.
-  void add(Fate fate, double time, double way);
+  void add(Loss loss, double time, double way);
   void add(const LostRocks& other);
   bool any() const { return moving + overEdge + inNodata > 0; }
 };

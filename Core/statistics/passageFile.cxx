@@ -19,7 +19,7 @@ namespace rockfall
 namespace
 {
 
-static_assert(std::endian::native == std::endian::little && sizeof(Passage) == 48);
+static_assert(std::endian::native == std::endian::little && sizeof(Passage) == 56);
 
 constexpr std::uint64_t memory = 64'000'000;    ///< For the passages of all files at once, bytes.
 constexpr std::uint64_t longestCrs = 1'000'000; ///< Bytes; more is no CRS but a damaged file.
@@ -90,8 +90,28 @@ void readReleases(std::istream& in, PassageFile& file)
   }
 }
 
-/// The passages of one file, some at a time. No file stays open: there may be more than a process
-/// may have open.
+void readLost(std::istream& in, PassageFile& file)
+{
+  LostRocks& lost = file.lost;
+  lost.rocks = get<std::int64_t>(in);
+  for (std::int64_t* count : { &lost.moving, &lost.overEdge, &lost.inNodata, &lost.unmoved })
+  {
+    *count = get<std::int64_t>(in);
+    if (in && (*count < 0 || *count > lost.rocks))
+    {
+      failDamaged(file.fileName,
+        std::to_string(*count) + " of " + std::to_string(lost.rocks) + " rocks were lost");
+    }
+  }
+  lost.endTime = get<double>(in);
+  if (in && !std::isfinite(lost.endTime))
+  {
+    failDamaged(file.fileName, "the end time is " + numberText(lost.endTime));
+  }
+}
+
+/// The passages of one file, some at a time. No file stays open: there may be
+/// more than a process may have open.
 class PassageStream
 {
 public:
@@ -203,6 +223,7 @@ PassageFile readPassageFile(const std::string& fileName)
     in.read(file.crs.data(), std::streamsize(length));
   }
   readReleases(in, file);
+  readLost(in, file);
   file.passages = get<std::uint64_t>(in);
   file.begin = in ? std::uint64_t(in.tellg()) : 0;
   if (!in || length > longestCrs || file.passages > size ||
@@ -236,17 +257,8 @@ PassageFiles::PassageFiles(const std::vector<std::string>& fileNames)
     {
       releases_[iteration] += count;
     }
+    lost_.add(file.lost);
   }
-}
-
-std::int64_t PassageFiles::released() const
-{
-  std::int64_t all = 0;
-  for (const auto& [iteration, count] : releases_)
-  {
-    all += count;
-  }
-  return all;
 }
 
 void PassageFiles::summarize(const UseCell& use) const

@@ -1,17 +1,22 @@
 #pragma once
 
 /// @file
-/// Passages of a run in a file, so that the map of many runs can be made without having any of them
-/// in memory.
+/// Passages of a run in a file, so that the map of many runs can be made
+/// without having any of them in memory.
 ///
-/// A file has, little endian: the 8 bytes "RFPASS01"; columns and rows (int32 each); cell size,
-/// west, south (double); x, y, z of the local origin (double); bytes of the CRS (uint64) and the
-/// CRS as WKT; number of iterations (uint64) and for each its number (int64) and how many rocks
-/// were released in it (int64); number of passages (uint64), and the passages in their order, 48
-/// bytes each: cell (uint32), entries and in the highest bit whether the rock came to rest there
-/// (uint32), iteration, rock (int32), the four largest values (double).
+/// A file has, little endian: the 8 bytes "RFPASS02"; columns and rows (int32
+/// each); cell size, west, south (double); x, y, z of the local origin
+/// (double); bytes of the CRS (uint64) and the CRS as WKT; number of iterations
+/// (uint64) and for each its number (int64) and how many rocks were released in
+/// it (int64); whom the run lost: rocks, still moving, over the edge, in
+/// nodata, unmoved (int64), the latest time of one that still moved (double);
+/// number of passages (uint64), and the passages in their order, 56 bytes each:
+/// cell (uint32), entries and in the highest bit whether the rock came to rest
+/// there (uint32), iteration, rock (int32), block (int64), the four largest
+/// values (double).
 
 #include "base/types.h"
+#include "statistics/lost.h"
 #include "statistics/passages.h"
 
 #include <cstdint>
@@ -24,7 +29,7 @@ namespace rockfall
 class HazardRaster;
 
 /// The first bytes of a file.
-constexpr char passageMagic[8] = { 'R', 'F', 'P', 'A', 'S', 'S', '0', '1' };
+constexpr char passageMagic[8] = { 'R', 'F', 'P', 'A', 'S', 'S', '0', '2' };
 
 /// Statements of a file on itself.
 struct PassageFile
@@ -34,40 +39,44 @@ struct PassageFile
   Vec3 origin = Vec3::Zero(); ///< Of the paths' frame, m.
   std::string crs;            ///< WKT; empty for a local system.
   Releases releases;
+  LostRocks lost;             ///< Of all of the run, whatever came to the map.
   std::uint64_t passages = 0; ///< How many there are.
   std::uint64_t begin = 0;    ///< Byte of the first.
 };
 
-/// Writes what was added to `raster`, whose frame has its origin at `origin`, into `fileName`:
-/// beside, and renamed when it is whole. Throws FileError.
-void writePassages(
-  HazardRaster& raster, const Vec3& origin, const std::string& crs, const std::string& fileName);
+/// Writes what was added to `raster`, whose frame has its origin at `origin`,
+/// into `fileName`: beside, and renamed when it is whole. Throws FileError.
+void writePassages(HazardRaster& raster, const Vec3& origin, const std::string& crs,
+  const std::string& fileName, const LostRocks& lost = {});
 
-/// Reads all but the passages. Throws FileError that names the file if it is none, of another
-/// version, not of the length that it must have, or of numbers that no run has.
+/// Reads all but the passages. Throws FileError that names the file if it is
+/// none, of another version, not of the length that it must have, or of numbers
+/// that no run has.
 PassageFile readPassageFile(const std::string& fileName);
 
-/// Several files as one. Whatever the passages are shared out over files, the results are the same
-/// bits, and those of one raster that has them all.
+/// Several files as one. Whatever the passages are shared out over files, the
+/// results are the same bits, and those of one raster that has them all.
 class PassageFiles
 {
 public:
-  /// Throws ParameterError without a name, FileError as readPassageFile, DataError that names the
-  /// file whose grid or CRS is not that of the first.
+  /// Throws ParameterError without a name, FileError as readPassageFile,
+  /// DataError that names the file whose grid or CRS is not that of the first.
   explicit PassageFiles(const std::vector<std::string>& fileNames);
 
   const CellGrid& grid() const { return files_.front().grid; } ///< In the world's frame, m.
   const Vec3& origin() const { return files_.front().origin; }
   const std::string& crs() const { return files_.front().crs; }
-  std::int64_t released() const;
+  const Releases& releases() const { return releases_; }
+  const LostRocks& lost() const { return lost_; }
 
-  /// Merges the files on the way, with 64 MB of memory for all of them. Throws FileError, or
-  /// DataError if a rock is there twice for an iteration.
+  /// Merges the files on the way, with 64 MB of memory for all of them. Throws
+  /// FileError, or DataError if a rock is there twice for an iteration.
   void summarize(const UseCell& use) const;
 
 private:
   std::vector<PassageFile> files_;
   Releases releases_; ///< Of all files.
+  LostRocks lost_;    ///< Likewise.
 };
 
 } // namespace rockfall

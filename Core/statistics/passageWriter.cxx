@@ -23,8 +23,8 @@ void put(std::ostream& out, const T& value)
 
 } // namespace
 
-void writePassages(
-  HazardRaster& raster, const Vec3& origin, const std::string& crs, const std::string& fileName)
+void writePassages(HazardRaster& raster, const Vec3& origin, const std::string& crs,
+  const std::string& fileName, const LostRocks& lost)
 {
   gis::OutputFile file(fileName);
   std::ofstream out(file.temporary(), std::ios::binary);
@@ -45,6 +45,12 @@ void writePassages(
     put(out, std::int64_t(iteration));
     put(out, count);
   }
+  for (const std::int64_t count :
+    { lost.rocks, lost.moving, lost.overEdge, lost.inNodata, lost.unmoved })
+  {
+    put(out, count);
+  }
+  put(out, lost.endTime);
   const std::vector<Passage>& passages = raster.sorted();
   put(out, std::uint64_t(passages.size()));
   out.write(reinterpret_cast<const char*>(passages.data()),

@@ -27,7 +27,8 @@ std::string hazardName(Hazard hazard)
 
 bool operator<(const Passage& a, const Passage& b)
 {
-  return std::tie(a.cell, a.iteration, a.rock) < std::tie(b.cell, b.iteration, b.rock);
+  return std::tie(a.cell, a.iteration, a.rock, a.blockId) <
+    std::tie(b.cell, b.iteration, b.rock, b.blockId);
 }
 
 CellSummarizer::CellSummarizer(const Releases& releases, const UseCell& use)
@@ -57,12 +58,14 @@ void CellSummarizer::add(const Passage& passage)
   const auto name = [&passage]
   {
     return "iteration " + std::to_string(passage.iteration) + ", rock " +
-      std::to_string(passage.rock);
+      std::to_string(passage.rock) + " (block " + std::to_string(passage.blockId) + ")";
   };
   if (any_ && !(last_ < passage))
   {
     throw DataError(passage < last_ ? "The passages are not in their order at " + name()
-                                    : "The trajectory of " + name() + " is there twice");
+                                    : "The trajectory of " + name() +
+          " is there twice: a run was given twice, or two runs have "
+          "the same iterations and block ids");
   }
   if (any_ && last_.cell != passage.cell)
   {
@@ -114,14 +117,16 @@ void CellSummarizer::finish()
   const double p = summary_.rocks / all_;
   summary_.reach = p;
   summary_.reachError = binomialError(p, all_);
-  // Ratio estimator: n / (n − 1) Σ (kᵢ − p Rᵢ)² / N², also over the iterations with kᵢ = 0.
+  // Ratio estimator: n / (n − 1) Σ (kᵢ − p Rᵢ)² / N², also over the iterations
+  // with kᵢ = 0.
   double scatter = p * p * squaredReleases_;
   for (const Count& count : counts_)
   {
     scatter += count.rocks * (count.rocks - 2.0 * p * count.released);
   }
   summary_.reachErrorOfIterations = iterations > 1.0
-    ? std::sqrt(std::max(0.0, scatter) * iterations / (iterations - 1.0)) / all_
+    ? (p < 1.0 ? std::sqrt(std::max(0.0, scatter) * iterations / (iterations - 1.0)) / all_
+               : shareLimit(iterations))
     : std::numeric_limits<double>::quiet_NaN();
   for (std::size_t h = 0; h < values_.size(); ++h)
   {

@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file
-/// Passages through the cells of a grid, rock by rock, and their statistics in each cell.
+/// Passages through the cells of a grid, rock by rock, and their statistics in
+/// each cell.
 
 #include "statistics/sample.h"
 
@@ -14,7 +15,8 @@
 namespace rockfall
 {
 
-/// Square cells in the frame of the paths. Cell (0, 0) is the south-western one.
+/// Square cells in the frame of the paths. Cell (0, 0) is the south-western
+/// one.
 struct CellGrid
 {
   int columns = 0;
@@ -45,12 +47,15 @@ struct CellSummary
   int rocks = 0;         ///< Rocks (iteration × rock) that were there.
   int stops = 0;         ///< Rocks that came to rest there.
   double reach = 0.0;    ///< rocks / all rocks × iterations released.
-  /// √(p (1 − p) / n) of n released rocks × iterations: as if every release were an independent
-  /// trial of one kind. Where sources differ the true error for these sources is smaller, as
-  /// Σ pₖ (1 − pₖ) / n ≤ p (1 − p).
+  /// binomialError of p: √(p (1 − p) / n) of n released rocks × iterations: as
+  /// if every release were an independent trial of one kind. Where sources
+  /// differ the true error for these sources is smaller, as Σ pₖ (1 − pₖ) / n ≤
+  /// p (1 − p).
   double reachError = 0.0;
-  /// From the scatter of the share between iterations: also right where rocks of one iteration are
-  /// not independent, as they share its realisation of the slope. NaN for one iteration.
+  /// From the scatter of the share between iterations: also right where rocks
+  /// of one iteration are not independent, as they share its realisation of the
+  /// slope. NaN for one iteration. Where all came, shareLimit of the
+  /// iterations.
   double reachErrorOfIterations = 0.0;
   /// Over the rocks; a rock's value is its largest on the way through the cell.
   std::array<SampleStatistics, hazardCount> statistics;
@@ -64,11 +69,12 @@ struct Passage
   std::uint32_t stopped : 1 = 0; ///< Came to rest there.
   std::int32_t iteration = 0;
   std::int32_t rock = 0;
+  std::int64_t blockId = 0; ///< Tells the rocks of two runs from each other.
   std::array<double, hazardCount>
     maxima{}; ///< On the way through the cell; −∞ where there is none.
 };
 
-/// The order in which passages are summed: by cell, iteration and rock.
+/// The order in which passages are summed: by cell, iteration, rock and block.
 bool operator<(const Passage& a, const Passage& b);
 
 /// How many rocks were released in each iteration.
@@ -76,16 +82,17 @@ using Releases = std::map<int, std::int64_t>;
 
 using UseCell = std::function<void(const CellSummary&)>;
 
-/// Makes summaries of passages that come in their order, so that it needs no more memory than one
-/// cell's. The results are the same bits wherever the passages come from.
+/// Makes summaries of passages that come in their order, so that it needs no
+/// more memory than one cell's. The results are the same bits wherever the
+/// passages come from.
 class CellSummarizer
 {
 public:
   /// Keeps a reference to `use`.
   CellSummarizer(const Releases& releases, const UseCell& use);
 
-  /// Throws DataError if a rock comes twice for an iteration, or a passage out of its order or of
-  /// an iteration without releases.
+  /// Throws DataError if a rock comes twice for an iteration, or a passage out
+  /// of its order or of an iteration without releases.
   void add(const Passage& passage);
   void finish(); ///< Hands on the last cell.
 

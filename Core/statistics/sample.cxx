@@ -7,6 +7,13 @@
 namespace rockfall
 {
 
+namespace
+{
+
+constexpr double kDoubt = 0.05; ///< 1 − confidence
+
+} // namespace
+
 double quantile(std::span<const double> ascending, double q)
 {
   if (ascending.empty())
@@ -54,8 +61,33 @@ SampleStatistics statisticsOf(std::vector<double>& values)
 
 double binomialError(double share, double trials)
 {
-  return trials > 0.0 ? std::sqrt(std::max(0.0, share * (1.0 - share)) / trials)
+  if (share <= 0.0 || share >= 1.0)
+  {
+    return shareLimit(trials);
+  }
+  return trials > 0.0 ? std::sqrt(share * (1.0 - share) / trials)
                       : std::numeric_limits<double>::quiet_NaN();
+}
+
+double shareLimit(double trials)
+{
+  return trials > 0.0 ? 1.0 - std::pow(kDoubt, 1.0 / trials)
+                      : std::numeric_limits<double>::quiet_NaN();
+}
+
+int leastForQuantile(double q)
+{
+  return int(std::ceil(std::log(kDoubt) / std::log(q)));
+}
+
+int highestQuantile(std::size_t values)
+{
+  int highest = 0;
+  for (const double q : hazardQuantiles)
+  {
+    highest = values >= std::size_t(leastForQuantile(q)) ? int(std::lround(100.0 * q)) : highest;
+  }
+  return highest;
 }
 
 } // namespace rockfall

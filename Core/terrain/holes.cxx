@@ -28,8 +28,10 @@ bool isHole(const Terrain& terrain, double x, double y)
     return onMap(px, py);
   };
   // Along a row, a column and the diagonals.
-  constexpr std::array<std::array<double, 2>, 4> axes{ { { 1, 0 }, { 0, 1 }, { 1, 1 }, { 1, -1 } } };
-  return std::any_of(axes.begin(), axes.end(), [&](const std::array<double, 2>& axis)
+  constexpr std::array<std::array<double, 2>, 4> axes{ { { 1, 0 }, { 0, 1 }, { 1, 1 },
+    { 1, -1 } } };
+  return std::any_of(axes.begin(), axes.end(),
+    [&](const std::array<double, 2>& axis)
     { return hasGround(axis[0], axis[1]) && hasGround(-axis[0], -axis[1]); });
 }
 

@@ -11,7 +11,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 import wholefile
-from together import from_first_rank, refuse, write_by
+from together import from_first_rank, refuse, say, write_by
 from wholefile import write_csv, write_text
 
 RESULTS = "results.json"  # not study.json, which is what a study is called that goes in
@@ -55,7 +55,16 @@ def combine_tables(folder, stems):
                            if name not in ("StateHash", "Iterations")})
             hashes.append(str(chunk["StateHash"]))
     write_csv(os.path.join(folder, "summary.csv"), tables)
+    say_lost(np.concatenate([table["FateCode"] for table in tables]))
     return hashes
+
+
+def say_lost(fates):
+    """Whom the study lost, by FateCode: the results have less of them than the slope has."""
+    for code, how in ((2, "were still moving at EndTime"), (1, "went over the edge of the DEM"),
+                      (4, "were lost in nodata of the DEM")):
+        if (fates == code).any():
+            say(f"{(fates == code).sum()} of {len(fates)} rocks {how}")
 
 
 def combine_crossings(folder, stems, merge):

@@ -84,7 +84,8 @@ void vtkHazardPassageWriter::WriteData()
   {
     taken.require();
     takenTerrain.require();
-    rockfall::filters::writeHazardPassages(trajectories, terrain, this->CellSize, this->FileName);
+    rockfall::filters::writeHazardPassages(
+      trajectories, terrain, { this->CellSize, false, this->RockWidth, {} }, this->FileName);
   }
   catch (const rockfall::Error& error)
   {
@@ -99,4 +100,5 @@ void vtkHazardPassageWriter::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "FileName: " << this->FileName << "\n";
   os << indent << "CellSize: " << this->CellSize << "\n";
+  os << indent << "RockWidth: " << this->RockWidth << "\n";
 }

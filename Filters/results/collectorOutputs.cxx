@@ -20,6 +20,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
+#include <tuple>
 
 namespace rockfall::filters
 {
@@ -70,25 +72,118 @@ std::vector<CollectorLine> linesOf(
   return lines;
 }
 
+namespace
+{
+
+auto keyOf(const CollectedRock& rock)
+{
+  return std::tie(rock.iteration, rock.rock, rock.blockId);
+}
+
+} // namespace
+
 void checkReleased(ReleasedRocks& rocks)
 {
-  std::sort(rocks.begin(), rocks.end());
-  const auto twice = std::adjacent_find(rocks.begin(), rocks.end());
+  std::sort(rocks.begin(), rocks.end(),
+    [](const CollectedRock& a, const CollectedRock& b) { return keyOf(a) < keyOf(b); });
+  const auto twice = std::adjacent_find(rocks.begin(), rocks.end(),
+    [](const CollectedRock& a, const CollectedRock& b) { return keyOf(a) == keyOf(b); });
   if (twice != rocks.end())
   {
-    throw DataError("Rock " + std::to_string((*twice)[1]) + " of iteration " +
-      std::to_string((*twice)[0]) +
-      " is there twice: a run was given twice, or two runs have the same iterations");
+    throw DataError("Rock " + std::to_string(twice->rock) + " of iteration " +
+      std::to_string(twice->iteration) + " (block " + std::to_string(twice->blockId) +
+      ") is there twice: a run was given twice, or two runs have "
+      "the same iterations and block ids");
   }
+}
+
+std::vector<LostRocks> lostBefore(
+  std::size_t lines, std::span<const Crossing> crossings, const ReleasedRocks& released)
+{
+  std::set<std::tuple<int, int, int, std::int64_t>> passed;
+  for (const Crossing& c : crossings)
+  {
+    passed.emplace(c.line, c.iteration, c.rock, c.blockId);
+  }
+  std::vector<LostRocks> lost(lines);
+  for (std::size_t line = 0; line < lines; ++line)
+  {
+    for (const CollectedRock& rock : released)
+    {
+      const bool before = !passed.contains({ int(line), rock.iteration, rock.rock, rock.blockId });
+      lost[line].add(before ? rock.loss : Loss::None, rock.endTime, kLeastWay);
+    }
+  }
+  return lost;
+}
+
+std::vector<std::string> lineNotes(std::span<const LineSummary> summaries,
+  std::span<const CollectorLine> lines, std::span<const LostRocks> lost)
+{
+  constexpr std::size_t kMostNames = 5; // in a note
+  std::vector<std::string> notes;
+  const auto named = [&](const std::vector<std::size_t>& which)
+  {
+    if (lines.size() == 1)
+    {
+      return "line \"" + lines[0].name + "\"";
+    }
+    std::string text =
+      std::to_string(which.size()) + " of " + std::to_string(lines.size()) + " lines (";
+    for (std::size_t k = 0; k < std::min(which.size(), kMostNames); ++k)
+    {
+      text += (k > 0 ? ", \"" : "\"") + lines[which[k]].name + "\"";
+    }
+    return text + (which.size() > kMostNames ? ", …)" : ")");
+  };
+  std::vector<std::size_t> missed, few;
+  LostRocks most; // of the line that misses most
+  for (std::size_t k = 0; k < lines.size(); ++k)
+  {
+    const auto count = [](const LostRocks& l) { return l.moving + l.overEdge + l.inNodata; };
+    most = k == 0 || count(lost[k]) > count(most) ? lost[k] : most;
+    if (summaries[k].rocks == 0)
+    {
+      missed.push_back(k);
+    }
+    else if (summaries[k].highestQuantile < 99)
+    {
+      few.push_back(k);
+    }
+  }
+  const bool look = most.moving > 0 && most.endTime < kLeastRun; // a run of the first moment only
+  if (!missed.empty() && !look)
+  {
+    notes.push_back("No rock reached " + named(missed));
+  }
+  for (std::string& note : lostNotes(
+         most, lines.size() == 1 ? " before they passed the line" : " before they passed a line"))
+  {
+    notes.push_back(std::move(note));
+  }
+  if (!few.empty() && !look)
+  {
+    notes.push_back("Too few rocks passed " + named(few) +
+      " for all quantiles: 50, 90, 95 and 99 % take 5, 29, 59 "
+      "and 299 rocks; HighestQuantile says "
+      "which one is the highest that they can give");
+  }
+  return notes;
 }
 
 void writeReleased(const ReleasedRocks& released, vtkFieldData* field)
 {
   addArray<vtkIdTypeArray>(field, "CollectorReleased")->InsertNextValue(vtkIdType(released.size()));
   const auto rocks = addArray<vtkIntArray>(field, "CollectorRocks", 2);
-  for (const auto& [iteration, rock] : released)
+  const auto blocks = addArray<vtkIdTypeArray>(field, "CollectorBlocks");
+  const auto losses = addArray<vtkIntArray>(field, "CollectorLosses");
+  const auto ends = addArray<vtkDoubleArray>(field, "CollectorEnds");
+  for (const CollectedRock& rock : released)
   {
-    rocks->InsertNextTuple2(iteration, rock);
+    rocks->InsertNextTuple2(rock.iteration, rock.rock);
+    blocks->InsertNextValue(vtkIdType(rock.blockId));
+    losses->InsertNextValue(int(rock.loss));
+    ends->InsertNextValue(rock.endTime);
   }
 }
 
@@ -163,8 +258,8 @@ void writeCrossings(std::span<const CollectedCrossing> crossings,
   }
 }
 
-void writeLines(
-  std::span<const LineSummary> summaries, std::span<const CollectorLine> lines, vtkTable* output)
+void writeLines(std::span<const LineSummary> summaries, std::span<const CollectorLine> lines,
+  std::span<const LostRocks> lost, vtkTable* output)
 {
   vtkFieldData* data = output->GetRowData();
   const auto line = addArray<vtkIntArray>(data, "Line");
@@ -172,6 +267,10 @@ void writeLines(
   const auto rocks = addArray<vtkIntArray>(data, "Rocks");
   const auto passings = addArray<vtkIntArray>(data, "Passings");
   const auto caught = addArray<vtkIntArray>(data, "Caught");
+  const auto moving = addArray<vtkIdTypeArray>(data, "MovingBefore");
+  const auto overEdge = addArray<vtkIdTypeArray>(data, "OverEdgeBefore");
+  const auto inNodata = addArray<vtkIdTypeArray>(data, "InNodataBefore");
+  const auto highest = addArray<vtkIntArray>(data, "HighestQuantile");
   for (std::size_t k = 0; k < lines.size(); ++k)
   {
     line->InsertNextValue(int(k));
@@ -179,6 +278,10 @@ void writeLines(
     rocks->InsertNextValue(summaries[k].rocks);
     passings->InsertNextValue(summaries[k].crossings);
     caught->InsertNextValue(summaries[k].caught);
+    moving->InsertNextValue(vtkIdType(lost[k].moving));
+    overEdge->InsertNextValue(vtkIdType(lost[k].overEdge));
+    inNodata->InsertNextValue(vtkIdType(lost[k].inNodata));
+    highest->InsertNextValue(summaries[k].highestQuantile);
   }
   const auto add = [&](const std::string& column, auto&& value)
   {
@@ -249,7 +352,8 @@ void writeExceedance(
     }
     if (rocks > 0)
     {
-      // All have at least nothing: where the curve begins, and what makes one of a single rock.
+      // All have at least nothing: where the curve begins, and what makes one
+      // of a single rock.
       const bool all = summary.heights.size() == rocks;
       add(0.0,
         all ? std::min(0.0, summary.heights.front()) : std::numeric_limits<double>::quiet_NaN(),

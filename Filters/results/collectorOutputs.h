@@ -4,9 +4,10 @@
 /// Lines of a collector from a polydata, and what passes them as VTK data.
 
 #include "statistics/crossings.h"
+#include "statistics/lost.h"
 
-#include <array>
 #include <span>
+#include <string>
 #include <vector>
 
 class vtkFieldData;
@@ -23,20 +24,39 @@ struct CollectedCrossing
   std::int64_t cell = 0;
 };
 
-/// Iteration and number of each rock that was released.
-using ReleasedRocks = std::vector<std::array<int, 2>>;
+/// A rock that was released, and how it ended.
+struct CollectedRock
+{
+  int iteration = 0;
+  int rock = 0;
+  std::int64_t blockId = 0; ///< Tells the rocks of two runs from each other.
+  Loss loss = Loss::None;
+  double endTime = 0.0; ///< s
+};
+using ReleasedRocks = std::vector<CollectedRock>;
 
 /// Sorts them. Throws DataError if one is there twice.
 void checkReleased(ReleasedRocks& rocks);
 
-/// The polylines of `input`, without `origin`; named "line 1" and so on, with the barrier of
-/// `barrier`. Throws DataError if there is none or one has fewer than two different places.
+/// Of each line, rocks that were lost and had not passed it before.
+std::vector<LostRocks> lostBefore(
+  std::size_t lines, std::span<const Crossing> crossings, const ReleasedRocks& released);
+
+/// Notes on lines that no rock reached, that rocks may have been lost before,
+/// and that too few passed for the quantiles.
+std::vector<std::string> lineNotes(std::span<const LineSummary> summaries,
+  std::span<const CollectorLine> lines, std::span<const LostRocks> lost);
+
+/// The polylines of `input`, without `origin`; named "line 1" and so on, with
+/// the barrier of `barrier`. Throws DataError if there is none or one has fewer
+/// than two different places.
 std::vector<CollectorLine> linesOf(
   vtkPolyData* input, const Vec3& origin, const CollectorLine& barrier);
 
-/// Writes a vertex per passing. Other cell arrays of the trajectories go along. The field data say
-/// what the tables need beside: CollectorReleased, CollectorRocks, CollectorLineName and
-/// CollectorBarrier.
+/// Writes a vertex per passing. Other cell arrays of the trajectories go along.
+/// The field data say what the tables need beside: CollectorReleased,
+/// CollectorRocks, CollectorBlocks, CollectorLosses, CollectorEnds,
+/// CollectorLineName and CollectorBarrier.
 void writeCrossings(std::span<const CollectedCrossing> crossings,
   std::span<const CollectorLine> lines, const ReleasedRocks& released, const Vec3& origin,
   vtkPolyData* trajectories, vtkPolyData* output);
@@ -44,11 +64,11 @@ void writeCrossings(std::span<const CollectedCrossing> crossings,
 void writeReleased(const ReleasedRocks& released, vtkFieldData* field);
 
 /// Writes a row per line.
-void writeLines(
-  std::span<const LineSummary> summaries, std::span<const CollectorLine> lines, vtkTable* output);
+void writeLines(std::span<const LineSummary> summaries, std::span<const CollectorLine> lines,
+  std::span<const LostRocks> lost, vtkTable* output);
 
-/// Per line, energy and height in descending order and the share of rocks that have at least as
-/// much.
+/// Per line, energy and height in descending order and the share of rocks that
+/// have at least as much.
 void writeExceedance(
   std::span<const LineSummary> summaries, std::int64_t released, vtkTable* output);
 

@@ -1,8 +1,8 @@
 #include "results/mergedCrossings.h"
 
-#include "shared/arrays.h"
 #include "base/errors.h"
 #include "results/collectorOutputs.h"
+#include "shared/arrays.h"
 #include "shared/terrainFieldData.h"
 
 #include "vtkAbstractArray.h"
@@ -51,7 +51,8 @@ std::vector<CollectorLine> linesOf(vtkFieldData* field, std::size_t input)
   if (!names || names->GetNumberOfValues() != barriers->GetNumberOfTuples())
   {
     throw DataError(numbered(input) +
-      " has no array CollectorLineName of all lines; the crossings of Trajectory Collector are "
+      " has no array CollectorLineName of all lines; the "
+      "crossings of Trajectory Collector are "
       "wanted");
   }
   std::vector<CollectorLine> lines;
@@ -85,7 +86,7 @@ struct Place
 auto key(const Place& p)
 {
   const Crossing& c = p.crossing;
-  return std::tie(c.iteration, c.rock, c.line, c.number);
+  return std::tie(c.iteration, c.rock, c.blockId, c.line, c.number);
 }
 
 void appendPlaces(vtkPolyData* data, std::size_t input, const std::vector<CollectorLine>& lines,
@@ -95,7 +96,7 @@ void appendPlaces(vtkPolyData* data, std::size_t input, const std::vector<Collec
   auto* names = vtkStringArray::SafeDownCast(fields->GetAbstractArray("LineName"));
   const auto one = [&](const char* name) { return crossingNumbers(fields, name, 1, input); };
   vtkDataArray *line = one("Line"), *iteration = one("Iteration"), *rock = one("RockId"),
-               *number = one("Passing"), *energy = one("KineticEnergy"),
+               *block = one("BlockId"), *number = one("Passing"), *energy = one("KineticEnergy"),
                *height = one("HeightOverGround"),
                *velocity = crossingNumbers(fields, "Velocity", 3, input);
   for (vtkIdType id = 0; id < data->GetNumberOfPoints(); ++id)
@@ -107,6 +108,7 @@ void appendPlaces(vtkPolyData* data, std::size_t input, const std::vector<Collec
     c.line = int(line->GetTuple1(id));
     c.iteration = int(iteration->GetTuple1(id));
     c.rock = int(rock->GetTuple1(id));
+    c.blockId = std::int64_t(block->GetTuple1(id));
     c.number = int(number->GetTuple1(id));
     c.kineticEnergy = energy->GetTuple1(id);
     c.heightOverGround = height->GetTuple1(id);
@@ -116,13 +118,36 @@ void appendPlaces(vtkPolyData* data, std::size_t input, const std::vector<Collec
       throw DataError(numbered(input) + " has a crossing of line " + std::to_string(c.line) +
         ", but only " + std::to_string(lines.size()) + " lines");
     }
-    // Crossings of another collector, appended to these, count lines of their own.
+    // Crossings of another collector, appended to these, count lines of their
+    // own.
     if (names && names->GetValue(id) != lines[std::size_t(c.line)].name)
     {
       throw DataError(numbered(input) + " has a crossing of line " + std::to_string(c.line) +
         " called \"" + names->GetValue(id) + "\", but its line of that number is \"" +
         lines[std::size_t(c.line)].name + "\": were crossings of several collectors appended?");
     }
+  }
+}
+
+void appendReleased(vtkFieldData* field, std::size_t input, ReleasedRocks& rocks)
+{
+  vtkDataArray* released = crossingNumbers(field, "CollectorRocks", 2, input);
+  vtkDataArray* blocks = crossingNumbers(field, "CollectorBlocks", 1, input);
+  vtkDataArray* losses = crossingNumbers(field, "CollectorLosses", 1, input);
+  vtkDataArray* ends = crossingNumbers(field, "CollectorEnds", 1, input);
+  for (vtkDataArray* array : { blocks, losses, ends })
+  {
+    if (array->GetNumberOfTuples() != released->GetNumberOfTuples())
+    {
+      throw DataError(numbered(input) + " has " + std::to_string(array->GetNumberOfTuples()) +
+        " values of " + array->GetName() + " for " + std::to_string(released->GetNumberOfTuples()) +
+        " rocks");
+    }
+  }
+  for (vtkIdType i = 0; i < released->GetNumberOfTuples(); ++i)
+  {
+    rocks.push_back({ int(released->GetComponent(i, 0)), int(released->GetComponent(i, 1)),
+      std::int64_t(blocks->GetTuple1(i)), Loss(int(losses->GetTuple1(i))), ends->GetTuple1(i) });
   }
 }
 
@@ -181,11 +206,7 @@ MergedCrossings mergeCrossings(std::span<vtkPolyData* const> inputs, vtkPolyData
     {
       throw DataError(numbered(k) + " has another CRS than the first");
     }
-    vtkDataArray* released = crossingNumbers(field, "CollectorRocks", 2, k);
-    for (vtkIdType i = 0; i < released->GetNumberOfTuples(); ++i)
-    {
-      rocks.push_back({ int(released->GetComponent(i, 0)), int(released->GetComponent(i, 1)) });
-    }
+    appendReleased(field, k, rocks);
     if (inputs[k]->GetNumberOfPoints() > 0)
     {
       appendPlaces(inputs[k], k, lines, places);
@@ -193,7 +214,7 @@ MergedCrossings mergeCrossings(std::span<vtkPolyData* const> inputs, vtkPolyData
     }
   }
   checkReleased(rocks);
-  merged.released = std::int64_t(rocks.size());
+  merged.released = rocks;
   std::sort(
     places.begin(), places.end(), [](const Place& a, const Place& b) { return key(a) < key(b); });
   vtkNew<vtkPoints> points;

@@ -3,6 +3,7 @@
 /// @file
 /// The crossings of several collectors as those of one.
 
+#include "results/collectorOutputs.h"
 #include "statistics/crossings.h"
 
 #include <span>
@@ -16,13 +17,14 @@ namespace rockfall::filters
 struct MergedCrossings
 {
   std::vector<CollectorLine> lines; ///< Name and barrier only.
-  std::int64_t released = 0;
+  ReleasedRocks released;
   std::vector<Crossing> crossings; ///< As summarizeLine needs them.
 };
 
-/// Fills `output` with the points of all `inputs`, crossings of Trajectory Collector, in the order
-/// of iteration, rock, line and passing. Throws DataError if one is no crossings, has other lines,
-/// barriers, CRS or arrays than the first, or if a crossing is there twice.
+/// Fills `output` with the points of all `inputs`, crossings of Trajectory
+/// Collector, in the order of iteration, rock, line and passing. Throws
+/// DataError if one is no crossings, has other lines, barriers, CRS or arrays
+/// than the first, or if a crossing is there twice.
 MergedCrossings mergeCrossings(std::span<vtkPolyData* const> inputs, vtkPolyData* output);
 
 } // namespace rockfall::filters

@@ -1,14 +1,14 @@
 #include "vtkDispersionAngle.h"
 
-#include "shared/arrays.h"
 #include "base/errors.h"
+#include "results/pathGroups.h"
+#include "results/trajectoriesInput.h"
+#include "shared/arrays.h"
 #include "shared/inputs.h"
 #include "shared/lostRocks.h"
-#include "results/pathGroups.h"
+#include "shared/terrainFieldData.h"
 #include "statistics/dispersion.h"
 #include "statistics/sample.h"
-#include "shared/terrainFieldData.h"
-#include "results/trajectoriesInput.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -102,6 +102,7 @@ public:
     {
       this->Columns.push_back(rockfall::filters::addArray<vtkDoubleArray>(rows, name));
     }
+    this->Highest = rockfall::filters::addArray<vtkIntArray>(rows, "HighestQuantile");
   }
 
   void Append(const Paths& paths)
@@ -115,6 +116,9 @@ public:
       }
     }
     const rockfall::SampleStatistics of = rockfall::statisticsOf(distances);
+    const int highest = rockfall::highestQuantile(distances.size());
+    this->Highest->InsertNextValue(highest);
+    this->Few += highest < 99 ? 1 : 0;
     const double values[] = { of.mean, of.deviation, of.quantiles[0], of.quantiles[1],
       of.quantiles[2], of.quantiles[3], of.maximum };
     for (std::size_t k = 0; k < this->Columns.size(); ++k)
@@ -123,8 +127,25 @@ public:
     }
   }
 
+  /// A note where groups are too few for the quantiles.
+  std::vector<std::string> Notes() const
+  {
+    const vtkIdType groups = this->Highest->GetNumberOfValues();
+    if (this->Few == 0)
+    {
+      return {};
+    }
+    return { std::to_string(this->Few) + " of " + std::to_string(groups) +
+      " groups have too few trajectories for all quantiles of RunOut: "
+      "50, 90, 95 and 99 % take 5, "
+      "29, 59 and 299; HighestQuantile says which one is the highest "
+      "that they can give" };
+  }
+
 private:
   std::vector<vtkSmartPointer<vtkDoubleArray>> Columns;
+  vtkSmartPointer<vtkIntArray> Highest;
+  int Few = 0; ///< Groups without all quantiles.
 };
 
 /// Of an angle from +x, rad, counter-clockwise: degrees clockwise from north.
@@ -238,7 +259,8 @@ int vtkDispersionAngle::RequestData(
       {
         rockfall::filters::copyCoordinateSystem(input->GetFieldData(), made->GetFieldData());
       }
-      rockfall::filters::tellLost(rockfall::filters::lostOf(input), table->GetFieldData());
+      rockfall::filters::tellLost(
+        rockfall::filters::lostOf(input), table->GetFieldData(), runOuts.Notes());
       vtkTable::GetData(outputVector, 0)->ShallowCopy(table);
       vtkPolyData::GetData(outputVector, 1)->ShallowCopy(lines);
       return 1;

@@ -1,11 +1,12 @@
 #include "vtkMergeCollectors.h"
 
-#include "shared/attempt.h"
 #include "base/errors.h"
 #include "results/collectorOutputs.h"
+#include "results/mergedCrossings.h"
+#include "shared/attempt.h"
 #include "shared/failure.h"
 #include "shared/inputs.h"
-#include "results/mergedCrossings.h"
+#include "shared/lostRocks.h"
 #include "shared/pieces.h"
 #include "shared/terrainFieldData.h"
 
@@ -79,14 +80,20 @@ int vtkMergeCollectors::RequestData(
       vtkNew<vtkPolyData> points;
       const filters::MergedCrossings merged = filters::mergeCrossings(inputs, points);
       std::vector<rockfall::LineSummary> summaries;
+      const auto released = std::int64_t(merged.released.size());
       for (std::size_t k = 0; k < merged.lines.size(); ++k)
       {
         summaries.push_back(
-          rockfall::summarizeLine(merged.lines[k], int(k), merged.crossings, merged.released));
+          rockfall::summarizeLine(merged.lines[k], int(k), merged.crossings, released));
       }
       vtkNew<vtkTable> table, exceedance;
-      filters::writeLines(summaries, merged.lines, table);
-      filters::writeExceedance(summaries, merged.released, exceedance);
+      const std::vector<rockfall::LostRocks> lost =
+        filters::lostBefore(merged.lines.size(), merged.crossings, merged.released);
+      const std::vector<std::string> notes = filters::lineNotes(summaries, merged.lines, lost);
+      filters::writeLines(summaries, merged.lines, lost, table);
+      vtkFieldData* const told[] = { table->GetFieldData(), points->GetFieldData() };
+      filters::tellOn(told, notes);
+      filters::writeExceedance(summaries, released, exceedance);
       for (vtkTable* made : { table.Get(), exceedance.Get() })
       {
         filters::copyCoordinateSystem(points->GetFieldData(), made->GetFieldData());

@@ -1,13 +1,13 @@
 #include "vtkRockfallHazardMap.h"
 
-#include "shared/attempt.h"
 #include "base/errors.h"
 #include "results/drapedMap.h"
+#include "results/trajectoriesInput.h"
+#include "shared/attempt.h"
 #include "shared/failure.h"
 #include "shared/hazardImage.h"
 #include "shared/inputs.h"
 #include "shared/ranks.h"
-#include "results/trajectoriesInput.h"
 
 #include "vtkAlgorithmOutput.h"
 #include "vtkImageData.h"
@@ -118,7 +118,8 @@ void vtkRockfallHazardMap::Prepare(vtkInformationVector** inputVector)
   {
     const rockfall::filters::HeardAbort heard(this);
     rockfall::filters::makeHazardImage(trajectories, terrain,
-      { this->CellSize, this->CropToTrajectories, this->Statistics }, this->Made->image);
+      { this->CellSize, this->CropToTrajectories, this->RockWidth, this->Statistics },
+      this->Made->image);
     rockfall::filters::drapeMap(this->Made->image, this->Made->draped);
   }
   catch (const rockfall::Aborted&)
@@ -165,7 +166,8 @@ int vtkRockfallHazardMap::RequestInformation(
       producer->GetProducer()->Update(producer->GetIndex(), requests);
     }
   }
-  // Every rank comes here, but one without a part of the image perhaps not to its data.
+  // Every rank comes here, but one without a part of the image perhaps not to
+  // its data.
   this->Spread = rockfall::filters::spreadOf(this->Taken->trajectories.take(inputVector[0]));
   if (this->Spread.empty())
   {
@@ -221,8 +223,9 @@ int vtkRockfallHazardMap::RequestData(
   }
   if (trajectories->GetNumberOfLines() == 0)
   {
-    return rockfall::filters::fail(
-      this, "The Input has no lines; the trajectories of Rockfall Simulation are wanted");
+    return rockfall::filters::fail(this,
+      "The Input has no lines; the trajectories "
+      "of Rockfall Simulation are wanted");
   }
   this->Prepare(inputVector);
   if (this->Made->aborted)
@@ -263,6 +266,7 @@ void vtkRockfallHazardMap::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "CellSize: " << this->CellSize << "\n";
   os << indent << "CropToTrajectories: " << this->CropToTrajectories << "\n";
+  os << indent << "RockWidth: " << this->RockWidth << "\n";
   os << indent << "Statistics:";
   for (const int statistic : this->Statistics)
   {

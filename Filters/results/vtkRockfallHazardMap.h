@@ -1,20 +1,25 @@
 /**
  * @class   vtkRockfallHazardMap
- * @brief   maps what passes: how many rocks, how fast, how high, with what energy
+ * @brief   maps what passes: how many rocks, how fast, how high, with what
+ * energy
  *
- * Input port 0 has one polyline per trajectory, as port 1 of vtkRockfallSimulation; port 1 is the
- * terrain of vtkDEMToCFESource, optional: trajectories bring the slope that they fell on. Output
- * port 0 is a vtkImageData in world coordinates with cell data; port 1 has those of its cells that
- * anything passed as polydata on the slope. A path is cut exactly at the borders of the cells,
- * along the cubic curve between its points.
+ * Input port 0 has one polyline per trajectory, as port 1 of
+ * vtkRockfallSimulation; port 1 is the terrain of vtkDEMToCFESource, optional:
+ * trajectories bring the slope that they fell on. Output port 0 is a
+ * vtkImageData in world coordinates with cell data; port 1 has those of its
+ * cells that anything passed as polydata on the slope. A path is cut exactly at
+ * the borders of the cells, along the cubic curve between its points.
  *
- * Cell arrays: Passages, Rocks, StoppingPoints, ReachProbability, ReachProbabilityError,
- * ReachProbabilityErrorOfIterations, and of KineticEnergy (J), Speed (m/s), HeightOverGround (m)
- * and RotationRate (rad/s) the chosen Statistics over the rocks, such as SpeedMean and Speed95.
- * Counts are 0 and the others NaN where nothing passed, probabilities 0.
+ * Cell arrays: Passages, Rocks, StoppingPoints, ReachProbability,
+ * ReachProbabilityError, ReachProbabilityErrorOfIterations, and of
+ * KineticEnergy (J), Speed (m/s), HeightOverGround (m) and RotationRate (rad/s)
+ * the chosen Statistics over the rocks, such as SpeedMean and Speed95. Counts
+ * are 0 and the others NaN where nothing passed, probabilities 0; their errors
+ * are then the limits of a share of 0. HighestQuantile says which quantile the
+ * rocks of a cell can give.
  *
- * How large the image is depends on the data, and a pipeline wants to know it before: the inputs
- * are brought up to date when information is asked for.
+ * How large the image is depends on the data, and a pipeline wants to know it
+ * before: the inputs are brought up to date when information is asked for.
  */
 #ifndef vtkRockfallHazardMap_h
 #define vtkRockfallHazardMap_h
@@ -35,7 +40,8 @@ public:
 
   ///@{
   /**
-   * Edge of the cells in metres, not negative. 0 (the default): the terrain's cells.
+   * Edge of the cells in metres, not negative. 0 (the default): the terrain's
+   * cells.
    */
   vtkSetMacro(CellSize, double);
   vtkGetMacro(CellSize, double);
@@ -43,8 +49,9 @@ public:
 
   ///@{
   /**
-   * Whether the map ends where the trajectories do instead of covering the whole terrain. Its cells
-   * are the same. On by default; without a slope it always does.
+   * Whether the map ends where the trajectories do instead of covering the
+   * whole terrain. Its cells are the same. On by default; without a slope it
+   * always does.
    */
   vtkSetMacro(CropToTrajectories, bool);
   vtkGetMacro(CropToTrajectories, bool);
@@ -53,9 +60,20 @@ public:
 
   ///@{
   /**
-   * The statistics over the rocks of a cell that the map has of each quantity: 0 the mean, 1 the
-   * maximum, 2 to 5 the 50, 90, 95 and 99 % quantiles. Mean, maximum and 95 % by default. Each
-   * takes 16 bytes a cell.
+   * Whether a rock that is wider than a cell touches every cell under the disc
+   * of its Width, and not only that of its centre. On by default; needs the
+   * cell array Width of the trajectories.
+   */
+  vtkSetMacro(RockWidth, bool);
+  vtkGetMacro(RockWidth, bool);
+  vtkBooleanMacro(RockWidth, bool);
+  ///@}
+
+  ///@{
+  /**
+   * The statistics over the rocks of a cell that the map has of each quantity:
+   * 0 the mean, 1 the maximum, 2 to 5 the 50, 90, 95 and 99 % quantiles. Mean,
+   * maximum and 95 % by default. Each takes 16 bytes a cell.
    */
   void AddStatistic(int statistic);
   void RemoveAllStatistics();
@@ -79,6 +97,7 @@ private:
 
   double CellSize = 0.0;
   bool CropToTrajectories = true;
+  bool RockWidth = true;
   std::vector<int> Statistics;
   std::string Spread; // why trajectories on several ranks make no map
   struct Result;

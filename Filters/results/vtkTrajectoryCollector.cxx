@@ -12,9 +12,11 @@
 #include "shared/failure.h"
 #include "shared/inputs.h"
 #include "shared/lineWalls.h"
+#include "shared/lostRocks.h"
 #include "shared/rockPaths.h"
 #include "shared/terrainFieldData.h"
 
+#include "vtkCellData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
@@ -59,8 +61,9 @@ void checkSize(double value, const char* name)
   }
 }
 
-/// Lines that are farther from the trajectories than this, m, and than ten times their extent, are
-/// those of another place. Where all rocks stop before a nearer one, none has passed it.
+/// Lines that are farther from the trajectories than this, m, and than ten
+/// times their extent, are those of another place. Where all rocks stop before
+/// a nearer one, none has passed it.
 constexpr double kElsewhere = 1000.0;
 
 using Box2 = Eigen::AlignedBox2d;
@@ -103,8 +106,8 @@ void requireNear(const Box2& lines, const Box2& rocks, const std::string& whose)
   }
 }
 
-/// The lines of a file, which must be where the trajectories are. What they do not say of their
-/// barrier is `barrier`'s.
+/// The lines of a file, which must be where the trajectories are. What they do
+/// not say of their barrier is `barrier`'s.
 std::vector<CollectorLine> readLines(const std::string& fileName, const std::string& layerName,
   vtkPolyData* trajectories, const Box2& site, const Vec3& origin, const CollectorLine& barrier,
   std::vector<std::string>& notes)
@@ -154,7 +157,8 @@ CollectorLine lineThrough(const std::vector<std::array<double, 3>>& points, cons
   if (line.points.size() < 2)
   {
     throw rockfall::ParameterError(
-      "Points: the drawn line has no two different places in the plane, it must have two at least");
+      "Points: the drawn line has no two different places in the plane, it "
+      "must have two at least");
   }
   requireNear(box, rocks, "Points: the drawn line");
   return line;
@@ -167,8 +171,8 @@ struct Site
   Vec3 origin = Vec3::Zero();
 };
 
-/// The place of the trajectories and of the slope under them. Throws DataError if they have none
-/// in common.
+/// The place of the trajectories and of the slope under them. Throws DataError
+/// if they have none in common.
 Site siteOf(const Box2& rocks, const rockfall::Terrain* terrain)
 {
   Site site{ rocks, { std::floor(rocks.min().x()), std::floor(rocks.min().y()), 0.0 } };
@@ -179,8 +183,8 @@ Site siteOf(const Box2& rocks, const rockfall::Terrain* terrain)
     const Box2 slope(corner, corner + Eigen::Vector2d(terrain->width(), terrain->height()));
     if (!rocks.intersects(slope))
     {
-      throw rockfall::DataError(
-        "No trajectory of the Input is over the Terrain: they do not belong together");
+      throw rockfall::DataError("No trajectory of the Input is over the "
+                                "Terrain: they do not belong together");
     }
     site.box.extend(slope);
   }
@@ -192,6 +196,7 @@ struct Collected
   std::vector<rockfall::filters::CollectedCrossing> crossings;
   rockfall::filters::ReleasedRocks released;
   std::vector<rockfall::LineSummary> summaries; ///< Of each line.
+  std::vector<rockfall::LostRocks> lost;        ///< Likewise, before they passed it.
 };
 
 /// All crossings of all lines.
@@ -200,10 +205,13 @@ Collected collect(vtkPolyData* trajectories, const std::vector<CollectorLine>& l
 {
   Collected collected;
   std::vector<rockfall::Crossing> all, found;
+  vtkDataArray* fate = trajectories->GetCellData()->GetArray("Fate"); // forEachPath asks for it
   rockfall::filters::forEachPath(trajectories, origin,
     [&](const rockfall::RockPath& path, std::int64_t cell)
     {
-      collected.released.push_back({ path.iteration, path.rock });
+      collected.released.push_back(
+        { path.iteration, path.rock, path.blockId, rockfall::filters::lossOf(fate->GetTuple1(cell)),
+          path.points.empty() ? 0.0 : path.points.back().time });
       for (std::size_t k = 0; k < lines.size(); ++k)
       {
         found.clear();
@@ -221,6 +229,7 @@ Collected collect(vtkPolyData* trajectories, const std::vector<CollectorLine>& l
     collected.summaries.push_back(
       rockfall::summarizeLine(lines[k], int(k), all, std::int64_t(collected.released.size())));
   }
+  collected.lost = rockfall::filters::lostBefore(lines.size(), all, collected.released);
   return collected;
 }
 
@@ -301,8 +310,8 @@ int vtkTrajectoryCollector::RequestData(
       }
       if (trajectories->GetNumberOfLines() == 0)
       {
-        throw rockfall::DataError(
-          "The Input has no lines; the trajectories of Rockfall Simulation are wanted");
+        throw rockfall::DataError("The Input has no lines; the trajectories "
+                                  "of Rockfall Simulation are wanted");
       }
       checkSize(this->BarrierHeight, "BarrierHeight");
       checkSize(this->BarrierCapacity, "BarrierCapacity");
@@ -353,9 +362,14 @@ int vtkTrajectoryCollector::RequestData(
         collected.crossings, lines, collected.released, origin, trajectories, passings);
       filters::writeWalls(lines, collected.summaries, slope,
         trajectories->GetBounds()[4] - origin.z(), origin, walls);
-      filters::showNotes(notes, passings->GetFieldData());
       vtkNew<vtkTable> table, exceedance;
-      filters::writeLines(collected.summaries, lines, table);
+      filters::writeLines(collected.summaries, lines, collected.lost, table);
+      for (std::string& note : filters::lineNotes(collected.summaries, lines, collected.lost))
+      {
+        notes.push_back(std::move(note));
+      }
+      vtkFieldData* const told[] = { table->GetFieldData(), passings->GetFieldData() };
+      filters::tellOn(told, notes);
       filters::writeExceedance(collected.summaries, released, exceedance);
       for (vtkDataObject* made :
         { static_cast<vtkDataObject*>(passings), static_cast<vtkDataObject*>(walls),

@@ -1,14 +1,14 @@
 #include "shared/hazardImage.h"
 
-#include "shared/arrays.h"
 #include "base/errors.h"
 #include "base/text/numberText.h"
 #include "geometry/shell.h"
+#include "shared/arrays.h"
 #include "shared/lostRocks.h"
 #include "shared/rockPaths.h"
+#include "shared/terrainFieldData.h"
 #include "statistics/HazardRaster.h"
 #include "statistics/passageFile.h"
-#include "shared/terrainFieldData.h"
 
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
@@ -40,14 +40,25 @@ struct Bounds
   double xMin, xMax, yMin, yMax;
 };
 
-Bounds boundsOf(vtkPolyData* trajectories, const Vec3& origin)
+Bounds boundsOf(vtkPolyData* trajectories, const Vec3& origin, double margin = 0.0)
 {
   double b[6];
   trajectories->GetBounds(b);
-  return { b[0] - origin.x(), b[1] - origin.x(), b[2] - origin.y(), b[3] - origin.y() };
+  return { b[0] - origin.x() - margin, b[1] - origin.x() + margin, b[2] - origin.y() - margin,
+    b[3] - origin.y() + margin };
 }
 
-/// The cells from `first` to `last` along one axis, counted from the corner of the whole grid.
+/// By how much the widest rock reaches beyond its path, m; 0 if all are
+/// narrower than a cell.
+double reachBeside(vtkPolyData* trajectories, double cell, bool rockWidth)
+{
+  vtkDataArray* width = trajectories->GetCellData()->GetArray("Width");
+  const double most = rockWidth && width ? width->GetRange()[1] : 0.0;
+  return most > cell ? 0.5 * most : 0.0;
+}
+
+/// The cells from `first` to `last` along one axis, counted from the corner of
+/// the whole grid.
 struct Range
 {
   double first, last;
@@ -79,18 +90,20 @@ CellGrid gridOf(vtkPolyData* trajectories, const Terrain* terrain, const HazardM
   }
   if (options.cellSize == 0.0 && !terrain)
   {
-    throw ParameterError(
-      "CellSize is 0, which takes the cells of the slope, but none came with the "
-      "trajectories: give a CellSize or connect the Terrain");
+    throw ParameterError("CellSize is 0, which takes the cells of the slope, but none came with "
+                         "the "
+                         "trajectories: give a CellSize or connect the Terrain");
   }
   CellGrid grid;
   grid.cellSize = options.cellSize > 0.0 ? options.cellSize : terrain->geometry().cellSize;
   const double cell = grid.cellSize;
-  const Bounds b = boundsOf(trajectories, origin);
+  const Bounds b =
+    boundsOf(trajectories, origin, reachBeside(trajectories, cell, options.rockWidth));
   Range columns = rangeOf(b.xMin, b.xMax, 0.0, cell), rows = rangeOf(b.yMin, b.yMax, 0.0, cell);
   if (terrain)
   {
-    // A last cell may reach beyond the slope; not for the sake of rounding, though.
+    // A last cell may reach beyond the slope; not for the sake of rounding,
+    // though.
     const Range all{ 0.0, std::ceil(terrain->width() / cell - 1e-9) - 1.0 };
     const Range allRows{ 0.0, std::ceil(terrain->height() / cell - 1e-9) - 1.0 };
     const auto within = [](const Range& part, const Range& whole) {
@@ -100,8 +113,8 @@ CellGrid gridOf(vtkPolyData* trajectories, const Terrain* terrain, const HazardM
     rows = within(rows, allRows);
     if (columns.last < columns.first || rows.last < rows.first)
     {
-      throw DataError(
-        "No trajectory of the Input is over the Terrain: they do not belong together");
+      throw DataError("No trajectory of the Input is over the Terrain: they do "
+                      "not belong together");
     }
     if (!options.crop)
     {
@@ -130,11 +143,22 @@ void checkStatistics(const ChosenStatistics& chosen)
   }
 }
 
+/// Of all iterations.
+std::int64_t releasedIn(const Releases& releases)
+{
+  std::int64_t all = 0;
+  for (const auto& [iteration, count] : releases)
+  {
+    all += count;
+  }
+  return all;
+}
+
 /// The cell arrays.
 class Layers
 {
 public:
-  Layers(vtkImageData* image, const ChosenStatistics& chosen)
+  Layers(vtkImageData* image, const ChosenStatistics& chosen, const Releases& releases)
   {
     vtkFieldData* data = image->GetCellData();
     const vtkIdType cells = image->GetNumberOfCells();
@@ -156,14 +180,19 @@ public:
     rocks_ = count("Rocks");
     stops_ = count("StoppingPoints");
     reach_ = number("ReachProbability", 0.0F);
-    reachError_ = number("ReachProbabilityError", 0.0F);
+    // Where nothing came the errors say how probable it may be all the same.
+    const auto iterations = double(releases.size());
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    reachScatter_ = number("ReachProbabilityErrorOfIterations", 0.0F);
+    reachError_ =
+      number("ReachProbabilityError", float(binomialError(0.0, double(releasedIn(releases)))));
+    reachScatter_ = number(
+      "ReachProbabilityErrorOfIterations", iterations > 1.0 ? float(shareLimit(iterations)) : nan);
     for (std::size_t k = 0; k < std::size(mapStatistics); ++k)
     {
       if (std::find(chosen.begin(), chosen.end(), int(k)) != chosen.end())
       {
         chosen_.push_back(&mapStatistics[k]); // each once, in this order
+        highest_ = std::max(highest_, mapStatistics[k].quantile);
       }
     }
     for (int h = 0; h < hazardCount; ++h)
@@ -172,6 +201,10 @@ public:
       {
         statistics_.push_back(number(hazardName(Hazard(h)) + statistic->name, nan));
       }
+    }
+    if (highest_ > 0.0)
+    {
+      quantile_ = count("HighestQuantile");
     }
   }
 
@@ -184,6 +217,11 @@ public:
     reach_->SetValue(id, float(cell.reach));
     reachError_->SetValue(id, float(cell.reachError));
     reachScatter_->SetValue(id, float(cell.reachErrorOfIterations));
+    most_ = std::max(most_, cell.rocks);
+    if (quantile_)
+    {
+      quantile_->SetValue(id, highestQuantile(std::size_t(cell.rocks)));
+    }
     auto array = statistics_.begin();
     for (const SampleStatistics& of : cell.statistics)
     {
@@ -194,7 +232,24 @@ public:
     }
   }
 
+  /// A note where no cell has the rocks that the highest quantile of the map
+  /// needs.
+  std::vector<std::string> notes() const
+  {
+    const int least = highest_ > 0.0 ? leastForQuantile(highest_) : 0;
+    if (most_ == 0 || most_ >= least)
+    {
+      return {};
+    }
+    return { "No cell has more than " + std::to_string(most_) + " rocks, too few for a " +
+      numberText(100.0 * highest_) + " % quantile, which takes " + std::to_string(least) +
+      ": HighestQuantile says of each cell which one it can give" };
+  }
+
 private:
+  double highest_ = 0.0; ///< Of the quantiles that are chosen.
+  int most_ = 0;         ///< Rocks in a cell.
+  vtkSmartPointer<vtkIntArray> quantile_;
   vtkSmartPointer<vtkIntArray> passages_, rocks_, stops_;
   vtkSmartPointer<vtkFloatArray> reach_, reachError_, reachScatter_;
   std::vector<const MapStatistic*> chosen_;
@@ -234,29 +289,42 @@ void markEmptyMap(vtkImageData* image)
 namespace
 {
 
-/// The map but for its heights and coordinate system. `corner`: the south-western one, in the
-/// world.
-void fillImage(const CellGrid& grid, const Vec3& corner, std::int64_t released, bool withTerrain,
-  const ChosenStatistics& chosen, const std::function<void(const UseCell&)>& summarize,
-  vtkImageData* image)
+/// The map but for its heights and coordinate system. `corner`: the
+/// south-western one, in the world.
+void fillImage(const CellGrid& grid, const Vec3& corner, const Releases& releases, bool withTerrain,
+  const LostRocks& lost, const ChosenStatistics& chosen,
+  const std::function<void(const UseCell&)>& summarize, vtkImageData* image)
 {
   image->Initialize();
   image->SetExtent(0, grid.columns, 0, grid.rows, 0, 0);
   image->SetOrigin(corner.x(), corner.y(), 0.0);
   image->SetSpacing(grid.cellSize, grid.cellSize, grid.cellSize);
-  Layers layers(image, chosen);
+  Layers layers(image, chosen, releases);
   summarize([&layers](const CellSummary& cell) { layers.set(cell); });
   image->GetCellData()->SetActiveScalars("ReachProbability"); // what a viewer begins with
   addMarker(image,
     { double(grid.columns), double(grid.rows), grid.cellSize, corner.x(), corner.y(),
-      double(released), withTerrain ? 1.0 : 0.0 });
+      double(releasedIn(releases)), withTerrain ? 1.0 : 0.0 });
+  tellLost(lost, image->GetFieldData(), layers.notes());
+}
+
+void addPaths(vtkPolyData* trajectories, const Vec3& origin, bool rockWidth, HazardRaster& raster)
+{
+  forEachPath(trajectories, origin,
+    [&](const RockPath& path, std::int64_t)
+    {
+      RockPath added = path;
+      added.width = rockWidth ? path.width : 0.0;
+      raster.add(added);
+    });
 }
 
 void checkLines(vtkPolyData* trajectories)
 {
   if (trajectories->GetNumberOfLines() == 0)
   {
-    throw DataError("The Input has no lines; the trajectories of Rockfall Simulation are wanted");
+    throw DataError("The Input has no lines; the trajectories of Rockfall "
+                    "Simulation are wanted");
   }
 }
 
@@ -275,7 +343,8 @@ void makeHazardImage(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
   }
   else
   {
-    // Of maps of one cell size the cells are the same everywhere: multiples of it in the world.
+    // Of maps of one cell size the cells are the same everywhere: multiples of
+    // it in the world.
     const Bounds b = boundsOf(trajectories, origin);
     const double cell = options.cellSize;
     if (cell > 0.0 && std::isfinite(cell))
@@ -286,16 +355,16 @@ void makeHazardImage(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
   const Terrain* ground = terrain ? &*terrain : nullptr;
   const CellGrid grid = gridOf(trajectories, ground, options, origin);
   HazardRaster raster(grid, ground);
-  forEachPath(trajectories, origin, [&](const RockPath& path, std::int64_t) { raster.add(path); });
+  addPaths(trajectories, origin, options.rockWidth, raster);
   fillImage(
-    grid, origin + Vec3(grid.west, grid.south, 0.0), raster.released(), terrain.has_value(),
-    options.statistics, [&raster](const UseCell& use) { raster.summarize(use); }, image);
+    grid, origin + Vec3(grid.west, grid.south, 0.0), raster.releases(), terrain.has_value(),
+    lostOf(trajectories), options.statistics,
+    [&raster](const UseCell& use) { raster.summarize(use); }, image);
   if (terrain)
   {
     addElevation(*terrain, grid, image);
   }
   copyCoordinateSystem(trajectories->GetFieldData(), image->GetFieldData());
-  tellLost(lostOf(trajectories), image->GetFieldData());
 }
 
 void makeHazardImage(
@@ -305,22 +374,25 @@ void makeHazardImage(
   const CellGrid& grid = files.grid();
   checkSize(grid.columns, grid.rows, grid.cellSize);
   fillImage(
-    grid, Vec3(grid.west, grid.south, 0.0), files.released(), true, statistics,
+    grid, Vec3(grid.west, grid.south, 0.0), files.releases(), true, files.lost(), statistics,
     [&files](const UseCell& use) { files.summarize(use); }, image);
   writeCoordinateSystem(files.crs(), files.origin(), image->GetFieldData());
 }
 
-void writeHazardPassages(
-  vtkPolyData* trajectories, vtkPolyData* terrainMesh, double cellSize, const std::string& fileName)
+void writeHazardPassages(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
+  const HazardMapOptions& options, const std::string& fileName)
 {
   checkLines(trajectories);
   const Terrain terrain = readTerrain(terrainMesh);
   checkSameCrs(
     trajectories->GetFieldData(), "The trajectories of the Input are", terrainMesh->GetFieldData());
   const Vec3 origin = terrain.geometry().origin();
-  HazardRaster raster(gridOf(trajectories, &terrain, { cellSize, false, {} }, origin), &terrain);
-  forEachPath(trajectories, origin, [&](const RockPath& path, std::int64_t) { raster.add(path); });
-  writePassages(raster, origin, readCrs(trajectories->GetFieldData()), fileName);
+  HazardMapOptions whole = options;
+  whole.crop = false;
+  HazardRaster raster(gridOf(trajectories, &terrain, whole, origin), &terrain);
+  addPaths(trajectories, origin, options.rockWidth, raster);
+  writePassages(
+    raster, origin, readCrs(trajectories->GetFieldData()), fileName, lostOf(trajectories));
 }
 
 } // namespace rockfall::filters

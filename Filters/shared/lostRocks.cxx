@@ -1,12 +1,14 @@
 #include "shared/lostRocks.h"
 
 #include "base/types.h"
+#include "rock/fates.h"
 #include "shared/arrays.h"
 #include "shared/failure.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
 #include "vtkCellData.h"
+#include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
@@ -17,6 +19,15 @@
 namespace rockfall::filters
 {
 
+Loss lossOf(double fate)
+{
+  const auto code = Fate(int(fate));
+  return code == Fate::Moving  ? Loss::Moving
+    : code == Fate::LeftDomain ? Loss::OverEdge
+    : code == kLostInNodata    ? Loss::InNodata
+                               : Loss::None;
+}
+
 LostRocks lostOf(vtkTable* summary)
 {
   LostRocks lost;
@@ -25,7 +36,7 @@ LostRocks lostOf(vtkTable* summary)
                *way = rows->GetArray("PathLength");
   for (vtkIdType k = 0; fate && time && way && k < fate->GetNumberOfTuples(); ++k)
   {
-    lost.add(Fate(int(fate->GetTuple1(k))), time->GetTuple1(k), way->GetTuple1(k));
+    lost.add(lossOf(fate->GetTuple1(k)), time->GetTuple1(k), way->GetTuple1(k));
   }
   return lost;
 }
@@ -53,8 +64,7 @@ LostRocks lostOf(vtkPolyData* trajectories)
       trajectories->GetPoint(ids[k], (k == 0 ? start : point).data());
       way = k == 0 ? 0.0 : std::max(way, (point - start).norm());
     }
-    lost.add(
-      Fate(int(fate->GetTuple1(cell))), size > 0 ? time->GetTuple1(ids[size - 1]) : 0.0, way);
+    lost.add(lossOf(fate->GetTuple1(cell)), size > 0 ? time->GetTuple1(ids[size - 1]) : 0.0, way);
   }
   return lost;
 }
@@ -70,15 +80,33 @@ void writeLost(const LostRocks& lost, vtkFieldData* fieldData)
   }
 }
 
-void tellLost(const LostRocks& lost, vtkFieldData* fieldData)
+void tellLost(
+  const LostRocks& lost, vtkFieldData* fieldData, const std::vector<std::string>& further)
 {
-  writeLost(lost, fieldData);
+  if (lost.rocks > 0) // else they are not known
+  {
+    writeLost(lost, fieldData);
+  }
   std::vector<std::string> notes = lostNotes(lost);
   for (std::string& note : stillNotes(lost))
   {
     notes.push_back(std::move(note));
   }
+  notes.insert(notes.end(), further.begin(), further.end());
   showNotes(notes, fieldData);
+}
+
+void tellOn(std::span<vtkFieldData* const> outputs, const std::vector<std::string>& notes)
+{
+  showNotes(notes, outputs.front());
+  vtkAbstractArray* kept = outputs.front()->GetAbstractArray("Notes");
+  for (vtkFieldData* output : outputs.subspan(1))
+  {
+    if (kept && !notes.empty())
+    {
+      output->AddArray(kept);
+    }
+  }
 }
 
 } // namespace rockfall::filters

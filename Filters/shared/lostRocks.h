@@ -1,7 +1,8 @@
 #pragma once
 
 /// @file
-/// Whom a run lost: counted from its outputs, kept in field arrays, told in notes.
+/// Whom a run lost: counted from its outputs, kept in field arrays, told in
+/// notes.
 
 #include "statistics/lost.h"
 
@@ -12,17 +13,27 @@ class vtkTable;
 namespace rockfall::filters
 {
 
+/// Of a Fate of a rock, by its number.
+Loss lossOf(double fate);
+
 /// Counts the rows of a table of summaries.
 LostRocks lostOf(vtkTable* summary);
 
-/// Counts the polylines of trajectories, by the cell array Fate. None without that array.
+/// Counts the polylines of trajectories, by the cell array Fate. None without
+/// that array.
 LostRocks lostOf(vtkPolyData* trajectories);
 
-/// Puts the counts there: RocksReleased, RocksMoving, RocksOverEdge, RocksInNodata and
-/// RocksUnmoved.
+/// Puts the counts there: RocksReleased, RocksMoving, RocksOverEdge,
+/// RocksInNodata and RocksUnmoved.
 void writeLost(const LostRocks& lost, vtkFieldData* fieldData);
 
-/// Counts, keeps and tells: the field arrays and the notes.
-void tellLost(const LostRocks& lost, vtkFieldData* fieldData);
+/// Keeps and tells: the field arrays and the notes, with further ones behind
+/// them.
+void tellLost(
+  const LostRocks& lost, vtkFieldData* fieldData, const std::vector<std::string>& further = {});
+
+/// Shows notes once, and keeps them in the field array Notes of several
+/// outputs.
+void tellOn(std::span<vtkFieldData* const> outputs, const std::vector<std::string>& notes);
 
 } // namespace rockfall::filters

@@ -1,9 +1,9 @@
 #include "shared/rockPaths.h"
 
-#include "shared/arrays.h"
 #include "base/abort.h"
 #include "base/errors.h"
 #include "rock/results.h"
+#include "shared/arrays.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
@@ -66,13 +66,16 @@ void readPaths(vtkPolyData* trajectories, const Vec3& origin, vtkIdType first, v
     vtkStringArray::SafeDownCast(trajectories->GetFieldData()->GetAbstractArray(retentionName));
   if (kept && kept->GetNumberOfValues() > 0 && kept->GetValue(0) == "Events")
   {
-    throw DataError("The Input is of a Rockfall Simulation whose TrajectoryOutput is Events: "
-                    "between touches that are far apart its paths say little; Thinned or Full is "
+    throw DataError("The Input is of a Rockfall Simulation whose "
+                    "TrajectoryOutput is Events: "
+                    "between touches that are far apart its paths say little; "
+                    "Thinned or Full is "
                     "wanted");
   }
   if (trajectories->GetNumberOfLines() == 0)
   {
-    throw DataError("The Input has no lines; the trajectories of Rockfall Simulation are wanted");
+    throw DataError("The Input has no lines; the trajectories of Rockfall "
+                    "Simulation are wanted");
   }
   vtkFieldData* points = trajectories->GetPointData();
   vtkDataArray* time = needed(points, "point", "Time");
@@ -85,7 +88,7 @@ void readPaths(vtkPolyData* trajectories, const Vec3& origin, vtkIdType first, v
   vtkDataArray* rock = needed(cells, "cell", "RockId");
   vtkDataArray* block = needed(cells, "cell", "BlockId");
   vtkDataArray* fate = needed(cells, "cell", "Fate");
-  vtkDataArray* mass = cells->GetArray("Mass");
+  vtkDataArray *mass = cells->GetArray("Mass"), *width = cells->GetArray("Width");
 
   std::vector<PathPoint> path;
   // Polydata's cells begin with its vertices.
@@ -119,6 +122,10 @@ void readPaths(vtkPolyData* trajectories, const Vec3& origin, vtkIdType first, v
     if (mass)
     {
       rockPath.mass = mass->GetTuple1(cell);
+    }
+    if (width)
+    {
+      rockPath.width = width->GetTuple1(cell);
     }
     rockPath.points = path;
     use(rockPath, cell);

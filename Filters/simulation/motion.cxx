@@ -1,5 +1,7 @@
 #include "simulation/motion.h"
 
+#include "rock/fates.h"
+
 #include <algorithm>
 
 namespace rockfall::filters
@@ -54,7 +56,7 @@ MotionState stateAt(const Trajectory& trajectory, double time)
     {
       return MotionState::Stopped;
     }
-    if (trajectory.summary.fate == Fate::LeftDomain || trajectory.summary.fate == Fate::LostInHole)
+    if (trajectory.summary.fate == Fate::LeftDomain || trajectory.summary.fate == kLostInNodata)
     {
       return MotionState::LeftDomain;
     }

@@ -11,6 +11,9 @@
 #include "vtkPolyData.h"
 #include "vtkStringArray.h"
 
+#include <cmath>
+#include <map>
+
 namespace rockfall::filters
 {
 
@@ -41,7 +44,8 @@ struct MotionArrays
   }
 };
 
-/// Where the energy of a rock is, and what has been taken of it since its release, J.
+/// Where the energy of a rock is, and what has been taken of it since its
+/// release, J.
 struct EnergyArrays
 {
   vtkSmartPointer<vtkDoubleArray> potential, strain, friction, restitution, vibration, damping,
@@ -160,9 +164,29 @@ struct TrajectoryLines::Arrays
   vtkSmartPointer<vtkIntArray> shape = addArray<vtkIntArray>(data->GetCellData(), "Shape");
   vtkSmartPointer<vtkDoubleArray> volume = addArray<vtkDoubleArray>(data->GetCellData(), "Volume");
   vtkSmartPointer<vtkDoubleArray> mass = addArray<vtkDoubleArray>(data->GetCellData(), "Mass");
+  vtkSmartPointer<vtkDoubleArray> width = addArray<vtkDoubleArray>(data->GetCellData(), "Width");
   vtkSmartPointer<vtkIntArray> fate = addArray<vtkIntArray>(data->GetCellData(), "Fate");
   vtkSmartPointer<vtkIdTypeArray> source =
     addArray<vtkIdTypeArray>(data->GetCellData(), "SourceId");
+
+  /// The longest side of the box around a rock, in the directions that its
+  /// shape was given in.
+  double widthOf(const Rock& rock, const TrajectorySummary& summary)
+  {
+    const auto [at, isNew] = widths.try_emplace(summary.rock, 0.0);
+    if (isNew)
+    {
+      Eigen::AlignedBox3d box;
+      for (const Vec3& vertex : rock.shape.vertices())
+      {
+        box.extend(vertex);
+      }
+      at->second = box.sizes().maxCoeff() / std::cbrt(rock.shape.integrals().volume);
+    }
+    // The volume may be one of this iteration.
+    return at->second * std::cbrt(summary.volume);
+  }
+  std::map<int, double> widths; ///< By rock, of a volume of 1 m³.
 
   void compose()
   {
@@ -193,8 +217,9 @@ void TrajectoryLines::append(const Trajectory& trajectory)
   }
   Arrays& a = *arrays_;
   const TrajectorySummary& summary = trajectory.summary;
-  // Vertices and lines are never mixed, as whole paths have two samples at least: cell data stand
-  // in the order in which trajectories come, but polydata's cells begin with the vertices.
+  // Vertices and lines are never mixed, as whole paths have two samples at
+  // least: cell data stand in the order in which trajectories come, but
+  // polydata's cells begin with the vertices.
   vtkCellArray* cells = trajectory.samples.size() == 1 ? a.vertices : a.lines;
   cells->InsertNextCell(int(trajectory.samples.size()));
   const double weight = summary.mass * frame_.gravity;
@@ -213,6 +238,7 @@ void TrajectoryLines::append(const Trajectory& trajectory)
   a.shape->InsertNextValue(int(frame_.shapes[std::size_t(summary.rock)]));
   a.volume->InsertNextValue(summary.volume);
   a.mass->InsertNextValue(summary.mass);
+  a.width->InsertNextValue(a.widthOf(frame_.rocks[std::size_t(summary.rock)], summary));
   a.fate->InsertNextValue(int(summary.fate));
   a.source->InsertNextValue(frame_.sourceIds[std::size_t(summary.rock)]);
 }

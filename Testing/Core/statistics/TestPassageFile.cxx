@@ -1,5 +1,5 @@
-// Passages in files: the same bits as in memory, whatever they are shared out over files; damage is
-// noticed.
+// Passages in files: the same bits as in memory, whatever they are shared out
+// over files; damage is noticed.
 
 #include "hermitePaths.h"
 
@@ -120,11 +120,14 @@ TEST_F(TestPassageFile, AnySharingOutGivesTheSameBits)
       // Also iterations of which each file has some rocks only.
       HazardRaster raster = rasterOf([&](int k) { return k % parts == part; });
       names.push_back(fileName(std::to_string(part)));
-      writePassages(raster, origin, "EPSG:32616", names.back());
+      writePassages(raster, origin, "EPSG:32616", names.back(), { 5, 1, 0, 2, 0, 60.0 });
     }
     std::reverse(names.begin(), names.end());
     const PassageFiles files(names);
-    EXPECT_EQ(files.released(), 60);
+    EXPECT_EQ(files.releases().size(), 6u);
+    EXPECT_EQ(files.releases().at(3), 10);
+    EXPECT_EQ(files.lost().rocks, 5 * parts);
+    EXPECT_EQ(files.lost().inNodata, 2 * parts);
     EXPECT_EQ(files.grid().west, 700010.0);
     EXPECT_EQ(files.grid().south, 4000000.0);
     EXPECT_EQ(files.origin(), origin);
@@ -151,7 +154,7 @@ TEST_F(TestPassageFile, NothingPassed)
   raster.add(path);
   writePassages(raster, origin, "", fileName("none"));
   const PassageFiles files({ fileName("none") });
-  EXPECT_EQ(files.released(), 1);
+  EXPECT_EQ(files.releases().at(0), 1);
   files.summarize([](const CellSummary&) { ADD_FAILURE(); });
 }
 
@@ -178,7 +181,7 @@ TEST_F(TestPassageFile, BadInput)
   with(bytes + "x");
   expectError({ bad }, "bad: is damaged");
   std::string cell = bytes;
-  cell.replace(cell.size() - 48, 4, "\xff\xff\xff\x7f");
+  cell.replace(cell.size() - 56, 4, "\xff\xff\xff\x7f");
   with(cell);
   expectError({ bad }, "bad: is damaged: there is no cell");
   HazardRaster other({ 20, 20, 5.0, 15.0, 0.0 });
@@ -216,8 +219,8 @@ TEST_F(TestPassageFile, HeadersAndPassagesThatNoRunHasAreDamage)
     std::ofstream(bad, std::ios::binary) << bytes;
   };
   const double inf = std::numeric_limits<double>::infinity();
-  constexpr std::size_t cellSize = 16, west = 24, z = 56, iterations = 72, count = 88,
-                        firstPassage = 104;
+  constexpr std::size_t cellSize = 16, west = 24, z = 56, iterations = 72, count = 88, lost = 96,
+                        firstPassage = 152;
   put(8, std::int32_t(-4));
   expectError({ bad }, "bad: is damaged: it has -4 x 3 cells");
   put(8, std::int32_t(2147483647));
@@ -243,12 +246,17 @@ TEST_F(TestPassageFile, HeadersAndPassagesThatNoRunHasAreDamage)
   expectError({ bad }, "bad: is damaged: in iteration -1");
   put(count - 8, std::int64_t(1) << 40);
   expectError({ bad }, "bad: is damaged: in iteration 1099511627776");
-  put(firstPassage + 4, std::uint32_t(0x7fffffff)); // entries: with another rock's more than an int
+  put(firstPassage + 4,
+    std::uint32_t(0x7fffffff)); // entries: with another rock's more than an int
   expectError({ bad }, "came in too often");
   put(firstPassage + 4, std::uint32_t(0));
   expectError({ bad }, "came in 0 times");
   put(firstPassage + 12, std::int32_t(-7));
   expectError({ bad }, "rock -7");
-  put(firstPassage + 16, inf);
+  put(lost + 8, std::int64_t(7));
+  expectError({ bad }, "bad: is damaged: 7 of 0 rocks were lost");
+  put(lost + 40, inf);
+  expectError({ bad }, "bad: is damaged: the end time is inf");
+  put(firstPassage + 24, inf);
   expectError({ bad }, "has the value inf");
 }

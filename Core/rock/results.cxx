@@ -1,10 +1,14 @@
-#include "base/fate.h"
+#include "rock/fates.h"
 
 namespace rockfall
 {
 
 std::string fateName(Fate fate)
 {
+  if (fate == kLostInNodata)
+  {
+    return "lost in nodata";
+  }
   switch (fate)
   {
     case Fate::Rested:
@@ -13,8 +17,6 @@ std::string fateName(Fate fate)
       return "left the domain";
     case Fate::Caught:
       return "caught";
-    case Fate::LostInHole:
-      return "lost in nodata";
     case Fate::Moving:
       break;
   }
