@@ -29,15 +29,16 @@ from rockfall_ground import Ground, hillshade
 
 CELL = 10.0  # m
 
-# Material, one for the whole slope. Rv: the middle of the 0.6 to 0.8 that Zheng et al. (2014) give as
-# observed, times the whole velocity. Friction: an assumption for rough, rooted ground on sandstone
-# debris; it lies above the slope's angle, so that flat rocks stop and only those that roll go far.
-RESTITUTION = 0.7
-FRICTION = 35.0
+# The ground unless --ground says another. Hard ground, for comparison with published DDA: Rv in the
+# middle of the 0.6 to 0.8 that Zheng et al. (2014) give as observed, and a friction that lies above the
+# slope's angle. On it round rocks walk on for minutes.
+GROUND = "Soil (assumed)"
+HARD = {"RestitutionCoefficient": 0.7, "RestitutionDeviation": 0, "FrictionAngle": 35,
+        "RoughnessMean": 0, "RoughnessDeviation": 0}
 
 STEEP = 32.0  # Degrees. Beyond this the DEM has few, small areas: its faces of rock.
 SEED = 20140
-END = 1200.0  # s: long enough for the last slow roller on the valley's floor.
+END = 1200.0  # s: long enough for the last slow roller on the valley's floor, on hard ground, too.
 INTERVAL = 0.1  # s between samples
 
 started = time.time()
@@ -54,6 +55,9 @@ def arguments():
     parser.add_argument("--rocks", type=int, default=120, help="how many rocks are released (120)")
     parser.add_argument("--frames", type=int, default=100,
                         help="frames of the movie and steps of the time series (100); 0 makes no movie")
+    parser.add_argument("--ground", default=GROUND.split(" (")[0],
+                        help="a preset of ground, or Hard: for comparison with published DDA "
+                             f"({GROUND.split(' (')[0]})")
     chosen = parser.parse_args()
     if chosen.rocks < 1:
         parser.error(f"--rocks is {chosen.rocks}, it must be at least 1")
@@ -74,6 +78,18 @@ def result(proxy, port=0):
     if data is None or data.GetNumberOfElements(6 if data.IsA("vtkTable") else 0) == 0:
         raise SystemExit(f"{proxy.GetXMLLabel()} made nothing; the message above says why.")
     return data
+
+
+def set_ground(slope, name):
+    presets = {label.split(" (")[0].lower(): label for label in slope.GetProperty("Preset").Available[1:]}
+    if name.lower() == "hard":
+        for field, value in HARD.items():
+            setattr(slope, field, value)
+    elif name.lower() in presets:
+        slope.Preset = presets[name.lower()]
+    else:
+        raise SystemExit(f"--ground {name}: must be Hard or one of " +
+                         ", ".join(label.split(" (")[0] for label in presets.values()))
 
 
 def simulate(slope, rocks):
@@ -118,13 +134,11 @@ def main():
     say(f"DEM: {rows} x {columns} cells, {elevation.min()} to {elevation.max()} m, written as {dem}")
 
     # The triangles are only looked at from afar here; the rocks fall on every CFE.
-    slope = DEMtoCFEMesh(FileName=dem, CellSize=CELL, RestitutionCoefficient=RESTITUTION,
-                         RestitutionDeviation=0, FrictionAngle=FRICTION, RoughnessMean=0,
-                         RoughnessDeviation=0, MaximumDisplayCells=400000)
+    slope = DEMtoCFEMesh(FileName=dem, CellSize=CELL, MaximumDisplayCells=400000)
+    set_ground(slope, chosen.ground)
     slope.UpdatePipeline()
     ground = Ground(result(slope))
-    say(f"Slope: {ground.rows} x {ground.columns} nodes of {ground.cell:g} m, Rv {RESTITUTION}, "
-        f"friction angle {FRICTION:g}°")
+    say(f"Slope: {ground.rows} x {ground.columns} nodes of {ground.cell:g} m; ground: {ground.name}")
 
     area_rows, area_columns, angles = release.steepest_escarpment(ground, STEEP)
     heights = ground.height(*ground.centre(area_rows, area_columns))

@@ -20,6 +20,7 @@ class Ground:
         self.north = self.south + (self.rows - 1) * self.cell
         self.heights = vtk_to_numpy(field.GetArray("TerrainHeights")).reshape(self.rows, self.columns)
         self.crs = field.GetAbstractArray("TerrainCRS").GetValue(0)
+        self.name = field.GetAbstractArray("Ground").GetValue(0)
 
     def angles(self):
         """Slope angle in degrees per cell: that of the flatter one of the cell's two CFEs, so that a

@@ -38,6 +38,10 @@ class Scene:
         self.bounds = west, east, south, north
         self.slope = produce(ground.patch(*self.bounds, hillshade(self.light)))
 
+    def name_ground(self, view, position, size):
+        """What the rocks fall on: the ground decides how far they go."""
+        write(view, "Ground: " + self.ground.name, position, size)
+
     def save_slope(self, path):
         SaveData(path, proxy=self.slope, DataMode="Binary")
 
@@ -150,6 +154,7 @@ class Scene:
         flat(points_source(self.stops + lift, dot), view, INK)
         flat(points_source(self.starts + 2 * lift, 0.7 * dot), view, RELEASED)
         write(view, "blue: released\nblack: stopped\ncontours: 10 m", (0.845, 0.33), 20)
+        self.name_ground(view, (0.02, 0.915), 20)
         self.save(view, path)
 
     def contours(self, view, ground, step):
@@ -196,6 +201,7 @@ class Scene:
               (0.02, 0.945), 28, bold=True)
         write(view, "Tubes: trajectories. Blue: released. Black: stopped. Contours: 10 m.",
               (0.02, 0.905), 20)
+        self.name_ground(view, (0.02, 0.875), 20)
         self.save(view, path)
 
     def ground_scale(self, view, u):
@@ -285,6 +291,7 @@ class Scene:
         write(view, "Rocks at rest, in their real size", (0.02, 0.945), 28, bold=True)
         write(view, "Lines: edges of the contact", (0.02, 0.905), 20)
         write(view, "face elements, 10 m apart", (0.02, 0.875), 20)
+        self.name_ground(view, (0.02, 0.845), 20)
         self.save(view, path)
 
     def standing(self, centre, away, over, turned):
@@ -331,6 +338,7 @@ class Scene:
         speed_bar(far, (0.87, 0.5), 0.36, 14)
         write(far, f"{self.count} rocks at the Jacksboro fault", (0.02, 0.93), 20, bold=True)
         write(far, f"Rocks are shown {ENLARGED:g} times their size.", (0.02, 0.885), 14)
+        self.name_ground(far, (0.02, 0.855), 14)
         clock = write(far, "0.0 s", (0.5, 0.93), 20, bold=True)
 
         rock = int(np.argmax(self.summary["RunOut"]))

@@ -3,6 +3,8 @@
 #include "base/errors.h"
 #include "base/text/nameKey.h"
 
+#include <algorithm>
+
 namespace rockfall
 {
 
@@ -136,6 +138,11 @@ SurfaceMaterial GroundPreset::material() const
   return material;
 }
 
+std::string GroundPreset::title() const
+{
+  return std::string(this->label) + " (" + supportName(this->support) + ")";
+}
+
 std::span<const GroundPreset> groundPresets()
 {
   return presets;
@@ -155,6 +162,29 @@ const GroundPreset& groundPreset(const std::string& name)
     names += (names.empty() ? "" : ", ") + std::string(preset.name);
   }
   throw DataError("\"" + name + "\" is no preset; there are " + names);
+}
+
+int usualPreset()
+{
+  return int(&groundPreset("meadow") - presets) + 1;
+}
+
+std::string groundTitle(int preset, const SurfaceMaterial& material, const MaterialClasses& classes)
+{
+  std::string title = preset > 0 ? presets[preset - 1].title()
+    : material.yielding.yields() ? "typed numbers"
+                                 : "hard, for comparison with published DDA";
+  if (classes.count() == 0)
+  {
+    return title;
+  }
+  constexpr std::size_t most = 4; // fit into a view
+  std::string names;
+  for (std::size_t k = 0; k < std::min(classes.names.size(), most); ++k)
+  {
+    names += classes.names[k] + ", ";
+  }
+  return "classes " + names + (classes.names.size() > most ? "..., " : "") + "elsewhere " + title;
 }
 
 } // namespace rockfall

@@ -45,6 +45,8 @@ struct GroundPreset
   double restitutionSpeed = 0.0; ///< K of the speed-dependent model, m/s; 0: Rn at every speed.
 
   SurfaceMaterial material() const;
+  /// As panels and views say it: "Meadow (field data)".
+  std::string title() const;
   /// Ground that yields scatters from impact to impact; the others' deviations are of a whole
   /// slope.
   DeviationPer deviationPer() const
@@ -58,5 +60,14 @@ std::span<const GroundPreset> groundPresets();
 /// By name, not case-sensitive, with or without what panels say in brackets. Throws DataError that
 /// lists the names.
 const GroundPreset& groundPreset(const std::string& name);
+
+/// Number, from 1, of the preset that a slope has in a window until another is chosen: the one that
+/// field data support.
+int usualPreset();
+
+/// Ground of a slope in words, for the view. `preset`: number, 0 for none. What is neither a preset
+/// nor yields is bare rock, as in published DDA.
+std::string groundTitle(
+  int preset, const SurfaceMaterial& material, const MaterialClasses& classes);
 
 } // namespace rockfall

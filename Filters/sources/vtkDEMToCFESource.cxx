@@ -1,20 +1,20 @@
 #include "vtkDEMToCFESource.h"
 
-#include "shared/attempt.h"
 #include "base/errors.h"
 #include "base/text/numberText.h"
-#include "shared/failure.h"
 #include "geometry/shell.h"
+#include "gis/base/reach.h"
+#include "gis/layers/structureLayers.h"
 #include "gis/raster/contours.h"
 #include "gis/raster/ground.h"
 #include "gis/raster/raster.h"
-#include "gis/base/reach.h"
-#include "gis/layers/structureLayers.h"
+#include "shared/attempt.h"
+#include "shared/failure.h"
 #include "shared/structureFieldData.h"
-#include "terrain/Terrain.h"
-#include "terrain/presets.h"
 #include "shared/terrainFieldData.h"
 #include "shared/terrainMesh.h"
+#include "terrain/Terrain.h"
+#include "terrain/presets.h"
 
 #include "vtkFieldData.h"
 #include "vtkNew.h"
@@ -30,6 +30,7 @@ namespace
 {
 
 constexpr double testSlopeCellSize = 5.0; // m
+constexpr char groundName[] = "Ground";   // field array: the ground in words
 
 } // namespace
 
@@ -156,6 +157,12 @@ std::shared_ptr<const rockfall::Terrain> vtkDEMToCFESource::MakeSlope(
     readStructures({ this->EmbankmentFile, this->TreeFile, this->BarrierFile, this->TreesBreak != 0,
                      this->EmbankmentLayerName, this->TreeLayerName, this->BarrierLayerName },
       slope, notes));
+  if (this->Preset == 0 && !material.yielding.yields() && slope.restitutionClasses().count() == 0)
+  {
+    notes.emplace_back(
+      "The ground is bare rock, for comparison with published DDA: on it rocks walk "
+      "on for minutes. Choose a Preset for ground that yields");
+  }
   this->Slope = std::make_shared<const rockfall::Terrain>(std::move(slope));
   this->SlopeNotes = notes;
   this->SlopeTime = this->GetMTime();
@@ -207,6 +214,11 @@ int vtkDEMToCFESource::RequestData(
       kept->InsertNextValue(note);
     }
     mesh->GetFieldData()->AddArray(kept);
+    vtkNew<vtkStringArray> ground;
+    ground->SetName(groundName);
+    ground->InsertNextValue(
+      rockfall::groundTitle(this->Preset, terrain->material(), terrain->restitutionClasses()));
+    mesh->GetFieldData()->AddArray(ground);
     rockfall::filters::copyCoordinateSystem(mesh->GetFieldData(), structures->GetFieldData());
     vtkPolyData::GetData(outputVector, 1)->ShallowCopy(structures);
     output->ShallowCopy(mesh);

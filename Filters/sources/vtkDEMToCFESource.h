@@ -12,6 +12,7 @@
  * material - and that is what the simulation uses: the triangles are there to be seen, to be
  * coloured and to be picked (see terrainFieldData.h). Notes on what was done to the data
  * (reprojection, resampling, ...) are shown as plain messages and kept in the field array Notes.
+ * The field array Ground says which ground it is.
  *
  * Without a FileName the source makes the bi-planar test slope: an incline 57.7 m high and 100 m
  * long that falls along +x, then 150 m of flat, 100 m wide.
@@ -136,8 +137,8 @@ public:
   ///@{
   /**
    * Classes of restitution and of friction: a class raster or polygons, and a table with their
-   * numbers (see Core/gis/raster/ground.h). Empty (the default): the slope is all of one material. The
-   * field is that of the polygons with the class; empty looks for class, name, code, ...
+   * numbers (see Core/gis/raster/ground.h). Empty (the default): the slope is all of one material.
+   * The field is that of the polygons with the class; empty looks for class, name, code, ...
    */
   vtkSetStdStringFromCharMacro(RestitutionLayer);
   vtkGetCharFromStdStringMacro(RestitutionLayer);
@@ -156,9 +157,9 @@ public:
   ///@{
   /**
    * Embankments and dams (lines), trees (points) and barriers or nets (lines), see
-   * Core/gis/layers/structureLayers.h for their fields. Empty (the default): there are none. TreesBreak:
-   * trees without a capacity of their own break at that of their diameter (Dorren & Berger 2006);
-   * default off. Output port 1 shows them.
+   * Core/gis/layers/structureLayers.h for their fields. Empty (the default): there are none.
+   * TreesBreak: trees without a capacity of their own break at that of their diameter (Dorren &
+   * Berger 2006); default off. Output port 1 shows them.
    */
   vtkSetStdStringFromCharMacro(EmbankmentFile);
   vtkGetCharFromStdStringMacro(EmbankmentFile);

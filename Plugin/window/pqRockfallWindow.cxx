@@ -9,6 +9,7 @@
 #include "pqPathPicker.h"
 #include "presetValues.h"
 #include "slopeView.h"
+#include "terrain/presets.h"
 
 #include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
@@ -16,6 +17,7 @@
 #include "pqDataRepresentation.h"
 #include "pqFileDialog.h"
 #include "pqHelpReaction.h"
+#include "pqObjectBuilder.h"
 #include "pqOutputPort.h"
 #include "pqPVApplicationCore.h"
 #include "pqPipelineSource.h"
@@ -28,6 +30,7 @@
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMRenderViewProxy.h"
+#include "vtkSMSettings.h"
 #include "vtkSMSourceProxy.h"
 
 #include <QCoreApplication>
@@ -129,6 +132,8 @@ void pqRockfallWindow::begin()
   }
   auto* model = pqApplicationCore::instance()->getServerManagerModel();
   this->connect(model, &pqServerManagerModel::sourceAdded, this, &pqRockfallWindow::onSource);
+  this->connect(pqApplicationCore::instance()->getObjectBuilder(),
+    qOverload<pqProxy*>(&pqObjectBuilder::proxyCreated), this, &pqRockfallWindow::onMade);
   this->connect(
     model, &pqServerManagerModel::representationAdded, this, &pqRockfallWindow::onRepresentation);
   this->connect(&this->Clock, &QTimer::timeout, this, &pqRockfallWindow::tellRuns);
@@ -258,6 +263,20 @@ void pqRockfallWindow::onSource(pqPipelineSource* source)
   {
     this->connect(
       source, SIGNAL(dataUpdated(pqPipelineSource*)), this, SLOT(onData(pqPipelineSource*)));
+  }
+}
+
+//-----------------------------------------------------------------------------
+void pqRockfallWindow::onMade(pqProxy* made)
+{
+  // By menu or File > Open: scripts and states bring their own ground, settings of the user theirs.
+  vtkSMProxy* proxy = made->getProxy();
+  const std::string setting =
+    "." + std::string(proxy->GetXMLGroup()) + "." + proxy->GetXMLName() + ".Preset";
+  if (isOf(proxy, { "vtkDEMToCFESource" }) &&
+    !vtkSMSettings::GetInstance()->HasSetting(setting.c_str()))
+  {
+    vtkSMPropertyHelper(proxy, "Preset").Set(rockfall::usualPreset());
   }
 }
 

@@ -10,6 +10,7 @@ class QMainWindow;
 class pqOutputPort;
 class pqPathPicker;
 class pqPipelineSource;
+class pqProxy;
 class pqRepresentation;
 class pqServer;
 class pqView;
@@ -17,9 +18,9 @@ class vtkObject;
 
 /**
  * The plugin in a window: the Rockfall menu; the looks of what is shown first; drawn
- * lines that begin where the slope or the paths are; the numbers of presets in the panel; a chart
- * of the trajectory that is clicked; the state of runs in the status bar; animations in real time
- * that end with the last rock.
+ * lines that begin where the slope or the paths are; ground that yields, and the numbers of presets
+ * in the panel; a chart of the trajectory that is clicked; the state of runs in the status bar;
+ * animations in real time that end with the last rock.
  */
 class pqRockfallWindow : public QObject
 {
@@ -34,6 +35,7 @@ public:
 
 private Q_SLOTS:
   void onSource(pqPipelineSource* source);
+  void onMade(pqProxy* made);
   void onRepresentation(pqRepresentation* representation);
   void onData(pqPipelineSource* source);
   void onPreset(vtkObject* property, unsigned long event);

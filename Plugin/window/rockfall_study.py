@@ -11,12 +11,13 @@ from paraview import servermanager, simple
 
 ROCKS = 20  # of the release line
 ITERATIONS = 10
+GROUND = "Meadow (field data)"  # until another Preset is chosen
 
 
 def new_study(file_name=""):
     """A slope, a release line across its highest steep place, the fall of its rocks, a map and what passes
     a line; without a file on the test slope. Returns its parts by name."""
-    slope = simple.DEMtoCFEMesh(registrationName="Slope", FileName=file_name)
+    slope = simple.DEMtoCFEMesh(registrationName="Slope", FileName=file_name, Preset=GROUND)
     slope.UpdatePipeline()
     if slope.GetDataInformation().GetNumberOfCells() == 0:
         return {}  # the message says why
@@ -45,6 +46,7 @@ def new_study(file_name=""):
     simple.Show(simple.OutputPort(hazard, 1), view)
     _show_chart(line, view)
     clock(view)
+    ground(slope, view)
     simple.GetAnimationScene().GoToLast()  # the paths as a whole; Play begins anew from there
     frame(fall, view)
     simple.SetActiveView(view)
@@ -113,6 +115,17 @@ def clock(view=None):
     annotation = simple.AnnotateTime(registrationName="Clock", Format="Time: {time:.1f} s")
     display = simple.Show(annotation, view)
     display.WindowLocation = "Upper Left Corner"
+    display.FontSize = 12
+    return annotation
+
+
+def ground(slope, view=None):
+    """The ground of a slope in words, in a corner of the view."""
+    view = view or _render_view()
+    annotation = simple.PythonAnnotation(registrationName="Ground", Input=slope, ArrayAssociation="Field Data",
+                                         Expression="'Ground: ' + Ground.GetValue(0)")
+    display = simple.Show(annotation, view)
+    display.WindowLocation = "Lower Left Corner"
     display.FontSize = 12
     return annotation
 

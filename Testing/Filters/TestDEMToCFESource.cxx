@@ -1,8 +1,8 @@
 #include "helpers.h"
 
 #include "base/errors.h"
-#include "terrain/presets.h"
 #include "shared/terrainFieldData.h"
+#include "terrain/presets.h"
 
 #include "vtkCellData.h"
 #include "vtkDEMToCFESource.h"
@@ -204,8 +204,8 @@ TEST_F(TestDEMToCFESource, BigSlopesAreShownCoarser)
   // Every second node: 25 × 10 cells.
   EXPECT_EQ(mesh->GetNumberOfCells(), 500);
   EXPECT_EQ(mesh->GetFieldData()->GetArray("TerrainHeights")->GetNumberOfValues(), 51 * 21);
-  ASSERT_EQ(this->Heard->Notes.size(), 1u);
-  EXPECT_NE(this->Heard->Notes[0].find("Maximum Display Cells"), std::string::npos);
+  ASSERT_EQ(this->Heard->Notes.size(), 2u); // the first one: bare rock
+  EXPECT_NE(this->Heard->Notes[1].find("Maximum Display Cells"), std::string::npos);
   // The second cell of the second row is that of node (2, 2): 2 · (2 · 50 + 2) + 1.
   EXPECT_EQ(value(mesh->GetCellData(), "CFEId", 2 * 26), 205);
 }
@@ -219,6 +219,30 @@ TEST_F(TestDEMToCFESource, NotesAreShownAndKept)
   ASSERT_TRUE(notes);
   ASSERT_GE(notes->GetNumberOfValues(), 1);
   EXPECT_EQ(vtkIdType(this->Heard->Notes.size()), notes->GetNumberOfValues());
+}
+
+TEST_F(TestDEMToCFESource, TheGroundIsNamed)
+{
+  const auto ground = [&](vtkPolyData* mesh)
+  {
+    auto* words = vtkStringArray::SafeDownCast(mesh->GetFieldData()->GetAbstractArray("Ground"));
+    return words ? std::string(words->GetValue(0)) : std::string();
+  };
+  EXPECT_EQ(ground(this->Update()), "hard, for comparison with published DDA");
+  ASSERT_EQ(this->Heard->Notes.size(), 1u);
+  EXPECT_NE(this->Heard->Notes[0].find("bare rock"), std::string::npos);
+  this->Heard->Notes.clear();
+  this->Source->SetPreset(rockfall::usualPreset());
+  EXPECT_EQ(ground(this->Update()), "Meadow (field data)");
+  this->Source->SetPreset(0);
+  this->Source->SetRollingResistance(0.2);
+  EXPECT_EQ(ground(this->Update()), "typed numbers");
+  const std::string zones =
+    this->WriteFile("zones.csv", "WKT,class\n\"POLYGON((0 0,40 0,40 100,0 100,0 0))\",cliff\n");
+  const std::string table = this->WriteFile("table.csv", "class,preset\ncliff,rock\n");
+  this->Source->SetRestitutionLayer(zones.c_str());
+  this->Source->SetRestitutionTable(table.c_str());
+  EXPECT_EQ(ground(this->Update()), "classes cliff, elsewhere typed numbers");
 }
 
 TEST_F(TestDEMToCFESource, BadValuesAreOneErrorAndNothingElse)

@@ -129,6 +129,7 @@ TEST_F(TestReleaseUncertainty, DefaultsDifferBetweenIterations)
   this->Simulation->SetEndTime(3.0);
   vtkFieldData* rows = this->Summary()->GetRowData();
   EXPECT_NE(value(rows, "StopX", 0), value(rows, "StopX", 1));
+  this->ForgetBareRock();
   ASSERT_EQ(this->Heard->Notes.size(), 1u); // of the short run, none on iterations that are alike
   EXPECT_NE(this->Heard->Notes[0].find("2 of 2 rocks were still moving"), std::string::npos);
   EXPECT_EQ(value(rock->GetOutput()->GetCellData(), "AttitudeLaw"), vtkRockBlockSource::RANDOM);
@@ -155,13 +156,16 @@ TEST_F(TestReleaseUncertainty, ANoteSaysWhereNothingDiffers)
   this->Simulation->SetEndTime(0.05); // a look, of which nobody is told lost
   this->Simulation->SetIterations(1);
   this->Simulation->Update();
+  this->ForgetBareRock();
   EXPECT_TRUE(this->Heard->Notes.empty());
   this->Simulation->SetIterations(3);
   this->Simulation->Update();
+  this->ForgetBareRock();
   ASSERT_EQ(this->Heard->Notes.size(), 1u);
   EXPECT_NE(this->Heard->Notes[0].find("All 3 iterations are alike"), std::string::npos);
   this->Heard->Notes.clear();
   this->Terrain->SetFrictionAngleDeviation(2.0);
   this->Simulation->Update();
+  this->ForgetBareRock();
   EXPECT_TRUE(this->Heard->Notes.empty());
 }

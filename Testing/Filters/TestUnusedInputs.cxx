@@ -14,6 +14,7 @@ protected:
   /// Exactly one note, with all of these words in it; or none if there are no words.
   void ExpectNote(const std::vector<std::string>& words)
   {
+    this->ForgetBareRock();
     ASSERT_EQ(this->Heard->Notes.size(), words.empty() ? 0u : 1u)
       << (this->Heard->Notes.empty() ? "" : this->Heard->Notes[0]);
     for (const std::string& word : words)
