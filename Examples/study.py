@@ -19,11 +19,12 @@ study.json, all paths from where it stands:
       "lines":      {"FileName": "road.gpkg", "BarrierHeight": 3, "BarrierCapacity": 500},
       "trajectories": true,
       "iterations": 1000,
-      "chunk":      50
+      "chunk":      50,
+      "until":      {"quantity": "Share", "within": 0.02}
     }
 
 "terrain", "rocks", "simulation" and "lines" are properties of DEM to CFE Mesh, Rock Blocks, Rockfall
-Simulation and Trajectory Collector. "map" and "lines" may be left out, and then there are none; with
+Simulation and Trajectory Collector. "map", "lines" and "until" may be left out, and then there are none; with
 "trajectories": false those are not kept. Files count by their content, not by their name. FOLDER gets
 
     manifest.json               what the study is: program, files, all values in force
@@ -54,6 +55,7 @@ sys.path[:0] = [os.path.join(here, "study_parts")]
 from paraview import servermanager
 from paraview.simple import *
 
+import enough
 import schema
 import wholefile
 from combine import RESULTS, chunk_iterations, columns_of, combine
@@ -78,6 +80,7 @@ def read_study(path):
     """The study with full paths."""
     study = schema.load(path)
     schema.check(path, study)
+    enough.check(path, study)
     for key in ("Iterations", "FirstIteration", "ShownIteration", "NumberOfThreads"):
         if key in study.get("simulation", {}):
             refuse(f"{path}: \"{key}\" of simulation is this script's; use \"iterations\", \"chunk\" "
@@ -279,6 +282,42 @@ def duration(seconds):
     return f"{minutes} min {seconds:02d} s" if minutes else f"{seconds} s"
 
 
+def precision(study, pipeline):
+    """What the study goes on for, on the first rank; None if that is its iterations."""
+    if "until" not in study:
+        return None
+    names = output(pipeline.crossings, 1).GetRowData().GetAbstractArray("LineName")
+
+    def make_it():
+        made.append(enough.Enough(study["until"],
+                                  [names.GetValue(k) for k in range(names.GetNumberOfValues())]))
+
+    made = []
+    from_first_rank(make_it)
+    return made[0] if made else None
+
+
+def is_enough(until, stem):
+    if not until:
+        return False
+    until.add(stem)
+    return all(one["known"] for one in until.state())
+
+
+def tell_precision(chosen, until):
+    """In the log and the manifest."""
+    def write():
+        if not until:
+            return
+        known = all(one["known"] for one in until.state())
+        say(("Enough" if known else "Not enough") + f" rocks, {until.total}: {until.text()}")
+        manifest = schema.load(manifest_of(chosen))
+        manifest["until"] = {**until.until, "known": known, "lines": until.state()}
+        write_text(manifest_of(chosen), json.dumps(manifest, indent=1) + "\n")
+
+    from_first_rank(write)
+
+
 def main():
     chosen = arguments()
     study = from_first_rank(lambda: begin(chosen))
@@ -293,12 +332,18 @@ def main():
         say(f"{whole} of {len(done)} chunks are there already")
     count = sum(one for one, there in zip(wanted, done) if one == there)
     progress = Progress(count, study["iterations"])
+    stems = []
+    until = precision(study, pipeline)
     for k, iterations in enumerate(wanted):
+        stems.append(stem_of(chosen, k))
         if done[k] != iterations:
-            pipeline.write_chunk(stem_of(chosen, k), k * study["chunk"], iterations)
+            pipeline.write_chunk(stems[-1], k * study["chunk"], iterations)
             count += iterations
             progress(count)
-    combine(study, chosen.folder, [stem_of(chosen, k) for k in range(len(done))])
+        if from_first_rank(lambda: is_enough(until, stems[-1])):
+            break
+    tell_precision(chosen, until)
+    combine(study, chosen.folder, stems, sum(wanted[:len(stems)]))
     say(f"Done: {chosen.folder}")
 
 

@@ -87,7 +87,7 @@ def combine_crossings(folder, stems, merge):
                   [columns_of(merge.GetOutputDataObject(port).GetRowData())])
 
 
-def combine(study, folder, stems):
+def combine(study, folder, stems, iterations):
     """The results of the whole study, from the files of its chunks alone."""
     hashes = from_first_rank(lambda: combine_tables(folder, stems))
     if "lines" in study:
@@ -100,7 +100,7 @@ def combine(study, folder, stems):
 
     def finish():
         write_text(os.path.join(folder, RESULTS), json.dumps(
-            {"iterations": study["iterations"], "chunks": hashes,
+            {"iterations": iterations, "chunks": hashes,
              "whole": hashlib.sha256("".join(hashes).encode()).hexdigest()}, indent=1) + "\n")
         for name in os.listdir(folder):  # what a killed run left
             if name.startswith(wholefile.UNFINISHED) and name != wholefile.LOCK:

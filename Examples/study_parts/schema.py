@@ -123,7 +123,8 @@ def check_value(where, value, prop):
 
 def check(path, study):
     """All of a study but what its files hold."""
-    known = {**dict.fromkeys(PROXIES, dict), "trajectories": bool, "iterations": int, "chunk": int}
+    known = {**dict.fromkeys(PROXIES, dict), "trajectories": bool, "iterations": int, "chunk": int,
+             "until": dict}
     try:
         for key, value in study.items():
             if key not in known:

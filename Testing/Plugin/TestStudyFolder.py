@@ -98,7 +98,8 @@ for largest in (sizes[0] - 1, sizes[len(sizes) // 2] - 1, sizes[-1] - 1):
     assert code != 0, f"nothing was too large for {largest} bytes"
     assert "folder-full" in said and "Traceback" not in said, said
     for name, data in files_of("folder-full").items():
-        assert name.startswith(wholefile.UNFINISHED) or name == "manifest.json" or data == calm[name], f"{name} is not whole"
+        assert name.startswith((wholefile.UNFINISHED, "manifest.json")) or data == calm[name], \
+            f"{name} is not whole"
 code, said = run("folder-full")
 assert code == 0 and without_manifest("folder-full") == without_manifest("folder-calm"), said
 print("a study's files are whole or not there")

@@ -1,0 +1,152 @@
+"""How many rocks are enough: as many as it takes to know a quantity at a line so precisely."""
+import math
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
+from schema import Bad, shown
+
+QUANTITIES = ("Share", "KineticEnergy95")  # as lines.csv has them
+KNOWN = ("quantity", "within", "confidence", "line")
+
+
+def check(path, study):
+    """Of the part "until"."""
+    until = study.get("until")
+    if until is None:
+        return
+    for name in until:
+        if name not in KNOWN:
+            raise Bad(f"{path}: there is no {shown(name)} in until, it knows {', '.join(KNOWN)}")
+    if "lines" not in study:
+        raise Bad(f"{path}: \"until\" needs \"lines\"")
+    if until.get("quantity") not in QUANTITIES:
+        raise Bad(f"{path}: \"quantity\" of until is {shown(until.get('quantity'))}, it must be one of "
+                  f"{', '.join(QUANTITIES)}")
+    for name, value in (("within", until.get("within")), ("confidence", until.get("confidence", 0.95))):
+        if not isinstance(value, (int, float)) or isinstance(value, bool) or not 0.0 < value < 1.0:
+            raise Bad(f"{path}: {shown(name)} of until is {shown(value)}, it must be between 0 and 1")
+    if not isinstance(until.get("line", ""), str):
+        raise Bad(f"{path}: \"line\" of until is {shown(until['line'])}, it must be a text")
+
+
+def beta(a, b, x):
+    """Regularised incomplete beta function I_x(a, b), by its continued fraction (Lentz)."""
+    if x <= 0.0 or x >= 1.0:
+        return float(x >= 1.0)
+    if x > (a + 1.0) / (a + b + 2.0):
+        return 1.0 - beta(b, a, 1.0 - x)
+    front = math.exp(math.lgamma(a + b) - math.lgamma(a) - math.lgamma(b) + a * math.log(x) +
+                     b * math.log1p(-x)) / a
+    tiny, c, d = 1e-300, 1.0, 1.0 - (a + b) * x / (a + 1.0)
+    d = 1.0 / (d if abs(d) > tiny else tiny)
+    value = d
+    for m in range(1, 100000):
+        for term in (m * (b - m) * x / ((a + 2 * m - 1.0) * (a + 2 * m)),
+                     -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1.0))):
+            d = 1.0 + term * d
+            d = 1.0 / (d if abs(d) > tiny else tiny)
+            c = 1.0 + term / c
+            c = c if abs(c) > tiny else tiny
+            value *= c * d
+        if abs(c * d - 1.0) < 1e-13:
+            break
+    return front * value
+
+
+def solve(function, wanted):
+    """Where a function that grows from 0 to 1 is `wanted`."""
+    low, high = 0.0, 1.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if function(middle) < wanted else (low, middle)
+    return 0.5 * (low + high)
+
+
+def share_interval(count, total, confidence):
+    """Clopper & Pearson (1934)."""
+    tail = 0.5 * (1.0 - confidence)
+    low = solve(lambda p: beta(count, total - count + 1, p), tail) if count else 0.0
+    high = solve(lambda p: beta(count + 1, total - count, p), 1.0 - tail) if count < total else 1.0
+    return low, high
+
+
+def quantile_ranks(total, q, confidence):
+    """Ranks, from 1, of the values between which the quantile is; None where there are too few."""
+    tail = 0.5 * (1.0 - confidence)
+
+    def at_most(k):  # of so many values, k or fewer are below the quantile
+        return 1.0 if k >= total else beta(total - k, k + 1, 1.0 - q)
+
+    def first(wanted):
+        low, high = 0, total
+        while low < high:
+            middle = (low + high) // 2
+            low, high = (low, middle) if at_most(middle) >= wanted else (middle + 1, high)
+        return low
+
+    low, high = first(tail), first(1.0 - tail) + 1
+    if low > 0 and at_most(low) > tail:
+        low -= 1
+    low += 1
+    return (low, high) if at_most(low - 1) <= tail and high <= total else None
+
+
+class Enough:
+    """Of a study, chunk after chunk."""
+
+    def __init__(self, until, lines):
+        self.until = until
+        self.total = 0
+        self.greatest = {name: [] for name in lines if until.get("line", name) == name}
+        if not self.greatest:
+            raise Bad(f"\"line\" of until is {shown(until.get('line'))}, the lines are "
+                      f"{', '.join(map(shown, lines))}")
+
+    def add(self, stem):
+        with np.load(stem + ".npz") as chunk:
+            self.total += len(chunk["Iteration"])
+        reader = vtkXMLPolyDataReader()
+        reader.SetFileName(stem + "-crossings.vtp")
+        reader.Update()
+        data = reader.GetOutput().GetPointData()
+        if not reader.GetOutput().GetNumberOfPoints():
+            return
+        names = data.GetAbstractArray("LineName")
+        greatest = {}
+        for k, key in enumerate(zip(vtk_to_numpy(data.GetArray("Iteration")),
+                                    vtk_to_numpy(data.GetArray("BlockId")))):
+            key = names.GetValue(k), *key
+            energy = data.GetArray("KineticEnergy").GetValue(k)
+            greatest[key] = max(energy, greatest.get(key, energy))
+        for (name, *_), energy in greatest.items():
+            if name in self.greatest:
+                self.greatest[name].append(energy)
+
+    def state(self):
+        """Of each line: interval, and whether it is narrow enough."""
+        confidence, within = self.until.get("confidence", 0.95), self.until["within"]
+        result = []
+        for name, energies in self.greatest.items():
+            low = high = None
+            if self.until["quantity"] == "Share":
+                low, high = share_interval(len(energies), self.total, confidence)
+                known = high - low <= 2.0 * within
+            else:
+                ranks = quantile_ranks(len(energies), 0.95, confidence)
+                if ranks:
+                    low, high = (float(sorted(energies)[k - 1]) for k in ranks)
+                known = ranks is not None and high - low <= within * (high + low)
+            result.append({"line": name, "rocks": self.total, "reached": len(energies), "from": low,
+                           "to": high, "known": bool(known)})
+        return result
+
+    def text(self):
+        texts = []
+        unit, scale = ("", 1.0) if self.until["quantity"] == "Share" else (" kJ", 1e-3)
+        for one in self.state():
+            between = "not known yet" if one["from"] is None else \
+                f"{one['from'] * scale:.4g} to {one['to'] * scale:.4g}{unit}"
+            texts.append(f"{shown(one['line'])}: {between}")
+        return f"{self.until['quantity']} at " + "; ".join(texts)

@@ -1,0 +1,94 @@
+"""A study that goes on until a share or an energy at a line is known, as precisely as was asked for."""
+
+import json
+import math
+import os
+import shutil
+import subprocess
+import sys
+
+from helpers import delete_sources, files_of, incline, outside_mpi, run_script, write_grid, write_text
+
+EXAMPLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Examples")
+SCRIPT = os.path.join(EXAMPLES, "study.py")
+sys.path[:0] = [os.path.join(EXAMPLES, "study_parts")]
+import enough
+
+# Clopper & Pearson, closed forms at the ends: 1 - (α/2)^(1/n). Tables for 4 of 10.
+low, high = enough.share_interval(0, 20, 0.95)
+assert low == 0.0 and abs(high - (1.0 - 0.025 ** (1.0 / 20.0))) < 1e-9, high
+low, high = enough.share_interval(20, 20, 0.95)
+assert high == 1.0 and abs(low - 0.025 ** (1.0 / 20.0)) < 1e-9, low
+low, high = enough.share_interval(4, 10, 0.95)
+assert abs(low - 0.12155) < 1e-4 and abs(high - 0.73762) < 1e-4, (low, high)
+low, high = enough.share_interval(500000, 1000000, 0.95)
+assert abs(high - low - 2.0 * 1.95996 * 0.0005) < 3e-6, (low, high)
+
+
+# Order statistics against sums of the binomial distribution.
+def at_most(k, n, p):
+    return sum(math.comb(n, j) * p ** j * (1.0 - p) ** (n - j) for j in range(k + 1))
+
+
+for n in (71, 72, 73, 100, 333):
+    ranks = enough.quantile_ranks(n, 0.95, 0.95)
+    lows = [k for k in range(1, n + 1) if at_most(k - 1, n, 0.95) <= 0.025]
+    highs = [k for k in range(1, n + 1) if at_most(k - 1, n, 0.95) >= 0.975]
+    assert ranks == ((lows[-1], highs[0]) if lows and highs else None), (n, ranks, lows[-1:], highs[:1])
+assert enough.quantile_ranks(10, 0.95, 0.95) is None and enough.quantile_ranks(0, 0.95, 0.95) is None
+
+write_grid("enough.asc", incline())
+write_text("enough-road.csv", 'WKT,name\n"LINESTRING(700045 3999990,700045 4000230)",near\n'
+           '"LINESTRING(700290 3999990,700290 4000230)",far\n')
+study = {
+    "terrain": {"FileName": "enough.asc", "RoughnessDeviation": 0.2},
+    "rocks": {"Center": [700025, 4000060, 147], "Amount": 5},
+    "simulation": {"EndTime": 4.0, "TrajectoryOutput": "Thinned"},
+    "lines": {"FileName": "enough-road.csv"}, "iterations": 12, "chunk": 2}
+
+
+def run(folder, **changes):
+    write_text("enough.json", json.dumps({**study, **changes}))
+    try:
+        said, message = run_script(SCRIPT, folder, "enough.json")
+    finally:
+        delete_sources()
+    return (0, said) if message is None else (1, said + message)
+
+
+for folder in os.listdir("."):
+    if folder.startswith("enough-") and os.path.isdir(folder):
+        shutil.rmtree(folder)
+code, said = run("enough-share", until={"quantity": "Share", "within": 0.2})
+assert code == 0 and "Enough rocks, " in said, said
+manifest = json.loads(files_of("enough-share")["manifest.json"])
+assert manifest["until"]["known"] and [one["line"] for one in manifest["until"]["lines"]] == ["near", "far"]
+assert manifest["until"]["lines"][1]["reached"] == 0, manifest["until"]
+for one in manifest["until"]["lines"]:
+    assert one["to"] - one["from"] <= 0.4 and one["from"] <= one["reached"] / one["rocks"] <= one["to"], one
+few = json.loads(files_of("enough-share")["results.json"])["iterations"]
+assert 2 <= few < 12, few
+
+# More precise in the same folder; then as many as there are, which is not enough.
+code, said = run("enough-share", until={"quantity": "Share", "within": 0.01, "line": "near"})
+assert code == 0 and "Not enough rocks, 60: Share at" in said, said
+assert json.loads(files_of("enough-share")["results.json"])["iterations"] == 12
+code, said = run("enough-share", until={"quantity": "KineticEnergy95", "within": 0.5})
+assert code == 0 and '"far": not known yet' in said, said
+
+for until, word in (({"quantity": "Shares", "within": 0.1}, "one of Share"), ({"quantity": "Share"}, "within"),
+                    ({"quantity": "Share", "within": 2}, "between 0 and 1"),
+                    ({"quantity": "Share", "within": 0.1, "line": "none"}, '"near", "far"'),
+                    ({"quantity": "Share", "within": 0.1, "lines": 1}, 'no "lines" in until')):
+    code, said = run("enough-bad", until=until)
+    assert code != 0 and word in said and "Traceback" not in said, (until, said)
+# On ranks.
+if shutil.which("mpiexec"):
+    write_text("enough.json", json.dumps({**study, "until": {"quantity": "Share", "within": 0.2}}))
+    done = subprocess.run(
+        ["mpiexec", "-n", "2", "--oversubscribe", "--bind-to", "none", "pvbatch", "--sym", SCRIPT,
+         "enough-ranks", "enough.json"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+        timeout=200, env=outside_mpi())
+    assert done.returncode == 0 and done.stdout.count("Enough rocks, ") == 1, done.stdout
+    assert json.loads(files_of("enough-ranks")["results.json"])["iterations"] == few
+print("a study ends when it is enough")
