@@ -4,8 +4,10 @@
 #include "terrain/walls.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace rockfall
 {
@@ -18,6 +20,50 @@ constexpr std::int64_t gridKey(int row, int column)
 {
   constexpr std::int64_t apron = 1 << 20;
   return ((row + apron) << 32) + column + apron;
+}
+
+/// Surfaces that were made so far. What a thread remembers holds until the next one is made: another
+/// terrain may by then stand at the same address, and nothing else can tell it.
+std::atomic<std::uint64_t> surfacesMade{ 0 };
+
+/// Rows and columns of nodes that a thread remembers, powers of two: 400 kB. Fewer: a rock's way and
+/// the ground under it push each other out.
+constexpr int kKnownRows = 64, kKnownColumns = 128;
+
+/// A node's height and all that it is the height of.
+struct KnownNode
+{
+  const Terrain* terrain = nullptr;
+  std::uint64_t seed = 0, made = 0, node = 0;
+  std::uint32_t iteration = 0;
+  double height = 0.0; ///< m
+};
+
+/// The one place in this thread's table where a node may stand: neighbours never share one.
+KnownNode& placeOf(int row, int column)
+{
+  thread_local std::vector<KnownNode> table(std::size_t(kKnownRows) * kKnownColumns);
+  return table[std::size_t(row & (kKnownRows - 1)) * kKnownColumns +
+    std::size_t(column & (kKnownColumns - 1))];
+}
+
+/// Height of a node of a refined grid before its field, m. `surveyed(row, column)` is that of a node
+/// of the terrain.
+template <typename Surveyed>
+double drawnHeight(const Surface::Grid& grid, int row, int column, const Surveyed& surveyed)
+{
+  // On the triangle of the survey that the node is in; a corner that has no share in it may be
+  // nodata.
+  const int p = grid.parts, r = row / p, c = column / p, t = row % p, s = column % p;
+  if (s == 0 && t == 0)
+  {
+    return surveyed(r, c);
+  }
+  const bool upper = s > t;
+  const auto share = [&](int weight, int down, int right)
+  { return weight == 0 ? 0.0 : double(weight) / p * surveyed(r + down, c + right); };
+  return share(p - std::max(s, t), 0, 0) + share(std::min(s, t), 1, 1) +
+    (upper ? share(s - t, 0, 1) : share(t - s, 1, 0));
 }
 
 } // namespace
@@ -48,6 +94,7 @@ Surface::Surface(const Terrain& terrain, std::uint64_t seed, int iteration)
     field_ = field_ || r.isField();
   }
   roughnessBound_ = terrain.roughnessHeight();
+  surfacesMade.fetch_add(1, std::memory_order_relaxed);
   const GridGeometry& g = terrain.geometry();
   const int parts = terrain.refinement();
   grid_ = { (g.columns - 1) * parts + 1, (g.rows - 1) * parts + 1, g.cellSize / parts, parts };
@@ -85,37 +132,30 @@ double Surface::surveyedNode(int row, int column) const
 
 double Surface::nodeHeight(int row, int column) const
 {
-  const int p = grid_.parts;
-  if (p == 1 && !field_)
+  if (!rough_ && !field_ && grid_.parts == 1)
   {
-    return this->surveyedNode(row, column);
+    return terrain_->nodeHeight(row, column); // nothing to remember
   }
-  // On the triangle of the survey that the node is in; a corner that has no share in it may be
-  // nodata.
-  const int r = row / p, c = column / p, t = row % p, s = column % p;
-  double z;
-  if (s == 0 && t == 0)
+  // A rock asks for the same nodes at every look, and each costs some sixteen deviates of a field
+  // or nine obstacles.
+  KnownNode& known = placeOf(row, column);
+  const std::uint64_t node = std::uint64_t(std::uint32_t(row)) << 32 | std::uint32_t(column);
+  const std::uint64_t made = surfacesMade.load(std::memory_order_relaxed);
+  if (known.node == node && known.made == made && known.terrain == terrain_ &&
+    known.iteration == iteration_ && known.seed == seed_)
   {
-    z = this->surveyedNode(r, c);
+    return known.height;
   }
-  else
+  double z =
+    drawnHeight(grid_, row, column, [this](int r, int c) { return this->surveyedNode(r, c); });
+  const Roughness& rough = this->roughnessIn(row / grid_.parts, column / grid_.parts);
+  if (field_ && rough.isField())
   {
-    const bool upper = s > t;
-    const auto share = [&](int weight, int down, int right)
-    { return weight == 0 ? 0.0 : double(weight) / p * this->surveyedNode(r + down, c + right); };
-    z = share(p - std::max(s, t), 0, 0) + share(std::min(s, t), 1, 1) +
-      (upper ? share(s - t, 0, 1) : share(t - s, 1, 0));
+    const GridGeometry& g = terrain_->geometry();
+    z += RoughField{ seed_, iteration_ }.height(g.xOrigin + column * grid_.cellSize,
+      g.yOrigin + (grid_.rows - 1 - row) * grid_.cellSize, rough);
   }
-  if (field_)
-  {
-    const Roughness& rough = this->roughnessIn(r, c);
-    if (rough.isField())
-    {
-      const GridGeometry& g = terrain_->geometry();
-      z += RoughField{ seed_, iteration_ }.height(g.xOrigin + column * grid_.cellSize,
-        g.yOrigin + (grid_.rows - 1 - row) * grid_.cellSize, rough);
-    }
-  }
+  known = { terrain_, seed_, made, node, iteration_, z };
   return z;
 }
 

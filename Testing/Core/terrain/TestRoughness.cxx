@@ -165,6 +165,44 @@ TEST(Roughness, CommonNodesAreTheSameWhateverTheCells)
   }
 }
 
+TEST(Roughness, RememberedNodesAreOfTheirOwnSurface)
+{
+  // Terrains, seeds and iterations turn by turn, at nodes 64 rows apart, which share a place in the table; one
+  // terrain stands where another one stood.
+  const Roughness field{ 0.0, 0.1, 1.0, { 0.1, 0.2, 0.4 } }, drawn{ 0.0, 0.1 };
+  std::vector<double> heights;
+  for (int round = 0; round < 2; ++round)
+  {
+    std::vector<double> again;
+    for (const Roughness& roughness : { field, drawn, Roughness{ 0.0, 0.2, 1.0, {} } })
+    {
+      const Terrain terrain = slope(2.0, roughness);
+      const Surface surfaces[] = { Surface(terrain, 1, 0), Surface(terrain, 1, 1),
+        Surface(terrain, 2, 0) };
+      const Surface copy = surfaces[1];
+      const int rows = surfaces[0].grid().rows, columns = surfaces[0].grid().columns;
+      for (int row = 1; row < rows; row += 8)
+      {
+        for (int column = 1; column < columns; column += 16)
+        {
+          for (const Surface& surface : surfaces)
+          {
+            again.push_back(surface.nodeHeight(row, column));
+            EXPECT_EQ(surface.nodeHeight(row, column), again.back());
+          }
+          EXPECT_EQ(copy.nodeHeight(row, column), again[again.size() - 2]);
+          // Of one that nothing is known of yet.
+          EXPECT_EQ(Surface(terrain, 1, 1).nodeHeight(row, column), again[again.size() - 2]);
+          EXPECT_NE(again[again.size() - 1], again[again.size() - 2]);
+          EXPECT_NE(again[again.size() - 3], again[again.size() - 2]);
+        }
+      }
+    }
+    EXPECT_TRUE(round == 0 || heights == again);
+    heights = again;
+  }
+}
+
 TEST(Roughness, SlopesOfFacetsDoNotDependOnTheCells)
 {
   // Root mean square of the facets' slope, of which the field has σ√2/ℓ; facets of ½ ℓ and less
