@@ -1,3 +1,5 @@
+// Samples of a path: at even times, and as many knots as its curve needs between them.
+
 #include "rock/Recorder.h"
 
 #include "base/grow.h"

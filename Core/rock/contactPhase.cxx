@@ -1,3 +1,6 @@
+// A rock in contact with the slope, from touch-down to take-off or rest: steps that resolve an impact
+// (small, conserving) and steps that last (up to Δt, damped), each for what it is right for.
+
 #include "rock/RockSimulator.h"
 
 #include "base/abort.h"
@@ -149,6 +152,7 @@ void RockSimulator::stayInContact()
   while (inContact_ && !body_.done && !this->arrived())
   {
     stayWanted();
+    // Two lengths of a step: one that resolves an impact, one as far as candidates serve.
     const double small = this->impactStep();
     const double large = std::min(parameters_.timeStep, this->travelLimit());
     body_.placed.move(body_.block, body_.state);
@@ -162,10 +166,12 @@ void RockSimulator::stayInContact()
     // A long step is worth a look only when what carries is at rest along its normal.
     const bool calm = this->isCalm();
     const double reach = reachOf(calm ? large : small);
+    // What may close within the step: a gap that is not among the contacts has no spring in it.
     this->ensureCandidates(reach);
     this->findContacts(candidates_, reach, calm ? large : 0.0);
     body_.springEnergy = springEnergyOf(body_.contacts); // what has gone shows as numerical
 
+    // A long, damped step would swallow a rebound: it is taken only where nothing comes or goes.
     double h = std::min(large, horizon_ - body_.state.time);
     StepKind kind = StepKind::Lasting;
     if (!calm || !this->mayLast(h))
@@ -176,18 +182,22 @@ void RockSimulator::stayInContact()
       std::erase_if(
         body_.contacts, [&](const Contact& c) { return !c.closed() && c.gap() > near; });
     }
+    // What gives way first changes the ground under the step, which is then looked at anew.
     if ((solid_ && this->breakTrees(h)) || (yields_ && this->followScar(h)))
     {
       continue;
     }
+    // Hops have a closed form, and need no steps.
     if (kind == StepKind::Impact && !anyClosed(body_.contacts) && openTime_ >= ringing_ &&
       this->flyFromContact(small))
     {
       continue;
     }
+    // What has slipped through between looks is held where it is, before springs are given out.
     this->holdOverlaps(candidates_);
     h = std::max(h, 1e-12);
     this->armContacts(h);
+    // Springs that are pressed together swing faster than each by itself: a shorter step.
     if (kind == StepKind::Impact && body_.contacts.size() > 1)
     {
       const double touchdown = this->touchdownStep(h);
