@@ -1,9 +1,9 @@
 #include "vtkHazardPassageReader.h"
 
-#include "shared/attempt.h"
 #include "base/errors.h"
+#include "counts/hazardImage.h"
+#include "shared/attempt.h"
 #include "shared/failure.h"
-#include "shared/hazardImage.h"
 #include "shared/pieces.h"
 #include "statistics/passageFile.h"
 

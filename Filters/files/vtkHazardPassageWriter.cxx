@@ -1,7 +1,7 @@
 #include "vtkHazardPassageWriter.h"
 
 #include "base/errors.h"
-#include "shared/hazardImage.h"
+#include "counts/hazardImage.h"
 #include "shared/inputs.h"
 #include "shared/pieces.h"
 #include "shared/ranks.h"

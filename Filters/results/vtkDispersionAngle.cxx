@@ -1,11 +1,11 @@
 #include "vtkDispersionAngle.h"
 
 #include "base/errors.h"
+#include "counts/lostRocks.h"
 #include "results/pathGroups.h"
 #include "results/trajectoriesInput.h"
 #include "shared/arrays.h"
 #include "shared/inputs.h"
-#include "shared/lostRocks.h"
 #include "shared/terrainFieldData.h"
 #include "statistics/dispersion.h"
 #include "statistics/sample.h"

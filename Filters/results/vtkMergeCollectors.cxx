@@ -1,12 +1,12 @@
 #include "vtkMergeCollectors.h"
 
 #include "base/errors.h"
+#include "counts/lostRocks.h"
 #include "results/collectorOutputs.h"
 #include "results/mergedCrossings.h"
 #include "shared/attempt.h"
 #include "shared/failure.h"
 #include "shared/inputs.h"
-#include "shared/lostRocks.h"
 #include "shared/pieces.h"
 #include "shared/terrainFieldData.h"
 

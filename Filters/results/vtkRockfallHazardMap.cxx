@@ -1,11 +1,11 @@
 #include "vtkRockfallHazardMap.h"
 
 #include "base/errors.h"
+#include "counts/hazardImage.h"
 #include "results/drapedMap.h"
 #include "results/trajectoriesInput.h"
 #include "shared/attempt.h"
 #include "shared/failure.h"
-#include "shared/hazardImage.h"
 #include "shared/inputs.h"
 #include "shared/ranks.h"
 

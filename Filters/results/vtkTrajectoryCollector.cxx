@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "base/text/numberText.h"
+#include "counts/lostRocks.h"
 #include "geometry/shell.h"
 #include "gis/base/reach.h"
 #include "gis/layers/lineLayer.h"
@@ -12,7 +13,6 @@
 #include "shared/failure.h"
 #include "shared/inputs.h"
 #include "shared/lineWalls.h"
-#include "shared/lostRocks.h"
 #include "shared/rockPaths.h"
 #include "shared/terrainFieldData.h"
 

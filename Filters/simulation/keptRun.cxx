@@ -1,13 +1,13 @@
 #include "simulation/keptRun.h"
 
 #include "base/errors.h"
+#include "counts/lostRocks.h"
 #include "gis/base/reach.h"
 #include "gis/layers/rockContacts.h"
 #include "run/releaseChecks.h"
 #include "shared/arrays.h"
 #include "shared/failure.h"
 #include "shared/inputContent.h"
-#include "shared/lostRocks.h"
 #include "shared/terrainFieldData.h"
 #include "simulation/motion.h"
 

@@ -1,4 +1,4 @@
-#include "shared/lostRocks.h"
+#include "counts/lostRocks.h"
 
 #include "base/types.h"
 #include "rock/fates.h"

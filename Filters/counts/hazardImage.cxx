@@ -1,10 +1,10 @@
-#include "shared/hazardImage.h"
+#include "counts/hazardImage.h"
 
 #include "base/errors.h"
 #include "base/text/numberText.h"
+#include "counts/lostRocks.h"
 #include "geometry/shell.h"
 #include "shared/arrays.h"
-#include "shared/lostRocks.h"
 #include "shared/rockPaths.h"
 #include "shared/terrainFieldData.h"
 #include "statistics/HazardRaster.h"
