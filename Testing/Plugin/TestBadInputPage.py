@@ -108,6 +108,8 @@ dem("a word in a GRASS grid", FileName=write_text(
 dem("a factor that is none", FileName=write_text(
     "grass.txt", "north: 4000020\nsouth: 4000000\neast: 700030\nwest: 700000\nrows: 2\ncols: 3\n"
     "multiplier: ten\n1 2 3\n4 5 6\n"))
+dem("a place along one axis", FileName=write_text(
+    "half.asc", "ncols 3\nnrows 2\nxllcorner 700000\ncellsize 10\n1 2 3\n4 5 6\n"))
 dem("a virtual raster of a file that is not beside it", FileName=write_text("reach.vrt", (
     '<VRTDataset rasterXSize="2" rasterYSize="2"><VRTRasterBand dataType="Byte" band="1">'
     '<SimpleSource><SourceFilename>/etc/hostname</SourceFilename></SimpleSource></VRTRasterBand>'

@@ -1,6 +1,7 @@
 #include "gis/base/crs.h"
 
 #include "base/errors.h"
+#include "gis/base/planAccuracy.h"
 
 #include <cpl_conv.h>
 #include <gdal_alg.h>
@@ -187,11 +188,14 @@ bool CrsChange::apply(bool inverse, int count, double* x, double* y) const
   return all;
 }
 
-CrsChange layerChange(const std::string& fileName, const CrsPtr& from, const CrsPtr& to)
+CrsChange layerChange(const std::string& fileName, const CrsPtr& from, const CrsPtr& to,
+  std::vector<std::string>& notes)
 {
   try
   {
-    return CrsChange(from, to);
+    CrsChange change(from, to);
+    noteRoughWay(fileName, from, to, notes);
+    return change;
   }
   catch (const DataError& error)
   {

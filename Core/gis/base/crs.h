@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 class OGRSpatialReference;
 
@@ -53,7 +54,9 @@ private:
   std::shared_ptr<void> interpolated_;
 };
 
-/// From a layer's CRS to another one. Throws DataError that names the file if there is no way.
-CrsChange layerChange(const std::string& fileName, const CrsPtr& from, const CrsPtr& to);
+/// From a layer's CRS to another one, with a note if the way is rough (planAccuracy.h). Throws
+/// DataError that names the file if there is no way.
+CrsChange layerChange(const std::string& fileName, const CrsPtr& from, const CrsPtr& to,
+  std::vector<std::string>& notes);
 
 } // namespace rockfall::gis

@@ -28,7 +28,7 @@ class LineReader
 {
 public:
   LineReader(const std::string& fileName, OGRLayer& layer, const LayerHeights& heights,
-    const std::string& targetCrs)
+    const std::string& targetCrs, std::vector<std::string>& notes)
     : fileName_(fileName)
     , columns_(columnsOf(*layer.GetLayerDefn()))
     , plane_(heights.plane)
@@ -37,7 +37,7 @@ public:
     if (!targetCrs.empty() && from_)
     {
       to_ = crsFromText(targetCrs);
-      change_ = layerChange(fileName, from_, to_);
+      change_ = layerChange(fileName, from_, to_, notes);
     }
   }
 
@@ -112,7 +112,7 @@ std::vector<LayerLine> readLineLayer(const std::string& fileName, const std::str
     told.push_back(heights.doubt);
   }
   file.refuseDegrees(heights.horizontal, targetCrs);
-  LineReader reader(fileName, layer, heights, targetCrs);
+  LineReader reader(fileName, layer, heights, targetCrs, told);
   while (const OGRFeatureUniquePtr feature = file.next())
   {
     reader.read(*feature, file.number(), messages);

@@ -1,15 +1,15 @@
 #include "gis/layers/sources.h"
 
 #include "base/RockMaterial.h"
-#include "base/text/columnName.h"
 #include "base/errors.h"
+#include "base/text/columnName.h"
 #include "base/text/nameKey.h"
-#include "gis/layers/FeatureRow.h"
-#include "gis/layers/LayerFile.h"
 #include "gis/base/crs.h"
 #include "gis/base/gdal.h"
-#include "gis/trust/heightReference.h"
+#include "gis/layers/FeatureRow.h"
+#include "gis/layers/LayerFile.h"
 #include "gis/layers/sourceGeometry.h"
+#include "gis/trust/heightReference.h"
 
 #include <algorithm>
 #include <cmath>
@@ -218,7 +218,7 @@ SourceLayer readSourceLayer(const std::string& fileName, const SourceOptions& op
   if (!options.targetCrs.empty())
   {
     placing.to = crsFromText(options.targetCrs);
-    placing.change = layerChange(fileName, placing.from, placing.to);
+    placing.change = layerChange(fileName, placing.from, placing.to, result.notes);
   }
   if (options.haveTerrain || !options.targetCrs.empty())
   {

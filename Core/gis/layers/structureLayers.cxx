@@ -2,14 +2,14 @@
 
 #include "base/errors.h"
 #include "base/text/nameKey.h"
+#include "gis/base/crs.h"
+#include "gis/base/gdal.h"
 #include "gis/layers/FeatureRow.h"
 #include "gis/layers/LayerFile.h"
 #include "gis/layers/barrierUnits.h"
-#include "gis/base/crs.h"
-#include "gis/base/gdal.h"
+#include "gis/layers/lines.h"
 #include "gis/trust/heightReference.h"
 #include "gis/trust/heights.h"
-#include "gis/layers/lines.h"
 #include "terrain/Obstacles.h"
 #include "terrain/Terrain.h"
 
@@ -51,7 +51,7 @@ public:
     const CrsPtr& from = heights.horizontal;
     if (from && !terrain.geometry().crs.empty())
     {
-      change_ = layerChange(fileName, from, crsFromText(terrain.geometry().crs));
+      change_ = layerChange(fileName, from, crsFromText(terrain.geometry().crs), notes);
     }
     else if (!from)
     {

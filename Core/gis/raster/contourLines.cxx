@@ -1,13 +1,13 @@
 #include "gis/raster/contourLines.h"
 
-#include "base/text/columnName.h"
 #include "base/errors.h"
+#include "base/text/columnName.h"
 #include "base/text/nameKey.h"
-#include "gis/layers/FeatureRow.h"
 #include "gis/base/crs.h"
 #include "gis/base/fields.h"
-#include "gis/trust/heightUnit.h"
+#include "gis/layers/FeatureRow.h"
 #include "gis/layers/lines.h"
+#include "gis/trust/heightUnit.h"
 
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>

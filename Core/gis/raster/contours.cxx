@@ -2,14 +2,14 @@
 
 #include "base/errors.h"
 #include "base/leave.h"
+#include "gis/layers/fileContent.h"
 #include "gis/raster/contourLevels.h"
 #include "gis/raster/contourLines.h"
-#include "gis/layers/fileContent.h"
+#include "gis/raster/metric.h"
+#include "gis/raster/tin.h"
 #include "gis/trust/heightReference.h"
 #include "gis/trust/heights.h"
-#include "gis/raster/metric.h"
 #include "gis/trust/nodata.h"
-#include "gis/raster/tin.h"
 #include "terrain/flats.h"
 
 #include <gdal_priv.h>
@@ -77,7 +77,7 @@ void toMetric(Contours& contours, const LayerHeights& heights, RasterSurface& re
   result.geometry.crs = crsWkt(to.target ? to.target : crs, heights.reference);
   if (to.target)
   {
-    if (!CrsChange(crs, to.target)
+    if (!layerChange(fileName, crs, to.target, result.notes)
            .forth(int(contours.x.size()), contours.x.data(), contours.y.data()))
     {
       throw DataError(fileName + ": its lines cannot be brought to " + crsLabel(*to.target));

@@ -1,9 +1,9 @@
 #include "gis/raster/ground.h"
 
 #include "base/errors.h"
+#include "gis/base/gdal.h"
 #include "gis/layers/LayerFile.h"
 #include "gis/layers/fileContent.h"
-#include "gis/base/gdal.h"
 #include "gis/raster/groundCells.h"
 
 #include <cmath>

@@ -4,11 +4,12 @@
 #include "base/abort.h"
 #include "base/errors.h"
 #include "base/text/nameKey.h"
-#include "gis/layers/LayerFile.h"
 #include "gis/base/fields.h"
 #include "gis/base/gdal.h"
-#include "gis/trust/heights.h"
+#include "gis/base/planAccuracy.h"
 #include "gis/base/progress.h"
+#include "gis/layers/LayerFile.h"
+#include "gis/trust/heights.h"
 
 #include <cpl_string.h>
 #include <gdal_alg.h>
@@ -202,6 +203,7 @@ std::vector<std::uint8_t> fromPolygons(GroundKind kind, const GroundFiles& files
   const CrsPtr& from = units.horizontal;
   file.refuseDegrees(from, cells.terrain.geometry().crs);
   noteCrs(from, cells, files.layer, notes);
+  noteRoughWay(files.layer, from, cells.crs, notes);
   std::unique_ptr<OGRCoordinateTransformation> change;
   if (from && cells.crs && !from->IsSame(cells.crs.get()))
   {

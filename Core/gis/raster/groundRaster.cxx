@@ -66,7 +66,7 @@ std::vector<std::uint8_t> fromRaster(const GroundFiles& files, const std::string
   }
   const CrsPtr from = layerCrs(source->GetSpatialRef(), files.layer);
   noteCrs(from, cells, files.layer, notes);
-  layerChange(files.layer, from, cells.crs); // or there is no way
+  layerChange(files.layer, from, cells.crs, notes); // or there is no way
   std::array<double, 6> affine{};
   if (source->GetGeoTransform(affine.data()) != CE_None)
   {

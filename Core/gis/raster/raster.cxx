@@ -3,10 +3,11 @@
 #include "base/errors.h"
 #include "gis/base/crs.h"
 #include "gis/base/gdal.h"
-#include "gis/trust/heightReference.h"
+#include "gis/base/planAccuracy.h"
 #include "gis/raster/metric.h"
 #include "gis/raster/rasterFile.h"
 #include "gis/raster/resample.h"
+#include "gis/trust/heightReference.h"
 
 #include <ogr_spatialref.h>
 
@@ -98,6 +99,7 @@ void reproject(SourceGrid& grid, const CrsPtr& crs, const Destination& to, doubl
     std::sqrt(std::abs(grid.affine[1] * grid.affine[5] - grid.affine[2] * grid.affine[4]));
   // 1/10000 of a cell: 3 mm for cells of 30 m.
   const CrsChange change(crs, to.target, 1e-4 * sourceCell);
+  noteRoughWay(fileName, crs, to.target, result.notes);
   if (crs->IsGeographic())
   {
     grid.period = 2.0 * std::numbers::pi / crs->GetAngularUnits();

@@ -2,10 +2,10 @@
 
 #include "base/abort.h"
 #include "base/errors.h"
+#include "gis/base/progress.h"
 #include "gis/trust/gridAxes.h"
 #include "gis/trust/heightUnit.h"
 #include "gis/trust/nodata.h"
-#include "gis/base/progress.h"
 #include "gis/trust/rawSize.h"
 
 #include <cpl_string.h>
@@ -95,6 +95,13 @@ void RasterFile::findPlace()
 {
   crs_ = horizontalCrs(dataset_->GetSpatialRef());
   const bool placed = dataset_->GetGeoTransform(affine_.data()) == CE_None;
+  if (placed && text_.corner)
+  {
+    affine_[0] = (*text_.corner)[0];
+    affine_[3] = (*text_.corner)[1] - rows_ * affine_[5];
+    notes_.push_back("The header gives a corner along one axis and the centre of a cell along the "
+                     "other; each was taken as it says.");
+  }
   const GridAxes axes = checkAxes(*dataset_, *band_, placed, fileName_, notes_);
   if (placed && !crs_ && axes.metres != 1.0)
   {

@@ -4,16 +4,18 @@
 #include "base/text/nameKey.h"
 #include "gis/base/fields.h"
 #include "gis/base/gdal.h"
-#include "gis/trust/headers.h"
 #include "gis/base/textWords.h"
 #include "gis/raster/xyzPoints.h"
+#include "gis/trust/headers.h"
 
 #include <cpl_conv.h>
 #include <cpl_vsi.h>
 #include <gdal_priv.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <memory>
 
 namespace rockfall::gis
@@ -89,10 +91,39 @@ private:
   std::int64_t columns_, rows_;
 };
 
+/// The lower left corner by what an ESRI header says along each axis; nothing where GDAL has it.
+std::optional<std::array<double, 2>> mixedCorner(
+  const std::map<std::string, double>& header, const std::string& fileName)
+{
+  constexpr std::array axes = { 'x', 'y' };
+  std::array<double, 2> corner{};
+  std::array<bool, 2> isCentre{}, isSaid{};
+  for (std::size_t k = 0; k < 2; ++k)
+  {
+    const std::string stem = std::string(1, axes[k]) + "ll";
+    const auto atCorner = header.find(stem + "corner"), atCentre = header.find(stem + "center");
+    isSaid[k] = atCorner != header.end() || atCentre != header.end();
+    isCentre[k] = atCorner == header.end() && isSaid[k];
+    const auto size = header.find("cellsize"), step = header.find("d" + std::string(1, axes[k]));
+    const double cell = step != header.end() ? step->second
+      : size != header.end()                 ? size->second
+                                             : 0.0;
+    corner[k] = !isSaid[k] ? 0.0 : isCentre[k] ? atCentre->second - 0.5 * cell : atCorner->second;
+  }
+  if (isSaid[0] != isSaid[1])
+  {
+    const std::string lost(1, axes[isSaid[0] ? 1 : 0]);
+    throw DataError(fileName + ": its header says where it is along " + (isSaid[0] ? "x" : "y") +
+      " only; " + lost + "llcorner or " + lost + "llcenter is missing");
+  }
+  return isCentre[0] == isCentre[1] ? std::nullopt : std::optional(corner);
+}
+
 /// Pairs of a keyword and its value, until a number stands where a keyword would.
-void checkEsri(Text& text, GridCells& cells)
+void checkEsri(Text& text, GridCells& cells, const std::string& fileName)
 {
   std::string word, value;
+  std::map<std::string, double> header;
   bool more = text.next(word);
   while (more && !isNumber(word) && text.next(value))
   {
@@ -101,6 +132,11 @@ void checkEsri(Text& text, GridCells& cells)
       cells.nullWords.push_back(value);
       cells.result.ownNulls = true;
     }
+    else if (isNumber(value))
+    {
+      header.emplace(
+        nameKey(word), CPLAtofDelim(value.c_str(), value.find(',') != value.npos ? ',' : '.'));
+    }
     more = text.next(word);
     // A grid that begins with a cell of no data.
     if (more && cells.result.ownNulls && word == cells.nullWords.front())
@@ -108,6 +144,7 @@ void checkEsri(Text& text, GridCells& cells)
       break;
     }
   }
+  cells.result.corner = mixedCorner(header, fileName);
   cells.read(text, more, word);
 }
 
@@ -198,7 +235,7 @@ TextGrid checkTextGrid(GDALDataset& dataset, const std::string& fileName)
     return checkXyzPoints(dataset, fileName);
   }
   GridCells cells(fileName, columns, rows);
-  esri      ? checkEsri(text, cells)
+  esri      ? checkEsri(text, cells, fileName)
     : grass ? checkGrass(text, cells)
     : isg   ? checkIsg(text, cells)
             : checkGxf(text, cells);

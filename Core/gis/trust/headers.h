@@ -1,9 +1,9 @@
 #pragma once
 
 /// @file
-/// Headers of files, as far as they speak of heights and GDAL leaves it out: SAGA's Z_FACTOR and
-/// UNIT, GRASS's multiplier, the $INSUNITS of a DXF drawing, Zunits and VERTCS of a .prj file.
-/// Internal to gis/.
+/// Headers of files, as far as they speak of heights and GDAL leaves it out: SAGA's Z_FACTOR,
+/// Z_OFFSET and UNIT, GRASS's multiplier, the $INSUNITS of a DXF drawing, Zunits and VERTCS of a
+/// .prj file. Internal to gis/.
 
 #include <map>
 #include <optional>

@@ -1,7 +1,7 @@
 #include "gis/trust/heights.h"
 
-#include "base/text/columnName.h"
 #include "base/errors.h"
+#include "base/text/columnName.h"
 #include "base/text/nameKey.h"
 #include "gis/trust/headers.h"
 #include "gis/trust/heightReference.h"
@@ -127,9 +127,14 @@ private:
       notes_.push_back("The band's scale " + number(heights_.scale) + " and offset " +
         number(heights_.offset) + " were applied.");
     }
-    if (const Header saga = sagaHeader(dataset_); saga.count("z_factor"))
+    const Header saga = sagaHeader(dataset_);
+    if (saga.count("z_factor"))
     {
       this->multiply("Z_FACTOR", saga.at("z_factor"));
+    }
+    if (saga.count("z_offset"))
+    {
+      this->add("Z_OFFSET", saga.at("z_offset"));
     }
     if (isOfDriver(dataset_, "GRASSASCIIGrid"))
     {
@@ -155,6 +160,22 @@ private:
       heights_.offset *= *factor;
       notes_.push_back("Heights were multiplied by " + number(*factor) + ", the " + name +
         " of the file's header.");
+    }
+  }
+
+  void add(const char* name, const std::string& text)
+  {
+    const auto offset = parsed(text);
+    if (!offset || !std::isfinite(*offset))
+    {
+      throw DataError(
+        fileName_ + ": its header has " + name + " \"" + text + "\", it must be a finite number");
+    }
+    if (*offset != 0.0)
+    {
+      heights_.offset += *offset;
+      notes_.push_back(
+        "To the heights " + number(*offset) + " was added, the " + name + " of the file's header.");
     }
   }
 

@@ -6,9 +6,9 @@
 ///
 /// A declaration of the file is taken, and a note says so: the unit of a band, the third axis of a
 /// CRS (a compound one, a 3D one, an engineering one; ESRI's VERTCS), scale and offset, netCDF's
-/// `units`, `positive` and `standard_name`, SAGA's Z_FACTOR and UNIT, GRASS's multiplier, Zunits,
-/// the unit of a drawing, the end of a column's name. Two declarations that contradict each other
-/// are an error. Nothing declared: metres, with a note if the coordinates are in feet.
+/// `units`, `positive` and `standard_name`, SAGA's Z_FACTOR, Z_OFFSET and UNIT, GRASS's multiplier,
+/// Zunits, the unit of a drawing, the end of a column's name. Two declarations that contradict each
+/// other are an error. Nothing declared: metres, with a note if the coordinates are in feet.
 
 #include "gis/base/crs.h"
 #include "gis/base/fields.h"

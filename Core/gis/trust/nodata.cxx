@@ -231,22 +231,44 @@ void noteMarks(const std::vector<double>& heights, const Heights& meaning, const
       grown = true;
     }
   }
+  // One note for all of them, those of most cells first.
+  std::vector<Group> apart;
   for (std::size_t k = 0; k < groups.size(); ++k)
   {
-    if (k >= first && k <= last)
+    if (k < first || k > last)
     {
+      apart.push_back(groups[k]);
+    }
+  }
+  if (apart.empty())
+  {
+    return;
+  }
+  std::stable_sort(
+    apart.begin(), apart.end(), [](const Group& a, const Group& b) { return a.count > b.count; });
+  constexpr std::size_t mostNamed = 4;
+  std::string text;
+  std::int64_t others = 0;
+  for (std::size_t k = 0; k < apart.size(); ++k)
+  {
+    const Group& group = apart[k];
+    if (k >= mostNamed)
+    {
+      others += group.count;
       continue;
     }
-    const Group& group = groups[k];
-    const double off = k < first ? ground.low - group.high : group.low - ground.high;
-    notes.push_back(std::to_string(group.count) + " " + what +
+    const bool below = group.high < ground.low;
+    text += (k > 0 ? "; " : "") + std::to_string(group.count) + (k > 0 ? "" : " " + what) +
       (group.range() == 0.0
           ? " are exactly " + number(group.low) + " m, "
           : " are between " + number(group.low) + " and " + number(group.high) + " m, ") +
-      number(off) + " m " + (k < first ? "below" : "above") + " the ground of " +
-      number(ground.low) + " to " + number(ground.high) + " m. If that stands for no data, " +
-      remedy + (remedy.ends_with(' ') ? exactly(rawOf(group.low)) + " says so" : ""));
+      number(below ? ground.low - group.high : group.low - ground.high) + " m " +
+      (below ? "below" : "above") + " the ground" +
+      (k > 0 ? "" : " of " + number(ground.low) + " to " + number(ground.high) + " m");
   }
+  notes.push_back(text + (others > 0 ? "; and " + std::to_string(others) + " more" : "") +
+    ". If that stands for no data, " + remedy +
+    (remedy.ends_with(' ') ? exactly(rawOf(apart.front().low)) + " says so" : ""));
 }
 
 } // namespace rockfall::gis

@@ -33,9 +33,9 @@ private:
   double least_, most_;                           ///< Limits of valid heights.
 };
 
-/// Adds a note for heights (m, NaN for nodata) that stand off from all others by more than these
-/// span, or are one of the usual marks (−999, 9999, …) and nothing is within 10 m of them. `what`:
-/// "nodes of band 1"; `remedy` makes the end of the note of the mark's raw number.
+/// Adds one note for all heights (m, NaN for nodata) that stand off from all others by more than
+/// these span, or are one of the usual marks (−999, 9999, …) and nothing is within 10 m of them.
+/// `what`: "nodes of band 1"; `remedy` makes the end of the note of the mark's raw number.
 void noteMarks(const std::vector<double>& heights, const Heights& meaning, const std::string& what,
   const std::string& remedy, std::vector<std::string>& notes);
 

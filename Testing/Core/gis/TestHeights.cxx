@@ -3,16 +3,19 @@
 /// of one slope or place whose heights are known in metres.
 
 #include "base/errors.h"
-#include "gis/raster/contours.h"
 #include "gis/layers/lineLayer.h"
-#include "gis/raster/raster.h"
 #include "gis/layers/sources.h"
 #include "gis/layers/structureLayers.h"
+#include "gis/raster/contours.h"
+#include "gis/raster/raster.h"
 #include "gisFiles.h"
 #include "netCdf.h"
+#include "sheets.h"
 #include "terrain/Terrain.h"
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 
 namespace rockfall
 {
@@ -195,6 +198,44 @@ TEST(Heights, ofSaga)
   expectUnit(saga("UNIT\t=\nZ_FACTOR\t= 1.0\n"), 1.0, "");
   EXPECT_TRUE(holds(
     messageOf<DataError>([&] { readRaster(saga("Z_FACTOR\t= 0\n")); }), { "Z_FACTOR \"0\"" }));
+}
+
+TEST(Heights, ofSagaWithAnOffset)
+{
+  const auto heights = [](const std::string& lines) { return readRaster(saga(lines)).heights; };
+  const auto times = [](double factor, double offset)
+  {
+    std::vector<double> expected;
+    for (const double number : { 10.0, 20.0, 30.0, 40.0, 50.0, 60.0 })
+    {
+      expected.push_back(number * factor + offset);
+    }
+    return expected;
+  };
+  EXPECT_EQ(heights("Z_OFFSET\t= 500.000000\n"), times(1.0, 500.0));
+  EXPECT_EQ(heights("Z_FACTOR\t= 0.5\nZ_OFFSET\t= 1000.0\n"), times(0.5, 1000.0));
+  // The offset is in the header's unit.
+  const auto feet = heights("UNIT\t= ft\nZ_OFFSET\t= 100\n");
+  EXPECT_NEAR(feet[0], 110.0 * foot, 1e-12);
+  EXPECT_TRUE(holds(readRaster(saga("Z_OFFSET\t= 500\n")).notes.at(0), { "500", "Z_OFFSET" }));
+  expectUnit(saga("Z_OFFSET\t= 0.0\n"), 1.0, "");
+  EXPECT_TRUE(holds(messageOf<DataError>([&] { readRaster(saga("Z_OFFSET\t= nan\n")); }),
+    { "grid.sdat", "Z_OFFSET \"nan\"" }));
+}
+
+TEST(Heights, ofAZippedSagaGridWithAnOffset)
+{
+  const std::string grid = saga("Z_FACTOR\t= 0.5\nZ_OFFSET\t= 1000.0\n");
+  const auto content = [](const std::string& path)
+  {
+    std::ifstream file(path, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  const std::string header = content(grid.substr(0, grid.size() - 4) + "sgrd");
+  const std::string zip = writeFile(
+    "packed.sg-grd-z", zipOf({ { "packed.sgrd", header }, { "packed.sdat", content(grid) } }));
+  EXPECT_EQ(readRaster(zip).heights,
+    (std::vector<double>{ 1005.0, 1010.0, 1015.0, 1020.0, 1025.0, 1030.0 }));
 }
 
 TEST(Heights, ofGrass)

@@ -8,6 +8,8 @@
 #include "gisFiles.h"
 #include "netCdf.h"
 
+#include <algorithm>
+#include <array>
 #include <cfloat>
 #include <cmath>
 
@@ -272,7 +274,12 @@ TEST(Nodata, thatNobodyDeclaredIsNoted)
   // Two marks, more of them than ground.
   RawRaster raster = twelve();
   raster.values = { -999, -999, -888, -888, -999, 450, 451, 452, -999, -999, 453, 454 };
-  EXPECT_TRUE(holds(joined(readRaster(raster.write()).notes), { "-999 says so", "-888 says so" }));
+  const auto notes = readRaster(raster.write()).notes;
+  EXPECT_EQ(std::count_if(notes.begin(), notes.end(),
+              [](const std::string& note) { return note.find("stands for") != note.npos; }),
+    1);
+  EXPECT_TRUE(holds(joined(notes),
+    { "5 nodes of band 1 are exactly -999 m", "2 are exactly -888 m", "-999 says so" }));
   // Marks near sea level, with ground from 5 m to 900 m.
   raster.fill([](double x, double) { return 5.0 + (x - 600005.0) * 0.5; });
   raster.values[3] = -99.0;
@@ -291,6 +298,31 @@ TEST(Nodata, thatNobodyDeclaredIsNoted)
     "WKT,elev\n\"LINESTRING(0 0,50 0)\",450\n\"LINESTRING(0 30,50 30)\",460\n"
     "\"LINESTRING(0 60,50 60)\",-999\n");
   EXPECT_TRUE(holds(joined(readContours(lines, { .cellSize = 10.0 }).notes), { "exactly -999 m" }));
+}
+
+TEST(TextGrids, sayCornerOrCentreAlongEachAxis)
+{
+  const auto place = [](const std::string& x, const std::string& y)
+  {
+    const RasterSurface surface =
+      readRaster(writeAscii({ "1.5 2.5 3", "4 5 6" }, 3, x + " 600000\n" + y + " 5100000\n"));
+    return std::array{ surface.geometry.xOrigin, surface.geometry.yOrigin };
+  };
+  EXPECT_EQ(place("xllcorner", "yllcorner"), (std::array{ 600005.0, 5100005.0 }));
+  EXPECT_EQ(place("xllcenter", "yllcenter"), (std::array{ 600000.0, 5100000.0 }));
+  EXPECT_EQ(place("xllcorner", "yllcenter"), (std::array{ 600005.0, 5100000.0 }));
+  EXPECT_EQ(place("XLLCENTER", "YLLCORNER"), (std::array{ 600000.0, 5100005.0 }));
+  // Cells that are not square: steps of their own.
+  const RasterSurface oblong = readRaster(writeFile("oblong.asc",
+    "ncols 3\nnrows 2\nxllcenter 600000\nyllcorner 5100000\ndx 10\ndy 20\n1.5 2 3\n4 5 6\n"));
+  EXPECT_EQ(oblong.geometry.xOrigin, 600000.0);
+  EXPECT_EQ(oblong.geometry.yOrigin, 5100010.0);
+  EXPECT_TRUE(holds(joined(oblong.notes), { "corner along one axis" }));
+  EXPECT_TRUE(holds(messageOf<DataError>(
+                      [] {
+                        readRaster(writeAscii({ "1 2", "3 4" }, 2, "xllcorner 600000\n"));
+                      }),
+    { "grid.asc", "along x only", "yllcorner or yllcenter" }));
 }
 
 TEST(GridAxes, thatAreUnevenAreErrors)

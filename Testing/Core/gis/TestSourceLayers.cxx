@@ -6,6 +6,9 @@
 #include "gis/layers/sources.h"
 #include "gisFiles.h"
 
+#include <cmath>
+#include <utility>
+
 namespace rockfall
 {
 
@@ -117,6 +120,44 @@ TEST(SourceLayers, ofGeoJsonAreInTheSlopesCoordinatesWhereNothingNamesACrs)
   const SourceLayer edge =
     readSourceLayer(file("LineString", "[[600100,5200050],[600200,5200150]]"), options);
   EXPECT_EQ(edge.rows.front().parts[0][0].head<2>(), Eigen::Vector2d(600100.0, 5200050.0));
+}
+
+/// A rock of a layer of one CRS in another: its place, and what is said of the way.
+std::pair<Vec3, std::string> brought(
+  const std::string& from, const std::string& place, const std::string& to)
+{
+  SourceOptions options = onTerrain();
+  options.targetCrs = wktOfCrs(to);
+  const SourceLayer layer = readSourceLayer(
+    writeFile("moved.geojson",
+      R"({"type":"FeatureCollection","crs":{"type":"name","properties":{"name":")" + from +
+        R"("}},"features":[{"type":"Feature","properties":{},"geometry":{"type":"Point","coordinates":)" +
+        place + "}}]}"),
+    options);
+  std::string notes;
+  for (const std::string& note : layer.notes)
+  {
+    notes += note + "\n";
+  }
+  return { layer.rows.at(0).position, notes };
+}
+
+TEST(SourceLayers, tellWhereTheWayToTheSlopeIsRough)
+{
+  // Swiss LV03 to LV95: by the official grid, or by whole millions, which is 1.5 m beside.
+  const auto [swiss, said] =
+    brought("urn:ogc:def:crs:EPSG::21781", "[720000,80000,500]", "EPSG:2056");
+  const bool exact = std::hypot(swiss.x() - 2720000.114, swiss.y() - 1079998.548) < 0.3;
+  EXPECT_EQ(said.find("moved.geojson: the best way") == std::string::npos, exact) << said;
+  EXPECT_TRUE(exact || holds(said, { "0.2 m", "CHENyx06", "no accuracy" }));
+  // NAD27 without its grid: PROJ knows how rough its other ways are.
+  const auto nad = brought("urn:ogc:def:crs:EPSG::26716", "[700000,4000000,500]", "EPSG:32616");
+  EXPECT_TRUE(nad.second.empty() || holds(nad.second, { "needs the grid", "an accuracy of" }));
+  // Nothing is missing on these ways.
+  for (const char* to : { "EPSG:32632", "EPSG:25832" })
+  {
+    EXPECT_EQ(brought("urn:ogc:def:crs:EPSG::4326", "[9,45,500]", to).second, "") << to;
+  }
 }
 
 TEST(SourceLayers, everyColumnOfARock)
