@@ -62,7 +62,7 @@ std::string sagaHeaderFile(GDALDataset& dataset)
   {
     return beside(name, "sgrd");
   }
-  const std::string folder = "/vsizip/" + name;
+  const std::string folder = "/vsizip/{" + name + "}"; // no ending of a zip file by itself
   const CPLStringList files(VSIReadDir(folder.c_str()));
   for (int i = 0; i < files.size(); ++i)
   {
