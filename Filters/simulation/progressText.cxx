@@ -2,6 +2,7 @@
 
 #include "vtkAlgorithm.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <utility>
@@ -12,9 +13,16 @@ namespace rockfall::filters
 namespace
 {
 
-constexpr double printInterval = 10.0; // s
+constexpr double leastInterval = 10.0; // s, between lines
+/// Of the time that has gone.
+constexpr double intervalShare = 0.5;
 /// A share of so many is whole but for this.
 constexpr double kRounding = 1e-3;
+
+std::int64_t wholeOnes(double share, std::int64_t total)
+{
+  return std::int64_t(share * double(total) + kRounding);
+}
 
 std::string twoDigits(std::int64_t number)
 {
@@ -52,13 +60,18 @@ std::string durationText(double seconds)
 
 std::string progressText(double share, std::int64_t total, const std::string& units, double elapsed)
 {
-  std::string text = countText(std::int64_t(share * double(total) + kRounding)) + " of " +
-    countText(total) + " " + units + " (" + std::to_string(int(100.0 * share)) + " %)";
+  std::string text = countText(wholeOnes(share, total)) + " of " + countText(total) + " " + units +
+    " (" + std::to_string(int(100.0 * share)) + " %)";
   if (share >= 1e-3 && elapsed >= 1.0)
   {
     text += ", about " + durationText(elapsed * (1.0 - share) / share) + " left";
   }
   return text;
+}
+
+bool lineIsDue(double now, double last, std::int64_t count, std::int64_t lastCount)
+{
+  return count > lastCount && now - last >= std::max(leastInterval, intervalShare * last);
 }
 
 ProgressReport::ProgressReport(
@@ -89,9 +102,11 @@ bool ProgressReport::operator()(double share)
     const std::string text = progressText(share, total_, units_, now);
     filter_->SetProgressText(text.c_str());
     filter_->UpdateProgress(share);
-    if (print_ && now - printed_ >= printInterval)
+    const std::int64_t count = wholeOnes(share, total_);
+    if (print_ && lineIsDue(now, printed_, count, printedCount_))
     {
       printed_ = now;
+      printedCount_ = count;
       std::cerr << "Rockfall Simulation: " << text << std::endl;
     }
   }

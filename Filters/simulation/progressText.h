@@ -25,6 +25,10 @@ std::string countText(std::int64_t count);
 std::string progressText(
   double share, std::int64_t total, const std::string& units, double elapsed);
 
+/// Whether a line of progress is due: the count has moved since the last one, and so has the time,
+/// by half of what had gone by then and by 10 s at least. A log of a day has some 20 lines.
+bool lineIsDue(double now, double last, std::int64_t count, std::int64_t lastCount);
+
 /// Tells the world how far a filter's run is: as progress with its text, and on standard error if
 /// `print`. Where `first` is false (a rank that is not the first) it only listens for an abort.
 class ProgressReport
@@ -50,6 +54,7 @@ private:
   bool first_, print_;
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
   double printed_ = 0.0; ///< When it last did, s after the start.
+  std::int64_t printedCount_ = 0;
 };
 
 } // namespace rockfall::filters

@@ -149,6 +149,27 @@ TEST(RunOutputs, TheIterationThatIsShownIsKeptWhole)
   EXPECT_EQ(sink.whole()[0].summary.iteration, 1);
 }
 
+TEST(ProgressText, LinesComeWhenTheCountMovesAndEverMoreRarely)
+{
+  EXPECT_FALSE(filters::lineIsDue(100.0, 0.0, 0, 0)) << "nothing is done";
+  EXPECT_FALSE(filters::lineIsDue(9.0, 0.0, 5, 0)) << "10 s have not gone";
+  EXPECT_TRUE(filters::lineIsDue(10.0, 0.0, 5, 0));
+  EXPECT_FALSE(filters::lineIsDue(140.0, 100.0, 9, 5));
+  EXPECT_TRUE(filters::lineIsDue(150.0, 100.0, 9, 5));
+  int lines = 0;
+  double last = 0.0;
+  for (int s = 0; s < 24 * 3600; ++s) // a trajectory a second
+  {
+    if (filters::lineIsDue(s, last, s, std::int64_t(last)))
+    {
+      last = s;
+      ++lines;
+    }
+  }
+  EXPECT_LE(lines, 25);
+  EXPECT_GE(lines, 15);
+}
+
 TEST(ProgressText, SaysHowFarAndHowLong)
 {
   EXPECT_EQ(filters::durationText(0.0), "0 s");
