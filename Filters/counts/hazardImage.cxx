@@ -335,6 +335,7 @@ void makeHazardImage(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
 {
   checkLines(trajectories);
   checkStatistics(options.statistics);
+  checkFrequencies(options.frequency);
   const std::optional<Terrain> terrain = slopeUnder(trajectories, terrainMesh);
   Vec3 origin = Vec3::Zero();
   if (terrain)
@@ -360,6 +361,7 @@ void makeHazardImage(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
     grid, origin + Vec3(grid.west, grid.south, 0.0), raster.releases(), terrain.has_value(),
     lostOf(trajectories), options.statistics,
     [&raster](const UseCell& use) { raster.summarize(use); }, image);
+  addFrequencies(raster, trajectories, options.frequency, image);
   if (terrain)
   {
     addElevation(*terrain, grid, image);

@@ -4,6 +4,7 @@
 /// The map of hazards as an image.
 
 #include "base/types.h"
+#include "shared/frequencyLayers.h"
 #include "statistics/sample.h"
 
 #include <string>
@@ -48,6 +49,7 @@ struct HazardMapOptions
   bool crop = false;     ///< To what the trajectories reach.
   bool rockWidth = true; ///< Rocks wider than a cell touch every cell under them.
   ChosenStatistics statistics = usualStatistics;
+  FrequencyOptions frequency = {};
 };
 
 /// Fills `image`: see vtkRockfallHazardMap. `terrain` may be null. Throws

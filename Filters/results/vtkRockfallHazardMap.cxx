@@ -64,6 +64,8 @@ struct vtkRockfallHazardMap::Inputs
 //------------------------------------------------------------------------------
 vtkRockfallHazardMap::vtkRockfallHazardMap()
   : Statistics(rockfall::filters::usualStatistics)
+  , EnergyThresholds(rockfall::filters::FrequencyOptions().energyThresholds)
+  , ReturnPeriods(rockfall::filters::FrequencyOptions().returnPeriods)
   , Taken(std::make_unique<Inputs>())
 {
   this->SetNumberOfInputPorts(2);
@@ -118,7 +120,8 @@ void vtkRockfallHazardMap::Prepare(vtkInformationVector** inputVector)
   {
     const rockfall::filters::HeardAbort heard(this);
     rockfall::filters::makeHazardImage(trajectories, terrain,
-      { this->CellSize, this->CropToTrajectories, this->RockWidth, this->Statistics },
+      { this->CellSize, this->CropToTrajectories, this->RockWidth, this->Statistics,
+        { this->AnnualFrequency, this->EnergyThresholds, this->ReturnPeriods } },
       this->Made->image);
     rockfall::filters::drapeMap(this->Made->image, this->Made->draped);
   }
@@ -261,6 +264,40 @@ void vtkRockfallHazardMap::RemoveAllStatistics()
 }
 
 //------------------------------------------------------------------------------
+void vtkRockfallHazardMap::AddEnergyThreshold(double threshold)
+{
+  this->EnergyThresholds.push_back(threshold);
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+void vtkRockfallHazardMap::RemoveAllEnergyThresholds()
+{
+  if (!this->EnergyThresholds.empty())
+  {
+    this->EnergyThresholds.clear();
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkRockfallHazardMap::AddReturnPeriod(double period)
+{
+  this->ReturnPeriods.push_back(period);
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+void vtkRockfallHazardMap::RemoveAllReturnPeriods()
+{
+  if (!this->ReturnPeriods.empty())
+  {
+    this->ReturnPeriods.clear();
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
 void vtkRockfallHazardMap::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
@@ -271,6 +308,18 @@ void vtkRockfallHazardMap::PrintSelf(ostream& os, vtkIndent indent)
   for (const int statistic : this->Statistics)
   {
     os << " " << statistic;
+  }
+  os << "\n";
+  os << indent << "AnnualFrequency: " << this->AnnualFrequency << "\n";
+  os << indent << "EnergyThresholds:";
+  for (const double threshold : this->EnergyThresholds)
+  {
+    os << " " << threshold;
+  }
+  os << "\n" << indent << "ReturnPeriods:";
+  for (const double period : this->ReturnPeriods)
+  {
+    os << " " << period;
   }
   os << "\n";
 }

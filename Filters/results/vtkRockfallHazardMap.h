@@ -18,8 +18,13 @@
  * are then the limits of a share of 0. HighestQuantile says which quantile the
  * rocks of a cell can give.
  *
- * How large the image is depends on the data, and a pipeline wants to know it
- * before: the inputs are brought up to date when information is asked for.
+ * Where frequencies are known, by AnnualFrequency or the trajectories' cell array Frequency (1/a,
+ * of the rock), also AnnualFrequency (1/a), ReturnPeriod (a), for each of the EnergyThresholds such
+ * as ExceedanceProbability30kJ and AnnualFrequency30kJ, and for each of the ReturnPeriods such as
+ * Intensity100a: how many of reach and the thresholds have at least that annual frequency.
+ *
+ * How large the image is depends on the data, and a pipeline wants to know it before: the inputs
+ * are brought up to date when information is asked for.
  */
 #ifndef vtkRockfallHazardMap_h
 #define vtkRockfallHazardMap_h
@@ -29,7 +34,7 @@
 
 #include <memory> // for the result
 #include <string> // for an error
-#include <vector> // for Statistics
+#include <vector> // for Statistics, EnergyThresholds and ReturnPeriods
 
 class ROCKFALLFILTERS_EXPORT vtkRockfallHazardMap : public vtkImageAlgorithm
 {
@@ -79,6 +84,32 @@ public:
   void RemoveAllStatistics();
   ///@}
 
+  ///@{
+  /**
+   * How often a rock of all these releases falls, 1/a, not negative. 0 (the default): by the cell
+   * array Frequency of the trajectories, if they have one.
+   */
+  vtkSetMacro(AnnualFrequency, double);
+  vtkGetMacro(AnnualFrequency, double);
+  ///@}
+
+  ///@{
+  /**
+   * Energies that part the classes of intensity, in kJ, positive, in any order. 30 and 300 by
+   * default.
+   */
+  void AddEnergyThreshold(double threshold);
+  void RemoveAllEnergyThresholds();
+  ///@}
+
+  ///@{
+  /**
+   * Return periods of the scenarios, in years, positive, in any order. 30, 100 and 300 by default.
+   */
+  void AddReturnPeriod(double period);
+  void RemoveAllReturnPeriods();
+  ///@}
+
   vtkRockfallHazardMap(const vtkRockfallHazardMap&) = delete;
   void operator=(const vtkRockfallHazardMap&) = delete;
 
@@ -99,6 +130,8 @@ private:
   bool CropToTrajectories = true;
   bool RockWidth = true;
   std::vector<int> Statistics;
+  double AnnualFrequency = 0.0;
+  std::vector<double> EnergyThresholds, ReturnPeriods;
   std::string Spread; // why trajectories on several ranks make no map
   struct Result;
   struct Inputs;

@@ -2,7 +2,7 @@
 
 #include "base/text/numberText.h"
 #include "shared/failure.h"
-#include "shared/jointFaces.h"
+#include "simulation/jointFaces.h"
 #include "simulation/progressText.h"
 
 #include <algorithm>

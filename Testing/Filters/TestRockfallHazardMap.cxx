@@ -216,6 +216,71 @@ TEST_F(TestRockfallHazardMap, HasTheStatisticsThatAreChosen)
   EXPECT_EQ(value(this->Map()->GetCellData(), "SpeedMaximum", 1), 10.0);
 }
 
+TEST_F(TestRockfallHazardMap, FrequenciesAndIntensities)
+{
+  // 1000 kg: 10 m/s are 50.1 kJ, 30 m/s are 450.1 kJ, 5 m/s are 12.6 kJ.
+  this->Paths.AddLevel(0, 0, { 1, 3, 50 }, 8, 10);
+  this->Paths.AddLevel(0, 1, { 1, 3, 50 }, 3, 30);
+  this->Paths.AddLevel(1, 0, { 1, 3, 50 }, 8, 5);
+  this->Paths.AddLevel(1, 1, { 1, 13, 50 }, 3, 30);
+  this->Filter->SetCellSize(5.0);
+  EXPECT_EQ(this->Map()->GetCellData()->GetArray("AnnualFrequency"), nullptr);
+
+  this->Filter->SetAnnualFrequency(0.0625); // 1/64 for each of the four
+  EXPECT_EQ(this->At("AnnualFrequency", 2, 3), 3.0 / 64);
+  EXPECT_EQ(this->At("AnnualFrequency30kJ", 2, 3), 2.0 / 64);
+  EXPECT_EQ(this->At("AnnualFrequency300kJ", 2, 3), 1.0 / 64);
+  EXPECT_EQ(this->At("ExceedanceProbability30kJ", 2, 3), 0.5);
+  EXPECT_EQ(this->At("ExceedanceProbability300kJ", 2, 3), 0.25);
+  EXPECT_EQ(this->At("ReturnPeriod", 7, 3), 32.0);
+  EXPECT_EQ(this->At("Intensity30a", 2, 3), 1.0);
+  EXPECT_EQ(this->At("Intensity100a", 2, 3), 3.0);
+  EXPECT_EQ(this->At("Intensity30a", 7, 3), 0.0);
+  EXPECT_EQ(this->At("AnnualFrequency", 7, 8), 0.0);
+  EXPECT_TRUE(std::isnan(this->At("ReturnPeriod", 7, 8)));
+
+  // By rocks: 1/4 a year for rock 0, 1/128 for rock 1.
+  this->Filter->SetAnnualFrequency(0.0);
+  vtkNew<vtkDoubleArray> frequency;
+  frequency->SetName("Frequency");
+  for (const double value : { 0.25, 0.0078125, 0.25, 0.0078125 })
+  {
+    frequency->InsertNextValue(value);
+  }
+  this->Paths.Data->GetCellData()->AddArray(frequency);
+  this->Paths.Data->Modified();
+  EXPECT_EQ(this->At("AnnualFrequency", 2, 3), 0.25 + 1.0 / 256);
+  EXPECT_EQ(this->At("AnnualFrequency30kJ", 2, 3), 0.125 + 1.0 / 256);
+  EXPECT_EQ(this->At("AnnualFrequency300kJ", 2, 3), 1.0 / 256);
+  EXPECT_EQ(this->At("Intensity30a", 2, 3), 2.0);
+  EXPECT_EQ(this->At("Intensity300a", 2, 3), 3.0);
+  this->Filter->RemoveAllEnergyThresholds();
+  for (const double threshold : { 50.0, 12.0, 50.0 }) // each once, in their order
+  {
+    this->Filter->AddEnergyThreshold(threshold);
+  }
+  EXPECT_EQ(this->At("AnnualFrequency12kJ", 7, 3), 0.25);
+  EXPECT_EQ(this->At("AnnualFrequency50kJ", 7, 3), 0.125);
+
+  const auto expect = [this](const std::vector<std::string>& words)
+  {
+    EXPECT_EQ(this->Map()->GetNumberOfCells(), 0);
+    this->ExpectOneError(words);
+  };
+  this->Filter->AddEnergyThreshold(0.0);
+  expect({ "EnergyThresholds has 0 kJ" });
+  this->Filter->RemoveAllEnergyThresholds();
+  this->Filter->AddReturnPeriod(-1.0);
+  expect({ "ReturnPeriods has -1 a" });
+  this->Filter->RemoveAllReturnPeriods();
+  this->Filter->SetAnnualFrequency(-2.0);
+  expect({ "AnnualFrequency is -2" });
+  this->Filter->SetAnnualFrequency(0.0);
+  frequency->SetValue(2, 0.5);
+  this->Paths.Data->Modified();
+  expect({ "Frequency of rock 0", "0.5", "0.25" });
+}
+
 TEST_F(TestRockfallHazardMap, WrittenAsGeoTiff)
 {
   this->Paths.AddLevel(0, 0, { 500001, 5100003, 50 }, 20, 10);
@@ -308,7 +373,8 @@ TEST_F(TestRockfallHazardMap, PrintSelfNamesEveryProperty)
 {
   std::ostringstream text;
   this->Filter->Print(text);
-  for (const char* name : { "CellSize", "CropToTrajectories" })
+  for (const char* name :
+    { "CellSize", "CropToTrajectories", "AnnualFrequency", "EnergyThresholds", "ReturnPeriods" })
   {
     EXPECT_NE(text.str().find(std::string(name) + ":"), std::string::npos) << name;
   }

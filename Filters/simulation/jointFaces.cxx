@@ -1,4 +1,4 @@
-#include "shared/jointFaces.h"
+#include "simulation/jointFaces.h"
 
 #include <algorithm>
 #include <array>

@@ -1,0 +1,69 @@
+#pragma once
+
+/// @file
+/// Annual frequencies: of volume classes, of rocks that pass a cell with an energy, and the
+/// intensity classes of scenarios.
+///
+/// Terms of Hantz et al. (2021), Geosciences 11(4), 158. Intensity by return period as in FOEN
+/// (2016), Protection against mass movement hazards: a cell's class in the scenario T is the one
+/// that is reached or exceeded at least once in T years on average.
+
+#include "statistics/passages.h"
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <span>
+#include <vector>
+
+namespace rockfall
+{
+
+/// Annual frequency A (V₁^−B − V₂^−B) of the volumes V₁ ≤ V < V₂ (m³), where A V^−B (1/a) is that
+/// of V and more. V₂ may be infinite. Throws ParameterError unless A ≥ 0, B > 0 and 0 < V₁ ≤ V₂.
+double powerLawFrequency(double a, double b, double v1, double v2);
+
+/// Probability 1 − exp(−f t) of at least one event in `years` t of a Poisson process of f a year.
+double probabilityWithin(double frequency, double years);
+
+/// How many of the `frequencies` (1/a) of reach and of ascending thresholds are at least 1 / period
+/// (a): 0 none, 1 reach alone, and one more per threshold. A part in 10⁹ is rounding, so that ten
+/// rocks of 0.001 a year make a hundred years.
+int intensityClass(std::span<const double> frequencies, double period);
+
+/// Annual frequencies of the rocks of a release. What a rock's passages in one iteration weigh is
+/// its frequency over the iterations that released it.
+class RockFrequencies
+{
+public:
+  /// A trajectory of a rock of this frequency, 1/a. Throws DataError if it is negative or not
+  /// finite, or another one than the same rock had before.
+  void add(int rock, double frequency);
+  /// Of one trajectory, 1/a. Throws DataError for a rock that was not added.
+  double weight(int rock) const;
+
+private:
+  struct Release
+  {
+    double frequency = 0.0;
+    std::int64_t iterations = 0;
+  };
+  std::map<int, Release> releases_;
+};
+
+/// A cell that something passed: first of all rocks, then of those of each threshold.
+struct CellFrequency
+{
+  std::uint32_t cell = 0;
+  std::vector<std::int64_t> rocks; ///< Rocks × iterations.
+  std::vector<double> frequencies; ///< Of passage by one of them, 1/a.
+};
+
+/// Calls `use` for each cell of the `passages`, which are in their order and summed in it: the
+/// results are the same bits however they were shared out. A rock counts for a threshold (J) if its
+/// largest energy on the way through the cell is at least that.
+void summarizeFrequencies(std::span<const Passage> passages, std::span<const double> thresholds,
+  const std::function<double(int rock)>& weight,
+  const std::function<void(const CellFrequency&)>& use);
+
+} // namespace rockfall
