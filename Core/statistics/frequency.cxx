@@ -37,14 +37,14 @@ int intensityClass(std::span<const double> frequencies, double period)
   return reached;
 }
 
-void RockFrequencies::add(int rock, double frequency)
+void RockFrequencies::add(int rock, std::int64_t blockId, double frequency)
 {
   if (!(frequency >= 0.0) || !std::isfinite(frequency))
   {
     throw DataError("The Frequency of rock " + std::to_string(rock) + " is " +
       numberText(frequency) + " per year, it must be finite and not negative");
   }
-  Release& release = releases_[rock];
+  Release& release = releases_[{ rock, blockId }];
   if (release.iterations > 0 && release.frequency != frequency)
   {
     throw DataError("The Frequency of rock " + std::to_string(rock) + " is " +
@@ -55,18 +55,18 @@ void RockFrequencies::add(int rock, double frequency)
   ++release.iterations;
 }
 
-double RockFrequencies::weight(int rock) const
+double RockFrequencies::weight(const Passage& of) const
 {
-  const auto found = releases_.find(rock);
+  const auto found = releases_.find({ of.rock, of.blockId });
   if (found == releases_.end())
   {
-    throw DataError("Rock " + std::to_string(rock) + " has no Frequency");
+    throw DataError("Rock " + std::to_string(of.rock) + " has no Frequency");
   }
   return found->second.frequency / double(found->second.iterations);
 }
 
 void summarizeFrequencies(std::span<const Passage> passages, std::span<const double> thresholds,
-  const std::function<double(int rock)>& weight,
+  const std::function<double(const Passage&)>& weight,
   const std::function<void(const CellFrequency&)>& use)
 {
   CellFrequency cell;
@@ -80,7 +80,7 @@ void summarizeFrequencies(std::span<const Passage> passages, std::span<const dou
       cell.rocks.assign(thresholds.size() + 1, 0);
       cell.frequencies.assign(thresholds.size() + 1, 0.0);
     }
-    const double share = weight(passage.rock);
+    const double share = weight(passage);
     const double energy = passage.maxima[std::size_t(Hazard::KineticEnergy)];
     for (std::size_t t = 0; t <= thresholds.size(); ++t)
     {

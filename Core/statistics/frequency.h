@@ -14,6 +14,7 @@
 #include <functional>
 #include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace rockfall
@@ -31,16 +32,16 @@ double probabilityWithin(double frequency, double years);
 /// rocks of 0.001 a year make a hundred years.
 int intensityClass(std::span<const double> frequencies, double period);
 
-/// Annual frequencies of the rocks of a release. What a rock's passages in one iteration weigh is
+/// Annual frequencies of the rocks of a release, known by number and block. What a rock's passages in one iteration weigh is
 /// its frequency over the iterations that released it.
 class RockFrequencies
 {
 public:
   /// A trajectory of a rock of this frequency, 1/a. Throws DataError if it is negative or not
   /// finite, or another one than the same rock had before.
-  void add(int rock, double frequency);
+  void add(int rock, std::int64_t blockId, double frequency);
   /// Of one trajectory, 1/a. Throws DataError for a rock that was not added.
-  double weight(int rock) const;
+  double weight(const Passage& of) const;
 
 private:
   struct Release
@@ -48,7 +49,7 @@ private:
     double frequency = 0.0;
     std::int64_t iterations = 0;
   };
-  std::map<int, Release> releases_;
+  std::map<std::pair<int, std::int64_t>, Release> releases_;
 };
 
 /// A cell that something passed: first of all rocks, then of those of each threshold.
@@ -63,7 +64,7 @@ struct CellFrequency
 /// results are the same bits however they were shared out. A rock counts for a threshold (J) if its
 /// largest energy on the way through the cell is at least that.
 void summarizeFrequencies(std::span<const Passage> passages, std::span<const double> thresholds,
-  const std::function<double(int rock)>& weight,
+  const std::function<double(const Passage&)>& weight,
   const std::function<void(const CellFrequency&)>& use);
 
 } // namespace rockfall

@@ -4,7 +4,7 @@
 /// The map of hazards as an image.
 
 #include "base/types.h"
-#include "shared/frequencyLayers.h"
+#include "counts/frequencyLayers.h"
 #include "statistics/sample.h"
 
 #include <string>

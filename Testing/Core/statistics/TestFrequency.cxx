@@ -42,7 +42,7 @@ RockFrequencies release()
   {
     for (int rock = 0; rock < 10; ++rock)
     {
-      rocks.add(rock, yearly[std::size_t(rock)]);
+      rocks.add(rock, 0, yearly[std::size_t(rock)]);
     }
   }
   return rocks;
@@ -65,7 +65,7 @@ std::vector<CellFrequency> cellsOf(
   const RockFrequencies rocks = release();
   std::vector<CellFrequency> cells;
   summarizeFrequencies(
-    sorted, thresholds, [&rocks](int rock) { return rocks.weight(rock); },
+    sorted, thresholds, [&rocks](const Passage& of) { return rocks.weight(of); },
     [&cells](const CellFrequency& cell) { cells.push_back(cell); });
   return cells;
 }
@@ -123,7 +123,7 @@ TEST(Frequency, PartsGiveTheSameBits)
   RockFrequencies rocks;
   for (int rock = 0; rock < 50; ++rock)
   {
-    rocks.add(rock, 0.1 / (rock + 3));
+    rocks.add(rock, 0, 0.1 / (rock + 3));
     all.push_back(passageOf(std::uint32_t(rock % 2), 0, rock, rock * 10 * kJ));
   }
   const auto of = [&rocks](std::vector<Passage> parts)
@@ -131,7 +131,7 @@ TEST(Frequency, PartsGiveTheSameBits)
     std::sort(parts.begin(), parts.end());
     std::vector<CellFrequency> cells;
     summarizeFrequencies(
-      parts, swiss, [&rocks](int rock) { return rocks.weight(rock); },
+      parts, swiss, [&rocks](const Passage& of) { return rocks.weight(of); },
       [&cells](const CellFrequency& cell) { cells.push_back(cell); });
     return cells;
   };
@@ -176,9 +176,11 @@ TEST(Frequency, ProbabilityWithinYears)
 TEST(Frequency, BadFrequencies)
 {
   RockFrequencies rocks;
-  rocks.add(1, 0.5);
-  EXPECT_THROW(rocks.add(1, 0.25), DataError);
-  EXPECT_THROW(rocks.add(2, -1.0), DataError);
-  EXPECT_THROW(rocks.add(2, std::nan("")), DataError);
-  EXPECT_THROW(rocks.weight(7), DataError);
+  rocks.add(1, 0, 0.5);
+  rocks.add(1, 9, 0.125); // of another run
+  EXPECT_EQ(rocks.weight(passageOf(0, 0, 1, 0.0)), 0.5);
+  EXPECT_THROW(rocks.add(1, 0, 0.25), DataError);
+  EXPECT_THROW(rocks.add(2, 0, -1.0), DataError);
+  EXPECT_THROW(rocks.add(2, 0, std::nan("")), DataError);
+  EXPECT_THROW(rocks.weight(passageOf(0, 0, 7, 0.0)), DataError);
 }

@@ -1,4 +1,4 @@
-#include "shared/frequencyLayers.h"
+#include "counts/frequencyLayers.h"
 
 #include "base/errors.h"
 #include "base/text/numberText.h"
@@ -50,7 +50,8 @@ std::optional<RockFrequencies> frequenciesOf(vtkPolyData* trajectories)
   vtkCellData* cells = trajectories->GetCellData();
   vtkDataArray* frequency = cells->GetArray("Frequency");
   vtkDataArray* rock = cells->GetArray("RockId");
-  if (!frequency || !rock)
+  vtkDataArray* block = cells->GetArray("BlockId");
+  if (!frequency || !rock || !block)
   {
     return std::nullopt;
   }
@@ -64,7 +65,8 @@ std::optional<RockFrequencies> frequenciesOf(vtkPolyData* trajectories)
   const vtkIdType first = trajectories->GetNumberOfVerts();
   for (vtkIdType line = 0; line < trajectories->GetNumberOfLines(); ++line)
   {
-    result.add(int(rock->GetTuple1(first + line)), frequency->GetTuple1(first + line));
+    result.add(int(rock->GetTuple1(first + line)), std::int64_t(block->GetTuple1(first + line)),
+      frequency->GetTuple1(first + line));
   }
   return result;
 }
@@ -92,8 +94,8 @@ void addFrequencies(HazardRaster& raster, vtkPolyData* trajectories,
     return;
   }
   const double released = double(raster.released());
-  const auto weight = [&](int rock)
-  { return rocks ? rocks->weight(rock) : options.annualFrequency / released; };
+  const auto weight = [&](const Passage& of)
+  { return rocks ? rocks->weight(of) : options.annualFrequency / released; };
 
   vtkFieldData* data = image->GetCellData();
   const vtkIdType cells = image->GetNumberOfCells();
