@@ -93,7 +93,7 @@ def write_embankment(path):
     """Steep towards the mountain, 1 in 1 and a half towards the road."""
     with open(path, "w") as file:
         file.write("WKT,name,height,width,slope_up,slope_down,phi\n"
-                   f'"LINESTRING({line_text(DAM)})",dam,{DAM_HEIGHT},{DAM_WIDTH},1:2,3:2,35\n')
+                   f'"LINESTRING({line_text(DAM)})",dam,{DAM_HEIGHT},{DAM_WIDTH},0.5,1.5,35\n')
     return path
 
 

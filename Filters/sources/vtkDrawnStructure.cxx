@@ -11,6 +11,7 @@
 #include "shared/structureFieldData.h"
 #include "shared/terrainFieldData.h"
 #include "sources/drawnSource.h"
+#include "terrain/plausible.h"
 
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
@@ -168,6 +169,7 @@ int vtkDrawnStructure::RequestData(
         std::copy(placed.begin(), placed.end(), this->PlacedLine);
         points = { { placed[0], placed[1], placed[2] }, { placed[3], placed[4], placed[5] } };
       }
+      Structures drawn; // by itself, for notes
       const std::vector<SourceRow> rows = filters::drawnRows(
         this->Kind == FOREST ? SourceGeometry::Polygon : SourceGeometry::Line, points, &slope);
       if (this->Kind == NET)
@@ -178,6 +180,7 @@ int vtkDrawnStructure::RequestData(
         net.points = placesOf(rows.front(), slope);
         net.height = this->Height;
         net.capacity = this->Capacity * 1000.0;
+        drawn.barriers = { net };
         structures.barriers.push_back(std::move(net));
       }
       else if (this->Kind == EMBANKMENT)
@@ -189,6 +192,7 @@ int vtkDrawnStructure::RequestData(
         dam.height = this->Height;
         dam.crestWidth = this->CrestWidth;
         dam.mountainSlope = dam.valleySlope = this->SideSlope;
+        drawn.embankments = { dam };
         structures.embankments.push_back(std::move(dam));
       }
       else
@@ -203,6 +207,7 @@ int vtkDrawnStructure::RequestData(
         {
           tree.capacity = rockfall::stemCapacity(tree.diameter);
         }
+        drawn.trees = { tree };
         for (const rockfall::ReleasePlace& place :
           rockfall::releasePlaces(rows, &slope, density, "Points"))
         {
@@ -210,6 +215,14 @@ int vtkDrawnStructure::RequestData(
           structures.trees.push_back(tree);
           ++tree.feature;
         }
+      }
+      std::vector<std::string> notes = rockfall::implausibleNumbers(drawn);
+      if (this->Kind != FOREST) // stems drawn at random may stand side by side
+      {
+        drawn.barriers = structures.barriers;
+        drawn.embankments = structures.embankments;
+        const std::vector<std::string> twice = rockfall::structuresTwice(drawn);
+        notes.insert(notes.end(), twice.begin(), twice.end());
       }
       slope.setStructures(std::move(structures));
       const auto terrain = std::make_shared<const Terrain>(std::move(slope));
@@ -223,6 +236,7 @@ int vtkDrawnStructure::RequestData(
         fields->AddArray(old->GetAbstractArray(k));
       }
       filters::writeStructures(*terrain, fields);
+      filters::showNotes(notes, fields);
       output->SetFieldData(fields);
       vtkNew<vtkPolyData> shown;
       filters::makeStructureMesh(*terrain, kMostShown, shown);

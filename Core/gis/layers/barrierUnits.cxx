@@ -1,6 +1,7 @@
 #include "gis/layers/barrierUnits.h"
 
 #include "base/text/numberText.h"
+#include "terrain/plausible.h"
 
 namespace rockfall::gis
 {
@@ -8,16 +9,18 @@ namespace rockfall::gis
 void refuseOtherUnits(
   const FeatureRow& row, std::optional<double> height, std::optional<double> capacity)
 {
-  if (height && *height > kMostBarrierHeight)
+  const double highest = plausible::kNetHeight.refused;
+  const double strongest = plausible::kNetCapacity.refused / 1000.0;
+  if (height && *height > highest)
   {
     row.failField("height",
-      " is " + numberText(*height) + " m, at most " + numberText(kMostBarrierHeight) +
+      " is " + numberText(*height) + " m, at most " + numberText(highest) +
         " m are meant for a barrier: is it in centimetres?");
   }
-  if (capacity && *capacity > kMostBarrierCapacity)
+  if (capacity && *capacity > strongest)
   {
     row.failField("capacity",
-      " is " + numberText(*capacity) + " kJ, at most " + numberText(kMostBarrierCapacity) +
+      " is " + numberText(*capacity) + " kJ, at most " + numberText(strongest) +
         " kJ are meant for a barrier: is it in J?");
   }
 }

@@ -57,6 +57,8 @@ struct SourceRow
   std::optional<double> horizontalDeviation, verticalDeviation; ///< Per iteration, m, ≥ 0.
   std::optional<double> attitudeDeviation;                      ///< Per iteration, degrees, ≥ 0.
   bool randomAttitude = false;                                  ///< Per iteration any attitude.
+
+  bool operator==(const SourceRow&) const = default;
 };
 
 /// How a source layer is to be read.
@@ -91,7 +93,7 @@ struct SourceLayer
 /// have x, y and z. Where a geometry has its own z, that goes before the column z (or z_m, z_ft).
 /// Heights become metres upwards, and those of the target's vertical datum; where the target or the
 /// layer does not say what its heights refer to, they are taken as they are. Of KML, altitudeMode
-/// says what an altitude is over.
+/// says what an altitude is over. A note tells rows that release the same rocks at one place.
 ///
 /// Throws FileError (missing, a folder, a raster, unreadable) or DataError naming file, row, field
 /// and value. Prints nothing; safe on several threads at once.

@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "base/text/nameKey.h"
+#include "base/text/numberText.h"
 #include "gis/base/crs.h"
 #include "gis/base/gdal.h"
 #include "gis/layers/FeatureRow.h"
@@ -12,9 +13,11 @@
 #include "gis/trust/heights.h"
 #include "terrain/Obstacles.h"
 #include "terrain/Terrain.h"
+#include "terrain/plausible.h"
 
 #include <ogrsf_frmts.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -171,23 +174,51 @@ double needed(const FeatureRow& row, const char* field, const char* what)
   return *value;
 }
 
-/// Metres across per metre down.
-std::optional<double> slopeOf(const FeatureRow& row, const char* field)
+/// Sides of embankments, m across per m down. Engineers of Europe write rise : run (1:1.5, 2:3),
+/// others run : rise (3:2), and mean the same side: of a ratio the larger number is the way across.
+class Sides
 {
-  const auto text = row.text(field);
-  const auto colon = text ? text->find(':') : std::string::npos;
-  if (colon == std::string::npos)
+public:
+  std::optional<double> of(const FeatureRow& row, const char* field)
   {
-    return row.notNegative(field);
+    const auto text = row.text(field);
+    const auto colon = text ? text->find(':') : std::string::npos;
+    if (colon == std::string::npos)
+    {
+      return row.notNegative(field);
+    }
+    const auto one = parsed(trimmed(text->substr(0, colon)));
+    const auto other = parsed(trimmed(text->substr(colon + 1)));
+    if (!one || !other || !(*one > 0.0) || !(*other > 0.0))
+    {
+      row.failField(field,
+        " is \"" + *text +
+          "\", it must be a ratio of two numbers above 0, as 2:3, or the metres across per metre "
+          "down, as 1.5");
+    }
+    const auto [down, across] = std::minmax(*one, *other);
+    ratios_.try_emplace(trimmed(*text), across / down);
+    return across / down;
   }
-  const auto across = parsed(trimmed(text->substr(0, colon)));
-  const auto down = parsed(trimmed(text->substr(colon + 1)));
-  if (!across || !down || !(*across >= 0.0) || !(*down > 0.0))
+
+  void tell(const std::string& fileName, std::vector<std::string>& notes) const
   {
-    row.failField(field, " is \"" + *text + "\", it must be across:down, as 3:2, or a number");
+    std::string list;
+    for (const auto& [text, slope] : ratios_)
+    {
+      list += (list.empty() ? "" : ", ") + text + " as " + numberText(slope, 4) +
+        " m across per m down (" + numberText(degrees(std::atan(1.0 / slope)), 3) + " degrees)";
+    }
+    if (!list.empty())
+    {
+      notes.push_back(fileName + ": of a ratio the larger number is taken as the way across: " +
+        list + ". A side steeper than 45 degrees is a number, as 0.5.");
+    }
   }
-  return *across / *down;
-}
+
+private:
+  std::map<std::string, double> ratios_;
+};
 
 /// Materials of rows that have their own, each kept once. What a row does not give is the slope's
 /// own, with its deviation; what it gives has none.
@@ -273,6 +304,7 @@ void readEmbankments(const StructureFiles& files, const Terrain& terrain, OwnMat
 {
   LayerWish wish = wishFor(files.embankments, files.embankmentLayer, "EmbankmentLayerName");
   wish.columns = { { "width" }, { "height", "crest" } };
+  Sides sides;
   forEachRow(wish, terrain, notes,
     { "height", "crest", "width", "slope", "slope_up", "slope_down", "rv", "rn", "rt", "phi",
       "cohesion" },
@@ -290,11 +322,11 @@ void readEmbankments(const StructureFiles& files, const Terrain& terrain, OwnMat
       e.height = height.value_or(e.height);
       e.elevation = crest ? placing.elevation(row, "crest", *crest) : e.elevation;
       e.crestWidth = needed(row, "width", "the width of the crest in m");
-      const auto both = slopeOf(row, "slope"), up = slopeOf(row, "slope_up"),
-                 down = slopeOf(row, "slope_down");
+      const auto both = sides.of(row, "slope"), up = sides.of(row, "slope_up"),
+                 down = sides.of(row, "slope_down");
       if (!both && !(up && down))
       {
-        row.fail("has no \"slope\" of its sides (across:down, as 3:2 or 1.5), nor \"slope_up\" and "
+        row.fail("has no \"slope\" of its sides (as 1.5 or 2:3), nor \"slope_up\" and "
                  "\"slope_down\"");
       }
       e.mountainSlope = up ? *up : *both;
@@ -306,6 +338,7 @@ void readEmbankments(const StructureFiles& files, const Terrain& terrain, OwnMat
         all.embankments.push_back(e);
       }
     });
+  sides.tell(wish.fileName, notes);
 }
 
 void readTrees(const StructureFiles& files, const Terrain& terrain, OwnMaterials& own,
@@ -335,7 +368,7 @@ void readTrees(const StructureFiles& files, const Terrain& terrain, OwnMaterials
         ? placing.local(row, geometry->toPoint()->getX(), geometry->toPoint()->getY())
         : placing.local(row, *row.number("x"), *row.number("y"));
       t.diameter = cm * needed(row, "diameter", "that of the stem in cm");
-      if (t.diameter > 10.0)
+      if (t.diameter > plausible::kStemDiameter.refused)
       {
         row.failField("diameter", " is " + number(t.diameter / cm) + " cm: is it in millimetres?");
       }
@@ -407,9 +440,18 @@ void readBarriers(const StructureFiles& files, const Terrain& terrain, Structure
     });
 }
 
-/// Errors of structures that cannot be built name the file.
-void tryOut(const std::string& fileName, Structures part, const Terrain& terrain)
+/// Errors of structures that cannot be built name the file, and so do notes of what is too good to
+/// be true.
+void tryOut(const std::string& fileName, Structures part, const Terrain& terrain,
+  std::vector<std::string>& notes)
 {
+  for (const auto& doubts : { implausibleNumbers(part), structuresTwice(part) })
+  {
+    for (const std::string& doubt : doubts)
+    {
+      notes.push_back(fileName + ": " + doubt);
+    }
+  }
   try
   {
     const Obstacles built(std::move(part), terrain);
@@ -430,17 +472,17 @@ Structures readStructures(
   if (!files.embankments.empty())
   {
     readEmbankments(files, terrain, own, all, notes);
-    tryOut(files.embankments, { all.embankments, {}, {}, all.materials }, terrain);
+    tryOut(files.embankments, { all.embankments, {}, {}, all.materials }, terrain, notes);
   }
   if (!files.trees.empty())
   {
     readTrees(files, terrain, own, all, notes);
-    tryOut(files.trees, { {}, all.trees, {}, all.materials }, terrain);
+    tryOut(files.trees, { {}, all.trees, {}, all.materials }, terrain, notes);
   }
   if (!files.barriers.empty())
   {
     readBarriers(files, terrain, all, notes);
-    tryOut(files.barriers, { {}, {}, all.barriers, {} }, terrain);
+    tryOut(files.barriers, { {}, {}, all.barriers, {} }, terrain, notes);
   }
   return all;
 }

@@ -30,7 +30,8 @@ struct StructureFiles
 
 /// Reads one layer of each, brought to the terrain's CRS; without a CRS on either side the
 /// coordinates are taken as they are. Column names without regard to case; empty cells are as good
-/// as no column. Sides' slopes are metres across per metre down, as a number or as "3:2".
+/// as no column. Sides' slopes are metres across per metre down, as a number; of a ratio ("2:3",
+/// "3:2") the larger one is the way across, with a note.
 ///
 /// - Embankments: `height` (over ground, m) or `crest` (elevation, m), `width` (of the crest, m),
 ///   `slope` (of both sides), or `slope_up` and `slope_down` (of the mountain and the valley side).
@@ -40,6 +41,7 @@ struct StructureFiles
 /// - Embankments and trees: `rv`, `rt`, `phi` (degrees), `cohesion` (N); empty: the slope's own.
 ///
 /// Trees where the terrain has no ground are left out, with a note; if all do, that is an error.
+/// Notes tell what is there twice or better than anything that is built (terrain/plausible.h).
 /// Throws FileError, DataError or ParameterError naming file, row, field and value: another
 /// geometry, a number missing or out of range, no overlap with the terrain, more than a million
 /// rows, what cannot be built (see Obstacles).

@@ -320,6 +320,32 @@ TEST(SourceErrors, crs)
     { metres, "row 1", "600000, 5100000", "EPSG:32632" }));
 }
 
+TEST(Sources, thatReleaseTheSameRocksTwiceAreTold)
+{
+  const auto notesOf = [](const std::string& text)
+  {
+    SourceOptions options;
+    options.haveTerrain = true;
+    return readSourceLayer(writeFile("twice.csv", text), options).notes;
+  };
+  const std::vector<std::string> points =
+    notesOf("x,y,z,amount,volume\n1,2,9,4,1\n1,2,9,4,1\n1,2.05,9,2,1\n5,2,9,4,1\n");
+  ASSERT_EQ(points.size(), 1u);
+  EXPECT_NE(
+    points[0].find("2 of 4 sources release the same rocks within 0.1 m of another one, first rows "
+                   "1 and 2"),
+    std::string::npos)
+    << points[0];
+  // Another size, height or speed is another source.
+  EXPECT_TRUE(notesOf("x,y,z,volume,vx\n1,2,9,1,0\n1,2,9,2,0\n1,2,12,1,0\n1,2,9,1,5\n").empty());
+  // Of the second size, too.
+  EXPECT_EQ(notesOf("x,y,z,volume\n1,2,9,1\n1,2,9,2\n1,2,9,2\n").size(), 1u);
+  const std::string line = "\"LINESTRING(0 0,9 0)\",", back = "\"LINESTRING(9 0.05,4 0,0 0)\",";
+  EXPECT_EQ(notesOf("WKT,amount,height\n" + line + "5,1\n" + back + "5,1\n").size(), 1u);
+  const std::string ring = "\"POLYGON((0 0,9 0,9 9,0 0))\",";
+  EXPECT_EQ(notesOf("WKT,amount,height\n" + ring + "5,1\n" + ring + "5,1\n").size(), 1u);
+}
+
 } // namespace
 
 } // namespace rockfall

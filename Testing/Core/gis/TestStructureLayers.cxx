@@ -5,6 +5,9 @@
 #include "gisFiles.h"
 #include "slopes.h"
 #include "terrain/Obstacles.h"
+#include "terrain/plausible.h"
+
+#include <algorithm>
 
 using namespace rockfall;
 using namespace rockfall::testing;
@@ -63,8 +66,9 @@ TEST(StructureLayers, AreReadInTheUnitsThatAPersonTypes)
   EXPECT_EQ(s.materials[0].restitutionDeviation, 0.0);
   EXPECT_EQ(s.materials[0].frictionAngleDeviation, 0.0);
   ASSERT_EQ(s.trees.size(), 3u); // one stands beside the terrain
-  ASSERT_EQ(notes.size(), 1u);
-  EXPECT_NE(notes[0].find("1 trees"), std::string::npos);
+  ASSERT_EQ(notes.size(), 3u); // of the ratio, two embankments in one place, the tree
+  EXPECT_NE(notes[0].find("3:2 as 1.5 m across per m down (33.7 degrees)"), std::string::npos);
+  EXPECT_NE(notes[2].find("1 trees"), std::string::npos);
   EXPECT_DOUBLE_EQ(s.trees[0].diameter, 0.3);
   EXPECT_DOUBLE_EQ(s.trees[0].capacity, stemCapacity(0.3));
   EXPECT_EQ(s.trees[1].capacity, 80e3);
@@ -195,4 +199,138 @@ TEST(StructureLayers, TellWhatIsWrong)
   StructureFiles files;
   files.trees = "no such file.gpkg";
   EXPECT_NE(messageOf(files).find("no such file.gpkg"), std::string::npos);
+}
+
+namespace
+{
+
+struct Read
+{
+  Structures structures;
+  std::vector<std::string> notes;
+
+  /// How many notes have these words.
+  int told(const std::string& words) const
+  {
+    return int(std::count_if(notes.begin(), notes.end(),
+      [&](const std::string& note) { return note.find(words) != std::string::npos; }));
+  }
+};
+
+Read readTrees(const std::string& rows, const std::string& header = "x,y,diameter,height\n")
+{
+  Read read;
+  StructureFiles files;
+  files.trees = writeFile("trees.csv", header + rows);
+  read.structures = readStructures(files, site(), read.notes);
+  return read;
+}
+
+Read readNets(const std::string& rows)
+{
+  Read read;
+  StructureFiles files;
+  files.barriers = writeFile("nets.csv", "WKT,height,capacity,mode\n" + rows);
+  read.structures = readStructures(files, site(), read.notes);
+  return read;
+}
+
+Read readDams(const std::string& rows)
+{
+  Read read;
+  StructureFiles files;
+  files.embankments = writeFile("dams.csv", "WKT,height,width,slope\n" + rows);
+  read.structures = readStructures(files, site(), read.notes);
+  return read;
+}
+
+} // namespace
+
+TEST(StructureDoubts, TreesThatDoNotGrow)
+{
+  EXPECT_TRUE(readTrees("50,50,35,24\n60,50,110,24\n").notes.empty()); // slenderness 69 and 22
+  // Millimetres, as 3.5 m and 2.8 m; told once.
+  const Read thick = readTrees("50,50,350,24\n60,50,280,18\n");
+  ASSERT_EQ(thick.notes.size(), 1u);
+  EXPECT_EQ(thick.told("2 of 2 diameters of trees look implausible, first feature 1 with 350 cm. "
+                       "Stems have 2 to 200 cm: are diameters in cm?"),
+    1)
+    << thick.notes[0];
+  // Inches and feet, heights in decimetres, diameters in decimetres.
+  EXPECT_EQ(readTrees("50,50,14,79\n60,50,30,20\n").told("1 of 2 trees look implausible"), 1);
+  EXPECT_EQ(readTrees("50,50,12,1.8\n").told("1.8 m high and 12 cm thick"), 1);
+  EXPECT_EQ(readTrees("50,50,4,22\n").told("22 m high and 4 cm thick"), 1);
+  // Capacities in J and in MJ, beside 194 kJ of 40 cm.
+  const std::string own = "x,y,diameter,height,capacity\n";
+  EXPECT_TRUE(readTrees("50,50,40,20,300\n", own).notes.empty());
+  EXPECT_EQ(readTrees("50,50,40,20,194000\n", own).told("capacities of trees"), 1);
+  EXPECT_EQ(readTrees("50,50,40,20,0.194\n", own).told("capacities of trees"), 1);
+}
+
+TEST(StructureDoubts, NetsThatNobodySells)
+{
+  EXPECT_TRUE(readNets(line + ",5,100,\n\"LINESTRING(20 60,80 60)\",6,10000,\n").notes.empty());
+  EXPECT_EQ(readNets(line + ",5,3,\n").told("first feature 1 with 3 kJ. Nets are sold for 100"), 1);
+  EXPECT_EQ(readNets(line + ",5,30000,\n").told("with 30000 kJ"), 1);
+  EXPECT_EQ(readNets(line + ",16,500,\n").told("with 16 m. Nets stand 1 to 12 m high"), 1);
+  EXPECT_TRUE(readNets(line + ",25,,record\n").notes.empty());
+}
+
+TEST(StructureDoubts, EmbankmentsThatNobodyBuilds)
+{
+  EXPECT_TRUE(readDams(line + ",5,2,1.5\n").notes.empty());
+  EXPECT_EQ(readDams(line + ",0.05,2,1.5\n").told("heights of embankments"), 1);
+  EXPECT_EQ(readDams(line + ",0.6,0.02,1.5\n").told("widths of crests"), 1);
+  EXPECT_EQ(readDams(line + ",0.6,2,15\n").told("sides of embankments"), 1);
+}
+
+TEST(StructureDoubts, RatiosAreNoSteeperThan45Degrees)
+{
+  for (const char* text : { "1:1.5", "2:3", "3:2", "1.5:1", " 4 : 6 " })
+  {
+    const Read read = readDams(line + ",5,2," + text + "\n");
+    ASSERT_EQ(read.structures.embankments.size(), 1u);
+    EXPECT_DOUBLE_EQ(read.structures.embankments[0].mountainSlope, 1.5) << text;
+    EXPECT_EQ(read.told("as 1.5 m across per m down (33.7 degrees)"), 1) << text;
+    EXPECT_EQ(read.notes.size(), 1u) << text;
+  }
+  EXPECT_DOUBLE_EQ(readDams(line + ",5,2,1:2\n").structures.embankments.at(0).valleySlope, 2.0);
+  EXPECT_DOUBLE_EQ(readDams(line + ",5,2,0.5\n").structures.embankments.at(0).valleySlope, 0.5);
+}
+
+TEST(StructureDoubts, TheSameTwice)
+{
+  const Read stems = readTrees("50,50,40,20\n50.05,50,40,20\n50.1,50,40,20\n60,50,40,20\n");
+  EXPECT_EQ(
+    stems.told("2 of 4 trees stand within 0.1 m of another one, first features 1 and 2"), 1);
+  EXPECT_EQ(readTrees("49.99,49.99,40,20\n50.01,50.01,40,20\n").notes.size(), 1u); // other cells
+  EXPECT_TRUE(readTrees("50,50,40,20\n50.11,50,40,20\n").notes.empty());
+
+  const std::string words = "1 of 2 barriers stand within 0.1 m of another one, first features 1 "
+                            "and 2";
+  EXPECT_EQ(readNets(line + ",5,300,\n" + line + ",4,500,\n").told(words), 1);
+  // Backwards, with another corner, beside by 5 cm.
+  EXPECT_EQ(
+    readNets(line + ",5,300,\n\"LINESTRING(80 50.05,45 50.05,20 50)\",5,300,\n").told(words), 1);
+  // Half as long; beside by 0.5 m; a line that only records.
+  for (const char* other :
+    { "20 50,50 50)\",5,300,", "20 50.5,80 50.5)\",5,300,", "20 50,80 50)\",5,300,record" })
+  {
+    EXPECT_TRUE(readNets(line + ",5,300,\n\"LINESTRING(" + other + "\n").notes.empty()) << other;
+  }
+  EXPECT_EQ(readDams(line + ",5,2,1.5\n" + line + ",5,2,1.5\n").told("1 of 2 embankments"), 1);
+}
+
+TEST(StructureDoubts, ALargeSurveyTakesNoTime)
+{
+  // All at one place, and all on one line: a search of pairs would take hours.
+  std::vector<Eigen::Vector2d> points(300000, Eigen::Vector2d(3.0, 4.0));
+  EXPECT_EQ(earlierPoints(points).back(), 0);
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    points[i].y() = 0.2 * double(i);
+  }
+  EXPECT_EQ(earlierPoints(points).back(), -1);
+  const std::vector<PlanLine> lines(100000, { { 0.0, 0.0 }, { 5.0, 5.0 } });
+  EXPECT_EQ(earlierLines(lines).back(), 0);
 }

@@ -83,7 +83,7 @@ StructureFiles layersIn(const std::string& crs)
   };
   StructureFiles files;
   files.embankments =
-    file("dams", "LineString", line(dam), R"("height":3.5,"width":1.5,"slope":"3:2")");
+    file("dams", "LineString", line(dam), R"("height":3.5,"width":1.5,"slope":1.5)");
   files.trees = file("trees", "Point", place(stem), R"("diameter":35,"height":22)");
   files.barriers = file("nets", "LineString", line(net), R"("height":4,"capacity":1000)");
   return files;

@@ -1,0 +1,304 @@
+#include "terrain/plausible.h"
+
+#include "base/text/numberText.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <tuple>
+#include <utility>
+
+namespace rockfall
+{
+
+namespace
+{
+
+using Point = Eigen::Vector2d;
+using plausible::kSamePlace;
+
+/// What is out of a range: how many, and the first one in words.
+class Doubt
+{
+public:
+  explicit Doubt(std::string ask)
+    : ask_(std::move(ask))
+  {
+  }
+
+  template <class Words>
+  void look(bool fits, std::int64_t feature, Words&& words)
+  {
+    ++all_;
+    if (!fits && ++count_ == 1)
+    {
+      first_ = "feature " + std::to_string(feature) + words();
+    }
+  }
+
+  void tell(const char* kind, std::vector<std::string>& notes) const
+  {
+    if (count_ > 0)
+    {
+      notes.push_back(std::to_string(count_) + " of " + std::to_string(all_) + " " + kind +
+        " look implausible, first " + first_ + ". " + ask_);
+    }
+  }
+
+private:
+  std::string ask_, first_;
+  std::int64_t all_ = 0, count_ = 0;
+};
+
+std::string text(double value)
+{
+  return numberText(value, 6);
+}
+
+std::string between(const PlausibleRange& range, double unit = 1.0)
+{
+  return text(range.least / unit) + " to " + text(range.most / unit);
+}
+
+void lookAtTrees(const std::vector<Tree>& trees, std::vector<std::string>& notes)
+{
+  using namespace plausible;
+  Doubt thick("Stems have " + between(kStemDiameter, 0.01) + " cm: are diameters in cm?");
+  Doubt slender("Trees are " + between(kSlenderness) +
+    " times as high as thick: are diameters in cm and heights in m?");
+  Doubt strong("Stems hold " + between(kStemCapacity) +
+    " times what Dorren and Berger give their diameter: are capacities in kJ?");
+  for (const Tree& t : trees)
+  {
+    const bool fits = kStemDiameter.has(t.diameter);
+    thick.look(fits, t.feature, [&] { return " with " + text(100.0 * t.diameter) + " cm"; });
+    // A stem that is too thick is told once.
+    const double ratio = t.height / t.diameter;
+    slender.look(!fits || kSlenderness.has(ratio), t.feature,
+      [&]
+      { return ": " + text(t.height) + " m high and " + text(100.0 * t.diameter) + " cm thick"; });
+    const double share = t.capacity / stemCapacity(t.diameter);
+    strong.look(!fits || std::isinf(share) || kStemCapacity.has(share), t.feature,
+      [&] { return " with " + text(t.capacity / 1000.0) + " kJ"; });
+  }
+  thick.tell("diameters of trees", notes);
+  slender.tell("trees", notes);
+  strong.tell("capacities of trees", notes);
+}
+
+void lookAtNets(const std::vector<Barrier>& barriers, std::vector<std::string>& notes)
+{
+  using namespace plausible;
+  Doubt high("Nets stand " + between(kNetHeight) + " m high: is it in m?");
+  Doubt strong("Nets are sold for " + between(kNetCapacity, 1000.0) + " kJ: is it in kJ?");
+  for (const Barrier& b : barriers)
+  {
+    if (!b.records)
+    {
+      high.look(
+        kNetHeight.has(b.height), b.feature, [&] { return " with " + text(b.height) + " m"; });
+      strong.look(std::isinf(b.capacity) || kNetCapacity.has(b.capacity), b.feature,
+        [&] { return " with " + text(b.capacity / 1000.0) + " kJ"; });
+    }
+  }
+  high.tell("heights of barriers", notes);
+  strong.tell("capacities of barriers", notes);
+}
+
+void lookAtEmbankments(const std::vector<Embankment>& dams, std::vector<std::string>& notes)
+{
+  using namespace plausible;
+  Doubt high("Embankments are " + between(kDamHeight) + " m high: is it in m?");
+  Doubt wide("Crests are " + between(kCrestWidth) + " m wide: is it in m?");
+  Doubt flat(
+    "Sides go " + between(kSideSlope) + " m across per m down: is it a number of degrees?");
+  for (const Embankment& e : dams)
+  {
+    high.look(std::isnan(e.height) || kDamHeight.has(e.height), e.feature,
+      [&] { return " with " + text(e.height) + " m"; });
+    wide.look(kCrestWidth.has(e.crestWidth), e.feature,
+      [&] { return " with " + text(e.crestWidth) + " m"; });
+    const double side = std::max(e.mountainSlope, e.valleySlope);
+    flat.look(kSideSlope.has(side), e.feature, [&] { return " with " + text(side); });
+  }
+  high.tell("heights of embankments", notes);
+  wide.tell("widths of crests", notes);
+  flat.tell("sides of embankments", notes);
+}
+
+double distance(const Point& p, const PlanLine& line)
+{
+  double least = (p - line.front()).norm();
+  for (std::size_t i = 1; i < line.size(); ++i)
+  {
+    const Point along = line[i] - line[i - 1];
+    const double s = std::clamp((p - line[i - 1]).dot(along) / along.squaredNorm(), 0.0, 1.0);
+    least = std::min(least, (line[i - 1] + (std::isnan(s) ? 0.0 : s) * along - p).norm());
+  }
+  return least;
+}
+
+bool liesOn(const PlanLine& one, const PlanLine& other)
+{
+  return std::all_of(
+    one.begin(), one.end(), [&](const Point& p) { return distance(p, other) <= kSamePlace; });
+}
+
+/// Those that another one of before stands at.
+template <class Item>
+void tellTwice(const char* kind, const std::vector<const Item*>& items,
+  const std::vector<int>& earlier, std::vector<std::string>& notes)
+{
+  std::int64_t count = 0;
+  std::string first;
+  for (std::size_t i = 0; i < items.size(); ++i)
+  {
+    if (earlier[i] >= 0 && ++count == 1)
+    {
+      first = "features " + std::to_string(items[std::size_t(earlier[i])]->feature) + " and " +
+        std::to_string(items[i]->feature);
+    }
+  }
+  if (count > 0)
+  {
+    notes.push_back(std::to_string(count) + " of " + std::to_string(items.size()) + " " + kind +
+      " stand within " + text(kSamePlace) + " m of another one, first " + first +
+      ". Each takes its capacity: was something given twice?");
+  }
+}
+
+template <class Item>
+void linesTwice(
+  const char* kind, const std::vector<const Item*>& items, std::vector<std::string>& notes)
+{
+  std::vector<PlanLine> lines;
+  for (const Item* item : items)
+  {
+    lines.push_back(item->points);
+  }
+  tellTwice(kind, items, earlierLines(lines), notes);
+}
+
+template <class Item, class Takes>
+std::vector<const Item*> those(const std::vector<Item>& all, Takes&& takes)
+{
+  std::vector<const Item*> list;
+  for (const Item& item : all)
+  {
+    if (takes(item))
+    {
+      list.push_back(&item);
+    }
+  }
+  return list;
+}
+
+} // namespace
+
+std::vector<int> earlierPoints(const std::vector<Point>& points)
+{
+  // Sorted by cells as wide as the distance: what is near is in the cell or in one beside it.
+  using Cell = std::tuple<double, double, int>;
+  std::vector<Cell> cells;
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    const Point at = points[i] / kSamePlace;
+    cells.emplace_back(std::floor(at.x()), std::floor(at.y()), int(i));
+  }
+  std::sort(cells.begin(), cells.end());
+  std::vector<int> earlier(points.size(), -1);
+  for (const auto& [x, y, i] : cells)
+  {
+    int& first = earlier[std::size_t(i)];
+    for (int beside = 0; beside < 9; ++beside)
+    {
+      const double column = x + beside % 3 - 1, row = y + beside / 3 - 1;
+      // Within a cell in their order: the first that is near is the one.
+      for (auto near = std::lower_bound(cells.begin(), cells.end(), Cell(column, row, -1));
+           near != cells.end() && std::get<0>(*near) == column && std::get<1>(*near) == row; ++near)
+      {
+        const int k = std::get<2>(*near);
+        const bool before = k < i && (first < 0 || k < first);
+        if (!before)
+        {
+          break;
+        }
+        if ((points[std::size_t(k)] - points[std::size_t(i)]).norm() <= kSamePlace)
+        {
+          first = k;
+          break;
+        }
+      }
+    }
+  }
+  return earlier;
+}
+
+std::vector<int> earlierLines(const std::vector<PlanLine>& lines)
+{
+  // Along x by their westernmost points, so that only those that begin together are compared.
+  std::vector<std::pair<double, int>> west;
+  for (std::size_t i = 0; i < lines.size(); ++i)
+  {
+    double x = std::numeric_limits<double>::infinity();
+    for (const Point& p : lines[i])
+    {
+      x = std::min(x, p.x());
+    }
+    if (!lines[i].empty())
+    {
+      west.emplace_back(x, int(i));
+    }
+  }
+  std::sort(west.begin(), west.end());
+  std::vector<int> earlier(lines.size(), -1);
+  std::vector<std::pair<double, int>> firsts; // one of each place
+  for (const auto& [x, i] : west)
+  {
+    bool found = false;
+    for (auto near = firsts.rbegin();
+         !found && near != firsts.rend() && near->first >= x - kSamePlace; ++near)
+    {
+      const PlanLine &one = lines[std::size_t(near->second)], &other = lines[std::size_t(i)];
+      found = liesOn(one, other) && liesOn(other, one);
+      if (found)
+      {
+        const auto [first, second] = std::minmax(near->second, i);
+        earlier[std::size_t(second)] = first;
+        near->second = first;
+      }
+    }
+    if (!found)
+    {
+      firsts.emplace_back(x, i);
+    }
+  }
+  return earlier;
+}
+
+std::vector<std::string> implausibleNumbers(const Structures& structures)
+{
+  std::vector<std::string> notes;
+  lookAtEmbankments(structures.embankments, notes);
+  lookAtTrees(structures.trees, notes);
+  lookAtNets(structures.barriers, notes);
+  return notes;
+}
+
+std::vector<std::string> structuresTwice(const Structures& structures)
+{
+  std::vector<std::string> notes;
+  const auto all = [](const auto&) { return true; };
+  linesTwice("embankments", those(structures.embankments, all), notes);
+  std::vector<Point> stems;
+  for (const Tree& tree : structures.trees)
+  {
+    stems.push_back(tree.position);
+  }
+  tellTwice("trees", those(structures.trees, all), earlierPoints(stems), notes);
+  linesTwice(
+    "barriers", those(structures.barriers, [](const Barrier& b) { return !b.records; }), notes);
+  return notes;
+}
+
+} // namespace rockfall

@@ -1,0 +1,67 @@
+#pragma once
+
+/// @file
+/// Structures that protect better than any that is built or grows: ranges of their numbers, and the
+/// same one given twice.
+///
+/// Beyond a range a note asks; what only another unit explains is an error (`refused`). The table
+/// of docs/structures.md has the same rows with their sources.
+
+#include "terrain/structures.h"
+
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace rockfall
+{
+
+struct PlausibleRange
+{
+  double least, most;
+  double refused = std::numeric_limits<double>::infinity(); ///< Above it an error.
+
+  bool has(double value) const { return value >= least && value <= most; }
+};
+
+namespace plausible
+{
+
+/// Of a stem at breast height, m. Veteran trees of Europe's forests come to 2 m.
+inline constexpr PlausibleRange kStemDiameter{ 0.02, 2.0, 10.0 };
+/// Height of a tree over its stem's diameter, dimensionless. Solitary trees have some 30, dense
+/// stands up to 150 (yield tables).
+inline constexpr PlausibleRange kSlenderness{ 20.0, 200.0 };
+/// A stem's capacity over that of its diameter, dimensionless: factors of species are 0.9 to 1.7
+/// (Dorren & Berger 2006).
+inline constexpr PlausibleRange kStemCapacity{ 0.1, 5.0 };
+/// Of a net over ground, m. Kits stand 2 to 10 m high.
+inline constexpr PlausibleRange kNetHeight{ 1.0, 12.0, 30.0 };
+/// Of a net, J. The lowest class of EAD 340059-00-0106 has 100 kJ, the largest kits sold 10,000 kJ.
+inline constexpr PlausibleRange kNetCapacity{ 100e3, 10e6, 100e6 };
+/// Of an embankment's crest over ground, m. The highest rockfall dams have some 25 m.
+inline constexpr PlausibleRange kDamHeight{ 0.5, 30.0 };
+/// Of an embankment's crest, m.
+inline constexpr PlausibleRange kCrestWidth{ 0.2, 20.0 };
+/// Of an embankment's side, m across per m down: a wall to 11°.
+inline constexpr PlausibleRange kSideSlope{ 0.0, 5.0 };
+/// Two of a kind whose places differ by no more are the same one, m.
+inline constexpr double kSamePlace = 0.1;
+
+} // namespace plausible
+
+/// One sentence for each kind of number out of its range, with how many and the first one's.
+std::vector<std::string> implausibleNumbers(const Structures& structures);
+
+/// One sentence for each kind of which some stand where another one does. Lines that record are
+/// none of them.
+std::vector<std::string> structuresTwice(const Structures& structures);
+
+using PlanLine = std::vector<Eigen::Vector2d>;
+
+/// Of each place (a line: all of it, in whichever direction and by whichever corners) the first one
+/// within `plausible::kSamePlace`, −1 if there is none before it.
+std::vector<int> earlierPoints(const std::vector<Eigen::Vector2d>& points);
+std::vector<int> earlierLines(const std::vector<PlanLine>& lines);
+
+} // namespace rockfall
