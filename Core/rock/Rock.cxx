@@ -10,10 +10,21 @@
 namespace rockfall
 {
 
+namespace
+{
+
+/// Below these nothing is a rock, and the least numbers there are leave no mass to share a force.
+constexpr double kLeastDensity = 1.0;    ///< kg/m³; air has 1.2.
+constexpr double kLeastModulus = 1000.0; ///< Pa; jelly has some.
+constexpr double kLeastVolume = 1e-9;    ///< m³, a grain of sand.
+
+} // namespace
+
 void Rock::validate() const
 {
   const std::string name = "block " + std::to_string(this->blockId) + ": ";
-  const auto positive = [&](double value, double most, const char* field, const char* unit)
+  const auto positive =
+    [&](double value, double least, double most, const char* field, const char* unit)
   {
     if (!(value > 0.0) || !std::isfinite(value))
     {
@@ -25,15 +36,20 @@ void Rock::validate() const
       throw ParameterError(name + field + " is " + numberText(value) + " " + unit +
         ", no rock has more than " + numberText(most));
     }
+    if (value < least)
+    {
+      throw ParameterError(name + field + " is " + numberText(value) + " " + unit +
+        ", no rock has less than " + numberText(least));
+    }
   };
-  positive(this->density, kMostDensity, "Density", "kg/m³");
-  positive(this->youngModulus, kMostModulus, "YoungModulus", "Pa");
+  positive(this->density, kLeastDensity, kMostDensity, "Density", "kg/m³");
+  positive(this->youngModulus, kLeastModulus, kMostModulus, "YoungModulus", "Pa");
   if (!(this->poissonRatio >= 0.0 && this->poissonRatio <= 0.49))
   {
     throw ParameterError(
       name + "PoissonRatio is " + numberText(this->poissonRatio) + ", it must be 0 to 0.49");
   }
-  positive(this->shape.integrals().volume, kMostVolume, "Volume", "m³");
+  positive(this->shape.integrals().volume, kLeastVolume, kMostVolume, "Volume", "m³");
   const auto finite = [&](const Vec3& value, const char* field)
   {
     if (!value.allFinite())

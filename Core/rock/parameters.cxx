@@ -12,6 +12,19 @@
 namespace rockfall
 {
 
+namespace
+{
+
+/// Ends beyond any run: further out nothing comes to an end.
+constexpr double kLeastTimeStep = 1e-6; ///< s; contact of 1 m³ on pₙ 1e15 N/m swings as fast.
+constexpr double kLongest = 1e5;        ///< s; the slowest rock creeps for minutes.
+constexpr double kMostGravity = 1000.0; ///< m/s²; the Sun has 274.
+constexpr double kMostPenalty = 1e15;   ///< N/m; a step of an impact is 1e-7 s there.
+constexpr double kMostRatio = 1000.0;   ///< Of shear to normal stiffness.
+constexpr double kMostCohesion = 1e12;  ///< N; the weight of a mountain on one point.
+
+} // namespace
+
 void SimulationParameters::validate() const
 {
   const auto positive = [](double value, const char* field, const char* unit)
@@ -30,16 +43,32 @@ void SimulationParameters::validate() const
         ", it must be at least " + numberText(least));
     }
   };
+  const auto atMost = [](double value, double most, const char* field, const char* unit)
+  {
+    if (value > most)
+    {
+      throw ParameterError(std::string(field) + " is " + numberText(value) + unit +
+        ", it must be at most " + numberText(most));
+    }
+  };
   positive(this->timeStep, "TimeStep", "seconds");
+  if (this->timeStep < kLeastTimeStep)
+  {
+    throw ParameterError("TimeStep is " + numberText(this->timeStep) + " s, it must be at least " +
+      numberText(kLeastTimeStep) + " s: no run of such steps ends");
+  }
   if (this->timeStep > kMostTimeStep)
   {
     throw ParameterError("TimeStep is " + numberText(this->timeStep) + " s, it must be at most " +
       numberText(kMostTimeStep) + " s: is it in milliseconds?");
   }
   positive(this->endTime, "EndTime", "seconds");
+  atMost(this->endTime, kLongest, "EndTime", " s");
   positive(this->outputInterval, "OutputInterval", "seconds");
   positive(this->normalPenalty, "NormalPenalty", "N/m");
+  atMost(this->normalPenalty, kMostPenalty, "NormalPenalty", " N/m");
   positive(this->shearRatio, "ShearPenaltyRatio", "(no unit)");
+  atMost(this->shearRatio, kMostRatio, "ShearPenaltyRatio", "");
   if (!(this->rockRestitution >= 0.0 && this->rockRestitution <= 1.0))
   {
     throw ParameterError(
@@ -55,12 +84,14 @@ void SimulationParameters::validate() const
     throw ParameterError("RockCohesion is " + numberText(this->rockCohesion) +
       " N, it must be finite and not negative");
   }
+  atMost(this->rockCohesion, kMostCohesion, "RockCohesion", " N");
   validateRockContacts(this->rockContactPairs);
   if (!(this->gravity >= 0.0) || !std::isfinite(this->gravity))
   {
     throw ParameterError(
       "Gravity is " + numberText(this->gravity) + " m/s², it must be finite and not negative");
   }
+  atMost(this->gravity, kMostGravity, "Gravity", " m/s²");
   if (this->endTime / this->outputInterval > 1e7)
   {
     throw ParameterError("OutputInterval is " + numberText(this->outputInterval) +

@@ -55,6 +55,13 @@ void YieldingGround::validate() const
         (field.noneIsInfinite ? " (0: hard ground)" : ""));
     }
   }
+  // Ground that a rock sinks through without a force ends in no scar.
+  constexpr double kSoftest = 1e3; // Pa, a hundredth of fresh snow
+  if (this->modulus < kSoftest)
+  {
+    throw ParameterError("GroundModulus is " + numberText(this->modulus / 1e6) +
+      " MN/m², it must be 0 (hard ground) or at least 0.001");
+  }
   if (this->deviation > 0.0 && !(this->deviationLength > 0.0))
   {
     throw ParameterError("GroundDeviationLength is " + numberText(this->deviationLength) +

@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "gis/raster/rasterWriter.h"
+#include "shared/attempt.h"
 #include "shared/inputs.h"
 #include "shared/pieces.h"
 #include "shared/terrainFieldData.h"
@@ -121,10 +122,11 @@ void vtkHazardMapWriter::WriteData()
     }
     rockfall::writeGeoTiff(this->FileName, mapOf(image));
   }
-  catch (const rockfall::Error& error)
+  catch (...)
   {
     this->SetErrorCode(vtkErrorCode::FileFormatError);
-    vtkErrorMacro(<< error.what());
+    vtkErrorMacro(<< rockfall::filters::reasonOf(
+                    this->FileName + ": there is not enough memory to write it"));
   }
 }
 

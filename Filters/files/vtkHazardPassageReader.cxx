@@ -72,7 +72,7 @@ int vtkHazardPassageReader::CanReadFile(const char* fileName)
     rockfall::readPassageFile(fileName);
     return 1;
   }
-  catch (const rockfall::Error&)
+  catch (...)
   {
     return 0;
   }
@@ -97,7 +97,7 @@ int vtkHazardPassageReader::RequestInformation(
       spacing[0] = spacing[1] = spacing[2] = grid.cellSize;
     }
   }
-  catch (const rockfall::Error&)
+  catch (...)
   {
     // RequestData says so, once.
   }

@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "counts/hazardImage.h"
+#include "shared/attempt.h"
 #include "shared/inputs.h"
 #include "shared/pieces.h"
 #include "shared/ranks.h"
@@ -87,10 +88,11 @@ void vtkHazardPassageWriter::WriteData()
     rockfall::filters::writeHazardPassages(
       trajectories, terrain, { this->CellSize, false, this->RockWidth, {} }, this->FileName);
   }
-  catch (const rockfall::Error& error)
+  catch (...)
   {
     this->SetErrorCode(vtkErrorCode::FileFormatError);
-    vtkErrorMacro(<< error.what());
+    vtkErrorMacro(<< rockfall::filters::reasonOf(
+                    this->FileName + ": there is not enough memory to write it"));
   }
 }
 

@@ -3,6 +3,7 @@
 #include "base/errors.h"
 #include "base/types.h"
 #include "gis/layers/layerWriter.h"
+#include "shared/attempt.h"
 #include "shared/inputs.h"
 #include "shared/pieces.h"
 #include "shared/terrainFieldData.h"
@@ -267,10 +268,11 @@ void vtkTrajectoryLayerWriter::WriteData()
     }
     writer.commit();
   }
-  catch (const rockfall::Error& error)
+  catch (...)
   {
     this->SetErrorCode(vtkErrorCode::FileFormatError);
-    vtkErrorMacro(<< error.what());
+    vtkErrorMacro(<< rockfall::filters::reasonOf(
+                    this->FileName + ": there is not enough memory to write it"));
   }
 }
 

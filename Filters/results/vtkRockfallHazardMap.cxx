@@ -131,18 +131,13 @@ void vtkRockfallHazardMap::Prepare(vtkInformationVector** inputVector)
     this->Made->draped->Initialize();
     this->Made->aborted = true;
   }
-  catch (const rockfall::Error& error)
+  catch (...)
   {
     this->Made->image->Initialize();
     this->Made->draped->Initialize();
-    this->Made->error = error.what();
-  }
-  catch (const std::bad_alloc&)
-  {
-    this->Made->image->Initialize();
-    this->Made->draped->Initialize();
-    this->Made->error = "There is not enough memory for the map: give a larger CellSize, fewer "
-                        "Statistics, or switch CropToTrajectories on";
+    this->Made->error =
+      rockfall::filters::reasonOf("There is not enough memory for the map: give a larger CellSize, "
+                                  "fewer Statistics, or switch CropToTrajectories on");
   }
 }
 

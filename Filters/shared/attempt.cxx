@@ -8,6 +8,7 @@
 #include "vtkDataObject.h"
 
 #include <new>
+#include <stdexcept>
 
 namespace rockfall::filters
 {
@@ -29,6 +30,34 @@ bool isWanted(vtkAlgorithm* algorithm)
 HeardAbort::HeardAbort(vtkAlgorithm* algorithm)
   : scope_([algorithm] { return isWanted(algorithm); })
 {
+}
+
+std::string reasonOf(const std::string& noMemory)
+{
+  try
+  {
+    throw;
+  }
+  catch (const Error& error)
+  {
+    return error.what();
+  }
+  catch (const std::bad_alloc&)
+  {
+    return noMemory;
+  }
+  catch (const std::length_error&)
+  {
+    return noMemory; // of a container that could never be so long
+  }
+  catch (const std::exception& error)
+  {
+    return std::string("An error of the program, please report it: ") + error.what();
+  }
+  catch (...)
+  {
+    return "An error of the program, please report it";
+  }
 }
 
 int giveUp(vtkAlgorithm* algorithm)
@@ -55,13 +84,9 @@ int attempt(vtkAlgorithm* algorithm, const std::string& noMemory, const std::fun
   {
     return giveUp(algorithm);
   }
-  catch (const Error& error)
+  catch (...)
   {
-    return fail(algorithm, error.what());
-  }
-  catch (const std::bad_alloc&)
-  {
-    return fail(algorithm, noMemory);
+    return fail(algorithm, reasonOf(noMemory));
   }
 }
 

@@ -24,12 +24,16 @@ private:
   AbortScope scope_;
 };
 
+/// The message of the exception that is being handled, of whatever type: `noMemory` where what was
+/// to be made was too large. For a handler of all exceptions: one that passes would end ParaView.
+std::string reasonOf(const std::string& noMemory);
+
 /// Empties every output of what was given up and marks it as aborted. Returns 1, to be returned
 /// from RequestData.
 int giveUp(vtkAlgorithm* algorithm);
 
-/// RequestData's work, which returns what RequestData is to return. Error becomes the algorithm's
-/// one error (failure.h), bad_alloc the text `noMemory`, Aborted empty outputs.
+/// RequestData's work, which returns what RequestData is to return. Aborted
+/// becomes empty outputs, any other exception the algorithm's one error (reasonOf).
 int attempt(vtkAlgorithm* algorithm, const std::string& noMemory, const std::function<int()>& work);
 
 } // namespace rockfall::filters

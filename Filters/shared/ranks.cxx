@@ -2,6 +2,7 @@
 
 #include "base/abort.h"
 #include "base/errors.h"
+#include "shared/attempt.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -117,14 +118,9 @@ void Ranks::together(const std::function<void()>& work, const std::string& noMem
   {
     state = State::GivenUp;
   }
-  catch (const Error& error)
+  catch (...)
   {
-    problem = error.what();
-    state = State::Failed;
-  }
-  catch (const std::bad_alloc&)
-  {
-    problem = noMemory;
+    problem = reasonOf(noMemory);
     state = State::Failed;
   }
   this->settle(state, problem);

@@ -1,6 +1,7 @@
 #include "simulation/keptRun.h"
 
 #include "base/errors.h"
+#include "base/text/numberText.h"
 #include "counts/lostRocks.h"
 #include "gis/base/reach.h"
 #include "gis/layers/rockContacts.h"
@@ -11,6 +12,7 @@
 #include "shared/terrainFieldData.h"
 #include "simulation/motion.h"
 
+#include "vtkCellData.h"
 #include "vtkDoubleArray.h"
 #include "vtkStringArray.h"
 
@@ -58,6 +60,40 @@ void tellGone(std::int64_t gone, std::int64_t others, const Ranks& ranks)
     showNote(std::to_string(gone) + " of " + std::to_string(gone + others) +
       " blocks of the Rocks input had left the slope (State 3) and are left out");
   }
+}
+
+/// What readRocks takes in the place of cell arrays that are not there, as a note; empty if all
+/// are.
+std::string takenInstead(vtkPolyData* input)
+{
+  vtkFieldData* cells = input->GetCellData();
+  const Rock rock;
+  // Of blocks that have fallen nothing more is drawn.
+  const bool drawn = !cells->GetAbstractArray("State");
+  const std::pair<const char*, std::string> instead[] = {
+    { "BlockId", "all cells for one block" },
+    { "Density", numberText(rock.density) + " kg/m³" },
+    { "YoungModulus", numberText(rock.youngModulus) + " Pa" },
+    { "PoissonRatio", "ν " + numberText(rock.poissonRatio) },
+    { "Velocity", "no velocity" },
+    { "AngularVelocity", "no spin" },
+    { "Material", "no material" },
+    { "SourceId", "source 0" },
+    { drawn ? "PositionDeviation" : nullptr, "no deviation of the place" },
+    { drawn ? "AttitudeLaw" : nullptr, "the attitude as it is" },
+    { drawn ? "VolumeLaw" : nullptr, "the volume as it is" },
+  };
+  std::string missing, taken;
+  for (const auto& [name, what] : instead)
+  {
+    if (name && !cells->GetAbstractArray(name))
+    {
+      missing += (missing.empty() ? "" : ", ") + std::string(name);
+      taken += (taken.empty() ? "" : ", ") + what;
+    }
+  }
+  return missing.empty() ? ""
+                         : "The Rocks input has no cell arrays " + missing + ": taken are " + taken;
 }
 
 } // namespace
@@ -195,6 +231,11 @@ void KeptRun::prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const 
         frame.sourceNames.push_back(std::move(rock.sourceName));
       }
       tellGone(gone, std::int64_t(frame.rocks.size()), ranks);
+      const std::string instead = takenInstead(released);
+      if (!instead.empty() && ranks.rank() == 0)
+      {
+        showNote(instead);
+      }
     },
     noMemory);
   if (parameters.rockRockContact && !contactFile.empty())

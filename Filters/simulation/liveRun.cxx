@@ -1,9 +1,9 @@
 #include "simulation/liveRun.h"
 
 #include "base/errors.h"
+#include "shared/attempt.h"
 #include "shared/rockPaths.h"
 
-#include <new>
 #include <utility>
 
 namespace rockfall::filters
@@ -55,13 +55,9 @@ LiveRun::LiveRun(std::unique_ptr<KeptRun> run, std::string noMemory)
               return !stop_;
             });
         }
-        catch (const Error& error)
+        catch (...)
         {
-          failure_ = error.what();
-        }
-        catch (const std::bad_alloc&)
-        {
-          failure_ = noMemory_;
+          failure_ = reasonOf(noMemory_);
         }
         over_ = true;
       })

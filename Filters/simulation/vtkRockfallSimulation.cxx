@@ -1,18 +1,20 @@
 #include "vtkRockfallSimulation.h"
 
+#include "base/errors.h"
+#include "base/text/numberText.h"
 #include "shared/arrays.h"
 #include "shared/attempt.h"
-#include "base/errors.h"
 #include "shared/failure.h"
 #include "shared/inputs.h"
+#include "shared/pieces.h"
+#include "shared/terrainFieldData.h"
 #include "simulation/keptRun.h"
 #include "simulation/liveRun.h"
-#include "shared/pieces.h"
 #include "simulation/progressText.h"
 #include "simulation/runNotes.h"
 #include "simulation/sharedRun.h"
-#include "shared/terrainFieldData.h"
 
+#include "vtkAlgorithmOutput.h"
 #include "vtkDataObject.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
@@ -23,6 +25,7 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStringArray.h"
 #include "vtkTable.h"
+#include "vtkWeakPointer.h"
 
 #include <algorithm>
 #include <chrono>
@@ -66,6 +69,26 @@ constexpr double kAtOnce = 0.3;
 /// Looks at a run take a fifth of the window's time, and come once a second at most.
 constexpr double kLookInterval = 1.0, kLookShare = 4.0;
 
+/// The time of the data that came last from here or, before any did, from where it gets them; NaN
+/// if nothing has come yet.
+double timeShown(vtkAlgorithmOutput* from)
+{
+  while (from)
+  {
+    vtkAlgorithm* producer = from->GetProducer();
+    vtkInformation* info = producer->GetOutputInformation(from->GetIndex());
+    vtkDataObject* data = info ? info->Get(vtkDataObject::DATA_OBJECT()) : nullptr;
+    if (data && data->GetInformation()->Has(vtkDataObject::DATA_TIME_STEP()))
+    {
+      return data->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP());
+    }
+    const bool more =
+      producer->GetNumberOfInputPorts() > 0 && producer->GetNumberOfInputConnections(0) > 0;
+    from = more ? producer->GetInputConnection(0, 0) : nullptr;
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
 } // namespace
 
 /// An error that was reported. Until something changes it is not reported again: an animation asks
@@ -81,12 +104,50 @@ struct vtkRockfallSimulation::Inputs
 {
   rockfall::filters::Input terrain{ rockfall::filters::InputKind::Terrain };
   rockfall::filters::Input rocks{ rockfall::filters::InputKind::Rocks };
+  /// Where rocks that move come from, and the time at which they were shown first.
+  vtkWeakPointer<vtkAlgorithmOutput> rocksFrom;
+  double rocksShown = 0.0;
+
+  double timeOfRocks(
+    vtkAlgorithmOutput* from, vtkInformation* rocks, vtkInformationVector* outputs);
 
   const std::string& problem() const
   {
     return this->terrain.problem().empty() ? this->rocks.problem() : this->terrain.problem();
   }
 };
+
+//------------------------------------------------------------------------------
+/// The time at which rocks that move are asked for: as they are shown when this is first asked. An
+/// animation that goes on, or a change of the run before, makes no run of another time.
+double vtkRockfallSimulation::Inputs::timeOfRocks(
+  vtkAlgorithmOutput* from, vtkInformation* info, vtkInformationVector* outputs)
+{
+  if (this->rocksFrom == from)
+  {
+    return this->rocksShown;
+  }
+  this->rocksFrom = from;
+  double time = timeShown(from);
+  for (int port = 0; std::isnan(time) && port < outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    vtkInformation* asked = outputs->GetInformationObject(port);
+    if (asked->Has(Pipeline::UPDATE_TIME_STEP()))
+    {
+      time = asked->Get(Pipeline::UPDATE_TIME_STEP());
+    }
+  }
+  const double* range = info->Get(Pipeline::TIME_RANGE());
+  this->rocksShown =
+    std::isnan(time) ? range[0] : std::clamp(time, range[0], std::max(range[0], range[1]));
+  if (this->rocksShown > range[0] && Ranks().rank() == 0)
+  {
+    rockfall::filters::showNote("Rockfall Simulation: the Rocks move, and are taken as they are "
+                                "shown, at " +
+      rockfall::numberText(this->rocksShown) + " s; Force Time before them sets another time");
+  }
+  return this->rocksShown;
+}
 
 //------------------------------------------------------------------------------
 vtkRockfallSimulation::vtkRockfallSimulation()
@@ -151,13 +212,18 @@ int vtkRockfallSimulation::RequestInformation(
 
 //------------------------------------------------------------------------------
 int vtkRockfallSimulation::RequestUpdateExtent(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector*)
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   // The slope and the release are those of one moment, whatever time is looked at.
   for (int port = 0; port < this->GetNumberOfInputPorts(); ++port)
   {
     vtkInformation* info = inputVector[port]->GetInformationObject(0);
-    if (info && info->Has(Pipeline::TIME_STEPS()))
+    if (info && port == ROCKS_INPUT && info->Has(Pipeline::TIME_RANGE()))
+    {
+      info->Set(Pipeline::UPDATE_TIME_STEP(),
+        this->Taken->timeOfRocks(this->GetInputConnection(port, 0), info, outputVector));
+    }
+    else if (info && info->Has(Pipeline::TIME_STEPS()))
     {
       info->Set(Pipeline::UPDATE_TIME_STEP(), info->Get(Pipeline::TIME_STEPS(), 0));
     }
@@ -446,8 +512,8 @@ int vtkRockfallSimulation::RequestData(
   {
     return rockfall::filters::giveUp(this); // on all ranks
   }
-  catch (const rockfall::Error& error)
+  catch (...)
   {
-    return this->Fail(terrain, rocks, error.what());
+    return this->Fail(terrain, rocks, rockfall::filters::reasonOf(this->NoMemory()));
   }
 }

@@ -3,9 +3,10 @@
 #include "base/RockMaterial.h"
 #include "base/abort.h"
 #include "base/errors.h"
-#include "base/text/numberText.h"
 #include "base/random.h"
+#include "base/text/numberText.h"
 #include "geometry/shell.h"
+#include "law/settings.h"
 #include "mesh/shapeFile.h"
 #include "rock/placement.h"
 
@@ -167,6 +168,12 @@ std::int64_t RockMaker::amountOf(
   const SourceRow& row, std::uint64_t firstDraw, double totalVolume, std::int64_t most)
 {
   const VolumeDistribution law = this->volume(row);
+  if (!(totalVolume <= kMostVolume * double(most)))
+  {
+    throw ParameterError("TotalVolume is " + numberText(totalVolume) + " m³, which " +
+      std::to_string(most) + " rocks (MaximumRocks) do not have: none has more than " +
+      numberText(kMostVolume) + " m³");
+  }
   double sum = 0.0;
   for (std::int64_t amount = 1; amount <= most; ++amount)
   {

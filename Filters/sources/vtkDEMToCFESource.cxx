@@ -242,11 +242,12 @@ int vtkDEMToCFESource::RequestData(
     }
     return rockfall::filters::fail(this, message);
   }
-  catch (const std::bad_alloc&)
+  catch (...)
   {
     return rockfall::filters::fail(this,
-      (this->FileName.empty() ? "The test slope" : this->FileName) + " at a cell size of " +
-        rockfall::numberText(this->CellSize) + " m (0: its own) does not fit in memory");
+      rockfall::filters::reasonOf((this->FileName.empty() ? "The test slope" : this->FileName) +
+        " at a cell size of " + rockfall::numberText(this->CellSize) +
+        " m (0: its own) does not fit in memory"));
   }
 }
 

@@ -8,7 +8,7 @@ from helpers import columns_of, delete_sources, errors_of, messages_of, write_te
 
 from paraview import servermanager
 from paraview.simple import (
-    AppendDatasets, DEMtoCFEMesh, DispersionAngle, DrawnStructure, GroupDatasets, GrowingPaths,
+    AppendDatasets, Box, DEMtoCFEMesh, DispersionAngle, DrawnStructure, GroupDatasets, GrowingPaths,
     MergeBlocks, OutputPort, Plane, RockBlocks, RockfallHazardMap, RockfallSimulation, RockRelease,
     SaveData, Threshold, TrajectoryCollector, TrajectoryProfile, UpdatePipeline, Wavelet)
 
@@ -136,3 +136,34 @@ for time in 0.0, 1.0:
     assert fetch(halved).GetBounds() == tuple(0.5 * x for x in fetch(fall).GetBounds()), time
 assert source is fall and e == 0.8 and any is any_of, (source, e, any)
 assert set(globals()) - before <= {"halved", "time", "before"}, set(globals()) - before
+
+# --- A run that goes on from the time at which another one is shown.
+
+first = RockfallSimulation(Terrain=slope, EndTime=20, OutputInterval=0.1, Rocks=RockBlocks(
+    Terrain=slope, Center=[5, 50, 80], AttitudeLaw="As given", Velocity=[3, 1, 0]))
+fallen = 80 - 4.905 * 0.6**2  # m, in free flight
+
+
+def start_of(run):
+    return columns_of(fetch(run, 3))["StartZ"][0]
+
+
+first.UpdatePipeline(0.6)
+on = RockfallSimulation(Terrain=slope, Rocks=OutputPort(first, 0), EndTime=20)
+told = messages_of(lambda: on.UpdatePipeline(5))
+assert abs(start_of(on) - fallen) < 1e-6 and "at 0.6 s" in told, (start_of(on), told)
+first.UpdatePipeline(2.0)  # an animation that goes on
+on.UpdatePipeline(7)
+assert abs(start_of(on) - fallen) < 1e-6, start_of(on)
+asked = RockfallSimulation(Terrain=slope, EndTime=20, Rocks=OutputPort(RockfallSimulation(
+    Terrain=slope, EndTime=20, Rocks=first.Rocks), 0))
+asked.UpdatePipeline(0.6)  # nothing was shown before
+assert abs(start_of(asked) - fallen) < 1e-6, start_of(asked)
+
+# --- Blocks without cell arrays: a note names what is taken.
+
+told = messages_of(lambda: RockfallSimulation(
+    Terrain=slope, Rocks=Box(Center=[5, 50, 60]), EndTime=1).UpdatePipeline())
+assert "no cell arrays BlockId, Density" in told and "2500 kg/m³" in told, told
+told = messages_of(lambda: RockfallSimulation(Terrain=slope, Rocks=first.Rocks, EndTime=1).UpdatePipeline())
+assert "no cell arrays" not in told, told

@@ -143,7 +143,7 @@ for path in sorted(glob.glob(os.path.join(ROOT, "Plugin", "xml", "*.xml"))):
                 count += 1
             if domain is not None and domain.get("max"):
                 most = number(domain.get("max").split()[0])
-                refused(name, [most + step] * elements)
+                refused(name, [most + max(step, number(1e-9 * most))] * elements)
                 taken(name, [most] * elements)
                 count += 1
             entries = [int(e.get("value")) for e in item.iterfind("EnumerationDomain/Entry")]
