@@ -5,6 +5,7 @@
 #include "contact/ground/timeToTouch.h"
 #include "law/settings.h"
 #include "rock/RockSimulator.h"
+#include "terrain/stemHit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -39,6 +40,59 @@ void slowDown(BlockState& state, double energy, double taken)
   const double factor = energy > 0.0 ? std::sqrt(std::max(0.0, 1.0 - taken / energy)) : 0.0;
   state.velocity *= factor;
   state.spin *= factor;
+}
+
+/// A hit on a stem, in plan.
+struct StemHit
+{
+  double offset = 0.0;      ///< See terrain/stemHit.h.
+  Vec3 away = Vec3::Zero(); ///< Of the stem's push on the rock; zero if the rock moves upright.
+};
+
+StemHit hitOn(const Tree& stem, const Block& block, const BlockState& state)
+{
+  const double speed = state.velocity.head<2>().norm();
+  if (!(speed > 0.0))
+  {
+    return {};
+  }
+  const Vec3 along(state.velocity.x() / speed, state.velocity.y() / speed, 0.0);
+  Vec3 side(-along.y(), along.x(), 0.0); // on which the rock passes
+  double distance = side.head<2>().dot(state.position.head<2>() - stem.position);
+  if (distance < 0.0)
+  {
+    side = -side;
+    distance = -distance;
+  }
+  PlacedBlock placed;
+  placed.place(block, state);
+  double reach = 0.0;
+  for (const Vec3& vertex : placed.vertices())
+  {
+    reach = std::max(reach, side.dot(state.position - vertex));
+  }
+  const double offset = std::min(1.0, distance / (reach + 0.5 * stem.diameter));
+  return { offset, offset * side - std::sqrt(1.0 - offset * offset) * along };
+}
+
+/// Takes kinetic energy (J) by a push: it turns the velocity and leaves the spin. What a push that
+/// way cannot take slows all down.
+void pushAway(BlockState& state, const Block& block, const Vec3& away, double taken)
+{
+  if (!(taken > 0.0))
+  {
+    return;
+  }
+  const double energy = rigidKineticEnergy(block, state);
+  const double towards = std::max(0.0, -away.dot(state.velocity));
+  const double left = std::sqrt(std::max(0.0, towards * towards - 2.0 * taken / block.mass()));
+  state.velocity += (towards - left) * away;
+  const double rest = rigidKineticEnergy(block, state);
+  const double more = taken - (energy - rest);
+  if (more > 1e-12 * energy)
+  {
+    slowDown(state, rest, more);
+  }
 }
 
 /// Outcome for a structure where the rock is `at`, with this energy (J) and its centre this high
@@ -173,9 +227,11 @@ void RockSimulator::breakTree(int tree, double held)
     surface_.elevation(body_.state.position.x(), body_.state.position.y());
   StructureEvent event =
     eventAt(StructureOutcome::TreeBroken, stem.feature, body_.state, energy, height);
-  event.energyTaken = stem.capacity;
+  const StemHit hit = hitOn(stem, body_.block, body_.state);
+  const double taken = stemShare(hit.offset) * stem.capacity;
+  event.energyTaken = std::max(held, taken);
   recorder_.trajectory().structures.push_back(event);
-  slowDown(body_.state, energy, std::max(0.0, stem.capacity - held));
+  pushAway(body_.state, body_.block, hit.away, taken - held);
   body_.energy.structures += held + energy - rigidKineticEnergy(body_.block, body_.state);
   goneTrees_.insert(std::lower_bound(goneTrees_.begin(), goneTrees_.end(), tree), tree);
   broke_.trees.push_back(tree);

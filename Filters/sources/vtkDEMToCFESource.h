@@ -159,7 +159,7 @@ public:
    * Embankments and dams (lines), trees (points) and barriers or nets (lines), see
    * Core/gis/layers/structureLayers.h for their fields. Empty (the default): there are none.
    * TreesBreak: trees without a capacity of their own break at that of their diameter (Dorren &
-   * Berger 2006); default off. Output port 1 shows them.
+   * Berger 2006); default on; off they never break. Output port 1 shows them.
    */
   vtkSetStdStringFromCharMacro(EmbankmentFile);
   vtkGetCharFromStdStringMacro(EmbankmentFile);
@@ -452,7 +452,7 @@ private:
   std::string JointField;
   std::string EmbankmentFile;
   std::string TreeFile;
-  int TreesBreak = 0;
+  int TreesBreak = 1;
   std::string BarrierFile;
   int RestitutionModel = WHOLE_VELOCITY;
   double RestitutionCoefficient = 0.8;

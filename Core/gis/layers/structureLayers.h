@@ -21,7 +21,7 @@ struct StructureFiles
   std::string barriers;    ///< Lines.
   /// Trees without a capacity of their own break at that of their diameter (stemCapacity); else
   /// they never break.
-  bool treesBreak = false;
+  bool treesBreak = true;
   /// The layer of each file by name (gis/layers/LayerFile.h); empty: the one that will do.
   std::string embankmentLayer, treeLayer, barrierLayer;
 

@@ -50,7 +50,6 @@ TEST(StructureLayers, AreReadInTheUnitsThatAPersonTypes)
     "500,50,30,20,,\n");
   files.barriers = writeFile("nets.csv",
     "WKT,height,capacity,mode,absorbs\n" + line + ",4,500,stop,\n" + line + ",3,,record,0\n");
-  files.treesBreak = true;
   std::vector<std::string> notes;
   const Structures s = readStructures(files, site(), notes);
   ASSERT_EQ(s.embankments.size(), 2u);
@@ -66,7 +65,7 @@ TEST(StructureLayers, AreReadInTheUnitsThatAPersonTypes)
   EXPECT_EQ(s.materials[0].restitutionDeviation, 0.0);
   EXPECT_EQ(s.materials[0].frictionAngleDeviation, 0.0);
   ASSERT_EQ(s.trees.size(), 3u); // one stands beside the terrain
-  ASSERT_EQ(notes.size(), 3u); // of the ratio, two embankments in one place, the tree
+  ASSERT_EQ(notes.size(), 3u);   // of the ratio, two embankments in one place, the tree
   EXPECT_NE(notes[0].find("3:2 as 1.5 m across per m down (33.7 degrees)"), std::string::npos);
   EXPECT_NE(notes[2].find("1 trees"), std::string::npos);
   EXPECT_DOUBLE_EQ(s.trees[0].diameter, 0.3);
@@ -333,4 +332,14 @@ TEST(StructureDoubts, ALargeSurveyTakesNoTime)
   EXPECT_EQ(earlierPoints(points).back(), -1);
   const std::vector<PlanLine> lines(100000, { { 0.0, 0.0 }, { 5.0, 5.0 } });
   EXPECT_EQ(earlierLines(lines).back(), 0);
+}
+
+TEST(StructureLayers, TreesBreakUnlessToldNotTo)
+{
+  EXPECT_DOUBLE_EQ(readTrees("50,50,20,20\n").structures.trees.at(0).capacity, stemCapacity(0.2));
+  StructureFiles files;
+  files.trees = writeFile("trees.csv", "x,y,diameter,height\n50,50,20,20\n");
+  files.treesBreak = false;
+  std::vector<std::string> notes;
+  EXPECT_TRUE(std::isinf(readStructures(files, site(), notes).trees.at(0).capacity));
 }

@@ -71,7 +71,8 @@ void expectAlike(const std::vector<Trajectory>& crowd, const std::vector<Traject
     const Trajectory &a = crowd[i], &b = small[i];
     EXPECT_NEAR(a.summary.stop.x(), b.summary.stop.x(), 0.05) << i; // a step of 5 ms at 10 m/s
     EXPECT_EQ(a.structures.size(), b.structures.size()) << i;
-    EXPECT_DOUBLE_EQ(takenByTrees(a), takenByTrees(b)) << i;
+    // The offset of a hit beside the middle hangs on the way of the step before it.
+    EXPECT_NEAR(takenByTrees(a), takenByTrees(b), 1e-3 * takenByTrees(b)) << i;
     const EnergyAudit& e = a.summary.energy;
     EXPECT_NEAR(e.structures, takenByTrees(a), 1e-6 * e.released) << i;
     EXPECT_LT(std::abs(e.numerical), 1e-6 * std::abs(e.released) + 1e-3) << i;
