@@ -65,7 +65,7 @@ std::vector<CellFrequency> cellsOf(
   const RockFrequencies rocks = release();
   std::vector<CellFrequency> cells;
   summarizeFrequencies(
-    sorted, thresholds, [&rocks](const Passage& of) { return rocks.weight(of); },
+    sorted, thresholds, [&rocks](const Passage& passage) { return rocks.weight(passage); },
     [&cells](const CellFrequency& cell) { cells.push_back(cell); });
   return cells;
 }
@@ -131,7 +131,7 @@ TEST(Frequency, PartsGiveTheSameBits)
     std::sort(parts.begin(), parts.end());
     std::vector<CellFrequency> cells;
     summarizeFrequencies(
-      parts, swiss, [&rocks](const Passage& of) { return rocks.weight(of); },
+      parts, swiss, [&rocks](const Passage& passage) { return rocks.weight(passage); },
       [&cells](const CellFrequency& cell) { cells.push_back(cell); });
     return cells;
   };
