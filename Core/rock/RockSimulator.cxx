@@ -6,7 +6,6 @@
 #include "contact/ground/timeToTouch.h"
 #include "law/settings.h"
 #include "law/springs.h"
-#include "rock/fates.h"
 #include "rock/placement.h"
 #include "rock/pressOut.h"
 #include "terrain/holes.h"
@@ -271,7 +270,7 @@ void RockSimulator::checkLeft()
   }
   if (left)
   {
-    this->end(isHole(terrain, p.x(), p.y()) ? kLostInNodata : Fate::LeftDomain);
+    this->end(isHole(terrain, p.x(), p.y()) ? Fate::LostInNodata : Fate::LeftDomain);
   }
 }
 

@@ -1,14 +1,10 @@
-#include "rock/fates.h"
+#include "rock/results.h"
 
 namespace rockfall
 {
 
 std::string fateName(Fate fate)
 {
-  if (fate == kLostInNodata)
-  {
-    return "lost in nodata";
-  }
   switch (fate)
   {
     case Fate::Rested:
@@ -17,6 +13,8 @@ std::string fateName(Fate fate)
       return "left the domain";
     case Fate::Caught:
       return "caught";
+    case Fate::LostInNodata:
+      return "lost in nodata";
     case Fate::Moving:
       break;
   }

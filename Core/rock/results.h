@@ -105,9 +105,11 @@ struct StructureEvent
 enum class Fate
 {
   Rested = 0,     ///< Lies still on the slope.
-  LeftDomain = 1, ///< Went beyond the slope's edge or over a nodata hole.
+  LeftDomain = 1, ///< Went beyond the slope's edge.
   Moving = 2,     ///< Still moving at the end time.
   Caught = 3,     ///< Stopped by a barrier.
+  /// Fell where the slope has no data, but ground on two sides (terrain/holes.h).
+  LostInNodata = 4,
 };
 std::string fateName(Fate fate);
 

@@ -1,7 +1,6 @@
 #include "counts/lostRocks.h"
 
 #include "base/types.h"
-#include "rock/fates.h"
 #include "shared/arrays.h"
 #include "shared/failure.h"
 
@@ -22,10 +21,10 @@ namespace rockfall::filters
 Loss lossOf(double fate)
 {
   const auto code = Fate(int(fate));
-  return code == Fate::Moving  ? Loss::Moving
-    : code == Fate::LeftDomain ? Loss::OverEdge
-    : code == kLostInNodata    ? Loss::InNodata
-                               : Loss::None;
+  return code == Fate::Moving    ? Loss::Moving
+    : code == Fate::LeftDomain   ? Loss::OverEdge
+    : code == Fate::LostInNodata ? Loss::InNodata
+                                 : Loss::None;
 }
 
 LostRocks lostOf(vtkTable* summary)

@@ -1,7 +1,5 @@
 #include "simulation/motion.h"
 
-#include "rock/fates.h"
-
 #include <algorithm>
 
 namespace rockfall::filters
@@ -56,7 +54,8 @@ MotionState stateAt(const Trajectory& trajectory, double time)
     {
       return MotionState::Stopped;
     }
-    if (trajectory.summary.fate == Fate::LeftDomain || trajectory.summary.fate == kLostInNodata)
+    if (trajectory.summary.fate == Fate::LeftDomain ||
+      trajectory.summary.fate == Fate::LostInNodata)
     {
       return MotionState::LeftDomain;
     }

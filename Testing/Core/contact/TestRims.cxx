@@ -58,7 +58,7 @@ TEST(Rims, ContactsThatRunOffLoseNoEnergy)
     }
     EXPECT_LT(run.summary.energy.numerical, 0.005 * unit) << k;
     ++released;
-    fell += run.summary.fate == Fate::LeftDomain;
+    fell += run.summary.fate == Fate::LostInNodata;
   }
   EXPECT_GT(released, 150);
   EXPECT_GT(fell, 10);

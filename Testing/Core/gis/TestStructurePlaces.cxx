@@ -93,7 +93,8 @@ Structures read(const StructureFiles& files, const Terrain& terrain)
 {
   std::vector<std::string> notes;
   Structures all = readStructures(files, terrain, notes);
-  EXPECT_TRUE(notes.empty());
+  for (const std::string& n : notes)
+    ADD_FAILURE() << n;
   return all;
 }
 

@@ -3,7 +3,6 @@
 
 #include "base/errors.h"
 #include "rock/Recorder.h"
-#include "rock/fates.h"
 #include "run/stateHash.h"
 #include "slopes.h"
 
@@ -327,7 +326,7 @@ TEST(Ensemble, LeavesOverAHoleAndOverTheEdge)
   p.endTime = 60.0;
   rock.position = Vec3(4.0, 20.0, 50.0); // up the slope from the hole
   const Trajectory overHole = simulate(slope, rock, p);
-  EXPECT_EQ(overHole.summary.fate, kLostInNodata);
+  EXPECT_EQ(overHole.summary.fate, Fate::LostInNodata);
   EXPECT_LT(overHole.summary.stop.x(), 34.0);
   rock.position = Vec3(4.0, 4.0, 50.0); // past it
   const Trajectory overEdge = simulate(slope, rock, p);

@@ -327,7 +327,8 @@ TEST(Walls, WhatFallsBesideAndOnThemDoesNotGetIntoTheGround)
     rock.angularVelocity = Vec3(number(-3, 3), number(-3, 3), number(-3, 3));
     const auto& [trajectory, depth] = watch(ground, rock, 10.0);
     EXPECT_LT(depth, 0.1) << k;
-    left += trajectory.summary.fate == Fate::LeftDomain;
+    left +=
+      trajectory.summary.fate == Fate::LeftDomain || trajectory.summary.fate == Fate::LostInNodata;
     rested += trajectory.summary.fate == Fate::Rested;
     const EnergyAudit& e = trajectory.summary.energy;
     EXPECT_LT(gained(trajectory), 1e-2 * e.released) << k;
@@ -421,7 +422,7 @@ TEST(Walls, ASlopeAroundAHoleThatIsHigherThanARockDoesNotEndItsRun)
   flying.position = Vec3(12.0, 20.0, slope(1.0, 12.0) + 1.0);
   flying.velocity = Vec3(15.0, 0.0, -15.0);
   const TrajectorySummary flew = simulate(withHole(1.0, 20.0), flying, p).summary;
-  EXPECT_TRUE(flew.fate != Fate::LeftDomain || flew.stop.x() > 25.0) << flew.stop.transpose();
+  EXPECT_TRUE(flew.fate != Fate::LostInNodata || flew.stop.x() > 25.0) << flew.stop.transpose();
 }
 
 TEST(Walls, NothingPassesUnderTheFarSideOfAHole)
@@ -439,7 +440,7 @@ TEST(Walls, NothingPassesUnderTheFarSideOfAHole)
     const Trajectory trajectory = simulate(terrain, rock, p);
     if (speed < 20.0)
     {
-      EXPECT_EQ(trajectory.summary.fate, Fate::LeftDomain) << speed;
+      EXPECT_EQ(trajectory.summary.fate, Fate::LostInNodata) << speed;
       EXPECT_GT(trajectory.summary.stop.x(), 4.5) << speed;
       EXPECT_LT(trajectory.summary.stop.x(), 15.0) << speed;
       EXPECT_LT(trajectory.summary.stop.z(), kLevel) << speed;
