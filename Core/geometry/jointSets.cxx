@@ -2,8 +2,8 @@
 
 #include "base/abort.h"
 #include "base/errors.h"
-#include "base/text/numberText.h"
 #include "base/random.h"
+#include "base/text/numberText.h"
 #include "geometry/shell.h"
 
 #include <algorithm>

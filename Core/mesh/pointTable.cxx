@@ -1,7 +1,7 @@
 #include "mesh/pointTable.h"
 
-#include "base/text/columnName.h"
 #include "base/errors.h"
+#include "base/text/columnName.h"
 #include "base/text/lengthUnit.h"
 #include "base/text/tableText.h"
 #include "mesh/MeshBuilder.h"

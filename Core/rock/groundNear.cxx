@@ -3,8 +3,8 @@
 #include "rock/RockSimulator.h"
 
 #include "contact/ground/clearance.h"
-#include "contact/pairs.h"
 #include "contact/ground/timeToTouch.h"
+#include "contact/pairs.h"
 #include "law/settings.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 #include "rock/release.h"
 
 #include "base/errors.h"
-#include "base/text/numberText.h"
 #include "base/random.h"
+#include "base/text/numberText.h"
 #include "geometry/shell.h"
 #include "law/settings.h"
 #include "rock/Rock.h"

@@ -1,7 +1,7 @@
 #include "results/trajectoriesInput.h"
 
-#include "shared/attempt.h"
 #include "base/errors.h"
+#include "shared/attempt.h"
 #include "shared/failure.h"
 #include "shared/inputs.h"
 #include "shared/pieces.h"

@@ -1,7 +1,7 @@
 #include "vtkGrowingPaths.h"
 
-#include "shared/attempt.h"
 #include "base/errors.h"
+#include "shared/attempt.h"
 #include "shared/failure.h"
 #include "shared/inputs.h"
 

@@ -1,10 +1,10 @@
 #include "vtkTrajectoryProfile.h"
 
-#include "shared/arrays.h"
 #include "base/errors.h"
+#include "results/trajectoriesInput.h"
+#include "shared/arrays.h"
 #include "shared/inputs.h"
 #include "shared/rockPaths.h"
-#include "results/trajectoriesInput.h"
 
 #include "vtkCellArray.h"
 #include "vtkDataSetAttributes.h"

@@ -1,8 +1,8 @@
 #include "shared/coordinateFieldData.h"
 
-#include "shared/arrays.h"
 #include "base/errors.h"
 #include "gis/layers/sources.h"
+#include "shared/arrays.h"
 
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"

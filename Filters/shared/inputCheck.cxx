@@ -2,8 +2,8 @@
 
 #include "base/errors.h"
 #include "base/text/numberText.h"
-#include "shared/inputs.h"
 #include "mesh/precision.h"
+#include "shared/inputs.h"
 
 #include "vtkAbstractArray.h"
 #include "vtkCellArray.h"

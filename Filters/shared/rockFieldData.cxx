@@ -1,11 +1,11 @@
 #include "shared/rockFieldData.h"
 
-#include "shared/arrays.h"
 #include "base/abort.h"
 #include "base/errors.h"
 #include "base/text/numberText.h"
 #include "geometry/shell.h"
 #include "mesh/precision.h"
+#include "shared/arrays.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"

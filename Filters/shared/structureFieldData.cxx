@@ -1,7 +1,7 @@
 #include "shared/structureFieldData.h"
 
-#include "shared/arrays.h"
 #include "base/errors.h"
+#include "shared/arrays.h"
 #include "terrain/Obstacles.h"
 
 #include "vtkCellArray.h"

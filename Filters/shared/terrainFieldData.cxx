@@ -1,9 +1,9 @@
 #include "shared/terrainFieldData.h"
 
-#include "shared/arrays.h"
 #include "base/errors.h"
 #include "base/text/numberText.h"
 #include "geometry/shell.h"
+#include "shared/arrays.h"
 #include "shared/roughnessFieldData.h"
 #include "shared/structureFieldData.h"
 #include "shared/terrainMesh.h"

@@ -3,8 +3,8 @@
 /// @file
 /// A run that a filter keeps, what it was made of, and its outputs that do not depend on time.
 
-#include "shared/ranks.h"
 #include "run/ensemble.h"
+#include "shared/ranks.h"
 #include "simulation/runSink.h"
 
 #include "vtkFieldData.h"

@@ -3,8 +3,8 @@
 /// @file
 /// Arrays that several outputs of a run have (runOutputs.h). Internal to its sources.
 
-#include "shared/arrays.h"
 #include "rock/results.h"
+#include "shared/arrays.h"
 
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"

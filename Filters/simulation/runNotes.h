@@ -3,10 +3,10 @@
 /// @file
 /// Text for the user of a simulation: the state of its run, and notes on its inputs.
 
-#include "simulation/liveRun.h"
-#include "shared/ranks.h"
 #include "rock/Rock.h"
 #include "run/ensemble.h"
+#include "shared/ranks.h"
+#include "simulation/liveRun.h"
 #include "terrain/Terrain.h"
 
 #include <span>

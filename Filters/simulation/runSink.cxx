@@ -1,8 +1,8 @@
 #include "simulation/runSink.h"
 
-#include "simulation/motion.h"
-#include "shared/rockPaths.h"
 #include "run/packing.h"
+#include "shared/rockPaths.h"
+#include "simulation/motion.h"
 
 #include "vtkPolyData.h"
 

@@ -3,8 +3,8 @@
 /// @file
 /// An ensemble shared out over ranks.
 
-#include "shared/ranks.h"
 #include "run/ensemble.h"
+#include "shared/ranks.h"
 #include "simulation/runSink.h"
 
 namespace rockfall::filters

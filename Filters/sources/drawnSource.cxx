@@ -2,8 +2,8 @@
 
 #include "base/errors.h"
 #include "base/text/numberText.h"
-#include "shared/failure.h"
 #include "run/releasePlaces.h"
+#include "shared/failure.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,8 +8,8 @@
 
 #include "base/errors.h"
 #include "gis/layers/sources.h"
-#include "sources/rockMaker.h"
 #include "run/releasePlaces.h"
+#include "sources/rockMaker.h"
 #include "terrain/Terrain.h"
 
 #include <optional>

@@ -4,8 +4,8 @@
 /// Rocks from the rows of a source layer, what a row leaves open being taken from defaults.
 
 #include "gis/layers/sources.h"
-#include "shared/rockFieldData.h"
 #include "run/releasePlaces.h"
+#include "shared/rockFieldData.h"
 
 #include <map>
 #include <optional>

@@ -1,10 +1,10 @@
 // Embankments, trees and barriers on their way through the pipeline.
 
-#include "simulationTest.h"
 #include "shared/structureFieldData.h"
+#include "shared/terrainFieldData.h"
+#include "simulationTest.h"
 #include "terrain/Obstacles.h"
 #include "terrain/Surface.h"
-#include "shared/terrainFieldData.h"
 
 #include "vtkCellData.h"
 #include "vtkPointData.h"

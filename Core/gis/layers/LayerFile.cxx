@@ -1,11 +1,11 @@
 #include "gis/layers/LayerFile.h"
 
 #include "base/abort.h"
-#include "base/text/columnName.h"
 #include "base/errors.h"
+#include "base/text/columnName.h"
 #include "base/text/nameKey.h"
-#include "gis/layers/drawing.h"
 #include "gis/base/fields.h"
+#include "gis/layers/drawing.h"
 
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>

@@ -2,9 +2,9 @@
 
 #include "base/errors.h"
 #include "base/text/nameKey.h"
-#include "gis/layers/LayerFile.h"
 #include "gis/base/fields.h"
 #include "gis/base/gdal.h"
+#include "gis/layers/LayerFile.h"
 #include "terrain/material.h"
 
 #include <gdal_priv.h>

@@ -2,8 +2,8 @@
 
 #include "base/errors.h"
 #include "base/text/nameKey.h"
-#include "gis/layers/LayerFile.h"
 #include "gis/base/gdal.h"
+#include "gis/layers/LayerFile.h"
 #include "gis/layers/lines.h"
 
 #include <ogr_spatialref.h>

@@ -3,9 +3,9 @@
 /// @file
 /// The lines of a contour file, before anything is made of them.
 
+#include "gis/base/gdal.h"
 #include "gis/layers/LayerFile.h"
 #include "gis/raster/contours.h"
-#include "gis/base/gdal.h"
 #include "gis/trust/heights.h"
 
 #include <cstdint>

@@ -5,9 +5,9 @@
 
 #include "gis/base/crs.h"
 #include "gis/base/gdal.h"
-#include "gis/trust/heights.h"
 #include "gis/raster/resample.h"
 #include "gis/raster/textGrid.h"
+#include "gis/trust/heights.h"
 
 #include <string>
 #include <vector>

@@ -14,8 +14,8 @@
 #include "law/settings.h"
 #include "solve/island/IslandSystem.h"
 #include "solve/island/PairSprings.h"
-#include "solve/step/StepSolver.h"
 #include "solve/island/crowdKernel.h"
+#include "solve/step/StepSolver.h"
 
 #include <array>
 #include <cstdint>

@@ -3,8 +3,8 @@
 /// @file
 /// The equations of one step of an island, and their solution as far as it has come.
 
-#include "solve/step/StepSolver.h"
 #include "solve/island/island.h"
+#include "solve/step/StepSolver.h"
 
 #include <vector>
 

@@ -5,9 +5,9 @@
 #include "base/errors.h"
 #include "gis/layers/layerWriter.h"
 #include "gis/layers/lineLayer.h"
+#include "gis/layers/sources.h"
 #include "gis/raster/raster.h"
 #include "gis/raster/rasterWriter.h"
-#include "gis/layers/sources.h"
 
 #include <cmath>
 #include <filesystem>

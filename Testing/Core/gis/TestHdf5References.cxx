@@ -4,8 +4,8 @@
 
 #include "base/errors.h"
 #include "gis/base/hdf5References.h"
-#include "gis/raster/raster.h"
 #include "gis/base/reach.h"
+#include "gis/raster/raster.h"
 #include "gisFiles.h"
 
 #include <hdf5.h>

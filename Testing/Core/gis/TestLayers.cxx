@@ -1,12 +1,12 @@
 // Files with several layers: which one is read, that a note says so, and that more than one which
 // would do is an error that lists them. Lines of every kind, and drawings with what is no contour.
 #include "base/errors.h"
-#include "gis/raster/contours.h"
-#include "gis/raster/ground.h"
 #include "gis/layers/layerWriter.h"
 #include "gis/layers/lineLayer.h"
 #include "gis/layers/sources.h"
 #include "gis/layers/structureLayers.h"
+#include "gis/raster/contours.h"
+#include "gis/raster/ground.h"
 #include "gisFiles.h"
 #include "slopes.h"
 #include "terrain/structures.h"

@@ -2,9 +2,9 @@
 // sheets whose cells are all text. Each is read rightly or is one message that names the file and
 // the line.
 #include "base/errors.h"
-#include "gis/raster/ground.h"
 #include "gis/layers/rockContacts.h"
 #include "gis/layers/sources.h"
+#include "gis/raster/ground.h"
 #include "gisFiles.h"
 #include "sheets.h"
 #include "slopes.h"
