@@ -15,7 +15,7 @@ namespace
 {
 
 using Point = Eigen::Vector2d;
-using plausible::kSamePlace;
+using plausible::kTwinDistance;
 
 /// What is out of a range: how many, and the first one in words.
 class Doubt
@@ -141,7 +141,7 @@ double distance(const Point& p, const PlanLine& line)
 bool liesOn(const PlanLine& one, const PlanLine& other)
 {
   return std::all_of(
-    one.begin(), one.end(), [&](const Point& p) { return distance(p, other) <= kSamePlace; });
+    one.begin(), one.end(), [&](const Point& p) { return distance(p, other) <= kTwinDistance; });
 }
 
 /// Those that another one of before stands at.
@@ -162,7 +162,7 @@ void tellTwice(const char* kind, const std::vector<const Item*>& items,
   if (count > 0)
   {
     notes.push_back(std::to_string(count) + " of " + std::to_string(items.size()) + " " + kind +
-      " stand within " + text(kSamePlace) + " m of another one, first " + first +
+      " stand within " + text(kTwinDistance) + " m of another one, first " + first +
       ". Each takes its capacity: was something given twice?");
   }
 }
@@ -202,7 +202,7 @@ std::vector<int> earlierPoints(const std::vector<Point>& points)
   std::vector<Cell> cells;
   for (std::size_t i = 0; i < points.size(); ++i)
   {
-    const Point at = points[i] / kSamePlace;
+    const Point at = points[i] / kTwinDistance;
     cells.emplace_back(std::floor(at.x()), std::floor(at.y()), int(i));
   }
   std::sort(cells.begin(), cells.end());
@@ -223,7 +223,7 @@ std::vector<int> earlierPoints(const std::vector<Point>& points)
         {
           break;
         }
-        if ((points[std::size_t(k)] - points[std::size_t(i)]).norm() <= kSamePlace)
+        if ((points[std::size_t(k)] - points[std::size_t(i)]).norm() <= kTwinDistance)
         {
           first = k;
           break;
@@ -257,7 +257,7 @@ std::vector<int> earlierLines(const std::vector<PlanLine>& lines)
   {
     bool found = false;
     for (auto near = firsts.rbegin();
-         !found && near != firsts.rend() && near->first >= x - kSamePlace; ++near)
+         !found && near != firsts.rend() && near->first >= x - kTwinDistance; ++near)
     {
       const PlanLine &one = lines[std::size_t(near->second)], &other = lines[std::size_t(i)];
       found = liesOn(one, other) && liesOn(other, one);

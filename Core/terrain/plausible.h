@@ -46,7 +46,7 @@ inline constexpr PlausibleRange kCrestWidth{ 0.2, 20.0 };
 /// Of an embankment's side, m across per m down: a wall to 11°.
 inline constexpr PlausibleRange kSideSlope{ 0.0, 5.0 };
 /// Two of a kind whose places differ by no more are the same one, m.
-inline constexpr double kSamePlace = 0.1;
+inline constexpr double kTwinDistance = 0.1;
 
 } // namespace plausible
 
@@ -60,7 +60,7 @@ std::vector<std::string> structuresTwice(const Structures& structures);
 using PlanLine = std::vector<Eigen::Vector2d>;
 
 /// Of each place (a line: all of it, in whichever direction and by whichever corners) the first one
-/// within `plausible::kSamePlace`, −1 if there is none before it.
+/// within `plausible::kTwinDistance`, −1 if there is none before it.
 std::vector<int> earlierPoints(const std::vector<Eigen::Vector2d>& points);
 std::vector<int> earlierLines(const std::vector<PlanLine>& lines);
 

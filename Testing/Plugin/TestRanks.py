@@ -53,8 +53,11 @@ def update():
     SaveData("merged.tif", proxy=passages)
 
 
-said = messages_of(update)
-failures = [f"said on rank {rank}: {said}"] if said.strip() else []
+# Notes of one rock on bare ground belong to the first rank; all else is an error.
+NOTES = ("The ground is bare rock", "still moving at EndTime", "too few for a", "too few trajectories", "Too few rocks")
+said = [line for line in messages_of(update).splitlines()
+        if line.strip() and not (rank == 0 and any(note in line for note in NOTES))]
+failures = [f"said on rank {rank}: {said}"] if said else []
 proxies["passages"] = (passages, 1)
 for name, (proxy, ports) in proxies.items():
     for port in range(ports):

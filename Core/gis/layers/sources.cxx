@@ -163,7 +163,7 @@ void readRelease(const FeatureRow& row, SourceRow& source)
 bool sameRocks(SourceRow a, SourceRow b)
 {
   const double rise = std::abs(a.position.z() - b.position.z());
-  if (rise > plausible::kSamePlace || std::isnan(a.position.z()) != std::isnan(b.position.z()))
+  if (rise > plausible::kTwinDistance || std::isnan(a.position.z()) != std::isnan(b.position.z()))
   {
     return false;
   }
@@ -240,7 +240,7 @@ void tellTwice(
   if (count > 0)
   {
     notes.push_back(fileName + ": " + std::to_string(count) + " of " + std::to_string(rows.size()) +
-      " sources release the same rocks within " + number(plausible::kSamePlace) +
+      " sources release the same rocks within " + number(plausible::kTwinDistance) +
       " m of another one, first rows " + first + ". Was something given twice?");
   }
 }
