@@ -316,6 +316,7 @@ TEST_F(TestRockfallSimulation, KeepsWhatIsAskedFor)
 TEST_F(TestRockfallSimulation, AnyIterationCanBeShown)
 {
   this->Terrain->SetRoughnessDeviation(0.1);
+  this->Simulation->SetOutputInterval(0.025);
   this->Simulation->SetTrajectoryOutput(vtkRockfallSimulation::STOPPING_POINTS);
   this->Simulation->SetIterations(4);
   this->Simulation->SetFirstIteration(5);
@@ -338,7 +339,6 @@ TEST_F(TestRockfallSimulation, AnyIterationCanBeShown)
   // Where there may be more samples than are kept each time is simulated for itself: the same.
   const double there = middle(this->RocksAt(1.37), 0);
   this->Simulation->SetEndTime(1e5); // it rests or leaves long before
-  this->Simulation->SetOutputInterval(0.5 * this->Simulation->GetOutputInterval());
   EXPECT_EQ(middle(this->RocksAt(1.37), 0), there);
   EXPECT_EQ(this->Simulation->GetNumberOfRuns(), 2);
 }

@@ -231,7 +231,7 @@ TEST(StructurePlaces, ADecimalCommaIsRefusedAndALocaleChangesNothing)
   {
     StructureFiles f = layersIn("EPSG:4326");
     f.barriers = writeFile("nets.csv",
-      "WKT,height,capacity\n\"LINESTRING(499980.5 4982870,499980.5 4983030)\",3.5,0.75\n");
+      "WKT,height,capacity\n\"LINESTRING(499980.5 4982870,499980.5 4983030)\",3.5,150.75\n");
     return f;
   };
   const Structures plain = read(files(), site());
@@ -247,7 +247,7 @@ TEST(StructurePlaces, ADecimalCommaIsRefusedAndALocaleChangesNothing)
   EXPECT_EQ(same.embankments.at(0).height, 3.5);
   EXPECT_EQ(same.embankments.at(0).mountainSlope, 1.5);
   EXPECT_EQ(same.barriers.at(0).height, 3.5);
-  EXPECT_EQ(same.barriers.at(0).capacity, 750.0);
+  EXPECT_EQ(same.barriers.at(0).capacity, 150750.0);
   EXPECT_DOUBLE_EQ(same.trees.at(0).diameter, 0.35);
   EXPECT_EQ(shot(plain, 118.0).summary.hash, shot(same, 118.0).summary.hash);
 
