@@ -1,6 +1,6 @@
 #include "counts/lostRocks.h"
 
-#include "base/types.h"
+#include "rock/results.h"
 #include "shared/arrays.h"
 #include "shared/failure.h"
 
