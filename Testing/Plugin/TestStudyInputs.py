@@ -1,6 +1,7 @@
 """A study is the same study, or refused: every file that its data sets consist of counts. More iterations of
 a finished one go on, with the files of one that had them from the start."""
 
+import glob
 import json
 import os
 import shutil
@@ -100,6 +101,8 @@ write_text("tiles.vrt", '<VRTDataset rasterXSize="31" rasterYSize="21"><GeoTrans
            '</VRTRasterBand></VRTDataset>')
 there = [os.path.basename(name) for name in identity.members(os.path.abspath("tiles.vrt"))]
 assert there[0] == "tiles.vrt" and "input.asc" in there, there
+for left in glob.glob("log.gpkg*"):
+    os.remove(left)
 base = sqlite3.connect("log.gpkg")
 base.execute("pragma journal_mode=wal")
 base.execute("create table a (b)")
