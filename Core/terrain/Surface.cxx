@@ -22,20 +22,14 @@ constexpr std::int64_t gridKey(int row, int column)
   return ((row + apron) << 32) + column + apron;
 }
 
-/// Surfaces that were made so far. What a thread remembers holds until the next one is made: another
-/// terrain may by then stand at the same address, and nothing else can tell it.
-std::atomic<std::uint64_t> surfacesMade{ 0 };
-
-/// Rows and columns of nodes that a thread remembers, powers of two: 400 kB. Fewer: a rock's way and
-/// the ground under it push each other out.
+/// Rows and columns of nodes that a thread remembers, powers of two: 200 kB. Fewer: a rock's way
+/// and the ground under it push each other out.
 constexpr int kKnownRows = 64, kKnownColumns = 128;
 
-/// A node's height and all that it is the height of.
+/// A node's height, and of which surface; 0: of none.
 struct KnownNode
 {
-  const Terrain* terrain = nullptr;
-  std::uint64_t seed = 0, made = 0, node = 0;
-  std::uint32_t iteration = 0;
+  std::uint64_t surface = 0, node = 0;
   double height = 0.0; ///< m
 };
 
@@ -47,8 +41,8 @@ KnownNode& placeOf(int row, int column)
     std::size_t(column & (kKnownColumns - 1))];
 }
 
-/// Height of a node of a refined grid before its field, m. `surveyed(row, column)` is that of a node
-/// of the terrain.
+/// Height of a node of a refined grid before its field, m. `surveyed(row, column)` is that of a
+/// node of the terrain.
 template <typename Surveyed>
 double drawnHeight(const Surface::Grid& grid, int row, int column, const Surveyed& surveyed)
 {
@@ -75,6 +69,12 @@ Surface::Surface(const Terrain& terrain)
   this->drawMaterials();
 }
 
+std::uint64_t Surface::nextNumber()
+{
+  static std::atomic<std::uint64_t> made{ 0 };
+  return made.fetch_add(1, std::memory_order_relaxed) + 1;
+}
+
 Surface Surface::asSurveyed(const Terrain& terrain)
 {
   return Surface(terrain);
@@ -94,7 +94,6 @@ Surface::Surface(const Terrain& terrain, std::uint64_t seed, int iteration)
     field_ = field_ || r.isField();
   }
   roughnessBound_ = terrain.roughnessHeight();
-  surfacesMade.fetch_add(1, std::memory_order_relaxed);
   const GridGeometry& g = terrain.geometry();
   const int parts = terrain.refinement();
   grid_ = { (g.columns - 1) * parts + 1, (g.rows - 1) * parts + 1, g.cellSize / parts, parts };
@@ -140,9 +139,7 @@ double Surface::nodeHeight(int row, int column) const
   // or nine obstacles.
   KnownNode& known = placeOf(row, column);
   const std::uint64_t node = std::uint64_t(std::uint32_t(row)) << 32 | std::uint32_t(column);
-  const std::uint64_t made = surfacesMade.load(std::memory_order_relaxed);
-  if (known.node == node && known.made == made && known.terrain == terrain_ &&
-    known.iteration == iteration_ && known.seed == seed_)
+  if (known.node == node && known.surface == number_)
   {
     return known.height;
   }
@@ -155,7 +152,7 @@ double Surface::nodeHeight(int row, int column) const
     z += RoughField{ seed_, iteration_ }.height(g.xOrigin + column * grid_.cellSize,
       g.yOrigin + (grid_.rows - 1 - row) * grid_.cellSize, rough);
   }
-  known = { terrain_, seed_, made, node, iteration_, z };
+  known = { number_, node, z };
   return z;
 }
 

@@ -93,6 +93,7 @@ public:
 
 private:
   explicit Surface(const Terrain& terrain);
+  static std::uint64_t nextNumber();
   double surveyedNode(int row, int column) const; ///< With what each node is drawn, m.
   /// Of a cell of the terrain.
   const Roughness& roughnessIn(int row, int column) const;
@@ -103,6 +104,8 @@ private:
   }
 
   const Terrain* terrain_;
+  /// No other surface has it, but for copies: by it a thread knows whose nodes it remembers.
+  std::uint64_t number_ = nextNumber();
   std::uint64_t seed_ = 0;
   std::uint32_t iteration_ = 0;
   bool drawn_ = false; ///< Else all numbers are means.
