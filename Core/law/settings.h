@@ -407,6 +407,19 @@ inline constexpr double kMostSpin = 1e4;     ///< rad/s
 inline constexpr double kMostDensity = 1e5;  ///< kg/m³; the densest metal has 2.3e4.
 inline constexpr double kMostModulus = 1e15; ///< Pa; diamond has 1.2e12.
 inline constexpr double kMostVolume = 1e9;   ///< m³
+// The least numbers there are leave no mass to share a force.
+inline constexpr double kLeastDensity = 1.0;    ///< kg/m³; air has 1.2.
+inline constexpr double kLeastModulus = 1000.0; ///< Pa; jelly has some.
+inline constexpr double kLeastVolume = 1e-9;    ///< m³, a grain of sand.
+/// Pa, a hundredth of fresh snow: softer ground lets rocks through without a force.
+inline constexpr double kLeastGroundModulus = 1e3;
+// Further out no run comes to an end.
+inline constexpr double kLeastTimeStep = 1e-6;    ///< s; 1 m³ on pₙ 1e15 N/m swings as fast.
+inline constexpr double kMostEndTime = 1e5;       ///< s; the slowest rock creeps for minutes.
+inline constexpr double kMostGravity = 1000.0;    ///< m/s²; the Sun has 274.
+inline constexpr double kMostPenalty = 1e15;      ///< N/m; a step of an impact is 1e-7 s there.
+inline constexpr double kMostShearRatio = 1000.0; ///< Of shear to normal stiffness.
+inline constexpr double kMostCohesion = 1e12;     ///< N; the weight of a mountain on one point.
 ///@}
 /// Overlap that only touches, share of r: rounding of rocks laid down by computed coordinates.
 inline constexpr double kTouch = 1e-6;

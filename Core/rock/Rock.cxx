@@ -10,16 +10,6 @@
 namespace rockfall
 {
 
-namespace
-{
-
-/// Below these nothing is a rock, and the least numbers there are leave no mass to share a force.
-constexpr double kLeastDensity = 1.0;    ///< kg/m³; air has 1.2.
-constexpr double kLeastModulus = 1000.0; ///< Pa; jelly has some.
-constexpr double kLeastVolume = 1e-9;    ///< m³, a grain of sand.
-
-} // namespace
-
 void Rock::validate() const
 {
   const std::string name = "block " + std::to_string(this->blockId) + ": ";

@@ -12,19 +12,6 @@
 namespace rockfall
 {
 
-namespace
-{
-
-/// Ends beyond any run: further out nothing comes to an end.
-constexpr double kLeastTimeStep = 1e-6; ///< s; contact of 1 m³ on pₙ 1e15 N/m swings as fast.
-constexpr double kLongest = 1e5;        ///< s; the slowest rock creeps for minutes.
-constexpr double kMostGravity = 1000.0; ///< m/s²; the Sun has 274.
-constexpr double kMostPenalty = 1e15;   ///< N/m; a step of an impact is 1e-7 s there.
-constexpr double kMostRatio = 1000.0;   ///< Of shear to normal stiffness.
-constexpr double kMostCohesion = 1e12;  ///< N; the weight of a mountain on one point.
-
-} // namespace
-
 void SimulationParameters::validate() const
 {
   const auto positive = [](double value, const char* field, const char* unit)
@@ -63,12 +50,12 @@ void SimulationParameters::validate() const
       numberText(kMostTimeStep) + " s: is it in milliseconds?");
   }
   positive(this->endTime, "EndTime", "seconds");
-  atMost(this->endTime, kLongest, "EndTime", " s");
+  atMost(this->endTime, kMostEndTime, "EndTime", " s");
   positive(this->outputInterval, "OutputInterval", "seconds");
   positive(this->normalPenalty, "NormalPenalty", "N/m");
   atMost(this->normalPenalty, kMostPenalty, "NormalPenalty", " N/m");
   positive(this->shearRatio, "ShearPenaltyRatio", "(no unit)");
-  atMost(this->shearRatio, kMostRatio, "ShearPenaltyRatio", "");
+  atMost(this->shearRatio, kMostShearRatio, "ShearPenaltyRatio", "");
   if (!(this->rockRestitution >= 0.0 && this->rockRestitution <= 1.0))
   {
     throw ParameterError(

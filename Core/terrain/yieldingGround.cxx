@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "base/text/numberText.h"
+#include "law/settings.h"
 
 #include <cmath>
 #include <numbers>
@@ -55,9 +56,7 @@ void YieldingGround::validate() const
         (field.noneIsInfinite ? " (0: hard ground)" : ""));
     }
   }
-  // Ground that a rock sinks through without a force ends in no scar.
-  constexpr double kSoftest = 1e3; // Pa, a hundredth of fresh snow
-  if (this->modulus < kSoftest)
+  if (this->modulus < kLeastGroundModulus)
   {
     throw ParameterError("GroundModulus is " + numberText(this->modulus / 1e6) +
       " MN/m², it must be 0 (hard ground) or at least 0.001");
