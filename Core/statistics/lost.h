@@ -40,7 +40,7 @@ struct LostRocks
   /// A rock that ended at `time`, s, and got `way` away from its start, m.
   void add(Loss loss, double time, double way);
   void add(const LostRocks& other);
-  bool any() const { return moving + overEdge + inNodata > 0; }
+  std::int64_t lost() const { return moving + overEdge + inNodata; }
 };
 
 /// "12 of 50 rocks were still moving at EndTime (6 s)`before`: …" and the like, one note for each

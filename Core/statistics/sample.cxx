@@ -90,4 +90,16 @@ int highestQuantile(std::size_t values)
   return highest;
 }
 
+std::string quantileNeeds()
+{
+  std::string percents, needs;
+  for (std::size_t k = 0; k < std::size(hazardQuantiles); ++k)
+  {
+    const char* link = k == 0 ? "" : k + 1 < std::size(hazardQuantiles) ? ", " : " and ";
+    percents += link + std::to_string(std::lround(100.0 * hazardQuantiles[k]));
+    needs += link + std::to_string(leastForQuantile(hazardQuantiles[k]));
+  }
+  return percents + " % take " + needs;
+}
+
 } // namespace rockfall

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace rockfall
@@ -22,14 +23,12 @@ struct SampleStatistics
   std::array<double, hazardQuantiles.size()> quantiles{};
 };
 
-/// Value at (n − 1) q of the ascending values, counted from 0, linear in
-/// between: type 7 of Hyndman & Fan (1996), Sample quantiles in statistical
-/// packages, The American Statistician 50(4), 361–365; the one of NumPy. NaN
-/// for no values.
+/// Value at (n − 1) q of the ascending values, counted from 0, linear in between: type 7 of Hyndman
+/// & Fan (1996), Sample quantiles in statistical packages, The American Statistician 50(4),
+/// 361–365; the one of NumPy. NaN for no values.
 double quantile(std::span<const double> ascending, double q);
 
-/// Sums in the order that is given, then sorts: the same order gives the same
-/// bits.
+/// Sums in the order that is given, then sorts: the same order gives the same bits.
 SampleStatistics statisticsOf(std::vector<double>& values);
 
 /// Standard error √(p (1 − p) / n) of a share of n independent trials; NaN for
@@ -53,5 +52,8 @@ int leastForQuantile(double q);
 
 /// The highest of hazardQuantiles that so many values can give, %; 0 if none.
 int highestQuantile(std::size_t values);
+
+/// "50, 90, 95 and 99 % take 5, 29, 59 and 299": hazardQuantiles and what each needs.
+std::string quantileNeeds();
 
 } // namespace rockfall

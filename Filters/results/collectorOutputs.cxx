@@ -140,8 +140,7 @@ std::vector<std::string> lineNotes(std::span<const LineSummary> summaries,
   LostRocks most; // of the line that misses most
   for (std::size_t k = 0; k < lines.size(); ++k)
   {
-    const auto count = [](const LostRocks& l) { return l.moving + l.overEdge + l.inNodata; };
-    most = k == 0 || count(lost[k]) > count(most) ? lost[k] : most;
+    most = k == 0 || lost[k].lost() > most.lost() ? lost[k] : most;
     if (summaries[k].rocks == 0)
     {
       missed.push_back(k);
@@ -163,10 +162,8 @@ std::vector<std::string> lineNotes(std::span<const LineSummary> summaries,
   }
   if (!few.empty() && !look)
   {
-    notes.push_back("Too few rocks passed " + named(few) +
-      " for all quantiles: 50, 90, 95 and 99 % take 5, 29, 59 "
-      "and 299 rocks; HighestQuantile says "
-      "which one is the highest that they can give");
+    notes.push_back("Too few rocks passed " + named(few) + " for all quantiles: " +
+      quantileNeeds() + " rocks; HighestQuantile says which one is the highest that they can give");
   }
   return notes;
 }
@@ -352,8 +349,7 @@ void writeExceedance(
     }
     if (rocks > 0)
     {
-      // All have at least nothing: where the curve begins, and what makes one
-      // of a single rock.
+      // All have at least nothing: where the curve begins, and what makes one of a single rock.
       const bool all = summary.heights.size() == rocks;
       add(0.0,
         all ? std::min(0.0, summary.heights.front()) : std::numeric_limits<double>::quiet_NaN(),

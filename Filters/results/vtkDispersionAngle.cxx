@@ -136,10 +136,9 @@ public:
       return {};
     }
     return { std::to_string(this->Few) + " of " + std::to_string(groups) +
-      " groups have too few trajectories for all quantiles of RunOut: "
-      "50, 90, 95 and 99 % take 5, "
-      "29, 59 and 299; HighestQuantile says which one is the highest "
-      "that they can give" };
+      " groups have too few trajectories for all quantiles of RunOut: " +
+      rockfall::quantileNeeds() +
+      "; HighestQuantile says which one is the highest that they can give" };
   }
 
 private:
