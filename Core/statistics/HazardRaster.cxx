@@ -19,12 +19,11 @@ namespace
 
 constexpr double none = -std::numeric_limits<double>::infinity();
 
-/// Between two cuts less than this of the way apart there is no cell, only
-/// rounding: a path through the corner of four cells. m
+/// Between two cuts less than this of the way apart there is no cell, only rounding: a path through
+/// the corner of four cells. m
 constexpr double leastWay = 1e-9;
 
-/// Appends where `value` (of bounds low, high) passes a multiple of `size` from
-/// `start` on.
+/// Appends where `value` (of bounds low, high) passes a multiple of `size` from `start` on.
 void appendCuts(const Cubic& value, std::array<double, 2> bounds, double start, double size,
   double firstLine, double lastLine, double from, double to, std::vector<double>& cuts)
 {
@@ -117,15 +116,13 @@ void HazardRaster::addVisit(std::int64_t cell, const std::array<double, hazardCo
 double HazardRaster::maxHeight(
   const PathPiece& piece, double from, double to, std::array<double, 2> grounds) const
 {
-  // With one end beyond the ground the terrain still is what lies under the
-  // rest of the way.
+  // With one end beyond the ground the terrain still is what lies under the rest of the way.
   if (!terrain_ || (std::isnan(grounds[0]) && std::isnan(grounds[1])))
   {
     const double most = maximum(piece.height(), from, to);
     return std::isnan(most) ? none : most;
   }
-  // Between the sides of the CFEs the ground is a plane under the path, so the
-  // height is a cubic.
+  // Between the sides of the CFEs the ground is a plane under the path, so the height is a cubic.
   const double size = terrain_->geometry().cellSize;
   const double lines = terrain_->geometry().columns + double(terrain_->geometry().rows);
   const Cubic height = piece.height(grounds[0], grounds[1]);
@@ -176,8 +173,7 @@ void HazardRaster::addPiece(const PathPiece& piece, std::array<double, 2> ground
   appendCuts(
     piece.along(1), piece.bounds(1), grid_.south, grid_.cellSize, 0.0, grid_.rows, 0.0, 1.0, cuts_);
   std::sort(cuts_.begin() + 2, cuts_.end());
-  std::rotate(cuts_.begin() + 1, cuts_.begin() + 2,
-    cuts_.end()); // the end behind the crossings
+  std::rotate(cuts_.begin() + 1, cuts_.begin() + 2, cuts_.end()); // the end behind the crossings
   const auto visit = [&](std::int64_t cell, double from, double to)
   {
     std::array<double, hazardCount> maxima{};
@@ -203,8 +199,8 @@ void HazardRaster::addPiece(const PathPiece& piece, std::array<double, 2> ground
   }
   if (!visited)
   {
-    // A rock that stays on a border but for rounding: in the cell where the
-    // rock was, else in any of them.
+    // A rock that stays on a border but for rounding: in the cell where the rock was, else in any
+    // of them.
     std::int64_t cell = here_;
     for (std::size_t k = cuts_.size(); cell < 0 && k > 0; --k)
     {

@@ -1,8 +1,7 @@
 #pragma once
 
 /// @file
-/// Passages through the cells of a grid: number of rocks, speeds, heights,
-/// energies.
+/// Passages through the cells of a grid: number of rocks, speeds, heights, energies.
 
 #include "statistics/passages.h"
 #include "statistics/path.h"
@@ -14,15 +13,13 @@ namespace rockfall
 
 class Terrain;
 
-/// Keeps one passage per rock, iteration and cell, so that quantiles are exact
-/// and parts can be merged. The results depend on what was added, not on the
-/// order or on how it was shared out.
+/// Keeps one passage per rock, iteration and cell, so that quantiles are exact and parts can be
+/// merged. The results depend on what was added, not on the order or on how it was shared out.
 class HazardRaster
 {
 public:
-  /// `terrain`, if given, is the ground between the points of a path; its local
-  /// frame is then the paths'. Throws ParameterError for a grid without cells
-  /// or of more than 2³² of them.
+  /// `terrain`, if given, is the ground between the points of a path; its local frame is then the
+  /// paths'. Throws ParameterError for a grid without cells or of more than 2³² of them.
   explicit HazardRaster(const CellGrid& grid, const Terrain* terrain = nullptr);
 
   const CellGrid& grid() const { return grid_; }
@@ -33,13 +30,12 @@ public:
   /// as released, not more. Throws DataError as checkPath. Not for several
   /// threads at once: use one raster each, and merge.
   void add(const RockPath& path);
-  /// Takes in what another raster of the same grid has. Throws ParameterError
-  /// for another grid.
+  /// Takes in what another raster of the same grid has. Throws ParameterError for another grid.
   void merge(const HazardRaster& other);
 
   std::int64_t released() const { return released_; }
-  /// Calls `use` for each cell that anything passed, in the order of cells.
-  /// Throws DataError if a rock was added twice for an iteration.
+  /// Calls `use` for each cell that anything passed, in the order of cells. Throws DataError if a
+  /// rock was added twice for an iteration.
   void summarize(const UseCell& use);
 
   /// All passages in their order.

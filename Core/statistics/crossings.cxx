@@ -18,8 +18,8 @@ namespace
 /// A path whose end is no further from a line ends on it, m.
 constexpr double kOnLine = 1e-6;
 
-/// A path that passes a vertex of a line nearer than this is looked at from
-/// this far, where it is clear on which side of the line it is, m.
+/// A path that passes a vertex of a line nearer than this is looked at from this far, where it is
+/// clear on which side of the line it is, m.
 constexpr double kAtVertex = 1e-6;
 
 /// As far from a line as rounding leaves what lies in it, m.
@@ -131,8 +131,8 @@ Vec2 planAt(const PathPiece& piece, double s)
 /// Where on a path: on the piece that ends with this point, at s.
 using PathPlace = std::pair<std::size_t, double>;
 
-/// Goes along the path, on or back, to where it comes out of the surroundings
-/// of a vertex; nothing if it ends in them.
+/// Goes along the path, on or back, to where it comes out of the surroundings of a vertex; nothing
+/// if it ends in them.
 std::optional<Vec2> wayOut(const RockPath& path, PathPlace& place, const Vec2& vertex, bool onwards)
 {
   const std::size_t first = place.first;
@@ -167,8 +167,7 @@ std::optional<Vec2> wayOut(const RockPath& path, PathPlace& place, const Vec2& v
   return std::nullopt;
 }
 
-/// The segment that a place near a vertex lies in, if it does. `in` ends at the
-/// vertex.
+/// The segment that a place near a vertex lies in, if it does. `in` ends at the vertex.
 const Segment* segmentUnder(const Vec2& place, const Segment& in, const Segment& out)
 {
   const Vec2 from = place - out.from;
@@ -194,10 +193,9 @@ struct Visit
   PathPlace first, last;
 };
 
-/// 1 if a path that is at the vertex between two segments at `place` goes to
-/// the left of the line there, −1 if to its right, 0 if it stays on its side,
-/// begins or ends there, or goes on in the line. Each stay counts once,
-/// whichever of the segments it was found with.
+/// 1 if a path that is at the vertex between two segments at `place` goes to the left of the line
+/// there, −1 if to its right, 0 if it stays on its side, begins or ends there, or goes on in the
+/// line. Each stay counts once, whichever of the segments it was found with.
 int passingOf(const RockPath& path, const PathPlace& place, const Segment& in, const Segment& out,
   std::vector<Visit>& visits)
 {
@@ -237,8 +235,7 @@ int passingOf(const RockPath& path, const PathPlace& place, const Segment& in, c
   return goesLeft == wasLeft ? 0 : goesLeft ? 1 : -1;
 }
 
-/// The crossing where the path comes through the plane of a segment, if it does
-/// in the segment.
+/// The crossing where the path comes through the plane of a segment, if it does in the segment.
 void appendAt(const RockPath& path, const PathPiece& piece, const PathPlace& place,
   const Segment& segment, int direction, const Terrain* terrain, std::vector<Visit>& visits,
   std::vector<Crossing>& crossings)
@@ -298,8 +295,8 @@ void appendOf(const RockPath& path, const Segment& segment, const Terrain* terra
         segment.normal.x() * piece.along(0).c[i] + segment.normal.y() * piece.along(1).c[i];
     }
     distance.c[0] -= segment.normal.dot(segment.from);
-    // Where the side turns; the ends' sides are those of the points themselves,
-    // so that what one piece ends with is what the next begins with.
+    // Where the side turns; the ends' sides are those of the points themselves, so that what one
+    // piece ends with is what the next begins with.
     const Roots turns = extremes(distance, 0.0, 1.0);
     double from = 0.0;
     double valueFrom = sideOf(a);

@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// Where rocks pass a line, such as a road or a planned barrier, and what a
-/// barrier there would catch.
+/// Where rocks pass a line, such as a road or a planned barrier, and what a barrier there would
+/// catch.
 
 #include "statistics/path.h"
 #include "statistics/sample.h"
@@ -24,8 +24,8 @@ struct CollectorLine
   double barrierCapacity = 0.0;        ///< J; infinite if energy does not matter.
 };
 
-/// A passing: the path goes from one side of a segment's vertical plane to the
-/// other; at a vertex of the line, from one side of the line to the other.
+/// A passing: the path goes from one side of a segment's vertical plane to the other; at a vertex
+/// of the line, from one side of the line to the other.
 struct Crossing
 {
   int line = 0;
@@ -42,23 +42,20 @@ struct Crossing
   double kineticEnergy = 0.0;       ///< J
   double translationalEnergy = 0.0; ///< J, NaN without a mass.
   double heightOverGround = 0.0;    ///< m, NaN where there is no ground.
-  /// Between the horizontal velocity and the line's normal on the side that the
-  /// rock goes to, rad: 0 straight across, positive if it goes towards the
-  /// line's end, ±π/2 along it.
+  /// Between the horizontal velocity and the line's normal on the side that the rock goes to, rad:
+  /// 0 straight across, positive if it goes towards the line's end, ±π/2 along it.
   double horizontalAngle = 0.0;
   double verticalAngle = 0.0; ///< Of the velocity over the horizontal, rad; negative falling.
 };
 
-/// Appends every passing of a path through a line, in the order of time. A path
-/// that touches the line and goes back does not pass; one that begins on it has
-/// not passed it. `terrain`, if given, is the ground between the points of the
-/// path, in the path's frame; else that is straight. Throws DataError as
-/// checkPath.
+/// Appends every passing of a path through a line, in the order of time. A path that touches the
+/// line and goes back does not pass; one that begins on it has not passed it. `terrain`, if given,
+/// is the ground between the points of the path, in the path's frame; else that is straight. Throws
+/// DataError as checkPath.
 void appendCrossings(const RockPath& path, const CollectorLine& line, int lineNumber,
   const Terrain* terrain, std::vector<Crossing>& crossings);
 
-/// Passings of one line, and what a barrier of its height and capacity would
-/// catch.
+/// Passings of one line, and what a barrier of its height and capacity would catch.
 struct LineSummary
 {
   int rocks = 0;     ///< Rocks (iteration × rock) that passed.
@@ -77,9 +74,9 @@ struct LineSummary
   std::vector<double> heights;   ///< Ascending, m; without those that have none.
 };
 
-/// `crossings`: those of all lines and paths, of which `lineNumber`'s count.
-/// `released`: rocks × iterations. A rock without a height over ground is not
-/// caught. Results do not depend on the order of `crossings`.
+/// `crossings`: those of all lines and paths, of which `lineNumber`'s count. `released`: rocks ×
+/// iterations. A rock without a height over ground is not caught. Results do not depend on the
+/// order of `crossings`.
 LineSummary summarizeLine(const CollectorLine& line, int lineNumber,
   std::span<const Crossing> crossings, std::int64_t released);
 

@@ -32,8 +32,8 @@ double probabilityWithin(double frequency, double years);
 /// rocks of 0.001 a year make a hundred years.
 int intensityClass(std::span<const double> frequencies, double period);
 
-/// Annual frequencies of the rocks of a release, known by number and block. What a rock's passages in one iteration weigh is
-/// its frequency over the iterations that released it.
+/// Annual frequencies of the rocks of a release, known by number and block. What a rock's passages
+/// in one iteration weigh is its frequency over the iterations that released it.
 class RockFrequencies
 {
 public:

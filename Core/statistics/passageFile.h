@@ -1,8 +1,8 @@
 #pragma once
 
 /// @file
-/// Passages of a run in a file, so that the map of many runs can be made
-/// without having any of them in memory.
+/// Passages of a run in a file, so that the map of many runs can be made without having any of them
+/// in memory.
 ///
 /// A file has, little endian: the 8 bytes "RFPASS02"; columns and rows (int32
 /// each); cell size, west, south (double); x, y, z of the local origin
@@ -49,18 +49,17 @@ struct PassageFile
 void writePassages(HazardRaster& raster, const Vec3& origin, const std::string& crs,
   const std::string& fileName, const LostRocks& lost = {});
 
-/// Reads all but the passages. Throws FileError that names the file if it is
-/// none, of another version, not of the length that it must have, or of numbers
-/// that no run has.
+/// Reads all but the passages. Throws FileError that names the file if it is none, of another
+/// version, not of the length that it must have, or of numbers that no run has.
 PassageFile readPassageFile(const std::string& fileName);
 
-/// Several files as one. Whatever the passages are shared out over files, the
-/// results are the same bits, and those of one raster that has them all.
+/// Several files as one. Whatever the passages are shared out over files, the results are the same
+/// bits, and those of one raster that has them all.
 class PassageFiles
 {
 public:
-  /// Throws ParameterError without a name, FileError as readPassageFile,
-  /// DataError that names the file whose grid or CRS is not that of the first.
+  /// Throws ParameterError without a name, FileError as readPassageFile, DataError that names the
+  /// file whose grid or CRS is not that of the first.
   explicit PassageFiles(const std::vector<std::string>& fileNames);
 
   const CellGrid& grid() const { return files_.front().grid; } ///< In the world's frame, m.
@@ -69,8 +68,8 @@ public:
   const Releases& releases() const { return releases_; }
   const LostRocks& lost() const { return lost_; }
 
-  /// Merges the files on the way, with 64 MB of memory for all of them. Throws
-  /// FileError, or DataError if a rock is there twice for an iteration.
+  /// Merges the files on the way, with 64 MB of memory for all of them. Throws FileError, or
+  /// DataError if a rock is there twice for an iteration.
   void summarize(const UseCell& use) const;
 
 private:

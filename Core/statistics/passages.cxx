@@ -117,8 +117,7 @@ void CellSummarizer::finish()
   const double p = summary_.rocks / all_;
   summary_.reach = p;
   summary_.reachError = binomialError(p, all_);
-  // Ratio estimator: n / (n − 1) Σ (kᵢ − p Rᵢ)² / N², also over the iterations
-  // with kᵢ = 0.
+  // Ratio estimator: n / (n − 1) Σ (kᵢ − p Rᵢ)² / N², also over the iterations with kᵢ = 0.
   double scatter = p * p * squaredReleases_;
   for (const Count& count : counts_)
   {

@@ -1,8 +1,7 @@
 #pragma once
 
 /// @file
-/// Passages through the cells of a grid, rock by rock, and their statistics in
-/// each cell.
+/// Passages through the cells of a grid, rock by rock, and their statistics in each cell.
 
 #include "statistics/sample.h"
 
@@ -15,8 +14,7 @@
 namespace rockfall
 {
 
-/// Square cells in the frame of the paths. Cell (0, 0) is the south-western
-/// one.
+/// Square cells in the frame of the paths. Cell (0, 0) is the south-western one.
 struct CellGrid
 {
   int columns = 0;
@@ -82,17 +80,16 @@ using Releases = std::map<int, std::int64_t>;
 
 using UseCell = std::function<void(const CellSummary&)>;
 
-/// Makes summaries of passages that come in their order, so that it needs no
-/// more memory than one cell's. The results are the same bits wherever the
-/// passages come from.
+/// Makes summaries of passages that come in their order, so that it needs no more memory than one
+/// cell's. The results are the same bits wherever the passages come from.
 class CellSummarizer
 {
 public:
   /// Keeps a reference to `use`.
   CellSummarizer(const Releases& releases, const UseCell& use);
 
-  /// Throws DataError if a rock comes twice for an iteration, or a passage out
-  /// of its order or of an iteration without releases.
+  /// Throws DataError if a rock comes twice for an iteration, or a passage out of its order or of
+  /// an iteration without releases.
   void add(const Passage& passage);
   void finish(); ///< Hands on the last cell.
 

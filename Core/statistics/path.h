@@ -1,13 +1,11 @@
 #pragma once
 
 /// @file
-/// The way of a rock between its samples: from one point of a trajectory to the
-/// next the centroid follows the cubic Hermite curve of their positions and
-/// velocities, which in flight is the parabola itself. What is made of
-/// trajectories asks this curve, so that it does not depend on how often they
-/// were sampled. Velocities are linear in time between the points, as they are
-/// in flight: they never exceed those of the points, whatever an impact does to
-/// the curve.
+/// The way of a rock between its samples: from one point of a trajectory to the next the centroid
+/// follows the cubic Hermite curve of their positions and velocities, which in flight is the
+/// parabola itself. What is made of trajectories asks this curve, so that it does not depend on how
+/// often they were sampled. Velocities are linear in time between the points, as they are in
+/// flight: they never exceed those of the points, whatever an impact does to the curve.
 
 #include "base/types.h"
 
@@ -35,8 +33,7 @@ struct RockPath
   int iteration = 0;
   int rock = 0;
   std::int64_t blockId = 0;
-  /// kg. NaN if it is not known: then energy between two points is interpolated
-  /// in time.
+  /// kg. NaN if it is not known: then energy between two points is interpolated in time.
   double mass = std::numeric_limits<double>::quiet_NaN();
   /// m; a map's cells that are narrower are touched if they are under it. 0: it
   /// is a point.
@@ -52,8 +49,7 @@ struct Cubic
   double operator()(double s) const { return c[0] + s * (c[1] + s * (c[2] + s * c[3])); }
 };
 
-/// Places in [from, to] where a polynomial changes its sign, ascending; 0
-/// counts as positive.
+/// Places in [from, to] where a polynomial changes its sign, ascending; 0 counts as positive.
 struct Roots
 {
   int count = 0;
@@ -82,16 +78,14 @@ public:
   Vec3 rotationRate(double s) const { return (1.0 - s) * a_.rotationRate + s * b_.rotationRate; }
   /// ½ m v², J; NaN without a mass.
   double translationalEnergy(double s) const;
-  /// J. The rotational share is linear between the points; in flight it is
-  /// constant.
+  /// J. The rotational share is linear between the points; in flight it is constant.
   double kineticEnergy(double s) const;
-  /// Height over a ground of elevation 0 that lies under the rock as `below`
-  /// has it, as a cubic: z − (what lies between the centroid and height 0 at
-  /// the points, linear in between), m. Without a ground `groundA` and
-  /// `groundB` are 0, and the ground is a straight line between the points;
-  /// with a terrain they are its elevations there and its elevation at s is to
-  /// be subtracted. Where only one point has a height, its offset holds at the
-  /// other as well; NaN where none has.
+  /// Height over a ground of elevation 0 that lies under the rock as `below` has it, as a cubic:
+  /// z − (what lies between the centroid and height 0 at the points, linear in between), m.
+  /// Without a ground `groundA` and `groundB` are 0, and the ground is a straight line between the
+  /// points; with a terrain they are its elevations there and its elevation at s is to be
+  /// subtracted. Where only one point has a height, its offset holds at the other as well; NaN
+  /// where none has.
   Cubic height(double groundA = 0.0, double groundB = 0.0) const;
 
   /// Largest values between two places of the piece.
@@ -107,8 +101,8 @@ private:
   std::array<Cubic, 3> place_;
 };
 
-/// Throws DataError that names iteration, rock and time if a number is not
-/// finite (heights may be NaN) or times descend.
+/// Throws DataError that names iteration, rock and time if a number is not finite (heights may be
+/// NaN) or times descend.
 void checkPath(const RockPath& path);
 
 } // namespace rockfall

@@ -90,9 +90,9 @@ CellGrid gridOf(vtkPolyData* trajectories, const Terrain* terrain, const HazardM
   }
   if (options.cellSize == 0.0 && !terrain)
   {
-    throw ParameterError("CellSize is 0, which takes the cells of the slope, but none came with "
-                         "the "
-                         "trajectories: give a CellSize or connect the Terrain");
+    throw ParameterError(
+      "CellSize is 0, which takes the cells of the slope, but none came with the "
+      "trajectories: give a CellSize or connect the Terrain");
   }
   CellGrid grid;
   grid.cellSize = options.cellSize > 0.0 ? options.cellSize : terrain->geometry().cellSize;
@@ -102,8 +102,7 @@ CellGrid gridOf(vtkPolyData* trajectories, const Terrain* terrain, const HazardM
   Range columns = rangeOf(b.xMin, b.xMax, 0.0, cell), rows = rangeOf(b.yMin, b.yMax, 0.0, cell);
   if (terrain)
   {
-    // A last cell may reach beyond the slope; not for the sake of rounding,
-    // though.
+    // A last cell may reach beyond the slope; not for the sake of rounding, though.
     const Range all{ 0.0, std::ceil(terrain->width() / cell - 1e-9) - 1.0 };
     const Range allRows{ 0.0, std::ceil(terrain->height() / cell - 1e-9) - 1.0 };
     const auto within = [](const Range& part, const Range& whole) {
@@ -113,8 +112,8 @@ CellGrid gridOf(vtkPolyData* trajectories, const Terrain* terrain, const HazardM
     rows = within(rows, allRows);
     if (columns.last < columns.first || rows.last < rows.first)
     {
-      throw DataError("No trajectory of the Input is over the Terrain: they do "
-                      "not belong together");
+      throw DataError(
+        "No trajectory of the Input is over the Terrain: they do not belong together");
     }
     if (!options.crop)
     {
@@ -323,8 +322,7 @@ void checkLines(vtkPolyData* trajectories)
 {
   if (trajectories->GetNumberOfLines() == 0)
   {
-    throw DataError("The Input has no lines; the trajectories of Rockfall "
-                    "Simulation are wanted");
+    throw DataError("The Input has no lines; the trajectories of Rockfall Simulation are wanted");
   }
 }
 
@@ -344,8 +342,7 @@ void makeHazardImage(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
   }
   else
   {
-    // Of maps of one cell size the cells are the same everywhere: multiples of
-    // it in the world.
+    // Of maps of one cell size the cells are the same everywhere: multiples of it in the world.
     const Bounds b = boundsOf(trajectories, origin);
     const double cell = options.cellSize;
     if (cell > 0.0 && std::isfinite(cell))

@@ -21,8 +21,8 @@ class PassageFiles;
 namespace rockfall::filters
 {
 
-/// A statistic over the rocks of a cell, of each quantity that is mapped: the
-/// end of an array's name.
+/// A statistic over the rocks of a cell, of each quantity that is mapped: the end of an array's
+/// name.
 struct MapStatistic
 {
   const char* name;
@@ -38,8 +38,8 @@ inline constexpr MapStatistic mapStatistics[] = {
   { "99", 0.99, [](const SampleStatistics& of) { return of.quantiles[3]; } },
 };
 
-/// Numbers of mapStatistics. Each costs an array of four bytes a cell for each
-/// quantity; a map of 10⁷ cells with all of them takes 1.2 GB.
+/// Numbers of mapStatistics. Each costs an array of four bytes a cell for each quantity; a map of
+/// 10⁷ cells with all of them takes 1.2 GB.
 using ChosenStatistics = std::vector<int>;
 inline const ChosenStatistics usualStatistics = { 0, 1, 4 }; ///< Mean, maximum, 95 %.
 
@@ -52,8 +52,7 @@ struct HazardMapOptions
   FrequencyOptions frequency = {};
 };
 
-/// Fills `image`: see vtkRockfallHazardMap. `terrain` may be null. Throws
-/// rockfall::Error.
+/// Fills `image`: see vtkRockfallHazardMap. `terrain` may be null. Throws rockfall::Error.
 void makeHazardImage(vtkPolyData* trajectories, vtkPolyData* terrain,
   const HazardMapOptions& options, vtkImageData* image);
 
@@ -66,8 +65,8 @@ void makeHazardImage(
 void writeHazardPassages(vtkPolyData* trajectories, vtkPolyData* terrain,
   const HazardMapOptions& options, const std::string& fileName);
 
-/// Marks an empty image as a map: ranks without data must find the writer of
-/// maps as the first one does.
+/// Marks an empty image as a map: ranks without data must find the writer of maps as the first one
+/// does.
 void markEmptyMap(vtkImageData* image);
 
 } // namespace rockfall::filters

@@ -2,11 +2,10 @@
  * @class   vtkHazardPassageWriter
  * @brief   writes the passages that a hazard map is made of
  *
- * Input port 0 has one polyline per trajectory, as port 1 of
- * vtkRockfallSimulation, port 1 the terrain of vtkDEMToCFESource. The file has
- * one record for each rock, iteration and cell it was in.
- * vtkHazardPassageReader makes one map of any number of such files. The file is
- * written beside and renamed when it is whole.
+ * Input port 0 has one polyline per trajectory, as port 1 of vtkRockfallSimulation, port 1 the
+ * terrain of vtkDEMToCFESource. The file has one record for each rock, iteration and cell it was
+ * in. vtkHazardPassageReader makes one map of any number of such files. The file is written beside
+ * and renamed when it is whole.
  */
 #ifndef vtkHazardPassageWriter_h
 #define vtkHazardPassageWriter_h
@@ -33,8 +32,7 @@ public:
 
   ///@{
   /**
-   * Edge of the cells in metres, not negative. 0 (the default): the terrain's
-   * cells.
+   * Edge of the cells in metres, not negative. 0 (the default): the terrain's cells.
    */
   vtkSetMacro(CellSize, double);
   vtkGetMacro(CellSize, double);

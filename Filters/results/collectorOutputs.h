@@ -67,8 +67,8 @@ void writeReleased(const ReleasedRocks& released, vtkFieldData* field);
 void writeLines(std::span<const LineSummary> summaries, std::span<const CollectorLine> lines,
   std::span<const LostRocks> lost, vtkTable* output);
 
-/// Per line, energy and height in descending order and the share of rocks that
-/// have at least as much.
+/// Per line, energy and height in descending order and the share of rocks that have at least as
+/// much.
 void writeExceedance(
   std::span<const LineSummary> summaries, std::int64_t released, vtkTable* output);
 

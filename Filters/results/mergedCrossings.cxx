@@ -51,8 +51,7 @@ std::vector<CollectorLine> linesOf(vtkFieldData* field, std::size_t input)
   if (!names || names->GetNumberOfValues() != barriers->GetNumberOfTuples())
   {
     throw DataError(numbered(input) +
-      " has no array CollectorLineName of all lines; the "
-      "crossings of Trajectory Collector are "
+      " has no array CollectorLineName of all lines; the crossings of Trajectory Collector are "
       "wanted");
   }
   std::vector<CollectorLine> lines;
@@ -118,8 +117,7 @@ void appendPlaces(vtkPolyData* data, std::size_t input, const std::vector<Collec
       throw DataError(numbered(input) + " has a crossing of line " + std::to_string(c.line) +
         ", but only " + std::to_string(lines.size()) + " lines");
     }
-    // Crossings of another collector, appended to these, count lines of their
-    // own.
+    // Crossings of another collector, appended to these, count lines of their own.
     if (names && names->GetValue(id) != lines[std::size_t(c.line)].name)
     {
       throw DataError(numbered(input) + " has a crossing of line " + std::to_string(c.line) +

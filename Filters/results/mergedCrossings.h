@@ -21,10 +21,9 @@ struct MergedCrossings
   std::vector<Crossing> crossings; ///< As summarizeLine needs them.
 };
 
-/// Fills `output` with the points of all `inputs`, crossings of Trajectory
-/// Collector, in the order of iteration, rock, line and passing. Throws
-/// DataError if one is no crossings, has other lines, barriers, CRS or arrays
-/// than the first, or if a crossing is there twice.
+/// Fills `output` with the points of all `inputs`, crossings of Trajectory Collector, in the order
+/// of iteration, rock, line and passing. Throws DataError if one is no crossings, has other lines,
+/// barriers, CRS or arrays than the first, or if a crossing is there twice.
 MergedCrossings mergeCrossings(std::span<vtkPolyData* const> inputs, vtkPolyData* output);
 
 } // namespace rockfall::filters

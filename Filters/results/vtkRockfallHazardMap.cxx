@@ -164,8 +164,7 @@ int vtkRockfallHazardMap::RequestInformation(
       producer->GetProducer()->Update(producer->GetIndex(), requests);
     }
   }
-  // Every rank comes here, but one without a part of the image perhaps not to
-  // its data.
+  // Every rank comes here, but one without a part of the image perhaps not to its data.
   this->Spread = rockfall::filters::spreadOf(this->Taken->trajectories.take(inputVector[0]));
   if (this->Spread.empty())
   {
@@ -221,9 +220,8 @@ int vtkRockfallHazardMap::RequestData(
   }
   if (trajectories->GetNumberOfLines() == 0)
   {
-    return rockfall::filters::fail(this,
-      "The Input has no lines; the trajectories "
-      "of Rockfall Simulation are wanted");
+    return rockfall::filters::fail(
+      this, "The Input has no lines; the trajectories of Rockfall Simulation are wanted");
   }
   this->Prepare(inputVector);
   if (this->Made->aborted)

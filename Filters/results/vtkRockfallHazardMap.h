@@ -1,14 +1,12 @@
 /**
  * @class   vtkRockfallHazardMap
- * @brief   maps what passes: how many rocks, how fast, how high, with what
- * energy
+ * @brief   maps what passes: how many rocks, how fast, how high, with what energy
  *
- * Input port 0 has one polyline per trajectory, as port 1 of
- * vtkRockfallSimulation; port 1 is the terrain of vtkDEMToCFESource, optional:
- * trajectories bring the slope that they fell on. Output port 0 is a
- * vtkImageData in world coordinates with cell data; port 1 has those of its
- * cells that anything passed as polydata on the slope. A path is cut exactly at
- * the borders of the cells, along the cubic curve between its points.
+ * Input port 0 has one polyline per trajectory, as port 1 of vtkRockfallSimulation; port 1 is the
+ * terrain of vtkDEMToCFESource, optional: trajectories bring the slope that they fell on. Output
+ * port 0 is a vtkImageData in world coordinates with cell data; port 1 has those of its cells that
+ * anything passed as polydata on the slope. A path is cut exactly at the borders of the cells,
+ * along the cubic curve between its points.
  *
  * Cell arrays: Passages, Rocks, StoppingPoints, ReachProbability,
  * ReachProbabilityError, ReachProbabilityErrorOfIterations, and of
@@ -45,8 +43,7 @@ public:
 
   ///@{
   /**
-   * Edge of the cells in metres, not negative. 0 (the default): the terrain's
-   * cells.
+   * Edge of the cells in metres, not negative. 0 (the default): the terrain's cells.
    */
   vtkSetMacro(CellSize, double);
   vtkGetMacro(CellSize, double);
@@ -54,9 +51,8 @@ public:
 
   ///@{
   /**
-   * Whether the map ends where the trajectories do instead of covering the
-   * whole terrain. Its cells are the same. On by default; without a slope it
-   * always does.
+   * Whether the map ends where the trajectories do instead of covering the whole terrain. Its cells
+   * are the same. On by default; without a slope it always does.
    */
   vtkSetMacro(CropToTrajectories, bool);
   vtkGetMacro(CropToTrajectories, bool);

@@ -61,9 +61,8 @@ void checkSize(double value, const char* name)
   }
 }
 
-/// Lines that are farther from the trajectories than this, m, and than ten
-/// times their extent, are those of another place. Where all rocks stop before
-/// a nearer one, none has passed it.
+/// Lines that are farther from the trajectories than this, m, and than ten times their extent, are
+/// those of another place. Where all rocks stop before a nearer one, none has passed it.
 constexpr double kElsewhere = 1000.0;
 
 using Box2 = Eigen::AlignedBox2d;
@@ -106,8 +105,8 @@ void requireNear(const Box2& lines, const Box2& rocks, const std::string& whose)
   }
 }
 
-/// The lines of a file, which must be where the trajectories are. What they do
-/// not say of their barrier is `barrier`'s.
+/// The lines of a file, which must be where the trajectories are. What they do not say of their
+/// barrier is `barrier`'s.
 std::vector<CollectorLine> readLines(const std::string& fileName, const std::string& layerName,
   vtkPolyData* trajectories, const Box2& site, const Vec3& origin, const CollectorLine& barrier,
   std::vector<std::string>& notes)
@@ -157,8 +156,7 @@ CollectorLine lineThrough(const std::vector<std::array<double, 3>>& points, cons
   if (line.points.size() < 2)
   {
     throw rockfall::ParameterError(
-      "Points: the drawn line has no two different places in the plane, it "
-      "must have two at least");
+      "Points: the drawn line has no two different places in the plane, it must have two at least");
   }
   requireNear(box, rocks, "Points: the drawn line");
   return line;
@@ -171,8 +169,8 @@ struct Site
   Vec3 origin = Vec3::Zero();
 };
 
-/// The place of the trajectories and of the slope under them. Throws DataError
-/// if they have none in common.
+/// The place of the trajectories and of the slope under them. Throws DataError if they have none
+/// in common.
 Site siteOf(const Box2& rocks, const rockfall::Terrain* terrain)
 {
   Site site{ rocks, { std::floor(rocks.min().x()), std::floor(rocks.min().y()), 0.0 } };
@@ -183,8 +181,8 @@ Site siteOf(const Box2& rocks, const rockfall::Terrain* terrain)
     const Box2 slope(corner, corner + Eigen::Vector2d(terrain->width(), terrain->height()));
     if (!rocks.intersects(slope))
     {
-      throw rockfall::DataError("No trajectory of the Input is over the "
-                                "Terrain: they do not belong together");
+      throw rockfall::DataError(
+        "No trajectory of the Input is over the Terrain: they do not belong together");
     }
     site.box.extend(slope);
   }
@@ -310,8 +308,8 @@ int vtkTrajectoryCollector::RequestData(
       }
       if (trajectories->GetNumberOfLines() == 0)
       {
-        throw rockfall::DataError("The Input has no lines; the trajectories "
-                                  "of Rockfall Simulation are wanted");
+        throw rockfall::DataError(
+          "The Input has no lines; the trajectories of Rockfall Simulation are wanted");
       }
       checkSize(this->BarrierHeight, "BarrierHeight");
       checkSize(this->BarrierCapacity, "BarrierCapacity");

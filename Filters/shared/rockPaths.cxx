@@ -66,16 +66,13 @@ void readPaths(vtkPolyData* trajectories, const Vec3& origin, vtkIdType first, v
     vtkStringArray::SafeDownCast(trajectories->GetFieldData()->GetAbstractArray(retentionName));
   if (kept && kept->GetNumberOfValues() > 0 && kept->GetValue(0) == "Events")
   {
-    throw DataError("The Input is of a Rockfall Simulation whose "
-                    "TrajectoryOutput is Events: "
-                    "between touches that are far apart its paths say little; "
-                    "Thinned or Full is "
+    throw DataError("The Input is of a Rockfall Simulation whose TrajectoryOutput is Events: "
+                    "between touches that are far apart its paths say little; Thinned or Full is "
                     "wanted");
   }
   if (trajectories->GetNumberOfLines() == 0)
   {
-    throw DataError("The Input has no lines; the trajectories of Rockfall "
-                    "Simulation are wanted");
+    throw DataError("The Input has no lines; the trajectories of Rockfall Simulation are wanted");
   }
   vtkFieldData* points = trajectories->GetPointData();
   vtkDataArray* time = needed(points, "point", "Time");

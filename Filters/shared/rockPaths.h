@@ -19,8 +19,8 @@ namespace rockfall::filters
 /// A field array that says what is kept of the trajectories.
 void writeRetention(Retention retention, vtkFieldData* data);
 
-/// Marks trajectories of a run that goes on: there will be more, and that there
-/// is none yet is no error.
+/// Marks trajectories of a run that goes on: there will be more, and that there is none yet is no
+/// error.
 void markRunning(vtkFieldData* data);
 bool isRunning(vtkFieldData* data);
 
@@ -34,8 +34,7 @@ bool isRunning(vtkFieldData* data);
 void forEachPath(vtkPolyData* trajectories, const Vec3& origin,
   const std::function<void(const RockPath& path, std::int64_t cell)>& use);
 
-/// The same for the polyline of this number alone, in the coordinates of the
-/// polydata.
+/// The same for the polyline of this number alone, in the coordinates of the polydata.
 void forPath(
   vtkPolyData* trajectories, vtkIdType line, const std::function<void(const RockPath& path)>& use);
 

@@ -44,8 +44,7 @@ struct MotionArrays
   }
 };
 
-/// Where the energy of a rock is, and what has been taken of it since its
-/// release, J.
+/// Where the energy of a rock is, and what has been taken of it since its release, J.
 struct EnergyArrays
 {
   vtkSmartPointer<vtkDoubleArray> potential, strain, friction, restitution, vibration, damping,
@@ -217,9 +216,8 @@ void TrajectoryLines::append(const Trajectory& trajectory)
   }
   Arrays& a = *arrays_;
   const TrajectorySummary& summary = trajectory.summary;
-  // Vertices and lines are never mixed, as whole paths have two samples at
-  // least: cell data stand in the order in which trajectories come, but
-  // polydata's cells begin with the vertices.
+  // Vertices and lines are never mixed, as whole paths have two samples at least: cell data stand
+  // in the order in which trajectories come, but polydata's cells begin with the vertices.
   vtkCellArray* cells = trajectory.samples.size() == 1 ? a.vertices : a.lines;
   cells->InsertNextCell(int(trajectory.samples.size()));
   const double weight = summary.mass * frame_.gravity;

@@ -24,21 +24,18 @@ std::vector<std::string> meshes()
                            "a\nPOINTS 1 float\n" +
     std::string(12, '\0') + "\nCELLS 1 2\n" + bytesOf(std::int32_t(1), true) +
     bytesOf(std::int32_t(0), true) + "\nCELL_TYPES 1\n" + bytesOf(std::int32_t(1), true);
-  const std::string strips = "ply\nformat ascii 1.0\nelement vertex "
-                             "3\nproperty float x\nproperty float y\n"
-                             "property float z\nelement tristrips 1\nproperty "
-                             "list int int vertex_indices\nend_header\n"
-                             "0 0 0\n1 0 0\n0 1 0\n4 0 1 2 -1\n";
-  const std::string base64 = "<VTKFile type=\"PolyData\" byte_order=\"LittleEndian\" "
-                             "header_type=\"UInt32\"><PolyData>"
-                             "<Piece><Points><DataArray type=\"Float32\" "
-                             "format=\"binary\">DAAAAAAAAAAAAAAAAAAAAA=="
-                             "</DataArray></Points></Piece></PolyData></VTKFile>";
-  const std::string packed = "<VTKFile type=\"PolyData\" "
-                             "compressor=\"vtkZLibDataCompressor\"><PolyData><Piece><Points>"
-                             "<DataArray type=\"Float32\" format=\"appended\" "
-                             "offset=\"0\"/></Points></Piece></PolyData>"
-                             "<AppendedData encoding=\"raw\">_" +
+  const std::string strips =
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+    "property float z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+    "0 0 0\n1 0 0\n0 1 0\n4 0 1 2 -1\n";
+  const std::string base64 =
+    "<VTKFile type=\"PolyData\" byte_order=\"LittleEndian\" header_type=\"UInt32\"><PolyData>"
+    "<Piece><Points><DataArray type=\"Float32\" format=\"binary\">DAAAAAAAAAAAAAAAAAAAAA=="
+    "</DataArray></Points></Piece></PolyData></VTKFile>";
+  const std::string packed =
+    "<VTKFile type=\"PolyData\" compressor=\"vtkZLibDataCompressor\"><PolyData><Piece><Points>"
+    "<DataArray type=\"Float32\" format=\"appended\" offset=\"0\"/></Points></Piece></PolyData>"
+    "<AppendedData encoding=\"raw\">_" +
     bytesOf(std::uint32_t(1)) + bytesOf(std::uint32_t(12)) + bytesOf(std::uint32_t(0)) +
     bytesOf(std::uint32_t(11)) + std::string("\x78\x9c\x63\x60\x40\x05\x00\x00\x0c\x00\x01", 11) +
     "</AppendedData></VTKFile>";
@@ -90,15 +87,11 @@ std::vector<std::string> grids()
   const std::string esri = "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n";
   return { std::string(1, '\0') + esri + "1 2 3\n4 5 6\n",
     std::string(1, '\0') + esri + "NODATA_value -9999\n1 nan 3\n4,5 5 x\n",
-    "\1north: 2\nsouth: 0\neast: 3\nwest: 0\nrows: 2\ncols: 3\nnull: *\n1 * "
-    "3\n4 5 6\n",
-    "\1north: 2\nsouth: 0\neast: 3\nwest: 0\nrows: 2\ncols: 3\ntype: "
-    "float\nmultiplier: 0.1\n"
+    "\1north: 2\nsouth: 0\neast: 3\nwest: 0\nrows: 2\ncols: 3\nnull: *\n1 * 3\n4 5 6\n",
+    "\1north: 2\nsouth: 0\neast: 3\nwest: 0\nrows: 2\ncols: 3\ntype: float\nmultiplier: 0.1\n"
     "null: -1\n1 -1 3\n4 5,5 6\n",
-    "\2begin_of_head ====\nmodel name : m\nmodel type : gravimetric\nunits : "
-    "meters\n"
-    "reference : WGS84\nlat min = 0.0\nlat max = 2.0\nlon min = 0.0\nlon max "
-    "= 3.0\n"
+    "\2begin_of_head ====\nmodel name : m\nmodel type : gravimetric\nunits : meters\n"
+    "reference : WGS84\nlat min = 0.0\nlat max = 2.0\nlon min = 0.0\nlon max = 3.0\n"
     "delta lat = 1.0\ndelta lon = 1.0\nnrows = 2\nncols = 3\nnodata = -9999\n"
     "ISG format = 1.0\nend_of_head ====\n1 2 3\n4 -9999 x\n",
     "\3"

@@ -24,8 +24,7 @@ struct GroundFiles
   std::string layer; ///< Raster or polygons; empty: no classes.
   std::string table; ///< Anything OGR opens.
   std::string field; ///< Of the polygons, with the class; empty looks for class, name, code, …
-  std::string
-    layerName = {}; ///< Of the layer's file (gis/layers/LayerFile.h); empty: what will do.
+  std::string layerName = {};  ///< Of the layer's file (LayerFile.h); empty: what will do.
   std::string tableSheet = {}; ///< Of the table's file; empty: what will do.
 };
 

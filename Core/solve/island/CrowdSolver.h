@@ -4,10 +4,10 @@
 /// A lasting step of many rocks that touch each other: open–close iteration as projected
 /// Gauss–Seidel over the contacts, in their own three directions.
 ///
-/// The same unknowns, springs and integration as in solve/island/IslandSolver.h, which uses this for what
-/// is too large to eliminate. Contacts lie in memory as the sweeps meet them
-/// (solve/island/crowdKernel.h), and nothing else of them is kept. Most contacts of a crowd are open and
-/// stay so: they are speculative, stay out of the sweeps, and are made ready when they close.
+/// The same unknowns, springs and integration as in solve/island/IslandSolver.h, which uses this
+/// for what is too large to eliminate. Contacts lie in memory as the sweeps meet them
+/// (solve/island/crowdKernel.h), and nothing else of them is kept. Most contacts of a crowd are open
+/// and stay so: they are speculative, stay out of the sweeps, and are made ready when they close.
 
 #include "base/cache.h"
 #include "base/parallel.h"

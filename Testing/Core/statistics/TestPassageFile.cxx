@@ -1,5 +1,5 @@
-// Passages in files: the same bits as in memory, whatever they are shared out
-// over files; damage is noticed.
+// Passages in files: the same bits as in memory, whatever they are shared out over files; damage is
+// noticed.
 
 #include "hermitePaths.h"
 
@@ -246,8 +246,7 @@ TEST_F(TestPassageFile, HeadersAndPassagesThatNoRunHasAreDamage)
   expectError({ bad }, "bad: is damaged: in iteration -1");
   put(count - 8, std::int64_t(1) << 40);
   expectError({ bad }, "bad: is damaged: in iteration 1099511627776");
-  put(firstPassage + 4,
-    std::uint32_t(0x7fffffff)); // entries: with another rock's more than an int
+  put(firstPassage + 4, std::uint32_t(0x7fffffff)); // entries: with another rock's more than an int
   expectError({ bad }, "came in too often");
   put(firstPassage + 4, std::uint32_t(0));
   expectError({ bad }, "came in 0 times");
