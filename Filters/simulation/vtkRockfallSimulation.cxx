@@ -328,6 +328,8 @@ bool vtkRockfallSimulation::Follow()
     this->Looked = this->Live->trajectories();
     return true;
   }
+  // Filters that took a part of the run, in the same pass of a view perhaps, are out of date.
+  this->Modified();
   const std::unique_ptr<LiveRun> live = std::move(this->Live);
   const std::string how = rockfall::filters::statusOf(*live);
   this->Kept = live->take();

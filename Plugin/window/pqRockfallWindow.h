@@ -1,6 +1,7 @@
 #ifndef pqRockfallWindow_h
 #define pqRockfallWindow_h
 
+#include <QMap>
 #include <QObject>
 #include <QSet>
 #include <QString>
@@ -52,12 +53,13 @@ private:
 
   pqPathPicker* Picker;
   QTimer Clock;
-  int Pictures = 0;      // that were taken
-  double LastEnd = -1.0; // that animations were given, s
-  bool AtEnd = false;    // whether somebody looks at that time, and so at whole paths
-  bool Waiting = true;   // for rocks that came to their end
-  bool Picking = false;  // a trajectory, with the next click
-  QSet<QString> Running; // names of the runs that were told of last
+  int Pictures = 0;               // that were taken
+  double LastEnd = -1.0;          // that animations were given, s
+  bool AtEnd = false;             // whether somebody looks at that time, and so at whole paths
+  bool Waiting = true;            // for rocks that came to their end
+  bool Picking = false;           // a trajectory, with the next click
+  QSet<QString> Running;          // names of the runs that were told of last
+  QMap<QString, QString> Settled; // state hash by name: of the run that all views have
 };
 
 #endif

@@ -15,15 +15,19 @@
 #include "pqView.h"
 #include "vtkAlgorithm.h"
 #include "vtkDataArray.h"
+#include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
+#include "vtkFieldData.h"
 #include "vtkNew.h"
 #include "vtkSMParaViewPipelineControllerWithRendering.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMSession.h"
 #include "vtkSMSourceProxy.h"
+#include "vtkStringArray.h"
 #include "vtkTable.h"
 
+#include <QList>
 #include <QMainWindow>
 #include <QStatusBar>
 
@@ -75,6 +79,30 @@ void renderNow()
   {
     view->forceRender();
   }
+}
+
+vtkFieldData* fieldsOf(vtkSMSourceProxy* run, int port)
+{
+  auto* algorithm = vtkAlgorithm::SafeDownCast(run->GetClientSideObject());
+  vtkDataObject* data = algorithm ? algorithm->GetOutputDataObject(port) : nullptr;
+  return data ? data->GetFieldData() : nullptr;
+}
+
+/// Whether what a run has handed on is a part of it, as its trajectories say.
+bool showsPart(vtkSMSourceProxy* run)
+{
+  vtkFieldData* fields = fieldsOf(run, 1);
+  return fields && fields->GetAbstractArray("RunGoesOn");
+}
+
+/// The state hash of a whole run that has been handed on; empty: none, or not known here.
+QString stateOf(vtkSMSourceProxy* run)
+{
+  vtkFieldData* fields = fieldsOf(run, 3);
+  auto* hash =
+    vtkStringArray::SafeDownCast(fields ? fields->GetAbstractArray("StateHash") : nullptr);
+  return hash && hash->GetNumberOfValues() > 0 ? QString::fromStdString(hash->GetValue(0))
+                                               : QString();
 }
 
 /// The time step by which the last rock of a run has come to its end, s; 0 if it is not known here.
@@ -177,7 +205,7 @@ void pqRockfallWindow::tellRuns()
     return;
   }
   this->lookAtTime();
-  bool settled = false;
+  QList<pqPipelineSource*> settled;
   QMainWindow* window = rockfall::window::mainWindow();
   auto* model = pqApplicationCore::instance()->getServerManagerModel();
   for (pqPipelineSource* source : model->findItems<pqPipelineSource*>())
@@ -200,17 +228,28 @@ void pqRockfallWindow::tellRuns()
     {
       this->Running.insert(name);
     }
-    else if (this->Running.remove(name))
+    else
     {
-      // The last look, also where ParaView does not ask, as while tests are played.
-      proxy->InvokeCommand("Watch");
-      proxy->MarkDirty(nullptr);
-      settled = true;
+      // A run may end between two looks, or while views take it one by one: some have a part of it.
+      vtkSMSourceProxy* run = source->getSourceProxy();
+      const QString state = stateOf(run);
+      const bool other = !state.isEmpty() && this->Settled.value(name) != state;
+      if (this->Running.remove(name) || showsPart(run) || other)
+      {
+        // The last look, also where ParaView does not ask, as while tests are played.
+        proxy->InvokeCommand("Watch");
+        proxy->MarkDirty(nullptr);
+        settled.append(source);
+      }
     }
   }
-  if (settled)
+  if (!settled.isEmpty())
   {
     renderNow();
     followShown();
+    for (pqPipelineSource* source : settled)
+    {
+      this->Settled[source->getSMName()] = stateOf(source->getSourceProxy());
+    }
   }
 }
