@@ -127,11 +127,16 @@ std::uint64_t rocksContent(vtkPolyData* rocks, std::initializer_list<std::string
     content.add(cells->GetOffsetsArray());
     content.add(cells->GetConnectivityArray());
   }
-  addArrays(rocks->GetCellData(), content,
-    [&](std::string_view name)
-    { return std::find(names.begin(), names.end(), name) == names.end(); });
+  const auto left = [&](std::string_view name)
+  { return std::find(names.begin(), names.end(), name) != names.end(); };
+  addArrays(rocks->GetCellData(), content, [&](std::string_view name) { return !left(name); });
+  // Names of blocks stand here or there.
   addArrays(rocks->GetFieldData(), content,
-    [](std::string_view name) { return name == "TerrainCRS" || name == "LocalOrigin"; });
+    [&](std::string_view name)
+    {
+      return name == "TerrainCRS" || name == "LocalOrigin" || name == "NamedBlock" ||
+        ((name == "Material" || name == "SourceName") && !left(name));
+    });
   return content.value();
 }
 

@@ -29,6 +29,8 @@ namespace rockfall::filters
 namespace
 {
 
+constexpr const char* kNamedBlock = "NamedBlock";
+
 /// The polygons of one block.
 struct Faces
 {
@@ -153,16 +155,63 @@ void readNumber(vtkPolyData* input, const char* name, vtkIdType cell, double& va
   }
 }
 
-/// A name, of which a number will do; empty if there is no such array.
-std::string nameOf(vtkPolyData* input, const char* name, vtkIdType cell)
+/// The names of blocks that field arrays hold.
+class NamesRead
 {
+public:
+  explicit NamesRead(vtkPolyData* input)
+  {
+    vtkFieldData* field = input->GetFieldData();
+    vtkDataArray* blocks = field->GetArray(kNamedBlock);
+    for (const char* name : { "Material", "SourceName" })
+    {
+      auto* names = vtkStringArray::SafeDownCast(field->GetAbstractArray(name));
+      if (!blocks || !names)
+      {
+        continue;
+      }
+      if (names->GetNumberOfValues() != blocks->GetNumberOfTuples())
+      {
+        throw DataError("The Rocks input's field array " + std::string(name) + " has " +
+          std::to_string(names->GetNumberOfValues()) + " values, it must have " +
+          std::to_string(blocks->GetNumberOfTuples()) + ", as many as NamedBlock");
+      }
+      for (vtkIdType k = 0; k < names->GetNumberOfValues(); ++k)
+      {
+        names_[name].try_emplace(blocks->GetComponent(k, 0), names->GetValue(k));
+      }
+    }
+  }
+
+  /// Empty if the block has none.
+  std::string of(const char* name, std::int64_t block) const
+  {
+    const auto names = names_.find(name);
+    if (names == names_.end())
+    {
+      return {};
+    }
+    const auto found = names->second.find(double(block));
+    return found == names->second.end() ? std::string() : found->second;
+  }
+
+private:
+  std::map<std::string, std::map<double, std::string>> names_; ///< By array and block.
+};
+
+/// A name, of which a number will do; that of the block's entry in `others` if there is no such cell
+/// array.
+std::string nameOf(
+  vtkPolyData* input, const char* name, const Faces& block, const NamesRead& others)
+{
+  const vtkIdType cell = block.firstCell;
   vtkAbstractArray* array = input->GetCellData()->GetAbstractArray(name);
   if (auto* names = vtkStringArray::SafeDownCast(array))
   {
     return names->GetValue(cell);
   }
   auto* numbers = vtkDataArray::SafeDownCast(array);
-  return numbers ? numberText(numbers->GetComponent(cell, 0)) : std::string();
+  return numbers ? numberText(numbers->GetComponent(cell, 0)) : others.of(name, block.blockId);
 }
 
 /// A whole number of an enumeration, as a double that its own check can refuse.
@@ -327,6 +376,33 @@ void writeRocks(std::span<const ReleasedRock> rocks, vtkPolyData* output)
   output->SetPolys(polygons);
 }
 
+BlockNames::BlockNames(vtkFieldData* field)
+  : block_(addArray<vtkIdTypeArray>(field, kNamedBlock))
+  , material_(addArray<vtkStringArray>(field, "Material"))
+  , sourceName_(addArray<vtkStringArray>(field, "SourceName"))
+{
+}
+
+BlockNames::~BlockNames() = default;
+
+void BlockNames::append(const Rock& rock, const std::string& sourceName)
+{
+  block_->InsertNextValue(rock.blockId);
+  material_->InsertNextValue(rock.material);
+  sourceName_->InsertNextValue(sourceName);
+}
+
+std::set<std::int64_t> namedBlocks(vtkPolyData* input)
+{
+  std::set<std::int64_t> blocks;
+  vtkDataArray* array = input->GetFieldData()->GetArray(kNamedBlock);
+  for (vtkIdType k = 0; array && k < array->GetNumberOfTuples(); ++k)
+  {
+    blocks.insert(std::int64_t(array->GetComponent(k, 0)));
+  }
+  return blocks;
+}
+
 std::vector<ReleasedRock> readRocks(vtkPolyData* input, const Vec3& origin)
 {
   if (input->GetNumberOfPolys() == 0)
@@ -335,6 +411,7 @@ std::vector<ReleasedRock> readRocks(vtkPolyData* input, const Vec3& origin)
   }
   std::vector<ReleasedRock> rocks;
   std::vector<Faces> blocks = groupByBlock(input);
+  const NamesRead names(input);
   for (Faces& block : blocks)
   {
     stayWanted();
@@ -366,7 +443,7 @@ std::vector<ReleasedRock> readRocks(vtkPolyData* input, const Vec3& origin)
     readNumber(input, "Density", block.firstCell, rock.density);
     readNumber(input, "YoungModulus", block.firstCell, rock.youngModulus);
     readNumber(input, "PoissonRatio", block.firstCell, rock.poissonRatio);
-    rock.material = nameOf(input, "Material", block.firstCell);
+    rock.material = nameOf(input, "Material", block, names);
     readVector(input, "Velocity", block.firstCell, rock.velocity);
     readVector(input, "AngularVelocity", block.firstCell, rock.angularVelocity);
     double shape = double(Shape::File);
@@ -387,7 +464,7 @@ std::vector<ReleasedRock> readRocks(vtkPolyData* input, const Vec3& origin)
         ", it must be a whole number");
     }
     released.sourceId = std::int64_t(source);
-    released.sourceName = nameOf(input, "SourceName", block.firstCell);
+    released.sourceName = nameOf(input, "SourceName", block, names);
     if (released.sourceName.empty())
     {
       released.sourceName = "source " + std::to_string(released.sourceId);

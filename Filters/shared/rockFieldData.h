@@ -30,17 +30,33 @@
 ///
 /// Every cell of a block repeats the block's values, so that any of VTK's filters can cut, move and
 /// append rocks and they stay whole.
+///
+/// Rocks that move in time have no text on cells: VTK's temporal interpolator takes each cell array
+/// for numbers and ends the program. Their names are in field arrays, one entry per block:
+///
+/// | array      | on    | what                                   |
+/// |------------|-------|----------------------------------------|
+/// | NamedBlock | field | BlockId of the block named there       |
+/// | Material   | field | as above                               |
+/// | SourceName | field | as above                               |
 
 #include "geometry/shapes.h"
 #include "rock/Rock.h"
 
+#include "vtkSmartPointer.h" // for arrays
+
+#include <cstdint>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
 
 class vtkCellArray;
+class vtkFieldData;
+class vtkIdTypeArray;
 class vtkPoints;
 class vtkPolyData;
+class vtkStringArray;
 
 namespace rockfall::filters
 {
@@ -61,6 +77,24 @@ void appendFaces(const Polyhedron& shape, const Mat3& rotation, const Vec3& shif
 
 /// Writes rocks, their positions being world coordinates.
 void writeRocks(std::span<const ReleasedRock> rocks, vtkPolyData* output);
+
+/// Names of blocks, in field data.
+class BlockNames
+{
+public:
+  /// Adds the arrays to `field`.
+  explicit BlockNames(vtkFieldData* field);
+  ~BlockNames();
+
+  void append(const Rock& rock, const std::string& sourceName);
+
+private:
+  vtkSmartPointer<vtkIdTypeArray> block_;
+  vtkSmartPointer<vtkStringArray> material_, sourceName_;
+};
+
+/// Blocks of the field array NamedBlock; empty if it is not there.
+std::set<std::int64_t> namedBlocks(vtkPolyData* input);
 
 /// Reads rocks from polygons; `origin` is taken off the world coordinates first. Polydata without
 /// BlockId is one block; properties without an array have their defaults. Throws DataError or

@@ -9,6 +9,7 @@
 #include "shared/arrays.h"
 #include "shared/failure.h"
 #include "shared/inputContent.h"
+#include "shared/rockFieldData.h"
 #include "shared/terrainFieldData.h"
 #include "simulation/motion.h"
 
@@ -18,6 +19,8 @@
 
 #include <algorithm>
 #include <optional>
+#include <set>
+#include <span>
 #include <tuple>
 
 namespace rockfall::filters
@@ -68,6 +71,7 @@ std::string takenInstead(vtkPolyData* input)
 {
   vtkFieldData* cells = input->GetCellData();
   const Rock rock;
+  const std::set<std::int64_t> named = namedBlocks(input);
   // Of blocks that have fallen nothing more is drawn.
   const bool drawn = !cells->GetAbstractArray("State");
   const std::pair<const char*, std::string> instead[] = {
@@ -77,7 +81,7 @@ std::string takenInstead(vtkPolyData* input)
     { "PoissonRatio", "ν " + numberText(rock.poissonRatio) },
     { "Velocity", "no velocity" },
     { "AngularVelocity", "no spin" },
-    { "Material", "no material" },
+    { named.empty() ? "Material" : nullptr, "no material" },
     { "SourceId", "source 0" },
     { drawn ? "PositionDeviation" : nullptr, "no deviation of the place" },
     { drawn ? "AttitudeLaw" : nullptr, "the attitude as it is" },
@@ -94,6 +98,25 @@ std::string takenInstead(vtkPolyData* input)
   }
   return missing.empty() ? ""
                          : "The Rocks input has no cell arrays " + missing + ": taken are " + taken;
+}
+
+/// Of rocks that bring names in field arrays: which of them have none there, as a note; empty if
+/// all have.
+std::string namesLost(vtkPolyData* input, std::span<const Rock> rocks)
+{
+  const std::set<std::int64_t> named = namedBlocks(input);
+  if (named.empty() || input->GetCellData()->GetAbstractArray("Material"))
+  {
+    return "";
+  }
+  const auto lost = std::count_if(
+    rocks.begin(), rocks.end(), [&](const Rock& rock) { return !named.contains(rock.blockId); });
+  return lost == 0 ? ""
+                   : "The field arrays NamedBlock, Material and SourceName of the Rocks input name "
+                     "nothing of " +
+      std::to_string(lost) + " of " + std::to_string(rocks.size()) +
+      " blocks, as filters that append keep those of their first input only: they have no material "
+      "and are of \"source\" and its number";
 }
 
 } // namespace
@@ -231,10 +254,12 @@ void KeptRun::prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const 
         frame.sourceNames.push_back(std::move(rock.sourceName));
       }
       tellGone(gone, std::int64_t(frame.rocks.size()), ranks);
-      const std::string instead = takenInstead(released);
-      if (!instead.empty() && ranks.rank() == 0)
+      for (const std::string& note : { takenInstead(released), namesLost(released, frame.rocks) })
       {
-        showNote(instead);
+        if (!note.empty() && ranks.rank() == 0)
+        {
+          showNote(note);
+        }
       }
     },
     noMemory);

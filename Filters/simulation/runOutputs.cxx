@@ -87,7 +87,6 @@ struct EnergyArrays
 struct ReleaseArrays
 {
   vtkSmartPointer<vtkDoubleArray> density, young, poisson, rotation;
-  vtkSmartPointer<vtkStringArray> material, sourceName;
   vtkSmartPointer<vtkIdTypeArray> sourceId;
 
   explicit ReleaseArrays(vtkFieldData* data)
@@ -95,8 +94,6 @@ struct ReleaseArrays
     , young(addArray<vtkDoubleArray>(data, "YoungModulus"))
     , poisson(addArray<vtkDoubleArray>(data, "PoissonRatio"))
     , rotation(addArray<vtkDoubleArray>(data, "AngularVelocity", 3))
-    , material(addArray<vtkStringArray>(data, "Material"))
-    , sourceName(addArray<vtkStringArray>(data, "SourceName"))
     , sourceId(addArray<vtkIdTypeArray>(data, "SourceId"))
   {
   }
@@ -109,8 +106,6 @@ struct ReleaseArrays
     this->young->InsertNextValue(rock.youngModulus);
     this->poisson->InsertNextValue(rock.poissonRatio);
     this->rotation->InsertNextTuple(shown.sample.angularVelocity.data());
-    this->material->InsertNextValue(rock.material);
-    this->sourceName->InsertNextValue(frame.sourceNames[number]);
     this->sourceId->InsertNextValue(frame.sourceIds[number]);
   }
 };
@@ -127,9 +122,11 @@ void writeRocks(const RunFrame& frame, std::span<const ShownRock> rocks, vtkPoly
   const auto shape = addArray<vtkIntArray>(output->GetCellData(), "Shape");
   const auto volume = addArray<vtkDoubleArray>(output->GetCellData(), "Volume");
   ReleaseArrays release(output->GetCellData());
+  BlockNames names(output->GetFieldData());
   for (const ShownRock& shown : rocks)
   {
     const Rock& rock = frame.rocks[std::size_t(shown.rock)];
+    names.append(rock, frame.sourceNames[std::size_t(shown.rock)]);
     // The volume may be one of this iteration.
     const bool drawn = rock.uncertainty.volume.law != VolumeLaw::Fixed;
     const Polyhedron scaled = drawn ? rock.shape.withVolume(shown.volume) : Polyhedron();

@@ -104,7 +104,7 @@ TEST_F(TestContinuedRuns, InFlightTheRockGoesOnToTheSamePlace)
       }
     }
     auto* material =
-      vtkStringArray::SafeDownCast(first->GetCellData()->GetAbstractArray("Material"));
+      vtkStringArray::SafeDownCast(first->GetFieldData()->GetAbstractArray("Material"));
     ASSERT_TRUE(material);
     EXPECT_EQ(material->GetValue(0), "slag");
     auto* table = vtkTable::SafeDownCast(next->GetOutputDataObject(3));

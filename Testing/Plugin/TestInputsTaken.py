@@ -8,9 +8,9 @@ from helpers import columns_of, delete_sources, errors_of, messages_of, write_te
 
 from paraview import servermanager
 from paraview.simple import (
-    AppendDatasets, Box, DEMtoCFEMesh, DispersionAngle, DrawnStructure, GroupDatasets, GrowingPaths,
+    AppendDatasets, AppendGeometry, Box, DEMtoCFEMesh, DispersionAngle, DrawnStructure, GroupDatasets, GrowingPaths,
     MergeBlocks, OutputPort, Plane, RockBlocks, RockfallHazardMap, RockfallSimulation, RockRelease,
-    SaveData, Threshold, TrajectoryCollector, TrajectoryProfile, UpdatePipeline, Wavelet)
+    SaveData, TemporalInterpolator, Threshold, TrajectoryCollector, TrajectoryProfile, UpdatePipeline, Wavelet)
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Examples"))
 import rockfall_view  # noqa: E402
@@ -169,3 +169,34 @@ told = messages_of(lambda: RockfallSimulation(
 assert "no cell arrays BlockId, Density" in told and "2500 kg/m³" in told, told
 told = messages_of(lambda: RockfallSimulation(Terrain=slope, Rocks=first.Rocks, EndTime=1).UpdatePipeline())
 assert "no cell arrays" not in told, told
+
+# --- Moving rocks through ParaView's interpolator in time, which takes text on cells for numbers and
+# ends ParaView; and back again with their names.
+
+delete_sources()
+slope = DEMtoCFEMesh(RoughnessDeviation=0, FrictionAngle=25)
+named = RockBlocks(Center=[5, 50, 80], AttitudeLaw="As given", SourceName="cliff", MaterialName="slag")
+fall = RockfallSimulation(Terrain=slope, Rocks=named, EndTime=2, OutputInterval=0.1)
+between = TemporalInterpolator(Input=OutputPort(fall, 0))
+for time in 0.1, 0.25, 0.3:
+    UpdatePipeline(time, between)
+    assert fetch(between).GetNumberOfCells() == 6, time
+fall.UpdatePipeline(0.3)
+rocks = fetch(fall)
+height = rocks.GetBounds()[4]
+UpdatePipeline(0.3, between)
+assert abs(fetch(between).GetBounds()[4] - height) < 1e-9, (fetch(between).GetBounds(), height)
+for data in rocks.GetCellData(), rocks.GetPointData():
+    for k in range(data.GetNumberOfArrays()):
+        assert data.GetArray(k), data.GetAbstractArray(k).GetName()
+again = RockfallSimulation(Terrain=slope, Rocks=OutputPort(fall, 0), EndTime=2)
+again.UpdatePipeline(0.3)
+assert columns_of(fetch(again, 3))["SourceName"] == ["cliff"], columns_of(fetch(again, 3))
+assert fetch(again).GetFieldData().GetAbstractArray("Material").GetValue(0) == "slag"
+# Appended, only the first ones have names: a note tells.
+more = RockBlocks(Center=[5, 60, 80], FirstBlockId=7, SourceName="scree")
+both = AppendGeometry(Input=[OutputPort(fall, 0), more])
+mixed = RockfallSimulation(Terrain=slope, Rocks=both, EndTime=2)
+text = messages_of(lambda: mixed.UpdatePipeline(0.3))
+assert "NamedBlock" in text and "1 of 2 blocks" in text, text
+assert columns_of(fetch(mixed, 3))["SourceName"] == ["cliff", "source 1"], columns_of(fetch(mixed, 3))
