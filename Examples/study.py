@@ -60,10 +60,11 @@ import schema
 import wholefile
 from combine import RESULTS, chunk_iterations, columns_of, combine
 from identity import FILES, Inputs, differences, early, identity, told, values, version
-from together import from_first_rank, make, output, refuse, say, write_by
+from together import from_first_rank, make, output, ranks, refuse, say, write_by
 from wholefile import write_npz, write_polydata, write_text
 
 PARTS = tuple(schema.PROXIES)  # of a study: properties of proxies
+OWN = "Iterations", "FirstIteration", "ShownIteration", "NumberOfThreads"  # of the simulation: this script's
 lock = None  # of the folder, on the first rank
 inputs = None  # the files, on the first rank
 
@@ -81,7 +82,7 @@ def read_study(path):
     study = schema.load(path)
     schema.check(path, study)
     enough.check(path, study)
-    for key in ("Iterations", "FirstIteration", "ShownIteration", "NumberOfThreads"):
+    for key in OWN:
         if key in study.get("simulation", {}):
             refuse(f"{path}: \"{key}\" of simulation is this script's; use \"iterations\", \"chunk\" "
                    "and --threads")
@@ -129,8 +130,8 @@ class Pipeline:
         proxies = {"terrain": self.slope, "rocks": self.rocks, "simulation": self.simulation,
                    "map": self.passages, "lines": self.crossings}
         result = values({part: proxy for part, proxy in proxies.items() if proxy})
-        for name in ("FirstIteration", "Iterations", "NumberOfThreads"):  # this script's
-            result["simulation"].pop(name)
+        for part, name in (*(("simulation", name) for name in OWN), ("map", "FileName")):  # this script's
+            result.get(part, {}).pop(name, None)
         return result
 
     def check(self, folder):
@@ -238,9 +239,9 @@ def claim(chosen, study, in_force):
     if there.get("iterations") != wanted:
         write_text(manifest, json.dumps({
             "program": f"RockfallDDA {version()}", "paraview": str(GetParaViewSourceVersion()),
-            "begun": there.get("begun"), "study": os.path.abspath(chosen.study), "iterations": wanted,
-            "chunk": size, "files": inputs.names(), "values": in_force, "identity": this},
-            indent=1) + "\n")
+            "begun": there.get("begun"), "sessions": there.get("sessions", []),
+            "study": os.path.abspath(chosen.study), "iterations": wanted, "chunk": size,
+            "files": inputs.names(), "values": in_force, "identity": this}, indent=1) + "\n")
     if done != expected(study) and os.path.exists(os.path.join(chosen.folder, RESULTS)):
         os.remove(os.path.join(chosen.folder, RESULTS))  # of fewer iterations
     return done
@@ -318,7 +319,20 @@ def tell_precision(chosen, until):
     from_first_rank(write)
 
 
+def tell_session(chosen, begun, iterations):
+    """In the manifest: what a run of this script simulated, and how long it took, if it came to its end."""
+    def write():
+        manifest = schema.load(manifest_of(chosen))
+        manifest.setdefault("sessions", []).append({
+            "ended": time.strftime("%Y-%m-%d %H:%M:%S %z"), "seconds": round(time.monotonic() - begun, 1),
+            "iterations": iterations, "threads": chosen.threads or os.cpu_count(), "ranks": ranks})
+        write_text(manifest_of(chosen), json.dumps(manifest, indent=1) + "\n")
+
+    from_first_rank(write)
+
+
 def main():
+    begun = time.monotonic()
     chosen = arguments()
     study = from_first_rank(lambda: begin(chosen))
     pipeline = Pipeline(study, chosen.threads)
@@ -327,11 +341,11 @@ def main():
     in_force = pipeline.values()
     done = from_first_rank(lambda: claim(chosen, study, in_force))
     wanted = expected(study)
-    whole = sum(one == there for one, there in zip(wanted, done))
+    whole = sum(one == kept for one, kept in zip(wanted, done))
     if whole:
         say(f"{whole} of {len(done)} chunks are there already")
-    count = sum(one for one, there in zip(wanted, done) if one == there)
-    progress = Progress(count, study["iterations"])
+    count = there = sum(one for one, kept in zip(wanted, done) if one == kept)
+    progress = Progress(there, study["iterations"])
     stems = []
     until = precision(study, pipeline)
     for k, iterations in enumerate(wanted):
@@ -344,6 +358,8 @@ def main():
             break
     tell_precision(chosen, until)
     combine(study, chosen.folder, stems, sum(wanted[:len(stems)]))
+    if count > there:
+        tell_session(chosen, begun, count - there)
     say(f"Done: {chosen.folder}")
 
 

@@ -212,20 +212,21 @@ def told(names, inputs):
 
 
 def values(proxies):
-    """All values in force of proxies by part: those of the study and the defaults."""
+    """All values in force of proxies by part: those of the study and the defaults. A choice by its name."""
+    simple = (bool, int, float, str)
     result = {}
     for part, proxy in proxies.items():
         result[part] = {}
         for name in proxy.ListProperties():
+            if proxy.GetProperty(name).SMProperty.GetInformationOnly():
+                continue
             try:
                 value = proxy.GetPropertyValue(name)
             except (AttributeError, RuntimeError):
                 continue
-            if value is None or isinstance(value, (bool, int, float, str)):
-                result[part][name] = value
-            elif hasattr(value, "__len__") and hasattr(value, "GetData"):
-                data = value.GetData()
-                if isinstance(data, (list, tuple)) and \
-                        all(isinstance(one, (bool, int, float, str)) for one in data):
-                    result[part][name] = list(data)
+            data = value.GetData() if hasattr(value, "GetData") else value
+            if data is None or isinstance(data, simple):
+                result[part][name] = data
+            elif isinstance(data, (list, tuple)) and all(isinstance(one, simple) for one in data):
+                result[part][name] = list(data)
     return result

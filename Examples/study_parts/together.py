@@ -14,6 +14,7 @@ controller = vtkMultiProcessController.GetGlobalController()
 # Without --sym the first rank alone runs the script.
 symmetric = controller is not None and controller.GetNumberOfProcesses() > 1 and \
     servermanager.vtkProcessModule.GetProcessModule().GetSymmetricMPIMode()
+ranks = controller.GetNumberOfProcesses() if symmetric else 1
 first_rank = not symmetric or controller.GetLocalProcessId() == 0
 
 

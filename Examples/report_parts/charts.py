@@ -1,0 +1,92 @@
+"""Exceedance curves at the lines, and how quantities settle as rocks are added."""
+import numpy as np
+
+from enough import quantile_ranks, share_interval
+from figures import GREY, PAGE, STYLES, new, picture, place
+
+POINTS = 24  # of a curve of convergence
+CONFIDENCE = 0.95
+
+
+def exceedance(study, names):
+    """Energy and height of what passes these lines."""
+    figure = new(PAGE, 74.0)
+    table = study.exceedance
+    for k, (column, label) in enumerate((("EnergyInKilojoules", "kinetic energy, kJ"),
+                                         ("HeightOverGround", "height of the lowest point over ground, m"))):
+        axes = place(figure, 14.0 + 88.0 * k, 12.0, 70.0, 52.0)
+        for number, name in names:
+            own = (table["Line"] == number) if len(table) else np.zeros(0, bool)
+            values, share = table[column][own], 100.0 * table["ShareOfPassing"][own]
+            known = ~np.isnan(values)
+            colour, dash = STYLES[number % len(STYLES)]
+            axes.step(values[known], share[known], where="pre", color=colour, ls=dash, lw=1.2, label=name)
+        for share in (50.0, 10.0, 5.0, 1.0):
+            axes.axhline(share, color=GREY, lw=0.4, ls=(0, (4, 3)))
+        axes.set(yscale="log", xlabel=label, ylabel="passing rocks with at least as much, %" if k == 0 else "", ylim=(0.5, 105.0))
+        axes.set_xlim(left=0.0)
+        axes.set_yticks([1, 2, 5, 10, 20, 50, 100], ["1", "2", "5", "10", "20", "50", "100"])
+        axes.minorticks_off()
+        axes.grid(lw=0.2, alpha=0.6)
+        if k == 0:
+            axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncol=min(len(names), 5), frameon=False, borderaxespad=0.2)
+    return picture(figure, "Exceedance at the lines, of the rocks that pass. Dashed: 50, 10, 5 and 1 %, which are the 50, 90, "
+                   "95 and 99 % values.", "Exceedance curves")
+
+
+def quantile(values, q=0.95):
+    """With its interval by order statistics, or NaN where there are too few values."""
+    values = np.sort(values)
+    ranks = quantile_ranks(len(values), q, CONFIDENCE) if len(values) else None
+    low, high = (values[r - 1] for r in ranks) if ranks else (np.nan, np.nan)
+    return (np.quantile(values, q) if len(values) else np.nan), low, high
+
+
+def share(count, total):
+    low, high = share_interval(int(count), int(total), CONFIDENCE)
+    return 100.0 * count / total, 100.0 * low, 100.0 * high
+
+
+def first_passings(study, name):
+    """Iteration and energy (kJ) of each rock that passes a line, when it does so first."""
+    table = study.crossings
+    if not len(table):
+        return np.empty(0), np.empty(0)
+    own = (table["LineName"] == name) & (table["Passing"] == 0)
+    return table["Iteration"][own], table["KineticEnergy"][own] / 1000.0
+
+
+def settling(study, names):
+    """How shares and 95 % values settle: curves over the number of rocks, and what they end with."""
+    iteration = study.rocks["Iteration"]
+    ends = np.unique(np.linspace(1, study.iterations, POINTS).round().astype(int))
+    order = np.unique(iteration)  # a study's iterations are numbered from 0
+    totals = [int((iteration <= order[end - 1]).sum()) for end in ends]
+    curves = [("run-out, 95 %", "m", [quantile(study.rocks["RunOut"][iteration <= order[end - 1]]) for end in ends])]
+    for name in names:
+        when, energy = first_passings(study, name)
+        curves.append((f"{name}: share that passes", "%", [
+            share((when <= order[end - 1]).sum(), total) for end, total in zip(ends, totals)]))
+        curves.append((f"{name}: energy, 95 %", "kJ", [quantile(energy[when <= order[end - 1]]) for end in ends]))
+    return totals, curves
+
+
+def convergence(study, names):
+    totals, curves = settling(study, names)
+    rows = -(-len(curves) // 2)
+    figure = new(PAGE, 46.0 * rows + 4.0)
+    for k, (label, unit, values) in enumerate(curves):
+        axes = place(figure, 16.0 + 88.0 * (k % 2), 46.0 * (rows - 1 - k // 2) + 10.0, 68.0, 32.0)
+        middle, low, high = np.array(values).T
+        axes.fill_between(totals, low, high, color="#b9c9df", lw=0.0)
+        axes.plot(totals, middle, color="#1b4f91", lw=1.2, marker=".", ms=3)
+        axes.set_title(f"{label}, {unit}", loc="left", fontsize=7.5)
+        axes.set_xlim(0.0, totals[-1] * 1.02)
+        axes.set_ylim(bottom=0.0)
+        axes.grid(lw=0.2, alpha=0.6)
+        if k >= len(curves) - 2:
+            axes.set_xlabel("rocks")
+    ends = [{"label": label, "unit": unit, "value": values[-1][0], "low": values[-1][1], "high": values[-1][2]}
+            for label, unit, values in curves]
+    return picture(figure, "Value after so many rocks, and its 95 % interval: shares by Clopper & Pearson, quantiles by order "
+                   "statistics. Where no band is, too few rocks came.", "Convergence"), ends

@@ -1,0 +1,298 @@
+"""Maps with hillshade, contours, legend, scale bar, north arrow and a frame with coordinates, at a round scale."""
+import math
+
+import numpy as np
+from matplotlib.colors import BoundaryNorm, LightSource, ListedColormap, LogNorm, Normalize
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch, Polygon, Rectangle
+import matplotlib.pyplot as plt
+
+from figures import GREY, INK, PAGE, new, picture, place
+
+MOST = 1500  # cells across a picture
+LEFT, RIGHT, TOP = 15.0, 5.0, 4.0  # mm beside the frame
+ROUND = (1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.5, 8.0, 10.0)
+WEAK, MEDIUM, STRONG = "#ffe680", "#e08a2e", "#8b0a1a"  # light to dark, in grey as well
+
+
+def nice(value, steps=(1.0, 2.0, 5.0, 10.0)):
+    """The least of these steps times a power of ten that is not below a value."""
+    power = 10.0 ** math.floor(math.log10(value))
+    return next(step for step in steps if step * power >= value * (1.0 - 1e-9)) * power
+
+
+def fewer(values, extent, most=MOST):
+    """A raster of at most so many cells across, and its extent: of cells that come together the largest value, so
+    that none is lost."""
+    k = -(-max(values.shape) // most)
+    if k <= 1:
+        return values, extent
+    rows, columns = (-(-size // k) for size in values.shape)
+    whole = np.full((rows * k, columns * k), -np.inf)
+    whole[:values.shape[0], :values.shape[1]] = np.where(np.isnan(values), -np.inf, values)
+    largest = whole.reshape(rows, k, columns, k).max(axis=(1, 3))
+    west, east, south, north = extent
+    cell = k * (east - west) / values.shape[1]
+    return np.where(np.isinf(largest), np.nan, largest), (west, west + cell * columns, north - cell * rows, north)
+
+
+class Sheet:
+    """A map of a part of the slope, at the largest round scale at which it fits a width and height in mm."""
+
+    def __init__(self, slope, extent, highest, below):
+        west, east, south, north = extent
+        widest = PAGE - LEFT - RIGHT
+        self.scale = nice(max((east - west) / widest, (north - south) / highest) * 1000.0, ROUND)
+        self.wide, self.high = ((d * 1000.0 / self.scale) for d in (east - west, north - south))
+        self.below = below + 10.0
+        self.figure = new(PAGE, self.high + self.below + TOP)
+        self.left = LEFT + 0.5 * (widest - self.wide)
+        self.axes = place(self.figure, self.left, self.below, self.wide, self.high)
+        self.axes.set(xlim=(west, east), ylim=(south, north))
+        self.slope, self.extent = slope, extent
+        self.handles = []
+        self.relief()
+        self.frame()
+
+    def mm(self, length):
+        """Metres of a length on paper."""
+        return length * self.scale / 1000.0
+
+    def relief(self):
+        slope = self.slope
+        step = max(1, -(-max(slope.heights.shape) // MOST))
+        heights = slope.heights[::step, ::step]
+        cell = slope.cell * step
+        low, high = np.nanmin(heights), np.nanmax(heights)
+        shade = LightSource(azdeg=315, altdeg=45).hillshade(np.where(np.isnan(heights), low, heights), dx=cell, dy=cell)
+        shade[np.isnan(heights)] = np.nan
+        west, north = slope.west - 0.5 * cell, slope.north + 0.5 * cell
+        place_ = (west, west + cell * heights.shape[1], north - cell * heights.shape[0], north)
+        self.axes.imshow(shade, extent=place_, cmap="gray", vmin=-1.3, vmax=1.0, interpolation="bilinear", aspect="auto")
+        self.interval = nice(max((high - low) / 18.0, 0.1), (1.0, 2.0, 2.5, 5.0, 10.0))
+        x = slope.west + cell * np.arange(heights.shape[1])
+        y = slope.north - cell * np.arange(heights.shape[0])
+        levels = np.arange(math.ceil(low / self.interval), math.floor(high / self.interval) + 1) * self.interval
+        if len(levels) and min(heights.shape) > 1:
+            thick = [0.7 if round(level / self.interval) % 5 == 0 else 0.3 for level in levels]
+            lines = self.axes.contour(x, y, heights, levels=levels, colors="#5c4a2e", linewidths=thick)
+            self.axes.clabel(lines, [level for level, width in zip(levels, thick) if width > 0.5], fontsize=5.5, fmt="%g")
+            self.handles.append(Line2D([], [], color="#5c4a2e", lw=0.7, label=f"contours, {self.interval:g} m"))
+
+    def frame(self):
+        axes = self.axes
+        for axis, wide in ((axes.xaxis, self.wide), (axes.yaxis, self.high)):
+            low, high = axes.get_xlim() if axis is axes.xaxis else axes.get_ylim()
+            step = nice((high - low) / max(wide / 28.0, 1.5))
+            axis.set_ticks(np.arange(math.ceil(low / step), math.floor(high / step) + 1) * step)
+            axis.set_major_formatter(lambda v, _: f"{v:.0f}" if step >= 1 else f"{v:.1f}")
+        axes.tick_params(direction="in", top=True, right=True, length=3)
+        axes.tick_params(axis="x", pad=4)
+        for label in axes.get_yticklabels():
+            label.set(rotation=90, va="bottom" if label.get_position()[1] < axes.get_ylim()[0] + self.mm(8.0) else "center")
+        axes.grid(color=INK, alpha=0.18, linewidth=0.3)
+        self.scale_bar()
+        self.north()
+
+    def scale_bar(self):
+        length = nice(self.mm(0.16 * min(self.wide, 200.0)))
+        west, _, south, _ = self.extent
+        x, y, high = west + self.mm(4.0), south + self.mm(6.5), self.mm(1.2)
+        self.axes.add_patch(Rectangle((west + self.mm(1.5), south + self.mm(1.5)), length + self.mm(12.0), self.mm(8.5),
+                                      fc="white", ec=INK, lw=0.4, alpha=0.9, zorder=8))
+        for k in range(4):
+            self.axes.add_patch(Rectangle((x + 0.25 * k * length, y), 0.25 * length, high, fc=(INK, "white")[k % 2],
+                                          ec=INK, lw=0.5, zorder=9))
+        for at in (0.0, 0.5, 1.0):
+            self.axes.text(x + at * length, y - self.mm(0.6), f"{at * length:g}" + (" m" if at == 1.0 else ""),
+                           ha="center", va="top", fontsize=6, zorder=9)
+
+    def north(self):
+        _, east, _, north = self.extent
+        x, y, m = east - self.mm(5.5), north - self.mm(12.5), self.mm
+        self.axes.add_patch(Rectangle((x - m(4.0), y - m(1.5)), m(8.0), m(12.5), fc="white", ec=INK, lw=0.4, alpha=0.9, zorder=8))
+        for side, colour in ((-1, INK), (1, "white")):
+            self.axes.add_patch(Polygon([(x, y + m(6.5)), (x + side * m(2.2), y), (x, y + m(1.4))], closed=True, fc=colour,
+                                        ec=INK, lw=0.5, zorder=9))
+        self.axes.text(x, y + m(7.0), "N", ha="center", va="bottom", fontsize=8, fontweight="bold", zorder=9)
+
+    def mark(self, study, structures=True):
+        """Sources, lines and structures."""
+        slope, axes = study.slope, self.axes
+        if structures and len(slope.trees):
+            places = slope.trees[:, 1:3] + slope.origin
+            places = places[::-(-len(places) // 20000)]
+            axes.plot(*places.T, "o", ms=1.6, mfc="#cfe8cf", mec="#1f5a26", mew=0.35, zorder=4)
+            self.handles.append(Line2D([], [], ls="", marker="o", ms=2.5, mfc="#cfe8cf", mec="#1f5a26", mew=0.5,
+                                       label="stems"))
+        kinds = (("TerrainEmbankmentPoints", slope.embankments, "embankment", dict(color="#7a4b12", lw=3.0)),
+                 ("TerrainBarrierPoints", slope.barriers, "net or fence", dict(color="#0b3d91", lw=1.6, ls=(0, (2, 1)))))
+        for name, counts, label, style in kinds if structures else ():
+            for line in slope.axes_of(name, counts[:, -1]) if len(counts) else ():
+                axes.plot(*line.T, zorder=5, **style)
+            if len(counts):
+                self.handles.append(Line2D([], [], label=label, **style))
+        for line in study.drawn_lines:
+            axes.plot(*line.T, color="white", lw=2.6, zorder=5)
+            axes.plot(*line.T, color="black", lw=1.4, zorder=6)
+        if study.drawn_lines:
+            self.handles.append(Line2D([], [], color="black", lw=1.4, label="lines where passings are counted"))
+        first = study.rocks["Iteration"] == study.rocks["Iteration"].min()
+        places = np.stack([study.rocks[name][first] for name in ("StartX", "StartY")])
+        axes.plot(*places[:, ::-(-places.shape[1] // 5000)], "^", ms=3.2, mfc="white", mec="black", mew=0.6, zorder=7)
+        self.handles.append(Line2D([], [], ls="", marker="^", ms=4, mfc="white", mec="black", mew=0.6, label="releases"))
+
+    def legend(self, bottom, more=()):
+        handles = [*self.handles, *more]
+        box = place(self.figure, 0.0, 0.0, PAGE, bottom)
+        box.axis("off")
+        box.legend(handles=handles, loc="center", ncol=min(len(handles), 4), frameon=False, handlelength=2.2)
+
+    def show(self, values, cell_extent, cmap, norm):
+        values, cell_extent = fewer(values, cell_extent)
+        axes = self.axes
+        limits = axes.axis()
+        image = axes.imshow(np.ma.masked_invalid(values), extent=cell_extent, cmap=cmap, norm=norm, alpha=0.86,
+                            interpolation="nearest", aspect="auto", zorder=2)
+        axes.axis(limits)
+        return image
+
+    def bar(self, image, label, ticks=None):
+        axes = place(self.figure, self.left + 0.1 * self.wide, 14.0, 0.8 * self.wide, 3.0)
+        bar = self.figure.colorbar(image, cax=axes, orientation="horizontal", ticks=ticks)
+        bar.set_label(label, labelpad=1)
+        bar.outline.set_linewidth(0.5)
+        if ticks is not None:
+            axes.set_xticklabels([f"{t:g}" for t in ticks])
+            axes.minorticks_off()
+
+
+def scale_text(sheet):
+    """With thin spaces, as in tables."""
+    return f"1 : {sheet.scale:,.0f}".replace(",", "\u2009")
+
+
+def part(name, low=0.18):
+    """A colour map without its palest colours, which vanish on the relief."""
+    return ListedColormap(plt.get_cmap(name)(np.linspace(low, 1.0, 256)))
+
+
+def around(raster, slope):
+    """Where anything passed, with a margin, within the slope; not narrower than a third of its length."""
+    rows, columns = np.nonzero(raster.data.GetRasterBand(raster.numbers["Rocks"]).ReadAsArray() > 0)
+    if not len(rows):
+        return slope.extent()
+    west, _, _, north = raster.extent
+    box = [west + raster.cell * columns.min(), west + raster.cell * (columns.max() + 1),
+           north - raster.cell * (rows.max() + 1), north - raster.cell * rows.min()]
+    size = max(box[1] - box[0], box[3] - box[2])
+    for low, high in ((0, 1), (2, 3)):
+        more = max(0.06 * size, 0.5 * (size / 3.0 - (box[high] - box[low])))
+        box[low], box[high] = box[low] - more, box[high] + more
+    limits = slope.extent()
+    return max(box[0], limits[0]), min(box[1], limits[1]), max(box[2], limits[2]), min(box[3], limits[3])
+
+
+def site(study, under):
+    """The map sheet, with a line of text under it."""
+    sheet = Sheet(study.slope, study.slope.extent(), 150.0, 17.0)
+    sheet.mark(study)
+    more = []
+    if study.map:
+        west, east, south, north = around(study.map, study.slope)
+        if (east - west) * (north - south) < 0.8 * np.prod([study.slope.east - study.slope.west,
+                                                           study.slope.north - study.slope.south]):
+            sheet.axes.add_patch(Rectangle((west, south), east - west, north - south, fill=False, ec=GREY, lw=1.0, ls="--",
+                                           zorder=6))
+            more = [Patch(fc="none", ec=GREY, ls="--", label="extent of the maps below")]
+    sheet.legend(20.0, more)
+    sheet.figure.text(0.5, 0.0, under, fontsize=6.5, ha="center", va="bottom")
+    return picture(sheet.figure, f"Site, {scale_text(sheet)} where this page is printed at 100 %. Grid north is up; relief "
+                   "lit from the north-west.")
+
+
+def too_few(sheet, raster, quantile):
+    """Hatches cells where too few rocks came for a quantile; whether there are any."""
+    if "HighestQuantile" not in raster:
+        return False
+    highest = raster.band("HighestQuantile")
+    few = np.where(np.isnan(highest), 0.0, (highest < quantile).astype(float))
+    if not few.any():
+        return False
+    few, (west, east, south, north) = fewer(few, raster.extent, 500)
+    few = np.nan_to_num(few)
+    dx, dy = (east - west) / few.shape[1], (north - south) / few.shape[0]
+    x, y = west + dx * (np.arange(few.shape[1]) + 0.5), north - dy * (np.arange(few.shape[0]) + 0.5)
+    if min(few.shape) > 1:
+        limits = sheet.axes.axis()
+        hatched = sheet.axes.contourf(x, y, few, levels=[0.5, 1.5], colors="none", hatches=["///"], zorder=3)
+        for one in getattr(hatched, "collections", [hatched]):
+            one.set(edgecolor="#555555", linewidth=0.0)
+        sheet.axes.axis(limits)
+    return True
+
+
+def powers(low, high):
+    ticks = [m * 10.0 ** e for e in range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1) for m in (1, 3)]
+    return [t for t in ticks if low * 0.999 <= t <= high * 1.001]
+
+
+def of_band(study, name, values, label, text, norm, ticks, cmap, quantile=None):
+    sheet = Sheet(study.slope, around(study.map, study.slope), 78.0, 18.0)
+    image = sheet.show(values, study.map.extent, part(cmap), norm)
+    few = quantile and too_few(sheet, study.map, quantile)
+    sheet.mark(study, structures=False)
+    sheet.bar(image, label, ticks)
+    if few:
+        text += " Hatched: too few rocks came for this quantile, the number is too low."
+    return picture(sheet.figure, f"{text} {scale_text(sheet)}.", name)
+
+
+def classes(study, values, names, text, name, quantile=None):
+    sheet = Sheet(study.slope, around(study.map, study.slope), 78.0, 12.0)
+    values = np.where(values > 0, values, np.nan)
+    sheet.show(values, study.map.extent, ListedColormap([WEAK, MEDIUM, STRONG]), BoundaryNorm([0.5, 1.5, 2.5, 3.5], 3))
+    few = quantile and too_few(sheet, study.map, quantile)
+    sheet.mark(study, structures=False)
+    sheet.handles = []
+    sheet.legend(11.0, [Patch(fc=c, ec=INK, lw=0.4, label=n) for c, n in zip((WEAK, MEDIUM, STRONG), names)] +
+                 ([Patch(fc="none", ec=INK, lw=0.4, hatch="///", label="too few rocks for 95 %")] if few else []))
+    return picture(sheet.figure, f"{text} {scale_text(sheet)}.", name)
+
+
+def results(study):
+    """Maps of all that hazard.tif has of what an office asks for."""
+    raster, made = study.map, []
+    reach = 100.0 * raster.band("ReachProbability")
+    low = max(np.nanmin(np.where(reach > 0, reach, np.nan)), 1e-4)
+    low = 10.0 ** math.floor(math.log10(low))
+    made.append(of_band(study, "ReachProbability", reach, "% of the released rocks", "Reach probability, of one released "
+                        "rock.", LogNorm(low, 100.0), powers(low, 100.0), "YlGnBu"))
+    if "KineticEnergy95" in raster:
+        energy = raster.band("KineticEnergy95") / 1000.0
+        high = nice(max(np.nanmax(energy), 10.0))
+        made.append(of_band(study, "KineticEnergy95", np.clip(energy, 1e-3, None), "kJ", "Kinetic energy, 95 % quantile, "
+                            "of translation and rotation.", LogNorm(max(high / 1e3, 1e-3), high),
+                            powers(max(high / 1e3, 1e-3), high), "YlOrRd", 95))
+    if "HeightOverGround95" in raster:
+        height = np.clip(raster.band("HeightOverGround95"), 0.0, None)
+        made.append(of_band(study, "HeightOverGround95", height, "m", "Height of the lowest point of the rocks over ground, "
+                            "95 % quantile.", Normalize(0.0, nice(max(np.nanmax(height), 0.1), (1, 2, 3, 5, 10))), None,
+                            "PuRd", 95))
+    weak, strong = study.values.get("map", {}).get("EnergyThresholds") or (30, 300)
+    names = [f"weak, below {weak:g} kJ", f"medium, {weak:g} to {strong:g} kJ", f"strong, above {strong:g} kJ"]
+    periods = sorted((int(name[9:-1]), name) for name in raster.numbers
+                     if name.startswith("Intensity") and name[9:-1].isdigit())
+    for years, name in periods:
+        made.append(classes(study, raster.band(name), names, f"Intensity class of the scenario of {years} years.", name))
+    if "AnnualFrequency" in raster:
+        rate = raster.band("AnnualFrequency")
+        rate = np.where(rate > 0, rate, np.nan)
+        low, high = (10.0 ** edge for edge in (math.floor(math.log10(np.nanmin(rate))), math.ceil(math.log10(np.nanmax(rate)))))
+        made.append(of_band(study, "AnnualFrequency", rate, "1/a", "Annual frequency of rocks.", LogNorm(low, high),
+                            powers(low, high), "YlGnBu"))
+    if not periods and "KineticEnergy95" in raster:
+        made.append(classes(study, np.where(np.isnan(energy), 0, 1 + (energy >= weak) + (energy > strong)), names,
+                            "Classes of the 95 % energy. No frequency is in them: where one rock comes, it is of this class.",
+                            "Classes", 95))
+    return made

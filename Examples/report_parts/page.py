@@ -1,0 +1,44 @@
+"""The page: figures and tables put into report.html by Jinja."""
+import os
+import time
+
+import jinja2
+
+import charts
+import maps
+import tables
+from finished import name_of_crs, osr
+from identity import version
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+
+
+def duration(seconds):
+    minutes, seconds = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours} h {minutes:02d} min" if hours else f"{minutes} min {seconds:02d} s" if minutes else f"{seconds} s"
+
+
+def make(study, title=None, author=""):
+    """The text of the whole page."""
+    names = [str(name) for name in study.lines["LineName"]] if study.lines else []
+    curve, ends = charts.convergence(study, names)
+    sessions = study.manifest.get("sessions") or []
+    settings = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True,
+                                  lstrip_blocks=True, undefined=jinja2.StrictUndefined)
+    settings.filters["number"] = tables.number
+    slope = study.slope
+    date = time.strftime("%Y-%m-%d")
+    crs = name_of_crs(osr.SpatialReference(slope.crs)) if slope.crs else "local coordinates"
+    return settings.get_template("report.html").render(
+        title=title or os.path.splitext(study.name)[0], author=author, date=date, study=study,
+        version=version(), sessions=sessions, seconds=duration(sum(one["seconds"] for one in sessions)),
+        crs=crs, size=(slope.heights.shape[1], slope.heights.shape[0]), cell=slope.cell,
+        site=maps.site(study, f"Coordinates: {crs}, m.   {study.name}, {date}, {study.program}"),
+        maps=maps.results(study) if study.map else [],
+        ground=tables.ground(study), rocks=tables.rocks(study), frequencies=tables.frequencies(study),
+        structures=tables.structures(study), lines=tables.lines(study) if study.lines else [],
+        exceedance=[charts.exceedance(study, some) for some in tables.slices(list(enumerate(names)))],
+        convergence=curve, ends=ends, fates=tables.fates(study), notes=tables.notes(study),
+        values=tables.values_in_force(study), preset=tables.has_preset(study), total=len(study.rocks),
+        sources=int((study.rocks["Iteration"] == study.rocks["Iteration"].min()).sum()))

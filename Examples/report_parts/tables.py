@@ -1,0 +1,233 @@
+"""Tables of a report, as rows of texts."""
+import math
+import os
+import re
+
+import numpy as np
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+MODELS = ("whole velocity", "normal and tangential", "speed-dependent")
+SIDE_BY_SIDE = 5  # columns of a table that fit on a page
+# Of lines.csv: column, what a person reads, unit, factor
+QUANTITIES = (("KineticEnergy", "energy", "kJ", 1e-3), ("HeightOverGround", "height of the lowest point", "m", 1.0),
+              ("Speed", "speed", "m/s", 1.0))
+STATISTICS = (("50", "50 %"), ("90", "90 %"), ("95", "95 %"), ("99", "99 %"), ("Maximum", "largest"), ("Mean", "mean"),
+              ("Deviation", "standard deviation"))
+LINES = (("Rocks", "rocks that pass", "", 1.0), ("Passings", "passings", "", 1.0), ("Share", "share of the released", "%", 100.0),
+         ("ShareError", "± standard error of it", "%", 100.0), ("HighestQuantile", "highest quantile with enough rocks", "%", 1.0),
+         ("BarrierHeight", "barrier: height", "m", 1.0), ("BarrierCapacity", "barrier: capacity", "kJ", 1.0),
+         ("Caught", "barrier: rocks that it catches", "", 1.0),
+         ("CaughtShare", "barrier: catches of the passing", "%", 100.0),
+         ("CaughtShareError", "± standard error of it", "%", 100.0),
+         *((name + end, f"{text}, {stat}", unit, factor) for name, text, unit, factor in QUANTITIES
+           for end, stat in STATISTICS))
+YIELDING = (("M_E", "MN/m²"), ("scar factor", ""), ("density", "kg/m³"), ("C_s", ""), ("spin drag", ""), ("μ min", ""),
+            ("μ max", ""), ("κ", "1/m"), ("β", "1/s"), ("μ_r", ""), ("softness, deviation", ""), ("softness, length", "m"))
+
+
+def number(value, digits=3):
+    """For a person: so many digits that say something, no exponent from 0.001 to a million."""
+    value = float(value)
+    if not math.isfinite(value):
+        return "–"
+    if value == 0.0:
+        return "0"
+    places = max(0, digits - 1 - math.floor(math.log10(abs(value))))
+    if places > digits + 2 or abs(value) >= 1e7:
+        return f"{value:.{digits - 1}e}"
+    text = f"{round(value, digits - 1 - math.floor(math.log10(abs(value)))):,.{places}f}".replace(",", "\u2009")
+    return text.rstrip("0").rstrip(".") if "." in text else text
+
+
+def slices(items, size=SIDE_BY_SIDE):
+    return [items[k:k + size] for k in range(0, len(items), size)]
+
+
+def side_by_side(heads, rows):
+    """Tables with a column for each head, as many as fit: [(heads, [(label, unit, cells)])]."""
+    return [{"title": "", "heads": [heads[k] for k in some],
+             "rows": [(label, unit, [cells[k] for k in some]) for label, unit, cells in rows]}
+            for some in slices(range(len(heads)))]
+
+
+def spread(value, deviation, factor=1.0):
+    return number(value * factor) + (f" ± {number(deviation * factor)}" if deviation else "")
+
+
+def ground(study):
+    """Restitution and friction by class, with where the numbers come from."""
+    slope, made = study.slope, []
+    own, yielding = slope.numbers("TerrainMaterial").ravel(), slope.numbers("TerrainYielding")
+    roughness = slope.numbers("TerrainRoughness").ravel()
+    source = source_of(study)
+    first = [(own[0], own[1], int(own[7]), own[8], own[9])]
+    heads, share = shares(slope, "TerrainRestitution")
+    rows = first + [(c[0], c[1], int(c[2]), c[3], c[4]) for c in slope.numbers("TerrainRestitutionClasses")]
+    rough = [roughness, *slope.numbers("TerrainRestitutionRoughness")] if len(roughness) else []
+    table = [("share of the slope", "%", share), ("model", "", [MODELS[r[2]] for r in rows]),
+             ("Rv, or Rn", "", [spread(r[0], r[1]) for r in rows]),
+             ("Rt", "", [number(r[3]) if r[2] else "–" for r in rows]),
+             ("K", "m/s", [number(r[4]) if r[2] == 2 else "–" for r in rows])]
+    for k, (label, unit) in enumerate(YIELDING[:yielding.shape[1]]):
+        column = yielding[:, k]
+        if np.any(column[yielding[:, 0] > 0]) or (k >= 5 and k <= 9 and np.any(column)):
+            table.append((label, unit, [number(v) if yielding[i, 0] > 0 or 5 <= k <= 9 and v else "–" for i, v in enumerate(column)]))
+    if rough and all(len(r) == 6 for r in rough) and len(rough) == len(rows):
+        table += [("roughness, mean and deviation", "m", [spread(r[0], r[1]) for r in rough]),
+                  ("its length", "m", [number(r[2]) for r in rough]),
+                  ("obstacles of 70, 20, 10 %", "m", [", ".join(map(number, r[3:])) if any(r[3:]) else "–" for r in rough])]
+    table = [row for row in table if any(cell != "–" for cell in row[2])]
+    table.append(("source of the numbers", "", [source] + [table_of(study, "Restitution")] * (len(rows) - 1)))
+    made += [{**one, "title": "Restitution and yielding"} for one in side_by_side(heads, table)]
+    heads, share = shares(slope, "TerrainJoint")
+    rows = [own[2:5], *slope.numbers("TerrainJointClasses")]
+    degrees = 180.0 / math.pi
+    table = [("share of the slope", "%", share), ("friction angle φ", "°", [spread(r[0], r[1], degrees) for r in rows]),
+             ("cohesion", "N", [number(r[2]) for r in rows]),
+             ("source of the numbers", "", [source] + [table_of(study, "Joint")] * (len(rows) - 1))]
+    return made + [{**one, "title": "Friction"} for one in side_by_side(heads, table)]
+
+
+def shares(slope, stem):
+    """Names of the classes, the slope's own first, and what share of its cells each has."""
+    names = slope.texts(stem + "Names")
+    cells = slope.numbers(stem + "Class").ravel().astype(int)
+    count = np.bincount(cells, minlength=len(names) + 1) if len(cells) else np.array([1] + [0] * len(names))
+    return ["elsewhere" if names else "all of the slope", *names], [number(100.0 * c / count.sum()) for c in count]
+
+
+def table_of(study, kind):
+    files = study.files.get(f"terrain {kind}Table")
+    return f"table {os.path.basename(files[0])}" if files else "–"
+
+
+def has_preset(study):
+    preset = study.given["terrain"].get("Preset", 0)
+    return preset != 0 and not str(preset).startswith("None")
+
+
+def source_of(study):
+    """Of the slope's own numbers: the preset with what supports it, or that they were typed."""
+    if not has_preset(study):
+        return "typed in the study, or the program's default"
+    name = study.slope.ground
+    path = os.path.join(HERE, "..", "..", "docs", "materials.md")
+    if os.path.exists(path):
+        with open(path, encoding="utf-8") as file:
+            for line in file:
+                cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
+                if len(cells) == 11 and name.startswith(cells[0]) and cells[0] != "Preset":
+                    sources = re.sub(r"\[(.*?)\]\(.*?\)", r"\1", cells[10])
+                    return f"preset {cells[0]} ({cells[1]}): {sources}"
+    return f"preset {name}"
+
+
+def rocks(study):
+    """By shape: how many, how large."""
+    table, made = study.rocks, []
+    for shape in sorted(set(table["Shape"])):
+        own = table["Shape"] == shape
+        volume, mass = table["Volume"][own], table["Mass"][own]
+        made.append([str(shape), number(own.sum(), 7), *(number(f(volume)) for f in (np.min, np.median, np.max)),
+                     *(number(f(mass)) for f in (np.min, np.median, np.max))])
+    return made
+
+
+def frequencies(study):
+    """What the study says of how often rocks fall; nothing if it says nothing."""
+    made = [(part, name, value) for part in study.given if isinstance(study.given[part], dict)
+            for name, value in study.given[part].items() if re.search("Frequency|ReturnPeriod|EnergyThreshold", name)]
+    if "Frequency" in study.rocks:
+        first = study.rocks["Iteration"] == study.rocks["Iteration"].min()
+        made.append(("rocks", "Frequency of all releases, 1/a", number(study.rocks["Frequency"][first].sum())))
+    return made
+
+
+def structures(study):
+    slope, made = study.slope, []
+    if len(slope.trees):
+        area = (slope.east - slope.west) * (slope.north - slope.south) / 1e4
+        cm, capacity = slope.trees[:, 3] * 100.0, slope.trees[:, 5] / 1000.0
+        made.append(("stems", f"{number(len(cm), 7)} on {number(area)} ha of map, diameter {number(cm.min())} to "
+                     f"{number(cm.max())} cm, mean {number(cm.mean())} cm; energy that breaks one "
+                     f"{span(capacity)}"))
+    for row in slope.embankments:
+        size = f"{number(row[1])} m high" if row[1] else f"crest at {number(row[2], 6)} m"
+        made.append((f"embankment {row[0]:.0f}", f"{size}, crest {number(row[3])} m wide, slopes (across to up) {number(row[4])} "
+                     f"uphill, {number(row[5])} downhill"))
+    for row in slope.barriers:
+        made.append((f"net or fence {row[0]:.0f}", f"{number(row[1])} m high, capacity {span(row[2:3] / 1000.0)}" +
+                     (", records only" if row[4] else "")))
+    return made
+
+
+def span(capacity):
+    if np.all(capacity < 0):
+        return "without limit"
+    low, high = number(capacity.min()), number(capacity.max())
+    return f"{low} kJ" if low == high else f"{low} to {high} kJ"
+
+
+def lines(study):
+    """The design table: a column for each line, a row for each quantity, in kJ where there is energy."""
+    table, rows = study.lines, []
+    known = {name for name, *_ in LINES}
+    names = [(name, *rest) for name, *rest in LINES if name in table]
+    names += [(name, name, "", 1.0) for name in table.names
+              if name not in known and name not in ("Line", "LineName", "MovingBefore", "OverEdgeBefore", "InNodataBefore")]
+    for name, label, unit, factor in names:
+        values = table[name]
+        rows.append((label, unit, [number(v * factor) if values.dtype.kind == "f" else str(v) for v in values]))
+    return side_by_side([str(name) for name in table["LineName"]], rows)
+
+
+def fates(study):
+    names, counts = np.unique(study.rocks["Fate"], return_counts=True)
+    return [(str(name), int(count), number(100.0 * count / len(study.rocks))) for name, count in zip(names, counts)]
+
+
+def notes(study):
+    """What a reader should know before the numbers."""
+    made = list(study.slope.notes)
+    rocks_, total = study.rocks, len(study.rocks)
+    unmoved = int((rocks_["RunOut"] < 0.1).sum())
+    if unmoved:
+        made.append(f"{unmoved} of {total} rocks got no farther than 0.1 m.")
+    steps = rocks_["ContactSteps"].sum()
+    unsettled = rocks_["UnsettledSteps"].sum() / steps if steps else 0.0
+    if unsettled > 0.003:
+        made.append(f"{number(1000 * unsettled)} of 1000 steps with contacts had not settled: a reason for doubt.")
+    if study.lines:
+        for k, name in enumerate(study.lines["LineName"]):
+            count = int(study.lines["Rocks"][k])
+            if count == 0:
+                made.append(f"No rock reached line {name}: of {total} rocks the share that passes is below "
+                            f"{number(300.0 / total)} % with 95 % confidence.")
+            elif study.lines["HighestQuantile"][k] < 95:
+                made.append(f"{count} rocks passed line {name}: too few for its 95 % values, which take 59, and 99 %, which "
+                            "take 299. Those numbers are too low.")
+            for column, text in (("MovingBefore", "still moved at the end of the simulated time"),
+                                 ("OverEdgeBefore", "left over the edge of the slope"),
+                                 ("InNodataBefore", "were lost in nodata")):
+                lost = int(study.lines[column][k])
+                if lost:
+                    made.append(f"{lost} rocks {text} before they came to line {name}.")
+    return made
+
+
+def values_in_force(study):
+    """By part: names and values; whether the study sets them."""
+    made = []
+    for part, values in study.values.items():
+        rows = []
+        for name, value in sorted(values.items()):
+            given = study.given.get(part)
+            told = isinstance(given, dict) and name in given
+            if value in ("", [], None) and not told or name.endswith(("Values",)) or "unfinished" in str(value):
+                continue
+            if f"{part} {name}" in study.files:
+                value = os.path.basename(study.files[f"{part} {name}"][0])
+            text = ", ".join(map(str, value)) if isinstance(value, list) else str(value)
+            rows.append((name, text if len(text) < 60 else text[:57] + "…", told))
+        made.append((part, rows))
+    return made

@@ -1,0 +1,155 @@
+"""A report of a finished study is one page that holds all it shows, with the study's own numbers; what is wrong with
+a file of the study is one line that names file and field."""
+
+import base64
+import html
+import json
+import os
+import re
+import shutil
+import sys
+
+import numpy as np
+
+from helpers import delete_sources, incline, rows_of, run_script, write_grid, write_text
+
+EXAMPLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Examples")
+sys.path[:0] = [os.path.join(EXAMPLES, "study_parts"), os.path.join(EXAMPLES, "report_parts")]
+import charts
+import maps
+import tables
+from identity import content
+
+write_grid("hill.asc", incline())
+write_text("rocks.csv", "x,y,z,shape,volume\n" + "\n".join(
+    f"700025,{4000060 + 10 * k},{146 + k},{shape},{0.5 + 0.25 * k}"
+    for k, shape in enumerate(["cube", "icosahedron", "octahedron"])) + "\n")
+write_text("road.csv", "WKT,name,height\n" + "\n".join(
+    f'"LINESTRING({x} 3999990,{x} 4000230)","<b>road</b> {x}",{h}' for x, h in ((700045, 1), (700290, 3))) + "\n")
+write_text("net.csv", 'WKT,height,capacity\n"LINESTRING(700100 4000040,700100 4000070)",4,1000\n')
+study = {
+    "terrain": {"FileName": "hill.asc", "Preset": "Talus (assumed)", "BarrierFile": "net.csv"},
+    "rocks": {"FileName": "rocks.csv"},
+    "simulation": {"EndTime": 6.0, "Seed": 77, "TrajectoryOutput": "Thinned"}, "map": {"CellSize": 5.0},
+    "lines": {"FileName": "road.csv", "BarrierCapacity": 150.0}, "iterations": 4, "chunk": 2}
+
+
+def run(script, *arguments):
+    said, message = run_script(os.path.join(EXAMPLES, script), *arguments)
+    delete_sources()
+    return said if message is None else message
+
+
+def finish(folder, description):
+    shutil.rmtree(folder, ignore_errors=True)
+    write_text("study.json", json.dumps(description))
+    said = run("study.py", folder, "study.json")
+    assert "Done" in said, said
+
+
+finish("whole", study)
+said = run("report.py", "whole", "--title", "Hill & <dale>", "--author", "Office")
+assert "Report: " + os.path.join("whole", "report.html") in said, said
+with open("whole/report.html", encoding="utf-8") as file:
+    page = file.read()
+
+# One file: all pictures are in it, nothing is fetched, no script runs, names are text.
+sources = re.findall(r'src="([^"]*)"', page)
+assert len(sources) == 7, len(sources)  # site, reach, energy, height, classes, exceedance, convergence
+for source in sources:
+    assert source.startswith("data:image/png;base64,")
+    assert base64.b64decode(source.split(",", 1)[1], validate=True).startswith(b"\x89PNG")
+assert not re.search(r"<script|<link|@import|url\(|https?://", page)
+assert "Hill &amp; &lt;dale&gt;" in page and "<b>road" not in page
+text = " ".join(html.unescape(re.sub(r"<[^>]*>", " ", page)).split())
+
+# The study's own: inputs, ground, rocks, structures, lines, versions.
+for name in ("hill.asc", "hill.prj", "rocks.csv", "road.csv", "net.csv"):
+    assert name in text and content(name) in text, name
+for word in ("WGS 84 / UTM zone 16N", "preset Talus (assumed): Lu et al. (2019)", "seed 77", "31 × 21 nodes every 10 m",
+             "12 rocks, 3 releases in 4 iterations", "4 m high, capacity 1 000 kJ", "Office",
+             "RockfallDDA", "gives no frequency of release", "icosahedron 4 0.75 0.75 0.75",
+             "No rock reached line <b>road</b> 700290: of 12 rocks the share that passes is below 25 %"):
+    assert word in text, word
+sections = re.findall(r"<h2>(\d+) ", page)
+assert sections == [str(k) for k in range(1, 12)], sections
+line, other = rows_of("whole/lines.csv")
+energy = tables.number(float(line["KineticEnergy95"]) / 1000.0).replace("\u2009", " ")
+assert f"energy, 95 % kJ {energy} –" in text, energy
+assert f"rocks that pass {line['Rocks']} 0" in text
+share = 100.0 * int(line["Rocks"]) / 12.0
+assert re.search(rf"road</b> 700045: share that passes % {re.escape(tables.number(share))} [\d.]+ to", text), share
+fates = {row["Fate"] for row in rows_of("whole/summary.csv")}
+for fate in fates:
+    count = sum(row["Fate"] == fate for row in rows_of("whole/summary.csv"))
+    assert f"{fate} {count} {tables.number(100.0 * count / 12.0)}" in text, fate
+
+# Choices are in the values in force by their names, and how long it took is told.
+with open("whole/manifest.json") as file:
+    manifest = json.load(file)
+assert manifest["values"]["terrain"]["Preset"] == "Talus (assumed)"
+assert "TimestepValues" not in manifest["values"]["simulation"]
+assert [one["iterations"] for one in manifest["sessions"]] == [4] and manifest["sessions"][0]["seconds"] > 0
+assert "Preset: Talus (assumed)" in text and "model normal and tangential" in text
+assert "numbers of section 3 count" in text
+
+# Numbers, scales, rasters.
+for value, shown in ((0, "0"), (1234.5, "1\u2009230"), (0.012345, "0.0123"), (99.96, "100"), (2.5, "2.5"),
+                     (float("nan"), "–"), (1.5e9, "1.50e+09"), (1e-9, "1.00e-09"), (100, "100")):
+    assert tables.number(value) == shown, (value, tables.number(value))
+assert [maps.nice(v) for v in (0.9, 1.0, 1.1, 2.1, 21)] == [1.0, 1.0, 2.0, 5.0, 50.0]
+cells = np.full((3, 5), np.nan)
+cells[0, 4], cells[2, 0] = 7.0, -2.0
+small, extent = maps.fewer(cells, (0.0, 10.0, 0.0, 6.0), 3)
+assert small.shape == (2, 3) and small[0, 2] == 7.0 and small[1, 0] == -2.0 and np.isnan(small).sum() == 4
+assert extent == (0.0, 12.0, -2.0, 6.0), extent
+assert charts.share(0, 100)[:2] == (0.0, 0.0) and abs(charts.share(0, 100)[2] - 100 * (1 - 0.025 ** 0.01)) < 1e-6
+assert charts.quantile(np.arange(1.0, 11.0))[0] == np.quantile(np.arange(1.0, 11.0), 0.95)
+assert np.isnan(charts.quantile(np.arange(1.0, 11.0))[1])
+
+# A study without map, lines and files.
+finish("bare", {"simulation": {"EndTime": 2.0}, "iterations": 1, "chunk": 1})
+assert "Report: other.html" in run("report.py", "bare", "--output", "other.html")
+with open("other.html", encoding="utf-8") as file:
+    bare = file.read()
+for word in ("The study makes no map", "The study has no lines", "the test slope", "local coordinates"):
+    assert word in bare, word
+
+
+# What is wrong is told in one line.
+def refused(word, name, change=None):
+    shutil.rmtree("broken", ignore_errors=True)
+    shutil.copytree("whole", "broken")
+    if change is None:
+        os.remove(os.path.join("broken", name))
+    else:
+        with open(os.path.join("broken", name), "rb") as file:
+            data = file.read()
+        with open(os.path.join("broken", name), "wb") as file:
+            file.write(change(data))
+    message = run("report.py", "broken")
+    assert word in message and "broken" in message and "\n" not in message.strip(), (word, message)
+
+
+def replaced(old, new):
+    return lambda data: data.replace(old.encode(), new.encode(), 1)
+
+
+assert "nowhere is not the folder of a study" in run("report.py", "nowhere")
+refused("it has no manifest.json", "manifest.json")
+refused("the study is not finished", "results.json")
+refused("is not JSON", "manifest.json", lambda data: data[:100])
+refused('"files" is 3, it must be an object', "manifest.json", lambda data: json.dumps(
+    {**json.loads(data), "files": 3}).encode())
+refused("summary.csv: there is no column RunOut", "summary.csv", replaced("RunOut", "RunOff"))
+refused("summary.csv: row 2 has", "summary.csv", lambda data: data.replace(b",", b";").replace(b";", b",", 39))
+refused("summary.csv: column Iteration has \"x\"", "summary.csv", replaced("\n1,0,0,", "\n1,0,x,"))
+refused("lines.csv: there is no column Share", "lines.csv", replaced("Share", "Shares"))
+refused("hazard.tif", "hazard.tif", lambda data: b"no raster" + data[200:])
+refused("lines.csv: No such file", "lines.csv")
+write_grid("hill.asc", incline(drop=5.1))
+refused(f"terrain FileName: {os.path.abspath('hill.asc')} changed since the study", "manifest.json", replaced("", ""))
+os.remove("road.csv")
+write_grid("hill.asc", incline())
+refused(f"lines FileName: {os.path.abspath('road.csv')} is not there any more", "manifest.json", replaced("", ""))
+print("a report says what the study has")
