@@ -117,6 +117,11 @@ Crossing crossingAt(
   crossing.kineticEnergy = piece.kineticEnergy(s);
   crossing.translationalEnergy = piece.translationalEnergy(s);
   crossing.heightOverGround = heightAt(piece, s, terrain);
+  if (terrain)
+  {
+    crossing.centreOverGround =
+      crossing.position.z() - terrain->elevation(crossing.position.x(), crossing.position.y());
+  }
   const Vec2 v = crossing.velocity.head<2>();
   crossing.horizontalAngle = std::atan2(segment.along.dot(v), direction * segment.normal.dot(v));
   crossing.verticalAngle = std::atan2(crossing.velocity.z(), v.norm());
@@ -322,6 +327,13 @@ void appendOf(const RockPath& path, const Segment& segment, const Terrain* terra
 }
 
 } // namespace
+
+double topOverGround(const Crossing& crossing, double width)
+{
+  return std::isnan(crossing.centreOverGround)
+    ? crossing.heightOverGround + width
+    : 2.0 * crossing.centreOverGround - crossing.heightOverGround;
+}
 
 void appendCrossings(const RockPath& path, const CollectorLine& line, int lineNumber,
   const Terrain* terrain, std::vector<Crossing>& crossings)

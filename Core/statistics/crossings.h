@@ -7,6 +7,7 @@
 #include "statistics/path.h"
 #include "statistics/sample.h"
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -42,11 +43,18 @@ struct Crossing
   double kineticEnergy = 0.0;       ///< J
   double translationalEnergy = 0.0; ///< J, NaN without a mass.
   double heightOverGround = 0.0;    ///< m, NaN where there is no ground.
+  /// Of the centroid over the ground straight under it, m; NaN without a terrain there.
+  double centreOverGround = std::numeric_limits<double>::quiet_NaN();
   /// Between the horizontal velocity and the line's normal on the side that the rock goes to, rad:
   /// 0 straight across, positive if it goes towards the line's end, ±π/2 along it.
   double horizontalAngle = 0.0;
   double verticalAngle = 0.0; ///< Of the velocity over the horizontal, rad; negative falling.
 };
+
+/// Height of the rock's highest point over the ground, m: as far above the centroid as the point
+/// next to the ground is below it, which holds for bodies that are the same upside down. Without a
+/// terrain that point is `width` (m) below the top. NaN if neither is known.
+double topOverGround(const Crossing& crossing, double width);
 
 /// Appends every passing of a path through a line, in the order of time. A path that touches the
 /// line and goes back does not pass; one that begins on it has not passed it. `terrain`, if given,

@@ -67,9 +67,9 @@ def say_lost(fates):
             say(f"{(fates == code).sum()} of {len(fates)} rocks {how}")
 
 
-def combine_crossings(folder, stems, merge):
-    """Crossings, and the tables of all of them. `merge` is the filter itself: no other rank takes
-    part, and its inputs have no proxies."""
+def combine_crossings(folder, stems, merge, design):
+    """Crossings, and the tables of all of them. `merge` and `design` are the filters themselves: no
+    other rank takes part, and their inputs have no proxies."""
     for stem in stems:
         reader = vtkXMLPolyDataReader()
         reader.SetFileName(stem + "-crossings.vtp")
@@ -85,6 +85,11 @@ def combine_crossings(folder, stems, merge):
     for port, name in ((1, "lines.csv"), (2, "exceedance.csv")):
         write_csv(os.path.join(folder, name),
                   [columns_of(merge.GetOutputDataObject(port).GetRowData())])
+    design.SetInputDataObject(0, points)
+    design.Update()
+    for port, name in enumerate(("design.csv", "design_classes.csv", "design_sources.csv")):
+        write_csv(os.path.join(folder, name),
+                  [columns_of(design.GetOutputDataObject(port).GetRowData())])
 
 
 def combine(study, folder, stems, iterations):
@@ -92,7 +97,8 @@ def combine(study, folder, stems, iterations):
     hashes = from_first_rank(lambda: combine_tables(folder, stems))
     if "lines" in study:
         merge = servermanager.filters.MergeCollectors().GetClientSideObject()
-        from_first_rank(lambda: combine_crossings(folder, stems, merge))
+        design = servermanager.filters.BarrierDesign().GetClientSideObject()
+        from_first_rank(lambda: combine_crossings(folder, stems, merge, design))
     if "map" in study:
         hazard = HazardPassageReader(FileNames=[stem + ".passages" for stem in stems])
         writer = servermanager.writers.HazardMapWriter(Input=hazard)

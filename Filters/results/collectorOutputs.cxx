@@ -223,6 +223,8 @@ void writeCrossings(std::span<const CollectedCrossing> crossings,
   {
     values.push_back(addArray<vtkDoubleArray>(data, column.name));
   }
+  const auto top = addArray<vtkDoubleArray>(data, "TopHeight");
+  vtkDataArray* width = trajectories->GetCellData()->GetArray("Width");
   for (const CollectedCrossing& collected : crossings)
   {
     stayWanted();
@@ -241,6 +243,8 @@ void writeCrossings(std::span<const CollectedCrossing> crossings,
     {
       values[k]->InsertNextValue(numbers[k].value(crossing));
     }
+    top->InsertNextValue(topOverGround(crossing,
+      width ? width->GetTuple1(collected.cell) : std::numeric_limits<double>::quiet_NaN()));
   }
   output->SetPoints(points);
   output->SetVerts(vertices);

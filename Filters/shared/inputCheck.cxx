@@ -67,6 +67,9 @@ constexpr ArrayRule rules[] = {
   { InputKind::Crossings, true, "Passing", Holds::Whole32 },
   { InputKind::Crossings, true, "KineticEnergy", Holds::Finite },
   { InputKind::Crossings, true, "HeightOverGround", Holds::NotInfinite },
+  { InputKind::Crossings, true, "TopHeight", Holds::NotInfinite },
+  { InputKind::Crossings, true, "Frequency", Holds::Finite },
+  { InputKind::Crossings, true, "SourceId", Holds::Whole53 },
   { InputKind::Crossings, true, "Velocity", Holds::Finite },
 };
 

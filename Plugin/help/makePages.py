@@ -14,7 +14,7 @@ import sys
 import xml.etree.ElementTree as ElementTree
 
 # Pages that do not bear the name of their proxy.
-PAGES = {"DEMToCFEMesh": "DEMtoCFEMesh", "HazardPassageReader": "HazardPassages",
+PAGES = {"BarrierDesign": "design", "DEMToCFEMesh": "DEMtoCFEMesh", "HazardPassageReader": "HazardPassages",
          "HazardPassageWriter": "HazardPassages", "HazardMapWriter": "Exports", "TrajectoryLayerWriter": "Exports"}
 
 

@@ -16,7 +16,7 @@ import sys
 from helpers import errors_of, incline, is_empty, messages_of, write_grid, write_text, UTM16, WGS84
 
 from paraview.simple import (
-    DEMtoCFEMesh, Delete, GetSources, HazardPassageReader, MergeCollectors, OutputPort, RockBlocks,
+    BarrierDesign, DEMtoCFEMesh, Delete, GetSources, HazardPassageReader, MergeCollectors, OutputPort, RockBlocks,
     RockfallHazardMap, RockfallSimulation, TrajectoryCollector, UpdatePipeline)
 from paraview import servermanager
 
@@ -421,6 +421,10 @@ one("a drawn line of one point", TrajectoryCollector(
 one("a barrier that is negative", TrajectoryCollector(
     Input=OutputPort(fall, 1), FileName=write_text("lines.csv", ROAD.format(8, "")),
     BarrierHeight=-1.0), ports=4)
+line = TrajectoryCollector(Input=OutputPort(fall, 1))
+one("a partial factor below 1", BarrierDesign(Input=line, TrajectoryFactor=0.9), ports=3)
+one("a mass that is negative", BarrierDesign(Input=line, DesignMass=-1.0), ports=3)
+Delete(line)
 
 section("Trajectories")
 one("the wrong output of the simulation", RockfallHazardMap(Input=OutputPort(fall, 0), Terrain=slope))

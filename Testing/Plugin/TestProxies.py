@@ -31,6 +31,8 @@ PROXIES = [
     ("Trajectory Profile", "TrajectoryProfile", "filters", "Input Trajectory"),
     ("Hazard Passage Reader", "HazardPassageReader", "sources", "FileNames"),
     ("Merge Collectors", "MergeCollectors", "filters", "Input"),
+    ("Barrier Design", "BarrierDesign", "filters",
+     "Input AnnualFrequency FactorSet TrajectoryFactor BarrierFactor Freeboard DesignMass"),
 ]
 
 dem = simple.DEMtoCFEMesh()
@@ -47,10 +49,11 @@ growing = simple.GrowingPaths(Input=simple.OutputPort(simulation, 1))
 profile = simple.TrajectoryProfile(Input=simple.OutputPort(simulation, 1))
 passages = simple.HazardPassageReader()
 merged = simple.MergeCollectors(Input=[collector])
+design = simple.BarrierDesign(Input=collector)
 
 for (label, name, group, properties), proxy in zip(
         PROXIES, (dem, rocks, release, structure, mass, simulation, dispersion, hazard, collector, growing, profile,
-                  passages, merged)):
+                  passages, merged, design)):
     assert hasattr(simple, name), name
     assert proxy.GetXMLGroup() == group, (name, proxy.GetXMLGroup())
     assert proxy.GetXMLLabel() == label, (name, proxy.GetXMLLabel())

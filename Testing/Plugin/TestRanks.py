@@ -5,7 +5,7 @@ from helpers import messages_of, write_text
 
 from paraview import servermanager
 from paraview.simple import (
-    DEMtoCFEMesh, DispersionAngle, HazardPassageReader, MergeCollectors, OutputPort,
+    BarrierDesign, DEMtoCFEMesh, DispersionAngle, HazardPassageReader, MergeCollectors, OutputPort,
     PolyLineSource, RockBlocks, RockfallHazardMap, RockfallSimulation, SaveData,
     TrajectoryCollector, UpdatePipeline)
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
@@ -23,6 +23,7 @@ hazard = RockfallHazardMap(Input=OutputPort(simulation, 1), CropToTrajectories=0
 collector = TrajectoryCollector(
     Input=OutputPort(simulation, 1), Lines=PolyLineSource(Points=[8, 0, 0, 8, 100, 0]))
 merged = MergeCollectors(Input=[collector])
+design = BarrierDesign(Input=merged)
 writer = servermanager.writers.HazardPassageWriter(
     Input=OutputPort(simulation, 1), Terrain=dem, FileName="run.passages")
 passages = HazardPassageReader(FileNames=["run.passages"])
@@ -35,7 +36,8 @@ meeting = RockfallSimulation(
     RockContactFile="contacts.csv" if rank == 0 else "elsewhere.csv")
 proxies = {"terrain": (dem, 1), "rocks": (rocks, 1), "simulation": (simulation, 4),
            "dispersion": (dispersion, 2), "hazard map": (hazard, 2), "collector": (collector, 4),
-           "merged collectors": (merged, 3), "meeting": (meeting, 4)}
+           "merged collectors": (merged, 3), "design": (design, 3),
+           "meeting": (meeting, 4)}
 
 
 def update():

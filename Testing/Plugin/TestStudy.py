@@ -41,7 +41,8 @@ study = {
     "map": {"CellSize": 5.0},
     "lines": {"FileName": "road.csv", "BarrierCapacity": 150.0},
     "iterations": 11, "chunk": 2}
-RESULTS = ["summary.csv", "hazard.tif", "crossings.csv", "lines.csv", "exceedance.csv"]
+RESULTS = ["summary.csv", "hazard.tif", "crossings.csv", "lines.csv", "exceedance.csv", "design.csv",
+           "design_classes.csv", "design_sources.csv"]
 
 
 def write_study(name="study.json", **changes):

@@ -5,6 +5,7 @@
 
 #include "base/errors.h"
 #include "statistics/crossings.h"
+#include "terrain/Terrain.h"
 
 #include <gtest/gtest.h>
 
@@ -44,6 +45,38 @@ CollectorLine lineOf(std::vector<Eigen::Vector2d> points)
 }
 
 } // namespace
+
+/// A cube of 2 m that stands on a corner over a slope of 1 in 5: its centre is √3 m over its lowest
+/// vertex, its top as far above the centre.
+TEST(Crossings, TopOfTheRock)
+{
+  std::vector<double> heights;
+  for (int row = 0; row < 5; ++row)
+  {
+    for (int column = 0; column < 5; ++column)
+    {
+      heights.push_back(2.0 * column);
+    }
+  }
+  const Terrain terrain({ 5, 5, 10.0, 0.0, 0.0, "" }, heights);
+  const double radius = std::sqrt(3.0);
+  std::vector<PathPoint> points(2);
+  for (int k = 0; k < 2; ++k)
+  {
+    points[k].time = k;
+    points[k].position = Vec3(10.0 + 10.0 * k, 20.0, 2.0 + 2.0 * k + 3.0 + radius);
+    points[k].velocity = Vec3(10.0, 0.0, 2.0);
+    points[k].heightOverGround = 3.0;
+  }
+  std::vector<Crossing> found;
+  appendCrossings(pathOf(points, 0, 0, 1.0), lineOf({ { 15, 0 }, { 15, 40 } }), 0, &terrain, found);
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_NEAR(found[0].centreOverGround, 3.0 + radius, 1e-12);
+  EXPECT_NEAR(topOverGround(found[0], 2.0), 3.0 + 2.0 * radius, 1e-12);
+  // Without a slope the width is known alone.
+  found = crossingsOf(pathOf(points, 0, 0, 1.0), lineOf({ { 15, 0 }, { 15, 40 } }));
+  EXPECT_NEAR(topOverGround(found[0], 2.0), 5.0, 1e-12);
+}
 
 TEST(Crossings, ParabolaThroughALine)
 {

@@ -1,0 +1,42 @@
+#pragma once
+
+/// @file
+/// Tables of what barriers at lines have to hold, from the crossings of a collector.
+
+#include "results/mergedCrossings.h"
+#include "statistics/design.h"
+
+#include <string>
+#include <vector>
+
+class vtkPolyData;
+class vtkTable;
+
+namespace rockfall::filters
+{
+
+/// A line with the rocks that pass it, each as it does so for the first time, in the order of
+/// iteration, rock and block.
+struct DesignLine
+{
+  CollectorLine line; ///< Name and barrier only.
+  std::vector<DesignPassing> passings;
+};
+
+/// Of crossings that mergeCrossings made, with `points`. `annualFrequency` (1/a) is that of all
+/// releases together; 0 takes the point array Frequency, NaN if there is none. Throws DataError if
+/// TopHeight is missing or a frequency bad.
+std::vector<DesignLine> designLines(
+  const MergedCrossings& merged, vtkPolyData* points, double annualFrequency);
+
+/// A row per line and level.
+void writeDesign(
+  const std::vector<DesignLine>& lines, const PartialFactors& factors, vtkTable* output);
+
+/// A row per line and barrier: that of the line, then levels 0 to 7 with its height.
+void writeClasses(const std::vector<DesignLine>& lines, vtkTable* output);
+
+/// A row per line and source, by number.
+void writeSources(const std::vector<DesignLine>& lines, vtkTable* output);
+
+} // namespace rockfall::filters

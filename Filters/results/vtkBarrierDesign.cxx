@@ -1,0 +1,132 @@
+#include "vtkBarrierDesign.h"
+
+#include "base/errors.h"
+#include "base/text/numberText.h"
+#include "results/designTables.h"
+#include "shared/attempt.h"
+#include "shared/failure.h"
+#include "shared/inputs.h"
+#include "shared/pieces.h"
+#include "shared/terrainFieldData.h"
+
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkNew.h"
+#include "vtkObjectFactory.h"
+#include "vtkPolyData.h"
+#include "vtkTable.h"
+
+#include <cmath>
+
+vtkStandardNewMacro(vtkBarrierDesign);
+
+namespace
+{
+
+enum OutputPorts
+{
+  DESIGN = 0,
+  CLASSES = 1,
+  SOURCES = 2
+};
+
+/// Of the survey of the slope, of that of the block, and of trajectories: as RocFall3's page on
+/// UNI 11211-4 has them.
+constexpr double kGood = 1.02, kPoor = 1.10;
+
+} // namespace
+
+//------------------------------------------------------------------------------
+vtkBarrierDesign::vtkBarrierDesign()
+{
+  this->SetNumberOfInputPorts(1);
+  this->SetNumberOfOutputPorts(3);
+}
+
+//------------------------------------------------------------------------------
+vtkBarrierDesign::~vtkBarrierDesign() = default;
+
+//------------------------------------------------------------------------------
+int vtkBarrierDesign::FillInputPortInformation(int, vtkInformation* info)
+{
+  rockfall::filters::acceptPolyData(info);
+  return 1;
+}
+
+//------------------------------------------------------------------------------
+int vtkBarrierDesign::RequestData(
+  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  namespace filters = rockfall::filters;
+  if (filters::isFurtherPiece(outputVector))
+  {
+    return 1;
+  }
+  return filters::attempt(this, "The crossings do not fit in memory",
+    [&]
+    {
+      filters::Input taken(filters::InputKind::Crossings, 1);
+      vtkPolyData* const crossings = taken.take(inputVector[0]);
+      if (!crossings)
+      {
+        throw rockfall::DataError("The Input is missing");
+      }
+      taken.require();
+      if (filters::inheritFailure(crossings, this))
+      {
+        return 1;
+      }
+      if (!(this->AnnualFrequency >= 0.0) || !std::isfinite(this->AnnualFrequency))
+      {
+        throw rockfall::ParameterError("AnnualFrequency is " +
+          rockfall::numberText(this->AnnualFrequency) +
+          " per year, it must be finite and not negative");
+      }
+      if (this->FactorSet < TYPED || this->FactorSet > UNI_POOR)
+      {
+        throw rockfall::ParameterError(
+          "FactorSet is " + std::to_string(this->FactorSet) + ", it must be 0, 1 or 2");
+      }
+      rockfall::PartialFactors factors{ this->SlopeSurveyFactor, this->TrajectoryFactor,
+        this->BlockSurveyFactor, this->UnitWeightFactor, this->RiskFactor, this->BarrierFactor,
+        this->Freeboard, this->DesignMass };
+      if (this->FactorSet != TYPED)
+      {
+        factors.slopeSurvey = factors.trajectories = factors.blockSurvey =
+          this->FactorSet == UNI_GOOD ? kGood : kPoor;
+      }
+      rockfall::checkFactors(factors);
+
+      vtkNew<vtkPolyData> points;
+      const filters::MergedCrossings merged = filters::mergeCrossings({ &crossings, 1 }, points);
+      const std::vector<filters::DesignLine> lines =
+        filters::designLines(merged, points, this->AnnualFrequency);
+      vtkNew<vtkTable> design, classes, sources;
+      filters::writeDesign(lines, factors, design);
+      filters::writeClasses(lines, classes);
+      filters::writeSources(lines, sources);
+      int port = DESIGN;
+      for (vtkTable* made : { design.Get(), classes.Get(), sources.Get() })
+      {
+        filters::copyCoordinateSystem(points->GetFieldData(), made->GetFieldData());
+        vtkTable::GetData(outputVector, port++)->ShallowCopy(made);
+      }
+      return 1;
+    });
+}
+
+//------------------------------------------------------------------------------
+void vtkBarrierDesign::PrintSelf(ostream& os, vtkIndent indent)
+{
+  this->Superclass::PrintSelf(os, indent);
+  os << indent << "AnnualFrequency: " << this->AnnualFrequency << "\n";
+  os << indent << "FactorSet: " << this->FactorSet << "\n";
+  os << indent << "SlopeSurveyFactor: " << this->SlopeSurveyFactor << "\n";
+  os << indent << "TrajectoryFactor: " << this->TrajectoryFactor << "\n";
+  os << indent << "BlockSurveyFactor: " << this->BlockSurveyFactor << "\n";
+  os << indent << "UnitWeightFactor: " << this->UnitWeightFactor << "\n";
+  os << indent << "RiskFactor: " << this->RiskFactor << "\n";
+  os << indent << "BarrierFactor: " << this->BarrierFactor << "\n";
+  os << indent << "Freeboard: " << this->Freeboard << "\n";
+  os << indent << "DesignMass: " << this->DesignMass << "\n";
+}

@@ -1,0 +1,257 @@
+#include "helpers.h"
+#include "trajectories.h"
+
+#include "vtkBarrierDesign.h"
+#include "vtkMergeCollectors.h"
+#include "vtkTable.h"
+#include "vtkTrajectoryCollector.h"
+
+#include <cmath>
+
+namespace
+{
+
+/// Ten rocks of 1000 kg, 1 m wide, of two sources and three classes of volume, level past a road.
+class TestBarrierDesign : public FilterTest
+{
+protected:
+  struct Rock
+  {
+    double speed;  ///< m/s
+    double height; ///< Of its lowest point, m.
+    int source;
+    double frequency; ///< 1/a
+  };
+  /// Energies ½ 1000 v² + 100 J: 2.1, 8.1, 18.1, 32.1, 50.1, 72.1, 98.1, 128.1, 162.1, 200.1 kJ.
+  static constexpr Rock rocks[10] = { { 2, 0.0, 1, 0.25 }, { 4, 0.5, 2, 0.25 }, { 6, 1.0, 1, 0.25 },
+    { 8, 1.5, 2, 0.25 }, { 10, 2.0, 1, 0.0625 }, { 12, 2.5, 2, 0.0625 }, { 14, 3.0, 1, 0.0625 },
+    { 16, 0.25, 2, 0.015625 }, { 18, 0.75, 1, 0.015625 }, { 20, 1.25, 2, 0.015625 } };
+
+  void SetUp() override
+  {
+    this->FilterTest::SetUp();
+    this->Points->SetDataTypeToDouble();
+    this->Points->InsertNextPoint(500010, 5099990, 0);
+    this->Points->InsertNextPoint(500010, 5100200, 0);
+    vtkNew<vtkCellArray> lines;
+    lines->InsertNextCell({ 0, 1 });
+    this->Drawn->SetPoints(this->Points);
+    this->Drawn->SetLines(lines);
+  }
+
+  /// The crossings of `iterations` iterations, in which all rocks come in the first and none in the
+  /// others; of the rocks with rock % parts == part.
+  vtkSmartPointer<vtkTrajectoryCollector> Collect(
+    bool frequencies = true, int iterations = 2, int parts = 1, int part = 0)
+  {
+    HandMadeTrajectories paths;
+    vtkNew<vtkDoubleArray> width, frequency;
+    vtkNew<vtkIdTypeArray> source;
+    width->SetName("Width");
+    source->SetName("SourceId");
+    frequency->SetName("Frequency");
+    for (int iteration = 0; iteration < iterations; ++iteration)
+    {
+      for (int k = part; k < 10; k += parts)
+      {
+        paths.AddLevel(iteration, k, { 500000, 5100000.0 + 7 * k, 50 }, iteration == 0 ? 30.0 : 5.0,
+          rocks[k].speed, rocks[k].height);
+        width->InsertNextValue(1.0);
+        source->InsertNextValue(rocks[k].source);
+        frequency->InsertNextValue(rocks[k].frequency);
+      }
+    }
+    paths.Data->GetCellData()->AddArray(width);
+    paths.Data->GetCellData()->AddArray(source);
+    if (frequencies)
+    {
+      paths.Data->GetCellData()->AddArray(frequency);
+    }
+    auto collector = vtkSmartPointer<vtkTrajectoryCollector>::New();
+    collector->SetInputDataObject(0, paths.Data);
+    collector->SetInputDataObject(1, this->Drawn);
+    collector->SetBarrierHeight(3.0);
+    collector->SetBarrierCapacity(100.0);
+    collector->Update();
+    return collector;
+  }
+
+  double Number(int port, const char* column, int row)
+  {
+    this->Filter->Update();
+    auto* table = vtkTable::SafeDownCast(this->Filter->GetOutputDataObject(port));
+    if (row >= table->GetNumberOfRows() || !table->GetColumnByName(column))
+    {
+      ADD_FAILURE() << "port " << port << " has no " << column << " in row " << row;
+      return 0.0;
+    }
+    return table->GetValueByName(row, column).ToDouble();
+  }
+
+  vtkNew<vtkPoints> Points;
+  vtkNew<vtkPolyData> Drawn;
+  vtkNew<vtkBarrierDesign> Filter;
+};
+
+} // namespace
+
+TEST_F(TestBarrierDesign, CharacteristicAndDesignValues)
+{
+  this->Filter->SetInputData(this->Collect()->GetOutput());
+  const double energies[] = { 61.1, 165.9, 183.0, 193.26, 196.68, 200.1 };
+  const double speeds[] = { 11.0, 18.2, 19.1, 19.64, 19.82, 20.0 };
+  // Tops: 1 1.25 1.5 1.75 2 2.25 2.5 3 3.5 4 m
+  const double tops[] = { 2.125, 3.55, 3.775, 3.91, 3.955, 4.0 };
+  const double levels[] = { 50, 90, 95, 98, 99, 100 };
+  const double least[] = { 5, 29, 59, 149, 299, 0 };
+  const double classes[] = { 0, 1, 1, 1, 1, 1 };
+  for (int row = 0; row < 6; ++row)
+  {
+    EXPECT_NEAR(this->Number(0, "Quantile", row), levels[row], 1e-12);
+    EXPECT_EQ(this->Number(0, "Rocks", row), 10);
+    EXPECT_EQ(this->Number(0, "LeastRocks", row), least[row]);
+    EXPECT_NEAR(this->Number(0, "EnergyInKilojoules", row), energies[row], 1e-9);
+    EXPECT_NEAR(this->Number(0, "Speed", row), speeds[row], 1e-12);
+    EXPECT_NEAR(this->Number(0, "TopHeight", row), tops[row], 1e-12);
+    EXPECT_NEAR(this->Number(0, "DesignEnergyInKilojoules", row), energies[row], 1e-9);
+    EXPECT_NEAR(this->Number(0, "RequiredHeight", row), tops[row] + 0.5, 1e-12);
+    EXPECT_EQ(this->Number(0, "RequiredClass", row), classes[row]);
+    EXPECT_EQ(this->Number(0, "BarrierHolds", row), row == 0); // 61 of 100 kJ, 2.6 of 3 m
+  }
+  EXPECT_NEAR(this->Number(0, "EnergyInKilojoulesLow", 0), 8.1, 1e-9); // ranks 2 and 9
+  EXPECT_NEAR(this->Number(0, "EnergyInKilojoulesHigh", 0), 162.1, 1e-9);
+  EXPECT_TRUE(std::isnan(this->Number(0, "EnergyInKilojoulesHigh", 1)));
+
+  this->Filter->SetFactorSet(vtkBarrierDesign::UNI_POOR);
+  this->Filter->SetSlopeSurveyFactor(5.0); // the set's is taken
+  this->Filter->SetRiskFactor(1.05);
+  const double all = 1.05 * 1.1 * 1.21 * 1.21;
+  EXPECT_NEAR(this->Number(0, "DesignEnergyInKilojoules", 2), 183.0 * all, 1e-9); // 309
+  EXPECT_EQ(this->Number(0, "RequiredClass", 2), 2);
+  EXPECT_NEAR(this->Number(0, "DesignHeight", 2), 3.775 * 1.21, 1e-12);
+  this->Filter->SetBarrierFactor(2.0);
+  EXPECT_EQ(this->Number(0, "RequiredClass", 2), 3);
+  this->Filter->SetDesignMass(2000.0);
+  EXPECT_NEAR(this->Number(0, "DesignEnergyInKilojoules", 2), 19.1 * 19.1 * all, 1e-9);
+}
+
+TEST_F(TestBarrierDesign, ClassesAndTheirFrequencies)
+{
+  this->Filter->SetInputData(this->Collect()->GetOutput());
+  auto* table =
+    vtkTable::SafeDownCast((this->Filter->Update(), this->Filter->GetOutputDataObject(1)));
+  ASSERT_EQ(table->GetNumberOfRows(), 9);
+  EXPECT_EQ(table->GetValueByName(0, "Class").ToString(), "barrier");
+  EXPECT_EQ(table->GetValueByName(8, "Class").ToString(), "7");
+  // 3.5 and 4 m are over it; of the others 128.1, 162.1 and 200.1 kJ are too strong. Each rock
+  // came in one of two iterations.
+  EXPECT_EQ(this->Number(1, "Caught", 0), 5);
+  EXPECT_EQ(this->Number(1, "Over", 0), 2);
+  EXPECT_EQ(this->Number(1, "TooStrong", 0), 3);
+  EXPECT_EQ(this->Number(1, "CaughtShare", 0), 0.5);
+  EXPECT_EQ(this->Number(1, "CaughtFrequency", 0), (4 * 0.25 + 0.0625) / 2);
+  EXPECT_EQ(this->Number(1, "OverFrequency", 0), 2 * 0.0625 / 2);
+  EXPECT_EQ(this->Number(1, "TooStrongFrequency", 0), 3 * 0.015625 / 2);
+  EXPECT_NEAR(this->Number(1, "UncaughtShareHigh", 0), 0.777559, 1e-6); // of 5 of 10
+  // Level 1: 250 kJ; what is over it stays.
+  EXPECT_EQ(this->Number(1, "MaximumEnergyLevel", 2), 250);
+  EXPECT_EQ(this->Number(1, "ServiceEnergyLevel", 2), 85);
+  EXPECT_TRUE(std::isnan(this->Number(1, "ServiceEnergyLevel", 1)));
+  EXPECT_EQ(this->Number(1, "Caught", 2), 8);
+  EXPECT_EQ(this->Number(1, "Over", 2), 2);
+  EXPECT_EQ(this->Number(1, "TooStrong", 2), 0);
+
+  this->Filter->SetAnnualFrequency(0.5); // 1/40 for each of twenty releases
+  EXPECT_DOUBLE_EQ(this->Number(1, "CaughtFrequency", 0), 5.0 / 40);
+  this->Filter->SetAnnualFrequency(0.0);
+  this->Filter->SetInputData(this->Collect(false)->GetOutput());
+  EXPECT_TRUE(std::isnan(this->Number(1, "CaughtFrequency", 0)));
+}
+
+TEST_F(TestBarrierDesign, SourcesOfWhatPasses)
+{
+  this->Filter->SetInputData(this->Collect()->GetOutput());
+  const double uncaught[] = { 2, 3 }; // 3.0 high and 18 m/s; 2.5 high, 16 and 20 m/s
+  const double frequency[] = { 0.0625 + 0.015625, 0.0625 + 2 * 0.015625 };
+  const double all[] = { 0.5 + 0.125 + 0.015625, 0.5 + 0.0625 + 0.03125 };
+  for (int row = 0; row < 2; ++row)
+  {
+    EXPECT_EQ(this->Number(2, "SourceId", row), row + 1);
+    EXPECT_EQ(this->Number(2, "Rocks", row), 5);
+    EXPECT_EQ(this->Number(2, "Share", row), 0.5);
+    EXPECT_DOUBLE_EQ(this->Number(2, "UncaughtShare", row), uncaught[row] / 5);
+    EXPECT_EQ(this->Number(2, "UncaughtFrequency", row), frequency[row] / 2);
+    EXPECT_EQ(this->Number(2, "AnnualFrequency", row), all[row] / 2);
+    EXPECT_NEAR(this->Number(2, "EnergyMaximum", row), row == 0 ? 162.1 : 200.1, 1e-9);
+  }
+}
+
+TEST_F(TestBarrierDesign, PartsAreTheWhole)
+{
+  this->Filter->SetInputData(this->Collect()->GetOutput());
+  vtkNew<vtkMergeCollectors> merge;
+  for (const int part : { 2, 0, 1 })
+  {
+    merge->AddInputDataObject(0, this->Collect(true, 2, 3, part)->GetOutput());
+  }
+  vtkNew<vtkBarrierDesign> merged;
+  merged->SetInputConnection(merge->GetOutputPort());
+  merged->Update();
+  this->Filter->Update();
+  for (int port = 0; port < 3; ++port)
+  {
+    auto* one = vtkTable::SafeDownCast(this->Filter->GetOutputDataObject(port));
+    auto* other = vtkTable::SafeDownCast(merged->GetOutputDataObject(port));
+    ASSERT_EQ(one->GetNumberOfRows(), other->GetNumberOfRows());
+    for (vtkIdType column = 0; column < one->GetNumberOfColumns(); ++column)
+    {
+      for (vtkIdType row = 0; row < one->GetNumberOfRows(); ++row)
+      {
+        const vtkVariant a = one->GetValue(row, column), b = other->GetValue(row, column);
+        const bool neither = a.IsNumeric() && std::isnan(a.ToDouble()) && std::isnan(b.ToDouble());
+        EXPECT_TRUE(a == b || neither) << one->GetColumnName(column);
+      }
+    }
+  }
+}
+
+TEST_F(TestBarrierDesign, BadInput)
+{
+  const auto crossings = this->Collect();
+  this->Filter->SetInputData(crossings->GetOutput());
+  this->Filter->SetUnitWeightFactor(0.9);
+  this->Filter->Update();
+  this->ExpectOneError({ "UnitWeightFactor is 0.9", "at least 1" });
+  this->Filter->SetUnitWeightFactor(1.0);
+  this->Filter->SetAnnualFrequency(-1.0);
+  this->Filter->Update();
+  this->ExpectOneError({ "AnnualFrequency is -1" });
+  this->Filter->SetAnnualFrequency(0.0);
+  this->Filter->SetFactorSet(3);
+  this->Filter->Update();
+  this->ExpectOneError({ "FactorSet is 3" });
+  this->Filter->SetFactorSet(0);
+  vtkNew<vtkPolyData> older, none;
+  older->DeepCopy(crossings->GetOutput());
+  older->GetPointData()->RemoveArray("TopHeight");
+  this->Filter->SetInputData(older);
+  this->Filter->Update();
+  this->ExpectOneError({ "TopHeight", "anew" });
+  this->Filter->SetInputData(none);
+  this->Filter->Update();
+  this->ExpectOneError({ "CollectorBarrier", "Trajectory Collector" });
+}
+
+TEST_F(TestBarrierDesign, ALineThatNothingPasses)
+{
+  this->Points->SetPoint(0, 500029.5, 5099000, 0);
+  this->Points->SetPoint(1, 500029.5, 5099001, 0);
+  this->Points->Modified();
+  this->Filter->SetInputData(this->Collect()->GetOutput());
+  EXPECT_EQ(this->Number(0, "Rocks", 2), 0);
+  EXPECT_TRUE(std::isnan(this->Number(0, "EnergyInKilojoules", 2)));
+  EXPECT_EQ(this->Number(0, "RequiredClass", 2), -1);
+  EXPECT_EQ(this->Number(0, "BarrierHolds", 2), 0);
+  EXPECT_TRUE(std::isnan(this->Number(1, "UncaughtShareHigh", 0)));
+  EXPECT_EQ(vtkTable::SafeDownCast(this->Filter->GetOutputDataObject(2))->GetNumberOfRows(), 0);
+}
