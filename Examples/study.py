@@ -70,10 +70,22 @@ lock = None  # of the folder, on the first rank
 inputs = None  # the files, on the first rank
 
 
+class Schema(argparse.Action):
+    """Says what may stand in a study.json, and ends."""
+
+    def __init__(self, *names, **more):
+        super().__init__(*names, nargs=0, **more)
+
+    def __call__(self, *_):
+        say(json.dumps(schema.json_schema(), indent=1))
+        raise SystemExit
+
+
 def arguments():
     parser = argparse.ArgumentParser(description="A batch study that can be stopped and started again.")
     parser.add_argument("folder", help="folder for the results")
     parser.add_argument("study", help="JSON file that describes the study")
+    parser.add_argument("--schema", action=Schema, help="write the JSON Schema of a study to stdout, and end")
     parser.add_argument("--threads", type=int, default=0, help="threads of each rank (0: all)")
     return parser.parse_args()
 

@@ -67,6 +67,19 @@ if(ROCKFALL_HAS_WINDOW)
   endforeach()
   install(FILES ${scripts}
     DESTINATION "${CMAKE_INSTALL_LIBDIR}/${PARAVIEW_PLUGIN_SUBDIR}/RockfallScripts")
+  # What the menu's report is made with, as it lies in Examples/.
+  set(examples "${PROJECT_SOURCE_DIR}/Examples")
+  file(GLOB report_scripts CONFIGURE_DEPENDS RELATIVE "${examples}" "${examples}/report.py" "${examples}/rockfall_tables.py"
+    "${examples}/report_parts/*.*" "${examples}/study_parts/*.py")
+  foreach(script ${report_scripts})
+    configure_file("${examples}/${script}" "${script_folder}/report/${script}" COPYONLY)
+    get_filename_component(folder "${script}" DIRECTORY)
+    install(FILES "${examples}/${script}"
+      DESTINATION "${CMAKE_INSTALL_LIBDIR}/${PARAVIEW_PLUGIN_SUBDIR}/RockfallScripts/report/${folder}")
+  endforeach()
+  set(presets "${PROJECT_SOURCE_DIR}/docs/materials.md") # which the report quotes
+  configure_file("${presets}" "${script_folder}/docs/materials.md" COPYONLY)
+  install(FILES "${presets}" DESTINATION "${CMAKE_INSTALL_LIBDIR}/${PARAVIEW_PLUGIN_SUBDIR}/RockfallScripts/docs")
 
   # The pages behind ?, of docs/: one file that the window opens. It wants Qt's help generator.
   find_program(ROCKFALL_QHELPGENERATOR qhelpgenerator PATHS /usr/lib/qt5/bin /usr/lib/qt6/bin /usr/lib/qt6/libexec)

@@ -15,7 +15,7 @@ rockfall_packages=(
   libeigen3-dev libgdal-dev libhdf5-dev gdal-bin libicu-dev libtbb-dev librandom123-dev libqhull-dev libboost-dev
   zlib1g-dev
   xvfb xauth locales python3-matplotlib python-matplotlib-data python3-jinja2 python3-gdal)
-rockfall_test_packages=(libgtest-dev)
+rockfall_test_packages=(libgtest-dev python3-jsonschema)
 
 fail() {
   echo "RockfallDDA: $*" >&2

@@ -121,16 +121,55 @@ def check_value(where, value, prop):
             check_text(where, one)
 
 
+def described(prop):
+    """JSON Schema of what check_value takes; None for what this script sets."""
+    if not prop.IsA("vtkSMVectorProperty") or prop.IsA("vtkSMProxyProperty"):
+        return None
+    if prop.IsA("vtkSMStringVectorProperty"):
+        one = {"type": "string", "pattern": "^[^\\x00-\\x1f]*$"}
+    else:
+        whole = not prop.IsA("vtkSMDoubleVectorProperty")
+        one = {"type": ["integer", "boolean"] if whole else "number"}
+        bounds = prop.FindDomain("vtkSMIntRangeDomain" if whole else "vtkSMDoubleRangeDomain")
+        if bounds and bounds.GetMinimumExists(0):
+            one["minimum"] = bounds.GetMinimum(0)
+        if bounds and bounds.GetMaximumExists(0):
+            one["maximum"] = bounds.GetMaximum(0)
+        names = prop.FindDomain("vtkSMEnumerationDomain") if whole else None
+        if names:
+            one = {"anyOf": [{"enum": [names.GetEntryText(k) for k in range(names.GetNumberOfEntries())]}, one]}
+    text = prop.GetDocumentation() and prop.GetDocumentation().GetDescription()
+    told = {"description": " ".join(text.split())} if text else {}
+    if prop.GetNumberOfElements() == 1 and not prop.GetRepeatCommand():
+        return {**told, **one}
+    count = {} if prop.GetRepeatCommand() else dict.fromkeys(("minItems", "maxItems"), prop.GetNumberOfElements())
+    return {**told, "type": "array", "items": one, **count}
+
+
+def json_schema():
+    """What `check` takes, for editors: JSON Schema of a study.json."""
+    parts = {}
+    for part in PROXIES:
+        known = {name: described(prop) for name, prop in sorted(properties_of(part).items())}
+        parts[part] = {"type": "object", "additionalProperties": False,
+                       "properties": {name: one for name, one in known.items() if one}}
+    count = {"type": "integer", "minimum": 1, "maximum": MOST_ITERATIONS}
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "study.json of RockfallDDA",
+            "type": "object", "required": ["iterations", "chunk"], "additionalProperties": False,
+            "properties": {**parts, "$schema": {"type": "string"}, "trajectories": {"type": "boolean"},
+                           "iterations": count, "chunk": count, "until": {"type": "object"}}}
+
+
 def check(path, study):
     """All of a study but what its files hold."""
     known = {**dict.fromkeys(PROXIES, dict), "trajectories": bool, "iterations": int, "chunk": int,
-             "until": dict}
+             "until": dict, "$schema": str}
     try:
         for key, value in study.items():
             if key not in known:
                 raise Bad(f"there is no {shown(key)} in a study, it knows {', '.join(known)}")
             if type(value) is not known[key]:
-                kind = {dict: "an object", bool: "true or false", int: "a whole number"}[known[key]]
+                kind = {dict: "an object", bool: "true or false", int: "a whole number", str: "a text"}[known[key]]
                 raise Bad(f"\"{key}\" is {shown(value)}, it must be {kind}")
         for key in ("iterations", "chunk"):
             if not 1 <= study.get(key, 0) <= MOST_ITERATIONS:

@@ -198,6 +198,20 @@ void pqRockfallWindow::makeMenu(QMainWindow* window)
   menu->addAction(tr("Example: Jacksboro Fault"), this, [this] { this->runPython("jacksboro()"); })
     ->setObjectName("actionJacksboro");
   menu->addSeparator();
+  menu
+    ->addAction(tr("Report of a Batch Study..."), this,
+      [this]
+      {
+        pqFileDialog dialog(nullptr, mainWindow(), tr("manifest.json of a finished study"), QString(),
+          tr("Finished studies (manifest.json)"));
+        dialog.setObjectName("RockfallReportDialog");
+        dialog.setFileMode(pqFileDialog::ExistingFile);
+        if (dialog.exec() == QDialog::Accepted && !dialog.getSelectedFiles().isEmpty())
+        {
+          this->runPython("report(" + quoted(dialog.getSelectedFiles().first()) + ")");
+        }
+      })
+    ->setObjectName("actionReport");
   menu->addAction(tr("Pick a Trajectory"), this, [this] { this->pickTrajectory(); })
     ->setObjectName("actionPickTrajectory");
   menu

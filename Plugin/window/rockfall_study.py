@@ -4,8 +4,12 @@ ParaView's menu Rockfall runs these functions; so can a script or ParaView's Pyt
 """
 
 import os
+import shutil
+import subprocess
+import sys
 import tempfile
 import time
+import webbrowser
 
 from paraview import servermanager, simple
 
@@ -128,6 +132,28 @@ def ground(slope, view=None):
     display.WindowLocation = "Lower Left Corner"
     display.FontSize = 12
     return annotation
+
+
+def report(manifest, show=True):
+    """Makes the report of the finished batch study with this manifest.json, and opens it in the browser; gives
+    its name. In a process of its own: the slope that it reads is none of the window's."""
+    here = os.path.dirname(os.path.abspath(__file__))
+    plugins = os.path.join(here, "..", "RockfallDDA")
+    folder = os.path.dirname(os.path.abspath(manifest))
+    python = shutil.which("pvbatch", path=os.pathsep.join([os.path.dirname(sys.executable), os.environ.get("PATH", "")]))
+    if not python:
+        raise RuntimeError("There is no pvbatch beside ParaView, which makes reports")
+    made = subprocess.run([python, os.path.join(here, "report", "report.py"), folder], stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, text=True, stdin=subprocess.DEVNULL,
+                          env={**os.environ, "PV_PLUGIN_PATH": plugins})
+    lines = made.stdout.strip().splitlines() or ["nothing was said"]
+    if made.returncode:
+        raise RuntimeError(lines[-1])
+    path = os.path.join(folder, "report.html")
+    print(f"Report: {path}")
+    if show:
+        webbrowser.open("file://" + path)
+    return path
 
 
 def jacksboro():

@@ -116,6 +116,21 @@ for word in ("The study makes no map", "The study has no lines", "the test slope
     assert word in bare, word
 
 
+# The window's menu makes the same, in a process of its own.
+scripts = os.path.join(os.environ["PV_PLUGIN_PATH"], "..", "RockfallScripts")
+if os.path.isdir(scripts):  # it was built with a window
+    sys.path.append(scripts)
+    import rockfall_study
+    assert rockfall_study.report("bare/manifest.json", show=False) == os.path.abspath("bare/report.html")
+    with open("bare/report.html", encoding="utf-8") as file:
+        assert file.read() == bare
+    try:
+        rockfall_study.report("nowhere/manifest.json", show=False)
+        raise AssertionError("a report of nothing")
+    except RuntimeError as error:
+        assert "nowhere is not the folder of a study" in str(error), error
+
+
 # What is wrong is told in one line.
 def refused(word, name, change=None):
     shutil.rmtree("broken", ignore_errors=True)

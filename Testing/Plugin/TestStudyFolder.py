@@ -7,6 +7,7 @@ import resource
 import shutil
 import sys
 
+import jsonschema
 from helpers import delete_sources, files_of, incline, run_script, write_grid, write_text
 
 EXAMPLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Examples")
@@ -15,6 +16,7 @@ sys.path[:0] = [os.path.join(EXAMPLES, "study_parts")]
 import schema
 import wholefile
 
+described = jsonschema.Draft202012Validator(schema.json_schema())
 write_grid("folder.asc", incline())
 write_text("folder.csv", "x,y,z,shape,volume\n" + "\n".join(
     f"700025,{4000060 + k},{146 + 0.2 * k},cube,0.01" for k in range(0, 40, 8)) + "\n")
@@ -40,12 +42,22 @@ def without_manifest(folder):
     return {name: data for name, data in files_of(folder).items() if name != "manifest.json"}
 
 
+def taken_by_schema(text):
+    """What JSON Schema, which editors know, says of a study of this text."""
+    try:
+        described.validate(json.loads(text))
+    except jsonschema.ValidationError:
+        return False
+    return True
+
+
 def refusal(text):
     """What is wrong with a study of this text, in one line."""
     with open("odd.json", "wb") as file:
         file.write(text if isinstance(text, bytes) else text.encode())
     try:
         schema.check("odd.json", schema.load("odd.json"))
+        assert taken_by_schema(text.decode("utf-8-sig") if isinstance(text, bytes) else text), text
     except schema.Bad as bad:
         said = str(bad)
         assert said.startswith("odd.json") and "\n" not in said and len(said) < 300, said
@@ -74,6 +86,18 @@ for text, word in (
         (odd()[:-1] + ', "chunk": 3}', "twice"), ("[" * 100000, "deep"), ('{"a":' * 100000, "deep"),
         (b"\xff\xfe{", "not JSON"), (b"{\0}", "not JSON"), ("3", "object"), ("", "not JSON")):
     assert word in refusal(text), (text[:200], word, refusal(text))
+# But for what no schema can say, it refuses the same; it knows every property.
+for text in (odd("terrain", FileName=3), odd("terrain", FileName=["a"]), odd("terrain", FileName="a\0.asc"),
+             odd("simulation", EndTime="60"), odd("simulation", EndTime=[60]), odd("simulation", EndTime=-1),
+             odd("simulation", Seed=1.5), odd("simulation", TrajectoryOutput="All"), odd("simulation", Rocks=1),
+             odd("simulation", EndTimes=1), odd("rocks", Velocity=[1.0, 2.0]), odd("rocks", Velocity=3.0),
+             odd(iterations=10**30), odd(iterations=None), odd(lines=[]), odd(trajectories=1), odd(itterations=1),
+             json.dumps({"terrain": {}})):
+    assert refusal(text) and not taken_by_schema(text), text
+assert refusal(odd("rocks", Velocity=[1.0, 2.0, 3.0], Shape="Cube")) == ""
+assert refusal(odd("rocks", Shape=1)) == "" and refusal(odd(**{"$schema": "study.schema.json"})) == ""
+told, message = run_script(SCRIPT, "--schema")
+assert message == "" and json.loads(told) == schema.json_schema(), message
 assert refusal(b"\xef\xbb\xbf" + json.dumps(study).encode()) == ""  # some editors begin a text so
 
 for folder in ("folder-calm", "folder-full"):
