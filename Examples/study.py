@@ -38,7 +38,7 @@ and when all chunks are there
     summary.csv                 the table of all rocks and iterations
     hazard.tif                  the hazard map
     crossings.csv, lines.csv, exceedance.csv     what passed the lines, and statistics of it
-    design.csv, design_classes.csv, design_sources.csv   what barriers on the lines have to hold
+    design.csv, design_classes.csv, design_sources.csv, design_places.csv   what barriers on the lines have to hold
     results.json                the state hash of every chunk and of the whole
 
 More iterations of a finished study go on where it was, with the same files as of one that had them from the

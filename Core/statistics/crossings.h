@@ -23,6 +23,7 @@ struct CollectorLine
   std::string name;                    ///< For people.
   double barrierHeight = 0.0;          ///< m; infinite if height does not matter.
   double barrierCapacity = 0.0;        ///< J; infinite if energy does not matter.
+  double offset = 0.0;                 ///< To the left of the line that it is a parallel of, m.
 };
 
 /// A passing: the path goes from one side of a segment's vertical plane to the other; at a vertex

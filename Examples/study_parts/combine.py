@@ -87,7 +87,8 @@ def combine_crossings(folder, stems, merge, design):
                   [columns_of(merge.GetOutputDataObject(port).GetRowData())])
     design.SetInputDataObject(0, points)
     design.Update()
-    for port, name in enumerate(("design.csv", "design_classes.csv", "design_sources.csv")):
+    for port, name in enumerate(
+            ("design.csv", "design_classes.csv", "design_sources.csv", "design_places.csv")):
         write_csv(os.path.join(folder, name),
                   [columns_of(design.GetOutputDataObject(port).GetRowData())])
 

@@ -252,10 +252,12 @@ void writeCrossings(std::span<const CollectedCrossing> crossings,
   writeReleased(released, field);
   const auto lineNames = addArray<vtkStringArray>(field, "CollectorLineName");
   const auto barriers = addArray<vtkDoubleArray>(field, "CollectorBarrier", 2);
+  const auto offsets = addArray<vtkDoubleArray>(field, "CollectorOffset");
   for (const CollectorLine& of : lines)
   {
     lineNames->InsertNextValue(of.name);
     barriers->InsertNextTuple2(of.barrierHeight, of.barrierCapacity / 1000.0);
+    offsets->InsertNextValue(of.offset);
   }
 }
 
@@ -294,6 +296,7 @@ void writeLines(std::span<const LineSummary> summaries, std::span<const Collecto
   };
   using S = const LineSummary&;
   using L = const CollectorLine&;
+  add("Offset", [](S, L l) { return l.offset; });
   add("Share", [](S s, L) { return s.share; });
   add("ShareError", [](S s, L) { return s.shareError; });
   add("BarrierHeight", [](S, L l) { return l.barrierHeight; });

@@ -56,7 +56,7 @@ std::vector<CollectorLine> linesOf(
 /// Writes a vertex per passing. Other cell arrays of the trajectories go along.
 /// The field data say what the tables need beside: CollectorReleased,
 /// CollectorRocks, CollectorBlocks, CollectorLosses, CollectorEnds,
-/// CollectorLineName and CollectorBarrier.
+/// CollectorLineName, CollectorBarrier and CollectorOffset.
 void writeCrossings(std::span<const CollectedCrossing> crossings,
   std::span<const CollectorLine> lines, const ReleasedRocks& released, const Vec3& origin,
   vtkPolyData* trajectories, vtkPolyData* output);

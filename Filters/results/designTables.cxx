@@ -286,4 +286,51 @@ void writeSources(const std::vector<DesignLine>& lines, vtkTable* output)
   }
 }
 
+void writePlaces(const std::vector<DesignLine>& lines, const PartialFactors& factors,
+  std::int64_t released, vtkTable* output)
+{
+  Rows rows(output);
+  const auto offset = rows.column("Offset");
+  const auto count = rows.column<vtkIntArray>("Rocks");
+  const auto share = rows.column("Share"), frequency = rows.column("AnnualFrequency");
+  struct Level
+  {
+    std::size_t number; ///< Of designQuantiles.
+    ValueColumns energy, top;
+    vtkSmartPointer<vtkIntArray> required;
+  };
+  const auto level = [&rows](std::size_t number, const std::string& end)
+  {
+    return Level{ number, { rows, "EnergyInKilojoules" + end, kKilo },
+      { rows, "TopHeight" + end, 1.0 }, rows.column<vtkIntArray>("RequiredClass" + end) };
+  };
+  Level of[] = { level(2, "95"), level(4, "99") };
+  const auto uncaughtShare = rows.column("UncaughtShare"),
+             uncaught = rows.column("UncaughtFrequency");
+  for (std::size_t k = 0; k < lines.size(); ++k)
+  {
+    const DesignLine& line = lines[k];
+    rows.begin(k, line);
+    offset->InsertNextValue(line.line.offset);
+    const BarrierOutcome outcome =
+      outcomeOf(line.passings, line.line.barrierHeight, line.line.barrierCapacity);
+    count->InsertNextValue(outcome.rocks());
+    share->InsertNextValue(double(outcome.rocks()) / double(released));
+    frequency->InsertNextValue(outcome.frequency());
+    const std::vector<DesignLevel> levels = designLevels(line.passings);
+    for (Level& column : of)
+    {
+      const DesignLevel& values = levels[column.number];
+      column.energy.add(values.energy);
+      column.top.add(values.top);
+      column.required->InsertNextValue(
+        sufficientClass(factors.barrier * factors.energy(values.energy.value, values.speed.value)));
+    }
+    uncaughtShare->InsertNextValue(outcome.rocks() > 0
+        ? double(outcome.over.rocks + outcome.tooStrong.rocks) / outcome.rocks()
+        : kNan);
+    uncaught->InsertNextValue(outcome.over.frequency + outcome.tooStrong.frequency);
+  }
+}
+
 } // namespace rockfall::filters

@@ -19,7 +19,7 @@ namespace rockfall::filters
 /// iteration, rock and block.
 struct DesignLine
 {
-  CollectorLine line; ///< Name and barrier only.
+  CollectorLine line; ///< Name, barrier and offset only.
   std::vector<DesignPassing> passings;
 };
 
@@ -38,5 +38,9 @@ void writeClasses(const std::vector<DesignLine>& lines, vtkTable* output);
 
 /// A row per line and source, by number.
 void writeSources(const std::vector<DesignLine>& lines, vtkTable* output);
+
+/// A row per line, for a chart over the offset. `released`: rocks × iterations.
+void writePlaces(const std::vector<DesignLine>& lines, const PartialFactors& factors,
+  std::int64_t released, vtkTable* output);
 
 } // namespace rockfall::filters

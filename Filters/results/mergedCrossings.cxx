@@ -54,6 +54,8 @@ std::vector<CollectorLine> linesOf(vtkFieldData* field, std::size_t input)
       " has no array CollectorLineName of all lines; the crossings of Trajectory Collector are "
       "wanted");
   }
+  vtkDataArray* offsets = field->GetArray("CollectorOffset"); // not of earlier versions
+  const bool known = offsets && offsets->GetNumberOfTuples() == names->GetNumberOfValues();
   std::vector<CollectorLine> lines;
   for (vtkIdType k = 0; k < names->GetNumberOfValues(); ++k)
   {
@@ -61,6 +63,7 @@ std::vector<CollectorLine> linesOf(vtkFieldData* field, std::size_t input)
     line.name = names->GetValue(k);
     line.barrierHeight = barriers->GetComponent(k, 0);
     line.barrierCapacity = barriers->GetComponent(k, 1) * 1000.0;
+    line.offset = known ? offsets->GetComponent(k, 0) : 0.0;
   }
   return lines;
 }
@@ -70,8 +73,8 @@ bool same(const std::vector<CollectorLine>& a, const std::vector<CollectorLine>&
   return std::equal(a.begin(), a.end(), b.begin(), b.end(),
     [](const CollectorLine& one, const CollectorLine& other)
     {
-      return std::tie(one.name, one.barrierHeight, one.barrierCapacity) ==
-        std::tie(other.name, other.barrierHeight, other.barrierCapacity);
+      return std::tie(one.name, one.barrierHeight, one.barrierCapacity, one.offset) ==
+        std::tie(other.name, other.barrierHeight, other.barrierCapacity, other.offset);
     });
 }
 
@@ -239,9 +242,12 @@ MergedCrossings mergeCrossings(std::span<vtkPolyData* const> inputs, vtkPolyData
   output->SetPoints(points);
   output->SetVerts(vertices);
   vtkFieldData* field = output->GetFieldData();
-  for (const char* name : { "CollectorLineName", "CollectorBarrier" })
+  for (const char* name : { "CollectorLineName", "CollectorBarrier", "CollectorOffset" })
   {
-    field->AddArray(inputs[0]->GetFieldData()->GetAbstractArray(name));
+    if (vtkAbstractArray* array = inputs[0]->GetFieldData()->GetAbstractArray(name))
+    {
+      field->AddArray(array);
+    }
   }
   writeReleased(rocks, field);
   copyCoordinateSystem(inputs[0]->GetFieldData(), field);

@@ -16,7 +16,7 @@ namespace rockfall::filters
 
 struct MergedCrossings
 {
-  std::vector<CollectorLine> lines; ///< Name and barrier only.
+  std::vector<CollectorLine> lines; ///< Name, barrier and offset only.
   ReleasedRocks released;
   std::vector<Crossing> crossings; ///< As summarizeLine needs them.
 };

@@ -27,7 +27,8 @@ enum OutputPorts
 {
   DESIGN = 0,
   CLASSES = 1,
-  SOURCES = 2
+  SOURCES = 2,
+  PLACES = 3
 };
 
 /// Of the survey of the slope, of that of the block, and of trajectories: as RocFall3's page on
@@ -40,7 +41,7 @@ constexpr double kGood = 1.02, kPoor = 1.10;
 vtkBarrierDesign::vtkBarrierDesign()
 {
   this->SetNumberOfInputPorts(1);
-  this->SetNumberOfOutputPorts(3);
+  this->SetNumberOfOutputPorts(PLACES + 1);
 }
 
 //------------------------------------------------------------------------------
@@ -101,12 +102,13 @@ int vtkBarrierDesign::RequestData(
       const filters::MergedCrossings merged = filters::mergeCrossings({ &crossings, 1 }, points);
       const std::vector<filters::DesignLine> lines =
         filters::designLines(merged, points, this->AnnualFrequency);
-      vtkNew<vtkTable> design, classes, sources;
+      vtkNew<vtkTable> design, classes, sources, places;
       filters::writeDesign(lines, factors, design);
       filters::writeClasses(lines, classes);
       filters::writeSources(lines, sources);
+      filters::writePlaces(lines, factors, std::int64_t(merged.released.size()), places);
       int port = DESIGN;
-      for (vtkTable* made : { design.Get(), classes.Get(), sources.Get() })
+      for (vtkTable* made : { design.Get(), classes.Get(), sources.Get(), places.Get() })
       {
         filters::copyCoordinateSystem(points->GetFieldData(), made->GetFieldData());
         vtkTable::GetData(outputVector, port++)->ShallowCopy(made);

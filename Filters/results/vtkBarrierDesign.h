@@ -9,7 +9,8 @@
  * speed (m/s) and height of the rock's top (m) with their limits, design values by partial factors,
  * the smallest sufficient class of EAD 340059-00-0106. Port 1 has a row per line and barrier: what
  * the one on the line and those of levels 0 to 7 would catch, with annual frequencies. Port 2 has a
- * row per line and source of the rocks.
+ * row per line and source of the rocks, port 3 a row per line: along a family of parallels the
+ * place where a barrier has the least to hold.
  */
 #ifndef vtkBarrierDesign_h
 #define vtkBarrierDesign_h

@@ -15,6 +15,7 @@
 #include "shared/lineWalls.h"
 #include "shared/rockPaths.h"
 #include "shared/terrainFieldData.h"
+#include "statistics/familyOfLines.h"
 
 #include "vtkCellData.h"
 #include "vtkInformation.h"
@@ -352,6 +353,7 @@ int vtkTrajectoryCollector::RequestData(
       {
         lines.push_back(lineThrough(points, rocks, origin, barrier));
       }
+      rockfall::addParallels(lines, this->ParallelLines, this->ParallelSpacing);
       const Collected collected = collect(trajectories, lines, origin, slope);
       const auto released = std::int64_t(collected.released.size());
 
@@ -399,4 +401,6 @@ void vtkTrajectoryCollector::PrintSelf(ostream& os, vtkIndent indent)
   os << "\n";
   os << indent << "BarrierHeight: " << this->BarrierHeight << "\n";
   os << indent << "BarrierCapacity: " << this->BarrierCapacity << "\n";
+  os << indent << "ParallelLines: " << this->ParallelLines << "\n";
+  os << indent << "ParallelSpacing: " << this->ParallelSpacing << "\n";
 }

@@ -95,6 +95,17 @@ public:
   vtkGetMacro(BarrierCapacity, double);
   ///@}
 
+  ///@{
+  /**
+   * How many parallels each line has, 0 (the default) to 1000 lines in all, and how far they are
+   * apart in metres: to the left of the line if that is positive, else to its right. Default 10.
+   */
+  vtkSetMacro(ParallelLines, int);
+  vtkGetMacro(ParallelLines, int);
+  vtkSetMacro(ParallelSpacing, double);
+  vtkGetMacro(ParallelSpacing, double);
+  ///@}
+
   vtkTrajectoryCollector(const vtkTrajectoryCollector&) = delete;
   void operator=(const vtkTrajectoryCollector&) = delete;
 
@@ -114,6 +125,8 @@ private:
   double PlacedLine[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
   double BarrierHeight = 4.0;
   double BarrierCapacity = 1000.0;
+  int ParallelLines = 0;
+  double ParallelSpacing = 10.0;
 };
 
 #endif

@@ -186,6 +186,40 @@ TEST_F(TestBarrierDesign, SourcesOfWhatPasses)
   }
 }
 
+TEST_F(TestBarrierDesign, PlacesAlongAFamily)
+{
+  // From right to left of the line, which points north, is against the fall: −10 m is further down.
+  const auto collector = this->Collect();
+  collector->SetParallelLines(2);
+  collector->SetParallelSpacing(-10.0);
+  collector->Update();
+  this->Filter->SetInputData(collector->GetOutput());
+  // The second line is reached by all again, the third, where they end, by none.
+  const double rocksAt[] = { 10, 10, 0 };
+  for (int row = 0; row < 3; ++row)
+  {
+    EXPECT_EQ(this->Number(3, "Offset", row), -10.0 * row);
+    EXPECT_EQ(this->Number(3, "Rocks", row), rocksAt[row]);
+    EXPECT_EQ(this->Number(3, "Share", row), rocksAt[row] / 20);
+  }
+  for (int row = 0; row < 2; ++row)
+  {
+    EXPECT_NEAR(this->Number(3, "EnergyInKilojoules95", row), 183.0, 1e-9);
+    EXPECT_NEAR(this->Number(3, "EnergyInKilojoules99", row), 196.68, 1e-9);
+    EXPECT_NEAR(this->Number(3, "TopHeight95", row), 3.775, 1e-12);
+    EXPECT_EQ(this->Number(3, "RequiredClass99", row), 1);
+    EXPECT_EQ(this->Number(3, "UncaughtShare", row), 0.5);
+    EXPECT_EQ(this->Number(3, "UncaughtFrequency", row), (2 * 0.0625 + 3 * 0.015625) / 2);
+  }
+  auto* table = vtkTable::SafeDownCast(this->Filter->GetOutputDataObject(3));
+  EXPECT_EQ(table->GetValueByName(1, "LineName").ToString(), "line 1 −10 m");
+  // Through Merge Collectors, too.
+  vtkNew<vtkMergeCollectors> merge;
+  merge->AddInputDataObject(0, collector->GetOutput());
+  this->Filter->SetInputConnection(merge->GetOutputPort());
+  EXPECT_EQ(this->Number(3, "Offset", 1), -10.0);
+}
+
 TEST_F(TestBarrierDesign, PartsAreTheWhole)
 {
   this->Filter->SetInputData(this->Collect()->GetOutput());

@@ -422,8 +422,10 @@ one("a barrier that is negative", TrajectoryCollector(
     Input=OutputPort(fall, 1), FileName=write_text("lines.csv", ROAD.format(8, "")),
     BarrierHeight=-1.0), ports=4)
 line = TrajectoryCollector(Input=OutputPort(fall, 1))
-one("a partial factor below 1", BarrierDesign(Input=line, TrajectoryFactor=0.9), ports=3)
-one("a mass that is negative", BarrierDesign(Input=line, DesignMass=-1.0), ports=3)
+one("a partial factor below 1", BarrierDesign(Input=line, TrajectoryFactor=0.9), ports=4)
+one("a mass that is negative", BarrierDesign(Input=line, DesignMass=-1.0), ports=4)
+one("parallels where the line is", TrajectoryCollector(
+    Input=OutputPort(fall, 1), ParallelLines=3, ParallelSpacing=0.0), ports=4)
 Delete(line)
 
 section("Trajectories")

@@ -36,7 +36,7 @@ meeting = RockfallSimulation(
     RockContactFile="contacts.csv" if rank == 0 else "elsewhere.csv")
 proxies = {"terrain": (dem, 1), "rocks": (rocks, 1), "simulation": (simulation, 4),
            "dispersion": (dispersion, 2), "hazard map": (hazard, 2), "collector": (collector, 4),
-           "merged collectors": (merged, 3), "design": (design, 3),
+           "merged collectors": (merged, 3), "design": (design, 4),
            "meeting": (meeting, 4)}
 
 

@@ -42,7 +42,7 @@ study = {
     "lines": {"FileName": "road.csv", "BarrierCapacity": 150.0},
     "iterations": 11, "chunk": 2}
 RESULTS = ["summary.csv", "hazard.tif", "crossings.csv", "lines.csv", "exceedance.csv", "design.csv",
-           "design_classes.csv", "design_sources.csv"]
+           "design_classes.csv", "design_sources.csv", "design_places.csv"]
 
 
 def write_study(name="study.json", **changes):
