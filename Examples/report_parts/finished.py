@@ -19,6 +19,9 @@ ogr.UseExceptions()
 osr.UseExceptions()
 
 
+TEXTS = "LineName", "Shape", "Fate", "Class"  # also where all of them are numbers
+
+
 def field(path, whole, name, kind):
     """A field of a JSON object."""
     value = whole.get(name)
@@ -46,7 +49,8 @@ class Table:
                     raise Bad(f"{path}: row {number} has {len(row)} cells, it must have {len(self.names)}")
                 for k in kept:
                     texts[k].append(row[k])
-        self.columns = {self.names[k]: self.numbers(values) for k, values in texts.items()}
+        self.columns = {self.names[k]: np.array(values, str) if self.names[k] in TEXTS else self.numbers(values)
+                        for k, values in texts.items()}
 
     @staticmethod
     def numbers(values):
@@ -169,7 +173,7 @@ class Study:
             raise Bad(f"{self.path('summary.csv')}: there are no rocks")
         self.map = Raster(self.path("hazard.tif")) if "map" in self.given else None
         self.lines = self.crossings = self.exceedance = None
-        self.drawn_lines = []
+        self.drawn_lines, self.design = [], []
         if "lines" in self.given:
             self.read_lines()
 
@@ -211,6 +215,9 @@ class Study:
             "Line", "EnergyInKilojoules", "HeightOverGround", "ShareOfPassing"))
         if len(self.crossings):
             self.crossings.must_be_numbers("Iteration", "BlockId", "Passing", "KineticEnergy")
+        names = ("design.csv", ("Quantile", "EnergyInKilojoules")), ("design_classes.csv", ("Class", "Caught")), \
+            ("design_sources.csv", ("SourceId", "Rocks"))
+        self.design = [Table(self.path(name), ("LineName", *needed)) for name, needed in names]
         values = self.properties("lines")
         self.drawn_lines = lines_of(values["FileName"], values.get("LayerName", ""), self.slope.crs)
 

@@ -38,6 +38,7 @@ def make(study, title=None, author=""):
         maps=maps.results(study) if study.map else [],
         ground=tables.ground(study), rocks=tables.rocks(study), frequencies=tables.frequencies(study),
         structures=tables.structures(study), lines=tables.lines(study) if study.lines else [],
+        design=tables.design(study),
         exceedance=[charts.exceedance(study, some) for some in tables.slices(list(enumerate(names)))],
         convergence=curve, ends=ends, fates=tables.fates(study), notes=tables.notes(study),
         values=tables.values_in_force(study), preset=tables.has_preset(study), total=len(study.rocks),

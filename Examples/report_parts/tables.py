@@ -7,6 +7,7 @@ import numpy as np
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 MODELS = ("whole velocity", "normal and tangential", "speed-dependent")
+MOST_SOURCES = 10  # of a line
 SIDE_BY_SIDE = 5  # columns of a table that fit on a page
 # Of lines.csv: column, what a person reads, unit, factor
 QUANTITIES = (("KineticEnergy", "energy", "kJ", 1e-3), ("HeightOverGround", "height of the lowest point", "m", 1.0),
@@ -179,6 +180,38 @@ def lines(study):
         values = table[name]
         rows.append((label, unit, [number(v * factor) if values.dtype.kind == "f" else str(v) for v in values]))
     return side_by_side([str(name) for name in table["LineName"]], rows)
+
+
+def design(study):
+    """What barriers on the lines have to hold, line by line: levels with their intervals, classes of net, and where
+    rocks that get past come from."""
+    made = []
+    if not study.design:
+        return made
+    for name in study.lines["LineName"]:
+        levels, classes, sources = ([{c: table[c][k] for c in table.columns} for k in np.nonzero(table["LineName"] == name)[0]]
+                                    for table in study.design)
+        between = lambda row, what: number(row[what]) + (
+            f" ({number(row[what + 'Low'])} to {number(row[what + 'High'])})" if math.isfinite(row[what + "Low"]) else "")
+        sources.sort(key=lambda row: (-number_or_zero(row["UncaughtShare"]), -row["Rocks"]))
+        made.append({
+            "line": str(name),
+            "levels": [("largest" if row["Quantile"] == 100 else f"{number(row['Quantile'])} %",
+                        *(between(row, what) for what in ("EnergyInKilojoules", "Speed", "TopHeight")),
+                        number(row["DesignEnergyInKilojoules"]), number(row["RequiredHeight"]),
+                        "–" if row["RequiredClass"] < 0 else number(row["RequiredClass"]),
+                        "too few rocks" if row["Rocks"] < row["LeastRocks"] else "") for row in levels],
+            "classes": [(str(row["Class"]), number(row["BarrierHeight"]), number(row["MaximumEnergyLevel"], 4),
+                         *(f"{row[what]:.0f} ({number(100.0 * row[what + 'Share'])} %)" for what in ("Caught", "Over", "TooStrong")),
+                         number(100.0 * row["UncaughtShareHigh"])) for row in classes],
+            "sources": [(number(row["SourceId"], 9), *(f"{row[what]:.0f}" for what in ("Rocks", "Caught", "Over", "TooStrong")),
+                         number(100.0 * row["Share"]), number(row["EnergyMaximum"])) for row in sources[:MOST_SOURCES]],
+            "more": max(0, len(sources) - MOST_SOURCES)})
+    return made
+
+
+def number_or_zero(value):
+    return value if math.isfinite(value) else 0.0
 
 
 def fates(study):

@@ -11,8 +11,9 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 import wholefile
-from together import from_first_rank, refuse, say, write_by
-from wholefile import write_csv, write_text
+from gis import write_map_styles, write_table
+from together import from_first_rank, output, refuse, say, write_by
+from wholefile import write_text
 
 RESULTS = "results.json"  # not study.json, which is what a study is called that goes in
 
@@ -54,7 +55,7 @@ def combine_tables(folder, stems):
             tables.append({name: chunk[name] for name in chunk.files
                            if name not in ("StateHash", "Iterations")})
             hashes.append(str(chunk["StateHash"]))
-    write_csv(os.path.join(folder, "summary.csv"), tables)
+    write_table(os.path.join(folder, "summary.csv"), tables)
     say_lost(np.concatenate([table["FateCode"] for table in tables]))
     return hashes
 
@@ -80,17 +81,19 @@ def combine_crossings(folder, stems, merge, design):
     if points.GetFieldData().GetAbstractArray("Error"):
         refuse("The crossings cannot be merged; the message above says why.")
     places = vtk_to_numpy(points.GetPoints().GetData()).reshape(-1, 3)
-    write_csv(os.path.join(folder, "crossings.csv"),
-              [{**dict(zip("XYZ", places.T)), **columns_of(points.GetPointData())}])
+    crs = points.GetFieldData().GetAbstractArray("TerrainCRS")
+    write_table(os.path.join(folder, "crossings.csv"),
+                [{**dict(zip("XYZ", places.T)), **columns_of(points.GetPointData())}],
+                crs.GetValue(0) if crs else None, "KineticEnergy")
     for port, name in ((1, "lines.csv"), (2, "exceedance.csv")):
-        write_csv(os.path.join(folder, name),
-                  [columns_of(merge.GetOutputDataObject(port).GetRowData())])
+        write_table(os.path.join(folder, name),
+                    [columns_of(merge.GetOutputDataObject(port).GetRowData())])
     design.SetInputDataObject(0, points)
     design.Update()
     for port, name in enumerate(
             ("design.csv", "design_classes.csv", "design_sources.csv", "design_places.csv")):
-        write_csv(os.path.join(folder, name),
-                  [columns_of(design.GetOutputDataObject(port).GetRowData())])
+        write_table(os.path.join(folder, name),
+                    [columns_of(design.GetOutputDataObject(port).GetRowData())])
 
 
 def combine(study, folder, stems, iterations):
@@ -104,6 +107,10 @@ def combine(study, folder, stems, iterations):
         hazard = HazardPassageReader(FileNames=[stem + ".passages" for stem in stems])
         writer = servermanager.writers.HazardMapWriter(Input=hazard)
         write_by(writer, os.path.join(folder, "hazard.tif"))
+        cells = output(hazard).GetCellData()
+        from_first_rank(lambda: write_map_styles(os.path.join(folder, "hazard.tif"), [
+            cells.GetArrayName(k) for k in range(cells.GetNumberOfArrays())
+            if cells.GetArray(k) and cells.GetArray(k).GetNumberOfComponents() == 1]))
 
     def finish():
         write_text(os.path.join(folder, RESULTS), json.dumps(

@@ -7,7 +7,9 @@ import json
 import os
 import re
 import shutil
+import subprocess
 import sys
+from xml.etree import ElementTree
 
 import numpy as np
 
@@ -16,6 +18,7 @@ from helpers import delete_sources, incline, rows_of, run_script, write_grid, wr
 EXAMPLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Examples")
 sys.path[:0] = [os.path.join(EXAMPLES, "study_parts"), os.path.join(EXAMPLES, "report_parts")]
 import charts
+import gis
 import maps
 import tables
 from identity import content
@@ -77,6 +80,10 @@ line, other = rows_of("whole/lines.csv")
 energy = tables.number(float(line["KineticEnergy95"]) / 1000.0).replace("\u2009", " ")
 assert f"energy, 95 % kJ {energy} –" in text, energy
 assert f"rocks that pass {line['Rocks']} 0" in text
+for row in rows_of("whole/design.csv"):
+    if row["LineName"] == line["LineName"] and row["Quantile"] == "95.0":
+        assert tables.number(float(row["EnergyInKilojoules"])) in text and "too few rocks" in text, row
+assert "What a barrier on line <b>road</b> 700045 has to hold" in text
 share = 100.0 * int(line["Rocks"]) / 12.0
 assert re.search(rf"road</b> 700045: share that passes % {re.escape(tables.number(share))} [\d.]+ to", text), share
 fates = {row["Fate"] for row in rows_of("whole/summary.csv")}
@@ -92,6 +99,31 @@ assert "TimestepValues" not in manifest["values"]["simulation"]
 assert [one["iterations"] for one in manifest["sessions"]] == [4] and manifest["sessions"][0]["seconds"] > 0
 assert "Preset: Talus (assumed)" in text and "model normal and tangential" in text
 assert "numbers of section 3 count" in text
+
+# Beside the tables and the map: types, CRS, styles with units; QGIS itself looks at them in qgisCheck.py.
+said = subprocess.run(["ogrinfo", "-al", "-so", "whole/crossings.csv"], capture_output=True, text=True, check=True).stdout
+assert "Geometry: Point" in said and "UTM zone 16N" in said and re.search(r"KineticEnergy: Real \(", said), said
+assert re.search(r"BlockId: Integer64 \(", said) and re.search(r"LineName: String \(", said), said
+bands = re.findall(r"Description = (\w+)", subprocess.run(["gdalinfo", "whole/hazard.tif"], capture_output=True, text=True,
+                                                         check=True).stdout)
+styles = {name: ElementTree.parse(os.path.join("whole", name)).getroot() for name in os.listdir("whole")
+          if name.endswith(".qml")}
+assert {"hazard.qml", "hazard-KineticEnergy95.qml", "hazard-HeightOverGround95.qml", "crossings.qml"} <= set(styles)
+for name, style in styles.items():
+    if name.startswith("hazard"):
+        band = name[7:-4] if "-" in name else "ReachProbability"
+        assert bands[int(style.find("pipe/rasterrenderer").get("band")) - 1] == band, name
+labels = [item.get("label") for item in styles["hazard-KineticEnergy95.qml"].iter("item")]
+assert labels[0] == "up to 10 kJ" and labels[-1] == "above 3000 kJ" and len(labels) == 7, labels
+aliases = {one.get("field"): one.get("name") for one in styles["lines.qml"].iter("alias")}
+assert aliases["KineticEnergy95"] == "Kinetic energy 95 (J)" and aliases["BarrierCapacity"] == "Barrier capacity (kJ)"
+assert {one.get("name") for one in styles["crossings.qml"].find("expressionfields")} == {
+    "KineticEnergy_kJ", "TranslationalEnergy_kJ", "RotationalEnergy_kJ"}
+for name, unit in (("EnergyInKilojoulesLow", "kJ"), ("EnergyMaximum", "kJ"), ("EnergyFriction", "J"), ("LastingLoss", "J"),
+                   ("TopHeight", "m"), ("VelocityX", "m/s"), ("RotationRateX", "rad/s"), ("StartX", "m"), ("Mass", "kg"),
+                   ("UncaughtFrequency", "1/a"), ("Share", ""), ("Rocks", ""), ("VerticalAngle", "°"), ("Passing", ""), ("Offset", "m")):
+    assert gis.unit_of(name) == unit, (name, gis.unit_of(name))
+assert gis.raster_style("Intensity100a", 3).count("paletteEntry") == 3 and gis.raster_style("Passages", 1) is None
 
 # Numbers, scales, rasters.
 for value, shown in ((0, "0"), (1234.5, "1\u2009230"), (0.012345, "0.0123"), (99.96, "100"), (2.5, "2.5"),

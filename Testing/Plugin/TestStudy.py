@@ -65,6 +65,11 @@ def run(folder, path="study.json", ranks=0):
     return (0, said) if message is None else (1, said + message)
 
 
+def for_gis(names):
+    """Companions of tables and map: types, CRS and styles."""
+    return sorted(name for name in names if name.endswith((".csvt", ".qml", ".prj")))
+
+
 def results_of(folder):
     """All files of a study but what its manifest says for a person, as the date."""
     there = files_of(folder)
@@ -86,10 +91,13 @@ write_study()
 code, said = run("results-calm")
 assert code == 0, said
 calm = results_of("results-calm")
-assert sorted(calm) == sorted(
+assert sorted(set(calm) - set(for_gis(calm))) == sorted(
     [f"chunk-{k:05d}{kind}" for k in range(6)
      for kind in (".npz", ".vtp", ".passages", "-crossings.vtp")] +
     ["manifest.json", "results.json"] + RESULTS), sorted(calm)
+styled = [name[:-4] for name in RESULTS if name.endswith(".csv")]
+assert {name for name in for_gis(calm) if not name.startswith("hazard")} == {
+    "crossings.prj", *(name + end for name in styled for end in (".csvt", ".qml"))}, for_gis(calm)
 assert calm["summary.csv"].count(b"\n") == 1 + 33
 crossings = calm["crossings.csv"].count(b"\n") - 1
 assert crossings > 20, calm["lines.csv"]
@@ -131,8 +139,8 @@ write_study("one.json", chunk=11, trajectories=False)
 code, said = run("results-one", "one.json")
 assert code == 0, said
 one = files_of("results-one")
-assert "chunk-00000.vtp" not in one and len(one) == 3 + 2 + len(RESULTS), sorted(one)
-for name in RESULTS:
+assert "chunk-00000.vtp" not in one and len(one) == 3 + 2 + len(RESULTS) + len(for_gis(calm)), sorted(one)
+for name in RESULTS + for_gis(calm):
     assert one[name] == calm[name], f"{name} depends on the chunks"
 
 # The same of all trajectories at once.
