@@ -5,6 +5,7 @@
 #include "counts/lostRocks.h"
 #include "geometry/shell.h"
 #include "shared/arrays.h"
+#include "shared/failure.h"
 #include "shared/rockPaths.h"
 #include "shared/terrainFieldData.h"
 #include "statistics/HazardRaster.h"
@@ -255,9 +256,11 @@ private:
   std::vector<vtkSmartPointer<vtkFloatArray>> statistics_;
 };
 
-/// Heights of the slope at the corners of the cells, to drape the map over it.
-void addElevation(const Terrain& terrain, const CellGrid& grid, vtkImageData* image)
+/// Heights of the slope at the corners of the cells, to drape the map over it. Returns whether the
+/// slope has one at each.
+bool addElevation(const Terrain& terrain, const CellGrid& grid, vtkImageData* image)
 {
+  bool whole = true;
   const auto elevation = addArray<vtkFloatArray>(image->GetPointData(), "Elevation");
   elevation->SetNumberOfTuples(image->GetNumberOfPoints());
   vtkIdType id = 0;
@@ -269,8 +272,10 @@ void addElevation(const Terrain& terrain, const CellGrid& grid, vtkImageData* im
         terrain.elevation(std::min(grid.west + column * grid.cellSize, terrain.width()),
           std::min(grid.south + row * grid.cellSize, terrain.height()));
       elevation->SetValue(id, float(std::isnan(height) ? terrain.lowest() : height));
+      whole = whole && !std::isnan(height);
     }
   }
+  return whole;
 }
 
 void addMarker(vtkImageData* image, std::initializer_list<double> numbers)
@@ -359,9 +364,12 @@ void makeHazardImage(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
     lostOf(trajectories), options.statistics,
     [&raster](const UseCell& use) { raster.summarize(use); }, image);
   addFrequencies(raster, trajectories, options.frequency, image);
-  if (terrain)
+  if (terrain && !addElevation(*terrain, grid, image) && !terrainMesh &&
+    !hasTerrain(trajectories->GetFieldData()))
   {
-    addElevation(*terrain, grid, image);
+    showNote(
+      "The trajectories bring the heights under their paths only, as those of a file do; "
+      "Elevation is the lowest of them elsewhere: connect the slope as Terrain if it matters");
   }
   copyCoordinateSystem(trajectories->GetFieldData(), image->GetFieldData());
 }

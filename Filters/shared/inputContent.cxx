@@ -1,5 +1,7 @@
 #include "shared/inputContent.h"
 
+#include "shared/slopeReference.h"
+
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -94,15 +96,19 @@ void addArrays(vtkFieldData* data, Content& content, Wanted&& wanted)
 
 } // namespace
 
-std::uint64_t terrainContent(vtkPolyData* terrain)
+std::uint64_t terrainContent(vtkFieldData* terrain)
 {
+  if (!terrain->GetAbstractArray(kHeightsArray))
+  {
+    return slopeKey(terrain).value_or(0);
+  }
   Content content;
-  vtkFieldData* field = terrain->GetFieldData();
-  addArrays(field, content,
-    [](std::string_view name)
-    { return name != "Notes" && name != "TerrainGrid" && !name.ends_with("Names"); });
+  addArrays(terrain, content,
+    [](std::string_view name) {
+      return isOfSlope(std::string(name).c_str()) && name != kGridArray && !name.ends_with("Names");
+    });
   // The last number of the grid is the stride of what is shown.
-  if (vtkDataArray* grid = field->GetArray("TerrainGrid"))
+  if (vtkDataArray* grid = terrain->GetArray(kGridArray))
   {
     for (vtkIdType k = 0; k + 1 < grid->GetNumberOfValues(); ++k)
     {

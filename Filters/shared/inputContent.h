@@ -8,13 +8,15 @@
 #include <initializer_list>
 #include <string_view>
 
+class vtkFieldData;
 class vtkPolyData;
 
 namespace rockfall::filters
 {
 
-/// Of a slope: its field data but for notes, names of classes, and how many of its nodes are shown.
-std::uint64_t terrainContent(vtkPolyData* terrain);
+/// Of a slope, or of the one that is referred to: its field data but for notes, names of classes, and
+/// how many of its nodes are shown.
+std::uint64_t terrainContent(vtkFieldData* terrain);
 
 /// Of rocks: faces and cell data, and the CRS. `names`: cell arrays that decide nothing.
 std::uint64_t rocksContent(vtkPolyData* rocks, std::initializer_list<std::string_view> names);

@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "shared/inputs.h"
+#include "shared/slopeReference.h"
 
 #include "vtkAbstractArray.h"
 #include "vtkAppendPolyData.h"
@@ -25,7 +26,6 @@ namespace
 {
 
 constexpr char errorOfPart[] = "Error";
-constexpr char heightsOfPart[] = "TerrainHeights";
 
 struct Part
 {
@@ -114,6 +114,7 @@ void mergeFields(const std::vector<Part>& parts, const std::string& name, vtkFie
         output->AddArray(array);
       }
     }
+    addTiles(fields, output);
     for (const char* common : { "TerrainCRS", "TerrainGrid", "TrajectoryOutput" })
     {
       vtkAbstractArray* array = fields->GetAbstractArray(common);
@@ -132,7 +133,7 @@ vtkPolyData* slopeOf(const std::vector<Part>& parts, const std::string& name)
   vtkPolyData* slope = nullptr;
   for (const Part& part : parts)
   {
-    if (part.data->GetFieldData()->GetAbstractArray(heightsOfPart))
+    if (part.data->GetFieldData()->GetAbstractArray(kHeightsArray))
     {
       if (slope)
       {

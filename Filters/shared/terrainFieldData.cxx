@@ -5,6 +5,7 @@
 #include "geometry/shell.h"
 #include "shared/arrays.h"
 #include "shared/roughnessFieldData.h"
+#include "shared/slopeReference.h"
 #include "shared/structureFieldData.h"
 #include "shared/terrainMesh.h"
 
@@ -27,8 +28,6 @@ namespace rockfall::filters
 namespace
 {
 
-constexpr char heightsName[] = "TerrainHeights";
-constexpr char gridName[] = "TerrainGrid";
 constexpr char materialName[] = "TerrainMaterial";
 constexpr char yieldingName[] = "TerrainYielding";
 
@@ -67,13 +66,6 @@ private:
 };
 using SharedHeights = Shared<vtkDoubleArray, double>;
 using SharedClasses = Shared<vtkUnsignedCharArray, std::uint8_t>;
-
-/// Arrays of the slope and its structures begin alike.
-bool isOfTerrain(vtkAbstractArray* array)
-{
-  const std::string name = array->GetName() ? array->GetName() : "";
-  return name.rfind("Terrain", 0) == 0 || name == kOriginArray;
-}
 
 void addNumbers(vtkFieldData* fieldData, const char* name, std::initializer_list<double> values)
 {
@@ -124,6 +116,26 @@ int gridCount(double value, const char* what)
       what + ", it must be a count");
   }
   return int(std::lround(value));
+}
+
+struct ShownGrid
+{
+  GridGeometry grid;
+  int stride = 1; ///< Of the shown mesh.
+};
+
+ShownGrid readGrid(vtkFieldData* fieldData)
+{
+  const std::vector<double> g = numbers(fieldData, kGridArray, 6);
+  ShownGrid shown;
+  shown.grid.columns = gridCount(g[0], "columns");
+  shown.grid.rows = gridCount(g[1], "rows");
+  shown.grid.cellSize = g[2];
+  shown.grid.xOrigin = g[3];
+  shown.grid.yOrigin = g[4];
+  shown.stride = gridCount(g[5], "as its stride");
+  shown.grid.crs = readCrs(fieldData);
+  return shown;
 }
 
 RestitutionModel modelOf(double number, const char* array)
@@ -343,7 +355,7 @@ void writeTerrain(std::shared_ptr<const Terrain> terrain, int stride, vtkFieldDa
   const GridGeometry& grid = terrain->geometry();
   const SurfaceMaterial& material = terrain->material();
   const Roughness& roughness = terrain->roughness();
-  addNumbers(fieldData, gridName,
+  addNumbers(fieldData, kGridArray,
     { double(grid.columns), double(grid.rows), grid.cellSize, grid.xOrigin, grid.yOrigin,
       double(stride) });
   addNumbers(fieldData, materialName,
@@ -364,42 +376,38 @@ void writeTerrain(std::shared_ptr<const Terrain> terrain, int stride, vtkFieldDa
   writeRoughness(*terrain, fieldData);
   writeStructures(*terrain, fieldData);
   vtkNew<SharedHeights> heights;
-  heights->SetName(heightsName);
+  heights->SetName(kHeightsArray);
   heights->Share(terrain, terrain->heights());
   fieldData->AddArray(heights);
 }
 
 Terrain readTerrain(vtkPolyData* mesh, bool withMesh)
 {
-  vtkFieldData* fieldData = mesh->GetFieldData();
-  if (mesh->GetNumberOfCells() == 0 && !fieldData->GetArray(heightsName))
+  vtkSmartPointer<vtkFieldData> fieldData = slopeOf(mesh->GetFieldData());
+  if (!fieldData)
+  {
+    fieldData = mesh->GetFieldData();
+  }
+  if (mesh->GetNumberOfCells() == 0 && !fieldData->GetArray(kHeightsArray))
   {
     throw DataError("The Terrain input is empty: its source made nothing");
   }
-  const std::vector<double> g = numbers(fieldData, gridName, 6);
+  const auto [grid, stride] = readGrid(fieldData);
   const std::vector<double> m =
     numbers(fieldData, materialName, materialNumbers, materialNumbersOnce);
-  GridGeometry grid;
-  grid.columns = gridCount(g[0], "columns");
-  grid.rows = gridCount(g[1], "rows");
-  grid.cellSize = g[2];
-  grid.xOrigin = g[3];
-  grid.yOrigin = g[4];
-  const int stride = gridCount(g[5], "as its stride");
-  grid.crs = readCrs(fieldData);
   Roughness roughness;
   roughness.mean = m[5];
   roughness.deviation = m[6];
   roughness = readRoughness(fieldData, roughness);
 
   vtkSmartPointer<vtkDoubleArray> heights =
-    vtkDoubleArray::SafeDownCast(fieldData->GetArray(heightsName));
+    vtkDoubleArray::SafeDownCast(fieldData->GetArray(kHeightsArray));
   if (!heights)
   {
     throw DataError(
       "The Terrain input must come from DEM to CFE Mesh, directly or from a file saved "
       "from it: its field data has no array " +
-      std::string(heightsName) + " of double precision");
+      std::string(kHeightsArray) + " of double precision");
   }
   const std::span<const double> view(
     heights->GetPointer(0), std::size_t(heights->GetNumberOfValues()));
@@ -415,7 +423,7 @@ Terrain readTerrain(vtkPolyData* mesh, bool withMesh)
     restitution.materials[std::size_t(k)].yielding = yielding[std::size_t(k) + 1];
   }
   restitution.roughness = readClassRoughness(fieldData, restitution.count());
-  Terrain terrain(std::move(grid), view, std::move(owner), material, roughness);
+  Terrain terrain(grid, view, std::move(owner), material, roughness);
   terrain.setRestitutionClasses(std::move(restitution));
   terrain.setDeviationPer(readDeviationPer(fieldData));
   terrain.setJointClasses(
@@ -428,24 +436,12 @@ Terrain readTerrain(vtkPolyData* mesh, bool withMesh)
   return terrain;
 }
 
-void carryTerrain(vtkFieldData* from, vtkFieldData* to)
-{
-  for (int k = 0; k < from->GetNumberOfArrays(); ++k)
-  {
-    vtkAbstractArray* array = from->GetAbstractArray(k);
-    if (isOfTerrain(array))
-    {
-      to->AddArray(array);
-    }
-  }
-}
-
 void dropTerrain(vtkFieldData* data)
 {
   for (int k = data->GetNumberOfArrays() - 1; k >= 0; --k)
   {
     vtkAbstractArray* array = data->GetAbstractArray(k);
-    if (isOfTerrain(array) && array->GetName() != std::string(kCrsArray))
+    if (isOfSlope(array->GetName()) && array->GetName() != std::string(kCrsArray))
     {
       data->RemoveArray(k);
     }
@@ -454,21 +450,31 @@ void dropTerrain(vtkFieldData* data)
 
 bool hasTerrain(vtkFieldData* fieldData)
 {
-  return fieldData->GetArray(heightsName) && fieldData->GetArray(gridName);
+  const vtkSmartPointer<vtkFieldData> slope = slopeOf(fieldData);
+  return slope && slope->GetArray(kGridArray);
 }
 
 std::optional<Terrain> slopeUnder(vtkPolyData* trajectories, vtkPolyData* mesh)
 {
+  vtkFieldData* fieldData = trajectories->GetFieldData();
   if (mesh)
   {
     std::optional<Terrain> terrain(readTerrain(mesh));
-    checkSameCrs(
-      trajectories->GetFieldData(), "The trajectories of the Input are", mesh->GetFieldData());
+    checkSameCrs(fieldData, "The trajectories of the Input are", mesh->GetFieldData());
     return terrain;
   }
-  if (hasTerrain(trajectories->GetFieldData()))
+  if (hasTerrain(fieldData))
   {
     return readTerrain(trajectories, false);
+  }
+  if (hasTiles(fieldData))
+  {
+    return readTiles(trajectories, readGrid(fieldData).grid);
+  }
+  if (slopeKey(fieldData))
+  {
+    throw DataError("The trajectories refer to a slope that is not here, and have no heights of it "
+                    "with them: connect the slope as Terrain");
   }
   return {};
 }

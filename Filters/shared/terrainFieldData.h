@@ -31,6 +31,9 @@
 ///
 /// Embankments, trees and barriers: structureFieldData.h.
 ///
+/// Rocks and results carry a reference instead, and trajectories the heights under them
+/// (slopeReference.h).
+///
 /// Arrays, so that it survives shallow copies and saving and reopening as .vtp. The heights are
 /// never copied: the array shares the Core's memory on the way out, the Core the array's on the way
 /// in.
@@ -56,17 +59,15 @@ void writeTerrain(std::shared_ptr<const Terrain> terrain, int stride, vtkFieldDa
 /// not what the rocks would fall on. Without `withMesh` the field data are all that is looked at.
 Terrain readTerrain(vtkPolyData* mesh, bool withMesh = true);
 
-/// Lets what stands in the coordinates of a slope know that slope: all its arrays, shared.
-void carryTerrain(vtkFieldData* from, vtkFieldData* to);
-
-/// Takes out what carryTerrain brings, but for the CRS.
+/// Takes out all arrays of a slope, or of a reference to one, but for the CRS.
 void dropTerrain(vtkFieldData* data);
 
-/// Whether a slope came with the data.
+/// Whether a slope came with the data, or they refer to one that is at hand.
 bool hasTerrain(vtkFieldData* fieldData);
 
-/// The slope that trajectories fell on: that of `mesh`, which may be null, else the one that came
-/// with them, if any. Throws DataError as readTerrain and checkSameCrs.
+/// The slope that trajectories fell on: that of `mesh`, which may be null, else the one that they
+/// refer to, or what their file kept of it, if any. Throws DataError as readTerrain and
+/// checkSameCrs, and where the file did not keep enough.
 std::optional<Terrain> slopeUnder(vtkPolyData* trajectories, vtkPolyData* mesh);
 
 } // namespace rockfall::filters

@@ -10,6 +10,7 @@
 #include "shared/failure.h"
 #include "shared/inputContent.h"
 #include "shared/rockFieldData.h"
+#include "shared/slopeReference.h"
 #include "shared/terrainFieldData.h"
 #include "simulation/motion.h"
 
@@ -147,7 +148,7 @@ bool KeptRun::takesOver(
     return false;
   }
   const bool sameTerrain = terrain == other.terrain, sameRocks = rocks == other.rocks;
-  if ((!sameTerrain && terrainContent != filters::terrainContent(terrainInput)) ||
+  if ((!sameTerrain && terrainContent != filters::terrainContent(terrainInput->GetFieldData())) ||
     (!sameRocks && rocksContent != this->contentOfRocks(rocksInput, ranks)))
   {
     return false;
@@ -189,7 +190,7 @@ void KeptRun::dropInputs()
 void KeptRun::prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const Ranks& ranks,
   const std::string& noMemory)
 {
-  terrainContent = filters::terrainContent(terrainInput);
+  terrainContent = filters::terrainContent(terrainInput->GetFieldData());
   rocksContent = this->contentOfRocks(rocksInput, ranks);
   const bool brought = terrainInput == rocksInput; // the rocks brought it
   ranks.together(
@@ -197,9 +198,12 @@ void KeptRun::prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const 
     {
       if (brought && rocksInput->GetNumberOfCells() > 0 && !hasTerrain(rocksInput->GetFieldData()))
       {
-        throw DataError(
-          "The Terrain input is missing, and the Rocks did not bring one: connect the "
-          "slope to the simulation or to the source of the rocks");
+        throw DataError(slopeKey(rocksInput->GetFieldData())
+            ? "The Rocks refer to a slope that is not here, as rocks of a file do: connect the "
+              "slope "
+              "to the simulation as Terrain"
+            : "The Terrain input is missing, and the Rocks did not bring one: connect the "
+              "slope to the simulation or to the source of the rocks");
       }
     },
     noMemory);
@@ -219,7 +223,9 @@ void KeptRun::prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const 
   vtkNew<vtkPolyData> bare, released;
   if (ranks.rank() == terrainRank)
   {
-    bare->SetFieldData(terrainInput->GetFieldData()); // without the triangles
+    // Without the triangles.
+    const vtkSmartPointer<vtkFieldData> fields = slopeOf(terrainInput->GetFieldData());
+    bare->SetFieldData(fields ? fields.Get() : terrainInput->GetFieldData());
   }
   if (ranks.rank() == rocksRank)
   {
@@ -229,7 +235,7 @@ void KeptRun::prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const 
   ranks.broadcast(bare, terrainRank);
   ranks.broadcast(released, rocksRank);
   copyCoordinateSystem(bare->GetFieldData(), coordinates);
-  carryTerrain(bare->GetFieldData(), ground);
+  referToSlope(bare->GetFieldData(), ground);
   ranks.together(
     [&]
     {
@@ -292,7 +298,9 @@ void KeptRun::describe()
   {
     copyCoordinateSystem(coordinates, output->GetFieldData());
   }
-  carryTerrain(ground, trajectories->GetFieldData()); // maps and collectors need no other input
+  // Maps and collectors need no other input, and files of trajectories no slope beside them.
+  referToSlope(ground, trajectories->GetFieldData());
+  writeTiles(trajectories);
 }
 
 void KeptRun::readContacts(const Ranks& ranks, const std::string& noMemory)

@@ -11,6 +11,7 @@
 #include "shared/failure.h"
 #include "shared/inputs.h"
 #include "shared/pieces.h"
+#include "shared/slopeReference.h"
 #include "shared/terrainFieldData.h"
 #include "sources/drawnSource.h"
 #include "sources/rockMaker.h"
@@ -241,7 +242,7 @@ void vtkJointedRockMass::MakeBlocks(vtkPolyData* terrainInput, vtkPolyData* bloc
   filters::writeCrs(terrain ? terrain->geometry().crs : std::string(), blocks->GetFieldData());
   if (terrain)
   {
-    filters::carryTerrain(terrainInput->GetFieldData(), blocks->GetFieldData());
+    filters::referToSlope(terrainInput->GetFieldData(), blocks->GetFieldData());
   }
   filters::addArray<vtkIdTypeArray>(blocks->GetFieldData(), "SliverCount")
     ->InsertNextValue(cut.slivers);

@@ -10,6 +10,7 @@
 #include "shared/failure.h"
 #include "shared/inputs.h"
 #include "shared/pieces.h"
+#include "shared/slopeReference.h"
 #include "shared/terrainFieldData.h"
 #include "sources/rockBlockSources.h"
 #include "sources/rockMaker.h"
@@ -238,7 +239,7 @@ int vtkRockBlockSource::RequestData(
       rockfall::filters::writeCrs(sources.crs, blocks->GetFieldData());
       if (terrain)
       {
-        rockfall::filters::carryTerrain(terrain->GetFieldData(), blocks->GetFieldData());
+        rockfall::filters::referToSlope(terrain->GetFieldData(), blocks->GetFieldData());
       }
       const std::vector<std::string>& made = sources.maker->notes();
       sources.notes.insert(sources.notes.end(), made.begin(), made.end());
