@@ -105,13 +105,21 @@ void followExceedance(const Shown& shown, vtkSMProxy* representation, vtkSMViewP
   vtkSMPropertyHelper(representation, "SeriesMarkerStyle")
     .SetStatus(kShare, several ? kDisc : kNoMarker);
   representation->UpdateVTKObjects();
-  constexpr const char* usual = "Energy at the line";
-  constexpr const char* none = "No rock passes the line";
+  const std::string usual = "Energy at the line";
+  const std::string none = "No rock passes the line";
   vtkSMPropertyHelper title(view, "ChartTitle");
   const std::string given = title.GetAsString() ? title.GetAsString() : "";
-  if (given.empty() || given == usual || given == none)
+  // Of a second study with a number behind.
+  for (const std::string& own : { usual, none })
   {
-    title.Set(any ? usual : none);
+    if (given.starts_with(own))
+    {
+      title.Set(((any ? usual : none) + given.substr(own.size())).c_str());
+    }
+  }
+  if (given.empty())
+  {
+    title.Set((any ? usual : none).c_str());
   }
   view->UpdateVTKObjects();
 }

@@ -15,6 +15,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
+#include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <string>
 #include <vector>
@@ -33,7 +36,10 @@ constexpr Colour kLine = { 0.05, 0.05, 0.05 };
 constexpr Colour kPicked = { 0.85, 0.05, 0.55 };
 constexpr double kPickedWidth = 6.0; ///< px
 /// Lines are flat: drawn as tubes, ParaView hides those on a slope behind it.
-constexpr double kPathWidth = 3.0;  ///< px
+constexpr double kPathWidth = 3.0; ///< px
+constexpr double kThinPath = 1.0;  ///< px
+constexpr int kManyPaths = 50;
+constexpr double kBuiltWidth = 2.0; ///< px
 constexpr double kMarkerSize = 8.0; ///< px, of blocks from afar
 constexpr double kPointSize = 6.0;  ///< px
 
@@ -46,24 +52,52 @@ constexpr Palette kFlow = { { { 0.27, 0.00, 0.33 }, { 0.19, 0.41, 0.56 }, { 0.21
 constexpr Palette kHeights = { { { 0.84, 0.89, 0.97 }, { 0.54, 0.71, 0.86 }, { 0.20, 0.45, 0.71 },
   { 0.03, 0.19, 0.42 } } };
 
-/// A sequential palette for each quantity, and how a legend calls it.
+/// A sequential palette for each quantity, and how a legend calls it. The first whose name begins an
+/// array's is that array's.
 struct Quantity
 {
   const char* array; ///< Beginning of the array's name.
-  const char* title;
-  const Palette& palette;
+  const char* words;
+  const char* unit; ///< Of the legend; energies are in J in the arrays.
+  const Palette* palette;
 };
+constexpr const char* kKilojoules = "kJ";
 constexpr Quantity kQuantities[] = {
-  { "Speed", "Speed (m/s)", kFlow },
-  { "ReachProbability", "Probability of passing", kHeat },
-  { "KineticEnergy", "Kinetic energy (J)", kHeat },
-  { "HeightOverGround", "Height over ground (m)", kHeights },
-  { "RotationRate", "Rotation rate (rad/s)", kFlow },
-  { "Passages", "Passages", kHeat },
-  { "Rocks", "Rocks", kHeat },
-  { "StoppingPoints", "Rocks that stop", kHeat },
-  { "Elevation", "Elevation (m)", kHeights },
-  { "Time", "Time (s)", kFlow },
+  { "Speed", "Speed", "m/s", &kFlow },
+  { "Velocity", "Velocity", "m/s", &kFlow },
+  { "ReachProbability", "Probability of passing", "", &kHeat },
+  { "ExceedanceProbability", "Probability of more energy", "", &kHeat },
+  { "AnnualFrequency", "Frequency", "1/a", &kHeat },
+  { "Frequency", "Frequency", "1/a", &kHeat },
+  { "ReturnPeriod", "Return period", "a", &kHeights },
+  { "Intensity", "Intensity", "class", &kHeat },
+  { "KineticEnergy", "Kinetic energy", kKilojoules, &kHeat },
+  { "PotentialEnergy", "Potential energy", kKilojoules, &kHeights },
+  { "StrainEnergy", "Strain energy", kKilojoules, &kHeat },
+  { "EnergyLoss", "Energy lost", kKilojoules, &kHeat },
+  { "FrictionLoss", "Energy lost by friction", kKilojoules, &kHeat },
+  { "RestitutionLoss", "Energy lost by restitution", kKilojoules, &kHeat },
+  { "VibrationLoss", "Energy lost by vibration", kKilojoules, &kHeat },
+  { "DampingLoss", "Energy lost by damping", kKilojoules, &kHeat },
+  { "StructureLoss", "Energy lost to structures", kKilojoules, &kHeat },
+  { "ScarLoss", "Energy lost to the ground", kKilojoules, &kHeat },
+  { "RollingLoss", "Energy lost by rolling", kKilojoules, &kHeat },
+  { "NumericalLoss", "Numerical loss", kKilojoules, &kHeat },
+  { "GivenToRocks", "Energy given to rocks", kKilojoules, &kHeat },
+  { "HeightOverGround", "Height over ground", "m", &kHeights },
+  { "RotationRate", "Rotation rate", "rad/s", &kFlow },
+  { "AngularVelocity", "Rotation rate", "rad/s", &kFlow },
+  { "Impulse", "Impulse", "N s", &kHeat },
+  { "Passages", "Passages", "", &kHeat },
+  { "Rocks", "Rocks", "", &kHeat },
+  { "StoppingPoints", "Rocks that stop", "", &kHeat },
+  { "HighestQuantile", "Highest quantile that the rocks can give", "%", &kHeights },
+  { "Elevation", "Elevation", "m", &kHeights },
+  { "Time", "Time", "s", &kFlow },
+  { "Volume", "Volume", "m³", &kFlow },
+  { "Mass", "Mass", "kg", &kFlow },
+  { "Width", "Width", "m", &kFlow },
+  { "Share", "Share of the rocks", "", &kHeat },
 };
 
 void setColour(vtkSMProxy* proxy, const Colour& colour)
@@ -103,20 +137,70 @@ const Quantity* quantityOf(const std::string& array)
   return nullptr;
 }
 
-/// "KineticEnergy95" is "Kinetic energy (J), 95 %".
+/// "ErrorOfIterations" is "error of iterations".
+std::string inWords(const std::string& name)
+{
+  std::string words;
+  for (std::size_t k = 0; k < name.size(); ++k)
+  {
+    const auto isUpper = [&](std::size_t at)
+    { return at < name.size() && name[at] >= 'A' && name[at] <= 'Z'; };
+    const bool begins = isUpper(k) && k + 1 < name.size() && !isUpper(k + 1);
+    const bool number = k > 0 && std::isdigit(static_cast<unsigned char>(name[k])) &&
+      std::isalpha(static_cast<unsigned char>(name[k - 1]));
+    words += (begins || number) && k > 0 ? " " : "";
+    words += begins ? char(name[k] - 'A' + 'a') : name[k];
+  }
+  return words;
+}
+
+/// "KineticEnergy95" is "Kinetic energy, 95 % (kJ)".
 std::string titleOf(const std::string& array, const Quantity& quantity)
 {
   const std::string rest = array.substr(std::string(quantity.array).size());
-  if (rest.empty())
-  {
-    return quantity.title;
-  }
   const bool number = rest.find_first_not_of("0123456789") == std::string::npos;
-  return std::string(quantity.title) + ", " +
-    (number                 ? rest + " %"
-        : rest == "Mean"    ? "mean"
-        : rest == "Maximum" ? "maximum"
-                            : rest);
+  return quantity.words + (rest.empty() ? "" : ", " + (number ? rest + " %" : inWords(rest))) +
+    (*quantity.unit ? std::string(" (") + quantity.unit + ")" : std::string());
+}
+
+/// Whole numbers of kJ, or parts of one, as the labels of a palette in J: some four within its range.
+void labelInKilojoules(vtkSMProxy* table, vtkSMProxy* bar)
+{
+  const std::vector<double> points = vtkSMPropertyHelper(table, "RGBPoints").GetDoubleArray();
+  if (points.size() < 8 || !bar)
+  {
+    return;
+  }
+  const double low = points[0], high = points[points.size() - 4];
+  constexpr double labels = 4.0, joules = 1000.0;
+  const double about = std::max((high - low) / labels, 1e-9);
+  const double power = std::pow(10.0, std::floor(std::log10(about)));
+  const double step = power * (about < 2.0 * power ? 1.0 : about < 5.0 * power ? 2.0 : 5.0);
+  std::vector<std::string> texts;
+  for (double at = std::ceil(low / step - 1e-9) * step; at <= high * (1.0 + 1e-9) + 1e-12;
+       at += step)
+  {
+    const auto number = [](const char* form, double of)
+    {
+      char text[32];
+      std::snprintf(text, sizeof text, form, of);
+      return std::string(text);
+    };
+    const double value = std::abs(at) < 1e-6 * step ? 0.0 : at;
+    texts.push_back(number("%.17g", std::clamp(value, low, high)));
+    texts.push_back(number("%.6g", value / joules));
+  }
+  vtkSMPropertyHelper annotations(table, "Annotations");
+  annotations.SetNumberOfElements(unsigned(texts.size()));
+  for (std::size_t k = 0; k < texts.size(); ++k)
+  {
+    annotations.Set(unsigned(k), texts[k].c_str());
+  }
+  table->UpdateVTKObjects();
+  set(bar, "DrawTickLabels", 0);
+  set(bar, "AddRangeLabels", 0);
+  set(bar, "DrawAnnotations", 1);
+  bar->UpdateVTKObjects();
 }
 
 std::string colouredBy(vtkSMProxy* proxy)
@@ -209,7 +293,14 @@ void style(vtkSMProxy* representation)
   }
   else if (is(shown, "vtkDEMToCFESource", 1) || is(shown, "vtkDrawnStructure", 1))
   {
+    // Thin as nets are, they are seen by their edges.
     setColour(representation, kBuilt);
+    if (auto* built = vtkSMRepresentationProxy::SafeDownCast(representation))
+    {
+      built->SetRepresentationType("Surface With Edges");
+    }
+    set(representation, "EdgeColor", kLine[0], kLine[1], kLine[2]);
+    set(representation, "LineWidth", kBuiltWidth);
   }
   else if (is(shown, "vtkRockfallHazardMap", 1))
   {
@@ -223,7 +314,7 @@ namespace
 
 /// The palette's range is that of what is shown; of growing paths that of the whole ones. The
 /// source knows it before a representation does.
-void rescale(const Shown& shown, vtkSMProxy* representation)
+void rescale(const Shown& shown, vtkSMProxy* representation, vtkSMViewProxy* view)
 {
   vtkSMSourceProxy* source = shown.source;
   int port = shown.port;
@@ -240,16 +331,40 @@ void rescale(const Shown& shown, vtkSMProxy* representation)
   }
   vtkPVDataInformation* data = source->GetDataInformation(unsigned(port));
   const std::string array = colouredBy(representation);
+  const Quantity* quantity = quantityOf(array);
   for (vtkPVDataSetAttributesInformation* arrays :
     { data->GetPointDataInformation(), data->GetCellDataInformation() })
   {
     vtkPVArrayInformation* values = arrays->GetArrayInformation(array.c_str());
-    if (values && values->GetNumberOfComponents() == 1 && values->GetNumberOfTuples() > 0)
+    if (values && values->GetNumberOfTuples() > 0)
     {
-      const double* range = values->GetComponentFiniteRange(0);
+      const double* range =
+        values->GetComponentFiniteRange(values->GetNumberOfComponents() == 1 ? 0 : -1);
       vtkSMTransferFunctionProxy::RescaleTransferFunction(table, range[0], range[1], false);
       table->UpdateVTKObjects();
+      if (quantity && quantity->unit == kKilojoules)
+      {
+        labelInKilojoules(
+          table, vtkSMTransferFunctionProxy::FindScalarBarRepresentation(table, view));
+      }
     }
+  }
+}
+
+/// Many paths are thin, or they hide the map under them; a width that was chosen stays.
+void fitPaths(const Shown& shown, vtkSMProxy* representation)
+{
+  if (!is(shown, "vtkRockfallSimulation", 1) && !is(shown, "vtkGrowingPaths", 0))
+  {
+    return;
+  }
+  const double now = vtkSMPropertyHelper(representation, "LineWidth").GetAsDouble();
+  if (now == kPathWidth || now == kThinPath)
+  {
+    const bool many =
+      shown.source->GetDataInformation(unsigned(shown.port))->GetNumberOfCells() > kManyPaths;
+    set(representation, "LineWidth", many ? kThinPath : kPathWidth);
+    representation->UpdateVTKObjects();
   }
 }
 
@@ -301,7 +416,8 @@ void follow(vtkSMProxy* representation, vtkSMViewProxy* view)
   }
   if (shown.source && quantityOf(colouredBy(representation)))
   {
-    rescale(shown, representation);
+    rescale(shown, representation, view);
+    fitPaths(shown, representation);
     followLegend(shown, representation, view);
   }
 }
@@ -338,16 +454,23 @@ void styleIn(vtkSMProxy* representation, vtkSMViewProxy* view)
   {
     return;
   }
-  std::vector<double> points;
-  for (std::size_t k = 0; k < quantity->palette.size(); ++k)
+  // Once: whoever takes another palette keeps it.
+  constexpr const char* done = "RockfallPalette";
+  if (!table->HasAnnotation(done))
   {
-    points.push_back(double(k) / double(quantity->palette.size() - 1));
-    points.insert(points.end(), quantity->palette[k].begin(), quantity->palette[k].end());
+    std::vector<double> points;
+    const Palette& palette = *quantity->palette;
+    for (std::size_t k = 0; k < palette.size(); ++k)
+    {
+      points.push_back(double(k) / double(palette.size() - 1));
+      points.insert(points.end(), palette[k].begin(), palette[k].end());
+    }
+    vtkSMPropertyHelper(table, "RGBPoints").Set(points.data(), unsigned(points.size()));
+    vtkSMPropertyHelper(table, "ColorSpace").Set(0); // RGB
+    table->SetAnnotation(done, "1");
+    table->UpdateVTKObjects();
   }
-  vtkSMPropertyHelper(table, "RGBPoints").Set(points.data(), unsigned(points.size()));
-  vtkSMPropertyHelper(table, "ColorSpace").Set(0); // RGB
-  table->UpdateVTKObjects();
-  rescale(shown, representation);
+  rescale(shown, representation, view);
   if (vtkSMPropertyHelper(representation, "Visibility").GetAsInt() == 0)
   {
     return;
@@ -362,6 +485,10 @@ void styleIn(vtkSMProxy* representation, vtkSMViewProxy* view)
     const bool printfs = usual == nullptr || std::strchr(usual, '%') != nullptr;
     vtkSMPropertyHelper(bar, "RangeLabelFormat").Set(printfs ? "%.3g" : "{:.3g}");
     bar->UpdateVTKObjects();
+    if (quantity->unit == kKilojoules)
+    {
+      labelInKilojoules(table, bar);
+    }
   }
   followLegend(shown, representation, view);
 }

@@ -10,6 +10,7 @@
 #include "presetValues.h"
 #include "slopeView.h"
 #include "terrain/presets.h"
+#include "undo.h"
 
 #include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
@@ -56,6 +57,7 @@ namespace
 
 using rockfall::window::isOf;
 using rockfall::window::mainWindow;
+using rockfall::window::NotUndone;
 
 constexpr int kLookAtRuns = 500;   // ms
 constexpr int kLookForWindow = 20; // ms
@@ -95,6 +97,7 @@ bool isFirstSlope(vtkSMProxy* representation)
 
 void fitMarkers()
 {
+  const NotUndone own;
   auto* model = pqApplicationCore::instance()->getServerManagerModel();
   for (pqView* view : model->findItems<pqView*>())
   {
@@ -140,7 +143,11 @@ void pqRockfallWindow::begin()
   this->connect(&this->Clock, &QTimer::timeout, [window] { rockfall::window::showUnits(window); });
   this->connect(&this->Clock, &QTimer::timeout, &fitMarkers);
   this->connect(&this->Clock, &QTimer::timeout,
-    [] { rockfall::window::layHandles(pqActiveObjects::instance().activeSource()); });
+    []
+    {
+      const NotUndone own;
+      rockfall::window::layHandles(pqActiveObjects::instance().activeSource());
+    });
   auto* messages = new pqMessageBar(window);
   this->connect(&this->Clock, &QTimer::timeout, messages, &pqMessageBar::look);
   this->Clock.start(kLookAtRuns);
@@ -245,6 +252,7 @@ void pqRockfallWindow::runPython(const QString& statement)
   const QString folder = scriptFolder();
   const QString code = "import sys\nif '" + folder + "' not in sys.path: sys.path.insert(0, '" +
     folder + "')\nimport rockfall_study\nrockfall_study." + statement + "\n";
+  const NotUndone own; // a study of many steps is not taken back one by one
   python->executeCode(code.toUtf8());
 }
 
@@ -368,6 +376,7 @@ void pqRockfallWindow::onRepresentation(pqRepresentation* added)
       {
         return;
       }
+      const NotUndone own;
       rockfall::window::styleIn(later->getProxy(), view->getViewProxy());
       if (first)
       {
@@ -375,11 +384,43 @@ void pqRockfallWindow::onRepresentation(pqRepresentation* added)
       }
       view->render();
     });
+  if (vtkSMProperty* colours =
+        shown.source ? representation->GetProperty("ColorArrayName") : nullptr)
+  {
+    pqCoreUtilities::connect(colours, vtkCommand::ModifiedEvent, this, SLOT(onColours(vtkObject*)));
+  }
+}
+
+//-----------------------------------------------------------------------------
+void pqRockfallWindow::onColours(vtkObject* property)
+{
+  // The property is of a proxy within the representation's.
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  QPointer<pqRepresentation> of;
+  for (pqDataRepresentation* shown : model->findItems<pqDataRepresentation*>())
+  {
+    if (shown->getProxy()->GetProperty("ColorArrayName") == property)
+    {
+      of = shown;
+    }
+  }
+  // ParaView sets the palette of the array, and its legend, after the array.
+  QTimer::singleShot(0, this,
+    [of]
+    {
+      if (pqView* view = of ? of->getView() : nullptr)
+      {
+        const NotUndone own;
+        rockfall::window::styleIn(of->getProxy(), view->getViewProxy());
+        view->render();
+      }
+    });
 }
 
 //-----------------------------------------------------------------------------
 void pqRockfallWindow::onData(pqPipelineSource* source)
 {
+  const NotUndone own;
   if (!isOf(source->getProxy(), { "vtkDEMToCFESource" }))
   {
     // Palettes go with what is made: the first paths of a run are not the range of all.
@@ -387,6 +428,7 @@ void pqRockfallWindow::onData(pqPipelineSource* source)
     QTimer::singleShot(0, this,
       [later]
       {
+        const NotUndone drawn;
         for (int port = 0; later && port < later->getNumberOfOutputPorts(); ++port)
         {
           for (pqDataRepresentation* shown : later->getRepresentations(port, nullptr))

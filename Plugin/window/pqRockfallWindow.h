@@ -38,6 +38,7 @@ private Q_SLOTS:
   void onSource(pqPipelineSource* source);
   void onMade(pqProxy* made);
   void onRepresentation(pqRepresentation* representation);
+  void onColours(vtkObject* property);
   void onData(pqPipelineSource* source);
   void onPreset(vtkObject* property, unsigned long event);
   void onPicked(pqOutputPort* port, int cell);

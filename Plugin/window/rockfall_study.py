@@ -21,36 +21,39 @@ GROUND = "Meadow (field data)"  # until another Preset is chosen
 def new_study(file_name=""):
     """A slope, a release line across its highest steep place, the fall of its rocks, a map and what passes
     a line; without a file on the test slope. Returns its parts by name."""
-    slope = simple.DEMtoCFEMesh(registrationName="Slope", FileName=file_name, Preset=GROUND)
+    name = _numbered()
+    slope = simple.DEMtoCFEMesh(registrationName=name("Slope"), FileName=file_name, Preset=GROUND)
     slope.UpdatePipeline()
     if slope.GetDataInformation().GetNumberOfCells() == 0:
         return {}  # the message says why
     view = _render_view()
+    simple.HideAll(view)  # of an earlier study, its notes as well
     simple.Show(slope, view)
     simple.ResetCamera(view)
 
-    release = simple.RockRelease(registrationName="Release", Terrain=slope)
+    release = simple.RockRelease(registrationName=name("Release"), Terrain=slope)
     release.Amount = ROCKS
     _draw_placed(release)
     simple.Show(release, view)
 
-    fall = simple.RockfallSimulation(registrationName="Fall", Rocks=release)
+    fall = simple.RockfallSimulation(registrationName=name("Fall"), Rocks=release)
     fall.Iterations = ITERATIONS
     fall.SMProxy.InvokeCommand("Watch")  # a window is not kept waiting
     paths = simple.OutputPort(fall, 1)
     simple.Show(simple.OutputPort(fall, 0), view)
     _await_paths(fall)
 
-    line = simple.TrajectoryCollector(registrationName="Line", Input=paths)
+    line = simple.TrajectoryCollector(registrationName=name("Line"), Input=paths)
     _draw_placed(line)
-    hazard = simple.RockfallHazardMap(registrationName="Map", Input=paths)
-    growing = simple.GrowingPaths(registrationName="Paths", Input=paths)
+    hazard = simple.RockfallHazardMap(registrationName=name("Map"), Input=paths)
+    _fit_cell(hazard, fall)
+    growing = simple.GrowingPaths(registrationName=name("Paths"), Input=paths)
     simple.Show(growing, view)
     simple.Show(simple.OutputPort(line, 3), view)
     simple.Show(simple.OutputPort(hazard, 1), view)
-    _show_chart(line, view)
+    _show_chart(line, view, name("Energy at the line"))
     clock(view)
-    ground(slope, view)
+    ground(slope, view, name("Ground"))
     simple.GetAnimationScene().GoToLast()  # the paths as a whole; Play begins anew from there
     frame(fall, view)
     simple.SetActiveView(view)
@@ -116,17 +119,18 @@ def profile(source_name, port, trajectory):
 def clock(view=None):
     """The time of the animation in a corner of the view."""
     view = view or _render_view()
-    annotation = simple.AnnotateTime(registrationName="Clock", Format="Time: {time:.1f} s")
+    annotation = simple.FindSource("Clock") or simple.AnnotateTime(
+        registrationName="Clock", Format="Time: {time:.1f} s")
     display = simple.Show(annotation, view)
     display.WindowLocation = "Upper Left Corner"
     display.FontSize = 12
     return annotation
 
 
-def ground(slope, view=None):
+def ground(slope, view=None, name="Ground"):
     """The ground of a slope in words, in a corner of the view."""
     view = view or _render_view()
-    annotation = simple.PythonAnnotation(registrationName="Ground", Input=slope, ArrayAssociation="Field Data",
+    annotation = simple.PythonAnnotation(registrationName=name, Input=slope, ArrayAssociation="Field Data",
                                          Expression="'Ground: ' + Ground.GetValue(0)")
     display = simple.Show(annotation, view)
     display.WindowLocation = "Lower Left Corner"
@@ -159,9 +163,38 @@ def report(manifest, show=True):
 def jacksboro():
     """A study of the Jacksboro fault, Tennessee, whose elevations come with matplotlib."""
     import sample_dem
-    path = os.path.join(tempfile.mkdtemp(prefix="rockfall-"), "jacksboro.tif")
+    path = os.path.join(_own_folder(), "jacksboro.tif")
     sample_dem.write_geotiff(sample_dem.find_sample("jacksboro_fault_dem.npz"), path)
     return new_study(path)
+
+
+def _numbered():
+    """Gives the parts of a study their names: of a second study with a 2."""
+    taken = {key[0] for key in simple.GetSources()}
+    number = 1
+    while ("Slope" if number == 1 else f"Slope {number}") in taken:
+        number += 1
+    return lambda part: part if number == 1 else f"{part} {number}"
+
+
+def _own_folder():
+    """A folder of the user's that stays, or saved states would miss their files."""
+    data = os.environ.get("XDG_DATA_HOME") or os.path.join(os.path.expanduser("~"), ".local", "share")
+    folder = os.path.join(data, "rockfall-dda")
+    try:
+        os.makedirs(folder, exist_ok=True)
+        return folder
+    except OSError:
+        return tempfile.mkdtemp(prefix="rockfall-")
+
+
+def _fit_cell(hazard, fall):
+    """Cells of a map as wide as its rocks, a whole number of those of the slope: finer ones show threads."""
+    grid, width = fall[1].FieldData["TerrainGrid"], fall[1].CellData["Width"]
+    if grid and width:
+        cell, widest = grid.GetRange(2)[0], width.GetRange(0)[1]
+        if widest > 1.5 * cell:
+            hazard.CellSize = round(widest / cell) * cell
 
 
 def _render_view():
@@ -194,7 +227,7 @@ def _draw_placed(proxy):
         proxy.UpdatePipeline()
 
 
-def _show_chart(line, view):
+def _show_chart(line, view, title):
     chart = simple.CreateView("XYChartView")
     layout = simple.GetLayout(view)
     if layout:
@@ -204,7 +237,7 @@ def _show_chart(line, view):
     curve.XArrayName = "EnergyInKilojoules"
     curve.SeriesVisibility = ["ShareOfPassing"]
     curve.SeriesLabel = ["ShareOfPassing", "Share of the rocks that pass"]
-    chart.ChartTitle = "Energy at the line"
+    chart.ChartTitle = title
     chart.BottomAxisTitle = "Kinetic energy (kJ)"
     chart.LeftAxisTitle = "Share with at least this energy"
     return chart

@@ -5,6 +5,7 @@
 
 #include "looks.h"
 #include "panel.h"
+#include "undo.h"
 
 #include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
@@ -105,34 +106,53 @@ QString stateOf(vtkSMSourceProxy* run)
                                                : QString();
 }
 
-/// The time step by which the last rock of a run has come to its end, s; 0 if it is not known here.
-/// ParaView goes from step to step: with an end between two it would go past it, and begin anew.
-double lastEnd(vtkSMSourceProxy* run)
+/// More frames than these Play does not take for the fall of a study: 12 s at 20 a second.
+constexpr std::size_t kMostFrames = 240;
+
+/// End of a run: the time step by which its last rock has come to its end, s, and how many steps Play
+/// goes on from frame to frame.
+struct RunEnd
+{
+  double time = 0.0; ///< 0 if it is not known here.
+  int stride = 1;
+};
+
+/// ParaView goes from step to step: with an end between two it would go past it, and begin anew. So
+/// the end is a whole number of strides away where there are so many steps.
+RunEnd lastEnd(vtkSMSourceProxy* run)
 {
   auto* algorithm = vtkAlgorithm::SafeDownCast(run->GetClientSideObject());
   auto* table = algorithm ? vtkTable::SafeDownCast(algorithm->GetOutputDataObject(3)) : nullptr;
   vtkDataArray* ends = table ? table->GetRowData()->GetArray("EndTime") : nullptr;
   if (!ends || ends->GetNumberOfTuples() == 0)
   {
-    return 0.0;
+    return {};
   }
   const double end = ends->GetRange(0)[1];
   const std::vector<double> steps =
     vtkSMPropertyHelper(run, "TimestepValues", true).GetDoubleArray();
   const auto step = std::lower_bound(steps.begin(), steps.end(), end);
-  return step == steps.end() ? end : *step;
+  if (step == steps.end())
+  {
+    return { end, 1 };
+  }
+  const auto index = std::size_t(step - steps.begin());
+  const std::size_t stride = index / kMostFrames + 1;
+  const std::size_t last = std::min((index + stride - 1) / stride * stride, steps.size() - 1);
+  return { steps[last], int(stride) };
 }
 
 /// The same of all runs.
-double lastEnd(pqServer* server)
+RunEnd lastEnd(pqServer* server)
 {
-  double end = 0.0;
+  RunEnd end;
   auto* model = pqApplicationCore::instance()->getServerManagerModel();
   for (pqPipelineSource* run : model->findItems<pqPipelineSource*>(server))
   {
     if (isOf(run->getProxy(), { "vtkRockfallSimulation" }))
     {
-      end = std::max(end, lastEnd(run->getSourceProxy()));
+      const RunEnd of = lastEnd(run->getSourceProxy());
+      end = of.time > end.time ? of : end;
     }
   }
   return end;
@@ -149,7 +169,8 @@ vtkSMProxy* sceneOf(pqServer* server)
 //-----------------------------------------------------------------------------
 void pqRockfallWindow::endWithLastRock(pqServer* server)
 {
-  const double end = lastEnd(server);
+  const RunEnd run = lastEnd(server);
+  const double end = run.time;
   vtkSMProxy* scene = sceneOf(server);
   if (!scene || !(end > 0.0))
   {
@@ -163,6 +184,10 @@ void pqRockfallWindow::endWithLastRock(pqServer* server)
   }
   vtkSMPropertyHelper now(scene, "AnimationTime");
   const bool atEnd = this->LastEnd > 0.0 && (this->AtEnd || now.GetAsDouble() == this->LastEnd);
+  if (end != this->LastEnd)
+  {
+    vtkSMPropertyHelper(scene, "Stride", true).Set(run.stride); // else as the user has it
+  }
   this->LastEnd = end;
   vtkSMPropertyHelper(scene, "LockEndTime").Set(1);
   vtkSMPropertyHelper(scene, "EndTime").Set(end);
@@ -178,7 +203,7 @@ void pqRockfallWindow::lookAtTime()
 {
   pqServer* server = pqActiveObjects::instance().activeServer();
   vtkSMProxy* scene = server ? sceneOf(server) : nullptr;
-  const double end = server ? lastEnd(server) : 0.0;
+  const double end = server ? lastEnd(server).time : 0.0;
   // While there are no rocks ParaView sets times of its own, which tell of nobody's wish.
   if (!scene || !(end > 0.0) || !this->Running.isEmpty())
   {
@@ -204,6 +229,7 @@ void pqRockfallWindow::tellRuns()
   {
     return;
   }
+  const rockfall::window::NotUndone own;
   this->lookAtTime();
   QList<pqPipelineSource*> settled;
   QMainWindow* window = rockfall::window::mainWindow();
