@@ -52,7 +52,11 @@ void SimulationParameters::validate() const
   positive(this->endTime, "EndTime", "seconds");
   atMost(this->endTime, kMostEndTime, "EndTime", " s");
   positive(this->outputInterval, "OutputInterval", "seconds");
-  positive(this->normalPenalty, "NormalPenalty", "N/m");
+  if (!(this->normalPenalty >= 0.0) || !std::isfinite(this->normalPenalty))
+  {
+    throw ParameterError("NormalPenalty is " + numberText(this->normalPenalty) +
+      " N/m, it must be finite and not negative (0: by mass)");
+  }
   atMost(this->normalPenalty, kMostPenalty, "NormalPenalty", " N/m");
   positive(this->shearRatio, "ShearPenaltyRatio", "(no unit)");
   atMost(this->shearRatio, kMostShearRatio, "ShearPenaltyRatio", "");

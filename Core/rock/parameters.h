@@ -18,7 +18,7 @@ struct SimulationParameters
   double outputInterval = 0.05; ///< Between samples, s, > 0. Does not change the motion.
   double gravity = 9.81;        ///< m/s², ≥ 0.
 
-  double normalPenalty = 1e9;   ///< pₙ, N/m, > 0. METHOD 9.1: ≥ 1e9 is accurate enough.
+  double normalPenalty = 1e9;   ///< pₙ, N/m; 0: by mass (Ensemble). METHOD 9.1: 1e9.
   double shearRatio = 1.0;      ///< pₛ / pₙ, dimensionless, > 0.
   bool rockRockContact = false; ///< Rocks of one iteration fall together and hit each other.
   double rockRestitution = 0.5; ///< Normal, between rocks, dimensionless, 0 … 1.

@@ -67,7 +67,7 @@ void requireStiff(const Rock& rock, const Block& block, const SimulationParamete
 {
   const double weight = block.mass() * p.gravity;
   const double most = kDeepestAtRest * block.radius();
-  if (weight > most * p.normalPenalty)
+  if (p.normalPenalty > 0.0 && weight > most * p.normalPenalty)
   {
     throw ParameterError("NormalPenalty is " + numberText(p.normalPenalty) +
       " N/m, too soft for block " + std::to_string(rock.blockId) + ": at rest its " +

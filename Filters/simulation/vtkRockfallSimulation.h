@@ -95,7 +95,7 @@ public:
 
   ///@{
   /**
-   * Stiffness of the normal contact springs in N/m, positive. Default 1e9.
+   * Stiffness of the normal contact springs in N/m, not negative. 0, the default: by mass and ground.
    */
   vtkSetMacro(NormalPenalty, double);
   vtkGetMacro(NormalPenalty, double);
@@ -328,7 +328,7 @@ private:
   double EndTime = 60.0;
   double OutputInterval = 0.05;
   double Gravity = 9.81;
-  double NormalPenalty = 1e9;
+  double NormalPenalty = 0.0;
   double ShearPenaltyRatio = 1.0;
   int Iterations = 1;
   int Seed = 1;

@@ -62,6 +62,10 @@ TEST_F(TestRockfallSimulationErrors, BadValuesAreOneErrorAndNothingElse)
   {
     for (double bad : { 0.0, -1.0, std::nan("") })
     {
+      if (bad == 0.0 && entry.name == std::string("NormalPenalty"))
+      {
+        continue; // by mass
+      }
       (this->Simulation->*entry.set)(bad);
       this->ExpectEmpty();
       this->ExpectOneError({ entry.name });

@@ -173,7 +173,6 @@ bad_rocks("inverted mesh", [name, "inward"], Shape="From File", ShapeFileName=na
 # The run.
 bad_run("zero time step", ["TimeStep", "0"], TimeStep=0.0)
 bad_run("negative time step", ["TimeStep", "-0.01"], TimeStep=-0.01)
-bad_run("zero penalty", ["NormalPenalty", "0"], NormalPenalty=0.0)
 bad_run("negative penalty", ["NormalPenalty", "-1"], NormalPenalty=-1e9)
 bad_run("no end time", ["EndTime", "0"], EndTime=0.0)
 bad_run("restitution between rocks", ["RockRestitution", "1.5"], RockRestitution=1.5)

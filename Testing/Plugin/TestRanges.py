@@ -83,9 +83,9 @@ TOGETHER_WITH = {
     ("JointedRockMass", "MaximumRocks"): None,  # a cut makes more than 1: TestRockMasses
     ("RockfallSimulation", "ShownIteration"): {"Iterations": 2},
 }
-# The least value is taken as such, but then makes too many samples, a body too small to be one, or
-# a spring that does not hold it.
-NOT_AT_LEAST = {"OutputInterval", "Lengths", "Volume", "NormalPenalty"}
+# The least value is taken as such, but then makes too many samples, or a body too
+# small to be one.
+NOT_AT_LEAST = {"OutputInterval", "Lengths", "Volume"}
 
 NEED_A_FILE = {("RockBlocks", "Shape", 8), ("JointedRockMass", "MassShape", 1)}
 

@@ -436,7 +436,8 @@ TEST(Ensemble, BadInputIsOneClearError)
   using P = SimulationParameters;
   expectError<ParameterError>(with([](Rock&, P& p) { p.timeStep = 0.0; }), "TimeStep is 0,");
   expectError<ParameterError>(with([](Rock&, P& p) { p.timeStep = -1.0; }), "TimeStep is -1,");
-  expectError<ParameterError>(with([](Rock&, P& p) { p.normalPenalty = 0.0; }), "NormalPenalty");
+  expectError<ParameterError>(
+    with([](Rock&, P& p) { p.normalPenalty = -1.0; }), "NormalPenalty is -1 N/m");
   // 2600 kg and 0.866 m: 26 kN in 0.02 of the radius.
   expectError<ParameterError>(with([](Rock&, P& p) { p.normalPenalty = 1.4e6; }),
     "NormalPenalty is 1400000 N/m, too soft for block 7: at rest its ");
@@ -468,4 +469,27 @@ TEST(Ensemble, BadInputIsOneClearError)
       runEnsemble(slope, {}, P(), store);
     },
     "no rock blocks");
+}
+
+// Where none is typed a spring follows the mass: ω² m, and the paper's at least.
+TEST(Ensemble, PenaltyByMass)
+{
+  const Terrain hard = makePlane(41, 40.0, radians(30.0), 0.0, material(0.5, 30.0));
+  const Terrain soft = makePlane(41, 40.0, radians(30.0), 0.0, softGround());
+  const auto hash = [](const Terrain& slope, double volume, double penalty)
+  {
+    Rock rock = cubeOnPlane(40.0, radians(30.0), 0.0, 10.0);
+    rock.shape = makeShape(Shape::Cube, volume);
+    rock.density = 2500.0;
+    rock.position.z() += 3.0;
+    SimulationParameters p;
+    p.endTime = 2.0;
+    p.normalPenalty = penalty;
+    return simulate(slope, rock, p).summary.hash;
+  };
+  EXPECT_EQ(hash(hard, 1.0, 0.0), hash(hard, 1.0, 1e9));
+  EXPECT_EQ(hash(hard, 8.0, 0.0), hash(hard, 8.0, 600.0 * 600.0 * 8.0 * 2500.0));
+  EXPECT_EQ(hash(soft, 1.0, 0.0), hash(soft, 1.0, 1e8 * 2500.0));
+  EXPECT_EQ(hash(soft, 0.001, 0.0), hash(soft, 0.001, 1e9));
+  EXPECT_NE(hash(soft, 1.0, 0.0), hash(soft, 1.0, 1e9));
 }
