@@ -5,12 +5,19 @@ from enough import quantile_ranks, share_interval
 from figures import GREY, PAGE, STYLES, new, picture, place
 
 POINTS = 24  # of a curve of convergence
+CURVES = 4  # of them in a figure
+LONGEST = 30  # letters of a line's name in a chart
 CONFIDENCE = 0.95
+
+
+def short(name):
+    return name if len(name) <= LONGEST else name[:LONGEST - 1] + "…"
 
 
 def exceedance(study, names):
     """Energy and height of what passes these lines."""
-    figure = new(PAGE, 74.0)
+    rows = -(-len(names) // 3)
+    figure = new(PAGE, 70.0 + 4.0 * rows)
     table = study.exceedance
     for k, (column, label) in enumerate((("EnergyInKilojoules", "kinetic energy, kJ"),
                                          ("HeightOverGround", "height of the lowest point over ground, m"))):
@@ -20,7 +27,7 @@ def exceedance(study, names):
             values, share = table[column][own], 100.0 * table["ShareOfPassing"][own]
             known = ~np.isnan(values)
             colour, dash = STYLES[number % len(STYLES)]
-            axes.step(values[known], share[known], where="pre", color=colour, ls=dash, lw=1.2, label=name)
+            axes.step(values[known], share[known], where="pre", color=colour, ls=dash, lw=1.2, label=short(name))
         for share in (50.0, 10.0, 5.0, 1.0):
             axes.axhline(share, color=GREY, lw=0.4, ls=(0, (4, 3)))
         axes.set(yscale="log", xlabel=label, ylabel="passing rocks with at least as much, %" if k == 0 else "", ylim=(0.5, 105.0))
@@ -29,7 +36,8 @@ def exceedance(study, names):
         axes.minorticks_off()
         axes.grid(lw=0.2, alpha=0.6)
         if k == 0:
-            axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncol=min(len(names), 5), frameon=False, borderaxespad=0.2)
+            figure.legend(*axes.get_legend_handles_labels(), loc="upper center", ncol=min(len(names), 3), frameon=False,
+                          borderaxespad=0.2)
     return picture(figure, "Exceedance at the lines, of the rocks that pass. Dashed: 50, 10, 5 and 1 %, which are the 50, 90, "
                    "95 and 99 % values.", "Exceedance curves")
 
@@ -62,31 +70,37 @@ def settling(study, names):
     ends = np.unique(np.linspace(1, study.iterations, POINTS).round().astype(int))
     order = np.unique(iteration)  # a study's iterations are numbered from 0
     totals = [int((iteration <= order[end - 1]).sum()) for end in ends]
-    curves = [("run-out, 95 %", "m", [quantile(study.rocks["RunOut"][iteration <= order[end - 1]]) for end in ends])]
+    curves = [("", "run-out, 95 %", "m", [quantile(study.rocks["RunOut"][iteration <= order[end - 1]]) for end in ends])]
     for name in names:
         when, energy = first_passings(study, name)
-        curves.append((f"{name}: share that passes", "%", [
+        curves.append((name, "share that passes", "%", [
             share((when <= order[end - 1]).sum(), total) for end, total in zip(ends, totals)]))
-        curves.append((f"{name}: energy, 95 %", "kJ", [quantile(energy[when <= order[end - 1]]) for end in ends]))
+        curves.append((name, "energy, 95 %", "kJ", [quantile(energy[when <= order[end - 1]]) for end in ends]))
     return totals, curves
 
 
 def convergence(study, names):
+    """Figures of all curves, and what they end with."""
     totals, curves = settling(study, names)
+    figures = [curves_of(totals, curves[k:k + CURVES]) for k in range(0, len(curves), CURVES)]
+    ends = [{"label": f"{name}: {what}" if name else what, "unit": unit, "value": values[-1][0], "low": values[-1][1],
+             "high": values[-1][2]} for name, what, unit, values in curves]
+    return figures, ends
+
+
+def curves_of(totals, curves):
     rows = -(-len(curves) // 2)
     figure = new(PAGE, 46.0 * rows + 4.0)
-    for k, (label, unit, values) in enumerate(curves):
+    for k, (name, what, unit, values) in enumerate(curves):
         axes = place(figure, 16.0 + 88.0 * (k % 2), 46.0 * (rows - 1 - k // 2) + 10.0, 68.0, 32.0)
         middle, low, high = np.array(values).T
         axes.fill_between(totals, low, high, color="#b9c9df", lw=0.0)
         axes.plot(totals, middle, color="#1b4f91", lw=1.2, marker=".", ms=3)
-        axes.set_title(f"{label}, {unit}", loc="left", fontsize=7.5)
+        axes.set_title(f"{short(name)}: {what}, {unit}" if name else f"{what}, {unit}", loc="left", fontsize=7)
         axes.set_xlim(0.0, totals[-1] * 1.02)
         axes.set_ylim(bottom=0.0)
         axes.grid(lw=0.2, alpha=0.6)
         if k >= len(curves) - 2:
             axes.set_xlabel("rocks")
-    ends = [{"label": label, "unit": unit, "value": values[-1][0], "low": values[-1][1], "high": values[-1][2]}
-            for label, unit, values in curves]
     return picture(figure, "Value after so many rocks, and its 95 % interval: shares by Clopper & Pearson, quantiles by order "
-                   "statistics. Where no band is, too few rocks came.", "Convergence"), ends
+                   "statistics. Where no band is, too few rocks came.", "Convergence")

@@ -1,6 +1,7 @@
 """A finished study as its folder has it. Whatever is wrong with a file is a schema.Bad that names the file and
 the field."""
 import csv
+import itertools
 import os
 import time
 
@@ -19,6 +20,7 @@ ogr.UseExceptions()
 osr.UseExceptions()
 
 
+BLOCK = 100000  # rows
 TEXTS = "LineName", "Shape", "Fate", "Class"  # also where all of them are numbers
 
 
@@ -43,21 +45,27 @@ class Table:
                 if name not in self.names:
                     raise Bad(f"{path}: there is no column {name}")
             kept = [k for k, name in enumerate(self.names) if not wanted or name in needed or name in wanted]
-            texts = {k: [] for k in kept}
-            for number, row in enumerate(rows, 2):
-                if len(row) != len(self.names):
-                    raise Bad(f"{path}: row {number} has {len(row)} cells, it must have {len(self.names)}")
+            blocks = {k: [] for k in kept}  # millions of texts would take gigabytes
+            first = 2
+            while block := list(itertools.islice(rows, BLOCK)):
+                for number, row in enumerate(block, first):
+                    if len(row) != len(self.names):
+                        raise Bad(f"{path}: row {number} has {len(row)} cells, it must have {len(self.names)}")
                 for k in kept:
-                    texts[k].append(row[k])
-        self.columns = {self.names[k]: np.array(values, str) if self.names[k] in TEXTS else self.numbers(values)
-                        for k, values in texts.items()}
+                    blocks[k].append(self.numbers([row[k] for row in block], self.names[k] in TEXTS))
+                first += len(block)
+        self.columns = {self.names[k]: self.one(made) for k, made in blocks.items()}
 
     @staticmethod
-    def numbers(values):
+    def numbers(values, texts):
         try:
-            return np.array(values, float)
+            return np.array(values, str if texts else float)
         except ValueError:
             return np.array(values, str)
+
+    @staticmethod
+    def one(blocks):
+        return np.concatenate(blocks) if blocks else np.empty(0)
 
     def __getitem__(self, name):
         return self.columns[name]
@@ -186,14 +194,13 @@ class Study:
                 for name, value in self.given[part].items()}
 
     def read_inputs(self, path):
-        """Of every file: part and property, name, CRS, hash. They must be those of the study."""
-        inputs = []
+        """Of every file: parts and properties that read it, name, CRS, hash. They must be those of the study."""
+        inputs = {}
         for key, names in self.files.items():
             part, prop = key.split(" ", 1)
             known = self.given.get(part, {}).get(prop)
             if not isinstance(known, dict) or not isinstance(names, list) or not names:
                 raise Bad(f"{path}: \"{key}\" of files has no hashes in identity")
-            crs = None
             for name in names:
                 where = f"{path}: {key}: {name}"
                 if not os.path.isfile(name):
@@ -202,9 +209,12 @@ class Study:
                     raise Bad(f"{where} changed since the study")
             crs = crs_of(names[0])
             for name in names:
-                inputs.append({"use": key, "file": name, "crs": crs if name == names[0] else "",
-                               "size": os.path.getsize(name), "hash": content(name)})
-        return inputs
+                one = inputs.setdefault(name, {"use": [], "file": name, "crs": "", "size": os.path.getsize(name),
+                                               "hash": content(name)})
+                one["use"].append(key)
+                if name == names[0]:
+                    one["crs"] = crs
+        return list(inputs.values())
 
     def read_lines(self):
         self.lines = Table(self.path("lines.csv"), ("LineName", "Rocks", "Share", "HighestQuantile", "MovingBefore",

@@ -1,4 +1,5 @@
 """Tables of a report, as rows of texts."""
+import csv
 import math
 import os
 import re
@@ -16,7 +17,7 @@ STATISTICS = (("50", "50 %"), ("90", "90 %"), ("95", "95 %"), ("99", "99 %"), ("
               ("Deviation", "standard deviation"))
 LINES = (("Rocks", "rocks that pass", "", 1.0), ("Passings", "passings", "", 1.0), ("Share", "share of the released", "%", 100.0),
          ("ShareError", "± standard error of it", "%", 100.0), ("HighestQuantile", "highest quantile with enough rocks", "%", 1.0),
-         ("BarrierHeight", "barrier: height", "m", 1.0), ("BarrierCapacity", "barrier: capacity", "kJ", 1.0),
+         ("Offset", "parallel, to its left by", "m", 1.0), ("BarrierHeight", "barrier: height", "m", 1.0), ("BarrierCapacity", "barrier: capacity", "kJ", 1.0),
          ("Caught", "barrier: rocks that it catches", "", 1.0),
          ("CaughtShare", "barrier: catches of the passing", "%", 100.0),
          ("CaughtShareError", "± standard error of it", "%", 100.0),
@@ -60,7 +61,6 @@ def ground(study):
     slope, made = study.slope, []
     own, yielding = slope.numbers("TerrainMaterial").ravel(), slope.numbers("TerrainYielding")
     roughness = slope.numbers("TerrainRoughness").ravel()
-    source = source_of(study)
     first = [(own[0], own[1], int(own[7]), own[8], own[9])]
     heads, share = shares(slope, "TerrainRestitution")
     rows = first + [(c[0], c[1], int(c[2]), c[3], c[4]) for c in slope.numbers("TerrainRestitutionClasses")]
@@ -78,14 +78,13 @@ def ground(study):
                   ("its length", "m", [number(r[2]) for r in rough]),
                   ("obstacles of 70, 20, 10 %", "m", [", ".join(map(number, r[3:])) if any(r[3:]) else "–" for r in rough])]
     table = [row for row in table if any(cell != "–" for cell in row[2])]
-    table.append(("source of the numbers", "", [source] + [table_of(study, "Restitution")] * (len(rows) - 1)))
+    table += presets_of(study, "Restitution", heads)
     made += [{**one, "title": "Restitution and yielding"} for one in side_by_side(heads, table)]
     heads, share = shares(slope, "TerrainJoint")
     rows = [own[2:5], *slope.numbers("TerrainJointClasses")]
     degrees = 180.0 / math.pi
     table = [("share of the slope", "%", share), ("friction angle φ", "°", [spread(r[0], r[1], degrees) for r in rows]),
-             ("cohesion", "N", [number(r[2]) for r in rows]),
-             ("source of the numbers", "", [source] + [table_of(study, "Joint")] * (len(rows) - 1))]
+             ("cohesion", "N", [number(r[2]) for r in rows]), *presets_of(study, "Joint", heads)]
     return made + [{**one, "title": "Friction"} for one in side_by_side(heads, table)]
 
 
@@ -97,9 +96,22 @@ def shares(slope, stem):
     return ["elsewhere" if names else "all of the slope", *names], [number(100.0 * c / count.sum()) for c in count]
 
 
-def table_of(study, kind):
+def classed(study):
+    """The tables of classes: of what, and their files."""
+    return [(text, os.path.basename(study.files[f"terrain {kind}Table"][0]))
+            for kind, text in (("Restitution", "Restitution"), ("Joint", "Friction")) if f"terrain {kind}Table" in study.files]
+
+
+def presets_of(study, kind, heads):
+    """A row with the presets that a table of classes names, if it is CSV and does."""
     files = study.files.get(f"terrain {kind}Table")
-    return f"table {os.path.basename(files[0])}" if files else "–"
+    if not files or not files[0].lower().endswith(".csv"):
+        return []
+    with open(files[0], newline="", encoding="utf-8-sig", errors="replace") as file:
+        rows = [{str(name).strip().lower(): cell or "" for name, cell in row.items()} for row in csv.DictReader(file)]
+    known = {row.get(key, "").strip().casefold(): row.get("preset", "").strip() for row in rows for key in ("class", "name")}
+    names = [known.get(head.casefold(), "") for head in heads[1:]]
+    return [("preset of the class", "", ["–", *(name or "–" for name in names)])] if any(names) else []
 
 
 def has_preset(study):
@@ -111,7 +123,7 @@ def source_of(study):
     """Of the slope's own numbers: the preset with what supports it, or that they were typed."""
     if not has_preset(study):
         return "typed in the study, or the program's default"
-    name = study.slope.ground
+    name = str(study.values["terrain"].get("Preset") or study.given["terrain"]["Preset"])
     path = os.path.join(HERE, "..", "..", "docs", "materials.md")
     if os.path.exists(path):
         with open(path, encoding="utf-8") as file:
@@ -173,7 +185,7 @@ def lines(study):
     """The design table: a column for each line, a row for each quantity, in kJ where there is energy."""
     table, rows = study.lines, []
     known = {name for name, *_ in LINES}
-    names = [(name, *rest) for name, *rest in LINES if name in table]
+    names = [(name, *rest) for name, *rest in LINES if name in table and (name != "Offset" or np.any(table[name]))]
     names += [(name, name, "", 1.0) for name in table.names
               if name not in known and name not in ("Line", "LineName", "MovingBefore", "OverEdgeBefore", "InNodataBefore")]
     for name, label, unit, factor in names:
@@ -221,7 +233,7 @@ def fates(study):
 
 def notes(study):
     """What a reader should know before the numbers."""
-    made = list(study.slope.notes)
+    made = list(dict.fromkeys(re.sub(r"(?<!\S)/\S*/", "", note) for note in study.slope.notes))  # files by their names
     rocks_, total = study.rocks, len(study.rocks)
     unmoved = int((rocks_["RunOut"] < 0.1).sum())
     if unmoved:

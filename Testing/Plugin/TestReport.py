@@ -58,7 +58,7 @@ with open("whole/report.html", encoding="utf-8") as file:
 
 # One file: all pictures are in it, nothing is fetched, no script runs, names are text.
 sources = re.findall(r'src="([^"]*)"', page)
-assert len(sources) == 7, len(sources)  # site, reach, energy, height, classes, exceedance, convergence
+assert len(sources) == 8, len(sources)  # site, reach, energy, height, classes, exceedance, convergence in two
 for source in sources:
     assert source.startswith("data:image/png;base64,")
     assert base64.b64decode(source.split(",", 1)[1], validate=True).startswith(b"\x89PNG")
@@ -83,7 +83,7 @@ assert f"rocks that pass {line['Rocks']} 0" in text
 for row in rows_of("whole/design.csv"):
     if row["LineName"] == line["LineName"] and row["Quantile"] == "95.0":
         assert tables.number(float(row["EnergyInKilojoules"])) in text and "too few rocks" in text, row
-assert "What a barrier on line <b>road</b> 700045 has to hold" in text
+assert "What a barrier has to hold: <b>road</b> 700045" in text
 share = 100.0 * int(line["Rocks"]) / 12.0
 assert re.search(rf"road</b> 700045: share that passes % {re.escape(tables.number(share))} [\d.]+ to", text), share
 fates = {row["Fate"] for row in rows_of("whole/summary.csv")}
