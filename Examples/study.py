@@ -133,10 +133,10 @@ class Pipeline:
         self.passages = self.crossings = None
         if "map" in study:
             self.passages = make(servermanager.writers.HazardPassageWriter, "map", {
-                **study["map"], "Input": lines, "Terrain": self.slope})
+                **schema.shared_out("map", study["map"])[0], "Input": lines, "Terrain": self.slope})
         if "lines" in study:
             self.crossings = make(TrajectoryCollector, "lines", {
-                **study["lines"], "Input": lines, "Terrain": self.slope})
+                **schema.shared_out("lines", study["lines"])[0], "Input": lines, "Terrain": self.slope})
 
     def values(self):
         """All values in force, those that the study leaves alone as well."""
@@ -145,6 +145,8 @@ class Pipeline:
         result = values({part: proxy for part, proxy in proxies.items() if proxy})
         for part, name in (*(("simulation", name) for name in OWN), ("map", "FileName")):  # this script's
             result.get(part, {}).pop(name, None)
+        for part in filter(self.study.__contains__, schema.FURTHER):
+            result[part].update(schema.shared_out(part, self.study[part])[1])
         return result
 
     def check(self, folder):

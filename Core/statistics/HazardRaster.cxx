@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <tuple>
 
 namespace rockfall
@@ -65,6 +66,11 @@ double maximum(const Cubic& f, double from, double to)
   return most;
 }
 
+void countEntry(Passage& passage)
+{
+  passage.entries = std::min<std::uint32_t>(passage.entries + 1, Passage::kMostEntries);
+}
+
 } // namespace
 
 HazardRaster::HazardRaster(const CellGrid& grid, const Terrain* terrain)
@@ -94,10 +100,20 @@ std::int64_t HazardRaster::cellAt(double x, double y) const
     : -1;
 }
 
-void HazardRaster::addVisit(std::int64_t cell, const std::array<double, hazardCount>& maxima)
+std::uint32_t HazardRaster::angleAt(const Vec3& place) const
+{
+  const Vec3 up = release_ - place;
+  const double away = up.head<2>().norm();
+  const double share = away > 0.0 ? 2.0 * std::numbers::inv_pi * std::atan2(up.z(), away) : 1.0;
+  return std::uint32_t(std::lround(std::clamp(share, 0.0, 1.0) * Passage::kAngleSteps));
+}
+
+void HazardRaster::addVisit(
+  std::int64_t cell, const std::array<double, hazardCount>& maxima, const Vec3& place)
 {
   if (cell >= 0 && cell == here_)
   {
+    visits_.back().angle = this->angleAt(place);
     auto& known = visits_.back().maxima;
     for (std::size_t k = 0; k < known.size(); ++k)
     {
@@ -109,6 +125,7 @@ void HazardRaster::addVisit(std::int64_t cell, const std::array<double, hazardCo
     Passage& visit = visits_.emplace_back();
     visit.cell = std::uint32_t(cell);
     visit.maxima = maxima;
+    visit.angle = this->angleAt(place);
   }
   here_ = cell;
 }
@@ -182,7 +199,7 @@ void HazardRaster::addPiece(const PathPiece& piece, std::array<double, 2> ground
       maxima = { piece.maxKineticEnergy(from, to), piece.maxSpeed(from, to),
         this->maxHeight(piece, from, to, grounds), piece.maxRotationRate(from, to) };
     }
-    this->addVisit(cell, maxima);
+    this->addVisit(cell, maxima, piece.position(to));
   };
   const auto cellOf = [&](double s) { return this->cellAt(piece.along(0)(s), piece.along(1)(s)); };
   bool visited = false;
@@ -216,6 +233,7 @@ void HazardRaster::add(const RockPath& path)
   checkPath(path);
   ++released_;
   ++releasedIn_[path.iteration];
+  release_ = path.points.empty() ? Vec3::Zero() : path.points.front().position;
   if (path.width > grid_.cellSize && !path.points.empty())
   {
     this->addSwath(path);
@@ -248,7 +266,8 @@ void HazardRaster::add(const RockPath& path)
     this->addVisit(end,
       { last.kineticEnergy, last.velocity.norm(),
         std::isnan(last.heightOverGround) ? none : last.heightOverGround,
-        last.rotationRate.norm() });
+        last.rotationRate.norm() },
+      last.position);
   }
   if (path.rested && here_ >= 0)
   {
@@ -261,8 +280,9 @@ void HazardRaster::add(const RockPath& path)
     Passage* known = passages_.empty() ? nullptr : &passages_.back();
     if (known && &visit != &visits_.front() && known->cell == visit.cell)
     {
-      ++known->entries;
+      countEntry(*known);
       known->stopped |= visit.stopped;
+      known->angle = std::min<std::uint32_t>(known->angle, visit.angle);
       for (std::size_t k = 0; k < known->maxima.size(); ++k)
       {
         known->maxima[k] = std::max(known->maxima[k], visit.maxima[k]);
@@ -295,9 +315,9 @@ public:
   {
   }
 
-  /// The disc goes straight from a to b.
+  /// The disc goes straight from a to b, where the energy-line angle is `angle`.
   void add(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
-    const std::array<double, hazardCount>& maxima)
+    const std::array<double, hazardCount>& maxima, std::uint32_t angle)
   {
     ++step_;
     const CellGrid& grid = raster_.grid_;
@@ -318,7 +338,7 @@ public:
           grid.west + column * grid.cellSize, grid.south + row * grid.cellSize);
         if (this->touches(low, a, b))
         {
-          this->visit(std::int64_t(row) * grid.columns + std::int64_t(column), maxima);
+          this->visit(std::int64_t(row) * grid.columns + std::int64_t(column), maxima, angle);
         }
       }
     }
@@ -347,7 +367,8 @@ private:
   struct Visited
   {
     Passage passage;
-    std::int64_t step = 0; ///< The last one that touched it.
+    std::int64_t step = 0;                       ///< The last one that touched it.
+    std::uint32_t before = Passage::kAngleSteps; ///< Smallest angle of the stays before this one.
   };
 
   /// Whether the cell with this corner comes as near as the radius to the way.
@@ -383,7 +404,7 @@ private:
     return false;
   }
 
-  void visit(std::int64_t cell, const std::array<double, hazardCount>& maxima)
+  void visit(std::int64_t cell, const std::array<double, hazardCount>& maxima, std::uint32_t angle)
   {
     const auto [at, isNew] = cells_.try_emplace(cell);
     Visited& visited = at->second;
@@ -394,12 +415,17 @@ private:
     }
     else
     {
-      visited.passage.entries += visited.step + 1 < step_ ? 1 : 0;
+      if (visited.step + 1 < step_)
+      {
+        countEntry(visited.passage);
+        visited.before = visited.passage.angle;
+      }
       for (std::size_t k = 0; k < maxima.size(); ++k)
       {
         visited.passage.maxima[k] = std::max(visited.passage.maxima[k], maxima[k]);
       }
     }
+    visited.passage.angle = std::min(visited.before, angle);
     visited.step = step_;
   }
 
@@ -431,7 +457,8 @@ void HazardRaster::addSwath(const RockPath& path)
       const double from = double(part) / parts, to = double(part + 1) / parts;
       swath.add(piece.position(from).head<2>(), piece.position(to).head<2>(),
         { piece.maxKineticEnergy(from, to), piece.maxSpeed(from, to),
-          this->maxHeight(piece, from, to, { before, after }), piece.maxRotationRate(from, to) });
+          this->maxHeight(piece, from, to, { before, after }), piece.maxRotationRate(from, to) },
+        this->angleAt(piece.position(to)));
     }
     before = after;
     moved = true;
@@ -443,7 +470,8 @@ void HazardRaster::addSwath(const RockPath& path)
     swath.add(place, place,
       { last.kineticEnergy, last.velocity.norm(),
         std::isnan(last.heightOverGround) ? none : last.heightOverGround,
-        last.rotationRate.norm() });
+        last.rotationRate.norm() },
+      this->angleAt(last.position));
   }
   if (path.rested)
   {

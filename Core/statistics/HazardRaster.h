@@ -45,7 +45,11 @@ public:
 private:
   std::int64_t cellAt(double x, double y) const; ///< −1 beyond the grid.
   void addPiece(const PathPiece& piece, std::array<double, 2> grounds);
-  void addVisit(std::int64_t cell, const std::array<double, hazardCount>& maxima);
+  void addVisit(
+    std::int64_t cell, const std::array<double, hazardCount>& maxima, const Vec3& place);
+  /// Of the line from a place up to the release of the path being added, in Passage's steps; a right
+  /// angle straight under it.
+  std::uint32_t angleAt(const Vec3& place) const;
   /// The cells under a disc that goes along the path.
   class Swath;
   void addSwath(const RockPath& path);
@@ -63,6 +67,7 @@ private:
   // Of the path being added.
   std::vector<Passage> visits_;
   std::int64_t here_ = -1;
+  Vec3 release_ = Vec3::Zero();
   std::vector<double> cuts_;
   mutable std::vector<double> groundCuts_;
 };

@@ -4,6 +4,7 @@
 #include "base/errors.h"
 #include "base/text/numberText.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -39,20 +40,46 @@ int intensityClass(std::span<const double> frequencies, double period)
 
 void RockFrequencies::add(int rock, std::int64_t blockId, double frequency)
 {
-  if (!(frequency >= 0.0) || !std::isfinite(frequency))
+  this->add(rock, blockId, { frequency, 1 });
+}
+
+void RockFrequencies::add(int rock, std::int64_t blockId, const Release& release)
+{
+  const auto name = [&]
   {
-    throw DataError("The Frequency of rock " + std::to_string(rock) + " is " +
-      numberText(frequency) + " per year, it must be finite and not negative");
-  }
-  Release& release = releases_[{ rock, blockId }];
-  if (release.iterations > 0 && release.frequency != frequency)
+    return "The Frequency of rock " + std::to_string(rock) + " is " +
+      numberText(release.frequency) + " per year";
+  };
+  if (!(release.frequency >= 0.0) || !std::isfinite(release.frequency))
   {
-    throw DataError("The Frequency of rock " + std::to_string(rock) + " is " +
-      numberText(frequency) + " per year in one iteration and " + numberText(release.frequency) +
-      " in another");
+    throw DataError(name() + ", it must be finite and not negative");
   }
-  release.frequency = frequency;
-  ++release.iterations;
+  Release& known = releases_[{ rock, blockId }];
+  if (known.iterations > 0 && known.frequency != release.frequency)
+  {
+    throw DataError(
+      name() + " in one iteration and " + numberText(known.frequency) + " in another");
+  }
+  known.frequency = release.frequency;
+  known.iterations += release.iterations;
+}
+
+void RockFrequencies::add(const RockFrequencies& other)
+{
+  for (const auto& [rock, release] : other.releases_)
+  {
+    this->add(rock.first, rock.second, release);
+  }
+}
+
+double RockFrequencies::largestWeight() const
+{
+  double largest = 0.0;
+  for (const auto& [rock, release] : releases_)
+  {
+    largest = std::max(largest, release.frequency / double(release.iterations));
+  }
+  return largest;
 }
 
 double RockFrequencies::weight(const Passage& of) const
@@ -65,36 +92,52 @@ double RockFrequencies::weight(const Passage& of) const
   return found->second.frequency / double(found->second.iterations);
 }
 
+void FrequencySummarizer::add(const Passage& passage)
+{
+  if (cell_.rocks.empty() || cell_.cell != passage.cell)
+  {
+    this->finish();
+    cell_.cell = passage.cell;
+    cell_.rocks.assign(thresholds_.size() + 1, 0);
+    cell_.frequencies.assign(thresholds_.size() + 1, 0.0);
+  }
+  const double share = weight_(passage);
+  const double energy = passage.maxima[std::size_t(Hazard::KineticEnergy)];
+  for (std::size_t t = 0; t <= thresholds_.size(); ++t)
+  {
+    if (t == 0 || energy >= thresholds_[t - 1])
+    {
+      ++cell_.rocks[t];
+      cell_.frequencies[t] += share;
+    }
+  }
+}
+
+void FrequencySummarizer::finish()
+{
+  if (!cell_.rocks.empty())
+  {
+    use_(cell_);
+    cell_.rocks.clear();
+  }
+}
+
 void summarizeFrequencies(std::span<const Passage> passages, std::span<const double> thresholds,
   const std::function<double(const Passage&)>& weight,
   const std::function<void(const CellFrequency&)>& use)
 {
-  CellFrequency cell;
-  for (std::size_t k = 0; k < passages.size(); ++k)
+  FrequencySummarizer summarizer({ thresholds.begin(), thresholds.end() }, weight, use);
+  for (const Passage& passage : passages)
   {
     stayWanted();
-    const Passage& passage = passages[k];
-    if (k == 0 || passages[k - 1].cell != passage.cell)
-    {
-      cell.cell = passage.cell;
-      cell.rocks.assign(thresholds.size() + 1, 0);
-      cell.frequencies.assign(thresholds.size() + 1, 0.0);
-    }
-    const double share = weight(passage);
-    const double energy = passage.maxima[std::size_t(Hazard::KineticEnergy)];
-    for (std::size_t t = 0; t <= thresholds.size(); ++t)
-    {
-      if (t == 0 || energy >= thresholds[t - 1])
-      {
-        ++cell.rocks[t];
-        cell.frequencies[t] += share;
-      }
-    }
-    if (k + 1 == passages.size() || passages[k + 1].cell != passage.cell)
-    {
-      use(cell);
-    }
+    summarizer.add(passage);
   }
+  summarizer.finish();
+}
+
+double frequencyLimit(double largestWeight)
+{
+  return std::log(20.0) * largestWeight;
 }
 
 } // namespace rockfall

@@ -40,15 +40,25 @@ public:
   /// A trajectory of a rock of this frequency, 1/a. Throws DataError if it is negative or not
   /// finite, or another one than the same rock had before.
   void add(int rock, std::int64_t blockId, double frequency);
+  /// Those of another part of the run. Throws DataError as above.
+  void add(const RockFrequencies& other);
   /// Of one trajectory, 1/a. Throws DataError for a rock that was not added.
   double weight(const Passage& of) const;
+  /// The largest weight of a rock, 1/a.
+  double largestWeight() const;
+  bool empty() const { return releases_.empty(); }
 
-private:
   struct Release
   {
-    double frequency = 0.0;
+    double frequency = 0.0; ///< 1/a
     std::int64_t iterations = 0;
   };
+  /// By number and block.
+  const std::map<std::pair<int, std::int64_t>, Release>& releases() const { return releases_; }
+  /// As read. Throws DataError if the frequency is not one, or no iteration released it.
+  void add(int rock, std::int64_t blockId, const Release& release);
+
+private:
   std::map<std::pair<int, std::int64_t>, Release> releases_;
 };
 
@@ -60,11 +70,38 @@ struct CellFrequency
   std::vector<double> frequencies; ///< Of passage by one of them, 1/a.
 };
 
-/// Calls `use` for each cell of the `passages`, which are in their order and summed in it: the
-/// results are the same bits however they were shared out. A rock counts for a threshold (J) if its
-/// largest energy on the way through the cell is at least that.
+/// Calls `use` for each cell of passages that come in their order and are summed in it: the results
+/// are the same bits however they were shared out. A rock counts for a threshold (J) if its largest
+/// energy on the way through the cell is at least that.
+class FrequencySummarizer
+{
+public:
+  FrequencySummarizer(std::vector<double> thresholds, std::function<double(const Passage&)> weight,
+    std::function<void(const CellFrequency&)> use)
+    : thresholds_(std::move(thresholds))
+    , weight_(std::move(weight))
+    , use_(std::move(use))
+  {
+  }
+
+  void add(const Passage& passage);
+  void finish(); ///< Hands on the last cell.
+
+private:
+  std::vector<double> thresholds_;
+  std::function<double(const Passage&)> weight_;
+  std::function<void(const CellFrequency&)> use_;
+  CellFrequency cell_;
+};
+
+/// The same of all `passages`.
 void summarizeFrequencies(std::span<const Passage> passages, std::span<const double> thresholds,
   const std::function<double(const Passage&)>& weight,
   const std::function<void(const CellFrequency&)>& use);
+
+/// With 95 % confidence a cell that nothing passed is not passed more often than this, 1/a, where
+/// no trajectory weighs more than `largestWeight`: of Σ fₖ pₖ under Π (1 − pₖ)^Nₖ ≥ 0.05, as pₖ ≤
+/// −ln(1 − pₖ), at most ln 20 times the largest fₖ / Nₖ. It is the rule of three.
+double frequencyLimit(double largestWeight);
 
 } // namespace rockfall

@@ -110,6 +110,33 @@ void readLost(std::istream& in, PassageFile& file)
   }
 }
 
+void readFrequencies(std::istream& in, PassageFile& file)
+{
+  const auto rocks = get<std::uint64_t>(in);
+  for (std::uint64_t k = 0; k < rocks && in; ++k)
+  {
+    const auto rock = get<std::int64_t>(in);
+    const auto block = get<std::int64_t>(in);
+    RockFrequencies::Release release;
+    release.iterations = get<std::int64_t>(in);
+    release.frequency = get<double>(in);
+    if (!in)
+    {
+      return; // told by the length
+    }
+    if (rock < 0 || rock > std::numeric_limits<int>::max() || release.iterations < 1 ||
+      release.iterations > std::numeric_limits<int>::max() || !(release.frequency >= 0.0) ||
+      !std::isfinite(release.frequency) ||
+      file.frequencies.releases().contains({ int(rock), block }))
+    {
+      failDamaged(file.fileName,
+        "rock " + std::to_string(rock) + " of " + std::to_string(release.iterations) +
+          " iterations has the frequency " + numberText(release.frequency));
+    }
+    file.frequencies.add(int(rock), block, release);
+  }
+}
+
 /// The passages of one file, some at a time. No file stays open: there may be
 /// more than a process may have open.
 class PassageStream
@@ -224,6 +251,7 @@ PassageFile readPassageFile(const std::string& fileName)
   }
   readReleases(in, file);
   readLost(in, file);
+  readFrequencies(in, file);
   file.passages = get<std::uint64_t>(in);
   file.begin = in ? std::uint64_t(in.tellg()) : 0;
   if (!in || length > longestCrs || file.passages > size ||
@@ -253,15 +281,30 @@ PassageFiles::PassageFiles(const std::vector<std::string>& fileNames)
     {
       throw DataError(fileName + ": its cells or its CRS are not those of " + fileNames.front());
     }
+    if (!file.releases.empty() && !releases_.empty() &&
+      file.frequencies.empty() != frequencies_.empty())
+    {
+      throw DataError(fileName + ": its rocks have " +
+        (file.frequencies.empty() ? "no frequencies, those of other files have"
+                                  : "frequencies, those of other files have none"));
+    }
     for (const auto& [iteration, count] : file.releases)
     {
       releases_[iteration] += count;
     }
     lost_.add(file.lost);
+    frequencies_.add(file.frequencies);
   }
 }
 
 void PassageFiles::summarize(const UseCell& use) const
+{
+  CellSummarizer summarizer(releases_, use);
+  this->forEach([&summarizer](const Passage& passage) { summarizer.add(passage); });
+  summarizer.finish();
+}
+
+void PassageFiles::forEach(const std::function<void(const Passage&)>& use) const
 {
   const std::size_t atOnce = std::max<std::size_t>(16, memory / sizeof(Passage) / files_.size());
   std::vector<PassageStream> streams;
@@ -278,19 +321,17 @@ void PassageFiles::summarize(const UseCell& use) const
       first.push(&stream);
     }
   }
-  CellSummarizer summarizer(releases_, use);
   while (!first.empty())
   {
     PassageStream* stream = first.top();
     first.pop();
-    summarizer.add(*stream->next());
+    use(*stream->next());
     stream->advance();
     if (stream->next())
     {
       first.push(stream);
     }
   }
-  summarizer.finish();
 }
 
 } // namespace rockfall

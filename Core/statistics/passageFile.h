@@ -4,22 +4,25 @@
 /// Passages of a run in a file, so that the map of many runs can be made without having any of them
 /// in memory.
 ///
-/// A file has, little endian: the 8 bytes "RFPASS02"; columns and rows (int32
+/// A file has, little endian: the 8 bytes "RFPASS03"; columns and rows (int32
 /// each); cell size, west, south (double); x, y, z of the local origin
 /// (double); bytes of the CRS (uint64) and the CRS as WKT; number of iterations
 /// (uint64) and for each its number (int64) and how many rocks were released in
 /// it (int64); whom the run lost: rocks, still moving, over the edge, in
 /// nodata, unmoved (int64), the latest time of one that still moved (double);
-/// number of passages (uint64), and the passages in their order, 56 bytes each:
-/// cell (uint32), entries and in the highest bit whether the rock came to rest
-/// there (uint32), iteration, rock (int32), block (int64), the four largest
-/// values (double).
+/// number of rocks whose frequency is known (uint64), of all or none, and for each its number,
+/// block, iterations that released it (int64) and frequency (double, 1/a); number of passages
+/// (uint64), and the passages in their order, 56 bytes each: cell (uint32), entries (15 bits),
+/// whether the rock came to rest there (1) and the energy-line angle (16), iteration, rock (int32),
+/// block (int64), the four largest values (double).
 
 #include "base/types.h"
+#include "statistics/frequency.h"
 #include "statistics/lost.h"
 #include "statistics/passages.h"
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -29,7 +32,7 @@ namespace rockfall
 class HazardRaster;
 
 /// The first bytes of a file.
-constexpr char passageMagic[8] = { 'R', 'F', 'P', 'A', 'S', 'S', '0', '2' };
+constexpr char passageMagic[8] = { 'R', 'F', 'P', 'A', 'S', 'S', '0', '3' };
 
 /// Statements of a file on itself.
 struct PassageFile
@@ -39,15 +42,16 @@ struct PassageFile
   Vec3 origin = Vec3::Zero(); ///< Of the paths' frame, m.
   std::string crs;            ///< WKT; empty for a local system.
   Releases releases;
-  LostRocks lost;             ///< Of all of the run, whatever came to the map.
-  std::uint64_t passages = 0; ///< How many there are.
-  std::uint64_t begin = 0;    ///< Byte of the first.
+  LostRocks lost;              ///< Of all of the run, whatever came to the map.
+  RockFrequencies frequencies; ///< Empty: not known.
+  std::uint64_t passages = 0;  ///< How many there are.
+  std::uint64_t begin = 0;     ///< Byte of the first.
 };
 
 /// Writes what was added to `raster`, whose frame has its origin at `origin`,
 /// into `fileName`: beside, and renamed when it is whole. Throws FileError.
 void writePassages(HazardRaster& raster, const Vec3& origin, const std::string& crs,
-  const std::string& fileName, const LostRocks& lost = {});
+  const std::string& fileName, const LostRocks& lost = {}, const RockFrequencies& frequencies = {});
 
 /// Reads all but the passages. Throws FileError that names the file if it is none, of another
 /// version, not of the length that it must have, or of numbers that no run has.
@@ -59,7 +63,7 @@ class PassageFiles
 {
 public:
   /// Throws ParameterError without a name, FileError as readPassageFile, DataError that names the
-  /// file whose grid or CRS is not that of the first.
+  /// file whose grid or CRS is not that of the first, or which alone has frequencies or has none.
   explicit PassageFiles(const std::vector<std::string>& fileNames);
 
   const CellGrid& grid() const { return files_.front().grid; } ///< In the world's frame, m.
@@ -67,15 +71,19 @@ public:
   const std::string& crs() const { return files_.front().crs; }
   const Releases& releases() const { return releases_; }
   const LostRocks& lost() const { return lost_; }
+  const RockFrequencies& frequencies() const { return frequencies_; }
 
   /// Merges the files on the way, with 64 MB of memory for all of them. Throws FileError, or
   /// DataError if a rock is there twice for an iteration.
   void summarize(const UseCell& use) const;
+  /// All passages in their order, as they are.
+  void forEach(const std::function<void(const Passage&)>& use) const;
 
 private:
   std::vector<PassageFile> files_;
   Releases releases_; ///< Of all files.
   LostRocks lost_;    ///< Likewise.
+  RockFrequencies frequencies_;
 };
 
 } // namespace rockfall

@@ -24,7 +24,7 @@ void put(std::ostream& out, const T& value)
 } // namespace
 
 void writePassages(HazardRaster& raster, const Vec3& origin, const std::string& crs,
-  const std::string& fileName, const LostRocks& lost)
+  const std::string& fileName, const LostRocks& lost, const RockFrequencies& frequencies)
 {
   gis::OutputFile file(fileName);
   std::ofstream out(file.temporary(), std::ios::binary);
@@ -51,6 +51,14 @@ void writePassages(HazardRaster& raster, const Vec3& origin, const std::string& 
     put(out, count);
   }
   put(out, lost.endTime);
+  put(out, std::uint64_t(frequencies.releases().size()));
+  for (const auto& [rock, release] : frequencies.releases())
+  {
+    put(out, std::int64_t(rock.first));
+    put(out, rock.second);
+    put(out, release.iterations);
+    put(out, release.frequency);
+  }
   const std::vector<Passage>& passages = raster.sorted();
   put(out, std::uint64_t(passages.size()));
   out.write(reinterpret_cast<const char*>(passages.data()),

@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <tuple>
@@ -46,6 +47,8 @@ void CellSummarizer::begin(std::uint32_t cell)
 {
   summary_ = {};
   summary_.cell = cell;
+  angles_ = 0;
+  angleLeast_ = Passage::kAngleSteps;
   counts_.clear();
   for (std::vector<double>& list : values_)
   {
@@ -95,6 +98,8 @@ void CellSummarizer::add(const Passage& passage)
   summary_.passages += int(passage.entries);
   summary_.stops += int(passage.stopped);
   ++summary_.rocks;
+  angles_ += passage.angle;
+  angleLeast_ = std::min<std::uint32_t>(angleLeast_, passage.angle);
   for (std::size_t h = 0; h < values_.size(); ++h)
   {
     if (passage.maxima[h] > -std::numeric_limits<double>::infinity())
@@ -114,6 +119,9 @@ void CellSummarizer::finish()
   }
   any_ = false;
   const double iterations = double(releases_.size());
+  constexpr double step = 90.0 / Passage::kAngleSteps; // degrees
+  summary_.angleLeast = step * angleLeast_;
+  summary_.angleMean = step * double(angles_) / summary_.rocks;
   const double p = summary_.rocks / all_;
   summary_.reach = p;
   summary_.reachError = binomialError(p, all_);

@@ -55,6 +55,9 @@ struct CellSummary
   /// slope. NaN for one iteration. Where all came, shareLimit of the
   /// iterations.
   double reachErrorOfIterations = 0.0;
+  /// Of the line from where a rock is as it leaves the cell, or stops, up to where it was released,
+  /// degrees over the horizontal: over the rocks, each with its smallest.
+  double angleLeast = 0.0, angleMean = 0.0;
   /// Over the rocks; a rock's value is its largest on the way through the cell.
   std::array<SampleStatistics, hazardCount> statistics;
 };
@@ -62,9 +65,13 @@ struct CellSummary
 /// A rock in one iteration in one cell.
 struct Passage
 {
+  static constexpr int kMostEntries = 32767; ///< More are not counted.
+  static constexpr int kAngleSteps = 65535;  ///< Of a right angle: 0.0014° each.
+
   std::uint32_t cell = 0;
-  std::uint32_t entries : 31 = 1;
+  std::uint32_t entries : 15 = 1;
   std::uint32_t stopped : 1 = 0; ///< Came to rest there.
+  std::uint32_t angle : 16 = 0;  ///< The smallest energy-line angle, in kAngleSteps of 90°.
   std::int32_t iteration = 0;
   std::int32_t rock = 0;
   std::int64_t blockId = 0; ///< Tells the rocks of two runs from each other.
@@ -102,7 +109,9 @@ private:
 
   const Releases& releases_;
   const UseCell& use_;
-  double all_ = 0.0;             ///< Releases of all iterations.
+  double all_ = 0.0;         ///< Releases of all iterations.
+  std::uint64_t angles_ = 0; ///< Sum over the rocks, in steps.
+  std::uint32_t angleLeast_ = 0;
   double squaredReleases_ = 0.0; ///< Σ Rᵢ², Rᵢ the rocks released in iteration i
   bool any_ = false;
   Passage last_;

@@ -10,9 +10,10 @@ from paraview.simple import *
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
+import schema
 import wholefile
 from gis import write_map_styles, write_table
-from together import from_first_rank, output, refuse, say, write_by
+from together import from_first_rank, make, output, refuse, say, write_by
 from wholefile import write_text
 
 RESULTS = "results.json"  # not study.json, which is what a study is called that goes in
@@ -101,10 +102,11 @@ def combine(study, folder, stems, iterations):
     hashes = from_first_rank(lambda: combine_tables(folder, stems))
     if "lines" in study:
         merge = servermanager.filters.MergeCollectors().GetClientSideObject()
-        design = servermanager.filters.BarrierDesign().GetClientSideObject()
-        from_first_rank(lambda: combine_crossings(folder, stems, merge, design))
+        design = make(servermanager.filters.BarrierDesign, "lines", schema.shared_out("lines", study["lines"])[1])
+        from_first_rank(lambda: combine_crossings(folder, stems, merge, design.GetClientSideObject()))
     if "map" in study:
-        hazard = HazardPassageReader(FileNames=[stem + ".passages" for stem in stems])
+        hazard = make(HazardPassageReader, "map", {
+            **schema.shared_out("map", study["map"])[1], "FileNames": [stem + ".passages" for stem in stems]})
         writer = servermanager.writers.HazardMapWriter(Input=hazard)
         write_by(writer, os.path.join(folder, "hazard.tif"))
         cells = output(hazard).GetCellData()

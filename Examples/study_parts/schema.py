@@ -10,6 +10,8 @@ PROXIES = {
     "terrain": ("sources", "DEMToCFEMesh"), "rocks": ("sources", "RockBlocks"),
     "simulation": ("filters", "RockfallSimulation"), "map": ("writers", "HazardPassageWriter"),
     "lines": ("filters", "TrajectoryCollector")}
+# Of what is made of all chunks in the end, whose properties the part sets as well.
+FURTHER = {"map": ("sources", "HazardPassageReader"), "lines": ("filters", "BarrierDesign")}
 MOST_ITERATIONS = 2**31 - 1  # the simulation's own limit
 MOST_CHUNKS = 100000  # as many as the names of their files have digits for
 
@@ -65,7 +67,20 @@ def load(path):
 
 def properties_of(part):
     """A part's properties by the names that scripts know them by."""
-    group, name = PROXIES[part]
+    further = properties_at(FURTHER[part]) if part in FURTHER else {}
+    further.pop("FileNames", None)  # the chunks'
+    return {**further, **properties_at(PROXIES[part])}
+
+
+def shared_out(part, values):
+    """The values of a part: those of its proxy, and those of what is made of all chunks."""
+    own = properties_at(PROXIES[part])
+    return ({name: value for name, value in values.items() if name in own},
+            {name: value for name, value in values.items() if name not in own})
+
+
+def properties_at(place):
+    group, name = place
     proxy = servermanager.ProxyManager().GetPrototypeProxy(group, name)
     if not proxy:
         raise Bad(f"the plugin RockfallDDA has no {name}")

@@ -3,10 +3,9 @@
 #include "base/errors.h"
 #include "base/text/numberText.h"
 #include "shared/arrays.h"
-#include "statistics/HazardRaster.h"
-#include "statistics/frequency.h"
 
 #include "vtkCellData.h"
+#include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
 #include "vtkIntArray.h"
@@ -15,8 +14,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <string>
+#include <utility>
 
 namespace rockfall::filters
 {
@@ -44,8 +43,20 @@ std::vector<double> ordered(std::vector<double> values)
   return values;
 }
 
-/// By the cell array Frequency, if there is one.
-std::optional<RockFrequencies> frequenciesOf(vtkPolyData* trajectories)
+/// Thresholds in joules.
+std::vector<double> joulesOf(const FrequencyOptions& options)
+{
+  std::vector<double> joules = ordered(options.energyThresholds);
+  for (double& threshold : joules)
+  {
+    threshold *= 1000.0;
+  }
+  return joules;
+}
+
+} // namespace
+
+RockFrequencies frequenciesOf(vtkPolyData* trajectories)
 {
   vtkCellData* cells = trajectories->GetCellData();
   vtkDataArray* frequency = cells->GetArray("Frequency");
@@ -53,7 +64,7 @@ std::optional<RockFrequencies> frequenciesOf(vtkPolyData* trajectories)
   vtkDataArray* block = cells->GetArray("BlockId");
   if (!frequency || !rock || !block)
   {
-    return std::nullopt;
+    return {};
   }
   if (frequency->GetNumberOfComponents() != 1)
   {
@@ -71,8 +82,6 @@ std::optional<RockFrequencies> frequenciesOf(vtkPolyData* trajectories)
   return result;
 }
 
-} // namespace
-
 void checkFrequencies(const FrequencyOptions& options)
 {
   if (!(options.annualFrequency >= 0.0) || !std::isfinite(options.annualFrequency))
@@ -84,19 +93,22 @@ void checkFrequencies(const FrequencyOptions& options)
   checkPositive(options.returnPeriods, "ReturnPeriods", "a");
 }
 
-void addFrequencies(HazardRaster& raster, vtkPolyData* trajectories,
-  const FrequencyOptions& options, vtkImageData* image)
+FrequencyLayers::FrequencyLayers(const FrequencyOptions& options, double released,
+  const RockFrequencies& rocks, std::function<bool(std::uint32_t)> isLeftOut, vtkImageData* image)
+  : known_(options.annualFrequency > 0.0 || !rocks.empty())
+  , released_(released)
+  , periods_(ordered(options.returnPeriods))
+  , isLeftOut_(std::move(isLeftOut))
+  , summarizer_(
+      joulesOf(options),
+      [&rocks, together = options.annualFrequency, released](const Passage& of)
+      { return together > 0.0 ? together / released : rocks.weight(of); },
+      [this](const CellFrequency& cell) { this->set(cell); })
 {
-  const bool together = options.annualFrequency > 0.0;
-  const auto rocks = together ? std::nullopt : frequenciesOf(trajectories);
-  if (!together && !rocks)
+  if (!known_)
   {
     return;
   }
-  const double released = double(raster.released());
-  const auto weight = [&](const Passage& of)
-  { return rocks ? rocks->weight(of) : options.annualFrequency / released; };
-
   vtkFieldData* data = image->GetCellData();
   const vtkIdType cells = image->GetNumberOfCells();
   const auto number = [&](const std::string& name, float empty)
@@ -106,47 +118,51 @@ void addFrequencies(HazardRaster& raster, vtkPolyData* trajectories,
     array->FillValue(empty);
     return array;
   };
-  std::vector<vtkSmartPointer<vtkFloatArray>> exceedances, frequencies;
-  frequencies.push_back(number("AnnualFrequency", 0.0F));
-  const auto period = number("ReturnPeriod", std::numeric_limits<float>::quiet_NaN());
-  std::vector<double> joules;
+  frequencies_.push_back(number("AnnualFrequency", 0.0F));
+  period_ = number("ReturnPeriod", std::numeric_limits<float>::quiet_NaN());
   for (const double threshold : ordered(options.energyThresholds))
   {
     const std::string end = numberText(threshold) + "kJ";
-    joules.push_back(1000.0 * threshold);
-    exceedances.push_back(number("ExceedanceProbability" + end, 0.0F));
-    frequencies.push_back(number("AnnualFrequency" + end, 0.0F));
+    exceedances_.push_back(number("ExceedanceProbability" + end, 0.0F));
+    frequencies_.push_back(number("AnnualFrequency" + end, 0.0F));
   }
-  std::vector<vtkSmartPointer<vtkIntArray>> intensities;
-  const std::vector<double> periods = ordered(options.returnPeriods);
-  for (const double years : periods)
+  for (const double years : periods_)
   {
-    const std::string name = "Intensity" + numberText(years) + "a";
-    intensities.push_back(addArray<vtkIntArray>(data, name.c_str()));
-    intensities.back()->SetNumberOfTuples(cells);
-    intensities.back()->FillValue(0);
+    const std::string end = numberText(years) + "a";
+    probabilities_.push_back(number("PassageProbability" + end, 0.0F));
+    intensities_.push_back(addArray<vtkIntArray>(data, ("Intensity" + end).c_str()));
+    intensities_.back()->SetNumberOfTuples(cells);
+    intensities_.back()->FillValue(0);
   }
-  const auto set = [&](const CellFrequency& cell)
+  addArray<vtkDoubleArray>(image->GetFieldData(), "AnnualFrequencyLimit")
+    ->InsertNextValue(frequencyLimit(
+      options.annualFrequency > 0.0 ? options.annualFrequency / released : rocks.largestWeight()));
+}
+
+void FrequencyLayers::set(const CellFrequency& cell)
+{
+  const vtkIdType id = cell.cell;
+  if (isLeftOut_(cell.cell))
   {
-    const vtkIdType id = cell.cell;
-    for (std::size_t k = 0; k < frequencies.size(); ++k)
-    {
-      frequencies[k]->SetValue(id, float(cell.frequencies[k]));
-    }
-    if (cell.frequencies[0] > 0.0)
-    {
-      period->SetValue(id, float(1.0 / cell.frequencies[0]));
-    }
-    for (std::size_t k = 0; k < exceedances.size(); ++k)
-    {
-      exceedances[k]->SetValue(id, float(double(cell.rocks[k + 1]) / released));
-    }
-    for (std::size_t k = 0; k < intensities.size(); ++k)
-    {
-      intensities[k]->SetValue(id, intensityClass(cell.frequencies, periods[k]));
-    }
-  };
-  summarizeFrequencies(raster.sorted(), joules, weight, set);
+    return;
+  }
+  for (std::size_t k = 0; k < frequencies_.size(); ++k)
+  {
+    frequencies_[k]->SetValue(id, float(cell.frequencies[k]));
+  }
+  if (cell.frequencies[0] > 0.0)
+  {
+    period_->SetValue(id, float(1.0 / cell.frequencies[0]));
+  }
+  for (std::size_t k = 0; k < exceedances_.size(); ++k)
+  {
+    exceedances_[k]->SetValue(id, float(double(cell.rocks[k + 1]) / released_));
+  }
+  for (std::size_t k = 0; k < periods_.size(); ++k)
+  {
+    probabilities_[k]->SetValue(id, float(probabilityWithin(cell.frequencies[0], periods_[k])));
+    intensities_[k]->SetValue(id, intensityClass(cell.frequencies, periods_[k]));
+  }
 }
 
 } // namespace rockfall::filters

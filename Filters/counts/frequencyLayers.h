@@ -3,15 +3,18 @@
 /// @file
 /// Arrays of annual frequencies and intensity classes of a map of hazards.
 
+#include "statistics/frequency.h"
+
+#include "vtkSmartPointer.h"
+
+#include <cstdint>
+#include <functional>
 #include <vector>
 
+class vtkFloatArray;
 class vtkImageData;
+class vtkIntArray;
 class vtkPolyData;
-
-namespace rockfall
-{
-class HazardRaster;
-}
 
 namespace rockfall::filters
 {
@@ -27,9 +30,39 @@ struct FrequencyOptions
 /// Throws ParameterError that names the property and its value.
 void checkFrequencies(const FrequencyOptions& options);
 
-/// Adds the arrays to the cells of `image`, the map of `raster`, which is of `trajectories`.
-/// Without frequencies it adds nothing. Throws DataError for a bad cell array Frequency.
-void addFrequencies(HazardRaster& raster, vtkPolyData* trajectories,
-  const FrequencyOptions& options, vtkImageData* image);
+/// By the cell array Frequency of trajectories; empty without one. Throws DataError for a bad one.
+RockFrequencies frequenciesOf(vtkPolyData* trajectories);
+
+/// The arrays of a map; none where frequencies are not known.
+class FrequencyLayers
+{
+public:
+  /// Adds them to the cells of `image`. `released`: rocks × iterations. `rocks` is kept. A cell for
+  /// which `isLeftOut` stays empty.
+  FrequencyLayers(const FrequencyOptions& options, double released, const RockFrequencies& rocks,
+    std::function<bool(std::uint32_t)> isLeftOut, vtkImageData* image);
+
+  /// Passages in their order.
+  void add(const Passage& passage)
+  {
+    if (known_)
+    {
+      summarizer_.add(passage);
+    }
+  }
+  void finish() { summarizer_.finish(); }
+
+private:
+  void set(const CellFrequency& cell);
+
+  bool known_;
+  double released_;
+  std::vector<double> periods_;
+  std::function<bool(std::uint32_t)> isLeftOut_;
+  std::vector<vtkSmartPointer<vtkFloatArray>> exceedances_, frequencies_, probabilities_;
+  vtkSmartPointer<vtkFloatArray> period_;
+  std::vector<vtkSmartPointer<vtkIntArray>> intensities_;
+  FrequencySummarizer summarizer_;
+};
 
 } // namespace rockfall::filters

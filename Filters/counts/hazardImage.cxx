@@ -1,5 +1,6 @@
 #include "counts/hazardImage.h"
 
+#include "base/abort.h"
 #include "base/errors.h"
 #include "base/text/numberText.h"
 #include "counts/lostRocks.h"
@@ -14,6 +15,7 @@
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
+#include "vtkIdTypeArray.h"
 #include "vtkImageData.h"
 #include "vtkIntArray.h"
 #include "vtkPointData.h"
@@ -33,7 +35,7 @@ namespace rockfall::filters
 namespace
 {
 
-/// At 76 bytes each the usual map takes 4 GB.
+/// At 84 bytes each the usual map takes 4 GB.
 constexpr std::int64_t mostCells = 50'000'000;
 
 struct Bounds
@@ -158,8 +160,10 @@ std::int64_t releasedIn(const Releases& releases)
 class Layers
 {
 public:
-  Layers(vtkImageData* image, const ChosenStatistics& chosen, const Releases& releases)
+  Layers(vtkImageData* image, const HazardMapOptions& options, const Releases& releases)
+    : options_(options)
   {
+    const ChosenStatistics& chosen = options.statistics;
     vtkFieldData* data = image->GetCellData();
     const vtkIdType cells = image->GetNumberOfCells();
     const auto count = [&](const char* name)
@@ -187,6 +191,8 @@ public:
       number("ReachProbabilityError", float(binomialError(0.0, double(releasedIn(releases)))));
     reachScatter_ = number(
       "ReachProbabilityErrorOfIterations", iterations > 1.0 ? float(shareLimit(iterations)) : nan);
+    angleLeast_ = number("EnergyLineAngleMinimum", nan);
+    angleMean_ = number("EnergyLineAngleMean", nan);
     for (std::size_t k = 0; k < std::size(mapStatistics); ++k)
     {
       if (std::find(chosen.begin(), chosen.end(), int(k)) != chosen.end())
@@ -208,9 +214,23 @@ public:
     }
   }
 
+  /// Whether the cell that was set last was left empty.
+  bool isLeftOut() const { return isLeftOut_; }
+
   void set(const CellSummary& cell)
   {
     const vtkIdType id = cell.cell;
+    isLeftOut_ = cell.reach < options_.leastReach || cell.angleLeast < options_.leastAngle;
+    if (isLeftOut_)
+    {
+      ++leftOut_;
+      // What may come all the same is more than where nothing came.
+      reachError_->SetValue(id, std::numeric_limits<float>::quiet_NaN());
+      reachScatter_->SetValue(id, std::numeric_limits<float>::quiet_NaN());
+      return;
+    }
+    angleLeast_->SetValue(id, float(cell.angleLeast));
+    angleMean_->SetValue(id, float(cell.angleMean));
     passages_->SetValue(id, cell.passages);
     rocks_->SetValue(id, cell.rocks);
     stops_->SetValue(id, cell.stops);
@@ -232,9 +252,34 @@ public:
     }
   }
 
-  /// A note where no cell has the rocks that the highest quantile of the map
-  /// needs.
+  /// Notes on cells that were left empty, and where no cell has the rocks that the highest quantile
+  /// of the map needs.
   std::vector<std::string> notes() const
+  {
+    std::vector<std::string> notes = this->quantileNotes();
+    if (leftOut_ > 0)
+    {
+      notes.push_back(std::to_string(leftOut_) +
+        " cells that rocks passed are left empty: their reach is below LeastReach, " +
+        numberText(options_.leastReach) + ", or their energy-line angle below LeastAngle, " +
+        numberText(options_.leastAngle) + " degrees");
+    }
+    return notes;
+  }
+
+  /// Statements of the map on what is left empty.
+  void tellLeftOut(vtkFieldData* data) const
+  {
+    if (options_.leastReach > 0.0 || options_.leastAngle > 0.0)
+    {
+      addArray<vtkDoubleArray>(data, "LeastReach")->InsertNextValue(options_.leastReach);
+      addArray<vtkDoubleArray>(data, "LeastAngle")->InsertNextValue(options_.leastAngle);
+      addArray<vtkIdTypeArray>(data, "CellsLeftEmpty")->InsertNextValue(vtkIdType(leftOut_));
+    }
+  }
+
+private:
+  std::vector<std::string> quantileNotes() const
   {
     const int least = highest_ > 0.0 ? leastForQuantile(highest_) : 0;
     if (most_ == 0 || most_ >= least)
@@ -246,12 +291,14 @@ public:
       ": HighestQuantile says of each cell which one it can give" };
   }
 
-private:
-  double highest_ = 0.0; ///< Of the quantiles that are chosen.
-  int most_ = 0;         ///< Rocks in a cell.
+  const HazardMapOptions& options_;
+  bool isLeftOut_ = false;
+  std::int64_t leftOut_ = 0; ///< Cells.
+  double highest_ = 0.0;     ///< Of the quantiles that are chosen.
+  int most_ = 0;             ///< Rocks in a cell.
   vtkSmartPointer<vtkIntArray> quantile_;
   vtkSmartPointer<vtkIntArray> passages_, rocks_, stops_;
-  vtkSmartPointer<vtkFloatArray> reach_, reachError_, reachScatter_;
+  vtkSmartPointer<vtkFloatArray> reach_, reachError_, reachScatter_, angleLeast_, angleMean_;
   std::vector<const MapStatistic*> chosen_;
   std::vector<vtkSmartPointer<vtkFloatArray>> statistics_;
 };
@@ -296,20 +343,51 @@ namespace
 /// The map but for its heights and coordinate system. `corner`: the
 /// south-western one, in the world.
 void fillImage(const CellGrid& grid, const Vec3& corner, const Releases& releases, bool withTerrain,
-  const LostRocks& lost, const ChosenStatistics& chosen,
-  const std::function<void(const UseCell&)>& summarize, vtkImageData* image)
+  const LostRocks& lost, const HazardMapOptions& options, const RockFrequencies& frequencies,
+  const std::function<void(const std::function<void(const Passage&)>&)>& forEach,
+  vtkImageData* image)
 {
   image->Initialize();
   image->SetExtent(0, grid.columns, 0, grid.rows, 0, 0);
   image->SetOrigin(corner.x(), corner.y(), 0.0);
   image->SetSpacing(grid.cellSize, grid.cellSize, grid.cellSize);
-  Layers layers(image, chosen, releases);
-  summarize([&layers](const CellSummary& cell) { layers.set(cell); });
+  const auto released = double(releasedIn(releases));
+  Layers layers(image, options, releases);
+  // A cell's summary comes before its frequencies.
+  FrequencyLayers frequencyLayers(
+    options.frequency, released, frequencies,
+    [&layers](std::uint32_t) { return layers.isLeftOut(); }, image);
+  const UseCell set = [&layers](const CellSummary& cell) { layers.set(cell); };
+  CellSummarizer summarizer(releases, set);
+  forEach(
+    [&](const Passage& passage)
+    {
+      summarizer.add(passage);
+      frequencyLayers.add(passage);
+    });
+  summarizer.finish();
+  frequencyLayers.finish();
   image->GetCellData()->SetActiveScalars("ReachProbability"); // what a viewer begins with
   addMarker(image,
-    { double(grid.columns), double(grid.rows), grid.cellSize, corner.x(), corner.y(),
-      double(releasedIn(releases)), withTerrain ? 1.0 : 0.0 });
+    { double(grid.columns), double(grid.rows), grid.cellSize, corner.x(), corner.y(), released,
+      withTerrain ? 1.0 : 0.0 });
+  layers.tellLeftOut(image->GetFieldData());
   tellLost(lost, image->GetFieldData(), layers.notes());
+}
+
+void checkOptions(const HazardMapOptions& options)
+{
+  checkStatistics(options.statistics);
+  checkFrequencies(options.frequency);
+  if (!(options.leastReach >= 0.0 && options.leastReach <= 1.0))
+  {
+    throw ParameterError("LeastReach is " + numberText(options.leastReach) + ", it must be 0 to 1");
+  }
+  if (!(options.leastAngle >= 0.0 && options.leastAngle <= 90.0))
+  {
+    throw ParameterError(
+      "LeastAngle is " + numberText(options.leastAngle) + " degrees, it must be 0 to 90");
+  }
 }
 
 void addPaths(vtkPolyData* trajectories, const Vec3& origin, bool rockWidth, HazardRaster& raster)
@@ -337,8 +415,7 @@ void makeHazardImage(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
   const HazardMapOptions& options, vtkImageData* image)
 {
   checkLines(trajectories);
-  checkStatistics(options.statistics);
-  checkFrequencies(options.frequency);
+  checkOptions(options);
   const std::optional<Terrain> terrain = slopeUnder(trajectories, terrainMesh);
   Vec3 origin = Vec3::Zero();
   if (terrain)
@@ -361,9 +438,17 @@ void makeHazardImage(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
   addPaths(trajectories, origin, options.rockWidth, raster);
   fillImage(
     grid, origin + Vec3(grid.west, grid.south, 0.0), raster.releases(), terrain.has_value(),
-    lostOf(trajectories), options.statistics,
-    [&raster](const UseCell& use) { raster.summarize(use); }, image);
-  addFrequencies(raster, trajectories, options.frequency, image);
+    lostOf(trajectories), options,
+    options.frequency.annualFrequency > 0.0 ? RockFrequencies() : frequenciesOf(trajectories),
+    [&raster](const std::function<void(const Passage&)>& use)
+    {
+      for (const Passage& passage : raster.sorted())
+      {
+        stayWanted();
+        use(passage);
+      }
+    },
+    image);
   if (terrain && !addElevation(*terrain, grid, image) && !terrainMesh &&
     !hasTerrain(trajectories->GetFieldData()))
   {
@@ -375,14 +460,15 @@ void makeHazardImage(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
 }
 
 void makeHazardImage(
-  const PassageFiles& files, const ChosenStatistics& statistics, vtkImageData* image)
+  const PassageFiles& files, const HazardMapOptions& options, vtkImageData* image)
 {
-  checkStatistics(statistics);
+  checkOptions(options);
   const CellGrid& grid = files.grid();
   checkSize(grid.columns, grid.rows, grid.cellSize);
   fillImage(
-    grid, Vec3(grid.west, grid.south, 0.0), files.releases(), true, files.lost(), statistics,
-    [&files](const UseCell& use) { files.summarize(use); }, image);
+    grid, Vec3(grid.west, grid.south, 0.0), files.releases(), true, files.lost(), options,
+    files.frequencies(),
+    [&files](const std::function<void(const Passage&)>& use) { files.forEach(use); }, image);
   writeCoordinateSystem(files.crs(), files.origin(), image->GetFieldData());
 }
 
@@ -398,8 +484,8 @@ void writeHazardPassages(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
   whole.crop = false;
   HazardRaster raster(gridOf(trajectories, &terrain, whole, origin), &terrain);
   addPaths(trajectories, origin, options.rockWidth, raster);
-  writePassages(
-    raster, origin, readCrs(trajectories->GetFieldData()), fileName, lostOf(trajectories));
+  writePassages(raster, origin, readCrs(trajectories->GetFieldData()), fileName,
+    lostOf(trajectories), frequenciesOf(trajectories));
 }
 
 } // namespace rockfall::filters

@@ -50,15 +50,19 @@ struct HazardMapOptions
   bool rockWidth = true; ///< Rocks wider than a cell touch every cell under them.
   ChosenStatistics statistics = usualStatistics;
   FrequencyOptions frequency = {};
+  /// Cells with a lower reach probability, or a smaller least energy-line angle (degrees), are left
+  /// empty.
+  double leastReach = 0.0, leastAngle = 0.0;
 };
 
 /// Fills `image`: see vtkRockfallHazardMap. `terrain` may be null. Throws rockfall::Error.
 void makeHazardImage(vtkPolyData* trajectories, vtkPolyData* terrain,
   const HazardMapOptions& options, vtkImageData* image);
 
-/// The same of files of passages, without the heights of the slope.
+/// The same of files of passages, without the heights of the slope. Cells and widths are those of
+/// the files.
 void makeHazardImage(
-  const PassageFiles& files, const ChosenStatistics& statistics, vtkImageData* image);
+  const PassageFiles& files, const HazardMapOptions& options, vtkImageData* image);
 
 /// Writes the passages that the map of the whole terrain would be made of; cell
 /// size and width of rocks as `options` has them. Throws rockfall::Error.

@@ -25,7 +25,7 @@ std::string unitOf(const std::string& name)
 {
   const std::pair<const char*, const char*> units[] = { { "KineticEnergy", "J" },
     { "Speed", "m/s" }, { "HeightOverGround", "m" }, { "RotationRate", "rad/s" },
-    { "AnnualFrequency", "1/a" }, { "ReturnPeriod", "a" } };
+    { "AnnualFrequency", "1/a" }, { "ReturnPeriod", "a" }, { "EnergyLineAngle", "degrees" } };
   for (const auto& [start, unit] : units)
   {
     if (name.rfind(start, 0) == 0)

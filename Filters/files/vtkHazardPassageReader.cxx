@@ -20,6 +20,8 @@ vtkStandardNewMacro(vtkHazardPassageReader);
 //------------------------------------------------------------------------------
 vtkHazardPassageReader::vtkHazardPassageReader()
   : Statistics(rockfall::filters::usualStatistics)
+  , EnergyThresholds(rockfall::filters::FrequencyOptions().energyThresholds)
+  , ReturnPeriods(rockfall::filters::FrequencyOptions().returnPeriods)
 {
   this->SetNumberOfInputPorts(0);
 }
@@ -60,6 +62,40 @@ void vtkHazardPassageReader::RemoveAllStatistics()
   if (!this->Statistics.empty())
   {
     this->Statistics.clear();
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkHazardPassageReader::AddEnergyThreshold(double threshold)
+{
+  this->EnergyThresholds.push_back(threshold);
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+void vtkHazardPassageReader::RemoveAllEnergyThresholds()
+{
+  if (!this->EnergyThresholds.empty())
+  {
+    this->EnergyThresholds.clear();
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkHazardPassageReader::AddReturnPeriod(double period)
+{
+  this->ReturnPeriods.push_back(period);
+  this->Modified();
+}
+
+//------------------------------------------------------------------------------
+void vtkHazardPassageReader::RemoveAllReturnPeriods()
+{
+  if (!this->ReturnPeriods.empty())
+  {
+    this->ReturnPeriods.clear();
     this->Modified();
   }
 }
@@ -124,8 +160,12 @@ int vtkHazardPassageReader::RequestData(
     "There is not enough memory for the map: choose fewer Statistics",
     [&]
     {
-      rockfall::filters::makeHazardImage(
-        rockfall::PassageFiles(this->FileNames), this->Statistics, image);
+      rockfall::filters::HazardMapOptions options;
+      options.statistics = this->Statistics;
+      options.frequency = { this->AnnualFrequency, this->EnergyThresholds, this->ReturnPeriods };
+      options.leastReach = this->LeastReach;
+      options.leastAngle = this->LeastAngle;
+      rockfall::filters::makeHazardImage(rockfall::PassageFiles(this->FileNames), options, image);
       return 1;
     });
 }
@@ -144,5 +184,18 @@ void vtkHazardPassageReader::PrintSelf(ostream& os, vtkIndent indent)
   {
     os << " " << statistic;
   }
+  os << "\n" << indent << "AnnualFrequency: " << this->AnnualFrequency << "\n";
+  os << indent << "EnergyThresholds:";
+  for (const double threshold : this->EnergyThresholds)
+  {
+    os << " " << threshold;
+  }
+  os << "\n" << indent << "ReturnPeriods:";
+  for (const double period : this->ReturnPeriods)
+  {
+    os << " " << period;
+  }
   os << "\n";
+  os << indent << "LeastReach: " << this->LeastReach << "\n";
+  os << indent << "LeastAngle: " << this->LeastAngle << "\n";
 }

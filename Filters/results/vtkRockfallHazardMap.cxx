@@ -121,7 +121,8 @@ void vtkRockfallHazardMap::Prepare(vtkInformationVector** inputVector)
     const rockfall::filters::HeardAbort heard(this);
     rockfall::filters::makeHazardImage(trajectories, terrain,
       { this->CellSize, this->CropToTrajectories, this->RockWidth, this->Statistics,
-        { this->AnnualFrequency, this->EnergyThresholds, this->ReturnPeriods } },
+        { this->AnnualFrequency, this->EnergyThresholds, this->ReturnPeriods }, this->LeastReach,
+        this->LeastAngle },
       this->Made->image);
     rockfall::filters::drapeMap(this->Made->image, this->Made->draped);
   }
@@ -315,4 +316,6 @@ void vtkRockfallHazardMap::PrintSelf(ostream& os, vtkIndent indent)
     os << " " << period;
   }
   os << "\n";
+  os << indent << "LeastReach: " << this->LeastReach << "\n";
+  os << indent << "LeastAngle: " << this->LeastAngle << "\n";
 }

@@ -14,12 +14,13 @@
  * the chosen Statistics over the rocks, such as SpeedMean and Speed95. Counts
  * are 0 and the others NaN where nothing passed, probabilities 0; their errors
  * are then the limits of a share of 0. HighestQuantile says which quantile the
- * rocks of a cell can give.
+ * rocks of a cell can give. EnergyLineAngleMinimum and EnergyLineAngleMean are of the lines from
+ * where rocks leave the cell, or stop, up to their release, degrees.
  *
  * Where frequencies are known, by AnnualFrequency or the trajectories' cell array Frequency (1/a,
  * of the rock), also AnnualFrequency (1/a), ReturnPeriod (a), for each of the EnergyThresholds such
- * as ExceedanceProbability30kJ and AnnualFrequency30kJ, and for each of the ReturnPeriods such as
- * Intensity100a: how many of reach and the thresholds have at least that annual frequency.
+ * as ExceedanceProbability30kJ and AnnualFrequency30kJ, and for each of the ReturnPeriods
+ * PassageProbability100a, of a passage in that time, and Intensity100a: how many of reach and the thresholds have at least that annual frequency.
  *
  * How large the image is depends on the data, and a pipeline wants to know it before: the inputs
  * are brought up to date when information is asked for.
@@ -106,6 +107,17 @@ public:
   void RemoveAllReturnPeriods();
   ///@}
 
+  ///@{
+  /**
+   * Cells that a smaller share of the rocks reaches (0 to 1), or whose smallest energy-line angle is
+   * smaller (0 to 90 degrees), are left empty, and the map says so. 0 by default.
+   */
+  vtkSetMacro(LeastReach, double);
+  vtkGetMacro(LeastReach, double);
+  vtkSetMacro(LeastAngle, double);
+  vtkGetMacro(LeastAngle, double);
+  ///@}
+
   vtkRockfallHazardMap(const vtkRockfallHazardMap&) = delete;
   void operator=(const vtkRockfallHazardMap&) = delete;
 
@@ -128,6 +140,8 @@ private:
   std::vector<int> Statistics;
   double AnnualFrequency = 0.0;
   std::vector<double> EnergyThresholds, ReturnPeriods;
+  double LeastReach = 0.0;
+  double LeastAngle = 0.0;
   std::string Spread; // why trajectories on several ranks make no map
   struct Result;
   struct Inputs;

@@ -4,6 +4,7 @@
 #include "vtkCell.h"
 #include "vtkDEMToCFESource.h"
 #include "vtkHazardMapWriter.h"
+#include "vtkHazardPassageReader.h"
 #include "vtkHazardPassageWriter.h"
 #include "vtkImageData.h"
 #include "vtkRockfallHazardMap.h"
@@ -12,6 +13,7 @@
 
 #include <array>
 #include <cmath>
+#include <sstream>
 
 namespace
 {
@@ -192,7 +194,7 @@ TEST_F(TestRockfallHazardMap, HasTheStatisticsThatAreChosen)
   {
     vtkCellData* data = this->Map()->GetCellData();
     std::vector<std::string> all;
-    for (int k = 6; k < data->GetNumberOfArrays(); ++k) // after counts and probabilities
+    for (int k = 8; k < data->GetNumberOfArrays(); ++k) // after counts, probabilities and angles
     {
       all.emplace_back(data->GetArrayName(k));
     }
@@ -216,6 +218,113 @@ TEST_F(TestRockfallHazardMap, HasTheStatisticsThatAreChosen)
   EXPECT_EQ(value(this->Map()->GetCellData(), "SpeedMaximum", 1), 10.0);
 }
 
+/// Two rocks released at (1, 3, 50), one of which goes 20 m down at 45° and one 30 m down over 20 m.
+TEST_F(TestRockfallHazardMap, EnergyLineAnglesAndWhatIsLeftEmpty)
+{
+  this->Paths.AddLevel(0, 0, { 1, 3, 50 }, 20, 10);
+  this->Paths.AddLevel(1, 0, { 1, 3, 50 }, 20, 10);
+  this->Paths.AddLevel(2, 0, { 1, 13, 50 }, 3, 10);
+  const double ends[] = { 30.0, 20.0 };
+  for (int k = 0; k < 2; ++k)
+  {
+    this->Paths.Points->SetPoint(2 * k + 1, 21, 3, ends[k]);
+    for (int end = 0; end < 2; ++end) // straight down the line
+    {
+      this->Paths.Data->GetPointData()
+        ->GetArray("Velocity")
+        ->SetTuple3(2 * k + end, 10.0, 0.0, (ends[k] - 50.0) / 2);
+    }
+  }
+  this->Filter->SetCellSize(5.0);
+  const double steep = std::atan(1.5) * 180.0 / std::acos(-1.0);
+  for (const double x : { 7.0, 12.0, 20.5 })
+  {
+    EXPECT_NEAR(this->At("EnergyLineAngleMinimum", x, 3), 45.0, 0.001);
+    EXPECT_NEAR(this->At("EnergyLineAngleMean", x, 3), 0.5 * (45.0 + steep), 0.001);
+  }
+  EXPECT_EQ(this->At("EnergyLineAngleMinimum", 2, 13), 0.0); // level
+  EXPECT_TRUE(std::isnan(this->At("EnergyLineAngleMean", 7, 13)));
+  EXPECT_FALSE(this->Map()->GetFieldData()->GetArray("LeastReach"));
+
+  // What one rock of three reaches, and what is flatter than 50°, is left empty.
+  this->Filter->SetLeastReach(0.5);
+  EXPECT_EQ(this->At("Rocks", 2, 13), 0.0);
+  EXPECT_TRUE(std::isnan(this->At("ReachProbabilityError", 2, 13)));
+  EXPECT_EQ(this->At("Rocks", 7, 3), 2.0);
+  EXPECT_EQ(value(this->Map()->GetFieldData(), "CellsLeftEmpty"), 1.0);
+  this->Filter->SetAnnualFrequency(0.25);
+  this->Filter->SetLeastAngle(50.0);
+  EXPECT_EQ(this->At("AnnualFrequency", 7, 3), 0.0);
+  EXPECT_EQ(value(this->Map()->GetFieldData(), "LeastAngle"), 50.0);
+  auto* notes =
+    vtkStringArray::SafeDownCast(this->Map()->GetFieldData()->GetAbstractArray("Notes"));
+  ASSERT_TRUE(notes);
+  EXPECT_NE(notes->GetValue(notes->GetNumberOfValues() - 1).find("LeastAngle, 50 degrees"),
+    std::string::npos);
+  this->Filter->SetLeastReach(1.5);
+  EXPECT_EQ(this->Map()->GetNumberOfCells(), 0);
+  this->ExpectOneError({ "LeastReach is 1.5" });
+}
+
+/// A scenario that is shared out over files gives the map of the whole, frequencies and all.
+TEST_F(TestRockfallHazardMap, FrequenciesGoThroughFiles)
+{
+  const auto add = [](HandMadeTrajectories& paths, vtkDoubleArray* frequency, int parts, int part)
+  {
+    for (int k = 0; k < 12; ++k)
+    {
+      if (k % parts == part)
+      {
+        const int rock = k % 4;
+        paths.AddLevel(k / 4, rock, { 1, 3.0 + 2 * rock, 50 }, 20, 5.0 + 3 * k);
+        frequency->InsertNextValue(std::ldexp(0.3, -2 * rock)); // sums hang on their order
+      }
+    }
+    paths.Data->GetCellData()->AddArray(frequency);
+  };
+  vtkNew<vtkDEMToCFESource> terrain;
+  terrain->Update();
+  std::vector<std::string> maps;
+  for (const int parts : { 1, 3, 5 })
+  {
+    vtkNew<vtkHazardPassageReader> reader;
+    for (int part = 0; part < parts; ++part)
+    {
+      HandMadeTrajectories paths;
+      vtkNew<vtkDoubleArray> frequency;
+      frequency->SetName("Frequency");
+      add(paths, frequency, parts, part);
+      paths.Data->GetFieldData()->RemoveArray("TerrainCRS");
+      vtkNew<vtkHazardPassageWriter> writer;
+      writer->SetInputDataObject(0, paths.Data);
+      writer->SetInputConnection(1, terrain->GetOutputPort());
+      writer->SetCellSize(5.0);
+      const std::string name = this->WriteFile(std::to_string(part) + ".passages", "");
+      writer->SetFileName(name.c_str());
+      writer->Write();
+      reader->AddFileName(name.c_str());
+    }
+    reader->Update();
+    vtkImageData* map = reader->GetOutput();
+    ASSERT_TRUE(map->GetCellData()->GetArray("AnnualFrequency30kJ"));
+    ASSERT_GT(map->GetCellData()->GetArray("AnnualFrequency")->GetRange()[1], 0.3);
+    std::ostringstream bits;
+    bits.precision(17);
+    for (int a = 0; a < map->GetCellData()->GetNumberOfArrays(); ++a)
+    {
+      vtkDataArray* array = map->GetCellData()->GetArray(a);
+      bits << "\n" << array->GetName();
+      for (vtkIdType k = 0; k < array->GetNumberOfValues(); ++k)
+      {
+        bits << " " << array->GetComponent(k, 0);
+      }
+    }
+    maps.push_back(bits.str());
+  }
+  EXPECT_EQ(maps[1], maps[0]);
+  EXPECT_EQ(maps[2], maps[0]);
+}
+
 TEST_F(TestRockfallHazardMap, FrequenciesAndIntensities)
 {
   // 1000 kg: 10 m/s are 50.1 kJ, 30 m/s are 450.1 kJ, 5 m/s are 12.6 kJ.
@@ -233,6 +342,10 @@ TEST_F(TestRockfallHazardMap, FrequenciesAndIntensities)
   EXPECT_EQ(this->At("ExceedanceProbability30kJ", 2, 3), 0.5);
   EXPECT_EQ(this->At("ExceedanceProbability300kJ", 2, 3), 0.25);
   EXPECT_EQ(this->At("ReturnPeriod", 7, 3), 32.0);
+  EXPECT_EQ(this->At("PassageProbability100a", 7, 3), float(-std::expm1(-100.0 / 32)));
+  EXPECT_EQ(this->At("PassageProbability100a", 7, 8), 0.0);
+  EXPECT_NEAR(
+    value(this->Map()->GetFieldData(), "AnnualFrequencyLimit"), std::log(20.0) / 64, 1e-15);
   EXPECT_EQ(this->At("Intensity30a", 2, 3), 1.0);
   EXPECT_EQ(this->At("Intensity100a", 2, 3), 3.0);
   EXPECT_EQ(this->At("Intensity30a", 7, 3), 0.0);

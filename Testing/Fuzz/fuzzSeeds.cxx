@@ -57,7 +57,7 @@ std::vector<std::string> pointTables()
 
 std::vector<std::string> passages()
 {
-  std::string file = "RFPASS02" + bytesOf(std::int32_t(4)) + bytesOf(std::int32_t(3));
+  std::string file = "RFPASS03" + bytesOf(std::int32_t(4)) + bytesOf(std::int32_t(3));
   for (const double value : { 5.0, 0.0, 0.0, 0.0, 0.0, 0.0 })
   {
     file += bytesOf(value);
@@ -68,7 +68,8 @@ std::vector<std::string> passages()
   {
     file += bytesOf(lost);
   }
-  file += bytesOf(60.0) + bytesOf(std::uint64_t(2));
+  file += bytesOf(60.0) + bytesOf(std::uint64_t(1)) + bytesOf(std::int64_t(0)) +
+    bytesOf(std::int64_t(7)) + bytesOf(std::int64_t(1)) + bytesOf(0.25) + bytesOf(std::uint64_t(2));
   for (const int rock : { 0, 1 })
   {
     file += bytesOf(std::uint32_t(0)) + bytesOf(std::uint32_t(1)) + bytesOf(std::int32_t(0)) +

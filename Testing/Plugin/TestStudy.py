@@ -38,8 +38,8 @@ study = {
     "terrain": {"FileName": "incline.asc", "RoughnessDeviation": 0.2},
     "rocks": {"FileName": "sources.csv"},
     "simulation": {"EndTime": 6.0, "TrajectoryOutput": "Thinned"},
-    "map": {"CellSize": 5.0},
-    "lines": {"FileName": "road.csv", "BarrierCapacity": 150.0},
+    "map": {"CellSize": 5.0, "AnnualFrequency": 0.5, "EnergyThresholds": [10.0, 100.0]},
+    "lines": {"FileName": "road.csv", "BarrierCapacity": 150.0, "AnnualFrequency": 0.5, "TrajectoryFactor": 1.1},
     "iterations": 11, "chunk": 2}
 RESULTS = ["summary.csv", "hazard.tif", "crossings.csv", "lines.csv", "exceedance.csv", "design.csv",
            "design_classes.csv", "design_sources.csv", "design_places.csv"]
@@ -148,7 +148,8 @@ slope = DEMtoCFEMesh(FileName=terrain, RoughnessDeviation=0.2)
 fall = RockfallSimulation(Terrain=slope, Rocks=RockBlocks(FileName=rocks, Terrain=slope), EndTime=6.0,
                           TrajectoryOutput="Thinned", Iterations=11)
 SaveData("hazard.tif", proxy=RockfallHazardMap(
-    Input=OutputPort(fall, 1), CellSize=5.0, CropToTrajectories=0))
+    Input=OutputPort(fall, 1), CellSize=5.0, CropToTrajectories=0, AnnualFrequency=0.5,
+    EnergyThresholds=[10.0, 100.0]))
 with open("hazard.tif", "rb") as file:
     assert file.read() == calm["hazard.tif"], "the map is not that of Rockfall Hazard Map"
 collector = TrajectoryCollector(Input=OutputPort(fall, 1), Terrain=slope, FileName=road,
@@ -165,6 +166,11 @@ for k, row in enumerate(rows):
         assert value == expected.ToString() if name == "LineName" else \
             float(value) == expected.ToDouble(), (name, value, expected)
 assert collector.GetClientSideObject().GetOutputDataObject(0).GetNumberOfPoints() == crossings
+levels = list(csv.DictReader(io.StringIO(calm["design.csv"].decode())))
+assert len(levels) == 2 * 6, levels
+assert all(float(row["DesignHeight"]) == 1.1 * float(row["TopHeight"]) for row in levels), levels
+passing = [float(row["AnnualFrequency"]) for row in csv.DictReader(io.StringIO(calm["design_places.csv"].decode()))]
+assert all(abs(f - 0.5 * int(row["Rocks"]) / 33) < 1e-12 for f, row in zip(passing, rows)), passing
 for source in list(GetSources().values()):
     Delete(source)
 

@@ -62,7 +62,7 @@ std::vector<double> numbers(const std::function<void(const UseCell&)>& summarize
     {
       all.insert(all.end(),
         { double(c.cell), double(c.passages), double(c.rocks), double(c.stops), c.reach,
-          c.reachError, c.reachErrorOfIterations });
+          c.reachError, c.reachErrorOfIterations, c.angleLeast, c.angleMean });
       for (const SampleStatistics& s : c.statistics)
       {
         all.insert(all.end(), { s.mean, s.deviation, s.maximum });
@@ -111,7 +111,7 @@ TEST_F(TestPassageFile, AnySharingOutGivesTheSameBits)
 {
   HazardRaster whole = rasterOf([](int) { return true; });
   const auto expected = numbers([&](const UseCell& use) { whole.summarize(use); });
-  ASSERT_GT(expected.size(), 100u * 35u);
+  ASSERT_GT(expected.size(), 100u * 37u);
   for (const int parts : { 1, 2, 7, 60 })
   {
     std::vector<std::string> names;
@@ -220,7 +220,7 @@ TEST_F(TestPassageFile, HeadersAndPassagesThatNoRunHasAreDamage)
   };
   const double inf = std::numeric_limits<double>::infinity();
   constexpr std::size_t cellSize = 16, west = 24, z = 56, iterations = 72, count = 88, lost = 96,
-                        firstPassage = 152;
+                        firstPassage = 160;
   put(8, std::int32_t(-4));
   expectError({ bad }, "bad: is damaged: it has -4 x 3 cells");
   put(8, std::int32_t(2147483647));
@@ -246,8 +246,6 @@ TEST_F(TestPassageFile, HeadersAndPassagesThatNoRunHasAreDamage)
   expectError({ bad }, "bad: is damaged: in iteration -1");
   put(count - 8, std::int64_t(1) << 40);
   expectError({ bad }, "bad: is damaged: in iteration 1099511627776");
-  put(firstPassage + 4, std::uint32_t(0x7fffffff)); // entries: with another rock's more than an int
-  expectError({ bad }, "came in too often");
   put(firstPassage + 4, std::uint32_t(0));
   expectError({ bad }, "came in 0 times");
   put(firstPassage + 12, std::int32_t(-7));
@@ -258,4 +256,52 @@ TEST_F(TestPassageFile, HeadersAndPassagesThatNoRunHasAreDamage)
   expectError({ bad }, "bad: is damaged: the end time is inf");
   put(firstPassage + 24, inf);
   expectError({ bad }, "has the value inf");
+}
+
+TEST_F(TestPassageFile, FrequenciesAreThoseOfAllFiles)
+{
+  HazardRaster whole = rasterOf([](int) { return true; });
+  std::vector<std::string> names;
+  for (int part = 0; part < 3; ++part)
+  {
+    HazardRaster raster = rasterOf([&](int k) { return k % 3 == part; });
+    RockFrequencies known;
+    for (int k = part; k < 60; k += 3)
+    {
+      known.add(k % 10, 0, 0.25 / (1 + k % 10));
+    }
+    names.push_back(fileName(std::to_string(part)));
+    writePassages(raster, origin, "", names.back(), {}, known);
+  }
+  const PassageFiles files(names);
+  ASSERT_EQ(files.frequencies().releases().size(), 10u);
+  for (const auto& [rock, release] : files.frequencies().releases())
+  {
+    EXPECT_EQ(release.iterations, 6);
+    EXPECT_EQ(release.frequency, 0.25 / (1 + rock.first));
+  }
+  EXPECT_EQ(files.frequencies().largestWeight(), 0.25 / 6);
+  std::size_t passages = 0;
+  files.forEach([&passages](const Passage&) { ++passages; });
+  EXPECT_EQ(passages, whole.sorted().size());
+
+  // One without, and damage.
+  HazardRaster raster = rasterOf([](int k) { return k == 0; });
+  writePassages(raster, origin, "", fileName("none"));
+  expectError({ names[0], fileName("none") }, "its rocks have no frequencies");
+  const std::string good = read(names[0]);
+  const std::size_t release = good.find(std::string("\0\0\0\0\0\0\xd0\x3f", 8)); // 0.25
+  ASSERT_NE(release, std::string::npos);
+  const auto put = [&](std::size_t at, auto bad)
+  {
+    std::string bytes = good;
+    std::memcpy(bytes.data() + at, &bad, sizeof bad);
+    std::ofstream(names[0], std::ios::binary) << bytes;
+  };
+  put(release, -0.25);
+  expectError({ names[0] }, "has the frequency -0.25");
+  put(release - 8, std::int64_t(0));
+  expectError({ names[0] }, "of 0 iterations");
+  put(release, 0.125);
+  expectError(names, "per year in one iteration and");
 }
