@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "base/text/numberText.h"
+#include "law/limits.h"
 #include "law/settings.h"
 #include "rock/rockContacts.h"
 
@@ -90,6 +91,12 @@ void SimulationParameters::validate() const
       " s");
   }
   atLeast(this->iterations, 1, "Iterations");
+  if (this->iterations > kMostIterations)
+  {
+    throw ParameterError("Iterations is " + std::to_string(this->iterations) +
+      ", it must be at most 10,000,000: more fit into runs of their own, each with its "
+      "FirstIteration");
+  }
   atLeast(this->firstIteration, 0, "FirstIteration");
   if (this->firstIteration > std::numeric_limits<int>::max() - this->iterations)
   {
@@ -97,8 +104,11 @@ void SimulationParameters::validate() const
       std::to_string(this->iterations) + " Iterations it goes beyond 2,147,483,647");
   }
   atLeast(this->threads, 0, "NumberOfThreads");
+  atMost(this->threads, kMostThreads, "NumberOfThreads", "");
   atLeast(this->maxOpenClose, 2, "MaximumOpenClose");
+  atMost(this->maxOpenClose, kMostOpenClose, "MaximumOpenClose", "");
   atLeast(this->maxCuts, 0, "MaximumCuts");
+  atMost(this->maxCuts, kMostCuts, "MaximumCuts", "");
 }
 
 } // namespace rockfall

@@ -2,6 +2,7 @@
 
 #include "base/abort.h"
 #include "base/errors.h"
+#include "law/limits.h"
 #include "run/releaseChecks.h"
 #include "run/stateHash.h"
 #include "world/World.h"
@@ -137,6 +138,12 @@ Ensemble::Ensemble(
   if (rocks.empty())
   {
     throw ParameterError("there are no rock blocks to simulate");
+  }
+  if (double(rocks.size()) * double(p.iterations) > kMostTrajectories)
+  {
+    throw ParameterError("Iterations is " + std::to_string(p.iterations) + ", with " +
+      std::to_string(rocks.size()) +
+      " rocks that makes more than 100,000,000 trajectories: run them in parts by FirstIteration");
   }
   FirstFailure failure;
   std::atomic<std::int64_t> next{ 0 };

@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "base/text/numberText.h"
+#include "law/limits.h"
 #include "law/settings.h"
 
 #include <algorithm>
@@ -14,7 +15,8 @@ namespace rockfall
 namespace
 {
 
-void requireRange(double value, double low, double high, const char* field, const char* range)
+void requireRange(
+  double value, double low, double high, const char* field, const std::string& range)
 {
   if (!(value >= low && value <= high))
   {
@@ -35,10 +37,11 @@ void SurfaceMaterial::validate() const
       ", it must be 0 (whole velocity), 1 (normal and tangential) or 2 (speed-dependent)");
   }
   requireRange(this->tangentialRestitution, 0.0, 1.0, "TangentialRestitution", "0 to 1");
-  if (!(this->restitutionSpeed > 0.0 && std::isfinite(this->restitutionSpeed)))
+  if (!(this->restitutionSpeed > 0.0 && this->restitutionSpeed <= kMostRestitutionSpeed))
   {
     throw ParameterError("RestitutionSpeed is " + numberText(this->restitutionSpeed) +
-      ", it must be a positive, finite number of metres per second");
+      ", it must be a positive number of metres per second, at most " +
+      numberText(kMostRestitutionSpeed));
   }
   if (!(this->frictionAngle >= 0.0 && this->frictionAngle <= radians(kSteepestFriction)))
   {
@@ -51,8 +54,8 @@ void SurfaceMaterial::validate() const
     throw ParameterError("FrictionAngleDeviation is " +
       numberText(degrees(this->frictionAngleDeviation)) + " degrees, it must be 0 to 89");
   }
-  requireRange(this->cohesion, 0.0, std::numeric_limits<double>::max(), "Cohesion",
-    "a finite number of newtons, not negative");
+  requireRange(this->cohesion, 0.0, kMostCohesion, "Cohesion",
+    "a number of newtons, not negative, at most " + numberText(kMostCohesion));
   this->yielding.validate();
 }
 

@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "base/text/numberText.h"
+#include "law/limits.h"
 #include "law/settings.h"
 
 #include <cmath>
@@ -10,6 +11,40 @@
 
 namespace rockfall
 {
+
+namespace
+{
+
+struct Bounds
+{
+  double least, most;
+};
+
+/// SI, of ground that yields, in the order of yieldingFields().
+constexpr Bounds bounds[] = {
+  { kLeastGroundModulus, kMostModulus }, // GroundModulus
+  { 0.0, kMostScarFactor },              // ScarDepthFactor
+  { kLeastDensity, kMostDensity },       // GroundDensity
+  { 0.0, kMostScarDrag },                // ScarCompaction
+  { 0.0, kMostScarDrag },                // ScarSpinDrag
+  { 0.0, kMostGroundFriction },          // SlipFrictionMin
+  { 0.0, kMostGroundFriction },          // SlipFrictionMax
+  { 0.0, kMostSlipRate },                // SlipFrictionGrowth
+  { 0.0, kMostSlipRate },                // SlipFrictionDecay
+  { 0.0, kMostGroundFriction },          // RollingResistance
+  { 0.0, kMostGroundDeviation },         // GroundDeviation
+  { 0.0, kMostAlike },                   // GroundDeviationLength
+};
+
+/// Of a value in SI, which must be `rule`.
+[[noreturn]] void refuse(const YieldingField& field, double value, const std::string& rule)
+{
+  throw ParameterError(std::string(field.property) + " is " + numberText(value / field.scale) +
+    (*field.unit ? std::string(" ") + field.unit : "") + ", it must be " + rule +
+    (field.noneIsInfinite ? " (0: hard ground)" : ""));
+}
+
+} // namespace
 
 double YieldingGround::scarDepth(double mass, double speed, double softness) const
 {
@@ -45,26 +80,33 @@ double YieldingGround::spinLeft(double volume, double mass) const
 
 void YieldingGround::validate() const
 {
-  for (const YieldingField& field : yieldingFields())
+  static_assert(std::size(bounds) == 12); // as many as yieldingFields()
+  for (std::size_t k = 0; k < std::size(bounds); ++k)
   {
+    const YieldingField& field = yieldingFields()[k];
     const double value = this->*field.member;
     if (field.noneIsInfinite ? !(value > 0.0) : !(value >= 0.0 && std::isfinite(value)))
     {
-      throw ParameterError(std::string(field.property) + " is " + numberText(value / field.scale) +
-        (*field.unit ? std::string(" ") + field.unit : "") +
-        ", it must be a finite number, not negative" +
-        (field.noneIsInfinite ? " (0: hard ground)" : ""));
+      refuse(field, value, "a finite number, not negative");
+    }
+    if (field.noneIsInfinite && std::isinf(value))
+    {
+      continue;
+    }
+    if (value < bounds[k].least)
+    {
+      refuse(field, value, "at least " + numberText(bounds[k].least / field.scale));
+    }
+    if (value > bounds[k].most)
+    {
+      refuse(field, value, "at most " + numberText(bounds[k].most / field.scale));
     }
   }
-  if (this->modulus < kLeastGroundModulus)
-  {
-    throw ParameterError("GroundModulus is " + numberText(this->modulus / 1e6) +
-      " MN/m², it must be 0 (hard ground) or at least 0.001");
-  }
-  if (this->deviation > 0.0 && !(this->deviationLength > 0.0))
+  if (this->deviation > 0.0 && this->deviationLength < kLeastAlike)
   {
     throw ParameterError("GroundDeviationLength is " + numberText(this->deviationLength) +
-      " m, it must be above 0 where GroundDeviation is " + numberText(this->deviation));
+      " m, it must be at least " + numberText(kLeastAlike) + " where GroundDeviation is " +
+      numberText(this->deviation));
   }
   if (this->slips() && this->frictionLeast > this->frictionMost)
   {
@@ -81,6 +123,10 @@ double YieldingField::typed(const YieldingGround& ground) const
 
 void YieldingField::set(YieldingGround& ground, double typed) const
 {
+  if (std::isinf(typed)) // no one types that for hard ground
+  {
+    refuse(*this, typed * this->scale, "a finite number, not negative");
+  }
   ground.*this->member =
     this->noneIsInfinite && typed == 0.0 ? YieldingGround::hard : typed * this->scale;
 }

@@ -213,7 +213,7 @@ TEST(YieldingGround, HardIsItsLimitBitForBit)
   limit.yielding.depthFactor = 0.1;
   const Terrain soft = makePlane(21, 40.0, radians(25.0), 0.3, limit);
   EXPECT_FALSE(soft.yields());
-  limit.yielding.modulus = 1e300; // yields, but nowhere deeper than a hundredth of the radius
+  limit.yielding.modulus = 1e15; // yields, but nowhere deeper than a hundredth of the radius
   const Terrain almost = makePlane(21, 40.0, radians(25.0), 0.3, limit);
   EXPECT_TRUE(almost.yields());
   for (const Shape shape : { Shape::Cube, Shape::Eota111 })
@@ -476,6 +476,24 @@ TEST(YieldingGround, ADeviationNeedsALength)
   catch (const ParameterError& error)
   {
     EXPECT_EQ(std::string(error.what()),
-      "GroundDeviationLength is 0 m, it must be above 0 where GroundDeviation is 0.3");
+      "GroundDeviationLength is 0 m, it must be at least 0.01 where GroundDeviation is 0.3");
   }
+}
+
+TEST(YieldingGround, EveryNumberHasTwoEnds)
+{
+  for (const YieldingField& field : yieldingFields())
+  {
+    SCOPED_TRACE(field.property);
+    YieldingGround ground;
+    field.set(ground, 1e300);
+    EXPECT_THROW(ground.validate(), ParameterError);
+    // Hard ground is typed as 0, not as infinite.
+    EXPECT_THROW(field.set(ground, std::numeric_limits<double>::infinity()), ParameterError);
+  }
+  YieldingGround air;
+  air.density = 0.5;
+  EXPECT_THROW(air.validate(), ParameterError);
+  air.density = 1.0;
+  EXPECT_NO_THROW(air.validate());
 }

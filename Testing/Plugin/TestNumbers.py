@@ -1,0 +1,175 @@
+"""Numbers that no property should take: each run ends, with a result or with one message."""
+
+import glob
+import os
+import re
+import resource
+import sys
+import time
+import xml.etree.ElementTree as ElementTree
+
+from helpers import delete_sources, errors_of, is_empty, messages_of, write_text
+
+from paraview import servermanager
+from paraview.simple import (
+    DEMtoCFEMesh, DispersionAngle, DrawnStructure, GrowingPaths, HazardPassageReader, JointedRockMass,
+    MergeCollectors, OutputPort, PolyLineSource, RockBlocks, RockfallHazardMap, RockfallSimulation,
+    RockRelease, TrajectoryCollector, TrajectoryProfile)
+
+ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+NUMBERS = [float("nan"), float("inf"), float("-inf"), 1e308, -1e308, 1e-308]
+COUNTS = [2**31 - 1, -2**31, 0, -1]
+SLOWEST = 20.0  # s that one of them may take on a busy machine
+
+release = [5, 45, 58, 15, 45, 58, 10, 55, 58]
+
+
+def fall(rocks=None, **others):
+    # A rock that strikes the slope within a few steps.
+    dem = DEMtoCFEMesh(RoughnessDeviation=0.05)
+    rocks = rocks or RockBlocks(Center=[5, 50, 60], Velocity=[0, 0, -10])
+    return RockfallSimulation(Terrain=dem, Rocks=rocks, **{"EndTime": 0.5, **others})
+
+
+def paths():
+    return OutputPort(fall(), 1)
+
+
+def passages():
+    name = os.path.abspath("numbers.passages")
+    run = fall()
+    servermanager.writers.HazardPassageWriter(
+        Input=OutputPort(run, 1), Terrain=run.Terrain, FileName=name).UpdatePipeline()
+    return HazardPassageReader(FileNames=[name])
+
+
+def together(change):
+    """Rocks that hit each other."""
+    rocks = RockBlocks(Amount=3, ClusterRadius=3, Center=[10, 50, 60], Velocity=[0, 0, -10], KeepApart=1)
+    return change(fall(rocks, RockRockContact=1))
+
+
+# What is changed, and the filter whose run is looked at.
+def itself(proxy):
+    return proxy, proxy
+
+
+def with_fall(proxy):
+    return proxy, fall(proxy)
+
+
+def of_slope(**others):
+    dem = DEMtoCFEMesh(**others)
+    rocks = RockBlocks(Center=[5, 50, 60], Velocity=[0, 0, -10])
+    return dem, RockfallSimulation(Terrain=dem, Rocks=rocks, EndTime=0.5)
+
+
+MAKERS = {
+    "DEMToCFEMesh": [lambda: of_slope(), lambda: of_slope(Preset=2)],
+    "RockBlocks": [
+        lambda: with_fall(RockBlocks(Center=[5, 50, 60], Velocity=[0, 0, -10])),
+        lambda: with_fall(RockBlocks(Center=[5, 50, 60], Velocity=[0, 0, -10], Shape="Box", Amount=2,
+                                     VolumeLaw="Normal", RedrawVolume=1, AttitudeLaw="Deviating"))],
+    "RockRelease": [lambda: with_fall(RockRelease(Terrain=DEMtoCFEMesh(), Points=release))],
+    "DrawnStructure": [
+        lambda: itself(DrawnStructure(Terrain=DEMtoCFEMesh(), Kind=kind,
+                                      Points=[110, 20, 0, 125, 50, 0, 110, 80, 0]))
+        for kind in (0, 1, 2)],
+    "JointedRockMass": [lambda: itself(JointedRockMass())],
+    "RockfallSimulation": [lambda: itself(fall()), lambda: together(itself)],
+    "DispersionAngle": [lambda: itself(DispersionAngle(Input=paths()))],
+    "RockfallHazardMap": [lambda: itself(RockfallHazardMap(Input=paths()))],
+    "HazardPassageReader": [lambda: itself(passages())],
+    "GrowingPaths": [lambda: itself(GrowingPaths(Input=paths()))],
+    "TrajectoryCollector": [lambda: itself(TrajectoryCollector(Input=paths(), Lines=PolyLineSource()))],
+    "TrajectoryProfile": [lambda: itself(TrajectoryProfile(Input=paths()))],
+}
+
+failures, count = [], 0
+only = os.environ.get("NUMBERS_OF")
+
+
+def look(name, make, values):
+    """Sets a property as a state file does, past Python's own checks, and runs."""
+    global count
+    proxy, run = make()
+    sm = proxy.SMProxy.GetProperty(name[1])
+    if sm.GetRepeatable():
+        sm.SetNumberOfElements(3)
+    for k in range(sm.GetNumberOfElements()):
+        sm.SetElement(k, values)
+    what = f"{name[0]} {name[1]} {values}"
+    print(what, end=" ", flush=True)
+
+    def update():
+        proxy.SMProxy.UpdateVTKObjects()
+        run.UpdatePipeline(0.3)
+
+    begun = time.time()
+    text = messages_of(update)
+    took = time.time() - begun
+    errors = re.findall(r"ERR\| (.*?)(?:\x1b|$)", text, re.MULTILINE)
+    print(f"{took:.2f} s", errors, flush=True)
+    if len(errors) > 1 or (errors and not is_empty(run)):
+        failures.append(f"{what}: {errors}, empty: {is_empty(run)}")
+    if took > SLOWEST:
+        failures.append(f"{what}: took {took:.0f} s")
+    delete_sources()
+    count += 1
+
+
+for path in sorted(glob.glob(os.path.join(ROOT, "Plugin", "xml", "*.xml"))):
+    for proxy in ElementTree.parse(path).getroot().iter("SourceProxy"):
+        items = list(proxy)
+        if proxy.get("name") == "RockRelease":  # only what it has of its own
+            items = [item for item in items if item.get("name") in ("Amount", "Draw")]
+        for item in items:
+            name = (proxy.get("name"), item.get("name"))
+            whole = item.tag == "IntVectorProperty"
+            if name[0] not in MAKERS or not (whole or item.tag == "DoubleVectorProperty") or \
+                    item.get("information_only") or (only and only not in name):
+                continue
+            if whole and item.find("BooleanDomain") is not None:
+                continue
+            for make in MAKERS[name[0]]:
+                for value in COUNTS if whole else NUMBERS:
+                    look(name, make, value)
+
+# --- More than a machine has, and a run without an end: one message, soon.
+
+
+def soon(proxy, *words):
+    begun = time.time()
+    errors = errors_of(proxy)
+    if len(errors) != 1 or not all(word in errors[0] for word in words) or time.time() - begun > SLOWEST:
+        failures.append(f"{words}: {errors}, {time.time() - begun:.0f} s")
+    delete_sources()
+
+
+if not only:
+    for name, value in (("Iterations", 10**9), ("EndTime", 1e9), ("TimeStep", 1e-9), ("TimeStep", 10.0),
+                        ("NumberOfThreads", 2**31 - 1)):
+        soon(fall(**{name: value}), name)
+    soon(fall(RockBlocks(Amount=20, ClusterRadius=5, Center=[15, 50, 70]), Iterations=10**7),
+         "Iterations", "20 rocks")
+    soon(RockBlocks(Amount=2 * 10**6, ClusterRadius=5), "1000000")
+    # 20,000² heights take 3.2 GB. The file has no blocks on the disk.
+    size = 20000
+    write_text("wide.hdr", f"nrows {size}\nncols {size}\nnbands 1\nnbits 32\npixeltype FLOAT\n"
+               "byteorder I\nlayout BIL\nulxmap 600000\nulymap 5000000\nxdim 1\nydim 1\n")
+    with open("wide.bil", "wb") as file:
+        file.truncate(4 * size * size)
+    with open("/proc/self/statm") as file:
+        taken = int(file.read().split()[0]) * resource.getpagesize()
+    limits = resource.getrlimit(resource.RLIMIT_AS)
+    resource.setrlimit(resource.RLIMIT_AS, (taken + 1_500_000_000, limits[1]))
+    soon(DEMtoCFEMesh(FileName=os.path.abspath("wide.bil")), "memory")
+    resource.setrlimit(resource.RLIMIT_AS, limits)
+    # ParaView goes on.
+    run = fall()
+    assert not errors_of(run) and not is_empty(run)
+    os.remove("wide.bil")
+if failures:
+    sys.exit("\n".join(failures))
+assert only or count > 400, count
+print(f"{count} runs ended")
