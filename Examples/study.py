@@ -53,6 +53,7 @@ import time
 here = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [os.path.join(here, "study_parts")]
 
+import numpy as np
 from paraview import servermanager
 from paraview.simple import *
 
@@ -143,7 +144,8 @@ class Pipeline:
         proxies = {"terrain": self.slope, "rocks": self.rocks, "simulation": self.simulation,
                    "map": self.passages, "lines": self.crossings}
         result = values({part: proxy for part, proxy in proxies.items() if proxy})
-        for part, name in (*(("simulation", name) for name in OWN), ("map", "FileName")):  # this script's
+        for part, name in (*(("simulation", name) for name in OWN), ("simulation", "PrintNotes"),
+                           ("lines", "PrintNotes"), ("map", "FileName")):  # this script's
             result.get(part, {}).pop(name, None)
         for part in filter(self.study.__contains__, schema.FURTHER):
             result[part].update(schema.shared_out(part, self.study[part])[1])
@@ -154,7 +156,8 @@ class Pipeline:
         with a file is told before the first chunk, not after it."""
         simulation = self.simulation
         kept = simulation.EndTime, simulation.PrintProgress
-        simulation.FirstIteration, simulation.Iterations = 0, 1
+        # Two: what makes iterations alike is told here.
+        simulation.FirstIteration, simulation.Iterations = 0, min(2, self.study["iterations"])
         simulation.EndTime = min(simulation.EndTime, simulation.TimeStep)
         simulation.PrintProgress = 0
         UpdatePipeline(0.0, simulation)
@@ -167,6 +170,9 @@ class Pipeline:
             UpdatePipeline(proxy=self.crossings)
             output(self.crossings)
         simulation.EndTime, simulation.PrintProgress = kept
+        for proxy in (simulation, self.crossings):
+            if proxy:
+                proxy.PrintNotes = 0  # of each chunk: combine() tells them of all
 
     def write_chunk(self, stem, first, iterations):
         """A chunk is there when its table is, so that comes last."""
@@ -189,7 +195,9 @@ class Pipeline:
             inputs.check()
             columns = columns_of(table.GetRowData())
             state = table.GetFieldData().GetAbstractArray("StateHash").GetValue(0)
-            write_npz(stem + ".npz", {**columns, "StateHash": state, "Iterations": iterations})
+            notes = columns_of(table.GetFieldData()).get("Notes", [])
+            write_npz(stem + ".npz", {
+                **columns, "StateHash": state, "Iterations": iterations, "Notes": np.array(notes, dtype=str)})
 
         from_first_rank(write_table)
 
@@ -302,11 +310,11 @@ def precision(study, pipeline):
     """What the study goes on for, on the first rank; None if that is its iterations."""
     if "until" not in study:
         return None
-    names = output(pipeline.crossings, 1).GetRowData().GetAbstractArray("LineName")
+    table = output(pipeline.crossings, 1) if pipeline.crossings else None
 
     def make_it():
-        made.append(enough.Enough(study["until"],
-                                  [names.GetValue(k) for k in range(names.GetNumberOfValues())]))
+        lines = columns_of(table.GetRowData())["LineName"] if table else []
+        made.append(enough.Enough(study["until"], [str(name) for name in lines]))
 
     made = []
     from_first_rank(make_it)

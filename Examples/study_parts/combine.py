@@ -2,6 +2,7 @@
 import hashlib
 import json
 import os
+import re
 import zipfile
 
 import numpy as np
@@ -16,6 +17,9 @@ from gis import write_map_styles, write_table
 from together import from_first_rank, make, output, refuse, say, write_by
 from wholefile import write_text
 
+OF_CHUNK = ("StateHash", "Iterations", "Notes")  # beside the columns of its table
+COUNTED = re.compile(r"(\d+) of (\d+) rocks (.*)", re.DOTALL)  # how the Core says how many it lost
+STILL = re.compile(r"(None of )\d+( rocks .*)", re.DOTALL)
 RESULTS = "results.json"  # not study.json, which is what a study is called that goes in
 
 
@@ -51,22 +55,30 @@ def combine_tables(folder, stems):
     """The table of the whole study, from its chunks alone; gives their state hashes."""
     hashes = []
     tables = []
+    notes = []
     for stem in stems:
         with np.load(stem + ".npz") as chunk:
             tables.append({name: chunk[name] for name in chunk.files
-                           if name not in ("StateHash", "Iterations")})
+                           if name not in OF_CHUNK})
             hashes.append(str(chunk["StateHash"]))
+            notes.append([str(note) for note in chunk["Notes"]])
     write_table(os.path.join(folder, "summary.csv"), tables)
-    say_lost(np.concatenate([table["FateCode"] for table in tables]))
-    return hashes
+    return hashes, notes_of_all(notes, sum(len(table["FateCode"]) for table in tables))
 
 
-def say_lost(fates):
-    """Whom the study lost, by FateCode: the results have less of them than the slope has."""
-    for code, how in ((2, "were still moving at EndTime"), (1, "went over the edge of the DEM"),
-                      (4, "were lost in nodata of the DEM")):
-        if (fates == code).any():
-            say(f"{(fates == code).sum()} of {len(fates)} rocks {how}")
+def notes_of_all(notes, rocks):
+    """The runs' notes on whom they lost, of each chunk, as those of one run of so many rocks."""
+    counts = {}
+    for note in (note for of_chunk in notes for note in of_chunk):
+        found = COUNTED.fullmatch(note)
+        how = found.group(3) if found else note
+        counts[how] = counts.get(how, 0) + int(found.group(1) if found else 0)
+    texts = [f"{count} of {rocks} rocks {how}" for how, count in counts.items() if count]
+    # Nothing moved, if that is so of each chunk.
+    still = [found.groups() for of_chunk in notes for note in of_chunk if (found := STILL.fullmatch(note))]
+    if still and len(still) == len(notes):
+        texts.append(f"{still[0][0]}{rocks}{still[0][1]}")
+    return texts
 
 
 def combine_crossings(folder, stems, merge, design):
@@ -99,7 +111,10 @@ def combine_crossings(folder, stems, merge, design):
 
 def combine(study, folder, stems, iterations):
     """The results of the whole study, from the files of its chunks alone."""
-    hashes = from_first_rank(lambda: combine_tables(folder, stems))
+    hashes, notes = from_first_rank(lambda: combine_tables(folder, stems))
+    if "map" not in study:  # which tells the same of the same rocks
+        for note in notes:
+            say(note)
     if "lines" in study:
         merge = servermanager.filters.MergeCollectors().GetClientSideObject()
         design = make(servermanager.filters.BarrierDesign, "lines", schema.shared_out("lines", study["lines"])[1])

@@ -1,4 +1,4 @@
-"""How many rocks are enough: as many as it takes to know a quantity at a line so precisely."""
+"""How many rocks are enough: as many as it takes to know their reach, or a quantity at a line, so precisely."""
 import math
 
 import numpy as np
@@ -7,7 +7,9 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 from schema import Bad, shown
 
-QUANTITIES = ("Share", "KineticEnergy95")  # as lines.csv has them
+AT_LINES = ("Share", "KineticEnergy95")  # as lines.csv has them
+REACH = "RunOut95"  # of RunOut in summary.csv
+QUANTITIES = (*AT_LINES, REACH)
 KNOWN = ("quantity", "within", "confidence", "line")
 
 
@@ -19,11 +21,13 @@ def check(path, study):
     for name in until:
         if name not in KNOWN:
             raise Bad(f"{path}: there is no {shown(name)} in until, it knows {', '.join(KNOWN)}")
-    if "lines" not in study:
-        raise Bad(f"{path}: \"until\" needs \"lines\"")
     if until.get("quantity") not in QUANTITIES:
         raise Bad(f"{path}: \"quantity\" of until is {shown(until.get('quantity'))}, it must be one of "
                   f"{', '.join(QUANTITIES)}")
+    if until["quantity"] in AT_LINES and "lines" not in study:
+        raise Bad(f"{path}: \"until\" needs \"lines\" for {until['quantity']}")
+    if until["quantity"] == REACH and "line" in until:
+        raise Bad(f"{path}: \"line\" of until is {shown(until['line'])}, but {REACH} is of all rocks")
     for name, value in (("within", until.get("within")), ("confidence", until.get("confidence", 0.95))):
         if not isinstance(value, (int, float)) or isinstance(value, bool) or not 0.0 < value < 1.0:
             raise Bad(f"{path}: {shown(name)} of until is {shown(value)}, it must be between 0 and 1")
@@ -93,12 +97,21 @@ def quantile_ranks(total, q, confidence):
     return (low, high) if at_most(low - 1) <= tail and high <= total else None
 
 
+def quantile_interval(values, confidence):
+    """Of the 95 % quantile; None, None where there are too few."""
+    ranks = quantile_ranks(len(values), 0.95, confidence)
+    return tuple(float(np.sort(values)[k - 1]) for k in ranks) if ranks else (None, None)
+
+
 class Enough:
-    """Of a study, chunk after chunk."""
+    """Of a study, chunk after chunk. `lines`: their names, of which the reach needs none."""
 
     def __init__(self, until, lines):
         self.until = until
         self.total = 0
+        self.ways = []  # RunOut of each rock, m
+        if until["quantity"] == REACH:
+            return
         self.greatest = {name: [] for name in lines if until.get("line", name) == name}
         if not self.greatest:
             raise Bad(f"\"line\" of until is {shown(until.get('line'))}, the lines are "
@@ -107,6 +120,9 @@ class Enough:
     def add(self, stem):
         with np.load(stem + ".npz") as chunk:
             self.total += len(chunk["Iteration"])
+            if self.until["quantity"] == REACH:
+                self.ways.extend(chunk["RunOut"])
+                return
         reader = vtkXMLPolyDataReader()
         reader.SetFileName(stem + "-crossings.vtp")
         reader.Update()
@@ -127,26 +143,28 @@ class Enough:
     def state(self):
         """Of each line: interval, and whether it is narrow enough."""
         confidence, within = self.until.get("confidence", 0.95), self.until["within"]
+        if self.until["quantity"] == REACH:
+            low, high = quantile_interval(self.ways, confidence)
+            return [{"rocks": self.total, "from": low, "to": high,
+                     "known": low is not None and high - low <= within * (high + low)}]
         result = []
         for name, energies in self.greatest.items():
-            low = high = None
             if self.until["quantity"] == "Share":
                 low, high = share_interval(len(energies), self.total, confidence)
                 known = high - low <= 2.0 * within
             else:
-                ranks = quantile_ranks(len(energies), 0.95, confidence)
-                if ranks:
-                    low, high = (float(sorted(energies)[k - 1]) for k in ranks)
-                known = ranks is not None and high - low <= within * (high + low)
+                low, high = quantile_interval(energies, confidence)
+                known = low is not None and high - low <= within * (high + low)
             result.append({"line": name, "rocks": self.total, "reached": len(energies), "from": low,
                            "to": high, "known": bool(known)})
         return result
 
     def text(self):
         texts = []
-        unit, scale = ("", 1.0) if self.until["quantity"] == "Share" else (" kJ", 1e-3)
+        quantity = self.until["quantity"]
+        unit, scale = {"Share": ("", 1.0), REACH: (" m", 1.0)}.get(quantity, (" kJ", 1e-3))
         for one in self.state():
             between = "not known yet" if one["from"] is None else \
                 f"{one['from'] * scale:.4g} to {one['to'] * scale:.4g}{unit}"
-            texts.append(f"{shown(one['line'])}: {between}")
-        return f"{self.until['quantity']} at " + "; ".join(texts)
+            texts.append((f"{shown(one['line'])}: " if "line" in one else "") + between)
+        return quantity + (": " if quantity == REACH else " at ") + "; ".join(texts)

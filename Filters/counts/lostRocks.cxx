@@ -11,6 +11,7 @@
 #include "vtkIdTypeArray.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
+#include "vtkStringArray.h"
 #include "vtkTable.h"
 
 #include <algorithm>
@@ -79,8 +80,28 @@ void writeLost(const LostRocks& lost, vtkFieldData* fieldData)
   }
 }
 
-void tellLost(
-  const LostRocks& lost, vtkFieldData* fieldData, const std::vector<std::string>& further)
+namespace
+{
+
+void tell(const std::vector<std::string>& notes, vtkFieldData* fieldData, bool shown)
+{
+  if (shown)
+  {
+    showNotes(notes, fieldData);
+    return;
+  }
+  vtkSmartPointer<vtkStringArray> kept;
+  for (const std::string& note : notes)
+  {
+    kept = kept ? kept : addArray<vtkStringArray>(fieldData, "Notes");
+    kept->InsertNextValue(note);
+  }
+}
+
+} // namespace
+
+void tellLost(const LostRocks& lost, vtkFieldData* fieldData,
+  const std::vector<std::string>& further, bool shown)
 {
   if (lost.rocks > 0) // else they are not known
   {
@@ -92,12 +113,13 @@ void tellLost(
     notes.push_back(std::move(note));
   }
   notes.insert(notes.end(), further.begin(), further.end());
-  showNotes(notes, fieldData);
+  tell(notes, fieldData, shown);
 }
 
-void tellOn(std::span<vtkFieldData* const> outputs, const std::vector<std::string>& notes)
+void tellOn(
+  std::span<vtkFieldData* const> outputs, const std::vector<std::string>& notes, bool shown)
 {
-  showNotes(notes, outputs.front());
+  tell(notes, outputs.front(), shown);
   vtkAbstractArray* kept = outputs.front()->GetAbstractArray("Notes");
   for (vtkFieldData* output : outputs.subspan(1))
   {

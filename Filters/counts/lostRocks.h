@@ -28,12 +28,13 @@ LostRocks lostOf(vtkPolyData* trajectories);
 void writeLost(const LostRocks& lost, vtkFieldData* fieldData);
 
 /// Keeps and tells: the field arrays and the notes, with further ones behind
-/// them.
-void tellLost(
-  const LostRocks& lost, vtkFieldData* fieldData, const std::vector<std::string>& further = {});
+/// them. Not `shown`, they are kept only.
+void tellLost(const LostRocks& lost, vtkFieldData* fieldData,
+  const std::vector<std::string>& further = {}, bool shown = true);
 
 /// Shows notes once, and keeps them in the field array Notes of several
-/// outputs.
-void tellOn(std::span<vtkFieldData* const> outputs, const std::vector<std::string>& notes);
+/// outputs. Not `shown`, they are kept only.
+void tellOn(
+  std::span<vtkFieldData* const> outputs, const std::vector<std::string>& notes, bool shown = true);
 
 } // namespace rockfall::filters

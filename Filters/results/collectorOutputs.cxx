@@ -82,6 +82,22 @@ auto keyOf(const CollectedRock& rock)
 
 } // namespace
 
+ReleasedRocks releasedIn(vtkPolyData* trajectories)
+{
+  ReleasedRocks rocks;
+  vtkFieldData* cells = trajectories->GetCellData();
+  vtkDataArray *iteration = cells->GetArray("Iteration"), *rock = cells->GetArray("RockId"),
+               *block = cells->GetArray("BlockId");
+  // Polydata's cells begin with its vertices: the points at which rocks stopped.
+  const vtkIdType first = trajectories->GetNumberOfVerts();
+  for (vtkIdType k = first; iteration && rock && block && k < iteration->GetNumberOfTuples(); ++k)
+  {
+    rocks.push_back({ int(iteration->GetTuple1(k)), int(rock->GetTuple1(k)),
+      std::int64_t(block->GetTuple1(k)), Loss::None, 0.0 });
+  }
+  return rocks;
+}
+
 void checkReleased(ReleasedRocks& rocks)
 {
   std::sort(rocks.begin(), rocks.end(),

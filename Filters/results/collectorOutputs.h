@@ -35,6 +35,9 @@ struct CollectedRock
 };
 using ReleasedRocks = std::vector<CollectedRock>;
 
+/// Those of trajectories, by the cell arrays Iteration, RockId and BlockId; none without them.
+ReleasedRocks releasedIn(vtkPolyData* trajectories);
+
 /// Sorts them. Throws DataError if one is there twice.
 void checkReleased(ReleasedRocks& rocks);
 

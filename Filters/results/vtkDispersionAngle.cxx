@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "counts/lostRocks.h"
+#include "results/collectorOutputs.h"
 #include "results/pathGroups.h"
 #include "results/trajectoriesInput.h"
 #include "shared/arrays.h"
@@ -202,6 +203,8 @@ int vtkDispersionAngle::RequestData(
     "The trajectories and their dispersion do not fit in memory",
     [&](vtkPolyData* input)
     {
+      rockfall::filters::ReleasedRocks released = rockfall::filters::releasedIn(input);
+      rockfall::filters::checkReleased(released); // twice, a rock would count for two
       const auto groups = rockfall::filters::groupPaths(
         input, this->UseGroups ? this->GroupBy : std::string(), this->ClassLimits);
 

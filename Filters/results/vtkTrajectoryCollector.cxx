@@ -369,7 +369,7 @@ int vtkTrajectoryCollector::RequestData(
         notes.push_back(std::move(note));
       }
       vtkFieldData* const told[] = { table->GetFieldData(), passings->GetFieldData() };
-      filters::tellOn(told, notes);
+      filters::tellOn(told, notes, this->PrintNotes);
       filters::writeExceedance(collected.summaries, released, exceedance);
       for (vtkDataObject* made :
         { static_cast<vtkDataObject*>(passings), static_cast<vtkDataObject*>(walls),
@@ -391,6 +391,7 @@ void vtkTrajectoryCollector::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "FileName: " << this->FileName << "\n";
   os << indent << "AllowReferences: " << this->AllowReferences << "\n";
+  os << indent << "PrintNotes: " << this->PrintNotes << "\n";
   os << indent << "LayerName: " << this->LayerName << "\n";
   os << indent << "Points: " << this->Points.size() / 3 << "\n";
   os << indent << "PlacedLine:";

@@ -62,6 +62,16 @@ public:
 
   ///@{
   /**
+   * Whether notes on lines are told; the outputs' field array Notes has them in any case. Default
+   * on.
+   */
+  vtkSetMacro(PrintNotes, bool);
+  vtkGetMacro(PrintNotes, bool);
+  vtkBooleanMacro(PrintNotes, bool);
+  ///@}
+
+  ///@{
+  /**
    * Points of a line that is drawn, in world coordinates; their z does not count. None by default.
    */
   void AddPoint(double x, double y, double z);
@@ -120,6 +130,7 @@ protected:
 private:
   std::string FileName;
   int AllowReferences = 0;
+  bool PrintNotes = true;
   std::string LayerName;
   std::vector<double> Points; ///< x, y, z of each in turn.
   double PlacedLine[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };

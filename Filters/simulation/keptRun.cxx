@@ -285,7 +285,7 @@ void KeptRun::takeResults(RunSink& sink)
   stateHash = sink.stateHash();
   addArray<vtkStringArray>(summary->GetFieldData(), "StateHash")->InsertNextValue(stateHash);
   const LostRocks lost = lostOf(summary);
-  tellLost(lost, summary->GetFieldData());
+  tellLost(lost, summary->GetFieldData(), {}, printNotes);
   writeLost(lost, trajectories->GetFieldData());
   this->describe();
 }
@@ -326,7 +326,10 @@ void KeptRun::readContacts(const Ranks& ranks, const std::string& noMemory)
       const AllowReferences references(allowReferences);
       const std::vector<RockContactPair> pairs =
         readRockContacts(contactFile, parameters.rockCohesion, materials, contactSheet, &notes);
-      std::for_each(notes.begin(), notes.end(), showNote);
+      if (printNotes)
+      {
+        std::for_each(notes.begin(), notes.end(), showNote);
+      }
       for (const RockContactPair& pair : pairs)
       {
         first->InsertNextValue(pair.first);

@@ -41,7 +41,8 @@ struct KeptRun
   std::string contactSheet;     ///< Of the file; empty: the one that will do.
   bool allowReferences = false; ///< The file may name addresses and other files.
   KeptParts parts;
-  Stamp terrain, rocks; ///< The inputs.
+  bool printNotes = true; ///< Tell what was lost; the summary has it in any case.
+  Stamp terrain, rocks;   ///< The inputs.
   /// Content of the inputs that decides the run (inputContent.h).
   std::uint64_t terrainContent = 0, rocksContent = 0;
 

@@ -34,6 +34,7 @@ void vtkRockfallSimulation::TakeProperties(rockfall::filters::KeptRun& run)
   p.threads = this->NumberOfThreads;
   run.parts.retention = rockfall::Retention(this->TrajectoryOutput);
   run.parts.impacts = this->KeepImpacts;
+  run.printNotes = this->PrintNotes;
 }
 
 //------------------------------------------------------------------------------
@@ -90,6 +91,7 @@ void vtkRockfallSimulation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ShownIteration: " << this->ShownIteration << "\n";
   os << indent << "TrajectoryOutput: " << this->TrajectoryOutput << "\n";
   os << indent << "KeepImpacts: " << this->KeepImpacts << "\n";
+  os << indent << "PrintNotes: " << this->PrintNotes << "\n";
   os << indent << "PrintProgress: " << this->PrintProgress << "\n";
   os << indent << "StateHash: " << this->StateHash << "\n";
   os << indent << "RunStatus: " << this->RunStatus << "\n";

@@ -268,17 +268,18 @@ bool vtkRockfallSimulation::Simulate(vtkPolyData* terrainInput, vtkPolyData* roc
   {
     run->parts.wholeIteration = this->FirstIteration + this->ShownIteration;
   }
-  if (!this->RockRockContact && ranks.rank() == 0)
+  const bool tells = this->PrintNotes && ranks.rank() == 0;
+  if (!this->RockRockContact && tells)
   {
     rockfall::filters::tellApart(run->frame.rocks);
   }
-  if (ranks.rank() == 0)
+  if (tells)
   {
     rockfall::filters::tellAlike(run->slope, run->frame.rocks, run->parameters.iterations);
   }
   // Rocks that are the same in all iterations are known before they run.
   const bool anew = run->ensemble->pushesAnew();
-  if (!anew)
+  if (!anew && tells)
   {
     rockfall::filters::tellPushed(*run->ensemble, run->ensemble->pushed(), ranks);
   }
@@ -298,7 +299,7 @@ bool vtkRockfallSimulation::Simulate(vtkPolyData* terrainInput, vtkPolyData* roc
   {
     return false;
   }
-  if (anew)
+  if (anew && this->PrintNotes) // on all ranks
   {
     rockfall::filters::tellPushed(
       *run->ensemble, rockfall::filters::pushedOnAll(*run->ensemble, ranks), ranks);

@@ -258,6 +258,16 @@ public:
   vtkBooleanMacro(PrintProgress, bool);
   ///@}
 
+  ///@{
+  /**
+   * Whether a run tells of what it lost, and of rocks and iterations that are odd. The output's
+   * field array Notes has what was lost in any case. Default on.
+   */
+  vtkSetMacro(PrintNotes, bool);
+  vtkGetMacro(PrintNotes, bool);
+  vtkBooleanMacro(PrintNotes, bool);
+  ///@}
+
   /**
    * 16 hexadecimal digits over the bits of all motion of the last run, empty if there is none. Two
    * runs that differ in threads, ranks, OutputInterval or what is kept have the same.
@@ -348,6 +358,7 @@ private:
   int TrajectoryOutput = FULL;
   bool KeepImpacts = true;
   bool PrintProgress = false;
+  bool PrintNotes = true;
   std::string StateHash;
   std::string RunStatus;
   std::unique_ptr<rockfall::filters::KeptRun> Kept;

@@ -86,7 +86,8 @@ void pqMessageBar::look()
       }
       if (!fresh.isEmpty())
       {
-        lines << "<b>" + source->getSMName().toHtmlEscaped() + "</b>: " + fresh.join(" ");
+        lines << "<b>" + source->getSMName().toHtmlEscaped() + "</b>: " +
+            fresh.join("<br>&nbsp;&nbsp;&nbsp;");
         failed = failed || QString(array) == "Error";
       }
     }

@@ -77,6 +77,11 @@ solid = RockfallHazardMap(Input=AppendDatasets(Input=[Wavelet(WholeExtent=[0, 2]
 errors = errors_of(solid)
 assert len(errors) == 1 and "cell 0" in errors[0] and "vtkVoxel" in errors[0], errors
 
+# A run that is there twice counts for two in nothing.
+for maker in DispersionAngle, RockfallHazardMap, TrajectoryCollector:
+    errors = errors_of(maker(Input=AppendDatasets(Input=[paths, paths])))
+    assert len(errors) == 1 and "there twice" in errors[0], (maker, errors)
+
 # --- Polygons for the line.
 
 road = "60 -10,60 110,67 110,67 -10,60 -10"

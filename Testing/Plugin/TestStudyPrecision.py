@@ -3,15 +3,17 @@
 import json
 import math
 import os
+import re
 import shutil
 import subprocess
 import sys
 
-from helpers import delete_sources, files_of, incline, outside_mpi, run_script, write_grid, write_text
+from helpers import delete_sources, files_of, incline, messages_of, outside_mpi, rows_of, run_script, write_grid, write_text
 
 EXAMPLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Examples")
 SCRIPT = os.path.join(EXAMPLES, "study.py")
 sys.path[:0] = [os.path.join(EXAMPLES, "study_parts")]
+import combine
 import enough
 
 # Clopper & Pearson, closed forms at the ends: 1 - (α/2)^(1/n). Tables for 4 of 10.
@@ -76,7 +78,34 @@ assert json.loads(files_of("enough-share")["results.json"])["iterations"] == 12
 code, said = run("enough-share", until={"quantity": "KineticEnergy95", "within": 0.5})
 assert code == 0 and '"far": not known yet' in said, said
 
-for until, word in (({"quantity": "Shares", "within": 0.1}, "one of Share"), ({"quantity": "Share"}, "within"),
+# Twenty chunks tell once whom they lost: ten lines of progress, and the notes of all.
+logs = []
+text = messages_of(lambda: logs.append(run("enough-notes", iterations=20, chunk=1)))
+text = logs[0][1] + text
+assert logs[0][0] == 0 and len(text.splitlines()) <= 20, text
+moving = re.findall(r"(\d+) of 100 rocks were still moving at EndTime \(4 s\): they count", text)
+rows = rows_of("enough-notes/summary.csv")
+assert moving == [str(sum(row["FateCode"] == "2" for row in rows))] != ["0"], text
+# Of each chunk as of one run; that nothing moved is so where no chunk moved anything.
+notes = [["2 of 9 rocks fell", "None of 9 rocks moved: x"], [], ["1 of 9 rocks fell"]]
+assert combine.notes_of_all(notes, 27) == ["3 of 27 rocks fell"], combine.notes_of_all(notes, 27)
+assert combine.notes_of_all([["None of 9 rocks moved: x"]] * 2, 18) == ["None of 18 rocks moved: x"]
+
+# How far rocks go needs no line: order statistics of RunOut.
+calm = {name: value for name, value in study.items() if name != "lines"}
+study = {**calm, "iterations": 40, "chunk": 8}
+code, said = run("enough-reach", until={"quantity": "RunOut95", "within": 0.3})
+assert code == 0 and "Enough rocks, " in said and "RunOut95: " in said and " m" in said, said
+known = json.loads(files_of("enough-reach")["manifest.json"])["until"]["lines"]
+ways = sorted(float(row["RunOut"]) for row in rows_of("enough-reach/summary.csv"))
+assert len(known) == 1 and known[0]["rocks"] == len(ways) >= 72, known
+low, high = (ways[k - 1] for k in enough.quantile_ranks(len(ways), 0.95, 0.95))
+assert math.isclose(known[0]["from"], low) and math.isclose(known[0]["to"], high), (known, low, high)
+assert high - low <= 0.3 * (high + low)
+study = {**calm, "lines": {"FileName": "enough-road.csv"}}
+
+for until, word in (({"quantity": "RunOut95", "within": 0.1, "line": "near"}, "of all rocks"),
+                    ({"quantity": "Shares", "within": 0.1}, "one of Share"), ({"quantity": "Share"}, "within"),
                     ({"quantity": "Share", "within": 2}, "between 0 and 1"),
                     ({"quantity": "Share", "within": 0.1, "line": "none"}, '"near", "far"'),
                     ({"quantity": "Share", "within": 0.1, "lines": 1}, 'no "lines" in until')):
