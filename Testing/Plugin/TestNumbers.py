@@ -58,14 +58,14 @@ def with_fall(proxy):
     return proxy, fall(proxy)
 
 
-def of_slope(**others):
-    dem = DEMtoCFEMesh(**others)
+def of_slope():
+    dem = DEMtoCFEMesh()
     rocks = RockBlocks(Center=[5, 50, 60], Velocity=[0, 0, -10])
     return dem, RockfallSimulation(Terrain=dem, Rocks=rocks, EndTime=0.5)
 
 
 MAKERS = {
-    "DEMToCFEMesh": [lambda: of_slope(), lambda: of_slope(Preset=2)],
+    "DEMToCFEMesh": [of_slope],
     "RockBlocks": [
         lambda: with_fall(RockBlocks(Center=[5, 50, 60], Velocity=[0, 0, -10])),
         lambda: with_fall(RockBlocks(Center=[5, 50, 60], Velocity=[0, 0, -10], Shape="Box", Amount=2,
