@@ -24,6 +24,10 @@ constexpr const char* barton = "Barton & Choubey (1977)";
 /// No published value for rocks on such ground was found.
 constexpr const char* assumed = "assumed";
 
+/// Speeds and jumps of field surveys together with reach angles, as far as they go together:
+/// docs/ground.md, Presets beside field surveys.
+constexpr const char* longSlopes = "assumed: speeds, jumps and reach angles on long slopes";
+
 /// G. Lu, A. Caviezel, M. Christen, Y. Bühler & P. Bartelt (2019), Landslides 16, 2353: an alpine
 /// meadow, M_E 10 to 25 MN/m², C_s 0.1 to 4, friction 0.55 to 2. Which of these, and the rolling
 /// resistance, was chosen on single impacts and run-outs: docs/validation.md.
@@ -90,14 +94,13 @@ constexpr GroundPreset presets[] = {
     waves(0.05, 2.0), assumed },
   { "asphalt", "Asphalt", 0.40, 0.90, 0.023, 33.0, 2.5, holds(0.05), Memory, hoek, assumed, assumed,
     smooth, assumed },
-  { "bedrock with boulders", "Bedrock with boulders", 0.35, 0.85, 0.020, 35.0, 2.5, holds(0.15),
-    Memory, hoek, assumed, assumed, stones(2.0, 0.05, 0.2, 0.4), assumed },
-  { "talus", "Talus", 0.32, 1.0, 0.15, 37.0, 2.0, yields(10e6, 2.0, 0.6, 0.25), Assumption, assumed,
-    lu, "assumed: speeds and jumps on long slopes as observed", stones(2.0, 0.05, 0.1, 0.2),
-    assumed },
-  { "talus with vegetation", "Talus with vegetation", 0.32, 1.0, 0.15, 37.0, 2.0,
-    yields(10e6, 2.0, 0.6, 0.27), Assumption, assumed, lu, "assumed, as talus",
-    stones(2.0, 0.05, 0.1, 0.2), assumed },
+  { "bedrock with boulders", "Bedrock with boulders", 0.35, 1.0, 0.020, 35.0, 2.5, holds(0.3),
+    Memory, hoek, assumed, "assumed: rocks rest on 17°", stones(2.0, 0.05, 0.2, 0.4), assumed },
+  { "talus", "Talus", 0.6, 1.0, 0.3, 37.0, 2.0, yields(10e6, 1.25, 0.6, 0.08), Assumption, assumed,
+    lu, longSlopes, stones(2.0, 0.05, 0.1, 0.2), assumed, 4.0 },
+  { "talus with vegetation", "Talus with vegetation", 0.6, 1.0, 0.3, 37.0, 2.0,
+    yields(10e6, 1.4, 0.6, 0.1), Assumption, assumed, lu, "assumed, as talus",
+    stones(2.0, 0.05, 0.1, 0.2), assumed, 4.0 },
   { "soil", "Soil", 0.3, 1.0, 0.15, 30.0, 3.0, yields(10e6, 1.5, 0.6, 0.3), Assumption, assumed, lu,
     lu, waves(0.05, 2.0), assumed },
   { "meadow", "Meadow", 0.73, 1.0, 0.34, 30.0, 3.0, deviates(yields(13e6, 0.9, 0.98, 0.21), 0.45),

@@ -346,8 +346,8 @@ TEST_F(TestDEMToCFESource, ContoursAndPresets)
   vtkPolyData* mesh = this->Update();
   EXPECT_EQ(mesh->GetNumberOfCells(), 2 * 10 * 6);
   EXPECT_EQ(value(mesh->GetPointData(), "Elevation"), 20.0);
-  EXPECT_EQ(value(mesh->GetCellData(), "RestitutionCoefficient"), 0.32);
-  EXPECT_EQ(value(mesh->GetFieldData(), "TerrainMaterial", 0, 7), 1.0);
+  EXPECT_EQ(value(mesh->GetCellData(), "RestitutionCoefficient"), 0.6);
+  EXPECT_EQ(value(mesh->GetFieldData(), "TerrainMaterial", 0, 7), 2.0); // speed-dependent
   // The preset's stones, not the roughness of the fields that it replaces.
   const rockfall::Roughness& stones = rockfall::groundPresets()[3].roughness;
   EXPECT_EQ(value(mesh->GetFieldData(), "TerrainRoughness", 0, 0), 0.0);

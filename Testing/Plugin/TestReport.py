@@ -97,7 +97,7 @@ with open("whole/manifest.json") as file:
 assert manifest["values"]["terrain"]["Preset"] == "Talus (assumed)"
 assert "TimestepValues" not in manifest["values"]["simulation"]
 assert [one["iterations"] for one in manifest["sessions"]] == [4] and manifest["sessions"][0]["seconds"] > 0
-assert "Preset: Talus (assumed)" in text and "model normal and tangential" in text
+assert "Preset: Talus (assumed)" in text and "model speed-dependent" in text
 assert "numbers of section 3 count" in text
 
 # Beside the tables and the map: types, CRS, styles with units; QGIS itself looks at them in qgisCheck.py.
