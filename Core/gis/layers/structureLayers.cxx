@@ -14,6 +14,7 @@
 #include "terrain/Obstacles.h"
 #include "terrain/Terrain.h"
 #include "terrain/plausible.h"
+#include "terrain/stand.h"
 
 #include <ogrsf_frmts.h>
 
@@ -341,59 +342,150 @@ void readEmbankments(const StructureFiles& files, const Terrain& terrain, OwnMat
   sides.tell(wish.fileName, notes);
 }
 
-void readTrees(const StructureFiles& files, const Terrain& terrain, OwnMaterials& own,
+double diameterOf(const FeatureRow& row, const char* field, const char* what)
+{
+  const double diameter = cm * needed(row, field, what);
+  if (diameter > plausible::kStemDiameter.refused)
+  {
+    row.failField(field, " is " + number(diameter / cm) + " cm: is it in millimetres?");
+  }
+  if (diameter < cm)
+  {
+    row.failField(field, " is " + number(diameter / cm) + " cm: is it in metres?");
+  }
+  return diameter;
+}
+
+Tree treeOf(const FeatureRow& row, const StructureFiles& files, Placing& placing)
+{
+  Tree t;
+  const OGRGeometry* geometry = row.geometry();
+  if (geometry && wkbFlatten(geometry->getGeometryType()) != wkbPoint)
+  {
+    row.fail(std::string("is a ") + geometry->getGeometryName() +
+      ", a POINT is needed, or a POLYGON with the column \"stems_ha\"");
+  }
+  if (!geometry && !(row.number("x") && row.number("y")))
+  {
+    row.fail("has no point, and no fields \"x\" and \"y\"");
+  }
+  t.position = geometry
+    ? placing.local(row, geometry->toPoint()->getX(), geometry->toPoint()->getY())
+    : placing.local(row, *row.number("x"), *row.number("y"));
+  t.diameter = diameterOf(row, "diameter", "that of the stem in cm");
+  t.height = needed(row, "height", "that of the tree in m");
+  const double factor = row.positive("factor").value_or(1.0);
+  if (const auto capacity = row.notNegative("capacity"))
+  {
+    t.capacity = kJ * *capacity;
+  }
+  else if (files.treesBreak)
+  {
+    t.capacity = stemCapacity(t.diameter, factor);
+  }
+  return t;
+}
+
+void gatherRings(const OGRGeometry& geometry, const FeatureRow& row, Placing& placing,
+  std::vector<std::vector<Vec3>>& rings)
+{
+  if (wkbFlatten(geometry.getGeometryType()) == wkbPolygon)
+  {
+    for (const OGRLinearRing* ring : *geometry.toPolygon())
+    {
+      std::vector<Vec3>& corners = rings.emplace_back();
+      for (int k = 0; k < ring->getNumPoints(); ++k)
+      {
+        const Eigen::Vector2d place = placing.local(row, ring->getX(k), ring->getY(k));
+        corners.emplace_back(place.x(), place.y(), 0.0);
+      }
+    }
+    return;
+  }
+  for (const OGRGeometry* part : *geometry.toGeometryCollection())
+  {
+    gatherRings(*part, row, placing, rings);
+  }
+}
+
+/// The stems of a polygon that is given by its density.
+std::vector<Tree> standOf(const FeatureRow& row, std::int64_t count, int material,
+  const StructureFiles& files, Placing& placing)
+{
+  Stand stand;
+  stand.feature = count;
+  stand.material = material;
+  stand.stemsPerHectare = needed(row, "stems_ha", "the number of stems per hectare");
+  stand.diameterMean = diameterOf(row, "dbh_mean", "the mean diameter of the stems in cm");
+  stand.diameterDeviation = cm * row.notNegative("dbh_dev").value_or(0.0);
+  if (stand.diameterDeviation > stand.diameterMean)
+  {
+    row.failField("dbh_dev",
+      " is " + number(stand.diameterDeviation / cm) + " cm, it must be at most the mean");
+  }
+  stand.height = needed(row, "height", "that of the trees in m");
+  stand.conifers =
+    0.01 * row.ranged({ "conifers" }, 0.0, 100.0, "0 to 100 %").value_or(100.0 * stand.conifers);
+  stand.coniferFactor = row.positive("f_conifer").value_or(stand.coniferFactor);
+  stand.broadleafFactor = row.positive("f_broad").value_or(stand.broadleafFactor);
+  stand.spacing = row.notNegative("spacing").value_or(0.0);
+  gatherRings(*row.geometry(), row, placing, stand.rings);
+  try
+  {
+    return growStand(stand, files.treesBreak);
+  }
+  catch (const DataError& error)
+  {
+    row.fail(": " + std::string(error.what()));
+  }
+}
+
+/// Trees of their own first, then those of stands. Gives how many are of their own.
+std::size_t readTrees(const StructureFiles& files, const Terrain& terrain, OwnMaterials& own,
   Structures& all, std::vector<std::string>& notes)
 {
   std::int64_t outside = 0;
+  std::vector<Tree> grown;
   LayerWish wish{ files.trees, files.treeLayer, "TreeLayerName" };
-  wish.what = "layer of points";
-  wish.kinds = kPoints | kRows;
-  wish.columns = { { "diameter" }, { "height" } };
+  wish.what = "layer of points or polygons";
+  wish.kinds = kPoints | kPolygons | kRows;
+  wish.better = kPoints | kRows;
+  wish.columns = { { "diameter", "stems_ha" }, { "height" } };
   forEachRow(wish, terrain, notes,
-    { "diameter", "height", "factor", "capacity", "rv", "rn", "rt", "phi", "cohesion" },
+    { "diameter", "height", "factor", "capacity", "stems_ha", "dbh_mean", "dbh_dev", "conifers",
+      "f_conifer", "f_broad", "spacing", "rv", "rn", "rt", "phi", "cohesion" },
     [&](const FeatureRow& row, std::int64_t count, Placing& placing)
     {
-      Tree t;
-      t.feature = count;
-      const OGRGeometry* geometry = row.geometry();
-      if (geometry && wkbFlatten(geometry->getGeometryType()) != wkbPoint)
+      const int material = own.of(row);
+      const auto add = [&](const Tree& tree, std::vector<Tree>& trees)
       {
-        row.fail(std::string("is a ") + geometry->getGeometryName() + ", a POINT is needed");
-      }
-      if (!geometry && !(row.number("x") && row.number("y")))
+        if (std::isnan(terrain.elevation(tree.position.x(), tree.position.y())))
+        {
+          ++outside;
+          return;
+        }
+        trees.push_back(tree);
+      };
+      if (kindOf(row.geometry()) == kPolygons && row.has("stems_ha"))
       {
-        row.fail("has no point, and no fields \"x\" and \"y\"");
-      }
-      t.position = geometry
-        ? placing.local(row, geometry->toPoint()->getX(), geometry->toPoint()->getY())
-        : placing.local(row, *row.number("x"), *row.number("y"));
-      t.diameter = cm * needed(row, "diameter", "that of the stem in cm");
-      if (t.diameter > plausible::kStemDiameter.refused)
-      {
-        row.failField("diameter", " is " + number(t.diameter / cm) + " cm: is it in millimetres?");
-      }
-      if (t.diameter < cm)
-      {
-        row.failField("diameter", " is " + number(t.diameter / cm) + " cm: is it in metres?");
-      }
-      t.height = needed(row, "height", "that of the tree in m");
-      const double factor = row.positive("factor").value_or(1.0);
-      if (const auto capacity = row.notNegative("capacity"))
-      {
-        t.capacity = kJ * *capacity;
-      }
-      else if (files.treesBreak)
-      {
-        t.capacity = stemCapacity(t.diameter, factor);
-      }
-      t.material = own.of(row);
-      if (std::isnan(terrain.elevation(t.position.x(), t.position.y())))
-      {
-        ++outside;
+        for (const Tree& tree : standOf(row, count, material, files, placing))
+        {
+          add(tree, grown);
+        }
         return;
       }
-      all.trees.push_back(t);
+      Tree tree = treeOf(row, files, placing);
+      tree.feature = count;
+      tree.material = material;
+      add(tree, all.trees);
     });
+  const std::size_t alone = all.trees.size();
+  if (!grown.empty())
+  {
+    notes.push_back(files.trees + ": " + std::to_string(grown.size()) +
+      " stems of stands were drawn from their density, the same for all iterations.");
+    all.trees.insert(all.trees.end(), grown.begin(), grown.end());
+  }
   if (all.trees.empty())
   {
     throw DataError(files.trees + ": none of its " + std::to_string(outside) +
@@ -405,6 +497,7 @@ void readTrees(const StructureFiles& files, const Terrain& terrain, OwnMaterials
       " trees stand where the terrain has no ground and are left out; " +
       std::to_string(all.trees.size()) + " are taken.");
   }
+  return alone;
 }
 
 void readBarriers(const StructureFiles& files, const Terrain& terrain, Structures& all,
@@ -441,11 +534,13 @@ void readBarriers(const StructureFiles& files, const Terrain& terrain, Structure
 }
 
 /// Errors of structures that cannot be built name the file, and so do notes of what is too good to
-/// be true.
-void tryOut(const std::string& fileName, Structures part, const Terrain& terrain,
+/// be true. Stems behind the first `alone` were drawn: they may stand side by side.
+void tryOut(const std::string& fileName, Structures part, std::size_t alone, const Terrain& terrain,
   std::vector<std::string>& notes)
 {
-  for (const auto& doubts : { implausibleNumbers(part), structuresTwice(part) })
+  Structures given = part;
+  given.trees.resize(alone);
+  for (const auto& doubts : { implausibleNumbers(part), structuresTwice(given) })
   {
     for (const std::string& doubt : doubts)
     {
@@ -472,17 +567,17 @@ Structures readStructures(
   if (!files.embankments.empty())
   {
     readEmbankments(files, terrain, own, all, notes);
-    tryOut(files.embankments, { all.embankments, {}, {}, all.materials }, terrain, notes);
+    tryOut(files.embankments, { all.embankments, {}, {}, all.materials }, 0, terrain, notes);
   }
   if (!files.trees.empty())
   {
-    readTrees(files, terrain, own, all, notes);
-    tryOut(files.trees, { {}, all.trees, {}, all.materials }, terrain, notes);
+    const std::size_t alone = readTrees(files, terrain, own, all, notes);
+    tryOut(files.trees, { {}, all.trees, {}, all.materials }, alone, terrain, notes);
   }
   if (!files.barriers.empty())
   {
     readBarriers(files, terrain, all, notes);
-    tryOut(files.barriers, { {}, {}, all.barriers, {} }, terrain, notes);
+    tryOut(files.barriers, { {}, {}, all.barriers, {} }, 0, terrain, notes);
   }
   return all;
 }

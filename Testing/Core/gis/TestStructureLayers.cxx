@@ -35,8 +35,36 @@ std::string messageOf(const StructureFiles& files)
 }
 
 const std::string line = "\"LINESTRING(20 50,80 50)\"";
+const std::string area = "\"POLYGON((20 20,80 20,80 80,20 80,20 20))\"";
 
 } // namespace
+
+TEST(StructureLayers, StandsAreGrownFromTheirDensity)
+{
+  StructureFiles files;
+  files.trees = writeFile("stands.csv",
+    "WKT,stems_ha,dbh_mean,dbh_dev,height,conifers,spacing,rv\n" + area +
+      ",500,30,8,24,100,1.5,0.2\n\"POLYGON((90 40,110 40,110 60,90 60,90 40))\",500,40,,20,0,,\n");
+  std::vector<std::string> notes;
+  const Structures s = readStructures(files, site(), notes);
+  std::size_t first = 0;
+  for (const Tree& tree : s.trees)
+  {
+    first += tree.feature == 1 ? 1 : 0;
+    EXPECT_EQ(tree.height, tree.feature == 1 ? 24.0 : 20.0);
+    EXPECT_EQ(tree.material, tree.feature == 1 ? 1 : 0);
+    EXPECT_DOUBLE_EQ(tree.capacity, stemCapacity(tree.diameter, tree.feature == 1 ? 0.9 : 1.7));
+    EXPECT_LE(tree.position.x(), 100.0); // half of the second stand is beside the slope
+  }
+  EXPECT_NEAR(double(first), 180.0, 4.0 * std::sqrt(180.0));
+  EXPECT_NEAR(double(s.trees.size() - first), 10.0, 4.0 * std::sqrt(10.0));
+  ASSERT_GE(notes.size(), 2u);
+  EXPECT_NE(notes[0].find("were drawn from their density"), std::string::npos);
+  std::vector<std::string> again;
+  const Structures same = readStructures(files, site(), again);
+  ASSERT_EQ(same.trees.size(), s.trees.size());
+  EXPECT_EQ(same.trees.back().diameter, s.trees.back().diameter);
+}
 
 TEST(StructureLayers, AreReadInTheUnitsThatAPersonTypes)
 {
@@ -167,6 +195,11 @@ TEST(StructureLayers, TellWhatIsWrong)
     { 1, tree + "50,50,30,2000\n", "height of the tree is 2000" },
     { 1, "diameter,height\n30,20\n", "has no point" },
     { 1, "WKT,diameter,height\n" + line + ",30,20\n", "is a LINESTRING, a POINT is needed" },
+    { 1, "WKT,stems_ha,dbh_mean,dbh_dev,height\n" + area + ",400,30,31,20\n",
+      "field \"dbh_dev\" is 31 cm, it must be at most the mean" },
+    { 1, "WKT,stems_ha,dbh_mean,height\n" + area + ",400,,20\n", "dbh_mean" },
+    { 1, "WKT,stems_ha,dbh_mean,height,spacing\n" + area + ",400,30,20,20\n", "has no room" },
+    { 1, "WKT,stems_ha,dbh_mean,height,conifers\n" + area + ",400,30,20,101\n", "0 to 100 %" },
     { 1, tree + "50,50,30;5,20\n", "\"diameter\"" },
     { 1, tree + "-50,50,30,20\n150,50,30,20\n", "none of its 2 trees stands where" },
     { 2, "WKT,capacity\n" + line + ",100\n", "field \"height\" is missing" },
