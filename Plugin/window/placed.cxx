@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -73,6 +74,10 @@ void drawPlaced(vtkSMSourceProxy* proxy)
   if (placed.size() == 6 &&
     std::any_of(placed.begin(), placed.end(), [](double x) { return x != 0.0; }))
   {
+    for (double& x : placed)
+    {
+      x = std::round(x * 100.0) / 100.0; // cm: nobody draws finer
+    }
     points.Set(placed.data(), unsigned(placed.size()));
   }
   proxy->UpdateVTKObjects();

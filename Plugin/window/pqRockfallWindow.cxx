@@ -227,6 +227,8 @@ void pqRockfallWindow::makeMenu(QMainWindow* window)
     ->setObjectName("actionDocumentation");
   menu->addAction(tr("Clock"), this, [this] { this->runPython("clock()"); })
     ->setObjectName("actionClock");
+  menu->addAction(tr("Scale, North and Date"), this, [this] { this->runPython("sheet()"); })
+    ->setObjectName("actionSheet");
   // Pictures for the documentation, taken by tests.
   const QString folder = qEnvironmentVariable("ROCKFALL_PICTURES");
   if (!folder.isEmpty())

@@ -11,6 +11,7 @@ import tempfile
 import time
 import webbrowser
 
+import numpy as np
 from paraview import servermanager, simple
 
 ROCKS = 20  # of the release line
@@ -160,6 +161,49 @@ def report(manifest, show=True):
     return path
 
 
+def sheet(view=None):
+    """What a picture for others needs: a bar of a round length across the middle of the view, an arrow to the
+    north, the date. Called again it puts them where the view is then."""
+    view = view or _render_view()
+    for name in ("Scale", "North", "North Letter", "Date"):
+        old = simple.FindSource(name)
+        if old:
+            simple.Delete(old)
+    eye, focus = (np.array(place) for place in (view.CameraPosition, view.CameraFocalPoint))
+    ahead = (focus - eye) / np.linalg.norm(focus - eye)
+    right = np.cross(ahead, view.CameraViewUp)
+    right /= np.linalg.norm(right)
+    up = np.cross(right, ahead)
+    high = (2.0 * view.CameraParallelScale if view.CameraParallelProjection else
+            2.0 * np.linalg.norm(focus - eye) * np.tan(0.5 * np.radians(view.CameraViewAngle)))
+    power = 10.0 ** np.floor(np.log10(0.25 * high))
+    length = max(step * power for step in (1, 2, 5) if step * power <= 0.25 * high)
+    start = focus - 0.36 * high * up - 0.5 * length * right
+    bar = simple.Ruler(registrationName="Scale", Point1=list(start), Point2=list(start + length * right))
+    display = simple.Show(bar, view)
+    display.LabelFormat = f"{length:g} m" if length < 1000.0 else f"{length / 1000.0:g} km"
+    display.NumberOfTicks, display.AxisColor, display.AxisLineWidth = 5, [1.0, 1.0, 1.0], 2.0
+    # Before the slope, where nothing hides it.
+    near, size = 0.5, 0.05 * high
+    foot = eye + near * (focus - eye + 0.3 * high * (right - up))
+    arrow = simple.Arrow(registrationName="North", TipLength=0.4, TipRadius=0.16, ShaftRadius=0.05, TipResolution=24)
+    display = simple.Show(arrow, view)
+    display.Orientation, display.Scale = [0.0, 0.0, 90.0], 3 * [size]
+    move = "Translation" if "Translation" in display.ListProperties() else "Position"
+    setattr(display, move, list(foot))
+    display.AmbientColor = display.DiffuseColor = [1.0, 1.0, 1.0]
+    letter = simple.Text(registrationName="North Letter", Text="N")
+    display = simple.Show(letter, view)
+    display.TextPropMode = "Billboard 3D Text"
+    display.BillboardPosition = list(foot + size * np.array([0.0, 1.2, 0.0]))
+    display.FontSize = 16
+    date = simple.Text(registrationName="Date", Text=time.strftime("%Y-%m-%d"))
+    display = simple.Show(date, view)
+    display.WindowLocation = "Lower Right Corner"
+    display.FontSize = 12
+    simple.Render(view)
+
+
 def jacksboro():
     """A study of the Jacksboro fault, Tennessee, whose elevations come with matplotlib."""
     import sample_dem
@@ -223,7 +267,7 @@ def _draw_placed(proxy):
     proxy.UpdatePropertyInformation()
     placed = list(proxy.GetProperty("PlacedLine"))
     if len(proxy.Points) == 0 and any(placed):
-        proxy.Points = placed
+        proxy.Points = [round(x, 2) for x in placed]  # cm: nobody draws finer
         proxy.UpdatePipeline()
 
 
