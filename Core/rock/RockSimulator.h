@@ -9,6 +9,7 @@
 #include "rock/Rock.h"
 #include "rock/RockBody.h"
 #include "rock/Scar.h"
+#include "rock/barrierHold.h"
 #include "rock/parameters.h"
 #include "terrain/Obstacles.h"
 
@@ -27,15 +28,6 @@ struct Way
   const BlockState& to;
   double duration; ///< s
   bool flight;
-};
-
-/// Where the line of a barrier is passed on a way.
-struct BarrierPassage
-{
-  double fraction = 0.0; ///< Of the way; by rounding rather behind the line.
-  int barrier = -1;
-
-  bool operator==(const BarrierPassage&) const = default;
 };
 
 /// Where a rock meets a barrier on a way.
@@ -116,12 +108,15 @@ public:
   void holdOverlaps(const CandidatePairs& candidates);
   bool meetsSolids() const { return solid_; } ///< There are embankments or trees.
   int treeOf(const Contact& contact) const;   ///< −1: it is on none.
+  /// Whether a stem holds the rock with this motion: the law of terrain/stemHit.h. What presses
+  /// against it by one of these contacts it holds up to its capacity.
+  bool stemHolds(int tree, const BlockState& state, std::span<const Contact> contacts) const;
   /// Trees that it is about to touch within `h`, presses against or has `hit`, and that cannot hold
   /// it; whether there were any.
   bool breakTrees(double h, std::span<const int> hit = {});
-  /// One that the rock goes on through. What it holds of the rock's energy (J) has been taken
-  /// already.
-  void breakTree(int tree, double held);
+  /// One that cannot hold the rock: it breaks, or the rock slips past. What it holds of the rock's
+  /// energy (J) has been taken already.
+  void passTree(int tree, double held);
   /// Contacts with those that are gone, and all that hangs on them; `touched`: one of them carried.
   void forgetTrees(bool touched = true);
   bool meetsYielding() const { return yields_; } ///< Some class of the ground does.
@@ -183,7 +178,9 @@ private:
   bool isGone(int tree) const;
   /// Takes a step of `h` back in which it came against trees that cannot hold it, and breaks them.
   bool undoAtTrees(double h);
-  void findBarriers(const Way& way); ///< Fills `passages_` with those whose line is passed.
+  /// Fills `passages_` with those whose line is passed, or its straight continuation as near to an
+  /// end as the rock is wide.
+  void findBarriers(const Way& way);
   /// Goes on along this way, on which barriers have taken so much so far (J): notes what records,
   /// and fills `hit_` with the first barrier that stops the rock or breaks. After such a one flight
   /// goes on to those at the same place only; its rest is flown anew.

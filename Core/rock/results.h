@@ -85,10 +85,11 @@ enum class StructureOutcome
   BarrierStopped = 0,  ///< Holds the rock.
   BarrierBroken = 1,   ///< The rock went through, and lost the barrier's capacity.
   BarrierRecorded = 2, ///< Only records; nothing happened to the rock.
-  TreeBroken = 3,      ///< The rock broke it, and lost its capacity.
+  TreeBroken = 3,      ///< The rock broke it, and lost the share of its capacity of its offset.
+  TreePassed = 4,      ///< The same, but the tree stands and has turned the rock.
 };
 
-/// A rock at a barrier, or at a tree that it breaks. Trees that hold and embankments are slope:
+/// A rock at a barrier, or at a tree that does not hold it. Trees that hold and embankments are slope:
 /// their impacts are ImpactEvents.
 struct StructureEvent
 {

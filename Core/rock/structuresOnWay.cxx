@@ -45,8 +45,9 @@ void slowDown(BlockState& state, double energy, double taken)
 /// A hit on a stem, in plan.
 struct StemHit
 {
-  double offset = 0.0;      ///< See terrain/stemHit.h.
-  Vec3 away = Vec3::Zero(); ///< Of the stem's push on the rock; zero if the rock moves upright.
+  double offset = 0.0;       ///< See terrain/stemHit.h.
+  Vec3 away = Vec3::Zero();  ///< Of the stem's push on the rock; zero if the rock moves upright.
+  Vec3 along = Vec3::Zero(); ///< Of the rock that slips past the stem.
 };
 
 StemHit hitOn(const Tree& stem, const Block& block, const BlockState& state)
@@ -72,7 +73,8 @@ StemHit hitOn(const Tree& stem, const Block& block, const BlockState& state)
     reach = std::max(reach, side.dot(state.position - vertex));
   }
   const double offset = std::min(1.0, distance / (reach + 0.5 * stem.diameter));
-  return { offset, offset * side - std::sqrt(1.0 - offset * offset) * along };
+  const double towards = std::sqrt(1.0 - offset * offset);
+  return { offset, offset * side - towards * along, towards * side + offset * along };
 }
 
 /// Takes kinetic energy (J) by a push: it turns the velocity and leaves the spin. What a push that
@@ -87,6 +89,22 @@ void pushAway(BlockState& state, const Block& block, const Vec3& away, double ta
   const double towards = std::max(0.0, -away.dot(state.velocity));
   const double left = std::sqrt(std::max(0.0, towards * towards - 2.0 * taken / block.mass()));
   state.velocity += (towards - left) * away;
+  const double rest = rigidKineticEnergy(block, state);
+  const double more = taken - (energy - rest);
+  if (more > 1e-12 * energy)
+  {
+    slowDown(state, rest, more);
+  }
+}
+
+/// Takes kinetic energy (J) and turns the velocity in plan to this direction; spin is left. What
+/// the velocity in plan does not have slows all down.
+void slipPast(BlockState& state, const Block& block, const Vec3& along, double taken)
+{
+  const double energy = rigidKineticEnergy(block, state);
+  const double inPlan = state.velocity.head<2>().squaredNorm();
+  state.velocity.head<2>() =
+    std::sqrt(std::max(0.0, inPlan - 2.0 * taken / block.mass())) * along.head<2>();
   const double rest = rigidKineticEnergy(block, state);
   const double more = taken - (energy - rest);
   if (more > 1e-12 * energy)
@@ -158,16 +176,29 @@ int RockSimulator::treeOf(const Contact& contact) const
   return contact.cfe >= obstacles_->firstCfe() ? obstacles_->treeOf(contact.cfe) : -1;
 }
 
+bool RockSimulator::stemHolds(
+  int tree, const BlockState& state, std::span<const Contact> contacts) const
+{
+  const Tree& stem = obstacles_->structures().trees[std::size_t(tree)];
+  const double energy = rigidKineticEnergy(body_.block, state);
+  if (energy > stem.capacity)
+  {
+    return false;
+  }
+  const bool presses = std::any_of(contacts.begin(), contacts.end(),
+    [&](const Contact& c) { return c.closed() && this->treeOf(c) == tree; });
+  return presses || energy <= stemShare(hitOn(stem, body_.block, state).offset) * stem.capacity;
+}
+
 bool RockSimulator::undoAtTrees(double h)
 {
-  const double energy = rigidKineticEnergy(body_.block, body_.before);
   std::vector<int> hit;
   for (std::size_t i = 0; i < body_.contactsBefore.size(); ++i)
   {
     const Contact& c = body_.contacts[i];
     const int tree = this->treeOf(c);
     if (tree >= 0 && c.closed() && !body_.contactsBefore[i].closed() &&
-      energy > obstacles_->structures().trees[std::size_t(tree)].capacity)
+      !this->stemHolds(tree, body_.before, body_.contactsBefore))
     {
       hit.push_back(tree);
     }
@@ -192,13 +223,12 @@ bool RockSimulator::breakTrees(double h, std::span<const int> hit)
     {
       continue;
     }
-    const double capacity = obstacles_->structures().trees[std::size_t(tree)].capacity;
-    const double energy = rigidKineticEnergy(body_.block, body_.state);
     const double approach =
       -c.normal.dot(body_.state.velocity + spin.cross(c.point - body_.state.position));
     const bool meets =
       c.closed() ? approach > body_.restingSpeed : approach > 0.0 && c.gap() < approach * h;
-    if (energy <= capacity || !(meets || std::find(hit.begin(), hit.end(), tree) != hit.end()))
+    if (!(meets || std::find(hit.begin(), hit.end(), tree) != hit.end()) ||
+      this->stemHolds(tree, body_.state, body_.contacts))
     {
       continue;
     }
@@ -208,7 +238,7 @@ bool RockSimulator::breakTrees(double h, std::span<const int> hit)
     {
       held += this->treeOf(other) == tree ? other.springEnergy() : 0.0;
     }
-    this->breakTree(tree, held);
+    this->passTree(tree, held);
     body_.springEnergy = std::max(0.0, body_.springEnergy - held);
     any = true;
   }
@@ -219,22 +249,31 @@ bool RockSimulator::breakTrees(double h, std::span<const int> hit)
   return any;
 }
 
-void RockSimulator::breakTree(int tree, double held)
+void RockSimulator::passTree(int tree, double held)
 {
   const Tree& stem = obstacles_->structures().trees[std::size_t(tree)];
   const double energy = rigidKineticEnergy(body_.block, body_.state);
   const double height = body_.state.position.z() -
     surface_.elevation(body_.state.position.x(), body_.state.position.y());
-  StructureEvent event =
-    eventAt(StructureOutcome::TreeBroken, stem.feature, body_.state, energy, height);
   const StemHit hit = hitOn(stem, body_.block, body_.state);
+  const bool stands = (1.0 - hit.offset * hit.offset) * energy <= stem.capacity;
+  StructureEvent event =
+    eventAt(stands ? StructureOutcome::TreePassed : StructureOutcome::TreeBroken, stem.feature,
+      body_.state, energy, height);
   const double taken = stemShare(hit.offset) * stem.capacity;
   event.energyTaken = std::max(held, taken);
   recorder_.trajectory().structures.push_back(event);
-  pushAway(body_.state, body_.block, hit.away, taken - held);
+  if (stands)
+  {
+    slipPast(body_.state, body_.block, hit.along, std::max(0.0, taken - held));
+  }
+  else
+  {
+    pushAway(body_.state, body_.block, hit.away, taken - held);
+    broke_.trees.push_back(tree);
+  }
   body_.energy.structures += held + energy - rigidKineticEnergy(body_.block, body_.state);
   goneTrees_.insert(std::lower_bound(goneTrees_.begin(), goneTrees_.end(), tree), tree);
-  broke_.trees.push_back(tree);
 }
 
 bool RockSimulator::isGone(int tree) const
@@ -312,8 +351,9 @@ void RockSimulator::findBarriers(const Way& way)
   // In a step of contact the cubic may go a little beyond its ends.
   const double room =
     way.flight ? 0.0 : 0.15 * way.duration * (way.from.velocity.norm() + way.to.velocity.norm());
-  obstacles_->visitBarriers(std::min(p.x(), q.x()) - room, std::max(p.x(), q.x()) + room,
-    std::min(p.y(), q.y()) - room, std::max(p.y(), q.y()) + room,
+  const double radius = body_.block.radius(), around = room + radius;
+  obstacles_->visitBarriers(std::min(p.x(), q.x()) - around, std::max(p.x(), q.x()) + around,
+    std::min(p.y(), q.y()) - around, std::max(p.y(), q.y()) + around,
     [&](const Obstacles::Piece& piece)
     {
       const Eigen::Vector2d along = piece.to - piece.from;
@@ -351,9 +391,11 @@ void RockSimulator::findBarriers(const Way& way)
       }
       const Vec3 at = placeAt(s);
       const double reached = along.dot(at.head<2>() - piece.from) / along.squaredNorm();
-      if (reached >= -kPieceEnd && reached <= 1.0 + kPieceEnd)
+      const double beside = std::max(kPieceEnd, radius / along.norm());
+      if (reached >= -(piece.begins ? beside : kPieceEnd) &&
+        reached <= 1.0 + (piece.ends ? beside : kPieceEnd))
       {
-        passages_.push_back({ s, piece.barrier });
+        passages_.push_back({ s, piece.barrier, int(&piece - obstacles_->barrierPieces().data()) });
       }
     });
   if (passages_.empty())
@@ -366,8 +408,8 @@ void RockSimulator::findBarriers(const Way& way)
   {
     const auto stops = [this](const BarrierPassage& x)
     { return !obstacles_->structures().barriers[std::size_t(x.barrier)].records; };
-    return std::tuple(a.fraction, stops(a), a.barrier) <
-      std::tuple(b.fraction, stops(b), b.barrier);
+    return std::tuple(a.fraction, stops(a), a.barrier, a.piece) <
+      std::tuple(b.fraction, stops(b), b.barrier, b.piece);
   };
   std::sort(passages_.begin(), passages_.end(), earlier);
   const double length = (q - p).head<2>().norm();
@@ -392,7 +434,7 @@ void RockSimulator::passBarriers(const Way& way, double taken)
   hit_ = {};
   while (passed_ < passages_.size())
   {
-    const auto [fraction, number] = passages_[passed_];
+    const auto [fraction, number, piece] = passages_[passed_];
     if (way.flight && again && fraction > place)
     {
       return;
@@ -406,10 +448,12 @@ void RockSimulator::passBarriers(const Way& way, double taken)
       ? fly(body_.block, way.from, parameters_.gravity, fraction * way.duration)
       : between(way.from, way.to, fraction);
     const Barrier& barrier = obstacles_->structures().barriers[std::size_t(number)];
-    const double height = at.position.z() - surface_.elevation(at.position.x(), at.position.y());
-    if (!(height < barrier.height))
+    const double foot = std::max(surface_.elevation(at.position.x(), at.position.y()),
+      obstacles_->embankmentTop(at.position.x(), at.position.y()));
+    const double height = at.position.z() - foot;
+    if (!holdsOutline(*obstacles_, piece, brokenBarriers_, body_.block, at, height))
     {
-      continue; // over it, or where there is no ground to stand on
+      continue;
     }
     // Energy that the ground holds in a touch it gives back in a moment.
     const double stored = way.flight

@@ -242,6 +242,8 @@ Obstacles::Obstacles(Structures structures, const Terrain& terrain)
     const Barrier& b = structures_.barriers[k];
     check(positive(b.height), b.feature, "the height of the barrier", b.height, "above 0 m");
     check(b.capacity >= 0.0, b.feature, "the capacity of the barrier", b.capacity, "at least 0 J");
+    check(b.overhang >= 0.0 && b.overhang <= 0.5, b.feature, "the overhang of the barrier",
+      b.overhang, "0 to 0.5");
     bool over = false;
     for (std::size_t i = 0; i < b.points.size(); ++i)
     {
@@ -249,7 +251,7 @@ Obstacles::Obstacles(Structures structures, const Terrain& terrain)
       {
         const Eigen::Vector2d &p = b.points[i - 1], &q = b.points[i];
         over = over || isOverGround(terrain, p, q);
-        barrierPieces_.push_back({ int(k), p, q });
+        barrierPieces_.push_back({ int(k), p, q, i == 1, i + 1 == b.points.size() });
         boxes.push_back({ std::min(p.x(), q.x()), std::max(p.x(), q.x()), std::min(p.y(), q.y()),
           std::max(p.y(), q.y()), 0.0 });
       }
@@ -292,6 +294,34 @@ int Obstacles::materialOf(std::int64_t cfe) const
   return tree >= 0
     ? structures_.trees[std::size_t(tree)].material
     : structures_.embankments[std::size_t(owners_[std::size_t(cfe - firstCfe_)])].material;
+}
+
+double Obstacles::embankmentTop(double x, double y) const
+{
+  double top = -std::numeric_limits<double>::infinity();
+  this->visitTriangles(x, x, y, y,
+    [&](int k)
+    {
+      const ObstacleMesh::Triangle& t = mesh_.triangles[std::size_t(k)];
+      if (!(t.normal.z() > 0.0))
+      {
+        return; // an upright side has no elevation
+      }
+      const auto corner = [&](int i) -> const Vec3&
+      { return mesh_.nodes[std::size_t(t.nodes[std::size_t(i % 3)])].position; };
+      const auto isLeftOf = [&](int i)
+      {
+        const Eigen::Vector2d side = (corner(i + 1) - corner(i)).head<2>();
+        return side.x() * (y - corner(i).y()) - side.y() * (x - corner(i).x()) >= 0.0;
+      };
+      if (isLeftOf(0) && isLeftOf(1) && isLeftOf(2))
+      {
+        const Vec3& p = corner(0);
+        top = std::max(
+          top, p.z() - (t.normal.x() * (x - p.x()) + t.normal.y() * (y - p.y())) / t.normal.z());
+      }
+    });
+  return top;
 }
 
 void Obstacles::append(double xMin, double xMax, double yMin, double yMax,

@@ -109,12 +109,17 @@ public:
   double treeRadius(int tree) const; ///< Of the circle around the prism, m.
   double treeTop(int tree) const { return treeEnds_[std::size_t(tree)][1]; }
 
+  /// Elevation of the embankment over a place in plan, m; −∞ if there is none.
+  double embankmentTop(double x, double y) const;
+
   /// A piece of a barrier between two of its points.
   struct Piece
   {
     int barrier;
     Eigen::Vector2d from, to;
+    bool begins, ends; ///< At the barrier's ends.
   };
+  const std::vector<Piece>& barrierPieces() const { return barrierPieces_; }
   template <typename Use>
   void visitBarriers(double xMin, double xMax, double yMin, double yMax, Use&& use) const
   {

@@ -5,11 +5,17 @@
 ///
 /// Offset o of a hit: the distance of the rock's way from the stem's axis, in plan, over the
 /// largest at which it still touches: the rock's reach towards the stem, across its way, and the
-/// stem's radius; 0 in the middle, 1 a graze.
+/// stem's radius; 0 in the middle, 1 a graze. For a round rock that is the offset of the touch from
+/// the axis in radii of the stem, as the law has it.
 ///
 ///     ΔE/E = −0.046 + 1.026 / (1 + 10^(−8.007 (0.58 − o)))      (Dorren 2016, Rockyfor3D)
 ///
 /// That is 0.98 at o = 0, 0.79 at 0.5, 0.06 at 0.7, and below 0, here 0, from about 0.75 on.
+///
+/// A stem holds what comes with no more than this share of its capacity E; of more it takes the
+/// share. The velocity towards the axis is √(1 − o²) of the velocity, its energy 1 − o² of the
+/// rock's: with more than E there the stem breaks; with less it stands, and the rock slips past
+/// along it, turned by arccos o.
 
 #include <algorithm>
 #include <cmath>

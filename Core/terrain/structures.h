@@ -53,6 +53,10 @@ struct Barrier
   double height = 0.0; ///< Over ground, m, > 0.
   /// Kinetic energy that it stops, J, ≥ 0; with more a rock breaks it and loses this much.
   double capacity = std::numeric_limits<double>::infinity();
+  /// Share of a rock's height that may stand over the rope of a net that holds it, and of its width
+  /// beside an end, 0 to 0.5. 0: the freeboard of guidelines, half a block between the highest path
+  /// of centres and the rope (ONR 24810): kits are tested below it.
+  double overhang = 0.0;
   bool absorbs = true;  ///< Takes its capacity from a rock that breaks it.
   bool records = false; ///< Lets all pass and only notes it.
 };

@@ -21,11 +21,6 @@ const FallingRock& StepTrees::rockOf(const Stem& stem) const
   return world_.rocks[std::size_t(island_.members[stem.member])];
 }
 
-double StepTrees::capacity(int tree) const
-{
-  return obstacles_->structures().trees[std::size_t(tree)].capacity;
-}
-
 template <class Use>
 void StepTrees::forContacts(const Stem& stem, Use&& use) const
 {
@@ -79,7 +74,8 @@ BlockState StepTrees::endWithout(const Stem& stem, double h) const
 
 bool StepTrees::cannotHold(const Stem& stem, const BlockState& end, bool through) const
 {
-  const RockBody& body = this->rockOf(stem).body();
+  const RockSimulator& sim = this->rockOf(stem).sim;
+  const RockBody& body = sim.body();
   bool meets = false;
   const auto look = [&](const Contact& c, std::size_t k)
   {
@@ -90,7 +86,7 @@ bool StepTrees::cannotHold(const Stem& stem, const BlockState& end, bool through
         (!through || work_.solver.system().gap(k) < 0.0));
   };
   this->forContacts(stem, look);
-  return meets && rigidKineticEnergy(body.block, end) > this->capacity(stem.tree);
+  return meets && !sim.stemHolds(stem.tree, end, body.contacts);
 }
 
 bool StepTrees::isKnown(std::size_t member, int tree) const
@@ -173,7 +169,7 @@ void StepTrees::fell(std::size_t member)
     {
       continue;
     }
-    if (rigidKineticEnergy(body.block, body.state) <= this->capacity(stem.tree))
+    if (sim.stemHolds(stem.tree, body.state, body.contactsBefore))
     {
       // Others have taken it since: it holds from here on.
       for (Contact& c : body.contacts)
@@ -200,7 +196,7 @@ void StepTrees::fell(std::size_t member)
         body.energy.damping -= normal ? 0.0 : all - shear;
       }
     }
-    sim.breakTree(stem.tree, held);
+    sim.passTree(stem.tree, held);
     any = true;
   }
   if (any)

@@ -6,8 +6,9 @@
 /// A rock that comes to a tree by itself is told before the step whether the tree holds it
 /// (RockSimulator::breakTrees). Others may drive a rock into a tree that it did not come to, and
 /// the tree would take all that they give it. So one that carries in the solution and could not
-/// hold the rock as it would go without it is let go. If the rock drives on through it then with
-/// more than the tree's capacity the tree breaks, else it is set in again.
+/// hold the rock as it would go without it (RockSimulator::stemHolds, here too) is let go. If the
+/// rock drives on through it then and the tree cannot hold it, it passes, else the tree is set in
+/// again.
 
 #include "world/IslandWork.h"
 
@@ -28,7 +29,6 @@ private:
   using Stem = IslandWork::Stem;
 
   const FallingRock& rockOf(const Stem& stem) const;
-  double capacity(int tree) const; ///< J
   /// use(contact, its number in the system): those of the rock with the tree.
   template <class Use>
   void forContacts(const Stem& stem, Use&& use) const;

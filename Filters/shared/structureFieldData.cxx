@@ -132,12 +132,12 @@ void writeStructures(const Terrain& terrain, vtkFieldData* fieldData)
       writtenCapacity(t.capacity), double(t.material) };
     trees->InsertNextTuple(row);
   }
-  const auto barriers = addArray<vtkDoubleArray>(fieldData, barriersName, 6);
+  const auto barriers = addArray<vtkDoubleArray>(fieldData, barriersName, 7);
   const auto barrierPoints = addArray<vtkDoubleArray>(fieldData, barrierPointsName, 2);
   for (const Barrier& b : s.barriers)
   {
     const double row[] = { double(b.feature), b.height, writtenCapacity(b.capacity),
-      double(b.absorbs), double(b.records), double(b.points.size()) };
+      double(b.absorbs), double(b.records), b.overhang, double(b.points.size()) };
     barriers->InsertNextTuple(row);
     addPoints(barrierPoints, b.points);
   }
@@ -163,7 +163,7 @@ void dropStructures(vtkFieldData* fieldData)
 Structures readStructures(vtkFieldData* fieldData)
 {
   const Rows embankments(fieldData, embankmentsName, 8), trees(fieldData, treesName, 7),
-    barriers(fieldData, barriersName, 6), materials(fieldData, materialsName, 8),
+    barriers(fieldData, barriersName, 7), materials(fieldData, materialsName, 8),
     embankmentPoints(fieldData, embankmentPointsName, 2),
     barrierPoints(fieldData, barrierPointsName, 2);
   Structures s;
@@ -199,7 +199,8 @@ Structures readStructures(vtkFieldData* fieldData)
     b.capacity = readCapacity(barriers.at(k, 2));
     b.absorbs = barriers.at(k, 3) != 0.0;
     b.records = barriers.at(k, 4) != 0.0;
-    b.points = takePoints(barrierPoints, barriers.at(k, 5), next);
+    b.overhang = barriers.at(k, 5);
+    b.points = takePoints(barrierPoints, barriers.at(k, 6), next);
   }
   for (vtkIdType k = 0; k < materials.count(); ++k)
   {
@@ -281,7 +282,8 @@ int makeStructureMesh(const Terrain& terrain, vtkIdType mostCells, vtkPolyData* 
         for (int i = 0; i <= n; ++i)
         {
           const Eigen::Vector2d p = from + (double(i) / n) * way;
-          const double ground = terrain.elevation(p.x(), p.y());
+          const double ground =
+            std::max(terrain.elevation(p.x(), p.y()), obstacles->embankmentTop(p.x(), p.y()));
           if (std::isnan(ground))
           {
             before[0] = -1;

@@ -10,7 +10,7 @@
 /// |                           | slopes of the mountain and the valley side, material, points     |
 /// | TerrainEmbankmentPoints   | x, y in the local frame, m                                       |
 /// | TerrainTrees              | feature, x, y, diameter (m), height (m), capacity (J), material  |
-/// | TerrainBarriers           | feature, height (m), capacity (J), absorbs, records, points      |
+/// | TerrainBarriers           | feature, height (m), capacity (J), absorbs, records, overhang, points |
 /// | TerrainBarrierPoints      | x, y in the local frame, m                                       |
 /// | TerrainStructureMaterials | restitution, its deviation, its model, tangential restitution,   |
 /// |                           | speed (m/s), φ (rad), its deviation (rad), cohesion (N)          |

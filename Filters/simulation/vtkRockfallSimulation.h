@@ -17,8 +17,8 @@
  * Impulse, ApproachSpeed, VelocityBefore, VelocityAfter, EnergyLoss, Restitution.
  *  - 3: a table, one row per rock and iteration, with the field array StateHash.
  *  - 4: one vertex per meeting with a barrier or a tree that broke. Point arrays BlockId, RockId,
- *    Iteration, StructureId, Outcome (0 stopped, 1 barrier broken, 2 recorded, 3 tree broken),
- *    Time, Velocity, Speed, KineticEnergy, HeightOverGround (of the centre), EnergyTaken.
+ *    Iteration, StructureId, Outcome (0 stopped, 1 barrier broken, 2 recorded, 3 tree broken, 4 tree
+ *    that stands and turned the rock), Time, Velocity, Speed, KineticEnergy, HeightOverGround (of the centre), EnergyTaken.
  *
  * The run is simulated once; any time is then served from it until a property or an input changes.
  * The time steps are those from 0 to EndTime at OutputInterval, whenever the last rock stops: this

@@ -505,7 +505,7 @@ void readBarriers(const StructureFiles& files, const Terrain& terrain, Structure
 {
   LayerWish wish = wishFor(files.barriers, files.barrierLayer, "BarrierLayerName");
   wish.columns = { { "height" } };
-  forEachRow(wish, terrain, notes, { "height", "capacity", "mode", "absorbs" },
+  forEachRow(wish, terrain, notes, { "height", "capacity", "overhang", "mode", "absorbs" },
     [&](const FeatureRow& row, std::int64_t count, Placing& placing)
     {
       Barrier b;
@@ -524,6 +524,7 @@ void readBarriers(const StructureFiles& files, const Terrain& terrain, Structure
       {
         refuseOtherUnits(row, b.height, capacity);
       }
+      b.overhang = row.ranged({ "overhang" }, 0.0, 0.5, "0 to 0.5").value_or(b.overhang);
       b.absorbs = row.ranged({ "absorbs" }, 0.0, 1.0, "1 or 0").value_or(1.0) != 0.0;
       for (std::vector<Eigen::Vector2d>& line : linesOf(row, placing))
       {

@@ -56,13 +56,14 @@ TEST(Barriers, CatchWhatIsBelowHeightAndCapacity)
   const double speed = 20.0, fallen = 0.5 * kGravity * 0.25; // 0.5 s to the barrier
   const double energy = 0.5 * 2500.0 * speed * speed + 2500.0 * kGravity * fallen;
   const double crossing = 6.0 - fallen;
-  for (const double height : { crossing - 1e-6, crossing + 1e-6 })
+  const double top = crossing + 0.5;
+  for (const double height : { top - 1e-6, top + 1e-6 })
   {
     for (const double capacity : { energy * (1.0 - 1e-9), energy * (1.0 + 1e-9) })
     {
       const Trajectory t =
         simulate(withBarrier(height, capacity), thrown(6.0, speed), rigidParameters(0.6));
-      if (height < crossing)
+      if (height < top)
       {
         EXPECT_TRUE(t.structures.empty());
         EXPECT_NEAR(t.summary.stop.x(), 62.0, 1e-9);
@@ -195,18 +196,147 @@ TEST(Barriers, CatchWhatSlides)
       const double speed = 12.0;
       const double energy =
         1250.0 * (speed * speed - 2.0 * kGravity * std::tan(radians(20.0)) * 10.0);
-      const Trajectory t = simulate(withBarrier(1.0, 1.01 * energy), thrown(0.5, speed), p);
+      const Trajectory t = simulate(withBarrier(1.01, 1.01 * energy), thrown(0.5, speed), p);
       ASSERT_EQ(t.summary.fate, Fate::Caught);
       EXPECT_NEAR(t.summary.stop.x(), 60.0, 1e-6);
       EXPECT_NEAR(t.structures[0].kineticEnergy, energy, 5e-3 * energy); // METHOD 9.2: 1 %
       EXPECT_NEAR(t.summary.energy.structures, energy, 5e-3 * energy);
       EXPECT_LT(std::abs(t.summary.energy.numerical), 1e-3 * energy);
-      // Lower than its centre, or with less capacity, it does not.
-      EXPECT_EQ(simulate(withBarrier(0.49, 1.01 * energy), thrown(0.5, speed), p).summary.fate,
+      // Lower than its top, or with less capacity, it does not.
+      EXPECT_EQ(simulate(withBarrier(0.99, 1.01 * energy), thrown(0.5, speed), p).summary.fate,
         Fate::Rested);
-      EXPECT_EQ(
-        simulate(withBarrier(1.0, 0.9 * energy), thrown(0.5, speed), p).summary.fate, Fate::Rested);
+      EXPECT_EQ(simulate(withBarrier(1.01, 0.9 * energy), thrown(0.5, speed), p).summary.fate,
+        Fate::Rested);
     }
+  }
+}
+
+namespace
+{
+
+/// Whether nets on level ground, or on a dam, hold a rock, alone and in a mass fall alike.
+bool hold(const std::vector<Barrier>& nets, const Rock& rock, const Embankment* dam = nullptr)
+{
+  Terrain terrain = makePlane(21, 100.0, 0.0, 0.0, material(0.5, 20.0));
+  Structures s;
+  s.barriers = nets;
+  if (dam)
+  {
+    s.embankments = { *dam };
+  }
+  terrain.setStructures(s);
+  bool held[2];
+  for (const bool together : { false, true })
+  {
+    SimulationParameters p = rigidParameters(0.6);
+    p.rockRockContact = together;
+    TrajectoryStore store(1, 1);
+    runEnsemble(terrain, std::vector<Rock>{ rock }, p, store);
+    held[together] = store.trajectories()[0].summary.fate == Fate::Caught;
+  }
+  EXPECT_EQ(held[0], held[1]);
+  return held[0];
+}
+
+Barrier netAcross(const std::vector<Eigen::Vector2d>& points, double height, double overhang)
+{
+  Barrier net;
+  net.points = points;
+  net.height = height;
+  net.overhang = overhang;
+  return net;
+}
+
+} // namespace
+
+/// A cube of 1 m comes 0.5 s later with its centre 4.774 m over ground.
+TEST(Barriers, HoldNoMoreThanAShareOfTheRockOverTheRope)
+{
+  const double crossing = 6.0 - 0.5 * kGravity * 0.25;
+  for (const double share : { 0.0, 0.25, 0.5 })
+  {
+    for (const double tilt : { 0.0, 45.0 })
+    {
+      Rock rock = thrown(6.0, 20.0);
+      rock.orientation = Quat(Eigen::AngleAxisd(radians(tilt), Vec3::UnitY()));
+      const double half = tilt > 0.0 ? std::sqrt(0.5) : 0.5;
+      const double rope = crossing + half * (1.0 - 2.0 * share);
+      for (const double more : { -1e-6, 1e-6 })
+      {
+        EXPECT_EQ(hold({ netAcross({ { 60.0, 20.0 }, { 60.0, 80.0 } }, rope + more, share) }, rock),
+          more > 0.0)
+          << share << ' ' << tilt;
+      }
+    }
+  }
+}
+
+TEST(Barriers, EndByTheRocksWidth)
+{
+  for (const double share : { 0.0, 0.25, 0.5 })
+  {
+    for (const double more : { -1e-6, 1e-6 })
+    {
+      // The cube spans y = 49.5 to 50.5 m.
+      const double end = 50.5 - share + more;
+      EXPECT_EQ(
+        hold({ netAcross({ { 60.0, 20.0 }, { 60.0, end } }, 9.0, share) }, thrown(6.0, 20.0)),
+        more > 0.0)
+        << share;
+      EXPECT_EQ(hold({ netAcross({ { 60.0, 100.0 - end }, { 60.0, 80.0 } }, 9.0, share) },
+                  thrown(6.0, 20.0)),
+        more > 0.0)
+        << share;
+    }
+  }
+}
+
+/// A rock that is wider than a gap does not go through it, wherever its centre is.
+TEST(Barriers, GapsByTheRocksWidth)
+{
+  for (const double middle : { 49.7, 50.0, 50.3 })
+  {
+    for (const double half : { 0.15, 0.35, 0.9 })
+    {
+      for (const double bend : { 0.0, 5.0 }) // m over 30 m
+      {
+        const std::vector<Barrier> nets = {
+          netAcross({ { 60.0 + bend, 20.0 }, { 60.0, middle - half } }, 9.0, 0.0),
+          netAcross({ { 60.0, middle + half }, { 60.0 + bend, 80.0 } }, 9.0, 0.0)
+        };
+        const bool inside = middle - half >= 49.5 && middle + half <= 50.5;
+        EXPECT_EQ(hold(nets, thrown(6.0, 20.0)), inside) << middle << ' ' << half << ' ' << bend;
+      }
+    }
+  }
+}
+
+TEST(Barriers, WithOnePostAreOne)
+{
+  for (const double bend : { 0.0, 10.0, -10.0 }) // m over 30 m
+  {
+    const std::vector<Barrier> nets = { netAcross(
+                                          { { 60.0 + bend, 20.0 }, { 60.0, 50.1 } }, 9.0, 0.0),
+      netAcross({ { 60.0, 50.1 }, { 60.0 + bend, 80.0 } }, 9.0, 0.0) };
+    EXPECT_TRUE(hold(nets, thrown(6.0, 20.0))) << bend;
+  }
+}
+
+TEST(Barriers, OnACrestStandOnIt)
+{
+  Embankment dam;
+  dam.feature = 1;
+  dam.points = { { 60.0, 20.0 }, { 60.0, 80.0 } };
+  dam.height = 3.0;
+  dam.crestWidth = 2.0;
+  dam.mountainSlope = dam.valleySlope = 0.5;
+  const double crossing = 6.0 - 0.5 * kGravity * 0.25;
+  for (const double more : { -1e-6, 1e-6 })
+  {
+    const double rope = crossing + 0.5 - dam.height + more; // over the crest
+    EXPECT_EQ(
+      hold({ netAcross({ { 60.0, 20.0 }, { 60.0, 80.0 } }, rope, 0.0) }, thrown(6.0, 20.0), &dam),
+      more > 0.0);
   }
 }
 

@@ -1,0 +1,40 @@
+#pragma once
+
+/// @file
+/// Whether a barrier holds a rock that passes its line: by the rock's size, not by its centre.
+///
+/// The rock's outline is seen along the line. Less a share of its height and width that may stand
+/// out (Barrier::overhang), its top must be under the rope, and its left and right side each before
+/// a net, the same or another one. So a rock passes beside an end, and between two nets through a
+/// gap that is wider than the rock.
+
+#include "block/Block.h"
+
+#include <span>
+
+namespace rockfall
+{
+
+class Obstacles;
+
+/// Where the line of a barrier is passed on a way.
+struct BarrierPassage
+{
+  double fraction = 0.0; ///< Of the way; by rounding rather behind the line.
+  int barrier = -1;
+  int piece = -1; ///< Of Obstacles::barrierPieces.
+
+  /// Two pieces of a barrier meet at one place.
+  bool operator==(const BarrierPassage& other) const
+  {
+    return fraction == other.fraction && barrier == other.barrier;
+  }
+};
+
+/// For a rock that stands so on the line of a piece of a barrier, or on its continuation, with its
+/// centre this high over the barrier's foot (m; NaN: there is no ground to stand on). `broken`
+/// barriers hold nothing.
+bool holdsOutline(const Obstacles& obstacles, int piece, std::span<const int> broken,
+  const Block& block, const BlockState& at, double height);
+
+} // namespace rockfall
