@@ -8,7 +8,7 @@ from wholefile import write_csv, write_text
 
 # The first that a column's name begins with, or is.
 UNITS = tuple((re.compile(pattern), unit) for pattern, unit in (
-    (r"Energy(InKilojoules|Maximum$)|Design(Energy|Mass)InKilo|(Maximum|Service)EnergyLevel|BarrierCapacity", "kJ"),
+    (r"EnergyLineAngle", "°"), (r"Energy(InKilojoules|Maximum$)|Design(Energy|Mass)InKilo|(Maximum|Service)EnergyLevel|BarrierCapacity", "kJ"),
     (r"(Max)?KineticEnergy|(Trans|Rot)\w*Energy|Energy|LastingLoss", "J"),
     (r"(Max)?Speed|Velocity", "m/s"), (r"RotationRate", "rad/s"), (r"(Horizontal|Vertical)Angle", "°"),
     (r"\w*Height|Width|Distance|Offset|RunOut|PathLength|(Start|Stop)?[XYZ]$", "m"), (r"(End)?Time$", "s"), (r"Mass$", "kg"),
@@ -22,6 +22,7 @@ RASTERS = tuple((re.compile(pattern), *rest) for pattern, *rest in (
     (r"KineticEnergy", (1e4, 3e4, 1e5, 3e5, 1e6, 3e6, 1e12), 1e-3, "kJ", ENERGY),
     (r"HeightOverGround", (0.5, 1.0, 2.0, 3.0, 5.0, 10.0, 1e6), 1.0, "m", HEIGHT),
     (r"Speed", (5.0, 10.0, 15.0, 20.0, 30.0, 40.0, 1e6), 1.0, "m/s", ENERGY),
+    (r"EnergyLineAngle", (25.0, 27.0, 30.0, 33.0, 36.0, 40.0, 90.0), 1.0, "°", HEIGHT[::-1]),
     (r"AnnualFrequency", (1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1e6), 1.0, "1/a", REACH),
     (r"ReturnPeriod", (10.0, 30.0, 100.0, 300.0, 1000.0, 1e9), 1.0, "a", REACH[::-1])))
 CLASSES = ((1, "#ffe680", "weak"), (2, "#e08a2e", "medium"), (3, "#8b0a1a", "strong"))  # of Intensity…

@@ -1,6 +1,7 @@
 #include "vtkHazardMapWriter.h"
 
 #include "base/errors.h"
+#include "files/layerStyles.h"
 #include "gis/raster/rasterWriter.h"
 #include "shared/attempt.h"
 #include "shared/inputs.h"
@@ -20,21 +21,6 @@ vtkStandardNewMacro(vtkHazardMapWriter);
 
 namespace
 {
-
-std::string unitOf(const std::string& name)
-{
-  const std::pair<const char*, const char*> units[] = { { "KineticEnergy", "J" },
-    { "Speed", "m/s" }, { "HeightOverGround", "m" }, { "RotationRate", "rad/s" },
-    { "AnnualFrequency", "1/a" }, { "ReturnPeriod", "a" }, { "EnergyLineAngle", "degrees" } };
-  for (const auto& [start, unit] : units)
-  {
-    if (name.rfind(start, 0) == 0)
-    {
-      return unit;
-    }
-  }
-  return {};
-}
 
 rockfall::MapImage mapOf(vtkImageData* image)
 {
@@ -70,7 +56,7 @@ rockfall::MapImage mapOf(vtkImageData* image)
     }
     rockfall::MapBand& band = map.bands.emplace_back();
     band.name = array->GetName();
-    band.unit = unitOf(band.name);
+    band.unit = rockfall::filters::unitOf(band.name);
     band.fill = [array, columns = map.columns](int row, std::span<float> values)
     {
       for (std::size_t c = 0; c < values.size(); ++c)

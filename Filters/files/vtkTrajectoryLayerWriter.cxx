@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "base/types.h"
+#include "files/layerStyles.h"
 #include "gis/layers/layerWriter.h"
 #include "shared/attempt.h"
 #include "shared/inputs.h"
@@ -137,6 +138,7 @@ void writeTrajectories(vtkPolyData* data, LayerWriter& writer)
   attributes.Append(data->GetCellData());
   vtkDataArray* time = data->GetPointData()->GetArray("Time");
   writer.beginLayer("trajectories", LayerWriter::Geometry::MeasuredLine, attributes.Fields);
+  writer.setStyle(rockfall::filters::layerStyle("trajectories", attributes.Fields));
   std::vector<Vec3> places;
   std::vector<double> measures;
   std::vector<FieldValue> values;
@@ -164,7 +166,9 @@ void writeLinePoints(vtkPolyData* data, bool all, LayerWriter& writer)
   ofPoint.Append(data->GetPointData());
   std::vector<LayerField> fields = ofLine.Fields;
   fields.insert(fields.end(), ofPoint.Fields.begin(), ofPoint.Fields.end());
-  writer.beginLayer(all ? "samples" : "ends", LayerWriter::Geometry::Point, fields);
+  const std::string name = all ? "samples" : "ends";
+  writer.beginLayer(name, LayerWriter::Geometry::Point, fields);
+  writer.setStyle(rockfall::filters::layerStyle(name, fields));
   std::vector<FieldValue> values;
   forEachCell(data->GetLines(), data->GetNumberOfVerts(),
     [&](vtkIdType cell, vtkIdType size, const vtkIdType* ids)
@@ -188,6 +192,7 @@ void writeVertices(vtkPolyData* data, LayerWriter& writer)
   std::vector<LayerField> fields = ofVertex.Fields;
   fields.insert(fields.end(), ofPoint.Fields.begin(), ofPoint.Fields.end());
   writer.beginLayer("points", LayerWriter::Geometry::Point, fields);
+  writer.setStyle(rockfall::filters::layerStyle("points", fields));
   std::vector<FieldValue> values;
   forEachCell(data->GetVerts(), 0,
     [&](vtkIdType cell, vtkIdType size, const vtkIdType* ids)

@@ -6,6 +6,8 @@ import json
 import os
 import re
 import subprocess
+import sys
+from xml.etree import ElementTree
 
 from helpers import errors_of, incline, messages_of, write_grid
 
@@ -13,6 +15,9 @@ from paraview import servermanager
 from paraview.simple import (
     DEMtoCFEMesh, OutputPort, PolyLineSource, RockBlocks, RockfallHazardMap, RockfallSimulation,
     SaveData, TrajectoryCollector, Wavelet)
+
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Examples", "study_parts"))
+import gis
 
 
 def run(*command, text=None):
@@ -100,6 +105,26 @@ for name, proxy, port in (("impacts", fall, 2), ("crossings", collector, 0)):
     assert count > 0 and f"Feature Count: {count}\n" in layers and "3D Point" in layers, layers
 assert "LineName: String" in layers and "CaughtShare" not in layers, layers
 assert re.search(r"Extent: \(700100\.0+, 40001", layers), layers
+
+# QGIS finds a style for every layer, with units; energies in the classes of a study's tables.
+def styles_of(path):
+    rows = json.loads(run("ogr2ogr", "-f", "GeoJSON", "/vsistdout/", path, "layer_styles"))["features"]
+    assert all(row["properties"]["useAsDefault"] for row in rows), rows
+    return {row["properties"]["f_table_name"]: ElementTree.fromstring(row["properties"]["styleQML"]) for row in rows}
+
+
+styles = styles_of("paths.gpkg")
+assert {name: style.find("renderer-v2").get("type") for name, style in styles.items()} == {
+    "trajectories": "singleSymbol", "ends": "categorizedSymbol", "samples": "graduatedSymbol"}, styles
+crossing = styles_of("crossings.gpkg")["points"]
+aliases = {one.get("field"): one.get("name") for one in crossing.iter("alias")}
+assert aliases["KineticEnergy"] == "KineticEnergy (J)" and aliases["Mass"] == "Mass (kg)" and "Line" not in aliases
+for name in ("KineticEnergy", "Mass", "VelocityX", "Time", "Distance", "HeightOverGround", "VerticalAngle", "Width"):
+    assert aliases[name].endswith(f" ({gis.unit_of(name)})"), name
+other = ElementTree.fromstring(gis.table_style(["KineticEnergy"], "KineticEnergy"))
+for kind, values in (("range", lambda one: (float(one.get("lower")), float(one.get("upper")), one.get("label"))),
+                     ("prop[@k='color']", lambda one: one.get("v"))):
+    assert [values(one) for one in crossing.iterfind(f".//{kind}")] == [values(one) for one in other.iterfind(f".//{kind}")]
 
 # CSV with geometry, types and CRS.
 writer = servermanager.writers.TrajectoryLayerWriter(

@@ -9,7 +9,9 @@
 #include <cpl_string.h>
 #include <ogrsf_frmts.h>
 
+#include <array>
 #include <cmath>
+#include <utility>
 
 namespace rockfall
 {
@@ -64,6 +66,45 @@ struct LayerWriter::State
   DatasetPtr dataset;
   OGRLayer* layer = nullptr;
   Geometry geometry = Geometry::Point;
+  std::vector<std::array<std::string, 3>> styles; ///< Layer, its column of geometry, QML.
+
+  /// The table by which QGIS knows how layers are to look.
+  void writeStyles()
+  {
+    OGRLayer* table = dataset->CreateLayer("layer_styles", nullptr, wkbNone, nullptr);
+    const std::pair<const char*, OGRFieldType> fields[] = { { "f_table_catalog", OFTString },
+      { "f_table_schema", OFTString }, { "f_table_name", OFTString },
+      { "f_geometry_column", OFTString }, { "styleName", OFTString }, { "styleQML", OFTString },
+      { "styleSLD", OFTString }, { "useAsDefault", OFTInteger }, { "description", OFTString },
+      { "owner", OFTString }, { "ui", OFTString }, { "update_time", OFTDateTime } };
+    for (const auto& [name, type] : fields)
+    {
+      OGRFieldDefn field(name, type);
+      field.SetSubType(type == OFTInteger ? OFSTBoolean : OFSTNone);
+      if (!table || table->CreateField(&field) != OGRERR_NONE)
+      {
+        fail();
+      }
+    }
+    for (const auto& [name, column, qml] : styles)
+    {
+      OGRFeature row(table->GetLayerDefn());
+      for (const char* empty :
+        { "f_table_catalog", "f_table_schema", "styleSLD", "description", "owner" })
+      {
+        row.SetField(empty, "");
+      }
+      row.SetField("f_table_name", name.c_str());
+      row.SetField("f_geometry_column", column.c_str());
+      row.SetField("styleName", name.c_str());
+      row.SetField("styleQML", qml.c_str());
+      row.SetField("useAsDefault", 1);
+      if (table->CreateFeature(&row) != OGRERR_NONE)
+      {
+        fail();
+      }
+    }
+  }
 };
 
 LayerWriter::LayerWriter(const std::string& fileName, const std::string& crs)
@@ -148,6 +189,14 @@ void LayerWriter::beginLayer(
   }
 }
 
+void LayerWriter::setStyle(const std::string& qml)
+{
+  if (state_->layer && !state_->csv)
+  {
+    state_->styles.push_back({ state_->layer->GetName(), state_->layer->GetGeometryColumn(), qml });
+  }
+}
+
 void LayerWriter::add(std::span<const Vec3> places, std::span<const double> measures,
   std::span<const FieldValue> values)
 {
@@ -199,6 +248,10 @@ void LayerWriter::commit()
   if (state.layer && !state.csv && state.dataset->CommitTransaction() != OGRERR_NONE)
   {
     state.fail();
+  }
+  if (!state.styles.empty())
+  {
+    state.writeStyles();
   }
   state.messages.clear();
   state.dataset.reset();

@@ -52,6 +52,9 @@ public:
   /// Throws FileError, also for a second layer of a CSV file.
   void beginLayer(
     const std::string& name, Geometry geometry, const std::vector<LayerField>& fields);
+  /// How QGIS opens the layer that was begun last: its QML, in the table layer_styles of a
+  /// GeoPackage. Nothing in a CSV file.
+  void setStyle(const std::string& qml);
   /// A feature; `values` as many as fields. A point has one place, a line one measure for each.
   void add(std::span<const Vec3> places, std::span<const double> measures,
     std::span<const FieldValue> values);
