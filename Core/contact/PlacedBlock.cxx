@@ -1,5 +1,7 @@
 #include "contact/PlacedBlock.h"
 
+#include "contact/ground/roundContact.h"
+
 #include <Eigen/LU>
 
 #include <limits>
@@ -58,6 +60,12 @@ void PlacedBlock::placeVertices()
     vertices_[i] = v;
     lower = lower.cwiseMin(v);
     upper = upper.cwiseMax(v);
+  }
+  if (isRound(*this))
+  {
+    const Vec3 reach = roundAxes(*this).rowwise().norm();
+    lower = center - reach;
+    upper = center + reach;
   }
   lower_ = lower;
   upper_ = upper;

@@ -2,7 +2,10 @@
 
 #include "base/errors.h"
 #include "base/text/numberText.h"
+#include "geometry/roundBody.h"
 #include "geometry/shell.h"
+
+#include <Eigen/Eigenvalues>
 
 #include <algorithm>
 #include <cmath>
@@ -148,6 +151,11 @@ Polyhedron Polyhedron::fromShell(
   }
   result.integrals = integrateSimplices(result.vertices, result.faces);
   result.updateDistances();
+  if (isRound(result.layout))
+  {
+    result.integrals = roundBodyOf(result.vertices, result.normals, result.offsets)->integrals();
+    result.updateDistances();
+  }
   return Polyhedron(std::move(result));
 }
 
@@ -180,6 +188,10 @@ void Polyhedron::Parts::updateDistances()
     radius = std::max(radius, (vertex - integrals.centroid).norm());
   }
   layout = ShapeLayout(vertices, faces, normals, offsets);
+  if (isRound(layout))
+  {
+    radius = std::max(radius, roundAxes(layout).operatorNorm());
+  }
 }
 
 Polyhedron Polyhedron::transformed(double scale, const Quat& rotation, const Vec3& shift) const
@@ -218,7 +230,9 @@ Polyhedron Polyhedron::centred() const
 {
   // Twice, because the centroid of a body far from the origin is itself rounded.
   Parts once = *this->transformed(1.0, Quat::Identity(), -this->integrals().centroid).parts_;
-  once.integrals = integrateSimplices(once.vertices, once.faces);
+  once.integrals = isRound(once.layout)
+    ? roundBodyOf(once.vertices, once.normals, once.offsets)->integrals()
+    : integrateSimplices(once.vertices, once.faces);
   const Vec3 rest = once.integrals.centroid;
   return Polyhedron(std::move(once)).transformed(1.0, Quat::Identity(), -rest);
 }

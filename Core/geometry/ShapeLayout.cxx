@@ -1,5 +1,7 @@
 #include "geometry/ShapeLayout.h"
 
+#include "geometry/roundBody.h"
+
 #include <algorithm>
 #include <limits>
 
@@ -38,6 +40,11 @@ ShapeLayout::ShapeLayout(std::span<const Vec3> points, std::span<const std::vect
   {
     corners.insert(corners.end(), loop.begin(), loop.end());
     starts.push_back(int(corners.size()));
+  }
+  if (const std::optional<RoundBody> round = roundBodyOf(points, normals, offsets))
+  {
+    inside = round->least;
+    data.insert(data.end(), round->axes.data(), round->axes.data() + 9);
   }
 }
 

@@ -3,10 +3,13 @@
 #include "base/errors.h"
 #include "base/text/nameKey.h"
 #include "base/text/numberText.h"
+#include "geometry/roundShapes.h"
 #include "geometry/shell.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 
 namespace rockfall
@@ -21,7 +24,10 @@ struct NamedShape
   const char* name;
 };
 
-constexpr std::array<NamedShape, 9> names = { {
+/// Its mesh shows no longer one, and it rolls and stands as no rock does.
+constexpr double kLongestEllipsoid = 5.0;
+
+constexpr std::array<NamedShape, kShapes> names = { {
   { Shape::Cube, "cube" },
   { Shape::Tetrahedron, "tetrahedron" },
   { Shape::Octahedron, "octahedron" },
@@ -31,6 +37,8 @@ constexpr std::array<NamedShape, 9> names = { {
   { Shape::Eota111, "eota111" },
   { Shape::Eota221, "eota221" },
   { Shape::File, "file" },
+  { kSphere, "sphere" },
+  { kEllipsoid, "ellipsoid" },
 } };
 
 /// All sign changes of the non-zero coordinates, in the three cyclic orders of the axes.
@@ -92,6 +100,66 @@ std::vector<Vec3> corners(Shape shape)
   return points;
 }
 
+/// The unit sphere as 20 · 4³ triangles: an icosahedron, each side halved three times.
+struct RoundMesh
+{
+  std::vector<Vec3> points;
+  std::vector<std::vector<int>> faces;
+
+  RoundMesh()
+  {
+    const Polyhedron start = Polyhedron::convexHull(corners(Shape::Icosahedron), "sphere");
+    for (const Vec3& p : start.vertices())
+    {
+      points.push_back(p.normalized());
+    }
+    faces = start.faces();
+    for (int k = 0; k < 3; ++k)
+    {
+      std::map<std::pair<int, int>, int> middles;
+      const auto middle = [&](int a, int b)
+      {
+        const auto [at, isNew] = middles.try_emplace(std::minmax(a, b), int(points.size()));
+        if (isNew)
+        {
+          points.push_back((points[std::size_t(a)] + points[std::size_t(b)]).normalized());
+        }
+        return at->second;
+      };
+      std::vector<std::vector<int>> finer;
+      for (const std::vector<int>& f : faces)
+      {
+        const int a = middle(f[0], f[1]), b = middle(f[1], f[2]), c = middle(f[2], f[0]);
+        finer.insert(finer.end(), { { f[0], a, c }, { a, f[1], b }, { c, b, f[2] }, { a, b, c } });
+      }
+      faces = std::move(finer);
+    }
+  }
+};
+
+Polyhedron roundShape(const Vec3& semiAxes, const std::string& name)
+{
+  static const RoundMesh mesh;
+  std::vector<Vec3> points;
+  for (const Vec3& p : mesh.points)
+  {
+    points.push_back(p.cwiseProduct(semiAxes));
+  }
+  return Polyhedron::fromFaces(points, mesh.faces, name).centred();
+}
+
+void requireLengths(const Vec3& lengths, const std::string& name)
+{
+  for (int k = 0; k < 3; ++k)
+  {
+    if (!(lengths[k] > 0.0) || !std::isfinite(lengths[k]))
+    {
+      throw ParameterError(std::string("Lengths: the ") + "xyz"[k] + " length of the " + name +
+        " is " + numberText(lengths[k]) + " m, it must be positive and finite");
+    }
+  }
+}
+
 } // namespace
 
 Polyhedron makeShape(Shape shape, double volume)
@@ -106,24 +174,22 @@ Polyhedron makeShape(Shape shape, double volume)
   {
     return makeBox(Vec3::Constant(std::cbrt(volume)));
   }
-  if (shape == Shape::Box || shape == Shape::File)
+  if (shape == Shape::Box || shape == kEllipsoid || shape == Shape::File)
   {
     throw ParameterError("Shape " + name +
-      " is not made from a volume alone: a box needs its lengths, a file its name");
+      " is not made from a volume alone: a box and an ellipsoid need their lengths, a file its "
+      "name");
+  }
+  if (shape == kSphere)
+  {
+    return roundShape(Vec3::Ones(), name).withVolume(volume);
   }
   return Polyhedron::convexHull(corners(shape), name).centred().withVolume(volume);
 }
 
 Polyhedron makeBox(const Vec3& lengths)
 {
-  for (int k = 0; k < 3; ++k)
-  {
-    if (!(lengths[k] > 0.0) || !std::isfinite(lengths[k]))
-    {
-      throw ParameterError(std::string("Lengths: the ") + "xyz"[k] + " length of the box is " +
-        numberText(lengths[k]) + " m, it must be positive and finite");
-    }
-  }
+  requireLengths(lengths, "box");
   // Corner i has the bits of i for its sides: 1 = east, 2 = north, 4 = up.
   std::vector<Vec3> points;
   for (int i = 0; i < 8; ++i)
@@ -143,6 +209,18 @@ Polyhedron makeBox(const Vec3& lengths)
     throw ParameterError("Lengths are " + numberText(lengths.x()) + ", " + numberText(lengths.y()) +
       " and " + numberText(lengths.z()) + " m, of which no box can be made (" + error.what() + ")");
   }
+}
+
+Polyhedron makeEllipsoid(const Vec3& lengths)
+{
+  requireLengths(lengths, "ellipsoid");
+  if (lengths.maxCoeff() > kLongestEllipsoid * lengths.minCoeff())
+  {
+    throw ParameterError("Lengths are " + numberText(lengths.x()) + ", " + numberText(lengths.y()) +
+      " and " + numberText(lengths.z()) + " m, of an ellipsoid none may be more than " +
+      numberText(kLongestEllipsoid) + " times another one");
+  }
+  return roundShape(0.5 * lengths, "ellipsoid");
 }
 
 std::string shapeName(Shape shape)

@@ -4,6 +4,8 @@
 
 #include "base/grow.h"
 #include "block/flight.h"
+#include "contact/ground/roundContact.h"
+#include "geometry/roundBody.h"
 #include "law/settings.h"
 
 #include <algorithm>
@@ -13,16 +15,44 @@
 namespace rockfall
 {
 
+namespace
+{
+
+/// Places where the ground's slope under a round rock is looked at, share of r.
+constexpr double kGroundAside = 1e-3;
+
+} // namespace
+
 double heightOverGround(const Surface& surface, const Block& block, const BlockState& state)
 {
   double lowest = std::numeric_limits<double>::infinity();
-  for (const Vec3& x : block.shape().vertices())
+  const auto look = [&](const Vec3& p)
   {
-    const Vec3 p = state.position + state.orientation * x;
     const double ground = surface.elevation(p.x(), p.y());
     if (!std::isnan(ground))
     {
       lowest = std::min(lowest, p.z() - ground);
+    }
+  };
+  if (isRound(block.shape().layout()))
+  {
+    // Straight under the centre and square to the ground there.
+    const Mat3 axes = state.orientation.toRotationMatrix() * roundAxes(block.shape().layout());
+    const Vec3& c = state.position;
+    const double side = kGroundAside * block.radius();
+    const auto at = [&](double x, double y)
+    { return surface.elevation(c.x() + x * side, c.y() + y * side); };
+    for (const Vec3& n :
+      { Vec3(Vec3::UnitZ()), Vec3(at(-1, 0) - at(1, 0), at(0, -1) - at(0, 1), 2.0 * side) })
+    {
+      look(c - axes * (axes.transpose() * n) / roundReach(axes, n));
+    }
+  }
+  else
+  {
+    for (const Vec3& x : block.shape().vertices())
+    {
+      look(state.position + state.orientation * x);
     }
   }
   return std::isinf(lowest) ? std::numeric_limits<double>::quiet_NaN() : lowest;

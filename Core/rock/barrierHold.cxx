@@ -1,6 +1,6 @@
 #include "rock/barrierHold.h"
 
-#include "contact/PlacedBlock.h"
+#include "contact/ground/roundContact.h"
 #include "law/settings.h"
 #include "terrain/Obstacles.h"
 
@@ -32,6 +32,13 @@ Outline outlineAlong(const Vec2& line, const Block& block, const BlockState& at)
   Outline o;
   PlacedBlock placed;
   placed.place(block, at);
+  if (isRound(placed))
+  {
+    const Mat3 axes = roundAxes(placed);
+    o.right = roundReach(axes, Vec3(line.x(), line.y(), 0.0));
+    o.top = roundReach(axes, Vec3::UnitZ());
+    return { -o.right, o.right, -o.top, o.top };
+  }
   for (const Vec3& vertex : placed.vertices())
   {
     const Vec3 from = vertex - at.position;

@@ -1,6 +1,8 @@
 #include "rock/placement.h"
 
 #include "contact/ground/features.h"
+#include "contact/ground/roundContact.h"
+#include "geometry/roundBody.h"
 #include "law/settings.h"
 
 #include <algorithm>
@@ -169,6 +171,21 @@ double liftOverTriangles(const Body& body, const SurfacePatch& patch)
   return lift;
 }
 
+/// How high the centre of a round body with these axes is where it touches; −∞ if it misses all.
+double roundHeight(const Mat3& axes, double x, double y, const SurfacePatch& patch)
+{
+  double height = none;
+  for (const SurfacePatch::Triangle& t : patch.triangles)
+  {
+    if (t.cfe != 0)
+    {
+      const auto corner = [&](int k) { return patch.nodes[std::size_t(t.nodes[k])].position; };
+      height = std::max(height, -roundDrop(axes, Vec3(x, y, 0.0), corner(0), corner(1), corner(2)));
+    }
+  }
+  return height;
+}
+
 } // namespace
 
 double touchingHeight(
@@ -178,6 +195,13 @@ double touchingHeight(
   if (std::isnan(ground))
   {
     return ground;
+  }
+  SurfacePatch patch;
+  const double r = shape.radius();
+  gatherPatch(surface, x - r, x + r, y - r, y + r, patch);
+  if (isRound(shape.layout()))
+  {
+    return roundHeight(orientation.toRotationMatrix() * roundAxes(shape.layout()), x, y, patch);
   }
   const Body body(shape, orientation.toRotationMatrix(), x, y, 1.0);
   double lift = ground - body.underside(x, y);
@@ -189,9 +213,6 @@ double touchingHeight(
       lift = std::max(lift, below - v.z());
     }
   }
-  SurfacePatch patch;
-  const double r = shape.radius();
-  gatherPatch(surface, x - r, x + r, y - r, y + r, patch);
   return std::max(lift, liftOverNodesAndEdges(body, patch));
 }
 
@@ -205,10 +226,17 @@ double liftOut(const PlacedBlock& rock, const SurfacePatch& patch)
 {
   // Beside an upright wall rounding must not decide between nothing and all of its height, so the
   // rock is taken a hair smaller than it is.
-  const Body body(
-    rock.block().shape(), rock.rotation(), rock.position().x(), rock.position().y(), 1.0 - kTouch);
-  const double height =
-    std::max(liftOverNodesAndEdges(body, patch), liftOverTriangles(body, patch));
+  const double x = rock.position().x(), y = rock.position().y();
+  double height = none;
+  if (isRound(rock))
+  {
+    height = roundHeight((1.0 - kTouch) * roundAxes(rock), x, y, patch);
+  }
+  else
+  {
+    const Body body(rock.block().shape(), rock.rotation(), x, y, 1.0 - kTouch);
+    height = std::max(liftOverNodesAndEdges(body, patch), liftOverTriangles(body, patch));
+  }
   const double lift = height - rock.position().z();
   return lift > kTouch * rock.block().radius() ? lift : 0.0;
 }

@@ -2,6 +2,7 @@
 
 #include "block/flight.h"
 #include "contact/ground/clearance.h"
+#include "contact/ground/roundContact.h"
 #include "contact/ground/timeToTouch.h"
 #include "law/settings.h"
 #include "rock/RockSimulator.h"
@@ -67,7 +68,7 @@ StemHit hitOn(const Tree& stem, const Block& block, const BlockState& state)
   }
   PlacedBlock placed;
   placed.place(block, state);
-  double reach = 0.0;
+  double reach = isRound(placed) ? roundReach(roundAxes(placed), side) : 0.0;
   for (const Vec3& vertex : placed.vertices())
   {
     reach = std::max(reach, side.dot(state.position - vertex));

@@ -2,6 +2,7 @@
 
 #include "base/abort.h"
 #include "base/errors.h"
+#include "geometry/roundBody.h"
 #include "law/limits.h"
 #include "run/releaseChecks.h"
 #include "run/stateHash.h"
@@ -112,6 +113,17 @@ double penaltyByMass(double mass, const Terrain& terrain)
   return std::max(least, frequency * frequency * mass);
 }
 
+/// Round bodies have contacts with the slope only.
+void refuseRound(const Rock& rock, const SimulationParameters& p)
+{
+  if (p.rockRockContact && isRound(rock.shape.layout()))
+  {
+    throw ParameterError("block " + std::to_string(rock.blockId) +
+      " is a sphere or an ellipsoid, which must fall alone: RockRockContact must be 0, or the "
+      "block another shape, as an icosahedron");
+  }
+}
+
 /// Calls `work` on as many threads as asked for (0: all), once each; returns when all came back.
 template <typename Work>
 void onThreads(int threads, const Work& work)
@@ -155,6 +167,7 @@ Ensemble::Ensemble(
         try
         {
           rocks[std::size_t(k)].validate();
+          refuseRound(rocks[std::size_t(k)], p);
           const Block& block = blockOf(rocks[std::size_t(k)]);
           requireOnSlope(terrain, rocks[std::size_t(k)], block);
           requireStiff(rocks[std::size_t(k)], block, p);

@@ -2,7 +2,7 @@
 
 #include "base/errors.h"
 #include "base/text/numberText.h"
-#include "geometry/shapes.h"
+#include "geometry/roundShapes.h"
 #include "geometry/shell.h"
 
 #include "vtkCellArray.h"
@@ -27,7 +27,7 @@ std::string groupName(const std::string& arrayName, const vtkVariant& value)
   if (arrayName == "Shape" && value.IsNumeric())
   {
     const int number = value.ToInt();
-    if (number >= int(Shape::Cube) && number <= int(Shape::File))
+    if (number >= 0 && number < kShapes)
     {
       return shapeName(Shape(number));
     }

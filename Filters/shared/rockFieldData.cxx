@@ -3,6 +3,7 @@
 #include "base/abort.h"
 #include "base/errors.h"
 #include "base/text/numberText.h"
+#include "geometry/roundShapes.h"
 #include "geometry/shell.h"
 #include "mesh/precision.h"
 #include "shared/arrays.h"
@@ -347,7 +348,7 @@ void writeRocks(std::span<const ReleasedRock> rocks, vtkPolyData* output)
   UncertaintyArrays uncertainty(cells);
   const auto sourceName = addArray<vtkStringArray>(cells, "SourceName");
   const auto shapeNames = addArray<vtkStringArray>(output->GetFieldData(), "ShapeName");
-  for (int number = int(Shape::Cube); number <= int(Shape::File); ++number)
+  for (int number = 0; number < kShapes; ++number)
   {
     shapeNames->InsertNextValue(shapeName(Shape(number)));
   }
@@ -448,7 +449,7 @@ std::vector<ReleasedRock> readRocks(vtkPolyData* input, const Vec3& origin)
     readVector(input, "AngularVelocity", block.firstCell, rock.angularVelocity);
     double shape = double(Shape::File);
     readNumber(input, "Shape", block.firstCell, shape);
-    if (shape >= double(Shape::Cube) && shape <= double(Shape::File))
+    if (shape >= 0.0 && shape < double(kShapes))
     {
       released.shape = Shape(int(shape));
     }

@@ -5,6 +5,7 @@
 #include "base/errors.h"
 #include "base/random.h"
 #include "base/text/numberText.h"
+#include "geometry/roundShapes.h"
 #include "geometry/shell.h"
 #include "law/settings.h"
 #include "mesh/shapeFile.h"
@@ -83,10 +84,11 @@ Polyhedron RockMaker::shape(
     return fixed ? law.mean
                  : law.quantile(uniformDeviate(defaults_.seed, 0, Draw::SourceVolume, draw));
   };
-  if (kind == Shape::Box)
+  if (kind == Shape::Box || kind == kEllipsoid)
   {
-    const Polyhedron box = makeBox(row.lengths.value_or(defaults_.lengths));
-    return meant ? box.withVolume(drawn()) : box;
+    const Vec3 lengths = row.lengths.value_or(defaults_.lengths);
+    const Polyhedron made = kind == Shape::Box ? makeBox(lengths) : makeEllipsoid(lengths);
+    return meant ? made.withVolume(drawn()) : made;
   }
   if (kind != Shape::File && fixed)
   {
@@ -197,7 +199,7 @@ void RockMaker::refuseLengths(const SourceRow& row) const
   std::string names;
   for (const auto& part : shapes.parts)
   {
-    if (part.shape == Shape::Box)
+    if (part.shape == Shape::Box || part.shape == kEllipsoid)
     {
       return;
     }
@@ -207,7 +209,7 @@ void RockMaker::refuseLengths(const SourceRow& row) const
   throw ParameterError("fields \"lx\", \"ly\" and \"lz\" are " + numberText(l.x()) + ", " +
     numberText(l.y()) + " and " + numberText(l.z()) + " m, but " +
     (row.shapes ? "field \"shape\"" : "Shape") + " is " + names +
-    ": lengths are those of a box, other shapes have a \"volume\"");
+    ": lengths are those of a box or an ellipsoid, other shapes have a \"volume\"");
 }
 
 ReleasedRock RockMaker::make(

@@ -41,7 +41,9 @@ public:
     BOX = 5,
     EOTA_111 = 6,
     EOTA_221 = 7,
-    FROM_FILE = 8
+    FROM_FILE = 8,
+    SPHERE = 9,
+    ELLIPSOID = 10
   };
 
   ///@{
@@ -108,8 +110,8 @@ public:
 
   ///@{
   /**
-   * Volume in m³, positive; the mean of the normal and the log-normal law. A box has that of its
-   * Lengths instead. Default 1.
+   * Volume in m³, positive; the mean of the normal and the log-normal law. A box and an ellipsoid
+   * have that of their Lengths instead. Default 1.
    */
   vtkSetMacro(Volume, double);
   vtkGetMacro(Volume, double);
@@ -117,7 +119,8 @@ public:
 
   ///@{
   /**
-   * Edge lengths of a box along x, y and z in metres, positive. Default 1, 1, 1.
+   * Edge lengths of a box, or whole axes of an ellipsoid, along x, y and z in metres, positive.
+   * Default 1, 1, 1.
    */
   vtkSetVector3Macro(Lengths, double);
   vtkGetVector3Macro(Lengths, double);

@@ -1,5 +1,6 @@
 #include "contact/ground/features.h"
 #include "contact/ground/motion.h"
+#include "contact/ground/roundContact.h"
 #include "contact/ground/timeToTouch.h"
 #include "law/settings.h"
 
@@ -45,6 +46,10 @@ double CandidatePairs::room(const BlockState& state, double radius, double reach
 double timeToClose(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
   const CandidatePairs& candidates, double gravity, double horizon)
 {
+  if (isRound(rock))
+  {
+    return roundTimeToClose(rock, state, patch, candidates, gravity, horizon);
+  }
   const Block& block = rock.block();
   const Vec3 spin = rock.rotation() * state.spin;
   // |ω̇| ≤ |ω|²; a normal that turns with the rock turns on all of its velocity besides.
@@ -319,6 +324,11 @@ void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const Su
   candidates.orientation = state.orientation;
   if (patch.nodeRows < 2)
   {
+    return;
+  }
+  if (isRound(rock))
+  {
+    gatherRound(rock, patch, distance, candidates);
     return;
   }
   // As far as the rock may turn while the candidates serve, sine.

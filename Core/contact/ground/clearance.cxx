@@ -2,6 +2,7 @@
 #include "contact/ground/detection.h"
 #include "contact/ground/features.h"
 #include "contact/ground/motion.h"
+#include "contact/ground/roundContact.h"
 #include "law/settings.h"
 
 #include <algorithm>
@@ -121,6 +122,10 @@ Separation separate(const PlacedBlock& rock, const std::array<Vec3, 3>& q,
 Clearance clearance(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
   double gravity, double horizon)
 {
+  if (isRound(rock))
+  {
+    return roundClearance(rock, state, patch, gravity, horizon);
+  }
   Clearance result;
   result.distance = std::numeric_limits<double>::infinity();
   result.time = horizon;
@@ -171,6 +176,10 @@ double depthInWalls(const SurfacePatch& patch, const Vec3& p)
 
 double penetration(const PlacedBlock& rock, const SurfacePatch& patch)
 {
+  if (isRound(rock))
+  {
+    return roundPenetration(rock, patch);
+  }
   double deepest = 0.0;
   const Vec3 lower = rock.lower(), upper = rock.upper();
   for (const SurfacePatch::Triangle& t : std::span(patch.triangles).first(patch.slopeTriangles))
@@ -213,6 +222,10 @@ template <class Visit>
 bool visitOverlaps(const PlacedBlock& rock, const SurfacePatch& patch,
   const CandidatePairs& candidates, double allowed, Visit&& visit)
 {
+  if (isRound(rock))
+  {
+    return true; // updateContacts finds it at any depth
+  }
   for (const CandidatePairs::Pair& pair : candidates.vertexFace)
   {
     const SurfacePatch::Triangle& t = patch.triangles[pair.patch];

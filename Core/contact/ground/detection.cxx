@@ -2,6 +2,7 @@
 
 #include "contact/ground/features.h"
 #include "contact/ground/handover.h"
+#include "contact/ground/roundContact.h"
 
 #include <algorithm>
 #include <array>
@@ -125,6 +126,11 @@ void findOtherSides(
 void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch,
   const CandidatePairs& candidates, double reach, std::vector<Contact>& contacts, double turn)
 {
+  if (isRound(rock))
+  {
+    updateRound(rock, patch, candidates, reach, contacts);
+    return;
+  }
   // A contact that carries stays, as long as it is somewhere.
   std::size_t kept = 0;
   for (std::size_t i = 0; i < contacts.size(); ++i)

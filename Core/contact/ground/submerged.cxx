@@ -1,5 +1,7 @@
 #include "contact/ground/submerged.h"
 
+#include "contact/ground/roundContact.h"
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -30,6 +32,10 @@ Submerged submerged(const PlacedBlock& rock, const Plane& plane, const Vec3& dir
     const Vec3 seen = axes * vertices[v];
     corners[v] = { seen[0] - offset, seen[1], seen[2] };
     result.lowest = std::min(result.lowest, corners[v].height);
+  }
+  if (isRound(rock))
+  {
+    result.lowest = -offset - roundReach(roundAxes(rock), plane.normal); // its area is the mesh's
   }
   if (!(result.lowest < 0.0))
   {

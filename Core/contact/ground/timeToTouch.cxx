@@ -1,7 +1,9 @@
 #include "contact/ground/timeToTouch.h"
 #include "contact/ground/motion.h"
+#include "contact/ground/roundContact.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -88,6 +90,13 @@ public:
       under = std::min(closed(before), -1e-300);
     }
     time_ = before;
+    this->updateFar();
+  }
+
+  /// A gap of no place of the rock in particular.
+  void visitAny(double gap)
+  {
+    time_ = std::min(time_, timeToCover(gap, fastest_, acceleration_));
     this->updateFar();
   }
 
@@ -254,9 +263,56 @@ void visitLowPlaces(
 
 } // namespace
 
+namespace
+{
+
+/// The least gap of a round body along the vertical, m; ∞ if there is no ground under it.
+double roundGap(const PlacedBlock& rock, const HeightWindow& window)
+{
+  const Mat3 axes = roundAxes(rock);
+  double gap = std::numeric_limits<double>::infinity();
+  const auto index = [&](double v, int count)
+  { return std::clamp(int(std::floor(v * window.inverseCellSize())), 0, count - 2); };
+  const int column0 = index(rock.lower().x() - window.west(), window.columns());
+  const int column1 = index(rock.upper().x() - window.west(), window.columns());
+  const int row0 = index(window.north() - rock.upper().y(), window.rows());
+  const int row1 = index(window.north() - rock.lower().y(), window.rows());
+  for (int row = row0; row <= row1; ++row)
+  {
+    for (int column = column0; column <= column1; ++column)
+    {
+      const auto corner = [&](int r, int c)
+      { return Vec3(window.x(column + c), window.y(row + r), window.z(row + r, column + c)); };
+      const Vec3 nw = corner(0, 0), ne = corner(0, 1), sw = corner(1, 0), se = corner(1, 1);
+      const double top = std::max({ nw.z(), ne.z(), sw.z(), se.z() });
+      if (!(rock.lower().z() - top < gap)) // nor where there is no ground
+      {
+        continue;
+      }
+      // Cut along either diagonal: no gap is wider than the less of both.
+      for (const auto& [a, b, c] : { std::array{ nw, sw, se }, std::array{ nw, se, ne },
+             std::array{ nw, sw, ne }, std::array{ sw, se, ne } })
+      {
+        gap = std::min(gap, roundDrop(axes, rock.position(), a, b, c));
+      }
+    }
+  }
+  return gap;
+}
+
+} // namespace
+
 double timeToTouch(const PlacedBlock& rock, const BlockState& state, const HeightWindow& window,
   double gravity, double horizon)
 {
+  if (isRound(rock))
+  {
+    BlockState still = state; // a sphere does not come nearer by turning
+    still.spin = rock.block().isotropic() ? Vec3(Vec3::Zero()) : state.spin;
+    FirstTouch any(rock, still, window, gravity, horizon);
+    any.visitAny(roundGap(rock, window));
+    return any.time();
+  }
   FirstTouch touch(rock, state, window, gravity, horizon);
   visitLowPlaces(
     rock, window, [&] { return touch.far(); },
@@ -266,6 +322,10 @@ double timeToTouch(const PlacedBlock& rock, const BlockState& state, const Heigh
 
 double heightOver(const PlacedBlock& rock, const HeightWindow& window, double least)
 {
+  if (isRound(rock))
+  {
+    return roundGap(rock, window);
+  }
   constexpr double infinity = std::numeric_limits<double>::infinity();
   double height = infinity;
   visitLowPlaces(

@@ -2,6 +2,7 @@
 
 #include "block/cayley.h"
 #include "contact/ground/features.h"
+#include "geometry/roundBody.h"
 #include "law/settings.h"
 #include "solve/step/linear.h"
 
@@ -85,7 +86,7 @@ void BlockStep<N>::prepareRows(const Block& block, const BlockState& state,
     const Contact& c = contacts[i];
     Row& row = rows_[i];
     row.n = rotation_.transpose() * c.normal;
-    if (c.kind == ContactKind::VertexFace)
+    if (c.kind == ContactKind::VertexFace && c.rockFeature >= 0)
     {
       row.x = block.shape().vertices()[c.rockFeature];
       row.y0 = deform_ * row.x;
@@ -135,6 +136,22 @@ void BlockStep<N>::levers(const Block& block, const std::vector<Contact>& contac
       const Vec3 n = 0.5 * (row.n + turn * row.n);
       const Vec3 y = row.y0 - 0.5 * u;
       row.normal = rowOf<N>(n, y, row.x);
+      for (int k = 0; k < 2; ++k)
+      {
+        row.shear[k] = rowOf<N>(row.tangent[k], y, row.x);
+      }
+      continue;
+    }
+    if (contacts[i].rockFeature < 0)
+    {
+      // A round body turns under the plane: with its axes A the plane that touches it is |A n| from
+      // its centre, n as the block sees it. Δ|A n| = (A n₀ + A n₁) · A (n₁ − n₀) / (|A n₀| + |A n₁|)
+      // and n₁ − n₀ = −r × n_m, n_m their mean: Δd = n·u + r·(y × n_m) exactly, y where it touches.
+      const Mat3 axes = roundAxes(block.shape().layout());
+      const Vec3 end = turn.transpose() * row.n, n = 0.5 * (row.n + end);
+      const Vec3 y = -2.0 / ((axes * row.n).norm() + (axes * end).norm()) * (axes * (axes * n));
+      row.normal = rowOf<N>(row.n, y, row.x);
+      row.normal.template segment<3>(kRotation) = y.cross(n);
       for (int k = 0; k < 2; ++k)
       {
         row.shear[k] = rowOf<N>(row.tangent[k], y, row.x);

@@ -2,7 +2,7 @@
 
 #include "base/errors.h"
 #include "base/text/numberText.h"
-#include "geometry/shapes.h"
+#include "geometry/roundShapes.h"
 
 #include <gtest/gtest.h>
 
@@ -275,7 +275,7 @@ TEST(Shapes, BadVolumesAndLengths)
   }
   EXPECT_THROW(makeShape(Shape::Box, 1.0), ParameterError);
   EXPECT_THROW(makeShape(Shape::File, 1.0), ParameterError);
-  EXPECT_THROW(makeShape(Shape(9), 1.0), ParameterError);
+  EXPECT_THROW(makeShape(Shape(kShapes), 1.0), ParameterError);
   EXPECT_THROW(makeShape(Shape(-1), 1.0), ParameterError);
 }
 

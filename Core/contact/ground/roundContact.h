@@ -1,0 +1,50 @@
+#pragma once
+
+/// @file
+/// Contact of a sphere or an ellipsoid with the slope, in closed form.
+///
+/// Seen in axes in which the body is the unit sphere (x = c + A s, A with its strain and attitude),
+/// a triangle stays a triangle. Its place q nearest to the centre, on the face, on an edge or at a
+/// node, is where they touch, and the plane that touches there tells them apart:
+///
+///     n ∝ −A⁻ᵀ s_q,   d = ρ (ρ − 1) / |A⁻ᵀ s_q|,   ρ = |s_q|
+///
+/// Of triangles that share the edge or the node the nearest one counts: so flat and concave edges
+/// are not felt. A contact has no feature of the rock (Contact::rockFeature −1).
+
+#include "contact/Contact.h"
+#include "contact/ground/candidates.h"
+#include "contact/ground/clearance.h"
+
+#include <optional>
+
+namespace rockfall
+{
+
+bool isRound(const PlacedBlock& rock);
+/// A as the rock stands, world axes, m.
+Mat3 roundAxes(const PlacedBlock& rock);
+/// Distance of the plane with this normal that touches a round body with the axes A from its
+/// centre, m.
+inline double roundReach(const Mat3& axes, const Vec3& normal)
+{
+  return (axes.transpose() * normal).norm();
+}
+
+/// gatherCandidates, updateContacts, overlaps, timeToClose, clearance and penetration of a round
+/// body.
+void gatherRound(
+  const PlacedBlock& rock, const SurfacePatch& patch, double distance, CandidatePairs& candidates);
+void updateRound(const PlacedBlock& rock, const SurfacePatch& patch,
+  const CandidatePairs& candidates, double reach, std::vector<Contact>& contacts);
+double roundTimeToClose(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
+  const CandidatePairs& candidates, double gravity, double horizon);
+Clearance roundClearance(const PlacedBlock& rock, const BlockState& state,
+  const SurfacePatch& patch, double gravity, double horizon);
+double roundPenetration(const PlacedBlock& rock, const SurfacePatch& patch);
+
+/// How far a round body with the axes A about a centre may go straight down until it touches a
+/// triangle, m; < 0: how far it has to go up; ∞: it misses it.
+double roundDrop(const Mat3& axes, const Vec3& centre, const Vec3& a, const Vec3& b, const Vec3& c);
+
+} // namespace rockfall
