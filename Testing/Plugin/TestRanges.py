@@ -10,7 +10,7 @@ from helpers import errors_of, is_empty
 import paraview.simple
 from paraview import servermanager
 from paraview.simple import (
-    DEMtoCFEMesh, Delete, DispersionAngle, DrawnStructure, HazardPassageReader, JointedRockMass, OutputPort,
+    BarrierDesign, DEMtoCFEMesh, Delete, DispersionAngle, DrawnStructure, HazardPassageReader, JointedRockMass, OutputPort,
     PolyLineSource, RockBlocks, RockfallHazardMap, RockfallSimulation, RockRelease, TrajectoryCollector,
     TrajectoryProfile)
 
@@ -50,6 +50,10 @@ def collector():
     return TrajectoryCollector(Input=OutputPort(simulation(), 1), Lines=PolyLineSource())
 
 
+def design():
+    return BarrierDesign(Input=collector())
+
+
 def release():
     return RockRelease(Terrain=DEMtoCFEMesh(), Points=CORNERS)
 
@@ -73,6 +77,7 @@ MAKERS = {
     "RockfallHazardMap": hazard,
     "HazardPassageReader": passages,
     "TrajectoryCollector": collector,
+    "BarrierDesign": design,
     "TrajectoryProfile": profile,
 }
 TOGETHER_WITH = {
