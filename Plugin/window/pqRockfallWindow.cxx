@@ -154,6 +154,11 @@ void pqRockfallWindow::begin()
   this->connect(this->Picker, &pqPathPicker::picked, this, &pqRockfallWindow::onPicked);
   this->connect(this->Picker, &pqPathPicker::missed, this,
     [this] { this->tell(tr("There is no trajectory where you clicked")); });
+  if (pqUndoStack* undo = pqApplicationCore::instance()->getUndoStack())
+  {
+    this->connect(undo, &pqUndoStack::undone, this, &pqRockfallWindow::keepOwnEnd);
+    this->connect(undo, &pqUndoStack::redone, this, &pqRockfallWindow::keepOwnEnd);
+  }
   this->makeMenu(window);
   rockfall::window::widenPanels(window);
   const QString pages = scriptFolder() + "/RockfallDDA.qch";

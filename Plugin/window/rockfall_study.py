@@ -184,8 +184,8 @@ def sheet(view=None):
     display.LabelFormat = f"{length:g} m" if length < 1000.0 else f"{length / 1000.0:g} km"
     display.NumberOfTicks, display.AxisColor, display.AxisLineWidth = 5, [1.0, 1.0, 1.0], 2.0
     # Before the slope, where nothing hides it.
-    near, size = 0.5, 0.05 * high
-    foot = eye + near * (focus - eye + 0.3 * high * (right - up))
+    near, size = 0.5, 0.04 * high
+    foot = eye + near * (focus - eye - 0.27 * high * up)
     arrow = simple.Arrow(registrationName="North", TipLength=0.4, TipRadius=0.16, ShaftRadius=0.05, TipResolution=24)
     display = simple.Show(arrow, view)
     display.Orientation, display.Scale = [0.0, 0.0, 90.0], 3 * [size]
@@ -199,7 +199,7 @@ def sheet(view=None):
     display.FontSize = 16
     date = simple.Text(registrationName="Date", Text=time.strftime("%Y-%m-%d"))
     display = simple.Show(date, view)
-    display.WindowLocation = "Lower Right Corner"
+    display.WindowLocation = "Upper Center"
     display.FontSize = 12
     simple.Render(view)
 

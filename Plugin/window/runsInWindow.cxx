@@ -180,6 +180,7 @@ void pqRockfallWindow::endWithLastRock(pqServer* server)
   if (vtkSMPropertyHelper(scene, "LockEndTime").GetAsInt() &&
     vtkSMPropertyHelper(scene, "EndTime").GetAsDouble() != this->LastEnd)
   {
+    this->OwnsEnd = false;
     return;
   }
   vtkSMPropertyHelper now(scene, "AnimationTime");
@@ -189,6 +190,7 @@ void pqRockfallWindow::endWithLastRock(pqServer* server)
     vtkSMPropertyHelper(scene, "Stride", true).Set(run.stride); // else as the user has it
   }
   this->LastEnd = end;
+  this->OwnsEnd = true;
   vtkSMPropertyHelper(scene, "LockEndTime").Set(1);
   vtkSMPropertyHelper(scene, "EndTime").Set(end);
   if (atEnd || now.GetAsDouble() > end)
@@ -196,6 +198,20 @@ void pqRockfallWindow::endWithLastRock(pqServer* server)
     now.Set(end); // whoever looks at whole paths goes on doing so
   }
   scene->UpdateVTKObjects();
+}
+
+//-----------------------------------------------------------------------------
+void pqRockfallWindow::keepOwnEnd()
+{
+  // Undo brings back all of a scene in which ParaView has changed anything, its end with it.
+  pqServer* server = pqActiveObjects::instance().activeServer();
+  vtkSMProxy* scene = server ? sceneOf(server) : nullptr;
+  if (scene && this->OwnsEnd)
+  {
+    const rockfall::window::NotUndone own;
+    this->LastEnd = vtkSMPropertyHelper(scene, "EndTime").GetAsDouble();
+    this->endWithLastRock(server);
+  }
 }
 
 //-----------------------------------------------------------------------------
