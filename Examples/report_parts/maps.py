@@ -279,7 +279,7 @@ def results(study):
         made.append(of_band(study, "HeightOverGround95", height, "m", "Height of the lowest point of the rocks over ground, "
                             "95 % quantile.", Normalize(0.0, nice(max(np.nanmax(height), 0.1), (1, 2, 3, 5, 10))), None,
                             "PuRd", 95))
-    weak, strong = study.values.get("map", {}).get("EnergyThresholds") or (30, 300)
+    weak, strong = study.given["map"].get("EnergyThresholds") or (30, 300)
     names = [f"weak, below {weak:g} kJ", f"medium, {weak:g} to {strong:g} kJ", f"strong, above {strong:g} kJ"]
     periods = sorted((int(name[9:-1]), name) for name in raster.numbers
                      if name.startswith("Intensity") and name[9:-1].isdigit())

@@ -148,7 +148,9 @@ def rocks(study):
 
 def frequencies(study):
     """What the study says of how often rocks fall; nothing if it says nothing."""
-    made = [(part, name, value) for part in study.given if isinstance(study.given[part], dict)
+    units = {"AnnualFrequency": " 1/a", "EnergyThresholds": " kJ", "ReturnPeriods": " a"}
+    told = lambda value: ", ".join(map(str, value)) if isinstance(value, list) else str(value)
+    made = [(part, name, told(value) + units.get(name, "")) for part in study.given if isinstance(study.given[part], dict)
             for name, value in study.given[part].items() if re.search("Frequency|ReturnPeriod|EnergyThreshold", name)]
     if "Frequency" in study.rocks:
         first = study.rocks["Iteration"] == study.rocks["Iteration"].min()
@@ -235,6 +237,10 @@ def notes(study):
     """What a reader should know before the numbers."""
     made = list(dict.fromkeys(re.sub(r"(?<!\S)/\S*/", "", note) for note in study.slope.notes))  # files by their names
     rocks_, total = study.rocks, len(study.rocks)
+    least = {name: value for name, value in (study.given.get("map") or {}).items() if name.startswith("Least") and value}
+    if least:
+        made.append("Cells of the map below " + " or ".join(f"{name} {value}" for name, value in least.items()) +
+                    " are left empty: outliers, which are no less possible for it.")
     unmoved = int((rocks_["RunOut"] < 0.1).sum())
     if unmoved:
         made.append(f"{unmoved} of {total} rocks got no farther than 0.1 m.")

@@ -33,7 +33,7 @@ write_text("net.csv", 'WKT,height,capacity\n"LINESTRING(700100 4000040,700100 40
 study = {
     "terrain": {"FileName": "hill.asc", "Preset": "Talus (assumed)", "BarrierFile": "net.csv"},
     "rocks": {"FileName": "rocks.csv"},
-    "simulation": {"EndTime": 6.0, "Seed": 77, "TrajectoryOutput": "Thinned"}, "map": {"CellSize": 5.0},
+    "simulation": {"EndTime": 6.0, "Seed": 77, "TrajectoryOutput": "Thinned"}, "map": {"CellSize": 5.0, "LeastReach": 0.001},
     "lines": {"FileName": "road.csv", "BarrierCapacity": 150.0}, "iterations": 4, "chunk": 2}
 
 
@@ -71,7 +71,7 @@ for name in ("hill.asc", "hill.prj", "rocks.csv", "road.csv", "net.csv"):
     assert name in text and content(name) in text, name
 for word in ("WGS 84 / UTM zone 16N", "preset Talus (assumed): Lu et al. (2019)", "seed 77", "31 × 21 nodes every 10 m",
              "12 rocks, 3 releases in 4 iterations", "4 m high, capacity 1 000 kJ", "Office",
-             "RockfallDDA", "gives no frequency of release", "icosahedron 4 0.75 0.75 0.75",
+             "RockfallDDA", "gives no frequency of release", "Cells of the map below LeastReach 0.001 are left empty", "icosahedron 4 0.75 0.75 0.75",
              "No rock reached line <b>road</b> 700290: of 12 rocks the share that passes is below 25 %"):
     assert word in text, word
 sections = re.findall(r"<h2>(\d+) ", page)
