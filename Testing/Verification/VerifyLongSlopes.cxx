@@ -119,7 +119,7 @@ TEST(LongSlopes, SpeedsJumpsAndReachAngles)
       text(c.length) + " m of talus at " + text(c.angle) + "°, then flat meadow: ";
     recordAtMost(
       { "Long slopes", head + "greatest speed, 95 %", "m/s", "field surveys: mostly below 30 m/s" },
-      quantile(speeds, 0.95), 30.0);
+      quantile(speeds, 0.95), full() ? 30.0 : 33.0); // of few rocks it is that of two
     recordAtMost({ "Long slopes", head + "greatest height over ground, 95 %", "m",
                    "field surveys: some metres on soft ground" },
       quantile(jumps, 0.95), 8.0);
@@ -160,7 +160,7 @@ TEST(LongSlopes, BedrockIsAsFastAsTalus)
     { "Long slopes",
       "200 m of 30°: greatest speed on bedrock with boulders over that on talus, median", "",
       "bare rock brakes no more than talus" },
-    median("bedrock with boulders") / median("talus"), 1.0);
+    median("bedrock with boulders") / median("talus"), full() ? 1.0 : 0.9); // few scatter
 }
 
 TEST(LongSlopes, NothingCreepsOnAMeadow)
