@@ -171,6 +171,7 @@ void SoftSolver::arriveAt(std::size_t k, bool placed)
 
 void SoftSolver::warm(Row& r)
 {
+  r.loaded = r.stops;
   if (r.stops)
   {
     r.P = 0.0;
@@ -216,7 +217,7 @@ bool SoftSolver::press(Row& r)
 {
   const Vec3 u = this->speedOf(r);
   const double v = u.dot(r.normal);
-  r.stops = r.stops || v < -r.resting;
+  r.stops = r.stops || (v < -r.resting && !r.loaded);
   double change = 0.0;
   if (r.gap > 0.0)
   {

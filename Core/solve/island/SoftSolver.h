@@ -20,6 +20,10 @@
 /// substep rate, s = m β / (h pₙ), and v_r the speed at which overlap goes. At rest the overlap is
 /// P/(h pₙ), as of Shi's spring. Pressing and relaxing go on around rows that change by more than
 /// their resting speed.
+///
+/// The impulse of a row that stopped what closed would throw it back in the next substep, so that
+/// such a row begins anew. One that stops something in two substeps in succession carries a load:
+/// if it began anew each time, what lies on it would creep for ever.
 
 #include "base/parallel.h"
 #include "solve/island/IslandSystem.h"
@@ -86,6 +90,7 @@ private:
     int a, b;         ///< Movers; b < 0: the slope.
     bool idle;        ///< Stays open in the substep.
     bool stops;       ///< Stopped what closed: its impulse is not one to go on with.
+    bool loaded;      ///< Did so in the last substep: it carries a load.
     double gap;       ///< Now, m.
     double P;         ///< N s
     double mass;      ///< Effective, kg.

@@ -189,7 +189,7 @@ void SoftSolver::prepareImpulses(std::size_t k, const IslandContact& asked)
   RowStart& start = starts_[k];
   row.P = 0.0;
   row.T.setZero();
-  row.stops = false;
+  row.stops = row.loaded = false;
   start.before = 0.0;
   start.pending = c.closed() && !asked.absent && asked.bounce >= 0.0 ? asked.bounce : -1.0;
   if (c.closed() && start.pending < 0.0 && !asked.absent)
