@@ -132,6 +132,7 @@ struct TrajectorySummary
   double mass = 0.0;                ///< kg
   double volume = 0.0;              ///< m³
   int impacts = 0;
+  std::uint64_t impactBits = 0;  ///< Hashes of all impacts, summed: their order does not count.
   std::int64_t contactSteps = 0; ///< Steps solved in contact.
   std::int64_t openCloseIterations = 0;
   std::int64_t cutSteps = 0; ///< Steps redone with a smaller Δt.
@@ -149,9 +150,12 @@ struct TrajectorySummary
 struct Trajectory
 {
   TrajectorySummary summary;
-  std::vector<Sample> samples; ///< In the order of time, the last one is the end.
-  std::vector<ImpactEvent> impacts;
+  std::vector<Sample> samples;      ///< In the order of time, the last one is the end.
+  std::vector<ImpactEvent> impacts; ///< Where SimulationParameters::keepImpacts asks for them.
   std::vector<StructureEvent> structures; ///< In the order of time.
 };
+
+/// Books an impact, and keeps it as an event where a list is asked for.
+void noteImpact(Trajectory& trajectory, const ImpactEvent& event, bool keep);
 
 } // namespace rockfall

@@ -2,7 +2,6 @@
 
 #include "rock/RockSimulator.h"
 
-#include "base/grow.h"
 #include "law/settings.h"
 #include "rock/restitution.h"
 
@@ -106,9 +105,7 @@ void RockSimulator::finishImpact(bool over)
   }
   body_.acceleration.setZero();
   body_.spinAcceleration.setZero();
-  Trajectory& trajectory = recorder_.trajectory();
-  append(trajectory.impacts, event);
-  ++trajectory.summary.impacts;
+  noteImpact(recorder_.trajectory(), event, parameters_.keepImpacts);
 }
 
 } // namespace rockfall

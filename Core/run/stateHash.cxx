@@ -1,45 +1,9 @@
 #include "run/stateHash.h"
 
-#include <bit>
+#include "base/Mixer.h"
 
 namespace rockfall
 {
-
-namespace
-{
-
-/// The finaliser of SplitMix64 (Steele, Lea & Flood 2014): a bijection in which every bit of the
-/// input changes every bit of the result with probability one half.
-std::uint64_t scramble(std::uint64_t x)
-{
-  x += 0x9e3779b97f4a7c15u;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
-}
-
-/// Takes numbers one after the other.
-class Mixer
-{
-public:
-  void add(std::int64_t value) { this->add(std::uint64_t(value)); }
-  void add(int value) { this->add(std::uint64_t(std::int64_t(value))); }
-  void add(double value) { this->add(std::bit_cast<std::uint64_t>(value)); }
-  void add(std::uint64_t bits) { state_ = scramble(state_ ^ bits); }
-  void add(const Vec3& v)
-  {
-    for (int k = 0; k < 3; ++k)
-    {
-      this->add(v[k]);
-    }
-  }
-  std::uint64_t value() const { return state_; }
-
-private:
-  std::uint64_t state_ = 0;
-};
-
-} // namespace
 
 std::uint64_t motionHash(const Trajectory& trajectory)
 {
@@ -69,20 +33,7 @@ std::uint64_t motionHash(const Trajectory& trajectory)
       mixer.add(last.orientation.coeffs()[k]);
     }
   }
-  for (const ImpactEvent& impact : trajectory.impacts)
-  {
-    mixer.add(impact.time);
-    mixer.add(impact.position);
-    mixer.add(impact.normal);
-    mixer.add(impact.cfe);
-    mixer.add(impact.impulse);
-    mixer.add(impact.approachSpeed);
-    mixer.add(impact.velocityBefore);
-    mixer.add(impact.velocityAfter);
-    mixer.add(impact.energyLoss);
-    mixer.add(impact.restitution);
-    mixer.add(impact.otherRock);
-  }
+  mixer.add(s.impactBits);
   for (const StructureEvent& event : trajectory.structures)
   {
     mixer.add(int(event.outcome));

@@ -1,7 +1,5 @@
 #include "world/pairImpacts.h"
 
-#include "base/grow.h"
-
 #include <algorithm>
 
 namespace rockfall
@@ -83,9 +81,7 @@ void finishPairImpact(WorldState& world, RockPair& pair, bool over)
     event.restitution = pair.law.restitution;
     event.otherRock = other;
     event.otherBlockId = world.rocks[other].sim.trajectory().summary.blockId;
-    Trajectory& trajectory = sim.trajectory();
-    append(trajectory.impacts, event);
-    ++trajectory.summary.impacts;
+    noteImpact(sim.trajectory(), event, world.parameters.keepImpacts);
   }
 }
 

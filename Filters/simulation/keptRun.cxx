@@ -33,9 +33,10 @@ namespace
 /// Everything that decides what a run gives; the number of threads does not.
 auto runKey(const SimulationParameters& p)
 {
-  return std::make_tuple(p.timeStep, p.endTime, p.outputInterval, p.gravity, p.normalPenalty,
-    p.shearRatio, p.rigid, p.iterations, p.firstIteration, p.seed, p.rockRockContact,
-    p.rockRestitution, p.rockFrictionAngle, p.rockCohesion, p.pushRocksApart);
+  return std::make_tuple(p.timeStep, p.endTime, p.outputInterval, p.keepImpacts, p.gravity,
+    p.normalPenalty, p.shearRatio, p.rigid, p.iterations, p.firstIteration,
+    p.seed, p.rockRockContact, p.rockRestitution, p.rockFrictionAngle, p.rockCohesion,
+    p.pushRocksApart);
 }
 
 /// The one rank that has cells of an input, or 0 if none has.
@@ -135,9 +136,8 @@ std::uint64_t KeptRun::contentOfRocks(vtkPolyData* rocksInput, const Ranks& rank
 
 bool KeptRun::hasPropertiesOf(const KeptRun& other) const
 {
-  return parts.retention == other.parts.retention && parts.impacts == other.parts.impacts &&
-    contactFile == other.contactFile && contactSheet == other.contactSheet &&
-    runKey(parameters) == runKey(other.parameters);
+  return parts.retention == other.parts.retention && contactFile == other.contactFile &&
+    contactSheet == other.contactSheet && runKey(parameters) == runKey(other.parameters);
 }
 
 bool KeptRun::takesOver(

@@ -15,10 +15,6 @@ void KeptParts::trim(Trajectory& trajectory) const
   {
     thin(trajectory, this->retention);
   }
-  if (!this->impacts)
-  {
-    trajectory.impacts = {};
-  }
 }
 
 RunSink::RunSink(const RunFrame& frame, const KeptParts& kept)

@@ -17,7 +17,6 @@ namespace rockfall::filters
 struct KeptParts
 {
   Retention retention = Retention::Full;
-  bool impacts = true;
   int wholeIteration = -1; ///< All samples of this one go on to the sink, −1: of none.
 
   void trim(Trajectory& trajectory) const;

@@ -33,7 +33,7 @@ void vtkRockfallSimulation::TakeProperties(rockfall::filters::KeptRun& run)
   p.seed = std::uint64_t(this->Seed);
   p.threads = this->NumberOfThreads;
   run.parts.retention = rockfall::Retention(this->TrajectoryOutput);
-  run.parts.impacts = this->KeepImpacts;
+  p.keepImpacts = this->KeepImpacts;
   run.printNotes = this->PrintNotes;
 }
 

@@ -127,7 +127,7 @@ TEST(RunOutputs, OneSampleIsAVertexAndNoneIsNothing)
 TEST(RunOutputs, TheIterationThatIsShownIsKeptWhole)
 {
   const filters::RunFrame frame = frameOf(1);
-  const filters::KeptParts parts{ Retention::StoppingPoints, false, 1 };
+  const filters::KeptParts parts{ Retention::StoppingPoints, 1 };
   filters::RunSink sink(frame, parts);
   for (int iteration = 0; iteration < 3; ++iteration)
   {
@@ -142,7 +142,7 @@ TEST(RunOutputs, TheIterationThatIsShownIsKeptWhole)
   sink.finish(lines, impacts, summary);
   EXPECT_EQ(lines->GetNumberOfVerts(), 3);
   EXPECT_EQ(lines->GetNumberOfLines(), 0);
-  EXPECT_EQ(impacts->GetNumberOfCells(), 0);
+  EXPECT_EQ(impacts->GetNumberOfCells(), 12);
   EXPECT_EQ(summary->GetNumberOfRows(), 3);
   ASSERT_EQ(sink.whole().size(), 1u);
   EXPECT_EQ(sink.whole()[0].samples.size(), 2u);
