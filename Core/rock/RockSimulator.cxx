@@ -4,6 +4,7 @@
 #include "block/flight.h"
 #include "contact/ground/detection.h"
 #include "contact/ground/timeToTouch.h"
+#include "geometry/roundBody.h"
 #include "law/settings.h"
 #include "law/springs.h"
 #include "rock/placement.h"
@@ -66,6 +67,8 @@ RockSimulator::RockSimulator(const Surface& surface, const Rock& rock, const Blo
   stiff_ =
     p.rigid || block.strainFrequency() >= std::min(kStiffBesideContacts * contacts, kFastVibration);
   ringing_ = stiff_ ? 0.0 : 2.0 * std::numbers::pi / block.strainFrequency();
+  impulses_ = stiff_ && !yields_ && p.impactResolution == ImpactResolution::Impulse &&
+    !isRound(block.shape().layout());
   softness_ = 1.0 / p.normalPenalty + block.largestCompliance();
 }
 
@@ -225,8 +228,17 @@ void RockSimulator::flyUntilNear()
       }
       else
       {
-        body_.placed.place(body_.block, body_.state);
         const double sure = std::max(0.0, freeUntil_ - body_.state.time);
+        if (impulses_ && !solid_ && sure == 0.0 && window_.whole())
+        {
+          if (!this->hop(duration))
+          {
+            return;
+          }
+          this->checkEnd(0.0);
+          continue;
+        }
+        body_.placed.place(body_.block, body_.state);
         const double touch = std::max(sure, this->timeToGround(duration));
         // So near that the pairs that can touch tell more.
         const double speed =

@@ -210,6 +210,24 @@ private:
   /// Part of a step of `h` that contacts which are closed or close in it allow, s.
   double touchdownStep(double h) const;
 
+  // Impacts as events, impulses.cxx
+  /// A point of the rock that touches the ground.
+  struct Touch
+  {
+    Vec3 point;
+    Vec3 normal;
+    std::int64_t cfe;
+  };
+  /// Flies by at most `duration` (s) over the window, through impacts on the way's end, if it comes
+  /// to one. False: what comes is none that an impulse resolves.
+  bool hop(double duration);
+  /// A contact that closes within `small` (s) at more than the resting speed: flies to it, and
+  /// resolves the impact. Else `first` is when the first one does. Whether anything was done.
+  bool strikeSoon(double small, double& first);
+  /// One impact at all these points, where the rock is. Whether there was one.
+  bool strike(std::span<const Touch> touches, bool carried);
+  bool partsFrom(std::span<const Touch> touches) const; ///< Faster than it may rest.
+
   // Ground that gives way, groundYields.cxx
   const YieldingGround& yieldingOf(int restitutionClass) const;
   const YieldingGround& yieldingAt(const Contact& contact) const; ///< Hard on trees.
@@ -235,7 +253,8 @@ private:
   void followImpact(const BlockState& start, double h, const StepOutcome& outcome);
   /// An event, if it is one. `over`: else the rock's time ends in the middle of it, and it leaves
   /// nothing of its speed.
-  void finishImpact(bool over = true);
+  /// `told`: the samples before and after it are the caller's.
+  void finishImpact(bool over = true, bool told = false);
 
   // Ground near the rock, groundNear.cxx
   /// Least and most x and y (m) that a flight comes over.
@@ -263,7 +282,8 @@ private:
   bool stiff_ = false;   ///< The block's strain follows its contacts without inertia.
   bool solid_ = false;   ///< There are embankments or trees.
   bool barriers_ = false;
-  bool yields_ = false; ///< Some class of the ground does.
+  bool yields_ = false;   ///< Some class of the ground does.
+  bool impulses_ = false; ///< Impacts are events in impulse space.
   RockBody body_;
   GroundLid lid_;
   double openTime_ = 0.0;                ///< Since it touched, s.
@@ -276,8 +296,10 @@ private:
   CandidatePairs candidates_;
   Impact impact_;
   Scar scar_;
-  double slip_ = 0.0; ///< s of the slip-dependent friction, m.
-  int touched_ = 0;   ///< Class of the ground that it touched last.
+  std::vector<Touch> touches_; ///< Of the impact at hand.
+  int struckAtOnce_ = 0;       ///< Impacts as events since it last moved on.
+  double slip_ = 0.0;          ///< s of the slip-dependent friction, m.
+  int touched_ = 0;            ///< Class of the ground that it touched last.
   SurfacePatch patch_;
   HeightWindow window_;
   SurfacePatch holed_;    ///< Under the way of a flight that comes over holes.

@@ -174,7 +174,24 @@ void RockSimulator::stayInContact()
     // A long, damped step would swallow a rebound: it is taken only where nothing comes or goes.
     double h = std::min(large, horizon_ - body_.state.time);
     StepKind kind = StepKind::Lasting;
-    if (!calm || !this->mayLast(h))
+    bool lasts = calm && this->mayLast(h);
+    if (impulses_ && calm && !lasts)
+    {
+      double first = 0.0;
+      if (this->strikeSoon(std::min(small, h), first))
+      {
+        this->checkEnd(first);
+        continue;
+      }
+      // Up to the impact what carries does so.
+      const double until = 0.98 * first; // and a hair of a gap is left
+      if (first > small && until < h && anyClosed(body_.contacts) && this->mayLast(until))
+      {
+        h = until;
+        lasts = true;
+      }
+    }
+    if (!lasts)
     {
       kind = StepKind::Impact;
       h = std::min(h, small);
@@ -308,6 +325,7 @@ void RockSimulator::armContact(Contact& c)
 void RockSimulator::takeStep(double h, StepKind kind)
 {
   body_.before = body_.state;
+  struckAtOnce_ = 0;
   body_.springEnergyBefore = body_.springEnergy;
   const bool lasting = kind == StepKind::Lasting;
   TrajectorySummary& summary = recorder_.trajectory().summary;

@@ -5,10 +5,18 @@
 
 #include "base/RockContact.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace rockfall
 {
+
+/// What resolves an impact of a stiff rock by itself on hard ground.
+enum class ImpactResolution : std::uint8_t
+{
+  Impulse = 0, ///< One event in impulse space (solve/step/impulse.h).
+  Springs = 1, ///< Steps of springs and dashpots, as all other impacts on the slope.
+};
 
 struct SimulationParameters
 {
@@ -20,6 +28,7 @@ struct SimulationParameters
   /// rock has a hundred in a second. Without it they are counted.
   bool keepImpacts = true;
   double gravity = 9.81; ///< m/s², ≥ 0.
+  ImpactResolution impactResolution = ImpactResolution::Springs;
 
   double normalPenalty = 1e9;   ///< pₙ, N/m; 0: by mass (Ensemble). METHOD 9.1: 1e9.
   double shearRatio = 1.0;      ///< pₛ / pₙ, dimensionless, > 0.

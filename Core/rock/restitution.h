@@ -43,6 +43,22 @@ inline double restitutionAtSpeed(double restitution, double approachSpeed, doubl
   return restitution / (1.0 + ratio * ratio);
 }
 
+/// Coefficient of restitution of a point that touches. `usual`: of its ground.
+inline double contactRestitution(
+  const SurfaceMaterial& material, double usual, double approachSpeed, bool down)
+{
+  switch (material.restitutionModel)
+  {
+    case RestitutionModel::Velocity:
+      return down ? 1.0 : usual;
+    case RestitutionModel::NormalTangential:
+      return usual;
+    case RestitutionModel::SpeedDependent:
+      return restitutionAtSpeed(usual, approachSpeed, material.restitutionSpeed);
+  }
+  return usual;
+}
+
 /// Damping ratio ζ of the dashpot of a contact that is about to close. `usual`: that of
 /// `restitution`.
 inline double contactDamping(const SurfaceMaterial& material, double restitution, double usual,

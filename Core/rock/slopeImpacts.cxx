@@ -61,7 +61,7 @@ void RockSimulator::followImpact(const BlockState& start, double h, const StepOu
   }
 }
 
-void RockSimulator::finishImpact(bool over)
+void RockSimulator::finishImpact(bool over, bool told)
 {
   if (!impact_.pending)
   {
@@ -87,7 +87,7 @@ void RockSimulator::finishImpact(bool over)
   const Vec3 after =
     over ? adjustVelocity(material, event, body_.state.velocity, down) : body_.state.velocity;
   const bool jumps =
-    (after - body_.state.velocity).norm() > kSameVelocity * body_.state.velocity.norm();
+    !told && (after - body_.state.velocity).norm() > kSameVelocity * body_.state.velocity.norm();
   if (jumps)
   {
     recorder_.beforeJump(body_.state, true);

@@ -34,7 +34,7 @@ namespace
 auto runKey(const SimulationParameters& p)
 {
   return std::make_tuple(p.timeStep, p.endTime, p.outputInterval, p.keepImpacts, p.gravity,
-    p.normalPenalty, p.shearRatio, p.rigid, p.iterations, p.firstIteration,
+    p.normalPenalty, p.shearRatio, p.rigid, p.impactResolution, p.iterations, p.firstIteration,
     p.seed, p.rockRockContact, p.rockRestitution, p.rockFrictionAngle, p.rockCohesion,
     p.pushRocksApart);
 }

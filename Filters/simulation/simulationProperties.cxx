@@ -20,6 +20,7 @@ void vtkRockfallSimulation::TakeProperties(rockfall::filters::KeptRun& run)
   p.normalPenalty = this->NormalPenalty;
   p.shearRatio = this->ShearPenaltyRatio;
   p.rigid = this->Rigid;
+  p.impactResolution = rockfall::ImpactResolution(this->ImpactResolution);
   p.rockRockContact = this->RockRockContact;
   p.rockRestitution = this->RockRestitution;
   p.rockFrictionAngle = rockfall::radians(this->RockFrictionAngle);
@@ -53,6 +54,7 @@ void vtkRockfallSimulation::CheckProperties(const rockfall::filters::KeptRun& ru
   inRange(this->Seed, 0, std::numeric_limits<int>::max(), "Seed");
   run.parameters.validate();
   inRange(this->ShownIteration, 0, this->Iterations - 1, "ShownIteration");
+  inRange(this->ImpactResolution, IMPULSE, SPRINGS, "ImpactResolution");
   inRange(this->TrajectoryOutput, NOTHING, FULL, "TrajectoryOutput");
 }
 
@@ -87,6 +89,7 @@ void vtkRockfallSimulation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "AllowReferences: " << this->AllowReferences << "\n";
   os << indent << "PushRocksApart: " << this->PushRocksApart << "\n";
   os << indent << "Rigid: " << this->Rigid << "\n";
+  os << indent << "ImpactResolution: " << this->ImpactResolution << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";
   os << indent << "ShownIteration: " << this->ShownIteration << "\n";
   os << indent << "TrajectoryOutput: " << this->TrajectoryOutput << "\n";

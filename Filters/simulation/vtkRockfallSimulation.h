@@ -202,6 +202,20 @@ public:
   vtkBooleanMacro(Rigid, bool);
   ///@}
 
+  enum ImpactResolutions
+  {
+    IMPULSE = 0,
+    SPRINGS = 1
+  };
+  ///@{
+  /**
+   * What resolves impacts of a stiff rock by itself on hard ground: IMPULSE, one event
+   * in impulse space; SPRINGS (the default), steps of springs and dashpots, as all other impacts.
+   */
+  vtkSetMacro(ImpactResolution, int);
+  vtkGetMacro(ImpactResolution, int);
+  ///@}
+
   ///@{
   /**
    * Number of threads of each rank; 0 (the default) takes all, shared out over the ranks of a
@@ -351,6 +365,7 @@ private:
   int AllowReferences = 0;
   bool PushRocksApart = false;
   bool Rigid = false;
+  int ImpactResolution = SPRINGS;
   int NumberOfThreads = 0;
   int ShownIteration = 0;
   int NumberOfRuns = 0;

@@ -434,8 +434,8 @@ TEST_F(TestRockfallSimulation, PrintSelfNamesEveryProperty)
   this->Simulation->Print(text);
   for (const char* name : { "TimeStep", "EndTime", "OutputInterval", "Gravity", "NormalPenalty",
          "ShearPenaltyRatio", "Iterations", "Seed", "RockRockContact", "RockContactFile", "Rigid",
-         "NumberOfThreads", "ShownIteration", "FirstIteration", "TrajectoryOutput", "KeepImpacts",
-         "PrintProgress", "StateHash", "NumberOfRuns" })
+         "ImpactResolution", "NumberOfThreads", "ShownIteration", "FirstIteration",
+         "TrajectoryOutput", "KeepImpacts", "PrintProgress", "StateHash", "NumberOfRuns" })
   {
     EXPECT_NE(text.str().find(std::string(name) + ":"), std::string::npos) << name;
   }

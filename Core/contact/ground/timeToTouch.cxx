@@ -1,6 +1,7 @@
 #include "contact/ground/timeToTouch.h"
 #include "contact/ground/motion.h"
 #include "contact/ground/roundContact.h"
+#include "law/settings.h"
 
 #include <algorithm>
 #include <array>
@@ -121,8 +122,8 @@ private:
 };
 
 /// Where a vertical line through a world point enters the rock from below, over that point, m; ∞ if
-/// it misses it.
-double entersAt(const PlacedBlock& rock, const Vec3& world)
+/// it misses it. `face`: through which.
+double entersAt(const PlacedBlock& rock, const Vec3& world, int& face)
 {
   const Polyhedron& shape = rock.block().shape();
   const Vec3 x = rock.materialPoint(world);
@@ -134,6 +135,7 @@ double entersAt(const PlacedBlock& rock, const Vec3& world)
     const double rise = n.dot(up), room = shape.offsets()[f] - n.dot(x);
     if (rise < 0.0)
     {
+      face = room / rise > low ? int(f) : face;
       low = std::max(low, room / rise);
     }
     else if (rise > 0.0)
@@ -163,13 +165,23 @@ double timeToNear(const BlockState& state, double radius, const HeightWindow& wi
 namespace
 {
 
-/// visit(place, gap) of every place where the gap along the vertical can be least, but for those
-/// where it is no less than far(), which visits may make smaller.
+/// What of the rock is at a low place.
+struct LowFeature
+{
+  int face = -1;   ///< Over the window's node (row, column).
+  int edge = -1;   ///< Over its grid line of a family (along y, along x, diagonal).
+  int family = -1; ///< Neither: a vertex.
+  int row = 0, column = 0;
+};
+
+/// visit(place, gap, feature) of every place where the gap along the vertical can be least, but for
+/// those where it is no less than far(), which visits may make smaller.
 template <class Far, class Visit>
 void visitLowPlaces(
   const PlacedBlock& rock, const HeightWindow& window, const Far& far, const Visit& visit)
 {
-  const auto over = [&](const Vec3& p) { visit(p, p.z() - window.elevation(p.x(), p.y())); };
+  const auto over = [&](const Vec3& p, const LowFeature& feature)
+  { visit(p, p.z() - window.elevation(p.x(), p.y()), feature); };
   // Height over the plane that no node is above: a gap is at least that.
   const auto room = [&](const Vec3& p)
   { return p.z() - window.tilt().dot(p.head<2>()) - window.highest(); };
@@ -191,12 +203,12 @@ void visitLowPlaces(
   {
     return;
   }
-  over(vertices[lowest]); // most likely the first to touch: the rest is soon too far
+  over(vertices[lowest], {}); // most likely the first to touch: the rest is soon too far
   for (std::size_t i = 0; i < vertices.size(); ++i)
   {
-    if (rooms[i] < far())
+    if (rooms[i] < far() && i != lowest)
     {
-      over(vertices[i]);
+      over(vertices[i], {});
     }
   }
   const double inverse = window.inverseCellSize(), west = window.west(), north = window.north();
@@ -213,10 +225,11 @@ void visitLowPlaces(
       const Vec3 node(window.x(column), window.y(row), window.z(row, column));
       if (least + window.highest() + window.tilt().dot(node.head<2>()) - node.z() < far())
       {
-        const double gap = entersAt(rock, node);
+        int face = -1;
+        const double gap = entersAt(rock, node, face);
         if (gap < far())
         {
-          visit(Vec3(node.x(), node.y(), node.z() + gap), gap);
+          visit(Vec3(node.x(), node.y(), node.z() + gap), gap, { face, -1, -1, row, column });
         }
       }
     }
@@ -224,8 +237,9 @@ void visitLowPlaces(
   // Edges of the rock where they pass over edges of the slope: grid lines and diagonals.
   const Polyhedron& shape = rock.block().shape();
   const Vec3 up = rock.rotation().row(2).transpose();
-  for (const Polyhedron::Edge& e : shape.edges())
+  for (std::size_t edge = 0; edge < shape.edges().size(); ++edge)
   {
+    const Polyhedron::Edge& e = shape.edges()[edge];
     const auto start = std::size_t(e.vertices[0]), end = std::size_t(e.vertices[1]);
     if (std::min(rooms[start], rooms[end]) >= far() ||
       (up.dot(shape.normals()[e.faces[0]]) > 0.0 && up.dot(shape.normals()[e.faces[1]]) > 0.0))
@@ -254,7 +268,10 @@ void visitLowPlaces(
         const Vec3 x = p + std::clamp((k - from[family]) * scale, 0.0, 1.0) * along;
         if (room(x) < far())
         {
-          over(x);
+          const int across = family == 1 ? int(std::floor(x0 + (k - y0) * scale * (x1 - x0))) : k;
+          const int down = int(std::floor(y0 + (k - from[family]) * scale * (y1 - y0)));
+          over(
+            x, { -1, int(edge), family, family == 1 ? k : down, family == 2 ? down + k : across });
         }
       }
     }
@@ -316,7 +333,7 @@ double timeToTouch(const PlacedBlock& rock, const BlockState& state, const Heigh
   FirstTouch touch(rock, state, window, gravity, horizon);
   visitLowPlaces(
     rock, window, [&] { return touch.far(); },
-    [&](const Vec3& place, double gap) { touch.visit(place, gap); });
+    [&](const Vec3& place, double gap, const LowFeature&) { touch.visit(place, gap); });
   return touch.time();
 }
 
@@ -330,8 +347,110 @@ double heightOver(const PlacedBlock& rock, const HeightWindow& window, double le
   double height = infinity;
   visitLowPlaces(
     rock, window, [&] { return height > least ? height : -infinity; },
-    [&](const Vec3&, double gap) { height = gap < height ? gap : height; }); // NaN is not
+    [&](const Vec3&, double gap, const LowFeature&)
+    { height = gap < height ? gap : height; }); // NaN is not
   return height;
+}
+
+namespace
+{
+
+/// Of the CFE at a place in the window.
+Eigen::Vector2d gradientAt(const HeightWindow& window, const Vec3& place)
+{
+  const double inverse = window.inverseCellSize();
+  const double c = (place.x() - window.west()) * inverse,
+               r = (window.north() - place.y()) * inverse;
+  const int column = std::clamp(int(c), 0, window.columns() - 2);
+  const int row = std::clamp(int(r), 0, window.rows() - 2);
+  const bool lower = r - row >= c - column;
+  const auto z = [&](int down, int right) { return window.z(row + down, column + right); };
+  return { inverse * (lower ? z(1, 1) - z(1, 0) : z(0, 1) - z(0, 0)),
+    inverse * (lower ? z(0, 0) - z(1, 0) : z(0, 1) - z(1, 1)) };
+}
+
+/// How much higher the middle of a line of the grid is than that between the nodes on its two
+/// sides, m: > 0 on a ridge. NaN where the window ends.
+double bend(const HeightWindow& window, int family, int row, int column)
+{
+  struct Nodes
+  {
+    int row, column;
+  };
+  const Nodes end = { row + (family != 1), column + (family != 0) };
+  const Nodes wings[2] = { { family == 1     ? row - 1
+                               : family == 0 ? row
+                                             : row + 1,
+                             family == 0 ? column - 1 : column },
+    { family == 2 ? row : row + 1, column + 1 } };
+  const auto z = [&](const Nodes& n)
+  {
+    return n.row >= 0 && n.column >= 0 && n.row < window.rows() && n.column < window.columns()
+      ? window.z(n.row, n.column)
+      : std::numeric_limits<double>::quiet_NaN();
+  };
+  return 0.5 * (z({ row, column }) + z(end) - z(wings[0]) - z(wings[1]));
+}
+
+} // namespace
+
+void findTouches(const PlacedBlock& rock, const HeightWindow& window, double within,
+  std::vector<GroundPlace>& places)
+{
+  places.clear();
+  const double flat = kFlatBend * window.cellSize();
+  const Polyhedron& shape = rock.block().shape();
+  visitLowPlaces(
+    rock, window, [&] { return within; },
+    [&](const Vec3& place, double gap, const LowFeature& low)
+    {
+      if (!(gap < within))
+      {
+        return;
+      }
+      Vec3 normal;
+      if (low.face >= 0)
+      {
+        bool peak = false;
+        for (const auto& [family, row, column] :
+          { std::array{ 0, low.row, low.column }, { 0, low.row - 1, low.column },
+            { 1, low.row, low.column }, { 1, low.row, low.column - 1 }, { 2, low.row, low.column },
+            { 2, low.row - 1, low.column - 1 } })
+        {
+          peak = peak || bend(window, family, row, column) > flat;
+        }
+        normal = -rock.normal(low.face);
+        if (!peak)
+        {
+          return;
+        }
+      }
+      else if (low.edge >= 0)
+      {
+        if (!(bend(window, low.family, low.row, low.column) > flat))
+        {
+          return;
+        }
+        const int row = low.row + (low.family != 1), column = low.column + (low.family != 0);
+        const Vec3 line(window.x(column) - window.x(low.column), window.y(row) - window.y(low.row),
+          window.z(row, column) - window.z(low.row, low.column));
+        const auto& ends = shape.edges()[std::size_t(low.edge)].vertices;
+        const Vec3 along = rock.vertices()[ends[1]] - rock.vertices()[ends[0]];
+        normal = line.cross(along);
+        const double size2 = normal.squaredNorm();
+        if (size2 <= 1e-12 * line.squaredNorm() * along.squaredNorm())
+        {
+          return; // along each other
+        }
+        normal *= (normal.z() < 0.0 ? -1.0 : 1.0) / std::sqrt(size2);
+      }
+      else
+      {
+        const Eigen::Vector2d rise = gradientAt(window, place);
+        normal = Vec3(-rise.x(), -rise.y(), 1.0).normalized();
+      }
+      places.push_back({ place, normal });
+    });
 }
 
 } // namespace rockfall

@@ -7,6 +7,7 @@
 #include "terrain/Obstacles.h"
 
 #include <span>
+#include <vector>
 
 namespace rockfall
 {
@@ -26,6 +27,17 @@ double timeToTouch(const PlacedBlock& rock, const BlockState& state, const Heigh
 /// Height of the rock over the window's ground, along the vertical, m; < 0: it overlaps it. What is
 /// not more than `least` is told as something that is not.
 double heightOver(const PlacedBlock& rock, const HeightWindow& window, double least);
+/// A place where a rock and the slope touch.
+struct GroundPlace
+{
+  Vec3 point;  ///< Of the rock, world, m.
+  Vec3 normal; ///< Out of the slope, world, unit.
+};
+/// Places of the rock that are no more than `within` (m) over the window's ground, along the
+/// vertical: its vertices over CFEs, its edges over ridges, peaks under its faces. For a rock that
+/// is about to touch: what is first there is between its features' normal cones by itself.
+void findTouches(const PlacedBlock& rock, const HeightWindow& window, double within,
+  std::vector<GroundPlace>& places);
 /// Time as above for the bounding sphere over the plane that no node of the window is above.
 double timeToNear(const BlockState& state, double radius, const HeightWindow& window,
   double gravity, double horizon);
