@@ -1,7 +1,7 @@
 #include "geometry/shell.h"
 
+#include "base/detachedCall.h"
 #include "base/errors.h"
-#include "base/leave.h"
 
 #include <libqhull_r/qhull_ra.h>
 
@@ -171,7 +171,7 @@ std::vector<std::vector<int>> hullFaces(std::span<const Vec3> points, const std:
   }
   HullRun run = points.size() < manyPoints
     ? runQhull(coordinates)
-    : leaveIfUnwanted(
+    : detachedCall(
         [coordinates = std::move(coordinates)]() mutable { return runQhull(coordinates); });
   if (!run.fault.empty())
   {

@@ -113,11 +113,11 @@ inline constexpr double kSameVelocity = 1e-9;
 // 5  Overlap and its recovery
 
 /// Speed at which a loose overlap is recovered, m/s. Faster: pinched stones are shot out.
-inline constexpr double kPressOut = 0.005;
+inline constexpr double kRecover = 0.005;
 /// Deepest loose overlap, share of r.
 inline constexpr double kLooseOverlap = 1e-3;
 /// Speed at which a deeper overlap is recovered, m/s, and at most this share of √(g r).
-inline constexpr double kPressOutDeep = 0.1;
+inline constexpr double kRecoverDeep = 0.1;
 /// Compression that a spring holds in any case, share of r; beyond, it holds what its two sides
 /// brought to it. Larger: others press rocks into each other, and springs shoot them out.
 inline constexpr double kFirm = 0.02;
@@ -144,7 +144,7 @@ inline constexpr double kCandidateSlack = 0.05;
 /// The same of a rock among others with nothing of the slope near.
 inline constexpr double kFarCandidateSlack = 0.4;
 /// Displacement in r until the height of the ground under a rock among others is looked up again.
-inline constexpr double kGroundLid = 4.0;
+inline constexpr double kGroundHeightBound = 4.0;
 /// Displacement over which heights are gathered in flight, in r or cells, whichever is larger.
 inline constexpr double kHeightWindow = 4.0;
 /// Longest flight that is looked at at once, s.

@@ -15,7 +15,7 @@ namespace rockfall
 {
 
 /// Motion, contacts with the slope and books of one rock. Whoever steps it writes them: the rock
-/// itself (RockSimulator), or the island that it belongs to (IslandStepper).
+/// itself (SingleRock), or the island that it belongs to (IslandStepper).
 struct RockBody
 {
   explicit RockBody(const Block& b)
@@ -25,7 +25,7 @@ struct RockBody
 
   const Block& block;
   bool done = false;                     ///< At rest, gone from the slope or out of time.
-  bool crowded = false;                  ///< Its last step was that of an island.
+  bool inIsland = false;                 ///< Its last step was that of an island.
   StepKind steppedAs = StepKind::Impact; ///< In the last step.
   double restingSpeed = 0.0;             ///< Below it a touch is no impact, m/s.
   BlockState state;

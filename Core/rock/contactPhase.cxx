@@ -1,7 +1,7 @@
 // A rock in contact with the slope, from touch-down to take-off or rest: steps that resolve an impact
 // (small, conserving) and steps that last (up to Δt, damped), each for what it is right for.
 
-#include "rock/RockSimulator.h"
+#include "rock/SingleRock.h"
 
 #include "base/abort.h"
 #include "block/flight.h"
@@ -11,7 +11,7 @@
 #include "law/cohesion.h"
 #include "law/settings.h"
 #include "rock/impactMode.h"
-#include "rock/pressOut.h"
+#include "rock/overlapRecovery.h"
 #include "rock/restitution.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ namespace
 {
 
 /// The features of the rock that carry, as a number that any change changes.
-std::uint64_t carriers(const std::vector<Contact>& contacts)
+std::uint64_t supportHash(const std::vector<Contact>& contacts)
 {
   std::uint64_t sum = 0;
   for (const Contact& c : contacts)
@@ -40,7 +40,7 @@ std::uint64_t carriers(const std::vector<Contact>& contacts)
 
 } // namespace
 
-bool RockSimulator::mayLast(double h) const
+bool SingleRock::mayLast(double h) const
 {
   bool any = false;
   const Vec3 spin = body_.state.angularVelocity();
@@ -71,12 +71,12 @@ bool RockSimulator::mayLast(double h) const
   return any;
 }
 
-double RockSimulator::settledSpeed() const
+double SingleRock::settledSpeed() const
 {
   return body_.restingSpeed + 4.0 * parameters_.gravity * std::sqrt(body_.block.mass() * softness_);
 }
 
-bool RockSimulator::isCalm() const
+bool SingleRock::isCalm() const
 {
   // At the turning point of an impact nothing moves either, but the springs hold its energy; at
   // rest they hold the weight's, ½ m v² with v = g √(m/p), several times that when the rock rolls.
@@ -95,7 +95,7 @@ bool RockSimulator::isCalm() const
     });
 }
 
-bool RockSimulator::flyFromContact(double small)
+bool SingleRock::flyFromContact(double small)
 {
   if (!stiff_ && !(body_.state.strain.isZero(0.0) && body_.state.strainRate.isZero(0.0)))
   {
@@ -133,7 +133,7 @@ bool RockSimulator::flyFromContact(double small)
   return false;
 }
 
-void RockSimulator::holdOverlaps(const CandidatePairs& candidates)
+void SingleRock::guardPenetrations(const CandidatePairs& candidates)
 {
   // A vertex that carries may be pressed in, and its neighbourhood with it; anything deeper slipped
   // through.
@@ -142,11 +142,11 @@ void RockSimulator::holdOverlaps(const CandidatePairs& candidates)
   {
     pressed = std::max(pressed, -c.gap());
   }
-  holdOverlap(body_.placed, patch_, candidates,
+  guardPenetration(body_.placed, patch_, candidates,
     kLooseOverlap * body_.block.radius() + 2.0 * pressed, body_.contacts);
 }
 
-void RockSimulator::stayInContact()
+void SingleRock::stayInContact()
 {
   const double r = body_.block.radius();
   while (inContact_ && !body_.done && !this->arrived())
@@ -211,9 +211,9 @@ void RockSimulator::stayInContact()
       continue;
     }
     // What has slipped through between looks is held where it is, before springs are given out.
-    this->holdOverlaps(candidates_);
+    this->guardPenetrations(candidates_);
     h = std::max(h, 1e-12);
-    this->armContacts(h);
+    this->setNewSprings(h);
     // Springs that are pressed together swing faster than each by itself: a shorter step.
     if (kind == StepKind::Impact && body_.contacts.size() > 1)
     {
@@ -221,25 +221,25 @@ void RockSimulator::stayInContact()
       if (touchdown < (1.0 - 1e-9) * h)
       {
         h = touchdown;
-        this->armContacts(h);
+        this->setNewSprings(h);
       }
     }
     if (kind == StepKind::Lasting)
     {
-      this->pressOutDeep(h);
+      this->recoverDeepOverlap(h);
     }
     this->takeStep(h, kind);
     this->checkEnd(body_.state.time - body_.before.time);
   }
 }
 
-void RockSimulator::findContacts(const CandidatePairs& candidates, double reach, double h)
+void SingleRock::findContacts(const CandidatePairs& candidates, double reach, double h)
 {
   updateContacts(
     body_.placed, patch_, candidates, reach, body_.contacts, body_.state.spin.norm() * h);
 }
 
-double RockSimulator::dampingRatioFor(int ground, double restitution)
+double SingleRock::dampingRatioFor(int ground, double restitution)
 {
   if (surface_.deviationPer() != DeviationPer::Iteration)
   {
@@ -261,13 +261,13 @@ double RockSimulator::dampingRatioFor(int ground, double restitution)
   return ratio;
 }
 
-void RockSimulator::armContacts(double h)
+void SingleRock::setNewSprings(double h)
 {
   // A rock that slides into something may be faster than when its contact began.
   penalty_ = std::max(penalty_, this->stoppingPenalty());
   for (Contact& c : body_.contacts)
   {
-    this->armContact(c);
+    this->setSprings(c);
   }
   if (const std::ptrdiff_t points = closedCount(body_.contacts); points > kCohesivePoints)
   {
@@ -276,7 +276,7 @@ void RockSimulator::armContacts(double h)
       c.cohesion = sharedCohesion(c.cohesion, points);
     }
   }
-  if (!body_.crowded)
+  if (!body_.inIsland)
   {
     tuneDashpots(
       body_.contacts, h,
@@ -287,7 +287,7 @@ void RockSimulator::armContacts(double h)
   }
 }
 
-void RockSimulator::armContact(Contact& c)
+void SingleRock::setSprings(Contact& c)
 {
   const GroundTouch touch = this->touchAt(c.cfe, c.point);
   const bool slips = yields_ && this->yieldingAt(c).slips();
@@ -322,7 +322,7 @@ void RockSimulator::armContact(Contact& c)
   c.shearDashpot = 2.0 * kShearDamping * std::sqrt(c.shearStiffness / body_.block.mobility(t, y));
 }
 
-void RockSimulator::takeStep(double h, StepKind kind)
+void SingleRock::takeStep(double h, StepKind kind)
 {
   body_.before = body_.state;
   struckAtOnce_ = 0;
@@ -381,15 +381,15 @@ void RockSimulator::takeStep(double h, StepKind kind)
       body_.contactsBefore.clear();
     }
   }
-  this->absorb(kind, outcome, energyBefore, 0.0, true);
+  this->commitStep(kind, outcome, energyBefore, 0.0, true);
   if (lasting)
   {
-    this->letDeepBe(this->looseOverlap());
+    this->limitDeepOverlaps(this->looseOverlap());
   }
 }
 
-void RockSimulator::absorb(
-  StepKind kind, const StepOutcome& outcome, double energyBefore, double given, bool pressesOut)
+void SingleRock::commitStep(
+  StepKind kind, const StepOutcome& outcome, double energyBefore, double given, bool recovers)
 {
   const bool lasting = kind == StepKind::Lasting;
   const double taken = body_.state.time - body_.before.time;
@@ -403,12 +403,12 @@ void RockSimulator::absorb(
     const double damped = energyBefore - this->mechanicalEnergy() - body_.springEnergy -
       outcome.frictionWork - outcome.dampedWork - given;
     // Energy that recovery of an overlap gives a rock comes from nowhere, and is booked as that.
-    body_.energy.damping += pressed_ && pressesOut ? std::max(0.0, damped) : damped;
-    pressed_ = false;
+    body_.energy.damping += recovering_ && recovers ? std::max(0.0, damped) : damped;
+    recovering_ = false;
     // The lag of the next lasting step. What an impact left is no acceleration to go on with, nor
     // is that under other contacts: a rock that rattles would be fed by it.
     const double bound = 3.0 * parameters_.gravity;
-    const std::uint64_t carrying = carriers(body_.contacts);
+    const std::uint64_t carrying = supportHash(body_.contacts);
     const bool same = carrying == carrying_;
     carrying_ = carrying;
     body_.acceleration = (body_.state.velocity - body_.before.velocity) / taken;
@@ -419,9 +419,9 @@ void RockSimulator::absorb(
       body_.acceleration.setZero();
       body_.spinAcceleration.setZero();
     }
-    if (pressesOut)
+    if (recovers)
     {
-      this->pressOut(taken);
+      this->recoverOverlap(taken);
     }
   }
   else
@@ -441,7 +441,7 @@ void RockSimulator::absorb(
     // Behind one that breaks there may be others.
     const BlockState end = body_.state;
     double lost = 0.0;
-    const Way way{ body_.before, end, end.time - body_.before.time, false };
+    const PathPiece way{ body_.before, end, end.time - body_.before.time, false };
     this->findBarriers(way);
     for (this->passBarriers(way, lost); hit_.barrier >= 0; this->passBarriers(way, lost))
     {
@@ -465,49 +465,49 @@ void RockSimulator::absorb(
   }
 }
 
-double RockSimulator::looseOverlap() const
+double SingleRock::looseOverlap() const
 {
   // In a crowd a rock may be pushed under the slope within a step; it may be alone soon after.
-  return (body_.crowded ? kLooseOverlap : kFirm) * body_.block.radius();
+  return (body_.inIsland ? kLooseOverlap : kFirm) * body_.block.radius();
 }
 
-void RockSimulator::pressOut(double h)
+void SingleRock::recoverOverlap(double h)
 {
   // No more per step than half the weight's compression, or a stiff spring would throw the rock
   // off.
   const double way = std::min(
-    kPressOut * h, 0.5 * body_.block.mass() * parameters_.gravity / parameters_.normalPenalty);
+    kRecover * h, 0.5 * body_.block.mass() * parameters_.gravity / parameters_.normalPenalty);
   const double loose = this->looseOverlap();
   for (Contact& c : body_.contacts)
   {
     // What springs get by it comes from nowhere, and stays numerical.
-    const double lost = std::max(0.0, pressOutLoose(c, way, loose));
+    const double lost = std::max(0.0, recoverLooseOverlap(c, way, loose));
     body_.energy.damping += lost;
     body_.springEnergy -= lost;
   }
 }
 
-void RockSimulator::pressOutDeep(double h)
+void SingleRock::recoverDeepOverlap(double h)
 {
-  pressed_ = false;
+  recovering_ = false;
   const double speed = deepSpeed(parameters_.gravity, body_.block.radius());
   const double loose = this->looseOverlap();
   for (Contact& c : body_.contacts)
   {
-    pressed_ = rockfall::pressOutDeep(c, speed * h, loose) || pressed_;
+    recovering_ = rockfall::recoverDeepOverlap(c, speed * h, loose) || recovering_;
   }
 }
 
-double RockSimulator::letDeepBe(double loose)
+double SingleRock::limitDeepOverlaps(double loose)
 {
   const bool deep = anyDeep(body_.contacts, loose);
   double held = 0.0;
   for (Contact& c : body_.contacts)
   {
     const double still = this->settledSpeed() * std::sqrt(body_.block.mass());
-    const double normal = letBe(c, still / std::sqrt(c.stiffness), loose);
+    const double normal = limitOverlap(c, still / std::sqrt(c.stiffness), loose);
     body_.normalEnergy = std::max(0.0, body_.normalEnergy - normal);
-    held += normal + (deep ? letSlipBe(c, still / std::sqrt(c.shearStiffness)) : 0.0);
+    held += normal + (deep ? limitSlip(c, still / std::sqrt(c.shearStiffness)) : 0.0);
   }
   const double before = body_.springEnergy;
   body_.springEnergy = std::max(0.0, before - held);

@@ -1,6 +1,6 @@
 // The part of the slope near a rock, and the proof that none is.
 
-#include "rock/RockSimulator.h"
+#include "rock/SingleRock.h"
 
 #include "contact/ground/clearance.h"
 #include "contact/ground/timeToTouch.h"
@@ -23,7 +23,7 @@ CandidatePairs& workSpace()
 
 } // namespace
 
-std::array<double, 4> RockSimulator::boxOfWay(double duration) const
+std::array<double, 4> SingleRock::boxOfWay(double duration) const
 {
   const double r = body_.block.radius();
   const Vec3& p = body_.state.position;
@@ -32,7 +32,7 @@ std::array<double, 4> RockSimulator::boxOfWay(double duration) const
     std::max(p.y(), end.y()) + r };
 }
 
-void RockSimulator::ensureWindow(double duration)
+void SingleRock::ensureWindow(double duration)
 {
   const auto [x0, x1, y0, y1] = this->boxOfWay(duration);
   if (!window_.covers(x0, x1, y0, y1))
@@ -41,7 +41,7 @@ void RockSimulator::ensureWindow(double duration)
   }
 }
 
-double RockSimulator::timeToGround(double duration)
+double SingleRock::timeToGround(double duration)
 {
   if (window_.whole())
   {
@@ -56,7 +56,7 @@ double RockSimulator::timeToGround(double duration)
   return clearance(body_.placed, body_.state, holed_, parameters_.gravity, duration).time;
 }
 
-bool RockSimulator::clearFor(double duration) const
+bool SingleRock::clearFor(double duration) const
 {
   const double r = body_.block.radius();
   const Vec3& p = body_.state.position;
@@ -68,7 +68,7 @@ bool RockSimulator::clearFor(double duration) const
            std::min(p.y(), end.y()) - r, std::max(p.y(), end.y()) + r) < lowest;
 }
 
-void RockSimulator::ensurePatch(double margin)
+void SingleRock::ensurePatch(double margin)
 {
   const Vec3 lower = body_.placed.lower(), upper = body_.placed.upper();
   if (!patch_.covers(
@@ -90,7 +90,7 @@ void RockSimulator::ensurePatch(double margin)
   }
 }
 
-void RockSimulator::ensureCandidates(double reach, bool among)
+void SingleRock::ensureCandidates(double reach, bool among)
 {
   if (candidates_.room(body_.state, body_.block.radius(), reach) < 0.0)
   {
@@ -104,7 +104,7 @@ void RockSimulator::ensureCandidates(double reach, bool among)
   }
 }
 
-const CandidatePairs& RockSimulator::candidatesNow(const PairBody& body, const SlopeReach& reach)
+const CandidatePairs& SingleRock::stepCandidates(const PairBody& body, const SlopeReach& reach)
 {
   if (!solid_)
   {
@@ -112,7 +112,7 @@ const CandidatePairs& RockSimulator::candidatesNow(const PairBody& body, const S
     if (patch_.isSlopeOnly())
     {
       CandidatePairs& now = workSpace();
-      gatherNow(body_.placed, body, patch_, reach, now);
+      gatherStepCandidates(body_.placed, body, patch_, reach, now);
       return now;
     }
   }
@@ -120,7 +120,7 @@ const CandidatePairs& RockSimulator::candidatesNow(const PairBody& body, const S
   return candidates_;
 }
 
-const CandidatePairs& RockSimulator::candidatesAt(const BlockState& end, const PlacedBlock& placed,
+const CandidatePairs& SingleRock::candidatesAt(const BlockState& end, const PlacedBlock& placed,
   const PairBody& body, double way, double allowed)
 {
   if (!solid_)
@@ -134,7 +134,7 @@ const CandidatePairs& RockSimulator::candidatesAt(const BlockState& end, const P
     if (patch_.isSlopeOnly())
     {
       CandidatePairs& now = workSpace();
-      gatherUnder(placed, body, patch_, allowed, now);
+      gatherCandidatesUnder(placed, body, patch_, allowed, now);
       return now;
     }
   }
@@ -146,7 +146,7 @@ const CandidatePairs& RockSimulator::candidatesAt(const BlockState& end, const P
   return candidates_;
 }
 
-bool RockSimulator::isHigh(double reach)
+bool SingleRock::isClear(double reach)
 {
   if (solid_ || !body_.contacts.empty())
   {
@@ -154,14 +154,14 @@ bool RockSimulator::isHigh(double reach)
   }
   const double r = body_.block.radius();
   const Vec3& p = body_.state.position;
-  if (!lid_.covers(p, r + reach))
+  if (!heightBound_.covers(p, r + reach))
   {
     thread_local HeightWindow window;
-    const double half = r + reach + kGroundLid * r;
+    const double half = r + reach + kGroundHeightBound * r;
     window.gather(surface_, p.x() - half, p.x() + half, p.y() - half, p.y() + half);
-    lid_ = GroundLid(window);
+    heightBound_ = GroundHeightBound(window);
   }
-  return this->isHighAt(p, reach);
+  return this->isClearAt(p, reach);
 }
 
 } // namespace rockfall

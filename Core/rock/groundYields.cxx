@@ -1,6 +1,6 @@
 // Ground that gives way under a rock: where its hard surface lies, and what it takes.
 
-#include "rock/RockSimulator.h"
+#include "rock/SingleRock.h"
 
 #include "block/flight.h"
 #include "contact/ground/clearance.h"
@@ -33,12 +33,12 @@ Quat turnedBetween(const Quat& from, const Quat& to, double fraction)
 
 } // namespace
 
-const YieldingGround& RockSimulator::yieldingOf(int restitutionClass) const
+const YieldingGround& SingleRock::yieldingOf(int restitutionClass) const
 {
   return surface_.terrain().restitutionMaterial(restitutionClass).yielding;
 }
 
-const YieldingGround& RockSimulator::yieldingAt(const Contact& contact) const
+const YieldingGround& SingleRock::yieldingAt(const Contact& contact) const
 {
   static const YieldingGround hard;
   if (solid_ && this->treeOf(contact) >= 0)
@@ -48,12 +48,12 @@ const YieldingGround& RockSimulator::yieldingAt(const Contact& contact) const
   return this->yieldingOf(surface_.restitutionClass(contact.cfe));
 }
 
-bool RockSimulator::followScar(double h)
+bool SingleRock::followScar(double h)
 {
   return this->sinkUnder(h) || this->riseWithRock();
 }
 
-bool RockSimulator::sinkUnder(double h)
+bool SingleRock::sinkUnder(double h)
 {
   const Vec3 spin = body_.state.angularVelocity();
   const Contact* under = nullptr;
@@ -104,7 +104,7 @@ bool RockSimulator::sinkUnder(double h)
   return true;
 }
 
-bool RockSimulator::riseWithRock()
+bool SingleRock::riseWithRock()
 {
   if (!scar_.open() || !scar_.turned() || anyClosed(body_.contacts))
   {
@@ -132,7 +132,7 @@ bool RockSimulator::riseWithRock()
   return true;
 }
 
-bool RockSimulator::flyOverScar(double small)
+bool SingleRock::flyOverScar(double small)
 {
   if (solid_ || !(body_.state.strain.isZero(0.0) && body_.state.strainRate.isZero(0.0)))
   {
@@ -180,7 +180,7 @@ bool RockSimulator::flyOverScar(double small)
   return true;
 }
 
-void RockSimulator::closeScar()
+void SingleRock::closeScar()
 {
   if (scar_.open())
   {
@@ -188,7 +188,7 @@ void RockSimulator::closeScar()
   }
 }
 
-void RockSimulator::raiseScar(double by)
+void SingleRock::raiseScar(double by)
 {
   this->lowerPatch(-by);
   scar_.rise(by);
@@ -198,7 +198,7 @@ void RockSimulator::raiseScar(double by)
   }
 }
 
-void RockSimulator::lowerPatch(double by)
+void SingleRock::lowerPatch(double by)
 {
   for (SurfacePatch::Node& node : patch_.nodes)
   {
@@ -213,7 +213,7 @@ void RockSimulator::lowerPatch(double by)
   candidates_.position.z() -= by;
 }
 
-void RockSimulator::plough(double volume)
+void SingleRock::plough(double volume)
 {
   if (!(volume > 0.0))
   {
@@ -228,7 +228,7 @@ void RockSimulator::plough(double volume)
   impact_.event.scarLength = scar_.length();
 }
 
-void RockSimulator::flyThroughSoil(double duration)
+void SingleRock::flyThroughSoil(double duration)
 {
   const YieldingGround& ground = this->yieldingOf(scar_.ground());
   thread_local PlacedBlock placed;
@@ -275,7 +275,7 @@ void RockSimulator::flyThroughSoil(double duration)
   }
 }
 
-void RockSimulator::forgetSlip(double duration)
+void SingleRock::forgetSlip(double duration)
 {
   if (slip_ > 0.0)
   {
@@ -283,7 +283,7 @@ void RockSimulator::forgetSlip(double duration)
   }
 }
 
-void RockSimulator::yieldInStep(double h)
+void SingleRock::yieldInStep(double h)
 {
   const Contact* most = nullptr;
   for (const Contact& c : body_.contacts)

@@ -1,6 +1,6 @@
 // Impacts of a rock by itself on hard ground as events in impulse space.
 
-#include "rock/RockSimulator.h"
+#include "rock/SingleRock.h"
 
 #include "base/abort.h"
 #include "block/FreeRotation.h"
@@ -16,7 +16,7 @@
 namespace rockfall
 {
 
-bool RockSimulator::hop(double duration)
+bool SingleRock::hop(double duration)
 {
   const Block& block = body_.block;
   const BlockState start = body_.state;
@@ -117,7 +117,7 @@ bool RockSimulator::hop(double duration)
   return this->strike(touches_, false) && this->partsFrom(touches_);
 }
 
-bool RockSimulator::partsFrom(std::span<const Touch> touches) const
+bool SingleRock::partsFrom(std::span<const Touch> touches) const
 {
   const Vec3 spin = body_.state.angularVelocity();
   return std::all_of(touches.begin(), touches.end(),
@@ -128,7 +128,7 @@ bool RockSimulator::partsFrom(std::span<const Touch> touches) const
     });
 }
 
-bool RockSimulator::strikeSoon(double small, double& first)
+bool SingleRock::strikeSoon(double small, double& first)
 {
   first = std::numeric_limits<double>::infinity();
   const Vec3 spin = body_.state.angularVelocity();
@@ -190,7 +190,7 @@ bool RockSimulator::strikeSoon(double small, double& first)
   return true;
 }
 
-bool RockSimulator::strike(std::span<const Touch> touches, bool carried)
+bool SingleRock::strike(std::span<const Touch> touches, bool carried)
 {
   if (touches.empty() || touches.size() > kMostImpulsePoints || ++struckAtOnce_ > kImpactsAtOnce)
   {

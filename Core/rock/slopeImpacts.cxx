@@ -1,6 +1,6 @@
 // Impacts of a rock on the slope as events.
 
-#include "rock/RockSimulator.h"
+#include "rock/SingleRock.h"
 
 #include "law/settings.h"
 #include "rock/restitution.h"
@@ -10,8 +10,7 @@
 namespace rockfall
 {
 
-void RockSimulator::beginImpact(
-  const BlockState& at, double frictionBefore, double restitutionBefore)
+void SingleRock::beginImpact(const BlockState& at, double frictionBefore, double restitutionBefore)
 {
   impact_ = Impact();
   impact_.pending = true;
@@ -22,7 +21,7 @@ void RockSimulator::beginImpact(
   impact_.event.velocityBefore = at.velocity;
 }
 
-void RockSimulator::followImpact(const BlockState& start, double h, const StepOutcome& outcome)
+void SingleRock::followImpact(const BlockState& start, double h, const StepOutcome& outcome)
 {
   const Vec3 spin = start.angularVelocity();
   for (std::size_t i = 0; i < body_.contacts.size(); ++i)
@@ -61,7 +60,7 @@ void RockSimulator::followImpact(const BlockState& start, double h, const StepOu
   }
 }
 
-void RockSimulator::finishImpact(bool over, bool told)
+void SingleRock::finishImpact(bool over, bool told)
 {
   if (!impact_.pending)
   {

@@ -5,7 +5,7 @@
 #include "contact/ground/roundContact.h"
 #include "contact/ground/timeToTouch.h"
 #include "law/settings.h"
-#include "rock/RockSimulator.h"
+#include "rock/SingleRock.h"
 #include "terrain/stemHit.h"
 
 #include <algorithm>
@@ -132,7 +132,7 @@ StructureEvent eventAt(StructureOutcome outcome, std::int64_t feature, const Blo
 
 } // namespace
 
-double RockSimulator::freeOfObstacles(double duration)
+double SingleRock::freeOfObstacles(double duration)
 {
   const double sure = std::min(duration, freeUntil_ - body_.state.time);
   const double free = timeToObstacle(body_.placed, body_.state, body_.block, *obstacles_,
@@ -140,13 +140,13 @@ double RockSimulator::freeOfObstacles(double duration)
   return std::max(sure, free);
 }
 
-void RockSimulator::forgetPatch()
+void SingleRock::forgetPatch()
 {
   patch_.xMax = patch_.xMin - 1.0;
   candidates_.distance = -1.0;
 }
 
-void RockSimulator::clearTrees()
+void SingleRock::clearTrees()
 {
   const double r = body_.block.radius();
   const Vec3& p = body_.state.position;
@@ -172,12 +172,12 @@ void RockSimulator::clearTrees()
   this->forgetPatch();
 }
 
-int RockSimulator::treeOf(const Contact& contact) const
+int SingleRock::treeOf(const Contact& contact) const
 {
   return contact.cfe >= obstacles_->firstCfe() ? obstacles_->treeOf(contact.cfe) : -1;
 }
 
-bool RockSimulator::stemHolds(
+bool SingleRock::stemHolds(
   int tree, const BlockState& state, std::span<const Contact> contacts) const
 {
   const Tree& stem = obstacles_->structures().trees[std::size_t(tree)];
@@ -191,7 +191,7 @@ bool RockSimulator::stemHolds(
   return presses || energy <= stemShare(hitOn(stem, body_.block, state).offset) * stem.capacity;
 }
 
-bool RockSimulator::undoAtTrees(double h)
+bool SingleRock::undoAtTrees(double h)
 {
   std::vector<int> hit;
   for (std::size_t i = 0; i < body_.contactsBefore.size(); ++i)
@@ -213,7 +213,7 @@ bool RockSimulator::undoAtTrees(double h)
   return this->breakTrees(h, hit);
 }
 
-bool RockSimulator::breakTrees(double h, std::span<const int> hit)
+bool SingleRock::breakTrees(double h, std::span<const int> hit)
 {
   bool any = false;
   const Vec3 spin = body_.state.angularVelocity();
@@ -250,7 +250,7 @@ bool RockSimulator::breakTrees(double h, std::span<const int> hit)
   return any;
 }
 
-void RockSimulator::passTree(int tree, double held)
+void SingleRock::passTree(int tree, double held)
 {
   const Tree& stem = obstacles_->structures().trees[std::size_t(tree)];
   const double energy = rigidKineticEnergy(body_.block, body_.state);
@@ -277,12 +277,12 @@ void RockSimulator::passTree(int tree, double held)
   goneTrees_.insert(std::lower_bound(goneTrees_.begin(), goneTrees_.end(), tree), tree);
 }
 
-bool RockSimulator::isGone(int tree) const
+bool SingleRock::isGone(int tree) const
 {
   return std::binary_search(goneTrees_.begin(), goneTrees_.end(), tree);
 }
 
-void RockSimulator::forgetTrees(bool touched)
+void SingleRock::forgetTrees(bool touched)
 {
   std::erase_if(body_.contacts, [&](const Contact& c) { return this->isGone(this->treeOf(c)); });
   if (touched)
@@ -293,12 +293,12 @@ void RockSimulator::forgetTrees(bool touched)
   this->forgetPatch();
 }
 
-RockSimulator::Broken RockSimulator::takeBroken()
+SingleRock::Broken SingleRock::drainBroken()
 {
   return std::exchange(broke_, {});
 }
 
-bool RockSimulator::hearOf(const Broken& broken)
+bool SingleRock::applyBroken(const Broken& broken)
 {
   for (const int barrier : broken.barriers)
   {
@@ -343,7 +343,7 @@ bool RockSimulator::hearOf(const Broken& broken)
   return touched;
 }
 
-void RockSimulator::findBarriers(const Way& way)
+void SingleRock::findBarriers(const PathPiece& way)
 {
   hit_ = {};
   passages_.clear();
@@ -428,7 +428,7 @@ void RockSimulator::findBarriers(const Way& way)
   passages_.erase(std::unique(passages_.begin(), passages_.end()), passages_.end());
 }
 
-void RockSimulator::passBarriers(const Way& way, double taken)
+void SingleRock::passBarriers(const PathPiece& way, double taken)
 {
   const bool again = hit_.barrier >= 0;
   const double place = hit_.fraction;
@@ -472,7 +472,7 @@ void RockSimulator::passBarriers(const Way& way, double taken)
   }
 }
 
-void RockSimulator::meetBarrier()
+void SingleRock::meetBarrier()
 {
   const Barrier& barrier = obstacles_->structures().barriers[std::size_t(hit_.barrier)];
   const double kinetic = rigidKineticEnergy(body_.block, body_.state),
@@ -508,7 +508,7 @@ void RockSimulator::meetBarrier()
   this->auditSamples(body_.state);
 }
 
-double RockSimulator::endStepAtBarrier(const BlockState& end, double taken, bool touching)
+double SingleRock::endStepAtBarrier(const BlockState& end, double taken, bool touching)
 {
   const Barrier& barrier = obstacles_->structures().barriers[std::size_t(hit_.barrier)];
   BlockState at = between(body_.before, end, hit_.fraction);

@@ -98,7 +98,7 @@ void HeightWindow::gather(
   }
 }
 
-GroundLid::GroundLid(const HeightWindow& window)
+GroundHeightBound::GroundHeightBound(const HeightWindow& window)
   : tilt_(window.tilt_)
   , slant_(std::sqrt(1.0 + tilt_.squaredNorm()))
   , xMin_(window.xMin_)

@@ -255,7 +255,7 @@ public:
   }
 
 private:
-  friend class GroundLid;
+  friend class GroundHeightBound;
   std::vector<double> z_; ///< NaN for nodata.
   int rows_ = 0, columns_ = 0;
   double cellSize_ = 0.0, inverse_ = 0.0, west_ = 0.0, north_ = 0.0;
@@ -267,11 +267,11 @@ private:
 
 /// A plane that no ground is above, within a box: what is sure to be in the air is told by it
 /// alone.
-class GroundLid
+class GroundHeightBound
 {
 public:
-  GroundLid() = default;
-  explicit GroundLid(const HeightWindow& window);
+  GroundHeightBound() = default;
+  explicit GroundHeightBound(const HeightWindow& window);
 
   /// Whether a box (half its width, m) about a place is in the one that this is for.
   bool covers(const Vec3& at, double half) const

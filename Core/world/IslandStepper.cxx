@@ -3,8 +3,8 @@
 #include "base/abort.h"
 #include "base/parallel.h"
 #include "law/settings.h"
-#include "rock/pressOut.h"
-#include "world/EndLook.h"
+#include "rock/overlapRecovery.h"
+#include "world/EndDetection.h"
 #include "world/StepResult.h"
 #include "world/StepTrees.h"
 #include "world/pairImpacts.h"
@@ -54,7 +54,7 @@ void IslandStepper::fly(double duration)
 {
   for (int i : island_.members)
   {
-    RockSimulator& sim = world_.rocks[i].sim;
+    SingleRock& sim = world_.rocks[i].sim;
     if (!sim.body().done)
     {
       sim.flyFree(duration);
@@ -73,7 +73,7 @@ double IslandStepper::beginContacts()
   double travel = world_.parameters.timeStep;
   for (const int i : island_.members)
   {
-    RockSimulator& sim = world_.rocks[std::size_t(i)].sim;
+    SingleRock& sim = world_.rocks[std::size_t(i)].sim;
     sim.beginContact();
     if (!sim.done())
     {
@@ -95,13 +95,13 @@ void IslandStepper::advance(double until)
   }
 }
 
-void IslandStepper::pressOutDeep(RockPair& pair, double h) const
+void IslandStepper::recoverDeepOverlap(RockPair& pair, double h) const
 {
   const double smaller = work_.smallerRadius(pair);
   const double speed = deepSpeed(world_.parameters.gravity, smaller);
   for (Contact& c : pair.contacts)
   {
-    rockfall::pressOutDeep(c, speed * h, kLooseOverlap * smaller);
+    rockfall::recoverDeepOverlap(c, speed * h, kLooseOverlap * smaller);
   }
 }
 
@@ -121,7 +121,7 @@ void IslandStepper::addRock(std::size_t m, double h)
   work_.energyBefore[place] = rock.sim.mechanicalEnergy() + body.springEnergy;
   if (island_.crowd)
   {
-    rock.sim.pressOutDeep(h);
+    rock.sim.recoverDeepOverlap(h);
   }
   IslandBody& asked = work_.bodies[place];
   asked = {};
@@ -151,7 +151,7 @@ void IslandStepper::addPair(std::size_t t, double h)
   const PairMotion motion = work_.motionOf(pair);
   if (island_.crowd)
   {
-    this->pressOutDeep(pair, h);
+    this->recoverDeepOverlap(pair, h);
   }
   std::size_t next = work_.firsts[p];
   for (Contact& c : pair.contacts)
@@ -184,7 +184,7 @@ void IslandStepper::cutUntilAccepted(StepRequest& request)
     work_.solver.begin(request, accept, work_.bodies, work_.contacts);
     while (work_.solver.asksForALook())
     {
-      work_.solver.goOn(EndLook(world_, island_, work_, request.duration).look());
+      work_.solver.goOn(EndDetection(world_, island_, work_, request.duration).detect());
     }
     const IslandOutcome outcome = work_.solver.finish();
     work_.iterations += outcome.iterations;

@@ -31,7 +31,7 @@ private:
   void addRock(std::size_t member, double h);
   void addPair(std::size_t touching, double h);
   /// Deep overlaps of the two, before a lasting step.
-  void pressOutDeep(RockPair& pair, double h) const;
+  void recoverDeepOverlap(RockPair& pair, double h) const;
   /// Halves the step as long as its solution is not accepted.
   void cutUntilAccepted(StepRequest& request);
 

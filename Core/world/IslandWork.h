@@ -14,7 +14,7 @@
 namespace rockfall
 {
 
-/// Of a RockSimulator, what the step of a crowd needs of every rock.
+/// Of a SingleRock, what the step of a crowd needs of every rock.
 constexpr std::size_t kHotLines = 14;
 
 // Asks the cache for what a loop over the pairs or rocks of an island comes to soon.
@@ -50,7 +50,7 @@ struct IslandWork
   std::vector<IslandContact> contacts;
   std::vector<double> energyBefore;
   std::vector<int> partners;
-  std::vector<std::uint64_t> carriers; ///< By place, what carries it.
+  std::vector<std::uint64_t> supportHash; ///< By place, what carries it.
   /// First contact of each rock's with the slope among `contacts`, and of each pair.
   std::vector<std::size_t> slopeFirsts, firsts;
   /// Contacts that are found in a second look, behind the others in `contacts`, and whose they are.
@@ -123,7 +123,7 @@ struct IslandWork
   }
   /// Counts of the step at hand for the summary of each rock.
   std::int64_t iterations = 0, cuts = 0, unsettled = 0, tries = 0;
-  void count(RockSimulator& sim) const;
+  void count(SingleRock& sim) const;
   void comeToTouching(const Island& island, std::size_t t) const; ///< As comeToPair.
   /// Motion of a rock in the step; by place.
   struct Motion
@@ -150,7 +150,7 @@ inline void IslandWork::Side::set(const RockBody& body)
   done = body.done;
 }
 
-inline void IslandWork::count(RockSimulator& sim) const
+inline void IslandWork::count(SingleRock& sim) const
 {
   if (!sim.body().done)
   {

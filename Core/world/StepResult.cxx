@@ -3,10 +3,10 @@
 #include "base/parallel.h"
 #include "contact/ground/motion.h"
 #include "law/settings.h"
-#include "rock/pressOut.h"
+#include "rock/overlapRecovery.h"
 #include "world/StepTrees.h"
+#include "world/overlapLimit.h"
 #include "world/pairImpacts.h"
-#include "world/pressedIn.h"
 
 #include <algorithm>
 #include <array>
@@ -48,18 +48,18 @@ StepResult::StepResult(WorldState& world, const Island& island, IslandWork& work
 
 void StepResult::apply()
 {
-  work_.carriers.assign(work_.bodies.size(), 0);
+  work_.supportHash.assign(work_.bodies.size(), 0);
   work_.touchesOthers.assign(work_.bodies.size(), 0);
   work_.flags.resize(std::max(work_.flags.size(), island_.pairs.size()));
   for (std::size_t k = 0; k < work_.added.size(); ++k)
   {
     if (!work_.addedTo[k].onSlope)
     {
-      findKnock(
+      findLateImpact(
         world_, *island_.pairs[work_.addedTo[k].of], work_.contacts[work_.firsts.back() + k], h_);
     }
   }
-  this->findLone();
+  this->splitOffSingles();
   forEach(work_.touching.size(), kPairGrain, [this](std::size_t t) { this->applyToPair(t); });
   this->applyAdded();
   this->finishImpacts();
@@ -67,7 +67,7 @@ void StepResult::apply()
   forEach(island_.pairs.size(), kPairGrain, [this](std::size_t p) { this->keepAxis(p); });
 }
 
-void StepResult::findLone()
+void StepResult::splitOffSingles()
 {
   work_.alone.assign(work_.bodies.size(), 0);
   if (island_.crowd || !work_.looked)
@@ -160,7 +160,7 @@ bool StepResult::isNearAnother(std::size_t p) const
   return !(pair.end.distance > near);
 }
 
-void StepResult::stepAlone(FallingRock& rock)
+void StepResult::stepSingle(FallingRock& rock)
 {
   RockBody& body = rock.body();
   const BlockState from = body.before;
@@ -210,7 +210,7 @@ void StepResult::applyToPair(std::size_t t)
   std::array<std::uint64_t, 2> carry = {};
   for (std::size_t k = work_.firsts[p]; k < work_.firsts[p + 1]; ++k)
   {
-    findKnock(world_, pair, work_.contacts[k], h_);
+    findLateImpact(world_, pair, work_.contacts[k], h_);
   }
   for (std::size_t k = work_.firsts[p]; k < work_.firsts[p + 1]; ++k)
   {
@@ -233,29 +233,29 @@ void StepResult::applyToPair(std::size_t t)
   for (const std::size_t side : { 0, 1 })
   {
     const std::size_t place = std::size_t(work_.places[p][side]);
-    std::atomic_ref(work_.carriers[place]).fetch_add(carry[side], std::memory_order_relaxed);
+    std::atomic_ref(work_.supportHash[place]).fetch_add(carry[side], std::memory_order_relaxed);
     std::atomic_ref(work_.touchesOthers[place]).store(1, std::memory_order_relaxed);
   }
   if (island_.crowd)
   {
-    this->pressOut(pair);
+    this->recoverOverlap(pair);
   }
 }
 
-void StepResult::pressOut(RockPair& pair) const
+void StepResult::recoverOverlap(RockPair& pair) const
 {
   const IslandWork::Side& a = work_.sides[std::size_t(pair.first)];
   const IslandWork::Side& b = work_.sides[std::size_t(pair.second)];
   const double mass = std::min(a.mass, b.mass), reduced = 1.0 / (1.0 / a.mass + 1.0 / b.mass);
   const double slow = std::min(
-    kPressOut * h_, 0.5 * mass * world_.parameters.gravity / world_.parameters.normalPenalty);
+    kRecover * h_, 0.5 * mass * world_.parameters.gravity / world_.parameters.normalPenalty);
   const double smaller = std::min(a.radius, b.radius), loose = kLooseOverlap * smaller;
   const double speed = std::max(
     (a.velocity - b.velocity).norm() + a.rim + b.rim, pair.strikes ? pair.impact.approach : 0.0);
   for (Contact& c : pair.contacts)
   {
     yield(c, smaller, speed, reduced);
-    pressOutLoose(c, slow, loose);
+    recoverLooseOverlap(c, slow, loose);
   }
 }
 
@@ -289,8 +289,8 @@ void StepResult::applyAdded()
       const std::size_t first = std::size_t(work_.placeOf[std::size_t(pair.first)]);
       const std::size_t second = std::size_t(work_.placeOf[std::size_t(pair.second)]);
       work_.touchesOthers[first] = work_.touchesOthers[second] = 1;
-      work_.carriers[first] += keyOf(c) * std::uint64_t(pair.second + 2);
-      work_.carriers[second] += keyOf(c) * std::uint64_t(pair.first + 2);
+      work_.supportHash[first] += keyOf(c) * std::uint64_t(pair.second + 2);
+      work_.supportHash[second] += keyOf(c) * std::uint64_t(pair.first + 2);
     }
     pair.contacts.push_back(c);
   }
@@ -322,7 +322,7 @@ void StepResult::applyToRock(std::size_t k)
 {
   comeToRock(world_, island_, k);
   FallingRock& rock = world_.rocks[std::size_t(island_.members[k])];
-  RockSimulator& sim = rock.sim;
+  SingleRock& sim = rock.sim;
   RockBody& body = rock.body();
   if (body.done)
   {
@@ -332,7 +332,7 @@ void StepResult::applyToRock(std::size_t k)
   work_.arrived[place] = false;
   if (work_.alone[place])
   {
-    this->stepAlone(rock);
+    this->stepSingle(rock);
     return;
   }
   work_.count(sim);
@@ -342,15 +342,16 @@ void StepResult::applyToRock(std::size_t k)
   outcome.dampedWork = answer.dampedWork;
   outcome.springEnergy = answer.springEnergy;
   outcome.normalEnergy = answer.normalEnergy;
-  sim.absorb(StepKind::Lasting, outcome, work_.energyBefore[place], answer.given, island_.crowd);
+  sim.commitStep(
+    StepKind::Lasting, outcome, work_.energyBefore[place], answer.given, island_.crowd);
   const bool carried = work_.touchesOthers[place] || anyClosed(body.contacts);
   // Some contact of an island opens or closes in every step, and the acceleration of one step says
   // little of the next: carried on it would keep a pile in motion for ever.
-  if (work_.carriers[place] != rock.carriers || carried)
+  if (work_.supportHash[place] != rock.supportHash || carried)
   {
     body.acceleration.setZero();
     body.spinAcceleration.setZero();
-    rock.carriers = work_.carriers[place];
+    rock.supportHash = work_.supportHash[place];
   }
   if (body.done)
   {
@@ -363,7 +364,7 @@ void StepResult::applyToRock(std::size_t k)
   {
     sim.end(Fate::Moving);
   }
-  const bool arrived = work_.looked && rock.arrive();
+  const bool arrived = work_.looked && rock.adoptEnd();
   work_.arrived[place] = arrived;
   if (!arrived)
   {

@@ -19,13 +19,13 @@ public:
 private:
   /// Rocks that struck the slope and no other rock, nor could have met one if the impact had come
   /// a little later: they take the step by themselves.
-  void findLone();
+  void splitOffSingles();
   bool isNearAnother(std::size_t pair) const;
-  void stepAlone(FallingRock& rock);
+  void stepSingle(FallingRock& rock);
   /// Motion of a rock since a state, for those that look at its pairs.
   void noteMotion(const FallingRock& rock, const BlockState& from);
-  void applyToPair(std::size_t touching); ///< By number among those that touch.
-  void pressOut(RockPair& pair) const;    ///< In a crowd: overlap that was found goes slowly.
+  void applyToPair(std::size_t touching);    ///< By number among those that touch.
+  void recoverOverlap(RockPair& pair) const; ///< In a crowd: overlap that was found goes slowly.
   void bookContact(RockPair& pair, const IslandContact& touch) const;
   void applyAdded();    ///< Contacts that were missed at first.
   void finishImpacts(); ///< Of pairs that have parted, or lie on each other.

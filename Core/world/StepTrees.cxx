@@ -74,7 +74,7 @@ BlockState StepTrees::endWithout(const Stem& stem, double h) const
 
 bool StepTrees::cannotHold(const Stem& stem, const BlockState& end, bool through) const
 {
-  const RockSimulator& sim = this->rockOf(stem).sim;
+  const SingleRock& sim = this->rockOf(stem).sim;
   const RockBody& body = sim.body();
   bool meets = false;
   const auto look = [&](const Contact& c, std::size_t k)
@@ -161,7 +161,7 @@ bool StepTrees::look(double h)
 void StepTrees::fell(std::size_t member)
 {
   bool any = false;
-  RockSimulator& sim = world_.rocks[std::size_t(island_.members[member])].sim;
+  SingleRock& sim = world_.rocks[std::size_t(island_.members[member])].sim;
   RockBody& body = sim.body();
   for (const Stem& stem : work_.stems)
   {
@@ -188,7 +188,7 @@ void StepTrees::fell(std::size_t member)
       {
         const double all = c.springEnergy();
         const double shear = c.closed() ? 0.5 * c.shearStiffness * c.slip.squaredNorm() : 0.0;
-        const bool bounced = work_.contacts[work_.slopeFirsts[member] + k].bounce >= 0.0;
+        const bool bounced = work_.contacts[work_.slopeFirsts[member] + k].reboundSpeed >= 0.0;
         const bool normal = bounced || !island_.crowd; // booked along the normal
         held += all;
         body.energy.restitution -= normal ? all : 0.0;

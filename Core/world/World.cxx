@@ -3,8 +3,8 @@
 #include "base/abort.h"
 #include "base/parallel.h"
 #include "law/settings.h"
+#include "world/IslandFinder.h"
 #include "world/IslandStepper.h"
-#include "world/Meetings.h"
 #include "world/pairImpacts.h"
 #include "world/raising.h"
 #include "world/sleep.h"
@@ -31,7 +31,7 @@ World::World(const Surface& surface, std::span<const Rock> rocks, std::span<cons
   }
   if (parameters.rockRockContact)
   {
-    meetings_ = std::make_unique<Meetings>(world_);
+    islandFinder_ = std::make_unique<IslandFinder>(world_);
   }
 }
 
@@ -40,7 +40,7 @@ World::~World() = default;
 std::vector<const RockPair*> World::pairs() const
 {
   std::vector<const RockPair*> pairs;
-  meetings_->forPairs([&](const RockPair& pair) { pairs.push_back(&pair); });
+  islandFinder_->forPairs([&](const RockPair& pair) { pairs.push_back(&pair); });
   return pairs;
 }
 
@@ -76,7 +76,7 @@ std::vector<Trajectory> World::run(const std::function<bool(double)>& goOn, doub
 {
   std::vector<Trajectory> trajectories;
   trajectories.reserve(world_.rocks.size());
-  if (!meetings_)
+  if (!islandFinder_)
   {
     for (FallingRock& rock : world_.rocks)
     {
@@ -88,7 +88,7 @@ std::vector<Trajectory> World::run(const std::function<bool(double)>& goOn, doub
   while (this->advance() && world_.time < enough && (!goOn || goOn(world_.time)))
   {
   }
-  meetings_->forPairs([this](RockPair& pair) { closePairBooks(world_, pair); });
+  islandFinder_->forPairs([this](RockPair& pair) { closePairBooks(world_, pair); });
   for (FallingRock& rock : world_.rocks)
   {
     trajectories.push_back(rock.sim.finish());
@@ -96,16 +96,16 @@ std::vector<Trajectory> World::run(const std::function<bool(double)>& goOn, doub
   return trajectories;
 }
 
-void World::tellBroken()
+void World::shareBroken()
 {
   if (!world_.surface.terrain().obstacles())
   {
     return;
   }
-  RockSimulator::Broken all;
+  SingleRock::Broken all;
   for (FallingRock& rock : world_.rocks)
   {
-    const RockSimulator::Broken one = rock.sim.takeBroken();
+    const SingleRock::Broken one = rock.sim.drainBroken();
     all.trees.insert(all.trees.end(), one.trees.begin(), one.trees.end());
     all.barriers.insert(all.barriers.end(), one.barriers.begin(), one.barriers.end());
   }
@@ -115,7 +115,7 @@ void World::tellBroken()
   }
   for (FallingRock& rock : world_.rocks)
   {
-    if (rock.sim.hearOf(all) && rock.asleep)
+    if (rock.sim.applyBroken(all) && rock.asleep)
     {
       wake(rock, world_.time);
     }
@@ -136,17 +136,17 @@ bool World::advance()
 void World::step(double until)
 {
   const double before = world_.time;
-  meetings_->find(kStruckEarly * (until - before));
+  islandFinder_->find(kStruckEarly * (until - before));
   this->advanceAll(until);
   world_.time = until;
-  this->tellBroken();
+  this->shareBroken();
   this->settle(before);
 }
 
 void World::advanceAll(double until)
 {
-  const std::vector<Island>& islands = meetings_->islands();
-  const std::vector<int>& alone = meetings_->alone();
+  const std::vector<Island>& islands = islandFinder_->islands();
+  const std::vector<int>& alone = islandFinder_->alone();
   // The largest first: they take longest.
   order_.resize(islands.size());
   std::iota(order_.begin(), order_.end(), 0);
@@ -173,7 +173,7 @@ void World::settle(double before)
   {
     return;
   }
-  for (const Island& island : meetings_->islands())
+  for (const Island& island : islandFinder_->islands())
   {
     settleIsland(world_, island, before);
   }

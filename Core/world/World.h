@@ -4,9 +4,9 @@
 /// What falls in one iteration: its rocks and the slope under them, on their way through time.
 ///
 /// Rocks that hit no other are each on their own: flight in closed form, contact in steps
-/// (RockSimulator). Where they hit each other [paper 3.4] time goes on in steps of Δt:
+/// (SingleRock). Where they hit each other [paper 3.4] time goes on in steps of Δt:
 ///
-///     find      rocks near each other, pairs that may meet within the step, islands (Meetings)
+///     find      rocks near each other, pairs that may meet within the step, islands (IslandFinder)
 ///     advance   a rock that meets no other: as if it were the only one;
 ///               an island: contacts, rows, a look where it ends, books (IslandStepper)
 ///     tell      structures that one has broken are gone for all
@@ -26,7 +26,7 @@
 namespace rockfall
 {
 
-class Meetings;
+class IslandFinder;
 
 class World
 {
@@ -68,15 +68,15 @@ public:
   void setLargestSoft(int most) { world_.largestSoft = most; } ///< WorldState::largestSoft
 
 private:
-  const RockSimulator& rock(int rock) const { return world_.rocks[std::size_t(rock)].sim; }
+  const SingleRock& rock(int rock) const { return world_.rocks[std::size_t(rock)].sim; }
   void step(double until);
   void advanceAll(double until); ///< Islands, and rocks that meet no other, on all threads.
-  void tellBroken();
+  void shareBroken();
   void settle(double before); ///< Islands of a step that began at this time, s.
 
   WorldState world_;
-  std::unique_ptr<Meetings> meetings_; ///< None if rocks hit no other.
-  std::vector<int> order_;             ///< Islands in the order in which they are gone over.
+  std::unique_ptr<IslandFinder> islandFinder_; ///< None if rocks hit no other.
+  std::vector<int> order_; ///< Islands in the order in which they are gone over.
 };
 
 } // namespace rockfall

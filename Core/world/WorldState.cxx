@@ -7,7 +7,7 @@
 namespace rockfall
 {
 
-void FallingRock::stand()
+void FallingRock::updatePose()
 {
   RockBody& of = this->body();
   const BlockState& s = of.state;
@@ -23,7 +23,7 @@ void FallingRock::stand()
   }
 }
 
-bool FallingRock::arrive()
+bool FallingRock::adoptEnd()
 {
   RockBody& of = this->body();
   const BlockState& s = of.state;

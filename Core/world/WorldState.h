@@ -5,7 +5,7 @@
 
 #include "contact/PlacedBlock.h"
 #include "contact/pairs.h"
-#include "rock/RockSimulator.h"
+#include "rock/SingleRock.h"
 #include "rock/rockContacts.h"
 #include "solve/island/IslandSolver.h"
 
@@ -28,9 +28,9 @@ struct FallingRock
   RockBody& body() { return sim.body(); }
   const RockBody& body() const { return sim.body(); }
   /// `placed` and `hull` for where the rock is, unless they are.
-  void stand();
+  void updatePose();
   /// Takes `end` and `endHull` on as where it stands, and returns whether it does.
-  bool arrive();
+  bool adoptEnd();
   /// Moves on by itself, meeting no other, to a time (s).
   void advanceAlone(double until);
 
@@ -51,15 +51,15 @@ struct FallingRock
   };
 
   // Members that the step of a crowd needs lie together, before and behind where `sim` begins.
-  Place stayed;
-  Place lingered;  ///< The same, further and for longer.
-  PlacedBlock end; ///< Of the step at hand, as long as it is being solved.
+  Place restAnchor;
+  Place slowRestAnchor; ///< The same, further and for longer.
+  PlacedBlock end;      ///< Of the step at hand, as long as it is being solved.
   PairBody hull;
   PairBody endHull;
-  std::uint64_t carriers = 0; ///< A number for the contacts with others that carry.
-  int place = -1;             ///< Among the bodies of its island in the step at hand.
+  std::uint64_t supportHash = 0; ///< A number for the contacts with others that carry.
+  int place = -1;                ///< Among the bodies of its island in the step at hand.
   bool asleep = false;
-  RockSimulator sim;
+  SingleRock sim;
 };
 
 /// All of them in one piece of memory: a step goes over them again and again, in their order.

@@ -35,30 +35,30 @@ void IslandStepper::gatherOnSlope(std::size_t k, double h)
 {
   comeToRock(world_, island_, k);
   FallingRock& rock = world_.rocks[std::size_t(island_.members[k])];
-  RockSimulator& sim = rock.sim;
+  SingleRock& sim = rock.sim;
   RockBody& body = rock.body();
   if (body.done)
   {
     return;
   }
-  rock.stand();
+  rock.updatePose();
   IslandWork::Side& side = work_.sides[std::size_t(island_.members[k])];
   const double r = body.block.radius();
   const double spread = body.state.spin.norm() * r + side.pushed;
   const double speed = body.state.velocity.norm() + body.state.spin.norm() * r + side.pushed;
   const double reach = this->reachOf(speed, r, h);
-  body.crowded = true;
+  body.inIsland = true;
   // Twice: beyond a concave edge planes serve a little further than their triangles.
-  if (sim.isHigh(2.0 * reach))
+  if (sim.isClear(2.0 * reach))
   {
     sim.closeScar();
-    sim.armContacts(h);
+    sim.setNewSprings(h);
     return;
   }
   body.placed.placeVertices();
   const auto find = [&]() -> const CandidatePairs&
   {
-    const CandidatePairs& near = sim.candidatesNow(rock.hull,
+    const CandidatePairs& near = sim.stepCandidates(rock.hull,
       { body.state.velocity, spread, kFasterApproach * h,
         world_.parameters.gravity * h * h + kSurelyOnSlope * r, reach });
     sim.findContacts(near, reach, 0.0);
@@ -77,9 +77,9 @@ void IslandStepper::gatherOnSlope(std::size_t k, double h)
   {
     side.set(body); // what broke has taken speed
   }
-  sim.holdOverlaps(*near);
+  sim.guardPenetrations(*near);
   stiffenPressed(sim);
-  sim.armContacts(h);
+  sim.setNewSprings(h);
 }
 
 void IslandStepper::gatherOfPair(std::size_t p, double h)

@@ -21,7 +21,7 @@ void beginPairImpact(
   impact.point = point;
 }
 
-void findKnock(const WorldState& world, RockPair& pair, const IslandContact& touch, double h)
+void findLateImpact(const WorldState& world, RockPair& pair, const IslandContact& touch, double h)
 {
   const Contact& c = *touch.contact;
   const RockBody &a = world.rocks[pair.first].body(), &b = world.rocks[pair.second].body();
@@ -67,7 +67,7 @@ void finishPairImpact(WorldState& world, RockPair& pair, bool over)
   {
     const int own = side == 0 ? pair.first : pair.second;
     const int other = side == 0 ? pair.second : pair.first;
-    RockSimulator& sim = world.rocks[own].sim;
+    SingleRock& sim = world.rocks[own].sim;
     ImpactEvent event;
     event.time = impact.time;
     event.position = impact.point;

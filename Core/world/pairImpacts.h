@@ -13,7 +13,7 @@ void beginPairImpact(
   RockPair& pair, const BlockState& first, const BlockState& second, const Vec3& point);
 
 /// An impact that began within a step of `h`: others drove rocks together that were apart.
-void findKnock(const WorldState& world, RockPair& pair, const IslandContact& touch, double h);
+void findLateImpact(const WorldState& world, RockPair& pair, const IslandContact& touch, double h);
 
 /// An event of both rocks, if it is one. `over`: else time ends in the middle of it, and what the
 /// springs hold is not lost.

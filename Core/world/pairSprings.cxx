@@ -3,7 +3,7 @@
 #include "contact/ground/motion.h"
 #include "law/settings.h"
 #include "rock/impactMode.h"
-#include "world/pressedIn.h"
+#include "world/overlapLimit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +29,7 @@ PairSprings springsOf(const WorldState& world, const RockPair& pair)
 
 } // namespace
 
-void stiffenPressed(RockSimulator& sim)
+void stiffenPressed(SingleRock& sim)
 {
   const double r = sim.body().block.radius(), mass = sim.body().block.mass();
   double speed = sim.body().state.velocity.norm() + sim.body().state.spin.norm() * r;

@@ -12,7 +12,7 @@ namespace rockfall
 PairStiffness pairStiffness(const SimulationParameters& parameters);
 
 /// Springs on the slope into which others press the rock.
-void stiffenPressed(RockSimulator& sim);
+void stiffenPressed(SingleRock& sim);
 
 /// Of one contact; its dashpot is not asked for.
 void setSprings(const WorldState& world, const RockPair& pair, Contact& contact);

@@ -25,19 +25,19 @@ bool isStill(const WorldState& world, FallingRock& rock)
   const double unit = std::sqrt(std::max(world.parameters.gravity, kLeastGravity) * r); // m/s
   // Most go so far that how far they turn does not matter.
   const double still = kStillSpeed * unit * kStillTime,
-               displacement = displacementFrom(rock.stayed);
-  if (displacement > still || displacement + turnFrom(rock.stayed) > still)
+               displacement = displacementFrom(rock.restAnchor);
+  if (displacement > still || displacement + turnFrom(rock.restAnchor) > still)
   {
-    rock.stayed = body.state;
+    rock.restAnchor = body.state;
   }
-  const double near = kLingerWay * r, further = displacementFrom(rock.lingered);
+  const double near = kLingerWay * r, further = displacementFrom(rock.slowRestAnchor);
   const auto turns = [&] { return r * body.state.spin.norm() > kLingerRim * unit; };
-  if (further > near || (turns() && further + turnFrom(rock.lingered) > near))
+  if (further > near || (turns() && further + turnFrom(rock.slowRestAnchor) > near))
   {
-    rock.lingered = body.state;
+    rock.slowRestAnchor = body.state;
   }
-  return world.time - rock.stayed.time >= kStillTime ||
-    world.time - rock.lingered.time >= kLingerTime;
+  return world.time - rock.restAnchor.time >= kStillTime ||
+    world.time - rock.slowRestAnchor.time >= kLingerTime;
 }
 
 void restAnew(FallingRock& rock)
@@ -45,7 +45,7 @@ void restAnew(FallingRock& rock)
   RockBody& body = rock.body();
   if (!body.done)
   {
-    rock.stayed = rock.lingered = body.state;
+    rock.restAnchor = rock.slowRestAnchor = body.state;
     body.quietTime = 0.0;
   }
 }
@@ -65,7 +65,7 @@ void wake(FallingRock& rock, double time)
 {
   rock.asleep = false;
   rock.sim.wake(time);
-  rock.stayed = rock.lingered = rock.sim.state();
+  rock.restAnchor = rock.slowRestAnchor = rock.sim.state();
 }
 
 bool touchedLately(const RockPair& pair, double time)

@@ -45,7 +45,7 @@ bool mayBounce(const std::vector<int>& partners, const IslandContact& k)
 
 IslandContact touchOnSlope(const WorldState& world, const FallingRock& member, Contact& c, double h)
 {
-  const RockSimulator& sim = member.sim;
+  const SingleRock& sim = member.sim;
   const BlockState& state = sim.body().state;
   const Vec3 lever = c.point - state.position;
   const double approach = -c.normal.dot(state.velocity + state.angularVelocity().cross(lever));
@@ -71,11 +71,11 @@ IslandContact touchOnSlope(const WorldState& world, const FallingRock& member, C
   k.cohesion = c.cohesion;
   if (c.closed() && sim.impactUnderWay())
   {
-    k.bounce = bounceLeft(c, approach); // begun where impacts are resolved in time
+    k.reboundSpeed = bounceLeft(c, approach); // begun where impacts are resolved in time
   }
   else if (hits(c, approach, sim.body().restingSpeed, h))
   {
-    k.bounce = k.restitutionAt(approach) * approach;
+    k.reboundSpeed = k.restitutionAt(approach) * approach;
   }
   k.approach = approach;
   return k;
@@ -104,12 +104,12 @@ IslandContact touchOfPair(const WorldState& world, RockPair& pair, const PairMot
   const bool impacts = hits(c, k.approach, resting, h);
   if (impacts)
   {
-    k.bounce = pair.law.restitution * k.approach;
+    k.reboundSpeed = pair.law.restitution * k.approach;
   }
   else if (c.closed() && pair.strikes &&
     pair.impact.time < world.rocks[pair.first].sim.body().state.time)
   {
-    k.bounce = bounceLeft(c, k.approach); // as on the slope
+    k.reboundSpeed = bounceLeft(c, k.approach); // as on the slope
   }
   // For the events: what strikes one of two that touch strikes the other through it.
   const bool crowd = work.solver.method == IslandMethod::Crowd;
@@ -138,7 +138,7 @@ void settleBounces(IslandWork& work)
     {
       const IslandContact& c = work.contacts[k];
       *to = k;
-      to += c.bounce >= 0.0 || c.closed;
+      to += c.reboundSpeed >= 0.0 || c.closed;
     }
     work.parts[part].contacts = std::size_t(to - work.meeting.data()) - part * kPartSize;
   };
@@ -158,12 +158,12 @@ void settleBounces(IslandWork& work)
   forChosen([&](const IslandContact& k) { meet(work.partners, k); });
   const auto settle = [&](IslandContact& k)
   {
-    if (k.bounce < 0.0)
+    if (k.reboundSpeed < 0.0)
     {
       return;
     }
-    k.bounce = mayBounce(work.partners, k) ? k.bounce : -1.0;
-    if (k.bounce < 0.0)
+    k.reboundSpeed = mayBounce(work.partners, k) ? k.reboundSpeed : -1.0;
+    if (k.reboundSpeed < 0.0)
     {
       return;
     }
@@ -185,7 +185,7 @@ void appendTouch(IslandContact touch, bool crowd, IslandWork& work)
   if (crowd)
   {
     meet(work.partners, touch);
-    touch.bounce = mayBounce(work.partners, touch) ? touch.bounce : -1.0;
+    touch.reboundSpeed = mayBounce(work.partners, touch) ? touch.reboundSpeed : -1.0;
   }
   work.contacts.push_back(touch);
 }

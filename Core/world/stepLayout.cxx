@@ -22,7 +22,7 @@ std::size_t layOut(WorldState& world, const Island& island, IslandWork& work)
     for (std::size_t k = part * kPartSize; k < std::min(rocks, (part + 1) * kPartSize); ++k)
     {
       comeToRock(world, island, k);
-      const RockSimulator& sim = world.rocks[island.members[k]].sim;
+      const SingleRock& sim = world.rocks[island.members[k]].sim;
       work.placeOf[std::size_t(island.members[k])] = sim.body().done ? -1 : counted.places++;
       work.slopeFirsts[k] = counted.contacts;
       counted.contacts += sim.body().done ? 0 : sim.body().contacts.size();

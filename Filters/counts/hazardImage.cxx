@@ -6,7 +6,7 @@
 #include "counts/lostRocks.h"
 #include "geometry/shell.h"
 #include "shared/arrays.h"
-#include "shared/failure.h"
+#include "shared/errorReport.h"
 #include "shared/rockPaths.h"
 #include "shared/terrainFieldData.h"
 #include "statistics/HazardRaster.h"

@@ -2,7 +2,7 @@
 
 #include "rock/results.h"
 #include "shared/arrays.h"
-#include "shared/failure.h"
+#include "shared/errorReport.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"

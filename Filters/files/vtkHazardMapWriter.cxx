@@ -3,10 +3,10 @@
 #include "base/errors.h"
 #include "files/layerStyles.h"
 #include "gis/raster/rasterWriter.h"
-#include "shared/attempt.h"
 #include "shared/inputs.h"
-#include "shared/pieces.h"
+#include "shared/streamingPieces.h"
 #include "shared/terrainFieldData.h"
+#include "shared/withAbort.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"

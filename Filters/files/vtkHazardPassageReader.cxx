@@ -2,9 +2,9 @@
 
 #include "base/errors.h"
 #include "counts/hazardImage.h"
-#include "shared/attempt.h"
-#include "shared/failure.h"
-#include "shared/pieces.h"
+#include "shared/errorReport.h"
+#include "shared/streamingPieces.h"
+#include "shared/withAbort.h"
 #include "statistics/passageFile.h"
 
 #include "vtkImageData.h"
@@ -156,7 +156,7 @@ int vtkHazardPassageReader::RequestData(
     rockfall::filters::markEmptyMap(image);
     return 1;
   }
-  return rockfall::filters::attempt(this,
+  return rockfall::filters::withAbort(this,
     "There is not enough memory for the map: choose fewer Statistics",
     [&]
     {

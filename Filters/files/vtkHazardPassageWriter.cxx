@@ -2,10 +2,10 @@
 
 #include "base/errors.h"
 #include "counts/hazardImage.h"
-#include "shared/attempt.h"
 #include "shared/inputs.h"
-#include "shared/pieces.h"
 #include "shared/ranks.h"
+#include "shared/streamingPieces.h"
+#include "shared/withAbort.h"
 
 #include "vtkErrorCode.h"
 #include "vtkFieldData.h"

@@ -4,10 +4,10 @@
 #include "base/types.h"
 #include "files/layerStyles.h"
 #include "gis/layers/layerWriter.h"
-#include "shared/attempt.h"
 #include "shared/inputs.h"
-#include "shared/pieces.h"
+#include "shared/streamingPieces.h"
 #include "shared/terrainFieldData.h"
+#include "shared/withAbort.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"

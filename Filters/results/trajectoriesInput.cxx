@@ -1,12 +1,12 @@
 #include "results/trajectoriesInput.h"
 
 #include "base/errors.h"
-#include "shared/attempt.h"
-#include "shared/failure.h"
+#include "shared/errorReport.h"
 #include "shared/inputs.h"
-#include "shared/pieces.h"
 #include "shared/ranks.h"
 #include "shared/rockPaths.h"
+#include "shared/streamingPieces.h"
+#include "shared/withAbort.h"
 
 #include "vtkInformationVector.h"
 #include "vtkPolyData.h"
@@ -24,7 +24,7 @@ int attemptTrajectories(vtkAlgorithm* algorithm, vtkInformationVector* connectio
   vtkInformationVector* outputs, const std::string& noMemory,
   const std::function<int(vtkPolyData*)>& work)
 {
-  return attempt(algorithm, noMemory,
+  return withAbort(algorithm, noMemory,
     [&]
     {
       Input taken(InputKind::Trajectories);

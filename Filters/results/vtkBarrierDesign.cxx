@@ -3,11 +3,11 @@
 #include "base/errors.h"
 #include "base/text/numberText.h"
 #include "results/designTables.h"
-#include "shared/attempt.h"
-#include "shared/failure.h"
+#include "shared/errorReport.h"
 #include "shared/inputs.h"
-#include "shared/pieces.h"
+#include "shared/streamingPieces.h"
 #include "shared/terrainFieldData.h"
+#include "shared/withAbort.h"
 
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -63,7 +63,7 @@ int vtkBarrierDesign::RequestData(
   {
     return 1;
   }
-  return filters::attempt(this, "The crossings do not fit in memory",
+  return filters::withAbort(this, "The crossings do not fit in memory",
     [&]
     {
       filters::Input taken(filters::InputKind::Crossings, 1);

@@ -1,9 +1,9 @@
 #include "vtkGrowingPaths.h"
 
 #include "base/errors.h"
-#include "shared/attempt.h"
-#include "shared/failure.h"
+#include "shared/errorReport.h"
 #include "shared/inputs.h"
+#include "shared/withAbort.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
@@ -152,7 +152,7 @@ int vtkGrowingPaths::RequestUpdateExtent(
 int vtkGrowingPaths::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  return rockfall::filters::attempt(this, "The growing paths do not fit in memory",
+  return rockfall::filters::withAbort(this, "The growing paths do not fit in memory",
     [&]
     {
       rockfall::filters::Input taken(rockfall::filters::InputKind::Trajectories);

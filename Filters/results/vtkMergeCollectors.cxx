@@ -4,11 +4,11 @@
 #include "counts/lostRocks.h"
 #include "results/collectorOutputs.h"
 #include "results/mergedCrossings.h"
-#include "shared/attempt.h"
-#include "shared/failure.h"
+#include "shared/errorReport.h"
 #include "shared/inputs.h"
-#include "shared/pieces.h"
+#include "shared/streamingPieces.h"
 #include "shared/terrainFieldData.h"
+#include "shared/withAbort.h"
 
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -54,7 +54,7 @@ int vtkMergeCollectors::RequestData(
   {
     return 1;
   }
-  return filters::attempt(this, "The merged crossings do not fit in memory",
+  return filters::withAbort(this, "The merged crossings do not fit in memory",
     [&]
     {
       // The parts of composite data are as good as inputs of their own.

@@ -4,10 +4,10 @@
 #include "counts/hazardImage.h"
 #include "results/drapedMap.h"
 #include "results/trajectoriesInput.h"
-#include "shared/attempt.h"
-#include "shared/failure.h"
+#include "shared/errorReport.h"
 #include "shared/inputs.h"
 #include "shared/ranks.h"
+#include "shared/withAbort.h"
 
 #include "vtkAlgorithmOutput.h"
 #include "vtkImageData.h"

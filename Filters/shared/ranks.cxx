@@ -2,7 +2,7 @@
 
 #include "base/abort.h"
 #include "base/errors.h"
-#include "shared/attempt.h"
+#include "shared/withAbort.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellData.h"

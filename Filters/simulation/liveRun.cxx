@@ -1,8 +1,8 @@
 #include "simulation/liveRun.h"
 
 #include "base/errors.h"
-#include "shared/attempt.h"
 #include "shared/rockPaths.h"
+#include "shared/withAbort.h"
 
 #include <utility>
 

@@ -1,7 +1,7 @@
 #include "simulation/runNotes.h"
 
 #include "base/text/numberText.h"
-#include "shared/failure.h"
+#include "shared/errorReport.h"
 #include "simulation/jointFaces.h"
 #include "simulation/progressText.h"
 

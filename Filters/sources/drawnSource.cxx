@@ -3,7 +3,7 @@
 #include "base/errors.h"
 #include "base/text/numberText.h"
 #include "run/releasePlaces.h"
-#include "shared/failure.h"
+#include "shared/errorReport.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,9 +3,9 @@
 #include "sources/rockBlockSources.h"
 
 #include "base/text/numberText.h"
-#include "gis/base/reach.h"
+#include "gis/base/externalReferences.h"
 #include "shared/drawnPoints.h"
-#include "shared/failure.h"
+#include "shared/errorReport.h"
 #include "shared/terrainFieldData.h"
 #include "sources/drawnSource.h"
 

@@ -3,13 +3,13 @@
 #include "base/errors.h"
 #include "base/text/numberText.h"
 #include "run/releasePlaces.h"
-#include "shared/attempt.h"
 #include "shared/drawnPoints.h"
-#include "shared/failure.h"
+#include "shared/errorReport.h"
 #include "shared/inputs.h"
-#include "shared/pieces.h"
+#include "shared/streamingPieces.h"
 #include "shared/structureFieldData.h"
 #include "shared/terrainFieldData.h"
+#include "shared/withAbort.h"
 #include "sources/drawnSource.h"
 #include "terrain/plausible.h"
 
@@ -147,7 +147,7 @@ int vtkDrawnStructure::RequestData(
   {
     return 1;
   }
-  return filters::attempt(this, "The slope with the drawn structure does not fit in memory",
+  return filters::withAbort(this, "The slope with the drawn structure does not fit in memory",
     [&]
     {
       taken.require();

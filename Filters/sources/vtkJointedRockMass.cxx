@@ -7,12 +7,12 @@
 #include "mesh/shapeFile.h"
 #include "rock/placement.h"
 #include "shared/arrays.h"
-#include "shared/attempt.h"
-#include "shared/failure.h"
+#include "shared/errorReport.h"
 #include "shared/inputs.h"
-#include "shared/pieces.h"
 #include "shared/slopeReference.h"
+#include "shared/streamingPieces.h"
 #include "shared/terrainFieldData.h"
+#include "shared/withAbort.h"
 #include "sources/drawnSource.h"
 #include "sources/rockMaker.h"
 
@@ -270,7 +270,7 @@ int vtkJointedRockMass::RequestData(
   {
     return 1;
   }
-  return rockfall::filters::attempt(this, "The blocks of the rock mass do not fit in memory",
+  return rockfall::filters::withAbort(this, "The blocks of the rock mass do not fit in memory",
     [&]
     {
       taken.require();

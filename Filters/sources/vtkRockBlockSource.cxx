@@ -3,15 +3,15 @@
 #include "base/errors.h"
 #include "base/text/numberText.h"
 #include "geometry/shell.h"
-#include "gis/base/reach.h"
+#include "gis/base/externalReferences.h"
 #include "run/overlaps.h"
 #include "run/releasePlaces.h"
-#include "shared/attempt.h"
-#include "shared/failure.h"
+#include "shared/errorReport.h"
 #include "shared/inputs.h"
-#include "shared/pieces.h"
 #include "shared/slopeReference.h"
+#include "shared/streamingPieces.h"
 #include "shared/terrainFieldData.h"
+#include "shared/withAbort.h"
 #include "sources/rockBlockSources.h"
 #include "sources/rockMaker.h"
 
@@ -168,7 +168,7 @@ int vtkRockBlockSource::RequestData(
     return 1;
   }
   vtkPolyData* output = vtkPolyData::GetData(outputVector);
-  return rockfall::filters::attempt(this, "The rock blocks do not fit in memory",
+  return rockfall::filters::withAbort(this, "The rock blocks do not fit in memory",
     [&]
     {
       taken.require();

@@ -1,6 +1,6 @@
 #include "SingleImpact.h"
 
-#include "rock/RockSimulator.h"
+#include "rock/SingleRock.h"
 
 #include <algorithm>
 #include <atomic>
@@ -76,7 +76,7 @@ ImpactOutcome simulateImpact(
 {
   const Surface surface(terrain, p.seed, iteration);
   const Block block(rock.shape, rock.density, rock.youngModulus, rock.poissonRatio);
-  const Trajectory t = RockSimulator(surface, rock, block, p).run();
+  const Trajectory t = SingleRock(surface, rock, block, p).run();
   const std::vector<Sample>& samples = t.samples;
   ImpactOutcome result;
   std::size_t touch = 0;

@@ -249,7 +249,7 @@ void gatherVertices(const PlacedBlock& rock, const SurfacePatch& patch, const Ce
           continue;
         }
         below |= bitOf(v);
-        // No bound below: what has slipped under the slope must be found (holdOverlap).
+        // No bound below: what has slipped under the slope must be found (guardPenetration).
         if (near.holds(p.x(), p.y(), std::max(p.z(), least.z())) &&
           (height < 0.0 || inVertexCone(rock, v, t.normal, turn)))
         {

@@ -62,11 +62,11 @@ struct SlopeReach
 /// Finds the pairs that can be contacts where the rock stands now and may close within a step, and
 /// few others: for one that goes on so far in a step that candidates would not serve the next. Only
 /// on a patch that is all slope.
-void gatherNow(const PlacedBlock& rock, const PairBody& body, const SurfacePatch& patch,
+void gatherStepCandidates(const PlacedBlock& rock, const PairBody& body, const SurfacePatch& patch,
   const SlopeReach& reach, CandidatePairs& candidates);
 /// The same of vertices that are straight under the slope, and peaks in the rock, by more than
 /// `allowed` (m).
-void gatherUnder(const PlacedBlock& rock, const PairBody& body, const SurfacePatch& patch,
+void gatherCandidatesUnder(const PlacedBlock& rock, const PairBody& body, const SurfacePatch& patch,
   double allowed, CandidatePairs& candidates);
 
 } // namespace rockfall

@@ -258,7 +258,7 @@ bool visitOverlaps(const PlacedBlock& rock, const SurfacePatch& patch,
 
 } // namespace
 
-void holdOverlap(const PlacedBlock& rock, const SurfacePatch& patch,
+void guardPenetration(const PlacedBlock& rock, const SurfacePatch& patch,
   const CandidatePairs& candidates, double allowed, std::vector<Contact>& contacts)
 {
   const auto add = [&](ContactKind kind, int onRock, int onPatch, double distance)

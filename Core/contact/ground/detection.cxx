@@ -1,7 +1,7 @@
 #include "contact/ground/detection.h"
 
+#include "contact/ground/contactTransfer.h"
 #include "contact/ground/features.h"
-#include "contact/ground/handover.h"
 #include "contact/ground/roundContact.h"
 
 #include <algorithm>

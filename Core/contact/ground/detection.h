@@ -28,7 +28,7 @@ void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch,
 /// more than `allowed` (m), and every peak as deep inside the rock, gets a contact that carries no
 /// force at the overlap it is found with and resists any further one, unless it has a contact
 /// already.
-void holdOverlap(const PlacedBlock& rock, const SurfacePatch& patch,
+void guardPenetration(const PlacedBlock& rock, const SurfacePatch& patch,
   const CandidatePairs& candidates, double allowed, std::vector<Contact>& contacts);
 
 /// Whether any vertex or peak is that deep.

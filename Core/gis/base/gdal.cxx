@@ -1,7 +1,7 @@
 #include "gis/base/gdal.h"
 
+#include "base/detachedCall.h"
 #include "base/errors.h"
-#include "base/leave.h"
 #include "gis/base/tableFile.h"
 
 #include <cpl_conv.h>
@@ -97,7 +97,7 @@ Opened tryOpen(const std::string& fileName, Kind kind)
 
 Opened openOrLeave(const std::string& fileName, Kind kind)
 {
-  return leaveIfUnwanted(
+  return detachedCall(
     [fileName, kind, all = openingDrivers() == nullptr]
     {
       const AllowReferences allow(all); // of the thread that this runs on

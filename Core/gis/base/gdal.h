@@ -4,7 +4,7 @@
 /// Common parts of the readers of this folder. GDAL's own headers stay in the sources: whoever
 /// includes this header needs GDAL's library, not its headers.
 
-#include "gis/base/reach.h"
+#include "gis/base/externalReferences.h"
 #include "gis/base/stayLocal.h"
 
 #include <cstdint>

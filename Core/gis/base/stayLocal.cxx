@@ -1,6 +1,6 @@
 #include "gis/base/stayLocal.h"
 
-#include "gis/base/reach.h"
+#include "gis/base/externalReferences.h"
 
 #include <cpl_conv.h>
 #include <cpl_error.h>

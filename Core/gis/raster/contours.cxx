@@ -1,7 +1,7 @@
 #include "gis/raster/contours.h"
 
+#include "base/detachedCall.h"
 #include "base/errors.h"
-#include "base/leave.h"
 #include "gis/layers/fileContent.h"
 #include "gis/raster/contourLevels.h"
 #include "gis/raster/contourLines.h"
@@ -277,7 +277,7 @@ RasterSurface readContours(const std::string& fileName, const ContourOptions& op
 
   const double x0 = 0.5 * (box.xMin + box.xMax), y0 = 0.5 * (box.yMin + box.yMax);
   UnitedPoints united =
-    leaveIfUnwanted([points = pointsOf(contours, x0, y0, grid.cellSize, options, fileName), x0, y0]
+    detachedCall([points = pointsOf(contours, x0, y0, grid.cellSize, options, fileName), x0, y0]
       { return unite(points, x0, y0); });
   if (!united.note.empty())
   {

@@ -1,7 +1,7 @@
 #include "gis/raster/tin.h"
 
+#include "base/detachedCall.h"
 #include "base/errors.h"
-#include "base/leave.h"
 #include "gis/base/gdal.h"
 
 #include <gdal_alg.h>
@@ -77,7 +77,7 @@ TinNodes interpolateTin(TinPoints given, const GridGeometry& target, double west
     throw DataError(fileName + ": its " + std::to_string(points.x.size()) +
       " vertices lie on one straight line and have no triangulation");
   }
-  const auto tin = leaveIfUnwanted(
+  const auto tin = detachedCall(
     [held]
     {
       Messages silent;

@@ -31,10 +31,10 @@ public:
   /// Sets the equations up, as if the step lasted, and sweeps.
   void begin(const StepRequest& request, std::vector<IslandBody>& bodies,
     std::vector<IslandContact>& contacts) override;
-  bool isWorthALook() const override { return !work_.empty(); }
-  bool haveGoneOn() const override;
+  bool hasSolution() const override { return !work_.empty(); }
+  bool needsRecheck() const override;
   void append() override;
-  void noteLook() override;
+  void noteDetection() override;
   void solve() override;
   IslandOutcome finish(Accept accept, bool deep) override;
 
@@ -168,9 +168,9 @@ private:
   bool sweepTo(double goal, int most, bool conjugate, IslandOutcome& outcome);
   /// A run of sweeps over everything, or around what has changed; whether all has settled.
   bool sweeps(int most, bool everywhere, IslandOutcome& outcome);
-  void begin();              ///< Before the first of a run of sweeps.
-  void goFurther();          ///< Between two sweeps of a run: along a conjugate direction,
-  void goFurther(int strip); ///< and the forces of a strip that is swept next.
+  void begin();                ///< Before the first of a run of sweeps.
+  void extrapolate();          ///< Between two sweeps of a run: along a conjugate direction,
+  void extrapolate(int strip); ///< and the forces of a strip that is swept next.
   /// Sweeps, and again as long as bounces give energy.
   void settle(
     int most, bool everywhere, std::vector<IslandContact>& contacts, IslandOutcome& outcome);
@@ -243,7 +243,7 @@ private:
   std::vector<std::size_t> ends_;   ///< Behind the last contact of each strip and kind in `order_`.
   std::vector<std::uint32_t> open_; ///< By mover: the batches being filled that hold it.
   std::vector<double> most_;        ///< Largest change, by strip.
-  // Of the run of sweeps at hand (goFurther): what it was before the last sweep, and the direction
+  // Of the run of sweeps at hand: what it was before the last sweep, and the direction
   // in which it goes on, by batch and by mover.
   std::vector<crowd::Forces> forcesBefore_, forcesAlong_;
   std::vector<crowd::Motion> before_, along_;

@@ -29,14 +29,14 @@ void IslandSolver::begin(const StepRequest& request, Accept accept, std::vector<
 
 bool IslandSolver::asksForALook() const
 {
-  return looking_ && system_->isWorthALook() &&
-    (seen_.asksFor(look_) || (look_ <= kMostMissLooks && system_->haveGoneOn()));
+  return looking_ && system_->hasSolution() &&
+    (seen_.asksFor(look_) || (look_ <= kMostMissLooks && system_->needsRecheck()));
 }
 
-void IslandSolver::goOn(const LookOutcome& seen)
+void IslandSolver::goOn(const EndDetectionOutcome& seen)
 {
   seen_ = seen;
-  system_->noteLook();
+  system_->noteDetection();
   // Rows of what is found at the end are those of a straight way back.
   const bool cut = accept_ != Accept::Any && seen.missed > kCutMiss;
   looking_ = seen.any() && !cut;

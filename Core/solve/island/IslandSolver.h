@@ -42,7 +42,7 @@ public:
   /// Whether it is worth a look where the bodies would be.
   bool asksForALook() const;
   /// Goes on from where it is with what a look has found.
-  void goOn(const LookOutcome& seen);
+  void goOn(const EndDetectionOutcome& seen);
   /// Advances the bodies' states and the contacts by `request.duration`. If the step has not
   /// settled nothing is changed, unless `accept` says so.
   IslandOutcome finish();
@@ -64,7 +64,7 @@ private:
   // Of the step at hand.
   IslandSystem* system_ = &soft_;
   Accept accept_ = Accept::Settled;
-  LookOutcome seen_;
+  EndDetectionOutcome seen_;
   int look_ = 0;         ///< Number of the next look.
   bool looking_ = false; ///< The last look has left something to solve for.
 };

@@ -19,14 +19,14 @@ public:
   /// Sets the equations up and solves them. Bodies and contacts stay where they are until `finish`.
   virtual void begin(const StepRequest& request, std::vector<IslandBody>& bodies,
     std::vector<IslandContact>& contacts) = 0;
-  virtual bool isWorthALook() const = 0; ///< Whether there is a solution to look at.
+  virtual bool hasSolution() const = 0; ///< Whether there is a solution to look at.
   /// Whether bodies have gone far since they were looked at last.
-  virtual bool haveGoneOn() const = 0;
+  virtual bool needsRecheck() const = 0;
   /// What has been found is to be solved for from here on: contacts behind those that are known,
   /// whose `distance` is that at the end, the rest of them as all stands at the start.
   virtual void append() = 0;
-  virtual void noteLook() = 0; ///< The bodies have been looked at where they are now.
-  virtual void solve() = 0;    ///< Again.
+  virtual void noteDetection() = 0; ///< The bodies have been looked at where they are now.
+  virtual void solve() = 0;         ///< Again.
   /// Writes bodies and contacts if the solution is accepted. `deep`: the last look found rocks deep
   /// in each other.
   virtual IslandOutcome finish(Accept accept, bool deep) = 0;

@@ -40,7 +40,7 @@ void SoftSolver::begin(
   stamp_.assign(movers_.size(), -1);
   joined_.resize(movers_.size());
   std::iota(joined_.begin(), joined_.end(), 0);
-  gains_.assign(movers_.size(), {});
+  impactEnergies_.assign(movers_.size(), {});
   tick_ = 0;
   this->arrange();
   this->run();
@@ -81,7 +81,7 @@ void SoftSolver::run()
   forEach(movers_.size(), kBodyGrain, look);
 }
 
-bool SoftSolver::place(Row& r) const
+bool SoftSolver::place(ContactRow& r) const
 {
   const Mover& a = movers_[std::size_t(r.a)];
   if (r.b < 0)
@@ -94,7 +94,7 @@ bool SoftSolver::place(Row& r) const
   return a.turned || b.turned || slide.squaredNorm() > r.slide2;
 }
 
-double SoftSolver::gapOf(const Row& r, const RowStart& start) const
+double SoftSolver::gapOf(const ContactRow& r, const ContactRowCold& start) const
 {
   const Mover& a = movers_[std::size_t(r.a)];
   Vec3 motion = a.displacement + a.turn.cross(r.lever);
@@ -106,7 +106,7 @@ double SoftSolver::gapOf(const Row& r, const RowStart& start) const
   return start.gap0 + r.normal.dot(motion);
 }
 
-void SoftSolver::book(const Row& r, double along, const Vec3& across, const Vec3& mean,
+void SoftSolver::book(const ContactRow& r, double along, const Vec3& across, const Vec3& mean,
   const Vec3& meanA, Result& result)
 {
   result.normalWork += along * r.normal.dot(mean);
@@ -118,7 +118,7 @@ void SoftSolver::book(const Row& r, double along, const Vec3& across, const Vec3
 
 void SoftSolver::bookForces(std::size_t k)
 {
-  const Row& r = rows_[k];
+  const ContactRow& r = rows_[k];
   if (r.P != 0.0)
   {
     book(r, r.P, r.T, 0.5 * (speedOf(r, before_) + speedOf(r, motions_)),
@@ -126,9 +126,9 @@ void SoftSolver::bookForces(std::size_t k)
   }
 }
 
-void SoftSolver::arrive(std::size_t strip)
+void SoftSolver::updateGaps(std::size_t strip)
 {
-  std::vector<std::size_t>& struck = generations_[strip].struck;
+  std::vector<std::size_t>& struck = impactRounds_[strip].struck;
   std::vector<std::size_t>& busy = busyOf_[strip];
   struck.clear();
   busy.clear();
@@ -143,22 +143,22 @@ void SoftSolver::arrive(std::size_t strip)
       any = any || this->closes(k, 1.0);
     }
     manifold.busy = anyBusy;
-    manifold.generation = 0;
+    manifold.impactRound = 0;
     if (anyBusy)
     {
       busy.push_back(m);
     }
     if (any)
     {
-      this->strike(m, struck);
+      this->startImpact(m, struck);
     }
   }
 }
 
 void SoftSolver::arriveAt(std::size_t k, bool placed)
 {
-  Row& r = rows_[k];
-  RowStart& start = starts_[k];
+  ContactRow& r = rows_[k];
+  ContactRowCold& start = starts_[k];
   const bool weighs = !placed && this->place(r);
   start.before = this->speedOf(r).dot(r.normal);
   r.gap = this->gapOf(k);
@@ -169,7 +169,7 @@ void SoftSolver::arriveAt(std::size_t k, bool placed)
   }
 }
 
-void SoftSolver::warm(Row& r)
+void SoftSolver::warm(ContactRow& r)
 {
   r.loaded = r.stops;
   if (r.stops)
@@ -213,7 +213,7 @@ void SoftSolver::keepPushing(std::size_t strip)
   std::erase_if(busy, letGo);
 }
 
-bool SoftSolver::press(Row& r)
+bool SoftSolver::solveNormal(ContactRow& r)
 {
   const Vec3 u = this->speedOf(r);
   const double v = u.dot(r.normal);
@@ -235,13 +235,14 @@ bool SoftSolver::press(Row& r)
   }
   // What rests has the friction of the last substep; what is squeezed or let go has its own.
   const bool squeezes = std::abs(dP) > r.mass * r.resting;
-  const Vec3 dT = squeezes || P == 0.0 ? this->rub(r, P, u - v * r.normal) : Vec3(Vec3::Zero());
+  const Vec3 dT =
+    squeezes || P == 0.0 ? this->solveFriction(r, P, u - v * r.normal) : Vec3(Vec3::Zero());
   r.P = P;
   this->push(r, dP * r.normal + dT);
   return squeezes;
 }
 
-bool SoftSolver::relax(Row& r)
+bool SoftSolver::relax(ContactRow& r)
 {
   if (r.P == 0.0)
   {
@@ -249,7 +250,7 @@ bool SoftSolver::relax(Row& r)
   }
   const Vec3 u = this->speedOf(r);
   const double v = u.dot(r.normal), P = std::max(0.0, r.P - r.mass * v), dP = P - r.P;
-  const Vec3 dT = this->rub(r, P, u - v * r.normal);
+  const Vec3 dT = this->solveFriction(r, P, u - v * r.normal);
   r.P = P;
   this->push(r, dP * r.normal + dT);
   return std::abs(dP) > r.mass * r.resting;
@@ -311,7 +312,7 @@ void SoftSolver::sweep(int least, Sweep&& sweepRow)
 void SoftSolver::substep(int k)
 {
   const Vec3 gravity(0.0, 0.0, -gravity_);
-  this->forStrips([&](std::size_t strip) { this->arrive(strip); });
+  this->forStrips([&](std::size_t strip) { this->updateGaps(strip); });
   this->strikeGenerations(k * h_);
   before_ = motions_;
   const auto fall = [&](std::size_t i)
@@ -321,7 +322,7 @@ void SoftSolver::substep(int k)
   };
   forEach(movers_.size(), kBodyGrain, fall);
   this->forBusy([&](std::size_t row) { this->warm(rows_[row]); });
-  this->sweep(1, [&](Row& r) { return this->press(r); });
+  this->sweep(1, [&](ContactRow& r) { return this->solveNormal(r); });
   this->forStrips([this](std::size_t strip) { this->keepPushing(strip); });
   const auto move = [&](std::size_t i)
   {
@@ -343,7 +344,7 @@ void SoftSolver::substep(int k)
     }
   };
   this->forBusy(place);
-  this->sweep(kRelaxSweeps, [&](Row& r) { return this->relax(r); });
+  this->sweep(kRelaxSweeps, [&](ContactRow& r) { return this->relax(r); });
   this->forBusy([this](std::size_t row) { this->bookForces(row); });
 }
 
@@ -355,8 +356,8 @@ void SoftSolver::append()
   for (std::size_t k = known; k < contacts.size(); ++k)
   {
     // The gap at the start from which this motion leads to the one at the end.
-    Row row;
-    RowStart start;
+    ContactRow row;
+    ContactRowCold start;
     this->prepareRow(k, row, start);
     start.gap0 = 0.0;
     Contact& c = *contacts[k].contact;

@@ -41,10 +41,10 @@ class SoftSolver final : public IslandSystem
 public:
   void begin(const StepRequest& request, std::vector<IslandBody>& bodies,
     std::vector<IslandContact>& contacts) override;
-  bool isWorthALook() const override { return !movers_.empty(); }
-  bool haveGoneOn() const override { return false; }
+  bool hasSolution() const override { return !movers_.empty(); }
+  bool needsRecheck() const override { return false; }
   void append() override;
-  void noteLook() override;
+  void noteDetection() override;
   void solve() override;
   IslandOutcome finish(Accept accept, bool deep) override;
 
@@ -85,7 +85,7 @@ private:
   };
   /// A contact while it is solved for, of a point that moves with the rock `a`: what sweeps go
   /// over, in three cache lines.
-  struct alignas(64) Row
+  struct alignas(64) ContactRow
   {
     int a, b;         ///< Movers; b < 0: the slope.
     bool idle;        ///< Stays open in the substep.
@@ -107,12 +107,12 @@ private:
     double slide2;    ///< Square of how far its rocks may slide and weigh the same, m².
   };
   /// What else of a row.
-  struct RowStart
+  struct ContactRowCold
   {
     bool flipped;   ///< `a` is the contact's second rock.
     double gap0;    ///< Where the step begins, m.
     double spring;  ///< N/m
-    double before;  ///< Speed along the normal before a generation, m/s.
+    double before;  ///< Speed along the normal before an impact round, m/s.
     double pending; ///< ≥ 0: speed at which an impact that was under way leaves, m/s.
   };
   /// Rows of the same two rocks.
@@ -120,10 +120,10 @@ private:
   {
     int a, b; ///< Movers; b < 0: the slope.
     std::size_t first, end;
-    int generation; ///< Of impacts, in which it was last asked.
-    bool busy;      ///< Swept over: rows that are not idle stand where the rocks are.
+    int impactRound; ///< Of impacts, in which it was last asked.
+    bool busy;       ///< Swept over: rows that are not idle stand where the rocks are.
   };
-  /// A row in a generation of impacts.
+  /// A row in a round of impacts.
   struct Impact
   {
     std::size_t row;
@@ -134,8 +134,8 @@ private:
     double stored;        ///< By the spring of one that was under way, J.
     double share = 1.0;   ///< Of its impulse that is given.
   };
-  /// A generation of impacts, those of a strip.
-  struct Generation
+  /// A round of impacts, those of a strip.
+  struct ImpactRound
   {
     std::vector<std::size_t> struck; ///< Rows that are to strike, in order.
     std::vector<Impact> impacts;
@@ -143,7 +143,7 @@ private:
     std::vector<std::size_t> woken; ///< Manifolds that the substep has woken.
   };
   /// Works of impacts that share rocks, J.
-  struct Gain
+  struct ImpactEnergy
   {
     double along = 0.0;  ///< Of their impulses along the velocities before.
     double work = 0.0;   ///< Of all.
@@ -173,11 +173,11 @@ private:
   int stripOf(const IslandContact& contact) const;
   /// Rows in order: by strip, pairs before the slope, those of the same two rocks side by side.
   void arrange();
-  void prepareRow(std::size_t contact, Row& row, RowStart& start) const;
+  void prepareRow(std::size_t contact, ContactRow& row, ContactRowCold& start) const;
   void weigh(std::size_t row); ///< Effective masses where its rocks are now.
   /// The arm of its second rock now. Returns whether its rocks have turned, or slid past each
   /// other, so far that it weighs otherwise.
-  bool place(Row& row) const;
+  bool place(ContactRow& row) const;
   void prepareImpulses(std::size_t row, const IslandContact& contact);
   /// visit(strip), by the calling thread alone if there are only few rows to go over.
   template <class Visit>
@@ -188,20 +188,20 @@ private:
   void forRows(const Manifold& manifold, Visit&& visit); ///< The same of its rows.
 
   void substep(int k);
-  void arrive(std::size_t strip);              ///< Gaps, books and who strikes.
+  void updateGaps(std::size_t strip);          ///< Gaps, books and who strikes.
   void arriveAt(std::size_t row, bool placed); ///< `placed`: it stands where the rocks are.
   void bookForces(std::size_t row);            ///< The work of its impulses behind impacts.
   /// Books an impulse `along` the normal and `across` (N s), whose work is along the mean of the
   /// velocities before and after, of both rocks and of a's point alone (m/s).
-  static void book(const Row& row, double along, const Vec3& across, const Vec3& mean,
+  static void book(const ContactRow& row, double along, const Vec3& across, const Vec3& mean,
     const Vec3& meanA, Result& result);
-  void warm(Row& row);
+  void warm(ContactRow& row);
   void keepPushing(std::size_t strip); ///< Busy manifolds that push; notes their rocks.
-  bool press(Row& row);                ///< Whether by more than the resting speed.
-  bool relax(Row& row);
+  bool solveNormal(ContactRow& row);   ///< Whether by more than the resting speed.
+  bool relax(ContactRow& row);
   /// Friction under an impulse P (N s) along the normal. Returns by how much it changes, N s.
-  static Vec3 rub(Row& row, double P, const Vec3& across);
-  static double frictionLimit(const Row& row, double P); ///< N s
+  static Vec3 solveFriction(ContactRow& row, double P, const Vec3& across);
+  static double frictionLimit(const ContactRow& row, double P); ///< N s
   /// Whether a mover (< 0: the slope) has been moved by this sweep or the last one.
   bool moves(int i) const { return i >= 0 && stamp_[std::size_t(i)] >= tick_ - 1; }
   bool stripMoves(std::size_t strip) const; ///< Whether one of its rows' rocks may have been.
@@ -215,31 +215,32 @@ private:
   /// Whether an impact is under way, or the gap closes as one within so many substeps.
   bool closes(std::size_t row, double substeps) const;
   /// Whether any of its rows does, at its speed now. Rows that do not stay open are idle no more.
-  bool strikes(std::size_t manifold, std::vector<std::size_t>& woken);
-  void strike(std::size_t manifold, std::vector<std::size_t>& struck);
+  bool startsImpact(std::size_t manifold, std::vector<std::size_t>& woken);
+  void startImpact(std::size_t manifold, std::vector<std::size_t>& struck);
   double leaves(std::size_t row) const; ///< Speed after an impact, m/s.
   void link();
   std::size_t countStruck() const; ///< Rows that are to strike.
   void strikeGenerations(double time);
-  void beginImpacts(Generation& generation) const;
+  void beginImpacts(ImpactRound& impactRound) const;
   void settleImpacts(std::size_t count);
   bool settle(Impact& impact); ///< Whether it changed by more than it is exact to.
   /// Impacts that share rocks, one with the next, give no more than was there: else a share.
   void limitGains();
-  void takeBack(const Generation& generation); ///< The rest of a share.
-  void bookImpacts(const Generation& generation, double time);
+  void scaleBack(const ImpactRound& impactRound); ///< The rest of a share.
+  void bookImpacts(const ImpactRound& impactRound, double time);
   void noteImpact(const Impact& impact, double time); ///< Its speed, and the rocks it struck.
-  void findStruck(std::size_t strip, int number);     ///< Rows that close by generation `number`.
+  void findStruck(std::size_t strip, int number);     ///< Rows that close by impactRound `number`.
   bool staysOpen(std::size_t row) const; ///< Within the substep, at its speed `before`.
   void listWoken(std::size_t strip);     ///< Among those that are busy.
 
-  double gapOf(const Row& row, const RowStart& start) const;
+  double gapOf(const ContactRow& row, const ContactRowCold& start) const;
   double gapOf(std::size_t row) const { return this->gapOf(rows_[row], starts_[row]); }
-  static Vec3 speedOf(const Row& row, const std::vector<Motion>& motions);
-  static Vec3 speedOfA(const Row& row, const std::vector<Motion>& motions); ///< Of a's point alone.
-  Vec3 speedOf(const Row& row) const { return speedOf(row, motions_); }
-  Vec3 speedOfA(const Row& row) const { return speedOfA(row, motions_); }
-  void push(const Row& row, const Vec3& J); ///< J on a, −J on b, N s.
+  static Vec3 speedOf(const ContactRow& row, const std::vector<Motion>& motions);
+  static Vec3 speedOfA(
+    const ContactRow& row, const std::vector<Motion>& motions); ///< Of a's point alone.
+  Vec3 speedOf(const ContactRow& row) const { return speedOf(row, motions_); }
+  Vec3 speedOfA(const ContactRow& row) const { return speedOfA(row, motions_); }
+  void push(const ContactRow& row, const Vec3& J); ///< J on a, −J on b, N s.
   void push(int mover, const Vec3& J, const Vec3& lever);
   void turn(std::size_t mover);
   static void limitTo(Vec3& T, double most);
@@ -258,23 +259,23 @@ private:
   std::vector<Motion> motions_; ///< By body.
   std::vector<Motion> before_;  ///< By body, behind the impacts of the substep.
   std::vector<Mover> movers_;   ///< By body.
-  std::vector<Row> rows_;
-  std::vector<RowStart> starts_;   ///< By row.
-  std::vector<Result> results_;    ///< By row.
-  std::vector<std::size_t> rowOf_; ///< By contact.
-  std::vector<double> gap0_;       ///< By contact, m.
+  std::vector<ContactRow> rows_;
+  std::vector<ContactRowCold> starts_; ///< By row.
+  std::vector<Result> results_;        ///< By row.
+  std::vector<std::size_t> rowOf_;     ///< By contact.
+  std::vector<double> gap0_;           ///< By contact, m.
   std::vector<int> stripOfBody_;
   int strips_ = 1;
   std::vector<Manifold> manifolds_;
   std::vector<std::size_t> firstOfStrip_;        ///< Among manifolds.
   std::vector<std::vector<std::size_t>> busyOf_; ///< By strip, manifolds.
-  std::vector<Generation> generations_;          ///< By strip.
+  std::vector<ImpactRound> impactRounds_;        ///< By strip.
   std::vector<int> stampOfStrip_;                ///< The sweep that last moved a rock of its rows.
   std::vector<int> stamp_;                       ///< By mover, the sweep that last moved it.
   int tick_ = 0;                                 ///< Number of the sweep.
   std::vector<std::size_t> firstOf_, manifoldsOf_; ///< Manifolds of each rock.
   std::vector<int> joined_;                        ///< By mover, whom impacts join it to.
-  std::vector<Gain> gains_;                        ///< By mover, of those that are joined to it.
+  std::vector<ImpactEnergy> impactEnergies_;       ///< By mover, of those that are joined to it.
   /// Books of a rock.
   struct Books
   {

@@ -38,7 +38,7 @@ void CrowdSolver::begin()
   lastChange_ = -1.0;
 }
 
-void CrowdSolver::goFurther()
+void CrowdSolver::extrapolate()
 {
   // Rocks are in order along the island: who goes over a share of them has the same strips to
   // sweep.
@@ -73,7 +73,7 @@ void CrowdSolver::goFurther()
   goingFurther_ = true; // forces follow strip by strip, where they are visited next
 }
 
-void CrowdSolver::goFurther(int strip)
+void CrowdSolver::extrapolate(int strip)
 {
   const auto go = [&](std::size_t first, std::size_t count)
   {

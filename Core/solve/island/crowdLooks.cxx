@@ -63,11 +63,11 @@ void CrowdSolver::append()
   this->assembleFresh();
   for (std::size_t k = first; k < rows_.size(); ++k)
   {
-    if (contacts[k].bounce >= 0.0)
+    if (contacts[k].reboundSpeed >= 0.0)
     {
       this->stiffen(contacts[k], rows_[k]);
     }
-    if (contacts[k].bounce > 0.0)
+    if (contacts[k].reboundSpeed > 0.0)
     {
       bouncing_.push_back(k);
     }

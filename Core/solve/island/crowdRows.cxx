@@ -48,7 +48,7 @@ void CrowdSolver::prepareRow(
     p.friction[lane] = asked.friction;
     p.cohesion[lane] = asked.cohesion;
     // The sweeps start from the forces of the last step.
-    if (c.closed() && asked.bounce < 0.0 && c.normalForce > 0.0)
+    if (c.closed() && asked.reboundSpeed < 0.0 && c.normalForce > 0.0)
     {
       setLane(forces_[std::size_t(row.batch)].along, lane,
         { c.normalForce, -c.shearStiffness * p.slip[0][lane],
@@ -80,7 +80,7 @@ void CrowdSolver::askGap(const IslandContact& asked, const Row& row)
   {
     gap = kAbsent;
   }
-  else if (asked.bounce >= 0.0)
+  else if (asked.reboundSpeed >= 0.0)
   {
     gap = bounceGap(asked, h_, penalty * p.w[row.lane]);
   }
@@ -105,7 +105,7 @@ void CrowdSolver::prepareRows(
     for (std::size_t at = this->firstOf(key); at < ends_[key + OnSlope]; ++at)
     {
       const std::size_t k = std::size_t(order_[at]);
-      if (contacts[k].bounce >= 0.0)
+      if (contacts[k].reboundSpeed >= 0.0)
       {
         this->stiffen(contacts[k], rows_[k]);
       }

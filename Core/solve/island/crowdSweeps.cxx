@@ -23,7 +23,7 @@ double CrowdSolver::visit(int strip)
 {
   if (goingFurther_)
   {
-    this->goFurther(strip);
+    this->extrapolate(strip);
   }
   crowd::Pass pass;
   pass.backwards = sweep_ % 2 != 0;
@@ -61,7 +61,7 @@ bool CrowdSolver::sweepTo(double goal, int most, bool conjugate, IslandOutcome& 
   {
     if (conjugate && k > 0)
     {
-      this->goFurther();
+      this->extrapolate();
     }
     stayWanted();
     ++outcome.iterations;
@@ -108,7 +108,7 @@ bool CrowdSolver::holdBounces(std::vector<IslandContact>& contacts)
   const auto gives = [&](std::size_t b)
   {
     const std::size_t k = bouncing_[b];
-    if (contacts[k].bounce <= 0.0)
+    if (contacts[k].reboundSpeed <= 0.0)
     {
       return false; // held back to nothing before
     }
@@ -122,7 +122,7 @@ bool CrowdSolver::holdBounces(std::vector<IslandContact>& contacts)
     const double held = heldBounce(contacts[k], h_, force, before, after);
     if (held >= 0.0)
     {
-      contacts[k].bounce = held;
+      contacts[k].reboundSpeed = held;
       this->askGap(contacts[k], row);
     }
     return held >= 0.0;
@@ -164,7 +164,7 @@ void CrowdSolver::collect()
   forEach(work_.size(), kBodyGrain, collectBody);
 }
 
-void CrowdSolver::noteLook()
+void CrowdSolver::noteDetection()
 {
   for (std::size_t i = 0; i < work_.size(); ++i)
   {
@@ -173,7 +173,7 @@ void CrowdSolver::noteLook()
   }
 }
 
-bool CrowdSolver::haveGoneOn() const
+bool CrowdSolver::needsRecheck() const
 {
   for (std::size_t i = 0; i < work_.size(); ++i)
   {
@@ -218,8 +218,8 @@ void CrowdSolver::begin(
   bouncing_.clear();
   for (std::size_t k = 0; k < contacts.size(); ++k)
   {
-    calm_ = calm_ && contacts[k].bounce < 0.0;
-    if (contacts[k].bounce > 0.0)
+    calm_ = calm_ && contacts[k].reboundSpeed < 0.0;
+    if (contacts[k].reboundSpeed > 0.0)
     {
       bouncing_.push_back(k);
     }

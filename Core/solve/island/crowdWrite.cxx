@@ -29,7 +29,7 @@ void CrowdSolver::write()
       c.point = w.position + w.displacement + w.turned * (c.point - w.position);
     }
     if (row.isSpeculative() ||
-      (force[0] == 0.0 && !c.closed() && (asked.bounce >= 0.0 || gap1 >= 0.0)))
+      (force[0] == 0.0 && !c.closed() && (asked.reboundSpeed >= 0.0 || gap1 >= 0.0)))
     {
       // Open before and after, as most are.
       c.distance = gap1 + c.offset;

@@ -8,7 +8,7 @@ ContactBooks writeContact(const ContactLaw& law, const std::array<Vec3, 3>& dire
 {
   Contact& c = *contact.contact;
   const Eigen::Vector2d travel = motion.displacement.tail<2>();
-  const bool bounced = contact.bounce >= 0.0;
+  const bool bounced = contact.reboundSpeed >= 0.0;
   const double stored = bounced ? c.springEnergy() : 0.0; // of an impact that was under way
   c.normalForce = law.force;
   contact.opening = motion.displacement[0];

@@ -45,7 +45,7 @@ struct IslandContact
   double approach = 0.0;         ///< Speed at which it closes, m/s.
   /// ≥ 0: speed along the normal at which it leaves, m/s: closed, the impact is under way; open (in
   /// a crowd), it closes as an impact.
-  double bounce = -1.0;
+  double reboundSpeed = -1.0;
   double work = 0.0;     ///< Out: what it took from the rocks' motion, springs included, J.
   double opening = 0.0;  ///< Out, if it carried: how far it opened along the normal, m.
   double struck = 0.0;   ///< Out: greatest speed at which it closed as an impact, m/s.
@@ -67,7 +67,7 @@ struct IslandContact
 };
 
 /// Result of a look at where a step would end (IslandSolver).
-struct LookOutcome
+struct EndDetectionOutcome
 {
   double missed = 0.0; ///< Deepest overlap without a contact, of a radius; 0: none.
   /// Overlap, of a radius, by which rocks have come deeper into each other where no contact can
@@ -89,7 +89,7 @@ struct LookOutcome
 /// Gauss–Seidel it is speculative, and it needs no springs before it closes.
 inline bool mayStayOpen(const IslandContact& k, double h)
 {
-  return !k.closed && k.bounce < 0.0 && k.contact->gap() > h * k.approach;
+  return !k.closed && k.reboundSpeed < 0.0 && k.contact->gap() > h * k.approach;
 }
 
 /// Speed at which the mass that a closed contact stops came in, or leaves again if nothing more is
@@ -130,7 +130,7 @@ struct IslandOutcome
 /// it has to turn round, which is added to it.
 inline double bounceGap(const IslandContact& contact, double h, double turned)
 {
-  return -h * (contact.bounce + (contact.approach + contact.bounce) / turned);
+  return -h * (contact.reboundSpeed + (contact.approach + contact.reboundSpeed) / turned);
 }
 
 /// Change of a gap at the start (m) if the one at the end is found to be another one than
@@ -155,9 +155,9 @@ inline double heldBounce(
   const double across = force.tail<2>().dot(twice.tail<2>());
   const double came = contact.closed ? elasticSpeed(c, contact.approach) : contact.approach;
   const double given = across + force[0] * twice[0] - 2.0 * c.springEnergy() / h;
-  const bool may = contact.bounce > 0.0 && (contact.closed || across > 0.0);
+  const bool may = contact.reboundSpeed > 0.0 && (contact.closed || across > 0.0);
   return may && given > (contact.closed ? kBounceGainOn : kBounceGain) * force[0] * came
-    ? std::max(0.0, contact.bounce - given / force[0])
+    ? std::max(0.0, contact.reboundSpeed - given / force[0])
     : -1.0;
 }
 

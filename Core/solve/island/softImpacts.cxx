@@ -1,5 +1,5 @@
 // Impacts within a substep: what closes faster than the resting speed leaves by Newton's law, and
-// strikes what closes by it in the next generation.
+// strikes what closes by it in the next impact round.
 
 #include "base/joined.h"
 #include "base/parallel.h"
@@ -16,8 +16,8 @@ namespace rockfall
 
 bool SoftSolver::closes(std::size_t row, double substeps) const
 {
-  const Row& r = rows_[row];
-  const RowStart& start = starts_[row];
+  const ContactRow& r = rows_[row];
+  const ContactRowCold& start = starts_[row];
   const auto isHeard = [&](int i)
   { return i < 0 || -start.before > movers_[std::size_t(i)].noise; };
   return start.pending >= 0.0 ||
@@ -25,7 +25,7 @@ bool SoftSolver::closes(std::size_t row, double substeps) const
       isHeard(r.b));
 }
 
-void SoftSolver::strike(std::size_t manifold, std::vector<std::size_t>& struck)
+void SoftSolver::startImpact(std::size_t manifold, std::vector<std::size_t>& struck)
 {
   for (std::size_t k = manifolds_[manifold].first; k < manifolds_[manifold].end; ++k)
   {
@@ -38,17 +38,17 @@ void SoftSolver::strike(std::size_t manifold, std::vector<std::size_t>& struck)
 
 bool SoftSolver::staysOpen(std::size_t row) const
 {
-  const Row& r = rows_[row];
+  const ContactRow& r = rows_[row];
   return r.gap + 2.0 * h_ * std::min(starts_[row].before, -r.resting) > 0.0;
 }
 
-bool SoftSolver::strikes(std::size_t m, std::vector<std::size_t>& woken)
+bool SoftSolver::startsImpact(std::size_t m, std::vector<std::size_t>& woken)
 {
   Manifold& manifold = manifolds_[m];
   bool any = false;
   for (std::size_t k = manifold.first; k < manifold.end; ++k)
   {
-    Row& r = rows_[k];
+    ContactRow& r = rows_[k];
     starts_[k].before = this->speedOf(r).dot(r.normal);
     any = any || this->closes(k, 1.0);
     if (!r.idle || this->staysOpen(k))
@@ -99,7 +99,7 @@ void SoftSolver::link()
 
 double SoftSolver::leaves(std::size_t row) const
 {
-  const RowStart& start = starts_[row];
+  const ContactRowCold& start = starts_[row];
   if (start.pending >= 0.0)
   {
     return start.pending;
@@ -110,8 +110,8 @@ double SoftSolver::leaves(std::size_t row) const
 
 std::size_t SoftSolver::countStruck() const
 {
-  return std::accumulate(generations_.begin(), generations_.end(), std::size_t(0),
-    [](std::size_t sum, const Generation& g) { return sum + g.struck.size(); });
+  return std::accumulate(impactRounds_.begin(), impactRounds_.end(), std::size_t(0),
+    [](std::size_t sum, const ImpactRound& g) { return sum + g.struck.size(); });
 }
 
 void SoftSolver::strikeGenerations(double time)
@@ -123,11 +123,11 @@ void SoftSolver::strikeGenerations(double time)
   }
   for (int number = 1; number <= kGenerations && struck > 0; ++number)
   {
-    this->forStrips([this](std::size_t s) { this->beginImpacts(generations_[s]); }, struck);
+    this->forStrips([this](std::size_t s) { this->beginImpacts(impactRounds_[s]); }, struck);
     this->settleImpacts(struck);
     this->limitGains();
-    this->forStrips([this](std::size_t s) { this->takeBack(generations_[s]); }, struck);
-    this->forStrips([&](std::size_t s) { this->bookImpacts(generations_[s], time); }, struck);
+    this->forStrips([this](std::size_t s) { this->scaleBack(impactRounds_[s]); }, struck);
+    this->forStrips([&](std::size_t s) { this->bookImpacts(impactRounds_[s], time); }, struck);
     if (number < kGenerations)
     {
       this->link();
@@ -138,19 +138,19 @@ void SoftSolver::strikeGenerations(double time)
   this->forStrips([this](std::size_t s) { this->listWoken(s); }, 0);
 }
 
-void SoftSolver::beginImpacts(Generation& generation) const
+void SoftSolver::beginImpacts(ImpactRound& impactRound) const
 {
-  generation.moved.clear();
-  generation.impacts.clear();
-  for (const std::size_t k : generation.struck)
+  impactRound.moved.clear();
+  impactRound.impacts.clear();
+  for (const std::size_t k : impactRound.struck)
   {
-    const Row& r = rows_[k];
+    const ContactRow& r = rows_[k];
     const double stored =
       starts_[k].pending >= 0.0 ? (*contacts_)[results_[k].contact].contact->springEnergy() : 0.0;
-    generation.impacts.push_back(
+    impactRound.impacts.push_back(
       { k, 0.0, Vec3::Zero(), this->speedOf(r), this->speedOfA(r), this->leaves(k), stored });
   }
-  generation.struck.clear();
+  impactRound.struck.clear();
 }
 
 void SoftSolver::settleImpacts(std::size_t count)
@@ -160,7 +160,7 @@ void SoftSolver::settleImpacts(std::size_t count)
   std::atomic<bool> any = true;
   const auto sweep = [&](std::size_t strip)
   {
-    Generation& generation = generations_[strip];
+    ImpactRound& impactRound = impactRounds_[strip];
     const auto noteMove = [&](int i)
     {
       if (i >= 0)
@@ -168,14 +168,14 @@ void SoftSolver::settleImpacts(std::size_t count)
         int& stamp = stamp_[std::size_t(i)];
         if (stamp < begun)
         {
-          generation.moved.push_back(i);
+          impactRound.moved.push_back(i);
         }
         stamp = tick_;
       }
     };
-    for (Impact& impact : generation.impacts)
+    for (Impact& impact : impactRound.impacts)
     {
-      const Row& r = rows_[impact.row];
+      const ContactRow& r = rows_[impact.row];
       if (tick_ > begun && !this->moves(r.a) && !this->moves(r.b))
       {
         continue;
@@ -197,7 +197,7 @@ void SoftSolver::settleImpacts(std::size_t count)
 
 bool SoftSolver::settle(Impact& impact)
 {
-  const Row& r = rows_[impact.row];
+  const ContactRow& r = rows_[impact.row];
   const Vec3 u = this->speedOf(r);
   const double v = u.dot(r.normal);
   const double Q = std::max(0.0, impact.Q - r.mass * (v - impact.leaves)), dQ = Q - impact.Q;
@@ -215,7 +215,7 @@ bool SoftSolver::settle(Impact& impact)
     std::max(kImpactExact * std::abs(starts_[impact.row].before), kImpactQuiet * r.resting);
 }
 
-double SoftSolver::Gain::share() const
+double SoftSolver::ImpactEnergy::share() const
 {
   if (work <= stored)
   {
@@ -231,39 +231,39 @@ void SoftSolver::limitGains()
 {
   const auto forImpacts = [this](auto&& visit)
   {
-    for (Generation& generation : generations_)
+    for (ImpactRound& impactRound : impactRounds_)
     {
-      for (Impact& impact : generation.impacts)
+      for (Impact& impact : impactRound.impacts)
       {
         visit(impact, rows_[impact.row]);
       }
     }
   };
-  const auto joinRocks = [this](const Impact&, const Row& r)
+  const auto joinRocks = [this](const Impact&, const ContactRow& r)
   {
     if (r.b >= 0)
     {
       joinTwo(joined_, r.a, r.b);
     }
   };
-  const auto addWork = [this](const Impact& impact, const Row& r)
+  const auto addWork = [this](const Impact& impact, const ContactRow& r)
   {
     const Vec3 J = impact.Q * r.normal + impact.S;
-    Gain& gain = gains_[std::size_t(headOf(joined_, r.a))];
+    ImpactEnergy& gain = impactEnergies_[std::size_t(headOf(joined_, r.a))];
     gain.along += J.dot(impact.before);
     gain.work += 0.5 * J.dot(impact.before + this->speedOf(r));
     gain.stored += impact.stored;
   };
-  const auto share = [this](Impact& impact, const Row& r)
-  { impact.share = gains_[std::size_t(headOf(joined_, r.a))].share(); };
-  const auto part = [this](const Impact&, const Row& r)
+  const auto share = [this](Impact& impact, const ContactRow& r)
+  { impact.share = impactEnergies_[std::size_t(headOf(joined_, r.a))].share(); };
+  const auto part = [this](const Impact&, const ContactRow& r)
   {
     for (const int i : { r.a, r.b })
     {
       if (i >= 0)
       {
         joined_[std::size_t(i)] = i;
-        gains_[std::size_t(i)] = {};
+        impactEnergies_[std::size_t(i)] = {};
       }
     }
   };
@@ -273,11 +273,11 @@ void SoftSolver::limitGains()
   forImpacts(part);
 }
 
-void SoftSolver::takeBack(const Generation& generation)
+void SoftSolver::scaleBack(const ImpactRound& impactRound)
 {
-  for (const Impact& impact : generation.impacts)
+  for (const Impact& impact : impactRound.impacts)
   {
-    const Row& r = rows_[impact.row];
+    const ContactRow& r = rows_[impact.row];
     if (impact.share < 1.0 && impact.Q > 0.0)
     {
       this->push(r, (impact.share - 1.0) * (impact.Q * r.normal + impact.S));
@@ -285,11 +285,11 @@ void SoftSolver::takeBack(const Generation& generation)
   }
 }
 
-void SoftSolver::bookImpacts(const Generation& generation, double time)
+void SoftSolver::bookImpacts(const ImpactRound& impactRound, double time)
 {
-  for (const Impact& impact : generation.impacts)
+  for (const Impact& impact : impactRound.impacts)
   {
-    const Row& r = rows_[impact.row];
+    const ContactRow& r = rows_[impact.row];
     this->noteImpact(impact, time);
     book(r, impact.share * impact.Q, impact.share * impact.S,
       0.5 * (impact.before + this->speedOf(r)), 0.5 * (impact.beforeA + this->speedOfA(r)),
@@ -299,8 +299,8 @@ void SoftSolver::bookImpacts(const Generation& generation, double time)
 
 void SoftSolver::noteImpact(const Impact& impact, double time)
 {
-  const Row& r = rows_[impact.row];
-  RowStart& start = starts_[impact.row];
+  const ContactRow& r = rows_[impact.row];
+  ContactRowCold& start = starts_[impact.row];
   Result& result = results_[impact.row];
   if (impact.Q > 0.0 && start.pending < 0.0 && -start.before > result.struck)
   {
@@ -323,7 +323,7 @@ void SoftSolver::noteImpact(const Impact& impact, double time)
 
 void SoftSolver::listWoken(std::size_t strip)
 {
-  std::vector<std::size_t>& woken = generations_[strip].woken;
+  std::vector<std::size_t>& woken = impactRounds_[strip].woken;
   std::vector<std::size_t>& busy = busyOf_[strip];
   if (!woken.empty())
   {
@@ -335,30 +335,30 @@ void SoftSolver::listWoken(std::size_t strip)
 
 void SoftSolver::findStruck(std::size_t strip, int number)
 {
-  Generation& generation = generations_[strip];
+  ImpactRound& impactRound = impactRounds_[strip];
   // Movers of its rows are of this strip and of the next one, and noted there or before it.
   const std::size_t end = std::min(strip + 2, std::size_t(strips_));
   for (std::size_t s = strip == 0 ? 0 : strip - 1; s < end; ++s)
   {
-    for (const int i : generations_[s].moved)
+    for (const int i : impactRounds_[s].moved)
     {
       for (std::size_t j = firstOf_[std::size_t(i)]; j < firstOf_[std::size_t(i) + 1]; ++j)
       {
         const std::size_t m = manifoldsOf_[j];
         const bool here = m >= firstOfStrip_[strip] && m < firstOfStrip_[strip + 1];
-        if (!here || manifolds_[m].generation == number)
+        if (!here || manifolds_[m].impactRound == number)
         {
           continue;
         }
-        manifolds_[m].generation = number;
-        if (this->strikes(m, generation.woken))
+        manifolds_[m].impactRound = number;
+        if (this->startsImpact(m, impactRound.woken))
         {
-          this->strike(m, generation.struck);
+          this->startImpact(m, impactRound.struck);
         }
       }
     }
   }
-  std::sort(generation.struck.begin(), generation.struck.end());
+  std::sort(impactRound.struck.begin(), impactRound.struck.end());
 }
 
 } // namespace rockfall

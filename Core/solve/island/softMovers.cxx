@@ -84,7 +84,7 @@ void SoftSolver::turn(std::size_t i)
   m.turned = m.turned || m.turn.squaredNorm() > m.weighedTurn * m.weighedTurn;
 }
 
-void SoftSolver::noteLook()
+void SoftSolver::noteDetection()
 {
   for (Mover& m : movers_)
   {

@@ -111,13 +111,13 @@ void SoftSolver::arrange()
   }
   forEach(rows_.size(), kRowGrain,
     [&](std::size_t k) { this->prepareRow(results_[k].contact, rows_[k], starts_[k]); });
-  generations_.resize(std::size_t(strips_));
+  impactRounds_.resize(std::size_t(strips_));
   busyOf_.resize(std::size_t(strips_));
   stampOfStrip_.assign(std::size_t(strips_), -1);
   linked_ = false;
 }
 
-void SoftSolver::prepareRow(std::size_t k, Row& row, RowStart& start) const
+void SoftSolver::prepareRow(std::size_t k, ContactRow& row, ContactRowCold& start) const
 {
   const IslandContact& asked = (*contacts_)[k];
   const Contact& c = *asked.contact;
@@ -154,7 +154,7 @@ void SoftSolver::prepareRow(std::size_t k, Row& row, RowStart& start) const
 
 void SoftSolver::weigh(std::size_t k)
 {
-  Row& row = rows_[k];
+  ContactRow& row = rows_[k];
   double mobility = 0.0, across = 0.0;
   const auto add = [&](int i, const Vec3& lever)
   {
@@ -185,13 +185,14 @@ void SoftSolver::weigh(std::size_t k)
 void SoftSolver::prepareImpulses(std::size_t k, const IslandContact& asked)
 {
   const Contact& c = *asked.contact;
-  Row& row = rows_[k];
-  RowStart& start = starts_[k];
+  ContactRow& row = rows_[k];
+  ContactRowCold& start = starts_[k];
   row.P = 0.0;
   row.T.setZero();
   row.stops = row.loaded = false;
   start.before = 0.0;
-  start.pending = c.closed() && !asked.absent && asked.bounce >= 0.0 ? asked.bounce : -1.0;
+  start.pending =
+    c.closed() && !asked.absent && asked.reboundSpeed >= 0.0 ? asked.reboundSpeed : -1.0;
   if (c.closed() && start.pending < 0.0 && !asked.absent)
   {
     row.P = h_ * c.stiffness * std::max(0.0, -c.gap());

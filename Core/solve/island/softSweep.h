@@ -12,13 +12,13 @@
 namespace rockfall
 {
 
-inline Vec3 SoftSolver::speedOfA(const Row& r, const std::vector<Motion>& motions)
+inline Vec3 SoftSolver::speedOfA(const ContactRow& r, const std::vector<Motion>& motions)
 {
   const Motion& a = motions[std::size_t(r.a)];
   return a.velocity + a.spin.cross(r.lever);
 }
 
-inline Vec3 SoftSolver::speedOf(const Row& r, const std::vector<Motion>& motions)
+inline Vec3 SoftSolver::speedOf(const ContactRow& r, const std::vector<Motion>& motions)
 {
   Vec3 u = speedOfA(r, motions);
   if (r.b >= 0)
@@ -53,7 +53,7 @@ inline void SoftSolver::push(int i, const Vec3& J, const Vec3& lever)
   m.spin += mover.inverseInertia * moment;
 }
 
-inline void SoftSolver::push(const Row& r, const Vec3& J)
+inline void SoftSolver::push(const ContactRow& r, const Vec3& J)
 {
   if (r.b >= 0)
   {
@@ -62,12 +62,12 @@ inline void SoftSolver::push(const Row& r, const Vec3& J)
   this->push(r.a, J, r.lever);
 }
 
-inline double SoftSolver::frictionLimit(const Row& r, double P)
+inline double SoftSolver::frictionLimit(const ContactRow& r, double P)
 {
   return r.friction * P + std::min(r.cohesion, kCohesionPerForce * P);
 }
 
-inline Vec3 SoftSolver::rub(Row& r, double P, const Vec3& across)
+inline Vec3 SoftSolver::solveFriction(ContactRow& r, double P, const Vec3& across)
 {
   Vec3 T = r.T - r.shearMass * across;
   T -= T.dot(r.normal) * r.normal;

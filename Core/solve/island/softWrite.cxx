@@ -15,7 +15,7 @@ IslandOutcome SoftSolver::finish(Accept accept, bool deep)
   IslandOutcome outcome;
   for (std::size_t k = 0; k < rows_.size() && !deep; ++k)
   {
-    const Row& r = rows_[k];
+    const ContactRow& r = rows_[k];
     const double a = movers_[std::size_t(r.a)].block->radius();
     const double radius = r.b < 0 ? a : std::min(a, movers_[std::size_t(r.b)].block->radius());
     deep = this->gapOf(k) < std::min(0.0, starts_[k].gap0) - kDeepStep * radius;
@@ -56,7 +56,7 @@ void SoftSolver::write(IslandOutcome& outcome)
 
 void SoftSolver::writeContact(std::size_t row)
 {
-  const Row& r = rows_[row];
+  const ContactRow& r = rows_[row];
   const Result& result = results_[row];
   IslandContact& asked = (*contacts_)[result.contact];
   std::vector<IslandBody>& bodies = *bodies_;
@@ -107,7 +107,7 @@ void SoftSolver::bookContacts(IslandOutcome& outcome)
 {
   for (std::size_t k = 0; k < rows_.size(); ++k)
   {
-    const Row& r = rows_[k];
+    const ContactRow& r = rows_[k];
     const Result& result = results_[k];
     const IslandContact& asked = (*contacts_)[result.contact];
     const double size = result.impulse.norm(), work = result.normalWork - result.frictionWork;

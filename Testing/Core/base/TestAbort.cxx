@@ -1,7 +1,7 @@
 // Long work of every kind is given up soon after it is no longer wanted.
 
 #include "base/abort.h"
-#include "base/leave.h"
+#include "base/detachedCall.h"
 #include "base/parallel.h"
 #include "geometry/shell.h"
 #include "gis/raster/raster.h"
@@ -186,7 +186,7 @@ TEST(Abort, OfWorkThatAsksNobody)
   const double heard = heardAfter(
     [owned]
     {
-      leaveIfUnwanted(
+      detachedCall(
         [owned]
         {
           std::this_thread::sleep_for(std::chrono::milliseconds(1500));
@@ -200,12 +200,12 @@ TEST(Abort, OfWorkThatAsksNobody)
 
 TEST(Abort, WorkThatIsWantedGivesWhatItGives)
 {
-  EXPECT_EQ(leaveIfUnwanted([] { return 3; }), 3); // on this thread
+  EXPECT_EQ(detachedCall([] { return 3; }), 3); // on this thread
   const AbortScope scope([] { return true; });
-  EXPECT_EQ(leaveIfUnwanted([] { return 4; }), 4);
+  EXPECT_EQ(detachedCall([] { return 4; }), 4);
   EXPECT_THROW(
-    leaveIfUnwanted([]() -> int { throw std::runtime_error("a fault"); }), std::runtime_error);
-  EXPECT_EQ(*leaveIfUnwanted([] { return std::make_unique<int>(5); }), 5);
+    detachedCall([]() -> int { throw std::runtime_error("a fault"); }), std::runtime_error);
+  EXPECT_EQ(*detachedCall([] { return std::make_unique<int>(5); }), 5);
 }
 
 TEST(Abort, OfATriangulation)

@@ -3,8 +3,8 @@
 /// they name is beside them.
 
 #include "base/errors.h"
+#include "gis/base/externalReferences.h"
 #include "gis/base/hdf5References.h"
-#include "gis/base/reach.h"
 #include "gis/raster/raster.h"
 #include "gisFiles.h"
 

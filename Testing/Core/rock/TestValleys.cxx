@@ -219,7 +219,7 @@ TEST(Valleys, SoftRocksKeepTheirEnergyBetweenTouches)
     rock.velocity = 5.0 * Vec3(1.0, u(random), 0.0);
     rock.angularVelocity = 10.0 / rock.shape.radius() * Vec3(u(random), u(random), u(random));
     const Block block(rock.shape, rock.density, rock.youngModulus, rock.poissonRatio);
-    RockSimulator simulator(surface, rock, block, parameters);
+    SingleRock simulator(surface, rock, block, parameters);
     const TrajectorySummary summary = simulator.run().summary;
     worst = std::max(worst, std::abs(summary.energy.numerical) / summary.energy.released);
   }

@@ -276,7 +276,7 @@ TEST(Surface, NoGroundIsInABallOverTheLid)
     HeightWindow window;
     window.gather(
       surface, center.x() - half, center.x() + half, center.y() - half, center.y() + half);
-    const GroundLid lid(window);
+    const GroundHeightBound lid(window);
     const Vec3 at = center + Vec3(0.5, -0.5, 0.5 * center.x() + height(random));
     double nearest = std::numeric_limits<double>::infinity();
     bool whole = lid.covers(at, radius);
@@ -301,7 +301,7 @@ TEST(Surface, NoGroundIsInABallOverTheLid)
   }
   EXPECT_GT(cleared, 1000); // both are met
   EXPECT_GT(low, 300);
-  EXPECT_FALSE(GroundLid().isUnder({ 20.0, 20.0, 1e6 }, 1.0));
+  EXPECT_FALSE(GroundHeightBound().isUnder({ 20.0, 20.0, 1e6 }, 1.0));
 }
 
 TEST(Random, IsACounter)

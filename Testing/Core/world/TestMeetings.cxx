@@ -35,7 +35,7 @@ constexpr double kAllowed = 0.015 * 0.52;
 
 } // namespace
 
-TEST(Meetings, StruckRockDoesNotEnterTheNextOne)
+TEST(IslandFinder, StruckRockDoesNotEnterTheNextOne)
 {
   // 0.1 m in a step of 5 ms; bars of which bounding spheres are 10 mm apart and more.
   for (const double first : { 0.001, 0.03, 0.07 })
@@ -59,7 +59,7 @@ TEST(Meetings, StruckRockDoesNotEnterTheNextOne)
   }
 }
 
-TEST(Meetings, StruckSleepersDoNotEnterTheNextOne)
+TEST(IslandFinder, StruckSleepersDoNotEnterTheNextOne)
 {
   // A bar comes down in front of others that lie asleep by then, and pushes them along; what lies
   // 3 m off sleeps on.
@@ -100,7 +100,7 @@ TEST(Meetings, StruckSleepersDoNotEnterTheNextOne)
   }
 }
 
-TEST(Meetings, FieldOfSleepersIsNotWokenByOneRock)
+TEST(IslandFinder, FieldOfSleepersIsNotWokenByOneRock)
 {
   // Gaps of 30 mm have to be crossed one after the other: a row is not one group.
   Pile pile;
@@ -121,7 +121,7 @@ TEST(Meetings, FieldOfSleepersIsNotWokenByOneRock)
   EXPECT_LE(linked, 5);
 }
 
-TEST(Meetings, WhoTouchesNoneOfAGroupBouncesAsAlone)
+TEST(IslandFinder, WhoTouchesNoneOfAGroupBouncesAsAlone)
 {
   // Cubes 60 mm apart may meet in any step in which one of them strikes the floor, and never do.
   constexpr int count = 5;
@@ -158,7 +158,7 @@ TEST(Meetings, WhoTouchesNoneOfAGroupBouncesAsAlone)
   }
 }
 
-TEST(Meetings, WhatMeetsNoOtherFallsAsWithoutCollisions)
+TEST(IslandFinder, WhatMeetsNoOtherFallsAsWithoutCollisions)
 {
   // Not bit for bit, as the steps of an impact are cut where those of the fall end, but no way is
   // longer or shorter for it: also at the lowest stiffness of rock and in steps that resolve its
@@ -201,7 +201,7 @@ TEST(Meetings, WhatMeetsNoOtherFallsAsWithoutCollisions)
   EXPECT_LT(error, 1.0); // of ways of 100 m
 }
 
-TEST(Meetings, WhatLosesItsSupportFalls)
+TEST(IslandFinder, WhatLosesItsSupportFalls)
 {
   // A cube at rest on a slab that slides away under it without friction, until the slab leaves the
   // slope or is caught.
@@ -236,7 +236,7 @@ TEST(Meetings, WhatLosesItsSupportFalls)
   }
 }
 
-TEST(Meetings, WhatLiesOnAStruckPillarFalls)
+TEST(IslandFinder, WhatLiesOnAStruckPillarFalls)
 {
   // A beam on two pillars, awake as something spins on one of them, which is struck out: by the
   // next step the beam is on its own, and has not gone far as yet.
@@ -263,7 +263,7 @@ TEST(Meetings, WhatLiesOnAStruckPillarFalls)
   }
 }
 
-TEST(Meetings, WhatLeantOnACaughtBoulderSlides)
+TEST(IslandFinder, WhatLeantOnACaughtBoulderSlides)
 {
   // A cube on an incline on which it slides, held by a boulder at its foot; the boulder, on which
   // something spins, is struck over the line of a barrier and caught. The cube, alone then, has not

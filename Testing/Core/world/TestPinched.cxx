@@ -118,7 +118,7 @@ TEST(Pinched, OverlapThatABounceLeavesHoldsNoEnergy)
     contacts[0].contact = &c;
     contacts[0].first = 0;
     contacts[0].second = between ? 1 : -1;
-    contacts[0].bounce = contacts[0].restitution = 0.5;
+    contacts[0].reboundSpeed = contacts[0].restitution = 0.5;
     std::vector<IslandBody> bodies(between ? 2 : 1);
     for (std::size_t i = 0; i < bodies.size(); ++i)
     {
@@ -131,7 +131,7 @@ TEST(Pinched, OverlapThatABounceLeavesHoldsNoEnergy)
     for (const double bounce : { 0.5, -1.0 })
     {
       contacts[0].approach = states[1].velocity.z() - states[0].velocity.z();
-      contacts[0].bounce = bounce;
+      contacts[0].reboundSpeed = bounce;
       contacts[0].closed = c.closed();
       solver.step(request, bodies, contacts, Accept::Any);
       EXPECT_NEAR(states[0].velocity.z() - states[1].velocity.z(), pushed ? 0.5 : 5.0, 0.02);
@@ -170,7 +170,7 @@ TEST(Pinched, WhatASpringHoldsIsAllThatALoadGets)
       touches[0].distance = -4e-3;
       contacts[0].first = 0;
       contacts[0].closed = true;
-      contacts[0].bounce = bounceLeft(touches[0], 0.0);
+      contacts[0].reboundSpeed = bounceLeft(touches[0], 0.0);
       touches[1].distance = 1e-6;
       contacts[1].first = 1;
       contacts[1].second = 0;
@@ -182,7 +182,7 @@ TEST(Pinched, WhatASpringHoldsIsAllThatALoadGets)
         bodies[i].state = &states[i];
       }
       const double stored = touches[0].springEnergy();
-      EXPECT_NEAR(contacts[0].bounce, std::sqrt(2.0 * stored / stone.mass()), 1e-3);
+      EXPECT_NEAR(contacts[0].reboundSpeed, std::sqrt(2.0 * stored / stone.mass()), 1e-3);
       IslandSolver solver;
       solver.method = method;
       const StepRequest request = lastingStep(h, 0.0);
@@ -222,7 +222,7 @@ TEST(Pinched, StepThatMissesDeeplyIsCut)
       IslandSolver solver;
       solver.begin(lastingStep(1e-3, 0.0), accept, bodies, contacts);
       ASSERT_TRUE(solver.asksForALook());
-      LookOutcome seen;
+      EndDetectionOutcome seen;
       seen.missed = missed;
       solver.goOn(seen);
       const bool cut = missed > kCutMiss && accept != Accept::Any;

@@ -245,8 +245,8 @@ TEST(Splinters, BounceMakesNoEnergy)
       contacts[0].friction = rough ? 1.0 : 0.0;
       contacts[0].approach = approach;
       contacts[0].restitution = k % 8 < 4 ? 1.0 : 0.8;
-      contacts[0].bounce = contacts[0].restitution * approach;
-      const double asked = contacts[0].bounce;
+      contacts[0].reboundSpeed = contacts[0].restitution * approach;
+      const double asked = contacts[0].reboundSpeed;
       std::vector<IslandBody> bodies(between ? 2 : 1);
       double energy = 0.0;
       for (std::size_t i = 0; i < bodies.size(); ++i)
@@ -266,10 +266,10 @@ TEST(Splinters, BounceMakesNoEnergy)
       // A bounce may give up to 1e-3 of what comes in; what is held back is held in three rounds.
       const double incoming = 0.5 * c.normalForce * request.duration * approach;
       EXPECT_LT(energy, 0.01 * incoming) << "case " << k << ", method " << int(method);
-      held += contacts[0].bounce < asked; // of a crowd: the impulses of others become less
+      held += contacts[0].reboundSpeed < asked; // of a crowd: the impulses of others become less
       if (!rough)
       {
-        EXPECT_EQ(contacts[0].bounce, asked) << "case " << k; // Newton's law alone makes none
+        EXPECT_EQ(contacts[0].reboundSpeed, asked) << "case " << k; // Newton's law alone makes none
         EXPECT_GT(energy, -(1.0 - 0.8 * 0.8 + 0.02) * incoming) << "case " << k;
       }
     }

@@ -21,7 +21,7 @@ IslandOutcome sweepOnce(double tolerance, Accept accept)
   on.state.velocity.z() = -0.1;
   for (int k = 0; k < 4; ++k)
   {
-    on.contacts[std::size_t(k)].bounce = k == 3 ? 0.0 : -1.0; // so that it is not calm
+    on.contacts[std::size_t(k)].reboundSpeed = k == 3 ? 0.0 : -1.0; // so that it is not calm
   }
   on.solver.tolerance = tolerance;
   on.solver.maxSweeps = 2;

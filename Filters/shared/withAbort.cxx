@@ -1,8 +1,8 @@
-#include "shared/attempt.h"
+#include "shared/withAbort.h"
 
 #include "base/errors.h"
-#include "shared/failure.h"
-#include "shared/pieces.h"
+#include "shared/errorReport.h"
+#include "shared/streamingPieces.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkDataObject.h"
@@ -73,7 +73,8 @@ int giveUp(vtkAlgorithm* algorithm)
   return 1;
 }
 
-int attempt(vtkAlgorithm* algorithm, const std::string& noMemory, const std::function<int()>& work)
+int withAbort(
+  vtkAlgorithm* algorithm, const std::string& noMemory, const std::function<int()>& work)
 {
   try
   {

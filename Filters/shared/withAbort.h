@@ -34,6 +34,7 @@ int giveUp(vtkAlgorithm* algorithm);
 
 /// RequestData's work, which returns what RequestData is to return. Aborted
 /// becomes empty outputs, any other exception the algorithm's one error (reasonOf).
-int attempt(vtkAlgorithm* algorithm, const std::string& noMemory, const std::function<int()>& work);
+int withAbort(
+  vtkAlgorithm* algorithm, const std::string& noMemory, const std::function<int()>& work);
 
 } // namespace rockfall::filters

@@ -1,7 +1,7 @@
 // Velocities of their island and rest of their displacements, which rocks that may meet pass on to
 // each other.
 
-#include "world/Meetings.h"
+#include "world/IslandFinder.h"
 
 #include "base/joined.h"
 #include "law/settings.h"
@@ -13,30 +13,30 @@
 namespace rockfall
 {
 
-int Meetings::root(int i)
+int IslandFinder::root(int i)
 {
   return headOf(parents_, i);
 }
 
-double Meetings::thrown(std::size_t rock) const
+double IslandFinder::massRatioGain(std::size_t rock) const
 {
-  return bounds_[std::size_t(roots_[rock])].thrown(paces_[rock].mass, bounciest_);
+  return bounds_[std::size_t(roots_[rock])].massRatioGain(velocityBounds_[rock].mass, bounciest_);
 }
 
 /// Links two; `known`: their axis has been found for where they stand. Returns whether that tells
 /// anything new of others.
-bool Meetings::join(std::size_t k, bool known)
+bool IslandFinder::join(std::size_t k, bool known)
 {
-  Near& n = near_[k];
+  NearPair& n = near_[k];
   n.linked = n.holds = true;
-  states_[k] = Sight::Linked;
+  states_[k] = PairState::Linked;
   n.pair->linked = true;
   n.pair->known = known;
   const auto linkTo = [&](int i, int other)
   {
     const int next = std::exchange(firstLink_[std::size_t(i)], int(links_.size()));
     links_.push_back({ aparts_[k], other, next });
-    Mover& m = movers_[std::size_t(i)];
+    BodyBounds& m = bodies_[std::size_t(i)];
     if (m.asleep)
     {
       wake(world_.rocks[std::size_t(i)], world_.time);
@@ -45,7 +45,7 @@ bool Meetings::join(std::size_t k, bool known)
     }
     queue_.add(i, m.displacement);
   };
-  const bool share = movers_[std::size_t(n.first)].shares && movers_[std::size_t(n.second)].shares;
+  const bool share = bodies_[std::size_t(n.first)].shares && bodies_[std::size_t(n.second)].shares;
   if (!share)
   {
     linkTo(n.first, n.second);
@@ -61,22 +61,22 @@ bool Meetings::join(std::size_t k, bool known)
 }
 
 /// All that lies on each other wakes at once; others have their turn in the next sweep.
-void Meetings::wakeAbout(int rock)
+void IslandFinder::wakeAbout(int rock)
 {
   const auto visit = [&](std::size_t k)
   {
-    Near& n = near_[k];
-    const Mover& other = movers_[std::size_t(n.first == rock ? n.second : n.first)];
+    NearPair& n = near_[k];
+    const BodyBounds& other = bodies_[std::size_t(n.first == rock ? n.second : n.first)];
     if (k >= states_.size() || n.linked || !other.asleep || !other.present)
     {
       return;
     }
     aparts_[k] = this->apart(n);
-    if (this->mayMeet(this->openOf(k)))
+    if (this->mayMeet(this->undecidedOf(k)))
     {
       n.pair = n.pair ? n.pair : this->newPair(n.first, n.second);
-      world_.rocks[std::size_t(n.first)].stand();
-      world_.rocks[std::size_t(n.second)].stand();
+      world_.rocks[std::size_t(n.first)].updatePose();
+      world_.rocks[std::size_t(n.second)].updatePose();
       if (this->meet(k))
       {
         this->join(k, true);
@@ -88,18 +88,18 @@ void Meetings::wakeAbout(int rock)
 
 /// Passes the rest of a rock's displacement on to those that it is linked with and that do not
 /// share it.
-void Meetings::passOn(int rock)
+void IslandFinder::propagateFrom(int rock)
 {
-  Mover* const rocks = movers_.data();
+  BodyBounds* const rocks = bodies_.data();
   const double displacement = rocks[rock].displacement;
   const Link* const links = links_.data();
   for (int l = firstLink_[std::size_t(rock)]; l >= 0; l = links[l].next)
   {
-    Mover& other = rocks[links[l].other];
+    BodyBounds& other = rocks[links[l].other];
     if (displacement > other.displacement * kNoMore && !other.shares)
     {
       // The gap must be crossed first, by both together.
-      const double own = paces_[std::size_t(links[l].other)].own;
+      const double own = velocityBounds_[std::size_t(links[l].other)].own;
       const double left = displacement -
         std::max(0.0, links[l].gap) * displacement / std::max(displacement + own, 1e-12);
       if (left > other.displacement * kNoMore)
@@ -113,24 +113,24 @@ void Meetings::passOn(int rock)
 
 /// Carries on what each rock that has been joined may do to those that it may meet: the longest
 /// displacement first, so that few have their turn twice.
-void Meetings::tell()
+void IslandFinder::propagate()
 {
   for (int i = queue_.next(); i >= 0; i = queue_.next())
   {
     const std::size_t rock = std::size_t(i);
     roots_[rock] = this->root(i);
-    Mover& m = movers_[rock];
+    BodyBounds& m = bodies_[rock];
     if (m.shares)
     {
       m.displacement = bounds_[std::size_t(roots_[rock])].longest;
     }
-    thrown_[rock] = this->thrown(rock);
-    fars_[rock] = thrown_[rock] * m.displacement;
+    massRatioGains_[rock] = this->massRatioGain(rock);
+    fars_[rock] = massRatioGains_[rock] * m.displacement;
     if (sleepers_ > 0)
     {
       this->wakeAbout(i);
     }
-    this->passOn(i);
+    this->propagateFrom(i);
   }
 }
 

@@ -1,4 +1,4 @@
-// Rocks that are near each other in a step; those of them that may meet: meetingsLink.cxx.
+// Rocks that are near each other in a step; those of them that may meet: islandFinderLink.cxx.
 //
 // Neighbours are looked for in balls about the rocks, wide enough for a few steps, and again when a
 // rock may come out of its own: for this one alone, or, if there are many such, for all.
@@ -14,7 +14,7 @@
 // that were one crowd in the last step are one island from the beginning, and share its longest
 // displacement.
 
-#include "world/Meetings.h"
+#include "world/IslandFinder.h"
 
 #include "base/parallel.h"
 #include "contact/ground/motion.h"
@@ -42,7 +42,7 @@ constexpr std::size_t kMostOut = 4;
 
 } // namespace
 
-void Meetings::follow(double duration)
+void IslandFinder::follow(double duration)
 {
   const std::size_t count = world_.rocks.size();
   duration_ = duration;
@@ -50,10 +50,10 @@ void Meetings::follow(double duration)
   const std::size_t last = count - 1;
   const auto followRock = [&](std::size_t i)
   {
-    Mover& m = movers_[i];
-    Pace& pace = paces_[i];
+    BodyBounds& m = bodies_[i];
+    VelocityBounds& velocities = velocityBounds_[i];
     const FallingRock& member = world_.rocks[i];
-    const RockSimulator& sim = member.sim;
+    const SingleRock& sim = member.sim;
     const char* const ahead =
       reinterpret_cast<const char*>(&world_.rocks[std::min(i + kMembersAhead, last)].asleep);
     for (int line = 0; line < kLinesAsked; ++line)
@@ -64,7 +64,7 @@ void Meetings::follow(double duration)
     m.asleep = member.asleep;
     m.present = !sim.body().done || m.asleep;
     m.shares = m.present && !m.asleep && m.crowd >= 0;
-    thrown_[i] = 1.0;
+    massRatioGains_[i] = 1.0;
     fars_[i] = 0.0;
     if (!m.present || (slept && m.asleep))
     {
@@ -73,22 +73,22 @@ void Meetings::follow(double duration)
     }
     const BlockState& s = sim.body().state;
     m.position = s.position;
-    m.rimTravel += rimTravel(pace.orientation, s.orientation, m.radius) +
-      m.radius * (s.strain - pace.strain).norm();
-    pace.orientation = s.orientation;
-    pace.strain = s.strain;
+    m.rimTravel += rimTravel(velocities.orientation, s.orientation, m.radius) +
+      m.radius * (s.strain - velocities.strain).norm();
+    velocities.orientation = s.orientation;
+    velocities.strain = s.strain;
     if (m.asleep)
     {
-      pace.middle.setZero();
-      pace.velocity.setZero();
-      pace.spread = pace.own = m.displacement = m.known = 0.0;
+      velocities.middle.setZero();
+      velocities.velocity.setZero();
+      velocities.spread = velocities.own = m.displacement = m.known = 0.0;
       return;
     }
-    pace.velocity = s.velocity;
-    foresee(world_, sim, duration, pace);
+    velocities.velocity = s.velocity;
+    boundVelocities(world_, sim, duration, velocities);
     // Much the same rocks strike it as in the last step.
-    m.known = kWider * std::max(pace.own, m.displacement) + sag_;
-    m.displacement = fars_[i] = pace.own;
+    m.known = kWider * std::max(velocities.own, m.displacement) + sag_;
+    m.displacement = fars_[i] = velocities.own;
   };
   forEach(count, kFollowGrain, followRock);
   sleepers_ = 0;
@@ -98,12 +98,12 @@ void Meetings::follow(double duration)
   crowds_.clear();
   for (std::size_t i = 0; i < count; ++i)
   {
-    const Mover& m = movers_[i];
-    const Pace& pace = paces_[i];
+    const BodyBounds& m = bodies_[i];
+    const VelocityBounds& velocities = velocityBounds_[i];
     longest_ = std::max(longest_, m.displacement);
     sleepers_ += m.present && m.asleep;
-    bounds_[i] = { pace.middle.array() - pace.spread, pace.middle.array() + pace.spread, pace.mass,
-      m.displacement, 1 };
+    bounds_[i] = { velocities.middle.array() - velocities.spread,
+      velocities.middle.array() + velocities.spread, velocities.mass, m.displacement, 1 };
     parents_[i] = roots_[i] = int(i);
     if (m.shares)
     {
@@ -122,7 +122,7 @@ void Meetings::follow(double duration)
     }
     if (m.present)
     {
-      drift_ += m.position - pace.covered;
+      drift_ += m.position - velocities.covered;
       ++present;
     }
   }
@@ -143,19 +143,19 @@ void Meetings::follow(double duration)
 }
 
 /// Gives a rock of a crowd the displacement of its island.
-void Meetings::share(std::size_t i)
+void IslandFinder::share(std::size_t i)
 {
-  Mover& m = movers_[i];
+  BodyBounds& m = bodies_[i];
   if (m.shares)
   {
     m.displacement = bounds_[std::size_t(roots_[i])].longest;
-    thrown_[i] = this->thrown(i);
-    fars_[i] = thrown_[i] * m.displacement;
+    massRatioGains_[i] = this->massRatioGain(i);
+    fars_[i] = massRatioGains_[i] * m.displacement;
     m.known = fars_[i] + sag_;
   }
 }
 
-RockPair* Meetings::newPair(int first, int second)
+RockPair* IslandFinder::newPair(int first, int second)
 {
   if (spare_.empty())
   {
@@ -169,7 +169,7 @@ RockPair* Meetings::newPair(int first, int second)
   return pair;
 }
 
-void Meetings::drop(Near& n)
+void IslandFinder::drop(NearPair& n)
 {
   if (n.pair)
   {
@@ -185,28 +185,28 @@ void Meetings::drop(Near& n)
     n.pair->contacts = std::move(contacts);
     spare_.push_back(n.pair);
   }
-  Near fresh;
+  NearPair fresh;
   fresh.first = n.first;
   fresh.second = n.second;
   n = fresh;
 }
 
 /// Whether all that it is near_, wherever it may go in the step, are among its neighbours.
-bool Meetings::isCovered(std::size_t i) const
+bool IslandFinder::isCovered(std::size_t i) const
 {
-  const Mover& m = movers_[i];
-  const Pace& pace = paces_[i];
-  const double room = pace.cover - m.radius - m.known;
+  const BodyBounds& m = bodies_[i];
+  const VelocityBounds& velocities = velocityBounds_[i];
+  const double room = velocities.cover - m.radius - m.known;
   return !m.present ||
-    ((m.asleep || !pace.slept) && room >= 0.0 &&
-      (m.position - drift_ - pace.covered).squaredNorm() <= room * room);
+    ((m.asleep || !velocities.slept) && room >= 0.0 &&
+      (m.position - drift_ - velocities.covered).squaredNorm() <= room * room);
 }
 
-void Meetings::findNear()
+void IslandFinder::findNear()
 {
   chosen_.clear();
   forThose(
-    movers_.size(), kFollowGrain, answers_,
+    bodies_.size(), kFollowGrain, answers_,
     [&](std::size_t i)
     {
       this->share(i);
@@ -214,7 +214,7 @@ void Meetings::findNear()
     },
     [&](std::size_t i) { chosen_.push_back(i); });
   out_ += chosen_.size();
-  if (!searched_ || out_ * kMostOut > movers_.size())
+  if (!searched_ || out_ * kMostOut > bodies_.size())
   {
     this->search();
     out_ = 0;
@@ -227,36 +227,36 @@ void Meetings::findNear()
 }
 
 /// How much wider a rock's ball is than it need be in the step, m.
-double Meetings::spare(int rock) const
+double IslandFinder::spare(int rock) const
 {
-  return kBallSteps * duration_ * (paces_[std::size_t(rock)].velocity - mean_).norm() +
-    kBallOtherwise * movers_[std::size_t(rock)].known;
+  return kBallSteps * duration_ * (velocityBounds_[std::size_t(rock)].velocity - mean_).norm() +
+    kBallOtherwise * bodies_[std::size_t(rock)].known;
 }
 
 /// For all, from where they stand.
-void Meetings::search()
+void IslandFinder::search()
 {
   searched_ = true;
   mean_.setZero();
   int present = 0;
-  for (std::size_t i = 0; i < movers_.size(); ++i)
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
   {
-    if (movers_[i].present)
+    if (bodies_[i].present)
     {
-      mean_ += paces_[i].velocity;
+      mean_ += velocityBounds_[i].velocity;
       ++present;
     }
   }
   mean_ /= std::max(1, present);
   drift_.setZero();
-  for (std::size_t i = 0; i < movers_.size(); ++i)
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
   {
-    const Mover& m = movers_[i];
-    Pace& pace = paces_[i];
-    pace.covered = m.position;
-    pace.cover = m.radius + m.known + this->spare(int(i));
-    pace.slept = m.asleep;
-    boxes_[i] = { m.position, pace.cover, m.present, m.present && !m.asleep };
+    const BodyBounds& m = bodies_[i];
+    VelocityBounds& velocities = velocityBounds_[i];
+    velocities.covered = m.position;
+    velocities.cover = m.radius + m.known + this->spare(int(i));
+    velocities.slept = m.asleep;
+    boxes_[i] = { m.position, velocities.cover, m.present, m.present && !m.asleep };
   }
   broad_.place(boxes_);
   const std::span<const std::array<int, 2>> found = broad_.pairs();
@@ -270,7 +270,7 @@ void Meetings::search()
   nextNear_.clear();
   nextNear_.reserve(std::max(found.size(), near_.size()));
   auto old = near_.begin();
-  const auto leave = [&](Near& n)
+  const auto leave = [&](NearPair& n)
   {
     if (n.pair && this->isAsleep(n.first, n.second))
     {
@@ -283,7 +283,7 @@ void Meetings::search()
   };
   for (const std::array<int, 2>& ij : found)
   {
-    Near n;
+    NearPair n;
     n.first = ij[0];
     n.second = ij[1];
     for (; old != near_.end() && *old < n; ++old)
@@ -303,10 +303,10 @@ void Meetings::search()
   this->indexNeighbours();
 }
 
-void Meetings::indexNeighbours()
+void IslandFinder::indexNeighbours()
 {
-  firsts_.assign(movers_.size() + 1, 0);
-  for (const Near& n : near_)
+  firsts_.assign(bodies_.size() + 1, 0);
+  for (const NearPair& n : near_)
   {
     ++firsts_[std::size_t(n.first)];
     ++firsts_[std::size_t(n.second)];
@@ -331,29 +331,29 @@ void Meetings::indexNeighbours()
 }
 
 /// Looks for those about a rock that comes out of its ball.
-void Meetings::cover(int rock)
+void IslandFinder::cover(int rock)
 {
-  const Mover& m = movers_[std::size_t(rock)];
-  Pace& pace = paces_[std::size_t(rock)];
+  const BodyBounds& m = bodies_[std::size_t(rock)];
+  VelocityBounds& velocities = velocityBounds_[std::size_t(rock)];
   const BroadBox& searched = boxes_[std::size_t(rock)];
-  pace.covered = m.position - drift_;
-  pace.cover = m.radius + m.known + this->spare(rock);
-  pace.slept = false;
-  broad_.within(pace.covered, pace.cover + widened_, found_);
-  widened_ =
-    std::max(widened_, pace.cover + (pace.covered - searched.center).norm() - searched.radius);
+  velocities.covered = m.position - drift_;
+  velocities.cover = m.radius + m.known + this->spare(rock);
+  velocities.slept = false;
+  broad_.within(velocities.covered, velocities.cover + widened_, found_);
+  widened_ = std::max(
+    widened_, velocities.cover + (velocities.covered - searched.center).norm() - searched.radius);
   const auto other = [&](std::size_t k)
   { return std::size_t(near_[k].first == rock ? near_[k].second : near_[k].first); };
   this->forNeighbours(rock, [&](std::size_t k) { marks_[other(k)] = 1; });
   marks_[std::size_t(rock)] = 1;
   for (const int j : found_)
   {
-    const Pace& o = paces_[std::size_t(j)];
-    const double reach = pace.cover + o.cover;
-    if (!marks_[std::size_t(j)] && movers_[std::size_t(j)].present &&
-      (pace.covered - o.covered).squaredNorm() <= reach * reach)
+    const VelocityBounds& o = velocityBounds_[std::size_t(j)];
+    const double reach = velocities.cover + o.cover;
+    if (!marks_[std::size_t(j)] && bodies_[std::size_t(j)].present &&
+      (velocities.covered - o.covered).squaredNorm() <= reach * reach)
     {
-      Near n;
+      NearPair n;
       n.first = std::min(rock, j);
       n.second = std::max(rock, j);
       for (const int i : { rock, j })

@@ -1,6 +1,6 @@
 // The islands that rocks are that may meet within the step, once it is known which do.
 
-#include "world/Meetings.h"
+#include "world/IslandFinder.h"
 
 #include "base/joined.h"
 #include "base/parallel.h"
@@ -15,19 +15,19 @@
 namespace rockfall
 {
 
-Meetings::Meetings(WorldState& world)
+IslandFinder::IslandFinder(WorldState& world)
   : world_(world)
   , bounciest_(world.contacts.largestRestitution())
 {
   const std::size_t count = world.rocks.size();
-  movers_.resize(count);
-  paces_.resize(count);
+  bodies_.resize(count);
+  velocityBounds_.resize(count);
   bounds_.resize(count);
   parents_.resize(count);
   roots_.resize(count);
   boxes_.resize(count);
   fars_.resize(count);
-  thrown_.resize(count);
+  massRatioGains_.resize(count);
   heads_.resize(count);
   inIsland_.resize(count);
   later_.resize(count);
@@ -35,18 +35,18 @@ Meetings::Meetings(WorldState& world)
   for (std::size_t i = 0; i < count; ++i)
   {
     const Block& block = world.rocks[i].body().block;
-    movers_[i].radius = block.radius();
-    paces_[i].mass = block.mass();
+    bodies_[i].radius = block.radius();
+    velocityBounds_[i].mass = block.mass();
   }
 }
 
 /// Lists pairs that are linked, and parts those that no longer are. Of two that have touched lately
 /// one may have carried the other, which has hardly begun to fall: however long it has been still,
 /// it has to come to rest anew.
-void Meetings::settle()
+void IslandFinder::settle()
 {
-  parted_.assign(movers_.size(), 0);
-  const auto part = [&](Near& n)
+  parted_.assign(bodies_.size(), 0);
+  const auto part = [&](NearPair& n)
   {
     if (!(n.holds || n.wasLinked))
     {
@@ -80,11 +80,11 @@ void Meetings::settle()
     Linked* linked = linked_.data() + first;
     for (std::size_t k = first; k < last; ++k)
     {
-      if (states_[k] == Sight::Apart)
+      if (states_[k] == PairState::Apart)
       {
         continue; // nothing lasts of them
       }
-      Near& n = near_[k];
+      NearPair& n = near_[k];
       if (n.linked)
       {
         *linked++ = { n.first, n.second, n.pair };
@@ -107,7 +107,7 @@ void Meetings::settle()
 }
 
 /// Islands are what is linked: an island may have fallen apart.
-void Meetings::unite()
+void IslandFinder::unite()
 {
   std::iota(heads_.begin(), heads_.end(), 0);
   std::fill(inIsland_.begin(), inIsland_.end(), char(0));
@@ -128,7 +128,7 @@ void Meetings::unite()
   }
 }
 
-void Meetings::find(double duration)
+void IslandFinder::find(double duration)
 {
   this->follow(duration);
   this->findNear();
@@ -136,17 +136,17 @@ void Meetings::find(double duration)
   this->listIslands();
 }
 
-void Meetings::listIslands()
+void IslandFinder::listIslands()
 {
   std::vector<int>& place = islandOf_;
-  place.assign(movers_.size(), -1);
+  place.assign(bodies_.size(), -1);
   // Memory of the last step's islands serves again.
   std::vector<Island> old = std::move(islands_);
   islands_.clear();
   alone_.clear();
-  for (std::size_t i = 0; i < movers_.size(); ++i)
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
   {
-    Mover& m = movers_[i];
+    BodyBounds& m = bodies_[i];
     m.crowd = -1;
     if (!m.present || m.asleep)
     {
@@ -176,7 +176,7 @@ void Meetings::listIslands()
     island.crowd = int(island.members.size()) > world_.largestSoft;
     for (const int i : island.members)
     {
-      movers_[std::size_t(i)].crowd = island.crowd ? int(g) : -1;
+      bodies_[std::size_t(i)].crowd = island.crowd ? int(g) : -1;
     }
   }
 }

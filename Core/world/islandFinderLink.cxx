@@ -1,7 +1,7 @@
-// Pairs of rocks near each other that may meet within the step, by the bounds of meetingsNear.cxx;
-// velocities and displacements that rocks pass on: meetingsReach.cxx; islands: Meetings.cxx.
+// Pairs of rocks near each other that may meet within the step, by the bounds of
+// islandFinderNear.cxx; what rocks pass on: islandFinderReach.cxx; islands: IslandFinder.cxx.
 
-#include "world/Meetings.h"
+#include "world/IslandFinder.h"
 
 #include "base/parallel.h"
 #include "law/settings.h"
@@ -23,60 +23,60 @@ constexpr std::size_t kNearsAhead = 8;
 } // namespace
 
 /// From now on the gap is bounded along the pair's axis.
-void Meetings::lookAlong(Near& n) const
+void IslandFinder::lookAlong(NearPair& n) const
 {
-  const Mover &a = movers_[std::size_t(n.first)], &b = movers_[std::size_t(n.second)];
+  const BodyBounds &a = bodies_[std::size_t(n.first)], &b = bodies_[std::size_t(n.second)];
   n.normal = n.pair->axis.normal;
   n.offset =
     n.pair->axis.distance - n.normal.dot(a.position - b.position) + a.rimTravel + b.rimTravel;
 }
 
-double Meetings::gap(const Near& n) const
+double IslandFinder::gap(const NearPair& n) const
 {
-  const Mover &a = movers_[std::size_t(n.first)], &b = movers_[std::size_t(n.second)];
+  const BodyBounds &a = bodies_[std::size_t(n.first)], &b = bodies_[std::size_t(n.second)];
   return n.offset + n.normal.dot(a.position - b.position) - a.rimTravel - b.rimTravel;
 }
 
 /// Least distance of the two, along the axis and by their bounding spheres, m.
-double Meetings::apart(const Near& n) const
+double IslandFinder::apart(const NearPair& n) const
 {
-  const Mover &a = movers_[std::size_t(n.first)], &b = movers_[std::size_t(n.second)];
+  const BodyBounds &a = bodies_[std::size_t(n.first)], &b = bodies_[std::size_t(n.second)];
   return std::max(this->gap(n), (a.position - b.position).norm() - a.radius - b.radius);
 }
 
 /// Speed at which the gap may close along its normal, m/s.
-inline double Meetings::closing(const Near& n) const
+inline double IslandFinder::closing(const NearPair& n) const
 {
   const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
-  return closingSpeed(bounds_[std::size_t(roots_[i])], paces_[i], bounds_[std::size_t(roots_[j])],
-    paces_[j], n.normal);
+  return closingSpeed(bounds_[std::size_t(roots_[i])], velocityBounds_[i],
+    bounds_[std::size_t(roots_[j])], velocityBounds_[j], n.normal);
 }
 
 /// The widest gap over which the two may meet.
-inline double Meetings::reach(const Near& n) const
+inline double IslandFinder::reach(const NearPair& n) const
 {
   const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
-  const double faster = std::max(thrown_[i], thrown_[j]);
+  const double faster = std::max(massRatioGains_[i], massRatioGains_[j]);
   const double speed = n.offset > kNoAxis ? faster * this->closing(n) : -kNoAxis;
   return std::min(fars_[i] + fars_[j], speed * duration_) + sag_;
 }
 
-bool Meetings::mayMeet(const Open& o) const
+bool IslandFinder::mayMeet(const UndecidedPair& o) const
 {
   // By their displacements alone first: that tells most of them apart.
   return o.apart <= fars_[std::size_t(o.first)] + fars_[std::size_t(o.second)] + sag_ &&
     o.apart <= this->reach(near_[std::size_t(o.near)]);
 }
 
-bool Meetings::isAsleep(int first, int second) const
+bool IslandFinder::isAsleep(int first, int second) const
 {
-  return movers_[std::size_t(first)].asleep && movers_[std::size_t(second)].asleep;
+  return bodies_[std::size_t(first)].asleep && bodies_[std::size_t(second)].asleep;
 }
 
 /// Whether two rocks that stand may meet; finds their axis as far as that needs it.
-bool Meetings::meet(std::size_t k)
+bool IslandFinder::meet(std::size_t k)
 {
-  Near& n = near_[k];
+  NearPair& n = near_[k];
   RockPair& pair = *n.pair;
   for (;;)
   {
@@ -107,28 +107,28 @@ bool Meetings::meet(std::size_t k)
 
 /// Looks at all pairs near each other before the first of them are linked. Displacements of a crowd
 /// are known by now: its rocks are linked here.
-void Meetings::look()
+void IslandFinder::look()
 {
   const std::size_t count = near_.size(), parts = (count + kNearPart - 1) / kNearPart;
   states_.resize(count);
   aparts_.resize(count);
-  sighted_.resize(std::max(count, sighted_.size()));
+  undecidedByPart_.resize(std::max(count, undecidedByPart_.size()));
   others_.resize(std::max(count, others_.size()));
   left_.resize(parts);
-  const auto lookAtPart = [this, count, nears = near_.data(), rocks = movers_.data(),
+  const auto lookAtPart = [this, count, nears = near_.data(), rocks = bodies_.data(),
                             aparts = aparts_.data(), states = states_.data(), fars = fars_.data(),
                             surely = surely_.data(), most = sag_](std::size_t part)
   {
     const std::size_t first = part * kNearPart, last = std::min(count, first + kNearPart);
-    Open* open = sighted_.data() + first;
+    UndecidedPair* open = undecidedByPart_.data() + first;
     std::size_t* other = others_.data() + first;
     for (std::size_t k = first; k < last; ++k)
     {
       __builtin_prefetch(nears + std::min(k + 3 * kNearsAhead, count - 1));
       __builtin_prefetch(nears[std::min(k + kNearsAhead, last - 1)].pair);
-      Near& n = nears[k];
+      NearPair& n = nears[k];
       const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
-      const Mover &a = rocks[i], &b = rocks[j];
+      const BodyBounds &a = rocks[i], &b = rocks[j];
       const Vec3 between = a.position - b.position;
       const double distance2 = between.squaredNorm();
       const double known = a.known + b.known, radii = a.radius + b.radius;
@@ -136,7 +136,7 @@ void Meetings::look()
       if ((!asleep && distance2 > (radii + known) * (radii + known)) || !a.present || !b.present)
       {
         // Without a pair there is nothing to forget.
-        states[k] = Sight::Apart;
+        states[k] = PairState::Apart;
         *other = k;
         other += n.pair != nullptr;
         continue;
@@ -159,38 +159,38 @@ void Meetings::look()
       aparts[k] = apart;
       if (asleep || (!overlap && apart > known))
       {
-        states[k] = asleep || n.holds || n.wasLinked ? Sight::Shut : Sight::Apart;
+        states[k] = asleep || n.holds || n.wasLinked ? PairState::Separate : PairState::Apart;
         continue;
       }
-      const Open two = { apart, n.first, n.second, int(k) };
+      const UndecidedPair two = { apart, n.first, n.second, int(k) };
       if (n.pair && a.isOneCrowdWith(b) &&
         (overlap || apart <= std::min(fars[i] + fars[j], surely[a.crowd]) + most ||
           this->mayMeet(two)))
       {
         n.linked = n.holds = n.pair->linked = true;
         n.pair->known = false;
-        states[k] = Sight::Linked;
+        states[k] = PairState::Linked;
         continue;
       }
-      states[k] = overlap ? Sight::Overlaps : Sight::Open;
+      states[k] = overlap ? PairState::Overlaps : PairState::Undecided;
       *open = two;
       open += !overlap;
       *other = k;
       other += overlap;
     }
-    left_[part] = { std::size_t(open - sighted_.data()) - first,
+    left_[part] = { std::size_t(open - undecidedByPart_.data()) - first,
       std::size_t(other - others_.data()) - first };
   };
   forEach(parts, 1, lookAtPart);
-  open_.clear();
+  undecided_.clear();
   for (std::size_t part = 0; part < parts; ++part)
   {
-    const Open* const from = sighted_.data() + part * kNearPart;
-    open_.insert(open_.end(), from, from + left_[part].open);
+    const UndecidedPair* const from = undecidedByPart_.data() + part * kNearPart;
+    undecided_.insert(undecided_.end(), from, from + left_[part].open);
     const std::size_t* const other = others_.data() + part * kNearPart;
     for (std::size_t k = 0; k < left_[part].others; ++k)
     {
-      if (states_[other[k]] == Sight::Overlaps)
+      if (states_[other[k]] == PairState::Overlaps)
       {
         this->join(other[k], false);
       }
@@ -202,34 +202,34 @@ void Meetings::look()
   }
 }
 
-Meetings::Open Meetings::openOf(std::size_t k) const
+IslandFinder::UndecidedPair IslandFinder::undecidedOf(std::size_t k) const
 {
   return { aparts_[k], near_[k].first, near_[k].second, int(k) };
 }
 
 /// Takes up those about rocks whose displacements have outgrown what was known.
-void Meetings::widen()
+void IslandFinder::widen()
 {
   for (std::size_t k = states_.size(); k < near_.size(); ++k)
   {
-    states_.push_back(Sight::Shut);
+    states_.push_back(PairState::Separate);
     aparts_.push_back(this->apart(near_[k]));
   }
   for (const int rock : wider_)
   {
     const auto take = [&](std::size_t k)
     {
-      const Mover &a = movers_[std::size_t(near_[k].first)],
-                  &b = movers_[std::size_t(near_[k].second)];
-      if (states_[k] != Sight::Shut && states_[k] != Sight::Apart)
+      const BodyBounds &a = bodies_[std::size_t(near_[k].first)],
+                       &b = bodies_[std::size_t(near_[k].second)];
+      if (states_[k] != PairState::Separate && states_[k] != PairState::Apart)
       {
         return;
       }
       aparts_[k] = a.present && b.present ? this->apart(near_[k]) : -kNoAxis;
       if (aparts_[k] <= a.known + b.known)
       {
-        states_[k] = Sight::Open;
-        open_.push_back(this->openOf(k));
+        states_[k] = PairState::Undecided;
+        undecided_.push_back(this->undecidedOf(k));
       }
     };
     this->forNeighbours(rock, take);
@@ -237,21 +237,21 @@ void Meetings::widen()
 }
 
 /// Displacements of rocks as their islands have grown; whether others have to be told of any.
-bool Meetings::widenIslands()
+bool IslandFinder::widenIslands()
 {
   bool any = false;
   wider_.clear();
-  for (std::size_t i = 0; i < movers_.size(); ++i)
+  for (std::size_t i = 0; i < bodies_.size(); ++i)
   {
     // Parents come before their children.
     roots_[i] = parents_[i] = roots_[std::size_t(parents_[i])];
-    Mover& m = movers_[i];
+    BodyBounds& m = bodies_[i];
     const IslandBounds& bounds = bounds_[std::size_t(roots_[i])];
     if (bounds.size == 1)
     {
       continue;
     }
-    thrown_[i] = this->thrown(i);
+    massRatioGains_[i] = this->massRatioGain(i);
     if (m.shares && m.displacement < bounds.longest)
     {
       m.displacement = bounds.longest;
@@ -261,7 +261,7 @@ bool Meetings::widenIslands()
         any = true;
       }
     }
-    fars_[i] = thrown_[i] * m.displacement;
+    fars_[i] = massRatioGains_[i] * m.displacement;
     if (fars_[i] + sag_ > m.known && m.present && !m.asleep)
     {
       m.known = kWider * (fars_[i] + sag_);
@@ -280,13 +280,13 @@ bool Meetings::widenIslands()
 }
 
 /// Of the pairs that are open, those that may meet.
-void Meetings::choose()
+void IslandFinder::choose()
 {
   chosen_.clear();
-  Open* const first = open_.data();
-  Open* to = first;
+  UndecidedPair* const first = undecided_.data();
+  UndecidedPair* to = first;
   const double* const fars = fars_.data();
-  for (const Open *o = first, *end = first + open_.size(); o != end; ++o)
+  for (const UndecidedPair *o = first, *end = first + undecided_.size(); o != end; ++o)
   {
     if (o->apart <= fars[o->first] + fars[o->second] + sag_)
     {
@@ -301,11 +301,11 @@ void Meetings::choose()
     }
     *to++ = *o;
   }
-  open_.resize(std::size_t(to - first));
+  undecided_.resize(std::size_t(to - first));
 }
 
 /// Looks at all that are open; returns whether others have to be told of what it has shown.
-bool Meetings::sweep()
+bool IslandFinder::sweep()
 {
   bool any = this->widenIslands();
   this->choose();
@@ -313,8 +313,8 @@ bool Meetings::sweep()
   placed_.clear();
   for (const std::size_t o : chosen_)
   {
-    const std::size_t k = std::size_t(open_[o].near);
-    Near& n = near_[k];
+    const std::size_t k = std::size_t(undecided_[o].near);
+    NearPair& n = near_[k];
     if (n.pair && n.looked < 0.0 && (this->stays(n) || this->root(n.first) == this->root(n.second)))
     {
       // Of one island they are: how far apart is looked at when their contacts are.
@@ -333,17 +333,17 @@ bool Meetings::sweep()
     }
   }
   forEach(placed_.size(), kLookGrain,
-    [&](std::size_t k) { world_.rocks[std::size_t(placed_[k])].stand(); });
+    [&](std::size_t k) { world_.rocks[std::size_t(placed_[k])].updatePose(); });
   answers_.resize(std::max(answers_.size(), asked_.size()));
   forEach(asked_.size(), kLookGrain,
-    [&](std::size_t k) { answers_[k] = this->meet(std::size_t(open_[asked_[k]].near)); });
+    [&](std::size_t k) { answers_[k] = this->meet(std::size_t(undecided_[asked_[k]].near)); });
   for (const int i : placed_)
   {
     marks_[std::size_t(i)] = 0;
   }
   for (std::size_t a = 0; a < asked_.size(); ++a)
   {
-    Open& o = open_[asked_[a]];
+    UndecidedPair& o = undecided_[asked_[a]];
     o.apart = aparts_[std::size_t(o.near)];
     if (answers_[a])
     {
@@ -355,24 +355,24 @@ bool Meetings::sweep()
 
 /// In a crowd two stay linked as long as they may meet for all that is known of them: their axis is
 /// looked for when their contacts are, within a shorter reach.
-bool Meetings::stays(const Near& n) const
+bool IslandFinder::stays(const NearPair& n) const
 {
-  const Mover &a = movers_[std::size_t(n.first)], &b = movers_[std::size_t(n.second)];
+  const BodyBounds &a = bodies_[std::size_t(n.first)], &b = bodies_[std::size_t(n.second)];
   return n.wasLinked && (n.seen || n.pair->touched) && a.crowd >= 0 && b.crowd >= 0 && !a.asleep &&
     !b.asleep;
 }
 
-void Meetings::link()
+void IslandFinder::link()
 {
-  firstLink_.assign(movers_.size(), -1);
+  firstLink_.assign(bodies_.size(), -1);
   links_.clear();
   links_.reserve(near_.size());
-  queue_.reset(movers_.size(), longest_);
+  queue_.reset(bodies_.size(), longest_);
   this->look();
-  this->tell();
+  this->propagate();
   while (this->sweep())
   {
-    this->tell();
+    this->propagate();
   }
   this->settle();
   this->unite();

@@ -208,7 +208,8 @@ void NowGatherer::gatherVertices()
         {
           continue;
         }
-        // A vertex that has slipped under the slope must be found however deep it is (holdOverlap).
+        // A vertex that has slipped under the slope must be found however deep it is
+        // (guardPenetration).
         const double s = east - (i / 2 - row * cellColumns_), t = south - row;
         const double lean = height * inverse_;
         if ((height >= -deepest_ &&
@@ -314,7 +315,7 @@ void NowGatherer::gatherEdges(const CellRange& cells, const RockBox& near)
 
 } // namespace
 
-void gatherNow(const PlacedBlock& rock, const PairBody& body, const SurfacePatch& patch,
+void gatherStepCandidates(const PlacedBlock& rock, const PairBody& body, const SurfacePatch& patch,
   const SlopeReach& reach, CandidatePairs& candidates)
 {
   candidates.vertexFace.clear();
@@ -326,7 +327,7 @@ void gatherNow(const PlacedBlock& rock, const PairBody& body, const SurfacePatch
   }
 }
 
-void gatherUnder(const PlacedBlock& rock, const PairBody& body, const SurfacePatch& patch,
+void gatherCandidatesUnder(const PlacedBlock& rock, const PairBody& body, const SurfacePatch& patch,
   double allowed, CandidatePairs& candidates)
 {
   candidates.vertexFace.clear();

@@ -22,7 +22,7 @@ namespace rockfall
 {
 
 /// One piece of the path: a parabola, or a step of contact.
-struct Way
+struct PathPiece
 {
   const BlockState& from;
   const BlockState& to;
@@ -43,10 +43,10 @@ class PairBody;
 
 /// The fall of a rock alone (`run`), and the same in parts, for rocks that may meet others
 /// (World): those bring each other through a step together, and ask each rock for its part.
-class RockSimulator
+class SingleRock
 {
 public:
-  RockSimulator(const Surface& surface, const Rock& rock, const Block& block,
+  SingleRock(const Surface& surface, const Rock& rock, const Block& block,
     const SimulationParameters& p,
     std::uint32_t number = 0); ///< `number` of the rock in its iteration.
 
@@ -84,11 +84,11 @@ public:
   bool clearFor(double duration) const; ///< No ground under the way of a flight.
   /// Whether no ground is within a reach of the rock (m) for sure, among others; looks for how high
   /// it is where that is not known.
-  bool isHigh(double reach);
+  bool isClear(double reach);
   /// The same where it is known, wherever the rock may be.
-  bool isHighAt(const Vec3& place, double reach) const
+  bool isClearAt(const Vec3& place, double reach) const
   {
-    return lid_.isUnder(place, body_.block.radius() + reach);
+    return heightBound_.isUnder(place, body_.block.radius() + reach);
   }
   const SurfacePatch& patch() const { return patch_; }
   const CandidatePairs& candidates() const { return candidates_; } ///< By ensureCandidates.
@@ -96,7 +96,7 @@ public:
   /// Candidates of a rock among many others, for where it stands in this step only if there is
   /// nothing but the slope near it; `body` stands there, too. They serve until this thread asks
   /// again.
-  const CandidatePairs& candidatesNow(const PairBody& body, const SlopeReach& reach);
+  const CandidatePairs& stepCandidates(const PairBody& body, const SlopeReach& reach);
   /// Where a step would end, by a way (m), those that would overlap by more than `allowed` (m); in
   /// doubt others, too.
   const CandidatePairs& candidatesAt(const BlockState& end, const PlacedBlock& placed,
@@ -105,7 +105,7 @@ public:
   /// a corner onto a face; with 0 no contact is looked for there.
   void findContacts(const CandidatePairs& candidates, double reach, double h);
   /// Contacts of what has slipped through between others, of those that `findContacts` had.
-  void holdOverlaps(const CandidatePairs& candidates);
+  void guardPenetrations(const CandidatePairs& candidates);
   bool meetsSolids() const { return solid_; } ///< There are embankments or trees.
   int treeOf(const Contact& contact) const;   ///< −1: it is on none.
   /// Whether a stem holds the rock with this motion: the law of terrain/stemHit.h. What presses
@@ -123,21 +123,21 @@ public:
   /// Λ sinks under what comes down within a step of `h` (s), or rises with the rock. Whether it
   /// did: contacts and candidates are then out of date.
   bool followScar(double h);
-  void closeScar();           ///< The rock is out of the ground.
-  void armContacts(double h); ///< Gives new contacts their springs and dashpots, for a step of h.
-  void armContact(Contact& contact);
+  void closeScar();             ///< The rock is out of the ground.
+  void setNewSprings(double h); ///< Gives new contacts their springs and dashpots, for a step of h.
+  void setSprings(Contact& contact);
   /// Key of the deviates of the ground at a place, now.
   GroundTouch touchAt(std::int64_t cfe, const Vec3& place) const
   {
     return { cfe, place, number_, impactsOver_ };
   }
-  /// Deep overlaps that were found, not made (pressOut.h), before a lasting step.
-  void pressOutDeep(double h);
+  /// Deep overlaps that were found, not made (overlapRecovery.h), before a lasting step.
+  void recoverDeepOverlap(double h);
   double mechanicalEnergy() const; ///< Without contact springs, J.
   /// Books a step that has been taken from `before` to `state`. `given`: work done on other rocks,
-  /// J. `pressesOut`: loose overlaps go slowly (pressOut.h).
-  void absorb(
-    StepKind kind, const StepOutcome& outcome, double energyBefore, double given, bool pressesOut);
+  /// J. `recovers`: loose overlaps go slowly (overlapRecovery.h).
+  void commitStep(
+    StepKind kind, const StepOutcome& outcome, double energyBefore, double given, bool recovers);
   void flyFree(double duration); ///< Without contacts, through barriers that break.
   /// The impact on the slope that is under way, if there is one.
   const ImpactEvent* impactUnderWay() const { return impact_.pending ? &impact_.event : nullptr; }
@@ -149,10 +149,10 @@ public:
   {
     std::vector<int> trees, barriers;
   };
-  Broken takeBroken(); ///< Structures that it has broken since it was asked last.
+  Broken drainBroken(); ///< Structures that it has broken since it was asked last.
   /// Structures that others of its fall have broken are gone for this rock, too. Whether it touched
   /// any.
-  bool hearOf(const Broken& broken);
+  bool applyBroken(const Broken& broken);
 
 private:
   /// The impact under way between the first touch and the take-off or settling.
@@ -167,7 +167,7 @@ private:
     double yieldedBefore = 0.0;        ///< Taken by scars and rolling resistance, J.
   };
 
-  // Flight, RockSimulator.cxx
+  // Flight, SingleRock.cxx
   void flyUntilNear(); ///< Returns when a touch is possible within a few steps, or at the end.
   void advanceInFlight(double duration);
   void checkEnd(double h); ///< Rested, left, or out of time? `h`: time since the last call, s.
@@ -180,11 +180,11 @@ private:
   bool undoAtTrees(double h);
   /// Fills `passages_` with those whose line is passed, or its straight continuation as near to an
   /// end as the rock is wide.
-  void findBarriers(const Way& way);
+  void findBarriers(const PathPiece& way);
   /// Goes on along this way, on which barriers have taken so much so far (J): notes what records,
   /// and fills `hit_` with the first barrier that stops the rock or breaks. After such a one flight
   /// goes on to those at the same place only; its rest is flown anew.
-  void passBarriers(const Way& way, double taken);
+  void passBarriers(const PathPiece& way, double taken);
   void meetBarrier(); ///< The one in `hit_`, where the rock is.
   /// The one in `hit_`, in a step of contact that would go to `end` and in which others have taken
   /// so much (J); returns what this one takes if it breaks.
@@ -199,12 +199,12 @@ private:
   /// steps of `small` (s). Whether anything was done.
   bool flyFromContact(double small);
   void takeStep(double h, StepKind kind);
-  bool mayLast(double h) const; ///< A long, damped step is right.
-  void pressOut(double h);      ///< As pressOutDeep, loose overlaps after a step.
-  double looseOverlap() const;  ///< m
+  bool mayLast(double h) const;  ///< A long, damped step is right.
+  void recoverOverlap(double h); ///< As recoverDeepOverlap, loose overlaps after a step.
+  double looseOverlap() const;   ///< m
   /// No spring in a deep overlap holds more than those of a rock that lies still and alone. Returns
   /// what it no longer holds, J.
-  double letDeepBe(double loose);
+  double limitDeepOverlaps(double loose);
   double settledSpeed() const; ///< Speed that the springs of such a rock could give it, m/s.
   double dampingRatioFor(int ground, double restitution); ///< ζ of a class of ground, now.
   /// Part of a step of `h` that contacts which are closed or close in it allow, s.
@@ -278,14 +278,14 @@ private:
   // In the order of their use in the step of a crowd, which goes from rock to rock: what it needs
   // lies together, and in one page.
   bool inContact_ = false;
-  bool pressed_ = false; ///< A deep overlap is pressed out in the step at hand.
-  bool stiff_ = false;   ///< The block's strain follows its contacts without inertia.
-  bool solid_ = false;   ///< There are embankments or trees.
+  bool recovering_ = false; ///< A deep overlap is pressed out in the step at hand.
+  bool stiff_ = false;      ///< The block's strain follows its contacts without inertia.
+  bool solid_ = false;      ///< There are embankments or trees.
   bool barriers_ = false;
   bool yields_ = false;   ///< Some class of the ground does.
   bool impulses_ = false; ///< Impacts are events in impulse space.
   RockBody body_;
-  GroundLid lid_;
+  GroundHeightBound heightBound_;
   double openTime_ = 0.0;                ///< Since it touched, s.
   double horizon_ = 0.0;                 ///< Up to which it is to advance, s.
   double penalty_ = 0.0;                 ///< pₙ of the contacts that are made now, N/m.

@@ -1,4 +1,4 @@
-#include "rock/RockSimulator.h"
+#include "rock/SingleRock.h"
 
 #include "base/abort.h"
 #include "block/flight.h"
@@ -7,8 +7,8 @@
 #include "geometry/roundBody.h"
 #include "law/settings.h"
 #include "law/springs.h"
+#include "rock/overlapRecovery.h"
 #include "rock/placement.h"
-#include "rock/pressOut.h"
 #include "terrain/holes.h"
 #include "terrain/walls.h"
 
@@ -43,7 +43,7 @@ struct ImpactFrequency
 
 } // namespace
 
-RockSimulator::RockSimulator(const Surface& surface, const Rock& rock, const Block& block,
+SingleRock::SingleRock(const Surface& surface, const Rock& rock, const Block& block,
   const SimulationParameters& p, std::uint32_t number)
   : surface_(surface)
   , rock_(rock)
@@ -72,7 +72,7 @@ RockSimulator::RockSimulator(const Surface& surface, const Rock& rock, const Blo
   softness_ = 1.0 / p.normalPenalty + block.largestCompliance();
 }
 
-double RockSimulator::travelLimit() const
+double SingleRock::travelLimit() const
 {
   const double rim = body_.state.spin.norm() * body_.block.radius();
   const double speed =
@@ -80,7 +80,7 @@ double RockSimulator::travelLimit() const
   return speed > 0.0 ? kTravelPerStep * body_.block.radius() / speed : parameters_.timeStep;
 }
 
-double RockSimulator::impactStep() const
+double SingleRock::impactStep() const
 {
   ImpactFrequency closed;
   for (const Contact& c : body_.contacts)
@@ -93,7 +93,7 @@ double RockSimulator::impactStep() const
   return std::min({ parameters_.timeStep, resolved, this->travelLimit() });
 }
 
-double RockSimulator::touchdownStep(double h) const
+double SingleRock::touchdownStep(double h) const
 {
   ImpactFrequency closing;
   const Vec3 spin = body_.state.angularVelocity();
@@ -107,13 +107,13 @@ double RockSimulator::touchdownStep(double h) const
   return std::min(h, std::numbers::pi / (kStepsPerImpact * std::sqrt(frequency2)));
 }
 
-double RockSimulator::mechanicalEnergy() const
+double SingleRock::mechanicalEnergy() const
 {
   return kineticEnergy(body_.block, body_.state) + strainEnergy(body_.block, body_.state) +
     body_.block.mass() * parameters_.gravity * body_.state.position.z();
 }
 
-EnergyAudit RockSimulator::auditAt(const BlockState& state) const
+EnergyAudit SingleRock::auditAt(const BlockState& state) const
 {
   EnergyAudit audit = body_.energy;
   audit.kinetic = kineticEnergy(body_.block, state);
@@ -125,7 +125,7 @@ EnergyAudit RockSimulator::auditAt(const BlockState& state) const
   return audit;
 }
 
-void RockSimulator::auditSamples(const BlockState& state)
+void SingleRock::auditSamples(const BlockState& state)
 {
   if (recorder_.needsAudit())
   {
@@ -133,11 +133,11 @@ void RockSimulator::auditSamples(const BlockState& state)
   }
 }
 
-void RockSimulator::advanceInFlight(double duration)
+void SingleRock::advanceInFlight(double duration)
 {
   const BlockState start = body_.state;
   BlockState reached = start;
-  const Way way{ start, reached, duration, true };
+  const PathPiece way{ start, reached, duration, true };
   if (barriers_)
   {
     reached.position = placeInFlight(start, parameters_.gravity, duration);
@@ -175,7 +175,7 @@ void RockSimulator::advanceInFlight(double duration)
   }
 }
 
-void RockSimulator::flyFree(double duration)
+void SingleRock::flyFree(double duration)
 {
   body_.contacts.clear();
   this->finishImpact();
@@ -192,7 +192,7 @@ void RockSimulator::flyFree(double duration)
   body_.quietTime = 0.0;
 }
 
-void RockSimulator::flyUntilNear()
+void SingleRock::flyUntilNear()
 {
   while (!body_.done && !this->arrived() && !scar_.open())
   {
@@ -265,14 +265,14 @@ void RockSimulator::flyUntilNear()
   }
 }
 
-void RockSimulator::checkLeft()
+void SingleRock::checkLeft()
 {
   const Terrain& terrain = surface_.terrain();
   const Vec3& p = body_.state.position;
   const double r = body_.block.radius();
   bool left =
     !(p.x() >= 0.0 && p.y() >= 0.0 && p.x() <= terrain.width() && p.y() <= terrain.height());
-  if (!left && !this->isHighAt(p, 0.0) && terrain.cfeAt(p.x(), p.y()) == 0)
+  if (!left && !this->isClearAt(p, 0.0) && terrain.cfeAt(p.x(), p.y()) == 0)
   {
     // Over a hole it has left once it is below everything around; the bound costs next to nothing.
     const double x0 = p.x() - r, x1 = p.x() + r, y0 = p.y() - r, y1 = p.y() + r;
@@ -286,7 +286,7 @@ void RockSimulator::checkLeft()
   }
 }
 
-void RockSimulator::followRest(double h, bool touching)
+void SingleRock::followRest(double h, bool touching)
 {
   const double r = body_.block.radius();
   const double speed = body_.state.velocity.norm() + body_.state.spin.norm() * r;
@@ -294,7 +294,7 @@ void RockSimulator::followRest(double h, bool touching)
   body_.quietTime = touching && speed < still ? body_.quietTime + h : 0.0;
 }
 
-void RockSimulator::checkEnd(double h)
+void SingleRock::checkEnd(double h)
 {
   if (!body_.done)
   {
@@ -315,7 +315,7 @@ void RockSimulator::checkEnd(double h)
   }
 }
 
-void RockSimulator::liftOntoGround()
+void SingleRock::liftOntoGround()
 {
   // The placement was checked on the slope as surveyed; roughness can raise the ground into the
   // rock. By steps, so it ends a hair over the ground.
@@ -342,19 +342,19 @@ void RockSimulator::liftOntoGround()
   body_.placed.place(body_.block, body_.state);
 }
 
-void RockSimulator::letStrainFollow()
+void SingleRock::letStrainFollow()
 {
   stiff_ = true;
   ringing_ = 0.0;
 }
 
-void RockSimulator::end(Fate fate)
+void SingleRock::end(Fate fate)
 {
   this->trajectory().summary.fate = fate;
   body_.done = true;
 }
 
-void RockSimulator::wake(double time)
+void SingleRock::wake(double time)
 {
   body_.done = false;
   body_.quietTime = 0.0;
@@ -364,13 +364,13 @@ void RockSimulator::wake(double time)
   this->auditSamples(body_.state);
 }
 
-void RockSimulator::release()
+void SingleRock::release()
 {
   this->liftOntoGround();
   this->begin();
 }
 
-void RockSimulator::begin()
+void SingleRock::begin()
 {
   TrajectorySummary& summary = recorder_.trajectory().summary;
   summary.blockId = rock_.blockId;
@@ -382,7 +382,7 @@ void RockSimulator::begin()
   this->checkEnd(0.0);
 }
 
-double RockSimulator::stoppingPenalty() const
+double SingleRock::stoppingPenalty() const
 {
   // All that moves in one spring.
   const double depth =
@@ -391,7 +391,7 @@ double RockSimulator::stoppingPenalty() const
     2.0 * rigidKineticEnergy(body_.block, body_.state) / (depth * depth));
 }
 
-void RockSimulator::beginContact()
+void SingleRock::beginContact()
 {
   if (inContact_)
   {
@@ -405,19 +405,19 @@ void RockSimulator::beginContact()
   this->auditSamples(body_.state);
 }
 
-void RockSimulator::endContact()
+void SingleRock::endContact()
 {
   inContact_ = false;
   recorder_.knot(body_.state, false);
   this->auditSamples(body_.state);
 }
 
-void RockSimulator::advance(double until, double enough)
+void SingleRock::advance(double until, double enough)
 {
-  if (body_.crowded)
+  if (body_.inIsland)
   {
-    body_.crowded = false; // alone, and what others have pressed in is theirs
-    body_.energy.damping += this->letDeepBe(kLooseOverlap * body_.block.radius());
+    body_.inIsland = false; // alone, and what others have pressed in is theirs
+    body_.energy.damping += this->limitDeepOverlaps(kLooseOverlap * body_.block.radius());
     candidates_.distance =
       -1.0; // flight goes by them, and would hang on how the island was looked at
   }
@@ -445,7 +445,7 @@ void RockSimulator::advance(double until, double enough)
   }
 }
 
-Trajectory RockSimulator::finish()
+Trajectory SingleRock::finish()
 {
   TrajectorySummary& summary = recorder_.trajectory().summary;
   const bool touching = anyClosed(body_.contacts);
@@ -463,7 +463,7 @@ Trajectory RockSimulator::finish()
   return std::move(recorder_.trajectory());
 }
 
-Trajectory RockSimulator::run(double enough)
+Trajectory SingleRock::run(double enough)
 {
   this->release();
   this->advance(parameters_.endTime, enough);

@@ -1,4 +1,4 @@
-#include "shared/pieces.h"
+#include "shared/streamingPieces.h"
 
 #include "vtkInformation.h"
 #include "vtkInformationIntegerKey.h"

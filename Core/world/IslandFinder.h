@@ -6,8 +6,8 @@
 
 #include "contact/pair/broadPhase.h"
 #include "world/RockQueue.h"
+#include "world/VelocityBounds.h"
 #include "world/WorldState.h"
-#include "world/pace.h"
 
 #include <algorithm>
 #include <array>
@@ -23,7 +23,7 @@ constexpr double kNoAxis = -std::numeric_limits<double>::infinity();
 
 /// A rock as the others meet it in the step at hand: what every look at a pair asks for, in one
 /// line of the cache.
-struct alignas(64) Mover
+struct alignas(64) BodyBounds
 {
   Vec3 position; ///< m
   double radius; ///< m
@@ -40,11 +40,11 @@ struct alignas(64) Mover
   bool shares = false;
   int crowd = -1; ///< Of the last step, −1: none.
 
-  bool isOneCrowdWith(const Mover& o) const { return shares && o.shares && crowd == o.crowd; }
+  bool isOneCrowdWith(const BodyBounds& o) const { return shares && o.shares && crowd == o.crowd; }
 };
 
 /// Two rocks that are near each other, or may come near each other soon; in one line of the cache.
-struct alignas(64) Near
+struct alignas(64) NearPair
 {
   int first = -1;
   int second = -1;
@@ -59,25 +59,25 @@ struct alignas(64) Near
   bool seen = false;      ///< The axis had been found where the step begins.
 };
 
-inline bool operator<(const Near& a, const Near& b)
+inline bool operator<(const NearPair& a, const NearPair& b)
 {
   return a.first != b.first ? a.first < b.first : a.second < b.second;
 }
 
 /// State of two rocks near each other.
-enum class Sight : std::uint8_t
+enum class PairState : std::uint8_t
 {
-  Open,     ///< May meet if they go as far as is known;
-  Shut,     ///< may not, or both sleep;
-  Apart,    ///< may not, and nothing lasts of them;
-  Overlaps, ///< overlap;
-  Linked,   ///< or may meet for sure.
+  Undecided, ///< May meet if they go as far as is known;
+  Separate,  ///< may not, or both sleep;
+  Apart,     ///< may not, and nothing lasts of them;
+  Overlaps,  ///< overlap;
+  Linked,    ///< or may meet for sure.
 };
 
-class Meetings
+class IslandFinder
 {
 public:
-  explicit Meetings(WorldState& world);
+  explicit IslandFinder(WorldState& world);
 
   /// Islands of rocks that may meet within a duration (s), and rocks that meet no other, in the
   /// order of their numbers. Wakes what may be met.
@@ -91,7 +91,7 @@ public:
 
 private:
   /// A pair that is not linked and no farther apart than known displacements go.
-  struct Open
+  struct UndecidedPair
   {
     double apart; ///< No nearer than that, m.
     int first, second;
@@ -117,7 +117,7 @@ private:
     std::size_t open, others;
   };
 
-  // Neighbours: meetingsNear.cxx
+  // Neighbours: islandFinderNear.cxx
   void follow(double duration); ///< The rocks, to where they stand now.
   void findNear();
   void share(std::size_t rock);
@@ -126,47 +126,47 @@ private:
   double spare(int rock) const;
   bool isCovered(std::size_t rock) const;
   RockPair* newPair(int first, int second);
-  void drop(Near& near);
+  void drop(NearPair& near);
   void indexNeighbours();
   template <class Visit>
   void forNeighbours(int rock, Visit&& visit);
 
-  // Pairs that may meet: meetingsLink.cxx
+  // Pairs that may meet: islandFinderLink.cxx
   void link();
-  double gap(const Near& near) const; ///< At least, along the axis, m.
-  double apart(const Near& near) const;
-  double closing(const Near& near) const;
-  double reach(const Near& near) const;
+  double gap(const NearPair& near) const; ///< At least, along the axis, m.
+  double apart(const NearPair& near) const;
+  double closing(const NearPair& near) const;
+  double reach(const NearPair& near) const;
   bool isAsleep(int first, int second) const; ///< Both.
-  void lookAlong(Near& near) const;
-  bool mayMeet(const Open& open) const;
+  void lookAlong(NearPair& near) const;
+  bool mayMeet(const UndecidedPair& open) const;
   bool meet(std::size_t near);
   void look();
-  Open openOf(std::size_t near) const;
+  UndecidedPair undecidedOf(std::size_t near) const;
   void widen();
   bool sweep();
   bool widenIslands();
   void choose();
-  bool stays(const Near& near) const;
+  bool stays(const NearPair& near) const;
 
-  // Islands: Meetings.cxx
+  // Islands: IslandFinder.cxx
   void settle();
   void unite();
   void listIslands();
   template <class Visit>
   void forLinked(Visit&& visit) const; ///< In the order of `near_`.
 
-  // Velocities and displacements passed on: meetingsReach.cxx
+  // Velocities and displacements passed on: islandFinderReach.cxx
   int root(int rock); ///< The first one of its island.
-  double thrown(std::size_t rock) const;
+  double massRatioGain(std::size_t rock) const;
   bool join(std::size_t near, bool known);
   void wakeAbout(int rock);
-  void passOn(int rock);
-  void tell();
+  void propagateFrom(int rock);
+  void propagate();
 
   WorldState& world_;
-  std::vector<Mover> movers_;
-  std::vector<Near> near_; ///< Ordered by (first, second), but for those found later.
+  std::vector<BodyBounds> bodies_;
+  std::vector<NearPair> near_; ///< Ordered by (first, second), but for those found later.
   std::vector<Island> islands_;
   std::vector<int> alone_;
   std::vector<int> islandOf_; ///< By the first rock of an island.
@@ -180,8 +180,8 @@ private:
   std::size_t out_ = 0; ///< Rocks that have come out of their balls since.
   BroadPhase broad_;
   std::vector<BroadBox> boxes_; ///< Of the last search.
-  std::vector<Pace> paces_;
-  std::vector<Near> nextNear_;
+  std::vector<VelocityBounds> velocityBounds_;
+  std::vector<NearPair> nextNear_;
   std::deque<RockPair> pairs_;
   std::vector<RockPair*> spare_;
   std::vector<IslandBounds> bounds_; ///< By root.
@@ -193,19 +193,21 @@ private:
   std::vector<std::size_t> firsts_, places_;
   std::vector<std::vector<std::size_t>> later_;
   std::vector<int> widenedRocks_;
-  std::size_t sorted_ = 0;     ///< Of `near_`; behind it those found later.
-  std::vector<double> aparts_; ///< Of `near_`.
-  std::vector<Sight> states_;  ///< Of `near_`.
-  std::vector<Open> open_;
-  std::vector<Open> sighted_; ///< The same as found by each part of `near_`, from its beginning.
+  std::size_t sorted_ = 0;        ///< Of `near_`; behind it those found later.
+  std::vector<double> aparts_;    ///< Of `near_`.
+  std::vector<PairState> states_; ///< Of `near_`.
+  std::vector<UndecidedPair> undecided_;
+  std::vector<UndecidedPair>
+    undecidedByPart_; ///< The same as found by each part of `near_`, from its beginning.
   std::vector<std::size_t> others_; ///< Of `near_`, what else a look has to see to.
   std::vector<Left> left_;          ///< By part of `near_`.
   std::vector<Linked> linked_;
   std::vector<std::size_t> linkedCounts_; ///< By part of `near_`.
   std::vector<int> heads_;
   std::vector<char> inIsland_;
-  std::vector<char> parted_;   ///< By rock: what touched it lately is linked with it no longer.
-  std::vector<double> thrown_; ///< By rock: what strikes it may make it faster by this factor.
+  std::vector<char> parted_; ///< By rock: what touched it lately is linked with it no longer.
+  std::vector<double>
+    massRatioGains_;           ///< By rock: what strikes it may make it faster by this factor.
   std::vector<double> fars_;   ///< By rock, how far it may come towards others, m.
   std::vector<int> firstLink_; ///< By rock, in `links_`.
   std::vector<Link> links_;
@@ -224,7 +226,7 @@ private:
 constexpr std::size_t kNearPart = 256;
 
 template <class Visit>
-void Meetings::forLinked(Visit&& visit) const
+void IslandFinder::forLinked(Visit&& visit) const
 {
   for (std::size_t part = 0; part < linkedCounts_.size(); ++part)
   {
@@ -237,9 +239,9 @@ void Meetings::forLinked(Visit&& visit) const
 }
 
 template <class Visit>
-void Meetings::forPairs(Visit&& visit)
+void IslandFinder::forPairs(Visit&& visit)
 {
-  for (const Near& n : near_)
+  for (const NearPair& n : near_)
   {
     if (n.pair)
     {
@@ -249,7 +251,7 @@ void Meetings::forPairs(Visit&& visit)
 }
 
 template <class Visit>
-void Meetings::forNeighbours(int rock, Visit&& visit)
+void IslandFinder::forNeighbours(int rock, Visit&& visit)
 {
   for (std::size_t k = firsts_[std::size_t(rock)]; k < firsts_[std::size_t(rock) + 1]; ++k)
   {

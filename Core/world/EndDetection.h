@@ -13,20 +13,20 @@
 namespace rockfall
 {
 
-class EndLook
+class EndDetection
 {
 public:
-  EndLook(WorldState& world, const Island& island, IslandWork& work, double duration);
+  EndDetection(WorldState& world, const Island& island, IslandWork& work, double duration);
 
   /// Appends contacts that show only where the step would end, corrects the gaps of others, and
   /// asks trees whether they hold.
-  LookOutcome look();
+  EndDetectionOutcome detect();
 
 private:
   void placeRock(std::size_t member);
-  double deepestPassed() const; ///< LookOutcome::passed
+  double deepestPassed() const; ///< EndDetectionOutcome::passed
   // Depths that are returned are of the deepest, of the smaller radius; 0: none.
-  double lookAtPairs();
+  double detectAtPairs();
   /// Whether two rocks overlap where the step would end, deeper than a contact of theirs; finds
   /// their axis there.
   bool isMissed(std::size_t pair);
@@ -35,7 +35,7 @@ private:
   std::size_t find(std::size_t pair, const Contact& touch) const;
   double overlapAt(std::size_t contact) const; ///< Gap there, without its offset, m.
   double deepestOf(std::size_t pair) const;    ///< Least of a pair's, at most 0, m.
-  double lookAtSlope();
+  double detectOnSlope();
   bool isMissedOnSlope(std::size_t member);
   const CandidatePairs& candidatesOf(std::size_t member);
   /// Contacts of a rock with the slope there: those that are reckoned with, then those that are

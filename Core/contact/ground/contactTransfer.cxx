@@ -1,4 +1,4 @@
-#include "contact/ground/handover.h"
+#include "contact/ground/contactTransfer.h"
 
 #include "contact/ground/features.h"
 #include "law/settings.h"

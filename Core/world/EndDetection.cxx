@@ -1,4 +1,4 @@
-#include "world/EndLook.h"
+#include "world/EndDetection.h"
 
 #include "base/parallel.h"
 #include "contact/ground/detection.h"
@@ -46,7 +46,8 @@ void carryBack(const PlacedBlock& firstEnd, const PlacedBlock& secondEnd,
 
 } // namespace
 
-EndLook::EndLook(WorldState& world, const Island& island, IslandWork& work, double duration)
+EndDetection::EndDetection(
+  WorldState& world, const Island& island, IslandWork& work, double duration)
   : world_(world)
   , island_(island)
   , work_(work)
@@ -55,19 +56,19 @@ EndLook::EndLook(WorldState& world, const Island& island, IslandWork& work, doub
 {
 }
 
-LookOutcome EndLook::look()
+EndDetectionOutcome EndDetection::detect()
 {
   forEach(island_.members.size(), kRockGrain, [this](std::size_t m) { this->placeRock(m); });
   work_.looked = true;
-  LookOutcome seen;
+  EndDetectionOutcome seen;
   seen.passed = this->deepestPassed();
-  seen.missed = this->lookAtPairs();
-  seen.missed = std::max(seen.missed, this->lookAtSlope());
+  seen.missed = this->detectAtPairs();
+  seen.missed = std::max(seen.missed, this->detectOnSlope());
   seen.again = StepTrees(world_, island_, work_).look(h_);
   return seen;
 }
 
-void EndLook::placeRock(std::size_t m)
+void EndDetection::placeRock(std::size_t m)
 {
   comeToRock(world_, island_, m);
   FallingRock& rock = world_.rocks[std::size_t(island_.members[m])];
@@ -86,11 +87,11 @@ void EndLook::placeRock(std::size_t m)
     rock.endHull.update(rock.end);
     motion.displacement = end.position - body.state.position;
     motion.rimTravel = rimTravel(body.state.orientation, end.orientation, body.block.radius());
-    motion.low = rock.sim.meetsSolids() || !rock.sim.isHighAt(end.position, 0.0);
+    motion.low = rock.sim.meetsSolids() || !rock.sim.isClearAt(end.position, 0.0);
   }
 }
 
-double EndLook::deepestPassed() const
+double EndDetection::deepestPassed() const
 {
   double most = 0.0;
   for (std::size_t k = 0; k < work_.added.size(); ++k)
@@ -109,12 +110,12 @@ double EndLook::deepestPassed() const
   return most;
 }
 
-double EndLook::overlapAt(std::size_t contact) const
+double EndDetection::overlapAt(std::size_t contact) const
 {
   return work_.solver.system().gap(contact) + work_.contacts[contact].contact->offset;
 }
 
-double EndLook::deepestOf(std::size_t pair) const
+double EndDetection::deepestOf(std::size_t pair) const
 {
   double least = 0.0;
   for (std::size_t k = work_.firsts[pair]; k < work_.firsts[pair + 1]; ++k)
@@ -124,7 +125,7 @@ double EndLook::deepestOf(std::size_t pair) const
   return least;
 }
 
-double EndLook::lookAtPairs()
+double EndDetection::detectAtPairs()
 {
   constexpr std::size_t kMissedGrain = 4;
   work_.missed.clear();
@@ -152,7 +153,7 @@ double EndLook::lookAtPairs()
   return most;
 }
 
-bool EndLook::isMissed(std::size_t p)
+bool EndDetection::isMissed(std::size_t p)
 {
   comeToPair(island_.pairs, p);
   RockPair& pair = *island_.pairs[p];
@@ -202,7 +203,7 @@ bool EndLook::isMissed(std::size_t p)
   return k == work_.firsts[p + 1];
 }
 
-std::size_t EndLook::find(std::size_t p, const Contact& touch) const
+std::size_t EndDetection::find(std::size_t p, const Contact& touch) const
 {
   const auto isSame = [&](std::size_t k)
   {
@@ -229,7 +230,7 @@ std::size_t EndLook::find(std::size_t p, const Contact& touch) const
   return work_.contacts.size();
 }
 
-double EndLook::addMissed(std::size_t m)
+double EndDetection::addMissed(std::size_t m)
 {
   double most = 0.0;
   const std::size_t p = work_.missed[m];
@@ -260,7 +261,7 @@ double EndLook::addMissed(std::size_t m)
   return most;
 }
 
-const CandidatePairs& EndLook::candidatesOf(std::size_t m)
+const CandidatePairs& EndDetection::candidatesOf(std::size_t m)
 {
   FallingRock& rock = world_.rocks[std::size_t(island_.members[m])];
   const std::size_t place = std::size_t(rock.place);
@@ -271,11 +272,11 @@ const CandidatePairs& EndLook::candidatesOf(std::size_t m)
     motion.displacement.norm() + motion.rimTravel, kLooseOverlap * rock.body().block.radius());
 }
 
-std::size_t EndLook::touchesOnSlope(
+std::size_t EndDetection::touchesOnSlope(
   std::size_t m, const CandidatePairs& near, std::vector<Contact>& touches) const
 {
   const FallingRock& rock = world_.rocks[std::size_t(island_.members[m])];
-  const RockSimulator& sim = rock.sim;
+  const SingleRock& sim = rock.sim;
   touches.clear();
   double pressed = 0.0;
   const auto addReckoned = [&](std::size_t k)
@@ -298,7 +299,7 @@ std::size_t EndLook::touchesOnSlope(
     }
   }
   const std::size_t known = touches.size();
-  holdOverlap(rock.end, sim.patch(), near,
+  guardPenetration(rock.end, sim.patch(), near,
     kLooseOverlap * rock.body().block.radius() + 2.0 * pressed, touches);
   // Trees that nobody reckoned with are met in the next step.
   const auto behind = touches.begin() + std::ptrdiff_t(known);
@@ -308,7 +309,7 @@ std::size_t EndLook::touchesOnSlope(
   return known;
 }
 
-bool EndLook::isMissedOnSlope(std::size_t m)
+bool EndDetection::isMissedOnSlope(std::size_t m)
 {
   const std::size_t rock = std::size_t(island_.members[m]);
   const int place = work_.placeOf[rock];
@@ -329,7 +330,7 @@ bool EndLook::isMissedOnSlope(std::size_t m)
   return touches.size() > known;
 }
 
-double EndLook::lookAtSlope()
+double EndDetection::detectOnSlope()
 {
   double deepest = 0.0;
   work_.missed.clear();
@@ -350,7 +351,7 @@ double EndLook::lookAtSlope()
       const PlacedBlock slope;
       carryBack(rock.end, slope, rock.body().placed, slope, c);
       c.offset = 0.0;
-      rock.sim.armContact(c);
+      rock.sim.setSprings(c);
       work_.added.push_back(c);
       work_.addedTo.push_back({ true, m, c });
       appendTouch(touchOnSlope(world_, rock, work_.added.back(), h_), island_.crowd, work_);

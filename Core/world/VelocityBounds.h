@@ -12,7 +12,7 @@ namespace rockfall
 {
 
 /// Velocities that a rock may have in the step.
-struct Pace
+struct VelocityBounds
 {
   double own = 0.0;  ///< The longest displacement if nothing strikes it, m.
   double mass = 0.0; ///< kg
@@ -41,15 +41,15 @@ struct IslandBounds
 
   /// A light rock that a heavy one strikes goes on faster than it, by this factor. `bounciest`:
   /// the largest restitution of rocks on each other.
-  double thrown(double mass, double bounciest) const
+  double massRatioGain(double mass, double bounciest) const
   {
     return bounciest * heaviest > mass ? (1.0 + bounciest) * heaviest / (heaviest + mass) : 1.0;
   }
   /// Largest component along the normal of a velocity of one of its rocks, m/s.
-  double most(const Vec3& normal, const Pace& pace) const
+  double most(const Vec3& normal, const VelocityBounds& velocities) const
   {
     return size > 1 ? normal.cwiseProduct(lower).cwiseMax(normal.cwiseProduct(upper)).sum()
-                    : pace.spread + normal.dot(pace.middle);
+                    : velocities.spread + normal.dot(velocities.middle);
   }
   void add(const IslandBounds& other)
   {
@@ -62,15 +62,16 @@ struct IslandBounds
 };
 
 /// Speed at which the gap of two rocks of these islands may close along a normal, m/s.
-inline double closingSpeed(const IslandBounds& first, const Pace& firstPace,
-  const IslandBounds& second, const Pace& secondPace, const Vec3& normal)
+inline double closingSpeed(const IslandBounds& first, const VelocityBounds& firstVelocities,
+  const IslandBounds& second, const VelocityBounds& secondVelocities, const Vec3& normal)
 {
   return &first == &second
     ? normal.cwiseAbs().dot(first.upper - first.lower)
-    : std::max(0.0, first.most(-normal, firstPace) + second.most(normal, secondPace));
+    : std::max(0.0, first.most(-normal, firstVelocities) + second.most(normal, secondVelocities));
 }
 
 /// How a rock may move within a duration (s) if no other strikes it.
-void foresee(const WorldState& world, const RockSimulator& sim, double duration, Pace& pace);
+void boundVelocities(
+  const WorldState& world, const SingleRock& sim, double duration, VelocityBounds& velocities);
 
 } // namespace rockfall

@@ -1,4 +1,4 @@
-#include "base/leave.h"
+#include "base/detachedCall.h"
 
 #include <atomic>
 #include <list>

@@ -1,4 +1,4 @@
-#include "gis/base/reach.h"
+#include "gis/base/externalReferences.h"
 
 #include "base/errors.h"
 #include "base/text/nameKey.h"

@@ -22,11 +22,11 @@ namespace rockfall
 /// Speed at which a deep overlap of a rock of this radius (m) is pressed out, m/s.
 inline double deepSpeed(double gravity, double radius)
 {
-  return kPressOutDeep * std::min(1.0, std::sqrt(std::max(gravity, kLeastGravity) * radius));
+  return kRecoverDeep * std::min(1.0, std::sqrt(std::max(gravity, kLeastGravity) * radius));
 }
 
 /// After a step: a loose overlap, by `slow` (m). Returns what the spring holds less by it, J.
-inline double pressOutLoose(Contact& c, double slow, double loose)
+inline double recoverLooseOverlap(Contact& c, double slow, double loose)
 {
   if (c.offset < -loose || c.offset == 0.0)
   {
@@ -38,7 +38,7 @@ inline double pressOutLoose(Contact& c, double slow, double loose)
 }
 
 /// Before a lasting step: an overlap deeper than `loose` (m), by `way` (m). Returns whether it is.
-inline bool pressOutDeep(Contact& c, double way, double loose)
+inline bool recoverDeepOverlap(Contact& c, double way, double loose)
 {
   const bool deep = c.offset < -loose;
   c.offset = deep ? std::min(0.0, c.offset + way) : c.offset;
@@ -47,7 +47,7 @@ inline bool pressOutDeep(Contact& c, double way, double loose)
 
 /// Lets a deep overlap be where a step has left its spring compressed by more than `most` (m).
 /// Returns the energy that the spring then no longer holds, J.
-inline double letBe(Contact& c, double most, double loose)
+inline double limitOverlap(Contact& c, double most, double loose)
 {
   const double gap = c.gap();
   if (!c.closed() || c.offset >= -loose || gap >= -most)
@@ -68,7 +68,7 @@ inline bool anyDeep(const std::vector<Contact>& contacts, double loose)
 /// The same for the shear spring of any contact beside a deep overlap. A rock that is jammed
 /// between two cannot follow what presses one of them out, and would wind up the other's spring by
 /// a little in every step.
-inline double letSlipBe(Contact& c, double most)
+inline double limitSlip(Contact& c, double most)
 {
   const double slip = c.slip.norm();
   if (!c.closed() || !(slip > most))

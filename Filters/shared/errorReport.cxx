@@ -1,7 +1,7 @@
-#include "shared/failure.h"
+#include "shared/errorReport.h"
 
 #include "shared/arrays.h"
-#include "shared/pieces.h"
+#include "shared/streamingPieces.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkDataObject.h"

@@ -3,7 +3,7 @@
 /// take more memory than they are worth.
 
 #include "base/errors.h"
-#include "gis/base/reach.h"
+#include "gis/base/externalReferences.h"
 #include "gis/layers/lineLayer.h"
 #include "gis/layers/sources.h"
 #include "gis/raster/contours.h"
