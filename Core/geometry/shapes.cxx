@@ -3,7 +3,6 @@
 #include "base/errors.h"
 #include "base/text/nameKey.h"
 #include "base/text/numberText.h"
-#include "geometry/roundShapes.h"
 #include "geometry/shell.h"
 
 #include <algorithm>
@@ -37,8 +36,8 @@ constexpr std::array<NamedShape, kShapes> names = { {
   { Shape::Eota111, "eota111" },
   { Shape::Eota221, "eota221" },
   { Shape::File, "file" },
-  { kSphere, "sphere" },
-  { kEllipsoid, "ellipsoid" },
+  { Shape::Sphere, "sphere" },
+  { Shape::Ellipsoid, "ellipsoid" },
 } };
 
 /// All sign changes of the non-zero coordinates, in the three cyclic orders of the axes.
@@ -174,13 +173,13 @@ Polyhedron makeShape(Shape shape, double volume)
   {
     return makeBox(Vec3::Constant(std::cbrt(volume)));
   }
-  if (shape == Shape::Box || shape == kEllipsoid || shape == Shape::File)
+  if (shape == Shape::Box || shape == Shape::Ellipsoid || shape == Shape::File)
   {
     throw ParameterError("Shape " + name +
       " is not made from a volume alone: a box and an ellipsoid need their lengths, a file its "
       "name");
   }
-  if (shape == kSphere)
+  if (shape == Shape::Sphere)
   {
     return roundShape(Vec3::Ones(), name).withVolume(volume);
   }

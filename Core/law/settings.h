@@ -109,6 +109,25 @@ inline constexpr double kLingerRim = 0.01;
 /// Velocities that differ by this share only are the same.
 inline constexpr double kSameVelocity = 1e-9;
 
+/// Steps of a half period of a touched point on a spring, by which impulses that share an impact
+/// are told from each other. More: slip within an impact is followed finer, at that cost; energy
+/// does not depend on it.
+inline constexpr double kImpulseParts = 16.0;
+/// Most such steps, for points that push each other back; what is left comes in again.
+inline constexpr int kMostImpulseParts = 400;
+/// Approach that an impulse leaves, share of the speed of a touch that is no impact. Lower: more
+/// parts where points push each other back.
+inline constexpr double kQuietImpulse = 0.05;
+/// Gap within which points share an impact, share of r. Larger: corners that would touch a little
+/// later act at once.
+inline constexpr double kSharedTouch = 1e-3;
+/// Gap to which a touch is found in time, share of r.
+inline constexpr double kTouchFound = 1e-5;
+/// Time that is none, s.
+inline constexpr double kNoTime = 1e-9;
+/// Impacts as events in no time, after which springs go on.
+inline constexpr int kImpactsAtOnce = 12;
+
 // ---------------------------------------------------------------------------------------------
 // 5  Overlap and its recovery
 
@@ -441,5 +460,26 @@ inline constexpr double kUpward = 0.5;
 /// Places drawn for one rock until it is on the slope: about a release, and of a source.
 inline constexpr int kMostDraws = 1000;
 inline constexpr int kMostDrawsOfSource = 10000;
+
+// ---------------------------------------------------------------------------------------------
+// 16  Limits of what a user sets on ground and runs: beyond them it is a mistake, or no end
+
+// Ground of larger numbers takes all of any speed at once, or nothing at all.
+inline constexpr double kMostScarFactor = 100.0;    ///< A thousand times that of Lu et al.
+inline constexpr double kMostScarDrag = 1000.0;     ///< C_s and C_ω; at most 4 are measured.
+inline constexpr double kMostGroundFriction = 60.0; ///< μ and μ_r; tan 89° is 57.
+inline constexpr double kMostSlipRate = 1e6;        ///< κ, 1/m, and β, 1/s: at once.
+inline constexpr double kMostGroundDeviation =
+  5.0;                                      ///< σ of a logarithm: 150 times as soft or firm.
+inline constexpr double kMostAlike = 1e7;   ///< m, over which ground is alike.
+inline constexpr double kLeastAlike = 0.01; ///< m; shorter, the ground is gravel.
+inline constexpr double kMostRestitutionSpeed = 1e6; ///< m/s; half of any speed is left there.
+/// Of one run; their summaries take 5 GB. More fit into runs of their own by FirstIteration.
+inline constexpr int kMostIterations = 10'000'000;
+inline constexpr int kMostThreads = 1024; ///< More than any machine runs at once.
+/// Rounds of open–close, and halvings of a step: 2⁻³⁰ of any Δt is below rounding.
+inline constexpr int kMostOpenClose = 1000, kMostCuts = 30;
+/// Rocks by iterations; their summaries take 50 GB.
+inline constexpr double kMostTrajectories = 1e8;
 
 } // namespace rockfall

@@ -6,7 +6,7 @@
 #include "block/FreeRotation.h"
 #include "block/flight.h"
 #include "contact/ground/timeToTouch.h"
-#include "law/impulseSettings.h"
+#include "law/settings.h"
 #include "rock/restitution.h"
 #include "solve/step/impulse.h"
 

@@ -2,7 +2,6 @@
 
 #include "base/errors.h"
 #include "base/text/numberText.h"
-#include "law/limits.h"
 #include "law/settings.h"
 #include "rock/rockContacts.h"
 

@@ -3,7 +3,7 @@
 #include "base/abort.h"
 #include "base/errors.h"
 #include "geometry/roundBody.h"
-#include "law/limits.h"
+#include "law/settings.h"
 #include "run/releaseChecks.h"
 #include "run/stateHash.h"
 #include "world/World.h"

@@ -3,7 +3,7 @@
 #include "base/abort.h"
 #include "base/errors.h"
 #include "base/text/numberText.h"
-#include "geometry/roundShapes.h"
+#include "geometry/shapes.h"
 #include "geometry/shell.h"
 #include "mesh/precision.h"
 #include "shared/arrays.h"

@@ -5,7 +5,7 @@
 #include "base/errors.h"
 #include "base/random.h"
 #include "base/text/numberText.h"
-#include "geometry/roundShapes.h"
+#include "geometry/shapes.h"
 #include "geometry/shell.h"
 #include "law/settings.h"
 #include "mesh/shapeFile.h"
@@ -84,7 +84,7 @@ Polyhedron RockMaker::shape(
     return fixed ? law.mean
                  : law.quantile(uniformDeviate(defaults_.seed, 0, Draw::SourceVolume, draw));
   };
-  if (kind == Shape::Box || kind == kEllipsoid)
+  if (kind == Shape::Box || kind == Shape::Ellipsoid)
   {
     const Vec3 lengths = row.lengths.value_or(defaults_.lengths);
     const Polyhedron made = kind == Shape::Box ? makeBox(lengths) : makeEllipsoid(lengths);
@@ -199,7 +199,7 @@ void RockMaker::refuseLengths(const SourceRow& row) const
   std::string names;
   for (const auto& part : shapes.parts)
   {
-    if (part.shape == Shape::Box || part.shape == kEllipsoid)
+    if (part.shape == Shape::Box || part.shape == Shape::Ellipsoid)
     {
       return;
     }

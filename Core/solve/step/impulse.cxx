@@ -1,6 +1,6 @@
 #include "solve/step/impulse.h"
 
-#include "law/impulseSettings.h"
+#include "law/settings.h"
 
 #include <algorithm>
 #include <array>

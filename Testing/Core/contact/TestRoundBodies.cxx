@@ -2,7 +2,7 @@
 
 #include "contact/ground/roundContact.h"
 #include "geometry/roundBody.h"
-#include "geometry/roundShapes.h"
+#include "geometry/shapes.h"
 #include "slopes.h"
 
 #include "base/errors.h"
@@ -24,7 +24,7 @@ const double kBall = std::cbrt(0.75 / std::numbers::pi); // m: 1 m³
 Rock ballAt(const Vec3& position)
 {
   Rock rock;
-  rock.shape = makeShape(kSphere, 1.0);
+  rock.shape = makeShape(Shape::Sphere, 1.0);
   rock.position = position;
   return rock;
 }
@@ -41,7 +41,7 @@ SurfaceMaterial rolling(double restitution, double friction, double resistance)
 
 TEST(RoundBodies, HaveTheMassOfTheBodyAndNotOfItsMesh)
 {
-  const Polyhedron ball = makeShape(kSphere, 2.0);
+  const Polyhedron ball = makeShape(Shape::Sphere, 2.0);
   const double r = std::cbrt(1.5 / std::numbers::pi);
   EXPECT_TRUE(isRound(ball.layout()));
   EXPECT_NEAR(ball.integrals().volume, 2.0, 1e-12);

@@ -2,7 +2,7 @@
 
 #include "base/errors.h"
 #include "base/text/numberText.h"
-#include "geometry/roundShapes.h"
+#include "geometry/shapes.h"
 
 #include <gtest/gtest.h>
 
