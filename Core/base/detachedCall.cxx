@@ -5,7 +5,7 @@
 #include <mutex>
 #include <thread>
 
-namespace rockfall::leave
+namespace rockfall::detached
 {
 
 namespace
@@ -74,4 +74,4 @@ void startAside(std::function<void()> work)
   aside.start(std::move(work));
 }
 
-} // namespace rockfall::leave
+} // namespace rockfall::detached
