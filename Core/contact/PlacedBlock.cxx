@@ -1,6 +1,6 @@
 #include "contact/PlacedBlock.h"
 
-#include "contact/ground/roundContact.h"
+#include "geometry/roundBody.h"
 
 #include <Eigen/LU>
 
@@ -88,6 +88,16 @@ int PlacedBlock::outermostFace(const Vec3& world) const
     }
   }
   return face;
+}
+
+bool isRound(const PlacedBlock& rock)
+{
+  return isRound(rock.block().shape().layout());
+}
+
+Mat3 roundAxes(const PlacedBlock& rock)
+{
+  return rock.map() * roundAxes(rock.block().shape().layout());
 }
 
 } // namespace rockfall

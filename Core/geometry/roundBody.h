@@ -48,4 +48,11 @@ inline Mat3 roundAxes(const ShapeLayout& layout)
   return Eigen::Map<const Mat3>(layout.data.data() + layout.data.size() - 9);
 }
 
+/// Distance of the plane with this normal that touches a round body with the axes A from its
+/// centre, m.
+inline double roundReach(const Mat3& axes, const Vec3& normal)
+{
+  return (axes.transpose() * normal).norm();
+}
+
 } // namespace rockfall

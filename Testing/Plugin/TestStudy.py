@@ -180,7 +180,7 @@ code, said = run("results-calm", "other.json")
 assert code != 0 and "another study: changed are simulation EndTime." in said, said
 write_study("other.json", map={"CellSize": 6.0})
 code, said = run("results-calm", "other.json")
-assert code != 0 and "another study: changed are map CellSize." in said, said
+assert code != 0 and "another study: changed are map AnnualFrequency, map CellSize, map EnergyThresholds." in said, said
 write_text("sources.csv", open(rocks).read().replace("0.75", "0.8"))
 code, said = run("results-calm")
 assert code != 0 and "changed are rocks FileName (" in said and "sources.csv)." in said, said

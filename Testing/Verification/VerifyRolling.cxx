@@ -25,7 +25,7 @@ struct Ball
 {
   Rock rock;
   double ratio;  ///< I / m r², 2/5 for a sphere.
-  double radius; ///< Of vertices and faces, the mean: how far it gets in a turn, m.
+  double radius; ///< m
 };
 
 Ball makeRollingBall(int subdivisions)
@@ -33,17 +33,13 @@ Ball makeRollingBall(int subdivisions)
   Ball ball;
   ball.rock.shape = makeBall(subdivisions, kRadius);
   const Block block(ball.rock.shape, ball.rock.density, 1e10, 0.1);
-  double inner = 0.0;
-  for (double offset : ball.rock.shape.offsets())
-  {
-    inner += offset / double(ball.rock.shape.offsets().size());
-  }
-  ball.radius = 0.5 * (inner + kRadius);
+  ball.radius = kRadius;
   ball.ratio = block.inertia().trace() / 3.0 / (block.mass() * ball.radius * ball.radius);
   return ball;
 }
 
-/// Lays the ball, a face down, on a plane that falls towards +x from z = 100 m in the middle.
+/// Lays the ball on a plane that falls towards +x from z = 100 m in the middle, on the middle of the
+/// lowest face of its mesh, which is no face of the sphere.
 void layOn(Rock& rock, double angle)
 {
   const Vec3 normal(std::sin(angle), 0.0, std::cos(angle));
@@ -54,8 +50,7 @@ void layOn(Rock& rock, double angle)
       rock.shape.normals()[f].z() < rock.shape.normals()[std::size_t(lowest)].z() ? int(f) : lowest;
   }
   rock.orientation = Quat::FromTwoVectors(rock.shape.normals()[std::size_t(lowest)], -normal);
-  rock.position =
-    Vec3(0.5 * kSize, 0.5 * kSize, 100.0) + rock.shape.offsets()[std::size_t(lowest)] * normal;
+  rock.position = Vec3(0.5 * kSize, 0.5 * kSize, 100.0) + kRadius * normal;
 }
 
 /// Means over a piece of a run down an incline, energy by energy, so that neither the start from a

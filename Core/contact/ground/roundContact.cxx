@@ -191,16 +191,6 @@ const std::vector<int>& numbersOf(const CandidatePairs& candidates)
 
 } // namespace
 
-bool isRound(const PlacedBlock& rock)
-{
-  return isRound(rock.block().shape().layout());
-}
-
-Mat3 roundAxes(const PlacedBlock& rock)
-{
-  return rock.map() * roundAxes(rock.block().shape().layout());
-}
-
 void gatherRound(
   const PlacedBlock& rock, const SurfacePatch& patch, double distance, CandidatePairs& candidates)
 {

@@ -15,21 +15,12 @@
 #include "contact/Contact.h"
 #include "contact/ground/candidates.h"
 #include "contact/ground/clearance.h"
+#include "geometry/roundBody.h"
 
 #include <optional>
 
 namespace rockfall
 {
-
-bool isRound(const PlacedBlock& rock);
-/// A as the rock stands, world axes, m.
-Mat3 roundAxes(const PlacedBlock& rock);
-/// Distance of the plane with this normal that touches a round body with the axes A from its
-/// centre, m.
-inline double roundReach(const Mat3& axes, const Vec3& normal)
-{
-  return (axes.transpose() * normal).norm();
-}
 
 /// gatherCandidates, updateContacts, overlaps, timeToClose, clearance and penetration of a round
 /// body.

@@ -265,7 +265,7 @@ TEST(Ground, JointTableAndModels)
   EXPECT_EQ(models.materials[0].tangentialRestitution, 0.8);
   EXPECT_EQ(models.materials[0].restitutionSpeed, 5.0);
   EXPECT_EQ(models.materials[1].restitution, groundPreset("talus").normalRestitution);
-  EXPECT_EQ(models.materials[1].restitutionModel, RestitutionModel::NormalTangential);
+  EXPECT_EQ(models.materials[1].restitutionModel, RestitutionModel::SpeedDependent);
 }
 
 TEST(Ground, RoughnessOfClasses)

@@ -275,7 +275,7 @@ TEST(IslandFinder, WhatLeantOnACaughtBoulderSlides)
     material(0.3, 15.0));
   Structures s;
   Barrier barrier;
-  barrier.points = { { 50.2, 50.003 }, { 60.0, 50.003 } };
+  barrier.points = { { 49.9, 50.003 }, { 60.0, 50.003 } }; // before both sides of the boulder
   barrier.height = 10.0;
   s.barriers.push_back(barrier);
   pile.ground.setStructures(s);
