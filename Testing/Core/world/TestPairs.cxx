@@ -47,7 +47,7 @@ Totals totalsOf(const World& fall, const std::vector<Block>& blocks)
   return t;
 }
 
-constexpr std::array<std::pair<Shape, Shape>, 6> kShapes = { {
+constexpr std::array<std::pair<Shape, Shape>, 6> kPairsOfShapes = { {
   { Shape::Cube, Shape::Cube },
   { Shape::Cube, Shape::Icosahedron },
   { Shape::Tetrahedron, Shape::Octahedron },
@@ -98,7 +98,7 @@ TEST(Pairs, AnyMeetingKeepsMomentaAndAnElasticOneEnergy)
   std::mt19937 random(5);
   std::uniform_real_distribution<double> u(-1.0, 1.0);
   int met = 0;
-  for (const auto& shapes : kShapes)
+  for (const auto& shapes : kPairsOfShapes)
   {
     for (int k = 0; k < 40; ++k)
     {
@@ -137,7 +137,7 @@ TEST(Pairs, LossIsThatOfTheCoefficientOfRestitution)
 {
   // A vertex on a face, head-on and oblique: one contact, so that ½ μ (1 − e²) v² is exact.
   int measured = 0;
-  for (const auto& shapes : kShapes)
+  for (const auto& shapes : kPairsOfShapes)
   {
     for (double e : { 0.2, 0.5, 0.8 })
     {
