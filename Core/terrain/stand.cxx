@@ -6,6 +6,7 @@
 #include "base/text/numberText.h"
 #include "geometry/planeSampling.h"
 
+#include <algorithm>
 #include <cmath>
 #include <unordered_map>
 
@@ -51,12 +52,13 @@ double gammaDeviate(double k, std::uint64_t seed, std::uint64_t index)
   }
 }
 
-/// Places that keep a distance, in squares of that size.
+/// Places that keep a distance, in squares of that size, of a metre at least.
 class Spacing
 {
 public:
   explicit Spacing(double distance)
     : distance_(distance)
+    , side_(std::max(distance, 1.0))
   {
   }
 
@@ -93,15 +95,15 @@ public:
 private:
   std::pair<std::int64_t, std::int64_t> squareOf(const Eigen::Vector2d& place) const
   {
-    return { std::int64_t(std::floor(place.x() / distance_)),
-      std::int64_t(std::floor(place.y() / distance_)) };
+    return { std::int64_t(std::floor(place.x() / side_)),
+      std::int64_t(std::floor(place.y() / side_)) };
   }
   static std::int64_t keyOf(std::int64_t column, std::int64_t row)
   {
     return (column << 32) ^ (row & 0xffffffff);
   }
 
-  double distance_;
+  double distance_, side_; ///< m
   std::unordered_map<std::int64_t, std::vector<Eigen::Vector2d>> squares_;
 };
 
