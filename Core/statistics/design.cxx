@@ -15,7 +15,6 @@ namespace rockfall
 namespace
 {
 
-constexpr double kDoubt = 0.05; ///< 1 − confidence of each limit
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Probability of exactly k successes, 0 < p < 1.

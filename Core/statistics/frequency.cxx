@@ -3,6 +3,7 @@
 #include "base/abort.h"
 #include "base/errors.h"
 #include "base/text/numberText.h"
+#include "statistics/sample.h"
 
 #include <algorithm>
 #include <cmath>
@@ -137,7 +138,7 @@ void summarizeFrequencies(std::span<const Passage> passages, std::span<const dou
 
 double frequencyLimit(double largestWeight)
 {
-  return std::log(20.0) * largestWeight;
+  return -std::log(kDoubt) * largestWeight;
 }
 
 } // namespace rockfall

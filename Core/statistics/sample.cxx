@@ -7,13 +7,6 @@
 namespace rockfall
 {
 
-namespace
-{
-
-constexpr double kDoubt = 0.05; ///< 1 − confidence
-
-} // namespace
-
 double quantile(std::span<const double> ascending, double q)
 {
   if (ascending.empty())

@@ -14,6 +14,9 @@ namespace rockfall
 /// The quantiles that hazard maps and tables have: 50, 90, 95 and 99 %.
 constexpr std::array<double, 4> hazardQuantiles = { 0.50, 0.90, 0.95, 0.99 };
 
+/// 1 − confidence of each limit: of shares, quantiles and frequencies.
+constexpr double kDoubt = 0.05;
+
 /// Statistics of a sample. All NaN for an empty one.
 struct SampleStatistics
 {

@@ -70,13 +70,12 @@ public:
       for (std::int64_t x = column - 1; x <= column + 1; ++x)
       {
         const auto found = squares_.find(keyOf(x, y));
-        for (const Eigen::Vector2d& other :
-          found == squares_.end() ? std::vector<Eigen::Vector2d>() : found->second)
+        if (found != squares_.end() &&
+          std::any_of(found->second.begin(), found->second.end(),
+            [&](const Eigen::Vector2d& other)
+            { return (other - place).squaredNorm() < distance_ * distance_; }))
         {
-          if ((other - place).squaredNorm() < distance_ * distance_)
-          {
-            return false;
-          }
+          return false;
         }
       }
     }

@@ -172,6 +172,19 @@ void visitTouches(const Round& round, const Numbers& triangles, double reach, co
   }
 }
 
+/// Largest speed of the rim that brings it nearer, m/s: a sphere does not come nearer by turning.
+double rimSpeed(const PlacedBlock& rock, const BlockState& state)
+{
+  return rock.block().isotropic() ? 0.0 : rock.block().largestRimSpeed(state.spin);
+}
+
+/// Lower bound of the time until a touch closes, s.
+double closingTime(const Touch& touch, const BlockState& state, double rim, double gravity)
+{
+  return timeToCover(touch.distance, rim - touch.normal.dot(state.velocity),
+    gravity * std::max(0.0, touch.normal.z()));
+}
+
 std::vector<int>& workNumbers()
 {
   thread_local std::vector<int> numbers;
@@ -261,17 +274,14 @@ double roundTimeToClose(const PlacedBlock& rock, const BlockState& state, const 
   const CandidatePairs& candidates, double gravity, double horizon)
 {
   const Round round(rock, patch);
-  // A sphere does not come nearer by turning.
-  const double rim = rock.block().isotropic() ? 0.0 : rock.block().largestRimSpeed(state.spin);
+  const double rim = rimSpeed(rock, state);
   double time = horizon;
   for (const int triangle : numbersOf(candidates))
   {
     const Touch touch = round.touch(triangle);
     if (round.isOutside(touch))
     {
-      time = std::min(time,
-        timeToCover(touch.distance, rim - touch.normal.dot(state.velocity),
-          gravity * std::max(0.0, touch.normal.z())));
+      time = std::min(time, closingTime(touch, state, rim, gravity));
     }
   }
   return time;
@@ -281,7 +291,7 @@ Clearance roundClearance(const PlacedBlock& rock, const BlockState& state,
   const SurfacePatch& patch, double gravity, double horizon)
 {
   const Round round(rock, patch);
-  const double rim = rock.block().isotropic() ? 0.0 : rock.block().largestRimSpeed(state.spin);
+  const double rim = rimSpeed(rock, state);
   Clearance result;
   result.distance = std::numeric_limits<double>::infinity();
   result.time = horizon;
@@ -295,9 +305,7 @@ Clearance roundClearance(const PlacedBlock& rock, const BlockState& state,
     if (round.isOutside(touch))
     {
       result.distance = std::min(result.distance, touch.distance);
-      result.time = std::min(result.time,
-        timeToCover(touch.distance, rim - touch.normal.dot(state.velocity),
-          gravity * std::max(0.0, touch.normal.z())));
+      result.time = std::min(result.time, closingTime(touch, state, rim, gravity));
     }
   }
   return result;
