@@ -138,6 +138,24 @@ bool isSteep(const Terrain& terrain, std::int64_t cfe, double leastCosine)
   return terrain.hasCfe(cfe) && terrain.cfe(cfe).normal.z() <= leastCosine;
 }
 
+std::int64_t steepCfes(const Terrain& terrain, double leastCosine)
+{
+  std::int64_t steep = 0;
+  for (std::int64_t cfe = 1; cfe <= terrain.cfeCapacity(); ++cfe)
+  {
+    stayWanted();
+    steep += isSteep(terrain, cfe, leastCosine);
+  }
+  return steep;
+}
+
+/// In plan, m².
+double areaOf(const Terrain& terrain, std::int64_t cfes)
+{
+  const double cell = terrain.geometry().cellSize;
+  return 0.5 * cell * cell * double(cfes);
+}
+
 } // namespace
 
 void ReleaseDefaults::validate() const
@@ -345,24 +363,23 @@ bool PlaceRedrawer::redraw(ReleasePlace& place, std::uint32_t attempt) const
   return !samplers_->terrain || onTerrain(*samplers_->terrain, place.position);
 }
 
+double steepArea(const Terrain& terrain, double threshold)
+{
+  return areaOf(terrain, steepCfes(terrain, std::cos(threshold)));
+}
+
 std::vector<ReleasePlace> steepPlaces(
   const Terrain& terrain, double threshold, const ReleaseDefaults& defaults)
 {
   defaults.validate();
   const double cosine = std::cos(threshold);
-  std::int64_t steep = 0;
-  for (std::int64_t cfe = 1; cfe <= terrain.cfeCapacity(); ++cfe)
-  {
-    stayWanted();
-    steep += isSteep(terrain, cfe, cosine);
-  }
+  const std::int64_t steep = steepCfes(terrain, cosine);
   if (steep == 0)
   {
     throw DataError("SlopeThreshold is " + number(degrees(threshold)) +
       " degrees, and no CFE of the terrain is as steep");
   }
-  const double cell = terrain.geometry().cellSize;
-  const double area = 0.5 * cell * cell * double(steep);
+  const double area = areaOf(terrain, steep);
   const double rocks = defaults.intensity > 0.0
     ? rounded(defaults.intensity * area, defaults.seed, 0)
     : double(defaults.amount);

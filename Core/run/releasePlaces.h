@@ -90,6 +90,9 @@ private:
   std::unique_ptr<Samplers> samplers_;
 };
 
+/// Area in plan of all CFEs that are at least `threshold` (rad) steep, m².
+double steepArea(const Terrain& terrain, double threshold);
+
 /// The places of rocks on all CFEs that are at least `threshold` (rad, above 0, below 90°) steep,
 /// each part of their area in plan being as likely. Throws DataError if there is no such CFE.
 std::vector<ReleasePlace> steepPlaces(

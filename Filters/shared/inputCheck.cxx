@@ -47,6 +47,7 @@ struct ArrayRule
 constexpr ArrayRule rules[] = {
   { InputKind::Rocks, false, "BlockId", Holds::Whole53 },
   { InputKind::Rocks, false, "SourceId", Holds::Whole53 },
+  { InputKind::Rocks, false, "Frequency", Holds::Finite },
   { InputKind::Rocks, false, "Shape", Holds::Whole32 },
   { InputKind::Rocks, false, "State", Holds::Whole32 },
   { InputKind::Trajectories, true, "Time", Holds::Finite },

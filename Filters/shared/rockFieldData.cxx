@@ -21,6 +21,7 @@
 #include "vtkSmartPointer.h"
 #include "vtkStringArray.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -112,8 +113,8 @@ void checkBlockPrecision(vtkPolyData* input, const Faces& block)
 
 /// Values that are read of a block's cells, one for all of them.
 constexpr const char* kOfBlocks[] = { "Density", "YoungModulus", "PoissonRatio", "Material",
-  "Velocity", "AngularVelocity", "Shape", "SourceId", "SourceName", "State", "PositionDeviation",
-  "AttitudeLaw", "AttitudeDeviation", "VolumeLaw", "VolumeParameters" };
+  "Velocity", "AngularVelocity", "Shape", "SourceId", "SourceName", "Frequency", "State",
+  "PositionDeviation", "AttitudeLaw", "AttitudeDeviation", "VolumeLaw", "VolumeParameters" };
 
 /// Throws DataError where two cells of a block say different things of it.
 void checkOneBlock(vtkPolyData* input, const Faces& block)
@@ -347,6 +348,11 @@ void writeRocks(std::span<const ReleasedRock> rocks, vtkPolyData* output)
   const auto sourceId = addArray<vtkIdTypeArray>(cells, "SourceId");
   UncertaintyArrays uncertainty(cells);
   const auto sourceName = addArray<vtkStringArray>(cells, "SourceName");
+  // Of all rocks or none.
+  const bool known = std::all_of(rocks.begin(), rocks.end(),
+    [](const ReleasedRock& released) { return !std::isnan(released.frequency); });
+  const auto frequency = known && !rocks.empty() ? addArray<vtkDoubleArray>(cells, "Frequency")
+                                                 : vtkSmartPointer<vtkDoubleArray>();
   const auto shapeNames = addArray<vtkStringArray>(output->GetFieldData(), "ShapeName");
   for (int number = 0; number < kShapes; ++number)
   {
@@ -370,6 +376,10 @@ void writeRocks(std::span<const ReleasedRock> rocks, vtkPolyData* output)
       shape->InsertNextValue(int(released.shape));
       sourceId->InsertNextValue(released.sourceId);
       sourceName->InsertNextValue(released.sourceName);
+      if (frequency)
+      {
+        frequency->InsertNextValue(released.frequency);
+      }
       uncertainty.append(rock.uncertainty);
     }
   }
@@ -452,6 +462,12 @@ std::vector<ReleasedRock> readRocks(vtkPolyData* input, const Vec3& origin)
     if (shape >= 0.0 && shape < double(kShapes))
     {
       released.shape = Shape(int(shape));
+    }
+    readNumber(input, "Frequency", block.firstCell, released.frequency);
+    if (released.frequency < 0.0)
+    {
+      throw DataError("The Rocks input's Frequency of " + name + " is " +
+        numberText(released.frequency) + " per year, it must not be negative");
     }
     double state = -1.0;
     readNumber(input, "State", block.firstCell, state);

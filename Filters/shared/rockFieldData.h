@@ -17,6 +17,7 @@
 /// | ShapeName       | field | names of all shapes, that of shape n at place n         |
 /// | SourceId        | cells | number of the source that the block is of               |
 /// | SourceName      | cells | its name                                                |
+/// | Frequency       | cells | how often it falls, 1/a; not there if it is not known   |
 ///
 /// and what is drawn in each iteration (ReleaseUncertainty):
 ///
@@ -46,6 +47,7 @@
 #include "vtkSmartPointer.h" // for arrays
 
 #include <cstdint>
+#include <limits>
 #include <set>
 #include <span>
 #include <string>
@@ -68,6 +70,8 @@ struct ReleasedRock
   Shape shape = Shape::File;
   std::int64_t sourceId = 0;
   std::string sourceName;
+  /// How often it falls, 1/a; NaN if it is not known.
+  double frequency = std::numeric_limits<double>::quiet_NaN();
   int state = -1; ///< MotionState in which a simulation left it; −1: it comes from none.
 };
 

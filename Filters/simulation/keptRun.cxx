@@ -19,6 +19,7 @@
 #include "vtkStringArray.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <set>
 #include <span>
@@ -258,6 +259,10 @@ void KeptRun::prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const 
         frame.shapes.push_back(rock.shape);
         frame.sourceIds.push_back(rock.sourceId);
         frame.sourceNames.push_back(std::move(rock.sourceName));
+        if (!std::isnan(rock.frequency)) // of all rocks or none
+        {
+          frame.frequencies.push_back(rock.frequency);
+        }
       }
       tellGone(gone, std::int64_t(frame.rocks.size()), ranks);
       for (const std::string& note : { takenInstead(released), namesLost(released, frame.rocks) })

@@ -83,18 +83,26 @@ struct EnergyArrays
   }
 };
 
+/// None where frequencies are not known.
+vtkSmartPointer<vtkDoubleArray> frequencyArray(const RunFrame& frame, vtkFieldData* data)
+{
+  return frame.frequencies.empty() ? nullptr : addArray<vtkDoubleArray>(data, "Frequency");
+}
+
 /// State of a rock beside its motion, to be released again as it is.
 struct ReleaseArrays
 {
   vtkSmartPointer<vtkDoubleArray> density, young, poisson, rotation;
   vtkSmartPointer<vtkIdTypeArray> sourceId;
+  vtkSmartPointer<vtkDoubleArray> frequency; ///< None where it is not known.
 
-  explicit ReleaseArrays(vtkFieldData* data)
+  ReleaseArrays(const RunFrame& frame, vtkFieldData* data)
     : density(addArray<vtkDoubleArray>(data, "Density"))
     , young(addArray<vtkDoubleArray>(data, "YoungModulus"))
     , poisson(addArray<vtkDoubleArray>(data, "PoissonRatio"))
     , rotation(addArray<vtkDoubleArray>(data, "AngularVelocity", 3))
     , sourceId(addArray<vtkIdTypeArray>(data, "SourceId"))
+    , frequency(frequencyArray(frame, data))
   {
   }
 
@@ -107,6 +115,10 @@ struct ReleaseArrays
     this->poisson->InsertNextValue(rock.poissonRatio);
     this->rotation->InsertNextTuple(shown.sample.angularVelocity.data());
     this->sourceId->InsertNextValue(frame.sourceIds[number]);
+    if (this->frequency)
+    {
+      this->frequency->InsertNextValue(frame.frequencies[number]);
+    }
   }
 };
 
@@ -121,7 +133,7 @@ void writeRocks(const RunFrame& frame, std::span<const ShownRock> rocks, vtkPoly
   const auto state = addArray<vtkIntArray>(output->GetCellData(), "State");
   const auto shape = addArray<vtkIntArray>(output->GetCellData(), "Shape");
   const auto volume = addArray<vtkDoubleArray>(output->GetCellData(), "Volume");
-  ReleaseArrays release(output->GetCellData());
+  ReleaseArrays release(frame, output->GetCellData());
   BlockNames names(output->GetFieldData());
   for (const ShownRock& shown : rocks)
   {
@@ -164,6 +176,7 @@ struct TrajectoryLines::Arrays
   vtkSmartPointer<vtkIntArray> fate = addArray<vtkIntArray>(data->GetCellData(), "Fate");
   vtkSmartPointer<vtkIdTypeArray> source =
     addArray<vtkIdTypeArray>(data->GetCellData(), "SourceId");
+  vtkSmartPointer<vtkDoubleArray> frequency; ///< None where it is not known.
 
   /// The longest side of the box around a rock, in the directions that its
   /// shape was given in.
@@ -197,6 +210,7 @@ TrajectoryLines::TrajectoryLines(const RunFrame& frame, bool withLosses)
   : frame_(frame)
   , arrays_(std::make_unique<Arrays>())
 {
+  arrays_->frequency = frequencyArray(frame, arrays_->data->GetCellData());
   if (withLosses)
   {
     arrays_->energy = std::make_unique<EnergyArrays>(arrays_->data->GetPointData());
@@ -236,6 +250,10 @@ void TrajectoryLines::append(const Trajectory& trajectory)
   a.width->InsertNextValue(a.widthOf(frame_.rocks[std::size_t(summary.rock)], summary));
   a.fate->InsertNextValue(int(summary.fate));
   a.source->InsertNextValue(frame_.sourceIds[std::size_t(summary.rock)]);
+  if (a.frequency)
+  {
+    a.frequency->InsertNextValue(frame_.frequencies[std::size_t(summary.rock)]);
+  }
 }
 
 void TrajectoryLines::copy(vtkPolyData* output) const

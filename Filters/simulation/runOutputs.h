@@ -25,6 +25,7 @@ struct RunFrame
   std::vector<Shape> shapes;            ///< Of the rocks.
   std::vector<std::int64_t> sourceIds;  ///< Of the rocks.
   std::vector<std::string> sourceNames; ///< Of the rocks.
+  std::vector<double> frequencies;      ///< Of the rocks, 1/a; empty: not known.
   Vec3 origin = Vec3::Zero();
   double gravity = 0.0; ///< m/s²
 };

@@ -3,17 +3,23 @@
 #include "sources/rockBlockSources.h"
 
 #include "base/text/numberText.h"
+#include "geometry/planeSampling.h"
 #include "gis/base/externalReferences.h"
 #include "shared/drawnPoints.h"
 #include "shared/errorReport.h"
 #include "shared/terrainFieldData.h"
 #include "sources/drawnSource.h"
+#include "statistics/frequency.h"
 
 #include "vtkPolyData.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
 
 using rockfall::filters::refuseProperty;
 using rockfall::filters::vec3;
@@ -186,6 +192,120 @@ void vtkRockBlockSource::FindPlaces(Sources& sources)
   }
   sources.places =
     rockfall::releasePlaces(sources.rows, sources.ground(), sources.defaults, this->FileName);
+}
+
+//------------------------------------------------------------------------------
+void vtkRockBlockSource::CheckFrequencies() const
+{
+  const std::pair<const char*, double> typed[] = { { "AnnualFrequency", this->AnnualFrequency },
+    { "FrequencyPerHectare", this->FrequencyPerHectare },
+    { "PowerLawFrequency", this->PowerLawFrequency } };
+  std::string given;
+  for (const auto& [name, value] : typed)
+  {
+    if (!(value >= 0.0 && std::isfinite(value)))
+    {
+      throw rockfall::ParameterError(std::string(name) + " is " + rockfall::numberText(value) +
+        " per year, it must be finite and not negative");
+    }
+    if (value > 0.0)
+    {
+      if (!given.empty())
+      {
+        throw rockfall::ParameterError(
+          given + " and " + name + " are given: the frequency of a source is by one of them");
+      }
+      given = name;
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+double vtkRockBlockSource::FrequencyOf(const Sources& sources, std::size_t number) const
+{
+  rockfall::SourceRow row = sources.rows[number];
+  constexpr double hectare = 1e4; // m²
+  const bool own = row.frequency || row.frequencyPerHectare || row.frequencyA;
+  const auto typed = [own](std::optional<double>& value, double property)
+  {
+    if (!own && property > 0.0)
+    {
+      value = property;
+    }
+  };
+  typed(row.frequency, this->AnnualFrequency);
+  typed(row.frequencyPerHectare, this->FrequencyPerHectare);
+  typed(row.frequencyA, this->PowerLawFrequency);
+  if (row.frequencyPerHectare)
+  {
+    const bool steep = this->SlopeThreshold > 0.0;
+    if (!steep && row.geometry != rockfall::SourceGeometry::Polygon)
+    {
+      throw rockfall::ParameterError("FrequencyPerHectare is " +
+        rockfall::numberText(this->FrequencyPerHectare) +
+        " per year, but a source is no area: a point or a line needs AnnualFrequency");
+    }
+    return *row.frequencyPerHectare / hectare *
+      (steep ? rockfall::steepArea(*sources.terrain, rockfall::radians(this->SlopeThreshold))
+             : rockfall::PolygonSampler(row.parts).area());
+  }
+  if (row.frequencyA)
+  {
+    const double most = row.volumeMaximum.value_or(this->VolumeMaximum);
+    return rockfall::powerLawFrequency(*row.frequencyA,
+      row.volumeExponent.value_or(this->VolumeExponent),
+      row.volumeMinimum.value_or(this->VolumeMinimum),
+      most > 0.0 ? most : std::numeric_limits<double>::infinity());
+  }
+  return row.frequency.value_or(std::numeric_limits<double>::quiet_NaN());
+}
+
+//------------------------------------------------------------------------------
+void vtkRockBlockSource::SetFrequencies(Sources& sources) const
+{
+  std::vector<std::int64_t> rocks(sources.rows.size(), 0);
+  for (const rockfall::ReleasePlace& place : sources.places)
+  {
+    ++rocks[place.source];
+  }
+  const auto nameOf = [this](const rockfall::SourceRow& row)
+  { return this->FileName + ", row " + std::to_string(row.row); };
+  std::vector<double> frequencies;
+  const rockfall::SourceRow *with = nullptr, *without = nullptr;
+  std::int64_t idle = 0;
+  for (std::size_t k = 0; k < sources.rows.size(); ++k)
+  {
+    const rockfall::SourceRow& row = sources.rows[k];
+    try
+    {
+      frequencies.push_back(this->FrequencyOf(sources, k));
+    }
+    catch (const rockfall::ParameterError& error)
+    {
+      if (this->FileName.empty())
+      {
+        throw;
+      }
+      throw rockfall::DataError(nameOf(row) + ": " + error.what());
+    }
+    (std::isnan(frequencies.back()) ? without : with) = &row;
+    idle += frequencies.back() > 0.0 && rocks[k] == 0 ? 1 : 0;
+  }
+  if (with && without)
+  {
+    throw rockfall::DataError(nameOf(*without) + ": has no frequency, but row " +
+      std::to_string(with->row) + " has; all have one, or none");
+  }
+  if (idle > 0)
+  {
+    sources.notes.push_back(this->FileName + ": " + std::to_string(idle) +
+      " sources with a frequency make no rock: it is in no map.");
+  }
+  for (std::size_t k = 0; k < sources.rocks.size(); ++k)
+  {
+    const std::size_t source = sources.places[k].source;
+    sources.rocks[k].frequency = frequencies[source] / double(rocks[source]);
+  }
 }
 
 //------------------------------------------------------------------------------

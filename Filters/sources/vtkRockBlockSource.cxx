@@ -225,6 +225,7 @@ int vtkRockBlockSource::RequestData(
       defaults.randomOrientation = this->RandomOrientation;
 
       const rockfall::AllowReferences references(this->AllowReferences != 0);
+      this->CheckFrequencies();
       Sources sources;
       this->FindSources(terrain, sources);
       sources.maker.emplace(defaults, sources.ground());
@@ -234,6 +235,7 @@ int vtkRockBlockSource::RequestData(
       {
         this->PlaceApart(sources);
       }
+      this->SetFrequencies(sources);
       vtkNew<vtkPolyData> blocks;
       rockfall::filters::writeRocks(sources.rocks, blocks);
       rockfall::filters::writeCrs(sources.crs, blocks->GetFieldData());
@@ -295,6 +297,9 @@ void vtkRockBlockSource::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Amount: " << this->Amount << "\n";
   os << indent << "Intensity: " << this->Intensity << "\n";
   os << indent << "TotalVolume: " << this->TotalVolume << "\n";
+  os << indent << "AnnualFrequency: " << this->AnnualFrequency << "\n";
+  os << indent << "FrequencyPerHectare: " << this->FrequencyPerHectare << "\n";
+  os << indent << "PowerLawFrequency: " << this->PowerLawFrequency << "\n";
   os << indent << "ClusterRadius: " << this->ClusterRadius << "\n";
   os << indent << "KeepApart: " << this->KeepApart << "\n";
   os << indent << "RandomOrientation: " << this->RandomOrientation << "\n";

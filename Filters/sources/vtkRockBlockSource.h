@@ -21,8 +21,9 @@
 #include "RockfallFiltersModule.h"
 #include "vtkPolyDataAlgorithm.h"
 
-#include <string> // for FileName
-#include <vector> // for points
+#include <cstddef> // for numbers of sources
+#include <string>  // for FileName
+#include <vector>  // for points
 
 class ROCKFALLFILTERS_EXPORT vtkRockBlockSource : public vtkPolyDataAlgorithm
 {
@@ -340,6 +341,32 @@ public:
 
   ///@{
   /**
+   * How often a rock of a source falls, 1/a; its rocks share it. Sources of a layer may have their
+   * own. 0 (the default): not known, unless one of the two below is given.
+   */
+  vtkSetMacro(AnnualFrequency, double);
+  vtkGetMacro(AnnualFrequency, double);
+  ///@}
+
+  ///@{
+  /**
+   * The same of areas and steep terrain, 1/a per hectare in plan.
+   */
+  vtkSetMacro(FrequencyPerHectare, double);
+  vtkGetMacro(FrequencyPerHectare, double);
+  ///@}
+
+  ///@{
+  /**
+   * The same as A of F(V) = A V^−B, 1/a with V in m³: how often a source drops volumes of V and
+   * more. That of a source is A (VolumeMinimum^−B − VolumeMaximum^−B) with VolumeExponent as B.
+   */
+  vtkSetMacro(PowerLawFrequency, double);
+  vtkGetMacro(PowerLawFrequency, double);
+  ///@}
+
+  ///@{
+  /**
    * Radius in m, not negative, of the cluster that the rocks of a point make: a disc for rocks over
    * the ground, else a ball. Default 0.
    */
@@ -503,6 +530,11 @@ private:
   void FindDrawn(Sources& sources);
   /// Notes on lengths that are given and that no block has a use for.
   void TellUnused(const Sources& sources) const;
+  void CheckFrequencies() const; ///< Of the properties.
+  /// Of all rocks of a source, 1/a; NaN if it is not known.
+  double FrequencyOf(const Sources& sources, std::size_t number) const;
+  /// Shares the frequency of each source out over its rocks.
+  void SetFrequencies(Sources& sources) const;
   /// Draws places anew until no rock is in another one, or throws.
   void PlaceApart(Sources& sources);
 
@@ -538,6 +570,9 @@ private:
   int Amount = 1;
   double Intensity = 0.0;
   double TotalVolume = 0.0;
+  double AnnualFrequency = 0.0;
+  double FrequencyPerHectare = 0.0;
+  double PowerLawFrequency = 0.0;
   double ClusterRadius = 0.0;
   bool KeepApart = false;
   bool RandomOrientation = false;

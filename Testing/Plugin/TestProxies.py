@@ -13,7 +13,8 @@ PROXIES = [
     ("Rock Blocks", "RockBlocks", "sources",
      "Shape Volume Center Orientation Velocity AngularVelocity Density YoungModulus PoissonRatio "
      "FileName Terrain Amount Intensity SlopeThreshold ShapeMix VolumeLaw Material TotalVolume "
-     "ClusterRadius KeepApart RandomOrientation MaterialName"),
+     "ClusterRadius KeepApart RandomOrientation MaterialName AnnualFrequency FrequencyPerHectare "
+     "PowerLawFrequency"),
     ("Rock Release", "RockRelease", "filters", "Terrain Draw Points Amount Shape Volume"),
     ("Drawn Structure", "DrawnStructure", "filters", "Terrain Kind Points Height Capacity"),
     ("Jointed Rock Mass", "JointedRockMass", "sources",

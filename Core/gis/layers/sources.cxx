@@ -28,7 +28,7 @@ using namespace gis;
 
 const std::initializer_list<const char*> kColumns = { "amount", "intensity", "volume", "vol_law",
   "vol_dev", "vol_min", "vol_max", "vol_exp", "material", "mat_name", "density", "young", "poisson",
-  "height", "source_id", "dev_xy", "dev_z", "dev_att" };
+  "height", "source_id", "frequency", "freq_ha", "freq_a", "dev_xy", "dev_z", "dev_att" };
 const std::initializer_list<const char*> kShortColumns = { "x", "y", "z", "shape", "source", "vx",
   "vy", "vz", "wx", "wy", "wz", "rx", "ry", "rz", "lx", "ly", "lz" };
 
@@ -109,6 +109,21 @@ void readNumbers(const FeatureRow& row, SourceRow& source)
     source.sourceId = std::int64_t(*id);
   }
   source.sourceName = row.text("source").value_or("");
+}
+
+void readFrequency(const FeatureRow& row, SourceRow& source)
+{
+  source.frequency = row.notNegative("frequency");
+  source.frequencyPerHectare = row.notNegative("freq_ha");
+  source.frequencyA = row.notNegative("freq_a");
+  if (bool(source.frequency) + bool(source.frequencyPerHectare) + bool(source.frequencyA) > 1)
+  {
+    row.fail("has several of \"frequency\", \"freq_ha\" and \"freq_a\"; it must have one of them");
+  }
+  if (source.frequencyPerHectare && source.geometry != SourceGeometry::Polygon)
+  {
+    row.failField("freq_ha", " is for polygons; a point or a line needs a \"frequency\"");
+  }
 }
 
 void readBody(const FeatureRow& row, SourceRow& source)
@@ -331,6 +346,7 @@ SourceLayer readSourceLayer(const std::string& fileName, const SourceOptions& op
     placing.place(row, source);
     allHaveGeometry = allHaveGeometry && row.geometry();
     readNumbers(row, source);
+    readFrequency(row, source);
     readBody(row, source);
     readRelease(row, source);
     result.rows.push_back(std::move(source));

@@ -39,6 +39,10 @@ struct SourceRow
   std::optional<std::int64_t> amount; ///< Of rocks, ≥ 0.
   std::optional<double> intensity; ///< Rocks per m of a line, per m² of a polygon, in plan, ≥ 0.
 
+  /// How often a rock of the source falls, one of three: 1/a; 1/a per hectare of a polygon, in plan;
+  /// A of F(V) = A V^−B, 1/a and V in m³, between the bounds and with the exponent of its volumes.
+  std::optional<double> frequency, frequencyPerHectare, frequencyA;
+
   std::optional<ShapeMix> shapes;
   std::optional<double> volume; ///< m³
   std::optional<VolumeLaw> volumeLaw;
