@@ -19,9 +19,6 @@ vtkStandardNewMacro(vtkHazardPassageReader);
 
 //------------------------------------------------------------------------------
 vtkHazardPassageReader::vtkHazardPassageReader()
-  : Statistics(rockfall::filters::usualStatistics)
-  , EnergyThresholds(rockfall::filters::FrequencyOptions().energyThresholds)
-  , ReturnPeriods(rockfall::filters::FrequencyOptions().returnPeriods)
 {
   this->SetNumberOfInputPorts(0);
 }
@@ -45,57 +42,6 @@ void vtkHazardPassageReader::RemoveAllFileNames()
   if (!this->FileNames.empty())
   {
     this->FileNames.clear();
-    this->Modified();
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkHazardPassageReader::AddStatistic(int statistic)
-{
-  this->Statistics.push_back(statistic);
-  this->Modified();
-}
-
-//------------------------------------------------------------------------------
-void vtkHazardPassageReader::RemoveAllStatistics()
-{
-  if (!this->Statistics.empty())
-  {
-    this->Statistics.clear();
-    this->Modified();
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkHazardPassageReader::AddEnergyThreshold(double threshold)
-{
-  this->EnergyThresholds.push_back(threshold);
-  this->Modified();
-}
-
-//------------------------------------------------------------------------------
-void vtkHazardPassageReader::RemoveAllEnergyThresholds()
-{
-  if (!this->EnergyThresholds.empty())
-  {
-    this->EnergyThresholds.clear();
-    this->Modified();
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkHazardPassageReader::AddReturnPeriod(double period)
-{
-  this->ReturnPeriods.push_back(period);
-  this->Modified();
-}
-
-//------------------------------------------------------------------------------
-void vtkHazardPassageReader::RemoveAllReturnPeriods()
-{
-  if (!this->ReturnPeriods.empty())
-  {
-    this->ReturnPeriods.clear();
     this->Modified();
   }
 }
@@ -160,12 +106,8 @@ int vtkHazardPassageReader::RequestData(
     "There is not enough memory for the map: choose fewer Statistics",
     [&]
     {
-      rockfall::filters::HazardMapOptions options;
-      options.statistics = this->Statistics;
-      options.frequency = { this->AnnualFrequency, this->EnergyThresholds, this->ReturnPeriods };
-      options.leastReach = this->LeastReach;
-      options.leastAngle = this->LeastAngle;
-      rockfall::filters::makeHazardImage(rockfall::PassageFiles(this->FileNames), options, image);
+      rockfall::filters::makeHazardImage(
+        rockfall::PassageFiles(this->FileNames), this->MapOptions(), image);
       return 1;
     });
 }
@@ -179,23 +121,5 @@ void vtkHazardPassageReader::PrintSelf(ostream& os, vtkIndent indent)
   {
     os << " " << name;
   }
-  os << "\n" << indent << "Statistics:";
-  for (const int statistic : this->Statistics)
-  {
-    os << " " << statistic;
-  }
-  os << "\n" << indent << "AnnualFrequency: " << this->AnnualFrequency << "\n";
-  os << indent << "EnergyThresholds:";
-  for (const double threshold : this->EnergyThresholds)
-  {
-    os << " " << threshold;
-  }
-  os << "\n" << indent << "ReturnPeriods:";
-  for (const double period : this->ReturnPeriods)
-  {
-    os << " " << period;
-  }
   os << "\n";
-  os << indent << "LeastReach: " << this->LeastReach << "\n";
-  os << indent << "LeastAngle: " << this->LeastAngle << "\n";
 }

@@ -10,16 +10,16 @@
 #define vtkHazardPassageReader_h
 
 #include "RockfallFiltersModule.h"
-#include "vtkImageAlgorithm.h"
+#include "vtkHazardMapAlgorithm.h"
 
 #include <string> // for FileNames
-#include <vector> // for lists of numbers and names
+#include <vector> // for FileNames
 
-class ROCKFALLFILTERS_EXPORT vtkHazardPassageReader : public vtkImageAlgorithm
+class ROCKFALLFILTERS_EXPORT vtkHazardPassageReader : public vtkHazardMapAlgorithm
 {
 public:
   static vtkHazardPassageReader* New();
-  vtkTypeMacro(vtkHazardPassageReader, vtkImageAlgorithm);
+  vtkTypeMacro(vtkHazardPassageReader, vtkHazardMapAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
@@ -28,51 +28,6 @@ public:
    */
   void AddFileName(const char* fileName);
   void RemoveAllFileNames();
-  ///@}
-
-  ///@{
-  /**
-   * As of vtkRockfallHazardMap.
-   */
-  void AddStatistic(int statistic);
-  void RemoveAllStatistics();
-  ///@}
-
-  ///@{
-  /**
-   * How often a rock of all these releases falls, 1/a, not negative. 0 (the default): by the frequencies
-   * that the files have of their rocks, if they have any.
-   */
-  vtkSetMacro(AnnualFrequency, double);
-  vtkGetMacro(AnnualFrequency, double);
-  ///@}
-
-  ///@{
-  /**
-   * Energies that part the classes of intensity, in kJ, positive, in any order. 30 and 300 by
-   * default.
-   */
-  void AddEnergyThreshold(double threshold);
-  void RemoveAllEnergyThresholds();
-  ///@}
-
-  ///@{
-  /**
-   * Return periods of the scenarios, in years, positive, in any order. 30, 100 and 300 by default.
-   */
-  void AddReturnPeriod(double period);
-  void RemoveAllReturnPeriods();
-  ///@}
-
-  ///@{
-  /**
-   * Cells that a smaller share of the rocks reaches (0 to 1), or whose smallest energy-line angle is
-   * smaller (0 to 90 degrees), are left empty, and the map says so. 0 by default.
-   */
-  vtkSetMacro(LeastReach, double);
-  vtkGetMacro(LeastReach, double);
-  vtkSetMacro(LeastAngle, double);
-  vtkGetMacro(LeastAngle, double);
   ///@}
 
   /// 1 if the file is whole and one of passages, else 0.
@@ -90,11 +45,6 @@ protected:
 
 private:
   std::vector<std::string> FileNames;
-  std::vector<int> Statistics;
-  double AnnualFrequency = 0.0;
-  std::vector<double> EnergyThresholds, ReturnPeriods;
-  double LeastReach = 0.0;
-  double LeastAngle = 0.0;
 };
 
 #endif

@@ -63,10 +63,7 @@ struct vtkRockfallHazardMap::Inputs
 
 //------------------------------------------------------------------------------
 vtkRockfallHazardMap::vtkRockfallHazardMap()
-  : Statistics(rockfall::filters::usualStatistics)
-  , EnergyThresholds(rockfall::filters::FrequencyOptions().energyThresholds)
-  , ReturnPeriods(rockfall::filters::FrequencyOptions().returnPeriods)
-  , Taken(std::make_unique<Inputs>())
+  : Taken(std::make_unique<Inputs>())
 {
   this->SetNumberOfInputPorts(2);
   this->SetNumberOfOutputPorts(2);
@@ -119,11 +116,11 @@ void vtkRockfallHazardMap::Prepare(vtkInformationVector** inputVector)
   try
   {
     const rockfall::filters::HeardAbort heard(this);
-    rockfall::filters::makeHazardImage(trajectories, terrain,
-      { this->CellSize, this->CropToTrajectories, this->RockWidth, this->Statistics,
-        { this->AnnualFrequency, this->EnergyThresholds, this->ReturnPeriods }, this->LeastReach,
-        this->LeastAngle },
-      this->Made->image);
+    rockfall::filters::HazardMapOptions options = this->MapOptions();
+    options.cellSize = this->CellSize;
+    options.crop = this->CropToTrajectories;
+    options.rockWidth = this->RockWidth;
+    rockfall::filters::makeHazardImage(trajectories, terrain, options, this->Made->image);
     rockfall::filters::drapeMap(this->Made->image, this->Made->draped);
   }
   catch (const rockfall::Aborted&)
@@ -241,81 +238,10 @@ int vtkRockfallHazardMap::RequestData(
 }
 
 //------------------------------------------------------------------------------
-void vtkRockfallHazardMap::AddStatistic(int statistic)
-{
-  this->Statistics.push_back(statistic);
-  this->Modified();
-}
-
-//------------------------------------------------------------------------------
-void vtkRockfallHazardMap::RemoveAllStatistics()
-{
-  if (!this->Statistics.empty())
-  {
-    this->Statistics.clear();
-    this->Modified();
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkRockfallHazardMap::AddEnergyThreshold(double threshold)
-{
-  this->EnergyThresholds.push_back(threshold);
-  this->Modified();
-}
-
-//------------------------------------------------------------------------------
-void vtkRockfallHazardMap::RemoveAllEnergyThresholds()
-{
-  if (!this->EnergyThresholds.empty())
-  {
-    this->EnergyThresholds.clear();
-    this->Modified();
-  }
-}
-
-//------------------------------------------------------------------------------
-void vtkRockfallHazardMap::AddReturnPeriod(double period)
-{
-  this->ReturnPeriods.push_back(period);
-  this->Modified();
-}
-
-//------------------------------------------------------------------------------
-void vtkRockfallHazardMap::RemoveAllReturnPeriods()
-{
-  if (!this->ReturnPeriods.empty())
-  {
-    this->ReturnPeriods.clear();
-    this->Modified();
-  }
-}
-
-//------------------------------------------------------------------------------
 void vtkRockfallHazardMap::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "CellSize: " << this->CellSize << "\n";
   os << indent << "CropToTrajectories: " << this->CropToTrajectories << "\n";
   os << indent << "RockWidth: " << this->RockWidth << "\n";
-  os << indent << "Statistics:";
-  for (const int statistic : this->Statistics)
-  {
-    os << " " << statistic;
-  }
-  os << "\n";
-  os << indent << "AnnualFrequency: " << this->AnnualFrequency << "\n";
-  os << indent << "EnergyThresholds:";
-  for (const double threshold : this->EnergyThresholds)
-  {
-    os << " " << threshold;
-  }
-  os << "\n" << indent << "ReturnPeriods:";
-  for (const double period : this->ReturnPeriods)
-  {
-    os << " " << period;
-  }
-  os << "\n";
-  os << indent << "LeastReach: " << this->LeastReach << "\n";
-  os << indent << "LeastAngle: " << this->LeastAngle << "\n";
 }

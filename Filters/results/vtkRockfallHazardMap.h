@@ -29,17 +29,16 @@
 #define vtkRockfallHazardMap_h
 
 #include "RockfallFiltersModule.h"
-#include "vtkImageAlgorithm.h"
+#include "vtkHazardMapAlgorithm.h"
 
 #include <memory> // for the result
 #include <string> // for an error
-#include <vector> // for Statistics, EnergyThresholds and ReturnPeriods
 
-class ROCKFALLFILTERS_EXPORT vtkRockfallHazardMap : public vtkImageAlgorithm
+class ROCKFALLFILTERS_EXPORT vtkRockfallHazardMap : public vtkHazardMapAlgorithm
 {
 public:
   static vtkRockfallHazardMap* New();
-  vtkTypeMacro(vtkRockfallHazardMap, vtkImageAlgorithm);
+  vtkTypeMacro(vtkRockfallHazardMap, vtkHazardMapAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
@@ -71,53 +70,6 @@ public:
   vtkBooleanMacro(RockWidth, bool);
   ///@}
 
-  ///@{
-  /**
-   * The statistics over the rocks of a cell that the map has of each quantity:
-   * 0 the mean, 1 the maximum, 2 to 5 the 50, 90, 95 and 99 % quantiles. Mean,
-   * maximum and 95 % by default. Each takes 16 bytes a cell.
-   */
-  void AddStatistic(int statistic);
-  void RemoveAllStatistics();
-  ///@}
-
-  ///@{
-  /**
-   * How often a rock of all these releases falls, 1/a, not negative. 0 (the default): by the cell
-   * array Frequency of the trajectories, if they have one.
-   */
-  vtkSetMacro(AnnualFrequency, double);
-  vtkGetMacro(AnnualFrequency, double);
-  ///@}
-
-  ///@{
-  /**
-   * Energies that part the classes of intensity, in kJ, positive, in any order. 30 and 300 by
-   * default.
-   */
-  void AddEnergyThreshold(double threshold);
-  void RemoveAllEnergyThresholds();
-  ///@}
-
-  ///@{
-  /**
-   * Return periods of the scenarios, in years, positive, in any order. 30, 100 and 300 by default.
-   */
-  void AddReturnPeriod(double period);
-  void RemoveAllReturnPeriods();
-  ///@}
-
-  ///@{
-  /**
-   * Cells that a smaller share of the rocks reaches (0 to 1), or whose smallest energy-line angle is
-   * smaller (0 to 90 degrees), are left empty, and the map says so. 0 by default.
-   */
-  vtkSetMacro(LeastReach, double);
-  vtkGetMacro(LeastReach, double);
-  vtkSetMacro(LeastAngle, double);
-  vtkGetMacro(LeastAngle, double);
-  ///@}
-
   vtkRockfallHazardMap(const vtkRockfallHazardMap&) = delete;
   void operator=(const vtkRockfallHazardMap&) = delete;
 
@@ -137,11 +89,6 @@ private:
   double CellSize = 0.0;
   bool CropToTrajectories = true;
   bool RockWidth = true;
-  std::vector<int> Statistics;
-  double AnnualFrequency = 0.0;
-  std::vector<double> EnergyThresholds, ReturnPeriods;
-  double LeastReach = 0.0;
-  double LeastAngle = 0.0;
   std::string Spread; // why trajectories on several ranks make no map
   struct Result;
   struct Inputs;
