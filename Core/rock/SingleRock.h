@@ -16,6 +16,7 @@
 #include <array>
 #include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace rockfall
@@ -144,11 +145,14 @@ public:
   void checkLeft(); ///< Beyond the slope?
   void followRest(double h, bool touching);
 
-  /// Trees and barriers, by number.
+  /// Trees and barriers, by number, and what barriers have held.
   struct Broken
   {
     std::vector<int> trees, barriers;
+    std::vector<std::pair<int, BarrierLoad>> held;
   };
+  /// What barriers have held in this fall, by number; not before a step is over.
+  void setBarrierLoads(const std::vector<BarrierLoad>* loads) { barrierLoads_ = loads; }
   Broken drainBroken(); ///< Structures that it has broken since it was asked last.
   /// Structures that others of its fall have broken are gone for this rock, too. Whether it touched
   /// any.
@@ -185,6 +189,7 @@ private:
   /// and fills `hit_` with the first barrier that stops the rock or breaks. After such a one flight
   /// goes on to those at the same place only; its rest is flown anew.
   void passBarriers(const PathPiece& way, double taken);
+  BarrierLoad loadOf(int barrier) const;
   void meetBarrier(); ///< The one in `hit_`, where the rock is.
   /// The one in `hit_`, in a step of contact that would go to `end` and in which others have taken
   /// so much (J); returns what this one takes if it breaks.
@@ -309,7 +314,8 @@ private:
   double dampedFor_ = -1.0, damped_ = 0.0; ///< The restitution looked up last, and its ζ.
   std::vector<int> goneTrees_;             ///< Ascending.
   std::vector<int> brokenBarriers_;        ///< In the order of breaking.
-  Broken broke_;           ///< Structures that it has broken, of which others have not heard yet.
+  Broken broke_; ///< Structures that it has broken, of which others have not heard yet.
+  const std::vector<BarrierLoad>* barrierLoads_ = nullptr; ///< Null: all are as new.
   double freeUntil_ = 0.0; ///< Nothing can be touched until then, after a take-off, s.
   std::vector<BarrierPassage> passages_; ///< Of the way at hand.
   std::size_t passed_ = 0;               ///< How many of them are dealt with.

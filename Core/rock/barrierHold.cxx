@@ -53,8 +53,8 @@ Outline outlineAlong(const Vec2& line, const Block& block, const BlockState& at)
 
 } // namespace
 
-bool holdsOutline(const Obstacles& obstacles, int piece, std::span<const int> broken,
-  const Block& block, const BlockState& at, double height)
+bool holdsOutline(const Obstacles& obstacles, int piece, const BarrierState& state,
+  std::span<const int> broken, const Block& block, const BlockState& at, double height)
 {
   const Obstacles::Piece& own = obstacles.barrierPieces()[std::size_t(piece)];
   const std::vector<Barrier>& barriers = obstacles.structures().barriers;
@@ -62,7 +62,8 @@ bool holdsOutline(const Obstacles& obstacles, int piece, std::span<const int> br
   const Vec2 line = (own.to - own.from).normalized(), normal(-line.y(), line.x());
   const Outline o = outlineAlong(line, block, at);
   const double share = barrier.overhang;
-  if (!(height + o.top - share * (o.top - o.bottom) <= barrier.height))
+  const double lifted = std::max(height, state.fill - o.bottom);
+  if (!(lifted + o.top - share * (o.top - o.bottom) <= state.rope))
   {
     return false;
   }

@@ -16,6 +16,7 @@ namespace rockfall
 {
 
 class Obstacles;
+struct BarrierState;
 
 /// Where the line of a barrier is passed on a way.
 struct BarrierPassage
@@ -32,9 +33,9 @@ struct BarrierPassage
 };
 
 /// For a rock that stands so on the line of a piece of a barrier, or on its continuation, with its
-/// centre this high over the barrier's foot (m; NaN: there is no ground to stand on). `broken`
-/// barriers hold nothing.
-bool holdsOutline(const Obstacles& obstacles, int piece, std::span<const int> broken,
-  const Block& block, const BlockState& at, double height);
+/// centre this high over the barrier's foot (m; NaN: there is no ground to stand on). What fills the
+/// barrier lifts a rock that comes lower. `broken` barriers hold nothing.
+bool holdsOutline(const Obstacles& obstacles, int piece, const BarrierState& state,
+  std::span<const int> broken, const Block& block, const BlockState& at, double height);
 
 } // namespace rockfall

@@ -101,6 +101,9 @@ struct StructureEvent
   double kineticEnergy = 0.0;    ///< Translation and rotation, before, J.
   double heightOverGround = 0.0; ///< Of the rock's centre over the slope, m.
   double energyTaken = 0.0;      ///< J
+  double heldBefore = 0.0;       ///< By a barrier, of other rocks, J.
+  double usefulHeight = 0.0;     ///< Of a barrier, from its fill to its rope, before, m.
+  double brakingDistance = 0.0;  ///< Behind the line of the barrier that stopped it, m.
 };
 
 enum class Fate

@@ -130,6 +130,12 @@ StructureEvent eventAt(StructureOutcome outcome, std::int64_t feature, const Blo
   return event;
 }
 
+void noteLoad(StructureEvent& event, const BarrierLoad& before, const BarrierState& barrier)
+{
+  event.heldBefore = before.energy;
+  event.usefulHeight = std::max(0.0, barrier.rope - barrier.fill);
+}
+
 } // namespace
 
 double SingleRock::freeOfObstacles(double duration)
@@ -452,7 +458,8 @@ void SingleRock::passBarriers(const PathPiece& way, double taken)
     const double foot = std::max(surface_.elevation(at.position.x(), at.position.y()),
       obstacles_->embankmentTop(at.position.x(), at.position.y()));
     const double height = at.position.z() - foot;
-    if (!holdsOutline(*obstacles_, piece, brokenBarriers_, body_.block, at, height))
+    if (!holdsOutline(*obstacles_, piece, stateOf(barrier, this->loadOf(number)), brokenBarriers_,
+          body_.block, at, height))
     {
       continue;
     }
@@ -472,21 +479,34 @@ void SingleRock::passBarriers(const PathPiece& way, double taken)
   }
 }
 
+BarrierLoad SingleRock::loadOf(int barrier) const
+{
+  return barrierLoads_ ? (*barrierLoads_)[std::size_t(barrier)] : BarrierLoad();
+}
+
 void SingleRock::meetBarrier()
 {
   const Barrier& barrier = obstacles_->structures().barriers[std::size_t(hit_.barrier)];
   const double kinetic = rigidKineticEnergy(body_.block, body_.state),
                energy = kinetic + hit_.stored;
-  const bool holds = energy <= barrier.capacity;
-  const double taken = holds ? energy : barrier.absorbs ? barrier.capacity : 0.0;
+  const BarrierLoad load = this->loadOf(hit_.barrier);
+  const BarrierState net = stateOf(barrier, load);
+  const bool holds = energy <= net.capacity;
+  const double taken = holds ? energy : barrier.absorbs ? net.capacity : 0.0;
   StructureEvent event =
     eventAt(holds ? StructureOutcome::BarrierStopped : StructureOutcome::BarrierBroken,
       barrier.feature, body_.state, energy, hit_.heightOverGround);
   event.energyTaken = taken;
+  noteLoad(event, load, net);
   TrajectorySummary& summary = recorder_.trajectory().summary;
   if (holds)
   {
     this->finishImpact(false); // the barrier takes what it would have left
+    event.brakingDistance = brakingDistance(barrier, load, energy);
+    if (isLoaded(barrier))
+    {
+      broke_.held.push_back({ hit_.barrier, { energy, body_.block.volume() } });
+    }
   }
   recorder_.trajectory().structures.push_back(event);
   recorder_.knot(body_.state, false);
@@ -515,7 +535,9 @@ double SingleRock::endStepAtBarrier(const BlockState& end, double taken, bool to
   const double came = rigidKineticEnergy(body_.block, at);
   slowDown(at, came, std::min(taken, came));
   const double energy = rigidKineticEnergy(body_.block, at) + hit_.stored;
-  if (energy <= barrier.capacity)
+  const BarrierLoad load = this->loadOf(hit_.barrier);
+  const BarrierState net = stateOf(barrier, load);
+  if (energy <= net.capacity)
   {
     // The rest of the step did not happen; what it booked did. The barrier takes what makes it up.
     recorder_.recordBetween(body_.before, at, touching);
@@ -532,7 +554,8 @@ double SingleRock::endStepAtBarrier(const BlockState& end, double taken, bool to
   StructureEvent event =
     eventAt(StructureOutcome::BarrierBroken, barrier.feature, at, energy, hit_.heightOverGround);
   const double left = rigidKineticEnergy(body_.block, body_.state);
-  slowDown(body_.state, left, barrier.absorbs ? std::min(barrier.capacity, left) : 0.0);
+  slowDown(body_.state, left, barrier.absorbs ? std::min(net.capacity, left) : 0.0);
+  noteLoad(event, load, net);
   event.energyTaken = left - rigidKineticEnergy(body_.block, body_.state);
   body_.energy.structures += event.energyTaken;
   recorder_.trajectory().structures.push_back(event);

@@ -42,6 +42,11 @@ std::uint64_t motionHash(const Trajectory& trajectory)
     mixer.add(event.position);
     mixer.add(event.kineticEnergy);
     mixer.add(event.energyTaken);
+    if (event.heldBefore > 0.0)
+    {
+      mixer.add(event.heldBefore);
+      mixer.add(event.usefulHeight);
+    }
   }
   return mixer.value() == 0 ? 1 : mixer.value();
 }

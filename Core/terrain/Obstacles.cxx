@@ -7,6 +7,7 @@
 #include "terrain/Surface.h"
 #include "terrain/Terrain.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <unordered_map>
@@ -67,6 +68,42 @@ bool isOverGround(const Terrain& terrain, const Eigen::Vector2d& p, const Eigen:
 }
 
 } // namespace
+
+bool isLoaded(const Barrier& barrier)
+{
+  return !std::isnan(barrier.residual) || std::isfinite(barrier.room);
+}
+
+BarrierState stateOf(const Barrier& barrier, const BarrierLoad& load)
+{
+  BarrierState state{ barrier.capacity, barrier.height, 0.0 };
+  if (!std::isnan(barrier.residual) && load.energy > 0.0)
+  {
+    state.capacity = std::max(0.0, barrier.capacity - load.energy);
+    const double used = std::min(1.0, load.energy / barrier.capacity);
+    state.rope *= 1.0 - (1.0 - barrier.residual) * used;
+  }
+  if (load.volume > 0.0)
+  {
+    double length = 0.0;
+    for (std::size_t k = 1; k < barrier.points.size(); ++k)
+    {
+      length += (barrier.points[k] - barrier.points[k - 1]).norm();
+    }
+    state.fill = barrier.height * std::min(1.0, load.volume / (barrier.room * length));
+  }
+  return state;
+}
+
+double brakingDistance(const Barrier& barrier, const BarrierLoad& before, double energy)
+{
+  if (barrier.braking == 0.0)
+  {
+    return 0.0;
+  }
+  const double held = std::isnan(barrier.residual) ? 0.0 : before.energy;
+  return barrier.braking * std::sqrt(std::min(1.0, (held + energy) / barrier.capacity));
+}
 
 double stemCapacity(double diameter, double factor)
 {
@@ -244,6 +281,14 @@ Obstacles::Obstacles(Structures structures, const Terrain& terrain)
     check(b.capacity >= 0.0, b.feature, "the capacity of the barrier", b.capacity, "at least 0 J");
     check(b.overhang >= 0.0 && b.overhang <= 0.5, b.feature, "the overhang of the barrier",
       b.overhang, "0 to 0.5");
+    check(b.braking >= 0.0 && std::isfinite(b.braking), b.feature,
+      "the braking distance of the barrier", b.braking, "at least 0 m");
+    check(!(b.residual < 0.0 || b.residual > 1.0), b.feature, "the residual height of the barrier",
+      100.0 * b.residual, "0 to 100 %");
+    check(b.room > 0.0, b.feature, "the volume that fills the barrier", b.room, "above 0 m³/m");
+    check(std::isfinite(b.capacity) || (b.braking == 0.0 && std::isnan(b.residual)), b.feature,
+      "the capacity of the barrier", b.capacity,
+      "finite where its braking distance or residual height is given");
     bool over = false;
     for (std::size_t i = 0; i < b.points.size(); ++i)
     {

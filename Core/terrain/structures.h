@@ -57,9 +57,43 @@ struct Barrier
   /// beside an end, 0 to 0.5. 0: the freeboard of guidelines, half a block between the highest path
   /// of centres and the rope (ONR 24810): kits are tested below it.
   double overhang = 0.0;
+  /// Way behind the line on which a rock of its capacity comes to rest, m, ≥ 0; 0: not known.
+  double braking = 0.0;
+  /// Share of its height that is left once what it holds has used up its capacity, 0 to 1; NaN: it
+  /// does not wear, and is as new for every rock.
+  double residual = std::numeric_limits<double>::quiet_NaN();
+  /// Volume of rock that fills it to the rope, m³ per m of its length, > 0; infinite: nothing does.
+  double room = std::numeric_limits<double>::infinity();
   bool absorbs = true;  ///< Takes its capacity from a rock that breaks it.
   bool records = false; ///< Lets all pass and only notes it.
 };
+
+/// Energy (J) and volume (m³) of the rocks that a barrier has held.
+struct BarrierLoad
+{
+  double energy = 0.0;
+  double volume = 0.0;
+};
+
+/// A barrier as the next rock meets it.
+struct BarrierState
+{
+  double capacity = 0.0; ///< J
+  double rope = 0.0;     ///< Height of its upper rope over its foot, m.
+  double fill = 0.0;     ///< Depth of what lies before it, m.
+};
+
+/// Whether what it holds changes a barrier for the next rock.
+bool isLoaded(const Barrier& barrier);
+
+/// A barrier that wears has lost the energy of what it held of its capacity, and of its height in
+/// proportion. What it holds lies before it, spread along its length, and as deep in its height as
+/// in its room.
+BarrierState stateOf(const Barrier& barrier, const BarrierLoad& load);
+
+/// How far behind its line a barrier stops a rock of this energy (J), m: its brakes pull out as a
+/// spring does, up to `braking` at its capacity, and stay so if it wears.
+double brakingDistance(const Barrier& barrier, const BarrierLoad& before, double energy);
 
 struct Structures
 {

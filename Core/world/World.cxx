@@ -3,6 +3,7 @@
 #include "base/abort.h"
 #include "base/parallel.h"
 #include "law/settings.h"
+#include "terrain/Obstacles.h"
 #include "world/IslandFinder.h"
 #include "world/IslandStepper.h"
 #include "world/pairImpacts.h"
@@ -20,6 +21,10 @@ World::World(const Surface& surface, std::span<const Rock> rocks, std::span<cons
   : world_(surface, rocks, parameters)
 {
   world_.rocks.reserve(rocks.size());
+  if (const Obstacles* obstacles = surface.terrain().obstacles())
+  {
+    barrierLoads_.resize(obstacles->structures().barriers.size());
+  }
   for (std::size_t i = 0; i < rocks.size(); ++i)
   {
     FallingRock& rock = world_.rocks.add(
@@ -27,6 +32,7 @@ World::World(const Surface& surface, std::span<const Rock> rocks, std::span<cons
     if (parameters.rockRockContact)
     {
       rock.sim.letStrainFollow();
+      rock.sim.setBarrierLoads(&barrierLoads_);
     }
   }
   if (parameters.rockRockContact)
@@ -108,6 +114,12 @@ void World::shareBroken()
     const SingleRock::Broken one = rock.sim.drainBroken();
     all.trees.insert(all.trees.end(), one.trees.begin(), one.trees.end());
     all.barriers.insert(all.barriers.end(), one.barriers.begin(), one.barriers.end());
+    for (const auto& [barrier, held] : one.held)
+    {
+      BarrierLoad& load = barrierLoads_[std::size_t(barrier)];
+      load.energy += held.energy;
+      load.volume += held.volume;
+    }
   }
   if (all.trees.empty() && all.barriers.empty())
   {

@@ -71,10 +71,11 @@ private:
   const SingleRock& rock(int rock) const { return world_.rocks[std::size_t(rock)].sim; }
   void step(double until);
   void advanceAll(double until); ///< Islands, and rocks that meet no other, on all threads.
-  void shareBroken();
-  void settle(double before); ///< Islands of a step that began at this time, s.
+  void shareBroken();            ///< And what barriers have held.
+  void settle(double before);    ///< Islands of a step that began at this time, s.
 
   WorldState world_;
+  std::vector<BarrierLoad> barrierLoads_;      ///< What each barrier has held so far.
   std::unique_ptr<IslandFinder> islandFinder_; ///< None if rocks hit no other.
   std::vector<int> order_; ///< Islands in the order in which they are gone over.
 };

@@ -132,12 +132,14 @@ void writeStructures(const Terrain& terrain, vtkFieldData* fieldData)
       writtenCapacity(t.capacity), double(t.material) };
     trees->InsertNextTuple(row);
   }
-  const auto barriers = addArray<vtkDoubleArray>(fieldData, barriersName, 7);
+  const auto barriers = addArray<vtkDoubleArray>(fieldData, barriersName, 10);
   const auto barrierPoints = addArray<vtkDoubleArray>(fieldData, barrierPointsName, 2);
   for (const Barrier& b : s.barriers)
   {
     const double row[] = { double(b.feature), b.height, writtenCapacity(b.capacity),
-      double(b.absorbs), double(b.records), b.overhang, double(b.points.size()) };
+      double(b.absorbs), double(b.records), b.overhang, b.braking,
+      std::isnan(b.residual) ? kNoLimit : b.residual, writtenCapacity(b.room),
+      double(b.points.size()) };
     barriers->InsertNextTuple(row);
     addPoints(barrierPoints, b.points);
   }
@@ -163,7 +165,7 @@ void dropStructures(vtkFieldData* fieldData)
 Structures readStructures(vtkFieldData* fieldData)
 {
   const Rows embankments(fieldData, embankmentsName, 8), trees(fieldData, treesName, 7),
-    barriers(fieldData, barriersName, 7), materials(fieldData, materialsName, 8),
+    barriers(fieldData, barriersName, 10), materials(fieldData, materialsName, 8),
     embankmentPoints(fieldData, embankmentPointsName, 2),
     barrierPoints(fieldData, barrierPointsName, 2);
   Structures s;
@@ -200,7 +202,10 @@ Structures readStructures(vtkFieldData* fieldData)
     b.absorbs = barriers.at(k, 3) != 0.0;
     b.records = barriers.at(k, 4) != 0.0;
     b.overhang = barriers.at(k, 5);
-    b.points = takePoints(barrierPoints, barriers.at(k, 6), next);
+    b.braking = barriers.at(k, 6);
+    b.residual = barriers.at(k, 7) < 0.0 ? b.residual : barriers.at(k, 7);
+    b.room = readCapacity(barriers.at(k, 8));
+    b.points = takePoints(barrierPoints, barriers.at(k, 9), next);
   }
   for (vtkIdType k = 0; k < materials.count(); ++k)
   {

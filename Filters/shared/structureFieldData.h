@@ -10,13 +10,14 @@
 /// |                           | slopes of the mountain and the valley side, material, points     |
 /// | TerrainEmbankmentPoints   | x, y in the local frame, m                                       |
 /// | TerrainTrees              | feature, x, y, diameter (m), height (m), capacity (J), material  |
-/// | TerrainBarriers           | feature, height (m), capacity (J), absorbs, records, overhang, points |
+/// | TerrainBarriers           | feature, height (m), capacity (J), absorbs, records, overhang,   |
+/// |                           | braking distance (m), residual height, room (m³/m), points       |
 /// | TerrainBarrierPoints      | x, y in the local frame, m                                       |
 /// | TerrainStructureMaterials | restitution, its deviation, its model, tangential restitution,   |
 /// |                           | speed (m/s), φ (rad), its deviation (rad), cohesion (N)          |
 ///
 /// An embankment that has a height has no elevation, which is then 0, and the other way round; a
-/// capacity without limit is −1: VTK's XML readers do not understand their writers' "nan" and
+/// capacity or a room without limit is −1, and so is the residual height of what does not wear: VTK's XML readers do not understand their writers' "nan" and
 /// "inf".
 
 #include "terrain/Terrain.h"

@@ -118,6 +118,9 @@ struct StructurePoints::Arrays : EventVertices
   vtkSmartPointer<vtkDoubleArray> energy = addArray<vtkDoubleArray>(fields, "KineticEnergy");
   vtkSmartPointer<vtkDoubleArray> height = addArray<vtkDoubleArray>(fields, "HeightOverGround");
   vtkSmartPointer<vtkDoubleArray> taken = addArray<vtkDoubleArray>(fields, "EnergyTaken");
+  vtkSmartPointer<vtkDoubleArray> held = addArray<vtkDoubleArray>(fields, "HeldBefore");
+  vtkSmartPointer<vtkDoubleArray> useful = addArray<vtkDoubleArray>(fields, "UsefulHeight");
+  vtkSmartPointer<vtkDoubleArray> braking = addArray<vtkDoubleArray>(fields, "BrakingDistance");
 };
 
 StructurePoints::StructurePoints(const RunFrame& frame)
@@ -142,6 +145,9 @@ void StructurePoints::append(const Trajectory& trajectory)
     a.energy->InsertNextValue(event.kineticEnergy);
     a.height->InsertNextValue(event.heightOverGround);
     a.taken->InsertNextValue(event.energyTaken);
+    a.held->InsertNextValue(event.heldBefore);
+    a.useful->InsertNextValue(event.usefulHeight);
+    a.braking->InsertNextValue(event.brakingDistance);
   }
 }
 

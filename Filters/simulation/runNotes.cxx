@@ -4,6 +4,7 @@
 #include "shared/errorReport.h"
 #include "simulation/jointFaces.h"
 #include "simulation/progressText.h"
+#include "terrain/Obstacles.h"
 
 #include <algorithm>
 
@@ -35,6 +36,19 @@ void tellApart(std::span<const Rock> rocks)
       " blocks falls as if it were alone, through the others, though " + std::to_string(joined) +
       " of them lie face on face, as the blocks of a rock mass. " +
       "Switch it on for them to hit and push each other");
+  }
+}
+
+void tellNewNets(const Terrain& terrain)
+{
+  if (const Obstacles* obstacles = terrain.obstacles())
+  {
+    const std::vector<Barrier>& barriers = obstacles->structures().barriers;
+    if (std::any_of(barriers.begin(), barriers.end(), isLoaded))
+    {
+      showNote("RockRockContact is off: barriers with residual or fill are new for each block. "
+               "Switch it on for what they hold to load them");
+    }
   }
 }
 

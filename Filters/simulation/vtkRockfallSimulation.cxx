@@ -272,6 +272,7 @@ bool vtkRockfallSimulation::Simulate(vtkPolyData* terrainInput, vtkPolyData* roc
   if (!this->RockRockContact && tells)
   {
     rockfall::filters::tellApart(run->frame.rocks);
+    rockfall::filters::tellNewNets(run->slope);
   }
   if (tells)
   {

@@ -31,7 +31,9 @@ protected:
       this->WriteFile("trees.csv", "x,y,diameter,height,capacity\n180,10,30,20,\n180,90,30,20,5\n")
         .c_str());
     this->Terrain->SetBarrierFile(
-      this->WriteFile("nets.csv", "WKT,height,capacity\n\"LINESTRING(60 1,60 99)\",30,1000\n")
+      this
+        ->WriteFile(
+          "nets.csv", "WKT,height,capacity,braking\n\"LINESTRING(60 1,60 99)\",30,1000,6\n")
         .c_str());
   }
 };
@@ -110,6 +112,8 @@ TEST_F(TestStructures, SurviveAFile)
   EXPECT_EQ(b.trees[1].capacity, 5e3);
   ASSERT_EQ(b.barriers.size(), 1u);
   EXPECT_EQ(b.barriers[0].capacity, 1e6);
+  EXPECT_EQ(b.barriers[0].braking, 6.0);
+  EXPECT_FALSE(isLoaded(b.barriers[0])); // neither worn nor filled
 }
 
 TEST_F(TestStructures, ACrestTravelsWithTheSlope)
@@ -157,10 +161,32 @@ TEST_F(TestStructures, ABarrierCatchesTheRock)
   EXPECT_EQ(value(met->GetPointData(), "StructureId"), 1.0);
   EXPECT_EQ(value(met->GetPointData(), "Outcome"), 0.0);
   EXPECT_NEAR(met->GetPoint(0)[0], 60.0, 1e-6);
+  EXPECT_EQ(value(met->GetPointData(), "UsefulHeight"), 30.0);
+  EXPECT_EQ(value(met->GetPointData(), "HeldBefore"), 0.0);
+  EXPECT_NEAR(value(met->GetPointData(), "BrakingDistance"),
+    6.0 * std::sqrt(value(met->GetPointData(), "EnergyTaken") / 1e6), 1e-12);
   EXPECT_EQ(value(this->Summary()->GetRowData(), "FateCode"), 3.0);
   EXPECT_NEAR(value(this->Summary()->GetRowData(), "EnergyStructures"),
     value(met->GetPointData(), "KineticEnergy"),
     1e-3 * value(met->GetPointData(), "KineticEnergy"));
+}
+
+TEST_F(TestStructures, NetsThatWearAreNewForRocksThatFallAlone)
+{
+  this->Terrain->SetBarrierFile(
+    this->WriteFile("worn.csv", "WKT,height,fill\n\"LINESTRING(60 1,60 99)\",5,2\n").c_str());
+  this->Simulation->SetEndTime(0.1);
+  const auto told = [this]
+  {
+    this->Heard->Notes.clear();
+    this->Output(4);
+    return std::count_if(this->Heard->Notes.begin(), this->Heard->Notes.end(),
+      [](const std::string& note)
+      { return note.find("residual or fill are new for each") != std::string::npos; });
+  };
+  EXPECT_EQ(told(), 1);
+  this->Simulation->SetRockRockContact(true);
+  EXPECT_EQ(told(), 0);
 }
 
 TEST_F(TestStructures, ABadLayerIsOneError)

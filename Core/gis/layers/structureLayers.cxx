@@ -505,7 +505,8 @@ void readBarriers(const StructureFiles& files, const Terrain& terrain, Structure
 {
   LayerWish wish = wishFor(files.barriers, files.barrierLayer, "BarrierLayerName");
   wish.columns = { { "height" } };
-  forEachRow(wish, terrain, notes, { "height", "capacity", "overhang", "mode", "absorbs" },
+  forEachRow(wish, terrain, notes,
+    { "height", "capacity", "overhang", "braking", "residual", "fill", "mode", "absorbs" },
     [&](const FeatureRow& row, std::int64_t count, Placing& placing)
     {
       Barrier b;
@@ -525,6 +526,17 @@ void readBarriers(const StructureFiles& files, const Terrain& terrain, Structure
         refuseOtherUnits(row, b.height, capacity);
       }
       b.overhang = row.ranged({ "overhang" }, 0.0, 0.5, "0 to 0.5").value_or(b.overhang);
+      b.braking = row.notNegative("braking").value_or(b.braking);
+      const auto residual = row.ranged({ "residual" }, 0.0, 100.0, "0 to 100 %");
+      b.residual = residual ? 0.01 * *residual : b.residual;
+      b.room = row.positive("fill").value_or(b.room);
+      for (const char* field : { "braking", "residual" })
+      {
+        if (row.number(field) && !capacity)
+        {
+          row.failField(field, " is given without a \"capacity\", which it refers to");
+        }
+      }
       b.absorbs = row.ranged({ "absorbs" }, 0.0, 1.0, "1 or 0").value_or(1.0) != 0.0;
       for (std::vector<Eigen::Vector2d>& line : linesOf(row, placing))
       {

@@ -39,7 +39,8 @@ struct StructureFiles
 /// - Stands: `stems_ha`, `dbh_mean` and `dbh_dev` (cm), `height` (m), `conifers` (%), `f_conifer`
 ///   and `f_broad` (factors of the species), `spacing` (m).
 /// - Barriers: `height` (m), `capacity` (kJ; empty: holds everything), `mode` (stop or record),
-///   `absorbs` (1 or 0), `overhang` (0 to 0.5).
+///   `absorbs` (1 or 0), `overhang` (0 to 0.5),
+///   `braking` (m), `residual` (%), `fill` (m³/m).
 /// - Embankments and trees: `rv`, `rt`, `phi` (degrees), `cohesion` (N); empty: the slope's own.
 ///
 /// Trees where the terrain has no ground are left out, with a note; if all do, that is an error.

@@ -77,7 +77,8 @@ TEST(StructureLayers, AreReadInTheUnitsThatAPersonTypes)
     "50,50,30,20,,\n51,52,40,25,80,\n52,50,30,20,,2\n"
     "500,50,30,20,,\n");
   files.barriers = writeFile("nets.csv",
-    "WKT,height,capacity,mode,absorbs\n" + line + ",4,500,stop,\n" + line + ",3,,record,0\n");
+    "WKT,height,capacity,mode,absorbs,braking,residual,fill\n" + line + ",4,500,stop,,5,60,2.5\n" +
+      line + ",3,,record,0,,,\n");
   std::vector<std::string> notes;
   const Structures s = readStructures(files, site(), notes);
   ASSERT_EQ(s.embankments.size(), 2u);
@@ -102,6 +103,10 @@ TEST(StructureLayers, AreReadInTheUnitsThatAPersonTypes)
   EXPECT_DOUBLE_EQ(s.trees[2].capacity, 2.0 * stemCapacity(0.3));
   ASSERT_EQ(s.barriers.size(), 2u);
   EXPECT_EQ(s.barriers[0].capacity, 500e3);
+  EXPECT_EQ(s.barriers[0].braking, 5.0);
+  EXPECT_EQ(s.barriers[0].residual, 0.6);
+  EXPECT_EQ(s.barriers[0].room, 2.5);
+  EXPECT_FALSE(isLoaded(s.barriers[1]));
   EXPECT_TRUE(s.barriers[1].records);
   EXPECT_FALSE(s.barriers[1].absorbs);
   EXPECT_TRUE(std::isinf(s.barriers[1].capacity));
@@ -375,4 +380,21 @@ TEST(StructureLayers, TreesBreakUnlessToldNotTo)
   files.treesBreak = false;
   std::vector<std::string> notes;
   EXPECT_TRUE(std::isinf(readStructures(files, site(), notes).trees.at(0).capacity));
+}
+
+TEST(StructureLayers, WhatANetHeldNeedsItsCapacity)
+{
+  const auto expect =
+    [](const std::string& columns, const std::string& values, const std::string& words)
+  {
+    StructureFiles files;
+    files.barriers =
+      writeFile("loaded.csv", "WKT,height," + columns + "\n" + line + ",4," + values + "\n");
+    const std::string message = messageOf(files);
+    EXPECT_NE(message.find(words), std::string::npos) << message;
+  };
+  expect("braking", "5", "\"capacity\"");
+  expect("capacity,residual", ",50", "\"residual\"");
+  expect("capacity,residual", "500,120", "0 to 100 %");
+  expect("fill", "0", "\"fill\"");
 }

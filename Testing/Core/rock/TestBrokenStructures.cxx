@@ -1,12 +1,15 @@
 // What one rock of a mass fall has broken is gone for the others.
 
 #include "piles.h"
+#include "run/ensemble.h"
 #include "terrain/structures.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -85,6 +88,122 @@ TEST(BrokenStructures, NetIsGoneForTheNext)
     runTogether(net(400e3), { thrown(kFast, 0.4, 0, beside), thrown(kSlow, 0.3, 1) });
   EXPECT_EQ(runs[0].structures[0].outcome, StructureOutcome::BarrierBroken);
   EXPECT_EQ(runs[1].summary.fate, Fate::Caught);
+}
+
+/// The braking distance at a capacity is 5 m, 60 % of the height are left of it, and 4 m³ fill a
+/// metre.
+Structures loadedNet(double capacity)
+{
+  Structures s = net(capacity);
+  s.barriers[0].braking = 5.0;
+  s.barriers[0].residual = 0.6;
+  s.barriers[0].room = 4.0;
+  return s;
+}
+
+TEST(BrokenStructures, WhatANetHoldsLoadsItForTheNext)
+{
+  // 281 kJ, and what it fell, of 700 kJ: two are held, the third one is too strong for the rest.
+  constexpr double capacity = 700e3, length = 60.0;
+  std::vector<Rock> rocks;
+  for (int k = 0; k < 3; ++k)
+  {
+    rocks.push_back(thrown(kSlow, 0.2 + 0.1 * k, k, Vec3(60, 40 + 10 * k, 102)));
+  }
+  const std::vector<Trajectory> runs = runTogether(loadedNet(capacity), rocks);
+  double held = 0.0;
+  for (int k = 0; k < 3; ++k)
+  {
+    const Trajectory& run = runs[std::size_t(k)];
+    ASSERT_EQ(run.structures.size(), 1u) << k;
+    const StructureEvent& event = run.structures[0];
+    EXPECT_EQ(
+      event.outcome, k < 2 ? StructureOutcome::BarrierStopped : StructureOutcome::BarrierBroken);
+    EXPECT_EQ(event.heldBefore, held) << k;
+    const double rope = 5.0 * (1.0 - 0.4 * held / capacity), fill = 5.0 * k / (4.0 * length);
+    EXPECT_NEAR(event.usefulHeight, rope - fill, 1e-12);
+    held += event.energyTaken;
+    EXPECT_NEAR(event.brakingDistance, k < 2 ? 5.0 * std::sqrt(held / capacity) : 0.0, 1e-12);
+    const EnergyAudit& e = run.summary.energy;
+    EXPECT_LT(std::abs(e.numerical), 1e-9 * e.released);
+    EXPECT_NEAR(e.structures, event.energyTaken, 1e-9 * capacity);
+  }
+  EXPECT_NEAR(held, capacity, 1e-9 * capacity); // the third one took the rest
+
+  // One that neither wears nor fills is as new for all.
+  Structures asNew = net(capacity);
+  asNew.barriers[0].braking = 5.0;
+  for (const Trajectory& run : runTogether(asNew, rocks))
+  {
+    ASSERT_EQ(run.summary.fate, Fate::Caught);
+    const StructureEvent& event = run.structures[0];
+    EXPECT_EQ(event.heldBefore, 0.0);
+    EXPECT_EQ(event.usefulHeight, 5.0);
+    EXPECT_NEAR(event.brakingDistance, 5.0 * std::sqrt(event.energyTaken / capacity), 1e-12);
+  }
+}
+
+TEST(BrokenStructures, FillAndRopeLetRocksOver)
+{
+  // The top comes at 102.5 m, under the rope at 103 m; a rock before it wears or fills the net.
+  const Rock first = thrown(kSlow, 0.2, 0, Vec3(60, 40, 101)),
+             second = thrown(kSlow, 0.4, 1, Vec3(60, 50, 102 + 0.5 * kGravity * 0.16));
+  const auto fate = [&](double residual, double room)
+  {
+    Structures s = net(700e3);
+    s.barriers[0].height = 3.0;
+    s.barriers[0].residual = residual;
+    s.barriers[0].room = room;
+    return runTogether(s, { first, second })[1].summary.fate;
+  };
+  const double never = std::numeric_limits<double>::infinity(), nan = std::nan("");
+  EXPECT_EQ(fate(nan, never), Fate::Caught);
+  EXPECT_EQ(fate(0.9, never), Fate::Caught); // 2.88 m are left
+  EXPECT_EQ(fate(0.4, never), Fate::Moving); // 2.3 m
+  // 1 m³ on 60 m: 1.5 m deep it does not lift the rock, whose bottom is at 1.5 m.
+  EXPECT_EQ(fate(nan, 1.0 / 30.0), Fate::Caught);
+  EXPECT_EQ(fate(nan, 1.0 / 45.0), Fate::Moving); // 2.25 m: its top comes to 3.25 m
+}
+
+TEST(BrokenStructures, LoadsAreThoseOfOneIterationOnAnyNumberOfThreads)
+{
+  Terrain ground = makePlane(21, 100.0, 0.0, 0.0, material(0.3, 30.0));
+  ground.setStructures(loadedNet(2000e3));
+  std::vector<Rock> rocks;
+  for (int k = 0; k < 16; ++k)
+  {
+    const double time = 0.2 + 0.05 * k;
+    rocks.push_back(
+      thrown(kSlow, time, k, Vec3(60, 30 + 2.5 * k, 102 + 0.5 * kGravity * time * time)));
+  }
+  const auto run = [&](int threads)
+  {
+    SimulationParameters p;
+    p.endTime = 1.5;
+    p.iterations = 2;
+    p.rockRockContact = true;
+    p.threads = threads;
+    TrajectoryStore store(int(rocks.size()), p.iterations);
+    runEnsemble(ground, rocks, p, store);
+    std::vector<std::uint64_t> bits;
+    double most = 0.0;
+    for (const Trajectory& trajectory : store.trajectories())
+    {
+      bits.push_back(trajectory.summary.hash);
+      for (const StructureEvent& event : trajectory.structures)
+      {
+        most = std::max(most, event.heldBefore);
+      }
+      const bool first = trajectory.summary.rock == 0; // of its iteration
+      EXPECT_TRUE(!first || trajectory.structures.at(0).heldBefore == 0.0);
+    }
+    EXPECT_GT(most, 1500e3);
+    EXPECT_LE(most, 2000e3);
+    return bits;
+  };
+  const std::vector<std::uint64_t> alone = run(1);
+  EXPECT_EQ(run(2), alone);
+  EXPECT_EQ(run(4), alone);
 }
 
 TEST(BrokenStructures, TreeIsGoneForTheNext)
