@@ -42,6 +42,36 @@ def exceedance(study, names):
                    "95 and 99 % values.", "Exceedance curves")
 
 
+def best_place(study, name, rows):
+    """What a barrier on a line and on its parallels has to hold, and what gets past it, over the distance."""
+    table, offset = study.places, study.places["Offset"][rows]
+    frequent = np.isfinite(table["AnnualFrequency"][rows]).all()
+    figure = new(PAGE, 62.0)
+    panels = [place(figure, 12.0 + 57.0 * k, 12.0, 44.0, 38.0) for k in range(3)]
+    for axes, what, title in ((panels[0], "EnergyInKilojoules", "energy, kJ"), (panels[1], "TopHeight", "top of the rock, m")):
+        for level, (colour, dash) in zip((95, 99), STYLES):
+            middle, low, high = (table[f"{what}{level}{end}"][rows] for end in ("", "Low", "High"))
+            axes.fill_between(offset, low, high, color=colour, alpha=0.15, lw=0.0)
+            axes.plot(offset, middle, color=colour, ls=dash, lw=1.2, marker=".", ms=3, label=f"{level} %")
+        axes.set_title(title, loc="left", fontsize=7)
+    ends = ("AnnualFrequency", "UncaughtFrequency") if frequent else ("Share", "UncaughtShare")
+    come, past = (table[end][rows] for end in ends)
+    past = past if frequent else come * np.nan_to_num(past)  # of all released, as `come`
+    for values, text, (colour, dash) in ((come, "come to it", STYLES[2]), (past, "get past the barrier", STYLES[3])):
+        panels[2].plot(offset, values * (1.0 if frequent else 100.0), color=colour, ls=dash, lw=1.2, marker=".", ms=3, label=text)
+    panels[2].set_title("rocks, 1/a" if frequent else "rocks, % of the released", loc="left", fontsize=7)
+    for axes in panels:
+        axes.set(xlabel="to the left of the line, m", ylim=(0.0, None))
+        axes.grid(lw=0.2, alpha=0.6)
+        axes.axvline(0.0, color=GREY, lw=0.6)
+    for axes, x in ((panels[0], 0.07), (panels[2], 0.72)):
+        figure.legend(*axes.get_legend_handles_labels(), loc="upper left", bbox_to_anchor=(x, 1.0), ncol=2, frameon=False,
+                      borderaxespad=0.2)
+    return picture(figure, f"{short(name)} and its parallels: 95 and 99 % values, shaded their limits where enough rocks come; "
+                   "rocks that come and that get past the barrier on the line. The best place has little of all three.",
+                   "Best place of a barrier")
+
+
 def quantile(values, q=0.95):
     """With its interval by order statistics, or NaN where there are too few values."""
     values = np.sort(values)

@@ -181,12 +181,21 @@ class Study:
             raise Bad(f"{self.path('summary.csv')}: there are no rocks")
         self.map = Raster(self.path("hazard.tif")) if "map" in self.given else None
         self.lines = self.crossings = self.exceedance = None
-        self.drawn_lines, self.design = [], []
+        self.drawn_lines, self.design, self.places = [], [], None
         if "lines" in self.given:
             self.read_lines()
 
     def path(self, name):
         return os.path.join(self.folder, name)
+
+    def lines_with_parallels(self):
+        """Of each line that was given: its name, and its rows and those of its parallels, in the order of offsets."""
+        families = []
+        for row, offset in enumerate(self.places["Offset"] if self.places else ()):
+            if offset == 0.0:
+                families.append((str(self.places["LineName"][row]), []))
+            families[-1][1].append(row)
+        return [(name, sorted(rows, key=lambda row: self.places["Offset"][row])) for name, rows in families]
 
     def properties(self, part):
         """As the study sets them; files by their names."""
@@ -228,6 +237,10 @@ class Study:
         names = ("design.csv", ("Quantile", "EnergyInKilojoules")), ("design_classes.csv", ("Class", "Caught")), \
             ("design_sources.csv", ("SourceId", "Rocks"))
         self.design = [Table(self.path(name), ("LineName", *needed)) for name, needed in names]
+        self.places = Table(self.path("design_places.csv"), (
+            "LineName", "Offset", "Rocks", "Share", "UncaughtShare", "AnnualFrequency", "UncaughtFrequency",
+            *(f"{what}{level}{end}" for what in ("EnergyInKilojoules", "TopHeight") for level in (95, 99)
+              for end in ("", "Low", "High"))))
         values = self.properties("lines")
         self.drawn_lines = lines_of(values["FileName"], values.get("LayerName", ""), self.slope.crs)
 

@@ -21,8 +21,10 @@ def duration(seconds):
 
 def make(study, title=None, author=""):
     """The text of the whole page."""
-    names = [str(name) for name in study.lines["LineName"]] if study.lines else []
-    curve, ends = charts.convergence(study, names)
+    families = study.lines_with_parallels()
+    named = [(number, name) for number, name in enumerate(map(str, study.lines["LineName"] if study.lines else ()))
+             if name in {given for given, _ in families}]
+    curve, ends = charts.convergence(study, [name for _, name in named])
     sessions = study.manifest.get("sessions") or []
     settings = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True,
                                   lstrip_blocks=True, undefined=jinja2.StrictUndefined)
@@ -40,7 +42,8 @@ def make(study, title=None, author=""):
         rocks=tables.rocks(study), frequencies=tables.frequencies(study),
         structures=tables.structures(study), lines=tables.lines(study) if study.lines else [],
         design=tables.design(study),
-        exceedance=[charts.exceedance(study, some) for some in tables.slices(list(enumerate(names)))],
+        exceedance=[charts.exceedance(study, some) for some in tables.slices(named)],
+        best=[charts.best_place(study, name, rows) for name, rows in families if len(rows) > 1],
         convergence=curve, ends=ends, fates=tables.fates(study), notes=tables.notes(study),
         values=tables.values_in_force(study), preset=tables.has_preset(study), total=len(study.rocks),
         sources=int((study.rocks["Iteration"] == study.rocks["Iteration"].min()).sum()))

@@ -202,14 +202,14 @@ def design(study):
     made = []
     if not study.design:
         return made
-    for name in study.lines["LineName"]:
+    for name, _ in study.lines_with_parallels():
         levels, classes, sources = ([{c: table[c][k] for c in table.columns} for k in np.nonzero(table["LineName"] == name)[0]]
                                     for table in study.design)
         between = lambda row, what: number(row[what]) + (
             f" ({number(row[what + 'Low'])} to {number(row[what + 'High'])})" if math.isfinite(row[what + "Low"]) else "")
         sources.sort(key=lambda row: (-number_or_zero(row["UncaughtShare"]), -row["Rocks"]))
         made.append({
-            "line": str(name),
+            "line": name,
             "levels": [("largest" if row["Quantile"] == 100 else f"{number(row['Quantile'])} %",
                         *(between(row, what) for what in ("EnergyInKilojoules", "Speed", "TopHeight")),
                         number(row["DesignEnergyInKilojoules"]), number(row["RequiredHeight"]),
