@@ -67,6 +67,7 @@ struct SummaryRows::Arrays
   vtkSmartPointer<vtkIntArray> fateCode = addArray<vtkIntArray>(fields, "FateCode");
   std::vector<vtkSmartPointer<vtkDoubleArray>> numbers = makeNumbers(fields);
   vtkSmartPointer<vtkIdTypeArray> sourceId = addArray<vtkIdTypeArray>(fields, "SourceId");
+  vtkSmartPointer<vtkDoubleArray> frequency; ///< None where it is not known.
   vtkSmartPointer<vtkStringArray> sourceName = addArray<vtkStringArray>(fields, "SourceName");
   vtkSmartPointer<vtkIntArray> impacts = addArray<vtkIntArray>(fields, "Impacts");
   vtkSmartPointer<vtkIdTypeArray> contactSteps = addArray<vtkIdTypeArray>(fields, "ContactSteps");
@@ -90,6 +91,10 @@ SummaryRows::SummaryRows(const RunFrame& frame)
   : frame_(frame)
   , arrays_(std::make_unique<Arrays>())
 {
+  if (!frame.frequencies.empty())
+  {
+    arrays_->frequency = addArray<vtkDoubleArray>(arrays_->fields, "Frequency");
+  }
 }
 
 SummaryRows::~SummaryRows() = default;
@@ -106,6 +111,10 @@ void SummaryRows::append(const TrajectorySummary& summary)
     a.numbers[k]->InsertNextValue(numberColumns[k].value(summary, frame_.origin));
   }
   a.sourceId->InsertNextValue(frame_.sourceIds[std::size_t(summary.rock)]);
+  if (a.frequency)
+  {
+    a.frequency->InsertNextValue(frame_.frequencies[std::size_t(summary.rock)]);
+  }
   a.sourceName->InsertNextValue(frame_.sourceNames[std::size_t(summary.rock)]);
   a.impacts->InsertNextValue(summary.impacts);
   a.contactSteps->InsertNextValue(summary.contactSteps);

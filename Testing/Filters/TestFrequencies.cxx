@@ -5,12 +5,14 @@
 #include "vtkCell.h"
 #include "vtkCellData.h"
 #include "vtkDEMToCFESource.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkImageData.h"
 #include "vtkMath.h"
 #include "vtkPoints.h"
 #include "vtkRockBlockSource.h"
 #include "vtkRockfallHazardMap.h"
 #include "vtkRockfallSimulation.h"
+#include "vtkTable.h"
 
 #include <cmath>
 #include <map>
@@ -30,6 +32,7 @@ protected:
   void Read(const std::string& table)
   {
     this->Rocks->SetFileName(this->WriteFile("sources.csv", table).c_str());
+    this->Rocks->Modified(); // an edited file is not noticed
     this->Rocks->Update();
   }
 
@@ -75,6 +78,11 @@ TEST_F(TestFrequencies, AreSharedOutOverTheRocksOfASource)
   ASSERT_EQ(paths->GetNumberOfTuples(), 2 * 7);
   EXPECT_EQ(value(paths, "Frequency", 0), 0.125);
   EXPECT_EQ(value(paths, "Frequency", 6), 0.1875);
+  vtkDataSetAttributes* rows = vtkTable::SafeDownCast(fall->GetOutputDataObject(3))->GetRowData();
+  EXPECT_EQ(value(rows, "Frequency", 13), 0.1875);
+  // Who goes on from the time shown has it, too.
+  vtkCellData* shown = vtkPolyData::SafeDownCast(fall->GetOutputDataObject(0))->GetCellData();
+  EXPECT_EQ(value(shown, "Frequency", 0), 0.125);
   EXPECT_FLOAT_EQ(
     float(value(map->GetOutput()->GetCellData(), "AnnualFrequency")), 0.125F + 0.2F + 0.375F);
 }
