@@ -64,11 +64,13 @@ def best_place(study, name, rows):
         axes.set(xlabel="to the left of the line, m", ylim=(0.0, None))
         axes.grid(lw=0.2, alpha=0.6)
         axes.axvline(0.0, color=GREY, lw=0.6)
-    for axes, x in ((panels[0], 0.07), (panels[2], 0.72)):
+    for axes, x in ((panels[0], 0.06), (panels[2], 0.6)):
         figure.legend(*axes.get_legend_handles_labels(), loc="upper left", bbox_to_anchor=(x, 1.0), ncol=2, frameon=False,
                       borderaxespad=0.2)
+    barrier = [study.lines[column][study.lines["LineName"] == name][0] for column in ("BarrierHeight", "BarrierCapacity")]
     return picture(figure, f"{short(name)} and its parallels: 95 and 99 % values, shaded their limits where enough rocks come; "
-                   "rocks that come and that get past the barrier on the line. The best place has little of all three.",
+                   f"rocks that come and that get past a barrier of {barrier[0]:g} m and {barrier[1]:g} kJ. The best place has "
+                   "little of all three.",
                    "Best place of a barrier")
 
 

@@ -188,6 +188,10 @@ class Study:
     def path(self, name):
         return os.path.join(self.folder, name)
 
+    def given_lines(self):
+        """Rows of lines.csv that are no parallels."""
+        return [k for k in range(len(self.lines)) if self.lines["Offset"][k] == 0.0]
+
     def lines_with_parallels(self):
         """Of each line that was given: its name, and its rows and those of its parallels, in the order of offsets."""
         families = []
@@ -226,7 +230,7 @@ class Study:
         return list(inputs.values())
 
     def read_lines(self):
-        self.lines = Table(self.path("lines.csv"), ("LineName", "Rocks", "Share", "HighestQuantile", "MovingBefore",
+        self.lines = Table(self.path("lines.csv"), ("LineName", "Offset", "Rocks", "Share", "HighestQuantile", "MovingBefore",
                                                     "OverEdgeBefore", "InNodataBefore"))
         self.crossings = Table(self.path("crossings.csv"), (
             "LineName", "Iteration", "BlockId", "Passing", "KineticEnergy"))

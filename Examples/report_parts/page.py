@@ -22,8 +22,7 @@ def duration(seconds):
 def make(study, title=None, author=""):
     """The text of the whole page."""
     families = study.lines_with_parallels()
-    named = [(number, name) for number, name in enumerate(map(str, study.lines["LineName"] if study.lines else ()))
-             if name in {given for given, _ in families}]
+    named = [(k, str(study.lines["LineName"][k])) for k in study.given_lines()] if study.lines else []
     curve, ends = charts.convergence(study, [name for _, name in named])
     sessions = study.manifest.get("sessions") or []
     settings = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True,
@@ -41,7 +40,7 @@ def make(study, title=None, author=""):
         ground=tables.ground(study), ground_source=tables.source_of(study), classed=tables.classed(study),
         rocks=tables.rocks(study), frequencies=tables.frequencies(study),
         structures=tables.structures(study), lines=tables.lines(study) if study.lines else [],
-        design=tables.design(study),
+        design=tables.design(study), freeboard=study.given.get("lines", {}).get("Freeboard", 0.5),
         exceedance=[charts.exceedance(study, some) for some in tables.slices(named)],
         best=[charts.best_place(study, name, rows) for name, rows in families if len(rows) > 1],
         convergence=curve, ends=ends, fates=tables.fates(study), notes=tables.notes(study),

@@ -17,7 +17,7 @@ STATISTICS = (("50", "50 %"), ("90", "90 %"), ("95", "95 %"), ("99", "99 %"), ("
               ("Deviation", "standard deviation"))
 LINES = (("Rocks", "rocks that pass", "", 1.0), ("Passings", "passings", "", 1.0), ("Share", "share of the released", "%", 100.0),
          ("ShareError", "± standard error of it", "%", 100.0), ("HighestQuantile", "highest quantile with enough rocks", "%", 1.0),
-         ("Offset", "parallel, to its left by", "m", 1.0), ("BarrierHeight", "barrier: height", "m", 1.0), ("BarrierCapacity", "barrier: capacity", "kJ", 1.0),
+         ("BarrierHeight", "barrier: height", "m", 1.0), ("BarrierCapacity", "barrier: capacity", "kJ", 1.0),
          ("Caught", "barrier: rocks that it catches", "", 1.0),
          ("CaughtShare", "barrier: catches of the passing", "%", 100.0),
          ("CaughtShareError", "± standard error of it", "%", 100.0),
@@ -172,7 +172,10 @@ def structures(study):
                      f"uphill, {number(row[5])} downhill"))
     for row in slope.barriers:
         made.append((f"net or fence {row[0]:.0f}", f"{number(row[1])} m high, capacity {span(row[2:3] / 1000.0)}" +
-                     (", records only" if row[4] else "")))
+                     (", records only" if row[4] else "") +
+                     (f", braking distance {number(row[6])} m" if row[6] > 0 else "") +
+                     (f", {number(100.0 * row[7])} % of its height with its capacity used up" if row[7] >= 0 else "") +
+                     (f", full with {number(row[8])} m³/m" if row[8] > 0 else "")))
     return made
 
 
@@ -184,16 +187,16 @@ def span(capacity):
 
 
 def lines(study):
-    """The design table: a column for each line, a row for each quantity, in kJ where there is energy."""
-    table, rows = study.lines, []
+    """A column for each line that was given, a row for each quantity, in kJ where there is energy."""
+    table, rows, given = study.lines, [], study.given_lines()
     known = {name for name, *_ in LINES}
-    names = [(name, *rest) for name, *rest in LINES if name in table and (name != "Offset" or np.any(table[name]))]
-    names += [(name, name, "", 1.0) for name in table.names
-              if name not in known and name not in ("Line", "LineName", "MovingBefore", "OverEdgeBefore", "InNodataBefore")]
+    names = [(name, *rest) for name, *rest in LINES if name in table]
+    names += [(name, name, "", 1.0) for name in table.names if name not in known and name not in (
+        "Line", "LineName", "Offset", "MovingBefore", "OverEdgeBefore", "InNodataBefore")]
     for name, label, unit, factor in names:
-        values = table[name]
+        values = table[name][given]
         rows.append((label, unit, [number(v * factor) if values.dtype.kind == "f" else str(v) for v in values]))
-    return side_by_side([str(name) for name in table["LineName"]], rows)
+    return side_by_side([str(table["LineName"][k]) for k in given], rows)
 
 
 def design(study):
@@ -207,6 +210,7 @@ def design(study):
                                     for table in study.design)
         between = lambda row, what: number(row[what]) + (
             f" ({number(row[what + 'Low'])} to {number(row[what + 'High'])})" if math.isfinite(row[what + "Low"]) else "")
+        known = all(math.isfinite(row["CaughtFrequency"]) for row in classes)
         sources.sort(key=lambda row: (-number_or_zero(row["UncaughtShare"]), -row["Rocks"]))
         made.append({
             "line": name,
@@ -217,9 +221,13 @@ def design(study):
                         "too few rocks" if row["Rocks"] < row["LeastRocks"] else "") for row in levels],
             "classes": [(str(row["Class"]), number(row["BarrierHeight"]), number(row["MaximumEnergyLevel"], 4),
                          *(f"{row[what]:.0f} ({number(100.0 * row[what + 'Share'])} %)" for what in ("Caught", "Over", "TooStrong")),
-                         number(100.0 * row["UncaughtShareHigh"])) for row in classes],
+                         number(100.0 * row["UncaughtShareHigh"]),
+                         *([number(row["OverFrequency"] + row["TooStrongFrequency"])] if known else [])) for row in classes],
             "sources": [(number(row["SourceId"], 9), *(f"{row[what]:.0f}" for what in ("Rocks", "Caught", "Over", "TooStrong")),
-                         number(100.0 * row["Share"]), number(row["EnergyMaximum"])) for row in sources[:MOST_SOURCES]],
+                         number(100.0 * row["Share"]), number(row["EnergyMaximum"]),
+                         *([number(row["AnnualFrequency"]), number(row["UncaughtFrequency"])] if known else []))
+                        for row in sources[:MOST_SOURCES]],
+            "known": known,
             "more": max(0, len(sources) - MOST_SOURCES)})
     return made
 
@@ -249,8 +257,8 @@ def notes(study):
     if unsettled > 0.003:
         made.append(f"{number(1000 * unsettled)} of 1000 steps with contacts had not settled: a reason for doubt.")
     if study.lines:
-        for k, name in enumerate(study.lines["LineName"]):
-            count = int(study.lines["Rocks"][k])
+        for k in study.given_lines():
+            name, count = study.lines["LineName"][k], int(study.lines["Rocks"][k])
             if count == 0:
                 made.append(f"No rock reached line {name}: of {total} rocks the share that passes is below "
                             f"{number(300.0 / total)} % with 95 % confidence.")
