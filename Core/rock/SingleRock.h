@@ -163,6 +163,8 @@ private:
   struct Impact
   {
     bool pending = false;
+    bool slowed = false;    ///< The velocity has been scaled for it.
+    double lastTouch = 0.0; ///< s
     ImpactEvent event;
     Vec3 normalImpulse = Vec3::Zero(); ///< N s, world.
     double largestForce = 0.0;         ///< N
@@ -255,6 +257,11 @@ private:
 
   // Impacts on the slope, slopeImpacts.cxx
   void beginImpact(const BlockState& at, double frictionBefore, double restitutionBefore);
+  double impactDuration() const; ///< Of a spring that stops the rock and throws it back, s.
+  /// A touch at this time (s) goes on with the last impact if that is an event in no time, and
+  /// springs would still be pressed together: what they take for one is one. Whether it does.
+  bool resumeImpact(double time);
+  bool isWorthAnEvent(const ImpactEvent& event) const;
   void followImpact(const BlockState& start, double h, const StepOutcome& outcome);
   /// An event, if it is one. `over`: else the rock's time ends in the middle of it, and it leaves
   /// nothing of its speed.

@@ -232,23 +232,28 @@ bool SingleRock::strike(std::span<const Touch> touches, bool carried)
   {
     return false;
   }
-  this->finishImpact(); // the one before
-  this->beginImpact(body_.state, body_.energy.friction, body_.energy.restitution);
+  if (!this->resumeImpact(body_.state.time))
+  {
+    this->finishImpact(); // the one before
+    this->beginImpact(body_.state, body_.energy.friction, body_.energy.restitution);
+  }
   recorder_.beforeJump(body_.state, carried);
   this->auditSamples(body_.state);
   resolveImpulse(body, { points.data(), touches.size() }, kQuietImpulse * body_.restingSpeed);
   body_.state.velocity = body.velocity;
   body_.state.spin = rotation.transpose() * body.angularVelocity;
-  impact_.event.approachSpeed = fastest;
+  impact_.event.approachSpeed = std::max(impact_.event.approachSpeed, fastest);
   for (std::size_t i = 0; i < touches.size(); ++i)
   {
     const ImpulsePoint& point = points[i];
     impact_.normalImpulse += point.impulse * point.normal;
     body_.energy.friction += point.frictionLoss;
     body_.energy.restitution += point.restitutionLoss;
-    if (point.impulse > impact_.largestForce)
+    // As a force, beside those of springs in the same impact.
+    const double force = point.impulse / this->impactDuration();
+    if (force > impact_.largestForce)
     {
-      impact_.largestForce = point.impulse;
+      impact_.largestForce = force;
       impact_.event.cfe = touches[i].cfe;
       impact_.event.position = touches[i].point;
     }

@@ -3,6 +3,9 @@
 #include "base/Mixer.h"
 #include "base/grow.h"
 
+#include <algorithm>
+#include <iterator>
+
 namespace rockfall
 {
 
@@ -24,7 +27,10 @@ std::string fateName(Fate fate)
   return "moving";
 }
 
-void noteImpact(Trajectory& trajectory, const ImpactEvent& event, bool keep)
+namespace
+{
+
+std::uint64_t impactHash(const ImpactEvent& event)
 {
   Mixer mixer;
   mixer.add(event.time);
@@ -38,11 +44,30 @@ void noteImpact(Trajectory& trajectory, const ImpactEvent& event, bool keep)
   mixer.add(event.energyLoss);
   mixer.add(event.restitution);
   mixer.add(event.otherRock);
+  return mixer.value();
+}
+
+} // namespace
+
+void noteImpact(Trajectory& trajectory, const ImpactEvent& event, bool keep)
+{
   ++trajectory.summary.impacts;
-  trajectory.summary.impactBits += mixer.value();
+  trajectory.summary.impactBits += impactHash(event);
   if (keep)
   {
     append(trajectory.impacts, event);
+  }
+}
+
+void forgetImpact(Trajectory& trajectory, const ImpactEvent& event, bool kept)
+{
+  --trajectory.summary.impacts;
+  trajectory.summary.impactBits -= impactHash(event);
+  const auto it = std::find_if(trajectory.impacts.rbegin(), trajectory.impacts.rend(),
+    [&](const ImpactEvent& e) { return e.time == event.time && e.otherRock == event.otherRock; });
+  if (kept && it != trajectory.impacts.rend())
+  {
+    trajectory.impacts.erase(std::next(it).base());
   }
 }
 

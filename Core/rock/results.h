@@ -160,5 +160,7 @@ struct Trajectory
 
 /// Books an impact, and keeps it as an event where a list is asked for.
 void noteImpact(Trajectory& trajectory, const ImpactEvent& event, bool keep);
+/// Takes back one that has been noted: it goes on, and will be noted as a whole.
+void forgetImpact(Trajectory& trajectory, const ImpactEvent& event, bool kept);
 
 } // namespace rockfall

@@ -6,13 +6,46 @@
 #include "rock/restitution.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace rockfall
 {
 
+double SingleRock::impactDuration() const
+{
+  return std::numbers::pi * std::sqrt(body_.block.mass() / parameters_.normalPenalty);
+}
+
+bool SingleRock::isWorthAnEvent(const ImpactEvent& event) const
+{
+  return isImpact(event.approachSpeed, event.velocityBefore.norm(), body_.restingSpeed,
+    parameters_.gravity, body_.block.radius());
+}
+
+bool SingleRock::resumeImpact(double time)
+{
+  if (!impulses_ || !(impact_.lastTouch > 0.0) || time > impact_.lastTouch + this->impactDuration())
+  {
+    return false;
+  }
+  if (!impact_.pending)
+  {
+    impact_.pending = true; // with the same deviates
+    --impactsOver_;
+    if (this->isWorthAnEvent(impact_.event))
+    {
+      forgetImpact(recorder_.trajectory(), impact_.event, parameters_.keepImpacts);
+    }
+  }
+  impact_.lastTouch = time;
+  return true;
+}
+
 void SingleRock::beginImpact(const BlockState& at, double frictionBefore, double restitutionBefore)
 {
   impact_ = Impact();
+  impact_.lastTouch = at.time;
   impact_.pending = true;
   impact_.frictionBefore = frictionBefore;
   impact_.restitutionBefore = restitutionBefore;
@@ -39,7 +72,7 @@ void SingleRock::followImpact(const BlockState& start, double h, const StepOutco
       if (approach > body_.restingSpeed)
       {
         ImpactEvent& event = impact_.event;
-        if (!impact_.pending)
+        if (!this->resumeImpact(start.time) && !impact_.pending)
         {
           this->beginImpact(start, body_.energy.friction - outcome.frictionWork,
             body_.energy.restitution - outcome.dampedWork);
@@ -70,8 +103,7 @@ void SingleRock::finishImpact(bool over, bool told)
   ImpactEvent& event = impact_.event;
   const GroundTouch touch = this->touchAt(event.cfe, event.position);
   ++impactsOver_;
-  if (!isImpact(event.approachSpeed, event.velocityBefore.norm(), body_.restingSpeed,
-        parameters_.gravity, body_.block.radius()))
+  if (!this->isWorthAnEvent(event))
   {
     return;
   }
@@ -83,8 +115,10 @@ void SingleRock::finishImpact(bool over, bool told)
   const bool down = comesDown(
     event.approachSpeed, event.velocityBefore.norm(), parameters_.gravity, body_.block.radius());
   const SurfaceMaterial& material = surface_.terrain().restitutionMaterial(ground);
-  const Vec3 after =
-    over ? adjustVelocity(material, event, body_.state.velocity, down) : body_.state.velocity;
+  const Vec3 after = over && !impact_.slowed
+    ? adjustVelocity(material, event, body_.state.velocity, down)
+    : body_.state.velocity;
+  impact_.slowed = impact_.slowed || after != body_.state.velocity;
   const bool jumps =
     !told && (after - body_.state.velocity).norm() > kSameVelocity * body_.state.velocity.norm();
   if (jumps)
