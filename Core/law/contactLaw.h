@@ -2,8 +2,7 @@
 
 /// @file
 /// The law of one contact over a step of h (s) (METHOD 3), as single rocks and the slope as blocks
-/// have it. Islands have its springs and limit in impulses of substeps (solve/island/softSweep.h),
-/// crowds all of it in vector form (solve/island/crowdSweep.h), tested against this one.
+/// have it. The soft rows of an island (solve/island/SoftSolver.h) rest at the same forces.
 ///
 /// Along the normal n, gaps d₀ and d₁ at the start and the end (m; < 0: overlap), V(d) = ½ pₙ
 /// min(d, 0)²:

@@ -216,8 +216,6 @@ inline constexpr double kNoMore = 1.0 + 1e-6;
 /// Factor on the speed of approach at the start of a step for what comes near within it. Larger:
 /// more contacts, fewer found late.
 inline constexpr double kFasterApproach = 1.5;
-/// Largest island that is no crowd, rocks. Larger: a crowd's step costs less for each rock.
-inline constexpr int kLargestSoft = 256;
 /// Factor on the step for which rocks that may meet are found. An impact is given at the beginning
 /// of its substep, and what is struck goes further by up to one of them.
 inline constexpr double kStruckEarly = 1.25;
@@ -238,8 +236,7 @@ inline constexpr int kIslandCuts = 6;
 inline constexpr double kSurely = 3e-2;
 /// The same on the slope.
 inline constexpr double kSurelyOnSlope = 1e-2;
-/// Depth beyond the predicted one that was missed, share of r, in a crowd and in other islands.
-inline constexpr double kMissedInCrowd = 5e-5;
+/// Depth beyond the predicted one that was missed, share of r. Smaller: more steps solved twice.
 inline constexpr double kMissed = 2e-3;
 /// Looks after which no further trees are let go: they hold for the rest of the step.
 inline constexpr int kTreeLooks = 8;
@@ -247,7 +244,7 @@ inline constexpr int kTreeLooks = 8;
 inline constexpr double kTooShort = 1e-9;
 
 // ---------------------------------------------------------------------------------------------
-// 9  Mass fall: looks at the end of a step, bounces
+// 9  Mass fall: looks at the end of a step
 
 /// Looks for missed contacts in a step: this many as long as any are missed, this many if deep.
 inline constexpr int kMissLooks = 2, kMostMissLooks = 4;
@@ -259,15 +256,6 @@ inline constexpr double kCutMiss = 0.1;
 inline constexpr double kWorthALook = 0.25 * kDeepMiss;
 /// Gap of a contact that is let go, m.
 inline constexpr double kAbsent = 1e3;
-/// Stiffness of a bounce over mass. Much higher: what bounces between others keeps Gauss–Seidel
-/// from settling.
-inline constexpr double kBounceStiffness = 100.0;
-/// Gain of energy, share of what comes in along the normal, up to which a bounce is let be; and of
-/// one that goes on with an impact, with gravity in it.
-inline constexpr double kBounceGain = 1e-3;
-inline constexpr double kBounceGainOn = 0.05;
-/// Passes in a step that hold bounces back.
-inline constexpr int kHeldBounces = 3;
 
 // ---------------------------------------------------------------------------------------------
 // 10  Islands: soft rows in substeps (solve/island/SoftSolver.h)
@@ -286,7 +274,10 @@ inline constexpr int kRelaxSweeps = 3;
 /// Share to which the spin of an island's rock is right after a substep. Higher: needles that spin
 /// fast gain energy.
 inline constexpr double kTurnExact = 1e-3;
-/// Most sweeps of either kind; they go on around contacts that change by their resting speed.
+/// Creep that friction lets be: β w, share of the resting speed. Smaller: walls of 50 cubes carry
+/// their weight to 4e-4 only (0.2). None is led back: heaps at 40° of friction never rest.
+inline constexpr double kCreepHeld = 0.5;
+/// Most sweeps of either kind.
 /// Fewer: needles under heavy rocks are spun up (10), a stone under a rock of 60 times its mass
 /// goes into the slope (200).
 inline constexpr int kMostSweeps = 1000;
@@ -308,39 +299,7 @@ inline constexpr double kNoMotion = 1e-7;
 inline constexpr int kRocksOfStrip = 64;
 
 // ---------------------------------------------------------------------------------------------
-// 11  Crowds: sweeps of projected Gauss–Seidel
-
-/// Changes below this share of the tolerance are none.
-inline constexpr double kQuiet = 0.3;
-/// Factor on the number of sweeps where nothing bounces: forces are to be exact there.
-inline constexpr int kCalmSweeps = 50;
-/// A step is unconverged if the last sweep has moved something by more than this many times the
-/// tolerance (3 % of the longest displacement): forces as wrong as that throw light rocks about.
-/// Factor on the number of sweeps then.
-inline constexpr double kUnconverged = 300.0;
-inline constexpr int kUnconvergedSweeps = 200;
-/// The same as a share of r: it may end several times as deep in another rock.
-inline constexpr double kUnconvergedDisplacement = 2.5e-3;
-/// Sweeps after a local change (a bounce held back, a contact found) and in a unconverged place go
-/// no further than where things move by this share of the longest displacement;
-inline constexpr double kNoticed = 3e-3;
-/// and by this share of what is unconverged.
-inline constexpr double kUnconvergedNoticed = 0.1;
-/// Tolerance of what a second look has found, in tolerances.
-inline constexpr double kFoundTolerance = 4.0;
-/// Displacement since the last look, share of r, from which a rock is looked at again.
-inline constexpr double kGoneOn = 5e-3;
-/// Sweeps from look to look at speculative contacts, and sweeps that follow on one that closes.
-inline constexpr int kSpeculativeEvery = 2;
-inline constexpr int kAfterSpeculative = 2;
-/// Passes over the rotation of a free body for the first guess of a step.
-inline constexpr int kFreeTurns = 2;
-/// Rotation beyond the guessed one from which levers and gyroscopic moments are brought up to date,
-/// rad: gaps are right to the square of it.
-inline constexpr double kTurnGuessed = 0.02;
-
-// ---------------------------------------------------------------------------------------------
-// 12  Ground that yields
+// 11  Ground that yields
 
 /// Λ sinks if deeper by this share of its depth and of r. Smaller: more steps in which Λ moves.
 inline constexpr double kDeeperScar = 0.1;

@@ -132,8 +132,6 @@ public:
   {
     return { cfe, place, number_, impactsOver_ };
   }
-  /// Deep overlaps that were found, not made (overlapRecovery.h), before a lasting step.
-  void recoverDeepOverlap(double h);
   double mechanicalEnergy() const; ///< Without contact springs, J.
   /// Books a step that has been taken from `before` to `state`. `given`: work done on other rocks,
   /// J. `recovers`: loose overlaps go slowly (overlapRecovery.h).
@@ -206,9 +204,12 @@ private:
   /// steps of `small` (s). Whether anything was done.
   bool flyFromContact(double small);
   void takeStep(double h, StepKind kind);
-  bool mayLast(double h) const;  ///< A long, damped step is right.
-  void recoverOverlap(double h); ///< As recoverDeepOverlap, loose overlaps after a step.
-  double looseOverlap() const;   ///< m
+  bool mayLast(double h) const; ///< A long, damped step is right.
+  /// Overlaps that were found, not made (overlapRecovery.h): deep ones before a lasting step, loose ones
+  /// after it.
+  void recoverDeepOverlap(double h);
+  void recoverOverlap(double h);
+  double looseOverlap() const; ///< m
   /// No spring in a deep overlap holds more than those of a rock that lies still and alone. Returns
   /// what it no longer holds, J.
   double limitDeepOverlaps(double loose);
@@ -287,7 +288,7 @@ private:
   std::uint32_t number_ = 0; ///< In its iteration.
   /// Touches that began as impacts and are over, and hops in a scar that come late.
   std::uint32_t impactsOver_ = 0;
-  // In the order of their use in the step of a crowd, which goes from rock to rock: what it needs
+  // In the order of their use in the step of an island, which goes from rock to rock: what it needs
   // lies together, and in one page.
   bool inContact_ = false;
   bool recovering_ = false; ///< A deep overlap is pressed out in the step at hand.

@@ -467,7 +467,7 @@ void SingleRock::commitStep(
 
 double SingleRock::looseOverlap() const
 {
-  // In a crowd a rock may be pushed under the slope within a step; it may be alone soon after.
+  // In an island a rock may be pushed under the slope within a step; it may be alone soon after.
   return (body_.inIsland ? kLooseOverlap : kFirm) * body_.block.radius();
 }
 

@@ -139,7 +139,8 @@ struct TrajectorySummary
   std::int64_t contactSteps = 0; ///< Steps solved in contact.
   std::int64_t openCloseIterations = 0;
   std::int64_t cutSteps = 0; ///< Steps redone with a smaller Δt.
-  /// Steps taken although open–close had not settled, in a crowd: was far from it.
+  /// Steps taken although open–close had not settled, in an island: although rocks were deep in
+  /// each other.
   std::int64_t unsettledSteps = 0;
   EnergyAudit energy;
   /// Energy that contacts with other rocks took while no impact was under way, half of it for each

@@ -52,14 +52,12 @@ EndDetection::EndDetection(
   , island_(island)
   , work_(work)
   , h_(duration)
-  , missed_(island.crowd ? kMissedInCrowd : kMissed)
 {
 }
 
 EndDetectionOutcome EndDetection::detect()
 {
   forEach(island_.members.size(), kRockGrain, [this](std::size_t m) { this->placeRock(m); });
-  work_.looked = true;
   EndDetectionOutcome seen;
   seen.passed = this->deepestPassed();
   seen.missed = this->detectAtPairs();
@@ -70,7 +68,6 @@ EndDetectionOutcome EndDetection::detect()
 
 void EndDetection::placeRock(std::size_t m)
 {
-  comeToRock(world_, island_, m);
   FallingRock& rock = world_.rocks[std::size_t(island_.members[m])];
   const RockBody& body = rock.body();
   if (body.done)
@@ -79,10 +76,10 @@ void EndDetection::placeRock(std::size_t m)
   }
   const std::size_t place = std::size_t(rock.place);
   IslandWork::Motion& motion = work_.motions[place];
-  motion.moved = work_.solver.system().moved(place);
+  motion.moved = work_.solver.rows().moved(place);
   if (motion.moved)
   {
-    const BlockState end = work_.solver.system().end(place);
+    const BlockState end = work_.solver.rows().end(place);
     rock.end.placeFrame(body.block, end);
     rock.endHull.update(rock.end);
     motion.displacement = end.position - body.state.position;
@@ -104,7 +101,7 @@ double EndDetection::deepestPassed() const
     }
     const RockPair& pair = *island_.pairs[added.of];
     const double before = std::min(0.0, pair.axis.distance);
-    const double deeper = before - (work_.solver.system().gap(work_.firsts.back() + k) + offset);
+    const double deeper = before - (work_.solver.rows().gap(work_.firsts.back() + k) + offset);
     most = std::max(most, deeper / work_.smallerRadius(pair));
   }
   return most;
@@ -112,7 +109,7 @@ double EndDetection::deepestPassed() const
 
 double EndDetection::overlapAt(std::size_t contact) const
 {
-  return work_.solver.system().gap(contact) + work_.contacts[contact].contact->offset;
+  return work_.solver.rows().gap(contact) + work_.contacts[contact].contact->offset;
 }
 
 double EndDetection::deepestOf(std::size_t pair) const
@@ -137,7 +134,7 @@ double EndDetection::detectAtPairs()
   const auto findTouchesOf = [this](std::size_t m)
   {
     RockPair& pair = *island_.pairs[work_.missed[m]];
-    const double limit = this->deepestOf(work_.missed[m]) - missed_ * work_.smallerRadius(pair);
+    const double limit = this->deepestOf(work_.missed[m]) - kMissed * work_.smallerRadius(pair);
     findTouches(world_.rocks[std::size_t(pair.first)].endHull,
       world_.rocks[std::size_t(pair.second)].endHull, pair.end, 0.0, work_.found[m], limit);
   };
@@ -155,7 +152,6 @@ double EndDetection::detectAtPairs()
 
 bool EndDetection::isMissed(std::size_t p)
 {
-  comeToPair(island_.pairs, p);
   RockPair& pair = *island_.pairs[p];
   const std::array<int, 2>& places = work_.places[p];
   if (places[0] < 0 || places[1] < 0)
@@ -189,7 +185,7 @@ bool EndDetection::isMissed(std::size_t p)
   }
   pair.end = findAxis(world_.rocks[std::size_t(pair.first)].endHull,
     world_.rocks[std::size_t(pair.second)].endHull, pair.axis, 0.0);
-  const double deep = -missed_ * work_.smallerRadius(pair);
+  const double deep = -kMissed * work_.smallerRadius(pair);
   if (pair.end.kind == PairAxis::Kind::None || !(pair.end.distance < deep))
   {
     return false;
@@ -246,8 +242,8 @@ double EndDetection::addMissed(std::size_t m)
     {
       // A contact that is there already was reckoned wrong.
       const double gap = c.distance - work_.contacts[known].contact->offset;
-      const double wrong = std::abs(work_.solver.system().gap(known) - gap) / smaller;
-      most = work_.solver.system().setGap(known, gap) ? std::max(most, wrong) : most;
+      const double wrong = std::abs(work_.solver.rows().gap(known) - gap) / smaller;
+      most = work_.solver.rows().setGap(known, gap) ? std::max(most, wrong) : most;
       continue;
     }
     most = std::max(most, (this->deepestOf(p) - c.distance) / smaller);
@@ -255,8 +251,7 @@ double EndDetection::addMissed(std::size_t m)
     setSprings(world_, pair, c);
     work_.added.push_back(c);
     work_.addedTo.push_back({ false, p, c });
-    appendTouch(
-      touchOfPair(world_, pair, motion, work_.added.back(), h_, work_), island_.crowd, work_);
+    work_.contacts.push_back(touchOfPair(world_, pair, motion, work_.added.back(), work_));
   }
   return most;
 }
@@ -268,7 +263,7 @@ const CandidatePairs& EndDetection::candidatesOf(std::size_t m)
   const IslandWork::Motion& motion = work_.motions[place];
   rock.body().placed.placeVertices();
   rock.end.placeVertices();
-  return rock.sim.candidatesAt(work_.solver.system().end(place), rock.end, rock.endHull,
+  return rock.sim.candidatesAt(work_.solver.rows().end(place), rock.end, rock.endHull,
     motion.displacement.norm() + motion.rimTravel, kLooseOverlap * rock.body().block.radius());
 }
 
@@ -282,7 +277,7 @@ std::size_t EndDetection::touchesOnSlope(
   const auto addReckoned = [&](std::size_t k)
   {
     Contact c = *work_.contacts[k].contact;
-    const double gap = work_.solver.system().gap(k);
+    const double gap = work_.solver.rows().gap(k);
     pressed = std::max(pressed, -gap);
     c.distance = gap + c.offset;
     touches.push_back(c);
@@ -354,7 +349,7 @@ double EndDetection::detectOnSlope()
       rock.sim.setSprings(c);
       work_.added.push_back(c);
       work_.addedTo.push_back({ true, m, c });
-      appendTouch(touchOnSlope(world_, rock, work_.added.back(), h_), island_.crowd, work_);
+      work_.contacts.push_back(touchOnSlope(world_, rock, work_.added.back()));
     }
   }
   return deepest;

@@ -46,8 +46,7 @@ private:
   WorldState& world_;
   const Island& island_;
   IslandWork& work_;
-  double h_;      ///< s
-  double missed_; ///< Depth that is a miss, of the smaller radius.
+  double h_; ///< s
 };
 
 } // namespace rockfall

@@ -146,8 +146,7 @@ void IslandFinder::listIslands()
   alone_.clear();
   for (std::size_t i = 0; i < bodies_.size(); ++i)
   {
-    BodyBounds& m = bodies_[i];
-    m.crowd = -1;
+    const BodyBounds& m = bodies_[i];
     if (!m.present || m.asleep)
     {
       continue;
@@ -170,15 +169,6 @@ void IslandFinder::listIslands()
   }
   this->forLinked([&](const Linked& l)
     { islands_[std::size_t(place[std::size_t(l.first)])].pairs.push_back(l.pair); });
-  for (std::size_t g = 0; g < islands_.size(); ++g)
-  {
-    Island& island = islands_[g];
-    island.crowd = int(island.members.size()) > world_.largestSoft;
-    for (const int i : island.members)
-    {
-      bodies_[std::size_t(i)].crowd = island.crowd ? int(g) : -1;
-    }
-  }
 }
 
 } // namespace rockfall

@@ -34,13 +34,6 @@ struct alignas(64) BodyBounds
   double known; ///< Rocks nearer than such a displacement, less their own, are its neighbours.
   bool present = false; ///< Neither gone nor stopped by the end time.
   bool asleep = false;
-  /// Goes as far as any rock of its island may: it was in a crowd in the last step. There nearly
-  /// every rock's displacement is the one of some faster rock, and to pass it on from rock to rock
-  /// tells no more.
-  bool shares = false;
-  int crowd = -1; ///< Of the last step, −1: none.
-
-  bool isOneCrowdWith(const BodyBounds& o) const { return shares && o.shares && crowd == o.crowd; }
 };
 
 /// Two rocks that are near each other, or may come near each other soon; in one line of the cache.
@@ -56,7 +49,6 @@ struct alignas(64) NearPair
   bool linked = false;    ///< May touch in this step,
   bool wasLinked = false; ///< or could in the last one.
   bool holds = false;     ///< May have contacts.
-  bool seen = false;      ///< The axis had been found where the step begins.
 };
 
 inline bool operator<(const NearPair& a, const NearPair& b)
@@ -120,7 +112,6 @@ private:
   // Neighbours: islandFinderNear.cxx
   void follow(double duration); ///< The rocks, to where they stand now.
   void findNear();
-  void share(std::size_t rock);
   void search();
   void cover(int rock);
   double spare(int rock) const;
@@ -145,9 +136,8 @@ private:
   UndecidedPair undecidedOf(std::size_t near) const;
   void widen();
   bool sweep();
-  bool widenIslands();
+  void widenIslands();
   void choose();
-  bool stays(const NearPair& near) const;
 
   // Islands: IslandFinder.cxx
   void settle();
@@ -159,7 +149,7 @@ private:
   // Velocities and displacements passed on: islandFinderReach.cxx
   int root(int rock); ///< The first one of its island.
   double massRatioGain(std::size_t rock) const;
-  bool join(std::size_t near, bool known);
+  void join(std::size_t near, bool known);
   void wakeAbout(int rock);
   void propagateFrom(int rock);
   void propagate();
@@ -186,9 +176,6 @@ private:
   std::vector<RockPair*> spare_;
   std::vector<IslandBounds> bounds_; ///< By root.
   std::vector<int> parents_, roots_;
-  std::vector<int> crowds_; ///< First rock of each crowd of the last step.
-  std::vector<double>
-    surely_; ///< Of each of them, its velocities may close such a gap anywhere, m.
   /// Of each rock, where it is in `near_`: those of the search, and those found later.
   std::vector<std::size_t> firsts_, places_;
   std::vector<std::vector<std::size_t>> later_;

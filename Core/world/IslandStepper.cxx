@@ -3,7 +3,6 @@
 #include "base/abort.h"
 #include "base/parallel.h"
 #include "law/settings.h"
-#include "rock/overlapRecovery.h"
 #include "world/EndDetection.h"
 #include "world/StepResult.h"
 #include "world/StepTrees.h"
@@ -34,7 +33,6 @@ IslandStepper::IslandStepper(WorldState& world, const Island& island)
   , island_(island)
   , work_(workOfThread())
 {
-  work_.solver.method = island.crowd ? IslandMethod::Crowd : IslandMethod::Soft;
   work_.solver.stiffness = pairStiffness(world.parameters);
 }
 
@@ -95,19 +93,8 @@ void IslandStepper::advance(double until)
   }
 }
 
-void IslandStepper::recoverDeepOverlap(RockPair& pair, double h) const
+void IslandStepper::addRock(std::size_t m)
 {
-  const double smaller = work_.smallerRadius(pair);
-  const double speed = deepSpeed(world_.parameters.gravity, smaller);
-  for (Contact& c : pair.contacts)
-  {
-    rockfall::recoverDeepOverlap(c, speed * h, kLooseOverlap * smaller);
-  }
-}
-
-void IslandStepper::addRock(std::size_t m, double h)
-{
-  comeToRock(world_, island_, m);
   FallingRock& rock = world_.rocks[std::size_t(island_.members[m])];
   RockBody& body = rock.body();
   if (body.done)
@@ -119,29 +106,19 @@ void IslandStepper::addRock(std::size_t m, double h)
   body.springEnergyBefore = body.springEnergy;
   body.contactsBefore = body.contacts;
   work_.energyBefore[place] = rock.sim.mechanicalEnergy() + body.springEnergy;
-  if (island_.crowd)
-  {
-    rock.sim.recoverDeepOverlap(h);
-  }
   IslandBody& asked = work_.bodies[place];
   asked = {};
   asked.block = &body.block;
   asked.state = &body.state;
-  if (body.steppedAs == StepKind::Lasting)
-  {
-    asked.acceleration = body.acceleration;
-    asked.spinAcceleration = body.spinAcceleration;
-  }
   std::size_t next = work_.slopeFirsts[m];
   for (Contact& c : body.contacts)
   {
-    work_.contacts[next++] = touchOnSlope(world_, rock, c, h);
+    work_.contacts[next++] = touchOnSlope(world_, rock, c);
   }
 }
 
-void IslandStepper::addPair(std::size_t t, double h)
+void IslandStepper::addPair(std::size_t t)
 {
-  work_.comeToTouching(island_, t);
   const std::size_t p = work_.touching[t];
   RockPair& pair = *island_.pairs[p];
   if (pair.contacts.empty())
@@ -149,19 +126,11 @@ void IslandStepper::addPair(std::size_t t, double h)
     return;
   }
   const PairMotion motion = work_.motionOf(pair);
-  if (island_.crowd)
-  {
-    this->recoverDeepOverlap(pair, h);
-  }
   std::size_t next = work_.firsts[p];
   for (Contact& c : pair.contacts)
   {
-    IslandContact& touch = work_.contacts[next++] = touchOfPair(world_, pair, motion, c, h, work_);
-    touch.bare = !island_.crowd || mayStayOpen(touch, h);
-    if (!touch.closed && !touch.bare)
-    {
-      setSprings(world_, pair, c);
-    }
+    IslandContact& touch = work_.contacts[next++] = touchOfPair(world_, pair, motion, c, work_);
+    touch.bare = true;
   }
 }
 
@@ -172,7 +141,7 @@ void IslandStepper::cutUntilAccepted(StepRequest& request)
   {
     // A step leaves little to settle; if it leaves more, a shorter one is taken.
     const bool last = cut >= kIslandCuts;
-    const Accept accept = last ? Accept::Any : Accept::Converging;
+    const Accept accept = last ? Accept::Any : Accept::Settled;
     if (!work_.added.empty())
     {
       work_.contacts.resize(work_.firsts.back());
@@ -180,7 +149,6 @@ void IslandStepper::cutUntilAccepted(StepRequest& request)
       work_.addedTo.clear();
     }
     StepTrees(world_, island_, work_).stand();
-    work_.looked = false;
     work_.solver.begin(request, accept, work_.bodies, work_.contacts);
     while (work_.solver.asksForALook())
     {
@@ -189,7 +157,7 @@ void IslandStepper::cutUntilAccepted(StepRequest& request)
     const IslandOutcome outcome = work_.solver.finish();
     work_.iterations += outcome.iterations;
     work_.cuts += !outcome.accepted && !last;
-    work_.unsettled += outcome.unconverged && (outcome.accepted || last);
+    work_.unsettled += !outcome.settled && (outcome.accepted || last);
     ++work_.tries;
     if (outcome.accepted || last)
     {
@@ -206,12 +174,8 @@ void IslandStepper::solve(double h)
   {
     return; // the last of them was caught just now
   }
-  forEach(island_.members.size(), kRockGrain, [&](std::size_t m) { this->addRock(m, h); });
-  forEach(work_.touching.size(), kPairGrain, [&](std::size_t t) { this->addPair(t, h); });
-  if (island_.crowd)
-  {
-    settleBounces(work_);
-  }
+  forEach(island_.members.size(), kRockGrain, [&](std::size_t m) { this->addRock(m); });
+  forEach(work_.touching.size(), kPairGrain, [&](std::size_t t) { this->addPair(t); });
   work_.added.clear();
   work_.addedTo.clear();
   work_.stems.clear();

@@ -28,10 +28,8 @@ private:
   // A step
   void fly(double duration); ///< Lets all contacts go.
   void solve(double h);
-  void addRock(std::size_t member, double h);
-  void addPair(std::size_t touching, double h);
-  /// Deep overlaps of the two, before a lasting step.
-  void recoverDeepOverlap(RockPair& pair, double h) const;
+  void addRock(std::size_t member);
+  void addPair(std::size_t touching);
   /// Halves the step as long as its solution is not accepted.
   void cutUntilAccepted(StepRequest& request);
 

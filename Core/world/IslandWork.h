@@ -14,31 +14,6 @@
 namespace rockfall
 {
 
-/// Of a SingleRock, what the step of a crowd needs of every rock.
-constexpr std::size_t kHotLines = 14;
-
-// Asks the cache for what a loop over the pairs or rocks of an island comes to soon.
-
-inline void comeToPair(const std::vector<RockPair*>& pairs, std::size_t p)
-{
-  constexpr std::size_t kPairsAhead = 6;
-  if (p + kPairsAhead < pairs.size())
-  {
-    askCache<4>(pairs[p + kPairsAhead]); // all but the impact
-  }
-}
-
-inline void comeToRock(const WorldState& world, const Island& island, std::size_t k)
-{
-  constexpr std::size_t kRocksAhead = 2;
-  if (k + kRocksAhead < island.members.size())
-  {
-    const FallingRock& rock = world.rocks[std::size_t(island.members[k + kRocksAhead])];
-    askCache<kHotLines>(&rock.sim);
-    askCache<6>(&rock.hull);
-  }
-}
-
 /// Rocks and pairs that one thread looks after at a time.
 constexpr std::size_t kRockGrain = 16, kPairGrain = 32;
 
@@ -49,8 +24,6 @@ struct IslandWork
   std::vector<IslandBody> bodies;
   std::vector<IslandContact> contacts;
   std::vector<double> energyBefore;
-  std::vector<int> partners;
-  std::vector<std::uint64_t> supportHash; ///< By place, what carries it.
   /// First contact of each rock's with the slope among `contacts`, and of each pair.
   std::vector<std::size_t> slopeFirsts, firsts;
   /// Contacts that are found in a second look, behind the others in `contacts`, and whose they are.
@@ -69,11 +42,10 @@ struct IslandWork
     std::size_t contacts = 0, touching = 0;
   };
   std::vector<Part> parts;
-  std::vector<std::size_t> meeting; ///< Choice of each part, from its beginning.
+  std::vector<std::size_t> meeting; ///< Pairs of each part that touch, from its beginning.
   std::vector<char> flags; ///< For forThose; in the end by pair, whether an impact is under way.
   std::vector<std::size_t> missed;         ///< Pairs or rocks whose contacts were missed.
   std::vector<std::vector<Contact>> found; ///< Of each of them, where it touches.
-  bool looked = false;                     ///< Where the step ends.
   /// A tree that others drive a rock into within the step, and that may not hold.
   struct Stem
   {
@@ -106,7 +78,7 @@ struct IslandWork
     double rim;     ///< Speed at most by turning, m/s.
     double mass;    ///< kg
     double resting; ///< Below it a touch is no impact, m/s.
-    double pushed;  ///< Speed that others may add within a step of a crowd, m/s.
+    double pushed;  ///< Speed that others may add within a step, m/s.
     bool done;
 
     void set(const RockBody& body);
@@ -124,7 +96,6 @@ struct IslandWork
   /// Counts of the step at hand for the summary of each rock.
   std::int64_t iterations = 0, cuts = 0, unsettled = 0, tries = 0;
   void count(SingleRock& sim) const;
-  void comeToTouching(const Island& island, std::size_t t) const; ///< As comeToPair.
   /// Motion of a rock in the step; by place.
   struct Motion
   {
@@ -159,15 +130,6 @@ inline void IslandWork::count(SingleRock& sim) const
     summary.contactSteps += tries;
     summary.cutSteps += cuts;
     summary.unsettledSteps += unsettled;
-  }
-}
-
-inline void IslandWork::comeToTouching(const Island& island, std::size_t t) const
-{
-  constexpr std::size_t kTouchingAhead = 3;
-  if (t + kTouchingAhead < touching.size())
-  {
-    askCache<6>(island.pairs[touching[t + kTouchingAhead]]);
   }
 }
 

@@ -3,9 +3,7 @@
 #include "base/parallel.h"
 #include "contact/ground/motion.h"
 #include "law/settings.h"
-#include "rock/overlapRecovery.h"
 #include "world/StepTrees.h"
-#include "world/overlapLimit.h"
 #include "world/pairImpacts.h"
 
 #include <algorithm>
@@ -14,29 +12,6 @@
 
 namespace rockfall
 {
-
-namespace
-{
-
-/// A contact that others press in further than its two rocks could yields, at the force that it
-/// has: energy that its spring would hold beyond is not given back.
-void yield(Contact& c, double radius, double speed, double mass)
-{
-  if (c.closed() && c.gap() < -kFirm * radius)
-  {
-    const double most = deepestBetween(radius, speed, mass, c.stiffness);
-    c.offset = std::min(c.offset, c.distance + most);
-  }
-}
-
-/// A number for a contact that carries.
-std::uint64_t keyOf(const Contact& c)
-{
-  return (std::uint64_t(c.rockFeature + 1000) * 4 + std::uint64_t(c.kind) + 1) *
-    0x9e3779b97f4a7c15ull;
-}
-
-} // namespace
 
 StepResult::StepResult(WorldState& world, const Island& island, IslandWork& work, double duration)
   : world_(world)
@@ -48,7 +23,6 @@ StepResult::StepResult(WorldState& world, const Island& island, IslandWork& work
 
 void StepResult::apply()
 {
-  work_.supportHash.assign(work_.bodies.size(), 0);
   work_.touchesOthers.assign(work_.bodies.size(), 0);
   work_.flags.resize(std::max(work_.flags.size(), island_.pairs.size()));
   for (std::size_t k = 0; k < work_.added.size(); ++k)
@@ -70,10 +44,6 @@ void StepResult::apply()
 void StepResult::splitOffSingles()
 {
   work_.alone.assign(work_.bodies.size(), 0);
-  if (island_.crowd || !work_.looked)
-  {
-    return;
-  }
   const auto mark = [&](std::size_t m, const IslandContact& touch)
   {
     const FallingRock& rock = world_.rocks[std::size_t(island_.members[m])];
@@ -204,24 +174,16 @@ void StepResult::bookContact(RockPair& pair, const IslandContact& touch) const
 
 void StepResult::applyToPair(std::size_t t)
 {
-  work_.comeToTouching(island_, t);
   const std::size_t p = work_.touching[t];
   RockPair& pair = *island_.pairs[p];
-  std::array<std::uint64_t, 2> carry = {};
   for (std::size_t k = work_.firsts[p]; k < work_.firsts[p + 1]; ++k)
   {
     findLateImpact(world_, pair, work_.contacts[k], h_);
   }
   for (std::size_t k = work_.firsts[p]; k < work_.firsts[p + 1]; ++k)
   {
-    const Contact& c = *work_.contacts[k].contact;
     this->bookContact(pair, work_.contacts[k]);
-    pair.touched = pair.touched || c.closed();
-    if (c.closed())
-    {
-      carry[0] += keyOf(c) * std::uint64_t(pair.second + 2);
-      carry[1] += keyOf(c) * std::uint64_t(pair.first + 2);
-    }
+    pair.touched = pair.touched || work_.contacts[k].contact->closed();
   }
   work_.flags[p] = pair.strikes;
   if (!pair.touched)
@@ -229,33 +191,9 @@ void StepResult::applyToPair(std::size_t t)
     return;
   }
   pair.touchedAt = work_.bodies.front().state->time;
-  // Whole numbers: their sum is the same in any order.
-  for (const std::size_t side : { 0, 1 })
+  for (const int place : work_.places[p])
   {
-    const std::size_t place = std::size_t(work_.places[p][side]);
-    std::atomic_ref(work_.supportHash[place]).fetch_add(carry[side], std::memory_order_relaxed);
-    std::atomic_ref(work_.touchesOthers[place]).store(1, std::memory_order_relaxed);
-  }
-  if (island_.crowd)
-  {
-    this->recoverOverlap(pair);
-  }
-}
-
-void StepResult::recoverOverlap(RockPair& pair) const
-{
-  const IslandWork::Side& a = work_.sides[std::size_t(pair.first)];
-  const IslandWork::Side& b = work_.sides[std::size_t(pair.second)];
-  const double mass = std::min(a.mass, b.mass), reduced = 1.0 / (1.0 / a.mass + 1.0 / b.mass);
-  const double slow = std::min(
-    kRecover * h_, 0.5 * mass * world_.parameters.gravity / world_.parameters.normalPenalty);
-  const double smaller = std::min(a.radius, b.radius), loose = kLooseOverlap * smaller;
-  const double speed = std::max(
-    (a.velocity - b.velocity).norm() + a.rim + b.rim, pair.strikes ? pair.impact.approach : 0.0);
-  for (Contact& c : pair.contacts)
-  {
-    yield(c, smaller, speed, reduced);
-    recoverLooseOverlap(c, slow, loose);
+    std::atomic_ref(work_.touchesOthers[std::size_t(place)]).store(1, std::memory_order_relaxed);
   }
 }
 
@@ -289,8 +227,6 @@ void StepResult::applyAdded()
       const std::size_t first = std::size_t(work_.placeOf[std::size_t(pair.first)]);
       const std::size_t second = std::size_t(work_.placeOf[std::size_t(pair.second)]);
       work_.touchesOthers[first] = work_.touchesOthers[second] = 1;
-      work_.supportHash[first] += keyOf(c) * std::uint64_t(pair.second + 2);
-      work_.supportHash[second] += keyOf(c) * std::uint64_t(pair.first + 2);
     }
     pair.contacts.push_back(c);
   }
@@ -320,7 +256,6 @@ void StepResult::finishImpacts()
 
 void StepResult::applyToRock(std::size_t k)
 {
-  comeToRock(world_, island_, k);
   FallingRock& rock = world_.rocks[std::size_t(island_.members[k])];
   SingleRock& sim = rock.sim;
   RockBody& body = rock.body();
@@ -342,17 +277,16 @@ void StepResult::applyToRock(std::size_t k)
   outcome.dampedWork = answer.dampedWork;
   outcome.springEnergy = answer.springEnergy;
   outcome.normalEnergy = answer.normalEnergy;
-  sim.commitStep(
-    StepKind::Lasting, outcome, work_.energyBefore[place], answer.given, island_.crowd);
+  sim.commitStep(StepKind::Lasting, outcome, work_.energyBefore[place], answer.given, false);
   const bool carried = work_.touchesOthers[place] || anyClosed(body.contacts);
   // Some contact of an island opens or closes in every step, and the acceleration of one step says
   // little of the next: carried on it would keep a pile in motion for ever.
-  if (work_.supportHash[place] != rock.supportHash || carried)
+  if (carried || rock.touching)
   {
     body.acceleration.setZero();
     body.spinAcceleration.setZero();
-    rock.supportHash = work_.supportHash[place];
   }
+  rock.touching = work_.touchesOthers[place];
   if (body.done)
   {
     return; // caught
@@ -364,7 +298,7 @@ void StepResult::applyToRock(std::size_t k)
   {
     sim.end(Fate::Moving);
   }
-  const bool arrived = work_.looked && rock.adoptEnd();
+  const bool arrived = rock.adoptEnd();
   work_.arrived[place] = arrived;
   if (!arrived)
   {
@@ -374,7 +308,6 @@ void StepResult::applyToRock(std::size_t k)
 
 void StepResult::keepAxis(std::size_t p)
 {
-  comeToPair(island_.pairs, p);
   RockPair& pair = *island_.pairs[p];
   const auto [a, b] = work_.places[p];
   const bool both = a >= 0 && b >= 0;

@@ -24,8 +24,7 @@ private:
   void stepSingle(FallingRock& rock);
   /// Motion of a rock since a state, for those that look at its pairs.
   void noteMotion(const FallingRock& rock, const BlockState& from);
-  void applyToPair(std::size_t touching);    ///< By number among those that touch.
-  void recoverOverlap(RockPair& pair) const; ///< In a crowd: overlap that was found goes slowly.
+  void applyToPair(std::size_t touching); ///< By number among those that touch.
   void bookContact(RockPair& pair, const IslandContact& touch) const;
   void applyAdded();    ///< Contacts that were missed at first.
   void finishImpacts(); ///< Of pairs that have parted, or lie on each other.

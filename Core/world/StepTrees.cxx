@@ -40,14 +40,14 @@ void StepTrees::setAbsent(const Stem& stem, bool absent)
   const auto set = [&](const Contact&, std::size_t k)
   {
     work_.contacts[k].absent = absent;
-    work_.solver.system().setAbsent(k);
+    work_.solver.rows().setAbsent(k);
   };
   this->forContacts(stem, set);
 }
 
 BlockState StepTrees::endOf(const Stem& stem) const
 {
-  return work_.solver.system().end(std::size_t(this->rockOf(stem).place));
+  return work_.solver.rows().end(std::size_t(this->rockOf(stem).place));
 }
 
 BlockState StepTrees::endWithout(const Stem& stem, double h) const
@@ -63,7 +63,7 @@ BlockState StepTrees::endWithout(const Stem& stem, double h) const
     {
       continue;
     }
-    const Vec3 impulse = h * work_.solver.system().force(k) * c.normal;
+    const Vec3 impulse = h * work_.solver.rows().force(k) * c.normal;
     const Mat3 back = end.orientation.toRotationMatrix().transpose();
     end.velocity -= impulse / body.block.mass();
     end.spin -=
@@ -83,7 +83,7 @@ bool StepTrees::cannotHold(const Stem& stem, const BlockState& end, bool through
     const double approach = -c.normal.dot(end.velocity + end.angularVelocity().cross(lever));
     meets = meets ||
       (approach > (c.closed() ? body.restingSpeed : 0.0) &&
-        (!through || work_.solver.system().gap(k) < 0.0));
+        (!through || work_.solver.rows().gap(k) < 0.0));
   };
   this->forContacts(stem, look);
   return meets && !sim.stemHolds(stem.tree, end, body.contacts);
@@ -141,7 +141,7 @@ bool StepTrees::look(double h)
     for (std::size_t k = 0; k < contacts.size(); ++k)
     {
       const int tree = rock.sim.treeOf(contacts[k]);
-      if (tree < 0 || work_.solver.system().force(work_.slopeFirsts[m] + k) <= 0.0 ||
+      if (tree < 0 || work_.solver.rows().force(work_.slopeFirsts[m] + k) <= 0.0 ||
         this->isKnown(m, tree))
       {
         continue;
@@ -181,19 +181,13 @@ void StepTrees::fell(std::size_t member)
     // Energy that its springs held when the step began is gone with it, and booked as a loss of the
     // step.
     double held = 0.0;
-    for (std::size_t k = 0; k < body.contactsBefore.size(); ++k)
+    for (const Contact& c : body.contactsBefore)
     {
-      const Contact& c = body.contactsBefore[k];
       if (sim.treeOf(c) == stem.tree)
       {
         const double all = c.springEnergy();
-        const double shear = c.closed() ? 0.5 * c.shearStiffness * c.slip.squaredNorm() : 0.0;
-        const bool bounced = work_.contacts[work_.slopeFirsts[member] + k].reboundSpeed >= 0.0;
-        const bool normal = bounced || !island_.crowd; // booked along the normal
         held += all;
-        body.energy.restitution -= normal ? all : 0.0;
-        body.energy.friction -= normal ? 0.0 : shear;
-        body.energy.damping -= normal ? 0.0 : all - shear;
+        body.energy.restitution -= all;
       }
     }
     sim.passTree(stem.tree, held);

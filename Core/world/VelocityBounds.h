@@ -36,7 +36,6 @@ struct IslandBounds
 {
   Vec3 lower, upper; ///< Velocities of its points, m/s.
   double heaviest;   ///< kg
-  double longest;    ///< Displacement of one of them if nothing else strikes it, m.
   int size;
 
   /// A light rock that a heavy one strikes goes on faster than it, by this factor. `bounciest`:
@@ -56,7 +55,6 @@ struct IslandBounds
     lower = lower.cwiseMin(other.lower);
     upper = upper.cwiseMax(other.upper);
     heaviest = std::max(heaviest, other.heaviest);
-    longest = std::max(longest, other.longest);
     size += other.size;
   }
 };

@@ -64,8 +64,6 @@ public:
 
   /// Rocks never sleep: for tests of how still a pile stands.
   bool awake = false;
-  int largestSoft() const { return world_.largestSoft; }
-  void setLargestSoft(int most) { world_.largestSoft = most; } ///< WorldState::largestSoft
 
 private:
   const SingleRock& rock(int rock) const { return world_.rocks[std::size_t(rock)].sim; }

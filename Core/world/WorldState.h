@@ -50,14 +50,14 @@ struct FallingRock
     }
   };
 
-  // Members that the step of a crowd needs lie together, before and behind where `sim` begins.
+  // Members that the step of an island needs lie together, before and behind where `sim` begins.
   Place restAnchor;
   Place slowRestAnchor; ///< The same, further and for longer.
   PlacedBlock end;      ///< Of the step at hand, as long as it is being solved.
   PairBody hull;
   PairBody endHull;
-  std::uint64_t supportHash = 0; ///< A number for the contacts with others that carry.
-  int place = -1;                ///< Among the bodies of its island in the step at hand.
+  int place = -1;        ///< Among the bodies of its island in the step at hand.
+  bool touching = false; ///< Touched others where its island's last step ended.
   bool asleep = false;
   SingleRock sim;
 };
@@ -100,8 +100,7 @@ struct WorldState
   const SimulationParameters& parameters;
   RockContacts contacts; ///< Laws of the rocks on each other.
   FallingRocks rocks;
-  double time = 0.0;              ///< s
-  int largestSoft = kLargestSoft; ///< Rocks of the largest island that is no crowd.
+  double time = 0.0; ///< s
 };
 
 /// Rocks that may touch each other within a step, in the order of their numbers.
@@ -109,7 +108,6 @@ struct Island
 {
   std::vector<int> members;
   std::vector<RockPair*> pairs;
-  bool crowd = false; ///< Stepped by the CrowdSolver.
 };
 
 /// Motion of the points of two rocks against each other, as they are.

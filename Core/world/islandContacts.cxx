@@ -33,7 +33,6 @@ double IslandStepper::reachOf(double speed, double radius, double h) const
 
 void IslandStepper::gatherOnSlope(std::size_t k, double h)
 {
-  comeToRock(world_, island_, k);
   FallingRock& rock = world_.rocks[std::size_t(island_.members[k])];
   SingleRock& sim = rock.sim;
   RockBody& body = rock.body();
@@ -84,7 +83,6 @@ void IslandStepper::gatherOnSlope(std::size_t k, double h)
 
 void IslandStepper::gatherOfPair(std::size_t p, double h)
 {
-  comeToPair(island_.pairs, p);
   RockPair& pair = *island_.pairs[p];
   const IslandWork::Side& a = work_.sides[std::size_t(pair.first)];
   const IslandWork::Side& b = work_.sides[std::size_t(pair.second)];

@@ -17,9 +17,6 @@ namespace
 
 constexpr std::size_t kLookGrain = 16;
 
-/// Pairs that the cache is asked for ahead.
-constexpr std::size_t kNearsAhead = 8;
-
 } // namespace
 
 /// From now on the gap is bounded along the pair's axis.
@@ -105,8 +102,7 @@ bool IslandFinder::meet(std::size_t k)
   }
 }
 
-/// Looks at all pairs near each other before the first of them are linked. Displacements of a crowd
-/// are known by now: its rocks are linked here.
+/// Looks at all pairs near each other before the first of them are linked.
 void IslandFinder::look()
 {
   const std::size_t count = near_.size(), parts = (count + kNearPart - 1) / kNearPart;
@@ -116,19 +112,15 @@ void IslandFinder::look()
   others_.resize(std::max(count, others_.size()));
   left_.resize(parts);
   const auto lookAtPart = [this, count, nears = near_.data(), rocks = bodies_.data(),
-                            aparts = aparts_.data(), states = states_.data(), fars = fars_.data(),
-                            surely = surely_.data(), most = sag_](std::size_t part)
+                            aparts = aparts_.data(), states = states_.data()](std::size_t part)
   {
     const std::size_t first = part * kNearPart, last = std::min(count, first + kNearPart);
     UndecidedPair* open = undecidedByPart_.data() + first;
     std::size_t* other = others_.data() + first;
     for (std::size_t k = first; k < last; ++k)
     {
-      __builtin_prefetch(nears + std::min(k + 3 * kNearsAhead, count - 1));
-      __builtin_prefetch(nears[std::min(k + kNearsAhead, last - 1)].pair);
       NearPair& n = nears[k];
-      const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
-      const BodyBounds &a = rocks[i], &b = rocks[j];
+      const BodyBounds &a = rocks[std::size_t(n.first)], &b = rocks[std::size_t(n.second)];
       const Vec3 between = a.position - b.position;
       const double distance2 = between.squaredNorm();
       const double known = a.known + b.known, radii = a.radius + b.radius;
@@ -144,10 +136,9 @@ void IslandFinder::look()
       n.wasLinked = n.linked;
       n.linked = false;
       n.looked = -1.0;
-      n.seen = n.holds && n.pair->seen; // found where they stand
       const double rimTravel = a.rimTravel + b.rimTravel;
       bool overlap = false;
-      if (n.seen)
+      if (n.holds && n.pair->seen) // found where they stand
       {
         const PairAxis& axis = n.pair->axis;
         n.normal = axis.normal;
@@ -162,18 +153,8 @@ void IslandFinder::look()
         states[k] = asleep || n.holds || n.wasLinked ? PairState::Separate : PairState::Apart;
         continue;
       }
-      const UndecidedPair two = { apart, n.first, n.second, int(k) };
-      if (n.pair && a.isOneCrowdWith(b) &&
-        (overlap || apart <= std::min(fars[i] + fars[j], surely[a.crowd]) + most ||
-          this->mayMeet(two)))
-      {
-        n.linked = n.holds = n.pair->linked = true;
-        n.pair->known = false;
-        states[k] = PairState::Linked;
-        continue;
-      }
       states[k] = overlap ? PairState::Overlaps : PairState::Undecided;
-      *open = two;
+      *open = { apart, n.first, n.second, int(k) };
       open += !overlap;
       *other = k;
       other += overlap;
@@ -236,31 +217,20 @@ void IslandFinder::widen()
   }
 }
 
-/// Displacements of rocks as their islands have grown; whether others have to be told of any.
-bool IslandFinder::widenIslands()
+/// Displacements of rocks as their islands have grown.
+void IslandFinder::widenIslands()
 {
-  bool any = false;
   wider_.clear();
   for (std::size_t i = 0; i < bodies_.size(); ++i)
   {
     // Parents come before their children.
     roots_[i] = parents_[i] = roots_[std::size_t(parents_[i])];
     BodyBounds& m = bodies_[i];
-    const IslandBounds& bounds = bounds_[std::size_t(roots_[i])];
-    if (bounds.size == 1)
+    if (bounds_[std::size_t(roots_[i])].size == 1)
     {
       continue;
     }
     massRatioGains_[i] = this->massRatioGain(i);
-    if (m.shares && m.displacement < bounds.longest)
-    {
-      m.displacement = bounds.longest;
-      if (firstLink_[i] >= 0)
-      {
-        queue_.add(int(i), m.displacement);
-        any = true;
-      }
-    }
     fars_[i] = massRatioGains_[i] * m.displacement;
     if (fars_[i] + sag_ > m.known && m.present && !m.asleep)
     {
@@ -276,7 +246,6 @@ bool IslandFinder::widenIslands()
   {
     this->widen();
   }
-  return any;
 }
 
 /// Of the pairs that are open, those that may meet.
@@ -307,18 +276,20 @@ void IslandFinder::choose()
 /// Looks at all that are open; returns whether others have to be told of what it has shown.
 bool IslandFinder::sweep()
 {
-  bool any = this->widenIslands();
+  this->widenIslands();
   this->choose();
+  bool any = false;
   asked_.clear();
   placed_.clear();
   for (const std::size_t o : chosen_)
   {
     const std::size_t k = std::size_t(undecided_[o].near);
     NearPair& n = near_[k];
-    if (n.pair && n.looked < 0.0 && (this->stays(n) || this->root(n.first) == this->root(n.second)))
+    if (n.pair && n.looked < 0.0 && this->root(n.first) == this->root(n.second))
     {
       // Of one island they are: how far apart is looked at when their contacts are.
-      any |= this->join(k, false);
+      this->join(k, false);
+      any = true;
       continue;
     }
     n.pair = n.pair ? n.pair : this->newPair(n.first, n.second);
@@ -347,19 +318,11 @@ bool IslandFinder::sweep()
     o.apart = aparts_[std::size_t(o.near)];
     if (answers_[a])
     {
-      any |= this->join(std::size_t(o.near), true);
+      this->join(std::size_t(o.near), true);
+      any = true;
     }
   }
   return any;
-}
-
-/// In a crowd two stay linked as long as they may meet for all that is known of them: their axis is
-/// looked for when their contacts are, within a shorter reach.
-bool IslandFinder::stays(const NearPair& n) const
-{
-  const BodyBounds &a = bodies_[std::size_t(n.first)], &b = bodies_[std::size_t(n.second)];
-  return n.wasLinked && (n.seen || n.pair->touched) && a.crowd >= 0 && b.crowd >= 0 && !a.asleep &&
-    !b.asleep;
 }
 
 void IslandFinder::link()

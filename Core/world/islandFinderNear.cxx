@@ -9,10 +9,6 @@
 // any velocity that is among theirs, by impacts from rock to rock. On the other hand no rock goes
 // further than its own displacement, or than what is left of the displacement of the one that
 // strikes it, less the gaps that had to be crossed before. The smaller of the two bounds holds.
-//
-// In a crowd the gaps are mostly none, and all get about the longest displacement of all: rocks
-// that were one crowd in the last step are one island from the beginning, and share its longest
-// displacement.
 
 #include "world/IslandFinder.h"
 
@@ -33,10 +29,6 @@ namespace
 
 constexpr std::size_t kFollowGrain = 64;
 
-/// Rocks that the cache is asked for ahead, and lines of each.
-constexpr std::size_t kMembersAhead = 4;
-constexpr int kLinesAsked = 5;
-
 /// All are looked for anew when this share of them have come out of their balls.
 constexpr std::size_t kMostOut = 4;
 
@@ -47,23 +39,15 @@ void IslandFinder::follow(double duration)
   const std::size_t count = world_.rocks.size();
   duration_ = duration;
   sag_ = world_.parameters.gravity * duration * duration;
-  const std::size_t last = count - 1;
   const auto followRock = [&](std::size_t i)
   {
     BodyBounds& m = bodies_[i];
     VelocityBounds& velocities = velocityBounds_[i];
     const FallingRock& member = world_.rocks[i];
     const SingleRock& sim = member.sim;
-    const char* const ahead =
-      reinterpret_cast<const char*>(&world_.rocks[std::min(i + kMembersAhead, last)].asleep);
-    for (int line = 0; line < kLinesAsked; ++line)
-    {
-      __builtin_prefetch(ahead + 64 * line);
-    }
     const bool slept = m.asleep;
     m.asleep = member.asleep;
     m.present = !sim.body().done || m.asleep;
-    m.shares = m.present && !m.asleep && m.crowd >= 0;
     massRatioGains_[i] = 1.0;
     fars_[i] = 0.0;
     if (!m.present || (slept && m.asleep))
@@ -95,7 +79,6 @@ void IslandFinder::follow(double duration)
   int present = 0;
   drift_.setZero();
   longest_ = 0.0;
-  crowds_.clear();
   for (std::size_t i = 0; i < count; ++i)
   {
     const BodyBounds& m = bodies_[i];
@@ -103,55 +86,18 @@ void IslandFinder::follow(double duration)
     longest_ = std::max(longest_, m.displacement);
     sleepers_ += m.present && m.asleep;
     bounds_[i] = { velocities.middle.array() - velocities.spread,
-      velocities.middle.array() + velocities.spread, velocities.mass, m.displacement, 1 };
+      velocities.middle.array() + velocities.spread, velocities.mass, 1 };
     parents_[i] = roots_[i] = int(i);
-    if (m.shares)
-    {
-      // A crowd of the last step is one island from the beginning.
-      crowds_.resize(std::max(crowds_.size(), std::size_t(m.crowd) + 1), -1);
-      int& first = crowds_[std::size_t(m.crowd)];
-      if (first < 0)
-      {
-        first = int(i);
-      }
-      else
-      {
-        parents_[i] = roots_[i] = first;
-        bounds_[std::size_t(first)].add(bounds_[i]);
-      }
-    }
     if (m.present)
     {
       drift_ += m.position - velocities.covered;
       ++present;
     }
   }
-  surely_.assign(crowds_.size(), 0.0);
-  for (std::size_t c = 0; c < crowds_.size(); ++c)
-  {
-    if (crowds_[c] >= 0)
-    {
-      const IslandBounds& all = bounds_[std::size_t(crowds_[c])];
-      surely_[c] = all.size > 1 ? (all.upper - all.lower).minCoeff() * duration : 0.0;
-    }
-  }
   drift_ /= std::max(1, present);
   if (sleepers_ > 0)
   {
     drift_.setZero(); // who sleeps does not go on with the others
-  }
-}
-
-/// Gives a rock of a crowd the displacement of its island.
-void IslandFinder::share(std::size_t i)
-{
-  BodyBounds& m = bodies_[i];
-  if (m.shares)
-  {
-    m.displacement = bounds_[std::size_t(roots_[i])].longest;
-    massRatioGains_[i] = this->massRatioGain(i);
-    fars_[i] = massRatioGains_[i] * m.displacement;
-    m.known = fars_[i] + sag_;
   }
 }
 
@@ -206,12 +152,7 @@ void IslandFinder::findNear()
 {
   chosen_.clear();
   forThose(
-    bodies_.size(), kFollowGrain, answers_,
-    [&](std::size_t i)
-    {
-      this->share(i);
-      return !this->isCovered(i);
-    },
+    bodies_.size(), kFollowGrain, answers_, [&](std::size_t i) { return !this->isCovered(i); },
     [&](std::size_t i) { chosen_.push_back(i); });
   out_ += chosen_.size();
   if (!searched_ || out_ * kMostOut > bodies_.size())

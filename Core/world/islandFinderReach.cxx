@@ -23,9 +23,8 @@ double IslandFinder::massRatioGain(std::size_t rock) const
   return bounds_[std::size_t(roots_[rock])].massRatioGain(velocityBounds_[rock].mass, bounciest_);
 }
 
-/// Links two; `known`: their axis has been found for where they stand. Returns whether that tells
-/// anything new of others.
-bool IslandFinder::join(std::size_t k, bool known)
+/// Links two; `known`: their axis has been found for where they stand.
+void IslandFinder::join(std::size_t k, bool known)
 {
   NearPair& n = near_[k];
   n.linked = n.holds = true;
@@ -45,19 +44,14 @@ bool IslandFinder::join(std::size_t k, bool known)
     }
     queue_.add(i, m.displacement);
   };
-  const bool share = bodies_[std::size_t(n.first)].shares && bodies_[std::size_t(n.second)].shares;
-  if (!share)
-  {
-    linkTo(n.first, n.second);
-    linkTo(n.second, n.first);
-  }
+  linkTo(n.first, n.second);
+  linkTo(n.second, n.first);
   const int a = this->root(n.first), b = this->root(n.second);
   if (a != b)
   {
     parents_[std::size_t(std::max(a, b))] = std::min(a, b);
     bounds_[std::size_t(std::min(a, b))].add(bounds_[std::size_t(std::max(a, b))]);
   }
-  return a != b || !share;
 }
 
 /// All that lies on each other wakes at once; others have their turn in the next sweep.
@@ -86,8 +80,7 @@ void IslandFinder::wakeAbout(int rock)
   this->forNeighbours(rock, visit);
 }
 
-/// Passes the rest of a rock's displacement on to those that it is linked with and that do not
-/// share it.
+/// Passes the rest of a rock's displacement on to those that it is linked with.
 void IslandFinder::propagateFrom(int rock)
 {
   BodyBounds* const rocks = bodies_.data();
@@ -96,7 +89,7 @@ void IslandFinder::propagateFrom(int rock)
   for (int l = firstLink_[std::size_t(rock)]; l >= 0; l = links[l].next)
   {
     BodyBounds& other = rocks[links[l].other];
-    if (displacement > other.displacement * kNoMore && !other.shares)
+    if (displacement > other.displacement * kNoMore)
     {
       // The gap must be crossed first, by both together.
       const double own = velocityBounds_[std::size_t(links[l].other)].own;
@@ -119,13 +112,8 @@ void IslandFinder::propagate()
   {
     const std::size_t rock = std::size_t(i);
     roots_[rock] = this->root(i);
-    BodyBounds& m = bodies_[rock];
-    if (m.shares)
-    {
-      m.displacement = bounds_[std::size_t(roots_[rock])].longest;
-    }
     massRatioGains_[rock] = this->massRatioGain(rock);
-    fars_[rock] = massRatioGains_[rock] * m.displacement;
+    fars_[rock] = massRatioGains_[rock] * bodies_[rock].displacement;
     if (sleepers_ > 0)
     {
       this->wakeAbout(i);

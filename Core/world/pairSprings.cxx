@@ -3,7 +3,6 @@
 #include "contact/ground/motion.h"
 #include "law/settings.h"
 #include "rock/impactMode.h"
-#include "world/overlapLimit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +17,14 @@ PairStiffness pairStiffness(const SimulationParameters& parameters)
 
 namespace
 {
+
+/// The deepest overlap (m) at which a spring (N/m) holds no more energy than two that meet at
+/// `speed` (m/s) have between them. `mass`: the reduced one, kg; `radius`: the smaller one, m. What
+/// is deeper others have pressed in.
+double deepestBetween(double radius, double speed, double mass, double stiffness)
+{
+  return std::max(kFirm * radius, kSomeMore * speed * std::sqrt(mass / stiffness));
+}
 
 PairSprings springsOf(const WorldState& world, const RockPair& pair)
 {

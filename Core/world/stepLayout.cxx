@@ -21,7 +21,6 @@ std::size_t layOut(WorldState& world, const Island& island, IslandWork& work)
     IslandWork::Part counted;
     for (std::size_t k = part * kPartSize; k < std::min(rocks, (part + 1) * kPartSize); ++k)
     {
-      comeToRock(world, island, k);
       const SingleRock& sim = world.rocks[island.members[k]].sim;
       work.placeOf[std::size_t(island.members[k])] = sim.body().done ? -1 : counted.places++;
       work.slopeFirsts[k] = counted.contacts;
@@ -72,7 +71,6 @@ std::size_t layOut(WorldState& world, const Island& island, IslandWork& work)
     const int* const placeOf = work.placeOf.data();
     for (std::size_t p = begin; p < end; ++p)
     {
-      comeToPair(island.pairs, p);
       RockPair& pair = *island.pairs[p];
       places[p] = { placeOf[pair.first], placeOf[pair.second] };
       firsts[p] = counted.contacts;

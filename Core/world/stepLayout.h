@@ -21,7 +21,7 @@ inline std::size_t partsOf(std::size_t count)
 /// Gives rocks, pairs and contacts their places in the system; returns how many rocks have one.
 std::size_t layOut(WorldState& world, const Island& island, IslandWork& work);
 
-/// Speeds that the rocks of a crowd may add to each other's within a step.
+/// Speeds that the rocks of an island may add to each other's within a step.
 void findPushes(const Island& island, IslandWork& work);
 
 } // namespace rockfall

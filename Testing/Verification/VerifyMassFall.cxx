@@ -1,5 +1,5 @@
 // Many rocks: piles that stand for a minute, heaps that come to rest without overlap and steeper
-// with more friction, crowds that go as far as if every impact in them were resolved.
+// with more friction.
 
 #include "Core/piles.h"
 #include "verification.h"
@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 using namespace rockfall;
 using namespace rockfall::verification;
@@ -19,7 +18,6 @@ namespace
 
 const char* const kStanding = "Piles that stand";
 const char* const kHeap = "Heaps";
-const char* const kCrowd = "Crowds";
 
 void stand(const char* name, Pile& pile)
 {
@@ -94,59 +92,6 @@ Heap drop(int cubes, double friction)
   return heap;
 }
 
-struct Fall
-{
-  double way = 0.0;   ///< Mean of all rocks along the slope, m.
-  double lead = 0.0;  ///< The same of the tenth that went farthest.
-  EnergyAudit energy; ///< Of all.
-};
-
-/// Cuboids of random sizes and attitudes, side by side above a slope of 42°, that come to rest on
-/// the level below.
-Fall rush(int rocks, std::uint64_t seed, int resolved)
-{
-  const auto height = [](double x, double y)
-  { return (x < 100.0 ? 0.9 * (100.0 - x) : 0.0) + 0.05 * std::sin(0.9 * x) * std::cos(0.7 * y); };
-  Pile pile;
-  pile.ground =
-    rockfall::testing::makeSlope(151, 2.0, height, rockfall::testing::material(0.7, 12.0));
-  pile.awake = false;
-  pile.parameters.timeStep = kTimeStep;
-  pile.parameters.endTime = 40.0;
-  pile.parameters.seed = seed;
-  std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> u(-1.0, 1.0);
-  const int side = int(std::ceil(std::cbrt(rocks)));
-  double start = 0.0;
-  for (int k = 0; k < rocks; ++k)
-  {
-    const int a = k % side, b = k / side % side, c = k / side / side;
-    const double x = 20.0 + 1.7 * a, y = 150.0 + 1.7 * b, size = 0.6 + 0.3 * u(random);
-    Rock rock = rockfall::testing::brick(
-      size * Vec3(1.0, 0.8, 1.2), Vec3(x, y, height(x, y) + 2.0 + 1.7 * c + 1.2 * a), k);
-    rock.orientation = Quat(u(random), u(random), u(random), u(random)).normalized();
-    pile.rocks.push_back(rock);
-    start += x / rocks;
-  }
-  pile.make();
-  pile.fall->setLargestSoft(resolved);
-  Fall fall;
-  std::vector<double> stops;
-  for (const Trajectory& t : pile.fall->run())
-  {
-    stops.push_back(t.summary.stop.x() - start);
-    fall.way += stops.back() / rocks;
-    rockfall::testing::add(fall.energy, t.summary.energy);
-  }
-  std::sort(stops.begin(), stops.end(), std::greater<>());
-  const int tenth = rocks / 10;
-  for (int k = 0; k < tenth; ++k)
-  {
-    fall.lead += stops[std::size_t(k)] / tenth;
-  }
-  return fall;
-}
-
 } // namespace
 
 TEST(MassFall, ColumnOfTenStands)
@@ -190,8 +135,7 @@ TEST(MassFall, HeapsOfCubes)
     record({ kHeap, circumstances + "share at rest in the end", "", "all of them" }, heap.resting,
       1.0, 0.0);
     // All of them sleep then: what trembles or turns on the spot has been found out.
-    recordAtMost({ kHeap, circumstances + "time to rest", "s", "before the run of 60 s ends" },
-      heap.duration, 59.0);
+    recordAtMost({ kHeap, circumstances + "time to rest", "s", "the bar" }, heap.duration, 12.0);
     report(
       { kHeap, circumstances + "slope of the heap, 2 z / r of its mean height and median distance",
         "°", "" },
@@ -210,68 +154,4 @@ TEST(MassFall, HeapsOfCubes)
                          : report(figure, angles[k] - angles[k - 1]);
   }
   addCurve("heap-repose", text(cubes) + " cubes", frictions, angles);
-}
-
-TEST(MassFall, CrowdsGoAsFarAsResolved)
-{
-  // The same rocks twice: as islands, with each impact by itself, and all stepped as a crowd.
-  const int rocks = 40, runs = count(6, 40);
-  struct Kind
-  {
-    std::vector<double> ways, leads;
-    EnergyAudit energy;
-  };
-  Kind kinds[2];
-  for (int k = 0; k < runs; ++k)
-  {
-    for (int crowd = 0; crowd < 2; ++crowd)
-    {
-      const Fall fall = rush(rocks, std::uint64_t(k + 1), crowd ? 0 : rocks);
-      Kind& kind = kinds[crowd];
-      kind.ways.push_back(fall.way);
-      kind.leads.push_back(fall.lead);
-      rockfall::testing::add(kind.energy, fall.energy);
-    }
-  }
-  const std::string circumstances =
-    text(rocks) + " cuboids of 0.03 to 0.7 m³ down 42°, " + text(runs) + " times: ";
-  const auto compare = [&](const char* what, const std::vector<double>& resolved,
-                         const std::vector<double>& crowd, double share)
-  {
-    // Runs of chaos: neither knows of the other one's after the first impacts.
-    double means[2] = {}, variance = 0.0;
-    for (int side = 0; side < 2; ++side)
-    {
-      const std::vector<double>& values = side ? crowd : resolved;
-      for (const double v : values)
-      {
-        means[side] += v / runs;
-      }
-      for (const double v : values)
-      {
-        variance += (v - means[side]) * (v - means[side]) / (runs * (runs - 1.0));
-      }
-    }
-    record({ kCrowd, circumstances + what + ", as a crowd", "m",
-             text(100.0 * share) + " % of the way, and three standard errors of the difference" },
-      means[1], means[0], share * means[0] + 3.0 * std::sqrt(variance));
-  };
-  compare("mean way", kinds[0].ways, kinds[1].ways, 0.03);
-  compare("mean way of the leading tenth", kinds[0].leads, kinds[1].leads, 0.05);
-  const EnergyAudit &a = kinds[0].energy, &b = kinds[1].energy;
-  const auto shares = [&](const char* what, double EnergyAudit::*part)
-  {
-    // A crowd has one impulse for the step in which an impact falls, and friction by how it slides
-    // in the end: of what an impact takes some more is friction's.
-    record({ kCrowd, circumstances + "share of the energy that " + what + ", as a crowd", "",
-             "3 % of what was released" },
-      b.*part / b.released, a.*part / a.released, 0.03);
-  };
-  shares("friction with the slope takes", &EnergyAudit::friction);
-  shares("impacts on the slope take", &EnergyAudit::restitution);
-  shares("is lost between rocks", &EnergyAudit::exchanged);
-  shares("is damped", &EnergyAudit::damping);
-  recordAtMost({ kCrowd, circumstances + "numerical remainder of the audit, as a crowd", "",
-                 "every joule is booked" },
-    std::abs(b.numerical / b.released), 1e-3);
 }

@@ -65,8 +65,6 @@ CLAIMS = [
     ("… and the floor carries their weight.", "Piles that stand", "weight", None),
     ("Heaps of 1000 cubes overlap by less than 1 % of an edge.", "Heaps", "deepest overlap", "heap-repose"),
     ("… and all come to rest.", "Heaps", "at rest", None),
-    ("Crowds go as far as rocks whose impacts are resolved.", "Crowds", "mean way", None),
-    ("… and lose their energy to the same.", "Crowds", "share of the energy", None),
     ("Random scenes of many rocks make no energy.", "Random scenes", "energy made", None),
     ("… and have the same bits on one thread and two.", "Random scenes", "differ", None),
     ("Rocks on long slopes of talus are as fast as field surveys say.", "Long slopes", "speed", None),

@@ -1,6 +1,6 @@
 // The pairs of a rock and the slope that may touch within a step.
 //
-// A rock of a crowd goes so far in a step that candidates gathered for several would be many and
+// A rock of an island goes so far in a step that candidates gathered for several would be many and
 // soon be gathered again. So what may close is found in each step: vertices by the cells that they
 // are over, edges side by side.
 
@@ -119,7 +119,7 @@ std::uint64_t facesAt(
   return faces;
 }
 
-/// Finds the pairs of a rock of a crowd, for one step.
+/// Finds the pairs of a rock of an island, for one step.
 class NowGatherer
 {
 public:

@@ -13,7 +13,6 @@
 ///     }
 ///     outcome = solver.finish();
 
-#include "solve/island/CrowdSolver.h"
 #include "solve/island/SoftSolver.h"
 
 #include <vector>
@@ -21,31 +20,21 @@
 namespace rockfall
 {
 
-enum class IslandMethod : std::uint8_t
-{
-  Soft,  ///< Substeps, impacts within them (solve/island/SoftSolver.h).
-  Crowd, ///< One step, swept over by many threads (solve/island/CrowdSolver.h).
-};
-
 class IslandSolver
 {
 public:
-  IslandMethod method = IslandMethod::Soft;
-  /// Share of the largest displacement to which a crowd's sweeps go.
-  double tolerance = 1e-4;
-  int maxSweeps = 6;
   /// Of contacts that come without springs (IslandContact::bare).
   PairStiffness stiffness;
 
   void begin(const StepRequest& request, Accept accept, std::vector<IslandBody>& bodies,
     std::vector<IslandContact>& contacts);
   /// Whether it is worth a look where the bodies would be.
-  bool asksForALook() const;
+  bool asksForALook() const { return looking_ && seen_.asksFor(look_); }
   /// Goes on from where it is with what a look has found.
   void goOn(const EndDetectionOutcome& seen);
   /// Advances the bodies' states and the contacts by `request.duration`. If the step has not
   /// settled nothing is changed, unless `accept` says so.
-  IslandOutcome finish();
+  IslandOutcome finish() { return rows_.finish(accept_, seen_.isDeep()); }
   /// All of it, without a look.
   IslandOutcome step(const StepRequest& request, std::vector<IslandBody>& bodies,
     std::vector<IslandContact>& contacts, Accept accept)
@@ -55,14 +44,12 @@ public:
   }
 
   /// What a look finds, and asks for.
-  IslandSystem& system() { return *system_; }
-  const IslandSystem& system() const { return *system_; }
+  SoftSolver& rows() { return rows_; }
+  const SoftSolver& rows() const { return rows_; }
 
 private:
-  SoftSolver soft_;
-  CrowdSolver crowd_;
+  SoftSolver rows_;
   // Of the step at hand.
-  IslandSystem* system_ = &soft_;
   Accept accept_ = Accept::Settled;
   EndDetectionOutcome seen_;
   int look_ = 0;         ///< Number of the next look.

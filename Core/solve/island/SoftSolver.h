@@ -13,7 +13,8 @@
 ///     warm      the impulses of the last substep
 ///     press     closed: ΔP = −(m (v + max(β g, −v_r)) + s P) / (1 + s)
 ///               open:   ΔP = −m (v + g/h);  P ≥ 0
-///     move      turns from the angular momentum
+///               across, where it is squeezed or has crept: ΔT = −m (v + (β w − c v_rest)₊)
+///     move      turns from the angular momentum; w goes on by h v where it does not slide
 ///     relax     P ← max(0, P − m v); friction within μ P + c h
 ///
 /// with m the effective mass, β = ω / (2 ζ + h ω), ω² = pₙ/m but no more than a quarter of the
@@ -21,13 +22,18 @@
 /// P/(h pₙ), as of Shi's spring. Pressing and relaxing go on around rows that change by more than
 /// their resting speed.
 ///
+/// w is the creep of a row, how far its rocks have moved across while friction held them: friction
+/// of speeds has no way back of what sweeps leave over. The contact keeps it from step to step.
+/// Creep within a small share of the resting speed is let be, so that columns and walls stand.
+///
 /// The impulse of a row that stopped what closed would throw it back in the next substep, so that
 /// such a row begins anew. One that stops something in two substeps in succession carries a load:
 /// if it began anew each time, what lies on it would creep for ever.
 
 #include "base/parallel.h"
-#include "solve/island/IslandSystem.h"
 #include "solve/island/PairSprings.h"
+#include "solve/island/island.h"
+#include "solve/step/StepSolver.h"
 
 #include <array>
 #include <cstddef>
@@ -36,24 +42,30 @@
 namespace rockfall
 {
 
-class SoftSolver final : public IslandSystem
+class SoftSolver
 {
 public:
+  /// Sets the rows up and solves them. Bodies and contacts stay where they are until `finish`.
   void begin(const StepRequest& request, std::vector<IslandBody>& bodies,
-    std::vector<IslandContact>& contacts) override;
-  bool hasSolution() const override { return !movers_.empty(); }
-  bool needsRecheck() const override { return false; }
-  void append() override;
-  void noteDetection() override;
-  void solve() override;
-  IslandOutcome finish(Accept accept, bool deep) override;
+    std::vector<IslandContact>& contacts);
+  /// Takes up what a look has found: contacts behind those that are known, whose `distance` is that
+  /// at the end, the rest of them as all stands at the start.
+  void append();
+  void noteDetection(); ///< The bodies have been looked at where they are now.
+  void solve();         ///< Again.
+  /// Writes bodies and contacts if the solution is accepted. `deep`: the last look found rocks deep
+  /// in each other.
+  IslandOutcome finish(Accept accept, bool deep);
 
-  BlockState end(std::size_t body) const override;
-  bool moved(std::size_t body) const override { return movers_[body].moved; }
-  double gap(std::size_t contact) const override;
-  double force(std::size_t contact) const override;
-  bool setGap(std::size_t contact, double found) override;
-  void setAbsent(std::size_t contact) override;
+  // What the solution says, by numbers of bodies and contacts.
+  BlockState end(std::size_t body) const;                            ///< At the end of the step.
+  bool moved(std::size_t body) const { return movers_[body].moved; } ///< Since the last look.
+  double gap(std::size_t contact) const;                             ///< At the end of the step, m.
+  double force(std::size_t contact) const;                           ///< Along the normal, N.
+  /// The gap is found to be another one (m). No contact is asked to open further than it was.
+  /// Returns whether this changes anything.
+  bool setGap(std::size_t contact, double found);
+  void setAbsent(std::size_t contact); ///< Lets go or sets in again, as its `absent` says.
 
   PairStiffness stiffness; ///< See IslandSolver.
 
@@ -84,7 +96,7 @@ private:
     Vec3 seenAt, seenTurn; ///< Displacement and turn at the last look.
   };
   /// A contact while it is solved for, of a point that moves with the rock `a`: what sweeps go
-  /// over, in three cache lines.
+  /// over, in four cache lines.
   struct alignas(64) ContactRow
   {
     int a, b;         ///< Movers; b < 0: the slope.
@@ -103,6 +115,7 @@ private:
     double cohesion;  ///< N s
     double rate;      ///< β, 1/s
     double softness;  ///< m β / (h pₙ)
+    Vec3 creep;       ///< w, of a relative to b, m.
     double resting;   ///< Speed below which a touch is no impact, m/s.
     double slide2;    ///< Square of how far its rocks may slide and weigh the same, m².
   };
@@ -111,7 +124,7 @@ private:
   {
     bool flipped;   ///< `a` is the contact's second rock.
     double gap0;    ///< Where the step begins, m.
-    double spring;  ///< N/m
+    double spring;  ///< pₙ, N/m
     double before;  ///< Speed along the normal before an impact round, m/s.
     double pending; ///< ≥ 0: speed at which an impact that was under way leaves, m/s.
   };
@@ -196,8 +209,9 @@ private:
   static void book(const ContactRow& row, double along, const Vec3& across, const Vec3& mean,
     const Vec3& meanA, Result& result);
   void warm(ContactRow& row);
-  void keepPushing(std::size_t strip); ///< Busy manifolds that push; notes their rocks.
-  bool solveNormal(ContactRow& row);   ///< Whether by more than the resting speed.
+  void keepPushing(std::size_t strip);     ///< Busy manifolds that push; notes their rocks.
+  bool solveNormal(ContactRow& row);       ///< Whether by so much that others may change.
+  void followCreep(ContactRow& row) const; ///< To where its rocks have moved.
   bool relax(ContactRow& row);
   /// Friction under an impulse P (N s) along the normal. Returns by how much it changes, N s.
   static Vec3 solveFriction(ContactRow& row, double P, const Vec3& across);

@@ -21,7 +21,6 @@ IslandOutcome SoftSolver::finish(Accept accept, bool deep)
     deep = this->gapOf(k) < std::min(0.0, starts_[k].gap0) - kDeepStep * radius;
   }
   outcome.settled = !deep;
-  outcome.unconverged = deep;
   outcome.iterations = substeps_;
   outcome.accepted = !deep || accept == Accept::Any;
   if (outcome.accepted)
@@ -93,12 +92,15 @@ void SoftSolver::writeContact(std::size_t row)
                                                                 : ContactState::Sliding;
     // Springs that carry what it carries.
     c.offset = c.distance + r.P / (h_ * c.stiffness);
-    c.slip = (starts_[row].flipped ? 1.0 : -1.0) / (h_ * c.shearStiffness) * r.T;
+    const double side = starts_[row].flipped ? -1.0 : 1.0;
+    c.slip = (-side / (h_ * c.shearStiffness)) * r.T;
+    c.creep = side * r.creep;
   }
   else
   {
     c.state = ContactState::Open;
     c.slip.setZero();
+    c.creep.setZero();
     c.offset = std::min(0.0, c.distance);
   }
 }

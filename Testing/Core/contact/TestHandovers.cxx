@@ -1,4 +1,4 @@
-// Rocks that come to a crowd or leave it: what they are in the middle of goes on.
+// Rocks that come to an island or leave it: what they are in the middle of goes on.
 
 #include "piles.h"
 
@@ -27,7 +27,7 @@ int mostTogether(Pile& pile, double until)
 
 } // namespace
 
-TEST(Handovers, WhoHasLeftACrowdReboundsAsWhoNeverWasInOne)
+TEST(Handovers, WhoHasLeftAnIslandReboundsAsWhoNeverWasInOne)
 {
   // Two posts that part fall on the floor, each by itself, on four corners at once. (A cube's mass
   // as one of its corners feels it is just a quarter of its own: it would show nothing.)

@@ -102,10 +102,10 @@ TEST(Pinched, OverlapThatABounceLeavesHoldsNoEnergy)
   // A cube in the slope or in another one, open, that leaves by a bounce but is still in there at
   // the end of the step; once it is pushed by the contact, once it flies up as fast as that anyway.
   const Block block(makeShape(Shape::Cube, 1.0), 2500.0, 1e9, 0.2);
-  for (int k = 0; k < 8; ++k)
+  for (int k = 0; k < 4; ++k)
   {
     SCOPED_TRACE(k);
-    const bool between = k % 2 == 0, pushed = k % 4 < 2;
+    const bool between = k % 2 == 0, pushed = k < 2;
     std::array<BlockState, 2> states;
     states[0].velocity.z() = pushed ? -1.0 : 5.0;
     states[1].position.z() = -0.9;
@@ -118,7 +118,7 @@ TEST(Pinched, OverlapThatABounceLeavesHoldsNoEnergy)
     contacts[0].contact = &c;
     contacts[0].first = 0;
     contacts[0].second = between ? 1 : -1;
-    contacts[0].reboundSpeed = contacts[0].restitution = 0.5;
+    contacts[0].restitution = 0.5;
     std::vector<IslandBody> bodies(between ? 2 : 1);
     for (std::size_t i = 0; i < bodies.size(); ++i)
     {
@@ -126,12 +126,9 @@ TEST(Pinched, OverlapThatABounceLeavesHoldsNoEnergy)
       bodies[i].state = &states[i];
     }
     IslandSolver solver;
-    solver.method = k < 4 ? IslandMethod::Soft : IslandMethod::Crowd;
     const StepRequest request = lastingStep(1e-3, 0.0);
-    for (const double bounce : { 0.5, -1.0 })
+    for (int step = 0; step < 2; ++step)
     {
-      contacts[0].approach = states[1].velocity.z() - states[0].velocity.z();
-      contacts[0].reboundSpeed = bounce;
       contacts[0].closed = c.closed();
       solver.step(request, bodies, contacts, Accept::Any);
       EXPECT_NEAR(states[0].velocity.z() - states[1].velocity.z(), pushed ? 0.5 : 5.0, 0.02);
@@ -147,51 +144,47 @@ TEST(Pinched, WhatASpringHoldsIsAllThatALoadGets)
   // times its mass on it: it leaves no faster than the energy of its spring drives all of them.
   for (const double mass : { 1e-2, 1.0, 30.0, 1000.0 })
   {
-    for (const IslandMethod method : { IslandMethod::Soft, IslandMethod::Crowd })
+    SCOPED_TRACE(mass);
+    const Block stone(makeShape(Shape::Cube, 0.03), 2500.0, 1e9, 0.2);
+    const Block boulder(makeShape(Shape::Cube, 0.03 * mass), 2500.0, 1e9, 0.2);
+    const double h = 5e-3, half = 0.5 * std::cbrt(0.03), other = 0.5 * std::cbrt(0.03 * mass);
+    std::array<BlockState, 2> states;
+    states[1].position.z() = half + other;
+    std::array<Contact, 2> touches;
+    std::vector<IslandContact> contacts(2);
+    for (std::size_t k = 0; k < 2; ++k)
     {
-      SCOPED_TRACE(std::to_string(mass) + ", method " + std::to_string(int(method)));
-      const Block stone(makeShape(Shape::Cube, 0.03), 2500.0, 1e9, 0.2);
-      const Block boulder(makeShape(Shape::Cube, 0.03 * mass), 2500.0, 1e9, 0.2);
-      const double h = 5e-3, half = 0.5 * std::cbrt(0.03), other = 0.5 * std::cbrt(0.03 * mass);
-      std::array<BlockState, 2> states;
-      states[1].position.z() = half + other;
-      std::array<Contact, 2> touches;
-      std::vector<IslandContact> contacts(2);
-      for (std::size_t k = 0; k < 2; ++k)
-      {
-        Contact& c = touches[k];
-        c.normal = Vec3::UnitZ();
-        c.point = Vec3(0.0, 0.0, k == 0 ? -half : half);
-        c.stiffness = c.shearStiffness = 1e9;
-        c.stopped = stone.mass();
-        contacts[k].contact = &c;
-      }
-      touches[0].state = ContactState::Sliding;
-      touches[0].distance = -4e-3;
-      contacts[0].first = 0;
-      contacts[0].closed = true;
-      contacts[0].reboundSpeed = bounceLeft(touches[0], 0.0);
-      touches[1].distance = 1e-6;
-      contacts[1].first = 1;
-      contacts[1].second = 0;
-      std::vector<IslandBody> bodies(2);
-      bodies[0].block = &stone;
-      bodies[1].block = &boulder;
-      for (std::size_t i = 0; i < 2; ++i)
-      {
-        bodies[i].state = &states[i];
-      }
-      const double stored = touches[0].springEnergy();
-      EXPECT_NEAR(contacts[0].reboundSpeed, std::sqrt(2.0 * stored / stone.mass()), 1e-3);
-      IslandSolver solver;
-      solver.method = method;
-      const StepRequest request = lastingStep(h, 0.0);
-      solver.step(request, bodies, contacts, Accept::Any);
-      const double moving =
-        rigidKineticEnergy(stone, states[0]) + rigidKineticEnergy(boulder, states[1]);
-      EXPECT_LT(moving, 1.05 * stored); // what is held back is held in three rounds
-      EXPECT_GE(states[0].velocity.z(), -1e-12);
+      Contact& c = touches[k];
+      c.normal = Vec3::UnitZ();
+      c.point = Vec3(0.0, 0.0, k == 0 ? -half : half);
+      c.stiffness = c.shearStiffness = 1e9;
+      c.stopped = stone.mass();
+      contacts[k].contact = &c;
     }
+    touches[0].state = ContactState::Sliding;
+    touches[0].distance = -4e-3;
+    contacts[0].first = 0;
+    contacts[0].closed = true;
+    contacts[0].reboundSpeed = bounceLeft(touches[0], 0.0);
+    touches[1].distance = 1e-6;
+    contacts[1].first = 1;
+    contacts[1].second = 0;
+    std::vector<IslandBody> bodies(2);
+    bodies[0].block = &stone;
+    bodies[1].block = &boulder;
+    for (std::size_t i = 0; i < 2; ++i)
+    {
+      bodies[i].state = &states[i];
+    }
+    const double stored = touches[0].springEnergy();
+    EXPECT_NEAR(contacts[0].reboundSpeed, std::sqrt(2.0 * stored / stone.mass()), 1e-3);
+    IslandSolver solver;
+    const StepRequest request = lastingStep(h, 0.0);
+    solver.step(request, bodies, contacts, Accept::Any);
+    const double moving =
+      rigidKineticEnergy(stone, states[0]) + rigidKineticEnergy(boulder, states[1]);
+    EXPECT_LT(moving, 1.05 * stored);
+    EXPECT_GE(states[0].velocity.z(), -1e-12);
   }
 }
 
@@ -202,7 +195,7 @@ TEST(Pinched, StepThatMissesDeeplyIsCut)
   const Block block(makeShape(Shape::Cube, 1.0), 2500.0, 1e9, 0.2);
   for (const double missed : { 0.5 * kCutMiss, 2.0 * kCutMiss })
   {
-    for (const Accept accept : { Accept::Converging, Accept::Any })
+    for (const Accept accept : { Accept::Settled, Accept::Any })
     {
       SCOPED_TRACE(std::to_string(missed) + ", accept " + std::to_string(int(accept)));
       BlockState state;
@@ -215,7 +208,6 @@ TEST(Pinched, StepThatMissesDeeplyIsCut)
       std::vector<IslandContact> contacts(1);
       contacts[0].contact = &c;
       contacts[0].first = 0;
-      contacts[0].approach = 1.0;
       std::vector<IslandBody> bodies(1);
       bodies[0].block = &block;
       bodies[0].state = &state;

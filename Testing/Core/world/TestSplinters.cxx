@@ -194,13 +194,13 @@ TEST(Splinters, WhatFliesIsOverTheSlope)
   }
 }
 
-// Newton's law of restitution with friction may make energy under a long lever: a bounce is held
-// back to what makes none.
+// Newton's law of restitution with friction may make energy under a long lever: an impact is scaled
+// down to what makes none.
 TEST(Splinters, BounceMakesNoEnergy)
 {
   std::mt19937 random(41);
   std::uniform_real_distribution<double> u(-1.0, 1.0);
-  int held = 0, bounced = 0;
+  int bounced = 0;
   for (int k = 0; k < 800; ++k)
   {
     const bool between = k % 2 != 0, rough = k % 4 < 2;
@@ -230,52 +230,41 @@ TEST(Splinters, BounceMakesNoEnergy)
       continue;
     }
     ++bounced;
-    for (const IslandMethod method : { IslandMethod::Soft, IslandMethod::Crowd })
+    std::array<BlockState, 2> states = before;
+    Contact c;
+    c.point = point;
+    c.normal = Vec3::UnitZ();
+    c.distance = 1e-6;
+    c.stiffness = c.shearStiffness = 1e9;
+    std::vector<IslandContact> contacts(1);
+    contacts[0].contact = &c;
+    contacts[0].first = 0;
+    contacts[0].second = between ? 1 : -1;
+    contacts[0].friction = rough ? 1.0 : 0.0;
+    contacts[0].restitution = k % 8 < 4 ? 1.0 : 0.8;
+    std::vector<IslandBody> bodies(between ? 2 : 1);
+    double energy = 0.0;
+    for (std::size_t i = 0; i < bodies.size(); ++i)
     {
-      std::array<BlockState, 2> states = before;
-      Contact c;
-      c.point = point;
-      c.normal = Vec3::UnitZ();
-      c.distance = 1e-6;
-      c.stiffness = c.shearStiffness = 1e9;
-      std::vector<IslandContact> contacts(1);
-      contacts[0].contact = &c;
-      contacts[0].first = 0;
-      contacts[0].second = between ? 1 : -1;
-      contacts[0].friction = rough ? 1.0 : 0.0;
-      contacts[0].approach = approach;
-      contacts[0].restitution = k % 8 < 4 ? 1.0 : 0.8;
-      contacts[0].reboundSpeed = contacts[0].restitution * approach;
-      const double asked = contacts[0].reboundSpeed;
-      std::vector<IslandBody> bodies(between ? 2 : 1);
-      double energy = 0.0;
-      for (std::size_t i = 0; i < bodies.size(); ++i)
-      {
-        bodies[i].block = &blocks[i];
-        bodies[i].state = &states[i];
-        energy -= rigidKineticEnergy(blocks[i], states[i]);
-      }
-      IslandSolver solver;
-      solver.method = method;
-      const StepRequest request = lastingStep(1e-4, 0.0); // so short that nothing turns
-      solver.step(request, bodies, contacts, Accept::Any);
-      for (std::size_t i = 0; i < bodies.size(); ++i)
-      {
-        energy += rigidKineticEnergy(blocks[i], states[i]);
-      }
-      // A bounce may give up to 1e-3 of what comes in; what is held back is held in three rounds.
-      const double incoming = 0.5 * c.normalForce * request.duration * approach;
-      EXPECT_LT(energy, 0.01 * incoming) << "case " << k << ", method " << int(method);
-      held += contacts[0].reboundSpeed < asked; // of a crowd: the impulses of others become less
-      if (!rough)
-      {
-        EXPECT_EQ(contacts[0].reboundSpeed, asked) << "case " << k; // Newton's law alone makes none
-        EXPECT_GT(energy, -(1.0 - 0.8 * 0.8 + 0.02) * incoming) << "case " << k;
-      }
+      bodies[i].block = &blocks[i];
+      bodies[i].state = &states[i];
+      energy -= rigidKineticEnergy(blocks[i], states[i]);
+    }
+    IslandSolver solver;
+    const StepRequest request = lastingStep(1e-4, 0.0); // so short that nothing turns
+    solver.step(request, bodies, contacts, Accept::Any);
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+    {
+      energy += rigidKineticEnergy(blocks[i], states[i]);
+    }
+    const double incoming = 0.5 * c.normalForce * request.duration * approach;
+    EXPECT_LT(energy, 0.01 * incoming) << "case " << k;
+    if (!rough)
+    {
+      EXPECT_GT(energy, -(1.0 - 0.8 * 0.8 + 0.02) * incoming) << "case " << k;
     }
   }
   EXPECT_GT(bounced, 300);
-  EXPECT_GT(held, 10);
 }
 
 // What turns a hundred times more easily about itself than across is spun up by any error of the
