@@ -1,5 +1,7 @@
 """The plugin loads, and has the names that scripts rely on."""
 
+import pydoc
+
 from paraview import servermanager, simple
 
 # label, name in Python, group, properties that scripts rely on
@@ -73,6 +75,15 @@ for (label, name, group, properties), proxy in zip(
         assert text and text.GetDescription().strip(), f"{name}.{wanted} has no documentation"
         # A name in Python comes from the label, one in a state file from the XML: they are one.
         assert proxy.SMProxy.GetProperty(wanted), f"{name}.{wanted} bears another name in the XML"
+    # help() of the function leads to that of its class, which has all properties and what they are.
+    where = f"servermanager.{group}.{name}"
+    assert f"help({where})" in getattr(simple, name).__doc__, name
+    told = pydoc.render_doc(getattr(getattr(servermanager, group), name), renderer=pydoc.plaintext)
+    for wanted in have:
+        if proxy.GetProperty(wanted).SMProperty.GetInformationOnly():
+            continue  # which is no attribute in Python
+        text = proxy.GetProperty(wanted).SMProperty.GetDocumentation().GetDescription()
+        assert f"|  {wanted}\n" in told and text.split()[0] in told, f"help({where}) says nothing of {wanted}"
 
 # Rock Blocks needs no terrain, and does not take what happens to be active for one.
 for active in (dem, rocks, None):
