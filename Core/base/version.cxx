@@ -3,9 +3,14 @@
 namespace rockfall
 {
 
+const char* versionNumber()
+{
+  return ROCKFALL_VERSION;
+}
+
 std::string versionText()
 {
-  return "RockfallDDA " ROCKFALL_VERSION;
+  return "RockfallDDA " + std::string(versionNumber());
 }
 
 } // namespace rockfall

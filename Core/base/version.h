@@ -8,6 +8,9 @@
 namespace rockfall
 {
 
+/// "1.2.3".
+const char* versionNumber();
+
 /// "RockfallDDA 1.2.3", as it stands in files that are written.
 std::string versionText();
 

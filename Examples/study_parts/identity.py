@@ -21,12 +21,10 @@ class Changed(Exception):
 
 
 def version():
-    """Of the plugin that is loaded."""
-    plugins = servermanager.vtkSMProxyManager.GetProxyManager().GetPluginManager().GetLocalInformation()
-    for k in range(plugins.GetNumberOfPlugins()):
-        if plugins.GetPluginName(k) == "RockfallDDA" and plugins.GetPluginLoaded(k):
-            return plugins.GetPluginVersion(k)
-    return "unknown"
+    """Of the plugin that is loaded; ParaView 6.1 has none of its plugins'."""
+    run = servermanager.filters.RockfallSimulation().SMProxy
+    run.UpdatePropertyInformation()
+    return run.GetProperty("ProgramVersion").GetElement(0)
 
 
 def gdal():

@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "base/text/numberText.h"
+#include "base/version.h"
 #include "shared/arrays.h"
 #include "shared/errorReport.h"
 #include "shared/inputs.h"
@@ -400,6 +401,12 @@ bool vtkRockfallSimulation::GetNeedsUpdate()
     return true;
   }
   return false;
+}
+
+//------------------------------------------------------------------------------
+const char* vtkRockfallSimulation::GetProgramVersion()
+{
+  return rockfall::versionNumber();
 }
 
 //------------------------------------------------------------------------------

@@ -316,6 +316,11 @@ public:
   ///@}
 
   /**
+   * The version of the program, "1.2.3". ParaView 6.1 does not say that of its plugins.
+   */
+  const char* GetProgramVersion();
+
+  /**
    * How often this filter has simulated since it was made.
    */
   vtkGetMacro(NumberOfRuns, int);
