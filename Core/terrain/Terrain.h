@@ -24,6 +24,14 @@ namespace rockfall
 class Obstacles;
 struct Structures;
 
+/// m per unit that a slope's file declares of its numbers, which were multiplied by it; 1 for metres
+/// and where nothing is declared. Files beside it may be in the same units and say nothing.
+struct FileUnits
+{
+  double heights = 1.0;
+  double plan = 1.0; ///< Of coordinates that have no CRS; else 1.
+};
+
 /// Where a raster stands in the world.
 struct GridGeometry
 {
@@ -33,6 +41,7 @@ struct GridGeometry
   double xOrigin = 0.0;  ///< Real easting of the lower left node, m.
   double yOrigin = 0.0;  ///< Real northing of the lower left node, m.
   std::string crs;       ///< WKT; empty for a local system.
+  FileUnits fileUnits{}; ///< Of the file that was read.
 
   std::int64_t nodeCount() const { return std::int64_t(columns) * rows; }
   std::int64_t cellCount() const { return std::int64_t(columns - 1) * (rows - 1); }

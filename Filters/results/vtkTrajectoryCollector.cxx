@@ -113,10 +113,11 @@ std::vector<CollectorLine> readLines(const std::string& fileName, const std::str
   std::vector<std::string>& notes)
 {
   const std::string crs = rockfall::filters::readCrs(trajectories->GetFieldData());
+  const rockfall::FileUnits units = rockfall::filters::readFileUnits(trajectories->GetFieldData());
   Box2 all;
   std::string layer;
   std::vector<CollectorLine> lines;
-  for (rockfall::LayerLine& read : rockfall::readLineLayer(fileName, crs, layerName, &notes))
+  for (rockfall::LayerLine& read : rockfall::readLineLayer(fileName, crs, layerName, &notes, units))
   {
     layer = read.layer;
     CollectorLine& line = lines.emplace_back();

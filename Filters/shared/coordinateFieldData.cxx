@@ -25,6 +25,23 @@ std::string readCrs(vtkFieldData* fieldData)
   return crs && crs->GetNumberOfValues() > 0 ? std::string(crs->GetValue(0)) : std::string();
 }
 
+void writeFileUnits(const FileUnits& units, vtkFieldData* fieldData)
+{
+  if (units.heights != 1.0 || units.plan != 1.0)
+  {
+    const double both[] = { units.heights, units.plan };
+    addArray<vtkDoubleArray>(fieldData, kFileUnitsArray, 2)->InsertNextTuple(both);
+  }
+}
+
+FileUnits readFileUnits(vtkFieldData* fieldData)
+{
+  vtkDataArray* both = fieldData->GetArray(kFileUnitsArray);
+  return both && both->GetNumberOfComponents() == 2 && both->GetNumberOfTuples() == 1
+    ? FileUnits{ both->GetComponent(0, 0), both->GetComponent(0, 1) }
+    : FileUnits{};
+}
+
 void checkSameCrs(vtkFieldData* fieldData, const std::string& who, vtkFieldData* terrain)
 {
   const std::string own = readCrs(fieldData), ground = readCrs(terrain);

@@ -4,6 +4,7 @@
 /// Coordinate system of data, as field data: TerrainCRS, its WKT, and LocalOrigin, m.
 
 #include "base/types.h"
+#include "terrain/Terrain.h"
 
 #include <string>
 
@@ -14,6 +15,12 @@ namespace rockfall::filters
 
 inline constexpr char kCrsArray[] = "TerrainCRS";
 inline constexpr char kOriginArray[] = "LocalOrigin";
+
+/// m per unit of heights and of coordinates in the slope's file; only there if one is not 1.
+inline constexpr char kFileUnitsArray[] = "TerrainFileUnits";
+
+void writeFileUnits(const FileUnits& units, vtkFieldData* fieldData);
+FileUnits readFileUnits(vtkFieldData* fieldData);
 
 /// Puts TerrainCRS alone there; nothing if `wkt` is empty, because nothing is known then.
 void writeCrs(const std::string& wkt, vtkFieldData* fieldData);

@@ -125,7 +125,7 @@ bool isOfSlope(const char* name)
 
 void referToSlope(vtkFieldData* from, vtkFieldData* to)
 {
-  for (const char* name : { kGridArray, kCrsArray, kOriginArray, keyName })
+  for (const char* name : { kGridArray, kCrsArray, kOriginArray, kFileUnitsArray, keyName })
   {
     if (vtkAbstractArray* array = from->GetAbstractArray(name))
     {

@@ -135,6 +135,7 @@ ShownGrid readGrid(vtkFieldData* fieldData)
   shown.grid.yOrigin = g[4];
   shown.stride = gridCount(g[5], "as its stride");
   shown.grid.crs = readCrs(fieldData);
+  shown.grid.fileUnits = readFileUnits(fieldData);
   return shown;
 }
 
@@ -363,6 +364,7 @@ void writeTerrain(std::shared_ptr<const Terrain> terrain, int stride, vtkFieldDa
       material.frictionAngleDeviation, material.cohesion, roughness.mean, roughness.deviation,
       double(material.restitutionModel), material.tangentialRestitution,
       material.restitutionSpeed });
+  writeFileUnits(grid.fileUnits, fieldData);
   const Vec3 origin = grid.origin();
   addNumbers(fieldData, kOriginArray, { origin.x(), origin.y(), origin.z() });
   vtkNew<vtkStringArray> crs;

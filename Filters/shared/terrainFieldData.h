@@ -11,6 +11,8 @@
 /// |                  | (m), stride of the shown mesh (1 = every CFE is shown)                    |
 /// | TerrainCRS       | WKT of the coordinate system, empty for a local one; with a vertical part |
 /// |                  | if the file says what its heights refer to                                |
+/// | TerrainFileUnits | m per unit of heights and of coordinates in the slope's file; only if one  |
+/// |                  | is not 1                                                                  |
 /// | TerrainMaterial  | restitution, its deviation, φ (rad), its deviation, cohesion (N),         |
 /// |                  | roughness mean and deviation (m), number of the restitution model,        |
 /// |                  | tangential restitution, speed of the speed-dependent model (m/s). Files   |

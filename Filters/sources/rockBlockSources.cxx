@@ -111,6 +111,7 @@ void vtkRockBlockSource::FindSources(vtkPolyData* terrainInput, Sources& sources
     options.targetCrs = sources.crs;
     options.layer = this->LayerName;
     options.haveTerrain = terrain != nullptr;
+    options.terrainUnits = terrain ? terrain->geometry().fileUnits : options.terrainUnits;
     options.mostRocks = this->MaximumRocks;
     rockfall::SourceLayer layer = rockfall::readSourceLayer(this->FileName, options);
     if (terrain)

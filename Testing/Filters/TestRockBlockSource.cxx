@@ -2,6 +2,7 @@
 
 #include "vtkCellData.h"
 #include "vtkDEMToCFESource.h"
+#include "vtkFieldData.h"
 #include "vtkMassProperties.h"
 #include "vtkPolyData.h"
 #include "vtkRockBlockSource.h"
@@ -415,6 +416,29 @@ TEST_F(TestRockBlockSource, SteepGroundAndVolumeLaws)
   this->Source->SetMaximumRocks(49);
   EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
   this->ExpectOneError({ "50 rocks", "MaximumRocks", "49" });
+}
+
+TEST_F(TestRockBlockSource, HeightsWithoutAUnitOnASlopeInFeetAreNoted)
+{
+  vtkNew<vtkDEMToCFESource> slope;
+  slope->SetFileName(this
+                       ->WriteFile("slope.txt",
+                         "north: 30\nsouth: 0\neast: 30\nwest: 0\nrows: 3\ncols: 3\nmultiplier: "
+                         "0.3048\n300 300 300\n200 200 200\n100 100 100\n")
+                       .c_str());
+  this->Source->SetInputConnection(1, slope->GetOutputPort());
+  this->Source->SetFileName(this->WriteFile("rocks.csv", "x,y,z\n15,15,230\n").c_str());
+  vtkPolyData* blocks = this->Update();
+  ASSERT_GT(blocks->GetNumberOfCells(), 0);
+  auto* notes = vtkStringArray::SafeDownCast(blocks->GetFieldData()->GetAbstractArray("Notes"));
+  ASSERT_TRUE(notes);
+  std::string all;
+  for (vtkIdType k = 0; k < notes->GetNumberOfValues(); ++k)
+  {
+    all += std::string(notes->GetValue(k)) + "\n";
+  }
+  EXPECT_NE(all.find("rocks.csv, row 1: its field \"z\" of 230 says no unit"), std::string::npos)
+    << all;
 }
 
 TEST_F(TestRockBlockSource, BadValuesOfSources)

@@ -190,7 +190,7 @@ Fields::Fields(
 
 void Fields::fail(const std::string& what) const
 {
-  throw DataError(fileName_ + ", row " + std::to_string(row_) + ": " + what);
+  throw DataError(this->where() + ": " + what);
 }
 
 void Fields::refuseLostText(const Messages& messages) const

@@ -52,6 +52,8 @@ public:
     std::int64_t row);
 
   const std::string& fileName() const { return fileName_; }
+  /// File and row, as messages begin.
+  std::string where() const { return fileName_ + ", row " + std::to_string(row_); }
   [[noreturn]] void fail(const std::string& what) const;
   /// Fails with what was said when the row was read if a word was lost: OGR only warns where a
   /// typed table (.csvt) holds text in a column of numbers, and gives 0.

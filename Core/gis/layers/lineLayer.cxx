@@ -8,6 +8,7 @@
 #include "gis/layers/barrierUnits.h"
 #include "gis/layers/lines.h"
 #include "gis/trust/heights.h"
+#include "gis/trust/unitDoubt.h"
 
 #include <ogrsf_frmts.h>
 
@@ -28,11 +29,12 @@ class LineReader
 {
 public:
   LineReader(const std::string& fileName, OGRLayer& layer, const LayerHeights& heights,
-    const std::string& targetCrs, std::vector<std::string>& notes)
+    const std::string& targetCrs, const FileUnits& slope, std::vector<std::string>& notes)
     : fileName_(fileName)
     , columns_(columnsOf(*layer.GetLayerDefn()))
     , plane_(heights.plane)
     , from_(heights.horizontal)
+    , doubt_(heights, slope)
   {
     if (!targetCrs.empty() && from_)
     {
@@ -59,6 +61,7 @@ public:
 
   std::vector<LayerLine> lines;
   std::int64_t outlines = 0; ///< Of polygons, among the lines.
+  void tellDoubt(std::vector<std::string>& notes) const { doubt_.tell(notes); }
 
 private:
   void add(const FeatureRow& row, const OGRLineString& part, LayerLine line)
@@ -67,6 +70,7 @@ private:
     {
       Eigen::Vector2d place(part.getX(k), part.getY(k));
       const Eigen::Vector2d written = place;
+      doubt_.place(row, place.x(), place.y());
       place *= plane_;
       if (!place.allFinite() || !change_.forth(1, &place.x(), &place.y()))
       {
@@ -90,12 +94,13 @@ private:
   double plane_;
   CrsPtr from_, to_;
   CrsChange change_;
+  UnitDoubt doubt_;
 };
 
 } // namespace
 
 std::vector<LayerLine> readLineLayer(const std::string& fileName, const std::string& targetCrs,
-  const std::string& layerName, std::vector<std::string>* notes)
+  const std::string& layerName, std::vector<std::string>* notes, const FileUnits& slope)
 {
   std::vector<std::string> told;
   Messages messages;
@@ -112,7 +117,7 @@ std::vector<LayerLine> readLineLayer(const std::string& fileName, const std::str
     told.push_back(heights.doubt);
   }
   file.refuseDegrees(heights.horizontal, targetCrs);
-  LineReader reader(fileName, layer, heights, targetCrs, told);
+  LineReader reader(fileName, layer, heights, targetCrs, slope, told);
   while (const OGRFeatureUniquePtr feature = file.next())
   {
     reader.read(*feature, file.number(), messages);
@@ -133,6 +138,7 @@ std::vector<LayerLine> readLineLayer(const std::string& fileName, const std::str
   if (notes)
   {
     file.tell(*notes, true);
+    reader.tellDoubt(*notes);
     notes->insert(notes->end(), told.begin(), told.end());
     if (reader.outlines > 0)
     {

@@ -4,6 +4,7 @@
 /// Roads, planned barriers and other lines from OGR layers.
 
 #include "base/types.h"
+#include "terrain/Terrain.h"
 
 #include <limits>
 #include <optional>
@@ -28,12 +29,14 @@ struct LayerLine
 /// (gis/layers/LayerFile.h has which one; `layer`: by name), curves as short straight pieces and
 /// without empty parts, brought to `targetCrs` (WKT) if that is given and the layer has a CRS.
 /// Column names without regard to case; empty cells are as good as no column. `notes`, if given,
-/// gets what was done to the data.
+/// gets what was done to the data, and a doubt about coordinates without a CRS if the `slope`'s file
+/// had other ones than metres.
 ///
 /// Throws FileError (missing, a folder, a raster, unreadable) or DataError naming file, feature,
 /// field and value: a geometry that is neither, a line of one place, no feature, a number that is
 /// none, negative or not finite, a place that has none in the other CRS. Prints nothing.
 std::vector<LayerLine> readLineLayer(const std::string& fileName, const std::string& targetCrs = {},
-  const std::string& layer = {}, std::vector<std::string>* notes = nullptr);
+  const std::string& layer = {}, std::vector<std::string>* notes = nullptr,
+  const FileUnits& slope = {});
 
 } // namespace rockfall

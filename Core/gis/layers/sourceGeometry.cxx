@@ -38,8 +38,9 @@ void gatherRings(const OGRGeometry& geometry, std::vector<const OGRLineString*>&
 
 } // namespace
 
-Vec3 SourcePlacing::world(const FeatureRow& row, double x, double y, double z) const
+Vec3 SourcePlacing::world(const FeatureRow& row, double x, double y, double z)
 {
+  doubt.place(row, x, y);
   Vec3 place(x * heights.plane, y * heights.plane, z);
   if (!std::isfinite(x) || !std::isfinite(y) || std::isinf(z))
   {
@@ -69,6 +70,7 @@ std::optional<double> SourcePlacing::column(const FeatureRow& row)
     if (number)
     {
       first = name;
+      doubt.height(row, name, *number);
       height = heights.ofColumn(name).metres(*number);
       anyHeight_ = true;
     }
@@ -84,6 +86,7 @@ double SourcePlacing::own(const FeatureRow& row, double x, double y, double z)
     row.fail("the point " + number(x) + ", " + number(y) + ", " + number(z) + " is not finite");
   }
   anyHeight_ = true;
+  doubt.height(row, {}, z);
   return this->changed(row, x, y, heights.metres(z));
 }
 
@@ -104,6 +107,7 @@ void SourcePlacing::tell(const std::string& fileName, std::vector<std::string>& 
   {
     heights.tell(notes);
   }
+  doubt.tell(notes);
   notes.insert(notes.end(), notes_.begin(), notes_.end());
   if (clamped_ > 0)
   {
@@ -124,6 +128,7 @@ void SourcePlacing::placePoint(const FeatureRow& row, const OGRPoint* point, Sou
   if (!point)
   {
     const double x = row.needed("x"), y = row.needed("y");
+    doubt.place(row, x, y);
     source.position = Vec3(x, y, elevation());
     return;
   }

@@ -8,6 +8,7 @@
 #include "gis/layers/sources.h"
 #include "gis/trust/heightReference.h"
 #include "gis/trust/heights.h"
+#include "gis/trust/unitDoubt.h"
 
 namespace rockfall::gis
 {
@@ -23,6 +24,7 @@ struct SourcePlacing
   std::optional<std::string> target;
   bool haveTerrain = false;
   std::vector<std::string> heightColumns = {}; ///< z, with whatever unit in its name.
+  UnitDoubt doubt = {};
 
   /// Fills geometry, position, parts and height of `source`. Throws DataError.
   void place(const FeatureRow& row, SourceRow& source);
@@ -30,7 +32,7 @@ struct SourcePlacing
   void tell(const std::string& fileName, std::vector<std::string>& notes) const;
 
 private:
-  Vec3 world(const FeatureRow& row, double x, double y, double z) const;
+  Vec3 world(const FeatureRow& row, double x, double y, double z);
   std::optional<double> column(const FeatureRow& row);
   double own(const FeatureRow& row, double x, double y, double z);
   double changed(const FeatureRow& row, double x, double y, double height);

@@ -317,8 +317,10 @@ SourceLayer readSourceLayer(const std::string& fileName, const SourceOptions& op
       // GeoJSON that names no CRS: its degrees are believed to be the slope's coordinates.
       placing.from.reset();
       placing.heights.reference.reset();
+      placing.heights.planeDeclared = false;
     }
   }
+  placing.doubt = UnitDoubt(placing.heights, options.terrainUnits);
   if (!options.targetCrs.empty())
   {
     placing.to = crsFromText(options.targetCrs);

@@ -6,6 +6,7 @@
 #include "base/VolumeDistribution.h"
 #include "base/types.h"
 #include "geometry/ShapeMix.h"
+#include "terrain/Terrain.h"
 
 #include <optional>
 #include <string>
@@ -75,6 +76,7 @@ struct SourceOptions
   std::string layer = {};
   /// There is a terrain to stand on: z may be missing.
   bool haveTerrain = false;
+  FileUnits terrainUnits = {}; ///< Of the terrain's file.
   /// More rows are an error, and so are more rocks.
   std::int64_t mostRocks = 1000000;
 };

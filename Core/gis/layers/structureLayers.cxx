@@ -11,6 +11,7 @@
 #include "gis/layers/lines.h"
 #include "gis/trust/heightReference.h"
 #include "gis/trust/heights.h"
+#include "gis/trust/unitDoubt.h"
 #include "terrain/Obstacles.h"
 #include "terrain/Terrain.h"
 #include "terrain/plausible.h"
@@ -50,6 +51,7 @@ public:
     , fileName_(fileName)
     , targetCrs_(terrain.geometry().crs)
     , notes_(notes)
+    , doubt_(heights, terrain.geometry().fileUnits)
     , origin_(terrain.geometry().origin().head<2>())
   {
     const CrsPtr& from = heights.horizontal;
@@ -66,6 +68,7 @@ public:
 
   Eigen::Vector2d local(const FeatureRow& row, double x, double y)
   {
+    doubt_.place(row, x, y);
     Eigen::Vector2d p = Eigen::Vector2d(x, y) * heights_.plane;
     if (!p.allFinite() || !change_.forth(1, &p.x(), &p.y()))
     {
@@ -80,6 +83,7 @@ public:
   /// Elevation over what the terrain's refer to, m, of a column's number, at the row's place.
   double elevation(const FeatureRow& row, const char* column, double number)
   {
+    doubt_.height(row, column, number);
     OGREnvelope box;
     if (const OGRGeometry* geometry = row.geometry())
     {
@@ -98,6 +102,7 @@ public:
   }
 
   const std::string& assumed() const { return assumed_; }
+  void tellDoubt() const { doubt_.tell(notes_); }
 
   Eigen::Vector2d least = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
   Eigen::Vector2d most = -least;
@@ -109,6 +114,7 @@ private:
   std::vector<std::string>& notes_;
   std::optional<HeightChange> heightChange_; ///< Made for the first elevation.
   CrsChange change_;
+  UnitDoubt doubt_;
   std::string assumed_; ///< For the message.
   Eigen::Vector2d origin_;
 };
@@ -146,6 +152,7 @@ void forEachRow(const LayerWish& wish, const Terrain& terrain, std::vector<std::
     use(row, file.number(), placing);
   }
   file.tell(notes, true);
+  placing.tellDoubt();
   if (count == 0)
   {
     throw DataError(fileName + ": layer \"" + layer.GetName() + "\" has no row");

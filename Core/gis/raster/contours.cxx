@@ -256,6 +256,7 @@ RasterSurface readContours(const std::string& fileName, const ContourOptions& op
   }
   const double area = (box.xMax - box.xMin) * (box.yMax - box.yMin);
   GridGeometry& grid = result.geometry;
+  grid.fileUnits = { field.heights.unit, heights.plane };
   grid.cellSize = options.cellSize > 0.0 ? options.cellSize : threeDigits(area / (2.0 * length));
   grid.xOrigin = box.xMin;
   grid.yOrigin = box.yMin;

@@ -10,6 +10,7 @@
 #include "gis/base/progress.h"
 #include "gis/layers/LayerFile.h"
 #include "gis/trust/heights.h"
+#include "gis/trust/unitDoubt.h"
 
 #include <cpl_string.h>
 #include <gdal_alg.h>
@@ -217,6 +218,7 @@ std::vector<std::uint8_t> fromPolygons(GroundKind kind, const GroundFiles& files
 
   std::vector<std::uint8_t> classes(std::size_t(cells.columns) * cells.rows, 0);
   Burner burner(cells, classes);
+  UnitDoubt doubt(units, cells.terrain.geometry().fileUnits);
   OGREnvelope all;
   bool overlaps = false;
   while (const OGRFeatureUniquePtr feature = file.next())
@@ -242,6 +244,7 @@ std::vector<std::uint8_t> fromPolygons(GroundKind kind, const GroundFiles& files
     }
     OGREnvelope extent;
     geometry->getEnvelope(&extent);
+    doubt.place(fields, extent.MinX, extent.MinY);
     all.Merge(extent);
     if (extent.MaxX < cells.box.xMin || extent.MinX > cells.box.xMax ||
       extent.MaxY < cells.box.yMin || extent.MinY > cells.box.yMax)
@@ -263,6 +266,7 @@ std::vector<std::uint8_t> fromPolygons(GroundKind kind, const GroundFiles& files
     burner.add(std::move(geometry), row);
   }
   file.tell(notes, true);
+  doubt.tell(notes);
   if (!all.IsInit())
   {
     throw DataError(files.layer + ": layer \"" + layer.GetName() + "\" has no polygon");

@@ -241,6 +241,7 @@ RasterSurface readRaster(const std::string& fileName, const RasterOptions& optio
     result.notes.push_back(std::to_string(nodata) + " of " + std::to_string(result.heights.size()) +
       " nodes have no data.");
   }
+  result.geometry.fileUnits = file.units();
   return result;
 }
 

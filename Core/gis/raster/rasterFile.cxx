@@ -109,6 +109,7 @@ void RasterFile::findPlace()
   }
   if (!crs_ && axes.metres != 1.0)
   {
+    planUnit_ = axes.metres;
     notes_.push_back("The coordinates in \"" + axes.unit + "\" were multiplied by " +
       number(axes.metres) + " to be metres.");
   }
@@ -163,6 +164,7 @@ void RasterFile::findPlace()
     if (metres > 0.0 && std::abs(metres - 1.0) > 1e-9)
     {
       std::for_each(affine_.begin(), affine_.end(), [metres](double& a) { a *= metres; });
+      planUnit_ = metres;
       notes_.push_back("The local coordinates in " + std::string(unit ? unit : "unnamed units") +
         " were multiplied by " + number(metres) + " to be metres.");
     }

@@ -8,6 +8,7 @@
 #include "gis/raster/resample.h"
 #include "gis/raster/textGrid.h"
 #include "gis/trust/heights.h"
+#include "terrain/Terrain.h"
 
 #include <string>
 #include <vector>
@@ -29,6 +30,7 @@ public:
   const CrsPtr& crs() const { return crs_; }
   /// CRS of the heights; see heightCrs. Null if the file does not say it.
   const CrsPtr& reference() const { return heights_.reference; }
+  FileUnits units() const { return { heights_.unit, planUnit_ }; }
   /// False for a picture without world coordinates, which is given cells of 1 m.
   bool georeferenced() const { return georeferenced_; }
 
@@ -58,6 +60,7 @@ private:
   std::array<double, 6> affine_{};
   CrsPtr crs_;
   bool georeferenced_ = true;
+  double planUnit_ = 1.0; ///< See FileUnits.
   Heights heights_;
   TextGrid text_;
 };

@@ -3,6 +3,7 @@
 #include "base/text/lengthUnit.h"
 #include "base/text/nameKey.h"
 #include "gis/base/fields.h"
+#include "gis/base/gdal.h"
 
 #include <algorithm>
 #include <charconv>
@@ -71,6 +72,11 @@ bool isNoUnit(const std::string& unit)
 bool isFoot(double metres)
 {
   return std::abs(metres - kFoot) < 1e-3 * kFoot;
+}
+
+std::string unitsText(double metres)
+{
+  return isFoot(metres) ? "feet" : "units of " + number(metres) + " m";
 }
 
 } // namespace rockfall::gis

@@ -30,4 +30,7 @@ bool isNoUnit(const std::string& unit);
 /// Whether so many metres are some foot.
 bool isFoot(double metres);
 
+/// "feet", "units of 0.01 m".
+std::string unitsText(double metres);
+
 } // namespace rockfall::gis

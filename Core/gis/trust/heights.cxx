@@ -48,11 +48,6 @@ double planeUnit(const OGRSpatialReference* crs)
   return metres > 0.0 && std::isfinite(metres) ? metres : 1.0;
 }
 
-std::string lengthText(double metres)
-{
-  return isFoot(metres) ? "feet" : "units of " + number(metres) + " m";
-}
-
 /// Declarations of the heights of one band, one after the other.
 class BandHeights
 {
@@ -99,6 +94,9 @@ public:
     }
     heights_.scale *= metres;
     heights_.offset *= metres;
+    // What -a_scale says where a unit cannot be written.
+    const double scale = std::abs(heights_.scale);
+    heights_.unit = metres == 1.0 && isFoot(scale) ? scale : std::abs(metres);
     heights_.reference = heightCrs(dataset_.GetSpatialRef());
     this->findEllipsoid();
     return heights_;
@@ -261,9 +259,9 @@ private:
     {
       return;
     }
-    notes_.push_back("The CRS " + crsLabel(*crs) + " is in " + lengthText(plane) +
+    notes_.push_back("The CRS " + crsLabel(*crs) + " is in " + unitsText(plane) +
       ", and nothing says what its heights are in; they were taken as metres. If they are " +
-      lengthText(plane) + ", gdal_translate -a_scale " + exactly(plane) + " says so");
+      unitsText(plane) + ", gdal_translate -a_scale " + exactly(plane) + " says so");
   }
 
   /// A variable over the reference ellipsoid, by its name.
@@ -303,6 +301,7 @@ Heights LayerHeights::ofColumn(const std::string& name) const
   if (const auto metres = metresPer(ColumnName(name).unit))
   {
     heights.scale = scale < 0.0 ? -*metres : *metres;
+    heights.unit = *metres;
   }
   return heights;
 }
@@ -325,6 +324,7 @@ LayerHeights heightsOf(GDALDataset& dataset, OGRLayer& layer, const std::string&
   LayerHeights heights;
   heights.horizontal = horizontalCrs(crs);
   heights.reference = heightCrs(crs);
+  heights.planeDeclared = crs != nullptr;
   const bool local = heights.horizontal && heights.horizontal->IsLocal();
   if (local)
   {
@@ -339,6 +339,8 @@ LayerHeights heightsOf(GDALDataset& dataset, OGRLayer& layer, const std::string&
   if (const auto axis = verticalAxis(crs))
   {
     heights.scale = axis->down ? -axis->metres : axis->metres;
+    heights.unit = axis->metres;
+    heights.heightsDeclared = true;
     if (heights.scale != 1.0)
     {
       heights.note = fileName + ": its heights were multiplied by " + number(heights.scale) +
@@ -354,7 +356,8 @@ LayerHeights heightsOf(GDALDataset& dataset, OGRLayer& layer, const std::string&
       throw DataError(fileName + ": its $INSUNITS is " + std::to_string(drawing->code) +
         ", which is the code of no unit");
     }
-    heights.plane = heights.scale = *drawing->metres;
+    heights.plane = heights.scale = heights.unit = *drawing->metres;
+    heights.planeDeclared = heights.heightsDeclared = true;
     if (heights.scale != 1.0)
     {
       notes.push_back(fileName + ": its coordinates and heights in " + drawing->name +
@@ -373,15 +376,15 @@ LayerHeights heightsOf(GDALDataset& dataset, OGRLayer& layer, const std::string&
   if (const double plane = planeUnit(crs); !sameLength(plane, 1.0))
   {
     const char* code = crs->GetAuthorityCode(nullptr);
-    heights.doubt = fileName + ": its CRS " + crsLabel(*crs) + " is in " + lengthText(plane) +
+    heights.doubt = fileName + ": its CRS " + crsLabel(*crs) + " is in " + unitsText(plane) +
       ", and nothing says what its heights are in; they were taken as metres. If they are " +
-      lengthText(plane) + ", a vertical CRS says so" +
+      unitsText(plane) + ", a vertical CRS says so" +
       (code && isFoot(plane) ? std::string(", as ogr2ogr -a_srs EPSG:") + code + "+6360 does"
                              : std::string());
   }
   if (isOfDriver(dataset, "LIBKML") || isOfDriver(dataset, "KML"))
   {
-    heights.kml = true;
+    heights.kml = heights.heightsDeclared = true;
     OGRSpatialReference egm96;
     if (egm96.SetFromUserInput("EPSG:4326+5773") == OGRERR_NONE)
     {

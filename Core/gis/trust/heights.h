@@ -27,7 +27,8 @@ struct Heights
 {
   double scale = 1.0;
   double offset = 0.0;
-  CrsPtr reference; ///< See heightCrs; null if nothing says what they refer to.
+  double unit = 1.0; ///< m per unit that is declared; 1 if none is.
+  CrsPtr reference;  ///< See heightCrs; null if nothing says what they refer to.
 
   double metres(double number) const { return number * scale + offset; }
 };
@@ -40,11 +41,13 @@ Heights heightsOf(GDALDataset& dataset, GDALRasterBand& band, const std::string&
 /// Of a layer: its coordinates, and its heights where it has any.
 struct LayerHeights : Heights
 {
-  double plane = 1.0; ///< m per unit of coordinates that are local ones; else 1.
-  CrsPtr horizontal;  ///< Null for local coordinates.
-  std::string note;   ///< To be told where heights are read; empty if they are metres.
-  std::string doubt;  ///< To be told where heights are read that may be feet; else empty.
-  bool kml = false;   ///< Each feature says what its altitude is over; see altitudeOf.
+  double plane = 1.0;           ///< m per unit of coordinates that are local ones; else 1.
+  CrsPtr horizontal;            ///< Null for local coordinates.
+  std::string note;             ///< To be told where heights are read; empty if they are metres.
+  std::string doubt;            ///< To be told where heights are read that may be feet; else empty.
+  bool kml = false;             ///< Each feature says what its altitude is over; see altitudeOf.
+  bool heightsDeclared = false; ///< Whether the CRS or the format says the unit of heights.
+  bool planeDeclared = false;   ///< The same of coordinates.
 
   /// Of a column, by the unit in its name (base/text/columnName.h); else as all of them.
   Heights ofColumn(const std::string& name) const;
