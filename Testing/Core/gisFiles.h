@@ -34,6 +34,12 @@ inline std::string writeFile(const std::string& name, const std::string& content
   return path;
 }
 
+/// Without its folder, as a file beside it has to name it: GDAL 3.13 reads raw numbers no other way.
+inline std::string nameOf(const std::string& path)
+{
+  return path.substr(path.find_last_of('/') + 1);
+}
+
 /// Text of a number that no locale changes.
 inline std::string exactText(double value)
 {
@@ -104,8 +110,8 @@ struct RawRaster
     }
     xml += "<VRTRasterBand dataType=\"" + type +
       "\" band=\"1\" subClass=\"VRTRawRasterBand\"><SourceFilename relativetoVRT=\"1\">" +
-      raw.substr(raw.find_last_of('/') + 1) + "</SourceFilename><PixelOffset>" +
-      std::to_string(size) + "</PixelOffset><LineOffset>" + std::to_string(size * columns) +
+      nameOf(raw) + "</SourceFilename><PixelOffset>" + std::to_string(size) +
+      "</PixelOffset><LineOffset>" + std::to_string(size * columns) +
       "</LineOffset><ByteOrder>LSB</ByteOrder>" + band + "</VRTRasterBand>" + dataset +
       "</VRTDataset>";
     return writeFile(name + ".vrt", xml);

@@ -38,6 +38,7 @@ def row(wrong, text):
     text = text.replace(os.getcwd() + "/", "")
     text = re.sub(r"this machine has [\d.]+ GB", "this machine has … GB", text)
     text = text.replace("recognized as being in a supported", "recognized as a supported")  # as GDAL 3.6 says it
+    text = re.sub(r"(At line \d+), character \d+", r"\1", text)  # which GDAL 3.13 counts otherwise
     sections[-1][1].append((wrong, text.replace("\n", " ")))
 
 

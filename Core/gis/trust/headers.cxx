@@ -1,10 +1,12 @@
 #include "gis/trust/headers.h"
 
+#include "base/errors.h"
 #include "base/text/nameKey.h"
 #include "gis/base/fields.h"
 #include "gis/trust/heightUnit.h"
 
 #include <cpl_conv.h>
+#include <cpl_minixml.h>
 #include <cpl_string.h>
 #include <cpl_vsi.h>
 #include <gdal_priv.h>
@@ -14,6 +16,7 @@
 #include <cstdlib>
 #include <functional>
 #include <memory>
+#include <set>
 
 namespace rockfall::gis
 {
@@ -210,6 +213,45 @@ std::optional<DrawingUnit> drawingUnit(GDALDataset& dataset, const std::string& 
     unit.metres = metres[std::size_t(*code)] > 0.0 ? metres[std::size_t(*code)] : 1.0;
   }
   return unit;
+}
+
+namespace
+{
+
+/// Modes of the geometries in an element and behind it.
+void gatherModes(const CPLXMLNode* node, std::set<std::string>& modes)
+{
+  for (; node; node = node->psNext)
+  {
+    const bool geometry = node->eType == CXT_Element &&
+      (EQUAL(node->pszValue, "Point") || EQUAL(node->pszValue, "LineString") ||
+        EQUAL(node->pszValue, "Polygon"));
+    if (geometry)
+    {
+      modes.insert(CPLGetXMLValue(node, "altitudeMode", "clampToGround"));
+    }
+    else
+    {
+      gatherModes(node->psChild, modes);
+    }
+  }
+}
+
+} // namespace
+
+std::string kmlMode(const std::string& fileName)
+{
+  const CPLXMLTreeCloser root(CPLParseXMLFile(fileName.c_str()));
+  CPLStripXMLNamespace(root.get(), nullptr, TRUE);
+  std::set<std::string> modes;
+  gatherModes(root.get(), modes);
+  if (modes.size() > 1)
+  {
+    throw DataError(fileName + ": has geometries of altitudeMode " + *modes.begin() + " and " +
+      *modes.rbegin() +
+      ", and this GDAL, without libkml, does not say which is whose; make a file of each");
+  }
+  return modes.empty() ? "clampToGround" : *modes.begin();
 }
 
 } // namespace rockfall::gis

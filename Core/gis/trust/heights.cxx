@@ -385,6 +385,10 @@ LayerHeights heightsOf(GDALDataset& dataset, OGRLayer& layer, const std::string&
   if (isOfDriver(dataset, "LIBKML") || isOfDriver(dataset, "KML"))
   {
     heights.kml = heights.heightsDeclared = true;
+    if (isOfDriver(dataset, "KML"))
+    {
+      heights.kmlMode = nameKey(kmlMode(fileName));
+    }
     OGRSpatialReference egm96;
     if (egm96.SetFromUserInput("EPSG:4326+5773") == OGRERR_NONE)
     {
@@ -400,7 +404,7 @@ Altitude altitudeOf(const LayerHeights& heights, const Fields& row)
   {
     return Altitude::Datum;
   }
-  const std::string mode = nameKey(row.text({ "altitudemode" }).value_or("clamptoground"));
+  const std::string mode = nameKey(row.text({ "altitudemode" }).value_or(heights.kmlMode));
   return mode == "absolute"        ? Altitude::Datum
     : mode.starts_with("relative") ? Altitude::Ground
                                    : Altitude::None;

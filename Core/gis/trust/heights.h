@@ -48,6 +48,8 @@ struct LayerHeights : Heights
   bool kml = false;             ///< Each feature says what its altitude is over; see altitudeOf.
   bool heightsDeclared = false; ///< Whether the CRS or the format says the unit of heights.
   bool planeDeclared = false;   ///< The same of coordinates.
+  /// altitudeMode of features that do not give it.
+  std::string kmlMode = "clamptoground";
 
   /// Of a column, by the unit in its name (base/text/columnName.h); else as all of them.
   Heights ofColumn(const std::string& name) const;

@@ -8,6 +8,7 @@
 #include "gis/layers/structureLayers.h"
 #include "gis/raster/contours.h"
 #include "gis/raster/raster.h"
+#include "gis/trust/headers.h"
 #include "gisFiles.h"
 #include "netCdf.h"
 #include "sheets.h"
@@ -465,6 +466,18 @@ TEST(Heights, ofKmlAreOverWhatTheirModeSays)
   EXPECT_TRUE(
     holds(messageOf<DataError>([&] { readSourceLayer(kml("relativeToGround", "-3"), options); }),
       { "-3 m" }));
+}
+
+TEST(Heights, ofKmlWithoutLibkmlHaveTheModeOfTheFile)
+{
+  EXPECT_EQ(gis::kmlMode(kml("absolute")), "absolute");
+  EXPECT_EQ(gis::kmlMode(kml("")), "clampToGround");
+  const std::string two = writeFile("two.kml",
+    "<kml xmlns=\"http://www.opengis.net/kml/2.2\"><Document><Placemark><Point><altitudeMode>"
+    "absolute</altitudeMode><coordinates>9,45,1</coordinates></Point></Placemark><Placemark><Point>"
+    "<coordinates>9,45,2</coordinates></Point></Placemark></Document></kml>");
+  EXPECT_TRUE(holds(messageOf<DataError>([&] { gis::kmlMode(two); }),
+    { two, "absolute", "clampToGround", "libkml" }));
 }
 
 SourceOptions onSite(const std::string& crs)

@@ -145,8 +145,8 @@ TEST(Raster, transparencyOfRealNumbersIsAMask)
     bytes.append(reinterpret_cast<const char*>(&alpha), sizeof(alpha));
   }
   raster.dataset = "<VRTRasterBand dataType=\"Float64\" band=\"2\" subClass=\"VRTRawRasterBand\">"
-                   "<ColorInterp>Alpha</ColorInterp><SourceFilename relativeToVRT=\"0\">" +
-    writeFile("alpha.raw", bytes) +
+                   "<ColorInterp>Alpha</ColorInterp><SourceFilename relativeToVRT=\"1\">" +
+    nameOf(writeFile("alpha.raw", bytes)) +
     "</SourceFilename><PixelOffset>8</PixelOffset><LineOffset>24</LineOffset><ByteOrder>LSB"
     "</ByteOrder></VRTRasterBand>";
   const RasterSurface surface = readRaster(raster.write());

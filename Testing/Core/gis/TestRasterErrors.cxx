@@ -161,8 +161,8 @@ TEST(RasterErrors, truncatedRawBandOfAVrt)
     return writeFile("backwards.vrt",
       "<VRTDataset rasterXSize=\"3\" rasterYSize=\"2\"><GeoTransform>0, 10, 0, 20, 0, -10"
       "</GeoTransform><VRTRasterBand dataType=\"Float64\" band=\"1\" "
-      "subClass=\"VRTRawRasterBand\"><SourceFilename>" +
-        numbers +
+      "subClass=\"VRTRawRasterBand\"><SourceFilename relativeToVRT=\"1\">" +
+        nameOf(numbers) +
         "</SourceFilename><ImageOffset>24</ImageOffset><PixelOffset>8</PixelOffset>"
         "<LineOffset>-24</LineOffset></VRTRasterBand></VRTDataset>");
   };
@@ -177,8 +177,8 @@ TEST(RasterErrors, truncatedMaskOfAVrt)
   RawRaster raster = smallRaster();
   const std::string mask = writeFile("mask.raw", std::string(5, '\1'));
   raster.dataset = "<MaskBand><VRTRasterBand dataType=\"Byte\" subClass=\"VRTRawRasterBand\">"
-                   "<SourceFilename relativeToVRT=\"0\">" +
-    mask +
+                   "<SourceFilename relativeToVRT=\"1\">" +
+    nameOf(mask) +
     "</SourceFilename><PixelOffset>1</PixelOffset><LineOffset>3</LineOffset></VRTRasterBand>"
     "</MaskBand>";
   const std::string path = raster.write();
