@@ -182,6 +182,7 @@ void LayerFile::choose()
 {
   const int count = dataset_->GetLayerCount();
   std::vector<OGRLayer*> layers;
+  layers.reserve(std::size_t(count));
   for (int i = 0; i < count; ++i)
   {
     layers.push_back(dataset_->GetLayer(i));

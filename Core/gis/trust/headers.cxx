@@ -48,7 +48,7 @@ std::string beside(const std::string& fileName, const std::string& extension)
 {
   for (const std::string& written : { extension, std::string(CPLString(extension).toupper()) })
   {
-    const std::string path = CPLResetExtension(fileName.c_str(), written.c_str());
+    std::string path = CPLResetExtension(fileName.c_str(), written.c_str());
     VSIStatBufL status;
     if (VSIStatExL(path.c_str(), &status, VSI_STAT_EXISTS_FLAG) == 0)
     {

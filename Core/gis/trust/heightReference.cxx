@@ -38,9 +38,9 @@ bool isCompound(const OGRSpatialReference& crs)
 std::string datumOf(const OGRSpatialReference& crs)
 {
   const CrsPtr flat = horizontalCrs(&crs);
-  const std::string datum = key(isCompound(crs) ? crs.GetAttrValue("COMPD_CS|VERT_CS|VERT_DATUM")
-      : flat                                    ? flat->GetAttrValue("DATUM")
-                                                : nullptr);
+  std::string datum = key(isCompound(crs) ? crs.GetAttrValue("COMPD_CS|VERT_CS|VERT_DATUM")
+      : flat                              ? flat->GetAttrValue("DATUM")
+                                          : nullptr);
   for (const char* nothing : { "unknown", "unnamed", "unspecified", "notspecified" })
   {
     if (datum.starts_with(nothing))
