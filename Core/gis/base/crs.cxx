@@ -54,7 +54,7 @@ CrsPtr horizontalCrs(const OGRSpatialReference* crs)
 
 CrsPtr layerCrs(const OGRSpatialReference* crs, const std::string& fileName)
 {
-  const CrsPtr result = horizontalCrs(crs);
+  CrsPtr result = horizontalCrs(crs);
   const char* unit = nullptr;
   if (result && result->IsLocal() && std::abs(result->GetLinearUnits(&unit) - 1.0) > 1e-9)
   {
@@ -89,7 +89,7 @@ CrsPtr crsFromText(const std::string& text)
 std::string crsLabel(const OGRSpatialReference& crs)
 {
   const char* name = crs.GetName();
-  const std::string text = name && *name ? name : "unnamed CRS";
+  std::string text = name && *name ? name : "unnamed CRS";
   const char* authority = crs.GetAuthorityName(nullptr);
   const char* code = crs.GetAuthorityCode(nullptr);
   if (authority && code)
@@ -104,7 +104,7 @@ std::string crsWkt(const OGRSpatialReference& crs)
   const char* const options[] = { "FORMAT=WKT2_2019", "MULTILINE=NO", nullptr };
   char* text = nullptr;
   crs.exportToWkt(&text, options);
-  const std::string result = text ? text : "";
+  std::string result = text ? text : "";
   CPLFree(text);
   return result;
 }
