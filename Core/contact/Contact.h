@@ -24,8 +24,8 @@ enum class ContactKind : std::uint8_t
   EdgeEdge,   ///< An edge of the rock on a ridge of the slope.
 };
 
-/// Lines of the cache in the order of their use: most who go over many contacts need the first one
-/// or two.
+/// Four lines of the cache, in the order of their use: most who go over many contacts need the
+/// first one or two, and the last is for edges.
 struct alignas(64) Contact
 {
   ContactKind kind = ContactKind::VertexFace;
@@ -55,8 +55,6 @@ struct alignas(64) Contact
   double friction = -1.0; ///< tan φ
   double cohesion = -1.0; ///< N
 
-  /// How far it has moved across while friction of an island held it, as `slip` is seen, world, m.
-  Vec3 creep = Vec3::Zero();
   double frequency2 = 0.0; ///< Of the block on this spring alone, squared, 1/s².
   /// EdgeEdge: a point of the ridge and its direction, world.
   std::array<Vec3, 2> ridge = { Vec3::Zero(), Vec3::Zero() };

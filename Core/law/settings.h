@@ -274,9 +274,6 @@ inline constexpr int kRelaxSweeps = 3;
 /// Share to which the spin of an island's rock is right after a substep. Higher: needles that spin
 /// fast gain energy.
 inline constexpr double kTurnExact = 1e-3;
-/// Creep that friction lets be: β w, share of the resting speed. Smaller: walls of 50 cubes carry
-/// their weight to 4e-4 only (0.2). None is led back: heaps at 40° of friction never rest.
-inline constexpr double kCreepHeld = 0.5;
 /// Most sweeps of either kind.
 /// Fewer: needles under heavy rocks are spun up (10), a stone under a rock of 60 times its mass
 /// goes into the slope (200).

@@ -229,40 +229,16 @@ bool SoftSolver::solveNormal(ContactRow& r)
     change = -(r.mass * (v + back) + r.softness * r.P) / (1.0 + r.softness);
   }
   const double P = std::max(0.0, r.P + change), dP = P - r.P;
-  const double excess =
-    P > 0.0 ? r.rate * r.creep.norm() - kCreepHeld * r.resting : 0.0; // of creep, m/s
-  if (dP == 0.0 && excess <= 0.0)
+  if (dP == 0.0)
   {
     return false;
   }
-  // What rests has the friction of the last substep: forces of a pile balance no better than sweeps
-  // make them, and friction that follows each of them would sway it. What is squeezed or let go has
-  // its own, and what has crept is led back.
+  // What rests has the friction of the last substep; what is squeezed or let go has its own.
   const bool squeezes = std::abs(dP) > r.mass * r.resting;
-  Vec3 across = u - v * r.normal, dT = Vec3::Zero();
-  if (excess > 0.0)
-  {
-    across += r.creep * (excess / r.creep.norm());
-  }
-  if (squeezes || excess > 0.0 || P == 0.0)
-  {
-    dT = solveFriction(r, P, across);
-  }
+  const Vec3 dT = squeezes || P == 0.0 ? solveFriction(r, P, u - v * r.normal) : Vec3(Vec3::Zero());
   r.P = P;
   this->push(r, dP * r.normal + dT);
   return squeezes;
-}
-
-void SoftSolver::followCreep(ContactRow& r) const
-{
-  const double most = (1.0 - 1e-9) * frictionLimit(r, r.P);
-  if (r.P == 0.0 || r.T.squaredNorm() >= most * most)
-  {
-    r.creep.setZero();
-    return;
-  }
-  r.creep += h_ * this->speedOf(r);
-  r.creep -= r.creep.dot(r.normal) * r.normal;
 }
 
 bool SoftSolver::relax(ContactRow& r)
@@ -361,9 +337,7 @@ void SoftSolver::substep(int k)
   forEach(movers_.size(), kBodyGrain, move);
   const auto place = [&](std::size_t row)
   {
-    ContactRow& r = rows_[row];
-    this->followCreep(r);
-    if (this->place(r))
+    if (this->place(rows_[row]))
     {
       this->weigh(row);
     }

@@ -13,18 +13,13 @@
 ///     warm      the impulses of the last substep
 ///     press     closed: ΔP = −(m (v + max(β g, −v_r)) + s P) / (1 + s)
 ///               open:   ΔP = −m (v + g/h);  P ≥ 0
-///               across, where it is squeezed or has crept: ΔT = −m (v + (β w − c v_rest)₊)
-///     move      turns from the angular momentum; w goes on by h v where it does not slide
+///     move      turns from the angular momentum
 ///     relax     P ← max(0, P − m v); friction within μ P + c h
 ///
 /// with m the effective mass, β = ω / (2 ζ + h ω), ω² = pₙ/m but no more than a quarter of the
 /// substep rate, s = m β / (h pₙ), and v_r the speed at which overlap goes. At rest the overlap is
 /// P/(h pₙ), as of Shi's spring. Pressing and relaxing go on around rows that change by more than
 /// their resting speed.
-///
-/// w is the creep of a row, how far its rocks have moved across while friction held them: friction
-/// of speeds has no way back of what sweeps leave over. The contact keeps it from step to step.
-/// Creep within a small share of the resting speed is let be, so that columns and walls stand.
 ///
 /// The impulse of a row that stopped what closed would throw it back in the next substep, so that
 /// such a row begins anew. One that stops something in two substeps in succession carries a load:
@@ -115,7 +110,6 @@ private:
     double cohesion;  ///< N s
     double rate;      ///< β, 1/s
     double softness;  ///< m β / (h pₙ)
-    Vec3 creep;       ///< w, of a relative to b, m.
     double resting;   ///< Speed below which a touch is no impact, m/s.
     double slide2;    ///< Square of how far its rocks may slide and weigh the same, m².
   };
@@ -209,9 +203,8 @@ private:
   static void book(const ContactRow& row, double along, const Vec3& across, const Vec3& mean,
     const Vec3& meanA, Result& result);
   void warm(ContactRow& row);
-  void keepPushing(std::size_t strip);     ///< Busy manifolds that push; notes their rocks.
-  bool solveNormal(ContactRow& row);       ///< Whether by so much that others may change.
-  void followCreep(ContactRow& row) const; ///< To where its rocks have moved.
+  void keepPushing(std::size_t strip); ///< Busy manifolds that push; notes their rocks.
+  bool solveNormal(ContactRow& row);   ///< Whether by so much that others may change.
   bool relax(ContactRow& row);
   /// Friction under an impulse P (N s) along the normal. Returns by how much it changes, N s.
   static Vec3 solveFriction(ContactRow& row, double P, const Vec3& across);

@@ -189,7 +189,6 @@ void SoftSolver::prepareImpulses(std::size_t k, const IslandContact& asked)
   ContactRowCold& start = starts_[k];
   row.P = 0.0;
   row.T.setZero();
-  row.creep.setZero();
   row.stops = row.loaded = false;
   start.before = 0.0;
   start.pending =
@@ -200,11 +199,6 @@ void SoftSolver::prepareImpulses(std::size_t k, const IslandContact& asked)
     row.T = (start.flipped ? h_ : -h_) * c.shearStiffness * c.slip;
     row.T -= row.normal * row.normal.dot(row.T);
     limitTo(row.T, row.friction * row.P + row.cohesion);
-    if (c.state == ContactState::Locked)
-    {
-      row.creep = (start.flipped ? -1.0 : 1.0) * c.creep;
-      row.creep -= row.normal * row.normal.dot(row.creep);
-    }
   }
 }
 

@@ -92,15 +92,12 @@ void SoftSolver::writeContact(std::size_t row)
                                                                 : ContactState::Sliding;
     // Springs that carry what it carries.
     c.offset = c.distance + r.P / (h_ * c.stiffness);
-    const double side = starts_[row].flipped ? -1.0 : 1.0;
-    c.slip = (-side / (h_ * c.shearStiffness)) * r.T;
-    c.creep = side * r.creep;
+    c.slip = (starts_[row].flipped ? 1.0 : -1.0) / (h_ * c.shearStiffness) * r.T;
   }
   else
   {
     c.state = ContactState::Open;
     c.slip.setZero();
-    c.creep.setZero();
     c.offset = std::min(0.0, c.distance);
   }
 }
