@@ -330,7 +330,7 @@ inline constexpr double kSteepestFriction = 89.0;
 /// 0.011 of exp(−(r/ℓ)²) at all lags, and the slope within 1 % of √2 σ/ℓ.
 inline constexpr double kFieldKnots = 0.84;
 /// Nodes per length. At ½ ℓ the facets have 94 % of the root mean square slope of the field, at ¼ ℓ
-/// 98 %; an obstacle is ℓ across.
+/// 98 %, and 101 % of nodes that are raised to keep σ (Roughness::onNodes); an obstacle is ℓ across.
 inline constexpr double kNodesOfField = 2.0;
 inline constexpr double kNodesOfObstacles = 4.0;
 /// Shares of the obstacles of the first height, and of the first two (rg70, rg20, rg10).

@@ -241,7 +241,7 @@ void SingleRock::findContacts(const CandidatePairs& candidates, double reach, do
 
 double SingleRock::dampingRatioFor(int ground, double restitution)
 {
-  if (surface_.deviationPer() != DeviationPer::Iteration)
+  if (surface_.deviationPer(ground) != DeviationPer::Iteration)
   {
     if (restitution != dampedFor_)
     {

@@ -55,6 +55,11 @@ Cubic sum(const Cubic& a, const Cubic& b)
   return { { a.c[0] + b.c[0], a.c[1] + b.c[1], a.c[2] + b.c[2], a.c[3] + b.c[3] } };
 }
 
+Cubic difference(const Cubic& a, const Cubic& b)
+{
+  return { { a.c[0] - b.c[0], a.c[1] - b.c[1], a.c[2] - b.c[2], a.c[3] - b.c[3] } };
+}
+
 double maximum(const Cubic& f, double from, double to)
 {
   double most = std::max(f(from), f(to));
@@ -148,9 +153,15 @@ double HazardRaster::maxHeight(
   groundCuts_.assign({ from, to });
   appendCuts(x, xs, 0.0, size, 0.0, lines, from, to, groundCuts_);
   appendCuts(y, ys, 0.0, size, 0.0, lines, from, to, groundCuts_);
-  // A cell's diagonal goes from its upper left to its lower right node.
+  // Cuts of cells: x + y is the same all along one that falls, x − y along one that rises. A line
+  // is cut off where the path is in cells with the other cut, too: nothing changes there.
   appendCuts(
     sum(x, y), { xs[0] + ys[0], xs[1] + ys[1] }, 0.0, size, 0.0, lines, from, to, groundCuts_);
+  if (terrain_->geometry().diagonal != CellDiagonal::FromUpperLeft)
+  {
+    appendCuts(difference(x, y), { xs[0] - ys[1], xs[1] - ys[0] }, 0.0, size, -lines, lines, from,
+      to, groundCuts_);
+  }
   std::sort(groundCuts_.begin(), groundCuts_.end());
   const bool still = isShort(piece, from, to);
   double most = none;

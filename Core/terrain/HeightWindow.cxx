@@ -7,6 +7,25 @@
 namespace rockfall
 {
 
+void HeightWindow::cut(CellDiagonal rule)
+{
+  anyRising_ = anyFalling_ = false;
+  rising_.resize(std::size_t(rows_ - 1) * (columns_ - 1));
+  unsigned char* cell = rising_.data();
+  for (int r = 0; r + 1 < rows_; ++r)
+  {
+    const double* upper = &z_[std::size_t(r) * columns_];
+    const double* lower = upper + columns_;
+    for (int c = 0; c + 1 < columns_; ++c, ++cell)
+    {
+      const bool rising = isCutRising(rule, upper[c], upper[c + 1], lower[c], lower[c + 1]);
+      *cell = rising;
+      anyRising_ = anyRising_ || rising;
+      anyFalling_ = anyFalling_ || !rising;
+    }
+  }
+}
+
 void HeightWindow::gather(
   const Surface& surface, double xMin, double xMax, double yMin, double yMax)
 {
@@ -35,6 +54,7 @@ void HeightWindow::gather(
     // Beyond the edge: a window in which there is nothing.
     columns_ = rows_ = 2;
     z_.assign(4, std::numeric_limits<double>::quiet_NaN());
+    this->cut(CellDiagonal::FromUpperLeft);
     return;
   }
   z_.resize(std::size_t(rows_) * columns_);
@@ -49,6 +69,7 @@ void HeightWindow::gather(
     }
   }
   whole_ = whole;
+  this->cut(surface.terrain().geometry().diagonal);
   // Gradients of the CFEs: their mean, then the farthest from it.
   const auto visit = [&](auto&& use)
   {
@@ -58,8 +79,9 @@ void HeightWindow::gather(
       const double* lower = upper + columns_;
       for (int c = 0; c + 1 < columns_; ++c)
       {
-        use(lower[c + 1] - lower[c], upper[c] - lower[c]);
-        use(upper[c + 1] - upper[c], upper[c + 1] - lower[c + 1]);
+        const int k = this->isRising(r, c) ? c + 1 : c, other = 2 * c + 1 - k; // sides along y
+        use(lower[c + 1] - lower[c], upper[k] - lower[k]);
+        use(upper[c + 1] - upper[c], upper[other] - lower[other]);
       }
     }
   };

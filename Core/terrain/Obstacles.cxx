@@ -424,9 +424,9 @@ void appendMesh(const ObstacleMesh& mesh, std::span<const int> nodes,
     q.key = from.nodeKey + n;
     q.cfe = 0;
     q.peak = node.peak;
-    for (int k = 0; k < 6 && q.peak; ++k)
+    for (std::size_t k = 0; k < q.neighbours.size() && q.peak; ++k)
     {
-      const int at = nodeAt(node.neighbours[k]);
+      const int at = nodeAt(node.neighbours[k < node.neighbours.size() ? k : 0]);
       q.neighbours[k] = from.nodes + at;
       q.peak = at >= 0;
     }

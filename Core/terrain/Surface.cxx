@@ -44,18 +44,27 @@ KnownNode& placeOf(int row, int column)
 /// Height of a node of a refined grid before its field, m. `surveyed(row, column)` is that of a
 /// node of the terrain.
 template <typename Surveyed>
-double drawnHeight(const Surface::Grid& grid, int row, int column, const Surveyed& surveyed)
+double drawnHeight(
+  const Surface::Grid& grid, CellDiagonal rule, int row, int column, const Surveyed& surveyed)
 {
   // On the triangle of the survey that the node is in; a corner that has no share in it may be
-  // nodata.
+  // nodata. On a side of the cell the cut does not matter.
   const int p = grid.parts, r = row / p, c = column / p, t = row % p, s = column % p;
   if (s == 0 && t == 0)
   {
     return surveyed(r, c);
   }
-  const bool upper = s > t;
   const auto share = [&](int weight, int down, int right)
   { return weight == 0 ? 0.0 : double(weight) / p * surveyed(r + down, c + right); };
+  if (s > 0 && t > 0 &&
+    isCutRising(
+      rule, surveyed(r, c), surveyed(r, c + 1), surveyed(r + 1, c), surveyed(r + 1, c + 1)))
+  {
+    const int over = p - s - t; // of the cut
+    return over > 0 ? share(over, 0, 0) + share(t, 1, 0) + share(s, 0, 1)
+                    : share(-over, 1, 1) + share(p - s, 1, 0) + share(p - t, 0, 1);
+  }
+  const bool upper = s > t;
   return share(p - std::max(s, t), 0, 0) + share(std::min(s, t), 1, 1) +
     (upper ? share(s - t, 0, 1) : share(t - s, 1, 0));
 }
@@ -85,18 +94,17 @@ Surface::Surface(const Terrain& terrain, std::uint64_t seed, int iteration)
   , seed_(seed)
   , iteration_(std::uint32_t(iteration))
   , drawn_(true)
-  , per_(terrain.deviationPer())
 {
-  for (int k = 0; k <= terrain.restitutionClasses().count(); ++k)
-  {
-    const Roughness& r = terrain.roughnessOf(k);
-    rough_ = rough_ || (r.any() && !r.isField());
-    field_ = field_ || r.isField();
-  }
   roughnessBound_ = terrain.roughnessHeight();
   const GridGeometry& g = terrain.geometry();
   const int parts = terrain.refinement();
   grid_ = { (g.columns - 1) * parts + 1, (g.rows - 1) * parts + 1, g.cellSize / parts, parts };
+  for (int k = 0; k <= terrain.restitutionClasses().count(); ++k)
+  {
+    const Roughness& r = roughness_.emplace_back(terrain.roughnessOf(k).onNodes(grid_.cellSize));
+    rough_ = rough_ || (r.any() && !r.isField());
+    field_ = field_ || r.isField();
+  }
   this->drawMaterials();
 }
 
@@ -106,12 +114,12 @@ const Roughness& Surface::roughnessIn(int row, int column) const
   const MaterialClasses& classes = terrain_->restitutionClasses();
   if (classes.roughness.empty() || classes.cells.empty())
   {
-    return terrain_->roughness();
+    return roughness_.front();
   }
   // A node on a border is of the cell to its south-east.
   const std::size_t cell = std::size_t(std::min(row, g.rows - 2)) * std::size_t(g.columns - 1) +
     std::size_t(std::min(column, g.columns - 2));
-  return terrain_->roughnessOf(classes.cells[cell]);
+  return roughness_[classes.cells[cell]];
 }
 
 double Surface::surveyedNode(int row, int column) const
@@ -143,8 +151,8 @@ double Surface::nodeHeight(int row, int column) const
   {
     return known.height;
   }
-  double z =
-    drawnHeight(grid_, row, column, [this](int r, int c) { return this->surveyedNode(r, c); });
+  double z = drawnHeight(grid_, terrain_->geometry().diagonal, row, column,
+    [this](int r, int c) { return this->surveyedNode(r, c); });
   const Roughness& rough = this->roughnessIn(row / grid_.parts, column / grid_.parts);
   if (field_ && rough.isField())
   {
@@ -168,15 +176,16 @@ double Surface::elevation(double x, double y) const
     return std::numeric_limits<double>::quiet_NaN();
   }
   const int column = std::min(int(s), grid_.columns - 2), row = std::min(int(t), grid_.rows - 2);
-  const bool lower = t - row > s - column;
-  const auto node = [&](int r, int c) {
-    return Vec3(c * grid_.cellSize, (grid_.rows - 1 - r) * grid_.cellSize, this->nodeHeight(r, c));
-  };
-  const std::array<Vec3, 3> p = lower
-    ? std::array<Vec3, 3>{ node(row, column), node(row + 1, column), node(row + 1, column + 1) }
-    : std::array<Vec3, 3>{ node(row, column), node(row + 1, column + 1), node(row, column + 1) };
-  const Vec3 n = (p[1] - p[0]).cross(p[2] - p[0]);
-  return p[0].z() - (n.x() * (x - p[0].x()) + n.y() * (y - p[0].y())) / n.z();
+  const double nw = this->nodeHeight(row, column), ne = this->nodeHeight(row, column + 1),
+               sw = this->nodeHeight(row + 1, column), se = this->nodeHeight(row + 1, column + 1);
+  const bool rising = isCutRising(terrain_->geometry().diagonal, nw, ne, sw, se);
+  const bool lower = isInLower(rising, s - column, t - row);
+  // The triangle has one side along x, and one along y in the west or in the east.
+  const bool west = lower != rising;
+  const double alongX = lower ? se - sw : ne - nw, alongY = west ? nw - sw : ne - se;
+  const double corner = lower ? (west ? sw : se) : (west ? nw : ne);
+  return corner + alongX * (s - column - (west ? 0.0 : 1.0)) -
+    alongY * (t - row - (lower ? 1.0 : 0.0));
 }
 
 void SurfacePatch::findTop()
@@ -227,6 +236,7 @@ void layNodes(const Surface& surface, SurfacePatch& patch)
 void layTriangles(const Surface& surface, SurfacePatch& patch)
 {
   const Surface::Grid& g = surface.grid();
+  const CellDiagonal rule = surface.terrain().geometry().diagonal;
   const int cellColumns = patch.nodeColumns - 1, cellRows = patch.nodeRows - 1;
   const int below = 2 * cellColumns;
   patch.triangles.resize(2 * std::size_t(cellColumns) * cellRows);
@@ -240,27 +250,48 @@ void layTriangles(const Surface& surface, SurfacePatch& patch)
       const int row = std::clamp(patch.row0 + r, 0, g.rows - 2);
       const int column = std::clamp(patch.column0 + c, 0, g.columns - 2);
       const std::int64_t key = 2 * gridKey(patch.row0 + r, patch.column0 + c);
-      // Edges of the lower triangle: west, south, diagonal; of the upper: diagonal, east, north.
-      SurfacePatch::Triangle* t = &patch.triangles[lower];
-      t[0].nodes = { upperLeft, lowerLeft, lowerLeft + 1 };
-      t[0].neighbours = { c > 0 ? lower - 1 : -1, r + 1 < cellRows ? lower + below + 1 : -1,
-        lower + 1 };
-      t[1].nodes = { upperLeft, lowerLeft + 1, upperLeft + 1 };
-      t[1].neighbours = { lower, c + 1 < cellColumns ? lower + 2 : -1, r > 0 ? lower - below : -1 };
       const double zUpperLeft = patch.nodes[upperLeft].position.z();
       const double zLowerLeft = patch.nodes[lowerLeft].position.z();
       const double zUpperRight = patch.nodes[upperLeft + 1].position.z();
       const double zLowerRight = patch.nodes[lowerLeft + 1].position.z();
+      const bool rising = isCutRising(rule, zUpperLeft, zUpperRight, zLowerLeft, zLowerRight);
+      // Edges of the lower triangle: west, south, diagonal; of the upper: diagonal, east, north.
+      // Where the cut rises: diagonal, south, east; west, diagonal, north.
+      SurfacePatch::Triangle* t = &patch.triangles[lower];
+      const int south = r + 1 < cellRows ? lower + below + 1 : -1,
+                north = r > 0 ? lower - below : -1;
+      if (rising)
+      {
+        t[0].nodes = { upperLeft + 1, lowerLeft, lowerLeft + 1 };
+        t[0].neighbours = { lower + 1, south, -1 };
+        t[1].nodes = { upperLeft, lowerLeft, upperLeft + 1 };
+        t[1].neighbours = { -1, lower, north };
+      }
+      else
+      {
+        t[0].nodes = { upperLeft, lowerLeft, lowerLeft + 1 };
+        t[0].neighbours = { -1, south, lower + 1 };
+        t[1].nodes = { upperLeft, lowerLeft + 1, upperLeft + 1 };
+        t[1].neighbours = { lower, -1, north };
+      }
+      if (c > 0)
+      {
+        const bool before = t[-1].rising;
+        t[rising].neighbours[0] = before ? lower - 2 : lower - 1;
+        t[before ? -2 : -1].neighbours[before ? 2 : 1] = lower + rising;
+      }
+      const double west = zLowerLeft - zUpperLeft, east = zLowerRight - zUpperRight;
       const Vec3 up[2] = {
-        { zLowerLeft - zLowerRight, zLowerLeft - zUpperLeft, g.cellSize },
-        { zUpperLeft - zUpperRight, zLowerRight - zUpperRight, g.cellSize },
+        { zLowerLeft - zLowerRight, rising ? east : west, g.cellSize },
+        { zUpperLeft - zUpperRight, rising ? west : east, g.cellSize },
       };
       for (int k = 0; k < 2; ++k)
       {
         t[k].normal = up[k] * (1.0 / std::sqrt(up[k].squaredNorm()));
-        t[k].offset = t[k].normal.dot(patch.nodes[upperLeft].position);
+        t[k].offset = t[k].normal.dot(patch.nodes[t[k].nodes[0]].position);
         t[k].cfe = std::isnan(t[k].offset) ? 0 : surface.cfeOf(row, column, k == 1);
         t[k].key = key + k;
+        t[k].rising = rising;
         t[k].bends.fill(0);
         t[k].ridges.fill(-1);
         for (int n : t[k].nodes)
@@ -276,60 +307,53 @@ void layTriangles(const Surface& surface, SurfacePatch& patch)
 std::vector<Rim> findRidges(SurfacePatch& patch)
 {
   std::vector<Rim> rims;
-  // Every inner edge is a side of one lower triangle (odd number): `back` is the same edge in the
-  // upper triangle beyond it.
-  constexpr int back[3] = { 1, 2, 0 };
-  for (int i = 0; i < int(patch.triangles.size()); i += 2)
+  // Every inner edge is the west, the south or the diagonal of one cell: side k of its triangle i,
+  // and side `back` of the triangle beyond it.
+  for (int cell = 0; cell < int(patch.triangles.size()); cell += 2)
   {
-    SurfacePatch::Triangle& t = patch.triangles[i];
-    for (int k = 0; k < 3; ++k)
+    const bool rising = patch.triangles[cell].rising;
+    for (int edge = 0; edge < 3; ++edge)
     {
+      const int i = edge == 0 && rising ? cell + 1 : cell;
+      const int k = edge == 2 && rising ? 0 : edge;
+      SurfacePatch::Triangle& t = patch.triangles[i];
       const int j = t.neighbours[k];
       if (j < 0)
       {
         continue;
       }
       SurfacePatch::Triangle& other = patch.triangles[j];
+      const int back = edge == 0 ? (other.rising ? 2 : 1) : edge == 1 ? 2 : (rising ? 1 : 0);
       if (t.cfe == 0 || other.cfe == 0)
       {
         t.neighbours[k] = -1;
-        other.neighbours[back[k]] = -1;
+        other.neighbours[back] = -1;
         if (t.cfe != 0 || other.cfe != 0)
         {
-          rims.push_back(t.cfe != 0 ? Rim{ i, k } : Rim{ j, back[k] });
+          rims.push_back(t.cfe != 0 ? Rim{ i, k } : Rim{ j, back });
         }
         continue;
       }
-      const int wing = other.nodes[(back[k] + 2) % 3];
+      const int wing = other.nodes[(back + 2) % 3];
       // Depth of the other triangle's wing below this plane, per its distance.
       const Vec3 arm = patch.nodes[wing].position - patch.nodes[t.nodes[k]].position;
       const double drop = -t.normal.dot(arm);
       const bool flat = drop * drop <= kFlatBend * kFlatBend * arm.squaredNorm();
       const signed char sign = flat ? 0 : (drop > 0.0 ? 1 : -1);
       t.bends[k] = sign;
-      other.bends[back[k]] = sign;
+      other.bends[back] = sign;
       if (sign > 0)
       {
-        // Three edges belong to a lower triangle: that and the side make the key.
-        t.ridges[k] = int(patch.ridges.size());
+        patch.triangles[cell].ridges[edge] = int(patch.ridges.size());
         patch.ridges.push_back({ { t.nodes[k], t.nodes[(k + 1) % 3] }, { i, j },
-          { t.nodes[(k + 2) % 3], wing }, 3 * t.key + k });
+          { t.nodes[(k + 2) % 3], wing }, SurfacePatch::sideKey(t, k) });
       }
-    }
-  }
-  // Upper triangles beside holes, over the edges of the patch.
-  for (int i = 1; i < int(patch.triangles.size()); i += 2)
-  {
-    SurfacePatch::Triangle& t = patch.triangles[i];
-    if (t.cfe == 0)
-    {
-      t.neighbours.fill(-1);
     }
   }
   return rims;
 }
 
-/// Nodes on a ridge that have all their six neighbours in the patch.
+/// Nodes on a ridge that have all their neighbours, four to eight, in the patch.
 void findPeaks(SurfacePatch& patch)
 {
   const int nodeColumns = patch.nodeColumns, nodeRows = patch.nodeRows;
@@ -343,9 +367,16 @@ void findPeaks(SurfacePatch& patch)
       {
         continue;
       }
-      // The diagonals run from upper left to lower right.
-      node.neighbours = { n - 1, n + 1, n - nodeColumns, n + nodeColumns, n - nodeColumns - 1,
-        n + nodeColumns + 1 };
+      const auto isRising = [&](int row, int column)
+      { return patch.triangles[2 * (row * (nodeColumns - 1) + column)].rising; };
+      node.neighbours.fill(n - 1);
+      node.neighbours[1] = n + 1;
+      node.neighbours[2] = n - nodeColumns;
+      node.neighbours[3] = n + nodeColumns;
+      node.neighbours[4] = isRising(r - 1, c - 1) ? n - 1 : n - nodeColumns - 1;
+      node.neighbours[5] = isRising(r, c) ? n - 1 : n + nodeColumns + 1;
+      node.neighbours[6] = isRising(r - 1, c) ? n - nodeColumns + 1 : n - 1;
+      node.neighbours[7] = isRising(r, c - 1) ? n + nodeColumns - 1 : n - 1;
       node.peak = std::none_of(node.neighbours.begin(), node.neighbours.end(),
         [&](int m) { return std::isnan(patch.nodes[m].position.z()); });
     }

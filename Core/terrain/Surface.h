@@ -31,17 +31,18 @@ public:
   double friction() const { return friction_; }                     ///< tan φ
   double cohesion() const { return terrain_->material().cohesion; } ///< N
 
-  // The ground at a touch: the numbers of its class, drawn for what the slope's deviations are
+  // The ground at a touch: the numbers of its class, drawn for what the deviations of the class are
   // drawn for. Per iteration each class draws its own.
   int restitutionClass(std::int64_t cfe) const { return terrain_->restitutionClassOf(cfe); }
-  DeviationPer deviationPer() const { return per_; } ///< Iteration if nothing is drawn.
+  /// For what a class of restitution is drawn; Iteration if nothing is.
+  DeviationPer deviationPer(int restitutionClass) const
+  {
+    return this->perOf(terrain_->restitutionMaterial(restitutionClass));
+  }
   double restitutionAt(const GroundTouch& touch) const;
   double frictionAt(const GroundTouch& touch) const; ///< tan φ
   /// S of a restitution class at a place (yieldingGround.h), 1 where it does not deviate.
   double softnessAt(int restitutionClass, const Vec3& place) const;
-  /// Standard normal deviate of a number of this class, for any that the ground has at a touch: the
-  /// mean plus this times its deviation is the number there. 0 on a slope as surveyed.
-  double deviate(Draw purpose, int number, const GroundTouch& touch) const;
   /// No touch of the slope itself has more.
   double largestRestitution() const;
   double cohesionAt(std::int64_t cfe) const
@@ -65,7 +66,13 @@ public:
     const int p = grid_.parts, r = row % p, c = column % p;
     const std::int64_t cell =
       std::int64_t(row / p) * (terrain_->geometry().columns - 1) + column / p;
-    return 2 * cell + (c > r || (c == r && upper) ? 2 : 1);
+    if (p == 1)
+    {
+      return 2 * cell + (upper ? 2 : 1);
+    }
+    // Cells of the grid above the cut of the terrain's cell have a negative offset.
+    const int off = terrain_->isRising(row / p, column / p) ? r + c + 1 - p : r - c;
+    return 2 * cell + (off < 0 || (off == 0 && upper) ? 2 : 1);
   }
   double nodeHeight(int row, int column) const; ///< With roughness, NaN for nodata, m.
   double elevation(double x, double y) const;   ///< With roughness, NaN outside, m.
@@ -98,6 +105,12 @@ private:
   /// Of a cell of the terrain.
   const Roughness& roughnessIn(int row, int column) const;
   void drawMaterials();
+  DeviationPer perOf(const SurfaceMaterial& material) const
+  {
+    return drawn_ ? terrain_->deviationPerOf(material) : DeviationPer::Iteration;
+  }
+  /// Standard normal deviate of what is drawn per impact or per place.
+  double deviate(DeviationPer per, Draw purpose, const GroundTouch& touch) const;
   double restitutionOf(int restitutionClass) const ///< Drawn per iteration.
   {
     return restitutionClass == 0 ? restitution_ : restitutions_[std::size_t(restitutionClass) - 1];
@@ -109,10 +122,10 @@ private:
   std::uint64_t seed_ = 0;
   std::uint32_t iteration_ = 0;
   bool drawn_ = false; ///< Else all numbers are means.
-  DeviationPer per_ = DeviationPer::Iteration;
   Grid grid_;
-  bool rough_ = false; ///< Nodes are drawn.
-  bool field_ = false; ///< There are fields over the map.
+  bool rough_ = false;               ///< Nodes are drawn.
+  bool field_ = false;               ///< There are fields over the map.
+  std::vector<Roughness> roughness_; ///< Of the restitution classes 0, 1, …, for these nodes.
   double roughnessBound_ = 0.0;
   double restitution_ = 0.0;
   double friction_ = 0.0;            ///< tan φ
@@ -130,11 +143,13 @@ struct SurfacePatch
     /// Across edge k (nodes k, k+1): the other triangle (−1: none here) and the edge's bend.
     std::array<int, 3> neighbours;
     std::array<signed char, 3> bends; ///< +1 convex (ridge), 0 flat, −1 concave (valley).
+    bool rising = false;              ///< Cut of its cell (cellDiagonal.h).
     Vec3 normal;
-    double offset;             ///< normal · x on the plane, m.
-    std::int64_t cfe;          ///< 0: touches nodata. On the apron that of the nearest cell.
-    std::int64_t key;          ///< The same triangle has the same key in every patch.
-    std::array<int, 3> ridges; ///< Ridges that a lower triangle counts as its own, −1: none.
+    double offset;    ///< normal · x on the plane, m.
+    std::int64_t cfe; ///< 0: touches nodata. On the apron that of the nearest cell.
+    std::int64_t key; ///< The same triangle has the same key in every patch.
+    /// In a lower triangle the ridges of its cell: west, south, diagonal; −1: none.
+    std::array<int, 3> ridges;
   };
   /// A convex edge between two triangles: the only kind that an edge of a rock can touch. At the
   /// rim of a hole the ground goes down in an upright wall, so that rims are ridges, too.
@@ -151,12 +166,22 @@ struct SurfacePatch
     std::int64_t key;
     std::int64_t cfe; ///< One of the CFEs here, 0 if there is none.
     bool peak;        ///< On a ridge, all neighbours known: a rock's face can touch it.
-    std::array<int, 6> neighbours; ///< Of a peak; −1 where there are fewer.
+    std::array<int, 8> neighbours; ///< Of a peak; one of them again where there are fewer.
   };
 
   std::vector<Node> nodes;
   std::vector<Triangle> triangles;
   std::vector<Ridge> ridges;
+
+  /// Key of a side of a triangle of the slope: of its cell's west, south, diagonal, and after a gap
+  /// east and north.
+  static std::int64_t sideKey(const Triangle& triangle, int side)
+  {
+    constexpr std::array<int, 3> numbers[2][2] = { { { 0, 1, 2 }, { 2, 4, 5 } },
+      { { 2, 1, 4 }, { 0, 2, 5 } } };
+    const std::int64_t upper = triangle.key & 1;
+    return 3 * (triangle.key - upper) + numbers[triangle.rising][upper][std::size_t(side)];
+  }
 
   /// How many of each are the slope's; those of walls under rims follow, then those of obstacles.
   int slopeNodes = 0, slopeTriangles = 0, slopeRidges = 0;
@@ -181,7 +206,8 @@ struct SurfacePatch
     }
     const int column = std::min(int(c), nodeColumns - 2), row = std::min(int(r), nodeRows - 2);
     const int lower = 2 * (row * (nodeColumns - 1) + column);
-    const int i = r - row >= c - column ? lower : lower + 1;
+    const bool rising = triangles[std::size_t(lower)].rising;
+    const int i = isInLower(rising, c - column, r - row) ? lower : lower + 1;
     return triangles[std::size_t(i)].cfe != 0 ? i : -1;
   }
 
@@ -238,9 +264,23 @@ public:
     const double s = c - column, t = r - row;
     const double* upper = &z_[std::size_t(row) * columns_ + column];
     const double* lower = upper + columns_;
-    return t >= s ? upper[0] + t * (lower[0] - upper[0]) + s * (lower[1] - lower[0])
-                  : upper[0] + s * (upper[1] - upper[0]) + t * (lower[1] - upper[1]);
+    if (this->isRising(row, column))
+    {
+      return isInLower(true, s, t)
+        ? lower[1] + (1.0 - s) * (lower[0] - lower[1]) + (1.0 - t) * (upper[1] - lower[1])
+        : upper[0] + s * (upper[1] - upper[0]) + t * (lower[0] - upper[0]);
+    }
+    return isInLower(false, s, t)
+      ? upper[0] + t * (lower[0] - upper[0]) + s * (lower[1] - lower[0])
+      : upper[0] + s * (upper[1] - upper[0]) + t * (lower[1] - upper[1]);
   }
+  /// Whether a cell's cut rises (cellDiagonal.h). A cell is in the window.
+  bool isRising(int row, int column) const
+  {
+    return anyRising_ && rising_[std::size_t(row) * (columns_ - 1) + column] != 0;
+  }
+  /// Whether there is a cell whose cut rises, or one whose cut does not.
+  bool anyIs(bool rising) const { return rising ? anyRising_ : anyFalling_; }
   /// Mean of the gradients (∂z/∂x, ∂z/∂y) of the CFEs, and the farthest that one of them is from
   /// it.
   const Eigen::Vector2d& tilt() const { return tilt_; }
@@ -256,7 +296,12 @@ public:
 
 private:
   friend class GroundHeightBound;
-  std::vector<double> z_; ///< NaN for nodata.
+  /// Finds the cuts of all cells.
+  void cut(CellDiagonal rule);
+
+  std::vector<double> z_;             ///< NaN for nodata.
+  std::vector<unsigned char> rising_; ///< By cell.
+  bool anyRising_ = false, anyFalling_ = false;
   int rows_ = 0, columns_ = 0;
   double cellSize_ = 0.0, inverse_ = 0.0, west_ = 0.0, north_ = 0.0;
   double xMin_ = 0.0, xMax_ = -1.0, yMin_ = 0.0, yMax_ = -1.0;

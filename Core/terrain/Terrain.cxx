@@ -20,6 +20,16 @@ constexpr double kMostParts = 200.0, kMostNodes = 1e7;
 
 } // namespace
 
+CellDiagonal cellDiagonalFrom(double number)
+{
+  if (number != 0.0 && number != 1.0)
+  {
+    throw ParameterError("CellDiagonal is " + numberText(number) +
+      ", it must be 0 (shorter fold) or 1 (from upper left)");
+  }
+  return CellDiagonal(int(number));
+}
+
 Terrain::Terrain(GridGeometry geometry, std::span<const double> heights,
   std::shared_ptr<const void> owner, SurfaceMaterial material, Roughness roughness)
   : geometry_(std::move(geometry))
@@ -247,11 +257,14 @@ std::array<std::int64_t, 3> Terrain::cfeNodes(std::int64_t id) const
   const std::int64_t column = cell % (geometry_.columns - 1);
   const std::int64_t upperLeft = row * geometry_.columns + column;
   const std::int64_t lowerRight = upperLeft + geometry_.columns + 1;
-  if (id % 2 == 1)
+  const bool lower = id % 2 == 1;
+  if (this->isRising(int(row), int(column)))
   {
-    return { upperLeft, lowerRight - 1, lowerRight };
+    return lower ? std::array{ lowerRight - 1, lowerRight, upperLeft + 1 }
+                 : std::array{ upperLeft, lowerRight - 1, upperLeft + 1 };
   }
-  return { upperLeft, lowerRight, upperLeft + 1 };
+  return lower ? std::array{ upperLeft, lowerRight - 1, lowerRight }
+               : std::array{ upperLeft, lowerRight, upperLeft + 1 };
 }
 
 bool Terrain::hasCfe(std::int64_t id) const
@@ -280,8 +293,9 @@ struct CellHalf
   bool lower = false; ///< Triangle of the cell.
 };
 
-CellHalf cellHalfAt(const GridGeometry& geometry, double x, double y)
+CellHalf cellHalfAt(const Terrain& terrain, double x, double y)
 {
+  const GridGeometry& geometry = terrain.geometry();
   const double width = (geometry.columns - 1) * geometry.cellSize;
   const double height = (geometry.rows - 1) * geometry.cellSize;
   if (!(x >= 0.0 && y >= 0.0 && x <= width && y <= height))
@@ -292,17 +306,17 @@ CellHalf cellHalfAt(const GridGeometry& geometry, double x, double y)
   const double t = (height - y) / geometry.cellSize; // grows with the row
   const int column = std::clamp(int(s), 0, geometry.columns - 2);
   const int row = std::clamp(int(t), 0, geometry.rows - 2);
-  // The diagonal runs from upper left to lower right: below it the row part is the larger one.
-  return { row, column, t - row > s - column };
+  return { row, column, isInLower(terrain.isRising(row, column), s - column, t - row) };
 }
 
 Cfe cfeOf(const Terrain& terrain, const CellHalf& half)
 {
   const auto [row, column, lower] = half;
+  const bool rising = terrain.isRising(row, column);
   Cfe result;
-  result.nodes[0] = terrain.node(row, column);
-  result.nodes[1] = terrain.node(row + 1, lower ? column : column + 1);
-  result.nodes[2] = terrain.node(lower ? row + 1 : row, column + 1);
+  result.nodes[0] = terrain.node(rising && lower ? row + 1 : row, column);
+  result.nodes[1] = terrain.node(row + 1, lower == rising ? column + 1 : column);
+  result.nodes[2] = terrain.node(lower && !rising ? row + 1 : row, column + 1);
   result.normal =
     (result.nodes[1] - result.nodes[0]).cross(result.nodes[2] - result.nodes[0]).normalized();
   return result;
@@ -318,7 +332,7 @@ Cfe Terrain::cfe(std::int64_t id) const
 
 std::int64_t Terrain::cfeAt(double x, double y) const
 {
-  const CellHalf half = cellHalfAt(geometry_, x, y);
+  const CellHalf half = cellHalfAt(*this, x, y);
   const std::int64_t lower = 2 * (std::int64_t(half.row) * (geometry_.columns - 1) + half.column);
   const std::int64_t id = half.row < 0 ? 0 : half.lower ? lower + 1 : lower + 2;
   return this->hasCfe(id) ? id : 0;
@@ -327,7 +341,7 @@ std::int64_t Terrain::cfeAt(double x, double y) const
 double Terrain::elevation(double x, double y) const
 {
   // Without a division for a number: rocks ask for the height under each corner.
-  const CellHalf half = cellHalfAt(geometry_, x, y);
+  const CellHalf half = cellHalfAt(*this, x, y);
   if (half.row < 0)
   {
     return std::numeric_limits<double>::quiet_NaN();

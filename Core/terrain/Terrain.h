@@ -9,6 +9,7 @@
 /// cellSize, y = (rows − 1 − row) · cellSize.
 
 #include "base/types.h"
+#include "terrain/cellDiagonal.h"
 #include "terrain/material.h"
 #include "terrain/scatter.h"
 
@@ -35,13 +36,14 @@ struct FileUnits
 /// Where a raster stands in the world.
 struct GridGeometry
 {
-  int columns = 0;       ///< Nodes from west to east, ≥ 2.
-  int rows = 0;          ///< Nodes from north to south, ≥ 2.
-  double cellSize = 0.0; ///< m
-  double xOrigin = 0.0;  ///< Real easting of the lower left node, m.
-  double yOrigin = 0.0;  ///< Real northing of the lower left node, m.
-  std::string crs;       ///< WKT; empty for a local system.
-  FileUnits fileUnits{}; ///< Of the file that was read.
+  int columns = 0;                                   ///< Nodes from west to east, ≥ 2.
+  int rows = 0;                                      ///< Nodes from north to south, ≥ 2.
+  double cellSize = 0.0;                             ///< m
+  double xOrigin = 0.0;                              ///< Real easting of the lower left node, m.
+  double yOrigin = 0.0;                              ///< Real northing of the lower left node, m.
+  std::string crs;                                   ///< WKT; empty for a local system.
+  FileUnits fileUnits{};                             ///< Of the file that was read.
+  CellDiagonal diagonal = CellDiagonal::ShorterFold; ///< Of the cells between the nodes.
 
   std::int64_t nodeCount() const { return std::int64_t(columns) * rows; }
   std::int64_t cellCount() const { return std::int64_t(columns - 1) * (rows - 1); }
@@ -94,6 +96,15 @@ public:
   double width() const { return (geometry_.columns - 1) * geometry_.cellSize; } ///< Extent in x, m.
   double height() const { return (geometry_.rows - 1) * geometry_.cellSize; }   ///< Extent in y, m.
 
+  /// Cut of the cells. To be called before the terrain is used.
+  void setDiagonal(CellDiagonal diagonal) { geometry_.diagonal = diagonal; }
+  /// Whether a cell's cut rises (without roughness).
+  bool isRising(int row, int column) const
+  {
+    const double* upper = &heights_[std::size_t(row) * geometry_.columns + column];
+    const double* lower = upper + geometry_.columns;
+    return isCutRising(geometry_.diagonal, upper[0], upper[1], lower[0], lower[1]);
+  }
   double nodeHeight(int row, int column) const
   {
     return heights_[std::size_t(row) * geometry_.columns + column];
@@ -146,9 +157,14 @@ public:
   }
   /// Whether any of the ground gives way under a rock.
   bool yields() const;
-  /// For what the deviations of materials are drawn. To be called before the terrain is used.
+  /// For what the deviations of materials without a say of their own are drawn. To be called before
+  /// the terrain is used.
   void setDeviationPer(DeviationPer per) { deviationPer_ = per; }
   DeviationPer deviationPer() const { return deviationPer_; }
+  DeviationPer deviationPerOf(const SurfaceMaterial& material) const
+  {
+    return material.deviationPer.value_or(deviationPer_);
+  }
   /// The class of a CFE, also of one of an obstacle.
   int restitutionClassOf(std::int64_t cfe) const
   {

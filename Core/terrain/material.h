@@ -6,10 +6,12 @@
 
 #include "base/types.h"
 #include "terrain/roughness.h"
+#include "terrain/scatter.h"
 #include "terrain/yieldingGround.h"
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -44,6 +46,8 @@ struct SurfaceMaterial
   double frictionAngle = radians(15.0); ///< φ, rad, 0° … 89°.
   double frictionAngleDeviation = 0.0;  ///< Standard deviation of φ, rad, 0° … 89°.
   double cohesion = 0.0;                ///< c, N per contact point, ≥ 0.
+  /// For what its deviations are drawn; nothing: as those of the slope.
+  std::optional<DeviationPer> deviationPer = {};
   YieldingGround yielding = {}; ///< Hard as by default. Goes with the restitution, by class.
 
   void validate() const; ///< Throws ParameterError naming field and value.

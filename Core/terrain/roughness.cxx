@@ -59,6 +59,13 @@ struct Knots
   }
 };
 
+/// Root mean square height of the field on facets between nodes so many ℓ apart, over σ. The mean
+/// square over a triangle is ½ + Σ ρ/6, ρ the correlations along its three sides: h, h and √2 h.
+double facetDeviation(double h)
+{
+  return std::sqrt(0.5 + (2.0 * std::exp(-h * h) + std::exp(-2.0 * h * h)) / 6.0);
+}
+
 } // namespace
 
 double Roughness::highestObstacle() const
@@ -77,15 +84,26 @@ double Roughness::resolvedBy() const
                               : 0.0;
 }
 
+Roughness Roughness::onNodes(double spacing) const
+{
+  Roughness nodes = *this;
+  if (this->isField() && deviation > 0.0)
+  {
+    nodes.deviation = deviation / facetDeviation(spacing / length);
+  }
+  return nodes;
+}
+
 double Roughness::highest() const
 {
-  const double most = length > 0.0 ? kMostDeviates : largestDeviate;
+  const double most =
+    length > 0.0 ? kMostDeviates / facetDeviation(1.0 / kNodesOfField) : largestDeviate;
   return std::max(0.0, mean + most * deviation + this->highestObstacle());
 }
 
 double Roughness::deepest() const
 {
-  const double most = length > 0.0 ? kMostDeviates : 9.0;
+  const double most = length > 0.0 ? kMostDeviates / facetDeviation(1.0 / kNodesOfField) : 9.0;
   return std::max(0.0, -(mean - most * deviation));
 }
 

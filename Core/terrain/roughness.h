@@ -35,6 +35,9 @@ struct Roughness
   bool isField() const { return this->length > 0.0 && this->any(); }
   /// Widest distance of nodes that shows the field, m; 0: there is none.
   double resolvedBy() const;
+  /// The same with the heights of a field's nodes, so far apart (m), raised to what gives the ground
+  /// between them its σ on the average over the map. Straight from node to node it has less.
+  Roughness onNodes(double spacing) const;
   double highest() const; ///< No height is above, m, ≥ 0.
   double deepest() const; ///< No height is further below the survey, m, ≥ 0.
   double highestObstacle() const;

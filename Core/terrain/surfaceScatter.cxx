@@ -64,53 +64,42 @@ void Surface::drawMaterials()
   }
 }
 
-double Surface::deviate(Draw purpose, int number, const GroundTouch& touch) const
+double Surface::deviate(DeviationPer per, Draw purpose, const GroundTouch& touch) const
 {
-  if (!drawn_)
-  {
-    return 0.0;
-  }
   // A stream of its own for each of the three; what a touch is drawn for has one number, whatever
   // classes meet there.
-  const auto stream = [&](DeviationPer per)
-  { return Draw(std::uint32_t(purpose) | std::uint32_t(per) << 8); };
-  switch (per_)
+  const Draw stream = Draw(std::uint32_t(purpose) | std::uint32_t(per) << 8);
+  if (per == DeviationPer::Impact)
   {
-    case DeviationPer::Iteration:
-      break;
-    case DeviationPer::Impact:
-      return normalDeviate(
-        seed_, iteration_, stream(per_), std::uint64_t(touch.rock) << 32 | touch.impact);
-    case DeviationPer::Place:
-    {
-      const GridGeometry& g = terrain_->geometry();
-      return normalDeviate(seed_, iteration_, stream(per_),
-        squareAt(g.xOrigin + touch.position.x(), g.yOrigin + touch.position.y(), kPlaceSize));
-    }
+    return normalDeviate(seed_, iteration_, stream, std::uint64_t(touch.rock) << 32 | touch.impact);
   }
-  return normalDeviate(seed_, iteration_, purpose, std::uint64_t(number));
+  const GridGeometry& g = terrain_->geometry();
+  return normalDeviate(seed_, iteration_, stream,
+    squareAt(g.xOrigin + touch.position.x(), g.yOrigin + touch.position.y(), kPlaceSize));
 }
 
 double Surface::restitutionAt(const GroundTouch& touch) const
 {
   const int number = terrain_->restitutionClassOf(touch.cfe);
   const SurfaceMaterial& m = terrain_->restitutionMaterial(number);
-  if (per_ == DeviationPer::Iteration || !(m.restitutionDeviation > 0.0))
+  const DeviationPer per = this->perOf(m);
+  if (per == DeviationPer::Iteration || !(m.restitutionDeviation > 0.0))
   {
     return this->restitutionOf(number);
   }
-  return rockfall::restitutionOf(m, this->deviate(Draw::Restitution, number, touch));
+  return rockfall::restitutionOf(m, this->deviate(per, Draw::Restitution, touch));
 }
 
 double Surface::frictionAt(const GroundTouch& touch) const
 {
   const int number = terrain_->jointClassOf(touch.cfe);
   const SurfaceMaterial& m = terrain_->jointMaterial(number);
-  if (per_ == DeviationPer::Iteration || !(m.frictionAngleDeviation > 0.0))
+  const DeviationPer per = this->perOf(m);
+  if (per == DeviationPer::Iteration || !(m.frictionAngleDeviation > 0.0))
   {
     return number == 0 ? friction_ : frictions_[std::size_t(number) - 1];
   }
-  return frictionOf(m, this->deviate(Draw::FrictionAngle, number, touch));
+  return frictionOf(m, this->deviate(per, Draw::FrictionAngle, touch));
 }
 
 double Surface::softnessAt(int restitutionClass, const Vec3& place) const
@@ -133,8 +122,8 @@ double Surface::largestRestitution() const
   {
     const SurfaceMaterial& m = terrain_->restitutionMaterial(k);
     largest = std::max(largest,
-      per_ == DeviationPer::Iteration ? this->restitutionOf(k)
-                                      : rockfall::restitutionOf(m, largestDeviate));
+      this->perOf(m) == DeviationPer::Iteration ? this->restitutionOf(k)
+                                                : rockfall::restitutionOf(m, largestDeviate));
   }
   return largest;
 }

@@ -20,7 +20,7 @@ constexpr std::int64_t firstWallKey = std::int64_t(1) << 58;
 Rim nextRim(const SurfacePatch& patch, Rim rim)
 {
   const int node = patch.triangles[rim.triangle].nodes[(rim.side + 1) % 3];
-  for (int turn = 0; turn < 6; ++turn)
+  for (int turn = 0; turn < 8; ++turn)
   {
     rim.side = (rim.side + 1) % 3;
     const int beyond = patch.triangles[rim.triangle].neighbours[rim.side];
@@ -48,14 +48,18 @@ void makePeak(int n, int bottom, SurfacePatch& patch)
   {
     return;
   }
-  // At least one of the six around has no height. Where there are fewer, the bottom again.
+  // At least one of those around has no height. Where there are fewer, the bottom again.
   node.peak = true;
   node.neighbours.fill(bottom);
   int count = 0;
   const int cell = 2 * (r * (columns - 1) + c), above = cell - 2 * (columns - 1);
-  for (const int i : { cell, cell + 1, cell - 1, above, above - 1, above - 2 })
+  for (const int i : { cell, cell + 1, cell - 1, cell - 2, above, above + 1, above - 1, above - 2 })
   {
     const SurfacePatch::Triangle& t = patch.triangles[i];
+    if (std::find(t.nodes.begin(), t.nodes.end(), n) == t.nodes.end())
+    {
+      continue; // its cell's other half is here
+    }
     for (const int m : t.nodes)
     {
       const auto end = node.neighbours.begin() + count;
@@ -96,7 +100,7 @@ void addWalls(std::span<const Rim> rims, SurfacePatch& patch)
     const int a = t.nodes[rim.side], b = t.nodes[(rim.side + 1) % 3];
     const int underA = bottomOf(a), underB = bottomOf(b);
     const int i = int(patch.triangles.size());
-    const std::int64_t side = 3 * t.key + rim.side;
+    const std::int64_t side = SurfacePatch::sideKey(t, rim.side);
     t.neighbours[rim.side] = i;
     t.bends[rim.side] = 1;
     const Vec3 along = patch.nodes[b].position - patch.nodes[a].position;
@@ -149,8 +153,8 @@ void addWalls(std::span<const Rim> rims, SurfacePatch& patch)
     one.bends[2] = other.bends[0] = flat ? 0 : (drop > 0.0 ? 1 : -1);
     if (one.bends[2] > 0)
     {
-      patch.ridges.push_back(
-        { { b, bottoms[b] }, { i, j }, { a, c }, firstWallKey + 3 * t.key + rim.side });
+      patch.ridges.push_back({ { b, bottoms[b] }, { i, j }, { a, c },
+        firstWallKey + SurfacePatch::sideKey(t, rim.side) });
     }
   }
 }

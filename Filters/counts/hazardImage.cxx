@@ -8,6 +8,7 @@
 #include "shared/arrays.h"
 #include "shared/errorReport.h"
 #include "shared/rockPaths.h"
+#include "shared/slopeReference.h"
 #include "shared/terrainFieldData.h"
 #include "statistics/HazardRaster.h"
 #include "statistics/passageFile.h"
@@ -308,6 +309,7 @@ private:
 bool addElevation(const Terrain& terrain, const CellGrid& grid, vtkImageData* image)
 {
   bool whole = true;
+  writeDiagonal(terrain.geometry().diagonal, image->GetFieldData());
   const auto elevation = addArray<vtkFloatArray>(image->GetPointData(), "Elevation");
   elevation->SetNumberOfTuples(image->GetNumberOfPoints());
   vtkIdType id = 0;

@@ -1,5 +1,7 @@
 #include "results/drapedMap.h"
 
+#include "shared/slopeReference.h"
+
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkImageData.h"
@@ -34,6 +36,7 @@ void drapeMap(vtkImageData* map, vtkPolyData* output)
   }
   vtkDataArray* heights = map->GetPointData()->GetArray("Elevation");
   const int columns = map->GetDimensions()[0] - 1;
+  const CellDiagonal rule = readDiagonal(map->GetFieldData());
   const double lift = heights ? std::min(kLift * map->GetSpacing()[0], kMostLift) : 0.0;
 
   vtkNew<vtkPoints> points;
@@ -80,7 +83,11 @@ void drapeMap(vtkImageData* map, vtkPolyData* output)
     // Cut as the slope's cells are: a viewer would cut a quadrilateral along the shorter diagonal,
     // metres above or below the slope.
     const vtkIdType ends[4] = { point(north), point(south), point(south + 1), point(north + 1) };
-    for (const std::array<int, 3>& corners : { std::array{ 0, 1, 2 }, std::array{ 0, 2, 3 } })
+    const auto height = [&](vtkIdType node) { return heights ? heights->GetTuple1(node) : 0.0; };
+    const int rising =
+      isCutRising(rule, height(north), height(north + 1), height(south), height(south + 1));
+    for (const std::array<int, 3>& corners :
+      { std::array{ rising, rising + 1, rising + 2 }, std::array{ 0, 2 - rising, 3 } })
     {
       const vtkIdType triangle[3] = { ends[corners[0]], ends[corners[1]], ends[corners[2]] };
       data->CopyData(map->GetCellData(), cell, cells->InsertNextCell(3, triangle));

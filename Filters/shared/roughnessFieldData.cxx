@@ -19,11 +19,54 @@ namespace
 constexpr char roughnessName[] = "TerrainRoughness";
 constexpr char classRoughnessName[] = "TerrainRestitutionRoughness";
 constexpr char deviationPerName[] = "TerrainDeviationPer";
+constexpr char restitutionPerName[] = "TerrainRestitutionDeviationPer";
+constexpr char jointPerName[] = "TerrainJointDeviationPer";
+constexpr double asSlope = -1.0; ///< In the place of a number of DeviationPer.
 constexpr int numbersOfOne = 6;
 
 std::array<double, numbersOfOne> numbersOf(const Roughness& r)
 {
   return { r.mean, r.deviation, r.length, r.obstacles[0], r.obstacles[1], r.obstacles[2] };
+}
+
+void writePer(const MaterialClasses& classes, const char* name, vtkFieldData* fieldData)
+{
+  vtkNew<vtkDoubleArray> array;
+  array->SetName(name);
+  bool any = false;
+  for (const SurfaceMaterial& m : classes.materials)
+  {
+    any = any || m.deviationPer;
+    array->InsertNextValue(m.deviationPer ? double(*m.deviationPer) : asSlope);
+  }
+  if (any)
+  {
+    fieldData->AddArray(array);
+  }
+}
+
+void readPer(vtkFieldData* fieldData, const char* name, MaterialClasses& classes)
+{
+  vtkDataArray* array = fieldData->GetArray(name);
+  if (!array)
+  {
+    return; // as the slope
+  }
+  if (array->GetNumberOfValues() != classes.count())
+  {
+    throw DataError("The Terrain input's field array " + std::string(name) + " has " +
+      std::to_string(array->GetNumberOfValues()) + " numbers, it must have " +
+      std::to_string(classes.count()));
+  }
+  for (int k = 0; k < classes.count(); ++k)
+  {
+    const int width = array->GetNumberOfComponents();
+    const double per = array->GetComponent(k / width, k % width);
+    if (per != asSlope)
+    {
+      classes.materials[std::size_t(k)].deviationPer = deviationPerFrom(per);
+    }
+  }
 }
 
 /// As many tuples as there are; nothing if there is no such array.
@@ -78,6 +121,8 @@ void writeRoughness(const Terrain& terrain, vtkFieldData* fieldData)
     }
   }
   add(deviationPerName)->InsertNextValue(double(terrain.deviationPer()));
+  writePer(terrain.restitutionClasses(), restitutionPerName, fieldData);
+  writePer(terrain.jointClasses(), jointPerName, fieldData);
 }
 
 Roughness readRoughness(vtkFieldData* fieldData, const Roughness& known)
@@ -99,6 +144,13 @@ DeviationPer readDeviationPer(vtkFieldData* fieldData)
     return DeviationPer::Iteration; // of a file from before there was a choice
   }
   return deviationPerFrom(array->GetComponent(0, 0));
+}
+
+void readClassDeviationPer(
+  vtkFieldData* fieldData, MaterialClasses& restitution, MaterialClasses& joint)
+{
+  readPer(fieldData, restitutionPerName, restitution);
+  readPer(fieldData, jointPerName, joint);
 }
 
 } // namespace rockfall::filters

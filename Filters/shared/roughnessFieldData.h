@@ -18,5 +18,8 @@ Roughness readRoughness(vtkFieldData* fieldData, const Roughness& known);
 /// Of the classes of restitution; empty if they have none of their own.
 std::vector<Roughness> readClassRoughness(vtkFieldData* fieldData, int classes);
 DeviationPer readDeviationPer(vtkFieldData* fieldData);
+/// For what the deviations of classes are drawn, where these have a say of their own.
+void readClassDeviationPer(
+  vtkFieldData* fieldData, MaterialClasses& restitution, MaterialClasses& joint);
 
 } // namespace rockfall::filters

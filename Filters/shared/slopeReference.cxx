@@ -37,6 +37,7 @@ namespace
 {
 
 constexpr char keyName[] = "TerrainKey";
+constexpr char diagonalName[] = "TerrainCellDiagonal";
 
 /// The slope's arrays, shared with the mesh that shows it.
 struct Slope
@@ -123,9 +124,22 @@ bool isOfSlope(const char* name)
   return of.starts_with("Terrain") || of == kOriginArray;
 }
 
+void writeDiagonal(CellDiagonal diagonal, vtkFieldData* data)
+{
+  addArray<vtkIntArray>(data, diagonalName)->InsertNextValue(int(diagonal));
+}
+
+CellDiagonal readDiagonal(vtkFieldData* data)
+{
+  vtkDataArray* array = data->GetArray(diagonalName);
+  return array && array->GetNumberOfValues() == 1 ? cellDiagonalFrom(array->GetComponent(0, 0))
+                                                  : CellDiagonal::FromUpperLeft;
+}
+
 void referToSlope(vtkFieldData* from, vtkFieldData* to)
 {
-  for (const char* name : { kGridArray, kCrsArray, kOriginArray, kFileUnitsArray, keyName })
+  for (const char* name :
+    { kGridArray, diagonalName, kCrsArray, kOriginArray, kFileUnitsArray, keyName })
   {
     if (vtkAbstractArray* array = from->GetAbstractArray(name))
     {

@@ -5,11 +5,12 @@
 /// process it leads to the arrays themselves, which it keeps alive; a file keeps its name alone, and
 /// under paths the heights in tiles of 8 × 8 nodes.
 ///
-/// | array              | what                                                                  |
-/// |--------------------|-----------------------------------------------------------------------|
-/// | TerrainKey         | number of the slope's content, 16 hexadecimal digits                  |
-/// | TerrainTiles       | numbers of the tiles, row by row of tiles from the north              |
-/// | TerrainTileHeights | per tile the heights of its nodes, north row first, NaN for nodata, m |
+/// | array               | what                                                                  |
+/// |---------------------|-----------------------------------------------------------------------|
+/// | TerrainKey          | number of the slope's content, 16 hexadecimal digits                  |
+/// | TerrainCellDiagonal | number of the cut of its cells                                        |
+/// | TerrainTiles        | numbers of the tiles, row by row of tiles from the north              |
+/// | TerrainTileHeights  | per tile the heights of its nodes, north row first, NaN for nodata, m |
 
 #include "terrain/Terrain.h"
 
@@ -26,6 +27,11 @@ namespace rockfall::filters
 
 inline constexpr char kHeightsArray[] = "TerrainHeights";
 inline constexpr char kGridArray[] = "TerrainGrid";
+
+/// The cut of a slope's cells, in an array of its own: a file of before there was a choice has none.
+void writeDiagonal(CellDiagonal diagonal, vtkFieldData* data);
+/// Throws ParameterError for a number that is none.
+CellDiagonal readDiagonal(vtkFieldData* data);
 
 /// Whether an array belongs to a slope or its structures, by its name.
 bool isOfSlope(const char* name);

@@ -136,6 +136,7 @@ ShownGrid readGrid(vtkFieldData* fieldData)
   shown.stride = gridCount(g[5], "as its stride");
   shown.grid.crs = readCrs(fieldData);
   shown.grid.fileUnits = readFileUnits(fieldData);
+  shown.grid.diagonal = readDiagonal(fieldData);
   return shown;
 }
 
@@ -359,6 +360,7 @@ void writeTerrain(std::shared_ptr<const Terrain> terrain, int stride, vtkFieldDa
   addNumbers(fieldData, kGridArray,
     { double(grid.columns), double(grid.rows), grid.cellSize, grid.xOrigin, grid.yOrigin,
       double(stride) });
+  writeDiagonal(grid.diagonal, fieldData);
   addNumbers(fieldData, materialName,
     { material.restitution, material.restitutionDeviation, material.frictionAngle,
       material.frictionAngleDeviation, material.cohesion, roughness.mean, roughness.deviation,
@@ -426,10 +428,12 @@ Terrain readTerrain(vtkPolyData* mesh, bool withMesh)
   }
   restitution.roughness = readClassRoughness(fieldData, restitution.count());
   Terrain terrain(grid, view, std::move(owner), material, roughness);
-  terrain.setRestitutionClasses(std::move(restitution));
   terrain.setDeviationPer(readDeviationPer(fieldData));
-  terrain.setJointClasses(
-    readClasses(fieldData, jointNames, jointNumbers, takeJoint, terrain.material()));
+  MaterialClasses joint =
+    readClasses(fieldData, jointNames, jointNumbers, takeJoint, terrain.material());
+  readClassDeviationPer(fieldData, restitution, joint);
+  terrain.setRestitutionClasses(std::move(restitution));
+  terrain.setJointClasses(std::move(joint));
   terrain.setStructures(readStructures(fieldData));
   if (withMesh)
   {

@@ -9,6 +9,7 @@
 /// | TerrainHeights   | rows × columns node heights, north row first, NaN for nodata, m           |
 /// | TerrainGrid      | columns, rows, cell size (m), easting and northing of the south-west node |
 /// |                  | (m), stride of the shown mesh (1 = every CFE is shown)                    |
+/// | TerrainCellDiagonal | number of the cut of its cells                                         |
 /// | TerrainCRS       | WKT of the coordinate system, empty for a local one; with a vertical part |
 /// |                  | if the file says what its heights refer to                                |
 /// | TerrainFileUnits | m per unit of heights and of coordinates in the slope's file; only if one  |

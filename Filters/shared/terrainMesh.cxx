@@ -60,6 +60,13 @@ struct CoarseGrid
         }
         const std::int64_t number =
           2 * (std::int64_t(row) * this->stride * fullColumns + column * this->stride) + 1;
+        if (isCutRising(this->terrain.geometry().diagonal, this->height(upperLeft),
+              this->height(upperLeft + 1), this->height(lowerLeft), this->height(lowerLeft + 1)))
+        {
+          visit(number, { lowerLeft, lowerLeft + 1, upperLeft + 1 });
+          visit(number + 1, { upperLeft, lowerLeft, upperLeft + 1 });
+          continue;
+        }
         if (known(lowerLeft))
         {
           visit(number, { upperLeft, lowerLeft, lowerLeft + 1 });

@@ -140,6 +140,7 @@ std::shared_ptr<const rockfall::Terrain> vtkDEMToCFESource::MakeSlope(
     ? rockfall::makeBiplanarSlope(this->CellSize > 0.0 ? this->CellSize : testSlopeCellSize)
     : this->ReadSlope(notes);
   slope = rockfall::Terrain(slope, material, roughness);
+  slope.setDiagonal(rockfall::cellDiagonalFrom(this->CellDiagonal));
   const rockfall::DeviationPer chosen = rockfall::deviationPerFrom(this->DeviationPer);
   slope.setDeviationPer(this->Preset > 0
       ? rockfall::groundPresets()[std::size_t(this->Preset) - 1].deviationPer()
@@ -265,6 +266,7 @@ void vtkDEMToCFESource::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "TreeLayerName: " << this->TreeLayerName << "\n";
   os << indent << "BarrierLayerName: " << this->BarrierLayerName << "\n";
   os << indent << "CellSize: " << this->CellSize << "\n";
+  os << indent << "CellDiagonal: " << this->CellDiagonal << "\n";
   os << indent << "Band: " << this->Band << "\n";
   os << indent << "ElevationField: " << this->ElevationField << "\n";
   os << indent << "RelaxFlats: " << this->RelaxFlats << "\n";

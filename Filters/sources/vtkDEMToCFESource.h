@@ -88,6 +88,16 @@ public:
 
   ///@{
   /**
+   * The cut of each cell into two triangles: along its shorter fold, the diagonal whose ends differ
+   * less in height (0, the default), or from its upper left to its lower right node (1), as
+   * published.
+   */
+  vtkSetMacro(CellDiagonal, int);
+  vtkGetMacro(CellDiagonal, int);
+  ///@}
+
+  ///@{
+  /**
    * The raster's band that holds the elevations, from 1 (the default).
    */
   vtkSetMacro(Band, int);
@@ -368,7 +378,7 @@ public:
   /**
    * Correlation length of the roughness in metres: where the correlation of two places has come
    * down to 1/e, and the distance of obstacles. Wider cells are cut as rocks meet them, so that
-   * run-out does not depend on the cell size. 0, the default: every node is drawn independently.
+   * run-out does not depend on the cell size. Default 2. 0: every node is drawn independently.
    */
   vtkSetMacro(RoughnessLength, double);
   vtkGetMacro(RoughnessLength, double);
@@ -442,6 +452,7 @@ private:
   int Band = 1;
   std::string ElevationField;
   int RelaxFlats = 1;
+  int CellDiagonal = 0;
   int AllowReferences = 0;
   int Preset = 0;
   std::string RestitutionLayer;
@@ -476,7 +487,7 @@ private:
   double GroundDeviationLength = 30.0;
   double RoughnessMean = 0.1;
   double RoughnessDeviation = 0.1;
-  double RoughnessLength = 0.0;
+  double RoughnessLength = 2.0;
   double ObstacleHeight70 = 0.0;
   double ObstacleHeight20 = 0.0;
   double ObstacleHeight10 = 0.0;

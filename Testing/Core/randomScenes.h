@@ -202,7 +202,9 @@ inline double depthUnder(const Terrain& terrain, const Vec3& point)
     for (int c = std::max(0, column - reach); c <= std::min(g.columns - 2, column + reach); ++c)
     {
       const Vec3 nw = node(r, c), ne = node(r, c + 1), sw = node(r + 1, c), se = node(r + 1, c + 1);
-      least = std::min({ least, toTriangle(nw, sw, se), toTriangle(nw, se, ne) });
+      const bool rising = terrain.isRising(r, c);
+      least = std::min(
+        { least, toTriangle(nw, sw, rising ? ne : se), toTriangle(rising ? sw : nw, se, ne) });
     }
   }
   return least;

@@ -56,6 +56,7 @@ TEST_F(TestDEMToCFESource, DefaultIsTheBiplanarSlope)
 TEST_F(TestDEMToCFESource, TrianglesAreInTheOrderOfTheNumberingAndFaceUp)
 {
   this->Source->SetFileName(this->WriteFile("grid.asc", grid).c_str());
+  this->Source->SetCellDiagonal(1); // the paper's cut
   vtkPolyData* mesh = this->Update();
   // 3 × 2 cells have 12 CFEs. The node without height is a corner of both triangles of the upper
   // right cell, and of the upper one of the cell below: 5, 6 and 12.
@@ -180,6 +181,72 @@ TEST_F(TestDEMToCFESource, RoughnessAndScatterTravelInTheFieldData)
   const rockfall::Terrain old = rockfall::filters::readTerrain(this->Source->GetOutput());
   EXPECT_EQ(old.roughnessOf(1), (rockfall::Roughness{ 0.1, 0.3 }));
   EXPECT_EQ(old.deviationPer(), rockfall::DeviationPer::Iteration);
+}
+
+TEST_F(TestDEMToCFESource, ClassesKeepTheScatterOfTheirPresets)
+{
+  const std::string zones =
+    this->WriteFile("zones.csv", "WKT,class\n\"POLYGON((0 0,100 0,100 100,0 100,0 0))\",b\n");
+  const std::string table =
+    this->WriteFile("table.csv", "class,preset,rv\na,rock,\nb,meadow,\nc,,0.5\n");
+  const std::string joints = this->WriteFile("joints.csv", "class,preset,phi\nb,meadow,\nc,,30\n");
+  this->Source->SetRestitutionLayer(zones.c_str());
+  this->Source->SetRestitutionTable(table.c_str());
+  this->Source->SetJointLayer(zones.c_str());
+  this->Source->SetJointTable(joints.c_str());
+  this->Source->SetDeviationPer(vtkDEMToCFESource::PER_PLACE);
+  const rockfall::Terrain read = rockfall::filters::readTerrain(this->Update());
+  const auto per = [](const rockfall::Terrain& terrain, int number)
+  { return terrain.deviationPerOf(terrain.restitutionMaterial(number)); };
+  EXPECT_EQ(per(read, 0), rockfall::DeviationPer::Place);
+  EXPECT_EQ(per(read, 1), rockfall::DeviationPer::Iteration);
+  EXPECT_EQ(per(read, 2), rockfall::DeviationPer::Impact);
+  EXPECT_EQ(per(read, 3), rockfall::DeviationPer::Place); // as the slope
+  EXPECT_EQ(read.deviationPerOf(read.jointMaterial(1)), rockfall::DeviationPer::Impact);
+  EXPECT_EQ(read.deviationPerOf(read.jointMaterial(2)), rockfall::DeviationPer::Place);
+  // As files had it before: that of the slope.
+  vtkFieldData* data = this->Source->GetOutput()->GetFieldData();
+  for (const char* name : { "TerrainRestitutionDeviationPer", "TerrainJointDeviationPer" })
+  {
+    ASSERT_TRUE(data->HasArray(name));
+    data->RemoveArray(name);
+  }
+  EXPECT_EQ(per(rockfall::filters::readTerrain(this->Source->GetOutput()), 2),
+    rockfall::DeviationPer::Place);
+}
+
+TEST_F(TestDEMToCFESource, CutOfCellsTravelsInTheFieldData)
+{
+  // One cell that is higher in its upper left corner: the shorter fold joins the other two.
+  const std::string corner = "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\n5 1\n1 0\n";
+  this->Source->SetFileName(this->WriteFile("corner.asc", corner).c_str());
+  for (const int diagonal : { 0, 1 })
+  {
+    this->Source->SetCellDiagonal(diagonal);
+    vtkPolyData* mesh = this->Update();
+    const rockfall::Terrain read = rockfall::filters::readTerrain(mesh);
+    EXPECT_EQ(int(read.geometry().diagonal), diagonal);
+    EXPECT_EQ(read.isRising(0, 0), diagonal == 0);
+    // In the middle of the cell: half of 1 + 1, or of 5 + 0.
+    EXPECT_DOUBLE_EQ(read.elevation(5.0, 5.0), diagonal == 0 ? 1.0 : 2.5);
+    for (vtkIdType cell = 0; cell < 2; ++cell)
+    {
+      vtkNew<vtkIdList> shown;
+      mesh->GetCellPoints(cell, shown);
+      const auto nodes = read.cfeNodes(cell + 1);
+      for (vtkIdType k = 0; k < 3; ++k)
+      {
+        EXPECT_EQ(shown->GetId(k), nodes[std::size_t(k)]) << cell;
+      }
+    }
+  }
+  // A file of before there was a choice.
+  this->Source->GetOutput()->GetFieldData()->RemoveArray("TerrainCellDiagonal");
+  EXPECT_EQ(rockfall::filters::readTerrain(this->Source->GetOutput()).geometry().diagonal,
+    rockfall::CellDiagonal::FromUpperLeft);
+  this->Source->SetCellDiagonal(2);
+  this->Update();
+  this->ExpectOneError({ "CellDiagonal is 2", "0 (shorter fold)", "1 (from upper left)" });
 }
 
 TEST_F(TestDEMToCFESource, HeightsOutliveTheSource)
@@ -371,11 +438,11 @@ TEST_F(TestDEMToCFESource, PrintSelfNamesEveryProperty)
   std::ostringstream text;
   this->Source->Print(text);
   for (const char* name :
-    { "FileName", "CellSize", "Band", "ElevationField", "RelaxFlats", "Preset", "RestitutionLayer",
-      "RestitutionTable", "RestitutionField", "JointLayer", "JointTable", "JointField",
-      "RestitutionModel", "RestitutionCoefficient", "RestitutionDeviation", "TangentialRestitution",
-      "RestitutionSpeed", "FrictionAngle", "FrictionAngleDeviation", "Cohesion", "RoughnessMean",
-      "RoughnessDeviation", "MaximumDisplayCells" })
+    { "FileName", "CellSize", "CellDiagonal", "Band", "ElevationField", "RelaxFlats", "Preset",
+      "RestitutionLayer", "RestitutionTable", "RestitutionField", "JointLayer", "JointTable",
+      "JointField", "RestitutionModel", "RestitutionCoefficient", "RestitutionDeviation",
+      "TangentialRestitution", "RestitutionSpeed", "FrictionAngle", "FrictionAngleDeviation",
+      "Cohesion", "RoughnessMean", "RoughnessDeviation", "MaximumDisplayCells" })
   {
     EXPECT_NE(text.str().find(std::string(name) + ":"), std::string::npos) << name;
   }

@@ -54,6 +54,7 @@ Terrain makeLongSlope(double length, double angle, const char* upper, const char
   MaterialClasses classes;
   classes.names = { "foot" };
   classes.materials = { groundPreset(lower).material() };
+  classes.materials.front().deviationPer = groundPreset(lower).deviationPer();
   classes.roughness = { groundPreset(lower).roughness };
   classes.cells = *cells;
   classes.owner = cells;

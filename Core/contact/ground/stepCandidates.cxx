@@ -81,6 +81,13 @@ struct RockBox
 bool mayHold(int triangle, const SurfacePatch::Triangle& of, double s, double t, double slack)
 {
   const auto allowed = [&](int k) { return kCoarseSlack + (of.bends[k] < 0 ? slack : 0.0); };
+  if (of.rising)
+  {
+    return triangle == 0
+      ? s + t >= 1.0 - std::numbers::sqrt2 * allowed(0) && t <= 1.0 + allowed(1) &&
+        s <= 1.0 + allowed(2)
+      : s >= -allowed(0) && s + t <= 1.0 + std::numbers::sqrt2 * allowed(1) && t >= -allowed(2);
+  }
   return triangle == 0
     ? s >= -allowed(0) && t <= 1.0 + allowed(1) && s - t <= std::numbers::sqrt2 * allowed(2)
     : t - s <= std::numbers::sqrt2 * allowed(0) && s <= 1.0 + allowed(1) && t >= -allowed(2);

@@ -169,10 +169,17 @@ namespace
 struct LowFeature
 {
   int face = -1;   ///< Over the window's node (row, column).
-  int edge = -1;   ///< Over its grid line of a family (along y, along x, diagonal).
+  int edge = -1;   ///< Over its grid line of a family (along y, along x, falling, rising cuts).
   int family = -1; ///< Neither: a vertex.
   int row = 0, column = 0;
 };
+
+/// Whether a cell of the window has this cut.
+bool isCutAlong(const HeightWindow& window, bool rising, int row, int column)
+{
+  return row >= 0 && column >= 0 && row + 1 < window.rows() && column + 1 < window.columns() &&
+    window.isRising(row, column) == rising;
+}
 
 /// visit(place, gap, feature) of every place where the gap along the vertical can be least, but for
 /// those where it is no less than far(), which visits may make smaller.
@@ -234,7 +241,7 @@ void visitLowPlaces(
       }
     }
   }
-  // Edges of the rock where they pass over edges of the slope: grid lines and diagonals.
+  // Edges of the rock where they pass over edges of the slope: grid lines and cuts of cells.
   const Polyhedron& shape = rock.block().shape();
   const Vec3 up = rock.rotation().row(2).transpose();
   for (std::size_t edge = 0; edge < shape.edges().size(); ++edge)
@@ -249,12 +256,18 @@ void visitLowPlaces(
     const Vec3 &p = vertices[start], &q = vertices[end];
     const double x0 = (p.x() - west) * inverse, x1 = (q.x() - west) * inverse;
     const double y0 = (north - p.y()) * inverse, y1 = (north - q.y()) * inverse;
-    const double from[3] = { x0, y0, x0 - y0 }, to[3] = { x1, y1, x1 - y1 };
-    const int most[3] = { window.columns() - 1, window.rows() - 1, window.columns() - 1 };
-    const int first[3] = { 0, 0, 1 - window.rows() };
+    const double from[4] = { x0, y0, x0 - y0, x0 + y0 }, to[4] = { x1, y1, x1 - y1, x1 + y1 };
+    const int most[4] = { window.columns() - 1, window.rows() - 1, window.columns() - 1,
+      window.columns() + window.rows() - 2 };
+    const int first[4] = { 0, 0, 1 - window.rows(), 0 };
     const Vec3 along = q - p;
-    for (int family = 0; family < 3; ++family)
+    for (int family = 0; family < 4; ++family)
     {
+      const bool cut = family >= 2, rising = family == 3;
+      if (cut && !window.anyIs(rising))
+      {
+        continue;
+      }
       const double a = std::min(from[family], to[family]), b = std::max(from[family], to[family]);
       const int k0 = int(std::ceil(std::max(a, double(first[family]))));
       const int k1 = int(std::floor(std::min(b, double(most[family]))));
@@ -268,10 +281,15 @@ void visitLowPlaces(
         const Vec3 x = p + std::clamp((k - from[family]) * scale, 0.0, 1.0) * along;
         if (room(x) < far())
         {
-          const int across = family == 1 ? int(std::floor(x0 + (k - y0) * scale * (x1 - x0))) : k;
-          const int down = int(std::floor(y0 + (k - from[family]) * scale * (y1 - y0)));
-          over(
-            x, { -1, int(edge), family, family == 1 ? k : down, family == 2 ? down + k : across });
+          const double share = (k - from[family]) * scale;
+          const int across = family == 1 ? int(std::floor(x0 + share * (x1 - x0))) : k;
+          const int down = int(std::floor(y0 + share * (y1 - y0)));
+          const int row = family == 1 ? k : down;
+          const int column = family == 2 ? down + k : rising ? k - down - 1 : across;
+          if (!cut || isCutAlong(window, rising, row, column))
+          {
+            over(x, { -1, int(edge), family, row, column });
+          }
         }
       }
     }
@@ -306,9 +324,9 @@ double roundGap(const PlacedBlock& rock, const HeightWindow& window)
       {
         continue;
       }
-      // Cut along either diagonal: no gap is wider than the less of both.
-      for (const auto& [a, b, c] : { std::array{ nw, sw, se }, std::array{ nw, se, ne },
-             std::array{ nw, sw, ne }, std::array{ sw, se, ne } })
+      const bool rising = window.isRising(row, column);
+      for (const auto& [a, b, c] :
+        { std::array{ nw, sw, rising ? ne : se }, std::array{ rising ? sw : nw, se, ne } })
       {
         gap = std::min(gap, roundDrop(axes, rock.position(), a, b, c));
       }
@@ -363,33 +381,48 @@ Eigen::Vector2d gradientAt(const HeightWindow& window, const Vec3& place)
                r = (window.north() - place.y()) * inverse;
   const int column = std::clamp(int(c), 0, window.columns() - 2);
   const int row = std::clamp(int(r), 0, window.rows() - 2);
-  const bool lower = r - row >= c - column;
+  const bool rising = window.isRising(row, column);
+  const bool lower = isInLower(rising, c - column, r - row);
   const auto z = [&](int down, int right) { return window.z(row + down, column + right); };
+  const int side = lower == rising; // west: 0
   return { inverse * (lower ? z(1, 1) - z(1, 0) : z(0, 1) - z(0, 0)),
-    inverse * (lower ? z(0, 0) - z(1, 0) : z(0, 1) - z(1, 1)) };
+    inverse * (z(0, side) - z(1, side)) };
 }
 
 /// How much higher the middle of a line of the grid is than that between the nodes on its two
 /// sides, m: > 0 on a ridge. NaN where the window ends.
 double bend(const HeightWindow& window, int family, int row, int column)
 {
-  struct Nodes
+  const auto z = [&](int r, int c)
   {
-    int row, column;
-  };
-  const Nodes end = { row + (family != 1), column + (family != 0) };
-  const Nodes wings[2] = { { family == 1     ? row - 1
-                               : family == 0 ? row
-                                             : row + 1,
-                             family == 0 ? column - 1 : column },
-    { family == 2 ? row : row + 1, column + 1 } };
-  const auto z = [&](const Nodes& n)
-  {
-    return n.row >= 0 && n.column >= 0 && n.row < window.rows() && n.column < window.columns()
-      ? window.z(n.row, n.column)
+    return r >= 0 && c >= 0 && r < window.rows() && c < window.columns()
+      ? window.z(r, c)
       : std::numeric_limits<double>::quiet_NaN();
   };
-  return 0.5 * (z({ row, column }) + z(end) - z(wings[0]) - z(wings[1]));
+  const auto rises = [&](int r, int c) { return isCutAlong(window, true, r, c); };
+  switch (family)
+  {
+    case 0: // between the cells in the west and in the east: rows of their wings
+    {
+      const int west = rises(row, column - 1) ? row + 1 : row;
+      const int east = rises(row, column) ? row : row + 1;
+      return 0.5 * (z(west, column) + z(east, column) - z(west, column - 1) - z(east, column + 1));
+    }
+    case 1: // in the north and in the south: columns
+    {
+      const int north = rises(row - 1, column) ? column + 1 : column;
+      const int south = rises(row, column) ? column : column + 1;
+      return 0.5 * (z(row, north) + z(row, south) - z(row - 1, north) - z(row + 1, south));
+    }
+    default:
+    {
+      const double twice =
+        z(row, column) + z(row + 1, column + 1) - z(row + 1, column) - z(row, column + 1);
+      return isCutAlong(window, family == 3, row, column)
+        ? (family == 3 ? -0.5 : 0.5) * twice
+        : std::numeric_limits<double>::quiet_NaN();
+    }
+  }
 }
 
 } // namespace
@@ -415,7 +448,8 @@ void findTouches(const PlacedBlock& rock, const HeightWindow& window, double wit
         for (const auto& [family, row, column] :
           { std::array{ 0, low.row, low.column }, { 0, low.row - 1, low.column },
             { 1, low.row, low.column }, { 1, low.row, low.column - 1 }, { 2, low.row, low.column },
-            { 2, low.row - 1, low.column - 1 } })
+            { 2, low.row - 1, low.column - 1 }, { 3, low.row - 1, low.column },
+            { 3, low.row, low.column - 1 } })
         {
           peak = peak || bend(window, family, row, column) > flat;
         }
@@ -431,9 +465,11 @@ void findTouches(const PlacedBlock& rock, const HeightWindow& window, double wit
         {
           return;
         }
-        const int row = low.row + (low.family != 1), column = low.column + (low.family != 0);
-        const Vec3 line(window.x(column) - window.x(low.column), window.y(row) - window.y(low.row),
-          window.z(row, column) - window.z(low.row, low.column));
+        const int start = low.row + (low.family == 3); // a rising cut begins in the south-west
+        const int row = low.row + (low.family == 0 || low.family == 2);
+        const int column = low.column + (low.family != 0);
+        const Vec3 line(window.x(column) - window.x(low.column), window.y(row) - window.y(start),
+          window.z(row, column) - window.z(start, low.column));
         const auto& ends = shape.edges()[std::size_t(low.edge)].vertices;
         const Vec3 along = rock.vertices()[ends[1]] - rock.vertices()[ends[0]];
         normal = line.cross(along);

@@ -258,6 +258,7 @@ GroundTable readGroundTable(GroundKind kind, const GroundFiles& files, const Sur
       {
         const GroundPreset& ground = groundPreset(*preset);
         material = ground.material();
+        material.deviationPer = ground.deviationPer();
         material.cohesion = usual.cohesion;
         roughness = ground.roughness;
         rough = restitution;

@@ -143,7 +143,41 @@ TEST(Scatter, NoneOnTheSlopeAsSurveyed)
   const Terrain terrain = slope(DeviationPer::Impact);
   const Surface surface = Surface::asSurveyed(terrain);
   EXPECT_EQ(surface.restitutionAt(touch(9)), 0.5);
-  EXPECT_EQ(surface.deviate(Draw::Restitution, 0, touch(9)), 0.0);
+  EXPECT_EQ(surface.deviationPer(0), DeviationPer::Iteration);
+}
+
+TEST(Scatter, EachClassIsDrawnForItsOwn)
+{
+  // West: per iteration, as the slope. East: per impact.
+  Terrain terrain = slope(DeviationPer::Iteration);
+  std::vector<std::uint8_t> cells(40 * 40);
+  for (std::size_t cell = 0; cell < cells.size(); ++cell)
+  {
+    cells[cell] = cell % 40 < 20 ? 1 : 2;
+  }
+  MaterialClasses classes;
+  classes.names = { "west", "east" };
+  classes.materials = { scattered(), scattered() };
+  classes.materials[1].deviationPer = DeviationPer::Impact;
+  classes.cells = cells;
+  terrain.setRestitutionClasses(classes);
+  terrain.setJointClasses(classes);
+  const Surface surface(terrain, 5, 3);
+  std::set<double> west, east, smooth, rough;
+  for (std::uint32_t impact = 0; impact < 20; ++impact)
+  {
+    const GroundTouch inWest{ 1, Vec3::Zero(), 0, impact }, inEast{ 61, Vec3::Zero(), 0, impact };
+    west.insert(surface.restitutionAt(inWest));
+    east.insert(surface.restitutionAt(inEast));
+    smooth.insert(surface.frictionAt(inWest));
+    rough.insert(surface.frictionAt(inEast));
+  }
+  EXPECT_EQ(west.size(), 1u);
+  EXPECT_EQ(smooth.size(), 1u);
+  EXPECT_EQ(east.size(), 20u);
+  EXPECT_EQ(rough.size(), 20u);
+  EXPECT_EQ(surface.deviationPer(1), DeviationPer::Iteration);
+  EXPECT_EQ(surface.deviationPer(2), DeviationPer::Impact);
 }
 
 namespace
