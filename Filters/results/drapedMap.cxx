@@ -100,7 +100,9 @@ void drapeMap(vtkImageData* map, vtkPolyData* output)
   output->SetPolys(cells);
   data->SetActiveScalars("ReachProbability");
   output->GetFieldData()->PassData(map->GetFieldData());
-  output->GetFieldData()->RemoveArray("HazardMap"); // the mark of what can be written as a raster
+  // The mark of what can be written as a raster, and the rule that these triangles follow.
+  output->GetFieldData()->RemoveArray("HazardMap");
+  output->GetFieldData()->RemoveArray("TerrainCellDiagonal");
 }
 
 } // namespace rockfall::filters

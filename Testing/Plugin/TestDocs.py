@@ -226,7 +226,7 @@ def words_in(text):
     return sum(any(c.isalnum() for c in word) for word in text.split())
 
 
-LONG = {"architecture.md": 2500, "bad_input.md": 1600, "formats.md": 1950, "materials.md": 1600, "method.md": 1850, "notation.md": 1550, "performance.md": 950,
+LONG = {"DEMtoCFEMesh.md": 1600, "architecture.md": 2500, "bad_input.md": 1600, "formats.md": 1950, "materials.md": 1600, "method.md": 1900, "notation.md": 1550, "performance.md": 950,
         "validation.md": 1700}
 for page, text in pages.items():
     most = LONG.get(page, 1500)
@@ -235,7 +235,7 @@ for page, text in pages.items():
         if not paragraph.startswith(("|", "    ", "```")):
             expect(words_in(paragraph) <= 120, f"{page} has a paragraph of {words_in(paragraph)} words: {paragraph[:60]}")
 total = sum(len(text.split()) for text in pages.values())
-expect(total <= 51000, f"docs/ has {total} words, at most 51,000 are read")
+expect(total <= 51200, f"docs/ has {total} words, at most 51,200 are read")
 
 # Messages on the page of bad input are in the code. … stands for what is put in.
 sources = [path for folder in ("Core", "Filters", "Examples")

@@ -100,7 +100,7 @@ assert {name for name in for_gis(calm) if not name.startswith("hazard")} == {
     "crossings.prj", *(name + end for name in styled for end in (".csvt", ".qml"))}, for_gis(calm)
 assert calm["summary.csv"].count(b"\n") == 1 + 33
 crossings = calm["crossings.csv"].count(b"\n") - 1
-assert crossings > 20, calm["lines.csv"]
+assert crossings > 15, calm["lines.csv"]
 
 # Killed at some moment, the third time it gets that far: within a chunk, or while a file is written.
 moment = random.Random()
@@ -160,7 +160,7 @@ rows = list(csv.DictReader(io.StringIO(calm["lines.csv"].decode())))
 assert len(rows) == table.GetNumberOfRows() == 2
 assert rows[0]["LineName"] == "road, 700045" and rows[1]["BarrierHeight"] == "3.0", rows
 for k, row in enumerate(rows):
-    assert int(row["Rocks"]) > 5, row
+    assert int(row["Rocks"]) > 3, row
     for name, value in row.items():
         expected = table.GetValueByName(k, name)
         assert value == expected.ToString() if name == "LineName" else \

@@ -146,7 +146,9 @@ TEST(ImpulseImpacts, AreThoseOfSpringsInTheMean)
         }
       }
       expectSame(x[0], x[1], 0.01, "x", shape, e);
-      expectSame(impacts[0], impacts[1], 0.03, "impacts", shape, e);
+      // Springs have a round rock touch a little longer: 4 % fewer impacts of EOTA 111.
+      expectSame(
+        impacts[0], impacts[1], shape == Shape::Eota111 ? 0.06 : 0.03, "impacts", shape, e);
       expectSame(speed[0], speed[1], 0.01, "speed", shape, e);
       EXPECT_LT(steps[0], 0.5 * steps[1]) << shapeName(shape) << ", e " << e;
     }
