@@ -31,10 +31,11 @@ struct Mean
   }
 };
 
+// Of 18 means one is off by 2.5 standard errors every fifth time, by 3.5 once in a hundred.
 void expectSame(const Mean& a, const Mean& b, double share, const char* what, Shape shape, double e)
 {
   EXPECT_NEAR(a.mean(), b.mean(),
-    std::max(share * std::abs(b.mean()), 2.5 * std::sqrt(a.error2() + b.error2())))
+    std::max(share * std::abs(b.mean()), 3.5 * std::sqrt(a.error2() + b.error2())))
     << what << ", " << shapeName(shape) << ", e " << e;
 }
 
@@ -146,9 +147,7 @@ TEST(ImpulseImpacts, AreThoseOfSpringsInTheMean)
         }
       }
       expectSame(x[0], x[1], 0.01, "x", shape, e);
-      // Springs have a round rock touch a little longer: 4 % fewer impacts of EOTA 111.
-      expectSame(
-        impacts[0], impacts[1], shape == Shape::Eota111 ? 0.06 : 0.03, "impacts", shape, e);
+      expectSame(impacts[0], impacts[1], 0.03, "impacts", shape, e);
       expectSame(speed[0], speed[1], 0.01, "speed", shape, e);
       EXPECT_LT(steps[0], 0.5 * steps[1]) << shapeName(shape) << ", e " << e;
     }
