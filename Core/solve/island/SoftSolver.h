@@ -91,7 +91,7 @@ private:
     Vec3 seenAt, seenTurn; ///< Displacement and turn at the last look.
   };
   /// A contact while it is solved for, of a point that moves with the rock `a`: what sweeps go
-  /// over, in four cache lines.
+  /// over, in three cache lines.
   struct alignas(64) ContactRow
   {
     int a, b;         ///< Movers; b < 0: the slope.
