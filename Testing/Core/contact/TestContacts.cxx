@@ -70,7 +70,7 @@ TEST(Contacts, PrunedSearchFindsWhatBruteForceFinds)
   std::mt19937 random(11);
   std::uniform_real_distribution<double> place(3.0, 6.5), lift(0.0, 0.02);
   int pairs = 0, lonely = 0, kinds[3] = { 0, 0, 0 };
-  for (int trial = 0; trial < 120; ++trial)
+  for (int trial = 0; trial < 200; ++trial)
   {
     const Terrain terrain = roughTerrain(100 + trial, trial % 2 ? 0.3 : 1.5);
     const Shape shapes[] = { Shape::Cube, Shape::Icosahedron, Shape::Eota221, Shape::Tetrahedron };
@@ -113,7 +113,7 @@ TEST(Contacts, PrunedSearchFindsWhatBruteForceFinds)
   // A rock that all but touches has an entrance, unless what is nearest is a vertex beside a ridge.
   EXPECT_LE(lonely, 3);
   EXPECT_GT(kinds[0], 50);
-  EXPECT_GT(kinds[1], 2);
+  EXPECT_GT(kinds[1], 3);
   EXPECT_GT(kinds[2], 20);
   std::printf("%d pairs: %d vertex-face, %d face-vertex, %d edge-edge\n", pairs, kinds[0], kinds[1],
     kinds[2]);
