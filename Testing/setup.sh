@@ -13,7 +13,6 @@ rockfall_packages=(
   g++ cmake ninja-build
   paraview paraview-dev python3-paraview libopenmpi-dev libdouble-conversion-dev
   libeigen3-dev libgdal-dev libhdf5-dev gdal-bin libicu-dev libtbb-dev librandom123-dev libqhull-dev libboost-dev
-  zlib1g-dev
   xvfb xauth locales python3-matplotlib python-matplotlib-data python3-jinja2 python3-gdal)
 rockfall_test_packages=(libgtest-dev python3-jsonschema)
 

@@ -17,7 +17,7 @@ using Parse = Mesh (*)(std::string_view bytes, const std::string& name);
 Parse parserOf(std::string_view extension)
 {
   const std::pair<std::string_view, Parse> parsers[] = { { ".ply", parsePly }, { ".stl", parseStl },
-    { ".obj", parseObj }, { ".vtk", parseVtkLegacy }, { ".vtp", parseVtkXml } };
+    { ".obj", parseObj } };
   for (const auto& [of, parse] : parsers)
   {
     if (of == extension)
@@ -74,6 +74,12 @@ Mesh parseMesh(std::string_view extension, std::string_view bytes, const std::st
     throw FileError(name + ": is empty");
   }
   Mesh mesh = parse(bytes, name);
+  checkMesh(mesh, name);
+  return mesh;
+}
+
+void checkMesh(const Mesh& mesh, const std::string& name)
+{
   if (mesh.points.empty())
   {
     throw FileError(name + ": has no points, so no shape can be made of it");
@@ -95,7 +101,6 @@ Mesh parseMesh(std::string_view extension, std::string_view bytes, const std::st
       }
     }
   }
-  return mesh;
 }
 
 Mesh readMesh(const std::string& fileName)

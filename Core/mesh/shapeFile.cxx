@@ -26,42 +26,44 @@ Mesh readAny(const std::string& fileName)
   {
     return readMesh(fileName);
   }
+  const bool isOfVtk = extension.starts_with(".vt");
   throw FileError(fileName + ": the extension \"" + extension +
-    "\" is none of .vtp .vtk .stl .ply .obj (mesh) .csv .xyz .txt (points)");
+    "\" is none of .stl .ply .obj (mesh) .csv .xyz .txt (points)" +
+    (isOfVtk ? "; open files of VTK in ParaView and connect them as the mesh" : ""));
 }
 
 } // namespace
 
-Polyhedron readShape(const std::string& fileName, bool asItIs, std::vector<std::string>& notes)
+Polyhedron shapeOf(
+  const Mesh& mesh, const std::string& name, bool asItIs, std::vector<std::string>& notes)
 {
-  if (fileName.empty())
-  {
-    throw FileError(
-      "Shape File Name is empty: the shape \"file\" needs a file of points or a mesh");
-  }
-  const Mesh read = readAny(fileName);
-  checkRounding(read.points, read.rounding, fileName, read.stored,
+  checkRounding(mesh.points, mesh.rounding, name, mesh.stored,
     "Save it with all digits (double precision, or a text of 12 digits), or move it near the "
     "origin");
-  notes.insert(notes.end(), read.notes.begin(), read.notes.end());
-  if (read.faces.empty())
+  notes.insert(notes.end(), mesh.notes.begin(), mesh.notes.end());
+  if (mesh.faces.empty())
   {
-    return Polyhedron::convexHull(read.points, fileName);
+    return Polyhedron::convexHull(mesh.points, name);
   }
   if (asItIs)
   {
-    return Polyhedron::fromFaces(read.points, read.faces, fileName);
+    return Polyhedron::fromFaces(mesh.points, mesh.faces, name);
   }
   // A hull would hide that the mesh is broken, which is hardly what its maker meant.
-  const Shell shell = weldShell(read.points, read.faces, fileName);
-  checkClosed(shell, fileName);
-  checkVolume(shell, fileName);
+  const Shell shell = weldShell(mesh.points, mesh.faces, name);
+  checkClosed(shell, name);
+  checkVolume(shell, name);
   const std::string fault = convexityFault(shell);
   if (!fault.empty())
   {
-    notes.push_back(fileName + " " + fault + "; its convex hull is taken");
+    notes.push_back(name + " " + fault + "; its convex hull is taken");
   }
-  return Polyhedron::convexHull(read.points, fileName);
+  return Polyhedron::convexHull(mesh.points, name);
+}
+
+Polyhedron readShape(const std::string& fileName, bool asItIs, std::vector<std::string>& notes)
+{
+  return shapeOf(readAny(fileName), fileName, asItIs, notes);
 }
 
 } // namespace rockfall

@@ -1,9 +1,10 @@
 #pragma once
 
 /// @file
-/// A rock's shape from a file of points or of a surface.
+/// A rock's shape of points or of a surface.
 
 #include "geometry/Polyhedron.h"
+#include "mesh/Mesh.h"
 
 #include <string>
 #include <vector>
@@ -11,11 +12,15 @@
 namespace rockfall
 {
 
-/// Reads a shape. Points (.csv, .xyz, .txt: see pointTable.h; or a mesh file without polygons) give
-/// their convex hull. A surface (.vtp, .vtk, .stl, .ply, .obj) must be closed with its faces
-/// outward; it is taken as it is if `asItIs`, else its hull is taken, with a note if that changed
-/// it. Throws FileError or GeometryError, naming the file; DataError if its coordinates are rounded
-/// by more than a thousandth of the body.
+/// Points alone give their convex hull. A surface must be closed with its faces outward; it is taken
+/// as it is if `asItIs`, else its hull is taken, with a note if that changed it. `name` is that of
+/// the file or input, for messages. Throws GeometryError; DataError if coordinates are rounded by
+/// more than a thousandth of the body.
+Polyhedron shapeOf(
+  const Mesh& mesh, const std::string& name, bool asItIs, std::vector<std::string>& notes);
+
+/// The same of a file: points (.csv, .xyz, .txt: see pointTable.h) or a mesh (.stl, .ply, .obj).
+/// Throws FileError, too.
 Polyhedron readShape(const std::string& fileName, bool asItIs, std::vector<std::string>& notes);
 
 } // namespace rockfall

@@ -46,6 +46,8 @@ std::string Input::name() const
       return "The Rocks input";
     case InputKind::Lines:
       return "The Lines input";
+    case InputKind::Shape:
+      return "The Shape input";
     case InputKind::Trajectories:
     case InputKind::Crossings:
     case InputKind::Any:

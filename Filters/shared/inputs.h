@@ -33,6 +33,7 @@ enum class InputKind
   Rocks,
   Trajectories, ///< "The Input"
   Lines,        ///< To be drawn across trajectories.
+  Shape,        ///< Of a rock or a rock mass.
   Crossings,    ///< Of a collector: "The Input's part 1".
   Any,          ///< "The Input", of which arrays need hold nothing.
 };

@@ -10,6 +10,7 @@
 #include "law/settings.h"
 #include "mesh/shapeFile.h"
 #include "rock/placement.h"
+#include "sources/shapeInput.h"
 
 #include <cmath>
 
@@ -71,6 +72,21 @@ VolumeDistribution RockMaker::volume(const SourceRow& row) const
   return law;
 }
 
+Polyhedron RockMaker::givenShape()
+{
+  const bool asItIs = defaults_.shapeAsItIs;
+  if (defaults_.shapeMesh)
+  {
+    return shapeOf(*defaults_.shapeMesh, kShapeInput, asItIs, notes_);
+  }
+  if (defaults_.shapeFile.empty())
+  {
+    throw FileError("ShapeFileName is empty, and nothing is connected to the Shape input: the "
+                    "shape \"file\" needs points or a mesh");
+  }
+  return readShape(defaults_.shapeFile, asItIs, notes_);
+}
+
 Polyhedron RockMaker::shape(
   Shape kind, const SourceRow& row, const VolumeDistribution& law, std::uint64_t draw)
 {
@@ -99,9 +115,7 @@ Polyhedron RockMaker::shape(
   {
     try
     {
-      place->second = kind == Shape::File
-        ? readShape(defaults_.shapeFile, defaults_.shapeFileAsItIs, notes_).centred()
-        : makeShape(kind, 1.0);
+      place->second = kind == Shape::File ? this->givenShape().centred() : makeShape(kind, 1.0);
     }
     catch (...)
     {

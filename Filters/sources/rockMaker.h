@@ -4,6 +4,7 @@
 /// Rocks from the rows of a source layer, what a row leaves open being taken from defaults.
 
 #include "gis/layers/sources.h"
+#include "mesh/Mesh.h"
 #include "run/releasePlaces.h"
 #include "shared/rockFieldData.h"
 
@@ -29,7 +30,8 @@ struct RockDefaults
   double poissonRatio = 0.1;
   std::string material; ///< Name of the material, for contacts of rocks; empty: none.
   std::string shapeFile;
-  bool shapeFileAsItIs = false;
+  std::optional<Mesh> shapeMesh; ///< Instead of a file.
+  bool shapeAsItIs = false;      ///< Else its convex hull.
   bool scaleToVolume = true;
   bool randomOrientation = false; ///< The attitude is drawn once, instead of `orientation`.
   bool redrawVolume = false;      ///< The volume is drawn in each iteration.
@@ -65,6 +67,7 @@ public:
 private:
   VolumeDistribution volume(const SourceRow& row) const;
   rockfall::Shape kindOf(const SourceRow& row, std::uint64_t draw) const;
+  Polyhedron givenShape(); ///< The file's or the input's.
   Polyhedron shape(
     Shape kind, const SourceRow& row, const VolumeDistribution& law, std::uint64_t draw);
   /// Throws ParameterError unless the row's shape is a box, or may be.

@@ -15,6 +15,7 @@
 #include "shared/withAbort.h"
 #include "sources/drawnSource.h"
 #include "sources/rockMaker.h"
+#include "sources/shapeInput.h"
 
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
@@ -33,7 +34,7 @@ vtkStandardNewMacro(vtkJointedRockMass);
 namespace
 {
 
-constexpr int TERRAIN = 1;
+constexpr int TERRAIN = 1, SHAPE = 2;
 
 rockfall::Vec3 vec3(const double v[3])
 {
@@ -41,17 +42,20 @@ rockfall::Vec3 vec3(const double v[3])
 }
 
 /// A closed surface as it is: a mass that its hull stood for would be another one.
-rockfall::Polyhedron readMass(const std::string& fileName)
+rockfall::Polyhedron readMass(const std::string& fileName, vtkPolyData* surface)
 {
+  rockfall::filters::requireOneShape("MassFileName", fileName, surface != nullptr);
   std::vector<std::string> notes;
-  if (fileName.empty())
+  if (fileName.empty() && !surface)
   {
-    throw rockfall::FileError(
-      "MassFileName is empty: the mass \"from file\" needs a closed surface");
+    throw rockfall::FileError("MassFileName is empty, and nothing is connected to the Shape input: "
+                              "the mass \"from file\" needs a closed surface");
   }
   try
   {
-    rockfall::Polyhedron mass = rockfall::readShape(fileName, true, notes);
+    rockfall::Polyhedron mass = surface ? rockfall::shapeOf(rockfall::filters::meshOf(surface),
+                                            rockfall::filters::kShapeInput, true, notes)
+                                        : rockfall::readShape(fileName, true, notes);
     for (const std::string& note : notes)
     {
       rockfall::filters::showNote(note);
@@ -74,7 +78,7 @@ vtkJointedRockMass::vtkJointedRockMass()
   : JointSets{ { 0.0, 0.0, 1.0, 0.5, 0.0, 0.0 }, { 90.0, 90.0, 1.0, 0.5, 0.0, 0.0 },
     { 90.0, 0.0, 1.0, 0.5, 0.0, 0.0 } }
 {
-  this->SetNumberOfInputPorts(2);
+  this->SetNumberOfInputPorts(3);
 }
 
 //------------------------------------------------------------------------------
@@ -128,7 +132,8 @@ void vtkJointedRockMass::SetJointSet(int index, double dip, double dipDirection,
 }
 
 //------------------------------------------------------------------------------
-void vtkJointedRockMass::MakeBlocks(vtkPolyData* terrainInput, vtkPolyData* blocks)
+void vtkJointedRockMass::MakeBlocks(
+  vtkPolyData* terrainInput, vtkPolyData* surface, vtkPolyData* blocks)
 {
   using namespace rockfall; // all that follows is the Core's
   std::optional<Terrain> terrain;
@@ -176,7 +181,7 @@ void vtkJointedRockMass::MakeBlocks(vtkPolyData* terrainInput, vtkPolyData* bloc
   }
   else if (this->MassShape == FROM_FILE)
   {
-    mass = readMass(this->MassFileName);
+    mass = readMass(this->MassFileName, surface);
     centre = mass.integrals().centroid;
     mass = mass.centred();
   }
@@ -248,6 +253,10 @@ void vtkJointedRockMass::MakeBlocks(vtkPolyData* terrainInput, vtkPolyData* bloc
     ->InsertNextValue(cut.slivers);
   filters::addArray<vtkDoubleArray>(blocks->GetFieldData(), "SliverVolume")
     ->InsertNextValue(cut.sliverVolume);
+  if (surface && this->MassShape != FROM_FILE)
+  {
+    filters::showNote("The Shape input is connected, but has no effect: MassShape is 0 (box)");
+  }
   if (cut.slivers > 0)
   {
     filters::showNote("The rock mass is cut into " + std::to_string(rocks.size()) + " blocks; " +
@@ -270,12 +279,19 @@ int vtkJointedRockMass::RequestData(
   {
     return 1;
   }
+  rockfall::filters::Input shape(rockfall::filters::InputKind::Shape);
+  vtkPolyData* surface = shape.take(inputVector[SHAPE]);
+  if (surface && rockfall::filters::inheritFailure(surface, this))
+  {
+    return 1;
+  }
   return rockfall::filters::withAbort(this, "The blocks of the rock mass do not fit in memory",
     [&]
     {
       taken.require();
+      shape.require();
       vtkNew<vtkPolyData> blocks;
-      this->MakeBlocks(terrain, blocks);
+      this->MakeBlocks(terrain, surface, blocks);
       vtkPolyData::GetData(outputVector)->ShallowCopy(blocks);
       return 1;
     });

@@ -3,7 +3,7 @@
  * @brief   cuts a rock mass by joint sets into the blocks that fall
  *
  * Input port 1, optional, is the terrain, from vtkDEMToCFESource: the mass can then be set down on
- * the ground. Port 0 is not used: ParaView's Python connects whatever is active to the first input
+ * the ground. Port 2, optional, is the mass FROM_FILE. Port 0 is not used: ParaView's Python connects whatever is active to the first input
  * of a proxy if none is named.
  *
  * A box or a closed convex surface is cut by planes right through (persistence 1): Shi's block
@@ -74,8 +74,8 @@ public:
 
   ///@{
   /**
-   * Closed convex surface of the mass in world coordinates (.vtp, .vtk, .stl, .ply, .obj, or the
-   * points of its convex hull).
+   * Closed convex surface of the mass in world coordinates (.stl, .ply, .obj, or the points of its
+   * convex hull), unless it comes by port 2.
    */
   vtkSetStdStringFromCharMacro(MassFileName);
   vtkGetCharFromStdStringMacro(MassFileName);
@@ -214,7 +214,7 @@ protected:
 
 private:
   /// Makes the blocks, or throws.
-  void MakeBlocks(vtkPolyData* terrainInput, vtkPolyData* blocks);
+  void MakeBlocks(vtkPolyData* terrainInput, vtkPolyData* surface, vtkPolyData* blocks);
 
   int MassShape = BOX;
   double Center[3] = { 5.0, 50.0, 58.0 };

@@ -14,6 +14,7 @@
 #include "shared/withAbort.h"
 #include "sources/rockBlockSources.h"
 #include "sources/rockMaker.h"
+#include "sources/shapeInput.h"
 
 #include "vtkInformation.h"
 #include "vtkNew.h"
@@ -35,7 +36,7 @@ namespace
 using rockfall::filters::refuseProperty;
 using rockfall::filters::vec3;
 
-constexpr int TERRAIN = 1;
+constexpr int TERRAIN = 1, SHAPE = 2;
 
 /// Places drawn for a rock until it is in no other one.
 constexpr std::uint32_t MOST_PLACES = 1000;
@@ -45,7 +46,7 @@ constexpr std::uint32_t MOST_PLACES = 1000;
 //------------------------------------------------------------------------------
 vtkRockBlockSource::vtkRockBlockSource()
 {
-  this->SetNumberOfInputPorts(2);
+  this->SetNumberOfInputPorts(3);
 }
 
 //------------------------------------------------------------------------------
@@ -167,11 +168,18 @@ int vtkRockBlockSource::RequestData(
   {
     return 1;
   }
+  rockfall::filters::Input shape(rockfall::filters::InputKind::Shape);
+  vtkPolyData* surface = shape.take(inputVector[SHAPE]);
+  if (surface && rockfall::filters::inheritFailure(surface, this))
+  {
+    return 1;
+  }
   vtkPolyData* output = vtkPolyData::GetData(outputVector);
   return rockfall::filters::withAbort(this, "The rock blocks do not fit in memory",
     [&]
     {
       taken.require();
+      shape.require();
       rockfall::filters::RockDefaults defaults;
       rockfall::shapeName(rockfall::Shape(this->Shape)); // throws if there is no such shape
       defaults.shapes = this->ShapeMix.empty() ? rockfall::ShapeMix(rockfall::Shape(this->Shape))
@@ -195,12 +203,17 @@ int vtkRockBlockSource::RequestData(
       defaults.material = this->MaterialName;
       rockfall::filters::takeMaterial(this->Material, defaults.density, defaults.youngModulus,
         defaults.poissonRatio, defaults.material);
+      rockfall::filters::requireOneShape("ShapeFileName", this->ShapeFileName, surface != nullptr);
       defaults.shapeFile = this->ShapeFileName;
+      if (surface)
+      {
+        defaults.shapeMesh = rockfall::filters::meshOf(surface);
+      }
       if (this->ShapeFileMode != CONVEX_HULL && this->ShapeFileMode != AS_IT_IS)
       {
         refuseProperty("ShapeFileMode", this->ShapeFileMode, "0 (convex hull) or 1 (as it is)");
       }
-      defaults.shapeFileAsItIs = this->ShapeFileMode == AS_IT_IS;
+      defaults.shapeAsItIs = this->ShapeFileMode == AS_IT_IS;
       defaults.scaleToVolume = this->ScaleToVolume;
       defaults.uncertainty.horizontalDeviation = this->HorizontalDeviation;
       defaults.uncertainty.verticalDeviation = this->VerticalDeviation;
@@ -247,6 +260,14 @@ int vtkRockBlockSource::RequestData(
       sources.notes.insert(sources.notes.end(), made.begin(), made.end());
       rockfall::filters::showNotes(sources.notes, blocks->GetFieldData());
       this->TellUnused(sources);
+      if (surface &&
+        std::none_of(sources.rocks.begin(), sources.rocks.end(),
+          [](const rockfall::filters::ReleasedRock& rock)
+          { return rock.shape == rockfall::Shape::File; }))
+      {
+        rockfall::filters::showNote("The Shape input is connected, but has no effect: no block's "
+                                    "shape is \"file\"");
+      }
       output->ShallowCopy(blocks);
       return 1;
     });

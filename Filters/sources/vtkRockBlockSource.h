@@ -3,8 +3,8 @@
  * @brief   makes rock blocks, by properties or from a layer of rockfall sources
  *
  * Input port 1, optional, is the terrain, from vtkDEMToCFESource: rocks can then be placed over the
- * ground and where it is steep, and layers are brought to its coordinate system. Port 0 is not
- * used: ParaView's Python connects whatever is active to the first input of a proxy if none is
+ * ground and where it is steep, and layers are brought to its coordinate system. Port 2, optional,
+ * is the surface of the shape FROM_FILE, or points of which it is the hull. Port 0 is not used: ParaView's Python connects whatever is active to the first input of a proxy if none is
  * named.
  *
  * The output has the real polygonal faces of every block in world coordinates, in double precision.
@@ -129,8 +129,8 @@ public:
 
   ///@{
   /**
-   * File of the shape FROM_FILE: points (.csv, .xyz, .txt) or a mesh (.vtp, .vtk, .stl, .ply,
-   * .obj). A mesh must be closed with its faces outward.
+   * File of the shape FROM_FILE, unless it comes by port 2: points (.csv, .xyz, .txt) or a mesh
+   * (.stl, .ply, .obj). A mesh must be closed with its faces outward.
    */
   vtkSetStdStringFromCharMacro(ShapeFileName);
   vtkGetCharFromStdStringMacro(ShapeFileName);
@@ -144,7 +144,7 @@ public:
 
   ///@{
   /**
-   * The part of a mesh file that is taken: its convex hull (the default), or its faces as they are,
+   * The part of a mesh that is taken: its convex hull (the default), or its faces as they are,
    * which must then be those of a convex polyhedron.
    */
   vtkSetMacro(ShapeFileMode, int);

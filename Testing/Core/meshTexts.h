@@ -149,44 +149,4 @@ inline std::string ply(
   return bytes;
 }
 
-inline std::string vtkText(const std::vector<Vec3>& points)
-{
-  std::string text = "# vtk DataFile Version 3.0\nbox\nASCII\nDATASET POLYDATA\n"
-                     "FIELD FieldData 2\nName 1 1 string\na%20b\nDate 1 2 int\n1 2\n"
-                     "POINTS 8 double\n";
-  for (const Vec3& p : points)
-  {
-    text += pointLine("%.5f %.5f %.5f\n", p);
-  }
-  text += "POLYGONS 12 48\n";
-  for (const auto& t : triangles)
-  {
-    text += print("3 %d %d %d\n", t[0], t[1], t[2]);
-  }
-  return text + "CELL_DATA 12\nSCALARS of_no_interest int 1\n";
-}
-
-inline std::string vtpText(const std::vector<Vec3>& points)
-{
-  std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" "
-                     "byte_order=\"LittleEndian\">\n<PolyData><!-- a box -->\n"
-                     "<Piece NumberOfPoints='8' NumberOfPolys='12'>\n<Points>"
-                     "<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">\n";
-  for (const Vec3& p : points)
-  {
-    text += pointLine("%.5f %.5f %.5f\n", p);
-  }
-  text += "</DataArray></Points>\n<Polys><DataArray type=\"Int64\" Name=\"connectivity\" "
-          "format=\"ascii\">\n";
-  std::string offsets;
-  for (int k = 0; k < 12; ++k)
-  {
-    const auto& t = triangles[k];
-    text += print("%d %d %d ", t[0], t[1], t[2]);
-    offsets += print("%d ", 3 * k + 3);
-  }
-  return text + "</DataArray><DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">" +
-    offsets + "</DataArray></Polys></Piece></PolyData></VTKFile>\n";
-}
-
 } // namespace meshTexts

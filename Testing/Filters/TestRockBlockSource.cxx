@@ -235,7 +235,7 @@ TEST_F(TestRockBlockSource, BadShapeFiles)
 {
   this->Source->SetShape(vtkRockBlockSource::FROM_FILE);
   EXPECT_EQ(this->Update()->GetNumberOfCells(), 0);
-  this->ExpectOneError({ "Shape File Name", "empty" });
+  this->ExpectOneError({ "ShapeFileName is empty", "Shape input" });
   const std::string ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\n"
                           "property float y\nproperty float z\nelement face 1\n"
                           "property list uchar int vertex_indices\nend_header\n";
@@ -244,7 +244,7 @@ TEST_F(TestRockBlockSource, BadShapeFiles)
     { "words.csv", "x,y,z\n0,0,0\n1,two,3\n" },
     { "none.xyz", "" },
     { "rock.doc", "0 0 0\n" },
-    { "not.vtp", "this is no XML" },
+    { "rock.vtp", "whatever it is: ParaView reads it" },
     { "empty.stl", "solid s\nendsolid s\n" },
     { "words.obj", "v a b c\nf x y z\n" },
     { "range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 9\n" },

@@ -1,18 +1,22 @@
-// Files that VTK's own writers make, in all of their ways, through the project's reader.
+// Shapes: files that VTK's writers make, through the project's reader, and what comes by pipeline.
 
 #include "geometry/Polyhedron.h"
 #include "helpers.h"
 #include "mesh/meshFile.h"
 
+#include "vtkAppendFilter.h"
+#include "vtkCellData.h"
 #include "vtkCubeSource.h"
 #include "vtkOBJWriter.h"
 #include "vtkPLYWriter.h"
-#include "vtkPolyDataWriter.h"
+#include "vtkRockBlockSource.h"
 #include "vtkSTLWriter.h"
-#include "vtkStringArray.h"
 #include "vtkStripper.h"
+#include "vtkTransform.h"
+#include "vtkTransformPolyDataFilter.h"
 #include "vtkTriangleFilter.h"
-#include "vtkXMLPolyDataWriter.h"
+#include "vtkUnstructuredGrid.h"
+#include "vtkVertexGlyphFilter.h"
 
 namespace
 {
@@ -32,13 +36,6 @@ protected:
     triangles->SetInputConnection(box->GetOutputPort());
     triangles->Update();
     this->Mesh->DeepCopy(triangles->GetOutput());
-    // Names beside it, as rock sources have them.
-    vtkNew<vtkStringArray> names;
-    names->SetName("SourceName");
-    names->InsertNextValue("a cliff with blanks");
-    names->InsertNextValue("");
-    names->InsertNextValue(std::string(300, 'x'));
-    this->Mesh->GetFieldData()->AddArray(names);
   }
 
   void ExpectBox(const std::string& file)
@@ -53,77 +50,6 @@ protected:
 };
 
 } // namespace
-
-TEST_F(TestShapeFiles, XmlInAllItsWays)
-{
-  vtkNew<vtkXMLPolyDataWriter> writer;
-  writer->SetInputData(this->Mesh);
-  int number = 0;
-  for (const int mode : { vtkXMLWriter::Ascii, vtkXMLWriter::Binary, vtkXMLWriter::Appended })
-  {
-    for (const int compressor : { vtkXMLWriter::NONE, vtkXMLWriter::ZLIB })
-    {
-      for (const bool base64 : { false, true })
-      {
-        for (const bool wide : { false, true })
-        {
-          const std::string file = this->WriteFile("box" + std::to_string(number++) + ".vtp", "");
-          writer->SetFileName(file.c_str());
-          writer->SetDataMode(mode);
-          writer->SetCompressorType(compressor);
-          writer->SetEncodeAppendedData(base64);
-          writer->SetByteOrder(wide ? vtkXMLWriter::BigEndian : vtkXMLWriter::LittleEndian);
-          wide ? writer->SetHeaderTypeToUInt64() : writer->SetHeaderTypeToUInt32();
-          writer->SetBlockSize(64); // many blocks
-          ASSERT_EQ(writer->Write(), 1);
-          this->ExpectBox(file);
-        }
-      }
-    }
-  }
-  const std::string file = this->WriteFile("packed.vtp", "");
-  writer->SetFileName(file.c_str());
-  writer->SetCompressorType(vtkXMLWriter::LZ4);
-  ASSERT_EQ(writer->Write(), 1);
-  try
-  {
-    rockfall::readMesh(file);
-    ADD_FAILURE() << "read all the same";
-  }
-  catch (const std::exception& error)
-  {
-    EXPECT_NE(std::string(error.what()).find("vtkLZ4DataCompressor; save it with the compressor"),
-      std::string::npos)
-      << error.what();
-  }
-}
-
-TEST_F(TestShapeFiles, LegacyInBothVersionsAndStrips)
-{
-  vtkNew<vtkStripper> strips;
-  strips->SetInputData(this->Mesh);
-  strips->Update();
-  strips->GetOutput()->GetFieldData()->ShallowCopy(this->Mesh->GetFieldData());
-  ASSERT_GT(strips->GetOutput()->GetNumberOfStrips(), 0);
-  vtkNew<vtkPolyDataWriter> writer;
-  int number = 0;
-  for (vtkPolyData* mesh : { this->Mesh.Get(), strips->GetOutput() })
-  {
-    writer->SetInputData(mesh);
-    for (const int version : { 42, 51 })
-    {
-      for (const int type : { VTK_ASCII, VTK_BINARY })
-      {
-        const std::string file = this->WriteFile("box" + std::to_string(number++) + ".vtk", "");
-        writer->SetFileName(file.c_str());
-        writer->SetFileVersion(version);
-        writer->SetFileType(type);
-        ASSERT_EQ(writer->Write(), 1);
-        this->ExpectBox(file);
-      }
-    }
-  }
-}
 
 TEST_F(TestShapeFiles, OtherFormats)
 {
@@ -153,4 +79,67 @@ TEST_F(TestShapeFiles, OtherFormats)
       this->ExpectBox(ply);
     }
   }
+}
+
+TEST_F(TestShapeFiles, SurfacesGridsStripsAndPointsByPipeline)
+{
+  vtkNew<vtkStripper> strips;
+  strips->SetInputData(this->Mesh);
+  strips->Update();
+  ASSERT_GT(strips->GetOutput()->GetNumberOfStrips(), 0);
+  vtkNew<vtkAppendFilter> grid;
+  grid->SetInputData(this->Mesh);
+  grid->Update();
+  vtkNew<vtkVertexGlyphFilter> points;
+  points->SetInputData(this->Mesh);
+  points->Update();
+  vtkNew<vtkRockBlockSource> rocks;
+  rocks->SetShape(vtkRockBlockSource::FROM_FILE);
+  rocks->SetScaleToVolume(false);
+  for (vtkDataObject* shape : std::initializer_list<vtkDataObject*>{
+         this->Mesh, strips->GetOutput(), grid->GetOutput(), points->GetOutput() })
+  {
+    SCOPED_TRACE(shape->GetClassName());
+    rocks->SetInputDataObject(2, shape);
+    rocks->Update();
+    ASSERT_EQ(rocks->GetOutput()->GetNumberOfCells(), 6); // triangles make rectangles
+    EXPECT_NEAR(value(rocks->GetOutput()->GetCellData(), "Volume"), 0.819, 1e-6);
+  }
+}
+
+TEST_F(TestShapeFiles, WhatNoRockCanBeMadeOfByPipelineIsOneError)
+{
+  vtkNew<vtkRockBlockSource> rocks;
+  rocks->SetShape(vtkRockBlockSource::FROM_FILE);
+  const auto expect = [&](vtkDataObject* shape, const std::vector<std::string>& words)
+  {
+    rocks->SetInputDataObject(2, shape);
+    rocks->Update();
+    EXPECT_EQ(rocks->GetOutput()->GetNumberOfCells(), 0);
+    this->ExpectOneError(words);
+  };
+  vtkNew<vtkPolyData> open, empty;
+  open->DeepCopy(this->Mesh);
+  open->BuildCells();
+  open->DeleteCell(0);
+  open->RemoveDeletedCells();
+  expect(open, { "The Shape input", "open" });
+  expect(empty, { "The Shape input", "no points" });
+  vtkNew<vtkTransform> toMap;
+  toMap->Translate(500123.0, 5200456.0, 0.0);
+  vtkNew<vtkTransformPolyDataFilter> away;
+  away->SetInputData(this->Mesh);
+  away->SetTransform(toMap);
+  away->SetOutputPointsPrecision(vtkAlgorithm::SINGLE_PRECISION);
+  away->Update();
+  expect(away->GetOutput(), { "The Shape input", "in single precision" });
+  rocks->SetShapeFileName("rock.stl");
+  expect(this->Mesh, { "ShapeFileName is rock.stl", "the Shape input is connected" });
+  rocks->SetShapeFileName("");
+  rocks->SetShape(vtkRockBlockSource::CUBE);
+  rocks->Update();
+  EXPECT_EQ(rocks->GetOutput()->GetNumberOfCells(), 6);
+  ASSERT_EQ(this->Heard->Notes.size(), 1u);
+  EXPECT_NE(this->Heard->Notes[0].find("The Shape input is connected, but has no effect"),
+    std::string::npos);
 }

@@ -9,7 +9,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
-  constexpr const char* formats[] = { ".ply", ".stl", ".obj", ".vtk", ".vtp" };
+  constexpr const char* formats[] = { ".ply", ".stl", ".obj" };
   if (size > 0)
   {
     try

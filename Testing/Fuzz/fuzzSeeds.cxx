@@ -15,34 +15,13 @@ namespace
 std::vector<std::string> meshes()
 {
   const std::vector<Vec3> points = corners(Vec3(1, 2, 3));
-  const std::string vtk5 = "# vtk DataFile Version 5.1\n\nASCII\nDATASET POLYDATA\n"
-                           "POINTS 4 float\n0 0 0 1 0 0 0 1 0 0 0 1\nMETADATA\nINFORMATION 0\n\n"
-                           "POLYGONS 3 6\nOFFSETS vtktypeint64\n0 3 6\n"
-                           "CONNECTIVITY vtktypeint64\n0 2 1 0 1 3\n";
-  const std::string grid = "# vtk DataFile Version 3.0\n\nBINARY\nDATASET UNSTRUCTURED_GRID\n"
-                           "FIELD f 1\ns 1 1 string\n\xC1"
-                           "a\nPOINTS 1 float\n" +
-    std::string(12, '\0') + "\nCELLS 1 2\n" + bytesOf(std::int32_t(1), true) +
-    bytesOf(std::int32_t(0), true) + "\nCELL_TYPES 1\n" + bytesOf(std::int32_t(1), true);
   const std::string strips =
     "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
     "property float z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n"
     "0 0 0\n1 0 0\n0 1 0\n4 0 1 2 -1\n";
-  const std::string base64 =
-    "<VTKFile type=\"PolyData\" byte_order=\"LittleEndian\" header_type=\"UInt32\"><PolyData>"
-    "<Piece><Points><DataArray type=\"Float32\" format=\"binary\">DAAAAAAAAAAAAAAAAAAAAA=="
-    "</DataArray></Points></Piece></PolyData></VTKFile>";
-  const std::string packed =
-    "<VTKFile type=\"PolyData\" compressor=\"vtkZLibDataCompressor\"><PolyData><Piece><Points>"
-    "<DataArray type=\"Float32\" format=\"appended\" offset=\"0\"/></Points></Piece></PolyData>"
-    "<AppendedData encoding=\"raw\">_" +
-    bytesOf(std::uint32_t(1)) + bytesOf(std::uint32_t(12)) + bytesOf(std::uint32_t(0)) +
-    bytesOf(std::uint32_t(11)) + std::string("\x78\x9c\x63\x60\x40\x05\x00\x00\x0c\x00\x01", 11) +
-    "</AppendedData></VTKFile>";
   return { '\0' + ply(points, "ascii"), '\0' + ply(points, "binary_little_endian"),
     '\0' + ply(points, "binary_big_endian", "float"), '\0' + strips, '\1' + stlText(points),
-    '\1' + stlBytes(points), '\2' + objText(points), '\3' + vtkText(points), '\3' + vtk5,
-    '\3' + grid, '\4' + vtpText(points), '\4' + base64, '\4' + packed };
+    '\1' + stlBytes(points), '\2' + objText(points) };
 }
 
 std::vector<std::string> pointTables()

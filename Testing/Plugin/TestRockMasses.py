@@ -5,7 +5,7 @@ import math
 from helpers import columns_of, errors_of, is_empty, messages_of, write_text
 
 from paraview import servermanager
-from paraview.simple import (AppendGeometry, DEMtoCFEMesh, Delete, JointedRockMass, Plane, RockBlocks,
+from paraview.simple import (AppendGeometry, DEMtoCFEMesh, Delete, JointedRockMass, Plane, PLYReader, RockBlocks,
                              RockfallSimulation, UpdatePipeline)
 
 
@@ -74,6 +74,10 @@ mass = JointedRockMass(MassShape="From File", MassFileName=name, JointSets=sets,
 whole = 4 / 3 * 2**3
 kept = fetch(mass)
 assert abs(sum(v[0] for v in per_block(kept, "Volume").values()) - whole) < 1e-6 * whole
+# By pipeline it is the same mass.
+reader = PLYReader(FileNames=[name])
+piped = fetch(JointedRockMass(MassShape="From File", ShapeInput=reader, JointSets=sets, Slivers="Keep"))
+assert per_block(piped, "Volume") == per_block(kept, "Volume")
 mass.Slivers, mass.MinimumVolume = "Drop", 0.1
 note = messages_of(lambda: UpdatePipeline(proxy=mass))
 dropped = fetch(mass)
