@@ -1,11 +1,11 @@
 #include "base/VolumeDistribution.h"
 
 #include "base/errors.h"
+#include "base/text/plainText.h"
 
 #include <boost/math/distributions/normal.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -89,10 +89,7 @@ std::string volumeLawName(VolumeLaw law)
 
 VolumeLaw volumeLawFromName(const std::string& name)
 {
-  // ASCII only: what a locale makes of capitals must not matter.
-  std::string lower = name;
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-    [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
+  const std::string lower = lowerCase(name);
   std::string choices;
   for (const auto& [law, known] : names)
   {

@@ -1,8 +1,8 @@
 #include "geometry/ShapeMix.h"
 
 #include "base/errors.h"
+#include "base/text/plainText.h"
 
-#include <charconv>
 #include <cmath>
 
 namespace rockfall
@@ -11,20 +11,10 @@ namespace rockfall
 namespace
 {
 
-std::string trimmed(const std::string& text)
-{
-  const char* const blanks = " \t\r\n";
-  const auto first = text.find_first_not_of(blanks);
-  return first == std::string::npos ? std::string()
-                                    : text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
-
 double weightOf(const std::string& word, const std::string& text)
 {
   double weight = 0.0;
-  const char* const last = word.data() + word.size();
-  const auto [end, error] = std::from_chars(word.data(), last, weight);
-  if (error != std::errc() || end != last || !(weight >= 0.0) || !std::isfinite(weight))
+  if (!parseNumber(word, weight) || !(weight >= 0.0) || !std::isfinite(weight))
   {
     throw ParameterError("Shape mix \"" + text + "\": the weight \"" + word +
       "\" must be a number, at least 0" +
@@ -43,7 +33,7 @@ ShapeMix ShapeMix::fromText(const std::string& text)
   while (from <= text.size())
   {
     const std::size_t to = std::min(text.find(';', from), text.size());
-    const std::string part = trimmed(text.substr(from, to - from));
+    const std::string part(trimmed(text.substr(from, to - from)));
     from = to + 1;
     if (part.empty())
     {
@@ -51,10 +41,10 @@ ShapeMix ShapeMix::fromText(const std::string& text)
     }
     const std::size_t colon = part.find(':');
     Part& next = mix.parts.emplace_back();
-    next.shape = shapeFromName(trimmed(part.substr(0, colon)));
+    next.shape = shapeFromName(std::string(trimmed(part.substr(0, colon))));
     if (colon != std::string::npos)
     {
-      next.weight = weightOf(trimmed(part.substr(colon + 1)), text);
+      next.weight = weightOf(std::string(trimmed(part.substr(colon + 1))), text);
     }
     sum += next.weight;
   }

@@ -1,9 +1,10 @@
 #pragma once
 
 /// @file
-/// Words and numbers of a text in memory, whatever the locale.
+/// A walk over a text in memory.
 
 #include "base/errors.h"
+#include "base/text/plainText.h"
 
 #include <cstdint>
 #include <string>
@@ -11,17 +12,6 @@
 
 namespace rockfall
 {
-
-/// The whole word as a number with a decimal point, nan and inf included; too small a one is 0.
-bool parseNumber(std::string_view word, double& value);
-/// The whole word as a whole number.
-bool parseInteger(std::string_view word, std::int64_t& value);
-/// ASCII letters only.
-std::string lowerCase(std::string_view text);
-/// Without the blanks at either end.
-std::string_view trimmed(std::string_view text);
-/// For a message: at most 60 bytes, what cannot be printed as "?".
-std::string inQuotes(std::string_view text);
 
 /// Walks over the words of a text and knows the line.
 class Words
@@ -35,8 +25,6 @@ public:
   }
 
   const std::string& name() const { return name_; }
-  int line() const { return line_; }           ///< From 1, of the word that was read last.
-  std::size_t position() const { return at_; } ///< Of the byte behind that word.
   std::string_view rest() const { return text_.substr(at_); }
   bool atEnd() const { return at_ == text_.size(); }
 
@@ -47,8 +35,7 @@ public:
   /// Rest of this line, without its end, behind which the walk goes on.
   std::string_view restOfLine();
 
-  /// The next word as a number; throws FileError if it is none, or if the text is over.
-  double number();
+  /// The next word as a whole number; throws FileError if it is none, or if the text is over.
   std::int64_t integer();
   /// Moves on by bytes, for what stands between texts; at most to the end.
   void skip(std::size_t bytes);

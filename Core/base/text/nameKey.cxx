@@ -1,5 +1,7 @@
 #include "base/text/nameKey.h"
 
+#include "base/text/plainText.h"
+
 #include <unicode/bytestream.h>
 #include <unicode/normalizer2.h>
 #include <unicode/utf8.h>
@@ -9,30 +11,12 @@
 namespace rockfall
 {
 
-namespace
-{
-
-std::string_view trimmed(std::string_view text)
-{
-  constexpr std::string_view blanks = " \t\r\n";
-  const auto first = text.find_first_not_of(blanks);
-  return first == std::string_view::npos
-    ? std::string_view()
-    : text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
-
-} // namespace
-
 std::string nameKey(std::string_view name)
 {
   std::string key;
   if (std::all_of(name.begin(), name.end(), [](char c) { return (c & 0x80) == 0; }))
   {
-    key = trimmed(name);
-    // By hand: what a locale makes of capitals must not matter.
-    std::transform(key.begin(), key.end(), key.begin(),
-      [](char c) { return c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c; });
-    return key;
+    return lowerCase(trimmed(name));
   }
   UErrorCode status = U_ZERO_ERROR;
   const icu::Normalizer2* folding = icu::Normalizer2::getNFKCCasefoldInstance(status);

@@ -9,7 +9,6 @@
 #include <ogrsf_frmts.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <memory>
 #include <numeric>
@@ -18,23 +17,6 @@
 
 namespace rockfall::gis
 {
-
-std::string trimmed(const std::string& text)
-{
-  const char* const blanks = " \t\r\n";
-  const auto first = text.find_first_not_of(blanks);
-  return first == std::string::npos ? std::string()
-                                    : text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
-
-std::optional<double> parsed(const std::string& text)
-{
-  const char* first = text.data() + (text.size() > 1 && text[0] == '+' ? 1 : 0);
-  const char* const last = text.data() + text.size();
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(first, last, value);
-  return error == std::errc() && end == last ? std::optional(value) : std::nullopt;
-}
 
 Columns columnsOf(const OGRFeatureDefn& definition)
 {
@@ -212,7 +194,7 @@ std::optional<std::string> Fields::textAt(int column) const
   {
     return std::nullopt;
   }
-  const std::string value = trimmed(feature_.GetFieldAsString(column));
+  const std::string value(trimmed(feature_.GetFieldAsString(column)));
   if (!isUtf8(value))
   {
     this->fail("field \"" + this->nameOf(column) +

@@ -3,6 +3,8 @@
 /// @file
 /// The fields of a layer's features as text and numbers, by names as nameKey has them.
 
+#include "base/text/plainText.h"
+
 #include <cstdint>
 #include <initializer_list>
 #include <map>
@@ -17,10 +19,6 @@ namespace rockfall::gis
 {
 
 class Messages;
-
-std::string trimmed(const std::string& text);
-/// All of the text, with a decimal point in every locale; nothing if any of it is no number.
-std::optional<double> parsed(const std::string& text);
 
 /// Field indices by nameKey; of two with one key only the first (see refuseTwin).
 using Columns = std::map<std::string, int>;

@@ -1,6 +1,7 @@
 #include "gis/base/outputFile.h"
 
 #include "base/errors.h"
+#include "base/text/plainText.h"
 
 #include <unistd.h>
 
@@ -28,11 +29,7 @@ std::string extensionOf(const std::string& fileName)
   {
     extension.erase(0, 1);
   }
-  for (char& c : extension)
-  {
-    c = c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
-  }
-  return extension;
+  return lowerCase(extension);
 }
 
 OutputFile::OutputFile(const std::string& fileName, std::vector<std::string> companions)

@@ -205,7 +205,7 @@ public:
           "down, as 1.5");
     }
     const auto [down, across] = std::minmax(*one, *other);
-    ratios_.try_emplace(trimmed(*text), across / down);
+    ratios_.try_emplace(std::string(trimmed(*text)), across / down);
     return across / down;
   }
 

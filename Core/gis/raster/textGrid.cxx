@@ -169,7 +169,7 @@ void checkGrass(Text& text, GridCells& cells)
     }
     if (colon != std::string::npos && nameKey(trimmed(line.substr(0, colon))) == "null")
     {
-      cells.nullWords.push_back(trimmed(line.substr(colon + 1)));
+      cells.nullWords.emplace_back(trimmed(line.substr(colon + 1)));
     }
   }
   std::string word;

@@ -164,7 +164,7 @@ std::optional<DrawingUnit> drawingUnit(GDALDataset& dataset, const std::string& 
     forEachLine(fileName,
       [&](const std::string& line)
       {
-        const std::string value = trimmed(line);
+        const std::string value(trimmed(line));
         codeLine = !codeLine;
         if (!codeLine)
         {

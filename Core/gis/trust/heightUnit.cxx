@@ -35,7 +35,7 @@ std::string plain(const std::string& unit)
   {
     if (name.ends_with(over))
     {
-      return trimmed(name.substr(0, name.size() - std::string(over).size()));
+      return std::string(trimmed(name.substr(0, name.size() - std::string(over).size())));
     }
   }
   return name;
@@ -56,8 +56,8 @@ std::optional<double> metresPer(const std::string& unit)
   {
     return std::nullopt;
   }
-  std::string rest = trimmed(std::string(end, name.data() + name.size()));
-  rest = rest.starts_with("*") ? trimmed(rest.substr(1)) : rest;
+  std::string rest(trimmed(std::string(end, name.data() + name.size())));
+  rest = rest.starts_with("*") ? std::string(trimmed(rest.substr(1))) : rest;
   const auto metres = byName(rest);
   return metres ? std::optional(factor * *metres) : std::nullopt;
 }

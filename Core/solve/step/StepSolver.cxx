@@ -248,7 +248,7 @@ typename BlockStep<N>::VecN BlockStep<N>::solve(const VecN& load, const VecN& d)
   {
     return inverse_ * load;
   }
-  if (acting == 1 && !alwaysFull)
+  if (acting == 1)
   {
     return this->solveOne(*only, load, d);
   }

@@ -75,9 +75,6 @@ public:
   StepOutcome step(const Block& block, const StepRequest& request, std::vector<Contact>& contacts,
     BlockState& state, bool takeAnyway);
 
-  /// One contact is solved in D as well: the oracle of the tests.
-  bool alwaysFull = false;
-
 private:
   struct Row
   {
@@ -140,7 +137,6 @@ public:
     return request.rigid ? rigid_.step(block, request, contacts, state, takeAnyway)
                          : deformable_.step(block, request, contacts, state, takeAnyway);
   }
-  void solveInFull(bool always) { rigid_.alwaysFull = deformable_.alwaysFull = always; }
 
 private:
   BlockStep<6> rigid_;
