@@ -6,6 +6,7 @@
 #include <boost/math/distributions/normal.hpp>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <utility>
