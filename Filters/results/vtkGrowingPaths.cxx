@@ -45,6 +45,24 @@ void writeTimeRange(vtkDataObject* data, vtkInformation* info)
   info->Set(Pipeline::TIME_RANGE(), range, 2);
 }
 
+/// Whether all lines of `input` are drawn as they are at this time, and there is nothing else.
+bool isWhole(vtkPolyData* input, vtkDataArray* times, double until)
+{
+  if (times->GetRange(0)[1] > until || input->GetNumberOfCells() != input->GetNumberOfLines())
+  {
+    return false;
+  }
+  vtkCellArray* lines = input->GetLines();
+  for (vtkIdType line = 0; line < lines->GetNumberOfCells(); ++line)
+  {
+    if (lines->GetCellSize(line) < 2)
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
 /// The lines of `input` up to a time.
 class Growth
 {
@@ -66,10 +84,7 @@ public:
       ++count;
     }
     this->Lines->InsertNextCell(int(std::max<vtkIdType>(2, count + (count < size ? 1 : 0))));
-    for (vtkIdType k = 0; k < count; ++k)
-    {
-      this->AppendBetween(ids[k], ids[k], 0.0);
-    }
+    this->AppendFirst(count, ids);
     if (count == 0 && size > 0)
     {
       this->AppendBetween(ids[0], ids[0], 0.0);
@@ -95,6 +110,27 @@ public:
   }
 
 private:
+  void AppendFirst(vtkIdType count, const vtkIdType* ids)
+  {
+    // All at once where they lie one after the other, as those of a run do.
+    const vtkIdType end = this->Points->GetNumberOfPoints();
+    const auto jumps = [](vtkIdType one, vtkIdType next) { return next != one + 1; };
+    if (count > 0 && std::adjacent_find(ids, ids + count, jumps) == ids + count)
+    {
+      this->Points->InsertPoints(end, count, ids[0], this->Input->GetPoints());
+      this->Arrays->CopyData(this->Input->GetPointData(), end, count, ids[0]);
+      for (vtkIdType k = 0; k < count; ++k)
+      {
+        this->Lines->InsertCellPoint(end + k);
+      }
+      return;
+    }
+    for (vtkIdType k = 0; k < count; ++k)
+    {
+      this->AppendBetween(ids[k], ids[k], 0.0);
+    }
+  }
+
   void AppendBetween(vtkIdType from, vtkIdType to, double share)
   {
     double a[3], b[3];
@@ -188,6 +224,12 @@ int vtkGrowingPaths::RequestData(
           "of Rockfall Simulation are wanted");
       }
 
+      if (isWhole(input, times, until))
+      {
+        output->ShallowCopy(input); // and with it what is known of its arrays
+        output->GetInformation()->Remove(vtkDataObject::DATA_TIME_STEP());
+        return 1;
+      }
       Growth growth(input, times, until);
       output->GetCellData()->CopyAllocate(input->GetCellData());
       vtkIdType cell = input->GetNumberOfVerts(); // polydata's cells begin with its vertices

@@ -452,5 +452,6 @@ void pqRockfallWindow::onData(pqPipelineSource* source)
   if (isOf(proxy, { "vtkRockfallSimulation" }))
   {
     this->endWithLastRock(source->getServer());
+    this->drawCharts(proxy);
   }
 }

@@ -16,6 +16,7 @@ class pqRepresentation;
 class pqServer;
 class pqView;
 class vtkObject;
+class vtkSMSourceProxy;
 
 /**
  * The plugin in a window: the Rockfall menu; the looks of what is shown first; drawn
@@ -47,6 +48,8 @@ private Q_SLOTS:
 private:
   void makeMenu(QMainWindow* window);
   void endWithLastRock(pqServer* server);
+  /// ParaView draws the active view alone while a run goes on, and charts would stay behind.
+  void drawCharts(vtkSMSourceProxy* run);
   void lookAtTime();
   void keepOwnEnd();
   void runPython(const QString& statement);

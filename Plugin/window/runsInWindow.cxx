@@ -10,6 +10,7 @@
 #include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
 #include "pqPipelineSource.h"
+#include "pqRenderView.h"
 #include "pqRepresentation.h"
 #include "pqServer.h"
 #include "pqServerManagerModel.h"
@@ -72,11 +73,15 @@ void followShown()
   }
 }
 
-/// All views, with what is new in their pipelines, before this returns.
+/// All views, with what is new in their pipelines, before this returns. Charts are the first ones:
+/// the paths of a large run take seconds.
 void renderNow()
 {
   auto* model = pqApplicationCore::instance()->getServerManagerModel();
-  for (pqView* view : model->findItems<pqView*>())
+  QList<pqView*> views = model->findItems<pqView*>();
+  std::stable_partition(
+    views.begin(), views.end(), [](pqView* view) { return !qobject_cast<pqRenderView*>(view); });
+  for (pqView* view : views)
   {
     view->forceRender();
   }
@@ -198,6 +203,23 @@ void pqRockfallWindow::endWithLastRock(pqServer* server)
     now.Set(end); // whoever looks at whole paths goes on doing so
   }
   scene->UpdateVTKObjects();
+}
+
+//-----------------------------------------------------------------------------
+void pqRockfallWindow::drawCharts(vtkSMSourceProxy* run)
+{
+  if (!showsPart(run))
+  {
+    return;
+  }
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  for (pqView* view : model->findItems<pqView*>())
+  {
+    if (!qobject_cast<pqRenderView*>(view))
+    {
+      view->render(); // soon
+    }
+  }
 }
 
 //-----------------------------------------------------------------------------

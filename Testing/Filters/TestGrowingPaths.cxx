@@ -63,6 +63,26 @@ TEST_F(TestGrowingPaths, AreWholeWithoutATimeAndAfterTheLast)
   EXPECT_DOUBLE_EQ(bounds[1], 310.0);
 }
 
+TEST_F(TestGrowingPaths, AreTheInputsOwnWhenTheyAreWhole)
+{
+  // Else the arrays of a large run are copied and looked through once more.
+  const auto shared = [this](double time)
+  {
+    vtkPolyData* output = this->At(time);
+    return output->GetPointData()->GetArray("Time") ==
+      this->Paths.Data->GetPointData()->GetArray("Time") &&
+      output->GetPoints() == this->Paths.Data->GetPoints();
+  };
+  EXPECT_FALSE(shared(7.9));
+  EXPECT_TRUE(shared(8.0));
+  EXPECT_EQ(this->Filter->GetOutput()->GetNumberOfLines(), 2);
+  EXPECT_EQ(
+    this->Filter->GetOutput()->GetCellData()->GetArray("Iteration")->GetComponent(1, 0), 3.0);
+  EXPECT_NE(this->Filter->GetOutput()->GetFieldData()->GetAbstractArray("TerrainCRS"), nullptr);
+  EXPECT_FALSE(shared(1.0)); // and back
+  EXPECT_EQ(this->Paths.Data->GetNumberOfPoints(), 4);
+}
+
 TEST_F(TestGrowingPaths, KeepTheirNumbersBeforeTheyBegin)
 {
   vtkPolyData* output = this->At(-1.0);
@@ -81,7 +101,8 @@ TEST_F(TestGrowingPaths, TimeRangeIsThatOfTheTrajectories)
   EXPECT_DOUBLE_EQ(range[0], 0.0);
   EXPECT_DOUBLE_EQ(range[1], 8.0);
   this->Paths.AddLevel(0, 2, { 100.0, 0.0, 50.0 }, 90.0, 10.0);
-  this->At(8.5); // beyond the old range
+  this->Paths.Data->GetPointData()->GetArray("Time")->Modified(); // or its range is the old one
+  this->At(8.5);                                                  // beyond the old range
   double bounds[6];
   this->Filter->GetOutput()->GetCellBounds(2, bounds);
   EXPECT_DOUBLE_EQ(bounds[1], 185.0);
