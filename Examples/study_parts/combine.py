@@ -20,6 +20,9 @@ from wholefile import write_text
 OF_CHUNK = ("StateHash", "Iterations", "Notes")  # beside the columns of its table
 COUNTED = re.compile(r"(\d+) of (\d+) rocks (.*)", re.DOTALL)  # how the Core says how many it lost
 STILL = re.compile(r"(None of )\d+( rocks .*)", re.DOTALL)
+ORDER = ("Iteration", "RockId", "BlockId", "Line", "Passing")  # of crossings
+# All that the tables of lines and the design of barriers are made of; of millions of crossings no more is in memory.
+COUNTED_BY = (*ORDER, "KineticEnergy", "HeightOverGround", "Velocity", "TopHeight", "SourceId", "Frequency")
 RESULTS = "results.json"  # not study.json, which is what a study is called that goes in
 
 
@@ -54,16 +57,21 @@ def chunk_iterations(stem):
 def combine_tables(folder, stems):
     """The table of the whole study, from its chunks alone; gives their state hashes."""
     hashes = []
-    tables = []
     notes = []
-    for stem in stems:
-        with np.load(stem + ".npz") as chunk:
-            tables.append({name: chunk[name] for name in chunk.files
-                           if name not in OF_CHUNK})
-            hashes.append(str(chunk["StateHash"]))
-            notes.append([str(note) for note in chunk["Notes"]])
-    write_table(os.path.join(folder, "summary.csv"), tables)
-    return hashes, notes_of_all(notes, sum(len(table["FateCode"]) for table in tables))
+    rocks = 0
+
+    def tables():
+        nonlocal rocks
+        for stem in stems:
+            with np.load(stem + ".npz") as chunk:
+                table = {name: chunk[name] for name in chunk.files if name not in OF_CHUNK}
+                hashes.append(str(chunk["StateHash"]))
+                notes.append([str(note) for note in chunk["Notes"]])
+            rocks += len(table["FateCode"])
+            yield table
+
+    write_table(os.path.join(folder, "summary.csv"), tables())
+    return hashes, notes_of_all(notes, rocks)
 
 
 def notes_of_all(notes, rocks):
@@ -81,22 +89,55 @@ def notes_of_all(notes, rocks):
     return texts
 
 
+def crossings_of(stem):
+    reader = vtkXMLPolyDataReader()
+    reader.SetFileName(stem + "-crossings.vtp")
+    reader.Update()
+    return reader.GetOutput()
+
+
+def crossing_tables(stems):
+    """Every passing with all that is known of it, chunk by chunk, in the order of Merge Collectors; that of a
+    chunk without any only if no other one is there."""
+    names = empty = None
+    for stem in stems:
+        points = crossings_of(stem)
+        places = points.GetPoints()
+        table = dict(zip("XYZ", vtk_to_numpy(places.GetData()).T if places else np.empty((3, 0))))
+        table.update(columns_of(points.GetPointData()))
+        if not points.GetNumberOfPoints():
+            empty = empty or table
+            continue
+        names = names or list(table)
+        if list(table) != names:
+            refuse(f"{stem}-crossings.vtp: its columns are not those of the chunks before it")
+        order = np.lexsort([table[name] for name in reversed(ORDER)])
+        yield {name: column[order] for name, column in table.items()}
+    if not names:
+        yield empty
+
+
+def columns_of_no_use(points):
+    """Names of the columns that no statistics of lines need."""
+    data = points.GetPointData()
+    return [name for name in map(data.GetArrayName, range(data.GetNumberOfArrays())) if name not in COUNTED_BY]
+
+
 def combine_crossings(folder, stems, merge, design):
     """Crossings, and the tables of all of them. `merge` and `design` are the filters themselves: no
     other rank takes part, and their inputs have no proxies."""
     for stem in stems:
-        reader = vtkXMLPolyDataReader()
-        reader.SetFileName(stem + "-crossings.vtp")
-        reader.Update()
-        merge.AddInputDataObject(0, reader.GetOutput())
+        points = crossings_of(stem)
+        for name in columns_of_no_use(points):
+            points.GetPointData().RemoveArray(name)
+        merge.AddInputDataObject(0, points)
     merge.Update()
+    merge.RemoveAllInputConnections(0)  # the chunks' crossings go
     points = merge.GetOutputDataObject(0)
     if points.GetFieldData().GetAbstractArray("Error"):
         refuse("The crossings cannot be merged; the message above says why.")
-    places = vtk_to_numpy(points.GetPoints().GetData()).reshape(-1, 3)
     crs = points.GetFieldData().GetAbstractArray("TerrainCRS")
-    write_table(os.path.join(folder, "crossings.csv"),
-                [{**dict(zip("XYZ", places.T)), **columns_of(points.GetPointData())}],
+    write_table(os.path.join(folder, "crossings.csv"), crossing_tables(stems),
                 crs.GetValue(0) if crs else None, "KineticEnergy")
     for port, name in ((1, "lines.csv"), (2, "exceedance.csv")):
         write_table(os.path.join(folder, name),

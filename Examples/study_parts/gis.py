@@ -1,5 +1,6 @@
 """What a GIS wants beside the tables and the map of a study: types of columns (.csvt), the CRS (.prj), and styles of
 QGIS (.qml) that name units and show energies in kJ. Classes are the same in all studies, so that maps compare."""
+import itertools
 import os
 import re
 from xml.sax.saxutils import quoteattr
@@ -118,13 +119,15 @@ def table_style(names, by=None):
 
 
 def write_table(path, tables, crs=None, by=None):
-    """A table of a study with what belongs to it; with a CRS its columns X and Y are places, coloured `by` a
-    column."""
+    """Tables of the same columns as one, with what belongs to it; with a CRS its columns X and Y are places,
+    coloured `by` a column."""
     stem = os.path.splitext(path)[0]
     places = {"X": "CoordX", "Y": "CoordY"} if by else {}
-    write_csv(path, tables)
-    write_text(stem + ".csvt", ",".join(f'"{type_of(name, column, places)}"' for name, column in tables[0].items()) + "\n")
-    write_text(stem + ".qml", table_style(list(tables[0]), by))
+    tables = iter(tables)
+    first = next(tables)
+    write_csv(path, itertools.chain([first], tables))
+    write_text(stem + ".csvt", ",".join(f'"{type_of(name, column, places)}"' for name, column in first.items()) + "\n")
+    write_text(stem + ".qml", table_style(list(first), by))
     if crs:
         write_text(stem + ".prj", crs)
 

@@ -14,6 +14,7 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 UNFINISHED = ".unfinished-"
 LOCK = UNFINISHED + "lock"
 XML_END = b"</VTKFile>"
+ROWS = 10000  # of a table that are text at once
 
 
 def unfinished(path):
@@ -36,17 +37,20 @@ def keep(path):
         os.close(folder)
 
 
-def whole(path, data):
-    """Writes bytes: all of them, or none under this name."""
+def whole(path, blocks):
+    """Writes blocks of bytes, one after the other: all of them, or none under this name."""
     other = unfinished(path)
+    written = 0
     try:
         with open(other, "wb") as file:
-            file.write(data)
+            for data in blocks:
+                file.write(data)
+                written += len(data)
             file.flush()
             os.fsync(file.fileno())
             size = os.fstat(file.fileno()).st_size
-        if size != len(data):
-            raise OSError(errno.EIO, f"only {size} of {len(data)} bytes were written", path)
+        if size != written:
+            raise OSError(errno.EIO, f"only {size} of {written} bytes were written", path)
         keep(path)
     except OSError as error:
         if os.path.exists(other):
@@ -55,7 +59,7 @@ def whole(path, data):
 
 
 def write_text(path, text):
-    whole(path, text.encode())
+    whole(path, [text.encode()])
 
 
 def cell(value):
@@ -69,15 +73,32 @@ def cell(value):
         return "'" + value
 
 
+def texts_of(column):
+    """What csv writes of a column: numbers are no formulas."""
+    values = column.tolist()
+    return values if column.dtype.kind in "iuf" else map(cell, values)
+
+
+def csv_blocks(tables):
+    """The text of tables of the same columns as one. Only some rows of it are in memory at once."""
+    names = None
+    for table in tables:
+        text = io.StringIO(newline="")
+        writer = csv.writer(text, lineterminator="\n")
+        if names is None:
+            names = list(table)
+            writer.writerow(map(cell, names))
+        for first in range(0, len(table[names[0]]), ROWS):
+            writer.writerows(zip(*(texts_of(table[name][first:first + ROWS]) for name in names)))
+            yield text.getvalue().encode()
+            text.seek(0)
+            text.truncate()
+        yield text.getvalue().encode()
+
+
 def write_csv(path, tables):
     """Tables of the same columns as one."""
-    names = list(tables[0])
-    text = io.StringIO(newline="")
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(map(cell, names))
-    for table in tables:
-        writer.writerows(zip(*(map(cell, table[name].tolist()) for name in names)))
-    write_text(path, text.getvalue())
+    whole(path, csv_blocks(tables))
 
 
 def write_npz(path, columns):
@@ -89,7 +110,7 @@ def write_npz(path, columns):
             np.save(data, values)
             archive.writestr(zipfile.ZipInfo(name + ".npy", (1980, 1, 1, 0, 0, 0)), data.getvalue(),
                              compress_type=zipfile.ZIP_DEFLATED)
-    whole(path, made.getvalue())
+    whole(path, [made.getvalue()])
 
 
 def write_polydata(path, data):
@@ -102,7 +123,7 @@ def write_polydata(path, data):
     made = made.encode() if isinstance(made, str) else made
     if not made or not made.rstrip().endswith(XML_END):
         raise OSError(errno.ENOMEM, "VTK could not make its text", path)
-    whole(path, made)
+    whole(path, [made])
 
 
 class Lock:

@@ -17,6 +17,7 @@
 #include "vtkStringArray.h"
 
 #include <algorithm>
+#include <numeric>
 #include <string>
 #include <tuple>
 
@@ -191,6 +192,10 @@ MergedCrossings mergeCrossings(std::span<vtkPolyData* const> inputs, vtkPolyData
   ReleasedRocks rocks;
   std::vector<Place> places;
   vtkPolyData* pattern = nullptr; // the first that has points, or the first
+  const vtkIdType all = std::accumulate(inputs.begin(), inputs.end(), vtkIdType(0),
+    [](vtkIdType sum, vtkPolyData* input) { return sum + input->GetNumberOfPoints(); });
+  places.reserve(std::size_t(all)); // of millions no second copy
+  merged.crossings.reserve(std::size_t(all));
   for (std::size_t k = 0; k < inputs.size(); ++k)
   {
     vtkFieldData* field = inputs[k]->GetFieldData();

@@ -6,8 +6,10 @@ import os
 import resource
 import shutil
 import sys
+import tracemalloc
 
 import jsonschema
+import numpy as np
 from helpers import delete_sources, files_of, incline, run_script, write_grid, write_text
 
 EXAMPLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Examples")
@@ -126,4 +128,22 @@ for largest in (sizes[0] - 1, sizes[len(sizes) // 2] - 1, sizes[-1] - 1):
             f"{name} is not whole"
 code, said = run("folder-full")
 assert code == 0 and without_manifest("folder-full") == without_manifest("folder-calm"), said
+
+# A table of many chunks takes the memory of one: 40 of them no more than 2.
+def chunks_of(count):
+    for k in range(count):
+        yield {"Iteration": np.full(5000, k), "RunOut": np.arange(5000) / 3.0, "Fate": np.full(5000, "=stopped")}
+
+
+peaks = []
+for count in (2, 40):
+    tracemalloc.start()
+    wholefile.write_csv("many.csv", chunks_of(count))
+    peaks.append(tracemalloc.get_traced_memory()[1])
+    tracemalloc.stop()
+    with open("many.csv", encoding="utf-8") as file:
+        rows = file.read().split("\n")
+    assert len(rows) == 5000 * count + 2 and rows[0] == "Iteration,RunOut,Fate"
+    assert rows[1] == "0,0.0,'=stopped" and rows[-2] == f"{count - 1},{4999 / 3.0!r},'=stopped", (rows[1], rows[-2])
+assert peaks[1] < 1.2 * peaks[0], peaks
 print("a study's files are whole or not there")
