@@ -29,8 +29,11 @@ def new_study(file_name=""):
         return {}  # the message says why
     view = _render_view()
     simple.HideAll(view)  # of an earlier study, its notes as well
-    simple.Show(slope, view)
-    simple.ResetCamera(view)
+    shown = simple.Show(slope, view)
+    shown.Visibility = 0  # views that are moved are drawn at each step: before there is much to draw
+    chart = _chart_beside(view)
+    shown.Visibility = 1
+    view.StillRender()
 
     release = simple.RockRelease(registrationName=name("Release"), Terrain=slope)
     release.Amount = ROCKS
@@ -52,14 +55,13 @@ def new_study(file_name=""):
     simple.Show(growing, view)
     simple.Show(simple.OutputPort(line, 3), view)
     simple.Show(simple.OutputPort(hazard, 1), view)
-    _show_chart(line, view, name("Energy at the line"))
+    _show_curve(line, chart, name("Energy at the line"))
     clock(view)
     ground(slope, view, name("Ground"))
-    simple.GetAnimationScene().GoToLast()  # the paths as a whole; Play begins anew from there
-    frame(fall, view)
     simple.SetActiveView(view)
     simple.SetActiveSource(release)
-    simple.RenderAllViews()
+    _look_at_paths(fall, view)
+    simple.GetAnimationScene().GoToLast()  # the paths as a whole; Play begins anew from there; draws all views
     return {"slope": slope, "release": release, "fall": fall, "paths": growing, "map": hazard, "line": line}
 
 
@@ -67,8 +69,12 @@ def frame(fall=None, view=None):
     """Looks at the paths from where the view looks at the slope: on slopes of many kilometres they are small."""
     view = view or _render_view()
     fall = fall or simple.FindSource("Fall")
-    if not fall:
-        return
+    if fall:
+        _look_at_paths(fall, view)
+        simple.Render(view)
+
+
+def _look_at_paths(fall, view):
     low_x, high_x, low_y, high_y, low_z, high_z = fall[1].GetDataInformation().GetBounds()
     if low_x > high_x:
         return
@@ -82,7 +88,6 @@ def frame(fall=None, view=None):
     view.CameraFocalPoint = centre
     view.CameraViewUp = [0.0, 0.0, 1.0]
     view.CenterOfRotation = centre
-    simple.Render(view)
 
 
 def profile(source_name, port, trajectory):
@@ -98,10 +103,7 @@ def profile(source_name, port, trajectory):
         view = simple.GetActiveView()
         made = simple.TrajectoryProfile(registrationName="Profile", Input=simple.OutputPort(source, port),
                                         Trajectory=trajectory)
-        chart = simple.CreateView("XYChartView")
-        layout = simple.GetLayout(view) if view else None
-        if layout:
-            simple.AssignViewToLayout(view=chart, layout=layout, hint=0)
+        chart = _chart_beside(view)
         simple.Show(made, chart)
         simple.Show(simple.OutputPort(made, 1), view)
         simple.SetActiveView(view)
@@ -271,11 +273,15 @@ def _draw_placed(proxy):
         proxy.UpdatePipeline()
 
 
-def _show_chart(line, view, title):
+def _chart_beside(view):
     chart = simple.CreateView("XYChartView")
-    layout = simple.GetLayout(view)
+    layout = simple.GetLayout(view) if view else None
     if layout:
         simple.AssignViewToLayout(view=chart, layout=layout, hint=0)
+    return chart
+
+
+def _show_curve(line, chart, title):
     curve = simple.Show(simple.OutputPort(line, 2), chart)
     curve.UseIndexForXAxis = 0
     curve.XArrayName = "EnergyInKilojoules"
@@ -284,4 +290,3 @@ def _show_chart(line, view, title):
     chart.ChartTitle = title
     chart.BottomAxisTitle = "Kinetic energy (kJ)"
     chart.LeftAxisTitle = "Share with at least this energy"
-    return chart
