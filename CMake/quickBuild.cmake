@@ -1,6 +1,6 @@
-# Builds that take less: files compiled together, and headers compiled once.
+# Builds that take less: files compiled together, headers compiled once, tests optimised little.
 #
-# Both are for builds from nothing. With ccache each file by itself is found again, and a precompiled
+# The first two are for builds from nothing. With ccache each file by itself is found again, and a precompiled
 # header, whose bits depend on its folder, is not.
 set(from_nothing ON)
 if(CMAKE_CXX_COMPILER_LAUNCHER MATCHES "ccache")
@@ -36,6 +36,12 @@ function(rockfall_unity target size)
     math(EXPR ${folder}_files "0${${folder}_files} + 1")
     set_source_files_properties("${source}" PROPERTIES UNITY_GROUP "${folder}_${group}")
   endforeach()
+endfunction()
+
+# rockfall_quick(<target>): what a test does itself is a small part of what it runs, and most of the
+# time to compile it goes into optimising. Of the levels the last counts.
+function(rockfall_quick target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
 # rockfall_unity_group(<name> <source>...): these sources of this folder together, in targets with the
