@@ -6,7 +6,6 @@
 
 #include "vtkRockBlockSource.h"
 
-#include "base/errors.h"
 #include "gis/layers/sources.h"
 #include "run/releasePlaces.h"
 #include "sources/rockMaker.h"
@@ -30,18 +29,3 @@ struct vtkRockBlockSource::Sources
 
   const rockfall::Terrain* ground() const { return terrain ? &*terrain : nullptr; }
 };
-
-namespace rockfall::filters
-{
-
-inline Vec3 vec3(const double v[3])
-{
-  return { v[0], v[1], v[2] };
-}
-
-[[noreturn]] inline void refuseProperty(const char* name, int value, const char* rule)
-{
-  throw ParameterError(std::string(name) + " is " + std::to_string(value) + ", it must be " + rule);
-}
-
-} // namespace rockfall::filters

@@ -17,6 +17,11 @@
 namespace rockfall::filters
 {
 
+void refuseProperty(const char* name, int value, const char* rule)
+{
+  throw ParameterError(std::string(name) + " is " + std::to_string(value) + ", it must be " + rule);
+}
+
 void requireFinite(const Vec3& value, const char* field)
 {
   for (int k = 0; k < 3; ++k)

@@ -87,6 +87,14 @@ private:
 void takeMaterial(
   int number, double& density, double& youngModulus, double& poissonRatio, std::string& name);
 
+inline Vec3 vec3(const double v[3])
+{
+  return { v[0], v[1], v[2] };
+}
+
+/// Throws ParameterError: "name is value, it must be rule".
+[[noreturn]] void refuseProperty(const char* name, int value, const char* rule);
+
 /// Throws ParameterError naming the field if a component is not finite.
 void requireFinite(const Vec3& value, const char* field);
 

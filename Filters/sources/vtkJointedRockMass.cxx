@@ -8,11 +8,8 @@
 #include "rock/placement.h"
 #include "shared/arrays.h"
 #include "shared/errorReport.h"
-#include "shared/inputs.h"
 #include "shared/slopeReference.h"
-#include "shared/streamingPieces.h"
 #include "shared/terrainFieldData.h"
-#include "shared/withAbort.h"
 #include "sources/drawnSource.h"
 #include "sources/rockMaker.h"
 #include "sources/shapeInput.h"
@@ -20,7 +17,6 @@
 #include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
-#include "vtkInformation.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
@@ -34,12 +30,7 @@ vtkStandardNewMacro(vtkJointedRockMass);
 namespace
 {
 
-constexpr int TERRAIN = 1, SHAPE = 2;
-
-rockfall::Vec3 vec3(const double v[3])
-{
-  return { v[0], v[1], v[2] };
-}
+using rockfall::filters::vec3;
 
 /// A closed surface as it is: a mass that its hull stood for would be another one.
 rockfall::Polyhedron readMass(const std::string& fileName, vtkPolyData* surface)
@@ -78,19 +69,15 @@ vtkJointedRockMass::vtkJointedRockMass()
   : JointSets{ { 0.0, 0.0, 1.0, 0.5, 0.0, 0.0 }, { 90.0, 90.0, 1.0, 0.5, 0.0, 0.0 },
     { 90.0, 0.0, 1.0, 0.5, 0.0, 0.0 } }
 {
-  this->SetNumberOfInputPorts(3);
+  this->MaximumRocks = 100000;
+  for (double& length : this->Lengths)
+  {
+    length = 3.0;
+  }
 }
 
 //------------------------------------------------------------------------------
 vtkJointedRockMass::~vtkJointedRockMass() = default;
-
-//------------------------------------------------------------------------------
-int vtkJointedRockMass::FillInputPortInformation(int, vtkInformation* info)
-{
-  rockfall::filters::acceptPolyData(info);
-  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
-  return 1;
-}
 
 //------------------------------------------------------------------------------
 void vtkJointedRockMass::SetNumberOfJointSets(int number)
@@ -155,10 +142,7 @@ void vtkJointedRockMass::MakeBlocks(
     filters::showNote("ReleaseHeight is " + numberText(this->ReleaseHeight) +
       " m, but has no effect: PlaceOnGround is off, so the rock mass is where it is given");
   }
-  if (this->Seed < 0)
-  {
-    throw ParameterError("Seed is " + std::to_string(this->Seed) + ", it must be at least 0");
-  }
+  this->CheckSeed();
 
   // About its centroid, where the numbers are small.
   Polyhedron mass;
@@ -266,47 +250,10 @@ void vtkJointedRockMass::MakeBlocks(
 }
 
 //------------------------------------------------------------------------------
-int vtkJointedRockMass::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
-{
-  if (rockfall::filters::isFurtherPiece(outputVector))
-  {
-    return 1;
-  }
-  rockfall::filters::Input taken(rockfall::filters::InputKind::Terrain);
-  vtkPolyData* terrain = taken.take(inputVector[TERRAIN]);
-  if (terrain && rockfall::filters::inheritFailure(terrain, this))
-  {
-    return 1;
-  }
-  rockfall::filters::Input shape(rockfall::filters::InputKind::Shape);
-  vtkPolyData* surface = shape.take(inputVector[SHAPE]);
-  if (surface && rockfall::filters::inheritFailure(surface, this))
-  {
-    return 1;
-  }
-  return rockfall::filters::withAbort(this, "The blocks of the rock mass do not fit in memory",
-    [&]
-    {
-      taken.require();
-      shape.require();
-      vtkNew<vtkPolyData> blocks;
-      this->MakeBlocks(terrain, surface, blocks);
-      vtkPolyData::GetData(outputVector)->ShallowCopy(blocks);
-      return 1;
-    });
-}
-
-//------------------------------------------------------------------------------
 void vtkJointedRockMass::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
-  const auto printVector = [&](const char* name, const double v[3])
-  { os << indent << name << ": " << v[0] << " " << v[1] << " " << v[2] << "\n"; };
   os << indent << "MassShape: " << this->MassShape << "\n";
-  printVector("Center", this->Center);
-  printVector("Lengths", this->Lengths);
-  printVector("Orientation", this->Orientation);
   os << indent << "MassFileName: " << (this->MassFileName.empty() ? "(none)" : this->MassFileName)
      << "\n";
   os << indent << "JointSets:";
@@ -322,19 +269,5 @@ void vtkJointedRockMass::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Slivers: " << this->Slivers << "\n";
   os << indent << "MinimumThickness: " << this->MinimumThickness << "\n";
   os << indent << "MinimumVolume: " << this->MinimumVolume << "\n";
-  os << indent << "MaximumRocks: " << this->MaximumRocks << "\n";
-  os << indent << "Seed: " << this->Seed << "\n";
-  os << indent << "PlaceOnGround: " << this->PlaceOnGround << "\n";
-  os << indent << "ReleaseHeight: " << this->ReleaseHeight << "\n";
-  printVector("Velocity", this->Velocity);
-  os << indent << "Material: " << this->Material << "\n";
-  os << indent << "MaterialName: " << (this->MaterialName.empty() ? "(none)" : this->MaterialName)
-     << "\n";
-  os << indent << "Density: " << this->Density << "\n";
-  os << indent << "YoungModulus: " << this->YoungModulus << "\n";
-  os << indent << "PoissonRatio: " << this->PoissonRatio << "\n";
-  os << indent << "SourceName: " << (this->SourceName.empty() ? "(none)" : this->SourceName)
-     << "\n";
   os << indent << "SourceId: " << this->SourceId << "\n";
-  os << indent << "FirstBlockId: " << this->FirstBlockId << "\n";
 }

@@ -7,16 +7,12 @@
 #include "run/overlaps.h"
 #include "run/releasePlaces.h"
 #include "shared/errorReport.h"
-#include "shared/inputs.h"
 #include "shared/slopeReference.h"
-#include "shared/streamingPieces.h"
 #include "shared/terrainFieldData.h"
-#include "shared/withAbort.h"
 #include "sources/rockBlockSources.h"
 #include "sources/rockMaker.h"
 #include "sources/shapeInput.h"
 
-#include "vtkInformation.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
@@ -36,29 +32,16 @@ namespace
 using rockfall::filters::refuseProperty;
 using rockfall::filters::vec3;
 
-constexpr int TERRAIN = 1, SHAPE = 2;
-
 /// Places drawn for a rock until it is in no other one.
 constexpr std::uint32_t MOST_PLACES = 1000;
 
 } // namespace
 
 //------------------------------------------------------------------------------
-vtkRockBlockSource::vtkRockBlockSource()
-{
-  this->SetNumberOfInputPorts(3);
-}
+vtkRockBlockSource::vtkRockBlockSource() = default;
 
 //------------------------------------------------------------------------------
 vtkRockBlockSource::~vtkRockBlockSource() = default;
-
-//------------------------------------------------------------------------------
-int vtkRockBlockSource::FillInputPortInformation(int, vtkInformation* info)
-{
-  rockfall::filters::acceptPolyData(info);
-  info->Set(vtkAlgorithm::INPUT_IS_OPTIONAL(), 1);
-  return 1;
-}
 
 //------------------------------------------------------------------------------
 void vtkRockBlockSource::AddPoint(double x, double y, double z)
@@ -155,122 +138,92 @@ void vtkRockBlockSource::PlaceApart(Sources& sources)
 }
 
 //------------------------------------------------------------------------------
-int vtkRockBlockSource::RequestData(
-  vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+void vtkRockBlockSource::MakeBlocks(vtkPolyData* terrain, vtkPolyData* surface, vtkPolyData* blocks)
 {
-  if (rockfall::filters::isFurtherPiece(outputVector))
+  rockfall::filters::RockDefaults defaults;
+  rockfall::shapeName(rockfall::Shape(this->Shape)); // throws if there is no such shape
+  defaults.shapes = this->ShapeMix.empty() ? rockfall::ShapeMix(rockfall::Shape(this->Shape))
+                                           : rockfall::ShapeMix::fromText(this->ShapeMix);
+  defaults.volume.deviation = this->VolumeDeviation;
+  defaults.volume.minimum = this->VolumeMinimum;
+  defaults.volume.maximum = this->VolumeMaximum;
+  defaults.volume.exponent = this->VolumeExponent;
+  defaults.volume.validate(); // signs, also of what the law has no use for
+  defaults.volume.mean = this->Volume;
+  defaults.volume.law = rockfall::VolumeLaw(this->VolumeLaw);
+  rockfall::volumeLawName(defaults.volume.law); // throws if there is no such law
+  defaults.redrawVolume = this->RedrawVolume;
+  defaults.lengths = vec3(this->Lengths);
+  defaults.orientation = vec3(this->Orientation);
+  defaults.velocity = vec3(this->Velocity);
+  defaults.angularVelocity = vec3(this->AngularVelocity);
+  defaults.density = this->Density;
+  defaults.youngModulus = this->YoungModulus;
+  defaults.poissonRatio = this->PoissonRatio;
+  defaults.material = this->MaterialName;
+  rockfall::filters::takeMaterial(this->Material, defaults.density, defaults.youngModulus,
+    defaults.poissonRatio, defaults.material);
+  rockfall::filters::requireOneShape("ShapeFileName", this->ShapeFileName, surface != nullptr);
+  defaults.shapeFile = this->ShapeFileName;
+  if (surface)
   {
-    return 1;
+    defaults.shapeMesh = rockfall::filters::meshOf(surface);
   }
-  rockfall::filters::Input taken(rockfall::filters::InputKind::Terrain);
-  vtkPolyData* terrain = taken.take(inputVector[TERRAIN]);
-  if (terrain && rockfall::filters::inheritFailure(terrain, this))
+  if (this->ShapeFileMode != CONVEX_HULL && this->ShapeFileMode != AS_IT_IS)
   {
-    return 1;
+    refuseProperty("ShapeFileMode", this->ShapeFileMode, "0 (convex hull) or 1 (as it is)");
   }
-  rockfall::filters::Input shape(rockfall::filters::InputKind::Shape);
-  vtkPolyData* surface = shape.take(inputVector[SHAPE]);
-  if (surface && rockfall::filters::inheritFailure(surface, this))
+  defaults.shapeAsItIs = this->ShapeFileMode == AS_IT_IS;
+  defaults.scaleToVolume = this->ScaleToVolume;
+  defaults.uncertainty.horizontalDeviation = this->HorizontalDeviation;
+  defaults.uncertainty.verticalDeviation = this->VerticalDeviation;
+  if (this->AttitudeLaw < AS_GIVEN || this->AttitudeLaw > RANDOM_UNLESS_GIVEN)
   {
-    return 1;
+    refuseProperty("AttitudeLaw", this->AttitudeLaw, "0 to 3");
   }
-  vtkPolyData* output = vtkPolyData::GetData(outputVector);
-  return rockfall::filters::withAbort(this, "The rock blocks do not fit in memory",
-    [&]
-    {
-      taken.require();
-      shape.require();
-      rockfall::filters::RockDefaults defaults;
-      rockfall::shapeName(rockfall::Shape(this->Shape)); // throws if there is no such shape
-      defaults.shapes = this->ShapeMix.empty() ? rockfall::ShapeMix(rockfall::Shape(this->Shape))
-                                               : rockfall::ShapeMix::fromText(this->ShapeMix);
-      defaults.volume.deviation = this->VolumeDeviation;
-      defaults.volume.minimum = this->VolumeMinimum;
-      defaults.volume.maximum = this->VolumeMaximum;
-      defaults.volume.exponent = this->VolumeExponent;
-      defaults.volume.validate(); // signs, also of what the law has no use for
-      defaults.volume.mean = this->Volume;
-      defaults.volume.law = rockfall::VolumeLaw(this->VolumeLaw);
-      rockfall::volumeLawName(defaults.volume.law); // throws if there is no such law
-      defaults.redrawVolume = this->RedrawVolume;
-      defaults.lengths = vec3(this->Lengths);
-      defaults.orientation = vec3(this->Orientation);
-      defaults.velocity = vec3(this->Velocity);
-      defaults.angularVelocity = vec3(this->AngularVelocity);
-      defaults.density = this->Density;
-      defaults.youngModulus = this->YoungModulus;
-      defaults.poissonRatio = this->PoissonRatio;
-      defaults.material = this->MaterialName;
-      rockfall::filters::takeMaterial(this->Material, defaults.density, defaults.youngModulus,
-        defaults.poissonRatio, defaults.material);
-      rockfall::filters::requireOneShape("ShapeFileName", this->ShapeFileName, surface != nullptr);
-      defaults.shapeFile = this->ShapeFileName;
-      if (surface)
-      {
-        defaults.shapeMesh = rockfall::filters::meshOf(surface);
-      }
-      if (this->ShapeFileMode != CONVEX_HULL && this->ShapeFileMode != AS_IT_IS)
-      {
-        refuseProperty("ShapeFileMode", this->ShapeFileMode, "0 (convex hull) or 1 (as it is)");
-      }
-      defaults.shapeAsItIs = this->ShapeFileMode == AS_IT_IS;
-      defaults.scaleToVolume = this->ScaleToVolume;
-      defaults.uncertainty.horizontalDeviation = this->HorizontalDeviation;
-      defaults.uncertainty.verticalDeviation = this->VerticalDeviation;
-      if (this->AttitudeLaw < AS_GIVEN || this->AttitudeLaw > RANDOM_UNLESS_GIVEN)
-      {
-        refuseProperty("AttitudeLaw", this->AttitudeLaw, "0 to 3");
-      }
-      defaults.randomUnlessGiven = this->AttitudeLaw == RANDOM_UNLESS_GIVEN;
-      defaults.uncertainty.attitude = defaults.randomUnlessGiven
-        ? rockfall::AttitudeLaw::AsGiven
-        : rockfall::AttitudeLaw(this->AttitudeLaw);
-      defaults.uncertainty.attitudeDeviation = rockfall::radians(this->AttitudeDeviation);
-      defaults.uncertainty.validate();
-      if (this->Seed < 0)
-      {
-        refuseProperty("Seed", this->Seed, "at least 0");
-      }
-      defaults.seed = std::uint64_t(this->Seed);
-      defaults.sourceName = this->SourceName;
-      defaults.firstSourceId = this->FirstSourceId;
+  defaults.randomUnlessGiven = this->AttitudeLaw == RANDOM_UNLESS_GIVEN;
+  defaults.uncertainty.attitude = defaults.randomUnlessGiven
+    ? rockfall::AttitudeLaw::AsGiven
+    : rockfall::AttitudeLaw(this->AttitudeLaw);
+  defaults.uncertainty.attitudeDeviation = rockfall::radians(this->AttitudeDeviation);
+  defaults.uncertainty.validate();
+  this->CheckSeed();
+  defaults.seed = std::uint64_t(this->Seed);
+  defaults.sourceName = this->SourceName;
+  defaults.firstSourceId = this->FirstSourceId;
 
-      defaults.randomOrientation = this->RandomOrientation;
+  defaults.randomOrientation = this->RandomOrientation;
 
-      const rockfall::AllowReferences references(this->AllowReferences != 0);
-      this->CheckFrequencies();
-      Sources sources;
-      this->FindSources(terrain, sources);
-      sources.maker.emplace(defaults, sources.ground());
-      this->FindPlaces(sources);
-      this->MakeRocks(sources);
-      if (this->KeepApart)
-      {
-        this->PlaceApart(sources);
-      }
-      this->SetFrequencies(sources);
-      vtkNew<vtkPolyData> blocks;
-      rockfall::filters::writeRocks(sources.rocks, blocks);
-      rockfall::filters::writeCrs(sources.crs, blocks->GetFieldData());
-      if (terrain)
-      {
-        rockfall::filters::referToSlope(terrain->GetFieldData(), blocks->GetFieldData());
-      }
-      const std::vector<std::string>& made = sources.maker->notes();
-      sources.notes.insert(sources.notes.end(), made.begin(), made.end());
-      rockfall::filters::showNotes(sources.notes, blocks->GetFieldData());
-      this->TellUnused(sources);
-      if (surface &&
-        std::none_of(sources.rocks.begin(), sources.rocks.end(),
-          [](const rockfall::filters::ReleasedRock& rock)
-          { return rock.shape == rockfall::Shape::File; }))
-      {
-        rockfall::filters::showNote("The Shape input is connected, but has no effect: no block's "
-                                    "shape is \"file\"");
-      }
-      output->ShallowCopy(blocks);
-      return 1;
-    });
+  const rockfall::AllowReferences references(this->AllowReferences != 0);
+  this->CheckFrequencies();
+  Sources sources;
+  this->FindSources(terrain, sources);
+  sources.maker.emplace(defaults, sources.ground());
+  this->FindPlaces(sources);
+  this->MakeRocks(sources);
+  if (this->KeepApart)
+  {
+    this->PlaceApart(sources);
+  }
+  this->SetFrequencies(sources);
+  rockfall::filters::writeRocks(sources.rocks, blocks);
+  rockfall::filters::writeCrs(sources.crs, blocks->GetFieldData());
+  if (terrain)
+  {
+    rockfall::filters::referToSlope(terrain->GetFieldData(), blocks->GetFieldData());
+  }
+  const std::vector<std::string>& made = sources.maker->notes();
+  sources.notes.insert(sources.notes.end(), made.begin(), made.end());
+  rockfall::filters::showNotes(sources.notes, blocks->GetFieldData());
+  this->TellUnused(sources);
+  if (surface &&
+    std::none_of(sources.rocks.begin(), sources.rocks.end(),
+      [](const rockfall::filters::ReleasedRock& rock)
+      { return rock.shape == rockfall::Shape::File; }))
+  {
+    rockfall::filters::showNote("The Shape input is connected, but has no effect: no block's "
+                                "shape is \"file\"");
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -281,18 +234,11 @@ void vtkRockBlockSource::PrintSelf(ostream& os, vtkIndent indent)
   { os << indent << name << ": " << v[0] << " " << v[1] << " " << v[2] << "\n"; };
   os << indent << "Shape: " << this->Shape << "\n";
   os << indent << "Volume: " << this->Volume << "\n";
-  printVector("Lengths", this->Lengths);
   os << indent
      << "ShapeFileName: " << (this->ShapeFileName.empty() ? "(none)" : this->ShapeFileName) << "\n";
   os << indent << "ShapeFileMode: " << this->ShapeFileMode << "\n";
   os << indent << "ScaleToVolume: " << this->ScaleToVolume << "\n";
-  printVector("Center", this->Center);
-  printVector("Orientation", this->Orientation);
-  printVector("Velocity", this->Velocity);
   printVector("AngularVelocity", this->AngularVelocity);
-  os << indent << "Density: " << this->Density << "\n";
-  os << indent << "YoungModulus: " << this->YoungModulus << "\n";
-  os << indent << "PoissonRatio: " << this->PoissonRatio << "\n";
   os << indent << "FileName: " << (this->FileName.empty() ? "(none)" : this->FileName) << "\n";
   os << indent << "AllowReferences: " << this->AllowReferences << "\n";
   os << indent << "LayerName: " << (this->LayerName.empty() ? "(none)" : this->LayerName) << "\n";
@@ -305,16 +251,12 @@ void vtkRockBlockSource::PrintSelf(ostream& os, vtkIndent indent)
   }
   os << "\n";
   os << indent << "TargetCRS: " << (this->TargetCRS.empty() ? "(none)" : this->TargetCRS) << "\n";
-  os << indent << "FirstBlockId: " << this->FirstBlockId << "\n";
   os << indent << "ShapeMix: " << (this->ShapeMix.empty() ? "(none)" : this->ShapeMix) << "\n";
   os << indent << "VolumeLaw: " << this->VolumeLaw << "\n";
   os << indent << "VolumeDeviation: " << this->VolumeDeviation << "\n";
   os << indent << "VolumeMinimum: " << this->VolumeMinimum << "\n";
   os << indent << "VolumeMaximum: " << this->VolumeMaximum << "\n";
   os << indent << "VolumeExponent: " << this->VolumeExponent << "\n";
-  os << indent << "Material: " << this->Material << "\n";
-  os << indent << "MaterialName: " << (this->MaterialName.empty() ? "(none)" : this->MaterialName)
-     << "\n";
   os << indent << "Amount: " << this->Amount << "\n";
   os << indent << "Intensity: " << this->Intensity << "\n";
   os << indent << "TotalVolume: " << this->TotalVolume << "\n";
@@ -325,16 +267,10 @@ void vtkRockBlockSource::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "KeepApart: " << this->KeepApart << "\n";
   os << indent << "RandomOrientation: " << this->RandomOrientation << "\n";
   os << indent << "SlopeThreshold: " << this->SlopeThreshold << "\n";
-  os << indent << "PlaceOnGround: " << this->PlaceOnGround << "\n";
-  os << indent << "ReleaseHeight: " << this->ReleaseHeight << "\n";
   os << indent << "HorizontalDeviation: " << this->HorizontalDeviation << "\n";
   os << indent << "VerticalDeviation: " << this->VerticalDeviation << "\n";
   os << indent << "AttitudeLaw: " << this->AttitudeLaw << "\n";
   os << indent << "AttitudeDeviation: " << this->AttitudeDeviation << "\n";
   os << indent << "RedrawVolume: " << this->RedrawVolume << "\n";
-  os << indent << "Seed: " << this->Seed << "\n";
-  os << indent << "MaximumRocks: " << this->MaximumRocks << "\n";
-  os << indent << "SourceName: " << (this->SourceName.empty() ? "(none)" : this->SourceName)
-     << "\n";
   os << indent << "FirstSourceId: " << this->FirstSourceId << "\n";
 }

@@ -2,34 +2,29 @@
  * @class   vtkRockBlockSource
  * @brief   makes rock blocks, by properties or from a layer of rockfall sources
  *
- * Input port 1, optional, is the terrain, from vtkDEMToCFESource: rocks can then be placed over the
- * ground and where it is steep, and layers are brought to its coordinate system. Port 2, optional,
- * is the surface of the shape FROM_FILE, or points of which it is the hull. Port 0 is not used: ParaView's Python connects whatever is active to the first input of a proxy if none is
- * named.
+ * With a terrain rocks can be placed over the ground and where it is steep, and layers are brought
+ * to its coordinate system; the shape input is that FROM_FILE.
  *
  * The output has the real polygonal faces of every block in world coordinates, in double precision.
  * Cell arrays: BlockId, and beside it the properties of the block, Density, Volume, YoungModulus,
  * PoissonRatio, Material, Velocity, AngularVelocity, Shape, SourceId and what is drawn in each
  * iteration of a simulation (see rockFieldData.h).
- *
- * All values are taken as they come and checked when the source runs, so that a bad one gives one
- * error that names it instead of being changed silently.
  */
 #ifndef vtkRockBlockSource_h
 #define vtkRockBlockSource_h
 
 #include "RockfallFiltersModule.h"
-#include "vtkPolyDataAlgorithm.h"
+#include "vtkRockAlgorithm.h"
 
 #include <cstddef> // for numbers of sources
 #include <string>  // for FileName
 #include <vector>  // for points
 
-class ROCKFALLFILTERS_EXPORT vtkRockBlockSource : public vtkPolyDataAlgorithm
+class ROCKFALLFILTERS_EXPORT vtkRockBlockSource : public vtkRockAlgorithm
 {
 public:
   static vtkRockBlockSource* New();
-  vtkTypeMacro(vtkRockBlockSource, vtkPolyDataAlgorithm);
+  vtkTypeMacro(vtkRockBlockSource, vtkRockAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum ShapeType
@@ -120,15 +115,6 @@ public:
 
   ///@{
   /**
-   * Edge lengths of a box, or whole axes of an ellipsoid, along x, y and z in metres, positive.
-   * Default 1, 1, 1.
-   */
-  vtkSetVector3Macro(Lengths, double);
-  vtkGetVector3Macro(Lengths, double);
-  ///@}
-
-  ///@{
-  /**
    * File of the shape FROM_FILE, unless it comes by port 2: points (.csv, .xyz, .txt) or a mesh
    * (.stl, .ply, .obj). A mesh must be closed with its faces outward.
    */
@@ -162,79 +148,10 @@ public:
 
   ///@{
   /**
-   * Where the centroid is at release, in world coordinates, m. The default is some 2 m over the top
-   * of the bi-planar test slope.
-   */
-  vtkSetVector3Macro(Center, double);
-  vtkGetVector3Macro(Center, double);
-  ///@}
-
-  ///@{
-  /**
-   * Angles in degrees about x, y and z, applied in the order of vtkTransform's RotateZ, RotateX,
-   * RotateY. Default 0, 0, 0.
-   */
-  vtkSetVector3Macro(Orientation, double);
-  vtkGetVector3Macro(Orientation, double);
-  ///@}
-
-  ///@{
-  /**
-   * Velocity at release, m/s. Default 0, 0, 0.
-   */
-  vtkSetVector3Macro(Velocity, double);
-  vtkGetVector3Macro(Velocity, double);
-  ///@}
-
-  ///@{
-  /**
    * Angular velocity at release about the world's x, y and z, rad/s. Default 0, 0, 0.
    */
   vtkSetVector3Macro(AngularVelocity, double);
   vtkGetVector3Macro(AngularVelocity, double);
-  ///@}
-
-  ///@{
-  /**
-   * Kind of rock whose density, Young's modulus and Poisson's ratio are taken instead of the
-   * properties: 0 (the default) none, then granite, gneiss, basalt, limestone, dolomite, sandstone,
-   * shale.
-   */
-  vtkSetMacro(Material, int);
-  vtkGetMacro(Material, int);
-  ///@}
-
-  ///@{
-  /**
-   * Name of the material where rocks hit each other (RockContactFile of
-   * vtkRockfallSimulation). Empty (the default) takes the name of Material, if that is not 0.
-   */
-  vtkSetStdStringFromCharMacro(MaterialName);
-  vtkGetCharFromStdStringMacro(MaterialName);
-  ///@}
-
-  ///@{
-  /**
-   * Density in kg/m³, positive. Default 2500.
-   */
-  vtkSetMacro(Density, double);
-  vtkGetMacro(Density, double);
-  ///@}
-
-  ///@{
-  /**
-   * Young's modulus in Pa, positive. Default 1e10.
-   */
-  vtkSetMacro(YoungModulus, double);
-  vtkGetMacro(YoungModulus, double);
-  ///@}
-
-  ///@{
-  /**
-   * Poisson's ratio, 0 to 0.49, dimensionless. Default 0.1.
-   */
-  vtkSetMacro(PoissonRatio, double);
-  vtkGetMacro(PoissonRatio, double);
   ///@}
 
   ///@{
@@ -404,24 +321,6 @@ public:
 
   ///@{
   /**
-   * Whether points stand over the ground, too, whatever their z. Default off.
-   */
-  vtkSetMacro(PlaceOnGround, bool);
-  vtkGetMacro(PlaceOnGround, bool);
-  vtkBooleanMacro(PlaceOnGround, bool);
-  ///@}
-
-  ///@{
-  /**
-   * Height over ground of the rocks' lowest part in m, not negative, of those that have no z.
-   * Default 0.
-   */
-  vtkSetMacro(ReleaseHeight, double);
-  vtkGetMacro(ReleaseHeight, double);
-  ///@}
-
-  ///@{
-  /**
    * Standard deviations of the place in m, not negative: of x and y each, and of the height. Drawn
    * in each iteration of a simulation. Default 0.
    */
@@ -469,44 +368,11 @@ public:
 
   ///@{
   /**
-   * Number from which places, shapes and volumes are drawn, not negative. Default 1.
-   */
-  vtkSetMacro(Seed, int);
-  vtkGetMacro(Seed, int);
-  ///@}
-
-  ///@{
-  /**
-   * More rocks than this are an error, at least 1. Default 1,000,000.
-   */
-  vtkSetMacro(MaximumRocks, int);
-  vtkGetMacro(MaximumRocks, int);
-  ///@}
-
-  ///@{
-  /**
-   * Name of sources that have none of their own. Empty (the default): "source" and the number.
-   */
-  vtkSetStdStringFromCharMacro(SourceName);
-  vtkGetCharFromStdStringMacro(SourceName);
-  ///@}
-
-  ///@{
-  /**
    * SourceId of the first source; the others follow. Default 1, so that a source has the number of
    * its row.
    */
   vtkSetMacro(FirstSourceId, vtkIdType);
   vtkGetMacro(FirstSourceId, vtkIdType);
-  ///@}
-
-  ///@{
-  /**
-   * BlockId of the first block; the others follow. Sources that are to be appended need numbers of
-   * their own. Default 1, so that a block has the number of its row.
-   */
-  vtkSetMacro(FirstBlockId, vtkIdType);
-  vtkGetMacro(FirstBlockId, vtkIdType);
   ///@}
 
   vtkRockBlockSource(const vtkRockBlockSource&) = delete;
@@ -516,8 +382,7 @@ protected:
   vtkRockBlockSource();
   ~vtkRockBlockSource() override;
 
-  int FillInputPortInformation(int port, vtkInformation* info) override;
-  int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
+  void MakeBlocks(vtkPolyData* terrain, vtkPolyData* shape, vtkPolyData* blocks) override;
 
 private:
   struct Sources;
@@ -540,17 +405,10 @@ private:
 
   int Shape = CUBE;
   double Volume = 1.0;
-  double Lengths[3] = { 1.0, 1.0, 1.0 };
   std::string ShapeFileName;
   int ShapeFileMode = CONVEX_HULL;
   bool ScaleToVolume = true;
-  double Center[3] = { 5.0, 50.0, 58.0 };
-  double Orientation[3] = { 0.0, 0.0, 0.0 };
-  double Velocity[3] = { 0.0, 0.0, 0.0 };
   double AngularVelocity[3] = { 0.0, 0.0, 0.0 };
-  double Density = 2500.0;
-  double YoungModulus = 1e10;
-  double PoissonRatio = 0.1;
   std::string FileName;
   std::string LayerName;
   int Draw = NOTHING;
@@ -558,15 +416,12 @@ private:
   double PlacedLine[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
   std::string TargetCRS;
   int AllowReferences = 0;
-  vtkIdType FirstBlockId = 1;
   std::string ShapeMix;
   int VolumeLaw = FIXED;
   double VolumeDeviation = 0.5;
   double VolumeMinimum = 0.1;
   double VolumeMaximum = 10.0;
   double VolumeExponent = 0.5;
-  int Material = 0;
-  std::string MaterialName;
   int Amount = 1;
   double Intensity = 0.0;
   double TotalVolume = 0.0;
@@ -577,16 +432,11 @@ private:
   bool KeepApart = false;
   bool RandomOrientation = false;
   double SlopeThreshold = 0.0;
-  bool PlaceOnGround = false;
-  double ReleaseHeight = 0.0;
   double HorizontalDeviation = 0.0;
   double VerticalDeviation = 0.0;
   int AttitudeLaw = RANDOM_UNLESS_GIVEN;
   double AttitudeDeviation = 10.0;
   bool RedrawVolume = false;
-  int Seed = 1;
-  int MaximumRocks = 1000000;
-  std::string SourceName;
   vtkIdType FirstSourceId = 1;
 };
 
