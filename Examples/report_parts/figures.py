@@ -16,7 +16,7 @@ STYLES = (("#1b4f91", "-"), ("#c8502d", "--"), ("#2b7a3d", ":"), ("#6a3d9a", "-.
 
 plt.rcParams.update({
     "font.size": 8, "axes.titlesize": 8, "axes.labelsize": 8, "xtick.labelsize": 7, "ytick.labelsize": 7,
-    "legend.fontsize": 7, "axes.edgecolor": INK, "axes.linewidth": 0.6, "hatch.linewidth": 0.4})
+    "legend.fontsize": 7, "axes.edgecolor": INK, "axes.linewidth": 0.6})
 
 
 def new(width, height):

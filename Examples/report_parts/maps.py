@@ -11,6 +11,10 @@ from figures import GREY, INK, PAGE, new, picture, place
 
 MOST = 1500  # cells across a picture
 LEFT, RIGHT, TOP = 15.0, 5.0, 4.0  # mm beside the frame
+BESIDE = 122.0  # mm from the left: legend and colours before it, scale bar and north arrow behind
+LONGEST_BAR = 32.0  # mm
+DOTS = 2.5  # mm from one to the next where too few rocks came
+DOT = {"marker": "o", "ms": 1.5, "mfc": "white", "mec": INK, "mew": 0.35}
 ROUND = (1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.5, 8.0, 10.0)
 WEAK, MEDIUM, STRONG = "#ffe680", "#e08a2e", "#8b0a1a"  # light to dark, in grey as well
 
@@ -39,7 +43,7 @@ def fewer(values, extent, most=MOST):
 class Sheet:
     """A map of a part of the slope, at the largest round scale at which it fits a width and height in mm."""
 
-    def __init__(self, slope, extent, highest, below):
+    def __init__(self, slope, extent, highest, below, pale=False):
         west, east, south, north = extent
         widest = PAGE - LEFT - RIGHT
         self.scale = nice(max((east - west) / widest, (north - south) / highest) * 1000.0, ROUND)
@@ -51,14 +55,15 @@ class Sheet:
         self.axes.set(xlim=(west, east), ylim=(south, north))
         self.slope, self.extent = slope, extent
         self.handles = []
-        self.relief()
+        self.relief(pale)
         self.frame()
 
     def mm(self, length):
         """Metres of a length on paper."""
         return length * self.scale / 1000.0
 
-    def relief(self):
+    def relief(self, pale):
+        """Hillshade and contours; pale where colours of cells are to be told from it in grey."""
         slope = self.slope
         step = max(1, -(-max(slope.heights.shape) // MOST))
         heights = slope.heights[::step, ::step]
@@ -68,14 +73,14 @@ class Sheet:
         shade[np.isnan(heights)] = np.nan
         west, north = slope.west - 0.5 * cell, slope.north + 0.5 * cell
         place_ = (west, west + cell * heights.shape[1], north - cell * heights.shape[0], north)
-        self.axes.imshow(shade, extent=place_, cmap="gray", vmin=-1.3, vmax=1.0, interpolation="bilinear", aspect="auto")
+        self.axes.imshow(shade, extent=place_, cmap="gray", vmin=-9.0 if pale else -1.3, vmax=1.0, interpolation="bilinear", aspect="auto")
         self.interval = nice(max((high - low) / 18.0, 0.1), (1.0, 2.0, 2.5, 5.0, 10.0))
         x = slope.west + cell * np.arange(heights.shape[1])
         y = slope.north - cell * np.arange(heights.shape[0])
         levels = np.arange(math.ceil(low / self.interval), math.floor(high / self.interval) + 1) * self.interval
         if len(levels) and min(heights.shape) > 1:
             thick = [0.7 if round(level / self.interval) % 5 == 0 else 0.3 for level in levels]
-            lines = self.axes.contour(x, y, heights, levels=levels, colors="#5c4a2e", linewidths=thick)
+            lines = self.axes.contour(x, y, heights, levels=levels, colors="#5c4a2e", linewidths=thick, zorder=3)
             self.axes.clabel(lines, [level for level, width in zip(levels, thick) if width > 0.5], fontsize=5.5, fmt="%g")
             self.handles.append(Line2D([], [], color="#5c4a2e", lw=0.7, label=f"contours, {self.interval:g} m"))
 
@@ -92,29 +97,22 @@ class Sheet:
             label.set(rotation=90, va="bottom" if label.get_position()[1] < axes.get_ylim()[0] + self.mm(8.0) else "center")
         axes.grid(color=INK, alpha=0.18, linewidth=0.3)
         self.scale_bar()
-        self.north()
 
     def scale_bar(self):
-        length = nice(self.mm(0.16 * min(self.wide, 200.0)))
-        west, _, south, _ = self.extent
-        x, y, high = west + self.mm(4.0), south + self.mm(6.5), self.mm(1.2)
-        self.axes.add_patch(Rectangle((west + self.mm(1.5), south + self.mm(1.5)), length + self.mm(12.0), self.mm(8.5),
-                                      fc="white", ec=INK, lw=0.4, alpha=0.9, zorder=8))
+        """With the north arrow, under the map, where they hide nothing."""
+        axes = place(self.figure, BESIDE, 4.0, PAGE - BESIDE, 13.0)
+        axes.set(xlim=(0.0, PAGE - BESIDE), ylim=(0.0, 13.0))
+        axes.axis("off")
+        length = nice(self.mm(LONGEST_BAR / 2.5))
+        long = length * 1000.0 / self.scale
         for k in range(4):
-            self.axes.add_patch(Rectangle((x + 0.25 * k * length, y), 0.25 * length, high, fc=(INK, "white")[k % 2],
-                                          ec=INK, lw=0.5, zorder=9))
+            axes.add_patch(Rectangle((3.0 + 0.25 * k * long, 6.0), 0.25 * long, 1.2, fc=(INK, "white")[k % 2], ec=INK, lw=0.5))
         for at in (0.0, 0.5, 1.0):
-            self.axes.text(x + at * length, y - self.mm(0.6), f"{at * length:g}" + (" m" if at == 1.0 else ""),
-                           ha="center", va="top", fontsize=6, zorder=9)
-
-    def north(self):
-        _, east, _, north = self.extent
-        x, y, m = east - self.mm(5.5), north - self.mm(12.5), self.mm
-        self.axes.add_patch(Rectangle((x - m(4.0), y - m(1.5)), m(8.0), m(12.5), fc="white", ec=INK, lw=0.4, alpha=0.9, zorder=8))
+            axes.text(3.0 + at * long, 5.2, f"{at * length:g}" + (" m" if at == 1.0 else ""), ha="center", va="top", fontsize=6)
+        x, y = PAGE - BESIDE - 7.0, 1.0
         for side, colour in ((-1, INK), (1, "white")):
-            self.axes.add_patch(Polygon([(x, y + m(6.5)), (x + side * m(2.2), y), (x, y + m(1.4))], closed=True, fc=colour,
-                                        ec=INK, lw=0.5, zorder=9))
-        self.axes.text(x, y + m(7.0), "N", ha="center", va="bottom", fontsize=8, fontweight="bold", zorder=9)
+            axes.add_patch(Polygon([(x, y + 6.5), (x + side * 2.2, y), (x, y + 1.4)], closed=True, fc=colour, ec=INK, lw=0.5))
+        axes.text(x, y + 7.0, "N", ha="center", va="bottom", fontsize=8, fontweight="bold")
 
     def mark(self, study, structures=True):
         """Sources, lines and structures."""
@@ -144,21 +142,21 @@ class Sheet:
 
     def legend(self, bottom, more=()):
         handles = [*self.handles, *more]
-        box = place(self.figure, 0.0, 0.0, PAGE, bottom)
+        box = place(self.figure, LEFT, 0.0, BESIDE - LEFT, bottom)
         box.axis("off")
-        box.legend(handles=handles, loc="center", ncol=min(len(handles), 4), frameon=False, handlelength=2.2)
+        box.legend(handles=handles, loc="center left", ncol=2, frameon=False, handlelength=2.2)
 
     def show(self, values, cell_extent, cmap, norm):
         values, cell_extent = fewer(values, cell_extent)
         axes = self.axes
         limits = axes.axis()
-        image = axes.imshow(np.ma.masked_invalid(values), extent=cell_extent, cmap=cmap, norm=norm, alpha=0.86,
+        image = axes.imshow(np.ma.masked_invalid(values), extent=cell_extent, cmap=cmap, norm=norm,
                             interpolation="nearest", aspect="auto", zorder=2)
         axes.axis(limits)
         return image
 
     def bar(self, image, label, ticks=None):
-        axes = place(self.figure, self.left + 0.1 * self.wide, 14.0, 0.8 * self.wide, 3.0)
+        axes = place(self.figure, LEFT, 12.0, BESIDE - LEFT - 4.0, 3.0)
         bar = self.figure.colorbar(image, cax=axes, orientation="horizontal", ticks=ticks)
         bar.set_label(label, labelpad=1)
         bar.outline.set_linewidth(0.5)
@@ -172,7 +170,7 @@ def scale_text(sheet):
     return f"1 : {sheet.scale:,.0f}".replace(",", "\u2009")
 
 
-def part(name, low=0.18):
+def part(name, low=0.3):
     """A colour map without its palest colours, which vanish on the relief."""
     return ListedColormap(plt.get_cmap(name)(np.linspace(low, 1.0, 256)))
 
@@ -212,23 +210,23 @@ def site(study, under):
 
 
 def too_few(sheet, raster, quantile):
-    """Hatches cells where too few rocks came for a quantile; whether there are any."""
+    """Dots where too few rocks came for a quantile, which are seen on dark and light; whether there are any."""
     if "HighestQuantile" not in raster:
         return False
     highest = raster.band("HighestQuantile")
-    few = np.where(np.isnan(highest), 0.0, (highest < quantile).astype(float))
-    if not few.any():
+    rows, columns = np.nonzero(highest < quantile)
+    if not len(rows):
         return False
-    few, (west, east, south, north) = fewer(few, raster.extent, 500)
-    few = np.nan_to_num(few)
-    dx, dy = (east - west) / few.shape[1], (north - south) / few.shape[0]
-    x, y = west + dx * (np.arange(few.shape[1]) + 0.5), north - dy * (np.arange(few.shape[0]) + 0.5)
-    if min(few.shape) > 1:
-        limits = sheet.axes.axis()
-        hatched = sheet.axes.contourf(x, y, few, levels=[0.5, 1.5], colors="none", hatches=["///"], zorder=3)
-        for one in getattr(hatched, "collections", [hatched]):
-            one.set(edgecolor="#555555", linewidth=0.0)
-        sheet.axes.axis(limits)
+    west, east, south, north = raster.extent
+    x, y = west + raster.cell * (columns + 0.5), north - raster.cell * (rows + 0.5)
+    # One in each square of some mm: of its cells the one next to its middle.
+    step = sheet.mm(DOTS)
+    column, row = np.floor((x - west) / step), np.floor((y - south) / step)
+    order = np.argsort((x - west - (column + 0.5) * step) ** 2 + (y - south - (row + 0.5) * step) ** 2, kind="stable")
+    _, first = np.unique((row * math.ceil((east - west) / step + 1.0) + column)[order], return_index=True)
+    limits = sheet.axes.axis()
+    sheet.axes.plot(x[order][first], y[order][first], ls="", zorder=3, **DOT)
+    sheet.axes.axis(limits)
     return True
 
 
@@ -238,25 +236,25 @@ def powers(low, high):
 
 
 def of_band(study, name, values, label, text, norm, ticks, cmap, quantile=None):
-    sheet = Sheet(study.slope, around(study.map, study.slope), 78.0, 18.0)
+    sheet = Sheet(study.slope, around(study.map, study.slope), 78.0, 18.0, pale=True)
     image = sheet.show(values, study.map.extent, part(cmap), norm)
     few = quantile and too_few(sheet, study.map, quantile)
     sheet.mark(study, structures=False)
     sheet.bar(image, label, ticks)
     if few:
-        text += " Hatched: too few rocks came for this quantile, the number is too low."
+        text += " Dotted: too few rocks came for this quantile, the number is too low."
     return picture(sheet.figure, f"{text} {scale_text(sheet)}.", name)
 
 
 def classes(study, values, names, text, name, quantile=None):
-    sheet = Sheet(study.slope, around(study.map, study.slope), 78.0, 12.0)
+    sheet = Sheet(study.slope, around(study.map, study.slope), 78.0, 12.0, pale=True)
     values = np.where(values > 0, values, np.nan)
     sheet.show(values, study.map.extent, ListedColormap([WEAK, MEDIUM, STRONG]), BoundaryNorm([0.5, 1.5, 2.5, 3.5], 3))
     few = quantile and too_few(sheet, study.map, quantile)
     sheet.mark(study, structures=False)
     sheet.handles = []
     sheet.legend(11.0, [Patch(fc=c, ec=INK, lw=0.4, label=n) for c, n in zip((WEAK, MEDIUM, STRONG), names)] +
-                 ([Patch(fc="none", ec=INK, lw=0.4, hatch="///", label="too few rocks for 95 %")] if few else []))
+                 ([Line2D([], [], ls="", label="too few rocks for 95 %", **DOT)] if few else []))
     return picture(sheet.figure, f"{text} {scale_text(sheet)}.", name)
 
 
@@ -279,18 +277,18 @@ def results(study):
         made.append(of_band(study, "HeightOverGround95", height, "m", "Height of the lowest point of the rocks over ground, "
                             "95 % quantile.", Normalize(0.0, nice(max(np.nanmax(height), 0.1), (1, 2, 3, 5, 10))), None,
                             "PuRd", 95))
-    weak, strong = study.given["map"].get("EnergyThresholds") or (30, 300)
-    names = [f"weak, below {weak:g} kJ", f"medium, {weak:g} to {strong:g} kJ", f"strong, above {strong:g} kJ"]
-    periods = sorted((int(name[9:-1]), name) for name in raster.numbers
-                     if name.startswith("Intensity") and name[9:-1].isdigit())
-    for years, name in periods:
-        made.append(classes(study, raster.band(name), names, f"Intensity class of the scenario of {years} years.", name))
     if "AnnualFrequency" in raster:
         rate = raster.band("AnnualFrequency")
         rate = np.where(rate > 0, rate, np.nan)
         low, high = (10.0 ** edge for edge in (math.floor(math.log10(np.nanmin(rate))), math.ceil(math.log10(np.nanmax(rate)))))
         made.append(of_band(study, "AnnualFrequency", rate, "1/a", "Annual frequency of rocks.", LogNorm(low, high),
                             powers(low, high), "YlGnBu"))
+    weak, strong = study.given["map"].get("EnergyThresholds") or (30, 300)
+    names = [f"weak, below {weak:g} kJ", f"medium, {weak:g} to {strong:g} kJ", f"strong, above {strong:g} kJ"]
+    periods = sorted((int(name[9:-1]), name) for name in raster.numbers
+                     if name.startswith("Intensity") and name[9:-1].isdigit())
+    for years, name in periods:
+        made.append(classes(study, raster.band(name), names, f"Intensity class of the scenario of {years} years.", name))
     if not periods and "KineticEnergy95" in raster:
         made.append(classes(study, np.where(np.isnan(energy), 0, 1 + (energy >= weak) + (energy > strong)), names,
                             "Classes of the 95 % energy. No frequency is in them: where one rock comes, it is of this class.",

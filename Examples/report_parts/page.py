@@ -24,6 +24,7 @@ def make(study, title=None, author=""):
     families = study.lines_with_parallels()
     named = [(k, str(study.lines["LineName"][k])) for k in study.given_lines()] if study.lines else []
     curve, ends = charts.convergence(study, [name for _, name in named])
+    lines = tables.lines(study) if study.lines else []
     sessions = study.manifest.get("sessions") or []
     settings = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True,
                                   lstrip_blocks=True, undefined=jinja2.StrictUndefined)
@@ -39,7 +40,8 @@ def make(study, title=None, author=""):
         maps=maps.results(study) if study.map else [],
         ground=tables.ground(study), ground_source=tables.source_of(study), classed=tables.classed(study),
         rocks=tables.rocks(study), frequencies=tables.frequencies(study),
-        structures=tables.structures(study), lines=tables.lines(study) if study.lines else [],
+        structures=tables.structures(study), lines=lines,
+        few=any(cell.endswith(tables.FEW) for table in lines for _, _, cells in table["rows"] for cell in cells),
         design=tables.design(study), freeboard=study.given.get("lines", {}).get("Freeboard", 0.5),
         exceedance=[charts.exceedance(study, some) for some in tables.slices(named)],
         best=[charts.best_place(study, name, rows) for name, rows in families if len(rows) > 1],

@@ -9,6 +9,7 @@ import numpy as np
 HERE = os.path.dirname(os.path.abspath(__file__))
 MODELS = ("whole velocity", "normal and tangential", "speed-dependent")
 MOST_SOURCES = 10  # of a line
+FEW = "\u00a0*"  # behind a value that too few rocks give
 SIDE_BY_SIDE = 5  # columns of a table that fit on a page
 # Of lines.csv: column, what a person reads, unit, factor
 QUANTITIES = (("KineticEnergy", "energy", "kJ", 1e-3), ("HeightOverGround", "height of the lowest point", "m", 1.0),
@@ -186,8 +187,15 @@ def span(capacity):
     return f"{low} kJ" if low == high else f"{low} to {high} kJ"
 
 
+def quantile_of(column):
+    """Of KineticEnergy95 it is 95; 0 of what is no quantile."""
+    found = re.fullmatch(r"(?:KineticEnergy|HeightOverGround|Speed)(\d+)", column)
+    return int(found.group(1)) if found else 0
+
+
 def lines(study):
-    """A column for each line that was given, a row for each quantity, in kJ where there is energy."""
+    """A column for each line that was given, a row for each quantity, in kJ where there is energy; a star where too
+    few rocks passed for it."""
     table, rows, given = study.lines, [], study.given_lines()
     known = {name for name, *_ in LINES}
     names = [(name, *rest) for name, *rest in LINES if name in table]
@@ -195,7 +203,9 @@ def lines(study):
         "Line", "LineName", "Offset", "MovingBefore", "OverEdgeBefore", "InNodataBefore")]
     for name, label, unit, factor in names:
         values = table[name][given]
-        rows.append((label, unit, [number(v * factor) if values.dtype.kind == "f" else str(v) for v in values]))
+        few = table["HighestQuantile"][given] < quantile_of(name)
+        rows.append((label, unit, [(number(v * factor) if values.dtype.kind == "f" else str(v)) + (FEW if less else "")
+                                   for v, less in zip(values, few)]))
     return side_by_side([str(table["LineName"][k]) for k in given], rows)
 
 
@@ -271,7 +281,7 @@ def notes(study):
                 lost = int(study.lines[column][k])
                 if lost:
                     made.append(f"{lost} rocks {text} before they came to line {name}.")
-    return made
+    return [note if note.endswith(".") else note + "." for note in made]
 
 
 def values_in_force(study):
