@@ -83,13 +83,15 @@ if(ROCKFALL_HAS_WINDOW)
 
   # The pages behind ?, of docs/: one file that the window opens. It wants Qt's help generator.
   find_program(ROCKFALL_QHELPGENERATOR qhelpgenerator PATHS /usr/lib/qt5/bin /usr/lib/qt6/bin /usr/lib/qt6/libexec)
-  find_package(Python3 QUIET COMPONENTS Interpreter)
-  if(ROCKFALL_QHELPGENERATOR AND Python3_FOUND)
+  # Debian's Python, where there is one: it has matplotlib, which draws formulas.
+  find_program(ROCKFALL_PAGE_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
+  find_program(ROCKFALL_PAGE_PYTHON python3)
+  if(ROCKFALL_QHELPGENERATOR AND ROCKFALL_PAGE_PYTHON)
     set(pages "${script_folder}/RockfallDDA.qch")
     file(GLOB page_sources CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/docs/*.md" "${CMAKE_CURRENT_LIST_DIR}/xml/*.xml")
     add_custom_command(
       OUTPUT "${pages}"
-      COMMAND Python3::Interpreter "${CMAKE_CURRENT_LIST_DIR}/help/makePages.py" "${PROJECT_SOURCE_DIR}/docs"
+      COMMAND "${ROCKFALL_PAGE_PYTHON}" "${CMAKE_CURRENT_LIST_DIR}/help/makePages.py" "${PROJECT_SOURCE_DIR}/docs"
         "${CMAKE_CURRENT_LIST_DIR}/xml" "${CMAKE_BINARY_DIR}/pages"
       COMMAND "${ROCKFALL_QHELPGENERATOR}" "${CMAKE_BINARY_DIR}/pages/RockfallDDA.qhp" -o "${pages}"
       DEPENDS ${page_sources} "${CMAKE_CURRENT_LIST_DIR}/help/makePages.py"

@@ -3,10 +3,14 @@
     makePages.py docs Plugin/xml folder
 
 Writes <group>.<proxy>.html for each source, filter and reader, <page>.html for the other pages, the pictures,
-the tables and RockfallDDA.qhp, of which Qt's qhelpgenerator makes the file that the window opens."""
+the tables and RockfallDDA.qhp, of which Qt's qhelpgenerator makes the file that the window opens. Formulas, $`...`$ in
+a line and $$...$$ by themselves, are pictures that matplotlib makes: that window knows no MathML. Without matplotlib
+they stay TeX."""
 
 import glob
+import hashlib
 import html
+import importlib.util
 import os
 import re
 import shutil
@@ -17,11 +21,41 @@ import xml.etree.ElementTree as ElementTree
 PAGES = {"BarrierDesign": "design", "DEMToCFEMesh": "DEMtoCFEMesh", "HazardPassageReader": "HazardPassages",
          "HazardPassageWriter": "HazardPassages", "HazardMapWriter": "Exports", "TrajectoryLayerWriter": "Exports"}
 
+formulas = {}  # by file: TeX and size, pt
+INLINE, DISPLAYED = 11, 13  # pt
+
+
+def picture_of(tex, size):
+    name = f"formulas/{hashlib.sha1(f'{size} {tex}'.encode()).hexdigest()[:12]}.png"
+    formulas[name] = (tex, size)
+    return f'<img src="{name}" alt="{html.escape(tex)}" style="vertical-align: middle"/>'
+
+
+def draw_formulas(folder):
+    """Writes the pictures of all formulas so far."""
+    from matplotlib import rcParams
+    from matplotlib.figure import Figure
+    rcParams["mathtext.fontset"] = "stix"
+    os.makedirs(os.path.join(folder, "formulas"), exist_ok=True)
+    for name, (tex, size) in formulas.items():
+        figure = Figure()
+        figure.text(0, 0, f"${tex}$", size=size)
+        try:
+            figure.savefig(os.path.join(folder, name), dpi=110, bbox_inches="tight", pad_inches=0.02)
+        except ValueError as error:
+            raise SystemExit(f"makePages: {tex} is no formula to matplotlib: {error}")
+
+
+DRAWS = importlib.util.find_spec("matplotlib") is not None
+
 
 def spans(text, links):
     """Marks within a line; what stands in `code` is left alone."""
-    parts = re.split(r"(`[^`]+`)", text)
+    parts = re.split(r"(\$?`[^`]+`\$?)", text)
     for k, part in enumerate(parts):
+        if part.startswith("$`") and DRAWS:
+            parts[k] = picture_of(part[2:-2], INLINE)
+            continue
         if part.startswith("`") and len(part) > 1:
             parts[k] = f"<code>{html.escape(part[1:-1], quote=False)}</code>"
             continue
@@ -49,6 +83,9 @@ def to_html(text, links):
             end = next(n for n in range(k + 1, len(lines)) if lines[n].startswith("```"))
             out.append(f"<pre>{html.escape(chr(10).join(lines[k + 1:end]), quote=False)}</pre>")
             k = end + 1
+        elif line.startswith("$$") and DRAWS:
+            out.append(f"<p>{picture_of(line.strip('$'), DISPLAYED)}</p>")
+            k += 1
         elif line.startswith("    ") and (not out or not out[-1].startswith("<ul>")):
             end = k
             while end < len(lines) and (lines[end].startswith("    ") or not lines[end].strip()):
@@ -125,6 +162,8 @@ def main(docs, xml_folder, folder):
         for name in [page] + [name for name, of in names.items() if of == page]:
             with open(os.path.join(folder, name + ".html"), "wb") as file:
                 file.write(content)
+    if formulas:
+        draw_formulas(folder)
     pictures = [os.path.relpath(path, docs) for path in glob.glob(os.path.join(docs, "images", "**", "*.png"), recursive=True)]
     for picture in pictures:
         os.makedirs(os.path.dirname(os.path.join(folder, picture)), exist_ok=True)
@@ -133,7 +172,7 @@ def main(docs, xml_folder, folder):
     for table in tables:
         os.makedirs(os.path.dirname(os.path.join(folder, table)), exist_ok=True)
         shutil.copy(os.path.join(docs, table), os.path.join(folder, table))
-    files = [name + ".html" for name in pages + sorted(names)] + sorted(pictures) + tables
+    files = [name + ".html" for name in pages + sorted(names)] + sorted(pictures) + sorted(formulas) + tables
     contents = "\n".join(f'<section title="{html.escape(titles[page])}" ref="{page}.html"/>'
                          for page in pages if page != "README")
     with open(os.path.join(folder, "RockfallDDA.qhp"), "w", encoding="utf-8") as file:

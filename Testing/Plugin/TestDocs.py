@@ -6,6 +6,7 @@ import os
 import pathlib
 import re
 import sys
+import tempfile
 import xml.etree.ElementTree as ElementTree
 
 import paraview.simple
@@ -270,6 +271,21 @@ presets = [f"{row[0]} ({row[1]})" for row in rows_of(read(os.path.join(DOCS, "ma
 labels = [entry.get("text") for entry in
           proxies["DEMToCFEMesh"].iterfind("IntVectorProperty[@name='Preset']/EnumerationDomain/Entry")][1:]
 expect(presets == labels, f"materials.md has the presets {presets}, the panel {labels}")
+
+# Behind ? every formula of a page is a picture.
+sys.path.insert(0, os.path.join(ROOT, "Plugin", "help"))
+import makePages  # noqa: E402
+
+with tempfile.TemporaryDirectory() as folder:
+    makePages.main(DOCS, os.path.join(ROOT, "Plugin", "xml"), folder)
+    for page, text in pages.items():
+        made = read(os.path.join(folder, page[:-3] + ".html"))
+        pictures = re.findall(r'<img src="(formulas/\w+\.png)"', made)
+        told = len(re.findall(r"^\$\$", text, re.MULTILINE)) + text.count("$`")
+        expect(len(pictures) == told, f"{page} has {told} formulas, {len(pictures)} of them are pictures behind ?")
+        for picture in pictures:
+            expect(os.path.getsize(os.path.join(folder, picture)) > 200, f"{page}: {picture} is empty")
+    expect("formulas/" in read(os.path.join(folder, "method.html")), "method.md has no typeset formulas")
 
 if failures:
     raise SystemExit("\n".join(failures))
