@@ -122,6 +122,13 @@ void vtkDrawnStructure::CheckProperties() const
   }
   requirePositive(this->Height, "Height", "m");
   requirePositive(this->Capacity, "Capacity", "kJ", true);
+  requirePositive(this->Braking, "Braking", "m", true);
+  if (!(this->Residual >= 0.0 && this->Residual <= 100.0))
+  {
+    throw rockfall::ParameterError(
+      "Residual is " + rockfall::numberText(this->Residual) + " %, it must be between 0 and 100");
+  }
+  requirePositive(this->Fill, "Fill", "m³/m", true);
   requirePositive(this->CrestWidth, "CrestWidth", "m");
   requirePositive(this->SideSlope, "SideSlope", "m across per m down", true);
   requirePositive(this->StemsPerHectare, "StemsPerHectare", "stems");
@@ -180,6 +187,9 @@ int vtkDrawnStructure::RequestData(
         net.points = placesOf(rows.front(), slope);
         net.height = this->Height;
         net.capacity = this->Capacity * 1000.0;
+        net.braking = this->Braking;
+        net.residual = this->Wears ? 0.01 * this->Residual : net.residual;
+        net.room = this->Fill > 0.0 ? this->Fill : net.room;
         drawn.barriers = { net };
         structures.barriers.push_back(std::move(net));
       }
@@ -260,6 +270,10 @@ void vtkDrawnStructure::PrintSelf(ostream& os, vtkIndent indent)
   os << "\n";
   os << indent << "Height: " << this->Height << "\n";
   os << indent << "Capacity: " << this->Capacity << "\n";
+  os << indent << "Braking: " << this->Braking << "\n";
+  os << indent << "Wears: " << this->Wears << "\n";
+  os << indent << "Residual: " << this->Residual << "\n";
+  os << indent << "Fill: " << this->Fill << "\n";
   os << indent << "CrestWidth: " << this->CrestWidth << "\n";
   os << indent << "SideSlope: " << this->SideSlope << "\n";
   os << indent << "StemsPerHectare: " << this->StemsPerHectare << "\n";

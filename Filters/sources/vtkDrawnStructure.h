@@ -73,6 +73,35 @@ public:
 
   ///@{
   /**
+   * Of a net: way on which it stops its capacity, m, not negative, 0: not known. Default 0.
+   */
+  vtkSetMacro(Braking, double);
+  vtkGetMacro(Braking, double);
+  ///@}
+
+  ///@{
+  /**
+   * Of a net: whether what it holds uses up its capacity for the next rock, and height left with
+   * all of it used up, %, 0 to 100. Default off and 50.
+   */
+  vtkSetMacro(Wears, bool);
+  vtkGetMacro(Wears, bool);
+  vtkBooleanMacro(Wears, bool);
+  vtkSetMacro(Residual, double);
+  vtkGetMacro(Residual, double);
+  ///@}
+
+  ///@{
+  /**
+   * Of a net: volume of rock that fills it to the rope, m³ per m of its length, not negative, 0:
+   * nothing does. Default 0.
+   */
+  vtkSetMacro(Fill, double);
+  vtkGetMacro(Fill, double);
+  ///@}
+
+  ///@{
+  /**
    * Of an embankment: width of its crest, m, positive, and horizontal way per vertical of its
    * sides, not negative. Default 2 and 1.5.
    */
@@ -114,6 +143,10 @@ private:
   double PlacedLine[6] = { 0.0, 0.0, 0.0, 0.0, 0.0, 0.0 };
   double Height = 4.0;
   double Capacity = 1000.0;
+  double Braking = 0.0;
+  bool Wears = false;
+  double Residual = 50.0;
+  double Fill = 0.0;
   double CrestWidth = 2.0;
   double SideSlope = 1.5;
   double StemsPerHectare = 300.0;

@@ -155,6 +155,24 @@ TEST_F(TestDrawnOnSlope, ANetHoldsRocks)
   EXPECT_EQ(value(met->GetPointData(), "Outcome"), 0); // stopped
 }
 
+TEST_F(TestDrawnOnSlope, NetsBrakeWearAndFillAsThoseOfALayer)
+{
+  const rockfall::Barrier plain = this->Standing().barriers.at(0);
+  EXPECT_EQ(plain.braking, 0.0);
+  EXPECT_FALSE(rockfall::isLoaded(plain));
+  this->Structure->SetBraking(6.0);
+  this->Structure->SetResidual(40.0); // of a net that does not wear it says nothing
+  EXPECT_FALSE(rockfall::isLoaded(this->Standing().barriers.at(0)));
+  this->Structure->SetWears(true);
+  this->Structure->SetFill(2.5);
+  const rockfall::Barrier net = this->Standing().barriers.at(0);
+  EXPECT_EQ(net.braking, 6.0);
+  EXPECT_NEAR(net.residual, 0.4, 1e-15);
+  EXPECT_EQ(net.room, 2.5);
+  // Half of its capacity used, so 0.7 of its height of 4 m are left.
+  EXPECT_NEAR(rockfall::stateOf(net, { 500e3, 0.0 }).rope, 0.7 * 4.0, 1e-12);
+}
+
 TEST_F(TestDrawnOnSlope, StructuresFollowEachOther)
 {
   vtkNew<vtkDrawnStructure> dam, forest;
@@ -197,6 +215,15 @@ TEST_F(TestDrawnOnSlope, BadValues)
   this->Structure->SetCapacity(-1.0);
   refuse({ "Capacity is -1 kJ" });
   this->Structure->SetCapacity(0.0);
+  this->Structure->SetBraking(-2.0);
+  refuse({ "Braking is -2 m" });
+  this->Structure->SetBraking(0.0);
+  this->Structure->SetResidual(101.0);
+  refuse({ "Residual is 101 %" });
+  this->Structure->SetResidual(0.0);
+  this->Structure->SetFill(-1.0);
+  refuse({ "Fill is -1" });
+  this->Structure->SetFill(0.0);
   this->Structure->SetKind(3);
   refuse({ "Kind is 3" });
   this->Structure->SetKind(vtkDrawnStructure::NET);
