@@ -52,18 +52,6 @@ CrsPtr horizontalCrs(const OGRSpatialReference* crs)
   return copy;
 }
 
-CrsPtr layerCrs(const OGRSpatialReference* crs, const std::string& fileName)
-{
-  CrsPtr result = horizontalCrs(crs);
-  const char* unit = nullptr;
-  if (result && result->IsLocal() && std::abs(result->GetLinearUnits(&unit) - 1.0) > 1e-9)
-  {
-    throw DataError(fileName + ": its local coordinates are in \"" + (unit ? unit : "") +
-      "\"; bring them to metres first");
-  }
-  return result;
-}
-
 CrsPtr crsFromEpsg(int code)
 {
   auto crs = empty();

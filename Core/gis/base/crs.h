@@ -18,9 +18,6 @@ using CrsPtr = std::shared_ptr<const OGRSpatialReference>;
 
 /// A copy without its vertical part; null stays null.
 CrsPtr horizontalCrs(const OGRSpatialReference* crs);
-/// The same of a layer that comes to a slope. Throws DataError if its coordinates are local ones
-/// and not in metres: nobody would bring them to metres, as is done for a DEM.
-CrsPtr layerCrs(const OGRSpatialReference* crs, const std::string& fileName);
 CrsPtr crsFromEpsg(int code);
 /// From WKT of either version, "EPSG:2056", a PROJ string. Throws DataError naming `text`.
 CrsPtr crsFromText(const std::string& text);

@@ -4,7 +4,9 @@
 #include "base/errors.h"
 #include "gis/base/gdal.h"
 #include "gis/base/progress.h"
+#include "gis/raster/rasterPlace.h"
 #include "gis/raster/resample.h"
+#include "gis/trust/unitDoubt.h"
 
 #include <cpl_string.h>
 #include <gdal_priv.h>
@@ -26,11 +28,12 @@ namespace
 constexpr double edge = 1e-6;
 
 /// The first band with its mask or transparency, and no other one: what these hold would count as
-/// data of the first where that has none.
-DatasetPtr firstBandOf(GDALDataset& source, const std::string& fileName, const Messages& messages)
+/// data of the first where that has none. At `place`, which GDAL may have found otherwise.
+DatasetPtr firstBandOf(GDALDataset& source, const RasterPlace& place, const std::string& fileName,
+  const Messages& messages)
 {
   CPLStringList options;
-  for (const char* word : { "-of", "VRT", "-b", "1" })
+  for (const char* word : { "-of", "VRT", "-nogcp", "-b", "1" })
   {
     options.AddString(word);
   }
@@ -46,11 +49,48 @@ DatasetPtr firstBandOf(GDALDataset& source, const std::string& fileName, const M
     GDALTranslateOptionsNew(options.List(), nullptr), GDALTranslateOptionsFree);
   DatasetPtr first(
     GDALDataset::FromHandle(GDALTranslate("", GDALDataset::ToHandle(&source), how.get(), nullptr)));
-  if (!first)
+  std::array<double, 6> affine = place.affine;
+  if (!first || first->SetGeoTransform(affine.data()) != CE_None ||
+    (place.crs && first->SetSpatialRef(place.crs.get()) != CE_None))
   {
     throw FileError(fileName + ": cannot be read: " + messages.failure());
   }
   return first;
+}
+
+/// Place of a raster of classes, checked as a DEM's is, with its notes under its name.
+RasterPlace placeOfClasses(
+  GDALDataset& source, const std::string& fileName, std::vector<std::string>& notes)
+{
+  const TextGrid text = checkContent(source, fileName);
+  if (!text.nulls.empty())
+  {
+    throw DataError(fileName +
+      ": has a word for nodata; give NODATA_value a number in a raster of "
+      "classes");
+  }
+  std::vector<std::string> told;
+  const RasterPlace place = rasterPlace(source, *source.GetRasterBand(1), text, fileName, told);
+  for (const std::string& note : told)
+  {
+    notes.push_back(fileName + ": " + note);
+  }
+  if (!place.georeferenced)
+  {
+    throw DataError(fileName + ": has no georeferencing, so nobody knows where its classes are");
+  }
+  return place;
+}
+
+/// Coordinates in no known unit beside a slope in feet.
+void noteUnits(GDALDataset& source, const RasterPlace& place, const Cells& cells,
+  const std::string& fileName, std::vector<std::string>& notes)
+{
+  LayerHeights said;
+  said.planeDeclared = source.GetSpatialRef() != nullptr || place.metres != 1.0;
+  UnitDoubt doubt(said, cells.terrain.geometry().fileUnits);
+  doubt.place(fileName, place.affine[0], place.affine[3]);
+  doubt.tell(notes);
 }
 
 } // namespace
@@ -64,18 +104,15 @@ std::vector<std::uint8_t> fromRaster(const GroundFiles& files, const std::string
   {
     throw FileError(files.layer + ": has no raster band");
   }
-  const CrsPtr from = layerCrs(source->GetSpatialRef(), files.layer);
+  const RasterPlace place = placeOfClasses(*source, files.layer, notes);
+  const CrsPtr& from = place.crs;
   noteCrs(from, cells, files.layer, notes);
+  noteUnits(*source, place, cells, files.layer, notes);
   layerChange(files.layer, from, cells.crs, notes); // or there is no way
-  std::array<double, 6> affine{};
-  if (source->GetGeoTransform(affine.data()) != CE_None)
-  {
-    throw DataError(files.layer + ": has no georeferencing, so nobody knows where its classes are");
-  }
   SourceGrid grid;
   grid.columns = source->GetRasterXSize();
   grid.rows = source->GetRasterYSize();
-  grid.affine = affine;
+  grid.affine = place.affine;
   // extent() is that of the centres.
   Box box = extent(grid);
   const double half = 0.5 * std::max(grid.columnStep(), grid.rowStep());
@@ -104,8 +141,12 @@ std::vector<std::uint8_t> fromRaster(const GroundFiles& files, const std::string
   }
   const std::unique_ptr<GDALWarpAppOptions, void (*)(GDALWarpAppOptions*)> how(
     GDALWarpAppOptionsNew(options.List(), nullptr), GDALWarpAppOptionsFree);
-  const DatasetPtr single =
-    source->GetRasterCount() > 1 ? firstBandOf(*source, files.layer, messages) : DatasetPtr();
+  std::array<double, 6> written{};
+  const bool elsewhere =
+    source->GetGeoTransform(written.data()) != CE_None || written != place.affine;
+  const DatasetPtr single = elsewhere || source->GetRasterCount() > 1
+    ? firstBandOf(*source, place, files.layer, messages)
+    : DatasetPtr();
   GDALDatasetH sources[] = { GDALDataset::ToHandle(single ? single.get() : source.get()) };
   messages.clear();
   const DatasetPtr warped(

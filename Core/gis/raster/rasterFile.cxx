@@ -3,14 +3,11 @@
 #include "base/abort.h"
 #include "base/errors.h"
 #include "gis/base/progress.h"
-#include "gis/trust/gridAxes.h"
 #include "gis/trust/heightUnit.h"
 #include "gis/trust/nodata.h"
-#include "gis/trust/rawSize.h"
 
 #include <cpl_string.h>
 #include <gdal_priv.h>
-#include <ogr_spatialref.h>
 
 #include <algorithm>
 #include <cfloat>
@@ -83,93 +80,10 @@ RasterFile::RasterFile(
     throw DataError(fileName + ": has " + std::to_string(columns_) + " columns and " +
       std::to_string(rows_) + " rows, at least 2 of each are needed");
   }
-  requireSubstance(*dataset_, fileName);
-  text_ = checkTextGrid(*dataset_, fileName);
-  checkRawSize(*dataset_, fileName);
-  this->findPlace();
+  text_ = checkContent(*dataset_, fileName);
+  place_ = rasterPlace(*dataset_, *band_, text_, fileName_, notes_);
   heights_ = heightsOf(*dataset_, *band_, fileName_, notes_);
   this->noteColours();
-}
-
-void RasterFile::findPlace()
-{
-  crs_ = horizontalCrs(dataset_->GetSpatialRef());
-  const bool placed = dataset_->GetGeoTransform(affine_.data()) == CE_None;
-  if (placed && text_.corner)
-  {
-    affine_[0] = (*text_.corner)[0];
-    affine_[3] = (*text_.corner)[1] - rows_ * affine_[5];
-    notes_.push_back("The header gives a corner along one axis and the centre of a cell along the "
-                     "other; each was taken as it says.");
-  }
-  const GridAxes axes = checkAxes(*dataset_, *band_, placed, fileName_, notes_);
-  if (placed && !crs_ && axes.metres != 1.0)
-  {
-    std::for_each(affine_.begin(), affine_.end(), [&axes](double& a) { a *= axes.metres; });
-  }
-  if (!crs_ && axes.metres != 1.0)
-  {
-    planUnit_ = axes.metres;
-    notes_.push_back("The coordinates in \"" + axes.unit + "\" were multiplied by " +
-      number(axes.metres) + " to be metres.");
-  }
-  if (!placed && axes.place)
-  {
-    affine_ = axes.place->affine;
-    crs_ = crs_ ? crs_ : axes.place->inDegrees ? crsFromEpsg(4326) : nullptr;
-  }
-  else if (!placed)
-  {
-    if (dataset_->GetGCPCount() > 0)
-    {
-      if (!GDALGCPsToGeoTransform(
-            dataset_->GetGCPCount(), dataset_->GetGCPs(), affine_.data(), FALSE))
-      {
-        throw DataError(fileName_ + ": its " + std::to_string(dataset_->GetGCPCount()) +
-          " ground control points fit no straight grid; warp it first, e.g. with gdalwarp -tps");
-      }
-      crs_ = horizontalCrs(dataset_->GetGCPSpatialRef());
-    }
-    else if (dataset_->GetMetadata("GEOLOCATION") || dataset_->GetMetadata("RPC"))
-    {
-      throw DataError(fileName_ + ": is placed by a geolocation array or RPCs and not by a grid; " +
-        "warp it first with gdalwarp");
-    }
-    else
-    {
-      georeferenced_ = false;
-      affine_ = { 0.0, 1.0, 0.0, double(rows_), 0.0, -1.0 };
-    }
-  }
-  double unused[6];
-  if (!std::all_of(affine_.begin(), affine_.end(), [](double a) { return std::isfinite(a); }) ||
-    !GDALInvGeoTransform(affine_.data(), unused))
-  {
-    throw DataError(fileName_ + ": its cells have no area: geotransform " + number(affine_[0]) +
-      ", " + number(affine_[1]) + ", " + number(affine_[2]) + ", " + number(affine_[3]) + ", " +
-      number(affine_[4]) + ", " + number(affine_[5]));
-  }
-  if (!crs_)
-  {
-    return;
-  }
-  if (crs_->IsGeocentric())
-  {
-    throw DataError(fileName_ + ": its CRS " + crsLabel(*crs_) + " is geocentric, not a map");
-  }
-  if (crs_->IsLocal())
-  {
-    const char* unit = nullptr;
-    const double metres = crs_->GetLinearUnits(&unit);
-    if (metres > 0.0 && std::abs(metres - 1.0) > 1e-9)
-    {
-      std::for_each(affine_.begin(), affine_.end(), [metres](double& a) { a *= metres; });
-      planUnit_ = metres;
-      notes_.push_back("The local coordinates in " + std::string(unit ? unit : "unnamed units") +
-        " were multiplied by " + number(metres) + " to be metres.");
-    }
-    crs_.reset();
-  }
 }
 
 void RasterFile::noteColours()
@@ -236,7 +150,7 @@ SourceGrid RasterFile::read()
   SourceGrid grid;
   grid.columns = columns_;
   grid.rows = rows_;
-  grid.affine = affine_;
+  grid.affine = place_.affine;
   grid.heights.resize(std::size_t(columns_) * rows_);
 
   // Whole blocks of the file, of about 4 million nodes.
@@ -264,7 +178,7 @@ SourceGrid RasterFile::read()
   noteMarks(grid.heights, heights_, "nodes of band " + std::to_string(bandNumber_),
     "gdal_edit.py -a_nodata ", notes_);
 
-  if (affine_[2] == 0.0 && affine_[4] == 0.0 && affine_[5] > 0.0)
+  if (place_.affine[2] == 0.0 && place_.affine[4] == 0.0 && place_.affine[5] > 0.0)
   {
     for (int row = 0; row < rows_ / 2; ++row)
     {

@@ -3,10 +3,9 @@
 /// @file
 /// One band of a raster file as heights in metres, before anything is done to its geometry.
 
-#include "gis/base/crs.h"
 #include "gis/base/gdal.h"
+#include "gis/raster/rasterPlace.h"
 #include "gis/raster/resample.h"
-#include "gis/raster/textGrid.h"
 #include "gis/trust/heights.h"
 #include "terrain/Terrain.h"
 
@@ -27,19 +26,18 @@ public:
     const std::string& fileName, int band, Messages& messages, std::vector<std::string>& notes);
 
   /// The horizontal CRS; null if the file has none or only an engineering one.
-  const CrsPtr& crs() const { return crs_; }
+  const CrsPtr& crs() const { return place_.crs; }
   /// CRS of the heights; see heightCrs. Null if the file does not say it.
   const CrsPtr& reference() const { return heights_.reference; }
-  FileUnits units() const { return { heights_.unit, planUnit_ }; }
+  FileUnits units() const { return { heights_.unit, place_.metres }; }
   /// False for a picture without world coordinates, which is given cells of 1 m.
-  bool georeferenced() const { return georeferenced_; }
+  bool georeferenced() const { return place_.georeferenced; }
 
   /// All heights, read by blocks of rows straight into their final place; NaN for nodata. Northern
   /// row first if the rows run along the x axis at all.
   SourceGrid read();
 
 private:
-  void findPlace();
   void noteColours();
   /// Throws where parts of the file hold nothing and would be read as 0.
   void requireCoverage();
@@ -57,10 +55,7 @@ private:
   int bandNumber_ = 1;
   int columns_ = 0;
   int rows_ = 0;
-  std::array<double, 6> affine_{};
-  CrsPtr crs_;
-  bool georeferenced_ = true;
-  double planUnit_ = 1.0; ///< See FileUnits.
+  RasterPlace place_;
   Heights heights_;
   TextGrid text_;
 };

@@ -39,13 +39,13 @@ void UnitDoubt::height(const Fields& row, const std::string& column, double numb
         : "a vertical CRS of the layer says so");
 }
 
-void UnitDoubt::place(const Fields& row, double x, double y)
+void UnitDoubt::place(const std::string& where, double x, double y)
 {
   if (slope_.plan == 1.0 || !place_.empty())
   {
     return;
   }
-  place_ = row.where() + ": its place " + gis::number(x) + ", " + gis::number(y) +
+  place_ = where + ": its place " + gis::number(x) + ", " + gis::number(y) +
     takenAsMetres("coordinates", slope_.plan) + "multiply them by " + exactly(slope_.plan);
 }
 

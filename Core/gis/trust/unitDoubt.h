@@ -25,7 +25,9 @@ public:
   /// A height of a column, or of the geometry if there is no name.
   void height(const Fields& row, const std::string& column, double number);
   /// Coordinates of a geometry or of the columns x and y.
-  void place(const Fields& row, double x, double y);
+  void place(const Fields& row, double x, double y) { this->place(row.where(), x, y); }
+  /// Of the raster, or whatever `where` names.
+  void place(const std::string& where, double x, double y);
   void tell(std::vector<std::string>& notes) const;
 
 private:

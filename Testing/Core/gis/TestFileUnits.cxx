@@ -5,6 +5,7 @@
 #include "gis/layers/sources.h"
 #include "gis/layers/structureLayers.h"
 #include "gis/raster/contours.h"
+#include "gis/raster/ground.h"
 #include "gis/raster/raster.h"
 #include "gisFiles.h"
 #include "terrain/Terrain.h"
@@ -119,6 +120,33 @@ TEST(FileUnits, ofStructuresAndLinesWithoutAreNoted)
   const std::string road = writeFile("road.csv", "WKT,name\n\"LINESTRING(0 0,10 0)\",road\n");
   readLineLayer(road, "", "", &notes, { foot, foot });
   EXPECT_TRUE(holds(joined(notes), { road + ", row 1: its place 0, 0", "coordinates in feet" }));
+}
+
+/// Notes of classes of the plain, of a raster of one class at this corner with these cells.
+std::string notesOfClasses(const std::string& crs, double x, double y, double cell)
+{
+  RawRaster raster;
+  raster.columns = raster.rows = 40;
+  raster.affine = { x, cell, 0.0, y, 0.0, -cell };
+  raster.crs = crs;
+  raster.type = "Byte";
+  raster.values.assign(1600, 1.0);
+  const std::string table = writeFile("classes.csv", "class,preset\n1,Meadow\n");
+  std::vector<std::string> notes;
+  readGround(GroundKind::Restitution, { raster.write("classes"), table, "" }, plain(""), notes);
+  return joined(notes);
+}
+
+TEST(FileUnits, ofClassRastersWithoutAreNoted)
+{
+  const std::string notes = notesOfClasses("", 599900.0, 5100100.0, 6.0);
+  EXPECT_TRUE(
+    holds(notes, { "classes.vrt: its place 599900, 5100100 says no unit", "coordinates in feet" }));
+  // The same place in feet that are declared.
+  const std::string said = notesOfClasses(
+    "LOCAL_CS[\"peg\",UNIT[\"foot\",0.3048]]", 599900.0 / foot, 5100100.0 / foot, 20.0);
+  EXPECT_TRUE(holds(said, { "in foot were multiplied by 0.3048", "1 100 %" }));
+  EXPECT_EQ(said.find("says no unit"), std::string::npos);
 }
 
 TEST(FileUnits, thatAreSaidLeaveNoDoubt)

@@ -456,6 +456,43 @@ TEST(GroundErrors, LayersElsewhere)
     holds(failure({ layer, rows, "" }), { layer, "does not overlap", "600500 ... 600580" }));
 }
 
+/// Classes as a grid of text on the slope's cells; `first` is its northern row.
+std::string textClasses(const std::string& corner, const std::string& first)
+{
+  std::vector<std::string> lines(6, "1 1 1 1 2 2 2 2");
+  lines.front() = first;
+  return writeAscii(lines, 8, corner);
+}
+
+TEST(Ground, TextGridsWithACornerAndACentreLieWhereBothSay)
+{
+  const std::string plain = "1 1 1 1 2 2 2 2";
+  const auto cells = [&](const std::string& corner)
+  {
+    const MaterialClasses classes = read({ textClasses(corner, plain), table(), "" }, slope());
+    return std::vector<std::uint8_t>(classes.cells.begin(), classes.cells.end());
+  };
+  EXPECT_EQ(
+    cells("xllcorner 600000\nyllcenter 5100005\n"), cells("xllcorner 600000\nyllcorner 5100000\n"));
+}
+
+TEST(GroundErrors, TextGridsThatGdalFillsWithZeros)
+{
+  const std::string corner = "xllcorner 600000\nyllcorner 5100000\n";
+  const std::string rows = table("class,rv\n0,0.1\n1,0.5\n2,0.9\n");
+  std::string layer = textClasses(corner, "1 1 rock 1 2 2 2 2");
+  EXPECT_TRUE(holds(failure({ layer, rows, "" }), { layer, "\"rock\" in row 1, column 3" }));
+  layer = writeAscii({ "1 1 1 1 2 2 2 2", "1 1 1 1 2" }, 8, corner);
+  EXPECT_TRUE(holds(messageOf<FileError>(
+                      [&] {
+                        read({ layer, rows, "" }, slope());
+                      }),
+    { layer, "13 numbers", "8 x 2 = 16" }));
+  layer =
+    writeAscii({ "NA 1 1 1 2 2 2 2", "1 1 1 1 2 2 2 2" }, 8, corner, "10", "NODATA_value NA\n");
+  EXPECT_TRUE(holds(failure({ layer, rows, "" }), { layer, "word for nodata" }));
+}
+
 TEST(GroundErrors, LayersOfTheWrongKind)
 {
   const std::string rows = table();

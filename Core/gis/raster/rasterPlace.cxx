@@ -1,0 +1,124 @@
+#include "gis/raster/rasterPlace.h"
+
+#include "base/errors.h"
+#include "gis/base/gdal.h"
+#include "gis/trust/gridAxes.h"
+#include "gis/trust/rawSize.h"
+
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rockfall::gis
+{
+
+namespace
+{
+
+void multiply(std::array<double, 6>& affine, double factor)
+{
+  std::for_each(affine.begin(), affine.end(), [factor](double& a) { a *= factor; });
+}
+
+/// Of a raster whose file has no geotransform.
+void placeOtherwise(
+  GDALDataset& dataset, const GridAxes& axes, const std::string& fileName, RasterPlace& place)
+{
+  if (axes.place)
+  {
+    place.affine = axes.place->affine;
+    place.crs = place.crs ? place.crs : axes.place->inDegrees ? crsFromEpsg(4326) : nullptr;
+  }
+  else if (dataset.GetGCPCount() > 0)
+  {
+    if (!GDALGCPsToGeoTransform(
+          dataset.GetGCPCount(), dataset.GetGCPs(), place.affine.data(), FALSE))
+    {
+      throw DataError(fileName + ": its " + std::to_string(dataset.GetGCPCount()) +
+        " ground control points fit no straight grid; warp it first, e.g. with gdalwarp -tps");
+    }
+    place.crs = horizontalCrs(dataset.GetGCPSpatialRef());
+  }
+  else if (dataset.GetMetadata("GEOLOCATION") || dataset.GetMetadata("RPC"))
+  {
+    throw DataError(fileName + ": is placed by a geolocation array or RPCs and not by a grid; " +
+      "warp it first with gdalwarp");
+  }
+  else
+  {
+    place.georeferenced = false;
+    place.affine = { 0.0, 1.0, 0.0, double(dataset.GetRasterYSize()), 0.0, -1.0 };
+  }
+}
+
+} // namespace
+
+TextGrid checkContent(GDALDataset& dataset, const std::string& fileName)
+{
+  requireSubstance(dataset, fileName);
+  TextGrid text = checkTextGrid(dataset, fileName);
+  checkRawSize(dataset, fileName);
+  return text;
+}
+
+RasterPlace rasterPlace(GDALDataset& dataset, GDALRasterBand& band, const TextGrid& text,
+  const std::string& fileName, std::vector<std::string>& notes)
+{
+  RasterPlace place;
+  std::array<double, 6>& affine = place.affine;
+  place.crs = horizontalCrs(dataset.GetSpatialRef());
+  const bool placed = dataset.GetGeoTransform(affine.data()) == CE_None;
+  if (placed && text.corner)
+  {
+    affine[0] = (*text.corner)[0];
+    affine[3] = (*text.corner)[1] - dataset.GetRasterYSize() * affine[5];
+    notes.emplace_back(
+      "The header gives a corner along one axis and the centre of a cell along the "
+      "other; each was taken as it says.");
+  }
+  const GridAxes axes = checkAxes(dataset, band, placed, fileName, notes);
+  if (!place.crs && axes.metres != 1.0)
+  {
+    place.metres = axes.metres;
+    if (placed)
+    {
+      multiply(affine, axes.metres);
+    }
+    notes.push_back("The coordinates in \"" + axes.unit + "\" were multiplied by " +
+      number(axes.metres) + " to be metres.");
+  }
+  if (!placed)
+  {
+    placeOtherwise(dataset, axes, fileName, place);
+  }
+  double unused[6];
+  if (!std::all_of(affine.begin(), affine.end(), [](double a) { return std::isfinite(a); }) ||
+    !GDALInvGeoTransform(affine.data(), unused))
+  {
+    throw DataError(fileName + ": its cells have no area: geotransform " + number(affine[0]) +
+      ", " + number(affine[1]) + ", " + number(affine[2]) + ", " + number(affine[3]) + ", " +
+      number(affine[4]) + ", " + number(affine[5]));
+  }
+  if (place.crs && place.crs->IsGeocentric())
+  {
+    throw DataError(fileName + ": its CRS " + crsLabel(*place.crs) + " is geocentric, not a map");
+  }
+  if (place.crs && place.crs->IsLocal())
+  {
+    const char* unit = nullptr;
+    const double metres = place.crs->GetLinearUnits(&unit);
+    if (metres > 0.0 && std::abs(metres - 1.0) > 1e-9)
+    {
+      multiply(affine, metres);
+      place.metres = metres;
+      notes.push_back("The local coordinates in " + std::string(unit ? unit : "unnamed units") +
+        " were multiplied by " + number(metres) + " to be metres.");
+    }
+    place.crs.reset();
+  }
+  return place;
+}
+
+} // namespace rockfall::gis
