@@ -1,6 +1,8 @@
 #include "terrain/plausible.h"
 
 #include "base/text/numberText.h"
+#include "terrain/Terrain.h"
+#include "terrain/doubt.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,47 +19,9 @@ namespace
 using Point = Eigen::Vector2d;
 using plausible::kTwinDistance;
 
-/// What is out of a range: how many, and the first one in words.
-class Doubt
-{
-public:
-  explicit Doubt(std::string ask)
-    : ask_(std::move(ask))
-  {
-  }
-
-  template <class Words>
-  void look(bool fits, std::int64_t feature, Words&& words)
-  {
-    ++all_;
-    if (!fits && ++count_ == 1)
-    {
-      first_ = "feature " + std::to_string(feature) + words();
-    }
-  }
-
-  void tell(const char* kind, std::vector<std::string>& notes) const
-  {
-    if (count_ > 0)
-    {
-      notes.push_back(std::to_string(count_) + " of " + std::to_string(all_) + " " + kind +
-        " look implausible, first " + first_ + ". " + ask_);
-    }
-  }
-
-private:
-  std::string ask_, first_;
-  std::int64_t all_ = 0, count_ = 0;
-};
-
 std::string text(double value)
 {
   return numberText(value, 6);
-}
-
-std::string between(const PlausibleRange& range, double unit = 1.0)
-{
-  return text(range.least / unit) + " to " + text(range.most / unit);
 }
 
 void lookAtTrees(const std::vector<Tree>& trees, std::vector<std::string>& notes)
@@ -282,6 +246,83 @@ std::vector<std::string> implausibleNumbers(const Structures& structures)
   lookAtEmbankments(structures.embankments, notes);
   lookAtTrees(structures.trees, notes);
   lookAtNets(structures.barriers, notes);
+  return notes;
+}
+
+std::vector<std::string> implausibleGround(const Terrain& terrain)
+{
+  using namespace plausible;
+  std::vector<std::string> notes;
+  Doubt steep("Ground has " + between(kFrictionAngle) + " degrees: is it in degrees?");
+  Doubt rough("Roughness is " + between(kRoughness) + " m: is it in m?");
+  Doubt high("Obstacles are " + between(kObstacle) + " m high: are they in m?");
+  const auto material = [&](const SurfaceMaterial& m, const std::string& where)
+  {
+    const double phi = degrees(m.frictionAngle);
+    steep.look(phi == 0.0 || kFrictionAngle.has(phi), where,
+      [&] { return " with " + text(phi) + " degrees"; });
+  };
+  const auto surface = [&](const Roughness& r, const std::string& where)
+  {
+    rough.look(kRoughness.has(r.deviation), where,
+      [&] { return " with a deviation of " + text(r.deviation) + " m"; });
+    high.look(kObstacle.has(r.highestObstacle()), where,
+      [&] { return " with " + text(r.highestObstacle()) + " m"; });
+  };
+  material(terrain.material(), "the slope's own");
+  surface(terrain.roughness(), "the slope's own");
+  for (const MaterialClasses* classes : { &terrain.restitutionClasses(), &terrain.jointClasses() })
+  {
+    for (std::size_t k = 0; k < classes->names.size(); ++k)
+    {
+      const std::string where = "class \"" + classes->names[k] + "\"";
+      if (classes == &terrain.jointClasses())
+      {
+        material(classes->materials[k], where);
+      }
+      if (k < classes->roughness.size())
+      {
+        surface(classes->roughness[k], where);
+      }
+    }
+  }
+  steep.tell("friction angles of the ground", notes);
+  rough.tell("roughnesses of the ground", notes);
+  high.tell("heights of obstacles", notes);
+  return notes;
+}
+
+std::vector<std::string> implausibleStands(std::span<const Stand> stands)
+{
+  using namespace plausible;
+  std::vector<std::string> notes;
+  Doubt dense("Stems of a hectare have " + between(kBasalArea) +
+    " m² at breast height: are stems_ha per hectare and diameters in cm?");
+  for (const Stand& s : stands)
+  {
+    const double square =
+      s.diameterMean * s.diameterMean + s.diameterDeviation * s.diameterDeviation;
+    const double area = s.stemsPerHectare * 0.25 * M_PI * square;
+    dense.look(kBasalArea.has(area), s.feature,
+      [&]
+      {
+        return ": " + text(s.stemsPerHectare) + " stems of " + text(100.0 * s.diameterMean) +
+          " cm, " + numberText(area, 3) + " m²";
+      });
+  }
+  dense.tell("stands", notes);
+  Doubt twice("Their stems add up: was something given twice?");
+  const std::vector<int> earlier = standsUnder(stands, kStandOverlap);
+  for (std::size_t k = 0; k < stands.size(); ++k)
+  {
+    twice.look(earlier[k] < 0, stands[k].feature,
+      [&]
+      {
+        return ", half of which is within feature " +
+          std::to_string(stands[std::size_t(earlier[k])].feature);
+      });
+  }
+  twice.tell("stands", notes);
   return notes;
 }
 

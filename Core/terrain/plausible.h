@@ -1,20 +1,24 @@
 #pragma once
 
 /// @file
-/// Structures that protect better than any that is built or grows: ranges of their numbers, and the
-/// same one given twice.
+/// Structures that protect better than any that is built or grows, ground that stops what no ground
+/// does, rocks of no rock: ranges of their numbers, and the same structure given twice.
 ///
 /// Beyond a range a note asks; what only another unit explains is an error (`refused`). The table
 /// of docs/structures.md has the same rows with their sources.
 
+#include "terrain/stand.h"
 #include "terrain/structures.h"
 
 #include <limits>
+#include <span>
 #include <string>
 #include <vector>
 
 namespace rockfall
 {
+
+class Terrain;
 
 struct PlausibleRange
 {
@@ -45,6 +49,21 @@ inline constexpr PlausibleRange kDamHeight{ 0.5, 30.0 };
 inline constexpr PlausibleRange kCrestWidth{ 0.2, 20.0 };
 /// Of an embankment's side, m across per m down: a wall to 11°.
 inline constexpr PlausibleRange kSideSlope{ 0.0, 5.0 };
+/// Cross-sections of a stand's stems at breast height, m² per hectare: forests of Europe have 20 to
+/// 70, the densest that are known twice as much.
+inline constexpr PlausibleRange kBasalArea{ 1.0, 150.0 };
+/// Share of a stand's stems within another stand: less is the width of a pen on a map.
+inline constexpr double kStandOverlap = 0.5;
+/// φ of ground, degrees; 0 is asked for. Radians are below, and no scree stands as steep as 60°.
+inline constexpr PlausibleRange kFrictionAngle{ 2.0, 60.0 };
+/// Deviation of the ground's heights from the survey, m: beyond it they are cm, or the survey's own.
+inline constexpr PlausibleRange kRoughness{ 0.0, 1.0 };
+/// Heights of obstacles, m: Rockyfor3D's field sheets go to 1 m and more in blocks.
+inline constexpr PlausibleRange kObstacle{ 0.0, 3.0 };
+/// Of a rock, kg/m³: pumice to ores.
+inline constexpr PlausibleRange kRockDensity{ 500.0, 5500.0 };
+/// Of all rocks of a run together, 1/a.
+inline constexpr PlausibleRange kRocksPerYear{ 0.0, 100.0 };
 /// Two of a kind whose places differ by no more are the same one, m.
 inline constexpr double kTwinDistance = 0.1;
 
@@ -56,6 +75,12 @@ std::vector<std::string> implausibleNumbers(const Structures& structures);
 /// One sentence for each kind of which some stand where another one does. Lines that record are
 /// none of them.
 std::vector<std::string> structuresTwice(const Structures& structures);
+
+/// The same of the slope's own ground and its classes: φ, roughness, obstacles.
+std::vector<std::string> implausibleGround(const Terrain& terrain);
+
+/// The same of stands: too dense, or over one another.
+std::vector<std::string> implausibleStands(std::span<const Stand> stands);
 
 using PlanLine = std::vector<Eigen::Vector2d>;
 

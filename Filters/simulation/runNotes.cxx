@@ -1,6 +1,7 @@
 #include "simulation/runNotes.h"
 
 #include "base/text/numberText.h"
+#include "rock/plausibleRocks.h"
 #include "shared/errorReport.h"
 #include "simulation/jointFaces.h"
 #include "simulation/progressText.h"
@@ -36,6 +37,14 @@ void tellApart(std::span<const Rock> rocks)
       " blocks falls as if it were alone, through the others, though " + std::to_string(joined) +
       " of them lie face on face, as the blocks of a rock mass. " +
       "Switch it on for them to hit and push each other");
+  }
+}
+
+void tellOdd(std::span<const Rock> rocks, std::span<const double> frequencies)
+{
+  for (const std::string& note : implausibleRocks(rocks, frequencies))
+  {
+    showNote(note);
   }
 }
 

@@ -14,6 +14,7 @@
 #include "shared/terrainMesh.h"
 #include "shared/withAbort.h"
 #include "terrain/Terrain.h"
+#include "terrain/plausible.h"
 #include "terrain/presets.h"
 
 #include "vtkFieldData.h"
@@ -158,6 +159,10 @@ std::shared_ptr<const rockfall::Terrain> vtkDEMToCFESource::MakeSlope(
     readStructures({ this->EmbankmentFile, this->TreeFile, this->BarrierFile, this->TreesBreak != 0,
                      this->EmbankmentLayerName, this->TreeLayerName, this->BarrierLayerName },
       slope, notes));
+  for (std::string& doubt : implausibleGround(slope))
+  {
+    notes.push_back(std::move(doubt));
+  }
   if (this->Preset == 0 && !material.yielding.yields() && slope.restitutionClasses().count() == 0)
   {
     notes.emplace_back(

@@ -158,6 +158,13 @@ TEST_F(TestReleaseUncertainty, ANoteSaysWhereNothingDiffers)
   this->Simulation->Update();
   this->ForgetBareRock();
   EXPECT_TRUE(this->Heard->Notes.empty());
+  sure->SetDensity(2.7); // t/m³
+  this->Simulation->Update();
+  this->ForgetBareRock();
+  ASSERT_EQ(this->Heard->Notes.size(), 1u);
+  EXPECT_NE(this->Heard->Notes[0].find("1 of 1 densities of rocks"), std::string::npos);
+  this->Heard->Notes.clear();
+  sure->SetDensity(2700.0);
   this->Simulation->SetIterations(3);
   this->Simulation->Update();
   this->ForgetBareRock();

@@ -415,9 +415,8 @@ void gatherRings(const OGRGeometry& geometry, const FeatureRow& row, Placing& pl
   }
 }
 
-/// The stems of a polygon that is given by its density.
-std::vector<Tree> standOf(const FeatureRow& row, std::int64_t count, int material,
-  const StructureFiles& files, Placing& placing)
+/// A polygon that is given by its density.
+Stand standOf(const FeatureRow& row, std::int64_t count, int material, Placing& placing)
 {
   Stand stand;
   stand.feature = count;
@@ -437,6 +436,11 @@ std::vector<Tree> standOf(const FeatureRow& row, std::int64_t count, int materia
   stand.broadleafFactor = row.positive("f_broad").value_or(stand.broadleafFactor);
   stand.spacing = row.notNegative("spacing").value_or(0.0);
   gatherRings(*row.geometry(), row, placing, stand.rings);
+  return stand;
+}
+
+std::vector<Tree> stemsOf(const Stand& stand, const FeatureRow& row, const StructureFiles& files)
+{
   try
   {
     return growStand(stand, files.treesBreak);
@@ -453,6 +457,7 @@ std::size_t readTrees(const StructureFiles& files, const Terrain& terrain, OwnMa
 {
   std::int64_t outside = 0;
   std::vector<Tree> grown;
+  std::vector<Stand> stands;
   LayerWish wish{ files.trees, files.treeLayer, "TreeLayerName" };
   wish.what = "layer of points or polygons";
   wish.kinds = kPoints | kPolygons | kRows;
@@ -475,7 +480,8 @@ std::size_t readTrees(const StructureFiles& files, const Terrain& terrain, OwnMa
       };
       if (kindOf(row.geometry()) == kPolygons && row.has("stems_ha"))
       {
-        for (const Tree& tree : standOf(row, count, material, files, placing))
+        stands.push_back(standOf(row, count, material, placing));
+        for (const Tree& tree : stemsOf(stands.back(), row, files))
         {
           add(tree, grown);
         }
@@ -495,14 +501,20 @@ std::size_t readTrees(const StructureFiles& files, const Terrain& terrain, OwnMa
   }
   if (all.trees.empty())
   {
-    throw DataError(files.trees + ": none of its " + std::to_string(outside) +
-      " trees stands where the terrain has ground");
+    throw DataError(files.trees +
+      (outside > 0 ? ": none of its " + std::to_string(outside) +
+            " trees stands where the terrain has ground"
+                   : ": its stands have no stem: are stems_ha per hectare?"));
   }
   if (outside > 0)
   {
     notes.push_back(files.trees + ": " + std::to_string(outside) +
       " trees stand where the terrain has no ground and are left out; " +
       std::to_string(all.trees.size()) + " are taken.");
+  }
+  for (const std::string& doubt : implausibleStands(stands))
+  {
+    notes.push_back(files.trees + ": " + doubt);
   }
   return alone;
 }

@@ -8,6 +8,7 @@
 
 #include <cpl_string.h>
 #include <gdal_priv.h>
+#include <ogr_spatialref.h>
 
 #include <algorithm>
 #include <cfloat>
@@ -21,8 +22,12 @@ namespace rockfall::gis
 namespace
 {
 
-/// A node of exactly 0 is suspect if the next one is so much higher or deeper.
-constexpr double suspectStep = 100.0; // m
+/// A node of exactly 0 is suspect if the next one is so much higher or deeper, m: no cliff, or a wall
+/// of more than 76° that is no quay.
+constexpr double suspectStep = 100.0, suspectWall = 20.0, suspectSlope = 4.0;
+/// Rounding to whole numbers of so many metres makes terraces if so many cells are level, and if the
+/// slope has so many steps.
+constexpr double coarse = 0.3, terraces = 0.25, steps = 10.0;
 
 /// The band of transparency, if it is not the mask already: GDAL makes none of one of real numbers.
 GDALRasterBand* alphaBand(GDALDataset& dataset, const GDALRasterBand* heights)
@@ -119,7 +124,11 @@ void RasterFile::requireCoverage()
 void RasterFile::noteZeros(const std::vector<double>& heights)
 {
   std::int64_t suspect = 0, all = 0;
-  const auto high = [&](std::size_t i) { return std::abs(heights[i]) > suspectStep; };
+  const double cell = place_.crs && place_.crs->IsGeographic()
+    ? suspectStep
+    : std::hypot(place_.affine[1], place_.affine[4]);
+  const double step = std::clamp(suspectSlope * cell, suspectWall, suspectStep);
+  const auto high = [&](std::size_t i) { return std::abs(heights[i]) > step; };
   for (int row = 0; row < rows_; ++row)
   {
     stayWanted();
@@ -139,7 +148,50 @@ void RasterFile::noteZeros(const std::vector<double>& heights)
   {
     notes_.push_back(std::to_string(all) + " nodes of band " + std::to_string(bandNumber_) +
       " are exactly 0 m, " + std::to_string(suspect) + " of them beside ground more than " +
-      number(suspectStep) + " m off. If 0 stands for no data, gdal_edit.py -a_nodata 0 says so");
+      number(step) + " m off. If 0 stands for no data, gdal_edit.py -a_nodata 0 says so");
+  }
+}
+
+void RasterFile::noteTerraces(const std::vector<double>& heights)
+{
+  if (std::abs(heights_.scale) < coarse)
+  {
+    return;
+  }
+  double least = HUGE_VAL, most = -HUGE_VAL;
+  std::int64_t level = 0, all = 0;
+  for (int row = 0; row < rows_; ++row)
+  {
+    stayWanted();
+    for (int column = 0; column < columns_; ++column)
+    {
+      const std::size_t i = std::size_t(row) * columns_ + column;
+      const double raw = (heights[i] - heights_.offset) / heights_.scale;
+      if (std::isnan(raw))
+      {
+        continue;
+      }
+      if (std::abs(raw - std::round(raw)) > 1e-6)
+      {
+        return;
+      }
+      least = std::min(least, raw);
+      most = std::max(most, raw);
+      if (row + 1 < rows_ && column + 1 < columns_ && !std::isnan(heights[i + columns_ + 1]))
+      {
+        ++all;
+        level += heights[i] == heights[i + 1] && heights[i] == heights[i + columns_] &&
+          heights[i] == heights[i + columns_ + 1];
+      }
+    }
+  }
+  if (all > 0 && most - least >= steps && double(level) >= terraces * double(all))
+  {
+    notes_.push_back("All heights are whole numbers, and " +
+      number(std::round(100.0 * double(level) / double(all))) +
+      " % of the cells are level: terraces of the rounding, on which rocks come to rest. Take a "
+      "DEM "
+      "with decimals, or a CellSize that smooths them");
   }
 }
 
@@ -175,6 +227,7 @@ SourceGrid RasterFile::read()
   }
 
   this->noteZeros(grid.heights);
+  this->noteTerraces(grid.heights);
   noteMarks(grid.heights, heights_, "nodes of band " + std::to_string(bandNumber_),
     "gdal_edit.py -a_nodata ", notes_);
 

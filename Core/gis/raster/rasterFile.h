@@ -43,6 +43,8 @@ private:
   void requireCoverage();
   /// Says what looks like a nodata value of 0 that nobody declared.
   void noteZeros(const std::vector<double>& heights);
+  /// Says that heights were rounded to whole numbers, where that makes terraces.
+  void noteTerraces(const std::vector<double>& heights);
   void readRows(int first, int count, double* values);
   void check(int row, int column, double raw, double height) const;
 

@@ -159,11 +159,28 @@ TEST(Raster, transparencyOfRealNumbersIsAMask)
 TEST(Raster, zerosBesideHighGroundAreNoted)
 {
   RawRaster raster = smallRaster();
-  raster.values = { 0.0, 50.0, 0.0, 3.0, 700.0, 0.0 };
+  raster.values = { 0.0, 35.0, 0.0, 3.0, 700.0, 0.0 };
   EXPECT_TRUE(holds(joined(readRaster(raster.write())),
     { "3 nodes of band 1 are exactly 0 m, 1 of them", "-a_nodata 0" }));
-  raster.values[4] = 90.0; // a shore
+  raster.values[4] = 39.0; // a shore
   EXPECT_EQ(joined(readRaster(raster.write())).find("exactly 0"), std::string::npos);
+  raster.values[4] = 75.0; // a pit with walls of 82 degrees
+  EXPECT_TRUE(holds(joined(readRaster(raster.write())), { "beside ground more than 40 m off" }));
+}
+
+TEST(Raster, terracesOfWholeMetresAreNoted)
+{
+  RawRaster raster = smallRaster();
+  raster.columns = raster.rows = 30;
+  const auto notes = [&](double rise, double unit)
+  {
+    raster.fill([&](double x, double) { return std::round(rise * (x - 600000.0) / unit) * unit; });
+    return joined(readRaster(raster.write()));
+  };
+  EXPECT_TRUE(holds(notes(0.05, 1.0), { "whole numbers", "48 % of the cells are level" }));
+  EXPECT_EQ(notes(0.05, 0.1).find("whole numbers"), std::string::npos); // decimals
+  EXPECT_EQ(notes(0.5, 1.0).find("whole numbers"), std::string::npos); // steeper than a step a cell
+  EXPECT_EQ(notes(0.01, 1.0).find("whole numbers"), std::string::npos); // a plain
 }
 
 TEST(Raster, verticalCrsInFeet)

@@ -1,0 +1,80 @@
+/// @file
+/// Numbers of the ground and of stands that look as if they were in another unit.
+
+#include "terrain/Terrain.h"
+#include "terrain/plausible.h"
+
+#include <gtest/gtest.h>
+
+namespace rockfall
+{
+
+namespace
+{
+
+std::vector<std::string> notesOf(double friction, const Roughness& roughness)
+{
+  GridGeometry g;
+  g.columns = g.rows = 3;
+  g.cellSize = 10.0;
+  SurfaceMaterial material;
+  material.frictionAngle = radians(friction);
+  return implausibleGround(Terrain(g, std::vector<double>(9, 0.0), material, roughness));
+}
+
+Stand square(std::int64_t feature, double west, double stems = 400.0, double diameter = 0.35)
+{
+  Stand stand;
+  stand.feature = feature;
+  stand.stemsPerHectare = stems;
+  stand.diameterMean = diameter;
+  stand.rings = { { { west, 0, 0 }, { west + 100, 0, 0 }, { west + 100, 50, 0 },
+    { west, 50, 0 } } };
+  return stand;
+}
+
+TEST(Plausible, Ground)
+{
+  Roughness roughness;
+  roughness.deviation = 0.2;
+  roughness.length = 2.0;
+  roughness.obstacles = { 0.1, 0.5, 1.0 };
+  for (const double friction : { 0.0, 15.0, 35.0, 60.0 })
+  {
+    EXPECT_TRUE(notesOf(friction, roughness).empty()) << friction;
+  }
+  EXPECT_EQ(notesOf(80.0, roughness),
+    std::vector<std::string>({ "1 of 1 friction angles of the ground look implausible, first the "
+                               "slope's own with 80 degrees. Ground has 2 to 60 degrees: is it in "
+                               "degrees?" }));
+  EXPECT_EQ(notesOf(0.6, roughness).size(), 1u); // radians
+  roughness.deviation = 5.0;                     // centimetres
+  roughness.obstacles = { 10.0, 30.0, 60.0 };
+  EXPECT_EQ(notesOf(35.0, roughness).size(), 2u);
+}
+
+TEST(Plausible, Stands)
+{
+  const auto notes = [](std::vector<Stand> stands) { return implausibleStands(stands); };
+  EXPECT_TRUE(notes({ square(1, 0.0), square(2, 100.0), square(3, 160.0) }).empty());
+  const auto dense = notes({ square(1, 0.0), square(2, 100.0, 20000.0) });
+  ASSERT_EQ(dense.size(), 1u);
+  EXPECT_EQ(
+    dense[0].find("1 of 2 stands look implausible, first feature 2: 20000 stems of 35 cm"), 0u)
+    << dense[0];
+  EXPECT_EQ(notes({ square(1, 0.0, 0.04) }).size(), 1u); // stems per square metre
+  const auto twice = notes({ square(1, 0.0), square(2, 300.0), square(3, 310.0) });
+  ASSERT_EQ(twice.size(), 1u);
+  EXPECT_NE(twice[0].find("first feature 3, half of which is within feature 2"), std::string::npos)
+    << twice[0];
+  // A clearing is no ground of the stand around it.
+  Stand around = square(1, 0.0), within = square(2, 20.0);
+  within.rings = { { { 20, 10, 0 }, { 40, 10, 0 }, { 40, 30, 0 }, { 20, 30, 0 } } };
+  EXPECT_EQ(notes({ around, within }).size(), 1u);
+  around.rings.push_back(within.rings.front());
+  EXPECT_TRUE(notes({ around, within }).empty());
+}
+
+} // namespace
+
+} // namespace rockfall
