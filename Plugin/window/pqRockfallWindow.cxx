@@ -372,7 +372,8 @@ void pqRockfallWindow::onRepresentation(pqRepresentation* added)
   const rockfall::window::Shown shown = rockfall::window::shownBy(representation);
   rockfall::window::style(representation);
   const bool first = shown.source && shown.port == 0 &&
-    isOf(shown.source, { "vtkDEMToCFESource" }) && isFirstSlope(representation);
+    isOf(shown.source, { "vtkDEMToCFESource" }) && isFirstSlope(representation) &&
+    !pqApplicationCore::instance()->isLoadingState(); // which has a camera of its own
   // Legends and cameras are set by ParaView after it has made a representation.
   QPointer<pqRepresentation> later = added;
   QTimer::singleShot(0, this,

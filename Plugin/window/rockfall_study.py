@@ -35,13 +35,12 @@ def new_study(file_name=""):
     shown.Visibility = 1
     view.StillRender()
 
-    release = simple.RockRelease(registrationName=name("Release"), Terrain=slope)
-    release.Amount = ROCKS
+    # What is given where a part is made is in a trace of ParaView, what is set afterwards is not.
+    release = simple.RockRelease(registrationName=name("Release"), Terrain=slope, Amount=ROCKS)
     _draw_placed(release)
     simple.Show(release, view)
 
-    fall = simple.RockfallSimulation(registrationName=name("Fall"), Rocks=release)
-    fall.Iterations = ITERATIONS
+    fall = simple.RockfallSimulation(registrationName=name("Fall"), Rocks=release, Iterations=ITERATIONS)
     fall.SMProxy.InvokeCommand("Watch")  # a window is not kept waiting
     paths = simple.OutputPort(fall, 1)
     simple.Show(simple.OutputPort(fall, 0), view)
@@ -49,8 +48,7 @@ def new_study(file_name=""):
 
     line = simple.TrajectoryCollector(registrationName=name("Line"), Input=paths)
     _draw_placed(line)
-    hazard = simple.RockfallHazardMap(registrationName=name("Map"), Input=paths)
-    _fit_cell(hazard, fall)
+    hazard = simple.RockfallHazardMap(registrationName=name("Map"), Input=paths, CellSize=_cell_of_map(fall))
     growing = simple.GrowingPaths(registrationName=name("Paths"), Input=paths)
     simple.Show(growing, view)
     simple.Show(simple.OutputPort(line, 3), view)
@@ -61,7 +59,9 @@ def new_study(file_name=""):
     simple.SetActiveView(view)
     simple.SetActiveSource(release)
     _look_at_paths(fall, view)
-    simple.GetAnimationScene().GoToLast()  # the paths as a whole; Play begins anew from there; draws all views
+    scene = simple.GetAnimationScene()
+    scene.UpdateAnimationUsingDataTimeSteps()  # or Play and films have ten frames
+    scene.GoToLast()  # the paths as a whole; Play begins anew from there; draws all views
     return {"slope": slope, "release": release, "fall": fall, "paths": growing, "map": hazard, "line": line}
 
 
@@ -234,13 +234,15 @@ def _own_folder():
         return tempfile.mkdtemp(prefix="rockfall-")
 
 
-def _fit_cell(hazard, fall):
-    """Cells of a map as wide as its rocks, a whole number of those of the slope: finer ones show threads."""
+def _cell_of_map(fall):
+    """Cells of a map as wide as its rocks, a whole number of those of the slope: finer ones show threads. 0: as
+    the slope's."""
     grid, width = fall[1].FieldData["TerrainGrid"], fall[1].CellData["Width"]
     if grid and width:
         cell, widest = grid.GetRange(2)[0], width.GetRange(0)[1]
         if widest > 1.5 * cell:
-            hazard.CellSize = round(widest / cell) * cell
+            return round(widest / cell) * cell
+    return 0.0
 
 
 def _render_view():
