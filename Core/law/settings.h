@@ -422,6 +422,7 @@ inline constexpr int kMostDrawsOfSource = 10000;
 
 // Ground of larger numbers takes all of any speed at once, or nothing at all.
 inline constexpr double kMostScarFactor = 100.0;    ///< A thousand times that of Lu et al.
+inline constexpr double kMostScarRadius = 100.0;    ///< r₀, m; larger than rocks are.
 inline constexpr double kMostScarDrag = 1000.0;     ///< C_s and C_ω; at most 4 are measured.
 inline constexpr double kMostGroundFriction = 60.0; ///< μ and μ_r; tan 89° is 57.
 inline constexpr double kMostSlipRate = 1e6;        ///< κ, 1/m, and β, 1/s: at once.

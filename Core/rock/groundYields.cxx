@@ -70,7 +70,7 @@ bool SingleRock::sinkUnder(double h)
       continue;
     }
     const double depth = this->yieldingAt(c).scarDepth(
-      body_.block.mass(), approach / c.normal.z(), this->softnessAt(c));
+      body_.block.mass(), body_.block.volume(), approach / c.normal.z(), this->softnessAt(c));
     if (depth > deepest)
     {
       deepest = depth;

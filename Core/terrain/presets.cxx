@@ -57,6 +57,14 @@ constexpr YieldingGround deviates(YieldingGround ground, double deviation)
   return ground;
 }
 
+/// The same, with scars that are shallower for their size the larger a rock is; rocks of 1 m³ dig as
+/// they do without.
+constexpr YieldingGround sized(YieldingGround ground)
+{
+  ground.scarRadius = 0.62; // m, of the sphere of 1 m³
+  return ground;
+}
+
 /// Hard ground on which rocks do not roll on for ever.
 constexpr YieldingGround holds(double rollingResistance)
 {
@@ -96,13 +104,13 @@ constexpr GroundPreset presets[] = {
     smooth, assumed },
   { "bedrock with boulders", "Bedrock with boulders", 0.35, 1.0, 0.020, 35.0, 2.5, holds(0.3),
     Memory, hoek, assumed, "assumed: rocks rest on 17°", stones(2.0, 0.05, 0.2, 0.4), assumed },
-  { "talus", "Talus", 0.6, 1.0, 0.3, 37.0, 2.0, yields(10e6, 1.25, 0.6, 0.08), Assumption, assumed,
-    lu, longSlopes, stones(2.0, 0.05, 0.1, 0.2), assumed, 4.0 },
+  { "talus", "Talus", 0.6, 1.0, 0.3, 37.0, 2.0, sized(yields(10e6, 1.25, 0.6, 0.08)), Assumption,
+    assumed, lu, longSlopes, stones(2.0, 0.05, 0.1, 0.2), assumed, 4.0 },
   { "talus with vegetation", "Talus with vegetation", 0.6, 1.0, 0.3, 37.0, 2.0,
-    yields(10e6, 1.4, 0.6, 0.1), Assumption, assumed, lu, "assumed, as talus",
+    sized(yields(10e6, 1.4, 0.6, 0.1)), Assumption, assumed, lu, "assumed, as talus",
     stones(2.0, 0.05, 0.1, 0.2), assumed, 4.0 },
-  { "soil", "Soil", 0.3, 1.0, 0.15, 30.0, 3.0, yields(10e6, 1.5, 0.6, 0.3), Assumption, assumed, lu,
-    lu, waves(0.05, 2.0), assumed },
+  { "soil", "Soil", 0.3, 1.0, 0.15, 30.0, 3.0, sized(yields(10e6, 1.25, 0.6, 0.3)), Assumption,
+    assumed, lu, lu, waves(0.15, 2.0), "assumed: nothing walks on for minutes" },
   { "meadow", "Meadow", 0.73, 1.0, 0.34, 30.0, 3.0, deviates(yields(13e6, 0.9, 0.98, 0.21), 0.45),
     FieldData, "docs/validation.md", lu, lu, smooth, "docs/validation.md", 7.0 },
 };

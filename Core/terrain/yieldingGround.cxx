@@ -33,6 +33,7 @@ constexpr Bounds bounds[] = {
   { 0.0, kMostGroundFriction },          // RollingResistance
   { 0.0, kMostGroundDeviation },         // GroundDeviation
   { 0.0, kMostAlike },                   // GroundDeviationLength
+  { 0.0, kMostScarRadius },              // ScarRadius
 };
 
 /// Of a value in SI, which must be `rule`.
@@ -45,14 +46,21 @@ constexpr Bounds bounds[] = {
 
 } // namespace
 
-double YieldingGround::scarDepth(double mass, double speed, double softness) const
+double YieldingGround::scarDepth(double mass, double volume, double speed, double softness) const
 {
   if (!this->scars() || !(speed > 0.0))
   {
     return 0.0;
   }
   const double kiloNewtons = 1e-3 * this->modulus / softness;
-  return this->depthFactor * std::cbrt(mass) * std::pow(kiloNewtons, -0.4) * std::pow(speed, 0.8);
+  const double alike =
+    this->depthFactor * std::cbrt(mass) * std::pow(kiloNewtons, -0.4) * std::pow(speed, 0.8);
+  if (!(this->scarRadius > 0.0))
+  {
+    return alike;
+  }
+  const double radius = std::cbrt(0.75 * volume / std::numbers::pi);
+  return alike * std::cbrt(this->scarRadius / radius);
 }
 
 double YieldingGround::frictionAfter(double s) const
@@ -79,7 +87,7 @@ double YieldingGround::spinLeft(double volume, double mass) const
 
 void YieldingGround::validate() const
 {
-  static_assert(std::size(bounds) == 12); // as many as yieldingFields()
+  static_assert(std::size(bounds) == 13); // as many as yieldingFields()
   for (std::size_t k = 0; k < std::size(bounds); ++k)
   {
     const YieldingField& field = yieldingFields()[k];
@@ -146,6 +154,7 @@ std::span<const YieldingField> yieldingFields()
     { "RollingResistance", "mu_r", "", &G::rollingResistance, 1.0, false },
     { "GroundDeviation", "ground_deviation", "", &G::deviation, 1.0, false },
     { "GroundDeviationLength", "ground_length", "m", &G::deviationLength, 1.0, false },
+    { "ScarRadius", "scar_radius", "m", &G::scarRadius, 1.0, false },
   };
   return fields;
 }

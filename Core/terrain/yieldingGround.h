@@ -7,8 +7,13 @@
 /// doi:10.1007/s10346-019-01238-z. A soft layer Σ lies over a hard surface Λ, which is as deep
 /// under the surface as this rock's speed makes it:
 ///
-///     d_max = f · M^(1/3) · M_E^(−0.4) · w^0.8        (their eq. 11; M in kg, M_E in kN/m²)
+///     d_max = f · M^(1/3) · M_E^(−0.4) · w^0.8 · (r₀/r)^(1/3)
 ///     F_d   = ½ C_d ρ A v²,  C_d = 1 + C_s            against v, at the centroid
+///
+/// (their eq. 11; M in kg, M_E in kN/m²). The last factor is 1 where r₀ is 0: scars of all sizes are
+/// alike. With it small rocks dig deeper for their size, as grains of soil bear what lies over them:
+/// d ~ (2 r)^(2/3) H^(1/3) of spheres dropped by H into grains (Uehara, Ambroso, Ojha & Durian 2003,
+/// Physical Review Letters 90, 194301). r is the radius of the sphere of equal volume.
 ///
 /// A is the area of the part of the rock inside Σ, seen along v. With the direction held,
 /// E/E₀ = exp(−C_d ρ V/m) after the volume V = ∫ A ds has been swept, whatever the speed. The same
@@ -49,13 +54,15 @@ struct YieldingGround
   double rollingResistance = 0.0; ///< μ_r, dimensionless, ≥ 0.
   double deviation = 0.0;         ///< σ of ln S, dimensionless, ≥ 0.
   double deviationLength = 30.0;  ///< ℓ of S, m, > 0 where S deviates.
+  double scarRadius = 0.0;        ///< r₀, m, ≥ 0; 0: scars of all sizes are alike.
 
   bool scars() const { return this->modulus < hard; }
   bool slips() const { return this->frictionMost > 0.0; }
   bool deviates() const { return (this->scars() || this->slips()) && this->deviation > 0.0; }
   bool yields() const { return this->scars() || this->slips() || this->rollingResistance > 0.0; }
-  /// d_max, m, for a rock (kg) whose surface comes down on the ground at `speed` (m/s).
-  double scarDepth(double mass, double speed, double softness = 1.0) const;
+  /// d_max, m, for a rock of this mass (kg) and volume (m³) whose surface comes down on the ground at
+  /// `speed` (m/s).
+  double scarDepth(double mass, double volume, double speed, double softness = 1.0) const;
   /// μ after a slip of `s` (m), where S is 1.
   double frictionAfter(double s) const;
   /// Share of the speed, and of the spin, that a volume (m³) swept by a mass (kg) leaves.
@@ -84,7 +91,7 @@ struct YieldingField
   void set(YieldingGround& ground, double typed) const;
 };
 
-/// All of them, in the order of the struct.
+/// All of them, in the order of the struct, which is that of files.
 std::span<const YieldingField> yieldingFields();
 
 } // namespace rockfall

@@ -25,7 +25,7 @@ LINES = (("Rocks", "rocks that pass", "", 1.0), ("Passings", "passings", "", 1.0
          *((name + end, f"{text}, {stat}", unit, factor) for name, text, unit, factor in QUANTITIES
            for end, stat in STATISTICS))
 YIELDING = (("M_E", "MN/m²"), ("scar factor", ""), ("density", "kg/m³"), ("C_s", ""), ("spin drag", ""), ("μ min", ""),
-            ("μ max", ""), ("κ", "1/m"), ("β", "1/s"), ("μ_r", ""), ("softness, deviation", ""), ("softness, length", "m"))
+            ("μ max", ""), ("κ", "1/m"), ("β", "1/s"), ("μ_r", ""), ("softness, deviation", ""), ("softness, length", "m"), ("scar radius", "m"))
 
 
 def number(value, digits=3):

@@ -66,7 +66,7 @@ rockfall::SurfaceMaterial vtkDEMToCFESource::MakeMaterial() const
   const double yielding[] = { this->GroundModulus, this->ScarDepthFactor, this->GroundDensity,
     this->ScarCompaction, this->ScarSpinDrag, this->SlipFrictionMin, this->SlipFrictionMax,
     this->SlipFrictionGrowth, this->SlipFrictionDecay, this->RollingResistance,
-    this->GroundDeviation, this->GroundDeviationLength };
+    this->GroundDeviation, this->GroundDeviationLength, this->ScarRadius };
   const auto fields = rockfall::yieldingFields();
   for (std::size_t k = 0; k < fields.size(); ++k)
   {
@@ -304,6 +304,7 @@ void vtkDEMToCFESource::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "RollingResistance: " << this->RollingResistance << "\n";
   os << indent << "GroundDeviation: " << this->GroundDeviation << "\n";
   os << indent << "GroundDeviationLength: " << this->GroundDeviationLength << "\n";
+  os << indent << "ScarRadius: " << this->ScarRadius << "\n";
   os << indent << "FrictionAngle: " << this->FrictionAngle << "\n";
   os << indent << "FrictionAngleDeviation: " << this->FrictionAngleDeviation << "\n";
   os << indent << "Cohesion: " << this->Cohesion << "\n";

@@ -317,6 +317,16 @@ public:
 
   ///@{
   /**
+   * r₀: radius in m, not negative, of rocks that dig as deep as ScarDepthFactor says; the depth of
+   * others is multiplied by (r₀/r)^(1/3), r the radius of the sphere of equal volume. Default 0:
+   * scars of all sizes are alike.
+   */
+  vtkSetMacro(ScarRadius, double);
+  vtkGetMacro(ScarRadius, double);
+  ///@}
+
+  ///@{
+  /**
    * σ: deviation of the logarithm of how soft the ground is, from place to place, without unit, not
    * negative. Soft ground has a lower modulus and more slip friction. Default 0.
    */
@@ -483,6 +493,7 @@ private:
   double SlipFrictionGrowth = 0.0;
   double SlipFrictionDecay = 0.0;
   double RollingResistance = 0.0;
+  double ScarRadius = 0.0;
   double GroundDeviation = 0.0;
   double GroundDeviationLength = 30.0;
   double RoughnessMean = 0.1;

@@ -10,7 +10,7 @@ PROXIES = [
      "FileName CellSize RestitutionModel RestitutionCoefficient RestitutionDeviation "
      "TangentialRestitution RestitutionSpeed FrictionAngle "
      "FrictionAngleDeviation Cohesion RoughnessMean RoughnessDeviation GroundModulus "
-     "ScarDepthFactor GroundDensity ScarCompaction ScarSpinDrag SlipFrictionMin SlipFrictionMax "
+     "ScarDepthFactor ScarRadius GroundDensity ScarCompaction ScarSpinDrag SlipFrictionMin SlipFrictionMax "
      "SlipFrictionGrowth SlipFrictionDecay RollingResistance GroundDeviation GroundDeviationLength"),
     ("Rock Blocks", "RockBlocks", "sources",
      "Shape Volume Center Orientation Velocity AngularVelocity Density YoungModulus PoissonRatio "
@@ -122,7 +122,7 @@ assert decorators(dem, "RestitutionSpeed", "visibility") == [("RestitutionModel"
 # What a preset replaces is grey beside one.
 replaced = ["RestitutionModel", "RestitutionCoefficient", "RestitutionDeviation", "TangentialRestitution",
             "RestitutionSpeed", "FrictionAngle", "FrictionAngleDeviation", "GroundModulus",
-            "ScarDepthFactor", "GroundDensity", "ScarCompaction", "ScarSpinDrag", "SlipFrictionMin",
+            "ScarDepthFactor", "ScarRadius", "GroundDensity", "ScarCompaction", "ScarSpinDrag", "SlipFrictionMin",
             "SlipFrictionMax", "SlipFrictionGrowth", "SlipFrictionDecay", "RollingResistance", "GroundDeviation",
             "GroundDeviationLength", "DeviationPer", "RoughnessMean", "RoughnessDeviation", "RoughnessLength"]
 stones = ["ObstacleHeight70", "ObstacleHeight20", "ObstacleHeight10"]

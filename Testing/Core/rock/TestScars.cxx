@@ -31,7 +31,7 @@ void expectScar(const Trajectory& t, const char* what)
   ASSERT_FALSE(t.impacts.empty()) << what;
   const ImpactEvent& first = t.impacts.front();
   const double down = -first.velocityBefore.z();
-  const double depth = softGround().yielding.scarDepth(t.summary.mass, down);
+  const double depth = softGround().yielding.scarDepth(t.summary.mass, t.summary.volume, down);
   EXPECT_NEAR(first.scarDepth, depth, 0.05 * depth) << what;
   EXPECT_GT(t.summary.energy.scars, 0.0) << what;
   EXPECT_LT(std::abs(t.summary.energy.numerical), 1e-3 * t.summary.energy.released) << what;

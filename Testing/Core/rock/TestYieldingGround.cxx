@@ -243,8 +243,8 @@ TEST(YieldingGround, EveryImpactTellsItsScar)
   const ImpactEvent& first = t.impacts.front();
   const YieldingGround ground = meadow().yielding;
   const double down = std::sqrt(2.0 * kGravity * 4.6);
-  EXPECT_GT(first.scarDepth, 0.7 * ground.scarDepth(t.summary.mass, down));
-  EXPECT_LT(first.scarDepth, 1.3 * ground.scarDepth(t.summary.mass, down));
+  EXPECT_GT(first.scarDepth, 0.7 * ground.scarDepth(t.summary.mass, t.summary.volume, down));
+  EXPECT_LT(first.scarDepth, 1.3 * ground.scarDepth(t.summary.mass, t.summary.volume, down));
   EXPECT_GT(first.scarLength, 0.0);
   EXPECT_GT(t.summary.energy.scars, 0.05 * t.summary.energy.released);
   EXPECT_LT(largestError(t.summary.energy), 1e-9);
@@ -430,9 +430,9 @@ TEST(YieldingGround, SoftnessIsAFieldOverTheMap)
 TEST(YieldingGround, SoftGroundGivesDeeperScars)
 {
   const YieldingGround ground = meadow().yielding;
-  EXPECT_NEAR(
-    ground.scarDepth(500.0, 10.0, 3.0) / ground.scarDepth(500.0, 10.0), std::pow(3.0, 0.4), 1e-12);
-  EXPECT_EQ(ground.scarDepth(500.0, 10.0, 1.0), ground.scarDepth(500.0, 10.0));
+  EXPECT_NEAR(ground.scarDepth(500.0, 0.2, 10.0, 3.0) / ground.scarDepth(500.0, 0.2, 10.0),
+    std::pow(3.0, 0.4), 1e-12);
+  EXPECT_EQ(ground.scarDepth(500.0, 0.2, 10.0, 1.0), ground.scarDepth(500.0, 0.2, 10.0));
 }
 
 TEST(YieldingGround, WithoutDeviationNothingIsDrawn)
@@ -478,6 +478,21 @@ TEST(YieldingGround, ADeviationNeedsALength)
     EXPECT_EQ(std::string(error.what()),
       "GroundDeviationLength is 0 m, it must be at least 0.01 where GroundDeviation is 0.3");
   }
+}
+
+TEST(YieldingGround, LargeRocksDigLessForTheirSize)
+{
+  const YieldingGround alike = meadow().yielding;
+  YieldingGround sized = alike;
+  sized.scarRadius = 0.5;
+  const double density = 2500.0, ball = std::numbers::pi / 6.0; // m³, r 0.5 m
+  const auto depth = [&](const YieldingGround& ground, double volume)
+  { return ground.scarDepth(density * volume, volume, 10.0); };
+  EXPECT_DOUBLE_EQ(depth(sized, ball), depth(alike, ball));
+  // d ~ r where all are alike, r^(2/3) where they are not.
+  EXPECT_NEAR(depth(alike, 8.0 * ball) / depth(alike, ball), 2.0, 1e-12);
+  EXPECT_NEAR(depth(sized, 8.0 * ball) / depth(sized, ball), std::cbrt(4.0), 1e-12);
+  EXPECT_NEAR(depth(sized, ball / 27.0) / depth(alike, ball / 27.0), std::cbrt(3.0), 1e-12);
 }
 
 TEST(YieldingGround, EveryNumberHasTwoEnds)
