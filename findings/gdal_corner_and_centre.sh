@@ -4,15 +4,21 @@
 #
 # Expected: lower left corner at 600000, 4999995. Happens: the grid lies at 0, 0, without a message.
 set -eu
-version=3.6.2+dfsg-1+b2
+packages="gdal-bin=3.6.2+dfsg-1+b2 libgdal32=3.6.2+dfsg-1+b2 gdal-data=3.6.2+dfsg-1
+  libproj25=9.1.1-1+b1 proj-data=9.1.1-1"
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-installed=$(dpkg-query -W -f '${Version}' gdal-bin 2>/dev/null || true)
-if [ "$installed" != "$version" ]; then
-  apt-get install -y --no-install-recommends "gdal-bin=$version" "libgdal32=$version"
-fi
-echo "gdal-bin $(dpkg-query -W -f '${Version}' gdal-bin)"
+mkdir -p archives/partial
+apt-get install -y -qq --reinstall --download-only --no-install-recommends -o Debug::NoLocking=1 \
+  -o APT::Sandbox::User=root -o Dir::Cache::Archives="$folder/archives" $packages > /dev/null
+for package in archives/*.deb; do
+  dpkg -x "$package" root
+done
+export PATH="$folder/root/usr/bin:$PATH" LD_LIBRARY_PATH="$folder/root/usr/lib/$(uname -m)-linux-gnu"
+export GDAL_DATA="$folder/root/usr/share/gdal" PROJ_DATA="$folder/root/usr/share/proj"
+echo $packages
+gdalinfo --version
 
 printf 'ncols 3\nnrows 2\nxllcorner 600000\nyllcenter 5000000\ncellsize 10\n1 2 3\n4 5 6\n' > mixed.asc
 printf 'ncols 3\nnrows 2\nxllcorner 600000\nyllcorner 4999995\ncellsize 10\n1 2 3\n4 5 6\n' > corners.asc

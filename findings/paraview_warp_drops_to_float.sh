@@ -4,15 +4,19 @@
 #
 # Expected: points in double precision, unchanged where the scalar is 0. Happens: float, 0.2 m beside at 5,000,000 m.
 set -eu
-version=5.11.0+dfsg-1+b1
+packages="paraview=5.11.0+dfsg-1+b1 python3-paraview=5.11.0+dfsg-1+b1"
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
-installed=$(dpkg-query -W -f '${Version}' python3-paraview 2>/dev/null || true)
-if [ "$installed" != "$version" ]; then
-  apt-get install -y --no-install-recommends "paraview=$version" "python3-paraview=$version"
-fi
-echo "python3-paraview $(dpkg-query -W -f '${Version}' python3-paraview)"
+mkdir -p archives/partial
+apt-get install -y -qq --reinstall --download-only --no-install-recommends -o Debug::NoLocking=1 \
+  -o APT::Sandbox::User=root -o Dir::Cache::Archives="$folder/archives" $packages > /dev/null
+for package in archives/*.deb; do
+  dpkg -x "$package" root
+done
+export PATH="$folder/root/usr/bin:$PATH" PYTHONPATH="$folder/root/usr/lib/python3/dist-packages"
+export LD_LIBRARY_PATH="$folder/root/usr/lib/$(uname -m)-linux-gnu"
+echo "$packages"
 
 cat > warp.py <<'PYTHON'
 from paraview.simple import ProgrammableSource, WarpByScalar
