@@ -96,23 +96,6 @@ private:
   std::exception_ptr failure_;
 };
 
-/// pₙ of a rock (kg) where none is typed, N/m: ω² m, and no less than the paper's, which is accurate
-/// enough on hard ground (METHOD 9.1).
-double penaltyByMass(double mass, const Terrain& terrain)
-{
-  constexpr double least = 1e9; // N/m
-  // ω, rad/s. Lower: on hard ground large blocks sink into their springs; out of scars rocks jump
-  // lower, on a meadow with 600 by 12 to 40 % (0.1 to 100 m³), with 1e4 by 2 % at most. Higher:
-  // shorter steps of impacts.
-  constexpr double onHard = 600.0, inScars = 1e4;
-  double frequency = onHard;
-  for (int k = 0; k <= terrain.restitutionClasses().count(); ++k)
-  {
-    frequency = terrain.restitutionMaterial(k).yielding.scars() ? inScars : frequency;
-  }
-  return std::max(least, frequency * frequency * mass);
-}
-
 /// Round bodies have contacts with the slope only.
 void refuseRound(const Rock& rock, const SimulationParameters& p)
 {
@@ -139,6 +122,21 @@ void onThreads(int threads, const Work& work)
 }
 
 } // namespace
+
+double penaltyByMass(double mass, const Terrain& terrain)
+{
+  constexpr double least = 1e9; // N/m
+  // ω, rad/s. Lower: on hard ground large blocks sink into their springs; out of scars rocks jump
+  // lower, on a meadow with 600 by 12 to 40 % (0.1 to 100 m³), with 1e4 by 2 % at most. Higher:
+  // shorter steps of impacts.
+  constexpr double onHard = 600.0, inScars = 1e4;
+  double frequency = onHard;
+  for (int k = 0; k <= terrain.restitutionClasses().count(); ++k)
+  {
+    frequency = terrain.restitutionMaterial(k).yielding.scars() ? inScars : frequency;
+  }
+  return std::max(least, frequency * frequency * mass);
+}
 
 Ensemble::Ensemble(
   const Terrain& terrain, std::span<const Rock> rocks, const SimulationParameters& p)

@@ -55,6 +55,8 @@ const std::vector<Setting>& settings()
     { "cellSize", "m", [](GroundSettings& s, double v) { s.cellSize = v; } },
     { "density", "kg/m³", [](GroundSettings& s, double v) { s.density = v; } },
     { "placeDeviation", "m", [](GroundSettings& s, double v) { s.placeDeviation = v; } },
+    { "normalPenalty", "N/m, 0: by mass",
+      [](GroundSettings& s, double v) { s.simulation.normalPenalty = v; } },
     { "timeStep", "s", [](GroundSettings& s, double v) { s.simulation.timeStep = v; } },
     { "endTime", "s", [](GroundSettings& s, double v) { s.simulation.endTime = v; } },
   };

@@ -1,4 +1,5 @@
 #include "SingleImpact.h"
+#include "run/ensemble.h"
 
 #include "rock/SingleRock.h"
 
@@ -76,7 +77,12 @@ ImpactOutcome simulateImpact(
 {
   const Surface surface(terrain, p.seed, iteration);
   const Block block(rock.shape, rock.density, rock.youngModulus, rock.poissonRatio);
-  const Trajectory t = SingleRock(surface, rock, block, p).run();
+  SimulationParameters own = p;
+  if (own.normalPenalty == 0.0)
+  {
+    own.normalPenalty = penaltyByMass(block.mass(), terrain);
+  }
+  const Trajectory t = SingleRock(surface, rock, block, own).run();
   const std::vector<Sample>& samples = t.samples;
   ImpactOutcome result;
   std::size_t touch = 0;

@@ -285,6 +285,7 @@ int run(int count, char** words)
 {
   GroundSettings defaults;
   defaults.setGround("meadow");
+  defaults.simulation.normalPenalty = 0.0; // by mass, as in the panel
   defaults.simulation.iterations = 80;
   defaults.simulation.endTime = 60.0;
   Arguments arguments = parseArguments(count, words, defaults, {});

@@ -203,6 +203,7 @@ int run(int count, char** words)
   GroundSettings defaults;
   defaults.setGround("meadow");
   defaults.cellSize = 0.1;
+  defaults.simulation.normalPenalty = 0.0; // by mass, as in the panel
   defaults.simulation.iterations = 200;
   defaults.simulation.endTime = 1.2;
   defaults.simulation.outputInterval = 0.01;

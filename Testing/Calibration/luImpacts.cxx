@@ -107,6 +107,7 @@ int run(int count, char** words)
   defaults.material.yielding.frictionMost = 2.0;
   defaults.material.yielding.frictionGrowth = 3.0;
   defaults.material.yielding.frictionDecay = 185.0;
+  defaults.simulation.normalPenalty = 0.0; // by mass, as in the panel
   defaults.simulation.iterations = 400;
   defaults.simulation.endTime = 1.0;
   defaults.simulation.outputInterval = 0.01;
