@@ -19,6 +19,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -312,10 +313,11 @@ void style(vtkSMProxy* representation)
 namespace
 {
 
-/// The palette's range is that of what is shown; of growing paths that of the whole ones. The
-/// source knows it before a representation does.
-void rescale(const Shown& shown, vtkSMProxy* representation, vtkSMViewProxy* view)
+/// The range of what colours a representation, joined to `range`; of growing paths that of the whole
+/// ones. The source knows it before a representation does.
+void addRange(vtkSMProxy* representation, const std::string& array, double range[2])
 {
+  const Shown shown = shownBy(representation);
   vtkSMSourceProxy* source = shown.source;
   int port = shown.port;
   if (is(shown, "vtkGrowingPaths", 0))
@@ -324,30 +326,57 @@ void rescale(const Shown& shown, vtkSMProxy* representation, vtkSMViewProxy* vie
     source = vtkSMSourceProxy::SafeDownCast(input.GetAsProxy());
     port = int(input.GetOutputPort());
   }
-  vtkSMProxy* table = vtkSMPropertyHelper(representation, "LookupTable").GetAsProxy();
-  if (!source || !table)
+  if (!source)
   {
     return;
   }
   vtkPVDataInformation* data = source->GetDataInformation(unsigned(port));
-  const std::string array = colouredBy(representation);
-  const Quantity* quantity = quantityOf(array);
   for (vtkPVDataSetAttributesInformation* arrays :
     { data->GetPointDataInformation(), data->GetCellDataInformation() })
   {
     vtkPVArrayInformation* values = arrays->GetArrayInformation(array.c_str());
     if (values && values->GetNumberOfTuples() > 0)
     {
-      const double* range =
+      const double* own =
         values->GetComponentFiniteRange(values->GetNumberOfComponents() == 1 ? 0 : -1);
-      vtkSMTransferFunctionProxy::RescaleTransferFunction(table, range[0], range[1], false);
-      table->UpdateVTKObjects();
-      if (quantity && quantity->unit == kKilojoules)
-      {
-        labelInKilojoules(
-          table, vtkSMTransferFunctionProxy::FindScalarBarRepresentation(table, view));
-      }
+      range[0] = std::min(range[0], own[0]);
+      range[1] = std::max(range[1], own[1]);
     }
+  }
+}
+
+/// The palette's range is that of all that is shown in it: two runs have one.
+void rescale(vtkSMProxy* representation, vtkSMViewProxy* view)
+{
+  vtkSMProxy* table = vtkSMPropertyHelper(representation, "LookupTable").GetAsProxy();
+  if (!table)
+  {
+    return;
+  }
+  const std::string array = colouredBy(representation);
+  double range[2] = { std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest() };
+  addRange(representation, array, range);
+  vtkSMPropertyHelper all(view, "Representations");
+  for (unsigned k = 0; k < all.GetNumberOfElements(); ++k)
+  {
+    vtkSMProxy* other = all.GetAsProxy(k);
+    if (other != representation && colouredBy(other) == array &&
+      vtkSMPropertyHelper(other, "LookupTable").GetAsProxy() == table &&
+      vtkSMPropertyHelper(other, "Visibility").GetAsInt() != 0)
+    {
+      addRange(other, array, range);
+    }
+  }
+  if (range[0] > range[1])
+  {
+    return;
+  }
+  vtkSMTransferFunctionProxy::RescaleTransferFunction(table, range[0], range[1], false);
+  table->UpdateVTKObjects();
+  const Quantity* quantity = quantityOf(array);
+  if (quantity && quantity->unit == kKilojoules)
+  {
+    labelInKilojoules(table, vtkSMTransferFunctionProxy::FindScalarBarRepresentation(table, view));
   }
 }
 
@@ -416,7 +445,7 @@ void follow(vtkSMProxy* representation, vtkSMViewProxy* view)
   }
   if (shown.source && quantityOf(colouredBy(representation)))
   {
-    rescale(shown, representation, view);
+    rescale(representation, view);
     fitPaths(shown, representation);
     followLegend(shown, representation, view);
   }
@@ -470,7 +499,7 @@ void styleIn(vtkSMProxy* representation, vtkSMViewProxy* view)
     table->SetAnnotation(done, "1");
     table->UpdateVTKObjects();
   }
-  rescale(shown, representation, view);
+  rescale(representation, view);
   if (vtkSMPropertyHelper(representation, "Visibility").GetAsInt() == 0)
   {
     return;

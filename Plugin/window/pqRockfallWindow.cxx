@@ -141,6 +141,9 @@ void pqRockfallWindow::begin()
     model, &pqServerManagerModel::representationAdded, this, &pqRockfallWindow::onRepresentation);
   this->connect(&this->Clock, &QTimer::timeout, this, &pqRockfallWindow::tellRuns);
   this->connect(&this->Clock, &QTimer::timeout, [window] { rockfall::window::showUnits(window); });
+  // Once, as soon as the window is wide enough for it.
+  this->connect(
+    &this->Clock, &QTimer::timeout, [window] { rockfall::window::widenPanels(window); });
   this->connect(&this->Clock, &QTimer::timeout, &fitMarkers);
   this->connect(&this->Clock, &QTimer::timeout,
     []
@@ -160,7 +163,6 @@ void pqRockfallWindow::begin()
     this->connect(undo, &pqUndoStack::redone, this, &pqRockfallWindow::keepOwnEnd);
   }
   this->makeMenu(window);
-  rockfall::window::widenPanels(window);
   const QString pages = scriptFolder() + "/RockfallDDA.qch";
   if (QFileInfo::exists(pages))
   {
