@@ -79,7 +79,10 @@ private:
     std::exception_ptr failure;
   };
 
-  Table& table(int level, int seat) { return tables_[std::size_t(level * seats_ + seat)]; }
+  Table& table(int level, int seat)
+  {
+    return tables_[std::size_t(level) * std::size_t(seats_) + std::size_t(seat)];
+  }
   void work(Table& table, int seat, int level);
   bool helpFrom(int level, int seat);
 

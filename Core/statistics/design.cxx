@@ -177,6 +177,7 @@ std::vector<DesignLevel> designLevels(std::span<const DesignPassing> passings)
     std::sort(values->begin(), values->end());
   }
   std::vector<DesignLevel> levels;
+  levels.reserve(std::size(designQuantiles) + 1);
   for (const double q : designQuantiles)
   {
     levels.push_back({ q, valueOf(energies, q), valueOf(speeds, q), valueOf(tops, q) });
