@@ -50,6 +50,7 @@ SingleRock::SingleRock(const Surface& surface, const Rock& rock, const Block& bl
   , parameters_(p)
   , number_(number)
   , body_(block)
+  , structures_(surface)
   , recorder_(surface, block, p.outputInterval)
 {
   body_.state.position = rock.position;
@@ -60,10 +61,7 @@ SingleRock::SingleRock(const Surface& surface, const Rock& rock, const Block& bl
   body_.restingSpeed = kRestingSpeed * std::sqrt(g * block.radius());
   penalty_ = p.normalPenalty;
   const double contacts = std::sqrt(p.normalPenalty * block.largestMobility());
-  obstacles_ = surface.terrain().obstacles();
-  solid_ = obstacles_ && obstacles_->solid();
   yields_ = surface.terrain().yields();
-  barriers_ = obstacles_ && !obstacles_->structures().barriers.empty();
   stiff_ =
     p.rigid || block.strainFrequency() >= std::min(kStiffBesideContacts * contacts, kFastVibration);
   ringing_ = stiff_ ? 0.0 : 2.0 * std::numbers::pi / block.strainFrequency();
@@ -138,12 +136,13 @@ void SingleRock::advanceInFlight(double duration)
   const BlockState start = body_.state;
   BlockState reached = start;
   const PathPiece way{ start, reached, duration, true };
-  if (barriers_)
+  if (structures_.hasBarriers())
   {
     reached.position = placeInFlight(start, parameters_.gravity, duration);
-    this->findBarriers(way);
-    this->passBarriers(way, 0.0);
-    duration = hit_.barrier >= 0 ? hit_.fraction * duration : duration;
+    structures_.findBarriers(way, parameters_.gravity, body_.block.radius());
+    structures_.passBarriers(
+      way, 0.0, parameters_.gravity, body_, recorder_.trajectory().structures);
+    duration = structures_.hit().barrier >= 0 ? structures_.hit().fraction * duration : duration;
   }
   const double end = start.time + duration;
   BlockState at = start;
@@ -168,10 +167,11 @@ void SingleRock::advanceInFlight(double duration)
     recorder_.followFlight(start, body_.state);
   }
   this->forgetSlip(duration);
-  while (barriers_ && !body_.done && hit_.barrier >= 0)
+  while (structures_.hasBarriers() && !body_.done && structures_.hit().barrier >= 0)
   {
     this->meetBarrier();
-    this->passBarriers(way, 0.0);
+    structures_.passBarriers(
+      way, 0.0, parameters_.gravity, body_, recorder_.trajectory().structures);
   }
 }
 
@@ -181,7 +181,7 @@ void SingleRock::flyFree(double duration)
   this->finishImpact();
   const double end = body_.state.time + duration;
   this->advanceInFlight(duration);
-  while (barriers_ && !body_.done && body_.state.time < end)
+  while (structures_.hasBarriers() && !body_.done && body_.state.time < end)
   {
     this->advanceInFlight(end - body_.state.time); // through a barrier that broke
   }
@@ -229,7 +229,7 @@ void SingleRock::flyUntilNear()
       else
       {
         const double sure = std::max(0.0, freeUntil_ - body_.state.time);
-        if (impulses_ && !solid_ && sure == 0.0 && window_.whole())
+        if (impulses_ && !structures_.solid() && sure == 0.0 && window_.whole())
         {
           if (!this->hop(duration))
           {
@@ -251,7 +251,7 @@ void SingleRock::flyUntilNear()
         duration = std::min(duration, touch);
       }
     }
-    if (solid_)
+    if (structures_.solid())
     {
       const double free = this->freeOfObstacles(duration);
       if (free < std::min(duration, this->impactStep()))
@@ -320,9 +320,11 @@ void SingleRock::liftOntoGround()
   // The placement was checked on the slope as surveyed; roughness can raise the ground into the
   // rock. By steps, so it ends a hair over the ground.
   const double step = 0.01 * body_.block.radius();
-  if (solid_)
+  if (structures_.solid())
   {
-    this->clearTrees();
+    body_.placed.place(body_.block, body_.state);
+    structures_.clearTrees(body_.placed, body_.state);
+    this->forgetPatch();
   }
   body_.placed.place(body_.block, body_.state);
   this->ensurePatch(step);

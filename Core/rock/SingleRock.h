@@ -9,36 +9,16 @@
 #include "rock/Rock.h"
 #include "rock/RockBody.h"
 #include "rock/Scar.h"
-#include "rock/barrierHold.h"
+#include "rock/StructuresOnWay.h"
 #include "rock/parameters.h"
-#include "terrain/Obstacles.h"
 
 #include <array>
 #include <limits>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace rockfall
 {
-
-/// One piece of the path: a parabola, or a step of contact.
-struct PathPiece
-{
-  const BlockState& from;
-  const BlockState& to;
-  double duration; ///< s
-  bool flight;
-};
-
-/// Where a rock meets a barrier on a way.
-struct BarrierHit
-{
-  int barrier = -1;      ///< −1: none.
-  double fraction = 0.0; ///< Of the way.
-  double heightOverGround = 0.0;
-  double stored = 0.0; ///< In contact springs at the time, J.
-};
 
 class PairBody;
 
@@ -107,17 +87,11 @@ public:
   void findContacts(const CandidatePairs& candidates, double reach, double h);
   /// Contacts of what has slipped through between others, of those that `findContacts` had.
   void guardPenetrations(const CandidatePairs& candidates);
-  bool meetsSolids() const { return solid_; } ///< There are embankments or trees.
-  int treeOf(const Contact& contact) const;   ///< −1: it is on none.
-  /// Whether a stem holds the rock with this motion: the law of terrain/stemHit.h. What presses
-  /// against it by one of these contacts it holds up to its capacity.
-  bool stemHolds(int tree, const BlockState& state, std::span<const Contact> contacts) const;
+  StructuresOnWay& structures() { return structures_; }
+  const StructuresOnWay& structures() const { return structures_; }
   /// Trees that it is about to touch within `h`, presses against or has `hit`, and that cannot hold
   /// it; whether there were any.
   bool breakTrees(double h, std::span<const int> hit = {});
-  /// One that cannot hold the rock: it breaks, or the rock slips past. What it holds of the rock's
-  /// energy (J) has been taken already.
-  void passTree(int tree, double held);
   /// Contacts with those that are gone, and all that hangs on them; `touched`: one of them carried.
   void forgetTrees(bool touched = true);
   bool meetsYielding() const { return yields_; } ///< Some class of the ground does.
@@ -143,18 +117,9 @@ public:
   void checkLeft(); ///< Beyond the slope?
   void followRest(double h, bool touching);
 
-  /// Trees and barriers, by number, and what barriers have held.
-  struct Broken
-  {
-    std::vector<int> trees, barriers;
-    std::vector<std::pair<int, BarrierLoad>> held;
-  };
-  /// What barriers have held in this fall, by number; not before a step is over.
-  void setBarrierLoads(const std::vector<BarrierLoad>* loads) { barrierLoads_ = loads; }
-  Broken drainBroken(); ///< Structures that it has broken since it was asked last.
   /// Structures that others of its fall have broken are gone for this rock, too. Whether it touched
   /// any.
-  bool applyBroken(const Broken& broken);
+  bool applyBroken(const StructuresOnWay::Broken& broken);
 
 private:
   /// The impact under way between the first touch and the take-off or settling.
@@ -176,22 +141,12 @@ private:
   void advanceInFlight(double duration);
   void checkEnd(double h); ///< Rested, left, or out of time? `h`: time since the last call, s.
 
-  // Structures, structuresOnWay.cxx
+  // Structures, atStructures.cxx
   double freeOfObstacles(double duration); ///< For how long, at most this, nothing is touched, s.
-  void clearTrees();                       ///< Where the rock is released there is none.
-  bool isGone(int tree) const;
   /// Takes a step of `h` back in which it came against trees that cannot hold it, and breaks them.
   bool undoAtTrees(double h);
-  /// Fills `passages_` with those whose line is passed, or its straight continuation as near to an
-  /// end as the rock is wide.
-  void findBarriers(const PathPiece& way);
-  /// Goes on along this way, on which barriers have taken so much so far (J): notes what records,
-  /// and fills `hit_` with the first barrier that stops the rock or breaks. After such a one flight
-  /// goes on to those at the same place only; its rest is flown anew.
-  void passBarriers(const PathPiece& way, double taken);
-  BarrierLoad loadOf(int barrier) const;
-  void meetBarrier(); ///< The one in `hit_`, where the rock is.
-  /// The one in `hit_`, in a step of contact that would go to `end` and in which others have taken
+  void meetBarrier(); ///< The one that it hits, where the rock is.
+  /// The one that it hits, in a step of contact that would go to `end` and in which others have taken
   /// so much (J); returns what this one takes if it breaks.
   double endStepAtBarrier(const BlockState& end, double taken, bool touching);
   void forgetPatch();
@@ -293,18 +248,16 @@ private:
   bool inContact_ = false;
   bool recovering_ = false; ///< A deep overlap is pressed out in the step at hand.
   bool stiff_ = false;      ///< The block's strain follows its contacts without inertia.
-  bool solid_ = false;      ///< There are embankments or trees.
-  bool barriers_ = false;
-  bool yields_ = false;   ///< Some class of the ground does.
-  bool impulses_ = false; ///< Impacts are events in impulse space.
+  bool yields_ = false;     ///< Some class of the ground does.
+  bool impulses_ = false;   ///< Impacts are events in impulse space.
   RockBody body_;
   GroundHeightBound heightBound_;
-  double openTime_ = 0.0;                ///< Since it touched, s.
-  double horizon_ = 0.0;                 ///< Up to which it is to advance, s.
-  double penalty_ = 0.0;                 ///< pₙ of the contacts that are made now, N/m.
-  std::uint64_t carrying_ = 0;           ///< The features that carried in the last lasting step.
-  const Obstacles* obstacles_ = nullptr; ///< Null if there are none.
-  double energyAtStart_ = 0.0;           ///< Kinetic and potential, J.
+  double openTime_ = 0.0;      ///< Since it touched, s.
+  double horizon_ = 0.0;       ///< Up to which it is to advance, s.
+  double penalty_ = 0.0;       ///< pₙ of the contacts that are made now, N/m.
+  std::uint64_t carrying_ = 0; ///< The features that carried in the last lasting step.
+  StructuresOnWay structures_;
+  double energyAtStart_ = 0.0; ///< Kinetic and potential, J.
   Recorder recorder_;
   CandidatePairs candidates_;
   Impact impact_;
@@ -320,14 +273,7 @@ private:
   double ringing_ = 0.0;  ///< Period of a soft block's slowest strain, 0 for a stiff one, s.
   std::vector<double> dampingRatios_;      ///< ζ by restitution class; < 0: not known yet.
   double dampedFor_ = -1.0, damped_ = 0.0; ///< The restitution looked up last, and its ζ.
-  std::vector<int> goneTrees_;             ///< Ascending.
-  std::vector<int> brokenBarriers_;        ///< In the order of breaking.
-  Broken broke_; ///< Structures that it has broken, of which others have not heard yet.
-  const std::vector<BarrierLoad>* barrierLoads_ = nullptr; ///< Null: all are as new.
   double freeUntil_ = 0.0; ///< Nothing can be touched until then, after a take-off, s.
-  std::vector<BarrierPassage> passages_; ///< Of the way at hand.
-  std::size_t passed_ = 0;               ///< How many of them are dealt with.
-  BarrierHit hit_;
 };
 
 } // namespace rockfall

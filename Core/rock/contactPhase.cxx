@@ -200,7 +200,7 @@ void SingleRock::stayInContact()
         body_.contacts, [&](const Contact& c) { return !c.closed() && c.gap() > near; });
     }
     // What gives way first changes the ground under the step, which is then looked at anew.
-    if ((solid_ && this->breakTrees(h)) || (yields_ && this->followScar(h)))
+    if ((structures_.solid() && this->breakTrees(h)) || (yields_ && this->followScar(h)))
     {
       continue;
     }
@@ -365,7 +365,7 @@ void SingleRock::takeStep(double h, StepKind kind)
     ++summary.cutSteps;
     request.duration *= 0.5;
   }
-  if (solid_ && this->undoAtTrees(request.duration))
+  if (structures_.solid() && this->undoAtTrees(request.duration))
   {
     return;
   }
@@ -436,14 +436,20 @@ void SingleRock::commitStep(
   }
   body_.steppedAs = kind;
   const bool touching = anyClosed(body_.contacts);
-  if (barriers_)
+  if (structures_.hasBarriers())
   {
     // Behind one that breaks there may be others.
     const BlockState end = body_.state;
     double lost = 0.0;
     const PathPiece way{ body_.before, end, end.time - body_.before.time, false };
-    this->findBarriers(way);
-    for (this->passBarriers(way, lost); hit_.barrier >= 0; this->passBarriers(way, lost))
+    structures_.findBarriers(way, parameters_.gravity, body_.block.radius());
+    const auto pass = [&]
+    {
+      structures_.passBarriers(
+        way, lost, parameters_.gravity, body_, recorder_.trajectory().structures);
+      return structures_.hit().barrier >= 0;
+    };
+    while (pass())
     {
       lost += this->endStepAtBarrier(end, lost, touching);
       if (body_.done)

@@ -76,11 +76,11 @@ void SingleRock::ensurePatch(double margin)
   {
     gatherPatch(surface_, lower.x() - margin, upper.x() + margin, lower.y() - margin,
       upper.y() + margin, patch_);
-    if (solid_)
+    if (structures_.solid())
     {
       const double ring = patch_.cellSize;
-      obstacles_->append(patch_.xMin - ring, patch_.xMax + ring, patch_.yMin - ring,
-        patch_.yMax + ring, goneTrees_, patch_);
+      structures_.obstacles().append(patch_.xMin - ring, patch_.xMax + ring, patch_.yMin - ring,
+        patch_.yMax + ring, structures_.goneTrees(), patch_);
     }
     if (scar_.open())
     {
@@ -106,7 +106,7 @@ void SingleRock::ensureCandidates(double reach, bool among)
 
 const CandidatePairs& SingleRock::stepCandidates(const PairBody& body, const SlopeReach& reach)
 {
-  if (!solid_)
+  if (!structures_.solid())
   {
     this->ensurePatch(2.0 * reach.most);
     if (patch_.isSlopeOnly())
@@ -123,7 +123,7 @@ const CandidatePairs& SingleRock::stepCandidates(const PairBody& body, const Slo
 const CandidatePairs& SingleRock::candidatesAt(const BlockState& end, const PlacedBlock& placed,
   const PairBody& body, double way, double allowed)
 {
-  if (!solid_)
+  if (!structures_.solid())
   {
     const double r = body_.block.radius();
     const Vec3& p = end.position;
@@ -148,7 +148,7 @@ const CandidatePairs& SingleRock::candidatesAt(const BlockState& end, const Plac
 
 bool SingleRock::isClear(double reach)
 {
-  if (solid_ || !body_.contacts.empty())
+  if (structures_.solid() || !body_.contacts.empty())
   {
     return false;
   }

@@ -41,7 +41,7 @@ const YieldingGround& SingleRock::yieldingOf(int restitutionClass) const
 const YieldingGround& SingleRock::yieldingAt(const Contact& contact) const
 {
   static const YieldingGround hard;
-  if (solid_ && this->treeOf(contact) >= 0)
+  if (structures_.solid() && structures_.treeOf(contact) >= 0)
   {
     return hard;
   }
@@ -115,7 +115,7 @@ bool SingleRock::riseWithRock()
   // One corner that is too near says so at less cost.
   const double enough = least - kSureClearance * body_.block.radius() - scar_.depth();
   const Vec3 lower = body_.placed.lower(), upper = body_.placed.upper();
-  if (!solid_ && window_.covers(lower.x(), upper.x(), lower.y(), upper.y()) &&
+  if (!structures_.solid() && window_.covers(lower.x(), upper.x(), lower.y(), upper.y()) &&
     heightOver(body_.placed, window_, enough) < enough)
   {
     return false;
@@ -134,7 +134,8 @@ bool SingleRock::riseWithRock()
 
 bool SingleRock::flyOverScar(double small)
 {
-  if (solid_ || !(body_.state.strain.isZero(0.0) && body_.state.strainRate.isZero(0.0)))
+  if (structures_.solid() ||
+    !(body_.state.strain.isZero(0.0) && body_.state.strainRate.isZero(0.0)))
   {
     return false;
   }

@@ -155,7 +155,7 @@ bool SingleRock::strikeSoon(double small, double& first)
       -c.normal.dot(body_.state.velocity + spin.cross(c.point - body_.state.position));
     if (c.closed() || c.gap() - approach * first < shared)
     {
-      if (solid_ && this->treeOf(c) >= 0)
+      if (structures_.solid() && structures_.treeOf(c) >= 0)
       {
         return false; // which may break
       }

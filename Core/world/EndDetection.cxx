@@ -84,7 +84,7 @@ void EndDetection::placeRock(std::size_t m)
     rock.endHull.update(rock.end);
     motion.displacement = end.position - body.state.position;
     motion.rimTravel = rimTravel(body.state.orientation, end.orientation, body.block.radius());
-    motion.low = rock.sim.meetsSolids() || !rock.sim.isClearAt(end.position, 0.0);
+    motion.low = rock.sim.structures().solid() || !rock.sim.isClearAt(end.position, 0.0);
   }
 }
 
@@ -299,7 +299,8 @@ std::size_t EndDetection::touchesOnSlope(
   // Trees that nobody reckoned with are met in the next step.
   const auto behind = touches.begin() + std::ptrdiff_t(known);
   touches.erase(std::remove_if(behind, touches.end(),
-                  [&](const Contact& c) { return sim.meetsSolids() && sim.treeOf(c) >= 0; }),
+                  [&](const Contact& c)
+                  { return sim.structures().solid() && sim.structures().treeOf(c) >= 0; }),
     touches.end());
   return known;
 }

@@ -28,7 +28,7 @@ void StepTrees::forContacts(const Stem& stem, Use&& use) const
   const std::vector<Contact>& contacts = rock.body().contacts;
   for (std::size_t k = 0; k < contacts.size(); ++k)
   {
-    if (rock.sim.treeOf(contacts[k]) == stem.tree)
+    if (rock.sim.structures().treeOf(contacts[k]) == stem.tree)
     {
       use(contacts[k], work_.slopeFirsts[stem.member] + k);
     }
@@ -59,7 +59,7 @@ BlockState StepTrees::endWithout(const Stem& stem, double h) const
   {
     const Contact& c = body.contacts[i];
     const std::size_t k = work_.slopeFirsts[stem.member] + i;
-    if (rock.sim.treeOf(c) < 0)
+    if (rock.sim.structures().treeOf(c) < 0)
     {
       continue;
     }
@@ -86,7 +86,7 @@ bool StepTrees::cannotHold(const Stem& stem, const BlockState& end, bool through
         (!through || work_.solver.rows().gap(k) < 0.0));
   };
   this->forContacts(stem, look);
-  return meets && !sim.stemHolds(stem.tree, end, body.contacts);
+  return meets && !sim.structures().stemHolds(stem.tree, body.block, end, body.contacts);
 }
 
 bool StepTrees::isKnown(std::size_t member, int tree) const
@@ -140,7 +140,7 @@ bool StepTrees::look(double h)
     const std::vector<Contact>& contacts = rock.body().contacts;
     for (std::size_t k = 0; k < contacts.size(); ++k)
     {
-      const int tree = rock.sim.treeOf(contacts[k]);
+      const int tree = rock.sim.structures().treeOf(contacts[k]);
       if (tree < 0 || work_.solver.rows().force(work_.slopeFirsts[m] + k) <= 0.0 ||
         this->isKnown(m, tree))
       {
@@ -169,12 +169,13 @@ void StepTrees::fell(std::size_t member)
     {
       continue;
     }
-    if (sim.stemHolds(stem.tree, body.state, body.contactsBefore))
+    if (sim.structures().stemHolds(stem.tree, body.block, body.state, body.contactsBefore))
     {
       // Others have taken it since: it holds from here on.
       for (Contact& c : body.contacts)
       {
-        c.offset = sim.treeOf(c) == stem.tree ? std::min(c.offset, c.distance) : c.offset;
+        c.offset =
+          sim.structures().treeOf(c) == stem.tree ? std::min(c.offset, c.distance) : c.offset;
       }
       continue;
     }
@@ -183,14 +184,14 @@ void StepTrees::fell(std::size_t member)
     double held = 0.0;
     for (const Contact& c : body.contactsBefore)
     {
-      if (sim.treeOf(c) == stem.tree)
+      if (sim.structures().treeOf(c) == stem.tree)
       {
         const double all = c.springEnergy();
         held += all;
         body.energy.restitution -= all;
       }
     }
-    sim.passTree(stem.tree, held);
+    sim.structures().passTree(stem.tree, held, body, sim.trajectory().structures);
     any = true;
   }
   if (any)

@@ -32,7 +32,7 @@ World::World(const Surface& surface, std::span<const Rock> rocks, std::span<cons
     if (parameters.rockRockContact)
     {
       rock.sim.letStrainFollow();
-      rock.sim.setBarrierLoads(&barrierLoads_);
+      rock.sim.structures().setBarrierLoads(&barrierLoads_);
     }
   }
   if (parameters.rockRockContact)
@@ -108,10 +108,10 @@ void World::shareBroken()
   {
     return;
   }
-  SingleRock::Broken all;
+  StructuresOnWay::Broken all;
   for (FallingRock& rock : world_.rocks)
   {
-    const SingleRock::Broken one = rock.sim.drainBroken();
+    const StructuresOnWay::Broken one = rock.sim.structures().drainBroken();
     all.trees.insert(all.trees.end(), one.trees.begin(), one.trees.end());
     all.barriers.insert(all.barriers.end(), one.barriers.begin(), one.barriers.end());
     for (const auto& [barrier, held] : one.held)

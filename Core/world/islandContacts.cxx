@@ -64,7 +64,7 @@ void IslandStepper::gatherOnSlope(std::size_t k, double h)
     return near;
   };
   const CandidatePairs* near = &find();
-  while (sim.meetsSolids() && sim.breakTrees(h))
+  while (sim.structures().solid() && sim.breakTrees(h))
   {
     near = &find();
   }
@@ -72,7 +72,7 @@ void IslandStepper::gatherOnSlope(std::size_t k, double h)
   {
     near = &find();
   }
-  if (sim.meetsSolids())
+  if (sim.structures().solid())
   {
     side.set(body); // what broke has taken speed
   }

@@ -1,16 +1,15 @@
-// Structures that a rock meets: obstacles in flight, trees that break, barriers.
+#include "rock/StructuresOnWay.h"
 
 #include "block/flight.h"
 #include "contact/ground/clearance.h"
 #include "contact/ground/roundContact.h"
-#include "contact/ground/timeToTouch.h"
 #include "law/settings.h"
-#include "rock/SingleRock.h"
+#include "rock/RockBody.h"
+#include "terrain/Surface.h"
 #include "terrain/stemHit.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <iterator>
 #include <tuple>
 #include <utility>
@@ -18,10 +17,6 @@
 namespace rockfall
 {
 
-namespace
-{
-
-/// Within a step of contact: cubic in place, linear in velocity.
 BlockState between(const BlockState& from, const BlockState& to, double s)
 {
   const double h = to.time - from.time, s2 = s * s, s3 = s2 * s;
@@ -35,13 +30,29 @@ BlockState between(const BlockState& from, const BlockState& to, double s)
   return at;
 }
 
-/// Takes kinetic energy: all velocities become smaller by the same factor.
 void slowDown(BlockState& state, double energy, double taken)
 {
   const double factor = energy > 0.0 ? std::sqrt(std::max(0.0, 1.0 - taken / energy)) : 0.0;
   state.velocity *= factor;
   state.spin *= factor;
 }
+
+StructureEvent eventAt(StructureOutcome outcome, std::int64_t feature, const BlockState& at,
+  double energy, double height)
+{
+  StructureEvent event;
+  event.outcome = outcome;
+  event.feature = feature;
+  event.time = at.time;
+  event.position = at.position;
+  event.velocity = at.velocity;
+  event.kineticEnergy = energy;
+  event.heightOverGround = height;
+  return event;
+}
+
+namespace
+{
 
 /// A hit on a stem, in plan.
 struct StemHit
@@ -114,49 +125,20 @@ void slipPast(BlockState& state, const Block& block, const Vec3& along, double t
   }
 }
 
-/// Outcome for a structure where the rock is `at`, with this energy (J) and its centre this high
-/// over the slope (m); nothing is taken of it.
-StructureEvent eventAt(StructureOutcome outcome, std::int64_t feature, const BlockState& at,
-  double energy, double height)
-{
-  StructureEvent event;
-  event.outcome = outcome;
-  event.feature = feature;
-  event.time = at.time;
-  event.position = at.position;
-  event.velocity = at.velocity;
-  event.kineticEnergy = energy;
-  event.heightOverGround = height;
-  return event;
-}
-
-void noteLoad(StructureEvent& event, const BarrierLoad& before, const BarrierState& barrier)
-{
-  event.heldBefore = before.energy;
-  event.usefulHeight = std::max(0.0, barrier.rope - barrier.fill);
-}
-
 } // namespace
 
-double SingleRock::freeOfObstacles(double duration)
+StructuresOnWay::StructuresOnWay(const Surface& surface)
+  : surface_(&surface)
+  , obstacles_(surface.terrain().obstacles())
 {
-  const double sure = std::min(duration, freeUntil_ - body_.state.time);
-  const double free = timeToObstacle(body_.placed, body_.state, body_.block, *obstacles_,
-    goneTrees_, parameters_.gravity, this->impactStep(), duration);
-  return std::max(sure, free);
+  solid_ = obstacles_ && obstacles_->solid();
+  barriers_ = obstacles_ && !obstacles_->structures().barriers.empty();
 }
 
-void SingleRock::forgetPatch()
+void StructuresOnWay::clearTrees(const PlacedBlock& rock, const BlockState& state)
 {
-  patch_.xMax = patch_.xMin - 1.0;
-  candidates_.distance = -1.0;
-}
-
-void SingleRock::clearTrees()
-{
-  const double r = body_.block.radius();
-  const Vec3& p = body_.state.position;
-  body_.placed.place(body_.block, body_.state);
+  const double r = rock.block().radius();
+  const Vec3& p = state.position;
   SurfacePatch stem;
   obstacles_->visitTrees(p.x() - r, p.x() + r, p.y() - r, p.y() + r,
     [&](int k)
@@ -165,7 +147,7 @@ void SingleRock::clearTrees()
       stem.triangles.clear();
       stem.ridges.clear();
       obstacles_->append({}, std::span<const int>(&k, 1), stem);
-      const double distance = clearance(body_.placed, body_.state, stem, 0.0, 0.0).distance;
+      const double distance = clearance(rock, state, stem, 0.0, 0.0).distance;
       const Eigen::Vector2d off =
         p.head<2>() - obstacles_->structures().trees[std::size_t(k)].position;
       const bool inside = off.norm() < obstacles_->treeRadius(k) && p.z() < obstacles_->treeTop(k);
@@ -175,55 +157,49 @@ void SingleRock::clearTrees()
       }
     });
   std::sort(goneTrees_.begin(), goneTrees_.end());
-  this->forgetPatch();
 }
 
-int SingleRock::treeOf(const Contact& contact) const
+int StructuresOnWay::treeOf(const Contact& contact) const
 {
   return contact.cfe >= obstacles_->firstCfe() ? obstacles_->treeOf(contact.cfe) : -1;
 }
 
-bool SingleRock::stemHolds(
-  int tree, const BlockState& state, std::span<const Contact> contacts) const
+bool StructuresOnWay::stemHolds(
+  int tree, const Block& block, const BlockState& state, std::span<const Contact> contacts) const
 {
   const Tree& stem = obstacles_->structures().trees[std::size_t(tree)];
-  const double energy = rigidKineticEnergy(body_.block, state);
+  const double energy = rigidKineticEnergy(block, state);
   if (energy > stem.capacity)
   {
     return false;
   }
   const bool presses = std::any_of(contacts.begin(), contacts.end(),
     [&](const Contact& c) { return c.closed() && this->treeOf(c) == tree; });
-  return presses || energy <= stemShare(hitOn(stem, body_.block, state).offset) * stem.capacity;
+  return presses || energy <= stemShare(hitOn(stem, block, state).offset) * stem.capacity;
 }
 
-bool SingleRock::undoAtTrees(double h)
+std::vector<int> StructuresOnWay::treesHit(const RockBody& body) const
 {
   std::vector<int> hit;
-  for (std::size_t i = 0; i < body_.contactsBefore.size(); ++i)
+  for (std::size_t i = 0; i < body.contactsBefore.size(); ++i)
   {
-    const Contact& c = body_.contacts[i];
+    const Contact& c = body.contacts[i];
     const int tree = this->treeOf(c);
-    if (tree >= 0 && c.closed() && !body_.contactsBefore[i].closed() &&
-      !this->stemHolds(tree, body_.before, body_.contactsBefore))
+    if (tree >= 0 && c.closed() && !body.contactsBefore[i].closed() &&
+      !this->stemHolds(tree, body.block, body.before, body.contactsBefore))
     {
       hit.push_back(tree);
     }
   }
-  if (hit.empty())
-  {
-    return false;
-  }
-  body_.state = body_.before;
-  body_.contacts = body_.contactsBefore;
-  return this->breakTrees(h, hit);
+  return hit;
 }
 
-bool SingleRock::breakTrees(double h, std::span<const int> hit)
+bool StructuresOnWay::breakTrees(
+  double h, std::span<const int> hit, RockBody& body, std::vector<StructureEvent>& events)
 {
   bool any = false;
-  const Vec3 spin = body_.state.angularVelocity();
-  for (const Contact& c : body_.contacts)
+  const Vec3 spin = body.state.angularVelocity();
+  for (const Contact& c : body.contacts)
   {
     const int tree = this->treeOf(c);
     if (tree < 0 || this->isGone(tree))
@@ -231,80 +207,66 @@ bool SingleRock::breakTrees(double h, std::span<const int> hit)
       continue;
     }
     const double approach =
-      -c.normal.dot(body_.state.velocity + spin.cross(c.point - body_.state.position));
+      -c.normal.dot(body.state.velocity + spin.cross(c.point - body.state.position));
     const bool meets =
-      c.closed() ? approach > body_.restingSpeed : approach > 0.0 && c.gap() < approach * h;
+      c.closed() ? approach > body.restingSpeed : approach > 0.0 && c.gap() < approach * h;
     if (!(meets || std::find(hit.begin(), hit.end(), tree) != hit.end()) ||
-      this->stemHolds(tree, body_.state, body_.contacts))
+      this->stemHolds(tree, body.block, body.state, body.contacts))
     {
       continue;
     }
     // Energy of the springs against the stem is not given back.
     double held = 0.0;
-    for (const Contact& other : body_.contacts)
+    for (const Contact& other : body.contacts)
     {
       held += this->treeOf(other) == tree ? other.springEnergy() : 0.0;
     }
-    this->passTree(tree, held);
-    body_.springEnergy = std::max(0.0, body_.springEnergy - held);
+    this->passTree(tree, held, body, events);
+    body.springEnergy = std::max(0.0, body.springEnergy - held);
     any = true;
-  }
-  if (any)
-  {
-    this->forgetTrees();
   }
   return any;
 }
 
-void SingleRock::passTree(int tree, double held)
+void StructuresOnWay::passTree(
+  int tree, double held, RockBody& body, std::vector<StructureEvent>& events)
 {
   const Tree& stem = obstacles_->structures().trees[std::size_t(tree)];
-  const double energy = rigidKineticEnergy(body_.block, body_.state);
-  const double height = body_.state.position.z() -
-    surface_.elevation(body_.state.position.x(), body_.state.position.y());
-  const StemHit hit = hitOn(stem, body_.block, body_.state);
+  const double energy = rigidKineticEnergy(body.block, body.state);
+  const double height =
+    body.state.position.z() - surface_->elevation(body.state.position.x(), body.state.position.y());
+  const StemHit hit = hitOn(stem, body.block, body.state);
   const bool stands = (1.0 - hit.offset * hit.offset) * energy <= stem.capacity;
   StructureEvent event =
     eventAt(stands ? StructureOutcome::TreePassed : StructureOutcome::TreeBroken, stem.feature,
-      body_.state, energy, height);
+      body.state, energy, height);
   const double taken = stemShare(hit.offset) * stem.capacity;
   event.energyTaken = std::max(held, taken);
-  recorder_.trajectory().structures.push_back(event);
+  events.push_back(event);
   if (stands)
   {
-    slipPast(body_.state, body_.block, hit.along, std::max(0.0, taken - held));
+    slipPast(body.state, body.block, hit.along, std::max(0.0, taken - held));
   }
   else
   {
-    pushAway(body_.state, body_.block, hit.away, taken - held);
+    pushAway(body.state, body.block, hit.away, taken - held);
     broke_.trees.push_back(tree);
   }
-  body_.energy.structures += held + energy - rigidKineticEnergy(body_.block, body_.state);
+  body.energy.structures += held + energy - rigidKineticEnergy(body.block, body.state);
   goneTrees_.insert(std::lower_bound(goneTrees_.begin(), goneTrees_.end(), tree), tree);
 }
 
-bool SingleRock::isGone(int tree) const
+bool StructuresOnWay::isGone(int tree) const
 {
   return std::binary_search(goneTrees_.begin(), goneTrees_.end(), tree);
 }
 
-void SingleRock::forgetTrees(bool touched)
-{
-  std::erase_if(body_.contacts, [&](const Contact& c) { return this->isGone(this->treeOf(c)); });
-  if (touched)
-  {
-    body_.acceleration.setZero();
-    body_.spinAcceleration.setZero();
-  }
-  this->forgetPatch();
-}
-
-SingleRock::Broken SingleRock::drainBroken()
+StructuresOnWay::Broken StructuresOnWay::drainBroken()
 {
   return std::exchange(broke_, {});
 }
 
-bool SingleRock::applyBroken(const Broken& broken)
+bool StructuresOnWay::apply(const Broken& broken, const SurfacePatch& patch)
 {
   for (const int barrier : broken.barriers)
   {
@@ -325,31 +287,13 @@ bool SingleRock::applyBroken(const Broken& broken)
     const Eigen::Vector2d& place = obstacles_->structures().trees[std::size_t(tree)].position;
     const double r = obstacles_->treeRadius(tree);
     near = near ||
-      (place.x() + r >= patch_.xMin && place.x() - r <= patch_.xMax &&
-        place.y() + r >= patch_.yMin && place.y() - r <= patch_.yMax);
+      (place.x() + r >= patch.xMin && place.x() - r <= patch.xMax && place.y() + r >= patch.yMin &&
+        place.y() - r <= patch.yMax);
   }
-  if (!near)
-  {
-    return false;
-  }
-  // Energy of the springs against a stem goes with it.
-  double held = 0.0;
-  bool touched = false;
-  for (const Contact& c : body_.contacts)
-  {
-    if (this->isGone(this->treeOf(c)))
-    {
-      held += c.springEnergy();
-      touched = touched || c.closed();
-    }
-  }
-  body_.springEnergy = std::max(0.0, body_.springEnergy - held);
-  body_.energy.structures += held;
-  this->forgetTrees(touched);
-  return touched;
+  return near;
 }
 
-void SingleRock::findBarriers(const PathPiece& way)
+void StructuresOnWay::findBarriers(const PathPiece& way, double gravity, double radius)
 {
   hit_ = {};
   passages_.clear();
@@ -358,7 +302,7 @@ void SingleRock::findBarriers(const PathPiece& way)
   // In a step of contact the cubic may go a little beyond its ends.
   const double room =
     way.flight ? 0.0 : 0.15 * way.duration * (way.from.velocity.norm() + way.to.velocity.norm());
-  const double radius = body_.block.radius(), around = room + radius;
+  const double around = room + radius;
   obstacles_->visitBarriers(std::min(p.x(), q.x()) - around, std::max(p.x(), q.x()) + around,
     std::min(p.y(), q.y()) - around, std::max(p.y(), q.y()) + around,
     [&](const Obstacles::Piece& piece)
@@ -374,7 +318,7 @@ void SingleRock::findBarriers(const PathPiece& way)
       // Passed is only what the next way, which may begin there, finds behind it.
       const auto placeAt = [&](double s)
       {
-        return way.flight ? placeInFlight(way.from, parameters_.gravity, s * way.duration)
+        return way.flight ? placeInFlight(way.from, gravity, s * way.duration)
                           : between(way.from, way.to, s).position;
       };
       const auto behind = [&](double s) { return (side(placeAt(s)) < 0.0) == (after < 0.0); };
@@ -434,7 +378,8 @@ void SingleRock::findBarriers(const PathPiece& way)
   passages_.erase(std::unique(passages_.begin(), passages_.end()), passages_.end());
 }
 
-void SingleRock::passBarriers(const PathPiece& way, double taken)
+void StructuresOnWay::passBarriers(const PathPiece& way, double taken, double gravity,
+  const RockBody& body, std::vector<StructureEvent>& events)
 {
   const bool again = hit_.barrier >= 0;
   const double place = hit_.fraction;
@@ -451,117 +396,51 @@ void SingleRock::passBarriers(const PathPiece& way, double taken)
     {
       continue;
     }
-    BlockState at = way.flight
-      ? fly(body_.block, way.from, parameters_.gravity, fraction * way.duration)
-      : between(way.from, way.to, fraction);
+    BlockState at = way.flight ? fly(body.block, way.from, gravity, fraction * way.duration)
+                               : between(way.from, way.to, fraction);
     const Barrier& barrier = obstacles_->structures().barriers[std::size_t(number)];
-    const double foot = std::max(surface_.elevation(at.position.x(), at.position.y()),
+    const double foot = std::max(surface_->elevation(at.position.x(), at.position.y()),
       obstacles_->embankmentTop(at.position.x(), at.position.y()));
     const double height = at.position.z() - foot;
     if (!holdsOutline(*obstacles_, piece, stateOf(barrier, this->loadOf(number)), brokenBarriers_,
-          body_.block, at, height))
+          body.block, at, height))
     {
       continue;
     }
     // Energy that the ground holds in a touch it gives back in a moment.
-    const double stored = way.flight
-      ? 0.0
-      : (1.0 - fraction) * body_.springEnergyBefore + fraction * body_.springEnergy;
+    const double stored =
+      way.flight ? 0.0 : (1.0 - fraction) * body.springEnergyBefore + fraction * body.springEnergy;
     if (!barrier.records)
     {
       hit_ = { number, fraction, height, stored };
       return;
     }
-    const double came = rigidKineticEnergy(body_.block, at);
+    const double came = rigidKineticEnergy(body.block, at);
     slowDown(at, came, std::min(taken, came));
-    recorder_.trajectory().structures.push_back(eventAt(StructureOutcome::BarrierRecorded,
-      barrier.feature, at, rigidKineticEnergy(body_.block, at) + stored, height));
+    events.push_back(eventAt(StructureOutcome::BarrierRecorded, barrier.feature, at,
+      rigidKineticEnergy(body.block, at) + stored, height));
   }
 }
 
-BarrierLoad SingleRock::loadOf(int barrier) const
+BarrierLoad StructuresOnWay::loadOf(int barrier) const
 {
   return barrierLoads_ ? (*barrierLoads_)[std::size_t(barrier)] : BarrierLoad();
 }
 
-void SingleRock::meetBarrier()
+const Barrier& StructuresOnWay::barrierHit() const
 {
-  const Barrier& barrier = obstacles_->structures().barriers[std::size_t(hit_.barrier)];
-  const double kinetic = rigidKineticEnergy(body_.block, body_.state),
-               energy = kinetic + hit_.stored;
-  const BarrierLoad load = this->loadOf(hit_.barrier);
-  const BarrierState net = stateOf(barrier, load);
-  const bool holds = energy <= net.capacity;
-  const double taken = holds ? energy : barrier.absorbs ? net.capacity : 0.0;
-  StructureEvent event =
-    eventAt(holds ? StructureOutcome::BarrierStopped : StructureOutcome::BarrierBroken,
-      barrier.feature, body_.state, energy, hit_.heightOverGround);
-  event.energyTaken = taken;
-  noteLoad(event, load, net);
-  TrajectorySummary& summary = recorder_.trajectory().summary;
-  if (holds)
-  {
-    this->finishImpact(false); // the barrier takes what it would have left
-    event.brakingDistance = brakingDistance(barrier, load, energy);
-    if (isLoaded(barrier))
-    {
-      broke_.held.push_back({ hit_.barrier, { energy, body_.block.volume() } });
-    }
-  }
-  recorder_.trajectory().structures.push_back(event);
-  recorder_.knot(body_.state, false);
-  this->auditSamples(body_.state);
-  slowDown(body_.state, kinetic, std::min(taken, kinetic));
-  body_.energy.structures += kinetic - rigidKineticEnergy(body_.block, body_.state);
-  if (holds)
-  {
-    summary.fate = Fate::Caught;
-    body_.contacts.clear();
-    body_.done = true;
-    return;
-  }
-  brokenBarriers_.push_back(hit_.barrier);
-  broke_.barriers.push_back(hit_.barrier);
-  freeUntil_ = 0.0;
-  body_.state.time += kInstant;
-  recorder_.knot(body_.state, false);
-  this->auditSamples(body_.state);
+  return obstacles_->structures().barriers[std::size_t(hit_.barrier)];
 }
 
-double SingleRock::endStepAtBarrier(const BlockState& end, double taken, bool touching)
+void StructuresOnWay::load(const BarrierLoad& held)
 {
-  const Barrier& barrier = obstacles_->structures().barriers[std::size_t(hit_.barrier)];
-  BlockState at = between(body_.before, end, hit_.fraction);
-  const double came = rigidKineticEnergy(body_.block, at);
-  slowDown(at, came, std::min(taken, came));
-  const double energy = rigidKineticEnergy(body_.block, at) + hit_.stored;
-  const BarrierLoad load = this->loadOf(hit_.barrier);
-  const BarrierState net = stateOf(barrier, load);
-  if (energy <= net.capacity)
-  {
-    // The rest of the step did not happen; what it booked did. The barrier takes what makes it up.
-    recorder_.recordBetween(body_.before, at, touching);
-    body_.energy.structures += kineticEnergy(body_.block, body_.state) -
-      kineticEnergy(body_.block, at) +
-      body_.block.mass() * parameters_.gravity * (end.position.z() - at.position.z()) +
-      body_.springEnergy;
-    body_.state = at;
-    body_.springEnergy = body_.normalEnergy = 0.0;
-    recorder_.follow(body_.state);
-    this->meetBarrier();
-    return 0.0;
-  }
-  StructureEvent event =
-    eventAt(StructureOutcome::BarrierBroken, barrier.feature, at, energy, hit_.heightOverGround);
-  const double left = rigidKineticEnergy(body_.block, body_.state);
-  slowDown(body_.state, left, barrier.absorbs ? std::min(net.capacity, left) : 0.0);
-  noteLoad(event, load, net);
-  event.energyTaken = left - rigidKineticEnergy(body_.block, body_.state);
-  body_.energy.structures += event.energyTaken;
-  recorder_.trajectory().structures.push_back(event);
+  broke_.held.push_back({ hit_.barrier, held });
+}
+
+void StructuresOnWay::breakBarrier()
+{
   brokenBarriers_.push_back(hit_.barrier);
   broke_.barriers.push_back(hit_.barrier);
-  return event.energyTaken;
 }
 
 } // namespace rockfall

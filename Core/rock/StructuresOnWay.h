@@ -1,0 +1,122 @@
+#pragma once
+
+/// @file
+/// Structures on the way of one rock: which of them stand for it, what of them it meets, what it
+/// has broken. What that does to the rock is SingleRock's, but for what a stem takes.
+
+#include "contact/Contact.h"
+#include "contact/PlacedBlock.h"
+#include "rock/barrierHold.h"
+#include "rock/results.h"
+#include "terrain/Obstacles.h"
+
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace rockfall
+{
+
+class Surface;
+struct RockBody;
+struct SurfacePatch;
+
+/// One piece of the path: a parabola, or a step of contact.
+struct PathPiece
+{
+  const BlockState& from;
+  const BlockState& to;
+  double duration; ///< s
+  bool flight;
+};
+
+/// Where a rock meets a barrier on a way.
+struct BarrierHit
+{
+  int barrier = -1;      ///< −1: none.
+  double fraction = 0.0; ///< Of the way.
+  double heightOverGround = 0.0;
+  double stored = 0.0; ///< In contact springs at the time, J.
+};
+
+/// Within a step of contact: cubic in place, linear in velocity.
+BlockState between(const BlockState& from, const BlockState& to, double s);
+/// Takes kinetic energy: all velocities become smaller by the same factor.
+void slowDown(BlockState& state, double energy, double taken);
+/// Outcome for a structure where the rock is `at`, with this energy (J) and its centre this high
+/// over the slope (m); nothing is taken of it.
+StructureEvent eventAt(StructureOutcome outcome, std::int64_t feature, const BlockState& at,
+  double energy, double height);
+
+class StructuresOnWay
+{
+public:
+  explicit StructuresOnWay(const Surface& surface);
+
+  bool solid() const { return solid_; } ///< There are embankments or trees.
+  bool hasBarriers() const { return barriers_; }
+  const Obstacles& obstacles() const { return *obstacles_; }
+
+  // Trees
+  std::span<const int> goneTrees() const { return goneTrees_; } ///< Ascending.
+  bool isGone(int tree) const;
+  int treeOf(const Contact& contact) const; ///< −1: it is on none.
+  /// Where it is released there is none.
+  void clearTrees(const PlacedBlock& rock, const BlockState& state);
+  /// Whether a stem holds a block with this motion: the law of terrain/stemHit.h. What presses
+  /// against it by one of these contacts it holds up to its capacity.
+  bool stemHolds(
+    int tree, const Block& block, const BlockState& state, std::span<const Contact> contacts) const;
+  /// Those that the last step came against and that cannot hold the rock.
+  std::vector<int> treesHit(const RockBody& body) const;
+  /// Trees that the rock is about to touch within `h`, presses against or has `hit`, and that cannot
+  /// hold it; whether there were any.
+  bool breakTrees(
+    double h, std::span<const int> hit, RockBody& body, std::vector<StructureEvent>& events);
+  /// One that cannot hold the rock: it breaks, or the rock slips past. What it holds of the rock's
+  /// energy (J) has been taken already.
+  void passTree(int tree, double held, RockBody& body, std::vector<StructureEvent>& events);
+
+  // Barriers
+  /// What barriers have held in this fall, by number; not before a step is over.
+  void setBarrierLoads(const std::vector<BarrierLoad>* loads) { barrierLoads_ = loads; }
+  BarrierLoad loadOf(int barrier) const;
+  /// Finds those whose line is passed, or its straight continuation as near to an end as the rock
+  /// is wide (`radius`, m).
+  void findBarriers(const PathPiece& way, double gravity, double radius);
+  /// Goes on along this way, on which barriers have taken so much so far (J): notes what records,
+  /// and finds the first barrier that stops the rock or breaks, `hit`. After such a one flight goes
+  /// on to those at the same place only; its rest is flown anew.
+  void passBarriers(const PathPiece& way, double taken, double gravity, const RockBody& body,
+    std::vector<StructureEvent>& events);
+  const BarrierHit& hit() const { return hit_; }
+  const Barrier& barrierHit() const;  ///< The one in `hit`.
+  void load(const BarrierLoad& held); ///< It held the rock.
+  void breakBarrier();                ///< It did not.
+
+  // Others of the fall
+  /// Trees and barriers, by number, and what barriers have held.
+  struct Broken
+  {
+    std::vector<int> trees, barriers;
+    std::vector<std::pair<int, BarrierLoad>> held;
+  };
+  Broken drainBroken(); ///< What it has broken since it was asked last.
+  /// What others have broken is gone for this rock, too. Whether a tree was near a piece of slope.
+  bool apply(const Broken& broken, const SurfacePatch& patch);
+
+private:
+  bool solid_ = false;
+  bool barriers_ = false;
+  const Surface* surface_;
+  const Obstacles* obstacles_;                             ///< Null if there are none.
+  std::vector<int> goneTrees_;                             ///< Ascending.
+  std::vector<int> brokenBarriers_;                        ///< In the order of breaking.
+  Broken broke_;                                           ///< Of which others have not heard yet.
+  const std::vector<BarrierLoad>* barrierLoads_ = nullptr; ///< Null: all are as new.
+  std::vector<BarrierPassage> passages_;                   ///< Of the way at hand.
+  std::size_t passed_ = 0;                                 ///< How many of them are dealt with.
+  BarrierHit hit_;
+};
+
+} // namespace rockfall

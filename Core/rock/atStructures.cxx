@@ -1,0 +1,175 @@
+// What a rock does at structures: trees that it breaks or passes, barriers that stop it or break.
+
+#include "contact/ground/timeToTouch.h"
+#include "law/settings.h"
+#include "rock/SingleRock.h"
+
+#include <algorithm>
+
+namespace rockfall
+{
+
+namespace
+{
+
+void noteLoad(StructureEvent& event, const BarrierLoad& before, const BarrierState& barrier)
+{
+  event.heldBefore = before.energy;
+  event.usefulHeight = std::max(0.0, barrier.rope - barrier.fill);
+}
+
+} // namespace
+
+double SingleRock::freeOfObstacles(double duration)
+{
+  const double sure = std::min(duration, freeUntil_ - body_.state.time);
+  const double free =
+    timeToObstacle(body_.placed, body_.state, body_.block, structures_.obstacles(),
+      structures_.goneTrees(), parameters_.gravity, this->impactStep(), duration);
+  return std::max(sure, free);
+}
+
+void SingleRock::forgetPatch()
+{
+  patch_.xMax = patch_.xMin - 1.0;
+  candidates_.distance = -1.0;
+}
+
+bool SingleRock::undoAtTrees(double h)
+{
+  const std::vector<int> hit = structures_.treesHit(body_);
+  if (hit.empty())
+  {
+    return false;
+  }
+  body_.state = body_.before;
+  body_.contacts = body_.contactsBefore;
+  return this->breakTrees(h, hit);
+}
+
+bool SingleRock::breakTrees(double h, std::span<const int> hit)
+{
+  const bool any = structures_.breakTrees(h, hit, body_, recorder_.trajectory().structures);
+  if (any)
+  {
+    this->forgetTrees();
+  }
+  return any;
+}
+
+void SingleRock::forgetTrees(bool touched)
+{
+  std::erase_if(
+    body_.contacts, [&](const Contact& c) { return structures_.isGone(structures_.treeOf(c)); });
+  if (touched)
+  {
+    body_.acceleration.setZero();
+    body_.spinAcceleration.setZero();
+  }
+  this->forgetPatch();
+}
+
+bool SingleRock::applyBroken(const StructuresOnWay::Broken& broken)
+{
+  if (!structures_.apply(broken, patch_))
+  {
+    return false;
+  }
+  // Energy of the springs against a stem goes with it.
+  double held = 0.0;
+  bool touched = false;
+  for (const Contact& c : body_.contacts)
+  {
+    if (structures_.isGone(structures_.treeOf(c)))
+    {
+      held += c.springEnergy();
+      touched = touched || c.closed();
+    }
+  }
+  body_.springEnergy = std::max(0.0, body_.springEnergy - held);
+  body_.energy.structures += held;
+  this->forgetTrees(touched);
+  return touched;
+}
+
+void SingleRock::meetBarrier()
+{
+  const BarrierHit& hit = structures_.hit();
+  const Barrier& barrier = structures_.barrierHit();
+  const double kinetic = rigidKineticEnergy(body_.block, body_.state),
+               energy = kinetic + hit.stored;
+  const BarrierLoad load = structures_.loadOf(hit.barrier);
+  const BarrierState net = stateOf(barrier, load);
+  const bool holds = energy <= net.capacity;
+  const double taken = holds ? energy : barrier.absorbs ? net.capacity : 0.0;
+  StructureEvent event =
+    eventAt(holds ? StructureOutcome::BarrierStopped : StructureOutcome::BarrierBroken,
+      barrier.feature, body_.state, energy, hit.heightOverGround);
+  event.energyTaken = taken;
+  noteLoad(event, load, net);
+  TrajectorySummary& summary = recorder_.trajectory().summary;
+  if (holds)
+  {
+    this->finishImpact(false); // the barrier takes what it would have left
+    event.brakingDistance = brakingDistance(barrier, load, energy);
+    if (isLoaded(barrier))
+    {
+      structures_.load({ energy, body_.block.volume() });
+    }
+  }
+  recorder_.trajectory().structures.push_back(event);
+  recorder_.knot(body_.state, false);
+  this->auditSamples(body_.state);
+  slowDown(body_.state, kinetic, std::min(taken, kinetic));
+  body_.energy.structures += kinetic - rigidKineticEnergy(body_.block, body_.state);
+  if (holds)
+  {
+    summary.fate = Fate::Caught;
+    body_.contacts.clear();
+    body_.done = true;
+    return;
+  }
+  structures_.breakBarrier();
+  freeUntil_ = 0.0;
+  body_.state.time += kInstant;
+  recorder_.knot(body_.state, false);
+  this->auditSamples(body_.state);
+}
+
+double SingleRock::endStepAtBarrier(const BlockState& end, double taken, bool touching)
+{
+  const BarrierHit& hit = structures_.hit();
+  const Barrier& barrier = structures_.barrierHit();
+  BlockState at = between(body_.before, end, hit.fraction);
+  const double came = rigidKineticEnergy(body_.block, at);
+  slowDown(at, came, std::min(taken, came));
+  const double energy = rigidKineticEnergy(body_.block, at) + hit.stored;
+  const BarrierLoad load = structures_.loadOf(hit.barrier);
+  const BarrierState net = stateOf(barrier, load);
+  if (energy <= net.capacity)
+  {
+    // The rest of the step did not happen; what it booked did. The barrier takes what makes it up.
+    recorder_.recordBetween(body_.before, at, touching);
+    body_.energy.structures += kineticEnergy(body_.block, body_.state) -
+      kineticEnergy(body_.block, at) +
+      body_.block.mass() * parameters_.gravity * (end.position.z() - at.position.z()) +
+      body_.springEnergy;
+    body_.state = at;
+    body_.springEnergy = body_.normalEnergy = 0.0;
+    recorder_.follow(body_.state);
+    this->meetBarrier();
+    return 0.0;
+  }
+  StructureEvent event =
+    eventAt(StructureOutcome::BarrierBroken, barrier.feature, at, energy, hit.heightOverGround);
+  const double left = rigidKineticEnergy(body_.block, body_.state);
+  slowDown(body_.state, left, barrier.absorbs ? std::min(net.capacity, left) : 0.0);
+  noteLoad(event, load, net);
+  event.energyTaken = left - rigidKineticEnergy(body_.block, body_.state);
+  body_.energy.structures += event.energyTaken;
+  recorder_.trajectory().structures.push_back(event);
+  structures_.breakBarrier();
+  return event.energyTaken;
+}
+
+} // namespace rockfall
