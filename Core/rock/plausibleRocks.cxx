@@ -20,11 +20,13 @@ std::vector<std::string> implausibleRocks(
       { return std::to_string(rock.blockId) + " with " + numberText(rock.density, 6) + " kg/m³"; });
   }
   light.tell("densities of rocks", notes);
-  const double all = std::accumulate(frequencies.begin(), frequencies.end(), 0.0);
-  if (!kRocksPerYear.has(all))
+  if (!frequencies.empty())
   {
-    notes.push_back("The rocks together fall " + numberText(all, 4) +
-      " times a year: are frequencies rocks per year, not return periods?");
+    const double all = std::accumulate(frequencies.begin(), frequencies.end(), 0.0);
+    for (std::string& note : implausibleFrequency(all))
+    {
+      notes.push_back(std::move(note));
+    }
   }
   return notes;
 }

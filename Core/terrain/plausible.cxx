@@ -292,6 +292,16 @@ std::vector<std::string> implausibleGround(const Terrain& terrain)
   return notes;
 }
 
+std::vector<std::string> implausibleFrequency(double perYear)
+{
+  if (plausible::kRocksPerYear.has(perYear))
+  {
+    return {};
+  }
+  return { "The rocks together fall " + numberText(perYear, 4) +
+    " times a year: are frequencies rocks per year, not return periods?" };
+}
+
 std::vector<std::string> implausibleStands(std::span<const Stand> stands)
 {
   using namespace plausible;

@@ -62,8 +62,8 @@ inline constexpr PlausibleRange kRoughness{ 0.0, 1.0 };
 inline constexpr PlausibleRange kObstacle{ 0.0, 3.0 };
 /// Of a rock, kg/m³: pumice to ores.
 inline constexpr PlausibleRange kRockDensity{ 500.0, 5500.0 };
-/// Of all rocks of a run together, 1/a.
-inline constexpr PlausibleRange kRocksPerYear{ 0.0, 100.0 };
+/// Of all rocks of a slope together, 1/a: a return period of 100,000 years is no office's.
+inline constexpr PlausibleRange kRocksPerYear{ 1e-5, 100.0 };
 /// Two of a kind whose places differ by no more are the same one, m.
 inline constexpr double kTwinDistance = 0.1;
 
@@ -78,6 +78,9 @@ std::vector<std::string> structuresTwice(const Structures& structures);
 
 /// The same of the slope's own ground and its classes: φ, roughness, obstacles.
 std::vector<std::string> implausibleGround(const Terrain& terrain);
+
+/// The same of how often the rocks of a slope fall, 1/a: one sentence or none.
+std::vector<std::string> implausibleFrequency(double perYear);
 
 /// The same of stands: too dense, or over one another.
 std::vector<std::string> implausibleStands(std::span<const Stand> stands);

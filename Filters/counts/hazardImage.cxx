@@ -12,6 +12,7 @@
 #include "shared/terrainFieldData.h"
 #include "statistics/HazardRaster.h"
 #include "statistics/passageFile.h"
+#include "terrain/plausible.h"
 
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
@@ -258,6 +259,13 @@ public:
   std::vector<std::string> notes() const
   {
     std::vector<std::string> notes = this->quantileNotes();
+    if (options_.frequency.annualFrequency > 0.0)
+    {
+      for (std::string& note : implausibleFrequency(options_.frequency.annualFrequency))
+      {
+        notes.push_back(std::move(note));
+      }
+    }
     if (leftOut_ > 0)
     {
       notes.push_back(std::to_string(leftOut_) +

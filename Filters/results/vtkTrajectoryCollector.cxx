@@ -16,6 +16,7 @@
 #include "shared/rockPaths.h"
 #include "shared/terrainFieldData.h"
 #include "statistics/familyOfLines.h"
+#include "terrain/plausible.h"
 
 #include "vtkCellData.h"
 #include "vtkInformation.h"
@@ -132,6 +133,29 @@ std::vector<CollectorLine> readLines(const std::string& fileName, const std::str
   }
   requireNear(all, site, fileName + ": its lines of layer \"" + layer + "\"");
   return lines;
+}
+
+/// Notes on barriers that are better, or less, than any that is built.
+void lookAtBarriers(const std::vector<CollectorLine>& lines, std::vector<std::string>& notes)
+{
+  rockfall::Structures nets;
+  for (std::size_t k = 0; k < lines.size(); ++k)
+  {
+    const CollectorLine& line = lines[k];
+    // 0: what would be caught is not asked. Infinite: all.
+    if (line.barrierHeight > 0.0 && line.barrierCapacity > 0.0)
+    {
+      rockfall::Barrier& net = nets.barriers.emplace_back();
+      net.feature = std::int64_t(k) + 1;
+      net.height =
+        std::isinf(line.barrierHeight) ? rockfall::plausible::kNetHeight.least : line.barrierHeight;
+      net.capacity = line.barrierCapacity;
+    }
+  }
+  for (std::string& doubt : rockfall::implausibleNumbers(nets))
+  {
+    notes.push_back(std::move(doubt));
+  }
 }
 
 /// The line through drawn points, which must be where the trajectories are.
@@ -354,6 +378,7 @@ int vtkTrajectoryCollector::RequestData(
       {
         lines.push_back(lineThrough(points, rocks, origin, barrier));
       }
+      lookAtBarriers(lines, notes);
       rockfall::addParallels(lines, this->ParallelLines, this->ParallelSpacing);
       const Collected collected = collect(trajectories, lines, origin, slope);
       const auto released = std::int64_t(collected.released.size());

@@ -352,6 +352,14 @@ TEST_F(TestRockfallHazardMap, FrequenciesAndIntensities)
   EXPECT_EQ(this->At("AnnualFrequency", 7, 8), 0.0);
   EXPECT_TRUE(std::isnan(this->At("ReturnPeriod", 7, 8)));
 
+  // A return period where a frequency is meant.
+  this->Filter->SetAnnualFrequency(300.0);
+  auto* notes =
+    vtkStringArray::SafeDownCast(this->Map()->GetFieldData()->GetAbstractArray("Notes"));
+  ASSERT_TRUE(notes);
+  EXPECT_NE(notes->GetValue(notes->GetNumberOfValues() - 1).find("fall 300 times a year"),
+    std::string::npos);
+
   // By rocks: 1/4 a year for rock 0, 1/128 for rock 1.
   this->Filter->SetAnnualFrequency(0.0);
   vtkNew<vtkDoubleArray> frequency;

@@ -2,6 +2,7 @@
 #include "trajectories.h"
 
 #include "vtkDEMToCFESource.h"
+#include "vtkStringArray.h"
 #include "vtkTable.h"
 #include "vtkTrajectoryCollector.h"
 #include "vtkTrajectoryLayerWriter.h"
@@ -162,6 +163,29 @@ TEST_F(TestTrajectoryCollector, SharesAndCurves)
   EXPECT_NEAR(this->Number("ShareOfReleased", 4, 2), 0.8, 1e-12);
   this->Filter->SetBarrierHeight(1.5);
   EXPECT_EQ(this->Number("Caught"), 1);
+}
+
+TEST_F(TestTrajectoryCollector, NetsThatNobodySellsAreNoted)
+{
+  const auto noted = [this]
+  {
+    auto* notes =
+      vtkStringArray::SafeDownCast(this->Table(1)->GetFieldData()->GetAbstractArray("Notes"));
+    int count = 0;
+    for (vtkIdType k = 0; notes && k < notes->GetNumberOfValues(); ++k)
+    {
+      count += notes->GetValue(k).find("of barriers look implausible, first feature 1") !=
+        std::string::npos;
+    }
+    return count;
+  };
+  this->Filter->SetInputDataObject(1, this->Drawn);
+  EXPECT_EQ(noted(), 0);
+  this->Filter->SetBarrierHeight(0.4);
+  this->Filter->SetBarrierCapacity(30000.0); // kJ
+  EXPECT_EQ(noted(), 2);
+  this->Filter->SetBarrierCapacity(0.0); // nothing would be caught, nothing is asked
+  EXPECT_EQ(noted(), 0);
 }
 
 TEST_F(TestTrajectoryCollector, LinesOfAFile)

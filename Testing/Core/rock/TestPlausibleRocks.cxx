@@ -15,6 +15,7 @@ TEST(PlausibleRocks, DensityAndFrequency)
   EXPECT_TRUE(implausibleRocks(rocks, {}).empty());
   const std::vector<double> yearly = { 10.0, 10.0, 1.0 };
   EXPECT_TRUE(implausibleRocks(rocks, yearly).empty());
+  EXPECT_EQ(implausibleRocks(rocks, std::vector<double>(3, 1e-9)).size(), 1u);
   rocks[2].density = 2.7; // t/m³
   const std::vector<double> periods = { 1000.0, 300.0, 100.0 };
   EXPECT_EQ(implausibleRocks(rocks, periods),
