@@ -8,9 +8,9 @@
 #include "contact/ground/detection.h"
 #include "contact/ground/motion.h"
 #include "contact/ground/timeToTouch.h"
+#include "contact/impactMode.h"
 #include "law/cohesion.h"
 #include "law/settings.h"
-#include "rock/impactMode.h"
 #include "rock/overlapRecovery.h"
 #include "rock/restitution.h"
 

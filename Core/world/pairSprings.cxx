@@ -1,8 +1,8 @@
 #include "world/pairSprings.h"
 
 #include "contact/ground/motion.h"
+#include "contact/impactMode.h"
 #include "law/settings.h"
-#include "rock/impactMode.h"
 
 #include <algorithm>
 #include <cmath>
