@@ -140,9 +140,7 @@ void SingleRock::advanceInFlight(double duration)
   {
     reached.position = placeInFlight(start, parameters_.gravity, duration);
     structures_.findBarriers(way, parameters_.gravity, body_.block.radius());
-    structures_.passBarriers(
-      way, 0.0, parameters_.gravity, body_, recorder_.trajectory().structures);
-    duration = structures_.hit().barrier >= 0 ? structures_.hit().fraction * duration : duration;
+    duration = this->passBarriers(way, 0.0) ? structures_.hit().fraction * duration : duration;
   }
   const double end = start.time + duration;
   BlockState at = start;
@@ -170,8 +168,7 @@ void SingleRock::advanceInFlight(double duration)
   while (structures_.hasBarriers() && !body_.done && structures_.hit().barrier >= 0)
   {
     this->meetBarrier();
-    structures_.passBarriers(
-      way, 0.0, parameters_.gravity, body_, recorder_.trajectory().structures);
+    this->passBarriers(way, 0.0);
   }
 }
 
@@ -320,13 +317,12 @@ void SingleRock::liftOntoGround()
   // The placement was checked on the slope as surveyed; roughness can raise the ground into the
   // rock. By steps, so it ends a hair over the ground.
   const double step = 0.01 * body_.block.radius();
+  body_.placed.place(body_.block, body_.state);
   if (structures_.solid())
   {
-    body_.placed.place(body_.block, body_.state);
     structures_.clearTrees(body_.placed, body_.state);
     this->forgetPatch();
   }
-  body_.placed.place(body_.block, body_.state);
   this->ensurePatch(step);
   double depth = penetration(body_.placed, patch_);
   // A rock that starts in the ground by rounding alone is set onto it by what follows.

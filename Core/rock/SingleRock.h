@@ -145,6 +145,8 @@ private:
   double freeOfObstacles(double duration); ///< For how long, at most this, nothing is touched, s.
   /// Takes a step of `h` back in which it came against trees that cannot hold it, and breaks them.
   bool undoAtTrees(double h);
+  /// Goes on along this way (StructuresOnWay); whether it hits one.
+  bool passBarriers(const PathPiece& way, double taken);
   void meetBarrier(); ///< The one that it hits, where the rock is.
   /// The one that it hits, in a step of contact that would go to `end` and in which others have taken
   /// so much (J); returns what this one takes if it breaks.

@@ -92,6 +92,13 @@ bool SingleRock::applyBroken(const StructuresOnWay::Broken& broken)
   return touched;
 }
 
+bool SingleRock::passBarriers(const PathPiece& way, double taken)
+{
+  structures_.passBarriers(
+    way, taken, parameters_.gravity, body_, recorder_.trajectory().structures);
+  return structures_.hit().barrier >= 0;
+}
+
 void SingleRock::meetBarrier()
 {
   const BarrierHit& hit = structures_.hit();

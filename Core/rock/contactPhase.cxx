@@ -443,13 +443,7 @@ void SingleRock::commitStep(
     double lost = 0.0;
     const PathPiece way{ body_.before, end, end.time - body_.before.time, false };
     structures_.findBarriers(way, parameters_.gravity, body_.block.radius());
-    const auto pass = [&]
-    {
-      structures_.passBarriers(
-        way, lost, parameters_.gravity, body_, recorder_.trajectory().structures);
-      return structures_.hit().barrier >= 0;
-    };
-    while (pass())
+    while (this->passBarriers(way, lost))
     {
       lost += this->endStepAtBarrier(end, lost, touching);
       if (body_.done)

@@ -190,8 +190,7 @@ void RasterFile::noteTerraces(const std::vector<double>& heights)
     notes_.push_back("All heights are whole numbers, and " +
       number(std::round(100.0 * double(level) / double(all))) +
       " % of the cells are level: terraces of the rounding, on which rocks come to rest. Take a "
-      "DEM "
-      "with decimals, or a CellSize that smooths them");
+      "DEM with decimals, or a CellSize that smooths them");
   }
 }
 
