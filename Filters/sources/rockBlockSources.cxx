@@ -310,7 +310,7 @@ void vtkRockBlockSource::SetFrequencies(Sources& sources) const
 }
 
 //------------------------------------------------------------------------------
-void vtkRockBlockSource::TellUnused(const Sources& sources) const
+void vtkRockBlockSource::TellUnused(const Sources& sources, bool hasShape) const
 {
   if (this->ReleaseHeight > 0.0 &&
     std::none_of(sources.places.begin(), sources.places.end(),
@@ -331,5 +331,13 @@ void vtkRockBlockSource::TellUnused(const Sources& sources) const
       (steep ? "SlopeThreshold is " + rockfall::numberText(this->SlopeThreshold) +
             " degrees, which spreads the blocks over the steep terrain"
              : "no source is a point"));
+  }
+  if (hasShape &&
+    std::none_of(sources.rocks.begin(), sources.rocks.end(),
+      [](const rockfall::filters::ReleasedRock& rock)
+      { return rock.shape == rockfall::Shape::File; }))
+  {
+    rockfall::filters::showNote("The Shape input is connected, but has no effect: no block's "
+                                "shape is \"file\"");
   }
 }

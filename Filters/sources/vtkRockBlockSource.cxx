@@ -215,15 +215,7 @@ void vtkRockBlockSource::MakeBlocks(vtkPolyData* terrain, vtkPolyData* surface, 
   const std::vector<std::string>& made = sources.maker->notes();
   sources.notes.insert(sources.notes.end(), made.begin(), made.end());
   rockfall::filters::showNotes(sources.notes, blocks->GetFieldData());
-  this->TellUnused(sources);
-  if (surface &&
-    std::none_of(sources.rocks.begin(), sources.rocks.end(),
-      [](const rockfall::filters::ReleasedRock& rock)
-      { return rock.shape == rockfall::Shape::File; }))
-  {
-    rockfall::filters::showNote("The Shape input is connected, but has no effect: no block's "
-                                "shape is \"file\"");
-  }
+  this->TellUnused(sources, surface != nullptr);
 }
 
 //------------------------------------------------------------------------------

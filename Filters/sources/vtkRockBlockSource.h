@@ -393,8 +393,8 @@ private:
   void MakeRocks(Sources& sources);
   /// The sources that are drawn, or Center.
   void FindDrawn(Sources& sources);
-  /// Notes on lengths that are given and that no block has a use for.
-  void TellUnused(const Sources& sources) const;
+  /// Notes on lengths and on a shape that are given and that no block has a use for.
+  void TellUnused(const Sources& sources, bool hasShape) const;
   void CheckFrequencies() const; ///< Of the properties.
   /// Of all rocks of a source, 1/a; NaN if it is not known.
   double FrequencyOf(const Sources& sources, std::size_t number) const;
