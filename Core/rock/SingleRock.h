@@ -148,6 +148,10 @@ private:
   /// Goes on along this way (StructuresOnWay); whether it hits one.
   bool passBarriers(const PathPiece& way, double taken);
   void meetBarrier(); ///< The one that it hits, where the rock is.
+  /// A held rock comes to rest on a straight way of this length (m), as steep as the ground, with
+  /// the speed v √(1 − (x/b)²) of a spring. False, and nothing done, where the way would lead off
+  /// the slope or past the end time.
+  bool brakeBehindNet(double distance);
   /// The one that it hits, in a step of contact that would go to `end` and in which others have taken
   /// so much (J); returns what this one takes if it breaks.
   double endStepAtBarrier(const BlockState& end, double taken, bool touching);

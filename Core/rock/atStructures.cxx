@@ -5,12 +5,16 @@
 #include "rock/SingleRock.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace rockfall
 {
 
 namespace
 {
+
+constexpr int kBrakingPieces = 8; ///< In equal times: a quarter of a sine within 2e-2 of its way.
 
 void noteLoad(StructureEvent& event, const BarrierLoad& before, const BarrierState& barrier)
 {
@@ -127,8 +131,11 @@ void SingleRock::meetBarrier()
   recorder_.trajectory().structures.push_back(event);
   recorder_.knot(body_.state, false);
   this->auditSamples(body_.state);
-  slowDown(body_.state, kinetic, std::min(taken, kinetic));
-  body_.energy.structures += kinetic - rigidKineticEnergy(body_.block, body_.state);
+  if (!holds || !this->brakeBehindNet(event.brakingDistance))
+  {
+    slowDown(body_.state, kinetic, std::min(taken, kinetic));
+    body_.energy.structures += kinetic - rigidKineticEnergy(body_.block, body_.state);
+  }
   if (holds)
   {
     summary.fate = Fate::Caught;
@@ -141,6 +148,52 @@ void SingleRock::meetBarrier()
   body_.state.time += kInstant;
   recorder_.knot(body_.state, false);
   this->auditSamples(body_.state);
+}
+
+bool SingleRock::brakeBehindNet(double distance)
+{
+  const BlockState start = body_.state;
+  const double speed = start.velocity.norm(), across = start.velocity.head<2>().norm();
+  const double duration = 0.5 * std::numbers::pi * distance / speed;
+  if (!(distance > 0.0) || !(across > 0.0) || !(start.time + duration <= parameters_.endTime))
+  {
+    return false;
+  }
+  // As the ground goes down or up on a level way of that length.
+  const Eigen::Vector2d level = start.velocity.head<2>() / across;
+  const auto ground = [&](double way)
+  {
+    const Eigen::Vector2d place = start.position.head<2>() + way * level;
+    return std::max(surface_.elevation(place.x(), place.y()),
+      structures_.obstacles().embankmentTop(place.x(), place.y()));
+  };
+  const double rise = ground(distance) - ground(0.0);
+  if (std::isnan(rise))
+  {
+    return false;
+  }
+  const Vec3 along = Vec3(level.x(), level.y(), rise / distance).normalized();
+  BlockState at = start;
+  at.velocity = speed * along;
+  for (int k = 1; k <= kBrakingPieces; ++k)
+  {
+    const BlockState before = at;
+    const double phase = 0.5 * std::numbers::pi * k / kBrakingPieces;
+    const double left = k < kBrakingPieces ? std::cos(phase) : 0.0;
+    at.time = start.time + duration * k / kBrakingPieces;
+    at.position = start.position + distance * std::sin(phase) * along;
+    at.velocity = left * speed * along;
+    at.spin = left * start.spin;
+    // What the rock still falls is taken, too; a net is rated by the energy at its line.
+    body_.energy.structures += rigidKineticEnergy(body_.block, before) -
+      rigidKineticEnergy(body_.block, at) +
+      body_.block.mass() * parameters_.gravity * (before.position.z() - at.position.z());
+    body_.state = at;
+    recorder_.recordBetween(before, at, false);
+    this->auditSamples(at);
+    recorder_.follow(at);
+  }
+  return true;
 }
 
 double SingleRock::endStepAtBarrier(const BlockState& end, double taken, bool touching)

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <numbers>
 #include <random>
 
 using namespace rockfall;
@@ -109,6 +110,55 @@ TEST(Barriers, TakeTheirCapacityFromWhatBreaksThem)
     EXPECT_NEAR(t.summary.stop.x(), 60.0 + 0.2 * speed * left, 1e-6);
     EXPECT_LT(std::abs(t.summary.energy.numerical), 1e-9 * energy);
   }
+}
+
+TEST(Barriers, BrakeOnAWayBehindTheLine)
+{
+  constexpr double capacity = 1e6, braking = 5.0, tilt = 0.3, speed = 20.0;
+  const auto fall = [&](double way, double endTime)
+  {
+    Terrain terrain = makePlane(21, 100.0, std::atan(tilt), 0.0, material(0.5, 20.0));
+    Structures s = withBarrier(30.0, capacity).obstacles()->structures();
+    s.barriers[0].braking = way;
+    terrain.setStructures(s);
+    return simulate(terrain, thrown(6.0, speed), rigidParameters(endTime));
+  };
+  const Trajectory bare = fall(0.0, 5.0), held = fall(braking, 5.0);
+  ASSERT_EQ(held.structures.size(), 1u);
+  const StructureEvent &at = bare.structures[0], &event = held.structures[0];
+  EXPECT_EQ(held.summary.fate, Fate::Caught);
+  EXPECT_EQ(event.position, at.position); // met as before
+  EXPECT_EQ(event.energyTaken, at.energyTaken);
+  EXPECT_EQ(bare.summary.stop, at.position);
+
+  // Down the ground, as far as the brakes pull out, and at rest there.
+  const double way = braking * std::sqrt(at.kineticEnergy / capacity);
+  EXPECT_NEAR(event.brakingDistance, way, 1e-12);
+  const Vec3 along = Vec3(1.0, 0.0, -tilt).normalized();
+  EXPECT_LT((held.summary.stop - at.position - way * along).norm(), 1e-9);
+  EXPECT_EQ(held.samples.back().kineticEnergy, 0.0);
+  EXPECT_NEAR(
+    held.summary.endTime - at.time, 0.5 * std::numbers::pi * way / at.velocity.norm(), 1e-9);
+
+  double last = at.kineticEnergy;
+  int behind = 0;
+  for (const Sample& sample : held.samples)
+  {
+    EXPECT_LT(std::abs(sample.energy.numerical), 1e-9 * at.kineticEnergy) << sample.time;
+    if (sample.time > at.time + 1e-6)
+    {
+      ++behind;
+      EXPECT_LT(sample.kineticEnergy, last);
+      last = sample.kineticEnergy;
+      // The speed of a spring: v √(1 − (x/b)²).
+      const double x = (sample.position - at.position).dot(along) / way;
+      EXPECT_NEAR(sample.velocity.squaredNorm() / at.velocity.squaredNorm(), 1.0 - x * x, 0.01);
+    }
+  }
+  EXPECT_GT(behind, 4);
+
+  // Where the way does not end in time the rock stays at the line.
+  EXPECT_EQ(fall(braking, at.time + 0.01).summary.stop, at.position);
 }
 
 TEST(Barriers, RecordWithoutAnyEffect)
