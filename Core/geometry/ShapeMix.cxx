@@ -13,14 +13,14 @@ namespace
 
 double weightOf(const std::string& word, const std::string& text)
 {
-  double weight = 0.0;
-  if (!parseNumber(word, weight) || !(weight >= 0.0) || !std::isfinite(weight))
+  const auto weight = parsedNumber(word);
+  if (!weight || !(*weight >= 0.0) || !std::isfinite(*weight))
   {
     throw ParameterError("Shape mix \"" + text + "\": the weight \"" + word +
       "\" must be a number, at least 0" +
       (word.find(',') != std::string::npos ? " (the decimal sign is a point)" : ""));
   }
-  return weight;
+  return *weight;
 }
 
 } // namespace

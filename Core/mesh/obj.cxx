@@ -82,11 +82,13 @@ private:
     for (double& coordinate : point)
     {
       const std::string_view word = this->nextWord();
-      if (word.empty() || !parseNumber(word, coordinate))
+      const auto number = parsedNumber(word);
+      if (!number)
       {
         words_.fail(word.empty() ? "a vertex has three numbers x, y, z"
                                  : inQuotes(word) + " is not a number");
       }
+      coordinate = *number;
       digits_.add(word, coordinate);
     }
     while (!this->nextWord().empty()) // a weight, or colours
@@ -101,8 +103,8 @@ private:
     for (std::string_view word = this->nextWord(); !word.empty(); word = this->nextWord())
     {
       // point/texture/normal
-      std::int64_t id = 0;
-      if (!parseInteger(word.substr(0, word.find('/')), id) || id == 0)
+      const std::int64_t id = parsedInteger(word.substr(0, word.find('/'))).value_or(0);
+      if (id == 0)
       {
         words_.fail(inQuotes(word) + " is no number of a vertex; they count from 1");
       }

@@ -96,7 +96,8 @@ private:
       {
         Element& element = elements_.emplace_back();
         element.name = words_.nextInLine();
-        if (!parseInteger(words_.nextInLine(), element.count) || element.count < 0)
+        element.count = parsedInteger(words_.nextInLine()).value_or(-1);
+        if (element.count < 0)
         {
           words_.fail("an element of the header has a name and a number, not negative");
         }
@@ -183,13 +184,13 @@ private:
     if (format_ == Format::Text)
     {
       const std::string_view word = words_.next();
-      double value = 0.0;
-      if (!parseNumber(word, value))
+      const auto value = parsedNumber(word);
+      if (!value)
       {
         word.empty() ? words_.failTruncated() : words_.fail(inQuotes(word) + " is not a number");
       }
       lastWord_ = word;
-      return value;
+      return *value;
     }
     const double value = takeNumber(type, this->take(sizeOf(type)), format_ == Format::BigEndian);
     lastWord_ = {};

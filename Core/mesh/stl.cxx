@@ -129,10 +129,12 @@ Mesh parseText(std::string_view bytes, const std::string& name)
         for (double& coordinate : point)
         {
           const std::string_view word = words.next();
-          if (!parseNumber(word, coordinate))
+          const auto number = parsedNumber(word);
+          if (!number)
           {
             word.empty() ? words.failTruncated() : words.fail(inQuotes(word) + " is not a number");
           }
+          coordinate = *number;
           digits.add(word, coordinate);
         }
         ids.push_back(corners.number(point));

@@ -60,11 +60,10 @@ bool isNumeric(std::string_view line)
     c = c == ',' || c == ';' || c == '"' ? ' ' : c;
   }
   Words words(plain, "");
-  double value = 0.0;
   bool any = false;
   for (std::string_view word = words.next(); !word.empty(); word = words.next(), any = true)
   {
-    if (!parseNumber(word, value))
+    if (!parsedNumber(word))
     {
       return false;
     }
@@ -131,10 +130,12 @@ DecimalMark parseCell(const std::string& cell, std::string& word, double& value)
     }
     word[comma] = '.';
   }
-  if (!parseNumber(word, value))
+  const auto number = parsedNumber(word);
+  if (!number)
   {
     return DecimalMark::Wrong;
   }
+  value = *number;
   return comma != std::string::npos       ? DecimalMark::Comma
     : word.find('.') != std::string::npos ? DecimalMark::Point
                                           : DecimalMark::None;

@@ -42,16 +42,16 @@ std::string_view Words::restOfLine()
 std::int64_t Words::integer()
 {
   const std::string_view word = this->next();
-  std::int64_t value = 0;
   if (word.empty())
   {
     this->failTruncated();
   }
-  if (!parseInteger(word, value))
+  const auto value = parsedInteger(word);
+  if (!value)
   {
     this->fail(inQuotes(word) + " is not a whole number");
   }
-  return value;
+  return *value;
 }
 
 void Words::skip(std::size_t bytes)

@@ -22,35 +22,31 @@ bool isBlank(char c)
   return c == ' ' || (c >= '\t' && c <= '\r');
 }
 
-bool parseNumber(std::string_view word, double& value)
+std::optional<double> parsedNumber(std::string_view word)
 {
   word = withoutPlus(word);
+  double value = 0.0;
   const auto [next, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   if (next != word.data() + word.size() || word.empty())
   {
-    return false;
+    return std::nullopt;
   }
   if (error == std::errc::result_out_of_range &&
     word.find_first_of("eE") != std::string_view::npos &&
     word.find('-', 1) != std::string_view::npos)
   {
-    value = 0.0;
-    return true;
+    return 0.0;
   }
-  return error == std::errc();
+  return error == std::errc() ? std::optional(value) : std::nullopt;
 }
 
-std::optional<double> parsed(std::string_view word)
-{
-  double value = 0.0;
-  return parseNumber(word, value) ? std::optional(value) : std::nullopt;
-}
-
-bool parseInteger(std::string_view word, std::int64_t& value)
+std::optional<std::int64_t> parsedInteger(std::string_view word)
 {
   word = withoutPlus(word);
+  std::int64_t value = 0;
   const auto [next, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  return error == std::errc() && next == word.data() + word.size() && !word.empty();
+  const bool whole = error == std::errc() && next == word.data() + word.size() && !word.empty();
+  return whole ? std::optional(value) : std::nullopt;
 }
 
 std::string lowerCase(std::string_view text)

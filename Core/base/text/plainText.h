@@ -12,11 +12,10 @@ namespace rockfall
 {
 
 /// The whole word as a number with a decimal point, nan and inf included; too small a one is 0.
-bool parseNumber(std::string_view word, double& value);
-/// The same; nothing if any of the word is no number.
-std::optional<double> parsed(std::string_view word);
-/// The whole word as a whole number.
-bool parseInteger(std::string_view word, std::int64_t& value);
+/// Nothing if any of the word is no number.
+std::optional<double> parsedNumber(std::string_view word);
+/// The same of a whole number.
+std::optional<std::int64_t> parsedInteger(std::string_view word);
 /// ASCII letters only.
 std::string lowerCase(std::string_view text);
 /// As in C's locale.

@@ -215,7 +215,7 @@ std::optional<double> Fields::numberAt(int column) const
   // A field of numbers is taken as such: its text is rounded.
   const auto value = type == OFTReal || type == OFTInteger || type == OFTInteger64
     ? std::optional(feature_.GetFieldAsDouble(column))
-    : parsed(*written);
+    : parsedNumber(*written);
   if (!value)
   {
     const bool comma = written->find(',') != std::string::npos;

@@ -64,7 +64,7 @@ bool isAllNumbers(const RowCells& cells)
   const auto isEmpty = [](const std::string& cell) { return cell.empty(); };
   return std::count_if(cells.begin(), cells.end(), isEmpty) < std::ptrdiff_t(cells.size()) - 1 &&
     std::all_of(cells.begin(), cells.end(),
-      [&](const std::string& cell) { return isEmpty(cell) || parsed(cell); });
+      [&](const std::string& cell) { return isEmpty(cell) || parsedNumber(cell); });
 }
 
 /// With commas between its cells, all of them quoted.

@@ -25,7 +25,7 @@ namespace
 std::string keyOf(const std::string& text)
 {
   const std::string key = nameKey(text);
-  const auto value = parsed(key);
+  const auto value = parsedNumber(key);
   return value && key.find_first_not_of("+-.0123456789") == std::string::npos ? exactly(*value)
                                                                               : key;
 }

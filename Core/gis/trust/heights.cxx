@@ -146,7 +146,7 @@ private:
 
   void multiply(const char* name, const std::string& text)
   {
-    const auto factor = parsed(text);
+    const auto factor = parsedNumber(text);
     if (!factor || !std::isfinite(*factor) || *factor == 0.0)
     {
       throw DataError(fileName_ + ": its header has " + name + " \"" + text +
@@ -163,7 +163,7 @@ private:
 
   void add(const char* name, const std::string& text)
   {
-    const auto offset = parsed(text);
+    const auto offset = parsedNumber(text);
     if (!offset || !std::isfinite(*offset))
     {
       throw DataError(
@@ -196,7 +196,7 @@ private:
     if (isNoUnit(unitName_) && !prj.unit.empty() && prj.unit != "no")
     {
       // A number: units per metre, as 100 for centimetres.
-      const auto perMetre = parsed(prj.unit);
+      const auto perMetre = parsedNumber(prj.unit);
       unitName_ = perMetre && *perMetre > 0.0 ? exactly(1.0 / *perMetre) + " m" : prj.unit;
     }
     if (isNoUnit(unitName_))

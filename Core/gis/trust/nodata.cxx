@@ -32,7 +32,7 @@ std::vector<double> numbersOf(const char* text)
       word += c;
       continue;
     }
-    if (const auto number = parsed(word))
+    if (const auto number = parsedNumber(word))
     {
       numbers.push_back(*number);
     }
