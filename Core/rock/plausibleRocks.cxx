@@ -7,11 +7,10 @@
 namespace rockfall
 {
 
-std::vector<std::string> implausibleRocks(
-  std::span<const Rock> rocks, std::span<const double> frequencies)
+void askAfterRocks(
+  std::span<const Rock> rocks, std::span<const double> frequencies, std::vector<std::string>& notes)
 {
   using namespace plausible;
-  std::vector<std::string> notes;
   Doubt light("Rocks have " + between(kRockDensity) + " kg/m³: is it in kg/m³?");
   for (const Rock& rock : rocks)
   {
@@ -22,13 +21,8 @@ std::vector<std::string> implausibleRocks(
   light.tell("densities of rocks", notes);
   if (!frequencies.empty())
   {
-    const double all = std::accumulate(frequencies.begin(), frequencies.end(), 0.0);
-    for (std::string& note : implausibleFrequency(all))
-    {
-      notes.push_back(std::move(note));
-    }
+    askAfterFrequency(std::accumulate(frequencies.begin(), frequencies.end(), 0.0), notes);
   }
-  return notes;
 }
 
 } // namespace rockfall

@@ -12,9 +12,9 @@
 namespace rockfall
 {
 
-/// One sentence for each kind of number out of its range (terrain/plausible.h). `frequencies`: of
-/// each rock, 1/a; empty where they are not known.
-std::vector<std::string> implausibleRocks(
-  std::span<const Rock> rocks, std::span<const double> frequencies);
+/// Adds one sentence for each kind of number out of its range (terrain/plausible.h). `frequencies`:
+/// of each rock, 1/a; empty where they are not known.
+void askAfterRocks(std::span<const Rock> rocks, std::span<const double> frequencies,
+  std::vector<std::string>& notes);
 
 } // namespace rockfall

@@ -240,19 +240,16 @@ std::vector<int> earlierLines(const std::vector<PlanLine>& lines)
   return earlier;
 }
 
-std::vector<std::string> implausibleNumbers(const Structures& structures)
+void askAfterNumbers(const Structures& structures, std::vector<std::string>& notes)
 {
-  std::vector<std::string> notes;
   lookAtEmbankments(structures.embankments, notes);
   lookAtTrees(structures.trees, notes);
   lookAtNets(structures.barriers, notes);
-  return notes;
 }
 
-std::vector<std::string> implausibleGround(const Terrain& terrain)
+void askAfterGround(const Terrain& terrain, std::vector<std::string>& notes)
 {
   using namespace plausible;
-  std::vector<std::string> notes;
   Doubt steep("Ground has " + between(kFrictionAngle) + " degrees: is it in degrees?");
   Doubt rough("Roughness is " + between(kRoughness) + " m: is it in m?");
   Doubt high("Obstacles are " + between(kObstacle) + " m high: are they in m?");
@@ -289,23 +286,20 @@ std::vector<std::string> implausibleGround(const Terrain& terrain)
   steep.tell("friction angles of the ground", notes);
   rough.tell("roughnesses of the ground", notes);
   high.tell("heights of obstacles", notes);
-  return notes;
 }
 
-std::vector<std::string> implausibleFrequency(double perYear)
+void askAfterFrequency(double perYear, std::vector<std::string>& notes)
 {
-  if (plausible::kRocksPerYear.has(perYear))
+  if (!plausible::kRocksPerYear.has(perYear))
   {
-    return {};
+    notes.push_back("The rocks together fall " + numberText(perYear, 4) +
+      " times a year: are frequencies rocks per year, not return periods?");
   }
-  return { "The rocks together fall " + numberText(perYear, 4) +
-    " times a year: are frequencies rocks per year, not return periods?" };
 }
 
-std::vector<std::string> implausibleStands(std::span<const Stand> stands)
+void askAfterStands(std::span<const Stand> stands, std::vector<std::string>& notes)
 {
   using namespace plausible;
-  std::vector<std::string> notes;
   Doubt dense("Stems of a hectare have " + between(kBasalArea) +
     " m² at breast height: are stems_ha per hectare and diameters in cm?");
   for (const Stand& s : stands)
@@ -333,12 +327,10 @@ std::vector<std::string> implausibleStands(std::span<const Stand> stands)
       });
   }
   twice.tell("stands", notes);
-  return notes;
 }
 
-std::vector<std::string> structuresTwice(const Structures& structures)
+void askAfterTwins(const Structures& structures, std::vector<std::string>& notes)
 {
-  std::vector<std::string> notes;
   const auto all = [](const auto&) { return true; };
   linesTwice("embankments", those(structures.embankments, all), notes);
   std::vector<Point> stems;
@@ -349,7 +341,6 @@ std::vector<std::string> structuresTwice(const Structures& structures)
   tellTwice("trees", those(structures.trees, all), earlierPoints(stems), notes);
   linesTwice(
     "barriers", those(structures.barriers, [](const Barrier& b) { return !b.records; }), notes);
-  return notes;
 }
 
 } // namespace rockfall

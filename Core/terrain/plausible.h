@@ -64,26 +64,29 @@ inline constexpr PlausibleRange kObstacle{ 0.0, 3.0 };
 inline constexpr PlausibleRange kRockDensity{ 500.0, 5500.0 };
 /// Of all rocks of a slope together, 1/a: a return period of 100,000 years is no office's.
 inline constexpr PlausibleRange kRocksPerYear{ 1e-5, 100.0 };
+/// Of a rock at rest over the ground, or over a rock under it, m: beyond it the heights may be those
+/// of another slope.
+inline constexpr PlausibleRange kReleaseHeight{ 0.0, 10.0 };
 /// Two of a kind whose places differ by no more are the same one, m.
 inline constexpr double kTwinDistance = 0.1;
 
 } // namespace plausible
 
-/// One sentence for each kind of number out of its range, with how many and the first one's.
-std::vector<std::string> implausibleNumbers(const Structures& structures);
+/// Adds one sentence for each kind of number out of its range, with how many and the first one's.
+void askAfterNumbers(const Structures& structures, std::vector<std::string>& notes);
 
-/// One sentence for each kind of which some stand where another one does. Lines that record are
-/// none of them.
-std::vector<std::string> structuresTwice(const Structures& structures);
+/// The same for each kind of which some stand where another one does. Lines that record are none of
+/// them.
+void askAfterTwins(const Structures& structures, std::vector<std::string>& notes);
 
 /// The same of the slope's own ground and its classes: φ, roughness, obstacles.
-std::vector<std::string> implausibleGround(const Terrain& terrain);
+void askAfterGround(const Terrain& terrain, std::vector<std::string>& notes);
 
-/// The same of how often the rocks of a slope fall, 1/a: one sentence or none.
-std::vector<std::string> implausibleFrequency(double perYear);
+/// The same of how often the rocks of a slope fall, 1/a.
+void askAfterFrequency(double perYear, std::vector<std::string>& notes);
 
 /// The same of stands: too dense, or over one another.
-std::vector<std::string> implausibleStands(std::span<const Stand> stands);
+void askAfterStands(std::span<const Stand> stands, std::vector<std::string>& notes);
 
 using PlanLine = std::vector<Eigen::Vector2d>;
 

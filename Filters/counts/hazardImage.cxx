@@ -261,10 +261,7 @@ public:
     std::vector<std::string> notes = this->quantileNotes();
     if (options_.frequency.annualFrequency > 0.0)
     {
-      for (std::string& note : implausibleFrequency(options_.frequency.annualFrequency))
-      {
-        notes.push_back(std::move(note));
-      }
+      askAfterFrequency(options_.frequency.annualFrequency, notes);
     }
     if (leftOut_ > 0)
     {

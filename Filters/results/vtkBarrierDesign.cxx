@@ -8,6 +8,7 @@
 #include "shared/streamingPieces.h"
 #include "shared/terrainFieldData.h"
 #include "shared/withAbort.h"
+#include "terrain/plausible.h"
 
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -17,6 +18,8 @@
 #include "vtkTable.h"
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 vtkStandardNewMacro(vtkBarrierDesign);
 
@@ -98,6 +101,12 @@ int vtkBarrierDesign::RequestData(
       }
       rockfall::checkFactors(factors);
 
+      std::vector<std::string> notes;
+      if (this->AnnualFrequency > 0.0)
+      {
+        rockfall::askAfterFrequency(this->AnnualFrequency, notes);
+      }
+
       vtkNew<vtkPolyData> points;
       const filters::MergedCrossings merged = filters::mergeCrossings({ &crossings, 1 }, points);
       const std::vector<filters::DesignLine> lines =
@@ -113,6 +122,7 @@ int vtkBarrierDesign::RequestData(
         filters::copyCoordinateSystem(points->GetFieldData(), made->GetFieldData());
         vtkTable::GetData(outputVector, port++)->ShallowCopy(made);
       }
+      filters::showNotes(notes, vtkTable::GetData(outputVector, DESIGN)->GetFieldData());
       return 1;
     });
 }

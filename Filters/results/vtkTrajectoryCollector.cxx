@@ -152,10 +152,7 @@ void lookAtBarriers(const std::vector<CollectorLine>& lines, std::vector<std::st
       net.capacity = line.barrierCapacity;
     }
   }
-  for (std::string& doubt : rockfall::implausibleNumbers(nets))
-  {
-    notes.push_back(std::move(doubt));
-  }
+  rockfall::askAfterNumbers(nets, notes);
 }
 
 /// The line through drawn points, which must be where the trajectories are.

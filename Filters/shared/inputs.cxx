@@ -47,7 +47,7 @@ std::string Input::name() const
     case InputKind::Lines:
       return "The Lines input";
     case InputKind::Shape:
-      return "The Shape input";
+      return kShapeInput;
     case InputKind::Trajectories:
     case InputKind::Crossings:
     case InputKind::Any:

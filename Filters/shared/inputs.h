@@ -38,6 +38,8 @@ enum class InputKind
   Any,          ///< "The Input", of which arrays need hold nothing.
 };
 
+constexpr const char* kShapeInput = "The Shape input"; ///< Its name in messages.
+
 /// Lets a port take polydata and unstructured grids, by themselves or in composite data, which come
 /// in one piece then instead of leaf by leaf.
 void acceptPolyData(vtkInformation* port);

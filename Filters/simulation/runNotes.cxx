@@ -2,12 +2,15 @@
 
 #include "base/text/numberText.h"
 #include "rock/plausibleRocks.h"
+#include "run/releaseHeights.h"
 #include "shared/errorReport.h"
 #include "simulation/jointFaces.h"
 #include "simulation/progressText.h"
 #include "terrain/Obstacles.h"
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
 namespace rockfall::filters
 {
@@ -40,9 +43,13 @@ void tellApart(std::span<const Rock> rocks)
   }
 }
 
-void tellOdd(std::span<const Rock> rocks, std::span<const double> frequencies)
+void tellOdd(
+  const Terrain& terrain, std::span<const Rock> rocks, std::span<const double> frequencies)
 {
-  for (const std::string& note : implausibleRocks(rocks, frequencies))
+  std::vector<std::string> notes;
+  askAfterRocks(rocks, frequencies, notes);
+  askAfterHeights(terrain, rocks, notes);
+  for (const std::string& note : notes)
   {
     showNote(note);
   }

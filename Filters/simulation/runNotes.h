@@ -21,8 +21,9 @@ std::string statusOf(const LiveRun& live);
 /// Note on blocks that fit together, as those of a cut mass, but fall each as if alone.
 void tellApart(std::span<const Rock> rocks);
 
-/// Notes on rocks of no rock, and on more of them than fall.
-void tellOdd(std::span<const Rock> rocks, std::span<const double> frequencies);
+/// Notes on rocks of no rock, on more of them than fall, and on those that start in the air.
+void tellOdd(
+  const Terrain& terrain, std::span<const Rock> rocks, std::span<const double> frequencies);
 
 /// Note on nets that wear or fill up, of which each rock meets a new one.
 void tellNewNets(const Terrain& terrain);

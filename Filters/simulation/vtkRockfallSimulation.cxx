@@ -277,7 +277,7 @@ bool vtkRockfallSimulation::Simulate(vtkPolyData* terrainInput, vtkPolyData* roc
   }
   if (tells)
   {
-    rockfall::filters::tellOdd(run->frame.rocks, run->frame.frequencies);
+    rockfall::filters::tellOdd(run->slope, run->frame.rocks, run->frame.frequencies);
     rockfall::filters::tellAlike(run->slope, run->frame.rocks, run->parameters.iterations);
   }
   // Rocks that are the same in all iterations are known before they run.

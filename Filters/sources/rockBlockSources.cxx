@@ -7,6 +7,7 @@
 #include "gis/base/externalReferences.h"
 #include "shared/drawnPoints.h"
 #include "shared/errorReport.h"
+#include "shared/inputs.h"
 #include "shared/terrainFieldData.h"
 #include "sources/drawnSource.h"
 #include "statistics/frequency.h"
@@ -337,7 +338,7 @@ void vtkRockBlockSource::TellUnused(const Sources& sources, bool hasShape) const
       [](const rockfall::filters::ReleasedRock& rock)
       { return rock.shape == rockfall::Shape::File; }))
   {
-    rockfall::filters::showNote("The Shape input is connected, but has no effect: no block's "
-                                "shape is \"file\"");
+    rockfall::filters::showNote(std::string(rockfall::filters::kShapeInput) +
+      " is connected, but has no effect: no block's shape is \"file\"");
   }
 }

@@ -10,6 +10,7 @@
 #include "law/settings.h"
 #include "mesh/shapeFile.h"
 #include "rock/placement.h"
+#include "shared/inputs.h"
 #include "sources/shapeInput.h"
 
 #include <cmath>

@@ -3,6 +3,7 @@
 #include "base/errors.h"
 #include "mesh/MeshBuilder.h"
 #include "mesh/meshFile.h"
+#include "shared/inputs.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"

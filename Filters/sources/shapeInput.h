@@ -10,8 +10,6 @@ class vtkPolyData;
 namespace rockfall::filters
 {
 
-constexpr const char* kShapeInput = "The Shape input"; ///< Its name in messages.
-
 /// Polygons and triangle strips as faces, and all points; points alone if there are neither.
 /// Coordinates of single precision are rounded, as those of a file are. Throws FileError as
 /// `checkMesh` does.

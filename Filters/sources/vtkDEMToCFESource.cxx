@@ -159,10 +159,7 @@ std::shared_ptr<const rockfall::Terrain> vtkDEMToCFESource::MakeSlope(
     readStructures({ this->EmbankmentFile, this->TreeFile, this->BarrierFile, this->TreesBreak != 0,
                      this->EmbankmentLayerName, this->TreeLayerName, this->BarrierLayerName },
       slope, notes));
-  for (std::string& doubt : implausibleGround(slope))
-  {
-    notes.push_back(std::move(doubt));
-  }
+  askAfterGround(slope, notes);
   if (this->Preset == 0 && !material.yielding.yields() && slope.restitutionClasses().count() == 0)
   {
     notes.emplace_back(

@@ -226,13 +226,13 @@ int vtkDrawnStructure::RequestData(
           ++tree.feature;
         }
       }
-      std::vector<std::string> notes = rockfall::implausibleNumbers(drawn);
+      std::vector<std::string> notes;
+      rockfall::askAfterNumbers(drawn, notes);
       if (this->Kind != FOREST) // stems drawn at random may stand side by side
       {
         drawn.barriers = structures.barriers;
         drawn.embankments = structures.embankments;
-        const std::vector<std::string> twice = rockfall::structuresTwice(drawn);
-        notes.insert(notes.end(), twice.begin(), twice.end());
+        rockfall::askAfterTwins(drawn, notes);
       }
       slope.setStructures(std::move(structures));
       const auto terrain = std::make_shared<const Terrain>(std::move(slope));

@@ -8,6 +8,7 @@
 #include "rock/placement.h"
 #include "shared/arrays.h"
 #include "shared/errorReport.h"
+#include "shared/inputs.h"
 #include "shared/slopeReference.h"
 #include "shared/terrainFieldData.h"
 #include "sources/drawnSource.h"
@@ -239,7 +240,8 @@ void vtkJointedRockMass::MakeBlocks(
     ->InsertNextValue(cut.sliverVolume);
   if (surface && this->MassShape != FROM_FILE)
   {
-    filters::showNote("The Shape input is connected, but has no effect: MassShape is 0 (box)");
+    filters::showNote(
+      std::string(filters::kShapeInput) + " is connected, but has no effect: MassShape is 0 (box)");
   }
   if (cut.slivers > 0)
   {

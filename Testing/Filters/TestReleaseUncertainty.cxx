@@ -165,6 +165,14 @@ TEST_F(TestReleaseUncertainty, ANoteSaysWhereNothingDiffers)
   EXPECT_NE(this->Heard->Notes[0].find("1 of 1 densities of rocks"), std::string::npos);
   this->Heard->Notes.clear();
   sure->SetDensity(2700.0);
+  const double* place = sure->GetCenter();
+  sure->SetCenter(place[0], place[1], place[2] + 30.0); // of another slope
+  this->Simulation->Update();
+  this->ForgetBareRock();
+  ASSERT_EQ(this->Heard->Notes.size(), 1u);
+  EXPECT_NE(this->Heard->Notes[0].find("1 of 1 heights of rocks"), std::string::npos);
+  this->Heard->Notes.clear();
+  sure->SetCenter(place[0], place[1], place[2] - 30.0);
   this->Simulation->SetIterations(3);
   this->Simulation->Update();
   this->ForgetBareRock();

@@ -40,6 +40,15 @@ constexpr double cm = 0.01;   // m
 /// Most rows of a layer: more trees than any slope has, and a wrong layer does not fill the memory.
 constexpr std::int64_t kMostRows = 1000000;
 
+void tellOf(const std::string& fileName, const std::vector<std::string>& doubts,
+  std::vector<std::string>& notes)
+{
+  for (const std::string& doubt : doubts)
+  {
+    notes.push_back(fileName + ": " + doubt);
+  }
+}
+
 /// Brings places to the terrain's local frame, and keeps the extent for the message that they are
 /// beside it.
 class Placing
@@ -195,8 +204,8 @@ public:
     {
       return row.notNegative(field);
     }
-    const auto one = parsed(trimmed(text->substr(0, colon)));
-    const auto other = parsed(trimmed(text->substr(colon + 1)));
+    const auto one = parsedNumber(trimmed(text->substr(0, colon)));
+    const auto other = parsedNumber(trimmed(text->substr(colon + 1)));
     if (!one || !other || !(*one > 0.0) || !(*other > 0.0))
     {
       row.failField(field,
@@ -512,10 +521,9 @@ std::size_t readTrees(const StructureFiles& files, const Terrain& terrain, OwnMa
       " trees stand where the terrain has no ground and are left out; " +
       std::to_string(all.trees.size()) + " are taken.");
   }
-  for (const std::string& doubt : implausibleStands(stands))
-  {
-    notes.push_back(files.trees + ": " + doubt);
-  }
+  std::vector<std::string> doubts;
+  askAfterStands(stands, doubts);
+  tellOf(files.trees, doubts, notes);
   return alone;
 }
 
@@ -572,13 +580,10 @@ void tryOut(const std::string& fileName, Structures part, std::size_t alone, con
 {
   Structures given = part;
   given.trees.resize(alone);
-  for (const auto& doubts : { implausibleNumbers(part), structuresTwice(given) })
-  {
-    for (const std::string& doubt : doubts)
-    {
-      notes.push_back(fileName + ": " + doubt);
-    }
-  }
+  std::vector<std::string> doubts;
+  askAfterNumbers(part, doubts);
+  askAfterTwins(given, doubts);
+  tellOf(fileName, doubts, notes);
   try
   {
     const Obstacles built(std::move(part), terrain);

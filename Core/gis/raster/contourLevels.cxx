@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <limits>
 
@@ -121,6 +122,12 @@ struct Steps
   }
 };
 
+std::int64_t linesAtZero(const Contours& contours)
+{
+  return std::count_if(contours.lines.begin(), contours.lines.end(),
+    [&](const Line& line) { return isAt(contours, line, 0.0); });
+}
+
 } // namespace
 
 std::vector<double> levelsOf(const Contours& contours)
@@ -181,14 +188,52 @@ void refuseStrayZeros(const Contours& contours, const std::string& fileName)
   const Steps steps(contours);
   if (steps.others >= 3 && steps.ofZero > leastStep && steps.ofZero > largestStep * steps.largest)
   {
-    const auto count = std::count_if(contours.lines.begin(), contours.lines.end(),
-      [&](const Line& line) { return isAt(contours, line, 0.0); });
+    const auto count = linesAtZero(contours);
     throw DataError(fileName + ": " + std::to_string(count) +
       (count == 1 ? " line lies" : " lines lie") + " at exactly 0 m, all others between " +
       number(steps.lowest) + " m and " + number(steps.highest) + " m in steps of up to " +
       number(steps.largest) +
       " m: a frame, or lines without a height? Leave them out of the file, or name the layer of "
       "the contours in LayerName");
+  }
+}
+
+ZeroLines::ZeroLines(const Contours& contours)
+{
+  const Steps steps(contours);
+  if (steps.others > 0)
+  {
+    lines_ = linesAtZero(contours);
+    next_ = steps.ofZero;
+    largest_ = steps.largest;
+  }
+}
+
+void ZeroLines::see(const std::array<double, 3>& corners)
+{
+  if (lines_ == 0 || std::find(corners.begin(), corners.end(), 0.0) == corners.end())
+  {
+    return;
+  }
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const double z : corners)
+  {
+    nearest = z != 0.0 ? std::min(nearest, std::abs(z)) : nearest;
+  }
+  beside_ += std::isfinite(nearest);
+  farther_ += std::isfinite(nearest) && nearest > frameStep * next_;
+}
+
+void ZeroLines::tell(std::vector<std::string>& notes) const
+{
+  const bool low = next_ > leastStep && next_ > frameStep * largest_;
+  if (lines_ > 0 && (low || 2 * farther_ > beside_))
+  {
+    notes.push_back(std::to_string(lines_) + (lines_ == 1 ? " line lies" : " lines lie") +
+      " at exactly 0 m, " +
+      (low ? number(next_) + " m from the next height"
+           : "beside others than those of " + number(next_) + " m, the next height") +
+      ": has a contour no height?");
   }
 }
 

@@ -17,6 +17,7 @@
 #include <ogrsf_frmts.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -285,8 +286,10 @@ RasterSurface readContours(const std::string& fileName, const ContourOptions& op
     result.notes.push_back(united.note);
   }
   const std::size_t pointCount = united.points.x.size();
-  TinNodes nodes =
-    interpolateTin(std::move(united.points), grid, box.xMin - x0, box.yMin - y0, fileName);
+  ZeroLines zeros(contours);
+  TinNodes nodes = interpolateTin(std::move(united.points), grid, box.xMin - x0, box.yMin - y0,
+    fileName, [&zeros](const std::array<double, 3>& corners) { zeros.see(corners); });
+  zeros.tell(result.notes);
   const auto flat = std::count(nodes.flat.begin(), nodes.flat.end(), 1);
   const std::vector<double> levels = levelsOf(contours);
   const std::int64_t relaxed =

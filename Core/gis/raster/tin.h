@@ -5,7 +5,9 @@
 
 #include "terrain/Terrain.h"
 
+#include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -30,8 +32,9 @@ struct TinNodes
 /// The Delaunay triangulation of the points (GDAL's, by Qhull), linear within each triangle. Of the
 /// target `cellSize`, `columns` and `rows` are used; its lower left node stands at (west, south).
 /// Neighbours on a contour are taken to be a cell apart at most. No two points may stand at the
-/// same place. Throws DataError, beginning with `fileName`, if they have no triangulation.
+/// same place. `see` is shown the heights of each triangle's corners. Throws DataError, beginning with
+/// `fileName`, if they have no triangulation.
 TinNodes interpolateTin(TinPoints points, const GridGeometry& target, double west, double south,
-  const std::string& fileName);
+  const std::string& fileName, const std::function<void(const std::array<double, 3>&)>& see);
 
 } // namespace rockfall::gis

@@ -440,6 +440,30 @@ TEST(Contours, CrossingContoursAreNamed)
   EXPECT_TRUE(holds(s.notes[0], { "10 m and 20 m", "600000, 5100000" }));
 }
 
+// A line without a height among others, and a shore of the sea.
+TEST(Contours, ZeroAmongOthersIsNoted)
+{
+  const auto noted = [](std::vector<Contour> contours)
+  {
+    const RasterSurface s = readContours(geoJson(contours), { .cellSize = 5.0 });
+    return std::any_of(s.notes.begin(), s.notes.end(),
+      [](const std::string& note)
+      { return note.find("exactly 0 m") != std::string::npos && holds(note, { "no height?" }); });
+  };
+  const auto hill = [](double first)
+  { return circles(steps(first, 50.0, 10.0), [](double z) { return 2.0 * (100.0 - z); }); };
+  const auto with = [](std::vector<Contour> contours, double radius)
+  {
+    contours.push_back(circles({ 0.0 }, [radius](double) { return radius; }).front());
+    return contours;
+  };
+  EXPECT_FALSE(noted(hill(0.0)));               // a shore
+  EXPECT_FALSE(noted(with(hill(10.0), 200.0))); // the same
+  EXPECT_TRUE(noted(with(hill(10.0), 130.0)));  // between 30 and 40 m
+  EXPECT_TRUE(noted(with(hill(30.0), 200.0)));  // three steps below the lowest
+  EXPECT_FALSE(noted(hill(10.0)));
+}
+
 TEST(ContourErrors, EachNamesWhatIsWrong)
 {
   const std::string good = geoJson(smallHill());

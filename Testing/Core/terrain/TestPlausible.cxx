@@ -19,7 +19,9 @@ std::vector<std::string> notesOf(double friction, const Roughness& roughness)
   g.cellSize = 10.0;
   SurfaceMaterial material;
   material.frictionAngle = radians(friction);
-  return implausibleGround(Terrain(g, std::vector<double>(9, 0.0), material, roughness));
+  std::vector<std::string> notes;
+  askAfterGround(Terrain(g, std::vector<double>(9, 0.0), material, roughness), notes);
+  return notes;
 }
 
 Stand square(std::int64_t feature, double west, double stems = 400.0, double diameter = 0.35)
@@ -55,7 +57,12 @@ TEST(Plausible, Ground)
 
 TEST(Plausible, Stands)
 {
-  const auto notes = [](std::vector<Stand> stands) { return implausibleStands(stands); };
+  const auto notes = [](std::vector<Stand> stands)
+  {
+    std::vector<std::string> all;
+    askAfterStands(stands, all);
+    return all;
+  };
   EXPECT_TRUE(notes({ square(1, 0.0), square(2, 100.0), square(3, 160.0) }).empty());
   const auto dense = notes({ square(1, 0.0), square(2, 100.0, 20000.0) });
   ASSERT_EQ(dense.size(), 1u);
