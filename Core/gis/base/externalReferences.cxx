@@ -56,22 +56,21 @@ constexpr int mostNested = 4;
 const char* const known[] = { "VRT", "OGR_VRT",
   // rasters
   "GTiff", "COG", "HFA", "AIG", "AAIGrid", "GRASSASCIIGrid", "ISG", "SDTS", "DTED", "PNG", "JPEG",
-  "MEM", "JDEM", "GIF", "BIGGIF", "FITS", "BSB", "XPM", "BMP", "PCRaster", "ILWIS", "SGI",
-  "SRTMHGT", "Leveller", "Terragen", "netCDF", "JP2OpenJPEG", "JP2ECW", "JP2KAK", "JP2Lura",
-  "JP2MrSID", "ECW", "MrSID", "JPEGXL", "GRIB", "RMF", "RST", "GSAG", "GSBG", "GS7BG", "R", "WEBP",
-  "MBTiles", "PNM", "BT", "LAN", "EIR", "LCP", "GTX", "LOSLAS", "NTv2", "CTable2", "ACE2", "KRO",
-  "ROI_PAC", "RRASTER", "BYN", "ARG", "RIK", "USGSDEM", "GXF", "KEA", "BAG", "S102", "S104", "S111",
-  "HDF5", "HDF5Image", "NWT_GRD", "NWT_GRC", "SAGA", "XYZ", "HF2", "CTG", "ZMap", "NGSGEOID",
-  "SIGDEM", "HEIF", "TGA", "GPKG", "GenBin", "ENVI", "EHdr", "GMT", "NOAA_B", "NSIDCbin", "E00GRID",
-  "ESAT", "OZI", "TIFF", "LIBERTIFF", "Zarr",
+  "JDEM", "GIF", "BIGGIF", "FITS", "BSB", "XPM", "BMP", "PCRaster", "ILWIS", "SGI", "SRTMHGT",
+  "Leveller", "Terragen", "netCDF", "JP2OpenJPEG", "JP2ECW", "JP2KAK", "JP2Lura", "JP2MrSID", "ECW",
+  "MrSID", "JPEGXL", "GRIB", "RMF", "RST", "GSAG", "GSBG", "GS7BG", "R", "WEBP", "MBTiles", "PNM",
+  "BT", "LAN", "EIR", "LCP", "GTX", "LOSLAS", "NTv2", "CTable2", "ACE2", "KRO", "ROI_PAC",
+  "RRASTER", "BYN", "ARG", "RIK", "USGSDEM", "GXF", "KEA", "BAG", "S102", "S104", "S111", "HDF5",
+  "HDF5Image", "NWT_GRD", "NWT_GRC", "SAGA", "XYZ", "HF2", "CTG", "ZMap", "NGSGEOID", "SIGDEM",
+  "HEIF", "TGA", "GPKG", "GenBin", "ENVI", "EHdr", "GMT", "NOAA_B", "NSIDCbin", "E00GRID", "ESAT",
+  "OZI", "TIFF", "LIBERTIFF", "Zarr",
   // layers
   "ESRI Shapefile", "MapInfo File", "UK .NTF", "LVBAG", "OGR_SDTS", "S57", "DGN", "DGNv8", "DWG",
-  "Memory", "CSV", "NAS", "GML", "GPX", "LIBKML", "KML", "GeoJSON", "GeoJSONSeq", "ESRIJSON",
-  "TopoJSON", "JSONFG", "Interlis 1", "Interlis 2", "OGR_GMT", "SQLite", "WAsP", "OpenFileGDB",
-  "FileGDB", "DXF", "CAD", "FlatGeobuf", "Geoconcept", "GeoRSS", "VFK", "OSM", "SOSI", "EDIGEO",
-  "SVG", "Idrisi", "XLS", "ODS", "XLSX", "SXF", "Selafin", "JML", "VDV", "MVT", "MapML", "TIGER",
-  "AVCBin", "AVCE00", "Parquet", "Arrow", "PMTiles", "AIVector", "MiraMonVector", "PGDUMP",
-  nullptr };
+  "CSV", "NAS", "GML", "GPX", "LIBKML", "KML", "GeoJSON", "GeoJSONSeq", "ESRIJSON", "TopoJSON",
+  "JSONFG", "Interlis 1", "Interlis 2", "OGR_GMT", "SQLite", "WAsP", "OpenFileGDB", "FileGDB",
+  "DXF", "CAD", "FlatGeobuf", "Geoconcept", "GeoRSS", "VFK", "OSM", "SOSI", "EDIGEO", "SVG",
+  "Idrisi", "XLS", "ODS", "XLSX", "SXF", "Selafin", "JML", "VDV", "MVT", "MapML", "TIGER", "AVCBin",
+  "AVCE00", "Parquet", "Arrow", "PMTiles", "AIVector", "MiraMonVector", "PGDUMP", nullptr };
 
 const char* const remedy = " (files that name network addresses or other files of the machine are "
                            "read only where AllowReferences is on)";
@@ -378,6 +377,11 @@ const char* const* openingDrivers()
 
 void refuseReferences(const std::string& fileName, unsigned flags)
 {
+  // An address in this program's own memory: what stands there, or the end of the program.
+  if (fileName.find("MEM:::") != std::string::npos)
+  {
+    throw FileError(fileName + ": names memory, which is no file");
+  }
   if (allowed)
   {
     return;

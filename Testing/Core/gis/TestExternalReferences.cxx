@@ -171,6 +171,19 @@ TEST(Reach, virtualRastersNameWhatIsBesideThemOnly)
   EXPECT_TRUE(holds(refusal(outer), { outer, "/etc/hostname" }));
 }
 
+TEST(Reach, MemoryIsNoFile)
+{
+  const std::string memory = "MEM:::DATAPOINTER=1,PIXELS=2,LINES=2"; // ends the program if read
+  for (const bool allowed : { false, true })
+  {
+    const AllowReferences allow(allowed);
+    EXPECT_TRUE(holds(refusal(memory), { memory, "no file" }));
+    EXPECT_TRUE(
+      holds(messageOf<FileError>([&] { readSourceLayer(memory, {}); }), { memory, "no file" }));
+  }
+  EXPECT_TRUE(holds(refusal(virtualRaster(source(memory))), { memory, "not beside it" }));
+}
+
 TEST(Reach, virtualLayersNameWhatIsBesideThemOnly)
 {
   const auto layer = [](const std::string& inside)
