@@ -163,7 +163,7 @@ TEST_F(TestBarrierDesign, ClassesAndTheirFrequencies)
 
   this->Filter->SetAnnualFrequency(0.5); // 1/40 for each of twenty releases
   EXPECT_DOUBLE_EQ(this->Number(1, "CaughtFrequency", 0), 5.0 / 40);
-  this->Heard->Notes.clear(); // of the line
+  this->Heard->Notes.clear();              // of the line
   this->Filter->SetAnnualFrequency(300.0); // a return period
   this->Filter->Update();
   ASSERT_EQ(this->Heard->Notes.size(), 1u);
