@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <tuple>
 #include <utility>
 
@@ -55,10 +56,19 @@ void lookAtNets(const std::vector<Barrier>& barriers, std::vector<std::string>& 
   using namespace plausible;
   Doubt high("Nets stand " + between(kNetHeight) + " m high: is it in m?");
   Doubt strong("Nets are sold for " + between(kNetCapacity, 1000.0) + " kJ: is it in kJ?");
+  Doubt endless("A barrier without a capacity stops every rock: is it a rock face?");
+  Doubt soft("Nets brake on " + between(kBraking) + " m: is it in m?");
+  Doubt worn("No net keeps more than " + numberText(100.0 * kResidual.most) +
+    " % of its height at its capacity: is it that height, or a capacity?");
   for (const Barrier& b : barriers)
   {
     if (!b.records)
     {
+      endless.look(!std::isinf(b.capacity), b.feature, [] { return std::string(); });
+      soft.look(b.braking == 0.0 || kBraking.has(b.braking), b.feature,
+        [&] { return " with " + text(b.braking) + " m"; });
+      worn.look(std::isnan(b.residual) || kResidual.has(b.residual), b.feature,
+        [&] { return " with " + text(100.0 * b.residual) + " %"; });
       high.look(
         kNetHeight.has(b.height), b.feature, [&] { return " with " + text(b.height) + " m"; });
       strong.look(std::isinf(b.capacity) || kNetCapacity.has(b.capacity), b.feature,
@@ -67,6 +77,9 @@ void lookAtNets(const std::vector<Barrier>& barriers, std::vector<std::string>& 
   }
   high.tell("heights of barriers", notes);
   strong.tell("capacities of barriers", notes);
+  endless.tell("barriers", notes);
+  soft.tell("braking ways of barriers", notes);
+  worn.tell("residual heights of barriers", notes);
 }
 
 void lookAtEmbankments(const std::vector<Embankment>& dams, std::vector<std::string>& notes)
@@ -129,6 +142,29 @@ void tellTwice(const char* kind, const std::vector<const Item*>& items,
       " stand within " + text(kTwinDistance) + " m of another one, first " + first +
       ". Each takes its capacity: was something given twice?");
   }
+}
+
+/// Forests of single stems that leave no room to walk in.
+void tellCrowds(const std::vector<Tree>& trees, std::vector<std::string>& notes)
+{
+  using plausible::kBasalArea;
+  constexpr double side = 50.0, hectares = side * side / 1e4; // m
+  std::map<std::pair<double, double>, double> areas;          // m²
+  for (const Tree& tree : trees)
+  {
+    const Point at = tree.position / side;
+    areas[{ std::floor(at.x()), std::floor(at.y()) }] +=
+      0.25 * M_PI * tree.diameter * tree.diameter;
+  }
+  Doubt dense("Stems have up to " + text(kBasalArea.most) +
+    " m² a hectare at breast height: was a forest given twice, or are its diameters others?");
+  for (const auto& [place, area] : areas)
+  {
+    const double ofHectare = area / hectares;
+    dense.look(ofHectare <= kBasalArea.most, std::string("one with "),
+      [&] { return numberText(ofHectare, 3) + " m² a hectare"; });
+  }
+  dense.tell("squares of 50 m with trees", notes);
 }
 
 template <class Item>
@@ -339,6 +375,7 @@ void askAfterTwins(const Structures& structures, std::vector<std::string>& notes
     stems.push_back(tree.position);
   }
   tellTwice("trees", those(structures.trees, all), earlierPoints(stems), notes);
+  tellCrowds(structures.trees, notes);
   linesTwice(
     "barriers", those(structures.barriers, [](const Barrier& b) { return !b.records; }), notes);
 }

@@ -43,6 +43,10 @@ inline constexpr PlausibleRange kStemCapacity{ 0.1, 5.0 };
 inline constexpr PlausibleRange kNetHeight{ 1.0, 12.0, 30.0 };
 /// Of a net, J. The lowest class of EAD 340059-00-0106 has 100 kJ, the largest kits sold 10,000 kJ.
 inline constexpr PlausibleRange kNetCapacity{ 100e3, 10e6, 100e6 };
+/// Way on which a net stops its capacity, m. Kits are let out by 2 to 9 m in tests at their MEL.
+inline constexpr PlausibleRange kBraking{ 0.5, 12.0 };
+/// Share of a net's height that is left after such a test: category A has half and more.
+inline constexpr PlausibleRange kResidual{ 0.0, 0.95 };
 /// Of an embankment's crest over ground, m. The highest rockfall dams have some 25 m.
 inline constexpr PlausibleRange kDamHeight{ 0.5, 30.0 };
 /// Of an embankment's crest, m.

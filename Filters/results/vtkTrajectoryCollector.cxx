@@ -149,7 +149,8 @@ void lookAtBarriers(const std::vector<CollectorLine>& lines, std::vector<std::st
       net.feature = std::int64_t(k) + 1;
       net.height =
         std::isinf(line.barrierHeight) ? rockfall::plausible::kNetHeight.least : line.barrierHeight;
-      net.capacity = line.barrierCapacity;
+      net.capacity = std::isinf(line.barrierCapacity) ? rockfall::plausible::kNetCapacity.least
+                                                      : line.barrierCapacity;
     }
   }
   rockfall::askAfterNumbers(nets, notes);

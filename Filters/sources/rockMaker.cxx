@@ -252,6 +252,8 @@ ReleasedRock RockMaker::make(
   const VolumeDistribution law = this->volume(row);
   rock.shape = this->shape(released.shape, row, law, place.draw);
   rock.position = place.position;
+  rock.position.z() = place.overGround ? 0.0 : rock.position.z();
+  requireFinite(rock.position, "Center");
   const Vec3 angles = row.orientation.value_or(defaults_.orientation);
   requireFinite(angles, "Orientation");
   rock.orientation = orientationFromDegrees(angles);
@@ -261,20 +263,19 @@ ReleasedRock RockMaker::make(
     rock.orientation =
       randomRotation(u, v, uniformDeviate(defaults_.seed, 1, Draw::SourceAttitude, place.draw));
   }
-  if (place.overGround)
-  {
-    const Vec3 origin = terrain_->geometry().origin();
-    const Vec3 local = place.position - origin;
-    rock.position.z() = place.height +
-      touchingHeight(
-        Surface::asSurveyed(*terrain_), rock.shape, rock.orientation, local.x(), local.y());
-  }
-  requireFinite(rock.position, "Center");
   rock.velocity = row.velocity.value_or(defaults_.velocity);
   rock.angularVelocity = row.angularVelocity.value_or(defaults_.angularVelocity);
   this->setMaterial(row, rock);
   this->setUncertainty(row, law, rock.uncertainty);
   rock.validate();
+  if (place.overGround)
+  {
+    const Vec3 local = place.position - terrain_->geometry().origin();
+    rock.position.z() = place.height +
+      touchingHeight(
+        Surface::asSurveyed(*terrain_), rock.shape, rock.orientation, local.x(), local.y());
+    requireFinite(rock.position, "Center");
+  }
   return released;
 }
 

@@ -136,6 +136,7 @@ def bad_sources(what, words, header, cells):
 bad_sources("negative amount", ["amount", "-3"], "amount", "-3")
 bad_sources("amount that is no number", ["amount", "many"], "amount", "many")
 bad_sources("NaN deviation", ["vol_dev", "nan"], "vol_dev", "nan")
+bad_sources("volume of no rock", ["Volume is 1e+308", "no rock has more"], "volume", "1e308")
 bad_sources("decimal comma", ["height", "1,5", "point"], "height", '"1,5"')
 bad_sources("unknown shape in a mix", ["shape", "ball"], "shape", "cube:2;ball:1")
 bad_sources("bounds of a distribution", ["VolumeMaximum is 2", "3"], "vol_law,vol_min,vol_max",

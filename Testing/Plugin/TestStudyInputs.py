@@ -21,11 +21,14 @@ import wholefile
 
 write_grid("input.asc", incline())
 write_text("input.csv", "x,y,z,shape,volume,source\n" + "\n".join(
-    f"700025,{4000060 + k},{146 + 0.2 * k},cube,0.01,{name}"
-    for k, name in ((0, "=1+2"), (16, "-2.5"), (32, "@home"))) + "\n")
-write_text("input-road.csv", 'WKT,name\n"LINESTRING(700045 3999990,700045 4000230)",road\n')
+    f"700025,{4000060 + k},{146 + 0.2 * k},{shape},0.01,{name}"
+    for k, shape, name in ((0, "file", "=1+2"), (16, "cube", "-2.5"), (32, "cube", "@home"))) + "\n")
+write_text("input-road.csv", 'WKT,name\n"LINESTRING(700045 3999990,700045 4000230)",=1+3\n')
+tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
+write_text("input.obj", tetrahedron)
 study = {
-    "terrain": {"FileName": "input.asc", "RoughnessDeviation": 0.2}, "rocks": {"FileName": "input.csv"},
+    "terrain": {"FileName": "input.asc", "RoughnessDeviation": 0.2},
+    "rocks": {"FileName": "input.csv", "ShapeFileName": "input.obj"},
     "simulation": {"EndTime": 3.0, "TrajectoryOutput": "Thinned"}, "map": {"CellSize": 5.0},
     "lines": {"FileName": "input-road.csv"}, "iterations": 5, "chunk": 2}
 
@@ -71,7 +74,14 @@ assert manifest["values"]["terrain"]["FrictionAngle"] > 0, "defaults are in forc
 assert manifest["values"]["simulation"]["EndTime"] == 3.0
 assert manifest["identity"]["version"] == manifest["program"].split()[1]
 
+# The shape of the rocks is another one.
+shape = write_text("input.obj", tetrahedron.replace("0 0 1", "0 0 2"))
+code, said = run("inputs-calm")
+assert code != 0 and f"changed are rocks ShapeFileName ({shape})" in said, said
+write_text("input.obj", tetrahedron)
+
 # A spreadsheet does not run a name; a number stays one.
+assert {row["LineName"] for row in rows_of("inputs-calm/lines.csv")} == {"'=1+3"}
 assert {row["SourceName"] for row in rows_of("inputs-calm/summary.csv")} == {"'=1+2", "-2.5", "'@home"}
 assert [wholefile.cell(v) for v in ("\t=1", "+a", "-", "a=1", "+1e3", -3, "-inf")] == \
     ["'\t=1", "'+a", "'-", "a=1", "+1e3", -3, "-inf"]
@@ -171,5 +181,10 @@ for text, word in (
         raise AssertionError(f"{text[:60]} was taken")
     except schema.Bad as bad:
         assert word in str(bad) and len(str(bad)) < 300, bad
+# Of another encoding.
+with open("input-odd.json", "w", encoding="utf-16") as file:
+    json.dump(study, file)
+code, said = run_script(SCRIPT, "inputs-odd", "input-odd.json")[::-1]
+assert "input-odd.json is not JSON" in code and "Traceback" not in said, (code, said)
 assert time.monotonic() - start < 20.0, time.monotonic() - start
 print("a study is the same, or refused")

@@ -5,6 +5,7 @@
 #include "gis/base/gdal.h"
 #include "gis/layers/LayerFile.h"
 #include "gis/layers/lines.h"
+#include "law/settings.h"
 
 #include <ogr_spatialref.h>
 
@@ -225,7 +226,7 @@ void SourcePlacing::placeParts(
 
 void SourcePlacing::place(const FeatureRow& row, SourceRow& source)
 {
-  source.height = row.notNegative("height");
+  source.height = row.ranged({ "height" }, 0.0, kHighestRelease, "0 to 500 m");
   if (source.height && !haveTerrain)
   {
     row.failField("height", " is over ground: it needs the Terrain input");

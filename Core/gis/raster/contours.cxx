@@ -6,6 +6,7 @@
 #include "gis/raster/contourLevels.h"
 #include "gis/raster/contourLines.h"
 #include "gis/raster/metric.h"
+#include "gis/raster/relief.h"
 #include "gis/raster/tin.h"
 #include "gis/trust/heightReference.h"
 #include "gis/trust/heights.h"
@@ -302,6 +303,7 @@ RasterSurface readContours(const std::string& fileName, const ContourOptions& op
       number(grid.cellSize) + " m");
   }
   result.heights = std::move(nodes.heights);
+  noteRelief(result);
   result.notes.push_back("Made from contours: " + std::to_string(contours.lines.size()) +
     " lines of " + std::to_string(contours.x.size()) + " vertices, heights from " + where +
     " between " + number(*low) + " m and " + number(*high) + " m; TIN of " +

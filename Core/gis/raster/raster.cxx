@@ -6,6 +6,7 @@
 #include "gis/base/planAccuracy.h"
 #include "gis/raster/metric.h"
 #include "gis/raster/rasterFile.h"
+#include "gis/raster/relief.h"
 #include "gis/raster/resample.h"
 #include "gis/trust/heightReference.h"
 
@@ -23,10 +24,6 @@ namespace
 
 using namespace gis;
 
-/// Half of a site is hardly ever steeper than this; a talus of 35° with its heights in feet is at
-/// 66°.
-constexpr double steepSite = 60.0;
-
 /// Mean over neighbours in rows of |Δz| / cell: a tangent, if both are in the same unit.
 double meanSteepness(const SourceGrid& grid)
 {
@@ -42,28 +39,6 @@ double meanSteepness(const SourceGrid& grid)
     }
   }
   return pairs > 0 ? sum / double(pairs) / grid.columnStep() : 0.0;
-}
-
-/// Share of the cells that are steeper than `tangent`, of those that have heights.
-double shareSteeper(const RasterSurface& surface, double tangent)
-{
-  const GridGeometry& g = surface.geometry;
-  const double limit = tangent * tangent * 4.0 * g.cellSize * g.cellSize;
-  std::int64_t steep = 0, cells = 0;
-  for (int row = 1; row < g.rows; ++row)
-  {
-    const double* above = surface.heights.data() + std::size_t(row - 1) * std::size_t(g.columns);
-    const double* below = above + g.columns;
-    for (int column = 1; column < g.columns; ++column)
-    {
-      // Twice the mean rise over a cell along x and along y.
-      const double a = above[column] - below[column - 1], b = above[column - 1] - below[column];
-      const double squared = (a - b) * (a - b) + (a + b) * (a + b);
-      cells += !std::isnan(squared);
-      steep += squared > limit;
-    }
-  }
-  return cells > 0 ? double(steep) / double(cells) : 0.0;
 }
 
 std::string cellText(const SourceGrid& grid, const std::string& unit)
@@ -230,12 +205,7 @@ RasterSurface readRaster(const std::string& fileName, const RasterOptions& optio
     throw DataError(fileName + ": no node is left with a height; all " +
       sizeText(result.geometry.columns, result.geometry.rows) + " touch nodata or lie outside");
   }
-  const double steep = shareSteeper(result, std::tan(radians(steepSite)));
-  if (steep > 0.5)
-  {
-    result.notes.push_back(number(std::round(100.0 * steep)) + " % of the slope is steeper than " +
-      number(steepSite) + " degrees: are its heights in metres?");
-  }
+  noteRelief(result);
   if (nodata > 0)
   {
     result.notes.push_back(std::to_string(nodata) + " of " + std::to_string(result.heights.size()) +

@@ -17,6 +17,9 @@ namespace rockfall::gis
 namespace
 {
 
+/// Cells from the origin of the coordinates: beyond it double precision takes them together.
+constexpr double farthest = 1e12;
+
 void multiply(std::array<double, 6>& affine, double factor)
 {
   std::for_each(affine.begin(), affine.end(), [factor](double& a) { a *= factor; });
@@ -100,6 +103,12 @@ RasterPlace rasterPlace(GDALDataset& dataset, GDALRasterBand& band, const TextGr
     throw DataError(fileName + ": its cells have no area: geotransform " + number(affine[0]) +
       ", " + number(affine[1]) + ", " + number(affine[2]) + ", " + number(affine[3]) + ", " +
       number(affine[4]) + ", " + number(affine[5]));
+  }
+  const double step = std::hypot(affine[1], affine[4]);
+  if (std::max(std::abs(affine[0]), std::abs(affine[3])) > farthest * step)
+  {
+    throw DataError(fileName + ": its cells of " + number(step) + " at " + number(affine[0]) +
+      ", " + number(affine[3]) + " cannot be told apart: is its place right?");
   }
   if (place.crs && place.crs->IsGeocentric())
   {

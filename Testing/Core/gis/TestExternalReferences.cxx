@@ -335,6 +335,32 @@ TEST(Reach, addressesInFilesAreNotCalled)
     { link, "names the address " + url, "AllowReferences" }));
   EXPECT_FALSE(listener.called());
 
+  // A schema, and a further document: taken without them, or refused.
+  const std::string gml = writeFile("schema.gml",
+    "<ogr:FeatureCollection xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-instance\" "
+    "xsi:schemaLocation=\"http://ogr.maptools.org/ " +
+      url +
+      "a.xsd\" xmlns:ogr=\"http://ogr.maptools.org/\" xmlns:gml=\"http://www.opengis.net/gml\">"
+      "<gml:featureMember><ogr:a "
+      "fid=\"a.0\"><ogr:geometryProperty><gml:LineString><gml:coordinates>"
+      "1,2 3,4</gml:coordinates></gml:LineString></ogr:geometryProperty></ogr:a>"
+      "</gml:featureMember></ogr:FeatureCollection>");
+  const std::string kml = writeFile("further.kml",
+    "<kml xmlns=\"http://www.opengis.net/kml/2.2\"><Document><NetworkLink><Link><href>" + url +
+      "a.kml</href></Link></NetworkLink><Placemark><LineString><coordinates>9,46,1 9.001,46,2"
+      "</coordinates></LineString></Placemark></Document></kml>");
+  for (const std::string& file : { gml, kml })
+  {
+    try
+    {
+      EXPECT_EQ(readLineLayer(file).size(), 1u);
+    }
+    catch (const FileError&)
+    {
+    }
+    EXPECT_FALSE(listener.called()) << file;
+  }
+
   const std::string inner = virtualRaster("<ColorInterp>Gray</ColorInterp>");
   for (const std::string& value : std::vector<std::string>{ "/vsicurl/" + url + "a.tif",
          "/vsicurl_streaming/" + url + "a", "/vsis3_streaming/bucket/a", "/vsioss/bucket/a.tif",

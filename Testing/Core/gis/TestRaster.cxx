@@ -168,6 +168,31 @@ TEST(Raster, zerosBesideHighGroundAreNoted)
   EXPECT_TRUE(holds(joined(readRaster(raster.write())), { "beside ground more than 40 m off" }));
 }
 
+TEST(Raster, HeightsOfNoMountainAreNoted)
+{
+  RawRaster raster = smallRaster();
+  raster.columns = raster.rows = 20;
+  const auto notes = [&](double first, double rise)
+  {
+    raster.fill([&](double x, double) { return first + rise * (x - 600000.0); });
+    return joined(readRaster(raster.write()));
+  };
+  EXPECT_EQ(notes(400.0, 0.6).find("?"), std::string::npos);
+  EXPECT_TRUE(holds(notes(0.4, 0.0006), { "All heights are within", "are they in metres?" }));
+  EXPECT_TRUE(holds(notes(-400.0, 0.6), { "All heights are at 0 m or below", "depths" }));
+  EXPECT_TRUE(holds(notes(400.0, 3.0), { "steeper than 60 degrees" }));
+}
+
+TEST(Raster, APlaceBeyondAllNumbersIsRefused)
+{
+  EXPECT_TRUE(
+    holds(messageOf<DataError>(
+            [] {
+              readRaster(writeAscii({ "1 2", "3 4" }, 2, "xllcorner 1e300\nyllcorner 0\n"));
+            }),
+      { "1e+300", "cannot be told apart" }));
+}
+
 TEST(Raster, terracesOfWholeMetresAreNoted)
 {
   RawRaster raster = smallRaster();

@@ -55,6 +55,60 @@ TEST(Plausible, Ground)
   EXPECT_EQ(notesOf(35.0, roughness).size(), 2u);
 }
 
+TEST(Plausible, Nets)
+{
+  Barrier net;
+  net.feature = 1;
+  net.height = 4.0;
+  net.capacity = 1e6;
+  net.braking = 6.0;
+  net.residual = 0.6;
+  const auto notes = [](const Barrier& barrier)
+  {
+    Structures all;
+    all.barriers = { barrier };
+    std::vector<std::string> told;
+    askAfterNumbers(all, told);
+    return told;
+  };
+  EXPECT_TRUE(notes(net).empty());
+  net.braking = 50.0;
+  net.residual = 1.0;
+  ASSERT_EQ(notes(net).size(), 2u);
+  EXPECT_NE(notes(net)[0].find("first feature 1 with 50 m"), std::string::npos);
+  EXPECT_NE(notes(net)[1].find("first feature 1 with 100 %"), std::string::npos);
+  Barrier endless;
+  endless.feature = 2;
+  endless.height = 4.0;
+  ASSERT_EQ(notes(endless).size(), 1u);
+  EXPECT_NE(notes(endless)[0].find("stops every rock"), std::string::npos);
+}
+
+TEST(Plausible, CrowdsOfTrees)
+{
+  const auto notes = [](double apart)
+  {
+    Structures all;
+    for (int k = 0; k < 400; ++k)
+    {
+      Tree tree;
+      tree.position = { apart * (k % 20), apart * double(k / 20) };
+      tree.diameter = 0.5;
+      tree.height = 25.0;
+      all.trees.push_back(tree);
+    }
+    std::vector<std::string> told;
+    askAfterTwins(all, told);
+    return told;
+  };
+  EXPECT_TRUE(notes(5.0).empty()); // a hectare of 79 m²
+  const auto crowd = notes(0.5);
+  ASSERT_EQ(crowd.size(), 1u);
+  EXPECT_EQ(
+    crowd[0].find("1 of 1 squares of 50 m with trees look implausible, first one with 314 "), 0u)
+    << crowd[0];
+}
+
 TEST(Plausible, Stands)
 {
   const auto notes = [](std::vector<Stand> stands)
