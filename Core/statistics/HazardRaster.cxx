@@ -2,6 +2,7 @@
 
 #include "base/abort.h"
 #include "base/errors.h"
+#include "base/parallel.h"
 #include "terrain/Terrain.h"
 
 #include <tbb/parallel_sort.h>
@@ -23,6 +24,9 @@ constexpr double none = -std::numeric_limits<double>::infinity();
 /// Between two cuts less than this of the way apart there is no cell, only rounding: a path through
 /// the corner of four cells. m
 constexpr double leastWay = 1e-9;
+
+constexpr std::int64_t kPathsAtOnce = 16;    ///< That one thread takes.
+constexpr std::int64_t kPathsOfRound = 1024; ///< Whose passages wait, shared out, to be taken in.
 
 /// Appends where `value` (of bounds low, high) passes a multiple of `size` from `start` on.
 void appendCuts(const Cubic& value, std::array<double, 2> bounds, double start, double size,
@@ -71,6 +75,22 @@ double maximum(const Cubic& f, double from, double to)
   return most;
 }
 
+/// Takes in the values of another stay.
+void raise(Maxima& maxima, const Maxima& other)
+{
+  for (std::size_t k = 0; k < maxima.size(); ++k)
+  {
+    maxima[k] = std::max(maxima[k], other[k]);
+  }
+}
+
+Maxima maximaAt(const PathPoint& point)
+{
+  return { float(point.kineticEnergy), float(point.velocity.norm()),
+    float(std::isnan(point.heightOverGround) ? none : point.heightOverGround),
+    float(point.rotationRate.norm()) };
+}
+
 void countEntry(Passage& passage)
 {
   passage.entries = std::min<std::uint32_t>(passage.entries + 1, Passage::kMostEntries);
@@ -113,17 +133,12 @@ std::uint32_t HazardRaster::angleAt(const Vec3& place) const
   return std::uint32_t(std::lround(std::clamp(share, 0.0, 1.0) * Passage::kAngleSteps));
 }
 
-void HazardRaster::addVisit(
-  std::int64_t cell, const std::array<double, hazardCount>& maxima, const Vec3& place)
+void HazardRaster::addVisit(std::int64_t cell, const Maxima& maxima, const Vec3& place)
 {
   if (cell >= 0 && cell == here_)
   {
     visits_.back().angle = this->angleAt(place);
-    auto& known = visits_.back().maxima;
-    for (std::size_t k = 0; k < known.size(); ++k)
-    {
-      known[k] = std::max(known[k], maxima[k]);
-    }
+    raise(visits_.back().maxima, maxima);
   }
   else if (cell >= 0)
   {
@@ -133,6 +148,13 @@ void HazardRaster::addVisit(
     visit.angle = this->angleAt(place);
   }
   here_ = cell;
+}
+
+Maxima HazardRaster::maximaOf(
+  const PathPiece& piece, double from, double to, std::array<double, 2> grounds) const
+{
+  return { float(piece.maxKineticEnergy(from, to)), float(piece.maxSpeed(from, to)),
+    float(this->maxHeight(piece, from, to, grounds)), float(piece.maxRotationRate(from, to)) };
 }
 
 double HazardRaster::maxHeight(
@@ -204,13 +226,8 @@ void HazardRaster::addPiece(const PathPiece& piece, std::array<double, 2> ground
   std::rotate(cuts_.begin() + 1, cuts_.begin() + 2, cuts_.end()); // the end behind the crossings
   const auto visit = [&](std::int64_t cell, double from, double to)
   {
-    std::array<double, hazardCount> maxima{};
-    if (cell >= 0)
-    {
-      maxima = { piece.maxKineticEnergy(from, to), piece.maxSpeed(from, to),
-        this->maxHeight(piece, from, to, grounds), piece.maxRotationRate(from, to) };
-    }
-    this->addVisit(cell, maxima, piece.position(to));
+    this->addVisit(
+      cell, cell >= 0 ? this->maximaOf(piece, from, to, grounds) : Maxima(), piece.position(to));
   };
   const auto cellOf = [&](double s) { return this->cellAt(piece.along(0)(s), piece.along(1)(s)); };
   bool visited = false;
@@ -274,11 +291,7 @@ void HazardRaster::add(const RockPath& path)
   // Also one that came from beyond and rests on the map's border.
   if (!moved || (path.rested && here_ < 0 && end >= 0))
   {
-    this->addVisit(end,
-      { last.kineticEnergy, last.velocity.norm(),
-        std::isnan(last.heightOverGround) ? none : last.heightOverGround,
-        last.rotationRate.norm() },
-      last.position);
+    this->addVisit(end, maximaAt(last), last.position);
   }
   if (path.rested && here_ >= 0)
   {
@@ -294,13 +307,31 @@ void HazardRaster::add(const RockPath& path)
       countEntry(*known);
       known->stopped |= visit.stopped;
       known->angle = std::min<std::uint32_t>(known->angle, visit.angle);
-      for (std::size_t k = 0; k < known->maxima.size(); ++k)
-      {
-        known->maxima[k] = std::max(known->maxima[k], visit.maxima[k]);
-      }
+      raise(known->maxima, visit.maxima);
       continue;
     }
     this->keep(path, visit);
+  }
+}
+
+void HazardRaster::addAll(std::int64_t count, const ReadPaths& read)
+{
+  for (std::int64_t round = 0; round < count; round += kPathsOfRound)
+  {
+    const std::int64_t end = std::min(count, round + kPathsOfRound);
+    std::vector<HazardRaster> parts(
+      std::size_t((end - round + kPathsAtOnce - 1) / kPathsAtOnce), HazardRaster(grid_, terrain_));
+    forEach(parts.size(), 1,
+      [&](std::size_t k)
+      {
+        const std::int64_t first = round + std::int64_t(k) * kPathsAtOnce;
+        read(first, std::min(kPathsAtOnce, end - first),
+          [&](const RockPath& path) { parts[k].add(path); });
+      });
+    for (const HazardRaster& part : parts)
+    {
+      this->merge(part);
+    }
   }
 }
 
@@ -327,8 +358,8 @@ public:
   }
 
   /// The disc goes straight from a to b, where the energy-line angle is `angle`.
-  void add(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
-    const std::array<double, hazardCount>& maxima, std::uint32_t angle)
+  void add(
+    const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Maxima& maxima, std::uint32_t angle)
   {
     ++step_;
     const CellGrid& grid = raster_.grid_;
@@ -415,7 +446,7 @@ private:
     return false;
   }
 
-  void visit(std::int64_t cell, const std::array<double, hazardCount>& maxima, std::uint32_t angle)
+  void visit(std::int64_t cell, const Maxima& maxima, std::uint32_t angle)
   {
     const auto [at, isNew] = cells_.try_emplace(cell);
     Visited& visited = at->second;
@@ -431,10 +462,7 @@ private:
         countEntry(visited.passage);
         visited.before = visited.passage.angle;
       }
-      for (std::size_t k = 0; k < maxima.size(); ++k)
-      {
-        visited.passage.maxima[k] = std::max(visited.passage.maxima[k], maxima[k]);
-      }
+      raise(visited.passage.maxima, maxima);
     }
     visited.passage.angle = std::min(visited.before, angle);
     visited.step = step_;
@@ -467,9 +495,7 @@ void HazardRaster::addSwath(const RockPath& path)
     {
       const double from = double(part) / parts, to = double(part + 1) / parts;
       swath.add(piece.position(from).head<2>(), piece.position(to).head<2>(),
-        { piece.maxKineticEnergy(from, to), piece.maxSpeed(from, to),
-          this->maxHeight(piece, from, to, { before, after }), piece.maxRotationRate(from, to) },
-        this->angleAt(piece.position(to)));
+        this->maximaOf(piece, from, to, { before, after }), this->angleAt(piece.position(to)));
     }
     before = after;
     moved = true;
@@ -478,11 +504,7 @@ void HazardRaster::addSwath(const RockPath& path)
   if (!moved)
   {
     const Eigen::Vector2d place = last.position.head<2>();
-    swath.add(place, place,
-      { last.kineticEnergy, last.velocity.norm(),
-        std::isnan(last.heightOverGround) ? none : last.heightOverGround,
-        last.rotationRate.norm() },
-      this->angleAt(last.position));
+    swath.add(place, place, maximaAt(last), this->angleAt(last.position));
   }
   if (path.rested)
   {

@@ -6,6 +6,7 @@
 #include "statistics/passages.h"
 #include "statistics/path.h"
 
+#include <functional>
 #include <vector>
 
 namespace rockfall
@@ -30,6 +31,11 @@ public:
   /// as released, not more. Throws DataError as checkPath. Not for several
   /// threads at once: use one raster each, and merge.
   void add(const RockPath& path);
+  /// Hands `use` the paths from `first` on, `count` of them; several threads ask at once.
+  using ReadPaths = std::function<void(
+    std::int64_t first, std::int64_t count, const std::function<void(const RockPath&)>& use)>;
+  /// Adds paths 0 … count − 1, on all threads.
+  void addAll(std::int64_t count, const ReadPaths& read);
   /// Takes in what another raster of the same grid has. Throws ParameterError for another grid.
   void merge(const HazardRaster& other);
 
@@ -45,8 +51,9 @@ public:
 private:
   std::int64_t cellAt(double x, double y) const; ///< −1 beyond the grid.
   void addPiece(const PathPiece& piece, std::array<double, 2> grounds);
-  void addVisit(
-    std::int64_t cell, const std::array<double, hazardCount>& maxima, const Vec3& place);
+  void addVisit(std::int64_t cell, const Maxima& maxima, const Vec3& place);
+  Maxima maximaOf(
+    const PathPiece& piece, double from, double to, std::array<double, 2> grounds) const;
   /// Of the line from a place up to the release of the path being added, in Passage's steps; a right
   /// angle straight under it.
   std::uint32_t angleAt(const Vec3& place) const;

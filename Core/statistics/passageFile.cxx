@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "base/text/numberText.h"
+#include "gis/base/packing.h"
 
 #include <algorithm>
 #include <bit>
@@ -19,9 +20,8 @@ namespace rockfall
 namespace
 {
 
-static_assert(std::endian::native == std::endian::little && sizeof(Passage) == 56);
+static_assert(std::endian::native == std::endian::little && sizeof(Passage) == 40);
 
-constexpr std::uint64_t memory = 64'000'000;    ///< For the passages of all files at once, bytes.
 constexpr std::uint64_t longestCrs = 1'000'000; ///< Bytes; more is no CRS but a damaged file.
 
 template <typename T>
@@ -137,14 +137,31 @@ void readFrequencies(std::istream& in, PassageFile& file)
   }
 }
 
-/// The passages of one file, some at a time. No file stays open: there may be
+/// Where the parts of `size` bytes of file begin; false if they do not end where it does.
+bool readParts(std::istream& in, std::uint64_t size, PassageFile& file)
+{
+  const std::uint64_t parts =
+    file.passages / kPassagesOfPart + (file.passages % kPassagesOfPart > 0 ? 1 : 0);
+  if (!in || parts > size / sizeof(std::uint32_t))
+  {
+    return false;
+  }
+  std::uint64_t at = std::uint64_t(in.tellg()) + parts * sizeof(std::uint32_t);
+  file.parts = { at };
+  for (std::uint64_t k = 0; k < parts; ++k)
+  {
+    file.parts.push_back(at += get<std::uint32_t>(in));
+  }
+  return in && at == size;
+}
+
+/// The passages of one file, a part at a time. No file stays open: there may be
 /// more than a process may have open.
 class PassageStream
 {
 public:
-  PassageStream(const PassageFile& file, std::size_t atOnce)
+  explicit PassageStream(const PassageFile& file)
     : file_(file)
-    , atOnce_(atOnce)
   {
   }
 
@@ -162,21 +179,33 @@ public:
 private:
   void refill()
   {
-    buffer_.resize(std::min<std::uint64_t>(atOnce_, file_.passages - read_));
+    buffer_.clear();
     at_ = 0;
-    if (buffer_.empty())
+    if (part_ + 1 == file_.parts.size())
     {
       return;
     }
+    buffer_.resize(
+      std::min<std::uint64_t>(kPassagesOfPart, file_.passages - part_ * kPassagesOfPart));
+    const std::uint64_t length = file_.parts[part_ + 1] - file_.parts[part_];
+    if (length > buffer_.size() * sizeof(Passage))
+    {
+      failDamaged(file_.fileName, "a part of it is too long");
+    }
+    std::vector<char> packed(length);
     std::ifstream in(file_.fileName, std::ios::binary);
-    in.seekg(std::streamoff(file_.begin + read_ * sizeof(Passage)));
-    in.read(
-      reinterpret_cast<char*>(buffer_.data()), std::streamsize(buffer_.size() * sizeof(Passage)));
+    in.seekg(std::streamoff(file_.parts[part_]));
+    in.read(packed.data(), std::streamsize(length));
     if (!in)
     {
       throw FileError(file_.fileName + ": cannot be read to its end");
     }
-    read_ += buffer_.size();
+    if (!gis::unpack(packed, sizeof(Passage),
+          { reinterpret_cast<char*>(buffer_.data()), buffer_.size() * sizeof(Passage) }))
+    {
+      failDamaged(file_.fileName, "its passages cannot be unpacked");
+    }
+    part_ += 1;
     for (const Passage& passage : buffer_)
     {
       this->check(passage);
@@ -192,9 +221,9 @@ private:
         "there is no cell " + std::to_string(passage.cell) + " in a map of " +
           std::to_string(cells));
     }
-    for (const double maximum : passage.maxima)
+    for (const float maximum : passage.maxima)
     {
-      if (std::isnan(maximum) || maximum == std::numeric_limits<double>::infinity())
+      if (std::isnan(maximum) || maximum == std::numeric_limits<float>::infinity())
       {
         failDamaged(file_.fileName,
           "a rock in cell " + std::to_string(passage.cell) + " has the value " +
@@ -211,8 +240,7 @@ private:
   }
 
   const PassageFile& file_;
-  std::size_t atOnce_;
-  std::uint64_t read_ = 0;
+  std::uint64_t part_ = 0; ///< The one to come.
   std::vector<Passage> buffer_;
   std::size_t at_ = 0;
 };
@@ -253,9 +281,7 @@ PassageFile readPassageFile(const std::string& fileName)
   readLost(in, file);
   readFrequencies(in, file);
   file.passages = get<std::uint64_t>(in);
-  file.begin = in ? std::uint64_t(in.tellg()) : 0;
-  if (!in || length > longestCrs || file.passages > size ||
-    size != file.begin + file.passages * sizeof(Passage))
+  if (!in || length > longestCrs || !readParts(in, size, file))
   {
     failDamaged(fileName, "it is not as long as it must be");
   }
@@ -306,12 +332,7 @@ void PassageFiles::summarize(const UseCell& use) const
 
 void PassageFiles::forEach(const std::function<void(const Passage&)>& use) const
 {
-  const std::size_t atOnce = std::max<std::size_t>(16, memory / sizeof(Passage) / files_.size());
-  std::vector<PassageStream> streams;
-  for (const PassageFile& file : files_)
-  {
-    streams.emplace_back(file, atOnce);
-  }
+  std::vector<PassageStream> streams(files_.begin(), files_.end());
   const auto later = [](PassageStream* a, PassageStream* b) { return *b->next() < *a->next(); };
   std::priority_queue<PassageStream*, std::vector<PassageStream*>, decltype(later)> first(later);
   for (PassageStream& stream : streams)
@@ -325,8 +346,11 @@ void PassageFiles::forEach(const std::function<void(const Passage&)>& use) const
   {
     PassageStream* stream = first.top();
     first.pop();
-    use(*stream->next());
-    stream->advance();
+    do // a file of some iterations has several passages in a row
+    {
+      use(*stream->next());
+      stream->advance();
+    } while (stream->next() && (first.empty() || *stream->next() < *first.top()->next()));
     if (stream->next())
     {
       first.push(stream);

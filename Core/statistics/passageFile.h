@@ -4,7 +4,7 @@
 /// Passages of a run in a file, so that the map of many runs can be made without having any of them
 /// in memory.
 ///
-/// A file has, little endian: the 8 bytes "RFPASS03"; columns and rows (int32
+/// A file has, little endian: the 8 bytes "RFPASS04"; columns and rows (int32
 /// each); cell size, west, south (double); x, y, z of the local origin
 /// (double); bytes of the CRS (uint64) and the CRS as WKT; number of iterations
 /// (uint64) and for each its number (int64) and how many rocks were released in
@@ -12,9 +12,10 @@
 /// nodata, unmoved (int64), the latest time of one that still moved (double);
 /// number of rocks whose frequency is known (uint64), of all or none, and for each its number,
 /// block, iterations that released it (int64) and frequency (double, 1/a); number of passages
-/// (uint64), and the passages in their order, 56 bytes each: cell (uint32), entries (15 bits),
-/// whether the rock came to rest there (1) and the energy-line angle (16), iteration, rock (int32),
-/// block (int64), the four largest values (double).
+/// (uint64), and the passages in their order, in parts of kPassagesOfPart, each packed by itself
+/// (gis/base/packing.h): first the bytes that each part takes (uint32), then the parts. A passage
+/// is 40 bytes: cell (uint32), entries (15 bits), whether the rock came to rest there (1) and the
+/// energy-line angle (16), iteration, rock (int32), block (int64), the four largest values (float).
 
 #include "base/types.h"
 #include "statistics/frequency.h"
@@ -32,7 +33,9 @@ namespace rockfall
 class HazardRaster;
 
 /// The first bytes of a file.
-constexpr char passageMagic[8] = { 'R', 'F', 'P', 'A', 'S', 'S', '0', '3' };
+constexpr char passageMagic[8] = { 'R', 'F', 'P', 'A', 'S', 'S', '0', '4' };
+/// Of each file that is read one part is in memory.
+constexpr std::size_t kPassagesOfPart = 4096;
 
 /// Statements of a file on itself.
 struct PassageFile
@@ -42,10 +45,10 @@ struct PassageFile
   Vec3 origin = Vec3::Zero(); ///< Of the paths' frame, m.
   std::string crs;            ///< WKT; empty for a local system.
   Releases releases;
-  LostRocks lost;              ///< Of all of the run, whatever came to the map.
-  RockFrequencies frequencies; ///< Empty: not known.
-  std::uint64_t passages = 0;  ///< How many there are.
-  std::uint64_t begin = 0;     ///< Byte of the first.
+  LostRocks lost;                   ///< Of all of the run, whatever came to the map.
+  RockFrequencies frequencies;      ///< Empty: not known.
+  std::uint64_t passages = 0;       ///< How many there are.
+  std::vector<std::uint64_t> parts; ///< Byte with which each begins, and the end.
 };
 
 /// Writes what was added to `raster`, whose frame has its origin at `origin`,

@@ -1,10 +1,13 @@
 // Passages into a file; reading them is in passageFile.cxx.
 
 #include "base/errors.h"
+#include "base/parallel.h"
 #include "gis/base/outputFile.h"
+#include "gis/base/packing.h"
 #include "statistics/HazardRaster.h"
 #include "statistics/passageFile.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -19,6 +22,43 @@ template <typename T>
 void put(std::ostream& out, const T& value)
 {
   out.write(reinterpret_cast<const char*>(&value), sizeof(T));
+}
+
+constexpr std::size_t kPartsAtOnce = 64; ///< In memory, packed.
+
+/// In parts, behind the bytes that each takes.
+void putPassages(std::ostream& out, const std::vector<Passage>& passages)
+{
+  const std::size_t parts = (passages.size() + kPassagesOfPart - 1) / kPassagesOfPart;
+  std::vector<std::uint32_t> lengths(parts);
+  const std::streampos table = out.tellp();
+  const auto putLengths = [&]
+  {
+    out.write(reinterpret_cast<const char*>(lengths.data()),
+      std::streamsize(parts * sizeof(std::uint32_t)));
+  };
+  putLengths(); // to be overwritten
+  std::vector<std::vector<char>> packed;
+  for (std::size_t first = 0; first < parts; first += kPartsAtOnce)
+  {
+    packed.resize(std::min(kPartsAtOnce, parts - first));
+    forEach(packed.size(), 1,
+      [&](std::size_t k)
+      {
+        const std::size_t begin = (first + k) * kPassagesOfPart;
+        const std::size_t count = std::min(kPassagesOfPart, passages.size() - begin);
+        packed[k] =
+          gis::pack({ reinterpret_cast<const char*>(&passages[begin]), count * sizeof(Passage) },
+            sizeof(Passage));
+      });
+    for (std::size_t k = 0; k < packed.size(); ++k)
+    {
+      lengths[first + k] = std::uint32_t(packed[k].size());
+      out.write(packed[k].data(), std::streamsize(packed[k].size()));
+    }
+  }
+  out.seekp(table);
+  putLengths();
 }
 
 } // namespace
@@ -61,8 +101,7 @@ void writePassages(HazardRaster& raster, const Vec3& origin, const std::string& 
   }
   const std::vector<Passage>& passages = raster.sorted();
   put(out, std::uint64_t(passages.size()));
-  out.write(reinterpret_cast<const char*>(passages.data()),
-    std::streamsize(passages.size() * sizeof(Passage)));
+  putPassages(out, passages);
   out.close();
   if (!out)
   {

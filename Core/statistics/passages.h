@@ -62,6 +62,9 @@ struct CellSummary
   std::array<SampleStatistics, hazardCount> statistics;
 };
 
+/// Largest values of the quantities; −∞ where there is none. As precise as maps give them.
+using Maxima = std::array<float, hazardCount>;
+
 /// A rock in one iteration in one cell.
 struct Passage
 {
@@ -75,8 +78,7 @@ struct Passage
   std::int32_t iteration = 0;
   std::int32_t rock = 0;
   std::int64_t blockId = 0; ///< Tells the rocks of two runs from each other.
-  std::array<double, hazardCount>
-    maxima{}; ///< On the way through the cell; −∞ where there is none.
+  Maxima maxima{};          ///< On the way through the cell.
 };
 
 /// The order in which passages are summed: by cell, iteration, rock and block.

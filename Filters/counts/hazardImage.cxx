@@ -399,12 +399,16 @@ void checkOptions(const HazardMapOptions& options)
 
 void addPaths(vtkPolyData* trajectories, const Vec3& origin, bool rockWidth, HazardRaster& raster)
 {
-  forEachPath(trajectories, origin,
-    [&](const RockPath& path, std::int64_t)
+  raster.addAll(trajectories->GetNumberOfLines(),
+    [&](std::int64_t first, std::int64_t count, const std::function<void(const RockPath&)>& use)
     {
-      RockPath added = path;
-      added.width = rockWidth ? path.width : 0.0;
-      raster.add(added);
+      forPaths(trajectories, origin, first, count,
+        [&](const RockPath& path, std::int64_t)
+        {
+          RockPath added = path;
+          added.width = rockWidth ? path.width : 0.0;
+          use(added);
+        });
     });
 }
 

@@ -55,11 +55,7 @@ bool isRunning(vtkFieldData* data)
   return data->GetAbstractArray(runningName) != nullptr;
 }
 
-namespace
-{
-
-/// The lines from `first` on, at most `count`.
-void readPaths(vtkPolyData* trajectories, const Vec3& origin, vtkIdType first, vtkIdType count,
+void forPaths(vtkPolyData* trajectories, const Vec3& origin, vtkIdType first, vtkIdType count,
   const std::function<void(const RockPath& path, std::int64_t cell)>& use)
 {
   auto* kept =
@@ -88,7 +84,7 @@ void readPaths(vtkPolyData* trajectories, const Vec3& origin, vtkIdType first, v
   vtkDataArray *mass = cells->GetArray("Mass"), *width = cells->GetArray("Width");
 
   std::vector<PathPoint> path;
-  // Polydata's cells begin with its vertices.
+  // GetTuple1 of an array is not for several threads. Polydata's cells begin with its vertices.
   vtkIdType cell = trajectories->GetNumberOfVerts() + first;
   auto lines = vtk::TakeSmartPointer(trajectories->GetLines()->NewIterator());
   for (lines->GoToCell(first); count > 0 && !lines->IsDoneWithTraversal();
@@ -102,45 +98,43 @@ void readPaths(vtkPolyData* trajectories, const Vec3& origin, vtkIdType first, v
     for (vtkIdType k = 0; k < size; ++k)
     {
       PathPoint& p = path[std::size_t(k)];
-      p.time = time->GetTuple1(ids[k]);
+      p.time = time->GetComponent(ids[k], 0);
       trajectories->GetPoint(ids[k], p.position.data());
       p.position -= origin;
       velocity->GetTuple(ids[k], p.velocity.data());
       rotation->GetTuple(ids[k], p.rotationRate.data());
-      p.kineticEnergy = energy->GetTuple1(ids[k]);
-      p.heightOverGround = height->GetTuple1(ids[k]);
+      p.kineticEnergy = energy->GetComponent(ids[k], 0);
+      p.heightOverGround = height->GetComponent(ids[k], 0);
     }
     RockPath rockPath;
-    rockPath.iteration = int(iteration->GetTuple1(cell));
-    rockPath.rock = int(rock->GetTuple1(cell));
-    rockPath.blockId = std::int64_t(block->GetTuple1(cell));
-    const int end = int(fate->GetTuple1(cell));
+    rockPath.iteration = int(iteration->GetComponent(cell, 0));
+    rockPath.rock = int(rock->GetComponent(cell, 0));
+    rockPath.blockId = std::int64_t(block->GetComponent(cell, 0));
+    const int end = int(fate->GetComponent(cell, 0));
     rockPath.rested = end == int(Fate::Rested) || end == int(Fate::Caught);
     if (mass)
     {
-      rockPath.mass = mass->GetTuple1(cell);
+      rockPath.mass = mass->GetComponent(cell, 0);
     }
     if (width)
     {
-      rockPath.width = width->GetTuple1(cell);
+      rockPath.width = width->GetComponent(cell, 0);
     }
     rockPath.points = path;
     use(rockPath, cell);
   }
 }
 
-} // namespace
-
 void forEachPath(vtkPolyData* trajectories, const Vec3& origin,
   const std::function<void(const RockPath& path, std::int64_t cell)>& use)
 {
-  readPaths(trajectories, origin, 0, trajectories->GetNumberOfLines(), use);
+  forPaths(trajectories, origin, 0, trajectories->GetNumberOfLines(), use);
 }
 
 void forPath(
   vtkPolyData* trajectories, vtkIdType line, const std::function<void(const RockPath& path)>& use)
 {
-  readPaths(
+  forPaths(
     trajectories, Vec3::Zero(), line, 1, [&use](const RockPath& path, std::int64_t) { use(path); });
 }
 

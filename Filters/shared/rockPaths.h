@@ -34,6 +34,10 @@ bool isRunning(vtkFieldData* data);
 void forEachPath(vtkPolyData* trajectories, const Vec3& origin,
   const std::function<void(const RockPath& path, std::int64_t cell)>& use);
 
+/// The same for `count` polylines from the one of this number on; several threads may ask at once.
+void forPaths(vtkPolyData* trajectories, const Vec3& origin, vtkIdType first, vtkIdType count,
+  const std::function<void(const RockPath& path, std::int64_t cell)>& use);
+
 /// The same for the polyline of this number alone, in the coordinates of the polydata.
 void forPath(
   vtkPolyData* trajectories, vtkIdType line, const std::function<void(const RockPath& path)>& use);

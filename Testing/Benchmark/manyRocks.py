@@ -2,7 +2,7 @@
 collectors: time and memory of all of it.
 
     PV_PLUGIN_PATH=build/lib/paraview-5.11/plugins/RockfallDDA /usr/bin/time -v \\
-      pvbatch Testing/Benchmark/manyRocks.py FOLDER [--trajectories 100000 --chunk 50 --threads 0]
+      pvbatch Testing/Benchmark/manyRocks.py FOLDER [--trajectories 100000 --chunk 50 --threads 0 --alone]
 
 The DEM is a slope of 35° with gullies that flattens out, 2 m cells; the rocks are cubes and icosahedra of
 1 m3, 100 of them in 1000 iterations; two roads cross their way. The study is that of Examples/study.py; what
@@ -27,6 +27,7 @@ parser.add_argument("--trajectories", type=int, default=100000)
 parser.add_argument("--rocks", type=int, default=100)
 parser.add_argument("--chunk", type=int, default=50, help="iterations that are in memory at once")
 parser.add_argument("--keep-trajectories", action="store_true")
+parser.add_argument("--alone", action="store_true", help="without map and lines: the simulation by itself")
 parser.add_argument("--threads", type=int, default=0)
 chosen = parser.parse_args()
 os.makedirs(chosen.folder, exist_ok=True)
@@ -59,7 +60,8 @@ with open(os.path.join(chosen.folder, "study.json"), "w") as file:
                     "RoughnessDeviation": 0.1, "MaximumDisplayCells": 200000},
         "rocks": {"FileName": "sources.csv"},
         "simulation": {"EndTime": 60, "TrajectoryOutput": "Thinned"},
-        "map": {}, "lines": {"FileName": "roads.csv"}, "trajectories": chosen.keep_trajectories,
+        **({} if chosen.alone else {"map": {}, "lines": {"FileName": "roads.csv"}}),
+        "trajectories": chosen.keep_trajectories,
         "iterations": max(1, chosen.trajectories // chosen.rocks), "chunk": chosen.chunk}, file)
 
 sys.argv = [STUDY, os.path.join(chosen.folder, "results"), os.path.join(chosen.folder, "study.json"),

@@ -26,7 +26,7 @@ Passage passageOf(std::uint32_t cell, int iteration, int rock, double energy)
   passage.cell = cell;
   passage.iteration = iteration;
   passage.rock = rock;
-  passage.maxima = { energy, 1.0, 1.0, 1.0 };
+  passage.maxima = { float(energy), 1.0, 1.0, 1.0 };
   return passage;
 }
 

@@ -4,6 +4,7 @@
 #include "hermitePaths.h"
 
 #include "base/errors.h"
+#include "gis/base/packing.h"
 #include "statistics/HazardRaster.h"
 #include "statistics/passageFile.h"
 
@@ -83,6 +84,27 @@ std::string read(const std::string& name)
   return { std::istreambuf_iterator<char>(in), {} };
 }
 
+/// The bytes of a file with its passages as they are, not packed.
+std::string plain(const std::string& name)
+{
+  const PassageFile file = readPassageFile(name);
+  const std::string bytes = read(name);
+  const std::size_t parts = file.parts.size() - 1;
+  std::string table, passages;
+  for (std::size_t k = 0; k < parts; ++k)
+  {
+    const std::size_t count =
+      std::min<std::size_t>(kPassagesOfPart, file.passages - k * kPassagesOfPart);
+    std::string records(count * sizeof(Passage), '\0');
+    EXPECT_TRUE(gis::unpack({ bytes.data() + file.parts[k], file.parts[k + 1] - file.parts[k] },
+      sizeof(Passage), records));
+    passages += records;
+    const auto length = std::uint32_t(records.size());
+    table.append(reinterpret_cast<const char*>(&length), sizeof(length));
+  }
+  return bytes.substr(0, file.parts[0] - 4 * parts) + table + passages;
+}
+
 void expectError(const std::vector<std::string>& names, const char* word)
 {
   try
@@ -147,6 +169,63 @@ TEST_F(TestPassageFile, TheSameRunMakesTheSameFile)
   EXPECT_EQ(read(fileName("a")), read(fileName("b")));
 }
 
+/// Ten thousand rocks: several parts of a file, each of which is packed.
+TEST_F(TestPassageFile, ManyPassagesArePacked)
+{
+  const auto read =
+    [](std::int64_t first, std::int64_t count, const std::function<void(const RockPath&)>& use)
+  {
+    for (std::int64_t k = first; k < first + count; ++k)
+    {
+      std::mt19937_64 own(static_cast<std::uint64_t>(k));
+      const std::vector<PathPoint> points = wild(own, 5, 90.0);
+      RockPath path;
+      path.iteration = int(k / 100);
+      path.rock = int(k % 100);
+      path.points = points;
+      use(path);
+    }
+  };
+  HazardRaster one(grid), all(grid);
+  read(0, 10000, [&one](const RockPath& path) { one.add(path); });
+  all.addAll(10000, read);
+  EXPECT_EQ(all.released(), 10000);
+  EXPECT_EQ(all.releases(), one.releases());
+  const auto numbersOf = [](HazardRaster& raster)
+  { return numbers([&](const UseCell& use) { raster.summarize(use); }); };
+  EXPECT_TRUE(sameBits(numbersOf(one), numbersOf(all)));
+
+  const std::vector<Passage>& kept = all.sorted();
+  const std::size_t count = kept.size();
+  ASSERT_GT(count, 10 * kPassagesOfPart);
+  writePassages(all, origin, "", fileName("many"));
+  EXPECT_LT(std::filesystem::file_size(fileName("many")), 26 * count);
+  std::size_t at = 0;
+  bool same = true;
+  PassageFiles({ fileName("many") })
+    .forEach([&](const Passage& passage)
+      { same = same && std::memcmp(&passage, &kept[at++], sizeof(Passage)) == 0; });
+  EXPECT_EQ(at, count);
+  EXPECT_TRUE(same);
+}
+
+TEST(Packing, KeepsWhatItCannotShorten)
+{
+  std::mt19937_64 random(3);
+  std::vector<char> noise(4000), rest(4000, 7);
+  std::generate(noise.begin(), noise.end(), [&random] { return char(random()); });
+  for (const std::vector<char>& records : { noise, rest, std::vector<char>() })
+  {
+    const std::vector<char> packed = gis::pack(records, 40);
+    EXPECT_EQ(packed.size() < records.size(), records == rest);
+    std::vector<char> back(records.size());
+    ASSERT_TRUE(gis::unpack(packed, 40, back));
+    EXPECT_EQ(back, records);
+  }
+  std::vector<char> other(400);
+  EXPECT_FALSE(gis::unpack(gis::pack(rest, 40), 40, other)); // of 100 records
+}
+
 TEST_F(TestPassageFile, NothingPassed)
 {
   HazardRaster raster(grid);
@@ -180,8 +259,12 @@ TEST_F(TestPassageFile, BadInput)
   }
   with(bytes + "x");
   expectError({ bad }, "bad: is damaged");
-  std::string cell = bytes;
-  cell.replace(cell.size() - 56, 4, "\xff\xff\xff\x7f");
+  std::string turned = bytes;
+  turned[turned.size() - 20] ^= 1;
+  with(turned);
+  expectError({ bad }, "bad: is damaged: its passages cannot be unpacked");
+  std::string cell = plain(good);
+  cell.replace(cell.size() - sizeof(Passage), 4, "\xff\xff\xff\x7f");
   with(cell);
   expectError({ bad }, "bad: is damaged: there is no cell");
   HazardRaster other({ 20, 20, 5.0, 15.0, 0.0 });
@@ -210,7 +293,8 @@ TEST_F(TestPassageFile, HeadersAndPassagesThatNoRunHasAreDamage)
   }
   const std::string bad = fileName("bad");
   writePassages(raster, origin, "", bad);
-  const std::string good = read(bad);
+  const std::string good = plain(bad);
+  std::ofstream(bad, std::ios::binary) << good;
   PassageFiles({ bad }).summarize([](const CellSummary&) {});
   const auto put = [&](std::size_t at, auto value)
   {
@@ -220,7 +304,7 @@ TEST_F(TestPassageFile, HeadersAndPassagesThatNoRunHasAreDamage)
   };
   const double inf = std::numeric_limits<double>::infinity();
   constexpr std::size_t cellSize = 16, west = 24, z = 56, iterations = 72, count = 88, lost = 96,
-                        firstPassage = 160;
+                        firstPassage = 164;
   put(8, std::int32_t(-4));
   expectError({ bad }, "bad: is damaged: it has -4 x 3 cells");
   put(8, std::int32_t(2147483647));
@@ -254,7 +338,7 @@ TEST_F(TestPassageFile, HeadersAndPassagesThatNoRunHasAreDamage)
   expectError({ bad }, "bad: is damaged: 7 of 0 rocks were lost");
   put(lost + 40, inf);
   expectError({ bad }, "bad: is damaged: the end time is inf");
-  put(firstPassage + 24, inf);
+  put(firstPassage + 24, float(inf));
   expectError({ bad }, "has the value inf");
 }
 
