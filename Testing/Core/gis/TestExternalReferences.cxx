@@ -355,7 +355,7 @@ TEST(Reach, addressesInFilesAreNotCalled)
     {
       EXPECT_EQ(readLineLayer(file).size(), 1u);
     }
-    catch (const FileError&)
+    catch (const Error&)
     {
     }
     EXPECT_FALSE(listener.called()) << file;
