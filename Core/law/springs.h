@@ -88,30 +88,7 @@ inline NormalSpring endSpring(double p, double d1)
 /// times its speed when it may leave as soon as the force is no longer a push: e = exp(−2 ζ acos ζ
 /// / √(1 − ζ²)), for ζ > 1 with acosh and √(ζ² − 1) (Schwager & Pöschel 2007, Granular Matter 9,
 /// 465, for the condition of no tension). Between 0.01 and 1; below, as for 0.01.
-inline double dampingRatio(double restitution)
-{
-  const auto exponent = [](double z)
-  {
-    if (std::abs(z - 1.0) < 1e-6)
-    {
-      return 2.0;
-    }
-    return z < 1.0 ? 2.0 * z * std::acos(z) / std::sqrt(1.0 - z * z)
-                   : 2.0 * z * std::acosh(z) / std::sqrt(z * z - 1.0);
-  };
-  if (restitution >= 1.0)
-  {
-    return 0.0;
-  }
-  const double wanted = -std::log(std::max(restitution, kLeastRestitution));
-  double low = 0.0, high = 8.0;
-  for (int k = 0; k < 50; ++k)
-  {
-    const double middle = 0.5 * (low + high);
-    (exponent(middle) < wanted ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
-}
+double dampingRatio(double restitution);
 
 /// The speed at which a mass (kg) leaves such a spring (N/m) and dashpot (N s/m) that is being
 /// pressed together by `depth` (m) and closes at `approach` (m/s, < 0: opens), m/s: its velocity v
