@@ -1,6 +1,7 @@
 #include "vtkGrowingPaths.h"
 
 #include "base/errors.h"
+#include "shared/arrays.h"
 #include "shared/errorReport.h"
 #include "shared/inputs.h"
 #include "shared/withAbort.h"
@@ -107,6 +108,7 @@ public:
     output->SetPoints(this->Points);
     output->SetLines(this->Lines);
     output->GetPointData()->ShallowCopy(this->Arrays);
+    rockfall::filters::rememberRanges(output->GetPointData());
   }
 
 private:

@@ -40,6 +40,7 @@ struct EventVertices
   void finish(vtkPolyData* output)
   {
     squeeze(this->fields);
+    rememberRanges(this->fields);
     this->points->Squeeze();
     this->vertices->Squeeze();
     this->data->SetPoints(this->points);

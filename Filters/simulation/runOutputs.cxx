@@ -260,6 +260,7 @@ void TrajectoryLines::copy(vtkPolyData* output) const
 {
   arrays_->compose();
   output->DeepCopy(arrays_->data);
+  rememberRanges(output->GetPointData());
 }
 
 void TrajectoryLines::finish(vtkPolyData* output)
@@ -270,6 +271,7 @@ void TrajectoryLines::finish(vtkPolyData* output)
   a.points->Squeeze();
   a.lines->Squeeze();
   a.compose();
+  rememberRanges(a.data->GetPointData());
   output->ShallowCopy(a.data);
 }
 

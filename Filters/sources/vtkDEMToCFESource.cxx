@@ -8,6 +8,7 @@
 #include "gis/raster/contours.h"
 #include "gis/raster/ground.h"
 #include "gis/raster/raster.h"
+#include "shared/arrays.h"
 #include "shared/errorReport.h"
 #include "shared/structureFieldData.h"
 #include "shared/terrainFieldData.h"
@@ -17,9 +18,11 @@
 #include "terrain/plausible.h"
 #include "terrain/presets.h"
 
+#include "vtkCellData.h"
 #include "vtkFieldData.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkStringArray.h"
 
@@ -224,6 +227,8 @@ int vtkDEMToCFESource::RequestData(
     mesh->GetFieldData()->AddArray(ground);
     rockfall::filters::copyCoordinateSystem(mesh->GetFieldData(), structures->GetFieldData());
     vtkPolyData::GetData(outputVector, 1)->ShallowCopy(structures);
+    rockfall::filters::rememberRanges(mesh->GetPointData());
+    rockfall::filters::rememberRanges(mesh->GetCellData());
     output->ShallowCopy(mesh);
     return 1;
   }

@@ -1,14 +1,20 @@
 // What a filter writes of a run, from trajectories made by hand: every number in its array.
 
 #include "helpers.h"
+#include "shared/arrays.h"
 #include "simulation/motion.h"
 #include "simulation/progressText.h"
 #include "simulation/runSink.h"
 
 #include "vtkCellData.h"
+#include "vtkDoubleArray.h"
+#include "vtkInformation.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkTable.h"
+
+#include <cmath>
+#include <limits>
 
 using namespace rockfall;
 
@@ -57,6 +63,52 @@ filters::RunFrame frameOf(int rocks)
 }
 
 } // namespace
+
+TEST(RunOutputs, RangesAreRememberedAsVtkHasThem)
+{
+  vtkNew<vtkDoubleArray> array, other;
+  array->SetNumberOfComponents(3);
+  for (int k = 0; k < 300; ++k)
+  {
+    array->InsertNextValue(std::sin(7.0 * k) - 0.2);
+  }
+  other->DeepCopy(array);
+  filters::rememberRanges(array.Get());
+  array->SetValue(0, 100.0); // without telling: what is remembered is given
+  for (int component : { -1, 0, 1, 2 })
+  {
+    const double* asked = other->GetRange(component);
+    const double range[2] = { asked[0], asked[1] };
+    EXPECT_EQ(array->GetRange(component)[0], range[0]);
+    EXPECT_EQ(array->GetRange(component)[1], range[1]);
+    EXPECT_EQ(array->GetFiniteRange(component)[0], other->GetFiniteRange(component)[0]);
+    EXPECT_EQ(array->GetFiniteRange(component)[1], other->GetFiniteRange(component)[1]);
+  }
+  array->Modified();
+  EXPECT_EQ(array->GetRange(0)[1], 100.0);
+  array->SetValue(3, std::numeric_limits<double>::infinity());
+  array->Modified();
+  filters::rememberRanges(array.Get());
+  EXPECT_EQ(array->GetFiniteRange(0)[1], 100.0);
+  EXPECT_GT(array->GetRange(0)[1], 100.0);
+}
+
+TEST(RunOutputs, TrajectoriesAreHandedOnWithTheirRanges)
+{
+  const Trajectory trajectory = fall();
+  const filters::RunFrame frame = frameOf(1);
+  filters::TrajectoryLines writer(frame, false);
+  writer.append(trajectory);
+  vtkNew<vtkPolyData> part, whole;
+  writer.copy(part);
+  writer.finish(whole);
+  for (vtkPolyData* lines : { part.Get(), whole.Get() })
+  {
+    vtkDataArray* time = lines->GetPointData()->GetArray("Time");
+    ASSERT_TRUE(time && time->HasInformation());
+    EXPECT_TRUE(time->GetInformation()->Has(vtkAbstractArray::PER_COMPONENT()));
+  }
+}
 
 TEST(RunOutputs, TrajectoriesHaveEveryTermOfTheEnergy)
 {
