@@ -39,10 +39,11 @@ void showUnits(QMainWindow* window)
     QLayoutItem* item = grid->itemAtPosition(row, 0);
     auto* label = item ? qobject_cast<QLabel*>(item->widget()) : nullptr;
     const QString text =
-      QString::fromUtf8(" (%1)").arg(QString::fromUtf8(unit->GetAttribute("text")));
+      QString::fromUtf8("\u00a0(%1)").arg(QString::fromUtf8(unit->GetAttribute("text")));
     if (label && !label->text().endsWith(text))
     {
       label->setText(label->text() + text);
+      grid->setAlignment(label, Qt::AlignTop); // as wide as its column, or short names break in two
     }
   }
 }

@@ -19,7 +19,7 @@
 namespace
 {
 
-constexpr int kLeastWidth = 400; // px, before the first look at it
+constexpr int kCloseWidth = 80; // px, of what stands beside the text
 
 /// The texts of a field array of any output; nothing if the data are on another machine.
 QStringList textsOf(vtkSMSourceProxy* source, const char* array)
@@ -86,8 +86,8 @@ void pqMessageBar::look()
       }
       if (!fresh.isEmpty())
       {
-        lines << "<b>" + source->getSMName().toHtmlEscaped() + "</b>: " +
-            fresh.join("<br>&nbsp;&nbsp;&nbsp;");
+        lines << "<b>" + source->getSMName().toHtmlEscaped() +
+            "</b>: " + fresh.join("<br>&nbsp;&nbsp;&nbsp;");
         failed = failed || QString(array) == "Error";
       }
     }
@@ -101,8 +101,8 @@ void pqMessageBar::look()
   this->Text->setText(text);
   this->Text->setStyleSheet(failed ? "QLabel { background: #ffd9a8; color: black; padding: 4px; }"
                                    : "QLabel { padding: 4px; }");
-  this->setVisible(!text.isEmpty());
   this->fit();
+  this->setVisible(!text.isEmpty());
 }
 
 //-----------------------------------------------------------------------------
@@ -115,7 +115,9 @@ void pqMessageBar::resizeEvent(QResizeEvent* event)
 //-----------------------------------------------------------------------------
 void pqMessageBar::fit()
 {
-  // A tool bar gives a text of several lines far more than these.
+  // A tool bar gives a text of several lines far more than these. The width is known before it is
+  // shown, or it would come tall and shrink, and the views be drawn for both.
+  const int width = this->isVisible() ? this->Text->width() : 0;
   this->Text->setFixedHeight(
-    this->Text->heightForWidth(std::max(kLeastWidth, this->Text->width())));
+    this->Text->heightForWidth(std::max(width, this->parentWidget()->width() - kCloseWidth)));
 }

@@ -152,7 +152,14 @@ void pqRockfallWindow::begin()
       rockfall::window::layHandles(pqActiveObjects::instance().activeSource());
     });
   auto* messages = new pqMessageBar(window);
-  this->connect(&this->Clock, &QTimer::timeout, messages, &pqMessageBar::look);
+  this->connect(&this->Clock, &QTimer::timeout, messages,
+    [this, messages]
+    {
+      if (!this->Scripting) // a strip that comes draws the views anew
+      {
+        messages->look();
+      }
+    });
   this->Clock.start(kLookAtRuns);
   this->connect(this->Picker, &pqPathPicker::picked, this, &pqRockfallWindow::onPicked);
   this->connect(this->Picker, &pqPathPicker::missed, this,
@@ -216,8 +223,8 @@ void pqRockfallWindow::makeMenu(QMainWindow* window)
     ->addAction(tr("Report of a Batch Study..."), this,
       [this]
       {
-        pqFileDialog dialog(nullptr, mainWindow(), tr("manifest.json of a finished study"), QString(),
-          tr("Finished studies (manifest.json)"));
+        pqFileDialog dialog(nullptr, mainWindow(), tr("manifest.json of a finished study"),
+          QString(), tr("Finished studies (manifest.json)"));
         dialog.setObjectName("RockfallReportDialog");
         dialog.setFileMode(pqFileDialog::ExistingFile);
         if (dialog.exec() == QDialog::Accepted && !dialog.getSelectedFiles().isEmpty())
@@ -236,7 +243,21 @@ void pqRockfallWindow::makeMenu(QMainWindow* window)
     ->setObjectName("actionClock");
   menu->addAction(tr("Scale, North and Date"), this, [this] { this->runPython("sheet()"); })
     ->setObjectName("actionSheet");
-  // Pictures for the documentation, taken by tests.
+  // Pictures for the documentation, taken by tests, and what tests ask the pipeline for.
+  const QString checks = qEnvironmentVariable("ROCKFALL_CHECKS");
+  if (!checks.isEmpty())
+  {
+    menu
+      ->addAction("Check", this,
+        [this, checks]
+        {
+          pqPVApplicationCore::instance()->pythonManager()->executeCode(
+            ("import runpy\nrunpy.run_path(" + quoted(checks) +
+              ", {'number': " + QString::number(++this->Checks) + "})\n")
+              .toUtf8());
+        })
+      ->setObjectName("actionCheck");
+  }
   const QString folder = qEnvironmentVariable("ROCKFALL_PICTURES");
   if (!folder.isEmpty())
   {
@@ -262,7 +283,10 @@ void pqRockfallWindow::runPython(const QString& statement)
   const QString code = "import sys\nif '" + folder + "' not in sys.path: sys.path.insert(0, '" +
     folder + "')\nimport rockfall_study\nrockfall_study." + statement + "\n";
   const NotUndone own; // a study of many steps is not taken back one by one
+  this->Scripting = true;
   python->executeCode(code.toUtf8());
+  this->Scripting = false;
+  this->settleRuns();
 }
 
 //-----------------------------------------------------------------------------

@@ -53,18 +53,21 @@ private:
   void lookAtTime();
   void keepOwnEnd();
   void runPython(const QString& statement);
+  /// What a script has made, it has drawn: whole runs are not drawn once more.
+  void settleRuns();
   void pickTrajectory();
   void tell(const QString& message);
 
   pqPathPicker* Picker;
   QTimer Clock;
-  int Pictures = 0;      // that were taken
-  double LastEnd = -1.0; // that animations were given, s
-  bool OwnsEnd = false;  // whether animations end where they were told to, at the last look
-  bool AtEnd = false;    // whether somebody looks at that time, and so at whole paths
-  bool Waiting = true;   // for rocks that came to their end
-  bool Picking = false;  // a trajectory, with the next click
-  QSet<QString> Running; // names of the runs that were told of last
+  int Pictures = 0;       // that were taken
+  int Checks = 0;         // of tests, that were made
+  double LastEnd = -1.0;  // that animations were given, s
+  bool OwnsEnd = false;   // whether animations end where they were told to, at the last look
+  bool AtEnd = false;     // whether somebody looks at that time, and so at whole paths
+  bool Waiting = true;    // for rocks that came to their end
+  bool Scripting = false; // a statement of Python is going on
+  QSet<QString> Running;  // names of the runs that were told of last
   QMap<QString, QString> Settled; // state hash by name: of the run that all views have
 };
 

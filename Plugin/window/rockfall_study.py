@@ -3,6 +3,7 @@
 ParaView's menu Rockfall runs these functions; so can a script or ParaView's Python shell.
 """
 
+import contextlib
 import os
 import shutil
 import subprocess
@@ -34,7 +35,14 @@ def new_study(file_name=""):
     chart = _chart_beside(view)
     shown.Visibility = 1
     view.StillRender()
+    with _undrawn(view):
+        parts = _study_on(slope, view, chart, name)
+    view.StillRender()
+    return parts
 
+
+def _study_on(slope, view, chart, name):
+    """All of a study but its slope, in these views."""
     # What is given where a part is made is in a trace of ParaView, what is set afterwards is not.
     release = simple.RockRelease(registrationName=name("Release"), Terrain=slope, Amount=ROCKS)
     _draw_placed(release)
@@ -61,8 +69,18 @@ def new_study(file_name=""):
     _look_at_paths(fall, view)
     scene = simple.GetAnimationScene()
     scene.UpdateAnimationUsingDataTimeSteps()  # or Play and films have ten frames
-    scene.GoToLast()  # the paths as a whole; Play begins anew from there; draws all views
+    scene.GoToLast()  # the paths as a whole; Play begins anew from there
     return {"slope": slope, "release": release, "fall": fall, "paths": growing, "map": hazard, "line": line}
+
+
+@contextlib.contextmanager
+def _undrawn(view):
+    """A view that is not drawn for a while: each part that comes would draw a million points anew."""
+    view.SuppressRendering = 1
+    try:
+        yield
+    finally:
+        view.SuppressRendering = 0
 
 
 def frame(fall=None, view=None):

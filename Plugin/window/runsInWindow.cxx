@@ -263,7 +263,7 @@ void pqRockfallWindow::lookAtTime()
 //-----------------------------------------------------------------------------
 void pqRockfallWindow::tellRuns()
 {
-  if (isUpdating())
+  if (isUpdating() || this->Scripting)
   {
     return;
   }
@@ -312,6 +312,20 @@ void pqRockfallWindow::tellRuns()
     renderNow();
     followShown();
     for (pqPipelineSource* source : settled)
+    {
+      this->Settled[source->getSMName()] = stateOf(source->getSourceProxy());
+    }
+  }
+}
+
+//-----------------------------------------------------------------------------
+void pqRockfallWindow::settleRuns()
+{
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  for (pqPipelineSource* source : model->findItems<pqPipelineSource*>())
+  {
+    if (isOf(source->getProxy(), { "vtkRockfallSimulation" }) &&
+      !showsPart(source->getSourceProxy()))
     {
       this->Settled[source->getSMName()] = stateOf(source->getSourceProxy());
     }
