@@ -321,8 +321,21 @@ void refuseTableOfTables(const std::string& file, const std::string& whole)
   }
 }
 
+/// Pipes and devices: who opens one waits for ever, or reads without an end.
+void refusePipes(const std::string& fileName, const std::string& whole)
+{
+  std::error_code failed;
+  const std::filesystem::file_status status = std::filesystem::status(fileName, failed);
+  if (std::filesystem::is_other(status))
+  {
+    throw FileError(whole + ": " + (fileName == whole ? "is" : "names " + fileName + ",") +
+      " a pipe or device, no file");
+  }
+}
+
 void refuseDriver(const std::string& fileName, const std::string& whole, unsigned flags, int depth)
 {
+  refusePipes(fileWithin(fileName), whole);
   auto* driver =
     static_cast<GDALDriver*>(GDALIdentifyDriverEx(fileName.c_str(), flags, nullptr, nullptr));
   if (!driver)
@@ -382,6 +395,7 @@ void refuseReferences(const std::string& fileName, unsigned flags)
   {
     throw FileError(fileName + ": names memory, which is no file");
   }
+  refusePipes(fileName, fileName);
   if (allowed)
   {
     return;

@@ -12,6 +12,7 @@
 
 #include <arpa/inet.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -182,6 +183,23 @@ TEST(Reach, MemoryIsNoFile)
       holds(messageOf<FileError>([&] { readSourceLayer(memory, {}); }), { memory, "no file" }));
   }
   EXPECT_TRUE(holds(refusal(virtualRaster(source(memory))), { memory, "not beside it" }));
+}
+
+TEST(Reach, PipesAreNoFiles)
+{
+  const std::string pipe = pathOf("pipe.asc");
+  std::filesystem::remove(pipe);
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  for (const bool allowed : { false, true })
+  {
+    const AllowReferences allow(allowed);
+    EXPECT_TRUE(holds(refusal(pipe), { pipe, "a pipe or device" }));
+    EXPECT_TRUE(holds(
+      messageOf<FileError>([&] { readSourceLayer(pipe, {}); }), { pipe, "a pipe or device" }));
+  }
+  EXPECT_TRUE(holds(refusal(virtualRaster(source(pipe))), { "pipe.asc", "a pipe or device" }));
+  EXPECT_TRUE(holds(refusal("/dev/zero"), { "a pipe or device" }));
+  std::filesystem::remove(pipe);
 }
 
 TEST(Reach, virtualLayersNameWhatIsBesideThemOnly)
