@@ -333,7 +333,7 @@ void askAfterFrequency(double perYear, std::vector<std::string>& notes)
   }
 }
 
-void askAfterStands(std::span<const Stand> stands, std::vector<std::string>& notes)
+void askAfterStands(std::span<const Stand> stands, std::vector<std::string>& notes, bool cells)
 {
   using namespace plausible;
   Doubt dense("Stems of a hectare have " + between(kBasalArea) +
@@ -351,6 +351,10 @@ void askAfterStands(std::span<const Stand> stands, std::vector<std::string>& not
       });
   }
   dense.tell("stands", notes);
+  if (cells)
+  {
+    return;
+  }
   Doubt twice("Their stems add up: was something given twice?");
   const std::vector<int> earlier = standsUnder(stands, kStandOverlap);
   for (std::size_t k = 0; k < stands.size(); ++k)

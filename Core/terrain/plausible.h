@@ -89,8 +89,9 @@ void askAfterGround(const Terrain& terrain, std::vector<std::string>& notes);
 /// The same of how often the rocks of a slope fall, 1/a.
 void askAfterFrequency(double perYear, std::vector<std::string>& notes);
 
-/// The same of stands: too dense, or over one another.
-void askAfterStands(std::span<const Stand> stands, std::vector<std::string>& notes);
+/// The same of stands: too dense, or over one another, which those of a raster's cells are not.
+void askAfterStands(
+  std::span<const Stand> stands, std::vector<std::string>& notes, bool cells = false);
 
 using PlanLine = std::vector<Eigen::Vector2d>;
 

@@ -4,6 +4,7 @@
 #include "base/text/numberText.h"
 #include "geometry/shell.h"
 #include "gis/base/externalReferences.h"
+#include "gis/forest/standRaster.h"
 #include "gis/layers/structureLayers.h"
 #include "gis/raster/contours.h"
 #include "gis/raster/ground.h"
@@ -161,7 +162,7 @@ std::shared_ptr<const rockfall::Terrain> vtkDEMToCFESource::MakeSlope(
   slope.setStructures(
     readStructures({ this->EmbankmentFile, this->TreeFile, this->BarrierFile, this->TreesBreak != 0,
                      this->EmbankmentLayerName, this->TreeLayerName, this->BarrierLayerName },
-      slope, notes));
+      slope, notes, readStandRaster(this->TreeFile, slope, notes)));
   askAfterGround(slope, notes);
   if (this->Preset == 0 && !material.yielding.yields() && slope.restitutionClasses().count() == 0)
   {

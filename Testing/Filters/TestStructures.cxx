@@ -84,6 +84,23 @@ TEST_F(TestStructures, ManyTreesAreShownInPart)
   EXPECT_EQ(terrain.obstacles()->treeOf(std::int64_t(number->GetTuple1(last))), 99);
 }
 
+TEST_F(TestStructures, ARasterOfDensitiesIsAForest)
+{
+  const float bands[2] = { 400.0F, 30.0F };
+  const std::string name =
+    this->WriteFile("stands.img", std::string(reinterpret_cast<const char*>(bands), sizeof(bands)));
+  this->WriteFile("stands.hdr",
+    "ENVI\nsamples = 1\nlines = 1\nbands = 2\nheader offset = 0\nfile type = ENVI Standard\n"
+    "data type = 4\ninterleave = bsq\nbyte order = 0\nmap info = {Arbitrary, 1, 1, 0, 100, 100, "
+    "100}\n");
+  this->Terrain->SetTreeFile(name.c_str());
+  this->Terrain->Update();
+  const rockfall::Terrain terrain = filters::readTerrain(this->Terrain->GetOutput());
+  ASSERT_NE(terrain.obstacles(), nullptr);
+  // 400 of the hectare: four deviations of Poisson's number.
+  EXPECT_NEAR(double(terrain.obstacles()->structures().trees.size()), 400.0, 80.0);
+}
+
 TEST_F(TestStructures, SurviveAFile)
 {
   const std::string name = this->WriteFile("slope.vtp", "");

@@ -460,9 +460,10 @@ std::vector<Tree> stemsOf(const Stand& stand, const FeatureRow& row, const Struc
   }
 }
 
-/// Trees of their own first, then those of stands. Gives how many are of their own.
-std::size_t readTrees(const StructureFiles& files, const Terrain& terrain, OwnMaterials& own,
-  Structures& all, std::vector<std::string>& notes)
+/// Trees of their own first, then those of stands, of a layer or of the cells of a raster. Gives
+/// how many are of their own.
+std::size_t readTrees(const StructureFiles& files, const Terrain& terrain,
+  std::span<const Stand> cells, OwnMaterials& own, Structures& all, std::vector<std::string>& notes)
 {
   std::int64_t outside = 0;
   std::vector<Tree> grown;
@@ -472,35 +473,49 @@ std::size_t readTrees(const StructureFiles& files, const Terrain& terrain, OwnMa
   wish.kinds = kPoints | kPolygons | kRows;
   wish.better = kPoints | kRows;
   wish.columns = { { "diameter", "stems_ha" }, { "height" } };
-  forEachRow(wish, terrain, notes,
-    { "diameter", "height", "factor", "capacity", "stems_ha", "dbh_mean", "dbh_dev", "conifers",
-      "f_conifer", "f_broad", "spacing", "rv", "rn", "rt", "phi", "cohesion" },
-    [&](const FeatureRow& row, std::int64_t count, Placing& placing)
+  const auto add = [&](const Tree& tree, std::vector<Tree>& trees)
+  {
+    if (std::isnan(terrain.elevation(tree.position.x(), tree.position.y())))
     {
-      const int material = own.of(row);
-      const auto add = [&](const Tree& tree, std::vector<Tree>& trees)
+      ++outside;
+      return;
+    }
+    trees.push_back(tree);
+  };
+  const auto readLayer = [&]
+  {
+    forEachRow(wish, terrain, notes,
+      { "diameter", "height", "factor", "capacity", "stems_ha", "dbh_mean", "dbh_dev", "conifers",
+        "f_conifer", "f_broad", "spacing", "rv", "rn", "rt", "phi", "cohesion" },
+      [&](const FeatureRow& row, std::int64_t count, Placing& placing)
       {
-        if (std::isnan(terrain.elevation(tree.position.x(), tree.position.y())))
+        const int material = own.of(row);
+        if (kindOf(row.geometry()) == kPolygons && row.has("stems_ha"))
         {
-          ++outside;
+          stands.push_back(standOf(row, count, material, placing));
+          for (const Tree& tree : stemsOf(stands.back(), row, files))
+          {
+            add(tree, grown);
+          }
           return;
         }
-        trees.push_back(tree);
-      };
-      if (kindOf(row.geometry()) == kPolygons && row.has("stems_ha"))
-      {
-        stands.push_back(standOf(row, count, material, placing));
-        for (const Tree& tree : stemsOf(stands.back(), row, files))
-        {
-          add(tree, grown);
-        }
-        return;
-      }
-      Tree tree = treeOf(row, files, placing);
-      tree.feature = count;
-      tree.material = material;
-      add(tree, all.trees);
-    });
+        Tree tree = treeOf(row, files, placing);
+        tree.feature = count;
+        tree.material = material;
+        add(tree, all.trees);
+      });
+  };
+  if (cells.empty())
+  {
+    readLayer();
+  }
+  for (const Stand& cell : cells)
+  {
+    for (const Tree& tree : growStand(cell, files.treesBreak))
+    {
+      add(tree, grown);
+    }
+  }
   const std::size_t alone = all.trees.size();
   if (!grown.empty())
   {
@@ -523,6 +538,7 @@ std::size_t readTrees(const StructureFiles& files, const Terrain& terrain, OwnMa
   }
   std::vector<std::string> doubts;
   askAfterStands(stands, doubts);
+  askAfterStands(cells, doubts, true);
   tellOf(files.trees, doubts, notes);
   return alone;
 }
@@ -596,8 +612,8 @@ void tryOut(const std::string& fileName, Structures part, std::size_t alone, con
 
 } // namespace
 
-Structures readStructures(
-  const StructureFiles& files, const Terrain& terrain, std::vector<std::string>& notes)
+Structures readStructures(const StructureFiles& files, const Terrain& terrain,
+  std::vector<std::string>& notes, std::span<const Stand> cells)
 {
   Structures all;
   OwnMaterials own(terrain, all.materials);
@@ -608,7 +624,7 @@ Structures readStructures(
   }
   if (!files.trees.empty())
   {
-    const std::size_t alone = readTrees(files, terrain, own, all, notes);
+    const std::size_t alone = readTrees(files, terrain, cells, own, all, notes);
     tryOut(files.trees, { {}, all.trees, {}, all.materials }, alone, terrain, notes);
   }
   if (!files.barriers.empty())

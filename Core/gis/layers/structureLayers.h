@@ -3,8 +3,10 @@
 /// @file
 /// Embankments, trees and barriers from OGR layers (METHOD 6).
 
+#include "terrain/stand.h"
 #include "terrain/structures.h"
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -48,7 +50,9 @@ struct StructureFiles
 /// Throws FileError, DataError or ParameterError naming file, row, field and value: another
 /// geometry, a number missing or out of range, no overlap with the terrain, more than a million
 /// rows, what cannot be built (see Obstacles).
-Structures readStructures(
-  const StructureFiles& files, const Terrain& terrain, std::vector<std::string>& notes);
+///
+/// `cells`: stands of the file of trees, if that is a raster (gis/forest/standRaster.h).
+Structures readStructures(const StructureFiles& files, const Terrain& terrain,
+  std::vector<std::string>& notes, std::span<const Stand> cells = {});
 
 } // namespace rockfall

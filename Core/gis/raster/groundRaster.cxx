@@ -58,30 +58,6 @@ DatasetPtr firstBandOf(GDALDataset& source, const RasterPlace& place, const std:
   return first;
 }
 
-/// Place of a raster of classes, checked as a DEM's is, with its notes under its name.
-RasterPlace placeOfClasses(
-  GDALDataset& source, const std::string& fileName, std::vector<std::string>& notes)
-{
-  const TextGrid text = checkContent(source, fileName);
-  if (!text.nulls.empty())
-  {
-    throw DataError(fileName +
-      ": has a word for nodata; give NODATA_value a number in a raster of "
-      "classes");
-  }
-  std::vector<std::string> told;
-  const RasterPlace place = rasterPlace(source, *source.GetRasterBand(1), text, fileName, told);
-  for (const std::string& note : told)
-  {
-    notes.push_back(fileName + ": " + note);
-  }
-  if (!place.georeferenced)
-  {
-    throw DataError(fileName + ": has no georeferencing, so nobody knows where its classes are");
-  }
-  return place;
-}
-
 /// Coordinates in no known unit beside a slope in feet.
 void noteUnits(GDALDataset& source, const RasterPlace& place, const Cells& cells,
   const std::string& fileName, std::vector<std::string>& notes)
@@ -104,7 +80,7 @@ std::vector<std::uint8_t> fromRaster(const GroundFiles& files, const std::string
   {
     throw FileError(files.layer + ": has no raster band");
   }
-  const RasterPlace place = placeOfClasses(*source, files.layer, notes);
+  const RasterPlace place = placeOfCells(*source, files.layer, notes);
   const CrsPtr& from = place.crs;
   noteCrs(from, cells, files.layer, notes);
   noteUnits(*source, place, cells, files.layer, notes);

@@ -130,4 +130,25 @@ RasterPlace rasterPlace(GDALDataset& dataset, GDALRasterBand& band, const TextGr
   return place;
 }
 
+RasterPlace placeOfCells(
+  GDALDataset& dataset, const std::string& fileName, std::vector<std::string>& notes)
+{
+  const TextGrid text = checkContent(dataset, fileName);
+  if (!text.nulls.empty())
+  {
+    throw DataError(fileName + ": has a word for nodata; give NODATA_value a number");
+  }
+  std::vector<std::string> told;
+  const RasterPlace place = rasterPlace(dataset, *dataset.GetRasterBand(1), text, fileName, told);
+  for (const std::string& note : told)
+  {
+    notes.push_back(fileName + ": " + note);
+  }
+  if (!place.georeferenced)
+  {
+    throw DataError(fileName + ": has no georeferencing, so nobody knows where its cells are");
+  }
+  return place;
+}
+
 } // namespace rockfall::gis

@@ -35,4 +35,8 @@ TextGrid checkContent(GDALDataset& dataset, const std::string& fileName);
 RasterPlace rasterPlace(GDALDataset& dataset, GDALRasterBand& band, const TextGrid& text,
   const std::string& fileName, std::vector<std::string>& notes);
 
+/// Place of a raster of classes or densities, checked as a DEM's is, with its notes under its name.
+RasterPlace placeOfCells(
+  GDALDataset& dataset, const std::string& fileName, std::vector<std::string>& notes);
+
 } // namespace rockfall::gis
