@@ -77,16 +77,47 @@ Sample Recorder::makeSample(const BlockState& state, bool contact)
   return s;
 }
 
-void Recorder::begin(const BlockState& state)
+EnergyAudit Recorder::auditAt(const RockBody& body, const BlockState& state) const
 {
-  last_ = state.position;
-  knot_ = state;
-  trajectory_.summary.start = state.position;
-  this->follow(state);
-  this->record(state, false);
+  EnergyAudit audit = body.energy;
+  audit.kinetic = kineticEnergy(block_, state);
+  audit.strain = strainEnergy(block_, state) + body.springEnergy;
+  audit.released = energyAtStart_ - block_.mass() * gravity_ * state.position.z();
+  audit.numerical = audit.released -
+    (audit.kinetic + audit.strain + audit.friction + audit.restitution + audit.vibration +
+      audit.damping + audit.structures + audit.scars + audit.rolling + audit.exchanged);
+  return audit;
 }
 
-void Recorder::record(const BlockState& state, bool contact)
+void Recorder::audit(const RockBody& body, const BlockState& state)
+{
+  if (audited_ < trajectory_.samples.size())
+  {
+    const EnergyAudit audit = this->auditAt(body, state);
+    for (; audited_ < trajectory_.samples.size(); ++audited_)
+    {
+      trajectory_.samples[audited_].energy = audit;
+    }
+  }
+}
+
+void Recorder::begin(const RockBody& body)
+{
+  energyAtStart_ = body.mechanicalEnergy(gravity_);
+  last_ = body.state.position;
+  knot_ = body.state;
+  trajectory_.summary.start = body.state.position;
+  this->follow(body.state);
+  this->record(body, body.state, false);
+}
+
+void Recorder::record(const RockBody& body, const BlockState& at, bool contact)
+{
+  this->addEven(at, contact);
+  this->audit(body, at);
+}
+
+void Recorder::addEven(const BlockState& state, bool contact)
 {
   const bool knot = this->isAt(state.time) && trajectory_.samples.back().kind == SampleKind::Knot;
   if (knot)
@@ -99,7 +130,13 @@ void Recorder::record(const BlockState& state, bool contact)
   ++next_;
 }
 
-void Recorder::knot(const BlockState& state, bool contact)
+void Recorder::knot(const RockBody& body, bool contact)
+{
+  this->addKnot(body.state, contact);
+  this->audit(body, body.state);
+}
+
+void Recorder::addKnot(const BlockState& state, bool contact)
 {
   knot_ = state;
   // There is one sample at a time: the state after an impact replaces the one before it.
@@ -108,23 +145,25 @@ void Recorder::knot(const BlockState& state, bool contact)
   trajectory_.samples.back().kind = kind;
 }
 
-void Recorder::beforeJump(const BlockState& state, bool contact)
+void Recorder::beforeJump(const RockBody& body, bool contact)
 {
-  jump_ = this->knotAt(state.time);
-  BlockState before = state;
+  jump_ = this->knotAt(body.state.time);
+  BlockState before = body.state;
   before.time -= kInstant;
   if (!this->isAt(before.time))
   {
     append(trajectory_.samples, this->makeSample(before, contact));
     trajectory_.samples.back().kind = SampleKind::Knot;
   }
+  this->audit(body, body.state);
 }
 
-void Recorder::afterJump(const BlockState& state, bool contact)
+void Recorder::afterJump(const RockBody& body, bool contact)
 {
-  knot_ = state;
-  append(trajectory_.samples, this->makeSample(state, contact));
+  knot_ = body.state;
+  append(trajectory_.samples, this->makeSample(body.state, contact));
   trajectory_.samples.back().kind = jump_;
+  this->audit(body, body.state);
 }
 
 bool Recorder::isAt(double time) const
@@ -149,18 +188,10 @@ void Recorder::dropLast()
   audited_ = std::min(audited_, trajectory_.samples.size());
 }
 
-void Recorder::resume(const BlockState& state)
+void Recorder::resume(const RockBody& body)
 {
-  next_ = std::max(next_, std::int64_t(std::ceil(state.time / interval_)));
-  this->knot(state, true);
-}
-
-void Recorder::audit(const EnergyAudit& audit)
-{
-  for (; audited_ < trajectory_.samples.size(); ++audited_)
-  {
-    trajectory_.samples[audited_].energy = audit;
-  }
+  next_ = std::max(next_, std::int64_t(std::ceil(body.state.time / interval_)));
+  this->knot(body, true);
 }
 
 bool Recorder::follows(const BlockState& state) const
@@ -171,12 +202,13 @@ bool Recorder::follows(const BlockState& state) const
   return bend.squaredNorm() <= allowed * allowed;
 }
 
-void Recorder::recordBetween(const BlockState& from, const BlockState& to, bool contact)
+void Recorder::recordBetween(
+  const RockBody& body, const BlockState& from, const BlockState& to, bool contact)
 {
   const bool even = this->follows(to);
   if (!even)
   {
-    this->knot(from, contact);
+    this->addKnot(from, contact);
   }
   const double h = to.time - from.time;
   while (this->nextTime() <= to.time && h > 0.0)
@@ -191,12 +223,13 @@ void Recorder::recordBetween(const BlockState& from, const BlockState& to, bool 
     between.velocity = (1.0 - s) * from.velocity + s * to.velocity;
     between.spin = (1.0 - s) * from.spin + s * to.spin;
     between.orientation = from.orientation.slerp(s, to.orientation);
-    this->record(between, contact);
+    this->addEven(between, contact);
   }
   if (!even && !this->follows(to))
   {
-    this->knot(to, contact);
+    this->addKnot(to, contact);
   }
+  this->audit(body, to);
 }
 
 void Recorder::follow(const BlockState& state)
@@ -219,8 +252,9 @@ void Recorder::reach(const BlockState& state)
   s.maxKineticEnergy = std::max(s.maxKineticEnergy, rigidKineticEnergy(block_, state));
 }
 
-void Recorder::end(const BlockState& state, bool contact)
+void Recorder::end(const RockBody& body, bool contact)
 {
+  const BlockState& state = body.state;
   if (trajectory_.samples.size() > 1 && this->isAt(state.time) &&
     trajectory_.samples.back().kind == SampleKind::Even)
   {
@@ -235,6 +269,16 @@ void Recorder::end(const BlockState& state, bool contact)
     trajectory_.samples.back().time += atOnce ? kInstant : 0.0;
   }
   trajectory_.samples.back().kind = SampleKind::End;
+  this->audit(body, state);
+  // One that ends later may have begun earlier.
+  std::vector<ImpactEvent>& impacts = trajectory_.impacts;
+  std::stable_sort(impacts.begin(), impacts.end(),
+    [](const ImpactEvent& a, const ImpactEvent& b) { return a.time < b.time; });
+  TrajectorySummary& summary = trajectory_.summary;
+  summary.stop = state.position;
+  summary.endTime = state.time;
+  summary.runOut = (state.position - summary.start).head<2>().norm();
+  summary.energy = this->auditAt(body, state);
 }
 
 } // namespace rockfall

@@ -3,55 +3,58 @@
 /// @file
 /// Turns the states that a rock passes through into samples at even times and a summary.
 
-#include "block/Block.h"
-#include "rock/results.h"
+#include "rock/RockBody.h"
 #include "terrain/Surface.h"
 
 namespace rockfall
 {
 
+/// Each sample has the books of energy of the rock as they stand when it is taken.
 class Recorder
 {
 public:
-  Recorder(const Surface& surface, const Block& block, double interval)
+  Recorder(const Surface& surface, const Block& block, double interval, double gravity)
     : surface_(surface)
     , block_(block)
     , interval_(interval)
+    , gravity_(gravity)
   {
   }
 
-  /// The first sample.
-  void begin(const BlockState& state);
+  /// The first sample, and the energy that all later books start from.
+  void begin(const RockBody& body);
   /// Time of the next sample, s.
   double nextTime() const { return double(next_) * interval_; }
   /// Records a sample at exactly this state and moves on to the next time.
-  void record(const BlockState& state, bool contact);
+  void record(const RockBody& body, const BlockState& at, bool contact);
   /// Records all samples that fall into a step, interpolated (cubic in place, slerp in attitude),
   /// and knots before and after it where the motion since the last one is no uniform acceleration.
-  void recordBetween(const BlockState& from, const BlockState& to, bool contact);
+  void recordBetween(
+    const RockBody& body, const BlockState& from, const BlockState& to, bool contact);
   /// A sample at a touch or a take-off.
-  void knot(const BlockState& state, bool contact);
+  void knot(const RockBody& body, bool contact);
   /// Knots on both sides of a change of velocity that takes no time: the first one an instant
   /// before it. What it had until then would else seem to fade since the last knot.
-  void beforeJump(const BlockState& state, bool contact);
-  void afterJump(const BlockState& state, bool contact);
+  void beforeJump(const RockBody& body, bool contact);
+  void afterJump(const RockBody& body, bool contact);
   /// Goes on at a later time; in between nothing moved.
-  void resume(const BlockState& state);
-  /// Whether there are samples without an audit.
-  bool needsAudit() const { return audited_ < trajectory_.samples.size(); }
-  /// Gives it to all of them.
-  void audit(const EnergyAudit& audit);
+  void resume(const RockBody& body);
   /// Follows maxima and path length; call for every state that is reached …
   void follow(const BlockState& state);
   /// … or once for a whole flight, which is fastest at one of its ends.
   void followFlight(const BlockState& from, const BlockState& to);
-  /// Adds the last state if it is not at an even time, or the only one.
-  void end(const BlockState& state, bool contact);
+  /// Adds the last state if it is not at an even time, or the only one; sums the fall up.
+  void end(const RockBody& body, bool contact);
 
   Trajectory& trajectory() { return trajectory_; }
   const Trajectory& trajectory() const { return trajectory_; }
 
 private:
+  void addEven(const BlockState& state, bool contact);
+  void addKnot(const BlockState& state, bool contact);
+  EnergyAudit auditAt(const RockBody& body, const BlockState& state) const;
+  /// Gives samples that have none their audit.
+  void audit(const RockBody& body, const BlockState& state);
   bool isAt(double time) const; ///< Whether the last sample is.
   /// Drops the last sample if it is at this time; what a knot in its place is.
   SampleKind knotAt(double time);
@@ -79,6 +82,8 @@ private:
   const Surface& surface_;
   const Block& block_;
   double interval_;
+  double gravity_;
+  double energyAtStart_ = 0.0; ///< Kinetic and potential, J.
   std::int64_t next_ = 0;
   Vec3 last_ = Vec3::Zero();           ///< The last position reached.
   Knot knot_;                          ///< The last one.

@@ -14,6 +14,14 @@
 namespace rockfall
 {
 
+/// Speed at which a point (m) of a rock comes against a unit normal, m/s. `turning`: its angular
+/// velocity in world axes, rad/s.
+inline double approachOf(
+  const BlockState& state, const Vec3& turning, const Vec3& point, const Vec3& normal)
+{
+  return -normal.dot(state.velocity + turning.cross(point - state.position));
+}
+
 /// Motion, contacts with the slope and books of one rock. Whoever steps it writes them: the rock
 /// itself (SingleRock), or the island that it belongs to (IslandStepper).
 struct RockBody
@@ -22,11 +30,25 @@ struct RockBody
     : block(b)
   {
   }
+  /// The block's strain follows its contacts as at rest, without inertia.
+  void letStrainFollow()
+  {
+    this->stiff = true;
+    this->ringing = 0.0;
+  }
+  /// Without contact springs, J.
+  double mechanicalEnergy(double gravity) const
+  {
+    return kineticEnergy(this->block, this->state) + strainEnergy(this->block, this->state) +
+      this->block.mass() * gravity * this->state.position.z();
+  }
 
   const Block& block;
   bool done = false;                     ///< At rest, gone from the slope or out of time.
   bool inIsland = false;                 ///< Its last step was that of an island.
+  bool stiff = false;                    ///< The block's strain has no inertia.
   StepKind steppedAs = StepKind::Impact; ///< In the last step.
+  double ringing = 0.0;                  ///< Period of a soft block's slowest strain, s; 0: stiff.
   double restingSpeed = 0.0;             ///< Below it a touch is no impact, m/s.
   BlockState state;
   std::vector<Contact> contacts; ///< With the slope.

@@ -1,8 +1,8 @@
-// What a rock does at structures: trees that it breaks or passes, barriers that stop it or break.
+#include "rock/atStructures.h"
 
 #include "contact/ground/timeToTouch.h"
 #include "law/settings.h"
-#include "rock/SingleRock.h"
+#include "rock/Fall.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,140 +22,16 @@ void noteLoad(StructureEvent& event, const BarrierLoad& before, const BarrierSta
   event.usefulHeight = std::max(0.0, barrier.rope - barrier.fill);
 }
 
-} // namespace
-
-double SingleRock::freeOfObstacles(double duration)
+/// A held rock comes to rest on a straight way of this length (m), as steep as the ground, with the
+/// speed v √(1 − (x/b)²) of a spring. False, and nothing done, where the way would lead off the
+/// slope or past the end time.
+bool brakeBehindNet(Fall& fall, double distance)
 {
-  const double sure = std::min(duration, freeUntil_ - body_.state.time);
-  const double free =
-    timeToObstacle(body_.placed, body_.state, body_.block, structures_.obstacles(),
-      structures_.goneTrees(), parameters_.gravity, this->impactStep(), duration);
-  return std::max(sure, free);
-}
-
-void SingleRock::forgetPatch()
-{
-  patch_.xMax = patch_.xMin - 1.0;
-  candidates_.distance = -1.0;
-}
-
-bool SingleRock::undoAtTrees(double h)
-{
-  const std::vector<int> hit = structures_.treesHit(body_);
-  if (hit.empty())
-  {
-    return false;
-  }
-  body_.state = body_.before;
-  body_.contacts = body_.contactsBefore;
-  return this->breakTrees(h, hit);
-}
-
-bool SingleRock::breakTrees(double h, std::span<const int> hit)
-{
-  const bool any = structures_.breakTrees(h, hit, body_, recorder_.trajectory().structures);
-  if (any)
-  {
-    this->forgetTrees();
-  }
-  return any;
-}
-
-void SingleRock::forgetTrees(bool touched)
-{
-  std::erase_if(
-    body_.contacts, [&](const Contact& c) { return structures_.isGone(structures_.treeOf(c)); });
-  if (touched)
-  {
-    body_.acceleration.setZero();
-    body_.spinAcceleration.setZero();
-  }
-  this->forgetPatch();
-}
-
-bool SingleRock::applyBroken(const StructuresOnWay::Broken& broken)
-{
-  if (!structures_.apply(broken, patch_))
-  {
-    return false;
-  }
-  // Energy of the springs against a stem goes with it.
-  double held = 0.0;
-  bool touched = false;
-  for (const Contact& c : body_.contacts)
-  {
-    if (structures_.isGone(structures_.treeOf(c)))
-    {
-      held += c.springEnergy();
-      touched = touched || c.closed();
-    }
-  }
-  body_.springEnergy = std::max(0.0, body_.springEnergy - held);
-  body_.energy.structures += held;
-  this->forgetTrees(touched);
-  return touched;
-}
-
-bool SingleRock::passBarriers(const PathPiece& way, double taken)
-{
-  structures_.passBarriers(
-    way, taken, parameters_.gravity, body_, recorder_.trajectory().structures);
-  return structures_.hit().barrier >= 0;
-}
-
-void SingleRock::meetBarrier()
-{
-  const BarrierHit& hit = structures_.hit();
-  const Barrier& barrier = structures_.barrierHit();
-  const double kinetic = rigidKineticEnergy(body_.block, body_.state),
-               energy = kinetic + hit.stored;
-  const BarrierLoad load = structures_.loadOf(hit.barrier);
-  const BarrierState net = stateOf(barrier, load);
-  const bool holds = energy <= net.capacity;
-  const double taken = holds ? energy : barrier.absorbs ? net.capacity : 0.0;
-  StructureEvent event =
-    eventAt(holds ? StructureOutcome::BarrierStopped : StructureOutcome::BarrierBroken,
-      barrier.feature, body_.state, energy, hit.heightOverGround);
-  event.energyTaken = taken;
-  noteLoad(event, load, net);
-  TrajectorySummary& summary = recorder_.trajectory().summary;
-  if (holds)
-  {
-    this->finishImpact(false); // the barrier takes what it would have left
-    event.brakingDistance = brakingDistance(barrier, load, energy);
-    if (isLoaded(barrier))
-    {
-      structures_.load({ energy, body_.block.volume() });
-    }
-  }
-  recorder_.trajectory().structures.push_back(event);
-  recorder_.knot(body_.state, false);
-  this->auditSamples(body_.state);
-  if (!holds || !this->brakeBehindNet(event.brakingDistance))
-  {
-    slowDown(body_.state, kinetic, std::min(taken, kinetic));
-    body_.energy.structures += kinetic - rigidKineticEnergy(body_.block, body_.state);
-  }
-  if (holds)
-  {
-    summary.fate = Fate::Caught;
-    body_.contacts.clear();
-    body_.done = true;
-    return;
-  }
-  structures_.breakBarrier();
-  freeUntil_ = 0.0;
-  body_.state.time += kInstant;
-  recorder_.knot(body_.state, false);
-  this->auditSamples(body_.state);
-}
-
-bool SingleRock::brakeBehindNet(double distance)
-{
-  const BlockState start = body_.state;
+  RockBody& body = fall.body;
+  const BlockState start = body.state;
   const double speed = start.velocity.norm(), across = start.velocity.head<2>().norm();
   const double duration = 0.5 * std::numbers::pi * distance / speed;
-  if (!(distance > 0.0) || !(across > 0.0) || !(start.time + duration <= parameters_.endTime))
+  if (!(distance > 0.0) || !(across > 0.0) || !(start.time + duration <= fall.parameters.endTime))
   {
     return false;
   }
@@ -164,8 +40,8 @@ bool SingleRock::brakeBehindNet(double distance)
   const auto ground = [&](double way)
   {
     const Eigen::Vector2d place = start.position.head<2>() + way * level;
-    return std::max(surface_.elevation(place.x(), place.y()),
-      structures_.obstacles().embankmentTop(place.x(), place.y()));
+    return std::max(fall.surface.elevation(place.x(), place.y()),
+      fall.structures.obstacles().embankmentTop(place.x(), place.y()));
   };
   const double rise = ground(distance) - ground(0.0);
   if (std::isnan(rise))
@@ -185,50 +61,175 @@ bool SingleRock::brakeBehindNet(double distance)
     at.velocity = left * speed * along;
     at.spin = left * start.spin;
     // What the rock still falls is taken, too; a net is rated by the energy at its line.
-    body_.energy.structures += rigidKineticEnergy(body_.block, before) -
-      rigidKineticEnergy(body_.block, at) +
-      body_.block.mass() * parameters_.gravity * (before.position.z() - at.position.z());
-    body_.state = at;
-    recorder_.recordBetween(before, at, false);
-    this->auditSamples(at);
-    recorder_.follow(at);
+    body.energy.structures += rigidKineticEnergy(body.block, before) -
+      rigidKineticEnergy(body.block, at) +
+      body.block.mass() * fall.parameters.gravity * (before.position.z() - at.position.z());
+    body.state = at;
+    fall.recorder.recordBetween(body, before, at, false);
+    fall.recorder.follow(at);
   }
   return true;
 }
 
-double SingleRock::endStepAtBarrier(const BlockState& end, double taken, bool touching)
+} // namespace
+
+double freeOfObstacles(Fall& fall, double duration)
 {
-  const BarrierHit& hit = structures_.hit();
-  const Barrier& barrier = structures_.barrierHit();
-  BlockState at = between(body_.before, end, hit.fraction);
-  const double came = rigidKineticEnergy(body_.block, at);
+  RockBody& body = fall.body;
+  const double sure = std::min(duration, fall.freeUntil - body.state.time);
+  const double free = timeToObstacle(body.placed, body.state, body.block,
+    fall.structures.obstacles(), fall.structures.goneTrees(), fall.parameters.gravity,
+    fall.springs.impactStep(body), duration);
+  return std::max(sure, free);
+}
+
+bool undoAtTrees(Fall& fall, double h)
+{
+  RockBody& body = fall.body;
+  const std::vector<int> hit = fall.structures.treesHit(body);
+  if (hit.empty())
+  {
+    return false;
+  }
+  body.state = body.before;
+  body.contacts = body.contactsBefore;
+  return breakTrees(fall, h, hit);
+}
+
+bool breakTrees(Fall& fall, double h, std::span<const int> hit)
+{
+  const bool any =
+    fall.structures.breakTrees(h, hit, fall.body, fall.recorder.trajectory().structures);
+  if (any)
+  {
+    forgetTrees(fall);
+  }
+  return any;
+}
+
+void forgetTrees(Fall& fall, bool touched)
+{
+  RockBody& body = fall.body;
+  std::erase_if(body.contacts,
+    [&](const Contact& c) { return fall.structures.isGone(fall.structures.treeOf(c)); });
+  if (touched)
+  {
+    body.acceleration.setZero();
+    body.spinAcceleration.setZero();
+  }
+  fall.ground.forgetPatch();
+}
+
+bool applyBroken(Fall& fall, const StructuresOnWay::Broken& broken)
+{
+  RockBody& body = fall.body;
+  if (!fall.structures.apply(broken, fall.ground.patch()))
+  {
+    return false;
+  }
+  // Energy of the springs against a stem goes with it.
+  double held = 0.0;
+  bool touched = false;
+  for (const Contact& c : body.contacts)
+  {
+    if (fall.structures.isGone(fall.structures.treeOf(c)))
+    {
+      held += c.springEnergy();
+      touched = touched || c.closed();
+    }
+  }
+  body.springEnergy = std::max(0.0, body.springEnergy - held);
+  body.energy.structures += held;
+  forgetTrees(fall, touched);
+  return touched;
+}
+
+bool passBarriers(Fall& fall, const PathPiece& way, double taken)
+{
+  fall.structures.passBarriers(
+    way, taken, fall.parameters.gravity, fall.body, fall.recorder.trajectory().structures);
+  return fall.structures.hit().barrier >= 0;
+}
+
+void meetBarrier(Fall& fall)
+{
+  RockBody& body = fall.body;
+  const BarrierHit& hit = fall.structures.hit();
+  const Barrier& barrier = fall.structures.barrierHit();
+  const double kinetic = rigidKineticEnergy(body.block, body.state), energy = kinetic + hit.stored;
+  const BarrierLoad load = fall.structures.loadOf(hit.barrier);
+  const BarrierState net = stateOf(barrier, load);
+  const bool holds = energy <= net.capacity;
+  const double taken = holds ? energy : barrier.absorbs ? net.capacity : 0.0;
+  StructureEvent event =
+    eventAt(holds ? StructureOutcome::BarrierStopped : StructureOutcome::BarrierBroken,
+      barrier.feature, body.state, energy, hit.heightOverGround);
+  event.energyTaken = taken;
+  noteLoad(event, load, net);
+  TrajectorySummary& summary = fall.recorder.trajectory().summary;
+  if (holds)
+  {
+    fall.impact.finish(body, fall.recorder, false); // the barrier takes what it would have left
+    event.brakingDistance = brakingDistance(barrier, load, energy);
+    if (isLoaded(barrier))
+    {
+      fall.structures.load({ energy, body.block.volume() });
+    }
+  }
+  fall.recorder.trajectory().structures.push_back(event);
+  fall.recorder.knot(body, false);
+  if (!holds || !brakeBehindNet(fall, event.brakingDistance))
+  {
+    slowDown(body.state, kinetic, std::min(taken, kinetic));
+    body.energy.structures += kinetic - rigidKineticEnergy(body.block, body.state);
+  }
+  if (holds)
+  {
+    summary.fate = Fate::Caught;
+    body.contacts.clear();
+    body.done = true;
+    return;
+  }
+  fall.structures.breakBarrier();
+  fall.freeUntil = 0.0;
+  body.state.time += kInstant;
+  fall.recorder.knot(body, false);
+}
+
+double endStepAtBarrier(Fall& fall, const BlockState& end, double taken, bool touching)
+{
+  RockBody& body = fall.body;
+  const BarrierHit& hit = fall.structures.hit();
+  const Barrier& barrier = fall.structures.barrierHit();
+  BlockState at = between(body.before, end, hit.fraction);
+  const double came = rigidKineticEnergy(body.block, at);
   slowDown(at, came, std::min(taken, came));
-  const double energy = rigidKineticEnergy(body_.block, at) + hit.stored;
-  const BarrierLoad load = structures_.loadOf(hit.barrier);
+  const double energy = rigidKineticEnergy(body.block, at) + hit.stored;
+  const BarrierLoad load = fall.structures.loadOf(hit.barrier);
   const BarrierState net = stateOf(barrier, load);
   if (energy <= net.capacity)
   {
     // The rest of the step did not happen; what it booked did. The barrier takes what makes it up.
-    recorder_.recordBetween(body_.before, at, touching);
-    body_.energy.structures += kineticEnergy(body_.block, body_.state) -
-      kineticEnergy(body_.block, at) +
-      body_.block.mass() * parameters_.gravity * (end.position.z() - at.position.z()) +
-      body_.springEnergy;
-    body_.state = at;
-    body_.springEnergy = body_.normalEnergy = 0.0;
-    recorder_.follow(body_.state);
-    this->meetBarrier();
+    body.energy.structures += kineticEnergy(body.block, body.state) -
+      kineticEnergy(body.block, at) +
+      body.block.mass() * fall.parameters.gravity * (end.position.z() - at.position.z()) +
+      body.springEnergy;
+    body.state = at;
+    body.springEnergy = body.normalEnergy = 0.0;
+    fall.recorder.recordBetween(body, body.before, at, touching);
+    fall.recorder.follow(body.state);
+    meetBarrier(fall);
     return 0.0;
   }
   StructureEvent event =
     eventAt(StructureOutcome::BarrierBroken, barrier.feature, at, energy, hit.heightOverGround);
-  const double left = rigidKineticEnergy(body_.block, body_.state);
-  slowDown(body_.state, left, barrier.absorbs ? std::min(net.capacity, left) : 0.0);
+  const double left = rigidKineticEnergy(body.block, body.state);
+  slowDown(body.state, left, barrier.absorbs ? std::min(net.capacity, left) : 0.0);
   noteLoad(event, load, net);
-  event.energyTaken = left - rigidKineticEnergy(body_.block, body_.state);
-  body_.energy.structures += event.energyTaken;
-  recorder_.trajectory().structures.push_back(event);
-  structures_.breakBarrier();
+  event.energyTaken = left - rigidKineticEnergy(body.block, body.state);
+  body.energy.structures += event.energyTaken;
+  fall.recorder.trajectory().structures.push_back(event);
+  fall.structures.breakBarrier();
   return event.energyTaken;
 }
 

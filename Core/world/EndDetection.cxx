@@ -4,6 +4,7 @@
 #include "contact/ground/detection.h"
 #include "contact/ground/motion.h"
 #include "law/settings.h"
+#include "rock/contactPhase.h"
 #include "world/StepTrees.h"
 #include "world/pairSprings.h"
 #include "world/stepContacts.h"
@@ -84,7 +85,8 @@ void EndDetection::placeRock(std::size_t m)
     rock.endHull.update(rock.end);
     motion.displacement = end.position - body.state.position;
     motion.rimTravel = rimTravel(body.state.orientation, end.orientation, body.block.radius());
-    motion.low = rock.sim.structures().solid() || !rock.sim.isClearAt(end.position, 0.0);
+    motion.low = rock.fall().structures.solid() ||
+      !rock.fall().ground.isClearAt(rock.body(), end.position, 0.0);
   }
 }
 
@@ -263,15 +265,17 @@ const CandidatePairs& EndDetection::candidatesOf(std::size_t m)
   const IslandWork::Motion& motion = work_.motions[place];
   rock.body().placed.placeVertices();
   rock.end.placeVertices();
-  return rock.sim.candidatesAt(work_.solver.rows().end(place), rock.end, rock.endHull,
-    motion.displacement.norm() + motion.rimTravel, kLooseOverlap * rock.body().block.radius());
+  Fall& fall = rock.fall();
+  return fall.ground.candidatesAt(fall.body, fall.structures, work_.solver.rows().end(place),
+    rock.end, rock.endHull, motion.displacement.norm() + motion.rimTravel,
+    kLooseOverlap * rock.body().block.radius());
 }
 
 std::size_t EndDetection::touchesOnSlope(
   std::size_t m, const CandidatePairs& near, std::vector<Contact>& touches) const
 {
   const FallingRock& rock = world_.rocks[std::size_t(island_.members[m])];
-  const SingleRock& sim = rock.sim;
+  const Fall& fall = rock.fall();
   touches.clear();
   double pressed = 0.0;
   const auto addReckoned = [&](std::size_t k)
@@ -294,13 +298,13 @@ std::size_t EndDetection::touchesOnSlope(
     }
   }
   const std::size_t known = touches.size();
-  guardPenetration(rock.end, sim.patch(), near,
+  guardPenetration(rock.end, fall.ground.patch(), near,
     kLooseOverlap * rock.body().block.radius() + 2.0 * pressed, touches);
   // Trees that nobody reckoned with are met in the next step.
   const auto behind = touches.begin() + std::ptrdiff_t(known);
-  touches.erase(std::remove_if(behind, touches.end(),
-                  [&](const Contact& c)
-                  { return sim.structures().solid() && sim.structures().treeOf(c) >= 0; }),
+  touches.erase(
+    std::remove_if(behind, touches.end(),
+      [&](const Contact& c) { return fall.structures.solid() && fall.structures.treeOf(c) >= 0; }),
     touches.end());
   return known;
 }
@@ -317,7 +321,7 @@ bool EndDetection::isMissedOnSlope(std::size_t m)
   const FallingRock& member = world_.rocks[rock];
   const CandidatePairs& near = this->candidatesOf(m);
   const double loose = kLooseOverlap * member.body().block.radius();
-  if (!overlaps(member.end, member.sim.patch(), near, loose))
+  if (!overlaps(member.end, member.fall().ground.patch(), near, loose))
   {
     return false;
   }
@@ -347,7 +351,7 @@ double EndDetection::detectOnSlope()
       const PlacedBlock slope;
       carryBack(rock.end, slope, rock.body().placed, slope, c);
       c.offset = 0.0;
-      rock.sim.setSprings(c);
+      setSprings(rock.fall(), c);
       work_.added.push_back(c);
       work_.addedTo.push_back({ true, m, c });
       work_.contacts.push_back(touchOnSlope(world_, rock, work_.added.back()));

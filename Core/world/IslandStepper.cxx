@@ -3,6 +3,8 @@
 #include "base/abort.h"
 #include "base/parallel.h"
 #include "law/settings.h"
+#include "rock/contactPhase.h"
+#include "rock/flightPhase.h"
 #include "world/EndDetection.h"
 #include "world/StepResult.h"
 #include "world/StepTrees.h"
@@ -55,7 +57,7 @@ void IslandStepper::fly(double duration)
     SingleRock& sim = world_.rocks[i].sim;
     if (!sim.body().done)
     {
-      sim.flyFree(duration);
+      flyFree(sim.fall(), duration);
     }
   }
   for (RockPair* pair : island_.pairs)
@@ -72,10 +74,10 @@ double IslandStepper::beginContacts()
   for (const int i : island_.members)
   {
     SingleRock& sim = world_.rocks[std::size_t(i)].sim;
-    sim.beginContact();
+    beginContact(sim.fall());
     if (!sim.done())
     {
-      travel = std::min(travel, kIslandTravel * sim.travelLimit());
+      travel = std::min(travel, kIslandTravel * sim.fall().springs.travelLimit(sim.body()));
     }
   }
   return travel;
@@ -105,7 +107,7 @@ void IslandStepper::addRock(std::size_t m)
   body.before = body.state;
   body.springEnergyBefore = body.springEnergy;
   body.contactsBefore = body.contacts;
-  work_.energyBefore[place] = rock.sim.mechanicalEnergy() + body.springEnergy;
+  work_.energyBefore[place] = body.mechanicalEnergy(world_.parameters.gravity) + body.springEnergy;
   IslandBody& asked = work_.bodies[place];
   asked = {};
   asked.block = &body.block;

@@ -3,6 +3,8 @@
 #include "base/parallel.h"
 #include "contact/ground/motion.h"
 #include "law/settings.h"
+#include "rock/contactPhase.h"
+#include "rock/endOfFall.h"
 #include "world/StepTrees.h"
 #include "world/pairImpacts.h"
 
@@ -56,7 +58,7 @@ void StepResult::splitOffSingles()
   {
     const FallingRock& rock = world_.rocks[std::size_t(island_.members[m])];
     const bool done = rock.sim.done();
-    if (!done && rock.sim.impactUnderWay())
+    if (!done && rock.fall().impact.pending())
     {
       work_.alone[std::size_t(rock.place)] = 1;
     }
@@ -277,7 +279,8 @@ void StepResult::applyToRock(std::size_t k)
   outcome.dampedWork = answer.dampedWork;
   outcome.springEnergy = answer.springEnergy;
   outcome.normalEnergy = answer.normalEnergy;
-  sim.commitStep(StepKind::Lasting, outcome, work_.energyBefore[place], answer.given, false);
+  commitStep(
+    sim.fall(), StepKind::Lasting, outcome, work_.energyBefore[place], answer.given, false);
   const bool carried = work_.touchesOthers[place] || anyClosed(body.contacts);
   // Some contact of an island opens or closes in every step, and the acceleration of one step says
   // little of the next: carried on it would keep a pile in motion for ever.
@@ -292,11 +295,11 @@ void StepResult::applyToRock(std::size_t k)
     return; // caught
   }
   StepTrees(world_, island_, work_).fell(k);
-  sim.checkLeft();
-  sim.followRest(h_, carried);
+  checkLeft(sim.fall());
+  followRest(sim.fall(), h_, carried);
   if (!body.done && body.state.time >= world_.parameters.endTime - kTooShort)
   {
-    sim.end(Fate::Moving);
+    sim.fall().end(Fate::Moving);
   }
   const bool arrived = rock.adoptEnd();
   work_.arrived[place] = arrived;

@@ -2,6 +2,7 @@
 
 #include "block/Block.h"
 #include "law/settings.h"
+#include "rock/atStructures.h"
 
 #include <algorithm>
 
@@ -28,7 +29,7 @@ void StepTrees::forContacts(const Stem& stem, Use&& use) const
   const std::vector<Contact>& contacts = rock.body().contacts;
   for (std::size_t k = 0; k < contacts.size(); ++k)
   {
-    if (rock.sim.structures().treeOf(contacts[k]) == stem.tree)
+    if (rock.fall().structures.treeOf(contacts[k]) == stem.tree)
     {
       use(contacts[k], work_.slopeFirsts[stem.member] + k);
     }
@@ -59,7 +60,7 @@ BlockState StepTrees::endWithout(const Stem& stem, double h) const
   {
     const Contact& c = body.contacts[i];
     const std::size_t k = work_.slopeFirsts[stem.member] + i;
-    if (rock.sim.structures().treeOf(c) < 0)
+    if (rock.fall().structures.treeOf(c) < 0)
     {
       continue;
     }
@@ -74,8 +75,8 @@ BlockState StepTrees::endWithout(const Stem& stem, double h) const
 
 bool StepTrees::cannotHold(const Stem& stem, const BlockState& end, bool through) const
 {
-  const SingleRock& sim = this->rockOf(stem).sim;
-  const RockBody& body = sim.body();
+  const Fall& fall = this->rockOf(stem).fall();
+  const RockBody& body = fall.body;
   bool meets = false;
   const auto look = [&](const Contact& c, std::size_t k)
   {
@@ -86,7 +87,7 @@ bool StepTrees::cannotHold(const Stem& stem, const BlockState& end, bool through
         (!through || work_.solver.rows().gap(k) < 0.0));
   };
   this->forContacts(stem, look);
-  return meets && !sim.structures().stemHolds(stem.tree, body.block, end, body.contacts);
+  return meets && !fall.structures.stemHolds(stem.tree, body.block, end, body.contacts);
 }
 
 bool StepTrees::isKnown(std::size_t member, int tree) const
@@ -140,7 +141,7 @@ bool StepTrees::look(double h)
     const std::vector<Contact>& contacts = rock.body().contacts;
     for (std::size_t k = 0; k < contacts.size(); ++k)
     {
-      const int tree = rock.sim.structures().treeOf(contacts[k]);
+      const int tree = rock.fall().structures.treeOf(contacts[k]);
       if (tree < 0 || work_.solver.rows().force(work_.slopeFirsts[m] + k) <= 0.0 ||
         this->isKnown(m, tree))
       {
@@ -161,21 +162,21 @@ bool StepTrees::look(double h)
 void StepTrees::fell(std::size_t member)
 {
   bool any = false;
-  SingleRock& sim = world_.rocks[std::size_t(island_.members[member])].sim;
-  RockBody& body = sim.body();
+  Fall& fall = world_.rocks[std::size_t(island_.members[member])].fall();
+  RockBody& body = fall.body;
   for (const Stem& stem : work_.stems)
   {
     if (stem.member != member || stem.stands != Stem::Stands::No)
     {
       continue;
     }
-    if (sim.structures().stemHolds(stem.tree, body.block, body.state, body.contactsBefore))
+    if (fall.structures.stemHolds(stem.tree, body.block, body.state, body.contactsBefore))
     {
       // Others have taken it since: it holds from here on.
       for (Contact& c : body.contacts)
       {
         c.offset =
-          sim.structures().treeOf(c) == stem.tree ? std::min(c.offset, c.distance) : c.offset;
+          fall.structures.treeOf(c) == stem.tree ? std::min(c.offset, c.distance) : c.offset;
       }
       continue;
     }
@@ -184,19 +185,19 @@ void StepTrees::fell(std::size_t member)
     double held = 0.0;
     for (const Contact& c : body.contactsBefore)
     {
-      if (sim.structures().treeOf(c) == stem.tree)
+      if (fall.structures.treeOf(c) == stem.tree)
       {
         const double all = c.springEnergy();
         held += all;
         body.energy.restitution -= all;
       }
     }
-    sim.structures().passTree(stem.tree, held, body, sim.trajectory().structures);
+    fall.structures.passTree(stem.tree, held, body, fall.recorder.trajectory().structures);
     any = true;
   }
   if (any)
   {
-    sim.forgetTrees();
+    forgetTrees(fall);
   }
 }
 

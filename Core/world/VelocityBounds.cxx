@@ -21,7 +21,8 @@ void boundVelocities(
     obstacles->anyIn(
       p.x() - displacement, p.x() + displacement, p.y() - displacement, p.y() + displacement);
   // Which open contacts are kept hangs on how the slope was searched.
-  const bool flies = !obstructed && !anyClosed(sim.body().contacts) && sim.clearFor(duration);
+  const bool flies = !obstructed && !anyClosed(sim.body().contacts) &&
+    sim.fall().ground.clearFor(sim.body(), duration);
   // Velocities that an impact on the slope leaves, with any normal.
   const double e = obstructed ? 1.0 : world.surface.largestRestitution();
   velocities.middle = flies ? s.velocity : Vec3(0.5 * (1.0 - e) * s.velocity);

@@ -3,6 +3,7 @@
 #include "base/abort.h"
 #include "base/parallel.h"
 #include "law/settings.h"
+#include "rock/atStructures.h"
 #include "terrain/Obstacles.h"
 #include "world/IslandFinder.h"
 #include "world/IslandStepper.h"
@@ -31,8 +32,8 @@ World::World(const Surface& surface, std::span<const Rock> rocks, std::span<cons
       surface, rocks[i], blocks[i], parameters, std::uint32_t(number) + std::uint32_t(i));
     if (parameters.rockRockContact)
     {
-      rock.sim.letStrainFollow();
-      rock.sim.structures().setBarrierLoads(&barrierLoads_);
+      rock.body().letStrainFollow();
+      rock.fall().structures.setBarrierLoads(&barrierLoads_);
     }
   }
   if (parameters.rockRockContact)
@@ -111,7 +112,7 @@ void World::shareBroken()
   StructuresOnWay::Broken all;
   for (FallingRock& rock : world_.rocks)
   {
-    const StructuresOnWay::Broken one = rock.sim.structures().drainBroken();
+    const StructuresOnWay::Broken one = rock.fall().structures.drainBroken();
     all.trees.insert(all.trees.end(), one.trees.begin(), one.trees.end());
     all.barriers.insert(all.barriers.end(), one.barriers.begin(), one.barriers.end());
     for (const auto& [barrier, held] : one.held)
@@ -127,7 +128,7 @@ void World::shareBroken()
   }
   for (FallingRock& rock : world_.rocks)
   {
-    if (rock.sim.applyBroken(all) && rock.asleep)
+    if (applyBroken(rock.fall(), all) && rock.asleep)
     {
       wake(rock, world_.time);
     }

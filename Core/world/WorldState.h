@@ -25,6 +25,8 @@ struct FallingRock
     : sim(surface, rock, block, parameters, number)
   {
   }
+  Fall& fall() { return sim.fall(); }
+  const Fall& fall() const { return sim.fall(); }
   RockBody& body() { return sim.body(); }
   const RockBody& body() const { return sim.body(); }
   /// `placed` and `hull` for where the rock is, unless they are.

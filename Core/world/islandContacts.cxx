@@ -4,6 +4,9 @@
 
 #include "base/parallel.h"
 #include "law/settings.h"
+#include "rock/atStructures.h"
+#include "rock/contactPhase.h"
+#include "rock/inSoil.h"
 #include "world/pairSprings.h"
 #include "world/stepLayout.h"
 
@@ -34,7 +37,7 @@ double IslandStepper::reachOf(double speed, double radius, double h) const
 void IslandStepper::gatherOnSlope(std::size_t k, double h)
 {
   FallingRock& rock = world_.rocks[std::size_t(island_.members[k])];
-  SingleRock& sim = rock.sim;
+  Fall& fall = rock.fall();
   RockBody& body = rock.body();
   if (body.done)
   {
@@ -48,37 +51,37 @@ void IslandStepper::gatherOnSlope(std::size_t k, double h)
   const double reach = this->reachOf(speed, r, h);
   body.inIsland = true;
   // Twice: beyond a concave edge planes serve a little further than their triangles.
-  if (sim.isClear(2.0 * reach))
+  if (fall.ground.isClear(body, fall.structures, 2.0 * reach))
   {
-    sim.closeScar();
-    sim.setNewSprings(h);
+    closeScar(fall);
+    setNewSprings(fall, h);
     return;
   }
   body.placed.placeVertices();
   const auto find = [&]() -> const CandidatePairs&
   {
-    const CandidatePairs& near = sim.stepCandidates(rock.hull,
+    const CandidatePairs& near = fall.ground.stepCandidates(body, fall.structures, rock.hull,
       { body.state.velocity, spread, kFasterApproach * h,
         world_.parameters.gravity * h * h + kSurelyOnSlope * r, reach });
-    sim.findContacts(near, reach, 0.0);
+    findContacts(fall, near, reach, 0.0);
     return near;
   };
   const CandidatePairs* near = &find();
-  while (sim.structures().solid() && sim.breakTrees(h))
+  while (fall.structures.solid() && breakTrees(fall, h))
   {
     near = &find();
   }
-  while (sim.meetsYielding() && sim.followScar(h))
+  while (fall.soil.yields() && followScar(fall, h))
   {
     near = &find();
   }
-  if (sim.structures().solid())
+  if (fall.structures.solid())
   {
     side.set(body); // what broke has taken speed
   }
-  sim.guardPenetrations(*near);
-  stiffenPressed(sim);
-  sim.setNewSprings(h);
+  guardPenetrations(fall, *near);
+  stiffenPressed(rock.sim);
+  setNewSprings(fall, h);
 }
 
 void IslandStepper::gatherOfPair(std::size_t p, double h)

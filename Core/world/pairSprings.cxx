@@ -40,7 +40,7 @@ void stiffenPressed(SingleRock& sim)
 {
   const double r = sim.body().block.radius(), mass = sim.body().block.mass();
   double speed = sim.body().state.velocity.norm() + sim.body().state.spin.norm() * r;
-  if (const ImpactEvent* impact = sim.impactUnderWay())
+  if (const ImpactEvent* impact = sim.fall().impact.underWay())
   {
     speed = std::max(speed, impact->velocityBefore.norm());
   }

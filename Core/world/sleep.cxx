@@ -53,7 +53,7 @@ void restAnew(FallingRock& rock)
 void putToSleep(FallingRock& rock)
 {
   rock.asleep = true;
-  rock.sim.end(Fate::Rested);
+  rock.fall().end(Fate::Rested);
   RockBody& body = rock.body();
   body.state.velocity.setZero();
   body.state.spin.setZero();

@@ -19,7 +19,7 @@ IslandContact touchOnSlope(const WorldState& world, const FallingRock& member, C
   const int ground = world.surface.restitutionClass(c.cfe);
   const SurfaceMaterial& material = world.surface.terrain().restitutionMaterial(ground);
   IslandContact k;
-  k.restitution = world.surface.restitutionAt(sim.touchAt(c.cfe, c.point));
+  k.restitution = world.surface.restitutionAt(sim.fall().impact.touchAt(c.cfe, c.point));
   if (material.restitutionModel == RestitutionModel::Velocity && down)
   {
     k.restitution = 1.0; // Rv is taken off the whole velocity when the impact is over
@@ -34,7 +34,7 @@ IslandContact touchOnSlope(const WorldState& world, const FallingRock& member, C
   k.first = member.place;
   k.friction = c.friction;
   k.cohesion = c.cohesion;
-  if (c.closed() && sim.impactUnderWay())
+  if (c.closed() && sim.fall().impact.pending())
   {
     k.reboundSpeed = bounceLeft(c, approach); // begun where impacts are resolved in time
   }

@@ -1,6 +1,6 @@
 // Rocks on a slope of several classes: the contact takes what lies under it.
 #include "randomScenes.h"
-#include "rock/overlapRecovery.h"
+#include "rock/OverlapRecovery.h"
 #include "slopes.h"
 #include "terrain/Surface.h"
 

@@ -11,6 +11,7 @@
 
 #include "contact/Contact.h"
 #include "law/settings.h"
+#include "rock/RockBody.h"
 
 #include <algorithm>
 #include <cmath>
@@ -78,5 +79,33 @@ inline double limitSlip(Contact& c, double most)
   c.slip *= most / slip;
   return 0.5 * c.shearStiffness * (slip * slip - most * most);
 }
+
+/// The overlaps of one rock with the slope, step by step.
+class OverlapRecovery
+{
+public:
+  OverlapRecovery(double gravity, double normalPenalty)
+    : gravity_(gravity)
+    , normalPenalty_(normalPenalty)
+  {
+  }
+
+  /// Deep ones, before a lasting step of `h` (s).
+  void beforeStep(RockBody& body, double h);
+  /// Whether one was pressed out in the step at hand; asked once, after it.
+  bool drainRecovered();
+  /// Loose ones, after it.
+  void afterStep(RockBody& body, double h) const;
+  /// No spring in an overlap deeper than `loose` (m) holds more than at the speed (m/s) that springs
+  /// give a rock that lies still and alone. Returns what it no longer holds, J.
+  static double limit(RockBody& body, double loose, double settledSpeed);
+  /// Depth from which an overlap is deep, m.
+  static double looseOf(const RockBody& body);
+
+private:
+  double gravity_;          ///< m/s²
+  double normalPenalty_;    ///< N/m
+  bool recovering_ = false; ///< A deep overlap is pressed out in the step at hand.
+};
 
 } // namespace rockfall

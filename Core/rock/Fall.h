@@ -1,0 +1,64 @@
+#pragma once
+
+/// @file
+/// The fall of one rock: its parts, as its phases pass them on (SingleRock). A part keeps one thing
+/// and its rule, and knows no other part but by what it is given.
+///
+///   body        motion, contacts, books          RockBody
+///   ground      what of the slope is near        GroundNear
+///   springs     of contacts; lengths of steps    SlopeSprings
+///   overlaps    how found ones go                OverlapRecovery
+///   soil        scar, drag, slip                 SoilUnderRock
+///   structures  trees and barriers               StructuresOnWay
+///   impact      the one that is under way        SlopeImpact
+///   recorder    samples, maxima, energy          Recorder
+///
+/// Phases: flightPhase, impulseImpacts, contactPhase; inSoil and atStructures within them; endOfFall.
+
+#include "rock/GroundNear.h"
+#include "rock/OverlapRecovery.h"
+#include "rock/Recorder.h"
+#include "rock/RockBody.h"
+#include "rock/SlopeImpact.h"
+#include "rock/SlopeSprings.h"
+#include "rock/SoilUnderRock.h"
+#include "rock/StructuresOnWay.h"
+#include "rock/parameters.h"
+
+namespace rockfall
+{
+
+struct Rock;
+
+struct Fall
+{
+  /// `number` of the rock in its iteration.
+  Fall(const Surface& s, const Rock& rock, const Block& block, const SimulationParameters& p,
+    std::uint32_t number);
+
+  void end(Fate fate);
+  /// Whether the horizon is reached, but for what is too short to be a step.
+  bool arrived() const { return this->body.state.time >= this->horizon - 1e-9; }
+
+  const Surface& surface;
+  const SimulationParameters& parameters;
+  // In the order of their use in the step of an island, which goes from rock to rock: what it needs
+  // lies together.
+  bool inContact = false;
+  RockBody body;
+  bool impulses;              ///< Impacts are events in impulse space.
+  int struckAtOnce = 0;       ///< Such events since the rock last moved on.
+  double openTime = 0.0;      ///< Since it touched, s.
+  double horizon = 0.0;       ///< Up to which it is to advance, s.
+  double freeUntil = 0.0;     ///< Nothing can be touched until then, after a take-off, s.
+  std::uint64_t carrying = 0; ///< The features that carried in the last lasting step.
+  SlopeSprings springs;
+  OverlapRecovery overlaps;
+  StructuresOnWay structures;
+  GroundNear ground;
+  SlopeImpact impact;
+  SoilUnderRock soil;
+  Recorder recorder;
+};
+
+} // namespace rockfall

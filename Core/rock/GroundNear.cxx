@@ -1,0 +1,190 @@
+#include "rock/GroundNear.h"
+
+#include "contact/ground/clearance.h"
+#include "contact/ground/timeToTouch.h"
+#include "contact/pairs.h"
+#include "law/settings.h"
+
+#include <algorithm>
+
+namespace rockfall
+{
+
+namespace
+{
+
+CandidatePairs& workSpace()
+{
+  thread_local CandidatePairs pairs;
+  return pairs;
+}
+
+} // namespace
+
+std::array<double, 4> GroundNear::boxOfWay(const RockBody& body, double duration) const
+{
+  const double r = body.block.radius();
+  const Vec3& p = body.state.position;
+  const Vec3 end = p + duration * body.state.velocity;
+  return { std::min(p.x(), end.x()) - r, std::max(p.x(), end.x()) + r, std::min(p.y(), end.y()) - r,
+    std::max(p.y(), end.y()) + r };
+}
+
+void GroundNear::ensureWindow(const RockBody& body, double duration)
+{
+  const auto [x0, x1, y0, y1] = this->boxOfWay(body, duration);
+  if (!window_.covers(x0, x1, y0, y1))
+  {
+    window_.gather(surface_, x0, x1, y0, y1);
+  }
+}
+
+double GroundNear::timeToGround(const RockBody& body, double duration)
+{
+  if (window_.whole())
+  {
+    return timeToTouch(body.placed, body.state, window_, gravity_, duration);
+  }
+  // A rock over a hole has no gap to close: it comes to a rim or a wall from beside.
+  const auto [x0, x1, y0, y1] = this->boxOfWay(body, duration);
+  if (!holed_.covers(x0, x1, y0, y1))
+  {
+    gatherPatch(surface_, x0, x1, y0, y1, holed_);
+  }
+  return clearance(body.placed, body.state, holed_, gravity_, duration).time;
+}
+
+bool GroundNear::clearFor(const RockBody& body, double duration) const
+{
+  const double r = body.block.radius();
+  const Vec3& p = body.state.position;
+  const Vec3 end = p + duration * body.state.velocity;
+  const double zEnd = end.z() - 0.5 * gravity_ * duration * duration;
+  // The parabola is concave: its lowest point is at one of its ends.
+  const double lowest = std::min(p.z(), zEnd) - r;
+  return surface_.maxHeight(std::min(p.x(), end.x()) - r, std::max(p.x(), end.x()) + r,
+           std::min(p.y(), end.y()) - r, std::max(p.y(), end.y()) + r) < lowest;
+}
+
+void GroundNear::ensurePatch(const RockBody& body, const StructuresOnWay& structures, double margin)
+{
+  const Vec3 lower = body.placed.lower(), upper = body.placed.upper();
+  if (!patch_.covers(
+        lower.x() - margin, upper.x() + margin, lower.y() - margin, upper.y() + margin))
+  {
+    gatherPatch(surface_, lower.x() - margin, upper.x() + margin, lower.y() - margin,
+      upper.y() + margin, patch_);
+    if (structures.solid())
+    {
+      const double ring = patch_.cellSize;
+      structures.obstacles().append(patch_.xMin - ring, patch_.xMax + ring, patch_.yMin - ring,
+        patch_.yMax + ring, structures.goneTrees(), patch_);
+    }
+    if (depth_ > 0.0)
+    {
+      this->lower(depth_, depth_);
+    }
+    this->forgetCandidates();
+  }
+}
+
+void GroundNear::forgetPatch()
+{
+  patch_.xMax = patch_.xMin - 1.0;
+  this->forgetCandidates();
+}
+
+void GroundNear::lower(double by, double depth)
+{
+  depth_ = depth;
+  for (SurfacePatch::Node& node : patch_.nodes)
+  {
+    node.position.z() -= by;
+  }
+  for (SurfacePatch::Triangle& triangle : patch_.triangles)
+  {
+    triangle.offset -= by * triangle.normal.z();
+  }
+  patch_.highest -= by;
+  // For the pairs that can touch the rock has moved the other way.
+  candidates_.position.z() -= by;
+}
+
+void GroundNear::ensureCandidates(
+  const RockBody& body, const StructuresOnWay& structures, double reach, bool among)
+{
+  if (candidates_.room(body.state, body.block.radius(), reach) < 0.0)
+  {
+    // Where nothing was near at the last look there is little that a wider one finds.
+    const double slack = among && candidates_.empty() ? kFarCandidateSlack : kCandidateSlack;
+    // In a scar the ground moves under the rock as well.
+    const double room = std::max(slack * body.block.radius(), depth_);
+    const double distance = std::max(2.0 * reach, reach + room);
+    this->ensurePatch(body, structures, distance);
+    gatherCandidates(body.placed, body.state, patch_, distance, candidates_);
+  }
+}
+
+const CandidatePairs& GroundNear::stepCandidates(const RockBody& body,
+  const StructuresOnWay& structures, const PairBody& hull, const SlopeReach& reach)
+{
+  if (!structures.solid())
+  {
+    this->ensurePatch(body, structures, 2.0 * reach.most);
+    if (patch_.isSlopeOnly())
+    {
+      CandidatePairs& now = workSpace();
+      gatherStepCandidates(body.placed, hull, patch_, reach, now);
+      return now;
+    }
+  }
+  this->ensureCandidates(body, structures, reach.most, true);
+  return candidates_;
+}
+
+const CandidatePairs& GroundNear::candidatesAt(const RockBody& body,
+  const StructuresOnWay& structures, const BlockState& end, const PlacedBlock& placed,
+  const PairBody& hull, double way, double allowed)
+{
+  if (!structures.solid())
+  {
+    const double r = body.block.radius();
+    const Vec3& p = end.position;
+    if (!patch_.covers(p.x() - r, p.x() + r, p.y() - r, p.y() + r))
+    {
+      this->ensurePatch(body, structures, way);
+    }
+    if (patch_.isSlopeOnly())
+    {
+      CandidatePairs& now = workSpace();
+      gatherCandidatesUnder(placed, hull, patch_, allowed, now);
+      return now;
+    }
+  }
+  if (candidates_.room(end, body.block.radius(), 0.0) < 0.0)
+  {
+    // Thrown further than anyone would have thought.
+    this->ensureCandidates(body, structures, way, true);
+  }
+  return candidates_;
+}
+
+bool GroundNear::isClear(const RockBody& body, const StructuresOnWay& structures, double reach)
+{
+  if (structures.solid() || !body.contacts.empty())
+  {
+    return false;
+  }
+  const double r = body.block.radius();
+  const Vec3& p = body.state.position;
+  if (!heightBound_.covers(p, r + reach))
+  {
+    thread_local HeightWindow window;
+    const double half = r + reach + kGroundHeightBound * r;
+    window.gather(surface_, p.x() - half, p.x() + half, p.y() - half, p.y() + half);
+    heightBound_ = GroundHeightBound(window);
+  }
+  return this->isClearAt(body, p, reach);
+}
+
+} // namespace rockfall

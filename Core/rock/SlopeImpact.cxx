@@ -1,0 +1,159 @@
+#include "rock/SlopeImpact.h"
+
+#include "law/settings.h"
+#include "rock/restitution.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace rockfall
+{
+
+double SlopeImpact::duration(const RockBody& body) const
+{
+  return std::numbers::pi * std::sqrt(body.block.mass() / parameters_.normalPenalty);
+}
+
+bool SlopeImpact::isWorthAnEvent(const RockBody& body) const
+{
+  return isImpact(event_.approachSpeed, event_.velocityBefore.norm(), body.restingSpeed,
+    parameters_.gravity, body.block.radius());
+}
+
+bool SlopeImpact::resume(const RockBody& body, double time, Recorder& recorder)
+{
+  if (!impulses_ || !(lastTouch_ > 0.0) || time > lastTouch_ + this->duration(body))
+  {
+    return false;
+  }
+  if (!pending_)
+  {
+    pending_ = true; // with the same deviates
+    --impactsOver_;
+    if (this->isWorthAnEvent(body))
+    {
+      forgetImpact(recorder.trajectory(), event_, parameters_.keepImpacts);
+    }
+  }
+  lastTouch_ = time;
+  return true;
+}
+
+void SlopeImpact::begin(
+  const RockBody& body, const BlockState& at, double frictionBefore, double restitutionBefore)
+{
+  pending_ = true;
+  slowed_ = false;
+  lastTouch_ = at.time;
+  event_ = ImpactEvent();
+  event_.time = at.time;
+  event_.velocityBefore = at.velocity;
+  normalImpulse_.setZero();
+  largestForce_ = 0.0;
+  frictionBefore_ = frictionBefore;
+  restitutionBefore_ = restitutionBefore;
+  yieldedBefore_ = body.energy.scars + body.energy.rolling;
+}
+
+void SlopeImpact::follow(const RockBody& body, const BlockState& start, double h,
+  const StepOutcome& outcome, Recorder& recorder)
+{
+  const Vec3 spin = start.angularVelocity();
+  for (std::size_t i = 0; i < body.contacts.size(); ++i)
+  {
+    const Contact& now = body.contacts[i];
+    const Contact& was = body.contactsBefore[i];
+    if (now.normalForce <= 0.0)
+    {
+      continue;
+    }
+    if (!was.closed())
+    {
+      const double approach = approachOf(start, spin, was.point, was.normal);
+      if (approach > body.restingSpeed)
+      {
+        if (!this->resume(body, start.time, recorder) && !pending_)
+        {
+          this->begin(body, start, body.energy.friction - outcome.frictionWork,
+            body.energy.restitution - outcome.dampedWork);
+        }
+        this->noteApproach(approach);
+      }
+    }
+    if (pending_)
+    {
+      this->addImpulse((h * now.normalForce) * now.normal, now.normalForce, now.cfe, was.point);
+    }
+  }
+}
+
+void SlopeImpact::addImpulse(const Vec3& impulse, double force, std::int64_t cfe, const Vec3& place)
+{
+  normalImpulse_ += impulse;
+  if (force > largestForce_)
+  {
+    largestForce_ = force;
+    event_.cfe = cfe;
+    event_.position = place;
+  }
+}
+
+void SlopeImpact::noteScar(double depth, double length)
+{
+  event_.scarDepth = depth;
+  event_.scarLength = length;
+}
+
+void SlopeImpact::noteSink(const Contact& under)
+{
+  event_.cfe = under.cfe;
+  event_.position = under.point;
+  event_.normal = under.normal;
+}
+
+void SlopeImpact::finish(RockBody& body, Recorder& recorder, bool over, bool told)
+{
+  if (!pending_)
+  {
+    return;
+  }
+  pending_ = false;
+  const GroundTouch touch = this->touchAt(event_.cfe, event_.position);
+  ++impactsOver_;
+  if (!this->isWorthAnEvent(body))
+  {
+    return;
+  }
+  event_.impulse = normalImpulse_.norm();
+  event_.normal = event_.impulse > 0.0 ? Vec3(normalImpulse_ / event_.impulse) : event_.normal;
+  const int ground = surface_.restitutionClass(event_.cfe);
+  event_.restitution = surface_.restitutionAt(touch);
+  const double before = kineticEnergy(body.block, body.state);
+  const bool down = comesDown(
+    event_.approachSpeed, event_.velocityBefore.norm(), parameters_.gravity, body.block.radius());
+  const SurfaceMaterial& material = surface_.terrain().restitutionMaterial(ground);
+  const Vec3 after = over && !slowed_ ? adjustVelocity(material, event_, body.state.velocity, down)
+                                      : body.state.velocity;
+  slowed_ = slowed_ || after != body.state.velocity;
+  const bool jumps =
+    !told && (after - body.state.velocity).norm() > kSameVelocity * body.state.velocity.norm();
+  if (jumps)
+  {
+    recorder.beforeJump(body, true);
+  }
+  body.state.velocity = after;
+  body.energy.restitution += before - kineticEnergy(body.block, body.state);
+  event_.velocityAfter = body.state.velocity;
+  event_.energyLoss = body.energy.restitution - restitutionBefore_ + body.energy.friction -
+    frictionBefore_ + (body.energy.scars + body.energy.rolling - yieldedBefore_);
+  if (jumps)
+  {
+    recorder.afterJump(body, true);
+  }
+  body.acceleration.setZero();
+  body.spinAcceleration.setZero();
+  noteImpact(recorder.trajectory(), event_, parameters_.keepImpacts);
+}
+
+} // namespace rockfall

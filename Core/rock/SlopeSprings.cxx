@@ -1,0 +1,194 @@
+#include "rock/SlopeSprings.h"
+
+#include "law/settings.h"
+#include "law/springs.h"
+#include "rock/restitution.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace rockfall
+{
+
+namespace
+{
+
+/// Frequencies of a block on the springs of several contacts, squared, 1/s².
+struct ImpactFrequency
+{
+  double sum = 0.0;      ///< Of each alone.
+  double together = 0.0; ///< Of what they stop together (impactMode.h).
+
+  void add(const Contact& c, bool acts)
+  {
+    this->sum += acts ? c.frequency2 : 0.0;
+    this->together = std::max(this->together, acts ? c.stiffness / c.stopped : 0.0);
+  }
+  /// `one`: of one where the block is turned best.
+  double ofAll(double one) const
+  {
+    return std::min(this->sum, std::max({ one, kOneMotionShare * this->sum, this->together }));
+  }
+};
+
+} // namespace
+
+SlopeSprings::SlopeSprings(
+  const Surface& surface, const SimulationParameters& parameters, const Block& block)
+  : surface_(surface)
+  , parameters_(parameters)
+  , penalty_(parameters.normalPenalty)
+  , softness_(1.0 / parameters.normalPenalty + block.largestCompliance())
+{
+}
+
+double SlopeSprings::travelLimit(const RockBody& body) const
+{
+  const double rim = body.state.spin.norm() * body.block.radius();
+  const double speed =
+    body.state.velocity.norm() + rim + parameters_.gravity * parameters_.timeStep;
+  return speed > 0.0 ? kTravelPerStep * body.block.radius() / speed : parameters_.timeStep;
+}
+
+double SlopeSprings::impactStep(const RockBody& body) const
+{
+  ImpactFrequency closed;
+  for (const Contact& c : body.contacts)
+  {
+    closed.add(c, c.closed());
+  }
+  const double one = penalty_ * body.block.largestMobility();
+  const double frequency2 = closed.sum > 0.0 ? closed.ofAll(one) : one;
+  const double resolved = std::numbers::pi / (kStepsPerImpact * std::sqrt(frequency2));
+  return std::min({ parameters_.timeStep, resolved, this->travelLimit(body) });
+}
+
+double SlopeSprings::touchdownStep(const RockBody& body, double h) const
+{
+  ImpactFrequency closing;
+  const Vec3 spin = body.state.angularVelocity();
+  for (const Contact& c : body.contacts)
+  {
+    const double approach = approachOf(body.state, spin, c.point, c.normal);
+    closing.add(c, c.closed() || c.gap() < approach * h);
+  }
+  const double frequency2 = closing.ofAll(penalty_ * body.block.largestMobility());
+  return std::min(h, std::numbers::pi / (kStepsPerImpact * std::sqrt(frequency2)));
+}
+
+bool SlopeSprings::mayLast(const RockBody& body, double h) const
+{
+  bool any = false;
+  const Vec3 spin = body.state.angularVelocity();
+  for (const Contact& c : body.contacts)
+  {
+    const double approach = approachOf(body.state, spin, c.point, c.normal);
+    if (c.closed())
+    {
+      any = true;
+      if (std::abs(approach) > body.restingSpeed)
+      {
+        return false;
+      }
+    }
+    else if (approach > body.restingSpeed)
+    {
+      if (c.gap() < approach * h)
+      {
+        return false;
+      }
+    }
+    else if (c.gap() <= 0.5 * parameters_.gravity * h * h && approach > -body.restingSpeed)
+    {
+      any = true; // laid down, not thrown
+    }
+  }
+  return any;
+}
+
+double SlopeSprings::settledSpeed(const RockBody& body) const
+{
+  return body.restingSpeed + 4.0 * parameters_.gravity * std::sqrt(body.block.mass() * softness_);
+}
+
+bool SlopeSprings::isCalm(const RockBody& body) const
+{
+  // At the turning point of an impact nothing moves either, but the springs hold its energy; at
+  // rest they hold the weight's, ½ m v² with v = g √(m/p), several times that when the rock rolls.
+  const double settled = this->settledSpeed(body);
+  const double held = body.normalEnergy + (body.stiff ? 0.0 : strainEnergy(body.block, body.state));
+  if (held > 0.5 * body.block.mass() * settled * settled)
+  {
+    return false;
+  }
+  const Vec3 spin = body.state.angularVelocity();
+  return std::all_of(body.contacts.begin(), body.contacts.end(),
+    [&](const Contact& c)
+    {
+      return !c.closed() ||
+        std::abs(approachOf(body.state, spin, c.point, c.normal)) <= body.restingSpeed;
+    });
+}
+
+double SlopeSprings::stoppingPenalty(const RockBody& body) const
+{
+  // All that moves in one spring.
+  const double depth =
+    std::min(kDeepestImpact * body.block.radius(), kDeepestOfThin * body.block.thickness());
+  return std::max(
+    parameters_.normalPenalty, 2.0 * rigidKineticEnergy(body.block, body.state) / (depth * depth));
+}
+
+void SlopeSprings::stiffen(const RockBody& body)
+{
+  penalty_ = std::max(penalty_, this->stoppingPenalty(body));
+}
+
+double SlopeSprings::dampingRatioFor(int ground, double restitution)
+{
+  if (surface_.deviationPer(ground) != DeviationPer::Iteration)
+  {
+    if (restitution != dampedFor_)
+    {
+      dampedFor_ = restitution;
+      damped_ = dampingRatio(restitution);
+    }
+    return damped_;
+  }
+  // Solved for when a rock meets the class for the first time.
+  const auto number = std::size_t(ground);
+  dampingRatios_.resize(std::max(dampingRatios_.size(), number + 1), -1.0);
+  double& ratio = dampingRatios_[number];
+  if (ratio < 0.0)
+  {
+    ratio = dampingRatio(restitution);
+  }
+  return ratio;
+}
+
+void SlopeSprings::give(Contact& c, const RockBody& body, double restitution)
+{
+  const Vec3 lever = c.point - body.state.position;
+  const Vec3 y = body.placed.rotation().transpose() * lever;
+  const Vec3 n = body.placed.rotation().transpose() * c.normal;
+  const Vec3 t = n.unitOrthogonal();
+  const double shear = penalty_ * parameters_.shearRatio;
+  const bool strains = body.stiff && !parameters_.rigid;
+  c.stiffness = penalty_ / (1.0 + (strains ? penalty_ * body.block.compliance(n, y) : 0.0));
+  c.shearStiffness = shear / (1.0 + (strains ? shear * body.block.compliance(t, y) : 0.0));
+  const double speed = body.state.velocity.norm();
+  const double approach = approachOf(body.state, body.state.angularVelocity(), c.point, c.normal);
+  const bool down = approach > body.restingSpeed &&
+    comesDown(approach, speed, parameters_.gravity, body.block.radius());
+  const int ground = surface_.restitutionClass(c.cfe);
+  const double damped = contactDamping(surface_.terrain().restitutionMaterial(ground), restitution,
+    this->dampingRatioFor(ground, restitution), approach, down);
+  const double mobility = body.block.mobility(n, y);
+  c.frequency2 = c.stiffness * mobility;
+  c.stopped = 1.0 / mobility;
+  c.dashpot = damped > 0.0 ? 2.0 * damped * std::sqrt(c.stiffness / mobility) : 0.0;
+  c.shearDashpot = 2.0 * kShearDamping * std::sqrt(c.shearStiffness / body.block.mobility(t, y));
+}
+
+} // namespace rockfall

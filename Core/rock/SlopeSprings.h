@@ -1,0 +1,53 @@
+#pragma once
+
+/// @file
+/// Springs and dashpots of one rock's contacts with the slope, and what follows from them: how long
+/// a step may be, and whether the rock is calm enough for a long one.
+
+#include "rock/RockBody.h"
+#include "rock/parameters.h"
+#include "terrain/Surface.h"
+
+#include <vector>
+
+namespace rockfall
+{
+
+class SlopeSprings
+{
+public:
+  SlopeSprings(const Surface& surface, const SimulationParameters& parameters, const Block& block);
+
+  double penalty() const { return penalty_; } ///< pₙ of the contacts that are made now, N/m.
+  /// For a touch-down: no stiffer than needed to stop the rock in time.
+  void beginContact(const RockBody& body) { penalty_ = this->stoppingPenalty(body); }
+  /// A rock that slides into something may be faster than when its contact began.
+  void stiffen(const RockBody& body);
+  /// Springs and dashpot of a contact that is about to close. `restitution`: of the ground there.
+  void give(Contact& contact, const RockBody& body, double restitution);
+
+  // Lengths of a step, s
+
+  double travelLimit(const RockBody& body) const; ///< Goes no further than contacts serve.
+  double impactStep(const RockBody& body) const;  ///< Resolves an impact.
+  /// The part of a step of `h` that contacts which are closed or close in it allow.
+  double touchdownStep(const RockBody& body, double h) const;
+  bool mayLast(const RockBody& body, double h) const; ///< A long, damped step is right.
+
+  bool isCalm(const RockBody& body) const; ///< Contacts that carry neither approach nor part.
+  /// Speed that springs could give a rock that lies still and alone, m/s.
+  double settledSpeed(const RockBody& body) const;
+
+private:
+  double stoppingPenalty(const RockBody& body) const;     ///< Stiffness that stops it in time, N/m.
+  double dampingRatioFor(int ground, double restitution); ///< ζ of a class of ground, now.
+
+  const Surface& surface_;
+  const SimulationParameters& parameters_;
+  double penalty_;
+  double softness_;                        ///< Of a contact and the block behind it, m/N.
+  std::vector<double> dampingRatios_;      ///< ζ by restitution class; < 0: not known yet.
+  double dampedFor_ = -1.0, damped_ = 0.0; ///< The restitution looked up last, and its ζ.
+};
+
+} // namespace rockfall
