@@ -2,7 +2,7 @@
 
 /// @file
 /// Structures on the way of one rock: which of them stand for it, what of them it meets, what it
-/// has broken. What that does to the rock is SingleRock's, but for what a stem takes.
+/// has broken. What that does to the rock is in atStructures.h, but for what a stem takes.
 
 #include "contact/Contact.h"
 #include "contact/PlacedBlock.h"

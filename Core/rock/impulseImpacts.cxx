@@ -24,7 +24,7 @@ namespace
 {
 
 /// A point of the rock that touches the ground.
-struct Touch
+struct StruckPoint
 {
   Vec3 point;
   Vec3 normal;
@@ -32,23 +32,23 @@ struct Touch
 };
 
 /// Touches of the impact at hand.
-std::vector<Touch>& touchSpace()
+std::vector<StruckPoint>& touchSpace()
 {
-  thread_local std::vector<Touch> touches;
+  thread_local std::vector<StruckPoint> touches;
   return touches;
 }
 
 /// Whether the rock leaves all of them faster than it may rest.
-bool partsFrom(const RockBody& body, std::span<const Touch> touches)
+bool partsFrom(const RockBody& body, std::span<const StruckPoint> touches)
 {
   const Vec3 spin = body.state.angularVelocity();
   return std::all_of(touches.begin(), touches.end(),
-    [&](const Touch& touch)
+    [&](const StruckPoint& touch)
     { return -approachOf(body.state, spin, touch.point, touch.normal) > body.restingSpeed; });
 }
 
 /// One impact at all these points, where the rock is. Whether there was one.
-bool strike(Fall& fall, std::span<const Touch> touches, bool carried)
+bool strike(Fall& fall, std::span<const StruckPoint> touches, bool carried)
 {
   RockBody& body = fall.body;
   if (touches.empty() || touches.size() > kMostImpulsePoints ||
@@ -65,7 +65,7 @@ bool strike(Fall& fall, std::span<const Touch> touches, bool carried)
   double fastest = 0.0;
   for (std::size_t i = 0; i < touches.size(); ++i)
   {
-    const Touch& touch = touches[i];
+    const StruckPoint& touch = touches[i];
     ImpulsePoint& point = points[i];
     point.normal = touch.normal;
     point.lever = touch.point - body.state.position;
@@ -209,7 +209,7 @@ bool hop(Fall& fall, double duration)
   body.placed.move(block, body.state);
   thread_local std::vector<GroundPlace> places;
   findTouches(body.placed, fall.ground.window(), kSharedTouch * block.radius(), places);
-  std::vector<Touch>& touches = touchSpace();
+  std::vector<StruckPoint>& touches = touchSpace();
   touches.clear();
   const double width = fall.surface.terrain().width(), height = fall.surface.terrain().height();
   for (const GroundPlace& place : places)
@@ -245,7 +245,7 @@ bool strikeSoon(Fall& fall, double small, double& first)
   // What carries does so on the way, and shares the impact.
   const bool carried = anyClosed(body.contacts);
   const double shared = kSharedTouch * body.block.radius();
-  std::vector<Touch>& touches = touchSpace();
+  std::vector<StruckPoint>& touches = touchSpace();
   touches.clear();
   for (const Contact& c : body.contacts)
   {
