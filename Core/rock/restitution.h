@@ -8,6 +8,7 @@
 /// at the contact only: a dashpot beside the contact's spring. So have all touches in the other
 /// models.
 
+#include "law/restitution.h"
 #include "law/settings.h"
 #include "law/springs.h"
 #include "rock/results.h"
@@ -34,13 +35,6 @@ inline bool isImpact(
   const bool fast = approachSpeed * approachSpeed > 2.0 * gravity * kDropOfTouch * radius;
   const bool steep = approachSpeed > kSteepTouch * speed;
   return approachSpeed > restingSpeed && (fast || steep);
-}
-
-/// Rn of the speed-dependent model: Rn / (1 + (v/K)²) (Pfeiffer & Bowen 1989). Speeds in m/s.
-inline double restitutionAtSpeed(double restitution, double approachSpeed, double referenceSpeed)
-{
-  const double ratio = std::max(0.0, approachSpeed) / referenceSpeed;
-  return restitution / (1.0 + ratio * ratio);
 }
 
 /// Coefficient of restitution of a point that touches. `usual`: of its ground.

@@ -5,6 +5,7 @@
 
 #include "block/Block.h"
 #include "contact/Contact.h"
+#include "law/restitution.h"
 #include "law/settings.h"
 #include "law/springs.h"
 
@@ -52,8 +53,8 @@ struct IslandContact
 
   double restitutionAt(double speed) const ///< Of what closes at this speed, m/s.
   {
-    const double ratio = restitutionSpeed > 0.0 ? speed / restitutionSpeed : 0.0;
-    return restitution / (1.0 + ratio * ratio);
+    return restitutionSpeed > 0.0 ? restitutionAtSpeed(restitution, speed, restitutionSpeed)
+                                  : restitution;
   }
 };
 
