@@ -1,6 +1,5 @@
 #include "statistics/frequency.h"
 
-#include "base/abort.h"
 #include "base/errors.h"
 #include "base/text/numberText.h"
 #include "statistics/sample.h"
@@ -121,19 +120,6 @@ void FrequencySummarizer::finish()
     use_(cell_);
     cell_.rocks.clear();
   }
-}
-
-void summarizeFrequencies(std::span<const Passage> passages, std::span<const double> thresholds,
-  const std::function<double(const Passage&)>& weight,
-  const std::function<void(const CellFrequency&)>& use)
-{
-  FrequencySummarizer summarizer({ thresholds.begin(), thresholds.end() }, weight, use);
-  for (const Passage& passage : passages)
-  {
-    stayWanted();
-    summarizer.add(passage);
-  }
-  summarizer.finish();
 }
 
 double frequencyLimit(double largestWeight)

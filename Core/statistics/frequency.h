@@ -94,11 +94,6 @@ private:
   CellFrequency cell_;
 };
 
-/// The same of all `passages`.
-void summarizeFrequencies(std::span<const Passage> passages, std::span<const double> thresholds,
-  const std::function<double(const Passage&)>& weight,
-  const std::function<void(const CellFrequency&)>& use);
-
 /// With 95 % confidence a cell that nothing passed is not passed more often than this, 1/a, where
 /// no trajectory weighs more than `largestWeight`: of Σ fₖ pₖ under Π (1 − pₖ)^Nₖ ≥ 0.05, as pₖ ≤
 /// −ln(1 − pₖ), at most ln 20 times the largest fₖ / Nₖ. It is the rule of three.

@@ -43,10 +43,4 @@ void FallingRock::advanceAlone(double until)
   asleep = sim.done() && sim.trajectory().summary.fate == Fate::Rested;
 }
 
-PairMotion motionOf(const WorldState& world, const RockPair& pair)
-{
-  return { world.rocks[std::size_t(pair.first)].sim.state(),
-    world.rocks[std::size_t(pair.second)].sim.state() };
-}
-
 } // namespace rockfall

@@ -112,7 +112,4 @@ struct Island
   std::vector<RockPair*> pairs;
 };
 
-/// Motion of the points of two rocks against each other, as they are.
-PairMotion motionOf(const WorldState& world, const RockPair& pair);
-
 } // namespace rockfall

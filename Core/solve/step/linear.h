@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace rockfall
@@ -64,83 +63,6 @@ Eigen::Matrix<double, N, 1> solveInPlace(
     x[i] = sum / a[i][i];
   }
   return x;
-}
-
-/// Replaces K by its inverse, by elimination with row pivots. False if a pivot is not above `least`
-/// times the largest one.
-template <int N>
-bool invertInPlace(Eigen::Matrix<double, N, N>& k, double least)
-{
-  double a[N][N];
-  int pivots[N];
-  for (int i = 0; i < N; ++i)
-  {
-    for (int j = 0; j < N; ++j)
-    {
-      a[i][j] = k(i, j);
-    }
-  }
-  double smallest = std::numeric_limits<double>::infinity(), largest = 0.0;
-  for (int c = 0; c < N; ++c)
-  {
-    int pivot = c;
-    for (int i = c + 1; i < N; ++i)
-    {
-      pivot = std::abs(a[i][c]) > std::abs(a[pivot][c]) ? i : pivot;
-    }
-    pivots[c] = pivot;
-    if (pivot != c)
-    {
-      for (int j = 0; j < N; ++j)
-      {
-        std::swap(a[c][j], a[pivot][j]);
-      }
-    }
-    const double size = std::abs(a[c][c]);
-    if (!(size > 0.0))
-    {
-      return false;
-    }
-    smallest = std::min(smallest, size);
-    largest = std::max(largest, size);
-    const double one = 1.0 / a[c][c];
-    a[c][c] = 1.0;
-    for (int j = 0; j < N; ++j)
-    {
-      a[c][j] *= one;
-    }
-    for (int i = 0; i < N; ++i)
-    {
-      if (i != c)
-      {
-        const double factor = a[i][c];
-        a[i][c] = 0.0;
-        for (int j = 0; j < N; ++j)
-        {
-          a[i][j] -= factor * a[c][j];
-        }
-      }
-    }
-  }
-  // Rows that were exchanged are columns of the inverse.
-  for (int c = N - 1; c >= 0; --c)
-  {
-    if (pivots[c] != c)
-    {
-      for (int i = 0; i < N; ++i)
-      {
-        std::swap(a[i][c], a[i][pivots[c]]);
-      }
-    }
-  }
-  for (int i = 0; i < N; ++i)
-  {
-    for (int j = 0; j < N; ++j)
-    {
-      k(i, j) = a[i][j];
-    }
-  }
-  return smallest > least * largest;
 }
 
 } // namespace rockfall

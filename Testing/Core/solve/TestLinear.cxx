@@ -11,7 +11,7 @@
 
 using namespace rockfall;
 
-TEST(Linear, SolvesAndInvertsWhatIsNotSymmetric)
+TEST(Linear, SolvesWhatIsNotSymmetric)
 {
   std::mt19937 random(4);
   std::normal_distribution<double> u;
@@ -30,21 +30,8 @@ TEST(Linear, SolvesAndInvertsWhatIsNotSymmetric)
     }
     const Mat6 expected = a.inverse();
     const double tolerance = 1e-13 * a.norm() * expected.norm() * expected.norm(); // conditioning
-    Mat6 inverse = a;
-    ASSERT_TRUE(invertInPlace<6>(inverse, 1e-14)) << k;
-    EXPECT_LT((inverse - expected).norm(), tolerance) << k;
     const Vec6 x = expected * b;
     Mat6 matrix = a;
     EXPECT_LT((solveInPlace<6>(matrix, b) - x).norm(), tolerance * b.norm() + tolerance) << k;
   }
-}
-
-TEST(Linear, SingularMatrixHasNoInverse)
-{
-  Mat6 a = Mat6::Identity();
-  a.row(3) = a.row(2);
-  EXPECT_FALSE(invertInPlace<6>(a, 1e-14));
-  Mat6 nearly = Mat6::Identity();
-  nearly(5, 5) = 1e-15;
-  EXPECT_FALSE(invertInPlace<6>(nearly, 1e-14));
 }

@@ -59,14 +59,18 @@ std::vector<Passage> passages()
   };
 }
 
-std::vector<CellFrequency> cellsOf(
-  const std::vector<Passage>& sorted, const std::vector<double>& thresholds)
+std::vector<CellFrequency> cellsOf(const std::vector<Passage>& sorted,
+  const std::vector<double>& thresholds, const RockFrequencies& rocks = release())
 {
-  const RockFrequencies rocks = release();
   std::vector<CellFrequency> cells;
-  summarizeFrequencies(
-    sorted, thresholds, [&rocks](const Passage& passage) { return rocks.weight(passage); },
+  FrequencySummarizer summarizer(
+    thresholds, [&rocks](const Passage& passage) { return rocks.weight(passage); },
     [&cells](const CellFrequency& cell) { cells.push_back(cell); });
+  for (const Passage& passage : sorted)
+  {
+    summarizer.add(passage);
+  }
+  summarizer.finish();
   return cells;
 }
 
@@ -129,11 +133,7 @@ TEST(Frequency, PartsGiveTheSameBits)
   const auto of = [&rocks](std::vector<Passage> parts)
   {
     std::sort(parts.begin(), parts.end());
-    std::vector<CellFrequency> cells;
-    summarizeFrequencies(
-      parts, swiss, [&rocks](const Passage& passage) { return rocks.weight(passage); },
-      [&cells](const CellFrequency& cell) { cells.push_back(cell); });
-    return cells;
+    return cellsOf(parts, swiss, rocks);
   };
   std::vector<Passage> parts(all.begin() + 20, all.end());
   parts.insert(parts.end(), all.begin(), all.begin() + 20);
