@@ -4,6 +4,7 @@
 
 #include "base/joined.h"
 #include "base/parallel.h"
+#include "contact/ground/motion.h"
 #include "law/settings.h"
 #include "world/sleep.h"
 
@@ -15,28 +16,34 @@
 namespace rockfall
 {
 
+namespace
+{
+
+constexpr std::size_t kFollowGrain = 64;
+
+} // namespace
+
 IslandFinder::IslandFinder(WorldState& world)
   : world_(world)
+  , near_(world)
   , bounciest_(world.contacts.largestRestitution())
 {
   const std::size_t count = world.rocks.size();
-  bodies_.resize(count);
-  velocityBounds_.resize(count);
+  rocks_.bodies.resize(count);
+  rocks_.velocities.resize(count);
   bounds_.resize(count);
   parents_.resize(count);
   roots_.resize(count);
-  boxes_.resize(count);
   fars_.resize(count);
   massRatioGains_.resize(count);
   heads_.resize(count);
   inIsland_.resize(count);
-  later_.resize(count);
   marks_.resize(count, 0);
   for (std::size_t i = 0; i < count; ++i)
   {
     const Block& block = world.rocks[i].body().block;
-    bodies_[i].radius = block.radius();
-    velocityBounds_[i].mass = block.mass();
+    rocks_.bodies[i].radius = block.radius();
+    rocks_.velocities[i].mass = block.mass();
   }
 }
 
@@ -45,14 +52,14 @@ IslandFinder::IslandFinder(WorldState& world)
 /// it has to come to rest anew.
 void IslandFinder::settle()
 {
-  parted_.assign(bodies_.size(), 0);
+  parted_.assign(rocks_.bodies.size(), 0);
   const auto part = [&](NearPair& n)
   {
     if (!(n.holds || n.wasLinked))
     {
       return;
     }
-    const bool asleep = this->isAsleep(n.first, n.second);
+    const bool asleep = rocks_.areAsleep(n.first, n.second);
     if (asleep && !n.wasLinked)
     {
       return;
@@ -128,10 +135,65 @@ void IslandFinder::unite()
   }
 }
 
+void IslandFinder::follow(double duration)
+{
+  const std::size_t count = world_.rocks.size();
+  rocks_.duration = duration;
+  sag_ = world_.parameters.gravity * duration * duration;
+  const auto followRock = [&](std::size_t i)
+  {
+    BodyBounds& m = rocks_.bodies[i];
+    VelocityBounds& velocities = rocks_.velocities[i];
+    const FallingRock& member = world_.rocks[i];
+    const SingleRock& sim = member.sim;
+    const bool slept = m.asleep;
+    m.asleep = member.asleep;
+    m.present = !sim.body().done || m.asleep;
+    massRatioGains_[i] = 1.0;
+    fars_[i] = 0.0;
+    if (!m.present || (slept && m.asleep))
+    {
+      m.displacement = m.known = 0.0;
+      return;
+    }
+    const BlockState& s = sim.body().state;
+    m.position = s.position;
+    m.rimTravel += rimTravel(velocities.orientation, s.orientation, m.radius) +
+      m.radius * (s.strain - velocities.strain).norm();
+    velocities.orientation = s.orientation;
+    velocities.strain = s.strain;
+    if (m.asleep)
+    {
+      velocities.middle.setZero();
+      velocities.velocity.setZero();
+      velocities.spread = velocities.own = m.displacement = m.known = 0.0;
+      return;
+    }
+    velocities.velocity = s.velocity;
+    boundVelocities(world_, sim, duration, velocities);
+    // Much the same rocks strike it as in the last step.
+    m.known = kWider * std::max(velocities.own, m.displacement) + sag_;
+    m.displacement = fars_[i] = velocities.own;
+  };
+  forEach(count, kFollowGrain, followRock);
+  sleepers_ = 0;
+  longest_ = 0.0;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    const BodyBounds& m = rocks_.bodies[i];
+    const VelocityBounds& velocities = rocks_.velocities[i];
+    longest_ = std::max(longest_, m.displacement);
+    sleepers_ += m.present && m.asleep;
+    bounds_[i] = { velocities.middle.array() - velocities.spread,
+      velocities.middle.array() + velocities.spread, velocities.mass, 1 };
+    parents_[i] = roots_[i] = int(i);
+  }
+}
+
 void IslandFinder::find(double duration)
 {
   this->follow(duration);
-  this->findNear();
+  near_.find(rocks_);
   this->link();
   this->listIslands();
 }
@@ -139,14 +201,14 @@ void IslandFinder::find(double duration)
 void IslandFinder::listIslands()
 {
   std::vector<int>& place = islandOf_;
-  place.assign(bodies_.size(), -1);
+  place.assign(rocks_.bodies.size(), -1);
   // Memory of the last step's islands serves again.
   std::vector<Island> old = std::move(islands_);
   islands_.clear();
   alone_.clear();
-  for (std::size_t i = 0; i < bodies_.size(); ++i)
+  for (std::size_t i = 0; i < rocks_.bodies.size(); ++i)
   {
-    const BodyBounds& m = bodies_[i];
+    const BodyBounds& m = rocks_.bodies[i];
     if (!m.present || m.asleep)
     {
       continue;

@@ -1,60 +1,16 @@
 #pragma once
 
 /// @file
-/// Rocks that may meet within a step: pairs near each other, in compact arrays, as there are
-/// several times more of them than touch.
+/// Rocks that may meet within a step, and the islands that they are.
 
-#include "contact/pair/broadPhase.h"
+#include "world/NearPairs.h"
 #include "world/RockQueue.h"
-#include "world/VelocityBounds.h"
-#include "world/WorldState.h"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
-#include <deque>
-#include <limits>
 
 namespace rockfall
 {
-
-/// Gap of two rocks along no axis yet.
-constexpr double kNoAxis = -std::numeric_limits<double>::infinity();
-
-/// A rock as the others meet it in the step at hand: what every look at a pair asks for, in one
-/// line of the cache.
-struct alignas(64) BodyBounds
-{
-  Vec3 position; ///< m
-  double radius; ///< m
-  double rimTravel =
-    0.0; ///< Longest displacement about the centroid since the release, by turns and strain, m.
-  double displacement; ///< The longest displacement of a point of it in the step, m, if it is
-                       ///< struck by others.
-  double known; ///< Rocks nearer than such a displacement, less their own, are its neighbours.
-  bool present = false; ///< Neither gone nor stopped by the end time.
-  bool asleep = false;
-};
-
-/// Two rocks that are near each other, or may come near each other soon; in one line of the cache.
-struct alignas(64) NearPair
-{
-  int first = -1;
-  int second = -1;
-  RockPair* pair = nullptr; ///< None as long as their bounding spheres tell them apart.
-  /// At any later time the gap is no less than offset + normal · (x₁ − x₂) − turned₁ − turned₂.
-  Vec3 normal = Vec3::Zero();
-  double offset = kNoAxis;
-  double looked = -1.0;   ///< Reach within which the axis was looked for in this step, m.
-  bool linked = false;    ///< May touch in this step,
-  bool wasLinked = false; ///< or could in the last one.
-  bool holds = false;     ///< May have contacts.
-};
-
-inline bool operator<(const NearPair& a, const NearPair& b)
-{
-  return a.first != b.first ? a.first < b.first : a.second < b.second;
-}
 
 /// State of two rocks near each other.
 enum class PairState : std::uint8_t
@@ -109,18 +65,7 @@ private:
     std::size_t open, others;
   };
 
-  // Neighbours: islandFinderNear.cxx
   void follow(double duration); ///< The rocks, to where they stand now.
-  void findNear();
-  void search();
-  void cover(int rock);
-  double spare(int rock) const;
-  bool isCovered(std::size_t rock) const;
-  RockPair* newPair(int first, int second);
-  void drop(NearPair& near);
-  void indexNeighbours();
-  template <class Visit>
-  void forNeighbours(int rock, Visit&& visit);
 
   // Pairs that may meet: islandFinderLink.cxx
   void link();
@@ -128,7 +73,6 @@ private:
   double apart(const NearPair& near) const;
   double closing(const NearPair& near) const;
   double reach(const NearPair& near) const;
-  bool isAsleep(int first, int second) const; ///< Both.
   void lookAlong(NearPair& near) const;
   bool mayMeet(const UndecidedPair& open) const;
   bool meet(std::size_t near);
@@ -155,32 +99,15 @@ private:
   void propagate();
 
   WorldState& world_;
-  std::vector<BodyBounds> bodies_;
-  std::vector<NearPair> near_; ///< Ordered by (first, second), but for those found later.
+  RockBounds rocks_;
+  NearPairs near_;
   std::vector<Island> islands_;
   std::vector<int> alone_;
-  std::vector<int> islandOf_; ///< By the first rock of an island.
-  double duration_ = 0.0;
-  double sag_ = 0.0;          ///< Displacement that gravity may add, m.
-  double bounciest_ = 0.0;    ///< Largest restitution of rocks on each other.
-  double widened_ = 0.0;      ///< Most that a rock's ball reaches beyond that of the search, m.
-  Vec3 drift_ = Vec3::Zero(); ///< How far all have gone on together since, m.
-  Vec3 mean_ = Vec3::Zero();  ///< Velocity of all together, m/s.
-  bool searched_ = false;
-  std::size_t out_ = 0; ///< Rocks that have come out of their balls since.
-  BroadPhase broad_;
-  std::vector<BroadBox> boxes_; ///< Of the last search.
-  std::vector<VelocityBounds> velocityBounds_;
-  std::vector<NearPair> nextNear_;
-  std::deque<RockPair> pairs_;
-  std::vector<RockPair*> spare_;
+  std::vector<int> islandOf_;        ///< By the first rock of an island.
+  double sag_ = 0.0;                 ///< Displacement that gravity may add, m.
+  double bounciest_ = 0.0;           ///< Largest restitution of rocks on each other.
   std::vector<IslandBounds> bounds_; ///< By root.
   std::vector<int> parents_, roots_;
-  /// Of each rock, where it is in `near_`: those of the search, and those found later.
-  std::vector<std::size_t> firsts_, places_;
-  std::vector<std::vector<std::size_t>> later_;
-  std::vector<int> widenedRocks_;
-  std::size_t sorted_ = 0;        ///< Of `near_`; behind it those found later.
   std::vector<double> aparts_;    ///< Of `near_`.
   std::vector<PairState> states_; ///< Of `near_`.
   std::vector<UndecidedPair> undecided_;
@@ -202,9 +129,7 @@ private:
   std::vector<int> wider_; ///< Rocks whose displacements have outgrown what was known.
   double longest_ = 0.0;   ///< Displacement of all, m.
   RockQueue queue_;        ///< Of those that others have to be told of.
-  std::vector<int> found_;
-  std::vector<char> marks_;
-  std::vector<char> answers_;
+  std::vector<char> marks_, answers_;
   std::vector<std::size_t> chosen_, asked_;
   std::vector<int> placed_;
 };
@@ -234,19 +159,6 @@ void IslandFinder::forPairs(Visit&& visit)
     {
       visit(*n.pair);
     }
-  }
-}
-
-template <class Visit>
-void IslandFinder::forNeighbours(int rock, Visit&& visit)
-{
-  for (std::size_t k = firsts_[std::size_t(rock)]; k < firsts_[std::size_t(rock) + 1]; ++k)
-  {
-    visit(places_[k]);
-  }
-  for (const std::size_t k : later_[std::size_t(rock)])
-  {
-    visit(k);
   }
 }
 

@@ -1,5 +1,11 @@
-// Pairs of rocks near each other that may meet within the step, by the bounds of
-// islandFinderNear.cxx; what rocks pass on: islandFinderReach.cxx; islands: IslandFinder.cxx.
+// Which of the rocks that are near each other may meet.
+//
+// Two rocks may meet if their gap can close within the step. How fast it closes follows from what
+// their velocities can become: those of a rock that flies are known; what touches the slope may be
+// stopped or thrown back; and what belongs to an island of rocks that may touch each other may get
+// any velocity that is among theirs, by impacts from rock to rock. On the other hand no rock goes
+// further than its own displacement, or than what is left of the displacement of the one that
+// strikes it, less the gaps that had to be crossed before. The smaller of the two bounds holds.
 
 #include "world/IslandFinder.h"
 
@@ -22,7 +28,8 @@ constexpr std::size_t kLookGrain = 16;
 /// From now on the gap is bounded along the pair's axis.
 void IslandFinder::lookAlong(NearPair& n) const
 {
-  const BodyBounds &a = bodies_[std::size_t(n.first)], &b = bodies_[std::size_t(n.second)];
+  const BodyBounds &a = rocks_.bodies[std::size_t(n.first)],
+                   &b = rocks_.bodies[std::size_t(n.second)];
   n.normal = n.pair->axis.normal;
   n.offset =
     n.pair->axis.distance - n.normal.dot(a.position - b.position) + a.rimTravel + b.rimTravel;
@@ -30,14 +37,16 @@ void IslandFinder::lookAlong(NearPair& n) const
 
 double IslandFinder::gap(const NearPair& n) const
 {
-  const BodyBounds &a = bodies_[std::size_t(n.first)], &b = bodies_[std::size_t(n.second)];
+  const BodyBounds &a = rocks_.bodies[std::size_t(n.first)],
+                   &b = rocks_.bodies[std::size_t(n.second)];
   return n.offset + n.normal.dot(a.position - b.position) - a.rimTravel - b.rimTravel;
 }
 
 /// Least distance of the two, along the axis and by their bounding spheres, m.
 double IslandFinder::apart(const NearPair& n) const
 {
-  const BodyBounds &a = bodies_[std::size_t(n.first)], &b = bodies_[std::size_t(n.second)];
+  const BodyBounds &a = rocks_.bodies[std::size_t(n.first)],
+                   &b = rocks_.bodies[std::size_t(n.second)];
   return std::max(this->gap(n), (a.position - b.position).norm() - a.radius - b.radius);
 }
 
@@ -45,8 +54,8 @@ double IslandFinder::apart(const NearPair& n) const
 inline double IslandFinder::closing(const NearPair& n) const
 {
   const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
-  return closingSpeed(bounds_[std::size_t(roots_[i])], velocityBounds_[i],
-    bounds_[std::size_t(roots_[j])], velocityBounds_[j], n.normal);
+  return closingSpeed(bounds_[std::size_t(roots_[i])], rocks_.velocities[i],
+    bounds_[std::size_t(roots_[j])], rocks_.velocities[j], n.normal);
 }
 
 /// The widest gap over which the two may meet.
@@ -55,7 +64,7 @@ inline double IslandFinder::reach(const NearPair& n) const
   const std::size_t i = std::size_t(n.first), j = std::size_t(n.second);
   const double faster = std::max(massRatioGains_[i], massRatioGains_[j]);
   const double speed = n.offset > kNoAxis ? faster * this->closing(n) : -kNoAxis;
-  return std::min(fars_[i] + fars_[j], speed * duration_) + sag_;
+  return std::min(fars_[i] + fars_[j], speed * rocks_.duration) + sag_;
 }
 
 bool IslandFinder::mayMeet(const UndecidedPair& o) const
@@ -63,11 +72,6 @@ bool IslandFinder::mayMeet(const UndecidedPair& o) const
   // By their displacements alone first: that tells most of them apart.
   return o.apart <= fars_[std::size_t(o.first)] + fars_[std::size_t(o.second)] + sag_ &&
     o.apart <= this->reach(near_[std::size_t(o.near)]);
-}
-
-bool IslandFinder::isAsleep(int first, int second) const
-{
-  return bodies_[std::size_t(first)].asleep && bodies_[std::size_t(second)].asleep;
 }
 
 /// Whether two rocks that stand may meet; finds their axis as far as that needs it.
@@ -111,7 +115,7 @@ void IslandFinder::look()
   undecidedByPart_.resize(std::max(count, undecidedByPart_.size()));
   others_.resize(std::max(count, others_.size()));
   left_.resize(parts);
-  const auto lookAtPart = [this, count, nears = near_.data(), rocks = bodies_.data(),
+  const auto lookAtPart = [this, count, nears = near_.data(), rocks = rocks_.bodies.data(),
                             aparts = aparts_.data(), states = states_.data()](std::size_t part)
   {
     const std::size_t first = part * kNearPart, last = std::min(count, first + kNearPart);
@@ -177,7 +181,7 @@ void IslandFinder::look()
       }
       else
       {
-        this->drop(near_[other[k]]);
+        near_.drop(near_[other[k]]);
       }
     }
   }
@@ -200,8 +204,8 @@ void IslandFinder::widen()
   {
     const auto take = [&](std::size_t k)
     {
-      const BodyBounds &a = bodies_[std::size_t(near_[k].first)],
-                       &b = bodies_[std::size_t(near_[k].second)];
+      const BodyBounds &a = rocks_.bodies[std::size_t(near_[k].first)],
+                       &b = rocks_.bodies[std::size_t(near_[k].second)];
       if (states_[k] != PairState::Separate && states_[k] != PairState::Apart)
       {
         return;
@@ -213,7 +217,7 @@ void IslandFinder::widen()
         undecided_.push_back(this->undecidedOf(k));
       }
     };
-    this->forNeighbours(rock, take);
+    near_.forNeighbours(rock, take);
   }
 }
 
@@ -221,11 +225,11 @@ void IslandFinder::widen()
 void IslandFinder::widenIslands()
 {
   wider_.clear();
-  for (std::size_t i = 0; i < bodies_.size(); ++i)
+  for (std::size_t i = 0; i < rocks_.bodies.size(); ++i)
   {
     // Parents come before their children.
     roots_[i] = parents_[i] = roots_[std::size_t(parents_[i])];
-    BodyBounds& m = bodies_[i];
+    BodyBounds& m = rocks_.bodies[i];
     if (bounds_[std::size_t(roots_[i])].size == 1)
     {
       continue;
@@ -236,9 +240,9 @@ void IslandFinder::widenIslands()
     {
       m.known = kWider * (fars_[i] + sag_);
       wider_.push_back(int(i));
-      if (!this->isCovered(i))
+      if (!near_.isCovered(rocks_, i))
       {
-        this->cover(int(i));
+        near_.cover(rocks_, int(i));
       }
     }
   }
@@ -263,7 +267,7 @@ void IslandFinder::choose()
       {
         continue;
       }
-      if (!this->isAsleep(o->first, o->second) && this->mayMeet(*o))
+      if (!rocks_.areAsleep(o->first, o->second) && this->mayMeet(*o))
       {
         chosen_.push_back(std::size_t(to - first));
       }
@@ -292,7 +296,7 @@ bool IslandFinder::sweep()
       any = true;
       continue;
     }
-    n.pair = n.pair ? n.pair : this->newPair(n.first, n.second);
+    near_.keep(n);
     asked_.push_back(o);
     for (const int i : { n.first, n.second })
     {
@@ -327,10 +331,10 @@ bool IslandFinder::sweep()
 
 void IslandFinder::link()
 {
-  firstLink_.assign(bodies_.size(), -1);
+  firstLink_.assign(rocks_.bodies.size(), -1);
   links_.clear();
   links_.reserve(near_.size());
-  queue_.reset(bodies_.size(), longest_);
+  queue_.reset(rocks_.bodies.size(), longest_);
   this->look();
   this->propagate();
   while (this->sweep())

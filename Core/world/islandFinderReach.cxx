@@ -20,7 +20,7 @@ int IslandFinder::root(int i)
 
 double IslandFinder::massRatioGain(std::size_t rock) const
 {
-  return bounds_[std::size_t(roots_[rock])].massRatioGain(velocityBounds_[rock].mass, bounciest_);
+  return bounds_[std::size_t(roots_[rock])].massRatioGain(rocks_.velocities[rock].mass, bounciest_);
 }
 
 /// Links two; `known`: their axis has been found for where they stand.
@@ -35,7 +35,7 @@ void IslandFinder::join(std::size_t k, bool known)
   {
     const int next = std::exchange(firstLink_[std::size_t(i)], int(links_.size()));
     links_.push_back({ aparts_[k], other, next });
-    BodyBounds& m = bodies_[std::size_t(i)];
+    BodyBounds& m = rocks_.bodies[std::size_t(i)];
     if (m.asleep)
     {
       wake(world_.rocks[std::size_t(i)], world_.time);
@@ -60,7 +60,7 @@ void IslandFinder::wakeAbout(int rock)
   const auto visit = [&](std::size_t k)
   {
     NearPair& n = near_[k];
-    const BodyBounds& other = bodies_[std::size_t(n.first == rock ? n.second : n.first)];
+    const BodyBounds& other = rocks_.bodies[std::size_t(n.first == rock ? n.second : n.first)];
     if (k >= states_.size() || n.linked || !other.asleep || !other.present)
     {
       return;
@@ -68,7 +68,7 @@ void IslandFinder::wakeAbout(int rock)
     aparts_[k] = this->apart(n);
     if (this->mayMeet(this->undecidedOf(k)))
     {
-      n.pair = n.pair ? n.pair : this->newPair(n.first, n.second);
+      near_.keep(n);
       world_.rocks[std::size_t(n.first)].updatePose();
       world_.rocks[std::size_t(n.second)].updatePose();
       if (this->meet(k))
@@ -77,13 +77,13 @@ void IslandFinder::wakeAbout(int rock)
       }
     }
   };
-  this->forNeighbours(rock, visit);
+  near_.forNeighbours(rock, visit);
 }
 
 /// Passes the rest of a rock's displacement on to those that it is linked with.
 void IslandFinder::propagateFrom(int rock)
 {
-  BodyBounds* const rocks = bodies_.data();
+  BodyBounds* const rocks = rocks_.bodies.data();
   const double displacement = rocks[rock].displacement;
   const Link* const links = links_.data();
   for (int l = firstLink_[std::size_t(rock)]; l >= 0; l = links[l].next)
@@ -92,7 +92,7 @@ void IslandFinder::propagateFrom(int rock)
     if (displacement > other.displacement * kNoMore)
     {
       // The gap must be crossed first, by both together.
-      const double own = velocityBounds_[std::size_t(links[l].other)].own;
+      const double own = rocks_.velocities[std::size_t(links[l].other)].own;
       const double left = displacement -
         std::max(0.0, links[l].gap) * displacement / std::max(displacement + own, 1e-12);
       if (left > other.displacement * kNoMore)
@@ -113,7 +113,7 @@ void IslandFinder::propagate()
     const std::size_t rock = std::size_t(i);
     roots_[rock] = this->root(i);
     massRatioGains_[rock] = this->massRatioGain(rock);
-    fars_[rock] = massRatioGains_[rock] * bodies_[rock].displacement;
+    fars_[rock] = massRatioGains_[rock] * rocks_.bodies[rock].displacement;
     if (sleepers_ > 0)
     {
       this->wakeAbout(i);
