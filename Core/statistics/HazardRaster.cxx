@@ -43,6 +43,21 @@ void appendCuts(const Cubic& value, std::array<double, 2> bounds, double start, 
   }
 }
 
+/// Bounds of a value between two places, of its Bézier points there and what rounding may add.
+std::array<double, 2> boundsOf(const Cubic& f, double from, double to)
+{
+  constexpr double rounding = 1e-9; // of the value
+  const auto blossom = [&f](double u, double v, double w)
+  {
+    return f.c[0] + f.c[1] * (u + v + w) / 3.0 + f.c[2] * (u * v + v * w + w * u) / 3.0 +
+      f.c[3] * u * v * w;
+  };
+  const auto [low, high] =
+    std::minmax({ f(from), blossom(from, from, to), blossom(from, to, to), f(to) });
+  const double more = rounding * (1.0 + std::max(std::abs(low), std::abs(high)));
+  return { low - more, high + more };
+}
+
 /// Seen from above.
 bool isShort(const PathPiece& piece, double from, double to)
 {
@@ -171,18 +186,20 @@ double HazardRaster::maxHeight(
   const double lines = terrain_->geometry().columns + double(terrain_->geometry().rows);
   const Cubic height = piece.height(grounds[0], grounds[1]);
   const Cubic &x = piece.along(0), &y = piece.along(1);
-  const auto xs = piece.bounds(0), ys = piece.bounds(1);
   groundCuts_.assign({ from, to });
-  appendCuts(x, xs, 0.0, size, 0.0, lines, from, to, groundCuts_);
-  appendCuts(y, ys, 0.0, size, 0.0, lines, from, to, groundCuts_);
+  const auto cut = [&](const Cubic& value, double firstLine)
+  {
+    appendCuts(
+      value, boundsOf(value, from, to), 0.0, size, firstLine, lines, from, to, groundCuts_);
+  };
+  cut(x, 0.0);
+  cut(y, 0.0);
   // Cuts of cells: x + y is the same all along one that falls, x − y along one that rises. A line
   // is cut off where the path is in cells with the other cut, too: nothing changes there.
-  appendCuts(
-    sum(x, y), { xs[0] + ys[0], xs[1] + ys[1] }, 0.0, size, 0.0, lines, from, to, groundCuts_);
+  cut(sum(x, y), 0.0);
   if (terrain_->geometry().diagonal != CellDiagonal::FromUpperLeft)
   {
-    appendCuts(difference(x, y), { xs[0] - ys[1], xs[1] - ys[0] }, 0.0, size, -lines, lines, from,
-      to, groundCuts_);
+    cut(difference(x, y), -lines);
   }
   std::sort(groundCuts_.begin(), groundCuts_.end());
   const bool still = isShort(piece, from, to);
