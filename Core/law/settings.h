@@ -269,6 +269,11 @@ inline constexpr double kSoftDamping = 3.0;
 /// Speed at which overlap goes, between rocks and on the slope, m/s.
 inline constexpr double kOverlapGoes = 1.0;
 inline constexpr double kOverlapGoesOnSlope = 10.0;
+/// Stress at which a corner is crushed to a patch that bears what presses it, Pa: from here on rock
+/// is strong (ISRM 1978). Higher: rocks swing on two points for longer.
+inline constexpr double kCrushingStress = 5e7;
+/// Radius of the largest such patch, share of r. Larger: splinters under load turn less.
+inline constexpr double kLargestPatch = 0.05;
 /// Sweeps that make forces balance after the rocks have moved. Fewer: walls of 50 cubes never rest.
 inline constexpr int kRelaxSweeps = 3;
 /// Share to which the spin of an island's rock is right after a substep. Higher: needles that spin

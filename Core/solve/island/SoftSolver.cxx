@@ -66,6 +66,7 @@ void SoftSolver::run()
   for (Manifold& manifold : manifolds_)
   {
     manifold.busy = true;
+    manifold.pivots = false;
   }
   for (int k = 0; k < substeps_; ++k)
   {
@@ -116,13 +117,24 @@ void SoftSolver::book(const ContactRow& r, double along, const Vec3& across, con
   result.impulse += impulse;
 }
 
-void SoftSolver::bookForces(std::size_t k)
+void SoftSolver::bookForces(std::size_t strip)
 {
-  const ContactRow& r = rows_[k];
-  if (r.P != 0.0)
+  const auto bookRow = [this](std::size_t k)
   {
-    book(r, r.P, r.T, 0.5 * (speedOf(r, before_) + speedOf(r, motions_)),
-      0.5 * (speedOfA(r, before_) + speedOfA(r, motions_)), results_[k]);
+    const ContactRow& r = rows_[k];
+    if (r.P != 0.0)
+    {
+      book(r, r.P, r.T, 0.5 * (speedOf(r, before_) + speedOf(r, motions_)),
+        0.5 * (speedOfA(r, before_) + speedOfA(r, motions_)), results_[k]);
+    }
+  };
+  for (const std::size_t m : busyOf_[strip])
+  {
+    this->forRows(manifolds_[m], bookRow);
+    if (manifolds_[m].pivots)
+    {
+      this->bookPivot(pivots_[m]);
+    }
   }
 }
 
@@ -169,6 +181,18 @@ void SoftSolver::arriveAt(std::size_t k, bool placed)
   }
 }
 
+void SoftSolver::warm(std::size_t strip)
+{
+  for (const std::size_t m : busyOf_[strip])
+  {
+    this->forRows(manifolds_[m], [this](std::size_t k) { this->warm(rows_[k]); });
+    if (manifolds_[m].pivots)
+    {
+      this->warmPivot(m);
+    }
+  }
+}
+
 void SoftSolver::warm(ContactRow& r)
 {
   r.loaded = r.stops;
@@ -193,8 +217,17 @@ void SoftSolver::keepPushing(std::size_t strip)
   const auto pushes = [this](std::size_t m)
   {
     const Manifold& manifold = manifolds_[m];
-    bool any = false;
-    this->forRows(manifold, [&](std::size_t k) { any = any || rows_[k].P > 0.0; });
+    int pushing = 0;
+    std::size_t last = 0;
+    const auto count = [&](std::size_t k)
+    {
+      const bool more = rows_[k].P > 0.0;
+      pushing += more ? 1 : 0;
+      last = more ? k : last;
+    };
+    this->forRows(manifold, count);
+    this->findPivot(m, pushing, last);
+    const bool any = pushing > 0;
     for (const int i : { manifold.a, manifold.b })
     {
       if (any && i >= 0)
@@ -273,7 +306,7 @@ void SoftSolver::noteMoved(const Manifold& manifold)
 }
 
 template <class Sweep>
-void SoftSolver::sweep(int least, Sweep&& sweepRow)
+void SoftSolver::sweep(int least, Sweep&& sweepManifold)
 {
   tick_ += 2;
   std::size_t rows = kRowGrain; // of rocks that have moved, about
@@ -293,9 +326,7 @@ void SoftSolver::sweep(int least, Sweep&& sweepRow)
         {
           continue;
         }
-        bool moved = false;
-        this->forRows(manifold, [&](std::size_t k) { moved = sweepRow(rows_[k]) || moved; });
-        if (moved)
+        if (sweepManifold(m))
         {
           this->noteMoved(manifold);
           stampOfStrip_[strip] = tick_;
@@ -308,11 +339,11 @@ void SoftSolver::sweep(int least, Sweep&& sweepRow)
   }
 }
 
-void SoftSolver::substep(int k)
+void SoftSolver::substep(int number)
 {
   const Vec3 gravity(0.0, 0.0, -gravity_);
   this->forStrips([&](std::size_t strip) { this->updateGaps(strip); });
-  this->strikeGenerations(k * h_);
+  this->strikeGenerations(number * h_);
   before_ = motions_;
   const auto fall = [&](std::size_t i)
   {
@@ -320,8 +351,15 @@ void SoftSolver::substep(int k)
     movers_[i].touched = false;
   };
   forEach(movers_.size(), kBodyGrain, fall);
-  this->forBusy([&](std::size_t row) { this->warm(rows_[row]); });
-  this->sweep(1, [&](ContactRow& r) { return this->solveNormal(r); });
+  this->forStrips([this](std::size_t strip) { this->warm(strip); });
+  const auto press = [this](std::size_t m)
+  {
+    bool moved = false;
+    this->forRows(
+      manifolds_[m], [&](std::size_t k) { moved = this->solveNormal(rows_[k]) || moved; });
+    return moved;
+  };
+  this->sweep(1, press);
   this->forStrips([this](std::size_t strip) { this->keepPushing(strip); });
   const auto move = [&](std::size_t i)
   {
@@ -343,8 +381,18 @@ void SoftSolver::substep(int k)
     }
   };
   this->forBusy(place);
-  this->sweep(kRelaxSweeps, [&](ContactRow& r) { return this->relax(r); });
-  this->forBusy([this](std::size_t row) { this->bookForces(row); });
+  const auto relax = [this](std::size_t m)
+  {
+    bool moved = false;
+    this->forRows(manifolds_[m], [&](std::size_t k) { moved = this->relax(rows_[k]) || moved; });
+    if (manifolds_[m].pivots)
+    {
+      this->relax(pivots_[m]);
+    }
+    return moved;
+  };
+  this->sweep(kRelaxSweeps, relax);
+  this->forStrips([this](std::size_t strip) { this->bookForces(strip); });
 }
 
 void SoftSolver::append()

@@ -14,12 +14,13 @@
 ///     press     closed: ΔP = −(m (v + max(β g, −v_r)) + s P) / (1 + s)
 ///               open:   ΔP = −m (v + g/h);  P ≥ 0
 ///     move      turns from the angular momentum
-///     relax     P ← max(0, P − m v); friction within μ P + c h
+///     relax     P ← max(0, P − m v); friction within μ P + c h; two rocks that push each other
+///               at one point only: a moment M ← M − J ω against their turning, within 2/3 μ a P
 ///
 /// with m the effective mass, β = ω / (2 ζ + h ω), ω² = pₙ/m but no more than a quarter of the
-/// substep rate, s = m β / (h pₙ), and v_r the speed at which overlap goes. At rest the overlap is
-/// P/(h pₙ), as of Shi's spring. Pressing and relaxing go on around rows that change by more than
-/// their resting speed.
+/// substep rate, s = m β / (h pₙ), v_r the speed at which overlap goes, and a the radius of the
+/// crushed corner (softPivots.cxx). At rest the overlap is P/(h pₙ), as of Shi's spring. Pressing
+/// and relaxing go on around rows that change by more than their resting speed.
 ///
 /// The impulse of a row that stopped what closed would throw it back in the next substep, so that
 /// such a row begins anew. One that stops something in two substeps in succession carries a load:
@@ -129,6 +130,15 @@ private:
     std::size_t first, end;
     int impactRound; ///< Of impacts, in which it was last asked.
     bool busy;       ///< Swept over: rows that are not idle stand where the rocks are.
+    bool pivots;     ///< Two rocks that push each other at one point only.
+  };
+  /// What a manifold that pivots does against its rocks' turning about its point.
+  struct Pivot
+  {
+    Vec3 M;          ///< Impulse of the moment, on a, N m s.
+    std::size_t row; ///< Which pushes.
+    double inertia;  ///< Effective, kg m².
+    double arm;      ///< M within arm · P, m.
   };
   /// A row in a round of impacts.
   struct Impact
@@ -197,11 +207,12 @@ private:
   void substep(int k);
   void updateGaps(std::size_t strip);          ///< Gaps, books and who strikes.
   void arriveAt(std::size_t row, bool placed); ///< `placed`: it stands where the rocks are.
-  void bookForces(std::size_t row);            ///< The work of its impulses behind impacts.
+  void bookForces(std::size_t strip);          ///< The work of impulses behind impacts.
   /// Books an impulse `along` the normal and `across` (N s), whose work is along the mean of the
   /// velocities before and after, of both rocks and of a's point alone (m/s).
   static void book(const ContactRow& row, double along, const Vec3& across, const Vec3& mean,
     const Vec3& meanA, Result& result);
+  void warm(std::size_t strip); ///< Goes on with the impulses of the last substep.
   void warm(ContactRow& row);
   void keepPushing(std::size_t strip); ///< Busy manifolds that push; notes their rocks.
   bool solveNormal(ContactRow& row);   ///< Whether by so much that others may change.
@@ -216,7 +227,14 @@ private:
   /// Sweeps over the busy rows, so many times; then over those of rocks that the last sweep has
   /// moved, until no row has changed by more.
   template <class Sweep>
-  void sweep(int least, Sweep&& sweepRow);
+  void sweep(int least, Sweep&& sweepManifold);
+
+  // Moments about points, softPivots.cxx
+  void warmPivot(std::size_t manifold);
+  /// Whether a manifold pivots: `pushing` of its rows push, `last` the last of them.
+  void findPivot(std::size_t manifold, int pushing, std::size_t last);
+  void relax(Pivot& pivot);
+  void bookPivot(const Pivot& pivot);
 
   // Impacts, softImpacts.cxx
   /// Whether an impact is under way, or the gap closes as one within so many substeps.
@@ -249,6 +267,9 @@ private:
   Vec3 speedOfA(const ContactRow& row) const { return speedOfA(row, motions_); }
   void push(const ContactRow& row, const Vec3& J); ///< J on a, −J on b, N s.
   void push(int mover, const Vec3& J, const Vec3& lever);
+  void twist(int mover, const Vec3& moment);             ///< An impulse of a moment, N m s.
+  void twist(const ContactRow& row, const Vec3& moment); ///< On a, the opposite on b.
+  double mobility(int mover) const; ///< At least that of any of its axes, 1/(kg m²).
   void turn(std::size_t mover);
   static void limitTo(Vec3& T, double most);
 
@@ -274,6 +295,7 @@ private:
   std::vector<int> stripOfBody_;
   int strips_ = 1;
   std::vector<Manifold> manifolds_;
+  std::vector<Pivot> pivots_;                    ///< By manifold.
   std::vector<std::size_t> firstOfStrip_;        ///< Among manifolds.
   std::vector<std::vector<std::size_t>> busyOf_; ///< By strip, manifolds.
   std::vector<ImpactRound> impactRounds_;        ///< By strip.

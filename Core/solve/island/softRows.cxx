@@ -101,7 +101,7 @@ void SoftSolver::arrange()
     }
     else
     {
-      manifolds_.push_back({ now.first, now.second, k, k + 1, 0, false });
+      manifolds_.push_back({ now.first, now.second, k, k + 1, 0, false, false });
       firstOfStrip_[std::size_t(now.strip) + 1] = manifolds_.size();
     }
   }
@@ -111,6 +111,7 @@ void SoftSolver::arrange()
   }
   forEach(rows_.size(), kRowGrain,
     [&](std::size_t k) { this->prepareRow(results_[k].contact, rows_[k], starts_[k]); });
+  pivots_.resize(manifolds_.size());
   impactRounds_.resize(std::size_t(strips_));
   busyOf_.resize(std::size_t(strips_));
   stampOfStrip_.assign(std::size_t(strips_), -1);
@@ -162,9 +163,7 @@ void SoftSolver::weigh(std::size_t k)
     const Mat3& inverseInertia = movers_[std::size_t(i)].inverseInertia;
     const Vec3 moment = lever.cross(row.normal);
     mobility += motion.inverseMass + moment.dot(inverseInertia * moment);
-    across += motion.inverseMass +
-      (motion.inverseMoment > 0.0 ? motion.inverseMoment : inverseInertia.trace()) *
-        lever.squaredNorm();
+    across += motion.inverseMass + this->mobility(i) * lever.squaredNorm();
   };
   add(row.a, row.lever);
   if (row.b >= 0)

@@ -29,6 +29,12 @@ inline Vec3 SoftSolver::speedOf(const ContactRow& r, const std::vector<Motion>& 
   return u;
 }
 
+inline double SoftSolver::mobility(int i) const
+{
+  const double moment = motions_[std::size_t(i)].inverseMoment;
+  return moment > 0.0 ? moment : movers_[std::size_t(i)].inverseInertia.trace();
+}
+
 inline void SoftSolver::limitTo(Vec3& T, double most)
 {
   const double size2 = T.squaredNorm();
@@ -42,7 +48,12 @@ inline void SoftSolver::push(int i, const Vec3& J, const Vec3& lever)
 {
   Motion& m = motions_[std::size_t(i)];
   m.velocity += m.inverseMass * J;
-  const Vec3 moment = lever.cross(J);
+  this->twist(i, lever.cross(J));
+}
+
+inline void SoftSolver::twist(int i, const Vec3& moment)
+{
+  Motion& m = motions_[std::size_t(i)];
   if (m.inverseMoment > 0.0)
   {
     m.spin += m.inverseMoment * moment;
@@ -60,6 +71,12 @@ inline void SoftSolver::push(const ContactRow& r, const Vec3& J)
     this->push(r.b, -J, r.leverB);
   }
   this->push(r.a, J, r.lever);
+}
+
+inline void SoftSolver::twist(const ContactRow& r, const Vec3& moment)
+{
+  this->twist(r.b, -moment);
+  this->twist(r.a, moment);
 }
 
 inline double SoftSolver::frictionLimit(const ContactRow& r, double P)
