@@ -3,6 +3,7 @@
 #include "base/errors.h"
 #include "base/text/numberText.h"
 #include "shared/arrays.h"
+#include "shared/inputs.h"
 
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
@@ -89,6 +90,8 @@ void checkFrequencies(const FrequencyOptions& options)
     throw ParameterError("AnnualFrequency is " + numberText(options.annualFrequency) +
       " per year, it must be finite and not negative");
   }
+  requireFew(options.energyThresholds.size(), "EnergyThresholds");
+  requireFew(options.returnPeriods.size(), "ReturnPeriods");
   checkPositive(options.energyThresholds, "EnergyThresholds", "kJ");
   checkPositive(options.returnPeriods, "ReturnPeriods", "a");
 }

@@ -4,6 +4,7 @@
 #include "base/text/numberText.h"
 #include "geometry/shapes.h"
 #include "geometry/shell.h"
+#include "shared/inputs.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
@@ -49,6 +50,7 @@ std::string className(const std::vector<double>& limits, std::size_t number)
 
 void checkLimits(const std::vector<double>& limits)
 {
+  requireFew(limits.size(), "ClassLimits");
   for (std::size_t k = 0; k < limits.size(); ++k)
   {
     if (!std::isfinite(limits[k]) || (k > 0 && !(limits[k] > limits[k - 1])))

@@ -97,6 +97,16 @@ vtkPolyData* Input::take(vtkDataObject* data)
   return made_;
 }
 
+void requireFew(std::size_t values, const char* property)
+{
+  constexpr std::size_t most = 100;
+  if (values > most)
+  {
+    throw ParameterError(std::string(property) + " has " + std::to_string(values) +
+      " values, it may have " + std::to_string(most));
+  }
+}
+
 void Input::require() const
 {
   if (!problem_.empty())

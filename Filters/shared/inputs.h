@@ -12,6 +12,7 @@
 #include "vtkSmartPointer.h"
 #include "vtkType.h"
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -84,6 +85,9 @@ private:
 /// are there and finite, every array has a tuple for each, and those of this kind hold what they
 /// must.
 void checkPolyData(vtkPolyData* data, InputKind kind, const std::string& name);
+
+/// Throws ParameterError if a property has more than 100 values, of which each makes arrays or rows.
+void requireFew(std::size_t values, const char* property);
 
 /// Throws DataError unless each array has a tuple for each of `count` points or cells (`of`).
 void checkTuples(vtkFieldData* data, vtkIdType count, const std::string& name, const char* of);

@@ -134,6 +134,12 @@ TEST_F(TestDispersionAngle, ClassesOfNumbers)
   this->Filter->AddClassLimit(6.0);
   EXPECT_EQ(this->Table()->GetNumberOfRows(), 0);
   this->ExpectOneError({ "ClassLimits", "6", "number 3" });
+  for (int k = 7; k < 200; ++k)
+  {
+    this->Filter->AddClassLimit(k);
+  }
+  EXPECT_EQ(this->Table()->GetNumberOfRows(), 0);
+  this->ExpectOneError({ "ClassLimits has 196 values", "100" });
   this->Filter->ClearClassLimits();
   EXPECT_EQ(this->Table()->GetNumberOfRows(), 4);
 }

@@ -394,6 +394,12 @@ TEST_F(TestRockfallHazardMap, FrequenciesAndIntensities)
   this->Filter->AddReturnPeriod(-1.0);
   expect({ "ReturnPeriods has -1 a" });
   this->Filter->RemoveAllReturnPeriods();
+  for (int k = 1; k <= 20000; ++k) // minutes, and gigabytes of arrays
+  {
+    this->Filter->AddReturnPeriod(k);
+  }
+  expect({ "ReturnPeriods has 20000 values", "100" });
+  this->Filter->RemoveAllReturnPeriods();
   this->Filter->SetAnnualFrequency(-2.0);
   expect({ "AnnualFrequency is -2" });
   this->Filter->SetAnnualFrequency(0.0);

@@ -144,6 +144,15 @@ void checkEsri(Text& text, GridCells& cells, const std::string& fileName)
       break;
     }
   }
+  for (const char* size : { "cellsize", "dx", "dy" })
+  {
+    const auto found = header.find(size);
+    if (found != header.end() && !(found->second > 0.0))
+    {
+      throw DataError(fileName + ": its header has " + size + " " + number(found->second) +
+        ", it must be above 0");
+    }
+  }
   cells.result.corner = mixedCorner(header, fileName);
   cells.read(text, more, word);
 }

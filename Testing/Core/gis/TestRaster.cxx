@@ -185,6 +185,12 @@ TEST(Raster, HeightsOfNoMountainAreNoted)
 
 TEST(Raster, APlaceBeyondAllNumbersIsRefused)
 {
+  EXPECT_TRUE(holds(
+    messageOf<DataError>(
+      [] {
+        readRaster(writeAscii({ "1 2", "3 4" }, 2, "xllcorner 600000\nyllcorner 5100000\n", "-10"));
+      }),
+    { "cellsize -10", "above 0" }));
   EXPECT_TRUE(
     holds(messageOf<DataError>(
             [] {
