@@ -121,6 +121,7 @@ void vtkDrawnStructure::CheckProperties() const
       ", it must be 0 (net), 1 (embankment) or 2 (forest)");
   }
   requirePositive(this->Height, "Height", "m");
+  requirePositive(this->TreeHeight, "TreeHeight", "m");
   requirePositive(this->Capacity, "Capacity", "kJ", true);
   requirePositive(this->Braking, "Braking", "m", true);
   if (!(this->Residual >= 0.0 && this->Residual <= 100.0))
@@ -212,7 +213,7 @@ int vtkDrawnStructure::RequestData(
         rockfall::Tree tree;
         tree.feature = nextFeature(structures.trees);
         tree.diameter = 0.01 * this->Diameter;
-        tree.height = this->Height;
+        tree.height = this->TreeHeight;
         if (this->TreesBreak)
         {
           tree.capacity = rockfall::stemCapacity(tree.diameter);
@@ -278,5 +279,6 @@ void vtkDrawnStructure::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "SideSlope: " << this->SideSlope << "\n";
   os << indent << "StemsPerHectare: " << this->StemsPerHectare << "\n";
   os << indent << "Diameter: " << this->Diameter << "\n";
+  os << indent << "TreeHeight: " << this->TreeHeight << "\n";
   os << indent << "TreesBreak: " << this->TreesBreak << "\n";
 }

@@ -56,11 +56,18 @@ public:
 
   ///@{
   /**
-   * Height over ground of a net, of the crest of an embankment, or of trees, m, positive.
-   * Default 4.
+   * Height over ground of a net, or of the crest of an embankment, m, positive. Default 4.
    */
   vtkSetMacro(Height, double);
   vtkGetMacro(Height, double);
+  ///@}
+
+  ///@{
+  /**
+   * Height of the trees of a forest, m, positive. Default 20.
+   */
+  vtkSetMacro(TreeHeight, double);
+  vtkGetMacro(TreeHeight, double);
   ///@}
 
   ///@{
@@ -151,6 +158,7 @@ private:
   double SideSlope = 1.5;
   double StemsPerHectare = 300.0;
   double Diameter = 30.0;
+  double TreeHeight = 20.0;
   bool TreesBreak = true;
 };
 

@@ -1,6 +1,7 @@
 #include "handles.h"
 
 #include "looks.h"
+#include "panel.h"
 
 #include "pqApplicationCore.h"
 #include "pqPipelineSource.h"
@@ -12,7 +13,10 @@
 #include "vtkSMSourceProxy.h"
 #include "vtkStaticCellLocator.h"
 
+#include <QAbstractItemView>
 #include <QGuiApplication>
+#include <QLineEdit>
+#include <QMainWindow>
 
 #include <array>
 #include <cmath>
@@ -87,12 +91,25 @@ std::optional<double> groundAt(double x, double y)
   return {};
 }
 
+/// Whether somebody types into the table of points, whose editor closes when points are set.
+bool isTyping()
+{
+  for (QAbstractItemView* table : mainWindow()->findChildren<QAbstractItemView*>("PointsTable"))
+  {
+    if (table->viewport()->findChild<QLineEdit*>())
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
 } // namespace
 
 void layHandles(pqPipelineSource* source)
 {
   vtkSMSourceProxy* proxy = source ? source->getSourceProxy() : nullptr;
-  if (QGuiApplication::mouseButtons() != Qt::NoButton ||
+  if (QGuiApplication::mouseButtons() != Qt::NoButton || isTyping() ||
     !isOf(proxy, { "vtkRockBlockSource", "vtkTrajectoryCollector", "vtkDrawnStructure" }) ||
     !proxy->GetProperty("Points"))
   {

@@ -40,9 +40,10 @@ void showUnits(QMainWindow* window)
     auto* label = item ? qobject_cast<QLabel*>(item->widget()) : nullptr;
     const QString text =
       QString::fromUtf8("\u00a0(%1)").arg(QString::fromUtf8(unit->GetAttribute("text")));
-    if (label && !label->text().endsWith(text))
+    if (QString shown = label ? label->text() : QString(); label && !shown.contains(text))
     {
-      label->setText(label->text() + text);
+      const int end = shown.lastIndexOf("</"); // of a paragraph, which labels may be
+      label->setText(shown.insert(end < 0 ? shown.size() : end, text));
       grid->setAlignment(label, Qt::AlignTop); // as wide as its column, or short names break in two
     }
   }

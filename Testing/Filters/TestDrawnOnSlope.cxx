@@ -182,7 +182,7 @@ TEST_F(TestDrawnOnSlope, StructuresFollowEachOther)
   dam->AddPoint(120, 90, 0);
   forest->SetInputConnection(dam->GetOutputPort());
   forest->SetKind(vtkDrawnStructure::FOREST);
-  forest->SetHeight(20.0);
+  forest->SetTreeHeight(15.0);
   forest->SetStemsPerHectare(500.0);
   for (const auto& [x, y] :
     { std::pair(10.0, 10.0), std::pair(90.0, 10.0), std::pair(90.0, 90.0), std::pair(10.0, 90.0) })
@@ -196,6 +196,7 @@ TEST_F(TestDrawnOnSlope, StructuresFollowEachOther)
   ASSERT_EQ(all.embankments.size(), 1U);
   EXPECT_EQ(all.embankments[0].crestWidth, 2.0);
   EXPECT_NEAR(double(all.trees.size()), 500.0 * 0.64, 1.0);
+  EXPECT_EQ(all.trees[0].height, 15.0);
   EXPECT_NEAR(all.trees[0].capacity, rockfall::stemCapacity(0.3), 1e-6);
   // The slope's own output is as it was.
   EXPECT_FALSE(rockfall::filters::readStructures(this->Slope->GetOutput()->GetFieldData()).any());

@@ -1,0 +1,51 @@
+"""What the window's pipeline must have after each Check of Runs.xml."""
+from paraview import simple, smtrace
+
+ITERATIONS, ROCKS = 2000, 20
+
+
+def begin_trace():
+    smtrace.start_trace()
+
+
+def end_trace():
+    simple.trace_of_study = smtrace.stop_trace()  # kept between two checks
+
+
+def stopped():
+    fall = simple.FindSource("Fall")
+    fall.UpdatePropertyInformation()
+    status = fall.GetProperty("RunStatus").GetElement(0)
+    assert status.startswith("stopped"), status
+    made = fall[3].GetDataInformation().GetNumberOfRows()
+    assert 0 < made < ITERATIONS * ROCKS, made
+    paths = simple.FindSource("Paths").GetDataInformation().GetNumberOfCells()
+    assert paths == made, f"{paths} paths are drawn of {made}"
+    released = simple.FindSource("Line").FieldData
+    assert "RunGoesOn" not in [released[k].Name for k in range(len(released))], "the line has a part of the run"
+
+
+def legend():
+    falls = [source for source in simple.GetSources().values() if source.GetXMLName() == "RockfallSimulation"]
+    assert len(falls) == 2, len(falls)
+    fastest = max(fall[1].PointData["Speed"].GetRange()[1] for fall in falls)
+    end = simple.GetColorTransferFunction("Speed").RGBPoints[-4]
+    assert abs(end - fastest) < 1e-6 * fastest, f"the legend ends at {end}, the fastest rock has {fastest}"
+    legends = [shown for shown in simple.GetRenderView().Representations if shown.GetXMLName() == "ScalarBarWidgetRepresentation"
+               and shown.Visibility and shown.Title.startswith("Speed")]
+    assert len(legends) == 1, f"{len(legends)} legends of speed"
+
+
+def replayed():
+    first = simple.FindSource("Fall")
+    before = set(simple.GetSources().values())
+    exec(simple.trace_of_study, {})
+    made = {source.GetXMLName(): source for source in simple.GetSources().values() if source not in before}
+    fall, release, line = (made[name] for name in ("RockfallSimulation", "RockRelease", "TrajectoryCollector"))
+    assert fall != first and fall.Iterations == 10 and release.Amount == ROCKS, (fall.Iterations, release.Amount)
+    fall.UpdatePipeline()
+    assert fall[1].GetDataInformation().GetNumberOfCells() == 10 * ROCKS, fall[1].GetDataInformation().GetNumberOfCells()
+    assert len(line.Points) == 6, list(line.Points)
+
+
+[begin_trace, end_trace, stopped, legend, replayed][number - 1]()
