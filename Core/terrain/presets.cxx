@@ -111,8 +111,8 @@ constexpr GroundPreset presets[] = {
     stones(2.0, 0.05, 0.1, 0.2), assumed, 4.0 },
   { "soil", "Soil", 0.3, 1.0, 0.15, 30.0, 3.0, sized(yields(10e6, 1.25, 0.6, 0.3)), Assumption,
     assumed, lu, lu, waves(0.15, 2.0), "assumed: nothing walks on for minutes" },
-  { "meadow", "Meadow", 0.73, 1.0, 0.34, 30.0, 3.0, deviates(yields(13e6, 0.9, 0.98, 0.21), 0.45),
-    FieldData, "docs/validation.md", lu, lu, smooth, "docs/validation.md", 7.0 },
+  { "meadow", "Meadow", 0.73, 1.0, 0.34, 30.0, 3.0, deviates(yields(13e6, 0.45, 0.98, 0.18), 0.1),
+    FieldData, "docs/validation.md", lu, lu, waves(0.1, 2.0), "docs/validation.md", 7.0 },
 };
 
 } // namespace

@@ -3,7 +3,7 @@
     calibrateTschamut FOLDER --set GroundModulus=14.5 --output other.csv     # once for each ground
     python3 Examples/validation/folds.py preset.csv other.csv ...
 
-The ground of each fold is that of the least mean energy score of the stopping points, as simulated, over
+The ground of each fold is that of the least mean CRPS of the run-outs, within the tracked ground, over
 the runs of the other folds. Folds have runs of every rock; in a second way each is a rock.
 """
 import csv
@@ -18,7 +18,7 @@ import site_scores as scores
 from site_search import folds, held_out
 
 FOLDS = 5
-AS_SIMULATED = "as simulated"  # in the column Scored, beside the other way of scoring
+AS_SIMULATED, TRACKED = "as simulated", "within the tracked ground"  # in the column Scored
 COLUMNS = {scores.CRPS: "CRPS", scores.ES: "EnergyScore", scores.MEAN: "MeanRunOut", scores.RANK: "Rank"}
 
 
@@ -56,9 +56,11 @@ def main(paths):
         raise SystemExit(f"{', '.join(paths)}: the tables have different runs")
     made = {way: np.array([[[float(row[COLUMNS[k]]) for k in range(len(COLUMNS))] for row in table[way]]
                            for table in tables]) for way in tables[0]}
+    deciding = made[TRACKED].copy()
+    deciding[..., scores.ES] = deciding[..., scores.CRPS]  # by which held_out() chooses
     for title, fold in ((f"{FOLDS} folds", folds(runs, FOLDS)),
                         ("one rock at a time", np.searchsorted(runs.groups(), runs.group))):
-        _, chosen = held_out(made[AS_SIMULATED], fold)
+        _, chosen = held_out(deciding, fold)
         print(f"{title}: " + ", ".join(f"{name} foretells {(chosen == k).sum()}"
                                        for k, name in enumerate(paths) if (chosen == k).any()))
         for way, all_scores in made.items():

@@ -38,18 +38,18 @@ PARAMETERS = (
     ("TangentialRestitution", "--tangential", 1.0, None, "Rt, 0 to 1"),
     ("GroundModulus", "--modulus", 13.0, None, "ME in MN/m2, 0 for hard ground"),
     ("ScarDepthFactor", "--depth-factor", 0.125, None, "of the scar's depth"),
-    ("ScarCompaction", "--compaction", 0.9, None, "Cs"),
+    ("ScarCompaction", "--compaction", 0.45, None, "Cs"),
     ("ScarSpinDrag", "--spin-drag", 0.0, None, "Cw"),
     ("SlipFrictionMin", "--least-friction", 0.98, (0.75, 1.1), "friction without slip"),
     ("SlipFrictionMax", "--most-friction", 2.0, None, "friction after much slip, 0 for a constant one"),
     ("SlipFrictionGrowth", "--friction-growth", 3.0, None, "in 1/m"),
     ("SlipFrictionDecay", "--friction-decay", 185.0, None, "in 1/s"),
     ("FrictionAngle", "--friction", 30.0, None, "in degrees, if no friction of slip is given"),
-    ("RollingResistance", "--rolling", 0.21, (0.16, 0.26), "of the rock's radius"),
-    ("GroundDeviation", "--ground-deviation", 0.45, None, "of ln S, how soft the ground is"),
+    ("RollingResistance", "--rolling", 0.18, (0.14, 0.24), "of the rock's radius"),
+    ("GroundDeviation", "--ground-deviation", 0.1, None, "of ln S, how soft the ground is"),
     ("GroundDeviationLength", "--ground-length", 30.0, None, "over which it is alike, m"),
-    ("RoughnessDeviation", "--roughness", 0.0, None, "deviation of the ground's height in m"),
-    ("RoughnessLength", "--roughness-length", 0.5, None, "its correlation length in m, 0 for the nodes'"),
+    ("RoughnessDeviation", "--roughness", 0.1, None, "deviation of the ground's height in m"),
+    ("RoughnessLength", "--roughness-length", 2.0, None, "its correlation length in m, 0 for the nodes'"),
 )
 CELL = 0.5  # m: about the size of the rocks, for which the ground is rough
 END = 60.0  # s

@@ -202,6 +202,7 @@ int run(int count, char** words)
 {
   GroundSettings defaults;
   defaults.setGround("meadow");
+  defaults.roughness = {}; // its survey has the humps
   defaults.cellSize = 0.1;
   defaults.simulation.normalPenalty = 0.0; // by mass, as in the panel
   defaults.simulation.iterations = 200;

@@ -34,8 +34,8 @@ inline Terrain makeSlope(int n, double cellSize, const std::function<double(doub
 }
 
 /// A plane through (size/2, size/2, 100 m) that falls by `angle` (rad) towards `azimuth` (rad).
-inline Terrain makePlane(
-  int n, double size, double angle, double azimuth, const SurfaceMaterial& material)
+inline Terrain makePlane(int n, double size, double angle, double azimuth,
+  const SurfaceMaterial& material, const Roughness& roughness = {})
 {
   const double fall = std::tan(angle);
   return makeSlope(
@@ -45,7 +45,7 @@ inline Terrain makePlane(
       return 100.0 -
         fall * ((x - 0.5 * size) * std::cos(azimuth) + (y - 0.5 * size) * std::sin(azimuth));
     },
-    material);
+    material, roughness);
 }
 
 /// The shortest turn that takes one direction (any length) to another. Eigen's FromTwoVectors

@@ -45,9 +45,10 @@ for row, released in enumerate(summary["EnergyReleased"]):
 _, _, typed = fall_on(
     RestitutionModel="Speed-dependent", RestitutionCoefficient=0.73, RestitutionDeviation=0.34,
     RestitutionSpeed=7, FrictionAngle=30, FrictionAngleDeviation=3, DeviationPer="Impact",
-    RoughnessMean=0, RoughnessDeviation=0, GroundModulus=13, ScarDepthFactor=0.125, ScarCompaction=0.9,
+    RoughnessMean=0, RoughnessDeviation=0.1, RoughnessLength=2, GroundModulus=13,
+    ScarDepthFactor=0.125, ScarCompaction=0.45,
     SlipFrictionMin=0.98, SlipFrictionMax=2, SlipFrictionGrowth=3, SlipFrictionDecay=185,
-    RollingResistance=0.21, GroundDeviation=0.45, GroundDeviationLength=30)
+    RollingResistance=0.18, GroundDeviation=0.1, GroundDeviationLength=30)
 assert typed == summary, (typed, summary)
 
 # Hard ground digs nothing.

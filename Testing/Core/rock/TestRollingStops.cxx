@@ -16,11 +16,13 @@ namespace
 {
 
 constexpr double kSide = 600.0;       // of the slope, m
+constexpr int kNodes = 301;           // a side, for cells that its humps can cut
 constexpr double kHeight = 3.0;       // of the centroid over the ground at the release, m
 constexpr double kSpeed = 10.0;       // downhill at the release, m/s
 constexpr int kAttitudes = 12;        // per shape and slope
 constexpr double kSlenderness = 3.0;  // length of the prism over its width
 constexpr double kMostRolling = 10.0; // from the last bounce to rest, s
+constexpr double kWalks = 1.5;        // m/s, and slower
 constexpr double kHair = 1e-3;        // m of fall, by which a block springs back
 
 /// A shape with its name.
@@ -59,8 +61,8 @@ Quat attitude(int k)
 void expectRollingToStop(double slope, const std::vector<NamedShape>& shapes)
 {
   const GroundPreset& preset = groundPreset("meadow");
-  ASSERT_EQ(preset.roughness, Roughness{});
-  Terrain meadow = makePlane(2, kSide, radians(slope), 0.0, preset.material());
+  Terrain meadow =
+    makePlane(kNodes, kSide, radians(slope), 0.0, preset.material(), preset.roughness);
   meadow.setDeviationPer(preset.deviationPer());
   SimulationParameters p;
   p.endTime = 120.0;
@@ -115,7 +117,7 @@ TEST(RollingStops, OnTenDegreesWhateverItsShape)
   expectRollingToStop(10.0, allShapes());
 }
 
-// tan 12° is the rolling resistance.
+// Steeper than the rolling resistance: the humps stop them.
 TEST(RollingStops, OnTwelveDegreesWhateverItsShape)
 {
   expectRollingToStop(12.0, allShapes());
@@ -127,4 +129,39 @@ TEST(RollingStops, OnFifteenDegreesButWheels)
   std::vector<NamedShape> shapes = allShapes();
   std::erase_if(shapes, [](const NamedShape& s) { return s.name == shapeName(Shape::Eota221); });
   expectRollingToStop(15.0, shapes);
+}
+
+// Steeper than the rolling resistance of every shape: smooth ground lets rocks walk on for minutes.
+TEST(RollingStops, NothingWalksDownALongMeadow)
+{
+  const GroundPreset& preset = groundPreset("meadow");
+  Terrain meadow =
+    makePlane(kNodes, kSide, radians(35.0), 0.0, preset.material(), preset.roughness);
+  meadow.setDeviationPer(preset.deviationPer());
+  std::vector<Rock> rocks;
+  for (int k = 0; k < 80; ++k)
+  {
+    Rock rock;
+    rock.shape = makeShape(Shape::Eota111, 1.0);
+    rock.position = Vec3(50.0, 0.5 * kSide + 0.1 * k, 0.0);
+    rock.position.z() = meadow.elevation(rock.position.x(), rock.position.y()) + kHeight;
+    rock.orientation = attitude(k);
+    rock.velocity = Vec3(1.5, 0.0, 0.0);
+    rock.blockId = k;
+    rocks.push_back(rock);
+  }
+  SimulationParameters p;
+  p.endTime = 120.0;
+  p.outputInterval = 0.1;
+  TrajectoryStore store(int(rocks.size()), 1);
+  runEnsemble(meadow, rocks, p, store);
+  for (const Trajectory& t : store.trajectories())
+  {
+    double since = 0.0;
+    for (const Sample& s : t.samples)
+    {
+      since = s.velocity.norm() < kWalks ? since : s.time;
+      ASSERT_LT(s.time - since, kMostRolling) << "attitude " << t.summary.rock;
+    }
+  }
 }
