@@ -4,7 +4,7 @@
 #include "contact/ground/detection.h"
 #include "contact/ground/motion.h"
 #include "law/settings.h"
-#include "rock/contactPhase.h"
+#include "rock/fall/contactPhase.h"
 #include "world/StepTrees.h"
 #include "world/pairSprings.h"
 #include "world/stepContacts.h"

@@ -3,8 +3,8 @@
 #include "base/parallel.h"
 #include "contact/ground/motion.h"
 #include "law/settings.h"
-#include "rock/contactPhase.h"
-#include "rock/endOfFall.h"
+#include "rock/fall/contactPhase.h"
+#include "rock/fall/endOfFall.h"
 #include "world/StepTrees.h"
 #include "world/pairImpacts.h"
 

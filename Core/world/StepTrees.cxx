@@ -2,7 +2,7 @@
 
 #include "block/Block.h"
 #include "law/settings.h"
-#include "rock/atStructures.h"
+#include "rock/fall/atStructures.h"
 
 #include <algorithm>
 

@@ -4,7 +4,7 @@
 /// Trees that the rocks of an island are driven into within a step.
 ///
 /// A rock that comes to a tree by itself is told before the step whether the tree holds it
-/// (rock/atStructures.h). Others may drive a rock into a tree that it did not come to, and
+/// (rock/fall/atStructures.h). Others may drive a rock into a tree that it did not come to, and
 /// the tree would take all that they give it. So one that carries in the solution and could not
 /// hold the rock as it would go without it (StructuresOnWay::stemHolds, here too) is let go. If the
 /// rock drives on through it then and the tree cannot hold it, it passes, else the tree is set in

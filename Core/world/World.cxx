@@ -3,7 +3,7 @@
 #include "base/abort.h"
 #include "base/parallel.h"
 #include "law/settings.h"
-#include "rock/atStructures.h"
+#include "rock/fall/atStructures.h"
 #include "terrain/Obstacles.h"
 #include "world/IslandFinder.h"
 #include "world/IslandStepper.h"

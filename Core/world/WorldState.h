@@ -5,7 +5,7 @@
 
 #include "contact/PlacedBlock.h"
 #include "contact/pairs.h"
-#include "rock/SingleRock.h"
+#include "rock/fall/SingleRock.h"
 #include "rock/rockContacts.h"
 #include "solve/island/IslandSolver.h"
 

@@ -4,9 +4,9 @@
 
 #include "base/parallel.h"
 #include "law/settings.h"
-#include "rock/atStructures.h"
-#include "rock/contactPhase.h"
-#include "rock/inSoil.h"
+#include "rock/fall/atStructures.h"
+#include "rock/fall/contactPhase.h"
+#include "rock/fall/inSoil.h"
 #include "world/pairSprings.h"
 #include "world/stepLayout.h"
 

@@ -4,7 +4,7 @@
 #include "base/errors.h"
 #include "contact/ground/detection.h"
 #include "law/settings.h"
-#include "rock/Recorder.h"
+#include "rock/parts/Recorder.h"
 
 #include <algorithm>
 #include <chrono>

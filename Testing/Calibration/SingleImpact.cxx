@@ -1,7 +1,7 @@
 #include "SingleImpact.h"
 #include "run/ensemble.h"
 
-#include "rock/SingleRock.h"
+#include "rock/fall/SingleRock.h"
 
 #include <algorithm>
 #include <atomic>

@@ -4,7 +4,7 @@
 #include "verification.h"
 
 #include "block/Block.h"
-#include "rock/rollingResistance.h"
+#include "rock/parts/rollingResistance.h"
 
 #include <gtest/gtest.h>
 

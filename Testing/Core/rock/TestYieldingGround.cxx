@@ -7,7 +7,7 @@
 #include "block/Block.h"
 #include "contact/ground/submerged.h"
 #include "contact/ground/timeToTouch.h"
-#include "rock/Scar.h"
+#include "rock/parts/Scar.h"
 #include "run/stateHash.h"
 #include "world/World.h"
 

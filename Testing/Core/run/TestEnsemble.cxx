@@ -2,7 +2,7 @@
 // does not depend on threads. Bad input is one clear error.
 
 #include "base/errors.h"
-#include "rock/Recorder.h"
+#include "rock/parts/Recorder.h"
 #include "run/stateHash.h"
 #include "slopes.h"
 

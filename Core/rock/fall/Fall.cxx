@@ -1,4 +1,4 @@
-#include "rock/Fall.h"
+#include "rock/fall/Fall.h"
 
 #include "geometry/roundBody.h"
 #include "law/settings.h"

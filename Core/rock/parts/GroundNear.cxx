@@ -1,4 +1,4 @@
-#include "rock/GroundNear.h"
+#include "rock/parts/GroundNear.h"
 
 #include "contact/ground/clearance.h"
 #include "contact/ground/timeToTouch.h"

@@ -1,10 +1,10 @@
-#include "rock/StructuresOnWay.h"
+#include "rock/parts/StructuresOnWay.h"
 
 #include "block/flight.h"
 #include "contact/ground/clearance.h"
 #include "contact/ground/roundContact.h"
 #include "law/settings.h"
-#include "rock/RockBody.h"
+#include "rock/parts/RockBody.h"
 #include "terrain/Surface.h"
 #include "terrain/stemHit.h"
 

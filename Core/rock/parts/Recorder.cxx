@@ -1,6 +1,6 @@
 // Samples of a path: at even times, and as many knots as its curve needs between them.
 
-#include "rock/Recorder.h"
+#include "rock/parts/Recorder.h"
 
 #include "base/grow.h"
 #include "block/flight.h"

@@ -1,4 +1,4 @@
-#include "rock/contactPhase.h"
+#include "rock/fall/contactPhase.h"
 
 #include "base/abort.h"
 #include "block/flight.h"
@@ -8,12 +8,12 @@
 #include "contact/impactMode.h"
 #include "law/cohesion.h"
 #include "law/settings.h"
-#include "rock/Fall.h"
-#include "rock/atStructures.h"
-#include "rock/endOfFall.h"
-#include "rock/flightPhase.h"
-#include "rock/impulseImpacts.h"
-#include "rock/inSoil.h"
+#include "rock/fall/Fall.h"
+#include "rock/fall/atStructures.h"
+#include "rock/fall/endOfFall.h"
+#include "rock/fall/flightPhase.h"
+#include "rock/fall/impulseImpacts.h"
+#include "rock/fall/inSoil.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
-#include "rock/atStructures.h"
+#include "rock/fall/atStructures.h"
 
 #include "contact/ground/timeToTouch.h"
 #include "law/settings.h"
-#include "rock/Fall.h"
+#include "rock/fall/Fall.h"
 
 #include <algorithm>
 #include <cmath>

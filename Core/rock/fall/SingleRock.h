@@ -4,8 +4,8 @@
 /// One rock on one realisation of the slope, from release to rest: flight in closed form, contact
 /// in steps, restitution as events.
 
-#include "rock/Fall.h"
 #include "rock/Rock.h"
+#include "rock/fall/Fall.h"
 
 #include <limits>
 

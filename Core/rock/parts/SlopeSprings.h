@@ -4,8 +4,8 @@
 /// Springs and dashpots of one rock's contacts with the slope, and what follows from them: how long
 /// a step may be, and whether the rock is calm enough for a long one.
 
-#include "rock/RockBody.h"
 #include "rock/parameters.h"
+#include "rock/parts/RockBody.h"
 #include "terrain/Surface.h"
 
 #include <vector>

@@ -1,4 +1,4 @@
-#include "rock/SlopeSprings.h"
+#include "rock/parts/SlopeSprings.h"
 
 #include "law/settings.h"
 #include "law/springs.h"

@@ -1,7 +1,7 @@
-#include "rock/endOfFall.h"
+#include "rock/fall/endOfFall.h"
 
 #include "law/settings.h"
-#include "rock/Fall.h"
+#include "rock/fall/Fall.h"
 #include "terrain/holes.h"
 #include "terrain/walls.h"
 

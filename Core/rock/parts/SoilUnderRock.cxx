@@ -1,10 +1,10 @@
-#include "rock/SoilUnderRock.h"
+#include "rock/parts/SoilUnderRock.h"
 
 #include "block/flight.h"
 #include "contact/ground/clearance.h"
 #include "contact/ground/timeToTouch.h"
 #include "law/settings.h"
-#include "rock/rollingResistance.h"
+#include "rock/parts/rollingResistance.h"
 
 #include <algorithm>
 #include <cmath>

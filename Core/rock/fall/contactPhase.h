@@ -6,7 +6,7 @@
 /// The parts of a step in their order, for islands, which solve for several rocks at once.
 
 #include "contact/ground/candidates.h"
-#include "rock/RockBody.h"
+#include "rock/parts/RockBody.h"
 
 namespace rockfall
 {

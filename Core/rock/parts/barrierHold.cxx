@@ -1,4 +1,4 @@
-#include "rock/barrierHold.h"
+#include "rock/parts/barrierHold.h"
 
 #include "contact/ground/roundContact.h"
 #include "law/settings.h"

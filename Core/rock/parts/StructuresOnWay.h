@@ -6,7 +6,7 @@
 
 #include "contact/Contact.h"
 #include "contact/PlacedBlock.h"
-#include "rock/barrierHold.h"
+#include "rock/parts/barrierHold.h"
 #include "rock/results.h"
 #include "terrain/Obstacles.h"
 

@@ -1,4 +1,4 @@
-#include "rock/SlopeImpact.h"
+#include "rock/parts/SlopeImpact.h"
 
 #include "law/settings.h"
 #include "rock/restitution.h"

@@ -15,15 +15,15 @@
 ///
 /// Phases: flightPhase, impulseImpacts, contactPhase; inSoil and atStructures within them; endOfFall.
 
-#include "rock/GroundNear.h"
-#include "rock/OverlapRecovery.h"
-#include "rock/Recorder.h"
-#include "rock/RockBody.h"
-#include "rock/SlopeImpact.h"
-#include "rock/SlopeSprings.h"
-#include "rock/SoilUnderRock.h"
-#include "rock/StructuresOnWay.h"
 #include "rock/parameters.h"
+#include "rock/parts/GroundNear.h"
+#include "rock/parts/OverlapRecovery.h"
+#include "rock/parts/Recorder.h"
+#include "rock/parts/RockBody.h"
+#include "rock/parts/SlopeImpact.h"
+#include "rock/parts/SlopeSprings.h"
+#include "rock/parts/SoilUnderRock.h"
+#include "rock/parts/StructuresOnWay.h"
 
 namespace rockfall
 {

@@ -3,7 +3,7 @@
 /// @file
 /// Turns the states that a rock passes through into samples at even times and a summary.
 
-#include "rock/RockBody.h"
+#include "rock/parts/RockBody.h"
 #include "terrain/Surface.h"
 
 namespace rockfall

@@ -1,4 +1,4 @@
-#include "rock/Scar.h"
+#include "rock/parts/Scar.h"
 
 #include "law/settings.h"
 

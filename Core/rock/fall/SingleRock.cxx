@@ -1,10 +1,10 @@
-#include "rock/SingleRock.h"
+#include "rock/fall/SingleRock.h"
 
 #include "contact/ground/detection.h"
 #include "law/settings.h"
-#include "rock/contactPhase.h"
-#include "rock/endOfFall.h"
-#include "rock/flightPhase.h"
+#include "rock/fall/contactPhase.h"
+#include "rock/fall/endOfFall.h"
+#include "rock/fall/flightPhase.h"
 #include "rock/placement.h"
 #include "terrain/walls.h"
 

@@ -11,7 +11,7 @@
 
 #include "contact/Contact.h"
 #include "law/settings.h"
-#include "rock/RockBody.h"
+#include "rock/parts/RockBody.h"
 
 #include <algorithm>
 #include <cmath>

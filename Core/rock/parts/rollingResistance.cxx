@@ -1,4 +1,4 @@
-#include "rock/rollingResistance.h"
+#include "rock/parts/rollingResistance.h"
 
 #include <algorithm>
 #include <cmath>

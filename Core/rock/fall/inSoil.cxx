@@ -1,8 +1,8 @@
-#include "rock/inSoil.h"
+#include "rock/fall/inSoil.h"
 
-#include "rock/Fall.h"
-#include "rock/endOfFall.h"
-#include "rock/flightPhase.h"
+#include "rock/fall/Fall.h"
+#include "rock/fall/endOfFall.h"
+#include "rock/fall/flightPhase.h"
 
 namespace rockfall
 {

@@ -4,7 +4,7 @@
 /// What a rock does at structures (StructuresOnWay): trees that it breaks or passes, barriers that
 /// stop it or break.
 
-#include "rock/StructuresOnWay.h"
+#include "rock/parts/StructuresOnWay.h"
 
 #include <span>
 

@@ -1,4 +1,4 @@
-#include "rock/OverlapRecovery.h"
+#include "rock/parts/OverlapRecovery.h"
 
 #include <utility>
 

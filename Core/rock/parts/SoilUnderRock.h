@@ -4,10 +4,10 @@
 /// The ground under one rock where it yields (terrain/yieldingGround.h): the scar that the rock is
 /// in, what soil takes of its motion, and friction that falls with the slip.
 
-#include "rock/GroundNear.h"
-#include "rock/RockBody.h"
-#include "rock/Scar.h"
-#include "rock/StructuresOnWay.h"
+#include "rock/parts/GroundNear.h"
+#include "rock/parts/RockBody.h"
+#include "rock/parts/Scar.h"
+#include "rock/parts/StructuresOnWay.h"
 #include "terrain/Surface.h"
 
 namespace rockfall

@@ -5,9 +5,9 @@
 /// off or settles. When it is over it is booked as an event, restitution of its velocity is applied,
 /// and the ground's next deviates are drawn.
 
-#include "rock/Recorder.h"
-#include "rock/RockBody.h"
 #include "rock/parameters.h"
+#include "rock/parts/Recorder.h"
+#include "rock/parts/RockBody.h"
 #include "terrain/Surface.h"
 
 #include <algorithm>

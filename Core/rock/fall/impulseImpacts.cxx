@@ -1,12 +1,12 @@
-#include "rock/impulseImpacts.h"
+#include "rock/fall/impulseImpacts.h"
 
 #include "base/abort.h"
 #include "block/FreeRotation.h"
 #include "block/flight.h"
 #include "contact/ground/timeToTouch.h"
 #include "law/settings.h"
-#include "rock/Fall.h"
-#include "rock/flightPhase.h"
+#include "rock/fall/Fall.h"
+#include "rock/fall/flightPhase.h"
 #include "rock/restitution.h"
 #include "solve/step/impulse.h"
 

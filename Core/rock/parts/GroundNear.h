@@ -8,8 +8,8 @@
 /// surface under it, and the pairs of features of rock and slope that may touch.
 
 #include "contact/ground/candidates.h"
-#include "rock/RockBody.h"
-#include "rock/StructuresOnWay.h"
+#include "rock/parts/RockBody.h"
+#include "rock/parts/StructuresOnWay.h"
 #include "terrain/Surface.h"
 
 #include <array>
