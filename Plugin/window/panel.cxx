@@ -6,12 +6,18 @@
 #include "pqSettings.h"
 #include "vtkPVXMLElement.h"
 #include "vtkSMProperty.h"
+#include "vtkSMPropertyHelper.h"
+#include "vtkSMProxy.h"
+#include "vtkSMSessionProxyManager.h"
+#include "vtkSMSettings.h"
 
 #include <QDockWidget>
 #include <QGridLayout>
 #include <QLabel>
 #include <QMainWindow>
 #include <QString>
+
+#include <string>
 
 namespace rockfall::window
 {
@@ -46,6 +52,21 @@ void showUnits(QMainWindow* window)
       label->setText(shown.insert(end < 0 ? shown.size() : end, text));
       grid->setAlignment(label, Qt::AlignTop); // as wide as its column, or short names break in two
     }
+  }
+}
+
+void showCentimetres(vtkSMSessionProxyManager* session)
+{
+  constexpr int digits = 9; // of 1,000,000.00 m
+  constexpr const char* precision = "RealNumberDisplayedPrecision";
+  vtkSMProxy* general = session->GetProxy("settings", "GeneralSettings");
+  if (general && general->GetProperty(precision) &&
+    vtkSMPropertyHelper(general, precision).GetAsInt() < digits &&
+    !vtkSMSettings::GetInstance()->HasSetting(
+      (std::string(".settings.GeneralSettings.") + precision).c_str()))
+  {
+    vtkSMPropertyHelper(general, precision).Set(digits);
+    general->UpdateVTKObjects();
   }
 }
 

@@ -4,6 +4,7 @@
 /// ParaView's window and its properties panel: units of captions, and its width.
 
 class QMainWindow;
+class vtkSMSessionProxyManager;
 
 namespace rockfall::window
 {
@@ -14,6 +15,10 @@ QMainWindow* mainWindow();
 /// Units behind the captions of the panel, from the properties' hints: a caption in the XML is the
 /// property's name in Python, where a unit would have to be part of it.
 void showUnits(QMainWindow* window);
+
+/// Numbers of nine digits where the user has not chosen how many: coordinates of a map need them,
+/// ParaView's six are some 10 m there.
+void showCentimetres(vtkSMSessionProxyManager* session);
 
 /// Once for each user: panels as wide as coordinates of seven digits need.
 void widenPanels(QMainWindow* window);

@@ -294,6 +294,10 @@ void pqRockfallWindow::onSource(pqPipelineSource* source)
 {
   vtkSMProxy* proxy = source->getProxy();
   const std::string name = proxy->GetXMLName();
+  if (isOf(proxy, { "vtkDEMToCFESource" }))
+  {
+    rockfall::window::showCentimetres(proxy->GetSessionProxyManager());
+  }
   if (name == "RockSourceReader" || name == "RockBlocks" || name == "JointedRockMass")
   {
     rockfall::window::standOnSlope(source);
