@@ -29,13 +29,14 @@ public:
     , block_(block)
     , parameters_(p)
     , system_(block, std::move(slope))
-    , recorder_(surface, block, p.outputInterval)
+    , body_(block)
+    , recorder_(surface, block, p.outputInterval, p.gravity)
   {
-    state_.position = rock.position;
-    state_.orientation = rock.orientation.normalized();
-    state_.velocity = rock.velocity;
-    state_.spin = state_.orientation.conjugate() * rock.angularVelocity;
-    restingSpeed_ = kRestingSpeed * std::sqrt(std::max(p.gravity, 1e-3) * block.radius());
+    body_.state.position = rock.position;
+    body_.state.orientation = rock.orientation.normalized();
+    body_.state.velocity = rock.velocity;
+    body_.state.spin = body_.state.orientation.conjugate() * rock.angularVelocity;
+    body_.restingSpeed = kRestingSpeed * std::sqrt(std::max(p.gravity, 1e-3) * block.radius());
     const Terrain& terrain = surface.terrain();
     gatherPatch(surface, 0.0, terrain.width(), 0.0, terrain.height(), patch_);
     recorder_.trajectory().summary.blockId = rock.blockId;
@@ -59,27 +60,20 @@ private:
   BlockSystem system_;
   SurfacePatch patch_; ///< All of the slope.
   CandidatePairs candidates_;
-  BlockState state_;
-  PlacedBlock placed_;
-  std::vector<Contact> contacts_;
+  RockBody body_;
   Recorder recorder_;
   BlockSlopeRun result_;
-  double springEnergy_ = 0.0;
-  double normalEnergy_ = 0.0;
-  double restingSpeed_ = 0.0;
-  double quietTime_ = 0.0;
-  Vec3 acceleration_ = Vec3::Zero();
-  Vec3 spinAcceleration_ = Vec3::Zero();
   std::vector<int> carriers_; ///< Features of the rock that carried in the last lasting step.
 };
 
 double BlockSlopeSimulator::longStep() const
 {
-  const double rim = state_.spin.norm() * block_.radius();
-  const double speed = state_.velocity.norm() + rim + parameters_.gravity * parameters_.timeStep;
+  const double rim = body_.state.spin.norm() * block_.radius();
+  const double speed =
+    body_.state.velocity.norm() + rim + parameters_.gravity * parameters_.timeStep;
   const double travel = speed > 0.0 ? kTravelPerStep * block_.radius() / speed : 1e300;
   return std::max(
-    std::min({ parameters_.timeStep, travel, parameters_.endTime - state_.time }), 1e-12);
+    std::min({ parameters_.timeStep, travel, parameters_.endTime - body_.state.time }), 1e-12);
 }
 
 double BlockSlopeSimulator::impactStep() const
@@ -90,44 +84,45 @@ double BlockSlopeSimulator::impactStep() const
 
 double BlockSlopeSimulator::energy() const
 {
-  return kineticEnergy(block_, state_) + strainEnergy(block_, state_) + springEnergy_ +
-    system_.slopeEnergy() + block_.mass() * parameters_.gravity * state_.position.z();
+  return kineticEnergy(block_, body_.state) + strainEnergy(block_, body_.state) +
+    body_.springEnergy + system_.slopeEnergy() +
+    block_.mass() * parameters_.gravity * body_.state.position.z();
 }
 
 /// Against every block of the slope.
 void BlockSlopeSimulator::findContacts(double reach)
 {
-  gatherCandidates(placed_, state_, patch_, reach, candidates_);
-  updateContacts(placed_, patch_, candidates_, reach, contacts_);
+  gatherCandidates(body_.placed, body_.state, patch_, reach, candidates_);
+  updateContacts(body_.placed, patch_, candidates_, reach, body_.contacts);
 }
 
 bool BlockSlopeSimulator::isCalm() const
 {
-  const double settled = restingSpeed_ +
+  const double settled = body_.restingSpeed +
     4.0 * parameters_.gravity * std::sqrt(block_.mass() / parameters_.normalPenalty);
-  const Vec3 spin = state_.angularVelocity();
-  return normalEnergy_ <= 0.5 * block_.mass() * settled * settled &&
-    std::all_of(contacts_.begin(), contacts_.end(),
+  const Vec3 spin = body_.state.angularVelocity();
+  return body_.normalEnergy <= 0.5 * block_.mass() * settled * settled &&
+    std::all_of(body_.contacts.begin(), body_.contacts.end(),
       [&](const Contact& c)
       {
-        const Vec3 v = state_.velocity + spin.cross(c.point - state_.position);
-        return !c.closed() || std::abs(c.normal.dot(v)) <= restingSpeed_;
+        const Vec3 v = body_.state.velocity + spin.cross(c.point - body_.state.position);
+        return !c.closed() || std::abs(c.normal.dot(v)) <= body_.restingSpeed;
       });
 }
 
 bool BlockSlopeSimulator::mayLast(double h) const
 {
   bool any = false;
-  const Vec3 spin = state_.angularVelocity();
-  for (const Contact& c : contacts_)
+  const Vec3 spin = body_.state.angularVelocity();
+  for (const Contact& c : body_.contacts)
   {
-    const Vec3 v = state_.velocity + spin.cross(c.point - state_.position);
+    const Vec3 v = body_.state.velocity + spin.cross(c.point - body_.state.position);
     const double approach = -c.normal.dot(v), gap = system_.gap(c);
-    if (!c.closed() && approach > restingSpeed_ && gap < approach * h)
+    if (!c.closed() && approach > body_.restingSpeed && gap < approach * h)
     {
       return false;
     }
-    const bool still = std::abs(approach) <= restingSpeed_;
+    const bool still = std::abs(approach) <= body_.restingSpeed;
     any = any || c.closed() || (still && gap <= 0.5 * parameters_.gravity * h * h);
   }
   return any;
@@ -135,7 +130,7 @@ bool BlockSlopeSimulator::mayLast(double h) const
 
 void BlockSlopeSimulator::takeStep(double h, bool lasting)
 {
-  const BlockState before = state_;
+  const BlockState before = body_.state;
   const double energyBefore = this->energy();
   SystemRequest request;
   request.duration = h;
@@ -146,14 +141,14 @@ void BlockSlopeSimulator::takeStep(double h, bool lasting)
   request.friction = surface_.friction();
   request.cohesion = surface_.cohesion();
   request.maxOpenClose = parameters_.maxOpenClose;
-  request.acceleration = acceleration_;
-  request.spinAcceleration = spinAcceleration_;
+  request.acceleration = body_.acceleration;
+  request.spinAcceleration = body_.spinAcceleration;
   TrajectorySummary& summary = recorder_.trajectory().summary;
   SystemOutcome outcome;
   for (int cut = 0; !outcome.settled; ++cut)
   {
     const bool last = cut >= parameters_.maxCuts;
-    outcome = system_.step(request, contacts_, state_, last);
+    outcome = system_.step(request, body_.contacts, body_.state, last);
     result_.solutions += outcome.iterations;
     if (outcome.settled || last)
     {
@@ -164,12 +159,12 @@ void BlockSlopeSimulator::takeStep(double h, bool lasting)
   }
   summary.unsettledSteps += outcome.settled ? 0 : 1;
   ++result_.steps;
-  springEnergy_ = outcome.springEnergy;
-  normalEnergy_ = outcome.normalEnergy;
-  summary.energy.friction += outcome.frictionWork;
+  body_.springEnergy = outcome.springEnergy;
+  body_.normalEnergy = outcome.normalEnergy;
+  body_.energy.friction += outcome.frictionWork;
 
   std::vector<int> carriers;
-  for (const Contact& c : contacts_)
+  for (const Contact& c : body_.contacts)
   {
     if (c.closed())
     {
@@ -178,25 +173,25 @@ void BlockSlopeSimulator::takeStep(double h, bool lasting)
   }
   summary.contactSteps += carriers.empty() ? 0 : 1;
   // The lag of the next lasting step, as long as the same features carry.
-  acceleration_.setZero();
-  spinAcceleration_.setZero();
+  body_.acceleration.setZero();
+  body_.spinAcceleration.setZero();
   if (lasting)
   {
-    summary.energy.damping += energyBefore - this->energy() - outcome.frictionWork;
+    body_.energy.damping += energyBefore - this->energy() - outcome.frictionWork;
     const double bound = 3.0 * parameters_.gravity;
-    const Vec3 a = (state_.velocity - before.velocity) / request.duration;
-    const Vec3 b = (state_.spin - before.spin) / request.duration;
+    const Vec3 a = (body_.state.velocity - before.velocity) / request.duration;
+    const Vec3 b = (body_.state.spin - before.spin) / request.duration;
     if (carriers == carriers_ && a.norm() <= bound && b.norm() * block_.radius() <= bound)
     {
-      acceleration_ = a;
-      spinAcceleration_ = b;
+      body_.acceleration = a;
+      body_.spinAcceleration = b;
     }
   }
-  recorder_.recordBetween(before, state_, !carriers.empty());
-  recorder_.follow(state_);
+  recorder_.recordBetween(body_, before, body_.state, !carriers.empty());
+  recorder_.follow(body_.state);
   if (carriers.empty())
   {
-    summary.energy.vibration += relaxStrain(block_, state_) + system_.settleSlope();
+    body_.energy.vibration += relaxStrain(block_, body_.state) + system_.settleSlope();
   }
   carriers_ = lasting ? carriers : std::vector<int>();
 }
@@ -204,18 +199,18 @@ void BlockSlopeSimulator::takeStep(double h, bool lasting)
 bool BlockSlopeSimulator::over(double h)
 {
   TrajectorySummary& summary = recorder_.trajectory().summary;
-  const Vec3& p = state_.position;
-  const double speed = state_.velocity.norm() + state_.spin.norm() * block_.radius();
+  const Vec3& p = body_.state.position;
+  const double speed = body_.state.velocity.norm() + body_.state.spin.norm() * block_.radius();
   const double still =
     kStillSpeed * std::sqrt(std::max(parameters_.gravity, 1e-3) * block_.radius());
-  quietTime_ = springEnergy_ > 0.0 && speed < still ? quietTime_ + h : 0.0;
+  body_.quietTime = body_.springEnergy > 0.0 && speed < still ? body_.quietTime + h : 0.0;
   if (surface_.terrain().cfeAt(p.x(), p.y()) == 0)
   {
     summary.fate = Fate::LeftDomain;
     return true;
   }
-  summary.fate = quietTime_ >= kStillTime ? Fate::Rested : Fate::Moving;
-  return summary.fate == Fate::Rested || state_.time >= parameters_.endTime - 1e-9;
+  summary.fate = body_.quietTime >= kStillTime ? Fate::Rested : Fate::Moving;
+  return summary.fate == Fate::Rested || body_.state.time >= parameters_.endTime - 1e-9;
 }
 
 BlockSlopeRun BlockSlopeSimulator::run()
@@ -223,17 +218,16 @@ BlockSlopeRun BlockSlopeSimulator::run()
   TrajectorySummary& summary = recorder_.trajectory().summary;
   summary.mass = block_.mass();
   summary.volume = block_.volume();
-  const double before = this->energy();
-  recorder_.begin(state_);
+  recorder_.begin(body_);
   const auto start = std::chrono::steady_clock::now();
   for (bool done = this->over(0.0); !done;)
   {
-    const double speed = state_.velocity.norm() + state_.spin.norm() * block_.radius();
+    const double speed = body_.state.velocity.norm() + body_.state.spin.norm() * block_.radius();
     const auto reachOf = [&](double h)
     { return 1.5 * speed * h + parameters_.gravity * h * h + 1e-6 * block_.radius(); };
-    placed_.place(block_, state_);
-    const bool touched =
-      std::any_of(contacts_.begin(), contacts_.end(), [](const Contact& c) { return c.closed(); });
+    body_.placed.place(block_, body_.state);
+    const bool touched = std::any_of(
+      body_.contacts.begin(), body_.contacts.end(), [](const Contact& c) { return c.closed(); });
     double h = this->longStep();
     bool lasting = false;
     // A long step is looked at in flight, and where what carries is at rest along its normal.
@@ -242,30 +236,25 @@ BlockSlopeRun BlockSlopeSimulator::run()
       this->findContacts(reachOf(h));
       lasting = this->mayLast(h);
     }
-    if (!lasting && (touched || !contacts_.empty()))
+    if (!lasting && (touched || !body_.contacts.empty()))
     {
       h = this->impactStep();
-      std::erase_if(contacts_, [](const Contact& c) { return !c.closed(); });
+      std::erase_if(body_.contacts, [](const Contact& c) { return !c.closed(); });
       this->findContacts(reachOf(h));
     }
-    const double time = state_.time;
+    const double time = body_.state.time;
     this->takeStep(h, lasting);
-    done = this->over(state_.time - time);
+    done = this->over(body_.state.time - time);
   }
   result_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result_.unknowns = system_.unknowns();
   result_.blocks = int(system_.slope().blocks.size());
 
-  recorder_.end(state_, springEnergy_ > 0.0);
-  summary.stop = state_.position;
-  summary.endTime = state_.time;
-  summary.runOut = (state_.position - summary.start).head<2>().norm();
+  recorder_.end(body_, body_.springEnergy > 0.0);
   summary.openCloseIterations = result_.solutions;
-  EnergyAudit& e = summary.energy;
-  e.kinetic = kineticEnergy(block_, state_);
-  e.strain = strainEnergy(block_, state_) + springEnergy_ + system_.slopeEnergy();
-  e.released = before - block_.mass() * parameters_.gravity * state_.position.z();
-  e.numerical = e.released - (e.kinetic + e.strain + e.friction + e.vibration + e.damping);
+  const double slope = system_.slopeEnergy();
+  summary.energy.strain += slope;
+  summary.energy.numerical -= slope;
   result_.trajectory = std::move(recorder_.trajectory());
   return std::move(result_);
 }
