@@ -124,7 +124,7 @@ TEST(RollingStops, OnTwelveDegreesWhateverItsShape)
   expectRollingToStop(12.0, allShapes());
 }
 
-// The EOTA 221 rolls on here, on its rim like a wheel: docs/validation.md.
+// The EOTA 221 rolls on here, on its rim like a wheel.
 TEST(RollingStops, OnFifteenDegreesButWheels)
 {
   std::vector<NamedShape> shapes = allShapes();
