@@ -219,6 +219,7 @@ struct SceneOutcome
   bool sameBits = true;  ///< On one thread and on two.
   double released = 0.0; ///< Energy that gravity released, J.
   double made = 0.0;     ///< Energy that came from nowhere, J.
+  double gained = 0.0;   ///< What rocks have and gave away beyond what gravity released of them, J.
   double tooDeep = 0.0;  ///< The deepest vertex, beyond what its spring explains, of the radius.
   std::string worst;     ///< Which one that is.
 };
@@ -281,6 +282,8 @@ inline SceneOutcome runScene(const RandomScene& scene, double patience)
     const double r = rock.shape.radius();
     outcome.released += s.energy.released;
     outcome.made -= s.energy.numerical;
+    const double has = s.energy.kinetic + s.energy.strain + s.energy.exchanged;
+    outcome.gained += std::max(0.0, has - s.energy.released);
     const double allowed =
       std::max(0.02 * r, 1.5 * explainedDepth(rock, scene.parameters, largestEnergy, load));
     for (const Sample& x : t.samples)

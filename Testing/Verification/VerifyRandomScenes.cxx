@@ -30,6 +30,7 @@ TEST(RandomScenes, MakeNoEnergyAndStayOutOfTheGround)
     made = std::max(made, outcome.released > 0.0 ? outcome.made / outcome.released : 0.0);
     deepest = std::max(deepest, outcome.tooDeep);
     EXPECT_LE(outcome.made, 0.01 * outcome.released) << "scene " << seed;
+    EXPECT_LE(outcome.gained, 0.01 * outcome.released) << "scene " << seed;
     EXPECT_EQ(outcome.tooDeep, 0.0) << "scene " << seed << ", " << outcome.worst;
   }
   const std::string subject = "Random scenes", all = std::to_string(scenes) + " scenes";

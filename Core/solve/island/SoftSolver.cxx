@@ -233,6 +233,7 @@ void SoftSolver::keepPushing(std::size_t strip)
       if (any && i >= 0)
       {
         movers_[std::size_t(i)].touched = true;
+        movers_[std::size_t(i)].carried = movers_[std::size_t(i)].carried || manifold.b >= 0;
         movers_[std::size_t(i)].flies = false;
       }
     }
@@ -348,7 +349,8 @@ void SoftSolver::substep(int number)
   const auto fall = [&](std::size_t i)
   {
     motions_[i].velocity += h_ * gravity;
-    movers_[i].touched = false;
+    movers_[i].touched = movers_[i].carried = false;
+    movers_[i].kinetic = this->kineticEnergy(i);
   };
   forEach(movers_.size(), kBodyGrain, fall);
   this->forStrips([this](std::size_t strip) { this->warm(strip); });
@@ -392,6 +394,7 @@ void SoftSolver::substep(int number)
     return moved;
   };
   this->sweep(kRelaxSweeps, relax);
+  forEach(movers_.size(), kBodyGrain, [this](std::size_t i) { this->holdEnergy(i); });
   this->forStrips([this](std::size_t strip) { this->bookForces(strip); });
 }
 

@@ -79,10 +79,12 @@ private:
     Vec3 displacement, turn; ///< Since the step begins; the turn as a sum of small ones.
     Vec3 start;              ///< Centroid where the step begins, from `origin_`, m.
     bool turned;             ///< So far in the step that its contacts weigh otherwise.
-    bool touched;            ///< A contact that lasts has pushed it in the substep.
+    bool touched;            ///< A contact that lasts has pushed it in the substep,
+    bool carried;            ///< one with another rock.
     bool flies;              ///< Nothing has touched it in the step.
     bool moved;              ///< Since the last look.
     double noise;            ///< Speed to which its impacts in the step are exact, m/s.
+    double kinetic;          ///< Before contacts that last push it in the substep, J.
     Vec3 momentum;           ///< Angular, about the centroid.
     Mat3 inverseInertia;
     double smallTurn;   ///< Largest one of a substep that a midpoint does, rad.
@@ -183,6 +185,10 @@ private:
 
   void run(); ///< All substeps, from where the movers start.
   void startMovers();
+  double kineticEnergy(std::size_t i) const; ///< J
+  /// The slope, which is at rest, gives a rock no energy: not by pressing an overlap out either, at
+  /// a speed that friction between two walls turns into a throw.
+  void holdEnergy(std::size_t i);
   void startMover(std::size_t i);
   /// Strips across the island: contacts belong to the lower one of their two rocks, and those of
   /// every second strip share no rock.

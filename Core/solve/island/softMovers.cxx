@@ -40,9 +40,9 @@ void SoftSolver::startMover(std::size_t i)
   m.smallTurn = std::cbrt(24.0 * kTurnExact / slender);
   m.weighedTurn = kWeighedTurn / std::sqrt(slender);
   m.turned = false;
-  m.touched = false;
+  m.touched = m.carried = false;
   m.flies = true;
-  m.noise = 0.0;
+  m.noise = m.kinetic = 0.0;
 }
 
 void SoftSolver::startMovers()
@@ -82,6 +82,34 @@ void SoftSolver::turn(std::size_t i)
   motion.spin = m.inverseInertia * m.momentum;
   m.turn += by;
   m.turned = m.turned || m.turn.squaredNorm() > m.weighedTurn * m.weighedTurn;
+}
+
+double SoftSolver::kineticEnergy(std::size_t i) const
+{
+  const Motion& motion = motions_[i];
+  const double turning = motion.inverseMoment > 0.0
+    ? motion.spin.squaredNorm() / motion.inverseMoment
+    : motion.spin.dot(movers_[i].momentum);
+  return 0.5 * (motion.velocity.squaredNorm() / motion.inverseMass + turning);
+}
+
+void SoftSolver::holdEnergy(std::size_t i)
+{
+  Mover& m = movers_[i];
+  if (!m.touched || m.carried)
+  {
+    return;
+  }
+  Motion& motion = motions_[i];
+  const double now = this->kineticEnergy(i);
+  const double still2 = kRestingSpeed * kRestingSpeed * gravity_ * m.block->radius();
+  if (now > m.kinetic + 0.5 * still2 / motion.inverseMass)
+  {
+    const double share = std::sqrt(m.kinetic / now);
+    motion.velocity *= share;
+    motion.spin *= share;
+    m.momentum *= share;
+  }
 }
 
 void SoftSolver::noteDetection()
