@@ -12,6 +12,9 @@ namespace rockfall::gis
 namespace
 {
 
+/// What zlib may need beside what cannot be shortened: a share and bytes. In a buffer that is too
+/// short GDAL 3.6 loses memory.
+constexpr std::size_t kShareMore = 64, kBytesMore = 64;
 constexpr int kLevel = 1; ///< Of zlib's nine: higher ones take twice the time to save 3 %.
 
 } // namespace
@@ -19,7 +22,8 @@ constexpr int kLevel = 1; ///< Of zlib's nine: higher ones take twice the time t
 std::vector<char> pack(std::span<const char> records, std::size_t size)
 {
   const std::size_t count = records.size() / size;
-  std::vector<char> sorted(records.size()), packed(records.size());
+  std::vector<char> sorted(records.size());
+  std::vector<char> packed(records.size() + records.size() / kShareMore + kBytesMore);
   for (std::size_t k = 0; k < count; ++k)
   {
     for (std::size_t byte = 0; byte < size; ++byte)
