@@ -1,5 +1,6 @@
 #include "terrain/plausible.h"
 
+#include "base/hectare.h"
 #include "base/text/numberText.h"
 #include "terrain/Terrain.h"
 #include "terrain/doubt.h"
@@ -148,8 +149,8 @@ void tellTwice(const char* kind, const std::vector<const Item*>& items,
 void tellCrowds(const std::vector<Tree>& trees, std::vector<std::string>& notes)
 {
   using plausible::kBasalArea;
-  constexpr double side = 50.0, hectares = side * side / 1e4; // m
-  std::map<std::pair<double, double>, double> areas;          // m²
+  constexpr double side = 50.0, hectares = side * side / kHectare; // m
+  std::map<std::pair<double, double>, double> areas;               // m²
   for (const Tree& tree : trees)
   {
     const Point at = tree.position / side;

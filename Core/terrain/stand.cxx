@@ -2,6 +2,7 @@
 
 #include "base/abort.h"
 #include "base/errors.h"
+#include "base/hectare.h"
 #include "base/random.h"
 #include "base/text/numberText.h"
 #include "geometry/planeSampling.h"
@@ -17,7 +18,6 @@ namespace rockfall
 namespace
 {
 
-constexpr double kHectare = 1e4; // m²
 constexpr int kMostAttempts = 1000;
 /// Streams of a source under a seed that no source has: stems and rocks are independent.
 constexpr std::uint64_t kSeedOfStands = 0x7374656d00000000;

@@ -2,6 +2,7 @@
 
 #include "sources/rockBlockSources.h"
 
+#include "base/hectare.h"
 #include "base/text/numberText.h"
 #include "geometry/planeSampling.h"
 #include "gis/base/externalReferences.h"
@@ -226,7 +227,6 @@ void vtkRockBlockSource::CheckFrequencies() const
 double vtkRockBlockSource::FrequencyOf(const Sources& sources, std::size_t number) const
 {
   rockfall::SourceRow row = sources.rows[number];
-  constexpr double hectare = 1e4; // m²
   const bool own = row.frequency || row.frequencyPerHectare || row.frequencyA;
   const auto typed = [own](std::optional<double>& value, double property)
   {
@@ -247,7 +247,7 @@ double vtkRockBlockSource::FrequencyOf(const Sources& sources, std::size_t numbe
         rockfall::numberText(this->FrequencyPerHectare) +
         " per year, but a source is no area: a point or a line needs AnnualFrequency");
     }
-    return *row.frequencyPerHectare / hectare *
+    return *row.frequencyPerHectare / rockfall::kHectare *
       (steep ? rockfall::steepArea(*sources.terrain, rockfall::radians(this->SlopeThreshold))
              : rockfall::PolygonSampler(row.parts).area());
   }

@@ -1,6 +1,7 @@
 #include "vtkDrawnStructure.h"
 
 #include "base/errors.h"
+#include "base/hectare.h"
 #include "base/text/numberText.h"
 #include "run/releasePlaces.h"
 #include "shared/drawnPoints.h"
@@ -30,13 +31,13 @@ vtkStandardNewMacro(vtkDrawnStructure);
 namespace
 {
 
+using rockfall::kHectare;
 using rockfall::SourceGeometry;
 using rockfall::SourceRow;
 using rockfall::Structures;
 using rockfall::Terrain;
 
 constexpr vtkIdType kMostShown = 4000000; ///< Triangles of stems.
-constexpr double kHectare = 1e4;          ///< m²
 
 void requirePositive(double value, const char* name, const char* unit, bool zeroToo = false)
 {

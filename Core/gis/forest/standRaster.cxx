@@ -2,6 +2,7 @@
 
 #include "base/abort.h"
 #include "base/errors.h"
+#include "base/hectare.h"
 #include "base/text/numberText.h"
 #include "gis/base/gdal.h"
 #include "gis/base/progress.h"
@@ -24,9 +25,8 @@ using namespace gis;
 namespace
 {
 
-constexpr double cm = 0.01;      // m
-constexpr double kHectare = 1e4; // m²
-constexpr int kNeeded = 2;       ///< Bands.
+constexpr double cm = 0.01; // m
+constexpr int kNeeded = 2;  ///< Bands.
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
 struct Band
