@@ -9,12 +9,15 @@ import socket
 import zipfile
 
 import numpy as np
+from vtkmodules.vtkCommonCore import vtkAbstractArray, vtkDataArray
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
 UNFINISHED = ".unfinished-"
 LOCK = UNFINISHED + "lock"
 XML_END = b"</VTKFile>"
 ROWS = 10000  # of a table that are text at once
+RANGES = (vtkAbstractArray.PER_COMPONENT(), vtkAbstractArray.PER_FINITE_COMPONENT(),
+          vtkDataArray.L2_NORM_RANGE(), vtkDataArray.L2_NORM_FINITE_RANGE())
 
 
 def unfinished(path):
@@ -113,8 +116,18 @@ def write_npz(path, columns):
     whole(path, [made.getvalue()])
 
 
+def forget_ranges(data):
+    """Those of its arrays: VTK keeps them as keys, and its writer puts these into the file in an order
+    that depends on who asked for them, so not the same on other ranks (findings/vtk_ranges_change_files.sh)."""
+    for fields in (data.GetPointData(), data.GetCellData(), data.GetFieldData()):
+        for array in map(fields.GetAbstractArray, range(fields.GetNumberOfArrays())):
+            for key in RANGES:
+                array.GetInformation().Remove(key)
+
+
 def write_polydata(path, data):
     """VTK's writer makes the text; on a full disk it ends the process, or says that all is well."""
+    forget_ranges(data)
     writer = vtkXMLPolyDataWriter()
     writer.SetInputData(data)
     writer.WriteToOutputStringOn()
