@@ -1,6 +1,7 @@
 #include "looks.h"
 
 #include "chartLooks.h"
+#include "classLooks.h"
 #include "proxyNumbers.h"
 
 #include "vtkPVArrayInformation.h"
@@ -71,7 +72,7 @@ constexpr Quantity kQuantities[] = {
   { "AnnualFrequency", "Frequency", "1/a", &kHeat },
   { "Frequency", "Frequency", "1/a", &kHeat },
   { "ReturnPeriod", "Return period", "a", &kHeights },
-  { "Intensity", "Intensity", "class", &kHeat },
+  { "Intensity", "Intensity", "", &kHeat },
   { "KineticEnergy", "Kinetic energy", kKilojoules, &kHeat },
   { "PotentialEnergy", "Potential energy", kKilojoules, &kHeights },
   { "StrainEnergy", "Strain energy", kKilojoules, &kHeat },
@@ -138,7 +139,7 @@ const Quantity* quantityOf(const std::string& array)
   return nullptr;
 }
 
-/// "ErrorOfIterations" is "error of iterations".
+/// "ErrorOfIterations" is "error of iterations", "100a" is "100 a".
 std::string inWords(const std::string& name)
 {
   std::string words;
@@ -147,8 +148,12 @@ std::string inWords(const std::string& name)
     const auto isUpper = [&](std::size_t at)
     { return at < name.size() && name[at] >= 'A' && name[at] <= 'Z'; };
     const bool begins = isUpper(k) && k + 1 < name.size() && !isUpper(k + 1);
-    const bool number = k > 0 && std::isdigit(static_cast<unsigned char>(name[k])) &&
-      std::isalpha(static_cast<unsigned char>(name[k - 1]));
+    const auto isDigit = [&](std::size_t at)
+    { return std::isdigit(static_cast<unsigned char>(name[at])) != 0; };
+    const auto isLetter = [&](std::size_t at)
+    { return std::isalpha(static_cast<unsigned char>(name[at])) != 0; };
+    const bool number =
+      k > 0 && ((isDigit(k) && isLetter(k - 1)) || (isLetter(k) && isDigit(k - 1)));
     words += (begins || number) && k > 0 ? " " : "";
     words += begins ? char(name[k] - 'A' + 'a') : name[k];
   }
@@ -354,6 +359,11 @@ void rescale(vtkSMProxy* representation, vtkSMViewProxy* view)
     return;
   }
   const std::string array = colouredBy(representation);
+  if (isIntensity(array))
+  {
+    nameClasses(shownBy(representation), table);
+    return;
+  }
   double range[2] = { std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest() };
   addRange(representation, array, range);
   vtkSMPropertyHelper all(view, "Representations");

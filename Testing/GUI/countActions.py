@@ -12,7 +12,7 @@ parts = [[]]
 for event in ElementTree.parse(events).getroot().iter("pqevent"):
     if event.get("arguments") == "actionPicture":
         parts.append([])
-    elif event.get("command") != "pause":
+    elif event.get("command") != "pause" and event.get("arguments") != "actionCheck":
         parts[-1].append(event)
 if len(mosts) == 1:
     counts = [sum(map(len, parts))]
