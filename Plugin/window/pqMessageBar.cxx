@@ -6,6 +6,11 @@
 #include "vtkAlgorithm.h"
 #include "vtkDataObject.h"
 #include "vtkFieldData.h"
+#include "vtkNew.h"
+#include "vtkSMFileListDomain.h"
+#include "vtkSMOrderedPropertyIterator.h"
+#include "vtkSMProperty.h"
+#include "vtkSMPropertyHelper.h"
 #include "vtkSMSourceProxy.h"
 #include "vtkStringArray.h"
 
@@ -38,6 +43,33 @@ QStringList textsOf(vtkSMSourceProxy* source, const char* array)
   }
   all.removeDuplicates();
   return all;
+}
+
+/// A message with the field of the panel before it whose file it names: of a file that was moved
+/// nobody knows whether it was the slope's or that of its trees.
+QString withField(vtkSMSourceProxy* source, const QString& text)
+{
+  vtkNew<vtkSMOrderedPropertyIterator> properties;
+  properties->SetProxy(source);
+  for (properties->Begin(); !properties->IsAtEnd(); properties->Next())
+  {
+    vtkSMProperty* property = properties->GetProperty();
+    if (!property->FindDomain<vtkSMFileListDomain>())
+    {
+      continue;
+    }
+    const QString label = QString::fromUtf8(property->GetXMLLabel());
+    const vtkSMPropertyHelper files(property, true);
+    for (unsigned int k = 0; k < files.GetNumberOfElements(); ++k)
+    {
+      const QString file = QString::fromUtf8(files.GetAsString(k));
+      if (!file.isEmpty() && text.startsWith(file))
+      {
+        return label + ": " + text;
+      }
+    }
+  }
+  return text;
 }
 
 } // namespace
@@ -74,6 +106,7 @@ void pqMessageBar::look()
       const bool ours = proxy && QString(proxy->GetXMLGroup()) != "extended_sources" &&
         source->modifiedState() != pqProxy::UNINITIALIZED;
       const QStringList texts = ours ? textsOf(proxy, array) : QStringList();
+      const bool error = QString(array) == "Error";
       QStringList fresh;
       for (const QString& text : texts)
       {
@@ -81,14 +114,14 @@ void pqMessageBar::look()
         if (!told.contains(text))
         {
           told << text;
-          fresh << text.toHtmlEscaped();
+          fresh << (error ? withField(proxy, text) : text).toHtmlEscaped();
         }
       }
       if (!fresh.isEmpty())
       {
         lines << "<b>" + source->getSMName().toHtmlEscaped() +
             "</b>: " + fresh.join("<br>&nbsp;&nbsp;&nbsp;");
-        failed = failed || QString(array) == "Error";
+        failed = failed || error;
       }
     }
   }

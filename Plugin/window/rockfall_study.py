@@ -152,7 +152,8 @@ def ground(slope, view=None, name="Ground"):
     """The ground of a slope in words, in a corner of the view."""
     view = view or _render_view()
     annotation = simple.PythonAnnotation(registrationName=name, Input=slope, ArrayAssociation="Field Data",
-                                         Expression="'Ground: ' + Ground.GetValue(0)")
+                                         Expression="'Ground: ' + input.FieldData['Ground'].GetValue(0) "
+                                                    "if 'Ground' in input.FieldData.keys() else ''")
     display = simple.Show(annotation, view)
     display.WindowLocation = "Lower Left Corner"
     display.FontSize = 12
