@@ -51,4 +51,23 @@ std::vector<const OGRLineString*> linesIn(const FeatureRow& row, std::int64_t* o
   return lines;
 }
 
+std::vector<const OGRLineString*> ringsIn(const OGRGeometry& geometry)
+{
+  std::vector<const OGRLineString*> rings;
+  if (wkbFlatten(geometry.getGeometryType()) == wkbPolygon)
+  {
+    for (const OGRLinearRing* ring : *geometry.toPolygon())
+    {
+      rings.push_back(ring);
+    }
+    return rings;
+  }
+  for (const OGRGeometry* part : *geometry.toGeometryCollection())
+  {
+    const std::vector<const OGRLineString*> more = ringsIn(*part);
+    rings.insert(rings.end(), more.begin(), more.end());
+  }
+  return rings;
+}
+
 } // namespace rockfall::gis

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// Lines of features, for every reader of lines alike. Internal to gis/: needs GDAL's headers.
+/// Lines and rings of features, for every reader of them alike. Internal to gis/: needs GDAL's headers.
 
 #include "gis/layers/FeatureRow.h"
 
@@ -15,5 +15,8 @@ namespace rockfall::gis
 /// there is none, or something else. `outlines`, if given, lets polygons have their outer rings
 /// taken, and gets how many there were.
 std::vector<const OGRLineString*> linesIn(const FeatureRow& row, std::int64_t* outlines = nullptr);
+
+/// The rings of a polygon or of several. The geometry owns them.
+std::vector<const OGRLineString*> ringsIn(const OGRGeometry& geometry);
 
 } // namespace rockfall::gis

@@ -20,23 +20,6 @@ namespace
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-/// Rings of one polygon or several.
-void gatherRings(const OGRGeometry& geometry, std::vector<const OGRLineString*>& curves)
-{
-  if (wkbFlatten(geometry.getGeometryType()) == wkbPolygon)
-  {
-    for (const OGRLinearRing* ring : *geometry.toPolygon())
-    {
-      curves.push_back(ring);
-    }
-    return;
-  }
-  for (const OGRGeometry* part : *geometry.toGeometryCollection())
-  {
-    gatherRings(*part, curves);
-  }
-}
-
 } // namespace
 
 Vec3 SourcePlacing::world(const FeatureRow& row, double x, double y, double z)
@@ -208,9 +191,7 @@ void SourcePlacing::placeParts(
     row.fail(std::string("geometry is a ") + geometry.getGeometryName() +
       " that is not valid: its outline crosses or touches itself");
   }
-  std::vector<const OGRLineString*> curves;
-  line ? void(curves = linesIn(row)) : gatherRings(geometry, curves);
-  for (const OGRLineString* curve : curves)
+  for (const OGRLineString* curve : line ? linesIn(row) : ringsIn(geometry))
   {
     std::vector<Vec3>& part = source.parts.emplace_back();
     for (int k = 0; k < curve->getNumPoints(); ++k)

@@ -9,6 +9,7 @@
 #include "gis/base/planAccuracy.h"
 #include "gis/base/progress.h"
 #include "gis/layers/LayerFile.h"
+#include "gis/layers/lines.h"
 #include "gis/trust/heights.h"
 #include "gis/trust/unitDoubt.h"
 
@@ -67,23 +68,9 @@ int classField(OGRLayer& layer, const GroundFiles& files)
 std::int64_t vertexCount(const OGRGeometry& geometry)
 {
   std::int64_t count = 0;
-  const auto polygon = [&](const OGRPolygon& p)
+  for (const OGRLineString* ring : ringsIn(geometry))
   {
-    for (const OGRLinearRing* ring : p)
-    {
-      count += ring->getNumPoints();
-    }
-  };
-  if (wkbFlatten(geometry.getGeometryType()) == wkbPolygon)
-  {
-    polygon(*geometry.toPolygon());
-  }
-  else
-  {
-    for (const OGRPolygon* p : *geometry.toMultiPolygon())
-    {
-      polygon(*p);
-    }
+    count += ring->getNumPoints();
   }
   return count;
 }

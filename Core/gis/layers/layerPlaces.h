@@ -1,0 +1,45 @@
+#pragma once
+
+/// @file
+/// Places of a layer's features in the CRS of another one. Internal to gis/: needs GDAL's headers.
+
+#include "base/types.h"
+#include "gis/base/crs.h"
+#include "gis/layers/FeatureRow.h"
+#include "gis/trust/heights.h"
+#include "gis/trust/unitDoubt.h"
+
+#include <limits>
+#include <string>
+#include <vector>
+
+namespace rockfall::gis
+{
+
+class LayerPlaces
+{
+public:
+  /// `targetCrs` (WKT) is that of `of`, as messages name it ("the terrain"); without a CRS on either
+  /// side the coordinates are taken as they are. Keeps `heights`.
+  LayerPlaces(const std::string& fileName, const LayerHeights& heights,
+    const std::string& targetCrs, const FileUnits& slope, const char* of,
+    std::vector<std::string>& notes);
+
+  Eigen::Vector2d at(const FeatureRow& row, double x, double y);
+  /// Corners of a line but those no further from the one before than `apart`, m. Throws DataError
+  /// if one is left.
+  std::vector<Eigen::Vector2d> line(
+    const FeatureRow& row, const OGRLineString& part, double apart = 0.0);
+
+  UnitDoubt doubt;
+  /// Box of all places so far.
+  Eigen::Vector2d least = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector2d most = -least;
+
+private:
+  const LayerHeights& heights_;
+  const char* of_;
+  CrsChange change_;
+};
+
+} // namespace rockfall::gis
