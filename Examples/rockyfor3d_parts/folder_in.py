@@ -30,11 +30,16 @@ CONIFER, BROADLEAF = 0.9, 1.7  # factors of spruce and beech, as of docs/structu
 
 def read(folder):
     """All rasters that are there, by name, checked."""
-    grids = {}
+    grids, files = {}, {}
+    for file in sorted(os.listdir(folder)):
+        stem, end = os.path.splitext(file.lower())  # where Rockyfor3D runs, DEM.ASC is dem.asc
+        if end == ".asc":
+            if stem in files:
+                raise Bad(f"{folder} has {files[stem]} and {file}: which one is it?")
+            files[stem] = file
     for name in (*NEEDED, *FOREST, "conif_percent", *NETS):
-        path = os.path.join(folder, name + ".asc")
-        if os.path.exists(path):
-            grids[name] = Grid.read(path)
+        if name in files:
+            grids[name] = Grid.read(os.path.join(folder, files[name]))
             if name != "dem":
                 grids[name].must_fit(grids["dem"])
                 grids[name].must_be(*RANGES[name])
@@ -149,7 +154,8 @@ def nets(grids, path):
         along = places - places.mean(axis=0)
         axis = np.linalg.svd(along, full_matrices=False)[2][0]
         axis = axis if axis[np.argmax(np.abs(axis))] > 0 else -axis
-        step = np.round(along @ axis / grids["dem"].cell).astype(int)
+        way = along @ axis
+        step = np.round((way - way.min()) / grids["dem"].cell).astype(int)
         line = [places[step == k].mean(axis=0) for k in np.unique(step)]
         if len(line) < 2:
             lost.append(int(one))

@@ -17,7 +17,7 @@ sys.path[:0] = [os.path.join(EXAMPLES, "rockyfor3d_parts")]
 import folder_in
 
 SIZE, CELL = 200, 2
-for folder in ("folder", "study", "results", "rasters", "bad", "other"):
+for folder in ("folder", "study", "results", "rasters", "bad", "other", "capitals"):
     shutil.rmtree(folder, ignore_errors=True)
 os.makedirs("folder")
 rows, columns = np.mgrid[0:SIZE, 0:SIZE]
@@ -95,12 +95,34 @@ assert x.min() >= 700200 and x.max() <= 700300 and y.min() >= 4000200 and y.max(
 run("rockyfor3d.py", "in", "folder", "other", "--seed", "5")
 assert rows_of("other/trees.csv") == stems
 
+# Names as other programs write them.
+shutil.copytree("folder", "capitals")
+for name in os.listdir("capitals"):
+    stem, end = os.path.splitext(name)
+    os.rename(f"capitals/{name}", f"capitals/{stem.upper()}{end.upper() if end == '.asc' else end}")
+os.rename("capitals/DEM.ASC", "capitals/Dem.asc")
+shutil.rmtree("other")
+run("rockyfor3d.py", "in", "capitals", "other", "--seed", "5")
+for name in ("sources.csv", "trees.csv", "nets.csv", "ground.csv", "dem.asc"):
+    with open(f"study/{name}", "rb") as one, open(f"other/{name}", "rb") as same:
+        assert one.read() == same.read(), name
+shutil.copy("folder/dem.asc", "capitals/dem.asc")
+assert "capitals has Dem.asc and dem.asc: which one is it?" in run("rockyfor3d.py", "in", "capitals", "other")
+
 # The net: along its cells, with its numbers.
 line, = rows_of("study/nets.csv")
 assert (line["name"], line["height"], line["capacity"]) == ("net 7", "3", "500"), line
 points = [tuple(map(float, p.split())) for p in line["WKT"][11:-1].split(",")]
 assert len(points) == 40 and {p[0] for p in points} == {700323.0, 700325.0}, points
 assert {points[0][1], points[-1][1]} == {4000161.0, 4000239.0}, points
+
+# A straight net of an even number of cells has a point in each.
+for name, value in (("net_number", only([(row, 160) for row in range(80, 120)], 9)), ("net_energy", 500), ("net_height", 3)):
+    grid(name, value, "capitals")
+    os.remove(f"capitals/{name.upper()}.ASC")
+os.remove("capitals/dem.asc")
+run("rockyfor3d.py", "in", "capitals", "other")
+assert rows_of("other/nets.csv")[0]["WKT"].count(",") == 39
 
 # The study runs, for two seconds; its map goes out on the map's own grid.
 with open("study/study.json") as file:
