@@ -178,7 +178,7 @@ def reach_map(image, path):
     axes.axvline(ROAD, color=INK, linestyle="--", linewidth=1)
     axes.ticklabel_format(useOffset=False, style="plain")
     axes.set(xlabel="Easting, m", ylabel="Northing, m", title="Reach probability; dashed: the road; contours: 10 m")
-    figure.colorbar(shown, label="%", shrink=0.7)
+    figure.colorbar(shown, label="Rocks that come through a cell, %", shrink=0.7)
     finish(figure, path)
 
 

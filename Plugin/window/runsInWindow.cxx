@@ -26,6 +26,7 @@
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMSession.h"
 #include "vtkSMSourceProxy.h"
+#include "vtkSMViewProxy.h"
 #include "vtkStringArray.h"
 #include "vtkTable.h"
 
@@ -56,25 +57,9 @@ bool isUpdating()
   return false;
 }
 
-/// Palettes, legends and charts go with the data that are shown.
-void followShown()
-{
-  auto* model = pqApplicationCore::instance()->getServerManagerModel();
-  for (pqView* view : model->findItems<pqView*>())
-  {
-    for (pqRepresentation* shown : view->getRepresentations())
-    {
-      if (shown->isVisible())
-      {
-        rockfall::window::follow(shown->getProxy(), view->getViewProxy());
-      }
-    }
-    view->render();
-  }
-}
-
-/// All views, with what is new in their pipelines, before this returns. Charts are the first ones:
-/// the paths of a large run take seconds.
+/// All views, with what is new in their pipelines and with palettes, legends and charts that go with
+/// it, before this returns. Each is drawn once: a slope of a million cells takes half a second. Charts
+/// are the first ones: the paths of a large run take seconds.
 void renderNow()
 {
   auto* model = pqApplicationCore::instance()->getServerManagerModel();
@@ -83,8 +68,29 @@ void renderNow()
     views.begin(), views.end(), [](pqView* view) { return !qobject_cast<pqRenderView*>(view); });
   for (pqView* view : views)
   {
+    view->getViewProxy()->Update();
+    for (pqRepresentation* shown : view->getRepresentations())
+    {
+      if (shown->isVisible())
+      {
+        rockfall::window::follow(shown->getProxy(), view->getViewProxy());
+      }
+    }
     view->forceRender();
   }
+}
+
+/// Whether any view is at another time.
+bool isElsewhere(double time)
+{
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  const QList<pqView*> views = model->findItems<pqView*>();
+  return std::any_of(views.begin(), views.end(),
+    [time](pqView* view)
+    {
+      return view->getProxy()->GetProperty("ViewTime") &&
+        vtkSMPropertyHelper(view->getProxy(), "ViewTime").GetAsDouble() != time;
+    });
 }
 
 vtkFieldData* fieldsOf(vtkSMSourceProxy* run, int port)
@@ -252,9 +258,9 @@ void pqRockfallWindow::lookAtTime()
   {
     this->AtEnd = vtkSMPropertyHelper(scene, "AnimationTime").GetAsDouble() == this->LastEnd;
   }
-  else if (this->AtEnd && end == this->LastEnd)
+  else if (this->AtEnd && end == this->LastEnd && isElsewhere(end)) // than the scene's time says
   {
-    scene->InvokeCommand("GoToLast"); // views may be elsewhere than its time says
+    scene->InvokeCommand("GoToLast");
     renderNow();
   }
   this->Waiting = false;
@@ -310,7 +316,6 @@ void pqRockfallWindow::tellRuns()
   if (!settled.isEmpty())
   {
     renderNow();
-    followShown();
     for (pqPipelineSource* source : settled)
     {
       this->Settled[source->getSMName()] = stateOf(source->getSourceProxy());
