@@ -2,6 +2,7 @@
 
 #include "terrain/doubt.h"
 
+#include <algorithm>
 #include <numeric>
 
 namespace rockfall
@@ -12,13 +13,37 @@ void askAfterRocks(
 {
   using namespace plausible;
   Doubt light("Rocks have " + between(kRockDensity) + " kg/m³: is it in kg/m³?");
+  Doubt large("Rocks have " + between(kRockVolume) + " m³: is it in m³?");
+  Doubt soft("Rocks have " + between(kYoung, 1e9) + " GPa: is it in Pa?");
+  Doubt fast("Rocks start with up to " + numberText(kReleaseSpeed.most) +
+    " m/s, by their spin, too: are they in m/s and rad/s?");
+  Doubt vague("Places deviate by up to " + numberText(kPlaceDeviation.most) + " m, heights by " +
+    numberText(kHeightDeviation.most) + " m: are deviations in m?");
   for (const Rock& rock : rocks)
   {
-    light.look(kRockDensity.has(rock.density), std::string("block "),
-      [&]
-      { return std::to_string(rock.blockId) + " with " + numberText(rock.density, 6) + " kg/m³"; });
+    const auto look = [&](Doubt& doubt, bool fits, double value, const char* unit)
+    {
+      doubt.look(fits, std::string("block "),
+        [&] { return std::to_string(rock.blockId) + " with " + numberText(value, 6) + unit; });
+    };
+    const auto within = [&](Doubt& doubt, const PlausibleRange& range, double value,
+                          const char* unit, double of = 1.0)
+    { look(doubt, range.has(value), value / of, unit); };
+    within(light, kRockDensity, rock.density, " kg/m³");
+    within(large, kRockVolume, rock.shape.integrals().volume, " m³");
+    within(soft, kYoung, rock.youngModulus, " GPa", 1e9);
+    within(fast, kReleaseSpeed,
+      std::max(rock.velocity.norm(), rock.angularVelocity.norm() * rock.shape.radius()), " m/s");
+    const ReleaseUncertainty& unsure = rock.uncertainty;
+    const bool high = !kHeightDeviation.has(unsure.verticalDeviation);
+    look(vague, !high && kPlaceDeviation.has(unsure.horizontalDeviation),
+      high ? unsure.verticalDeviation : unsure.horizontalDeviation, " m");
   }
   light.tell("densities of rocks", notes);
+  large.tell("volumes of rocks", notes);
+  soft.tell("Young's moduli of rocks", notes);
+  fast.tell("speeds of rocks at release", notes);
+  vague.tell("deviations of places", notes);
   if (!frequencies.empty())
   {
     askAfterFrequency(std::accumulate(frequencies.begin(), frequencies.end(), 0.0), notes);

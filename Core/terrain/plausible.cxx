@@ -59,8 +59,9 @@ void lookAtNets(const std::vector<Barrier>& barriers, std::vector<std::string>& 
   Doubt strong("Nets are sold for " + between(kNetCapacity, 1000.0) + " kJ: is it in kJ?");
   Doubt endless("A barrier without a capacity stops every rock: is it a rock face?");
   Doubt soft("Nets brake on " + between(kBraking) + " m: is it in m?");
-  Doubt worn("No net keeps more than " + numberText(100.0 * kResidual.most) +
-    " % of its height at its capacity: is it that height, or a capacity?");
+  Doubt worn("Nets keep " + between(kResidual, 0.01) +
+    " % of their height at their capacity: is it that height, in %?");
+  Doubt roomy("Nets are filled by " + between(kNetRoom) + " m³ per m: is it in m³/m?");
   for (const Barrier& b : barriers)
   {
     if (!b.records)
@@ -68,8 +69,10 @@ void lookAtNets(const std::vector<Barrier>& barriers, std::vector<std::string>& 
       endless.look(!std::isinf(b.capacity), b.feature, [] { return std::string(); });
       soft.look(b.braking == 0.0 || kBraking.has(b.braking), b.feature,
         [&] { return " with " + text(b.braking) + " m"; });
-      worn.look(std::isnan(b.residual) || kResidual.has(b.residual), b.feature,
+      worn.look(std::isnan(b.residual) || b.residual == 0.0 || kResidual.has(b.residual), b.feature,
         [&] { return " with " + text(100.0 * b.residual) + " %"; });
+      roomy.look(std::isinf(b.room) || kNetRoom.has(b.room), b.feature,
+        [&] { return " with " + text(b.room) + " m³/m"; });
       high.look(
         kNetHeight.has(b.height), b.feature, [&] { return " with " + text(b.height) + " m"; });
       strong.look(std::isinf(b.capacity) || kNetCapacity.has(b.capacity), b.feature,
@@ -81,6 +84,7 @@ void lookAtNets(const std::vector<Barrier>& barriers, std::vector<std::string>& 
   endless.tell("barriers", notes);
   soft.tell("braking ways of barriers", notes);
   worn.tell("residual heights of barriers", notes);
+  roomy.tell("fillings of barriers", notes);
 }
 
 void lookAtEmbankments(const std::vector<Embankment>& dams, std::vector<std::string>& notes)
@@ -102,6 +106,48 @@ void lookAtEmbankments(const std::vector<Embankment>& dams, std::vector<std::str
   high.tell("heights of embankments", notes);
   wide.tell("widths of crests", notes);
   flat.tell("sides of embankments", notes);
+}
+
+/// φ and c of any ground, of which the slope's own, a class or a structure is named.
+class GroundDoubts
+{
+public:
+  template <class Name>
+  void look(const SurfaceMaterial& m, const Name& name)
+  {
+    const double phi = degrees(m.frictionAngle);
+    steep_.look(phi == 0.0 || plausible::kFrictionAngle.has(phi), name,
+      [&] { return " with " + text(phi) + " degrees"; });
+    sticky_.look(plausible::kCohesion.has(m.cohesion), name,
+      [&] { return " with " + text(m.cohesion) + " N"; });
+  }
+
+  void tell(const std::string& of, std::vector<std::string>& notes) const
+  {
+    steep_.tell(("friction angles of " + of).c_str(), notes);
+    sticky_.tell(("cohesions of " + of).c_str(), notes);
+  }
+
+private:
+  Doubt steep_{ "Ground has " + between(plausible::kFrictionAngle) +
+    " degrees: is it in degrees?" };
+  Doubt sticky_{ "Contact points hold " + between(plausible::kCohesion) +
+    " N: is it in N, not Pa?" };
+};
+
+void lookAtMaterials(const Structures& structures, std::vector<std::string>& notes)
+{
+  GroundDoubts doubts;
+  const auto look = [&](const auto& item)
+  {
+    if (item.material > 0)
+    {
+      doubts.look(structures.materials[std::size_t(item.material) - 1], item.feature);
+    }
+  };
+  std::for_each(structures.embankments.begin(), structures.embankments.end(), look);
+  std::for_each(structures.trees.begin(), structures.trees.end(), look);
+  doubts.tell("structures", notes);
 }
 
 double distance(const Point& p, const PlanLine& line)
@@ -282,20 +328,15 @@ void askAfterNumbers(const Structures& structures, std::vector<std::string>& not
   lookAtEmbankments(structures.embankments, notes);
   lookAtTrees(structures.trees, notes);
   lookAtNets(structures.barriers, notes);
+  lookAtMaterials(structures, notes);
 }
 
 void askAfterGround(const Terrain& terrain, std::vector<std::string>& notes)
 {
   using namespace plausible;
-  Doubt steep("Ground has " + between(kFrictionAngle) + " degrees: is it in degrees?");
+  GroundDoubts own;
   Doubt rough("Roughness is " + between(kRoughness) + " m: is it in m?");
   Doubt high("Obstacles are " + between(kObstacle) + " m high: are they in m?");
-  const auto material = [&](const SurfaceMaterial& m, const std::string& where)
-  {
-    const double phi = degrees(m.frictionAngle);
-    steep.look(phi == 0.0 || kFrictionAngle.has(phi), where,
-      [&] { return " with " + text(phi) + " degrees"; });
-  };
   const auto surface = [&](const Roughness& r, const std::string& where)
   {
     rough.look(kRoughness.has(r.deviation), where,
@@ -303,7 +344,7 @@ void askAfterGround(const Terrain& terrain, std::vector<std::string>& notes)
     high.look(kObstacle.has(r.highestObstacle()), where,
       [&] { return " with " + text(r.highestObstacle()) + " m"; });
   };
-  material(terrain.material(), "the slope's own");
+  own.look(terrain.material(), std::string("the slope's own"));
   surface(terrain.roughness(), "the slope's own");
   for (const MaterialClasses* classes : { &terrain.restitutionClasses(), &terrain.jointClasses() })
   {
@@ -312,7 +353,7 @@ void askAfterGround(const Terrain& terrain, std::vector<std::string>& notes)
       const std::string where = "class \"" + classes->names[k] + "\"";
       if (classes == &terrain.jointClasses())
       {
-        material(classes->materials[k], where);
+        own.look(classes->materials[k], where);
       }
       if (k < classes->roughness.size())
       {
@@ -320,7 +361,7 @@ void askAfterGround(const Terrain& terrain, std::vector<std::string>& notes)
       }
     }
   }
-  steep.tell("friction angles of the ground", notes);
+  own.tell("the ground", notes);
   rough.tell("roughnesses of the ground", notes);
   high.tell("heights of obstacles", notes);
 }
@@ -339,8 +380,11 @@ void askAfterStands(std::span<const Stand> stands, std::vector<std::string>& not
   using namespace plausible;
   Doubt dense("Stems of a hectare have " + between(kBasalArea) +
     " m² at breast height: are stems_ha per hectare and diameters in cm?");
+  Doubt mixed("Conifers are " + between(kConifers, 0.01) + " % of the stems: is it in %?");
   for (const Stand& s : stands)
   {
+    mixed.look(s.conifers == 0.0 || kConifers.has(s.conifers), s.feature,
+      [&] { return " with " + text(100.0 * s.conifers) + " %"; });
     const double square =
       s.diameterMean * s.diameterMean + s.diameterDeviation * s.diameterDeviation;
     const double area = s.stemsPerHectare * 0.25 * M_PI * square;
@@ -352,6 +396,7 @@ void askAfterStands(std::span<const Stand> stands, std::vector<std::string>& not
       });
   }
   dense.tell("stands", notes);
+  mixed.tell("shares of conifers", notes);
   if (cells)
   {
     return;

@@ -46,7 +46,10 @@ inline constexpr PlausibleRange kNetCapacity{ 100e3, 10e6, 100e6 };
 /// Way on which a net stops its capacity, m. Kits are let out by 2 to 9 m in tests at their MEL.
 inline constexpr PlausibleRange kBraking{ 0.5, 12.0 };
 /// Share of a net's height that is left after such a test: category A has half and more.
-inline constexpr PlausibleRange kResidual{ 0.0, 0.95 };
+/// Below 2 % it looks like a share instead of per cent; 0 is asked for.
+inline constexpr PlausibleRange kResidual{ 0.02, 0.95 };
+/// Of what fills a net to the rope, m³ per m of it: half a metre deep to a slope that is filled.
+inline constexpr PlausibleRange kNetRoom{ 0.5, 100.0 };
 /// Of an embankment's crest over ground, m. The highest rockfall dams have some 25 m.
 inline constexpr PlausibleRange kDamHeight{ 0.5, 30.0 };
 /// Of an embankment's crest, m.
@@ -56,16 +59,29 @@ inline constexpr PlausibleRange kSideSlope{ 0.0, 5.0 };
 /// Cross-sections of a stand's stems at breast height, m² per hectare: forests of Europe have 20 to
 /// 70, the densest that are known twice as much.
 inline constexpr PlausibleRange kBasalArea{ 1.0, 150.0 };
+/// Share of a stand's stems; less, but not 0, looks like a share instead of per cent.
+inline constexpr PlausibleRange kConifers{ 0.02, 1.0 };
 /// Share of a stand's stems within another stand: less is the width of a pen on a map.
 inline constexpr double kStandOverlap = 0.5;
 /// φ of ground, degrees; 0 is asked for. Radians are below, and no scree stands as steep as 60°.
 inline constexpr PlausibleRange kFrictionAngle{ 2.0, 60.0 };
+/// c of ground and structures, N per contact point: 100 kN hold a rock of 4 m³ on a wall.
+inline constexpr PlausibleRange kCohesion{ 0.0, 1e5 };
 /// Deviation of the ground's heights from the survey, m: beyond it they are cm, or the survey's own.
 inline constexpr PlausibleRange kRoughness{ 0.0, 1.0 };
 /// Heights of obstacles, m: Rockyfor3D's field sheets go to 1 m and more in blocks.
 inline constexpr PlausibleRange kObstacle{ 0.0, 3.0 };
 /// Of a rock, kg/m³: pumice to ores.
 inline constexpr PlausibleRange kRockDensity{ 500.0, 5500.0 };
+/// Of a rock, m³: a pebble of 2 cm to more than what falls in one piece.
+inline constexpr PlausibleRange kRockVolume{ 1e-5, 1000.0 };
+/// Of a rock, Pa: soft enough for large steps, to more than basalt's.
+inline constexpr PlausibleRange kYoung{ 1e7, 2e11 };
+/// Of a rock's centre, and by its spin of its outermost point, m/s: none falls faster.
+inline constexpr PlausibleRange kReleaseSpeed{ 0.0, 80.0 };
+/// Deviations of the places of rocks, m, in plan and up.
+inline constexpr PlausibleRange kPlaceDeviation{ 0.0, 50.0 };
+inline constexpr PlausibleRange kHeightDeviation{ 0.0, 10.0 };
 /// Of all rocks of a slope together, 1/a: a return period of 100,000 years is no office's.
 inline constexpr PlausibleRange kRocksPerYear{ 1e-5, 100.0 };
 /// Of a rock at rest over the ground, or over a rock under it, m: beyond it the heights may be those

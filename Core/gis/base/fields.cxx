@@ -1,6 +1,7 @@
 #include "gis/base/fields.h"
 
 #include "base/errors.h"
+#include "base/text/columnName.h"
 #include "base/text/nameKey.h"
 #include "gis/base/gdal.h"
 
@@ -73,11 +74,35 @@ bool isSlipOf(const std::string& column, const std::string& name)
     slipsBetween(column, name) <= std::size_t(letters < 8 ? 1 : 2);
 }
 
+bool holds(const ColumnNames& names, const std::string& word)
+{
+  return std::any_of(names.begin(), names.end(), [&](const char* name) { return word == name; });
+}
+
+/// Quantities of rocks, structures and ground, but for a unit, in small letters.
+const ColumnNames kQuantities = { "mass", "masse", "massa", "weight", "gewicht", "poids", "peso",
+  "speed", "velocity", "geschwindigkeit", "vitesse", "spin", "diameter", "durchmesser", "bhd",
+  "dbh", "girth", "circumference", "umfang", "size", "length", "width", "breite", "largeur",
+  "larghezza", "height", "hoehe", "höhe", "hauteur", "altezza", "elevation", "elev", "altitude",
+  "volume", "density", "dichte", "densité", "densità", "energy", "energie", "énergie", "energia",
+  "mel", "capacity", "kapazität", "capacité", "capacità", "slope", "inclination", "neigung",
+  "restitution", "friction", "reibung", "frottement", "attrito", "species", "baumart", "essence",
+  "frequency", "häufigkeit", "fréquence", "frequenza" };
+
 /// Whether `column` is `name` cut short within its first word.
 bool isShortFor(const std::string& column, const std::string& name)
 {
   return name.size() >= 5 && column.size() >= 3 && column.size() < name.size() &&
     name.starts_with(column) && name[column.size()] != '_';
+}
+
+/// Whether `column` goes on after `name`, is short for it or a slip of it.
+bool isLike(const std::string& column, const std::string& name)
+{
+  const auto goesOn = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); };
+  return (column.size() > name.size() && column.starts_with(name) &&
+           !goesOn(column[name.size()])) ||
+    isShortFor(column, name) || isSlipOf(column, name);
 }
 
 } // namespace
@@ -98,34 +123,52 @@ void refuseTwin(const OGRFeatureDefn& definition, const std::string& fileName, i
 }
 
 void refuseNearMisses(const OGRFeatureDefn& definition, const std::string& fileName,
-  std::initializer_list<const char*> known, std::initializer_list<const char*> others)
+  const ColumnNames& known, const ColumnNames& others)
 {
   const Columns columns = columnsOf(definition);
-  const auto isRead = [&](const std::string& column)
-  {
-    const auto same = [&](const char* name) { return column == name; };
-    return std::any_of(known.begin(), known.end(), same) ||
-      std::any_of(others.begin(), others.end(), same);
-  };
-  const auto goesOn = [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); };
   for (const auto& [column, index] : columns)
   {
-    if (isRead(column))
+    if (holds(known, column) || holds(others, column))
     {
       refuseTwin(definition, fileName, index);
       continue;
     }
     for (const std::string name : known)
     {
-      const bool goneOn =
-        column.size() > name.size() && column.starts_with(name) && !goesOn(column[name.size()]);
-      if ((goneOn || isShortFor(column, name) || isSlipOf(column, name)) && !columns.count(name))
+      if (isLike(column, name) && !columns.count(name))
       {
         throw DataError(fileName + ": its column \"" +
           definition.GetFieldDefn(index)->GetNameRef() + "\" is not read, and there is none \"" +
           name + "\"; call it so if it is that, else something less like it");
       }
     }
+  }
+}
+
+void tellUnread(const OGRFeatureDefn& definition, const std::string& fileName,
+  const ColumnNames& known, const ColumnNames& others, std::vector<std::string>& notes)
+{
+  const Columns columns = columnsOf(definition);
+  std::string list;
+  int count = 0;
+  for (int i = 0; i < definition.GetFieldCount(); ++i)
+  {
+    const std::string written = definition.GetFieldDefn(i)->GetNameRef();
+    const std::string column = nameKey(written);
+    const std::string quantity = ColumnName(written).name;
+    const auto isRead = [&](const std::string& name)
+    { return holds(known, name) || holds(others, name); };
+    const bool alike = std::any_of(known.begin(), known.end(),
+      [&](const char* name) { return columns.count(name) && isLike(column, name); });
+    if (!isRead(column) && !isRead(quantity) && (alike || holds(kQuantities, quantity)))
+    {
+      list += (count++ ? ", \"" : "\"") + written + "\"";
+    }
+  }
+  if (count > 0)
+  {
+    notes.push_back(fileName +
+      (count > 1 ? ": not read are its columns " : ": not read is its column ") + list + ".");
   }
 }
 

@@ -10,6 +10,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 class GDALDataset;
 class OGRFeature;
@@ -26,6 +27,8 @@ Columns columnsOf(const OGRFeatureDefn& definition);
 /// "a", "b", "c": the fields of a layer, for a message.
 std::string fieldList(const OGRFeatureDefn& definition);
 
+using ColumnNames = std::vector<const char*>;
+
 /// Throws DataError if another column has the name of this one (nameKey).
 void refuseTwin(const OGRFeatureDefn& definition, const std::string& fileName, int column);
 
@@ -35,7 +38,13 @@ void refuseTwin(const OGRFeatureDefn& definition, const std::string& fileName, i
 /// those for which only the second counts, being short, needed, or begun like by foreign columns
 /// ("Shape_Area").
 void refuseNearMisses(const OGRFeatureDefn& definition, const std::string& fileName,
-  std::initializer_list<const char*> known, std::initializer_list<const char*> others = {});
+  const ColumnNames& known, const ColumnNames& others = {});
+
+/// One note of the columns that are not read although they sound as if they were: quantities in the
+/// languages of the Alps, and columns like one that is there and read, as "capacity_kJ" beside
+/// "capacity". `known` and `others` as above.
+void tellUnread(const OGRFeatureDefn& definition, const std::string& fileName,
+  const ColumnNames& known, const ColumnNames& others, std::vector<std::string>& notes);
 
 /// OGR drops what stands beyond the last column of a CSV file's header, so a table whose decimal
 /// commas split every number in two would be read without a word. Throws DataError naming the row;

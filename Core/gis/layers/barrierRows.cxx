@@ -43,7 +43,12 @@ void StructureReader::readBarriers() const
           row.failField(field, " is given without a \"capacity\", which it refers to");
         }
       }
-      b.absorbs = row.ranged({ "absorbs" }, 0.0, 1.0, "1 or 0").value_or(1.0) != 0.0;
+      const double absorbs = row.ranged({ "absorbs" }, 0.0, 1.0, "1 or 0").value_or(1.0);
+      if (absorbs != 0.0 && absorbs != 1.0)
+      {
+        row.failField("absorbs", " is " + number(absorbs) + ", it must be 1 or 0");
+      }
+      b.absorbs = absorbs != 0.0;
       for (std::vector<Eigen::Vector2d>& line : places.lines(row))
       {
         b.points = std::move(line);

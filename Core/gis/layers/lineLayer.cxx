@@ -36,6 +36,8 @@ std::vector<LayerLine> readLineLayer(const std::string& fileName, const std::str
   LayerFile file(wish, messages);
   OGRLayer& layer = file.layer();
   refuseNearMisses(file.definition(), fileName, { "height", "capacity" }, { "name" });
+  tellUnread(file.definition(), fileName, { "height", "capacity" },
+    { "name", "length", "width", "slope" }, told);
   const LayerHeights heights = heightsOf(file.dataset(), layer, fileName, told);
   if (!heights.doubt.empty())
   {

@@ -153,9 +153,10 @@ std::vector<RockContactPair> readRockContacts(const std::string& fileName, doubl
   wish.kinds = kRows;
   wish.columns = { { "material_a" }, { "material_b" } };
   LayerFile file(wish, messages);
-  refuseNearMisses(file.definition(), fileName, { "cohesion" },
-    { "c", "material_a", "material_b", "restitution", "rn", "e", "phi", "friction_angle",
-      "frictionangle" });
+  const ColumnNames known = { "cohesion" };
+  const ColumnNames others = { "c", "material_a", "material_b", "restitution", "rn", "e", "phi",
+    "friction_angle", "frictionangle" };
+  refuseNearMisses(file.definition(), fileName, known, others);
   const Columns columns = columnsOf(file.definition());
   PairReader reader(fileName, file.layer(), columns, namesOf(materials));
   std::vector<RockContactPair> pairs;
@@ -172,6 +173,7 @@ std::vector<RockContactPair> readRockContacts(const std::string& fileName, doubl
   if (notes)
   {
     file.tell(*notes, true);
+    tellUnread(file.definition(), fileName, known, others, *notes);
   }
   return pairs;
 }

@@ -26,11 +26,11 @@ namespace
 
 using namespace gis;
 
-const std::initializer_list<const char*> kColumns = { "amount", "intensity", "volume", "vol_law",
-  "vol_dev", "vol_min", "vol_max", "vol_exp", "material", "mat_name", "density", "young", "poisson",
-  "height", "source_id", "frequency", "freq_ha", "freq_a", "dev_xy", "dev_z", "dev_att" };
-const std::initializer_list<const char*> kShortColumns = { "x", "y", "z", "shape", "source", "vx",
-  "vy", "vz", "wx", "wy", "wz", "rx", "ry", "rz", "lx", "ly", "lz" };
+const ColumnNames kColumns = { "amount", "intensity", "volume", "vol_law", "vol_dev", "vol_min",
+  "vol_max", "vol_exp", "material", "mat_name", "density", "young", "poisson", "height",
+  "source_id", "frequency", "freq_ha", "freq_a", "dev_xy", "dev_z", "dev_att" };
+const ColumnNames kShortColumns = { "x", "y", "z", "shape", "source", "vx", "vy", "vz", "wx", "wy",
+  "wz", "rx", "ry", "rz", "lx", "ly", "lz" };
 
 /// Columns whose name, but for a unit, is z.
 std::vector<std::string> heightColumnsOf(const OGRFeatureDefn& definition)
@@ -45,33 +45,6 @@ std::vector<std::string> heightColumnsOf(const OGRFeatureDefn& definition)
     }
   }
   return names;
-}
-
-/// Names of columns, but for a unit, that somebody may expect to be read.
-const std::initializer_list<const char*> kTempting = { "mass", "weight", "speed", "velocity",
-  "spin", "diameter", "size", "length", "width", "elevation", "elev", "altitude", "restitution",
-  "friction" };
-
-/// One note of the columns that are not read although they sound as if they were.
-void tellUnread(
-  const OGRFeatureDefn& definition, const std::string& fileName, std::vector<std::string>& notes)
-{
-  std::string list;
-  int count = 0;
-  for (int i = 0; i < definition.GetFieldCount(); ++i)
-  {
-    const std::string written = definition.GetFieldDefn(i)->GetNameRef();
-    const std::string name = ColumnName(written).name;
-    if (std::find(kTempting.begin(), kTempting.end(), name) != kTempting.end())
-    {
-      list += (count++ ? ", \"" : "\"") + written + "\"";
-    }
-  }
-  if (count > 0)
-  {
-    notes.push_back(fileName +
-      (count > 1 ? ": not read are its columns " : ": not read is its column ") + list + ".");
-  }
 }
 
 /// Words and ranges that other parts of the Core check, with the row and the field before.
@@ -161,6 +134,10 @@ void readRelease(const FeatureRow& row, SourceRow& source)
 {
   source.velocity = row.vector({ "vx", "vy", "vz" });
   source.angularVelocity = row.vector({ "wx", "wy", "wz" });
+  for (const char* angle : { "rx", "ry", "rz" })
+  {
+    row.ranged({ angle }, -360.0, 360.0, "-360 to 360 degrees");
+  }
   source.orientation = row.vector({ "rx", "ry", "rz" });
   source.horizontalDeviation = row.notNegative("dev_xy");
   source.verticalDeviation = row.notNegative("dev_z");
@@ -363,7 +340,7 @@ SourceLayer readSourceLayer(const std::string& fileName, const SourceOptions& op
   result.crs =
     crsWkt(placed, placing.to ? heightCrsFromText(options.targetCrs) : placing.heights.reference);
   placing.tell(fileName, result.notes);
-  tellUnread(definition, fileName, result.notes);
+  tellUnread(definition, fileName, kColumns, kShortColumns, result.notes);
   tellTwice(result.rows, fileName, result.notes);
   return result;
 }

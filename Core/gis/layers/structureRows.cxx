@@ -110,14 +110,18 @@ int OwnMaterials::of(const FeatureRow& row)
   return found->second;
 }
 
-void StructureReader::forEachRow(const LayerWish& wish, std::initializer_list<const char*> numbers,
+void StructureReader::forEachRow(const LayerWish& wish, const ColumnNames& numbers,
   const std::function<void(const FeatureRow&, std::int64_t, StructurePlaces&)>& use) const
 {
   const std::string& fileName = wish.fileName;
   Messages messages;
   LayerFile file(wish, messages);
   OGRLayer& layer = file.layer();
-  refuseNearMisses(file.definition(), fileName, numbers, { "name", "x", "y" });
+  // Columns that say what a feature is, and where: no number of it is missed.
+  const ColumnNames others = { "name", "x", "y", "z", "elevation", "elev", "altitude", "length",
+    "slope" };
+  refuseNearMisses(file.definition(), fileName, numbers, others);
+  tellUnread(file.definition(), fileName, numbers, others, notes);
   const Columns columns = columnsOf(*layer.GetLayerDefn());
   const LayerHeights heights = heightsOf(file.dataset(), layer, fileName, notes);
   if (!heights.doubt.empty())

@@ -11,7 +11,6 @@
 
 #include <array>
 #include <functional>
-#include <initializer_list>
 #include <map>
 #include <optional>
 
@@ -82,7 +81,7 @@ struct StructureReader
 
   /// Calls `use` for every row with its number, then tells a layer beside the terrain. `numbers`:
   /// names of columns that are read.
-  void forEachRow(const LayerWish& wish, std::initializer_list<const char*> numbers,
+  void forEachRow(const LayerWish& wish, const ColumnNames& numbers,
     const std::function<void(const FeatureRow&, std::int64_t, StructurePlaces&)>& use) const;
   /// Each with the name of the file.
   void tell(const std::string& fileName, const std::vector<std::string>& sentences) const;

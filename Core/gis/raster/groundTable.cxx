@@ -209,15 +209,26 @@ GroundTable readGroundTable(GroundKind kind, const GroundFiles& files, const Sur
   wish.columns = { { "class", "name" } };
   LayerFile file(wish, messages);
   OGRLayer& layer = file.layer();
-  refuseNearMisses(*layer.GetLayerDefn(), fileName,
-    { "preset", "model", "rv", "rn", "rv_mean", "restitution", "rv_deviation", "rn_deviation",
-      "rv_dev", "rv_sd", "rt", "speed", "phi", "phi_mean", "friction_angle", "phi_deviation",
-      "phi_dev", "phi_sd", "friction_angle_deviation", "cohesion", "roughness", "roughness_mean",
-      "roughness_deviation", "roughness_dev", "roughness_sd", "roughness_length", "rg70", "rg20",
-      "rg10" },
-    { "class", "name", "restitutionmodel", "restitutioncoefficient", "restitutiondeviation",
-      "tangentialrestitution", "k", "restitutionspeed", "frictionangle", "frictionangledeviation",
-      "c", "roughnessmean", "roughnesslength" });
+  ColumnNames known = { "preset", "model", "rv", "rn", "rv_mean", "restitution", "rv_deviation",
+    "rn_deviation", "rv_dev", "rv_sd", "rt", "speed", "phi", "phi_mean", "friction_angle",
+    "phi_deviation", "phi_dev", "phi_sd", "friction_angle_deviation", "cohesion", "roughness",
+    "roughness_mean", "roughness_deviation", "roughness_dev", "roughness_sd", "roughness_length",
+    "rg70", "rg20", "rg10" };
+  ColumnNames others = { "class", "name", "restitutionmodel", "restitutioncoefficient",
+    "restitutiondeviation", "tangentialrestitution", "k", "restitutionspeed", "frictionangle",
+    "frictionangledeviation", "c", "roughnessmean", "roughnesslength" };
+  std::vector<std::string> keys;
+  for (const YieldingField& field : yieldingFields())
+  {
+    known.push_back(field.column);
+    keys.push_back(nameKey(field.property));
+  }
+  for (const std::string& key : keys)
+  {
+    others.push_back(key.c_str());
+  }
+  refuseNearMisses(*layer.GetLayerDefn(), fileName, known, others);
+  tellUnread(*layer.GetLayerDefn(), fileName, known, others, notes);
   const Columns columns = columnsOf(*layer.GetLayerDefn());
   if (!columns.count("class") && !columns.count("name"))
   {

@@ -99,6 +99,13 @@ void RasterFile::noteColours()
     notes_.push_back("Band " + std::to_string(bandNumber_) + " is a picture's colour (" +
       GDALGetColorInterpretationName(colour) + "); its numbers were taken as heights in metres.");
   }
+  else if (band_->GetRasterDataType() == GDT_Byte && heights_.scale == 1.0 &&
+    heights_.offset == 0.0)
+  {
+    notes_.push_back("Band " + std::to_string(bandNumber_) +
+      " has whole numbers up to 255, as hillshades and maps of classes have; they were taken as "
+      "heights in metres.");
+  }
 }
 
 void RasterFile::requireCoverage()

@@ -549,6 +549,8 @@ TEST(GroundErrors, TablesNameRowFieldAndValue)
     { "class,rv,rv_deviatoin\n1,0.5,0\n2,0.5,0\n", { "\"rv_deviatoin\"", "\"rv_deviation\"" } },
     { "class,phi,coh\n1,30,5\n2,30,0\n", { "\"coh\" is not read", "\"cohesion\"" },
       GroundKind::Joint },
+    { "class,rv,me_mn\n1,0.5,10\n2,0.5,0\n", { "\"me_mn\" is not read", "\"me\"" } },
+    { "class,rv,scar_faktor\n1,0.5,1\n2,0.5,0\n", { "\"scar_faktor\"", "\"scar_factor\"" } },
     { "class,rv,RV\n1,0.5,0.6\n2,0.5,0.6\n", { "two columns \"rv\"", "\"RV\"" } },
     { "class,rv,class\n1,0.5,2\n2,0.5,1\n", { "two columns \"class\"" } },
     { "class,rv,rn\n1,0.5,0.5\n2,0.5,0.6\n", { "row 2", "\"rv\" is 0.5", "\"rn\"", "0.6" } },

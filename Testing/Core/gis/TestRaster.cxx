@@ -101,6 +101,15 @@ TEST(Raster, pictureWithoutPlaceKeepsItsOrder)
   EXPECT_TRUE(holds(joined(surface), { "no georeferencing", "picture's colour (Red)" }));
 }
 
+TEST(Raster, bytesMayBeAHillshade)
+{
+  RawRaster raster = smallRaster();
+  raster.type = "Byte";
+  EXPECT_TRUE(holds(joined(readRaster(raster.write())), { "whole numbers up to 255" }));
+  raster.band = "<Offset>1000</Offset><Scale>0.5</Scale>"; // somebody packed heights
+  EXPECT_FALSE(holds(joined(readRaster(raster.write())), { "whole numbers up to 255" }));
+}
+
 TEST(Raster, scaleAndOffsetAreApplied)
 {
   RawRaster raster = smallRaster();

@@ -215,6 +215,7 @@ TEST(SourceLayerErrors, cells)
          Case{ ",young", ",0", { "\"young\"", "above 0" } },
          Case{ ",poisson", ",0.5", { "\"poisson\"", "0.5", "0.49" } },
          Case{ ",dev_xy", ",-1", { "\"dev_xy\"", "-1" } },
+         Case{ ",rx,ry,rz", ",0,-9999,0", { "\"ry\" is -9999", "-360 to 360 degrees" } },
          Case{ ",dev_z", ",x", { "\"dev_z\"", "\"x\"" } },
          Case{ ",dev_att", ",any", { "\"dev_att\"", "\"any\"" } },
        })

@@ -222,6 +222,7 @@ TEST(StructureLayers, TellWhatIsWrong)
     { 2, "WKT,height,cap\n" + line + ",4,1000\n", "\"cap\" is not read" },
     { 2, "WKT,height,Height,capacity\n" + line + ",4,5,1000\n", "two columns \"height\"" },
     { 1, tree.substr(0, tree.size() - 1) + ",Factor [-]\n50,50,30,20,0.5\n", "\"Factor [-]\"" },
+    { 2, "WKT,height,absorbs\n" + line + ",4,0.5\n", "\"absorbs\" is 0.5, it must be 1 or 0" },
     { 2, net + "\"LINESTRING(2000 50,2120 50)\",4,100\n", "does not overlap the terrain" },
   };
   for (const Case& c : cases)
@@ -236,6 +237,36 @@ TEST(StructureLayers, TellWhatIsWrong)
   StructureFiles files;
   files.trees = "no such file.gpkg";
   EXPECT_NE(messageOf(files).find("no such file.gpkg"), std::string::npos);
+}
+
+TEST(StructureLayers, TellColumnsThatAreNotRead)
+{
+  const std::string line = "\"LINESTRING(20 50,80 50)\"";
+  const auto notesOf = [](std::string StructureFiles::*layer, const std::string& content)
+  {
+    StructureFiles files;
+    files.*layer = writeFile("layer.csv", content);
+    std::vector<std::string> notes;
+    readStructures(files, site(), notes);
+    std::string all;
+    for (const std::string& note : notes)
+    {
+      all += note + "\n";
+    }
+    return all;
+  };
+  const std::string net = "WKT,height,capacity", dam = "WKT,height,width,slope",
+                    tree = "x,y,diameter,height";
+  const auto told = [](const std::string& notes, const std::string& list)
+  { EXPECT_NE(notes.find("not read " + list + "."), std::string::npos) << notes; };
+  told(notesOf(&StructureFiles::barriers,
+         net + ",capacity_kj,Energie,MEL (kJ),length\n" + line + ",4,1000,500,500,500,60\n"),
+    "are its columns \"capacity_kj\", \"Energie\", \"MEL (kJ)\"");
+  told(notesOf(&StructureFiles::embankments, dam + ",Neigung,owner\n" + line + ",3,2,1.5,45,a\n"),
+    "is its column \"Neigung\"");
+  told(notesOf(&StructureFiles::trees, tree + ",Höhe,species,z\n50,50,35,24,30,oak,800\n"),
+    "are its columns \"Höhe\", \"species\"");
+  EXPECT_EQ(notesOf(&StructureFiles::trees, tree + ",owner,z\n50,50,35,24,me,800\n"), "");
 }
 
 namespace

@@ -77,11 +77,44 @@ TEST(Plausible, Nets)
   ASSERT_EQ(notes(net).size(), 2u);
   EXPECT_NE(notes(net)[0].find("first feature 1 with 50 m"), std::string::npos);
   EXPECT_NE(notes(net)[1].find("first feature 1 with 100 %"), std::string::npos);
+  // A share for per cent, litres for m³.
+  net.braking = 6.0;
+  net.residual = 0.005;
+  net.room = 4000.0;
+  ASSERT_EQ(notes(net).size(), 2u);
+  EXPECT_NE(notes(net)[0].find("first feature 1 with 0.5 %"), std::string::npos);
+  EXPECT_NE(notes(net)[1].find("first feature 1 with 4000 m³/m"), std::string::npos);
   Barrier endless;
   endless.feature = 2;
   endless.height = 4.0;
   ASSERT_EQ(notes(endless).size(), 1u);
   EXPECT_NE(notes(endless)[0].find("stops every rock"), std::string::npos);
+}
+
+TEST(Plausible, MaterialsOfStructures)
+{
+  Structures all;
+  all.materials.resize(2);
+  all.materials[1].frictionAngle = radians(0.6);
+  all.materials[1].cohesion = 1e6;
+  Embankment dam;
+  dam.feature = 4;
+  dam.height = 3.0;
+  dam.crestWidth = 1.0;
+  dam.mountainSlope = dam.valleySlope = 1.5;
+  dam.material = 1;
+  all.embankments = { dam };
+  std::vector<std::string> told;
+  askAfterNumbers(all, told);
+  EXPECT_TRUE(told.empty());
+  all.embankments[0].material = 2;
+  askAfterNumbers(all, told);
+  ASSERT_EQ(told.size(), 2u);
+  EXPECT_EQ(told[0].find("1 of 1 friction angles of structures look implausible, first feature 4 "
+                         "with 0.6 degrees"),
+    0u)
+    << told[0];
+  EXPECT_NE(told[1].find("first feature 4 with 1e+06 N"), std::string::npos) << told[1];
 }
 
 TEST(Plausible, CrowdsOfTrees)
@@ -124,6 +157,9 @@ TEST(Plausible, Stands)
     dense[0].find("1 of 2 stands look implausible, first feature 2: 20000 stems of 35 cm"), 0u)
     << dense[0];
   EXPECT_EQ(notes({ square(1, 0.0, 0.04) }).size(), 1u); // stems per square metre
+  Stand mixed = square(1, 0.0);                          // 0.8 for 80 %
+  mixed.conifers = 0.008;
+  EXPECT_EQ(notes({ mixed }).size(), 1u);
   const auto twice = notes({ square(1, 0.0), square(2, 300.0), square(3, 310.0) });
   ASSERT_EQ(twice.size(), 1u);
   EXPECT_NE(twice[0].find("first feature 3, half of which is within feature 2"), std::string::npos)
