@@ -22,6 +22,12 @@ double powerLawFrequency(double a, double b, double v1, double v2)
   return a * (std::pow(v1, -b) - std::pow(v2, -b));
 }
 
+std::string ownNotUsed(double annualFrequency)
+{
+  return "AnnualFrequency is " + numberText(annualFrequency) +
+    " per year for all rocks together: the frequencies that they have of their own are not used";
+}
+
 double probabilityWithin(double frequency, double years)
 {
   return -std::expm1(-frequency * years);

@@ -14,6 +14,7 @@
 #include <functional>
 #include <map>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -61,6 +62,9 @@ public:
 private:
   std::map<std::pair<int, std::int64_t>, Release> releases_;
 };
+
+/// The note where rocks have frequencies of their own, but AnnualFrequency (1/a) goes before them.
+std::string ownNotUsed(double annualFrequency);
 
 /// A cell that something passed: first of all rocks, then of those of each threshold.
 struct CellFrequency

@@ -30,6 +30,12 @@ void LostRocks::add(Loss loss, double time, double way)
 
 void LostRocks::add(const LostRocks& other)
 {
+  if (other.moving > 0)
+  {
+    const double first = other.firstEnd > 0.0 ? other.firstEnd : other.endTime;
+    const double own = this->firstEnd > 0.0 ? this->firstEnd : this->endTime;
+    this->firstEnd = this->moving > 0 ? std::min(own, first) : first;
+  }
   this->rocks += other.rocks;
   this->moving += other.moving;
   this->overEdge += other.overEdge;
@@ -51,7 +57,10 @@ std::vector<std::string> lostNotes(const LostRocks& lost, const std::string& bef
   };
   if (lost.endTime >= kLeastRun)
   {
-    tell(lost.moving, "were still moving at EndTime (" + numberText(lost.endTime, 4) + " s)",
+    const std::string latest = numberText(lost.endTime, 4);
+    const std::string first = lost.firstEnd > 0.0 ? numberText(lost.firstEnd, 4) : latest;
+    tell(lost.moving,
+      "were still moving at EndTime (" + (first == latest ? "" : first + " to ") + latest + " s)",
       "they count as if they stopped there; give a larger EndTime");
   }
   tell(lost.overEdge, "went over the edge of the DEM",

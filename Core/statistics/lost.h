@@ -36,6 +36,7 @@ struct LostRocks
   std::int64_t inNodata = 0; ///< Fell into a hole of nodata.
   std::int64_t unmoved = 0;  ///< Lie where they were released.
   double endTime = 0.0;      ///< Of the longest of those that still move, s.
+  double firstEnd = 0.0;     ///< Of the shortest run of which some still move, s; 0: of the same.
 
   /// A rock that ended at `time`, s, and got `way` away from its start, m.
   void add(Loss loss, double time, double way);

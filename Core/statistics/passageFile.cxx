@@ -277,6 +277,7 @@ PassageFile readPassageFile(const std::string& fileName)
     file.crs.resize(length);
     in.read(file.crs.data(), std::streamsize(length));
   }
+  file.slope = get<std::uint64_t>(in);
   readReleases(in, file);
   readLost(in, file);
   readFrequencies(in, file);
@@ -300,9 +301,15 @@ PassageFiles::PassageFiles(const std::vector<std::string>& fileNames)
     const CellGrid& g = f.grid;
     return std::tie(g.columns, g.rows, g.cellSize, g.west, g.south, f.crs);
   };
+  std::size_t others = 0;
+  std::string other;
   for (const std::string& fileName : fileNames)
   {
     const PassageFile& file = files_.emplace_back(readPassageFile(fileName));
+    if (file.slope != 0 && files_.front().slope != 0 && file.slope != files_.front().slope)
+    {
+      other = others++ == 0 ? fileName : other;
+    }
     if (place(file) != place(files_.front()))
     {
       throw DataError(fileName + ": its cells or its CRS are not those of " + fileNames.front());
@@ -320,6 +327,12 @@ PassageFiles::PassageFiles(const std::vector<std::string>& fileNames)
     }
     lost_.add(file.lost);
     frequencies_.add(file.frequencies);
+  }
+  if (others > 0)
+  {
+    notes_.push_back(std::to_string(others) + " of " + std::to_string(files_.size()) +
+      " files, first " + other + ", are of other slopes than " + files_.front().fileName +
+      ": heights, ground or structures differ. Do their rocks belong into one map?");
   }
 }
 

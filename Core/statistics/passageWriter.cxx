@@ -64,7 +64,8 @@ void putPassages(std::ostream& out, const std::vector<Passage>& passages)
 } // namespace
 
 void writePassages(HazardRaster& raster, const Vec3& origin, const std::string& crs,
-  const std::string& fileName, const LostRocks& lost, const RockFrequencies& frequencies)
+  const std::string& fileName, const LostRocks& lost, const RockFrequencies& frequencies,
+  std::uint64_t slope)
 {
   gis::OutputFile file(fileName);
   std::ofstream out(file.temporary(), std::ios::binary);
@@ -79,6 +80,7 @@ void writePassages(HazardRaster& raster, const Vec3& origin, const std::string& 
   }
   put(out, std::uint64_t(crs.size()));
   out.write(crs.data(), std::streamsize(crs.size()));
+  put(out, slope);
   put(out, std::uint64_t(raster.releases().size()));
   for (const auto& [iteration, count] : raster.releases())
   {

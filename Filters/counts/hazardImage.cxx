@@ -7,6 +7,7 @@
 #include "geometry/shell.h"
 #include "shared/arrays.h"
 #include "shared/errorReport.h"
+#include "shared/inputContent.h"
 #include "shared/rockPaths.h"
 #include "shared/slopeReference.h"
 #include "shared/terrainFieldData.h"
@@ -351,6 +352,7 @@ namespace
 /// south-western one, in the world.
 void fillImage(const CellGrid& grid, const Vec3& corner, const Releases& releases, bool withTerrain,
   const LostRocks& lost, const HazardMapOptions& options, const RockFrequencies& frequencies,
+  std::vector<std::string> notes,
   const std::function<void(const std::function<void(const Passage&)>&)>& forEach,
   vtkImageData* image)
 {
@@ -379,7 +381,11 @@ void fillImage(const CellGrid& grid, const Vec3& corner, const Releases& release
     { double(grid.columns), double(grid.rows), grid.cellSize, corner.x(), corner.y(), released,
       withTerrain ? 1.0 : 0.0 });
   layers.tellLeftOut(image->GetFieldData());
-  tellLost(lost, image->GetFieldData(), layers.notes());
+  for (std::string& note : layers.notes())
+  {
+    notes.push_back(std::move(note));
+  }
+  tellLost(lost, image->GetFieldData(), notes);
 }
 
 void checkOptions(const HazardMapOptions& options)
@@ -447,10 +453,20 @@ void makeHazardImage(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
   const CellGrid grid = gridOf(trajectories, ground, options, origin);
   HazardRaster raster(grid, ground);
   addPaths(trajectories, origin, options.rockWidth, raster);
+  std::vector<std::string> notes;
+  if (std::string other = otherSlope(trajectories, terrainMesh); !other.empty())
+  {
+    notes.push_back(std::move(other));
+  }
+  if (options.frequency.annualFrequency > 0.0 && trajectories->GetCellData()->GetArray("Frequency"))
+  {
+    notes.push_back(ownNotUsed(options.frequency.annualFrequency));
+  }
   fillImage(
     grid, origin + Vec3(grid.west, grid.south, 0.0), raster.releases(), terrain.has_value(),
     lostOf(trajectories), options,
     options.frequency.annualFrequency > 0.0 ? RockFrequencies() : frequenciesOf(trajectories),
+    notes,
     [&raster](const std::function<void(const Passage&)>& use)
     {
       for (const Passage& passage : raster.sorted())
@@ -476,9 +492,14 @@ void makeHazardImage(
   checkOptions(options);
   const CellGrid& grid = files.grid();
   checkSize(grid.columns, grid.rows, grid.cellSize);
+  std::vector<std::string> notes = files.notes();
+  if (options.frequency.annualFrequency > 0.0 && !files.frequencies().empty())
+  {
+    notes.push_back(ownNotUsed(options.frequency.annualFrequency));
+  }
   fillImage(
     grid, Vec3(grid.west, grid.south, 0.0), files.releases(), true, files.lost(), options,
-    files.frequencies(),
+    files.frequencies(), std::move(notes),
     [&files](const std::function<void(const Passage&)>& use) { files.forEach(use); }, image);
   writeCoordinateSystem(files.crs(), files.origin(), image->GetFieldData());
 }
@@ -495,8 +516,13 @@ void writeHazardPassages(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
   whole.crop = false;
   HazardRaster raster(gridOf(trajectories, &terrain, whole, origin), &terrain);
   addPaths(trajectories, origin, options.rockWidth, raster);
+  if (const std::string other = otherSlope(trajectories, terrainMesh); !other.empty())
+  {
+    showNote(other);
+  }
   writePassages(raster, origin, readCrs(trajectories->GetFieldData()), fileName,
-    lostOf(trajectories), frequenciesOf(trajectories));
+    lostOf(trajectories), frequenciesOf(trajectories),
+    terrainContent(trajectories->GetFieldData()));
 }
 
 } // namespace rockfall::filters

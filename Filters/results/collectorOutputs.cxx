@@ -3,6 +3,8 @@
 #include "base/abort.h"
 #include "base/errors.h"
 #include "shared/arrays.h"
+#include "shared/inputContent.h"
+#include "shared/terrainFieldData.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
@@ -19,6 +21,7 @@
 #include "vtkTable.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <limits>
 #include <set>
 #include <tuple>
@@ -274,6 +277,12 @@ void writeCrossings(std::span<const CollectedCrossing> crossings,
     lineNames->InsertNextValue(of.name);
     barriers->InsertNextTuple2(of.barrierHeight, of.barrierCapacity / 1000.0);
     offsets->InsertNextValue(of.offset);
+  }
+  if (const std::uint64_t slope = terrainContent(trajectories->GetFieldData()); slope != 0)
+  {
+    char key[17];
+    std::snprintf(key, sizeof key, "%016llx", static_cast<unsigned long long>(slope));
+    addArray<vtkStringArray>(field, kCollectorSlope)->InsertNextValue(key);
   }
 }
 

@@ -17,6 +17,9 @@ class vtkTable;
 namespace rockfall::filters
 {
 
+/// Field array of crossings: number of the content of the slope that their rocks fell on.
+inline constexpr char kCollectorSlope[] = "CollectorSlope";
+
 /// A passing and the cell of its trajectory.
 struct CollectedCrossing
 {
@@ -59,7 +62,7 @@ std::vector<CollectorLine> linesOf(
 /// Writes a vertex per passing. Other cell arrays of the trajectories go along.
 /// The field data say what the tables need beside: CollectorReleased,
 /// CollectorRocks, CollectorBlocks, CollectorLosses, CollectorEnds,
-/// CollectorLineName, CollectorBarrier and CollectorOffset.
+/// CollectorLineName, CollectorBarrier, CollectorOffset and CollectorSlope.
 void writeCrossings(std::span<const CollectedCrossing> crossings,
   std::span<const CollectorLine> lines, const ReleasedRocks& released, const Vec3& origin,
   vtkPolyData* trajectories, vtkPolyData* output);

@@ -79,6 +79,35 @@ bool same(const std::vector<CollectorLine>& a, const std::vector<CollectorLine>&
     });
 }
 
+/// Empty if it is not known.
+std::string slopeOf(vtkPolyData* input)
+{
+  auto* key =
+    vtkStringArray::SafeDownCast(input->GetFieldData()->GetAbstractArray(kCollectorSlope));
+  return key && key->GetNumberOfValues() == 1 ? std::string(key->GetValue(0)) : std::string();
+}
+
+/// A note on inputs whose slope is not the first's.
+void tellSlopes(std::span<vtkPolyData* const> inputs, std::vector<std::string>& notes)
+{
+  const std::string first = slopeOf(inputs[0]);
+  std::string others;
+  for (std::size_t k = 1; k < inputs.size(); ++k)
+  {
+    const std::string slope = slopeOf(inputs[k]);
+    if (!slope.empty() && !first.empty() && slope != first && others.size() < 60)
+    {
+      others += (others.empty() ? "" : ", ") + std::to_string(k + 1);
+    }
+  }
+  if (!others.empty())
+  {
+    notes.push_back("The rocks of the Input's part " + others +
+      " fell on another slope than those of part 1: heights, ground or structures differ. Do they "
+      "belong together?");
+  }
+}
+
 struct Place
 {
   Crossing crossing;
@@ -220,6 +249,7 @@ MergedCrossings mergeCrossings(std::span<vtkPolyData* const> inputs, vtkPolyData
     }
   }
   checkReleased(rocks);
+  tellSlopes(inputs, merged.notes);
   merged.released = rocks;
   std::sort(
     places.begin(), places.end(), [](const Place& a, const Place& b) { return key(a) < key(b); });
@@ -247,7 +277,8 @@ MergedCrossings mergeCrossings(std::span<vtkPolyData* const> inputs, vtkPolyData
   output->SetPoints(points);
   output->SetVerts(vertices);
   vtkFieldData* field = output->GetFieldData();
-  for (const char* name : { "CollectorLineName", "CollectorBarrier", "CollectorOffset" })
+  for (const char* name :
+    { "CollectorLineName", "CollectorBarrier", "CollectorOffset", kCollectorSlope })
   {
     if (vtkAbstractArray* array = inputs[0]->GetFieldData()->GetAbstractArray(name))
     {

@@ -8,12 +8,14 @@
 #include "shared/streamingPieces.h"
 #include "shared/terrainFieldData.h"
 #include "shared/withAbort.h"
+#include "statistics/frequency.h"
 #include "terrain/plausible.h"
 
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
+#include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkTable.h"
 
@@ -105,6 +107,10 @@ int vtkBarrierDesign::RequestData(
       if (this->AnnualFrequency > 0.0)
       {
         rockfall::askAfterFrequency(this->AnnualFrequency, notes);
+        if (crossings->GetPointData()->GetArray("Frequency"))
+        {
+          notes.push_back(rockfall::ownNotUsed(this->AnnualFrequency));
+        }
       }
 
       vtkNew<vtkPolyData> points;

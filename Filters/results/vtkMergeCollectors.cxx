@@ -89,7 +89,11 @@ int vtkMergeCollectors::RequestData(
       vtkNew<vtkTable> table, exceedance;
       const std::vector<rockfall::LostRocks> lost =
         filters::lostBefore(merged.lines.size(), merged.crossings, merged.released);
-      const std::vector<std::string> notes = filters::lineNotes(summaries, merged.lines, lost);
+      std::vector<std::string> notes = merged.notes;
+      for (std::string& note : filters::lineNotes(summaries, merged.lines, lost))
+      {
+        notes.push_back(std::move(note));
+      }
       filters::writeLines(summaries, merged.lines, lost, table);
       vtkFieldData* const told[] = { table->GetFieldData(), points->GetFieldData() };
       filters::tellOn(told, notes);

@@ -11,6 +11,7 @@
 #include "results/trajectoriesInput.h"
 #include "shared/drawnPoints.h"
 #include "shared/errorReport.h"
+#include "shared/inputContent.h"
 #include "shared/inputs.h"
 #include "shared/lineWalls.h"
 #include "shared/rockPaths.h"
@@ -347,6 +348,10 @@ int vtkTrajectoryCollector::RequestData(
       barrier.barrierCapacity = this->BarrierCapacity * 1000.0;
       std::vector<CollectorLine> lines;
       std::vector<std::string> notes;
+      if (std::string other = filters::otherSlope(trajectories, mesh); !other.empty())
+      {
+        notes.push_back(std::move(other));
+      }
       if (drawn)
       {
         if (drawn->GetNumberOfPoints() > 0)

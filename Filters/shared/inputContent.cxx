@@ -146,4 +146,14 @@ std::uint64_t rocksContent(vtkPolyData* rocks, std::initializer_list<std::string
   return content.value();
 }
 
+std::string otherSlope(vtkPolyData* trajectories, vtkPolyData* mesh)
+{
+  const std::uint64_t of = mesh ? terrainContent(mesh->GetFieldData()) : 0;
+  const std::uint64_t under = trajectories ? terrainContent(trajectories->GetFieldData()) : 0;
+  return of != 0 && under != 0 && of != under
+    ? "The trajectories fell on another slope than the Terrain: heights, ground or structures "
+      "differ. Connect the slope of their run"
+    : "";
+}
+
 } // namespace rockfall::filters

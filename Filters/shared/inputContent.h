@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <initializer_list>
+#include <string>
 #include <string_view>
 
 class vtkFieldData;
@@ -20,5 +21,9 @@ std::uint64_t terrainContent(vtkFieldData* terrain);
 
 /// Of rocks: faces and cell data, and the CRS. `names`: cell arrays that decide nothing.
 std::uint64_t rocksContent(vtkPolyData* rocks, std::initializer_list<std::string_view> names);
+
+/// A note if the trajectories fell on another slope than that of `mesh`; empty if not, or if either
+/// is not known or null.
+std::string otherSlope(vtkPolyData* trajectories, vtkPolyData* mesh);
 
 } // namespace rockfall::filters

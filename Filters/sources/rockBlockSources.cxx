@@ -11,6 +11,7 @@
 #include "shared/inputs.h"
 #include "shared/terrainFieldData.h"
 #include "sources/drawnSource.h"
+#include "sources/idleProperty.h"
 #include "statistics/frequency.h"
 
 #include "vtkPolyData.h"
@@ -310,6 +311,73 @@ void vtkRockBlockSource::SetFrequencies(Sources& sources) const
   }
 }
 
+namespace
+{
+
+/// Mean of the volumes that a normal or log-normal law with its bounds gives, m³.
+double meanOf(const rockfall::VolumeDistribution& law)
+{
+  constexpr int count = 400;
+  double sum = 0.0;
+  for (int k = 0; k < count; ++k)
+  {
+    sum += law.quantile((k + 0.5) / count);
+  }
+  return sum / count;
+}
+
+bool isBell(const rockfall::VolumeDistribution& law)
+{
+  return law.deviation > 0.0 &&
+    (law.law == rockfall::VolumeLaw::Normal || law.law == rockfall::VolumeLaw::LogNormal);
+}
+
+/// Whether the row gives what its law has no use for. `power`: its frequency is by a power law,
+/// which takes bounds and exponent.
+bool hasIdle(const rockfall::SourceRow& row, const rockfall::VolumeDistribution& law, bool power)
+{
+  using rockfall::VolumeLaw;
+  power = power || law.law == VolumeLaw::PowerLaw;
+  return (row.volumeDeviation && law.law != VolumeLaw::Normal && law.law != VolumeLaw::LogNormal) ||
+    (row.volumeExponent && !power) ||
+    ((row.volumeMinimum || row.volumeMaximum) && law.law == VolumeLaw::Fixed && !power);
+}
+
+/// Whether a corner has no ground under it.
+bool reachesBeyond(const rockfall::SourceRow& row, const rockfall::Terrain& terrain)
+{
+  for (const std::vector<rockfall::Vec3>& part : row.parts)
+  {
+    for (const rockfall::Vec3& corner : part)
+    {
+      const rockfall::Vec3 local = corner - terrain.geometry().origin();
+      if (std::isnan(terrain.elevation(local.x(), local.y())))
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// Rows of a kind, and words on the first of them.
+struct Rows
+{
+  std::int64_t count = 0, first = 0;
+  std::string words;
+
+  void add(const rockfall::SourceRow& row, const std::string& of)
+  {
+    if (count++ == 0)
+    {
+      first = row.row;
+      words = of;
+    }
+  }
+};
+
+} // namespace
+
 //------------------------------------------------------------------------------
 void vtkRockBlockSource::TellUnused(const Sources& sources, bool hasShape) const
 {
@@ -340,5 +408,49 @@ void vtkRockBlockSource::TellUnused(const Sources& sources, bool hasShape) const
   {
     rockfall::filters::showNote(std::string(rockfall::filters::kShapeInput) +
       " is connected, but has no effect: no block's shape is \"file\"");
+  }
+  std::vector<std::string> notes;
+  rockfall::filters::tellIdle("LayerName", this->LayerName, "FileName", this->FileName, notes);
+  Rows idle, moved, beyond;
+  rockfall::VolumeDistribution known;
+  double mean = known.mean;
+  for (const rockfall::SourceRow& row : sources.rows)
+  {
+    const rockfall::VolumeDistribution law = sources.maker->volume(row);
+    if (hasIdle(row, law, row.frequencyA || this->PowerLawFrequency > 0.0))
+    {
+      idle.add(row, rockfall::volumeLawName(law.law));
+    }
+    if (isBell(law))
+    {
+      mean = law == known ? mean : meanOf(law);
+      known = law;
+      if (std::abs(mean - law.mean) > 0.1 * law.mean)
+      {
+        moved.add(row,
+          rockfall::numberText(mean, 3) + " m³ instead of " + rockfall::numberText(law.mean, 6));
+      }
+    }
+    if (sources.terrain && reachesBeyond(row, *sources.terrain))
+    {
+      beyond.add(row, "");
+    }
+  }
+  const auto tell = [&](const Rows& rows, const std::string& what)
+  {
+    if (rows.count > 0)
+    {
+      notes.push_back((this->FileName.empty() ? "" : this->FileName + ": ") +
+        std::to_string(rows.count) + " of " + std::to_string(sources.rows.size()) + " sources " +
+        what + (this->FileName.empty() ? "" : ", first row " + std::to_string(rows.first)) +
+        (rows.words.empty() ? "" : ": " + rows.words));
+    }
+  };
+  tell(idle, "have a deviation, bounds or an exponent of volumes that their law does not take");
+  tell(moved, "have volumes of another mean, as bounds cut their law off");
+  tell(beyond, "reach beyond the ground of the slope, on which all their rocks start");
+  for (const std::string& note : notes)
+  {
+    rockfall::filters::showNote(note);
   }
 }

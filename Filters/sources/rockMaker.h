@@ -57,6 +57,8 @@ public:
   /// `index` counts sources, from 0. Throws on a bad value, naming it.
   ReleasedRock make(
     const SourceRow& row, std::size_t index, const ReleasePlace& place, std::int64_t blockId);
+  /// How the rocks of a row are distributed.
+  VolumeDistribution volume(const SourceRow& row) const;
   /// How many rocks of a source, whose draws begin at `firstDraw`, have this volume in all (m³,
   /// > 0), as nearly as whole rocks can; at least 1, and at most `most`.
   std::int64_t amountOf(
@@ -65,7 +67,6 @@ public:
   const std::vector<std::string>& notes() const { return notes_; }
 
 private:
-  VolumeDistribution volume(const SourceRow& row) const;
   rockfall::Shape kindOf(const SourceRow& row, std::uint64_t draw) const;
   Polyhedron givenShape(); ///< The file's or the input's.
   Polyhedron shape(

@@ -15,6 +15,7 @@
 #include "shared/terrainFieldData.h"
 #include "shared/terrainMesh.h"
 #include "shared/withAbort.h"
+#include "sources/idleProperty.h"
 #include "terrain/Terrain.h"
 #include "terrain/plausible.h"
 #include "terrain/presets.h"
@@ -164,6 +165,26 @@ std::shared_ptr<const rockfall::Terrain> vtkDEMToCFESource::MakeSlope(
                      this->EmbankmentLayerName, this->TreeLayerName, this->BarrierLayerName },
       slope, notes, readStandRaster(this->TreeFile, slope, notes)));
   askAfterGround(slope, notes);
+  using rockfall::filters::tellIdle;
+  tellIdle("LayerName", this->LayerName, "FileName", this->FileName, notes);
+  tellIdle("ElevationField", this->ElevationField, "FileName", this->FileName, notes);
+  tellIdle("EmbankmentLayerName", this->EmbankmentLayerName, "EmbankmentFile", this->EmbankmentFile,
+    notes);
+  tellIdle("TreeLayerName", this->TreeLayerName, "TreeFile", this->TreeFile, notes);
+  tellIdle("BarrierLayerName", this->BarrierLayerName, "BarrierFile", this->BarrierFile, notes);
+  for (const auto& [name, value] : { std::pair("RestitutionLayerName", &this->RestitutionLayerName),
+         std::pair("RestitutionField", &this->RestitutionField) })
+  {
+    tellIdle(name, *value, "RestitutionLayer", this->RestitutionLayer, notes);
+  }
+  for (const auto& [name, value] : { std::pair("JointLayerName", &this->JointLayerName),
+         std::pair("JointField", &this->JointField) })
+  {
+    tellIdle(name, *value, "JointLayer", this->JointLayer, notes);
+  }
+  tellIdle("RestitutionTableSheet", this->RestitutionTableSheet, "RestitutionTable",
+    this->RestitutionTable, notes);
+  tellIdle("JointTableSheet", this->JointTableSheet, "JointTable", this->JointTable, notes);
   if (this->Preset == 0 && !material.yielding.yields() && slope.restitutionClasses().count() == 0)
   {
     notes.emplace_back(

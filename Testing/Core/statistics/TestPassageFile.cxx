@@ -237,6 +237,33 @@ TEST_F(TestPassageFile, NothingPassed)
   files.summarize([](const CellSummary&) { ADD_FAILURE(); });
 }
 
+TEST_F(TestPassageFile, OtherSlopesAndEndTimesAreTold)
+{
+  HazardRaster a = rasterOf([](int k) { return k < 10; });
+  HazardRaster b = rasterOf([](int k) { return k >= 10; });
+  LostRocks twenty, two;
+  twenty.add(Loss::Moving, 20.0, 5.0);
+  two.add(Loss::Moving, 2.0, 5.0);
+  const auto notes = [&](std::uint64_t slope)
+  {
+    writePassages(a, origin, "", fileName("a"), twenty, {}, 7);
+    writePassages(b, origin, "", fileName("b"), two, {}, slope);
+    const PassageFiles files({ fileName("a"), fileName("b") });
+    EXPECT_NE(lostNotes(files.lost())
+                .at(0)
+                .find("2 of 2 rocks were still moving at EndTime (2 to "
+                      "20 s)"),
+      std::string::npos)
+      << lostNotes(files.lost()).at(0);
+    return files.notes();
+  };
+  EXPECT_TRUE(notes(7).empty());
+  EXPECT_TRUE(notes(0).empty()); // not known
+  ASSERT_EQ(notes(8).size(), 1u);
+  EXPECT_EQ(notes(8)[0].find("1 of 2 files, first " + fileName("b") + ", are of other slopes"), 0u)
+    << notes(8)[0];
+}
+
 TEST_F(TestPassageFile, BadInput)
 {
   HazardRaster raster = rasterOf([](int k) { return k < 10; });

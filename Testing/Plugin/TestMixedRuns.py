@@ -1,0 +1,94 @@
+"""What does not belong together, or has no effect, is told: runs of two slopes in one line or map, a slope
+that is not that of the run, frequencies of two kinds, laws and layers that nothing takes."""
+
+import os
+
+from helpers import messages_of, write_grid, write_text
+
+from paraview import servermanager
+from paraview.simple import (
+    BarrierDesign, DEMtoCFEMesh, HazardPassageReader, MergeCollectors, OutputPort, RockBlocks, RockfallHazardMap,
+    RockfallSimulation, TrajectoryCollector)
+
+
+def notes_of(source):
+    source.UpdatePipeline()
+    data = servermanager.Fetch(source)
+    error = data.GetFieldData().GetAbstractArray("Error")
+    assert not error, error.GetValue(0)
+    notes = data.GetFieldData().GetAbstractArray("Notes")
+    return " ".join(notes.GetValue(k) for k in range(notes.GetNumberOfValues())) if notes else ""
+
+
+def slope(name, drop):
+    heights = [[60 - drop * 5 * c for c in range(31)] for _ in range(21)]
+    return DEMtoCFEMesh(FileName=write_grid(name, heights, (0, 0), 5, None), Preset="Meadow (field data)")
+
+
+def run(ground, first=1, end=20.0, **rocks):
+    blocks = RockBlocks(Terrain=ground, Center=[10, 50, 0], PlaceOnGround=1, Amount=3, ClusterRadius=4, **rocks)
+    return RockfallSimulation(Terrain=ground, Rocks=blocks, EndTime=end, Iterations=2, FirstIteration=first)
+
+
+def line(fall, **more):
+    return TrajectoryCollector(Input=OutputPort(fall, 1), Points=[16, 0, 0, 16, 100, 0], **more)
+
+
+def passages(fall, ground, name):
+    writer = servermanager.writers.HazardPassageWriter(
+        Input=OutputPort(fall, 1), Terrain=ground, FileName=os.path.abspath(name), CellSize=5)
+    writer.UpdatePipeline()
+    return os.path.abspath(name)
+
+
+steep, flat = slope("steep.asc", 0.7), slope("flat.asc", 0.6)
+one, next_one, other = run(steep), run(steep, 3), run(flat, 3)
+short = run(steep, 3, 0.5)
+
+# --- Two slopes in one statistic.
+told = "fell on another slope than those of part 1"
+assert told not in notes_of(MergeCollectors(Input=[line(one), line(next_one)]))
+assert told in notes_of(MergeCollectors(Input=[line(one), line(other)]))
+files = [passages(fall, ground, f"{k}.passages")
+         for k, (fall, ground) in enumerate(((one, steep), (next_one, steep), (other, flat), (short, steep)))]
+assert "other slopes" not in notes_of(HazardPassageReader(FileNames=files[:2]))
+assert "1 of 2 files, first " + files[2] in notes_of(HazardPassageReader(FileNames=[files[0], files[2]]))
+
+# --- A slope that is not that of the run.
+told = "fell on another slope than the Terrain"
+for ground in steep, flat:
+    area = RockfallHazardMap(Input=OutputPort(one, 1), Terrain=ground, CellSize=5)
+    assert (told in notes_of(area)) == (ground is flat), notes_of(area)
+    assert (told in notes_of(line(one, Terrain=ground))) == (ground is flat)
+
+# --- Frequencies of the rocks, and one of all of them.
+often = run(steep, AnnualFrequency=0.1)
+told = "the frequencies that they have of their own are not used"
+for frequency in 0, 2:
+    area = RockfallHazardMap(Input=OutputPort(often, 1), CellSize=5, AnnualFrequency=frequency)
+    assert (told in notes_of(area)) == (frequency > 0), notes_of(area)
+    design = BarrierDesign(Input=line(often), AnnualFrequency=frequency)
+    assert (told in notes_of(design)) == (frequency > 0), notes_of(design)
+
+# --- Layers of no file.
+assert 'BarrierLayerName is "nets", but has no effect: there is no BarrierFile' in \
+    notes_of(DEMtoCFEMesh(BarrierLayerName="nets"))
+assert 'JointField is "soil", but has no effect: there is no JointLayer' in notes_of(DEMtoCFEMesh(JointField="soil"))
+assert "no effect" not in notes_of(DEMtoCFEMesh())
+
+
+# --- Rows of sources.
+def heard(columns, *rows):
+    name = write_text("sources.csv", f"WKT,{columns}\n" + "".join(f"{row}\n" for row in rows))
+    return messages_of(lambda: RockBlocks(Terrain=steep, FileName=name).UpdatePipeline())
+
+
+point, area = '"POINT(20 50)"', '"POLYGON((-50 20,30 20,30 40,-50 20))"'
+told = heard("volume,vol_law,vol_dev", f"{point},1,normal,0.2", f'"POINT(20 60)",1,,0.5')
+assert "1 of 2 sources have a deviation, bounds or an exponent" in told and "first row 2: fixed" in told, told
+assert "deviation" not in heard("freq_a,volume,vol_min,vol_max,vol_exp", f"{point},0.5,1,1,2,0.6")
+told = heard("volume,vol_law,vol_dev,vol_max", f"{point},1,normal,50,")
+assert "first row 1" in told and "instead of 1" in told, told
+told = heard("amount", f"{point},1", f"{area},3")
+assert "1 of 2 sources reach beyond the ground of the slope" in told and "first row 2" in told, told
+print("what does not belong together is told")
