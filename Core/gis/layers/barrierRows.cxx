@@ -2,6 +2,7 @@
 #include "gis/layers/structureRows.h"
 
 #include "base/text/nameKey.h"
+#include "gis/base/gdal.h"
 #include "gis/layers/barrierUnits.h"
 
 namespace rockfall::gis
