@@ -57,7 +57,12 @@ TEST(PlausibleRocks, WhatNoRockHas)
     const std::string note = notes(change);
     EXPECT_NE(note.find(std::string("first block 3 with ") + words), std::string::npos) << note;
   };
-  has("8000 m³", [](Rock& rock) { rock.shape = makeBox({ 20.0, 20.0, 20.0 }); });
+  has("8000 m³",
+    [](Rock& rock)
+    {
+      rock.shape = makeBox({ 20.0, 20.0, 20.0 });
+      rock.angularVelocity.setZero();
+    });
   has("0.00059 GPa", [](Rock& rock) { rock.youngModulus = 590e3; });
   has("300 m/s", [](Rock& rock) { rock.velocity = { 300.0, 0.0, 0.0 }; });
   has("311.769 m/s", [](Rock& rock) { rock.angularVelocity = { 360.0, 0.0, 0.0 }; }); // degrees/s

@@ -330,8 +330,8 @@ TEST_F(TestPassageFile, HeadersAndPassagesThatNoRunHasAreDamage)
     std::ofstream(bad, std::ios::binary) << bytes;
   };
   const double inf = std::numeric_limits<double>::infinity();
-  constexpr std::size_t cellSize = 16, west = 24, z = 56, iterations = 72, count = 88, lost = 96,
-                        firstPassage = 164;
+  constexpr std::size_t cellSize = 16, west = 24, z = 56, iterations = 80, count = 96, lost = 104,
+                        firstPassage = 172;
   put(8, std::int32_t(-4));
   expectError({ bad }, "bad: is damaged: it has -4 x 3 cells");
   put(8, std::int32_t(2147483647));
