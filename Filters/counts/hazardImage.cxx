@@ -94,6 +94,12 @@ CellGrid gridOf(vtkPolyData* trajectories, const Terrain* terrain, const HazardM
     throw ParameterError(
       "CellSize is " + numberText(options.cellSize) + ", it must be finite and not negative");
   }
+  constexpr double widestCell = 1e6; // m
+  if (options.cellSize > widestCell)
+  {
+    throw ParameterError("CellSize is " + numberText(options.cellSize) + " m, it must be at most " +
+      numberText(widestCell));
+  }
   if (options.cellSize == 0.0 && !terrain)
   {
     throw ParameterError(

@@ -92,14 +92,18 @@ failures, count = [], 0
 only = os.environ.get("NUMBERS_OF")
 
 
-def look(name, make, values):
+def look(name, make, values, only_last=False):
     """Sets a property as a state file does, past Python's own checks, and runs."""
     global count
     proxy, run = make()
     sm = proxy.SMProxy.GetProperty(name[1])
     if sm.GetRepeatable():
         sm.SetNumberOfElements(3)
-    for k in range(sm.GetNumberOfElements()):
+    elements = sm.GetNumberOfElements()
+    if only_last and elements < 2:
+        delete_sources()
+        return
+    for k in range(elements - 1 if only_last else 0, elements):
         sm.SetElement(k, values)
     what = f"{name[0]} {name[1]} {values}"
     print(what, end=" ", flush=True)
@@ -139,6 +143,27 @@ for path in sorted(glob.glob(os.path.join(ROOT, "Plugin", "xml", "*.xml"))):
             for make in MAKERS[name[0]]:  # a proxy that is not there has to come in
                 for value in COUNTS if whole else NUMBERS:
                     look(name, make, value)
+                if not whole:  # the others are good
+                    look(name, make, float("nan"), True)
+
+# Passages: a file, or one message and none.
+for value in NUMBERS if not only else []:
+    ground = fall()
+    name = os.path.abspath("written.passages")
+    writer = servermanager.writers.HazardPassageWriter(
+        Input=OutputPort(ground, 1), Terrain=ground.Terrain, FileName=name)
+    writer.SMProxy.GetProperty("CellSize").SetElement(0, value)
+    writer.SMProxy.UpdateVTKObjects()
+    if os.path.exists(name):
+        os.remove(name)
+    begun = time.time()
+    errors = re.findall(r"ERR\| (.*?)(?:\x1b|$)", messages_of(writer.UpdatePipeline), re.MULTILINE)
+    print("HazardPassageWriter CellSize", value, errors)
+    if len(errors) != 1 or "cell" not in errors[0].lower() or os.path.exists(name) or \
+            time.time() - begun > SLOWEST:
+        failures.append(f"HazardPassageWriter CellSize {value}: {errors}, {time.time() - begun:.0f} s")
+    delete_sources()
+    count += 1
 
 # --- More than a machine has, and a run without an end: one message, soon.
 
@@ -158,6 +183,17 @@ if not only:
     soon(fall(RockBlocks(Amount=20, ClusterRadius=5, Center=[15, 50, 70]), Iterations=10**7),
          "Iterations", "20 rocks")
     soon(RockBlocks(Amount=2 * 10**6, ClusterRadius=5), "1000000")
+    # Of two numbers each is one that somebody may take.
+    soon(RockfallHazardMap(Input=OutputPort(fall(EndTime=60), 1), CellSize=0.01, Terrain=DEMtoCFEMesh(),
+                           CropToTrajectories=0), "cells", "CellSize")
+    soon(DEMtoCFEMesh(CellSize=1e-4), "cell size")
+    soon(fall(EndTime=1e5, OutputInterval=1e-3), "OutputInterval")
+    soon(fall(RockBlocks(Amount=1000, ClusterRadius=5, Center=[15, 50, 70]), Iterations=10**6), "Iterations")
+    soon(RockBlocks(Amount=10**6, ClusterRadius=1e-3, KeepApart=1, Center=[15, 50, 70]), "KeepApart")
+    soon(RockBlocks(TotalVolume=1e6, Volume=1e-6, ClusterRadius=5), "TotalVolume")
+    soon(JointedRockMass(Lengths=[1e3, 1e3, 1e3]), "MaximumRocks")
+    soon(TrajectoryCollector(Input=paths(), Lines=PolyLineSource(), ParallelLines=10**9, ParallelSpacing=1e-6),
+         "ParallelLines")
     # 20,000² heights take 3.2 GB. The file has no blocks on the disk.
     size = 20000
     write_text("wide.hdr", f"nrows {size}\nncols {size}\nnbands 1\nnbits 32\npixeltype FLOAT\n"
