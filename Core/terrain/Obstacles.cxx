@@ -253,11 +253,22 @@ Obstacles::Obstacles(Structures structures, const Terrain& terrain)
     const Tree& t = structures_.trees[k];
     check(positive(t.diameter) && t.diameter <= 20.0, t.feature, "the diameter of the tree",
       t.diameter, "above 0 and at most 20 m");
-    check(positive(t.height) && t.height <= 150.0, t.feature, "the height of the tree", t.height,
-      "above 0 and at most 150 m");
+    check(t.lies() || (positive(t.height) && t.height <= kLongestStem), t.feature,
+      "the height of the tree", t.height, "above 0 and at most 150 m");
     check(t.capacity >= 0.0, t.feature, "the capacity of the tree", t.capacity, "at least 0 J");
     check(t.material >= 0 && t.material <= materials, t.feature, "the material", t.material,
       "one that there is");
+    if (t.lies())
+    {
+      lyingNumbers_.resize(k + 1, -1);
+      lyingNumbers_[k] = int(lying_.size());
+      lying_.push_back(lay(t, terrain));
+      const LyingStem& stem = lying_.back();
+      treeEnds_.push_back({ std::min(stem.from.z(), stem.to.z()) - stem.depth,
+        std::max(stem.from.z(), stem.to.z()) + stem.rise });
+      boxes.push_back(this->treeBox(int(k)));
+      continue;
+    }
     const double ground = terrain.elevation(t.position.x(), t.position.y());
     if (std::isnan(ground))
     {
@@ -267,9 +278,7 @@ Obstacles::Obstacles(Structures structures, const Terrain& terrain)
     }
     const double root = ground - kRootDepth - kRootPerDiameter * t.diameter - lowered;
     treeEnds_.push_back({ root, ground + t.height });
-    const double r = this->treeRadius(int(k));
-    boxes.push_back({ t.position.x() - r, t.position.x() + r, t.position.y() - r,
-      t.position.y() + r, ground + t.height });
+    boxes.push_back(this->treeBox(int(k)));
   }
   treeIndex_ = BoxIndex(boxes);
 
@@ -319,8 +328,57 @@ double Obstacles::treeRadius(int tree) const
   return factor * structures_.trees[std::size_t(tree)].diameter;
 }
 
+FlatBox Obstacles::treeBox(int tree) const
+{
+  const Tree& t = structures_.trees[std::size_t(tree)];
+  if (this->lyingOf(tree))
+  {
+    FlatBox box{ t.position.x(), t.position.x(), t.position.y(), t.position.y(),
+      this->treeTop(tree) };
+    for (int k = 0; k < int(lyingShape().nodes.size()); ++k)
+    {
+      const Vec3 p = this->treeCorner(tree, k);
+      box.xMin = std::min(box.xMin, p.x());
+      box.xMax = std::max(box.xMax, p.x());
+      box.yMin = std::min(box.yMin, p.y());
+      box.yMax = std::max(box.yMax, p.y());
+    }
+    return box;
+  }
+  const double r = this->treeRadius(tree);
+  return { t.position.x() - r, t.position.x() + r, t.position.y() - r, t.position.y() + r,
+    this->treeTop(tree) };
+}
+
+bool Obstacles::isInTree(int tree, const Vec3& place) const
+{
+  if (const LyingStem* stem = this->lyingOf(tree))
+  {
+    return isIn(*stem, place);
+  }
+  const Eigen::Vector2d off = place.head<2>() - structures_.trees[std::size_t(tree)].position;
+  return off.norm() < this->treeRadius(tree) && place.z() < this->treeTop(tree);
+}
+
+Vec3 Obstacles::treeNormal(int tree, int triangle) const
+{
+  const ObstacleMesh::Triangle& t = this->shapeOf(tree).triangles[std::size_t(triangle)];
+  if (!this->lyingOf(tree))
+  {
+    return t.normal;
+  }
+  const Vec3 a = this->treeCorner(tree, t.nodes[0]);
+  return (this->treeCorner(tree, t.nodes[1]) - a)
+    .cross(this->treeCorner(tree, t.nodes[2]) - a)
+    .normalized();
+}
+
 Vec3 Obstacles::treeCorner(int tree, int corner) const
 {
+  if (const LyingStem* stem = this->lyingOf(tree))
+  {
+    return lyingCorner(*stem, corner);
+  }
   const Vec3& unit = treeShape().nodes[std::size_t(corner)].position;
   const Eigen::Vector2d p =
     structures_.trees[std::size_t(tree)].position + this->treeRadius(tree) * unit.head<2>();
@@ -387,9 +445,8 @@ void Obstacles::append(double xMin, double xMax, double yMin, double yMax,
   this->visitTrees(xMin, xMax, yMin, yMax,
     [&](int k)
     {
-      const Eigen::Vector2d& p = structures_.trees[std::size_t(k)].position;
-      const double r = this->treeRadius(k);
-      if (p.x() + r >= xMin && p.x() - r <= xMax && p.y() + r >= yMin && p.y() - r <= yMax &&
+      const FlatBox b = this->treeBox(k);
+      if (b.xMax >= xMin && b.xMin <= xMax && b.yMax >= yMin && b.yMin <= yMax &&
         !std::binary_search(gone.begin(), gone.end(), k))
       {
         trees.push_back(k);
@@ -411,10 +468,10 @@ struct Numbering
 };
 
 /// `nodeAt`, `triangleAt`: place among those appended, −1 if it is not among them.
-template <typename Position, typename NodeAt, typename TriangleAt>
+template <typename Position, typename Normal, typename NodeAt, typename TriangleAt>
 void appendMesh(const ObstacleMesh& mesh, std::span<const int> nodes,
-  std::span<const int> triangles, const Numbering& from, Position&& position, NodeAt&& nodeAt,
-  TriangleAt&& triangleAt, SurfacePatch& patch)
+  std::span<const int> triangles, const Numbering& from, Position&& position, Normal&& normal,
+  NodeAt&& nodeAt, TriangleAt&& triangleAt, SurfacePatch& patch)
 {
   for (const int n : nodes)
   {
@@ -435,7 +492,7 @@ void appendMesh(const ObstacleMesh& mesh, std::span<const int> nodes,
   {
     const ObstacleMesh::Triangle& source = mesh.triangles[std::size_t(i)];
     SurfacePatch::Triangle& t = patch.triangles.emplace_back();
-    t.normal = source.normal;
+    t.normal = normal(i);
     t.bends = source.bends;
     t.cfe = from.cfe + i;
     t.key = from.triangleKey + i;
@@ -494,6 +551,7 @@ void Obstacles::append(
     firstCfe_ };
   appendMesh(
     mesh_, nodes, triangles, from, [&](int n) { return mesh_.nodes[std::size_t(n)].position; },
+    [&](int i) { return mesh_.triangles[std::size_t(i)].normal; },
     [&](int n) { return among(nodes, n); }, [&](int i) { return among(triangles, i); }, patch);
 
   static const std::vector<int> all = []
@@ -513,9 +571,11 @@ void Obstacles::append(
       firstKey + std::int64_t(mesh_.nodes.size()) + std::int64_t(tree) * 2 * treeSides,
       firstKey + meshTriangles + std::int64_t(tree) * treeTriangles,
       firstCfe_ + meshTriangles + std::int64_t(tree) * treeTriangles };
+    const ObstacleMesh& shape = this->shapeOf(tree);
     appendMesh(
-      treeShape(), std::span(all).first(2 * treeSides), all, from,
-      [&](int n) { return this->treeCorner(tree, n); }, itself, itself, patch);
+      shape, std::span(all).first(shape.nodes.size()), std::span(all).first(shape.triangles.size()),
+      from, [&](int n) { return this->treeCorner(tree, n); },
+      [&](int i) { return this->treeNormal(tree, i); }, itself, itself, patch);
   }
 }
 

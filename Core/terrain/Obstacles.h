@@ -5,7 +5,7 @@
 /// barriers as upright planes.
 ///
 /// The solid is the union of the slope and the obstacles. Every embankment is one mesh with mitred
-/// joints, every tree a prism; both go down below the ground, where they are open. What is buried
+/// joints, every tree a prism, upright or lying; all go down below the ground, where they are open. What is buried
 /// is never met.
 
 #include "terrain/BoxIndex.h"
@@ -49,6 +49,15 @@ struct ObstacleMesh
 /// Appends the mesh of an embankment. Throws DataError naming what cannot be built.
 void addEmbankment(const Embankment& embankment, const Terrain& terrain, ObstacleMesh& mesh);
 
+/// Where a lying stem is.
+struct LyingStem
+{
+  Vec3 from = Vec3::Zero(), to = Vec3::Zero(); ///< Ends of its axis, m.
+  double radius = 0.0;                         ///< m
+  double rise = 0.0;                           ///< Of its top over its axis, straight up, m.
+  double depth = 0.0;                          ///< Of its foot under its axis, m.
+};
+
 /// Immutable, so safe to share over threads.
 class Obstacles
 {
@@ -67,7 +76,24 @@ public:
   int embankmentOf(int meshTriangle) const { return owners_[std::size_t(meshTriangle)]; }
   /// Corners of the upper and lower end of a tree's prism and its triangles.
   static const ObstacleMesh& treeShape();
+  /// The same of a lying stem, with fewer of both.
+  static const ObstacleMesh& lyingShape();
+  const ObstacleMesh& shapeOf(int tree) const
+  {
+    return this->lyingOf(tree) ? lyingShape() : treeShape();
+  }
   Vec3 treeCorner(int tree, int corner) const;
+  Vec3 treeNormal(int tree, int triangle) const;
+  /// Null if it stands.
+  const LyingStem* lyingOf(int tree) const
+  {
+    const Tree& t = structures_.trees[std::size_t(tree)];
+    return t.lies() ? &lying_[std::size_t(lyingNumbers_[std::size_t(tree)])] : nullptr;
+  }
+  /// Whether a place is within a tree.
+  bool isInTree(int tree, const Vec3& place) const;
+  /// What it takes up in plan, and its top.
+  FlatBox treeBox(int tree) const;
 
   /// CFEs of obstacles have numbers beyond the slope's: first the embankments', then the trees'.
   std::int64_t firstCfe() const { return firstCfe_; }
@@ -106,7 +132,7 @@ public:
   {
     treeIndex_.visit(xMin, xMax, yMin, yMax, use);
   }
-  double treeRadius(int tree) const; ///< Of the circle around the prism, m.
+  double treeRadius(int tree) const; ///< Of the circle around the upright prism, m.
   double treeTop(int tree) const { return treeEnds_[std::size_t(tree)][1]; }
 
   /// Elevation of the embankment over a place in plan, m; −∞ if there is none.
@@ -128,11 +154,18 @@ public:
   }
 
 private:
+  /// Throws ParameterError or DataError naming the feature.
+  static LyingStem lay(const Tree& tree, const Terrain& terrain);
+  static Vec3 lyingCorner(const LyingStem& stem, int corner);
+  static bool isIn(const LyingStem& stem, const Vec3& place);
+
   Structures structures_;
   std::int64_t firstCfe_ = 0;
   ObstacleMesh mesh_;
   std::vector<int> owners_;
   std::vector<std::array<double, 2>> treeEnds_; ///< Elevation of the lower and the upper end, m.
+  std::vector<LyingStem> lying_;
+  std::vector<int> lyingNumbers_; ///< Of trees in lying_; empty if none lies.
   std::vector<Piece> barrierPieces_;
   BoxIndex meshIndex_, treeIndex_, barrierIndex_;
 };

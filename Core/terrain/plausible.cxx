@@ -32,23 +32,34 @@ void lookAtTrees(const std::vector<Tree>& trees, std::vector<std::string>& notes
   Doubt thick("Stems have " + between(kStemDiameter, 0.01) + " cm: are diameters in cm?");
   Doubt slender("Trees are " + between(kSlenderness) +
     " times as high as thick: are diameters in cm and heights in m?");
+  Doubt wrong("Lying stems are " + between(kLyingLength) + " m long: is the line one stem?");
   Doubt strong("Stems hold " + between(kStemCapacity) +
     " times what Dorren and Berger give their diameter: are capacities in kJ?");
   for (const Tree& t : trees)
   {
     const bool fits = kStemDiameter.has(t.diameter);
     thick.look(fits, t.feature, [&] { return " with " + text(100.0 * t.diameter) + " cm"; });
-    // A stem that is too thick is told once.
-    const double ratio = t.height / t.diameter;
-    slender.look(!fits || kSlenderness.has(ratio), t.feature,
-      [&]
-      { return ": " + text(t.height) + " m high and " + text(100.0 * t.diameter) + " cm thick"; });
+    if (t.lies())
+    {
+      const double length = (t.end - t.position).norm();
+      wrong.look(
+        kLyingLength.has(length), t.feature, [&] { return " with " + text(length) + " m"; });
+    }
+    else
+    {
+      // A stem that is too thick is told once.
+      slender.look(!fits || kSlenderness.has(t.height / t.diameter), t.feature,
+        [&] {
+          return ": " + text(t.height) + " m high and " + text(100.0 * t.diameter) + " cm thick";
+        });
+    }
     const double share = t.capacity / stemCapacity(t.diameter);
     strong.look(!fits || std::isinf(share) || kStemCapacity.has(share), t.feature,
       [&] { return " with " + text(t.capacity / 1000.0) + " kJ"; });
   }
   thick.tell("diameters of trees", notes);
   slender.tell("trees", notes);
+  wrong.tell("lengths of lying stems", notes);
   strong.tell("capacities of trees", notes);
 }
 
@@ -199,6 +210,10 @@ void tellCrowds(const std::vector<Tree>& trees, std::vector<std::string>& notes)
   std::map<std::pair<double, double>, double> areas;               // m²
   for (const Tree& tree : trees)
   {
+    if (tree.lies())
+    {
+      continue;
+    }
     const Point at = tree.position / side;
     areas[{ std::floor(at.x()), std::floor(at.y()) }] +=
       0.25 * M_PI * tree.diameter * tree.diameter;
@@ -419,12 +434,20 @@ void askAfterTwins(const Structures& structures, std::vector<std::string>& notes
 {
   const auto all = [](const auto&) { return true; };
   linesTwice("embankments", those(structures.embankments, all), notes);
+  const auto stand = those(structures.trees, [](const Tree& t) { return !t.lies(); });
   std::vector<Point> stems;
-  for (const Tree& tree : structures.trees)
+  for (const Tree* tree : stand)
   {
-    stems.push_back(tree.position);
+    stems.push_back(tree->position);
   }
-  tellTwice("trees", those(structures.trees, all), earlierPoints(stems), notes);
+  tellTwice("trees", stand, earlierPoints(stems), notes);
+  const auto lie = those(structures.trees, [](const Tree& t) { return t.lies(); });
+  std::vector<PlanLine> axes;
+  for (const Tree* tree : lie)
+  {
+    axes.push_back({ tree->position, tree->end });
+  }
+  tellTwice("lying stems", lie, earlierLines(axes), notes);
   tellCrowds(structures.trees, notes);
   linesTwice(
     "barriers", those(structures.barriers, [](const Barrier& b) { return !b.records; }), notes);

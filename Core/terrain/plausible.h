@@ -36,6 +36,8 @@ inline constexpr PlausibleRange kStemDiameter{ 0.02, 2.0, 10.0 };
 /// Height of a tree over its stem's diameter, dimensionless. Solitary trees have some 30, dense
 /// stands up to 150 (yield tables).
 inline constexpr PlausibleRange kSlenderness{ 20.0, 200.0 };
+/// Of a lying stem, m: the tallest trees of Europe have some 65 m; shorter is a stump.
+inline constexpr PlausibleRange kLyingLength{ 0.5, 60.0 };
 /// A stem's capacity over that of its diameter, dimensionless: factors of species are 0.9 to 1.7
 /// (Dorren & Berger 2006).
 inline constexpr PlausibleRange kStemCapacity{ 0.1, 5.0 };

@@ -16,6 +16,11 @@
 /// share. The velocity towards the axis is √(1 − o²) of the velocity, its energy 1 − o² of the
 /// rock's: with more than E there the stem breaks; with less it stands, and the rock slips past
 /// along it, turned by arccos o.
+///
+/// A lying stem has the ground behind it, and nothing slips past below: it breaks by the same rule,
+/// and takes the same share; with less towards its axis it stands, and is an obstacle from which a
+/// rock rebounds or over which it rolls. Its offset is square to its axis and the rock's way: a
+/// ball of radius R that rolls at it, of radius r on the same ground, has o = (R − r) / (R + r).
 
 #include <algorithm>
 #include <cmath>
@@ -27,6 +32,12 @@ namespace rockfall
 inline double stemShare(double offset)
 {
   return std::max(0.0, -0.046 + 1.026 / (1.0 + std::pow(10.0, -8.007 * (0.58 - offset))));
+}
+
+/// Part of a rock's energy (J) in its velocity towards the axis, J.
+inline double energyTowards(double offset, double energy)
+{
+  return (1.0 - offset * offset) * energy;
 }
 
 } // namespace rockfall

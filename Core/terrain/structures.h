@@ -7,6 +7,7 @@
 #include "base/types.h"
 #include "terrain/material.h"
 
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -32,16 +33,23 @@ struct Embankment
   int material = 0; ///< 0: the slope's own; else Structures::materials[material − 1].
 };
 
-/// A stem: an upright prism.
+/// Longest stem, standing or lying, m.
+inline constexpr double kLongestStem = 150.0;
+
+/// A stem: an upright prism, or one that lies straight between two places.
 struct Tree
 {
   std::int64_t feature = 0;
   Eigen::Vector2d position = Eigen::Vector2d::Zero();
   double diameter = 0.3; ///< Of the stem, m, > 0.
-  double height = 20.0;  ///< Over the ground under its axis, m, > 0.
+  double height = 20.0;  ///< Over the ground under its axis, m, > 0; of a lying one not used.
+  /// Other end of a lying stem; NaN: it stands.
+  Eigen::Vector2d end = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
   /// A rock that touches it with more kinetic energy breaks it and loses this much, J, ≥ 0.
   double capacity = std::numeric_limits<double>::infinity();
   int material = 0;
+
+  bool lies() const { return !std::isnan(end.x()); }
 };
 
 /// A barrier or a net: an upright plane without thickness.

@@ -115,6 +115,13 @@ class Slope:
         self.numbers, self.texts = numbers, texts
         self.trees, self.embankments, self.barriers = (
             numbers(name) for name in ("TerrainTrees", "TerrainEmbankments", "TerrainBarriers"))
+        self.lying, self.lying_axes = self.trees[:0], []
+        ends = numbers("TerrainLyingStems")
+        if len(ends):
+            which = ends[:, 0].astype(int)
+            self.lying = self.trees[which]
+            self.lying_axes = np.stack([self.lying[:, 1:3], ends[:, 1:3]], axis=1) + self.origin
+            self.trees = np.delete(self.trees, which, axis=0)
 
     def axes_of(self, name, counts):
         """The lines of embankments or barriers, in the slope's coordinates."""

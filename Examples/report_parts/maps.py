@@ -123,6 +123,10 @@ class Sheet:
             axes.plot(*places.T, "o", ms=1.6, mfc="#cfe8cf", mec="#1f5a26", mew=0.35, zorder=4)
             self.handles.append(Line2D([], [], ls="", marker="o", ms=2.5, mfc="#cfe8cf", mec="#1f5a26", mew=0.5,
                                        label="stems"))
+        if structures and len(slope.lying_axes):
+            for axis in slope.lying_axes:
+                axes.plot(*axis.T, color="#6b3f1d", lw=1.2, zorder=4)
+            self.handles.append(Line2D([], [], color="#6b3f1d", lw=1.2, label="stems that lie"))
         kinds = (("TerrainEmbankmentPoints", slope.embankments, "embankment", dict(color="#7a4b12", lw=3.0)),
                  ("TerrainBarrierPoints", slope.barriers, "net or fence", dict(color="#0b3d91", lw=1.6, ls=(0, (2, 1)))))
         for name, counts, label, style in kinds if structures else ():

@@ -161,6 +161,10 @@ def frequencies(study):
 
 def structures(study):
     slope, made = study.slope, []
+    if len(slope.lying):
+        cm = slope.lying[:, 3] * 100.0
+        made.append(("stems that lie", f"{number(len(cm), 7)}, diameter {number(cm.min())} to {number(cm.max())} cm; energy that "
+                     f"breaks one {span(slope.lying[:, 5] / 1000.0)}"))
     if len(slope.trees):
         area = (slope.east - slope.west) * (slope.north - slope.south) / 1e4
         cm, capacity = slope.trees[:, 3] * 100.0, slope.trees[:, 5] / 1000.0

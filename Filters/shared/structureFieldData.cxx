@@ -28,6 +28,7 @@ namespace
 constexpr char embankmentsName[] = "TerrainEmbankments";
 constexpr char embankmentPointsName[] = "TerrainEmbankmentPoints";
 constexpr char treesName[] = "TerrainTrees";
+constexpr char lyingName[] = "TerrainLyingStems";
 constexpr char barriersName[] = "TerrainBarriers";
 constexpr char barrierPointsName[] = "TerrainBarrierPoints";
 constexpr char materialsName[] = "TerrainStructureMaterials";
@@ -132,6 +133,14 @@ void writeStructures(const Terrain& terrain, vtkFieldData* fieldData)
       writtenCapacity(t.capacity), double(t.material) };
     trees->InsertNextTuple(row);
   }
+  const auto lying = addArray<vtkDoubleArray>(fieldData, lyingName, 3);
+  for (std::size_t k = 0; k < s.trees.size(); ++k)
+  {
+    if (s.trees[k].lies())
+    {
+      lying->InsertNextTuple3(double(k), s.trees[k].end.x(), s.trees[k].end.y());
+    }
+  }
   const auto barriers = addArray<vtkDoubleArray>(fieldData, barriersName, 10);
   const auto barrierPoints = addArray<vtkDoubleArray>(fieldData, barrierPointsName, 2);
   for (const Barrier& b : s.barriers)
@@ -155,8 +164,8 @@ void writeStructures(const Terrain& terrain, vtkFieldData* fieldData)
 
 void dropStructures(vtkFieldData* fieldData)
 {
-  for (const char* name : { embankmentsName, embankmentPointsName, treesName, barriersName,
-         barrierPointsName, materialsName })
+  for (const char* name : { embankmentsName, embankmentPointsName, treesName, lyingName,
+         barriersName, barrierPointsName, materialsName })
   {
     fieldData->RemoveArray(name);
   }
@@ -167,7 +176,7 @@ Structures readStructures(vtkFieldData* fieldData)
   const Rows embankments(fieldData, embankmentsName, 8), trees(fieldData, treesName, 7),
     barriers(fieldData, barriersName, 10), materials(fieldData, materialsName, 8),
     embankmentPoints(fieldData, embankmentPointsName, 2),
-    barrierPoints(fieldData, barrierPointsName, 2);
+    barrierPoints(fieldData, barrierPointsName, 2), lying(fieldData, lyingName, 3);
   Structures s;
   vtkIdType next = 0;
   for (vtkIdType k = 0; k < embankments.count(); ++k)
@@ -191,6 +200,15 @@ Structures readStructures(vtkFieldData* fieldData)
     t.height = trees.at(k, 4);
     t.capacity = readCapacity(trees.at(k, 5));
     t.material = trees.number(k, 6);
+  }
+  for (vtkIdType k = 0; k < lying.count(); ++k)
+  {
+    const std::int64_t tree = lying.whole(k, 0);
+    if (tree < 0 || tree >= trees.count())
+    {
+      failTogether();
+    }
+    s.trees[std::size_t(tree)].end = { lying.at(k, 1), lying.at(k, 2) };
   }
   next = 0;
   for (vtkIdType k = 0; k < barriers.count(); ++k)
@@ -266,11 +284,12 @@ int makeStructureMesh(const Terrain& terrain, vtkIdType mostCells, vtkPolyData* 
     {
       number = firstOfTrees + std::int64_t(k) * Obstacles::treeTriangles;
       const vtkIdType first = points->GetNumberOfPoints();
-      for (int corner = 0; corner < 2 * Obstacles::treeSides; ++corner)
+      const ObstacleMesh& shape = obstacles->shapeOf(int(k));
+      for (int corner = 0; corner < int(shape.nodes.size()); ++corner)
       {
         point(obstacles->treeCorner(int(k), corner));
       }
-      for (const ObstacleMesh::Triangle& t : Obstacles::treeShape().triangles)
+      for (const ObstacleMesh::Triangle& t : shape.triangles)
       {
         add({ first + t.nodes[0], first + t.nodes[1], first + t.nodes[2] }, 1, s.trees[k].feature,
           number++);

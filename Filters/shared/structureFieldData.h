@@ -10,6 +10,7 @@
 /// |                           | slopes of the mountain and the valley side, material, points     |
 /// | TerrainEmbankmentPoints   | x, y in the local frame, m                                       |
 /// | TerrainTrees              | feature, x, y, diameter (m), height (m), capacity (J), material  |
+/// | TerrainLyingStems         | number of the tuple in TerrainTrees, x, y of its other end       |
 /// | TerrainBarriers           | feature, height (m), capacity (J), absorbs, records, overhang,   |
 /// |                           | braking distance (m), residual height, room (m³/m), points       |
 /// | TerrainBarrierPoints      | x, y in the local frame, m                                       |

@@ -166,7 +166,7 @@ public:
 
   ///@{
   /**
-   * Embankments and dams (lines), trees (points) and barriers or nets (lines), see
+   * Embankments and dams (lines), trees (points; lines lie) and barriers or nets (lines), see
    * Core/gis/layers/structureLayers.h for their fields. Empty (the default): there are none.
    * TreesBreak: trees without a capacity of their own break at that of their diameter (Dorren &
    * Berger 2006); default on; off they never break. Output port 1 shows them.

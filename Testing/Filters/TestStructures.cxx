@@ -133,6 +133,41 @@ TEST_F(TestStructures, SurviveAFile)
   EXPECT_FALSE(isLoaded(b.barriers[0])); // neither worn nor filled
 }
 
+/// A stem that lies is drawn and travels with its other end.
+TEST_F(TestStructures, StemsThatLieTravelWithTheSlope)
+{
+  const std::string stems = this->WriteFile(
+    "logs.csv", "WKT,diameter,height\nPOINT(180 10),30,20\n\"LINESTRING(180 80,180 90)\",40,\n");
+  this->Terrain->SetTreeFile(stems.c_str());
+  this->Terrain->Update();
+  const rockfall::Terrain terrain = filters::readTerrain(this->Terrain->GetOutput());
+  ASSERT_NE(terrain.obstacles(), nullptr);
+  const std::vector<Tree>& trees = terrain.obstacles()->structures().trees;
+  ASSERT_EQ(trees.size(), 2u);
+  EXPECT_FALSE(trees[0].lies());
+  EXPECT_EQ(trees[1].position, Eigen::Vector2d(180.0, 80.0));
+  EXPECT_EQ(trees[1].end, Eigen::Vector2d(180.0, 90.0));
+  vtkPolyData* shown = this->Terrain->GetOutput(1);
+  vtkDataArray* kind = shown->GetCellData()->GetArray("StructureKind");
+  vtkDataArray* feature = shown->GetCellData()->GetArray("StructureId");
+  double box[6], top = 0.0;
+  int count = 0;
+  for (vtkIdType k = 0; k < shown->GetNumberOfCells(); ++k)
+  {
+    if (kind->GetTuple1(k) == 1.0 && feature->GetTuple1(k) == 2.0)
+    {
+      ++count;
+      shown->GetCellBounds(k, box);
+      EXPECT_GE(box[2], 80.0 - 1e-9);
+      EXPECT_LE(box[3], 90.0 + 1e-9);
+      top = std::max(top, box[5]);
+    }
+  }
+  EXPECT_EQ(count, int(Obstacles::lyingShape().triangles.size()));
+  EXPECT_GE(top, terrain.elevation(180.0, 85.0) + 0.4 - 1e-9);
+  EXPECT_LT(top, terrain.elevation(180.0, 85.0) + 0.6);
+}
+
 TEST_F(TestStructures, ACrestTravelsWithTheSlope)
 {
   const std::string dams = this->WriteFile(

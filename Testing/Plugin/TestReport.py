@@ -30,8 +30,9 @@ write_text("rocks.csv", "x,y,z,shape,volume\n" + "\n".join(
 write_text("road.csv", "WKT,name,height\n" + "\n".join(
     f'"LINESTRING({x} 3999990,{x} 4000230)","<b>road</b> {x}",{h}' for x, h in ((700045, 1), (700290, 3))) + "\n")
 write_text("net.csv", 'WKT,height,capacity\n"LINESTRING(700100 4000040,700100 4000070)",4,1000\n')
+write_text("stems.csv", 'WKT,diameter,height\n"LINESTRING(700200 4000180,700208 4000180)",40,\nPOINT(700250 4000185),30,20\n')
 study = {
-    "terrain": {"FileName": "hill.asc", "Preset": "Talus (assumed)", "BarrierFile": "net.csv"},
+    "terrain": {"FileName": "hill.asc", "Preset": "Talus (assumed)", "BarrierFile": "net.csv", "TreeFile": "stems.csv"},
     "rocks": {"FileName": "rocks.csv"},
     "simulation": {"EndTime": 6.0, "Seed": 77, "TrajectoryOutput": "Thinned"}, "map": {"CellSize": 5.0, "LeastReach": 0.001},
     "lines": {"FileName": "road.csv", "BarrierCapacity": 150.0, "ParallelLines": 2, "ParallelSpacing": -10.0},
@@ -68,10 +69,10 @@ assert "Hill &amp; &lt;dale&gt;" in page and "<b>road" not in page
 text = " ".join(html.unescape(re.sub(r"<[^>]*>", " ", page)).split())
 
 # The study's own: inputs, ground, rocks, structures, lines, versions.
-for name in ("hill.asc", "hill.prj", "rocks.csv", "road.csv", "net.csv"):
+for name in ("hill.asc", "hill.prj", "rocks.csv", "road.csv", "net.csv", "stems.csv"):
     assert name in text and content(name) in text, name
 for word in ("WGS 84 / UTM zone 16N", "preset Talus (assumed): Lu et al. (2019)", "seed 77", "31 × 21 nodes every 10 m",
-             "12 rocks, 3 releases in 4 iterations", "4 m high, capacity 1 000 kJ", "Office",
+             "12 rocks, 3 releases in 4 iterations", "4 m high, capacity 1 000 kJ", "Office", "stems that lie 1, diameter 40 to 40 cm; energy that breaks one 194 kJ", "stems 1 on",
              "RockfallDDA", "gives no frequency of release", "Cells of the map below LeastReach 0.001 are left empty", "icosahedron 4 0.75 0.75 0.75",
              "No rock reached line <b>road</b> 700290: of 12 rocks the share that passes is below 25 %"):
     assert word in text, word

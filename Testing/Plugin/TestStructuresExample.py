@@ -47,11 +47,7 @@ scripts = re.findall(r"^```python\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
 assert len(scripts) == 1
 scope = {}
 exec(compile(scripts[0], "structures.md", "exec"), scope)
-# The layers that the page prints are those of its script, and every one of them stands on the slope.
-for name in ("forest", "dam", "net"):
-    with open(scope[name]) as file:
-        for line in file:
-            assert "    " + line.strip() in page, line
+# Every one of its layers stands on the slope.
 UpdatePipeline(proxy=scope["slope"])
 shown = scope["slope"].GetClientSideObject().GetOutputDataObject(1)
 kinds = vtk_to_numpy(shown.GetCellData().GetArray("StructureKind"))

@@ -27,15 +27,23 @@ struct Ball
                       : timeToCover(gap, -axis.dot(velocity), gravity * std::max(0.0, axis.z()));
   }
 
-  double toTriangle(const std::array<Vec3, 3>& q, const Vec3& normal) const
+  /// To a convex body with these corners, some of whose normals are given.
+  double toBody(std::span<const Vec3> corners, std::span<const Vec3> normals) const
   {
     double longest = 0.0;
     const auto along = [&](const Vec3& n)
     {
-      const double most = std::max({ n.dot(q[0]), n.dot(q[1]), n.dot(q[2]) });
+      double most = n.dot(corners[0]);
+      for (const Vec3& q : corners.subspan(1))
+      {
+        most = std::max(most, n.dot(q));
+      }
       longest = std::max(longest, this->time(n, n.dot(position) - most - radius));
     };
-    along(normal);
+    for (const Vec3& normal : normals)
+    {
+      along(normal);
+    }
     along(Vec3::UnitZ());
     for (const Vec3& n : { Vec3(Vec3::UnitX()), Vec3(Vec3::UnitY()), beside })
     {
@@ -58,6 +66,23 @@ struct Ball
     return std::max({ over, radial, passes });
   }
 };
+
+double toLying(const Ball& ball, const Obstacles& obstacles, int tree)
+{
+  thread_local std::vector<Vec3> corners, normals;
+  corners.clear();
+  normals.clear();
+  const ObstacleMesh& shape = obstacles.shapeOf(tree);
+  for (int k = 0; k < int(shape.nodes.size()); ++k)
+  {
+    corners.push_back(obstacles.treeCorner(tree, k));
+  }
+  for (int k = 0; k < int(shape.triangles.size()); ++k)
+  {
+    normals.push_back(obstacles.treeNormal(tree, k));
+  }
+  return ball.toBody(corners, normals);
+}
 
 } // namespace
 
@@ -93,7 +118,7 @@ double timeToObstacle(PlacedBlock& rock, const BlockState& state, const Block& b
       const std::array<Vec3, 3> q = { mesh.nodes[std::size_t(t.nodes[0])].position,
         mesh.nodes[std::size_t(t.nodes[1])].position,
         mesh.nodes[std::size_t(t.nodes[2])].position };
-      const double at = ball.toTriangle(q, t.normal);
+      const double at = ball.toBody(q, std::span(&t.normal, 1));
       if (at < close)
       {
         triangles.push_back(k);
@@ -107,8 +132,9 @@ double timeToObstacle(PlacedBlock& rock, const BlockState& state, const Block& b
     [&](int k)
     {
       const Eigen::Vector2d& place = obstacles.structures().trees[std::size_t(k)].position;
-      const double at =
-        ball.toStem(Vec3(place.x(), place.y(), obstacles.treeTop(k)), obstacles.treeRadius(k));
+      const double at = obstacles.lyingOf(k)
+        ? toLying(ball, obstacles, k)
+        : ball.toStem(Vec3(place.x(), place.y(), obstacles.treeTop(k)), obstacles.treeRadius(k));
       if (at >= close)
       {
         time = std::min(time, at);

@@ -19,7 +19,7 @@ class Terrain;
 struct StructureFiles
 {
   std::string embankments; ///< Lines.
-  std::string trees;       ///< Points, or polygons of stands.
+  std::string trees;       ///< Points, lines that lie, or polygons of stands.
   std::string barriers;    ///< Lines.
   /// Trees without a capacity of their own break at that of their diameter (stemCapacity); else
   /// they never break.
@@ -37,7 +37,8 @@ struct StructureFiles
 ///
 /// - Embankments: `height` (over ground, m) or `crest` (elevation, m), `width` (of the crest, m),
 ///   `slope` (of both sides), or `slope_up` and `slope_down` (of the mountain and the valley side).
-/// - Trees: `diameter` (cm) and `height` (m), `capacity` (kJ), `factor` (of the species).
+/// - Trees: `diameter` (cm) and `height` (m), `capacity` (kJ), `factor` (of the species). A line is
+///   lying stems, one a piece between two of its points; it needs no height.
 /// - Stands: `stems_ha`, `dbh_mean` and `dbh_dev` (cm), `height` (m), `conifers` (%), `f_conifer`
 ///   and `f_broad` (factors of the species), `spacing` (m).
 /// - Barriers: `height` (m), `capacity` (kJ; empty: holds everything), `mode` (stop or record),

@@ -1,4 +1,4 @@
-// Trees and stands of a layer.
+// Trees, stems that lie and stands of a layer.
 #include "gis/layers/structureRows.h"
 
 #include "base/errors.h"
@@ -30,6 +30,21 @@ double diameterOf(const FeatureRow& row, const char* field, const char* what)
   return diameter;
 }
 
+/// What a row says of a stem, wherever it is.
+void setStem(const FeatureRow& row, const StructureFiles& files, Tree& stem)
+{
+  stem.diameter = diameterOf(row, "diameter", "that of the stem in cm");
+  const double factor = row.positive("factor").value_or(1.0);
+  if (const auto capacity = row.notNegative("capacity"))
+  {
+    stem.capacity = kJ * *capacity;
+  }
+  else if (files.treesBreak)
+  {
+    stem.capacity = stemCapacity(stem.diameter, factor);
+  }
+}
+
 Tree treeOf(const FeatureRow& row, const StructureFiles& files, StructurePlaces& places)
 {
   Tree t;
@@ -37,7 +52,8 @@ Tree treeOf(const FeatureRow& row, const StructureFiles& files, StructurePlaces&
   if (geometry && wkbFlatten(geometry->getGeometryType()) != wkbPoint)
   {
     row.fail(std::string("is a ") + geometry->getGeometryName() +
-      ", a POINT is needed, or a POLYGON with the column \"stems_ha\"");
+      ", a POINT is needed, a LINESTRING of a stem that lies, or a POLYGON with the column "
+      "\"stems_ha\"");
   }
   if (!geometry && !(row.number("x") && row.number("y")))
   {
@@ -45,18 +61,28 @@ Tree treeOf(const FeatureRow& row, const StructureFiles& files, StructurePlaces&
   }
   t.position = geometry ? places.at(row, geometry->toPoint()->getX(), geometry->toPoint()->getY())
                         : places.at(row, *row.number("x"), *row.number("y"));
-  t.diameter = diameterOf(row, "diameter", "that of the stem in cm");
+  setStem(row, files, t);
   t.height = needed(row, "height", "that of the tree in m");
-  const double factor = row.positive("factor").value_or(1.0);
-  if (const auto capacity = row.notNegative("capacity"))
-  {
-    t.capacity = kJ * *capacity;
-  }
-  else if (files.treesBreak)
-  {
-    t.capacity = stemCapacity(t.diameter, factor);
-  }
   return t;
+}
+
+/// A stem for each piece of the row's lines.
+std::vector<Tree> lyingStemsOf(
+  const FeatureRow& row, const StructureFiles& files, StructurePlaces& places)
+{
+  Tree stem;
+  setStem(row, files, stem);
+  std::vector<Tree> stems;
+  for (const std::vector<Eigen::Vector2d>& line : places.lines(row))
+  {
+    for (std::size_t k = 1; k < line.size(); ++k)
+    {
+      stem.position = line[k - 1];
+      stem.end = line[k];
+      stems.push_back(stem);
+    }
+  }
+  return stems;
 }
 
 /// A polygon that is given by its density.
@@ -111,13 +137,15 @@ std::size_t StructureReader::readTrees(std::span<const Stand> cells) const
   std::vector<Tree> grown;
   std::vector<Stand> stands;
   LayerWish wish{ files.trees, files.treeLayer, "TreeLayerName" };
-  wish.what = "layer of points or polygons";
-  wish.kinds = kPoints | kPolygons | kRows;
+  wish.what = "layer of points, lines or polygons";
+  wish.kinds = kPoints | kLines | kPolygons | kRows;
   wish.better = kPoints | kRows;
   wish.columns = { { "diameter", "stems_ha" }, { "height" } };
   const auto add = [&](const Tree& tree, std::vector<Tree>& trees)
   {
-    if (std::isnan(terrain.elevation(tree.position.x(), tree.position.y())))
+    const Eigen::Vector2d& end = tree.lies() ? tree.end : tree.position;
+    if (std::isnan(terrain.elevation(tree.position.x(), tree.position.y())) ||
+      std::isnan(terrain.elevation(end.x(), end.y())))
     {
       ++outside;
       return;
@@ -141,10 +169,15 @@ std::size_t StructureReader::readTrees(std::span<const Stand> cells) const
           }
           return;
         }
-        Tree tree = treeOf(row, files, places);
-        tree.feature = count;
-        tree.material = material;
-        add(tree, all.trees);
+        std::vector<Tree> trees = kindOf(row.geometry()) == kLines
+          ? lyingStemsOf(row, files, places)
+          : std::vector<Tree>{ treeOf(row, files, places) };
+        for (Tree& tree : trees)
+        {
+          tree.feature = count;
+          tree.material = material;
+          add(tree, all.trees);
+        }
       });
   };
   if (cells.empty())

@@ -54,7 +54,7 @@ StructureEvent eventAt(StructureOutcome outcome, std::int64_t feature, const Blo
 namespace
 {
 
-/// A hit on a stem, in plan.
+/// A hit on a stem: in plan if it stands, square to its axis if it lies.
 struct StemHit
 {
   double offset = 0.0;       ///< See terrain/stemHit.h.
@@ -62,8 +62,58 @@ struct StemHit
   Vec3 along = Vec3::Zero(); ///< Of the rock that slips past the stem.
 };
 
-StemHit hitOn(const Tree& stem, const Block& block, const BlockState& state)
+/// How far a block reaches from its centre against a direction, m.
+double reachAgainst(const Block& block, const BlockState& state, const Vec3& side)
 {
+  PlacedBlock placed;
+  placed.place(block, state);
+  double reach = isRound(placed) ? roundReach(roundAxes(placed), side) : 0.0;
+  for (const Vec3& vertex : placed.vertices())
+  {
+    reach = std::max(reach, side.dot(state.position - vertex));
+  }
+  return reach;
+}
+
+/// The offset is that of the rock's way from the axis, square to both; from the end of the axis
+/// where they pass each other beyond it, as for a rock that comes along the stem.
+StemHit hitOnLying(const LyingStem& stem, const Block& block, const BlockState& state)
+{
+  if (!(state.velocity.norm() > 0.0))
+  {
+    return {};
+  }
+  const double length = (stem.to - stem.from).norm();
+  const Vec3 axis = (stem.to - stem.from) / length;
+  const Vec3 off = state.position - stem.from;
+  const double forth = axis.dot(state.velocity);
+  const Vec3 across = state.velocity - forth * axis;
+  const double time = across.squaredNorm() > 0.0 ? -across.dot(off) / across.squaredNorm() : 0.0;
+  const double nearest =
+    across.squaredNorm() > 0.0 ? axis.dot(off) + time * forth : (forth > 0.0 ? -1.0 : length + 1.0);
+  const bool within = nearest >= 0.0 && nearest <= length;
+  const Vec3 along = (within ? across : state.velocity).normalized();
+  Vec3 side = state.position - (stem.from + std::clamp(nearest, 0.0, length) * axis);
+  side -= within ? Vec3(axis.dot(side) * axis) : Vec3::Zero();
+  side -= along.dot(side) * along;
+  const double distance = side.norm();
+  if (!(distance > 0.0))
+  {
+    return { 0.0, -along, along };
+  }
+  side /= distance;
+  const double offset = std::min(1.0, distance / (reachAgainst(block, state, side) + stem.radius));
+  const double towards = std::sqrt(1.0 - offset * offset);
+  return { offset, offset * side - towards * along, towards * side + offset * along };
+}
+
+StemHit hitOn(const Obstacles& obstacles, int tree, const Block& block, const BlockState& state)
+{
+  if (const LyingStem* lying = obstacles.lyingOf(tree))
+  {
+    return hitOnLying(*lying, block, state);
+  }
+  const Tree& stem = obstacles.structures().trees[std::size_t(tree)];
   const double speed = state.velocity.head<2>().norm();
   if (!(speed > 0.0))
   {
@@ -77,13 +127,7 @@ StemHit hitOn(const Tree& stem, const Block& block, const BlockState& state)
     side = -side;
     distance = -distance;
   }
-  PlacedBlock placed;
-  placed.place(block, state);
-  double reach = isRound(placed) ? roundReach(roundAxes(placed), side) : 0.0;
-  for (const Vec3& vertex : placed.vertices())
-  {
-    reach = std::max(reach, side.dot(state.position - vertex));
-  }
+  const double reach = reachAgainst(block, state, side);
   const double offset = std::min(1.0, distance / (reach + 0.5 * stem.diameter));
   const double towards = std::sqrt(1.0 - offset * offset);
   return { offset, offset * side - towards * along, towards * side + offset * along };
@@ -148,10 +192,7 @@ void StructuresOnWay::clearTrees(const PlacedBlock& rock, const BlockState& stat
       stem.ridges.clear();
       obstacles_->append({}, std::span<const int>(&k, 1), stem);
       const double distance = clearance(rock, state, stem, 0.0, 0.0).distance;
-      const Eigen::Vector2d off =
-        p.head<2>() - obstacles_->structures().trees[std::size_t(k)].position;
-      const bool inside = off.norm() < obstacles_->treeRadius(k) && p.z() < obstacles_->treeTop(k);
-      if (distance <= 0.0 || inside)
+      if (distance <= 0.0 || obstacles_->isInTree(k, p))
       {
         goneTrees_.push_back(k);
       }
@@ -169,13 +210,19 @@ bool StructuresOnWay::stemHolds(
 {
   const Tree& stem = obstacles_->structures().trees[std::size_t(tree)];
   const double energy = rigidKineticEnergy(block, state);
+  if (stem.lies())
+  {
+    return energy <= stem.capacity ||
+      energyTowards(hitOn(*obstacles_, tree, block, state).offset, energy) <= stem.capacity;
+  }
   if (energy > stem.capacity)
   {
     return false;
   }
   const bool presses = std::any_of(contacts.begin(), contacts.end(),
     [&](const Contact& c) { return c.closed() && this->treeOf(c) == tree; });
-  return presses || energy <= stemShare(hitOn(stem, block, state).offset) * stem.capacity;
+  return presses ||
+    energy <= stemShare(hitOn(*obstacles_, tree, block, state).offset) * stem.capacity;
 }
 
 std::vector<int> StructuresOnWay::treesHit(const RockBody& body) const
@@ -235,8 +282,8 @@ void StructuresOnWay::passTree(
   const double energy = rigidKineticEnergy(body.block, body.state);
   const double height =
     body.state.position.z() - surface_->elevation(body.state.position.x(), body.state.position.y());
-  const StemHit hit = hitOn(stem, body.block, body.state);
-  const bool stands = (1.0 - hit.offset * hit.offset) * energy <= stem.capacity;
+  const StemHit hit = hitOn(*obstacles_, tree, body.block, body.state);
+  const bool stands = energyTowards(hit.offset, energy) <= stem.capacity;
   StructureEvent event =
     eventAt(stands ? StructureOutcome::TreePassed : StructureOutcome::TreeBroken, stem.feature,
       body.state, energy, height);
@@ -284,11 +331,10 @@ bool StructuresOnWay::apply(const Broken& broken, const SurfacePatch& patch)
       continue;
     }
     goneTrees_.insert(at, tree);
-    const Eigen::Vector2d& place = obstacles_->structures().trees[std::size_t(tree)].position;
-    const double r = obstacles_->treeRadius(tree);
+    const FlatBox box = obstacles_->treeBox(tree);
     near = near ||
-      (place.x() + r >= patch.xMin && place.x() - r <= patch.xMax && place.y() + r >= patch.yMin &&
-        place.y() - r <= patch.yMax);
+      (box.xMax >= patch.xMin && box.xMin <= patch.xMax && box.yMax >= patch.yMin &&
+        box.yMin <= patch.yMax);
   }
   return near;
 }

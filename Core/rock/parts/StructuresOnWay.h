@@ -63,7 +63,7 @@ public:
   int treeOf(const Contact& contact) const; ///< −1: it is on none.
   /// Where it is released there is none.
   void clearTrees(const PlacedBlock& rock, const BlockState& state);
-  /// Whether a stem holds a block with this motion: the law of terrain/stemHit.h. What presses
+  /// Whether a stem holds a block with this motion: the laws of terrain/stemHit.h. What presses
   /// against it by one of these contacts it holds up to its capacity.
   bool stemHolds(
     int tree, const Block& block, const BlockState& state, std::span<const Contact> contacts) const;

@@ -112,6 +112,27 @@ TEST(StructureLayers, AreReadInTheUnitsThatAPersonTypes)
   EXPECT_TRUE(std::isinf(s.barriers[1].capacity));
 }
 
+/// Lines among the trees lie: a stem for each piece.
+TEST(StructureLayers, LinesOfTreesLie)
+{
+  StructureFiles files;
+  files.trees = writeFile("logs.csv",
+    "WKT,diameter,height,capacity,factor,rv\n\"LINESTRING(20 50,30 50,30 58)\",40,,,2,0.3\n"
+    "\"LINESTRING(60 20,60 28)\",50,,80,,\nPOINT(50 50),40,20,,,\n");
+  std::vector<std::string> notes;
+  const Structures s = readStructures(files, site(), notes);
+  EXPECT_TRUE(notes.empty());
+  ASSERT_EQ(s.trees.size(), 4u);
+  EXPECT_EQ(s.trees[1].position, Eigen::Vector2d(30.0, 50.0));
+  EXPECT_EQ(s.trees[1].end, Eigen::Vector2d(30.0, 58.0));
+  EXPECT_EQ(s.trees[1].feature, 1);
+  EXPECT_EQ(s.trees[1].material, 1);
+  EXPECT_DOUBLE_EQ(s.trees[1].capacity, 2.0 * stemCapacity(0.4));
+  EXPECT_EQ(s.trees[2].capacity, 80e3);
+  EXPECT_TRUE(s.trees[2].lies());
+  EXPECT_FALSE(s.trees[3].lies());
+}
+
 TEST(StructureLayers, AreBroughtToTheTerrainsCoordinates)
 {
   GridGeometry g;
@@ -199,7 +220,11 @@ TEST(StructureLayers, TellWhatIsWrong)
     { 1, tree + "50,50,0.3,20\n", "\"diameter\" is 0.3 cm: is it in metres?" },
     { 1, tree + "50,50,30,2000\n", "height of the tree is 2000" },
     { 1, "diameter,height\n30,20\n", "has no point" },
-    { 1, "WKT,diameter,height\n" + line + ",30,20\n", "is a LINESTRING, a POINT is needed" },
+    { 1, "WKT,diameter,height\n" + area + ",30,20\n", "is a POLYGON, a POINT is needed" },
+    { 1, "WKT,diameter\n" + line + ",3000\n", "is it in millimetres?" },
+    { 1, "WKT,diameter\n\"LINESTRING(1 1,1 1)\",30\n", "is a line of one place only" },
+    { 1, "WKT,diameter\n\"LINESTRING(-5 1,9 1)\",30\n", "none of its 1 trees" },
+    { 1, "WKT,height\n" + line + ",20\n", "field \"diameter\" is missing" },
     { 1, "WKT,stems_ha,dbh_mean,dbh_dev,height\n" + area + ",400,30,31,20\n",
       "field \"dbh_dev\" is 31 cm, it must be at most the mean" },
     { 1, "WKT,stems_ha,dbh_mean,height\n" + area + ",400,,20\n", "dbh_mean" },
@@ -364,6 +389,19 @@ TEST(StructureDoubts, RatiosAreNoSteeperThan45Degrees)
   }
   EXPECT_DOUBLE_EQ(readDams(line + ",5,2,1:2\n").structures.embankments.at(0).valleySlope, 2.0);
   EXPECT_DOUBLE_EQ(readDams(line + ",5,2,0.5\n").structures.embankments.at(0).valleySlope, 0.5);
+}
+
+TEST(StructureDoubts, LyingStemsThatNoTreeLeaves)
+{
+  const auto read = [](const std::string& rows) { return readTrees(rows, "WKT,diameter\n"); };
+  const std::string stem = "\"LINESTRING(20 50,28 50)\",40\n";
+  EXPECT_TRUE(read(stem + "\"LINESTRING(20 51,28 51)\",40\n").notes.empty());
+  EXPECT_EQ(read(stem + "\"LINESTRING(28.05 50,20 50)\",40\n")
+              .told("1 of 2 lying stems stand within 0.1 m of another one, first features 1 and 2"),
+    1);
+  EXPECT_EQ(read("\"LINESTRING(20 50,28 50)\",300\n").told("1 of 1 diameters of trees"), 1);
+  EXPECT_EQ(read("\"LINESTRING(10 50,90 50)\",40\n").told("are 0.5 to 60 m long"), 1);
+  EXPECT_EQ(read("\"LINESTRING(20 50,20.2 50)\",40\n").told("feature 1 with 0.2 m"), 1);
 }
 
 TEST(StructureDoubts, TheSameTwice)
