@@ -112,7 +112,7 @@ enum class Fate
   LeftDomain = 1, ///< Went beyond the slope's edge.
   Moving = 2,     ///< Still moving at the end time.
   Caught = 3,     ///< Stopped by a barrier.
-  /// Fell where the slope has no data, but ground on two sides (terrain/holes.h).
+  /// Fell where the slope has no data, but ground on two sides (HeightGrid::isHole).
   LostInNodata = 4,
 };
 std::string fateName(Fate fate);

@@ -2,7 +2,6 @@
 
 #include "law/settings.h"
 #include "rock/fall/Fall.h"
-#include "terrain/holes.h"
 #include "terrain/walls.h"
 
 #include <algorithm>
@@ -29,7 +28,7 @@ void checkLeft(Fall& fall)
   }
   if (left)
   {
-    fall.end(isHole(terrain, p.x(), p.y()) ? Fate::LostInNodata : Fate::LeftDomain);
+    fall.end(terrain.isHole(p.x(), p.y()) ? Fate::LostInNodata : Fate::LeftDomain);
   }
 }
 
