@@ -188,8 +188,14 @@ void KeptRun::dropInputs()
   slope = {};
 }
 
-void KeptRun::prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const Ranks& ranks,
-  const std::string& noMemory)
+std::string KeptRun::noMemory() const
+{
+  return "The results do not fit in memory: Iterations is " +
+    std::to_string(parameters.iterations) +
+    "; fewer of them, a longer OutputInterval or a TrajectoryOutput that keeps less take less";
+}
+
+void KeptRun::prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const Ranks& ranks)
 {
   terrainContent = filters::terrainContent(terrainInput->GetFieldData());
   rocksContent = this->contentOfRocks(rocksInput, ranks);
@@ -207,7 +213,7 @@ void KeptRun::prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const 
               "slope to the simulation or to the source of the rocks");
       }
     },
-    noMemory);
+    this->noMemory());
   // Wherever they are; nowhere is the first rank's business.
   const int terrainRank = rankOf(ranks, terrainInput, "Terrain");
   const int rocksRank = rankOf(ranks, rocksInput, "Rocks");
@@ -220,7 +226,7 @@ void KeptRun::prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const 
         read = readTerrain(terrainInput, !brought);
       }
     },
-    noMemory);
+    this->noMemory());
   vtkNew<vtkPolyData> bare, released;
   if (ranks.rank() == terrainRank)
   {
@@ -273,13 +279,17 @@ void KeptRun::prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const 
         }
       }
     },
-    noMemory);
+    this->noMemory());
   if (parameters.rockRockContact && !contactFile.empty())
   {
-    this->readContacts(ranks, noMemory);
+    this->readContacts(ranks);
   }
-  ranks.together(
-    [&] { ensemble = std::make_unique<Ensemble>(slope, frame.rocks, parameters); }, noMemory);
+  ranks.together([&] { ensemble = std::make_unique<Ensemble>(slope, frame.rocks, parameters); },
+    this->noMemory());
+  if (!this->wholeFits())
+  {
+    parts.wholeIteration = -1;
+  }
 }
 
 void KeptRun::takeResults(RunSink& sink)
@@ -308,7 +318,7 @@ void KeptRun::describe()
   writeTiles(trajectories);
 }
 
-void KeptRun::readContacts(const Ranks& ranks, const std::string& noMemory)
+void KeptRun::readContacts(const Ranks& ranks)
 {
   // The file need be there for the first rank only. It is taken apart, sent, and put together.
   vtkNew<vtkPolyData> table;
@@ -343,7 +353,7 @@ void KeptRun::readContacts(const Ranks& ranks, const std::string& noMemory)
           pair.contact.restitution, pair.contact.frictionAngle, pair.contact.cohesion);
       }
     },
-    noMemory);
+    this->noMemory());
   ranks.broadcast(table, 0);
   vtkFieldData* sent = table->GetFieldData();
   auto* one = vtkStringArray::SafeDownCast(sent->GetAbstractArray("First"));

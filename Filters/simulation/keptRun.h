@@ -73,11 +73,11 @@ struct KeptRun
   bool wholeFits() const;
 
   /// Takes the inputs from the ranks that have them. Collective. Throws Error on all ranks.
-  void prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const Ranks& ranks,
-    const std::string& noMemory);
+  void prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const Ranks& ranks);
   /// Reads the pairs of materials on the first rank, for all. Collective. Throws Error on all
   /// ranks.
-  void readContacts(const Ranks& ranks, const std::string& noMemory);
+  void readContacts(const Ranks& ranks);
+  std::string noMemory() const; ///< Text for want of memory.
   /// Cell arrays of the rocks that only show; in a parallel run none, as names are on one rank.
   std::uint64_t contentOfRocks(vtkPolyData* rocksInput, const Ranks& ranks) const;
   /// Takes what a sink was given, perhaps not all of it.

@@ -39,9 +39,8 @@ public:
   std::int64_t points = 0, count = 0;
 };
 
-LiveRun::LiveRun(std::unique_ptr<KeptRun> run, std::string noMemory)
+LiveRun::LiveRun(std::unique_ptr<KeptRun> run)
   : run_(std::move(run))
-  , noMemory_(std::move(noMemory))
   , sink_(std::make_unique<Sink>(*run_))
   , thread_(
       [this]
@@ -57,7 +56,7 @@ LiveRun::LiveRun(std::unique_ptr<KeptRun> run, std::string noMemory)
         }
         catch (...)
         {
-          failure_ = reasonOf(noMemory_);
+          failure_ = reasonOf(run_->noMemory());
         }
         over_ = true;
       })

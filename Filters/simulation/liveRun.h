@@ -19,8 +19,8 @@ namespace rockfall::filters
 class LiveRun
 {
 public:
-  /// Begins to simulate a prepared run. `noMemory` is the text for want of memory.
-  LiveRun(std::unique_ptr<KeptRun> run, std::string noMemory);
+  /// Begins to simulate a prepared run.
+  explicit LiveRun(std::unique_ptr<KeptRun> run);
   /// Stops and waits for the trajectories under way.
   ~LiveRun();
   LiveRun(const LiveRun&) = delete;
@@ -49,7 +49,6 @@ private:
   class Sink;
 
   std::unique_ptr<KeptRun> run_;
-  std::string noMemory_;
   std::unique_ptr<Sink> sink_;
   std::atomic<bool> stop_{ false }, over_{ false };
   std::atomic<double> share_{ 0.0 };

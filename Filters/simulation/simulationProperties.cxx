@@ -4,15 +4,20 @@
 
 #include "base/errors.h"
 #include "base/text/numberText.h"
-#include "simulation/keptRun.h"
+#include "simulation/currentRun.h"
 
 #include <limits>
+#include <memory>
 #include <string>
 
 //------------------------------------------------------------------------------
-void vtkRockfallSimulation::TakeProperties(rockfall::filters::KeptRun& run)
+std::unique_ptr<rockfall::filters::KeptRun> vtkRockfallSimulation::WantedRun(
+  vtkPolyData* terrain, vtkPolyData* rocks)
 {
-  rockfall::SimulationParameters& p = run.parameters;
+  auto run = std::make_unique<rockfall::filters::KeptRun>();
+  run->terrain = rockfall::filters::Stamp(terrain);
+  run->rocks = rockfall::filters::Stamp(rocks);
+  rockfall::SimulationParameters& p = run->parameters;
   p.timeStep = this->TimeStep;
   p.endTime = this->EndTime;
   p.outputInterval = this->OutputInterval;
@@ -25,17 +30,19 @@ void vtkRockfallSimulation::TakeProperties(rockfall::filters::KeptRun& run)
   p.rockRestitution = this->RockRestitution;
   p.rockFrictionAngle = rockfall::radians(this->RockFrictionAngle);
   p.rockCohesion = this->RockCohesion;
-  run.contactFile = this->RockContactFile;
-  run.contactSheet = this->RockContactSheet;
-  run.allowReferences = this->AllowReferences != 0;
+  run->contactFile = this->RockContactFile;
+  run->contactSheet = this->RockContactSheet;
+  run->allowReferences = this->AllowReferences != 0;
   p.pushRocksApart = this->PushRocksApart;
   p.iterations = this->Iterations;
   p.firstIteration = this->FirstIteration;
   p.seed = std::uint64_t(this->Seed);
   p.threads = this->NumberOfThreads;
-  run.parts.retention = rockfall::Retention(this->TrajectoryOutput);
+  run->parts.retention = rockfall::Retention(this->TrajectoryOutput);
   p.keepImpacts = this->KeepImpacts;
-  run.printNotes = this->PrintNotes;
+  run->parts.wholeIteration = this->FirstIteration + this->ShownIteration;
+  run->printNotes = this->PrintNotes;
+  return run;
 }
 
 //------------------------------------------------------------------------------
@@ -56,13 +63,6 @@ void vtkRockfallSimulation::CheckProperties(const rockfall::filters::KeptRun& ru
   inRange(this->ShownIteration, 0, this->Iterations - 1, "ShownIteration");
   inRange(this->ImpactResolution, IMPULSE, SPRINGS, "ImpactResolution");
   inRange(this->TrajectoryOutput, NOTHING, FULL, "TrajectoryOutput");
-}
-
-//------------------------------------------------------------------------------
-std::string vtkRockfallSimulation::NoMemory() const
-{
-  return "The results do not fit in memory: Iterations is " + std::to_string(this->Iterations) +
-    "; fewer of them, a longer OutputInterval or a TrajectoryOutput that keeps less take less";
 }
 
 //------------------------------------------------------------------------------
@@ -96,8 +96,8 @@ void vtkRockfallSimulation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "KeepImpacts: " << this->KeepImpacts << "\n";
   os << indent << "PrintNotes: " << this->PrintNotes << "\n";
   os << indent << "PrintProgress: " << this->PrintProgress << "\n";
-  os << indent << "StateHash: " << this->StateHash << "\n";
-  os << indent << "RunStatus: " << this->RunStatus << "\n";
-  os << indent << "NumberOfRuns: " << this->NumberOfRuns << "\n";
-  os << indent << "Kept: " << (this->Kept ? "a finished run" : "(none)") << "\n";
+  os << indent << "StateHash: " << this->GetStateHash() << "\n";
+  os << indent << "RunStatus: " << this->GetRunStatus() << "\n";
+  os << indent << "NumberOfRuns: " << this->GetNumberOfRuns() << "\n";
+  os << indent << "Kept: " << (this->Current->isOver() ? "a finished run" : "(none)") << "\n";
 }

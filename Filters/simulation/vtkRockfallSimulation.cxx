@@ -1,39 +1,27 @@
 #include "vtkRockfallSimulation.h"
 
 #include "base/errors.h"
-#include "base/text/numberText.h"
 #include "base/version.h"
-#include "shared/arrays.h"
 #include "shared/errorReport.h"
 #include "shared/inputs.h"
+#include "shared/ranks.h"
 #include "shared/streamingPieces.h"
-#include "shared/terrainFieldData.h"
 #include "shared/withAbort.h"
-#include "simulation/keptRun.h"
-#include "simulation/liveRun.h"
-#include "simulation/progressText.h"
-#include "simulation/runNotes.h"
-#include "simulation/sharedRun.h"
+#include "simulation/currentRun.h"
+#include "simulation/runInputs.h"
 
 #include "vtkAlgorithmOutput.h"
 #include "vtkDataObject.h"
-#include "vtkFieldData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 #include "vtkPolyData.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
-#include "vtkStringArray.h"
 #include "vtkTable.h"
-#include "vtkWeakPointer.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <functional>
-#include <limits>
-#include <span>
 #include <vector>
 
 vtkStandardNewMacro(vtkRockfallSimulation);
@@ -43,7 +31,6 @@ namespace
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 using rockfall::filters::KeptRun;
-using rockfall::filters::LiveRun;
 using rockfall::filters::Ranks;
 using rockfall::filters::Stamp;
 
@@ -65,31 +52,6 @@ enum OutputPorts
 /// More time steps than this are not listed, only their range is.
 constexpr double mostTimeSteps = 1e6;
 
-/// A run that is watched shows what it has after so long, s: a short one is then over.
-constexpr double kAtOnce = 0.3;
-/// Looks at a run take a fifth of the window's time, and come once a second at most.
-constexpr double kLookInterval = 1.0, kLookShare = 4.0;
-
-/// The time of the data that came last from here or, before any did, from where it gets them; NaN
-/// if nothing has come yet.
-double timeShown(vtkAlgorithmOutput* from)
-{
-  while (from)
-  {
-    vtkAlgorithm* producer = from->GetProducer();
-    vtkInformation* info = producer->GetOutputInformation(from->GetIndex());
-    vtkDataObject* data = info ? info->Get(vtkDataObject::DATA_OBJECT()) : nullptr;
-    if (data && data->GetInformation()->Has(vtkDataObject::DATA_TIME_STEP()))
-    {
-      return data->GetInformation()->Get(vtkDataObject::DATA_TIME_STEP());
-    }
-    const bool more =
-      producer->GetNumberOfInputPorts() > 0 && producer->GetNumberOfInputConnections(0) > 0;
-    from = more ? producer->GetInputConnection(0, 0) : nullptr;
-  }
-  return std::numeric_limits<double>::quiet_NaN();
-}
-
 } // namespace
 
 /// An error that was reported. Until something changes it is not reported again: an animation asks
@@ -101,58 +63,10 @@ struct vtkRockfallSimulation::Failure
   std::string message;
 };
 
-struct vtkRockfallSimulation::Inputs
-{
-  rockfall::filters::Input terrain{ rockfall::filters::InputKind::Terrain };
-  rockfall::filters::Input rocks{ rockfall::filters::InputKind::Rocks };
-  /// Where rocks that move come from, and the time at which they were shown first.
-  vtkWeakPointer<vtkAlgorithmOutput> rocksFrom;
-  double rocksShown = 0.0;
-
-  double timeOfRocks(
-    vtkAlgorithmOutput* from, vtkInformation* rocks, vtkInformationVector* outputs);
-
-  const std::string& problem() const
-  {
-    return this->terrain.problem().empty() ? this->rocks.problem() : this->terrain.problem();
-  }
-};
-
-//------------------------------------------------------------------------------
-/// The time at which rocks that move are asked for: as they are shown when this is first asked. An
-/// animation that goes on, or a change of the run before, makes no run of another time.
-double vtkRockfallSimulation::Inputs::timeOfRocks(
-  vtkAlgorithmOutput* from, vtkInformation* info, vtkInformationVector* outputs)
-{
-  if (this->rocksFrom == from)
-  {
-    return this->rocksShown;
-  }
-  this->rocksFrom = from;
-  double time = timeShown(from);
-  for (int port = 0; std::isnan(time) && port < outputs->GetNumberOfInformationObjects(); ++port)
-  {
-    vtkInformation* asked = outputs->GetInformationObject(port);
-    if (asked->Has(Pipeline::UPDATE_TIME_STEP()))
-    {
-      time = asked->Get(Pipeline::UPDATE_TIME_STEP());
-    }
-  }
-  const double* range = info->Get(Pipeline::TIME_RANGE());
-  this->rocksShown =
-    std::isnan(time) ? range[0] : std::clamp(time, range[0], std::max(range[0], range[1]));
-  if (this->rocksShown > range[0] && Ranks().rank() == 0)
-  {
-    rockfall::filters::showNote("Rockfall Simulation: the Rocks move, and are taken as they are "
-                                "shown, at " +
-      rockfall::numberText(this->rocksShown) + " s; Force Time before them sets another time");
-  }
-  return this->rocksShown;
-}
-
 //------------------------------------------------------------------------------
 vtkRockfallSimulation::vtkRockfallSimulation()
-  : Taken(std::make_unique<Inputs>())
+  : Current(std::make_unique<rockfall::filters::CurrentRun>(this))
+  , Taken(std::make_unique<rockfall::filters::RunInputs>())
 {
   this->SetNumberOfInputPorts(2);
   this->SetNumberOfOutputPorts(5);
@@ -237,121 +151,6 @@ int vtkRockfallSimulation::RequestUpdateExtent(
 }
 
 //------------------------------------------------------------------------------
-bool vtkRockfallSimulation::Simulate(vtkPolyData* terrainInput, vtkPolyData* rocksInput)
-{
-  const Ranks ranks;
-  auto run = std::make_unique<KeptRun>();
-  run->terrain = Stamp(terrainInput);
-  run->rocks = Stamp(rocksInput);
-  this->TakeProperties(*run);
-  ranks.together([&] { this->CheckProperties(*run); }, this->NoMemory());
-  bool same = false;
-  ranks.together([&]
-    { same = this->Kept && this->Kept->takesOver(*run, terrainInput, rocksInput, ranks); },
-    this->NoMemory());
-  const std::vector<int> kept = ranks.gather(same ? 1 : 0);
-  if (std::find(kept.begin(), kept.end(), 0) == kept.end())
-  {
-    this->StateHash = this->Kept->stateHash;
-    return true;
-  }
-  if (this->Live && this->Live->run().isLike(*run))
-  {
-    return this->Follow();
-  }
-  this->Live.reset();
-  this->Kept.reset();
-  this->StateHash.clear();
-  const int threads = ranks.threads();
-  run->parameters.threads = this->NumberOfThreads > 0 ? this->NumberOfThreads : threads;
-  run->prepare(terrainInput, rocksInput, ranks, this->NoMemory());
-  if (run->wholeFits())
-  {
-    run->parts.wholeIteration = this->FirstIteration + this->ShownIteration;
-  }
-  const bool tells = this->PrintNotes && ranks.rank() == 0;
-  if (!this->RockRockContact && tells)
-  {
-    rockfall::filters::tellApart(run->frame.rocks);
-    rockfall::filters::tellNewNets(run->slope);
-  }
-  if (tells)
-  {
-    rockfall::filters::tellOdd(run->slope, run->frame.rocks, run->frame.frequencies);
-    rockfall::filters::tellAlike(run->slope, run->frame.rocks, run->parameters.iterations);
-  }
-  // Rocks that are the same in all iterations are known before they run.
-  const bool anew = run->ensemble->pushesAnew();
-  if (!anew && tells)
-  {
-    rockfall::filters::tellPushed(*run->ensemble, run->ensemble->pushed(), ranks);
-  }
-  if (this->Watched && ranks.count() == 1)
-  {
-    ++this->NumberOfRuns;
-    this->Live = std::make_unique<LiveRun>(std::move(run), this->NoMemory());
-    this->Live->wait(kAtOnce);
-    return this->Follow();
-  }
-  rockfall::filters::RunSink sink(run->frame, run->parts);
-  rockfall::filters::ProgressReport report(this, run->ensemble->size(),
-    this->RockRockContact ? "iterations" : "trajectories", ranks.rank() == 0, this->PrintProgress);
-  ++this->NumberOfRuns;
-  if (!rockfall::filters::runShared(
-        *run->ensemble, run->parts, &sink, ranks, std::ref(report), this->NoMemory()))
-  {
-    return false;
-  }
-  if (anew && this->PrintNotes) // on all ranks
-  {
-    rockfall::filters::tellPushed(
-      *run->ensemble, rockfall::filters::pushedOnAll(*run->ensemble, ranks), ranks);
-  }
-  if (ranks.rank() == 0)
-  {
-    run->takeResults(sink);
-    this->StateHash = run->stateHash;
-  }
-  else
-  {
-    run->dropInputs(); // only the first rank shows anything
-  }
-  ranks.share(this->StateHash);
-  run->stateHash = this->StateHash;
-  report.finish();
-  this->Kept = std::move(run);
-  return true;
-}
-
-//------------------------------------------------------------------------------
-bool vtkRockfallSimulation::Follow()
-{
-  if (!this->Live->over())
-  {
-    this->Live->look();
-    this->Looked = this->Live->trajectories();
-    return true;
-  }
-  // Filters that took a part of the run, in the same pass of a view perhaps, are out of date.
-  this->Modified();
-  const std::unique_ptr<LiveRun> live = std::move(this->Live);
-  const std::string how = rockfall::filters::statusOf(*live);
-  this->Kept = live->take();
-  const KeptRun& run = *this->Kept;
-  this->StateHash = run.stateHash;
-  this->RunStatus = how;
-  if (run.ensemble->pushesAnew())
-  {
-    rockfall::filters::tellPushed(*run.ensemble, run.ensemble->pushed(), Ranks());
-  }
-  if (run.summary->GetNumberOfRows() < run.ensemble->size() * run.ensemble->trajectoriesPerUnit())
-  {
-    rockfall::filters::showNote("Rockfall Simulation was " + how);
-  }
-  return true;
-}
-
-//------------------------------------------------------------------------------
 void vtkRockfallSimulation::SetRocksConnection(vtkAlgorithmOutput* rocks)
 {
   this->SetInputConnection(ROCKS_INPUT, rocks);
@@ -366,42 +165,37 @@ void vtkRockfallSimulation::SetTerrainConnection(int, vtkAlgorithmOutput* terrai
 //------------------------------------------------------------------------------
 void vtkRockfallSimulation::Stop()
 {
-  if (this->Live)
-  {
-    this->Live->stop();
-  }
+  this->Current->stop();
 }
 
 //------------------------------------------------------------------------------
 void vtkRockfallSimulation::RunAgain()
 {
-  this->Forget();
+  this->Current->forget();
   this->Modified();
 }
 
 //------------------------------------------------------------------------------
 bool vtkRockfallSimulation::GetNeedsUpdate()
 {
-  using Clock = std::chrono::steady_clock;
-  this->Watched = true;
-  if (!this->Live)
-  {
-    return false;
-  }
-  const Clock::time_point now = Clock::now();
-  if (this->Drawn < this->Asked)
-  {
-    this->Drawn = now; // the first time that the window is free again
-  }
-  const std::chrono::duration<double> cost = this->Drawn - this->Asked, since = now - this->Drawn;
-  const bool news = since.count() > std::max(kLookInterval, kLookShare * cost.count()) &&
-    this->Live->trajectories() > this->Looked;
-  if (news || this->Live->over())
+  const bool news = this->Current->hasNews();
+  if (news)
   {
     this->Modified();
-    return true;
   }
-  return false;
+  return news;
+}
+
+//------------------------------------------------------------------------------
+int vtkRockfallSimulation::GetNumberOfRuns() const
+{
+  return this->Current->count();
+}
+
+//------------------------------------------------------------------------------
+const char* vtkRockfallSimulation::GetStateHash() const
+{
+  return this->Failed ? "" : this->Current->stateHash();
 }
 
 //------------------------------------------------------------------------------
@@ -413,19 +207,7 @@ const char* vtkRockfallSimulation::GetProgramVersion()
 //------------------------------------------------------------------------------
 const char* vtkRockfallSimulation::GetRunStatus()
 {
-  if (this->Live)
-  {
-    this->RunStatus = rockfall::filters::statusOf(*this->Live);
-  }
-  return this->RunStatus.c_str();
-}
-
-//------------------------------------------------------------------------------
-void vtkRockfallSimulation::Forget()
-{
-  this->Live.reset();
-  this->Kept.reset();
-  this->StateHash.clear();
+  return this->Current->status().c_str();
 }
 
 //------------------------------------------------------------------------------
@@ -433,7 +215,6 @@ int vtkRockfallSimulation::Fail(
   vtkPolyData* terrain, vtkPolyData* rocks, const std::string& message)
 {
   // The last run is kept: a property that was mistyped and is put right must not cost it.
-  this->StateHash.clear();
   this->Failed =
     std::make_unique<Failure>(Failure{ this->GetMTime(), Stamp(terrain), Stamp(rocks), message });
   // The others have the same message, and are silent.
@@ -468,7 +249,7 @@ int vtkRockfallSimulation::RequestData(
   const std::vector<int> known = ranks.gather(inherited ? 2 : (again ? 1 : 0));
   if (*std::max_element(known.begin(), known.end()) == 2)
   {
-    this->Forget();
+    this->Current->forget();
     return 1;
   }
   if (*std::min_element(known.begin(), known.end()) == 1)
@@ -480,13 +261,17 @@ int vtkRockfallSimulation::RequestData(
     return 1;
   }
   this->Failed.reset();
-  this->Asked = std::chrono::steady_clock::now();
+  this->Current->beginLook();
+  std::unique_ptr<KeptRun> wanted = this->WantedRun(terrain, rocks);
+  const std::string noMemory = wanted->noMemory();
   try
   {
     const rockfall::filters::HeardAbort heard(this);
     ranks.agree(this->Taken->problem());
-    bool finished = this->Simulate(terrain, rocks);
-    KeptRun* run = this->Live ? &this->Live->run() : this->Kept.get();
+    ranks.together([&] { this->CheckProperties(*wanted); }, noMemory);
+    bool finished =
+      this->Current->make(std::move(wanted), terrain, rocks, ranks, this->PrintProgress);
+    KeptRun* run = this->Current->get();
     vtkInformation* info = outputVector->GetInformationObject(ROCKS);
     double time = 0.0;
     if (info->Has(Pipeline::UPDATE_TIME_STEP()))
@@ -502,12 +287,12 @@ int vtkRockfallSimulation::RequestData(
           vtkNew<vtkPolyData> shown;
           // While a run goes on its blocks stand where they are released.
           finished = run->show(
-            this->ShownIteration, this->Live ? 0.0 : time,
+            this->ShownIteration, this->Current->goesOn() ? 0.0 : time,
             [this](double) { return !this->CheckAbort(); }, shown);
           output->ShallowCopy(shown);
         }
       },
-      this->NoMemory());
+      noMemory);
     if (ranks.gather(finished ? 1 : 0).front() == 0)
     {
       return rockfall::filters::giveUp(this); // on the others as on the one that was told to
@@ -526,6 +311,6 @@ int vtkRockfallSimulation::RequestData(
   }
   catch (...)
   {
-    return this->Fail(terrain, rocks, rockfall::filters::reasonOf(this->NoMemory()));
+    return this->Fail(terrain, rocks, rockfall::filters::reasonOf(noMemory));
   }
 }

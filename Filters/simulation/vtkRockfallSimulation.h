@@ -38,17 +38,16 @@
 #include "RockfallFiltersModule.h"
 #include "vtkPolyDataAlgorithm.h"
 
-#include <chrono>  // for looks at a run
-#include <cstdint> // for counts
-#include <memory>  // for the run that is kept
-#include <string>  // for messages
+#include <memory> // for the run
+#include <string> // for messages
 
 namespace rockfall
 {
 namespace filters // VTK's wrappers read no nested name
 {
+class CurrentRun;
 struct KeptRun;
-class LiveRun;
+struct RunInputs;
 }
 }
 
@@ -286,7 +285,7 @@ public:
    * 16 hexadecimal digits over the bits of all motion of the last run, empty if there is none. Two
    * runs that differ in threads, ranks, OutputInterval or what is kept have the same.
    */
-  const char* GetStateHash() const { return this->StateHash.c_str(); }
+  const char* GetStateHash() const;
 
   ///@{
   /**
@@ -323,7 +322,7 @@ public:
   /**
    * How often this filter has simulated since it was made.
    */
-  vtkGetMacro(NumberOfRuns, int);
+  int GetNumberOfRuns() const;
 
   vtkRockfallSimulation(const vtkRockfallSimulation&) = delete;
   void operator=(const vtkRockfallSimulation&) = delete;
@@ -340,18 +339,12 @@ protected:
 
 private:
   struct Failure;
-  struct Inputs;
 
-  void Forget(); ///< The kept run, as it is not what the outputs have.
   /// Reports an error of this execution, once for all ranks, and remembers of what it is the error.
   int Fail(vtkPolyData* terrain, vtkPolyData* rocks, const std::string& message);
-  /// Simulates unless the kept run is that of these inputs and properties. False if aborted.
-  bool Simulate(vtkPolyData* terrain, vtkPolyData* rocks);
-  /// Looks at the run that goes on, and keeps it when it is over.
-  bool Follow();
-  void TakeProperties(rockfall::filters::KeptRun& run);
+  /// A run of these inputs with the properties, not made yet.
+  std::unique_ptr<rockfall::filters::KeptRun> WantedRun(vtkPolyData* terrain, vtkPolyData* rocks);
   void CheckProperties(const rockfall::filters::KeptRun& run) const; ///< Throws ParameterError.
-  std::string NoMemory() const;
 
   double TimeStep = 0.005;
   double EndTime = 60.0;
@@ -373,21 +366,14 @@ private:
   int ImpactResolution = SPRINGS;
   int NumberOfThreads = 0;
   int ShownIteration = 0;
-  int NumberOfRuns = 0;
   int FirstIteration = 0;
   int TrajectoryOutput = FULL;
   bool KeepImpacts = true;
   bool PrintProgress = false;
   bool PrintNotes = true;
-  std::string StateHash;
-  std::string RunStatus;
-  std::unique_ptr<rockfall::filters::KeptRun> Kept;
-  std::unique_ptr<rockfall::filters::LiveRun> Live; ///< A run that goes on. Then none is kept.
-  bool Watched = false;                             ///< Whether somebody asks for news.
-  std::int64_t Looked = 0;                          ///< Trajectories at the last look.
-  std::chrono::steady_clock::time_point Asked, Drawn;
+  std::unique_ptr<rockfall::filters::CurrentRun> Current;
+  std::unique_ptr<rockfall::filters::RunInputs> Taken;
   std::unique_ptr<Failure> Failed;
-  std::unique_ptr<Inputs> Taken;
 };
 
 #endif
