@@ -143,7 +143,7 @@ void styleExceedance(const Shown& shown, vtkSMProxy* representation, vtkSMViewPr
   vtkSMPropertyHelper(representation, "SeriesLineThickness").SetStatus(kShare, "2");
   vtkSMPropertyHelper(representation, "SeriesMarkerSize").SetStatus(kShare, "6");
   vtkSMPropertyHelper(view, "BottomAxisTitle").Set("Kinetic energy (kJ)");
-  vtkSMPropertyHelper(view, "LeftAxisTitle").Set("Share with at least this energy");
+  vtkSMPropertyHelper(view, "LeftAxisTitle").Set("Share with this or more");
   set(view, "LeftAxisUseCustomRange", 1);
   set(view, "LeftAxisRangeMinimum", 0.0);
   set(view, "LeftAxisRangeMaximum", 1.0);

@@ -25,6 +25,7 @@ namespace
 {
 
 constexpr int kCloseWidth = 80; // px, of what stands beside the text
+constexpr int kMostNotes = 6;   // objects; more would leave the views little room
 
 /// The texts of a field array of any output; nothing if the data are on another machine.
 QStringList textsOf(vtkSMSourceProxy* source, const char* array)
@@ -95,8 +96,7 @@ pqMessageBar::pqMessageBar(QMainWindow* window)
 //-----------------------------------------------------------------------------
 void pqMessageBar::look()
 {
-  QStringList lines, told;
-  bool failed = false;
+  QStringList errors, notes, told;
   for (const char* array : { "Error", "Notes" })
   {
     for (pqPipelineSource* source :
@@ -119,21 +119,27 @@ void pqMessageBar::look()
       }
       if (!fresh.isEmpty())
       {
-        lines << "<b>" + source->getSMName().toHtmlEscaped() +
+        (error ? errors : notes) << "<b>" + source->getSMName().toHtmlEscaped() +
             "</b>: " + fresh.join("<br>&nbsp;&nbsp;&nbsp;");
-        failed = failed || error;
       }
     }
   }
-  const QString text = lines.join("<br>");
+  if (const int more = int(notes.size()) - kMostNotes; more > 0)
+  {
+    // The last ones are of the study that is worked on.
+    notes = notes.mid(more);
+    notes.prepend(tr("Earlier notes (%1): View, Output Messages").arg(more));
+  }
+  const QString text = (errors + notes).join("<br>");
   if (text == this->Shown)
   {
     return;
   }
   this->Shown = text;
   this->Text->setText(text);
-  this->Text->setStyleSheet(failed ? "QLabel { background: #ffd9a8; color: black; padding: 4px; }"
-                                   : "QLabel { padding: 4px; }");
+  this->Text->setStyleSheet(!errors.isEmpty()
+      ? "QLabel { background: #ffd9a8; color: black; padding: 4px; }"
+      : "QLabel { padding: 4px; }");
   this->fit();
   this->setVisible(!text.isEmpty());
 }

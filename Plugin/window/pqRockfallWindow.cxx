@@ -79,15 +79,15 @@ QString quoted(QString text)
   return "'" + text.replace("\\", "\\\\").replace("'", "\\'") + "'";
 }
 
-/// Whether nothing else of ours is shown yet.
+/// Whether no other slope is seen: of an earlier study it is hidden.
 bool isFirstSlope(vtkSMProxy* representation)
 {
   auto* model = pqApplicationCore::instance()->getServerManagerModel();
   for (pqDataRepresentation* other : model->findItems<pqDataRepresentation*>())
   {
     const rockfall::window::Shown shown = rockfall::window::shownBy(other->getProxy());
-    if (other->getProxy() != representation && isOf(shown.source, { "vtkDEMToCFESource" }) &&
-      shown.port == 0)
+    if (other->getProxy() != representation && other->isVisible() &&
+      isOf(shown.source, { "vtkDEMToCFESource" }) && shown.port == 0)
     {
       return false;
     }

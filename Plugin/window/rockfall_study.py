@@ -295,10 +295,13 @@ def _draw_placed(proxy):
 
 
 def _chart_beside(view):
+    """A chart right of this view, or under the charts that are there: the slope stays as large as it is."""
     chart = simple.CreateView("XYChartView")
     layout = simple.GetLayout(view) if view else None
     if layout:
-        simple.AssignViewToLayout(view=chart, layout=layout, hint=0)
+        charts = [layout.GetViewLocation(other.SMProxy) for other in simple.GetViewsInLayout(layout)
+                  if other.GetXMLName() == "XYChartView"]
+        simple.AssignViewToLayout(view=chart, layout=layout, hint=max([0, *charts]))
     return chart
 
 
@@ -310,4 +313,4 @@ def _show_curve(line, chart, title):
     curve.SeriesLabel = ["ShareOfPassing", "Share of the rocks that pass"]
     chart.ChartTitle = title
     chart.BottomAxisTitle = "Kinetic energy (kJ)"
-    chart.LeftAxisTitle = "Share with at least this energy"
+    chart.LeftAxisTitle = "Share with this or more"
