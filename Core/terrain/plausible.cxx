@@ -129,6 +129,8 @@ public:
     const double phi = degrees(m.frictionAngle);
     steep_.look(phi == 0.0 || plausible::kFrictionAngle.has(phi), name,
       [&] { return " with " + text(phi) + " degrees"; });
+    stiff_.look(!m.yielding.scars() || plausible::kGroundModulus.has(m.yielding.modulus), name,
+      [&] { return " with " + text(m.yielding.modulus / 1e6) + " MN/m²"; });
     sticky_.look(plausible::kCohesion.has(m.cohesion), name,
       [&] { return " with " + text(m.cohesion) + " N"; });
   }
@@ -136,12 +138,15 @@ public:
   void tell(const std::string& of, std::vector<std::string>& notes) const
   {
     steep_.tell(("friction angles of " + of).c_str(), notes);
+    stiff_.tell(("moduli of " + of).c_str(), notes);
     sticky_.tell(("cohesions of " + of).c_str(), notes);
   }
 
 private:
   Doubt steep_{ "Ground has " + between(plausible::kFrictionAngle) +
     " degrees: is it in degrees?" };
+  Doubt stiff_{ "Ground that scars has " + between(plausible::kGroundModulus, 1e6) +
+    " MN/m²: is it in MN/m²?" };
   Doubt sticky_{ "Contact points hold " + between(plausible::kCohesion) +
     " N: is it in N, not Pa?" };
 };
@@ -354,8 +359,13 @@ void askAfterGround(const Terrain& terrain, std::vector<std::string>& notes)
   Doubt high("Obstacles are " + between(kObstacle) + " m high: are they in m?");
   const auto surface = [&](const Roughness& r, const std::string& where)
   {
-    rough.look(kRoughness.has(r.deviation), where,
-      [&] { return " with a deviation of " + text(r.deviation) + " m"; });
+    const bool raised = !kRoughness.has(std::abs(r.mean));
+    rough.look(!raised && kRoughness.has(r.deviation), where,
+      [&]
+      {
+        return raised ? " with a mean of " + text(r.mean) + " m"
+                      : " with a deviation of " + text(r.deviation) + " m";
+      });
     high.look(kObstacle.has(r.highestObstacle()), where,
       [&] { return " with " + text(r.highestObstacle()) + " m"; });
   };

@@ -67,9 +67,12 @@ inline constexpr PlausibleRange kConifers{ 0.02, 1.0 };
 inline constexpr double kStandOverlap = 0.5;
 /// φ of ground, degrees; 0 is asked for. Radians are below, and no scree stands as steep as 60°.
 inline constexpr PlausibleRange kFrictionAngle{ 2.0, 60.0 };
+/// M_E of ground that scars, Pa: wet bog to compacted gravel.
+inline constexpr PlausibleRange kGroundModulus{ 1e5, 1e9 };
 /// c of ground and structures, N per contact point: 100 kN hold a rock of 4 m³ on a wall.
 inline constexpr PlausibleRange kCohesion{ 0.0, 1e5 };
-/// Deviation of the ground's heights from the survey, m: beyond it they are cm, or the survey's own.
+/// Mean and deviation of the ground's heights from the survey, m: beyond it they are cm, or the
+/// survey's own.
 inline constexpr PlausibleRange kRoughness{ 0.0, 1.0 };
 /// Heights of obstacles, m: Rockyfor3D's field sheets go to 1 m and more in blocks.
 inline constexpr PlausibleRange kObstacle{ 0.0, 3.0 };

@@ -200,5 +200,8 @@ def check(path, study):
                 if name not in properties:
                     raise Bad(f"{part}: there is no property {shown(name)}")
                 check_value(where, value, properties[name])
+        often = [study.get(part, {}).get("AnnualFrequency", 0) for part in ("map", "lines")]
+        if all(often) and often[0] != often[1]:
+            raise Bad(f"AnnualFrequency of map is {often[0]}, of lines {often[1]}: both are of all rocks together")
     except Bad as bad:
         raise Bad(f"{path}: {bad}") from None

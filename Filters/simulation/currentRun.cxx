@@ -95,6 +95,8 @@ void CurrentRun::tellBefore(const KeptRun& run) const
   {
     tellApart(run.frame.rocks);
     tellNewNets(run.slope);
+    tellIdleContacts(
+      !run.contactFile.empty(), run.parameters.pushRocksApart, run.parameters.rockCohesion > 0.0);
   }
   tellOdd(run.slope, run.frame.rocks, run.frame.frequencies);
   tellAlike(run.slope, run.frame.rocks, run.parameters.iterations);

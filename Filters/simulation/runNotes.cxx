@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace rockfall::filters
@@ -40,6 +41,20 @@ void tellApart(std::span<const Rock> rocks)
       " blocks falls as if it were alone, through the others, though " + std::to_string(joined) +
       " of them lie face on face, as the blocks of a rock mass. " +
       "Switch it on for them to hit and push each other");
+  }
+}
+
+void tellIdleContacts(bool file, bool push, bool cohesion)
+{
+  std::string idle;
+  for (const auto& [given, name] : { std::pair(file, "RockContactFile"),
+         std::pair(push, "PushRocksApart"), std::pair(cohesion, "RockCohesion") })
+  {
+    idle += given ? (idle.empty() ? "" : ", ") + std::string(name) : "";
+  }
+  if (!idle.empty())
+  {
+    showNote("RockRockContact is off, without which these have no effect: " + idle);
   }
 }
 

@@ -21,6 +21,9 @@ std::string statusOf(const LiveRun& live);
 /// Note on blocks that fit together, as those of a cut mass, but fall each as if alone.
 void tellApart(std::span<const Rock> rocks);
 
+/// A note that what rocks of a run without contacts between them are given for these has no effect.
+void tellIdleContacts(bool file, bool push, bool cohesion);
+
 /// Notes on rocks of no rock, on more of them than fall, and on those that start in the air.
 void tellOdd(
   const Terrain& terrain, std::span<const Rock> rocks, std::span<const double> frequencies);

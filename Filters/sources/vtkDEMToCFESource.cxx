@@ -115,6 +115,52 @@ void vtkDEMToCFESource::SetMaximumDisplayCells(vtkIdType cells)
 }
 
 //------------------------------------------------------------------------------
+void vtkDEMToCFESource::TellReplaced(std::vector<std::string>& notes) const
+{
+  using Source = vtkDEMToCFESource;
+  static constexpr std::pair<const char*, double Source::*> properties[] = {
+    { "RestitutionCoefficient", &Source::RestitutionCoefficient },
+    { "RestitutionDeviation", &Source::RestitutionDeviation },
+    { "TangentialRestitution", &Source::TangentialRestitution },
+    { "RestitutionSpeed", &Source::RestitutionSpeed },
+    { "FrictionAngle", &Source::FrictionAngle },
+    { "FrictionAngleDeviation", &Source::FrictionAngleDeviation },
+    { "GroundModulus", &Source::GroundModulus },
+    { "ScarDepthFactor", &Source::ScarDepthFactor },
+    { "ScarRadius", &Source::ScarRadius },
+    { "GroundDensity", &Source::GroundDensity },
+    { "ScarCompaction", &Source::ScarCompaction },
+    { "ScarSpinDrag", &Source::ScarSpinDrag },
+    { "SlipFrictionMin", &Source::SlipFrictionMin },
+    { "SlipFrictionMax", &Source::SlipFrictionMax },
+    { "SlipFrictionGrowth", &Source::SlipFrictionGrowth },
+    { "SlipFrictionDecay", &Source::SlipFrictionDecay },
+    { "RollingResistance", &Source::RollingResistance },
+    { "GroundDeviation", &Source::GroundDeviation },
+    { "GroundDeviationLength", &Source::GroundDeviationLength },
+    { "RoughnessMean", &Source::RoughnessMean },
+    { "RoughnessDeviation", &Source::RoughnessDeviation },
+    { "RoughnessLength", &Source::RoughnessLength },
+    { "ObstacleHeight70", &Source::ObstacleHeight70 },
+    { "ObstacleHeight20", &Source::ObstacleHeight20 },
+    { "ObstacleHeight10", &Source::ObstacleHeight10 },
+  };
+  const vtkNew<Source> usual;
+  std::string list;
+  for (const auto& [name, value] : properties)
+  {
+    if (this->*value != usual->*value)
+    {
+      list += (list.empty() ? "" : ", ") + std::string(name);
+    }
+  }
+  if (!list.empty())
+  {
+    notes.push_back("The Preset replaces what these properties say: " + list);
+  }
+}
+
+//------------------------------------------------------------------------------
 std::shared_ptr<const rockfall::Terrain> vtkDEMToCFESource::MakeSlope(
   std::vector<std::string>& notes)
 {
@@ -165,6 +211,10 @@ std::shared_ptr<const rockfall::Terrain> vtkDEMToCFESource::MakeSlope(
                      this->EmbankmentLayerName, this->TreeLayerName, this->BarrierLayerName },
       slope, notes, readStandRaster(this->TreeFile, slope, notes)));
   askAfterGround(slope, notes);
+  if (this->Preset > 0)
+  {
+    this->TellReplaced(notes);
+  }
   using rockfall::filters::tellIdle;
   tellIdle("LayerName", this->LayerName, "FileName", this->FileName, notes);
   tellIdle("ElevationField", this->ElevationField, "FileName", this->FileName, notes);

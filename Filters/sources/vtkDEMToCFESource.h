@@ -447,6 +447,8 @@ protected:
 private:
   rockfall::SurfaceMaterial MakeMaterial() const;
   rockfall::Terrain ReadSlope(std::vector<std::string>& notes) const;
+  /// A note on properties that the Preset replaces, though they are not as they come.
+  void TellReplaced(std::vector<std::string>& notes) const;
   std::shared_ptr<const rockfall::Terrain> MakeSlope(std::vector<std::string>& notes);
 
   std::string FileName;

@@ -76,6 +76,14 @@ assert 'BarrierLayerName is "nets", but has no effect: there is no BarrierFile' 
 assert 'JointField is "soil", but has no effect: there is no JointLayer' in notes_of(DEMtoCFEMesh(JointField="soil"))
 assert "no effect" not in notes_of(DEMtoCFEMesh())
 
+# --- Properties that others replace, or that nothing takes.
+assert "The Preset replaces what these properties say: RestitutionCoefficient, FrictionAngle" in \
+    notes_of(DEMtoCFEMesh(Preset="Meadow (field data)", FrictionAngle=50, RestitutionCoefficient=0.2))
+assert "Preset replaces" not in notes_of(steep)
+one.PushRocksApart, one.RockCohesion = 1, 5.0
+told = messages_of(one.UpdatePipeline)
+assert "RockRockContact is off, without which these have no effect: PushRocksApart, RockCohesion" in told, told
+
 
 # --- Rows of sources.
 def heard(columns, *rows):

@@ -51,6 +51,11 @@ for folder in os.listdir("."):
     if folder.startswith("inputs-"):
         shutil.rmtree(folder)
 
+# The map and the lines of a study have one frequency.
+code, said = run("inputs-often", map={"CellSize": 5.0, "AnnualFrequency": 3.0},
+                 lines={"FileName": "input-road.csv", "AnnualFrequency": 7.0})
+assert code and "AnnualFrequency of map is 3.0, of lines 7.0" in said, said
+
 # From the start, and 1, 3, 4 and 5 iterations one after the other: whole chunks, and begun ones.
 code, said = run("inputs-calm")
 assert code == 0, said

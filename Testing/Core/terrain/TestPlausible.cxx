@@ -50,9 +50,32 @@ TEST(Plausible, Ground)
                                "slope's own with 80 degrees. Ground has 2 to 60 degrees: is it in "
                                "degrees?" }));
   EXPECT_EQ(notesOf(0.6, roughness).size(), 1u); // radians
-  roughness.deviation = 5.0;                     // centimetres
+  roughness.mean = 5.0;
+  EXPECT_NE(notesOf(35.0, roughness).at(0).find("with a mean of 5 m"), std::string::npos);
+  roughness.mean = 0.0;
+  roughness.deviation = 5.0; // centimetres
   roughness.obstacles = { 10.0, 30.0, 60.0 };
   EXPECT_EQ(notesOf(35.0, roughness).size(), 2u);
+}
+
+TEST(Plausible, GroundInPascals)
+{
+  GridGeometry g;
+  g.columns = g.rows = 3;
+  g.cellSize = 10.0;
+  SurfaceMaterial material;
+  const auto notes = [&](double modulus)
+  {
+    material.yielding.modulus = modulus;
+    std::vector<std::string> all;
+    askAfterGround(Terrain(g, std::vector<double>(9, 0.0), material, {}), all);
+    return all;
+  };
+  EXPECT_TRUE(notes(13e6).empty());
+  EXPECT_TRUE(notes(YieldingGround::hard).empty());
+  ASSERT_EQ(notes(13e12).size(), 1u);
+  EXPECT_NE(notes(13e12)[0].find("the slope's own with 1.3e+07 MN/m²"), std::string::npos)
+    << notes(13e12)[0];
 }
 
 TEST(Plausible, Nets)
