@@ -12,8 +12,7 @@ void IslandSolver::begin(const StepRequest& request, Accept accept, std::vector<
   seen_ = {};
   look_ = 0;
   looking_ = true;
-  rows_.stiffness = stiffness;
-  rows_.begin(request, bodies, contacts);
+  rows_.begin(request, stiffness, bodies, contacts);
 }
 
 void IslandSolver::goOn(const EndDetectionOutcome& seen)

@@ -1,64 +1,73 @@
-// Impacts within a substep: what closes faster than the resting speed leaves by Newton's law, and
-// strikes what closes by it in the next impact round.
+#include "solve/island/softImpacts.h"
 
 #include "base/joined.h"
-#include "base/parallel.h"
 #include "law/settings.h"
-#include "solve/island/softSweep.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <numeric>
 
-namespace rockfall
+namespace rockfall::soft
 {
 
-bool SoftSolver::closes(std::size_t row, double substeps) const
+void Impacts::begin()
 {
-  const ContactRow& r = rows_[row];
-  const ContactRowCold& start = starts_[row];
-  const auto isHeard = [&](int i)
-  { return i < 0 || -start.before > movers_[std::size_t(i)].noise; };
+  joined_.resize(movers_.size());
+  std::iota(joined_.begin(), joined_.end(), 0);
+  energies_.assign(movers_.size(), {});
+}
+
+void Impacts::setStrips()
+{
+  rounds_.resize(std::size_t(rows_.strips));
+  linked_ = false;
+}
+
+bool Impacts::closes(std::size_t row, double substeps) const
+{
+  const ContactRow& r = rows_.rows[row];
+  const ContactRowCold& start = rows_.starts[row];
+  const auto isHeard = [&](int i) { return i < 0 || -start.before > movers_[i].noise; };
   return start.pending >= 0.0 ||
-    (-start.before > r.resting && r.gap + substeps * h_ * start.before < 0.0 && isHeard(r.a) &&
+    (-start.before > r.resting && r.gap + substeps * step_.h * start.before < 0.0 && isHeard(r.a) &&
       isHeard(r.b));
 }
 
-void SoftSolver::startImpact(std::size_t manifold, std::vector<std::size_t>& struck)
+void Impacts::start(std::size_t manifold, std::size_t strip)
 {
-  for (std::size_t k = manifolds_[manifold].first; k < manifolds_[manifold].end; ++k)
+  for (std::size_t k = rows_.manifolds[manifold].first; k < rows_.manifolds[manifold].end; ++k)
   {
     if (this->closes(k, kSharedImpact))
     {
-      struck.push_back(k);
+      rounds_[strip].struck.push_back(k);
     }
   }
 }
 
-bool SoftSolver::staysOpen(std::size_t row) const
+bool Impacts::staysOpen(std::size_t row) const
 {
-  const ContactRow& r = rows_[row];
-  return r.gap + 2.0 * h_ * std::min(starts_[row].before, -r.resting) > 0.0;
+  const ContactRow& r = rows_.rows[row];
+  return r.gap + 2.0 * step_.h * std::min(rows_.starts[row].before, -r.resting) > 0.0;
 }
 
-bool SoftSolver::startsImpact(std::size_t m, std::vector<std::size_t>& woken)
+bool Impacts::isSetGoing(std::size_t m, std::vector<std::size_t>& woken)
 {
-  Manifold& manifold = manifolds_[m];
+  Manifold& manifold = rows_.manifolds[m];
   bool any = false;
   for (std::size_t k = manifold.first; k < manifold.end; ++k)
   {
-    ContactRow& r = rows_[k];
-    starts_[k].before = this->speedOf(r).dot(r.normal);
+    ContactRow& r = rows_.rows[k];
+    rows_.starts[k].before = movers_.speedOf(r).dot(r.normal);
     any = any || this->closes(k, 1.0);
     if (!r.idle || this->staysOpen(k))
     {
       continue;
     }
     r.idle = false;
-    if (this->place(r))
+    if (rows_.place(r))
     {
-      this->weigh(k);
+      rows_.weigh(k);
     }
     if (!manifold.busy)
     {
@@ -69,7 +78,7 @@ bool SoftSolver::startsImpact(std::size_t m, std::vector<std::size_t>& woken)
   return any;
 }
 
-void SoftSolver::link()
+void Impacts::link()
 {
   if (linked_)
   {
@@ -78,12 +87,12 @@ void SoftSolver::link()
   firstOf_.assign(movers_.size() + 2, 0);
   const auto forEnds = [&](std::size_t shift, auto&& visit)
   {
-    for (std::size_t m = 0; m < manifolds_.size(); ++m)
+    for (std::size_t m = 0; m < rows_.manifolds.size(); ++m)
     {
-      visit(std::size_t(manifolds_[m].a) + shift, m);
-      if (manifolds_[m].b >= 0)
+      visit(std::size_t(rows_.manifolds[m].a) + shift, m);
+      if (rows_.manifolds[m].b >= 0)
       {
-        visit(std::size_t(manifolds_[m].b) + shift, m);
+        visit(std::size_t(rows_.manifolds[m].b) + shift, m);
       }
     }
   };
@@ -97,24 +106,24 @@ void SoftSolver::link()
   linked_ = true;
 }
 
-double SoftSolver::leaves(std::size_t row) const
+double Impacts::leaves(std::size_t row) const
 {
-  const ContactRowCold& start = starts_[row];
+  const ContactRowCold& start = rows_.starts[row];
   if (start.pending >= 0.0)
   {
     return start.pending;
   }
-  const IslandContact& c = (*contacts_)[results_[row].contact];
+  const IslandContact& c = (*step_.contacts)[rows_.results[row].contact];
   return -start.before * c.restitutionAt(-start.before);
 }
 
-std::size_t SoftSolver::countStruck() const
+std::size_t Impacts::countStruck() const
 {
-  return std::accumulate(impactRounds_.begin(), impactRounds_.end(), std::size_t(0),
+  return std::accumulate(rounds_.begin(), rounds_.end(), std::size_t(0),
     [](std::size_t sum, const ImpactRound& g) { return sum + g.struck.size(); });
 }
 
-void SoftSolver::strikeGenerations(double time)
+void Impacts::strike(double time)
 {
   std::size_t struck = this->countStruck();
   if (struck == 0)
@@ -123,60 +132,61 @@ void SoftSolver::strikeGenerations(double time)
   }
   for (int number = 1; number <= kGenerations && struck > 0; ++number)
   {
-    this->forStrips([this](std::size_t s) { this->beginImpacts(impactRounds_[s]); }, struck);
-    this->settleImpacts(struck);
+    rows_.forStrips([this](std::size_t s) { this->beginRound(rounds_[s]); }, struck);
+    this->settleAll(struck);
     this->limitGains();
-    this->forStrips([this](std::size_t s) { this->scaleBack(impactRounds_[s]); }, struck);
-    this->forStrips([&](std::size_t s) { this->bookImpacts(impactRounds_[s], time); }, struck);
+    rows_.forStrips([this](std::size_t s) { this->scaleBack(rounds_[s]); }, struck);
+    rows_.forStrips([&](std::size_t s) { this->book(rounds_[s], time); }, struck);
     if (number < kGenerations)
     {
       this->link();
-      this->forStrips([&](std::size_t s) { this->findStruck(s, number); }, struck);
+      rows_.forStrips([&](std::size_t s) { this->findStruck(s, number); }, struck);
     }
     struck = this->countStruck();
   }
-  this->forStrips([this](std::size_t s) { this->listWoken(s); }, 0);
+  rows_.forStrips([this](std::size_t s) { this->listWoken(s); }, 0);
 }
 
-void SoftSolver::beginImpacts(ImpactRound& impactRound) const
+void Impacts::beginRound(ImpactRound& round) const
 {
-  impactRound.moved.clear();
-  impactRound.impacts.clear();
-  for (const std::size_t k : impactRound.struck)
+  round.moved.clear();
+  round.impacts.clear();
+  for (const std::size_t k : round.struck)
   {
-    const ContactRow& r = rows_[k];
-    const double stored =
-      starts_[k].pending >= 0.0 ? (*contacts_)[results_[k].contact].contact->springEnergy() : 0.0;
-    impactRound.impacts.push_back(
-      { k, 0.0, Vec3::Zero(), this->speedOf(r), this->speedOfA(r), this->leaves(k), stored });
+    const ContactRow& r = rows_.rows[k];
+    const double stored = rows_.starts[k].pending >= 0.0
+      ? (*step_.contacts)[rows_.results[k].contact].contact->springEnergy()
+      : 0.0;
+    round.impacts.push_back(
+      { k, 0.0, Vec3::Zero(), movers_.speedOf(r), movers_.speedOfA(r), this->leaves(k), stored });
   }
-  impactRound.struck.clear();
+  round.struck.clear();
 }
 
-void SoftSolver::settleImpacts(std::size_t count)
+void Impacts::settleAll(std::size_t count)
 {
-  tick_ += 2;
-  const int begun = tick_;
+  sweeps_.tick += 2;
+  const int begun = sweeps_.tick;
   std::atomic<bool> any = true;
   const auto sweep = [&](std::size_t strip)
   {
-    ImpactRound& impactRound = impactRounds_[strip];
+    ImpactRound& round = rounds_[strip];
     const auto noteMove = [&](int i)
     {
       if (i >= 0)
       {
-        int& stamp = stamp_[std::size_t(i)];
+        int& stamp = sweeps_.stamp[std::size_t(i)];
         if (stamp < begun)
         {
-          impactRound.moved.push_back(i);
+          round.moved.push_back(i);
         }
-        stamp = tick_;
+        stamp = sweeps_.tick;
       }
     };
-    for (Impact& impact : impactRound.impacts)
+    for (Impact& impact : round.impacts)
     {
-      const ContactRow& r = rows_[impact.row];
-      if (tick_ > begun && !this->moves(r.a) && !this->moves(r.b))
+      const ContactRow& r = rows_.rows[impact.row];
+      if (sweeps_.tick > begun && !sweeps_.moves(r.a) && !sweeps_.moves(r.b))
       {
         continue;
       }
@@ -188,17 +198,17 @@ void SoftSolver::settleImpacts(std::size_t count)
       }
     }
   };
-  for (int pass = 0; pass < kImpactSweeps && any; ++pass, ++tick_)
+  for (int pass = 0; pass < kImpactSweeps && any; ++pass, ++sweeps_.tick)
   {
     any = false;
-    this->forStrips(sweep, count);
+    rows_.forStrips(sweep, count);
   }
 }
 
-bool SoftSolver::settle(Impact& impact)
+bool Impacts::settle(Impact& impact)
 {
-  const ContactRow& r = rows_[impact.row];
-  const Vec3 u = this->speedOf(r);
+  const ContactRow& r = rows_.rows[impact.row];
+  const Vec3 u = movers_.speedOf(r);
   const double v = u.dot(r.normal);
   const double Q = std::max(0.0, impact.Q - r.mass * (v - impact.leaves)), dQ = Q - impact.Q;
   Vec3 S = impact.S - r.shearMass * (u - v * r.normal);
@@ -209,13 +219,13 @@ bool SoftSolver::settle(Impact& impact)
   const double size = std::abs(dQ) + dS.norm();
   if (size > 0.0)
   {
-    this->push(r, dQ * r.normal + dS);
+    movers_.push(r, dQ * r.normal + dS);
   }
   return size > r.mass *
-    std::max(kImpactExact * std::abs(starts_[impact.row].before), kImpactQuiet * r.resting);
+    std::max(kImpactExact * std::abs(rows_.starts[impact.row].before), kImpactQuiet * r.resting);
 }
 
-double SoftSolver::ImpactEnergy::share() const
+double ImpactEnergy::share() const
 {
   if (work <= stored)
   {
@@ -227,15 +237,15 @@ double SoftSolver::ImpactEnergy::share() const
   return std::clamp((-along + root) / (2.0 * square), 0.0, 1.0);
 }
 
-void SoftSolver::limitGains()
+void Impacts::limitGains()
 {
   const auto forImpacts = [this](auto&& visit)
   {
-    for (ImpactRound& impactRound : impactRounds_)
+    for (ImpactRound& round : rounds_)
     {
-      for (Impact& impact : impactRound.impacts)
+      for (Impact& impact : round.impacts)
       {
-        visit(impact, rows_[impact.row]);
+        visit(impact, rows_.rows[impact.row]);
       }
     }
   };
@@ -249,13 +259,13 @@ void SoftSolver::limitGains()
   const auto addWork = [this](const Impact& impact, const ContactRow& r)
   {
     const Vec3 J = impact.Q * r.normal + impact.S;
-    ImpactEnergy& gain = impactEnergies_[std::size_t(headOf(joined_, r.a))];
+    ImpactEnergy& gain = energies_[std::size_t(headOf(joined_, r.a))];
     gain.along += J.dot(impact.before);
-    gain.work += 0.5 * J.dot(impact.before + this->speedOf(r));
+    gain.work += 0.5 * J.dot(impact.before + movers_.speedOf(r));
     gain.stored += impact.stored;
   };
   const auto share = [this](Impact& impact, const ContactRow& r)
-  { impact.share = impactEnergies_[std::size_t(headOf(joined_, r.a))].share(); };
+  { impact.share = energies_[std::size_t(headOf(joined_, r.a))].share(); };
   const auto part = [this](const Impact&, const ContactRow& r)
   {
     for (const int i : { r.a, r.b })
@@ -263,7 +273,7 @@ void SoftSolver::limitGains()
       if (i >= 0)
       {
         joined_[std::size_t(i)] = i;
-        impactEnergies_[std::size_t(i)] = {};
+        energies_[std::size_t(i)] = {};
       }
     }
   };
@@ -273,38 +283,38 @@ void SoftSolver::limitGains()
   forImpacts(part);
 }
 
-void SoftSolver::scaleBack(const ImpactRound& impactRound)
+void Impacts::scaleBack(const ImpactRound& round)
 {
-  for (const Impact& impact : impactRound.impacts)
+  for (const Impact& impact : round.impacts)
   {
-    const ContactRow& r = rows_[impact.row];
+    const ContactRow& r = rows_.rows[impact.row];
     if (impact.share < 1.0 && impact.Q > 0.0)
     {
-      this->push(r, (impact.share - 1.0) * (impact.Q * r.normal + impact.S));
+      movers_.push(r, (impact.share - 1.0) * (impact.Q * r.normal + impact.S));
     }
   }
 }
 
-void SoftSolver::bookImpacts(const ImpactRound& impactRound, double time)
+void Impacts::book(const ImpactRound& round, double time)
 {
-  for (const Impact& impact : impactRound.impacts)
+  for (const Impact& impact : round.impacts)
   {
-    const ContactRow& r = rows_[impact.row];
-    this->noteImpact(impact, time);
-    book(r, impact.share * impact.Q, impact.share * impact.S,
-      0.5 * (impact.before + this->speedOf(r)), 0.5 * (impact.beforeA + this->speedOfA(r)),
-      results_[impact.row]);
+    const ContactRow& r = rows_.rows[impact.row];
+    this->note(impact, time);
+    soft::book(r, impact.share * impact.Q, impact.share * impact.S,
+      0.5 * (impact.before + movers_.speedOf(r)), 0.5 * (impact.beforeA + movers_.speedOfA(r)),
+      rows_.results[impact.row]);
   }
 }
 
-void SoftSolver::noteImpact(const Impact& impact, double time)
+void Impacts::note(const Impact& impact, double time)
 {
-  const ContactRow& r = rows_[impact.row];
-  ContactRowCold& start = starts_[impact.row];
-  Result& result = results_[impact.row];
+  const ContactRow& r = rows_.rows[impact.row];
+  ContactRowCold& start = rows_.starts[impact.row];
+  Result& result = rows_.results[impact.row];
   if (impact.Q > 0.0 && start.pending < 0.0 && -start.before > result.struck)
   {
-    const Mover& a = movers_[std::size_t(r.a)];
+    const Mover& a = movers_[r.a];
     result.struck = -start.before;
     result.struckAt = time;
     result.struckPoint = a.start + a.displacement + r.lever;
@@ -314,17 +324,17 @@ void SoftSolver::noteImpact(const Impact& impact, double time)
   {
     if (i >= 0)
     {
-      Mover& m = movers_[std::size_t(i)];
+      Mover& m = movers_[i];
       m.flies = m.flies && impact.Q == 0.0;
       m.noise = std::max(m.noise, 2.0 * kImpactExact * std::abs(start.before));
     }
   }
 }
 
-void SoftSolver::listWoken(std::size_t strip)
+void Impacts::listWoken(std::size_t strip)
 {
-  std::vector<std::size_t>& woken = impactRounds_[strip].woken;
-  std::vector<std::size_t>& busy = busyOf_[strip];
+  std::vector<std::size_t>& woken = rounds_[strip].woken;
+  std::vector<std::size_t>& busy = sweeps_.busyOf[strip];
   if (!woken.empty())
   {
     busy.insert(busy.end(), woken.begin(), woken.end());
@@ -333,32 +343,32 @@ void SoftSolver::listWoken(std::size_t strip)
   }
 }
 
-void SoftSolver::findStruck(std::size_t strip, int number)
+void Impacts::findStruck(std::size_t strip, int number)
 {
-  ImpactRound& impactRound = impactRounds_[strip];
+  ImpactRound& round = rounds_[strip];
   // Movers of its rows are of this strip and of the next one, and noted there or before it.
-  const std::size_t end = std::min(strip + 2, std::size_t(strips_));
+  const std::size_t end = std::min(strip + 2, std::size_t(rows_.strips));
   for (std::size_t s = strip == 0 ? 0 : strip - 1; s < end; ++s)
   {
-    for (const int i : impactRounds_[s].moved)
+    for (const int i : rounds_[s].moved)
     {
       for (std::size_t j = firstOf_[std::size_t(i)]; j < firstOf_[std::size_t(i) + 1]; ++j)
       {
         const std::size_t m = manifoldsOf_[j];
-        const bool here = m >= firstOfStrip_[strip] && m < firstOfStrip_[strip + 1];
-        if (!here || manifolds_[m].impactRound == number)
+        const bool here = m >= rows_.firstOfStrip[strip] && m < rows_.firstOfStrip[strip + 1];
+        if (!here || rows_.manifolds[m].impactRound == number)
         {
           continue;
         }
-        manifolds_[m].impactRound = number;
-        if (this->startsImpact(m, impactRound.woken))
+        rows_.manifolds[m].impactRound = number;
+        if (this->isSetGoing(m, round.woken))
         {
-          this->startImpact(m, impactRound.struck);
+          this->start(m, strip);
         }
       }
     }
   }
-  std::sort(impactRound.struck.begin(), impactRound.struck.end());
+  std::sort(round.struck.begin(), round.struck.end());
 }
 
-} // namespace rockfall
+} // namespace rockfall::soft

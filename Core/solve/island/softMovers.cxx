@@ -1,27 +1,25 @@
-// The rocks of an island while they are solved for: where they start, how they turn, where they
-// are.
+#include "solve/island/softMovers.h"
 
 #include "base/parallel.h"
 #include "block/FreeRotation.h"
 #include "block/cayley.h"
 #include "block/flight.h"
 #include "law/settings.h"
-#include "solve/island/softSweep.h"
 
 #include <cmath>
 
-namespace rockfall
+namespace rockfall::soft
 {
 
-void SoftSolver::startMover(std::size_t i)
+void Movers::start(std::size_t i)
 {
-  const IslandBody& body = (*bodies_)[i];
+  const IslandBody& body = (*step_.bodies)[i];
   const Block& block = *body.block;
-  Motion& motion = motions_[i];
-  Mover& m = movers_[i];
+  Motion& motion = motions[i];
+  Mover& m = all[i];
   m.block = &block;
   m.orientation = body.state->orientation;
-  m.start = body.state->position - origin_;
+  m.start = body.state->position - step_.origin;
   m.displacement.setZero();
   m.turn.setZero();
   const bool isotropic = block.isotropic();
@@ -45,35 +43,99 @@ void SoftSolver::startMover(std::size_t i)
   m.noise = m.kinetic = 0.0;
 }
 
-void SoftSolver::startMovers()
+void Movers::start()
 {
-  forEach(movers_.size(), kBodyGrain, [&](std::size_t i) { this->startMover(i); });
+  forEach(this->size(), kBodyGrain, [&](std::size_t i) { this->start(i); });
 }
 
-void SoftSolver::turn(std::size_t i)
+void Movers::begin()
 {
-  Motion& motion = motions_[i];
-  Mover& m = movers_[i];
+  motions.resize(step_.bodies->size());
+  all.resize(step_.bodies->size());
+  this->start();
+  for (Mover& m : all)
+  {
+    m.seenAt.setZero();
+    m.seenTurn.setZero();
+    m.moved = true;
+  }
+}
+
+void Movers::noteDetection()
+{
+  for (Mover& m : all)
+  {
+    m.seenAt = m.displacement;
+    m.seenTurn = m.turn;
+    m.moved = false;
+  }
+}
+
+void Movers::findMoved()
+{
+  const auto look = [&](std::size_t i)
+  {
+    Mover& m = all[i];
+    const double near = kNoMotion * m.block->radius();
+    m.moved = m.moved || (m.displacement - m.seenAt).cwiseAbs().maxCoeff() > near ||
+      (m.turn - m.seenTurn).cwiseAbs().maxCoeff() > kNoMotion;
+  };
+  forEach(this->size(), kBodyGrain, look);
+}
+
+void Movers::fall()
+{
+  const Vec3 gravity(0.0, 0.0, -step_.gravity);
+  const auto fall = [&](std::size_t i)
+  {
+    motions[i].velocity += step_.h * gravity;
+    all[i].touched = all[i].carried = false;
+    all[i].kinetic = this->kineticEnergy(i);
+  };
+  forEach(this->size(), kBodyGrain, fall);
+}
+
+void Movers::move()
+{
+  const Vec3 gravity(0.0, 0.0, -step_.gravity);
+  const auto move = [&](std::size_t i)
+  {
+    Mover& m = all[i];
+    // What nothing touches falls on its parabola.
+    m.displacement += step_.h * motions[i].velocity;
+    if (!m.touched)
+    {
+      m.displacement -= 0.5 * step_.h * step_.h * gravity;
+    }
+    this->turn(i);
+  };
+  forEach(this->size(), kBodyGrain, move);
+}
+
+void Movers::turn(std::size_t i)
+{
+  Motion& motion = motions[i];
+  Mover& m = all[i];
   if (motion.inverseMoment > 0.0)
   {
-    const Vec3 by = h_ * motion.spin;
+    const Vec3 by = step_.h * motion.spin;
     m.orientation = cayley(by) * m.orientation;
     m.turn += by;
     return;
   }
   Vec3 by;
-  if (h_ * h_ * motion.spin.squaredNorm() < m.smallTurn * m.smallTurn)
+  if (step_.h * step_.h * motion.spin.squaredNorm() < m.smallTurn * m.smallTurn)
   {
-    const Quat half = cayley(0.5 * h_ * motion.spin) * m.orientation;
+    const Quat half = cayley(0.5 * step_.h * motion.spin) * m.orientation;
     const Mat3 R = half.toRotationMatrix();
-    by = h_ * (R * (m.block->inverseInertia() * (R.transpose() * m.momentum)));
+    by = step_.h * (R * (m.block->inverseInertia() * (R.transpose() * m.momentum)));
     m.orientation = (cayley(by) * m.orientation).normalized();
   }
   else
   {
     const Quat from = m.orientation;
     const Vec3 spin = from.conjugate() * motion.spin;
-    m.orientation = (from * FreeRotation(*m.block, spin).after(h_).turn).normalized();
+    m.orientation = (from * FreeRotation(*m.block, spin).after(step_.h).turn).normalized();
     const Eigen::AngleAxisd turned(m.orientation * from.conjugate());
     by = turned.angle() * turned.axis();
   }
@@ -84,25 +146,25 @@ void SoftSolver::turn(std::size_t i)
   m.turned = m.turned || m.turn.squaredNorm() > m.weighedTurn * m.weighedTurn;
 }
 
-double SoftSolver::kineticEnergy(std::size_t i) const
+double Movers::kineticEnergy(std::size_t i) const
 {
-  const Motion& motion = motions_[i];
+  const Motion& motion = motions[i];
   const double turning = motion.inverseMoment > 0.0
     ? motion.spin.squaredNorm() / motion.inverseMoment
-    : motion.spin.dot(movers_[i].momentum);
+    : motion.spin.dot(all[i].momentum);
   return 0.5 * (motion.velocity.squaredNorm() / motion.inverseMass + turning);
 }
 
-void SoftSolver::holdEnergy(std::size_t i)
+void Movers::holdEnergy(std::size_t i)
 {
-  Mover& m = movers_[i];
+  Mover& m = all[i];
   if (!m.touched || m.carried)
   {
     return;
   }
-  Motion& motion = motions_[i];
+  Motion& motion = motions[i];
   const double now = this->kineticEnergy(i);
-  const double still2 = kRestingSpeed * kRestingSpeed * gravity_ * m.block->radius();
+  const double still2 = kRestingSpeed * kRestingSpeed * step_.gravity * m.block->radius();
   if (now > m.kinetic + 0.5 * still2 / motion.inverseMass)
   {
     const double share = std::sqrt(m.kinetic / now);
@@ -112,25 +174,20 @@ void SoftSolver::holdEnergy(std::size_t i)
   }
 }
 
-void SoftSolver::noteDetection()
+void Movers::holdEnergy()
 {
-  for (Mover& m : movers_)
-  {
-    m.seenAt = m.displacement;
-    m.seenTurn = m.turn;
-    m.moved = false;
-  }
+  forEach(this->size(), kBodyGrain, [this](std::size_t i) { this->holdEnergy(i); });
 }
 
-BlockState SoftSolver::end(std::size_t i) const
+BlockState Movers::end(std::size_t i) const
 {
-  const Motion& motion = motions_[i];
-  const Mover& m = movers_[i];
-  BlockState state = *(*bodies_)[i].state;
+  const Motion& motion = motions[i];
+  const Mover& m = all[i];
+  BlockState state = *(*step_.bodies)[i].state;
   if (m.flies)
   {
     const double time = state.time;
-    state = fly(*m.block, state, gravity_, duration_);
+    state = fly(*m.block, state, step_.gravity, step_.duration);
     state.time = time;
     return state;
   }
@@ -141,4 +198,4 @@ BlockState SoftSolver::end(std::size_t i) const
   return state;
 }
 
-} // namespace rockfall
+} // namespace rockfall::soft

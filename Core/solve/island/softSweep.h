@@ -1,97 +1,120 @@
 #pragma once
 
 /// @file
-/// What sweeps over soft rows do with each of them, inline.
+/// Sweeps over the manifolds that push, and over those whose rocks a sweep has moved.
 
-#include "law/settings.h"
-#include "solve/island/SoftSolver.h"
+#include "solve/island/softRows.h"
 
 #include <algorithm>
-#include <cmath>
+#include <atomic>
+#include <vector>
 
-namespace rockfall
+namespace rockfall::soft
 {
 
-inline Vec3 SoftSolver::speedOfA(const ContactRow& r, const std::vector<Motion>& motions)
+class Sweeps
 {
-  const Motion& a = motions[std::size_t(r.a)];
-  return a.velocity + a.spin.cross(r.lever);
-}
-
-inline Vec3 SoftSolver::speedOf(const ContactRow& r, const std::vector<Motion>& motions)
-{
-  Vec3 u = speedOfA(r, motions);
-  if (r.b >= 0)
+public:
+  explicit Sweeps(const Rows& rows)
+    : rows_(rows)
   {
-    const Motion& b = motions[std::size_t(r.b)];
-    u -= b.velocity + b.spin.cross(r.leverB);
   }
-  return u;
-}
 
-inline double SoftSolver::mobility(int i) const
-{
-  const double moment = motions_[std::size_t(i)].inverseMoment;
-  return moment > 0.0 ? moment : movers_[std::size_t(i)].inverseInertia.trace();
-}
+  std::vector<std::vector<std::size_t>> busyOf; ///< By strip, manifolds.
+  std::vector<int> stamp;                       ///< By mover, the sweep that last moved it.
+  int tick = 0;                                 ///< Number of the sweep.
 
-inline void SoftSolver::limitTo(Vec3& T, double most)
-{
-  const double size2 = T.squaredNorm();
-  if (size2 > most * most)
+  void begin(std::size_t movers)
   {
-    T *= most / std::sqrt(size2);
+    stamp.assign(movers, -1);
+    tick = 0;
   }
-}
-
-inline void SoftSolver::push(int i, const Vec3& J, const Vec3& lever)
-{
-  Motion& m = motions_[std::size_t(i)];
-  m.velocity += m.inverseMass * J;
-  this->twist(i, lever.cross(J));
-}
-
-inline void SoftSolver::twist(int i, const Vec3& moment)
-{
-  Motion& m = motions_[std::size_t(i)];
-  if (m.inverseMoment > 0.0)
+  void setStrips()
   {
-    m.spin += m.inverseMoment * moment;
-    return;
+    busyOf.resize(std::size_t(rows_.strips));
+    stampOfStrip_.assign(std::size_t(rows_.strips), -1);
   }
-  Mover& mover = movers_[std::size_t(i)];
-  mover.momentum += moment;
-  m.spin += mover.inverseInertia * moment;
+  /// Whether a mover (< 0: the slope) has been moved by this sweep or the last one.
+  bool moves(int i) const { return i >= 0 && stamp[std::size_t(i)] >= tick - 1; }
+
+  /// visit(row's number) of those that are not idle, strip by strip.
+  template <class Visit>
+  void forBusy(Visit&& visit) const;
+  /// Sweeps over the busy rows, so many times; then over those of rocks that the last sweep has
+  /// moved, until no row has changed by more.
+  template <class Sweep>
+  void sweep(int least, Sweep&& sweepManifold);
+
+private:
+  bool stripMoves(std::size_t strip) const; ///< Whether one of its rows' rocks may have been.
+  void noteMoved(const Manifold& manifold);
+
+  const Rows& rows_;
+  std::vector<int> stampOfStrip_; ///< The sweep that last moved a rock of its rows.
+};
+
+template <class Visit>
+void Sweeps::forBusy(Visit&& visit) const
+{
+  rows_.forStrips(
+    [&](std::size_t strip)
+    {
+      for (const std::size_t m : busyOf[strip])
+      {
+        rows_.forRows(rows_.manifolds[m], visit);
+      }
+    });
 }
 
-inline void SoftSolver::push(const ContactRow& r, const Vec3& J)
+inline bool Sweeps::stripMoves(std::size_t strip) const
 {
-  if (r.b >= 0)
+  const std::size_t first = strip == 0 ? 0 : strip - 1;
+  const std::size_t end = std::min(strip + 2, std::size_t(rows_.strips));
+  return std::any_of(stampOfStrip_.begin() + std::ptrdiff_t(first),
+    stampOfStrip_.begin() + std::ptrdiff_t(end), [this](int last) { return last >= tick - 1; });
+}
+
+inline void Sweeps::noteMoved(const Manifold& manifold)
+{
+  stamp[std::size_t(manifold.a)] = tick;
+  if (manifold.b >= 0)
   {
-    this->push(r.b, -J, r.leverB);
+    stamp[std::size_t(manifold.b)] = tick;
   }
-  this->push(r.a, J, r.lever);
 }
 
-inline void SoftSolver::twist(const ContactRow& r, const Vec3& moment)
+template <class Sweep>
+void Sweeps::sweep(int least, Sweep&& sweepManifold)
 {
-  this->twist(r.b, -moment);
-  this->twist(r.a, moment);
+  tick += 2;
+  std::size_t rows = kRowGrain; // of rocks that have moved, about
+  for (int sweep = 0; sweep < least || (rows > 0 && sweep < kMostSweeps); ++sweep, ++tick)
+  {
+    std::atomic<std::size_t> moving = 0;
+    const auto sweepStrip = [&](std::size_t strip)
+    {
+      if (sweep >= least && !this->stripMoves(strip))
+      {
+        return;
+      }
+      for (const std::size_t m : busyOf[strip])
+      {
+        const Manifold& manifold = rows_.manifolds[m];
+        if (sweep >= least && !this->moves(manifold.a) && !this->moves(manifold.b))
+        {
+          continue;
+        }
+        if (sweepManifold(m))
+        {
+          this->noteMoved(manifold);
+          stampOfStrip_[strip] = tick;
+          moving.fetch_add(manifold.end - manifold.first, std::memory_order_relaxed);
+        }
+      }
+    };
+    rows_.forStrips(sweepStrip, sweep < least ? kRowGrain : rows);
+    rows = moving;
+  }
 }
 
-inline double SoftSolver::frictionLimit(const ContactRow& r, double P)
-{
-  return r.friction * P + std::min(r.cohesion, kCohesionPerForce * P);
-}
-
-inline Vec3 SoftSolver::solveFriction(ContactRow& r, double P, const Vec3& across)
-{
-  Vec3 T = r.T - r.shearMass * across;
-  T -= T.dot(r.normal) * r.normal;
-  limitTo(T, frictionLimit(r, P));
-  const Vec3 dT = T - r.T;
-  r.T = T;
-  return dT;
-}
-
-} // namespace rockfall
+} // namespace rockfall::soft

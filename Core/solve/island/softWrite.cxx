@@ -1,51 +1,43 @@
-// A step of soft rows as its contacts and rocks take it on: motion, springs, books.
+#include "solve/island/softWrite.h"
 
 #include "base/parallel.h"
 #include "law/settings.h"
-#include "solve/island/softSweep.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace rockfall
+namespace rockfall::soft
 {
 
-IslandOutcome SoftSolver::finish(Accept accept, bool deep)
+bool Writer::isDeep() const
 {
-  IslandOutcome outcome;
-  for (std::size_t k = 0; k < rows_.size() && !deep; ++k)
+  bool deep = false;
+  for (std::size_t k = 0; k < rows_.rows.size() && !deep; ++k)
   {
-    const ContactRow& r = rows_[k];
-    const double a = movers_[std::size_t(r.a)].block->radius();
-    const double radius = r.b < 0 ? a : std::min(a, movers_[std::size_t(r.b)].block->radius());
-    deep = this->gapOf(k) < std::min(0.0, starts_[k].gap0) - kDeepStep * radius;
+    const ContactRow& r = rows_.rows[k];
+    const double a = movers_[r.a].block->radius();
+    const double radius = r.b < 0 ? a : std::min(a, movers_[r.b].block->radius());
+    deep = rows_.gapOf(k) < std::min(0.0, rows_.starts[k].gap0) - kDeepStep * radius;
   }
-  outcome.settled = !deep;
-  outcome.iterations = substeps_;
-  outcome.accepted = !deep || accept == Accept::Any;
-  if (outcome.accepted)
-  {
-    this->write(outcome);
-  }
-  return outcome;
+  return deep;
 }
 
-void SoftSolver::write(IslandOutcome& outcome)
+void Writer::write(IslandOutcome& outcome)
 {
-  books_.assign(movers_.size(), { 0.0, 0.0, 0.0, 0.0, rows_.size() });
-  for (IslandBody& body : *bodies_)
+  books_.assign(movers_.size(), { 0.0, 0.0, 0.0, 0.0, rows_.rows.size() });
+  for (IslandBody& body : *step_.bodies)
   {
     body.given = body.frictionWork = body.dampedWork = 0.0;
     body.springEnergy = body.normalEnergy = 0.0;
   }
-  for (const IslandContact& asked : *contacts_)
+  for (const IslandContact& asked : *step_.contacts)
   {
     if (asked.second < 0)
     {
       books_[std::size_t(asked.first)].held += asked.contact->springEnergy();
     }
   }
-  forEach(rows_.size(), kRowGrain, [&](std::size_t k) { this->writeContact(k); });
+  forEach(rows_.rows.size(), kRowGrain, [&](std::size_t k) { this->writeContact(k); });
   this->bookContacts(outcome);
   for (std::size_t i = 0; i < movers_.size(); ++i)
   {
@@ -53,18 +45,18 @@ void SoftSolver::write(IslandOutcome& outcome)
   }
 }
 
-void SoftSolver::writeContact(std::size_t row)
+void Writer::writeContact(std::size_t row) const
 {
-  const ContactRow& r = rows_[row];
-  const Result& result = results_[row];
-  IslandContact& asked = (*contacts_)[result.contact];
-  std::vector<IslandBody>& bodies = *bodies_;
+  const ContactRow& r = rows_.rows[row];
+  const Result& result = rows_.results[row];
+  IslandContact& asked = (*step_.contacts)[result.contact];
+  std::vector<IslandBody>& bodies = *step_.bodies;
   Contact& c = *asked.contact;
-  const double gap = this->gap(result.contact) + c.offset;
+  const double gap = rows_.gapOfContact(result.contact) + c.offset;
   const int carrier = c.kind == ContactKind::FaceVertex ? asked.second : asked.first;
   if (carrier >= 0)
   {
-    const Mover& m = movers_[std::size_t(carrier)];
+    const Mover& m = movers_[carrier];
     const BlockState& state = *bodies[std::size_t(carrier)].state;
     const Vec3 arm = state.orientation.conjugate() * (c.point - state.position);
     c.point = state.position + m.displacement + m.orientation * arm;
@@ -72,11 +64,11 @@ void SoftSolver::writeContact(std::size_t row)
   asked.opening = gap - c.distance;
   asked.struck = result.struck;
   asked.struckAt = result.struckAt;
-  asked.struckPoint = origin_ + result.struckPoint;
+  asked.struckPoint = step_.origin + result.struckPoint;
   c.distance = gap;
   const double along = result.impulse.dot(r.normal);
-  c.normalForce = std::max(0.0, along) / duration_;
-  c.shearForce = (result.impulse - along * r.normal).norm() / duration_;
+  c.normalForce = std::max(0.0, along) / step_.duration;
+  c.shearForce = (result.impulse - along * r.normal).norm() / step_.duration;
   asked.work = asked.second >= 0 ? result.frictionWork - result.normalWork : 0.0;
   if (r.P > 0.0 && !r.stops)
   {
@@ -84,15 +76,15 @@ void SoftSolver::writeContact(std::size_t row)
     {
       const IslandBody& first = bodies[std::size_t(asked.first)];
       const IslandBody* second = asked.second < 0 ? nullptr : &bodies[std::size_t(asked.second)];
-      PairSprings(stiffness, asked.damping, *first.block, *first.state,
+      PairSprings(step_.stiffness, asked.damping, *first.block, *first.state,
         second ? second->block : nullptr, second ? second->state : nullptr)
         .set(c);
     }
     c.state = r.T.norm() < (1.0 - 1e-9) * frictionLimit(r, r.P) ? ContactState::Locked
                                                                 : ContactState::Sliding;
     // Springs that carry what it carries.
-    c.offset = c.distance + r.P / (h_ * c.stiffness);
-    c.slip = (starts_[row].flipped ? 1.0 : -1.0) / (h_ * c.shearStiffness) * r.T;
+    c.offset = c.distance + r.P / (step_.h * c.stiffness);
+    c.slip = (rows_.starts[row].flipped ? 1.0 : -1.0) / (step_.h * c.shearStiffness) * r.T;
   }
   else
   {
@@ -102,13 +94,13 @@ void SoftSolver::writeContact(std::size_t row)
   }
 }
 
-void SoftSolver::bookContacts(IslandOutcome& outcome)
+void Writer::bookContacts(IslandOutcome& outcome)
 {
-  for (std::size_t k = 0; k < rows_.size(); ++k)
+  for (std::size_t k = 0; k < rows_.rows.size(); ++k)
   {
-    const ContactRow& r = rows_[k];
-    const Result& result = results_[k];
-    const IslandContact& asked = (*contacts_)[result.contact];
+    const ContactRow& r = rows_.rows[k];
+    const Result& result = rows_.results[k];
+    const IslandContact& asked = (*step_.contacts)[result.contact];
     const double size = result.impulse.norm(), work = result.normalWork - result.frictionWork;
     for (const int i : { r.a, r.b })
     {
@@ -127,7 +119,7 @@ void SoftSolver::bookContacts(IslandOutcome& outcome)
       continue;
     }
     const Contact& c = *asked.contact;
-    IslandBody& body = (*bodies_)[std::size_t(r.a)];
+    IslandBody& body = (*step_.bodies)[std::size_t(r.a)];
     const double energy = c.springEnergy();
     books_[std::size_t(r.a)].slope += work;
     body.frictionWork += result.frictionWork;
@@ -137,22 +129,22 @@ void SoftSolver::bookContacts(IslandOutcome& outcome)
   }
 }
 
-void SoftSolver::writeBody(std::size_t i)
+void Writer::writeBody(std::size_t i)
 {
-  IslandBody& body = (*bodies_)[i];
+  IslandBody& body = (*step_.bodies)[i];
   Books& books = books_[i];
   const Block& block = *body.block;
-  const BlockState end = this->end(i);
+  const BlockState end = movers_.end(i);
   const auto energy = [&](const BlockState& s)
   {
     return 0.5 * block.mass() * s.velocity.squaredNorm() +
-      0.5 * s.spin.dot(block.inertia() * s.spin) + block.mass() * gravity_ * s.position.z();
+      0.5 * s.spin.dot(block.inertia() * s.spin) + block.mass() * step_.gravity * s.position.z();
   };
   // What the motion of the step leaves over is of the contact that did most.
   const double rest = energy(end) - energy(*body.state) - books.slope - books.rocks;
-  if (books.by < rows_.size())
+  if (books.by < rows_.rows.size())
   {
-    IslandContact& by = (*contacts_)[results_[books.by].contact];
+    IslandContact& by = (*step_.contacts)[rows_.results[books.by].contact];
     if (by.second >= 0)
     {
       by.work -= rest;
@@ -166,7 +158,7 @@ void SoftSolver::writeBody(std::size_t i)
   body.given = -books.rocks;
   body.dampedWork = -books.slope - body.frictionWork + books.held - body.springEnergy;
   *body.state = end;
-  body.state->time += duration_;
+  body.state->time += step_.duration;
 }
 
-} // namespace rockfall
+} // namespace rockfall::soft

@@ -29,7 +29,7 @@ TEST_P(RandomScenes, MakeNoEnergyAndStayOutOfTheGround)
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomScenes, ::testing::Values(41, 44, 47, 50, 53, 56, 131, 153));
 
 // A tetrahedron that is jammed between two edges, with an overlap and friction of 55°, is pressed
-// out of them in an island. It comes to rest; without `SoftSolver::holdEnergy` it leaves with ten
+// out of them in an island. It comes to rest; without `Movers::holdEnergy` it leaves with ten
 // times what gravity released.
 TEST(RandomScene, AJammedRockIsNotThrown)
 {
