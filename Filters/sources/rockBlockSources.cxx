@@ -20,6 +20,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -449,6 +450,18 @@ void vtkRockBlockSource::TellUnused(const Sources& sources, bool hasShape) const
   tell(idle, "have a deviation, bounds or an exponent of volumes that their law does not take");
   tell(moved, "have volumes of another mean, as bounds cut their law off");
   tell(beyond, "reach beyond the ground of the slope, on which all their rocks start");
+  std::map<std::int64_t, std::string> names;
+  for (const rockfall::filters::ReleasedRock& rock : sources.rocks)
+  {
+    const std::string& first = names.try_emplace(rock.sourceId, rock.sourceName).first->second;
+    if (first != rock.sourceName)
+    {
+      notes.push_back("Sources \"" + first + "\" and \"" + rock.sourceName +
+        "\" have one number, " + std::to_string(rock.sourceId) +
+        ": tables by source count them as one");
+      break;
+    }
+  }
   for (const std::string& note : notes)
   {
     rockfall::filters::showNote(note);

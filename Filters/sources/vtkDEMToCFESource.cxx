@@ -200,11 +200,11 @@ std::shared_ptr<const rockfall::Terrain> vtkDEMToCFESource::MakeSlope(
   this->UpdateProgress(0.6);
   slope.setRestitutionClasses(readGround(rockfall::GroundKind::Restitution,
     { this->RestitutionLayer, this->RestitutionTable, this->RestitutionField,
-      this->RestitutionLayerName, this->RestitutionTableSheet },
+      this->RestitutionLayerName, this->RestitutionTableSheet, this->JointTable.empty() },
     slope, notes));
   slope.setJointClasses(readGround(rockfall::GroundKind::Joint,
     { this->JointLayer, this->JointTable, this->JointField, this->JointLayerName,
-      this->JointTableSheet },
+      this->JointTableSheet, this->RestitutionTable.empty() },
     slope, notes));
   slope.setStructures(
     readStructures({ this->EmbankmentFile, this->TreeFile, this->BarrierFile, this->TreesBreak != 0,

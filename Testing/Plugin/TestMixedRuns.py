@@ -99,4 +99,15 @@ told = heard("volume,vol_law,vol_dev,vol_max", f"{point},1,normal,50,")
 assert "first row 1" in told and "instead of 1" in told, told
 told = heard("amount", f"{point},1", f"{area},3")
 assert "1 of 2 sources reach beyond the ground of the slope" in told and "first row 2" in told, told
+columns = "source,source_id"
+assert 'Sources "a" and "b" have one number, 1' in heard(columns, f"{point},a,1", f'"POINT(20 60)",b,1')
+assert "have one number" not in heard(columns, f"{point},a,1", f'"POINT(20 60)",a,1', f'"POINT(20 70)",b,2')
+
+# --- A table that says more than it is given for.
+classes = write_text("classes.csv", 'WKT,class\n"POLYGON((0 0,90 0,90 90,0 90,0 0))",scree\n')
+table = write_text("table.csv", "class,rv,phi\nscree,0.5,35\n")
+told = 'its column "phi" is read where it is the JointTable, which is not given'
+alone = {"RestitutionLayer": classes, "RestitutionTable": table}
+assert told in notes_of(DEMtoCFEMesh(**alone))
+assert "which is not given" not in notes_of(DEMtoCFEMesh(**alone, JointLayer=classes, JointTable=table))
 print("what does not belong together is told")

@@ -26,6 +26,7 @@ struct GroundFiles
   std::string field; ///< Of the polygons, with the class; empty looks for class, name, code, …
   std::string layerName = {};  ///< Of the layer's file (LayerFile.h); empty: what will do.
   std::string tableSheet = {}; ///< Of the table's file; empty: what will do.
+  bool alone = false;          ///< The other kind has no table: what this one says of it is told.
 };
 
 /// Reads classes and brings them to the cells of a terrain, each cell by its centre. Layers of any

@@ -237,6 +237,13 @@ GroundTable readGroundTable(GroundKind kind, const GroundFiles& files, const Sur
   }
   GroundTable table;
   const bool restitution = kind == GroundKind::Restitution;
+  const char* const other = restitution ? "phi" : "rv";
+  if (files.alone && columns.count(other))
+  {
+    notes.push_back(fileName + ": its column \"" + other + "\" is read where it is the " +
+      kindName(restitution ? GroundKind::Joint : GroundKind::Restitution) +
+      "Table, which is not given.");
+  }
   bool rough = restitution && hasRoughness(columns);
   while (const OGRFeatureUniquePtr feature = file.next())
   {
