@@ -189,7 +189,7 @@ if not only:
     soon(DEMtoCFEMesh(CellSize=1e-4), "cell size")
     soon(fall(EndTime=1e5, OutputInterval=1e-3), "OutputInterval")
     soon(fall(RockBlocks(Amount=1000, ClusterRadius=5, Center=[15, 50, 70]), Iterations=10**6), "Iterations")
-    soon(RockBlocks(Amount=10**6, ClusterRadius=1e-3, KeepApart=1, Center=[15, 50, 70]), "KeepApart")
+    soon(RockBlocks(Amount=10**5, ClusterRadius=1e-3, KeepApart=1, Center=[15, 50, 70]), "KeepApart")
     soon(RockBlocks(TotalVolume=1e6, Volume=1e-6, ClusterRadius=5), "TotalVolume")
     soon(JointedRockMass(Lengths=[1e3, 1e3, 1e3]), "MaximumRocks")
     soon(TrajectoryCollector(Input=paths(), Lines=PolyLineSource(), ParallelLines=10**9, ParallelSpacing=1e-6),
