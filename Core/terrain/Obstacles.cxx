@@ -350,6 +350,18 @@ FlatBox Obstacles::treeBox(int tree) const
     this->treeTop(tree) };
 }
 
+bool Obstacles::isTreeIn(int tree, double xMin, double xMax, double yMin, double yMax) const
+{
+  if (this->lyingOf(tree))
+  {
+    const FlatBox b = this->treeBox(tree);
+    return b.xMax >= xMin && b.xMin <= xMax && b.yMax >= yMin && b.yMin <= yMax;
+  }
+  const Eigen::Vector2d& p = structures_.trees[std::size_t(tree)].position;
+  const double r = this->treeRadius(tree);
+  return p.x() + r >= xMin && p.x() - r <= xMax && p.y() + r >= yMin && p.y() - r <= yMax;
+}
+
 bool Obstacles::isInTree(int tree, const Vec3& place) const
 {
   if (const LyingStem* stem = this->lyingOf(tree))
@@ -445,8 +457,7 @@ void Obstacles::append(double xMin, double xMax, double yMin, double yMax,
   this->visitTrees(xMin, xMax, yMin, yMax,
     [&](int k)
     {
-      const FlatBox b = this->treeBox(k);
-      if (b.xMax >= xMin && b.xMin <= xMax && b.yMax >= yMin && b.yMin <= yMax &&
+      if (this->isTreeIn(k, xMin, xMax, yMin, yMax) &&
         !std::binary_search(gone.begin(), gone.end(), k))
       {
         trees.push_back(k);
@@ -571,11 +582,14 @@ void Obstacles::append(
       firstKey + std::int64_t(mesh_.nodes.size()) + std::int64_t(tree) * 2 * treeSides,
       firstKey + meshTriangles + std::int64_t(tree) * treeTriangles,
       firstCfe_ + meshTriangles + std::int64_t(tree) * treeTriangles };
+    const bool lies = this->lyingOf(tree) != nullptr;
     const ObstacleMesh& shape = this->shapeOf(tree);
     appendMesh(
       shape, std::span(all).first(shape.nodes.size()), std::span(all).first(shape.triangles.size()),
       from, [&](int n) { return this->treeCorner(tree, n); },
-      [&](int i) { return this->treeNormal(tree, i); }, itself, itself, patch);
+      [&](int i)
+      { return lies ? this->treeNormal(tree, i) : shape.triangles[std::size_t(i)].normal; },
+      itself, itself, patch);
   }
 }
 

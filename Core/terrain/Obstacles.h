@@ -87,13 +87,17 @@ public:
   /// Null if it stands.
   const LyingStem* lyingOf(int tree) const
   {
-    const Tree& t = structures_.trees[std::size_t(tree)];
-    return t.lies() ? &lying_[std::size_t(lyingNumbers_[std::size_t(tree)])] : nullptr;
+    const std::size_t k = std::size_t(tree);
+    return k < lyingNumbers_.size() && lyingNumbers_[k] >= 0
+      ? &lying_[std::size_t(lyingNumbers_[k])]
+      : nullptr;
   }
   /// Whether a place is within a tree.
   bool isInTree(int tree, const Vec3& place) const;
   /// What it takes up in plan, and its top.
   FlatBox treeBox(int tree) const;
+  /// Whether it does so within a box.
+  bool isTreeIn(int tree, double xMin, double xMax, double yMin, double yMax) const;
 
   /// CFEs of obstacles have numbers beyond the slope's: first the embankments', then the trees'.
   std::int64_t firstCfe() const { return firstCfe_; }
@@ -165,7 +169,7 @@ private:
   std::vector<int> owners_;
   std::vector<std::array<double, 2>> treeEnds_; ///< Elevation of the lower and the upper end, m.
   std::vector<LyingStem> lying_;
-  std::vector<int> lyingNumbers_; ///< Of trees in lying_; empty if none lies.
+  std::vector<int> lyingNumbers_; ///< Of trees in lying_, up to the last that lies; −1: it stands.
   std::vector<Piece> barrierPieces_;
   BoxIndex meshIndex_, treeIndex_, barrierIndex_;
 };

@@ -43,11 +43,11 @@ struct Tree
   Eigen::Vector2d position = Eigen::Vector2d::Zero();
   double diameter = 0.3; ///< Of the stem, m, > 0.
   double height = 20.0;  ///< Over the ground under its axis, m, > 0; of a lying one not used.
-  /// Other end of a lying stem; NaN: it stands.
-  Eigen::Vector2d end = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
   /// A rock that touches it with more kinetic energy breaks it and loses this much, J, ≥ 0.
   double capacity = std::numeric_limits<double>::infinity();
   int material = 0;
+  /// Other end of a lying stem; NaN: it stands.
+  Eigen::Vector2d end = Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
 
   bool lies() const { return !std::isnan(end.x()); }
 };

@@ -2,11 +2,14 @@
 collectors: time and memory of all of it.
 
     PV_PLUGIN_PATH=build/lib/paraview-5.11/plugins/RockfallDDA /usr/bin/time -v \\
-      pvbatch Testing/Benchmark/manyRocks.py FOLDER [--trajectories 100000 --chunk 50 --threads 0 --alone]
+      pvbatch Testing/Benchmark/manyRocks.py FOLDER [--trajectories 100000 --chunk 50 --threads 0 --alone --fall 600]
 
-The DEM is a slope of 35° with gullies that flattens out, 2 m cells; the rocks are cubes and icosahedra of
-1 m3, 100 of them in 1000 iterations; two roads cross their way. The study is that of Examples/study.py; what
-is in FOLDER already is not done again.
+The DEM is a slope of 35° with gullies that flattens out, 600 m high, 2 m cells; the rocks are cubes and
+icosahedra of 1 m3, 100 of them in 1000 iterations; two roads cross their way. The study is that of
+Examples/study.py; what is in FOLDER already is not done again. A million trajectories take a quarter of an
+hour on a slope that is 12 m high:
+
+    ... manyRocks.py FOLDER --fall 12 --trajectories 1000000 --rocks 1000 --chunk 20
 """
 import argparse
 import json
@@ -26,6 +29,7 @@ parser.add_argument("folder")
 parser.add_argument("--trajectories", type=int, default=100000)
 parser.add_argument("--rocks", type=int, default=100)
 parser.add_argument("--chunk", type=int, default=50, help="iterations that are in memory at once")
+parser.add_argument("--fall", type=float, default=600.0, help="height of the slope, m; its length goes with it")
 parser.add_argument("--keep-trajectories", action="store_true")
 parser.add_argument("--alone", action="store_true", help="without map and lines: the simulation by itself")
 parser.add_argument("--threads", type=int, default=0)
@@ -34,7 +38,8 @@ os.makedirs(chosen.folder, exist_ok=True)
 
 started = time.time()
 x, y = np.meshgrid(np.arange(NODES) * CELL, np.arange(NODES)[::-1] * CELL)
-heights = (600.0 * np.exp(-x / 700.0) + 3.0 * np.sin(y / 15.0) * np.exp(-x / 900.0) +
+fall = chosen.fall
+heights = (fall * np.exp(-x / (fall * 7 / 6)) + 3.0 * np.sin(y / 15.0) * np.exp(-x / (fall * 3 / 2)) +
            0.5 * np.sin(x / 7.0)).astype("<f4")
 del x, y
 dem = os.path.join(chosen.folder, "dem.img")
@@ -46,14 +51,14 @@ with open(os.path.join(chosen.folder, "dem.hdr"), "w") as file:
 with open(os.path.join(chosen.folder, "sources.csv"), "w") as file:
     file.write("x,y,z,shape,volume\n")
     for k in range(chosen.rocks):
-        column, row = 20 + k % 5, 200 + (k * (NODES - 400)) // chosen.rocks
+        column, row = max(3, round(fall / 30)) + k % 5, 200 + (k * (NODES - 400)) // chosen.rocks
         z = heights[row - 2:row + 3, column - 2:column + 3].max() + 3.0
         file.write(f"{column * CELL},{(NODES - 1 - row) * CELL},{z},"
                    f"{'cube' if k % 2 else 'icosahedron'},1\n")
 del heights
 with open(os.path.join(chosen.folder, "roads.csv"), "w") as file:
     file.write("WKT,name\n" + "".join(
-        f'"LINESTRING({at} 0,{at} {NODES * CELL})",road at {at} m\n' for at in (200, 500)))
+        f'"LINESTRING({at:g} 0,{at:g} {NODES * CELL})",road at {at:g} m\n' for at in (fall / 3, fall * 5 / 6)))
 with open(os.path.join(chosen.folder, "study.json"), "w") as file:
     json.dump({
         "terrain": {"FileName": "dem.img", "RestitutionCoefficient": 0.7, "FrictionAngle": 32,

@@ -28,13 +28,14 @@ struct Ball
   }
 
   /// To a convex body with these corners, some of whose normals are given.
-  double toBody(std::span<const Vec3> corners, std::span<const Vec3> normals) const
+  template <typename Corners, typename Normals>
+  double toBody(const Corners& corners, const Normals& normals) const
   {
     double longest = 0.0;
     const auto along = [&](const Vec3& n)
     {
       double most = n.dot(corners[0]);
-      for (const Vec3& q : corners.subspan(1))
+      for (const Vec3& q : corners)
       {
         most = std::max(most, n.dot(q));
       }
@@ -118,7 +119,7 @@ double timeToObstacle(PlacedBlock& rock, const BlockState& state, const Block& b
       const std::array<Vec3, 3> q = { mesh.nodes[std::size_t(t.nodes[0])].position,
         mesh.nodes[std::size_t(t.nodes[1])].position,
         mesh.nodes[std::size_t(t.nodes[2])].position };
-      const double at = ball.toBody(q, std::span(&t.normal, 1));
+      const double at = ball.toBody(q, std::span<const Vec3, 1>(&t.normal, 1));
       if (at < close)
       {
         triangles.push_back(k);

@@ -331,10 +331,7 @@ bool StructuresOnWay::apply(const Broken& broken, const SurfacePatch& patch)
       continue;
     }
     goneTrees_.insert(at, tree);
-    const FlatBox box = obstacles_->treeBox(tree);
-    near = near ||
-      (box.xMax >= patch.xMin && box.xMin <= patch.xMax && box.yMax >= patch.yMin &&
-        box.yMin <= patch.yMax);
+    near = near || obstacles_->isTreeIn(tree, patch.xMin, patch.xMax, patch.yMin, patch.yMax);
   }
   return near;
 }
