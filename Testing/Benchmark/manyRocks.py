@@ -48,17 +48,18 @@ with open(os.path.join(chosen.folder, "dem.hdr"), "w") as file:
     file.write(f"ENVI\nsamples = {NODES}\nlines = {NODES}\nbands = 1\nheader offset = 0\n"
                "file type = ENVI Standard\ndata type = 4\ninterleave = bsq\nbyte order = 0\n"
                f"map info = {{Arbitrary, 1, 1, 0, {NODES * CELL}, {CELL}, {CELL}}}\n")
+first = max(3, round(fall / 30))  # column of the westernmost rocks
 with open(os.path.join(chosen.folder, "sources.csv"), "w") as file:
     file.write("x,y,z,shape,volume\n")
     for k in range(chosen.rocks):
-        column, row = max(3, round(fall / 30)) + k % 5, 200 + (k * (NODES - 400)) // chosen.rocks
+        column, row = first + k % 5, 200 + (k * (NODES - 400)) // chosen.rocks
         z = heights[row - 2:row + 3, column - 2:column + 3].max() + 3.0
         file.write(f"{column * CELL},{(NODES - 1 - row) * CELL},{z},"
                    f"{'cube' if k % 2 else 'icosahedron'},1\n")
 del heights
 with open(os.path.join(chosen.folder, "roads.csv"), "w") as file:
     file.write("WKT,name\n" + "".join(
-        f'"LINESTRING({at:g} 0,{at:g} {NODES * CELL})",road at {at:g} m\n' for at in (fall / 3, fall * 5 / 6)))
+        f'"LINESTRING({at:g} 0,{at:g} {NODES * CELL})",road at {at:g} m\n' for at in (first * CELL + fall * part / 600 for part in (160, 460))))
 with open(os.path.join(chosen.folder, "study.json"), "w") as file:
     json.dump({
         "terrain": {"FileName": "dem.img", "RestitutionCoefficient": 0.7, "FrictionAngle": 32,
