@@ -137,6 +137,9 @@ inline constexpr double kRecover = 0.005;
 inline constexpr double kLooseOverlap = 1e-3;
 /// Speed at which a deeper overlap is recovered, m/s, and at most this share of √(g r).
 inline constexpr double kRecoverDeep = 0.1;
+/// Energy that a spring is given for it in a step, as a drop of this share of r. Higher: rocks that
+/// are jammed between edges are thrown.
+inline constexpr double kRecoverDrop = 0.01;
 /// Compression that a spring holds in any case, share of r; beyond, it holds what its two sides
 /// brought to it. Larger: others press rocks into each other, and springs shoot them out.
 inline constexpr double kFirm = 0.02;
@@ -266,7 +269,8 @@ inline constexpr int kSubsteps = 8;
 inline constexpr double kSoftFrequency = 0.25;
 /// Damping ratio of a row. Lower: tall columns sway; higher: walls creep.
 inline constexpr double kSoftDamping = 3.0;
-/// Speed at which overlap goes, between rocks and on the slope, m/s.
+/// Speed at which overlap goes, between rocks and on the slope, m/s. The same on both: a stone under
+/// a boulder of 50 times its size stays in the slope.
 inline constexpr double kOverlapGoes = 1.0;
 inline constexpr double kOverlapGoesOnSlope = 10.0;
 /// Stress at which a corner is crushed to a patch that bears what presses it, Pa: from here on rock

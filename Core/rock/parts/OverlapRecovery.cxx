@@ -15,10 +15,14 @@ void OverlapRecovery::beforeStep(RockBody& body, double h)
 {
   recovering_ = false;
   const double speed = deepSpeed(gravity_, body.block.radius());
+  const double most =
+    kRecoverDrop * body.block.mass() * std::max(gravity_, kLeastGravity) * body.block.radius();
   const double loose = looseOf(body);
   for (Contact& c : body.contacts)
   {
-    recovering_ = recoverDeepOverlap(c, speed * h, loose) || recovering_;
+    // Between two walls the rock cannot go, and friction makes a throw of what the spring is given.
+    const double firm = c.stiffness > 0.0 ? std::sqrt(2.0 * most / c.stiffness) : speed * h;
+    recovering_ = recoverDeepOverlap(c, std::min(speed * h, firm), loose) || recovering_;
   }
 }
 

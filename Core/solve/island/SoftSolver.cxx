@@ -96,6 +96,7 @@ void SoftSolver::updateGaps(std::size_t strip)
       this->arriveAt(k, manifold.busy && !rows_.rows[k].idle);
       anyBusy = anyBusy || !rows_.rows[k].idle;
       any = any || impacts_.closes(k, 1.0);
+      this->noteDeep(k);
     }
     manifold.busy = anyBusy;
     manifold.impactRound = 0;
@@ -124,6 +125,57 @@ void SoftSolver::arriveAt(std::size_t k, bool placed)
   }
 }
 
+void SoftSolver::noteDeep(std::size_t k)
+{
+  const ContactRow& r = rows_.rows[k];
+  const ContactRowCold& start = rows_.starts[k];
+  if (r.b < 0 && -r.gap - r.P / (step_.h * start.spring) > start.loose)
+  {
+    movers_[r.a].deep = true;
+  }
+}
+
+bool SoftSolver::isDeep(const Manifold& m) const
+{
+  return movers_[m.a].deep || (m.b >= 0 && movers_[m.b].deep);
+}
+
+void SoftSolver::keepWarm(std::size_t strip)
+{
+  const auto keep = [this](std::size_t k)
+  {
+    rows_.starts[k].warmP = rows_.rows[k].P;
+    rows_.starts[k].warmT = rows_.rows[k].T;
+  };
+  for (const std::size_t m : sweeps_.busyOf[strip])
+  {
+    if (this->isDeep(rows_.manifolds[m]))
+    {
+      rows_.forRows(rows_.manifolds[m], keep);
+    }
+  }
+}
+
+void SoftSolver::takeBackPress(std::size_t strip)
+{
+  const auto back = [this](std::size_t k)
+  {
+    ContactRow& r = rows_.rows[k];
+    const ContactRowCold& start = rows_.starts[k];
+    movers_.push(r, (start.warmP - r.P) * r.normal + (start.warmT - r.T));
+    r.pressed = r.P > 0.0;
+    r.P = start.warmP;
+    r.T = start.warmT;
+  };
+  for (const std::size_t m : sweeps_.busyOf[strip])
+  {
+    if (this->isDeep(rows_.manifolds[m]))
+    {
+      rows_.forRows(rows_.manifolds[m], back);
+    }
+  }
+}
+
 void SoftSolver::warm(std::size_t strip)
 {
   for (const std::size_t m : sweeps_.busyOf[strip])
@@ -138,6 +190,7 @@ void SoftSolver::warm(std::size_t strip)
 
 void SoftSolver::warm(ContactRow& r)
 {
+  r.pressed = false;
   r.loaded = r.stops;
   if (r.stops)
   {
@@ -162,9 +215,10 @@ void SoftSolver::keepPushing(std::size_t strip)
     const Manifold& manifold = rows_.manifolds[m];
     int pushing = 0;
     std::size_t last = 0;
+    const bool deep = this->isDeep(manifold);
     const auto count = [&](std::size_t k)
     {
-      const bool more = rows_.rows[k].P > 0.0;
+      const bool more = rows_.rows[k].P > 0.0 || (deep && rows_.starts[k].warmP > 0.0);
       pushing += more ? 1 : 0;
       last = more ? k : last;
     };
@@ -176,7 +230,6 @@ void SoftSolver::keepPushing(std::size_t strip)
       if (any && i >= 0)
       {
         movers_[i].touched = true;
-        movers_[i].carried = movers_[i].carried || manifold.b >= 0;
         movers_[i].flies = false;
       }
     }
@@ -220,7 +273,7 @@ bool SoftSolver::solveNormal(ContactRow& r)
 
 bool SoftSolver::relax(ContactRow& r)
 {
-  if (r.P == 0.0)
+  if (r.P == 0.0 && !r.pressed)
   {
     return false;
   }
@@ -234,11 +287,13 @@ bool SoftSolver::relax(ContactRow& r)
 
 void SoftSolver::substep(int number)
 {
+  movers_.forgetDeep();
   rows_.forStrips([&](std::size_t strip) { this->updateGaps(strip); });
   impacts_.strike(number * step_.h);
   movers_.before = movers_.motions;
   movers_.fall();
   rows_.forStrips([this](std::size_t strip) { this->warm(strip); });
+  rows_.forStrips([this](std::size_t strip) { this->keepWarm(strip); });
   const auto press = [this](std::size_t m)
   {
     bool moved = false;
@@ -249,6 +304,7 @@ void SoftSolver::substep(int number)
   sweeps_.sweep(1, press);
   rows_.forStrips([this](std::size_t strip) { this->keepPushing(strip); });
   movers_.move();
+  rows_.forStrips([this](std::size_t strip) { this->takeBackPress(strip); });
   const auto place = [&](std::size_t row)
   {
     if (rows_.place(rows_.rows[row]))
@@ -269,7 +325,6 @@ void SoftSolver::substep(int number)
     return moved;
   };
   sweeps_.sweep(kRelaxSweeps, relax);
-  movers_.holdEnergy();
   rows_.forStrips([this](std::size_t strip) { this->bookForces(strip); });
 }
 

@@ -17,6 +17,9 @@
 ///     relax     P ← max(0, P − m v); friction within μ P + c h; two rocks that push each other
 ///               at one point only: a moment M ← M − J ω against their turning, within 2/3 μ a P
 ///
+/// Around a rock that overlaps the slope by more than a thousandth of r beyond P/(h pₙ), impulses
+/// go back to those of *warm* behind the move: overlap goes as place, without a speed or a spring.
+///
 /// with m the effective mass, β = ω / (2 ζ + h ω), ω² = pₙ/m but no more than a quarter of the
 /// substep rate, s = m β / (h pₙ), v_r the speed at which overlap goes, and a the radius of the
 /// crushed corner (softPivots.h). At rest the overlap is P/(h pₙ), as of Shi's spring. Pressing
@@ -79,6 +82,12 @@ private:
   void warm(soft::ContactRow& row);
   void keepPushing(std::size_t strip);     ///< Busy manifolds that push; notes their rocks.
   bool solveNormal(soft::ContactRow& row); ///< Whether by so much that others may change.
+  void noteDeep(std::size_t row);          ///< A rock that overlaps the slope deeply there.
+  bool isDeep(const soft::Manifold& manifold) const; ///< Whether one of its rocks is.
+  void keepWarm(std::size_t strip); ///< Impulses of these, before they are pressed.
+  /// Behind the move, what pressing gave them is taken back. A deep overlap goes as place: else a
+  /// rock that is jammed winds up springs, and friction throws it.
+  void takeBackPress(std::size_t strip);
   bool relax(soft::ContactRow& row);
   void bookForces(std::size_t strip); ///< The work of impulses behind impacts.
 

@@ -38,9 +38,9 @@ void Movers::start(std::size_t i)
   m.smallTurn = std::cbrt(24.0 * kTurnExact / slender);
   m.weighedTurn = kWeighedTurn / std::sqrt(slender);
   m.turned = false;
-  m.touched = m.carried = false;
+  m.touched = m.deep = false;
   m.flies = true;
-  m.noise = m.kinetic = 0.0;
+  m.noise = 0.0;
 }
 
 void Movers::start()
@@ -89,8 +89,7 @@ void Movers::fall()
   const auto fall = [&](std::size_t i)
   {
     motions[i].velocity += step_.h * gravity;
-    all[i].touched = all[i].carried = false;
-    all[i].kinetic = this->kineticEnergy(i);
+    all[i].touched = false;
   };
   forEach(this->size(), kBodyGrain, fall);
 }
@@ -146,37 +145,9 @@ void Movers::turn(std::size_t i)
   m.turned = m.turned || m.turn.squaredNorm() > m.weighedTurn * m.weighedTurn;
 }
 
-double Movers::kineticEnergy(std::size_t i) const
+void Movers::forgetDeep()
 {
-  const Motion& motion = motions[i];
-  const double turning = motion.inverseMoment > 0.0
-    ? motion.spin.squaredNorm() / motion.inverseMoment
-    : motion.spin.dot(all[i].momentum);
-  return 0.5 * (motion.velocity.squaredNorm() / motion.inverseMass + turning);
-}
-
-void Movers::holdEnergy(std::size_t i)
-{
-  Mover& m = all[i];
-  if (!m.touched || m.carried)
-  {
-    return;
-  }
-  Motion& motion = motions[i];
-  const double now = this->kineticEnergy(i);
-  const double still2 = kRestingSpeed * kRestingSpeed * step_.gravity * m.block->radius();
-  if (now > m.kinetic + 0.5 * still2 / motion.inverseMass)
-  {
-    const double share = std::sqrt(m.kinetic / now);
-    motion.velocity *= share;
-    motion.spin *= share;
-    m.momentum *= share;
-  }
-}
-
-void Movers::holdEnergy()
-{
-  forEach(this->size(), kBodyGrain, [this](std::size_t i) { this->holdEnergy(i); });
+  forEach(this->size(), kBodyGrain, [this](std::size_t i) { all[i].deep = false; });
 }
 
 BlockState Movers::end(std::size_t i) const

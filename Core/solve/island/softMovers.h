@@ -39,12 +39,11 @@ struct alignas(64) Mover
   Vec3 displacement, turn; ///< Since the step begins; the turn as a sum of small ones.
   Vec3 start;              ///< Centroid where the step begins, from Step::origin, m.
   bool turned;             ///< So far in the step that its contacts weigh otherwise.
-  bool touched;            ///< A contact that lasts has pushed it in the substep,
-  bool carried;            ///< one with another rock.
+  bool touched;            ///< A contact that lasts has pushed it in the substep.
   bool flies;              ///< Nothing has touched it in the step.
   bool moved;              ///< Since the last look.
+  bool deep;               ///< Overlaps the slope deeper than springs explain.
   double noise;            ///< Speed to which its impacts in the step are exact, m/s.
-  double kinetic;          ///< Before contacts that last push it in the substep, J.
   Vec3 momentum;           ///< Angular, about the centroid.
   Mat3 inverseInertia;
   double smallTurn;   ///< Largest one of a substep that a midpoint does, rad.
@@ -76,11 +75,9 @@ public:
   void findMoved();                    ///< Since the last look.
   BlockState end(std::size_t i) const; ///< At the end of the step.
 
-  void fall(); ///< Gravity of a substep, and no contact yet.
-  void move(); ///< For a substep.
-  /// The slope, which is at rest, gives a rock no energy: not by pressing an overlap out either, at
-  /// a speed that friction between two walls turns into a throw.
-  void holdEnergy();
+  void fall();       ///< Gravity of a substep, and no contact yet.
+  void move();       ///< For a substep.
+  void forgetDeep(); ///< Which ones are.
 
   static Vec3 speedOf(const ContactRow& row, const std::vector<Motion>& motions);
   /// Of a's point alone.
@@ -94,8 +91,6 @@ public:
 private:
   void start(std::size_t i);
   void turn(std::size_t i);
-  void holdEnergy(std::size_t i);
-  double kineticEnergy(std::size_t i) const; ///< J
   void push(int mover, const Vec3& J, const Vec3& lever);
   void twist(int mover, const Vec3& moment);
 

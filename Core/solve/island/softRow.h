@@ -21,6 +21,7 @@ struct alignas(64) ContactRow
   bool idle;        ///< Stays open in the substep.
   bool stops;       ///< Stopped what closed: its impulse is not one to go on with.
   bool loaded;      ///< Did so in the last substep: it carries a load.
+  bool pressed;     ///< Pushed, and what pressing gave was taken back.
   double gap;       ///< Now, m.
   double P;         ///< N s
   double mass;      ///< Effective, kg.
@@ -45,6 +46,9 @@ struct ContactRowCold
   double spring;  ///< pₙ, N/m
   double before;  ///< Speed along the normal before an impact round, m/s.
   double pending; ///< ≥ 0: speed at which an impact that was under way leaves, m/s.
+  double loose;   ///< Deepest loose overlap beyond what its force explains, m.
+  double warmP;   ///< Of a deep rock, before it is pressed: along the normal, N s,
+  Vec3 warmT;     ///< and across.
 };
 
 /// What a contact did in the step.

@@ -140,6 +140,7 @@ void Rows::prepare(std::size_t k, ContactRow& row, ContactRowCold& start) const
   const double radius =
     std::min(movers_[row.a].block->radius(), movers_[row.b < 0 ? row.a : row.b].block->radius());
   row.slide2 = kWeighedTurn * kWeighedTurn * radius * radius;
+  start.loose = kLooseOverlap * radius;
   row.friction = asked.friction;
   row.cohesion = step_.h * asked.cohesion;
   row.resting = std::max(asked.resting, 2.0 * step_.h * step_.gravity);
@@ -199,7 +200,7 @@ void Rows::prepareImpulses(std::size_t k, const IslandContact& asked)
   ContactRowCold& start = starts[k];
   row.P = 0.0;
   row.T.setZero();
-  row.stops = row.loaded = false;
+  row.stops = row.loaded = row.pressed = false;
   start.before = 0.0;
   start.pending =
     c.closed() && !asked.absent && asked.reboundSpeed >= 0.0 ? asked.reboundSpeed : -1.0;
