@@ -184,7 +184,7 @@ void IslandStepper::solve(double h)
   StepRequest request;
   request.duration = h;
   request.gravity = world_.parameters.gravity;
-  request.substeps = int(std::ceil(kSubsteps * h / world_.parameters.timeStep - 1e-6));
+  request.substeps = std::max(1, int(std::ceil(kSubsteps * h / world_.parameters.timeStep - 1e-6)));
   this->cutUntilAccepted(request);
   const RockBody& first = world_.rocks[std::size_t(island_.members.front())].body();
   if (work_.bodies.front().state->time <= first.before.time && !first.done)

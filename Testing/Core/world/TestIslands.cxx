@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 using namespace rockfall;
@@ -131,6 +132,27 @@ TEST(Islands, EveryJouleIsBooked)
   EXPECT_LT(std::abs(sum.numerical), 1e-3 * sum.released);
   EXPECT_GT(sum.exchanged, 0.05 * sum.released);
   EXPECT_GT(sum.restitution, 0.05 * sum.released);
+}
+
+// What is left of a run for its last step may be no more than rounding of time: a step of one
+// substep, not of none, whose books would be no numbers.
+TEST(Islands, LastStepMayBeOfNanoseconds)
+{
+  for (const double rest : { 1.1e-9, 1.5e-9, 2e-9 })
+  {
+    Pile pile;
+    pile.ground = floorSlope();
+    pile.parameters.timeStep = 0.02;
+    pile.parameters.endTime = 0.1 + rest;
+    pile.rocks = { brick(Vec3(1, 1, 1), Vec3(20.0, 20.0, 0.5), 0),
+      brick(Vec3(1, 1, 1), Vec3(20.1, 20.0, 1.5), 1) };
+    pile.make();
+    for (const Trajectory& t : pile.fall->run())
+    {
+      EXPECT_TRUE(std::isfinite(t.summary.energy.strain)) << rest;
+      EXPECT_TRUE(std::isfinite(t.summary.energy.damping)) << rest;
+    }
+  }
 }
 
 TEST(Islands, SameBitsForAnyNumberOfThreads)
