@@ -10,6 +10,8 @@
 
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace rockfall
 {
@@ -60,6 +62,10 @@ std::span<const GroundPreset> groundPresets();
 /// By name, not case-sensitive, with or without what panels say in brackets. Throws DataError that
 /// lists the names.
 const GroundPreset& groundPreset(const std::string& name);
+
+/// Properties of DEM to CFE Mesh and what a preset, from 1, makes of them, in the panel's units.
+/// Nothing for 0, no preset.
+std::vector<std::pair<std::string, double>> presetValues(int preset);
 
 /// Number, from 1, of the preset that a slope has in a window until another is chosen: the one that
 /// field data support.

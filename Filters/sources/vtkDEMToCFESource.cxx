@@ -28,6 +28,8 @@
 #include "vtkPolyData.h"
 #include "vtkStringArray.h"
 
+#include <algorithm>
+#include <cmath>
 #include <new>
 
 vtkStandardNewMacro(vtkDEMToCFESource);
@@ -146,10 +148,18 @@ void vtkDEMToCFESource::TellReplaced(std::vector<std::string>& notes) const
     { "ObstacleHeight10", &Source::ObstacleHeight10 },
   };
   const vtkNew<Source> usual;
+  const auto preset = rockfall::presetValues(this->Preset);
+  // The window fills the panel's fields with the preset's own numbers.
+  const auto isPresets = [&](const char* name, double value)
+  {
+    const auto of = std::find_if(
+      preset.begin(), preset.end(), [&](const auto& entry) { return entry.first == name; });
+    return of != preset.end() && std::abs(of->second - value) <= 1e-9 * std::abs(value);
+  };
   std::string list;
   for (const auto& [name, value] : properties)
   {
-    if (this->*value != usual->*value)
+    if (this->*value != usual->*value && !isPresets(name, this->*value))
     {
       list += (list.empty() ? "" : ", ") + std::string(name);
     }

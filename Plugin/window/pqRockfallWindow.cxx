@@ -7,7 +7,6 @@
 #include "placed.h"
 #include "pqMessageBar.h"
 #include "pqPathPicker.h"
-#include "presetValues.h"
 #include "slopeView.h"
 #include "terrain/presets.h"
 #include "undo.h"
@@ -352,7 +351,7 @@ void pqRockfallWindow::onPreset(vtkObject* property, unsigned long event)
   const bool panel = event == vtkCommand::UncheckedPropertyModifiedEvent;
   vtkSMPropertyHelper chosen(preset);
   chosen.SetUseUnchecked(panel);
-  for (const auto& [name, value] : rockfall::window::presetValues(chosen.GetAsInt()))
+  for (const auto& [name, value] : rockfall::presetValues(chosen.GetAsInt()))
   {
     vtkSMPropertyHelper number(slope, name.c_str());
     number.SetUseUnchecked(panel);

@@ -80,6 +80,8 @@ assert "no effect" not in notes_of(DEMtoCFEMesh())
 assert "The Preset replaces what these properties say: RestitutionCoefficient, FrictionAngle" in \
     notes_of(DEMtoCFEMesh(Preset="Meadow (field data)", FrictionAngle=50, RestitutionCoefficient=0.2))
 assert "Preset replaces" not in notes_of(steep)
+assert "Preset replaces" not in notes_of(
+    DEMtoCFEMesh(Preset="Soil (assumed)", FrictionAngle=30)), "the preset's own number"
 one.PushRocksApart, one.RockCohesion = 1, 5.0
 told = messages_of(one.UpdatePipeline)
 assert "RockRockContact is off, without which these have no effect: PushRocksApart, RockCohesion" in told, told
