@@ -140,22 +140,6 @@ bool SoftSolver::isDeep(const Manifold& m) const
   return movers_[m.a].deep || (m.b >= 0 && movers_[m.b].deep);
 }
 
-void SoftSolver::keepWarm(std::size_t strip)
-{
-  const auto keep = [this](std::size_t k)
-  {
-    rows_.starts[k].warmP = rows_.rows[k].P;
-    rows_.starts[k].warmT = rows_.rows[k].T;
-  };
-  for (const std::size_t m : sweeps_.busyOf[strip])
-  {
-    if (this->isDeep(rows_.manifolds[m]))
-    {
-      rows_.forRows(rows_.manifolds[m], keep);
-    }
-  }
-}
-
 void SoftSolver::takeBackPress(std::size_t strip)
 {
   const auto back = [this](std::size_t k)
@@ -180,8 +164,20 @@ void SoftSolver::warm(std::size_t strip)
 {
   for (const std::size_t m : sweeps_.busyOf[strip])
   {
-    rows_.forRows(rows_.manifolds[m], [this](std::size_t k) { this->warm(rows_.rows[k]); });
-    if (rows_.manifolds[m].pivots)
+    const Manifold& manifold = rows_.manifolds[m];
+    const bool deep = this->isDeep(manifold);
+    const auto warm = [&](std::size_t k)
+    {
+      ContactRow& r = rows_.rows[k];
+      this->warm(r);
+      if (deep)
+      {
+        rows_.starts[k].warmP = r.P;
+        rows_.starts[k].warmT = r.T;
+      }
+    };
+    rows_.forRows(manifold, warm);
+    if (manifold.pivots)
     {
       pivots_.warm(m);
     }
@@ -293,7 +289,6 @@ void SoftSolver::substep(int number)
   movers_.before = movers_.motions;
   movers_.fall();
   rows_.forStrips([this](std::size_t strip) { this->warm(strip); });
-  rows_.forStrips([this](std::size_t strip) { this->keepWarm(strip); });
   const auto press = [this](std::size_t m)
   {
     bool moved = false;

@@ -78,13 +78,13 @@ private:
   void substep(int k);
   void updateGaps(std::size_t strip);          ///< Gaps, books and who strikes.
   void arriveAt(std::size_t row, bool placed); ///< `placed`: it stands where the rocks are.
-  void warm(std::size_t strip);                ///< Goes on with the impulses of the last substep.
+  /// Goes on with the impulses of the last substep, and keeps those of deep rocks as they are now.
+  void warm(std::size_t strip);
   void warm(soft::ContactRow& row);
   void keepPushing(std::size_t strip);     ///< Busy manifolds that push; notes their rocks.
   bool solveNormal(soft::ContactRow& row); ///< Whether by so much that others may change.
   void noteDeep(std::size_t row);          ///< A rock that overlaps the slope deeply there.
   bool isDeep(const soft::Manifold& manifold) const; ///< Whether one of its rocks is.
-  void keepWarm(std::size_t strip); ///< Impulses of these, before they are pressed.
   /// Behind the move, what pressing gave them is taken back. A deep overlap goes as place: else a
   /// rock that is jammed winds up springs, and friction throws it.
   void takeBackPress(std::size_t strip);
