@@ -13,6 +13,7 @@
 // folder's grid.
 
 #include "GroundSettings.h"
+#include "Summaries.h"
 #include "fieldScores.h"
 #include "fieldTables.h"
 #include "trackedGround.h"
@@ -118,20 +119,6 @@ Experiment readExperiment(const std::string& folder, const GroundSettings& s)
   }
   return e;
 }
-
-/// Summaries of all trajectories.
-class Stops : public TrajectorySink
-{
-public:
-  void trim(Trajectory& t) const override
-  {
-    t.samples.clear();
-    t.impacts.clear();
-  }
-  void consume(Trajectory&& t) override { all.push_back(t.summary); }
-
-  std::vector<TrajectorySummary> all;
-};
 
 /// Figures over some runs.
 struct Figures
@@ -293,7 +280,7 @@ int run(int count, char** words)
   p.outputInterval = p.endTime;
   Experiment e = readExperiment(arguments.folder, arguments.settings);
   const auto begin = std::chrono::steady_clock::now();
-  Stops stops;
+  Summaries stops;
   runEnsemble(e.terrain, e.rocks, p, stops);
   sortStops(
     e, stops.all, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());

@@ -8,6 +8,7 @@
 // preset Meadow where nothing else is said.
 
 #include "GroundSettings.h"
+#include "Summaries.h"
 
 #include "geometry/shapes.h"
 #include "run/ensemble.h"
@@ -45,19 +46,6 @@ Terrain makeSlope(const GroundSettings& s, double angle, double drop)
   }
   return makeTerrain(s, grid, std::move(heights));
 }
-
-class Summaries : public TrajectorySink
-{
-public:
-  void trim(Trajectory& t) const override
-  {
-    t.samples.clear();
-    t.impacts.clear();
-  }
-  void consume(Trajectory&& t) override { all.push_back(t.summary); }
-
-  std::vector<TrajectorySummary> all;
-};
 
 struct Figures
 {
