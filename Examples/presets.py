@@ -27,6 +27,7 @@ SHAPES = ("eota111", "cube", "eota221")
 CELL = 2.0      # m
 WIDTH = 120.0   # m
 TOP = 8.0       # of the slope above the release, m
+SPACING = 0.04  # between releases, m: three, of one shape, are farther apart than sources given twice
 BEYOND = 700.0  # of flat ground, m
 END = 600.0     # s
 MEADOW = "Meadow (field data)"
@@ -64,7 +65,7 @@ def measure(folder, angle, drop, volume, meadow, rocks, penalty=None, **ground):
     with open(os.path.join(folder, "rocks.csv"), "w") as file:
         file.write("x,y,height,volume,shape\n")
         for k in range(rocks):
-            file.write(f"{TOP},{WIDTH / 2 + 6.0 * ((0.618 * k) % 1.0 - 0.5):.3f},2,{volume},{SHAPES[k % 3]}\n")
+            file.write(f"{TOP},{WIDTH / 2 + SPACING * (k - rocks / 2):.3f},2,{volume},{SHAPES[k % 3]}\n")
     blocks = RockBlocks(Terrain=slope, FileName=os.path.join(folder, "rocks.csv"), AttitudeLaw="Random",
                         Velocity=[1.5, 0.0, 0.0])
     fall = RockfallSimulation(Terrain=slope, Rocks=blocks, EndTime=END, OutputInterval=0.1, KeepImpacts=0)

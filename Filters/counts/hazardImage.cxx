@@ -28,6 +28,7 @@
 #include <cmath>
 #include <functional>
 #include <initializer_list>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <string>
@@ -387,10 +388,7 @@ void fillImage(const CellGrid& grid, const Vec3& corner, const Releases& release
     { double(grid.columns), double(grid.rows), grid.cellSize, corner.x(), corner.y(), released,
       withTerrain ? 1.0 : 0.0 });
   layers.tellLeftOut(image->GetFieldData());
-  for (std::string& note : layers.notes())
-  {
-    notes.push_back(std::move(note));
-  }
+  std::ranges::move(layers.notes(), std::back_inserter(notes));
   tellLost(lost, image->GetFieldData(), notes);
 }
 

@@ -15,6 +15,7 @@
 #include "vtkTable.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace rockfall::filters
 {
@@ -108,10 +109,7 @@ void tellLost(const LostRocks& lost, vtkFieldData* fieldData,
     writeLost(lost, fieldData);
   }
   std::vector<std::string> notes = lostNotes(lost);
-  for (std::string& note : stillNotes(lost))
-  {
-    notes.push_back(std::move(note));
-  }
+  std::ranges::move(stillNotes(lost), std::back_inserter(notes));
   notes.insert(notes.end(), further.begin(), further.end());
   tell(notes, fieldData, shown);
 }

@@ -22,6 +22,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <limits>
 #include <set>
 #include <tuple>
@@ -174,11 +175,10 @@ std::vector<std::string> lineNotes(std::span<const LineSummary> summaries,
   {
     notes.push_back("No rock reached " + named(missed));
   }
-  for (std::string& note : lostNotes(
-         most, lines.size() == 1 ? " before they passed the line" : " before they passed a line"))
-  {
-    notes.push_back(std::move(note));
-  }
+  std::ranges::move(
+    lostNotes(
+      most, lines.size() == 1 ? " before they passed the line" : " before they passed a line"),
+    std::back_inserter(notes));
   if (!few.empty() && !look)
   {
     notes.push_back("Too few rocks passed " + named(few) + " for all quantiles: " +

@@ -17,6 +17,8 @@
 #include "vtkPolyData.h"
 #include "vtkTable.h"
 
+#include <algorithm>
+#include <iterator>
 #include <vector>
 
 vtkStandardNewMacro(vtkMergeCollectors);
@@ -90,10 +92,8 @@ int vtkMergeCollectors::RequestData(
       const std::vector<rockfall::LostRocks> lost =
         filters::lostBefore(merged.lines.size(), merged.crossings, merged.released);
       std::vector<std::string> notes = merged.notes;
-      for (std::string& note : filters::lineNotes(summaries, merged.lines, lost))
-      {
-        notes.push_back(std::move(note));
-      }
+      std::ranges::move(
+        filters::lineNotes(summaries, merged.lines, lost), std::back_inserter(notes));
       filters::writeLines(summaries, merged.lines, lost, table);
       vtkFieldData* const told[] = { table->GetFieldData(), points->GetFieldData() };
       filters::tellOn(told, notes);

@@ -30,6 +30,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 
 vtkStandardNewMacro(vtkTrajectoryCollector);
@@ -393,10 +394,8 @@ int vtkTrajectoryCollector::RequestData(
         trajectories->GetBounds()[4] - origin.z(), origin, walls);
       vtkNew<vtkTable> table, exceedance;
       filters::writeLines(collected.summaries, lines, collected.lost, table);
-      for (std::string& note : filters::lineNotes(collected.summaries, lines, collected.lost))
-      {
-        notes.push_back(std::move(note));
-      }
+      std::ranges::move(
+        filters::lineNotes(collected.summaries, lines, collected.lost), std::back_inserter(notes));
       vtkFieldData* const told[] = { table->GetFieldData(), passings->GetFieldData() };
       filters::tellOn(told, notes, this->PrintNotes);
       filters::writeExceedance(collected.summaries, released, exceedance);
