@@ -1,6 +1,7 @@
 #include "statistics/passageFile.h"
 
 #include "base/errors.h"
+#include "base/noFile.h"
 #include "base/text/numberText.h"
 #include "gis/base/packing.h"
 
@@ -249,6 +250,10 @@ private:
 
 PassageFile readPassageFile(const std::string& fileName)
 {
+  if (const std::string there = noFile(fileName); !there.empty())
+  {
+    throw FileError(fileName + ": is " + there + ", no file");
+  }
   std::error_code error;
   const std::uint64_t size = std::filesystem::file_size(fileName, error);
   std::ifstream in(fileName, std::ios::binary);

@@ -4,6 +4,7 @@
 #include "base/text/numberText.h"
 #include "terrain/Terrain.h"
 #include "terrain/doubt.h"
+#include "terrain/twins.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +20,6 @@ namespace
 {
 
 using Point = Eigen::Vector2d;
-using plausible::kTwinDistance;
 
 std::string text(double value)
 {
@@ -166,27 +166,21 @@ void lookAtMaterials(const Structures& structures, std::vector<std::string>& not
   doubts.tell("structures", notes);
 }
 
-double distance(const Point& p, const PlanLine& line)
+/// Words for structures of a kind that are there twice.
+struct TwinWords
 {
-  double least = (p - line.front()).norm();
-  for (std::size_t i = 1; i < line.size(); ++i)
-  {
-    const Point along = line[i] - line[i - 1];
-    const double s = std::clamp((p - line[i - 1]).dot(along) / along.squaredNorm(), 0.0, 1.0);
-    least = std::min(least, (line[i - 1] + (std::isnan(s) ? 0.0 : s) * along - p).norm());
-  }
-  return least;
-}
+  const char* kind;
+  const char* effect; ///< Of both at one place.
+};
 
-bool liesOn(const PlanLine& one, const PlanLine& other)
+std::string featureText(std::int64_t feature)
 {
-  return std::all_of(
-    one.begin(), one.end(), [&](const Point& p) { return distance(p, other) <= kTwinDistance; });
+  return "feature " + std::to_string(feature);
 }
 
 /// Those that another one of before stands at.
 template <class Item>
-void tellTwice(const char* kind, const std::vector<const Item*>& items,
+void tellTwice(const TwinWords& words, const std::vector<const Item*>& items,
   const std::vector<int>& earlier, std::vector<std::string>& notes)
 {
   std::int64_t count = 0;
@@ -195,15 +189,60 @@ void tellTwice(const char* kind, const std::vector<const Item*>& items,
   {
     if (earlier[i] >= 0 && ++count == 1)
     {
-      first = "features " + std::to_string(items[std::size_t(earlier[i])]->feature) + " and " +
-        std::to_string(items[i]->feature);
+      const std::int64_t other = items[std::size_t(earlier[i])]->feature, own = items[i]->feature;
+      first = other == own ? "two parts of " + featureText(own)
+                           : "features " + std::to_string(other) + " and " + std::to_string(own);
     }
   }
   if (count > 0)
   {
-    notes.push_back(std::to_string(count) + " of " + std::to_string(items.size()) + " " + kind +
-      " stand within " + text(kTwinDistance) + " m of another one, first " + first +
-      ". Each takes its capacity: was something given twice?");
+    notes.push_back(std::to_string(count) + " of " + std::to_string(items.size()) + " " +
+      words.kind + " stand within " + text(kTwinDistance) + " m of another one, first " + first +
+      ". " + words.effect + ": was something given twice?");
+  }
+}
+
+std::string stretchText(const SharedStretch& stretch, const Point& origin)
+{
+  const Point from = stretch.from + origin, to = stretch.to + origin;
+  const auto place = [](const Point& p)
+  { return "(" + numberText(p.x(), 9) + ", " + numberText(p.y(), 9) + ")"; };
+  return " over " + numberText(stretch.length, 3) + " m, from " + place(from) + " to " + place(to);
+}
+
+/// Those that stand on a part of another one, or go back on their own line.
+template <class Item>
+void tellStretches(const TwinWords& words, const std::vector<const Item*>& items,
+  const std::vector<SharedStretch>& stretches, const Point& origin, std::vector<std::string>& notes)
+{
+  std::int64_t others = 0, selves = 0;
+  std::string first, self;
+  for (std::size_t i = 0; i < items.size(); ++i)
+  {
+    const SharedStretch& stretch = stretches[i];
+    const std::string own = featureText(items[i]->feature);
+    if (stretch.earlier == int(i) && ++selves == 1)
+    {
+      self = own + stretchText(stretch, origin);
+    }
+    else if (stretch.earlier >= 0 && stretch.earlier != int(i) && ++others == 1)
+    {
+      const Item& other = *items[std::size_t(stretch.earlier)];
+      first = own + " on " + (other.feature == items[i]->feature ? "another part of " : "") +
+        featureText(other.feature) + stretchText(stretch, origin);
+    }
+  }
+  const std::string of = " of " + std::to_string(items.size()) + " " + words.kind;
+  if (others > 0)
+  {
+    notes.push_back(std::to_string(others) + of + " stand within " + text(kTwinDistance) +
+      " m of another one over a part of their length, first " + first + ". " + words.effect +
+      " there: was something given twice?");
+  }
+  if (selves > 0)
+  {
+    notes.push_back(std::to_string(selves) + of + " go back on their own line, first " + self +
+      ". They are at work once there: is the line as it was meant?");
   }
 }
 
@@ -235,15 +274,28 @@ void tellCrowds(const std::vector<Tree>& trees, std::vector<std::string>& notes)
 }
 
 template <class Item>
-void linesTwice(
-  const char* kind, const std::vector<const Item*>& items, std::vector<std::string>& notes)
+void linesTwice(const TwinWords& words, const std::vector<const Item*>& items,
+  const std::vector<PlanLines>& lines, const Point& origin, std::vector<std::string>& notes)
 {
-  std::vector<PlanLine> lines;
+  PlanLines whole;
+  for (const PlanLines& line : lines)
+  {
+    whole.push_back(line.front());
+  }
+  tellTwice(words, items, earlierLines(whole), notes);
+  tellStretches(words, items, sharedStretches(lines), origin, notes);
+}
+
+template <class Item>
+void linesTwice(const TwinWords& words, const std::vector<const Item*>& items, const Point& origin,
+  std::vector<std::string>& notes)
+{
+  std::vector<PlanLines> lines;
   for (const Item* item : items)
   {
-    lines.push_back(item->points);
+    lines.push_back({ item->points });
   }
-  tellTwice(kind, items, earlierLines(lines), notes);
+  linesTwice(words, items, lines, origin, notes);
 }
 
 template <class Item, class Takes>
@@ -261,87 +313,6 @@ std::vector<const Item*> those(const std::vector<Item>& all, Takes&& takes)
 }
 
 } // namespace
-
-std::vector<int> earlierPoints(const std::vector<Point>& points)
-{
-  // Sorted by cells as wide as the distance: what is near is in the cell or in one beside it.
-  using Cell = std::tuple<double, double, int>;
-  std::vector<Cell> cells;
-  for (std::size_t i = 0; i < points.size(); ++i)
-  {
-    const Point at = points[i] / kTwinDistance;
-    cells.emplace_back(std::floor(at.x()), std::floor(at.y()), int(i));
-  }
-  std::sort(cells.begin(), cells.end());
-  std::vector<int> earlier(points.size(), -1);
-  for (const auto& [x, y, i] : cells)
-  {
-    int& first = earlier[std::size_t(i)];
-    for (int beside = 0; beside < 9; ++beside)
-    {
-      const double column = x + beside % 3 - 1, row = y + beside / 3 - 1;
-      // Within a cell in their order: the first that is near is the one.
-      for (auto near = std::lower_bound(cells.begin(), cells.end(), Cell(column, row, -1));
-           near != cells.end() && std::get<0>(*near) == column && std::get<1>(*near) == row; ++near)
-      {
-        const int k = std::get<2>(*near);
-        const bool before = k < i && (first < 0 || k < first);
-        if (!before)
-        {
-          break;
-        }
-        if ((points[std::size_t(k)] - points[std::size_t(i)]).norm() <= kTwinDistance)
-        {
-          first = k;
-          break;
-        }
-      }
-    }
-  }
-  return earlier;
-}
-
-std::vector<int> earlierLines(const std::vector<PlanLine>& lines)
-{
-  // Along x by their westernmost points, so that only those that begin together are compared.
-  std::vector<std::pair<double, int>> west;
-  for (std::size_t i = 0; i < lines.size(); ++i)
-  {
-    double x = std::numeric_limits<double>::infinity();
-    for (const Point& p : lines[i])
-    {
-      x = std::min(x, p.x());
-    }
-    if (!lines[i].empty())
-    {
-      west.emplace_back(x, int(i));
-    }
-  }
-  std::sort(west.begin(), west.end());
-  std::vector<int> earlier(lines.size(), -1);
-  std::vector<std::pair<double, int>> firsts; // one of each place
-  for (const auto& [x, i] : west)
-  {
-    bool found = false;
-    for (auto near = firsts.rbegin();
-         !found && near != firsts.rend() && near->first >= x - kTwinDistance; ++near)
-    {
-      const PlanLine &one = lines[std::size_t(near->second)], &other = lines[std::size_t(i)];
-      found = liesOn(one, other) && liesOn(other, one);
-      if (found)
-      {
-        const auto [first, second] = std::minmax(near->second, i);
-        earlier[std::size_t(second)] = first;
-        near->second = first;
-      }
-    }
-    if (!found)
-    {
-      firsts.emplace_back(x, i);
-    }
-  }
-  return earlier;
-}
 
 void askAfterNumbers(const Structures& structures, std::vector<std::string>& notes)
 {
@@ -427,40 +398,48 @@ void askAfterStands(std::span<const Stand> stands, std::vector<std::string>& not
     return;
   }
   Doubt twice("Their stems add up: was something given twice?");
-  const std::vector<int> earlier = standsUnder(stands, kStandOverlap);
+  std::vector<PlanRings> grounds;
+  for (const Stand& s : stands)
+  {
+    grounds.push_back(s.rings);
+  }
+  const std::vector<SharedGround> shared = sharedGround(grounds);
   for (std::size_t k = 0; k < stands.size(); ++k)
   {
-    twice.look(earlier[k] < 0, stands[k].feature,
+    twice.look(shared[k].earlier < 0, stands[k].feature,
       [&]
       {
-        return ", half of which is within feature " +
-          std::to_string(stands[std::size_t(earlier[k])].feature);
+        return ", which shares " + text(shared[k].area) + " m² with feature " +
+          std::to_string(stands[std::size_t(shared[k].earlier)].feature);
       });
   }
   twice.tell("stands", notes);
 }
 
-void askAfterTwins(const Structures& structures, std::vector<std::string>& notes)
+void askAfterTwins(
+  const Structures& structures, std::vector<std::string>& notes, const Point& origin)
 {
   const auto all = [](const auto&) { return true; };
-  linesTwice("embankments", those(structures.embankments, all), notes);
+  linesTwice(TwinWords{ "embankments", "The higher one counts" },
+    those(structures.embankments, all), origin, notes);
+  constexpr const char* both = "Each takes its capacity";
   const auto stand = those(structures.trees, [](const Tree& t) { return !t.lies(); });
   std::vector<Point> stems;
   for (const Tree* tree : stand)
   {
     stems.push_back(tree->position);
   }
-  tellTwice("trees", stand, earlierPoints(stems), notes);
+  tellTwice(TwinWords{ "trees", both }, stand, earlierPoints(stems), notes);
   const auto lie = those(structures.trees, [](const Tree& t) { return t.lies(); });
-  std::vector<PlanLine> axes;
+  std::vector<PlanLines> axes;
   for (const Tree* tree : lie)
   {
-    axes.push_back({ tree->position, tree->end });
+    axes.push_back({ { tree->position, tree->end } });
   }
-  tellTwice("lying stems", lie, earlierLines(axes), notes);
+  linesTwice(TwinWords{ "lying stems", both }, lie, axes, origin, notes);
   tellCrowds(structures.trees, notes);
-  linesTwice(
-    "barriers", those(structures.barriers, [](const Barrier& b) { return !b.records; }), notes);
+  linesTwice(TwinWords{ "barriers", both },
+    those(structures.barriers, [](const Barrier& b) { return !b.records; }), origin, notes);
 }
 
 } // namespace rockfall

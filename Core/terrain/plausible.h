@@ -63,8 +63,6 @@ inline constexpr PlausibleRange kSideSlope{ 0.0, 5.0 };
 inline constexpr PlausibleRange kBasalArea{ 1.0, 150.0 };
 /// Share of a stand's stems; less, but not 0, looks like a share instead of per cent.
 inline constexpr PlausibleRange kConifers{ 0.02, 1.0 };
-/// Share of a stand's stems within another stand: less is the width of a pen on a map.
-inline constexpr double kStandOverlap = 0.5;
 /// φ of ground, degrees; 0 is asked for. Radians are below, and no scree stands as steep as 60°.
 inline constexpr PlausibleRange kFrictionAngle{ 2.0, 60.0 };
 /// M_E of ground that scars, Pa: wet bog to compacted gravel.
@@ -92,17 +90,16 @@ inline constexpr PlausibleRange kRocksPerYear{ 1e-5, 100.0 };
 /// Of a rock at rest over the ground, or over a rock under it, m: beyond it the heights may be those
 /// of another slope.
 inline constexpr PlausibleRange kReleaseHeight{ 0.0, 10.0 };
-/// Two of a kind whose places differ by no more are the same one, m.
-inline constexpr double kTwinDistance = 0.1;
 
 } // namespace plausible
 
 /// Adds one sentence for each kind of number out of its range, with how many and the first one's.
 void askAfterNumbers(const Structures& structures, std::vector<std::string>& notes);
 
-/// The same for each kind of which some stand where another one does. Lines that record are none of
-/// them.
-void askAfterTwins(const Structures& structures, std::vector<std::string>& notes);
+/// The same for each kind of which some stand where another one does, or over a part of it. Lines that
+/// record are none of them. `origin`: of the local frame, m.
+void askAfterTwins(const Structures& structures, std::vector<std::string>& notes,
+  const Eigen::Vector2d& origin = Eigen::Vector2d::Zero());
 
 /// The same of the slope's own ground and its classes: φ, roughness, obstacles.
 void askAfterGround(const Terrain& terrain, std::vector<std::string>& notes);
@@ -113,12 +110,5 @@ void askAfterFrequency(double perYear, std::vector<std::string>& notes);
 /// The same of stands: too dense, or over one another, which those of a raster's cells are not.
 void askAfterStands(
   std::span<const Stand> stands, std::vector<std::string>& notes, bool cells = false);
-
-using PlanLine = std::vector<Eigen::Vector2d>;
-
-/// Of each place (a line: all of it, in whichever direction and by whichever corners) the first one
-/// within `plausible::kTwinDistance`, −1 if there is none before it.
-std::vector<int> earlierPoints(const std::vector<Eigen::Vector2d>& points);
-std::vector<int> earlierLines(const std::vector<PlanLine>& lines);
 
 } // namespace rockfall

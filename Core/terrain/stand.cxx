@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <unordered_map>
 
 namespace rockfall
@@ -107,90 +106,7 @@ private:
   std::unordered_map<std::int64_t, std::vector<Eigen::Vector2d>> squares_;
 };
 
-/// Whether an odd number of the rings encloses a place.
-bool holds(const Stand& stand, const Eigen::Vector2d& place)
-{
-  bool inside = false;
-  for (const std::vector<Vec3>& ring : stand.rings)
-  {
-    for (std::size_t k = 0, last = ring.size() - 1; k < ring.size(); last = k++)
-    {
-      const Vec3 &a = ring[last], &b = ring[k];
-      if ((a.y() > place.y()) != (b.y() > place.y()) &&
-        place.x() < a.x() + (place.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()))
-      {
-        inside = !inside;
-      }
-    }
-  }
-  return inside;
-}
-
-Eigen::AlignedBox2d boxOf(const Stand& stand)
-{
-  Eigen::AlignedBox2d box;
-  for (const std::vector<Vec3>& ring : stand.rings)
-  {
-    for (const Vec3& corner : ring)
-    {
-      box.extend(Eigen::Vector2d(corner.head<2>()));
-    }
-  }
-  return box;
-}
-
-/// Places of a stand that are looked for in another one: a few tell half of it from nothing.
-constexpr int kPlaces = 64;
-
-/// Share of a stand's ground that lies in another one.
-double shareWithin(const Stand& stand, const Stand& other)
-{
-  const PolygonSampler ground(stand.rings);
-  const std::uint64_t first = std::uint64_t(stand.feature) << 32;
-  int within = 0;
-  for (int k = 0; ground.area() > 0.0 && k < kPlaces; ++k)
-  {
-    const auto [u, v] =
-      uniformDeviates(kSeedOfStands, 0, Draw::SourcePlace, first + std::uint64_t(k));
-    const double w = uniformDeviate(kSeedOfStands, 1, Draw::SourcePlace, first + std::uint64_t(k));
-    within += holds(other, ground.at(u, v, w));
-  }
-  return double(within) / kPlaces;
-}
-
 } // namespace
-
-std::vector<int> standsUnder(std::span<const Stand> stands, double share)
-{
-  std::vector<Eigen::AlignedBox2d> boxes;
-  for (const Stand& stand : stands)
-  {
-    boxes.push_back(boxOf(stand));
-  }
-  // Along x: only those that begin before another one ends are compared.
-  std::vector<int> order(stands.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto west = [&](int k) { return boxes[std::size_t(k)].min().x(); };
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return west(a) < west(b); });
-  std::vector<int> under(stands.size(), -1);
-  for (std::size_t i = 0; i < order.size(); ++i)
-  {
-    const double east = boxes[std::size_t(order[i])].max().x();
-    for (std::size_t j = i + 1; j < order.size() && west(order[j]) < east; ++j)
-    {
-      stayWanted();
-      const auto [first, second] = std::minmax(order[i], order[j]);
-      int& found = under[std::size_t(second)];
-      if ((found < 0 || first < found) &&
-        boxes[std::size_t(first)].intersects(boxes[std::size_t(second)]) &&
-        shareWithin(stands[std::size_t(second)], stands[std::size_t(first)]) >= share)
-      {
-        found = first;
-      }
-    }
-  }
-  return under;
-}
 
 std::vector<Tree> growStand(const Stand& stand, bool breaks, std::uint64_t seed)
 {

@@ -6,7 +6,6 @@
 #include "terrain/structures.h"
 
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -37,9 +36,5 @@ constexpr double kMostStems = 1e6;
 /// stand, its number and `seed`. Stems break at their capacity if `breaks`. Throws DataError, to
 /// follow the name of the row: no area, too many stems, or no room for them.
 std::vector<Tree> growStand(const Stand& stand, bool breaks, std::uint64_t seed = 1);
-
-/// Of each stand the first one before it in which at least this share of its ground lies, −1 if there
-/// is none.
-std::vector<int> standsUnder(std::span<const Stand> stands, double share);
 
 } // namespace rockfall

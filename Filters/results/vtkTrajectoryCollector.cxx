@@ -362,6 +362,11 @@ int vtkTrajectoryCollector::RequestData(
         }
         lines = filters::linesOf(drawn, origin, barrier);
       }
+      if (this->FileName.empty() && !this->LayerName.empty())
+      {
+        throw rockfall::ParameterError(
+          "LayerName is \"" + this->LayerName + "\", but FileName names no file to read it from");
+      }
       if (!this->FileName.empty())
       {
         const rockfall::AllowReferences references(this->AllowReferences != 0);

@@ -234,7 +234,7 @@ int vtkDrawnStructure::RequestData(
       {
         drawn.barriers = structures.barriers;
         drawn.embankments = structures.embankments;
-        rockfall::askAfterTwins(drawn, notes);
+        rockfall::askAfterTwins(drawn, notes, slope.geometry().origin().head<2>());
       }
       slope.setStructures(std::move(structures));
       const auto terrain = std::make_shared<const Terrain>(std::move(slope));

@@ -234,6 +234,9 @@ TEST_F(TestTrajectoryCollector, BadInput)
   this->Filter->SetFileName("missing.gpkg");
   expect({ "missing.gpkg" });
   this->Filter->SetFileName("");
+  this->Filter->SetLayerName("roads"); // not a line that nobody asked for
+  expect({ "LayerName is \"roads\"", "FileName names no file" });
+  this->Filter->SetLayerName("");
   this->Filter->SetInputDataObject(1, this->Drawn);
   this->Filter->SetBarrierHeight(-1.0);
   expect({ "BarrierHeight is -1" });

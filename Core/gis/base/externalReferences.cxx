@@ -1,6 +1,7 @@
 #include "gis/base/externalReferences.h"
 
 #include "base/errors.h"
+#include "base/noFile.h"
 #include "base/text/nameKey.h"
 #include "gis/base/hdf5References.h"
 #include "gis/base/writtenName.h"
@@ -74,6 +75,12 @@ const char* const known[] = { "VRT", "OGR_VRT",
 
 const char* const remedy = " (files that name network addresses or other files of the machine are "
                            "read only where AllowReferences is on)";
+
+/// An address in this program's own memory: what stands there, or the end of the program.
+bool isMemory(const std::string& name)
+{
+  return name.find("MEM:::") != std::string::npos;
+}
 
 bool isKnown(const char* driver)
 {
@@ -266,7 +273,7 @@ private:
     const std::string name = relative
       ? std::string(CPLProjectRelativeFilename(folder_.c_str(), written.c_str()))
       : written;
-    if (isAddress(name) || isXml(name) || inlineText_ || !isWithin(name, folder_))
+    if (isAddress(name) || isMemory(name) || isXml(name) || inlineText_ || !isWithin(name, folder_))
     {
       this->refuse(written);
     }
@@ -321,15 +328,13 @@ void refuseTableOfTables(const std::string& file, const std::string& whole)
   }
 }
 
-/// Pipes and devices: who opens one waits for ever, or reads without an end.
+/// Pipes, devices and the like: who opens one waits for ever, or reads without an end.
 void refusePipes(const std::string& fileName, const std::string& whole)
 {
-  std::error_code failed;
-  const std::filesystem::file_status status = std::filesystem::status(fileName, failed);
-  if (std::filesystem::is_other(status))
+  if (const std::string there = noFile(fileName); !there.empty())
   {
-    throw FileError(whole + ": " + (fileName == whole ? "is" : "names " + fileName + ",") +
-      " a pipe or device, no file");
+    throw FileError(whole + ": " + (fileName == whole ? "is" : "names " + fileName + ",") + " " +
+      there + ", no file");
   }
 }
 
@@ -390,8 +395,7 @@ const char* const* openingDrivers()
 
 void refuseReferences(const std::string& fileName, unsigned flags)
 {
-  // An address in this program's own memory: what stands there, or the end of the program.
-  if (fileName.find("MEM:::") != std::string::npos)
+  if (isMemory(fileName))
   {
     throw FileError(fileName + ": names memory, which is no file");
   }

@@ -9,8 +9,8 @@
 #include "gis/layers/FeatureRow.h"
 #include "gis/layers/LayerFile.h"
 #include "gis/layers/sourceGeometry.h"
+#include "gis/layers/sourceTwins.h"
 #include "gis/trust/heightReference.h"
-#include "terrain/plausible.h"
 
 #include <algorithm>
 #include <cmath>
@@ -151,92 +151,6 @@ void readRelease(const FeatureRow& row, SourceRow& source)
   }
 }
 
-/// Whether both release the same rocks, if at one place in plan.
-bool sameRocks(SourceRow a, SourceRow b)
-{
-  const double rise = std::abs(a.position.z() - b.position.z());
-  if (rise > plausible::kTwinDistance || std::isnan(a.position.z()) != std::isnan(b.position.z()))
-  {
-    return false;
-  }
-  // How many, and of which name, is no difference.
-  a.row = b.row;
-  a.position = b.position = Vec3::Zero();
-  a.parts.clear();
-  b.parts.clear();
-  a.sourceId = b.sourceId;
-  a.sourceName = b.sourceName;
-  a.amount = b.amount;
-  a.intensity = b.intensity;
-  return a == b;
-}
-
-/// One note of rows that release again what another one does at the same place.
-void tellTwice(
-  const std::vector<SourceRow>& rows, const std::string& fileName, std::vector<std::string>& notes)
-{
-  constexpr std::size_t mostCompared = 100;
-  std::vector<int> numbers;
-  std::vector<Eigen::Vector2d> points;
-  std::vector<int> lineNumbers;
-  std::vector<PlanLine> lines;
-  for (std::size_t i = 0; i < rows.size(); ++i)
-  {
-    if (rows[i].geometry == SourceGeometry::Point)
-    {
-      numbers.push_back(int(i));
-      points.push_back(rows[i].position.head<2>());
-      continue;
-    }
-    PlanLine& line = lines.emplace_back();
-    lineNumbers.push_back(int(i));
-    for (const std::vector<Vec3>& part : rows[i].parts)
-    {
-      for (const Vec3& corner : part)
-      {
-        line.push_back(corner.head<2>());
-      }
-    }
-  }
-  std::int64_t count = 0;
-  std::string first;
-  const auto look = [&](const std::vector<int>& of, const std::vector<int>& earlier)
-  {
-    std::map<int, std::vector<int>> places; // of the first one: all with other rocks
-    for (std::size_t i = 0; i < of.size(); ++i)
-    {
-      if (earlier[i] < 0)
-      {
-        continue;
-      }
-      std::vector<int>& there =
-        places.try_emplace(earlier[i], 1, of[std::size_t(earlier[i])]).first->second;
-      const auto same = std::find_if(there.begin(), there.end(),
-        [&](int k) { return sameRocks(rows[std::size_t(k)], rows[std::size_t(of[i])]); });
-      if (same != there.end())
-      {
-        if (++count == 1)
-        {
-          first = std::to_string(rows[std::size_t(*same)].row) + " and " +
-            std::to_string(rows[std::size_t(of[i])].row);
-        }
-      }
-      else if (there.size() < mostCompared)
-      {
-        there.push_back(of[i]);
-      }
-    }
-  };
-  look(numbers, earlierPoints(points));
-  look(lineNumbers, earlierLines(lines));
-  if (count > 0)
-  {
-    notes.push_back(fileName + ": " + std::to_string(count) + " of " + std::to_string(rows.size()) +
-      " sources release the same rocks within " + number(plausible::kTwinDistance) +
-      " m of another one, first rows " + first + ". Was something given twice?");
-  }
-}
-
 } // namespace
 
 std::string wktOfCrs(const std::string& text)
@@ -341,7 +255,7 @@ SourceLayer readSourceLayer(const std::string& fileName, const SourceOptions& op
     crsWkt(placed, placing.to ? heightCrsFromText(options.targetCrs) : placing.heights.reference);
   placing.tell(fileName, result.notes);
   tellUnread(definition, fileName, kColumns, kShortColumns, result.notes);
-  tellTwice(result.rows, fileName, result.notes);
+  tellSourceTwins(result.rows, fileName, result.notes);
   return result;
 }
 

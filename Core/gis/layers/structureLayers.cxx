@@ -23,7 +23,7 @@ void tryOut(const StructureReader& reader, const std::string& fileName, Structur
   given.trees.resize(alone);
   std::vector<std::string> doubts;
   askAfterNumbers(part, doubts);
-  askAfterTwins(given, doubts);
+  askAfterTwins(given, doubts, reader.terrain.geometry().origin().head<2>());
   reader.tell(fileName, doubts);
   try
   {

@@ -344,6 +344,26 @@ TEST(Sources, thatReleaseTheSameRocksTwiceAreTold)
   EXPECT_EQ(notesOf("WKT,amount,height\n" + line + "5,1\n" + back + "5,1\n").size(), 1u);
   const std::string ring = "\"POLYGON((0 0,9 0,9 9,0 0))\",";
   EXPECT_EQ(notesOf("WKT,amount,height\n" + ring + "5,1\n" + ring + "5,1\n").size(), 1u);
+  // Over a part of it.
+  const auto shared = [&](const std::string& one, const std::string& other,
+                        const std::string& words, const std::string& rocks = "5,1")
+  {
+    const std::vector<std::string> notes =
+      notesOf("WKT,amount,height\n\"" + one + "\",5,1\n\"" + other + "\"," + rocks + "\n");
+    return notes.size() == 1 &&
+      notes[0].find("1 of 2 sources release the same rocks on a part of another one or of "
+                    "themselves, first row " +
+        words) != std::string::npos;
+  };
+  const std::string nine = "LINESTRING(0 0,9 0)";
+  EXPECT_TRUE(shared(nine, "LINESTRING(6 0,1 0)", "2 on row 1 over 5 m"));
+  EXPECT_FALSE(shared(nine, "LINESTRING(6 0,1 0)", "2", "5,3"));
+  EXPECT_TRUE(shared(nine, "MULTILINESTRING((0 5,9 5),(0 5,4 5))", "2 on itself over 4 m"));
+  const std::string square = "POLYGON((0 0,10 0,10 10,0 10,0 0))";
+  EXPECT_TRUE(shared(square, "POLYGON((5 0,15 0,15 10,5 10,5 0))", "2 on row 1 on"));
+  EXPECT_TRUE(
+    shared(square, "POLYGON((-50 -50,60 -50,60 60,-50 60,-50 -50))", "2 on row 1 on 100"));
+  EXPECT_FALSE(shared(square, "POLYGON((10 0,15 0,15 10,10 10,10 0))", "2")); // beside it
 }
 
 } // namespace

@@ -6,6 +6,7 @@
 #include "slopes.h"
 #include "terrain/Obstacles.h"
 #include "terrain/plausible.h"
+#include "terrain/twins.h"
 
 #include <algorithm>
 
@@ -418,13 +419,60 @@ TEST(StructureDoubts, TheSameTwice)
   // Backwards, with another corner, beside by 5 cm.
   EXPECT_EQ(
     readNets(line + ",5,300,\n\"LINESTRING(80 50.05,45 50.05,20 50)\",5,300,\n").told(words), 1);
-  // Half as long; beside by 0.5 m; a line that only records.
-  for (const char* other :
-    { "20 50,50 50)\",5,300,", "20 50.5,80 50.5)\",5,300,", "20 50,80 50)\",5,300,record" })
+  // Beside by 0.5 m; a line that only records; one that crosses; one that goes on from its end.
+  for (const char* other : { "20 50.5,80 50.5)\",5,300,", "20 50,80 50)\",5,300,record",
+         "40 20,44 80)\",5,300,", "80 50,99 50)\",5,300," })
   {
     EXPECT_TRUE(readNets(line + ",5,300,\n\"LINESTRING(" + other + "\n").notes.empty()) << other;
   }
   EXPECT_EQ(readDams(line + ",5,2,1.5\n" + line + ",5,2,1.5\n").told("1 of 2 embankments"), 1);
+}
+
+TEST(StructureDoubts, ThePartsOfALineThatAreThereTwice)
+{
+  const auto nets = [](const std::string& second, const std::string& first = line)
+  { return readNets(first + ",5,300,\n\"" + second + "\",5,300,\n"); };
+  const std::string part = "1 of 2 barriers stand within 0.1 m of another one over a part of their "
+                           "length, first feature 2 on feature 1 over ";
+  const std::string effect = ". Each takes its capacity there: was something given twice?";
+  // Half of it, in reverse, and on beside its end; within it; a longer one that it lies within.
+  EXPECT_EQ(nets("LINESTRING(50 50,80 50,80 90)")
+              .told(part + "30.1 m, from (50, 50) to (80, 50.1)" + effect),
+    1);
+  EXPECT_EQ(nets("LINESTRING(50.05 50.05,80 50,80 90)").told("over 30"), 1);
+  EXPECT_EQ(nets("LINESTRING(80 20,80 50,50 50,50 20)").told("first feature 2 on feature 1"), 1);
+  EXPECT_EQ(
+    nets("LINESTRING(65 50,35 50)").told(part + "30 m, from (65, 50) to (35, 50)" + effect), 1);
+  EXPECT_EQ(nets("LINESTRING(10 50,90 50)").told("over 60.2 m, from (19.9, 50) to (80.1, 50)"), 1);
+  // Of three, the longest; by many short pieces; parts of one feature.
+  const std::string half = "\"LINESTRING(20 50,30 50)\",5,300,\n";
+  EXPECT_EQ(readNets(half + "\"LINESTRING(45 50,85 50)\",5,300,\n" + line + ",5,300,\n")
+              .told("1 of 3 barriers"),
+    1);
+  EXPECT_EQ(nets("LINESTRING(35 50,36 50.05,37 50,39 49.96,42 50,50 50,65 50)").told("over 30"), 1);
+  const std::string parts = "\"MULTILINESTRING((20 50,80 50),(20 60,80 60),(40 60,80 60))\"";
+  EXPECT_EQ(
+    readNets(parts + ",5,300,\n")
+      .told("1 of 3 barriers stand within 0.1 m of another one over a part of their length, "
+            "first feature 1 on another part of feature 1 over 40 m"),
+    1);
+  const std::string same = "\"MULTILINESTRING((20 50,80 50),(80 50,20 50))\"";
+  EXPECT_EQ(readNets(same + ",5,300,\n").told("first two parts of feature 1"), 1);
+  // Back on itself; a ring and a bend are none.
+  EXPECT_EQ(readNets("\"LINESTRING(20 50,80 50,50 50)\",5,300,\n")
+              .told("1 of 1 barriers go back on their own line, first feature 1 over 29 m"),
+    1);
+  for (const char* other : { "20 20,40 20,40 40,20 20", "20 20,20.5 20,20.5 20.5,20.05 20.4" })
+  {
+    EXPECT_TRUE(readNets("\"LINESTRING(" + std::string(other) + ")\",5,300,\n").notes.empty())
+      << other;
+  }
+  EXPECT_EQ(
+    readDams(line + ",5,2,1.5\n\"LINESTRING(20 50,50 50)\",5,2,1.5\n")
+      .told("1 of 2 embankments stand within 0.1 m of another one over a part of their "
+            "length, first feature 2 on feature 1 over 30 m, from (20, 50) to (50, 50). The "
+            "higher one counts there"),
+    1);
 }
 
 TEST(StructureDoubts, ALargeSurveyTakesNoTime)
@@ -439,6 +487,13 @@ TEST(StructureDoubts, ALargeSurveyTakesNoTime)
   EXPECT_EQ(earlierPoints(points).back(), -1);
   const std::vector<PlanLine> lines(100000, { { 0.0, 0.0 }, { 5.0, 5.0 } });
   EXPECT_EQ(earlierLines(lines).back(), 0);
+  // Each within the one before it.
+  std::vector<PlanLines> nested;
+  for (int k = 0; k < 30000; ++k)
+  {
+    nested.push_back({ { { 0.0, 0.0 }, { 10000.0 - 0.2 * k, 0.0 } } });
+  }
+  EXPECT_EQ(sharedStretches(nested).back().earlier, 0);
 }
 
 TEST(StructureLayers, TreesBreakUnlessToldNotTo)

@@ -10,6 +10,8 @@
 
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -272,6 +274,9 @@ TEST_F(TestPassageFile, BadInput)
   expectError({}, "FileNames");
   expectError({ fileName("absent") }, "absent: cannot be opened");
   expectError({ good, good }, "is there twice");
+  ASSERT_EQ(mkfifo(fileName("pipe").c_str(), 0600), 0); // no wait for a writer
+  expectError({ fileName("pipe") }, "pipe: is a pipe or device, no file");
+  std::filesystem::remove(fileName("pipe"));
   const std::string bytes = read(good);
   const auto with = [&](const std::string& content)
   { std::ofstream(bad, std::ios::binary) << content; };

@@ -173,7 +173,7 @@ TEST(Plausible, Stands)
     askAfterStands(stands, all);
     return all;
   };
-  EXPECT_TRUE(notes({ square(1, 0.0), square(2, 100.0), square(3, 160.0) }).empty());
+  EXPECT_TRUE(notes({ square(1, 0.0), square(2, 100.0), square(3, 198.0) }).empty());
   const auto dense = notes({ square(1, 0.0), square(2, 100.0, 20000.0) });
   ASSERT_EQ(dense.size(), 1u);
   EXPECT_EQ(
@@ -185,8 +185,10 @@ TEST(Plausible, Stands)
   EXPECT_EQ(notes({ mixed }).size(), 1u);
   const auto twice = notes({ square(1, 0.0), square(2, 300.0), square(3, 310.0) });
   ASSERT_EQ(twice.size(), 1u);
-  EXPECT_NE(twice[0].find("first feature 3, half of which is within feature 2"), std::string::npos)
+  EXPECT_NE(
+    twice[0].find("first feature 3, which shares 4600 m² with feature 2"), std::string::npos)
     << twice[0];
+  EXPECT_EQ(notes({ square(1, 0.0), square(2, 70.0) }).size(), 1u);
   // A clearing is no ground of the stand around it.
   Stand around = square(1, 0.0), within = square(2, 20.0);
   within.rings = { { { 20, 10, 0 }, { 40, 10, 0 }, { 40, 30, 0 }, { 20, 30, 0 } } };
