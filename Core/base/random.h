@@ -31,6 +31,11 @@ enum class Draw : std::uint32_t
   StartHeight = 17,
   Attitude = 18,
   Volume = 19,
+  // Of a rock or a piece of one, by a number of its own.
+  Survival = 24,
+  Breaking = 25,
+  BreakingPlane = 26,
+  FragmentDirection = 27,
   // Of a rock when its source makes it; the iteration counts attempts.
   SourceNumber = 32,
   SourcePlace = 33,

@@ -18,6 +18,20 @@ enum class ImpactResolution : std::uint8_t
   Springs = 1, ///< Steps of springs and dashpots, as all other impacts on the slope.
 };
 
+/// How rocks break in impacts (rock/fragmentation.h).
+struct Fragmentation
+{
+  bool on = false;
+  double energy = 0.0;           ///< Normal energy of an impact by volume that breaks, J/m³, > 0.
+  double fractalDimension = 0.0; ///< D of the pieces' volumes, dimensionless, 0 < D < 3.
+  double leastVolume = 0.0;      ///< Of pieces that are followed, m³, > 0.
+  double survival = 0.0;         ///< Share of such impacts that leave a rock whole, 0 … 1.
+  double loss = 0.0;             ///< Share of the kinetic energy that breaking takes, 0 … 1.
+  double spread = 0.0; ///< Half angle of the cone of the pieces' directions, rad, 0 … 90°.
+
+  void validate() const; ///< Throws ParameterError naming field and value.
+};
+
 struct SimulationParameters
 {
   double timeStep =
@@ -39,6 +53,8 @@ struct SimulationParameters
   /// Pairs of materials that have others than these three, each pair once.
   std::vector<RockContactPair> rockContactPairs;
   bool pushRocksApart = false; ///< Rocks that overlap at the start are moved instead of an error.
+
+  Fragmentation fragmentation;
 
   bool rigid = false; ///< Infinite stiffness: 6 unknowns per block.
 

@@ -21,6 +21,8 @@ std::string fateName(Fate fate)
       return "caught";
     case Fate::LostInNodata:
       return "lost in nodata";
+    case Fate::Broken:
+      return "broken";
     case Fate::Moving:
       break;
   }

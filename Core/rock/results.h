@@ -14,7 +14,7 @@ namespace rockfall
 
 /// Losses of energy, J. Their sum is what the numerics kept; `numerical` is the remainder:
 /// released = kinetic + strain + friction + restitution + vibration + damping + structures +
-/// scars + rolling + exchanged + numerical. What two rocks exchange does not add up to nothing: the
+/// scars + rolling + breaking + exchanged + numerical. What two rocks exchange does not add up to nothing: the
 /// rest is lost, or held, between them.
 struct EnergyAudit
 {
@@ -28,6 +28,7 @@ struct EnergyAudit
   double structures = 0.0;  ///< Taken by barriers and by trees that broke.
   double scars = 0.0;       ///< Taken by ground that gives way.
   double rolling = 0.0;     ///< Taken by rolling resistance.
+  double breaking = 0.0;    ///< Taken by the rock's breaking.
   double exchanged = 0.0;   ///< Given to other rocks by contact (−: received).
   double numerical = 0.0;   ///< Gained (−) or lost (+) by the numerics.
 };
@@ -114,14 +115,17 @@ enum class Fate
   Caught = 3,     ///< Stopped by a barrier.
   /// Fell where the slope has no data, but ground on two sides (HeightGrid::isHole).
   LostInNodata = 4,
+  Broken = 5, ///< Broke in an impact: its pieces go on.
 };
 std::string fateName(Fate fate);
 
-/// One row per rock and iteration.
+/// One row per rock and iteration, and per piece of a rock that broke.
 struct TrajectorySummary
 {
   int rock = 0;      ///< Index in the list of rocks.
   int iteration = 0; ///< From 0, or from the run's first one.
+  int piece = 0;     ///< Of the rock in the iteration, from 1; 0: the rock as released.
+  int pieces = 0;    ///< That it broke into and that are followed.
   std::int64_t blockId = 0;
   Fate fate = Fate::Moving;
   double endTime = 0.0; ///< When it rested, left or was cut off, s.
@@ -147,7 +151,9 @@ struct TrajectorySummary
   /// of the two, J: the sum over rocks, and the losses of impacts between rocks, are that of
   /// `exchanged`.
   double lastingLoss = 0.0;
-  std::uint64_t hash = 0; ///< Of the motion: `motionHash`, given by the ensemble.
+  double finesMass = 0.0;   ///< Of pieces too small to be followed, kg.
+  double finesEnergy = 0.0; ///< Kinetic energy that they fly off with, J.
+  std::uint64_t hash = 0;   ///< Of the motion: `motionHash`, given by the ensemble.
 };
 
 /// All of one rock in one iteration.

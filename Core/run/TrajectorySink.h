@@ -19,7 +19,8 @@ public:
   /// Drops what is not kept, as soon as the trajectory is finished and before it waits for its
   /// turn. Called by the thread that simulated it, so by several at a time.
   virtual void trim(Trajectory&) const {}
-  /// Called once per rock and iteration, in the order (iteration, rock), by one thread at a time.
+  /// Called once per rock and iteration and piece of a rock that broke, in the order (iteration,
+  /// rock, piece), by one thread at a time.
   virtual void consume(Trajectory&& trajectory) = 0;
 };
 

@@ -4,6 +4,7 @@
 #include "base/errors.h"
 #include "geometry/roundBody.h"
 #include "law/settings.h"
+#include "run/brokenFall.h"
 #include "run/releaseChecks.h"
 #include "run/stateHash.h"
 #include "world/World.h"
@@ -166,6 +167,10 @@ Ensemble::Ensemble(
         {
           rocks[std::size_t(k)].validate();
           refuseRound(rocks[std::size_t(k)], p);
+          if (p.fragmentation.on)
+          {
+            requireBreakable(rocks[std::size_t(k)], p.fragmentation);
+          }
           const Block& block = blockOf(rocks[std::size_t(k)]);
           requireOnSlope(terrain, rocks[std::size_t(k)], block);
           requireStiff(rocks[std::size_t(k)], block, p);
@@ -250,6 +255,21 @@ std::vector<Trajectory> Ensemble::simulate(
   const int first = parameters_.rockRockContact ? 0 : int(unit % this->unitsPerIteration());
   const int iteration = parameters_.firstIteration + int(unit / this->unitsPerIteration());
   const std::vector<Rock> rocks = this->rocksOf(unit, iteration);
+  const Surface surface(terrain_, parameters_.seed, iteration);
+  const auto identify = [&](Trajectory& trajectory, int rock)
+  {
+    trajectory.summary.rock = rock;
+    trajectory.summary.iteration = iteration;
+    trajectory.summary.hash = motionHash(trajectory);
+  };
+  if (parameters_.fragmentation.on)
+  {
+    requireBreakable(rocks[0], parameters_.fragmentation);
+    std::vector<Trajectory> parts =
+      fallAndBreak(surface, rocks[0], parameters_, std::uint32_t(first), enough);
+    std::for_each(parts.begin(), parts.end(), [&](Trajectory& part) { identify(part, first); });
+    return parts;
+  }
   // Blocks are made anew: it costs less than a hundredth of what follows, and a hundred thousand of
   // them would take more memory than all their summaries.
   std::vector<Block> blocks;
@@ -258,7 +278,6 @@ std::vector<Trajectory> Ensemble::simulate(
   {
     blocks.push_back(blockOf(rock));
   }
-  const Surface surface(terrain_, parameters_.seed, iteration);
   SimulationParameters own = parameters_;
   if (own.normalPenalty == 0.0)
   {
@@ -270,10 +289,7 @@ std::vector<Trajectory> Ensemble::simulate(
     World(surface, rocks, blocks, own, first).run(goOn, enough);
   for (std::size_t k = 0; k < trajectories.size(); ++k)
   {
-    TrajectorySummary& summary = trajectories[k].summary;
-    summary.rock = first + int(k);
-    summary.iteration = iteration;
-    summary.hash = motionHash(trajectories[k]);
+    identify(trajectories[k], first + int(k));
   }
   return trajectories;
 }

@@ -47,7 +47,8 @@ public:
   {
     return parameters_.rockRockContact ? 1 : std::int64_t(rocks_.size());
   }
-  std::int64_t trajectoriesPerUnit() const ///< In the order of the rocks.
+  /// In the order of the rocks; those of the pieces of rocks that broke come beside them.
+  std::int64_t trajectoriesPerUnit() const
   {
     return parameters_.rockRockContact ? std::int64_t(rocks_.size()) : 1;
   }
@@ -59,7 +60,7 @@ public:
   /// Whether they are pushed anew in each iteration.
   bool pushesAnew() const { return parameters_.pushRocksApart && start_.empty(); }
 
-  /// The trajectories of a unit, in the order of its rocks; `goOn` and `enough` as in World::run.
+  /// The trajectories of a unit, in the order of its rocks, each with its pieces behind it; `goOn` and `enough` as in World::run.
   std::vector<Trajectory> simulate(std::int64_t unit, const std::function<bool(double)>& goOn = {},
     double enough = std::numeric_limits<double>::infinity()) const;
 

@@ -34,6 +34,14 @@ std::uint64_t motionHash(const Trajectory& trajectory)
     }
   }
   mixer.add(s.impactBits);
+  if (s.piece > 0 || s.pieces > 0 || s.finesMass > 0.0)
+  {
+    mixer.add(s.piece);
+    mixer.add(s.pieces);
+    mixer.add(s.energy.breaking);
+    mixer.add(s.finesMass);
+    mixer.add(s.finesEnergy);
+  }
   for (const StructureEvent& event : trajectory.structures)
   {
     mixer.add(int(event.outcome));

@@ -276,9 +276,55 @@ void HazardRaster::add(const RockPath& path)
 {
   stayWanted();
   checkPath(path);
+  const auto as = [](const RockPath& of) { return std::tie(of.iteration, of.rock, of.blockId); };
+  const std::size_t before = passages_.size();
+  if (path.piece > 0 && released_ > 0 && as(path) == as(rock_))
+  {
+    this->addWhole(path);
+    const Vec3 birth = path.points.empty() ? release_ : path.points.front().position;
+    this->joinRock(before, this->cellAt(birth.x(), birth.y()));
+    return;
+  }
   ++released_;
   ++releasedIn_[path.iteration];
+  rockBegin_ = before;
+  rock_ = path;
+  rock_.points = {};
   release_ = path.points.empty() ? Vec3::Zero() : path.points.front().position;
+  this->addWhole(path);
+}
+
+void HazardRaster::joinRock(std::size_t piece, std::int64_t birth)
+{
+  const auto rock = passages_.begin() + std::ptrdiff_t(rockBegin_);
+  // Those of the rock before those of the piece.
+  std::inplace_merge(rock, passages_.begin() + std::ptrdiff_t(piece), passages_.end(),
+    [](const Passage& a, const Passage& b) { return a.cell < b.cell; });
+  if (rock == passages_.end())
+  {
+    return;
+  }
+  auto last = rock;
+  for (auto next = rock; next != passages_.end(); ++next)
+  {
+    if (next == rock || next->cell != last->cell)
+    {
+      last += next == rock ? 0 : 1;
+      *last = *next;
+      continue;
+    }
+    // It has not come in where it came to be.
+    const unsigned entries = last->entries + next->entries - (next->cell == birth ? 1 : 0);
+    last->entries = std::min<unsigned>(entries, Passage::kMostEntries);
+    last->stopped |= next->stopped;
+    last->angle = std::min<std::uint32_t>(last->angle, next->angle);
+    raise(last->maxima, next->maxima);
+  }
+  passages_.erase(last + 1, passages_.end());
+}
+
+void HazardRaster::addWhole(const RockPath& path)
+{
   if (path.width > grid_.cellSize && !path.points.empty())
   {
     this->addSwath(path);
@@ -532,9 +578,9 @@ void HazardRaster::addSwath(const RockPath& path)
 
 void HazardRaster::merge(const HazardRaster& other)
 {
-  const auto as = [](const CellGrid& g)
+  const auto gridOf = [](const CellGrid& g)
   { return std::tie(g.columns, g.rows, g.cellSize, g.west, g.south); };
-  if (as(grid_) != as(other.grid_))
+  if (gridOf(grid_) != gridOf(other.grid_))
   {
     throw ParameterError("Hazard rasters of different grids cannot be merged");
   }

@@ -28,13 +28,15 @@ public:
   /// Cuts the path at the borders of the cells. A rock wider than a cell
   /// touches every cell under the disc of its width, found along pieces of half
   /// a cell; it stops in the cell of its centre. What is beyond the grid counts
-  /// as released, not more. Throws DataError as checkPath. Not for several
+  /// as released, not more. A piece that is added behind its rock, or behind
+  /// another piece of it, is a part of that rock's passages and no release. Throws DataError as
+  /// checkPath. Not for several
   /// threads at once: use one raster each, and merge.
   void add(const RockPath& path);
   /// Hands `use` the paths from `first` on, `count` of them; several threads ask at once.
   using ReadPaths = std::function<void(
     std::int64_t first, std::int64_t count, const std::function<void(const RockPath&)>& use)>;
-  /// Adds paths 0 … count − 1, on all threads.
+  /// Adds paths 0 … count − 1, on all threads. A rock that broke is one of them with its pieces.
   void addAll(std::int64_t count, const ReadPaths& read);
   /// Takes in what another raster of the same grid has. Throws ParameterError for another grid.
   void merge(const HazardRaster& other);
@@ -61,6 +63,10 @@ private:
   class Swath;
   void addSwath(const RockPath& path);
   void keep(const RockPath& path, const Passage& visit);
+  void addWhole(const RockPath& path); ///< Its passages, in the order of cells.
+  /// Takes the passages from `piece` on, of a piece that came to be in cell `birth`, into those of
+  /// its rock.
+  void joinRock(std::size_t piece, std::int64_t birth);
   double groundUnder(const PathPoint& point) const;
   double maxHeight(
     const PathPiece& piece, double from, double to, std::array<double, 2> grounds) const;
@@ -70,6 +76,10 @@ private:
   std::vector<Passage> passages_;
   Releases releasedIn_;
   std::int64_t released_ = 0;
+
+  // Of the rock being added.
+  std::size_t rockBegin_ = 0; ///< Where its passages begin.
+  RockPath rock_;             ///< Without points.
 
   // Of the path being added.
   std::vector<Passage> visits_;

@@ -360,6 +360,7 @@ void appendCrossings(const RockPath& path, const CollectorLine& line, int lineNu
     crossing.iteration = path.iteration;
     crossing.rock = path.rock;
     crossing.blockId = path.blockId;
+    crossing.piece = path.piece;
     crossing.number = number++;
     crossings.push_back(crossing);
   }
@@ -384,12 +385,18 @@ LineSummary summarizeLine(const CollectorLine& line, int lineNumber,
   std::sort(first.begin(), first.end(),
     [](const Crossing* a, const Crossing* b)
     {
-      return std::tie(a->iteration, a->rock, a->blockId) <
-        std::tie(b->iteration, b->rock, b->blockId);
+      return std::tie(a->iteration, a->rock, a->blockId, a->piece) <
+        std::tie(b->iteration, b->rock, b->blockId, b->piece);
     });
+  const Crossing* rock = nullptr; // counted last
   std::vector<double> speeds;
   for (const Crossing* crossing : first)
   {
+    const bool isNew = !rock ||
+      std::tie(rock->iteration, rock->rock, rock->blockId) !=
+        std::tie(crossing->iteration, crossing->rock, crossing->blockId);
+    summary.rocks += isNew ? 1 : 0;
+    rock = crossing;
     summary.energies.push_back(crossing->kineticEnergy);
     speeds.push_back(crossing->velocity.norm());
     if (!std::isnan(crossing->heightOverGround))
@@ -399,7 +406,6 @@ LineSummary summarizeLine(const CollectorLine& line, int lineNumber,
     summary.caught += crossing->heightOverGround <= line.barrierHeight &&
       crossing->kineticEnergy <= line.barrierCapacity;
   }
-  summary.rocks = int(first.size());
   summary.highestQuantile = highestQuantile(first.size());
   summary.share = released > 0 ? double(summary.rocks) / double(released)
                                : std::numeric_limits<double>::quiet_NaN();
@@ -407,9 +413,10 @@ LineSummary summarizeLine(const CollectorLine& line, int lineNumber,
   summary.energy = statisticsOf(summary.energies);
   summary.height = statisticsOf(summary.heights);
   summary.speed = statisticsOf(speeds);
-  summary.caughtShare = summary.rocks > 0 ? double(summary.caught) / summary.rocks
-                                          : std::numeric_limits<double>::quiet_NaN();
-  summary.caughtShareError = binomialError(summary.caughtShare, summary.rocks);
+  const double bodies = double(first.size());
+  summary.caughtShare =
+    bodies > 0.0 ? summary.caught / bodies : std::numeric_limits<double>::quiet_NaN();
+  summary.caughtShareError = binomialError(summary.caughtShare, bodies);
   return summary;
 }
 

@@ -34,6 +34,7 @@ struct Crossing
   int iteration = 0;
   int rock = 0;
   std::int64_t blockId = 0;
+  int piece = 0;     ///< Of the rock; 0: the whole rock.
   int number = 0;    ///< Of this rock's passings of this line, from 0 in time.
   double time = 0.0; ///< s
   Vec3 position = Vec3::Zero();
@@ -70,14 +71,15 @@ struct LineSummary
   int rocks = 0;     ///< Rocks (iteration × rock) that passed.
   int crossings = 0; ///< Passings; a rock may come back.
   double share = 0.0;
-  double shareError = 0.0;       ///< binomialError over all released.
-  int highestQuantile = 0;       ///< That so many rocks can give, %.
-  SampleStatistics energy;       ///< J; of all rocks, each as it passes for the first time.
-  SampleStatistics height;       ///< m
-  SampleStatistics speed;        ///< m/s
-  int caught = 0;                ///< Rocks whose height and energy are at most the barrier's
-                                 ///< at the first passing.
-  double caughtShare = 0.0;      ///< Of those that passed.
+  double shareError = 0.0; ///< binomialError over all released.
+  int highestQuantile = 0; ///< That so many rocks can give, %.
+  /// J; of all rocks, each as it passes for the first time; of rocks that broke, of each piece.
+  SampleStatistics energy;
+  SampleStatistics height;  ///< m
+  SampleStatistics speed;   ///< m/s
+  int caught = 0;           ///< Rocks or pieces whose height and energy are at most the barrier's
+                            ///< at the first passing.
+  double caughtShare = 0.0; ///< Of those that passed.
   double caughtShareError = 0.0; ///< binomialError.
   std::vector<double> energies;  ///< Ascending, J.
   std::vector<double> heights;   ///< Ascending, m; without those that have none.

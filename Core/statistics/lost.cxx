@@ -7,10 +7,10 @@
 namespace rockfall
 {
 
-void LostRocks::add(Loss loss, double time, double way)
+void LostRocks::add(Loss loss, double time, double way, int piece)
 {
-  ++this->rocks;
-  this->unmoved += way < kLeastWay;
+  this->rocks += piece == 0;
+  this->unmoved += piece == 0 && way < kLeastWay;
   switch (loss)
   {
     case Loss::Moving:

@@ -38,8 +38,9 @@ struct LostRocks
   double endTime = 0.0;      ///< Of the longest of those that still move, s.
   double firstEnd = 0.0;     ///< Of the shortest run of which some still move, s; 0: of the same.
 
-  /// A rock that ended at `time`, s, and got `way` away from its start, m.
-  void add(Loss loss, double time, double way);
+  /// A rock that ended at `time`, s, and got `way` away from its start, m; or a `piece` of it, which
+  /// may be lost but is no rock more.
+  void add(Loss loss, double time, double way, int piece = 0);
   void add(const LostRocks& other);
   std::int64_t lost() const { return moving + overEdge + inNodata; }
 };

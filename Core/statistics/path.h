@@ -33,6 +33,8 @@ struct RockPath
   int iteration = 0;
   int rock = 0;
   std::int64_t blockId = 0;
+  /// Of a rock that broke, which counts once whatever the number of its pieces; 0: the whole rock.
+  int piece = 0;
   /// kg. NaN if it is not known: then energy between two points is interpolated in time.
   double mass = std::numeric_limits<double>::quiet_NaN();
   /// m; a map's cells that are narrower are touched if they are under it. 0: it

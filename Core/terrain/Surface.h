@@ -26,6 +26,11 @@ public:
   static Surface asSurveyed(const Terrain& terrain);
 
   const Terrain& terrain() const { return *terrain_; }
+  /// Uniform in (0, 1), for whatever is drawn in this iteration beside the surface.
+  std::array<double, 2> drawTwo(Draw purpose, std::uint64_t index) const
+  {
+    return uniformDeviates(seed_, iteration_, purpose, index);
+  }
   // Deviates drawn per iteration, of class 0.
   double restitution() const { return restitution_; }               ///< Rv, clamped to 0 … 1.
   double friction() const { return friction_; }                     ///< tan φ

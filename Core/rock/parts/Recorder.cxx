@@ -85,7 +85,8 @@ EnergyAudit Recorder::auditAt(const RockBody& body, const BlockState& state) con
   audit.released = energyAtStart_ - block_.mass() * gravity_ * state.position.z();
   audit.numerical = audit.released -
     (audit.kinetic + audit.strain + audit.friction + audit.restitution + audit.vibration +
-      audit.damping + audit.structures + audit.scars + audit.rolling + audit.exchanged);
+      audit.damping + audit.structures + audit.scars + audit.rolling + audit.breaking +
+      audit.exchanged);
   return audit;
 }
 
@@ -108,6 +109,11 @@ void Recorder::begin(const RockBody& body)
   knot_ = body.state;
   trajectory_.summary.start = body.state.position;
   this->follow(body.state);
+  if (body.state.time > 0.0)
+  {
+    this->resume(body); // a piece of a rock, which comes to be later
+    return;
+  }
   this->record(body, body.state, false);
 }
 

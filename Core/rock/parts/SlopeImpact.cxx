@@ -21,6 +21,16 @@ bool SlopeImpact::isWorthAnEvent(const RockBody& body) const
     parameters_.gravity, body.block.radius());
 }
 
+bool SlopeImpact::breaks(const RockBody& body) const
+{
+  const Fragmentation& law = parameters_.fragmentation;
+  const double normal = event_.normal.dot(event_.velocityBefore);
+  const double density = body.block.mass() / body.block.volume();
+  return body.block.volume() > law.leastVolume && 0.5 * density * normal * normal >= law.energy &&
+    !(surface_.drawTwo(Draw::Survival, std::uint64_t(number_) << 32 | impactsOver_)[0] <
+      law.survival);
+}
+
 bool SlopeImpact::resume(const RockBody& body, double time, Recorder& recorder)
 {
   if (!impulses_ || !(lastTouch_ > 0.0) || time > lastTouch_ + this->duration(body))
@@ -136,8 +146,10 @@ void SlopeImpact::finish(RockBody& body, Recorder& recorder, bool over, bool tol
   const Vec3 after = over && !slowed_ ? adjustVelocity(material, event_, body.state.velocity, down)
                                       : body.state.velocity;
   slowed_ = slowed_ || after != body.state.velocity;
-  const bool jumps =
-    !told && (after - body.state.velocity).norm() > kSameVelocity * body.state.velocity.norm();
+  const bool broken = over && parameters_.fragmentation.on && this->breaks(body);
+  const double kept = broken ? std::sqrt(1.0 - parameters_.fragmentation.loss) : 1.0;
+  const bool jumps = !told &&
+    (kept * after - body.state.velocity).norm() > kSameVelocity * body.state.velocity.norm();
   if (jumps)
   {
     recorder.beforeJump(body, true);
@@ -147,6 +159,18 @@ void SlopeImpact::finish(RockBody& body, Recorder& recorder, bool over, bool tol
   event_.velocityAfter = body.state.velocity;
   event_.energyLoss = body.energy.restitution - restitutionBefore_ + body.energy.friction -
     frictionBefore_ + (body.energy.scars + body.energy.rolling - yieldedBefore_);
+  if (broken)
+  {
+    body.energy.vibration += relaxStrain(body.block, body.state);
+    const double whole = kineticEnergy(body.block, body.state);
+    body.state.velocity *= kept;
+    body.state.spin *= kept;
+    body.energy.breaking += whole - kineticEnergy(body.block, body.state) + body.springEnergy;
+    body.springEnergy = 0.0;
+    body.contacts.clear();
+    recorder.trajectory().summary.fate = Fate::Broken;
+    body.done = true;
+  }
   if (jumps)
   {
     recorder.afterJump(body, true);

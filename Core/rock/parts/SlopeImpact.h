@@ -37,6 +37,7 @@ public:
   bool pending() const { return pending_; }
   /// The one that is under way, if there is one.
   const ImpactEvent* underWay() const { return pending_ ? &event_ : nullptr; }
+  const ImpactEvent& last() const { return event_; } ///< Whether it is over or not.
   /// Time of a spring that stops the rock and throws it back, s.
   double duration(const RockBody& body) const;
 
@@ -70,6 +71,7 @@ public:
 
 private:
   bool isWorthAnEvent(const RockBody& body) const;
+  bool breaks(const RockBody& body) const; ///< Whether the impact breaks the rock.
 
   const Surface& surface_;
   const SimulationParameters& parameters_;
