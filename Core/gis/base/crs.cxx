@@ -44,6 +44,10 @@ CrsPtr horizontalCrs(const OGRSpatialReference* crs)
   {
     copy->StripVertical();
   }
+  if (copy->IsVertical())
+  {
+    return nullptr; // heights alone
+  }
   if (copy->GetAxesCount() == 3 && !copy->IsGeocentric())
   {
     copy->DemoteTo2D(nullptr);

@@ -51,6 +51,25 @@ std::vector<const OGRLineString*> linesIn(const FeatureRow& row, std::int64_t* o
   return lines;
 }
 
+void CrossedOutlines::look(const OGRGeometry& polygon, std::int64_t row)
+{
+  ++all_;
+  if (!polygon.IsValid() && ++count_ == 1)
+  {
+    first_ = row;
+  }
+}
+
+void CrossedOutlines::tell(const std::string& fileName, std::vector<std::string>& notes) const
+{
+  if (count_ > 0)
+  {
+    notes.push_back(fileName + ": " + std::to_string(count_) + " of " + std::to_string(all_) +
+      " polygons have an outline that crosses or touches itself, first row " +
+      std::to_string(first_) + ". What it encloses twice is outside");
+  }
+}
+
 std::vector<const OGRLineString*> ringsIn(const OGRGeometry& geometry)
 {
   std::vector<const OGRLineString*> rings;

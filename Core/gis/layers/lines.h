@@ -5,6 +5,8 @@
 
 #include "gis/layers/FeatureRow.h"
 
+#include <cstdint>
+#include <string>
 #include <vector>
 
 namespace rockfall::gis
@@ -15,6 +17,17 @@ namespace rockfall::gis
 /// there is none, or something else. `outlines`, if given, lets polygons have their outer rings
 /// taken, and gets how many there were.
 std::vector<const OGRLineString*> linesIn(const FeatureRow& row, std::int64_t* outlines = nullptr);
+
+/// Polygons whose outlines cross or touch themselves: programs differ in what is inside of them.
+class CrossedOutlines
+{
+public:
+  void look(const OGRGeometry& polygon, std::int64_t row);
+  void tell(const std::string& fileName, std::vector<std::string>& notes) const;
+
+private:
+  std::int64_t all_ = 0, count_ = 0, first_ = 0;
+};
 
 /// The rings of a polygon or of several. The geometry owns them.
 std::vector<const OGRLineString*> ringsIn(const OGRGeometry& geometry);

@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "base/text/nameKey.h"
+#include "base/text/plainText.h"
 #include "gis/base/gdal.h"
 #include "gis/layers/LayerFile.h"
 #include "gis/layers/lines.h"
@@ -93,6 +94,11 @@ void SourcePlacing::tell(const std::string& fileName, std::vector<std::string>& 
   }
   doubt.tell(notes);
   notes.insert(notes.end(), notes_.begin(), notes_.end());
+  if (beside_ > 0)
+  {
+    notes.push_back(std::to_string(beside_) +
+      " rows have an x and y other than their geometry, which counts, first " + firstBeside_);
+  }
   if (clamped_ > 0)
   {
     notes.push_back(fileName + ": " + std::to_string(clamped_) +
@@ -117,6 +123,7 @@ void SourcePlacing::placePoint(const FeatureRow& row, const OGRPoint* point, Sou
     return;
   }
   const double x = point->getX(), y = point->getY();
+  this->lookBeside(row, *point);
   const Altitude over = point->Is3D() ? altitudeOf(heights, row) : Altitude::Datum;
   double z = unknown;
   if (point->Is3D() && over == Altitude::Datum)
@@ -144,6 +151,20 @@ void SourcePlacing::placePoint(const FeatureRow& row, const OGRPoint* point, Sou
     z = std::isnan(z) ? z : this->changed(row, x, y, z);
   }
   source.position = this->world(row, x, y, z);
+}
+
+/// A point that was moved leaves what the columns say.
+void SourcePlacing::lookBeside(const FeatureRow& row, const OGRPoint& point)
+{
+  const double far = from && from->IsGeographic() ? 1e-5 : 0.1;
+  const auto said = [&row](const char* name)
+  { return parsedNumber(row.text(name).value_or(std::string())); };
+  const auto x = said("x"), y = said("y");
+  if (x && y && std::hypot(*x - point.getX(), *y - point.getY()) > far && ++beside_ == 1)
+  {
+    firstBeside_ = row.where() + ": " + number(*x) + ", " + number(*y) + " and " +
+      number(point.getX()) + ", " + number(point.getY());
+  }
 }
 
 /// Of a KML feature without an altitude over a datum.

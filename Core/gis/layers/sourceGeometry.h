@@ -37,6 +37,7 @@ private:
   double own(const FeatureRow& row, double x, double y, double z);
   double changed(const FeatureRow& row, double x, double y, double height);
   void requireTerrain(const FeatureRow& row) const;
+  void lookBeside(const FeatureRow& row, const OGRPoint& point);
   void placePoint(const FeatureRow& row, const OGRPoint* point, SourceRow& source);
   void placeParts(const FeatureRow& row, const OGRGeometry& geometry, SourceRow& source);
 
@@ -44,6 +45,8 @@ private:
   std::vector<std::string> notes_;           ///< Of the heights.
   bool anyHeight_ = false;
   std::int64_t clamped_ = 0; ///< Rows of KML that have an altitude that is not to be used.
+  std::int64_t beside_ = 0;  ///< Rows whose columns x and y are not where their point is.
+  std::string firstBeside_;
 };
 
 } // namespace rockfall::gis

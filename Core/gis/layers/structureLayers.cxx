@@ -1,10 +1,15 @@
 #include "gis/layers/structureLayers.h"
 
 #include "base/errors.h"
+#include "gis/base/gdal.h"
 #include "gis/layers/structureRows.h"
 #include "terrain/Obstacles.h"
 #include "terrain/Terrain.h"
 #include "terrain/plausible.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 
 namespace rockfall
 {
@@ -13,6 +18,42 @@ using namespace gis;
 
 namespace
 {
+
+/// Barriers that go on where the slope has no ground: over two cells, as borders are drawn by eye.
+void askAfterGroundUnder(
+  const std::vector<Barrier>& barriers, const Terrain& terrain, std::vector<std::string>& notes)
+{
+  const double cell = terrain.geometry().cellSize;
+  std::int64_t count = 0;
+  std::string first;
+  for (const Barrier& barrier : barriers)
+  {
+    double without = 0.0, all = 0.0;
+    for (std::size_t k = 1; k < barrier.points.size(); ++k)
+    {
+      const Eigen::Vector2d way = barrier.points[k] - barrier.points[k - 1];
+      const int steps = int(std::clamp(std::ceil(2.0 * way.norm() / cell), 1.0, 1e5));
+      for (int i = 0; i < steps; ++i)
+      {
+        const Eigen::Vector2d place = barrier.points[k - 1] + (i + 0.5) / steps * way;
+        const bool ground = terrain.cfeAt(place.x(), place.y()) != 0;
+        without += ground ? 0.0 : way.norm() / steps;
+      }
+      all += way.norm();
+    }
+    if (without > 2.0 * cell && ++count == 1)
+    {
+      first = std::to_string(barrier.feature) + " on " + number(std::round(without)) + " of " +
+        number(std::round(all)) + " m";
+    }
+  }
+  if (count > 0)
+  {
+    notes.push_back(std::to_string(count) + " of " + std::to_string(barriers.size()) +
+      " barriers go on where the slope has no ground, first feature " + first +
+      ". They hold and record nothing there");
+  }
+}
 
 /// Errors of structures that cannot be built name the file, and so do notes of what is too good to
 /// be true. Stems behind the first `alone` were drawn: they may stand side by side.
@@ -24,6 +65,7 @@ void tryOut(const StructureReader& reader, const std::string& fileName, Structur
   std::vector<std::string> doubts;
   askAfterNumbers(part, doubts);
   askAfterTwins(given, doubts, reader.terrain.geometry().origin().head<2>());
+  askAfterGroundUnder(part.barriers, reader.terrain, doubts);
   reader.tell(fileName, doubts);
   try
   {

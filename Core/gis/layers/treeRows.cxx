@@ -136,6 +136,7 @@ std::size_t StructureReader::readTrees(std::span<const Stand> cells) const
   std::int64_t outside = 0;
   std::vector<Tree> grown;
   std::vector<Stand> stands;
+  CrossedOutlines crossed;
   LayerWish wish{ files.trees, files.treeLayer, "TreeLayerName" };
   wish.what = "layer of points, lines or polygons";
   wish.kinds = kPoints | kLines | kPolygons | kRows;
@@ -162,6 +163,7 @@ std::size_t StructureReader::readTrees(std::span<const Stand> cells) const
         const int material = own.of(row);
         if (kindOf(row.geometry()) == kPolygons && row.has("stems_ha"))
         {
+          crossed.look(*row.geometry(), count);
           stands.push_back(standOf(row, count, material, places));
           for (const Tree& tree : stemsOf(stands.back(), row, files))
           {
@@ -183,6 +185,7 @@ std::size_t StructureReader::readTrees(std::span<const Stand> cells) const
   if (cells.empty())
   {
     readLayer();
+    crossed.tell(files.trees, notes);
   }
   for (const Stand& cell : cells)
   {

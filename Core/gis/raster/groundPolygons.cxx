@@ -19,6 +19,7 @@
 #include <ogr_spatialref.h>
 #include <ogrsf_frmts.h>
 
+#include <algorithm>
 #include <memory>
 
 namespace rockfall::gis
@@ -75,24 +76,37 @@ std::int64_t vertexCount(const OGRGeometry& geometry)
   return count;
 }
 
-/// Burns polygons into the cells whose centres they cover; a later one over an earlier one.
+/// The cells as a raster of GDAL's over these numbers.
+DatasetPtr rasterOver(const Cells& cells, std::vector<std::uint8_t>& numbers)
+{
+  DatasetPtr dataset(GetGDALDriverManager()->GetDriverByName("MEM")->Create(
+    "", cells.columns, cells.rows, 0, GDT_Byte, nullptr));
+  char pointer[64] = {};
+  pointer[CPLPrintPointer(pointer, numbers.data(), sizeof(pointer) - 1)] = 0;
+  const CPLStringList options(CSLSetNameValue(nullptr, "DATAPOINTER", pointer));
+  const double size = cells.terrain.geometry().cellSize;
+  double affine[6] = { cells.box.xMin, size, 0.0, cells.box.yMax, 0.0, -size };
+  if (!dataset || dataset->AddBand(GDT_Byte, const_cast<char**>(options.List())) != CE_None ||
+    dataset->SetGeoTransform(affine) != CE_None)
+  {
+    throw DataError("GDAL's raster in memory cannot be made");
+  }
+  return dataset;
+}
+
+/// Burns polygons into the cells whose centres they cover; a later one over an earlier one, and
+/// elsewhere the other way round, which tells where they overlap.
 class Burner
 {
 public:
   Burner(const Cells& cells, std::vector<std::uint8_t>& classes)
-    : dataset_(GetGDALDriverManager()->GetDriverByName("MEM")->Create(
-        "", cells.columns, cells.rows, 0, GDT_Byte, nullptr))
+    : cells_(cells)
+    , classes_(classes)
+    , firsts_(classes.size(), 0)
+    , portion_(classes.size(), 0)
+    , dataset_(rasterOver(cells, classes))
+    , reversed_(rasterOver(cells, portion_))
   {
-    char pointer[64] = {};
-    pointer[CPLPrintPointer(pointer, classes.data(), sizeof(pointer) - 1)] = 0;
-    const CPLStringList options(CSLSetNameValue(nullptr, "DATAPOINTER", pointer));
-    const double size = cells.terrain.geometry().cellSize;
-    double affine[6] = { cells.box.xMin, size, 0.0, cells.box.yMax, 0.0, -size };
-    if (!dataset_ || dataset_->AddBand(GDT_Byte, const_cast<char**>(options.List())) != CE_None ||
-      dataset_->SetGeoTransform(affine) != CE_None)
-    {
-      throw DataError("GDAL's raster in memory cannot be made");
-    }
   }
 
   void add(std::unique_ptr<OGRGeometry> geometry, int row)
@@ -117,23 +131,62 @@ public:
     {
       handles.push_back(OGRGeometry::ToHandle(geometry.get()));
     }
-    int band = 1;
-    const CPLErr result =
-      GDALRasterizeGeometries(GDALDataset::ToHandle(dataset_.get()), 1, &band, int(handles.size()),
-        handles.data(), nullptr, nullptr, values_.data(), nullptr, isWanted, nullptr);
-    stayWanted();
-    if (result != CE_None)
+    burnInto(*dataset_, handles, values_);
+    std::reverse(handles.begin(), handles.end());
+    std::reverse(values_.begin(), values_.end());
+    std::fill(portion_.begin(), portion_.end(), 0);
+    burnInto(*reversed_, handles, values_);
+    for (std::size_t cell = 0; cell < firsts_.size(); ++cell)
     {
-      throw DataError("GDAL cannot rasterise the polygons");
+      firsts_[cell] = firsts_[cell] == 0 ? portion_[cell] : firsts_[cell];
     }
-    dataset_->FlushCache();
     geometries_.clear();
     values_.clear();
     vertices_ = 0;
   }
 
+  /// Cells of two classes.
+  void tell(
+    const GroundTable& table, const std::string& fileName, std::vector<std::string>& notes) const
+  {
+    std::int64_t count = 0, first = -1;
+    for (std::size_t cell = 0; cell < firsts_.size(); ++cell)
+    {
+      if (firsts_[cell] != classes_[cell])
+      {
+        first = ++count == 1 ? std::int64_t(cell) : first;
+      }
+    }
+    if (count > 0)
+    {
+      const auto name = [&table](std::uint8_t row)
+      { return "\"" + table.names[std::size_t(row) - 1] + "\""; };
+      notes.push_back(fileName + ": polygons of two classes overlap on " + std::to_string(count) +
+        " cells, first at " + cells_.place(first) + " " + name(firsts_[std::size_t(first)]) +
+        " and " + name(classes_[std::size_t(first)]) + ". The later one counts");
+    }
+  }
+
 private:
-  DatasetPtr dataset_;
+  static void burnInto(
+    GDALDataset& raster, std::vector<OGRGeometryH>& handles, std::vector<double>& values)
+  {
+    int band = 1;
+    const CPLErr result =
+      GDALRasterizeGeometries(GDALDataset::ToHandle(&raster), 1, &band, int(handles.size()),
+        handles.data(), nullptr, nullptr, values.data(), nullptr, isWanted, nullptr);
+    stayWanted();
+    if (result != CE_None)
+    {
+      throw DataError("GDAL cannot rasterise the polygons");
+    }
+    raster.FlushCache();
+  }
+
+  const Cells& cells_;
+  const std::vector<std::uint8_t>& classes_;
+  std::vector<std::uint8_t> firsts_, portion_; ///< Of the first polygon there; of those at hand.
+  DatasetPtr dataset_, reversed_;
   std::vector<std::unique_ptr<OGRGeometry>> geometries_;
   std::vector<double> values_;
   std::int64_t vertices_ = 0;
@@ -206,6 +259,7 @@ std::vector<std::uint8_t> fromPolygons(GroundKind kind, const GroundFiles& files
   std::vector<std::uint8_t> classes(std::size_t(cells.columns) * cells.rows, 0);
   Burner burner(cells, classes);
   UnitDoubt doubt(units, cells.terrain.geometry().fileUnits);
+  CrossedOutlines crossed;
   OGREnvelope all;
   bool overlaps = false;
   while (const OGRFeatureUniquePtr feature = file.next())
@@ -239,6 +293,7 @@ std::vector<std::uint8_t> fromPolygons(GroundKind kind, const GroundFiles& files
       continue;
     }
     overlaps = true;
+    crossed.look(*geometry, file.number());
     const auto text = fields.textAt(column);
     if (!text)
     {
@@ -263,6 +318,8 @@ std::vector<std::uint8_t> fromPolygons(GroundKind kind, const GroundFiles& files
     failOverlap(files.layer, boxText({ all.MinX, all.MaxX, all.MinY, all.MaxY }), cells);
   }
   burner.burn();
+  burner.tell(table, files.layer, notes);
+  crossed.tell(files.layer, notes);
   return classes;
 }
 

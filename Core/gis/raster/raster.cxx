@@ -129,8 +129,9 @@ void regrid(
   { reason += (reason.empty() ? "" : " and ") + text; };
   if (!grid.isNorthUp())
   {
-    because("the file's rows do not run from west to east, from north to south (turned by " +
-      number(degrees(std::atan2(grid.affine[4], grid.affine[1]))) + " degrees)");
+    const double turn = degrees(std::atan2(grid.affine[4], grid.affine[1]));
+    because("the file's rows do not run from west to east, from north to south (" +
+      (turn == 0.0 ? std::string("sheared)") : "turned by " + number(turn) + " degrees)"));
   }
   if (!grid.isSquare())
   {

@@ -2,7 +2,9 @@
 
 #include "base/abort.h"
 #include "base/errors.h"
+#include "base/text/plainText.h"
 #include "gis/base/progress.h"
+#include "gis/trust/headers.h"
 #include "gis/trust/heightUnit.h"
 #include "gis/trust/nodata.h"
 
@@ -28,6 +30,9 @@ constexpr double suspectStep = 100.0, suspectWall = 20.0, suspectSlope = 4.0;
 /// Rounding to whole numbers of so many metres makes terraces if so many cells are level, and if the
 /// slope has so many steps.
 constexpr double coarse = 0.3, terraces = 0.25, steps = 10.0;
+/// With fewer steps they look like classes, if so many cells are level, and neighbours differ by
+/// more than a step.
+constexpr double patches = 0.5;
 
 /// The band of transparency, if it is not the mask already: GDAL makes none of one of real numbers.
 GDALRasterBand* alphaBand(GDALDataset& dataset, const GDALRasterBand* heights)
@@ -89,6 +94,22 @@ RasterFile::RasterFile(
   place_ = rasterPlace(*dataset_, *band_, text_, fileName_, notes_);
   heights_ = heightsOf(*dataset_, *band_, fileName_, notes_);
   this->noteColours();
+  this->noteBands();
+}
+
+void RasterFile::noteBands()
+{
+  const int bands = dataset_->GetRasterCount() - (alpha_ ? 1 : 0);
+  const GDALColorInterp colour = band_->GetColorInterpretation();
+  // Of further axes (netCDF) and of pictures there is a note already.
+  if (bands < 2 || bandNumber_ != 1 || isOfDriver(*dataset_, "netCDF") ||
+    (colour >= GCI_RedBand && colour <= GCI_BlueBand))
+  {
+    return;
+  }
+  const std::string name(trimmed(band_->GetDescription()));
+  notes_.push_back("Of " + std::to_string(bands) + " bands the first one" +
+    (name.empty() ? "" : ", \"" + name + "\",") + " was taken as heights; Band takes another.");
 }
 
 void RasterFile::noteColours()
@@ -166,7 +187,7 @@ void RasterFile::noteTerraces(const std::vector<double>& heights)
     return;
   }
   double least = HUGE_VAL, most = -HUGE_VAL;
-  std::int64_t level = 0, all = 0;
+  std::int64_t level = 0, all = 0, changes = 0, jumps = 0;
   for (int row = 0; row < rows_; ++row)
   {
     stayWanted();
@@ -187,10 +208,20 @@ void RasterFile::noteTerraces(const std::vector<double>& heights)
       if (row + 1 < rows_ && column + 1 < columns_ && !std::isnan(heights[i + columns_ + 1]))
       {
         ++all;
+        const double change = std::abs(heights[i + 1] - heights[i]) / std::abs(heights_.scale);
+        changes += change > 0.5;
+        jumps += change > 1.5;
         level += heights[i] == heights[i + 1] && heights[i] == heights[i + columns_] &&
           heights[i] == heights[i + columns_ + 1];
       }
     }
+  }
+  if (all > 0 && least >= 0.0 && most > least && most - least < steps &&
+    double(level) >= patches * double(all) && 4 * jumps >= changes &&
+    band_->GetRasterDataType() != GDT_Byte)
+  {
+    notes_.push_back("All heights are whole numbers from " + number(least) + " to " + number(most) +
+      ", in level patches: is it a map of classes?");
   }
   if (all > 0 && most - least >= steps && double(level) >= terraces * double(all))
   {

@@ -39,6 +39,7 @@ public:
 
 private:
   void noteColours();
+  void noteBands();
   /// Throws where parts of the file hold nothing and would be read as 0.
   void requireCoverage();
   /// Says what looks like a nodata value of 0 that nobody declared.

@@ -64,6 +64,10 @@ void noteRelief(RasterSurface& surface)
     surface.notes.push_back("All heights are within " + number(high - low) + " m, on " +
       number(across) + " m and more: are they in metres?");
   }
+  if (high == low)
+  {
+    surface.notes.push_back("All heights are " + number(low) + " m: is it the right band?");
+  }
   if (low < 0.0 && high <= 0.0)
   {
     surface.notes.push_back("All heights are at 0 m or below, down to " + number(low) +

@@ -6,6 +6,7 @@
 #include "terrain/presets.h"
 
 #include <cmath>
+#include <numeric>
 #include <set>
 
 using namespace rockfall;
@@ -231,6 +232,35 @@ TEST(Ground, PolygonsByNameAndByNumber)
     const int expected = cell % 8 < 4 ? 1 : cell / 8 >= 3 ? 2 : 0;
     EXPECT_EQ(int(c.cells[std::size_t(cell)]), expected) << cell;
   }
+}
+
+TEST(Ground, PolygonsThatOverlapOrCrossThemselvesAreTold)
+{
+  const Terrain terrain = slope();
+  std::vector<std::string> notes;
+  const auto text = [&](const std::string& features)
+  {
+    notes.clear();
+    read({ polygons(features), table(), "class" }, terrain, GroundKind::Restitution, &notes);
+    return std::accumulate(notes.begin(), notes.end(), std::string());
+  };
+  const auto zone = [](double from, double to, const std::string& name)
+  { return box(west + from, south, west + to, south + 60, "\"class\":" + name); };
+  EXPECT_EQ(text(zone(0, 40, "1") + "," + zone(40, 80, "2")).find("overlap"), std::string::npos);
+  EXPECT_EQ(text(zone(0, 40, "1") + "," + zone(20, 60, "1")).find("overlap"), std::string::npos);
+  EXPECT_NE(
+    text(zone(0, 50, "1") + "," + zone(30, 80, "2"))
+      .find("polygons of two classes overlap on 12 cells, first at 600035, 5100055 \"rock\" "
+            "and \"talus\". The later one counts"),
+    std::string::npos)
+    << text(zone(0, 50, "1") + "," + zone(30, 80, "2"));
+  const std::string bow =
+    "{\"type\":\"Feature\",\"properties\":{\"class\":1},\"geometry\":{"
+    "\"type\":\"Polygon\",\"coordinates\":[[[600000,5100000],[600080,5100060],"
+    "[600080,5100000],[600000,5100060],[600000,5100000]]]}}";
+  EXPECT_NE(text(zone(0, 9, "2") + "," + bow)
+              .find("1 of 2 polygons have an outline that crosses or touches itself, first row 2"),
+    std::string::npos);
 }
 
 TEST(Ground, PolygonsInDegrees)

@@ -110,6 +110,36 @@ TEST(Raster, bytesMayBeAHillshade)
   EXPECT_FALSE(holds(joined(readRaster(raster.write())), { "whole numbers up to 255" }));
 }
 
+TEST(Raster, whatIsNotTheHeightsOfASlopeIsTold)
+{
+  RawRaster raster = smallRaster();
+  raster.dataset = "<VRTRasterBand dataType=\"Byte\" band=\"2\"/>";
+  raster.band = "<Description>elevation</Description>";
+  EXPECT_TRUE(holds(joined(readRaster(raster.write())),
+    { "Of 2 bands the first one, \"elevation\", was taken", "Band takes another" }));
+
+  raster = smallRaster();
+  raster.values.assign(6, 500.0);
+  EXPECT_TRUE(holds(joined(readRaster(raster.write())), { "All heights are 500 m" }));
+
+  // Patches of three classes; the same as decimetres.
+  raster = smallRaster();
+  raster.columns = raster.rows = 9;
+  raster.type = "Float32";
+  raster.fill([](double x, double) { return x < 600030.0 ? 1.0 : x < 600060.0 ? 7.0 : 3.0; });
+  EXPECT_TRUE(
+    holds(joined(readRaster(raster.write())), { "whole numbers from 1 to 7", "map of classes" }));
+  raster.band = "<Scale>0.1</Scale>";
+  EXPECT_FALSE(holds(joined(readRaster(raster.write())), { "map of classes" }));
+
+  // Heights have a CRS, places none.
+  raster = smallRaster();
+  raster.crs = "EPSG:5703";
+  const RasterSurface surface = readRaster(raster.write());
+  EXPECT_TRUE(holds(joined(surface), { "has no CRS" }));
+  EXPECT_EQ(surface.geometry.crs, "");
+}
+
 TEST(Raster, scaleAndOffsetAreApplied)
 {
   RawRaster raster = smallRaster();

@@ -320,6 +320,24 @@ TEST(SourceErrors, crs)
     { metres, "row 1", "600000, 5100000", "EPSG:32632" }));
 }
 
+TEST(Sources, columnsThatAreNotWhereThePointIsAreTold)
+{
+  const auto notesOf = [](const std::string& point)
+  {
+    SourceOptions options;
+    options.haveTerrain = true;
+    return readSourceLayer(
+      writeFile("moved.csv", "WKT,x,y\n" + point + ",1,2\n\"POINT(9 8)\",9,8\n"), options)
+      .notes;
+  };
+  EXPECT_TRUE(notesOf("\"POINT(1.05 2)\"").empty());
+  const std::vector<std::string> moved = notesOf("\"POINT(1 50)\"");
+  ASSERT_EQ(moved.size(), 1u);
+  EXPECT_NE(moved[0].find("1 rows have an x and y other than their geometry, which counts, first "),
+    std::string::npos);
+  EXPECT_NE(moved[0].find("moved.csv, row 1: 1, 2 and 1, 50"), std::string::npos) << moved[0];
+}
+
 TEST(Sources, thatReleaseTheSameRocksTwiceAreTold)
 {
   const auto notesOf = [](const std::string& text)

@@ -475,6 +475,36 @@ TEST(StructureDoubts, ThePartsOfALineThatAreThereTwice)
     1);
 }
 
+TEST(StructureDoubts, WhatGoesOnBesideTheSlope)
+{
+  const auto net = [](const std::string& to, const std::string& mode = "")
+  { return readNets("\"LINESTRING(20 50," + to + ")\",5,300," + mode + "\n"); };
+  for (const char* mode : { "", "record" })
+  {
+    EXPECT_EQ(net("180 50", mode)
+                .told("1 of 1 barriers go on where the slope has no ground, first "
+                      "feature 1 on 80 of 160 m. They hold and record nothing"),
+      1);
+    EXPECT_TRUE(net("108 50", mode).notes.empty()) << mode; // a border drawn by eye
+  }
+}
+
+TEST(StructureDoubts, StandsThatCrossThemselves)
+{
+  StructureFiles files;
+  files.trees = writeFile("stands.csv",
+    "WKT,stems_ha,dbh_mean,height\n" + area +
+      ",500,30,20\n\"POLYGON((20 0,80 19,80 0,20 19,20 0))\",500,30,20\n");
+  std::vector<std::string> notes;
+  readStructures(files, site(), notes);
+  EXPECT_TRUE(std::any_of(notes.begin(), notes.end(),
+    [](const std::string& note)
+    {
+      return note.find("1 of 2 polygons have an outline that crosses or touches itself, first row "
+                       "2. What it encloses twice is outside") != std::string::npos;
+    }));
+}
+
 TEST(StructureDoubts, ALargeSurveyTakesNoTime)
 {
   // All at one place, and all on one line: a search of pairs would take hours.
