@@ -365,7 +365,7 @@ double SoftSolver::force(std::size_t k) const
 
 bool SoftSolver::setGap(std::size_t k, double found)
 {
-  const double change = gapChange(rows_.gap0[k], this->gap(k), found);
+  const double change = found - this->gap(k);
   const IslandContact& asked = (*step_.contacts)[k];
   if (std::abs(change) <= kNoMotion * (*step_.bodies)[std::size_t(asked.first)].block->radius())
   {

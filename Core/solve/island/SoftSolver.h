@@ -67,8 +67,8 @@ public:
   /// At the end of the step, m.
   double gap(std::size_t contact) const { return rows_.gapOfContact(contact); }
   double force(std::size_t contact) const; ///< Along the normal, N.
-  /// The gap is found to be another one (m). No contact is asked to open further than it was.
-  /// Returns whether this changes anything.
+  /// The gap at the end is found to be another one (m): its normal has turned. Returns whether this
+  /// changes anything.
   bool setGap(std::size_t contact, double found);
   void setAbsent(std::size_t contact); ///< Lets go or sets in again, as its `absent` says.
 

@@ -101,11 +101,4 @@ struct IslandOutcome
   double dampedWork = 0.0;   ///< Between rocks, J.
 };
 
-/// Change of a gap at the start (m) if the one at the end is found to be another one than
-/// reckoned. No contact is asked to open further than it was.
-inline double gapChange(double gap0, double reckoned, double found)
-{
-  return std::max(std::min(0.0, gap0) - gap0, found - reckoned);
-}
-
 } // namespace rockfall

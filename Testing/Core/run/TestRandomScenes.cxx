@@ -40,3 +40,14 @@ TEST(RandomScene, AJammedRockIsNotThrown)
   EXPECT_LE(outcome.gained, 1e-6 * outcome.released);
   EXPECT_LE(std::abs(outcome.made), 0.01 * outcome.released);
 }
+
+// A stone of 0.4 kg lies on the slope and a rock of 26 kg falls on it: it strikes the two in turn
+// more than twelve times within a substep. If the rest is left to the sweeps, books say that the
+// slope has given it 10 J, and it the rock above.
+TEST(RandomScene, AStoneUnderARockHandsOnWhatItWasGiven)
+{
+  const SceneOutcome outcome = runScene(randomScene(8100250, 20, 2.0), 240.0);
+  ASSERT_FALSE(outcome.refused || outcome.givenUp);
+  EXPECT_EQ(outcome.gained, 0.0);
+  EXPECT_LE(std::abs(outcome.made), 0.01 * outcome.released);
+}

@@ -377,6 +377,47 @@ TEST(Islands, CohesionTakesNoMoreStepsThanNone)
   EXPECT_LT(steps[1], 3.0 * steps[0]);
 }
 
+// Where edges slide over each other their normal turns within the step, and the gap that a row
+// reckons with is too wide. Of a thousand pairs of cubes that are thrown at each other these three
+// would overlap by 1.2 % of an edge if a contact that overlaps already were not asked for more.
+TEST(Islands, EdgesThatTurnOverEachOtherStayOutOfEachOther)
+{
+  double deepest = 0.0;
+  for (const std::uint64_t seed : { 149, 465, 924 })
+  {
+    std::mt19937_64 random(seed);
+    const auto draw = [&](double low, double high)
+    { return low + (high - low) * double(random() >> 11) * 0x1p-53; };
+    Pile pile;
+    pile.ground = floorSlope();
+    pile.parameters.rockFrictionAngle = radians(10.0);
+    pile.parameters.rockRestitution = 0.2;
+    pile.parameters.timeStep = 0.005;
+    pile.parameters.endTime = 0.4;
+    for (int k = 0; k < 2; ++k)
+    {
+      Rock rock;
+      rock.blockId = k;
+      rock.shape = makeShape(Shape::Cube, 0.6);
+      const double x = k == 0 ? draw(-0.4, 0.4) : 0.0, y = draw(-0.4, 0.4);
+      rock.position = Vec3(20.0 + x, 20.0 + y, 5.0 + 1.5 * k);
+      const double q[] = { draw(-1.0, 1.0), draw(-1.0, 1.0), draw(-1.0, 1.0), draw(-1.0, 1.0) };
+      rock.orientation = Quat(q[0], q[1], q[2], q[3]).normalized();
+      const double u = draw(-3.0, 3.0), v = draw(-3.0, 3.0);
+      rock.velocity = Vec3(u, v, k == 0 ? 6.0 : -6.0);
+      const double spin[] = { draw(-15.0, 15.0), draw(-15.0, 15.0), draw(-15.0, 15.0) };
+      rock.angularVelocity = Vec3(spin[0], spin[1], spin[2]);
+      pile.rocks.push_back(rock);
+    }
+    pile.start();
+    while (pile.fall->advance())
+    {
+      deepest = std::max(deepest, pile.overlap());
+    }
+  }
+  EXPECT_LE(deepest, 0.01 * std::cbrt(0.6));
+}
+
 TEST(Islands, OneSmallRockDoesNotSetTheStepsOfAll)
 {
   // Springs that stop a stone of 1.5 l would ask for 400 steps in one of Δt.
