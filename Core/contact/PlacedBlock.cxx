@@ -72,7 +72,7 @@ void PlacedBlock::placeVertices()
   placed_ = true;
 }
 
-int PlacedBlock::outermostFace(const Vec3& world) const
+int PlacedBlock::outermostFace(const Vec3& world, double beyond) const
 {
   const Polyhedron& shape = block_->shape();
   const Vec3 x = this->materialPoint(world);
@@ -81,6 +81,10 @@ int PlacedBlock::outermostFace(const Vec3& world) const
   for (std::size_t f = 0; f < shape.normals().size(); ++f)
   {
     const double distance = shape.normals()[f].dot(x) - shape.offsets()[f];
+    if (distance > beyond)
+    {
+      return -1;
+    }
     if (distance > farthest)
     {
       farthest = distance;

@@ -6,6 +6,7 @@
 #include "block/Block.h"
 
 #include <cassert>
+#include <limits>
 #include <vector>
 
 namespace rockfall
@@ -54,8 +55,10 @@ public:
     const Vec3 x = this->materialPoint(world);
     return block_->shape().normals()[face].dot(x) - block_->shape().offsets()[face];
   }
-  /// The face over which a world point is farthest out, or least deep if it is inside.
-  int outermostFace(const Vec3& world) const;
+  /// The face over which a world point is farthest out, or least deep if it is inside. -1 as soon
+  /// as it is farther out than `beyond`, m: most nodes near a rock are, over one of its first faces.
+  int outermostFace(
+    const Vec3& world, double beyond = std::numeric_limits<double>::infinity()) const;
   /// The undeformed body coordinates of a world point.
   Vec3 materialPoint(const Vec3& world) const
   {

@@ -266,7 +266,7 @@ void gatherPeak(const PlacedBlock& rock, const SurfacePatch& patch, int node, do
 {
   const SurfacePatch::Node& q = patch.nodes[node];
   if (q.peak && boxesMeet(rock.lower(), rock.upper(), q.position, q.position, distance) &&
-    rock.faceDistance(rock.outermostFace(q.position), q.position) <= distance)
+    rock.outermostFace(q.position, distance) >= 0)
   {
     candidates.peaks.push_back(node);
   }

@@ -244,7 +244,11 @@ bool visitOverlaps(const PlacedBlock& rock, const SurfacePatch& patch,
   for (int node : candidates.peaks)
   {
     const Vec3& q = patch.nodes[node].position;
-    const int face = rock.outermostFace(q);
+    const int face = rock.outermostFace(q, -allowed);
+    if (face < 0)
+    {
+      continue;
+    }
     const double distance = rock.faceDistance(face, q);
     // A face that looks up is no way out of the ground.
     if (distance < -allowed && (node >= patch.slopeNodes || rock.normal(face).z() < 0.0) &&

@@ -188,9 +188,8 @@ void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch,
   for (int node : candidates.peaks)
   {
     // Only the face over which the node is farthest out can be the entrance.
-    const Vec3& q = patch.nodes[node].position;
-    const int face = rock.outermostFace(q);
-    if (rock.faceDistance(face, q) <= reach)
+    const int face = rock.outermostFace(patch.nodes[node].position, reach);
+    if (face >= 0)
     {
       if (auto c = faceVertex(rock, face, patch, node, reach))
       {
