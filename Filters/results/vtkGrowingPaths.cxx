@@ -108,7 +108,6 @@ public:
     output->SetPoints(this->Points);
     output->SetLines(this->Lines);
     output->GetPointData()->ShallowCopy(this->Arrays);
-    rockfall::filters::rememberRanges(output->GetPointData());
   }
 
 private:
@@ -250,6 +249,7 @@ int vtkGrowingPaths::RequestData(
         output->GetCellData()->CopyData(input->GetCellData(), cell, made++);
       }
       growth.Finish(output);
+      rockfall::filters::rememberRanges(output);
       return 1;
     });
 }

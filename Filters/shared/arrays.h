@@ -4,6 +4,7 @@
 /// Arrays of results: made and attached in one line, handed on with their ranges.
 
 #include "vtkAOSDataArrayTemplate.h"
+#include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkFieldData.h"
 #include "vtkInformation.h"
@@ -11,6 +12,9 @@
 #include "vtkInformationInformationVectorKey.h"
 #include "vtkInformationVector.h"
 #include "vtkNew.h"
+#include "vtkPointData.h"
+#include "vtkPointSet.h"
+#include "vtkPoints.h"
 #include "vtkSmartPointer.h"
 
 #include <algorithm>
@@ -102,6 +106,17 @@ inline void rememberRanges(vtkFieldData* data)
   {
     rememberRangesOfAny<double, int, vtkIdType, unsigned char>(data->GetAbstractArray(k));
   }
+}
+
+/// The same of points, their places too, and of cells.
+inline void rememberRanges(vtkPointSet* result)
+{
+  if (result->GetPoints())
+  {
+    rememberRangesOfAny<double>(result->GetPoints()->GetData());
+  }
+  rememberRanges(result->GetPointData());
+  rememberRanges(result->GetCellData());
 }
 
 } // namespace rockfall::filters

@@ -107,7 +107,7 @@ void CurrentRun::follow()
   if (!live_->over())
   {
     live_->look();
-    looked_ = live_->trajectories();
+    looked_ = live_->shown();
     return;
   }
   // Filters that took a part of the run, in the same pass of a view perhaps, are out of date.
@@ -155,8 +155,9 @@ bool CurrentRun::hasNews()
     drawn_ = now; // the first time that the window is free again
   }
   const std::chrono::duration<double> cost = drawn_ - asked_, since = now - drawn_;
-  const bool news = since.count() > std::max(kLookInterval, kLookShare * cost.count()) &&
-    live_->trajectories() > looked_;
+  // One that is about to end is looked at then.
+  const bool news = !live_->stopped() &&
+    since.count() > std::max(kLookInterval, kLookShare * cost.count()) && live_->shown() > looked_;
   return news || live_->over();
 }
 

@@ -4,6 +4,10 @@
 #include "shared/rockPaths.h"
 #include "shared/withAbort.h"
 
+#include "vtkNew.h"
+#include "vtkPolyData.h"
+#include "vtkTable.h"
+
 #include <utility>
 
 namespace rockfall::filters
@@ -17,6 +21,13 @@ constexpr std::int64_t kMostPoints = 1'000'000;
 
 } // namespace
 
+/// What a window has of a run that goes on.
+struct LiveRun::Copy
+{
+  vtkNew<vtkPolyData> trajectories, impacts, structures;
+  vtkNew<vtkTable> summary;
+};
+
 /// A single thread at a time writes or reads.
 class LiveRun::Sink : public TrajectorySink
 {
@@ -29,14 +40,24 @@ public:
   void consume(Trajectory&& trajectory) override
   {
     const std::lock_guard<std::mutex> lock(this->mutex);
+    const bool few = this->isLookedAt();
     this->points += std::int64_t(trajectory.samples.size());
-    ++this->count;
+    ++this->made;
+    this->shown += few ? 1 : 0;
     this->results.consume(std::move(trajectory));
+    if (few && !this->isLookedAt())
+    {
+      this->results.copy(
+        this->last.trajectories, this->last.impacts, this->last.summary, this->last.structures);
+    }
   }
+  bool isLookedAt() const { return this->points <= kMostPoints; }
 
   std::mutex mutex;
   RunSink results;
-  std::int64_t points = 0, count = 0;
+  std::int64_t points = 0, made = 0;
+  std::int64_t shown = 0; ///< Trajectories of the next look.
+  Copy last;              ///< What is looked at when there are very many.
 };
 
 LiveRun::LiveRun(std::unique_ptr<KeptRun> run)
@@ -89,17 +110,29 @@ double LiveRun::elapsed() const
 std::int64_t LiveRun::trajectories() const
 {
   const std::lock_guard<std::mutex> lock(sink_->mutex);
-  return sink_->count;
+  return sink_->made;
+}
+
+std::int64_t LiveRun::shown() const
+{
+  const std::lock_guard<std::mutex> lock(sink_->mutex);
+  return sink_->shown;
 }
 
 void LiveRun::look()
 {
   const std::lock_guard<std::mutex> lock(sink_->mutex);
-  if (sink_->points > kMostPoints && run_->trajectories->GetNumberOfPoints() > 0)
+  if (sink_->isLookedAt())
   {
-    return;
+    sink_->results.copy(run_->trajectories, run_->impacts, run_->summary, run_->structures);
   }
-  sink_->results.copy(run_->trajectories, run_->impacts, run_->summary, run_->structures);
+  else
+  {
+    run_->trajectories->ShallowCopy(sink_->last.trajectories);
+    run_->impacts->ShallowCopy(sink_->last.impacts);
+    run_->summary->ShallowCopy(sink_->last.summary);
+    run_->structures->ShallowCopy(sink_->last.structures);
+  }
   run_->describe();
   markRunning(run_->trajectories->GetFieldData());
 }

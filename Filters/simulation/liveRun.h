@@ -36,16 +36,19 @@ public:
   void wait(double seconds) const;
   double share() const { return share_; } ///< Done, 0 … 1.
   double elapsed() const;                 ///< s
-  /// Trajectories that can be looked at.
+  /// Trajectories that are made, and those that the next look shows: no more of them come when there
+  /// are very many.
   std::int64_t trajectories() const;
+  std::int64_t shown() const;
 
   /// Writes the trajectories made so far, and the blocks as they are released, into the run's
-  /// outputs. Nothing is copied any more when there are very many: the last ones stay.
+  /// outputs: the first ones, when there are very many.
   void look();
   /// The run with all that was made. To be called once, when it is over. Throws Error if it failed.
   std::unique_ptr<KeptRun> take();
 
 private:
+  struct Copy;
   class Sink;
 
   std::unique_ptr<KeptRun> run_;

@@ -260,7 +260,7 @@ void TrajectoryLines::copy(vtkPolyData* output) const
 {
   arrays_->compose();
   output->DeepCopy(arrays_->data);
-  rememberRanges(output->GetPointData());
+  rememberRanges(output);
 }
 
 void TrajectoryLines::finish(vtkPolyData* output)
@@ -271,7 +271,7 @@ void TrajectoryLines::finish(vtkPolyData* output)
   a.points->Squeeze();
   a.lines->Squeeze();
   a.compose();
-  rememberRanges(a.data->GetPointData());
+  rememberRanges(a.data);
   output->ShallowCopy(a.data);
 }
 

@@ -309,8 +309,7 @@ int vtkDEMToCFESource::RequestData(
     mesh->GetFieldData()->AddArray(ground);
     rockfall::filters::copyCoordinateSystem(mesh->GetFieldData(), structures->GetFieldData());
     vtkPolyData::GetData(outputVector, 1)->ShallowCopy(structures);
-    rockfall::filters::rememberRanges(mesh->GetPointData());
-    rockfall::filters::rememberRanges(mesh->GetCellData());
+    rockfall::filters::rememberRanges(mesh);
     output->ShallowCopy(mesh);
     return 1;
   }

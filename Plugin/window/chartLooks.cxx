@@ -146,7 +146,7 @@ void styleExceedance(const Shown& shown, vtkSMProxy* representation, vtkSMViewPr
   vtkSMPropertyHelper(view, "LeftAxisTitle").Set("Share with this or more");
   set(view, "LeftAxisUseCustomRange", 1);
   set(view, "LeftAxisRangeMinimum", 0.0);
-  set(view, "LeftAxisRangeMaximum", 1.0);
+  set(view, "LeftAxisRangeMaximum", 1.0 + 1e-6); // or steps of 0.05 end before it, by rounding
   followExceedance(shown, representation, view);
 }
 

@@ -11,6 +11,8 @@
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMSettings.h"
 
+#include <QAbstractItemView>
+#include <QComboBox>
 #include <QDockWidget>
 #include <QGridLayout>
 #include <QLabel>
@@ -25,6 +27,30 @@ namespace rockfall::window
 QMainWindow* mainWindow()
 {
   return qobject_cast<QMainWindow*>(pqCoreUtilities::mainWidget());
+}
+
+void narrowChoices(QMainWindow* window)
+{
+  constexpr int letters = 12;
+  auto* panel = window->findChild<QDockWidget*>("propertiesDock");
+  const QList<QComboBox*> choices = panel ? panel->findChildren<QComboBox*>() : QList<QComboBox*>();
+  for (QComboBox* choice : choices)
+  {
+    QWidget* parent = choice;
+    while (parent && !qobject_cast<pqPropertyWidget*>(parent))
+    {
+      parent = parent->parentWidget();
+    }
+    auto* property = qobject_cast<pqPropertyWidget*>(parent);
+    const QString group = property ? property->proxy()->GetXMLGroup() : "";
+    if ((group == "sources" || group == "filters") &&
+      choice->sizeAdjustPolicy() != QComboBox::AdjustToMinimumContentsLengthWithIcon)
+    {
+      choice->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+      choice->setMinimumContentsLength(letters);
+      choice->view()->setMinimumWidth(choice->view()->sizeHintForColumn(0));
+    }
+  }
 }
 
 void showUnits(QMainWindow* window)

@@ -16,6 +16,10 @@ QMainWindow* mainWindow();
 /// property's name in Python, where a unit would have to be part of it.
 void showUnits(QMainWindow* window);
 
+/// Choices as narrow as their column: one with a long entry makes the panel wider than its dock, and
+/// the buttons of its files are out of sight.
+void narrowChoices(QMainWindow* window);
+
 /// Numbers of nine digits where the user has not chosen how many: coordinates of a map need them,
 /// ParaView's six are some 10 m there.
 void showCentimetres(vtkSMSessionProxyManager* session);

@@ -1,6 +1,7 @@
 #include "pqRockfallWindow.h"
 
 #include "handles.h"
+#include "keptFiles.h"
 #include "looks.h"
 #include "markers.h"
 #include "panel.h"
@@ -23,6 +24,7 @@
 #include "pqPipelineSource.h"
 #include "pqPythonManager.h"
 #include "pqRenderView.h"
+#include "pqRunBar.h"
 #include "pqServer.h"
 #include "pqServerManagerModel.h"
 #include "pqView.h"
@@ -58,7 +60,7 @@ using rockfall::window::isOf;
 using rockfall::window::mainWindow;
 using rockfall::window::NotUndone;
 
-constexpr int kLookAtRuns = 500;   // ms
+constexpr int kLookAtPanel = 500;  // ms
 constexpr int kLookForWindow = 20; // ms
 constexpr int kReadNotes = 30000;  // ms
 
@@ -76,6 +78,14 @@ QString scriptFolder()
 QString quoted(QString text)
 {
   return "'" + text.replace("\\", "\\\\").replace("'", "\\'") + "'";
+}
+
+/// A source or filter of the plugin that may name files.
+bool isOurs(vtkSMProxy* proxy)
+{
+  return isOf(proxy,
+    { "vtkDEMToCFESource", "vtkRockBlockSource", "vtkJointedRockMass", "vtkRockfallSimulation",
+      "vtkTrajectoryCollector" });
 }
 
 /// Whether no other slope is seen: of an earlier study it is hidden.
@@ -138,8 +148,15 @@ void pqRockfallWindow::begin()
     qOverload<pqProxy*>(&pqObjectBuilder::proxyCreated), this, &pqRockfallWindow::onMade);
   this->connect(
     model, &pqServerManagerModel::representationAdded, this, &pqRockfallWindow::onRepresentation);
-  this->connect(&this->Clock, &QTimer::timeout, this, &pqRockfallWindow::tellRuns);
-  this->connect(&this->Clock, &QTimer::timeout, [window] { rockfall::window::showUnits(window); });
+  this->Bar = new pqRunBar(window);
+  this->connect(this->Bar, &pqRunBar::stopped, this, &pqRockfallWindow::stopRuns);
+  this->connect(&this->Looks, &QTimer::timeout, this, &pqRockfallWindow::tellRuns);
+  this->connect(&this->Clock, &QTimer::timeout,
+    [window]
+    {
+      rockfall::window::showUnits(window);
+      rockfall::window::narrowChoices(window);
+    });
   // Once, as soon as the window is wide enough for it.
   this->connect(
     &this->Clock, &QTimer::timeout, [window] { rockfall::window::widenPanels(window); });
@@ -159,7 +176,8 @@ void pqRockfallWindow::begin()
         messages->look();
       }
     });
-  this->Clock.start(kLookAtRuns);
+  this->Clock.start(kLookAtPanel);
+  this->Looks.start(kLookAtPanel);
   this->connect(this->Picker, &pqPathPicker::picked, this, &pqRockfallWindow::onPicked);
   this->connect(this->Picker, &pqPathPicker::missed, this,
     [this] { this->tell(tr("There is no trajectory where you clicked")); });
@@ -293,6 +311,10 @@ void pqRockfallWindow::onSource(pqPipelineSource* source)
 {
   vtkSMProxy* proxy = source->getProxy();
   const std::string name = proxy->GetXMLName();
+  if (isOurs(proxy))
+  {
+    rockfall::window::keepFiles(source);
+  }
   if (isOf(proxy, { "vtkDEMToCFESource" }))
   {
     rockfall::window::showCentimetres(proxy->GetSessionProxyManager());
@@ -313,6 +335,11 @@ void pqRockfallWindow::onSource(pqPipelineSource* source)
     {
       pqCoreUtilities::connect(
         proxy->GetProperty("Preset"), event, this, SLOT(onPreset(vtkObject*, unsigned long)));
+    }
+    if (this->Scripting) // which has chosen one before this hears of it
+    {
+      this->onPreset(proxy->GetProperty("Preset"), vtkCommand::ModifiedEvent);
+      proxy->UpdateVTKObjects();
     }
   }
   if (isOf(proxy,
@@ -481,7 +508,12 @@ void pqRockfallWindow::onData(pqPipelineSource* source)
   vtkSMSourceProxy* proxy = source->getSourceProxy();
   if (isOf(proxy, { "vtkRockfallSimulation" }))
   {
-    this->endWithLastRock(source->getServer());
+    // A view that is being updated does not hear of another time.
+    this->EndsAnew = !this->Scripting;
+    if (this->Scripting)
+    {
+      this->endWithLastRock(source->getServer());
+    }
     this->drawCharts(proxy);
   }
 }

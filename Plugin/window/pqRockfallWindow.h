@@ -13,6 +13,7 @@ class pqPathPicker;
 class pqPipelineSource;
 class pqProxy;
 class pqRepresentation;
+class pqRunBar;
 class pqServer;
 class pqView;
 class vtkObject;
@@ -44,6 +45,7 @@ private Q_SLOTS:
   void onPreset(vtkObject* property, unsigned long event);
   void onPicked(pqOutputPort* port, int cell);
   void tellRuns();
+  void stopRuns();
 
 private:
   void makeMenu(QMainWindow* window);
@@ -59,13 +61,15 @@ private:
   void tell(const QString& message);
 
   pqPathPicker* Picker;
-  QTimer Clock;
+  pqRunBar* Bar = nullptr;
+  QTimer Clock, Looks;    // at the panel and what is drawn, at runs
   int Pictures = 0;       // that were taken
   int Checks = 0;         // of tests, that were made
   double LastEnd = -1.0;  // that animations were given, s
   bool OwnsEnd = false;   // whether animations end where they were told to, at the last look
   bool AtEnd = false;     // whether somebody looks at that time, and so at whole paths
   bool Waiting = true;    // for rocks that came to their end
+  bool EndsAnew = false;  // a run has handed on what may end at another time
   bool Scripting = false; // a statement of Python is going on
   QSet<QString> Running;  // names of the runs that were told of last
   QMap<QString, QString> Settled; // state hash by name: of the run that all views have

@@ -4,7 +4,8 @@
 #include "pqRockfallWindow.h"
 
 #include "looks.h"
-#include "panel.h"
+#include "pqRunBar.h"
+#include "proxyNumbers.h"
 #include "undo.h"
 
 #include "pqActiveObjects.h"
@@ -31,10 +32,11 @@
 #include "vtkTable.h"
 
 #include <QList>
-#include <QMainWindow>
-#include <QStatusBar>
+#include <QPointer>
+#include <QSet>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace
@@ -57,17 +59,23 @@ bool isUpdating()
   return false;
 }
 
-/// All views, with what is new in their pipelines and with palettes, legends and charts that go with
-/// it, before this returns. Each is drawn once: a slope of a million cells takes half a second. Charts
-/// are the first ones: the paths of a large run take seconds.
-void renderNow()
+enum class Kind
+{
+  Charts,
+  Slopes
+};
+
+/// All views of a kind, with what is new in their pipelines and with palettes, legends and charts that
+/// go with it, before this returns. Each is drawn once: a slope of a million cells takes half a second.
+void renderNow(Kind kind)
 {
   auto* model = pqApplicationCore::instance()->getServerManagerModel();
-  QList<pqView*> views = model->findItems<pqView*>();
-  std::stable_partition(
-    views.begin(), views.end(), [](pqView* view) { return !qobject_cast<pqRenderView*>(view); });
-  for (pqView* view : views)
+  for (pqView* view : model->findItems<pqView*>())
   {
+    if ((kind == Kind::Slopes) != (qobject_cast<pqRenderView*>(view) != nullptr))
+    {
+      continue;
+    }
     view->getViewProxy()->Update();
     for (pqRepresentation* shown : view->getRepresentations())
     {
@@ -79,6 +87,43 @@ void renderNow()
     view->forceRender();
   }
 }
+
+/// While it lives a time that is set draws no slope.
+class Undrawn
+{
+public:
+  Undrawn()
+  {
+    auto* model = pqApplicationCore::instance()->getServerManagerModel();
+    for (pqView* view : model->findItems<pqView*>())
+    {
+      vtkSMProxy* proxy = view->getProxy();
+      if (proxy->GetProperty("SuppressRendering") &&
+        vtkSMPropertyHelper(proxy, "SuppressRendering").GetAsInt() == 0)
+      {
+        rockfall::window::set(proxy, "SuppressRendering", 1);
+        proxy->UpdateVTKObjects();
+        this->Views.append(view);
+      }
+    }
+  }
+  ~Undrawn()
+  {
+    for (const QPointer<pqView>& view : this->Views)
+    {
+      if (view)
+      {
+        rockfall::window::set(view->getProxy(), "SuppressRendering", 0);
+        view->getProxy()->UpdateVTKObjects();
+      }
+    }
+  }
+  Undrawn(const Undrawn&) = delete;
+  Undrawn& operator=(const Undrawn&) = delete;
+
+private:
+  QList<QPointer<pqView>> Views;
+};
 
 /// Whether any view is at another time.
 bool isElsewhere(double time)
@@ -175,6 +220,14 @@ vtkSMProxy* sceneOf(pqServer* server)
   return controller->GetAnimationScene(server->session());
 }
 
+double timeOf(pqServer* server)
+{
+  vtkSMProxy* scene = sceneOf(server);
+  return scene ? vtkSMPropertyHelper(scene, "AnimationTime").GetAsDouble() : 0.0;
+}
+
+constexpr int kLookAtRuns = 500, kLookAtRunning = 100; // ms
+
 } // namespace
 
 //-----------------------------------------------------------------------------
@@ -260,8 +313,12 @@ void pqRockfallWindow::lookAtTime()
   }
   else if (this->AtEnd && end == this->LastEnd && isElsewhere(end)) // than the scene's time says
   {
-    scene->InvokeCommand("GoToLast");
-    renderNow();
+    {
+      const Undrawn times;
+      scene->InvokeCommand("GoToLast");
+    }
+    renderNow(Kind::Charts);
+    renderNow(Kind::Slopes);
   }
   this->Waiting = false;
 }
@@ -276,7 +333,8 @@ void pqRockfallWindow::tellRuns()
   const rockfall::window::NotUndone own;
   this->lookAtTime();
   QList<pqPipelineSource*> settled;
-  QMainWindow* window = rockfall::window::mainWindow();
+  QSet<QString> stillRunning; // without those that were deleted
+  QString told;
   auto* model = pqApplicationCore::instance()->getServerManagerModel();
   for (pqPipelineSource* source : model->findItems<pqPipelineSource*>())
   {
@@ -290,13 +348,13 @@ void pqRockfallWindow::tellRuns()
     const QString status = QString::fromUtf8(vtkSMPropertyHelper(proxy, "RunStatus").GetAsString());
     const QString name = source->getSMName();
     const bool running = status.startsWith("running") || status.startsWith("stopping");
-    if (window && (running || this->Running.contains(name)))
+    if (running || this->Running.contains(name))
     {
-      window->statusBar()->showMessage(name + ": " + status, running ? 0 : 10000);
+      told += (told.isEmpty() ? "" : "; ") + name + ": " + status;
     }
     if (running)
     {
-      this->Running.insert(name);
+      stillRunning.insert(name);
     }
     else
     {
@@ -304,7 +362,7 @@ void pqRockfallWindow::tellRuns()
       vtkSMSourceProxy* run = source->getSourceProxy();
       const QString state = stateOf(run);
       const bool other = !state.isEmpty() && this->Settled.value(name) != state;
-      if (this->Running.remove(name) || showsPart(run) || other)
+      if (this->Running.contains(name) || showsPart(run) || other)
       {
         // The last look, also where ParaView does not ask, as while tests are played.
         proxy->InvokeCommand("Watch");
@@ -313,12 +371,42 @@ void pqRockfallWindow::tellRuns()
       }
     }
   }
+  this->Running = stillRunning;
+  this->Bar->tell(told, !this->Running.isEmpty());
+  // Who has pressed Stop is not kept waiting.
+  this->Looks.setInterval(this->Running.isEmpty() ? kLookAtRuns : kLookAtRunning);
   if (!settled.isEmpty())
   {
-    renderNow();
-    for (pqPipelineSource* source : settled)
+    // Charts are the first ones: the paths of a large run take seconds. Paths want the time at which
+    // they are whole before they are made.
+    renderNow(Kind::Charts);
     {
-      this->Settled[source->getSMName()] = stateOf(source->getSourceProxy());
+      const Undrawn times;
+      for (pqPipelineSource* source : settled)
+      {
+        source->getSourceProxy()->UpdatePipeline(timeOf(source->getServer()));
+        this->endWithLastRock(source->getServer());
+        this->Settled[source->getSMName()] = stateOf(source->getSourceProxy());
+      }
+      this->EndsAnew = false;
+    }
+    renderNow(Kind::Slopes);
+  }
+  else if (std::exchange(this->EndsAnew, false) && this->Running.isEmpty())
+  {
+    this->endWithLastRock(pqActiveObjects::instance().activeServer());
+  }
+}
+
+//-----------------------------------------------------------------------------
+void pqRockfallWindow::stopRuns()
+{
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  for (pqPipelineSource* source : model->findItems<pqPipelineSource*>())
+  {
+    if (isOf(source->getProxy(), { "vtkRockfallSimulation" }))
+    {
+      source->getProxy()->InvokeCommand("Stop");
     }
   }
 }

@@ -128,6 +128,34 @@ TEST_F(TestLiveRun, StopsAndKeepsWhatIsMade)
   this->AskUntilOver();
 }
 
+TEST_F(TestLiveRun, VeryManyPathsAreLookedAtOnce)
+{
+  this->Simulation->SetOutputInterval(1e-3); // a million points are soon made
+  this->Simulation->SetIterations(100000);
+  this->Simulation->GetNeedsUpdate();
+  this->Simulation->Update();
+  vtkIdType shown = 0;
+  const Clock::time_point start = Clock::now();
+  for (bool few = true; few && since(start) < 60.0;)
+  {
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    this->Simulation->GetNeedsUpdate();
+    this->Simulation->Modified();
+    shown = this->Output(1)->GetNumberOfCells();
+    few = this->Output(1)->GetNumberOfPoints() <= 1'000'000;
+  }
+  EXPECT_GT(shown, 1);
+  EXPECT_EQ(this->Summary()->GetNumberOfRows(), shown);
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  EXPECT_FALSE(this->Simulation->GetNeedsUpdate());
+  this->Simulation->Modified();
+  EXPECT_EQ(this->Output(1)->GetNumberOfCells(), shown);
+  this->Simulation->Stop();
+  this->AskUntilOver();
+  this->Simulation->GetNeedsUpdate(); // as the window asks after the last one
+  EXPECT_GT(this->Output(1)->GetNumberOfCells(), shown);
+}
+
 TEST_F(TestLiveRun, MapsOfARunThatHasMadeNothingAreEmpty)
 {
   // Thirty rocks that fall together: the first iteration takes a while.

@@ -104,9 +104,12 @@ TEST(RunOutputs, TrajectoriesAreHandedOnWithTheirRanges)
   writer.finish(whole);
   for (vtkPolyData* lines : { part.Get(), whole.Get() })
   {
-    vtkDataArray* time = lines->GetPointData()->GetArray("Time");
-    ASSERT_TRUE(time && time->HasInformation());
-    EXPECT_TRUE(time->GetInformation()->Has(vtkAbstractArray::PER_COMPONENT()));
+    for (vtkDataArray* array : { lines->GetPointData()->GetArray("Time"),
+           lines->GetCellData()->GetArray("Volume"), lines->GetPoints()->GetData() })
+    {
+      ASSERT_TRUE(array && array->HasInformation());
+      EXPECT_TRUE(array->GetInformation()->Has(vtkAbstractArray::PER_COMPONENT()));
+    }
   }
 }
 

@@ -10,6 +10,16 @@ def begin_trace():
 
 def end_trace():
     simple.trace_of_study = smtrace.stop_trace()  # kept between two checks
+    slope = simple.FindSource("Slope")
+    assert slope.GroundModulus > 0.0, "the panel does not have the numbers of the preset"
+    simple.drawn_when_stopped = 0
+    simple.GetRenderView().GetRenderWindow().AddObserver("EndEvent", count_drawn)
+
+
+def count_drawn(_window, _event):
+    fall = simple.FindSource("Fall")
+    fall.UpdatePropertyInformation()
+    simple.drawn_when_stopped += fall.GetProperty("RunStatus").GetElement(0).startswith("stopped")
 
 
 def stopped():
@@ -22,6 +32,7 @@ def stopped():
     paths = simple.FindSource("Paths").GetDataInformation().GetNumberOfCells()
     assert paths == made, f"{paths} paths are drawn of {made}"
     released = simple.FindSource("Line").FieldData
+    assert 0 < simple.drawn_when_stopped <= 2, f"drawn {simple.drawn_when_stopped} times after Stop"
     assert "RunGoesOn" not in [released[k].Name for k in range(len(released))], "the line has a part of the run"
 
 
