@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 namespace rockfall::filters
 {
@@ -35,12 +36,24 @@ enum class Holds
   Whole53,
 };
 
+/// What a rock has, in SI. Beyond it squares and sums overflow, or nothing on earth is so.
+struct Bounds
+{
+  double low, high;
+};
+constexpr Bounds kAny{ -std::numeric_limits<double>::infinity(),
+  std::numeric_limits<double>::infinity() };
+constexpr Bounds kTime{ 0.0, 1e9 }, kSpeed{ -1000.0, 1000.0 }, kSpin{ -1e4, 1e4 },
+  kEnergy{ 0.0, 1e18 }, kHeight{ -1e5, 1e5 }, kMass{ 0.0, 1e15 }, kWidth{ 0.0, 1e4 },
+  kVolume{ 0.0, 1e9 }, kCode{ 0.0, 63.0 }, kCount{ 0.0, kWhole32 };
+
 struct ArrayRule
 {
   InputKind kind;
   bool ofPoints; ///< Else of cells.
   const char* name;
   Holds holds;
+  Bounds bounds = kAny;
 };
 
 /// Arrays that filters make numbers of, beyond what the readers of a kind look at themselves.
@@ -50,28 +63,30 @@ constexpr ArrayRule rules[] = {
   { InputKind::Rocks, false, "Frequency", Holds::Finite },
   { InputKind::Rocks, false, "Shape", Holds::Whole32 },
   { InputKind::Rocks, false, "State", Holds::Whole32 },
-  { InputKind::Trajectories, true, "Time", Holds::Finite },
-  { InputKind::Trajectories, true, "Velocity", Holds::Finite },
-  { InputKind::Trajectories, true, "RotationRate", Holds::Finite },
-  { InputKind::Trajectories, true, "KineticEnergy", Holds::Finite },
-  { InputKind::Trajectories, true, "HeightOverGround", Holds::NotInfinite },
-  { InputKind::Trajectories, false, "Iteration", Holds::Whole32 },
-  { InputKind::Trajectories, false, "RockId", Holds::Whole32 },
+  { InputKind::Trajectories, true, "Time", Holds::Finite, kTime },
+  { InputKind::Trajectories, true, "Velocity", Holds::Finite, kSpeed },
+  { InputKind::Trajectories, true, "RotationRate", Holds::Finite, kSpin },
+  { InputKind::Trajectories, true, "KineticEnergy", Holds::Finite, kEnergy },
+  { InputKind::Trajectories, true, "HeightOverGround", Holds::NotInfinite, kHeight },
+  { InputKind::Trajectories, false, "Iteration", Holds::Whole32, kCount },
+  { InputKind::Trajectories, false, "RockId", Holds::Whole32, kCount },
   { InputKind::Trajectories, false, "BlockId", Holds::Whole53 },
   { InputKind::Trajectories, false, "SourceId", Holds::Whole53 },
   { InputKind::Trajectories, false, "Shape", Holds::Whole32 },
-  { InputKind::Trajectories, false, "Fate", Holds::Whole32 },
-  { InputKind::Trajectories, false, "Mass", Holds::Finite },
+  { InputKind::Trajectories, false, "Fate", Holds::Whole32, kCode },
+  { InputKind::Trajectories, false, "Mass", Holds::Finite, kMass },
+  { InputKind::Trajectories, false, "Width", Holds::Finite, kWidth },
+  { InputKind::Trajectories, false, "Volume", Holds::Finite, kVolume },
   { InputKind::Crossings, true, "Line", Holds::Whole32 },
-  { InputKind::Crossings, true, "Iteration", Holds::Whole32 },
-  { InputKind::Crossings, true, "RockId", Holds::Whole32 },
+  { InputKind::Crossings, true, "Iteration", Holds::Whole32, kCount },
+  { InputKind::Crossings, true, "RockId", Holds::Whole32, kCount },
   { InputKind::Crossings, true, "Passing", Holds::Whole32 },
-  { InputKind::Crossings, true, "KineticEnergy", Holds::Finite },
-  { InputKind::Crossings, true, "HeightOverGround", Holds::NotInfinite },
-  { InputKind::Crossings, true, "TopHeight", Holds::NotInfinite },
+  { InputKind::Crossings, true, "KineticEnergy", Holds::Finite, kEnergy },
+  { InputKind::Crossings, true, "HeightOverGround", Holds::NotInfinite, kHeight },
+  { InputKind::Crossings, true, "TopHeight", Holds::NotInfinite, kHeight },
   { InputKind::Crossings, true, "Frequency", Holds::Finite },
   { InputKind::Crossings, true, "SourceId", Holds::Whole53 },
-  { InputKind::Crossings, true, "Velocity", Holds::Finite },
+  { InputKind::Crossings, true, "Velocity", Holds::Finite, kSpeed },
 };
 
 bool fits(double value, Holds holds)
@@ -97,19 +112,28 @@ const char* textOf(Holds holds)
                                   : "a whole number";
 }
 
-void checkNumbers(vtkDataArray* array, Holds holds, const std::string& name)
+void checkNumbers(vtkDataArray* array, const ArrayRule& rule, const std::string& name)
 {
   const int components = array->GetNumberOfComponents();
+  const std::string_view of = rule.name;
+  if (const int wanted = of == "Velocity" || of == "RotationRate" ? 3 : 1; components != wanted)
+  {
+    throw DataError(name + " has " + std::to_string(components) + " components, it must have " +
+      std::to_string(wanted));
+  }
   const vtkIdType values = array->GetNumberOfValues();
   auto* doubles = vtkDoubleArray::SafeDownCast(array);
   const double* fast = doubles ? doubles->GetPointer(0) : nullptr;
   for (vtkIdType k = 0; k < values; ++k)
   {
     const double value = fast ? fast[k] : array->GetComponent(k / components, int(k % components));
-    if (!fits(value, holds))
+    const bool fitting = fits(value, rule.holds);
+    if (!fitting || value < rule.bounds.low || value > rule.bounds.high) // not so of NaN
     {
       throw DataError(name + " has " + numberText(value, 17) + " at place " +
-        std::to_string(k / components) + ", it must be " + textOf(holds));
+        std::to_string(k / components) + ", it must be " +
+        (fitting ? numberText(rule.bounds.low) + " to " + numberText(rule.bounds.high)
+                 : std::string(textOf(rule.holds))));
     }
   }
 }
@@ -237,8 +261,8 @@ void checkPolyData(vtkPolyData* data, InputKind kind, const std::string& name)
     vtkDataArray* array = rule.kind == kind ? arrays->GetArray(rule.name) : nullptr;
     if (array)
     {
-      checkNumbers(array, rule.holds,
-        name + "'s " + (rule.ofPoints ? "point" : "cell") + " array " + rule.name);
+      checkNumbers(
+        array, rule, name + "'s " + (rule.ofPoints ? "point" : "cell") + " array " + rule.name);
     }
   }
 }

@@ -250,6 +250,24 @@ TEST_F(TestLyingInputs, NumbersOfTrajectoriesMustBeSuch)
     { "an iteration of 1e300", number(false, "Iteration", 1e300), { "Iteration", "1e+300" } },
     { "NaN for a rock", number(false, "RockId", std::nan("")), { "RockId", "nan" } },
     { "half a fate", number(false, "Fate", 0.5), { "Fate", "0.5" } },
+    { "a fate that there is not", number(false, "Fate", -5.0), { "Fate", "-5", "0 to 63" } },
+    { "an energy below 0", number(true, "KineticEnergy", -5.0), { "KineticEnergy", "-5" } },
+    { "a spin of no rock", number(true, "RotationRate", 1e300), { "RotationRate", "1e+300" } },
+    { "a height of no slope", number(true, "HeightOverGround", 1e300), { "1e+300" } },
+    { "an infinite width", number(false, "Width", inf), { "Width", "inf" } },
+    { "NaN for a volume", number(false, "Volume", std::nan("")), { "Volume", "nan" } },
+    { "a mass of no rock", number(false, "Mass", 1e300), { "Mass", "1e+300" } },
+    { "a pair of times",
+      [](vtkPolyData* data)
+      {
+        vtkNew<vtkDoubleArray> pairs;
+        pairs->SetName("Time");
+        pairs->SetNumberOfComponents(2);
+        pairs->SetNumberOfTuples(data->GetNumberOfPoints());
+        pairs->Fill(1.0);
+        data->GetPointData()->AddArray(pairs);
+      },
+      { "Time has 2 components, it must have 1" } },
   };
   for (const Case& lying : cases)
   {
