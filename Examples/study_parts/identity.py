@@ -12,7 +12,7 @@ FILES = ("FileName", "File", "Layer", "Table")  # a property whose name ends so 
 FORMAT = 3  # of the files of a study: another one is another study
 # Companions that GDAL reads but does not list, or lists only for some formats: with their ending
 # instead of the file's own, or behind it.
-COMPANIONS = (".dbf", ".shx", ".prj", ".cpg", ".csvt", ".tfw", ".wld", ".ovr"), \
+COMPANIONS = (".dbf", ".shx", ".prj", ".cpg", ".csvt", ".tfw", ".wld", ".ovr", ".xsd"), \
     (".aux.xml", ".msk", ".ovr", "-wal", "-journal")
 
 
@@ -76,10 +76,13 @@ def companions(path):
 
 
 def members(path, ask=True):
-    """All files of a data set that say something, the file itself first; without `ask` only those that
-    lie beside it under its name."""
-    kept = {path: None}
-    for one in map(os.path.abspath, (listed(path) if ask else []) + companions(path)):
+    """All files of a data set that say something, the file itself first, or all of a folder (Zarr);
+    without `ask` only those that lie beside it under its name."""
+    kept, within = {path: None}, []
+    if os.path.isdir(path):
+        kept = {}
+        within = [os.path.join(folder, name) for folder, _, names in sorted(os.walk(path)) for name in sorted(names)]
+    for one in map(os.path.abspath, within + (listed(path) if ask else []) + companions(path)):
         if os.path.isfile(one) and os.path.getsize(one) > 0:
             kept[one] = None
     return list(kept)

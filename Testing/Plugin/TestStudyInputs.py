@@ -6,6 +6,7 @@ import json
 import os
 import shutil
 import sqlite3
+import subprocess
 import sys
 import threading
 import time
@@ -130,6 +131,26 @@ with open("grid.sdat", "wb") as file:
     file.write(b"\0\0\x80?" * 4)
 there = [os.path.basename(name) for name in identity.members(os.path.abspath("grid.sdat"))]
 assert "grid.sgrd" in there, there
+
+# A shapefile of many files, and data sets that are folders: Zarr, shapefiles.
+shutil.rmtree("shapes", ignore_errors=True)
+os.makedirs("shapes")
+subprocess.run(["ogr2ogr", "-f", "ESRI Shapefile", "shapes/road.shp", "input-road.csv"], check=True)
+there = [os.path.basename(name) for name in identity.members(os.path.abspath("shapes/road.shp"))]
+assert sorted(there) == ["road.dbf", "road.shp", "road.shx"] and there[0] == "road.shp", there
+shutil.rmtree("store.zarr", ignore_errors=True)
+subprocess.run(["gdal_translate", "-q", "-of", "Zarr", "input.asc", "store.zarr"], check=True)
+for folder, inner in (("shapes", "road.dbf"), ("store.zarr", os.path.join("store", "0.0"))):
+    inputs = identity.Inputs({"terrain": {"FileName": folder}})
+    inputs.read()
+    assert any(name.endswith(inner) for name in inputs.of("terrain", "FileName")), inputs.sets
+    with open(os.path.join(folder, inner), "ab") as file:
+        file.write(b"x")
+    try:
+        inputs.check()
+        raise AssertionError(f"nobody saw that {inner} changed")
+    except identity.Changed as changed:
+        assert inner in str(changed), changed
 
 # While it runs: a file that changes, goes away, or comes; one that is only touched.
 one = os.path.abspath("while.csv")
