@@ -21,7 +21,7 @@ osr.UseExceptions()
 
 
 BLOCK = 100000  # rows
-TEXTS = "LineName", "Shape", "Fate", "Class"  # also where all of them are numbers
+TEXTS = "LineName", "SourceName", "Shape", "Fate", "Class"  # also where all of them are numbers
 
 
 def field(path, whole, name, kind):
@@ -181,9 +181,9 @@ class Study:
         self.inputs = self.read_inputs(path)
         self.slope = Slope(self.properties("terrain"))
         self.rocks = Table(self.path("summary.csv"), (
-            "Iteration", "BlockId", "Shape", "Fate", "StartX", "StartY", "RunOut", "Mass", "Volume",
-            "MaxSpeed", "ContactSteps", "UnsettledSteps", "EnergyReleased", "EnergyNumerical"), ("Frequency",))
-        self.rocks.must_be_numbers("Iteration", "BlockId", "StartX", "StartY", "RunOut", "Mass", "Volume")
+            "Iteration", "BlockId", "SourceId", "Shape", "Fate", "StartX", "StartY", "RunOut", "Mass", "Volume",
+            "MaxSpeed", "ContactSteps", "UnsettledSteps", "EnergyReleased", "EnergyNumerical"), ("Frequency", "SourceName"))
+        self.rocks.must_be_numbers("Iteration", "BlockId", "SourceId", "StartX", "StartY", "RunOut", "Mass", "Volume")
         if not len(self.rocks):
             raise Bad(f"{self.path('summary.csv')}: there are no rocks")
         self.map = Raster(self.path("hazard.tif")) if "map" in self.given else None

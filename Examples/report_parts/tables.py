@@ -147,6 +147,26 @@ def rocks(study):
     return made
 
 
+def source_name(study, source):
+    """Its number, and the names that its rocks have."""
+    names = set(study.rocks["SourceName"][study.rocks["SourceId"] == source]) - {""} if "SourceName" in study.rocks else ()
+    return " ".join([number(source, 9), ", ".join(sorted(map(str, names)))]).strip()
+
+
+def sources(study):
+    """By source: how many rocks, how large, and how often one of them falls, if that is known; and how many sources
+    more there are."""
+    table, made = study.rocks, []
+    first = table["Iteration"] == table["Iteration"].min()
+    every = np.unique(table["SourceId"])
+    for source in every[:MOST_SOURCES]:
+        own = table["SourceId"] == source
+        made.append([source_name(study, source), number(own.sum(), 7),
+                     *(number(f(table["Volume"][own])) for f in (np.min, np.median, np.max)),
+                     *([number(table["Frequency"][own & first].sum())] if "Frequency" in table else [])])
+    return made, len(every) - len(made)
+
+
 def frequencies(study):
     """What the study says of how often rocks fall; nothing if it says nothing."""
     units = {"AnnualFrequency": " 1/a", "EnergyThresholds": " kJ", "ReturnPeriods": " a"}
@@ -237,7 +257,7 @@ def design(study):
                          *(f"{row[what]:.0f} ({number(100.0 * row[what + 'Share'])} %)" for what in ("Caught", "Over", "TooStrong")),
                          number(100.0 * row["UncaughtShareHigh"]),
                          *([number(row["OverFrequency"] + row["TooStrongFrequency"])] if known else [])) for row in classes],
-            "sources": [(number(row["SourceId"], 9), *(f"{row[what]:.0f}" for what in ("Rocks", "Caught", "Over", "TooStrong")),
+            "sources": [(source_name(study, row["SourceId"]), *(f"{row[what]:.0f}" for what in ("Rocks", "Caught", "Over", "TooStrong")),
                          number(100.0 * row["Share"]), number(row["EnergyMaximum"]),
                          *([number(row["AnnualFrequency"]), number(row["UncaughtFrequency"])] if known else []))
                         for row in sources[:MOST_SOURCES]],
@@ -276,9 +296,11 @@ def notes(study):
             if count == 0:
                 made.append(f"No rock reached line {name}: of {total} rocks the share that passes is below "
                             f"{number(300.0 / total)} % with 95 % confidence.")
-            elif study.lines["HighestQuantile"][k] < 95:
-                made.append(f"{count} rocks passed line {name}: too few for its 95 % values, which take 59, and 99 %, which "
-                            "take 299. Those numbers are too low.")
+            elif study.lines["HighestQuantile"][k] < 99:
+                few = study.lines["HighestQuantile"][k] < 95
+                made.append(f"{count} rocks passed line {name}: too few for its " +
+                            ("95 % values, which take 59, and 99 %, which take 299. Those numbers are too low." if few else
+                             "99 % values, which take 299. Those are too low."))
             for column, text in (("MovingBefore", "still moved at the end of the simulated time"),
                                  ("OverEdgeBefore", "left over the edge of the slope"),
                                  ("InNodataBefore", "were lost in nodata")):

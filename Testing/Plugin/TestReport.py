@@ -73,7 +73,7 @@ for name in ("hill.asc", "hill.prj", "rocks.csv", "road.csv", "net.csv", "stems.
     assert name in text and content(name) in text, name
 for word in ("WGS 84 / UTM zone 16N", "preset Talus (assumed): Lu et al. (2019)", "seed 77", "31 × 21 nodes every 10 m",
              "12 rocks, 3 releases in 4 iterations", "4 m high, capacity 1 000 kJ", "Office", "stems that lie 1, diameter 40 to 40 cm; energy that breaks one 194 kJ", "stems 1 on",
-             "RockfallDDA", "gives no frequency of release", "Cells of the map below LeastReach 0.001 are left empty", "icosahedron 4 0.75 0.75 0.75",
+             "RockfallDDA", "gives no frequency of release", "source rocks volume, m³: least median largest 1 source 1 4 0.5 0.5 0.5", "Cells of the map below LeastReach 0.001 are left empty", "icosahedron 4 0.75 0.75 0.75",
              "No rock reached line <b>road</b> 700290: of 12 rocks the share that passes is below 25 %"):
     assert word in text, word
 sections = re.findall(r"<h2>(\d+) ", page)
