@@ -23,7 +23,7 @@ namespace
 
 static_assert(std::endian::native == std::endian::little && sizeof(Passage) == 40);
 
-constexpr std::uint64_t longestCrs = 1'000'000; ///< Bytes; more is no CRS but a damaged file.
+constexpr std::uint64_t longestText = 1'000'000; ///< Bytes; more is a damaged file.
 
 template <typename T>
 T get(std::istream& in)
@@ -31,6 +31,23 @@ T get(std::istream& in)
   T value{};
   in.read(reinterpret_cast<char*>(&value), sizeof(T));
   return value;
+}
+
+/// Left empty where the file ends or is damaged before.
+std::string getText(std::istream& in)
+{
+  const auto length = get<std::uint64_t>(in);
+  std::string text;
+  if (in && length <= longestText)
+  {
+    text.resize(length);
+    in.read(text.data(), std::streamsize(length));
+  }
+  else
+  {
+    in.setstate(std::ios::failbit); // told by the length
+  }
+  return text;
 }
 
 [[noreturn]] void failDamaged(const std::string& fileName, const std::string& what)
@@ -276,18 +293,14 @@ PassageFile readPassageFile(const std::string& fileName)
   {
     *value = get<double>(in);
   }
-  const auto length = get<std::uint64_t>(in);
-  if (in && length <= longestCrs)
-  {
-    file.crs.resize(length);
-    in.read(file.crs.data(), std::streamsize(length));
-  }
-  file.slope = get<std::uint64_t>(in);
+  file.crs = getText(in);
+  file.run.slope = get<std::uint64_t>(in);
+  file.run.properties = getText(in);
   readReleases(in, file);
   readLost(in, file);
   readFrequencies(in, file);
   file.passages = get<std::uint64_t>(in);
-  if (!in || length > longestCrs || !readParts(in, size, file))
+  if (!in || !readParts(in, size, file))
   {
     failDamaged(fileName, "it is not as long as it must be");
   }
@@ -306,15 +319,9 @@ PassageFiles::PassageFiles(const std::vector<std::string>& fileNames)
     const CellGrid& g = f.grid;
     return std::tie(g.columns, g.rows, g.cellSize, g.west, g.south, f.crs);
   };
-  std::size_t others = 0;
-  std::string other;
   for (const std::string& fileName : fileNames)
   {
     const PassageFile& file = files_.emplace_back(readPassageFile(fileName));
-    if (file.slope != 0 && files_.front().slope != 0 && file.slope != files_.front().slope)
-    {
-      other = others++ == 0 ? fileName : other;
-    }
     if (place(file) != place(files_.front()))
     {
       throw DataError(fileName + ": its cells or its CRS are not those of " + fileNames.front());
@@ -333,12 +340,12 @@ PassageFiles::PassageFiles(const std::vector<std::string>& fileNames)
     lost_.add(file.lost);
     frequencies_.add(file.frequencies);
   }
-  if (others > 0)
+  std::vector<RunOrigin> runs;
+  for (const PassageFile& file : files_)
   {
-    notes_.push_back(std::to_string(others) + " of " + std::to_string(files_.size()) +
-      " files, first " + other + ", are of other slopes than " + files_.front().fileName +
-      ": heights, ground or structures differ. Do their rocks belong into one map?");
+    runs.push_back(file.run);
   }
+  notes_ = askAfterRuns(runs, [this](std::size_t k) { return files_[k].fileName; });
 }
 
 void PassageFiles::summarize(const UseCell& use) const

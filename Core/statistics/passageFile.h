@@ -4,10 +4,10 @@
 /// Passages of a run in a file, so that the map of many runs can be made without having any of them
 /// in memory.
 ///
-/// A file has, little endian: the 8 bytes "RFPASS05"; columns and rows (int32
+/// A file has, little endian: the 8 bytes "RFPASS06"; columns and rows (int32
 /// each); cell size, west, south (double); x, y, z of the local origin
 /// (double); bytes of the CRS (uint64) and the CRS as WKT; number of the slope's content (uint64, 0:
-/// not known); number of iterations
+/// not known); bytes of the run's properties (uint64) and their text; number of iterations
 /// (uint64) and for each its number (int64) and how many rocks were released in
 /// it (int64); whom the run lost: rocks, still moving, over the edge, in
 /// nodata, unmoved (int64), the latest time of one that still moved (double);
@@ -22,6 +22,7 @@
 #include "statistics/frequency.h"
 #include "statistics/lost.h"
 #include "statistics/passages.h"
+#include "statistics/runOrigin.h"
 
 #include <cstdint>
 #include <functional>
@@ -34,7 +35,7 @@ namespace rockfall
 class HazardRaster;
 
 /// The first bytes of a file.
-constexpr char passageMagic[8] = { 'R', 'F', 'P', 'A', 'S', 'S', '0', '5' };
+constexpr char passageMagic[8] = { 'R', 'F', 'P', 'A', 'S', 'S', '0', '6' };
 /// Of each file that is read one part is in memory.
 constexpr std::size_t kPassagesOfPart = 4096;
 
@@ -45,7 +46,7 @@ struct PassageFile
   CellGrid grid;              ///< In the world's frame, m.
   Vec3 origin = Vec3::Zero(); ///< Of the paths' frame, m.
   std::string crs;            ///< WKT; empty for a local system.
-  std::uint64_t slope = 0;    ///< Number of its content; 0: not known.
+  RunOrigin run;
   Releases releases;
   LostRocks lost;                   ///< Of all of the run, whatever came to the map.
   RockFrequencies frequencies;      ///< Empty: not known.
@@ -57,7 +58,7 @@ struct PassageFile
 /// into `fileName`: beside, and renamed when it is whole. Throws FileError.
 void writePassages(HazardRaster& raster, const Vec3& origin, const std::string& crs,
   const std::string& fileName, const LostRocks& lost = {}, const RockFrequencies& frequencies = {},
-  std::uint64_t slope = 0);
+  const RunOrigin& run = {});
 
 /// Reads all but the passages. Throws FileError that names the file if it is none, of another
 /// version, not of the length that it must have, or of numbers that no run has.
@@ -78,7 +79,7 @@ public:
   const Releases& releases() const { return releases_; }
   const LostRocks& lost() const { return lost_; }
   const RockFrequencies& frequencies() const { return frequencies_; }
-  /// On files whose slopes differ from that of the first.
+  /// On files whose runs differ from the first.
   const std::vector<std::string>& notes() const { return notes_; }
 
   /// Merges the files on the way, with 64 MB of memory for all of them. Throws FileError, or

@@ -24,6 +24,12 @@ void put(std::ostream& out, const T& value)
   out.write(reinterpret_cast<const char*>(&value), sizeof(T));
 }
 
+void putText(std::ostream& out, const std::string& text)
+{
+  put(out, std::uint64_t(text.size()));
+  out.write(text.data(), std::streamsize(text.size()));
+}
+
 constexpr std::size_t kPartsAtOnce = 64; ///< In memory, packed.
 
 /// In parts, behind the bytes that each takes.
@@ -65,7 +71,7 @@ void putPassages(std::ostream& out, const std::vector<Passage>& passages)
 
 void writePassages(HazardRaster& raster, const Vec3& origin, const std::string& crs,
   const std::string& fileName, const LostRocks& lost, const RockFrequencies& frequencies,
-  std::uint64_t slope)
+  const RunOrigin& run)
 {
   gis::OutputFile file(fileName);
   std::ofstream out(file.temporary(), std::ios::binary);
@@ -78,9 +84,9 @@ void writePassages(HazardRaster& raster, const Vec3& origin, const std::string& 
   {
     put(out, value);
   }
-  put(out, std::uint64_t(crs.size()));
-  out.write(crs.data(), std::streamsize(crs.size()));
-  put(out, slope);
+  putText(out, crs);
+  put(out, run.slope);
+  putText(out, run.properties);
   put(out, std::uint64_t(raster.releases().size()));
   for (const auto& [iteration, count] : raster.releases())
   {

@@ -83,16 +83,45 @@ int highestQuantile(std::size_t values)
   return highest;
 }
 
-std::string quantileNeeds()
+namespace
+{
+
+/// "50, 90 and 95" of these quantiles, or what each needs.
+struct Listed
 {
   std::string percents, needs;
-  for (std::size_t k = 0; k < std::size(hazardQuantiles); ++k)
+
+  explicit Listed(std::span<const double> quantiles)
   {
-    const char* link = k == 0 ? "" : k + 1 < std::size(hazardQuantiles) ? ", " : " and ";
-    percents += link + std::to_string(std::lround(100.0 * hazardQuantiles[k]));
-    needs += link + std::to_string(leastForQuantile(hazardQuantiles[k]));
+    for (std::size_t k = 0; k < quantiles.size(); ++k)
+    {
+      const char* link = k == 0 ? "" : k + 1 < quantiles.size() ? ", " : " and ";
+      percents += link + std::to_string(std::lround(100.0 * quantiles[k]));
+      needs += link + std::to_string(leastForQuantile(quantiles[k]));
+    }
   }
-  return percents + " % take " + needs;
+};
+
+} // namespace
+
+std::string quantileNeeds()
+{
+  const Listed all(hazardQuantiles);
+  return all.percents + " % take " + all.needs;
+}
+
+std::string quantilesMissed(int highest)
+{
+  const auto reached = std::size_t(std::count_if(hazardQuantiles.begin(), hazardQuantiles.end(),
+    [highest](double q) { return std::lround(100.0 * q) <= highest; }));
+  const std::span<const double> all(hazardQuantiles);
+  const Listed has(all.first(reached)), lacks(all.subspan(reached));
+  const bool one = reached + 1 == all.size();
+  return (reached == 0 ? "any quantile: " + quantileNeeds()
+                       : "the " + lacks.percents +
+               (one ? " % quantile, which takes " : " % quantiles, which take ") + lacks.needs) +
+    " rocks" +
+    (reached == 0 ? "" : "; " + has.percents + " % " + (reached == 1 ? "is" : "are") + " in reach");
 }
 
 } // namespace rockfall

@@ -59,4 +59,8 @@ int highestQuantile(std::size_t values);
 /// "50, 90, 95 and 99 % take 5, 29, 59 and 299": hazardQuantiles and what each needs.
 std::string quantileNeeds();
 
+/// Of a sample that has this one as its highest: "the 95 and 99 % quantiles, which take 59 and 299
+/// rocks; 50 and 90 % are in reach".
+std::string quantilesMissed(int highest);
+
 } // namespace rockfall

@@ -56,6 +56,8 @@ struct LyingStem
   double radius = 0.0;                         ///< m
   double rise = 0.0;                           ///< Of its top over its axis, straight up, m.
   double depth = 0.0;                          ///< Of its foot under its axis, m.
+  double hollow = 0.0;                         ///< Largest gap between it and the ground, m.
+  double buried = 0.0;                         ///< Most that the ground stands over its top, m.
 };
 
 /// Immutable, so safe to share over threads.
@@ -92,6 +94,9 @@ public:
       ? &lying_[std::size_t(lyingNumbers_[k])]
       : nullptr;
   }
+  /// Adds notes on lying stems that bridge a hollow deeper than they are thick, or lie within the
+  /// ground.
+  void askAfterLying(std::vector<std::string>& notes) const;
   /// Whether a place is within a tree.
   bool isInTree(int tree, const Vec3& place) const;
   /// What it takes up in plan, and its top.

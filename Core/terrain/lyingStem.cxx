@@ -6,6 +6,7 @@
 #include "law/settings.h"
 #include "terrain/Obstacles.h"
 #include "terrain/Terrain.h"
+#include "terrain/doubt.h"
 
 #include <algorithm>
 #include <cmath>
@@ -109,6 +110,12 @@ LyingStem Obstacles::lay(const Tree& tree, const Terrain& terrain)
   for (int k = 0; k <= pieces; ++k)
   {
     const Vec3 axis = stem.from + (double(k) / pieces) * (stem.to - stem.from);
+    const double clear = axis.z() - ground(axis.head<2>());
+    if (!std::isnan(clear))
+    {
+      stem.hollow = std::max(stem.hollow, clear - lift);
+      stem.buried = std::max(stem.buried, -clear - stem.rise);
+    }
     for (const double side : { -r, 0.0, r })
     {
       const double under = axis.z() - ground(axis.head<2>() + side * left);
@@ -122,6 +129,27 @@ LyingStem Obstacles::lay(const Tree& tree, const Terrain& terrain)
 Vec3 Obstacles::lyingCorner(const LyingStem& stem, int corner)
 {
   return placed(stem, lyingShape().nodes[std::size_t(corner)].position);
+}
+
+void Obstacles::askAfterLying(std::vector<std::string>& notes) const
+{
+  Doubt hollow(
+    "Under a stem that bridges a hollow rocks pass; here it is a wall down to the ground: "
+    "end the line where the stem leaves the ground");
+  Doubt buried("The stem is straight from end to end: give the line points where the ground rises");
+  for (std::size_t k = 0; k < lyingNumbers_.size(); ++k)
+  {
+    if (const LyingStem* stem = this->lyingOf(int(k)))
+    {
+      const std::int64_t feature = structures_.trees[k].feature;
+      hollow.look(stem->hollow <= 2.0 * stem->radius, feature,
+        [&] { return ", up to " + numberText(stem->hollow, 2) + " m over the ground"; });
+      buried.look(stem->buried <= 0.0, feature,
+        [&] { return ", up to " + numberText(stem->buried, 2) + " m under it"; });
+    }
+  }
+  hollow.tell("stems that lie", notes);
+  buried.tell("stems that lie", notes);
 }
 
 bool Obstacles::isIn(const LyingStem& stem, const Vec3& place)

@@ -525,8 +525,7 @@ void writeHazardPassages(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
     showNote(other);
   }
   writePassages(raster, origin, readCrs(trajectories->GetFieldData()), fileName,
-    lostOf(trajectories), frequenciesOf(trajectories),
-    terrainContent(trajectories->GetFieldData()));
+    lostOf(trajectories), frequenciesOf(trajectories), runOf(trajectories));
 }
 
 } // namespace rockfall::filters

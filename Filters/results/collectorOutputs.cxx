@@ -24,6 +24,7 @@
 #include <cstdio>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <set>
 #include <tuple>
 
@@ -156,8 +157,9 @@ std::vector<std::string> lineNotes(std::span<const LineSummary> summaries,
     }
     return text + (which.size() > kMostNames ? ", …)" : ")");
   };
-  std::vector<std::size_t> missed, few;
-  LostRocks most; // of the line that misses most
+  std::vector<std::size_t> missed;
+  std::map<int, std::vector<std::size_t>> few; // by the highest quantile that they can give
+  LostRocks most;                              // of the line that misses most
   for (std::size_t k = 0; k < lines.size(); ++k)
   {
     most = k == 0 || lost[k].lost() > most.lost() ? lost[k] : most;
@@ -167,7 +169,7 @@ std::vector<std::string> lineNotes(std::span<const LineSummary> summaries,
     }
     else if (summaries[k].highestQuantile < 99)
     {
-      few.push_back(k);
+      few[summaries[k].highestQuantile].push_back(k);
     }
   }
   const bool look = most.moving > 0 && most.endTime < kLeastRun; // a run of the first moment only
@@ -179,10 +181,12 @@ std::vector<std::string> lineNotes(std::span<const LineSummary> summaries,
     lostNotes(
       most, lines.size() == 1 ? " before they passed the line" : " before they passed a line"),
     std::back_inserter(notes));
-  if (!few.empty() && !look)
+  for (const auto& [highest, of] : few)
   {
-    notes.push_back("Too few rocks passed " + named(few) + " for all quantiles: " +
-      quantileNeeds() + " rocks; HighestQuantile says which one is the highest that they can give");
+    if (!look)
+    {
+      notes.push_back("Too few rocks passed " + named(of) + " for " + quantilesMissed(highest));
+    }
   }
   return notes;
 }
@@ -278,11 +282,16 @@ void writeCrossings(std::span<const CollectedCrossing> crossings,
     barriers->InsertNextTuple2(of.barrierHeight, of.barrierCapacity / 1000.0);
     offsets->InsertNextValue(of.offset);
   }
-  if (const std::uint64_t slope = terrainContent(trajectories->GetFieldData()); slope != 0)
+  const RunOrigin run = runOf(trajectories);
+  if (run.slope != 0)
   {
     char key[17];
-    std::snprintf(key, sizeof key, "%016llx", static_cast<unsigned long long>(slope));
+    std::snprintf(key, sizeof key, "%016llx", static_cast<unsigned long long>(run.slope));
     addArray<vtkStringArray>(field, kCollectorSlope)->InsertNextValue(key);
+  }
+  if (!run.properties.empty())
+  {
+    addArray<vtkStringArray>(field, kCollectorRun)->InsertNextValue(run.properties);
   }
 }
 

@@ -19,6 +19,8 @@ namespace rockfall::filters
 
 /// Field array of crossings: number of the content of the slope that their rocks fell on.
 inline constexpr char kCollectorSlope[] = "CollectorSlope";
+/// The same of the properties that they fell by.
+inline constexpr char kCollectorRun[] = "CollectorRun";
 
 /// A passing and the cell of its trajectory.
 struct CollectedCrossing
@@ -62,7 +64,7 @@ std::vector<CollectorLine> linesOf(
 /// Writes a vertex per passing. Other cell arrays of the trajectories go along.
 /// The field data say what the tables need beside: CollectorReleased,
 /// CollectorRocks, CollectorBlocks, CollectorLosses, CollectorEnds,
-/// CollectorLineName, CollectorBarrier, CollectorOffset and CollectorSlope.
+/// CollectorLineName, CollectorBarrier, CollectorOffset, CollectorSlope and CollectorRun.
 void writeCrossings(std::span<const CollectedCrossing> crossings,
   std::span<const CollectorLine> lines, const ReleasedRocks& released, const Vec3& origin,
   vtkPolyData* trajectories, vtkPolyData* output);

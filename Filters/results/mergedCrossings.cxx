@@ -4,6 +4,7 @@
 #include "results/collectorOutputs.h"
 #include "shared/arrays.h"
 #include "shared/terrainFieldData.h"
+#include "statistics/runOrigin.h"
 
 #include "vtkAbstractArray.h"
 #include "vtkCellArray.h"
@@ -17,6 +18,7 @@
 #include "vtkStringArray.h"
 
 #include <algorithm>
+#include <charconv>
 #include <numeric>
 #include <string>
 #include <tuple>
@@ -26,6 +28,11 @@ namespace rockfall::filters
 
 namespace
 {
+
+std::string partName(std::size_t input)
+{
+  return "part " + std::to_string(input + 1) + " of the Input";
+}
 
 std::string numbered(std::size_t input)
 {
@@ -79,33 +86,18 @@ bool same(const std::vector<CollectorLine>& a, const std::vector<CollectorLine>&
     });
 }
 
-/// Empty if it is not known.
-std::string slopeOf(vtkPolyData* input)
+RunOrigin originOf(vtkPolyData* input)
 {
-  auto* key =
-    vtkStringArray::SafeDownCast(input->GetFieldData()->GetAbstractArray(kCollectorSlope));
-  return key && key->GetNumberOfValues() == 1 ? std::string(key->GetValue(0)) : std::string();
-}
-
-/// A note on inputs whose slope is not the first's.
-void tellSlopes(std::span<vtkPolyData* const> inputs, std::vector<std::string>& notes)
-{
-  const std::string first = slopeOf(inputs[0]);
-  std::string others;
-  for (std::size_t k = 1; k < inputs.size(); ++k)
+  const auto text = [input](const char* name)
   {
-    const std::string slope = slopeOf(inputs[k]);
-    if (!slope.empty() && !first.empty() && slope != first && others.size() < 60)
-    {
-      others += (others.empty() ? "" : ", ") + std::to_string(k + 1);
-    }
-  }
-  if (!others.empty())
-  {
-    notes.push_back("The rocks of the Input's part " + others +
-      " fell on another slope than those of part 1: heights, ground or structures differ. Do they "
-      "belong together?");
-  }
+    auto* array = vtkStringArray::SafeDownCast(input->GetFieldData()->GetAbstractArray(name));
+    return array && array->GetNumberOfValues() == 1 ? std::string(array->GetValue(0))
+                                                    : std::string();
+  };
+  RunOrigin run{ 0, text(kCollectorRun) };
+  const std::string slope = text(kCollectorSlope);
+  std::from_chars(slope.data(), slope.data() + slope.size(), run.slope, 16);
+  return run;
 }
 
 struct Place
@@ -219,6 +211,7 @@ MergedCrossings mergeCrossings(std::span<vtkPolyData* const> inputs, vtkPolyData
 {
   MergedCrossings merged;
   ReleasedRocks rocks;
+  std::vector<RunOrigin> runs;
   std::vector<Place> places;
   vtkPolyData* pattern = nullptr; // the first that has points, or the first
   const vtkIdType all = std::accumulate(inputs.begin(), inputs.end(), vtkIdType(0),
@@ -241,6 +234,7 @@ MergedCrossings mergeCrossings(std::span<vtkPolyData* const> inputs, vtkPolyData
     {
       throw DataError(numbered(k) + " has another CRS than the first");
     }
+    runs.push_back(originOf(inputs[k]));
     appendReleased(field, k, rocks);
     if (inputs[k]->GetNumberOfPoints() > 0)
     {
@@ -249,7 +243,7 @@ MergedCrossings mergeCrossings(std::span<vtkPolyData* const> inputs, vtkPolyData
     }
   }
   checkReleased(rocks);
-  tellSlopes(inputs, merged.notes);
+  merged.notes = askAfterRuns(runs, [](std::size_t k) { return partName(k); });
   merged.released = rocks;
   std::sort(
     places.begin(), places.end(), [](const Place& a, const Place& b) { return key(a) < key(b); });
@@ -278,7 +272,7 @@ MergedCrossings mergeCrossings(std::span<vtkPolyData* const> inputs, vtkPolyData
   output->SetVerts(vertices);
   vtkFieldData* field = output->GetFieldData();
   for (const char* name :
-    { "CollectorLineName", "CollectorBarrier", "CollectorOffset", kCollectorSlope })
+    { "CollectorLineName", "CollectorBarrier", "CollectorOffset", kCollectorSlope, kCollectorRun })
   {
     if (vtkAbstractArray* array = inputs[0]->GetFieldData()->GetAbstractArray(name))
     {

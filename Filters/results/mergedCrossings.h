@@ -19,7 +19,7 @@ struct MergedCrossings
   std::vector<CollectorLine> lines; ///< Name, barrier and offset only.
   ReleasedRocks released;
   std::vector<Crossing> crossings; ///< As summarizeLine needs them.
-  std::vector<std::string> notes;  ///< On inputs of other slopes than the first's.
+  std::vector<std::string> notes;  ///< On inputs of other runs.
 };
 
 /// Fills `output` with the points of all `inputs`, crossings of Trajectory Collector, in the order

@@ -26,6 +26,7 @@
 #include "vtkTable.h"
 
 #include <cmath>
+#include <map>
 
 vtkStandardNewMacro(vtkDispersionAngle);
 
@@ -119,7 +120,10 @@ public:
     const rockfall::SampleStatistics of = rockfall::statisticsOf(distances);
     const int highest = rockfall::highestQuantile(distances.size());
     this->Highest->InsertNextValue(highest);
-    this->Few += highest < 99 ? 1 : 0;
+    if (highest < 99)
+    {
+      ++this->Few[highest];
+    }
     const double values[] = { of.mean, of.deviation, of.quantiles[0], of.quantiles[1],
       of.quantiles[2], of.quantiles[3], of.maximum };
     for (std::size_t k = 0; k < this->Columns.size(); ++k)
@@ -131,21 +135,20 @@ public:
   /// A note where groups are too few for the quantiles.
   std::vector<std::string> Notes() const
   {
-    const vtkIdType groups = this->Highest->GetNumberOfValues();
-    if (this->Few == 0)
+    std::vector<std::string> notes;
+    for (const auto& [highest, count] : this->Few)
     {
-      return {};
+      notes.push_back(std::to_string(count) + " of " +
+        std::to_string(this->Highest->GetNumberOfValues()) +
+        " groups have too few trajectories for " + rockfall::quantilesMissed(highest));
     }
-    return { std::to_string(this->Few) + " of " + std::to_string(groups) +
-      " groups have too few trajectories for all quantiles of RunOut: " +
-      rockfall::quantileNeeds() +
-      "; HighestQuantile says which one is the highest that they can give" };
+    return notes;
   }
 
 private:
   std::vector<vtkSmartPointer<vtkDoubleArray>> Columns;
   vtkSmartPointer<vtkIntArray> Highest;
-  int Few = 0; ///< Groups without all quantiles.
+  std::map<int, int> Few; ///< Groups by the highest quantile that they can give.
 };
 
 /// Of an angle from +x, rad, counter-clockwise: degrees clockwise from north.

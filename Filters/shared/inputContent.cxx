@@ -146,6 +146,15 @@ std::uint64_t rocksContent(vtkPolyData* rocks, std::initializer_list<std::string
   return content.value();
 }
 
+RunOrigin runOf(vtkPolyData* trajectories)
+{
+  vtkFieldData* data = trajectories->GetFieldData();
+  auto* properties = vtkStringArray::SafeDownCast(data->GetAbstractArray(kRunProperties));
+  return { terrainContent(data),
+    properties && properties->GetNumberOfValues() == 1 ? std::string(properties->GetValue(0))
+                                                       : std::string() };
+}
+
 std::string otherSlope(vtkPolyData* trajectories, vtkPolyData* mesh)
 {
   const std::uint64_t of = mesh ? terrainContent(mesh->GetFieldData()) : 0;

@@ -4,6 +4,8 @@
 /// Content of an input that decides a run, as one number: an input that was made again, or that
 /// looks otherwise, is the same if its number is.
 
+#include "statistics/runOrigin.h"
+
 #include <cstdint>
 #include <initializer_list>
 #include <string>
@@ -21,6 +23,12 @@ std::uint64_t terrainContent(vtkFieldData* terrain);
 
 /// Of rocks: faces and cell data, and the CRS. `names`: cell arrays that decide nothing.
 std::uint64_t rocksContent(vtkPolyData* rocks, std::initializer_list<std::string_view> names);
+
+/// Field array of trajectories: statementOf the parameters of their run.
+inline constexpr char kRunProperties[] = "RunProperties";
+
+/// What trajectories fell on, and by which properties, as far as they tell.
+RunOrigin runOf(vtkPolyData* trajectories);
 
 /// A note if the trajectories fell on another slope than that of `mesh`; empty if not, or if either
 /// is not known or null.

@@ -5,6 +5,7 @@
 #include "counts/lostRocks.h"
 #include "gis/base/externalReferences.h"
 #include "gis/layers/rockContacts.h"
+#include "rock/statement.h"
 #include "run/releaseChecks.h"
 #include "shared/arrays.h"
 #include "shared/errorReport.h"
@@ -315,6 +316,8 @@ void KeptRun::describe()
   }
   // Maps and collectors need no other input, and files of trajectories no slope beside them.
   referToSlope(ground, trajectories->GetFieldData());
+  addArray<vtkStringArray>(trajectories->GetFieldData(), kRunProperties)
+    ->InsertNextValue(statementOf(parameters));
   writeTiles(trajectories);
 }
 

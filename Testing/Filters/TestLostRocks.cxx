@@ -184,7 +184,9 @@ TEST_F(TestLostRocks, ALineTellsWhomItLostBefore)
   EXPECT_TRUE(Notes(table, "1 of 6 rocks were still moving at EndTime (1.6 s) before they passed"));
   EXPECT_TRUE(Notes(table, "1 of 6 rocks went over the edge of the DEM before they passed"));
   EXPECT_TRUE(Notes(table, "1 of 6 rocks were lost in nodata of the DEM before they passed"));
-  EXPECT_TRUE(Notes(table, "Too few rocks passed line \"drawn line\""));
+  EXPECT_TRUE(Notes(table,
+    "Too few rocks passed line \"drawn line\" for any quantile: 50, 90, 95 and 99 % take 5, 29, 59 "
+    "and 299"));
   EXPECT_TRUE(Notes(line->GetOutputDataObject(0), "before they passed"));
   EXPECT_EQ(table->GetValueByName(0, "MovingBefore").ToInt(), 1);
   EXPECT_EQ(table->GetValueByName(0, "OverEdgeBefore").ToInt(), 1);

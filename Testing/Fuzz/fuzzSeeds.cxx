@@ -36,13 +36,14 @@ std::vector<std::string> pointTables()
 
 std::vector<std::string> passages()
 {
-  std::string file = "RFPASS05" + bytesOf(std::int32_t(4)) + bytesOf(std::int32_t(3));
+  std::string file = "RFPASS06" + bytesOf(std::int32_t(4)) + bytesOf(std::int32_t(3));
   for (const double value : { 5.0, 0.0, 0.0, 0.0, 0.0, 0.0 })
   {
     file += bytesOf(value);
   }
   file += bytesOf(std::uint64_t(4)) + "WKT:" + bytesOf(std::uint64_t(5)) +
-    bytesOf(std::uint64_t(1)) + bytesOf(std::int64_t(0)) + bytesOf(std::int64_t(2));
+    bytesOf(std::uint64_t(7)) + "Rigid 0" + bytesOf(std::uint64_t(1)) + bytesOf(std::int64_t(0)) +
+    bytesOf(std::int64_t(2));
   for (const std::int64_t lost : { 2, 1, 0, 1, 0 })
   {
     file += bytesOf(lost);

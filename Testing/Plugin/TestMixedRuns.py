@@ -25,9 +25,10 @@ def slope(name, drop):
     return DEMtoCFEMesh(FileName=write_grid(name, heights, (0, 0), 5, None), Preset="Meadow (field data)")
 
 
-def run(ground, first=1, end=20.0, **rocks):
+def run(ground, first=1, end=20.0, step=0.005, **rocks):
     blocks = RockBlocks(Terrain=ground, Center=[10, 50, 0], PlaceOnGround=1, Amount=3, ClusterRadius=4, **rocks)
-    return RockfallSimulation(Terrain=ground, Rocks=blocks, EndTime=end, Iterations=2, FirstIteration=first)
+    return RockfallSimulation(Terrain=ground, Rocks=blocks, EndTime=end, Iterations=2, FirstIteration=first,
+                              TimeStep=step)
 
 
 def line(fall, **more):
@@ -43,16 +44,19 @@ def passages(fall, ground, name):
 
 steep, flat = slope("steep.asc", 0.7), slope("flat.asc", 0.6)
 one, next_one, other = run(steep), run(steep, 3), run(flat, 3)
-short = run(steep, 3, 0.5)
+coarse = run(steep, 3, step=0.01)
 
-# --- Two slopes in one statistic.
-told = "fell on another slope than those of part 1"
+# --- Two slopes, or two time steps, in one statistic.
+told = "1 of 2 runs, first part 2 of the Input, fell on another slope than part 1 of the Input"
 assert told not in notes_of(MergeCollectors(Input=[line(one), line(next_one)]))
 assert told in notes_of(MergeCollectors(Input=[line(one), line(other)]))
+steps = "with other properties than {}: TimeStep 0.01 s, not 0.005 s. Do their rocks belong together?"
+assert steps.format("part 1 of the Input") in notes_of(MergeCollectors(Input=[line(one), line(coarse)]))
 files = [passages(fall, ground, f"{k}.passages")
-         for k, (fall, ground) in enumerate(((one, steep), (next_one, steep), (other, flat), (short, steep)))]
-assert "other slopes" not in notes_of(HazardPassageReader(FileNames=files[:2]))
-assert "1 of 2 files, first " + files[2] in notes_of(HazardPassageReader(FileNames=[files[0], files[2]]))
+         for k, (fall, ground) in enumerate(((one, steep), (next_one, steep), (other, flat), (coarse, steep)))]
+assert "belong together" not in notes_of(HazardPassageReader(FileNames=files[:2]))
+assert f"1 of 2 runs, first {files[2]}, fell on another slope" in notes_of(HazardPassageReader(FileNames=[files[0], files[2]]))
+assert steps.format(files[0]) in notes_of(HazardPassageReader(FileNames=[files[0], files[3]]))
 
 # --- A slope that is not that of the run.
 told = "fell on another slope than the Terrain"

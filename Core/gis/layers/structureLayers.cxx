@@ -66,10 +66,11 @@ void tryOut(const StructureReader& reader, const std::string& fileName, Structur
   askAfterNumbers(part, doubts);
   askAfterTwins(given, doubts, reader.terrain.geometry().origin().head<2>());
   askAfterGroundUnder(part.barriers, reader.terrain, doubts);
-  reader.tell(fileName, doubts);
   try
   {
     const Obstacles built(std::move(part), reader.terrain);
+    built.askAfterLying(doubts);
+    reader.tell(fileName, doubts);
   }
   catch (const Error& error)
   {

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
+#include <set>
 
 namespace rockfall::gis
 {
@@ -201,36 +202,64 @@ void refuseStrayZeros(const Contours& contours, const std::string& fileName)
 ZeroLines::ZeroLines(const Contours& contours)
 {
   const Steps steps(contours);
-  if (steps.others > 0)
+  for (std::size_t k = 0; k < contours.lines.size() && steps.others > 0; ++k)
   {
-    lines_ = linesAtZero(contours);
-    next_ = steps.ofZero;
-    largest_ = steps.largest;
+    if (isAt(contours, contours.lines[k], 0.0))
+    {
+      lines_.emplace(k, Beside());
+    }
+  }
+  next_ = steps.ofZero;
+  largest_ = steps.largest;
+}
+
+void ZeroLines::own(std::size_t line, double x, double y)
+{
+  if (lines_.contains(line))
+  {
+    owners_.emplace(std::pair(x, y), line);
   }
 }
 
-void ZeroLines::see(const std::array<double, 3>& corners)
+void ZeroLines::see(const std::array<Vec3, 3>& corners)
 {
-  if (lines_ == 0 || std::find(corners.begin(), corners.end(), 0.0) == corners.end())
+  if (owners_.empty())
   {
     return;
   }
   double nearest = std::numeric_limits<double>::infinity();
-  for (const double z : corners)
+  for (const Vec3& corner : corners)
   {
-    nearest = z != 0.0 ? std::min(nearest, std::abs(z)) : nearest;
+    nearest = corner.z() != 0.0 ? std::min(nearest, std::abs(corner.z())) : nearest;
   }
-  beside_ += std::isfinite(nearest);
-  farther_ += std::isfinite(nearest) && nearest > frameStep * next_;
+  std::set<std::size_t> of;
+  for (const Vec3& corner : corners)
+  {
+    const auto owner = corner.z() == 0.0 && std::isfinite(nearest)
+      ? owners_.find({ corner.x(), corner.y() })
+      : owners_.end();
+    if (owner != owners_.end() && of.insert(owner->second).second)
+    {
+      Beside& beside = lines_.at(owner->second);
+      ++beside.all;
+      beside.farther += nearest > frameStep * next_;
+    }
+  }
 }
 
 void ZeroLines::tell(std::vector<std::string>& notes) const
 {
   const bool low = next_ > leastStep && next_ > frameStep * largest_;
-  if (lines_ > 0 && (low || 2 * farther_ > beside_))
+  const auto count = std::count_if(lines_.begin(), lines_.end(),
+    [low](const auto& line) { return low || 2 * line.second.farther > line.second.all; });
+  if (count > 0)
   {
-    notes.push_back(std::to_string(lines_) + (lines_ == 1 ? " line lies" : " lines lie") +
-      " at exactly 0 m, " +
+    const bool one = count == 1;
+    notes.push_back(
+      (std::size_t(count) < lines_.size()
+          ? std::to_string(count) + " of " + std::to_string(lines_.size()) +
+            " lines at exactly 0 m " + (one ? "lies " : "lie ")
+          : std::to_string(count) + (one ? " line lies" : " lines lie") + " at exactly 0 m, ") +
       (low ? number(next_) + " m from the next height"
            : "beside others than those of " + number(next_) + " m, the next height") +
       ": has a contour no height?");

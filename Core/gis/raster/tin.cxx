@@ -67,7 +67,7 @@ struct Freed
 } // namespace
 
 TinNodes interpolateTin(TinPoints given, const GridGeometry& target, double west, double south,
-  const std::string& fileName, const std::function<void(const std::array<double, 3>&)>& see)
+  const std::string& fileName, const std::function<void(const std::array<Vec3, 3>&)>& see)
 {
   Messages messages;
   const auto held = std::make_shared<const TinPoints>(std::move(given));
@@ -115,7 +115,7 @@ TinNodes interpolateTin(TinPoints given, const GridGeometry& target, double west
     {
       continue; // no inside; its neighbours have what is on it
     }
-    see(z);
+    see({ Vec3(x[0], y[0], z[0]), Vec3(x[1], y[1], z[1]), Vec3(x[2], y[2], z[2]) });
     const bool level = z[0] == z[1] && z[1] == z[2];
     bool flat = level;
     for (int i = 0; i < 3; ++i)

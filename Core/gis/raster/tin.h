@@ -35,6 +35,6 @@ struct TinNodes
 /// same place. `see` is shown the heights of each triangle's corners. Throws DataError, beginning with
 /// `fileName`, if they have no triangulation.
 TinNodes interpolateTin(TinPoints points, const GridGeometry& target, double west, double south,
-  const std::string& fileName, const std::function<void(const std::array<double, 3>&)>& see);
+  const std::string& fileName, const std::function<void(const std::array<Vec3, 3>&)>& see);
 
 } // namespace rockfall::gis

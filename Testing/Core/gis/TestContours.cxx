@@ -462,6 +462,7 @@ TEST(Contours, ZeroAmongOthersIsNoted)
   EXPECT_TRUE(noted(with(hill(10.0), 130.0)));  // between 30 and 40 m
   EXPECT_TRUE(noted(with(hill(30.0), 200.0)));  // three steps below the lowest
   EXPECT_FALSE(noted(hill(10.0)));
+  EXPECT_TRUE(noted(with(hill(0.0), 130.0))); // beside a shore
 }
 
 TEST(ContourErrors, EachNamesWhatIsWrong)

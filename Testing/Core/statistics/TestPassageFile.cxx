@@ -239,17 +239,17 @@ TEST_F(TestPassageFile, NothingPassed)
   files.summarize([](const CellSummary&) { ADD_FAILURE(); });
 }
 
-TEST_F(TestPassageFile, OtherSlopesAndEndTimesAreTold)
+TEST_F(TestPassageFile, OtherRunsAndEndTimesAreTold)
 {
   HazardRaster a = rasterOf([](int k) { return k < 10; });
   HazardRaster b = rasterOf([](int k) { return k >= 10; });
   LostRocks twenty, two;
   twenty.add(Loss::Moving, 20.0, 5.0);
   two.add(Loss::Moving, 2.0, 5.0);
-  const auto notes = [&](std::uint64_t slope)
+  const auto notes = [&](std::uint64_t slope, const std::string& properties)
   {
-    writePassages(a, origin, "", fileName("a"), twenty, {}, 7);
-    writePassages(b, origin, "", fileName("b"), two, {}, slope);
+    writePassages(a, origin, "", fileName("a"), twenty, {}, { 7, "TimeStep 0.005 s\nRigid 0" });
+    writePassages(b, origin, "", fileName("b"), two, {}, { slope, properties });
     const PassageFiles files({ fileName("a"), fileName("b") });
     EXPECT_NE(lostNotes(files.lost())
                 .at(0)
@@ -259,11 +259,20 @@ TEST_F(TestPassageFile, OtherSlopesAndEndTimesAreTold)
       << lostNotes(files.lost()).at(0);
     return files.notes();
   };
-  EXPECT_TRUE(notes(7).empty());
-  EXPECT_TRUE(notes(0).empty()); // not known
-  ASSERT_EQ(notes(8).size(), 1u);
-  EXPECT_EQ(notes(8)[0].find("1 of 2 files, first " + fileName("b") + ", are of other slopes"), 0u)
-    << notes(8)[0];
+  const std::string same = "TimeStep 0.005 s\nRigid 0";
+  EXPECT_TRUE(notes(7, same).empty());
+  EXPECT_TRUE(notes(0, "").empty()); // not known
+  const std::string start = "1 of 2 runs, first " + fileName("b") + ", fell ";
+  ASSERT_EQ(notes(8, same).size(), 1u);
+  EXPECT_EQ(notes(8, same)[0].find(start + "on another slope than " + fileName("a")), 0u)
+    << notes(8, same)[0];
+  const std::string other = "TimeStep 0.01 s\nRigid 0\nGravity 9.81 m/s²";
+  ASSERT_EQ(notes(7, other).size(), 1u);
+  EXPECT_EQ(notes(7, other)[0],
+    start + "with other properties than " + fileName("a") +
+      ": TimeStep 0.01 s, not 0.005 s; Gravity 9.81 m/s². Do their rocks belong together?");
+  ASSERT_EQ(notes(7, "Rigid 0").size(), 1u);
+  EXPECT_NE(notes(7, "Rigid 0")[0].find(": TimeStep 0.005 s there alone."), std::string::npos);
 }
 
 TEST_F(TestPassageFile, BadInput)
@@ -335,8 +344,8 @@ TEST_F(TestPassageFile, HeadersAndPassagesThatNoRunHasAreDamage)
     std::ofstream(bad, std::ios::binary) << bytes;
   };
   const double inf = std::numeric_limits<double>::infinity();
-  constexpr std::size_t cellSize = 16, west = 24, z = 56, iterations = 80, count = 96, lost = 104,
-                        firstPassage = 172;
+  constexpr std::size_t cellSize = 16, west = 24, z = 56, iterations = 88, count = 104, lost = 112,
+                        firstPassage = 180;
   put(8, std::int32_t(-4));
   expectError({ bad }, "bad: is damaged: it has -4 x 3 cells");
   put(8, std::int32_t(2147483647));

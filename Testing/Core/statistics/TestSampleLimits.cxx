@@ -23,6 +23,15 @@ TEST(SampleLimits, RocksThatAQuantileTakes)
   EXPECT_EQ(highestQuantile(299), 99);
 }
 
+TEST(SampleLimits, WhatIsInReachIsSaid)
+{
+  EXPECT_EQ(quantilesMissed(0), "any quantile: 50, 90, 95 and 99 % take 5, 29, 59 and 299 rocks");
+  EXPECT_EQ(quantilesMissed(50),
+    "the 90, 95 and 99 % quantiles, which take 29, 59 and 299 rocks; 50 % is in reach");
+  EXPECT_EQ(
+    quantilesMissed(95), "the 99 % quantile, which takes 299 rocks; 50, 90 and 95 % are in reach");
+}
+
 TEST(SampleLimits, SharesOfNoneAndAllAreNotCertain)
 {
   EXPECT_NEAR(shareLimit(1), 0.95, 1e-12);

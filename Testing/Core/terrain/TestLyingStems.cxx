@@ -119,6 +119,45 @@ TEST(LyingStems, LieOnTheGround)
   }
 }
 
+/// One that bridges a hollow deeper than it is thick, or a rise higher than its top, is asked after.
+TEST(LyingStems, AreAskedAfterOverHollowsAndInTheGround)
+{
+  const auto notes = [](double rise)
+  {
+    GridGeometry g;
+    g.columns = g.rows = 41;
+    g.cellSize = 1.0;
+    std::vector<double> heights(std::size_t(g.nodeCount()), 100.0);
+    for (int row = 18; row <= 22; ++row)
+    {
+      std::fill_n(heights.begin() + row * g.columns, g.columns, 100.0 + rise);
+    }
+    const Terrain ground(g, heights, material(0.5, 20.0));
+    Structures s;
+    Tree tree = lying(kCapacity, 0.5);
+    tree.position = { 20.0, 12.0 };
+    tree.end = { 20.0, 28.0 };
+    s.trees = { tree, tree };
+    s.trees[1].position.y() = 5.0;
+    s.trees[1].end.y() = 10.0; // on level ground
+    std::vector<std::string> told;
+    Obstacles(s, ground).askAfterLying(told);
+    return told;
+  };
+  EXPECT_TRUE(notes(0.0).empty());
+  EXPECT_TRUE(notes(-0.4).empty());
+  ASSERT_EQ(notes(-0.8).size(), 1u);
+  EXPECT_EQ(
+    notes(-0.8)[0].find(
+      "1 of 2 stems that lie look implausible, first feature 6, up to 0.8 m over the ground"),
+    0u)
+    << notes(-0.8)[0];
+  EXPECT_TRUE(notes(0.4).empty());
+  ASSERT_EQ(notes(0.8).size(), 1u);
+  EXPECT_NE(notes(0.8)[0].find("first feature 6, up to 0.3 m under it"), std::string::npos)
+    << notes(0.8)[0];
+}
+
 /// Square, from either side: of no more than its capacity it throws the rock back, of more it takes
 /// 0.98 of it; alone and in a mass fall.
 TEST(LyingStems, HoldUpToTheirCapacity)
