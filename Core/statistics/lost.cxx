@@ -9,7 +9,7 @@ namespace rockfall
 
 void LostRocks::add(Loss loss, double time, double way, int piece)
 {
-  this->rocks += piece == 0;
+  ++(piece == 0 ? this->rocks : this->pieces);
   this->unmoved += piece == 0 && way < kLeastWay;
   switch (loss)
   {
@@ -37,6 +37,7 @@ void LostRocks::add(const LostRocks& other)
     this->firstEnd = this->moving > 0 ? std::min(own, first) : first;
   }
   this->rocks += other.rocks;
+  this->pieces += other.pieces;
   this->moving += other.moving;
   this->overEdge += other.overEdge;
   this->inNodata += other.inNodata;
@@ -51,8 +52,8 @@ std::vector<std::string> lostNotes(const LostRocks& lost, const std::string& bef
   {
     if (count > 0)
     {
-      notes.push_back(std::to_string(count) + " of " + std::to_string(lost.rocks) + " rocks " +
-        how + before + ": " + what);
+      notes.push_back(std::to_string(count) + " of " + std::to_string(lost.rocks + lost.pieces) +
+        (lost.pieces > 0 ? " rocks and pieces " : " rocks ") + how + before + ": " + what);
     }
   };
   if (lost.endTime >= kLeastRun)

@@ -409,9 +409,26 @@ void checkOptions(const HazardMapOptions& options)
 
 void addPaths(vtkPolyData* trajectories, const Vec3& origin, bool rockWidth, HazardRaster& raster)
 {
-  raster.addAll(trajectories->GetNumberOfLines(),
+  // A rock and its pieces stay together. Polydata's cells begin with its vertices.
+  std::vector<std::int64_t> starts;
+  vtkDataArray* piece = trajectories->GetCellData()->GetArray("Piece");
+  const vtkIdType lines = trajectories->GetNumberOfLines();
+  for (vtkIdType k = 0; piece && k < lines; ++k)
+  {
+    if (k == 0 || piece->GetComponent(trajectories->GetNumberOfVerts() + k, 0) == 0.0)
+    {
+      starts.push_back(k);
+    }
+  }
+  starts.push_back(lines);
+  raster.addAll(piece ? std::int64_t(starts.size()) - 1 : lines,
     [&](std::int64_t first, std::int64_t count, const std::function<void(const RockPath&)>& use)
     {
+      if (piece)
+      {
+        count = starts[std::size_t(first + count)] - starts[std::size_t(first)];
+        first = starts[std::size_t(first)];
+      }
       forPaths(trajectories, origin, first, count,
         [&](const RockPath& path, std::int64_t)
         {

@@ -35,9 +35,11 @@ LostRocks lostOf(vtkTable* summary)
   vtkFieldData* rows = summary->GetRowData();
   vtkDataArray *fate = rows->GetArray("FateCode"), *time = rows->GetArray("EndTime"),
                *way = rows->GetArray("PathLength");
+  vtkDataArray* piece = rows->GetArray("Piece");
   for (vtkIdType k = 0; fate && time && way && k < fate->GetNumberOfTuples(); ++k)
   {
-    lost.add(lossOf(fate->GetTuple1(k)), time->GetTuple1(k), way->GetTuple1(k));
+    lost.add(lossOf(fate->GetTuple1(k)), time->GetTuple1(k), way->GetTuple1(k),
+      piece ? int(piece->GetTuple1(k)) : 0);
   }
   return lost;
 }
@@ -47,6 +49,7 @@ LostRocks lostOf(vtkPolyData* trajectories)
   LostRocks lost;
   vtkDataArray* fate = trajectories->GetCellData()->GetArray("Fate");
   vtkDataArray* time = trajectories->GetPointData()->GetArray("Time");
+  vtkDataArray* piece = trajectories->GetCellData()->GetArray("Piece");
   if (!fate || !time)
   {
     return lost;
@@ -65,7 +68,8 @@ LostRocks lostOf(vtkPolyData* trajectories)
       trajectories->GetPoint(ids[k], (k == 0 ? start : point).data());
       way = k == 0 ? 0.0 : std::max(way, (point - start).norm());
     }
-    lost.add(lossOf(fate->GetTuple1(cell)), size > 0 ? time->GetTuple1(ids[size - 1]) : 0.0, way);
+    lost.add(lossOf(fate->GetTuple1(cell)), size > 0 ? time->GetTuple1(ids[size - 1]) : 0.0, way,
+      piece ? int(piece->GetTuple1(cell)) : 0);
   }
   return lost;
 }

@@ -92,13 +92,16 @@ ReleasedRocks releasedIn(vtkPolyData* trajectories)
   ReleasedRocks rocks;
   vtkFieldData* cells = trajectories->GetCellData();
   vtkDataArray *iteration = cells->GetArray("Iteration"), *rock = cells->GetArray("RockId"),
-               *block = cells->GetArray("BlockId");
+               *block = cells->GetArray("BlockId"), *piece = cells->GetArray("Piece");
   // Polydata's cells begin with its vertices: the points at which rocks stopped.
   const vtkIdType first = trajectories->GetNumberOfVerts();
   for (vtkIdType k = first; iteration && rock && block && k < iteration->GetNumberOfTuples(); ++k)
   {
-    rocks.push_back({ int(iteration->GetTuple1(k)), int(rock->GetTuple1(k)),
-      std::int64_t(block->GetTuple1(k)), Loss::None, 0.0 });
+    if (!piece || piece->GetTuple1(k) == 0.0)
+    {
+      rocks.push_back({ int(iteration->GetTuple1(k)), int(rock->GetTuple1(k)),
+        std::int64_t(block->GetTuple1(k)), Loss::None, 0.0 });
+    }
   }
   return rocks;
 }
@@ -380,7 +383,7 @@ void writeExceedance(
       energy->InsertNextValue(joules);
       kilojoules->InsertNextValue(1e-3 * joules);
       height->InsertNextValue(metres);
-      ofPassing->InsertNextValue(double(rocks) / double(summary.rocks));
+      ofPassing->InsertNextValue(double(rocks) / double(summary.energies.size()));
       ofReleased->InsertNextValue(double(rocks) / double(released));
     };
     const std::size_t rocks = summary.energies.size();

@@ -133,6 +133,13 @@ std::vector<DesignLine> designLines(
   for (std::size_t k = 0; k < merged.crossings.size(); ++k)
   {
     const Crossing& c = merged.crossings[k];
+    if (c.piece > 0)
+    {
+      throw DataError("The Input has crossings of pieces of rocks that broke (Piece is " +
+        std::to_string(c.piece) +
+        "), which Barrier Design cannot weigh; the collector's Lines and "
+        "crossings have them");
+    }
     if (c.number == 0)
     {
       Passage of;

@@ -110,7 +110,7 @@ struct Place
 auto key(const Place& p)
 {
   const Crossing& c = p.crossing;
-  return std::tie(c.iteration, c.rock, c.blockId, c.line, c.number);
+  return std::tie(c.iteration, c.rock, c.blockId, c.piece, c.line, c.number);
 }
 
 void appendPlaces(vtkPolyData* data, std::size_t input, const std::vector<CollectorLine>& lines,
@@ -122,7 +122,8 @@ void appendPlaces(vtkPolyData* data, std::size_t input, const std::vector<Collec
   vtkDataArray *line = one("Line"), *iteration = one("Iteration"), *rock = one("RockId"),
                *block = one("BlockId"), *number = one("Passing"), *energy = one("KineticEnergy"),
                *height = one("HeightOverGround"),
-               *velocity = crossingNumbers(fields, "Velocity", 3, input);
+               *velocity = crossingNumbers(fields, "Velocity", 3, input),
+               *piece = fields->GetArray("Piece");
   for (vtkIdType id = 0; id < data->GetNumberOfPoints(); ++id)
   {
     Place& place = places.emplace_back();
@@ -133,6 +134,7 @@ void appendPlaces(vtkPolyData* data, std::size_t input, const std::vector<Collec
     c.iteration = int(iteration->GetTuple1(id));
     c.rock = int(rock->GetTuple1(id));
     c.blockId = std::int64_t(block->GetTuple1(id));
+    c.piece = piece ? int(piece->GetTuple1(id)) : 0;
     c.number = int(number->GetTuple1(id));
     c.kineticEnergy = energy->GetTuple1(id);
     c.heightOverGround = height->GetTuple1(id);

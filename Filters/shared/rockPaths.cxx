@@ -81,7 +81,8 @@ void forPaths(vtkPolyData* trajectories, const Vec3& origin, vtkIdType first, vt
   vtkDataArray* rock = needed(cells, "cell", "RockId");
   vtkDataArray* block = needed(cells, "cell", "BlockId");
   vtkDataArray* fate = needed(cells, "cell", "Fate");
-  vtkDataArray *mass = cells->GetArray("Mass"), *width = cells->GetArray("Width");
+  vtkDataArray *mass = cells->GetArray("Mass"), *width = cells->GetArray("Width"),
+               *piece = cells->GetArray("Piece");
 
   std::vector<PathPoint> path;
   // GetTuple1 of an array is not for several threads. Polydata's cells begin with its vertices.
@@ -112,6 +113,10 @@ void forPaths(vtkPolyData* trajectories, const Vec3& origin, vtkIdType first, vt
     rockPath.blockId = std::int64_t(block->GetComponent(cell, 0));
     const int end = int(fate->GetComponent(cell, 0));
     rockPath.rested = end == int(Fate::Rested) || end == int(Fate::Caught);
+    if (piece)
+    {
+      rockPath.piece = int(piece->GetComponent(cell, 0));
+    }
     if (mass)
     {
       rockPath.mass = mass->GetComponent(cell, 0);

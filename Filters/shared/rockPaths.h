@@ -28,8 +28,8 @@ bool isRunning(vtkFieldData* data);
 /// subtracted from the points. The span of the path's points is good during the
 /// call only. Needs the point arrays Time, Velocity, RotationRate,
 /// KineticEnergy and HeightOverGround and the cell arrays Iteration, RockId,
-/// BlockId and Fate of Rockfall Simulation; takes the cell arrays Mass and
-/// Width if they are there. Throws DataError that names what is missing, or if
+/// BlockId and Fate of Rockfall Simulation; takes the cell arrays Mass,
+/// Width and Piece if they are there. Throws DataError that names what is missing, or if
 /// only events are kept.
 void forEachPath(vtkPolyData* trajectories, const Vec3& origin,
   const std::function<void(const RockPath& path, std::int64_t cell)>& use);

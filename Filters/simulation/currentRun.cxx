@@ -114,14 +114,14 @@ void CurrentRun::follow()
   filter_->Modified();
   const std::unique_ptr<LiveRun> live = std::move(live_);
   const std::string how = statusOf(*live);
+  const std::int64_t made = live->trajectories();
   kept_ = live->take();
   status_ = how;
   if (kept_->ensemble->pushesAnew())
   {
     tellPushed(*kept_->ensemble, kept_->ensemble->pushed(), Ranks());
   }
-  if (kept_->summary->GetNumberOfRows() <
-    kept_->ensemble->size() * kept_->ensemble->trajectoriesPerUnit())
+  if (made < kept_->ensemble->size() * kept_->ensemble->trajectoriesPerUnit())
   {
     showNote("Rockfall Simulation was " + how);
   }

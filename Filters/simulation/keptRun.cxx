@@ -14,6 +14,7 @@
 #include "shared/slopeReference.h"
 #include "shared/terrainFieldData.h"
 #include "simulation/motion.h"
+#include "simulation/runNotes.h"
 
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
@@ -38,7 +39,9 @@ auto runKey(const SimulationParameters& p)
   return std::make_tuple(p.timeStep, p.endTime, p.outputInterval, p.keepImpacts, p.gravity,
     p.normalPenalty, p.shearRatio, p.rigid, p.impactResolution, p.iterations, p.firstIteration,
     p.seed, p.rockRockContact, p.rockRestitution, p.rockFrictionAngle, p.rockCohesion,
-    p.pushRocksApart);
+    p.pushRocksApart, p.fragmentation.on, p.fragmentation.energy, p.fragmentation.fractalDimension,
+    p.fragmentation.leastVolume, p.fragmentation.survival, p.fragmentation.loss,
+    p.fragmentation.spread);
 }
 
 /// The one rank that has cells of an input, or 0 if none has.
@@ -251,6 +254,7 @@ void KeptRun::prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const 
       checkSameCrs(released->GetFieldData(), "The Rocks are", bare->GetFieldData());
       frame.origin = slope.geometry().origin();
       frame.gravity = parameters.gravity;
+      frame.breaking = parameters.fragmentation.on;
       std::int64_t gone = 0;
       for (ReleasedRock& rock : readRocks(released, frame.origin))
       {
@@ -297,11 +301,13 @@ void KeptRun::takeResults(RunSink& sink)
 {
   sink.finish(trajectories, impacts, summary, structures);
   whole = std::move(sink.whole());
-  wholeIteration = whole.size() == frame.rocks.size() ? parts.wholeIteration : -1;
+  const auto rocksOfIt = std::count_if(
+    whole.begin(), whole.end(), [](const Trajectory& t) { return t.summary.piece == 0; });
+  wholeIteration = rocksOfIt == std::ptrdiff_t(frame.rocks.size()) ? parts.wholeIteration : -1;
   stateHash = sink.stateHash();
   addArray<vtkStringArray>(summary->GetFieldData(), "StateHash")->InsertNextValue(stateHash);
   const LostRocks lost = lostOf(summary);
-  tellLost(lost, summary->GetFieldData(), {}, printNotes);
+  tellLost(lost, summary->GetFieldData(), brokenNotes(sink.broken(), parameters), printNotes);
   writeLost(lost, trajectories->GetFieldData());
   this->describe();
 }
@@ -375,7 +381,7 @@ bool KeptRun::show(int shown, double time, const Progress& progress, vtkPolyData
   const int iteration = parameters.firstIteration + shown;
   const std::int64_t units = ensemble->unitsPerIteration();
   const EnsembleShare share{ shown * units, (shown + 1) * units, 1 };
-  MomentSink moment(time);
+  MomentSink moment(time, slope, parameters, frame.rocks);
   // A realisation is a value: an iteration that is not kept is simulated again, whole if its
   // samples fit, else only as far as it is looked at. Of a release nothing need be kept.
   if (wholeIteration != iteration && time > 0.0 && this->wholeFits())

@@ -42,7 +42,7 @@ public:
     const std::lock_guard<std::mutex> lock(this->mutex);
     const bool few = this->isLookedAt();
     this->points += std::int64_t(trajectory.samples.size());
-    ++this->made;
+    this->made += trajectory.summary.piece == 0 ? 1 : 0;
     this->shown += few ? 1 : 0;
     this->results.consume(std::move(trajectory));
     if (few && !this->isLookedAt())

@@ -37,8 +37,8 @@ Sample sampleAt(const Trajectory& trajectory, double time)
   for (double EnergyAudit::*term :
     { &EnergyAudit::released, &EnergyAudit::kinetic, &EnergyAudit::strain, &EnergyAudit::friction,
       &EnergyAudit::restitution, &EnergyAudit::vibration, &EnergyAudit::damping,
-      &EnergyAudit::structures, &EnergyAudit::scars, &EnergyAudit::rolling, &EnergyAudit::exchanged,
-      &EnergyAudit::numerical })
+      &EnergyAudit::structures, &EnergyAudit::scars, &EnergyAudit::rolling, &EnergyAudit::breaking,
+      &EnergyAudit::exchanged, &EnergyAudit::numerical })
   {
     result.energy.*term = mix(a.energy.*term, b.energy.*term);
   }
@@ -66,7 +66,7 @@ MotionState stateAt(const Trajectory& trajectory, double time)
 ShownRock momentOf(const Trajectory& trajectory, double time)
 {
   return { trajectory.summary.rock, trajectory.summary.iteration, trajectory.summary.volume,
-    sampleAt(trajectory, time), int(stateAt(trajectory, time)) };
+    sampleAt(trajectory, time), int(stateAt(trajectory, time)), trajectory.summary.piece, {} };
 }
 
 } // namespace rockfall::filters

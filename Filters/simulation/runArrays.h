@@ -23,6 +23,7 @@ struct IdentityArrays
 {
   vtkSmartPointer<vtkIdTypeArray> blockId;
   vtkSmartPointer<vtkIntArray> rockId, iteration;
+  vtkSmartPointer<vtkIntArray> piece; ///< None where no rock can break.
 
   explicit IdentityArrays(vtkFieldData* data)
     : blockId(addArray<vtkIdTypeArray>(data, "BlockId"))
@@ -31,13 +32,23 @@ struct IdentityArrays
   {
   }
 
-  void append(std::int64_t block, int rock, int number)
+  void append(std::int64_t block, int rock, int number, int ofRock)
   {
+    if (this->piece)
+    {
+      this->piece->InsertNextValue(ofRock);
+    }
     this->blockId->InsertNextValue(block);
     this->rockId->InsertNextValue(rock);
     this->iteration->InsertNextValue(number);
   }
 };
+
+/// The array of the numbers of pieces, where rocks can break.
+inline vtkSmartPointer<vtkIntArray> pieceArray(bool breaking, vtkFieldData* data)
+{
+  return breaking ? addArray<vtkIntArray>(data, "Piece") : nullptr;
+}
 
 /// Points in double precision.
 inline vtkSmartPointer<vtkPoints> doublePoints()

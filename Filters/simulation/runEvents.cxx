@@ -29,7 +29,7 @@ struct EventVertices
     this->vertices->InsertNextCell(1);
     this->vertices->InsertCellPoint(this->points->GetNumberOfPoints());
     insertPoint(this->points, world);
-    this->identity.append(summary.blockId, summary.rock, summary.iteration);
+    this->identity.append(summary.blockId, summary.rock, summary.iteration, summary.piece);
   }
   void copy(vtkPolyData* output) const
   {
@@ -72,6 +72,7 @@ ImpactPoints::ImpactPoints(const RunFrame& frame)
   : frame_(frame)
   , arrays_(std::make_unique<Arrays>())
 {
+  arrays_->identity.piece = pieceArray(frame.breaking, arrays_->fields);
 }
 
 ImpactPoints::~ImpactPoints() = default;
@@ -128,6 +129,7 @@ StructurePoints::StructurePoints(const RunFrame& frame)
   : frame_(frame)
   , arrays_(std::make_unique<Arrays>())
 {
+  arrays_->identity.piece = pieceArray(frame.breaking, arrays_->fields);
 }
 
 StructurePoints::~StructurePoints() = default;

@@ -96,6 +96,26 @@ void tellAlike(const Terrain& terrain, std::span<const Rock> rocks, int iteratio
   }
 }
 
+std::vector<std::string> brokenNotes(
+  const BrokenRocks& broken, const SimulationParameters& parameters)
+{
+  const Fragmentation& law = parameters.fragmentation;
+  if (!law.on)
+  {
+    return {};
+  }
+  const std::string of = std::to_string(broken.broken) + " of " + std::to_string(broken.released) +
+    " rocks broke in impacts of " + numberText(law.energy) + " J/m³ or more";
+  if (broken.broken == 0)
+  {
+    return { of + ": nothing differs from a run without Fragmentation" };
+  }
+  return { of + ", into " + std::to_string(broken.pieces) + " pieces in all; " +
+    numberText(100.0 * broken.fines / broken.mass, 3) +
+    " % of their mass is in pieces of less than LeastFragment (" + numberText(law.leastVolume) +
+    " m³) and is not followed" };
+}
+
 void tellPushed(const Ensemble& ensemble, const PushedApart& pushed, const Ranks& ranks)
 {
   if (ranks.rank() != 0 || pushed.rocks == 0)

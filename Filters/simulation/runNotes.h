@@ -34,6 +34,10 @@ void tellNewNets(const Terrain& terrain);
 /// Note on realisations that nothing makes differ.
 void tellAlike(const Terrain& terrain, std::span<const Rock> rocks, int iterations);
 
+/// The note on what broke, in a run in which rocks may.
+std::vector<std::string> brokenNotes(
+  const BrokenRocks& broken, const SimulationParameters& parameters);
+
 /// Note of the first rank on blocks that were pushed apart.
 void tellPushed(const Ensemble& ensemble, const PushedApart& pushed, const Ranks& ranks);
 

@@ -49,6 +49,7 @@ struct EnergyArrays
 {
   vtkSmartPointer<vtkDoubleArray> potential, strain, friction, restitution, vibration, damping,
     structures, scars, rolling, exchanged, numerical;
+  vtkSmartPointer<vtkDoubleArray> breaking; ///< None where no rock can break.
 
   explicit EnergyArrays(vtkFieldData* data)
     : potential(addArray<vtkDoubleArray>(data, "PotentialEnergy"))
@@ -78,6 +79,10 @@ struct EnergyArrays
     this->structures->InsertNextValue(sample.energy.structures);
     this->scars->InsertNextValue(sample.energy.scars);
     this->rolling->InsertNextValue(sample.energy.rolling);
+    if (this->breaking)
+    {
+      this->breaking->InsertNextValue(sample.energy.breaking);
+    }
     this->exchanged->InsertNextValue(sample.energy.exchanged);
     this->numerical->InsertNextValue(sample.energy.numerical);
   }
@@ -129,6 +134,7 @@ void writeRocks(const RunFrame& frame, std::span<const ShownRock> rocks, vtkPoly
   const auto points = doublePoints();
   vtkNew<vtkCellArray> polygons;
   IdentityArrays identity(output->GetCellData());
+  identity.piece = pieceArray(frame.breaking, output->GetCellData());
   MotionArrays motion(output->GetCellData());
   const auto state = addArray<vtkIntArray>(output->GetCellData(), "State");
   const auto shape = addArray<vtkIntArray>(output->GetCellData(), "Shape");
@@ -141,13 +147,14 @@ void writeRocks(const RunFrame& frame, std::span<const ShownRock> rocks, vtkPoly
     names.append(rock, frame.sourceNames[std::size_t(shown.rock)]);
     // The volume may be one of this iteration.
     const bool drawn = rock.uncertainty.volume.law != VolumeLaw::Fixed;
-    const Polyhedron scaled = drawn ? rock.shape.withVolume(shown.volume) : Polyhedron();
-    const Polyhedron& body = drawn ? scaled : rock.shape;
+    const Polyhedron body = shown.piece > 0 ? shown.shape
+      : drawn                               ? rock.shape.withVolume(shown.volume)
+                                            : rock.shape;
     appendFaces(body, shown.sample.orientation.toRotationMatrix(),
       shown.sample.position + frame.origin, points, polygons);
     for (std::size_t face = 0; face < body.faces().size(); ++face)
     {
-      identity.append(rock.blockId, shown.rock, shown.iteration);
+      identity.append(rock.blockId, shown.rock, shown.iteration, shown.piece);
       motion.append(shown.sample);
       state->InsertNextValue(shown.state);
       shape->InsertNextValue(int(frame.shapes[std::size_t(shown.rock)]));
@@ -215,6 +222,12 @@ TrajectoryLines::TrajectoryLines(const RunFrame& frame, bool withLosses)
   {
     arrays_->energy = std::make_unique<EnergyArrays>(arrays_->data->GetPointData());
   }
+  arrays_->identity.piece = pieceArray(frame.breaking, arrays_->data->GetCellData());
+  if (frame.breaking && withLosses)
+  {
+    arrays_->energy->breaking =
+      addArray<vtkDoubleArray>(arrays_->data->GetPointData(), "BreakingLoss");
+  }
 }
 
 TrajectoryLines::~TrajectoryLines() = default;
@@ -243,7 +256,7 @@ void TrajectoryLines::append(const Trajectory& trajectory)
       a.energy->append(sample, weight);
     }
   }
-  a.identity.append(summary.blockId, summary.rock, summary.iteration);
+  a.identity.append(summary.blockId, summary.rock, summary.iteration, summary.piece);
   a.shape->InsertNextValue(int(frame_.shapes[std::size_t(summary.rock)]));
   a.volume->InsertNextValue(summary.volume);
   a.mass->InsertNextValue(summary.mass);

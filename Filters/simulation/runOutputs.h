@@ -27,7 +27,8 @@ struct RunFrame
   std::vector<std::string> sourceNames; ///< Of the rocks.
   std::vector<double> frequencies;      ///< Of the rocks, 1/a; empty: not known.
   Vec3 origin = Vec3::Zero();
-  double gravity = 0.0; ///< m/s²
+  double gravity = 0.0;  ///< m/s²
+  bool breaking = false; ///< Rocks may break into pieces.
 };
 
 /// One polyline of centroids per rock and iteration, or a vertex where only the last sample is
@@ -108,6 +109,8 @@ struct ShownRock
   double volume = 0.0; ///< m³
   Sample sample;
   int state = 0; ///< MotionState
+  int piece = 0;
+  Polyhedron shape; ///< Of a piece.
 };
 
 /// The blocks as they stand.

@@ -17,6 +17,19 @@ void KeptParts::trim(Trajectory& trajectory) const
   }
 }
 
+void BrokenRocks::add(const TrajectorySummary& summary)
+{
+  const bool whole = summary.piece == 0;
+  this->released += whole ? 1 : 0;
+  this->pieces += summary.pieces;
+  this->fines += summary.finesMass;
+  if (whole && summary.fate == Fate::Broken)
+  {
+    ++this->broken;
+    this->mass += summary.mass;
+  }
+}
+
 RunSink::RunSink(const RunFrame& frame, const KeptParts& kept)
   : kept_(kept)
   , lines_(frame, kept.retention == Retention::Full)
@@ -29,6 +42,7 @@ RunSink::RunSink(const RunFrame& frame, const KeptParts& kept)
 void RunSink::consume(Trajectory&& trajectory)
 {
   hash_.add(trajectory.summary.hash);
+  broken_.add(trajectory.summary);
   rows_.append(trajectory.summary);
   impacts_.append(trajectory);
   structures_.append(trajectory);
@@ -71,7 +85,19 @@ void PackingSink::consume(Trajectory&& trajectory)
 
 void MomentSink::show(const Trajectory& trajectory)
 {
-  rocks_.push_back(momentOf(trajectory, time_));
+  const TrajectorySummary& summary = trajectory.summary;
+  Polyhedron shape;
+  if (summary.piece > 0 || summary.fate == Fate::Broken)
+  {
+    shape = shapes_.next(summary, released_[std::size_t(summary.rock)]);
+  }
+  const bool gone = summary.fate == Fate::Broken && time_ >= trajectory.samples.back().time;
+  const bool later = summary.piece > 0 && time_ < trajectory.samples.front().time;
+  if (!gone && !later)
+  {
+    rocks_.push_back(momentOf(trajectory, time_));
+    rocks_.back().shape = shape;
+  }
 }
 
 } // namespace rockfall::filters

@@ -4,10 +4,12 @@
 /// Where finished trajectories go: into the outputs as they come, so that none is kept twice.
 
 #include "run/TrajectorySink.h"
+#include "run/brokenFall.h"
 #include "run/retention.h"
 #include "run/stateHash.h"
 #include "simulation/runOutputs.h"
 
+#include <span>
 #include <vector>
 
 namespace rockfall::filters
@@ -20,6 +22,15 @@ struct KeptParts
   int wholeIteration = -1; ///< All samples of this one go on to the sink, −1: of none.
 
   void trim(Trajectory& trajectory) const;
+};
+
+/// What became of the rocks that broke, over all iterations.
+struct BrokenRocks
+{
+  std::int64_t released = 0, broken = 0, pieces = 0; ///< Rocks; those that broke; all pieces.
+  double mass = 0.0, fines = 0.0; ///< Of the rocks that broke, and of it what is not followed, kg.
+
+  void add(const TrajectorySummary& summary);
 };
 
 /// Writes trajectories into VTK arrays.
@@ -41,6 +52,7 @@ public:
   std::string stateHash() const { return hash_.text(); }
   /// Trajectories of `wholeIteration`, with all samples.
   std::vector<Trajectory>& whole() { return whole_; }
+  const BrokenRocks& broken() const { return broken_; }
 
 private:
   KeptParts kept_;
@@ -50,6 +62,7 @@ private:
   SummaryRows rows_;
   StateHash hash_;
   std::vector<Trajectory> whole_;
+  BrokenRocks broken_;
 };
 
 /// Packs trajectories for the way to another process.
@@ -69,12 +82,16 @@ private:
   std::vector<char> bytes_;
 };
 
-/// Where each rock is at one time: keeps one sample of each trajectory.
+/// Where each rock is at one time: keeps one sample of each trajectory. Of rocks that break it
+/// shows what is there at the time, the rock or its pieces.
 class MomentSink : public TrajectorySink
 {
 public:
-  explicit MomentSink(double time)
+  MomentSink(double time, const Terrain& slope, const SimulationParameters& parameters,
+    std::span<const Rock> rocks)
     : time_(time)
+    , released_(rocks)
+    , shapes_(slope, parameters)
   {
   }
   void consume(Trajectory&& trajectory) override { this->show(trajectory); }
@@ -83,6 +100,8 @@ public:
 
 private:
   double time_;
+  std::span<const Rock> released_;
+  PieceShapes shapes_;
   std::vector<ShownRock> rocks_;
 };
 

@@ -53,6 +53,13 @@ constexpr Column numberColumns[] = {
   { "EnergyNumerical", [](S s, V) { return s.energy.numerical; } },
   { "LastingLoss", [](S s, V) { return s.lastingLoss; } },
 };
+/// Where rocks can break.
+constexpr Column breakingColumns[] = {
+  { "Pieces", [](S s, V) { return double(s.pieces); } },
+  { "EnergyBreaking", [](S s, V) { return s.energy.breaking; } },
+  { "FinesMass", [](S s, V) { return s.finesMass; } },
+  { "FinesEnergy", [](S s, V) { return s.finesEnergy; } },
+};
 // clang-format on
 
 } // namespace
@@ -76,6 +83,8 @@ struct SummaryRows::Arrays
   vtkSmartPointer<vtkIdTypeArray> cutSteps = addArray<vtkIdTypeArray>(fields, "CutSteps");
   vtkSmartPointer<vtkIdTypeArray> unsettled = addArray<vtkIdTypeArray>(fields, "UnsettledSteps");
 
+  std::vector<vtkSmartPointer<vtkDoubleArray>> breaking; ///< None where no rock can.
+
   static std::vector<vtkSmartPointer<vtkDoubleArray>> makeNumbers(vtkFieldData* fields)
   {
     std::vector<vtkSmartPointer<vtkDoubleArray>> made;
@@ -95,6 +104,14 @@ SummaryRows::SummaryRows(const RunFrame& frame)
   {
     arrays_->frequency = addArray<vtkDoubleArray>(arrays_->fields, "Frequency");
   }
+  arrays_->identity.piece = pieceArray(frame.breaking, arrays_->fields);
+  for (const Column& column : breakingColumns)
+  {
+    if (frame.breaking)
+    {
+      arrays_->breaking.push_back(addArray<vtkDoubleArray>(arrays_->fields, column.name));
+    }
+  }
 }
 
 SummaryRows::~SummaryRows() = default;
@@ -102,13 +119,17 @@ SummaryRows::~SummaryRows() = default;
 void SummaryRows::append(const TrajectorySummary& summary)
 {
   Arrays& a = *arrays_;
-  a.identity.append(summary.blockId, summary.rock, summary.iteration);
+  a.identity.append(summary.blockId, summary.rock, summary.iteration, summary.piece);
   a.shape->InsertNextValue(shapeName(frame_.shapes[std::size_t(summary.rock)]));
   a.fate->InsertNextValue(fateName(summary.fate));
   a.fateCode->InsertNextValue(int(summary.fate));
   for (std::size_t k = 0; k < a.numbers.size(); ++k)
   {
     a.numbers[k]->InsertNextValue(numberColumns[k].value(summary, frame_.origin));
+  }
+  for (std::size_t k = 0; k < a.breaking.size(); ++k)
+  {
+    a.breaking[k]->InsertNextValue(breakingColumns[k].value(summary, frame_.origin));
   }
   a.sourceId->InsertNextValue(frame_.sourceIds[std::size_t(summary.rock)]);
   if (a.frequency)

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 namespace rockfall::filters
 {
@@ -61,12 +62,14 @@ bool runShared(const Ensemble& ensemble, const KeptParts& kept, TrajectorySink* 
     ranks.together(
       [&]
       {
-        std::vector<std::span<const char>> left(parts.begin(), parts.end());
+        std::vector<std::span<const char>> parcels(parts.begin(), parts.end());
         for (std::int64_t n = begin; n < end && ranks.rank() == 0; ++n)
         {
-          for (std::int64_t k = 0; k < ensemble.trajectoriesPerUnit(); ++k)
+          for (std::int64_t left = ensemble.trajectoriesPerUnit(); left > 0; --left)
           {
-            sink->consume(unpack(left[std::size_t((n - begin) % ranks.count())]));
+            Trajectory next = unpack(parcels[std::size_t((n - begin) % ranks.count())]);
+            left += next.summary.pieces; // which come behind
+            sink->consume(std::move(next));
           }
         }
       },

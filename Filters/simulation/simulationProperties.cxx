@@ -34,6 +34,9 @@ std::unique_ptr<rockfall::filters::KeptRun> vtkRockfallSimulation::WantedRun(
   run->contactSheet = this->RockContactSheet;
   run->allowReferences = this->AllowReferences != 0;
   p.pushRocksApart = this->PushRocksApart;
+  p.fragmentation = { this->Fragmentation, this->FragmentationEnergy, this->FractalDimension,
+    this->LeastFragment, this->SurvivalRate, this->FragmentationLoss,
+    rockfall::radians(this->FragmentSpread) };
   p.iterations = this->Iterations;
   p.firstIteration = this->FirstIteration;
   p.seed = std::uint64_t(this->Seed);
@@ -88,6 +91,13 @@ void vtkRockfallSimulation::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "RockContactSheet: " << this->RockContactSheet << "\n";
   os << indent << "AllowReferences: " << this->AllowReferences << "\n";
   os << indent << "PushRocksApart: " << this->PushRocksApart << "\n";
+  os << indent << "Fragmentation: " << this->Fragmentation << "\n";
+  os << indent << "FragmentationEnergy: " << this->FragmentationEnergy << "\n";
+  os << indent << "FractalDimension: " << this->FractalDimension << "\n";
+  os << indent << "LeastFragment: " << this->LeastFragment << "\n";
+  os << indent << "SurvivalRate: " << this->SurvivalRate << "\n";
+  os << indent << "FragmentationLoss: " << this->FragmentationLoss << "\n";
+  os << indent << "FragmentSpread: " << this->FragmentSpread << "\n";
   os << indent << "Rigid: " << this->Rigid << "\n";
   os << indent << "ImpactResolution: " << this->ImpactResolution << "\n";
   os << indent << "NumberOfThreads: " << this->NumberOfThreads << "\n";

@@ -194,6 +194,32 @@ public:
 
   ///@{
   /**
+   * Whether rocks break into pieces in impacts on the slope, see docs/fragmentation.md. Default off;
+   * without RockRockContact only. The energy that an impact's normal velocity has before it, by
+   * volume, from which rocks break (J/m³); the fractal dimension of the pieces' volumes (0 < D < 3);
+   * the volume of the smallest piece that is followed (m³): the three have no default. Share of such
+   * impacts that leave a rock whole, 0 to 1 (0). Share of the kinetic energy that breaking takes, 0
+   * to 1 (0). Half angle of the cone of the pieces' directions, degrees, 0 to 90 (0).
+   */
+  vtkSetMacro(Fragmentation, bool);
+  vtkGetMacro(Fragmentation, bool);
+  vtkBooleanMacro(Fragmentation, bool);
+  vtkSetMacro(FragmentationEnergy, double);
+  vtkGetMacro(FragmentationEnergy, double);
+  vtkSetMacro(FractalDimension, double);
+  vtkGetMacro(FractalDimension, double);
+  vtkSetMacro(LeastFragment, double);
+  vtkGetMacro(LeastFragment, double);
+  vtkSetMacro(SurvivalRate, double);
+  vtkGetMacro(SurvivalRate, double);
+  vtkSetMacro(FragmentationLoss, double);
+  vtkGetMacro(FragmentationLoss, double);
+  vtkSetMacro(FragmentSpread, double);
+  vtkGetMacro(FragmentSpread, double);
+  ///@}
+
+  ///@{
+  /**
    * Whether blocks are rigid (6 unknowns) instead of deformable (12). Default off.
    */
   vtkSetMacro(Rigid, bool);
@@ -362,6 +388,13 @@ private:
   std::string RockContactSheet;
   int AllowReferences = 0;
   bool PushRocksApart = false;
+  bool Fragmentation = false;
+  double FragmentationEnergy = 0.0;
+  double FractalDimension = 0.0;
+  double LeastFragment = 0.0;
+  double SurvivalRate = 0.0;
+  double FragmentationLoss = 0.0;
+  double FragmentSpread = 0.0;
   bool Rigid = false;
   int ImpactResolution = SPRINGS;
   int NumberOfThreads = 0;
