@@ -388,35 +388,42 @@ LineSummary summarizeLine(const CollectorLine& line, int lineNumber,
       return std::tie(a->iteration, a->rock, a->blockId, a->piece) <
         std::tie(b->iteration, b->rock, b->blockId, b->piece);
     });
-  const Crossing* rock = nullptr; // counted last
+  const auto rockOf = [](const Crossing& c) { return std::tie(c.iteration, c.rock, c.blockId); };
   std::vector<double> speeds;
-  for (const Crossing* crossing : first)
+  for (std::size_t k = 0; k < first.size();)
   {
-    const bool isNew = !rock ||
-      std::tie(rock->iteration, rock->rock, rock->blockId) !=
-        std::tie(crossing->iteration, crossing->rock, crossing->blockId);
-    summary.rocks += isNew ? 1 : 0;
-    rock = crossing;
-    summary.energies.push_back(crossing->kineticEnergy);
-    speeds.push_back(crossing->velocity.norm());
-    if (!std::isnan(crossing->heightOverGround))
+    // Of pieces of a rock the largest values.
+    const Crossing& rock = *first[k];
+    double energy = 0.0, speed = 0.0, height = std::numeric_limits<double>::quiet_NaN();
+    bool held = true;
+    for (; k < first.size() && rockOf(*first[k]) == rockOf(rock); ++k)
     {
-      summary.heights.push_back(crossing->heightOverGround);
+      const Crossing& piece = *first[k];
+      energy = std::max(energy, piece.kineticEnergy);
+      speed = std::max(speed, piece.velocity.norm());
+      height = std::fmax(height, piece.heightOverGround);
+      held = held && piece.heightOverGround <= line.barrierHeight &&
+        piece.kineticEnergy <= line.barrierCapacity;
     }
-    summary.caught += crossing->heightOverGround <= line.barrierHeight &&
-      crossing->kineticEnergy <= line.barrierCapacity;
+    summary.energies.push_back(energy);
+    speeds.push_back(speed);
+    if (!std::isnan(height))
+    {
+      summary.heights.push_back(height);
+    }
+    summary.caught += held;
   }
-  summary.highestQuantile = highestQuantile(first.size());
+  summary.rocks = int(summary.energies.size());
+  summary.highestQuantile = highestQuantile(summary.energies.size());
   summary.share = released > 0 ? double(summary.rocks) / double(released)
                                : std::numeric_limits<double>::quiet_NaN();
   summary.shareError = binomialError(summary.share, double(released));
   summary.energy = statisticsOf(summary.energies);
   summary.height = statisticsOf(summary.heights);
   summary.speed = statisticsOf(speeds);
-  const double bodies = double(first.size());
-  summary.caughtShare =
-    bodies > 0.0 ? summary.caught / bodies : std::numeric_limits<double>::quiet_NaN();
-  summary.caughtShareError = binomialError(summary.caughtShare, bodies);
+  summary.caughtShare = summary.rocks > 0 ? double(summary.caught) / summary.rocks
+                                          : std::numeric_limits<double>::quiet_NaN();
+  summary.caughtShareError = binomialError(summary.caughtShare, summary.rocks);
   return summary;
 }
 

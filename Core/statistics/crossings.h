@@ -73,13 +73,13 @@ struct LineSummary
   double share = 0.0;
   double shareError = 0.0; ///< binomialError over all released.
   int highestQuantile = 0; ///< That so many rocks can give, %.
-  /// J; of all rocks, each as it passes for the first time; of rocks that broke, of each piece.
+  /// J; of all rocks, each as it passes for the first time; of pieces of a rock the largest values.
   SampleStatistics energy;
-  SampleStatistics height;  ///< m
-  SampleStatistics speed;   ///< m/s
-  int caught = 0;           ///< Rocks or pieces whose height and energy are at most the barrier's
-                            ///< at the first passing.
-  double caughtShare = 0.0; ///< Of those that passed.
+  SampleStatistics height;       ///< m
+  SampleStatistics speed;        ///< m/s
+  int caught = 0;                ///< Rocks whose height and energy are at most the barrier's
+                                 ///< at the first passing.
+  double caughtShare = 0.0;      ///< Of those that passed.
   double caughtShareError = 0.0; ///< binomialError.
   std::vector<double> energies;  ///< Ascending, J.
   std::vector<double> heights;   ///< Ascending, m; without those that have none.

@@ -383,7 +383,7 @@ void writeExceedance(
       energy->InsertNextValue(joules);
       kilojoules->InsertNextValue(1e-3 * joules);
       height->InsertNextValue(metres);
-      ofPassing->InsertNextValue(double(rocks) / double(summary.energies.size()));
+      ofPassing->InsertNextValue(double(rocks) / double(summary.rocks));
       ofReleased->InsertNextValue(double(rocks) / double(released));
     };
     const std::size_t rocks = summary.energies.size();

@@ -19,6 +19,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 namespace rockfall::filters
@@ -130,18 +131,24 @@ std::vector<DesignLine> designLines(
   const bool together = annualFrequency > 0.0;
   const auto rocks = together ? std::nullopt : frequenciesOf(merged, frequency);
   const double share = together ? annualFrequency / double(merged.released.size()) : kNan;
+  std::vector<const Crossing*> last(lines.size()); // of each line
   for (std::size_t k = 0; k < merged.crossings.size(); ++k)
   {
     const Crossing& c = merged.crossings[k];
-    if (c.piece > 0)
-    {
-      throw DataError("The Input has crossings of pieces of rocks that broke (Piece is " +
-        std::to_string(c.piece) +
-        "), which Barrier Design cannot weigh; the collector's Lines and "
-        "crossings have them");
-    }
     if (c.number == 0)
     {
+      const Crossing* before = std::exchange(last[std::size_t(c.line)], &c);
+      if (before && c.piece > 0 &&
+        std::tie(before->iteration, before->rock, before->blockId) ==
+          std::tie(c.iteration, c.rock, c.blockId))
+      {
+        // A rock that broke counts once, with the largest values of its pieces.
+        DesignPassing& rock = lines[std::size_t(c.line)].passings.back();
+        rock.energy = std::max(rock.energy, c.kineticEnergy);
+        rock.speed = std::max(rock.speed, c.velocity.norm());
+        rock.top = std::fmax(rock.top, top->GetTuple1(vtkIdType(k)));
+        continue;
+      }
       Passage of;
       of.rock = c.rock;
       of.blockId = c.blockId;
