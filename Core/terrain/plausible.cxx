@@ -377,8 +377,20 @@ void askAfterStands(std::span<const Stand> stands, std::vector<std::string>& not
   Doubt dense("Stems of a hectare have " + between(kBasalArea) +
     " m² at breast height: are stems_ha per hectare and diameters in cm?");
   Doubt mixed("Conifers are " + between(kConifers, 0.01) + " % of the stems: is it in %?");
+  Doubt thick("Stems have " + between(kStemDiameter, 0.01) + " cm: are diameters in cm?");
+  Doubt slender("Trees are " + between(kSlenderness) +
+    " times as high as thick: are diameters in cm and heights in m?");
+  Doubt strong("Factors of species are " + between(kStemCapacity) + ": are they of the capacity?");
   for (const Stand& s : stands)
   {
+    const double factor = kStemCapacity.has(s.coniferFactor) ? s.broadleafFactor : s.coniferFactor;
+    strong.look(kStemCapacity.has(factor), s.feature, [&] { return " with " + text(factor); });
+    const bool fits = kStemDiameter.has(s.diameterMean);
+    thick.look(fits, s.feature, [&] { return " with " + text(100.0 * s.diameterMean) + " cm"; });
+    slender.look(!fits || kSlenderness.has(s.height / s.diameterMean), s.feature,
+      [&] {
+        return ": " + text(s.height) + " m high and " + text(100.0 * s.diameterMean) + " cm thick";
+      });
     mixed.look(s.conifers == 0.0 || kConifers.has(s.conifers), s.feature,
       [&] { return " with " + text(100.0 * s.conifers) + " %"; });
     const double square =
@@ -391,6 +403,9 @@ void askAfterStands(std::span<const Stand> stands, std::vector<std::string>& not
           " cm, " + numberText(area, 3) + " m²";
       });
   }
+  thick.tell("mean diameters of stands", notes);
+  slender.tell("stands", notes);
+  strong.tell("stands by their factors", notes);
   dense.tell("stands", notes);
   mixed.tell("shares of conifers", notes);
   if (cells)

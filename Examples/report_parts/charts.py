@@ -1,5 +1,6 @@
 """Exceedance curves at the lines, and how quantities settle as rocks are added."""
 import numpy as np
+from matplotlib.ticker import MaxNLocator
 
 from enough import quantile_ranks, share_interval
 from figures import GREY, PAGE, STYLES, new, picture, place
@@ -32,6 +33,7 @@ def exceedance(study, names):
             axes.axhline(share, color=GREY, lw=0.4, ls=(0, (4, 3)))
         axes.set(yscale="log", xlabel=label, ylabel="passing rocks with at least as much, %" if k == 0 else "", ylim=(0.5, 105.0))
         axes.set_xlim(left=0.0)
+        axes.xaxis.set_major_locator(MaxNLocator(5))
         axes.set_yticks([1, 2, 5, 10, 20, 50, 100], ["1", "2", "5", "10", "20", "50", "100"])
         axes.minorticks_off()
         axes.grid(lw=0.2, alpha=0.6)
@@ -114,7 +116,8 @@ def settling(study, names):
 def convergence(study, names):
     """Figures of all curves, and what they end with."""
     totals, curves = settling(study, names)
-    figures = [curves_of(totals, curves[k:k + CURVES]) for k in range(0, len(curves), CURVES)]
+    drawn = [curve for curve in curves if np.isfinite([middle for middle, *_ in curve[-1]]).any()]
+    figures = [curves_of(totals, drawn[k:k + CURVES]) for k in range(0, len(drawn), CURVES)]
     ends = [{"label": f"{name}: {what}" if name else what, "unit": unit, "value": values[-1][0], "low": values[-1][1],
              "high": values[-1][2]} for name, what, unit, values in curves]
     return figures, ends

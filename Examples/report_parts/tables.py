@@ -9,6 +9,8 @@ import numpy as np
 HERE = os.path.dirname(os.path.abspath(__file__))
 MODELS = ("whole velocity", "normal and tangential", "speed-dependent")
 MOST_SOURCES = 10  # of a line
+SHARES = 4  # rows of a line's table: how many rocks pass
+MANY_VOLUMES = 4  # of one source: a law's, not those of its rows
 FEW = "\u00a0*"  # behind a value that too few rocks give
 SIDE_BY_SIDE = 5  # columns of a table that fit on a page
 # Of lines.csv: column, what a person reads, unit, factor
@@ -227,9 +229,13 @@ def lines(study):
         "Line", "LineName", "Offset", "MovingBefore", "OverEdgeBefore", "InNodataBefore")]
     for name, label, unit, factor in names:
         values = table[name][given]
-        few = table["HighestQuantile"][given] < quantile_of(name)
+        few = (table["HighestQuantile"][given] < quantile_of(name)) & (table["Rocks"][given] > 0)
         rows.append((label, unit, [(number(v * factor) if values.dtype.kind == "f" else str(v)) + (FEW if less else "")
                                    for v, less in zip(values, few)]))
+    often = study.places["AnnualFrequency"][given] if study.places else np.full(len(given), np.nan)
+    if np.isfinite(often).any():
+        rows.insert(SHARES, ("a rock passes every", "a", [number(1.0 / f) if f > 0.0 else "–" for f in often]))
+        rows.insert(SHARES, ("rocks that pass", "1/a", [number(f) for f in often]))
     return side_by_side([str(table["LineName"][k]) for k in given], rows)
 
 
@@ -262,6 +268,7 @@ def design(study):
                          *([number(row["AnnualFrequency"]), number(row["UncaughtFrequency"])] if known else []))
                         for row in sources[:MOST_SOURCES]],
             "known": known,
+            "reached": any(row["Rocks"] for row in levels),
             "more": max(0, len(sources) - MOST_SOURCES)})
     return made
 
@@ -275,6 +282,16 @@ def fates(study):
     return [(str(name), int(count), number(100.0 * count / len(study.rocks))) for name, count in zip(names, counts)]
 
 
+def fixed_volumes(study):
+    """How many releases there are, if they have volumes of a law that is the same in all iterations; else 0."""
+    table, law = study.rocks, study.values.get("rocks", {})
+    first = table["Iteration"] == table["Iteration"].min()
+    volumes = table["Volume"][first]
+    many = any(len(np.unique(volumes[table["SourceId"][first] == source])) >= MANY_VOLUMES
+               for source in np.unique(table["SourceId"][first]))
+    return int(first.sum()) if study.iterations > 1 and many and not law.get("RedrawVolume") else 0
+
+
 def notes(study):
     """What a reader should know before the numbers."""
     made = list(dict.fromkeys(re.sub(r"(?<!\S)/\S*/", "", note) for note in study.slope.notes))  # files by their names
@@ -286,6 +303,10 @@ def notes(study):
     unmoved = int((rocks_["RunOut"] < 0.1).sum())
     if unmoved:
         made.append(f"{unmoved} of {total} rocks got no farther than 0.1 m.")
+    fixed = fixed_volumes(study)
+    if fixed:
+        made.append(f"The volumes of the {fixed} releases are drawn once: all iterations have the same, and more of them try no "
+                    "others. RedrawVolume draws them anew in each.")
     steps = rocks_["ContactSteps"].sum()
     unsettled = rocks_["UnsettledSteps"].sum() / steps if steps else 0.0
     if unsettled > 0.003:
@@ -298,7 +319,7 @@ def notes(study):
                             f"{number(300.0 / total)} % with 95 % confidence.")
             elif study.lines["HighestQuantile"][k] < 99:
                 few = study.lines["HighestQuantile"][k] < 95
-                made.append(f"{count} rocks passed line {name}: too few for its " +
+                made.append(f"{count} {'rock' if count == 1 else 'rocks'} passed line {name}: too few for its " +
                             ("95 % values, which take 59, and 99 %, which take 299. Those numbers are too low." if few else
                              "99 % values, which take 299. Those are too low."))
             for column, text in (("MovingBefore", "still moved at the end of the simulated time"),
@@ -306,8 +327,8 @@ def notes(study):
                                  ("InNodataBefore", "were lost in nodata")):
                 lost = int(study.lines[column][k])
                 if lost:
-                    made.append(f"{lost} rocks {text} before they came to line {name}.")
-    return [note if note.endswith(".") else note + "." for note in made]
+                    made.append(f"{lost} {'rock' if lost == 1 else 'rocks'} {text} before they came to line {name}.")
+    return [note if note.endswith((".", "?")) else note + "." for note in made]
 
 
 def values_in_force(study):

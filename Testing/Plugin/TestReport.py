@@ -18,6 +18,7 @@ from helpers import delete_sources, incline, rows_of, run_script, write_grid, wr
 EXAMPLES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Examples")
 sys.path[:0] = [os.path.join(EXAMPLES, "study_parts"), os.path.join(EXAMPLES, "report_parts")]
 import charts
+import finished
 import gis
 import maps
 import tables
@@ -60,7 +61,7 @@ with open("whole/report.html", encoding="utf-8") as file:
 
 # One file: all pictures are in it, nothing is fetched, no script runs, names are text.
 sources = re.findall(r'src="([^"]*)"', page)
-assert len(sources) == 10, len(sources)  # site, reach, energy, height, classes, exceedance, places of two, convergence in two
+assert len(sources) == 9, len(sources)  # site, reach, energy, height, classes, exceedance, places of two, convergence
 for source in sources:
     assert source.startswith("data:image/png;base64,")
     assert base64.b64decode(source.split(",", 1)[1], validate=True).startswith(b"\x89PNG")
@@ -88,6 +89,15 @@ for row in rows_of("whole/design.csv"):
     if row["LineName"] == line["LineName"] and row["Quantile"] == "95.0":
         assert tables.number(float(row["EnergyInKilojoules"])) in text and "too few rocks" in text, row
 assert "What a barrier has to hold: <b>road</b> 700045" in text
+assert "What a barrier has to hold: <b>road</b> 700290 No rock reached it." in text
+own = finished.Study("whole")
+own.places.columns["AnnualFrequency"] = np.where(own.places["Rocks"] > 0, 0.25, 0.0)
+rows = [row for table in tables.lines(own) for row in table["rows"]]
+assert ("a rock passes every", "a", ["4", "–"]) in rows and not tables.fixed_volumes(own), rows
+own.rocks.columns["SourceId"] = np.zeros(12)
+tables.MANY_VOLUMES = 3  # of one source: those of a law
+assert tables.fixed_volumes(own) == 3
+delete_sources()
 share = 100.0 * int(line["Rocks"]) / 12.0
 assert re.search(rf"road</b> 700045: share that passes % {re.escape(tables.number(share))} [\d.]+ to", text), share
 fates = {row["Fate"] for row in rows_of("whole/summary.csv")}

@@ -63,7 +63,7 @@ void tryOut(const StructureReader& reader, const std::string& fileName, Structur
   Structures given = part;
   given.trees.resize(alone);
   std::vector<std::string> doubts;
-  askAfterNumbers(part, doubts);
+  askAfterNumbers(given, doubts); // a stand's numbers are those of its row
   askAfterTwins(given, doubts, reader.terrain.geometry().origin().head<2>());
   askAfterGroundUnder(part.barriers, reader.terrain, doubts);
   try

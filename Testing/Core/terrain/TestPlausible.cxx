@@ -183,6 +183,17 @@ TEST(Plausible, Stands)
   Stand mixed = square(1, 0.0);                          // 0.8 for 80 %
   mixed.conifers = 0.008;
   EXPECT_EQ(notes({ mixed }).size(), 1u);
+  Stand thin = square(1, 0.0);
+  thin.diameterMean = 0.0035;
+  EXPECT_EQ(notes({ thin }).at(0).find("1 of 1 mean diameters of stands look implausible"), 0u);
+  thin.diameterMean = 0.1;
+  thin.height = 24.0;
+  EXPECT_EQ(
+    notes({ thin }).at(0).find("1 of 1 stands look implausible, first feature 1: 24 m high"), 0u)
+    << notes({ thin }).at(0);
+  Stand strong = square(1, 0.0);
+  strong.broadleafFactor = 170.0;
+  EXPECT_EQ(notes({ strong }).size(), 1u);
   const auto twice = notes({ square(1, 0.0), square(2, 300.0), square(3, 310.0) });
   ASSERT_EQ(twice.size(), 1u);
   EXPECT_NE(
