@@ -135,11 +135,6 @@ inline constexpr int kImpactsAtOnce = 12;
 inline constexpr double kRecover = 0.005;
 /// Deepest loose overlap, share of r.
 inline constexpr double kLooseOverlap = 1e-3;
-/// Speed at which a deeper overlap is recovered, m/s, and at most this share of √(g r).
-inline constexpr double kRecoverDeep = 0.1;
-/// Energy that a spring is given for it in a step, as a drop of this share of r. Higher: rocks that
-/// are jammed between edges are thrown.
-inline constexpr double kRecoverDrop = 0.01;
 /// Compression that a spring holds in any case, share of r; beyond, it holds what its two sides
 /// brought to it. Larger: others press rocks into each other, and springs shoot them out.
 inline constexpr double kFirm = 0.02;

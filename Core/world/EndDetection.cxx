@@ -5,6 +5,7 @@
 #include "contact/ground/motion.h"
 #include "law/settings.h"
 #include "rock/fall/contactPhase.h"
+#include "rock/fall/islandOfOne.h"
 #include "world/StepTrees.h"
 #include "world/pairSprings.h"
 #include "world/stepContacts.h"
@@ -354,7 +355,7 @@ double EndDetection::detectOnSlope()
       setSprings(rock.fall(), c);
       work_.added.push_back(c);
       work_.addedTo.push_back({ true, m, c });
-      work_.contacts.push_back(touchOnSlope(world_, rock, work_.added.back()));
+      work_.contacts.push_back(touchOnSlope(rock.fall(), rock.place, work_.added.back()));
     }
   }
   return deepest;

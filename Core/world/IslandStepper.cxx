@@ -5,6 +5,7 @@
 #include "law/settings.h"
 #include "rock/fall/contactPhase.h"
 #include "rock/fall/flightPhase.h"
+#include "rock/fall/islandOfOne.h"
 #include "world/EndDetection.h"
 #include "world/StepResult.h"
 #include "world/StepTrees.h"
@@ -115,7 +116,7 @@ void IslandStepper::addRock(std::size_t m)
   std::size_t next = work_.slopeFirsts[m];
   for (Contact& c : body.contacts)
   {
-    work_.contacts[next++] = touchOnSlope(world_, rock, c);
+    work_.contacts[next++] = touchOnSlope(rock.fall(), rock.place, c);
   }
 }
 

@@ -1,45 +1,11 @@
 #include "world/stepContacts.h"
 
 #include "law/cohesion.h"
-#include "rock/restitution.h"
 
 #include <algorithm>
 
 namespace rockfall
 {
-
-IslandContact touchOnSlope(const WorldState& world, const FallingRock& member, Contact& c)
-{
-  const SingleRock& sim = member.sim;
-  const BlockState& state = sim.body().state;
-  const Vec3 lever = c.point - state.position;
-  const double approach = -c.normal.dot(state.velocity + state.angularVelocity().cross(lever));
-  const bool down =
-    comesDown(approach, state.velocity.norm(), world.parameters.gravity, sim.body().block.radius());
-  const int ground = world.surface.restitutionClass(c.cfe);
-  const SurfaceMaterial& material = world.surface.terrain().restitutionMaterial(ground);
-  IslandContact k;
-  k.restitution = world.surface.restitutionAt(sim.fall().impact.touchAt(c.cfe, c.point));
-  if (material.restitutionModel == RestitutionModel::Velocity && down)
-  {
-    k.restitution = 1.0; // Rv is taken off the whole velocity when the impact is over
-  }
-  else if (material.restitutionModel == RestitutionModel::SpeedDependent)
-  {
-    k.restitutionSpeed = material.restitutionSpeed;
-  }
-  k.resting = sim.body().restingSpeed;
-  k.contact = &c;
-  k.closed = c.closed();
-  k.first = member.place;
-  k.friction = c.friction;
-  k.cohesion = c.cohesion;
-  if (c.closed() && sim.fall().impact.pending())
-  {
-    k.reboundSpeed = bounceLeft(c, approach); // begun where impacts are resolved in time
-  }
-  return k;
-}
 
 IslandContact touchOfPair(const WorldState& world, RockPair& pair, const PairMotion& motion,
   Contact& c, const IslandWork& work)

@@ -40,7 +40,6 @@ Fall::Fall(const Surface& s, const Rock& rock, const Block& block, const Simulat
   , impulses(this->body.stiff && !s.terrain().yields() &&
       p.impactResolution == ImpactResolution::Impulse && !isRound(block.shape().layout()))
   , springs(s, p, block)
-  , overlaps(p.gravity, p.normalPenalty)
   , structures(s)
   , ground(s, p.gravity)
   , impact(s, p, number, this->impulses)

@@ -7,17 +7,16 @@
 ///   body        motion, contacts, books          RockBody
 ///   ground      what of the slope is near        GroundNear
 ///   springs     of contacts; lengths of steps    SlopeSprings
-///   overlaps    how found ones go                OverlapRecovery
 ///   soil        scar, drag, slip                 SoilUnderRock
 ///   structures  trees and barriers               StructuresOnWay
 ///   impact      the one that is under way        SlopeImpact
 ///   recorder    samples, maxima, energy          Recorder
 ///
-/// Phases: flightPhase, impulseImpacts, contactPhase; inSoil and atStructures within them; endOfFall.
+/// Phases: flightPhase, impulseImpacts, contactPhase; inSoil, atStructures and islandOfOne within
+/// them; endOfFall.
 
 #include "rock/parameters.h"
 #include "rock/parts/GroundNear.h"
-#include "rock/parts/OverlapRecovery.h"
 #include "rock/parts/Recorder.h"
 #include "rock/parts/RockBody.h"
 #include "rock/parts/SlopeImpact.h"
@@ -46,6 +45,7 @@ struct Fall
   // lies together.
   bool inContact = false;
   RockBody body;
+  bool pressed = false;       ///< Out of an island, or a deep overlap: it goes as place.
   bool impulses;              ///< Impacts are events in impulse space.
   int struckAtOnce = 0;       ///< Such events since the rock last moved on.
   double openTime = 0.0;      ///< Since it touched, s.
@@ -53,7 +53,6 @@ struct Fall
   double freeUntil = 0.0;     ///< Nothing can be touched until then, after a take-off, s.
   std::uint64_t carrying = 0; ///< The features that carried in the last lasting step.
   SlopeSprings springs;
-  OverlapRecovery overlaps;
   StructuresOnWay structures;
   GroundNear ground;
   SlopeImpact impact;

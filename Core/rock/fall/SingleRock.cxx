@@ -1,7 +1,6 @@
 #include "rock/fall/SingleRock.h"
 
 #include "contact/ground/detection.h"
-#include "law/settings.h"
 #include "rock/fall/contactPhase.h"
 #include "rock/fall/endOfFall.h"
 #include "rock/fall/flightPhase.h"
@@ -83,9 +82,8 @@ void SingleRock::advance(double until, double enough)
   RockBody& body = fall_.body;
   if (body.inIsland)
   {
-    body.inIsland = false; // alone, and what others have pressed in is theirs
-    body.energy.damping += OverlapRecovery::limit(
-      body, kLooseOverlap * body.block.radius(), fall_.springs.settledSpeed(body));
+    body.inIsland = false;
+    fall_.pressed = true;
     // Flight goes by them, and would hang on how the island was looked at.
     fall_.ground.forgetCandidates();
   }

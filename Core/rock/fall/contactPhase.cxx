@@ -14,6 +14,8 @@
 #include "rock/fall/flightPhase.h"
 #include "rock/fall/impulseImpacts.h"
 #include "rock/fall/inSoil.h"
+#include "rock/fall/islandOfOne.h"
+#include "rock/parts/OverlapRecovery.h"
 
 #include <algorithm>
 #include <cmath>
@@ -186,10 +188,6 @@ void takeStep(Fall& fall, double h, StepKind kind)
     }
   }
   commitStep(fall, kind, outcome, energyBefore, 0.0, true);
-  if (lasting)
-  {
-    OverlapRecovery::limit(body, OverlapRecovery::looseOf(body), fall.springs.settledSpeed(body));
-  }
 }
 
 } // namespace
@@ -288,11 +286,14 @@ void stayInContact(Fall& fall)
         setNewSprings(fall, h);
       }
     }
-    if (kind == StepKind::Lasting)
+    if (isPressedIn(fall, kind))
     {
-      fall.overlaps.beforeStep(body, h);
+      stepAsIsland(fall, h);
     }
-    takeStep(fall, h, kind);
+    else
+    {
+      takeStep(fall, h, kind);
+    }
     checkEnd(fall, body.state.time - body.before.time);
   }
 }
@@ -371,15 +372,12 @@ void commitStep(Fall& fall, StepKind kind, const StepOutcome& outcome, double en
   body.spinAcceleration = (body.state.spin - body.before.spin) / taken;
   if (lasting)
   {
-    const double damped = energyBefore - body.mechanicalEnergy(fall.parameters.gravity) -
+    body.energy.damping += energyBefore - body.mechanicalEnergy(fall.parameters.gravity) -
       body.springEnergy - outcome.frictionWork - outcome.dampedWork - given;
-    // Energy that recovery of an overlap gives a rock comes from nowhere, and is booked as that.
-    const bool recovered = fall.overlaps.drainRecovered() && recovers;
-    body.energy.damping += recovered ? std::max(0.0, damped) : damped;
     keepAcceleration(fall);
     if (recovers)
     {
-      fall.overlaps.afterStep(body, taken);
+      recoverLooseOverlaps(body, taken, fall.parameters.gravity, fall.parameters.normalPenalty);
     }
   }
   else

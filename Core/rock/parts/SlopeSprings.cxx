@@ -107,16 +107,12 @@ bool SlopeSprings::mayLast(const RockBody& body, double h) const
   return any;
 }
 
-double SlopeSprings::settledSpeed(const RockBody& body) const
-{
-  return body.restingSpeed + 4.0 * parameters_.gravity * std::sqrt(body.block.mass() * softness_);
-}
-
 bool SlopeSprings::isCalm(const RockBody& body) const
 {
   // At the turning point of an impact nothing moves either, but the springs hold its energy; at
   // rest they hold the weight's, ½ m v² with v = g √(m/p), several times that when the rock rolls.
-  const double settled = this->settledSpeed(body);
+  const double settled =
+    body.restingSpeed + 4.0 * parameters_.gravity * std::sqrt(body.block.mass() * softness_);
   const double held = body.normalEnergy + (body.stiff ? 0.0 : strainEnergy(body.block, body.state));
   if (held > 0.5 * body.block.mass() * settled * settled)
   {

@@ -35,8 +35,6 @@ public:
   bool mayLast(const RockBody& body, double h) const; ///< A long, damped step is right.
 
   bool isCalm(const RockBody& body) const; ///< Contacts that carry neither approach nor part.
-  /// Speed that springs could give a rock that lies still and alone, m/s.
-  double settledSpeed(const RockBody& body) const;
 
 private:
   double stoppingPenalty(const RockBody& body) const;     ///< Stiffness that stops it in time, N/m.

@@ -1,6 +1,6 @@
 // Rocks on a slope of several classes: the contact takes what lies under it.
+#include "law/settings.h"
 #include "randomScenes.h"
-#include "rock/parts/OverlapRecovery.h"
 #include "slopes.h"
 #include "terrain/Surface.h"
 
