@@ -111,18 +111,31 @@ void readReleases(std::istream& in, PassageFile& file)
 void readLost(std::istream& in, PassageFile& file)
 {
   LostRocks& lost = file.lost;
+  std::int64_t* const counts[] = { &lost.moving, &lost.overEdge, &lost.inNodata, &lost.unmoved };
   lost.rocks = get<std::int64_t>(in);
-  for (std::int64_t* count : { &lost.moving, &lost.overEdge, &lost.inNodata, &lost.unmoved })
+  for (std::int64_t* count : counts)
   {
     *count = get<std::int64_t>(in);
-    if (in && (*count < 0 || *count > lost.rocks))
+  }
+  lost.endTime = get<double>(in);
+  lost.pieces = get<std::int64_t>(in);
+  if (!in)
+  {
+    return; // told by the length
+  }
+  if (lost.pieces < 0)
+  {
+    failDamaged(file.fileName, "rocks broke into " + std::to_string(lost.pieces) + " pieces");
+  }
+  for (const std::int64_t* count : counts)
+  {
+    if (*count < 0 || *count - lost.pieces > lost.rocks)
     {
       failDamaged(file.fileName,
         std::to_string(*count) + " of " + std::to_string(lost.rocks) + " rocks were lost");
     }
   }
-  lost.endTime = get<double>(in);
-  if (in && !std::isfinite(lost.endTime))
+  if (!std::isfinite(lost.endTime))
   {
     failDamaged(file.fileName, "the end time is " + numberText(lost.endTime));
   }

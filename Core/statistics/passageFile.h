@@ -10,7 +10,8 @@
 /// not known); bytes of the run's properties (uint64) and their text; number of iterations
 /// (uint64) and for each its number (int64) and how many rocks were released in
 /// it (int64); whom the run lost: rocks, still moving, over the edge, in
-/// nodata, unmoved (int64), the latest time of one that still moved (double);
+/// nodata, unmoved (int64), the latest time of one that still moved (double), the
+/// pieces that rocks broke into (int64);
 /// number of rocks whose frequency is known (uint64), of all or none, and for each its number,
 /// block, iterations that released it (int64) and frequency (double, 1/a); number of passages
 /// (uint64), and the passages in their order, in parts of kPassagesOfPart, each packed by itself

@@ -99,6 +99,7 @@ void writePassages(HazardRaster& raster, const Vec3& origin, const std::string& 
     put(out, count);
   }
   put(out, lost.endTime);
+  put(out, lost.pieces);
   put(out, std::uint64_t(frequencies.releases().size()));
   for (const auto& [rock, release] : frequencies.releases())
   {

@@ -90,12 +90,19 @@ def share(count, total):
 
 
 def first_passings(study, name):
-    """Iteration and energy (kJ) of each rock that passes a line, when it does so first."""
+    """Iteration and energy (kJ) of each rock that passes a line, when it does so first; of one that broke the
+    largest of its pieces."""
     table = study.crossings
     if not len(table):
         return np.empty(0), np.empty(0)
     own = (table["LineName"] == name) & (table["Passing"] == 0)
-    return table["Iteration"][own], table["KineticEnergy"][own] / 1000.0
+    iteration, energy = table["Iteration"][own], table["KineticEnergy"][own] / 1000.0
+    if "Piece" in table and len(energy):
+        rocks, of = np.unique([iteration, table["BlockId"][own]], axis=1, return_inverse=True)
+        largest = np.zeros(rocks.shape[1])
+        np.maximum.at(largest, of.ravel(), energy)
+        iteration, energy = rocks[0], largest
+    return iteration, energy
 
 
 def settling(study, names):

@@ -1,5 +1,6 @@
 """A finished study as its folder has it. Whatever is wrong with a file is a schema.Bad that names the file and
 the field."""
+import copy
 import csv
 import itertools
 import os
@@ -72,6 +73,12 @@ class Table:
 
     def __contains__(self, name):
         return name in self.columns
+
+    def rows(self, kept, **changed):
+        """Some of its rows, as a table; with columns that are others."""
+        made = copy.copy(self)
+        made.columns = {**{name: values[kept] for name, values in self.columns.items()}, **changed}
+        return made
 
     def __len__(self):
         return len(next(iter(self.columns.values()), ()))
@@ -160,6 +167,16 @@ class Raster:
         return values
 
 
+def released(bodies):
+    """The rocks as they are released; of one that broke RunOut is that of its farthest piece."""
+    if "Piece" not in bodies:
+        return bodies
+    first = np.flatnonzero(bodies["Piece"] == 0)
+    of = np.repeat(first, np.diff([*first, len(bodies)]))
+    ways = np.hypot(bodies["StopX"] - bodies["StartX"][of], bodies["StopY"] - bodies["StartY"][of])
+    return bodies.rows(first, RunOut=np.maximum.reduceat(ways, first))
+
+
 class Study:
     def __init__(self, folder):
         self.folder = folder
@@ -180,12 +197,15 @@ class Study:
         self.name = os.path.basename(field(path, self.manifest, "study", str))
         self.inputs = self.read_inputs(path)
         self.slope = Slope(self.properties("terrain"))
-        self.rocks = Table(self.path("summary.csv"), (
+        # A row for each body: rocks as they are released, each with its pieces behind it where it broke.
+        self.bodies = Table(self.path("summary.csv"), (
             "Iteration", "BlockId", "SourceId", "Shape", "Fate", "StartX", "StartY", "RunOut", "Mass", "Volume",
-            "MaxSpeed", "ContactSteps", "UnsettledSteps", "EnergyReleased", "EnergyNumerical"), ("Frequency", "SourceName"))
-        self.rocks.must_be_numbers("Iteration", "BlockId", "SourceId", "StartX", "StartY", "RunOut", "Mass", "Volume")
-        if not len(self.rocks):
+            "MaxSpeed", "ContactSteps", "UnsettledSteps", "EnergyReleased", "EnergyNumerical"),
+            ("Frequency", "SourceName", "Piece", "StopX", "StopY"))
+        self.bodies.must_be_numbers("Iteration", "BlockId", "SourceId", "StartX", "StartY", "RunOut", "Mass", "Volume")
+        if not len(self.bodies):
             raise Bad(f"{self.path('summary.csv')}: there are no rocks")
+        self.rocks = released(self.bodies)
         self.map = Raster(self.path("hazard.tif")) if "map" in self.given else None
         self.lines = self.crossings = self.exceedance = None
         self.drawn_lines, self.design, self.places = [], [], None
@@ -240,7 +260,7 @@ class Study:
         self.lines = Table(self.path("lines.csv"), ("LineName", "Offset", "Rocks", "Share", "HighestQuantile", "MovingBefore",
                                                     "OverEdgeBefore", "InNodataBefore"))
         self.crossings = Table(self.path("crossings.csv"), (
-            "LineName", "Iteration", "BlockId", "Passing", "KineticEnergy"))
+            "LineName", "Iteration", "BlockId", "Passing", "KineticEnergy"), ("Piece",))
         self.exceedance = Table(self.path("exceedance.csv"), (
             "Line", "EnergyInKilojoules", "HeightOverGround", "ShareOfPassing"))
         if len(self.crossings):

@@ -46,5 +46,5 @@ def make(study, title=None, author=""):
         exceedance=[charts.exceedance(study, some) for some in tables.slices(named)],
         best=[charts.best_place(study, name, rows) for name, rows in families if len(rows) > 1],
         convergence=curve, ends=ends, fates=tables.fates(study), notes=tables.notes(study),
-        values=tables.values_in_force(study), preset=tables.has_preset(study), total=len(study.rocks),
+        values=tables.values_in_force(study), preset=tables.has_preset(study), total=len(study.rocks), breaks=tables.breaks(study),
         sources=int((study.rocks["Iteration"] == study.rocks["Iteration"].min()).sum()))

@@ -277,9 +277,15 @@ def number_or_zero(value):
     return value if math.isfinite(value) else 0.0
 
 
+def breaks(study):
+    """From how much energy by volume on rocks break, kJ/m³; 0 if they do not."""
+    values = study.values.get("simulation", {})
+    return values.get("FragmentationEnergy", 0.0) / 1000.0 if values.get("Fragmentation") else 0.0
+
+
 def fates(study):
-    names, counts = np.unique(study.rocks["Fate"], return_counts=True)
-    return [(str(name), int(count), number(100.0 * count / len(study.rocks))) for name, count in zip(names, counts)]
+    names, counts = np.unique(study.bodies["Fate"], return_counts=True)
+    return [(str(name), int(count), number(100.0 * count / len(study.bodies))) for name, count in zip(names, counts)]
 
 
 def fixed_volumes(study):
@@ -307,8 +313,8 @@ def notes(study):
     if fixed:
         made.append(f"The volumes of the {fixed} releases are drawn once: all iterations have the same, and more of them try no "
                     "others. RedrawVolume draws them anew in each.")
-    steps = rocks_["ContactSteps"].sum()
-    unsettled = rocks_["UnsettledSteps"].sum() / steps if steps else 0.0
+    steps = study.bodies["ContactSteps"].sum()
+    unsettled = study.bodies["UnsettledSteps"].sum() / steps if steps else 0.0
     if unsettled > 0.003:
         made.append(f"{number(1000 * unsettled)} of 1000 steps with contacts had not settled: a reason for doubt.")
     if study.lines:

@@ -48,8 +48,8 @@ std::vector<std::string> passages()
   {
     file += bytesOf(lost);
   }
-  file += bytesOf(60.0) + bytesOf(std::uint64_t(1)) + bytesOf(std::int64_t(0)) +
-    bytesOf(std::int64_t(7)) + bytesOf(std::int64_t(1)) + bytesOf(0.25) +
+  file += bytesOf(60.0) + bytesOf(std::int64_t(0)) + bytesOf(std::uint64_t(1)) +
+    bytesOf(std::int64_t(0)) + bytesOf(std::int64_t(7)) + bytesOf(std::int64_t(1)) + bytesOf(0.25) +
     bytesOf(std::uint64_t(2)) + bytesOf(std::uint32_t(80)); // not packed
   for (const int rock : { 0, 1 })
   {

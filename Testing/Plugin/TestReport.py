@@ -162,6 +162,20 @@ for word in ("The study makes no map", "The study has no lines", "the test slope
     assert word in bare, word
 
 
+# Rocks that break count once, and reach as far as their farthest piece.
+finish("pieces", {**{part: study[part] for part in ("rocks", "map")}, "terrain": {"FileName": "hill.asc", "Preset": "Talus (assumed)"}, "simulation": {
+    **study["simulation"], "Fragmentation": 1, "FragmentationEnergy": 2e4, "FractalDimension": 2.0, "LeastFragment": 0.1},
+    "iterations": 2, "chunk": 2})
+assert "Report: " in run("report.py", "pieces")
+with open("pieces/report.html", encoding="utf-8") as file:
+    text = " ".join(html.unescape(re.sub(r"<[^>]*>", " ", file.read())).split())
+bodies = rows_of("pieces/summary.csv")
+assert sum(row["Fate"] == "broken" for row in bodies) > 0 and len(bodies) > 6, bodies
+assert "6 rocks, 3 releases in 2 iterations" in text and "from 20 kJ/m³ of normal energy" in text, text[:400]
+few = own.bodies.rows(np.arange(4), Piece=np.array([0.0, 1.0, 2.0, 0.0]), StartX=np.array([0.0, 5.0, 5.0, 0.0]),
+                      StopX=np.array([5.0, 30.0, 9.0, 7.0]), StartY=np.zeros(4), StopY=np.zeros(4))
+assert list(finished.released(few)["RunOut"]) == [30.0, 7.0]
+
 # The window's menu makes the same, in a process of its own.
 scripts = os.path.join(os.environ["PV_PLUGIN_PATH"], "..", "RockfallScripts")
 if os.path.isdir(scripts):  # it was built with a window

@@ -144,7 +144,7 @@ TEST_F(TestPassageFile, AnySharingOutGivesTheSameBits)
       // Also iterations of which each file has some rocks only.
       HazardRaster raster = rasterOf([&](int k) { return k % parts == part; });
       names.push_back(fileName(std::to_string(part)));
-      writePassages(raster, origin, "EPSG:32616", names.back(), { 5, 1, 0, 2, 0, 60.0 });
+      writePassages(raster, origin, "EPSG:32616", names.back(), { 5, 0, 1, 0, 2, 0, 60.0 });
     }
     std::reverse(names.begin(), names.end());
     const PassageFiles files(names);
@@ -275,6 +275,21 @@ TEST_F(TestPassageFile, OtherRunsAndEndTimesAreTold)
   EXPECT_NE(notes(7, "Rigid 0")[0].find(": TimeStep 0.005 s there alone."), std::string::npos);
 }
 
+TEST_F(TestPassageFile, MorePiecesThanRocksMayBeLost)
+{
+  HazardRaster a = rasterOf([](int k) { return k < 10; });
+  LostRocks lost;
+  lost.add(Loss::None, 1.0, 5.0);
+  for (int piece = 1; piece <= 3; ++piece)
+  {
+    lost.add(Loss::Moving, 9.0, 5.0, piece);
+  }
+  writePassages(a, origin, "", fileName("a"), lost);
+  const PassageFiles files({ fileName("a") });
+  EXPECT_EQ(files.lost().pieces, 3);
+  EXPECT_EQ(lostNotes(files.lost()).at(0).find("3 of 4 rocks and pieces were still moving"), 0u);
+}
+
 TEST_F(TestPassageFile, BadInput)
 {
   HazardRaster raster = rasterOf([](int k) { return k < 10; });
@@ -345,7 +360,7 @@ TEST_F(TestPassageFile, HeadersAndPassagesThatNoRunHasAreDamage)
   };
   const double inf = std::numeric_limits<double>::infinity();
   constexpr std::size_t cellSize = 16, west = 24, z = 56, iterations = 88, count = 104, lost = 112,
-                        firstPassage = 180;
+                        firstPassage = 188;
   put(8, std::int32_t(-4));
   expectError({ bad }, "bad: is damaged: it has -4 x 3 cells");
   put(8, std::int32_t(2147483647));
@@ -379,6 +394,8 @@ TEST_F(TestPassageFile, HeadersAndPassagesThatNoRunHasAreDamage)
   expectError({ bad }, "bad: is damaged: 7 of 0 rocks were lost");
   put(lost + 40, inf);
   expectError({ bad }, "bad: is damaged: the end time is inf");
+  put(lost + 48, std::int64_t(-1));
+  expectError({ bad }, "bad: is damaged: rocks broke into -1 pieces");
   put(firstPassage + 24, float(inf));
   expectError({ bad }, "has the value inf");
 }
