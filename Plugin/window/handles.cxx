@@ -37,7 +37,7 @@ namespace rockfall::window
 namespace
 {
 
-constexpr double kNear = 0.01; ///< m, of a height that need not be changed
+constexpr double kNear = 0.01; ///< m, of a height that need not be changed: nobody draws finer
 constexpr double kSeen = 1e-3; ///< of the way to a point, beside a line of sight that it is on
 
 using Place = std::array<double, 3>;
@@ -109,12 +109,6 @@ auto ofSlopes(Find find) -> decltype(find(std::declval<Heights&>(), nullptr))
     }
   }
   return {};
-}
-
-/// The height of a slope that is there; nothing beyond all of them.
-std::optional<double> groundAt(double x, double y)
-{
-  return ofSlopes([x, y](Heights& heights, vtkPolyData* mesh) { return heights.at(mesh, x, y); });
 }
 
 /// The line of sight under the mouse in the active view, from before the eye to its end.
@@ -194,6 +188,13 @@ bool isTyping()
 
 } // namespace
 
+std::optional<double> groundAt(double x, double y)
+{
+  const std::optional<double> ground =
+    ofSlopes([x, y](Heights& heights, vtkPolyData* mesh) { return heights.at(mesh, x, y); });
+  return ground ? std::optional<double>(std::round(*ground / kNear) * kNear) : std::nullopt;
+}
+
 void layHandles(pqPipelineSource* source)
 {
   vtkSMSourceProxy* proxy = source ? source->getSourceProxy() : nullptr;
@@ -218,12 +219,13 @@ void layHandles(pqPipelineSource* source)
       k + 2 < applied.size() && points[k] == applied[k] && points[k + 1] == applied[k + 1];
     if (const std::optional<Place> place = known ? std::nullopt : pickedAnew(&points[k]))
     {
-      std::copy(place->begin(), place->end(), points.begin() + std::ptrdiff_t(k));
+      std::transform(place->begin(), place->end(), points.begin() + std::ptrdiff_t(k),
+        [](double x) { return std::round(x / kNear) * kNear; });
       moved = true;
       continue;
     }
     const std::optional<double> ground = known ? std::nullopt : groundAt(points[k], points[k + 1]);
-    if (ground && std::abs(*ground - points[k + 2]) > kNear)
+    if (ground && std::abs(*ground - points[k + 2]) > 1.5 * kNear)
     {
       points[k + 2] = *ground;
       moved = true;

@@ -1,5 +1,7 @@
 #include "pqMessageBar.h"
 
+#include "looks.h"
+
 #include "pqApplicationCore.h"
 #include "pqPipelineSource.h"
 #include "pqServerManagerModel.h"
@@ -73,6 +75,23 @@ QString withField(vtkSMSourceProxy* source, const QString& text)
   return text;
 }
 
+/// Structures that were drawn, and that no rocks fall on.
+QStringList toldOfStructures()
+{
+  QStringList notes;
+  for (pqPipelineSource* source :
+    pqApplicationCore::instance()->getServerManagerModel()->findItems<pqPipelineSource*>())
+  {
+    if (rockfall::window::isOf(source->getProxy(), { "vtkDrawnStructure" }) &&
+      source->modifiedState() != pqProxy::UNINITIALIZED && source->getNumberOfConsumers() == 0)
+    {
+      notes << "<b>" + source->getSMName().toHtmlEscaped() +
+          "</b>: " + QObject::tr("no rocks fall on it yet: Rockfall, Rocks Meet This Structure");
+    }
+  }
+  return notes;
+}
+
 } // namespace
 
 //-----------------------------------------------------------------------------
@@ -124,6 +143,7 @@ void pqMessageBar::look()
       }
     }
   }
+  notes += toldOfStructures();
   if (const int more = int(notes.size()) - kMostNotes; more > 0)
   {
     // The last ones are of the study that is worked on.

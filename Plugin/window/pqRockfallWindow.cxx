@@ -27,6 +27,7 @@
 #include "pqRunBar.h"
 #include "pqServer.h"
 #include "pqServerManagerModel.h"
+#include "pqUndoStack.h"
 #include "pqView.h"
 #include "vtkCommand.h"
 #include "vtkSMProperty.h"
@@ -34,6 +35,7 @@
 #include "vtkSMRenderViewProxy.h"
 #include "vtkSMSettings.h"
 #include "vtkSMSourceProxy.h"
+#include "vtkSMTrace.h"
 
 #include <QCoreApplication>
 #include <QDesktopServices>
@@ -252,6 +254,8 @@ void pqRockfallWindow::makeMenu(QMainWindow* window)
     ->setObjectName("actionReport");
   menu->addAction(tr("Pick a Trajectory"), this, [this] { this->pickTrajectory(); })
     ->setObjectName("actionPickTrajectory");
+  menu->addAction(tr("Rocks Meet This Structure"), this, [this] { this->meetStructure(); })
+    ->setObjectName("actionMeetStructure");
   menu
     ->addAction(tr("Documentation"), this,
       [] { pqHelpReaction::showHelp("qthelp://RockfallDDA.pages/RockfallDDA/README.html"); })
@@ -401,6 +405,42 @@ void pqRockfallWindow::pickTrajectory()
   {
     this->tell(tr("Click into the view of the slope first"));
   }
+}
+
+//-----------------------------------------------------------------------------
+void pqRockfallWindow::meetStructure()
+{
+  pqPipelineSource* structure = pqActiveObjects::instance().activeSource();
+  if (!structure || !isOf(structure->getProxy(), { "vtkDrawnStructure" }))
+  {
+    this->tell(tr("Click the drawn structure in the pipeline first"));
+    return;
+  }
+  vtkSMProxy* under = vtkSMPropertyHelper(structure->getProxy(), "Terrain").GetAsProxy();
+  int met = 0;
+  const pqScopedUndoSet undo(tr("Rocks Meet %1").arg(structure->getSMName()));
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  for (pqPipelineSource* source : model->findItems<pqPipelineSource*>())
+  {
+    vtkSMProxy* proxy = source->getProxy();
+    if (!isOf(proxy, { "vtkRockBlockSource", "vtkJointedRockMass", "vtkRockfallSimulation" }))
+    {
+      continue;
+    }
+    vtkSMPropertyHelper slope(proxy, "Terrain", true);
+    if (slope.GetNumberOfElements() > 0 && slope.GetAsProxy() == under)
+    {
+      SM_SCOPED_TRACE(PropertiesModified).arg("proxy", proxy);
+      slope.Set(structure->getProxy(), 0);
+      proxy->UpdateVTKObjects();
+      ++met;
+    }
+  }
+  if (met == 0)
+  {
+    this->tell(tr("No rocks are released on the slope that it was drawn on"));
+  }
+  pqApplicationCore::instance()->render();
 }
 
 //-----------------------------------------------------------------------------

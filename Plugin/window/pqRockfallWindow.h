@@ -58,6 +58,8 @@ private:
   /// What a script has made, it has drawn: whole runs are not drawn once more.
   void settleRuns();
   void pickTrajectory();
+  /// Puts the rocks of its slope on the structure that is chosen in the pipeline.
+  void meetStructure();
   void tell(const QString& message);
 
   pqPathPicker* Picker;

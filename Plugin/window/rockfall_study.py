@@ -199,20 +199,22 @@ def sheet(view=None):
             2.0 * np.linalg.norm(focus - eye) * np.tan(0.5 * np.radians(view.CameraViewAngle)))
     power = 10.0 ** np.floor(np.log10(0.25 * high))
     length = max(step * power for step in (1, 2, 5) if step * power <= 0.25 * high)
+    ink = _text_colour()
     start = focus - 0.36 * high * up - 0.5 * length * right
     bar = simple.Ruler(registrationName="Scale", Point1=list(start), Point2=list(start + length * right))
     display = simple.Show(bar, view)
     display.LabelFormat = f"{length:g} m" if length < 1000.0 else f"{length / 1000.0:g} km"
-    display.NumberOfTicks, display.AxisColor, display.AxisLineWidth = 5, [1.0, 1.0, 1.0], 2.0
+    display.NumberOfTicks, display.AxisColor, display.AxisLineWidth = 5, ink, 2.0
     # Before the slope, where nothing hides it.
     near, size = 0.5, 0.04 * high
-    foot = eye + near * (focus - eye - 0.27 * high * up)
+    foot = eye + near * (focus - eye - 0.36 * high * up + (0.5 * length + 0.06 * high) * right)
     arrow = simple.Arrow(registrationName="North", TipLength=0.4, TipRadius=0.16, ShaftRadius=0.05, TipResolution=24)
     display = simple.Show(arrow, view)
     display.Orientation, display.Scale = [0.0, 0.0, 90.0], 3 * [size]
     move = "Translation" if "Translation" in display.ListProperties() else "Position"
     setattr(display, move, list(foot))
-    display.AmbientColor = display.DiffuseColor = [1.0, 1.0, 1.0]
+    display.AmbientColor = display.DiffuseColor = ink
+    display.Ambient, display.Diffuse = 1.0, 0.0
     letter = simple.Text(registrationName="North Letter", Text="N")
     display = simple.Show(letter, view)
     display.TextPropMode = "Billboard 3D Text"
@@ -223,6 +225,13 @@ def sheet(view=None):
     display.WindowLocation = "Upper Center"
     display.FontSize = 12
     simple.Render(view)
+
+
+def _text_colour():
+    """That of ParaView's palette: white on a white background would not be seen."""
+    palette = simple.GetSettingsProxy("ColorPalette")
+    colour = getattr(palette, "SMProxy", palette).GetProperty("TextAnnotationColor")
+    return [colour.GetElement(k) for k in range(3)]
 
 
 def jacksboro():
