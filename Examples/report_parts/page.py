@@ -19,8 +19,8 @@ def duration(seconds):
     return f"{hours} h {minutes:02d} min" if hours else f"{minutes} min {seconds:02d} s" if minutes else f"{seconds} s"
 
 
-def make(study, title=None, author=""):
-    """The text of the whole page."""
+def make(study, title=None, author="", other=None):
+    """The text of the whole page; with the lines of another study beside those of this one."""
     families = study.lines_with_parallels()
     named = [(k, str(study.lines["LineName"][k])) for k in study.given_lines()] if study.lines else []
     curve, ends = charts.convergence(study, [name for _, name in named])
@@ -46,5 +46,5 @@ def make(study, title=None, author=""):
         exceedance=[charts.exceedance(study, some) for some in tables.slices(named)],
         best=[charts.best_place(study, name, rows) for name, rows in families if len(rows) > 1],
         convergence=curve, ends=ends, fates=tables.fates(study), notes=tables.notes(study),
-        values=tables.values_in_force(study), preset=tables.has_preset(study), total=len(study.rocks), breaks=tables.breaks(study),
+        values=tables.values_in_force(study), preset=tables.has_preset(study), total=len(study.rocks), breaks=tables.breaks(study), beside=tables.beside(study, other) if other else None,
         sources=int((study.rocks["Iteration"] == study.rocks["Iteration"].min()).sum()))

@@ -6,6 +6,10 @@ import re
 
 import numpy as np
 
+import charts
+from identity import differences
+from schema import Bad
+
 HERE = os.path.dirname(os.path.abspath(__file__))
 MODELS = ("whole velocity", "normal and tangential", "speed-dependent")
 MOST_SOURCES = 10  # of a line
@@ -219,6 +223,15 @@ def quantile_of(column):
     return int(found.group(1)) if found else 0
 
 
+def often(study, row):
+    """How often a line is passed, 1/a; of one that nothing passed the limit, with 95 % confidence, as maps have it."""
+    frequency = study.places["AnnualFrequency"][row]
+    together = study.values.get("lines", {}).get("AnnualFrequency") or 0.0
+    most = together / len(study.rocks) if together else \
+        study.rocks["Frequency"].max() / study.iterations if "Frequency" in study.rocks else math.nan
+    return f"below {number(math.log(20.0) * most)}" if frequency == 0.0 and math.isfinite(most) else number(frequency)
+
+
 def lines(study):
     """A column for each line that was given, a row for each quantity, in kJ where there is energy; a star where too
     few rocks passed for it."""
@@ -232,10 +245,10 @@ def lines(study):
         few = (table["HighestQuantile"][given] < quantile_of(name)) & (table["Rocks"][given] > 0)
         rows.append((label, unit, [(number(v * factor) if values.dtype.kind == "f" else str(v)) + (FEW if less else "")
                                    for v, less in zip(values, few)]))
-    often = study.places["AnnualFrequency"][given] if study.places else np.full(len(given), np.nan)
-    if np.isfinite(often).any():
-        rows.insert(SHARES, ("a rock passes every", "a", [number(1.0 / f) if f > 0.0 else "–" for f in often]))
-        rows.insert(SHARES, ("rocks that pass", "1/a", [number(f) for f in often]))
+    yearly = study.places["AnnualFrequency"][given] if study.places else np.full(len(given), np.nan)
+    if np.isfinite(yearly).any():
+        rows.insert(SHARES, ("a rock passes every", "a", [number(1.0 / f) if f > 0.0 else "–" for f in yearly]))
+        rows.insert(SHARES, ("rocks that pass", "1/a", [often(study, k) for k in given]))
     return side_by_side([str(table["LineName"][k]) for k in given], rows)
 
 
@@ -271,6 +284,30 @@ def design(study):
             "reached": any(row["Rocks"] for row in levels),
             "more": max(0, len(sources) - MOST_SOURCES)})
     return made
+
+
+def passing(study, name):
+    """Of a line by its name: how many pass, how often, with how much energy."""
+    energy = charts.first_passings(study, name)[1]
+    texts = []
+    for value, low, high in (charts.share(len(energy), len(study.rocks)), charts.quantile(energy)):
+        known = math.isfinite(low)
+        texts.append(number(value) + (f" ({number(low)} to {number(high)})" if known else FEW if math.isfinite(value) else ""))
+    row = list(study.lines["LineName"]).index(name)
+    return texts[0], often(study, row), texts[1]
+
+
+def beside(study, other):
+    """Of lines of one name in two studies what passes them, and in what the studies differ."""
+    has = [] if study.lines is None or other.lines is None else [
+        str(study.lines["LineName"][k]) for k in study.given_lines() if study.lines["LineName"][k] in list(other.lines["LineName"])]
+    if not has:
+        raise Bad(f"{other.folder}: no line has the name of one of {study.folder}")
+    names = ("rocks that pass, %", "rocks that pass, 1/a", "energy, 95 %, kJ")
+    rows = [(name if k == 0 else "", label, *cells) for name in has
+            for k, (label, *cells) in enumerate(zip(names, passing(study, name), passing(other, name)))]
+    return {"name": other.name, "rows": rows, "differs": differences(study.given, other.given),
+            "counts": [(len(one.rocks), one.iterations) for one in (study, other)]}
 
 
 def number_or_zero(value):

@@ -94,7 +94,8 @@ own = finished.Study("whole")
 own.places.columns["AnnualFrequency"] = np.where(own.places["Rocks"] > 0, 0.25, 0.0)
 rows = [row for table in tables.lines(own) for row in table["rows"]]
 assert ("a rock passes every", "a", ["4", "–"]) in rows and not tables.fixed_volumes(own), rows
-own.rocks.columns["SourceId"] = np.zeros(12)
+own.rocks.columns.update(SourceId=np.zeros(12), Frequency=np.full(12, 0.04))
+assert [tables.often(own, k) for k in own.given_lines()] == ["0.25", "below 0.03"]  # ln 20 · 0.04 / 4
 tables.MANY_VOLUMES = 3  # of one source: those of a law
 assert tables.fixed_volumes(own) == 3
 delete_sources()
@@ -175,6 +176,17 @@ assert "6 rocks, 3 releases in 2 iterations" in text and "from 20 kJ/m³ of norm
 few = own.bodies.rows(np.arange(4), Piece=np.array([0.0, 1.0, 2.0, 0.0]), StartX=np.array([0.0, 5.0, 5.0, 0.0]),
                       StopX=np.array([5.0, 30.0, 9.0, 7.0]), StartY=np.zeros(4), StopY=np.zeros(4))
 assert list(finished.released(few)["RunOut"]) == [30.0, 7.0]
+
+# A variant beside it: the same lines, and in what it differs.
+finish("variant", {**study, "terrain": {name: value for name, value in study["terrain"].items() if name != "BarrierFile"}})
+assert "Report: beside.html" in run("report.py", "whole", "--beside", "variant", "--output", "beside.html")
+with open("beside.html", encoding="utf-8") as file:
+    text = " ".join(html.unescape(re.sub(r"<[^>]*>", " ", file.read())).split())
+count = next(int(row["Rocks"]) for row in rows_of("variant/lines.csv"))
+low, high = charts.share(count, 12)[1:]
+assert f"{tables.number(100.0 * count / 12.0)} ({tables.number(low)} to {tables.number(high)})" in text
+assert "They differ in terrain BarrierFile; 12 rocks in 4 iterations, and 12 in 4" in text
+assert "pieces: no line has the name of one of whole" in run("report.py", "whole", "--beside", "pieces")
 
 # The window's menu makes the same, in a process of its own.
 scripts = os.path.join(os.environ["PV_PLUGIN_PATH"], "..", "RockfallScripts")
