@@ -9,8 +9,13 @@ namespace rockfall
 
 void LostRocks::add(Loss loss, double time, double way, int piece)
 {
-  ++(piece == 0 ? this->rocks : this->pieces);
+  this->rocks += piece == 0;
   this->unmoved += piece == 0 && way < kLeastWay;
+  if (piece > 0 && this->lastLost)
+  {
+    return;
+  }
+  this->lastLost = loss != Loss::None;
   switch (loss)
   {
     case Loss::Moving:
@@ -37,7 +42,6 @@ void LostRocks::add(const LostRocks& other)
     this->firstEnd = this->moving > 0 ? std::min(own, first) : first;
   }
   this->rocks += other.rocks;
-  this->pieces += other.pieces;
   this->moving += other.moving;
   this->overEdge += other.overEdge;
   this->inNodata += other.inNodata;
@@ -52,8 +56,8 @@ std::vector<std::string> lostNotes(const LostRocks& lost, const std::string& bef
   {
     if (count > 0)
     {
-      notes.push_back(std::to_string(count) + " of " + std::to_string(lost.rocks + lost.pieces) +
-        (lost.pieces > 0 ? " rocks and pieces " : " rocks ") + how + before + ": " + what);
+      notes.push_back(std::to_string(count) + " of " + std::to_string(lost.rocks) + " rocks " +
+        how + before + ": " + what);
     }
   };
   if (lost.endTime >= kLeastRun)

@@ -31,16 +31,16 @@ enum class Loss
 struct LostRocks
 {
   std::int64_t rocks = 0;    ///< All of them.
-  std::int64_t pieces = 0;   ///< Of rocks that broke, which may be lost as rocks.
   std::int64_t moving = 0;   ///< Still moving at the end time.
   std::int64_t overEdge = 0; ///< Went over the edge of the DEM.
   std::int64_t inNodata = 0; ///< Fell into a hole of nodata.
   std::int64_t unmoved = 0;  ///< Lie where they were released.
   double endTime = 0.0;      ///< Of the longest of those that still move, s.
   double firstEnd = 0.0;     ///< Of the shortest run of which some still move, s; 0: of the same.
+  bool lastLost = false;     ///< The rock that was added last is one of those.
 
-  /// A rock that ended at `time`, s, and got `way` away from its start, m; or a `piece` of it, which
-  /// may be lost but is no rock more.
+  /// A rock that ended at `time`, s, and got `way` away from its start, m; or a `piece` of the
+  /// last rock, which is lost if one of its pieces is.
   void add(Loss loss, double time, double way, int piece = 0);
   void add(const LostRocks& other);
   std::int64_t lost() const { return moving + overEdge + inNodata; }

@@ -19,8 +19,10 @@ from wholefile import write_text
 
 OF_CHUNK = ("StateHash", "Iterations", "Notes")  # beside the columns of its table
 COUNTED = re.compile(r"(\d+) of (\d+) rocks (.*)", re.DOTALL)  # how the Core says how many it lost
+BROKE = re.compile(r"\d+ of \d+ rocks (broke in impacts of \S+ J/m³ or more)"
+                   r"(?:, into \d+ pieces in all; \S+ %( .*)|:.*)", re.DOTALL)
 STILL = re.compile(r"(None of )\d+( rocks .*)", re.DOTALL)
-ORDER = ("Iteration", "RockId", "BlockId", "Line", "Passing")  # of crossings
+ORDER = ("Iteration", "RockId", "BlockId", "Piece", "Line", "Passing")  # of crossings; Piece where rocks break
 # All that the tables of lines and the design of barriers are made of; of millions of crossings no more is in memory.
 COUNTED_BY = (*ORDER, "KineticEnergy", "HeightOverGround", "Velocity", "TopHeight", "SourceId", "Frequency")
 RESULTS = "results.json"  # not study.json, which is what a study is called that goes in
@@ -59,29 +61,42 @@ def combine_tables(folder, stems):
     hashes = []
     notes = []
     rocks = 0
+    broken = np.zeros(5)  # rocks, those that broke, pieces, mass of those that broke and of what is not followed
 
     def tables():
-        nonlocal rocks
+        nonlocal rocks, broken
         for stem in stems:
             with np.load(stem + ".npz") as chunk:
                 table = {name: chunk[name] for name in chunk.files if name not in OF_CHUNK}
                 hashes.append(str(chunk["StateHash"]))
                 notes.append([str(note) for note in chunk["Notes"]])
-            rocks += len(table["FateCode"])
+            rocks += np.count_nonzero(table["Piece"] == 0) if "Piece" in table else len(table["FateCode"])
+            if "Piece" in table:
+                whole = table["Piece"] == 0
+                first = whole & (table["Fate"] == "broken")
+                broken += (whole.sum(), first.sum(), table["Pieces"].sum(), table["Mass"][first].sum(),
+                           table["FinesMass"].sum())
             yield table
 
     write_table(os.path.join(folder, "summary.csv"), tables())
-    return hashes, notes_of_all(notes, rocks)
+    return hashes, notes_of_all(notes, rocks, broken)
 
 
-def notes_of_all(notes, rocks):
+def notes_of_all(notes, rocks, broken=()):
     """The runs' notes on whom they lost, of each chunk, as those of one run of so many rocks."""
-    counts = {}
+    counts, broke, lost = {}, "", ""
     for note in (note for of_chunk in notes for note in of_chunk):
+        if found := BROKE.fullmatch(note):
+            broke, lost = found.group(1), found.group(2) or lost
+            continue
         found = COUNTED.fullmatch(note)
         how = found.group(3) if found else note
         counts[how] = counts.get(how, 0) + int(found.group(1) if found else 0)
     texts = [f"{count} of {rocks} rocks {how}" for how, count in counts.items() if count]
+    if broke:
+        released, count, pieces, mass, fines = broken
+        texts.append(f"{count:.0f} of {released:.0f} rocks {broke}" + (
+            f", into {pieces:.0f} pieces in all; {100.0 * fines / mass:.3g} %{lost}" if count else ""))
     # Nothing moved, if that is so of each chunk.
     still = [found.groups() for of_chunk in notes for note in of_chunk if (found := STILL.fullmatch(note))]
     if still and len(still) == len(notes):
@@ -111,7 +126,7 @@ def crossing_tables(stems):
         names = names or list(table)
         if list(table) != names:
             refuse(f"{stem}-crossings.vtp: its columns are not those of the chunks before it")
-        order = np.lexsort([table[name] for name in reversed(ORDER)])
+        order = np.lexsort([table[name] for name in reversed(ORDER) if name in table])
         yield {name: column[order] for name, column in table.items()}
     if not names:
         yield empty

@@ -119,9 +119,14 @@ class Enough:
 
     def add(self, stem):
         with np.load(stem + ".npz") as chunk:
-            self.total += len(chunk["Iteration"])
+            # Where rocks break, the pieces of each stand behind it: the farthest counts.
+            rows, breaking = len(chunk["Iteration"]), "Piece" in chunk.files
+            first = np.flatnonzero(chunk["Piece"] == 0) if breaking else np.arange(rows)
+            self.total += len(first)
             if self.until["quantity"] == REACH:
-                self.ways.extend(chunk["RunOut"])
+                rock = np.searchsorted(first, np.arange(rows), side="right") - 1
+                ways = np.hypot(*(chunk["Stop" + axis] - chunk["Start" + axis][first][rock] for axis in "XY"))
+                self.ways.extend(np.maximum.reduceat(ways, first) if breaking else chunk["RunOut"])
                 return
         reader = vtkXMLPolyDataReader()
         reader.SetFileName(stem + "-crossings.vtp")

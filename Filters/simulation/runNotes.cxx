@@ -6,6 +6,7 @@
 #include "shared/errorReport.h"
 #include "simulation/jointFaces.h"
 #include "simulation/progressText.h"
+#include "statistics/lost.h"
 #include "terrain/Obstacles.h"
 
 #include <algorithm>
@@ -100,7 +101,7 @@ std::vector<std::string> brokenNotes(
   const BrokenRocks& broken, const SimulationParameters& parameters)
 {
   const Fragmentation& law = parameters.fragmentation;
-  if (!law.on)
+  if (!law.on || (broken.broken == 0 && parameters.endTime < kLeastRun))
   {
     return {};
   }
