@@ -9,7 +9,7 @@ namespace rockfall
 
 void LostRocks::add(Loss loss, double time, double way, int piece)
 {
-  this->rocks += piece == 0;
+  ++(piece == 0 ? this->rocks : this->pieces);
   this->unmoved += piece == 0 && way < kLeastWay;
   if (piece > 0 && this->lastLost)
   {
@@ -42,6 +42,7 @@ void LostRocks::add(const LostRocks& other)
     this->firstEnd = this->moving > 0 ? std::min(own, first) : first;
   }
   this->rocks += other.rocks;
+  this->pieces += other.pieces;
   this->moving += other.moving;
   this->overEdge += other.overEdge;
   this->inNodata += other.inNodata;
