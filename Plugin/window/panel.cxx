@@ -31,7 +31,7 @@ QMainWindow* mainWindow()
 
 void narrowChoices(QMainWindow* window)
 {
-  constexpr int letters = 12;
+  constexpr int narrow = 120; // px
   auto* panel = window->findChild<QDockWidget*>("propertiesDock");
   const QList<QComboBox*> choices = panel ? panel->findChildren<QComboBox*>() : QList<QComboBox*>();
   for (QComboBox* choice : choices)
@@ -43,11 +43,10 @@ void narrowChoices(QMainWindow* window)
     }
     auto* property = qobject_cast<pqPropertyWidget*>(parent);
     const QString group = property ? property->proxy()->GetXMLGroup() : "";
-    if ((group == "sources" || group == "filters") &&
-      choice->sizeAdjustPolicy() != QComboBox::AdjustToMinimumContentsLengthWithIcon)
+    if ((group == "sources" || group == "filters") && choice->minimumWidth() < narrow)
     {
-      choice->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
-      choice->setMinimumContentsLength(letters);
+      choice->setMinimumWidth(narrow);
+      choice->setSizePolicy(QSizePolicy::Ignored, QSizePolicy::Fixed);
       choice->view()->setMinimumWidth(choice->view()->sizeHintForColumn(0));
     }
   }
