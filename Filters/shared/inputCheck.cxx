@@ -10,6 +10,7 @@
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
+#include "vtkFloatArray.h"
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
@@ -140,9 +141,29 @@ void checkNumbers(vtkDataArray* array, const ArrayRule& rule, const std::string&
   }
 }
 
+/// Whether all points are finite, so that those of each cell need no look.
+bool areFinite(vtkPoints* points)
+{
+  const auto all = [](auto* numbers)
+  {
+    const auto* const first = numbers->GetPointer(0);
+    return std::all_of(
+      first, first + numbers->GetNumberOfValues(), [](double x) { return std::isfinite(x); });
+  };
+  vtkDataArray* data = points ? points->GetData() : nullptr;
+  if (auto* doubles = vtkDoubleArray::SafeDownCast(data))
+  {
+    return all(doubles);
+  }
+  auto* floats = vtkFloatArray::SafeDownCast(data);
+  return floats && all(floats);
+}
+
 /// Where the cells begin and end, and that their points are there and finite.
 struct CheckCells
 {
+  bool finite; ///< All points are.
+
   template <typename State>
   void operator()(State& state, vtkPoints* points, const std::string& name, const char* kind) const
   {
@@ -170,6 +191,10 @@ struct CheckCells
         {
           throw DataError(name + "'s " + kind + " refer to point " + std::to_string(id) +
             ", there are " + std::to_string(pointCount));
+        }
+        if (finite)
+        {
+          continue;
         }
         double p[3];
         points->GetPoint(id, p);
@@ -241,10 +266,11 @@ void checkPolyData(vtkPolyData* data, InputKind kind, const std::string& name)
   const std::pair<vtkCellArray*, const char*> cells[] = { { data->GetVerts(), "vertices" },
     { data->GetLines(), "lines" }, { data->GetPolys(), "polygons" },
     { data->GetStrips(), "strips" } };
+  const bool finite = areFinite(points);
   vtkIdType count = 0;
   for (const auto& [array, what] : cells)
   {
-    array->Visit(CheckCells(), points, name, what);
+    array->Visit(CheckCells{ finite }, points, name, what);
     count += array->GetNumberOfCells();
   }
   checkTuples(data->GetPointData(), data->GetNumberOfPoints(), name, "point");
