@@ -2,9 +2,9 @@
 
 #include "base/hectare.h"
 #include "base/text/numberText.h"
+#include "geometry/twins.h"
 #include "terrain/Terrain.h"
 #include "terrain/doubt.h"
-#include "terrain/twins.h"
 
 #include <algorithm>
 #include <cmath>

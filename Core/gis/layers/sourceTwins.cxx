@@ -1,7 +1,7 @@
 #include "gis/layers/sourceTwins.h"
 
 #include "base/text/numberText.h"
-#include "terrain/twins.h"
+#include "geometry/twins.h"
 
 #include <algorithm>
 #include <cmath>

@@ -11,7 +11,7 @@
 namespace rockfall::gis
 {
 
-/// Notes of rows that release again the rocks of another one at the same place (terrain/twins.h), or
+/// Notes of rows that release again the rocks of another one at the same place (geometry/twins.h), or
 /// over a part of it. Their number and name make no difference.
 void tellSourceTwins(
   const std::vector<SourceRow>& rows, const std::string& fileName, std::vector<std::string>& notes);

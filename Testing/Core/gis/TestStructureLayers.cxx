@@ -1,12 +1,12 @@
 // Embankments, trees and barriers from layers, and the message of each bad one.
 
 #include "base/errors.h"
+#include "geometry/twins.h"
 #include "gis/layers/structureLayers.h"
 #include "gisFiles.h"
 #include "slopes.h"
 #include "terrain/Obstacles.h"
 #include "terrain/plausible.h"
-#include "terrain/twins.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "terrain/twins.h"
+#include "geometry/twins.h"
 
 #include <Eigen/Geometry>
 

@@ -1,7 +1,7 @@
 #include "base/abort.h"
 #include "base/random.h"
 #include "geometry/planeSampling.h"
-#include "terrain/twins.h"
+#include "geometry/twins.h"
 
 #include <Eigen/Geometry>
 

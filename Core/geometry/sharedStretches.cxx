@@ -1,5 +1,5 @@
 #include "base/abort.h"
-#include "terrain/twins.h"
+#include "geometry/twins.h"
 
 #include <algorithm>
 #include <cmath>
