@@ -60,7 +60,8 @@ public:
   /// Whether they are pushed anew in each iteration.
   bool pushesAnew() const { return parameters_.pushRocksApart && start_.empty(); }
 
-  /// The trajectories of a unit, in the order of its rocks, each with its pieces behind it; `goOn` and `enough` as in World::run.
+  /// The trajectories of a unit, in the order of its rocks, each with its pieces behind it; `goOn`
+  /// and `enough` as in World::run.
   std::vector<Trajectory> simulate(std::int64_t unit, const std::function<bool(double)>& goOn = {},
     double enough = std::numeric_limits<double>::infinity()) const;
 
