@@ -14,25 +14,32 @@ namespace rockfall
 
 void Fragmentation::validate() const
 {
-  const auto require =
-    [](bool good, double value, const char* field, const char* unit, const char* wanted)
+  const auto require = [](bool good, double value, const char* field, const std::string& wanted)
   {
     if (!good || !std::isfinite(value))
     {
-      throw ParameterError(std::string(field) + " is " + numberText(value) + unit +
-        ", with Fragmentation it must be " + wanted);
+      throw ParameterError(std::string(field) + " is " + numberText(value) + wanted);
     }
   };
-  require(this->energy > 0.0, this->energy, "FragmentationEnergy", " J/m³", "positive and finite");
-  require(this->fractalDimension > 0.0 && this->fractalDimension < 3.0, this->fractalDimension,
-    "FractalDimension", "", "more than 0 and less than 3");
-  require(this->leastVolume >= kLeastVolume, this->leastVolume, "LeastFragment", " m³",
-    "at least 1e-9 m³, the volume of the smallest piece to be followed");
-  require(
-    this->survival >= 0.0 && this->survival <= 1.0, this->survival, "SurvivalRate", "", "0 to 1");
-  require(this->loss >= 0.0 && this->loss <= 1.0, this->loss, "FragmentationLoss", "", "0 to 1");
+  // Three have no default: 0 says that nothing is typed, and is refused only where rocks break.
+  const std::string must = this->on ? ", with Fragmentation it must be " : ", it must be ";
+  const std::string lower = this->on ? "positive and finite" : "finite and not negative";
+  require(this->on ? this->energy > 0.0 : this->energy >= 0.0, this->energy, "FragmentationEnergy",
+    " J/m³" + must + lower);
+  require(this->on ? this->fractalDimension > 0.0 && this->fractalDimension < 3.0
+                   : this->fractalDimension >= 0.0 && this->fractalDimension <= 3.0,
+    this->fractalDimension, "FractalDimension",
+    must + (this->on ? "more than 0 and less than 3" : "0 to 3"));
+  require(this->on ? this->leastVolume >= kLeastVolume : this->leastVolume >= 0.0,
+    this->leastVolume, "LeastFragment",
+    " m³" + must +
+      (this->on ? "at least 1e-9 m³, the volume of the smallest piece to be followed"
+                : "finite and not negative"));
+  require(this->survival >= 0.0 && this->survival <= 1.0, this->survival, "SurvivalRate",
+    must + "0 to 1");
+  require(this->loss >= 0.0 && this->loss <= 1.0, this->loss, "FragmentationLoss", must + "0 to 1");
   require(this->spread >= 0.0 && this->spread <= radians(90.0), degrees(this->spread),
-    "FragmentSpread", "°", "0 to 90");
+    "FragmentSpread", "°" + must + "0 to 90");
 }
 
 void SimulationParameters::validate() const
@@ -100,14 +107,11 @@ void SimulationParameters::validate() const
   }
   atMost(this->rockCohesion, kMostCohesion, "RockCohesion", " N");
   validateRockContacts(this->rockContactPairs);
-  if (this->fragmentation.on)
+  this->fragmentation.validate();
+  if (this->fragmentation.on && this->rockRockContact)
   {
-    this->fragmentation.validate();
-    if (this->rockRockContact)
-    {
-      throw ParameterError("Fragmentation and RockRockContact are both on: rocks that break fall "
-                           "alone, one of the two must be 0");
-    }
+    throw ParameterError("Fragmentation and RockRockContact are both on: rocks that break fall "
+                         "alone, one of the two must be 0");
   }
   if (!(this->gravity >= 0.0) || !std::isfinite(this->gravity))
   {
