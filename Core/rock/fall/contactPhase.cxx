@@ -125,8 +125,11 @@ bool flyFromContact(Fall& fall, double small)
   return false;
 }
 
-/// One step of contact, halved until open–close settles.
-void takeStep(Fall& fall, double h, StepKind kind)
+/// One step of contact, halved until open–close settles: as far as steps that resolve an impact
+/// (`small`, s) whatever it takes, from there on as often as is asked for. Friction that is steep, as
+/// cohesion under small forces, has no balance in a step that resolves nothing; what is taken
+/// unsettled then can make any energy.
+void takeStep(Fall& fall, double h, StepKind kind, double small)
 {
   RockBody& body = fall.body;
   body.before = body.state;
@@ -159,7 +162,7 @@ void takeStep(Fall& fall, double h, StepKind kind)
     lasting ? body.mechanicalEnergy(fall.parameters.gravity) + body.springEnergy : 0.0;
 
   StepOutcome outcome;
-  for (int cut = 0;; ++cut)
+  for (int cut = 0;; cut += !(request.duration >= small))
   {
     const bool last = cut >= fall.parameters.maxCuts;
     outcome = solver.step(body.block, request, body.contacts, body.state, last);
@@ -292,7 +295,7 @@ void stayInContact(Fall& fall)
     }
     else
     {
-      takeStep(fall, h, kind);
+      takeStep(fall, h, kind, small);
     }
     checkEnd(fall, body.state.time - body.before.time);
   }

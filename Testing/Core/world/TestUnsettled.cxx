@@ -2,6 +2,7 @@
 
 #include "law/settings.h"
 #include "piles.h"
+#include "randomScenes.h"
 #include "solve/island/IslandSolver.h"
 
 #include <gtest/gtest.h>
@@ -87,4 +88,37 @@ TEST(Unsettled, OneRockThatMayNotIterateHasSome)
   p.maxOpenClose = 2;
   p.maxCuts = 0;
   EXPECT_GT(simulate(floorSlope(), rock, p).summary.unsettledSteps, 0);
+}
+
+// Cohesion of a hundred thousand times their weight is friction of 87° where it sets in, which has no
+// balance in a step that does not resolve the springs; what is taken without one makes energy.
+TEST(Unsettled, NeedlesOfStrongCohesionHaveNoneAndGainNothing)
+{
+  SurfaceMaterial sticky = material(0.6, 25.0);
+  sticky.cohesion = 16.0; // N
+  const Terrain ground = makeSlope(
+    3, 1.0, [](double, double) { return 0.0; }, sticky);
+  for (const std::uint64_t seed : { 5, 6, 9 })
+  {
+    SceneDraw draw(seed);
+    Rock rock;
+    rock.shape = makeBox(Vec3(0.012, 0.0007, 0.0005));
+    rock.density = 1500.0;
+    const double w = draw.even(-1.0, 1.0), x = draw.even(-1.0, 1.0), y = draw.even(-1.0, 1.0);
+    rock.orientation = Quat(w, x, y, draw.even(-1.0, 1.0)).normalized();
+    double lowest = 0.0;
+    for (const Vec3& vertex : rock.shape.vertices())
+    {
+      lowest = std::min(lowest, (rock.orientation * vertex).z());
+    }
+    rock.position = Vec3(1.0, 1.0, 1e-6 - lowest);
+    SimulationParameters p;
+    p.timeStep = 0.026;
+    p.normalPenalty = 1e8;
+    p.rigid = true;
+    p.endTime = 0.05;
+    const TrajectorySummary fallen = simulate(ground, rock, p).summary;
+    EXPECT_EQ(fallen.unsettledSteps, 0) << seed;
+    EXPECT_GE(fallen.energy.damping, 0.0) << seed;
+  }
 }
