@@ -161,7 +161,7 @@ std::span<const GroundPreset> groundPresets()
   return presets;
 }
 
-const GroundPreset& groundPreset(const std::string& name)
+const GroundPreset& groundPreset(std::string_view name)
 {
   // Panels say behind it what it rests on: Meadow (field data).
   const std::string wanted = nameKey(name.substr(0, name.find('(')));
@@ -174,7 +174,7 @@ const GroundPreset& groundPreset(const std::string& name)
     }
     names += (names.empty() ? "" : ", ") + std::string(preset.name);
   }
-  throw DataError("\"" + name + "\" is no preset; there are " + names);
+  throw DataError("\"" + std::string(name) + "\" is no preset; there are " + names);
 }
 
 int usualPreset()

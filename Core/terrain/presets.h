@@ -10,6 +10,7 @@
 
 #include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -61,7 +62,7 @@ struct GroundPreset
 std::span<const GroundPreset> groundPresets();
 /// By name, not case-sensitive, with or without what panels say in brackets. Throws DataError that
 /// lists the names.
-const GroundPreset& groundPreset(const std::string& name);
+const GroundPreset& groundPreset(std::string_view name);
 
 /// Properties of DEM to CFE Mesh and what a preset, from 1, makes of them, in the panel's units.
 /// Nothing for 0, no preset.
