@@ -159,54 +159,52 @@ bool areFinite(vtkPoints* points)
   return floats && all(floats);
 }
 
-/// Where the cells begin and end, and that their points are there and finite.
-struct CheckCells
+/// Where the cells begin and end, and that their points are there and finite. `finite`: all points are.
+void checkCells(vtkCellArray* cells, vtkPoints* points, bool finite, const std::string& name,
+  const std::string& kind)
 {
-  bool finite; ///< All points are.
-
-  template <typename State>
-  void operator()(State& state, vtkPoints* points, const std::string& name, const char* kind) const
+  // Of any storage, as numbers that are exact up to 2^53.
+  vtkDataArray* offsets = cells->GetOffsetsArray();
+  vtkDataArray* ids = cells->GetConnectivityArray();
+  constexpr int digits = 17;
+  const vtkIdType count = offsets->GetNumberOfValues() - 1, last = ids->GetNumberOfValues();
+  const vtkIdType pointCount = points ? points->GetNumberOfPoints() : 0;
+  if (count < 0 || offsets->GetComponent(0, 0) != 0.0)
   {
-    auto* offsets = state.GetOffsets();
-    auto* ids = state.GetConnectivity();
-    const vtkIdType count = offsets->GetNumberOfValues() - 1, last = ids->GetNumberOfValues();
-    const vtkIdType pointCount = points ? points->GetNumberOfPoints() : 0;
-    if (count < 0 || offsets->GetValue(0) != 0)
+    throw DataError(name + "'s " + kind + " have no beginning: they are damaged");
+  }
+  for (vtkIdType k = 0; k < count; ++k)
+  {
+    const double begin = offsets->GetComponent(k, 0), end = offsets->GetComponent(k + 1, 0);
+    if (end < begin || end > double(last))
     {
-      throw DataError(name + "'s " + kind + " have no beginning: they are damaged");
+      throw DataError(name + "'s " + kind + " are damaged: number " + std::to_string(k) +
+        " goes from place " + numberText(begin, digits) + " to " + numberText(end, digits) +
+        " of " + std::to_string(last));
     }
-    for (vtkIdType k = 0; k < count; ++k)
+    for (vtkIdType at = vtkIdType(begin); at < vtkIdType(end); ++at)
     {
-      const vtkIdType begin = offsets->GetValue(k), end = offsets->GetValue(k + 1);
-      if (end < begin || end > last)
+      const double id = ids->GetComponent(at, 0);
+      if (id < 0.0 || id >= double(pointCount))
       {
-        throw DataError(name + "'s " + kind + " are damaged: number " + std::to_string(k) +
-          " goes from place " + std::to_string(begin) + " to " + std::to_string(end) + " of " +
-          std::to_string(last));
+        throw DataError(name + "'s " + kind + " refer to point " + numberText(id, digits) +
+          ", there are " + std::to_string(pointCount));
       }
-      for (vtkIdType at = begin; at < end; ++at)
+      if (finite)
       {
-        const vtkIdType id = ids->GetValue(at);
-        if (id < 0 || id >= pointCount)
-        {
-          throw DataError(name + "'s " + kind + " refer to point " + std::to_string(id) +
-            ", there are " + std::to_string(pointCount));
-        }
-        if (finite)
-        {
-          continue;
-        }
-        double p[3];
-        points->GetPoint(id, p);
-        if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
-        {
-          throw DataError(name + " has a point " + std::to_string(id) + " at (" + numberText(p[0]) +
-            ", " + numberText(p[1]) + ", " + numberText(p[2]) + "), it must be finite");
-        }
+        continue;
+      }
+      double p[3];
+      points->GetPoint(vtkIdType(id), p);
+      if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
+      {
+        throw DataError(name + " has a point " + numberText(id, digits) + " at (" +
+          numberText(p[0]) + ", " + numberText(p[1]) + ", " + numberText(p[2]) +
+          "), it must be finite");
       }
     }
   }
-};
+}
 
 /// Paths of single precision far from the origin are steps of half a metre.
 void checkPrecision(vtkPolyData* data, const std::string& name)
@@ -270,7 +268,7 @@ void checkPolyData(vtkPolyData* data, InputKind kind, const std::string& name)
   vtkIdType count = 0;
   for (const auto& [array, what] : cells)
   {
-    array->Visit(CheckCells{ finite }, points, name, what);
+    checkCells(array, points, finite, name, what);
     count += array->GetNumberOfCells();
   }
   checkTuples(data->GetPointData(), data->GetNumberOfPoints(), name, "point");

@@ -7,11 +7,12 @@
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkCellType.h"
-#include "vtkCellTypes.h"
+#include "vtkGenericCell.h"
 #include "vtkIdList.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <array>
@@ -68,8 +69,9 @@ vtkSmartPointer<vtkPolyData> polyDataOf(vtkUnstructuredGrid* grid, const std::st
     const CellKind kind = kindOf(type);
     if (kind == Other)
     {
+      const auto such = vtk::TakeSmartPointer(vtkGenericCell::InstantiateCell(type));
       throw DataError(name + " is an unstructured grid whose cell " + std::to_string(cell) +
-        " is a " + vtkCellTypes::GetClassNameFromTypeId(type) +
+        " is a " + (such ? such->GetClassName() : "cell of type " + std::to_string(type)) +
         ": points, lines and polygons can be taken");
     }
     grid->GetCells()->GetCellAtId(cell, points);
