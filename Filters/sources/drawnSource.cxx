@@ -24,6 +24,9 @@ constexpr int kNodesAcross = 200;
 constexpr double kSteep = 0.9;
 /// Half a line's length, in cells, and as a share of the slope's shorter side at most.
 constexpr double kHalfLength = 10.0, kMostOfSide = 0.1;
+/// Room below and beside a line, as a share of the slope's shorter side: rocks that fall at its border
+/// leave it before they say how far they go.
+constexpr double kRoom = 0.3;
 
 struct SlopePlace
 {
@@ -55,12 +58,37 @@ std::vector<SlopePlace> look(const Terrain& terrain)
   return places;
 }
 
+double shorterSide(const Terrain& terrain)
+{
+  return std::min(terrain.width(), terrain.height());
+}
+
+/// Whether rocks find the slope below a place and beside it. Downhill is that of the ground at large:
+/// a rough cell's points anywhere.
+bool hasRoom(const Terrain& terrain, const Eigen::Vector2d& place)
+{
+  const double room = kRoom * shorterSide(terrain);
+  const auto heightBeside = [&](double x, double y)
+  {
+    const double cell = terrain.geometry().cellSize;
+    const double ground = terrain.elevation(std::clamp(place.x() + x, cell, terrain.width() - cell),
+      std::clamp(place.y() + y, cell, terrain.height() - cell));
+    return std::isnan(ground) ? terrain.elevation(place.x(), place.y()) : ground;
+  };
+  const Eigen::Vector2d down(heightBeside(-room, 0.0) - heightBeside(room, 0.0),
+    heightBeside(0.0, -room) - heightBeside(0.0, room));
+  const Eigen::Vector2d way = room * down.normalized();
+  const Eigen::Vector2d aside(-way.y(), way.x());
+  const auto isOn = [&](const Eigen::Vector2d& at) { return terrain.cfeAt(at.x(), at.y()) != 0; };
+  return isOn(place + way) && isOn(place + aside) && isOn(place - aside);
+}
+
 /// A line through a place, local frame, square to a gradient, as far as the slope goes.
 std::array<double, 6> levelLine(
   const Terrain& terrain, const Eigen::Vector2d& middle, const Eigen::Vector2d& gradient)
 {
-  const double half = std::min(kHalfLength * terrain.geometry().cellSize,
-    kMostOfSide * std::min(terrain.width(), terrain.height()));
+  const double half =
+    std::min(kHalfLength * terrain.geometry().cellSize, kMostOfSide * shorterSide(terrain));
   const Eigen::Vector2d along = gradient.norm() > 0.0
     ? Eigen::Vector2d(-gradient.y(), gradient.x()).normalized()
     : Eigen::Vector2d(1.0, 0.0);
@@ -141,7 +169,13 @@ std::vector<SourceRow> drawnRows(
 
 std::array<double, 6> steepLine(const Terrain& terrain)
 {
-  const std::vector<SlopePlace> places = look(terrain);
+  std::vector<SlopePlace> places = look(terrain);
+  const auto roomy = std::stable_partition(places.begin(), places.end(),
+    [&](const SlopePlace& place) { return hasRoom(terrain, place.position.head<2>()); });
+  if (roomy != places.begin())
+  {
+    places.erase(roomy, places.end());
+  }
   double steepest = 0.0;
   for (const SlopePlace& place : places)
   {

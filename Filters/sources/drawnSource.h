@@ -20,7 +20,7 @@ namespace rockfall::filters
 std::vector<SourceRow> drawnRows(SourceGeometry geometry,
   const std::vector<std::array<double, 3>>& points, const Terrain* terrain);
 
-/// A level line across the highest of the steep places of a slope, some cells from its border, as
+/// A level line across the highest of the steep places that have slope below and beside them, as
 /// x, y, z of its two ends, in the world, on the ground.
 std::array<double, 6> steepLine(const Terrain& terrain);
 

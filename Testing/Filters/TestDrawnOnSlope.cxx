@@ -8,6 +8,7 @@
 #include "shared/terrainFieldData.h"
 
 #include <cmath>
+#include <random>
 #include <string>
 
 namespace
@@ -122,6 +123,34 @@ TEST_F(TestDrawnOnSlope, WhatNobodyPlacedStandsOnTheSlope)
     EXPECT_GT(b[2], terrain[2]);
     EXPECT_LT(b[3], terrain[3]);
     EXPECT_NEAR(b[4], 1000.0 - (b[0] - 2600002.5), 1e-6); // on its upper edge, which touches
+  }
+}
+
+// The steepest of rough cells are anywhere: rocks that begin at the border leave the slope.
+TEST_F(TestDrawnOnSlope, WhatNobodyPlacedHasSlopeBelowAndBeside)
+{
+  this->Rocks->SetDraw(vtkRockBlockSource::LINE);
+  std::mt19937 random(1);
+  constexpr int nodes = 61;
+  constexpr double cell = 2.0, side = (nodes - 1) * cell;
+  for (int slope = 0; slope < 10; ++slope)
+  {
+    std::string grid = "ncols 61\nnrows 61\nxllcorner -1\nyllcorner -1\ncellsize 2\n";
+    for (int node = 0; node < nodes * nodes; ++node)
+    {
+      const double rough = double(random() % 1000) * 1e-3;
+      grid += std::to_string(100.0 - 0.7 * cell * (node % nodes) + rough) + " ";
+    }
+    this->Slope->SetFileName(
+      this->WriteFile("rough" + std::to_string(slope) + ".asc", grid).c_str());
+    this->Blocks();
+    const double* line = this->Rocks->GetPlacedLine();
+    for (const double* end : { line, line + 3 })
+    {
+      EXPECT_LT(end[0], 0.81 * side) << "slope " << slope;
+      EXPECT_GT(end[1], 0.19 * side) << "slope " << slope;
+      EXPECT_LT(end[1], 0.81 * side) << "slope " << slope;
+    }
   }
 }
 
