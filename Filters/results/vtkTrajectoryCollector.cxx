@@ -402,8 +402,16 @@ int vtkTrajectoryCollector::RequestData(
         trajectories->GetBounds()[4] - origin.z(), origin, walls);
       vtkNew<vtkTable> table, exceedance;
       filters::writeLines(collected.summaries, lines, collected.lost, table);
-      std::ranges::move(
-        filters::lineNotes(collected.summaries, lines, collected.lost), std::back_inserter(notes));
+      if (filters::isRunning(trajectories->GetFieldData()))
+      {
+        notes.push_back("The run goes on: these are its rocks so far");
+        filters::markRunning(exceedance->GetFieldData());
+      }
+      else
+      {
+        std::ranges::move(filters::lineNotes(collected.summaries, lines, collected.lost),
+          std::back_inserter(notes));
+      }
       vtkFieldData* const told[] = { table->GetFieldData(), passings->GetFieldData() };
       filters::tellOn(told, notes, this->PrintNotes);
       filters::writeExceedance(collected.summaries, released, exceedance);

@@ -72,7 +72,7 @@ void styleProfile(vtkSMProxy* representation, vtkSMViewProxy* view)
   {
     title.Set("One rock along its way");
   }
-  vtkSMPropertyHelper(view, "BottomAxisTitle").Set("Horizontal distance from the release (m)");
+  vtkSMPropertyHelper(view, "BottomAxisTitle").Set("Distance in plan (m)");
   vtkSMPropertyHelper(view, "LeftAxisTitle").Set("Speed (m/s), height (m)");
   vtkSMPropertyHelper(view, "RightAxisTitle").Set("Kinetic energy (kJ)");
   view->UpdateVTKObjects();
@@ -107,19 +107,22 @@ void followExceedance(const Shown& shown, vtkSMProxy* representation, vtkSMViewP
   representation->UpdateVTKObjects();
   const std::string usual = "Energy at the line";
   const std::string none = "No rock passes the line";
+  const std::string noneYet = "No rock has passed the line yet";
+  const bool goesOn = data->GetFieldDataInformation()->GetArrayInformation("RunGoesOn");
+  const std::string& now = any ? usual : goesOn ? noneYet : none;
   vtkSMPropertyHelper title(view, "ChartTitle");
   const std::string given = title.GetAsString() ? title.GetAsString() : "";
   // Of a second study with a number behind.
-  for (const std::string& own : { usual, none })
+  for (const std::string& own : { usual, none, noneYet })
   {
     if (given.starts_with(own))
     {
-      title.Set(((any ? usual : none) + given.substr(own.size())).c_str());
+      title.Set((now + given.substr(own.size())).c_str());
     }
   }
   if (given.empty())
   {
-    title.Set((any ? usual : none).c_str());
+    title.Set(now.c_str());
   }
   view->UpdateVTKObjects();
 }

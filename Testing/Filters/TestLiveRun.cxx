@@ -4,6 +4,8 @@
 #include "vtkIntArray.h"
 #include "vtkPointData.h"
 #include "vtkRockfallHazardMap.h"
+#include "vtkStringArray.h"
+#include "vtkTrajectoryCollector.h"
 
 #include <chrono>
 #include <thread>
@@ -173,6 +175,39 @@ TEST_F(TestLiveRun, MapsOfARunThatHasMadeNothingAreEmpty)
   EXPECT_TRUE(this->Heard->Errors.empty());
   this->Simulation->Stop();
   this->AskUntilOver();
+}
+
+TEST_F(TestLiveRun, ALineIsNotCalledUnreachedBeforeTheEnd)
+{
+  this->Simulation->SetIterations(100000);
+  this->Simulation->GetNeedsUpdate();
+  this->Simulation->Update();
+  while (this->Output(1)->GetNumberOfCells() == 0)
+  {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    this->Simulation->Modified();
+  }
+  vtkNew<vtkTrajectoryCollector> line;
+  line->SetInputConnection(this->Simulation->GetOutputPort(1));
+  line->AddPoint(199.0, 1.0, 0.0); // at the far end
+  line->AddPoint(199.0, 99.0, 0.0);
+  const auto notes = [&line]
+  {
+    line->Update();
+    auto* all = vtkStringArray::SafeDownCast(
+      line->GetOutputDataObject(1)->GetFieldData()->GetAbstractArray("Notes"));
+    std::string text;
+    for (vtkIdType k = 0; all && k < all->GetNumberOfValues(); ++k)
+    {
+      text += all->GetValue(k);
+    }
+    return text;
+  };
+  EXPECT_EQ(notes(), "The run goes on: these are its rocks so far");
+  this->Simulation->Stop();
+  this->AskUntilOver();
+  this->Simulation->GetNeedsUpdate(); // as the window asks after the last one
+  EXPECT_EQ(notes().rfind("No rock reached line", 0), 0U) << notes();
 }
 
 TEST_F(TestLiveRun, ErrorsComeAsEver)
