@@ -155,6 +155,13 @@ bool isSeenOn(const std::array<Place, 2>& line, const double* point)
   return away <= kSeen * kSeen * part * part * length;
 }
 
+/// The first place of a slope along a line of sight.
+std::optional<Place> slopeOn(const std::array<Place, 2>& sight)
+{
+  return ofSlopes(
+    [&sight](Heights& heights, vtkPolyData* mesh) { return heights.on(mesh, sight[0], sight[1]); });
+}
+
 /// The place of the slope under the mouse for a point that ParaView has picked beside it: where P is
 /// pressed on a map or a path, which lie on the slope, it gives 0, 0, 0 or the height 0.
 std::optional<Place> pickedAnew(const double* point)
@@ -165,12 +172,14 @@ std::optional<Place> pickedAnew(const double* point)
   }
   const auto sight = sightUnderMouse();
   const bool none = point[0] == 0.0 && point[1] == 0.0;
-  if (!sight || !(none || isSeenOn(*sight, point)))
-  {
-    return {};
-  }
-  return ofSlopes([&sight](Heights& heights, vtkPolyData* mesh)
-    { return heights.on(mesh, (*sight)[0], (*sight)[1]); });
+  return sight && (none || isSeenOn(*sight, point)) ? slopeOn(*sight) : std::nullopt;
+}
+
+/// Whether points of it are drawn in a view.
+bool isDrawn(vtkSMSourceProxy* proxy)
+{
+  return isOf(proxy, { "vtkRockBlockSource", "vtkTrajectoryCollector", "vtkDrawnStructure" }) &&
+    proxy->GetProperty("Points");
 }
 
 /// Whether somebody types into the table of points, whose editor closes when points are set.
@@ -195,12 +204,16 @@ std::optional<double> groundAt(double x, double y)
   return ground ? std::optional<double>(std::round(*ground / kNear) * kNear) : std::nullopt;
 }
 
+bool missesSlope(pqPipelineSource* source)
+{
+  const auto sight = sightUnderMouse();
+  return source && isDrawn(source->getSourceProxy()) && sight && !slopeOn(*sight);
+}
+
 void layHandles(pqPipelineSource* source)
 {
   vtkSMSourceProxy* proxy = source ? source->getSourceProxy() : nullptr;
-  if (QGuiApplication::mouseButtons() != Qt::NoButton || isTyping() ||
-    !isOf(proxy, { "vtkRockBlockSource", "vtkTrajectoryCollector", "vtkDrawnStructure" }) ||
-    !proxy->GetProperty("Points"))
+  if (QGuiApplication::mouseButtons() != Qt::NoButton || isTyping() || !isDrawn(proxy))
   {
     return;
   }

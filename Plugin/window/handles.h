@@ -15,6 +15,10 @@ namespace rockfall::window
 /// slope. Nothing while a button of the mouse is pressed.
 void layHandles(pqPipelineSource* source);
 
+/// Whether ParaView's key P, which puts a drawn point of this source or filter under the mouse of the
+/// active view, finds no slope there.
+bool missesSlope(pqPipelineSource* source);
+
 /// The height of a slope that is there, m, in whole cm; nothing beyond all of them.
 std::optional<double> groundAt(double x, double y);
 

@@ -299,13 +299,13 @@ void style(vtkSMProxy* representation)
   }
   else if (is(shown, "vtkDEMToCFESource", 1) || is(shown, "vtkDrawnStructure", 1))
   {
-    // Thin as nets are, they are seen by their edges.
+    // Thin as nets and stems are, they are seen by their edges.
     setColour(representation, kBuilt);
     if (auto* built = vtkSMRepresentationProxy::SafeDownCast(representation))
     {
       built->SetRepresentationType("Surface With Edges");
     }
-    set(representation, "EdgeColor", kLine[0], kLine[1], kLine[2]);
+    set(representation, "EdgeColor", 0.5 * kBuilt[0], 0.5 * kBuilt[1], 0.5 * kBuilt[2]);
     set(representation, "LineWidth", kBuiltWidth);
   }
   else if (is(shown, "vtkRockfallHazardMap", 1))

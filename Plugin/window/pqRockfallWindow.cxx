@@ -44,6 +44,7 @@
 #ifdef ROCKFALL_OPENS_HELP
 #include <QHelpEngine>
 #endif
+#include <QKeyEvent>
 #include <QMainWindow>
 #include <QMenu>
 #include <QMenuBar>
@@ -65,6 +66,11 @@ using rockfall::window::NotUndone;
 constexpr int kLookAtPanel = 500;  // ms
 constexpr int kLookForWindow = 20; // ms
 constexpr int kReadNotes = 30000;  // ms
+
+/// Frames a second of films, unless the user has saved others: real time at the default output interval,
+/// where ParaView has 1.
+constexpr const char* kFilms = R"({"misc": {"SaveAnimation": {"FrameRate": 20}}})";
+constexpr double kBelowUser = 0.5; // priority of settings
 
 /// The folder of the scripts, beside that of this plugin: ParaView would take them for plugins
 /// there.
@@ -90,14 +96,13 @@ bool isOurs(vtkSMProxy* proxy)
       "vtkTrajectoryCollector" });
 }
 
-/// Whether no other slope is seen: of an earlier study it is hidden.
-bool isFirstSlope(vtkSMProxy* representation)
+/// Whether no other slope is seen in its view: of an earlier study it is hidden.
+bool isFirstSlope(pqRepresentation* representation)
 {
-  auto* model = pqApplicationCore::instance()->getServerManagerModel();
-  for (pqDataRepresentation* other : model->findItems<pqDataRepresentation*>())
+  for (pqRepresentation* other : representation->getView()->getRepresentations())
   {
     const rockfall::window::Shown shown = rockfall::window::shownBy(other->getProxy());
-    if (other->getProxy() != representation && other->isVisible() &&
+    if (other != representation && other->isVisible() &&
       isOf(shown.source, { "vtkDEMToCFESource" }) && shown.port == 0)
     {
       return false;
@@ -188,6 +193,8 @@ void pqRockfallWindow::begin()
     this->connect(undo, &pqUndoStack::undone, this, &pqRockfallWindow::keepOwnEnd);
     this->connect(undo, &pqUndoStack::redone, this, &pqRockfallWindow::keepOwnEnd);
   }
+  QCoreApplication::instance()->installEventFilter(this);
+  vtkSMSettings::GetInstance()->AddCollectionFromString(kFilms, kBelowUser);
   this->makeMenu(window);
   const QString pages = scriptFolder() + "/RockfallDDA.qch";
   if (QFileInfo::exists(pages))
@@ -201,6 +208,24 @@ void pqRockfallWindow::begin()
 #endif
     application->registerDocumentation(pages);
   }
+}
+
+//-----------------------------------------------------------------------------
+bool pqRockfallWindow::eventFilter(QObject* watched, QEvent* event)
+{
+  // As a shortcut a key comes before its press, which a shortcut that is taken leaves out.
+  if (event->type() == QEvent::ShortcutOverride || event->type() == QEvent::KeyPress)
+  {
+    auto* view = qobject_cast<pqRenderView*>(pqActiveObjects::instance().activeView());
+    auto* widget = qobject_cast<QWidget*>(watched);
+    if (static_cast<QKeyEvent*>(event)->key() == Qt::Key_P && view && widget &&
+      (widget == view->widget() || view->widget()->isAncestorOf(widget)) &&
+      rockfall::window::missesSlope(pqActiveObjects::instance().activeSource()))
+    {
+      this->tell(tr("There is no slope under the mouse: the point stays where it is"));
+    }
+  }
+  return this->Superclass::eventFilter(watched, event);
 }
 
 //-----------------------------------------------------------------------------
@@ -446,6 +471,7 @@ void pqRockfallWindow::meetStructure()
 //-----------------------------------------------------------------------------
 void pqRockfallWindow::onPicked(pqOutputPort* port, int cell)
 {
+  this->tell(QString());
   this->runPython(QString("profile(%1, %2, %3)")
                     .arg(quoted(port->getSource()->getSMName()))
                     .arg(port->getPortNumber())
@@ -458,6 +484,7 @@ void pqRockfallWindow::tell(const QString& message)
   if (QMainWindow* window = mainWindow())
   {
     window->statusBar()->showMessage(message, kReadNotes);
+    window->statusBar()->setStatusTip(message); // comes back under the mouse
   }
 }
 
@@ -467,13 +494,13 @@ void pqRockfallWindow::onRepresentation(pqRepresentation* added)
   vtkSMProxy* representation = added->getProxy();
   const rockfall::window::Shown shown = rockfall::window::shownBy(representation);
   rockfall::window::style(representation);
-  const bool first = shown.source && shown.port == 0 &&
-    isOf(shown.source, { "vtkDEMToCFESource" }) && isFirstSlope(representation) &&
+  const bool slope = shown.source && shown.port == 0 &&
+    isOf(shown.source, { "vtkDEMToCFESource" }) &&
     !pqApplicationCore::instance()->isLoadingState(); // which has a camera of its own
   // Legends and cameras are set by ParaView after it has made a representation.
   QPointer<pqRepresentation> later = added;
   QTimer::singleShot(0, this,
-    [later, shown, first]
+    [later, shown, slope]
     {
       pqView* view = later ? later->getView() : nullptr;
       if (!view)
@@ -482,7 +509,7 @@ void pqRockfallWindow::onRepresentation(pqRepresentation* added)
       }
       const NotUndone own;
       rockfall::window::styleIn(later->getProxy(), view->getViewProxy());
-      if (first)
+      if (slope && isFirstSlope(later))
       {
         rockfall::window::lookFromValley(shown.source, view->getViewProxy());
       }

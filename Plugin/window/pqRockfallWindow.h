@@ -36,6 +36,10 @@ public:
   /// Waits for the window, which comes after its plugins.
   void begin();
 
+protected:
+  /// Says why ParaView's key P does nothing beside the slope.
+  bool eventFilter(QObject* watched, QEvent* event) override;
+
 private Q_SLOTS:
   void onSource(pqPipelineSource* source);
   void onMade(pqProxy* made);

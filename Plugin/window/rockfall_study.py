@@ -62,7 +62,7 @@ def _study_on(slope, view, chart, name):
     simple.Show(simple.OutputPort(line, 3), view)
     simple.Show(simple.OutputPort(hazard, 1), view)
     _show_curve(line, chart, name("Energy at the line"))
-    clock(view)
+    clock(view, name("Clock"))
     ground(slope, view, name("Ground"))
     simple.SetActiveView(view)
     simple.SetActiveSource(release)
@@ -133,15 +133,26 @@ def profile(source_name, port, trajectory):
         for chart in simple.GetViews(viewtype="XYChartView"):
             if any(shown.Input.SMProxy == made.SMProxy for shown in chart.Representations):
                 chart.ChartTitle = title
+    _dim_others(made)
     simple.RenderAllViews()
     return made
 
 
-def clock(view=None):
+def _dim_others(made):
+    """The paths among which one was picked: as many lines as they are they would hide it."""
+    for view in simple.GetViews(viewtype="RenderView"):
+        for shown in view.Representations:
+            source = getattr(shown, "Input", None)
+            if source and source.GetXMLName() == "GrowingPaths":
+                source = source.Input
+            if source and source.SMProxy == made.Input.SMProxy and source.Port == made.Input.Port:
+                shown.Opacity = 0.25
+
+
+def clock(view=None, name="Clock"):
     """The time of the animation in a corner of the view."""
     view = view or _render_view()
-    annotation = simple.FindSource("Clock") or simple.AnnotateTime(
-        registrationName="Clock", Format="Time: {time:.1f} s")
+    annotation = simple.FindSource(name) or simple.AnnotateTime(registrationName=name, Format="Time: {time:.1f} s")
     display = simple.Show(annotation, view)
     display.WindowLocation = "Upper Left Corner"
     display.FontSize = 12
@@ -205,6 +216,7 @@ def sheet(view=None):
     display = simple.Show(bar, view)
     display.LabelFormat = f"{length:g} m" if length < 1000.0 else f"{length / 1000.0:g} km"
     display.NumberOfTicks, display.AxisColor, display.AxisLineWidth = 5, ink, 2.0
+    _palette().AddLink("TextAnnotationColor", display.SMProxy, "AxisColor", True)  # as its text
     # Before the slope, where nothing hides it.
     near, size = 0.5, 0.04 * high
     foot = eye + near * (focus - eye - 0.36 * high * up + (0.5 * length + 0.06 * high) * right)
@@ -219,18 +231,23 @@ def sheet(view=None):
     display = simple.Show(letter, view)
     display.TextPropMode = "Billboard 3D Text"
     display.BillboardPosition = list(foot + size * np.array([0.0, 1.2, 0.0]))
-    display.FontSize = 16
+    display.FontSize, display.Shadow = 16, 1
     date = simple.Text(registrationName="Date", Text=time.strftime("%Y-%m-%d"))
     display = simple.Show(date, view)
     display.WindowLocation = "Upper Center"
     display.FontSize = 12
-    simple.Render(view)
+    for _ in range(2):  # the first cuts off what is nearer than all was before it
+        simple.Render(view)
+
+
+def _palette():
+    palette = simple.GetSettingsProxy("ColorPalette")
+    return getattr(palette, "SMProxy", palette)
 
 
 def _text_colour():
     """That of ParaView's palette: white on a white background would not be seen."""
-    palette = simple.GetSettingsProxy("ColorPalette")
-    colour = getattr(palette, "SMProxy", palette).GetProperty("TextAnnotationColor")
+    colour = _palette().GetProperty("TextAnnotationColor")
     return [colour.GetElement(k) for k in range(3)]
 
 

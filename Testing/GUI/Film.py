@@ -30,6 +30,9 @@ def filmed():
     fall, view, scene = simple.FindSource("Fall"), simple.GetRenderView(), simple.GetAnimationScene()
     with open(os.path.join(MOVED, "state hash"), "w") as file:
         file.write(servermanager.Fetch(fall, idx=3).GetFieldData().GetAbstractArray("StateHash").GetValue(0))
+    options = servermanager.ProxyManager().NewProxy("misc", "SaveAnimation")
+    servermanager.ParaViewPipelineController().InitializeProxy(options)
+    assert options.GetProperty("FrameRate").GetElement(0) == 20, "a film is in real time"
     before = None
     for frame in FRAMES:
         size, film = pixels(os.path.join(MOVED, f"film.{frame:04d}.png"))

@@ -1,6 +1,28 @@
-"""Where the first point of the release line must be after Mouse.xml: on the slope, not at 0, 0, 0."""
+"""What the window must show after each Check of Mouse.xml."""
 from paraview import simple
 
-x, y, z = list(simple.FindSource("Release").Points)[:3]
-low_x, high_x, low_y, high_y, low_z, high_z = simple.FindSource("Slope").GetDataInformation().GetBounds()
-assert low_x < x < high_x and low_y < y < high_y and low_z < z < high_z, (x, y, z)
+
+def picked():
+    """The first point of the release line is on the slope, not at 0, 0, 0; the paths do not hide the picked one."""
+    x, y, z = list(simple.FindSource("Release").Points)[:3]
+    low_x, high_x, low_y, high_y, low_z, high_z = simple.FindSource("Slope").GetDataInformation().GetBounds()
+    assert low_x < x < high_x and low_y < y < high_y and low_z < z < high_z, (x, y, z)
+    view = simple.GetRenderView()
+    assert simple.GetDisplayProperties(simple.FindSource("Paths"), view).Opacity < 0.5, "paths hide the picked one"
+
+
+def drawn_up():
+    """The arrow to the north is not cut off, and the bar has the colour of texts, also when another palette is taken."""
+    view = simple.GetRenderView()
+    camera = view.GetActiveCamera()
+    arrow = simple.GetDisplayProperties(simple.FindSource("North"), view)
+    place = arrow.Translation if "Translation" in arrow.ListProperties() else arrow.Position
+    ahead = sum(d * (p - e) for d, p, e in zip(camera.GetDirectionOfProjection(), place, camera.GetPosition()))
+    near, far = camera.GetClippingRange()
+    assert near < ahead < far, f"the arrow, {ahead} m away, is not between {near} and {far} m"
+    simple.LoadPalette("WhiteBackground")
+    bar = simple.GetDisplayProperties(simple.FindSource("Scale"), view)
+    assert list(bar.AxisColor) == [0.0, 0.0, 0.0], list(bar.AxisColor)
+
+
+[picked, drawn_up][number - 1]()
