@@ -9,16 +9,12 @@ import numpy as np
 from paraview.simple import DEMtoCFEMesh, RockBlocks
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
-from site_runs import Site, made_by
+from site_runs import Site, made_by, refuse, set_all
 from site_scores import Observed
 
 PARTS = ("terrain", "rocks", "simulation", "deposits", "search")
 FILES = ("FileName", "File", "Layer", "Table")  # a property whose name ends so is a file
 MOST_PARAMETERS = 10
-
-
-def refuse(text):
-    raise SystemExit(text)
 
 
 def read_site(path):
@@ -72,11 +68,7 @@ def read_site(path):
 def make(proxy, part, properties):
     """A proxy with these properties; a name that it has not is refused."""
     made = proxy()
-    for name, value in properties.items():
-        try:
-            setattr(made, name, value)
-        except (AttributeError, ValueError, TypeError, RuntimeError) as error:
-            refuse(f'"{part}" {name}: {json.dumps(value, default=str)} cannot be set: {error}')
+    set_all(made, part, properties)
     made.UpdatePipeline()
     return made
 

@@ -5,6 +5,7 @@ Simulation), the observations and the number of each rock's forecast can call `c
 takes them from layers, validation/tschamut.py from the tables of a field test.
 """
 import csv
+import json
 import os
 import time
 
@@ -22,6 +23,22 @@ started = time.time()
 
 def say(text):
     print(f"[{time.time() - started:6.1f} s] {text}", flush=True)
+
+
+def refuse(text):
+    raise SystemExit(text)
+
+
+def set_all(proxy, part, properties):
+    """A name that the proxy has not is refused, and true where a number is meant: it would be 1."""
+    for name, value in properties.items():
+        try:
+            truth = any(isinstance(one, bool) for one in (value if isinstance(value, list) else [value]))
+            if truth and not proxy.GetProperty(name).SMProperty.FindDomain("vtkSMBooleanDomain"):
+                raise ValueError("a number is meant")
+            setattr(proxy, name, value)
+        except (AttributeError, ValueError, TypeError, RuntimeError) as error:
+            refuse(f'"{part}" {name}: {json.dumps(value, default=str)} cannot be set: {error}')
 
 
 def made_by(proxy, port=0):
@@ -42,8 +59,7 @@ class Site:
         simulation = dict(simulation)
         # Samples under way are of no use here.
         simulation.setdefault("OutputInterval", simulation.get("EndTime", self.simulation.EndTime))
-        for name, value in simulation.items():
-            setattr(self.simulation, name, value)
+        set_all(self.simulation, "simulation", simulation)
 
     def run(self, values):
         """Simulates with properties {name: value} of the slope."""

@@ -96,8 +96,14 @@ def properties_at(place):
     return result
 
 
+def takes_truth(prop):
+    return bool(prop.FindDomain("vtkSMBooleanDomain"))
+
+
 def check_number(where, value, prop):
     whole = not prop.IsA("vtkSMDoubleVectorProperty")
+    if isinstance(value, bool) and not takes_truth(prop):
+        raise Bad(f"{where} is {shown(value)}, it must be a number")
     names = prop.FindDomain("vtkSMEnumerationDomain") if whole else None
     if names and isinstance(value, str):
         known = [names.GetEntryText(k) for k in range(names.GetNumberOfEntries())]
@@ -106,7 +112,7 @@ def check_number(where, value, prop):
         return
     if whole and (not isinstance(value, int) or abs(value) >= 2**31):
         raise Bad(f"{where} is {shown(value)}, it must be a whole number of at most 2147483647")
-    if not isinstance(value, (int, float)) or (isinstance(value, bool) and not whole):
+    if not isinstance(value, (int, float)):
         raise Bad(f"{where} is {shown(value)}, it must be a number")
     if abs(value) > 1e300 or not math.isfinite(value):
         raise Bad(f"{where} is {shown(value)}, more than a number can be")
@@ -144,7 +150,7 @@ def described(prop):
         one = {"type": "string", "pattern": "^[^\\x00-\\x1f]*$"}
     else:
         whole = not prop.IsA("vtkSMDoubleVectorProperty")
-        one = {"type": ["integer", "boolean"] if whole else "number"}
+        one = {"type": ["integer", "boolean"] if takes_truth(prop) else "integer" if whole else "number"}
         bounds = prop.FindDomain("vtkSMIntRangeDomain" if whole else "vtkSMDoubleRangeDomain")
         if bounds and bounds.GetMinimumExists(0):
             one["minimum"] = bounds.GetMinimum(0)

@@ -79,6 +79,7 @@ for text, word in (
         (odd("terrain", FileName="a\0.asc"), "character"), (odd("terrain", FileName="a\ud800"), "character"),
         (odd("simulation", EndTime="60"), "number"), (odd("simulation", EndTime=[60]), "single value"),
         (odd("simulation", EndTime=-1), "at least"), (odd("simulation", EndTime=True), "number"),
+        (odd("simulation", Seed=True), "must be a number"), (odd("rocks", Amount=False), "must be a number"),
         (odd("simulation", EndTime=10**400), "a number can be"), (odd("simulation", Seed=1.5), "whole"),
         (odd("simulation", TrajectoryOutput="All"), "one of"), (odd("simulation", Rocks=1), "script sets"),
         (odd("simulation", EndTimes=1), "EndTimes"), (odd(iterations=1e30), "whole number"),
@@ -91,13 +92,13 @@ for text, word in (
 # But for what no schema can say, it refuses the same; it knows every property.
 for text in (odd("terrain", FileName=3), odd("terrain", FileName=["a"]), odd("terrain", FileName="a\0.asc"),
              odd("simulation", EndTime="60"), odd("simulation", EndTime=[60]), odd("simulation", EndTime=-1),
-             odd("simulation", Seed=1.5), odd("simulation", TrajectoryOutput="All"), odd("simulation", Rocks=1),
-             odd("simulation", EndTimes=1), odd("rocks", Velocity=[1.0, 2.0]), odd("rocks", Velocity=3.0),
+             odd("simulation", Seed=1.5), odd("simulation", Seed=True), odd("simulation", TrajectoryOutput="All"),
+             odd("simulation", Rocks=1), odd("simulation", EndTimes=1), odd("rocks", Velocity=[1.0, 2.0]), odd("rocks", Velocity=3.0),
              odd(iterations=10**30), odd(iterations=None), odd(lines=[]), odd(trajectories=1), odd(itterations=1),
              json.dumps({"terrain": {}})):
     assert refusal(text) and not taken_by_schema(text), text
 assert refusal(odd("rocks", Velocity=[1.0, 2.0, 3.0], Shape="Cube")) == ""
-assert refusal(odd("rocks", Shape=1)) == "" and refusal(odd(**{"$schema": "study.schema.json"})) == ""
+assert refusal(odd("rocks", Shape=1)) == "" and refusal(odd("rocks", PlaceOnGround=True)) == "" and refusal(odd(**{"$schema": "study.schema.json"})) == ""
 told, message = run_script(SCRIPT, "--schema")
 assert message == "" and json.loads(told) == schema.json_schema(), message
 assert refusal(b"\xef\xbb\xbf" + json.dumps(study).encode()) == ""  # some editors begin a text so

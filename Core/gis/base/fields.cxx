@@ -6,6 +6,7 @@
 #include "gis/base/gdal.h"
 
 #include <cpl_csv.h>
+#include <cpl_json.h>
 #include <cpl_string.h>
 #include <ogrsf_frmts.h>
 
@@ -94,6 +95,12 @@ bool isShortFor(const std::string& column, const std::string& name)
 {
   return name.size() >= 5 && column.size() >= 3 && column.size() < name.size() &&
     name.starts_with(column) && name[column.size()] != '_';
+}
+
+bool isNumeric(const OGRFieldDefn& field)
+{
+  const OGRFieldType type = field.GetType();
+  return type == OFTReal || type == OFTInteger || type == OFTInteger64;
 }
 
 /// Whether `column` goes on after `name`, is short for it or a slip of it.
@@ -231,11 +238,34 @@ std::string Fields::nameOf(int column) const
   return feature_.GetFieldDefnRef(column)->GetNameRef();
 }
 
+bool Fields::isTruth(int column) const
+{
+  const OGRFieldDefn& field = *feature_.GetFieldDefnRef(column);
+  if (field.GetSubType() == OFSTBoolean)
+  {
+    return true;
+  }
+  const char* const json = isNumeric(field) ? feature_.GetNativeData() : nullptr;
+  const double value = json ? feature_.GetFieldAsDouble(column) : 0.0;
+  if (!json || (value != 0.0 && value != 1.0))
+  {
+    return false;
+  }
+  CPLJSONDocument document;
+  return document.LoadMemory(json) &&
+    document.GetRoot().GetObj("properties").GetObj(field.GetNameRef()).GetType() ==
+    CPLJSONObject::Type::Boolean;
+}
+
 std::optional<std::string> Fields::textAt(int column) const
 {
   if (!feature_.IsFieldSetAndNotNull(column))
   {
     return std::nullopt;
+  }
+  if (this->isTruth(column))
+  {
+    return feature_.GetFieldAsInteger(column) ? "true" : "false";
   }
   const std::string value(trimmed(feature_.GetFieldAsString(column)));
   if (!isUtf8(value))
@@ -254,9 +284,9 @@ std::optional<double> Fields::numberAt(int column) const
   {
     return std::nullopt;
   }
-  const OGRFieldType type = feature_.GetFieldDefnRef(column)->GetType();
   // A field of numbers is taken as such: its text is rounded.
-  const auto value = type == OFTReal || type == OFTInteger || type == OFTInteger64
+  const auto value =
+    isNumeric(*feature_.GetFieldDefnRef(column)) && *written != "true" && *written != "false"
     ? std::optional(feature_.GetFieldAsDouble(column))
     : parsedNumber(*written);
   if (!value)

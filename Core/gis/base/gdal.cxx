@@ -67,9 +67,10 @@ Opened tryOpen(const std::string& fileName, Kind kind)
   // Tables: every column as text. A column that GDAL took for numbers would turn words into zeros.
   // GeoJSON: a text like 3:2 stays one; GDAL would make a time of day of it. Other drivers do not
   // know these options and say so in a warning that nobody sees.
+  // GeoJSON: its own text is kept, as true among numbers becomes 1.
   // GML: no schema from an address that the file names, unless that is allowed.
   const char* const tableOptions[] = { "AUTODETECT_TYPE=NO", "DATE_AS_STRING=YES",
-    drivers ? "DOWNLOAD_SCHEMA=NO" : nullptr, nullptr };
+    "NATIVE_DATA=YES", drivers ? "DOWNLOAD_SCHEMA=NO" : nullptr, nullptr };
   // Text grids: GDAL takes one without a point for integers, and reads nan, inf and the like as 0.
   const char* const rasterOptions[] = { "DATATYPE=Float64", nullptr };
   // The vertical part of a GeoTIFF's CRS, also of the old versions that GDAL takes it away from.
@@ -143,7 +144,12 @@ DatasetPtr open(
     throw FileError(fileName + ": is a folder, not a file");
   }
   const Kind other = kind == Kind::Raster ? Kind::Vector : Kind::Raster;
-  if (local(openOrLeave(fileName, other)).dataset)
+  std::vector<std::string> unused;
+  const TableFile table =
+    other == Kind::Vector ? readableTable(fileName, unused) : TableFile{ fileName, "" };
+  const bool isOther = local(openOrLeave(table.path, other)).dataset != nullptr;
+  CloseDataset{ table.folder }(nullptr);
+  if (isOther)
   {
     throw FileError(fileName +
       (kind == Kind::Raster ? ": is a vector layer, a raster is needed"
@@ -189,15 +195,16 @@ DatasetPtr openVector(
   refuseReferences(fileName, GDAL_OF_RASTER | GDAL_OF_VECTOR);
   std::vector<std::string> made;
   const TableFile table = readableTable(fileName, made);
-  if (notes)
-  {
-    std::move(made.begin(), made.end(), std::back_inserter(*notes));
-  }
   CloseDataset closing{ table.folder };
   try
   {
     DatasetPtr dataset = open(fileName, Kind::Vector, messages, table.path);
+    tellSchema(table, fileName, made);
     dataset.get_deleter() = std::move(closing);
+    if (notes)
+    {
+      std::move(made.begin(), made.end(), std::back_inserter(*notes));
+    }
     return dataset;
   }
   catch (...)

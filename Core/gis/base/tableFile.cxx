@@ -5,11 +5,15 @@
 #include "gis/base/tableText.h"
 
 #include <cpl_conv.h>
+#include <cpl_minixml.h>
 #include <cpl_vsi.h>
 
+#include <algorithm>
 #include <atomic>
+#include <iterator>
 #include <memory>
 #include <optional>
+#include <set>
 
 namespace rockfall::gis
 {
@@ -47,12 +51,77 @@ bool isTable(const std::string& fileName)
   return end == "csv" || end == "tsv" || end == "psv";
 }
 
+bool isGml(const std::string& fileName)
+{
+  return nameKey(CPLGetExtension(fileName.c_str())) == "gml";
+}
+
+/// A folder in memory of its own, for one file.
+TableFile inMemory(const std::string& fileName, const std::string& content)
+{
+  static std::atomic<int> count = 0;
+  TableFile made;
+  made.folder = "/vsimem/rockfall-table-" + std::to_string(++count);
+  made.path = made.folder + "/" + CPLGetFilename(fileName.c_str());
+  writeInMemory(made.path, content);
+  return made;
+}
+
+/// What a .gfs says of fields, geometries and CRSs.
+std::set<std::string> statementsOf(const std::string& schema)
+{
+  std::set<std::string> all;
+  const CPLXMLTreeCloser tree(CPLParseXMLString(schema.c_str()));
+  const CPLXMLNode* const list =
+    tree.get() ? CPLGetXMLNode(tree.get(), "=GMLFeatureClassList") : nullptr;
+  for (const CPLXMLNode* of = list ? list->psChild : nullptr; of; of = of->psNext)
+  {
+    if (!EQUAL(of->pszValue, "GMLFeatureClass"))
+    {
+      continue;
+    }
+    const std::string layer = CPLGetXMLValue(of, "Name", "");
+    all.insert(layer + " in " + CPLGetXMLValue(of, "SRSName", "no CRS"));
+    for (const CPLXMLNode* field = of->psChild; field; field = field->psNext)
+    {
+      if (EQUAL(field->pszValue, "PropertyDefn"))
+      {
+        all.insert(layer + "." + CPLGetXMLValue(field, "Name", "") + " " +
+          CPLGetXMLValue(field, "Type", ""));
+      }
+    }
+  }
+  return all;
+}
+
 } // namespace
+
+void tellSchema(
+  const TableFile& table, const std::string& fileName, std::vector<std::string>& notes)
+{
+  const std::string fresh = wholeTable(CPLResetExtension(table.path.c_str(), "gfs")).value_or("");
+  if (table.schema.empty() || fresh.empty())
+  {
+    return;
+  }
+  const std::set<std::string> own = statementsOf(fresh), other = statementsOf(table.schema);
+  std::vector<std::string> differing;
+  std::set_symmetric_difference(
+    own.begin(), own.end(), other.begin(), other.end(), std::back_inserter(differing));
+  if (!differing.empty())
+  {
+    notes.push_back(std::string(CPLGetFilename(CPLResetExtension(fileName.c_str(), "gfs"))) +
+      " beside it says otherwise than the GML itself, first \"" + differing.front() +
+      "\"; it was not read.");
+  }
+}
 
 TableFile readableTable(const std::string& fileName, std::vector<std::string>& notes)
 {
   VSIStatBufL status;
-  if (!isTable(fileName) || VSIStatL(fileName.c_str(), &status) != 0 || VSI_ISDIR(status.st_mode))
+  const bool gml = isGml(fileName);
+  if ((!gml && !isTable(fileName)) || VSIStatL(fileName.c_str(), &status) != 0 ||
+    VSI_ISDIR(status.st_mode))
   {
     return { fileName, "" };
   }
@@ -63,17 +132,19 @@ TableFile readableTable(const std::string& fileName, std::vector<std::string>& n
   }
   const auto beside = [&](const char* end)
   { return wholeTable(CPLResetExtension(fileName.c_str(), end)); };
+  if (gml)
+  {
+    TableFile made = inMemory(fileName, *written);
+    made.schema = beside("gfs").value_or("");
+    return made;
+  }
   std::string text = asUtf8(*written, beside("cpg").value_or(""), fileName, notes);
   std::optional<std::string> bare = bareTable(text, fileName, notes);
   if (!bare && text == *written)
   {
     return { fileName, "" };
   }
-  static std::atomic<int> count = 0;
-  TableFile made;
-  made.folder = "/vsimem/rockfall-table-" + std::to_string(++count);
-  made.path = made.folder + "/" + CPLGetFilename(fileName.c_str());
-  writeInMemory(made.path, bare ? *bare : text);
+  TableFile made = inMemory(fileName, bare ? *bare : text);
   for (const char* end : { "csvt", "prj" })
   {
     if (const auto companion = beside(end))

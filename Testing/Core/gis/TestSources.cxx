@@ -6,6 +6,8 @@
 #include "gis/layers/sources.h"
 #include "gisFiles.h"
 
+#include <cstdio>
+
 #include <algorithm>
 
 namespace rockfall
@@ -268,6 +270,75 @@ TEST(SourceErrors, numbersInAJsonLayer)
     failure<DataError>(feature(point, "\"volume\":-0.5")), { "row 1", "\"volume\"", "-0.5" }));
   EXPECT_TRUE(holds(failure<DataError>(feature(point, "\"volume\":\"big\"")),
     { "row 1", "\"volume\"", "\"big\"" }));
+}
+
+TEST(SourceErrors, trueIsNoNumber)
+{
+  const std::string point = R"({"type":"Point","coordinates":[1,2,3]})";
+  EXPECT_TRUE(holds(failure<DataError>(feature(point, "\"volume\":true")),
+    { "row 1", "\"volume\"", "\"true\" is not a number" }));
+  EXPECT_TRUE(holds(failure<DataError>(feature(point, "\"density\":false")),
+    { "row 1", "\"density\"", "\"false\" is not a number" }));
+  // Beside numbers GDAL's column is one of numbers.
+  const auto two = [](const char* first, const char* second)
+  {
+    return writeFile("two.geojson",
+      std::string(R"({"type":"FeatureCollection","features":[)") +
+        R"({"type":"Feature","geometry":{"type":"Point","coordinates":[1,2,3]},"properties":{"volume":)" +
+        first +
+        R"(}},{"type":"Feature","geometry":{"type":"Point","coordinates":[9,2,3]},"properties":{"volume":)" +
+        second + "}}]}");
+  };
+  EXPECT_EQ(readSources(two("1", "0.5")).at(0).volume, 1.0);
+  EXPECT_TRUE(holds(failure<DataError>(two("0.5", "true")), { "row 2", "\"volume\"", "\"true\"" }));
+  EXPECT_TRUE(holds(failure<DataError>(two("true", "2")), { "row 1", "\"volume\"", "\"true\"" }));
+  // A logical column of a typed table.
+  const std::string typed = table("x,y,z,volume\n1,2,3,1\n");
+  writeFile("rocks.csvt", "\"Real\",\"Real\",\"Real\",\"Integer(Boolean)\"\n");
+  EXPECT_TRUE(holds(failure<DataError>(typed), { typed, "row 1", "\"volume\"", "\"true\"" }));
+}
+
+TEST(Sources, aSchemaBesideGmlIsNotRead)
+{
+  const std::string path = writeFile("rocks.gml",
+    R"(<ogr:FeatureCollection xmlns:ogr="http://ogr.maptools.org/" )"
+    R"(xmlns:gml="http://www.opengis.net/gml"><gml:featureMember><ogr:rocks fid="r.0">)"
+    R"(<ogr:geometryProperty><gml:Point srsName="EPSG:32632"><gml:coordinates>1,2,3)"
+    R"(</gml:coordinates></gml:Point></ogr:geometryProperty><ogr:volume>3.5</ogr:volume>)"
+    R"(</ogr:rocks></gml:featureMember></ogr:FeatureCollection>)");
+  const std::string beside = path.substr(0, path.size() - 3) + "gfs";
+  std::remove(beside.c_str());
+  const SourceLayer alone = readSourceLayer(path, {});
+  EXPECT_EQ(alone.rows.at(0).volume, 3.5);
+  EXPECT_TRUE(alone.notes.empty());
+  EXPECT_FALSE(std::ifstream(beside).good()) << "was written beside the user's file";
+  const auto schema = [](const std::string& property, const char* crs)
+  {
+    writeFile("rocks.gfs",
+      std::string("<GMLFeatureClassList><GMLFeatureClass><Name>rocks</Name><ElementPath>rocks"
+                  "</ElementPath><GeometryName>geometryProperty</GeometryName><GeometryElementPath>"
+                  "geometryProperty</GeometryElementPath><GeometryType>-2147483647</GeometryType>"
+                  "<SRSName>") +
+        crs + "</SRSName>" + property + "</GMLFeatureClass></GMLFeatureClassList>");
+  };
+  const auto volume = [](const char* type)
+  {
+    return std::string("<PropertyDefn><Name>volume</Name><ElementPath>volume</ElementPath><Type>") +
+      type + "</Type></PropertyDefn>";
+  };
+  schema(volume("Real"), "EPSG:32632");
+  EXPECT_TRUE(readSourceLayer(path, {}).notes.empty());
+  for (const auto& [property, crs] : { std::pair(std::string(), "EPSG:32632"),
+         std::pair(volume("Integer"), "EPSG:32632"), std::pair(volume("Real"), "EPSG:32633") })
+  {
+    schema(property, crs);
+    const SourceLayer layer = readSourceLayer(path, {});
+    EXPECT_EQ(layer.rows.at(0).volume, 3.5);
+    EXPECT_NE(layer.crs.find("zone 32N"), std::string::npos);
+    ASSERT_EQ(layer.notes.size(), 1u);
+    EXPECT_TRUE(holds(layer.notes[0], { "rocks.gfs beside it says otherwise", "not read" }));
+  }
+  std::remove(beside.c_str());
 }
 
 TEST(SourceErrors, textInATypedTable)
