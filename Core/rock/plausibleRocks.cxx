@@ -19,6 +19,8 @@ void askAfterRocks(
     " m/s, by their spin, too: are they in m/s and rad/s?");
   Doubt vague("Places deviate by up to " + numberText(kPlaceDeviation.most) + " m, heights by " +
     numberText(kHeightDeviation.most) + " m: are deviations in m?");
+  Doubt turned("Attitudes deviate by up to " + numberText(kAttitudeDeviation.most) +
+    " degrees: is it in degrees, or are they random?");
   for (const Rock& rock : rocks)
   {
     const auto look = [&](Doubt& doubt, bool fits, double value, const char* unit)
@@ -35,6 +37,8 @@ void askAfterRocks(
     within(fast, kReleaseSpeed,
       std::max(rock.velocity.norm(), rock.angularVelocity.norm() * rock.shape.radius()), " m/s");
     const ReleaseUncertainty& unsure = rock.uncertainty;
+    const double turn = unsure.attitude == AttitudeLaw::Deviate ? unsure.attitudeDeviation : 0.0;
+    within(turned, kAttitudeDeviation, degrees(turn), " degrees");
     const bool high = !kHeightDeviation.has(unsure.verticalDeviation);
     look(vague, !high && kPlaceDeviation.has(unsure.horizontalDeviation),
       high ? unsure.verticalDeviation : unsure.horizontalDeviation, " m");
@@ -44,6 +48,7 @@ void askAfterRocks(
   soft.tell("Young's moduli of rocks", notes);
   fast.tell("speeds of rocks at release", notes);
   vague.tell("deviations of places", notes);
+  turned.tell("deviations of attitudes", notes);
   if (!frequencies.empty())
   {
     askAfterFrequency(std::accumulate(frequencies.begin(), frequencies.end(), 0.0), notes);

@@ -119,36 +119,90 @@ void lookAtEmbankments(const std::vector<Embankment>& dams, std::vector<std::str
   flat.tell("sides of embankments", notes);
 }
 
-/// φ and c of any ground, of which the slope's own, a class or a structure is named.
+/// Numbers of any ground, of which the slope's own, a class or a structure is named.
 class GroundDoubts
 {
 public:
   template <class Name>
-  void look(const SurfaceMaterial& m, const Name& name)
+  void friction(const SurfaceMaterial& m, const Name& name)
   {
     const double phi = degrees(m.frictionAngle);
     steep_.look(phi == 0.0 || plausible::kFrictionAngle.has(phi), name,
       [&] { return " with " + text(phi) + " degrees"; });
-    stiff_.look(!m.yielding.scars() || plausible::kGroundModulus.has(m.yielding.modulus), name,
-      [&] { return " with " + text(m.yielding.modulus / 1e6) + " MN/m²"; });
+    const double deviation = degrees(m.frictionAngleDeviation);
+    vague_.look(plausible::kFrictionDeviation.has(deviation), name,
+      [&] { return " with " + text(deviation) + " degrees"; });
     sticky_.look(plausible::kCohesion.has(m.cohesion), name,
       [&] { return " with " + text(m.cohesion) + " N"; });
   }
 
+  template <class Name>
+  void restitution(const SurfaceMaterial& m, const Name& name)
+  {
+    const double rn = m.restitution, rt = m.tangentialRestitution;
+    swapped_.look(m.restitutionModel == RestitutionModel::Velocity || rn <= rt, name,
+      [&] { return " with Rn " + text(rn) + " and Rt " + text(rt); });
+    slow_.look(m.restitutionModel != RestitutionModel::SpeedDependent ||
+        plausible::kRestitutionSpeed.has(m.restitutionSpeed),
+      name, [&] { return " with " + text(m.restitutionSpeed) + " m/s"; });
+    wide_.look(plausible::kRestitutionDeviation.has(m.restitutionDeviation), name,
+      [&] { return " with " + text(m.restitutionDeviation); });
+    for (std::size_t k = 0; k < yields_.size(); ++k)
+    {
+      const YieldingField& field = yieldingFields()[k];
+      const double value = m.yielding.*field.member;
+      yields_[k].look(std::isinf(value) || plausible::kYielding[k].has(value), name,
+        [&] { return " with " + text(value / field.scale) + unitOf(field); });
+    }
+  }
+
   void tell(const std::string& of, std::vector<std::string>& notes) const
   {
-    steep_.tell(("friction angles of " + of).c_str(), notes);
-    stiff_.tell(("moduli of " + of).c_str(), notes);
-    sticky_.tell(("cohesions of " + of).c_str(), notes);
+    const auto tell = [&](const Doubt& doubt, const std::string& what)
+    { doubt.tell((what + " of " + of).c_str(), notes); };
+    tell(steep_, "friction angles");
+    tell(vague_, "deviations of friction angles");
+    tell(sticky_, "cohesions");
+    tell(swapped_, "restitutions");
+    tell(wide_, "deviations of restitution");
+    tell(slow_, "speeds of restitution");
+    for (std::size_t k = 0; k < yields_.size(); ++k)
+    {
+      tell(yields_[k], std::string("values of ") + yieldingFields()[k].property);
+    }
   }
 
 private:
+  static std::string unitOf(const YieldingField& field)
+  {
+    return *field.unit ? " " + std::string(field.unit) : std::string();
+  }
+
+  static std::vector<Doubt> yieldingDoubts()
+  {
+    static_assert(std::size(plausible::kYielding) == 13); // as many as yieldingFields()
+    std::vector<Doubt> doubts;
+    for (const YieldingField& field : yieldingFields())
+    {
+      const PlausibleRange& range = plausible::kYielding[doubts.size()];
+      doubts.emplace_back(std::string(field.property) + " is " + between(range, field.scale) +
+        unitOf(field) + " on ground that yields: is it what was meant?");
+    }
+    return doubts;
+  }
+
+  std::vector<Doubt> yields_ = yieldingDoubts();
   Doubt steep_{ "Ground has " + between(plausible::kFrictionAngle) +
     " degrees: is it in degrees?" };
-  Doubt stiff_{ "Ground that scars has " + between(plausible::kGroundModulus, 1e6) +
-    " MN/m²: is it in MN/m²?" };
   Doubt sticky_{ "Contact points hold " + between(plausible::kCohesion) +
     " N: is it in N, not Pa?" };
+  Doubt slow_{ "Half of Rn is gone at " + between(plausible::kRestitutionSpeed) +
+    " m/s: is it in m/s?" };
+  Doubt wide_{ "Coefficients deviate by up to " + text(plausible::kRestitutionDeviation.most) +
+    ": is it a deviation of 0 to 1?" };
+  Doubt vague_{ "φ deviates by up to " + text(plausible::kFrictionDeviation.most) +
+    " degrees: is it a deviation?" };
+  Doubt swapped_{ "Rt is at least Rn in all tables: is one in the other's place?" };
 };
 
 void lookAtMaterials(const Structures& structures, std::vector<std::string>& notes)
@@ -158,7 +212,9 @@ void lookAtMaterials(const Structures& structures, std::vector<std::string>& not
   {
     if (item.material > 0)
     {
-      doubts.look(structures.materials[std::size_t(item.material) - 1], item.feature);
+      const SurfaceMaterial& material = structures.materials[std::size_t(item.material) - 1];
+      doubts.friction(material, item.feature);
+      doubts.restitution(material, item.feature);
     }
   };
   std::for_each(structures.embankments.begin(), structures.embankments.end(), look);
@@ -327,6 +383,7 @@ void askAfterGround(const Terrain& terrain, std::vector<std::string>& notes)
   using namespace plausible;
   GroundDoubts own;
   Doubt rough("Roughness is " + between(kRoughness) + " m: is it in m?");
+  Doubt wave("Roughness is alike over 0, or " + between(kRoughnessLength) + " m: is it in m?");
   Doubt high("Obstacles are " + between(kObstacle) + " m high: are they in m?");
   const auto surface = [&](const Roughness& r, const std::string& where)
   {
@@ -337,20 +394,21 @@ void askAfterGround(const Terrain& terrain, std::vector<std::string>& notes)
         return raised ? " with a mean of " + text(r.mean) + " m"
                       : " with a deviation of " + text(r.deviation) + " m";
       });
+    wave.look(r.length == 0.0 || kRoughnessLength.has(r.length), where,
+      [&] { return " with " + text(r.length) + " m"; });
     high.look(kObstacle.has(r.highestObstacle()), where,
       [&] { return " with " + text(r.highestObstacle()) + " m"; });
   };
-  own.look(terrain.material(), std::string("the slope's own"));
+  own.friction(terrain.material(), std::string("the slope's own"));
+  own.restitution(terrain.material(), std::string("the slope's own"));
   surface(terrain.roughness(), "the slope's own");
   for (const MaterialClasses* classes : { &terrain.restitutionClasses(), &terrain.jointClasses() })
   {
     for (std::size_t k = 0; k < classes->names.size(); ++k)
     {
       const std::string where = "class \"" + classes->names[k] + "\"";
-      if (classes == &terrain.jointClasses())
-      {
-        own.look(classes->materials[k], where);
-      }
+      classes == &terrain.jointClasses() ? own.friction(classes->materials[k], where)
+                                         : own.restitution(classes->materials[k], where);
       if (k < classes->roughness.size())
       {
         surface(classes->roughness[k], where);
@@ -359,6 +417,7 @@ void askAfterGround(const Terrain& terrain, std::vector<std::string>& notes)
   }
   own.tell("the ground", notes);
   rough.tell("roughnesses of the ground", notes);
+  wave.tell("lengths of roughness", notes);
   high.tell("heights of obstacles", notes);
 }
 

@@ -65,13 +65,35 @@ inline constexpr PlausibleRange kBasalArea{ 1.0, 150.0 };
 inline constexpr PlausibleRange kConifers{ 0.02, 1.0 };
 /// φ of ground, degrees; 0 is asked for. Radians are below, and no scree stands as steep as 60°.
 inline constexpr PlausibleRange kFrictionAngle{ 2.0, 60.0 };
-/// M_E of ground that scars, Pa: wet bog to compacted gravel.
-inline constexpr PlausibleRange kGroundModulus{ 1e5, 1e9 };
+/// Ground that yields, in the order and SI of yieldingFields(). Lu et al. (2019) have M_E 10 to
+/// 25 MN/m², C_s 0.1 to 4 and friction of 0.55 to 2; STONE rolls at 0.3 to 0.8.
+inline constexpr PlausibleRange kYielding[] = {
+  { 1e5, 1e9 },      // M_E, Pa: wet bog to compacted gravel
+  { 0.0, 0.5 },      // f of a scar's depth: 0.1 in print
+  { 300.0, 3000.0 }, // density, kg/m³: peat to gravel
+  { 0.0, 10.0 },     // C_s
+  { 0.0, 10.0 },     // C_ω
+  { 0.0, 2.0 },      // μ_min
+  { 0.0, 4.0 },      // μ_max
+  { 0.0, 100.0 },    // κ, 1/m
+  { 0.0, 1000.0 },   // β, 1/s
+  { 0.0, 1.0 },      // μ_r
+  { 0.0, 1.0 },      // σ of softness
+  { 1.0, 1000.0 },   // its length, m
+  { 0.0, 5.0 },      // r₀, m
+};
+/// K of restitution, m/s: half of Rn is gone. CRSP has 9 m/s.
+inline constexpr PlausibleRange kRestitutionSpeed{ 0.5, 100.0 };
+/// Deviations of Rv and φ, degrees: more, and half of what is drawn is cut off.
+inline constexpr PlausibleRange kRestitutionDeviation{ 0.0, 0.5 };
+inline constexpr PlausibleRange kFrictionDeviation{ 0.0, 20.0 };
 /// c of ground and structures, N per contact point: 100 kN hold a rock of 4 m³ on a wall.
 inline constexpr PlausibleRange kCohesion{ 0.0, 1e5 };
 /// Mean and deviation of the ground's heights from the survey, m: beyond it they are cm, or the
 /// survey's own.
 inline constexpr PlausibleRange kRoughness{ 0.0, 1.0 };
+/// Length of roughness, m; 0 is a height for each node.
+inline constexpr PlausibleRange kRoughnessLength{ 0.05, 50.0 };
 /// Heights of obstacles, m: Rockyfor3D's field sheets go to 1 m and more in blocks.
 inline constexpr PlausibleRange kObstacle{ 0.0, 3.0 };
 /// Of a rock, kg/m³: pumice to ores.
@@ -85,6 +107,8 @@ inline constexpr PlausibleRange kReleaseSpeed{ 0.0, 80.0 };
 /// Deviations of the places of rocks, m, in plan and up.
 inline constexpr PlausibleRange kPlaceDeviation{ 0.0, 50.0 };
 inline constexpr PlausibleRange kHeightDeviation{ 0.0, 10.0 };
+/// Deviation of attitudes, degrees: beyond it they are as good as random.
+inline constexpr PlausibleRange kAttitudeDeviation{ 0.0, 180.0 };
 /// Of all rocks of a slope together, 1/a: a return period of 100,000 years is no office's.
 inline constexpr PlausibleRange kRocksPerYear{ 1e-5, 100.0 };
 /// Of a rock at rest over the ground, or over a rock under it, m: beyond it the heights may be those

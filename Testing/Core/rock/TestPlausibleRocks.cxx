@@ -57,6 +57,12 @@ TEST(PlausibleRocks, WhatNoRockHas)
     const std::string note = notes(change);
     EXPECT_NE(note.find(std::string("first block 3 with ") + words), std::string::npos) << note;
   };
+  has("5000 degrees",
+    [](Rock& rock)
+    {
+      rock.uncertainty.attitude = AttitudeLaw::Deviate;
+      rock.uncertainty.attitudeDeviation = radians(5000.0);
+    });
   has("8000 m³",
     [](Rock& rock)
     {

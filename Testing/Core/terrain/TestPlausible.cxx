@@ -3,6 +3,7 @@
 
 #include "terrain/Terrain.h"
 #include "terrain/plausible.h"
+#include "terrain/presets.h"
 
 #include <gtest/gtest.h>
 
@@ -76,6 +77,94 @@ TEST(Plausible, GroundInPascals)
   ASSERT_EQ(notes(13e12).size(), 1u);
   EXPECT_NE(notes(13e12)[0].find("the slope's own with 1.3e+07 MN/m²"), std::string::npos)
     << notes(13e12)[0];
+}
+
+TEST(Plausible, RestitutionsOfTheGroundInEachOthersPlace)
+{
+  GridGeometry g;
+  g.columns = g.rows = 3;
+  g.cellSize = 10.0;
+  const auto notes = [&](const SurfaceMaterial& own, const std::vector<SurfaceMaterial>& classes)
+  {
+    MaterialClasses layer;
+    layer.materials = classes;
+    layer.names.assign(classes.size(), "scree");
+    auto cells = std::make_shared<std::vector<std::uint8_t>>(4, 1);
+    layer.cells = *cells;
+    layer.owner = cells;
+    Terrain terrain(g, std::vector<double>(9, 0.0), own);
+    if (!classes.empty())
+    {
+      terrain.setRestitutionClasses(layer);
+    }
+    std::vector<std::string> all;
+    askAfterGround(terrain, all);
+    return all;
+  };
+  SurfaceMaterial material;
+  material.restitutionModel = RestitutionModel::NormalTangential;
+  material.restitution = 0.35; // Hoek's outcrops
+  material.tangentialRestitution = 0.85;
+  EXPECT_TRUE(notes(material, { material }).empty());
+  SurfaceMaterial swapped = material;
+  std::swap(swapped.restitution, swapped.tangentialRestitution);
+  const std::vector<std::string> told = notes(swapped, {});
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(
+    told[0].find("1 of 1 restitutions of the ground look implausible, first the slope's own "
+                 "with Rn 0.85 and Rt 0.35."),
+    0u)
+    << told[0];
+  ASSERT_EQ(notes(material, { swapped }).size(), 1u);
+  EXPECT_NE(notes(material, { swapped })[0].find("first class \"scree\""), std::string::npos);
+  swapped.restitutionModel = RestitutionModel::Velocity; // which does not use Rt
+  EXPECT_TRUE(notes(swapped, {}).empty());
+  // A modulus belongs to the restitution's classes as well.
+  material.yielding.modulus = 13e12;
+  ASSERT_EQ(notes({}, { material }).size(), 1u);
+  EXPECT_NE(
+    notes({}, { material })[0].find("class \"scree\" with 1.3e+07 MN/m²"), std::string::npos);
+}
+
+TEST(Plausible, GroundThatStopsEveryRock)
+{
+  GridGeometry g;
+  g.columns = g.rows = 3;
+  g.cellSize = 10.0;
+  const auto notes = [&](auto&& change, Roughness roughness = {})
+  {
+    SurfaceMaterial material = groundPreset("talus").material();
+    change(material);
+    std::vector<std::string> all;
+    askAfterGround(Terrain(g, std::vector<double>(9, 0.0), material, roughness), all);
+    return all;
+  };
+  for (const char* preset : { "rock", "asphalt", "bedrock with boulders", "talus",
+         "talus with vegetation", "soil", "meadow" })
+  {
+    const GroundPreset& ground = groundPreset(preset);
+    EXPECT_TRUE(notes([&](SurfaceMaterial& m) { m = ground.material(); }, ground.roughness).empty())
+      << preset;
+  }
+  const auto one = [&](auto&& change, const char* words)
+  {
+    const std::vector<std::string> told = notes(change);
+    ASSERT_EQ(told.size(), 1u) << words;
+    EXPECT_NE(told[0].find(words), std::string::npos) << told[0];
+  };
+  one([](SurfaceMaterial& m) { m.yielding.rollingResistance = 30.0; },
+    "values of RollingResistance of the ground look implausible, first the slope's own with 30.");
+  one([](SurfaceMaterial& m) { m.yielding.frictionMost = 60.0; }, "SlipFrictionMax");
+  one([](SurfaceMaterial& m) { m.yielding.compaction = 500.0; }, "ScarCompaction");
+  one([](SurfaceMaterial& m) { m.yielding.density = 1.7; }, "with 1.7 kg/m³. GroundDensity is 300");
+  one([](SurfaceMaterial& m) { m.restitutionSpeed = 0.001; }, "speeds of restitution");
+  one([](SurfaceMaterial& m) { m.restitutionDeviation = 0.9; }, "deviations of restitution");
+  one([](SurfaceMaterial& m) { m.frictionAngleDeviation = radians(30.0); }, "with 30 degrees");
+  Roughness centimetres;
+  centimetres.deviation = 0.1;
+  centimetres.length = 200.0;
+  ASSERT_EQ(notes([](SurfaceMaterial&) {}, centimetres).size(), 1u);
+  EXPECT_NE(notes([](SurfaceMaterial&) {}, centimetres)[0].find("with 200 m"), std::string::npos);
 }
 
 TEST(Plausible, Nets)
