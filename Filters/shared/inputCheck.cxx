@@ -3,10 +3,12 @@
 #include "base/errors.h"
 #include "base/text/numberText.h"
 #include "mesh/precision.h"
+#include "rock/results.h"
 #include "shared/inputs.h"
 
 #include "vtkAbstractArray.h"
 #include "vtkCellArray.h"
+#include "vtkCellArrayIterator.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
@@ -14,6 +16,7 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSmartPointer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -46,7 +49,7 @@ constexpr Bounds kAny{ -std::numeric_limits<double>::infinity(),
   std::numeric_limits<double>::infinity() };
 constexpr Bounds kTime{ 0.0, 1e9 }, kSpeed{ -1000.0, 1000.0 }, kSpin{ -1e4, 1e4 },
   kEnergy{ 0.0, 1e18 }, kHeight{ -1e5, 1e5 }, kMass{ 0.0, 1e15 }, kWidth{ 0.0, 1e4 },
-  kVolume{ 0.0, 1e9 }, kCode{ 0.0, 63.0 }, kCount{ 0.0, kWhole32 };
+  kVolume{ 0.0, 1e9 }, kFate{ 0.0, double(int(Fate::Broken)) }, kCount{ 0.0, kWhole32 };
 
 struct ArrayRule
 {
@@ -74,7 +77,7 @@ constexpr ArrayRule rules[] = {
   { InputKind::Trajectories, false, "BlockId", Holds::Whole53 },
   { InputKind::Trajectories, false, "SourceId", Holds::Whole53 },
   { InputKind::Trajectories, false, "Shape", Holds::Whole32 },
-  { InputKind::Trajectories, false, "Fate", Holds::Whole32, kCode },
+  { InputKind::Trajectories, false, "Fate", Holds::Whole32, kFate },
   { InputKind::Trajectories, false, "Piece", Holds::Whole32, kCount },
   { InputKind::Trajectories, false, "Mass", Holds::Finite, kMass },
   { InputKind::Trajectories, false, "Width", Holds::Finite, kWidth },
@@ -236,6 +239,31 @@ void checkPrecision(vtkPolyData* data, const std::string& name)
   }
 }
 
+/// A path that goes back in time is none: lines were joined, or its arrays are those of another.
+void checkOrder(vtkPolyData* data, const std::string& name)
+{
+  vtkDataArray* times = data->GetPointData()->GetArray("Time");
+  auto* doubles = vtkDoubleArray::SafeDownCast(times);
+  const double* fast = doubles ? doubles->GetPointer(0) : nullptr;
+  const auto at = [&](vtkIdType id) { return fast ? fast[id] : times->GetComponent(id, 0); };
+  auto lines = vtk::TakeSmartPointer(data->GetLines()->NewIterator());
+  for (lines->GoToFirstCell(); times && !lines->IsDoneWithTraversal(); lines->GoToNextCell())
+  {
+    vtkIdType size = 0;
+    const vtkIdType* ids = nullptr;
+    lines->GetCurrentCell(size, ids);
+    for (vtkIdType k = 1; k < size; ++k)
+    {
+      if (at(ids[k]) < at(ids[k - 1]))
+      {
+        throw DataError(name + "'s line " + std::to_string(lines->GetCurrentCellId()) +
+          " goes back in time, from " + numberText(at(ids[k - 1])) + " to " +
+          numberText(at(ids[k])) + " s: it is no path of one rock");
+      }
+    }
+  }
+}
+
 } // namespace
 
 void checkTuples(vtkFieldData* data, vtkIdType count, const std::string& name, const char* of)
@@ -290,6 +318,10 @@ void checkPolyData(vtkPolyData* data, InputKind kind, const std::string& name)
       checkNumbers(
         array, rule, name + "'s " + (rule.ofPoints ? "point" : "cell") + " array " + rule.name);
     }
+  }
+  if (kind == InputKind::Trajectories)
+  {
+    checkOrder(data, name);
   }
 }
 

@@ -7,6 +7,7 @@
 #include "vtkCubeSource.h"
 #include "vtkDispersionAngle.h"
 #include "vtkDoubleArray.h"
+#include "vtkGrowingPaths.h"
 #include "vtkHazardPassageWriter.h"
 #include "vtkLineSource.h"
 #include "vtkMergeCollectors.h"
@@ -250,7 +251,9 @@ TEST_F(TestLyingInputs, NumbersOfTrajectoriesMustBeSuch)
     { "an iteration of 1e300", number(false, "Iteration", 1e300), { "Iteration", "1e+300" } },
     { "NaN for a rock", number(false, "RockId", std::nan("")), { "RockId", "nan" } },
     { "half a fate", number(false, "Fate", 0.5), { "Fate", "0.5" } },
-    { "a fate that there is not", number(false, "Fate", -5.0), { "Fate", "-5", "0 to 63" } },
+    { "a fate that there is not", number(false, "Fate", -5.0), { "Fate", "-5", "0 to 5" } },
+    { "a fate of a later version", number(false, "Fate", 6.0), { "Fate", "6", "0 to 5" } },
+    { "a path back in time", number(true, "Time", 0.0), { "back in time" } },
     { "an energy below 0", number(true, "KineticEnergy", -5.0), { "KineticEnergy", "-5" } },
     { "a spin of no rock", number(true, "RotationRate", 1e300), { "RotationRate", "1e+300" } },
     { "a height of no slope", number(true, "HeightOverGround", 1e300), { "1e+300" } },
@@ -280,6 +283,11 @@ TEST_F(TestLyingInputs, NumbersOfTrajectoriesMustBeSuch)
     map->SetInputConnection(1, this->Terrain->GetOutputPort());
     map->Update();
     this->ExpectOneError(lying.words);
+    vtkNew<vtkGrowingPaths> paths;
+    paths->SetInputData(data);
+    paths->Update();
+    this->ExpectOneError(lying.words);
+    EXPECT_EQ(paths->GetOutput()->GetNumberOfCells(), 0);
   }
   vtkNew<vtkPolyData> data;
   data->DeepCopy(good);
