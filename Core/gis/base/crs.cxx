@@ -101,6 +101,24 @@ std::string crsWkt(const OGRSpatialReference& crs)
   return result;
 }
 
+std::string backwardAxes(const OGRSpatialReference& crs)
+{
+  OGRAxisOrientation axes[2] = { OAO_Other, OAO_Other };
+  for (int k = 0; k < 2; ++k)
+  {
+    crs.GetAxis(nullptr, k, &axes[k]);
+  }
+  std::string text;
+  for (const OGRAxisOrientation axis : axes)
+  {
+    if (!crs.IsGeographic() && axes[0] != axes[1] && (axis == OAO_West || axis == OAO_South))
+    {
+      text += (text.empty() ? "" : " and ") + std::string(axis == OAO_West ? "west" : "south");
+    }
+  }
+  return text;
+}
+
 int utmCode(double longitude, double latitude)
 {
   if (latitude > 84.0)

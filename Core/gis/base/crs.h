@@ -26,6 +26,9 @@ CrsPtr crsFromText(const std::string& text);
 std::string crsLabel(const OGRSpatialReference& crs);
 /// WKT2:2019 on one line.
 std::string crsWkt(const OGRSpatialReference& crs);
+/// "west and south": where a plane CRS counts to others than east and north, which no map shows as
+/// the ground is; empty if it does not. About a pole both axes have one direction.
+std::string backwardAxes(const OGRSpatialReference& crs);
 
 /// The EPSG code of the WGS 84 UTM zone of a place (degrees), with the exceptions for Norway and
 /// Svalbard; beyond 84° N and 80° S polar stereographic (UPS), where UTM is not defined.

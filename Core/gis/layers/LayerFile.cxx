@@ -271,13 +271,19 @@ void LayerFile::checkColumns() const
   }
 }
 
-void LayerFile::refuseDegrees(const CrsPtr& from, const std::string& target) const
+void LayerFile::refuseForeignAxes(const CrsPtr& from, const std::string& target) const
 {
   const std::string driver =
     dataset_->GetDriver() ? dataset_->GetDriver()->GetDescription() : std::string();
-  if (from && from->IsGeographic() && target.empty() && !driver.starts_with("GeoJSON"))
+  if (!from || !target.empty() || (from->IsGeographic() && driver.starts_with("GeoJSON")))
   {
-    throw DataError(wish_.fileName + ": layer \"" + layer_->GetName() + "\" is in degrees (" +
+    return;
+  }
+  const std::string backward = backwardAxes(*from);
+  if (from->IsGeographic() || !backward.empty())
+  {
+    throw DataError(wish_.fileName + ": layer \"" + layer_->GetName() +
+      (backward.empty() ? "\" is in degrees (" : "\" counts to the " + backward + " (") +
       crsLabel(*from) +
       "), and nothing says in which CRS the slope is; give its elevations a CRS, or the layer the "
       "coordinates of the slope");

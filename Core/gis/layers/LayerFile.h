@@ -73,10 +73,10 @@ public:
   const std::string& fileName() const { return wish_.fileName; }
   bool isOfDrawing() const { return drawing_; }
 
-  /// Throws DataError naming file and layer if that is in degrees and `target`, where it is to go,
-  /// is not known: degrees are no metres. GeoJSON says degrees of all that has no CRS, and is
+  /// Throws DataError naming file and layer if that is in degrees, or counts to the west or south,
+  /// and `target`, where it is to go, is not known. GeoJSON says degrees of all that has no CRS, and is
   /// believed not to.
-  void refuseDegrees(const CrsPtr& from, const std::string& target) const;
+  void refuseForeignAxes(const CrsPtr& from, const std::string& target) const;
 
   /// The next feature, null after the last. Throws FileError if it cannot be read.
   OGRFeatureUniquePtr next();

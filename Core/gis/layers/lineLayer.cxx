@@ -43,7 +43,7 @@ std::vector<LayerLine> readLineLayer(const std::string& fileName, const std::str
   {
     told.push_back(heights.doubt);
   }
-  file.refuseDegrees(heights.horizontal, targetCrs);
+  file.refuseForeignAxes(heights.horizontal, targetCrs);
   LayerPlaces places(fileName, heights, targetCrs, slope, "the trajectories", told);
   const Columns columns = columnsOf(file.definition());
   std::vector<LayerLine> lines;

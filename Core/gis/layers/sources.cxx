@@ -156,7 +156,12 @@ void readRelease(const FeatureRow& row, SourceRow& source)
 std::string wktOfCrs(const std::string& text)
 {
   Messages messages;
-  return text.empty() ? std::string() : crsWkt(crsFromText(text), heightCrsFromText(text));
+  const CrsPtr crs = text.empty() ? nullptr : crsFromText(text);
+  if (const std::string axes = crs ? backwardAxes(*crs) : std::string(); !axes.empty())
+  {
+    throw DataError("\"" + text + "\" counts to the " + axes + ", no slope does");
+  }
+  return crs ? crsWkt(crs, heightCrsFromText(text)) : std::string();
 }
 
 std::string labelOfCrs(const std::string& text)
@@ -178,6 +183,28 @@ std::string differentHeights(const std::string& one, const std::string& other)
   return a && b && !sameReference(*a, *b) ? referenceLabel(*a) + " and " + referenceLabel(*b)
                                           : std::string();
 }
+
+namespace
+{
+
+/// Sources of which no rock falls.
+void tellIdle(
+  const std::vector<SourceRow>& rows, const std::string& fileName, std::vector<std::string>& notes)
+{
+  const auto isIdle = [](const SourceRow& row)
+  { return row.amount == std::int64_t(0) || row.intensity == 0.0; };
+  const auto first = std::find_if(rows.begin(), rows.end(), isIdle);
+  if (first != rows.end())
+  {
+    notes.push_back(fileName + ": " + std::to_string(std::count_if(first, rows.end(), isIdle)) +
+      " of " + std::to_string(rows.size()) +
+      " sources release no rock, as their amount or intensity is 0, "
+      "first row " +
+      std::to_string(first->row));
+  }
+}
+
+} // namespace
 
 SourceLayer readSourceLayer(const std::string& fileName, const SourceOptions& options)
 {
@@ -202,7 +229,7 @@ SourceLayer readSourceLayer(const std::string& fileName, const SourceOptions& op
   placing.heightColumns = heightColumnsOf(definition);
   if (options.haveTerrain)
   {
-    file.refuseDegrees(placing.from, options.targetCrs);
+    file.refuseForeignAxes(placing.from, options.targetCrs);
     if (options.targetCrs.empty() && placing.from && placing.from->IsGeographic())
     {
       // GeoJSON that names no CRS: its degrees are believed to be the slope's coordinates.
@@ -251,10 +278,17 @@ SourceLayer readSourceLayer(const std::string& fileName, const SourceOptions& op
       fileName + ": layer \"" + layer.GetName() + "\" has no row, so there is no rock");
   }
   const CrsPtr placed = placing.to ? placing.to : allHaveGeometry ? placing.from : nullptr;
+  if (placed && !backwardAxes(*placed).empty())
+  {
+    throw DataError(fileName + ": layer \"" + layer.GetName() + "\" counts to the " +
+      backwardAxes(*placed) + " (" + crsLabel(*placed) +
+      "); it needs the Terrain input, or a TargetCRS");
+  }
   result.crs =
     crsWkt(placed, placing.to ? heightCrsFromText(options.targetCrs) : placing.heights.reference);
   placing.tell(fileName, result.notes);
   tellUnread(definition, fileName, kColumns, kShortColumns, result.notes);
+  tellIdle(result.rows, fileName, result.notes);
   tellSourceTwins(result.rows, fileName, result.notes);
   return result;
 }

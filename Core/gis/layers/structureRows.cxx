@@ -128,7 +128,7 @@ void StructureReader::forEachRow(const LayerWish& wish, const ColumnNames& numbe
   {
     notes.push_back(heights.doubt);
   }
-  file.refuseDegrees(heights.horizontal, terrain.geometry().crs);
+  file.refuseForeignAxes(heights.horizontal, terrain.geometry().crs);
   StructurePlaces places(fileName, heights, terrain, notes);
   std::int64_t count = 0;
   while (const OGRFeatureUniquePtr feature = file.next())

@@ -76,6 +76,10 @@ void toMetric(Contours& contours, const LayerHeights& heights, RasterSurface& re
     return;
   }
   const Destination to = destination(gridOf(box), crs, fileName);
+  if (!to.doubt.empty())
+  {
+    result.notes.push_back(to.doubt);
+  }
   result.geometry.crs = crsWkt(to.target ? to.target : crs, heights.reference);
   if (to.target)
   {

@@ -4,6 +4,7 @@
 #include "base/abort.h"
 #include "base/errors.h"
 #include "base/text/nameKey.h"
+#include "base/text/numberText.h"
 #include "gis/base/fields.h"
 #include "gis/base/gdal.h"
 #include "gis/base/planAccuracy.h"
@@ -192,6 +193,47 @@ private:
   std::int64_t vertices_ = 0;
 };
 
+/// Polygons that lie between centres of cells.
+class NarrowPolygons
+{
+public:
+  explicit NarrowPolygons(double cell)
+    : cell_(cell)
+  {
+  }
+
+  void look(const OGRGeometry& geometry, std::int64_t feature)
+  {
+    double around = 0.0;
+    for (const OGRLineString* ring : ringsIn(geometry))
+    {
+      around += ring->get_Length();
+    }
+    const double width =
+      2.0 * OGR_G_Area(OGRGeometry::ToHandle(const_cast<OGRGeometry*>(&geometry))) / around;
+    ++all_;
+    if (width < cell_ && ++narrow_ == 1)
+    {
+      first_ = "feature " + std::to_string(feature) + " with " + numberText(width, 3) + " m";
+    }
+  }
+
+  void tell(const std::string& fileName, std::vector<std::string>& notes) const
+  {
+    if (narrow_ > 0)
+    {
+      notes.push_back(fileName + ": " + std::to_string(narrow_) + " of " + std::to_string(all_) +
+        " polygons are narrower than the slope's cells of " + number(cell_) + " m, first " +
+        first_ + ". Only cells whose centre is in one have its class: take a smaller CellSize.");
+    }
+  }
+
+private:
+  double cell_;
+  std::int64_t all_ = 0, narrow_ = 0;
+  std::string first_;
+};
+
 /// Multiplies the coordinates of polygons.
 void stretch(OGRGeometry& geometry, double factor)
 {
@@ -242,7 +284,7 @@ std::vector<std::uint8_t> fromPolygons(GroundKind kind, const GroundFiles& files
   const Columns columns = columnsOf(*layer.GetLayerDefn());
   const LayerHeights units = heightsOf(file.dataset(), layer, files.layer, notes);
   const CrsPtr& from = units.horizontal;
-  file.refuseDegrees(from, cells.terrain.geometry().crs);
+  file.refuseForeignAxes(from, cells.terrain.geometry().crs);
   noteCrs(from, cells, files.layer, notes);
   noteRoughWay(files.layer, from, cells.crs, notes);
   std::unique_ptr<OGRCoordinateTransformation> change;
@@ -260,6 +302,7 @@ std::vector<std::uint8_t> fromPolygons(GroundKind kind, const GroundFiles& files
   Burner burner(cells, classes);
   UnitDoubt doubt(units, cells.terrain.geometry().fileUnits);
   CrossedOutlines crossed;
+  NarrowPolygons narrow(cells.terrain.geometry().cellSize);
   OGREnvelope all;
   bool overlaps = false;
   while (const OGRFeatureUniquePtr feature = file.next())
@@ -294,6 +337,7 @@ std::vector<std::uint8_t> fromPolygons(GroundKind kind, const GroundFiles& files
     }
     overlaps = true;
     crossed.look(*geometry, file.number());
+    narrow.look(*geometry, file.number());
     const auto text = fields.textAt(column);
     if (!text)
     {
@@ -320,6 +364,7 @@ std::vector<std::uint8_t> fromPolygons(GroundKind kind, const GroundFiles& files
   burner.burn();
   burner.tell(table, files.layer, notes);
   crossed.tell(files.layer, notes);
+  narrow.tell(files.layer, notes);
   return classes;
 }
 

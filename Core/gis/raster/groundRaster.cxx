@@ -2,6 +2,7 @@
 #include "gis/raster/groundCells.h"
 
 #include "base/errors.h"
+#include "base/text/numberText.h"
 #include "gis/base/gdal.h"
 #include "gis/base/progress.h"
 #include "gis/raster/rasterPlace.h"
@@ -15,6 +16,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <unordered_map>
 
@@ -69,6 +71,97 @@ void noteUnits(GDALDataset& source, const RasterPlace& place, const Cells& cells
   doubt.tell(notes);
 }
 
+/// Samples of a class layer in one of the terrain's cells, a side, and of all cells, at most.
+constexpr int finest = 8;
+constexpr double mostSamples = 2e8;
+/// Share of cells whose centre may speak for less than half of them: borders of wide classes have
+/// less.
+constexpr double fewCells = 0.1;
+
+/// The values of a class layer over the terrain, so many to a side of a cell.
+class ClassSamples
+{
+public:
+  ClassSamples(GDALDataset& warped, const std::string& fileName, Messages& messages)
+    : values_(warped.GetRasterBand(1))
+    , covered_(warped.GetRasterBand(warped.GetRasterCount()))
+    , fileName_(fileName)
+    , messages_(messages)
+  {
+  }
+
+  /// NaN where there is none.
+  const std::vector<double>& rows(int first, int count)
+  {
+    const std::size_t size = std::size_t(count) * values_->GetXSize();
+    value_.resize(size);
+    alpha_.resize(size);
+    messages_.clear();
+    if (!readRows(*values_, first, count, GDT_Float64, value_.data()) ||
+      !readRows(*covered_, first, count, GDT_Byte, alpha_.data()))
+    {
+      throw FileError(fileName_ + ": cannot be read: " + messages_.failure());
+    }
+    for (std::size_t i = 0; i < size; ++i)
+    {
+      value_[i] = alpha_[i] == 0 ? std::numeric_limits<double>::quiet_NaN() : value_[i];
+    }
+    return value_;
+  }
+
+private:
+  GDALRasterBand *values_, *covered_;
+  const std::string& fileName_;
+  Messages& messages_;
+  std::vector<double> value_;
+  std::vector<std::uint8_t> alpha_;
+};
+
+/// A note if classes of the layer are in no cell, or if many cells are mostly of another one than
+/// at their centre. `rowOf`: the row of a value, 0 for none.
+template <class RowOf>
+void noteFine(ClassSamples& samples, int perSide, double layerCell, const GroundTable& table,
+  const Cells& cells, const std::vector<std::uint8_t>& classes, const std::string& fileName,
+  RowOf&& rowOf, std::vector<std::string>& notes)
+{
+  std::vector<bool> inLayer(table.names.size() + 1), inCells(inLayer.size());
+  std::int64_t other = 0, all = 0;
+  std::vector<int> same(std::size_t(cells.columns));
+  for (int row = 0; row < cells.rows; ++row)
+  {
+    const std::uint8_t* const own = classes.data() + std::size_t(row) * cells.columns;
+    const std::vector<double>& value = samples.rows(row * perSide, perSide);
+    std::fill(same.begin(), same.end(), 0);
+    for (std::size_t i = 0; i < value.size(); ++i)
+    {
+      const std::size_t column = i % (std::size_t(cells.columns) * perSide) / perSide;
+      const int of = std::isnan(value[i]) ? 0 : rowOf(value[i]);
+      inLayer[std::size_t(of)] = true;
+      same[column] += of == own[column];
+    }
+    for (int column = 0; column < cells.columns; ++column)
+    {
+      inCells[own[column]] = true;
+      all += own[column] > 0;
+      other += own[column] > 0 && 2 * same[std::size_t(column)] < perSide * perSide;
+    }
+  }
+  std::string lost;
+  for (std::size_t k = 1; k < inLayer.size(); ++k)
+  {
+    lost +=
+      inLayer[k] && !inCells[k] ? (lost.empty() ? "\"" : ", \"") + table.names[k - 1] + "\"" : "";
+  }
+  if (!lost.empty() || double(other) > fewCells * double(all))
+  {
+    notes.push_back(fileName + ": has cells of " + numberText(layerCell, 3) + " m, the slope of " +
+      number(cells.terrain.geometry().cellSize) +
+      " m, whose centre decides: " + std::to_string(other) + " of " + std::to_string(all) +
+      " are mostly of another class" + (lost.empty() ? "" : ", and in none is " + lost) +
+      ". Take a smaller CellSize, or wider classes.");
+  }
+}
+
 } // namespace
 
 std::vector<std::uint8_t> fromRaster(const GroundFiles& files, const std::string& raster,
@@ -94,39 +187,40 @@ std::vector<std::uint8_t> fromRaster(const GroundFiles& files, const std::string
   const double half = 0.5 * std::max(grid.columnStep(), grid.rowStep());
   box = { box.xMin - half, box.xMax + half, box.yMin - half, box.yMax + half };
 
-  CPLStringList options;
-  const auto add = [&](std::initializer_list<std::string> words)
-  {
-    for (const std::string& word : words)
-    {
-      options.AddString(word.c_str());
-    }
-  };
   const auto digits = [](double value) { return CPLString().Printf("%.17g", value); };
   // A centre on the edge between two of the layer's cells is in the eastern one, in the southern
   // one, in whichever order they are stored.
   const double size = cells.terrain.geometry().cellSize, aside = edge * size;
-  // Overviews of classes may hold means of their numbers.
-  add({ "-of", "VRT", "-r", "near", "-ovr", "NONE", "-dstalpha", "-te",
-    digits(cells.box.xMin + aside), digits(cells.box.yMin - aside), digits(cells.box.xMax + aside),
-    digits(cells.box.yMax - aside), "-ts", std::to_string(cells.columns),
-    std::to_string(cells.rows) });
-  if (from && cells.crs)
-  {
-    add({ "-t_srs", crsWkt(*cells.crs) }); // classes are no heights: no vertical part
-  }
-  const std::unique_ptr<GDALWarpAppOptions, void (*)(GDALWarpAppOptions*)> how(
-    GDALWarpAppOptionsNew(options.List(), nullptr), GDALWarpAppOptionsFree);
   std::array<double, 6> written{};
   const bool elsewhere =
     source->GetGeoTransform(written.data()) != CE_None || written != place.affine;
   const DatasetPtr single = elsewhere || source->GetRasterCount() > 1
     ? firstBandOf(*source, place, files.layer, messages)
     : DatasetPtr();
-  GDALDatasetH sources[] = { GDALDataset::ToHandle(single ? single.get() : source.get()) };
-  messages.clear();
-  const DatasetPtr warped(
-    GDALDataset::FromHandle(GDALWarp("", nullptr, 1, sources, how.get(), nullptr)));
+  const auto warpedTo = [&](int perSide)
+  {
+    // Overviews of classes may hold means of their numbers.
+    std::vector<std::string> words = { "-of", "VRT", "-r", "near", "-ovr", "NONE", "-dstalpha",
+      "-te", digits(cells.box.xMin + aside), digits(cells.box.yMin - aside),
+      digits(cells.box.xMax + aside), digits(cells.box.yMax - aside), "-ts",
+      std::to_string(cells.columns * perSide), std::to_string(cells.rows * perSide) };
+    if (from && cells.crs)
+    {
+      words.insert(words.end(), { "-t_srs", crsWkt(*cells.crs) }); // no heights, no vertical part
+    }
+    CPLStringList options;
+    for (const std::string& word : words)
+    {
+      options.AddString(word.c_str());
+    }
+    const std::unique_ptr<GDALWarpAppOptions, void (*)(GDALWarpAppOptions*)> how(
+      GDALWarpAppOptionsNew(options.List(), nullptr), GDALWarpAppOptionsFree);
+    GDALDatasetH sources[] = { GDALDataset::ToHandle(single ? single.get() : source.get()) };
+    messages.clear();
+    return DatasetPtr(
+      GDALDataset::FromHandle(GDALWarp("", nullptr, 1, sources, how.get(), nullptr)));
+  };
+  const DatasetPtr warped = warpedTo(1);
   if (!warped)
   {
     failOverlap(files.layer,
@@ -134,59 +228,61 @@ std::vector<std::uint8_t> fromRaster(const GroundFiles& files, const std::string
         (messages.failure().empty() ? "" : " (" + messages.failure() + ")"),
       cells);
   }
-  GDALRasterBand* values = warped->GetRasterBand(1);
-  GDALRasterBand* covered = warped->GetRasterBand(warped->GetRasterCount());
   char** categories = source->GetRasterBand(1)->GetCategoryNames();
 
   std::vector<std::uint8_t> classes(std::size_t(cells.columns) * cells.rows, 0);
-  std::unordered_map<double, int> rowOf;
+  std::unordered_map<double, int> known;
+  const auto rowOf = [&](double value)
+  {
+    const auto found = known.find(value);
+    if (found != known.end())
+    {
+      return found->second;
+    }
+    int row = table.rowOf(exactly(value));
+    if (row == 0 && categories && value >= 0.0 && value < CSLCount(categories))
+    {
+      row = table.rowOf(categories[int(value)]);
+    }
+    return known.emplace(value, row).first->second;
+  };
   bool any = false;
   const int step = 64; // rows at once
-  std::vector<double> value(std::size_t(step) * cells.columns);
-  std::vector<std::uint8_t> alpha(value.size());
+  ClassSamples samples(*warped, files.layer, messages);
   for (int first = 0; first < cells.rows; first += step)
   {
-    const int count = std::min(step, cells.rows - first);
-    messages.clear();
-    if (!readRows(*values, first, count, GDT_Float64, value.data()) ||
-      !readRows(*covered, first, count, GDT_Byte, alpha.data()))
+    const std::vector<double>& value = samples.rows(first, std::min(step, cells.rows - first));
+    for (std::size_t i = 0; i < value.size(); ++i)
     {
-      throw FileError(files.layer + ": cannot be read: " + messages.failure());
-    }
-    for (std::size_t i = 0; i < std::size_t(count) * cells.columns; ++i)
-    {
-      if (alpha[i] == 0 || std::isnan(value[i]))
+      if (std::isnan(value[i]))
       {
         continue;
       }
       any = true;
       const std::int64_t cell = std::int64_t(first) * cells.columns + std::int64_t(i);
-      auto known = rowOf.find(value[i]);
-      if (known == rowOf.end())
+      const int row = rowOf(value[i]);
+      if (row == 0 && cells.hasGround(cell))
       {
-        if (!cells.hasGround(cell))
-        {
-          continue;
-        }
-        int row = table.rowOf(exactly(value[i]));
-        if (row == 0 && categories && value[i] >= 0.0 && value[i] < CSLCount(categories))
-        {
-          row = table.rowOf(categories[int(value[i])]);
-        }
-        if (row == 0)
-        {
-          failClass(files.layer,
-            "class " + exactly(value[i]) + " (in the cell at " + cells.place(cell) + ")",
-            files.table, table);
-        }
-        known = rowOf.emplace(value[i], row).first;
+        failClass(files.layer,
+          "class " + exactly(value[i]) + " (in the cell at " + cells.place(cell) + ")", files.table,
+          table);
       }
-      classes[std::size_t(cell)] = std::uint8_t(known->second);
+      classes[std::size_t(cell)] = std::uint8_t(row);
     }
   }
   if (!any)
   {
     failOverlap(files.layer, extentText(box, from, cells), cells);
+  }
+  const auto steps =
+    centreSteps(grid, from && cells.crs ? CrsChange(from, cells.crs) : CrsChange());
+  const double layerCell = std::sqrt(steps[0] * steps[1]);
+  const int perSide = int(std::min({ std::ceil(size / layerCell - 0.01), double(finest),
+    std::floor(std::sqrt(mostSamples / double(classes.size()))) }));
+  if (const DatasetPtr fine = perSide > 1 ? warpedTo(perSide) : DatasetPtr())
+  {
+    ClassSamples within(*fine, files.layer, messages);
+    noteFine(within, perSide, layerCell, table, cells, classes, files.layer, rowOf, notes);
   }
   return classes;
 }

@@ -20,7 +20,12 @@ namespace
 /// Web Mercator is at 0.4 in the Alps.
 constexpr double largestDistortion = 0.02;
 
-CrsPtr utmOf(const SourceGrid& grid, const CrsPtr& crs, const std::string& fileName)
+/// Degrees beyond the area that a CRS is made for, in which neighbours use it as well.
+constexpr double beside = 5.0;
+
+/// Longitude and latitude of the centre.
+std::array<double, 2> centreOnEarth(
+  const SourceGrid& grid, const CrsPtr& crs, const std::string& fileName)
 {
   const auto centre = grid.place(0.5 * (grid.rows - 1), 0.5 * (grid.columns - 1));
   double longitude = centre[0], latitude = centre[1];
@@ -29,7 +34,29 @@ CrsPtr utmOf(const SourceGrid& grid, const CrsPtr& crs, const std::string& fileN
     throw DataError(fileName + ": the centre " + number(centre[0]) + ", " + number(centre[1]) +
       " is no place on earth in its CRS " + crsLabel(*crs));
   }
-  return crsFromEpsg(utmCode(longitude, latitude));
+  return { longitude, latitude };
+}
+
+/// A note if a CRS is not made for a place; empty if it is, or if nobody knows.
+std::string awayFrom(const OGRSpatialReference& crs, const std::array<double, 2>& place)
+{
+  double west = 0.0, south = 0.0, east = 0.0, north = 0.0;
+  const char* name = nullptr;
+  if (!crs.GetAreaOfUse(&west, &south, &east, &north, &name) || west < -180.0)
+  {
+    return {};
+  }
+  east += east < west ? 360.0 : 0.0; // over the date line
+  const double middle = 0.5 * (west + east);
+  const double off = std::abs(std::remainder(place[0] - middle, 360.0)) - 0.5 * (east - west);
+  if (off <= beside && place[1] >= south - beside && place[1] <= north + beside)
+  {
+    return {};
+  }
+  return "Its place, longitude " + number(std::round(100.0 * place[0]) / 100.0) + ", latitude " +
+    number(std::round(100.0 * place[1]) / 100.0) + ", is far from where its CRS " + crsLabel(crs) +
+    " is used, " + boxText({ west, east, south, north }) +
+    " degrees: are the CRS and the order and signs of the coordinates right?";
 }
 
 } // namespace
@@ -106,6 +133,13 @@ Destination destination(const SourceGrid& grid, const CrsPtr& crs, const std::st
   {
     return {};
   }
+  Destination there;
+  const auto toUtm = [&](const std::string& reason)
+  {
+    const auto place = centreOnEarth(grid, crs, fileName);
+    there = { crsFromEpsg(utmCode(place[0], place[1])), reason, awayFrom(*crs, place) };
+    return there;
+  };
   if (crs->IsGeographic())
   {
     const Box box = extent(grid);
@@ -116,17 +150,20 @@ Destination destination(const SourceGrid& grid, const CrsPtr& crs, const std::st
       throw DataError(fileName + ": its CRS " + crsLabel(*crs) + " is geographic, but its extent " +
         boxText(box) + " is no longitude and latitude");
     }
-    return { utmOf(grid, crs, fileName), "its coordinates are angles" };
+    return toUtm("its coordinates are angles");
   }
   const char* unit = nullptr;
   if (std::abs(crs->GetLinearUnits(&unit) - 1.0) > 1e-9)
   {
-    return { utmOf(grid, crs, fileName),
-      "its unit is not the metre but the " + std::string(unit ? unit : "unnamed unit") };
+    return toUtm("its unit is not the metre but the " + std::string(unit ? unit : "unnamed unit"));
+  }
+  if (const std::string axes = backwardAxes(*crs); !axes.empty())
+  {
+    return toUtm("its coordinates count to the " + axes);
   }
   try
   {
-    Destination there{ utmOf(grid, crs, fileName), "" };
+    toUtm({});
     const auto steps = centreSteps(grid, CrsChange(crs, there.target));
     const double along = grid.columnStep() / steps[0], across = grid.rowStep() / steps[1];
     const double worst = std::abs(along - 1.0) > std::abs(across - 1.0) ? along : across;
@@ -148,7 +185,7 @@ Destination destination(const SourceGrid& grid, const CrsPtr& crs, const std::st
   {
     // A projection whose place on earth is not known cannot be checked, but it can be used.
   }
-  return {};
+  return { nullptr, {}, there.doubt };
 }
 
 double threeDigits(double value)

@@ -43,10 +43,11 @@ struct Destination
 {
   CrsPtr target;
   std::string reason;
+  std::string doubt; ///< A note if its CRS is not made for where it is; empty: none.
 };
 
 /// The UTM zone (WGS 84) of the centre, or UPS, if the CRS is geographic, if its unit is not the
-/// metre, or if its map metres are not metres on the ground. Throws DataError, beginning with
+/// metre, if its axes point west or south, or if its map metres are not metres on the ground. Throws DataError, beginning with
 /// `fileName`, if the extent is not on earth.
 Destination destination(const SourceGrid& grid, const CrsPtr& crs, const std::string& fileName);
 

@@ -173,6 +173,10 @@ RasterSurface readRaster(const std::string& fileName, const RasterOptions& optio
   }
 
   const Destination to = destination(grid, file.crs(), fileName);
+  if (!to.doubt.empty())
+  {
+    result.notes.push_back(to.doubt);
+  }
   const CrsPtr& reference = file.reference();
   if (to.target)
   {

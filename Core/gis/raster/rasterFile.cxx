@@ -149,13 +149,9 @@ void RasterFile::requireCoverage()
   }
 }
 
-void RasterFile::noteZeros(const std::vector<double>& heights)
+void RasterFile::noteZeros(const std::vector<double>& heights, double step)
 {
   std::int64_t suspect = 0, all = 0;
-  const double cell = place_.crs && place_.crs->IsGeographic()
-    ? suspectStep
-    : std::hypot(place_.affine[1], place_.affine[4]);
-  const double step = std::clamp(suspectSlope * cell, suspectWall, suspectStep);
   const auto high = [&](std::size_t i) { return std::abs(heights[i]) > step; };
   for (int row = 0; row < rows_; ++row)
   {
@@ -177,6 +173,52 @@ void RasterFile::noteZeros(const std::vector<double>& heights)
     notes_.push_back(std::to_string(all) + " nodes of band " + std::to_string(bandNumber_) +
       " are exactly 0 m, " + std::to_string(suspect) + " of them beside ground more than " +
       number(step) + " m off. If 0 stands for no data, gdal_edit.py -a_nodata 0 says so");
+  }
+}
+
+void RasterFile::noteSpikes(const std::vector<double>& heights, double step)
+{
+  std::int64_t count = 0;
+  std::string first;
+  for (int row = 0; row < rows_; ++row)
+  {
+    stayWanted();
+    for (int column = 0; column < columns_; ++column)
+    {
+      const double height = heights[std::size_t(row) * columns_ + column];
+      // The least way up, and down, to what is around.
+      double over = HUGE_VAL, under = HUGE_VAL;
+      int around = 0;
+      for (int r = std::max(0, row - 1); r <= std::min(rows_ - 1, row + 1); ++r)
+      {
+        for (int c = std::max(0, column - 1); c <= std::min(columns_ - 1, column + 1); ++c)
+        {
+          const double other = heights[std::size_t(r) * columns_ + c];
+          if ((r != row || c != column) && !std::isnan(other))
+          {
+            over = std::min(over, height - other);
+            under = std::min(under, other - height);
+            ++around;
+          }
+        }
+        if (over < step && under < step)
+        {
+          break;
+        }
+      }
+      if (around >= 3 && std::max(over, under) >= step && ++count == 1)
+      {
+        first = number(std::round(std::max(over, under))) + " m " +
+          (over > 0.0 ? "above" : "below") + " in row " + std::to_string(row + 1) + ", column " +
+          std::to_string(column + 1);
+      }
+    }
+  }
+  if (count > 0)
+  {
+    notes_.push_back(std::to_string(count) + " nodes of band " + std::to_string(bandNumber_) +
+      " stand alone, more than " + number(step) + " m above or below all around, first " + first +
+      ": faults of the survey, on which rocks bounce or are caught?");
   }
 }
 
@@ -263,10 +305,19 @@ SourceGrid RasterFile::read()
       std::to_string(bandNumber_) + " are nodata");
   }
 
-  this->noteZeros(grid.heights);
-  this->noteTerraces(grid.heights);
+  const double cell = place_.crs && place_.crs->IsGeographic()
+    ? suspectStep
+    : std::hypot(place_.affine[1], place_.affine[4]);
+  const double suspicious = std::clamp(suspectSlope * cell, suspectWall, suspectStep);
+  const std::size_t told = notes_.size();
+  this->noteZeros(grid.heights, suspicious);
   noteMarks(grid.heights, heights_, "nodes of band " + std::to_string(bandNumber_),
     "gdal_edit.py -a_nodata ", notes_);
+  if (notes_.size() == told) // else they are these
+  {
+    this->noteSpikes(grid.heights, suspicious);
+  }
+  this->noteTerraces(grid.heights);
 
   if (place_.affine[2] == 0.0 && place_.affine[4] == 0.0 && place_.affine[5] > 0.0)
   {

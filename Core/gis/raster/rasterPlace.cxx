@@ -3,6 +3,7 @@
 #include "base/errors.h"
 #include "gis/base/gdal.h"
 #include "gis/trust/gridAxes.h"
+#include "gis/trust/otherPlaces.h"
 #include "gis/trust/rawSize.h"
 
 #include <gdal_priv.h>
@@ -80,6 +81,10 @@ RasterPlace rasterPlace(GDALDataset& dataset, GDALRasterBand& band, const TextGr
     notes.emplace_back(
       "The header gives a corner along one axis and the centre of a cell along the "
       "other; each was taken as it says.");
+  }
+  if (placed)
+  {
+    noteOtherPlaces(dataset, affine, place.crs, notes);
   }
   const GridAxes axes = checkAxes(dataset, band, placed, fileName, notes);
   if (!place.crs && axes.metres != 1.0)

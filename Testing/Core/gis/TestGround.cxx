@@ -158,6 +158,53 @@ TEST(Ground, RasterOnAnotherGrid)
   EXPECT_TRUE(holds(notes.back(), { "rock 50 %", "talus 50 %" }));
 }
 
+TEST(Ground, ClassesThatAreFinerThanTheSlopeAreTold)
+{
+  const Terrain terrain = slope();
+  const auto told = [&](const GroundFiles& files)
+  {
+    std::vector<std::string> notes;
+    read(files, terrain, GroundKind::Restitution, &notes);
+    std::erase_if(
+      notes, [](const std::string& note) { return note.find("centre") == std::string::npos; });
+    return notes;
+  };
+  EXPECT_TRUE(told({ halves().write(), table(), "" }).empty());
+  // A path of 2 m, whose cells of 1 m lie 2 to 4 m beside all centres.
+  RawRaster fine = halves();
+  fine.columns = 80;
+  fine.rows = 60;
+  fine.affine = { west, 1.0, 0.0, south + 60.0, 0.0, -1.0 };
+  fine.fill([](double x, double) { return x > west + 42.0 && x < west + 44.0 ? 2.0 : 1.0; });
+  const std::vector<std::string> path = told({ fine.write(), table(), "" });
+  ASSERT_EQ(path.size(), 1u);
+  EXPECT_TRUE(holds(
+    path[0], { "cells of 1 m, the slope of 10 m", "0 of 48", "in none is \"talus\"", "CellSize" }))
+    << path[0];
+  // Blocks in scree, by chance under the centres: a tenth of the ground, all of the cells.
+  fine.fill(
+    [](double x, double y)
+    {
+      const double u = std::remainder(x - west - 5.0, 10.0),
+                   v = std::remainder(y - south - 5.0, 10.0);
+      return std::abs(u) < 1.6 && std::abs(v) < 1.6 ? 2.0 : 1.0;
+    });
+  const std::vector<std::string> blocks = told({ fine.write(), table(), "" });
+  ASSERT_EQ(blocks.size(), 1u);
+  EXPECT_TRUE(holds(blocks[0], { "48 of 48 are mostly of another class", "\"rock\"" }))
+    << blocks[0];
+  // Polygons: a strip that no centre lies in, and a wide one.
+  const std::string wide = box(west, south, west + 40, south + 60, "\"class\":\"1\"");
+  EXPECT_TRUE(told({ polygons(wide), table(), "" }).empty());
+  const std::string strip = box(west + 42, south, west + 44, south + 60, "\"class\":\"2\"");
+  const std::vector<std::string> narrow = told({ polygons(wide + "," + strip), table(), "" });
+  ASSERT_EQ(narrow.size(), 1u);
+  EXPECT_TRUE(holds(narrow[0],
+    { "1 of 2 polygons are narrower than the slope's cells of 10 m", "first feature 2 with 1.94 m",
+      "CellSize" }))
+    << narrow[0];
+}
+
 TEST(Ground, RasterInAnotherCrsAndExtent)
 {
   // Longitude and latitude, with its border on the meridian 10.2930° E. By PROJ (gdaltransform) it

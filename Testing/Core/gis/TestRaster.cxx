@@ -207,6 +207,26 @@ TEST(Raster, zerosBesideHighGroundAreNoted)
   EXPECT_TRUE(holds(joined(readRaster(raster.write())), { "beside ground more than 40 m off" }));
 }
 
+TEST(Raster, nodesThatStandAloneAreNoted)
+{
+  RawRaster raster = smallRaster();
+  raster.columns = raster.rows = 9;
+  const auto told = [&](double bird, double well)
+  {
+    raster.fill([](double x, double) { return 500.0 + 0.8 * (x - 600000.0); }); // 39°
+    raster.values[4 * 9 + 4] += bird;
+    raster.values[0] -= well; // in a corner
+    return joined(readRaster(raster.write()));
+  };
+  EXPECT_EQ(told(30.0, 30.0).find("stand alone"), std::string::npos);
+  const std::string both = told(60.0, 70.0);
+  EXPECT_TRUE(holds(both,
+    { "2 nodes of band 1 stand alone, more than 40 m above or below all around, "
+      "first 70 m below in row 1, column 1" }))
+    << both;
+  EXPECT_TRUE(holds(told(60.0, 0.0), { "1 nodes", "first 52 m above in row 5, column 5" }));
+}
+
 TEST(Raster, HeightsOfNoMountainAreNoted)
 {
   RawRaster raster = smallRaster();

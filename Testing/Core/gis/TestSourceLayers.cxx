@@ -54,6 +54,24 @@ std::string table(const std::string& columns, const std::string& cells)
 const char* const square = R"({"type":"Polygon","coordinates":[[[0,0],[4,0],[4,4],[0,4],[0,0]]]})";
 const char* const line = R"({"type":"LineString","coordinates":[[0,0,10],[4,0,20]]})";
 
+TEST(SourceLayers, thatReleaseNothingAreTold)
+{
+  const auto notes = [](const std::string& cells)
+  {
+    SourceOptions options;
+    options.haveTerrain = true;
+    std::vector<std::string> all =
+      readSourceLayer(writeFile("idle.csv", "x,y,amount\n1,2,3\n" + cells), options).notes;
+    std::erase_if(
+      all, [](const std::string& note) { return note.find("no rock") == std::string::npos; });
+    return all;
+  };
+  EXPECT_TRUE(notes("9,9,1\n").empty());
+  ASSERT_EQ(notes("9,9,0\n8,8,0\n").size(), 1u);
+  EXPECT_TRUE(
+    holds(notes("9,9,0\n8,8,0\n")[0], { "2 of 3 sources release no rock", "first row 2" }));
+}
+
 TEST(SourceLayers, polygonsAndLinesKeepTheirParts)
 {
   const SourceRow flat = only(feature(square, R"("amount":12,"height":0.5,"source":"cliff")"));
