@@ -84,11 +84,11 @@ bool holds(const ColumnNames& names, const std::string& word)
 const ColumnNames kQuantities = { "mass", "masse", "massa", "weight", "gewicht", "poids", "peso",
   "speed", "velocity", "geschwindigkeit", "vitesse", "spin", "diameter", "durchmesser", "bhd",
   "dbh", "girth", "circumference", "umfang", "size", "length", "width", "breite", "largeur",
-  "larghezza", "height", "hoehe", "höhe", "hauteur", "altezza", "elevation", "elev", "altitude",
-  "volume", "density", "dichte", "densité", "densità", "energy", "energie", "énergie", "energia",
-  "mel", "capacity", "kapazität", "capacité", "capacità", "slope", "inclination", "neigung",
-  "restitution", "friction", "reibung", "frottement", "attrito", "species", "baumart", "essence",
-  "frequency", "häufigkeit", "fréquence", "frequenza" };
+  "larghezza", "height", "hoehe", "höhe", "hauteur", "altezza", "elevation", "elev", "ele",
+  "altitude", "volume", "density", "dichte", "densité", "densità", "energy", "energie", "énergie",
+  "energia", "mel", "capacity", "kapazität", "capacité", "capacità", "slope", "inclination",
+  "neigung", "restitution", "friction", "reibung", "frottement", "attrito", "species", "baumart",
+  "essence", "frequency", "häufigkeit", "fréquence", "frequenza" };
 
 /// Whether `column` is `name` cut short within its first word.
 bool isShortFor(const std::string& column, const std::string& name)

@@ -6,9 +6,8 @@
 #include "gis/layers/sources.h"
 #include "gisFiles.h"
 
-#include <cstdio>
-
 #include <algorithm>
+#include <cstdio>
 
 namespace rockfall
 {
@@ -270,6 +269,20 @@ TEST(SourceErrors, numbersInAJsonLayer)
     failure<DataError>(feature(point, "\"volume\":-0.5")), { "row 1", "\"volume\"", "-0.5" }));
   EXPECT_TRUE(holds(failure<DataError>(feature(point, "\"volume\":\"big\"")),
     { "row 1", "\"volume\"", "\"big\"" }));
+}
+
+TEST(Sources, elevationsOfWaypointsAreTold)
+{
+  const std::string path = writeFile("way.gpx",
+    R"(<gpx version="1.1" creator="x" xmlns="http://www.topografix.com/GPX/1/1">)"
+    R"(<wpt lat="46.05" lon="10.29"><ele>700</ele></wpt></gpx>)");
+  SourceOptions options;
+  options.targetCrs = "EPSG:32632";
+  options.haveTerrain = true;
+  const std::vector<std::string> notes = readSourceLayer(path, options).notes;
+  EXPECT_TRUE(std::any_of(notes.begin(), notes.end(),
+    [](const std::string& note)
+    { return note.find("not read is its column \"ele\"") != std::string::npos; }));
 }
 
 TEST(SourceErrors, trueIsNoNumber)
