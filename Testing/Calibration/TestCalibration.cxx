@@ -2,6 +2,7 @@
 
 #include "GroundSettings.h"
 #include "SingleImpact.h"
+#include "SlopeFigures.h"
 #include "fieldScores.h"
 #include "fieldTables.h"
 #include "trackedGround.h"
@@ -149,4 +150,62 @@ TEST(GroundSettings, APresetIsAllOfTheGround)
   EXPECT_FALSE(s.material.yielding.yields());
   EXPECT_EQ(s.deviationPer, DeviationPer::Iteration);
   EXPECT_THROW(s.setGround("moon"), DataError);
+}
+
+TEST(SlopeFigures, AreThoseOfTheSample)
+{
+  std::vector<TrajectorySummary> rocks(101);
+  for (int k = 0; k < 101; ++k)
+  {
+    TrajectorySummary& t = rocks[std::size_t(37 * k % 101)]; // in any order
+    t.maxSpeed = k;
+    t.maxHeightOverGround = 0.1 * k;
+    t.runOut = 100.0 + k;
+    t.start.z() = 100.0;
+    t.endTime = 2.0 * k;
+  }
+  const SlopeFigures f = figuresOf(rocks);
+  EXPECT_NEAR(f.speed, 95.0, 1e-9);
+  EXPECT_NEAR(f.jump, 9.5, 1e-9);
+  EXPECT_NEAR(f.runOut, 150.0, 1e-9);
+  EXPECT_NEAR(f.reach, degrees(std::atan(100.0 / 150.0)), 1e-9);
+  EXPECT_NEAR(f.reachFarthest, degrees(std::atan(100.0 / 199.0)), 1e-9);
+  EXPECT_NEAR(f.longest, 200.0, 1e-9);
+}
+
+// A ball lands, rolls down, over the foot and on to its rest: Azzoni et al. (1995), and at both
+// impacts the angular momentum about the place that is touched, less what the resistance takes.
+TEST(SlopeFigures, ABallRestsWhereTheClosedFormHasIt)
+{
+  const double angle = radians(10.0), resistance = 0.1, g = 9.80665, share = 5.0 / 7.0;
+  GroundSettings s;
+  s.material.restitutionModel = RestitutionModel::NormalTangential;
+  s.material.restitution = 0.0;
+  s.material.restitutionDeviation = 0.0;
+  s.material.frictionAngle = radians(60.0);
+  s.material.frictionAngleDeviation = 0.0;
+  s.material.yielding.rollingResistance = resistance;
+  s.roughness = {};
+  s.simulation.normalPenalty = 0.0;
+  s.simulation.gravity = g;
+  s.simulation.iterations = 2;
+  s.simulation.endTime = 300.0;
+  s.simulation.outputInterval = 0.5;
+  const SlopeFigures f = measure(s, { 10.0, 20.0, 1.0 }, { makeShape(Shape::Sphere, 1.0) });
+
+  const double radius = std::cbrt(0.75 / std::numbers::pi), c = std::cos(angle),
+               n = std::sin(angle);
+  const double gap = 2.0 * c - radius, rise = 1.5 * n;
+  const double t = (rise + std::sqrt(rise * rise + 2.0 * g * c * gap)) / (g * c);
+  const double down = g * c * t - rise, along = 1.5 * c + g * n * t; // m/s, at the touch
+  double v = share * (along - resistance * down);
+  const double foot = 2.0 * std::round((8.0 + 20.0 / std::tan(angle)) / 2.0);
+  const double before = radius * std::tan(0.5 * angle); // of the foot: the ball touches both
+  const double way = (foot - 8.0) / c - 2.0 * n - (1.5 * c * t + 0.5 * g * n * t * t) - before;
+  v = std::sqrt(v * v + 2.0 * share * g * c * (std::tan(angle) - resistance) * way);
+  EXPECT_NEAR(f.speed, v, 0.01 * v);
+  v *= 1.0 - share * (1.0 - c) - share * resistance * n;
+  const double stop = foot + before + v * v / (2.0 * share * g * resistance);
+  EXPECT_NEAR(f.runOut, stop - 8.0, 0.01 * (stop - 8.0));
+  EXPECT_NEAR(f.reach, f.reachFarthest, 1e-3); // they are all alike
 }

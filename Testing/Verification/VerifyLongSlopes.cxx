@@ -4,6 +4,7 @@
 // Field figures: speeds mostly below 30 m/s, jumps of some metres, reach angles of single
 // rocks 27.5° to 40° (Heim's fahrböschung, from the release to the stop).
 
+#include "longSlope.h"
 #include "verification.h"
 
 #include "terrain/presets.h"
@@ -12,56 +13,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <optional>
 #include <random>
 
 using namespace rockfall;
+using namespace rockfall::testing;
 using namespace rockfall::verification;
 
 namespace
 {
 
-constexpr double kNode = 2.0;     // m
-constexpr double kWidth = 120.0;  // m
-constexpr double kAbove = 20.0;   // from the edge to the top, m
-constexpr double kBeyond = 300.0; // of flat ground, m
+constexpr double kWidth = 120.0; // m
+constexpr double kAbove = 20.0;  // from the edge to the top, m
 
 /// A slope of this length and angle (rad) with a flat foot; the foot is of another ground.
-Terrain makeLongSlope(double length, double angle, const char* upper, const char* lower)
+Terrain makeSlope(double length, double angle, const char* upper, const char* lower)
 {
-  const double foot = kAbove + length * std::cos(angle);
-  GridGeometry grid;
-  grid.columns = int((foot + kBeyond) / kNode) + 1;
-  grid.rows = int(kWidth / kNode) + 1;
-  grid.cellSize = kNode;
-  std::vector<double> heights;
-  auto cells = std::make_shared<std::vector<std::uint8_t>>();
-  for (int row = 0; row < grid.rows; ++row)
-  {
-    for (int column = 0; column < grid.columns; ++column)
-    {
-      const double x = kNode * column;
-      heights.push_back(std::max(0.0, foot - x) * std::tan(angle));
-      if (row + 1 < grid.rows && column + 1 < grid.columns)
-      {
-        cells->push_back(x >= foot ? 1 : 0);
-      }
-    }
-  }
-  Terrain terrain(
-    grid, std::move(heights), groundPreset(upper).material(), groundPreset(upper).roughness);
-  MaterialClasses classes;
-  classes.names = { "foot" };
-  classes.materials = { groundPreset(lower).material() };
-  classes.materials.front().deviationPer = groundPreset(lower).deviationPer();
-  classes.roughness = { groundPreset(lower).roughness };
-  classes.cells = *cells;
-  classes.owner = cells;
-  terrain.setRestitutionClasses(classes);
-  terrain.setJointClasses(classes);
-  terrain.setDeviationPer(groundPreset(upper).deviationPer());
-  return terrain;
+  return makeLongSlope(angle, kAbove + length * std::cos(angle), 300.0,
+    SlopeGround::ofPreset(upper), SlopeGround::ofPreset(lower));
 }
 
 /// EOTA rocks and cubes of 0.2 to 2 m³, let go at the top at 1.5 m/s.
@@ -103,7 +72,7 @@ TEST(LongSlopes, SpeedsJumpsAndReachAngles)
   };
   for (const Case& c : { Case{ 40.0, 150.0, {} }, Case{ 35.0, 450.0, 35.0 } })
   {
-    const Terrain terrain = makeLongSlope(c.length, radians(c.angle), "talus", "meadow");
+    const Terrain terrain = makeSlope(c.length, radians(c.angle), "talus", "meadow");
     SimulationParameters p;
     p.endTime = 300.0;
     p.outputInterval = 0.5;
@@ -145,7 +114,7 @@ TEST(LongSlopes, BedrockIsAsFastAsTalus)
 {
   const auto median = [](const char* ground)
   {
-    const Terrain terrain = makeLongSlope(200.0, radians(30.0), ground, ground);
+    const Terrain terrain = makeSlope(200.0, radians(30.0), ground, ground);
     SimulationParameters p;
     p.endTime = 300.0;
     p.outputInterval = 0.5;
@@ -169,7 +138,7 @@ TEST(LongSlopes, LargeBlocksGoFarther)
 {
   const auto median = [](double volume)
   {
-    const Terrain terrain = makeLongSlope(174.0, radians(35.0), "talus", "talus"); // 100 m of drop
+    const Terrain terrain = makeSlope(174.0, radians(35.0), "talus", "talus"); // 100 m of drop
     std::vector<Rock> rocks = releaseAtTop(terrain, count(60, 300));
     for (Rock& rock : rocks)
     {
