@@ -45,11 +45,14 @@ struct GroundPreset
   /// Never node by node: whatever the cells, rocks meet the same ground.
   Roughness roughness;
   const char* roughnessSource;
+  const char* errs;              ///< Where it is known to err, for the note of a slope.
   double restitutionSpeed = 0.0; ///< K of the speed-dependent model, m/s; 0: Rn at every speed.
 
   SurfaceMaterial material() const;
   /// As panels and views say it: "Meadow (field data)".
   std::string title() const;
+  /// What a slope says of it, once: adds its warning to notes that do not have it.
+  void warn(std::vector<std::string>& notes) const;
   /// Ground that yields scatters from impact to impact; the others' deviations are of a whole
   /// slope.
   DeviationPer deviationPer() const

@@ -224,6 +224,7 @@ std::shared_ptr<const rockfall::Terrain> vtkDEMToCFESource::MakeSlope(
   if (this->Preset > 0)
   {
     this->TellReplaced(notes);
+    rockfall::groundPresets()[std::size_t(this->Preset) - 1].warn(notes);
   }
   using rockfall::filters::tellIdle;
   tellIdle("LayerName", this->LayerName, "FileName", this->FileName, notes);

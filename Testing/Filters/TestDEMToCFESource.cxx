@@ -301,6 +301,8 @@ TEST_F(TestDEMToCFESource, TheGroundIsNamed)
   this->Heard->Notes.clear();
   this->Source->SetPreset(rockfall::usualPreset());
   EXPECT_EQ(ground(this->Update()), "Meadow (field data)");
+  ASSERT_EQ(this->Heard->Notes.size(), 1u); // where it errs
+  EXPECT_NE(this->Heard->Notes[0].find("Meadow is too fast on long slopes"), std::string::npos);
   this->Source->SetPreset(0);
   this->Source->SetRollingResistance(0.2);
   EXPECT_EQ(ground(this->Update()), "typed numbers");
@@ -309,7 +311,12 @@ TEST_F(TestDEMToCFESource, TheGroundIsNamed)
   const std::string table = this->WriteFile("table.csv", "class,preset\ncliff,rock\n");
   this->Source->SetRestitutionLayer(zones.c_str());
   this->Source->SetRestitutionTable(table.c_str());
+  this->Heard->Notes.clear();
   EXPECT_EQ(ground(this->Update()), "classes cliff, elsewhere typed numbers");
+  EXPECT_EQ(std::ranges::count_if(this->Heard->Notes,
+              [](const std::string& note)
+              { return note.find("The preset Rock stops rocks too soon") != std::string::npos; }),
+    1);
 }
 
 TEST_F(TestDEMToCFESource, BadValuesAreOneErrorAndNothingElse)

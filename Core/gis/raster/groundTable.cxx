@@ -245,6 +245,7 @@ GroundTable readGroundTable(GroundKind kind, const GroundFiles& files, const Sur
       "Table, which is not given.");
   }
   bool rough = restitution && hasRoughness(columns);
+  std::vector<const GroundPreset*> used;
   while (const OGRFeatureUniquePtr feature = file.next())
   {
     const int number = int(table.names.size()) + 1;
@@ -280,6 +281,7 @@ GroundTable readGroundTable(GroundKind kind, const GroundFiles& files, const Sur
         material.cohesion = usual.cohesion;
         roughness = ground.roughness;
         rough = restitution;
+        used.push_back(&ground);
       }
       catch (const Error& error)
       {
@@ -297,6 +299,10 @@ GroundTable readGroundTable(GroundKind kind, const GroundFiles& files, const Sur
     table.roughness.clear(); // that of the slope
   }
   file.tell(notes, true);
+  for (const GroundPreset* preset : used)
+  {
+    preset->warn(notes);
+  }
   if (table.names.empty())
   {
     throw DataError(fileName + ": has no row");
