@@ -8,8 +8,11 @@
 #include "rock/fall/atStructures.h"
 #include "rock/fragmentation.h"
 #include "run/ensemble.h"
+#include "terrain/Obstacles.h"
 
 #include <algorithm>
+#include <cmath>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -19,99 +22,211 @@ namespace rockfall
 namespace
 {
 
-/// A rock or a piece whose fall has not been looked at yet.
-struct Waiting
+/// The number under which a piece draws what is drawn for it: of its parent's and its own among
+/// those that this broke into, from 1.
+std::uint32_t numberOf(std::uint32_t parent, std::size_t piece)
 {
+  return std::uint32_t(scramble(std::uint64_t(parent) << 32 | piece));
+}
+
+SimulationParameters withPenalty(SimulationParameters p, const Block& block, const Terrain& terrain)
+{
+  p.normalPenalty = p.normalPenalty == 0.0 ? penaltyByMass(block.mass(), terrain) : p.normalPenalty;
+  return p;
+}
+
+/// A rock or a piece on its way.
+struct Part
+{
+  Part(const Surface& surface, const Rock& given, const SimulationParameters& p, std::uint32_t n)
+    : rock(given)
+    , block(blockOf(rock))
+    , parameters(withPenalty(p, block, surface.terrain()))
+    , number(n)
+    , fall(surface, rock, block, parameters, n)
+  {
+  }
+
   Rock rock;
-  double time = 0.0; ///< s
-  std::uint32_t number = 0;
-  StructuresOnWay::Broken gone; ///< By those that it was a part of.
+  Block block;
+  SimulationParameters parameters;
+  std::uint32_t number;
+  SingleRock fall;
+  double born = 0.0;               ///< s
+  std::vector<std::size_t> pieces; ///< Among all parts.
 };
 
-/// The number under which a piece draws what is drawn for it.
-std::uint32_t numberOf(std::uint32_t rock, std::size_t piece)
+/// A rock and its pieces. Where there are structures they go on together by Δt, as the rocks of a
+/// mass fall do: what one of them has broken or loaded is so for the others.
+class Family
 {
-  return piece == 0 ? rock : std::uint32_t(scramble(std::uint64_t(rock) << 32 | piece));
-}
-
-/// Takes the fall of `whole`, which has broken, apart.
-void breakUp(const Waiting& whole, SingleRock& fall, const Surface& surface,
-  const Fragmentation& law, std::uint32_t rock, std::vector<Waiting>& waiting)
-{
-  const BlockState& state = fall.state();
-  const Vec3 normal = fall.fall().impact.last().normal;
-  const Vec3 spin = state.angularVelocity();
-  TrajectorySummary& summary = fall.trajectory().summary;
-  StructuresOnWay::Broken gone = whole.gone;
-  const StructuresOnWay::Broken now = fall.fall().structures.drainBroken();
-  gone.trees.insert(gone.trees.end(), now.trees.begin(), now.trees.end());
-  gone.barriers.insert(gone.barriers.end(), now.barriers.begin(), now.barriers.end());
-  double mass = fall.body().block.mass();
-  double energy = rigidKineticEnergy(fall.body().block, state);
-  for (const Polyhedron& shape : fragmentsOf(whole.rock.shape, law, surface, whole.number))
+public:
+  Family(const Surface& surface, const SimulationParameters& parameters, double enough)
+    : surface_(surface)
+    , parameters_(parameters)
+    , enough_(enough)
   {
-    Waiting piece{ whole.rock, state.time, numberOf(rock, waiting.size()), gone };
-    const Vec3 lever = state.orientation * shape.integrals().centroid;
-    piece.rock.shape = shape.centred();
-    piece.rock.position = state.position + lever;
-    piece.rock.orientation = state.orientation;
-    piece.rock.velocity =
-      spreadVelocity(state.velocity + spin.cross(lever), normal, law, surface, piece.number);
-    piece.rock.angularVelocity = spin;
-    const Block block = blockOf(piece.rock);
-    BlockState moving = state;
-    moving.velocity = piece.rock.velocity;
-    mass -= block.mass();
-    energy -= rigidKineticEnergy(block, moving);
-    ++summary.pieces;
-    waiting.push_back(std::move(piece));
+    if (const Obstacles* obstacles = surface.terrain().obstacles())
+    {
+      const Structures& s = obstacles->structures();
+      together_ = !s.trees.empty() || !s.barriers.empty();
+      loads_.resize(s.barriers.size());
+    }
   }
-  summary.finesMass = std::max(0.0, mass);
-  summary.finesEnergy = std::max(0.0, energy);
-}
+
+  void fallAll(const Rock& rock, std::uint32_t number)
+  {
+    Part& whole = this->add(rock, number);
+    whole.fall.liftOntoGround();
+    whole.fall.begin();
+    this->advance(0, parameters_.endTime);
+    // It is the only one so far.
+    const double first = together_ ? whole.fall.state().time : parameters_.endTime;
+    const double dt = parameters_.timeStep;
+    for (double step = std::floor(first / dt) + 1.0; this->anyMoves(); step += 1.0)
+    {
+      const double until =
+        together_ ? std::min(step * dt, parameters_.endTime) : parameters_.endTime;
+      for (std::size_t k = 1; k < parts_.size(); ++k) // those that come to be, too
+      {
+        this->advance(k, until);
+      }
+      if (until >= parameters_.endTime)
+      {
+        break;
+      }
+    }
+  }
+
+  /// By their numbers: pieces of one parent one after the other, parents in their order.
+  std::vector<Trajectory> finish()
+  {
+    std::vector<std::size_t> order{ 0 };
+    std::vector<Trajectory> trajectories;
+    for (std::size_t k = 0; k < order.size(); ++k)
+    {
+      Part& part = *parts_[order[k]];
+      if (part.born <= enough_)
+      {
+        part.fall.trajectory().summary.piece = int(k);
+        trajectories.push_back(part.fall.finish());
+      }
+      order.insert(order.end(), part.pieces.begin(), part.pieces.end());
+    }
+    return trajectories;
+  }
+
+private:
+  Part& add(const Rock& rock, std::uint32_t number)
+  {
+    parts_.push_back(std::make_unique<Part>(surface_, rock, parameters_, number));
+    parts_.back()->fall.fall().structures.setBarrierLoads(&loads_);
+    return *parts_.back();
+  }
+
+  bool anyMoves() const
+  {
+    return std::any_of(
+      parts_.begin() + 1, parts_.end(), [](const auto& part) { return !part->fall.done(); });
+  }
+
+  void advance(std::size_t number, double until)
+  {
+    Part& part = *parts_[number];
+    if (part.fall.done() || part.born > enough_ || part.fall.state().time >= until)
+    {
+      return;
+    }
+    part.fall.advance(until, enough_);
+    this->share(number);
+    if (part.fall.trajectory().summary.fate == Fate::Broken)
+    {
+      this->breakUp(number);
+    }
+  }
+
+  /// What a part has broken and loaded is so for the others.
+  void share(std::size_t from)
+  {
+    StructuresOnWay::Broken now = parts_[from]->fall.fall().structures.drainBroken();
+    for (const auto& [barrier, held] : now.held)
+    {
+      BarrierLoad& load = loads_[std::size_t(barrier)];
+      load.energy += held.energy;
+      load.volume += held.volume;
+    }
+    if (now.trees.empty() && now.barriers.empty())
+    {
+      return;
+    }
+    gone_.trees.insert(gone_.trees.end(), now.trees.begin(), now.trees.end());
+    gone_.barriers.insert(gone_.barriers.end(), now.barriers.begin(), now.barriers.end());
+    const double time = parts_[from]->fall.state().time;
+    for (const auto& part : parts_)
+    {
+      const bool leant = applyBroken(part->fall.fall(), now);
+      if (leant && part->fall.done() && part->fall.trajectory().summary.fate == Fate::Rested)
+      {
+        part->fall.wake(std::max(time, part->fall.state().time));
+      }
+    }
+  }
+
+  void breakUp(std::size_t number)
+  {
+    const BlockState state = parts_[number]->fall.state();
+    const Vec3 normal = parts_[number]->fall.fall().impact.last().normal;
+    const Vec3 spin = state.angularVelocity();
+    double mass = parts_[number]->block.mass();
+    double energy = rigidKineticEnergy(parts_[number]->block, state);
+    const Fragmentation& law = parameters_.fragmentation;
+    const std::uint32_t parent = parts_[number]->number;
+    for (const Polyhedron& shape : fragmentsOf(parts_[number]->rock.shape, law, surface_, parent))
+    {
+      std::vector<std::size_t>& pieces = parts_[number]->pieces;
+      const std::uint32_t own = numberOf(parent, pieces.size() + 1);
+      Rock rock = parts_[number]->rock;
+      const Vec3 lever = state.orientation * shape.integrals().centroid;
+      rock.shape = shape.centred();
+      rock.position = state.position + lever;
+      rock.orientation = state.orientation;
+      rock.velocity =
+        spreadVelocity(state.velocity + spin.cross(lever), normal, law, surface_, own);
+      rock.angularVelocity = spin;
+      pieces.push_back(parts_.size());
+      Part& piece = this->add(rock, own);
+      piece.born = piece.fall.body().state.time = state.time;
+      applyBroken(piece.fall.fall(), gone_);
+      piece.fall.begin(); // the books begin where those of the whole ended
+      piece.fall.liftOntoGround();
+      BlockState moving = state;
+      moving.velocity = rock.velocity;
+      mass -= piece.block.mass();
+      energy -= rigidKineticEnergy(piece.block, moving);
+    }
+    TrajectorySummary& summary = parts_[number]->fall.trajectory().summary;
+    summary.pieces = int(parts_[number]->pieces.size());
+    summary.finesMass = std::max(0.0, mass);
+    summary.finesEnergy = std::max(0.0, energy);
+  }
+
+  const Surface& surface_;
+  const SimulationParameters& parameters_;
+  double enough_;
+  bool together_ = false;
+  std::vector<std::unique_ptr<Part>> parts_; ///< The rock itself is the first.
+  StructuresOnWay::Broken gone_;             ///< For all of them.
+  std::vector<BarrierLoad> loads_;           ///< By barrier.
+};
 
 } // namespace
 
 std::vector<Trajectory> fallAndBreak(const Surface& surface, const Rock& rock,
   const SimulationParameters& parameters, std::uint32_t number, double enough)
 {
-  std::vector<Trajectory> trajectories;
-  std::vector<Waiting> waiting{ { rock, 0.0, number, {} } };
-  for (std::size_t k = 0; k < waiting.size(); ++k)
-  {
-    const Waiting at = std::move(waiting[k]);
-    if (at.time > enough)
-    {
-      continue;
-    }
-    const Block block = blockOf(at.rock);
-    SimulationParameters own = parameters;
-    if (own.normalPenalty == 0.0)
-    {
-      own.normalPenalty = penaltyByMass(block.mass(), surface.terrain());
-    }
-    SingleRock fall(surface, at.rock, block, own, at.number);
-    fall.body().state.time = at.time;
-    applyBroken(fall.fall(), at.gone);
-    fall.trajectory().summary.piece = int(k);
-    if (k == 0)
-    {
-      fall.liftOntoGround();
-      fall.begin();
-    }
-    else
-    {
-      fall.begin(); // the books begin where those of the whole ended
-      fall.liftOntoGround();
-    }
-    fall.advance(parameters.endTime, enough);
-    if (fall.trajectory().summary.fate == Fate::Broken)
-    {
-      breakUp(at, fall, surface, parameters.fragmentation, number, waiting);
-    }
-    trajectories.push_back(fall.finish());
-  }
-  return trajectories;
+  Family family(surface, parameters, enough);
+  family.fallAll(rock, number);
+  return family.finish();
 }
 
 Polyhedron PieceShapes::next(const TrajectorySummary& summary, const Rock& rock)
@@ -121,15 +236,18 @@ Polyhedron PieceShapes::next(const TrajectorySummary& summary, const Rock& rock)
     shapes_ = { rock.uncertainty.volume.law == VolumeLaw::Fixed
         ? rock.shape
         : rock.shape.withVolume(summary.volume) };
+    numbers_ = { std::uint32_t(summary.rock) };
   }
   const Polyhedron shape = shapes_[std::size_t(summary.piece)];
   if (summary.pieces > 0)
   {
     const Surface surface(terrain_, parameters_.seed, summary.iteration);
-    const std::uint32_t number = numberOf(std::uint32_t(summary.rock), std::size_t(summary.piece));
+    const std::uint32_t number = numbers_[std::size_t(summary.piece)];
+    std::size_t k = 0;
     for (const Polyhedron& piece : fragmentsOf(shape, parameters_.fragmentation, surface, number))
     {
       shapes_.push_back(piece.centred());
+      numbers_.push_back(numberOf(number, ++k));
     }
   }
   return summary.piece == 0 ? Polyhedron() : shape;

@@ -1,14 +1,16 @@
 #pragma once
 
 /// @file
-/// The fall of a rock that may break, and of its pieces: each goes on alone from where the rock
-/// breaks, with the velocity that it has as a part of it, and may break again.
+/// The fall of a rock that may break, and of its pieces: each goes on from where the rock breaks,
+/// with the velocity that it has as a part of it, and may break again. Pieces meet each other only
+/// in what they leave of structures.
 
 #include "rock/Rock.h"
 #include "rock/parameters.h"
 #include "rock/results.h"
 #include "terrain/Surface.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace rockfall
@@ -37,7 +39,8 @@ public:
 private:
   const Terrain& terrain_;
   const SimulationParameters& parameters_;
-  std::vector<Polyhedron> shapes_; ///< Of the rock at hand, by piece.
+  std::vector<Polyhedron> shapes_;     ///< Of the rock at hand, by piece.
+  std::vector<std::uint32_t> numbers_; ///< Under which they draw.
 };
 
 /// Throws ParameterError naming the block if it cannot break by this law, or into too many pieces.

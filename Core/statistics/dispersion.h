@@ -27,11 +27,16 @@ struct Dispersion
 /// `paths`: one polyline per trajectory (world or local points, m). `azimuth`: direction of the
 /// cross-section in the x–y plane from +x counter-clockwise, rad. `length`: L, m; 0 = up to the
 /// farthest that any path of the group got. Lateral deviation is measured across the direction from
-/// each path's own start if `fromOwnStart`, else from the mean start; only points with a run of at
-/// most L count (paths are cut at L exactly). Throws ParameterError for a negative or non-finite
-/// length.
+/// each rock's own start if `fromOwnStart`, else from the mean start; only points with a run of at
+/// most L count (paths are cut at L exactly). `rockOf`, for rocks that broke: of each path the number
+/// of that which its rock began with; a rock counts once, with all of its pieces' points, and ends
+/// with the piece that got farthest. Throws ParameterError for a negative or non-finite length.
 Dispersion measureDispersion(std::span<const std::vector<Vec3>> paths, double azimuth,
-  double length = 0.0, bool fromOwnStart = true);
+  double length = 0.0, bool fromOwnStart = true, std::span<const std::size_t> rockOf = {});
+
+/// Start and end of each rock: of one that broke the end of the piece that got farthest.
+std::vector<std::vector<Vec3>> endsOfRocks(
+  std::span<const std::vector<Vec3>> paths, std::span<const std::size_t> rockOf);
 
 /// Mean horizontal direction from start to end of the paths, rad; 0 if they go nowhere.
 double meanAzimuth(std::span<const std::vector<Vec3>> paths);

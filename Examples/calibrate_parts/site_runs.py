@@ -49,6 +49,21 @@ def made_by(proxy, port=0):
     return data
 
 
+def of_rocks(columns):
+    """A row for each rock: of one that broke the piece that got farthest, from where the rock was released, and the
+    most of all pieces."""
+    if "Piece" not in columns:
+        return columns
+    first = np.flatnonzero(columns["Piece"] == 0)
+    sizes = np.diff([*first, len(columns["Piece"])])
+    begin = {name: np.repeat(columns[name][first], sizes) for name in ("StartX", "StartY", "StartZ")}
+    way = np.hypot(columns["StopX"] - begin["StartX"], columns["StopY"] - begin["StartY"])
+    far = np.array([k + np.argmax(way[k:k + size]) for k, size in zip(first, sizes)], int)
+    most = {name: np.maximum.reduceat(columns[name], first) for name in ("MaxSpeed", "MaxKineticEnergy")}
+    columns = {name: np.asarray(values)[far] for name, values in {**columns, **begin}.items()}
+    return {**columns, **most, "RunOut": way[far]}
+
+
 class Site:
     """The pipeline of one place: `forecast` has for each rock the number of its forecast."""
 
@@ -68,7 +83,7 @@ class Site:
         self.simulation.UpdatePipeline(0.0)
         columns = columns_of(made_by(self.simulation, 3))
         # The columns belong to the filter, which reuses their memory.
-        columns = {name: np.array(column) for name, column in columns.items()}
+        columns = of_rocks({name: np.array(column) for name, column in columns.items()})
         return scores.Simulated(self.observed, self.forecast[columns["RockId"]], columns)
 
 

@@ -9,6 +9,7 @@
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
 #include "vtkCellData.h"
+#include "vtkDataArray.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
 #include "vtkVariant.h"
@@ -81,6 +82,7 @@ std::vector<PathGroup> groupPaths(
         "\" to group the trajectories by; an empty Group By takes them all together");
     }
   }
+  vtkDataArray* piece = input->GetCellData()->GetArray("Piece");
   const bool classes = array && !limits.empty();
   if (classes && !array->IsNumeric())
   {
@@ -91,10 +93,18 @@ std::vector<PathGroup> groupPaths(
   std::map<vtkVariant, std::size_t> order;
   const auto collect = [&](auto&& use)
   {
-    vtkIdType cell = input->GetNumberOfVerts(); // polydata's cells begin with its vertices
+    const vtkIdType first = input->GetNumberOfVerts(); // polydata's cells begin with its vertices
+    vtkIdType cell = first;
+    vtkVariant ofRock;
     auto lines = vtk::TakeSmartPointer(input->GetLines()->NewIterator());
     for (lines->GoToFirstCell(); !lines->IsDoneWithTraversal(); lines->GoToNextCell(), ++cell)
     {
+      const bool begins = !piece || cell == first || piece->GetComponent(cell, 0) == 0.0;
+      if (!begins)
+      {
+        use(ofRock, false, lines);
+        continue;
+      }
       vtkVariant value =
         array ? array->GetVariantValue(cell * array->GetNumberOfComponents()) : vtkVariant(0);
       if (value.IsNumeric() && std::isnan(value.ToDouble()))
@@ -107,10 +117,11 @@ std::vector<PathGroup> groupPaths(
         const auto above = std::upper_bound(limits.begin(), limits.end(), value.ToDouble());
         value = vtkVariant(int(above - limits.begin()));
       }
-      use(value, lines);
+      ofRock = value;
+      use(value, true, lines);
     }
   };
-  collect([&](const vtkVariant& value, auto&) { order.emplace(value, 0); });
+  collect([&](const vtkVariant& value, bool, auto&) { order.emplace(value, 0); });
   for (auto& [value, index] : order)
   {
     index = groups.size();
@@ -119,12 +130,14 @@ std::vector<PathGroup> groupPaths(
                                          : "all";
   }
   collect(
-    [&](const vtkVariant& value, auto& lines)
+    [&](const vtkVariant& value, bool begins, auto& lines)
     {
       vtkIdType size = 0;
       const vtkIdType* ids = nullptr;
       lines->GetCurrentCell(size, ids);
-      std::vector<Vec3>& path = groups[order.at(value)].paths.emplace_back();
+      PathGroup& group = groups[order.at(value)];
+      group.rockOf.push_back(begins ? group.paths.size() : group.rockOf.back());
+      std::vector<Vec3>& path = group.paths.emplace_back();
       for (vtkIdType k = 0; k < size; ++k)
       {
         input->GetPoint(ids[k], path.emplace_back().data());

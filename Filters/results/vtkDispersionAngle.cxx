@@ -217,7 +217,8 @@ int vtkDispersionAngle::RequestData(
         Paths all;
         for (const auto& group : groups)
         {
-          all.insert(all.end(), group.paths.begin(), group.paths.end());
+          const Paths ends = rockfall::endsOfRocks(group.paths, group.rockOf);
+          all.insert(all.end(), ends.begin(), ends.end());
         }
         azimuth = rockfall::meanAzimuth(all);
       }
@@ -244,10 +245,10 @@ int vtkDispersionAngle::RequestData(
       Wedges wedges(lines);
       for (const auto& group : groups)
       {
-        const rockfall::Dispersion dispersion =
-          rockfall::measureDispersion(group.paths, azimuth, this->Length, this->RelativeToStart);
-        wedges.Append(
-          int(name->GetNumberOfValues()), dispersion, azimuth, meanEndHeight(group.paths));
+        const rockfall::Dispersion dispersion = rockfall::measureDispersion(
+          group.paths, azimuth, this->Length, this->RelativeToStart, group.rockOf);
+        const Paths ends = rockfall::endsOfRocks(group.paths, group.rockOf);
+        wedges.Append(int(name->GetNumberOfValues()), dispersion, azimuth, meanEndHeight(ends));
         name->InsertNextValue(group.name);
         count->InsertNextValue(dispersion.trajectories);
         length->InsertNextValue(dispersion.length);
@@ -257,7 +258,7 @@ int vtkDispersionAngle::RequestData(
         lateralMax->InsertNextValue(dispersion.lateralMax);
         deviation->InsertNextValue(dispersion.lateralDeviation);
         direction->InsertNextValue(compass(azimuth));
-        runOuts.Append(group.paths);
+        runOuts.Append(ends);
       }
       for (vtkDataObject* made :
         { static_cast<vtkDataObject*>(table), static_cast<vtkDataObject*>(lines) })

@@ -255,6 +255,8 @@ void KeptRun::prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const 
       frame.origin = slope.geometry().origin();
       frame.gravity = parameters.gravity;
       frame.breaking = parameters.fragmentation.on;
+      frame.slope = &slope;
+      frame.parameters = &parameters;
       std::int64_t gone = 0;
       for (ReleasedRock& rock : readRocks(released, frame.origin))
       {

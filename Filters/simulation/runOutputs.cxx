@@ -2,6 +2,7 @@
 
 #include "simulation/runOutputs.h"
 
+#include "run/brokenFall.h"
 #include "simulation/runArrays.h"
 
 #include "vtkCellArray.h"
@@ -167,6 +168,21 @@ void writeRocks(const RunFrame& frame, std::span<const ShownRock> rocks, vtkPoly
 }
 
 //------------------------------------------------------------------------------
+namespace
+{
+
+double longestSide(const Polyhedron& shape)
+{
+  Eigen::AlignedBox3d box;
+  for (const Vec3& vertex : shape.vertices())
+  {
+    box.extend(vertex);
+  }
+  return box.sizes().maxCoeff();
+}
+
+} // namespace
+
 struct TrajectoryLines::Arrays
 {
   vtkNew<vtkPolyData> data;
@@ -185,24 +201,28 @@ struct TrajectoryLines::Arrays
     addArray<vtkIdTypeArray>(data->GetCellData(), "SourceId");
   vtkSmartPointer<vtkDoubleArray> frequency; ///< None where it is not known.
 
-  /// The longest side of the box around a rock, in the directions that its
-  /// shape was given in.
+  /// The longest side of the box around a rock or a piece, in the directions that the shape of the
+  /// rock was given in. Asked for every path in turn.
   double widthOf(const Rock& rock, const TrajectorySummary& summary)
   {
+    if (pieces && (summary.piece > 0 || summary.pieces > 0))
+    {
+      const Polyhedron piece = pieces->next(summary, rock);
+      if (summary.piece > 0)
+      {
+        return longestSide(piece);
+      }
+    }
     const auto [at, isNew] = widths.try_emplace(summary.rock, 0.0);
     if (isNew)
     {
-      Eigen::AlignedBox3d box;
-      for (const Vec3& vertex : rock.shape.vertices())
-      {
-        box.extend(vertex);
-      }
-      at->second = box.sizes().maxCoeff() / std::cbrt(rock.shape.integrals().volume);
+      at->second = longestSide(rock.shape) / std::cbrt(rock.shape.integrals().volume);
     }
     // The volume may be one of this iteration.
     return at->second * std::cbrt(summary.volume);
   }
-  std::map<int, double> widths; ///< By rock, of a volume of 1 m³.
+  std::map<int, double> widths;        ///< By rock, of a volume of 1 m³.
+  std::unique_ptr<PieceShapes> pieces; ///< None where no rock can break.
 
   void compose()
   {
@@ -223,6 +243,10 @@ TrajectoryLines::TrajectoryLines(const RunFrame& frame, bool withLosses)
     arrays_->energy = std::make_unique<EnergyArrays>(arrays_->data->GetPointData());
   }
   arrays_->identity.piece = pieceArray(frame.breaking, arrays_->data->GetCellData());
+  if (frame.breaking && frame.slope)
+  {
+    arrays_->pieces = std::make_unique<PieceShapes>(*frame.slope, *frame.parameters);
+  }
   if (frame.breaking && withLosses)
   {
     arrays_->energy->breaking =

@@ -15,6 +15,12 @@
 class vtkPolyData;
 class vtkTable;
 
+namespace rockfall
+{
+class Terrain;
+struct SimulationParameters;
+} // namespace rockfall
+
 namespace rockfall::filters
 {
 
@@ -27,8 +33,10 @@ struct RunFrame
   std::vector<std::string> sourceNames; ///< Of the rocks.
   std::vector<double> frequencies;      ///< Of the rocks, 1/a; empty: not known.
   Vec3 origin = Vec3::Zero();
-  double gravity = 0.0;  ///< m/s²
-  bool breaking = false; ///< Rocks may break into pieces.
+  double gravity = 0.0;                             ///< m/s²
+  bool breaking = false;                            ///< Rocks may break into pieces.
+  const Terrain* slope = nullptr;                   ///< Where rocks may break; so are the
+  const SimulationParameters* parameters = nullptr; ///< numbers of the run.
 };
 
 /// One polyline of centroids per rock and iteration, or a vertex where only the last sample is

@@ -14,6 +14,7 @@ SCRIPT = os.path.join(ROOT, "Examples", "calibrate.py")
 sys.path[:0] = [os.path.dirname(SCRIPT), os.path.join(os.path.dirname(SCRIPT), "calibrate_parts")]
 
 import site_layers
+import site_runs
 import site_scores
 import site_search
 from rockfall_tables import columns_of
@@ -41,6 +42,13 @@ TRUE, TERRAIN = 0.85, {"FileName": "dem.asc", "CellSize": 1.0, "RestitutionCoeff
                       "RestitutionDeviation": 0.0, "FrictionAngleDeviation": 0.0,
                       "RoughnessMean": 0.0, "RoughnessDeviation": 0.0}
 ROCKS = {"FileName": "sources.csv", "Volume": 0.1, "AttitudeLaw": "Random"}
+
+# A rock that broke counts once, by the piece that got farthest.
+rows = site_runs.of_rocks({"Piece": np.array([0, 1, 2, 0]), "RockId": np.array([0, 0, 0, 1]), "StartX": np.array([0.0, 5, 5, 1]),
+                           "StartY": np.zeros(4), "StartZ": np.array([9.0, 5, 5, 8]), "StopX": np.array([5.0, 30, 9, 7]),
+                           "StopY": np.zeros(4), "MaxSpeed": np.array([12.0, 8, 3, 4]), "MaxKineticEnergy": np.array([9.0, 2, 1, 5])})
+expect([list(rows[name]) for name in ("RockId", "StartX", "StartZ", "StopX", "RunOut", "MaxSpeed", "MaxKineticEnergy")] ==
+       [[0, 1], [0, 1], [9, 8], [30, 7], [30, 6], [12, 4], [9, 5]], f"pieces: {rows}")
 
 # What was observed: six runs of each source on ground of a known Rt, by other random numbers.
 slope = DEMtoCFEMesh(**TERRAIN, TangentialRestitution=TRUE)

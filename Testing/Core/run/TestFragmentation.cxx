@@ -9,12 +9,15 @@
 #include "slopes.h"
 #include "statistics/HazardRaster.h"
 #include "statistics/crossings.h"
+#include "terrain/structures.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 using namespace rockfall;
 using namespace rockfall::testing;
@@ -356,6 +359,123 @@ TEST(Fragmentation, ASourceCountsOnceInACell)
   const auto strongest = std::max_element(crossings.begin(), crossings.end(),
     [](const Crossing& a, const Crossing& b) { return a.kineticEnergy < b.kineticEnergy; });
   EXPECT_EQ(summary.energies.back(), strongest->kineticEnergy);
+}
+
+namespace
+{
+
+/// Breaks at (100, 100) into pieces that fly on along x.
+Rock thrownDown(double speed)
+{
+  constexpr double height = 15.0;
+  Rock rock = dropped(height);
+  rock.position.x() -= speed * std::sqrt(2.0 * height / kGravity);
+  rock.velocity = Vec3(speed, 0.0, 0.0);
+  return rock;
+}
+
+/// Flat ground with a net behind the place where a rock breaks, which is the weaker the more it
+/// has held.
+Terrain withNet(double capacity)
+{
+  Terrain terrain = flatGround();
+  Structures s;
+  Barrier& b = s.barriers.emplace_back();
+  b.feature = 1;
+  b.points = { { 106.0, 10.0 }, { 106.0, 190.0 } };
+  b.height = 30.0;
+  b.capacity = capacity;
+  b.residual = 0.9;
+  terrain.setStructures(s);
+  return terrain;
+}
+
+/// Meetings of all pieces with structures, by time.
+std::vector<StructureEvent> eventsOf(const std::vector<Trajectory>& all)
+{
+  std::vector<StructureEvent> events;
+  for (const Trajectory& t : all)
+  {
+    events.insert(events.end(), t.structures.begin(), t.structures.end());
+  }
+  std::stable_sort(
+    events.begin(), events.end(), [](const auto& a, const auto& b) { return a.time < b.time; });
+  return events;
+}
+
+} // namespace
+
+TEST(Fragmentation, ANetHasHeldThePiecesThatCameBefore)
+{
+  // Within a step two pieces may come in either order.
+  constexpr double capacity = 3e5;
+  const Rock rock = thrownDown(12.0);
+  Fragmentation law = lawOf(50e3, 5e-3);
+  law.spread = radians(30.0);
+  const auto all = runOf(withNet(capacity), { rock }, law);
+  double held = 0.0;
+  int count = 0;
+  for (const StructureEvent& event : eventsOf(all))
+  {
+    EXPECT_NEAR(event.heldBefore, held, 1e-9 * capacity) << event.time;
+    EXPECT_EQ(event.outcome, StructureOutcome::BarrierStopped);
+    held += event.kineticEnergy;
+    ++count;
+  }
+  EXPECT_GT(count, 2);
+  EXPECT_LT(held, capacity);
+  // With less than all of them bring, it holds the first ones, breaks, and is gone.
+  const auto strong = runOf(withNet(0.5 * held), { rock }, law);
+  double left = 0.5 * held;
+  bool broken = false;
+  for (const StructureEvent& event : eventsOf(strong))
+  {
+    EXPECT_FALSE(broken) << "met after it broke, at " << event.time;
+    broken = event.outcome == StructureOutcome::BarrierBroken;
+    EXPECT_EQ(broken, event.kineticEnergy > left) << event.time;
+    left -= broken ? 0.0 : event.kineticEnergy;
+  }
+  EXPECT_TRUE(broken);
+  // What came before is as it was: the net does not reach back in time.
+  EXPECT_EQ(strong[0].summary.hash, all[0].summary.hash);
+}
+
+TEST(Fragmentation, AStemThatAPieceBreaksIsGoneForTheOthers)
+{
+  Terrain terrain = flatGround();
+  Structures s;
+  for (int k = 0; k < 40; ++k)
+  {
+    Tree tree;
+    tree.feature = k + 1;
+    tree.position = { 106.0 + 3.0 * (k % 4), 91.0 + 2.0 * (k / 4) };
+    tree.diameter = 0.3;
+    tree.height = 15.0;
+    tree.capacity = 500.0;
+    s.trees.push_back(tree);
+  }
+  terrain.setStructures(s);
+  const Rock rock = thrownDown(15.0);
+  Fragmentation law = lawOf(50e3, 2e-3);
+  law.spread = radians(20.0);
+  const auto all = runOf(terrain, { rock }, law, 4);
+  std::map<std::pair<int, std::int64_t>, int> broken;
+  int count = 0;
+  for (const Trajectory& t : all)
+  {
+    for (const StructureEvent& event : t.structures)
+    {
+      if (event.outcome == StructureOutcome::TreeBroken)
+      {
+        EXPECT_EQ(++broken[std::make_pair(t.summary.iteration, event.feature)], 1)
+          << event.feature << " at " << event.time;
+        ++count;
+      }
+    }
+    const EnergyAudit& e = t.summary.energy;
+    EXPECT_NEAR(e.released, sumOf(e), 1e-6 * all[0].summary.energy.released);
+  }
+  EXPECT_GT(count, 4);
 }
 
 TEST(Fragmentation, BadNumbersAreNamed)

@@ -87,3 +87,29 @@ TEST(Dispersion, RefusesAndStaysFinite)
   const std::vector<std::vector<Vec3>> still = { { Vec3(1, 2, 3) } };
   EXPECT_EQ(measureDispersion(still, 0.0).angle, 0.0);
 }
+
+TEST(Dispersion, ARockThatBrokeCountsOnce)
+{
+  // Both rocks begin at x = 0; the first breaks at (10, 1) into three, the second at (8, 50) into one.
+  const std::vector<std::vector<Vec3>> paths = { { { 0, 0, 9 }, { 10, 1, 5 } },
+    { { 10, 1, 5 }, { 20, 7, 1 } }, { { 10, 1, 5 }, { 40, -3, 0 } }, { { 10, 1, 5 }, { 30, 2, 2 } },
+    { { 0, 50, 9 }, { 8, 50, 5 } }, { { 8, 50, 5 }, { 30, 54, 1 } } };
+  const std::vector<std::size_t> rockOf = { 0, 0, 0, 0, 4, 4 };
+  const Dispersion d = measureDispersion(paths, 0.0, 0.0, true, rockOf);
+  EXPECT_EQ(d.trajectories, 2);
+  EXPECT_EQ(d.length, 40.0);
+  EXPECT_EQ(d.lateralMin, -3.0);
+  EXPECT_EQ(d.lateralMax, 7.0);
+  EXPECT_NEAR(d.lateralDeviation, 7.0 / std::sqrt(2.0), 1e-12); // ends at −3 and 4
+  EXPECT_EQ(d.apex, Vec3(0, 25, 9));
+  // Cut at 25 m: the first rock's second piece passes there first among those that get so far.
+  const Dispersion cut = measureDispersion(paths, 0.0, 25.0, true, rockOf);
+  EXPECT_NEAR(cut.lateralMin, -1.0, 1e-12);
+  EXPECT_EQ(cut.lateralMax, 7.0);
+  EXPECT_NEAR(
+    cut.lateralDeviation, (4.0 * 17.0 / 22.0 + 1.0) / std::sqrt(2.0), 1e-12); // ends at −1 and 3.1
+  const std::vector<std::vector<Vec3>> ends = endsOfRocks(paths, rockOf);
+  ASSERT_EQ(ends.size(), 2u);
+  EXPECT_EQ(ends[0][1], Vec3(40, -3, 0));
+  EXPECT_EQ(ends[1][1], Vec3(30, 54, 1));
+}
