@@ -13,6 +13,7 @@
 #include "vtkNew.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkStringArray.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,6 +32,8 @@ constexpr char treesName[] = "TerrainTrees";
 constexpr char lyingName[] = "TerrainLyingStems";
 constexpr char barriersName[] = "TerrainBarriers";
 constexpr char barrierPointsName[] = "TerrainBarrierPoints";
+constexpr char embankmentNamesName[] = "TerrainEmbankmentNames";
+constexpr char barrierNamesName[] = "TerrainBarrierNames";
 constexpr char materialsName[] = "TerrainStructureMaterials";
 
 void addPoints(vtkDoubleArray* array, const std::vector<Eigen::Vector2d>& points)
@@ -38,6 +41,25 @@ void addPoints(vtkDoubleArray* array, const std::vector<Eigen::Vector2d>& points
   for (const Eigen::Vector2d& p : points)
   {
     array->InsertNextTuple(p.data());
+  }
+}
+
+void writeNames(const auto& structures, const char* name, vtkFieldData* fieldData)
+{
+  const auto names = addArray<vtkStringArray>(fieldData, name);
+  for (const auto& one : structures)
+  {
+    names->InsertNextValue(one.name);
+  }
+}
+
+void readNames(vtkFieldData* fieldData, const char* name, auto& structures)
+{
+  auto* names = vtkStringArray::SafeDownCast(fieldData->GetAbstractArray(name));
+  for (std::size_t k = 0; names && k < structures.size(); ++k)
+  {
+    structures[k].name =
+      vtkIdType(k) < names->GetNumberOfValues() ? names->GetValue(vtkIdType(k)) : "";
   }
 }
 
@@ -126,6 +148,8 @@ void writeStructures(const Terrain& terrain, vtkFieldData* fieldData)
     embankments->InsertNextTuple(row);
     addPoints(embankmentPoints, e.points);
   }
+  writeNames(s.embankments, embankmentNamesName, fieldData);
+  writeNames(s.barriers, barrierNamesName, fieldData);
   const auto trees = addArray<vtkDoubleArray>(fieldData, treesName, 7);
   for (const Tree& t : s.trees)
   {
@@ -165,7 +189,7 @@ void writeStructures(const Terrain& terrain, vtkFieldData* fieldData)
 void dropStructures(vtkFieldData* fieldData)
 {
   for (const char* name : { embankmentsName, embankmentPointsName, treesName, lyingName,
-         barriersName, barrierPointsName, materialsName })
+         barriersName, barrierPointsName, materialsName, embankmentNamesName, barrierNamesName })
   {
     fieldData->RemoveArray(name);
   }
@@ -237,6 +261,8 @@ Structures readStructures(vtkFieldData* fieldData)
     m.frictionAngleDeviation = materials.at(k, 6);
     m.cohesion = materials.at(k, 7);
   }
+  readNames(fieldData, embankmentNamesName, s.embankments);
+  readNames(fieldData, barrierNamesName, s.barriers);
   return s;
 }
 

@@ -298,8 +298,13 @@ int vtkDEMToCFESource::RequestData(
     kept->SetName("Notes");
     for (const std::string& note : notes)
     {
+      // A note on a layer or a table begins with its name.
+      const std::string* files[] = { &this->EmbankmentFile, &this->TreeFile, &this->BarrierFile,
+        &this->RestitutionLayer, &this->RestitutionTable, &this->JointLayer, &this->JointTable };
+      const bool named = std::any_of(std::begin(files), std::end(files),
+        [&](const std::string* file) { return !file->empty() && note.starts_with(*file); });
       rockfall::filters::showNote(
-        (this->FileName.empty() ? "DEM to CFE Mesh" : this->FileName) + ": " + note);
+        named ? note : (this->FileName.empty() ? "DEM to CFE Mesh" : this->FileName) + ": " + note);
       kept->InsertNextValue(note);
     }
     mesh->GetFieldData()->AddArray(kept);

@@ -32,8 +32,8 @@ protected:
         .c_str());
     this->Terrain->SetBarrierFile(
       this
-        ->WriteFile(
-          "nets.csv", "WKT,height,capacity,braking\n\"LINESTRING(60 1,60 99)\",30,1000,6\n")
+        ->WriteFile("nets.csv",
+          "WKT,height,capacity,braking,name\n\"LINESTRING(60 1,60 99)\",30,1000,6,Upper net\n")
         .c_str());
   }
 };
@@ -130,6 +130,8 @@ TEST_F(TestStructures, SurviveAFile)
   ASSERT_EQ(b.barriers.size(), 1u);
   EXPECT_EQ(b.barriers[0].capacity, 1e6);
   EXPECT_EQ(b.barriers[0].braking, 6.0);
+  EXPECT_EQ(b.barriers[0].name, "Upper net");
+  EXPECT_EQ(b.embankments[0].name, "");
   EXPECT_FALSE(isLoaded(b.barriers[0])); // neither worn nor filled
 }
 
