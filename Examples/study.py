@@ -32,6 +32,7 @@ Simulation and Trajectory Collector. "map", "lines" and "until" may be left out,
     chunk-00000.vtp             its trajectories
     chunk-00000.passages        what the map is made of
     chunk-00000-crossings.vtp   what passed the lines
+    chunk-00000-structures.npz  what came to embankments, nets and stems
 
 and when all chunks are there
 
@@ -39,6 +40,7 @@ and when all chunks are there
     hazard.tif                  the hazard map
     crossings.csv, lines.csv, exceedance.csv     what passed the lines, and statistics of it
     design.csv, design_classes.csv, design_sources.csv, design_places.csv   what barriers on the lines have to hold
+    structures.csv              what came to each embankment and net, and to the stems
     results.json                the state hash of every chunk and of the whole
 
 More iterations of a finished study go on where it was, with the same files as of one that had them from the
@@ -59,6 +61,7 @@ from paraview.simple import *
 
 import enough
 import schema
+import standing
 import wholefile
 from combine import RESULTS, chunk_iterations, columns_of, combine
 from identity import FILES, Inputs, differences, early, identity, told, values, version
@@ -127,8 +130,9 @@ class Pipeline:
         self.study = study
         self.slope = make(DEMtoCFEMesh, "terrain", study["terrain"])
         self.rocks = make(RockBlocks, "rocks", {"Terrain": self.slope, **study["rocks"]})
+        self.standing = None
         self.simulation = make(RockfallSimulation, "simulation", {
-            "KeepImpacts": 0, **study["simulation"], "Terrain": self.slope,
+            "KeepImpacts": int(bool(study["terrain"].get("EmbankmentFile"))), **study["simulation"], "Terrain": self.slope,
             "Rocks": self.rocks, "NumberOfThreads": threads})
         lines = OutputPort(self.simulation, 1)
         self.passages = self.crossings = None
@@ -155,7 +159,7 @@ class Pipeline:
         """Reads every input and makes everything once, of one iteration's first moment: what is wrong
         with a file is told before the first chunk, not after it."""
         simulation = self.simulation
-        kept = simulation.EndTime, simulation.PrintProgress
+        before = simulation.EndTime, simulation.PrintProgress
         # Two: what makes iterations alike is told here.
         simulation.FirstIteration, simulation.Iterations = 0, min(2, self.study["iterations"])
         simulation.EndTime = min(simulation.EndTime, simulation.TimeStep)
@@ -169,7 +173,10 @@ class Pipeline:
         if self.crossings:
             UpdatePipeline(proxy=self.crossings)
             output(self.crossings)
-        simulation.EndTime, simulation.PrintProgress = kept
+        if any(self.study["terrain"].get(kind + "File") for kind in ("Embankment", "Tree", "Barrier")):
+            kept = self.study["simulation"].get("TrajectoryOutput", "Full") in ("Thinned", "Full", 3, 4)
+            self.standing = standing.Standing(self.slope, simulation, kept)
+        simulation.EndTime, simulation.PrintProgress = before
         for proxy in (simulation, self.crossings):
             if proxy:
                 proxy.PrintNotes = 0  # of each chunk: combine() tells them of all
@@ -190,6 +197,8 @@ class Pipeline:
             UpdatePipeline(proxy=self.crossings)
             crossings = output(self.crossings)
             from_first_rank(lambda: write_polydata(stem + "-crossings.vtp", crossings))
+        if self.standing:
+            self.standing.write(stem)
 
         def write_table():
             inputs.check()
@@ -380,7 +389,7 @@ def main():
         if from_first_rank(lambda: is_enough(until, stems[-1])):
             break
     tell_precision(chosen, until)
-    combine(study, chosen.folder, stems, sum(wanted[:len(stems)]))
+    combine(study, chosen.folder, stems, sum(wanted[:len(stems)]), pipeline.standing and pipeline.standing.things)
     if count > there:
         tell_session(chosen, begun, count - there)
     say(f"Done: {chosen.folder}")

@@ -12,6 +12,7 @@ from paraview.simple import DEMtoCFEMesh
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 import schema
+import standing
 from combine import RESULTS
 from identity import content, place
 from schema import Bad, shown
@@ -22,7 +23,7 @@ osr.UseExceptions()
 
 
 BLOCK = 100000  # rows
-TEXTS = "LineName", "SourceName", "Shape", "Fate", "Class"  # also where all of them are numbers
+TEXTS = "LineName", "SourceName", "Shape", "Fate", "Class", "Kind", "Name"  # also where all of them are numbers
 
 
 def field(path, whole, name, kind):
@@ -206,6 +207,8 @@ class Study:
         if not len(self.bodies):
             raise Bad(f"{self.path('summary.csv')}: there are no rocks")
         self.rocks = released(self.bodies)
+        self.standing = Table(self.path(standing.TABLE), ("Kind", "StructureId", "Name", "Rocks", "Hits", "EnergyMaximum")) \
+            if len(self.slope.trees) or len(self.slope.lying) or len(self.slope.embankments) or len(self.slope.barriers) else ()
         self.map = Raster(self.path("hazard.tif")) if "map" in self.given else None
         self.lines = self.crossings = self.exceedance = None
         self.drawn_lines, self.design, self.places = [], [], None

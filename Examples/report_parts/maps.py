@@ -16,7 +16,7 @@ LONGEST_BAR = 32.0  # mm
 DOTS = 2.5  # mm from one to the next where too few rocks came
 DOT = {"marker": "o", "ms": 1.5, "mfc": "white", "mec": INK, "mew": 0.35}
 ROUND = (1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.5, 8.0, 10.0)
-WEAK, MEDIUM, STRONG = "#ffe680", "#e08a2e", "#8b0a1a"  # light to dark, in grey as well
+WEAK, MEDIUM, STRONG = "#f0c419", "#e08a2e", "#8b0a1a"  # light to dark, in grey as well
 
 
 def nice(value, steps=(1.0, 2.0, 5.0, 10.0)):

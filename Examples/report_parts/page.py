@@ -40,7 +40,7 @@ def make(study, title=None, author="", other=None):
         maps=maps.results(study) if study.map else [],
         ground=tables.ground(study), ground_source=tables.source_of(study), classed=tables.classed(study),
         rocks=tables.rocks(study), by_source=tables.sources(study), frequencies=tables.frequencies(study),
-        structures=tables.structures(study), lines=lines,
+        structures=tables.structures(study), standing=tables.standing(study), often=tables.known_often(study), lines=lines,
         few=any(cell.endswith(tables.FEW) for table in lines for _, _, cells in table["rows"] for cell in cells),
         design=tables.design(study), freeboard=study.given.get("lines", {}).get("Freeboard", 0.5),
         exceedance=[charts.exceedance(study, some) for some in tables.slices(named)],

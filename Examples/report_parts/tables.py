@@ -155,7 +155,8 @@ def rocks(study):
 
 def source_name(study, source):
     """Its number, and the names that its rocks have."""
-    names = set(study.rocks["SourceName"][study.rocks["SourceId"] == source]) - {""} if "SourceName" in study.rocks else ()
+    names = set(study.rocks["SourceName"][study.rocks["SourceId"] == source]) if "SourceName" in study.rocks else set()
+    names -= {"", f"source {source:.0f}"}
     return " ".join([number(source, 9), ", ".join(sorted(map(str, names)))]).strip()
 
 
@@ -197,17 +198,40 @@ def structures(study):
         made.append(("stems", f"{number(len(cm), 7)} on {number(area)} ha of map, diameter {number(cm.min())} to "
                      f"{number(cm.max())} cm, mean {number(cm.mean())} cm; energy that breaks one "
                      f"{span(capacity)}"))
-    for row in slope.embankments:
+    names = slope.texts("TerrainEmbankmentNames") or [""] * len(slope.embankments)
+    for name, row in zip(names, slope.embankments):
         size = f"{number(row[1])} m high" if row[1] else f"crest at {number(row[2], 6)} m"
-        made.append((f"embankment {row[0]:.0f}", f"{size}, crest {number(row[3])} m wide, slopes (across to up) {number(row[4])} "
+        made.append((f"embankment {row[0]:.0f} {name}".strip(), f"{size}, crest {number(row[3])} m wide, slopes (across to up) {number(row[4])} "
                      f"uphill, {number(row[5])} downhill"))
-    for row in slope.barriers:
-        made.append((f"net or fence {row[0]:.0f}", f"{number(row[1])} m high, capacity {span(row[2:3] / 1000.0)}" +
+    names = slope.texts("TerrainBarrierNames") or [""] * len(slope.barriers)
+    for name, row in zip(names, slope.barriers):
+        made.append((f"net or fence {row[0]:.0f} {name}".strip(), f"{number(row[1])} m high, capacity {span(row[2:3] / 1000.0)}" +
                      (", records only" if row[4] else "") +
                      (f", braking distance {number(row[6])} m" if row[6] > 0 else "") +
                      (f", {number(100.0 * row[7])} % of its height with its capacity used up" if row[7] >= 0 else "") +
                      (f", full with {number(row[8])} m³/m" if row[8] > 0 else "")))
     return made
+
+
+def standing(study):
+    """What came to each structure, by its name."""
+    made = []
+    for k in range(len(study.standing)):
+        row = {name: values[k] for name, values in study.standing.columns.items()}
+        net, stems = row["Kind"] == "net", row["Kind"] == "stems"
+        whole = lambda name: "–" if row[name] < 0 else number(row[name], 7)
+        energy = number(row["EnergyMaximum"]) + (f", class {whole('RequiredClass')}" if net and row["Rocks"] else "")
+        useful = number(row["UsefulHeightMinimum"]) if net else "–"
+        enough = "–" if not net or not row["Rocks"] else "yes" if row["HeldAll"] == 1 else "no"
+        made.append([row["Name"] if stems else f"{row['Kind']} {row['StructureId']:.0f} {row['Name']}".strip(),
+                     whole("Rocks"), whole("Hits"), whole("Held"), "–" if row["Kind"] == "embankment" else whole("Broke"),
+                     whole("Over"), energy, enough, number(row["TopHeightMaximum"]), number(row["BrakingDistanceMaximum"] or math.nan),
+                     useful, *([number(row["AnnualFrequency"])] if known_often(study) else [])])
+    return made
+
+
+def known_often(study):
+    return len(study.standing) > 0 and bool(np.isfinite(study.standing["AnnualFrequency"]).all())
 
 
 def span(capacity):

@@ -12,6 +12,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 import schema
+import standing
 import wholefile
 from gis import write_map_styles, write_table
 from together import from_first_rank, make, output, refuse, say, write_by
@@ -165,8 +166,8 @@ def combine_crossings(folder, stems, merge, design):
                     [columns_of(design.GetOutputDataObject(port).GetRowData())])
 
 
-def combine(study, folder, stems, iterations):
-    """The results of the whole study, from the files of its chunks alone."""
+def combine(study, folder, stems, iterations, structures=None):
+    """The results of the whole study, from the files of its chunks alone; `structures` are what stands on the slope."""
     hashes, notes = from_first_rank(lambda: combine_tables(folder, stems))
     if "map" not in study:  # which tells the same of the same rocks
         for note in notes:
@@ -184,6 +185,8 @@ def combine(study, folder, stems, iterations):
         from_first_rank(lambda: write_map_styles(os.path.join(folder, "hazard.tif"), [
             cells.GetArrayName(k) for k in range(cells.GetNumberOfArrays())
             if cells.GetArray(k) and cells.GetArray(k).GetNumberOfComponents() == 1]))
+    if structures:
+        from_first_rank(lambda: standing.combine(study, folder, stems, structures))
 
     def finish():
         write_text(os.path.join(folder, RESULTS), json.dumps(

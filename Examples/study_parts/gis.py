@@ -26,7 +26,7 @@ RASTERS = tuple((re.compile(pattern), *rest) for pattern, *rest in (
     (r"EnergyLineAngle", (25.0, 27.0, 30.0, 33.0, 36.0, 40.0, 90.0), 1.0, "°", HEIGHT[::-1]),
     (r"AnnualFrequency", (1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1e6), 1.0, "1/a", REACH),
     (r"ReturnPeriod", (10.0, 30.0, 100.0, 300.0, 1000.0, 1e9), 1.0, "a", REACH[::-1])))
-CLASSES = ((1, "#ffe680", "weak"), (2, "#e08a2e", "medium"), (3, "#8b0a1a", "strong"))  # of Intensity…
+CLASSES = ((1, "#f0c419", "weak"), (2, "#e08a2e", "medium"), (3, "#8b0a1a", "strong"))  # of Intensity…
 HEAD = "<!DOCTYPE qgis PUBLIC 'http://mrcc.com/qgis.dtd' 'SYSTEM'>\n"
 
 

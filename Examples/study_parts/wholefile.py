@@ -119,10 +119,12 @@ def write_npz(path, columns):
 def forget_ranges(data):
     """Those of its arrays: VTK keeps them as keys, and its writer puts these into the file in an order
     that depends on who asked for them, so not the same on other ranks (findings/vtk_ranges_change_files.sh)."""
+    arrays = [data.GetPoints().GetData()] if data.GetPoints() else []
     for fields in (data.GetPointData(), data.GetCellData(), data.GetFieldData()):
-        for array in map(fields.GetAbstractArray, range(fields.GetNumberOfArrays())):
-            for key in RANGES:
-                array.GetInformation().Remove(key)
+        arrays += map(fields.GetAbstractArray, range(fields.GetNumberOfArrays()))
+    for array in arrays:
+        for key in RANGES:
+            array.GetInformation().Remove(key)
 
 
 def write_polydata(path, data):

@@ -30,7 +30,7 @@ write_text("rocks.csv", "x,y,z,shape,volume\n" + "\n".join(
     for k, shape in enumerate(["cube", "icosahedron", "octahedron"])) + "\n")
 write_text("road.csv", "WKT,name,height\n" + "\n".join(
     f'"LINESTRING({x} 3999990,{x} 4000230)","<b>road</b> {x}",{h}' for x, h in ((700045, 1), (700290, 3))) + "\n")
-write_text("net.csv", 'WKT,height,capacity\n"LINESTRING(700100 4000040,700100 4000070)",4,1000\n')
+write_text("net.csv", 'WKT,name,height,capacity\n"LINESTRING(700100 4000040,700100 4000070)",Net <1>,4,1000\n')
 write_text("stems.csv", 'WKT,diameter,height\n"LINESTRING(700200 4000180,700208 4000180)",40,\nPOINT(700250 4000185),30,20\n')
 study = {
     "terrain": {"FileName": "hill.asc", "Preset": "Talus (assumed)", "BarrierFile": "net.csv", "TreeFile": "stems.csv"},
@@ -74,7 +74,7 @@ for name in ("hill.asc", "hill.prj", "rocks.csv", "road.csv", "net.csv", "stems.
     assert name in text and content(name) in text, name
 for word in ("WGS 84 / UTM zone 16N", "preset Talus (assumed): Lu et al. (2019)", "seed 77", "31 × 21 nodes every 10 m",
              "12 rocks, 3 releases in 4 iterations", "4 m high, capacity 1 000 kJ", "Office", "stems that lie 1, diameter 40 to 40 cm; energy that breaks one 194 kJ", "stems 1 on",
-             "RockfallDDA", "gives no frequency of release", "source rocks volume, m³: least median largest 1 source 1 4 0.5 0.5 0.5", "Cells of the map below LeastReach 0.001 are left empty", "icosahedron 4 0.75 0.75 0.75",
+             "RockfallDDA", "gives no frequency of release", "source rocks volume, m³: least median largest 1 4 0.5 0.5 0.5", "Cells of the map below LeastReach 0.001 are left empty", "icosahedron 4 0.75 0.75 0.75",
              "No rock reached line <b>road</b> 700290: of 12 rocks the share that passes is below 25 %"):
     assert word in text, word
 sections = re.findall(r"<h2>(\d+) ", page)
@@ -82,6 +82,12 @@ assert sections == [str(k) for k in range(1, 12)], sections
 line, other = (row for row in rows_of("whole/lines.csv") if float(row["Offset"]) == 0.0)
 energy = tables.number(float(line["KineticEnergy95"]) / 1000.0).replace("\u2009", " ")
 assert f"rocks that pass {line['Rocks']} " in text
+# Structures by their names, with what came to them.
+net = next(row for row in rows_of("whole/structures.csv") if row["Kind"] == "net")
+assert int(net["Hits"]) > 0 and "net or fence 1 Net <1> 4 m high" in text, net
+assert "net 1 Net <1> {Rocks} {Hits} {Held} {Broke} {Over} {}, class {RequiredClass}".format(
+    tables.number(float(net["EnergyMaximum"])), **net) in text, net
+assert "hits, 1/a" not in text and "2 stems" in text
 # Parallels are in the chart alone.
 assert page.count('alt="Best place of a barrier"') == 2 and "700045 −20 m" not in text and "freeboard (0.5 m)" in text
 assert f"energy, 95 % kJ {energy} * –" in text, energy  # of 12 rocks

@@ -34,15 +34,20 @@ rocks = write_text("sources.csv", "x,y,z,shape,volume\n" + "\n".join(
     for k, shape in enumerate(["cube", "icosahedron", "octahedron"])) + "\n")
 road = write_text("road.csv", "WKT,name,height\n" + "\n".join(
     f'"LINESTRING({x} 3999990,{x} 4000230)","road, {x}",{h}' for x, h in ((700045, 1), (700055, 3))) + "\n")
+write_text("held.csv", 'WKT,name,height,capacity,braking,residual\n"LINESTRING(700070 4000030,700070 4000066)",Upper net,4,300,5,60\n')
+write_text("dams.csv", 'WKT,name,height,width,slope\n"LINESTRING(700080 4000067,700080 4000130)",Dam,2,1,1\n')
+write_text("trees.csv", "x,y,diameter,height\n" + "\n".join(
+    f"{700050 + 3 * (k % 5)},{4000056 + 2 * k},{15 + k},18" for k in range(15)) + "\n")
 study = {
-    "terrain": {"FileName": "incline.asc", "RoughnessDeviation": 0.2},
+    "terrain": {"FileName": "incline.asc", "RoughnessDeviation": 0.2, "BarrierFile": "held.csv", "EmbankmentFile": "dams.csv",
+                "TreeFile": "trees.csv"},
     "rocks": {"FileName": "sources.csv"},
     "simulation": {"EndTime": 6.0, "TrajectoryOutput": "Thinned"},
     "map": {"CellSize": 5.0, "AnnualFrequency": 0.5, "EnergyThresholds": [10.0, 100.0]},
     "lines": {"FileName": "road.csv", "BarrierCapacity": 150.0, "AnnualFrequency": 0.5, "TrajectoryFactor": 1.1},
     "iterations": 11, "chunk": 2}
 RESULTS = ["summary.csv", "hazard.tif", "crossings.csv", "lines.csv", "exceedance.csv", "design.csv",
-           "design_classes.csv", "design_sources.csv", "design_places.csv"]
+           "design_classes.csv", "design_sources.csv", "design_places.csv", "structures.csv"]
 
 
 def write_study(name="study.json", **changes):
@@ -93,7 +98,7 @@ assert code == 0, said
 calm = results_of("results-calm")
 assert sorted(set(calm) - set(for_gis(calm))) == sorted(
     [f"chunk-{k:05d}{kind}" for k in range(6)
-     for kind in (".npz", ".vtp", ".passages", "-crossings.vtp")] +
+     for kind in (".npz", ".vtp", ".passages", "-crossings.vtp", "-structures.npz")] +
     ["manifest.json", "results.json"] + RESULTS), sorted(calm)
 styled = [name[:-4] for name in RESULTS if name.endswith(".csv")]
 assert {name for name in for_gis(calm) if not name.startswith("hazard")} == {
@@ -139,12 +144,12 @@ write_study("one.json", chunk=11, trajectories=False)
 code, said = run("results-one", "one.json")
 assert code == 0, said
 one = files_of("results-one")
-assert "chunk-00000.vtp" not in one and len(one) == 3 + 2 + len(RESULTS) + len(for_gis(calm)), sorted(one)
+assert "chunk-00000.vtp" not in one and len(one) == 4 + 2 + len(RESULTS) + len(for_gis(calm)), sorted(one)
 for name in RESULTS + for_gis(calm):
     assert one[name] == calm[name], f"{name} depends on the chunks"
 
 # The same of all trajectories at once.
-slope = DEMtoCFEMesh(FileName=terrain, RoughnessDeviation=0.2)
+slope = DEMtoCFEMesh(**study["terrain"])
 fall = RockfallSimulation(Terrain=slope, Rocks=RockBlocks(FileName=rocks, Terrain=slope), EndTime=6.0,
                           TrajectoryOutput="Thinned", Iterations=11)
 SaveData("hazard.tif", proxy=RockfallHazardMap(
@@ -171,6 +176,31 @@ assert len(levels) == 2 * 6, levels
 assert all(float(row["DesignHeight"]) == 1.1 * float(row["TopHeight"]) for row in levels), levels
 passing = [float(row["AnnualFrequency"]) for row in csv.DictReader(io.StringIO(calm["design_places.csv"].decode()))]
 assert all(abs(f - 0.5 * int(row["Rocks"]) / 33) < 1e-12 for f, row in zip(passing, rows)), passing
+
+# What came to each structure, with its name: as the simulation's own outputs have it.
+def rocks_of(data, keep):
+    return {(data.GetArray("Iteration").GetValue(k), data.GetArray("RockId").GetValue(k))
+            for k in range(data.GetNumberOfTuples()) if keep(lambda name: data.GetArray(name).GetValue(k))}
+
+
+stood = {row["Kind"]: row for row in csv.DictReader(io.StringIO(calm["structures.csv"].decode()))}
+assert [(row["Kind"], row["Name"]) for row in stood.values()] == [
+    ("embankment", "Dam"), ("net", "Upper net"), ("stems", "15 stems")], stood
+met, hits = (fall.GetClientSideObject().GetOutputDataObject(port).GetPointData() for port in (4, 2))
+held, broke = (rocks_of(met, lambda of: of("Outcome") == k) for k in (0, 1))
+net = stood["net"]
+assert held and int(net["Held"]) == len(held - broke) and int(net["Hits"]) == len(held | broke), (net, held)
+assert int(net["Rocks"]) == int(net["Hits"]) + int(net["Over"])
+largest = max(met.GetArray("KineticEnergy").GetValue(k) for k in range(met.GetNumberOfTuples())
+              if met.GetArray("Outcome").GetValue(k) < 2)
+assert float(net["EnergyMaximum"]) >= largest / 1e3 and float(net["BarrierCapacity"]) == 300.0, net
+assert abs(float(net["AnnualFrequency"]) - 0.5 * len(held | broke) / 33) < 1e-12, net
+assert 0.0 < float(net["BrakingDistanceMaximum"]) <= 5.0 and 0.0 < float(net["UsefulHeightMinimum"]) <= 4.0, net
+shown = slope.GetClientSideObject().GetOutputDataObject(1).GetCellData()
+cfes = {shown.GetArray("CFEId").GetValue(k) for k in range(shown.GetNumberOfTuples()) if shown.GetArray("StructureKind").GetValue(k) == 0}
+against = rocks_of(hits, lambda of: of("CFEId") in cfes)
+assert against and int(stood["embankment"]["Hits"]) == len(against), (stood, against)
+assert int(stood["stems"]["Broke"]) == sum(met.GetArray("Outcome").GetValue(k) == 3 for k in range(met.GetNumberOfTuples())) > 0
 for source in list(GetSources().values()):
     Delete(source)
 

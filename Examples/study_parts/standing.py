@@ -1,0 +1,167 @@
+"""What came to embankments, nets and stems: of each chunk a small file, and of the study a row for each of them."""
+import math
+import os
+
+import numpy as np
+from paraview.simple import *
+from vtkmodules.util.numpy_support import vtk_to_numpy
+
+import schema
+from gis import write_table
+from together import from_first_rank, make, output
+from wholefile import write_npz
+
+TABLE = "structures.csv"
+HELD, BROKE, RECORDED, STEM_BROKE, STEM_PASSED, HIT, CAME = range(7)  # the first five as Outcome of port 4
+MEL = (100.0, 250.0, 500.0, 1000.0, 1500.0, 2000.0, 3000.0, 4500.0)  # kJ, of the classes 0 to 7 (EAD 340059-00-0106)
+EVENT = ("Structure", "Event", "Iteration", "RockId", "Energy", "Height", "Braking", "Useful")
+
+
+def numbers(data, name):
+    array = data.GetArray(name)
+    return vtk_to_numpy(array) if array else np.empty(0)
+
+
+def of_slope(data):
+    """What stands on a slope, by its field data: embankments and nets by features, and all stems as one."""
+    origin, made = numbers(data, "LocalOrigin").ravel()[:2], []
+    for kind, stem, columns in (("embankment", "TerrainEmbankment", (1, None)), ("net", "TerrainBarrier", (1, 2))):
+        rows, points = numbers(data, stem + "s"), numbers(data, stem + "Points")
+        names, next_point = data.GetAbstractArray(stem + "Names"), 0
+        for k, row in enumerate(rows):
+            end = next_point + int(row[-1])
+            part = (points[next_point:end] + origin).tolist()
+            next_point = end
+            if made and made[-1]["kind"] == kind and made[-1]["id"] == int(row[0]):
+                made[-1]["parts"].append(part)  # of one feature
+                continue
+            capacity = -1.0 if columns[1] is None else row[columns[1]] / 1000.0
+            made.append({"kind": kind, "id": int(row[0]), "name": names.GetValue(k) if names else "", "parts": [part],
+                         "height": float(row[columns[0]]), "capacity": float(capacity) if capacity >= 0.0 else None})
+    stems = numbers(data, "TerrainTrees")
+    if len(stems):
+        made.append({"kind": "stems", "id": 0, "name": f"{len(stems)} stems", "parts": [], "height": 0.0, "capacity": None})
+    return made
+
+
+class Standing:
+    """Looks at each chunk's rocks where they meet what stands on the slope. All ranks take part."""
+
+    def __init__(self, slope, simulation, kept):
+        self.simulation = simulation
+        data = output(slope).GetFieldData()
+        self.things = from_first_rank(lambda: of_slope(data))
+        self.numbers = {(one["kind"], one["id"]): k for k, one in enumerate(self.things)}
+        lines = [one for one in self.things if one["parts"]]
+        self.collector = make(TrajectoryCollector, "structures", {
+            "Input": OutputPort(simulation, 1), "Terrain": slope, "PrintNotes": 0,
+            "Points": [0, 0, 0, 1, 1, 0]}) if lines and kept else None
+        self.of_cfe = {}
+        if any(one["kind"] == "embankment" for one in self.things):
+            shown = slope.GetClientSideObject().GetOutputDataObject(1).GetCellData()
+            kind, cfe, feature = (numbers(shown, name) for name in ("StructureKind", "CFEId", "StructureId"))
+            self.of_cfe = {int(c): self.numbers["embankment", int(f)] for c, f in zip(cfe[kind == 0], feature[kind == 0])}
+
+    def write(self, stem):
+        """The chunk's file, of what the simulation has just made."""
+        ports = [output(self.simulation, port) for port in (2, 3, 4)]
+        rows = []
+        from_first_rank(lambda: rows.extend(self.met(*ports)))
+        for k, one in enumerate(self.things if self.collector else ()):
+            for part in one["parts"]:
+                self.collector.Points = [value for x, y in part for value in (x, y, 0.0)]
+                UpdatePipeline(proxy=self.collector)
+                passed = output(self.collector).GetPointData()
+                columns = [numbers(passed, name) for name in ("Iteration", "RockId", "KineticEnergy", "TopHeight")]
+                rows += [(k, CAME, *row, 0.0, math.nan) for row in zip(*columns)]
+        table = dict(zip(EVENT, np.array(rows, float).reshape(-1, len(EVENT)).T))
+        from_first_rank(lambda: write_npz(stem + "-structures.npz", table))
+
+    def met(self, impacts, summaries, structures):
+        """Rows of nets and stems that were hit, and of impacts on embankments."""
+        met = structures.GetPointData()
+        names = ("StructureId", "Outcome", "Iteration", "RockId", "KineticEnergy", "HeightOverGround", "BrakingDistance",
+                 "UsefulHeight")
+        for feature, outcome, *row in zip(*(numbers(met, name) for name in names)):
+            thing = ("net", int(feature)) if outcome <= RECORDED else ("stems", 0)
+            yield self.numbers[thing], int(outcome), *row
+        if not self.of_cfe:
+            return
+        table = summaries.GetRowData()
+        keys = [numbers(table, name) for name in ("Iteration", "RockId", "Piece", "Mass")]
+        if not len(keys[2]):
+            keys[2] = np.zeros(len(keys[0]))
+        mass = {tuple(key): m for *key, m in zip(*keys)}
+        hits = impacts.GetPointData()
+        cfes = numbers(hits, "CFEId")
+        iteration, rock, piece, speed = (numbers(hits, name) for name in ("Iteration", "RockId", "Piece", "VelocityBefore"))
+        for k in np.flatnonzero(np.isin(cfes, list(self.of_cfe))):
+            key = (iteration[k], rock[k], piece[k] if len(piece) else 0.0)
+            energy = 0.5 * mass[key] * float(speed[k] @ speed[k])
+            yield self.of_cfe[int(cfes[k])], HIT, iteration[k], rock[k], energy, math.nan, 0.0, math.nan
+
+
+def frequency_of(study, stems, wanted):
+    """Of rocks by iteration and number what each adds to a frequency, 1/a; None if that is not known."""
+    together = next((study[part]["AnnualFrequency"] for part in ("map", "lines")
+                     if study.get(part, {}).get("AnnualFrequency")), 0.0)
+    rocks, iterations, count = {}, set(), 0
+    for stem in stems:
+        with np.load(stem + ".npz") as table:
+            whole = table["Piece"] == 0 if "Piece" in table else np.ones(len(table["RockId"]), bool)
+            iteration, rock = table["Iteration"][whole], table["RockId"][whole]
+            if not together and "Frequency" not in table:
+                return None
+            values = np.full(len(rock), together) if together else table["Frequency"][whole]
+        iterations.update(np.unique(iteration).tolist())
+        count += len(rock)
+        for key, value in zip(zip(iteration.tolist(), rock.tolist()), values.tolist()):
+            if key in wanted:
+                rocks[key] = value
+    return {key: value / (count if together else len(iterations)) for key, value in rocks.items()}
+
+
+def largest(values):
+    values = values[np.isfinite(values)]
+    return float(values.max()) if len(values) else math.nan
+
+
+def summary(thing, events, often):
+    """A row of structures.csv."""
+    keys = np.array(list(zip(events["Iteration"].astype(int), events["RockId"].astype(int))), int).reshape(-1, 2)
+
+    def rocks(*kinds):
+        return {tuple(key) for key in keys[np.isin(events["Event"], kinds)].tolist()}
+
+    hit, broke, stem = rocks(HELD, BROKE, RECORDED, STEM_BROKE, STEM_PASSED, HIT), rocks(BROKE), thing["kind"] == "stems"
+    came = rocks(CAME) | hit
+    # An embankment holds what hits it and does not come over its axis; stems that hold are slope, which nothing counts.
+    over = rocks(CAME) - (set() if thing["kind"] == "embankment" else hit)
+    held = hit - over if thing["kind"] == "embankment" else rocks(HELD) - broke
+    energy = largest(events["Energy"]) / 1000.0
+    net = thing["kind"] == "net"
+    return {
+        "Kind": thing["kind"], "StructureId": thing["id"], "Name": thing["name"],
+        "StructureHeight": math.nan if stem or not thing["height"] else thing["height"],
+        "BarrierCapacity": math.nan if thing["capacity"] is None else thing["capacity"],
+        "Rocks": len(came), "Hits": len(hit), "Held": -1 if stem else len(held),
+        "Broke": int((events["Event"] == STEM_BROKE).sum()) if stem else len(broke), "Over": -1 if stem else len(over),
+        "EnergyMaximum": energy, "RequiredClass": int(np.searchsorted(MEL, energy)) if net and came else -1,
+        "HeldAll": int(came == held) if net else -1,
+        "TopHeightMaximum": math.nan if stem else largest(events["Height"]),
+        "BrakingDistanceMaximum": largest(events["Braking"][events["Event"] == HELD]),
+        "UsefulHeightMinimum": -largest(-events["Useful"][np.isin(events["Event"], (HELD, BROKE))]),
+        "AnnualFrequency": math.nan if often is None else sum((often[key] for key in sorted(hit)), 0.0)}
+
+
+def combine(study, folder, stems, things):
+    """structures.csv of the chunks' files alone."""
+    chunks = []
+    for stem in stems:
+        with np.load(stem + "-structures.npz") as chunk:
+            chunks.append({name: chunk[name] for name in EVENT})
+    events = {name: np.concatenate([chunk[name] for chunk in chunks]) for name in EVENT}
+    often = frequency_of(study, stems, set(zip(events["Iteration"].astype(int).tolist(), events["RockId"].astype(int).tolist())))
+    rows = [summary(one, {name: values[events["Structure"] == k] for name, values in events.items()}, often)
+            for k, one in enumerate(things)]
+    write_table(os.path.join(folder, TABLE), [{name: np.array([row[name] for row in rows]) for name in rows[0]}])
