@@ -222,7 +222,7 @@ def standing(study):
         whole = lambda name: "–" if row[name] < 0 else number(row[name], 7)
         energy = number(row["EnergyMaximum"]) + (f", class {whole('RequiredClass')}" if net and row["Rocks"] else "")
         useful = number(row["UsefulHeightMinimum"]) if net else "–"
-        enough = "–" if not net or not row["Rocks"] else "yes" if row["HeldAll"] == 1 else "no"
+        enough = "–" if row["HeldAll"] < 0 else "yes" if row["HeldAll"] == 1 else "no"
         made.append([row["Name"] if stems else f"{row['Kind']} {row['StructureId']:.0f} {row['Name']}".strip(),
                      whole("Rocks"), whole("Hits"), whole("Held"), "–" if row["Kind"] == "embankment" else whole("Broke"),
                      whole("Over"), energy, enough, number(row["TopHeightMaximum"]), number(row["BrakingDistanceMaximum"] or math.nan),

@@ -147,7 +147,7 @@ def summary(thing, events, often):
         "Rocks": len(came), "Hits": len(hit), "Held": -1 if stem else len(held),
         "Broke": int((events["Event"] == STEM_BROKE).sum()) if stem else len(broke), "Over": -1 if stem else len(over),
         "EnergyMaximum": energy, "RequiredClass": int(np.searchsorted(MEL, energy)) if net and came else -1,
-        "HeldAll": int(came == held) if net else -1,
+        "HeldAll": int(came == held) if net and came else -1,
         "TopHeightMaximum": math.nan if stem else largest(events["Height"]),
         "BrakingDistanceMaximum": largest(events["Braking"][events["Event"] == HELD]),
         "UsefulHeightMinimum": -largest(-events["Useful"][np.isin(events["Event"], (HELD, BROKE))]),

@@ -61,6 +61,23 @@ TEST_F(TestStructures, AreShownBesideTheSlope)
   EXPECT_EQ(count[2], 20); // 98 m in pieces of at most 5 m
 }
 
+/// A note on a layer of structures names it, and not the elevations as well.
+TEST_F(TestStructures, NotesNameTheirOwnFile)
+{
+  const std::string forest =
+    this->WriteFile("odd.csv", "x,y,diameter,height\n180,10,1.5,20\n180,90,30,20\n");
+  this->Terrain->SetTreeFile(forest.c_str());
+  this->Terrain->Update();
+  int told = 0;
+  for (const std::string& note : this->Heard->Notes)
+  {
+    const std::size_t at = note.find(forest);
+    told += at != std::string::npos ? 1 : 0;
+    EXPECT_TRUE(at == std::string::npos || at < 10) << note; // but for a word of VTK's
+  }
+  EXPECT_EQ(told, 1);
+}
+
 /// What is shown of many trees is thinned out as the slope is; the simulation has all of them.
 TEST_F(TestStructures, ManyTreesAreShownInPart)
 {

@@ -30,7 +30,7 @@ write_text("rocks.csv", "x,y,z,shape,volume\n" + "\n".join(
     for k, shape in enumerate(["cube", "icosahedron", "octahedron"])) + "\n")
 write_text("road.csv", "WKT,name,height\n" + "\n".join(
     f'"LINESTRING({x} 3999990,{x} 4000230)","<b>road</b> {x}",{h}' for x, h in ((700045, 1), (700290, 3))) + "\n")
-write_text("net.csv", 'WKT,name,height,capacity\n"LINESTRING(700100 4000040,700100 4000070)",Net <1>,4,1000\n')
+write_text("net.csv", 'WKT,name,height,capacity\n"LINESTRING(700048 4000030,700048 4000110)",Net <1>,4,1000\n')
 write_text("stems.csv", 'WKT,diameter,height\n"LINESTRING(700200 4000180,700208 4000180)",40,\nPOINT(700250 4000185),30,20\n')
 study = {
     "terrain": {"FileName": "hill.asc", "Preset": "Talus (assumed)", "BarrierFile": "net.csv", "TreeFile": "stems.csv"},
