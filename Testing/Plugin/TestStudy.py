@@ -34,15 +34,15 @@ rocks = write_text("sources.csv", "x,y,z,shape,volume\n" + "\n".join(
     for k, shape in enumerate(["cube", "icosahedron", "octahedron"])) + "\n")
 road = write_text("road.csv", "WKT,name,height\n" + "\n".join(
     f'"LINESTRING({x} 3999990,{x} 4000230)","road, {x}",{h}' for x, h in ((700045, 1), (700055, 3))) + "\n")
-write_text("held.csv", 'WKT,name,height,capacity,braking,residual\n"LINESTRING(700070 4000030,700070 4000066)",Upper net,4,300,5,60\n')
-write_text("dams.csv", 'WKT,name,height,width,slope\n"LINESTRING(700080 4000067,700080 4000130)",Dam,2,1,1\n')
+write_text("held.csv", 'WKT,name,height,capacity,braking,residual\n"LINESTRING(700060 4000030,700060 4000066)",Upper net,4,300,5,60\n')
+write_text("dams.csv", 'WKT,name,height,width,slope\n"LINESTRING(700064 4000067,700064 4000130)",Dam,2,1,1\n')
 write_text("trees.csv", "x,y,diameter,height\n" + "\n".join(
-    f"{700050 + 3 * (k % 5)},{4000056 + 2 * k},{15 + k},18" for k in range(15)) + "\n")
+    f"{700057 + k % 3},{4000056 + 2 * k},{15 + k},18" for k in range(15)) + "\n")
 study = {
     "terrain": {"FileName": "incline.asc", "RoughnessDeviation": 0.2, "BarrierFile": "held.csv", "EmbankmentFile": "dams.csv",
                 "TreeFile": "trees.csv"},
     "rocks": {"FileName": "sources.csv"},
-    "simulation": {"EndTime": 6.0, "TrajectoryOutput": "Thinned"},
+    "simulation": {"EndTime": 8.5, "TrajectoryOutput": "Thinned"},
     "map": {"CellSize": 5.0, "AnnualFrequency": 0.5, "EnergyThresholds": [10.0, 100.0]},
     "lines": {"FileName": "road.csv", "BarrierCapacity": 150.0, "AnnualFrequency": 0.5, "TrajectoryFactor": 1.1},
     "iterations": 11, "chunk": 2}
@@ -150,7 +150,7 @@ for name in RESULTS + for_gis(calm):
 
 # The same of all trajectories at once.
 slope = DEMtoCFEMesh(**study["terrain"])
-fall = RockfallSimulation(Terrain=slope, Rocks=RockBlocks(FileName=rocks, Terrain=slope), EndTime=6.0,
+fall = RockfallSimulation(Terrain=slope, Rocks=RockBlocks(FileName=rocks, Terrain=slope), EndTime=8.5,
                           TrajectoryOutput="Thinned", Iterations=11)
 SaveData("hazard.tif", proxy=RockfallHazardMap(
     Input=OutputPort(fall, 1), CellSize=5.0, CropToTrajectories=0, AnnualFrequency=0.5,
