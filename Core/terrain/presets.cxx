@@ -118,7 +118,7 @@ constexpr GroundPreset presets[] = {
   { "talus with vegetation", "Talus with vegetation", 0.6, 1.0, 0.3, 37.0, 2.0,
     sized(yields(10e6, 1.4, 0.6, 0.1)), Assumption, assumed, lu, "assumed, as talus",
     stones(2.0, 0.05, 0.1, 0.2), assumed, shortOfSteep, 4.0 },
-  { "soil", "Soil", 0.3, 1.0, 0.15, 30.0, 3.0, sized(yields(10e6, 1.25, 0.6, 0.3)), Assumption,
+  { "soil", "Soil", 0.3, 1.0, 0.15, 30.0, 3.0, sized(yields(10e6, 1.25, 0.6, 0.36)), Assumption,
     assumed, lu, lu, waves(0.15, 2.0), "assumed: nothing walks on for minutes",
     "stops rocks too soon: the farthest 1 % below 150 m of drop at 40° have a reach angle of 36°, "
     "in "
