@@ -65,11 +65,16 @@ void visit(pqPipelineSource* made, const std::function<void(pqPipelineSource*)>&
   }
 }
 
-/// Across the paths of a slope, up from the line that counts them: in the middle of the slope a net
-/// is often out of sight. Empty if there is no such line.
+/// Across the paths of a slope, up from the line that counts them, and from other structures: in the
+/// middle of the slope a net is often out of sight. Empty if there is no such line.
 std::vector<double> aboveLine(vtkSMProxy* slope)
 {
   constexpr double above = 10.0; // m
+  double steps = 1.0;
+  for (; isOf(slope, { "vtkDrawnStructure" }); steps += 1.0)
+  {
+    slope = vtkSMPropertyHelper(slope, "Terrain").GetAsProxy();
+  }
   auto* model = pqApplicationCore::instance()->getServerManagerModel();
   for (pqPipelineSource* line : model->findItems<pqPipelineSource*>())
   {
@@ -98,7 +103,8 @@ std::vector<double> aboveLine(vtkSMProxy* slope)
       0.5 * (b[2] + b[3] - ends[1] - ends[4]) };
     const double length = std::hypot(across[0], across[1]);
     const double far = (across[0] * up[0] + across[1] * up[1]) / std::max(length, 1e-9);
-    const double step = std::copysign(std::min(above, 0.25 * std::abs(far)), far);
+    const double step = std::copysign(
+      std::min(steps * std::min(above, 0.25 * std::abs(far)), 0.9 * std::abs(far)), far);
     std::vector<double> placed;
     for (std::size_t k = 0; k < ends.size(); k += 3)
     {

@@ -21,4 +21,11 @@ def met():
     assert rocks.GetNumberOfPoints() > 0.5 * 200, f"{rocks.GetNumberOfPoints()} of 200 rocks met the net"
 
 
-[drawn, met][number - 1]()
+def further():
+    net, first = simple.GetActiveSource(), simple.GetActiveSource().Terrain
+    assert first.GetXMLName() == "DrawnStructure", first.GetXMLName()
+    away = min(abs(net.Points[k] - first.Points[k]) for k in (0, 3))  # the test slope falls along x
+    assert away > 3.0, f"a second net stands {away} m from the first"
+
+
+[drawn, met, further][number - 1]()
