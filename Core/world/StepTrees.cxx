@@ -87,7 +87,7 @@ bool StepTrees::cannotHold(const Stem& stem, const BlockState& end, bool through
         (!through || work_.solver.rows().gap(k) < 0.0));
   };
   this->forContacts(stem, look);
-  return meets && !fall.structures.stemHolds(stem.tree, body.block, end, body.contacts);
+  return meets && !fall.structures.stemHolds(stem.tree, body, end, body.contacts);
 }
 
 bool StepTrees::isKnown(std::size_t member, int tree) const
@@ -170,7 +170,7 @@ void StepTrees::fell(std::size_t member)
     {
       continue;
     }
-    if (fall.structures.stemHolds(stem.tree, body.block, body.state, body.contactsBefore))
+    if (fall.structures.stemHolds(stem.tree, body, body.state, body.contactsBefore))
     {
       // Others have taken it since: it holds from here on.
       for (Contact& c : body.contacts)

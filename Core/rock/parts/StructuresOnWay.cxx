@@ -206,8 +206,9 @@ int StructuresOnWay::treeOf(const Contact& contact) const
 }
 
 bool StructuresOnWay::stemHolds(
-  int tree, const Block& block, const BlockState& state, std::span<const Contact> contacts) const
+  int tree, const RockBody& body, const BlockState& state, std::span<const Contact> contacts) const
 {
+  const Block& block = body.block;
   const Tree& stem = obstacles_->structures().trees[std::size_t(tree)];
   const double energy = rigidKineticEnergy(block, state);
   if (stem.lies())
@@ -221,7 +222,8 @@ bool StructuresOnWay::stemHolds(
   }
   const bool presses = std::any_of(contacts.begin(), contacts.end(),
     [&](const Contact& c) { return c.closed() && this->treeOf(c) == tree; });
-  return presses ||
+  const double resting = 0.5 * block.mass() * body.restingSpeed * body.restingSpeed;
+  return presses || energy <= resting ||
     energy <= stemShare(hitOn(*obstacles_, tree, block, state).offset) * stem.capacity;
 }
 
@@ -233,7 +235,7 @@ std::vector<int> StructuresOnWay::treesHit(const RockBody& body) const
     const Contact& c = body.contacts[i];
     const int tree = this->treeOf(c);
     if (tree >= 0 && c.closed() && !body.contactsBefore[i].closed() &&
-      !this->stemHolds(tree, body.block, body.before, body.contactsBefore))
+      !this->stemHolds(tree, body, body.before, body.contactsBefore))
     {
       hit.push_back(tree);
     }
@@ -258,7 +260,7 @@ bool StructuresOnWay::breakTrees(
     const bool meets =
       c.closed() ? approach > body.restingSpeed : approach > 0.0 && c.gap() < approach * h;
     if (!(meets || std::find(hit.begin(), hit.end(), tree) != hit.end()) ||
-      this->stemHolds(tree, body.block, body.state, body.contacts))
+      this->stemHolds(tree, body, body.state, body.contacts))
     {
       continue;
     }

@@ -63,10 +63,10 @@ public:
   int treeOf(const Contact& contact) const; ///< −1: it is on none.
   /// Where it is released there is none.
   void clearTrees(const PlacedBlock& rock, const BlockState& state);
-  /// Whether a stem holds a block with this motion: the laws of terrain/stemHit.h. What presses
-  /// against it by one of these contacts it holds up to its capacity.
-  bool stemHolds(
-    int tree, const Block& block, const BlockState& state, std::span<const Contact> contacts) const;
+  /// Whether a stem holds a rock with this motion: the laws of terrain/stemHit.h. What presses
+  /// against it by one of these contacts, or is no faster than at rest, it holds up to its capacity.
+  bool stemHolds(int tree, const RockBody& body, const BlockState& state,
+    std::span<const Contact> contacts) const;
   /// Those that the last step came against and that cannot hold the rock.
   std::vector<int> treesHit(const RockBody& body) const;
   /// Trees that the rock is about to touch within `h`, presses against or has `hit`, and that cannot
