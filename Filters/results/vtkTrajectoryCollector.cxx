@@ -404,7 +404,7 @@ int vtkTrajectoryCollector::RequestData(
       filters::writeLines(collected.summaries, lines, collected.lost, table);
       if (filters::isRunning(trajectories->GetFieldData()))
       {
-        notes.push_back("The run goes on: these are its rocks so far");
+        notes.emplace_back("The run goes on: these are its rocks so far");
         filters::markRunning(exceedance->GetFieldData());
       }
       else
