@@ -8,7 +8,9 @@ from vtkmodules.vtkIOImage import vtkPNGReader
 
 DATA = os.path.join(os.environ["ROCKFALL_PICTURES"], "..", "data")
 MOVED = os.path.join(DATA, "moved")
-FRAMES = range(100, 104)
+# From ParaView 6.1 on a film takes the scene's stride.
+STRIDE = simple.GetAnimationScene().Stride if simple.GetParaViewVersion() >= (6, 1) else 1
+FRAMES = range(100, 104, STRIDE)
 
 
 def prepared():
