@@ -18,6 +18,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <thread>
@@ -174,7 +175,10 @@ TEST(Reach, virtualRastersNameWhatIsBesideThemOnly)
 
 TEST(Reach, MemoryIsNoFile)
 {
-  const std::string memory = "MEM:::DATAPOINTER=1,PIXELS=2,LINES=2"; // ends the program if read
+  const unsigned char pixels[4] = {};
+  char place[32]; // where there is something to read
+  std::snprintf(place, sizeof place, "%p", static_cast<const void*>(pixels));
+  const std::string memory = "MEM:::DATAPOINTER=" + std::string(place) + ",PIXELS=2,LINES=2";
   for (const bool allowed : { false, true })
   {
     const AllowReferences allow(allowed);
