@@ -30,6 +30,12 @@ struct Expected
   double radius;               ///< Of the vertices at unit volume, m.
 };
 
+/// Names of tests would have its bytes.
+void PrintTo(const Expected& expected, std::ostream* out)
+{
+  *out << shapeName(expected.shape);
+}
+
 std::string printName(const testing::TestParamInfo<Expected>& info)
 {
   return shapeName(info.param.shape);
