@@ -47,8 +47,8 @@ struct Destination
 };
 
 /// The UTM zone (WGS 84) of the centre, or UPS, if the CRS is geographic, if its unit is not the
-/// metre, if its axes point west or south, or if its map metres are not metres on the ground. Throws DataError, beginning with
-/// `fileName`, if the extent is not on earth.
+/// metre, if its axes point west or south, or if its map metres are not metres on the ground. Throws
+/// DataError, beginning with `fileName`, if the extent is not on earth.
 Destination destination(const SourceGrid& grid, const CrsPtr& crs, const std::string& fileName);
 
 /// Rounded to three significant digits.
