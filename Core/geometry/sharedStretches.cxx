@@ -86,8 +86,6 @@ Interval sharedPart(const Piece& piece, const Piece& other)
   return all.any() ? Interval{ piece.before + all.from, piece.before + all.to } : kNone;
 }
 
-constexpr double kFarthest = 1e9; ///< No place on earth is farther, m.
-
 std::vector<Piece> piecesOf(const PlanLines& parts, int line)
 {
   std::vector<Piece> pieces;

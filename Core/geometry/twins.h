@@ -13,6 +13,8 @@ namespace rockfall
 
 /// Two places that differ by no more are the same one, m.
 inline constexpr double kTwinDistance = 0.1;
+/// No coordinate of a map is so large, m, not even in Gauss-Krüger zones with a number before them.
+inline constexpr double kFarthest = 1e9;
 /// Length that lines must share, m: lines that cross or meet at an end share less.
 inline constexpr double kSharedLength = 2.0;
 /// Share of the smaller one of two polygons: less is the width of a pen on a map.

@@ -1,6 +1,7 @@
 #include "statistics/crossings.h"
 
 #include "base/abort.h"
+#include "statistics/design.h"
 #include "terrain/Terrain.h"
 
 #include <algorithm>
@@ -392,24 +393,22 @@ LineSummary summarizeLine(const CollectorLine& line, int lineNumber,
   std::vector<double> speeds;
   for (std::size_t k = 0; k < first.size();)
   {
-    // Of pieces of a rock the largest values.
     const Crossing& rock = *first[k];
-    double energy = 0.0, speed = 0.0, height = std::numeric_limits<double>::quiet_NaN();
+    DesignPassing largest;
+    largest.top = std::numeric_limits<double>::quiet_NaN();
     bool held = true;
     for (; k < first.size() && rockOf(*first[k]) == rockOf(rock); ++k)
     {
       const Crossing& piece = *first[k];
-      energy = std::max(energy, piece.kineticEnergy);
-      speed = std::max(speed, piece.velocity.norm());
-      height = std::fmax(height, piece.heightOverGround);
+      largest.takeLarger(piece.kineticEnergy, piece.velocity.norm(), piece.heightOverGround);
       held = held && piece.heightOverGround <= line.barrierHeight &&
         piece.kineticEnergy <= line.barrierCapacity;
     }
-    summary.energies.push_back(energy);
-    speeds.push_back(speed);
-    if (!std::isnan(height))
+    summary.energies.push_back(largest.energy);
+    speeds.push_back(largest.speed);
+    if (!std::isnan(largest.top))
     {
-      summary.heights.push_back(height);
+      summary.heights.push_back(largest.top);
     }
     summary.caught += held;
   }

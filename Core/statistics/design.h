@@ -4,7 +4,9 @@
 /// What a barrier at a line has to hold: characteristic values with their limits, design values by
 /// partial factors, classes of net fences, and what each would catch.
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -81,6 +83,14 @@ struct DesignPassing
   double speed = 0.0;     ///< m/s
   double top = 0.0;       ///< Height of its highest point, m; NaN if it is not known.
   double frequency = 0.0; ///< 1/a; NaN if it is not known.
+
+  /// A rock that broke counts once, with the largest values of its pieces.
+  void takeLarger(double ofEnergy, double ofSpeed, double ofTop)
+  {
+    energy = std::max(energy, ofEnergy);
+    speed = std::max(speed, ofSpeed);
+    top = std::fmax(top, ofTop);
+  }
 };
 
 /// A characteristic value and its limits.

@@ -137,22 +137,19 @@ std::vector<DesignLine> designLines(
     const Crossing& c = merged.crossings[k];
     if (c.number == 0)
     {
+      const auto id = vtkIdType(k);
       const Crossing* before = std::exchange(last[std::size_t(c.line)], &c);
       if (before && c.piece > 0 &&
         std::tie(before->iteration, before->rock, before->blockId) ==
           std::tie(c.iteration, c.rock, c.blockId))
       {
-        // A rock that broke counts once, with the largest values of its pieces.
-        DesignPassing& rock = lines[std::size_t(c.line)].passings.back();
-        rock.energy = std::max(rock.energy, c.kineticEnergy);
-        rock.speed = std::max(rock.speed, c.velocity.norm());
-        rock.top = std::fmax(rock.top, top->GetTuple1(vtkIdType(k)));
+        lines[std::size_t(c.line)].passings.back().takeLarger(
+          c.kineticEnergy, c.velocity.norm(), top->GetTuple1(id));
         continue;
       }
       Passage of;
       of.rock = c.rock;
       of.blockId = c.blockId;
-      const auto id = vtkIdType(k);
       lines[std::size_t(c.line)].passings.push_back(
         { source ? std::int64_t(source->GetTuple1(id)) : -1, c.kineticEnergy, c.velocity.norm(),
           top->GetTuple1(id), rocks ? rocks->weight(of) : share });

@@ -301,7 +301,7 @@ void KeptRun::prepare(vtkPolyData* terrainInput, vtkPolyData* rocksInput, const 
 
 void KeptRun::takeResults(RunSink& sink)
 {
-  sink.finish(trajectories, impacts, summary, structures);
+  sink.finish(*this);
   whole = std::move(sink.whole());
   const auto rocksOfIt = std::count_if(
     whole.begin(), whole.end(), [](const Trajectory& t) { return t.summary.piece == 0; });

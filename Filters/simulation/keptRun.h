@@ -1,16 +1,13 @@
 #pragma once
 
 /// @file
-/// A run that a filter keeps, what it was made of, and its outputs that do not depend on time.
+/// A run that a filter keeps: what it was made of, and its outputs.
 
 #include "run/ensemble.h"
 #include "shared/ranks.h"
 #include "simulation/runSink.h"
 
 #include "vtkFieldData.h"
-#include "vtkNew.h"
-#include "vtkPolyData.h"
-#include "vtkTable.h"
 #include "vtkType.h"
 
 #include <memory>
@@ -34,7 +31,7 @@ struct Stamp
   bool operator==(const Stamp&) const = default;
 };
 
-struct KeptRun
+struct KeptRun : RunData
 {
   SimulationParameters parameters;
   std::string contactFile;      ///< Of pairs of materials; empty: none.
@@ -52,8 +49,6 @@ struct KeptRun
   vtkNew<vtkFieldData> ground;        ///< The slope as it came.
   std::unique_ptr<Ensemble> ensemble; ///< Of `slope` and the rocks of `frame`.
 
-  vtkNew<vtkPolyData> trajectories, impacts, structures;
-  vtkNew<vtkTable> summary;
   std::vector<Trajectory> whole; ///< Trajectories of `wholeIteration`, with all samples.
   int wholeIteration = -1;
   std::string stateHash; ///< Over the bits of all motion.

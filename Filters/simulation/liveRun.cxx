@@ -4,10 +4,6 @@
 #include "shared/rockPaths.h"
 #include "shared/withAbort.h"
 
-#include "vtkNew.h"
-#include "vtkPolyData.h"
-#include "vtkTable.h"
-
 #include <utility>
 
 namespace rockfall::filters
@@ -20,13 +16,6 @@ namespace
 constexpr std::int64_t kMostPoints = 1'000'000;
 
 } // namespace
-
-/// What a window has of a run that goes on.
-struct LiveRun::Copy
-{
-  vtkNew<vtkPolyData> trajectories, impacts, structures;
-  vtkNew<vtkTable> summary;
-};
 
 /// A single thread at a time writes or reads.
 class LiveRun::Sink : public TrajectorySink
@@ -47,8 +36,7 @@ public:
     this->results.consume(std::move(trajectory));
     if (few && !this->isLookedAt())
     {
-      this->results.copy(
-        this->last.trajectories, this->last.impacts, this->last.summary, this->last.structures);
+      this->results.copy(this->last);
     }
   }
   bool isLookedAt() const { return this->points <= kMostPoints; }
@@ -57,7 +45,7 @@ public:
   RunSink results;
   std::int64_t points = 0, made = 0;
   std::int64_t shown = 0; ///< Trajectories of the next look.
-  Copy last;              ///< What is looked at when there are very many.
+  RunData last;           ///< What is looked at when there are very many.
 };
 
 LiveRun::LiveRun(std::unique_ptr<KeptRun> run)
@@ -124,7 +112,7 @@ void LiveRun::look()
   const std::lock_guard<std::mutex> lock(sink_->mutex);
   if (sink_->isLookedAt())
   {
-    sink_->results.copy(run_->trajectories, run_->impacts, run_->summary, run_->structures);
+    sink_->results.copy(*run_);
   }
   else
   {

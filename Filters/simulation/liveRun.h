@@ -48,7 +48,6 @@ public:
   std::unique_ptr<KeptRun> take();
 
 private:
-  struct Copy;
   class Sink;
 
   std::unique_ptr<KeptRun> run_;

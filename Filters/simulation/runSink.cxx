@@ -4,8 +4,6 @@
 #include "shared/rockPaths.h"
 #include "simulation/motion.h"
 
-#include "vtkPolyData.h"
-
 namespace rockfall::filters
 {
 
@@ -55,27 +53,22 @@ void RunSink::consume(Trajectory&& trajectory)
   lines_.append(trajectory);
 }
 
-void RunSink::copy(
-  vtkPolyData* trajectories, vtkPolyData* impacts, vtkTable* summary, vtkPolyData* structures) const
+void RunSink::copy(RunData& output) const
 {
-  structures_.copy(structures);
-  lines_.copy(trajectories);
-  writeRetention(kept_.retention, trajectories->GetFieldData());
-  impacts_.copy(impacts);
-  rows_.copy(summary);
+  structures_.copy(output.structures);
+  lines_.copy(output.trajectories);
+  writeRetention(kept_.retention, output.trajectories->GetFieldData());
+  impacts_.copy(output.impacts);
+  rows_.copy(output.summary);
 }
 
-void RunSink::finish(
-  vtkPolyData* trajectories, vtkPolyData* impacts, vtkTable* summary, vtkPolyData* structures)
+void RunSink::finish(RunData& output)
 {
-  if (structures)
-  {
-    structures_.finish(structures);
-  }
-  lines_.finish(trajectories);
-  writeRetention(kept_.retention, trajectories->GetFieldData());
-  impacts_.finish(impacts);
-  rows_.finish(summary);
+  structures_.finish(output.structures);
+  lines_.finish(output.trajectories);
+  writeRetention(kept_.retention, output.trajectories->GetFieldData());
+  impacts_.finish(output.impacts);
+  rows_.finish(output.summary);
 }
 
 void PackingSink::consume(Trajectory&& trajectory)

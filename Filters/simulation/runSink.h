@@ -9,11 +9,22 @@
 #include "run/stateHash.h"
 #include "simulation/runOutputs.h"
 
+#include "vtkNew.h"
+#include "vtkPolyData.h"
+#include "vtkTable.h"
+
 #include <span>
 #include <vector>
 
 namespace rockfall::filters
 {
+
+/// Outputs of a run that do not depend on time.
+struct RunData
+{
+  vtkNew<vtkPolyData> trajectories, impacts, structures;
+  vtkNew<vtkTable> summary;
+};
 
 /// Parts of each trajectory that are kept.
 struct KeptParts
@@ -43,11 +54,9 @@ public:
   void consume(Trajectory&& trajectory) override;
 
   /// Trajectories that were consumed so far.
-  void copy(vtkPolyData* trajectories, vtkPolyData* impacts, vtkTable* summary,
-    vtkPolyData* structures) const;
+  void copy(RunData& output) const;
   /// Nothing is consumed after it.
-  void finish(vtkPolyData* trajectories, vtkPolyData* impacts, vtkTable* summary,
-    vtkPolyData* structures = nullptr);
+  void finish(RunData& output);
 
   std::string stateHash() const { return hash_.text(); }
   /// Trajectories of `wholeIteration`, with all samples.

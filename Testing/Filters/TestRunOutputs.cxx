@@ -192,13 +192,12 @@ TEST(RunOutputs, TheIterationThatIsShownIsKeptWhole)
     sink.trim(trajectory);
     sink.consume(std::move(trajectory));
   }
-  vtkNew<vtkPolyData> lines, impacts;
-  vtkNew<vtkTable> summary;
-  sink.finish(lines, impacts, summary);
-  EXPECT_EQ(lines->GetNumberOfVerts(), 3);
-  EXPECT_EQ(lines->GetNumberOfLines(), 0);
-  EXPECT_EQ(impacts->GetNumberOfCells(), 12);
-  EXPECT_EQ(summary->GetNumberOfRows(), 3);
+  filters::RunData data;
+  sink.finish(data);
+  EXPECT_EQ(data.trajectories->GetNumberOfVerts(), 3);
+  EXPECT_EQ(data.trajectories->GetNumberOfLines(), 0);
+  EXPECT_EQ(data.impacts->GetNumberOfCells(), 12);
+  EXPECT_EQ(data.summary->GetNumberOfRows(), 3);
   ASSERT_EQ(sink.whole().size(), 1u);
   EXPECT_EQ(sink.whole()[0].samples.size(), 2u);
   EXPECT_EQ(sink.whole()[0].summary.iteration, 1);

@@ -3,6 +3,7 @@
 #include "base/errors.h"
 #include "base/text/columnName.h"
 #include "base/text/nameKey.h"
+#include "geometry/twins.h"
 #include "gis/base/crs.h"
 #include "gis/base/fields.h"
 #include "gis/layers/FeatureRow.h"

@@ -133,12 +133,10 @@ Destination destination(const SourceGrid& grid, const CrsPtr& crs, const std::st
   {
     return {};
   }
-  Destination there;
   const auto toUtm = [&](const std::string& reason)
   {
     const auto place = centreOnEarth(grid, crs, fileName);
-    there = { crsFromEpsg(utmCode(place[0], place[1])), reason, awayFrom(*crs, place) };
-    return there;
+    return Destination{ crsFromEpsg(utmCode(place[0], place[1])), reason, awayFrom(*crs, place) };
   };
   if (crs->IsGeographic())
   {
@@ -161,9 +159,10 @@ Destination destination(const SourceGrid& grid, const CrsPtr& crs, const std::st
   {
     return toUtm("its coordinates count to the " + axes);
   }
+  Destination there;
   try
   {
-    toUtm({});
+    there = toUtm({});
     const auto steps = centreSteps(grid, CrsChange(crs, there.target));
     const double along = grid.columnStep() / steps[0], across = grid.rowStep() / steps[1];
     const double worst = std::abs(along - 1.0) > std::abs(across - 1.0) ? along : across;

@@ -149,45 +149,18 @@ void RasterFile::requireCoverage()
   }
 }
 
-void RasterFile::noteZeros(const std::vector<double>& heights, double step)
+void RasterFile::noteOddNodes(const std::vector<double>& heights, double step)
 {
-  std::int64_t suspect = 0, all = 0;
-  const auto high = [&](std::size_t i) { return std::abs(heights[i]) > step; };
-  for (int row = 0; row < rows_; ++row)
-  {
-    stayWanted();
-    for (int column = 0; column < columns_; ++column)
-    {
-      const std::size_t i = std::size_t(row) * columns_ + column;
-      if (heights[i] != 0.0)
-      {
-        continue;
-      }
-      ++all;
-      suspect += (column > 0 && high(i - 1)) || (column + 1 < columns_ && high(i + 1)) ||
-        (row > 0 && high(i - columns_)) || (row + 1 < rows_ && high(i + columns_));
-    }
-  }
-  if (suspect > 0)
-  {
-    notes_.push_back(std::to_string(all) + " nodes of band " + std::to_string(bandNumber_) +
-      " are exactly 0 m, " + std::to_string(suspect) + " of them beside ground more than " +
-      number(step) + " m off. If 0 stands for no data, gdal_edit.py -a_nodata 0 says so");
-  }
-}
-
-void RasterFile::noteSpikes(const std::vector<double>& heights, double step)
-{
-  std::int64_t count = 0;
-  std::string first;
+  std::int64_t zeros = 0, suspect = 0, spikes = 0;
+  std::string first; // spike
   for (int row = 0; row < rows_; ++row)
   {
     stayWanted();
     for (int column = 0; column < columns_; ++column)
     {
       const double height = heights[std::size_t(row) * columns_ + column];
-      // The least way up, and down, to what is around.
-      double over = HUGE_VAL, under = HUGE_VAL;
+      // The least way up, and down, to what is around; the most to the four nearest.
+      double over = HUGE_VAL, under = HUGE_VAL, beside = 0.0;
       int around = 0;
       for (int r = std::max(0, row - 1); r <= std::min(rows_ - 1, row + 1); ++r)
       {
@@ -199,14 +172,17 @@ void RasterFile::noteSpikes(const std::vector<double>& heights, double step)
             over = std::min(over, height - other);
             under = std::min(under, other - height);
             ++around;
+            beside = r == row || c == column ? std::max(beside, std::abs(other)) : beside;
           }
         }
-        if (over < step && under < step)
+        if (height != 0.0 && over < step && under < step)
         {
           break;
         }
       }
-      if (around >= 3 && std::max(over, under) >= step && ++count == 1)
+      zeros += height == 0.0;
+      suspect += height == 0.0 && beside > step;
+      if (around >= 3 && std::max(over, under) >= step && ++spikes == 1)
       {
         first = number(std::round(std::max(over, under))) + " m " +
           (over > 0.0 ? "above" : "below") + " in row " + std::to_string(row + 1) + ", column " +
@@ -214,10 +190,19 @@ void RasterFile::noteSpikes(const std::vector<double>& heights, double step)
       }
     }
   }
-  if (count > 0)
+  const std::size_t told = notes_.size();
+  const std::string nodes = "nodes of band " + std::to_string(bandNumber_);
+  if (suspect > 0)
   {
-    notes_.push_back(std::to_string(count) + " nodes of band " + std::to_string(bandNumber_) +
-      " stand alone, more than " + number(step) + " m above or below all around, first " + first +
+    notes_.push_back(std::to_string(zeros) + " " + nodes + " are exactly 0 m, " +
+      std::to_string(suspect) + " of them beside ground more than " + number(step) +
+      " m off. If 0 stands for no data, gdal_edit.py -a_nodata 0 says so");
+  }
+  noteMarks(heights, heights_, nodes, "gdal_edit.py -a_nodata ", notes_);
+  if (spikes > 0 && notes_.size() == told) // else they are these
+  {
+    notes_.push_back(std::to_string(spikes) + " " + nodes + " stand alone, more than " +
+      number(step) + " m above or below all around, first " + first +
       ": faults of the survey, on which rocks bounce or are caught?");
   }
 }
@@ -309,14 +294,7 @@ SourceGrid RasterFile::read()
     ? suspectStep
     : std::hypot(place_.affine[1], place_.affine[4]);
   const double suspicious = std::clamp(suspectSlope * cell, suspectWall, suspectStep);
-  const std::size_t told = notes_.size();
-  this->noteZeros(grid.heights, suspicious);
-  noteMarks(grid.heights, heights_, "nodes of band " + std::to_string(bandNumber_),
-    "gdal_edit.py -a_nodata ", notes_);
-  if (notes_.size() == told) // else they are these
-  {
-    this->noteSpikes(grid.heights, suspicious);
-  }
+  this->noteOddNodes(grid.heights, suspicious);
   this->noteTerraces(grid.heights);
 
   if (place_.affine[2] == 0.0 && place_.affine[4] == 0.0 && place_.affine[5] > 0.0)

@@ -42,10 +42,9 @@ private:
   void noteBands();
   /// Throws where parts of the file hold nothing and would be read as 0.
   void requireCoverage();
-  /// Says what looks like a nodata value of 0 that nobody declared.
-  void noteZeros(const std::vector<double>& heights, double step);
-  /// Says which nodes are by more than `step` (m) above or below all around them.
-  void noteSpikes(const std::vector<double>& heights, double step);
+  /// Says what looks like a nodata value that nobody declared: nodes of 0 beside ground more than
+  /// `step` (m) off, and marks; if none does, which nodes are by `step` above or below all around.
+  void noteOddNodes(const std::vector<double>& heights, double step);
   /// Says that heights were rounded to whole numbers, where that makes terraces.
   void noteTerraces(const std::vector<double>& heights);
   void readRows(int first, int count, double* values);

@@ -17,9 +17,6 @@ constexpr double kHighest = 20000.0; // m
 /// Deeper than any land, as −9999 is.
 constexpr double kDeepest = -1000.0; // m
 
-/// No coordinate of a map is so large, not even in Gauss-Krüger zones before which a number stands.
-constexpr double kFarthest = 1e9; // m
-
 /// Metres per unit of height by the unit's name, which may have a number before it ("0.1 m") and
 /// what it is over behind it ("m a.s.l."); nothing for a name that is not known.
 std::optional<double> metresPer(const std::string& unit);

@@ -51,11 +51,6 @@ std::string placeText(const Affine& affine)
     "), cells of " + number(std::hypot(affine[1], affine[4]));
 }
 
-std::string shortName(const std::string& path)
-{
-  return path.substr(path.find_last_of('/') + 1);
-}
-
 /// A statement of where a raster is.
 struct Statement
 {
@@ -90,11 +85,11 @@ std::optional<Statement> worldFileOf(const std::string& path)
     Affine affine{};
     char* name = nullptr;
     const bool found = GDALReadWorldFile2(path.c_str(), extension, affine.data(), nullptr, &name);
-    const std::string written = name ? name : "";
+    const std::string written = name ? CPLGetFilename(name) : "";
     CPLFree(name);
     if (found)
     {
-      return Statement{ shortName(written), affine, nullptr };
+      return Statement{ written, affine, nullptr };
     }
   }
   return std::nullopt;
@@ -115,7 +110,7 @@ std::optional<Statement> projectionOf(const std::string& path)
   {
     return std::nullopt;
   }
-  return Statement{ shortName(name), std::nullopt, horizontalCrs(&crs) };
+  return Statement{ CPLGetFilename(name.c_str()), std::nullopt, horizontalCrs(&crs) };
 }
 
 /// Whether the numbers of a place mean the same to both, within so much.
@@ -161,7 +156,7 @@ void noteOtherPlaces(GDALDataset& dataset, const std::array<double, 6>& affine, 
   // The source of the place that is taken: one of these, or the .aux.xml beside the file.
   const auto from = std::find_if(
     others.begin(), others.end(), [&](const Statement& s) { return s.affine && isTaken(s); });
-  const std::string aux = shortName(path) + ".aux.xml";
+  const std::string aux = std::string(CPLGetFilename(path.c_str())) + ".aux.xml";
   const std::string taken = from != others.end() ? from->by : aux;
   VSIStatBufL status;
   const bool hasAux = VSIStatL((path + ".aux.xml").c_str(), &status) == 0;
