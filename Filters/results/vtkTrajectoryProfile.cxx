@@ -105,6 +105,10 @@ int vtkTrajectoryProfile::RequestData(
     [&](vtkPolyData* input)
     {
       const vtkIdType lines = input->GetNumberOfLines();
+      if (this->Trajectory >= lines && rockfall::filters::isRunning(input->GetFieldData()))
+      {
+        return 1; // it is still to come
+      }
       if (this->Trajectory < 0 || (lines > 0 && this->Trajectory >= lines))
       {
         throw rockfall::ParameterError("Trajectory is " + std::to_string(this->Trajectory) +

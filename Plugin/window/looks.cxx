@@ -253,6 +253,11 @@ Shown shownBy(vtkSMProxy* representation)
   return { vtkSMSourceProxy::SafeDownCast(input.GetAsProxy()), int(input.GetOutputPort()) };
 }
 
+Shown wholePaths(const Shown& shown)
+{
+  return is(shown, "vtkGrowingPaths", 0) ? shownBy(shown.source) : shown;
+}
+
 void style(vtkSMProxy* representation)
 {
   const Shown shown = shownBy(representation);
@@ -322,20 +327,12 @@ namespace
 /// ones. The source knows it before a representation does.
 void addRange(vtkSMProxy* representation, const std::string& array, double range[2])
 {
-  const Shown shown = shownBy(representation);
-  vtkSMSourceProxy* source = shown.source;
-  int port = shown.port;
-  if (is(shown, "vtkGrowingPaths", 0))
-  {
-    vtkSMPropertyHelper input(source, "Input");
-    source = vtkSMSourceProxy::SafeDownCast(input.GetAsProxy());
-    port = int(input.GetOutputPort());
-  }
-  if (!source)
+  const Shown shown = wholePaths(shownBy(representation));
+  if (!shown.source)
   {
     return;
   }
-  vtkPVDataInformation* data = source->GetDataInformation(unsigned(port));
+  vtkPVDataInformation* data = shown.source->GetDataInformation(unsigned(shown.port));
   for (vtkPVDataSetAttributesInformation* arrays :
     { data->GetPointDataInformation(), data->GetCellDataInformation() })
   {

@@ -23,6 +23,9 @@ struct Shown
 };
 Shown shownBy(vtkSMProxy* representation);
 
+/// The whole paths of growing ones; all else as it is.
+Shown wholePaths(const Shown& shown);
+
 /// Colours, widths and palettes of a representation that was just made. Nothing for what is not
 /// ours.
 void style(vtkSMProxy* representation);

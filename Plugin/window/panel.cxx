@@ -19,6 +19,7 @@
 #include <QMainWindow>
 #include <QString>
 
+#include <algorithm>
 #include <string>
 
 namespace rockfall::window
@@ -97,15 +98,15 @@ void showCentimetres(vtkSMSessionProxyManager* session)
 
 void widenPanels(QMainWindow* window)
 {
-  constexpr int wide = 400; // px
-  constexpr const char* done = "RockfallPanelsWidened";
+  constexpr const char* done = "RockfallPanelsWidth";
+  const int wide = std::min(400, window->width() / 3); // px
   pqSettings* settings = pqApplicationCore::instance()->settings();
   auto* panel = window->findChild<QDockWidget*>("propertiesDock");
-  if (settings->contains(done) || !panel || window->width() < 3 * wide)
+  if (!panel || settings->value(done, 0).toInt() >= wide)
   {
     return;
   }
-  settings->setValue(done, true);
+  settings->setValue(done, wide);
   if (panel->width() < wide)
   {
     window->resizeDocks({ panel }, { wide }, Qt::Horizontal);

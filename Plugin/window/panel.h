@@ -24,7 +24,8 @@ void narrowChoices(QMainWindow* window);
 /// ParaView's six are some 10 m there.
 void showCentimetres(vtkSMSessionProxyManager* session);
 
-/// Once for each user: panels as wide as coordinates of seven digits need.
+/// Panels as wide as what stands in them: 400 px, in a window of less than 1200 px a third of it. Once for
+/// each user, and again in a wider window.
 void widenPanels(QMainWindow* window);
 
 } // namespace rockfall::window

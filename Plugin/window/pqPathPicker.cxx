@@ -1,6 +1,7 @@
 #include "pqPathPicker.h"
 
 #include "looks.h"
+#include "proxyNumbers.h"
 
 #include "pqApplicationCore.h"
 #include "pqDataRepresentation.h"
@@ -22,16 +23,56 @@
 namespace
 {
 
-constexpr int kReach = 4; ///< px about the click: paths are 3 px wide.
+using rockfall::window::Shown;
 
-bool showsPaths(vtkSMProxy* representation)
+constexpr int kReach = 4;                           ///< px about the click: paths are 3 px wide.
+constexpr double kFaded = 0.25;                     ///< Opacity of paths one of which is picked.
+constexpr const char* kOpacity = "RockfallOpacity"; ///< Annotation: that before.
+
+/// The whole paths that a representation shows; without source where it shows none.
+Shown pathsOf(vtkSMProxy* representation)
 {
-  const rockfall::window::Shown shown = rockfall::window::shownBy(representation);
-  return rockfall::window::isOf(shown.source, { "vtkGrowingPaths" }) ||
-    (rockfall::window::isOf(shown.source, { "vtkRockfallSimulation" }) && shown.port == 1);
+  const Shown shown = rockfall::window::wholePaths(rockfall::window::shownBy(representation));
+  const bool paths =
+    rockfall::window::isOf(shown.source, { "vtkRockfallSimulation" }) && shown.port == 1;
+  return paths ? shown : Shown();
 }
 
 } // namespace
+
+//-----------------------------------------------------------------------------
+void pqPathPicker::fade(vtkSMProxy* profile, bool faded)
+{
+  const Shown of = rockfall::window::shownBy(profile); // its input
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  for (pqDataRepresentation* item : model->findItems<pqDataRepresentation*>())
+  {
+    vtkSMProxy* shown = item->getProxy();
+    const Shown paths = pathsOf(shown);
+    if (!paths.source || paths.source != of.source || paths.port != of.port ||
+      !shown->GetProperty("Opacity") || shown->HasAnnotation(kOpacity) == faded)
+    {
+      continue;
+    }
+    const double now = vtkSMPropertyHelper(shown, "Opacity").GetAsDouble();
+    if (faded)
+    {
+      shown->SetAnnotation(kOpacity, QByteArray::number(now).constData());
+      rockfall::window::set(shown, "Opacity", kFaded);
+    }
+    else
+    {
+      if (now == kFaded) // not what somebody has set since
+      {
+        rockfall::window::set(
+          shown, "Opacity", QByteArray(shown->GetAnnotation(kOpacity)).toDouble());
+      }
+      shown->RemoveAnnotation(kOpacity);
+    }
+    shown->UpdateVTKObjects();
+    item->renderViewEventually();
+  }
+}
 
 //-----------------------------------------------------------------------------
 void pqPathPicker::begin(pqRenderView* view)
@@ -97,7 +138,7 @@ void pqPathPicker::pick(const QPoint& place)
     auto* representation = vtkSMProxy::SafeDownCast(representations->GetItemAsObject(k));
     auto* selection = vtkSMSourceProxy::SafeDownCast(selections->GetItemAsObject(k));
     auto* shown = model->findItem<pqDataRepresentation*>(representation);
-    if (!selection || !shown || !showsPaths(representation))
+    if (!selection || !shown || !pathsOf(representation).source)
     {
       continue;
     }

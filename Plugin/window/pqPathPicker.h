@@ -8,6 +8,7 @@ class QPoint;
 class QWidget;
 class pqOutputPort;
 class pqRenderView;
+class vtkSMProxy;
 
 /**
  * Finds the trajectory that the next click into a view hits, some pixels about.
@@ -22,6 +23,9 @@ public:
 
   /// Takes the view's next click with the left button; any other one ends the waiting.
   void begin(pqRenderView* view);
+
+  /// Paths are pale while this profile shows one of them: as many as they are they would hide it.
+  static void fade(vtkSMProxy* profile, bool faded);
 
 Q_SIGNALS:
   /// `cell`: number of the line in what the port gives.

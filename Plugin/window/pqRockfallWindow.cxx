@@ -49,6 +49,7 @@
 #include <QMenu>
 #include <QMenuBar>
 #include <QPointer>
+#include <QScreen>
 #include <QStatusBar>
 #include <QUrl>
 
@@ -67,9 +68,10 @@ constexpr int kLookAtPanel = 500;  // ms
 constexpr int kLookForWindow = 20; // ms
 constexpr int kReadNotes = 30000;  // ms
 
-/// Frames a second of films, unless the user has saved others: real time at the default output interval,
-/// where ParaView has 1.
-constexpr const char* kFilms = R"({"misc": {"SaveAnimation": {"FrameRate": 20}}})";
+/// Films, unless the user has saved others, are in real time at the default output interval: 20 frames a
+/// second, where ParaView has 1, and each of them, where ParaView 6.1 takes the scene's stride.
+constexpr const char* kFilms =
+  R"({"misc": {"SaveAnimation": {"FrameRate": 20, "FrameStride": 1}}})";
 constexpr double kBelowUser = 0.5; // priority of settings
 
 /// The folder of the scripts, beside that of this plugin: ParaView would take them for plugins
@@ -155,6 +157,15 @@ void pqRockfallWindow::begin()
     qOverload<pqProxy*>(&pqObjectBuilder::proxyCreated), this, &pqRockfallWindow::onMade);
   this->connect(
     model, &pqServerManagerModel::representationAdded, this, &pqRockfallWindow::onRepresentation);
+  this->connect(model, &pqServerManagerModel::preSourceRemoved, this,
+    [](pqPipelineSource* source)
+    {
+      if (isOf(source->getProxy(), { "vtkTrajectoryProfile" }))
+      {
+        const NotUndone own;
+        pqPathPicker::fade(source->getProxy(), false);
+      }
+    });
   this->Bar = new pqRunBar(window);
   this->connect(this->Bar, &pqRunBar::stopped, this, &pqRockfallWindow::stopRuns);
   this->connect(&this->Looks, &QTimer::timeout, this, &pqRockfallWindow::tellRuns);
@@ -164,7 +175,7 @@ void pqRockfallWindow::begin()
       rockfall::window::showUnits(window);
       rockfall::window::narrowChoices(window);
     });
-  // Once, as soon as the window is wide enough for it.
+  // Once for each window that is wider than all before.
   this->connect(
     &this->Clock, &QTimer::timeout, [window] { rockfall::window::widenPanels(window); });
   this->connect(&this->Clock, &QTimer::timeout, &fitMarkers);
@@ -307,7 +318,7 @@ void pqRockfallWindow::makeMenu(QMainWindow* window)
   const QString folder = qEnvironmentVariable("ROCKFALL_PICTURES");
   if (!folder.isEmpty())
   {
-    window->resize(1400, 900);
+    window->resize(QSize(1400, 900).boundedTo(window->screen()->size()));
     menu
       ->addAction("Picture", this,
         [this, window, folder]
@@ -476,6 +487,15 @@ void pqRockfallWindow::onPicked(pqOutputPort* port, int cell)
                     .arg(quoted(port->getSource()->getSMName()))
                     .arg(port->getPortNumber())
                     .arg(cell));
+  const NotUndone own;
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  for (pqPipelineSource* source : model->findItems<pqPipelineSource*>())
+  {
+    if (isOf(source->getProxy(), { "vtkTrajectoryProfile" }))
+    {
+      pqPathPicker::fade(source->getProxy(), true);
+    }
+  }
 }
 
 //-----------------------------------------------------------------------------

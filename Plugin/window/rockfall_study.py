@@ -133,20 +133,8 @@ def profile(source_name, port, trajectory):
         for chart in simple.GetViews(viewtype="XYChartView"):
             if any(shown.Input.SMProxy == made.SMProxy for shown in chart.Representations):
                 chart.ChartTitle = title
-    _dim_others(made)
     simple.RenderAllViews()
     return made
-
-
-def _dim_others(made):
-    """The paths among which one was picked: as many lines as they are they would hide it."""
-    for view in simple.GetViews(viewtype="RenderView"):
-        for shown in view.Representations:
-            source = getattr(shown, "Input", None)
-            if source and source.GetXMLName() == "GrowingPaths":
-                source = source.Input
-            if source and source.SMProxy == made.Input.SMProxy and source.Port == made.Input.Port:
-                shown.Opacity = 0.25
 
 
 def clock(view=None, name="Clock"):

@@ -1,4 +1,5 @@
 #include "helpers.h"
+#include "shared/rockPaths.h"
 #include "trajectories.h"
 
 #include "vtkTable.h"
@@ -49,6 +50,14 @@ TEST_F(TestTrajectoryProfile, ColumnsAreThoseOfTheTrajectory)
   EXPECT_EQ(path->GetNumberOfLines(), 1);
   EXPECT_EQ(path->GetBounds()[0], 300.0);
   EXPECT_EQ(path->GetBounds()[1], 310.0);
+}
+
+TEST_F(TestTrajectoryProfile, ATrajectoryThatARunHasNotMadeYetIsEmpty)
+{
+  rockfall::filters::markRunning(this->Paths.Data->GetFieldData());
+  this->Filter->SetTrajectory(2);
+  this->Filter->Update();
+  EXPECT_EQ(this->Filter->GetOutput()->GetNumberOfRows(), 0);
 }
 
 TEST_F(TestTrajectoryProfile, ATrajectoryThatIsNotThereIsAnError)

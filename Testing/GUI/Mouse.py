@@ -11,6 +11,13 @@ def picked():
     assert simple.GetDisplayProperties(simple.FindSource("Paths"), view).Opacity < 0.5, "paths hide the picked one"
 
 
+def unpicked():
+    """Paths are as they were before one was picked, when its profile is gone."""
+    view = simple.GetRenderView()
+    simple.Delete(simple.FindSource("Profile"))
+    assert simple.GetDisplayProperties(simple.FindSource("Paths"), view).Opacity == 1.0, "paths stay pale"
+
+
 def drawn_up():
     """The arrow to the north is not cut off, and the bar has the colour of texts, also when another palette is taken."""
     view = simple.GetRenderView()
@@ -25,4 +32,4 @@ def drawn_up():
     assert list(bar.AxisColor) == [0.0, 0.0, 0.0], list(bar.AxisColor)
 
 
-[picked, drawn_up][number - 1]()
+[picked, drawn_up, unpicked][number - 1]()
