@@ -23,7 +23,7 @@ struct NamedShape
   const char* name;
 };
 
-/// Its mesh shows no longer one, and it rolls and stands as no rock does.
+/// Longest axis to shortest: a longer mesh shows no ellipsoid, and rolls and stands as no rock does.
 constexpr double kLongestEllipsoid = 5.0;
 
 constexpr std::array<NamedShape, kShapes> names = { {

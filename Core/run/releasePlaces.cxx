@@ -94,7 +94,7 @@ public:
 
   double rocks() const { return rocks_; }
   bool byIntensity() const { return byIntensity_; }
-  /// Whether it has one place only.
+  /// Whether the source has one place only.
   bool isPlace() const { return row_.geometry == SourceGeometry::Point && clusterRadius_ == 0.0; }
   Vec3 at(std::uint64_t seed, std::uint32_t attempt, std::uint64_t draw, bool overGround) const
   {

@@ -234,7 +234,7 @@ std::string featureText(std::int64_t feature)
   return "feature " + std::to_string(feature);
 }
 
-/// Those that another one of before stands at.
+/// Notes structures at the place of an earlier one.
 template <class Item>
 void tellTwice(const TwinWords& words, const std::vector<const Item*>& items,
   const std::vector<int>& earlier, std::vector<std::string>& notes)
@@ -266,7 +266,7 @@ std::string stretchText(const SharedStretch& stretch, const Point& origin)
   return " over " + numberText(stretch.length, 3) + " m, from " + place(from) + " to " + place(to);
 }
 
-/// Those that stand on a part of another one, or go back on their own line.
+/// Notes structures on a part of an earlier one, and those that go back on their own line.
 template <class Item>
 void tellStretches(const TwinWords& words, const std::vector<const Item*>& items,
   const std::vector<SharedStretch>& stretches, const Point& origin, std::vector<std::string>& notes)

@@ -20,7 +20,7 @@ void boundVelocities(
   const bool obstructed = obstacles &&
     obstacles->anyIn(
       p.x() - displacement, p.x() + displacement, p.y() - displacement, p.y() + displacement);
-  // Which open contacts are kept hangs on how the slope was searched.
+  // Closed contacts only: the open ones that are kept hang on how the slope was searched.
   const bool flies = !obstructed && !anyClosed(sim.body().contacts) &&
     sim.fall().ground.clearFor(sim.body(), duration);
   // Velocities that an impact on the slope leaves, with any normal.

@@ -1,4 +1,4 @@
-// Which of the rocks that are near each other may meet.
+// Links between rocks near each other that may meet.
 //
 // Two rocks may meet if their gap can close within the step. How fast it closes follows from what
 // their velocities can become: those of a rock that flies are known; what touches the slope may be

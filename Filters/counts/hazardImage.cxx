@@ -234,7 +234,7 @@ public:
     if (isLeftOut_)
     {
       ++leftOut_;
-      // What may come all the same is more than where nothing came.
+      // The limit of a cell where nothing came would be too low here.
       reachError_->SetValue(id, std::numeric_limits<float>::quiet_NaN());
       reachScatter_->SetValue(id, std::numeric_limits<float>::quiet_NaN());
       return;

@@ -30,7 +30,7 @@ namespace
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// What one trajectory of a rock weighs, by its number and block.
+/// Frequencies of the rocks, by number and block; nothing without the array.
 std::optional<RockFrequencies> frequenciesOf(const MergedCrossings& merged, vtkDataArray* frequency)
 {
   if (!frequency)

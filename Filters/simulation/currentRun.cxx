@@ -155,7 +155,7 @@ bool CurrentRun::hasNews()
     drawn_ = now; // the first time that the window is free again
   }
   const std::chrono::duration<double> cost = drawn_ - asked_, since = now - drawn_;
-  // One that is about to end is looked at then.
+  // A stopped run ends soon, and is looked at then.
   const bool news = !live_->stopped() &&
     since.count() > std::max(kLookInterval, kLookShare * cost.count()) && live_->shown() > looked_;
   return news || live_->over();

@@ -154,7 +154,7 @@ void refuseLinksOut(const std::string& folder, const std::string& whole)
   }
 }
 
-/// What a value that may name a file leads to, checked; `whole` is the file that the user named.
+/// Checks where values that may name a file lead; `whole` is the file that the user named.
 /// Any value, because GDAL's keys for files (sources, masks, overviews, places of nodes, options of
 /// drivers) are many and grow.
 class NamedFiles

@@ -12,8 +12,8 @@ namespace rockfall::gis
 namespace
 {
 
-/// What zlib may need beside what cannot be shortened: a share and bytes. In a buffer that is too
-/// short GDAL 3.6 loses memory.
+/// Room for data that zlib cannot shorten: a share of the length and bytes more. In a buffer that is
+/// too short GDAL 3.6 loses memory.
 constexpr std::size_t kShareMore = 64, kBytesMore = 64;
 constexpr int kLevel = 1; ///< Of zlib's nine: higher ones take twice the time to save 3 %.
 

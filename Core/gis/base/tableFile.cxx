@@ -67,7 +67,7 @@ TableFile inMemory(const std::string& fileName, const std::string& content)
   return made;
 }
 
-/// What a .gfs says of fields, geometries and CRSs.
+/// Fields, geometries and CRSs in a .gfs, one line each.
 std::set<std::string> statementsOf(const std::string& schema)
 {
   std::set<std::string> all;

@@ -30,7 +30,7 @@ double diameterOf(const FeatureRow& row, const char* field, const char* what)
   return diameter;
 }
 
-/// What a row says of a stem, wherever it is.
+/// Fills in a stem from its row, but for the place.
 void setStem(const FeatureRow& row, const StructureFiles& files, Tree& stem)
 {
   stem.diameter = diameterOf(row, "diameter", "that of the stem in cm");

@@ -94,7 +94,7 @@ public:
     }
     heights_.scale *= metres;
     heights_.offset *= metres;
-    // What -a_scale says where a unit cannot be written.
+    // Where a format has no unit, -a_scale of gdal_translate says it.
     const double scale = std::abs(heights_.scale);
     heights_.unit = metres == 1.0 && isFoot(scale) ? scale : std::abs(metres);
     heights_.reference = heightCrs(dataset_.GetSpatialRef());

@@ -27,7 +27,7 @@ void recoverLooseOverlaps(RockBody& body, double h, double gravity, double norma
     }
     const double held = c.springEnergy();
     c.offset = c.offset < 0.0 ? std::min(0.0, c.offset + way) : std::max(0.0, c.offset - way);
-    // What springs get by it comes from nowhere, and stays numerical.
+    // Energy that the springs gain by it comes from nowhere, and stays numerical.
     const double lost = std::max(0.0, held - c.springEnergy());
     body.energy.damping += lost;
     body.springEnergy -= lost;

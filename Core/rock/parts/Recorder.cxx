@@ -276,7 +276,7 @@ void Recorder::end(const RockBody& body, bool contact)
   }
   trajectory_.samples.back().kind = SampleKind::End;
   this->audit(body, state);
-  // One that ends later may have begun earlier.
+  // Impacts are recorded as they end; of two that overlap the later one may have begun first.
   std::vector<ImpactEvent>& impacts = trajectory_.impacts;
   std::stable_sort(impacts.begin(), impacts.end(),
     [](const ImpactEvent& a, const ImpactEvent& b) { return a.time < b.time; });

@@ -108,7 +108,7 @@ double SoilUnderRock::riseNow(
   }
   const double close = kScarClearance * body.block.radius();
   const double least = kHigherScar * scar_.depth() + close; // over Λ
-  // One corner that is too near says so at less cost.
+  // The first corner that is too near decides; the exact height costs more.
   const double enough = least - kSureClearance * body.block.radius() - scar_.depth();
   const Vec3 lower = body.placed.lower(), upper = body.placed.upper();
   if (!structures.solid() && ground.window().covers(lower.x(), upper.x(), lower.y(), upper.y()) &&
