@@ -3,13 +3,13 @@
 #include "base/abort.h"
 #include "base/errors.h"
 #include "base/parallel.h"
+#include "statistics/DiscSwath.h"
 #include "terrain/Terrain.h"
 
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <tuple>
 
@@ -90,25 +90,11 @@ double maximum(const Cubic& f, double from, double to)
   return most;
 }
 
-/// Takes in the values of another stay.
-void raise(Maxima& maxima, const Maxima& other)
-{
-  for (std::size_t k = 0; k < maxima.size(); ++k)
-  {
-    maxima[k] = std::max(maxima[k], other[k]);
-  }
-}
-
 Maxima maximaAt(const PathPoint& point)
 {
   return { float(point.kineticEnergy), float(point.velocity.norm()),
     float(std::isnan(point.heightOverGround) ? none : point.heightOverGround),
     float(point.rotationRate.norm()) };
-}
-
-void countEntry(Passage& passage)
-{
-  passage.entries = std::min<std::uint32_t>(passage.entries + 1, Passage::kMostEntries);
 }
 
 } // namespace
@@ -297,7 +283,7 @@ void HazardRaster::add(const RockPath& path)
 void HazardRaster::joinRock(std::size_t piece, std::int64_t birth)
 {
   const auto rock = passages_.begin() + std::ptrdiff_t(rockBegin_);
-  // Those of the rock before those of the piece.
+  // In a cell of both the rock's passage comes before the piece's.
   std::inplace_merge(rock, passages_.begin() + std::ptrdiff_t(piece), passages_.end(),
     [](const Passage& a, const Passage& b) { return a.cell < b.cell; });
   if (rock == passages_.end())
@@ -313,14 +299,29 @@ void HazardRaster::joinRock(std::size_t piece, std::int64_t birth)
       *last = *next;
       continue;
     }
-    // It has not come in where it came to be.
-    const unsigned entries = last->entries + next->entries - (next->cell == birth ? 1 : 0);
-    last->entries = std::min<unsigned>(entries, Passage::kMostEntries);
-    last->stopped |= next->stopped;
-    last->angle = std::min<std::uint32_t>(last->angle, next->angle);
-    raise(last->maxima, next->maxima);
+    // The piece came to be in its cell of birth, and has not entered it.
+    last->join(*next, next->entries - (next->cell == birth ? 1 : 0));
   }
   passages_.erase(last + 1, passages_.end());
+}
+
+template <class Use>
+bool HazardRaster::forPieces(const RockPath& path, Use&& use) const
+{
+  bool moved = false;
+  double before = this->groundUnder(path.points.front());
+  for (std::size_t k = 1; k < path.points.size(); ++k)
+  {
+    const PathPoint &a = path.points[k - 1], &b = path.points[k];
+    if (b.time > a.time)
+    {
+      const double after = this->groundUnder(b);
+      use(PathPiece(a, b, path.mass), std::array{ before, after });
+      before = after;
+      moved = true;
+    }
+  }
+  return moved;
 }
 
 void HazardRaster::addWhole(const RockPath& path)
@@ -332,23 +333,13 @@ void HazardRaster::addWhole(const RockPath& path)
   }
   visits_.clear();
   here_ = -1;
-  bool moved = false;
-  double before = path.points.empty() ? 0.0 : this->groundUnder(path.points.front());
-  for (std::size_t k = 1; k < path.points.size(); ++k)
-  {
-    const PathPoint &a = path.points[k - 1], &b = path.points[k];
-    if (b.time > a.time)
-    {
-      const double after = this->groundUnder(b);
-      this->addPiece(PathPiece(a, b, path.mass), { before, after });
-      before = after;
-      moved = true;
-    }
-  }
   if (path.points.empty())
   {
     return;
   }
+  const bool moved = this->forPieces(path,
+    [this](const PathPiece& piece, std::array<double, 2> grounds)
+    { this->addPiece(piece, grounds); });
   const PathPoint& last = path.points.back();
   const std::int64_t end = this->cellAt(last.position.x(), last.position.y());
   // Also one that came from beyond and rests on the map's border.
@@ -367,10 +358,7 @@ void HazardRaster::addWhole(const RockPath& path)
     Passage* known = passages_.empty() ? nullptr : &passages_.back();
     if (known && &visit != &visits_.front() && known->cell == visit.cell)
     {
-      countEntry(*known);
-      known->stopped |= visit.stopped;
-      known->angle = std::min<std::uint32_t>(known->angle, visit.angle);
-      raise(known->maxima, visit.maxima);
+      known->join(visit, 1);
       continue;
     }
     this->keep(path, visit);
@@ -411,158 +399,22 @@ double HazardRaster::groundUnder(const PathPoint& point) const
   return terrain_ ? terrain_->elevation(point.position.x(), point.position.y()) : 0.0;
 }
 
-class HazardRaster::Swath
-{
-public:
-  Swath(const HazardRaster& raster, double radius)
-    : raster_(raster)
-    , radius_(radius)
-  {
-  }
-
-  /// The disc goes straight from a to b, where the energy-line angle is `angle`.
-  void add(
-    const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Maxima& maxima, std::uint32_t angle)
-  {
-    ++step_;
-    const CellGrid& grid = raster_.grid_;
-    const auto range = [&](int axis, double start, int count)
-    {
-      const double low = std::min(a[axis], b[axis]) - radius_ - start;
-      const double high = std::max(a[axis], b[axis]) + radius_ - start;
-      return std::pair(std::max(0.0, std::floor(low / grid.cellSize)),
-        std::min(count - 1.0, std::floor(high / grid.cellSize)));
-    };
-    const auto [left, right] = range(0, grid.west, grid.columns);
-    const auto [bottom, top] = range(1, grid.south, grid.rows);
-    for (double row = bottom; row <= top; ++row)
-    {
-      for (double column = left; column <= right; ++column)
-      {
-        const Eigen::Vector2d low(
-          grid.west + column * grid.cellSize, grid.south + row * grid.cellSize);
-        if (this->touches(low, a, b))
-        {
-          this->visit(std::int64_t(row) * grid.columns + std::int64_t(column), maxima, angle);
-        }
-      }
-    }
-  }
-
-  void stop(std::int64_t cell)
-  {
-    const auto found = cells_.find(cell);
-    if (found != cells_.end())
-    {
-      found->second.passage.stopped = 1;
-    }
-  }
-
-  /// In the order of cells.
-  template <class Use>
-  void forEach(Use&& use) const
-  {
-    for (const auto& [cell, visited] : cells_)
-    {
-      use(visited.passage);
-    }
-  }
-
-private:
-  struct Visited
-  {
-    Passage passage;
-    std::int64_t step = 0;                       ///< The last one that touched it.
-    std::uint32_t before = Passage::kAngleSteps; ///< Smallest angle of the stays before this one.
-  };
-
-  /// Whether the cell with this corner comes as near as the radius to the way.
-  /// The radius is more than half a cell, so a way across the cell comes as
-  /// near to a corner of it.
-  bool touches(const Eigen::Vector2d& low, const Eigen::Vector2d& a, const Eigen::Vector2d& b) const
-  {
-    const double size = raster_.grid_.cellSize, most = radius_ * radius_;
-    const Eigen::Vector2d high = low + Eigen::Vector2d::Constant(size);
-    for (const Eigen::Vector2d& end : { a, b })
-    {
-      const Eigen::Vector2d inside = end.cwiseMax(low).cwiseMin(high);
-      if ((end - inside).squaredNorm() <= most)
-      {
-        return true;
-      }
-    }
-    const Eigen::Vector2d way = b - a;
-    const double length2 = way.squaredNorm();
-    for (const double x : { low.x(), high.x() })
-    {
-      for (const double y : { low.y(), high.y() })
-      {
-        const Eigen::Vector2d corner(x, y);
-        const double along =
-          length2 > 0.0 ? std::clamp((corner - a).dot(way) / length2, 0.0, 1.0) : 0.0;
-        if ((corner - a - along * way).squaredNorm() <= most)
-        {
-          return true;
-        }
-      }
-    }
-    return false;
-  }
-
-  void visit(std::int64_t cell, const Maxima& maxima, std::uint32_t angle)
-  {
-    const auto [at, isNew] = cells_.try_emplace(cell);
-    Visited& visited = at->second;
-    if (isNew)
-    {
-      visited.passage.cell = std::uint32_t(cell);
-      visited.passage.maxima = maxima;
-    }
-    else
-    {
-      if (visited.step + 1 < step_)
-      {
-        countEntry(visited.passage);
-        visited.before = visited.passage.angle;
-      }
-      raise(visited.passage.maxima, maxima);
-    }
-    visited.passage.angle = std::min(visited.before, angle);
-    visited.step = step_;
-  }
-
-  const HazardRaster& raster_;
-  double radius_;
-  std::int64_t step_ = 0;
-  std::map<std::int64_t, Visited> cells_;
-};
-
 void HazardRaster::addSwath(const RockPath& path)
 {
-  Swath swath(*this, 0.5 * path.width);
-  bool moved = false;
-  double before = this->groundUnder(path.points.front());
-  for (std::size_t k = 1; k < path.points.size(); ++k)
-  {
-    const PathPoint &a = path.points[k - 1], &b = path.points[k];
-    if (!(b.time > a.time))
+  DiscSwath swath(grid_, 0.5 * path.width);
+  const bool moved = this->forPieces(path,
+    [&](const PathPiece& piece, std::array<double, 2> grounds)
     {
-      continue;
-    }
-    const double after = this->groundUnder(b);
-    const PathPiece piece(a, b, path.mass);
-    const auto xs = piece.bounds(0), ys = piece.bounds(1);
-    const double longest = std::hypot(xs[1] - xs[0], ys[1] - ys[0]);
-    const int parts = std::max(1, int(std::ceil(2.0 * longest / grid_.cellSize)));
-    for (int part = 0; part < parts; ++part)
-    {
-      const double from = double(part) / parts, to = double(part + 1) / parts;
-      swath.add(piece.position(from).head<2>(), piece.position(to).head<2>(),
-        this->maximaOf(piece, from, to, { before, after }), this->angleAt(piece.position(to)));
-    }
-    before = after;
-    moved = true;
-  }
+      const auto xs = piece.bounds(0), ys = piece.bounds(1);
+      const double longest = std::hypot(xs[1] - xs[0], ys[1] - ys[0]);
+      const int parts = std::max(1, int(std::ceil(2.0 * longest / grid_.cellSize)));
+      for (int part = 0; part < parts; ++part)
+      {
+        const double from = double(part) / parts, to = double(part + 1) / parts;
+        swath.add(piece.position(from).head<2>(), piece.position(to).head<2>(),
+          this->maximaOf(piece, from, to, grounds), this->angleAt(piece.position(to)));
+      }
+    });
   const PathPoint& last = path.points.back();
   if (!moved)
   {
@@ -573,7 +425,10 @@ void HazardRaster::addSwath(const RockPath& path)
   {
     swath.stop(this->cellAt(last.position.x(), last.position.y()));
   }
-  swath.forEach([&](const Passage& visit) { this->keep(path, visit); });
+  for (const auto& [cell, visited] : swath.cells())
+  {
+    this->keep(path, visited.passage);
+  }
 }
 
 void HazardRaster::merge(const HazardRaster& other)

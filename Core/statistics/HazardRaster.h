@@ -59,9 +59,10 @@ private:
   /// Of the line from a place up to the release of the path being added, in Passage's steps; a right
   /// angle straight under it.
   std::uint32_t angleAt(const Vec3& place) const;
-  /// The cells under a disc that goes along the path.
-  class Swath;
   void addSwath(const RockPath& path);
+  /// Calls use(piece, {ground at its begin, at its end}); false if there is none that takes time.
+  template <class Use>
+  bool forPieces(const RockPath& path, Use&& use) const;
   void keep(const RockPath& path, const Passage& visit);
   void addWhole(const RockPath& path); ///< Its passages, in the order of cells.
   /// Takes the passages from `piece` on, of a piece that came to be in cell `birth`, into those of

@@ -26,6 +26,22 @@ std::string hazardName(Hazard hazard)
   return "RotationRate";
 }
 
+void raise(Maxima& maxima, const Maxima& other)
+{
+  for (std::size_t k = 0; k < maxima.size(); ++k)
+  {
+    maxima[k] = std::max(maxima[k], other[k]);
+  }
+}
+
+void Passage::join(const Passage& other, unsigned times)
+{
+  this->enter(times);
+  stopped |= other.stopped;
+  angle = std::min<std::uint32_t>(angle, other.angle);
+  raise(maxima, other.maxima);
+}
+
 bool operator<(const Passage& a, const Passage& b)
 {
   return std::tie(a.cell, a.iteration, a.rock, a.blockId) <

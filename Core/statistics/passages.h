@@ -5,6 +5,8 @@
 
 #include "statistics/sample.h"
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -64,6 +66,8 @@ struct CellSummary
 
 /// Largest values of the quantities; −∞ where there is none. As precise as maps give them.
 using Maxima = std::array<float, hazardCount>;
+/// Takes in the values of another stay.
+void raise(Maxima& maxima, const Maxima& other);
 
 /// A rock in one iteration in one cell.
 struct Passage
@@ -79,6 +83,10 @@ struct Passage
   std::int32_t rock = 0;
   std::int64_t blockId = 0; ///< Tells the rocks of two runs from each other.
   Maxima maxima{};          ///< On the way through the cell.
+
+  void enter(unsigned times) { entries = std::min<unsigned>(entries + times, kMostEntries); }
+  /// Takes in another stay of the rock, which has entered `times`.
+  void join(const Passage& other, unsigned times);
 };
 
 /// The order in which passages are summed: by cell, iteration, rock and block.
