@@ -2,9 +2,11 @@
 import math
 
 import numpy as np
+from contourpy import contour_generator
 from matplotlib.colors import BoundaryNorm, LightSource, ListedColormap, LogNorm, Normalize
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Polygon, Rectangle
+from matplotlib.patheffects import withStroke
 import matplotlib.pyplot as plt
 
 from figures import GREY, INK, PAGE, new, picture, place
@@ -16,6 +18,13 @@ LONGEST_BAR = 32.0  # mm
 DOTS = 2.5  # mm from one to the next where too few rocks came
 DOT = {"marker": "o", "ms": 1.5, "mfc": "white", "mec": INK, "mew": 0.35}
 ROUND = (1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 7.5, 8.0, 10.0)
+KEY = 11.0  # mm, what the legend takes under the colours
+FOREST = 8.0  # m from stem to stem within the outline of a forest, at most so many
+# Told from each other in grey by their strokes.
+EMBANKMENT = {"color": "#7a4b12", "lw": 3.0}
+NET = {"color": "#0b3d91", "lw": 1.6, "ls": (0, (2, 1))}
+EDGE = {"color": "#1f5a26", "lw": 1.3, "ls": (0, (1, 1))}
+LYING = {"color": "#6b3f1d", "lw": 1.2}
 WEAK, MEDIUM, STRONG = "#f0c419", "#e08a2e", "#8b0a1a"  # light to dark, in grey as well
 
 
@@ -114,41 +123,70 @@ class Sheet:
             axes.add_patch(Polygon([(x, y + 6.5), (x + side * 2.2, y), (x, y + 1.4)], closed=True, fc=colour, ec=INK, lw=0.5))
         axes.text(x, y + 7.0, "N", ha="center", va="bottom", fontsize=8, fontweight="bold")
 
-    def mark(self, study, structures=True):
-        """Sources, lines and structures."""
+    def mark(self, study, stems=True):
+        """Structures and lines with their names, and releases. Without stems a forest is an outline."""
         slope, axes = study.slope, self.axes
-        if structures and len(slope.trees):
+        if len(slope.trees):
             places = slope.trees[:, 1:3] + slope.origin
-            places = places[::-(-len(places) // 20000)]
-            axes.plot(*places.T, "o", ms=1.6, mfc="#cfe8cf", mec="#1f5a26", mew=0.35, zorder=4)
-            self.handles.append(Line2D([], [], ls="", marker="o", ms=2.5, mfc="#cfe8cf", mec="#1f5a26", mew=0.5,
-                                       label="stems"))
-        if structures and len(slope.lying_axes):
-            for axis in slope.lying_axes:
-                axes.plot(*axis.T, color="#6b3f1d", lw=1.2, zorder=4)
-            self.handles.append(Line2D([], [], color="#6b3f1d", lw=1.2, label="stems that lie"))
-        kinds = (("TerrainEmbankmentPoints", slope.embankments, "embankment", dict(color="#7a4b12", lw=3.0)),
-                 ("TerrainBarrierPoints", slope.barriers, "net or fence", dict(color="#0b3d91", lw=1.6, ls=(0, (2, 1)))))
-        for name, counts, label, style in kinds if structures else ():
-            for line in slope.axes_of(name, counts[:, -1]) if len(counts) else ():
-                axes.plot(*line.T, zorder=5, **style)
-            if len(counts):
+            if stems:
+                places = places[::-(-len(places) // 20000)]
+                style = {"marker": "o", "mfc": "#cfe8cf", "mec": EDGE["color"]}
+                axes.plot(*places.T, ls="", ms=1.6, mew=0.35, zorder=4, **style)
+                self.handles.append(Line2D([], [], ls="", ms=2.5, mew=0.5, label="stems", **style))
+            else:
+                for edge in outlines(places, max(FOREST, self.mm(2.0))):
+                    axes.plot(*edge.T, zorder=4, path_effects=cased(EDGE), **EDGE)
+                self.handles.append(Line2D([], [], label="outline of the stems", **EDGE))
+        for axis in slope.lying_axes:
+            axes.plot(*axis.T, zorder=4, **LYING)
+        if len(slope.lying_axes):
+            self.handles.append(Line2D([], [], label="stems that lie", **LYING))
+        for rows, stem, kind, label, style in (
+                (slope.embankments, "TerrainEmbankment", "embankment", "embankment", EMBANKMENT),
+                (slope.barriers, "TerrainBarrier", "net", "net or fence", NET)):
+            names = slope.texts(stem + "Names") or [""] * len(rows)
+            named = set()
+            for line, row, name in zip(slope.axes_of(stem + "Points", rows[:, -1]), rows, names):
+                axes.plot(*line.T, zorder=5, path_effects=cased(style), **style)
+                if row[0] not in named:  # parts of one
+                    self.name(line, name or f"{kind} {row[0]:.0f}", "bottom")
+                named.add(row[0])
+            if len(rows):
                 self.handles.append(Line2D([], [], label=label, **style))
-        for line in study.drawn_lines:
+        names = [str(study.lines["LineName"][k]) for k in study.given_lines()] if study.drawn_lines else []
+        for k, line in enumerate(study.drawn_lines):
             axes.plot(*line.T, color="white", lw=2.6, zorder=5)
             axes.plot(*line.T, color="black", lw=1.4, zorder=6)
+            if len(names) == len(study.drawn_lines):
+                self.name(line, names[k], "top")
         if study.drawn_lines:
-            self.handles.append(Line2D([], [], color="black", lw=1.4, label="lines where passings are counted"))
+            self.handles.append(Line2D([], [], color="black", lw=1.4, label="lines of passings"))
         first = study.rocks["Iteration"] == study.rocks["Iteration"].min()
         places = np.stack([study.rocks[name][first] for name in ("StartX", "StartY")])
         axes.plot(*places[:, ::-(-places.shape[1] // 5000)], "^", ms=3.2, mfc="white", mec="black", mew=0.6, zorder=7)
         self.handles.append(Line2D([], [], ls="", marker="^", ms=4, mfc="white", mec="black", mew=0.6, label="releases"))
 
-    def legend(self, bottom, more=()):
+    def name(self, line, text, side):
+        """A name along the middle of what is seen of a line."""
+        at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
+        x, y = (np.interp(np.linspace(0.0, at[-1], 201), at, values) for values in line.T)
+        west, east, south, north = self.extent
+        seen = np.flatnonzero((x > west) & (x < east) & (y > south) & (y < north))
+        if not len(seen):
+            return
+        k = min(max(seen[len(seen) // 2], 1), 199)
+        angle = (math.degrees(math.atan2(y[k + 1] - y[k - 1], x[k + 1] - x[k - 1])) + 89.0) % 180.0 - 89.0
+        aside = (2.5 if side == "bottom" else -2.5) * np.array([-math.sin(math.radians(angle)), math.cos(math.radians(angle))])
+        self.axes.annotate(text, (x[k], y[k]), aside, textcoords="offset points", rotation=angle, rotation_mode="anchor",
+                           ha="center", va=side, fontsize=6.5, zorder=8, parse_math=False,
+                           path_effects=[withStroke(linewidth=1.8, foreground="white")])
+
+    def legend(self, bottom, more=(), columns=2):
         handles = [*self.handles, *more]
         box = place(self.figure, LEFT, 0.0, BESIDE - LEFT, bottom)
         box.axis("off")
-        box.legend(handles=handles, loc="center left", ncol=2, frameon=False, handlelength=2.2)
+        box.legend(handles=handles, loc="center left", ncol=columns, frameon=False, handlelength=1.8,
+                   columnspacing=0.9, borderpad=0.0)
 
     def show(self, values, cell_extent, cmap, norm):
         values, cell_extent = fewer(values, cell_extent)
@@ -160,13 +198,33 @@ class Sheet:
         return image
 
     def bar(self, image, label, ticks=None):
-        axes = place(self.figure, LEFT, 12.0, BESIDE - LEFT - 4.0, 3.0)
+        axes = place(self.figure, LEFT, KEY + 11.0, BESIDE - LEFT - 4.0, 3.0)
         bar = self.figure.colorbar(image, cax=axes, orientation="horizontal", ticks=ticks)
         bar.set_label(label, labelpad=1)
         bar.outline.set_linewidth(0.5)
         if ticks is not None:
             axes.set_xticklabels([f"{t:g}" for t in ticks])
             axes.minorticks_off()
+
+
+def cased(style):
+    """With a white edge, for dark cells."""
+    return [withStroke(linewidth=style["lw"] + 1.2, foreground="white")]
+
+
+def outlines(places, step):
+    """Lines around cells with a stem and those between them."""
+    low = places.min(axis=0) - 2.5 * step
+    columns, rows = (np.ceil((places.max(axis=0) - low) / step) + 3).astype(int)
+    stems, _, _ = np.histogram2d(*((places - low) / step).T, bins=(columns, rows), range=((0, columns), (0, rows)))
+
+    def spread(cells):
+        beside = np.pad(cells, 1)
+        return np.any([beside[i:i + columns, j:j + rows] for i in range(3) for j in range(3)], axis=0)
+
+    inside = ~spread(~spread(stems > 0))
+    middles = (low[k] + step * (np.arange(count) + 0.5) for k, count in enumerate((columns, rows)))
+    return contour_generator(*middles, inside.T.astype(float)).lines(0.5)
 
 
 def scale_text(sheet):
@@ -240,25 +298,25 @@ def powers(low, high):
 
 
 def of_band(study, name, values, label, text, norm, ticks, cmap, quantile=None):
-    sheet = Sheet(study.slope, around(study.map, study.slope), 78.0, 18.0, pale=True)
+    sheet = Sheet(study.slope, around(study.map, study.slope), 78.0, KEY + 17.0, pale=True)
     image = sheet.show(values, study.map.extent, part(cmap), norm)
     few = quantile and too_few(sheet, study.map, quantile)
-    sheet.mark(study, structures=False)
+    sheet.mark(study, stems=False)
     sheet.bar(image, label, ticks)
+    sheet.legend(KEY, columns=3)
     if few:
         text += " Dotted: too few rocks came for this quantile, the number is too low."
     return picture(sheet.figure, f"{text} {scale_text(sheet)}.", name)
 
 
 def classes(study, values, names, text, name, quantile=None):
-    sheet = Sheet(study.slope, around(study.map, study.slope), 78.0, 12.0, pale=True)
+    sheet = Sheet(study.slope, around(study.map, study.slope), 78.0, 17.0, pale=True)
     values = np.where(values > 0, values, np.nan)
     sheet.show(values, study.map.extent, ListedColormap([WEAK, MEDIUM, STRONG]), BoundaryNorm([0.5, 1.5, 2.5, 3.5], 3))
     few = quantile and too_few(sheet, study.map, quantile)
-    sheet.mark(study, structures=False)
-    sheet.handles = []
-    sheet.legend(11.0, [Patch(fc=c, ec=INK, lw=0.4, label=n) for c, n in zip((WEAK, MEDIUM, STRONG), names)] +
-                 ([Line2D([], [], ls="", label="too few rocks for 95 %", **DOT)] if few else []))
+    sheet.mark(study, stems=False)
+    sheet.legend(17.0, [Patch(fc=c, ec=INK, lw=0.4, label=n) for c, n in zip((WEAK, MEDIUM, STRONG), names)] +
+                 ([Line2D([], [], ls="", label="too few rocks for 95 %", **DOT)] if few else []), columns=3)
     return picture(sheet.figure, f"{text} {scale_text(sheet)}.", name)
 
 

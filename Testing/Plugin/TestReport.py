@@ -97,6 +97,19 @@ for row in rows_of("whole/design.csv"):
 assert "What a barrier has to hold: <b>road</b> 700045" in text
 assert "What a barrier has to hold: <b>road</b> 700290 No rock reached it." in text
 own = finished.Study("whole")
+# On maps, too, they have their names, and the legend leaves the scale bar free.
+for stems in (True, False):
+    sheet = maps.Sheet(own.slope, own.slope.extent(), 78.0, 17.0)
+    sheet.mark(own, stems)
+    shown = {one.get_text() for one in sheet.axes.texts}
+    assert {"Net <1>", "<b>road</b> 700045", "<b>road</b> 700290"} <= shown, shown
+    assert ("stems" if stems else "outline of the stems") in [one.get_label() for one in sheet.handles]
+    sheet.legend(17.0, [maps.Patch(label="medium, 30 to 300 kJ")] * 3, columns=3)
+    box = sheet.figure.axes[-1].get_legend().get_window_extent(sheet.figure.canvas.get_renderer())
+    assert box.x1 / sheet.figure.dpi * 25.4 < maps.BESIDE, box
+# Around a forest goes one line, around a stem that stands alone another.
+edges = maps.outlines(np.array([[x, y] for x in range(0, 60, 12) for y in range(0, 60, 12)] + [[200.0, 20.0]]), 8.0)
+assert len(edges) == 2 and sorted(np.ptp(edge[:, 0]) > 40.0 for edge in edges) == [False, True], edges
 own.places.columns["AnnualFrequency"] = np.where(own.places["Rocks"] > 0, 0.25, 0.0)
 rows = [row for table in tables.lines(own) for row in table["rows"]]
 assert ("a rock passes every", "a", ["4", "–"]) in rows and not tables.fixed_volumes(own), rows

@@ -48,7 +48,7 @@ for path in tables:
     assert table.isValid(), path
     aliases = [table.attributeAlias(k) for k in range(table.fields().count())]
     texts = [field.name() for field in table.fields() if not field.isNumeric()]
-    assert set(texts) <= {"Shape", "Fate", "SourceName", "LineName", "Class"}, (path, texts)
+    assert set(texts) <= {"Shape", "Fate", "SourceName", "LineName", "Class", "Kind", "Name"}, (path, texts)
     assert any(alias.endswith((" (J)", " (kJ)")) for alias in aliases), (path, aliases)
     for field in table.fields():
         if field.name().endswith("_kJ"):
