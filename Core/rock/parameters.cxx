@@ -14,32 +14,34 @@ namespace rockfall
 
 void Fragmentation::validate() const
 {
-  const auto require = [](bool good, double value, const char* field, const std::string& wanted)
+  const auto require = [](bool good, double value, const char* field, const char* wanted)
   {
     if (!good || !std::isfinite(value))
     {
       throw ParameterError(std::string(field) + " is " + numberText(value) + wanted);
     }
   };
-  // Three have no default: 0 says that nothing is typed, and is refused only where rocks break.
-  const std::string must = this->on ? ", with Fragmentation it must be " : ", it must be ";
-  const std::string lower = this->on ? "positive and finite" : "finite and not negative";
-  require(this->on ? this->energy > 0.0 : this->energy >= 0.0, this->energy, "FragmentationEnergy",
-    " J/m³" + must + lower);
-  require(this->on ? this->fractalDimension > 0.0 && this->fractalDimension < 3.0
-                   : this->fractalDimension >= 0.0 && this->fractalDimension <= 3.0,
-    this->fractalDimension, "FractalDimension",
-    must + (this->on ? "more than 0 and less than 3" : "0 to 3"));
-  require(this->on ? this->leastVolume >= kLeastVolume : this->leastVolume >= 0.0,
-    this->leastVolume, "LeastFragment",
-    " m³" + must +
-      (this->on ? "at least 1e-9 m³, the volume of the smallest piece to be followed"
-                : "finite and not negative"));
-  require(this->survival >= 0.0 && this->survival <= 1.0, this->survival, "SurvivalRate",
-    must + "0 to 1");
-  require(this->loss >= 0.0 && this->loss <= 1.0, this->loss, "FragmentationLoss", must + "0 to 1");
+  const char* const share = ", it must be 0 to 1";
+  require(this->energy >= 0.0, this->energy, "FragmentationEnergy",
+    " J/m³, it must be finite and not negative");
+  require(this->fractalDimension >= 0.0 && this->fractalDimension <= 3.0, this->fractalDimension,
+    "FractalDimension", ", it must be 0 to 3");
+  require(this->leastVolume >= 0.0, this->leastVolume, "LeastFragment",
+    " m³, it must be finite and not negative");
+  require(this->survival >= 0.0 && this->survival <= 1.0, this->survival, "SurvivalRate", share);
+  require(this->loss >= 0.0 && this->loss <= 1.0, this->loss, "FragmentationLoss", share);
   require(this->spread >= 0.0 && this->spread <= radians(90.0), degrees(this->spread),
-    "FragmentSpread", "°" + must + "0 to 90");
+    "FragmentSpread", "°, it must be 0 to 90");
+  if (this->on) // Three have no default: 0 says that nothing is typed.
+  {
+    require(this->energy > 0.0, this->energy, "FragmentationEnergy",
+      " J/m³, with Fragmentation it must be positive");
+    require(this->fractalDimension > 0.0 && this->fractalDimension < 3.0, this->fractalDimension,
+      "FractalDimension", ", with Fragmentation it must be more than 0 and less than 3");
+    require(this->leastVolume >= kLeastVolume, this->leastVolume, "LeastFragment",
+      " m³, with Fragmentation it must be at least 1e-9 m³, the volume of the smallest piece to be "
+      "followed");
+  }
 }
 
 void SimulationParameters::validate() const

@@ -53,6 +53,7 @@ struct Part
   std::uint32_t number;
   SingleRock fall;
   double born = 0.0;               ///< s
+  bool told = false;               ///< Has all that is asked for, though it moves.
   std::vector<std::size_t> pieces; ///< Among all parts.
 };
 
@@ -83,7 +84,7 @@ public:
     // It is the only one so far.
     const double first = together_ ? whole.fall.state().time : parameters_.endTime;
     const double dt = parameters_.timeStep;
-    for (double step = std::floor(first / dt) + 1.0; this->anyMoves(); step += 1.0)
+    for (double step = std::floor(first / dt) + 1.0; this->anyGoesOn(); step += 1.0)
     {
       const double until =
         together_ ? std::min(step * dt, parameters_.endTime) : parameters_.endTime;
@@ -124,20 +125,27 @@ private:
     return *parts_.back();
   }
 
-  bool anyMoves() const
+  /// Whether more of a part is asked for.
+  bool goesOn(const Part& part) const
+  {
+    return !part.fall.done() && !part.told && part.born <= enough_;
+  }
+
+  bool anyGoesOn() const
   {
     return std::any_of(
-      parts_.begin() + 1, parts_.end(), [](const auto& part) { return !part->fall.done(); });
+      parts_.begin() + 1, parts_.end(), [&](const auto& part) { return this->goesOn(*part); });
   }
 
   void advance(std::size_t number, double until)
   {
     Part& part = *parts_[number];
-    if (part.fall.done() || part.born > enough_ || part.fall.state().time >= until)
+    if (!this->goesOn(part) || part.fall.state().time >= until)
     {
       return;
     }
     part.fall.advance(until, enough_);
+    part.told = !part.fall.done() && !part.fall.fall().arrived();
     this->share(number);
     if (part.fall.trajectory().summary.fate == Fate::Broken)
     {
@@ -172,6 +180,21 @@ private:
     }
   }
 
+  /// Pieces of a rock in a scar begin in it, so that nothing lifts them.
+  void sinkWith(const Fall& whole, Fall& piece) const
+  {
+    const Scar& scar = whole.soil.scar();
+    const Vec3& at = piece.body.state.position;
+    Contact under;
+    under.cfe = whole.impact.last().cfe;
+    under.normal = scar.normal();
+    under.point = Vec3(at.x(), at.y(), surface_.elevation(at.x(), at.y()));
+    if (scar.open() && std::isfinite(under.point.z()))
+    {
+      piece.soil.sink({ &under, scar.depth(), 0.0 }, piece.body, piece.ground);
+    }
+  }
+
   void breakUp(std::size_t number)
   {
     const BlockState state = parts_[number]->fall.state();
@@ -197,8 +220,8 @@ private:
       Part& piece = this->add(rock, own);
       piece.born = piece.fall.body().state.time = state.time;
       applyBroken(piece.fall.fall(), gone_);
-      piece.fall.begin(); // the books begin where those of the whole ended
-      piece.fall.liftOntoGround();
+      this->sinkWith(parts_[number]->fall.fall(), piece.fall.fall());
+      piece.fall.begin();
       BlockState moving = state;
       moving.velocity = rock.velocity;
       mass -= piece.block.mass();

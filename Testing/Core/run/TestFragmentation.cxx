@@ -2,6 +2,7 @@
 // and momentum, alike on any number of threads; their sources count once.
 
 #include "base/errors.h"
+#include "law/settings.h"
 #include "rock/fragmentation.h"
 #include "run/brokenFall.h"
 #include "run/ensemble.h"
@@ -478,6 +479,103 @@ TEST(Fragmentation, AStemThatAPieceBreaksIsGoneForTheOthers)
   EXPECT_GT(count, 4);
 }
 
+TEST(Fragmentation, APieceBeginsWithItsPartOfTheMotionAndGainsNothing)
+{
+  // Steep, with bumps, stems and a net: pieces roll, slide, jump and are held.
+  const auto height = [](double x, double y)
+  { return 140.0 * std::exp(-x / 80.0) + 2.0 * std::sin(x / 9.0) * std::cos(y / 13.0); };
+  Structures s;
+  for (int k = 0; k < 60; ++k)
+  {
+    Tree& tree = s.trees.emplace_back();
+    tree.feature = k + 1;
+    tree.position = { 60.0 + 5.0 * (k % 6), 60.0 + 12.0 * (k / 6) };
+    tree.diameter = 0.3;
+    tree.height = 15.0;
+    tree.capacity = 30e3;
+  }
+  Barrier& net = s.barriers.emplace_back();
+  net.feature = 1;
+  net.points = { { 110.0, 40.0 }, { 110.0, 200.0 } };
+  net.height = 3.0;
+  net.capacity = 1e5;
+  std::vector<Rock> rocks;
+  for (int k = 0; k < 3; ++k)
+  {
+    Rock& rock = rocks.emplace_back(dropped(0.0));
+    rock.blockId = k;
+    const double x = 12.0, y = 60.0 + 30.0 * k;
+    rock.position = Vec3(x, y, height(x, y) + 6.0);
+  }
+  for (const bool yields : { false, true })
+  {
+    Terrain slope = makeSlope(61, 4.0, height, yields ? softGround() : material(0.6, 25.0));
+    slope.setStructures(s);
+    Fragmentation law = lawOf(20e3, 0.01);
+    law.loss = yields ? 0.0 : 0.3;
+    const auto all = runOf(slope, rocks, law);
+    // Of one rock and iteration: parents by their order, pieces behind each other.
+    int born = 0, faster = 0, scars = 0;
+    for (std::size_t first = 0; first < all.size();)
+    {
+      std::size_t next = first + 1;
+      for (std::size_t parent = first; parent < next; ++parent)
+      {
+        const Sample& end = all[parent].samples.back();
+        for (int k = 0; k < all[parent].summary.pieces; ++k, ++next)
+        {
+          const Trajectory& piece = all[next];
+          scars += piece.summary.energy.scars > 0.0;
+          const Sample& begin = piece.samples.front();
+          // As a part of the whole, which has left its share of the energy.
+          const Vec3 lever = begin.position - end.position;
+          const Vec3 field = end.velocity + end.angularVelocity.cross(lever);
+          EXPECT_LT((begin.velocity - field).norm(), 1e-9 * std::max(1.0, field.norm()));
+          EXPECT_LT((begin.angularVelocity - end.angularVelocity).norm(), 1e-9);
+          // Nothing that comes later has more energy.
+          const double mass = piece.summary.mass;
+          const double most = begin.kineticEnergy / mass + kGravity * begin.position.z();
+          for (const Sample& sample : piece.samples)
+          {
+            EXPECT_LE(sample.kineticEnergy / mass + kGravity * sample.position.z(),
+              most + 1e-3 * begin.kineticEnergy / mass + 0.01)
+              << piece.summary.piece << " at " << sample.time;
+          }
+          ++born;
+          faster += begin.velocity.norm() > 1.05 * end.velocity.norm();
+        }
+      }
+      first = next;
+    }
+    EXPECT_GT(born, 30);
+    EXPECT_TRUE(yields || faster > 3) << "no piece was flung off";
+    EXPECT_EQ(scars > 0, yields);
+  }
+}
+
+TEST(Fragmentation, ALookAtTheBeginningDoesNotTakeAllOfTheTime)
+{
+  // Pieces share structures by Δt; to go on to the end by steps of nothing would take hours.
+  const Rock rock = thrownDown(12.0);
+  SimulationParameters p;
+  p.fragmentation = lawOf(50e3, 5e-3);
+  p.timeStep = kLeastTimeStep;
+  p.endTime = kMostEndTime;
+  const Terrain terrain = withNet(1e9);
+  const Surface surface(terrain, p.seed, 0);
+  const double fallTime = std::sqrt(2.0 * 15.0 / kGravity);
+  for (const double enough : { 0.5 * fallTime, fallTime + 0.02 })
+  {
+    const auto all = fallAndBreak(surface, rock, p, 0, enough);
+    EXPECT_EQ(all.size() > 1, enough > fallTime);
+    for (const Trajectory& t : all)
+    {
+      EXPECT_GE(t.samples.back().time, std::min(enough, t.summary.endTime));
+      EXPECT_LT(t.samples.back().time, enough + 1.0);
+    }
+  }
+}
+
 TEST(Fragmentation, BadNumbersAreNamed)
 {
   const Terrain ground = flatGround();
@@ -503,5 +601,10 @@ TEST(Fragmentation, BadNumbersAreNamed)
   EXPECT_TRUE(has(messageOf(lawOf(1e4, 0.0)), "LeastFragment is 0 m³"));
   EXPECT_TRUE(has(messageOf(lawOf(1e4, 0.1, 3.0)), "FractalDimension is 3"));
   EXPECT_TRUE(has(messageOf(lawOf(1e4, 1e-6)), "pieces, at most 1000"));
+  // Ranges hold whether rocks break or not.
+  Fragmentation idle;
+  EXPECT_EQ(messageOf(idle), "");
+  idle.fractalDimension = 4.0;
+  EXPECT_TRUE(has(messageOf(idle), "FractalDimension is 4, it must be 0 to 3"));
   EXPECT_TRUE(has(messageOf(lawOf(1e4, 0.1), true), "RockRockContact"));
 }
