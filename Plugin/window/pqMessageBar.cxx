@@ -106,8 +106,12 @@ pqMessageBar::pqMessageBar(QMainWindow* window)
   this->Text->setTextInteractionFlags(Qt::TextSelectableByMouse);
   this->Text->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
   this->addWidget(this->Text);
-  this->connect(
-    this->addAction(tr("Close")), &QAction::triggered, this, [this] { this->setVisible(false); });
+  this->connect(this->addAction(tr("Close")), &QAction::triggered, this,
+    [this]
+    {
+      this->Closed = this->Told;
+      this->setVisible(false);
+    });
   window->addToolBar(Qt::BottomToolBarArea, this);
   this->setVisible(false);
 }
@@ -144,6 +148,18 @@ void pqMessageBar::look()
     }
   }
   notes += toldOfStructures();
+  this->Told = errors + notes;
+  QStringList closed; // and still so
+  for (const QString& line : this->Closed)
+  {
+    if (this->Told.contains(line))
+    {
+      closed << line;
+      errors.removeAll(line);
+      notes.removeAll(line);
+    }
+  }
+  this->Closed = closed;
   if (const int more = int(notes.size()) - kMostNotes; more > 0)
   {
     // The last ones are of the study that is worked on.

@@ -157,15 +157,7 @@ void pqRockfallWindow::begin()
     qOverload<pqProxy*>(&pqObjectBuilder::proxyCreated), this, &pqRockfallWindow::onMade);
   this->connect(
     model, &pqServerManagerModel::representationAdded, this, &pqRockfallWindow::onRepresentation);
-  this->connect(model, &pqServerManagerModel::preSourceRemoved, this,
-    [](pqPipelineSource* source)
-    {
-      if (isOf(source->getProxy(), { "vtkTrajectoryProfile" }))
-      {
-        const NotUndone own;
-        pqPathPicker::fade(source->getProxy(), false);
-      }
-    });
+  this->connect(model, &pqServerManagerModel::preSourceRemoved, this, &pqRockfallWindow::onRemoved);
   this->Bar = new pqRunBar(window);
   this->connect(this->Bar, &pqRunBar::stopped, this, &pqRockfallWindow::stopRuns);
   this->connect(&this->Looks, &QTimer::timeout, this, &pqRockfallWindow::tellRuns);
@@ -495,6 +487,16 @@ void pqRockfallWindow::onPicked(pqOutputPort* port, int cell)
     {
       pqPathPicker::fade(source->getProxy(), true);
     }
+  }
+}
+
+//-----------------------------------------------------------------------------
+void pqRockfallWindow::onRemoved(pqPipelineSource* source)
+{
+  if (isOf(source->getProxy(), { "vtkTrajectoryProfile" }))
+  {
+    const NotUndone own;
+    pqPathPicker::fade(source->getProxy(), false);
   }
 }
 

@@ -48,6 +48,7 @@ private Q_SLOTS:
   void onData(pqPipelineSource* source);
   void onPreset(vtkObject* property, unsigned long event);
   void onPicked(pqOutputPort* port, int cell);
+  void onRemoved(pqPipelineSource* source);
   void tellRuns();
   void stopRuns();
 

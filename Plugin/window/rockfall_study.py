@@ -121,7 +121,8 @@ def profile(source_name, port, trajectory):
         view = simple.GetActiveView()
         made = simple.TrajectoryProfile(registrationName="Profile", Input=simple.OutputPort(source, port),
                                         Trajectory=trajectory)
-        chart = _chart_beside(view)
+        empty = (chart for chart in simple.GetViews(viewtype="XYChartView") if not len(chart.Representations))
+        chart = next(empty, None) or _chart_beside(view)
         simple.Show(made, chart)
         simple.Show(simple.OutputPort(made, 1), view)
         simple.SetActiveView(view)
