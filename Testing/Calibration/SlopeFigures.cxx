@@ -35,8 +35,8 @@ SlopeFigures figuresOf(std::span<const TrajectorySummary> rocks)
   {
     std::ranges::sort(*values);
   }
-  return { quantile(speeds, 0.95), quantile(jumps, 0.95), quantile(runOuts, 0.5),
-    quantile(reach, 0.5), quantile(reach, 0.01), times.back() };
+  return { quantile(speeds, 0.95), quantile(jumps, 0.95), quantile(jumps, 0.5),
+    quantile(runOuts, 0.5), quantile(reach, 0.5), quantile(reach, 0.01), times.back() };
 }
 
 SlopeFigures measure(

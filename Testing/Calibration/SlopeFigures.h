@@ -18,6 +18,7 @@ namespace rockfall::calibration
 struct SlopeFigures
 {
   double speed = 0.0, jump = 0.0;          ///< The greatest of a rock, 95 %; m/s, m over ground.
+  double usualJump = 0.0;                  ///< The same jump, median.
   double runOut = 0.0;                     ///< Median.
   double reach = 0.0, reachFarthest = 0.0; ///< Median, the farthest 1 %.
   double longest = 0.0;                    ///< Until the last one is at its end, s.

@@ -3,9 +3,10 @@
 // speeds below 30 m/s, jumps of some metres, reach angles of the farthest 1 % of 27.5° to 32°, and
 // blocks of 10 m³ 1.1 to 1.6 times as far as those of 0.1 m³.
 //
-//   longSlopes [--ground NAME] [--set name=value]… [--mix] [--meadow] [--iterations N] [--seed N]
+//   longSlopes [--ground NAME] [--set name=value]… [--mix] [--meadow] [--jumps] [--iterations N]
+//     [--seed N]
 //
-// EOTA 111 rocks; with --mix as many cubes and boxes of 2 : 1 : 1, each of N iterations. The ground is
+// With --jumps, instead, jumps down 190 m of 35° by size, over those on springs of 1e13 N/m. EOTA 111 rocks; with --mix as many cubes and boxes of 2 : 1 : 1, each of N iterations. The ground is
 // the preset Meadow where nothing else is said, and that of the foot the same, or with --meadow
 // Meadow.
 
@@ -19,6 +20,23 @@ using namespace rockfall::calibration;
 namespace
 {
 
+/// A spring that turns a rock late in its scar makes it jump lower.
+void printJumps(const Arguments& arguments)
+{
+  GroundSettings stiff = arguments.settings;
+  stiff.simulation.normalPenalty = 1e13;
+  std::printf("%7s | %8s %8s %5s\n", "m3", "jump 50%", "stiff", "ratio");
+  for (const double volume : { 0.1, 1.0, 10.0, 100.0 })
+  {
+    const SlopeFall fall{ 35.0, 109.0, volume, false };
+    const std::vector shapes{ makeShape(Shape::Eota111, volume) };
+    const double own = measure(arguments.settings, fall, shapes).usualJump,
+                 limit = measure(stiff, fall, shapes).usualJump;
+    std::printf("%7.1f | %8.3f %8.3f %5.3f\n", volume, own, limit, own / limit);
+    std::fflush(stdout);
+  }
+}
+
 int run(int count, char** words)
 {
   GroundSettings defaults;
@@ -28,7 +46,12 @@ int run(int count, char** words)
   defaults.simulation.endTime = 300.0;
   defaults.simulation.outputInterval = 0.5;
   const Arguments arguments =
-    parseArguments(count, words, defaults, { "--mix", "--meadow" }, false);
+    parseArguments(count, words, defaults, { "--mix", "--meadow", "--jumps" }, false);
+  if (arguments.has("--jumps"))
+  {
+    printJumps(arguments);
+    return 0;
+  }
   std::printf("%6s %6s %7s | %10s %9s | %8s | %8s %8s | %7s\n", "slope", "drop m", "m3",
     "speed 95 %", "jump 95 %", "run-out", "reach", "1 %", "last s");
   const auto print = [&](double angle, double drop, double volume)
