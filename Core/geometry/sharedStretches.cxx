@@ -86,6 +86,20 @@ Interval sharedPart(const Piece& piece, const Piece& other)
   return all.any() ? Interval{ piece.before + all.from, piece.before + all.to } : kNone;
 }
 
+/// Where a piece crosses an earlier one of its line. The ends of the line are none: a ring closes.
+std::optional<Point> crossing(const Piece& piece, const Piece& other)
+{
+  const Point between = other.start - piece.start;
+  const auto cross = [](const Point& a, const Point& b) { return a.x() * b.y() - a.y() * b.x(); };
+  const double turn = cross(piece.along, other.along);
+  const double own = cross(between, other.along) / turn,
+               earlier = cross(between, piece.along) / turn;
+  const bool meet = own >= 0.0 && own < piece.length && earlier >= 0.0 && earlier < other.length;
+  const double way = other.before + earlier, loop = piece.before + own - way;
+  return meet && way > 0.0 && loop >= kSharedLength ? std::optional(piece.at(piece.before + own))
+                                                    : std::nullopt;
+}
+
 std::vector<Piece> piecesOf(const PlanLines& parts, int line)
 {
   std::vector<Piece> pieces;
@@ -215,6 +229,10 @@ std::vector<SharedStretch> sharedStretches(const std::vector<PlanLines>& lines, 
             {
               continue;
             }
+            if (line == int(i) && !stretches[i].crossing)
+            {
+              stretches[i].crossing = crossing(piece, all[std::size_t(other)]);
+            }
             const Interval part = sharedPart(piece, all[std::size_t(other)]);
             if (part.any())
             {
@@ -237,7 +255,8 @@ std::vector<SharedStretch> sharedStretches(const std::vector<PlanLines>& lines, 
       {
         const auto last = std::max_element(intervals.begin(), intervals.end(),
           [](const Interval& a, const Interval& b) { return a.to < b.to; });
-        stretch = { line, of, placeAt(pieces, intervals.front().from), placeAt(pieces, last->to) };
+        stretch = { line, of, placeAt(pieces, intervals.front().from), placeAt(pieces, last->to),
+          stretch.crossing };
       }
     }
   }

@@ -6,6 +6,7 @@
 #include "base/types.h"
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 namespace rockfall
@@ -29,12 +30,14 @@ using PlanLines = std::vector<PlanLine>;
 std::vector<int> earlierPoints(const std::vector<Eigen::Vector2d>& points);
 std::vector<int> earlierLines(const PlanLines& lines);
 
-/// The part of a line that lies within `kTwinDistance` of another one.
+/// The part of a line that lies within `kTwinDistance` of another one, and where it crosses itself.
 struct SharedStretch
 {
   int earlier = -1;    ///< That other one, of several the longest; the line's own number: itself.
   double length = 0.0; ///< m
   Eigen::Vector2d from = Eigen::Vector2d::Zero(), to = Eigen::Vector2d::Zero();
+  /// Of loops as long as `kSharedLength` the first one's end.
+  std::optional<Eigen::Vector2d> crossing;
 };
 
 /// Whether two of a list, by their numbers, count as the same if they are at one place.

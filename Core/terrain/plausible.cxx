@@ -258,21 +258,24 @@ void tellTwice(const TwinWords& words, const std::vector<const Item*>& items,
   }
 }
 
-std::string stretchText(const SharedStretch& stretch, const Point& origin)
+std::string placeText(const Point& p)
 {
-  const Point from = stretch.from + origin, to = stretch.to + origin;
-  const auto place = [](const Point& p)
-  { return "(" + numberText(p.x(), 9) + ", " + numberText(p.y(), 9) + ")"; };
-  return " over " + numberText(stretch.length, 3) + " m, from " + place(from) + " to " + place(to);
+  return "(" + numberText(p.x(), 9) + ", " + numberText(p.y(), 9) + ")";
 }
 
-/// Notes structures on a part of an earlier one, and those that go back on their own line.
+std::string stretchText(const SharedStretch& stretch, const Point& origin)
+{
+  return " over " + numberText(stretch.length, 3) + " m, from " + placeText(stretch.from + origin) +
+    " to " + placeText(stretch.to + origin);
+}
+
+/// Notes structures on a part of an earlier one, and those that go back on their own line or cross it.
 template <class Item>
 void tellStretches(const TwinWords& words, const std::vector<const Item*>& items,
   const std::vector<SharedStretch>& stretches, const Point& origin, std::vector<std::string>& notes)
 {
-  std::int64_t others = 0, selves = 0;
-  std::string first, self;
+  std::int64_t others = 0, selves = 0, crossed = 0;
+  std::string first, self, cross;
   for (std::size_t i = 0; i < items.size(); ++i)
   {
     const SharedStretch& stretch = stretches[i];
@@ -287,6 +290,10 @@ void tellStretches(const TwinWords& words, const std::vector<const Item*>& items
       first = own + " on " + (other.feature == items[i]->feature ? "another part of " : "") +
         featureText(other.feature) + stretchText(stretch, origin);
     }
+    if (stretch.earlier != int(i) && stretch.crossing && ++crossed == 1)
+    {
+      cross = own + " at " + placeText(*stretch.crossing + origin);
+    }
   }
   const std::string of = " of " + std::to_string(items.size()) + " " + words.kind;
   if (others > 0)
@@ -299,6 +306,11 @@ void tellStretches(const TwinWords& words, const std::vector<const Item*>& items
   {
     notes.push_back(std::to_string(selves) + of + " go back on their own line, first " + self +
       ". They are at work once there: is the line as it was meant?");
+  }
+  if (crossed > 0)
+  {
+    notes.push_back(std::to_string(crossed) + of + " cross their own line, first " + cross +
+      ": are its points in their order?");
   }
 }
 

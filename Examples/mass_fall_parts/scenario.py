@@ -124,9 +124,9 @@ def write_rocks(path, aim=START, seed=1):
         low, high = (shift, high) if mean > aim else (low, shift)
     spots[:, 0] += shift
     with open(path, "w") as table:
-        table.write("x,y,height,shape,volume,density,young,poisson,rx,ry,rz,source\n")
+        table.write("x,y,height,shape,volume,density,young,poisson,rx,ry,rz,source,source_id\n")
         for (x, y), volume in zip(spots, sizes):
             angles = random.uniform(0.0, 360.0, 3)
             table.write(f"{x:.4f},{y:.4f},0.05,{random.choice(SHAPES)},{volume:.6f},{DENSITY:.6f},"
-                        f"{YOUNG:g},{POISSON:g},{angles[0]:.2f},{angles[1]:.2f},{angles[2]:.2f},face\n")
+                        f"{YOUNG:g},{POISSON:g},{angles[0]:.2f},{angles[1]:.2f},{angles[2]:.2f},face,1\n")
     return path

@@ -31,7 +31,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <optional>
+#include <set>
 
 vtkStandardNewMacro(vtkTrajectoryCollector);
 
@@ -156,6 +158,32 @@ void lookAtBarriers(const std::vector<CollectorLine>& lines, std::vector<std::st
     }
   }
   rockfall::askAfterNumbers(nets, notes);
+}
+
+/// Reports and curves go by names: a line with that of another one gets a number.
+void nameApart(std::vector<CollectorLine>& lines, std::vector<std::string>& notes)
+{
+  std::set<std::string> taken;
+  std::map<std::string, int> numbers;
+  std::int64_t count = 0;
+  std::string first;
+  for (CollectorLine& line : lines)
+  {
+    const std::string given = line.name;
+    for (int& k = numbers.try_emplace(given, 1).first->second; !taken.insert(line.name).second;)
+    {
+      line.name = given + " (" + std::to_string(++k) + ")";
+    }
+    if (line.name != given && ++count == 1)
+    {
+      first = line.name;
+    }
+  }
+  if (count > 0)
+  {
+    notes.push_back(std::to_string(count) + " of " + std::to_string(lines.size()) +
+      " lines have the name of another one and get a number, first \"" + first + "\"");
+  }
 }
 
 /// The line through drawn points, which must be where the trajectories are.
@@ -390,6 +418,7 @@ int vtkTrajectoryCollector::RequestData(
       {
         lines.push_back(lineThrough(points, rocks, origin, barrier));
       }
+      nameApart(lines, notes);
       lookAtBarriers(lines, notes);
       rockfall::addParallels(lines, this->ParallelLines, this->ParallelSpacing);
       const Collected collected = collect(trajectories, lines, origin, slope);

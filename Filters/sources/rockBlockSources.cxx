@@ -451,15 +451,29 @@ void vtkRockBlockSource::TellUnused(const Sources& sources, bool hasShape) const
   tell(moved, "have volumes of another mean, as bounds cut their law off");
   tell(beyond, "reach beyond the ground of the slope, on which all their rocks start");
   std::map<std::int64_t, std::string> names;
+  std::map<std::string, std::int64_t> numbers; // of rows that have a name of their own
+  std::string together, apart;
   for (const rockfall::filters::ReleasedRock& rock : sources.rocks)
   {
-    const std::string& first = names.try_emplace(rock.sourceId, rock.sourceName).first->second;
-    if (first != rock.sourceName)
+    const std::int64_t number = rock.sourceId;
+    const std::string& first = names.try_emplace(number, rock.sourceName).first->second;
+    if (together.empty() && first != rock.sourceName)
     {
-      notes.push_back("Sources \"" + first + "\" and \"" + rock.sourceName +
-        "\" have one number, " + std::to_string(rock.sourceId) +
-        ": tables by source count them as one");
-      break;
+      together = "Sources \"" + first + "\" and \"" + rock.sourceName + "\" have one number, " +
+        std::to_string(number) + ": tables by source count them as one";
+    }
+    const std::int64_t other = numbers.try_emplace(rock.sourceName, number).first->second;
+    if (apart.empty() && other != number && rock.sourceName != this->SourceName)
+    {
+      apart = "Sources " + std::to_string(other) + " and " + std::to_string(number) +
+        " have one name, \"" + rock.sourceName + "\": tables by source count them apart";
+    }
+  }
+  for (const std::string& note : { together, apart })
+  {
+    if (!note.empty())
+    {
+      notes.push_back(note);
     }
   }
   for (const std::string& note : notes)

@@ -9,6 +9,7 @@
 
 #include "gis/layers/sources.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace
@@ -203,6 +204,28 @@ TEST_F(TestTrajectoryCollector, LinesOfAFile)
   EXPECT_EQ(this->Number("Rocks", 0), 4);
   EXPECT_EQ(this->Number("Rocks", 1), 5);
   EXPECT_EQ(this->Number("BarrierHeight", 0), 4.0);
+}
+
+// A report of a name has one line.
+TEST_F(TestTrajectoryCollector, LinesOfOneNameAreToldApart)
+{
+  const std::string y = " 5099990,", end = " 5100100";
+  this->Filter->SetFileName(
+    this
+      ->WriteFile("roads.csv",
+        "WKT,name\n\"MULTILINESTRING((500003" + y + "500003" + end + "),(500400" + y + "500400" +
+          end + "))\",road\n\"LINESTRING(500010" + y + "500010" + end + ")\",road\n")
+      .c_str());
+  ASSERT_EQ(this->Table(1)->GetNumberOfRows(), 3);
+  EXPECT_EQ(this->Table(1)->GetValueByName(0, "LineName").ToString(), "road");
+  EXPECT_EQ(this->Table(1)->GetValueByName(1, "LineName").ToString(), "road (2)");
+  EXPECT_EQ(this->Table(1)->GetValueByName(2, "LineName").ToString(), "road (3)");
+  EXPECT_TRUE(std::ranges::any_of(this->Heard->Notes,
+    [](const std::string& note)
+    {
+      return note.find("2 of 3 lines have the name of another one and get a number, first "
+                       "\"road (2)\"") != std::string::npos;
+    }));
 }
 
 TEST_F(TestTrajectoryCollector, LineThatNobodyComesToHasNoPassage)

@@ -107,7 +107,10 @@ told = heard("amount", f"{point},1", f"{area},3")
 assert "1 of 2 sources reach beyond the ground of the slope" in told and "first row 2" in told, told
 columns = "source,source_id"
 assert 'Sources "a" and "b" have one number, 1' in heard(columns, f"{point},a,1", f'"POINT(20 60)",b,1')
-assert "have one number" not in heard(columns, f"{point},a,1", f'"POINT(20 60)",a,1', f'"POINT(20 70)",b,2')
+assert "have one n" not in heard(columns, f"{point},a,1", f'"POINT(20 60)",a,1', f'"POINT(20 70)",b,2')
+apart = 'have one name, "a": tables by source count them apart'
+assert f"Sources 1 and 2 {apart}" in heard(columns, f"{point},a,1", f'"POINT(20 60)",a,2')
+assert f"Sources 1 and 3 {apart}" in heard("source", f"{point},a", '"POINT(20 60)",b', '"POINT(20 70)",a')
 
 # --- A table that says more than it is given for.
 classes = write_text("classes.csv", 'WKT,class\n"POLYGON((0 0,90 0,90 90,0 90,0 0))",scree\n')

@@ -80,7 +80,7 @@ bool holds(const ColumnNames& names, const std::string& word)
   return std::any_of(names.begin(), names.end(), [&](const char* name) { return word == name; });
 }
 
-/// Quantities of rocks, structures and ground, but for a unit, in small letters.
+/// Quantities and states of rocks, structures and ground, but for a unit, in small letters.
 const ColumnNames kQuantities = { "mass", "masse", "massa", "weight", "gewicht", "poids", "peso",
   "speed", "velocity", "geschwindigkeit", "vitesse", "spin", "diameter", "durchmesser", "bhd",
   "dbh", "girth", "circumference", "umfang", "size", "length", "width", "breite", "largeur",
@@ -88,7 +88,9 @@ const ColumnNames kQuantities = { "mass", "masse", "massa", "weight", "gewicht",
   "altitude", "volume", "density", "dichte", "densité", "densità", "energy", "energie", "énergie",
   "energia", "mel", "capacity", "kapazität", "capacité", "capacità", "slope", "inclination",
   "neigung", "restitution", "friction", "reibung", "frottement", "attrito", "species", "baumart",
-  "essence", "frequency", "häufigkeit", "fréquence", "frequenza" };
+  "essence", "frequency", "häufigkeit", "fréquence", "frequenza", "return_period", "period",
+  "wiederkehrperiode", "jährlichkeit", "période", "periodo", "status", "condition", "zustand",
+  "état", "stato", "dip", "azimuth" };
 
 /// Whether `column` is `name` cut short within its first word.
 bool isShortFor(const std::string& column, const std::string& name)

@@ -178,6 +178,12 @@ RasterSurface readRaster(const std::string& fileName, const RasterOptions& optio
     result.notes.push_back(to.doubt);
   }
   const CrsPtr& reference = file.reference();
+  const auto withoutHeight = [](const std::vector<double>& heights)
+  {
+    return std::count_if(
+      heights.begin(), heights.end(), [](double height) { return std::isnan(height); });
+  };
+  const double surveyed = double(std::ptrdiff_t(grid.heights.size()) - withoutHeight(grid.heights));
   if (to.target)
   {
     reproject(grid, file.crs(), to, wanted, fileName, result);
@@ -203,14 +209,14 @@ RasterSurface readRaster(const std::string& fileName, const RasterOptions& optio
     }
   }
 
-  const auto nodata = std::count_if(
-    result.heights.begin(), result.heights.end(), [](double height) { return std::isnan(height); });
+  const auto nodata = withoutHeight(result.heights);
   if (nodata == std::ptrdiff_t(result.heights.size()))
   {
     throw DataError(fileName + ": no node is left with a height; all " +
       sizeText(result.geometry.columns, result.geometry.rows) + " touch nodata or lie outside");
   }
-  noteRelief(result);
+  const double made = double(std::ptrdiff_t(result.heights.size()) - nodata);
+  noteRelief(result, result.geometry.cellSize * std::sqrt(made / std::min(made, surveyed)));
   if (nodata > 0)
   {
     result.notes.push_back(std::to_string(nodata) + " of " + std::to_string(result.heights.size()) +

@@ -1,5 +1,6 @@
 #include "gis/raster/relief.h"
 
+#include "base/text/numberText.h"
 #include "gis/base/gdal.h"
 
 #include <algorithm>
@@ -18,6 +19,8 @@ namespace
 constexpr double steepSite = 60.0;
 /// Heights in km make of a wall of 60° a plain that rises by 1.7 in a thousand.
 constexpr double flatSite = 2e-3;
+/// Between heights, m: cliffs that rocks fall over are lower than this, and are no step any more.
+constexpr double coarseSite = 25.0;
 
 /// Share of the cells that are steeper than `tangent`, of those that have heights.
 double shareSteeper(const RasterSurface& surface, double tangent)
@@ -43,8 +46,14 @@ double shareSteeper(const RasterSurface& surface, double tangent)
 
 } // namespace
 
-void noteRelief(RasterSurface& surface)
+void noteRelief(RasterSurface& surface, double spacing)
 {
+  if (spacing > coarseSite)
+  {
+    surface.notes.push_back("Its heights are some " + numberText(spacing, 2) +
+      " m apart: cliffs and gullies between them are not on the slope, and rocks may be slower and "
+      "stop sooner than in nature. Take a survey of 1 to 10 m");
+  }
   const double steep = shareSteeper(surface, std::tan(radians(steepSite)));
   if (steep > 0.5)
   {

@@ -240,6 +240,19 @@ TEST(Raster, HeightsOfNoMountainAreNoted)
   EXPECT_TRUE(holds(notes(0.4, 0.0006), { "All heights are within", "are they in metres?" }));
   EXPECT_TRUE(holds(notes(-400.0, 0.6), { "All heights are at 0 m or below", "depths" }));
   EXPECT_TRUE(holds(notes(400.0, 3.0), { "steeper than 60 degrees" }));
+  // Surveyed coarsely: as read, made finer, as degrees; averaged on purpose; as fine as offices have it.
+  raster.affine[1] = 90.0;
+  raster.affine[5] = -90.0;
+  const std::string coarse = "Its heights are some 90 m apart";
+  EXPECT_TRUE(holds(notes(400.0, 0.6), { coarse, "not on the slope" }));
+  EXPECT_TRUE(holds(joined(readRaster(raster.write(), { .cellSize = 10.0 })), { " m apart" }));
+  raster.affine[1] = 25.0;
+  raster.affine[5] = -25.0;
+  EXPECT_EQ(notes(400.0, 0.6).find("apart"), std::string::npos);
+  raster.crs = "EPSG:4326";
+  raster.affine = { 9.0, 0.0008, 0.0, 46.0, 0.0, -0.0008 };
+  raster.fill([](double x, double) { return 400.0 + 40000.0 * (x - 9.0); });
+  EXPECT_TRUE(holds(joined(readRaster(raster.write(), { .cellSize = 10.0 })), { "m apart" }));
 }
 
 TEST(Raster, APlaceBeyondAllNumbersIsRefused)

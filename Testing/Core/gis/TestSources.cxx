@@ -283,6 +283,9 @@ TEST(Sources, elevationsOfWaypointsAreTold)
   EXPECT_TRUE(std::any_of(notes.begin(), notes.end(),
     [](const std::string& note)
     { return note.find("not read is its column \"ele\"") != std::string::npos; }));
+  const std::string often = writeFile("often.csv", "x,y,return_period\n1,2,30\n");
+  EXPECT_TRUE(holds(
+    readSourceLayer(often, options).notes.front(), { "not read is its column \"return_period\"" }));
 }
 
 TEST(SourceErrors, trueIsNoNumber)

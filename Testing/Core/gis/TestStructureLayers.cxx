@@ -372,6 +372,13 @@ TEST(StructureDoubts, NetsThatNobodySells)
   EXPECT_EQ(readNets(line + ",5,30000,\n").told("with 30000 kJ"), 1);
   EXPECT_EQ(readNets(line + ",16,500,\n").told("with 16 m. Nets stand 1 to 12 m high"), 1);
   EXPECT_TRUE(readNets(line + ",25,,record\n").notes.empty());
+  // Or that stands no more.
+  Read gone;
+  StructureFiles files;
+  files.barriers =
+    writeFile("gone.csv", "WKT,height,capacity,Status\n" + line + ",5,300,removed\n");
+  gone.structures = readStructures(files, site(), gone.notes);
+  EXPECT_EQ(gone.told("not read is its column \"Status\""), 1);
 }
 
 TEST(StructureDoubts, EmbankmentsThatNobodyBuilds)
@@ -469,6 +476,19 @@ TEST(StructureDoubts, ThePartsOfALineThatAreThereTwice)
   for (const char* other : { "20 20,40 20,40 40,20 20", "20 20,20.5 20,20.5 20.5,20.05 20.4" })
   {
     EXPECT_TRUE(readNets("\"LINESTRING(" + std::string(other) + ")\",5,300,\n").notes.empty())
+      << other;
+  }
+  // Points in the wrong order; a corner that is met twice; a loop that a hand draws in passing is none.
+  const std::string crossed = "1 of 1 barriers cross their own line, first feature 1 at (50, 50)";
+  for (const char* other : { "20 20,80 80,80 20,20 80", "20 20,50 50,80 50,80 80,50 50,40 80" })
+  {
+    EXPECT_EQ(readNets("\"LINESTRING(" + std::string(other) + ")\",5,300,\n").told(crossed), 1)
+      << other;
+  }
+  for (const char* other :
+    { "20 50,50 50,50.5 50.5,50 50.5,50.5 49,80 50", "20 50,80 50,80 80,50 50" })
+  {
+    EXPECT_EQ(readNets("\"LINESTRING(" + std::string(other) + ")\",5,300,\n").told("cross"), 0)
       << other;
   }
   EXPECT_EQ(
