@@ -4,6 +4,7 @@
 #include "base/types.h"
 #include "files/layerStyles.h"
 #include "gis/layers/layerWriter.h"
+#include "shared/errorReport.h"
 #include "shared/inputs.h"
 #include "shared/streamingPieces.h"
 #include "shared/terrainFieldData.h"
@@ -266,6 +267,11 @@ void vtkTrajectoryLayerWriter::WriteData()
       {
         writeLinePoints(data, true, writer);
       }
+    }
+    if (this->WriteSamples && !(writer.manyLayers() && data->GetNumberOfLines() > 0))
+    {
+      rockfall::filters::showNote(this->FileName + ": WriteSamples is on, but has no effect: " +
+        (writer.manyLayers() ? "the Input has no lines" : "a CSV file has one layer"));
     }
     if (data->GetNumberOfVerts() > 0 && (writer.manyLayers() || data->GetNumberOfLines() == 0))
     {

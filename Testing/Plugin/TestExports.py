@@ -88,6 +88,10 @@ for layer, count in (("trajectories", 8), ("ends", 8)):
     assert re.search(rf"Layer name: {layer}\n(.*\n){{1,6}}Feature Count: {count}\n", layers), layers
 assert layers.count('ID["EPSG",32616]') == 3 or layers.count("UTM zone 16N") >= 3, layers
 assert "Measured" in layers and "Layer name: samples" in layers, layers
+for name, port, words in (("samples.csv", 1, "a CSV file has one layer"), ("samples.gpkg", 2, "the Input has no lines")):
+    said = messages_of(servermanager.writers.TrajectoryLayerWriter(
+        Input=OutputPort(fall, port), FileName=os.path.abspath(name), WriteSamples=1).UpdatePipeline)
+    assert f"{name}: WriteSamples is on, but has no effect: {words}" in said and "ERR|" not in said, said
 for field in ("BlockId: Integer64", "Volume: Real", "VelocityX: Real", "Mass: Real"):
     assert field in layers, field
 extent = [float(n) for n in re.findall(

@@ -125,7 +125,15 @@ def look(name, make, values, only_last=False):
     count += 1
 
 
-for path in sorted(glob.glob(os.path.join(ROOT, "Plugin", "xml", "*.xml"))):
+def values_of(item):
+    """Of a switch one that is neither 0 nor 1."""
+    if item.find("BooleanDomain") is not None:
+        return [-2**31]
+    return COUNTS if item.tag == "IntVectorProperty" else NUMBERS
+
+
+XML = sorted(glob.glob(os.path.join(ROOT, "Plugin", "xml", "*.xml")))
+for path in XML:
     for proxy in ElementTree.parse(path).getroot().iter("SourceProxy"):
         items = list(proxy)
         if proxy.get("name") == "RockRelease":  # only what it has of its own
@@ -136,34 +144,45 @@ for path in sorted(glob.glob(os.path.join(ROOT, "Plugin", "xml", "*.xml"))):
             if not (whole or item.tag == "DoubleVectorProperty") or item.get("information_only") or \
                     (only and only not in name):
                 continue
-            if whole and item.find("BooleanDomain") is not None:
-                continue
             if name[0] in READERS:
                 continue
-            for make in MAKERS[name[0]]:  # a proxy that is not there has to come in
-                for value in COUNTS if whole else NUMBERS:
+            switch = item.find("BooleanDomain") is not None
+            for make in MAKERS[name[0]][:1 if switch else None]:  # a proxy that is not there has to come in
+                for value in values_of(item):
                     look(name, make, value)
                 if not whole:  # the others are good
                     look(name, make, float("nan"), True)
 
-# Passages: a file, or one message and none.
-for value in NUMBERS if not only else []:
-    ground = fall()
-    name = os.path.abspath("written.passages")
-    writer = servermanager.writers.HazardPassageWriter(
-        Input=OutputPort(ground, 1), Terrain=ground.Terrain, FileName=name)
-    writer.SMProxy.GetProperty("CellSize").SetElement(0, value)
-    writer.SMProxy.UpdateVTKObjects()
-    if os.path.exists(name):
-        os.remove(name)
-    begun = time.time()
-    errors = re.findall(r"ERR\| (.*?)(?:\x1b|$)", messages_of(writer.UpdatePipeline), re.MULTILINE)
-    print("HazardPassageWriter CellSize", value, errors)
-    if len(errors) != 1 or "cell" not in errors[0].lower() or os.path.exists(name) or \
-            time.time() - begun > SLOWEST:
-        failures.append(f"HazardPassageWriter CellSize {value}: {errors}, {time.time() - begun:.0f} s")
-    delete_sources()
-    count += 1
+# Writers: a file, or one message that names the property and none.
+for path in XML:
+    for proxy in ElementTree.parse(path).getroot().iter("WriterProxy"):
+        for item in proxy:
+            if item.tag not in ("IntVectorProperty", "DoubleVectorProperty") or \
+                    (only and only not in (proxy.get("name"), item.get("name"))):
+                continue
+            for value in values_of(item):
+                ground = fall()
+                name = os.path.abspath("written." + {"HazardPassageWriter": "passages", "TrajectoryLayerWriter": "gpkg"}[
+                    proxy.get("name")])
+                inputs = {"Input": OutputPort(ground, 1)}
+                if proxy.find("InputProperty[@name='Terrain']") is not None:
+                    inputs["Terrain"] = ground.Terrain
+                writer = getattr(servermanager.writers, proxy.get("name"))(FileName=name, **inputs)
+                writer.SMProxy.GetProperty(item.get("name")).SetElement(0, value)
+                writer.SMProxy.UpdateVTKObjects()
+                if os.path.exists(name):
+                    os.remove(name)
+                begun = time.time()
+                errors = re.findall(r"ERR\| (.*?)(?:\x1b|$)", messages_of(writer.UpdatePipeline), re.MULTILINE)
+                what = f"{proxy.get('name')} {item.get('name')} {value}: {errors}, {time.time() - begun:.0f} s"
+                print(what)
+                words = len(errors) == 1 and item.get("name").lower() in errors[0].lower().replace(" ", "")
+                switch = item.find("BooleanDomain") is not None
+                if (errors if switch else not words) or os.path.exists(name) != (not errors) or \
+                        time.time() - begun > SLOWEST:
+                    failures.append(what)
+                delete_sources()
+                count += 1
 
 # --- More than a machine has, and a run without an end: one message, soon.
 
