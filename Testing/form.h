@@ -23,5 +23,10 @@ inline bool isSmallForm()
 {
   return isForm("small");
 }
+/// How many of what a test draws: `small` under sanitizers.
+inline int someOf(int count, int small)
+{
+  return isSmallForm() ? small : count;
+}
 
 } // namespace rockfall::testing

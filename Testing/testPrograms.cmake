@@ -48,3 +48,14 @@ function(rockfall_test_program name)
     target_link_libraries(${single} PRIVATE ${arg_LIBRARIES} GTest::gtest_main)
   endforeach()
 endfunction()
+
+# rockfall_display(<variable> <width>x<height>): how a command gets a display of its own. xvfb-run looks
+# for a free one and takes it in two steps, so each looks from another number on.
+function(rockfall_display variable size)
+  find_program(ROCKFALL_XVFB_RUN xvfb-run REQUIRED)
+  get_property(number GLOBAL PROPERTY rockfall_displays)
+  math(EXPR number "0${number} + 1")
+  set_property(GLOBAL PROPERTY rockfall_displays ${number})
+  math(EXPR first "200 + 10 * ${number}")
+  set(${variable} "${ROCKFALL_XVFB_RUN}" -a -n ${first} -s "-screen 0 ${size}x24 -noreset" PARENT_SCOPE)
+endfunction()

@@ -1,6 +1,7 @@
 // Loops that threads share out: each turn once, done on return, whoever helps.
 
 #include "base/parallel.h"
+#include "form.h"
 
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
@@ -16,15 +17,12 @@
 #include <vector>
 
 using namespace rockfall;
+using rockfall::testing::someOf;
 
 namespace
 {
 
-#ifdef ROCKFALL_THREAD_SANITIZER
-constexpr int kRounds = 10; // each takes twenty times as long
-#else
-constexpr int kRounds = 400;
-#endif
+const int kRounds = someOf(400, 10); // under ThreadSanitizer each takes twenty times as long
 
 /// work() in an arena of `threads`, whatever the machine has.
 template <class Work>

@@ -3,6 +3,7 @@
 
 #include "slopes.h"
 
+#include "form.h"
 #include "terrain/presets.h"
 
 #include <gtest/gtest.h>
@@ -141,7 +142,7 @@ TEST(RollingStops, FewWalkDownAMeadow)
     makePlane(kNodes, kSide, radians(17.0), 0.0, preset.material(), preset.roughness);
   meadow.setDeviationPer(preset.deviationPer());
   std::vector<Rock> rocks;
-  for (int k = 0; k < 60; ++k)
+  for (int k = 0; k < someOf(60, 12); ++k)
   {
     Rock rock;
     rock.shape = makeShape(Shape::Eota111, 1.0);

@@ -64,7 +64,7 @@ TEST(Valleys, RocksDoNotFallThroughTheBottomOfAGully)
   constexpr double allowed = 0.06;
   std::mt19937 random(77);
   std::uniform_real_distribution<double> u(-1.0, 1.0);
-  const int rocks = isFullForm() ? 2000 : 200;
+  const int rocks = isFullForm() ? 2000 : someOf(200, 40);
   for (int k = 0; k < rocks; ++k)
   {
     const double wall = std::array{ 1.0, 1.5, 2.0, 3.0 }[std::size_t(k % 4)];
@@ -199,7 +199,7 @@ TEST(Valleys, SoftRocksKeepTheirEnergyBetweenTouches)
   std::mt19937 random(12);
   std::uniform_real_distribution<double> u(-1.0, 1.0);
   double worst = 0.0;
-  for (int k = 0; k < 60; ++k)
+  for (int k = 0; k < someOf(60, 10); ++k)
   {
     Pile pile;
     const Terrain ground = makeSlope(

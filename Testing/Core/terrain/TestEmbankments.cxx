@@ -2,6 +2,7 @@
 
 #include "base/errors.h"
 #include "dams.h"
+#include "form.h"
 #include "terrain/Obstacles.h"
 
 #include <gtest/gtest.h>
@@ -66,7 +67,7 @@ TEST(Embankments, CrestsAreAsHighAsAskedForBesideBends)
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> u(0.0, 1.0);
   int bunches = 0;
-  for (int repeat = 0; repeat < 200; ++repeat)
+  for (int repeat = 0; repeat < someOf(200, 20); ++repeat)
   {
     const double waves[] = { 0.3 + u(random), 0.3 + u(random), 6.3 * u(random), 6.3 * u(random) };
     const double roughness = u(random), fall = 0.4 * u(random);
@@ -134,7 +135,7 @@ TEST(Embankments, CrestsAreAsHighAsAskedForBesideBends)
     }
     bunches += 5 * feet < 2 * mesh.nodes.size();
   }
-  EXPECT_GT(bunches, 40);
+  EXPECT_GT(bunches, someOf(40, 0));
 }
 
 /// Whatever line is drawn: it is refused, or no face looks down and no number is lost.

@@ -1,6 +1,7 @@
 // Embankments and trees as explicit triangles: closed forms, and nothing goes through.
 
 #include "dams.h"
+#include "form.h"
 #include "law/settings.h"
 #include "piles.h"
 #include "slopes.h"
@@ -155,7 +156,7 @@ TEST(Obstacles, NoShotGoesThroughAWall)
   e.points = { { 5.0, 50.0 }, { 33.0, 50.0 }, { 60.0, 50.0 }, { 95.0, 50.0 } };
   terrain.setStructures(only(e));
   const int through = shoot(
-    terrain, 10000, 7,
+    terrain, someOf(10000, 2000), 7,
     [](Rock& rock, auto&& uniform)
     {
       rock.position = Vec3(uniform(25, 75), uniform(44, 46.5), uniform(108, 120));
@@ -177,7 +178,7 @@ TEST(Obstacles, NoShotGoesThroughATree)
   terrain.setStructures(s);
   // At the axis: what goes through keeps its way, what is stopped is turned off it.
   const int through = shoot(
-    terrain, 10000, 8,
+    terrain, someOf(10000, 2000), 8,
     [](Rock& rock, auto&& uniform)
     {
       rock.position = Vec3(50.0, uniform(44, 46), uniform(108, 120));

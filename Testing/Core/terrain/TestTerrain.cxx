@@ -3,6 +3,7 @@
 
 #include "base/errors.h"
 #include "base/random.h"
+#include "form.h"
 #include "slopes.h"
 #include "terrain/Surface.h"
 
@@ -269,7 +270,8 @@ TEST(Surface, NoGroundIsInABallOverTheLid)
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> place(0.0, 40.0), height(0.0, 12.0), size(0.3, 2.0);
   int cleared = 0, low = 0;
-  for (int k = 0; k < 4000; ++k)
+  const int count = someOf(4000, 400);
+  for (int k = 0; k < count; ++k)
   {
     const Vec3 center(place(random), place(random), 0.0);
     const double half = 4.0, radius = size(random);
@@ -299,8 +301,8 @@ TEST(Surface, NoGroundIsInABallOverTheLid)
     }
     low += nearest <= radius;
   }
-  EXPECT_GT(cleared, 1000); // both are met
-  EXPECT_GT(low, 300);
+  EXPECT_GT(cleared, count / 4); // both are met
+  EXPECT_GT(low, count / 14);
   EXPECT_FALSE(GroundHeightBound().isUnder({ 20.0, 20.0, 1e6 }, 1.0));
 }
 

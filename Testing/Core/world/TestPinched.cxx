@@ -1,6 +1,7 @@
 // Stones that far heavier rocks press against the ground, or against each other, get no more of
 // their energy than an impact can give them.
 
+#include "form.h"
 #include "law/settings.h"
 #include "piles.h"
 #include "rock/placement.h"
@@ -47,7 +48,7 @@ TEST(Pinched, StoneUnderABoulderIsNotShotOut)
   {
     for (const double speed : { 10.0, 30.0 })
     {
-      for (int seed = 0; seed < 6; ++seed)
+      for (int seed = 0; seed < someOf(6, 1); ++seed)
       {
         SCOPED_TRACE("1:" + std::to_string(int(ratio)) + ", seed " + std::to_string(seed));
         std::mt19937_64 random{ std::uint64_t(seed) };
