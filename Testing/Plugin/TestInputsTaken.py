@@ -108,7 +108,7 @@ assert none == [], none
 write_text("farm.csv", 'WKT,name\n"MULTIPOLYGON((({0}),(62 10,62 90,65 90,65 10,62 10)),'
            '((80 0,80 100,85 100,85 0,80 0)))",farm\n'.format(road))
 farm, notes = line_of("farm.csv")
-assert farm["LineName"] == ["farm", "farm"] and farm["Passings"][0] == rows["Passings"][0], farm
+assert farm["LineName"] == ["farm", "farm (2)"] and farm["Passings"][0] == rows["Passings"][0], farm
 assert "2 polygons" in notes[0], notes
 # Lines and polygons in one layer; polygons of a source in the pipeline.
 write_text("both.csv", f'WKT,name\n"POLYGON(({road}))",road\n"LINESTRING(60 -10,60 110)",in\n')
