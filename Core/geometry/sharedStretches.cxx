@@ -24,7 +24,7 @@ struct Interval
   bool any() const { return to > from; }
 };
 
-constexpr Interval kNone{ 1.0, 0.0 };
+constexpr Interval kNoInterval{ 1.0, 0.0 };
 
 /// A straight part of a line, with the way along the line to it.
 struct Piece
@@ -42,7 +42,7 @@ Interval withinDisc(const Piece& piece, const Point& centre, double radius)
   const Point to = centre - piece.start;
   const double way = to.dot(piece.along);
   const double half = radius * radius - (to - way * piece.along).squaredNorm();
-  return half <= 0.0 ? kNone : Interval{ way - std::sqrt(half), way + std::sqrt(half) };
+  return half <= 0.0 ? kNoInterval : Interval{ way - std::sqrt(half), way + std::sqrt(half) };
 }
 
 /// Narrows an interval of x to that of low ≤ offset + slope x ≤ high.
@@ -50,7 +50,7 @@ Interval narrowed(Interval interval, double offset, double slope, double low, do
 {
   if (slope == 0.0)
   {
-    return offset >= low && offset <= high ? interval : kNone;
+    return offset >= low && offset <= high ? interval : kNoInterval;
   }
   const auto [from, to] = std::minmax({ (low - offset) / slope, (high - offset) / slope });
   return { std::max(interval.from, from), std::min(interval.to, to) };
@@ -83,7 +83,7 @@ Interval sharedPart(const Piece& piece, const Piece& other)
     all = narrowed(all, offset, 1.0 - piece.along.dot(other.along), kSharedLength,
       std::numeric_limits<double>::infinity());
   }
-  return all.any() ? Interval{ piece.before + all.from, piece.before + all.to } : kNone;
+  return all.any() ? Interval{ piece.before + all.from, piece.before + all.to } : kNoInterval;
 }
 
 /// Where a piece crosses an earlier one of its line. The ends of the line are none: a ring closes.

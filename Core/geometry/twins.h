@@ -36,7 +36,7 @@ struct SharedStretch
   int earlier = -1;    ///< That other one, of several the longest; the line's own number: itself.
   double length = 0.0; ///< m
   Eigen::Vector2d from = Eigen::Vector2d::Zero(), to = Eigen::Vector2d::Zero();
-  /// Of loops as long as `kSharedLength` the first one's end.
+  /// End of the first loop that is as long as `kSharedLength`.
   std::optional<Eigen::Vector2d> crossing;
 };
 

@@ -6,9 +6,10 @@
 //   longSlopes [--ground NAME] [--set name=value]… [--mix] [--meadow] [--jumps] [--iterations N]
 //     [--seed N]
 //
-// With --jumps, instead, jumps down 190 m of 35° by size, over those on springs of 1e13 N/m. EOTA 111 rocks; with --mix as many cubes and boxes of 2 : 1 : 1, each of N iterations. The ground is
+// EOTA 111 rocks; with --mix as many cubes and boxes of 2 : 1 : 1, each of N iterations. The ground is
 // the preset Meadow where nothing else is said, and that of the foot the same, or with --meadow
-// Meadow.
+// Meadow. Of --jumps comes another table instead: jumps down 190 m of 35° by size, over those on springs
+// of 1e13 N/m.
 
 #include "SlopeFigures.h"
 

@@ -125,9 +125,13 @@ def look(name, make, values, only_last=False):
     count += 1
 
 
+def is_switch(item):
+    return item.find("BooleanDomain") is not None
+
+
 def values_of(item):
     """Of a switch one that is neither 0 nor 1."""
-    if item.find("BooleanDomain") is not None:
+    if is_switch(item):
         return [-2**31]
     return COUNTS if item.tag == "IntVectorProperty" else NUMBERS
 
@@ -146,8 +150,7 @@ for path in XML:
                 continue
             if name[0] in READERS:
                 continue
-            switch = item.find("BooleanDomain") is not None
-            for make in MAKERS[name[0]][:1 if switch else None]:  # a proxy that is not there has to come in
+            for make in MAKERS[name[0]][:1 if is_switch(item) else None]:  # a proxy that is not there has to come in
                 for value in values_of(item):
                     look(name, make, value)
                 if not whole:  # the others are good
@@ -177,8 +180,7 @@ for path in XML:
                 what = f"{proxy.get('name')} {item.get('name')} {value}: {errors}, {time.time() - begun:.0f} s"
                 print(what)
                 words = len(errors) == 1 and item.get("name").lower() in errors[0].lower().replace(" ", "")
-                switch = item.find("BooleanDomain") is not None
-                if (errors if switch else not words) or os.path.exists(name) != (not errors) or \
+                if (errors if is_switch(item) else not words) or os.path.exists(name) != (not errors) or \
                         time.time() - begun > SLOWEST:
                     failures.append(what)
                 delete_sources()

@@ -19,7 +19,7 @@ namespace
 constexpr double steepSite = 60.0;
 /// Heights in km make of a wall of 60° a plain that rises by 1.7 in a thousand.
 constexpr double flatSite = 2e-3;
-/// Between heights, m: cliffs that rocks fall over are lower than this, and are no step any more.
+/// Spacing of heights, m: cliffs that rocks fall over are lower than this, and are no step any more.
 constexpr double coarseSite = 25.0;
 
 /// Share of the cells that are steeper than `tangent`, of those that have heights.

@@ -170,5 +170,5 @@ TEST(RollingStops, FewWalkDownAMeadow)
     }
     walk += slow > kMostWalking;
   }
-  EXPECT_LE(walk, 6);
+  EXPECT_LE(walk, someOf(6, 1)); // a tenth
 }
