@@ -144,7 +144,7 @@ bool applyBroken(Fall& fall, const StructuresOnWay::Broken& broken)
   return touched;
 }
 
-bool passBarriers(Fall& fall, const PathPiece& way, double taken)
+bool passBarriers(Fall& fall, const Way& way, double taken)
 {
   fall.structures.passBarriers(
     way, taken, fall.parameters.gravity, fall.body, fall.recorder.trajectory().structures);

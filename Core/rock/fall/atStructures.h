@@ -32,7 +32,7 @@ bool applyBroken(Fall& fall, const StructuresOnWay::Broken& broken);
 // Barriers
 
 /// Goes on along this way, on which barriers have taken so much so far (J); whether it hits one.
-bool passBarriers(Fall& fall, const PathPiece& way, double taken);
+bool passBarriers(Fall& fall, const Way& way, double taken);
 void meetBarrier(Fall& fall); ///< The one that it hits, where the rock is.
 /// The one that it hits, in a step of contact that would go to `end` and in which others have taken
 /// so much (J); returns what this one takes if it breaks.

@@ -64,7 +64,7 @@ bool passBarriersInStep(Fall& fall, bool touching)
   const RockBody& body = fall.body;
   const BlockState end = body.state;
   double lost = 0.0;
-  const PathPiece way{ body.before, end, end.time - body.before.time, false };
+  const Way way{ body.before, end, end.time - body.before.time, false };
   fall.structures.findBarriers(way, fall.parameters.gravity, body.block.radius());
   while (passBarriers(fall, way, lost))
   {

@@ -46,7 +46,7 @@ void advanceInFlight(Fall& fall, double duration)
   RockBody& body = fall.body;
   const BlockState start = body.state;
   BlockState reached = start;
-  const PathPiece way{ start, reached, duration, true };
+  const Way way{ start, reached, duration, true };
   if (fall.structures.hasBarriers())
   {
     reached.position = placeInFlight(start, fall.parameters.gravity, duration);

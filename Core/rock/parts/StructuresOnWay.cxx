@@ -338,7 +338,7 @@ bool StructuresOnWay::apply(const Broken& broken, const SurfacePatch& patch)
   return near;
 }
 
-void StructuresOnWay::findBarriers(const PathPiece& way, double gravity, double radius)
+void StructuresOnWay::findBarriers(const Way& way, double gravity, double radius)
 {
   hit_ = {};
   passages_.clear();
@@ -423,7 +423,7 @@ void StructuresOnWay::findBarriers(const PathPiece& way, double gravity, double 
   passages_.erase(std::unique(passages_.begin(), passages_.end()), passages_.end());
 }
 
-void StructuresOnWay::passBarriers(const PathPiece& way, double taken, double gravity,
+void StructuresOnWay::passBarriers(const Way& way, double taken, double gravity,
   const RockBody& body, std::vector<StructureEvent>& events)
 {
   const bool again = hit_.barrier >= 0;

@@ -21,8 +21,8 @@ class Surface;
 struct RockBody;
 struct SurfacePatch;
 
-/// One piece of the path: a parabola, or a step of contact.
-struct PathPiece
+/// Where a rock goes in one go: along a parabola, or by a step of contact.
+struct Way
 {
   const BlockState& from;
   const BlockState& to;
@@ -83,11 +83,11 @@ public:
   BarrierLoad loadOf(int barrier) const;
   /// Finds those whose line is passed, or its straight continuation as near to an end as the rock
   /// is wide (`radius`, m).
-  void findBarriers(const PathPiece& way, double gravity, double radius);
+  void findBarriers(const Way& way, double gravity, double radius);
   /// Goes on along this way, on which barriers have taken so much so far (J): notes what records,
   /// and finds the first barrier that stops the rock or breaks, `hit`. After such a one flight goes
   /// on to those at the same place only; its rest is flown anew.
-  void passBarriers(const PathPiece& way, double taken, double gravity, const RockBody& body,
+  void passBarriers(const Way& way, double taken, double gravity, const RockBody& body,
     std::vector<StructureEvent>& events);
   const BarrierHit& hit() const { return hit_; }
   const Barrier& barrierHit() const;  ///< The one in `hit`.
