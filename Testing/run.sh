@@ -5,5 +5,5 @@
 source "$(dirname -- "${BASH_SOURCE[0]}")/setup.sh"
 
 setup all
-# One more than processors: a window waits for its events a third of the time.
-exec ctest --test-dir "$rockfall_build" --output-on-failure --parallel "$(($(nproc) + 1))" "$@" </dev/null
+# Two more than processors: a window waits for its events a third of the time, and a start for the disk.
+exec ctest --test-dir "$rockfall_build" --output-on-failure --parallel "$(($(nproc) + 2))" "$@" </dev/null

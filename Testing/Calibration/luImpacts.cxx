@@ -12,6 +12,8 @@
 #include "SingleImpact.h"
 #include "fieldScores.h"
 
+#include "Core/slopes.h"
+
 #include "base/random.h"
 #include "geometry/shapes.h"
 #include "statistics/sample.h"
@@ -91,7 +93,7 @@ std::vector<Rock> drawRocks(const Published& impact, const Terrain& ground, cons
   {
     const double turn = 2.0 * std::numbers::pi *
       uniformDeviate(s.simulation.seed, std::uint32_t(k), Draw::Attitude, 0);
-    rock.orientation = Quat::FromTwoVectors(Vec3::UnitZ(), Vec3::UnitY()) *
+    rock.orientation = testing::turnBetween(Vec3::UnitZ(), Vec3::UnitY()) *
       Quat(Eigen::AngleAxisd(turn, Vec3::UnitZ()));
     rocks.push_back(heldBack(ground, rock, s.simulation.gravity));
   }

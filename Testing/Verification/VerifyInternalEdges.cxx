@@ -42,8 +42,8 @@ std::vector<Crossing> crossings()
     rock.shape = shape;
     if (slides)
     {
-      rock.orientation =
-        Quat::FromTwoVectors(Vec3::UnitZ(), kNormal) * Quat(Eigen::AngleAxisd(0.3, Vec3::UnitZ()));
+      rock.orientation = rockfall::testing::turnBetween(Vec3::UnitZ(), kNormal) *
+        Quat(Eigen::AngleAxisd(0.3, Vec3::UnitZ()));
       rock.position = start + halfHeight * kNormal;
       rock.angularVelocity = 1.5 * kNormal; // turns as it slides: all edges at all angles
     }

@@ -49,7 +49,8 @@ void layOn(Rock& rock, double angle)
     lowest =
       rock.shape.normals()[f].z() < rock.shape.normals()[std::size_t(lowest)].z() ? int(f) : lowest;
   }
-  rock.orientation = Quat::FromTwoVectors(rock.shape.normals()[std::size_t(lowest)], -normal);
+  rock.orientation =
+    rockfall::testing::turnBetween(rock.shape.normals()[std::size_t(lowest)], -normal);
   rock.position = Vec3(0.5 * kSize, 0.5 * kSize, 100.0) + kRadius * normal;
 }
 

@@ -263,7 +263,7 @@ Polyhedron makeBall(int subdivisions, double radius)
     }
     faces = std::move(finer);
   }
-  const Quat turn = Quat::FromTwoVectors(points.front(), -Vec3::UnitZ());
+  const Quat turn = testing::turnBetween(points.front(), -Vec3::UnitZ());
   for (Vec3& p : points)
   {
     p = radius * (turn * p);

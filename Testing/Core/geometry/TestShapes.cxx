@@ -36,7 +36,7 @@ void PrintTo(const Expected& expected, std::ostream* out)
   *out << shapeName(expected.shape);
 }
 
-std::string printName(const testing::TestParamInfo<Expected>& info)
+std::string printName(const ::testing::TestParamInfo<Expected>& info)
 {
   return shapeName(info.param.shape);
 }
@@ -66,7 +66,7 @@ std::vector<Expected> expectations()
 
 } // namespace
 
-class Platonic : public testing::TestWithParam<Expected>
+class Platonic : public ::testing::TestWithParam<Expected>
 {
 };
 
@@ -97,7 +97,7 @@ TEST_P(Platonic, ClosedForm)
   EXPECT_NEAR(body.radius(), expected.radius, rounding);
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, Platonic, testing::ValuesIn(expectations()), printName);
+INSTANTIATE_TEST_SUITE_P(Shapes, Platonic, ::testing::ValuesIn(expectations()), printName);
 
 TEST(Shapes, VolumeAndCentroidAreExact)
 {

@@ -22,13 +22,13 @@ using namespace meshTexts;
 namespace
 {
 
-struct Sample
+struct MeshText
 {
   std::string extension, bytes;
 };
 
 /// The box in every format.
-std::vector<Sample> allFormats(const Vec3& middle = farAway)
+std::vector<MeshText> allFormats(const Vec3& middle = farAway)
 {
   const std::vector<Vec3> points = corners(middle);
   return { { ".obj", objText(points) }, { ".stl", stlText(points) },
@@ -42,7 +42,7 @@ double volumeOf(const Mesh& mesh)
 }
 
 /// The message of a FileError; "" if the bytes are read. Anything else is a failure.
-std::string complaint(const Sample& sample)
+std::string complaint(const MeshText& sample)
 {
   try
   {
@@ -89,7 +89,7 @@ bool has(const std::string& text, const std::string& words)
 
 TEST(MeshFiles, DoublePrecisionInEveryFormat)
 {
-  for (const Sample& sample : allFormats())
+  for (const MeshText& sample : allFormats())
   {
     SCOPED_TRACE(sample.extension + " " + sample.bytes.substr(0, 40));
     const Mesh mesh = parseMesh(sample.extension, sample.bytes, "file");
@@ -215,7 +215,7 @@ TEST(MeshFiles, WhatLiesIsToldByNameAndPlace)
   const std::string binary = "ply\nformat binary_little_endian 1.0\n";
   const struct
   {
-    Sample sample;
+    MeshText sample;
     const char* words;
   } lies[] = {
     // A list of −5, and one whose length is a real number that leads back.
@@ -261,7 +261,7 @@ TEST(MeshFiles, NoFileOfBytesThatWereChangedBringsItDown)
   int read = 0, refused = 0;
   for (int round = 0; round < 400; ++round)
   {
-    for (Sample sample : allFormats(Vec3(1, 2, 3)))
+    for (MeshText sample : allFormats(Vec3(1, 2, 3)))
     {
       const int changes = 1 + int(random() % 4);
       for (int k = 0; k < changes; ++k)
