@@ -3,8 +3,8 @@
 #include "base/abort.h"
 #include "base/errors.h"
 #include "base/random.h"
+#include "base/text/numberText.h"
 #include "geometry/planeSampling.h"
-#include "gis/base/gdal.h"
 #include "law/settings.h"
 
 #include <algorithm>
@@ -19,8 +19,6 @@ namespace rockfall
 
 namespace
 {
-
-using gis::number;
 
 /// Memory of a rock until it is released, B: its polyhedron and its faces with their arrays.
 constexpr double bytesPerRock = 8000.0;
@@ -41,9 +39,9 @@ void refuseTooMany(double rocks, const ReleaseDefaults& defaults, const std::str
 {
   if (!(rocks <= double(defaults.mostRocks)))
   {
-    throw ParameterError(what + number(rocks) + " rocks, more than MaximumRocks, which is " +
+    throw ParameterError(what + numberText(rocks) + " rocks, more than MaximumRocks, which is " +
       std::to_string(defaults.mostRocks) + "; they would take some " +
-      number(std::ceil(rocks * bytesPerRock / 1e9)) +
+      numberText(std::ceil(rocks * bytesPerRock / 1e9)) +
       " GB of memory before the first of them falls");
   }
 }
@@ -166,18 +164,18 @@ void ReleaseDefaults::validate() const
   }
   if (!(this->intensity >= 0.0 && std::isfinite(this->intensity)))
   {
-    throw ParameterError("Intensity is " + number(this->intensity) +
+    throw ParameterError("Intensity is " + numberText(this->intensity) +
       " rocks per m or m², it must be finite and at least 0");
   }
   if (!(this->height >= 0.0 && std::isfinite(this->height)))
   {
     throw ParameterError(
-      "ReleaseHeight is " + number(this->height) + " m, it must be finite and at least 0");
+      "ReleaseHeight is " + numberText(this->height) + " m, it must be finite and at least 0");
   }
   if (!(this->clusterRadius >= 0.0 && std::isfinite(this->clusterRadius)))
   {
-    throw ParameterError(
-      "ClusterRadius is " + number(this->clusterRadius) + " m, it must be finite and at least 0");
+    throw ParameterError("ClusterRadius is " + numberText(this->clusterRadius) +
+      " m, it must be finite and at least 0");
   }
   if (this->mostRocks < 1)
   {
@@ -188,8 +186,8 @@ void ReleaseDefaults::validate() const
 
 std::string Extent::text() const
 {
-  return "x " + number(xMin) + " to " + number(xMax) + ", y " + number(yMin) + " to " +
-    number(yMax);
+  return "x " + numberText(xMin) + " to " + numberText(xMax) + ", y " + numberText(yMin) + " to " +
+    numberText(yMax);
 }
 
 Extent extentOf(const Terrain& terrain)
@@ -258,7 +256,7 @@ std::vector<ReleasePlace> releasePlaces(std::span<const SourceRow> sources, cons
   if (layer.empty() && sources.front().geometry == SourceGeometry::Point &&
     defaults.intensity > 0.0)
   {
-    throw ParameterError("Intensity is " + number(defaults.intensity) +
+    throw ParameterError("Intensity is " + numberText(defaults.intensity) +
       " rocks per m or m²: the place in Center has neither length nor area, Amount says how many "
       "rocks it has");
   }
@@ -278,7 +276,7 @@ std::vector<ReleasePlace> releasePlaces(std::span<const SourceRow> sources, cons
   refuseTooMany(rocks, defaults,
     layer.empty() ? "Amount makes "
                   : layer + ": the sources make (row " + std::to_string(sources[largest].row) +
-        " alone " + number(most) + ") ");
+        " alone " + numberText(most) + ") ");
 
   std::vector<ReleasePlace> places;
   places.reserve(std::size_t(rocks));
@@ -312,8 +310,8 @@ std::vector<ReleasePlace> releasePlaces(std::span<const SourceRow> sources, cons
       if (!placed)
       {
         const std::string name = layer.empty() ? "Center" : rowName(layer, source);
-        throw DataError(point ? name + ": the point " + number(source.position.x()) + ", " +
-              number(source.position.y()) +
+        throw DataError(point ? name + ": the point " + numberText(source.position.x()) + ", " +
+              numberText(source.position.y()) +
               whyNoGround(*terrain, source.position.x(), source.position.y())
                               : name + ": none of " + std::to_string(kMostDrawsOfSource) +
               " places is on the terrain: the source spans " + extentOf({ &source, 1 }).text() +
@@ -376,7 +374,7 @@ std::vector<ReleasePlace> steepPlaces(
   const std::int64_t steep = steepCfes(terrain, cosine);
   if (steep == 0)
   {
-    throw DataError("SlopeThreshold is " + number(degrees(threshold)) +
+    throw DataError("SlopeThreshold is " + numberText(degrees(threshold)) +
       " degrees, and no CFE of the terrain is as steep");
   }
   const double area = areaOf(terrain, steep);
@@ -384,11 +382,11 @@ std::vector<ReleasePlace> steepPlaces(
     ? rounded(defaults.intensity * area, defaults.seed, 0)
     : double(defaults.amount);
   refuseTooMany(rocks, defaults,
-    "SlopeThreshold takes " + number(area) + " m² of the terrain, on which are to be ");
+    "SlopeThreshold takes " + numberText(area) + " m² of the terrain, on which are to be ");
   if (rocks == 0.0)
   {
-    throw DataError("Intensity " + number(defaults.intensity) + " makes no rock on the " +
-      number(area) + " m² that SlopeThreshold takes");
+    throw DataError("Intensity " + numberText(defaults.intensity) + " makes no rock on the " +
+      numberText(area) + " m² that SlopeThreshold takes");
   }
 
   // A further pass gives every rock its CFE, without a list of them all.

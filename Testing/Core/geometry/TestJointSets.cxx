@@ -1,5 +1,6 @@
 // A rock mass that joint sets cut into blocks: volumes, counts, faces that fit.
 
+#include "form.h"
 #include "geometry/shapes.h"
 #include "massCuts.h"
 #include "piles.h"
@@ -12,6 +13,7 @@
 #include <limits>
 #include <random>
 #include <set>
+#include <span>
 
 using namespace rockfall;
 using namespace rockfall::testing;
@@ -295,7 +297,8 @@ TEST(JointSets, CollapseThrowsNoWedgeAbout)
   // forces far from settled threw such out at up to 31 m/s here, and at 224 m/s elsewhere; and what
   // was pushed or turned in a step drove vertices under the slope by up to half a radius that were
   // out of its reach when the step began.
-  for (const unsigned seed : { 3u, 5u, 8u, 10u })
+  const unsigned seeds[] = { 3u, 5u, 8u, 10u };
+  for (const unsigned seed : std::span(seeds).first(std::size_t(someOf(4, 1))))
   {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> u(0.0, 1.0);

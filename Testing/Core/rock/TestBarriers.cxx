@@ -1,5 +1,6 @@
 // Barriers catch exactly what is below their height and capacity, whatever Δt and output interval.
 
+#include "form.h"
 #include "slopes.h"
 #include "terrain/Obstacles.h"
 
@@ -512,7 +513,7 @@ TEST(Barriers, OnOneLineAreAllMetOnce)
   std::mt19937 random(12);
   std::uniform_real_distribution<double> u(-1.0, 1.0);
   int held = 0;
-  for (int k = 0; k < 400; ++k)
+  for (int k = 0; k < someOf(400, 80); ++k)
   {
     const bool flies = k % 2 == 0;
     const double x = 60.0 + u(random), angle = 1.2 * u(random);
@@ -594,6 +595,6 @@ TEST(Barriers, OnOneLineAreAllMetOnce)
       first = met;
     }
   }
-  EXPECT_GT(held, 200);
-  EXPECT_LT(held, 1000);
+  EXPECT_GT(held, someOf(200, 30));
+  EXPECT_LT(held, someOf(1000, 210));
 }

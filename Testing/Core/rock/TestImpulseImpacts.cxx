@@ -1,10 +1,12 @@
 // Impacts of lone rocks as events in impulse space, with springs and dashpots as the judge.
 
+#include "form.h"
 #include "slopes.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
+#include <span>
 
 using namespace rockfall;
 using namespace rockfall::testing;
@@ -107,7 +109,8 @@ TEST(ImpulseImpacts, TouchesThatSpringsTakeForOneAreOne)
 
 TEST(ImpulseImpacts, AreThoseOfSpringsInTheMean)
 {
-  for (const Shape shape : { Shape::Cube, Shape::Icosahedron, Shape::Eota111 })
+  const Shape shapes[] = { Shape::Cube, Shape::Icosahedron, Shape::Eota111 };
+  for (const Shape shape : std::span(shapes).first(std::size_t(someOf(3, 1))))
   {
     for (const double e : { 0.8, 0.4 })
     {

@@ -501,7 +501,7 @@ TEST(Fragmentation, APieceBeginsWithItsPartOfTheMotionAndGainsNothing)
   net.height = 3.0;
   net.capacity = 1e5;
   std::vector<Rock> rocks;
-  for (int k = 0; k < 3; ++k)
+  for (int k = 0; k < someOf(3, 1); ++k)
   {
     Rock& rock = rocks.emplace_back(dropped(0.0));
     rock.blockId = k;
@@ -548,8 +548,8 @@ TEST(Fragmentation, APieceBeginsWithItsPartOfTheMotionAndGainsNothing)
       }
       first = next;
     }
-    EXPECT_GT(born, 30);
-    EXPECT_TRUE(yields || faster > 3) << "no piece was flung off";
+    EXPECT_GT(born, someOf(30, 5));
+    EXPECT_TRUE(yields || faster > someOf(3, 0)) << "no piece was flung off";
     EXPECT_EQ(scars > 0, yields);
   }
 }

@@ -147,7 +147,7 @@ TEST(Embankments, WildLinesAreBuiltRightOrRefused)
     [](double x, double y)
     { return 200.0 - 0.3 * x + std::sin(0.7 * y) + std::sin(0.5 * (x + y)); });
   int built = 0;
-  for (int repeat = 0; repeat < 10000; ++repeat)
+  for (int repeat = 0; repeat < someOf(10000, 2000); ++repeat)
   {
     Embankment e;
     e.height = 0.3 + 5.0 * u(random);
@@ -178,7 +178,7 @@ TEST(Embankments, WildLinesAreBuiltRightOrRefused)
       EXPECT_GE(t.normal.z(), -1e-9) << repeat; // not of a number that is none
     }
   }
-  EXPECT_GT(built, 2000);
+  EXPECT_GT(built, someOf(2000, 400));
 }
 
 TEST(Embankments, AnEdgeBetweenPiecesOfAPlaneIsNoFeature)
