@@ -90,7 +90,7 @@ bool isBlank(std::string_view line)
 /// Lines before the rows.
 struct TableHead
 {
-  std::optional<char> said; ///< The separator, by a line of its own.
+  char said = '\0'; ///< The separator, by a line of its own; 0: there is none.
   std::string_view header, lastComment;
   std::size_t comments = 0;
   bool bare = true; ///< There is nothing but the header.
@@ -99,7 +99,7 @@ struct TableHead
   {
     for (std::string_view line; header.empty() && lines.take(line);)
     {
-      const auto separator = said ? std::nullopt : separatorLine(line);
+      const char separator = said ? '\0' : separatorLine(line).value_or('\0');
       if (!separator && !isComment(line) && !isBlank(line))
       {
         header = line;
@@ -141,7 +141,7 @@ std::optional<std::string> bareTable(
     return std::nullopt;
   }
   const char separator =
-    head.said ? *head.said : CSVDetectSeperator(std::string(head.header).c_str());
+    head.said ? head.said : CSVDetectSeperator(std::string(head.header).c_str());
   std::string result;
   const auto put = [&](std::string_view row)
   { result += head.said ? inQuotes(quotedCells(row, separator)) : std::string(row); };
