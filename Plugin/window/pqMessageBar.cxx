@@ -167,6 +167,10 @@ void pqMessageBar::look()
     notes.prepend(tr("Earlier notes (%1): View, Output Messages").arg(more));
   }
   const QString text = (errors + notes).join("<br>");
+  if (text.isEmpty())
+  {
+    this->setVisible(false); // ParaView brings bars back as they were when it was left
+  }
   if (text == this->Shown)
   {
     return;

@@ -16,13 +16,8 @@
 #include "pqApplicationCore.h"
 #include "pqCoreUtilities.h"
 #include "pqDataRepresentation.h"
-#include "pqFileDialog.h"
-#include "pqHelpReaction.h"
 #include "pqObjectBuilder.h"
-#include "pqOutputPort.h"
-#include "pqPVApplicationCore.h"
 #include "pqPipelineSource.h"
-#include "pqPythonManager.h"
 #include "pqRenderView.h"
 #include "pqRunBar.h"
 #include "pqServer.h"
@@ -32,28 +27,14 @@
 #include "vtkCommand.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
-#include "vtkSMRenderViewProxy.h"
 #include "vtkSMSettings.h"
 #include "vtkSMSourceProxy.h"
-#include "vtkSMTrace.h"
 
 #include <QCoreApplication>
-#include <QDesktopServices>
-#include <QDir>
-#include <QFileInfo>
-#ifdef ROCKFALL_OPENS_HELP
-#include <QHelpEngine>
-#endif
 #include <QKeyEvent>
 #include <QMainWindow>
-#include <QMenu>
 #include <QMenuBar>
 #include <QPointer>
-#include <QScreen>
-#include <QStatusBar>
-#include <QUrl>
-
-#include <dlfcn.h>
 
 #include <string>
 
@@ -66,29 +47,12 @@ using rockfall::window::NotUndone;
 
 constexpr int kLookAtPanel = 500;  // ms
 constexpr int kLookForWindow = 20; // ms
-constexpr int kReadNotes = 30000;  // ms
 
 /// Films, unless the user has saved others, are in real time at the default output interval: 20 frames a
 /// second, where ParaView has 1, and each of them, where ParaView 6.1 takes the scene's stride.
 constexpr const char* kFilms =
   R"({"misc": {"SaveAnimation": {"FrameRate": 20, "FrameStride": 1}}})";
 constexpr double kBelowUser = 0.5; // priority of settings
-
-/// The folder of the scripts, beside that of this plugin: ParaView would take them for plugins
-/// there.
-QString scriptFolder()
-{
-  Dl_info info;
-  return dladdr(reinterpret_cast<void*>(&scriptFolder), &info) && info.dli_fname
-    ? QFileInfo(QString::fromLocal8Bit(info.dli_fname)).absolutePath() + "/../RockfallScripts"
-    : QString();
-}
-
-/// A text of Python.
-QString quoted(QString text)
-{
-  return "'" + text.replace("\\", "\\\\").replace("'", "\\'") + "'";
-}
 
 /// A source or filter of the plugin that may name files.
 bool isOurs(vtkSMProxy* proxy)
@@ -199,18 +163,6 @@ void pqRockfallWindow::begin()
   QCoreApplication::instance()->installEventFilter(this);
   vtkSMSettings::GetInstance()->AddCollectionFromString(kFilms, kBelowUser);
   this->makeMenu(window);
-  const QString pages = scriptFolder() + "/RockfallDDA.qch";
-  if (QFileInfo::exists(pages))
-  {
-    pqApplicationCore* application = pqApplicationCore::instance();
-#ifdef ROCKFALL_OPENS_HELP
-    // Qt 6's engine begins read only, and ParaView leaves it so.
-    QHelpEngine* help = application->helpEngine();
-    help->setReadOnly(false);
-    help->setupData();
-#endif
-    application->registerDocumentation(pages);
-  }
 }
 
 //-----------------------------------------------------------------------------
@@ -229,113 +181,6 @@ bool pqRockfallWindow::eventFilter(QObject* watched, QEvent* event)
     }
   }
   return this->Superclass::eventFilter(watched, event);
-}
-
-//-----------------------------------------------------------------------------
-void pqRockfallWindow::makeMenu(QMainWindow* window)
-{
-  auto* menu = new QMenu(tr("&Rockfall"), window->menuBar());
-  menu->setObjectName("menuRockfall");
-  QAction* before = nullptr;
-  for (QAction* action : window->menuBar()->actions())
-  {
-    if (action->menu() && action->menu()->objectName() == "menuTools")
-    {
-      before = action;
-    }
-  }
-  window->menuBar()->insertMenu(before, menu);
-  menu
-    ->addAction(tr("New Study of an Elevation File..."), this,
-      [this]
-      {
-        pqFileDialog dialog(nullptr, mainWindow(), tr("Elevations of the slope"), QString(),
-          tr("Elevation files (*.tif *.tiff *.asc *.dem *.hgt *.img *.nc *.grd *.vrt *.bil *.flt "
-             "*.xyz "
-             "*.gpkg *.shp *.geojson *.dxf);;All files (*)"));
-        dialog.setObjectName("RockfallStudyDialog");
-        dialog.setFileMode(pqFileDialog::ExistingFile);
-        if (dialog.exec() == QDialog::Accepted && !dialog.getSelectedFiles().isEmpty())
-        {
-          this->runPython("new_study(" + quoted(dialog.getSelectedFiles().first()) + ")");
-        }
-      })
-    ->setObjectName("actionNewStudy");
-  menu->addAction(tr("Example: Test Slope"), this, [this] { this->runPython("new_study('')"); })
-    ->setObjectName("actionTestSlope");
-  menu->addAction(tr("Example: Jacksboro Fault"), this, [this] { this->runPython("jacksboro()"); })
-    ->setObjectName("actionJacksboro");
-  menu->addSeparator();
-  menu
-    ->addAction(tr("Report of a Batch Study..."), this,
-      [this]
-      {
-        pqFileDialog dialog(nullptr, mainWindow(), tr("manifest.json of a finished study"),
-          QString(), tr("Finished studies (manifest.json)"));
-        dialog.setObjectName("RockfallReportDialog");
-        dialog.setFileMode(pqFileDialog::ExistingFile);
-        if (dialog.exec() == QDialog::Accepted && !dialog.getSelectedFiles().isEmpty())
-        {
-          this->runPython("report(" + quoted(dialog.getSelectedFiles().first()) + ")");
-        }
-      })
-    ->setObjectName("actionReport");
-  menu->addAction(tr("Pick a Trajectory"), this, [this] { this->pickTrajectory(); })
-    ->setObjectName("actionPickTrajectory");
-  menu->addAction(tr("Rocks Meet This Structure"), this, [this] { this->meetStructure(); })
-    ->setObjectName("actionMeetStructure");
-  menu
-    ->addAction(tr("Documentation"), this,
-      [] { pqHelpReaction::showHelp("qthelp://RockfallDDA.pages/RockfallDDA/README.html"); })
-    ->setObjectName("actionDocumentation");
-  menu->addAction(tr("Clock"), this, [this] { this->runPython("clock()"); })
-    ->setObjectName("actionClock");
-  menu->addAction(tr("Scale, North and Date"), this, [this] { this->runPython("sheet()"); })
-    ->setObjectName("actionSheet");
-  // Pictures for the documentation, taken by tests, and what tests ask the pipeline for.
-  const QString checks = qEnvironmentVariable("ROCKFALL_CHECKS");
-  if (!checks.isEmpty())
-  {
-    menu
-      ->addAction("Check", this,
-        [this, checks]
-        {
-          pqPVApplicationCore::instance()->pythonManager()->executeCode(
-            ("import runpy\nrunpy.run_path(" + quoted(checks) +
-              ", {'number': " + QString::number(++this->Checks) + "})\n")
-              .toUtf8());
-        })
-      ->setObjectName("actionCheck");
-  }
-  const QString folder = qEnvironmentVariable("ROCKFALL_PICTURES");
-  if (!folder.isEmpty())
-  {
-    window->resize(QSize(1400, 900).boundedTo(window->screen()->size()));
-    menu
-      ->addAction("Picture", this,
-        [this, window, folder]
-        { window->grab().save(folder + "/window-" + QString::number(++this->Pictures) + ".png"); })
-      ->setObjectName("actionPicture");
-  }
-}
-
-//-----------------------------------------------------------------------------
-void pqRockfallWindow::runPython(const QString& statement)
-{
-  auto* python = pqPVApplicationCore::instance()->pythonManager();
-  if (!python)
-  {
-    qCritical("ParaView was built without Python: Rockfall studies cannot be made from the menu");
-    return;
-  }
-  const QString folder = scriptFolder();
-  const QString code = "import sys\nif '" + folder + "' not in sys.path: sys.path.insert(0, '" +
-    folder + "')\nimport rockfall_study\nrockfall_study." + statement + "\n";
-  const NotUndone own; // a study of many steps is not taken back one by one
-  this->Scripting = true;
-  python->executeCode(code.toUtf8());
-  this->Scripting = false;
-  this->settleRuns();
 }
 
 //-----------------------------------------------------------------------------
@@ -418,95 +263,6 @@ void pqRockfallWindow::onPreset(vtkObject* property, unsigned long event)
     {
       number.Set(value);
     }
-  }
-}
-
-//-----------------------------------------------------------------------------
-void pqRockfallWindow::pickTrajectory()
-{
-  if (auto* view = qobject_cast<pqRenderView*>(pqActiveObjects::instance().activeView()))
-  {
-    this->Picker->begin(view);
-    this->tell(tr("Click a trajectory"));
-  }
-  else
-  {
-    this->tell(tr("Click into the view of the slope first"));
-  }
-}
-
-//-----------------------------------------------------------------------------
-void pqRockfallWindow::meetStructure()
-{
-  pqPipelineSource* structure = pqActiveObjects::instance().activeSource();
-  if (!structure || !isOf(structure->getProxy(), { "vtkDrawnStructure" }))
-  {
-    this->tell(tr("Click the drawn structure in the pipeline first"));
-    return;
-  }
-  vtkSMProxy* under = vtkSMPropertyHelper(structure->getProxy(), "Terrain").GetAsProxy();
-  int met = 0;
-  const pqScopedUndoSet undo(tr("Rocks Meet %1").arg(structure->getSMName()));
-  auto* model = pqApplicationCore::instance()->getServerManagerModel();
-  for (pqPipelineSource* source : model->findItems<pqPipelineSource*>())
-  {
-    vtkSMProxy* proxy = source->getProxy();
-    if (!isOf(proxy, { "vtkRockBlockSource", "vtkJointedRockMass", "vtkRockfallSimulation" }))
-    {
-      continue;
-    }
-    vtkSMPropertyHelper slope(proxy, "Terrain", true);
-    if (slope.GetNumberOfElements() > 0 && slope.GetAsProxy() == under)
-    {
-      SM_SCOPED_TRACE(PropertiesModified).arg("proxy", proxy);
-      slope.Set(structure->getProxy(), 0);
-      proxy->UpdateVTKObjects();
-      ++met;
-    }
-  }
-  if (met == 0)
-  {
-    this->tell(tr("No rocks are released on the slope that it was drawn on"));
-  }
-  pqApplicationCore::instance()->render();
-}
-
-//-----------------------------------------------------------------------------
-void pqRockfallWindow::onPicked(pqOutputPort* port, int cell)
-{
-  this->tell(QString());
-  this->runPython(QString("profile(%1, %2, %3)")
-                    .arg(quoted(port->getSource()->getSMName()))
-                    .arg(port->getPortNumber())
-                    .arg(cell));
-  const NotUndone own;
-  auto* model = pqApplicationCore::instance()->getServerManagerModel();
-  for (pqPipelineSource* source : model->findItems<pqPipelineSource*>())
-  {
-    if (isOf(source->getProxy(), { "vtkTrajectoryProfile" }))
-    {
-      pqPathPicker::fade(source->getProxy(), true);
-    }
-  }
-}
-
-//-----------------------------------------------------------------------------
-void pqRockfallWindow::onRemoved(pqPipelineSource* source)
-{
-  if (isOf(source->getProxy(), { "vtkTrajectoryProfile" }))
-  {
-    const NotUndone own;
-    pqPathPicker::fade(source->getProxy(), false);
-  }
-}
-
-//-----------------------------------------------------------------------------
-void pqRockfallWindow::tell(const QString& message)
-{
-  if (QMainWindow* window = mainWindow())
-  {
-    window->statusBar()->showMessage(message, kReadNotes);
-    window->statusBar()->setStatusTip(message); // comes back under the mouse
   }
 }
 

@@ -62,6 +62,7 @@ private:
   void runPython(const QString& statement);
   /// What a script has made, it has drawn: whole runs are not drawn once more.
   void settleRuns();
+  void makeReport(const QString& manifest);
   void pickTrajectory();
   /// Puts the rocks of its slope on the structure that is chosen in the pipeline.
   void meetStructure();

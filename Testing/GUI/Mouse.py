@@ -12,9 +12,13 @@ def picked():
 
 
 def unpicked():
-    """Paths are as they were before one was picked, when its profile is gone."""
+    """Paths are as they were before one was picked, when the last of their profiles is gone."""
     view = simple.GetRenderView()
-    simple.Delete(simple.FindSource("Profile"))
+    first = simple.FindSource("Profile")
+    second = simple.TrajectoryProfile(Input=first.Input, Trajectory=1)
+    simple.Delete(first)
+    assert simple.GetDisplayProperties(simple.FindSource("Paths"), view).Opacity < 0.5, "paths hide the other picked one"
+    simple.Delete(second)
     assert simple.GetDisplayProperties(simple.FindSource("Paths"), view).Opacity == 1.0, "paths stay pale"
 
 
