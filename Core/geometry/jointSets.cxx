@@ -3,6 +3,7 @@
 #include "base/abort.h"
 #include "base/errors.h"
 #include "base/random.h"
+#include "base/require.h"
 #include "base/text/numberText.h"
 #include "geometry/shell.h"
 
@@ -170,15 +171,9 @@ void MassCut::validate() const
       ", it must be 0 (refuse), 1 (drop) or 2 (keep)");
   }
   const auto notNegative = [](double value, const char* field, const char* unit)
-  {
-    if (!(value >= 0.0 && std::isfinite(value)))
-    {
-      throw ParameterError(std::string(field) + " is " + numberText(value) + " " + unit +
-        ", it must be finite and at least 0");
-    }
-  };
-  notNegative(this->leastThickness, "MinimumThickness", "m");
-  notNegative(this->leastVolume, "MinimumVolume", "m³");
+  { require(value >= 0.0 && std::isfinite(value), field, value, unit, "finite and at least 0"); };
+  notNegative(this->leastThickness, "MinimumThickness", " m");
+  notNegative(this->leastVolume, "MinimumVolume", " m³");
   if (this->mostBlocks < 1)
   {
     throw ParameterError(

@@ -1,7 +1,6 @@
 #include "rock/parameters.h"
 
-#include "base/errors.h"
-#include "base/text/numberText.h"
+#include "base/require.h"
 #include "law/settings.h"
 #include "rock/rockContacts.h"
 
@@ -14,7 +13,7 @@ namespace rockfall
 
 void Fragmentation::validate() const
 {
-  const auto require = [](bool good, double value, const char* field, const char* wanted)
+  const auto check = [](bool good, double value, const char* field, const char* wanted)
   {
     if (!good || !std::isfinite(value))
     {
@@ -22,23 +21,23 @@ void Fragmentation::validate() const
     }
   };
   const char* const share = ", it must be 0 to 1";
-  require(this->energy >= 0.0, this->energy, "FragmentationEnergy",
+  check(this->energy >= 0.0, this->energy, "FragmentationEnergy",
     " J/m³, it must be finite and not negative");
-  require(this->fractalDimension >= 0.0 && this->fractalDimension <= 3.0, this->fractalDimension,
+  check(this->fractalDimension >= 0.0 && this->fractalDimension <= 3.0, this->fractalDimension,
     "FractalDimension", ", it must be 0 to 3");
-  require(this->leastVolume >= 0.0, this->leastVolume, "LeastFragment",
+  check(this->leastVolume >= 0.0, this->leastVolume, "LeastFragment",
     " m³, it must be finite and not negative");
-  require(this->survival >= 0.0 && this->survival <= 1.0, this->survival, "SurvivalRate", share);
-  require(this->loss >= 0.0 && this->loss <= 1.0, this->loss, "FragmentationLoss", share);
-  require(this->spread >= 0.0 && this->spread <= radians(90.0), degrees(this->spread),
+  check(this->survival >= 0.0 && this->survival <= 1.0, this->survival, "SurvivalRate", share);
+  check(this->loss >= 0.0 && this->loss <= 1.0, this->loss, "FragmentationLoss", share);
+  check(this->spread >= 0.0 && this->spread <= radians(90.0), degrees(this->spread),
     "FragmentSpread", "°, it must be 0 to 90");
   if (this->on) // Three have no default: 0 says that nothing is typed.
   {
-    require(this->energy > 0.0, this->energy, "FragmentationEnergy",
+    check(this->energy > 0.0, this->energy, "FragmentationEnergy",
       " J/m³, with Fragmentation it must be positive");
-    require(this->fractalDimension > 0.0 && this->fractalDimension < 3.0, this->fractalDimension,
+    check(this->fractalDimension > 0.0 && this->fractalDimension < 3.0, this->fractalDimension,
       "FractalDimension", ", with Fragmentation it must be more than 0 and less than 3");
-    require(this->leastVolume >= kLeastVolume, this->leastVolume, "LeastFragment",
+    check(this->leastVolume >= kLeastVolume, this->leastVolume, "LeastFragment",
       " m³, with Fragmentation it must be at least 1e-9 m³, the volume of the smallest piece to be "
       "followed");
   }
@@ -48,65 +47,36 @@ void SimulationParameters::validate() const
 {
   const auto positive = [](double value, const char* field, const char* unit)
   {
-    if (!(value > 0.0) || !std::isfinite(value))
-    {
-      throw ParameterError(std::string(field) + " is " + numberText(value) +
-        ", it must be a positive, finite number of " + unit);
-    }
+    require(value > 0.0 && std::isfinite(value), field, value, "",
+      std::string("a positive, finite number of ") + unit);
   };
-  const auto atLeast = [](auto value, auto least, const char* field)
+  const auto notNegative =
+    [](double value, const char* field, const char* unit, const char* further = "")
   {
-    if (!(value >= least))
-    {
-      throw ParameterError(std::string(field) + " is " + numberText(value) +
-        ", it must be at least " + numberText(least));
-    }
+    require(value >= 0.0 && std::isfinite(value), field, value, unit,
+      std::string("finite and not negative") + further);
   };
+  const auto atLeast = [](double value, double least, const char* field)
+  { require(value >= least, field, value, "", "at least " + numberText(least)); };
   const auto atMost = [](double value, double most, const char* field, const char* unit)
-  {
-    if (value > most)
-    {
-      throw ParameterError(std::string(field) + " is " + numberText(value) + unit +
-        ", it must be at most " + numberText(most));
-    }
-  };
+  { require(!(value > most), field, value, unit, "at most " + numberText(most)); };
   positive(this->timeStep, "TimeStep", "seconds");
-  if (this->timeStep < kLeastTimeStep)
-  {
-    throw ParameterError("TimeStep is " + numberText(this->timeStep) + " s, it must be at least " +
-      numberText(kLeastTimeStep) + " s: no run of such steps ends");
-  }
-  if (this->timeStep > kMostTimeStep)
-  {
-    throw ParameterError("TimeStep is " + numberText(this->timeStep) + " s, it must be at most " +
-      numberText(kMostTimeStep) + " s: is it in milliseconds?");
-  }
+  require(this->timeStep >= kLeastTimeStep, "TimeStep", this->timeStep, " s",
+    "at least " + numberText(kLeastTimeStep) + " s: no run of such steps ends");
+  require(this->timeStep <= kMostTimeStep, "TimeStep", this->timeStep, " s",
+    "at most " + numberText(kMostTimeStep) + " s: is it in milliseconds?");
   positive(this->endTime, "EndTime", "seconds");
   atMost(this->endTime, kMostEndTime, "EndTime", " s");
   positive(this->outputInterval, "OutputInterval", "seconds");
-  if (!(this->normalPenalty >= 0.0) || !std::isfinite(this->normalPenalty))
-  {
-    throw ParameterError("NormalPenalty is " + numberText(this->normalPenalty) +
-      " N/m, it must be finite and not negative (0: by mass)");
-  }
+  notNegative(this->normalPenalty, "NormalPenalty", " N/m", " (0: by mass)");
   atMost(this->normalPenalty, kMostPenalty, "NormalPenalty", " N/m");
   positive(this->shearRatio, "ShearPenaltyRatio", "(no unit)");
   atMost(this->shearRatio, kMostShearRatio, "ShearPenaltyRatio", "");
-  if (!(this->rockRestitution >= 0.0 && this->rockRestitution <= 1.0))
-  {
-    throw ParameterError(
-      "RockRestitution is " + numberText(this->rockRestitution) + ", it must be 0 to 1");
-  }
-  if (!(this->rockFrictionAngle >= 0.0 && this->rockFrictionAngle <= radians(89.0)))
-  {
-    throw ParameterError("RockFrictionAngle is " + numberText(degrees(this->rockFrictionAngle)) +
-      "°, it must be 0 to 89");
-  }
-  if (!(this->rockCohesion >= 0.0) || !std::isfinite(this->rockCohesion))
-  {
-    throw ParameterError("RockCohesion is " + numberText(this->rockCohesion) +
-      " N, it must be finite and not negative");
-  }
+  require(this->rockRestitution >= 0.0 && this->rockRestitution <= 1.0, "RockRestitution",
+    this->rockRestitution, "", "0 to 1");
+  require(this->rockFrictionAngle >= 0.0 && this->rockFrictionAngle <= radians(89.0),
+    "RockFrictionAngle", degrees(this->rockFrictionAngle), "°", "0 to 89");
+  notNegative(this->rockCohesion, "RockCohesion", " N");
   atMost(this->rockCohesion, kMostCohesion, "RockCohesion", " N");
   validateRockContacts(this->rockContactPairs);
   this->fragmentation.validate();
@@ -115,11 +85,7 @@ void SimulationParameters::validate() const
     throw ParameterError("Fragmentation and RockRockContact are both on: rocks that break fall "
                          "alone, one of the two must be 0");
   }
-  if (!(this->gravity >= 0.0) || !std::isfinite(this->gravity))
-  {
-    throw ParameterError(
-      "Gravity is " + numberText(this->gravity) + " m/s², it must be finite and not negative");
-  }
+  notNegative(this->gravity, "Gravity", " m/s²");
   atMost(this->gravity, kMostGravity, "Gravity", " m/s²");
   if (this->endTime / this->outputInterval > 1e7)
   {

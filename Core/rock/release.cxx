@@ -1,8 +1,7 @@
 #include "rock/release.h"
 
-#include "base/errors.h"
 #include "base/random.h"
-#include "base/text/numberText.h"
+#include "base/require.h"
 #include "geometry/shell.h"
 #include "law/settings.h"
 #include "rock/Rock.h"
@@ -38,11 +37,8 @@ void ReleaseUncertainty::validate() const
 {
   const auto notNegative = [](double value, const char* field, const char* unit)
   {
-    if (!(value >= 0.0 && std::isfinite(value)))
-    {
-      throw ParameterError(std::string(field) + " is " + numberText(value) +
-        ", it must be a finite number of " + unit + ", at least 0");
-    }
+    require(value >= 0.0 && std::isfinite(value), field, value, "",
+      std::string("a finite number of ") + unit + ", at least 0");
   };
   notNegative(this->horizontalDeviation, "HorizontalDeviation", "m");
   notNegative(this->verticalDeviation, "VerticalDeviation", "m");

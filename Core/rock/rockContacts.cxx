@@ -1,9 +1,8 @@
 #include "rock/rockContacts.h"
 
 #include "base/RockMaterial.h"
-#include "base/errors.h"
+#include "base/require.h"
 #include "base/text/nameKey.h"
-#include "base/text/numberText.h"
 #include "geometry/shell.h"
 #include "law/springs.h"
 
@@ -53,21 +52,12 @@ void validateRockContacts(std::span<const RockContactPair> pairs)
       throw ParameterError(name + " is there twice");
     }
     const RockContact& c = pair.contact;
-    if (!(c.restitution >= 0.0 && c.restitution <= 1.0))
-    {
-      throw ParameterError(
-        name + ": the restitution is " + numberText(c.restitution) + ", it must be 0 to 1");
-    }
-    if (!(c.frictionAngle >= 0.0 && c.frictionAngle <= radians(89.0)))
-    {
-      throw ParameterError(name + ": the friction angle is " +
-        numberText(degrees(c.frictionAngle)) + "°, it must be 0 to 89");
-    }
-    if (!(c.cohesion >= 0.0) || !std::isfinite(c.cohesion))
-    {
-      throw ParameterError(name + ": the cohesion is " + numberText(c.cohesion) +
-        " N, it must be finite and not negative");
-    }
+    require(c.restitution >= 0.0 && c.restitution <= 1.0, name + ": the restitution", c.restitution,
+      "", "0 to 1");
+    require(c.frictionAngle >= 0.0 && c.frictionAngle <= radians(89.0),
+      name + ": the friction angle", degrees(c.frictionAngle), "°", "0 to 89");
+    require(c.cohesion >= 0.0 && std::isfinite(c.cohesion), name + ": the cohesion", c.cohesion,
+      " N", "finite and not negative");
   }
   if (materials.size() > kMostMaterials)
   {

@@ -1,8 +1,8 @@
 #include "run/releasePlaces.h"
 
 #include "base/abort.h"
-#include "base/errors.h"
 #include "base/random.h"
+#include "base/require.h"
 #include "base/text/numberText.h"
 #include "geometry/planeSampling.h"
 #include "law/settings.h"
@@ -162,21 +162,11 @@ void ReleaseDefaults::validate() const
   {
     throw ParameterError("Amount is " + std::to_string(this->amount) + ", it must be at least 1");
   }
-  if (!(this->intensity >= 0.0 && std::isfinite(this->intensity)))
-  {
-    throw ParameterError("Intensity is " + numberText(this->intensity) +
-      " rocks per m or m², it must be finite and at least 0");
-  }
-  if (!(this->height >= 0.0 && std::isfinite(this->height)))
-  {
-    throw ParameterError(
-      "ReleaseHeight is " + numberText(this->height) + " m, it must be finite and at least 0");
-  }
-  if (!(this->clusterRadius >= 0.0 && std::isfinite(this->clusterRadius)))
-  {
-    throw ParameterError("ClusterRadius is " + numberText(this->clusterRadius) +
-      " m, it must be finite and at least 0");
-  }
+  const auto notNegative = [](double value, const char* field, const char* unit)
+  { require(value >= 0.0 && std::isfinite(value), field, value, unit, "finite and at least 0"); };
+  notNegative(this->intensity, "Intensity", " rocks per m or m²");
+  notNegative(this->height, "ReleaseHeight", " m");
+  notNegative(this->clusterRadius, "ClusterRadius", " m");
   if (this->mostRocks < 1)
   {
     throw ParameterError(

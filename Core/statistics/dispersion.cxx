@@ -1,7 +1,6 @@
 #include "statistics/dispersion.h"
 
-#include "base/errors.h"
-#include "base/text/numberText.h"
+#include "base/require.h"
 
 #include <algorithm>
 #include <cmath>
@@ -52,15 +51,9 @@ std::vector<std::vector<Vec3>> endsOfRocks(
 Dispersion measureDispersion(std::span<const std::vector<Vec3>> paths, double azimuth,
   double length, bool fromOwnStart, std::span<const std::size_t> rockOf)
 {
-  if (!(length >= 0.0) || !std::isfinite(length))
-  {
-    throw ParameterError(
-      "Length is " + numberText(length) + ", it must be a finite number of metres, not negative");
-  }
-  if (!std::isfinite(azimuth))
-  {
-    throw ParameterError("Direction is " + numberText(azimuth) + ", it must be finite");
-  }
+  require(length >= 0.0 && std::isfinite(length), "Length", length, "",
+    "a finite number of metres, not negative");
+  require(std::isfinite(azimuth), "Direction", azimuth, "", "finite");
   Dispersion result;
   const Vec3 along(std::cos(azimuth), std::sin(azimuth), 0.0);
   const Vec3 across(-along.y(), along.x(), 0.0);

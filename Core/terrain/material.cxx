@@ -1,7 +1,6 @@
 #include "terrain/material.h"
 
-#include "base/errors.h"
-#include "base/text/numberText.h"
+#include "base/require.h"
 #include "law/settings.h"
 
 #include <algorithm>
@@ -17,10 +16,7 @@ namespace
 void requireRange(
   double value, double low, double high, const char* field, const std::string& range)
 {
-  if (!(value >= low && value <= high))
-  {
-    throw ParameterError(std::string(field) + " is " + numberText(value) + ", it must be " + range);
-  }
+  require(value >= low && value <= high, field, value, "", range);
 }
 
 } // namespace
@@ -36,23 +32,14 @@ void SurfaceMaterial::validate() const
       ", it must be 0 (whole velocity), 1 (normal and tangential) or 2 (speed-dependent)");
   }
   requireRange(this->tangentialRestitution, 0.0, 1.0, "TangentialRestitution", "0 to 1");
-  if (!(this->restitutionSpeed > 0.0 && this->restitutionSpeed <= kMostRestitutionSpeed))
-  {
-    throw ParameterError("RestitutionSpeed is " + numberText(this->restitutionSpeed) +
-      ", it must be a positive number of metres per second, at most " +
-      numberText(kMostRestitutionSpeed));
-  }
-  if (!(this->frictionAngle >= 0.0 && this->frictionAngle <= radians(kSteepestFriction)))
-  {
-    throw ParameterError("FrictionAngle is " + numberText(degrees(this->frictionAngle)) +
-      " degrees, it must be 0 to 89");
-  }
-  if (!(this->frictionAngleDeviation >= 0.0 &&
-        this->frictionAngleDeviation <= radians(kSteepestFriction)))
-  {
-    throw ParameterError("FrictionAngleDeviation is " +
-      numberText(degrees(this->frictionAngleDeviation)) + " degrees, it must be 0 to 89");
-  }
+  require(this->restitutionSpeed > 0.0 && this->restitutionSpeed <= kMostRestitutionSpeed,
+    "RestitutionSpeed", this->restitutionSpeed, "",
+    "a positive number of metres per second, at most " + numberText(kMostRestitutionSpeed));
+  require(this->frictionAngle >= 0.0 && this->frictionAngle <= radians(kSteepestFriction),
+    "FrictionAngle", degrees(this->frictionAngle), " degrees", "0 to 89");
+  require(this->frictionAngleDeviation >= 0.0 &&
+      this->frictionAngleDeviation <= radians(kSteepestFriction),
+    "FrictionAngleDeviation", degrees(this->frictionAngleDeviation), " degrees", "0 to 89");
   requireRange(this->cohesion, 0.0, kMostCohesion, "Cohesion",
     "a number of newtons, not negative, at most " + numberText(kMostCohesion));
   this->yielding.validate();

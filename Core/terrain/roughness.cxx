@@ -1,7 +1,6 @@
 #include "terrain/roughness.h"
 
-#include "base/errors.h"
-#include "base/text/numberText.h"
+#include "base/require.h"
 #include "law/settings.h"
 #include "terrain/scatter.h"
 
@@ -109,17 +108,11 @@ double Roughness::deepest() const
 
 void Roughness::validate() const
 {
-  if (!std::isfinite(mean))
-  {
-    throw ParameterError("RoughnessMean is " + numberText(mean) + ", it must be finite");
-  }
+  require(std::isfinite(mean), "RoughnessMean", mean, "", "finite");
   const auto notNegative = [](double value, const char* field)
   {
-    if (!(value >= 0.0 && std::isfinite(value)))
-    {
-      throw ParameterError(std::string(field) + " is " + numberText(value) +
-        ", it must be a finite number of metres, not negative");
-    }
+    require(value >= 0.0 && std::isfinite(value), field, value, "",
+      "a finite number of metres, not negative");
   };
   notNegative(deviation, "RoughnessDeviation");
   notNegative(length, "RoughnessLength");
