@@ -1,8 +1,9 @@
 #include "statistics/design.h"
 
-#include "base/errors.h"
-#include "base/text/numberText.h"
+#include "base/require.h"
 #include "statistics/sample.h"
+
+#include <boost/math/special_functions/beta.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -16,13 +17,6 @@ namespace
 {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-/// Probability of exactly k successes, 0 < p < 1.
-double binomialOf(double k, double n, double p)
-{
-  return std::exp(std::lgamma(n + 1.0) - std::lgamma(k + 1.0) - std::lgamma(n - k + 1.0) +
-    k * std::log(p) + (n - k) * std::log1p(-p));
-}
 
 /// The smallest k of 0 to n with P(at most k) ≥ least.
 std::int64_t leastSuccesses(std::int64_t n, double p, double least)
@@ -61,18 +55,7 @@ double binomialAtMost(std::int64_t k, std::int64_t n, double p)
   {
     return 0.0;
   }
-  // Away from the mode, where terms only fall.
-  const double trials = double(n), odds = p / (1.0 - p);
-  const bool below = double(k) < trials * p;
-  double i = below ? double(k) : double(k) + 1.0;
-  double term = binomialOf(i, trials, p), sum = 0.0;
-  while (term > 1e-18 * sum && i >= 0.0 && i <= trials)
-  {
-    sum += term;
-    term *= below ? i / ((trials - i + 1.0) * odds) : (trials - i) * odds / (i + 1.0);
-    i += below ? -1.0 : 1.0;
-  }
-  return below ? sum : 1.0 - sum;
+  return boost::math::ibetac(double(k + 1), double(n - k), p);
 }
 
 double shareAtMost(std::int64_t successes, std::int64_t trials)
@@ -81,17 +64,9 @@ double shareAtMost(std::int64_t successes, std::int64_t trials)
   {
     return kNan;
   }
-  double low = double(successes) / double(trials), high = 1.0;
-  if (successes >= trials)
-  {
-    return 1.0;
-  }
-  for (int halving = 0; halving < 60; ++halving)
-  {
-    const double middle = 0.5 * (low + high);
-    (binomialAtMost(successes, trials, middle) > kDoubt ? low : high) = middle;
-  }
-  return high;
+  return successes < trials
+    ? boost::math::ibetac_inv(double(successes + 1), double(trials - successes), kDoubt)
+    : 1.0;
 }
 
 QuantileLimits quantileLimits(std::span<const double> ascending, double q)
@@ -131,21 +106,13 @@ void checkFactors(const PartialFactors& factors)
     { "BarrierFactor", factors.barrier } };
   for (const auto& [name, value] : least)
   {
-    if (!(value >= 1.0) || !std::isfinite(value))
-    {
-      throw ParameterError(
-        std::string(name) + " is " + numberText(value) + ", it must be finite and at least 1");
-    }
+    require(value >= 1.0 && std::isfinite(value), name, value, "", "finite and at least 1");
   }
   const std::pair<const char*, double> positive[] = { { "Freeboard", factors.freeboard },
     { "DesignMass", factors.designMass } };
   for (const auto& [name, value] : positive)
   {
-    if (!(value >= 0.0) || !std::isfinite(value))
-    {
-      throw ParameterError(
-        std::string(name) + " is " + numberText(value) + ", it must be finite and not negative");
-    }
+    require(value >= 0.0 && std::isfinite(value), name, value, "", "finite and not negative");
   }
 }
 
