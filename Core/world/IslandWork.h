@@ -3,7 +3,6 @@
 /// @file
 /// Working memory of a step of an island (IslandStepper).
 
-#include "base/cache.h"
 #include "solve/island/IslandSolver.h"
 #include "world/WorldState.h"
 
@@ -69,7 +68,7 @@ struct IslandWork
   std::vector<char> alone;         ///< By place, whether it takes the step by itself.
   std::vector<char> arrived; ///< By place, whether the step has been looked at where it ended.
   /// A rock as loops over pairs see it, in two lines of the cache.
-  struct alignas(kCacheLine) Side
+  struct alignas(64) Side
   {
     Vec3 velocity;  ///< m/s
     Vec3 spin;      ///< World axes, rad/s.

@@ -137,10 +137,9 @@ void World::shareBroken()
 
 bool World::advance()
 {
-  constexpr std::size_t kRocksPerThread = 32; // fewer are not worth a thread of their own
   const SimulationParameters& p = world_.parameters;
   const double until = std::min(world_.time + p.timeStep, p.endTime);
-  standBy(int(world_.rocks.size() / kRocksPerThread), [&] { this->step(until); });
+  this->step(until);
   const bool moving = std::any_of(world_.rocks.begin(), world_.rocks.end(),
     [](const FallingRock& rock) { return !rock.sim.done(); });
   return moving && world_.time < p.endTime - 1e-9;

@@ -72,22 +72,15 @@ TEST(Parallel, EachTurnIsTakenOnce)
     withThreads(threads,
       [&]
       {
-        for (int standing : { 1, 2, 3, 8 })
+        for (int k = 0; k < kRounds; ++k)
         {
-          standBy(standing,
-            [&]
-            {
-              for (int k = 0; k < kRounds; ++k)
-              {
-                const std::size_t count = random() % 60, grain = 1 + random() % 9;
-                std::vector<std::atomic<int>> turns(count);
-                countTurns(1 + int(random() % 5), count, grain, turns);
-                for (const std::atomic<int>& n : turns)
-                {
-                  ASSERT_EQ(n, 1);
-                }
-              }
-            });
+          const std::size_t count = random() % 60, grain = 1 + random() % 9;
+          std::vector<std::atomic<int>> turns(count);
+          countTurns(1 + int(random() % 3), count, grain, turns);
+          for (const std::atomic<int>& n : turns)
+          {
+            ASSERT_EQ(n, 1);
+          }
         }
       });
   }
@@ -99,24 +92,20 @@ TEST(Parallel, ShortLoopsAreSharedOut)
   withThreads(3,
     []
     {
-      standBy(3,
-        []
-        {
-          std::set<std::thread::id> seen;
-          const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-          while (seen.size() < 3 && std::chrono::steady_clock::now() < end)
+      std::set<std::thread::id> seen;
+      const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+      while (seen.size() < 3 && std::chrono::steady_clock::now() < end)
+      {
+        std::vector<std::thread::id> whose(64);
+        forEach(whose.size(), 1,
+          [&](std::size_t i)
           {
-            std::vector<std::thread::id> whose(64);
-            forEach(whose.size(), 1,
-              [&](std::size_t i)
-              {
-                whose[i] = std::this_thread::get_id();
-                std::this_thread::yield();
-              });
-            seen.insert(whose.begin(), whose.end());
-          }
-          EXPECT_EQ(seen.size(), 3u);
-        });
+            whose[i] = std::this_thread::get_id();
+            std::this_thread::yield();
+          });
+        seen.insert(whose.begin(), whose.end());
+      }
+      EXPECT_EQ(seen.size(), 3u);
     });
 }
 
@@ -128,25 +117,18 @@ TEST(Parallel, AThreadFinishesItsTurnBeforeTheNextOfTheSameLoop)
   withThreads(4,
     []
     {
-      for (const int standing : { 1, 4 })
+      std::atomic<int> mixed = 0;
+      for (int k = 0; k < 2 * kRounds; ++k)
       {
-        standBy(standing,
-          []
+        forEach(12, 1,
+          [&](std::size_t)
           {
-            std::atomic<int> mixed = 0;
-            for (int k = 0; k < kRounds; ++k)
-            {
-              forEach(12, 1,
-                [&](std::size_t)
-                {
-                  mixed += ++inside != 1;
-                  forEach(40, 1, [](std::size_t) { std::this_thread::yield(); });
-                  mixed += inside-- != 1;
-                });
-            }
-            EXPECT_EQ(mixed, 0);
+            mixed += ++inside != 1;
+            forEach(40, 1, [](std::size_t) { std::this_thread::yield(); });
+            mixed += inside-- != 1;
           });
       }
+      EXPECT_EQ(mixed, 0);
     });
 }
 
@@ -168,33 +150,24 @@ TEST(Parallel, WhatWorkThrowsComesOut)
               }
             });
         };
-        standBy(4,
-          [&]
+        for (std::size_t bad = 0; bad < 100; ++bad)
+        {
+          try
           {
-            for (std::size_t bad = 0; bad < 100; ++bad)
-            {
-              try
-              {
-                fails(bad);
-                ADD_FAILURE() << "nothing thrown at " << bad;
-              }
-              catch (const std::runtime_error& error)
-              {
-                EXPECT_EQ(error.what(), "turn " + std::to_string(bad));
-              }
-              std::vector<std::atomic<int>> turns(50);
-              countTurns(2, turns.size(), 1, turns); // the next one is whole
-              for (const std::atomic<int>& n : turns)
-              {
-                ASSERT_EQ(n, 1);
-              }
-            }
-          });
-        // Out of standBy too, and it can be asked again.
-        EXPECT_THROW(standBy(4, [&] { fails(7); }), std::runtime_error);
-        bool asked = false;
-        standBy(4, [&] { asked = true; });
-        EXPECT_TRUE(asked);
+            fails(bad);
+            ADD_FAILURE() << "nothing thrown at " << bad;
+          }
+          catch (const std::runtime_error& error)
+          {
+            EXPECT_EQ(error.what(), "turn " + std::to_string(bad));
+          }
+          std::vector<std::atomic<int>> turns(50);
+          countTurns(2, turns.size(), 1, turns); // the next one is whole
+          for (const std::atomic<int>& n : turns)
+          {
+            ASSERT_EQ(n, 1);
+          }
+        }
       });
   }
 }

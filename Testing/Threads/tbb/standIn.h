@@ -211,34 +211,6 @@ void isolate(Work&& work)
 
 } // namespace this_task_arena
 
-class task_group
-{
-public:
-  template <class Work>
-  void run(Work&& work)
-  {
-    threads_.emplace_back(
-      [this, work, inside = standIn::Place{ standIn::place.threads, true }]
-      {
-        const standIn::Placed here(inside);
-        failure_.guard(work);
-      });
-  }
-  void wait()
-  {
-    for (std::thread& thread : threads_)
-    {
-      thread.join();
-    }
-    threads_.clear();
-    failure_.rethrow();
-  }
-
-private:
-  std::vector<std::thread> threads_;
-  standIn::Failure failure_;
-};
-
 class global_control
 {
 public:
@@ -253,8 +225,6 @@ public:
   ~global_control() { standIn::allowed = before_; }
   global_control(const global_control&) = delete;
   global_control& operator=(const global_control&) = delete;
-
-  static std::size_t active_value(parameter) { return standIn::allowed; }
 
 private:
   std::size_t before_;
