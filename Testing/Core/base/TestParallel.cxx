@@ -118,7 +118,7 @@ TEST(Parallel, AThreadFinishesItsTurnBeforeTheNextOfTheSameLoop)
     []
     {
       std::atomic<int> mixed = 0;
-      for (int k = 0; k < 2 * kRounds; ++k)
+      for (int k = 0; k < kRounds / 10; ++k)
       {
         forEach(12, 1,
           [&](std::size_t)
