@@ -11,6 +11,7 @@ AT_LINES = ("Share", "KineticEnergy95")  # as lines.csv has them
 REACH = "RunOut95"  # of RunOut in summary.csv
 QUANTITIES = (*AT_LINES, REACH)
 KNOWN = ("quantity", "within", "confidence", "line")
+LOST = (2, 4)  # FateCode: moving at EndTime, in nodata. How far they go is not known
 
 
 def check(path, study):
@@ -68,11 +69,12 @@ def solve(function, wanted):
     return 0.5 * (low + high)
 
 
-def share_interval(count, total, confidence):
-    """Clopper & Pearson (1934)."""
+def share_interval(count, total, confidence, lost=0):
+    """Clopper & Pearson (1934). The lost ones count or do not: the interval has both."""
     tail = 0.5 * (1.0 - confidence)
     low = solve(lambda p: beta(count, total - count + 1, p), tail) if count else 0.0
-    high = solve(lambda p: beta(count + 1, total - count, p), 1.0 - tail) if count < total else 1.0
+    most = count + lost
+    high = solve(lambda p: beta(most + 1, total - most, p), 1.0 - tail) if most < total else 1.0
     return low, high
 
 
@@ -98,9 +100,10 @@ def quantile_ranks(total, q, confidence):
 
 
 def quantile_interval(values, confidence):
-    """Of the 95 % quantile; None, None where there are too few."""
+    """Of the 95 % quantile; None, None where there are too few, or too many without an end."""
     ranks = quantile_ranks(len(values), 0.95, confidence)
-    return tuple(float(np.sort(values)[k - 1]) for k in ranks) if ranks else (None, None)
+    ends = [float(np.sort(values)[k - 1]) for k in ranks or ()]
+    return tuple(ends) if ends and math.isfinite(ends[1]) else (None, None)
 
 
 class Enough:
@@ -109,7 +112,8 @@ class Enough:
     def __init__(self, until, lines):
         self.until = until
         self.total = 0
-        self.ways = []  # RunOut of each rock, m
+        self.ways = []  # RunOut of each rock, m; without an end if it was lost
+        self.lost = {}  # by line: rocks that were lost before it
         if until["quantity"] == REACH:
             return
         self.greatest = {name: [] for name in lines if until.get("line", name) == name}
@@ -123,27 +127,30 @@ class Enough:
             rows, breaking = len(chunk["Iteration"]), "Piece" in chunk.files
             first = np.flatnonzero(chunk["Piece"] == 0) if breaking else np.arange(rows)
             self.total += len(first)
+            lost = np.isin(chunk["FateCode"], LOST)
+            rocks_lost = set(zip(chunk["Iteration"][lost], chunk["BlockId"][lost]))
             if self.until["quantity"] == REACH:
                 rock = np.searchsorted(first, np.arange(rows), side="right") - 1
                 ways = np.hypot(*(chunk["Stop" + axis] - chunk["Start" + axis][first][rock] for axis in "XY"))
-                self.ways.extend(np.maximum.reduceat(ways, first) if breaking else chunk["RunOut"])
+                ways = np.where(lost, np.inf, ways if breaking else chunk["RunOut"])
+                self.ways.extend(np.maximum.reduceat(ways, first) if breaking else ways)
                 return
         reader = vtkXMLPolyDataReader()
         reader.SetFileName(stem + "-crossings.vtp")
         reader.Update()
         data = reader.GetOutput().GetPointData()
-        if not reader.GetOutput().GetNumberOfPoints():
-            return
         names = data.GetAbstractArray("LineName")
         greatest = {}
-        for k, key in enumerate(zip(vtk_to_numpy(data.GetArray("Iteration")),
-                                    vtk_to_numpy(data.GetArray("BlockId")))):
-            key = names.GetValue(k), *key
+        for k in range(reader.GetOutput().GetNumberOfPoints()):
+            key = names.GetValue(k), *(data.GetArray(name).GetValue(k) for name in ("Iteration", "BlockId"))
             energy = data.GetArray("KineticEnergy").GetValue(k)
             greatest[key] = max(energy, greatest.get(key, energy))
         for (name, *_), energy in greatest.items():
             if name in self.greatest:
                 self.greatest[name].append(energy)
+        for name in self.greatest:
+            before = sum((name, *rock) not in greatest for rock in rocks_lost)
+            self.lost[name] = self.lost.get(name, 0) + before
 
     def state(self):
         """Of each line: interval, and whether it is narrow enough."""
@@ -155,13 +162,13 @@ class Enough:
         result = []
         for name, energies in self.greatest.items():
             if self.until["quantity"] == "Share":
-                low, high = share_interval(len(energies), self.total, confidence)
+                low, high = share_interval(len(energies), self.total, confidence, self.lost.get(name, 0))
                 known = high - low <= 2.0 * within
             else:
                 low, high = quantile_interval(energies, confidence)
                 known = low is not None and high - low <= within * (high + low)
-            result.append({"line": name, "rocks": self.total, "reached": len(energies), "from": low,
-                           "to": high, "known": bool(known)})
+            result.append({"line": name, "rocks": self.total, "reached": len(energies),
+                           "lost": self.lost.get(name, 0), "from": low, "to": high, "known": bool(known)})
         return result
 
     def text(self):
@@ -171,5 +178,6 @@ class Enough:
         for one in self.state():
             between = "not known yet" if one["from"] is None else \
                 f"{one['from'] * scale:.4g} to {one['to'] * scale:.4g}{unit}"
-            texts.append((f"{shown(one['line'])}: " if "line" in one else "") + between)
+            lost = f", as {one['lost']} were lost before it" if one.get("lost") else ""
+            texts.append((f"{shown(one['line'])}: " if "line" in one else "") + between + lost)
         return quantity + (": " if quantity == REACH else " at ") + "; ".join(texts)

@@ -276,7 +276,7 @@ void vtkRockBlockSource::SetFrequencies(Sources& sources) const
   { return this->FileName + ", row " + std::to_string(row.row); };
   std::vector<double> frequencies;
   const rockfall::SourceRow *with = nullptr, *without = nullptr;
-  std::int64_t idle = 0;
+  std::int64_t idle = 0, never = 0;
   for (std::size_t k = 0; k < sources.rows.size(); ++k)
   {
     const rockfall::SourceRow& row = sources.rows[k];
@@ -294,6 +294,7 @@ void vtkRockBlockSource::SetFrequencies(Sources& sources) const
     }
     (std::isnan(frequencies.back()) ? without : with) = &row;
     idle += frequencies.back() > 0.0 && rocks[k] == 0 ? 1 : 0;
+    never += frequencies.back() == 0.0 && rocks[k] > 0 ? 1 : 0;
   }
   if (with && without)
   {
@@ -304,6 +305,12 @@ void vtkRockBlockSource::SetFrequencies(Sources& sources) const
   {
     sources.notes.push_back(this->FileName + ": " + std::to_string(idle) +
       " sources with a frequency make no rock: it is in no map.");
+  }
+  if (never > 0)
+  {
+    sources.notes.push_back(this->FileName + ": " + std::to_string(never) + " of " +
+      std::to_string(frequencies.size()) +
+      " sources have the frequency 0: in maps of frequencies their rocks never fall.");
   }
   for (std::size_t k = 0; k < sources.rocks.size(); ++k)
   {

@@ -101,6 +101,7 @@ point, area = '"POINT(20 50)"', '"POLYGON((-50 20,30 20,30 40,-50 20))"'
 told = heard("volume,vol_law,vol_dev", f"{point},1,normal,0.2", f'"POINT(20 60)",1,,0.5')
 assert "1 of 2 sources have a deviation, bounds or an exponent" in told and "first row 2: fixed" in told, told
 assert "deviation" not in heard("freq_a,volume,vol_min,vol_max,vol_exp", f"{point},0.5,1,1,2,0.6")
+assert "1 of 2 sources have the frequency 0" in heard("frequency", f"{point},0", f"{area},2")
 told = heard("volume,vol_law,vol_dev,vol_max", f"{point},1,normal,50,")
 assert "first row 1" in told and "instead of 1" in told, told
 told = heard("amount", f"{point},1", f"{area},3")

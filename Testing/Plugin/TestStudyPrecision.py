@@ -25,6 +25,10 @@ low, high = enough.share_interval(4, 10, 0.95)
 assert abs(low - 0.12155) < 1e-4 and abs(high - 0.73762) < 1e-4, (low, high)
 low, high = enough.share_interval(500000, 1000000, 0.95)
 assert abs(high - low - 2.0 * 1.95996 * 0.0005) < 3e-6, (low, high)
+# Of 20 rocks 4 pass, and of 3 that were lost nobody knows: from 4 of 20 to 7 of 20.
+assert enough.share_interval(4, 20, 0.95, 3) == \
+    (enough.share_interval(4, 20, 0.95)[0], enough.share_interval(7, 20, 0.95)[1])
+assert enough.share_interval(0, 20, 0.95, 20) == (0.0, 1.0)
 
 
 # Order statistics against sums of the binomial distribution.
@@ -41,11 +45,11 @@ assert enough.quantile_ranks(10, 0.95, 0.95) is None and enough.quantile_ranks(0
 
 write_grid("enough.asc", incline())
 write_text("enough-road.csv", 'WKT,name\n"LINESTRING(700045 3999990,700045 4000230)",near\n'
-           '"LINESTRING(700290 3999990,700290 4000230)",far\n')
+           '"LINESTRING(700005 3999990,700005 4000230)",far\n')
 study = {
-    "terrain": {"FileName": "enough.asc", "RoughnessDeviation": 0.2},
+    "terrain": {"FileName": "enough.asc", "Preset": "Meadow (field data)"},
     "rocks": {"Center": [700025, 4000060, 147], "Amount": 5},
-    "simulation": {"EndTime": 4.0, "TrajectoryOutput": "Thinned"},
+    "simulation": {"EndTime": 60.0, "TrajectoryOutput": "Thinned"},
     "lines": {"FileName": "enough-road.csv"}, "iterations": 12, "chunk": 2}
 
 
@@ -78,9 +82,17 @@ assert json.loads(files_of("enough-share")["results.json"])["iterations"] == 12
 code, said = run("enough-share", until={"quantity": "KineticEnergy95", "within": 0.5})
 assert code == 0 and '"far": not known yet' in said, said
 
+# Rocks that still move may reach it yet, or go farther: no number of them is enough.
+short = {"simulation": {**study["simulation"], "EndTime": 0.5}}
+code, said = run("enough-moving", until={"quantity": "Share", "within": 0.2}, **short)
+assert code == 0 and 'Not enough rocks, 60: Share at "near": 0 to 1, as 60 were lost before it' in said, said
+code, said = run("enough-ways", until={"quantity": "RunOut95", "within": 0.3}, iterations=20, **short)
+assert code == 0 and "Not enough rocks, 100: RunOut95: not known yet" in said, said
+
 # Twenty chunks tell once whom they lost: ten lines of progress, and the notes of all.
 logs = []
-text = messages_of(lambda: logs.append(run("enough-notes", iterations=20, chunk=1)))
+text = messages_of(lambda: logs.append(run(
+    "enough-notes", iterations=20, chunk=1, simulation={**study["simulation"], "EndTime": 4.0})))
 text = logs[0][1] + text
 assert logs[0][0] == 0 and len(text.splitlines()) <= 20, text
 moving = re.findall(r"(\d+) of 100 rocks were still moving at EndTime \(4 s\): they count", text)

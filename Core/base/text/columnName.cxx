@@ -25,7 +25,7 @@ bool isSign(char c)
   return !(c < 0 || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9'));
 }
 
-std::vector<Word> wordsOf(std::string_view name)
+std::vector<Word> placesOfWords(std::string_view name)
 {
   const auto isSmall = [](char c) { return c >= 'a' && c <= 'z'; };
   const auto isCapital = [](char c) { return c >= 'A' && c <= 'Z'; };
@@ -53,7 +53,12 @@ std::vector<Word> wordsOf(std::string_view name)
 ColumnName::ColumnName(const std::string& written)
 {
   const std::size_t open = written.find_first_of("[(");
-  if (open != std::string::npos && open > 0)
+  const bool brackets = open != std::string::npos && open > 0;
+  const std::vector<Word> places =
+    placesOfWords(std::string_view(written).substr(0, brackets ? open : std::string::npos));
+  std::transform(places.begin(), places.end(), std::back_inserter(words),
+    [&](const Word& w) { return nameKey(written.substr(w.begin, w.end - w.begin)); });
+  if (brackets)
   {
     const std::size_t from = open + 1;
     const std::size_t close = std::min(written.find_first_of("])", from), written.size());
@@ -61,30 +66,26 @@ ColumnName::ColumnName(const std::string& written)
     unit = nameKey(written.substr(from, close - from));
     return;
   }
-  const std::vector<Word> words = wordsOf(written);
-  std::vector<std::string> keys;
-  std::transform(words.begin(), words.end(), std::back_inserter(keys),
-    [&](const Word& w) { return nameKey(written.substr(w.begin, w.end - w.begin)); });
   name = nameKey(written);
-  for (std::size_t k = words.size(); k-- > 1;)
+  for (std::size_t k = places.size(); k-- > 1;)
   {
-    const bool last = k + 1 == keys.size(); // else "in" is no inch
-    if (!lengthUnit(keys[k]) || (keys[k] == "in" && !last))
+    const bool last = k + 1 == words.size(); // else "in" is no inch
+    if (!lengthUnit(words[k]) || (words[k] == "in" && !last))
     {
       continue;
     }
     std::size_t first = k;
-    unit = keys[k];
-    for (; first > 1 && (keys[first - 1] == "us" || keys[first - 1] == "survey"); --first)
+    unit = words[k];
+    for (; first > 1 && (words[first - 1] == "us" || words[first - 1] == "survey"); --first)
     {
-      unit = keys[first - 1] + " " + unit;
+      unit = words[first - 1] + " " + unit;
     }
-    if (first == k && !last && keys[k + 1] == "us")
+    if (first == k && !last && words[k + 1] == "us")
     {
       unit += " us";
     }
-    first -= first > 1 && keys[first - 1] == "in";
-    name = nameKey(written.substr(0, words[first - 1].end));
+    first -= first > 1 && words[first - 1] == "in";
+    name = nameKey(written.substr(0, places[first - 1].end));
     return;
   }
 }

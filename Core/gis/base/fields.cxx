@@ -90,7 +90,19 @@ const ColumnNames kQuantities = { "mass", "masse", "massa", "weight", "gewicht",
   "neigung", "restitution", "friction", "reibung", "frottement", "attrito", "species", "baumart",
   "essence", "frequency", "häufigkeit", "fréquence", "frequenza", "return_period", "period",
   "wiederkehrperiode", "jährlichkeit", "période", "periodo", "status", "condition", "zustand",
-  "état", "stato", "dip", "azimuth" };
+  "état", "stato", "dip", "azimuth", "efficiency", "sel", "planned", "geplant", "prévu", "removed",
+  "entfernt", "enlevé", "demolished", "rückgebaut", "dead", "felled", "gefällt", "abattu" };
+
+/// Whether a word of the column is a quantity, or a column that is read: annual_frequency, BlockVolume.
+/// What ArcGIS adds to every layer, Shape_Length and Shape_Area, is none, nor is KML's altitudeMode.
+bool namesQuantity(const ColumnName& column, const ColumnNames& known)
+{
+  return !column.words.empty() && column.words.front() != "shape" &&
+    column.name != "altitudemode" &&
+    std::any_of(column.words.begin(), column.words.end(),
+      [&](const std::string& word)
+      { return holds(kQuantities, word) || (word.size() >= 4 && holds(known, word)); });
+}
 
 /// Whether `column` is `name` cut short within its first word.
 bool isShortFor(const std::string& column, const std::string& name)
@@ -164,12 +176,13 @@ void tellUnread(const OGRFeatureDefn& definition, const std::string& fileName,
   {
     const std::string written = definition.GetFieldDefn(i)->GetNameRef();
     const std::string column = nameKey(written);
-    const std::string quantity = ColumnName(written).name;
+    const ColumnName quantity(written);
     const auto isRead = [&](const std::string& name)
     { return holds(known, name) || holds(others, name); };
     const bool alike = std::any_of(known.begin(), known.end(),
       [&](const char* name) { return columns.count(name) && isLike(column, name); });
-    if (!isRead(column) && !isRead(quantity) && (alike || holds(kQuantities, quantity)))
+    if (!isRead(column) && !isRead(quantity.name) &&
+      (alike || holds(kQuantities, quantity.name) || namesQuantity(quantity, known)))
     {
       list += (count++ ? ", \"" : "\"") + written + "\"";
     }

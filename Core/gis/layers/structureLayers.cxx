@@ -55,6 +55,18 @@ void askAfterGroundUnder(
   }
 }
 
+/// An embankment by the elevation of its crest gets its greatest height over ground.
+void setHeights(std::vector<Embankment>& dams, const Terrain& terrain)
+{
+  for (Embankment& dam : dams)
+  {
+    for (const Eigen::Vector2d& p : dam.points)
+    {
+      dam.height = std::fmax(dam.height, dam.elevation - terrain.elevation(p.x(), p.y()));
+    }
+  }
+}
+
 /// Errors of structures that cannot be built name the file, and so do notes of what is too good to
 /// be true. Stems behind the first `alone` were drawn: they may stand side by side.
 void tryOut(const StructureReader& reader, const std::string& fileName, Structures part,
@@ -62,6 +74,7 @@ void tryOut(const StructureReader& reader, const std::string& fileName, Structur
 {
   Structures given = part;
   given.trees.resize(alone);
+  setHeights(given.embankments, reader.terrain);
   std::vector<std::string> doubts;
   askAfterNumbers(given, doubts); // a stand's numbers are those of its row
   askAfterTwins(given, doubts, reader.terrain.geometry().origin().head<2>());

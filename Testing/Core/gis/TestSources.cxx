@@ -283,9 +283,12 @@ TEST(Sources, elevationsOfWaypointsAreTold)
   EXPECT_TRUE(std::any_of(notes.begin(), notes.end(),
     [](const std::string& note)
     { return note.find("not read is its column \"ele\"") != std::string::npos; }));
-  const std::string often = writeFile("often.csv", "x,y,return_period\n1,2,30\n");
-  EXPECT_TRUE(holds(
-    readSourceLayer(often, options).notes.front(), { "not read is its column \"return_period\"" }));
+  for (const std::string column : { "return_period", "annual_frequency", "BlockVolume" })
+  {
+    const std::string often = writeFile("often.csv", "x,y," + column + "\n1,2,30\n");
+    EXPECT_TRUE(holds(
+      readSourceLayer(often, options).notes.front(), { "not read is its column \"" + column }));
+  }
 }
 
 TEST(SourceErrors, trueIsNoNumber)

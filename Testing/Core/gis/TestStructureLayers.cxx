@@ -372,19 +372,37 @@ TEST(StructureDoubts, NetsThatNobodySells)
   EXPECT_EQ(readNets(line + ",5,30000,\n").told("with 30000 kJ"), 1);
   EXPECT_EQ(readNets(line + ",16,500,\n").told("with 16 m. Nets stand 1 to 12 m high"), 1);
   EXPECT_TRUE(readNets(line + ",25,,record\n").notes.empty());
-  // Or that stands no more.
-  Read gone;
-  StructureFiles files;
-  files.barriers =
-    writeFile("gone.csv", "WKT,height,capacity,Status\n" + line + ",5,300,removed\n");
-  gone.structures = readStructures(files, site(), gone.notes);
-  EXPECT_EQ(gone.told("not read is its column \"Status\""), 1);
+  // Or that stands no more, or not yet: by its name or a word of it.
+  for (const char* column : { "Status", "is_planned", "DateRemoved", "SEL", "rest capacity" })
+  {
+    Read gone;
+    StructureFiles files;
+    files.barriers = writeFile("gone.csv",
+      std::string("WKT,height,capacity,fid,Shape_Length,") + column + "\n" + line +
+        ",5,300,1,60,2031\n");
+    gone.structures = readStructures(files, site(), gone.notes);
+    EXPECT_EQ(gone.told("not read is its column \"" + std::string(column) + "\"."), 1);
+    EXPECT_EQ(gone.notes.size(), 1u) << column;
+  }
 }
 
 TEST(StructureDoubts, EmbankmentsThatNobodyBuilds)
 {
   EXPECT_TRUE(readDams(line + ",5,2,1.5\n").notes.empty());
   EXPECT_EQ(readDams(line + ",0.05,2,1.5\n").told("heights of embankments"), 1);
+  // In feet, or of another height reference: 40 m over the ground.
+  const auto crest = [](const char* elevation)
+  {
+    Read read;
+    StructureFiles files;
+    files.embankments =
+      writeFile("crest.csv", "WKT,crest,width,slope\n" + line + "," + elevation + ",2,0.1\n");
+    read.structures = readStructures(files, site(), read.notes);
+    EXPECT_TRUE(std::isnan(read.structures.embankments[0].height));
+    return read.told("heights of embankments");
+  };
+  EXPECT_EQ(crest("104"), 0);
+  EXPECT_EQ(crest("140"), 1);
   EXPECT_EQ(readDams(line + ",0.6,0.02,1.5\n").told("widths of crests"), 1);
   EXPECT_EQ(readDams(line + ",0.6,2,15\n").told("sides of embankments"), 1);
 }
