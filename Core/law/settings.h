@@ -282,9 +282,9 @@ inline constexpr double kTurnExact = 1e-3;
 /// Fewer: needles under heavy rocks are spun up (10), a stone under a rock of 60 times its mass
 /// goes into the slope (200).
 inline constexpr int kMostSweeps = 1000;
-/// Generations of impacts in a substep. Fewer: what rocks in touch pass on to each other at
-/// restitution 0 is left over (half of it with each generation); a stone under a rock of M times
-/// its mass strikes up to √M π times, and what is left then is booked as if the slope had thrown it.
+/// Generations of impacts in a substep, and of those behind them that stop a jam. Fewer: what rocks
+/// in touch pass on to each other at restitution 0 is left over (half of it with each generation);
+/// a stone under a rock of M times its mass strikes up to √M π times.
 inline constexpr int kGenerations = 50;
 /// Sweeps over the impacts of a generation, until none changes by this share of its speed, or of
 /// the resting speed.

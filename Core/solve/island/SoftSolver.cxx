@@ -117,6 +117,7 @@ void SoftSolver::arriveAt(std::size_t k, bool placed)
   ContactRowCold& start = rows_.starts[k];
   const bool weighs = !placed && rows_.place(r);
   start.before = movers_.speedOf(r).dot(r.normal);
+  start.jams = false;
   r.gap = rows_.gapOf(k);
   r.idle = r.P == 0.0 && impacts_.staysOpen(k);
   if (!r.idle && weighs)

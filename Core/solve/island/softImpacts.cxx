@@ -38,11 +38,16 @@ void Impacts::start(std::size_t manifold, std::size_t strip)
 {
   for (std::size_t k = rows_.manifolds[manifold].first; k < rows_.manifolds[manifold].end; ++k)
   {
-    if (this->closes(k, kSharedImpact))
+    if (this->closes(k, kSharedImpact) || this->jams(k))
     {
       rounds_[strip].struck.push_back(k);
     }
   }
+}
+
+bool Impacts::jams(std::size_t row) const
+{
+  return jammed_ && rows_.starts[row].jams && rows_.starts[row].before < rows_.rows[row].resting;
 }
 
 bool Impacts::staysOpen(std::size_t row) const
@@ -59,7 +64,7 @@ bool Impacts::isSetGoing(std::size_t m, std::vector<std::size_t>& woken)
   {
     ContactRow& r = rows_.rows[k];
     rows_.starts[k].before = movers_.speedOf(r).dot(r.normal);
-    any = any || this->closes(k, 1.0);
+    any = any || this->closes(k, 1.0) || this->jams(k);
     if (!r.idle || this->staysOpen(k))
     {
       continue;
@@ -109,9 +114,9 @@ void Impacts::link()
 double Impacts::leaves(std::size_t row) const
 {
   const ContactRowCold& start = rows_.starts[row];
-  if (start.pending >= 0.0)
+  if (jammed_ || start.pending >= 0.0)
   {
-    return start.pending;
+    return jammed_ ? 0.0 : start.pending;
   }
   const IslandContact& c = (*step_.contacts)[rows_.results[row].contact];
   return -start.before * c.restitutionAt(-start.before);
@@ -123,6 +128,13 @@ std::size_t Impacts::countStruck() const
     [](std::size_t sum, const ImpactRound& g) { return sum + g.struck.size(); });
 }
 
+bool Impacts::anyCloses() const
+{
+  const auto closes = [this](std::size_t k) { return this->closes(k, 1.0); };
+  return std::any_of(rounds_.begin(), rounds_.end(),
+    [&](const ImpactRound& g) { return std::any_of(g.struck.begin(), g.struck.end(), closes); });
+}
+
 void Impacts::strike(double time)
 {
   std::size_t struck = this->countStruck();
@@ -130,24 +142,23 @@ void Impacts::strike(double time)
   {
     return;
   }
-  for (int number = 1; number <= kGenerations && struck > 0; ++number)
+  jammed_ = false;
+  this->link();
+  for (int number = 1; number <= 2 * kGenerations && struck > 0; ++number)
   {
     rows_.forStrips([this](std::size_t s) { this->beginRound(rounds_[s]); }, struck);
     this->settleAll(struck);
     this->limitGains();
     rows_.forStrips([this](std::size_t s) { this->scaleBack(rounds_[s]); }, struck);
     rows_.forStrips([&](std::size_t s) { this->book(rounds_[s], time); }, struck);
-    if (number < kGenerations)
-    {
-      this->link();
-      rows_.forStrips([&](std::size_t s) { this->findStruck(s, number); }, struck);
-    }
-    struck = this->countStruck();
+    jammed_ = number >= kGenerations;
+    rows_.forStrips([&](std::size_t s) { this->findStruck(s, number); }, struck);
+    struck = jammed_ && !this->anyCloses() ? 0 : this->countStruck();
   }
   rows_.forStrips([this](std::size_t s) { this->listWoken(s); }, 0);
 }
 
-void Impacts::beginRound(ImpactRound& round) const
+void Impacts::beginRound(ImpactRound& round)
 {
   round.moved.clear();
   round.impacts.clear();
@@ -157,6 +168,7 @@ void Impacts::beginRound(ImpactRound& round) const
     const double stored = rows_.starts[k].pending >= 0.0
       ? (*step_.contacts)[rows_.results[k].contact].contact->springEnergy()
       : 0.0;
+    rows_.starts[k].jams = jammed_;
     round.impacts.push_back(
       { k, 0.0, Vec3::Zero(), movers_.speedOf(r), movers_.speedOfA(r), this->leaves(k), stored });
   }

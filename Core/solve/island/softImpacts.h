@@ -2,7 +2,9 @@
 
 /// @file
 /// Impacts within a substep: what closes faster than the resting speed leaves by Newton's law, and
-/// strikes what closes by it in the next impact round.
+/// strikes what closes by it in the next impact round. What goes on for too long is a jam, as of a
+/// stone that a rock drives into the slope: then it stops what closes, and holds what it has
+/// stopped, until nothing closes. So nothing is taken by what opens, which would give energy.
 
 #include "solve/island/softSweep.h"
 
@@ -59,6 +61,7 @@ public:
   void forget(std::size_t strip) { rounds_[strip].struck.clear(); }
   /// Whether an impact is under way, or the gap closes as one within so many substeps.
   bool closes(std::size_t row, double substeps) const;
+  bool jams(std::size_t row) const;      ///< Is one of a jam that has not opened.
   bool staysOpen(std::size_t row) const; ///< Within the substep, at its speed `before`.
   /// The manifold's rows strike.
   void start(std::size_t manifold, std::size_t strip);
@@ -71,7 +74,8 @@ private:
   double leaves(std::size_t row) const; ///< Speed after an impact, m/s.
   void link();
   std::size_t countStruck() const; ///< Rows that are to strike.
-  void beginRound(ImpactRound& round) const;
+  bool anyCloses() const;          ///< Whether one of them does.
+  void beginRound(ImpactRound& round);
   void settleAll(std::size_t count);
   bool settle(Impact& impact); ///< Whether it changed by more than it is exact to.
   /// Impacts that share rocks, one with the next, give no more than was there: else a share.
@@ -91,6 +95,7 @@ private:
   std::vector<int> joined_;                        ///< By mover, whom impacts join it to.
   std::vector<ImpactEnergy> energies_;             ///< By mover, of those that are joined to it.
   bool linked_ = false;
+  bool jammed_ = false; ///< Generations do not end by themselves: a jam stops.
 };
 
 } // namespace rockfall::soft

@@ -164,3 +164,47 @@ TEST(PairBooks, SlidingIsLastingContact)
   EXPECT_NEAR(books.lasting, brought, 0.02 * brought);
   EXPECT_NEAR(runs[0].summary.lastingLoss, runs[1].summary.lastingLoss, 1e-9 * brought);
 }
+
+TEST(PairBooks, APinchedStoneGainsNothing)
+{
+  // A block of 40 t comes down on a stone of 270 kg that lies on a slope of e 1.
+  const double fall = std::tan(radians(30.0));
+  Pile pile;
+  pile.awake = false;
+  pile.ground = makeSlope(
+    41, 5.0, [=](double x, double) { return 100.0 - fall * std::min(x, 100.0); },
+    material(1.0, 45.0));
+  pile.parameters.timeStep = 0.002;
+  pile.parameters.endTime = 0.6;
+  pile.parameters.rockRestitution = 0.1;
+  pile.parameters.rockFrictionAngle = radians(45.0);
+  std::mt19937_64 random(1);
+  const auto even = [&] { return 2.0 * double(random() >> 11) * 0x1p-53 - 1.0; };
+  for (int scene = 0; scene < 12; ++scene)
+  {
+    pile.rocks.assign(2, {});
+    for (int k = 0; k < 2; ++k)
+    {
+      Rock& rock = pile.rocks[std::size_t(k)];
+      rock.blockId = k;
+      rock.shape = makeShape(Shape::Cube, k == 0 ? 15.0 : 0.1);
+      const double w = even(), x = even(), y = even(), z = even();
+      rock.orientation = Quat(w, x, y, z).normalized();
+      rock.position = Vec3(30.0, 100.0, 100.0 - 30.0 * fall + (k == 0 ? 3.5 : 0.5));
+    }
+    pile.rocks[0].velocity = Vec3(3.0, 0.0, -8.0);
+    pile.make();
+    const std::vector<Trajectory> runs = pile.fall->run();
+    const double brought = runs[0].summary.energy.released;
+    double given = 0.0;
+    for (const Trajectory& t : runs)
+    {
+      const EnergyAudit& e = t.summary.energy;
+      EXPECT_LE(e.kinetic + e.strain + e.exchanged - e.released, 0.01 * brought) << scene;
+      EXPECT_NEAR(e.numerical, 0.0, 1e-9 * brought) << scene;
+      given += e.exchanged;
+    }
+    const Books books = booksOf(runs);
+    EXPECT_NEAR(books.impacts + books.lasting, given, 1e-9 * brought) << scene;
+  }
+}
