@@ -264,7 +264,7 @@ def claim(chosen, study, in_force):
     there = schema.load(manifest) if os.path.exists(manifest) else {"identity": this, "begun": begun}
     refuse_other(chosen, differences(there["identity"], this))
     size, wanted = study["chunk"], study["iterations"]
-    done = [chunk_iterations(stem_of(chosen, k)) for k in range(-(-wanted // size))]
+    done = [chunk_iterations(stem_of(chosen, k), k * size) for k in range(-(-wanted // size))]
     beyond = stem_of(chosen, len(done)) + ".npz"
     if os.path.exists(beyond) or done[-1] > wanted - size * (len(done) - 1):
         refuse(f"{chosen.folder} has more than {wanted} iterations already. Take another folder.")

@@ -45,14 +45,17 @@ def columns_of(fields):
     return columns
 
 
-def chunk_iterations(stem):
-    """How many iterations a chunk has whose files are there; 0 if they are not."""
+def chunk_iterations(stem, first):
+    """How many iterations a chunk has whose files are there, from `first` on; 0 if they are not."""
     path = stem + ".npz"
     if not os.path.exists(path):
         return 0
     try:
         with np.load(path) as chunk:
-            return int(chunk["Iterations"])
+            count = int(chunk["Iterations"])
+            if np.any((chunk["Iteration"] < first) | (chunk["Iteration"] >= first + count)):
+                refuse(f"{path} has iterations of another chunk and is damaged. Remove it, and it is made again.")
+            return count
     except (ValueError, KeyError, EOFError, zipfile.BadZipFile):
         refuse(f"{path} is damaged. Remove it, and it is made again.")
 

@@ -474,11 +474,7 @@ void makeHazardImage(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
   const CellGrid grid = gridOf(trajectories, ground, options, origin);
   HazardRaster raster(grid, ground);
   addPaths(trajectories, origin, options.rockWidth, raster);
-  std::vector<std::string> notes;
-  if (std::string other = otherSlope(trajectories, terrainMesh); !other.empty())
-  {
-    notes.push_back(std::move(other));
-  }
+  std::vector<std::string> notes = doubtsOn(trajectories, terrainMesh);
   if (options.frequency.annualFrequency > 0.0 && trajectories->GetCellData()->GetArray("Frequency"))
   {
     notes.push_back(ownNotUsed(options.frequency.annualFrequency));
@@ -537,9 +533,9 @@ void writeHazardPassages(vtkPolyData* trajectories, vtkPolyData* terrainMesh,
   whole.crop = false;
   HazardRaster raster(gridOf(trajectories, &terrain, whole, origin), &terrain);
   addPaths(trajectories, origin, options.rockWidth, raster);
-  if (const std::string other = otherSlope(trajectories, terrainMesh); !other.empty())
+  for (const std::string& note : doubtsOn(trajectories, terrainMesh))
   {
-    showNote(other);
+    showNote(note);
   }
   writePassages(raster, origin, readCrs(trajectories->GetFieldData()), fileName,
     lostOf(trajectories), frequenciesOf(trajectories), runOf(trajectories));

@@ -3,6 +3,7 @@
 #include "rock/results.h"
 #include "shared/arrays.h"
 #include "shared/errorReport.h"
+#include "shared/inputContent.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
@@ -74,9 +75,41 @@ LostRocks lostOf(vtkPolyData* trajectories)
   return lost;
 }
 
+std::vector<std::string> doubtsOn(vtkPolyData* trajectories, vtkPolyData* mesh)
+{
+  std::vector<std::string> notes;
+  if (std::string other = otherSlope(trajectories, mesh); !other.empty())
+  {
+    notes.push_back(std::move(other));
+  }
+  vtkFieldData* fields = trajectories->GetFieldData();
+  auto* doubts = vtkStringArray::SafeDownCast(fields->GetAbstractArray(kRunDoubts));
+  for (vtkIdType k = 0; doubts && k < doubts->GetNumberOfValues(); ++k)
+  {
+    notes.push_back(doubts->GetValue(k));
+  }
+  vtkDataArray* released = fields->GetArray(kRocksReleased);
+  const std::int64_t there = lostOf(trajectories).rocks;
+  const std::int64_t all =
+    released && released->GetNumberOfTuples() == 1 ? std::int64_t(released->GetTuple1(0)) : there;
+  if (there < all)
+  {
+    notes.push_back("The Input has " + std::to_string(there) + " of the " + std::to_string(all) +
+      " rocks of its run: numbers, shares and frequencies are of these alone");
+  }
+  else if (there > all)
+  {
+    notes.push_back("The Input has " + std::to_string(there) + " rocks, its run " +
+      std::to_string(all) +
+      ": the slope and the properties of what was appended are not known. Group Datasets keeps "
+      "them");
+  }
+  return notes;
+}
+
 void writeLost(const LostRocks& lost, vtkFieldData* fieldData)
 {
-  const std::pair<const char*, std::int64_t> counts[] = { { "RocksReleased", lost.rocks },
+  const std::pair<const char*, std::int64_t> counts[] = { { kRocksReleased, lost.rocks },
     { "RocksMoving", lost.moving }, { "RocksOverEdge", lost.overEdge },
     { "RocksInNodata", lost.inNodata }, { "RocksUnmoved", lost.unmoved } };
   for (const auto& [name, count] : counts)

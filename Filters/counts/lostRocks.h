@@ -6,6 +6,9 @@
 
 #include "statistics/lost.h"
 
+#include <string>
+#include <vector>
+
 class vtkFieldData;
 class vtkPolyData;
 class vtkTable;
@@ -22,6 +25,10 @@ LostRocks lostOf(vtkTable* summary);
 /// Counts the polylines of trajectories, by the cell array Fate. None without
 /// that array.
 LostRocks lostOf(vtkPolyData* trajectories);
+
+/// Notes on trajectories that are not all of their run, or of several runs that differ, or that fell
+/// on another slope than `mesh`, which may be null.
+std::vector<std::string> doubtsOn(vtkPolyData* trajectories, vtkPolyData* mesh);
 
 /// Puts the counts there: RocksReleased, RocksMoving, RocksOverEdge,
 /// RocksInNodata and RocksUnmoved.

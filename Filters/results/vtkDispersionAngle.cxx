@@ -265,8 +265,10 @@ int vtkDispersionAngle::RequestData(
       {
         rockfall::filters::copyCoordinateSystem(input->GetFieldData(), made->GetFieldData());
       }
-      rockfall::filters::tellLost(
-        rockfall::filters::lostOf(input), table->GetFieldData(), runOuts.Notes());
+      std::vector<std::string> notes = rockfall::filters::doubtsOn(input, nullptr);
+      const std::vector<std::string> reach = runOuts.Notes();
+      notes.insert(notes.end(), reach.begin(), reach.end());
+      rockfall::filters::tellLost(rockfall::filters::lostOf(input), table->GetFieldData(), notes);
       vtkTable::GetData(outputVector, 0)->ShallowCopy(table);
       vtkPolyData::GetData(outputVector, 1)->ShallowCopy(lines);
       return 1;

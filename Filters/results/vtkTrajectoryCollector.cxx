@@ -11,7 +11,6 @@
 #include "results/trajectoriesInput.h"
 #include "shared/drawnPoints.h"
 #include "shared/errorReport.h"
-#include "shared/inputContent.h"
 #include "shared/inputs.h"
 #include "shared/lineWalls.h"
 #include "shared/rockPaths.h"
@@ -379,11 +378,7 @@ int vtkTrajectoryCollector::RequestData(
       barrier.barrierHeight = this->BarrierHeight;
       barrier.barrierCapacity = this->BarrierCapacity * 1000.0;
       std::vector<CollectorLine> lines;
-      std::vector<std::string> notes;
-      if (std::string other = filters::otherSlope(trajectories, mesh); !other.empty())
-      {
-        notes.push_back(std::move(other));
-      }
+      std::vector<std::string> notes = filters::doubtsOn(trajectories, mesh);
       if (drawn)
       {
         if (drawn->GetNumberOfPoints() > 0)

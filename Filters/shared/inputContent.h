@@ -27,6 +27,12 @@ std::uint64_t rocksContent(vtkPolyData* rocks, std::initializer_list<std::string
 /// Field array of trajectories: statementOf the parameters of their run.
 inline constexpr char kRunProperties[] = "RunProperties";
 
+/// Field array of trajectories: rocks times iterations of their run.
+inline constexpr char kRocksReleased[] = "RocksReleased";
+
+/// Field array of trajectories of several runs: notes on what differs between these.
+inline constexpr char kRunDoubts[] = "RunDoubts";
+
 /// What trajectories fell on, and by which properties, as far as they tell.
 RunOrigin runOf(vtkPolyData* trajectories);
 

@@ -1,6 +1,8 @@
 // Composite data as one polydata.
 
 #include "base/errors.h"
+#include "shared/arrays.h"
+#include "shared/inputContent.h"
 #include "shared/inputs.h"
 #include "shared/slopeReference.h"
 
@@ -14,6 +16,7 @@
 #include "vtkImageData.h"
 #include "vtkNew.h"
 #include "vtkPolyData.h"
+#include "vtkStringArray.h"
 #include "vtkUnstructuredGrid.h"
 #include "vtkVariant.h"
 
@@ -124,6 +127,25 @@ void mergeFields(const std::vector<Part>& parts, const std::string& name, vtkFie
           " than those before: what is taken as one must be of one slope and one kind");
       }
     }
+  }
+}
+
+/// What differs between the runs of these parts goes into the field data, and how many rocks the
+/// first one had out of it.
+void askAfterParts(const std::vector<Part>& parts, vtkFieldData* output)
+{
+  std::vector<RunOrigin> runs;
+  for (const Part& part : parts)
+  {
+    runs.push_back(runOf(part.data));
+  }
+  const auto notes = askAfterRuns(runs,
+    [&](std::size_t k) { return "part " + std::to_string(parts[k].number) + " of the Input"; });
+  output->RemoveArray(kRocksReleased);
+  const auto doubts = addArray<vtkStringArray>(output, kRunDoubts);
+  for (const std::string& note : notes)
+  {
+    doubts->InsertNextValue(note);
   }
 }
 
@@ -245,6 +267,10 @@ vtkSmartPointer<vtkPolyData> onePolyData(
   }
   one->GetFieldData()->Initialize();
   mergeFields(parts, name, one->GetFieldData());
+  if (kind == InputKind::Trajectories && filled.size() > 1)
+  {
+    askAfterParts(filled, one->GetFieldData());
+  }
   return one;
 }
 

@@ -7,8 +7,8 @@ from helpers import messages_of, write_grid, write_text
 
 from paraview import servermanager
 from paraview.simple import (
-    BarrierDesign, DEMtoCFEMesh, HazardPassageReader, MergeCollectors, OutputPort, RockBlocks, RockfallHazardMap,
-    RockfallSimulation, TrajectoryCollector)
+    AppendDatasets, BarrierDesign, DEMtoCFEMesh, DispersionAngle, GroupDatasets, HazardPassageReader, MergeCollectors,
+    OutputPort, RockBlocks, RockfallHazardMap, RockfallSimulation, Threshold, TrajectoryCollector)
 
 
 def notes_of(source):
@@ -57,6 +57,27 @@ files = [passages(fall, ground, f"{k}.passages")
 assert "belong together" not in notes_of(HazardPassageReader(FileNames=files[:2]))
 assert f"1 of 2 runs, first {files[2]}, fell on another slope" in notes_of(HazardPassageReader(FileNames=[files[0], files[2]]))
 assert steps.format(files[0]) in notes_of(HazardPassageReader(FileNames=[files[0], files[3]]))
+
+# --- The same of runs that ParaView groups or appends, and of a part of one.
+def made_of(given):
+    """What each filter of statistics notes."""
+    return [notes_of(TrajectoryCollector(Input=given, Points=[16, 0, 0, 16, 100, 0])),
+            notes_of(RockfallHazardMap(Input=given, CellSize=5)), notes_of(DispersionAngle(Input=given))]
+
+
+for two, told in (((one, other), "1 of 2 runs, first part 2 of the Input, fell on another slope than part 1"),
+                  ((one, coarse), steps.format("part 1 of the Input"))):
+    for notes in made_of(GroupDatasets(Input=[OutputPort(fall, 1) for fall in two])):
+        assert told in notes, notes
+for notes in made_of(GroupDatasets(Input=[OutputPort(one, 1), OutputPort(next_one, 1)])):
+    assert "belong together" not in notes and "rocks of its run" not in notes, notes
+for notes in made_of(AppendDatasets(Input=[OutputPort(one, 1), OutputPort(other, 1)])):
+    assert "The Input has 12 rocks, its run 6: the slope and the properties" in notes, notes
+for notes in made_of(OutputPort(one, 1)):
+    assert "The Input has" not in notes, notes
+slow = Threshold(Input=OutputPort(one, 1), Scalars=["CELLS", "BlockId"], LowerThreshold=1, UpperThreshold=2)
+for notes in made_of(slow):
+    assert "The Input has 4 of the 6 rocks of its run" in notes, notes
 
 # --- A slope that is not that of the run.
 told = "fell on another slope than the Terrain"

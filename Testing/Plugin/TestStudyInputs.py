@@ -192,6 +192,13 @@ assert code == 0, said
 write_text("inputs-damaged/chunk-00000.npz", "no archive")
 code, said = run("inputs-damaged", iterations=2)
 assert code != 0 and "chunk-00000.npz is damaged" in said, said
+# Or that is another one's, from a copy that went wrong.
+shutil.copytree("inputs-more", "inputs-copied")
+for one, other in ((0, 1), (1, 0)):
+    shutil.copy(f"inputs-more/chunk-0000{one}.npz", f"inputs-copied/chunk-0000{other}.npz")
+    code, said = run("inputs-copied")
+    assert code != 0 and f"chunk-0000{other}.npz has iterations of another chunk" in said, said
+    shutil.copy(f"inputs-more/chunk-0000{other}.npz", "inputs-copied")
 
 # Large and odd JSON takes as long as reading it.
 start = time.monotonic()
