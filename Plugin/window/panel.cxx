@@ -99,7 +99,7 @@ void showCentimetres(vtkSMSessionProxyManager* session)
 void widenPanels(QMainWindow* window)
 {
   constexpr const char* done = "RockfallPanelsWidth";
-  const int wide = std::min(400, window->width() / 3); // px
+  const int wide = std::min(400, 3 * window->width() / 8); // px: as ParaView 6.1 takes of 1024
   pqSettings* settings = pqApplicationCore::instance()->settings();
   auto* panel = window->findChild<QDockWidget*>("propertiesDock");
   if (!panel || settings->value(done, 0).toInt() >= wide)
