@@ -46,6 +46,20 @@ void reopen(Contact& c)
   c.normalForce = c.shearForce = 0.0;
 }
 
+/// Whether all of an edge is beyond reach of one side of a ridge, as most candidates are.
+bool isBeyond(const PlacedBlock& rock, int edge, const SurfacePatch& patch, int ridge, double reach)
+{
+  const std::array<int, 2>& ends = rock.block().shape().edges()[edge].vertices;
+  const Vec3 &p = rock.vertices()[ends[0]], &q = rock.vertices()[ends[1]];
+  return std::ranges::any_of(patch.ridges[ridge].triangles,
+    [&](int i)
+    {
+      const SurfacePatch::Triangle& side = patch.triangles[i];
+      const double least = reach + side.offset;
+      return side.normal.dot(p) > least && side.normal.dot(q) > least;
+    });
+}
+
 /// Adds an entrance unless the contacts that are already there stand for it.
 void admit(const SurfacePatch& patch, const Contact& candidate, std::vector<Contact>& contacts)
 {
@@ -199,7 +213,8 @@ void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch,
   }
   for (const CandidatePairs::Pair& pair : candidates.edgeEdge)
   {
-    if (isThere(ContactKind::EdgeEdge, pair.rock, patch.ridges[pair.patch].key))
+    if (isBeyond(rock, pair.rock, patch, pair.patch, reach) ||
+      isThere(ContactKind::EdgeEdge, pair.rock, patch.ridges[pair.patch].key))
     {
       continue;
     }

@@ -30,6 +30,10 @@ bool projectsInside(const SurfacePatch& patch, int triangle, const Vec3& point, 
     const Vec3 along = b - a;
     const Vec3 inward = t.normal.cross(along);
     const double side = inward.dot(point - a); // distance from the edge times its length
+    if (side >= 0.0)
+    {
+      continue;
+    }
     const double length = along.norm();
     if (side < -tolerance * length && !(t.bends[k] < 0 && side > -reach * length) &&
       !(from >= 0 && t.neighbours[k] == from))
@@ -267,16 +271,6 @@ std::optional<Contact> edgeEdge(
   const Vec3& q = patch.nodes[g.nodes[0]].position;
   const Vec3 u = rock.vertices()[e.vertices[1]] - p;
   const Vec3 w = patch.nodes[g.nodes[1]].position - q;
-  for (int i : g.triangles)
-  {
-    // All of the edge beyond reach of one side of the ridge.
-    const SurfacePatch::Triangle& side = patch.triangles[i];
-    const double over = side.normal.dot(p) - side.offset;
-    if (over > reach && over + side.normal.dot(u) > reach)
-    {
-      return std::nullopt;
-    }
-  }
   double s, t;
   if (!closestOnLines(p, u, q, w, s, t) || s < 0.0 || s > 1.0 || t < 0.0 || t > 1.0)
   {
