@@ -2,7 +2,7 @@
 
 #include "base/abort.h"
 #include "base/errors.h"
-#include "shared/arrays.h"
+#include "shared/columns.h"
 #include "shared/inputContent.h"
 #include "shared/terrainFieldData.h"
 
@@ -221,56 +221,39 @@ void writeCrossings(std::span<const CollectedCrossing> crossings,
   // First those of the trajectory: BlockId, RockId, Iteration, Shape, …
   data->CopyAllOn();
   data->CopyAllocate(trajectories->GetCellData(), vtkIdType(crossings.size()));
-  const auto line = addArray<vtkIntArray>(data, "Line");
-  const auto name = addArray<vtkStringArray>(data, "LineName");
-  const auto number = addArray<vtkIntArray>(data, "Passing");
-  const auto direction = addArray<vtkIntArray>(data, "Direction");
-  const auto velocity = addArray<vtkDoubleArray>(data, "Velocity", 3);
-  const auto rotation = addArray<vtkDoubleArray>(data, "RotationRate", 3);
-  struct Column
-  {
-    const char* name;
-    double (*value)(const Crossing& crossing);
-  };
-  using C = const Crossing&;
-  static constexpr Column numbers[] = {
-    { "Time", [](C c) { return c.time; } },
-    { "Distance", [](C c) { return c.distance; } },
-    { "Speed", [](C c) { return c.velocity.norm(); } },
-    { "KineticEnergy", [](C c) { return c.kineticEnergy; } },
-    { "TranslationalEnergy", [](C c) { return c.translationalEnergy; } },
-    { "RotationalEnergy", [](C c) { return c.kineticEnergy - c.translationalEnergy; } },
-    { "HeightOverGround", [](C c) { return c.heightOverGround; } },
-    { "HorizontalAngle", [](C c) { return degrees(c.horizontalAngle); } },
-    { "VerticalAngle", [](C c) { return degrees(c.verticalAngle); } },
-  };
-  std::vector<vtkSmartPointer<vtkDoubleArray>> values;
-  for (const Column& column : numbers)
-  {
-    values.push_back(addArray<vtkDoubleArray>(data, column.name));
-  }
-  const auto top = addArray<vtkDoubleArray>(data, "TopHeight");
+  using C = const CollectedCrossing&;
+  Columns<CollectedCrossing> columns(data);
+  columns.add("Line", [](C c) { return c.crossing.line; });
+  columns.add("LineName", [&](C c) { return lines[std::size_t(c.crossing.line)].name; });
+  columns.add("Passing", [](C c) { return c.crossing.number; });
+  columns.add("Direction", [](C c) { return c.crossing.direction; });
+  columns.add("Velocity", [](C c) { return c.crossing.velocity; });
+  columns.add("RotationRate", [](C c) { return c.crossing.rotationRate; });
+  columns.add("Time", [](C c) { return c.crossing.time; });
+  columns.add("Distance", [](C c) { return c.crossing.distance; });
+  columns.add("Speed", [](C c) { return c.crossing.velocity.norm(); });
+  columns.add("KineticEnergy", [](C c) { return c.crossing.kineticEnergy; });
+  columns.add("TranslationalEnergy", [](C c) { return c.crossing.translationalEnergy; });
+  columns.add("RotationalEnergy",
+    [](C c) { return c.crossing.kineticEnergy - c.crossing.translationalEnergy; });
+  columns.add("HeightOverGround", [](C c) { return c.crossing.heightOverGround; });
+  columns.add("HorizontalAngle", [](C c) { return degrees(c.crossing.horizontalAngle); });
+  columns.add("VerticalAngle", [](C c) { return degrees(c.crossing.verticalAngle); });
   vtkDataArray* width = trajectories->GetCellData()->GetArray("Width");
+  columns.add("TopHeight",
+    [width](C c)
+    {
+      return topOverGround(
+        c.crossing, width ? width->GetTuple1(c.cell) : std::numeric_limits<double>::quiet_NaN());
+    });
   for (const CollectedCrossing& collected : crossings)
   {
     stayWanted();
-    const Crossing& crossing = collected.crossing;
-    const Vec3 world = crossing.position + origin;
+    const Vec3 world = collected.crossing.position + origin;
     const vtkIdType id = points->InsertNextPoint(world.data());
     vertices->InsertNextCell(1, &id);
     data->CopyData(trajectories->GetCellData(), collected.cell, id);
-    line->InsertNextValue(crossing.line);
-    name->InsertNextValue(lines[std::size_t(crossing.line)].name);
-    number->InsertNextValue(crossing.number);
-    direction->InsertNextValue(crossing.direction);
-    velocity->InsertNextTuple(crossing.velocity.data());
-    rotation->InsertNextTuple(crossing.rotationRate.data());
-    for (std::size_t k = 0; k < values.size(); ++k)
-    {
-      values[k]->InsertNextValue(numbers[k].value(crossing));
-    }
-    top->InsertNextValue(topOverGround(crossing,
-      width ? width->GetTuple1(collected.cell) : std::numeric_limits<double>::quiet_NaN()));
+    columns.append(collected);
   }
   output->SetPoints(points);
   output->SetVerts(vertices);
@@ -302,44 +285,31 @@ void writeLines(std::span<const LineSummary> summaries, std::span<const Collecto
   std::span<const LostRocks> lost, vtkTable* output)
 {
   vtkFieldData* data = output->GetRowData();
-  const auto line = addArray<vtkIntArray>(data, "Line");
-  const auto name = addArray<vtkStringArray>(data, "LineName");
-  const auto rocks = addArray<vtkIntArray>(data, "Rocks");
-  const auto passings = addArray<vtkIntArray>(data, "Passings");
-  const auto caught = addArray<vtkIntArray>(data, "Caught");
-  const auto moving = addArray<vtkIdTypeArray>(data, "MovingBefore");
-  const auto overEdge = addArray<vtkIdTypeArray>(data, "OverEdgeBefore");
-  const auto inNodata = addArray<vtkIdTypeArray>(data, "InNodataBefore");
-  const auto highest = addArray<vtkIntArray>(data, "HighestQuantile");
-  for (std::size_t k = 0; k < lines.size(); ++k)
+  struct Row
   {
-    line->InsertNextValue(int(k));
-    name->InsertNextValue(lines[k].name);
-    rocks->InsertNextValue(summaries[k].rocks);
-    passings->InsertNextValue(summaries[k].crossings);
-    caught->InsertNextValue(summaries[k].caught);
-    moving->InsertNextValue(vtkIdType(lost[k].moving));
-    overEdge->InsertNextValue(vtkIdType(lost[k].overEdge));
-    inNodata->InsertNextValue(vtkIdType(lost[k].inNodata));
-    highest->InsertNextValue(summaries[k].highestQuantile);
-  }
-  const auto add = [&](const std::string& column, auto&& value)
-  {
-    const auto values = addArray<vtkDoubleArray>(data, column.c_str());
-    for (std::size_t k = 0; k < lines.size(); ++k)
-    {
-      values->InsertNextValue(value(summaries[k], lines[k]));
-    }
+    int number;
+    const LineSummary& of;
+    const CollectorLine& line;
+    const LostRocks& lost;
   };
-  using S = const LineSummary&;
-  using L = const CollectorLine&;
-  add("Offset", [](S, L l) { return l.offset; });
-  add("Share", [](S s, L) { return s.share; });
-  add("ShareError", [](S s, L) { return s.shareError; });
-  add("BarrierHeight", [](S, L l) { return l.barrierHeight; });
-  add("BarrierCapacity", [](S, L l) { return l.barrierCapacity / 1000.0; });
-  add("CaughtShare", [](S s, L) { return s.caughtShare; });
-  add("CaughtShareError", [](S s, L) { return s.caughtShareError; });
+  using R = const Row&;
+  Columns<Row> columns(data);
+  columns.add("Line", [](R r) { return r.number; });
+  columns.add("LineName", [](R r) { return r.line.name; });
+  columns.add("Rocks", [](R r) { return r.of.rocks; });
+  columns.add("Passings", [](R r) { return r.of.crossings; });
+  columns.add("Caught", [](R r) { return r.of.caught; });
+  columns.add("MovingBefore", [](R r) { return std::int64_t(r.lost.moving); });
+  columns.add("OverEdgeBefore", [](R r) { return std::int64_t(r.lost.overEdge); });
+  columns.add("InNodataBefore", [](R r) { return std::int64_t(r.lost.inNodata); });
+  columns.add("HighestQuantile", [](R r) { return r.of.highestQuantile; });
+  columns.add("Offset", [](R r) { return r.line.offset; });
+  columns.add("Share", [](R r) { return r.of.share; });
+  columns.add("ShareError", [](R r) { return r.of.shareError; });
+  columns.add("BarrierHeight", [](R r) { return r.line.barrierHeight; });
+  columns.add("BarrierCapacity", [](R r) { return r.line.barrierCapacity / 1000.0; });
+  columns.add("CaughtShare", [](R r) { return r.of.caughtShare; });
+  columns.add("CaughtShareError", [](R r) { return r.of.caughtShareError; });
   const std::pair<const char*, SampleStatistics LineSummary::*> quantities[] = {
     { "KineticEnergy", &LineSummary::energy },
     { "HeightOverGround", &LineSummary::height },
@@ -348,14 +318,18 @@ void writeLines(std::span<const LineSummary> summaries, std::span<const Collecto
   for (const auto& [quantity, of] : quantities)
   {
     const std::string start = quantity;
-    add(start + "Mean", [of = of](S s, L) { return (s.*of).mean; });
-    add(start + "Deviation", [of = of](S s, L) { return (s.*of).deviation; });
-    add(start + "Maximum", [of = of](S s, L) { return (s.*of).maximum; });
+    columns.add(start + "Mean", [of = of](R r) { return (r.of.*of).mean; });
+    columns.add(start + "Deviation", [of = of](R r) { return (r.of.*of).deviation; });
+    columns.add(start + "Maximum", [of = of](R r) { return (r.of.*of).maximum; });
     const char* const names[] = { "50", "90", "95", "99" };
     for (std::size_t q = 0; q < hazardQuantiles.size(); ++q)
     {
-      add(start + names[q], [of = of, q](S s, L) { return (s.*of).quantiles[q]; });
+      columns.add(start + names[q], [of = of, q](R r) { return (r.of.*of).quantiles[q]; });
     }
+  }
+  for (std::size_t k = 0; k < lines.size(); ++k)
+  {
+    columns.append({ int(k), summaries[k], lines[k], lost[k] });
   }
 }
 

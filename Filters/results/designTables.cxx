@@ -1,17 +1,13 @@
 #include "results/designTables.h"
 
 #include "base/errors.h"
-#include "shared/arrays.h"
+#include "shared/columns.h"
 #include "statistics/frequency.h"
 #include "statistics/sample.h"
 
 #include "vtkDataSetAttributes.h"
-#include "vtkDoubleArray.h"
-#include "vtkIdTypeArray.h"
-#include "vtkIntArray.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
-#include "vtkStringArray.h"
 #include "vtkTable.h"
 
 #include <algorithm>
@@ -55,60 +51,47 @@ std::optional<RockFrequencies> frequenciesOf(const MergedCrossings& merged, vtkD
   return result;
 }
 
-/// A table with a number and a name of the line in each row.
-class Rows
-{
-public:
-  explicit Rows(vtkTable* output)
-    : data_(output->GetRowData())
-    , number_(addArray<vtkIntArray>(data_, "Line"))
-    , name_(addArray<vtkStringArray>(data_, "LineName"))
-  {
-  }
-
-  template <typename Array = vtkDoubleArray>
-  vtkSmartPointer<Array> column(const std::string& name)
-  {
-    return addArray<Array>(data_, name.c_str());
-  }
-
-  void begin(std::size_t number, const DesignLine& line)
-  {
-    number_->InsertNextValue(int(number));
-    name_->InsertNextValue(line.line.name);
-  }
-
-private:
-  vtkFieldData* data_;
-  vtkSmartPointer<vtkIntArray> number_;
-  vtkSmartPointer<vtkStringArray> name_;
-};
-
-/// A characteristic value and its limits.
-class ValueColumns
-{
-public:
-  ValueColumns(Rows& rows, const std::string& name, double unit)
-    : value_(rows.column(name))
-    , low_(rows.column(name + "Low"))
-    , high_(rows.column(name + "High"))
-    , unit_(unit)
-  {
-  }
-
-  void add(const DesignValue& of)
-  {
-    value_->InsertNextValue(of.value / unit_);
-    low_->InsertNextValue(of.limits.low / unit_);
-    high_->InsertNextValue(of.limits.high / unit_);
-  }
-
-private:
-  vtkSmartPointer<vtkDoubleArray> value_, low_, high_;
-  double unit_;
-};
-
 constexpr double kKilo = 1000.0;
+
+/// A row of a table begins with its line.
+struct LineRow
+{
+  std::size_t number;
+  const DesignLine& line;
+};
+
+template <typename Row>
+Columns<Row> columnsOf(vtkTable* output)
+{
+  Columns<Row> columns(output->GetRowData());
+  columns.add("Line", [](const Row& row) { return int(row.number); });
+  columns.add("LineName", [](const Row& row) { return row.line.line.name; });
+  return columns;
+}
+
+/// Adds a characteristic value and its limits.
+template <typename Row, typename Of>
+void addValue(Columns<Row>& columns, const std::string& name, double unit, Of of)
+{
+  columns.add(name, [of, unit](const Row& row) { return of(row).value / unit; });
+  columns.add(name + "Low", [of, unit](const Row& row) { return of(row).limits.low / unit; });
+  columns.add(name + "High", [of, unit](const Row& row) { return of(row).limits.high / unit; });
+}
+
+int uncaughtRocks(const BarrierOutcome& outcome)
+{
+  return outcome.over.rocks + outcome.tooStrong.rocks;
+}
+
+double uncaughtFrequency(const BarrierOutcome& outcome)
+{
+  return outcome.over.frequency + outcome.tooStrong.frequency;
+}
+
+double shareOf(int rocks, int all)
+{
+  return all > 0 ? double(rocks) / all : kNan;
+}
 
 } // namespace
 
@@ -161,87 +144,80 @@ std::vector<DesignLine> designLines(
 void writeDesign(
   const std::vector<DesignLine>& lines, const PartialFactors& factors, vtkTable* output)
 {
-  Rows rows(output);
-  const auto level = rows.column("Quantile");
-  const auto count = rows.column<vtkIntArray>("Rocks"),
-             least = rows.column<vtkIntArray>("LeastRocks");
-  ValueColumns energy(rows, "EnergyInKilojoules", kKilo), speed(rows, "Speed", 1.0),
-    top(rows, "TopHeight", 1.0);
-  const auto designEnergy = rows.column("DesignEnergyInKilojoules"),
-             designHeight = rows.column("DesignHeight"),
-             requiredHeight = rows.column("RequiredHeight");
-  const auto required = rows.column<vtkIntArray>("RequiredClass"),
-             holds = rows.column<vtkIntArray>("BarrierHolds");
+  struct Row : LineRow
+  {
+    const DesignLevel& of;
+  };
+  using R = const Row&;
+  auto columns = columnsOf<Row>(output);
+  const auto energy = [&](R r) { return factors.energy(r.of.energy.value, r.of.speed.value); };
+  const auto height = [&](R r) { return factors.height(r.of.top.value); };
+  columns.add("Quantile", [](R r) { return 100.0 * r.of.quantile; });
+  columns.add("Rocks", [](R r) { return int(r.line.passings.size()); });
+  columns.add("LeastRocks",
+    [](R r) { return int(r.of.quantile < 1.0 ? leastForQuantile(r.of.quantile) : 0); });
+  addValue(columns, "EnergyInKilojoules", kKilo, [](R r) { return r.of.energy; });
+  addValue(columns, "Speed", 1.0, [](R r) { return r.of.speed; });
+  addValue(columns, "TopHeight", 1.0, [](R r) { return r.of.top; });
+  columns.add("DesignEnergyInKilojoules", [energy](R r) { return energy(r) / kKilo; });
+  columns.add("DesignHeight", height);
+  columns.add("RequiredHeight", [&](R r) { return height(r) + factors.freeboard; });
+  columns.add("RequiredClass", [&](R r) { return sufficientClass(energy(r) * factors.barrier); });
+  columns.add("BarrierHolds",
+    [&](R r)
+    {
+      return int(energy(r) * factors.barrier <= r.line.line.barrierCapacity &&
+        height(r) + factors.freeboard <= r.line.line.barrierHeight);
+    });
   for (std::size_t k = 0; k < lines.size(); ++k)
   {
-    const DesignLine& line = lines[k];
-    for (const DesignLevel& of : designLevels(line.passings))
+    for (const DesignLevel& of : designLevels(lines[k].passings))
     {
-      rows.begin(k, line);
-      level->InsertNextValue(100.0 * of.quantile);
-      count->InsertNextValue(int(line.passings.size()));
-      least->InsertNextValue(of.quantile < 1.0 ? leastForQuantile(of.quantile) : 0);
-      energy.add(of.energy);
-      speed.add(of.speed);
-      top.add(of.top);
-      const double joules = factors.energy(of.energy.value, of.speed.value);
-      const double metres = factors.height(of.top.value);
-      designEnergy->InsertNextValue(joules / kKilo);
-      designHeight->InsertNextValue(metres);
-      requiredHeight->InsertNextValue(metres + factors.freeboard);
-      required->InsertNextValue(sufficientClass(joules * factors.barrier));
-      holds->InsertNextValue(joules * factors.barrier <= line.line.barrierCapacity &&
-        metres + factors.freeboard <= line.line.barrierHeight);
+      columns.append({ { k, lines[k] }, of });
     }
   }
 }
 
 void writeClasses(const std::vector<DesignLine>& lines, vtkTable* output)
 {
-  Rows rows(output);
-  const auto name = rows.column<vtkStringArray>("Class");
-  const auto height = rows.column("BarrierHeight"), maximum = rows.column("MaximumEnergyLevel"),
-             service = rows.column("ServiceEnergyLevel");
+  struct Row : LineRow
+  {
+    std::string name;
+    double maximum, service; ///< J
+    BarrierOutcome outcome;
+  };
+  using R = const Row&;
+  auto columns = columnsOf<Row>(output);
+  columns.add("Class", [](R r) { return r.name; });
+  columns.add("BarrierHeight", [](R r) { return r.line.line.barrierHeight; });
+  columns.add("MaximumEnergyLevel", [](R r) { return r.maximum / kKilo; });
+  columns.add("ServiceEnergyLevel", [](R r) { return r.service > 0.0 ? r.service / kKilo : kNan; });
   using Outcome = BarrierOutcome;
-  const std::pair<const char*, Outcome::Count Outcome::*> kinds[] = {
+  const std::pair<std::string, Outcome::Count Outcome::*> kinds[] = {
     { "Caught", &Outcome::caught }, { "Over", &Outcome::over }, { "TooStrong", &Outcome::tooStrong }
   };
-  std::vector<vtkSmartPointer<vtkIntArray>> counts;
-  std::vector<vtkSmartPointer<vtkDoubleArray>> shares, frequencies;
   for (const auto& [kind, of] : kinds)
   {
-    counts.push_back(rows.column<vtkIntArray>(kind));
+    columns.add(kind, [of = of](R r) { return (r.outcome.*of).rocks; });
   }
   for (const auto& [kind, of] : kinds)
   {
-    shares.push_back(rows.column(kind + std::string("Share")));
+    columns.add(
+      kind + "Share", [of = of](R r) { return shareOf((r.outcome.*of).rocks, r.outcome.rocks()); });
   }
-  const auto limit = rows.column("UncaughtShareHigh");
+  columns.add("UncaughtShareHigh",
+    [](R r) { return shareAtMost(uncaughtRocks(r.outcome), r.outcome.rocks()); });
   for (const auto& [kind, of] : kinds)
   {
-    frequencies.push_back(rows.column(kind + std::string("Frequency")));
+    columns.add(kind + "Frequency", [of = of](R r) { return (r.outcome.*of).frequency; });
   }
   for (std::size_t k = 0; k < lines.size(); ++k)
   {
     const DesignLine& line = lines[k];
-    const auto add = [&](const std::string& called, double mel, double sel)
+    const auto add = [&](const std::string& name, double maximum, double service)
     {
-      rows.begin(k, line);
-      name->InsertNextValue(called);
-      height->InsertNextValue(line.line.barrierHeight);
-      maximum->InsertNextValue(mel / kKilo);
-      service->InsertNextValue(sel > 0.0 ? sel / kKilo : kNan);
-      const Outcome outcome = outcomeOf(line.passings, line.line.barrierHeight, mel);
-      for (std::size_t kind = 0; kind < std::size(kinds); ++kind)
-      {
-        const Outcome::Count& of = outcome.*kinds[kind].second;
-        counts[kind]->InsertNextValue(of.rocks);
-        shares[kind]->InsertNextValue(
-          outcome.rocks() > 0 ? double(of.rocks) / outcome.rocks() : kNan);
-        frequencies[kind]->InsertNextValue(of.frequency);
-      }
-      limit->InsertNextValue(
-        shareAtMost(outcome.over.rocks + outcome.tooStrong.rocks, outcome.rocks()));
+      columns.append({ { k, line }, name, maximum, service,
+        outcomeOf(line.passings, line.line.barrierHeight, maximum) });
     };
     add("barrier", line.line.barrierCapacity, 0.0);
     for (std::size_t level = 0; level < barrierClasses.size(); ++level)
@@ -253,14 +229,25 @@ void writeClasses(const std::vector<DesignLine>& lines, vtkTable* output)
 
 void writeSources(const std::vector<DesignLine>& lines, vtkTable* output)
 {
-  Rows rows(output);
-  const auto number = rows.column<vtkIdTypeArray>("SourceId");
-  const auto count = rows.column<vtkIntArray>("Rocks"), caught = rows.column<vtkIntArray>("Caught"),
-             over = rows.column<vtkIntArray>("Over"),
-             tooStrong = rows.column<vtkIntArray>("TooStrong");
-  const auto share = rows.column("Share"), uncaughtShare = rows.column("UncaughtShare"),
-             frequency = rows.column("AnnualFrequency"),
-             uncaught = rows.column("UncaughtFrequency"), most = rows.column("EnergyMaximum");
+  struct Row : LineRow
+  {
+    std::int64_t source;
+    const BarrierOutcome &of, &all;
+    double energy; ///< The largest, J.
+  };
+  using R = const Row&;
+  auto columns = columnsOf<Row>(output);
+  columns.add("SourceId", [](R r) { return r.source; });
+  columns.add("Rocks", [](R r) { return r.of.rocks(); });
+  columns.add("Caught", [](R r) { return r.of.caught.rocks; });
+  columns.add("Over", [](R r) { return r.of.over.rocks; });
+  columns.add("TooStrong", [](R r) { return r.of.tooStrong.rocks; });
+  columns.add("Share", [](R r) { return shareOf(r.of.rocks(), r.all.rocks()); });
+  columns.add(
+    "UncaughtShare", [](R r) { return shareOf(uncaughtRocks(r.of), uncaughtRocks(r.all)); });
+  columns.add("AnnualFrequency", [](R r) { return r.of.frequency(); });
+  columns.add("UncaughtFrequency", [](R r) { return uncaughtFrequency(r.of); });
+  columns.add("EnergyMaximum", [](R r) { return r.energy / kKilo; });
   for (std::size_t k = 0; k < lines.size(); ++k)
   {
     const DesignLine& line = lines[k];
@@ -272,27 +259,14 @@ void writeSources(const std::vector<DesignLine>& lines, vtkTable* output)
     const auto outcomeAt = [&line](const std::vector<DesignPassing>& passings)
     { return outcomeOf(passings, line.line.barrierHeight, line.line.barrierCapacity); };
     const BarrierOutcome all = outcomeAt(line.passings);
-    const int allUncaught = all.over.rocks + all.tooStrong.rocks;
     for (const auto& [source, passings] : sources)
     {
-      rows.begin(k, line);
-      number->InsertNextValue(vtkIdType(source));
-      const BarrierOutcome of = outcomeAt(passings);
-      const int ofUncaught = of.over.rocks + of.tooStrong.rocks;
-      count->InsertNextValue(of.rocks());
-      caught->InsertNextValue(of.caught.rocks);
-      over->InsertNextValue(of.over.rocks);
-      tooStrong->InsertNextValue(of.tooStrong.rocks);
-      share->InsertNextValue(double(of.rocks()) / all.rocks());
-      uncaughtShare->InsertNextValue(allUncaught > 0 ? double(ofUncaught) / allUncaught : kNan);
-      frequency->InsertNextValue(of.frequency());
-      uncaught->InsertNextValue(of.over.frequency + of.tooStrong.frequency);
       double energy = 0.0;
       for (const DesignPassing& passing : passings)
       {
         energy = std::max(energy, passing.energy);
       }
-      most->InsertNextValue(energy / kKilo);
+      columns.append({ { k, line }, source, outcomeAt(passings), all, energy });
     }
   }
 }
@@ -300,47 +274,39 @@ void writeSources(const std::vector<DesignLine>& lines, vtkTable* output)
 void writePlaces(const std::vector<DesignLine>& lines, const PartialFactors& factors,
   std::int64_t released, vtkTable* output)
 {
-  Rows rows(output);
-  const auto offset = rows.column("Offset");
-  const auto count = rows.column<vtkIntArray>("Rocks");
-  const auto share = rows.column("Share"), frequency = rows.column("AnnualFrequency");
-  struct Level
+  struct Row : LineRow
   {
-    std::size_t number; ///< Of designQuantiles.
-    ValueColumns energy, top;
-    vtkSmartPointer<vtkIntArray> required;
+    BarrierOutcome outcome;
+    std::vector<DesignLevel> levels;
   };
-  const auto level = [&rows](std::size_t number, const std::string& end)
+  using R = const Row&;
+  auto columns = columnsOf<Row>(output);
+  columns.add("Offset", [](R r) { return r.line.line.offset; });
+  columns.add("Rocks", [](R r) { return r.outcome.rocks(); });
+  columns.add("Share", [=](R r) { return double(r.outcome.rocks()) / double(released); });
+  columns.add("AnnualFrequency", [](R r) { return r.outcome.frequency(); });
+  for (const auto& [number, end] : { std::pair(2, "95"), std::pair(4, "99") })
   {
-    return Level{ number, { rows, "EnergyInKilojoules" + end, kKilo },
-      { rows, "TopHeight" + end, 1.0 }, rows.column<vtkIntArray>("RequiredClass" + end) };
-  };
-  Level of[] = { level(2, "95"), level(4, "99") };
-  const auto uncaughtShare = rows.column("UncaughtShare"),
-             uncaught = rows.column("UncaughtFrequency");
+    const auto level = [n = std::size_t(number)](R r) -> const DesignLevel& { return r.levels[n]; };
+    const std::string of = end;
+    addValue(columns, "EnergyInKilojoules" + of, kKilo, [level](R r) { return level(r).energy; });
+    addValue(columns, "TopHeight" + of, 1.0, [level](R r) { return level(r).top; });
+    columns.add("RequiredClass" + of,
+      [level, &factors](R r)
+      {
+        return sufficientClass(
+          factors.barrier * factors.energy(level(r).energy.value, level(r).speed.value));
+      });
+  }
+  columns.add(
+    "UncaughtShare", [](R r) { return shareOf(uncaughtRocks(r.outcome), r.outcome.rocks()); });
+  columns.add("UncaughtFrequency", [](R r) { return uncaughtFrequency(r.outcome); });
   for (std::size_t k = 0; k < lines.size(); ++k)
   {
     const DesignLine& line = lines[k];
-    rows.begin(k, line);
-    offset->InsertNextValue(line.line.offset);
-    const BarrierOutcome outcome =
-      outcomeOf(line.passings, line.line.barrierHeight, line.line.barrierCapacity);
-    count->InsertNextValue(outcome.rocks());
-    share->InsertNextValue(double(outcome.rocks()) / double(released));
-    frequency->InsertNextValue(outcome.frequency());
-    const std::vector<DesignLevel> levels = designLevels(line.passings);
-    for (Level& column : of)
-    {
-      const DesignLevel& values = levels[column.number];
-      column.energy.add(values.energy);
-      column.top.add(values.top);
-      column.required->InsertNextValue(
-        sufficientClass(factors.barrier * factors.energy(values.energy.value, values.speed.value)));
-    }
-    uncaughtShare->InsertNextValue(outcome.rocks() > 0
-        ? double(outcome.over.rocks + outcome.tooStrong.rocks) / outcome.rocks()
-        : kNan);
-    uncaught->InsertNextValue(outcome.over.frequency + outcome.tooStrong.frequency);
+    columns.append(
+      { { k, line }, outcomeOf(line.passings, line.line.barrierHeight, line.line.barrierCapacity),
+        designLevels(line.passings) });
   }
 }
 

@@ -6,15 +6,13 @@
 #include "geometry/shapes.h"
 #include "geometry/shell.h"
 #include "mesh/precision.h"
-#include "shared/arrays.h"
+#include "shared/columns.h"
 
 #include "vtkCellArray.h"
 #include "vtkCellArrayIterator.h"
 #include "vtkCellData.h"
-#include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
 #include "vtkIdTypeArray.h"
-#include "vtkIntArray.h"
 #include "vtkNew.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
@@ -22,6 +20,7 @@
 #include "vtkStringArray.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -266,47 +265,25 @@ void readUncertainty(vtkPolyData* input, vtkIdType cell, ReleaseUncertainty& uns
     { &v.mean, &v.deviation, &v.minimum, &v.maximum, &v.exponent });
 }
 
-/// The arrays of what is drawn in each iteration.
-struct UncertaintyArrays
+using R = const ReleasedRock&;
+
+/// Adds what is drawn in each iteration.
+void addUncertainty(Columns<ReleasedRock>& columns)
 {
-  vtkSmartPointer<vtkDoubleArray> position, attitude, volume;
-  vtkSmartPointer<vtkIntArray> attitudeLaw, volumeLaw;
-
-  explicit UncertaintyArrays(vtkFieldData* cells)
-    : position(addArray<vtkDoubleArray>(cells, "PositionDeviation", 2))
-    , attitude(addArray<vtkDoubleArray>(cells, "AttitudeDeviation"))
-    , volume(addArray<vtkDoubleArray>(cells, "VolumeParameters", 5))
-    , attitudeLaw(addArray<vtkIntArray>(cells, "AttitudeLaw"))
-    , volumeLaw(addArray<vtkIntArray>(cells, "VolumeLaw"))
-  {
-  }
-
-  void append(const ReleaseUncertainty& unsure)
-  {
-    const VolumeDistribution& v = unsure.volume;
-    const double deviations[] = { unsure.horizontalDeviation, unsure.verticalDeviation };
-    const double parameters[] = { v.mean, v.deviation, v.minimum, v.maximum, v.exponent };
-    this->position->InsertNextTuple(deviations);
-    this->attitudeLaw->InsertNextValue(int(unsure.attitude));
-    this->attitude->InsertNextValue(degrees(unsure.attitudeDeviation));
-    this->volumeLaw->InsertNextValue(int(v.law));
-    this->volume->InsertNextTuple(parameters);
-  }
-};
-
-void readVector(vtkPolyData* input, const char* name, vtkIdType cell, Vec3& value)
-{
-  vtkDataArray* array = input->GetCellData()->GetArray(name);
-  if (!array)
-  {
-    return;
-  }
-  if (array->GetNumberOfComponents() != 3)
-  {
-    throw DataError("The Rocks input's cell array " + std::string(name) + " has " +
-      std::to_string(array->GetNumberOfComponents()) + " components, it must have 3");
-  }
-  array->GetTuple(cell, value.data());
+  const auto of = [](R r) -> const ReleaseUncertainty& { return r.rock.uncertainty; };
+  columns.add("PositionDeviation",
+    [of](R r) {
+      return std::array{ of(r).horizontalDeviation, of(r).verticalDeviation };
+    });
+  columns.add("AttitudeDeviation", [of](R r) { return degrees(of(r).attitudeDeviation); });
+  columns.add("VolumeParameters",
+    [of](R r)
+    {
+      const VolumeDistribution& v = of(r).volume;
+      return std::array{ v.mean, v.deviation, v.minimum, v.maximum, v.exponent };
+    });
+  columns.add("AttitudeLaw", [of](R r) { return int(of(r).attitude); });
+  columns.add("VolumeLaw", [of](R r) { return int(of(r).volume.law); });
 }
 
 } // namespace
@@ -335,24 +312,25 @@ void writeRocks(std::span<const ReleasedRock> rocks, vtkPolyData* output)
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
   vtkNew<vtkCellArray> polygons;
-  vtkFieldData* cells = output->GetCellData();
-  const auto blockId = addArray<vtkIdTypeArray>(cells, "BlockId");
-  const auto density = addArray<vtkDoubleArray>(cells, "Density");
-  const auto volume = addArray<vtkDoubleArray>(cells, "Volume");
-  const auto young = addArray<vtkDoubleArray>(cells, "YoungModulus");
-  const auto poisson = addArray<vtkDoubleArray>(cells, "PoissonRatio");
-  const auto material = addArray<vtkStringArray>(cells, "Material");
-  const auto velocity = addArray<vtkDoubleArray>(cells, "Velocity", 3);
-  const auto rotation = addArray<vtkDoubleArray>(cells, "AngularVelocity", 3);
-  const auto shape = addArray<vtkIntArray>(cells, "Shape");
-  const auto sourceId = addArray<vtkIdTypeArray>(cells, "SourceId");
-  UncertaintyArrays uncertainty(cells);
-  const auto sourceName = addArray<vtkStringArray>(cells, "SourceName");
+  Columns<ReleasedRock> columns(output->GetCellData());
+  columns.add("BlockId", [](R r) { return r.rock.blockId; });
+  columns.add("Density", [](R r) { return r.rock.density; });
+  columns.add("Volume", [](R r) { return r.rock.shape.integrals().volume; });
+  columns.add("YoungModulus", [](R r) { return r.rock.youngModulus; });
+  columns.add("PoissonRatio", [](R r) { return r.rock.poissonRatio; });
+  columns.add("Material", [](R r) { return r.rock.material; });
+  columns.add("Velocity", [](R r) { return r.rock.velocity; });
+  columns.add("AngularVelocity", [](R r) { return r.rock.angularVelocity; });
+  columns.add("Shape", [](R r) { return int(r.shape); });
+  columns.add("SourceId", [](R r) { return r.sourceId; });
+  addUncertainty(columns);
+  columns.add("SourceName", [](R r) { return r.sourceName; });
   // Of all rocks or none.
-  const bool known = std::all_of(rocks.begin(), rocks.end(),
-    [](const ReleasedRock& released) { return !std::isnan(released.frequency); });
-  const auto frequency = known && !rocks.empty() ? addArray<vtkDoubleArray>(cells, "Frequency")
-                                                 : vtkSmartPointer<vtkDoubleArray>();
+  if (!rocks.empty() &&
+    std::none_of(rocks.begin(), rocks.end(), [](R r) { return std::isnan(r.frequency); }))
+  {
+    columns.add("Frequency", [](R r) { return r.frequency; });
+  }
   const auto shapeNames = addArray<vtkStringArray>(output->GetFieldData(), "ShapeName");
   for (int number = 0; number < kShapes; ++number)
   {
@@ -365,22 +343,7 @@ void writeRocks(std::span<const ReleasedRock> rocks, vtkPolyData* output)
     appendFaces(rock.shape, rock.orientation.toRotationMatrix(), rock.position, points, polygons);
     for (std::size_t face = 0; face < rock.shape.faces().size(); ++face)
     {
-      blockId->InsertNextValue(rock.blockId);
-      density->InsertNextValue(rock.density);
-      volume->InsertNextValue(rock.shape.integrals().volume);
-      young->InsertNextValue(rock.youngModulus);
-      poisson->InsertNextValue(rock.poissonRatio);
-      material->InsertNextValue(rock.material);
-      velocity->InsertNextTuple(rock.velocity.data());
-      rotation->InsertNextTuple(rock.angularVelocity.data());
-      shape->InsertNextValue(int(released.shape));
-      sourceId->InsertNextValue(released.sourceId);
-      sourceName->InsertNextValue(released.sourceName);
-      if (frequency)
-      {
-        frequency->InsertNextValue(released.frequency);
-      }
-      uncertainty.append(rock.uncertainty);
+      columns.append(released);
     }
   }
   output->SetPoints(points);
@@ -455,8 +418,9 @@ std::vector<ReleasedRock> readRocks(vtkPolyData* input, const Vec3& origin)
     readNumber(input, "YoungModulus", block.firstCell, rock.youngModulus);
     readNumber(input, "PoissonRatio", block.firstCell, rock.poissonRatio);
     rock.material = nameOf(input, "Material", block, names);
-    readVector(input, "Velocity", block.firstCell, rock.velocity);
-    readVector(input, "AngularVelocity", block.firstCell, rock.angularVelocity);
+    Vec3 &v = rock.velocity, &w = rock.angularVelocity;
+    readTuple(input, "Velocity", block.firstCell, { &v.x(), &v.y(), &v.z() });
+    readTuple(input, "AngularVelocity", block.firstCell, { &w.x(), &w.y(), &w.z() });
     double shape = double(Shape::File);
     readNumber(input, "Shape", block.firstCell, shape);
     if (shape >= 0.0 && shape < double(kShapes))

@@ -4,50 +4,44 @@
 /// Arrays that several outputs of a run have (runOutputs.h). Internal to its sources.
 
 #include "rock/results.h"
-#include "shared/arrays.h"
+#include "shared/columns.h"
+#include "simulation/runOutputs.h"
 
-#include "vtkDoubleArray.h"
 #include "vtkFieldData.h"
-#include "vtkIdTypeArray.h"
-#include "vtkIntArray.h"
 #include "vtkPoints.h"
 #include "vtkSmartPointer.h"
-
-#include <cstdint>
 
 namespace rockfall::filters
 {
 
-/// Arrays that say which rock, and in which iteration.
-struct IdentityArrays
+/// Adds arrays that say which rock, and in which iteration. `of`: its summary.
+template <typename Row, typename Of>
+void addIdentity(Columns<Row>& columns, Of of)
 {
-  vtkSmartPointer<vtkIdTypeArray> blockId;
-  vtkSmartPointer<vtkIntArray> rockId, iteration;
-  vtkSmartPointer<vtkIntArray> piece; ///< None where no rock can break.
+  columns.add("BlockId", [of](const Row& row) { return of(row).blockId; });
+  columns.add("RockId", [of](const Row& row) { return of(row).rock; });
+  columns.add("Iteration", [of](const Row& row) { return of(row).iteration; });
+}
 
-  explicit IdentityArrays(vtkFieldData* data)
-    : blockId(addArray<vtkIdTypeArray>(data, "BlockId"))
-    , rockId(addArray<vtkIntArray>(data, "RockId"))
-    , iteration(addArray<vtkIntArray>(data, "Iteration"))
-  {
-  }
-
-  void append(std::int64_t block, int rock, int number, int ofRock)
-  {
-    if (this->piece)
-    {
-      this->piece->InsertNextValue(ofRock);
-    }
-    this->blockId->InsertNextValue(block);
-    this->rockId->InsertNextValue(rock);
-    this->iteration->InsertNextValue(number);
-  }
-};
-
-/// The array of the numbers of pieces, where rocks can break.
-inline vtkSmartPointer<vtkIntArray> pieceArray(bool breaking, vtkFieldData* data)
+/// Adds the numbers of pieces where rocks can break. `of`: a summary or a rock that is shown.
+template <typename Row, typename Of>
+void addPiece(const RunFrame& frame, Columns<Row>& columns, Of of)
 {
-  return breaking ? addArray<vtkIntArray>(data, "Piece") : nullptr;
+  if (frame.breaking)
+  {
+    columns.add("Piece", [of](const Row& row) { return of(row).piece; });
+  }
+}
+
+/// Adds frequencies where they are known.
+template <typename Row>
+void addFrequency(const RunFrame& frame, Columns<Row>& columns)
+{
+  if (!frame.frequencies.empty())
+  {
+    columns.add(
+      "Frequency", [&frame](const Row& row) { return frame.frequencies[std::size_t(row.rock)]; });
+  }
 }
 
 /// Points in double precision.

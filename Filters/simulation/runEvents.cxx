@@ -15,153 +15,108 @@ namespace rockfall::filters
 namespace
 {
 
-/// A vertex for each event, with the rock that it happens to.
-struct EventVertices
+/// An event, with the rock that it happens to.
+template <typename Event>
+struct EventRow
 {
-  vtkNew<vtkPolyData> data;
-  vtkFieldData* fields = data->GetPointData();
-  vtkSmartPointer<vtkPoints> points = doublePoints();
-  vtkNew<vtkCellArray> vertices;
-  IdentityArrays identity{ fields };
-
-  void append(const Vec3& world, const TrajectorySummary& summary)
-  {
-    this->vertices->InsertNextCell(1);
-    this->vertices->InsertCellPoint(this->points->GetNumberOfPoints());
-    insertPoint(this->points, world);
-    this->identity.append(summary.blockId, summary.rock, summary.iteration, summary.piece);
-  }
-  void copy(vtkPolyData* output) const
-  {
-    this->data->SetPoints(this->points);
-    this->data->SetVerts(this->vertices);
-    output->DeepCopy(this->data);
-  }
-  void finish(vtkPolyData* output)
-  {
-    squeeze(this->fields);
-    rememberRanges(this->fields);
-    this->points->Squeeze();
-    this->vertices->Squeeze();
-    this->data->SetPoints(this->points);
-    this->data->SetVerts(this->vertices);
-    output->ShallowCopy(this->data);
-  }
+  const TrajectorySummary& summary;
+  const Event& event;
 };
+
+void addColumns(Columns<EventRow<ImpactEvent>>& columns)
+{
+  using R = const EventRow<ImpactEvent>&;
+  columns.add("Time", [](R row) { return row.event.time; });
+  columns.add("Normal", [](R row) { return row.event.normal; });
+  columns.add("CFEId", [](R row) { return row.event.cfe; });
+  columns.add("Impulse", [](R row) { return row.event.impulse; });
+  columns.add("ApproachSpeed", [](R row) { return row.event.approachSpeed; });
+  columns.add("VelocityBefore", [](R row) { return row.event.velocityBefore; });
+  columns.add("VelocityAfter", [](R row) { return row.event.velocityAfter; });
+  columns.add("EnergyLoss", [](R row) { return row.event.energyLoss; });
+  columns.add("Restitution", [](R row) { return row.event.restitution; });
+  columns.add("ScarDepth", [](R row) { return row.event.scarDepth; });
+  columns.add("ScarLength", [](R row) { return row.event.scarLength; });
+  columns.add("OtherRockId", [](R row) { return row.event.otherRock; });
+  columns.add("OtherBlockId", [](R row) { return row.event.otherBlockId; });
+}
+
+void addColumns(Columns<EventRow<StructureEvent>>& columns)
+{
+  using R = const EventRow<StructureEvent>&;
+  columns.add("StructureId", [](R row) { return row.event.feature; });
+  columns.add("Outcome", [](R row) { return int(row.event.outcome); });
+  columns.add("Time", [](R row) { return row.event.time; });
+  columns.add("Velocity", [](R row) { return row.event.velocity; });
+  columns.add("Speed", [](R row) { return row.event.velocity.norm(); });
+  columns.add("KineticEnergy", [](R row) { return row.event.kineticEnergy; });
+  columns.add("HeightOverGround", [](R row) { return row.event.heightOverGround; });
+  columns.add("EnergyTaken", [](R row) { return row.event.energyTaken; });
+  columns.add("HeldBefore", [](R row) { return row.event.heldBefore; });
+  columns.add("UsefulHeight", [](R row) { return row.event.usefulHeight; });
+  columns.add("BrakingDistance", [](R row) { return row.event.brakingDistance; });
+}
 
 } // namespace
 
-struct ImpactPoints::Arrays : EventVertices
+template <typename Event>
+struct EventPoints<Event>::Arrays
 {
-  vtkSmartPointer<vtkDoubleArray> time = addArray<vtkDoubleArray>(fields, "Time");
-  vtkSmartPointer<vtkDoubleArray> normal = addArray<vtkDoubleArray>(fields, "Normal", 3);
-  vtkSmartPointer<vtkIdTypeArray> cfe = addArray<vtkIdTypeArray>(fields, "CFEId");
-  vtkSmartPointer<vtkDoubleArray> impulse = addArray<vtkDoubleArray>(fields, "Impulse");
-  vtkSmartPointer<vtkDoubleArray> approach = addArray<vtkDoubleArray>(fields, "ApproachSpeed");
-  vtkSmartPointer<vtkDoubleArray> before = addArray<vtkDoubleArray>(fields, "VelocityBefore", 3);
-  vtkSmartPointer<vtkDoubleArray> after = addArray<vtkDoubleArray>(fields, "VelocityAfter", 3);
-  vtkSmartPointer<vtkDoubleArray> loss = addArray<vtkDoubleArray>(fields, "EnergyLoss");
-  vtkSmartPointer<vtkDoubleArray> restitution = addArray<vtkDoubleArray>(fields, "Restitution");
-  vtkSmartPointer<vtkDoubleArray> scarDepth = addArray<vtkDoubleArray>(fields, "ScarDepth");
-  vtkSmartPointer<vtkDoubleArray> scarLength = addArray<vtkDoubleArray>(fields, "ScarLength");
-  vtkSmartPointer<vtkIntArray> otherRock = addArray<vtkIntArray>(fields, "OtherRockId");
-  vtkSmartPointer<vtkIdTypeArray> otherBlock = addArray<vtkIdTypeArray>(fields, "OtherBlockId");
+  vtkNew<vtkPolyData> data;
+  vtkSmartPointer<vtkPoints> points = doublePoints();
+  vtkNew<vtkCellArray> vertices;
+  Columns<EventRow<Event>> columns{ data->GetPointData() };
 };
 
-ImpactPoints::ImpactPoints(const RunFrame& frame)
+template <typename Event>
+EventPoints<Event>::EventPoints(const RunFrame& frame)
   : frame_(frame)
   , arrays_(std::make_unique<Arrays>())
 {
-  arrays_->identity.piece = pieceArray(frame.breaking, arrays_->fields);
+  const auto summaryOf = [](const EventRow<Event>& row) -> const TrajectorySummary&
+  { return row.summary; };
+  addIdentity(arrays_->columns, summaryOf);
+  addColumns(arrays_->columns);
+  addPiece(frame, arrays_->columns, summaryOf);
+  arrays_->data->SetPoints(arrays_->points);
 }
 
-ImpactPoints::~ImpactPoints() = default;
+template <typename Event>
+EventPoints<Event>::~EventPoints() = default;
 
-void ImpactPoints::append(const Trajectory& trajectory)
+template <typename Event>
+void EventPoints<Event>::append(const TrajectorySummary& summary, const std::vector<Event>& events)
 {
   Arrays& a = *arrays_;
-  for (const ImpactEvent& impact : trajectory.impacts)
+  for (const Event& event : events)
   {
-    a.append(impact.position + frame_.origin, trajectory.summary);
-    a.time->InsertNextValue(impact.time);
-    a.normal->InsertNextTuple(impact.normal.data());
-    a.cfe->InsertNextValue(impact.cfe);
-    a.impulse->InsertNextValue(impact.impulse);
-    a.approach->InsertNextValue(impact.approachSpeed);
-    a.before->InsertNextTuple(impact.velocityBefore.data());
-    a.after->InsertNextTuple(impact.velocityAfter.data());
-    a.loss->InsertNextValue(impact.energyLoss);
-    a.restitution->InsertNextValue(impact.restitution);
-    a.scarDepth->InsertNextValue(impact.scarDepth);
-    a.scarLength->InsertNextValue(impact.scarLength);
-    a.otherRock->InsertNextValue(impact.otherRock);
-    a.otherBlock->InsertNextValue(impact.otherBlockId);
+    a.vertices->InsertNextCell(1);
+    a.vertices->InsertCellPoint(a.points->GetNumberOfPoints());
+    insertPoint(a.points, event.position + frame_.origin);
+    a.columns.append({ summary, event });
   }
 }
 
-void ImpactPoints::copy(vtkPolyData* output) const
+template <typename Event>
+void EventPoints<Event>::copy(vtkPolyData* output) const
 {
-  arrays_->copy(output);
+  arrays_->data->SetVerts(arrays_->vertices);
+  output->DeepCopy(arrays_->data);
 }
 
-void ImpactPoints::finish(vtkPolyData* output)
-{
-  arrays_->finish(output);
-}
-
-//------------------------------------------------------------------------------
-struct StructurePoints::Arrays : EventVertices
-{
-  vtkSmartPointer<vtkIdTypeArray> structure = addArray<vtkIdTypeArray>(fields, "StructureId");
-  vtkSmartPointer<vtkIntArray> outcome = addArray<vtkIntArray>(fields, "Outcome");
-  vtkSmartPointer<vtkDoubleArray> time = addArray<vtkDoubleArray>(fields, "Time");
-  vtkSmartPointer<vtkDoubleArray> velocity = addArray<vtkDoubleArray>(fields, "Velocity", 3);
-  vtkSmartPointer<vtkDoubleArray> speed = addArray<vtkDoubleArray>(fields, "Speed");
-  vtkSmartPointer<vtkDoubleArray> energy = addArray<vtkDoubleArray>(fields, "KineticEnergy");
-  vtkSmartPointer<vtkDoubleArray> height = addArray<vtkDoubleArray>(fields, "HeightOverGround");
-  vtkSmartPointer<vtkDoubleArray> taken = addArray<vtkDoubleArray>(fields, "EnergyTaken");
-  vtkSmartPointer<vtkDoubleArray> held = addArray<vtkDoubleArray>(fields, "HeldBefore");
-  vtkSmartPointer<vtkDoubleArray> useful = addArray<vtkDoubleArray>(fields, "UsefulHeight");
-  vtkSmartPointer<vtkDoubleArray> braking = addArray<vtkDoubleArray>(fields, "BrakingDistance");
-};
-
-StructurePoints::StructurePoints(const RunFrame& frame)
-  : frame_(frame)
-  , arrays_(std::make_unique<Arrays>())
-{
-  arrays_->identity.piece = pieceArray(frame.breaking, arrays_->fields);
-}
-
-StructurePoints::~StructurePoints() = default;
-
-void StructurePoints::append(const Trajectory& trajectory)
+template <typename Event>
+void EventPoints<Event>::finish(vtkPolyData* output)
 {
   Arrays& a = *arrays_;
-  for (const StructureEvent& event : trajectory.structures)
-  {
-    a.append(event.position + frame_.origin, trajectory.summary);
-    a.structure->InsertNextValue(event.feature);
-    a.outcome->InsertNextValue(int(event.outcome));
-    a.time->InsertNextValue(event.time);
-    a.velocity->InsertNextTuple(event.velocity.data());
-    a.speed->InsertNextValue(event.velocity.norm());
-    a.energy->InsertNextValue(event.kineticEnergy);
-    a.height->InsertNextValue(event.heightOverGround);
-    a.taken->InsertNextValue(event.energyTaken);
-    a.held->InsertNextValue(event.heldBefore);
-    a.useful->InsertNextValue(event.usefulHeight);
-    a.braking->InsertNextValue(event.brakingDistance);
-  }
+  squeeze(a.data->GetPointData());
+  rememberRanges(a.data->GetPointData());
+  a.points->Squeeze();
+  a.vertices->Squeeze();
+  a.data->SetVerts(a.vertices);
+  output->ShallowCopy(a.data);
 }
 
-void StructurePoints::copy(vtkPolyData* output) const
-{
-  arrays_->copy(output);
-}
-
-void StructurePoints::finish(vtkPolyData* output)
-{
-  arrays_->finish(output);
-}
+template class EventPoints<ImpactEvent>;
+template class EventPoints<StructureEvent>;
 
 } // namespace rockfall::filters

@@ -10,10 +10,10 @@
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
-#include "vtkStringArray.h"
 
 #include <cmath>
 #include <map>
+#include <utility>
 
 namespace rockfall::filters
 {
@@ -21,111 +21,25 @@ namespace rockfall::filters
 namespace
 {
 
-/// Arrays of motion: per face of a rock, or per point of a trajectory.
-struct MotionArrays
+/// Adds arrays of motion: per face of a rock, or per point of a trajectory. `of`: its sample.
+template <typename Row, typename Of>
+void addMotion(Columns<Row>& columns, Of of)
 {
-  vtkSmartPointer<vtkDoubleArray> velocity, speed, rotationRate, kineticEnergy, height;
-
-  explicit MotionArrays(vtkFieldData* data)
-    : velocity(addArray<vtkDoubleArray>(data, "Velocity", 3))
-    , speed(addArray<vtkDoubleArray>(data, "Speed"))
-    , rotationRate(addArray<vtkDoubleArray>(data, "RotationRate", 3))
-    , kineticEnergy(addArray<vtkDoubleArray>(data, "KineticEnergy"))
-    , height(addArray<vtkDoubleArray>(data, "HeightOverGround"))
-  {
-  }
-
-  void append(const Sample& sample)
-  {
-    this->velocity->InsertNextTuple(sample.velocity.data());
-    this->speed->InsertNextValue(sample.velocity.norm());
-    this->rotationRate->InsertNextTuple(sample.angularVelocity.data());
-    this->kineticEnergy->InsertNextValue(sample.kineticEnergy);
-    this->height->InsertNextValue(sample.heightOverGround);
-  }
-};
-
-/// Where the energy of a rock is, and what has been taken of it since its release, J.
-struct EnergyArrays
-{
-  vtkSmartPointer<vtkDoubleArray> potential, strain, friction, restitution, vibration, damping,
-    structures, scars, rolling, exchanged, numerical;
-  vtkSmartPointer<vtkDoubleArray> breaking; ///< None where no rock can break.
-
-  explicit EnergyArrays(vtkFieldData* data)
-    : potential(addArray<vtkDoubleArray>(data, "PotentialEnergy"))
-    , strain(addArray<vtkDoubleArray>(data, "StrainEnergy"))
-    , friction(addArray<vtkDoubleArray>(data, "FrictionLoss"))
-    , restitution(addArray<vtkDoubleArray>(data, "RestitutionLoss"))
-    , vibration(addArray<vtkDoubleArray>(data, "VibrationLoss"))
-    , damping(addArray<vtkDoubleArray>(data, "DampingLoss"))
-    , structures(addArray<vtkDoubleArray>(data, "StructureLoss"))
-    , scars(addArray<vtkDoubleArray>(data, "ScarLoss"))
-    , rolling(addArray<vtkDoubleArray>(data, "RollingLoss"))
-    , exchanged(addArray<vtkDoubleArray>(data, "GivenToRocks"))
-    , numerical(addArray<vtkDoubleArray>(data, "NumericalLoss"))
-  {
-  }
-
-  /// `weight`: m g, N.
-  void append(const Sample& sample, double weight)
-  {
-    // Heights of the local frame are those of the world.
-    this->potential->InsertNextValue(weight * sample.position.z());
-    this->strain->InsertNextValue(sample.energy.strain);
-    this->friction->InsertNextValue(sample.energy.friction);
-    this->restitution->InsertNextValue(sample.energy.restitution);
-    this->vibration->InsertNextValue(sample.energy.vibration);
-    this->damping->InsertNextValue(sample.energy.damping);
-    this->structures->InsertNextValue(sample.energy.structures);
-    this->scars->InsertNextValue(sample.energy.scars);
-    this->rolling->InsertNextValue(sample.energy.rolling);
-    if (this->breaking)
-    {
-      this->breaking->InsertNextValue(sample.energy.breaking);
-    }
-    this->exchanged->InsertNextValue(sample.energy.exchanged);
-    this->numerical->InsertNextValue(sample.energy.numerical);
-  }
-};
-
-/// None where frequencies are not known.
-vtkSmartPointer<vtkDoubleArray> frequencyArray(const RunFrame& frame, vtkFieldData* data)
-{
-  return frame.frequencies.empty() ? nullptr : addArray<vtkDoubleArray>(data, "Frequency");
+  columns.add("Velocity", [of](const Row& row) { return of(row).velocity; });
+  columns.add("Speed", [of](const Row& row) { return of(row).velocity.norm(); });
+  columns.add("RotationRate", [of](const Row& row) { return of(row).angularVelocity; });
+  columns.add("KineticEnergy", [of](const Row& row) { return of(row).kineticEnergy; });
+  columns.add("HeightOverGround", [of](const Row& row) { return of(row).heightOverGround; });
 }
 
-/// State of a rock beside its motion, to be released again as it is.
-struct ReleaseArrays
-{
-  vtkSmartPointer<vtkDoubleArray> density, young, poisson, rotation;
-  vtkSmartPointer<vtkIdTypeArray> sourceId;
-  vtkSmartPointer<vtkDoubleArray> frequency; ///< None where it is not known.
-
-  ReleaseArrays(const RunFrame& frame, vtkFieldData* data)
-    : density(addArray<vtkDoubleArray>(data, "Density"))
-    , young(addArray<vtkDoubleArray>(data, "YoungModulus"))
-    , poisson(addArray<vtkDoubleArray>(data, "PoissonRatio"))
-    , rotation(addArray<vtkDoubleArray>(data, "AngularVelocity", 3))
-    , sourceId(addArray<vtkIdTypeArray>(data, "SourceId"))
-    , frequency(frequencyArray(frame, data))
-  {
-  }
-
-  void append(const RunFrame& frame, const ShownRock& shown)
-  {
-    const auto number = std::size_t(shown.rock);
-    const Rock& rock = frame.rocks[number];
-    this->density->InsertNextValue(rock.density);
-    this->young->InsertNextValue(rock.youngModulus);
-    this->poisson->InsertNextValue(rock.poissonRatio);
-    this->rotation->InsertNextTuple(shown.sample.angularVelocity.data());
-    this->sourceId->InsertNextValue(frame.sourceIds[number]);
-    if (this->frequency)
-    {
-      this->frequency->InsertNextValue(frame.frequencies[number]);
-    }
-  }
+/// Where the energy of a rock is beside its height, and what has been taken of it since its
+/// release, J.
+constexpr std::pair<const char*, double EnergyAudit::*> kEnergies[] = {
+  { "StrainEnergy", &EnergyAudit::strain }, { "FrictionLoss", &EnergyAudit::friction },
+  { "RestitutionLoss", &EnergyAudit::restitution }, { "VibrationLoss", &EnergyAudit::vibration },
+  { "DampingLoss", &EnergyAudit::damping }, { "StructureLoss", &EnergyAudit::structures },
+  { "ScarLoss", &EnergyAudit::scars }, { "RollingLoss", &EnergyAudit::rolling },
+  { "GivenToRocks", &EnergyAudit::exchanged }, { "NumericalLoss", &EnergyAudit::numerical }
 };
 
 } // namespace
@@ -134,17 +48,31 @@ void writeRocks(const RunFrame& frame, std::span<const ShownRock> rocks, vtkPoly
 {
   const auto points = doublePoints();
   vtkNew<vtkCellArray> polygons;
-  IdentityArrays identity(output->GetCellData());
-  identity.piece = pieceArray(frame.breaking, output->GetCellData());
-  MotionArrays motion(output->GetCellData());
-  const auto state = addArray<vtkIntArray>(output->GetCellData(), "State");
-  const auto shape = addArray<vtkIntArray>(output->GetCellData(), "Shape");
-  const auto volume = addArray<vtkDoubleArray>(output->GetCellData(), "Volume");
-  ReleaseArrays release(frame, output->GetCellData());
+  using S = const ShownRock&;
+  const auto rockOf = [&frame](S shown) -> const Rock&
+  { return frame.rocks[std::size_t(shown.rock)]; };
+  const auto itself = [](S shown) -> S { return shown; };
+  Columns<ShownRock> columns(output->GetCellData());
+  columns.add("BlockId", [rockOf](S shown) { return rockOf(shown).blockId; });
+  columns.add("RockId", [](S shown) { return shown.rock; });
+  columns.add("Iteration", [](S shown) { return shown.iteration; });
+  addPiece(frame, columns, itself);
+  addMotion(columns, [](S shown) -> const Sample& { return shown.sample; });
+  columns.add("State", [](S shown) { return shown.state; });
+  columns.add("Shape", [&](S shown) { return int(frame.shapes[std::size_t(shown.rock)]); });
+  double volume = 0.0;
+  columns.add("Volume", [&volume](S) { return volume; });
+  // State beside the motion, to be released again as it is.
+  columns.add("Density", [rockOf](S shown) { return rockOf(shown).density; });
+  columns.add("YoungModulus", [rockOf](S shown) { return rockOf(shown).youngModulus; });
+  columns.add("PoissonRatio", [rockOf](S shown) { return rockOf(shown).poissonRatio; });
+  columns.add("AngularVelocity", [](S shown) { return shown.sample.angularVelocity; });
+  columns.add("SourceId", [&](S shown) { return frame.sourceIds[std::size_t(shown.rock)]; });
+  addFrequency(frame, columns);
   BlockNames names(output->GetFieldData());
   for (const ShownRock& shown : rocks)
   {
-    const Rock& rock = frame.rocks[std::size_t(shown.rock)];
+    const Rock& rock = rockOf(shown);
     names.append(rock, frame.sourceNames[std::size_t(shown.rock)]);
     // The volume may be one of this iteration.
     const bool drawn = rock.uncertainty.volume.law != VolumeLaw::Fixed;
@@ -153,14 +81,10 @@ void writeRocks(const RunFrame& frame, std::span<const ShownRock> rocks, vtkPoly
                                             : rock.shape;
     appendFaces(body, shown.sample.orientation.toRotationMatrix(),
       shown.sample.position + frame.origin, points, polygons);
+    volume = body.integrals().volume;
     for (std::size_t face = 0; face < body.faces().size(); ++face)
     {
-      identity.append(rock.blockId, shown.rock, shown.iteration, shown.piece);
-      motion.append(shown.sample);
-      state->InsertNextValue(shown.state);
-      shape->InsertNextValue(int(frame.shapes[std::size_t(shown.rock)]));
-      volume->InsertNextValue(body.integrals().volume);
-      release.append(frame, shown);
+      columns.append(shown);
     }
   }
   output->SetPoints(points);
@@ -181,6 +105,12 @@ double longestSide(const Polyhedron& shape)
   return box.sizes().maxCoeff();
 }
 
+struct PointRow
+{
+  const Sample& sample;
+  double weight; ///< m g, N.
+};
+
 } // namespace
 
 struct TrajectoryLines::Arrays
@@ -188,18 +118,8 @@ struct TrajectoryLines::Arrays
   vtkNew<vtkPolyData> data;
   vtkSmartPointer<vtkPoints> points = doublePoints();
   vtkNew<vtkCellArray> lines, vertices;
-  vtkSmartPointer<vtkDoubleArray> time = addArray<vtkDoubleArray>(data->GetPointData(), "Time");
-  MotionArrays motion{ data->GetPointData() };
-  std::unique_ptr<EnergyArrays> energy;
-  IdentityArrays identity{ data->GetCellData() };
-  vtkSmartPointer<vtkIntArray> shape = addArray<vtkIntArray>(data->GetCellData(), "Shape");
-  vtkSmartPointer<vtkDoubleArray> volume = addArray<vtkDoubleArray>(data->GetCellData(), "Volume");
-  vtkSmartPointer<vtkDoubleArray> mass = addArray<vtkDoubleArray>(data->GetCellData(), "Mass");
-  vtkSmartPointer<vtkDoubleArray> width = addArray<vtkDoubleArray>(data->GetCellData(), "Width");
-  vtkSmartPointer<vtkIntArray> fate = addArray<vtkIntArray>(data->GetCellData(), "Fate");
-  vtkSmartPointer<vtkIdTypeArray> source =
-    addArray<vtkIdTypeArray>(data->GetCellData(), "SourceId");
-  vtkSmartPointer<vtkDoubleArray> frequency; ///< None where it is not known.
+  Columns<PointRow> samples{ data->GetPointData() };
+  Columns<TrajectorySummary> paths{ data->GetCellData() };
 
   /// The longest side of the box around a rock or a piece, in the directions that the shape of the
   /// rock was given in. Asked for every path in turn.
@@ -237,20 +157,39 @@ TrajectoryLines::TrajectoryLines(const RunFrame& frame, bool withLosses)
   : frame_(frame)
   , arrays_(std::make_unique<Arrays>())
 {
-  arrays_->frequency = frequencyArray(frame, arrays_->data->GetCellData());
+  Arrays& a = *arrays_;
+  using P = const PointRow&;
+  a.samples.add("Time", [](P point) { return point.sample.time; });
+  addMotion(a.samples, [](P point) -> const Sample& { return point.sample; });
   if (withLosses)
   {
-    arrays_->energy = std::make_unique<EnergyArrays>(arrays_->data->GetPointData());
+    // Heights of the local frame are those of the world.
+    a.samples.add(
+      "PotentialEnergy", [](P point) { return point.weight * point.sample.position.z(); });
+    for (const auto& [name, of] : kEnergies)
+    {
+      a.samples.add(name, [of = of](P point) { return point.sample.energy.*of; });
+    }
+    if (frame.breaking)
+    {
+      a.samples.add("BreakingLoss", [](P point) { return point.sample.energy.breaking; });
+    }
   }
-  arrays_->identity.piece = pieceArray(frame.breaking, arrays_->data->GetCellData());
+  using S = const TrajectorySummary&;
+  const auto itself = [](S s) -> S { return s; };
+  addIdentity(a.paths, itself);
+  a.paths.add("Shape", [&frame](S s) { return int(frame.shapes[std::size_t(s.rock)]); });
+  a.paths.add("Volume", [](S s) { return s.volume; });
+  a.paths.add("Mass", [](S s) { return s.mass; });
+  a.paths.add(
+    "Width", [&a, &frame](S s) { return a.widthOf(frame.rocks[std::size_t(s.rock)], s); });
+  a.paths.add("Fate", [](S s) { return int(s.fate); });
+  a.paths.add("SourceId", [&frame](S s) { return frame.sourceIds[std::size_t(s.rock)]; });
+  addFrequency(frame, a.paths);
+  addPiece(frame, a.paths, itself);
   if (frame.breaking && frame.slope)
   {
-    arrays_->pieces = std::make_unique<PieceShapes>(*frame.slope, *frame.parameters);
-  }
-  if (frame.breaking && withLosses)
-  {
-    arrays_->energy->breaking =
-      addArray<vtkDoubleArray>(arrays_->data->GetPointData(), "BreakingLoss");
+    a.pieces = std::make_unique<PieceShapes>(*frame.slope, *frame.parameters);
   }
 }
 
@@ -273,24 +212,9 @@ void TrajectoryLines::append(const Trajectory& trajectory)
   {
     cells->InsertCellPoint(a.points->GetNumberOfPoints());
     insertPoint(a.points, sample.position + frame_.origin);
-    a.time->InsertNextValue(sample.time);
-    a.motion.append(sample);
-    if (a.energy)
-    {
-      a.energy->append(sample, weight);
-    }
+    a.samples.append({ sample, weight });
   }
-  a.identity.append(summary.blockId, summary.rock, summary.iteration, summary.piece);
-  a.shape->InsertNextValue(int(frame_.shapes[std::size_t(summary.rock)]));
-  a.volume->InsertNextValue(summary.volume);
-  a.mass->InsertNextValue(summary.mass);
-  a.width->InsertNextValue(a.widthOf(frame_.rocks[std::size_t(summary.rock)], summary));
-  a.fate->InsertNextValue(int(summary.fate));
-  a.source->InsertNextValue(frame_.sourceIds[std::size_t(summary.rock)]);
-  if (a.frequency)
-  {
-    a.frequency->InsertNextValue(frame_.frequencies[std::size_t(summary.rock)]);
-  }
+  a.paths.append(summary);
 }
 
 void TrajectoryLines::copy(vtkPolyData* output) const

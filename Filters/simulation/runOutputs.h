@@ -58,13 +58,14 @@ private:
   std::unique_ptr<Arrays> arrays_;
 };
 
-/// One vertex per impact.
-class ImpactPoints
+/// One vertex per event.
+template <typename Event>
+class EventPoints
 {
 public:
-  explicit ImpactPoints(const RunFrame& frame);
-  ~ImpactPoints();
-  void append(const Trajectory& trajectory);
+  explicit EventPoints(const RunFrame& frame);
+  ~EventPoints();
+  void append(const TrajectorySummary& summary, const std::vector<Event>& events);
   void copy(vtkPolyData* output) const;
   void finish(vtkPolyData* output);
 
@@ -73,22 +74,9 @@ private:
   const RunFrame& frame_;
   std::unique_ptr<Arrays> arrays_;
 };
-
-/// One vertex per meeting with a barrier or with a tree that broke.
-class StructurePoints
-{
-public:
-  explicit StructurePoints(const RunFrame& frame);
-  ~StructurePoints();
-  void append(const Trajectory& trajectory);
-  void copy(vtkPolyData* output) const;
-  void finish(vtkPolyData* output);
-
-private:
-  struct Arrays;
-  const RunFrame& frame_;
-  std::unique_ptr<Arrays> arrays_;
-};
+using ImpactPoints = EventPoints<ImpactEvent>;
+/// Meetings with barriers and with trees that broke.
+using StructurePoints = EventPoints<StructureEvent>;
 
 /// One row per rock and iteration.
 class SummaryRows
@@ -102,7 +90,6 @@ public:
 
 private:
   struct Arrays;
-  const RunFrame& frame_;
   std::unique_ptr<Arrays> arrays_;
 };
 

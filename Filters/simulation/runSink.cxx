@@ -42,8 +42,8 @@ void RunSink::consume(Trajectory&& trajectory)
   hash_.add(trajectory.summary.hash);
   broken_.add(trajectory.summary);
   rows_.append(trajectory.summary);
-  impacts_.append(trajectory);
-  structures_.append(trajectory);
+  impacts_.append(trajectory.summary, trajectory.impacts);
+  structures_.append(trajectory.summary, trajectory.structures);
   if (trajectory.summary.iteration == kept_.wholeIteration)
   {
     trajectory.impacts = {};

@@ -15,102 +15,73 @@ namespace rockfall::filters
 namespace
 {
 
-/// A column of numbers of the table.
-struct Column
-{
-  const char* name;
-  double (*value)(const TrajectorySummary& summary, const Vec3& origin);
-};
-// clang-format off
 using S = const TrajectorySummary&;
-using V = const Vec3&;
-constexpr Column numberColumns[] = {
-  { "EndTime", [](S s, V) { return s.endTime; } },
-  { "StartX", [](S s, V o) { return s.start.x() + o.x(); } },
-  { "StartY", [](S s, V o) { return s.start.y() + o.y(); } },
-  { "StartZ", [](S s, V o) { return s.start.z() + o.z(); } },
-  { "StopX", [](S s, V o) { return s.stop.x() + o.x(); } },
-  { "StopY", [](S s, V o) { return s.stop.y() + o.y(); } },
-  { "StopZ", [](S s, V o) { return s.stop.z() + o.z(); } },
-  { "RunOut", [](S s, V) { return s.runOut; } },
-  { "PathLength", [](S s, V) { return s.pathLength; } },
-  { "MaxSpeed", [](S s, V) { return s.maxSpeed; } },
-  { "MaxKineticEnergy", [](S s, V) { return s.maxKineticEnergy; } },
-  { "MaxHeightOverGround", [](S s, V) { return s.maxHeightOverGround; } },
-  { "Mass", [](S s, V) { return s.mass; } },
-  { "Volume", [](S s, V) { return s.volume; } },
-  { "EnergyReleased", [](S s, V) { return s.energy.released; } },
-  { "EnergyKinetic", [](S s, V) { return s.energy.kinetic; } },
-  { "EnergyStrain", [](S s, V) { return s.energy.strain; } },
-  { "EnergyFriction", [](S s, V) { return s.energy.friction; } },
-  { "EnergyRestitution", [](S s, V) { return s.energy.restitution; } },
-  { "EnergyVibration", [](S s, V) { return s.energy.vibration; } },
-  { "EnergyDamping", [](S s, V) { return s.energy.damping; } },
-  { "EnergyStructures", [](S s, V) { return s.energy.structures; } },
-  { "EnergyScars", [](S s, V) { return s.energy.scars; } },
-  { "EnergyRolling", [](S s, V) { return s.energy.rolling; } },
-  { "EnergyExchanged", [](S s, V) { return s.energy.exchanged; } },
-  { "EnergyNumerical", [](S s, V) { return s.energy.numerical; } },
-  { "LastingLoss", [](S s, V) { return s.lastingLoss; } },
-};
-/// Where rocks can break.
-constexpr Column breakingColumns[] = {
-  { "Pieces", [](S s, V) { return double(s.pieces); } },
-  { "EnergyBreaking", [](S s, V) { return s.energy.breaking; } },
-  { "FinesMass", [](S s, V) { return s.finesMass; } },
-  { "FinesEnergy", [](S s, V) { return s.finesEnergy; } },
-};
-// clang-format on
+
+void addNumbers(const RunFrame& frame, Columns<TrajectorySummary>& columns)
+{
+  const Vec3& o = frame.origin;
+  columns.add("EndTime", [](S s) { return s.endTime; });
+  columns.add("StartX", [&o](S s) { return s.start.x() + o.x(); });
+  columns.add("StartY", [&o](S s) { return s.start.y() + o.y(); });
+  columns.add("StartZ", [&o](S s) { return s.start.z() + o.z(); });
+  columns.add("StopX", [&o](S s) { return s.stop.x() + o.x(); });
+  columns.add("StopY", [&o](S s) { return s.stop.y() + o.y(); });
+  columns.add("StopZ", [&o](S s) { return s.stop.z() + o.z(); });
+  columns.add("RunOut", [](S s) { return s.runOut; });
+  columns.add("PathLength", [](S s) { return s.pathLength; });
+  columns.add("MaxSpeed", [](S s) { return s.maxSpeed; });
+  columns.add("MaxKineticEnergy", [](S s) { return s.maxKineticEnergy; });
+  columns.add("MaxHeightOverGround", [](S s) { return s.maxHeightOverGround; });
+  columns.add("Mass", [](S s) { return s.mass; });
+  columns.add("Volume", [](S s) { return s.volume; });
+  columns.add("EnergyReleased", [](S s) { return s.energy.released; });
+  columns.add("EnergyKinetic", [](S s) { return s.energy.kinetic; });
+  columns.add("EnergyStrain", [](S s) { return s.energy.strain; });
+  columns.add("EnergyFriction", [](S s) { return s.energy.friction; });
+  columns.add("EnergyRestitution", [](S s) { return s.energy.restitution; });
+  columns.add("EnergyVibration", [](S s) { return s.energy.vibration; });
+  columns.add("EnergyDamping", [](S s) { return s.energy.damping; });
+  columns.add("EnergyStructures", [](S s) { return s.energy.structures; });
+  columns.add("EnergyScars", [](S s) { return s.energy.scars; });
+  columns.add("EnergyRolling", [](S s) { return s.energy.rolling; });
+  columns.add("EnergyExchanged", [](S s) { return s.energy.exchanged; });
+  columns.add("EnergyNumerical", [](S s) { return s.energy.numerical; });
+  columns.add("LastingLoss", [](S s) { return s.lastingLoss; });
+}
 
 } // namespace
 
 struct SummaryRows::Arrays
 {
   vtkNew<vtkTable> data;
-  vtkFieldData* fields = data->GetRowData();
-  IdentityArrays identity{ fields };
-  vtkSmartPointer<vtkStringArray> shape = addArray<vtkStringArray>(fields, "Shape");
-  vtkSmartPointer<vtkStringArray> fate = addArray<vtkStringArray>(fields, "Fate");
-  vtkSmartPointer<vtkIntArray> fateCode = addArray<vtkIntArray>(fields, "FateCode");
-  std::vector<vtkSmartPointer<vtkDoubleArray>> numbers = makeNumbers(fields);
-  vtkSmartPointer<vtkIdTypeArray> sourceId = addArray<vtkIdTypeArray>(fields, "SourceId");
-  vtkSmartPointer<vtkDoubleArray> frequency; ///< None where it is not known.
-  vtkSmartPointer<vtkStringArray> sourceName = addArray<vtkStringArray>(fields, "SourceName");
-  vtkSmartPointer<vtkIntArray> impacts = addArray<vtkIntArray>(fields, "Impacts");
-  vtkSmartPointer<vtkIdTypeArray> contactSteps = addArray<vtkIdTypeArray>(fields, "ContactSteps");
-  vtkSmartPointer<vtkIdTypeArray> openClose =
-    addArray<vtkIdTypeArray>(fields, "OpenCloseIterations");
-  vtkSmartPointer<vtkIdTypeArray> cutSteps = addArray<vtkIdTypeArray>(fields, "CutSteps");
-  vtkSmartPointer<vtkIdTypeArray> unsettled = addArray<vtkIdTypeArray>(fields, "UnsettledSteps");
-
-  std::vector<vtkSmartPointer<vtkDoubleArray>> breaking; ///< None where no rock can.
-
-  static std::vector<vtkSmartPointer<vtkDoubleArray>> makeNumbers(vtkFieldData* fields)
-  {
-    std::vector<vtkSmartPointer<vtkDoubleArray>> made;
-    for (const Column& column : numberColumns)
-    {
-      made.push_back(addArray<vtkDoubleArray>(fields, column.name));
-    }
-    return made;
-  }
+  Columns<TrajectorySummary> columns{ data->GetRowData() };
 };
 
 SummaryRows::SummaryRows(const RunFrame& frame)
-  : frame_(frame)
-  , arrays_(std::make_unique<Arrays>())
+  : arrays_(std::make_unique<Arrays>())
 {
-  if (!frame.frequencies.empty())
+  Columns<TrajectorySummary>& columns = arrays_->columns;
+  const auto itself = [](S s) -> S { return s; };
+  addIdentity(columns, itself);
+  columns.add("Shape", [&frame](S s) { return shapeName(frame.shapes[std::size_t(s.rock)]); });
+  columns.add("Fate", [](S s) { return fateName(s.fate); });
+  columns.add("FateCode", [](S s) { return int(s.fate); });
+  addNumbers(frame, columns);
+  columns.add("SourceId", [&frame](S s) { return frame.sourceIds[std::size_t(s.rock)]; });
+  columns.add("SourceName", [&frame](S s) { return frame.sourceNames[std::size_t(s.rock)]; });
+  columns.add("Impacts", [](S s) { return s.impacts; });
+  columns.add("ContactSteps", [](S s) { return s.contactSteps; });
+  columns.add("OpenCloseIterations", [](S s) { return s.openCloseIterations; });
+  columns.add("CutSteps", [](S s) { return s.cutSteps; });
+  columns.add("UnsettledSteps", [](S s) { return s.unsettledSteps; });
+  addFrequency(frame, columns);
+  addPiece(frame, columns, itself);
+  if (frame.breaking)
   {
-    arrays_->frequency = addArray<vtkDoubleArray>(arrays_->fields, "Frequency");
-  }
-  arrays_->identity.piece = pieceArray(frame.breaking, arrays_->fields);
-  for (const Column& column : breakingColumns)
-  {
-    if (frame.breaking)
-    {
-      arrays_->breaking.push_back(addArray<vtkDoubleArray>(arrays_->fields, column.name));
-    }
+    columns.add("Pieces", [](S s) { return double(s.pieces); });
+    columns.add("EnergyBreaking", [](S s) { return s.energy.breaking; });
+    columns.add("FinesMass", [](S s) { return s.finesMass; });
+    columns.add("FinesEnergy", [](S s) { return s.finesEnergy; });
   }
 }
 
@@ -118,30 +89,7 @@ SummaryRows::~SummaryRows() = default;
 
 void SummaryRows::append(const TrajectorySummary& summary)
 {
-  Arrays& a = *arrays_;
-  a.identity.append(summary.blockId, summary.rock, summary.iteration, summary.piece);
-  a.shape->InsertNextValue(shapeName(frame_.shapes[std::size_t(summary.rock)]));
-  a.fate->InsertNextValue(fateName(summary.fate));
-  a.fateCode->InsertNextValue(int(summary.fate));
-  for (std::size_t k = 0; k < a.numbers.size(); ++k)
-  {
-    a.numbers[k]->InsertNextValue(numberColumns[k].value(summary, frame_.origin));
-  }
-  for (std::size_t k = 0; k < a.breaking.size(); ++k)
-  {
-    a.breaking[k]->InsertNextValue(breakingColumns[k].value(summary, frame_.origin));
-  }
-  a.sourceId->InsertNextValue(frame_.sourceIds[std::size_t(summary.rock)]);
-  if (a.frequency)
-  {
-    a.frequency->InsertNextValue(frame_.frequencies[std::size_t(summary.rock)]);
-  }
-  a.sourceName->InsertNextValue(frame_.sourceNames[std::size_t(summary.rock)]);
-  a.impacts->InsertNextValue(summary.impacts);
-  a.contactSteps->InsertNextValue(summary.contactSteps);
-  a.openClose->InsertNextValue(summary.openCloseIterations);
-  a.cutSteps->InsertNextValue(summary.cutSteps);
-  a.unsettled->InsertNextValue(summary.unsettledSteps);
+  arrays_->columns.append(summary);
 }
 
 void SummaryRows::copy(vtkTable* output) const
@@ -151,7 +99,7 @@ void SummaryRows::copy(vtkTable* output) const
 
 void SummaryRows::finish(vtkTable* output)
 {
-  squeeze(arrays_->fields);
+  squeeze(arrays_->data->GetRowData());
   output->ShallowCopy(arrays_->data);
 }
 
