@@ -24,15 +24,13 @@ enum class NumberType
   UInt16,
   Int32,
   UInt32,
-  Int64,
-  UInt64,
   Float32,
   Float64,
 };
 
 constexpr int sizeOf(NumberType type)
 {
-  constexpr int sizes[] = { 0, 1, 1, 2, 2, 4, 4, 8, 8, 4, 8 };
+  constexpr int sizes[] = { 0, 1, 1, 2, 2, 4, 4, 4, 8 };
   return sizes[int(type)];
 }
 
@@ -56,7 +54,7 @@ T takeNumber(const char* bytes, bool bigEndian)
   return value;
 }
 
-/// A number of any type as a double; whole ones beyond 2⁵³ lose digits.
+/// A number of any type as a double.
 inline double takeNumber(NumberType type, const char* bytes, bool bigEndian)
 {
   switch (type)
@@ -73,10 +71,6 @@ inline double takeNumber(NumberType type, const char* bytes, bool bigEndian)
       return takeNumber<std::int32_t>(bytes, bigEndian);
     case NumberType::UInt32:
       return takeNumber<std::uint32_t>(bytes, bigEndian);
-    case NumberType::Int64:
-      return double(takeNumber<std::int64_t>(bytes, bigEndian));
-    case NumberType::UInt64:
-      return double(takeNumber<std::uint64_t>(bytes, bigEndian));
     case NumberType::Float32:
       return takeNumber<float>(bytes, bigEndian);
     case NumberType::Float64:
@@ -85,21 +79,6 @@ inline double takeNumber(NumberType type, const char* bytes, bool bigEndian)
       break;
   }
   return 0.0;
-}
-
-/// A whole number of an integral type; those beyond the range of 64 bits with sign are −1.
-inline std::int64_t takeInteger(NumberType type, const char* bytes, bool bigEndian)
-{
-  if (type == NumberType::Int64)
-  {
-    return takeNumber<std::int64_t>(bytes, bigEndian);
-  }
-  if (type == NumberType::UInt64)
-  {
-    const auto value = takeNumber<std::uint64_t>(bytes, bigEndian);
-    return value <= std::uint64_t(INT64_MAX) ? std::int64_t(value) : -1;
-  }
-  return isReal(type) ? -1 : std::int64_t(takeNumber(type, bytes, bigEndian));
 }
 
 } // namespace rockfall

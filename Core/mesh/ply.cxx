@@ -201,7 +201,7 @@ private:
   {
     return format_ == Format::Text
       ? words_.integer()
-      : takeInteger(type, this->take(sizeOf(type)), format_ == Format::BigEndian);
+      : std::int64_t(takeNumber(type, this->take(sizeOf(type)), format_ == Format::BigEndian));
   }
 
   /// The next bytes, which are read.
