@@ -1,6 +1,6 @@
 #include "geometry/Polyhedron.h"
 
-#include "base/errors.h"
+#include "base/require.h"
 #include "base/text/numberText.h"
 #include "geometry/roundBody.h"
 #include "geometry/shell.h"
@@ -196,11 +196,8 @@ void Polyhedron::Parts::updateDistances()
 
 Polyhedron Polyhedron::transformed(double scale, const Quat& rotation, const Vec3& shift) const
 {
-  if (!(scale > 0.0) || !std::isfinite(scale))
-  {
-    throw ParameterError(
-      "the scale of a polyhedron is " + numberText(scale) + ", it must be positive and finite");
-  }
+  require(scale > 0.0 && std::isfinite(scale), "the scale of a polyhedron", scale, "",
+    "positive and finite");
   if (!rotation.coeffs().allFinite() || !(rotation.norm() > 0.0) || !shift.allFinite())
   {
     throw ParameterError("the rotation and the shift of a polyhedron must be finite, the rotation "
@@ -239,10 +236,7 @@ Polyhedron Polyhedron::centred() const
 
 Polyhedron Polyhedron::withVolume(double volume) const
 {
-  if (!(volume > 0.0) || !std::isfinite(volume))
-  {
-    throw ParameterError("Volume is " + numberText(volume) + " m³, it must be positive and finite");
-  }
+  require(volume > 0.0 && std::isfinite(volume), "Volume", volume, " m³", "positive and finite");
   if (!(this->integrals().volume > 0.0))
   {
     throw GeometryError("polyhedron: has no faces yet, so no volume can be given to it");

@@ -174,11 +174,7 @@ void MassCut::validate() const
   { require(value >= 0.0 && std::isfinite(value), field, value, unit, "finite and at least 0"); };
   notNegative(this->leastThickness, "MinimumThickness", " m");
   notNegative(this->leastVolume, "MinimumVolume", " m³");
-  if (this->mostBlocks < 1)
-  {
-    throw ParameterError(
-      "MaximumRocks is " + std::to_string(this->mostBlocks) + ", it must be at least 1");
-  }
+  require(this->mostBlocks >= 1, "MaximumRocks", double(this->mostBlocks), "", "at least 1");
 }
 
 double expectedBlocks(const Polyhedron& mass, std::span<const JointSet> sets)

@@ -1,6 +1,6 @@
 #include "geometry/shapes.h"
 
-#include "base/errors.h"
+#include "base/require.h"
 #include "base/text/nameKey.h"
 #include "base/text/numberText.h"
 #include "geometry/shell.h"
@@ -151,11 +151,9 @@ void requireLengths(const Vec3& lengths, const std::string& name)
 {
   for (int k = 0; k < 3; ++k)
   {
-    if (!(lengths[k] > 0.0) || !std::isfinite(lengths[k]))
-    {
-      throw ParameterError(std::string("Lengths: the ") + "xyz"[k] + " length of the " + name +
-        " is " + numberText(lengths[k]) + " m, it must be positive and finite");
-    }
+    require(lengths[k] > 0.0 && std::isfinite(lengths[k]),
+      std::string("Lengths: the ") + "xyz"[k] + " length of the " + name, lengths[k], " m",
+      "positive and finite");
   }
 }
 
@@ -164,11 +162,8 @@ void requireLengths(const Vec3& lengths, const std::string& name)
 Polyhedron makeShape(Shape shape, double volume)
 {
   const std::string name = shapeName(shape);
-  if (!(volume > 0.0) || !std::isfinite(volume))
-  {
-    throw ParameterError("Volume of the " + name + " is " + numberText(volume) +
-      " m³, it must be positive and finite");
-  }
+  require(volume > 0.0 && std::isfinite(volume), "Volume of the " + name, volume, " m³",
+    "positive and finite");
   if (shape == Shape::Cube)
   {
     return makeBox(Vec3::Constant(std::cbrt(volume)));

@@ -1,6 +1,6 @@
 #include "rock/Rock.h"
 
-#include "base/errors.h"
+#include "base/require.h"
 #include "base/text/numberText.h"
 #include "base/text/pointText.h"
 #include "law/settings.h"
@@ -34,11 +34,8 @@ void Rock::validate() const
   };
   positive(this->density, kLeastDensity, kMostDensity, "Density", "kg/m³");
   positive(this->youngModulus, kLeastModulus, kMostModulus, "YoungModulus", "Pa");
-  if (!(this->poissonRatio >= 0.0 && this->poissonRatio <= 0.49))
-  {
-    throw ParameterError(
-      name + "PoissonRatio is " + numberText(this->poissonRatio) + ", it must be 0 to 0.49");
-  }
+  require(this->poissonRatio >= 0.0 && this->poissonRatio <= 0.49, name + "PoissonRatio",
+    this->poissonRatio, "", "0 to 0.49");
   positive(this->shape.integrals().volume, kLeastVolume, kMostVolume, "Volume", "m³");
   const auto finite = [&](const Vec3& value, const char* field)
   {

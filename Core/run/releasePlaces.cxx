@@ -158,20 +158,13 @@ double areaOf(const Terrain& terrain, std::int64_t cfes)
 
 void ReleaseDefaults::validate() const
 {
-  if (this->amount < 1)
-  {
-    throw ParameterError("Amount is " + std::to_string(this->amount) + ", it must be at least 1");
-  }
+  require(this->amount >= 1, "Amount", double(this->amount), "", "at least 1");
   const auto notNegative = [](double value, const char* field, const char* unit)
   { require(value >= 0.0 && std::isfinite(value), field, value, unit, "finite and at least 0"); };
   notNegative(this->intensity, "Intensity", " rocks per m or m²");
   notNegative(this->height, "ReleaseHeight", " m");
   notNegative(this->clusterRadius, "ClusterRadius", " m");
-  if (this->mostRocks < 1)
-  {
-    throw ParameterError(
-      "MaximumRocks is " + std::to_string(this->mostRocks) + ", it must be at least 1");
-  }
+  require(this->mostRocks >= 1, "MaximumRocks", double(this->mostRocks), "", "at least 1");
 }
 
 std::string Extent::text() const

@@ -1,6 +1,6 @@
 #include "statistics/familyOfLines.h"
 
-#include "base/errors.h"
+#include "base/require.h"
 #include "base/text/numberText.h"
 
 #include <cmath>
@@ -71,11 +71,8 @@ void addParallels(std::vector<CollectorLine>& lines, int count, double spacing)
   {
     return;
   }
-  if (!(std::abs(spacing) > 0.0) || !std::isfinite(spacing))
-  {
-    throw ParameterError(
-      "ParallelSpacing is " + numberText(spacing) + ", it must be finite and not 0");
-  }
+  require(std::abs(spacing) > 0.0 && std::isfinite(spacing), "ParallelSpacing", spacing, "",
+    "finite and not 0");
   std::vector<CollectorLine> all;
   for (CollectorLine& line : lines)
   {

@@ -1,6 +1,6 @@
 #include "counts/frequencyLayers.h"
 
-#include "base/errors.h"
+#include "base/require.h"
 #include "base/text/numberText.h"
 #include "shared/arrays.h"
 #include "shared/inputs.h"
@@ -85,11 +85,8 @@ RockFrequencies frequenciesOf(vtkPolyData* trajectories)
 
 void checkFrequencies(const FrequencyOptions& options)
 {
-  if (!(options.annualFrequency >= 0.0) || !std::isfinite(options.annualFrequency))
-  {
-    throw ParameterError("AnnualFrequency is " + numberText(options.annualFrequency) +
-      " per year, it must be finite and not negative");
-  }
+  require(options.annualFrequency >= 0.0 && std::isfinite(options.annualFrequency),
+    "AnnualFrequency", options.annualFrequency, " per year", "finite and not negative");
   requireFew(options.energyThresholds.size(), "EnergyThresholds");
   requireFew(options.returnPeriods.size(), "ReturnPeriods");
   checkPositive(options.energyThresholds, "EnergyThresholds", "kJ");

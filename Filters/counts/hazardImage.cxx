@@ -1,7 +1,7 @@
 #include "counts/hazardImage.h"
 
 #include "base/abort.h"
-#include "base/errors.h"
+#include "base/require.h"
 #include "base/text/numberText.h"
 #include "counts/lostRocks.h"
 #include "geometry/shell.h"
@@ -90,11 +90,8 @@ void checkSize(double columns, double rows, double cell)
 CellGrid gridOf(vtkPolyData* trajectories, const Terrain* terrain, const HazardMapOptions& options,
   const Vec3& origin)
 {
-  if (!(options.cellSize >= 0.0) || !std::isfinite(options.cellSize))
-  {
-    throw ParameterError(
-      "CellSize is " + numberText(options.cellSize) + ", it must be finite and not negative");
-  }
+  require(options.cellSize >= 0.0 && std::isfinite(options.cellSize), "CellSize", options.cellSize,
+    "", "finite and not negative");
   constexpr double widestCell = 1e6; // m
   if (options.cellSize > widestCell)
   {
@@ -396,15 +393,10 @@ void checkOptions(const HazardMapOptions& options)
 {
   checkStatistics(options.statistics);
   checkFrequencies(options.frequency);
-  if (!(options.leastReach >= 0.0 && options.leastReach <= 1.0))
-  {
-    throw ParameterError("LeastReach is " + numberText(options.leastReach) + ", it must be 0 to 1");
-  }
-  if (!(options.leastAngle >= 0.0 && options.leastAngle <= 90.0))
-  {
-    throw ParameterError(
-      "LeastAngle is " + numberText(options.leastAngle) + " degrees, it must be 0 to 90");
-  }
+  require(options.leastReach >= 0.0 && options.leastReach <= 1.0, "LeastReach", options.leastReach,
+    "", "0 to 1");
+  require(options.leastAngle >= 0.0 && options.leastAngle <= 90.0, "LeastAngle", options.leastAngle,
+    " degrees", "0 to 90");
 }
 
 void addPaths(vtkPolyData* trajectories, const Vec3& origin, bool rockWidth, HazardRaster& raster)

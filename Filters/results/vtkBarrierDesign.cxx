@@ -1,6 +1,6 @@
 #include "vtkBarrierDesign.h"
 
-#include "base/errors.h"
+#include "base/require.h"
 #include "base/text/numberText.h"
 #include "results/designTables.h"
 #include "shared/errorReport.h"
@@ -82,12 +82,8 @@ int vtkBarrierDesign::RequestData(
       {
         return 1;
       }
-      if (!(this->AnnualFrequency >= 0.0) || !std::isfinite(this->AnnualFrequency))
-      {
-        throw rockfall::ParameterError("AnnualFrequency is " +
-          rockfall::numberText(this->AnnualFrequency) +
-          " per year, it must be finite and not negative");
-      }
+      rockfall::require(this->AnnualFrequency >= 0.0 && std::isfinite(this->AnnualFrequency),
+        "AnnualFrequency", this->AnnualFrequency, " per year", "finite and not negative");
       if (this->FactorSet < TYPED || this->FactorSet > UNI_POOR)
       {
         throw rockfall::ParameterError(

@@ -1,6 +1,6 @@
 #include "vtkTrajectoryCollector.h"
 
-#include "base/errors.h"
+#include "base/require.h"
 #include "base/text/numberText.h"
 #include "counts/lostRocks.h"
 #include "geometry/shell.h"
@@ -59,11 +59,8 @@ enum OutputPorts
 
 void checkSize(double value, const char* name)
 {
-  if (!(value >= 0.0) || !std::isfinite(value))
-  {
-    throw rockfall::ParameterError(std::string(name) + " is " + rockfall::numberText(value) +
-      ", it must be finite and not negative");
-  }
+  rockfall::require(
+    value >= 0.0 && std::isfinite(value), name, value, "", "finite and not negative");
 }
 
 /// Lines that are farther from the trajectories than this, m, and than ten times their extent, are

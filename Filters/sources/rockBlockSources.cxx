@@ -3,6 +3,7 @@
 #include "sources/rockBlockSources.h"
 
 #include "base/hectare.h"
+#include "base/require.h"
 #include "base/text/numberText.h"
 #include "geometry/planeSampling.h"
 #include "gis/base/externalReferences.h"
@@ -65,11 +66,8 @@ void vtkRockBlockSource::FindSources(vtkPolyData* terrainInput, Sources& sources
   defaults.mostRocks = this->MaximumRocks;
   defaults.clusterRadius = this->ClusterRadius;
   defaults.validate();
-  if (!(this->TotalVolume >= 0.0 && std::isfinite(this->TotalVolume)))
-  {
-    throw rockfall::ParameterError("TotalVolume is " + rockfall::numberText(this->TotalVolume) +
-      " m³, it must be finite and at least 0");
-  }
+  rockfall::require(this->TotalVolume >= 0.0 && std::isfinite(this->TotalVolume), "TotalVolume",
+    this->TotalVolume, " m³", "finite and at least 0");
   if (this->TotalVolume > 0.0 && this->Intensity > 0.0)
   {
     throw rockfall::ParameterError("TotalVolume is " + rockfall::numberText(this->TotalVolume) +
@@ -80,11 +78,8 @@ void vtkRockBlockSource::FindSources(vtkPolyData* terrainInput, Sources& sources
   {
     throw rockfall::ParameterError("PlaceOnGround is on, which needs the Terrain input");
   }
-  if (!(this->SlopeThreshold >= 0.0 && this->SlopeThreshold <= 89.0))
-  {
-    throw rockfall::ParameterError("SlopeThreshold is " +
-      rockfall::numberText(this->SlopeThreshold) + " degrees, it must be 0 to 89");
-  }
+  rockfall::require(this->SlopeThreshold >= 0.0 && this->SlopeThreshold <= 89.0, "SlopeThreshold",
+    this->SlopeThreshold, " degrees", "0 to 89");
   if (this->SlopeThreshold > 0.0)
   {
     if (!terrain || !this->FileName.empty())
@@ -208,11 +203,8 @@ void vtkRockBlockSource::CheckFrequencies() const
   std::string given;
   for (const auto& [name, value] : typed)
   {
-    if (!(value >= 0.0 && std::isfinite(value)))
-    {
-      throw rockfall::ParameterError(std::string(name) + " is " + rockfall::numberText(value) +
-        " per year, it must be finite and not negative");
-    }
+    rockfall::require(
+      value >= 0.0 && std::isfinite(value), name, value, " per year", "finite and not negative");
     if (value > 0.0)
     {
       if (!given.empty())

@@ -1,6 +1,6 @@
 #include "vtkDEMToCFESource.h"
 
-#include "base/errors.h"
+#include "base/require.h"
 #include "base/text/numberText.h"
 #include "geometry/shell.h"
 #include "gis/base/externalReferences.h"
@@ -193,11 +193,7 @@ std::shared_ptr<const rockfall::Terrain> vtkDEMToCFESource::MakeSlope(
   {
     roughness = rockfall::groundPresets()[std::size_t(this->Preset) - 1].roughness;
   }
-  if (!(this->CellSize >= 0.0))
-  {
-    throw rockfall::ParameterError(
-      "CellSize is " + rockfall::numberText(this->CellSize) + " m, it must be 0 or positive");
-  }
+  rockfall::require(this->CellSize >= 0.0, "CellSize", this->CellSize, " m", "0 or positive");
   rockfall::Terrain slope = this->FileName.empty()
     ? rockfall::makeBiplanarSlope(this->CellSize > 0.0 ? this->CellSize : testSlopeCellSize)
     : this->ReadSlope(notes);
@@ -266,11 +262,8 @@ int vtkDEMToCFESource::RequestData(
   try
   {
     const rockfall::filters::HeardAbort heard(this);
-    if (this->MaximumDisplayCells < 2)
-    {
-      throw rockfall::ParameterError("MaximumDisplayCells is " +
-        std::to_string(this->MaximumDisplayCells) + ", it must be at least 2");
-    }
+    rockfall::require(this->MaximumDisplayCells >= 2, "MaximumDisplayCells",
+      double(this->MaximumDisplayCells), "", "at least 2");
 
     std::vector<std::string> notes;
     const std::shared_ptr<const rockfall::Terrain> terrain = this->MakeSlope(notes);

@@ -1,7 +1,7 @@
 #include "vtkDrawnStructure.h"
 
-#include "base/errors.h"
 #include "base/hectare.h"
+#include "base/require.h"
 #include "base/text/numberText.h"
 #include "run/releasePlaces.h"
 #include "shared/drawnPoints.h"
@@ -125,11 +125,8 @@ void vtkDrawnStructure::CheckProperties() const
   requirePositive(this->TreeHeight, "TreeHeight", "m");
   requirePositive(this->Capacity, "Capacity", "kJ", true);
   requirePositive(this->Braking, "Braking", "m", true);
-  if (!(this->Residual >= 0.0 && this->Residual <= 100.0))
-  {
-    throw rockfall::ParameterError(
-      "Residual is " + rockfall::numberText(this->Residual) + " %, it must be between 0 and 100");
-  }
+  rockfall::require(this->Residual >= 0.0 && this->Residual <= 100.0, "Residual", this->Residual,
+    " %", "between 0 and 100");
   requirePositive(this->Fill, "Fill", "m³/m", true);
   requirePositive(this->CrestWidth, "CrestWidth", "m");
   requirePositive(this->SideSlope, "SideSlope", "m across per m down", true);

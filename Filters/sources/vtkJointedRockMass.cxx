@@ -1,6 +1,6 @@
 #include "vtkJointedRockMass.h"
 
-#include "base/errors.h"
+#include "base/require.h"
 #include "base/text/numberText.h"
 #include "geometry/jointSets.h"
 #include "geometry/shell.h"
@@ -133,11 +133,8 @@ void vtkJointedRockMass::MakeBlocks(
   {
     throw ParameterError("PlaceOnGround is on, which needs the Terrain input");
   }
-  if (!(this->ReleaseHeight >= 0.0 && std::isfinite(this->ReleaseHeight)))
-  {
-    throw ParameterError("ReleaseHeight is " + numberText(this->ReleaseHeight) +
-      " m, it must be finite and at least 0");
-  }
+  require(this->ReleaseHeight >= 0.0 && std::isfinite(this->ReleaseHeight), "ReleaseHeight",
+    this->ReleaseHeight, " m", "finite and at least 0");
   if (this->ReleaseHeight > 0.0 && !this->PlaceOnGround)
   {
     filters::showNote("ReleaseHeight is " + numberText(this->ReleaseHeight) +

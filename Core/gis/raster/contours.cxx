@@ -1,7 +1,7 @@
 #include "gis/raster/contours.h"
 
 #include "base/detachedCall.h"
-#include "base/errors.h"
+#include "base/require.h"
 #include "gis/layers/fileContent.h"
 #include "gis/raster/contourLevels.h"
 #include "gis/raster/contourLines.h"
@@ -210,11 +210,8 @@ RasterSurface readSlope(const std::string& fileName, const std::string& layer,
 
 RasterSurface readContours(const std::string& fileName, const ContourOptions& options)
 {
-  if (!(options.cellSize >= 0.0) || !std::isfinite(options.cellSize))
-  {
-    throw ParameterError("CellSize is " + number(options.cellSize) +
-      ", it must be a positive number of metres, or 0 for half the distance between contours");
-  }
+  require(options.cellSize >= 0.0 && std::isfinite(options.cellSize), "CellSize", options.cellSize,
+    "", "a positive number of metres, or 0 for half the distance between contours");
   Messages messages;
   LayerFile file(contourWish(fileName, options), messages);
   OGRLayer& layer = file.layer();

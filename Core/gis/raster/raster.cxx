@@ -1,6 +1,6 @@
 #include "gis/raster/raster.h"
 
-#include "base/errors.h"
+#include "base/require.h"
 #include "gis/base/crs.h"
 #include "gis/base/gdal.h"
 #include "gis/base/planAccuracy.h"
@@ -152,11 +152,8 @@ void regrid(
 RasterSurface readRaster(const std::string& fileName, const RasterOptions& options)
 {
   const double wanted = options.cellSize;
-  if (!(wanted >= 0.0) || !std::isfinite(wanted))
-  {
-    throw ParameterError("CellSize is " + number(wanted) +
-      ", it must be a positive number of metres, or 0 for the file's own");
-  }
+  require(wanted >= 0.0 && std::isfinite(wanted), "CellSize", wanted, "",
+    "a positive number of metres, or 0 for the file's own");
   Messages messages;
   RasterSurface result;
   RasterFile file(fileName, options.band, messages, result.notes);
