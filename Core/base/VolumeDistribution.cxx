@@ -1,12 +1,11 @@
 #include "base/VolumeDistribution.h"
 
-#include "base/errors.h"
+#include "base/require.h"
 #include "base/text/plainText.h"
 
 #include <boost/math/distributions/normal.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -29,19 +28,6 @@ constexpr std::pair<VolumeLaw, const char*> names[] = {
 constexpr double leastShare = 1e-6;
 /// Deviation in means beyond which a distribution is refused: all but a few rocks would be dust.
 constexpr double mostDeviation = 1e3;
-
-std::string text(double value)
-{
-  char digits[32];
-  const auto end =
-    std::to_chars(digits, digits + sizeof(digits), value, std::chars_format::general, 10);
-  return { digits, end.ptr };
-}
-
-[[noreturn]] void fail(const char* field, double value, const std::string& rule)
-{
-  throw ParameterError(std::string(field) + " is " + text(value) + ", it must be " + rule);
-}
 
 /// A normal distribution of V, or of ln V, with the shares that the bounds cut off below.
 struct Bell
@@ -108,59 +94,45 @@ void VolumeDistribution::validate() const
   volumeLawName(this->law); // throws if there is no such law
   const auto notNegative = [](double value, const char* field)
   {
-    if (!(value >= 0.0 && std::isfinite(value)))
-    {
-      fail(field, value, "a finite number of m³, at least 0");
-    }
+    require(
+      value >= 0.0 && std::isfinite(value), field, value, "", "a finite number of m³, at least 0");
   };
   notNegative(this->deviation, "VolumeDeviation");
   notNegative(this->minimum, "VolumeMinimum");
   notNegative(this->maximum, "VolumeMaximum");
-  if (!(this->exponent > 0.0 && std::isfinite(this->exponent)))
-  {
-    fail("VolumeExponent", this->exponent, "positive and finite");
-  }
+  require(this->exponent > 0.0 && std::isfinite(this->exponent), "VolumeExponent", this->exponent,
+    "", "positive and finite");
   const bool bell = this->law == VolumeLaw::Normal || this->law == VolumeLaw::LogNormal;
-  if ((this->law == VolumeLaw::Fixed || bell) && !(this->mean > 0.0 && std::isfinite(this->mean)))
-  {
-    fail("Volume", this->mean, "a positive, finite number of m³");
-  }
+  const bool hasMean = this->law == VolumeLaw::Fixed || bell;
+  require(!hasMean || (this->mean > 0.0 && std::isfinite(this->mean)), "Volume", this->mean, "",
+    "a positive, finite number of m³");
   if (this->law == VolumeLaw::Fixed)
   {
     return;
   }
-  if (this->law == VolumeLaw::PowerLaw && this->minimum == 0.0)
-  {
-    fail("VolumeMinimum", this->minimum, "above 0 for the law powerlaw");
-  }
-  if (!bell && this->maximum == 0.0)
-  {
-    fail("VolumeMaximum", this->maximum, "above 0 for the law " + volumeLawName(this->law));
-  }
-  if (this->maximum > 0.0 && !(this->maximum > this->minimum))
-  {
-    fail("VolumeMaximum", this->maximum, "above VolumeMinimum, which is " + text(this->minimum));
-  }
-  if (bell && this->deviation == 0.0 &&
-    !(this->mean >= this->minimum && (this->maximum == 0.0 || this->mean <= this->maximum)))
-  {
-    fail("Volume", this->mean,
-      "within VolumeMinimum and VolumeMaximum, which are " + text(this->minimum) + " and " +
-        text(this->maximum));
-  }
-  if (bell && this->deviation > mostDeviation * this->mean)
-  {
-    fail("VolumeDeviation", this->deviation,
-      "at most a thousand times Volume, which is " + text(this->mean));
-  }
+  require(this->law != VolumeLaw::PowerLaw || this->minimum != 0.0, "VolumeMinimum", this->minimum,
+    "", "above 0 for the law powerlaw");
+  require(bell || this->maximum != 0.0, "VolumeMaximum", this->maximum, "",
+    "above 0 for the law " + volumeLawName(this->law));
+  require(!(this->maximum > 0.0) || this->maximum > this->minimum, "VolumeMaximum", this->maximum,
+    "", "above VolumeMinimum, which is " + numberText(this->minimum));
+  const bool single = bell && this->deviation == 0.0;
+  require(!single ||
+      (this->mean >= this->minimum && (this->maximum == 0.0 || this->mean <= this->maximum)),
+    "Volume", this->mean, "",
+    "within VolumeMinimum and VolumeMaximum, which are " + numberText(this->minimum) + " and " +
+      numberText(this->maximum));
+  require(!bell || this->deviation <= mostDeviation * this->mean, "VolumeDeviation",
+    this->deviation, "", "at most a thousand times Volume, which is " + numberText(this->mean));
   if (bell && this->deviation > 0.0)
   {
     const Bell curve(*this);
     if (!(curve.highShare - curve.lowShare > leastShare))
     {
-      throw ParameterError("VolumeMinimum " + text(this->minimum) + " and VolumeMaximum " +
-        text(this->maximum) + " m³ leave nothing of the law " + volumeLawName(this->law) +
-        " with Volume " + text(this->mean) + " and VolumeDeviation " + text(this->deviation));
+      throw ParameterError("VolumeMinimum " + numberText(this->minimum) + " and VolumeMaximum " +
+        numberText(this->maximum) + " m³ leave nothing of the law " + volumeLawName(this->law) +
+        " with Volume " + numberText(this->mean) + " and VolumeDeviation " +
+        numberText(this->deviation));
     }
   }
 }
