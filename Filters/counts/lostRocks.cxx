@@ -16,7 +16,9 @@
 #include "vtkTable.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
+#include <set>
 
 namespace rockfall::filters
 {
@@ -75,6 +77,40 @@ LostRocks lostOf(vtkPolyData* trajectories)
   return lost;
 }
 
+namespace
+{
+
+/// How many rocks have the way of another one of their iteration, from the first bit to the last: a
+/// run that was made again under other block ids.
+std::int64_t copiesIn(vtkPolyData* trajectories)
+{
+  vtkDataArray* iteration = trajectories->GetCellData()->GetArray("Iteration");
+  std::set<std::array<double, 7>> ways;
+  std::int64_t copies = 0;
+  vtkIdType cell = trajectories->GetNumberOfVerts();
+  auto lines = vtk::TakeSmartPointer(trajectories->GetLines()->NewIterator());
+  for (lines->GoToFirstCell(); iteration && !lines->IsDoneWithTraversal();
+       lines->GoToNextCell(), ++cell)
+  {
+    vtkIdType size = 0;
+    const vtkIdType* ids = nullptr;
+    lines->GetCurrentCell(size, ids);
+    Vec3 start, stop;
+    trajectories->GetPoint(size > 0 ? ids[0] : 0, start.data());
+    trajectories->GetPoint(size > 0 ? ids[size - 1] : 0, stop.data());
+    if ((stop - start).norm() > kLeastWay)
+    {
+      copies += !ways
+                   .insert({ iteration->GetTuple1(cell), start.x(), start.y(), start.z(), stop.x(),
+                     stop.y(), stop.z() })
+                   .second;
+    }
+  }
+  return copies;
+}
+
+} // namespace
+
 std::vector<std::string> doubtsOn(vtkPolyData* trajectories, vtkPolyData* mesh)
 {
   std::vector<std::string> notes;
@@ -87,6 +123,12 @@ std::vector<std::string> doubtsOn(vtkPolyData* trajectories, vtkPolyData* mesh)
   for (vtkIdType k = 0; doubts && k < doubts->GetNumberOfValues(); ++k)
   {
     notes.push_back(doubts->GetValue(k));
+  }
+  if (const std::int64_t copies = copiesIn(trajectories); copies > 0)
+  {
+    notes.push_back(std::to_string(copies) +
+      " rocks fell exactly as another one of their iteration: a run that was made again with other "
+      "block ids and the same Seed says nothing new");
   }
   vtkDataArray* released = fields->GetArray(kRocksReleased);
   const std::int64_t there = lostOf(trajectories).rocks;

@@ -75,6 +75,11 @@ for notes in made_of(AppendDatasets(Input=[OutputPort(one, 1), OutputPort(other,
     assert "The Input has 12 rocks, its run 6: the slope and the properties" in notes, notes
 for notes in made_of(OutputPort(one, 1)):
     assert "The Input has" not in notes, notes
+again = run(steep, FirstBlockId=4)
+for notes in made_of(GroupDatasets(Input=[OutputPort(one, 1), OutputPort(again, 1)])):
+    assert " rocks fell exactly as another one of their iteration" in notes, notes
+for notes in made_of(GroupDatasets(Input=[OutputPort(one, 1), OutputPort(next_one, 1)])):
+    assert "fell exactly" not in notes, notes
 slow = Threshold(Input=OutputPort(one, 1), Scalars=["CELLS", "BlockId"], LowerThreshold=1, UpperThreshold=2)
 for notes in made_of(slow):
     assert "The Input has 4 of the 6 rocks of its run" in notes, notes
