@@ -248,6 +248,10 @@ void pqRockfallWindow::meetStructure()
       ++met;
     }
   }
+  // ParaView 6.1 chooses a port of it as well when its rocks come to stand under it.
+  pqProxySelection chosen;
+  chosen.append(structure);
+  pqActiveObjects::instance().setSelection(chosen, structure);
   if (met == 0)
   {
     this->tell(tr("No rocks are released on the slope that it was drawn on"));
