@@ -1,4 +1,4 @@
-#include "shared/lineWalls.h"
+#include "results/lineWalls.h"
 
 #include "shared/arrays.h"
 
