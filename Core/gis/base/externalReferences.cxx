@@ -54,7 +54,7 @@ constexpr int mostNested = 4;
 /// network services and databases, those whose header may name the file of the numbers (MRF, PDS,
 /// SNODAS, PCIDSK, HDF4, …), lists of tiles, and GPSBabel, which runs a program. VRTs and HDF5 are
 /// looked into.
-const char* const known[] = { "VRT", "OGR_VRT",
+const char* const kFormats[] = { "VRT", "OGR_VRT",
   // rasters
   "GTiff", "COG", "HFA", "AIG", "AAIGrid", "GRASSASCIIGrid", "ISG", "SDTS", "DTED", "PNG", "JPEG",
   "JDEM", "GIF", "BIGGIF", "FITS", "BSB", "XPM", "BMP", "PCRaster", "ILWIS", "SGI", "SRTMHGT",
@@ -84,7 +84,7 @@ bool isMemory(const std::string& name)
 
 bool isKnown(const char* driver)
 {
-  for (const char* const* name = known; *name; ++name)
+  for (const char* const* name = kFormats; *name; ++name)
   {
     if (EQUAL(*name, driver))
     {
@@ -390,7 +390,7 @@ std::string whereAllowed()
 
 const char* const* openingDrivers()
 {
-  return allowed ? nullptr : known;
+  return allowed ? nullptr : kFormats;
 }
 
 void refuseReferences(const std::string& fileName, unsigned flags)
