@@ -26,8 +26,8 @@ LostRocks lostOf(vtkTable* summary);
 /// that array.
 LostRocks lostOf(vtkPolyData* trajectories);
 
-/// Notes on trajectories that are not all of their run, or of several runs that differ, or that fell
-/// on another slope than `mesh`, which may be null.
+/// Notes on trajectories that are not all of their run, or of several runs that differ, or of one
+/// that was made again, or that fell on another slope than `mesh`, which may be null.
 std::vector<std::string> doubtsOn(vtkPolyData* trajectories, vtkPolyData* mesh);
 
 /// Puts the counts there: RocksReleased, RocksMoving, RocksOverEdge,

@@ -17,7 +17,7 @@ struct ColumnName
   explicit ColumnName(const std::string& written);
 
   std::string name;               ///< The part before the unit, as nameKey has it.
-  std::vector<std::string> words; ///< Of all of it, or before the brackets, each as nameKey has it.
+  std::vector<std::string> words; ///< Words of the name up to a bracket, each as nameKey has it.
   /// In small letters: what is in the brackets, or a unit of base/text/lengthUnit.h, with "us" or
   /// "survey" beside it. Empty: none.
   std::string unit;

@@ -113,10 +113,14 @@ void Impacts::link()
 
 double Impacts::leaves(std::size_t row) const
 {
-  const ContactRowCold& start = rows_.starts[row];
-  if (jammed_ || start.pending >= 0.0)
+  if (jammed_)
   {
-    return jammed_ ? 0.0 : start.pending;
+    return 0.0;
+  }
+  const ContactRowCold& start = rows_.starts[row];
+  if (start.pending >= 0.0)
+  {
+    return start.pending;
   }
   const IslandContact& c = (*step_.contacts)[rows_.results[row].contact];
   return -start.before * c.restitutionAt(-start.before);

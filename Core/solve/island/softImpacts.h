@@ -61,7 +61,7 @@ public:
   void forget(std::size_t strip) { rounds_[strip].struck.clear(); }
   /// Whether an impact is under way, or the gap closes as one within so many substeps.
   bool closes(std::size_t row, double substeps) const;
-  bool jams(std::size_t row) const;      ///< Is one of a jam that has not opened.
+  bool jams(std::size_t row) const;      ///< The row is of a jam and has not opened.
   bool staysOpen(std::size_t row) const; ///< Within the substep, at its speed `before`.
   /// The manifold's rows strike.
   void start(std::size_t manifold, std::size_t strip);
@@ -74,7 +74,7 @@ private:
   double leaves(std::size_t row) const; ///< Speed after an impact, m/s.
   void link();
   std::size_t countStruck() const; ///< Rows that are to strike.
-  bool anyCloses() const;          ///< Whether one of them does.
+  bool anyCloses() const;          ///< Whether a row that is to strike closes.
   void beginRound(ImpactRound& round);
   void settleAll(std::size_t count);
   bool settle(Impact& impact); ///< Whether it changed by more than it is exact to.

@@ -17,7 +17,7 @@ bool Writer::isDeep() const
     const ContactRow& r = rows_.rows[k];
     const double a = movers_[r.a].block->radius();
     const double radius = r.b < 0 ? a : std::min(a, movers_[r.b].block->radius());
-    // Where the step began, whatever gap a look has set since.
+    // The gap where the step began, whatever a look has set since.
     const double before = (*step_.contacts)[rows_.results[k].contact].contact->distance;
     deep = rows_.gapOf(k) < std::min(0.0, before) - kDeepStep * radius;
   }
