@@ -159,6 +159,10 @@ void RasterFile::noteOddNodes(const std::vector<double>& heights, double step)
     for (int column = 0; column < columns_; ++column)
     {
       const double height = heights[std::size_t(row) * columns_ + column];
+      if (std::isnan(height))
+      {
+        continue;
+      }
       // The least way up, and down, to what is around; the most to the four nearest.
       double over = HUGE_VAL, under = HUGE_VAL, beside = 0.0;
       int around = 0;

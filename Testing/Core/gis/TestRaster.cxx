@@ -225,6 +225,10 @@ TEST(Raster, nodesThatStandAloneAreNoted)
       "first 70 m below in row 1, column 1" }))
     << both;
   EXPECT_TRUE(holds(told(60.0, 0.0), { "1 nodes", "first 52 m above in row 5, column 5" }));
+  // A hole of nodata has ground around, and no height.
+  raster.band = "<NoDataValue>nan</NoDataValue>";
+  EXPECT_EQ(
+    told(std::numeric_limits<double>::quiet_NaN(), 0.0).find("stand alone"), std::string::npos);
 }
 
 TEST(Raster, HeightsOfNoMountainAreNoted)
