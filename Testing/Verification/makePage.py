@@ -229,6 +229,8 @@ def draw(curves, folder):
             low, high = axes.get_ylim()
             if low < 1e-12:
                 axes.set_ylim(1e-16, high)
+            elif high < 2.0 * low:  # the same to many digits: a decade, or the ticks are all alike
+                axes.set_ylim(low / 3.0, 3.0 * high)
         axes.set(title=title, xlabel=x_label, ylabel=y_label)
         if name == "topple-map":  # points are everywhere
             axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0))
