@@ -21,20 +21,20 @@ function(rockfall_precompile target)
   endif()
 endfunction()
 
-# rockfall_unity(<target> <size> <source>...): each folder's sources, at most <size> together. To be
-# called in the target's own folder, after properties of single sources have been set.
-function(rockfall_unity target size)
+# rockfall_unity(<target> <source>...): each folder's sources together, as what templates they share is
+# made once then. To be called in the target's own folder, after properties of single sources have
+# been set.
+function(rockfall_unity target)
   if(NOT ROCKFALL_UNITY)
     return()
   endif()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   foreach(source IN LISTS ARGN)
-    get_filename_component(folder "${source}" DIRECTORY)
-    file(RELATIVE_PATH folder "${CMAKE_CURRENT_SOURCE_DIR}" "${folder}")
+    cmake_path(ABSOLUTE_PATH source)
+    cmake_path(GET source PARENT_PATH folder)
+    cmake_path(RELATIVE_PATH folder)
     string(REPLACE "/" "_" folder "in_${folder}")
-    math(EXPR group "0${${folder}_files} / ${size}")
-    math(EXPR ${folder}_files "0${${folder}_files} + 1")
-    set_source_files_properties("${source}" PROPERTIES UNITY_GROUP "${folder}_${group}")
+    set_source_files_properties("${source}" PROPERTIES UNITY_GROUP "${folder}")
   endforeach()
 endfunction()
 
@@ -50,13 +50,5 @@ function(rockfall_quick target)
     set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS $<TARGET_FILE:RockfallCore>)
   else()
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
-  endif()
-endfunction()
-
-# rockfall_unity_group(<name> <source>...): these sources of this folder together, in targets with the
-# property UNITY_BUILD and the mode GROUP.
-function(rockfall_unity_group name)
-  if(ROCKFALL_UNITY)
-    set_source_files_properties(${ARGN} PROPERTIES UNITY_GROUP "${name}")
   endif()
 endfunction()

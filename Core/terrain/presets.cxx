@@ -224,8 +224,7 @@ std::string groundTitle(int preset, const SurfaceMaterial& material, const Mater
 
 std::vector<std::pair<std::string, double>> presetValues(int preset)
 {
-  const auto presets = groundPresets();
-  if (preset < 1 || preset > int(presets.size()))
+  if (preset < 1 || preset > int(std::size(presets)))
   {
     return {};
   }

@@ -27,6 +27,18 @@ inline std::string pathOf(const std::string& name)
   return ::testing::TempDir() + info->test_suite_name() + "_" + info->name() + "_" + name;
 }
 
+constexpr double foot = 0.3048, surveyFoot = 1200.0 / 3937.0; // m
+
+inline std::string joined(const std::vector<std::string>& notes)
+{
+  std::string all;
+  for (const std::string& note : notes)
+  {
+    all += note + "\n";
+  }
+  return all;
+}
+
 inline std::string writeFile(const std::string& name, const std::string& content)
 {
   const std::string path = pathOf(name);

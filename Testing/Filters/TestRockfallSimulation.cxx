@@ -16,9 +16,6 @@ namespace
 
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-constexpr double gravity = 9.81;       // m/s², the filter's default
-constexpr double releaseHeight = 58.0; // m, the rock source's default
-
 class TestRockfallSimulation : public SimulationTest
 {
 };

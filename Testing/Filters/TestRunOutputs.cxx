@@ -21,8 +21,8 @@ using namespace rockfall;
 namespace
 {
 
-constexpr double mass = 2000.0;  // kg
-constexpr double gravity = 10.0; // m/s²
+constexpr double mass = 2000.0;       // kg
+constexpr double frameGravity = 10.0; // m/s²
 
 Sample sampleOf(double time, double height, double taken)
 {
@@ -58,7 +58,7 @@ filters::RunFrame frameOf(int rocks)
   frame.sourceIds.resize(std::size_t(rocks), 1);
   frame.sourceNames.resize(std::size_t(rocks));
   frame.origin = Vec3(500000.0, 4000000.0, 0.0);
-  frame.gravity = gravity;
+  frame.gravity = frameGravity;
   return frame;
 }
 
@@ -128,7 +128,7 @@ TEST(RunOutputs, TrajectoriesHaveEveryTermOfTheEnergy)
     const char* name;
     double first, last; // J
   } expected[] = {
-    { "PotentialEnergy", mass * gravity * 30.0, mass * gravity * 20.0 },
+    { "PotentialEnergy", mass * frameGravity * 30.0, mass * frameGravity * 20.0 },
     { "KineticEnergy", 7.0, 7.0 },
     { "StrainEnergy", 0.0, 100.0 },
     { "FrictionLoss", 0.0, 200.0 },

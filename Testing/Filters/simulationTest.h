@@ -19,6 +19,9 @@
 #include <cmath>
 #include <vector>
 
+constexpr double gravity = 9.81;       // m/s², the filter's default
+constexpr double releaseHeight = 58.0; // m, the rock source's default
+
 /// Middle of a mesh along an axis, m.
 inline double middle(vtkPolyData* mesh, int axis)
 {

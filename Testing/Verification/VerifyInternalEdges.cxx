@@ -12,14 +12,14 @@ using namespace rockfall::verification;
 namespace
 {
 
-constexpr double kSize = 256.0; // m
+constexpr double kSide = 256.0; // m
 
 /// A plane with z = 100 − (x − y/4)/2: heights, differences and normals are exact in binary, so
 /// that the two planes differ in nothing but their edges.
 Terrain plane(int nodes, const SurfaceMaterial& material)
 {
   return rockfall::testing::makeSlope(
-    nodes, kSize / (nodes - 1), [](double x, double y) { return 100.0 - 0.5 * (x - 0.25 * y); },
+    nodes, kSide / (nodes - 1), [](double x, double y) { return 100.0 - 0.5 * (x - 0.25 * y); },
     material);
 }
 

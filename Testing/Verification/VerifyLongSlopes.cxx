@@ -27,7 +27,7 @@ constexpr double kWidth = 120.0; // m
 constexpr double kAbove = 20.0;  // from the edge to the top, m
 
 /// A slope of this length and angle (rad) with a flat foot; the foot is of another ground.
-Terrain makeSlope(double length, double angle, const char* upper, const char* lower)
+Terrain makeSlopeWithFoot(double length, double angle, const char* upper, const char* lower)
 {
   return makeLongSlope(angle, kAbove + length * std::cos(angle), 300.0,
     SlopeGround::ofPreset(upper), SlopeGround::ofPreset(lower));
@@ -55,7 +55,7 @@ std::vector<Rock> releaseAtTop(const Terrain& terrain, int count)
   return rocks;
 }
 
-double quantile(std::vector<double> values, double share)
+double quantileOf(std::vector<double> values, double share)
 {
   std::sort(values.begin(), values.end());
   return values[std::min(values.size() - 1, std::size_t(share * double(values.size())))];
@@ -72,7 +72,7 @@ TEST(LongSlopes, SpeedsJumpsAndReachAngles)
   };
   for (const Case& c : { Case{ 40.0, 150.0, {} }, Case{ 35.0, 450.0, 35.0 } })
   {
-    const Terrain terrain = makeSlope(c.length, radians(c.angle), "talus", "meadow");
+    const Terrain terrain = makeSlopeWithFoot(c.length, radians(c.angle), "talus", "meadow");
     SimulationParameters p;
     p.endTime = 300.0;
     p.outputInterval = 0.5;
@@ -89,22 +89,22 @@ TEST(LongSlopes, SpeedsJumpsAndReachAngles)
       text(c.length) + " m of talus at " + text(c.angle) + "°, then flat meadow: ";
     recordAtMost(
       { "Long slopes", head + "greatest speed, 95 %", "m/s", "field surveys: mostly below 30 m/s" },
-      quantile(speeds, 0.95), full() ? 30.0 : 34.0); // of few rocks it is that of two
+      quantileOf(speeds, 0.95), full() ? 30.0 : 34.0); // of few rocks it is that of two
     recordAtMost({ "Long slopes", head + "greatest height over ground, 95 %", "m",
                    "field surveys: some metres on soft ground" },
-      quantile(jumps, 0.95), 8.0);
+      quantileOf(jumps, 0.95), 8.0);
     recordAtLeast({ "Long slopes", head + "reach angle, 5 %", "°",
                     "field surveys: few single rocks below 27.5°" },
-      quantile(reach, 0.05), 27.0);
+      quantileOf(reach, 0.05), 27.0);
     const Figure middle{ "Long slopes", head + "reach angle, median", "°",
       "field surveys: 27° to 35° on long slopes, to 40° on all" };
     if (c.mostReach)
     {
-      recordAtMost(middle, quantile(reach, 0.5), *c.mostReach);
+      recordAtMost(middle, quantileOf(reach, 0.5), *c.mostReach);
     }
     else
     {
-      report(middle, quantile(reach, 0.5));
+      report(middle, quantileOf(reach, 0.5));
     }
   }
 }
@@ -114,7 +114,7 @@ TEST(LongSlopes, BedrockIsAsFastAsTalus)
 {
   const auto median = [](const char* ground)
   {
-    const Terrain terrain = makeSlope(200.0, radians(30.0), ground, ground);
+    const Terrain terrain = makeSlopeWithFoot(200.0, radians(30.0), ground, ground);
     SimulationParameters p;
     p.endTime = 300.0;
     p.outputInterval = 0.5;
@@ -124,7 +124,7 @@ TEST(LongSlopes, BedrockIsAsFastAsTalus)
     {
       speeds.push_back(t.summary.maxSpeed);
     }
-    return quantile(speeds, 0.5);
+    return quantileOf(speeds, 0.5);
   };
   recordAtLeast(
     { "Long slopes",
@@ -138,7 +138,8 @@ TEST(LongSlopes, LargeBlocksGoFarther)
 {
   const auto median = [](double volume)
   {
-    const Terrain terrain = makeSlope(174.0, radians(35.0), "talus", "talus"); // 100 m of drop
+    const Terrain terrain =
+      makeSlopeWithFoot(174.0, radians(35.0), "talus", "talus"); // 100 m of drop
     std::vector<Rock> rocks = releaseAtTop(terrain, count(60, 300));
     for (Rock& rock : rocks)
     {
@@ -153,7 +154,7 @@ TEST(LongSlopes, LargeBlocksGoFarther)
     {
       runOuts.push_back(t.summary.runOut);
     }
-    return quantile(runOuts, 0.5);
+    return quantileOf(runOuts, 0.5);
   };
   record(
     { "Long slopes", "35° of 100 m of drop, talus: run-out of 10 m³ over that of 0.1 m³, median",

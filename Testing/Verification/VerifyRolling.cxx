@@ -18,8 +18,8 @@ using rockfall::testing::makePlane;
 namespace
 {
 
-constexpr double kRadius = 0.62; // m: 1 m³
-constexpr double kSize = 100.0;  // m
+constexpr double kRadius = 0.62;       // m: 1 m³
+constexpr double kInclineSize = 100.0; // m
 
 struct Ball
 {
@@ -51,7 +51,7 @@ void layOn(Rock& rock, double angle)
   }
   rock.orientation =
     rockfall::testing::turnBetween(rock.shape.normals()[std::size_t(lowest)], -normal);
-  rock.position = Vec3(0.5 * kSize, 0.5 * kSize, 100.0) + kRadius * normal;
+  rock.position = Vec3(0.5 * kInclineSize, 0.5 * kInclineSize, 100.0) + kRadius * normal;
 }
 
 /// Means over a piece of a run down an incline, energy by energy, so that neither the start from a
@@ -97,7 +97,7 @@ TEST(Rolling, DownAnIncline)
       SimulationParameters p;
       p.endTime = 0.6; // to 2.1 m/s
       p.outputInterval = 0.01;
-      const Terrain plane = makePlane(2, kSize, angle, 0.0, surface(rv, 45.0));
+      const Terrain plane = makePlane(2, kInclineSize, angle, 0.0, surface(rv, 45.0));
       const Trajectory t = rockfall::testing::simulate(plane, ball.rock, p);
       const Gait gait = gaitOf(t, ball.radius, 0.25, 0.4);
       const std::string faces = std::to_string(ball.rock.shape.faces().size()) + " faces";
@@ -158,8 +158,8 @@ TEST(Rolling, FasterThanItCanHoldTheGround)
     SimulationParameters p;
     p.endTime = 4.0;
     p.outputInterval = 0.02;
-    const Trajectory t =
-      rockfall::testing::simulate(makePlane(2, kSize, angle, 0.0, surface(rv, 45.0)), ball.rock, p);
+    const Trajectory t = rockfall::testing::simulate(
+      makePlane(2, kInclineSize, angle, 0.0, surface(rv, 45.0)), ball.rock, p);
     const EnergyAudit& e = t.summary.energy;
     EXPECT_LT(t.samples.back().velocity.norm(), kGravity * std::sin(angle) * 4.0);
     EXPECT_GT(e.kinetic, 0.0);
@@ -186,7 +186,7 @@ TEST(Rolling, SlipTurnsIntoRollingOnTheFlat)
     p.endTime = 0.6;
     p.outputInterval = 0.005;
     const Trajectory t = rockfall::testing::simulate(
-      makePlane(2, kSize, 0.0, 0.0, surface(0.8, kFriction)), ball.rock, p);
+      makePlane(2, kInclineSize, 0.0, 0.0, surface(0.8, kFriction)), ball.rock, p);
     const double until = 2.0 * kStart / (7.0 * std::tan(radians(kFriction)) * kGravity);
     double sum = 0.0, turning = 0.0;
     int samples = 0;
@@ -250,7 +250,7 @@ TEST(Rolling, ObliqueImpactSticksOrSlides)
     {
       Rock rock = ball.rock;
       const double fall = 0.001;
-      rock.position = Vec3(0.5 * kSize, 0.5 * kSize, 100.0 + kRadius + fall);
+      rock.position = Vec3(0.5 * kInclineSize, 0.5 * kInclineSize, 100.0 + kRadius + fall);
       rock.velocity =
         Vec3(share * limit * kNormal, 0.0, -std::sqrt(kNormal * kNormal - 2.0 * kGravity * fall));
       rocks.push_back(rock);
@@ -260,9 +260,10 @@ TEST(Rolling, ObliqueImpactSticksOrSlides)
     p.endTime = 0.04;
     p.outputInterval = 0.0005;
     p.normalPenalty = 1e10; // 1 mm pressed in
-    const std::vector<Trajectory> runs = simulateAll(
-      makePlane(2, kSize, 0.0, 0.0, surface(e, kFriction, RestitutionModel::NormalTangential)),
-      rocks, p);
+    const std::vector<Trajectory> runs =
+      simulateAll(makePlane(2, kInclineSize, 0.0, 0.0,
+                    surface(e, kFriction, RestitutionModel::NormalTangential)),
+        rocks, p);
     double slidingError = 0.0, stickingError = 0.0, rest = 0.0, normalError = 0.0;
     std::vector<double> ratios, kept, exact;
     for (std::size_t k = 0; k < runs.size(); ++k)
@@ -343,7 +344,7 @@ TEST(Rolling, StopsAtAzzonisDistance)
     SimulationParameters p;
     p.endTime = 10.0;
     const Trajectory t =
-      rockfall::testing::simulate(makePlane(2, kSize, angle, 0.0, ground), ball.rock, p);
+      rockfall::testing::simulate(makePlane(2, kInclineSize, angle, 0.0, ground), ball.rock, p);
     const Block block(ball.rock.shape, ball.rock.density, 1e10, 0.1);
     const double arm = rollingArm(block) / ball.radius;
     const double exact = speed * speed * (1.0 + ball.ratio) /

@@ -18,10 +18,10 @@ using namespace rockfall::verification;
 namespace
 {
 
-constexpr double kFoot = 100.0;   // m from the upper edge
-constexpr double kStart = 5.0;    // m
-constexpr double kWidth = 60.0;   // m
-constexpr double kLength = 250.0; // m
+constexpr double kFoot = 100.0;      // m from the upper edge
+constexpr double kStart = 5.0;       // m
+constexpr double kSlopeWidth = 60.0; // m
+constexpr double kLength = 250.0;    // m
 constexpr std::array<double, 4> kCells = { 0.5, 1.0, 2.0, 5.0 };
 
 /// 30° for 100 m, then flat.
@@ -31,7 +31,7 @@ Terrain slope(double cell, const SurfaceMaterial& material, const Roughness& rou
   GridGeometry g;
   g.cellSize = cell;
   g.columns = int(std::lround(kLength / cell)) + 1;
-  g.rows = int(std::lround(kWidth / cell)) + 1;
+  g.rows = int(std::lround(kSlopeWidth / cell)) + 1;
   std::vector<double> heights;
   for (int row = 0; row < g.rows; ++row)
   {

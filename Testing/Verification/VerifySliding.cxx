@@ -13,7 +13,7 @@ using namespace rockfall::verification;
 namespace
 {
 
-constexpr double kSize = 200.0;          // m, of the plane
+constexpr double kPlaneSize = 200.0;     // m, of the plane
 constexpr double kAngle = radians(30.0); // α
 
 SimulationParameters paperParameters(double endTime, double interval = 0.1)
@@ -29,8 +29,8 @@ SimulationParameters paperParameters(double endTime, double interval = 0.1)
 Trajectory slide(int nodes, double friction, double azimuth)
 {
   const Terrain plane =
-    makePlane(nodes, kSize, kAngle, azimuth, verification::surface(0.8, friction));
-  return simulate(plane, cubeOnPlane(kSize, kAngle, azimuth, 20.0), paperParameters(4.0));
+    makePlane(nodes, kPlaneSize, kAngle, azimuth, verification::surface(0.8, friction));
+  return simulate(plane, cubeOnPlane(kPlaneSize, kAngle, azimuth, 20.0), paperParameters(4.0));
 }
 
 double acceleration(double friction)
@@ -99,9 +99,10 @@ TEST(Sliding, BelowTheFrictionAngleNothingCreeps)
 {
   for (double friction : { 30.5, 35.0, 45.0 })
   {
-    const Terrain plane = makePlane(11, kSize, kAngle, 0.3, verification::surface(0.8, friction));
+    const Terrain plane =
+      makePlane(11, kPlaneSize, kAngle, 0.3, verification::surface(0.8, friction));
     const Trajectory t =
-      simulate(plane, cubeOnPlane(kSize, kAngle, 0.3, 0.0), paperParameters(60.0, 0.01));
+      simulate(plane, cubeOnPlane(kPlaneSize, kAngle, 0.3, 0.0), paperParameters(60.0, 0.01));
     EXPECT_EQ(t.summary.fate, Fate::Rested);
     // The springs take up the weight at the start; what comes after 0.25 s is drift. A rock that is
     // found to be at rest is not followed up to 60 s: its last speed is taken to go on.

@@ -25,15 +25,16 @@ struct Outcome
 /// falling towards +x, with `speed` (m/s) downhill.
 Outcome release(double breadth, double angle, double friction, double speed, double duration)
 {
-  constexpr double kSize = 120.0, kHeight = 1.0;
+  constexpr double kExtent = 120.0, kHeight = 1.0;
   const Terrain plane =
-    rockfall::testing::makePlane(2, kSize, angle, 0.0, surface(0.5, degrees(friction)));
+    rockfall::testing::makePlane(2, kExtent, angle, 0.0, surface(0.5, degrees(friction)));
   const Vec3 normal(std::sin(angle), 0.0, std::cos(angle));
   const Vec3 downhill(std::cos(angle), 0.0, -std::sin(angle));
   Rock rock;
   rock.shape = makeBox({ breadth, 1.0, kHeight });
   rock.orientation = Quat(Eigen::AngleAxisd(angle, Vec3::UnitY()));
-  rock.position = Vec3(0.5 * kSize, 0.5 * kSize, 100.0) + 0.5 * kHeight * normal - 20.0 * downhill;
+  rock.position =
+    Vec3(0.5 * kExtent, 0.5 * kExtent, 100.0) + 0.5 * kHeight * normal - 20.0 * downhill;
   rock.velocity = speed * downhill;
   SimulationParameters p;
   p.endTime = duration;

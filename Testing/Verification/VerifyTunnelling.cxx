@@ -18,7 +18,7 @@ namespace
 constexpr int kNodes = 65;
 
 /// The grounds that shots are fired at, all of them jagged at the scale of one cell.
-enum class Ground
+enum class Jagged
 {
   Noise,  ///< Every node on its own, up to one cell up or down.
   Ridges, ///< A saw of ridges and valleys, each side one cell wide.
@@ -26,13 +26,13 @@ enum class Ground
   Steps,  ///< Terraces, their walls one cell wide and five cells high: 79°.
 };
 
-const char* nameOf(Ground ground)
+const char* nameOf(Jagged ground)
 {
   constexpr const char* names[] = { "noise", "ridges", "pits and spikes", "vertical steps" };
   return names[int(ground)];
 }
 
-Terrain makeGround(Ground ground, double cell, std::mt19937& random)
+Terrain makeGround(Jagged ground, double cell, std::mt19937& random)
 {
   std::uniform_real_distribution<double> u(0.0, 1.0);
   return rockfall::testing::makeSlope(
@@ -42,13 +42,13 @@ Terrain makeGround(Ground ground, double cell, std::mt19937& random)
       const int i = int(std::lround(x / cell)), j = int(std::lround(y / cell));
       switch (ground)
       {
-        case Ground::Noise:
+        case Jagged::Noise:
           return cell * (2.0 * u(random) - 1.0);
-        case Ground::Ridges:
+        case Jagged::Ridges:
           return cell * (i % 2) + 0.3 * cell * (j % 2);
-        case Ground::Pits:
+        case Jagged::Pits:
           return u(random) < 0.1 ? (u(random) < 0.5 ? -2.0 : 2.0) * cell : 0.0;
-        case Ground::Steps:
+        case Jagged::Steps:
           return 5.0 * cell * double((i / 8 + j / 12) % 3);
       }
       return 0.0;
@@ -73,7 +73,7 @@ TEST(Tunnelling, NoShotGoesThrough)
   for (long round = 0; shots < wanted; ++round)
   {
     const double cell = cells[round % 5];
-    const Ground kind = Ground(round / 5 % 4);
+    const Jagged kind = Jagged(round / 5 % 4);
     const Terrain ground = makeGround(kind, cell, random);
     std::vector<Rock> rocks;
     for (long k = 0; k < batch; ++k)

@@ -165,7 +165,7 @@ void RasterFile::noteOddNodes(const std::vector<double>& heights, double step)
       }
       // The least way up, and down, to what is around; the most to the four nearest.
       double over = HUGE_VAL, under = HUGE_VAL, beside = 0.0;
-      int around = 0;
+      int neighbours = 0;
       for (int r = std::max(0, row - 1); r <= std::min(rows_ - 1, row + 1); ++r)
       {
         for (int c = std::max(0, column - 1); c <= std::min(columns_ - 1, column + 1); ++c)
@@ -175,7 +175,7 @@ void RasterFile::noteOddNodes(const std::vector<double>& heights, double step)
           {
             over = std::min(over, height - other);
             under = std::min(under, other - height);
-            ++around;
+            ++neighbours;
             beside = r == row || c == column ? std::max(beside, std::abs(other)) : beside;
           }
         }
@@ -186,7 +186,7 @@ void RasterFile::noteOddNodes(const std::vector<double>& heights, double step)
       }
       zeros += height == 0.0;
       suspect += height == 0.0 && beside > step;
-      if (around >= 3 && std::max(over, under) >= step && ++spikes == 1)
+      if (neighbours >= 3 && std::max(over, under) >= step && ++spikes == 1)
       {
         first = number(std::round(std::max(over, under))) + " m " +
           (over > 0.0 ? "above" : "below") + " in row " + std::to_string(row + 1) + ", column " +

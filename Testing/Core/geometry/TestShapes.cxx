@@ -18,7 +18,7 @@ namespace
 {
 
 // Some hundred products and sums of numbers near 1.
-constexpr double rounding = 1e-13;
+constexpr double kShapeRounding = 1e-13;
 
 struct Expected
 {
@@ -86,15 +86,15 @@ TEST_P(Platonic, ClosedForm)
   for (const Polyhedron::Edge& edge : body.edges())
   {
     const Vec3 along = body.vertices()[edge.vertices[1]] - body.vertices()[edge.vertices[0]];
-    EXPECT_NEAR(along.norm(), expected.edge, rounding);
+    EXPECT_NEAR(along.norm(), expected.edge, kShapeRounding);
   }
   const Mat3 second = expected.secondMoment * Mat3::Identity();
-  EXPECT_LT((body.integrals().second - second).norm(), rounding);
+  EXPECT_LT((body.integrals().second - second).norm(), kShapeRounding);
   for (const Vec3& vertex : body.vertices())
   {
-    EXPECT_NEAR(vertex.norm(), expected.radius, rounding);
+    EXPECT_NEAR(vertex.norm(), expected.radius, kShapeRounding);
   }
-  EXPECT_NEAR(body.radius(), expected.radius, rounding);
+  EXPECT_NEAR(body.radius(), expected.radius, kShapeRounding);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, Platonic, ::testing::ValuesIn(expectations()), printName);
@@ -108,9 +108,9 @@ TEST(Shapes, VolumeAndCentroidAreExact)
     {
       const Polyhedron body = makeShape(shape, volume);
       const VolumeIntegrals integrals = integrateSimplices(body.vertices(), body.faces());
-      EXPECT_NEAR(integrals.volume / volume, 1.0, rounding) << shapeName(shape);
-      EXPECT_NEAR(body.integrals().volume / volume, 1.0, rounding) << shapeName(shape);
-      EXPECT_LT(integrals.centroid.norm(), rounding * std::cbrt(volume)) << shapeName(shape);
+      EXPECT_NEAR(integrals.volume / volume, 1.0, kShapeRounding) << shapeName(shape);
+      EXPECT_NEAR(body.integrals().volume / volume, 1.0, kShapeRounding) << shapeName(shape);
+      EXPECT_LT(integrals.centroid.norm(), kShapeRounding * std::cbrt(volume)) << shapeName(shape);
       EXPECT_EQ(body.integrals().centroid, Vec3(Vec3::Zero())) << shapeName(shape);
     }
   }
@@ -122,7 +122,7 @@ TEST(Shapes, CubeHasItsEdgesAlongTheAxes)
   for (const Polyhedron::Edge& edge : cube.edges())
   {
     const Vec3 along = cube.vertices()[edge.vertices[1]] - cube.vertices()[edge.vertices[0]];
-    EXPECT_NEAR(along.cwiseAbs().maxCoeff(), 2.0, rounding);
+    EXPECT_NEAR(along.cwiseAbs().maxCoeff(), 2.0, kShapeRounding);
     EXPECT_EQ(along.cwiseAbs().sum(), along.cwiseAbs().maxCoeff());
   }
 }
@@ -181,7 +181,7 @@ TEST(Shapes, Eota111)
   {
     Vec3 sorted = vertex.cwiseAbs();
     std::sort(sorted.begin(), sorted.end());
-    EXPECT_LT((sorted - Vec3(0.5, 0.5, 1.0)).norm(), rounding);
+    EXPECT_LT((sorted - Vec3(0.5, 0.5, 1.0)).norm(), kShapeRounding);
   }
   double volume = 0.0;
   const Vec3 moments = eotaByCounting(volume);
@@ -190,7 +190,7 @@ TEST(Shapes, Eota111)
   EXPECT_LT((body.integrals().second.diagonal() - moments).norm(), 5e-4);
   EXPECT_LT(
     (body.integrals().second - Mat3(body.integrals().second.diagonal().asDiagonal())).norm(),
-    rounding);
+    kShapeRounding);
 }
 
 TEST(Shapes, Eota221IsEota111WithItsThirdAxisHalved)
@@ -200,7 +200,7 @@ TEST(Shapes, Eota221IsEota111WithItsThirdAxisHalved)
   EXPECT_EQ(platy.vertices().size(), 24u);
   EXPECT_EQ(platy.faces().size(), 26u);
   const Vec3 expected(0.5 * round(0, 0), 0.5 * round(1, 1), 0.125 * round(2, 2));
-  EXPECT_LT((platy.integrals().second - Mat3(expected.asDiagonal())).norm(), rounding);
+  EXPECT_LT((platy.integrals().second - Mat3(expected.asDiagonal())).norm(), kShapeRounding);
 }
 
 TEST(Shapes, EotaHasThePublishedSize)
@@ -226,12 +226,12 @@ TEST(Shapes, Box)
 {
   const Vec3 lengths(2.0, 1.0, 0.25); // m
   const Polyhedron box = makeBox(lengths);
-  EXPECT_NEAR(box.integrals().volume, 0.5, rounding);
-  EXPECT_LT(box.integrals().centroid.norm(), rounding);
+  EXPECT_NEAR(box.integrals().volume, 0.5, kShapeRounding);
+  EXPECT_LT(box.integrals().centroid.norm(), kShapeRounding);
   const Mat3 expected = (0.5 / 12.0 * lengths.cwiseAbs2()).asDiagonal();
-  EXPECT_LT((box.integrals().second - expected).norm(), rounding);
+  EXPECT_LT((box.integrals().second - expected).norm(), kShapeRounding);
   EXPECT_EQ(box.faces().size(), 6u);
-  EXPECT_NEAR(box.radius(), 0.5 * lengths.norm(), rounding);
+  EXPECT_NEAR(box.radius(), 0.5 * lengths.norm(), kShapeRounding);
 }
 
 TEST(Shapes, BadVolumesAndLengths)

@@ -14,7 +14,7 @@ namespace
 {
 
 // Sums of some tens of products of numbers near 1.
-constexpr double rounding = 1e-14;
+constexpr double kIntegralRounding = 1e-14;
 
 const std::vector<std::vector<int>> tetrahedron = { { 0, 2, 1 }, { 0, 1, 3 }, { 1, 2, 3 },
   { 0, 3, 2 } };
@@ -38,12 +38,12 @@ TEST(SimplexIntegration, UnitSimplex)
 {
   const std::vector<Vec3> points = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
   const VolumeIntegrals result = integrateSimplices(points, tetrahedron);
-  EXPECT_NEAR(result.volume, 1.0 / 6.0, rounding);
-  EXPECT_LT((result.centroid - Vec3::Constant(0.25)).norm(), rounding);
+  EXPECT_NEAR(result.volume, 1.0 / 6.0, kIntegralRounding);
+  EXPECT_LT((result.centroid - Vec3::Constant(0.25)).norm(), kIntegralRounding);
   // ∫x² = 1/60 and ∫xy = 1/120 about the corner; less V/16 about the centroid.
   const Mat3 expected =
     Mat3::Constant(1.0 / 120.0 - 1.0 / 96.0) + Mat3(Vec3::Constant(1.0 / 120.0).asDiagonal());
-  EXPECT_LT((result.second - expected).norm(), rounding);
+  EXPECT_LT((result.second - expected).norm(), kIntegralRounding);
 }
 
 TEST(SimplexIntegration, Box)
@@ -51,10 +51,10 @@ TEST(SimplexIntegration, Box)
   const Vec3 lengths(2.0, 3.0, 0.5); // m
   const Vec3 low(-0.3, 0.4, 5.0);
   const VolumeIntegrals result = integrateSimplices(boxCorners(low, low + lengths), hexahedron);
-  EXPECT_NEAR(result.volume, 3.0, 3.0 * rounding);
-  EXPECT_LT((result.centroid - low - 0.5 * lengths).norm(), 6.0 * rounding);
+  EXPECT_NEAR(result.volume, 3.0, 3.0 * kIntegralRounding);
+  EXPECT_LT((result.centroid - low - 0.5 * lengths).norm(), 6.0 * kIntegralRounding);
   const Mat3 expected = (3.0 / 12.0 * lengths.cwiseAbs2()).asDiagonal();
-  EXPECT_LT((result.second - expected).norm(), 3.0 * rounding);
+  EXPECT_LT((result.second - expected).norm(), 3.0 * kIntegralRounding);
 }
 
 TEST(SimplexIntegration, NotConvex)
@@ -76,12 +76,12 @@ TEST(SimplexIntegration, NotConvex)
     faces.push_back({ i, j, j + 6, i + 6 });
   }
   const VolumeIntegrals result = integrateSimplices(points, faces);
-  EXPECT_NEAR(result.volume, 3.0, 3.0 * rounding);
-  EXPECT_LT((result.centroid - Vec3(5.0 / 6.0, 5.0 / 6.0, 0.5)).norm(), 3.0 * rounding);
+  EXPECT_NEAR(result.volume, 3.0, 3.0 * kIntegralRounding);
+  EXPECT_LT((result.centroid - Vec3(5.0 / 6.0, 5.0 / 6.0, 0.5)).norm(), 3.0 * kIntegralRounding);
   // Σ V/12 + (offset of each cube)²: 3/12 + 1/9 + 1/9 + 4/9.
-  EXPECT_NEAR(result.second(0, 0), 0.25 + 6.0 / 9.0, 3.0 * rounding);
+  EXPECT_NEAR(result.second(0, 0), 0.25 + 6.0 / 9.0, 3.0 * kIntegralRounding);
   // Offsets (−⅓, −⅓), (⅔, −⅓), (−⅓, ⅔).
-  EXPECT_NEAR(result.second(0, 1), -3.0 / 9.0, 3.0 * rounding);
+  EXPECT_NEAR(result.second(0, 1), -3.0 / 9.0, 3.0 * kIntegralRounding);
 }
 
 TEST(SimplexIntegration, MonteCarlo)
@@ -129,8 +129,8 @@ TEST(SimplexIntegration, ShiftInvariance)
   const Vec3 low(-0.625, 0.375, 1.0), high(0.5, 2.25, 1.875), shift(5e5, 4e6, 2048.0);
   const VolumeIntegrals near = integrateSimplices(boxCorners(low, high), hexahedron);
   const VolumeIntegrals far = integrateSimplices(boxCorners(low + shift, high + shift), hexahedron);
-  EXPECT_NEAR(far.volume, near.volume, rounding);
-  EXPECT_LT((far.second - near.second).norm(), rounding);
+  EXPECT_NEAR(far.volume, near.volume, kIntegralRounding);
+  EXPECT_LT((far.second - near.second).norm(), kIntegralRounding);
   // The centroid itself is rounded to the grid of doubles at 4e6, 2⁻³¹ m apart.
   EXPECT_LT((far.centroid - shift - near.centroid).norm(), 0x1p-30);
 }
@@ -144,8 +144,8 @@ TEST(SimplexIntegration, InvertedFacesGiveNegativeVolume)
   }
   const VolumeIntegrals result =
     integrateSimplices(boxCorners(Vec3::Zero(), Vec3::Ones()), inverted);
-  EXPECT_NEAR(result.volume, -1.0, rounding);
-  EXPECT_LT((result.centroid - Vec3::Constant(0.5)).norm(), rounding);
+  EXPECT_NEAR(result.volume, -1.0, kIntegralRounding);
+  EXPECT_LT((result.centroid - Vec3::Constant(0.5)).norm(), kIntegralRounding);
 }
 
 TEST(SimplexIntegration, NothingAndFlat)

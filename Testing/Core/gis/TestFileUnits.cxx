@@ -18,18 +18,6 @@ namespace
 
 using namespace rockfall::testing;
 
-constexpr double foot = 0.3048; // m
-
-std::string joined(const std::vector<std::string>& notes)
-{
-  std::string all;
-  for (const std::string& note : notes)
-  {
-    all += note + "\n";
-  }
-  return all;
-}
-
 /// One feature in UTM zone 32, which says nothing of heights.
 std::string inUtm(const std::string& geometry, const std::string& properties)
 {

@@ -26,8 +26,6 @@ namespace
 
 using namespace rockfall::testing;
 
-constexpr double foot = 0.3048, surveyFoot = 1200.0 / 3937.0; // m
-
 /// Numbers 10, 20, … 60 in cells of 10 m.
 RawRaster six(const std::string& crs)
 {
@@ -41,16 +39,6 @@ RawRaster six(const std::string& crs)
 }
 
 const std::vector<std::string> sixRows = { "10 20 30", "40 50 60" };
-
-std::string joined(const std::vector<std::string>& notes)
-{
-  std::string all;
-  for (const std::string& note : notes)
-  {
-    all += note + "\n";
-  }
-  return all;
-}
 
 /// Height of the last node over that of the first: 50 units.
 void expectUnit(const std::string& path, double metres, const std::string& note)
@@ -280,15 +268,15 @@ std::string layer(const std::string& content, const std::string& crs, const std:
       "\"><SrcDataSource>" + table + "</SrcDataSource><LayerSRS>" + crs + "</LayerSRS>" + geometry +
       "</OGRVRTLayer></OGRVRTDataSource>");
 }
-const std::string points = "<GeometryType>wkbPoint25D</GeometryType><GeometryField encoding="
-                           "\"PointFromColumns\" x=\"e\" y=\"n\" z=\"h\"/>";
+const std::string pointFields = "<GeometryType>wkbPoint25D</GeometryType><GeometryField encoding="
+                                "\"PointFromColumns\" x=\"e\" y=\"n\" z=\"h\"/>";
 const std::string flatPoints = "<GeometryType>wkbPoint</GeometryType><GeometryField encoding="
                                "\"PointFromColumns\" x=\"e\" y=\"n\"/>";
-const std::string lines = "<GeometryField encoding=\"WKT\" field=\"WKT\"/>";
+const std::string wktField = "<GeometryField encoding=\"WKT\" field=\"WKT\"/>";
 
 std::string pointAt300(const std::string& crs)
 {
-  return layer("e,n,h\n600000,5100000,300\n", crs, points);
+  return layer("e,n,h\n600000,5100000,300\n", crs, pointFields);
 }
 
 TEST(Heights, ofPoints)
@@ -340,7 +328,7 @@ std::string contours(const std::string& crs, const std::string& column = "elev")
   return layer("WKT," + column +
       "\n\"LINESTRING(600000 5100000,600100 5100000)\",100\n"
       "\"LINESTRING(600000 5100100,600100 5100100)\",200\n",
-    crs, lines);
+    crs, wktField);
 }
 
 TEST(Heights, ofContours)
@@ -408,11 +396,11 @@ TEST(Heights, ofCrestsOfDams)
                           "210,2,1.5\n";
   std::vector<std::string> notes;
   StructureFiles files;
-  files.embankments = layer(dam, "EPSG:32632+6360", lines);
+  files.embankments = layer(dam, "EPSG:32632+6360", wktField);
   const Structures built = readStructures(files, site("EPSG:32632+5703"), notes);
   EXPECT_NEAR(built.embankments.at(0).elevation, 210.0 * surveyFoot, 1e-4);
   EXPECT_TRUE(holds(joined(notes), { "multiplied by 0.3048006" }));
-  files.embankments = layer(dam, "EPSG:4937", lines);
+  files.embankments = layer(dam, "EPSG:4937", wktField);
   EXPECT_TRUE(
     holds(messageOf<DataError>([&] { readStructures(files, site("EPSG:32632+7837"), notes); }),
       { "ETRS89", "DHHN2016" }));
@@ -431,7 +419,7 @@ TEST(Heights, ofTreesAndLinesBesideCoordinatesInFeetAreNoted)
   EXPECT_TRUE(holds(joined(notes), { "nothing says what its heights are in" }));
   notes.clear();
   readLineLayer(
-    layer("WKT,height\n\"LINESTRING(0 0,10 0)\",4\n", "EPSG:2274", lines), "", "", &notes);
+    layer("WKT,height\n\"LINESTRING(0 0,10 0)\",4\n", "EPSG:2274", wktField), "", "", &notes);
   EXPECT_TRUE(holds(joined(notes), { "nothing says what its heights are in" }));
 }
 
@@ -491,14 +479,14 @@ SourceOptions onSite(const std::string& crs)
 TEST(Heights, ofOtherReferencesAreBroughtToTheTerrains)
 {
   // EGM96 comes with PROJ: its geoid at 9° E, 45° N.
-  const std::string path = layer("e,n,h\n9,45,300\n", "EPSG:4979", points);
+  const std::string path = layer("e,n,h\n9,45,300\n", "EPSG:4979", pointFields);
   const SourceLayer read = readSourceLayer(path, onSite("EPSG:32632+5773"));
   EXPECT_NEAR(read.rows.at(0).position.z(), 300.0 - 45.0, 5.0);
   EXPECT_GT(std::abs(read.rows.at(0).position.z() - 300.0), 30.0);
   EXPECT_TRUE(holds(joined(read.notes), { "brought from", "WGS 84", "EGM96" }));
   // And back.
   const std::string over = layer(
-    "e,n,h\n9,45," + exactText(read.rows.at(0).position.z()) + "\n", "EPSG:4326+5773", points);
+    "e,n,h\n9,45," + exactText(read.rows.at(0).position.z()) + "\n", "EPSG:4326+5773", pointFields);
   EXPECT_NEAR(readSourceLayer(over, onSite("EPSG:4979")).rows.at(0).position.z(), 300.0, 1e-6);
   // The same datum in another unit.
   const SourceLayer feet =
@@ -514,7 +502,7 @@ TEST(Heights, ofReferencesWithoutAWayAreAnError)
       { "EPSG:4326+5773", "EPSG:25832+7837", { "EGM96", "DHHN2016" } },
       { "EPSG:4326+5703", "EPSG:25832+5773", { "NAVD88", "EGM96" } } })
   {
-    const std::string path = layer("e,n,h\n9,45,300\n", own, points);
+    const std::string path = layer("e,n,h\n9,45,300\n", own, pointFields);
     std::vector<std::string> parts = names;
     parts.push_back(path);
     EXPECT_TRUE(
@@ -525,7 +513,7 @@ TEST(Heights, ofReferencesWithoutAWayAreAnError)
 
 TEST(Heights, ofOneReferenceAloneAreNoted)
 {
-  const std::string path = layer("e,n,h\n9,45,300\n", "EPSG:4937", points);
+  const std::string path = layer("e,n,h\n9,45,300\n", "EPSG:4937", pointFields);
   const SourceLayer read = readSourceLayer(path, onSite("EPSG:25832"));
   EXPECT_EQ(read.rows.at(0).position.z(), 300.0);
   EXPECT_TRUE(holds(joined(read.notes), { "ETRS89", "nothing says" }));

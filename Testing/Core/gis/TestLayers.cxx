@@ -48,7 +48,7 @@ std::string geoPackage(const std::string& name, const std::vector<Layer>& layers
   return path;
 }
 
-const std::string utm = "EPSG:32632";
+const std::string utm32 = "EPSG:32632";
 
 constexpr auto lineLayer = LayerWriter::Geometry::MeasuredLine;
 constexpr auto pointLayer = LayerWriter::Geometry::Point;
@@ -218,13 +218,13 @@ TEST(Layers, FoldersOfAKmlFile)
         folders + "</Document></kml>");
   };
   std::vector<std::string> notes;
-  const auto lines =
-    readLineLayer(kml("a.kml", folder("places", point) + folder("Straße", line)), utm, {}, &notes);
+  const auto lines = readLineLayer(
+    kml("a.kml", folder("places", point) + folder("Straße", line)), utm32, {}, &notes);
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_EQ(lines[0].layer, "Straße");
   EXPECT_TRUE(anyHas(notes, "\"Straße\" was taken"));
   expectIn(messageOf<DataError>([&]
-             { readLineLayer(kml("b.kml", folder("road", line) + folder("path", line)), utm); }),
+             { readLineLayer(kml("b.kml", folder("road", line) + folder("path", line)), utm32); }),
     { "2 layers that would do", "\"road\", \"path\"" });
 }
 
@@ -300,7 +300,7 @@ TEST(Lines, AnArcIsFollowed)
 TEST(Lines, TracksAndRoutesOfAGpxFile)
 {
   std::vector<std::string> notes;
-  const auto lines = readLineLayer(gpx("road.gpx", waypoint + track), utm, {}, &notes);
+  const auto lines = readLineLayer(gpx("road.gpx", waypoint + track), utm32, {}, &notes);
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_EQ(lines[0].layer, "tracks");
   EXPECT_EQ(lines[0].name, "road");
@@ -308,14 +308,14 @@ TEST(Lines, TracksAndRoutesOfAGpxFile)
   EXPECT_TRUE(anyHas(notes, "\"tracks\" was taken"));
   const std::string route =
     "<rte><rtept lat=\"46\" lon=\"9\"/><rtept lat=\"46\" lon=\"9.1\"/></rte>";
-  EXPECT_EQ(readLineLayer(gpx("route.gpx", route), utm).at(0).layer, "routes");
+  EXPECT_EQ(readLineLayer(gpx("route.gpx", route), utm32).at(0).layer, "routes");
   const std::string both = gpx("both.gpx", route + track);
-  expectIn(messageOf<DataError>([&] { readLineLayer(both, utm); }), { "\"routes\", \"tracks\"" });
-  EXPECT_EQ(readLineLayer(both, utm, "routes").size(), 1u);
-  expectIn(messageOf<DataError>([&] { readLineLayer(gpx("points.gpx", waypoint), utm); }),
+  expectIn(messageOf<DataError>([&] { readLineLayer(both, utm32); }), { "\"routes\", \"tracks\"" });
+  EXPECT_EQ(readLineLayer(both, utm32, "routes").size(), 1u);
+  expectIn(messageOf<DataError>([&] { readLineLayer(gpx("points.gpx", waypoint), utm32); }),
     { "points.gpx", "has no line" });
   SourceOptions options = onTerrain();
-  options.targetCrs = utm;
+  options.targetCrs = utm32;
   EXPECT_EQ(readSourceLayer(gpx("sources.gpx", waypoint), options).rows.size(), 1u);
 }
 

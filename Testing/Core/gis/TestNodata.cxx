@@ -21,16 +21,6 @@ namespace
 
 using namespace rockfall::testing;
 
-std::string joined(const std::vector<std::string>& notes)
-{
-  std::string all;
-  for (const std::string& note : notes)
-  {
-    all += note + "\n";
-  }
-  return all;
-}
-
 /// Heights 401 … 412 m in 4 × 3 cells of 10 m.
 RawRaster twelve()
 {
@@ -108,7 +98,7 @@ TEST(Nodata, ofNetCdfAreAllThatItDeclares)
   EXPECT_EQ(holes({ { "valid_max", Doubles{ 411.5 } }, { "_FillValue", Doubles{ -999.0 } } }), 2);
 }
 
-std::string saga(const std::string& nodata)
+std::string sagaWithNodata(const std::string& nodata)
 {
   std::string bytes;
   for (const float value : { 401.f, 402.f, -99999.f, 404.f, 405.f, -99990.f })
@@ -125,9 +115,9 @@ std::string saga(const std::string& nodata)
 
 TEST(Nodata, ofSagaIsARange)
 {
-  EXPECT_EQ(holesOf(readRaster(saga("-99999.000000;-99990.000000"))), 2);
-  EXPECT_TRUE(holds(
-    messageOf<DataError>([] { readRaster(saga("-99999.000000")); }), { "-99990", "-a_nodata" }));
+  EXPECT_EQ(holesOf(readRaster(sagaWithNodata("-99999.000000;-99990.000000"))), 2);
+  EXPECT_TRUE(holds(messageOf<DataError>([] { readRaster(sagaWithNodata("-99999.000000")); }),
+    { "-99990", "-a_nodata" }));
 }
 
 TEST(Nodata, ofAllBandsTogether)

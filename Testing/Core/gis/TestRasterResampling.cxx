@@ -23,7 +23,7 @@ struct Place
 };
 
 /// UTM on WGS 84 by Krüger's series in n up to n⁴ (error < 0.1 mm within a zone).
-Place utm(double longitude, double latitude, int zone)
+Place toUtm(double longitude, double latitude, int zone)
 {
   constexpr double a = 6378137.0, f = 1.0 / 298.257223563, k0 = 0.9996;
   constexpr double n = f / (2.0 - f), n2 = n * n, n3 = n2 * n, n4 = n3 * n;
@@ -117,13 +117,13 @@ TEST(RasterResampling, geographicPlaneKeepsItsPlace)
   {
     RawRaster raster = oneSecond(site.west, site.north);
     // The antimeridian's other side belongs to the same zone as the centre: z has no step there.
-    const Place centre = utm(site.west + 30.0 / 3600.0, site.north - 25.0 / 3600.0, site.zone);
+    const Place centre = toUtm(site.west + 30.0 / 3600.0, site.north - 25.0 / 3600.0, site.zone);
     const auto height = [&centre](double east, double north)
     { return 1500.0 + 0.5 * (east - centre.east) + 0.3 * (north - centre.north); };
     raster.fill(
       [&](double longitude, double latitude)
       {
-        const Place p = utm(longitude, latitude, site.zone);
+        const Place p = toUtm(longitude, latitude, site.zone);
         return height(p.east, p.north);
       });
     const RasterSurface surface = readRaster(raster.write());
@@ -154,7 +154,7 @@ TEST(RasterResampling, geographicHillsWithinTheBilinearBound)
   raster.fill(
     [&](double longitude, double latitude)
     {
-      const Place p = utm(longitude, latitude, 32);
+      const Place p = toUtm(longitude, latitude, 32);
       return hills(p.east, p.north);
     });
   const RasterSurface surface = readRaster(raster.write(), { .cellSize = 20.0 });
@@ -175,11 +175,10 @@ TEST(RasterResampling, polesGoToUps)
 
 TEST(RasterResampling, projectedFeetBecomeMetres)
 {
-  constexpr double foot = 1200.0 / 3937.0;
   RawRaster raster = onPlane(30, 20);
   for (double& a : raster.affine)
   {
-    a /= foot;
+    a /= surveyFoot;
   }
   raster.crs = "+proj=utm +zone=32 +datum=WGS84 +units=us-ft";
   const RasterSurface surface = readRaster(raster.write());
@@ -201,7 +200,7 @@ TEST(RasterResampling, webMercatorIsNoMetre)
   raster.fill(
     [](double x, double y)
     {
-      const Place p = utm(degrees(x / radius), degrees(std::atan(std::sinh(y / radius))), 32);
+      const Place p = toUtm(degrees(x / radius), degrees(std::atan(std::sinh(y / radius))), 32);
       return plane(p.east, p.north);
     });
   const RasterSurface surface = readRaster(raster.write());
@@ -349,7 +348,7 @@ TEST(RasterResampling, nodataDoesNotBleedInReprojection)
   // Flat to the last digit of a weighted mean wherever there is a height.
   EXPECT_LT(largestError(surface, [](double, double) { return 100.0; }), 1e-12);
   const GridGeometry& g = surface.geometry;
-  const Place hole = utm(7.6 + 30.5 / 3600.0, 46.6 - 25.5 / 3600.0, 32);
+  const Place hole = toUtm(7.6 + 30.5 / 3600.0, 46.6 - 25.5 / 3600.0, 32);
   const int column = int(std::round((hole.east - g.xOrigin) / g.cellSize));
   const int row = g.rows - 1 - int(std::round((hole.north - g.yOrigin) / g.cellSize));
   EXPECT_TRUE(std::isnan(surface.heights[std::size_t(row) * g.columns + column]));

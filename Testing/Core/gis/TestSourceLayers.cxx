@@ -17,13 +17,13 @@ namespace
 
 using namespace rockfall::testing;
 
-constexpr char utm[] = "urn:ogc:def:crs:EPSG::32632";
+constexpr char utmByUrn[] = "urn:ogc:def:crs:EPSG::32632";
 
 std::string feature(const std::string& geometry, const std::string& properties = "")
 {
   return writeFile("layer.geojson",
     R"({"type":"FeatureCollection","crs":{"type":"name","properties":{"name":")" +
-      std::string(utm) + R"("}},"features":[{"type":"Feature","properties":{)" + properties +
+      std::string(utmByUrn) + R"("}},"features":[{"type":"Feature","properties":{)" + properties +
       R"(},"geometry":)" + geometry + "}]}");
 }
 
@@ -51,8 +51,9 @@ std::string table(const std::string& columns, const std::string& cells)
   return writeFile("rocks.csv", "x,y,z" + columns + "\n1,2,3" + cells + "\n");
 }
 
-const char* const square = R"({"type":"Polygon","coordinates":[[[0,0],[4,0],[4,4],[0,4],[0,0]]]})";
-const char* const line = R"({"type":"LineString","coordinates":[[0,0,10],[4,0,20]]})";
+const char* const squareRing =
+  R"({"type":"Polygon","coordinates":[[[0,0],[4,0],[4,4],[0,4],[0,0]]]})";
+const char* const lineString = R"({"type":"LineString","coordinates":[[0,0,10],[4,0,20]]})";
 
 TEST(SourceLayers, thatReleaseNothingAreTold)
 {
@@ -74,7 +75,7 @@ TEST(SourceLayers, thatReleaseNothingAreTold)
 
 TEST(SourceLayers, polygonsAndLinesKeepTheirParts)
 {
-  const SourceRow flat = only(feature(square, R"("amount":12,"height":0.5,"source":"cliff")"));
+  const SourceRow flat = only(feature(squareRing, R"("amount":12,"height":0.5,"source":"cliff")"));
   EXPECT_EQ(flat.geometry, SourceGeometry::Polygon);
   ASSERT_EQ(flat.parts.size(), 1u);
   ASSERT_EQ(flat.parts[0].size(), 5u);
@@ -83,7 +84,7 @@ TEST(SourceLayers, polygonsAndLinesKeepTheirParts)
   EXPECT_EQ(flat.amount, 12);
   EXPECT_EQ(flat.height, 0.5);
   EXPECT_EQ(flat.sourceName, "cliff");
-  const SourceRow edge = only(feature(line, R"("intensity":0.25,"source_id":7)"));
+  const SourceRow edge = only(feature(lineString, R"("intensity":0.25,"source_id":7)"));
   EXPECT_EQ(edge.geometry, SourceGeometry::Line);
   ASSERT_EQ(edge.parts.size(), 1u);
   EXPECT_EQ(edge.parts[0][1], Vec3(4.0, 0.0, 20.0));
@@ -94,9 +95,9 @@ TEST(SourceLayers, polygonsAndLinesKeepTheirParts)
                  R"([[1,1],[1,2],[2,2],[2,1],[1,1]]],[[[8,8],[9,8],[9,9],[8,8]]]]})"));
   EXPECT_EQ(holed.parts.size(), 3u);
   // Without a terrain a column, or a line's own z, is the height.
-  const SourceRow high = only(feature(square, "\"z\":55"), {});
+  const SourceRow high = only(feature(squareRing, "\"z\":55"), {});
   EXPECT_EQ(high.parts[0][0].z(), 55.0);
-  EXPECT_EQ(only(feature(line), {}).parts[0][0].z(), 10.0);
+  EXPECT_EQ(only(feature(lineString), {}).parts[0][0].z(), 10.0);
 }
 
 TEST(SourceLayers, reprojectsCorners)
@@ -249,9 +250,9 @@ TEST(SourceLayerErrors, rows)
 {
   EXPECT_TRUE(holds(failure(writeFile("slip.csv", "x,y,ammount\n1,2,3\n")),
     { "slip.csv", "\"ammount\"", "none \"amount\"" }));
-  EXPECT_TRUE(holds(failure(feature(square, R"("amount":1,"intensity":2)")),
+  EXPECT_TRUE(holds(failure(feature(squareRing, R"("amount":1,"intensity":2)")),
     { "row 1", "\"amount\"", "\"intensity\"", "one of them" }));
-  EXPECT_TRUE(holds(failure(feature(square), {}), { "row 1", "POLYGON", "Terrain", "\"z\"" }));
+  EXPECT_TRUE(holds(failure(feature(squareRing), {}), { "row 1", "POLYGON", "Terrain", "\"z\"" }));
   EXPECT_TRUE(holds(failure(table(",height", ",2"), {}), { "\"height\"", "Terrain" }));
   const char* const bow = R"({"type":"Polygon","coordinates":[[[0,0],[4,4],[4,0],[0,4],[0,0]]]})";
   EXPECT_TRUE(holds(failure(feature(bow)), { "row 1", "POLYGON", "not valid", "crosses" }));

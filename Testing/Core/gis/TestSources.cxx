@@ -18,7 +18,7 @@ namespace
 using namespace rockfall::testing;
 
 template <class Expected>
-std::string failure(const std::string& path, const std::string& crs = {})
+std::string refusal(const std::string& path, const std::string& crs = {})
 {
   return messageOf<Expected>([&] { readSources(path, crs); });
 }
@@ -29,7 +29,7 @@ std::string table(const std::string& text)
 }
 
 /// A GeoJSON layer of one feature. Without a crs member its coordinates are longitude and latitude.
-std::string feature(
+std::string rocksAt(
   const std::string& geometry, const std::string& properties = "", const std::string& crs = "")
 {
   return writeFile("rocks.geojson",
@@ -87,7 +87,7 @@ TEST(Sources, decimalCommaOfTheLocaleChangesNothing)
 {
   const std::string path = table("x,y,z,volume\n600000.25,5100000.5,1234.5,0.75\n");
   const std::string points =
-    feature(R"({"type":"Point","coordinates":[10.25,20.5,30.75]})", "\"volume\":0.75");
+    rocksAt(R"({"type":"Point","coordinates":[10.25,20.5,30.75]})", "\"volume\":0.75");
   const CommaLocale comma;
   EXPECT_EQ(readSources(path)[0].position, Vec3(600000.25, 5100000.5, 1234.5));
   EXPECT_EQ(readSources(path)[0].volume, 0.75);
@@ -98,17 +98,17 @@ TEST(Sources, decimalCommaOfTheLocaleChangesNothing)
 TEST(Sources, pointsWithAndWithoutHeight)
 {
   const std::string properties = R"("z":99.5,"Volume":2,"shape":"cube","density":2600.5)";
-  const std::string three = feature(R"({"type":"Point","coordinates":[10,20,30]})", properties);
+  const std::string three = rocksAt(R"({"type":"Point","coordinates":[10,20,30]})", properties);
   EXPECT_EQ(readSources(three)[0].position, Vec3(10.0, 20.0, 30.0)); // its own before the column
   EXPECT_EQ(readSources(three)[0].volume, 2.0);
   EXPECT_EQ(readSources(three)[0].density, 2600.5);
   EXPECT_EQ(readSources(three)[0].shapes, ShapeMix(Shape::Cube));
-  const std::string two = feature(R"({"type":"Point","coordinates":[10,20]})", properties);
+  const std::string two = rocksAt(R"({"type":"Point","coordinates":[10,20]})", properties);
   EXPECT_EQ(readSources(two)[0].position, Vec3(10.0, 20.0, 99.5));
   const std::string one =
-    feature(R"({"type":"MultiPoint","coordinates":[[10,20,30]]})", properties);
+    rocksAt(R"({"type":"MultiPoint","coordinates":[[10,20,30]]})", properties);
   EXPECT_EQ(readSources(one)[0].position, Vec3(10.0, 20.0, 30.0));
-  const std::string none = feature("null", R"("x":1,"y":2,"z":3)");
+  const std::string none = rocksAt("null", R"("x":1,"y":2,"z":3)");
   EXPECT_EQ(readSources(none)[0].position, Vec3(1.0, 2.0, 3.0));
 }
 
@@ -178,7 +178,7 @@ TEST(Sources, shapefile)
 TEST(Sources, pointsAreBroughtToTheTerrain)
 {
   // On the central meridian of zone 32: 0.9996 times the meridian arc to 45° (WGS 84).
-  const std::string lonLat = feature(R"({"type":"Point","coordinates":[9,45,700]})");
+  const std::string lonLat = rocksAt(R"({"type":"Point","coordinates":[9,45,700]})");
   const Vec3 there = readSources(lonLat, "EPSG:32632")[0].position;
   EXPECT_NEAR(there.x(), 500000.0, 1e-6);
   EXPECT_NEAR(there.y(), 0.9996 * 4984944.378, 1e-3);
@@ -186,7 +186,7 @@ TEST(Sources, pointsAreBroughtToTheTerrain)
   EXPECT_EQ(readSources(lonLat)[0].position, Vec3(9.0, 45.0, 700.0)); // no target: as written
 
   // The same CRS: not a bit changes.
-  const std::string same = feature(R"({"type":"Point","coordinates":[600000.5,5100000.25,700]})",
+  const std::string same = rocksAt(R"({"type":"Point","coordinates":[600000.5,5100000.25,700]})",
     "", "urn:ogc:def:crs:EPSG::32632");
   EXPECT_EQ(readSources(same, "EPSG:32632")[0].position, Vec3(600000.5, 5100000.25, 700.0));
   // A table without geometry is in the terrain's CRS by definition.
@@ -201,12 +201,12 @@ TEST(Sources, sayInWhichCrsTheyAre)
     readSources(path, target, &crs);
     return crs;
   };
-  const std::string lonLat = feature(R"({"type":"Point","coordinates":[9,45,700]})");
+  const std::string lonLat = rocksAt(R"({"type":"Point","coordinates":[9,45,700]})");
   EXPECT_TRUE(holds(crsOf(lonLat, "EPSG:32632"), { "PROJCRS[", "UTM zone 32N" }));
   EXPECT_EQ(crsOf(lonLat, "EPSG:32632"), wktOfCrs("EPSG:32632"));
   EXPECT_TRUE(holds(crsOf(lonLat), { "GEOGCRS[", "WGS 84" }));
   // A row without a point has no part in the layer's CRS.
-  EXPECT_EQ(crsOf(feature("null", R"("x":1,"y":2,"z":3)")), "");
+  EXPECT_EQ(crsOf(rocksAt("null", R"("x":1,"y":2,"z":3)")), "");
   EXPECT_EQ(crsOf(table("x,y,z\n1,2,3\n")), "");
   EXPECT_EQ(crsOf(table("x,y,z\n1,2,3\n"), "EPSG:32632"), wktOfCrs("EPSG:32632"));
   EXPECT_EQ(wktOfCrs(""), "");
@@ -216,21 +216,21 @@ TEST(Sources, sayInWhichCrsTheyAre)
 TEST(SourceErrors, files)
 {
   const std::string nowhere = pathOf("nowhere.csv");
-  EXPECT_TRUE(holds(failure<FileError>(nowhere), { nowhere, "no such file" }));
-  EXPECT_TRUE(holds(failure<FileError>(""), { "No file name" }));
+  EXPECT_TRUE(holds(refusal<FileError>(nowhere), { nowhere, "no such file" }));
+  EXPECT_TRUE(holds(refusal<FileError>(""), { "No file name" }));
   const std::string text = writeFile("letter.shp", "Dear reader");
-  EXPECT_TRUE(holds(failure<FileError>(text), { text, "not a vector layer" }));
+  EXPECT_TRUE(holds(refusal<FileError>(text), { text, "not a vector layer" }));
   const std::string raster = writeAscii({ "1 2", "3 4" }, 2);
-  EXPECT_TRUE(holds(failure<FileError>(raster), { raster, "is a raster", "points" }));
+  EXPECT_TRUE(holds(refusal<FileError>(raster), { raster, "is a raster", "points" }));
 }
 
 TEST(SourceErrors, empty)
 {
   const std::string path = table("x,y,z\n");
-  EXPECT_TRUE(holds(failure<DataError>(path), { path, "no row" }));
+  EXPECT_TRUE(holds(refusal<DataError>(path), { path, "no row" }));
   const std::string layer =
     writeFile("none.geojson", R"({"type":"FeatureCollection","features":[]})");
-  EXPECT_TRUE(holds(failure<DataError>(layer), { layer, "no row" }));
+  EXPECT_TRUE(holds(refusal<DataError>(layer), { layer, "no row" }));
 }
 
 TEST(SourceErrors, numbersThatAreNone)
@@ -256,7 +256,7 @@ TEST(SourceErrors, numbersThatAreNone)
        })
   {
     const std::string path = table(wrong.text);
-    const std::string message = failure<DataError>(path);
+    const std::string message = refusal<DataError>(path);
     EXPECT_TRUE(holds(message, wrong.message)) << wrong.text;
     EXPECT_TRUE(holds(message, { path }));
   }
@@ -266,8 +266,8 @@ TEST(SourceErrors, numbersInAJsonLayer)
 {
   const std::string point = R"({"type":"Point","coordinates":[1,2,3]})";
   EXPECT_TRUE(holds(
-    failure<DataError>(feature(point, "\"volume\":-0.5")), { "row 1", "\"volume\"", "-0.5" }));
-  EXPECT_TRUE(holds(failure<DataError>(feature(point, "\"volume\":\"big\"")),
+    refusal<DataError>(rocksAt(point, "\"volume\":-0.5")), { "row 1", "\"volume\"", "-0.5" }));
+  EXPECT_TRUE(holds(refusal<DataError>(rocksAt(point, "\"volume\":\"big\"")),
     { "row 1", "\"volume\"", "\"big\"" }));
 }
 
@@ -294,9 +294,9 @@ TEST(Sources, elevationsOfWaypointsAreTold)
 TEST(SourceErrors, trueIsNoNumber)
 {
   const std::string point = R"({"type":"Point","coordinates":[1,2,3]})";
-  EXPECT_TRUE(holds(failure<DataError>(feature(point, "\"volume\":true")),
+  EXPECT_TRUE(holds(refusal<DataError>(rocksAt(point, "\"volume\":true")),
     { "row 1", "\"volume\"", "\"true\" is not a number" }));
-  EXPECT_TRUE(holds(failure<DataError>(feature(point, "\"density\":false")),
+  EXPECT_TRUE(holds(refusal<DataError>(rocksAt(point, "\"density\":false")),
     { "row 1", "\"density\"", "\"false\" is not a number" }));
   // Beside numbers GDAL's column is one of numbers.
   const auto two = [](const char* first, const char* second)
@@ -309,12 +309,12 @@ TEST(SourceErrors, trueIsNoNumber)
         second + "}}]}");
   };
   EXPECT_EQ(readSources(two("1", "0.5")).at(0).volume, 1.0);
-  EXPECT_TRUE(holds(failure<DataError>(two("0.5", "true")), { "row 2", "\"volume\"", "\"true\"" }));
-  EXPECT_TRUE(holds(failure<DataError>(two("true", "2")), { "row 1", "\"volume\"", "\"true\"" }));
+  EXPECT_TRUE(holds(refusal<DataError>(two("0.5", "true")), { "row 2", "\"volume\"", "\"true\"" }));
+  EXPECT_TRUE(holds(refusal<DataError>(two("true", "2")), { "row 1", "\"volume\"", "\"true\"" }));
   // A logical column of a typed table.
   const std::string typed = table("x,y,z,volume\n1,2,3,1\n");
   writeFile("rocks.csvt", "\"Real\",\"Real\",\"Real\",\"Integer(Boolean)\"\n");
-  EXPECT_TRUE(holds(failure<DataError>(typed), { typed, "row 1", "\"volume\"", "\"true\"" }));
+  EXPECT_TRUE(holds(refusal<DataError>(typed), { typed, "row 1", "\"volume\"", "\"true\"" }));
 }
 
 TEST(Sources, aSchemaBesideGmlIsNotRead)
@@ -365,48 +365,48 @@ TEST(SourceErrors, textInATypedTable)
   // A .csvt beside the table makes OGR turn words into zeros.
   const std::string path = table("x,y,z\n1,2,3\n1,2,high\n");
   writeFile("rocks.csvt", "\"Real\",\"Real\",\"Real\"\n");
-  EXPECT_TRUE(holds(failure<DataError>(path), { path, "row 2", "z" }));
+  EXPECT_TRUE(holds(refusal<DataError>(path), { path, "row 2", "z" }));
   // Another warning before it hides nothing.
   const std::string longer = table("x,y,z\n1234567,2,3\n1,2,high\n");
   writeFile("rocks.csvt", "\"Real(5.2)\",\"Real\",\"Real\"\n");
-  EXPECT_TRUE(holds(failure<DataError>(longer), { longer, "row 2", "z" }));
+  EXPECT_TRUE(holds(refusal<DataError>(longer), { longer, "row 2", "z" }));
 }
 
 TEST(SourceErrors, noPosition)
 {
   const std::string flat = table("x,y\n1,2\n");
-  EXPECT_TRUE(holds(failure<DataError>(flat), { flat, "row 1", "\"z\"", "no such column" }));
+  EXPECT_TRUE(holds(refusal<DataError>(flat), { flat, "row 1", "\"z\"", "no such column" }));
   const std::string cell = table("x,y,z\n1,2,3\n,2,3\n");
-  EXPECT_TRUE(holds(failure<DataError>(cell), { cell, "row 2", "\"x\"", "empty" }));
+  EXPECT_TRUE(holds(refusal<DataError>(cell), { cell, "row 2", "\"x\"", "empty" }));
   const std::string bare = table("1,2,3\n4,5,6\n");
-  EXPECT_TRUE(holds(failure<DataError>(bare), { bare, "\"x\"", "no such column" }));
-  const std::string point = feature(R"({"type":"Point","coordinates":[1,2]})");
-  EXPECT_TRUE(holds(failure<DataError>(point), { point, "row 1", "\"z\"", "elevation" }));
+  EXPECT_TRUE(holds(refusal<DataError>(bare), { bare, "\"x\"", "no such column" }));
+  const std::string point = rocksAt(R"({"type":"Point","coordinates":[1,2]})");
+  EXPECT_TRUE(holds(refusal<DataError>(point), { point, "row 1", "\"z\"", "elevation" }));
 }
 
 TEST(SourceErrors, unknownShape)
 {
   const std::string path = table("x,y,z,shape\n1,2,3,banana\n");
   EXPECT_TRUE(
-    holds(failure<DataError>(path), { path, "row 1", "\"shape\"", "banana", "cube", "eota111" }));
+    holds(refusal<DataError>(path), { path, "row 1", "\"shape\"", "banana", "cube", "eota111" }));
 }
 
 TEST(SourceErrors, wrongGeometry)
 {
-  const std::string mixed = feature(
+  const std::string mixed = rocksAt(
     R"({"type":"GeometryCollection","geometries":[{"type":"Point","coordinates":[1,2,3]}]})");
-  EXPECT_TRUE(holds(failure<DataError>(mixed), { mixed, "row 1", "GEOMETRYCOLLECTION", "POINT" }));
-  const std::string two = feature(R"({"type":"MultiPoint","coordinates":[[1,2,3],[4,5,6]]})");
-  EXPECT_TRUE(holds(failure<DataError>(two), { two, "row 1", "MULTIPOINT", "2 points" }));
+  EXPECT_TRUE(holds(refusal<DataError>(mixed), { mixed, "row 1", "GEOMETRYCOLLECTION", "POINT" }));
+  const std::string two = rocksAt(R"({"type":"MultiPoint","coordinates":[[1,2,3],[4,5,6]]})");
+  EXPECT_TRUE(holds(refusal<DataError>(two), { two, "row 1", "MULTIPOINT", "2 points" }));
 }
 
 TEST(SourceErrors, crs)
 {
-  const std::string point = feature(R"({"type":"Point","coordinates":[9,45,700]})");
-  EXPECT_TRUE(holds(failure<DataError>(point, "EPSG:nothing"), { "\"EPSG:nothing\"" }));
+  const std::string point = rocksAt(R"({"type":"Point","coordinates":[9,45,700]})");
+  EXPECT_TRUE(holds(refusal<DataError>(point, "EPSG:nothing"), { "\"EPSG:nothing\"" }));
   // Metres in a file that says degrees.
-  const std::string metres = feature(R"({"type":"Point","coordinates":[600000,5100000,700]})");
-  EXPECT_TRUE(holds(failure<DataError>(metres, "EPSG:32632"),
+  const std::string metres = rocksAt(R"({"type":"Point","coordinates":[600000,5100000,700]})");
+  EXPECT_TRUE(holds(refusal<DataError>(metres, "EPSG:32632"),
     { metres, "row 1", "600000, 5100000", "EPSG:32632" }));
 }
 

@@ -13,7 +13,7 @@ using namespace rockfall::testing;
 namespace
 {
 
-constexpr double kSize = 200.0; // m, of the plane
+constexpr double kPlaneSize = 200.0; // m, of the plane
 
 SimulationParameters paperParameters(double endTime)
 {
@@ -28,9 +28,10 @@ SimulationParameters paperParameters(double endTime)
 std::vector<Vec3> slide(int nodes, double frictionDegrees, double azimuth, double endTime = 4.0)
 {
   const double angle = radians(30.0);
-  const Terrain plane = makePlane(nodes, kSize, angle, azimuth, material(0.8, frictionDegrees));
+  const Terrain plane =
+    makePlane(nodes, kPlaneSize, angle, azimuth, material(0.8, frictionDegrees));
   const Trajectory t =
-    simulate(plane, cubeOnPlane(kSize, angle, azimuth, 20.0), paperParameters(endTime));
+    simulate(plane, cubeOnPlane(kPlaneSize, angle, azimuth, 20.0), paperParameters(endTime));
   EXPECT_EQ(t.summary.unsettledSteps, 0);
   EXPECT_EQ(t.summary.impacts, 0) << "sliding is no impact";
   std::vector<Vec3> path;
@@ -89,8 +90,9 @@ INSTANTIATE_TEST_SUITE_P(FrictionAngles, SlidingTest, ::testing::Values(10.0, 20
 TEST(Sliding, BelowTheFrictionAngleItStays)
 {
   const double angle = radians(30.0);
-  const Terrain plane = makePlane(11, kSize, angle, 0.3, material(0.8, 31.0));
-  const Trajectory t = simulate(plane, cubeOnPlane(kSize, angle, 0.3, 0.0), paperParameters(60.0));
+  const Terrain plane = makePlane(11, kPlaneSize, angle, 0.3, material(0.8, 31.0));
+  const Trajectory t =
+    simulate(plane, cubeOnPlane(kPlaneSize, angle, 0.3, 0.0), paperParameters(60.0));
   EXPECT_EQ(t.summary.fate, Fate::Rested);
   // The penalty springs take the weight: mg / 4p each way, 6e-6 m.
   EXPECT_LT((t.summary.stop - t.summary.start).norm(), 2e-5);
@@ -99,8 +101,9 @@ TEST(Sliding, BelowTheFrictionAngleItStays)
 TEST(Sliding, EnergyIsAccountedFor)
 {
   const double angle = radians(30.0);
-  const Terrain plane = makePlane(2, kSize, angle, 0.0, material(0.8, 20.0));
-  const Trajectory t = simulate(plane, cubeOnPlane(kSize, angle, 0.0, 20.0), paperParameters(4.0));
+  const Terrain plane = makePlane(2, kPlaneSize, angle, 0.0, material(0.8, 20.0));
+  const Trajectory t =
+    simulate(plane, cubeOnPlane(kPlaneSize, angle, 0.0, 20.0), paperParameters(4.0));
   const EnergyAudit& e = t.summary.energy;
   // Friction does μ N d; N is the weight's share but for the settling.
   const double d = (t.summary.stop - t.summary.start).norm();

@@ -12,7 +12,7 @@ using namespace rockfall;
 namespace
 {
 
-CollectorLine lineOf(std::vector<Eigen::Vector2d> points)
+CollectorLine roadOf(std::vector<Eigen::Vector2d> points)
 {
   CollectorLine line;
   line.name = "road";
@@ -40,8 +40,8 @@ std::string errorOf(CollectorLine line, int count, double spacing)
 TEST(FamilyOfLines, ARightAngleKeepsItsDistance)
 {
   // East, then north: the left is inside of the bend.
-  std::vector<CollectorLine> lines = { lineOf({ { 0, 0 }, { 10, 0 }, { 10, 20 } }),
-    lineOf({ { 0, 0 }, { 5, 0 } }) };
+  std::vector<CollectorLine> lines = { roadOf({ { 0, 0 }, { 10, 0 }, { 10, 20 } }),
+    roadOf({ { 0, 0 }, { 5, 0 } }) };
   addParallels(lines, 2, 2.0);
   ASSERT_EQ(lines.size(), 6u);
   EXPECT_EQ(lines[0].offset, 0.0);
@@ -58,12 +58,12 @@ TEST(FamilyOfLines, ARightAngleKeepsItsDistance)
 
 TEST(FamilyOfLines, WhatHasNoParallel)
 {
-  const CollectorLine bent = lineOf({ { 0, 0 }, { 10, 0 }, { 10, 20 } });
+  const CollectorLine bent = roadOf({ { 0, 0 }, { 10, 0 }, { 10, 20 } });
   EXPECT_EQ(errorOf(bent, 1, 9.9), "none");
   EXPECT_NE(errorOf(bent, 1, 10.1).find("piece 1 is too short"), std::string::npos);
   EXPECT_EQ(errorOf(bent, 1, -30.0), "none");
   EXPECT_NE(
-    errorOf(lineOf({ { 0, 0 }, { 10, 0 }, { 0, 0.1 } }), 1, 1.0).find("turns back at its point 2"),
+    errorOf(roadOf({ { 0, 0 }, { 10, 0 }, { 0, 0.1 } }), 1, 1.0).find("turns back at its point 2"),
     std::string::npos);
   EXPECT_NE(errorOf(bent, 1, 0.0).find("ParallelSpacing is 0"), std::string::npos);
   EXPECT_NE(errorOf(bent, -1, 1.0).find("ParallelLines is -1"), std::string::npos);

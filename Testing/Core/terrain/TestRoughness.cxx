@@ -17,7 +17,7 @@ using rockfall::testing::makeSlope;
 namespace
 {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoHeight = std::numeric_limits<double>::quiet_NaN();
 
 double plane(double x, double y)
 {
@@ -312,7 +312,7 @@ TEST(Roughness, PartsOfACellAreOnItsTrianglesAndHolesStayHoles)
   GridGeometry g;
   g.columns = g.rows = 4;
   g.cellSize = 3.0;
-  std::vector<double> heights = { 9, 7, 8, 6, 5, kNone, 4, 7, 3, 6, 2, 5, 4, 3, 6, 1 };
+  std::vector<double> heights = { 9, 7, 8, 6, 5, kNoHeight, 4, 7, 3, 6, 2, 5, 4, 3, 6, 1 };
   const Terrain terrain(g, heights, {}, { 0.0, 1e-12, 2.0, {} });
   const Surface surface(terrain, 1, 0);
   ASSERT_EQ(surface.grid().parts, 3);

@@ -299,7 +299,7 @@ TEST(Walls, WhatIsBalancedStands)
 TEST(Walls, WhatFallsBesideAndOnThemDoesNotGetIntoTheGround)
 {
   Numbers number{ std::mt19937(5) };
-  const int count = someOf(300, 60);
+  const int count = someOf(300, 30);
   int left = 0, rested = 0;
   for (int k = 0; k < count; ++k)
   {
@@ -335,8 +335,8 @@ TEST(Walls, WhatFallsBesideAndOnThemDoesNotGetIntoTheGround)
     const EnergyAudit& e = trajectory.summary.energy;
     EXPECT_LT(gained(trajectory), 1e-2 * e.released) << k;
   }
-  EXPECT_GT(left, someOf(30, 2));
-  EXPECT_GT(rested, someOf(50, 5));
+  EXPECT_GT(left, someOf(30, 1));
+  EXPECT_GT(rested, someOf(50, 2));
 }
 
 /// The line of an edge may pass behind an upright ridge whose top is still clear of the rock.

@@ -209,7 +209,7 @@ TEST(DirectIslands, SoftRowsMoveAndCarryAsOneDirectSystem)
     Pile pile = randomPile(draw);
     pile.start();
     pile.run(0.2);
-    for (int k = 0; k < 20; ++k)
+    for (int k = 0; k < someOf(20, 3); ++k)
     {
       pile.run(draw.even(0.05, 0.1));
       const DirectIsland island = islandOf(pile);
