@@ -30,14 +30,20 @@ Eigen::Matrix<double, N, 1> rowOf(const Vec3& n, const Vec3& lever, const Vec3& 
   return row;
 }
 
+/// Of translation and rotation alone two blocks of the inertia, or of its inverse, are not zero.
 template <int N>
-Mat3 strainOf(const Eigen::Matrix<double, N, 1>& d)
+Eigen::Matrix<double, N, 1> timesInertia(
+  const Eigen::Matrix<double, N, N>& inertia, const Eigen::Matrix<double, N, 1>& x)
 {
   if constexpr (N == 12)
   {
-    return strainTensor(d.template tail<6>());
+    return inertia * x;
   }
-  return Mat3::Zero();
+  const auto turning = inertia.template bottomRightCorner<3, 3>();
+  Eigen::Matrix<double, N, 1> y;
+  y.template head<3>() = inertia(0, 0) * x.template head<3>();
+  y.template tail<3>() = turning.col(0) * x[3] + turning.col(1) * x[4] + turning.col(2) * x[5];
+  return y;
 }
 
 } // namespace
@@ -100,6 +106,11 @@ void BlockStep<N>::prepareRows(const Block& block, const BlockState& state,
     {
       row.ridge = { rotation_.transpose() * (c.ridge[0] - state.position),
         rotation_.transpose() * c.ridge[1] };
+      for (int k = 0; k < 2; ++k)
+      {
+        const int end = block.shape().edges()[c.rockFeature].vertices[k];
+        row.edge[k] = deform_ * block.shape().vertices()[end];
+      }
     }
     row.tangent[0] = row.n.unitOrthogonal();
     row.tangent[1] = row.n.cross(row.tangent[0]);
@@ -121,11 +132,20 @@ void BlockStep<N>::prepareRows(const Block& block, const BlockState& state,
 }
 
 template <int N>
-void BlockStep<N>::levers(const Block& block, const std::vector<Contact>& contacts, const VecN& d)
+void BlockStep<N>::levers(
+  const Block& block, const std::vector<Contact>& contacts, const Quat& rotation, const VecN& d)
 {
   const Vec3 u = d.template head<3>();
-  const Mat3 turn = cayley(d.template segment<3>(kRotation)).toRotationMatrix();
-  const Mat3 strain = strainOf<N>(d);
+  const Mat3 turn = rotation.toRotationMatrix();
+  /// Where a material point that was at `y` has come to by strain.
+  const auto strained = [&d](const Vec3& y, const Vec3& x) -> Vec3
+  {
+    if constexpr (N == 12)
+    {
+      return y + strainTensor(d.template tail<6>()) * x;
+    }
+    return y;
+  };
   for (std::size_t i = 0; i < contacts.size(); ++i)
   {
     Row& row = rows_[i];
@@ -166,12 +186,9 @@ void BlockStep<N>::levers(const Block& block, const std::vector<Contact>& contac
       const std::array<int, 2>& ends = block.shape().edges()[contacts[i].rockFeature].vertices;
       const Vec3& x0 = block.shape().vertices()[ends[0]];
       const Vec3& x1 = block.shape().vertices()[ends[1]];
-      const auto middle = [&](const Vec3& point)
-      {
-        const Vec3 start = deform_ * point;
-        return Vec3(0.5 * (start + turn * (start + strain * point) + u));
-      };
-      const Vec3 p0 = middle(x0), along = middle(x1) - p0;
+      const auto middle = [&](const Vec3& start, const Vec3& point)
+      { return Vec3(0.5 * (start + turn * strained(start, point) + u)); };
+      const Vec3 p0 = middle(row.edge[0], x0), along = middle(row.edge[1], x1) - p0;
       double s, t;
       if (closestOnLines(p0, along, row.ridge[0], row.ridge[1], s, t))
       {
@@ -181,7 +198,7 @@ void BlockStep<N>::levers(const Block& block, const std::vector<Contact>& contac
         y0 = deform_ * x;
       }
     }
-    const Vec3 y1 = y0 + strain * x;
+    const Vec3 y1 = strained(y0, x);
     const Vec3 z = 0.5 * (y1 + turn * y1);
     row.normal = rowOf<N>(n, z, x);
     for (int k = 0; k < 2; ++k)
@@ -192,17 +209,19 @@ void BlockStep<N>::levers(const Block& block, const std::vector<Contact>& contac
 }
 
 template <int N>
-bool BlockStep<N>::evaluate(const StepRequest& request, const VecN& d)
+typename BlockStep<N>::Change BlockStep<N>::evaluate(const StepRequest& request, const VecN& d)
 {
-  bool changed = false;
+  Change of;
   const bool lasting = request.kind == StepKind::Lasting;
   for (Row& row : rows_)
   {
-    const double gap = row.law.gap0 + row.normal.dot(d);
+    const double way = row.normal.dot(d), gap = row.law.gap0 + way;
+    of.gap = std::max(of.gap, std::abs(gap - row.law.gap1));
+    of.way = std::max(of.way, std::abs(way));
     const Eigen::Vector2d travel(row.shear[0].dot(d), row.shear[1].dot(d));
-    changed = row.law.evaluate(lasting, request.duration, gap, travel) || changed;
+    of.state = row.law.evaluate(lasting, request.duration, gap, travel) || of.state;
   }
-  return changed;
+  return of;
 }
 
 template <int N>
@@ -210,17 +229,19 @@ typename BlockStep<N>::VecN BlockStep<N>::solveOne(
   const Row& row, const VecN& load, const VecN& d) const
 {
   // In the contact's own directions: (I + F W) f = f(D) + F J (D − A⁻¹ load), W = J A⁻¹ Jᵀ.
-  const VecN free = inverse_ * load;
+  const VecN free = timesInertia<N>(inverse_, load);
   if (row.law.state == ContactState::Open)
   {
-    const VecN a = inverse_ * row.normal;
+    const VecN a = timesInertia<N>(inverse_, row.normal);
     const double f = (row.law.force + row.law.stiffness * row.normal.dot(d - free)) /
       (1.0 + row.law.stiffness * row.normal.dot(a));
     return free + f * a;
   }
   Eigen::Matrix<double, N, 3> j;
   j << row.normal, row.shear[0], row.shear[1];
-  const Eigen::Matrix<double, N, 3> a = inverse_ * j;
+  Eigen::Matrix<double, N, 3> a;
+  a << timesInertia<N>(inverse_, row.normal), timesInertia<N>(inverse_, row.shear[0]),
+    timesInertia<N>(inverse_, row.shear[1]);
   Mat3 tangent = Mat3::Zero();
   tangent(0, 0) = row.law.stiffness;
   tangent.block<2, 1>(1, 0) = row.law.shearCoupling;
@@ -246,7 +267,7 @@ typename BlockStep<N>::VecN BlockStep<N>::solve(const VecN& load, const VecN& d)
   }
   if (acting == 0)
   {
-    return inverse_ * load;
+    return timesInertia<N>(inverse_, load);
   }
   if (acting == 1)
   {
@@ -304,7 +325,7 @@ typename BlockStep<N>::Balance BlockStep<N>::balance(
     of.offset.template head<3>() = 0.5 * h * (rotation_.transpose() * request.acceleration);
     of.offset.template segment<3>(kRotation) = 0.5 * h * request.spinAcceleration;
   }
-  of.load += mass_ * ((of.velocity0 - of.offset) / h);
+  of.load += timesInertia<N>(mass_, (of.velocity0 - of.offset) / h);
   return of;
 }
 
@@ -330,9 +351,9 @@ template <int N>
 bool BlockStep<N>::iterate(const Block& block, const StepRequest& request,
   const std::vector<Contact>& contacts, const Balance& of, VecN& d, int& iterations)
 {
-  this->levers(block, contacts, d);
-  this->evaluate(request, d);
   Quat turn = cayley(d.template segment<3>(kRotation));
+  this->levers(block, contacts, turn, d);
+  this->evaluate(request, d);
   VecN last = VecN::Zero();
   double share = 1.0; // of the correction that is taken
   bool settled = false;
@@ -364,19 +385,12 @@ bool BlockStep<N>::iterate(const Block& block, const StepRequest& request,
     last = correction;
     d += share * correction;
     turn = cayley(d.template segment<3>(kRotation));
-    this->levers(block, contacts, d);
-    double change = 0.0, scale = 0.0;
-    for (const Row& row : rows_)
-    {
-      const double way = row.normal.dot(d);
-      change = std::max(change, std::abs(row.law.gap0 + way - row.law.gap1));
-      scale = std::max(scale, std::abs(way));
-    }
-    const bool changed = this->evaluate(request, d);
+    this->levers(block, contacts, turn, d);
+    const Change change = this->evaluate(request, d);
     // The rotation itself, for the gyroscopic term, converges with the gaps; without contacts it
     // alone decides.
     const double turned = correction.template segment<3>(kRotation).norm();
-    settled = share == 1.0 && !changed && change <= kGapTolerance * scale + 1e-15 &&
+    settled = share == 1.0 && !change.state && change.gap <= kGapTolerance * change.way + 1e-15 &&
       turned <= kGapTolerance * d.template segment<3>(kRotation).norm() + 1e-13;
   }
   return settled;

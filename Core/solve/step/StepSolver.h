@@ -85,6 +85,7 @@ private:
     Vec3 x;                      ///< Material point.
     Vec3 y0;                     ///< Place of x about the centroid at the start, body axes.
     std::array<Vec3, 2> ridge;   ///< EdgeEdge: point and direction about the centroid, body axes.
+    std::array<Vec3, 2> edge;    ///< The ends of the rock's edge likewise, at the start.
     ContactLaw law;
   };
 
@@ -105,9 +106,17 @@ private:
   void prepareInertia(const Block& block, double h, double rate, double stress);
   void prepareRows(const Block& block, const BlockState& state, const StepRequest& request,
     const std::vector<Contact>& contacts);
-  void levers(const Block& block, const std::vector<Contact>& contacts, const VecN& d);
-  /// Springs for the displacement D; returns whether any contact changed its state.
-  bool evaluate(const StepRequest& request, const VecN& d);
+  void levers(
+    const Block& block, const std::vector<Contact>& contacts, const Quat& rotation, const VecN& d);
+  /// What an iteration has changed.
+  struct Change
+  {
+    bool state = false; ///< Of any contact.
+    double gap = 0.0;   ///< By how much at most, m.
+    double way = 0.0;   ///< The most by which a gap changes over the step, m.
+  };
+  /// Springs for the displacement D.
+  Change evaluate(const StepRequest& request, const VecN& d);
   /// Newton's next D from springs linearised about `d`; `load`: all other forces.
   VecN solve(const VecN& load, const VecN& d);
   VecN solveOne(const Row& row, const VecN& load, const VecN& d) const;
