@@ -122,17 +122,24 @@ private:
 };
 
 /// Where a vertical line through a world point enters the rock from below, over that point, m; ∞ if
-/// it misses it. `face`: through which.
-double entersAt(const PlacedBlock& rock, const Vec3& world, int& face)
+/// it misses it. `face`: through which. `rises`: how much each face of the rock looks up, −1 … 1;
+/// empty for the first of its lines.
+double entersAt(const PlacedBlock& rock, const Vec3& world, std::vector<double>& rises, int& face)
 {
   const Polyhedron& shape = rock.block().shape();
-  const Vec3 x = rock.materialPoint(world);
-  const Vec3 up = rock.rotation().row(2).transpose();
-  double low = -std::numeric_limits<double>::infinity(), high = -low;
-  for (std::size_t f = 0; f < shape.normals().size(); ++f)
+  if (rises.empty())
   {
-    const Vec3& n = shape.normals()[f];
-    const double rise = n.dot(up), room = shape.offsets()[f] - n.dot(x);
+    const Vec3 up = rock.rotation().row(2).transpose();
+    for (const Vec3& n : shape.normals())
+    {
+      rises.push_back(n.dot(up));
+    }
+  }
+  const Vec3 x = rock.materialPoint(world);
+  double low = -std::numeric_limits<double>::infinity(), high = -low;
+  for (std::size_t f = 0; f < rises.size(); ++f)
+  {
+    const double rise = rises[f], room = shape.offsets()[f] - shape.normals()[f].dot(x);
     if (rise < 0.0)
     {
       face = room / rise > low ? int(f) : face;
@@ -225,6 +232,8 @@ void visitLowPlaces(
   const int row0 = index((north - rock.upper().y()) * inverse, window.rows()) + 1;
   const int row1 = index((north - rock.lower().y()) * inverse, window.rows() - 1);
   // Nodes of the slope under the rock. The lowest point of the rock is lowest + tilt on the way.
+  thread_local std::vector<double> rises;
+  rises.clear();
   for (int row = row0; row <= row1; ++row)
   {
     for (int column = column0; column <= column1; ++column)
@@ -233,7 +242,7 @@ void visitLowPlaces(
       if (least + window.highest() + window.tilt().dot(node.head<2>()) - node.z() < far())
       {
         int face = -1;
-        const double gap = entersAt(rock, node, face);
+        const double gap = entersAt(rock, node, rises, face);
         if (gap < far())
         {
           visit(Vec3(node.x(), node.y(), node.z() + gap), gap, { face, -1, -1, row, column });
