@@ -389,8 +389,6 @@ void gatherPatch(
   const Surface& surface, double xMin, double xMax, double yMin, double yMax, SurfacePatch& patch)
 {
   const Surface::Grid& g = surface.grid();
-  patch.nodes.clear();
-  patch.triangles.clear();
   patch.ridges.clear();
   const double inverse = 1.0 / g.cellSize;
   const double north = g.height();
@@ -407,6 +405,8 @@ void gatherPatch(
   patch.slopeNodes = patch.slopeTriangles = patch.slopeRidges = patch.wallTriangles = 0;
   if (wantColumn1 < 0 || wantColumn0 > g.columns - 2 || wantRow1 < 0 || wantRow0 > g.rows - 2)
   {
+    patch.nodes.clear();
+    patch.triangles.clear();
     return;
   }
   // The ring makes the neighbours of every edge and node under the rock known. Beyond its edge the
