@@ -44,6 +44,17 @@ const YieldingGround& SoilUnderRock::groundAt(
   return this->groundOf(surface_.restitutionClass(contact.cfe));
 }
 
+double SoilUnderRock::softnessAt(const Contact& contact, const RockBody& body) const
+{
+  const Softness asked{ surface_.restitutionClass(contact.cfe), body.state.position };
+  if (known_.ground != asked.ground || known_.place != asked.place)
+  {
+    known_ = asked;
+    known_.value = surface_.softnessAt(asked.ground, asked.place);
+  }
+  return known_.value;
+}
+
 double SoilUnderRock::slipFriction(
   const Contact& contact, const RockBody& body, const StructuresOnWay& structures) const
 {

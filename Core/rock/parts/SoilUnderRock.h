@@ -62,10 +62,7 @@ private:
   /// At a contact; hard on trees.
   const YieldingGround& groundAt(const Contact& contact, const StructuresOnWay& structures) const;
   /// S of the ground under the rock, of the class at a contact.
-  double softnessAt(const Contact& contact, const RockBody& body) const
-  {
-    return surface_.softnessAt(surface_.restitutionClass(contact.cfe), body.state.position);
-  }
+  double softnessAt(const Contact& contact, const RockBody& body) const;
   /// Takes what a swept volume (m³) takes from speed and spin; whether there is any.
   bool plough(RockBody& body, double volume);
 
@@ -75,6 +72,13 @@ private:
   Scar scar_;
   double slip_ = 0.0; ///< s of the slip-dependent friction, m.
   int touched_ = 0;   ///< Class of the ground that it touched last.
+  struct Softness
+  {
+    int ground = -1; ///< Class.
+    Vec3 place = Vec3::Zero();
+    double value = 1.0;
+  };
+  mutable Softness known_; ///< As last drawn: each contact of a step asks for the same.
 };
 
 } // namespace rockfall
