@@ -26,6 +26,8 @@ public:
 
   const Block& block() const { return *block_; }
   const Vec3& position() const { return position_; }
+  const Quat& orientation() const { return orientation_; }
+  const Eigen::Matrix<double, 6, 1>& strain() const { return strain_; }
   const Mat3& rotation() const { return rotation_; }
   /// Of the reference shape, strained, to world axes.
   const Mat3& map() const { return map_; }

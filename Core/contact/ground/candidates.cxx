@@ -14,6 +14,9 @@ namespace rockfall
 namespace
 {
 
+/// Share of r by which rounding does not make a way shorter.
+constexpr double kSureTravel = 1e-7;
+
 /// Whether the boxes of two segments or points come within `distance`.
 bool boxesMeet(const Vec3& lower, const Vec3& upper, const Vec3& a, const Vec3& b, double distance)
 {
@@ -35,6 +38,25 @@ struct Box
 };
 
 } // namespace
+
+RockTravel::RockTravel(const PlacedBlock& start)
+  : position_(start.position())
+  , orientation_(start.orientation())
+  , strain_(start.strain())
+{
+}
+
+double RockTravel::to(const PlacedBlock& rock)
+{
+  const double r = rock.block().radius();
+  way_ += (rock.position() - position_).norm() + kSureTravel * r +
+    (1.0 + rock.strain().norm()) * rimTravel(orientation_, rock.orientation(), r) +
+    r * (rock.strain() - strain_).norm();
+  position_ = rock.position();
+  orientation_ = rock.orientation();
+  strain_ = rock.strain();
+  return way_;
+}
 
 double CandidatePairs::room(const BlockState& state, double radius, double reach) const
 {
@@ -58,11 +80,21 @@ double timeToClose(const PlacedBlock& rock, const BlockState& state, const Surfa
   const auto rate = [&](const Vec3& normal, const Vec3& point)
   { return -normal.dot(state.velocity + spin.cross(point - rock.position())); };
   double time = horizon;
+  // What is farther over a plane is not on it by then.
+  const double travelled = candidates.travel.to(rock);
+  const double fastest = state.velocity.norm() + 1.1 * spin.norm() * block.radius();
+  const auto isFar = [&](double over)
+  { return over - travelled > (fastest + 0.5 * (gravity + carried) * time) * time; };
   for (const CandidatePairs::Pair& pair : candidates.vertexFace)
   {
+    if (isFar(pair.over))
+    {
+      continue;
+    }
     const SurfacePatch::Triangle& t = patch.triangles[pair.patch];
     const Vec3& p = rock.vertices()[pair.rock];
     const double over = t.normal.dot(p) - t.offset;
+    pair.over = travelled + over;
     if (over > 0.0)
     {
       time = std::min(time, timeToCover(over, rate(t.normal, p), gravity + turning));
@@ -84,6 +116,10 @@ double timeToClose(const PlacedBlock& rock, const BlockState& state, const Surfa
   }
   for (const CandidatePairs::Pair& pair : candidates.edgeEdge)
   {
+    if (isFar(pair.over))
+    {
+      continue;
+    }
     const std::array<int, 2>& ends = block.shape().edges()[pair.rock].vertices;
     const SurfacePatch::Ridge& g = patch.ridges[pair.patch];
     const Vec3& p = rock.vertices()[ends[0]];
@@ -96,6 +132,7 @@ double timeToClose(const PlacedBlock& rock, const BlockState& state, const Surfa
       const double a = t.normal.dot(p) - t.offset, b = t.normal.dot(p1) - t.offset;
       if (a > 0.0 && b > 0.0)
       {
+        pair.over = std::max(pair.over, travelled + std::min(a, b));
         least = std::max(least,
           std::min(timeToCover(a, rate(t.normal, p), gravity + turning),
             timeToCover(b, rate(t.normal, p1), gravity + turning)));
@@ -253,7 +290,7 @@ void gatherVertices(const PlacedBlock& rock, const SurfacePatch& patch, const Ce
         if (near.holds(p.x(), p.y(), std::max(p.z(), least.z())) &&
           (height < 0.0 || inVertexCone(rock, v, t.normal, turn)))
         {
-          candidates.vertexFace.push_back({ v, i });
+          candidates.vertexFace.push_back({ v, i, height });
         }
       }
       candidates.under[i] = below;
@@ -322,6 +359,7 @@ void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const Su
   candidates.distance = distance;
   candidates.position = state.position;
   candidates.orientation = state.orientation;
+  candidates.travel = RockTravel(rock);
   if (patch.nodeRows < 2)
   {
     return;

@@ -8,10 +8,28 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace rockfall
 {
+
+/// How far any point of a rock can have come from look to look, m: what was farther off at a look
+/// need not be looked at before that way is gone.
+class RockTravel
+{
+public:
+  RockTravel() = default;
+  explicit RockTravel(const PlacedBlock& start);
+  double to(const PlacedBlock& rock);
+  void lower(double by) { position_.z() -= by; } ///< The ground sinks by this, m.
+
+private:
+  double way_ = 0.0; ///< m
+  Vec3 position_ = Vec3::Zero();
+  Quat orientation_ = Quat::Identity();
+  Eigen::Matrix<double, 6, 1> strain_ = Eigen::Matrix<double, 6, 1>::Zero();
+};
 
 /// The pairs of features that can touch while the rock stays near where it stood: found once, then
 /// looked through at every step.
@@ -21,7 +39,12 @@ struct CandidatePairs
   {
     int rock;  ///< Vertex or edge.
     int patch; ///< Triangle or ridge.
+    /// By the last look, in ways that the rock may have gone (m): from there on it may be on a plane
+    /// of the patch's feature, and beside the triangle no longer. Looks write them.
+    mutable double over = -std::numeric_limits<double>::infinity();
+    mutable double beside = -std::numeric_limits<double>::infinity();
   };
+  mutable RockTravel travel;
   std::vector<Pair> vertexFace;
   std::vector<Pair> edgeEdge;
   std::vector<int> peaks; ///< Nodes of the patch.

@@ -226,11 +226,17 @@ bool visitOverlaps(const PlacedBlock& rock, const SurfacePatch& patch,
   {
     return true; // updateContacts finds it at any depth
   }
+  const double travelled = candidates.travel.to(rock);
   for (const CandidatePairs::Pair& pair : candidates.vertexFace)
   {
+    if (pair.over > travelled - allowed)
+    {
+      continue;
+    }
     const SurfacePatch::Triangle& t = patch.triangles[pair.patch];
     const Vec3& p = rock.vertices()[pair.rock];
     const double distance = t.normal.dot(p) - t.offset;
+    pair.over = travelled + distance;
     if (distance < -allowed &&
       (pair.patch < patch.slopeTriangles ? isStraightOver(patch, t, p)
                                          : projectsInside(patch, pair.patch, p, 0.0, 0.0) &&

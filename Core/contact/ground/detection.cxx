@@ -4,6 +4,8 @@
 #include "contact/ground/features.h"
 #include "contact/ground/roundContact.h"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +15,9 @@ namespace rockfall
 
 namespace
 {
+
+/// Share of r by which strain and tolerances make a rock no larger than its box.
+constexpr double kAroundBox = 0.01;
 
 bool samePlace(const Contact& a, const Contact& b)
 {
@@ -46,18 +51,40 @@ void reopen(Contact& c)
   c.normalForce = c.shearForce = 0.0;
 }
 
-/// Whether all of an edge is beyond reach of one side of a ridge, as most candidates are.
-bool isBeyond(const PlacedBlock& rock, int edge, const SurfacePatch& patch, int ridge, double reach)
+/// How far all of an edge is over one side of a ridge, if it is beyond reach of it, as most
+/// candidates are, m; else 0.
+double overSide(
+  const PlacedBlock& rock, int edge, const SurfacePatch& patch, int ridge, double reach)
 {
   const std::array<int, 2>& ends = rock.block().shape().edges()[edge].vertices;
   const Vec3 &p = rock.vertices()[ends[0]], &q = rock.vertices()[ends[1]];
-  return std::ranges::any_of(patch.ridges[ridge].triangles,
-    [&](int i)
+  for (int i : patch.ridges[ridge].triangles)
+  {
+    const SurfacePatch::Triangle& side = patch.triangles[i];
+    const double a = side.normal.dot(p), b = side.normal.dot(q), least = reach + side.offset;
+    if (a > least && b > least)
     {
-      const SurfacePatch::Triangle& side = patch.triangles[i];
-      const double least = reach + side.offset;
-      return side.normal.dot(p) > least && side.normal.dot(q) > least;
-    });
+      return std::min(a, b) - side.offset;
+    }
+  }
+  return 0.0;
+}
+
+/// How far a point is beside a triangle, seen square to it, if by more than `least`, m; else 0.
+double besideTriangle(const SurfacePatch& patch, int triangle, const Vec3& point, double least)
+{
+  const SurfacePatch::Triangle& t = patch.triangles[triangle];
+  for (int k = 0; k < 3; ++k)
+  {
+    const Vec3& a = patch.nodes[t.nodes[k]].position;
+    const Vec3 along = patch.nodes[t.nodes[(k + 1) % 3]].position - a;
+    const double side = -t.normal.cross(along).dot(point - a);
+    if (side > 0.0 && side * side > least * least * along.squaredNorm())
+    {
+      return side / along.norm();
+    }
+  }
+  return 0.0;
 }
 
 /// Adds an entrance unless the contacts that are already there stand for it.
@@ -186,12 +213,26 @@ void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch,
       [&](const Contact& c)
       { return c.rockFeature == onRock && c.surfaceFeature == key && c.kind == kind; });
   };
+  // A hair more than what tolerances take in.
+  const double beyond = std::max((1.0 + 1e-6) * reach, 1e-8 * rock.block().radius());
+  const double travelled = candidates.travel.to(rock), far = travelled + beyond;
   for (const CandidatePairs::Pair& pair : candidates.vertexFace)
   {
-    const SurfacePatch::Triangle& t = patch.triangles[pair.patch];
-    if (t.normal.dot(rock.vertices()[pair.rock]) - t.offset > reach ||
-      isThere(ContactKind::VertexFace, pair.rock, t.key))
+    if (pair.over > far || pair.beside > far)
     {
+      continue;
+    }
+    const SurfacePatch::Triangle& t = patch.triangles[pair.patch];
+    const Vec3& p = rock.vertices()[pair.rock];
+    const double over = t.normal.dot(p) - t.offset;
+    pair.over = travelled + over;
+    if (over > reach || isThere(ContactKind::VertexFace, pair.rock, t.key))
+    {
+      continue;
+    }
+    if (const double beside = besideTriangle(patch, pair.patch, p, beyond); beside > 0.0)
+    {
+      pair.beside = travelled + beside;
       continue;
     }
     if (const auto c = vertexFace(rock, pair.rock, patch, pair.patch, reach, -1, turn))
@@ -199,8 +240,14 @@ void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch,
       admit(patch, *c, contacts);
     }
   }
+  const double around = reach + kAroundBox * rock.block().radius();
+  const Eigen::AlignedBox3d box(rock.lower().array() - around, rock.upper().array() + around);
   for (int node : candidates.peaks)
   {
+    if (!box.contains(patch.nodes[node].position))
+    {
+      continue;
+    }
     // Only the face over which the node is farthest out can be the entrance.
     const int face = rock.outermostFace(patch.nodes[node].position, reach);
     if (face >= 0)
@@ -213,8 +260,13 @@ void updateContacts(const PlacedBlock& rock, const SurfacePatch& patch,
   }
   for (const CandidatePairs::Pair& pair : candidates.edgeEdge)
   {
-    if (isBeyond(rock, pair.rock, patch, pair.patch, reach) ||
-      isThere(ContactKind::EdgeEdge, pair.rock, patch.ridges[pair.patch].key))
+    if (pair.over > far)
+    {
+      continue;
+    }
+    const double over = overSide(rock, pair.rock, patch, pair.patch, reach);
+    pair.over = travelled + over;
+    if (over > 0.0 || isThere(ContactKind::EdgeEdge, pair.rock, patch.ridges[pair.patch].key))
     {
       continue;
     }

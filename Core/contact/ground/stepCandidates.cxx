@@ -328,6 +328,7 @@ void gatherStepCandidates(const PlacedBlock& rock, const PairBody& body, const S
   candidates.vertexFace.clear();
   candidates.edgeEdge.clear();
   candidates.peaks.clear();
+  candidates.travel = RockTravel(rock);
   if (patch.nodeRows >= 2)
   {
     NowGatherer(rock, body, patch, reach, candidates).gather();
@@ -340,6 +341,7 @@ void gatherCandidatesUnder(const PlacedBlock& rock, const PairBody& body, const 
   candidates.vertexFace.clear();
   candidates.edgeEdge.clear();
   candidates.peaks.clear();
+  candidates.travel = RockTravel(rock);
   if (patch.nodeRows < 2)
   {
     return;

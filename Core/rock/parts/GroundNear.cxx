@@ -108,6 +108,7 @@ void GroundNear::lower(double by, double depth)
   patch_.highest -= by;
   // For the pairs that can touch the rock has moved the other way.
   candidates_.position.z() -= by;
+  candidates_.travel.lower(by);
 }
 
 void GroundNear::ensureCandidates(
