@@ -119,6 +119,55 @@ TEST(Contacts, PrunedSearchFindsWhatBruteForceFinds)
     kinds[2]);
 }
 
+// A pair that was far is not looked at again before the rock may have come that way.
+TEST(Contacts, LooksOnTheWayFindWhatAFirstLookFinds)
+{
+  std::mt19937 random(12);
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  const double around = 0.3, reach = 0.02; // m
+  int looks = 0, found = 0;
+  for (int trial = 0; trial < 40; ++trial)
+  {
+    const Terrain terrain = roughTerrain(300 + trial, trial % 2 ? 0.3 : 1.5);
+    const Shape shapes[] = { Shape::Cube, Shape::Icosahedron, Shape::Eota221, Shape::Tetrahedron };
+    const Polyhedron shape = makeShape(shapes[trial % 4], 0.7);
+    const Quat q = randomRotation(random);
+    const double x = 4.7 + 1.5 * u(random), y = 4.7 + 1.5 * u(random);
+    Placed p(shape, Vec3(x, y, restingHeight(terrain, shape, q, x, y) + 0.05), q);
+    SurfacePatch patch;
+    gatherPatch(Surface::asSurveyed(terrain), x - 2.0, x + 2.0, y - 2.0, y + 2.0, patch);
+    CandidatePairs first;
+    gatherCandidates(p.rock, p.state, patch, around, first);
+    const CandidatePairs kept = first;
+    const Vec3 way = 0.05 * Vec3(u(random), u(random), -1.0),
+               turn = 0.05 * Vec3(u(random), u(random), u(random));
+    for (int step = 0; first.room(p.state, p.block.radius(), reach) > 0.0; ++step)
+    {
+      const CandidatePairs fresh = first; // nobody has looked
+      std::vector<Contact> one, other;
+      updateContacts(p.rock, patch, kept, reach, one);
+      updateContacts(p.rock, patch, fresh, reach, other);
+      ASSERT_EQ(one.size(), other.size()) << "trial " << trial << ", step " << step;
+      for (std::size_t i = 0; i < one.size(); ++i)
+      {
+        EXPECT_EQ(one[i].kind, other[i].kind);
+        EXPECT_EQ(one[i].rockFeature, other[i].rockFeature);
+        EXPECT_EQ(one[i].surfaceFeature, other[i].surfaceFeature);
+        EXPECT_EQ(one[i].distance, other[i].distance);
+      }
+      ++looks;
+      found += int(one.size());
+      p.state.position += (0.3 + 0.7 * std::abs(u(random))) * 0.2 * way;
+      p.state.orientation =
+        (Quat(1.0, 0.1 * turn.x(), 0.1 * turn.y(), 0.1 * turn.z()) * p.state.orientation)
+          .normalized();
+      p.rock.place(p.block, p.state);
+    }
+  }
+  EXPECT_GT(looks, 400);
+  EXPECT_GT(found, 100);
+}
+
 TEST(Contacts, AFlatPlaneOfManyCfesHasNoInnerFeatures)
 {
   const double angle = radians(30.0);
