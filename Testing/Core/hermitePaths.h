@@ -15,6 +15,18 @@ namespace rockfall::testing
 
 constexpr double g = 9.81; // m/s²
 
+inline RockPath rockPathOf(
+  const std::vector<PathPoint>& points, int iteration, int rock, double mass)
+{
+  RockPath path;
+  path.iteration = iteration;
+  path.rock = rock;
+  path.blockId = 100 + rock;
+  path.mass = mass;
+  path.points = points;
+  return path;
+}
+
 /// A ball that hops over level ground at height 0, sampled every `interval` s and at every bounce,
 /// where it has one point before and one after.
 inline std::vector<PathPoint> hops(

@@ -39,8 +39,8 @@ struct CandidatePairs
   {
     int rock;  ///< Vertex or edge.
     int patch; ///< Triangle or ridge.
-    /// By the last look, in ways that the rock may have gone (m): from there on it may be on a plane
-    /// of the patch's feature, and beside the triangle no longer. Looks write them.
+    /// Ways that the rock may go (m), by the last look, before it may be on a plane of the patch's
+    /// feature, and beside the triangle no longer. Looks write them.
     mutable double over = -std::numeric_limits<double>::infinity();
     mutable double beside = -std::numeric_limits<double>::infinity();
   };

@@ -30,7 +30,7 @@ Eigen::Matrix<double, N, 1> rowOf(const Vec3& n, const Vec3& lever, const Vec3& 
   return row;
 }
 
-/// Of translation and rotation alone two blocks of the inertia, or of its inverse, are not zero.
+/// Inertia, or its inverse, times x: of translation and rotation alone two blocks are not zero.
 template <int N>
 Eigen::Matrix<double, N, 1> timesInertia(
   const Eigen::Matrix<double, N, N>& inertia, const Eigen::Matrix<double, N, 1>& x)
@@ -137,7 +137,7 @@ void BlockStep<N>::levers(
 {
   const Vec3 u = d.template head<3>();
   const Mat3 turn = rotation.toRotationMatrix();
-  /// Where a material point that was at `y` has come to by strain.
+  /// Place, after strain, of a material point x that was at y.
   const auto strained = [&d](const Vec3& y, const Vec3& x) -> Vec3
   {
     if constexpr (N == 12)

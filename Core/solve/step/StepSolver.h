@@ -108,7 +108,7 @@ private:
     const std::vector<Contact>& contacts);
   void levers(
     const Block& block, const std::vector<Contact>& contacts, const Quat& rotation, const VecN& d);
-  /// What an iteration has changed.
+  /// Change by an iteration.
   struct Change
   {
     bool state = false; ///< Of any contact.

@@ -63,6 +63,18 @@ double restingHeight(
   return high;
 }
 
+void expectSame(const std::vector<Contact>& one, const std::vector<Contact>& other)
+{
+  ASSERT_EQ(one.size(), other.size());
+  for (std::size_t i = 0; i < one.size(); ++i)
+  {
+    EXPECT_EQ(one[i].kind, other[i].kind);
+    EXPECT_EQ(one[i].rockFeature, other[i].rockFeature);
+    EXPECT_EQ(one[i].surfaceFeature, other[i].surfaceFeature);
+    EXPECT_EQ(one[i].distance, other[i].distance);
+  }
+}
+
 } // namespace
 
 TEST(Contacts, PrunedSearchFindsWhatBruteForceFinds)
@@ -99,14 +111,11 @@ TEST(Contacts, PrunedSearchFindsWhatBruteForceFinds)
     std::sort(indexed.begin(), indexed.end(), order);
     std::sort(brute.begin(), brute.end(), order);
     ASSERT_EQ(indexed.size(), brute.size()) << "trial " << trial;
-    for (std::size_t i = 0; i < brute.size(); ++i)
+    expectSame(indexed, brute);
+    for (const Contact& c : brute)
     {
-      EXPECT_EQ(indexed[i].kind, brute[i].kind);
-      EXPECT_EQ(indexed[i].rockFeature, brute[i].rockFeature);
-      EXPECT_EQ(indexed[i].surfaceFeature, brute[i].surfaceFeature);
-      EXPECT_EQ(indexed[i].distance, brute[i].distance);
       ++pairs;
-      ++kinds[int(brute[i].kind)];
+      ++kinds[int(c.kind)];
     }
     lonely += brute.empty();
   }
@@ -148,13 +157,7 @@ TEST(Contacts, LooksOnTheWayFindWhatAFirstLookFinds)
       updateContacts(p.rock, patch, kept, reach, one);
       updateContacts(p.rock, patch, fresh, reach, other);
       ASSERT_EQ(one.size(), other.size()) << "trial " << trial << ", step " << step;
-      for (std::size_t i = 0; i < one.size(); ++i)
-      {
-        EXPECT_EQ(one[i].kind, other[i].kind);
-        EXPECT_EQ(one[i].rockFeature, other[i].rockFeature);
-        EXPECT_EQ(one[i].surfaceFeature, other[i].surfaceFeature);
-        EXPECT_EQ(one[i].distance, other[i].distance);
-      }
+      expectSame(one, other);
       ++looks;
       found += int(one.size());
       p.state.position += (0.3 + 0.7 * std::abs(u(random))) * 0.2 * way;

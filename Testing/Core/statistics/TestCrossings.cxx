@@ -15,21 +15,11 @@
 using namespace rockfall;
 using rockfall::testing::g;
 using rockfall::testing::hops;
+using rockfall::testing::rockPathOf;
 using rockfall::testing::wild;
 
 namespace
 {
-
-RockPath pathOf(const std::vector<PathPoint>& points, int iteration, int rock, double mass)
-{
-  RockPath path;
-  path.iteration = iteration;
-  path.rock = rock;
-  path.blockId = 100 + rock;
-  path.mass = mass;
-  path.points = points;
-  return path;
-}
 
 std::vector<Crossing> crossingsOf(const RockPath& path, const CollectorLine& line)
 {
@@ -70,12 +60,13 @@ TEST(Crossings, TopOfTheRock)
     points[k].heightOverGround = 3.0;
   }
   std::vector<Crossing> found;
-  appendCrossings(pathOf(points, 0, 0, 1.0), lineOf({ { 15, 0 }, { 15, 40 } }), 0, &terrain, found);
+  appendCrossings(
+    rockPathOf(points, 0, 0, 1.0), lineOf({ { 15, 0 }, { 15, 40 } }), 0, &terrain, found);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_NEAR(found[0].centreOverGround, 3.0 + radius, 1e-12);
   EXPECT_NEAR(topOverGround(found[0], 2.0), 3.0 + 2.0 * radius, 1e-12);
   // Without a slope the width is known alone.
-  found = crossingsOf(pathOf(points, 0, 0, 1.0), lineOf({ { 15, 0 }, { 15, 40 } }));
+  found = crossingsOf(rockPathOf(points, 0, 0, 1.0), lineOf({ { 15, 0 }, { 15, 40 } }));
   EXPECT_NEAR(topOverGround(found[0], 2.0), 5.0, 1e-12);
 }
 
@@ -87,7 +78,7 @@ TEST(Crossings, ParabolaThroughALine)
   for (const double interval : { 100.0, 0.013 })
   {
     const auto points = hops(interval, { 0, 0, 3 }, { 10, 5, 8 }, mass, spin, 0);
-    const auto found = crossingsOf(pathOf(points, 4, 2, mass), line);
+    const auto found = crossingsOf(rockPathOf(points, 4, 2, mass), line);
     ASSERT_EQ(found.size(), 1u);
     const Crossing& c = found[0];
     const double t = 0.6, vz = 8.0 - g * t;
@@ -121,7 +112,7 @@ TEST(Crossings, BackAndForthAndAtKnots)
     p.position = Vec3(xs[k], 1.0 + 0.5 * double(k), 0.0);
     points.push_back(p); // velocity 0: every piece eases in and out, its x monotone
   }
-  const auto found = crossingsOf(pathOf(points, 0, 0, 1.0), line);
+  const auto found = crossingsOf(rockPathOf(points, 0, 0, 1.0), line);
   ASSERT_EQ(found.size(), 3u);
   EXPECT_EQ(found[0].direction, -1);
   EXPECT_NEAR(found[0].time, 1.0, 1e-12);
@@ -145,7 +136,7 @@ TEST(Crossings, WhatEndsOnTheLineHasNotCrossedIt)
     points[0].velocity = points[1].velocity = Vec3((10.0 + beyond) / 2.0, 0.0, 0.0);
     points[1].time = 2.0;
     points[1].position.x() = 10.0 + beyond;
-    EXPECT_EQ(crossingsOf(pathOf(points, 0, 0, 1.0), line).size(), beyond > 1e-6 ? 1u : 0u);
+    EXPECT_EQ(crossingsOf(rockPathOf(points, 0, 0, 1.0), line).size(), beyond > 1e-6 ? 1u : 0u);
   }
 }
 
@@ -196,7 +187,7 @@ TEST(Crossings, ThroughAVertex)
     points.push_back(point(to, after, (before + after) / v, to));
     const CollectorLine line =
       lineOf({ vertex + way(random) * towards(in), vertex, vertex + way(random) * towards(out) });
-    const auto found = crossingsOf(pathOf(points, 0, 0, 1.0), line);
+    const auto found = crossingsOf(rockPathOf(points, 0, 0, 1.0), line);
     const int change = int(left(to, in, out)) - int(left(from, in, out));
     ASSERT_EQ(found.size(), std::size_t(std::abs(change))) << trial;
     if (change != 0)
@@ -231,7 +222,7 @@ TEST(Crossings, KnotsOnAnObliqueLine)
       points[k].velocity = speed(random) * Vec3(std::cos(on), std::sin(on), 0.0);
       points[k].position += (double(k) - 1.0) * points[k].velocity;
     }
-    const auto found = crossingsOf(pathOf(points, 0, 0, 1.0), line);
+    const auto found = crossingsOf(rockPathOf(points, 0, 0, 1.0), line);
     ASSERT_EQ(found.size() % 2, 1u) << trial; // the curve may swing over the line and back
     double nearest = 1.0;
     for (const Crossing& crossing : found)
@@ -253,7 +244,7 @@ TEST(Crossings, EndsAtAVertexAndComesAlongTheLine)
       points[k].time = double(k);
       points[k].position << places[k], 0.0;
     }
-    return crossingsOf(pathOf(points, 0, 0, 1.0), line).size();
+    return crossingsOf(rockPathOf(points, 0, 0, 1.0), line).size();
   };
   EXPECT_EQ(passings({ { 10, -5 }, { 10, 0 } }), 0u);
   EXPECT_EQ(passings({ { 10, 0 }, { 10, 5 } }), 0u);
@@ -269,7 +260,7 @@ TEST(Crossings, EndsAtAVertexAndComesAlongTheLine)
   points[1].position = Vec3(4, 4, 0);
   points[1].time = 1.0;
   points[0].velocity = points[1].velocity = Vec3(7, 7, 0);
-  EXPECT_EQ(crossingsOf(pathOf(points, 0, 0, 1.0), ring).size(), 1u);
+  EXPECT_EQ(crossingsOf(rockPathOf(points, 0, 0, 1.0), ring).size(), 1u);
 }
 
 TEST(Crossings, NothingIsFasterThanThePointsOfThePath)
@@ -308,7 +299,7 @@ TEST(Crossings, BruteForceAlongRandomCurves)
     const auto points = wild(random, 5, 60.0);
     const CollectorLine line = lineOf({ { place(random), place(random) },
       { place(random), place(random) }, { place(random), place(random) } });
-    const auto found = crossingsOf(pathOf(points, 0, 0, 1.0), line);
+    const auto found = crossingsOf(rockPathOf(points, 0, 0, 1.0), line);
     std::vector<double> times;
     const int steps = 20000;
     for (std::size_t k = 1; k < points.size(); ++k)
@@ -363,7 +354,7 @@ TEST(Crossings, WhatABarrierCatches)
     points[0].position = Vec3(0, 10 * k + 1, 20);
     points[1].position = Vec3(10, 10 * k + 1, 20);
     points[1].time = 10.0 / (k + 1);
-    appendCrossings(pathOf(points, 0, k, 1.0), line, 0, nullptr, crossings);
+    appendCrossings(rockPathOf(points, 0, k, 1.0), line, 0, nullptr, crossings);
   }
   LineSummary summary = summarizeLine(line, 0, crossings, 20);
   EXPECT_EQ(summary.rocks, 10);

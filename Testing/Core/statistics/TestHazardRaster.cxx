@@ -15,6 +15,7 @@
 using namespace rockfall;
 using rockfall::testing::g;
 using rockfall::testing::hops;
+using rockfall::testing::rockPathOf;
 using rockfall::testing::wild;
 
 namespace
@@ -28,16 +29,6 @@ std::vector<CellSummary> cellsOf(HazardRaster& raster)
   std::vector<CellSummary> cells;
   raster.summarize([&cells](const CellSummary& cell) { cells.push_back(cell); });
   return cells;
-}
-
-RockPath passingOf(const std::vector<PathPoint>& points, int iteration, int rock, double mass)
-{
-  RockPath path;
-  path.iteration = iteration;
-  path.rock = rock;
-  path.mass = mass;
-  path.points = points;
-  return path;
 }
 
 constexpr double kKept = 6e-8; ///< To which a passage keeps a value: half the last bit of a float.
@@ -77,7 +68,7 @@ TEST(HazardRaster, ParabolaThroughKnownCells)
   std::vector<PathPoint> points = hops(100.0, { 5, 5, 0 }, { 10, 0, 10 }, mass, spin, 0);
   ASSERT_EQ(points.size(), 2u);
   HazardRaster raster({ 3, 1, 10.0, 0.0, 0.0 });
-  RockPath path = passingOf(points, 0, 0, mass);
+  RockPath path = rockPathOf(points, 0, 0, mass);
   path.rested = true;
   raster.add(path);
   const auto cells = cellsOf(raster);
@@ -119,7 +110,7 @@ TEST(HazardRaster, DoesNotDependOnTheSamplingInterval)
     for (auto [raster, interval] : { std::pair(&fine, 0.01), std::pair(&coarse, 0.5) })
     {
       const auto points = hops(interval, place, velocity, m, 100.0, 8);
-      RockPath path = passingOf(points, rock % 5, rock, m);
+      RockPath path = rockPathOf(points, rock % 5, rock, m);
       path.rested = true;
       raster->add(path);
     }
@@ -139,7 +130,7 @@ TEST(HazardRaster, BruteForceAlongRandomCurves)
   {
     const auto points = wild(random, 6, 70.0);
     HazardRaster raster(grid);
-    raster.add(passingOf(points, 0, 0, 1000.0));
+    raster.add(rockPathOf(points, 0, 0, 1000.0));
     std::map<std::int64_t, std::array<double, 4>> most;
     const int steps = 20000;
     for (std::size_t k = 1; k < points.size(); ++k)
@@ -210,8 +201,8 @@ TEST(HazardRaster, GroundBetweenThePoints)
   points[0].velocity = points[1].velocity = Vec3(10, 0, 0);
   points[0].heightOverGround = points[1].heightOverGround = 12.0; // its lowest vertex 2 m below it
   HazardRaster with({ 8, 8, 5.0, 0.0, 0.0 }, &terrain), without({ 8, 8, 5.0, 0.0, 0.0 });
-  with.add(passingOf(points, 0, 0, 1.0));
-  without.add(passingOf(points, 0, 0, 1.0));
+  with.add(rockPathOf(points, 0, 0, 1.0));
+  without.add(rockPathOf(points, 0, 0, 1.0));
   const double expected[8] = { 12, 12, 12, 7, 7, 12, 12, 12 };
   const auto seen = cellsOf(with), blind = cellsOf(without);
   ASSERT_EQ(seen.size(), 8u);
@@ -251,7 +242,7 @@ TEST(HazardRaster, GroundUnderAFlightThatLeavesIt)
         p.heightOverGround = 12.0 - ground;
       }
       HazardRaster raster({ 10, 8, 5.0, 0.0, 0.0 }, &terrain);
-      raster.add(passingOf(points, 0, 0, 1.0));
+      raster.add(rockPathOf(points, 0, 0, 1.0));
       const auto cells = cellsOf(raster);
       ASSERT_EQ(cells.size(), 10u);
       for (std::size_t k = 0; k < 10; ++k)
@@ -286,11 +277,11 @@ TEST(HazardRaster, StatisticsOfACell)
   };
   for (int k = 101; k >= 1; --k)
   {
-    raster.add(passingOf(through(k, 5), k % 4, k, 1.0));
+    raster.add(rockPathOf(through(k, 5), k % 4, k, 1.0));
   }
   for (int k = 0; k < 3; ++k)
   {
-    raster.add(passingOf(through(1, 25), k == 1 ? 3 : k, 200, 1.0));
+    raster.add(rockPathOf(through(1, 25), k == 1 ? 3 : k, 200, 1.0));
   }
   const auto cells = cellsOf(raster);
   ASSERT_EQ(cells.size(), 1u);
@@ -321,7 +312,7 @@ TEST(HazardRaster, ComingBackIsAPassageButNoOtherRock)
   points[1].velocity = Vec3(-10, 0, 0);
   points[1].time = 10.0;
   HazardRaster raster({ 4, 1, 10.0, 0.0, 0.0 });
-  raster.add(passingOf(points, 0, 0, 1.0));
+  raster.add(rockPathOf(points, 0, 0, 1.0));
   const auto cells = cellsOf(raster);
   ASSERT_EQ(cells.size(), 3u); // it turns at x = 30, on the border: not beyond
   EXPECT_EQ(cells[0].passages, 2);
@@ -354,7 +345,7 @@ TEST(HazardRaster, ARockOnABorderIsInOneCell)
         p.kineticEnergy = 0.5 * p.velocity.squaredNorm();
       }
       HazardRaster raster(grid);
-      RockPath path = passingOf(points, 0, 0, 1.0);
+      RockPath path = rockPathOf(points, 0, 0, 1.0);
       path.rested = true;
       raster.add(path);
       const auto cells = cellsOf(raster);
@@ -383,10 +374,10 @@ TEST(HazardRaster, PartsMergeToTheSameBits)
   HazardRaster whole(grid), even(grid), odd(grid);
   for (int k = 0; k < 60; ++k)
   {
-    whole.add(passingOf(paths[std::size_t(k)], k / 10, k % 10, 100.0 + k));
+    whole.add(rockPathOf(paths[std::size_t(k)], k / 10, k % 10, 100.0 + k));
     const int back = 59 - k;
     (back % 2 ? odd : even)
-      .add(passingOf(paths[std::size_t(back)], back / 10, back % 10, 100.0 + back));
+      .add(rockPathOf(paths[std::size_t(back)], back / 10, back % 10, 100.0 + back));
   }
   odd.merge(even);
   const auto a = cellsOf(whole), b = cellsOf(odd);
@@ -407,12 +398,12 @@ TEST(HazardRaster, BadInput)
   EXPECT_THROW(raster.merge(other), ParameterError);
   std::vector<PathPoint> points(2);
   points[1].time = -1.0;
-  EXPECT_THROW(raster.add(passingOf(points, 0, 0, 1.0)), DataError);
+  EXPECT_THROW(raster.add(rockPathOf(points, 0, 0, 1.0)), DataError);
   points[1].time = 1.0;
   points[1].velocity.x() = NAN;
   try
   {
-    raster.add(passingOf(points, 3, 4, 1.0));
+    raster.add(rockPathOf(points, 3, 4, 1.0));
     FAIL();
   }
   catch (const DataError& error)
@@ -424,7 +415,7 @@ TEST(HazardRaster, BadInput)
     }
   }
   points[1].velocity.x() = 0.0;
-  raster.add(passingOf(points, 0, 0, 1.0));
-  raster.add(passingOf(points, 0, 0, 1.0));
+  raster.add(rockPathOf(points, 0, 0, 1.0));
+  raster.add(rockPathOf(points, 0, 0, 1.0));
   EXPECT_THROW(cellsOf(raster), DataError); // twice the same
 }
