@@ -1,15 +1,14 @@
 # rockfall_test_program(<name> PREFIX <prefix> SOURCES <source>... LIBRARIES <library>...
 #   [PROPERTIES <property> <value>...] [PRECOMPILE <header>...])
 #
-# One program of all these GoogleTest sources, and each of its tests as <prefix>.<suite>.<test> in
-# ctest. Each source is a program of its own too, TestFoo of TestFoo.cxx, which is built only when
+# One program of all these GoogleTest sources, and each of its suites as <prefix>.<suite> in ctest.
+# Each source is a program of its own too, TestFoo of TestFoo.cxx, which is built only when
 # asked for: for work on one file. What most of the sources include is precompiled.
 #
 # Under sanitizers a start takes a third of a second, so ctest has shards of the program there,
 # <prefix>.shard<k>, with many tests each. What fails is named at the end of a shard's output; what
 # crashes or hangs is the last test that it names. GTEST_FILTER leaves tests out.
 find_package(GTest REQUIRED)
-include(GoogleTest)
 # More than processors, so that all of these have something to do to the end.
 set(ROCKFALL_SHARDS 16 CACHE STRING "Parts of a test program under sanitizers")
 
@@ -27,6 +26,21 @@ function(rockfall_shards name prefix)
   endforeach()
 endfunction()
 
+# rockfall_suites(<name> <prefix> <property> <value>...): ctest asks the program for its suites. A start takes as long as
+# most tests, so these are not started one by one.
+function(rockfall_suites name prefix)
+  set(list "${CMAKE_CURRENT_BINARY_DIR}/${name}Suites.cmake")
+  file(GENERATE OUTPUT "${list}" CONTENT
+"set(name [[${name}]])
+set(program [[$<TARGET_FILE:${name}>]])
+set(prefix [[${prefix}]])
+set(folder [[${CMAKE_CURRENT_BINARY_DIR}]])
+set(properties [[${ARGN}]])
+include([[${PROJECT_SOURCE_DIR}/Testing/suites.cmake]])
+")
+  set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES "${list}")
+endfunction()
+
 function(rockfall_test_program name)
   cmake_parse_arguments(arg "" "PREFIX" "SOURCES;LIBRARIES;PROPERTIES;PRECOMPILE" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
@@ -37,10 +51,7 @@ function(rockfall_test_program name)
   if(ROCKFALL_SANITIZE)
     rockfall_shards(${name} ${arg_PREFIX} ${arg_PROPERTIES})
   else()
-    gtest_discover_tests(${name} TEST_PREFIX "${arg_PREFIX}." DISCOVERY_MODE PRE_TEST
-      DISCOVERY_TIMEOUT 60
-      WORKING_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}"
-      PROPERTIES ${arg_PROPERTIES})
+    rockfall_suites(${name} ${arg_PREFIX} ${arg_PROPERTIES})
   endif()
   foreach(source ${arg_SOURCES})
     get_filename_component(single ${source} NAME_WE)
