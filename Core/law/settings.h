@@ -198,8 +198,6 @@ inline constexpr double kParallelEdges = 1e-3;
 inline constexpr double kOnePoint = 1e-3;
 /// A point that has moved on its rock by less than this share of r since the last step is the same.
 inline constexpr double kSamePoint = 0.05;
-/// Depth beyond the predicted one that is no compression, share of r.
-inline constexpr double kMisreckoned = 1e-4;
 
 // ---------------------------------------------------------------------------------------------
 // 8  Mass fall: pairs and steps

@@ -92,18 +92,16 @@ bool areSame(std::span<const Touch> found, const PairAxis& axis, std::span<const
   return i == olds.size();
 }
 
-/// Depth beyond the reckoned one by more than `far` (m) is no compression: a step reckons with
-/// levers of its middle, and where the rocks have turned far they end up deeper.
-void letGo(double oldGap, double far, Contact& c)
+/// Depth beyond the reckoned one is no compression: a step reckons with levers of its middle, and
+/// where the rocks have turned they end up deeper. A stiff spring would make an impulse of that.
+void letGo(double oldGap, Contact& c)
 {
-  const double reckoned = std::min(0.0, oldGap);
-  c.offset = c.gap() < reckoned - far ? c.distance - reckoned : c.offset;
+  c.offset = std::min(c.offset, c.distance - std::min(0.0, oldGap));
 }
 
 /// goOn() for one that is between the same features on a face; points nearer than √`same2` (m) are
 /// one.
-void stay(
-  const Touch& touch, const PairAxis& axis, bool turned, double same2, double far, Contact& c)
+void stay(const Touch& touch, const PairAxis& axis, bool turned, double same2, Contact& c)
 {
   const double oldGap = c.gap();
   const Vec3 moved = c.point - touch.point;
@@ -124,12 +122,12 @@ void stay(
   {
     c.slip -= c.slip.dot(c.normal) * c.normal;
   }
-  letGo(oldGap, far, c);
+  letGo(oldGap, c);
 }
 
 /// A contact goes on with its springs at a touch; `turned`: along another axis.
 void goOn(const Touch& touch, const PairBody& second, const PairAxis& axis, const Match& match,
-  bool turned, double far, Contact& c)
+  bool turned, Contact& c)
 {
   const Vec3 oldPoint = c.point;
   const double oldGap = c.gap();
@@ -151,7 +149,7 @@ void goOn(const Touch& touch, const PairBody& second, const PairAxis& axis, cons
     // Seen elsewhere the gap is another one: the spring keeps its compression.
     c.offset = c.distance - oldGap;
   }
-  letGo(oldGap, far, c);
+  letGo(oldGap, c);
 }
 
 /// Force of a contact along the normal, N.
@@ -202,7 +200,6 @@ struct Renewal
   std::span<const Touch> found;
   bool turned;                                ///< The axis is another one than in the last step.
   double same;                                ///< Points no farther apart are one, m.
-  double far;                                 ///< m
   std::optional<ClosingGaps::AtPoints> sieve; ///< What cannot close is left out.
 
   void stayAll(RockPair& pair) const; ///< The same as in the last step, all of them.
@@ -215,7 +212,7 @@ void Renewal::stayAll(RockPair& pair) const
   for (std::size_t i = 0; i < found.size(); ++i)
   {
     Contact& c = pair.contacts[i];
-    stay(found[i], pair.axis, turned, same * same, far, c);
+    stay(found[i], pair.axis, turned, same * same, c);
     if (!sieve || mayClose(c, *sieve))
     {
       if (to != &c)
@@ -291,7 +288,7 @@ void Renewal::replaceAll(RockPair& pair)
     {
       c = old;
     }
-    goOn(found[i], second, pair.axis, match, turned, far, c);
+    goOn(found[i], second, pair.axis, match, turned, c);
     to += !sieve || mayClose(c, *sieve) ? 1 : 0;
   }
   pair.contacts.resize(std::size_t(to - pair.contacts.data()));
@@ -342,7 +339,7 @@ void updatePair(const PairBody& first, const PairBody& second, double reach, Roc
   const double smaller = std::min(first.radius, second.radius);
   const bool turned =
     last.kind != pair.axis.kind || last.first != pair.axis.first || last.second != pair.axis.second;
-  Renewal renewal = { second, found, turned, kSamePoint * smaller, kMisreckoned * smaller, {} };
+  Renewal renewal = { second, found, turned, kSamePoint * smaller, {} };
   if (closing && !found.empty())
   {
     renewal.sieve = closing->atPoints(pair.axis.normal);

@@ -107,3 +107,41 @@ TEST(Handovers, ImpactsOnTheSlopeUnderWayGoOnInAnIsland)
     }
   }
 }
+
+TEST(Handovers, WhatTurnsDeeperThanTheStepReckonedIsNoCompression)
+{
+  // A cube lies on a larger one with a spring of 1e10 N/m under each corner, and tips by 1e-5:
+  // 5 μm deeper on one side would be 5e4 N that nothing has pressed in.
+  constexpr double kStiffness = 1e10, kCompressed = 1e-8, kTip = 1e-5;
+  const Block small(makeBox(Vec3::Constant(1.0)), 2700.0, 1e10, 0.2);
+  const Block large(makeBox(Vec3::Constant(3.0)), 2700.0, 1e10, 0.2);
+  BlockState under, over;
+  over.position = Vec3(0.1, 0.2, 2.0 - kCompressed);
+  const auto body = [](const Block& block, const BlockState& state)
+  {
+    PlacedBlock placed;
+    placed.place(block, state);
+    PairBody result;
+    result.update(placed);
+    return result;
+  };
+  RockPair pair;
+  const PairBody second = body(large, under);
+  updatePair(body(small, over), second, 0.01, pair);
+  ASSERT_EQ(pair.contacts.size(), 4u);
+  for (Contact& c : pair.contacts)
+  {
+    c.stiffness = c.shearStiffness = kStiffness;
+    c.state = ContactState::Locked;
+    c.offset = c.distance + kCompressed;
+  }
+  over.orientation = Quat(Eigen::AngleAxisd(kTip, Vec3::UnitY()));
+  updatePair(body(small, over), second, 0.01, pair);
+  ASSERT_EQ(pair.contacts.size(), 4u);
+  for (const Contact& c : pair.contacts)
+  {
+    const double rise = -kTip * (c.point.x() - over.position.x()); // of this corner, m
+    EXPECT_NEAR(c.distance, rise - kCompressed, 1e-9);
+    EXPECT_NEAR(c.gap(), std::max(rise, 0.0) - kCompressed, 1e-9);
+  }
+}

@@ -19,9 +19,17 @@ void expectToStand(Pile& pile, double settling, double duration)
   pile.start();
   pile.run(settling);
   const std::vector<Vec3> settled = pile.places();
-  pile.run(duration);
+  // Over a time the floor gives back what weight gives, but for the motion that is left.
+  const double end = pile.fall->time() + duration;
+  double carried = 0.0, time = 0.0;
+  while (pile.fall->time() < end - 1e-9)
+  {
+    const double before = pile.fall->time(), step = pile.run(1e-6) - before;
+    carried += step * pile.carried();
+    time += step;
+  }
   EXPECT_LT(pile.drift(settled), 1e-5);
-  EXPECT_NEAR(pile.carried(), 1.0, 1e-4);
+  EXPECT_NEAR(carried / time, 1.0, 1e-4);
   EXPECT_LT(pile.fastest(), 5e-4); // m/s, √(g r) is 3
 }
 
