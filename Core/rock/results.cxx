@@ -4,6 +4,7 @@
 #include "base/grow.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 namespace rockfall
@@ -27,6 +28,16 @@ std::string fateName(Fate fate)
       break;
   }
   return "moving";
+}
+
+double gainFromNowhere(const TrajectorySummary& summary, double gravity)
+{
+  const EnergyAudit& e = summary.energy;
+  const double taken = e.friction + e.restitution + e.vibration + e.damping + e.scars + e.rolling;
+  // What lies still has released nothing to speak of: that of a fall by its own size, at least.
+  const double least = gravity * summary.mass * std::cbrt(summary.volume);
+  const double had = std::max(0.0, e.released) + std::max(0.0, -e.exchanged) + least;
+  return std::max({ 0.0, -taken, -e.numerical }) / had;
 }
 
 namespace

@@ -165,6 +165,10 @@ struct Trajectory
   std::vector<StructureEvent> structures; ///< In the order of time.
 };
 
+/// Energy that a rock has got from nowhere, of what it released and other rocks gave it: from the
+/// slope, which has none to give, or from the numerics; 0: none. `gravity`: m/s².
+double gainFromNowhere(const TrajectorySummary& summary, double gravity);
+
 /// Books an impact, and keeps it as an event where a list is asked for.
 void noteImpact(Trajectory& trajectory, const ImpactEvent& event, bool keep);
 /// Takes back one that has been noted: it goes on, and will be noted as a whole.

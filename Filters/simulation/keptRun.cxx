@@ -22,6 +22,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <set>
 #include <span>
@@ -309,7 +310,9 @@ void KeptRun::takeResults(RunSink& sink)
   stateHash = sink.stateHash();
   addArray<vtkStringArray>(summary->GetFieldData(), "StateHash")->InsertNextValue(stateHash);
   const LostRocks lost = lostOf(summary);
-  tellLost(lost, summary->GetFieldData(), brokenNotes(sink.broken(), parameters), printNotes);
+  std::vector<std::string> further = brokenNotes(sink.broken(), parameters);
+  std::ranges::move(gainedNotes(sink.gained()), std::back_inserter(further));
+  tellLost(lost, summary->GetFieldData(), further, printNotes);
   writeLost(lost, trajectories->GetFieldData());
   this->describe();
 }

@@ -117,6 +117,18 @@ std::vector<std::string> brokenNotes(
     " m³) and is not followed" };
 }
 
+std::vector<std::string> gainedNotes(const GainedRocks& gained)
+{
+  if (gained.gained == 0)
+  {
+    return {};
+  }
+  return { std::to_string(gained.gained) + " of " + std::to_string(gained.rocks) +
+    " rocks got more energy from nowhere than " + numberText(100.0 * GainedRocks::kTold) +
+    " % of what they had (EnergyNumerical, or losses on the slope, below 0): they are too fast; "
+    "give a smaller TimeStep" };
+}
+
 void tellPushed(const Ensemble& ensemble, const PushedApart& pushed, const Ranks& ranks)
 {
   if (ranks.rank() != 0 || pushed.rocks == 0)

@@ -28,12 +28,22 @@ void BrokenRocks::add(const TrajectorySummary& summary)
   }
 }
 
+void GainedRocks::add(const TrajectorySummary& summary, double gravity)
+{
+  const bool whole = summary.piece == 0;
+  this->rocks += whole ? 1 : 0;
+  const bool told = this->last && !whole;
+  this->last = told || gainFromNowhere(summary, gravity) > kTold;
+  this->gained += this->last && !told ? 1 : 0;
+}
+
 RunSink::RunSink(const RunFrame& frame, const KeptParts& kept)
   : kept_(kept)
   , lines_(frame, kept.retention == Retention::Full)
   , impacts_(frame)
   , structures_(frame)
   , rows_(frame)
+  , gravity_(frame.gravity)
 {
 }
 
@@ -41,6 +51,7 @@ void RunSink::consume(Trajectory&& trajectory)
 {
   hash_.add(trajectory.summary.hash);
   broken_.add(trajectory.summary);
+  gained_.add(trajectory.summary, gravity_);
   rows_.append(trajectory.summary);
   impacts_.append(trajectory.summary, trajectory.impacts);
   structures_.append(trajectory.summary, trajectory.structures);

@@ -44,6 +44,17 @@ struct BrokenRocks
   void add(const TrajectorySummary& summary);
 };
 
+/// Rocks that got energy from nowhere, they or one of their pieces, over all iterations.
+struct GainedRocks
+{
+  static constexpr double kTold = 0.05; ///< Of what one had: it is up to 2.5 % too fast.
+  std::int64_t rocks = 0, gained = 0;   ///< All of them; those that gained more.
+  bool last = false;                    ///< The rock that was added last is one of those.
+
+  /// Of a rock, or of a piece of the last one. `gravity`: m/s².
+  void add(const TrajectorySummary& summary, double gravity);
+};
+
 /// Writes trajectories into VTK arrays.
 class RunSink : public TrajectorySink
 {
@@ -62,6 +73,7 @@ public:
   /// Trajectories of `wholeIteration`, with all samples.
   std::vector<Trajectory>& whole() { return whole_; }
   const BrokenRocks& broken() const { return broken_; }
+  const GainedRocks& gained() const { return gained_; }
 
 private:
   KeptParts kept_;
@@ -72,6 +84,8 @@ private:
   StateHash hash_;
   std::vector<Trajectory> whole_;
   BrokenRocks broken_;
+  GainedRocks gained_;
+  double gravity_; ///< m/s²
 };
 
 /// Packs trajectories for the way to another process.

@@ -4,6 +4,7 @@
 #include "shared/arrays.h"
 #include "simulation/motion.h"
 #include "simulation/progressText.h"
+#include "simulation/runNotes.h"
 #include "simulation/runSink.h"
 
 #include "vtkCellData.h"
@@ -201,6 +202,42 @@ TEST(RunOutputs, TheIterationThatIsShownIsKeptWhole)
   ASSERT_EQ(sink.whole().size(), 1u);
   EXPECT_EQ(sink.whole()[0].samples.size(), 2u);
   EXPECT_EQ(sink.whole()[0].summary.iteration, 1);
+}
+
+TEST(RunOutputs, RocksThatGotEnergyFromNowhereAreToldOf)
+{
+  // A stone of 0.7 g and its books, J: as they are, then what the slope or the numerics gave it, a
+  // piece and its rock, and one that only lies there.
+  struct Case
+  {
+    double released, friction, restitution, numerical;
+    int piece;
+    bool gains;
+  };
+  const Case cases[] = { { 5e-3, 2e-3, 3e-3, 0.0, 0, false }, { 5e-3, 2e-3, -2.0, 0.0, 0, true },
+    { 5e-3, 2e-3, 3e-3, -4e-4, 0, true }, { 5e-3, 2e-3, 3e-3, -4e-4, 1, false },
+    { 5e-3, 4e-3, -3e-3, 0.0, 0, false }, { 5e-3, 2e-3, 3e-3, -4e-4, 1, true },
+    { 1e-12, 0.0, 0.0, -1e-9, 0, false } };
+  const filters::RunFrame frame = frameOf(1);
+  filters::RunSink sink(frame, filters::KeptParts());
+  for (const Case& of : cases)
+  {
+    const std::int64_t before = sink.gained().gained;
+    Trajectory trajectory = fall();
+    TrajectorySummary& summary = trajectory.summary;
+    summary.mass = 7e-4;
+    summary.volume = 2.6e-7;
+    summary.piece = of.piece;
+    summary.energy.released = of.released;
+    summary.energy.friction = of.friction;
+    summary.energy.restitution = of.restitution;
+    summary.energy.numerical = of.numerical;
+    sink.consume(std::move(trajectory));
+    EXPECT_EQ(sink.gained().gained - before, of.gains ? 1 : 0) << of.restitution;
+  }
+  EXPECT_EQ(sink.gained().rocks, 5);
+  EXPECT_EQ(filters::gainedNotes(sink.gained()).size(), 1u);
+  EXPECT_TRUE(filters::gainedNotes({}).empty());
 }
 
 TEST(ProgressText, LinesComeWhenTheCountMovesAndEverMoreRarely)
