@@ -7,6 +7,7 @@
 #include "longSlope.h"
 #include "verification.h"
 
+#include "statistics/sample.h"
 #include "terrain/presets.h"
 
 #include <gtest/gtest.h>
@@ -58,7 +59,7 @@ std::vector<Rock> releaseAtTop(const Terrain& terrain, int count)
 double quantileOf(std::vector<double> values, double share)
 {
   std::sort(values.begin(), values.end());
-  return values[std::min(values.size() - 1, std::size_t(share * double(values.size())))];
+  return quantile(values, share);
 }
 
 } // namespace

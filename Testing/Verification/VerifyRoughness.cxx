@@ -3,6 +3,7 @@
 
 #include "verification.h"
 
+#include "statistics/sample.h"
 #include "terrain/presets.h"
 
 #include <gtest/gtest.h>
@@ -77,13 +78,6 @@ std::vector<double> runOuts(const Terrain& terrain, int rocks)
   }
   std::sort(all.begin(), all.end());
   return all;
-}
-
-double quantile(const std::vector<double>& sorted, double share)
-{
-  const double at = share * double(sorted.size() - 1);
-  const std::size_t k = std::min(std::size_t(at), sorted.size() - 2);
-  return sorted[k] + (at - double(k)) * (sorted[k + 1] - sorted[k]);
 }
 
 struct Kind
