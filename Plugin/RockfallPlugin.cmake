@@ -50,6 +50,11 @@ paraview_plugin_build(
   # The pages behind ? are those of docs/, see below.
   DISABLE_XML_DOCUMENTATION ON)
 
+# What VTK makes of the classes for ParaView's scripts: the headers cost more than the classes.
+if(TARGET RockfallFiltersCS)
+  set_target_properties(RockfallFiltersCS PROPERTIES UNITY_BUILD ${ROCKFALL_UNITY} UNITY_BUILD_BATCH_SIZE 0)
+endif()
+
 # The folders to name in PV_PLUGIN_PATH, of the plugin and of what only a window needs.
 set(ROCKFALL_PLUGIN_FOLDER
   "${CMAKE_LIBRARY_OUTPUT_DIRECTORY}/${PARAVIEW_PLUGIN_SUBDIR}/RockfallDDA")
