@@ -3,7 +3,8 @@
 #
 # One program of all these GoogleTest sources, and each of its suites as <prefix>.<suite> in ctest.
 # Each source is a program of its own too, TestFoo of TestFoo.cxx, which is built only when
-# asked for: for work on one file. What most of the sources include is precompiled.
+# asked for: for work on one file. What most of the sources include is precompiled: these headers with
+# GoogleTest's, or without any those of all tests of Core.
 #
 # Under sanitizers a start takes a third of a second, so ctest has shards of the program there,
 # <prefix>.shard<k>, with many tests each. What fails is named at the end of a shard's output; what
@@ -12,6 +13,29 @@ find_package(GTest REQUIRED)
 # More than processors, so that all of these have something to do to the end.
 set(ROCKFALL_SHARDS 16 CACHE STRING "Parts of a test program under sanitizers")
 
+# What is precompiled for tests of Core, once for all of their programs and the libraries of these.
+find_package(Boost REQUIRED CONFIG)
+if(ROCKFALL_PRECOMPILE)
+  file(GENERATE OUTPUT "${CMAKE_CURRENT_BINARY_DIR}/testHeaders.cxx" CONTENT "// Only its headers count.\n")
+  add_library(RockfallTestHeaders OBJECT "${CMAKE_CURRENT_BINARY_DIR}/testHeaders.cxx")
+  target_include_directories(RockfallTestHeaders PRIVATE Core .)
+  target_link_libraries(RockfallTestHeaders PRIVATE Rockfall::Core Boost::headers GTest::gtest rockfall_warnings)
+  target_compile_options(RockfallTestHeaders PRIVATE -fPIE)
+  set_target_properties(RockfallTestHeaders PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+  rockfall_quick(RockfallTestHeaders)
+  rockfall_precompile(RockfallTestHeaders <gtest/gtest.h> <slopes.h> <world/World.h>)
+endif()
+
+# rockfall_test_headers(<target>): a library or a program with these headers. A compiler takes them for what is
+# compiled alike only: for programs, and with the same definitions.
+function(rockfall_test_headers target)
+  if(ROCKFALL_PRECOMPILE)
+    target_precompile_headers(${target} REUSE_FROM RockfallTestHeaders)
+    target_compile_definitions(${target} PRIVATE $<TARGET_PROPERTY:Boost::headers,INTERFACE_COMPILE_DEFINITIONS>)
+    target_compile_options(${target} PRIVATE -fPIE $<TARGET_PROPERTY:GTest::gtest,INTERFACE_COMPILE_OPTIONS>)
+    set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+  endif()
+endfunction()
 # rockfall_shards(<name> <prefix> <property> <value>...)
 function(rockfall_shards name prefix)
   math(EXPR last "${ROCKFALL_SHARDS} - 1")
@@ -47,7 +71,11 @@ function(rockfall_test_program name)
   target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} GTest::gtest_main)
   rockfall_unity(${name} ${arg_SOURCES})
   rockfall_quick(${name})
-  rockfall_precompile(${name} <gtest/gtest.h> ${arg_PRECOMPILE})
+  if(arg_PRECOMPILE)
+    rockfall_precompile(${name} <gtest/gtest.h> ${arg_PRECOMPILE})
+  else()
+    rockfall_test_headers(${name})
+  endif()
   if(ROCKFALL_SANITIZE)
     rockfall_shards(${name} ${arg_PREFIX} ${arg_PROPERTIES})
   else()

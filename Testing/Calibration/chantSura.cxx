@@ -192,7 +192,7 @@ std::vector<Rock> drawRocks(const Impact& impact, const Terrain& ground, const A
     if (impact.plate && arguments.has("--wheel"))
     {
       const Vec3 axis = rock.angularVelocity.norm() > 1e-6 ? rock.angularVelocity : rolling;
-      rock.orientation = testing::turnBetween(Vec3::UnitZ(), axis) *
+      rock.orientation = rockfall::testing::turnBetween(Vec3::UnitZ(), axis) *
         Quat(Eigen::AngleAxisd(2.0 * std::numbers::pi * u, Vec3::UnitZ()));
     }
     rocks.push_back(heldBack(ground, rock, p.gravity));

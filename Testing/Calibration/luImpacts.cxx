@@ -93,7 +93,7 @@ std::vector<Rock> drawRocks(const Published& impact, const Terrain& ground, cons
   {
     const double turn = 2.0 * std::numbers::pi *
       uniformDeviate(s.simulation.seed, std::uint32_t(k), Draw::Attitude, 0);
-    rock.orientation = testing::turnBetween(Vec3::UnitZ(), Vec3::UnitY()) *
+    rock.orientation = rockfall::testing::turnBetween(Vec3::UnitZ(), Vec3::UnitY()) *
       Quat(Eigen::AngleAxisd(turn, Vec3::UnitZ()));
     rocks.push_back(heldBack(ground, rock, s.simulation.gravity));
   }
