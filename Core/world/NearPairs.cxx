@@ -32,18 +32,21 @@ NearPairs::NearPairs(WorldState& world)
   marks_.resize(count, 0);
 }
 
+NearPairs::~NearPairs()
+{
+  for (const NearPair& n : near_)
+  {
+    delete n.pair;
+  }
+}
+
 void NearPairs::keep(NearPair& n)
 {
   if (n.pair)
   {
     return;
   }
-  if (spare_.empty())
-  {
-    spare_.push_back(&pairs_.emplace_back());
-  }
-  n.pair = spare_.back();
-  spare_.pop_back();
+  n.pair = new RockPair;
   n.pair->first = n.first;
   n.pair->second = n.second;
   n.pair->law = world_.contacts.between(n.first, n.second);
@@ -59,11 +62,7 @@ void NearPairs::drop(NearPair& n)
       restAnew(world_.rocks[n.first]);
       restAnew(world_.rocks[n.second]);
     }
-    std::vector<Contact> contacts = std::move(n.pair->contacts);
-    contacts.clear();
-    *n.pair = RockPair();
-    n.pair->contacts = std::move(contacts);
-    spare_.push_back(n.pair);
+    delete n.pair;
   }
   NearPair fresh;
   fresh.first = n.first;

@@ -12,7 +12,6 @@
 #include "world/WorldState.h"
 
 #include <cstddef>
-#include <deque>
 #include <limits>
 #include <vector>
 
@@ -70,11 +69,13 @@ struct RockBounds
   }
 };
 
-/// Ordered by (first, second), but for those found later.
+/// Ordered by (first, second), but for those found later. Theirs are the RockPairs, too.
 class NearPairs
 {
 public:
   explicit NearPairs(WorldState& world);
+  ~NearPairs();
+  NearPairs(const NearPairs&) = delete;
 
   /// Finds who is near whom, now that the rocks stand elsewhere.
   void find(RockBounds& rocks);
@@ -106,9 +107,7 @@ private:
 
   WorldState& world_;
   std::vector<NearPair> near_, nextNear_;
-  std::size_t sorted_ = 0; ///< Of `near_`; behind it those found later.
-  std::deque<RockPair> pairs_;
-  std::vector<RockPair*> spare_;
+  std::size_t sorted_ = 0;    ///< Of `near_`; behind it those found later.
   double widened_ = 0.0;      ///< Most that a rock's ball reaches beyond that of the search, m.
   Vec3 drift_ = Vec3::Zero(); ///< How far all have gone on together since, m.
   Vec3 mean_ = Vec3::Zero();  ///< Velocity of all together, m/s.
