@@ -4,6 +4,7 @@
 /// Every number that rules a run, in one struct.
 
 #include "base/RockContact.h"
+#include "rock/retention.h"
 
 #include <cstdint>
 #include <vector>
@@ -38,10 +39,8 @@ struct SimulationParameters
     0.005; ///< Δt of lasting contact, s, > 0. Impacts are resolved finer by themselves.
   double endTime = 60.0;        ///< s, > 0.
   double outputInterval = 0.05; ///< Between samples, s, > 0. Does not change the motion.
-  /// Trajectories have a list of their impacts: in a mass fall some 180 bytes an impact, of which a
-  /// rock has a hundred in a second. Without it they are counted.
-  bool keepImpacts = true;
-  double gravity = 9.81; ///< m/s², ≥ 0.
+  Kept kept;                    ///< In an ensemble its sink tells.
+  double gravity = 9.81;        ///< m/s², ≥ 0.
   ImpactResolution impactResolution = ImpactResolution::Springs;
 
   double normalPenalty = 1e9;   ///< pₙ, N/m; 0: by mass (Ensemble). METHOD 9.1: 1e9.

@@ -48,14 +48,14 @@ enum class SampleKind : std::uint8_t
 struct Sample
 {
   SampleKind kind = SampleKind::Even;
+  bool contact = false;                ///< Touching the slope.
   double time = 0.0;                   ///< s
-  Vec3 position = Vec3::Zero();        ///< Centroid, m.
   Quat orientation = Quat::Identity(); ///< Body to world.
+  Vec3 position = Vec3::Zero();        ///< Centroid, m.
   Vec3 velocity = Vec3::Zero();        ///< Vx, Vy, Vz, m/s.
   Vec3 angularVelocity = Vec3::Zero(); ///< Ryz, Rzx, Rxy: about x, y, z, rad/s.
   double kineticEnergy = 0.0;          ///< Translation and rotation, J.
   double heightOverGround = 0.0;       ///< Least height of a vertex over the ground under it, m.
-  bool contact = false;                ///< Touching the slope.
   /// From the release to this time; in contact to the end of the step in which it falls.
   EnergyAudit energy;
 };
@@ -72,12 +72,11 @@ struct ImpactEvent
   double approachSpeed = 0.0;   ///< Of the contact point along the normal, m/s.
   Vec3 velocityBefore = Vec3::Zero();
   Vec3 velocityAfter = Vec3::Zero();
-  double energyLoss = 0.0;        ///< By friction, restitution, scar and rolling resistance, J.
-  double restitution = 1.0;       ///< The coefficient that was applied.
-  double scarDepth = 0.0;         ///< Straight under the surface, m; 0: hard ground.
-  double scarLength = 0.0;        ///< Along the surface, m.
-  int otherRock = -1;             ///< Index of the rock that was hit, −1: the slope.
-  std::int64_t otherBlockId = -1; ///< Number of that rock.
+  double energyLoss = 0.0;  ///< By friction, restitution, scar and rolling resistance, J.
+  double restitution = 1.0; ///< The coefficient that was applied.
+  double scarDepth = 0.0;   ///< Straight under the surface, m; 0: hard ground.
+  double scarLength = 0.0;  ///< Along the surface, m.
+  int otherRock = -1;       ///< Index of the rock that was hit, −1: the slope.
 };
 
 /// Fate of a structure that a rock met.
@@ -160,8 +159,8 @@ struct TrajectorySummary
 struct Trajectory
 {
   TrajectorySummary summary;
-  std::vector<Sample> samples;      ///< In the order of time, the last one is the end.
-  std::vector<ImpactEvent> impacts; ///< Where SimulationParameters::keepImpacts asks for them.
+  std::vector<Sample> samples;            ///< In the order of time, the last one is the end.
+  std::vector<ImpactEvent> impacts;       ///< Where SimulationParameters::kept asks for them.
   std::vector<StructureEvent> structures; ///< In the order of time.
 };
 

@@ -3,7 +3,7 @@
 /// @file
 /// The receivers of finished trajectories.
 
-#include "rock/results.h"
+#include "rock/retention.h"
 
 #include <utility>
 #include <vector>
@@ -16,9 +16,8 @@ class TrajectorySink
 {
 public:
   virtual ~TrajectorySink() = default;
-  /// Drops what is not kept, as soon as the trajectory is finished and before it waits for its
-  /// turn. Called by the thread that simulated it, so by several at a time.
-  virtual void trim(Trajectory&) const {}
+  /// What it asks for of an iteration. Called by the threads that simulate, several at a time.
+  virtual Kept kept(int) const { return {}; }
   /// Called once per rock and iteration and piece of a rock that broke, in the order (iteration,
   /// rock, piece), by one thread at a time.
   virtual void consume(Trajectory&& trajectory) = 0;

@@ -55,7 +55,8 @@ public:
       lock.unlock();
       for (Trajectory& trajectory : delivered)
       {
-        sink_.consume(std::move(trajectory)); // if it throws nothing more is delivered
+        Trajectory next = std::move(trajectory); // it is gone when the one behind it comes
+        sink_.consume(std::move(next));          // if it throws nothing more is delivered
       }
       lock.lock();
     }
@@ -250,23 +251,26 @@ std::vector<Rock> Ensemble::rocksOf(std::int64_t unit, int iteration) const
 }
 
 std::vector<Trajectory> Ensemble::simulate(
-  std::int64_t unit, const std::function<bool(double)>& goOn, double enough) const
+  std::int64_t unit, const std::function<bool(double)>& goOn, double enough, const Kept& kept) const
 {
   const int first = parameters_.rockRockContact ? 0 : int(unit % this->unitsPerIteration());
-  const int iteration = parameters_.firstIteration + int(unit / this->unitsPerIteration());
+  const int iteration = this->iterationOf(unit);
   const std::vector<Rock> rocks = this->rocksOf(unit, iteration);
   const Surface surface(terrain_, parameters_.seed, iteration);
+  SimulationParameters own = parameters_;
+  own.kept = kept;
   const auto identify = [&](Trajectory& trajectory, int rock)
   {
     trajectory.summary.rock = rock;
     trajectory.summary.iteration = iteration;
     trajectory.summary.hash = motionHash(trajectory);
+    thin(trajectory, own.kept.samples);
   };
   if (parameters_.fragmentation.on)
   {
     requireBreakable(rocks[0], parameters_.fragmentation);
     std::vector<Trajectory> parts =
-      fallAndBreak(surface, rocks[0], parameters_, std::uint32_t(first), enough);
+      fallAndBreak(surface, rocks[0], own, std::uint32_t(first), enough);
     std::for_each(parts.begin(), parts.end(), [&](Trajectory& part) { identify(part, first); });
     return parts;
   }
@@ -278,7 +282,6 @@ std::vector<Trajectory> Ensemble::simulate(
   {
     blocks.push_back(blockOf(rock));
   }
-  SimulationParameters own = parameters_;
   if (own.normalPenalty == 0.0)
   {
     // Rocks that fall together have one stiffness, whatever lies on what.
@@ -323,12 +326,8 @@ bool Ensemble::run(
       };
       try
       {
-        std::vector<Trajectory> unit = this->simulate(share.begin + k * share.stride, tell, enough);
-        for (Trajectory& trajectory : unit)
-        {
-          sink.trim(trajectory);
-        }
-        inOrder.put(k, std::move(unit));
+        const std::int64_t unit = share.begin + k * share.stride;
+        inOrder.put(k, this->simulate(unit, tell, enough, sink.kept(this->iterationOf(unit))));
       }
       catch (const Aborted&)
       {

@@ -47,6 +47,10 @@ public:
   {
     return parameters_.rockRockContact ? 1 : std::int64_t(rocks_.size());
   }
+  int iterationOf(std::int64_t unit) const
+  {
+    return parameters_.firstIteration + int(unit / this->unitsPerIteration());
+  }
   /// In the order of the rocks; those of the pieces of rocks that broke come beside them.
   std::int64_t trajectoriesPerUnit() const
   {
@@ -60,10 +64,10 @@ public:
   /// Whether they are pushed anew in each iteration.
   bool pushesAnew() const { return parameters_.pushRocksApart && start_.empty(); }
 
-  /// The trajectories of a unit, in the order of its rocks, each with its pieces behind it; `goOn`
-  /// and `enough` as in World::run.
+  /// The trajectories of a unit, in the order of its rocks, each with its pieces behind it, and of
+  /// them what is `kept`; `goOn` and `enough` as in World::run.
   std::vector<Trajectory> simulate(std::int64_t unit, const std::function<bool(double)>& goOn = {},
-    double enough = std::numeric_limits<double>::infinity()) const;
+    double enough = std::numeric_limits<double>::infinity(), const Kept& kept = {}) const;
 
   /// Simulates a share on all threads and hands it to `sink` in order. What comes out does not
   /// depend on the number of threads. Returns false if `progress` aborted; the sink then has a

@@ -80,8 +80,7 @@ void finishPairImpact(WorldState& world, RockPair& pair, bool over)
     event.energyLoss = loss;
     event.restitution = pair.law.restitution;
     event.otherRock = other;
-    event.otherBlockId = world.rocks[other].sim.trajectory().summary.blockId;
-    noteImpact(sim.trajectory(), event, world.parameters.keepImpacts);
+    noteImpact(sim.trajectory(), event, world.parameters.kept.impacts);
   }
 }
 

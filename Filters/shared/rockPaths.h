@@ -3,7 +3,7 @@
 /// @file
 /// Trajectories of a polydata as the Core's paths.
 
-#include "run/retention.h"
+#include "rock/retention.h"
 #include "statistics/path.h"
 
 #include "vtkType.h"

@@ -37,13 +37,20 @@ namespace
 /// Everything that decides what a run gives; the number of threads does not.
 auto runKey(const SimulationParameters& p)
 {
-  return std::make_tuple(p.timeStep, p.endTime, p.outputInterval, p.keepImpacts, p.gravity,
-    p.normalPenalty, p.shearRatio, p.rigid, p.impactResolution, p.iterations, p.firstIteration,
-    p.seed, p.rockRockContact, p.rockRestitution, p.rockFrictionAngle, p.rockCohesion,
-    p.pushRocksApart, p.fragmentation.on, p.fragmentation.energy, p.fragmentation.fractalDimension,
+  return std::make_tuple(p.timeStep, p.endTime, p.outputInterval, p.gravity, p.normalPenalty,
+    p.shearRatio, p.rigid, p.impactResolution, p.iterations, p.firstIteration, p.seed,
+    p.rockRockContact, p.rockRestitution, p.rockFrictionAngle, p.rockCohesion, p.pushRocksApart,
+    p.fragmentation.on, p.fragmentation.energy, p.fragmentation.fractalDimension,
     p.fragmentation.leastVolume, p.fragmentation.survival, p.fragmentation.loss,
     p.fragmentation.spread);
 }
+
+/// Keeps all samples.
+class WholePaths : public TrajectoryStore
+{
+public:
+  Kept kept(int) const override { return { Retention::Full, false }; }
+};
 
 /// The one rank that has cells of an input, or 0 if none has.
 int rankOf(const Ranks& ranks, vtkPolyData* input, const char* name)
@@ -142,8 +149,9 @@ std::uint64_t KeptRun::contentOfRocks(vtkPolyData* rocksInput, const Ranks& rank
 
 bool KeptRun::hasPropertiesOf(const KeptRun& other) const
 {
-  return parts.retention == other.parts.retention && contactFile == other.contactFile &&
-    contactSheet == other.contactSheet && runKey(parameters) == runKey(other.parameters);
+  return parts.retention == other.parts.retention && parts.impacts == other.parts.impacts &&
+    contactFile == other.contactFile && contactSheet == other.contactSheet &&
+    runKey(parameters) == runKey(other.parameters);
 }
 
 bool KeptRun::takesOver(
@@ -391,7 +399,7 @@ bool KeptRun::show(int shown, double time, const Progress& progress, vtkPolyData
   // samples fit, else only as far as it is looked at. Of a release nothing need be kept.
   if (wholeIteration != iteration && time > 0.0 && this->wholeFits())
   {
-    TrajectoryStore store;
+    WholePaths store;
     if (!ensemble->run(share, store, progress))
     {
       return false;

@@ -25,7 +25,7 @@ public:
     : results(run.frame, run.parts)
   {
   }
-  void trim(Trajectory& trajectory) const override { this->results.trim(trajectory); }
+  Kept kept(int iteration) const override { return this->results.kept(iteration); }
   void consume(Trajectory&& trajectory) override
   {
     const std::lock_guard<std::mutex> lock(this->mutex);

@@ -23,7 +23,7 @@ struct EventRow
   const Event& event;
 };
 
-void addColumns(Columns<EventRow<ImpactEvent>>& columns)
+void addColumns(const RunFrame& frame, Columns<EventRow<ImpactEvent>>& columns)
 {
   using R = const EventRow<ImpactEvent>&;
   columns.add("Time", [](R row) { return row.event.time; });
@@ -38,10 +38,15 @@ void addColumns(Columns<EventRow<ImpactEvent>>& columns)
   columns.add("ScarDepth", [](R row) { return row.event.scarDepth; });
   columns.add("ScarLength", [](R row) { return row.event.scarLength; });
   columns.add("OtherRockId", [](R row) { return row.event.otherRock; });
-  columns.add("OtherBlockId", [](R row) { return row.event.otherBlockId; });
+  columns.add("OtherBlockId",
+    [&frame](R row)
+    {
+      const int other = row.event.otherRock;
+      return other < 0 ? std::int64_t(-1) : frame.rocks[std::size_t(other)].blockId;
+    });
 }
 
-void addColumns(Columns<EventRow<StructureEvent>>& columns)
+void addColumns(const RunFrame&, Columns<EventRow<StructureEvent>>& columns)
 {
   using R = const EventRow<StructureEvent>&;
   columns.add("StructureId", [](R row) { return row.event.feature; });
@@ -76,7 +81,7 @@ EventPoints<Event>::EventPoints(const RunFrame& frame)
   const auto summaryOf = [](const EventRow<Event>& row) -> const TrajectorySummary&
   { return row.summary; };
   addIdentity(arrays_->columns, summaryOf);
-  addColumns(arrays_->columns);
+  addColumns(frame, arrays_->columns);
   addPiece(frame, arrays_->columns, summaryOf);
   arrays_->data->SetPoints(arrays_->points);
 }

@@ -7,12 +7,9 @@
 namespace rockfall::filters
 {
 
-void KeptParts::trim(Trajectory& trajectory) const
+Kept KeptParts::of(int iteration) const
 {
-  if (trajectory.summary.iteration != this->wholeIteration)
-  {
-    thin(trajectory, this->retention);
-  }
+  return { iteration == this->wholeIteration ? Retention::Full : this->retention, this->impacts };
 }
 
 void BrokenRocks::add(const TrajectorySummary& summary)

@@ -3,9 +3,9 @@
 /// @file
 /// Where finished trajectories go: into the outputs as they come, so that none is kept twice.
 
+#include "rock/retention.h"
 #include "run/TrajectorySink.h"
 #include "run/brokenFall.h"
-#include "run/retention.h"
 #include "run/stateHash.h"
 #include "simulation/runOutputs.h"
 
@@ -30,9 +30,10 @@ struct RunData
 struct KeptParts
 {
   Retention retention = Retention::Full;
+  bool impacts = true;
   int wholeIteration = -1; ///< All samples of this one go on to the sink, −1: of none.
 
-  void trim(Trajectory& trajectory) const;
+  Kept of(int iteration) const;
 };
 
 /// What became of the rocks that broke, over all iterations.
@@ -61,7 +62,7 @@ class RunSink : public TrajectorySink
 public:
   RunSink(const RunFrame& frame, const KeptParts& kept);
 
-  void trim(Trajectory& trajectory) const override { kept_.trim(trajectory); }
+  Kept kept(int iteration) const override { return kept_.of(iteration); }
   void consume(Trajectory&& trajectory) override;
 
   /// Trajectories that were consumed so far.
@@ -96,7 +97,7 @@ public:
     : kept_(kept)
   {
   }
-  void trim(Trajectory& trajectory) const override { kept_.trim(trajectory); }
+  Kept kept(int iteration) const override { return kept_.of(iteration); }
   void consume(Trajectory&& trajectory) override;
   std::vector<char>& bytes() { return bytes_; }
 
@@ -117,6 +118,7 @@ public:
     , shapes_(slope, parameters)
   {
   }
+  Kept kept(int) const override { return { Retention::Full, false }; }
   void consume(Trajectory&& trajectory) override { this->show(trajectory); }
   void show(const Trajectory& trajectory);
   const std::vector<ShownRock>& rocks() const { return rocks_; }

@@ -42,7 +42,7 @@ std::unique_ptr<rockfall::filters::KeptRun> vtkRockfallSimulation::WantedRun(
   p.seed = std::uint64_t(this->Seed);
   p.threads = this->NumberOfThreads;
   run->parts.retention = rockfall::Retention(this->TrajectoryOutput);
-  p.keepImpacts = this->KeepImpacts;
+  run->parts.impacts = this->KeepImpacts;
   run->parts.wholeIteration = this->FirstIteration + this->ShownIteration;
   run->printNotes = this->PrintNotes;
   return run;

@@ -12,8 +12,8 @@
 
 #include "block/Block.h"
 #include "geometry/shapes.h"
+#include "rock/retention.h"
 #include "run/ensemble.h"
-#include "run/retention.h"
 #include "run/stateHash.h"
 
 #include <chrono>
@@ -73,7 +73,7 @@ std::vector<Rock> rocksOn(const Terrain& slope)
 class Ends : public TrajectorySink
 {
 public:
-  void trim(Trajectory& t) const override { thin(t, Retention::StoppingPoints); }
+  Kept kept(int) const override { return { Retention::StoppingPoints }; }
   void consume(Trajectory&& t) override { hash.add(t.summary.hash); }
   StateHash hash;
 };

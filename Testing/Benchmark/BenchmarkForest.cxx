@@ -14,8 +14,8 @@
 
 #include "geometry/shapes.h"
 #include "gis/layers/structureLayers.h"
+#include "rock/retention.h"
 #include "run/ensemble.h"
-#include "run/retention.h"
 #include "run/stateHash.h"
 #include "terrain/Obstacles.h"
 #include "terrain/Terrain.h"
@@ -112,7 +112,7 @@ double heapMegabytes()
 class Ends : public TrajectorySink
 {
 public:
-  void trim(Trajectory& t) const override { thin(t, Retention::StoppingPoints); }
+  Kept kept(int) const override { return { Retention::StoppingPoints }; }
   void consume(Trajectory&& t) override
   {
     hash.add(t.summary.hash);

@@ -30,7 +30,7 @@ public:
     , parameters_(p)
     , system_(block, std::move(slope))
     , body_(block)
-    , recorder_(surface, block, p.outputInterval, p.gravity)
+    , recorder_(surface, block, p)
   {
     body_.state.position = rock.position;
     body_.state.orientation = rock.orientation.normalized();

@@ -14,11 +14,7 @@ namespace rockfall::calibration
 class Summaries : public TrajectorySink
 {
 public:
-  void trim(Trajectory& t) const override
-  {
-    t.samples.clear();
-    t.impacts.clear();
-  }
+  Kept kept(int) const override { return { Retention::Nothing, false }; }
   void consume(Trajectory&& t) override { all.push_back(t.summary); }
 
   std::vector<TrajectorySummary> all;

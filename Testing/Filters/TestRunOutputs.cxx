@@ -183,14 +183,14 @@ TEST(RunOutputs, OneSampleIsAVertexAndNoneIsNothing)
 TEST(RunOutputs, TheIterationThatIsShownIsKeptWhole)
 {
   const filters::RunFrame frame = frameOf(1);
-  const filters::KeptParts parts{ Retention::StoppingPoints, 1 };
+  const filters::KeptParts parts{ Retention::StoppingPoints, true, 1 };
   filters::RunSink sink(frame, parts);
   for (int iteration = 0; iteration < 3; ++iteration)
   {
     Trajectory trajectory = fall();
     trajectory.summary.iteration = iteration;
     trajectory.impacts.resize(4);
-    sink.trim(trajectory);
+    thin(trajectory, sink.kept(iteration).samples);
     sink.consume(std::move(trajectory));
   }
   filters::RunData data;

@@ -44,7 +44,7 @@ Fall::Fall(const Surface& s, const Rock& rock, const Block& block, const Simulat
   , ground(s, p.gravity)
   , impact(s, p, number, this->impulses)
   , soil(s, p.gravity)
-  , recorder(s, block, p.outputInterval, p.gravity)
+  , recorder(s, block, p)
 {
 }
 

@@ -131,7 +131,7 @@ void Recorder::addEven(const BlockState& state, bool contact)
     contact = trajectory_.samples.back().contact;
     this->dropLast();
   }
-  append(trajectory_.samples, this->makeSample(state, contact));
+  this->add(this->makeSample(state, contact));
   trajectory_.samples.back().kind = knot ? SampleKind::EvenKnot : SampleKind::Even;
   ++next_;
 }
@@ -147,7 +147,7 @@ void Recorder::addKnot(const BlockState& state, bool contact)
   knot_ = state;
   // There is one sample at a time: the state after an impact replaces the one before it.
   const SampleKind kind = this->knotAt(state.time);
-  append(trajectory_.samples, this->makeSample(state, contact));
+  this->add(this->makeSample(state, contact));
   trajectory_.samples.back().kind = kind;
 }
 
@@ -158,7 +158,7 @@ void Recorder::beforeJump(const RockBody& body, bool contact)
   before.time -= kInstant;
   if (!this->isAt(before.time))
   {
-    append(trajectory_.samples, this->makeSample(before, contact));
+    this->add(this->makeSample(before, contact));
     trajectory_.samples.back().kind = SampleKind::Knot;
   }
   this->audit(body, body.state);
@@ -167,7 +167,7 @@ void Recorder::beforeJump(const RockBody& body, bool contact)
 void Recorder::afterJump(const RockBody& body, bool contact)
 {
   knot_ = body.state;
-  append(trajectory_.samples, this->makeSample(body.state, contact));
+  this->add(this->makeSample(body.state, contact));
   trajectory_.samples.back().kind = jump_;
   this->audit(body, body.state);
 }
@@ -192,6 +192,22 @@ void Recorder::dropLast()
 {
   trajectory_.samples.pop_back();
   audited_ = std::min(audited_, trajectory_.samples.size());
+}
+
+void Recorder::add(const Sample& sample)
+{
+  std::vector<Sample>& samples = trajectory_.samples;
+  if (samples.size() > 2)
+  {
+    const std::size_t between = samples.size() - 2;
+    if (!isKeptBetween(samples[between], retention_))
+    {
+      samples[between] = samples.back();
+      samples.pop_back();
+      audited_ -= between < audited_ ? 1 : 0;
+    }
+  }
+  append(samples, sample);
 }
 
 void Recorder::resume(const RockBody& body)
@@ -271,7 +287,7 @@ void Recorder::end(const RockBody& body, bool contact)
   const bool atOnce = trajectory_.samples.size() == 1 && this->isAt(state.time);
   if (atOnce || !this->isAt(state.time))
   {
-    append(trajectory_.samples, this->makeSample(state, contact));
+    this->add(this->makeSample(state, contact));
     trajectory_.samples.back().time += atOnce ? kInstant : 0.0;
   }
   trajectory_.samples.back().kind = SampleKind::End;

@@ -3,6 +3,7 @@
 /// @file
 /// Turns the states that a rock passes through into samples at even times and a summary.
 
+#include "rock/parameters.h"
 #include "rock/parts/RockBody.h"
 #include "terrain/Surface.h"
 
@@ -13,11 +14,12 @@ namespace rockfall
 class Recorder
 {
 public:
-  Recorder(const Surface& surface, const Block& block, double interval, double gravity)
+  Recorder(const Surface& surface, const Block& block, const SimulationParameters& p)
     : surface_(surface)
     , block_(block)
-    , interval_(interval)
-    , gravity_(gravity)
+    , interval_(p.outputInterval)
+    , gravity_(p.gravity)
+    , retention_(p.kept.samples)
   {
   }
 
@@ -59,6 +61,8 @@ private:
   /// Drops the last sample if it is at this time; what a knot in its place is.
   SampleKind knotAt(double time);
   void dropLast();
+  /// The last one. What comes before the last but one is there to stay, and only if it is kept.
+  void add(const Sample& sample);
   void reach(const BlockState& state);
   Sample makeSample(const BlockState& state, bool contact);
   bool follows(const BlockState& state) const; ///< The last knot's uniform acceleration leads here.
@@ -83,6 +87,7 @@ private:
   const Block& block_;
   double interval_;
   double gravity_;
+  Retention retention_;
   double energyAtStart_ = 0.0; ///< Kinetic and potential, J.
   std::int64_t next_ = 0;
   Vec3 last_ = Vec3::Zero();           ///< The last position reached.

@@ -43,7 +43,7 @@ bool SlopeImpact::resume(const RockBody& body, double time, Recorder& recorder)
     --impactsOver_;
     if (this->isWorthAnEvent(body))
     {
-      forgetImpact(recorder.trajectory(), event_, parameters_.keepImpacts);
+      forgetImpact(recorder.trajectory(), event_, parameters_.kept.impacts);
     }
   }
   lastTouch_ = time;
@@ -177,7 +177,7 @@ void SlopeImpact::finish(RockBody& body, Recorder& recorder, bool over, bool tol
   }
   body.acceleration.setZero();
   body.spinAcceleration.setZero();
-  noteImpact(recorder.trajectory(), event_, parameters_.keepImpacts);
+  noteImpact(recorder.trajectory(), event_, parameters_.kept.impacts);
 }
 
 } // namespace rockfall

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// The part of a trajectory that is kept once it is finished.
+/// The part of a trajectory that is kept.
 
 #include "rock/results.h"
 
@@ -18,6 +18,16 @@ enum class Retention
   Thinned = 3,        ///< Release, all knots, end: between them the motion is one cubic.
   Full = 4,           ///< All samples.
 };
+
+/// The parts of a trajectory that somebody asks for. No others are collected.
+struct Kept
+{
+  Retention samples = Retention::Full;
+  bool impacts = true; ///< Their list. Without it they are counted.
+};
+
+/// Whether one that is neither the first nor the last is kept.
+bool isKeptBetween(const Sample& sample, Retention retention);
 
 /// Samples that `retention` keeps: indices, rising.
 std::vector<std::size_t> keptSamples(const std::vector<Sample>& samples, Retention retention);

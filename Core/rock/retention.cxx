@@ -1,7 +1,24 @@
-#include "run/retention.h"
+#include "rock/retention.h"
 
 namespace rockfall
 {
+
+bool isKeptBetween(const Sample& sample, Retention retention)
+{
+  switch (retention)
+  {
+    case Retention::Full:
+      return true;
+    case Retention::Thinned:
+      return sample.kind != SampleKind::Even;
+    case Retention::Events:
+      // In contact there are knots, too, where the motion changes.
+      return (sample.kind == SampleKind::Knot || sample.kind == SampleKind::EvenKnot) &&
+        !sample.contact;
+    default:
+      return false;
+  }
+}
 
 std::vector<std::size_t> keptSamples(const std::vector<Sample>& samples, Retention retention)
 {
@@ -12,20 +29,8 @@ std::vector<std::size_t> keptSamples(const std::vector<Sample>& samples, Retenti
   }
   for (std::size_t k = 0; k < samples.size(); ++k)
   {
-    const bool first = k == 0, last = k + 1 == samples.size();
-    bool keep = retention == Retention::Full || last;
-    if (retention == Retention::Thinned)
-    {
-      keep = keep || first || samples[k].kind != SampleKind::Even;
-    }
-    else if (retention == Retention::Events)
-    {
-      // In contact there are knots, too, where the motion changes.
-      const bool knot =
-        samples[k].kind == SampleKind::Knot || samples[k].kind == SampleKind::EvenKnot;
-      keep = keep || first || (knot && !samples[k].contact);
-    }
-    if (keep)
+    const bool first = k == 0 && retention != Retention::StoppingPoints;
+    if (first || k + 1 == samples.size() || isKeptBetween(samples[k], retention))
     {
       kept.push_back(k);
     }
