@@ -19,6 +19,7 @@
 #include "pqServerManagerModel.h"
 #include "pqUndoStack.h"
 #include "vtkSMPropertyHelper.h"
+#include "vtkSMSettings.h"
 #include "vtkSMSourceProxy.h"
 #include "vtkSMTrace.h"
 
@@ -170,6 +171,18 @@ void pqRockfallWindow::makeMenu(QMainWindow* window)
         [this, window, folder]
         { window->grab().save(folder + "/window-" + QString::number(++this->Pictures) + ".png"); })
       ->setObjectName("actionPicture");
+  }
+  // Tests draw without smoothing, which is half of what drawing takes where there is no graphics card.
+  if (qEnvironmentVariableIsSet("ROCKFALL_UNSMOOTHED"))
+  {
+    vtkSMSettings::GetInstance()->AddCollectionFromString(
+      R"({"views": {"RenderView": {"UseFXAA": 0}}})", 1.0);
+    for (pqRenderView* view : // that of the start
+      pqApplicationCore::instance()->getServerManagerModel()->findItems<pqRenderView*>())
+    {
+      vtkSMPropertyHelper(view->getProxy(), "UseFXAA").Set(0);
+      view->getProxy()->UpdateVTKObjects();
+    }
   }
   registerPages();
 }
