@@ -9,22 +9,48 @@
 #include <array>
 #include <clocale>
 #include <cstdint>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <locale>
 #include <sstream>
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace rockfall::testing
 {
 
-/// A file of this test in the temporary folder. The name holds the test's, so that tests may run at
-/// the same time.
+/// A folder of this process in the temporary one, which goes with it.
+class ScratchFolder
+{
+public:
+  ScratchFolder()
+    : path_(::testing::TempDir() + "rockfall.XXXXXX")
+  {
+    EXPECT_NE(mkdtemp(path_.data()), nullptr) << path_;
+    path_ += "/";
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  ~ScratchFolder()
+  {
+    std::error_code stays;
+    std::filesystem::remove_all(path_, stays);
+  }
+  const std::string& path() const { return path_; }
+
+private:
+  std::string path_; ///< Ends in a slash.
+};
+
+/// A file of this test; its name holds the test's.
 inline std::string pathOf(const std::string& name)
 {
+  static const ScratchFolder folder;
   const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-  return ::testing::TempDir() + info->test_suite_name() + "_" + info->name() + "_" + name;
+  return folder.path() + info->test_suite_name() + "_" + info->name() + "_" + name;
 }
 
 constexpr double foot = 0.3048, surveyFoot = 1200.0 / 3937.0; // m
