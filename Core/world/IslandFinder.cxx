@@ -94,7 +94,7 @@ void IslandFinder::settle()
       NearPair& n = near_[k];
       if (n.linked)
       {
-        *linked++ = { n.first, n.second, n.pair };
+        *linked++ = { n.first, n.second, n.pair.get() };
       }
       else
       {

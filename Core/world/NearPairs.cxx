@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <span>
+#include <utility>
 
 namespace rockfall
 {
@@ -32,21 +34,13 @@ NearPairs::NearPairs(WorldState& world)
   marks_.resize(count, 0);
 }
 
-NearPairs::~NearPairs()
-{
-  for (const NearPair& n : near_)
-  {
-    delete n.pair;
-  }
-}
-
 void NearPairs::keep(NearPair& n)
 {
   if (n.pair)
   {
     return;
   }
-  n.pair = new RockPair;
+  n.pair = std::make_unique<RockPair>();
   n.pair->first = n.first;
   n.pair->second = n.second;
   n.pair->law = world_.contacts.between(n.first, n.second);
@@ -62,12 +56,11 @@ void NearPairs::drop(NearPair& n)
       restAnew(world_.rocks[n.first]);
       restAnew(world_.rocks[n.second]);
     }
-    delete n.pair;
   }
   NearPair fresh;
   fresh.first = n.first;
   fresh.second = n.second;
-  n = fresh;
+  n = std::move(fresh);
 }
 
 bool NearPairs::isCovered(const RockBounds& rocks, std::size_t i) const
@@ -138,7 +131,8 @@ void NearPairs::search(RockBounds& rocks)
   std::sort(behind, near_.end());
   // Not in place: the room that it would take for it knows nothing of their alignment.
   nextNear_.resize(near_.size());
-  std::merge(near_.begin(), behind, behind, near_.end(), nextNear_.begin());
+  std::merge(std::move_iterator(near_.begin()), std::move_iterator(behind),
+    std::move_iterator(behind), std::move_iterator(near_.end()), nextNear_.begin());
   near_.swap(nextNear_);
   // Pairs that are still near stay, and pairs of sleepers, which are not looked for.
   nextNear_.clear();
@@ -148,7 +142,7 @@ void NearPairs::search(RockBounds& rocks)
   {
     if (n.pair && rocks.areAsleep(n.first, n.second))
     {
-      nextNear_.push_back(n);
+      nextNear_.push_back(std::move(n));
     }
     else
     {
@@ -165,7 +159,7 @@ void NearPairs::search(RockBounds& rocks)
       leave(*old);
     }
     const bool there = old != near_.end() && !(n < *old);
-    nextNear_.push_back(there ? *old++ : n);
+    nextNear_.push_back(std::move(there ? *old++ : n));
   }
   for (; old != near_.end(); ++old)
   {
@@ -234,7 +228,7 @@ void NearPairs::cover(RockBounds& rocks, int rock)
         later_[std::size_t(i)].push_back(near_.size());
         widenedRocks_.push_back(i);
       }
-      near_.push_back(n);
+      near_.push_back(std::move(n));
     }
   }
   this->forNeighbours(rock, [&](std::size_t k) { marks_[other(k)] = 0; });

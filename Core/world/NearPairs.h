@@ -13,6 +13,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <vector>
 
 namespace rockfall
@@ -41,7 +42,7 @@ struct alignas(64) NearPair
 {
   int first = -1;
   int second = -1;
-  RockPair* pair = nullptr; ///< None as long as their bounding spheres tell them apart.
+  std::unique_ptr<RockPair> pair; ///< None as long as their bounding spheres tell them apart.
   /// At any later time the gap is no less than offset + normal · (x₁ − x₂) − turned₁ − turned₂.
   Vec3 normal = Vec3::Zero();
   double offset = kNoAxis;
@@ -69,13 +70,11 @@ struct RockBounds
   }
 };
 
-/// Ordered by (first, second), but for those found later. Theirs are the RockPairs, too.
+/// Ordered by (first, second), but for those found later.
 class NearPairs
 {
 public:
   explicit NearPairs(WorldState& world);
-  ~NearPairs();
-  NearPairs(const NearPairs&) = delete;
 
   /// Finds who is near whom, now that the rocks stand elsewhere.
   void find(RockBounds& rocks);
