@@ -39,7 +39,7 @@ struct SimulationParameters
     0.005; ///< Δt of lasting contact, s, > 0. Impacts are resolved finer by themselves.
   double endTime = 60.0;        ///< s, > 0.
   double outputInterval = 0.05; ///< Between samples, s, > 0. Does not change the motion.
-  Kept kept;                    ///< In an ensemble its sink tells.
+  Kept kept;                    ///< Parts of trajectories; in an ensemble its sink tells.
   double gravity = 9.81;        ///< m/s², ≥ 0.
   ImpactResolution impactResolution = ImpactResolution::Springs;
 

@@ -23,7 +23,7 @@ enum class Retention
 struct Kept
 {
   Retention samples = Retention::Full;
-  bool impacts = true; ///< Their list. Without it they are counted.
+  bool impacts = true; ///< The list of impacts; without it they are counted.
 };
 
 /// Whether one that is neither the first nor the last is kept.

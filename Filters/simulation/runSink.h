@@ -48,11 +48,11 @@ struct BrokenRocks
 /// Rocks that got energy from nowhere, they or one of their pieces, over all iterations.
 struct GainedRocks
 {
-  static constexpr double kTold = 0.05; ///< Of what one had: it is up to 2.5 % too fast.
+  static constexpr double kTold = 0.05; ///< Share of what one had: up to 2.5 % too fast.
   std::int64_t rocks = 0, gained = 0;   ///< All of them; those that gained more.
   bool last = false;                    ///< The rock that was added last is one of those.
 
-  /// Of a rock, or of a piece of the last one. `gravity`: m/s².
+  /// Summary of a rock, or of a piece of the last one. `gravity`: m/s².
   void add(const TrajectorySummary& summary, double gravity);
 };
 

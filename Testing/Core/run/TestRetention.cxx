@@ -87,18 +87,30 @@ TEST(Retention, KeepsWhatItSays)
   EXPECT_TRUE(keptSamples({}, Retention::Full).empty());
 }
 
-TEST(Retention, PathsHaveOnePointAtATime)
+namespace
 {
-  // Steps of Δt end where samples are due, but for rounding.
+
+/// Rocks of 0.3 m³ over each other, each so far (m) along x from the one under it.
+Pile leaningColumn(Shape shape, int rocks, double along)
+{
   Pile pile;
   pile.ground = floorSlope();
   Rock rock;
-  rock.shape = makeShape(Shape::Icosahedron, 0.3);
-  for (rock.blockId = 0; rock.blockId < 12; ++rock.blockId)
+  rock.shape = makeShape(shape, 0.3);
+  for (rock.blockId = 0; rock.blockId < rocks; ++rock.blockId)
   {
-    rock.position = Vec3(20.0 + 0.03 * double(rock.blockId), 20.0, 1.0 + double(rock.blockId));
+    rock.position = Vec3(20.0 + along * double(rock.blockId), 20.0, 1.0 + double(rock.blockId));
     pile.rocks.push_back(rock);
   }
+  return pile;
+}
+
+} // namespace
+
+TEST(Retention, PathsHaveOnePointAtATime)
+{
+  // Steps of Δt end where samples are due, but for rounding.
+  Pile pile = leaningColumn(Shape::Icosahedron, 12, 0.03);
   pile.parameters.outputInterval = 0.05;
   pile.parameters.endTime = 3.0;
   pile.make();
@@ -130,15 +142,7 @@ namespace
 /// Eight rocks fall on each other.
 std::vector<Trajectory> fallsKeeping(const Kept& kept)
 {
-  Pile pile;
-  pile.ground = floorSlope();
-  Rock rock;
-  rock.shape = makeShape(Shape::Cube, 0.3);
-  for (rock.blockId = 0; rock.blockId < 8; ++rock.blockId)
-  {
-    rock.position = Vec3(20.0 + 0.05 * double(rock.blockId), 20.0, 1.0 + double(rock.blockId));
-    pile.rocks.push_back(rock);
-  }
+  Pile pile = leaningColumn(Shape::Cube, 8, 0.05);
   pile.parameters.kept = kept;
   pile.parameters.endTime = 2.0;
   pile.make();
