@@ -26,8 +26,9 @@ if(ROCKFALL_PRECOMPILE)
   rockfall_precompile(RockfallTestHeaders <gtest/gtest.h> <slopes.h> <world/World.h>)
 endif()
 
-# rockfall_test_headers(<target>): a library or a program with these headers. A compiler takes them for what is
-# compiled alike only: for programs, and with the same definitions.
+# rockfall_test_headers(<target>): a library or a program with these headers, which is rockfall_quick. A compiler
+# takes them for what is compiled alike only: for programs, with the same definitions and the same optimisation
+# (GCC 16 refuses others).
 function(rockfall_test_headers target)
   if(ROCKFALL_PRECOMPILE)
     target_precompile_headers(${target} REUSE_FROM RockfallTestHeaders)
