@@ -26,10 +26,11 @@ if(ROCKFALL_PRECOMPILE)
   rockfall_precompile(RockfallTestHeaders <gtest/gtest.h> <slopes.h> <world/World.h>)
 endif()
 
-# rockfall_test_headers(<target>): a library or a program with these headers, which is rockfall_quick. A compiler
-# takes them for what is compiled alike only: for programs, with the same definitions and the same optimisation
-# (GCC 16 refuses others).
+# rockfall_test_headers(<target>): a library or a program with these headers, and rockfall_quick as they are. A
+# compiler takes them for what is compiled alike only: for programs, with the same definitions and the same
+# optimisation (GCC 16 refuses others).
 function(rockfall_test_headers target)
+  rockfall_quick(${target})
   if(ROCKFALL_PRECOMPILE)
     target_precompile_headers(${target} REUSE_FROM RockfallTestHeaders)
     target_compile_definitions(${target} PRIVATE $<TARGET_PROPERTY:Boost::headers,INTERFACE_COMPILE_DEFINITIONS>)
@@ -71,8 +72,8 @@ function(rockfall_test_program name)
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} GTest::gtest_main)
   rockfall_unity(${name} ${arg_SOURCES})
-  rockfall_quick(${name})
   if(arg_PRECOMPILE)
+    rockfall_quick(${name})
     rockfall_precompile(${name} <gtest/gtest.h> ${arg_PRECOMPILE})
   else()
     rockfall_test_headers(${name})
