@@ -125,6 +125,12 @@ inline constexpr double kSharedTouch = 1e-3;
 inline constexpr double kTouchFound = 1e-5;
 /// Time that is none, s.
 inline constexpr double kNoTime = 1e-9;
+/// Flight over the plane that no node is above, in steps of an impact, that is taken without a look
+/// at the ground itself. Larger: more looks; smaller: shorter ways between them.
+inline constexpr double kClearSteps = 8.0;
+/// Bound of the flight, in the same, over which that plane is looked at anew. No result depends on
+/// it but by the times that are looked at.
+inline constexpr double kFarSteps = 50.0;
 /// Impacts as events in no time, after which springs go on.
 inline constexpr int kImpactsAtOnce = 12;
 

@@ -71,20 +71,7 @@ void HeightWindow::gather(
   whole_ = whole;
   this->cut(surface.terrain().geometry().diagonal);
   // Gradients of the CFEs: their mean, then the farthest from it.
-  const auto visit = [&](auto&& use)
-  {
-    for (int r = 0; r + 1 < rows_; ++r)
-    {
-      const double* upper = &z_[std::size_t(r) * columns_];
-      const double* lower = upper + columns_;
-      for (int c = 0; c + 1 < columns_; ++c)
-      {
-        const int k = this->isRising(r, c) ? c + 1 : c, other = 2 * c + 1 - k; // sides along y
-        use(lower[c + 1] - lower[c], upper[k] - lower[k]);
-        use(upper[c + 1] - upper[c], upper[other] - lower[other]);
-      }
-    }
-  };
+  const auto visit = [&](auto&& use) { this->visitGradients(0, rows_ - 2, 0, columns_ - 2, use); };
   double dx = 0.0, dy = 0.0;
   int known = 0;
   visit(
@@ -118,6 +105,26 @@ void HeightWindow::gather(
       highest_ = over > highest_ ? over : highest_; // NaN is not
     }
   }
+}
+
+HeightWindow::Gradients HeightWindow::gradients(int row0, int row1, int column0, int column1) const
+{
+  Gradients of;
+  int count = 0;
+  this->visitGradients(row0, row1, column0, column1,
+    [&](double x, double y)
+    {
+      of.tilt += Eigen::Vector2d(x, y);
+      ++count;
+    });
+  of.tilt /= count;
+  double most = 0.0;
+  this->visitGradients(row0, row1, column0, column1,
+    [&](double x, double y)
+    { most = std::max(most, (Eigen::Vector2d(x, y) - of.tilt).squaredNorm()); });
+  of.tilt *= inverse_;
+  of.relief = std::sqrt(most) * inverse_;
+  return of;
 }
 
 GroundHeightBound::GroundHeightBound(const HeightWindow& window)

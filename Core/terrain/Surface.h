@@ -290,6 +290,14 @@ public:
   /// it.
   const Eigen::Vector2d& tilt() const { return tilt_; }
   double relief() const { return relief_; }
+  /// Gradients of CFEs: none is farther from `tilt` than `relief`.
+  struct Gradients
+  {
+    Eigen::Vector2d tilt = Eigen::Vector2d::Zero(); ///< Their mean.
+    double relief = 0.0;
+  };
+  /// Of the CFEs of rows and columns of cells, with ground all over them.
+  Gradients gradients(int row0, int row1, int column0, int column1) const;
   /// Whether there is ground all over it.
   bool whole() const { return whole_; }
   /// No node is higher than tilt · (x, y) + highest, m; −∞ if there is none.
@@ -303,6 +311,22 @@ private:
   friend class GroundHeightBound;
   /// Finds the cuts of all cells.
   void cut(CellDiagonal rule);
+  /// use(Δz along x, Δz along y) of the CFEs of rows and columns of cells, over one cell.
+  template <class Use>
+  void visitGradients(int row0, int row1, int column0, int column1, const Use& use) const
+  {
+    for (int r = row0; r <= row1; ++r)
+    {
+      const double* upper = &z_[std::size_t(r) * columns_];
+      const double* lower = upper + columns_;
+      for (int c = column0; c <= column1; ++c)
+      {
+        const int k = this->isRising(r, c) ? c + 1 : c, other = 2 * c + 1 - k; // sides along y
+        use(lower[c + 1] - lower[c], upper[k] - lower[k]);
+        use(upper[c + 1] - upper[c], upper[other] - lower[other]);
+      }
+    }
+  }
 
   std::vector<double> z_;             ///< NaN for nodata.
   std::vector<unsigned char> rising_; ///< By cell.

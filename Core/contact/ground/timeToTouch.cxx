@@ -1,10 +1,10 @@
 #include "contact/ground/timeToTouch.h"
+#include "contact/ground/heightOver.h"
+#include "contact/ground/lowPlaces.h"
 #include "contact/ground/motion.h"
 #include "contact/ground/roundContact.h"
-#include "law/settings.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -19,22 +19,31 @@ namespace
 /// c = a·w − w_z + s |w|, c₂ ≥ 0 likewise with its acceleration, and j from the largest third
 /// derivative of a turning body. Between two places of the rock's surface over one CFE the gap is
 /// linear and these rates are convex: the places where either has a corner are enough.
+///
+/// Over a rectangle whose own gradients are b ± r (`standOver`), c is that of b and r, and beyond it
+/// s + |b − a| − r more for each metre: what closes is the larger of the two sums, with |w| t + …
+/// less the way out of the rectangle as these metres. That way is concave over the rectangle, so
+/// its corners are enough again; of a place on its border both bounds hold.
 class FirstTouch
 {
+  static constexpr double kAround = 3.0;    ///< Bounds of the time that the known part lasts for.
+  static constexpr double kOnBorder = 1e-6; ///< m
+
 public:
+  /// `relief`: how far gradients may be from the window's tilt.
   FirstTouch(const PlacedBlock& rock, const BlockState& state, const HeightWindow& window,
-    double gravity, double horizon)
+    double relief, double gravity, double horizon)
     : position_(rock.position())
     , velocity_(state.velocity)
     , spin_(rock.rotation() * state.spin)
     , tilt_(window.tilt())
-    , relief_(window.relief())
+    , relief_(relief)
     , gravity_(gravity)
     , time_(horizon)
   {
     const Block& block = rock.block();
-    const double rim = block.largestRimSpeed(state.spin);
-    const double kappa = std::sqrt(1.0 + tilt_.squaredNorm()) + relief_;
+    rim_ = block.largestRimSpeed(state.spin);
+    kappa_ = std::sqrt(1.0 + tilt_.squaredNorm()) + relief_;
     double fastest = spin_.norm(), derivatives = 1.0;
     if (!block.isotropic())
     {
@@ -46,9 +55,10 @@ public:
       spinRate_ = rock.rotation() * (block.inverseInertia() * momentum.cross(state.spin));
     }
     const double turning = fastest * fastest * block.radius();
-    third_ = kappa * derivatives * turning * fastest / 6.0;
-    fastest_ = this->rate(velocity_) + kappa * rim;
-    acceleration_ = gravity + (block.isotropic() ? 1.0 : 2.0) * kappa * turning;
+    third_ = kappa_ * derivatives * turning * fastest / 6.0;
+    fastest_ = this->rate(velocity_) + kappa_ * rim_;
+    largestBend_ = (block.isotropic() ? 1.0 : 2.0) * turning;
+    acceleration_ = gravity + kappa_ * largestBend_;
     this->updateFar();
   }
 
@@ -68,11 +78,98 @@ public:
       far_ = 0.0;
       return;
     }
-    const Vec3 lever = point - position_;
-    const Vec3 turning = spin_.cross(lever);
-    const double c = this->rate(velocity_ + turning);
-    const Vec3 bend = spinRate_.cross(lever) + spin_.cross(turning);
-    const double c2 = 0.5 * std::max(0.0, this->rate(bend) + gravity_);
+    const Motion motion = this->motionAt(point);
+    this->close(
+      gap, this->rate(motion.velocity), 0.5 * std::max(0.0, this->rate(motion.bend) + gravity_));
+  }
+  /// A visit of a place where the ground may be what `standOver` has been given.
+  void visitNear(const Vec3& point, double gap)
+  {
+    if (!(gap < far_))
+    {
+      return;
+    }
+    const double inside = gap > 0.0 ? this->insideLocal(point) : -1.0;
+    if (inside >= 0.0)
+    {
+      this->closeNear(point, gap, inside);
+    }
+    if (inside <= kOnBorder)
+    {
+      this->visit(point, gap);
+    }
+  }
+  /// Of the known part of the ground.
+  const GridBorder& border() const { return border_; }
+  /// What is known of the ground around that under a point of the rock.
+  void standOver(const HeightWindow& window, const Vec3& point, double gap)
+  {
+    if (!(gap >= 0.0))
+    {
+      return;
+    }
+    const Motion motion = this->motionAt(point);
+    const double across = motion.velocity.head<2>().norm();
+    const double soon = timeToCover(gap, this->rate(motion.velocity), gravity_);
+    const double cell = window.cellSize(), around = std::min(kAround * across * soon, cell);
+    const auto index = [&](double v, int count)
+    { return std::clamp(int(v * window.inverseCellSize()), 0, count - 2); };
+    const int column0 = index(point.x() - around - window.west(), window.columns());
+    const int column1 = index(point.x() + around - window.west(), window.columns());
+    const int row0 = index(window.north() - point.y() - around, window.rows());
+    const int row1 = index(window.north() - point.y() + around, window.rows());
+    local_ = window.gradients(row0, row1, column0, column1);
+    border_ = { column0, column1 + 1, row0, row1 + 1 };
+    west_ = window.x(border_.west);
+    east_ = window.x(border_.east);
+    north_ = window.y(border_.north);
+    south_ = window.y(border_.south);
+    const double off = (local_.tilt - tilt_).norm();
+    steeper_ = std::max(0.0, relief_ + off - local_.relief);
+    third_ *= 1.0 + 2.0 * off / kappa_;
+    fastest_ += 2.0 * off * (velocity_.head<2>().norm() + rim_);
+    acceleration_ += 2.0 * off * largestBend_;
+    this->updateFar();
+  }
+
+  /// A gap of no place of the rock in particular.
+  void visitAny(double gap)
+  {
+    time_ = std::min(time_, timeToCover(gap, fastest_, acceleration_));
+    this->updateFar();
+  }
+
+private:
+  /// Velocity of a material point, and its acceleration but for gravity.
+  struct Motion
+  {
+    Vec3 velocity, bend;
+  };
+  Motion motionAt(const Vec3& point) const
+  {
+    const Vec3 lever = point - position_, turning = spin_.cross(lever);
+    return { velocity_ + turning, spinRate_.cross(lever) + spin_.cross(turning) };
+  }
+  /// How far inside the known part of the ground a point is, m; < 0: beside it.
+  double insideLocal(const Vec3& p) const
+  {
+    return std::min({ p.x() - west_, east_ - p.x(), p.y() - south_, north_ - p.y() }) + kOnBorder;
+  }
+  /// Of a material point over the known part, `inside` of its border, m.
+  void closeNear(const Vec3& point, double gap, double inside)
+  {
+    const Motion motion = this->motionAt(point);
+    const auto rateOf = [&](const Vec3& w, double across)
+    { return local_.tilt.dot(w.head<2>()) - w.z() + local_.relief * across; };
+    const double across = motion.velocity.head<2>().norm(), bent = motion.bend.head<2>().norm();
+    const double c = rateOf(motion.velocity, across), bend = rateOf(motion.bend, bent) + gravity_;
+    this->close(gap, c, 0.5 * std::max(0.0, bend));
+    this->close(gap + steeper_ * (inside - kOnBorder), c + steeper_ * across,
+      0.5 * std::max(0.0, bend + steeper_ * bent));
+  }
+  /// A gap (m) that closes by no more than c t + c₂ t² + j t³/6.
+  void close(double gap, double c, double c2)
+  {
     const auto closed = [&](double t) { return ((third_ * t + c2) * t + c) * t - gap; };
     double after = time_, over = closed(after);
     if (over <= 0.0)
@@ -94,14 +191,6 @@ public:
     this->updateFar();
   }
 
-  /// A gap of no place of the rock in particular.
-  void visitAny(double gap)
-  {
-    time_ = std::min(time_, timeToCover(gap, fastest_, acceleration_));
-    this->updateFar();
-  }
-
-private:
   double rate(const Vec3& w) const
   {
     return tilt_.x() * w.x() + tilt_.y() * w.y() - w.z() +
@@ -115,47 +204,19 @@ private:
   double relief_;
   double gravity_;
   double time_;
-  double third_ = 0.0; ///< j/6
+  double kappa_ = 1.0;
+  double rim_ = 0.0;         ///< m/s
+  double largestBend_ = 0.0; ///< m/s²
+  double third_ = 0.0;       ///< j/6
   double acceleration_ = 0.0;
   double fastest_ = 0.0;
   double far_ = 0.0;
+  // The known part of the ground: none as long as it is inside out.
+  GridBorder border_;
+  double west_ = 1.0, east_ = -1.0, south_ = 0.0, north_ = 0.0;
+  HeightWindow::Gradients local_;
+  double steeper_ = 0.0; ///< By how much the slope beyond it may be.
 };
-
-/// Where a vertical line through a world point enters the rock from below, over that point, m; ∞ if
-/// it misses it. `face`: through which. `rises`: how much each face of the rock looks up, −1 … 1;
-/// empty for the first of its lines.
-double entersAt(const PlacedBlock& rock, const Vec3& world, std::vector<double>& rises, int& face)
-{
-  const Polyhedron& shape = rock.block().shape();
-  if (rises.empty())
-  {
-    const Vec3 up = rock.rotation().row(2).transpose();
-    for (const Vec3& n : shape.normals())
-    {
-      rises.push_back(n.dot(up));
-    }
-  }
-  const Vec3 x = rock.materialPoint(world);
-  double low = -std::numeric_limits<double>::infinity(), high = -low;
-  for (std::size_t f = 0; f < rises.size(); ++f)
-  {
-    const double rise = rises[f], room = shape.offsets()[f] - shape.normals()[f].dot(x);
-    if (rise < 0.0)
-    {
-      face = room / rise > low ? int(f) : face;
-      low = std::max(low, room / rise);
-    }
-    else if (rise > 0.0)
-    {
-      high = std::min(high, room / rise);
-    }
-    else if (room < 0.0)
-    {
-      return high;
-    }
-  }
-  return low <= high ? low : std::numeric_limits<double>::infinity();
-}
 
 } // namespace
 
@@ -169,179 +230,39 @@ double timeToNear(const BlockState& state, double radius, const HeightWindow& wi
   return std::min(horizon, timeToCover(room, rate, gravity));
 }
 
-namespace
+double timeToPlane(const PlacedBlock& rock, const BlockState& state, const HeightWindow& window,
+  double gravity, double horizon)
 {
-
-/// What of the rock is at a low place.
-struct LowFeature
-{
-  int face = -1;   ///< Over the window's node (row, column).
-  int edge = -1;   ///< Over its grid line of a family (along y, along x, falling, rising cuts).
-  int family = -1; ///< Neither: a vertex.
-  int row = 0, column = 0;
-};
-
-/// Whether a cell of the window has this cut.
-bool isCutAlong(const HeightWindow& window, bool rising, int row, int column)
-{
-  return row >= 0 && column >= 0 && row + 1 < window.rows() && column + 1 < window.columns() &&
-    window.isRising(row, column) == rising;
-}
-
-/// visit(place, gap, feature) of every place where the gap along the vertical can be least, but for
-/// those where it is no less than far(), which visits may make smaller.
-template <class Far, class Visit>
-void visitLowPlaces(
-  const PlacedBlock& rock, const HeightWindow& window, const Far& far, const Visit& visit)
-{
-  const auto over = [&](const Vec3& p, const LowFeature& feature)
-  { visit(p, p.z() - window.elevation(p.x(), p.y()), feature); };
-  // Height over the plane that no node is above: a gap is at least that.
-  const auto room = [&](const Vec3& p)
+  if (isRound(rock))
+  {
+    return timeToNear(state, rock.block().radius(), window, gravity, horizon);
+  }
+  FirstTouch touch(rock, state, window, 0.0, gravity, horizon);
+  const auto over = [&](const Vec3& p)
   { return p.z() - window.tilt().dot(p.head<2>()) - window.highest(); };
   const std::vector<Vec3>& vertices = rock.vertices();
-  thread_local std::vector<double> rooms; // of the vertices: every edge asks for two
-  rooms.resize(vertices.size());
-  double least = std::numeric_limits<double>::infinity();
-  std::size_t lowest = 0;
-  for (std::size_t i = 0; i < vertices.size(); ++i)
+  const auto lowest = std::min_element(vertices.begin(), vertices.end(),
+    [&](const Vec3& p, const Vec3& q) { return over(p) < over(q); });
+  touch.visit(*lowest, over(*lowest)); // it makes short what the others need
+  for (const Vec3& p : vertices)
   {
-    rooms[i] = room(vertices[i]);
-    if (rooms[i] < least)
-    {
-      least = rooms[i];
-      lowest = i;
-    }
+    touch.visit(p, over(p));
   }
-  if (least >= far())
-  {
-    return;
-  }
-  over(vertices[lowest], {}); // most likely the first to touch: the rest is soon too far
-  for (std::size_t i = 0; i < vertices.size(); ++i)
-  {
-    if (rooms[i] < far() && i != lowest)
-    {
-      over(vertices[i], {});
-    }
-  }
-  const double inverse = window.inverseCellSize(), west = window.west(), north = window.north();
-  const auto index = [&](double v, int count) { return std::clamp(int(std::floor(v)), -1, count); };
-  const int column0 = index((rock.lower().x() - west) * inverse, window.columns()) + 1;
-  const int column1 = index((rock.upper().x() - west) * inverse, window.columns() - 1);
-  const int row0 = index((north - rock.upper().y()) * inverse, window.rows()) + 1;
-  const int row1 = index((north - rock.lower().y()) * inverse, window.rows() - 1);
-  // Nodes of the slope under the rock. The lowest point of the rock is lowest + tilt on the way.
-  thread_local std::vector<double> rises;
-  rises.clear();
-  for (int row = row0; row <= row1; ++row)
-  {
-    for (int column = column0; column <= column1; ++column)
-    {
-      const Vec3 node(window.x(column), window.y(row), window.z(row, column));
-      if (least + window.highest() + window.tilt().dot(node.head<2>()) - node.z() < far())
-      {
-        int face = -1;
-        const double gap = entersAt(rock, node, rises, face);
-        if (gap < far())
-        {
-          visit(Vec3(node.x(), node.y(), node.z() + gap), gap, { face, -1, -1, row, column });
-        }
-      }
-    }
-  }
-  // Edges of the rock where they pass over edges of the slope: grid lines and cuts of cells.
-  const Polyhedron& shape = rock.block().shape();
-  const Vec3 up = rock.rotation().row(2).transpose();
-  for (std::size_t edge = 0; edge < shape.edges().size(); ++edge)
-  {
-    const Polyhedron::Edge& e = shape.edges()[edge];
-    const auto start = std::size_t(e.vertices[0]), end = std::size_t(e.vertices[1]);
-    if (std::min(rooms[start], rooms[end]) >= far() ||
-      (up.dot(shape.normals()[e.faces[0]]) > 0.0 && up.dot(shape.normals()[e.faces[1]]) > 0.0))
-    {
-      continue;
-    }
-    const Vec3 &p = vertices[start], &q = vertices[end];
-    const double x0 = (p.x() - west) * inverse, x1 = (q.x() - west) * inverse;
-    const double y0 = (north - p.y()) * inverse, y1 = (north - q.y()) * inverse;
-    const double from[4] = { x0, y0, x0 - y0, x0 + y0 }, to[4] = { x1, y1, x1 - y1, x1 + y1 };
-    const int most[4] = { window.columns() - 1, window.rows() - 1, window.columns() - 1,
-      window.columns() + window.rows() - 2 };
-    const int first[4] = { 0, 0, 1 - window.rows(), 0 };
-    const Vec3 along = q - p;
-    for (int family = 0; family < 4; ++family)
-    {
-      const bool cut = family >= 2, rising = family == 3;
-      if (cut && !window.anyIs(rising))
-      {
-        continue;
-      }
-      const double a = std::min(from[family], to[family]), b = std::max(from[family], to[family]);
-      const int k0 = int(std::ceil(std::max(a, double(first[family]))));
-      const int k1 = int(std::floor(std::min(b, double(most[family]))));
-      if (k0 > k1 || a == b)
-      {
-        continue;
-      }
-      const double scale = 1.0 / (to[family] - from[family]);
-      for (int k = k0; k <= k1; ++k)
-      {
-        const Vec3 x = p + std::clamp((k - from[family]) * scale, 0.0, 1.0) * along;
-        if (room(x) < far())
-        {
-          const double share = (k - from[family]) * scale;
-          const int across = family == 1 ? int(std::floor(x0 + share * (x1 - x0))) : k;
-          const int down = int(std::floor(y0 + share * (y1 - y0)));
-          const int row = family == 1 ? k : down;
-          const int column = family == 2 ? down + k : rising ? k - down - 1 : across;
-          if (!cut || isCutAlong(window, rising, row, column))
-          {
-            over(x, { -1, int(edge), family, row, column });
-          }
-        }
-      }
-    }
-  }
+  return touch.time();
 }
-
-} // namespace
 
 namespace
 {
 
-/// The least gap of a round body along the vertical, m; ∞ if there is no ground under it.
-double roundGap(const PlacedBlock& rock, const HeightWindow& window)
+/// Of a round body that is so far (m) over the ground.
+double timeOfRound(const PlacedBlock& rock, const BlockState& state, const HeightWindow& window,
+  double gap, double gravity, double horizon)
 {
-  const Mat3 axes = roundAxes(rock);
-  double gap = std::numeric_limits<double>::infinity();
-  const auto index = [&](double v, int count)
-  { return std::clamp(int(std::floor(v * window.inverseCellSize())), 0, count - 2); };
-  const int column0 = index(rock.lower().x() - window.west(), window.columns());
-  const int column1 = index(rock.upper().x() - window.west(), window.columns());
-  const int row0 = index(window.north() - rock.upper().y(), window.rows());
-  const int row1 = index(window.north() - rock.lower().y(), window.rows());
-  for (int row = row0; row <= row1; ++row)
-  {
-    for (int column = column0; column <= column1; ++column)
-    {
-      const auto corner = [&](int r, int c)
-      { return Vec3(window.x(column + c), window.y(row + r), window.z(row + r, column + c)); };
-      const Vec3 nw = corner(0, 0), ne = corner(0, 1), sw = corner(1, 0), se = corner(1, 1);
-      const double top = std::max({ nw.z(), ne.z(), sw.z(), se.z() });
-      if (!(rock.lower().z() - top < gap)) // nor where there is no ground
-      {
-        continue;
-      }
-      const bool rising = window.isRising(row, column);
-      for (const auto& [a, b, c] :
-        { std::array{ nw, sw, rising ? ne : se }, std::array{ rising ? sw : nw, se, ne } })
-      {
-        gap = std::min(gap, roundDrop(axes, rock.position(), a, b, c));
-      }
-    }
-  }
-  return gap;
+  BlockState still = state; // a sphere does not come nearer by turning
+  still.spin = rock.block().isotropic() ? Vec3(Vec3::Zero()) : state.spin;
+  FirstTouch any(rock, still, window, window.relief(), gravity, horizon);
+  any.visitAny(gap);
+  return any.time();
 }
 
 } // namespace
@@ -351,151 +272,44 @@ double timeToTouch(const PlacedBlock& rock, const BlockState& state, const Heigh
 {
   if (isRound(rock))
   {
-    BlockState still = state; // a sphere does not come nearer by turning
-    still.spin = rock.block().isotropic() ? Vec3(Vec3::Zero()) : state.spin;
-    FirstTouch any(rock, still, window, gravity, horizon);
-    any.visitAny(roundGap(rock, window));
-    return any.time();
+    return timeOfRound(rock, state, window, roundGap(rock, window), gravity, horizon);
   }
-  FirstTouch touch(rock, state, window, gravity, horizon);
+  FirstTouch touch(rock, state, window, window.relief(), gravity, horizon);
   visitLowPlaces(
     rock, window, [&] { return touch.far(); },
     [&](const Vec3& place, double gap, const LowFeature&) { touch.visit(place, gap); });
   return touch.time();
 }
 
-double heightOver(const PlacedBlock& rock, const HeightWindow& window, double least)
+FlightLook lookAhead(const PlacedBlock& rock, const BlockState& state, const HeightWindow& window,
+  const Vec3& near, double gravity, double horizon)
 {
   if (isRound(rock))
   {
-    return roundGap(rock, window);
+    const double gap = roundGap(rock, window);
+    return { gap, near, timeOfRound(rock, state, window, gap, gravity, horizon) };
   }
+  FirstTouch touch(rock, state, window, window.relief(), gravity, horizon);
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  double height = infinity;
+  const Vec3 at = rock.position() + rock.map() * near;
+  const double under = at.z() - window.elevation(at.x(), at.y());
+  touch.standOver(window, at, under);
+  touch.visitNear(at, under > 0.0 ? under : infinity); // it makes short what the others need
+  double gap = infinity;
+  Vec3 lowest = rock.position();
   visitLowPlaces(
-    rock, window, [&] { return height > least ? height : -infinity; },
-    [&](const Vec3&, double gap, const LowFeature&)
-    { height = gap < height ? gap : height; }); // NaN is not
-  return height;
-}
-
-namespace
-{
-
-/// Of the CFE at a place in the window.
-Eigen::Vector2d gradientAt(const HeightWindow& window, const Vec3& place)
-{
-  const double inverse = window.inverseCellSize();
-  const double c = (place.x() - window.west()) * inverse,
-               r = (window.north() - place.y()) * inverse;
-  const int column = std::clamp(int(c), 0, window.columns() - 2);
-  const int row = std::clamp(int(r), 0, window.rows() - 2);
-  const bool rising = window.isRising(row, column);
-  const bool lower = isInLower(rising, c - column, r - row);
-  const auto z = [&](int down, int right) { return window.z(row + down, column + right); };
-  const int side = lower == rising; // west: 0
-  return { inverse * (lower ? z(1, 1) - z(1, 0) : z(0, 1) - z(0, 0)),
-    inverse * (z(0, side) - z(1, side)) };
-}
-
-/// How much higher the middle of a line of the grid is than that between the nodes on its two
-/// sides, m: > 0 on a ridge. NaN where the window ends.
-double bend(const HeightWindow& window, int family, int row, int column)
-{
-  const auto z = [&](int r, int c)
-  {
-    return r >= 0 && c >= 0 && r < window.rows() && c < window.columns()
-      ? window.z(r, c)
-      : std::numeric_limits<double>::quiet_NaN();
-  };
-  const auto rises = [&](int r, int c) { return isCutAlong(window, true, r, c); };
-  switch (family)
-  {
-    case 0: // between the cells in the west and in the east: rows of their wings
+    rock, window, [&] { return std::max(touch.far(), gap); },
+    [&](const Vec3& place, double over, const LowFeature&)
     {
-      const int west = rises(row, column - 1) ? row + 1 : row;
-      const int east = rises(row, column) ? row : row + 1;
-      return 0.5 * (z(west, column) + z(east, column) - z(west, column - 1) - z(east, column + 1));
-    }
-    case 1: // in the north and in the south: columns
-    {
-      const int north = rises(row - 1, column) ? column + 1 : column;
-      const int south = rises(row, column) ? column : column + 1;
-      return 0.5 * (z(row, north) + z(row, south) - z(row - 1, north) - z(row + 1, south));
-    }
-    default:
-    {
-      const double twice =
-        z(row, column) + z(row + 1, column + 1) - z(row + 1, column) - z(row, column + 1);
-      return isCutAlong(window, family == 3, row, column)
-        ? (family == 3 ? -0.5 : 0.5) * twice
-        : std::numeric_limits<double>::quiet_NaN();
-    }
-  }
-}
-
-} // namespace
-
-void findTouches(const PlacedBlock& rock, const HeightWindow& window, double within,
-  std::vector<GroundPlace>& places)
-{
-  places.clear();
-  const double flat = kFlatBend * window.cellSize();
-  const Polyhedron& shape = rock.block().shape();
-  visitLowPlaces(
-    rock, window, [&] { return within; },
-    [&](const Vec3& place, double gap, const LowFeature& low)
-    {
-      if (!(gap < within))
+      touch.visitNear(place, over);
+      if (over < gap)
       {
-        return;
+        gap = over;
+        lowest = place;
       }
-      Vec3 normal;
-      if (low.face >= 0)
-      {
-        bool peak = false;
-        for (const auto& [family, row, column] :
-          { std::array{ 0, low.row, low.column }, { 0, low.row - 1, low.column },
-            { 1, low.row, low.column }, { 1, low.row, low.column - 1 }, { 2, low.row, low.column },
-            { 2, low.row - 1, low.column - 1 }, { 3, low.row - 1, low.column },
-            { 3, low.row, low.column - 1 } })
-        {
-          peak = peak || bend(window, family, row, column) > flat;
-        }
-        normal = -rock.normal(low.face);
-        if (!peak)
-        {
-          return;
-        }
-      }
-      else if (low.edge >= 0)
-      {
-        if (!(bend(window, low.family, low.row, low.column) > flat))
-        {
-          return;
-        }
-        const int start = low.row + (low.family == 3); // a rising cut begins in the south-west
-        const int row = low.row + (low.family == 0 || low.family == 2);
-        const int column = low.column + (low.family != 0);
-        const Vec3 line(window.x(column) - window.x(low.column), window.y(row) - window.y(start),
-          window.z(row, column) - window.z(start, low.column));
-        const auto& ends = shape.edges()[std::size_t(low.edge)].vertices;
-        const Vec3 along = rock.vertices()[ends[1]] - rock.vertices()[ends[0]];
-        normal = line.cross(along);
-        const double size2 = normal.squaredNorm();
-        if (size2 <= 1e-12 * line.squaredNorm() * along.squaredNorm())
-        {
-          return; // along each other
-        }
-        normal *= (normal.z() < 0.0 ? -1.0 : 1.0) / std::sqrt(size2);
-      }
-      else
-      {
-        const Eigen::Vector2d rise = gradientAt(window, place);
-        normal = Vec3(-rise.x(), -rise.y(), 1.0).normalized();
-      }
-      places.push_back({ place, normal });
-    });
+    },
+    touch.border());
+  return { gap, rock.materialPoint(lowest), touch.time() };
 }
 
 } // namespace rockfall

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// How far a rock is from touching: lower bounds of the time in free flight, height.
+/// How far a rock is from touching: lower bounds of the time in free flight.
 
 #include "contact/ground/candidates.h"
 #include "terrain/Obstacles.h"
@@ -24,22 +24,22 @@ double timeToClose(const PlacedBlock& rock, const BlockState& state, const Surfa
 /// where the two overlap.
 double timeToTouch(const PlacedBlock& rock, const BlockState& state, const HeightWindow& window,
   double gravity, double horizon);
-/// Height of the rock over the window's ground, along the vertical, m; < 0: it overlaps it. What is
-/// not more than `least` is told as something that is not.
-double heightOver(const PlacedBlock& rock, const HeightWindow& window, double least);
-/// A place where a rock and the slope touch.
-struct GroundPlace
+/// What a rock in flight over the window's ground has before it.
+struct FlightLook
 {
-  Vec3 point;  ///< Of the rock, world, m.
-  Vec3 normal; ///< Out of the slope, world, unit.
+  double gap;  ///< Height over the ground, along the vertical, m; < 0: it overlaps it.
+  Vec3 lowest; ///< Where it is least, material point of the rock, m.
+  double free; ///< Lower bound of the time without a touch, s.
 };
-/// Places of the rock that are no more than `within` (m) over the window's ground, along the
-/// vertical: its vertices over CFEs, its edges over ridges, peaks under its faces. For a rock that
-/// is about to touch: what is first there is between its features' normal cones by itself.
-void findTouches(const PlacedBlock& rock, const HeightWindow& window, double within,
-  std::vector<GroundPlace>& places);
+/// As timeToTouch, and closer, where there is ground all over the window: around what is under a
+/// point of the rock (`near`, material, m) the slope's gradients are taken as they are there.
+FlightLook lookAhead(const PlacedBlock& rock, const BlockState& state, const HeightWindow& window,
+  const Vec3& near, double gravity, double horizon);
 /// Time as above for the bounding sphere over the plane that no node of the window is above.
 double timeToNear(const BlockState& state, double radius, const HeightWindow& window,
+  double gravity, double horizon);
+/// Time as above for the rock itself over that plane.
+double timeToPlane(const PlacedBlock& rock, const BlockState& state, const HeightWindow& window,
   double gravity, double horizon);
 
 /// Lower bound of the time (s, at most `horizon`) to the first touch of an obstacle in free flight.

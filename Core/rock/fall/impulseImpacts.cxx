@@ -3,6 +3,7 @@
 #include "base/abort.h"
 #include "block/FreeRotation.h"
 #include "block/flight.h"
+#include "contact/ground/heightOver.h"
 #include "contact/ground/timeToTouch.h"
 #include "law/settings.h"
 #include "rock/fall/Fall.h"
@@ -149,33 +150,60 @@ bool hop(Fall& fall, double duration)
   };
   const double small = fall.springs.impactStep(body);
   const double found = kTouchFound * block.radius();
+  const double gravity = fall.parameters.gravity;
   // From bound to bound; where a bound is shorter than what resolves a touch, so far.
-  double t = 0.0, sure = 0.0;
-  for (bool first = true;; first = false)
+  double t = 0.0, sure = 0.0, high = 0.0, low = 0.0;
+  Vec3 lowest = Vec3::Zero();
+  for (bool first = true, far = true;; first = false)
   {
     stayWanted();
     const BlockState at = flown(t);
     body.placed.move(block, at);
-    const double bound =
-      timeToTouch(body.placed, at, fall.ground.window(), fall.parameters.gravity, duration - t);
-    if (bound <= 0.0)
+    const double left = duration - t;
+    const double clear =
+      far ? timeToPlane(body.placed, at, fall.ground.window(), gravity, left) : 0.0;
+    if (clear >= left)
+    {
+      advanceInFlight(fall, duration);
+      return true;
+    }
+    far = clear > kClearSteps * small;
+    if (far)
+    {
+      t += clear;
+      continue;
+    }
+    const FlightLook look = lookAhead(body.placed, at, fall.ground.window(), lowest, gravity, left);
+    if (look.free <= 0.0)
     {
       if (first)
       {
         return false; // nothing to come to
       }
+      low = look.gap;
       break;
     }
-    sure = t;
-    if (bound >= duration - t)
+    if (look.free >= left)
     {
       advanceInFlight(fall, duration);
       return true;
     }
-    t = std::min(duration, t + std::max(bound, small));
+    sure = t;
+    high = look.gap;
+    lowest = look.lowest;
+    t = std::min(duration, t + std::max(look.free, small));
+    far = look.free > kFarSteps * small;
+    if (!first && look.free < small)
+    {
+      low = heightAt(t); // most likely that is it
+      if (low <= 0.0)
+      {
+        break;
+      }
+    }
   }
   // Between `sure` and `t`: regula falsi, by halves where one end stays.
-  double high = heightAt(sure), low = heightAt(t), after = t;
+  double after = t;
   for (int k = 0, side = 0; k < 60 && (high > found || sure == 0.0) && after - sure > 1e-12; ++k)
   {
     // Aims at a point over the ground, so that the end over it is the one that comes near.

@@ -2,6 +2,7 @@
 
 #include "block/flight.h"
 #include "contact/ground/clearance.h"
+#include "contact/ground/heightOver.h"
 #include "contact/ground/timeToTouch.h"
 #include "law/settings.h"
 #include "rock/parts/rollingResistance.h"

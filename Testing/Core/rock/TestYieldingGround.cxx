@@ -6,7 +6,6 @@
 #include "base/errors.h"
 #include "block/Block.h"
 #include "contact/ground/submerged.h"
-#include "contact/ground/timeToTouch.h"
 #include "form.h"
 #include "rock/parts/Scar.h"
 #include "run/stateHash.h"
@@ -272,47 +271,6 @@ TEST(YieldingGround, ComesToRestOnGentleSlopes)
     ASSERT_EQ(t.summary.fate, Fate::Rested) << slope << " degrees";
     EXPECT_LT(t.summary.endTime, t.impacts.back().time + 10.0) << slope << " degrees";
     EXPECT_LT(largestError(t.summary.energy), 1e-9);
-  }
-}
-
-TEST(YieldingGround, HeightOverTheGroundIsTheLeastOfAllPlaces)
-{
-  // Against vertical lines through a fine grid of places: where one goes into the rock.
-  const Terrain terrain = makeSlope(12, 0.5,
-    [](double x, double y) { return 0.4 * x + 0.2 * std::sin(3.0 * x) * std::cos(2.0 * y); });
-  const Surface surface(terrain, 1, 0);
-  const Block block(makeShape(Shape::Eota221, 1.0), 2700.0, 5e10, 0.2);
-  HeightWindow window;
-  window.gather(surface, 0.0, 5.5, 0.0, 5.5);
-  for (int k = 0; k < 20; ++k)
-  {
-    BlockState state;
-    state.orientation = Quat(Eigen::AngleAxisd(0.7 * k, Vec3(1.0, 0.3 * k, 0.2).normalized()));
-    state.position = Vec3(2.2 + 0.05 * k, 3.1 - 0.04 * k, 2.0 - 0.1 * k);
-    PlacedBlock rock;
-    rock.place(block, state);
-    double least = 1e9;
-    const int lines = someOf(400, 50);
-    for (int i = 0; i <= lines; ++i)
-    {
-      for (int j = 0; j <= lines; ++j)
-      {
-        const Vec3 foot(rock.lower().x() + i * (rock.upper() - rock.lower()).x() / lines,
-          rock.lower().y() + j * (rock.upper() - rock.lower()).y() / lines, 0.0);
-        double low = -1e9, high = 1e9;
-        for (int f = 0; f < int(block.shape().faces().size()); ++f)
-        {
-          const double rise = rock.normal(f).z(), over = rock.faceDistance(f, foot);
-          (rise < 0.0 ? low : high) =
-            rise < 0.0 ? std::max(low, -over / rise) : std::min(high, -over / rise);
-        }
-        least = low <= high ? std::min(least, low - window.elevation(foot.x(), foot.y())) : least;
-      }
-    }
-    const double height = heightOver(rock, window, -1e9);
-    EXPECT_LE(height, least + 1e-9) << k;
-    EXPECT_GT(height, least - 4.0 / lines) << k; // two of 400 places of the grid are 4 mm apart
-    EXPECT_LT(heightOver(rock, window, least + 0.05), least + 0.05) << k;
   }
 }
 

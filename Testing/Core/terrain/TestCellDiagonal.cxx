@@ -2,7 +2,7 @@
 
 #include "slopes.h"
 
-#include "contact/ground/timeToTouch.h"
+#include "contact/ground/heightOver.h"
 #include "form.h"
 #include "run/ensemble.h"
 #include "terrain/Surface.h"
