@@ -303,7 +303,8 @@ TEST(CellDiagonal, WhiteRoughnessLeadsRocksNeitherLeftNorRight)
     }
     const double mean = sum / p.iterations;
     const double deviation = std::sqrt(squares / p.iterations - mean * mean);
-    EXPECT_LT(std::abs(mean), 3.0 * deviation / std::sqrt(p.iterations)) << "turn " << turn;
+    // Four turns of few rocks: by chance one of them is beyond three standard errors in 1 % of runs.
+    EXPECT_LT(std::abs(mean), 4.0 * deviation / std::sqrt(p.iterations)) << "turn " << turn;
     all += sum;
     allSquares += squares;
     count += p.iterations;
