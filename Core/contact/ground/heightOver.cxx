@@ -62,7 +62,7 @@ double heightOver(const PlacedBlock& rock, const HeightWindow& window, double le
 namespace
 {
 
-/// Of the CFE at a place in the window.
+/// Gradient of the CFE at a place in the window.
 Eigen::Vector2d gradientAt(const HeightWindow& window, const Vec3& place)
 {
   const double inverse = window.inverseCellSize();
@@ -118,11 +118,9 @@ void findTouches(const PlacedBlock& rock, const HeightWindow& window, double wit
         {
           return;
         }
-        const int start = low.row + (low.family == 3); // a rising cut begins in the south-west
-        const int row = low.row + (low.family == 0 || low.family == 2);
-        const int column = low.column + (low.family != 0);
-        const Vec3 line(window.x(column) - window.x(low.column), window.y(row) - window.y(start),
-          window.z(row, column) - window.z(start, low.column));
+        const auto [row0, column0, row1, column1] = gridLine(low.family, low.row, low.column);
+        const Vec3 line(window.x(column1) - window.x(column0), window.y(row1) - window.y(row0),
+          window.z(row1, column1) - window.z(row0, column0));
         const auto& ends = shape.edges()[std::size_t(low.edge)].vertices;
         const Vec3 along = rock.vertices()[ends[1]] - rock.vertices()[ends[0]];
         normal = line.cross(along);

@@ -1,7 +1,7 @@
 #pragma once
 
 /// @file
-/// Where a rock over the grid of the slope is lowest.
+/// Places at which a rock over the grid of the slope may be lowest.
 
 #include "contact/ground/candidates.h"
 
@@ -14,14 +14,14 @@
 namespace rockfall
 {
 
-/// Of what an int holds: as std::floor, which is a call where the processor may be any.
+/// std::floor of what an int holds: that is a call where the processor may be any.
 inline int wholePart(double v)
 {
   const int towardsZero = int(v);
   return towardsZero - int(v < towardsZero);
 }
 
-/// What of the rock is at a low place.
+/// The part of the rock at a low place.
 struct LowFeature
 {
   int face = -1;   ///< Over the window's node (row, column).
@@ -35,6 +35,17 @@ inline bool isCutAlong(const HeightWindow& window, bool rising, int row, int col
 {
   return row >= 0 && column >= 0 && row + 1 < window.rows() && column + 1 < window.columns() &&
     window.isRising(row, column) == rising;
+}
+
+/// The nodes at the ends of a line of the grid; a rising cut begins in the south-west.
+struct GridLine
+{
+  int row0, column0, row1, column1;
+};
+inline GridLine gridLine(int family, int row, int column)
+{
+  return { row + (family == 3), column, row + (family == 0 || family == 2),
+    column + (family != 0) };
 }
 
 /// How much higher the middle of a line of the grid is than that between the nodes on its two
@@ -152,7 +163,7 @@ private:
     corner.gap = gap > corner.gap ? gap : corner.gap; // NaN is not
   }
 
-  /// Where a vertical line through a node enters the rock from below, over that node, m; ∞ if it
+  /// Height over a node at which the vertical through it enters the rock from below, m; ∞ if it
   /// misses it, or if that is no less than far(). `face`: through which.
   double entersAt(const Vec3& node, const std::vector<double>& rises, int& face) const
   {
@@ -330,10 +341,10 @@ private:
     {
       return;
     }
-    // Between two nodes, along y or along x; a rising cut begins in the south-west.
-    const int row0 = down + (family == 3), row1 = down + (family == 0 || family == 2);
+    const GridLine line = gridLine(family, down, column);
     const double beside = family == 0 ? y - down : x - column;
-    const double from = window_.z(row0, column), to = window_.z(row1, column + (family != 0));
+    const double from = window_.z(line.row0, line.column0);
+    const double to = window_.z(line.row1, line.column1);
     const double gap = place.z() - (from + beside * (to - from));
     const auto isSettled = [&] // by the two sides of the line
     {

@@ -99,9 +99,9 @@ public:
       this->visit(point, gap);
     }
   }
-  /// Of the known part of the ground.
+  /// Border of the known part of the ground.
   const GridBorder& border() const { return border_; }
-  /// What is known of the ground around that under a point of the rock.
+  /// Takes the gradients around what is under a point of the rock as known.
   void standOver(const HeightWindow& window, const Vec3& point, double gap)
   {
     if (!(gap >= 0.0))
@@ -155,7 +155,7 @@ private:
   {
     return std::min({ p.x() - west_, east_ - p.x(), p.y() - south_, north_ - p.y() }) + kOnBorder;
   }
-  /// Of a material point over the known part, `inside` of its border, m.
+  /// A visit of a material point over the known part, `inside` of its border, m.
   void closeNear(const Vec3& point, double gap, double inside)
   {
     const Motion motion = this->motionAt(point);
@@ -254,7 +254,7 @@ double timeToPlane(const PlacedBlock& rock, const BlockState& state, const Heigh
 namespace
 {
 
-/// Of a round body that is so far (m) over the ground.
+/// Time for a round body that is so far (m) over the ground, s.
 double timeOfRound(const PlacedBlock& rock, const BlockState& state, const HeightWindow& window,
   double gap, double gravity, double horizon)
 {

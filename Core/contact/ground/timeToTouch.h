@@ -24,14 +24,14 @@ double timeToClose(const PlacedBlock& rock, const BlockState& state, const Surfa
 /// where the two overlap.
 double timeToTouch(const PlacedBlock& rock, const BlockState& state, const HeightWindow& window,
   double gravity, double horizon);
-/// What a rock in flight over the window's ground has before it.
+/// Height and free time of a rock in flight over the window's ground.
 struct FlightLook
 {
   double gap;  ///< Height over the ground, along the vertical, m; < 0: it overlaps it.
   Vec3 lowest; ///< Where it is least, material point of the rock, m.
   double free; ///< Lower bound of the time without a touch, s.
 };
-/// As timeToTouch, and closer, where there is ground all over the window: around what is under a
+/// Time as of timeToTouch, and closer, where there is ground all over the window: around what is under a
 /// point of the rock (`near`, material, m) the slope's gradients are taken as they are there.
 FlightLook lookAhead(const PlacedBlock& rock, const BlockState& state, const HeightWindow& window,
   const Vec3& near, double gravity, double horizon);

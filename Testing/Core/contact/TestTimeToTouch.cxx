@@ -24,13 +24,13 @@ constexpr Shape kShapes4[] = { Shape::Cube, Shape::Tetrahedron, Shape::Icosahedr
   Shape::Eota221 };
 constexpr double kGround = 16.0; // m
 
-/// Of two times the area of the triangle of a → b and p in plan, m²: > 0 on the left.
+/// Twice the area of the triangle of a → b and p in plan, m²: > 0 on the left.
 double leftOf(const Vec3& a, const Vec3& b, const Vec3& p)
 {
   return (b.x() - a.x()) * (p.y() - a.y()) - (b.y() - a.y()) * (p.x() - a.x());
 }
 
-/// What of a polygon is on the left of a → b in plan.
+/// The part of a polygon that is on the left of a → b in plan.
 std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, const Vec3& a, const Vec3& b)
 {
   std::vector<Vec3> kept;
