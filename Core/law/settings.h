@@ -166,6 +166,11 @@ inline constexpr double kDeepestEntranceOfThin = 0.5;
 inline constexpr double kCandidateSlack = 0.05;
 /// The same of a rock among others with nothing of the slope near.
 inline constexpr double kFarCandidateSlack = 0.4;
+/// How far pairs are gathered beyond what may close in a step, at least, share of it. The same.
+inline constexpr double kCandidatesBeyond = 0.5;
+/// Part of that displacement by which they are gathered ahead of the rock, as it goes, so that they
+/// serve on the way there, too. 1: rounding may undo that; 0: they serve half as long.
+inline constexpr double kCandidatesAhead = 0.9;
 /// Displacement in r until the height of the ground under a rock among others is looked up again.
 inline constexpr double kGroundHeightBound = 4.0;
 /// Displacement over which heights are gathered in flight, in r or cells, whichever is larger.

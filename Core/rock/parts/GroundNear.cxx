@@ -1,5 +1,6 @@
 #include "rock/parts/GroundNear.h"
 
+#include "block/cayley.h"
 #include "contact/ground/clearance.h"
 #include "contact/ground/timeToTouch.h"
 #include "contact/pairs.h"
@@ -17,6 +18,20 @@ CandidatePairs& workSpace()
 {
   thread_local CandidatePairs pairs;
   return pairs;
+}
+
+/// Where the rock will be, as it goes now, when some point of it may have come `way` (m) far.
+BlockState onTheWay(const RockBody& body, double way)
+{
+  BlockState ahead = body.state;
+  const double speed = ahead.velocity.norm() + ahead.spin.norm() * body.block.radius();
+  if (speed > 0.0)
+  {
+    const double time = way / speed;
+    ahead.position += time * ahead.velocity;
+    ahead.orientation = (ahead.orientation * cayley(time * ahead.spin)).normalized();
+  }
+  return ahead;
 }
 
 } // namespace
@@ -120,9 +135,13 @@ void GroundNear::ensureCandidates(
     const double slack = among && candidates_.empty() ? kFarCandidateSlack : kCandidateSlack;
     // In a scar the ground moves under the rock as well.
     const double room = std::max(slack * body.block.radius(), depth_);
-    const double distance = std::max(2.0 * reach, reach + room);
-    this->ensurePatch(body, structures, distance);
-    gatherCandidates(body.placed, body.state, patch_, distance, candidates_);
+    const double beyond = std::max(kCandidatesBeyond * reach, room);
+    const double distance = reach + beyond, ahead = kCandidatesAhead * beyond;
+    this->ensurePatch(body, structures, distance + ahead);
+    const BlockState state = onTheWay(body, ahead);
+    thread_local PlacedBlock placed;
+    placed.place(body.block, state);
+    gatherCandidates(placed, state, patch_, distance, candidates_);
   }
 }
 
