@@ -96,6 +96,13 @@ bool flyFromContact(Fall& fall, double small)
     fall.impact.finish(body, fall.recorder);
     return true;
   }
+  if (fall.impulses && !fall.structures.solid() && body.state.time > fall.nearSince)
+  {
+    // A hop finds its next touch by itself.
+    body.contacts.clear();
+    endContact(fall);
+    return true;
+  }
   // Free until a pair closes, or until others than the candidates might.
   const double gravity = fall.parameters.gravity;
   const double room = fall.ground.candidates().room(body.state, body.block.radius(), 0.0);
@@ -203,6 +210,7 @@ void beginContact(Fall& fall)
     return;
   }
   fall.springs.beginContact(body);
+  fall.nearSince = body.state.time;
   body.steppedAs = StepKind::Lasting; // no impact's step to go by yet
   fall.openTime = body.ringing;
   fall.inContact = true;
@@ -227,12 +235,14 @@ void stayInContact(Fall& fall)
     const double speed = body.state.velocity.norm() + body.state.spin.norm() * r;
     const auto reachOf = [&](double h)
     { return kFasterApproach * speed * h + fall.parameters.gravity * h * h + 1e-6 * r; };
-    // A long step is worth a look only when what carries is at rest along its normal.
-    const bool calm = fall.springs.isCalm(body);
-    const double reach = reachOf(calm ? large : small);
+    // A long step is worth a look only when what carries is at rest along its normal: whether it is, is
+    // seen where it is now, as a point that slides has gone on since the last look.
+    const bool quiet = fall.springs.holdLittle(body);
+    const double reach = reachOf(quiet ? large : small);
     // What may close within the step: a gap that is not among the contacts has no spring in it.
     fall.ground.ensureCandidates(body, fall.structures, reach);
-    findContacts(fall, fall.ground.candidates(), reach, calm ? large : 0.0);
+    findContacts(fall, fall.ground.candidates(), reach, quiet ? large : 0.0);
+    const bool calm = quiet && fall.springs.carryAtRest(body);
     body.springEnergy = springEnergyOf(body.contacts); // what has gone shows as numerical
 
     // A long, damped step would swallow a rebound: it is taken only where nothing comes or goes.

@@ -107,17 +107,18 @@ bool SlopeSprings::mayLast(const RockBody& body, double h) const
   return any;
 }
 
-bool SlopeSprings::isCalm(const RockBody& body) const
+bool SlopeSprings::holdLittle(const RockBody& body) const
 {
   // At the turning point of an impact nothing moves either, but the springs hold its energy; at
   // rest they hold the weight's, ½ m v² with v = g √(m/p), several times that when the rock rolls.
   const double settled =
     body.restingSpeed + 4.0 * parameters_.gravity * std::sqrt(body.block.mass() * softness_);
   const double held = body.normalEnergy + (body.stiff ? 0.0 : strainEnergy(body.block, body.state));
-  if (held > 0.5 * body.block.mass() * settled * settled)
-  {
-    return false;
-  }
+  return held <= 0.5 * body.block.mass() * settled * settled;
+}
+
+bool SlopeSprings::carryAtRest(const RockBody& body) const
+{
   const Vec3 spin = body.state.angularVelocity();
   return std::all_of(body.contacts.begin(), body.contacts.end(),
     [&](const Contact& c)

@@ -34,7 +34,10 @@ public:
   double touchdownStep(const RockBody& body, double h) const;
   bool mayLast(const RockBody& body, double h) const; ///< A long, damped step is right.
 
-  bool isCalm(const RockBody& body) const; ///< Contacts that carry neither approach nor part.
+  /// Whether the springs hold no more than what rests on them.
+  bool holdLittle(const RockBody& body) const;
+  /// Whether contacts that carry neither approach nor part.
+  bool carryAtRest(const RockBody& body) const;
 
 private:
   double stoppingPenalty(const RockBody& body) const;     ///< Stiffness that stops it in time, N/m.
