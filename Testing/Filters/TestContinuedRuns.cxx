@@ -127,7 +127,7 @@ TEST_F(TestContinuedRuns, AtAnyTimeTheRockIsTaken)
   // In contact it presses the springs; a rock that stopped stays.
   this->Simulation->Update();
   bool touched = false;
-  for (double time = 0.0; time <= 10.0; time += 0.1)
+  for (double time = 0.0; time <= 10.0; time += 0.02)
   {
     SCOPED_TRACE(time);
     vtkNew<vtkPolyData> rocks;

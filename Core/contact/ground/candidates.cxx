@@ -62,7 +62,8 @@ double CandidatePairs::room(const BlockState& state, double radius, double reach
 {
   const double c = orientation.dot(state.orientation);
   const double turned = 2.0 * radius * std::sqrt(std::max(0.0, 1.0 - c * c));
-  return distance - reach - (state.position - position).norm() - turned;
+  const double strained = radius * (state.strain - strain).norm();
+  return distance - reach - (state.position - position).norm() - turned - strained;
 }
 
 double timeToClose(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
@@ -359,6 +360,7 @@ void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const Su
   candidates.distance = distance;
   candidates.position = state.position;
   candidates.orientation = state.orientation;
+  candidates.strain = state.strain;
   candidates.travel = RockTravel(rock);
   if (patch.nodeRows < 2)
   {

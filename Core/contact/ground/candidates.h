@@ -53,6 +53,7 @@ struct CandidatePairs
   double distance = -1.0;       ///< Within which they were gathered, m; < 0: not at all.
   Vec3 position = Vec3::Zero(); ///< Of the rock then.
   Quat orientation = Quat::Identity();
+  Eigen::Matrix<double, 6, 1> strain = Eigen::Matrix<double, 6, 1>::Zero();
 
   /// How much further the rock (of this radius) may move until a pair within `reach` of it might
   /// not be among them, m; < 0: it might not be now.
