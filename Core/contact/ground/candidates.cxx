@@ -311,15 +311,15 @@ void gatherPeak(const PlacedBlock& rock, const SurfacePatch& patch, int node, do
 }
 
 /// Vertices over the triangles of walls and obstacles. They have a far side, whose planes are above
-/// all of the rock: only what comes in from outside is a pair, and what is less deep than contacts
-/// ever are.
+/// all of the rock: only what comes in from outside is a pair, and what is less deep, where the rock
+/// is while they serve, than contacts ever are.
 void gatherVerticesAtObstacles(const PlacedBlock& rock, const SurfacePatch& patch, double distance,
   double turn, CandidatePairs& candidates)
 {
   const std::vector<Vec3>& vertices = rock.vertices();
   const Vec3 lower = rock.lower(), upper = rock.upper();
   const double wide = kBeyondConcave * distance;
-  const double deepest = kDeepestEntrance * rock.block().radius();
+  const double deepest = kDeepestEntrance * rock.block().radius() + distance;
   for (int i = patch.slopeTriangles; i < int(patch.triangles.size()); ++i)
   {
     const SurfacePatch::Triangle& t = patch.triangles[i];
