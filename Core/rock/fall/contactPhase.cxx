@@ -132,6 +132,26 @@ bool flyFromContact(Fall& fall, double small)
   return false;
 }
 
+/// What closes however the rock goes, share of r: what rounding may hide.
+constexpr double kHair = 1e-6;
+
+/// Lets go of open contacts whose own gaps do not close within a step: each is a row of its system.
+void forgetFarContacts(Fall& fall, double h)
+{
+  RockBody& body = fall.body;
+  const Vec3 spin = body.state.angularVelocity();
+  const double r = body.block.radius();
+  const double bend = fall.parameters.gravity + spin.squaredNorm() * r;
+  const double strains = body.state.strainRate.norm() * r;
+  std::erase_if(body.contacts,
+    [&](const Contact& c)
+    {
+      const double approach = approachOf(body.state, spin, c.point, c.normal) + strains;
+      return !c.closed() &&
+        c.gap() > (kFasterApproach * std::max(0.0, approach) + bend * h) * h + kHair * r;
+    });
+}
+
 /// One step of contact, halved until open–close settles: as far as steps that resolve an impact
 /// (`small`, s) whatever it takes, from there on as often as is asked for. Friction that is steep, as
 /// cohesion under small forces, has no balance in a step that resolves nothing; what is taken
@@ -232,13 +252,14 @@ void stayInContact(Fall& fall)
     {
       continue;
     }
-    const double speed = body.state.velocity.norm() + body.state.spin.norm() * r;
-    const auto reachOf = [&](double h)
-    { return kFasterApproach * speed * h + fall.parameters.gravity * h * h + 1e-6 * r; };
     // A long step is worth a look only when what carries is at rest along its normal: whether it is, is
     // seen where it is now, as a point that slides has gone on since the last look.
     const bool quiet = fall.springs.holdLittle(body);
-    const double reach = reachOf(quiet ? large : small);
+    const double ahead = quiet ? large : small;
+    const double speed =
+      body.state.velocity.norm() + (body.state.spin.norm() + body.state.strainRate.norm()) * r;
+    const double reach =
+      (kFasterApproach * speed + fall.parameters.gravity * ahead) * ahead + kHair * r;
     // What may close within the step: a gap that is not among the contacts has no spring in it.
     fall.ground.ensureCandidates(body, fall.structures, reach);
     findContacts(fall, fall.ground.candidates(), reach, quiet ? large : 0.0);
@@ -270,9 +291,8 @@ void stayInContact(Fall& fall)
     {
       kind = StepKind::Impact;
       h = std::min(h, small);
-      const double near = reachOf(h);
-      std::erase_if(body.contacts, [&](const Contact& c) { return !c.closed() && c.gap() > near; });
     }
+    forgetFarContacts(fall, h);
     // What gives way first changes the ground under the step, which is then looked at anew.
     if ((fall.structures.solid() && breakTrees(fall, h)) ||
       (fall.soil.yields() && followScar(fall, h)))

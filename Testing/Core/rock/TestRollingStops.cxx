@@ -25,6 +25,7 @@ constexpr double kSlenderness = 3.0;  // length of the prism over its width
 constexpr double kMostRolling = 10.0; // from the last bounce to rest, s
 constexpr double kMostWalking = 30.0; // s
 constexpr double kWalks = 1.5;        // m/s, and slower
+constexpr double kHair = 1e-3;        // m, by which a block is raised out of the ground at most
 
 /// A shape with its name.
 struct NamedShape
@@ -99,7 +100,7 @@ void expectRollingToStop(double slope, const std::vector<NamedShape>& shapes)
       {
         continue;
       }
-      const double slack = first->velocity.norm() * p.timeStep;
+      const double slack = kHair + first->velocity.norm() * p.timeStep;
       for (auto later = first; later != t.samples.end(); ++later)
       {
         const double fall = first->position.z() - later->position.z();
