@@ -67,7 +67,12 @@ Sample Recorder::makeSample(const BlockState& state, bool contact)
   s.velocity = state.velocity;
   s.angularVelocity = state.angularVelocity();
   s.kineticEnergy = rigidKineticEnergy(block_, state);
-  s.heightOverGround = heightOverGround(surface_, block_, state);
+  if (std::isnan(height_.overGround) || height_.position != state.position ||
+    height_.orientation.coeffs() != state.orientation.coeffs())
+  {
+    height_ = { state.position, state.orientation, heightOverGround(surface_, block_, state) };
+  }
+  s.heightOverGround = height_.overGround;
   s.contact = contact;
   TrajectorySummary& summary = trajectory_.summary;
   if (s.heightOverGround > summary.maxHeightOverGround)

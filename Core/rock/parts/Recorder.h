@@ -93,7 +93,15 @@ private:
   Vec3 last_ = Vec3::Zero();           ///< The last position reached.
   Knot knot_;                          ///< The last one.
   SampleKind jump_ = SampleKind::Knot; ///< Kind of the sample after a jump.
-  std::size_t audited_ = 0;            ///< Samples that have their audit.
+  /// Place and height of the last sample: that before an impact and that after it are at one.
+  struct Height
+  {
+    Vec3 position = Vec3::Zero();
+    Quat orientation = Quat::Identity();
+    double overGround = std::numeric_limits<double>::quiet_NaN(); ///< m; none yet
+  };
+  Height height_;
+  std::size_t audited_ = 0; ///< Samples that have their audit.
   Trajectory trajectory_;
 };
 
