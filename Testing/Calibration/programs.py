@@ -77,7 +77,8 @@ for more in ((), ("--mix", "--meadow", "--ground", "soil")):
     for row in rows:
         slope, drop, _, speed, jump, runout, reach, farthest, last = row
         assert 5 < speed < 80 and 0 < jump < 50 and runout > 5 and 20 < farthest <= reach < 60 and last > 5, row
-    assert abs(float(text.split()[-1]) - rows[3][5] / rows[2][5]) < 2e-3, text
+    ratio = float(text.split()[-1])  # of run-outs that are printed to a decimetre
+    assert abs(ratio * rows[2][5] - rows[3][5]) < 0.05 * (1 + ratio) + 5e-4 * rows[2][5], text
 text = said(LONG_SLOPES, "--iterations", "2", "--set", "endTime=30", "--jumps")
 rows = [[float(v) for v in re.findall(r"[\d.]+", line)] for line in text.splitlines()[1:]]
 assert [row[0] for row in rows] == [0.1, 1, 10, 100] and all(abs(r[3] - r[1] / r[2]) < 2e-3 for r in rows), text
