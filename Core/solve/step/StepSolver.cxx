@@ -212,7 +212,6 @@ template <int N>
 typename BlockStep<N>::Change BlockStep<N>::evaluate(const StepRequest& request, const VecN& d)
 {
   Change of;
-  of.way = d.template head<3>().norm(); // of what slides or rolls no gap may change
   const bool lasting = request.kind == StepKind::Lasting;
   for (Row& row : rows_)
   {

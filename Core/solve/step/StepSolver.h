@@ -113,7 +113,7 @@ private:
   {
     bool state = false; ///< Of any contact.
     double gap = 0.0;   ///< By how much at most, m.
-    double way = 0.0;   ///< The most by which the rock or a gap moves over the step, m.
+    double way = 0.0;   ///< The most by which a gap changes over the step, m.
   };
   /// Springs for the displacement D.
   Change evaluate(const StepRequest& request, const VecN& d);
