@@ -207,7 +207,7 @@ def sheet(view=None):
     display.NumberOfTicks, display.AxisColor, display.AxisLineWidth = 5, ink, 2.0
     _palette().AddLink("TextAnnotationColor", display.SMProxy, "AxisColor", True)  # as its text
     # Before the slope, where nothing hides it.
-    near, size = 0.5, 0.04 * high
+    near, size = 0.6, 0.04 * high
     foot = eye + near * (focus - eye - 0.36 * high * up + (0.5 * length + 0.06 * high) * right)
     arrow = simple.Arrow(registrationName="North", TipLength=0.4, TipRadius=0.16, ShaftRadius=0.05, TipResolution=24)
     display = simple.Show(arrow, view)
