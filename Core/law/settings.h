@@ -166,7 +166,8 @@ inline constexpr double kDeepestEntranceOfThin = 0.5;
 inline constexpr double kCandidateSlack = 0.05;
 /// The same of a rock among others with nothing of the slope near.
 inline constexpr double kFarCandidateSlack = 0.4;
-/// How far pairs are gathered beyond what may close in a step, at least, share of it. The same.
+/// Distance beyond what may close in a step in which pairs are gathered, too, at least, share of it.
+/// Larger: rarer searches over more pairs.
 inline constexpr double kCandidatesBeyond = 0.5;
 /// Part of that displacement by which they are gathered ahead of the rock, as it goes, so that they
 /// serve on the way there, too. 1: rounding may undo that; 0: they serve half as long.

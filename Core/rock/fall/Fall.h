@@ -50,7 +50,7 @@ struct Fall
   int struckAtOnce = 0;       ///< Such events since the rock last moved on.
   double openTime = 0.0;      ///< Since it touched, s.
   double horizon = 0.0;       ///< Up to which it is to advance, s.
-  double nearSince = 0.0;     ///< Contacts are looked for since then, s.
+  double nearSince = 0.0;     ///< Begin of the contact at hand, s.
   double freeUntil = 0.0;     ///< Nothing can be touched until then, after a take-off, s.
   std::uint64_t carrying = 0; ///< The features that carried in the last lasting step.
   SlopeSprings springs;

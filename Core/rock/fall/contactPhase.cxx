@@ -132,7 +132,7 @@ bool flyFromContact(Fall& fall, double small)
   return false;
 }
 
-/// What closes however the rock goes, share of r: what rounding may hide.
+/// Gap that may close however the rock goes, as rounding hides it, share of r.
 constexpr double kHair = 1e-6;
 
 /// Lets go of open contacts whose own gaps do not close within a step: each is a row of its system.

@@ -20,7 +20,7 @@ CandidatePairs& workSpace()
   return pairs;
 }
 
-/// Where the rock will be, as it goes now, when some point of it may have come `way` (m) far.
+/// State of the rock, as it goes now, when some point of it may have come `way` (m) far.
 BlockState onTheWay(const RockBody& body, double way)
 {
   BlockState ahead = body.state;
