@@ -12,14 +12,16 @@ def end_trace():
     simple.trace_of_study = smtrace.stop_trace()  # kept between two checks
     slope = simple.FindSource("Slope")
     assert slope.GroundModulus > 0.0, "the panel does not have the numbers of the preset"
-    simple.drawn_when_stopped = 0
-    simple.GetRenderView().GetRenderWindow().AddObserver("EndEvent", count_drawn)
+    simple.made_when_stopped = set()
+    simple.GetRenderView().GetRenderWindow().AddObserver("EndEvent", note_drawn)
 
 
-def count_drawn(_window, _event):
+def note_drawn(_window, _event):
+    """What the fall has made, each time that the window is drawn after Stop. It may be drawn more often."""
     fall = simple.FindSource("Fall")
     fall.UpdatePropertyInformation()
-    simple.drawn_when_stopped += fall.GetProperty("RunStatus").GetElement(0).startswith("stopped")
+    if fall.GetProperty("RunStatus").GetElement(0).startswith("stopped"):
+        simple.made_when_stopped.add(fall.GetClientSideObject().GetOutputDataObject(1).GetMTime())
 
 
 def stopped():
@@ -27,12 +29,14 @@ def stopped():
     fall.UpdatePropertyInformation()
     status = fall.GetProperty("RunStatus").GetElement(0)
     assert status.startswith("stopped"), status
-    made = fall[3].GetDataInformation().GetNumberOfRows()
-    assert 0 < made < ITERATIONS * ROCKS, made
+    rows = fall[3].GetDataInformation().GetNumberOfRows()
+    assert 0 < rows < ITERATIONS * ROCKS, rows
     paths = simple.FindSource("Paths").GetDataInformation().GetNumberOfCells()
-    assert paths == made, f"{paths} paths are drawn of {made}"
+    assert paths == rows, f"{paths} paths are drawn of {rows}"
     released = simple.FindSource("Line").FieldData
-    assert 0 < simple.drawn_when_stopped <= 2, f"drawn {simple.drawn_when_stopped} times after Stop"
+    # What was there when Stop was pressed, and the whole of it.
+    made = len(simple.made_when_stopped)
+    assert 0 < made <= 2, f"made {made} times after Stop"
     assert "RunGoesOn" not in [released[k].Name for k in range(len(released))], "the line has a part of the run"
 
 
