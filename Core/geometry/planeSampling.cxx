@@ -11,6 +11,9 @@ namespace rockfall
 namespace
 {
 
+/// Sides that are in the wrong order by no more have not crossed, m: places of corners are rounded.
+constexpr double kRounding = 1e-6;
+
 /// The piece that a share of all belongs to, and the place in it, 0 to 1.
 std::pair<std::size_t, double> pick(const std::vector<double>& cumulated, double share)
 {
@@ -25,13 +28,14 @@ std::pair<std::size_t, double> pick(const std::vector<double>& cumulated, double
 
 } // namespace
 
+struct PolygonSampler::Side
+{
+  double x0, y0, x1, y1; ///< y0 < y1
+  double at(double y) const { return x0 + (y - y0) / (y1 - y0) * (x1 - x0); }
+};
+
 PolygonSampler::PolygonSampler(const std::vector<std::vector<Vec3>>& rings)
 {
-  struct Side
-  {
-    double x0, y0, x1, y1; // y0 < y1
-    double at(double y) const { return x0 + (y - y0) / (y1 - y0) * (x1 - x0); }
-  };
   std::vector<Side> sides;
   std::vector<double> heights;
   for (const std::vector<Vec3>& ring : rings)
@@ -56,28 +60,57 @@ PolygonSampler::PolygonSampler(const std::vector<std::vector<Vec3>>& rings)
     [](const Side& a, const Side& b)
     { return std::tie(a.y0, a.x0, a.y1, a.x1) < std::tie(b.y0, b.x0, b.y1, b.x1); });
 
-  double area = 0.0;
   std::vector<const Side*> across; // sides that the slab at hand meets
   auto next = sides.begin();
   for (std::size_t k = 0; k + 1 < heights.size(); ++k)
   {
-    const double y0 = heights[k], y1 = heights[k + 1], middle = 0.5 * (y0 + y1);
+    const double y0 = heights[k], y1 = heights[k + 1];
     std::erase_if(across, [&](const Side* side) { return side->y1 <= y0; });
     for (; next != sides.end() && next->y0 <= y0; ++next)
     {
       across.push_back(&*next);
     }
+    this->addSlab(across, y0, y1);
+  }
+}
+
+void PolygonSampler::addSlab(std::vector<const Side*>& across, double y0, double y1)
+{
+  // Sides that cross have another order at one border than in the middle. Each pass takes the slab
+  // up to its lowest such crossing, found so far, and goes on above it.
+  std::vector<double> tops{ y1 };
+  for (double low = y0; !tops.empty();)
+  {
+    const double high = tops.back(), middle = 0.5 * (low + high);
     std::sort(across.begin(), across.end(),
       [&](const Side* a, const Side* b) { return a->at(middle) < b->at(middle); });
+    double cut = high;
+    for (std::size_t i = 0; i + 1 < across.size(); ++i)
+    {
+      const double below = across[i]->at(low) - across[i + 1]->at(low);
+      const double above = across[i]->at(high) - across[i + 1]->at(high);
+      const double crossing = low + below / (below - above) * (high - low);
+      if (std::max(below, above) > kRounding && crossing > low && crossing < cut)
+      {
+        cut = crossing;
+      }
+    }
+    if (cut < high)
+    {
+      tops.push_back(cut);
+      continue;
+    }
     for (std::size_t i = 0; i + 1 < across.size(); i += 2)
     {
       const Side &left = *across[i], &right = *across[i + 1];
-      const Trapezoid t{ y0, y1, left.at(y0), right.at(y0), left.at(y1), right.at(y1) };
-      area +=
-        0.5 * (y1 - y0) * (std::max(0.0, t.right0 - t.left0) + std::max(0.0, t.right1 - t.left1));
+      const Trapezoid t{ low, high, left.at(low), right.at(low), left.at(high), right.at(high) };
       trapezoids_.push_back(t);
-      cumulated_.push_back(area);
+      cumulated_.push_back(this->area() +
+        0.5 * (high - low) *
+          (std::max(0.0, t.right0 - t.left0) + std::max(0.0, t.right1 - t.left1)));
     }
+    low = high;
+    tops.pop_back();
   }
 }
 

@@ -12,8 +12,8 @@ namespace rockfall
 {
 
 /// Places of equal chance within rings in the x–y plane: what an odd number of them encloses, so
-/// that holes and several parts need no telling apart. The rings must neither cross themselves nor
-/// each other. Cut into trapezoids once; a place then costs a search in them.
+/// that holes and several parts need no telling apart, and rings may cross. Cut into trapezoids
+/// once, at the heights of corners and crossings; a place then costs a search in them.
 class PolygonSampler
 {
 public:
@@ -25,12 +25,16 @@ public:
   Eigen::Vector2d at(double u, double v, double w) const;
 
 private:
+  struct Side;
   struct Trapezoid
   {
     double y0, y1;        ///< m
     double left0, right0; ///< x at y0, m
     double left1, right1; ///< x at y1, m
   };
+  /// Takes what lies between two heights, m, of the sides that reach over both; sorts them.
+  void addSlab(std::vector<const Side*>& across, double y0, double y1);
+
   std::vector<Trapezoid> trapezoids_;
   std::vector<double> cumulated_; ///< Area up to and with each, m².
 };

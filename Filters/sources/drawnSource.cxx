@@ -159,6 +159,10 @@ std::vector<SourceRow> drawnRows(
     {
       corners.push_back(corners.front());
     }
+    if (geometry == SourceGeometry::Polygon)
+    {
+      requireValidOutline(corners, "Points: the drawn area is a POLYGON");
+    }
     SourceRow& row = rows.emplace_back();
     row.row = 1;
     row.geometry = geometry;

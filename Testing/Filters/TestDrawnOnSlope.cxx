@@ -75,6 +75,9 @@ TEST_F(TestDrawnOnSlope, LinesAndAreasHaveTheirAmount)
   EXPECT_EQ(this->Blocks()->GetNumberOfCells(), 7 * 6);
   this->Blocks()->GetBounds(b);
   EXPECT_GT(b[1] - b[0], 2.0);
+  this->Rocks->AddPoint(30, 50, 0); // across the first side
+  this->Blocks();
+  this->ExpectOneError({ "Points", "outline crosses or touches itself" });
   this->Rocks->AddPoint(60, 150, 0);
   this->Blocks();
   this->ExpectOneError({ "drawn point 60, 150", "outside the slope" });

@@ -1,6 +1,37 @@
 #include "gis/layers/lines.h"
 
-namespace rockfall::gis
+#include "base/errors.h"
+#include "gis/base/gdal.h"
+#include "gis/layers/sources.h"
+
+namespace rockfall
+{
+
+namespace
+{
+
+constexpr const char* kCrossed = " that is not valid: its outline crosses or touches itself";
+
+} // namespace
+
+void requireValidOutline(const std::vector<Vec3>& corners, const std::string& name)
+{
+  auto* ring = new OGRLinearRing; // the polygon's
+  for (const Vec3& corner : corners)
+  {
+    ring->addPoint(corner.x(), corner.y());
+  }
+  ring->closeRings();
+  OGRPolygon polygon;
+  polygon.addRingDirectly(ring);
+  const gis::Messages silent;
+  if (!polygon.IsValid())
+  {
+    throw DataError(name + kCrossed);
+  }
+}
+
+namespace gis
 {
 
 namespace
@@ -70,6 +101,15 @@ void CrossedOutlines::tell(const std::string& fileName, std::vector<std::string>
   }
 }
 
+void requireValidPolygon(const FeatureRow& row)
+{
+  const OGRGeometry& geometry = *row.geometry();
+  if (!geometry.IsValid())
+  {
+    row.fail(std::string("geometry is a ") + geometry.getGeometryName() + kCrossed);
+  }
+}
+
 std::vector<const OGRLineString*> ringsIn(const OGRGeometry& geometry)
 {
   std::vector<const OGRLineString*> rings;
@@ -89,4 +129,6 @@ std::vector<const OGRLineString*> ringsIn(const OGRGeometry& geometry)
   return rings;
 }
 
-} // namespace rockfall::gis
+} // namespace gis
+
+} // namespace rockfall

@@ -29,6 +29,10 @@ private:
   std::int64_t all_ = 0, count_ = 0, first_ = 0;
 };
 
+/// Throws DataError naming file and row if the outline of the row's polygon, or of one of them,
+/// crosses or touches itself.
+void requireValidPolygon(const FeatureRow& row);
+
 /// The rings of a polygon or of several. The geometry owns them.
 std::vector<const OGRLineString*> ringsIn(const OGRGeometry& geometry);
 

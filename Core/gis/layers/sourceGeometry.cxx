@@ -207,10 +207,9 @@ void SourcePlacing::placeParts(
     row.fail(std::string("geometry is a ") + geometry.getGeometryName() + " in degrees (" +
       crsLabel(*placed) + "); it needs the Terrain input, or a TargetCRS in metres");
   }
-  if (!line && !geometry.IsValid())
+  if (!line)
   {
-    row.fail(std::string("geometry is a ") + geometry.getGeometryName() +
-      " that is not valid: its outline crosses or touches itself");
+    requireValidPolygon(row);
   }
   for (const OGRLineString* curve : line ? linesIn(row) : ringsIn(geometry))
   {

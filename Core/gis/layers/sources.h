@@ -109,6 +109,10 @@ SourceLayer readSourceLayer(const std::string& fileName, const SourceOptions& op
 std::vector<SourceRow> readSources(
   const std::string& fileName, const std::string& targetCrs = {}, std::string* crs = nullptr);
 
+/// Throws DataError, which begins with `name`, if the outline of an area (x and y, closed or not)
+/// crosses or touches itself, as readSourceLayer does of a polygon. Prints nothing.
+void requireValidOutline(const std::vector<Vec3>& corners, const std::string& name);
+
 /// WKT2:2019 on one line of a CRS given as "EPSG:n", WKT or PROJ string, with its vertical part, if
 /// it has one, in metres upwards; empty for empty text.
 /// Throws DataError naming the text. Prints nothing.

@@ -125,7 +125,7 @@ std::vector<Tree> stemsOf(const Stand& stand, const FeatureRow& row, const Struc
   }
   catch (const DataError& error)
   {
-    row.fail(": " + std::string(error.what()));
+    row.fail(error.what());
   }
 }
 
@@ -136,7 +136,6 @@ std::size_t StructureReader::readTrees(std::span<const Stand> cells) const
   std::int64_t outside = 0;
   std::vector<Tree> grown;
   std::vector<Stand> stands;
-  CrossedOutlines crossed;
   LayerWish wish{ files.trees, files.treeLayer, "TreeLayerName" };
   wish.what = "layer of points, lines or polygons";
   wish.kinds = kPoints | kLines | kPolygons | kRows;
@@ -163,7 +162,7 @@ std::size_t StructureReader::readTrees(std::span<const Stand> cells) const
         const int material = own.of(row);
         if (kindOf(row.geometry()) == kPolygons && row.has("stems_ha"))
         {
-          crossed.look(*row.geometry(), count);
+          requireValidPolygon(row);
           stands.push_back(standOf(row, count, material, places));
           for (const Tree& tree : stemsOf(stands.back(), row, files))
           {
@@ -185,7 +184,6 @@ std::size_t StructureReader::readTrees(std::span<const Stand> cells) const
   if (cells.empty())
   {
     readLayer();
-    crossed.tell(files.trees, notes);
   }
   for (const Stand& cell : cells)
   {

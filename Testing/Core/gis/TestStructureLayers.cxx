@@ -538,13 +538,14 @@ TEST(StructureDoubts, StandsThatCrossThemselves)
     "WKT,stems_ha,dbh_mean,height\n" + area +
       ",500,30,20\n\"POLYGON((20 0,80 19,80 0,20 19,20 0))\",500,30,20\n");
   std::vector<std::string> notes;
-  readStructures(files, site(), notes);
-  EXPECT_TRUE(std::any_of(notes.begin(), notes.end(),
-    [](const std::string& note)
-    {
-      return note.find("1 of 2 polygons have an outline that crosses or touches itself, first row "
-                       "2. What it encloses twice is outside") != std::string::npos;
-    }));
+  EXPECT_EQ(messageOf<DataError>([&] { readStructures(files, site(), notes); }),
+    files.trees +
+      ", row 2: geometry is a POLYGON that is not valid: its outline crosses or touches itself");
+  files.trees = writeFile("dense.csv", "WKT,stems_ha,dbh_mean,height\n" + area + ",1e9,30,20\n");
+  EXPECT_TRUE(messageOf<DataError>(
+    [&] {
+      readStructures(files, site(), notes);
+    }).starts_with(files.trees + ", row 1: the stand has some"));
 }
 
 TEST(StructureDoubts, ALargeSurveyTakesNoTime)

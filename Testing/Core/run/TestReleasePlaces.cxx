@@ -7,6 +7,7 @@
 #include "slopes.h"
 
 #include <cmath>
+#include <numbers>
 
 using namespace rockfall;
 using namespace rockfall::testing;
@@ -102,6 +103,52 @@ TEST(PlaneSampling, triangleHeightsFollowTheWidth)
     EXPECT_NEAR(wedge.at(0.5, v, 0.5).y(), 6.0 * std::sqrt(v), 1e-12);
     EXPECT_NEAR(wedge.at(0.5, v, 1.0).x(), 3.0 * std::sqrt(v), 1e-12);
   }
+}
+
+TEST(PlaneSampling, sidesThatCrossBoundWhatIsBetweenThem)
+{
+  // A bow tie, its crossing at (15, 20) beside no corner; and a star of five points, whose middle,
+  // enclosed twice, is outside.
+  const PolygonSampler bow({ { at(0, 0), at(30, 40), at(30, 0), at(0, 40) } });
+  EXPECT_NEAR(bow.area(), 600.0, 1e-9);
+  Rings star(1);
+  for (int k = 0; k < 5; ++k)
+  {
+    const double angle = 0.3 + 0.8 * std::numbers::pi * k;
+    star.front().push_back(at(10.0 * std::cos(angle), 10.0 * std::sin(angle)));
+  }
+  const PolygonSampler points(star);
+  // With the radii R and r = R sin 18° / sin 54° of its ten corners: 5 R r sin 36° encloses once
+  // all, 5/2 r² sin 72° the middle.
+  const double inner = 10.0 * std::sin(std::numbers::pi / 10.0) / std::sin(0.3 * std::numbers::pi);
+  EXPECT_NEAR(points.area(),
+    50.0 * inner * std::sin(std::numbers::pi / 5.0) -
+      2.5 * inner * inner * std::sin(0.4 * std::numbers::pi),
+    1e-9);
+  const int n = 24;
+  for (int i = 0; i < n * n * n; ++i)
+  {
+    const auto number = [&](int k) { return (k % n + 0.5) / n; };
+    const Eigen::Vector2d p = bow.at((i + 0.5) / (n * n * n), number(i / n), number(i));
+    ASSERT_GE(std::abs(p.x() - 15.0) / 15.0, std::abs(p.y() - 20.0) / 20.0 - 1e-9) << p.transpose();
+    const Eigen::Vector2d q = points.at((i + 0.5) / (n * n * n), number(i / n), number(i));
+    ASSERT_GE(q.norm(), inner * std::cos(std::numbers::pi / 5.0) - 1e-9) << q.transpose();
+  }
+}
+
+TEST(PlaneSampling, outlinesThatCrossThemselvesAreRefused)
+{
+  const auto refusal = [](const std::vector<Vec3>& corners)
+  {
+    return messageOf<DataError>(
+      [&] { requireValidOutline(corners, "Points: the area is a POLYGON"); });
+  };
+  const std::string said =
+    "Points: the area is a POLYGON that is not valid: its outline crosses or touches itself";
+  EXPECT_EQ(refusal({ at(0, 0), at(30, 40), at(30, 0), at(0, 40) }), said);
+  EXPECT_EQ(refusal({ at(0, 0), at(9, 0), at(9, 9), at(0, 0), at(9, 0), at(9, 9) }), said);
+  EXPECT_NO_THROW(requireValidOutline({ at(0, 0), at(30, 0), at(30, 40), at(0, 40) }, "Points"));
+  EXPECT_NO_THROW(requireValidOutline(holedL(1000, 2000).front(), "Points"));
 }
 
 TEST(PlaneSampling, lineByItsLengthInPlan)
