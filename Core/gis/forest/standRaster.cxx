@@ -3,16 +3,20 @@
 #include "base/abort.h"
 #include "base/errors.h"
 #include "base/hectare.h"
+#include "base/text/columnName.h"
+#include "base/text/nameKey.h"
 #include "base/text/numberText.h"
 #include "gis/base/gdal.h"
 #include "gis/base/progress.h"
 #include "gis/raster/groundCells.h"
 #include "gis/raster/rasterPlace.h"
+#include "gis/trust/bandScale.h"
 #include "terrain/Terrain.h"
 #include "terrain/plausible.h"
 
 #include <gdal_priv.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -39,6 +43,37 @@ constexpr std::array<Band, 5> kBands = { { { "stems_ha", "", 1e5 },
   { "dbh_mean", " cm", plausible::kStemDiameter.refused / cm }, { "height", " m", 200.0 },
   { "dbh_dev", " cm", plausible::kStemDiameter.refused / cm }, { "conifers", " %", 100.0 } } };
 
+/// "stems_ha, dbh_mean, height, dbh_dev, conifers"
+std::string bandNames()
+{
+  std::string names;
+  for (const Band& band : kBands)
+  {
+    names += (names.empty() ? "" : ", ") + std::string(band.name);
+  }
+  return names;
+}
+
+/// Throws DataError if a band is called by the name of another place. Other names say nothing.
+void requirePlacesOfNames(GDALDataset& dataset, const std::string& fileName)
+{
+  for (int b = 0; b < dataset.GetRasterCount(); ++b)
+  {
+    const char* written = dataset.GetRasterBand(b + 1)->GetDescription();
+    std::string name = ColumnName(written ? written : "").name;
+    std::replace(name.begin(), name.end(), ' ', '_');
+    for (int other = 0; other < int(kBands.size()); ++other)
+    {
+      if (other != b && nameKey(name) == kBands[std::size_t(other)].name)
+      {
+        throw DataError(fileName + ": band " + std::to_string(b + 1) + " is called \"" + written +
+          "\", but band " + std::to_string(b + 1) + " of a raster of stands is " +
+          kBands[std::size_t(b)].name + "; its bands are " + bandNames() + ", in this order");
+      }
+    }
+  }
+}
+
 /// Tables may look like grids of points to GDAL.
 bool isRaster(const std::string& fileName)
 {
@@ -54,7 +89,8 @@ bool isRaster(const std::string& fileName)
 class Rows
 {
 public:
-  Rows(GDALDataset& dataset, const std::string& fileName, Messages& messages)
+  Rows(GDALDataset& dataset, const std::string& fileName, Messages& messages,
+    std::vector<std::string>& notes)
     : dataset_(dataset)
     , fileName_(fileName)
     , messages_(messages)
@@ -64,6 +100,15 @@ public:
     for (std::vector<double>& band : values_)
     {
       band.resize(mask_.size());
+    }
+    for (std::size_t b = 0; b < values_.size(); ++b)
+    {
+      scales_.push_back(bandScale(*dataset.GetRasterBand(int(b) + 1), fileName));
+      if (scales_.back().changes())
+      {
+        notes.push_back(fileName + ": " + scales_.back().text() + " of band " +
+          std::to_string(b + 1) + " (" + kBands[b].name + ") were applied.");
+      }
     }
   }
 
@@ -81,7 +126,7 @@ public:
       }
       for (std::size_t k = 0; k < mask_.size(); ++k)
       {
-        values_[b][k] = mask_[k] == 0 ? kNothing : values_[b][k];
+        values_[b][k] = mask_[k] == 0 ? kNothing : scales_[b].of(values_[b][k]);
       }
     }
   }
@@ -116,6 +161,7 @@ private:
   Messages& messages_;
   int row_ = 0;
   std::vector<std::vector<double>> values_;
+  std::vector<BandScale> scales_;
   std::vector<std::uint8_t> mask_;
 };
 
@@ -168,6 +214,7 @@ std::vector<Stand> readStandRaster(
       "; a raster of stands has stems_ha, dbh_mean (cm), and if known height (m), dbh_dev (cm), "
       "conifers (%), in this order");
   }
+  requirePlacesOfNames(*source, fileName);
   const RasterPlace place = placeOfCells(*source, fileName, notes);
   const Cells cells(terrain);
   noteCrs(place.crs, cells, fileName, notes);
@@ -181,7 +228,7 @@ std::vector<Stand> readStandRaster(
     return known ? Vec3(x - origin.x(), y - origin.y(), 0.0) : Vec3(kNothing, kNothing, 0.0);
   };
   const int columns = source->GetRasterXSize();
-  Rows rows(*source, fileName, messages);
+  Rows rows(*source, fileName, messages, notes);
   bool over = false;
   double stemsOfAll = 0.0;
   for (int row = 0; row < source->GetRasterYSize(); ++row)

@@ -7,6 +7,7 @@
 #include "gis/base/progress.h"
 #include "gis/raster/rasterPlace.h"
 #include "gis/raster/resample.h"
+#include "gis/trust/bandScale.h"
 #include "gis/trust/unitDoubt.h"
 
 #include <cpl_string.h>
@@ -228,10 +229,22 @@ std::vector<std::uint8_t> fromRaster(const GroundFiles& files, const std::string
         (messages.failure().empty() ? "" : " (" + messages.failure() + ")"),
       cells);
   }
+  const BandScale scale = bandScale(*source->GetRasterBand(1), files.layer);
+  if (scale.changes())
+  {
+    notes.push_back(files.layer + ": the band's " + scale.text() + " were applied to its classes.");
+  }
   char** categories = source->GetRasterBand(1)->GetCategoryNames();
 
   std::vector<std::uint8_t> classes(std::size_t(cells.columns) * cells.rows, 0);
   std::unordered_map<double, int> known;
+  // Of a number that is changed: its class, a whole number but for the rounding of 0.1.
+  const auto classOf = [&](double value)
+  {
+    const double of = scale.of(value), whole = std::round(of);
+    return scale.changes() && std::abs(of - whole) <= 1e-9 * std::max(1.0, std::abs(of)) ? whole
+                                                                                         : of;
+  };
   const auto rowOf = [&](double value)
   {
     const auto found = known.find(value);
@@ -239,7 +252,8 @@ std::vector<std::uint8_t> fromRaster(const GroundFiles& files, const std::string
     {
       return found->second;
     }
-    int row = table.rowOf(exactly(value));
+    const double number = classOf(value);
+    int row = scale.changes() && number != std::round(number) ? 0 : table.rowOf(exactly(number));
     if (row == 0 && categories && value >= 0.0 && value < CSLCount(categories))
     {
       row = table.rowOf(categories[int(value)]);
@@ -263,8 +277,15 @@ std::vector<std::uint8_t> fromRaster(const GroundFiles& files, const std::string
       const int row = rowOf(value[i]);
       if (row == 0 && cells.hasGround(cell))
       {
+        const double number = classOf(value[i]);
+        if (scale.changes() && number != std::round(number))
+        {
+          throw DataError(files.layer + ": class " + exactly(value[i]) + " (in the cell at " +
+            cells.place(cell) + ") with " + scale.text() + " is " + gis::number(number) +
+            ", it must be a whole number");
+        }
         failClass(files.layer,
-          "class " + exactly(value[i]) + " (in the cell at " + cells.place(cell) + ")", files.table,
+          "class " + exactly(number) + " (in the cell at " + cells.place(cell) + ")", files.table,
           table);
       }
       classes[std::size_t(cell)] = std::uint8_t(row);

@@ -3,6 +3,7 @@
 #include "base/errors.h"
 #include "base/text/columnName.h"
 #include "base/text/nameKey.h"
+#include "gis/trust/bandScale.h"
 #include "gis/trust/headers.h"
 #include "gis/trust/heightReference.h"
 #include "gis/trust/heightUnit.h"
@@ -110,20 +111,12 @@ private:
 
   void findScale()
   {
-    int has = 0;
-    const double scale = band_.GetScale(&has);
-    heights_.scale = has ? scale : 1.0;
-    const double offset = band_.GetOffset(&has);
-    heights_.offset = has ? offset : 0.0;
-    if (!std::isfinite(heights_.scale) || heights_.scale == 0.0 || !std::isfinite(heights_.offset))
+    const BandScale own = bandScale(band_, fileName_);
+    heights_.scale = own.scale;
+    heights_.offset = own.offset;
+    if (own.changes())
     {
-      throw DataError(fileName_ + ": band " + std::to_string(band_.GetBand()) + " has scale " +
-        number(heights_.scale) + " and offset " + number(heights_.offset));
-    }
-    if (heights_.scale != 1.0 || heights_.offset != 0.0)
-    {
-      notes_.push_back("The band's scale " + number(heights_.scale) + " and offset " +
-        number(heights_.offset) + " were applied.");
+      notes_.push_back("The band's " + own.text() + " were applied.");
     }
     const Header saga = sagaHeader(dataset_);
     if (saga.count("z_factor"))

@@ -310,6 +310,29 @@ TEST(Ground, PolygonsThatOverlapOrCrossThemselvesAreTold)
     std::string::npos);
 }
 
+TEST(Ground, ClassesHaveTheScaleAndOffsetOfTheirBand)
+{
+  const Terrain terrain = slope();
+  const std::string classes = table("class,name,rv\n1,rock,0.9\n2,talus,0.5\n11,scree,0.4\n"
+                                    "12,meadow,0.3\n");
+  RawRaster raster = halves();
+  raster.band = "<Offset>10</Offset><Scale>1</Scale>";
+  std::vector<std::string> notes;
+  const MaterialClasses c =
+    read({ raster.write(), classes, "" }, terrain, GroundKind::Restitution, &notes);
+  EXPECT_EQ(std::set<int>(c.cells.begin(), c.cells.end()), (std::set<int>{ 3, 4 }));
+  EXPECT_TRUE(
+    holds(joined(notes), { "the band's scale 1 and offset 10 were applied to its classes" }));
+  raster = halves(10.0, 110.0);
+  raster.band = "<Scale>0.1</Scale>"; // 0.1 × 110 is no whole number in doubles
+  const MaterialClasses tenths = read({ raster.write(), classes, "" }, terrain);
+  EXPECT_EQ(std::set<int>(tenths.cells.begin(), tenths.cells.end()), (std::set<int>{ 1, 3 }));
+  raster = halves(10.0, 15.0);
+  raster.band = "<Scale>0.1</Scale>";
+  EXPECT_TRUE(holds(failure({ raster.write(), classes, "" }),
+    { "class 15 (in the cell at 600045", "with scale 0.1 and offset 0 is 1.5", "whole number" }));
+}
+
 TEST(Ground, PolygonsInDegrees)
 {
   // A box around all of the slope, in longitude and latitude.

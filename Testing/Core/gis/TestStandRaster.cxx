@@ -26,7 +26,7 @@ Terrain site()
 using Bands = std::vector<std::vector<float>>;
 
 /// ENVI's raw bands, the north-western corner at −10, 110 + `north`.
-std::string raster(const Bands& bands, double north = 0.0)
+std::string raster(const Bands& bands, double north = 0.0, const std::string& header = "")
 {
   const std::string name = writeFile("stands.img", "");
   std::ofstream out(name, std::ios::binary);
@@ -39,7 +39,7 @@ std::string raster(const Bands& bands, double north = 0.0)
     "ENVI\nsamples = 12\nlines = 12\nbands = " + std::to_string(bands.size()) +
       "\nheader offset = 0\nfile type = ENVI Standard\ndata type = 4\ninterleave = bsq\n"
       "byte order = 0\ndata ignore value = -1\nmap info = {Arbitrary, 1, 1, -10, " +
-      std::to_string(110.0 + north) + ", 10, 10}\n");
+      std::to_string(110.0 + north) + ", 10, 10}\n" + header);
   return name;
 }
 
@@ -55,10 +55,10 @@ StructureFiles treesOf(const std::string& name)
   return files;
 }
 
-std::string messageOf(const Bands& bands, double north = 0.0)
+std::string messageOf(const Bands& bands, double north = 0.0, const std::string& header = "")
 {
   std::vector<std::string> notes;
-  const std::string name = raster(bands, north);
+  const std::string name = raster(bands, north, header);
   try
   {
     readStructures(treesOf(name), site(), notes, readStandRaster(name, site(), notes));
@@ -112,6 +112,38 @@ TEST(StandRaster, EveryCellGrowsItsStems)
   ASSERT_EQ(again.trees.size(), s.trees.size());
   EXPECT_EQ(again.trees.back().position, s.trees.back().position);
   EXPECT_EQ(again.trees.back().diameter, s.trees.back().diameter);
+}
+
+TEST(StandRaster, ScaleAndOffsetOfBands)
+{
+  const std::string name = raster({ all(1500.0), all(200.0), all(25.0) }, 0.0,
+    "data gain values = {0.1, 0.1, 1}\ndata offset values = {0, 12, 0}\n");
+  std::vector<std::string> notes;
+  const std::vector<Stand> stands = readStandRaster(name, site(), notes);
+  ASSERT_FALSE(stands.empty());
+  EXPECT_NEAR(stands[0].stemsPerHectare, 150.0, 1e-9);
+  EXPECT_NEAR(stands[0].diameterMean, 0.32, 1e-12);
+  EXPECT_EQ(stands[0].height, 25.0);
+  const std::vector<std::string> told{ name +
+      ": scale 0.1 and offset 0 of band 1 (stems_ha) were applied.",
+    name + ": scale 0.1 and offset 12 of band 2 (dbh_mean) were applied." };
+  EXPECT_EQ(notes, told);
+  EXPECT_NE(messageOf({ all(400.0), all(30.0) }, 0.0, "data gain values = {0, 1}\n")
+              .find("band 1 has scale 0 and offset 0"),
+    std::string::npos);
+}
+
+TEST(StandRaster, BandsThatAreCalledByTheNameOfAnotherPlace)
+{
+  const Bands bands{ all(150.0), all(20.0), all(32.0) };
+  const auto named = [&](const std::string& names)
+  { return messageOf(bands, 0.0, "band names = {" + names + "}\n"); };
+  EXPECT_TRUE(named("stems_ha, Height (m), dbh_mean")
+                .ends_with(": band 2 is called \"Height (m)\", but band 2 of a raster of stands is "
+                           "dbh_mean; its bands are stems_ha, dbh_mean, height, dbh_dev, conifers, "
+                           "in this order"));
+  EXPECT_EQ(named("Stems_ha, DBH mean, height"), "");
+  EXPECT_EQ(named("density, diameter, canopy"), "");
 }
 
 TEST(StandRaster, ATableIsNoRaster)
