@@ -7,6 +7,7 @@
 #include "gis/trust/headers.h"
 #include "gis/trust/heightReference.h"
 #include "gis/trust/heightUnit.h"
+#include "gis/trust/sourceUnits.h"
 
 #include <cpl_conv.h>
 #include <gdal_priv.h>
@@ -75,6 +76,10 @@ public:
         "; correct one of them, e.g. gdal_edit.py -units, or gdal_translate -a_srs");
     }
     double metres = unit ? *unit : axis ? axis->metres : 1.0;
+    if (!unit)
+    {
+      requireUnitOfSources(dataset_, band_, metres, fileName_);
+    }
     if (metres != 1.0)
     {
       notes_.push_back(unit

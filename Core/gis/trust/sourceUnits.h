@@ -1,0 +1,24 @@
+#pragma once
+
+/// @file
+/// Units of the rasters that a virtual one is made of: programs that join tiles drop them.
+/// Internal to gis/.
+
+#include <string>
+
+class GDALDataset;
+class GDALRasterBand;
+
+namespace rockfall::gis
+{
+
+/// Sources of which the unit is asked: each is opened for it.
+inline constexpr int kMostSources = 500;
+
+/// Throws DataError, naming both files and units, if heights of a source are in another unit than
+/// `metres` (m per unit), the one that a virtual band without a unit of its own has. Of sources
+/// whose numbers the virtual raster changes, and beyond the first `kMostSources`, nothing is asked.
+void requireUnitOfSources(
+  GDALDataset& dataset, GDALRasterBand& band, double metres, const std::string& fileName);
+
+} // namespace rockfall::gis
