@@ -3,6 +3,7 @@
 #include "base/detachedCall.h"
 #include "base/require.h"
 #include "gis/layers/fileContent.h"
+#include "gis/raster/contourCrossings.h"
 #include "gis/raster/contourLevels.h"
 #include "gis/raster/contourLines.h"
 #include "gis/raster/metric.h"
@@ -287,9 +288,12 @@ RasterSurface readContours(const std::string& fileName, const ContourOptions& op
   UnitedPoints united = detachedCall(
     [points = pointsOf(contours, x0, y0, grid.cellSize, options, fileName, zeros), x0, y0]
     { return unite(points, x0, y0); });
-  if (!united.note.empty())
+  for (const std::string& note : { united.note, crossingsNote(contours) })
   {
-    result.notes.push_back(united.note);
+    if (!note.empty())
+    {
+      result.notes.push_back(note);
+    }
   }
   const std::size_t pointCount = united.points.x.size();
   TinNodes nodes = interpolateTin(std::move(united.points), grid, box.xMin - x0, box.yMin - y0,

@@ -525,3 +525,79 @@ TEST(ContourErrors, WhatIsNoLayerOfLines)
   EXPECT_TRUE(
     holds(messageOf<FileError>([&] { readContours(text); }), { text, "not a vector layer" }));
 }
+
+namespace
+{
+
+/// Lines of 600 m and less, 8 m lower every 10 m to the east, each with a vertex at y = 50.
+std::vector<Contour> eastward()
+{
+  std::vector<Contour> contours;
+  for (int i = 0; i < 15; ++i)
+  {
+    const double x = east + 10.0 * i;
+    contours.push_back(
+      { 600.0 - 8.0 * i, { { x, north }, { x + 1.0, north + 50.0 }, { x, north + 100.0 } } });
+  }
+  return contours;
+}
+
+std::string notesOf(const std::vector<Contour>& contours)
+{
+  return joined(readContours(geoJson(contours), { .cellSize = 5.0 }).notes);
+}
+
+} // namespace
+
+TEST(ContourCrossings, AreToldWithTheirFirstPlace)
+{
+  std::vector<Contour> contours = eastward();
+  EXPECT_EQ(notesOf(contours).find("cross"), std::string::npos);
+  // 13 of 14 lines of another height that it crosses between their vertices; the fifteenth is met
+  // at a vertex of both. x = 600000.9 m at y = 5100055 m is on the first line.
+  contours.push_back({ 560.0, { { east - 5.0, north + 55.0 }, { east + 135.0, north + 55.0 } } });
+  EXPECT_TRUE(holds(notesOf(contours),
+    { "Contours of different heights cross at 13 places, the first of 560 m and 600 m at 600000.9, "
+      "5100055; " }));
+  contours.back().points = { { east + 1.0, north + 50.0 }, { east - 8.0, north + 80.0 } };
+  const std::string met = notesOf(contours); // at a vertex of the first line
+  EXPECT_TRUE(holds(met, { "meet at 1 vertices, the first of 560 m and 600 m" }));
+  EXPECT_EQ(met.find("cross"), std::string::npos);
+}
+
+TEST(ContourCrossings, AllOfABruteForceCount)
+{
+  // Waves of 20 heights that cross each other; the count over all pairs of segments.
+  std::vector<Contour> contours;
+  for (int i = 0; i < 20; ++i)
+  {
+    Contour wave{ 500.0 + 5.0 * i, {} };
+    for (int k = 0; k <= 97; ++k)
+    {
+      const double x = 3.1 * k;
+      wave.points.push_back(
+        { east + x, north + 7.3 * i + 6.0 * std::sin(0.05 * x * (1.0 + 0.11 * i)) });
+    }
+    contours.push_back(wave);
+  }
+  const auto left = [](const Point& a, const Point& b, const Point& c)
+  { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x) > 0.0; };
+  int count = 0;
+  for (std::size_t i = 0; i < contours.size(); ++i)
+  {
+    for (std::size_t j = 0; j < i; ++j)
+    {
+      const std::vector<Point>&p = contours[i].points, &q = contours[j].points;
+      for (std::size_t k = 1; k < p.size(); ++k)
+      {
+        for (std::size_t l = 1; l < q.size(); ++l)
+        {
+          count += left(p[k - 1], p[k], q[l - 1]) != left(p[k - 1], p[k], q[l]) &&
+            left(q[l - 1], q[l], p[k - 1]) != left(q[l - 1], q[l], p[k]);
+        }
+      }
+    }
+  }
+  ASSERT_GT(count, 20);
+  EXPECT_TRUE(holds(notesOf(contours), { "cross at " + std::to_string(count) + " places" }));
+}
