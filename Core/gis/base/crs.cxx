@@ -1,6 +1,7 @@
 #include "gis/base/crs.h"
 
 #include "base/errors.h"
+#include "base/text/nameKey.h"
 #include "gis/base/planAccuracy.h"
 
 #include <cpl_conv.h>
@@ -33,8 +34,15 @@ std::shared_ptr<OGRSpatialReference> empty()
 
 } // namespace
 
-CrsPtr horizontalCrs(const OGRSpatialReference* crs)
+const OGRSpatialReference* definedCrs(const OGRSpatialReference* crs)
 {
+  const char* const name = crs ? crs->GetName() : nullptr;
+  return name && nameKey(name).starts_with("undefined") ? nullptr : crs;
+}
+
+CrsPtr horizontalCrs(const OGRSpatialReference* given)
+{
+  const OGRSpatialReference* const crs = definedCrs(given);
   if (!crs || crs->IsEmpty())
   {
     return nullptr;

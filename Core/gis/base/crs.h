@@ -16,7 +16,10 @@ namespace rockfall::gis
 /// Null for a local system.
 using CrsPtr = std::shared_ptr<const OGRSpatialReference>;
 
-/// A copy without its vertical part; null stays null.
+/// Null for an undefined system, which formats without a word for "none" have in its place: a
+/// GeoPackage "Undefined geographic SRS" (srs_id 0) and "Undefined Cartesian SRS" (−1). Else `crs`.
+const OGRSpatialReference* definedCrs(const OGRSpatialReference* crs);
+/// A copy without its vertical part; null for null and for an undefined system.
 CrsPtr horizontalCrs(const OGRSpatialReference* crs);
 CrsPtr crsFromEpsg(int code);
 /// From WKT of either version, "EPSG:2056", a PROJ string. Throws DataError naming `text`.

@@ -12,7 +12,8 @@ LayerPlaces::LayerPlaces(const std::string& fileName, const LayerHeights& height
 {
   if (heights.horizontal && !targetCrs.empty())
   {
-    change_ = layerChange(fileName, heights.horizontal, crsFromText(targetCrs), notes);
+    target_ = crsFromText(targetCrs);
+    change_ = layerChange(fileName, heights.horizontal, target_, notes);
   }
 }
 
@@ -20,10 +21,14 @@ Eigen::Vector2d LayerPlaces::at(const FeatureRow& row, double x, double y)
 {
   doubt.place(row, x, y);
   Eigen::Vector2d place = Eigen::Vector2d(x, y) * heights_.plane;
-  if (!place.allFinite() || !change_.forth(1, &place.x(), &place.y()))
+  if (!place.allFinite())
   {
-    row.fail("the point " + number(x) + ", " + number(y) +
-      " cannot be brought to the coordinates of " + of_);
+    row.fail("the point " + number(x) + ", " + number(y) + " is not finite");
+  }
+  if (!change_.forth(1, &place.x(), &place.y()))
+  {
+    row.fail("the point " + number(x) + ", " + number(y) + " cannot be brought from " +
+      crsLabel(*heights_.horizontal) + " to " + crsLabel(*target_) + ", the CRS of " + of_);
   }
   least = least.cwiseMin(place);
   most = most.cwiseMax(place);

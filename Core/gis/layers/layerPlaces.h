@@ -38,6 +38,7 @@ public:
 
 private:
   const LayerHeights& heights_;
+  CrsPtr target_; ///< Null if there is none.
   const char* of_;
   CrsChange change_;
 };

@@ -66,7 +66,7 @@ void noteUnits(GDALDataset& source, const RasterPlace& place, const Cells& cells
   const std::string& fileName, std::vector<std::string>& notes)
 {
   LayerHeights said;
-  said.planeDeclared = source.GetSpatialRef() != nullptr || place.metres != 1.0;
+  said.planeDeclared = definedCrs(source.GetSpatialRef()) != nullptr || place.metres != 1.0;
   UnitDoubt doubt(said, cells.terrain.geometry().fileUnits);
   doubt.place(fileName, place.affine[0], place.affine[3]);
   doubt.tell(notes);

@@ -318,7 +318,7 @@ void LayerHeights::tell(std::vector<std::string>& notes) const
 LayerHeights heightsOf(GDALDataset& dataset, OGRLayer& layer, const std::string& fileName,
   std::vector<std::string>& notes)
 {
-  const OGRSpatialReference* crs = layer.GetSpatialRef();
+  const OGRSpatialReference* crs = definedCrs(layer.GetSpatialRef());
   LayerHeights heights;
   heights.horizontal = horizontalCrs(crs);
   heights.reference = heightCrs(crs);

@@ -397,4 +397,21 @@ TEST(Raster, decimalCommasInAnAsciiGrid)
 
 } // namespace
 
+TEST(Raster, AnUndefinedCrsIsNone)
+{
+  RawRaster raster = smallRaster();
+  for (const char* crs :
+    { "GEOGCS[\"Undefined geographic SRS\",DATUM[\"unknown\",SPHEROID[\"unknown\","
+      "6378137,298.257223563]],PRIMEM[\"Greenwich\",0],UNIT[\"degree\","
+      "0.0174532925199433]]",
+      "LOCAL_CS[\"Undefined Cartesian SRS\",UNIT[\"Meter\",1]]" })
+  {
+    raster.crs = crs;
+    const RasterSurface surface = readRaster(raster.write());
+    EXPECT_TRUE(surface.geometry.crs.empty());
+    EXPECT_EQ(surface.geometry.xOrigin, 600005.0);
+    EXPECT_TRUE(holds(joined(surface.notes), { "The file has no CRS" }));
+  }
+}
+
 } // namespace rockfall

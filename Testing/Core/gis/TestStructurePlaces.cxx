@@ -3,6 +3,8 @@
 
 #include "base/errors.h"
 #include "gis/base/crs.h"
+#include "gis/layers/layerWriter.h"
+#include "gis/layers/lineLayer.h"
 #include "gis/layers/structureLayers.h"
 #include "gisFiles.h"
 #include "slopes.h"
@@ -206,6 +208,42 @@ TEST(StructurePlaces, WithoutACrsCoordinatesAreTakenAsTheyAre)
   EXPECT_TRUE(holds(errorOf(files, site("")),
     { files.embankments, "does not overlap the terrain: it spans x 9.000",
       "the terrain x 499900" }));
+}
+
+/// GDAL gives layers of a GeoPackage without a CRS the undefined one of degrees.
+TEST(StructurePlaces, AGeoPackageWithoutACrsIsAsATable)
+{
+  StructureFiles files;
+  files.barriers = pathOf("nets.gpkg");
+  LayerWriter writer(files.barriers, "");
+  writer.beginLayer("nets", LayerWriter::Geometry::MeasuredLine,
+    { { "height", FieldType::Real }, { "capacity", FieldType::Real } });
+  const std::vector<Vec3> places{ { kEast - 20.0, kNorth - 80.0, 0.0 },
+    { kEast - 20.0, kNorth + 80.0, 0.0 } };
+  const std::vector<double> measures{ 0.0, 1.0 };
+  const std::vector<FieldValue> values{ 4.0, 1000.0 };
+  writer.add(places, measures, values);
+  writer.commit();
+  std::vector<std::string> notes;
+  const Structures s = readStructures(files, site(), notes);
+  ASSERT_EQ(s.barriers.size(), 1u);
+  EXPECT_EQ(s.barriers[0].points[0], Vec2(0.5 * kSize - 20.0, 0.5 * kSize - 80.0));
+  const std::vector<LayerLine> lines =
+    readLineLayer(files.barriers, gis::crsWkt(*gis::crsFromText("EPSG:32632")));
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_EQ(lines[0].points[1], Vec2(kEast - 20.0, kNorth + 80.0));
+}
+
+TEST(StructurePlaces, APlaceThatIsNoneInDegreesNamesBothSystems)
+{
+  StructureFiles files;
+  files.barriers = writeFile("net.geojson",
+    "{\"type\":\"Feature\",\"properties\":{\"height\":4,\"capacity\":1000},\"geometry\":{\"type\":"
+    "\"LineString\",\"coordinates\":[[500170,5199830],[500170,5199950]]}}");
+  std::vector<std::string> notes;
+  EXPECT_TRUE(holds(messageOf<DataError>([&] { readStructures(files, site(), notes); }),
+    { "row 1: the point 500170, 5199830 cannot be brought from EPSG:4326 (WGS 84) to EPSG:32632 "
+      "(WGS 84 / UTM zone 32N), the CRS of the terrain" }));
 }
 
 TEST(StructurePlaces, BesideTheTerrainIsAnErrorThatSaysWhere)
