@@ -157,6 +157,10 @@ std::string wktOfCrs(const std::string& text)
 {
   Messages messages;
   const CrsPtr crs = text.empty() ? nullptr : crsFromText(text);
+  if (!text.empty() && !crs)
+  {
+    throw DataError("\"" + text + "\" has no places: it is undefined, or a CRS of heights alone");
+  }
   if (const std::string axes = crs ? backwardAxes(*crs) : std::string(); !axes.empty())
   {
     throw DataError("\"" + text + "\" counts to the " + axes + ", no slope does");
@@ -167,13 +171,16 @@ std::string wktOfCrs(const std::string& text)
 std::string labelOfCrs(const std::string& text)
 {
   Messages messages;
-  return text.empty() ? std::string() : crsLabel(*crsFromText(text));
+  const CrsPtr crs = text.empty() ? nullptr : crsFromText(text);
+  return crs ? crsLabel(*crs) : text;
 }
 
 bool sameCrs(const std::string& one, const std::string& other)
 {
   Messages messages;
-  return one.empty() || other.empty() || crsFromText(one)->IsSame(crsFromText(other).get());
+  const CrsPtr first = one.empty() ? nullptr : crsFromText(one);
+  const CrsPtr second = other.empty() ? nullptr : crsFromText(other);
+  return !first || !second || first->IsSame(second.get());
 }
 
 std::string differentHeights(const std::string& one, const std::string& other)

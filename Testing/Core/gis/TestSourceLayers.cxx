@@ -115,6 +115,13 @@ TEST(SourceLayers, reprojectsCorners)
   EXPECT_TRUE(holds(layer.ownCrs, { "WGS 84" }));
   EXPECT_TRUE(sameCrs(layer.crs, "EPSG:32632"));
   EXPECT_TRUE(sameCrs(layer.crs, ""));
+  for (const char* none :
+    { "EPSG:5703", "LOCAL_CS[\"Undefined Cartesian SRS\",UNIT[\"Meter\",1]]" })
+  {
+    EXPECT_TRUE(sameCrs(layer.crs, none));
+    EXPECT_EQ(labelOfCrs(none), none);
+    EXPECT_TRUE(holds(messageOf<DataError>([&] { wktOfCrs(none); }), { none, "has no places" }));
+  }
   EXPECT_FALSE(sameCrs(layer.crs, "EPSG:32633"));
 }
 
