@@ -178,24 +178,13 @@ private:
   /// Metres per unit by name; nothing if none is named.
   std::optional<double> namedUnit()
   {
-    unitName_ = trimmed(band_.GetUnitType() ? band_.GetUnitType() : "");
-    if (isNoUnit(unitName_))
-    {
-      const Header saga = sagaHeader(dataset_);
-      unitName_ = saga.count("unit") ? saga.at("unit") : std::string();
-    }
+    unitName_ = namedUnitOf(dataset_, band_);
     const PrjHeights prj = prjHeights(dataset_);
     if (prj.verticalShift != 0.0)
     {
       this->fail("are shifted by " + number(prj.verticalShift) +
         " (Vertical_Shift of the VERTCS in the .prj file), which is not taken into account; shift "
         "them first, and write 0 there");
-    }
-    if (isNoUnit(unitName_) && !prj.unit.empty() && prj.unit != "no")
-    {
-      // A number: units per metre, as 100 for centimetres.
-      const auto perMetre = parsedNumber(prj.unit);
-      unitName_ = perMetre && *perMetre > 0.0 ? exactly(1.0 / *perMetre) + " m" : prj.unit;
     }
     if (isNoUnit(unitName_))
     {

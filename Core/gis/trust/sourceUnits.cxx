@@ -119,7 +119,7 @@ public:
       {
         continue; // who reads it, says so
       }
-      const std::string unit(trimmed(of->GetUnitType() ? of->GetUnitType() : ""));
+      const std::string unit = namedUnitOf(*tile, *of);
       if (isNoUnit(unit) && depth < kDeepest)
       {
         if (const std::vector<Source> inner = sourcesOf(*tile, source.band); !inner.empty())
@@ -159,6 +159,24 @@ private:
 };
 
 } // namespace
+
+std::string namedUnitOf(GDALDataset& dataset, GDALRasterBand& band)
+{
+  std::string unit(trimmed(band.GetUnitType() ? band.GetUnitType() : ""));
+  if (isNoUnit(unit))
+  {
+    const Header saga = sagaHeader(dataset);
+    unit = saga.count("unit") ? saga.at("unit") : std::string();
+  }
+  const PrjHeights prj = isNoUnit(unit) ? prjHeights(dataset) : PrjHeights();
+  if (!prj.unit.empty() && prj.unit != "no")
+  {
+    // A number: units per metre, as 100 for centimetres.
+    const auto perMetre = parsedNumber(prj.unit);
+    unit = perMetre && *perMetre > 0.0 ? exactly(1.0 / *perMetre) + " m" : prj.unit;
+  }
+  return unit;
+}
 
 void requireUnitOfSources(
   GDALDataset& dataset, GDALRasterBand& band, double metres, const std::string& fileName)

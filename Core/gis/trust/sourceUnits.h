@@ -12,6 +12,10 @@ class GDALRasterBand;
 namespace rockfall::gis
 {
 
+/// The unit that a band has by its own word, by a SAGA header or by a .prj file beside it; empty or
+/// a word for none (isNoUnit) if there is none.
+std::string namedUnitOf(GDALDataset& dataset, GDALRasterBand& band);
+
 /// Sources of which the unit is asked: each is opened for it.
 inline constexpr int kMostSources = 500;
 
