@@ -301,3 +301,13 @@ TEST(ReleasePlaceErrors, namedWithTheirRow)
   bad.mostRocks = 0;
   EXPECT_TRUE(holds(failure<ParameterError>({ point }, bad), { "MaximumRocks is 0" }));
 }
+
+TEST(ReleasePlaces, aDrawnLineWithoutLengthIsNamed)
+{
+  const SourceRow row = source(SourceGeometry::Line, { { at(1010, 2010), at(1010, 2010) } });
+  EXPECT_EQ(messageOf<DataError>(
+              [&] {
+                releasePlaces({ &row, 1 }, nullptr, {}, "");
+              }),
+    "Points: the line has no length");
+}
