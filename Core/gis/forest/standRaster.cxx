@@ -6,11 +6,13 @@
 #include "base/text/columnName.h"
 #include "base/text/nameKey.h"
 #include "base/text/numberText.h"
+#include "base/text/plainText.h"
 #include "gis/base/gdal.h"
 #include "gis/base/progress.h"
 #include "gis/raster/groundCells.h"
 #include "gis/raster/rasterPlace.h"
 #include "gis/trust/bandScale.h"
+#include "gis/trust/heightUnit.h"
 #include "terrain/Terrain.h"
 #include "terrain/plausible.h"
 
@@ -54,11 +56,20 @@ std::string bandNames()
   return names;
 }
 
-/// Throws DataError if a band is called by the name of another place. Other names say nothing.
-void requirePlacesOfNames(GDALDataset& dataset, const std::string& fileName)
+/// Throws DataError if a band is called by the name of another place, or is in another unit of
+/// length than that of its place. Other names and units say nothing.
+void requireMeaning(GDALDataset& dataset, const std::string& fileName)
 {
   for (int b = 0; b < dataset.GetRasterCount(); ++b)
   {
+    const std::string unit(trimmed(dataset.GetRasterBand(b + 1)->GetUnitType()));
+    const std::string needed(trimmed(kBands[std::size_t(b)].unit));
+    const auto metres = metresPer(unit), metresNeeded = metresPer(needed);
+    if (metres && metresNeeded && std::abs(*metres - *metresNeeded) > 1e-5 * *metresNeeded)
+    {
+      throw DataError(fileName + ": band " + std::to_string(b + 1) + " (" +
+        kBands[std::size_t(b)].name + ") has the unit \"" + unit + "\", it must be in " + needed);
+    }
     const char* written = dataset.GetRasterBand(b + 1)->GetDescription();
     std::string name = ColumnName(written ? written : "").name;
     std::replace(name.begin(), name.end(), ' ', '_');
@@ -214,7 +225,7 @@ std::vector<Stand> readStandRaster(
       "; a raster of stands has stems_ha, dbh_mean (cm), and if known height (m), dbh_dev (cm), "
       "conifers (%), in this order");
   }
-  requirePlacesOfNames(*source, fileName);
+  requireMeaning(*source, fileName);
   const RasterPlace place = placeOfCells(*source, fileName, notes);
   const Cells cells(terrain);
   noteCrs(place.crs, cells, fileName, notes);

@@ -6,6 +6,7 @@
 #include "gisFiles.h"
 #include "slopes.h"
 
+#include <array>
 #include <cmath>
 #include <fstream>
 
@@ -144,6 +145,29 @@ TEST(StandRaster, BandsThatAreCalledByTheNameOfAnotherPlace)
                            "in this order"));
   EXPECT_EQ(named("Stems_ha, DBH mean, height"), "");
   EXPECT_EQ(named("density, diameter, canopy"), "");
+}
+
+TEST(StandRaster, BandsInTheUnitOfAnotherPlace)
+{
+  const std::string name = raster({ all(150.0), all(20.0), all(32.0) });
+  const auto inUnits = [&](const std::string& diameter, const std::string& height)
+  {
+    writeFile("stands.img.aux.xml",
+      "<PAMDataset><PAMRasterBand band=\"2\"><UnitType>" + diameter +
+        "</UnitType></PAMRasterBand><PAMRasterBand band=\"3\"><UnitType>" + height +
+        "</UnitType></PAMRasterBand></PAMDataset>");
+    std::vector<std::string> notes;
+    return readStandRaster(name, site(), notes);
+  };
+  EXPECT_FALSE(inUnits("cm", "m").empty());
+  EXPECT_FALSE(inUnits("a", "b").empty());
+  for (const auto& [diameter, height, said] :
+    { std::array{ "m", "m", "band 2 (dbh_mean) has the unit \"m\", it must be in cm" },
+      std::array{ "cm", "ft", "band 3 (height) has the unit \"ft\", it must be in m" } })
+  {
+    EXPECT_EQ(rockfall::testing::messageOf<DataError>([&] { inUnits(diameter, height); }),
+      name + ": " + said);
+  }
 }
 
 TEST(StandRaster, ATableIsNoRaster)
