@@ -169,6 +169,8 @@ inline constexpr double kFarCandidateSlack = 0.4;
 /// Distance beyond what may close in a step in which pairs are gathered, too, at least, share of it.
 /// Larger: rarer searches over more pairs.
 inline constexpr double kCandidatesBeyond = 0.5;
+/// The same of a rock among others, which goes that far in a step.
+inline constexpr double kCandidatesBeyondAmong = 1.0;
 /// Part of that displacement by which they are gathered ahead of the rock, as it goes, so that they
 /// serve on the way there, too. 1: rounding may undo that; 0: they serve half as long.
 inline constexpr double kCandidatesAhead = 0.9;
@@ -187,16 +189,8 @@ inline constexpr double kEdgeExtension = 2.0;
 /// Reach of a contact past its feature with nothing there to take over, in its compressions.
 /// Smaller: springs that are dropped lose their energy.
 inline constexpr double kRunOff = 50.0;
-/// Slack of coarse tests before close ones, in cells, and where lines cross, share of their length.
-inline constexpr double kCoarseSlack = 1e-6;
-inline constexpr double kBeyondEnd = 1e-6;
-/// Reach of planes beyond a corner between two concave edges (45° at least), in reaches, seen from
-/// above.
-inline constexpr double kBeyondCorner = 3.0;
 /// Reach of planes beyond a concave edge, for what is gathered for several steps, in distances.
 inline constexpr double kBeyondConcave = 2.0;
-/// A direction between the normals of the sides of a ridge is at most this of the two together.
-inline constexpr double kOfBothSides = 1.1;
 
 // ---------------------------------------------------------------------------------------------
 // 7  Contact detection between rocks
@@ -242,8 +236,6 @@ inline constexpr int kIslandCuts = 6;
 /// within the step, and what is found only at its end may be past by then (cubes at 17 m/s, Δt 5
 /// ms: mean deepest overlap 0.6 % of an edge, with 2e-3 1.1 %).
 inline constexpr double kSurely = 3e-2;
-/// The same on the slope.
-inline constexpr double kSurelyOnSlope = 1e-2;
 /// Depth beyond the predicted one that was missed, share of r. Smaller: more steps solved twice.
 inline constexpr double kMissed = 2e-3;
 /// Looks after which no further trees are let go: they hold for the rest of the step.

@@ -195,12 +195,6 @@ struct SurfacePatch
   {
     return triangle >= slopeTriangles && triangle < slopeTriangles + wallTriangles;
   }
-  /// Whether there are neither walls nor obstacles.
-  bool isSlopeOnly() const
-  {
-    return int(triangles.size()) == slopeTriangles && int(nodes.size()) == slopeNodes &&
-      int(ridges.size()) == slopeRidges;
-  }
   /// The slope's triangle straight over or under a place, −1 over a hole and beyond the patch.
   int triangleAt(double x, double y) const
   {

@@ -268,8 +268,7 @@ const CandidatePairs& EndDetection::candidatesOf(std::size_t m)
   rock.end.placeVertices();
   Fall& fall = rock.fall();
   return fall.ground.candidatesAt(fall.body, fall.structures, work_.solver.rows().end(place),
-    rock.end, rock.endHull, motion.displacement.norm() + motion.rimTravel,
-    kLooseOverlap * rock.body().block.radius());
+    motion.displacement.norm() + motion.rimTravel);
 }
 
 std::size_t EndDetection::touchesOnSlope(

@@ -46,7 +46,6 @@ void IslandStepper::gatherOnSlope(std::size_t k, double h)
   rock.updatePose();
   IslandWork::Side& side = work_.sides[std::size_t(island_.members[k])];
   const double r = body.block.radius();
-  const double spread = body.state.spin.norm() * r + side.pushed;
   const double speed = body.state.velocity.norm() + body.state.spin.norm() * r + side.pushed;
   const double reach = this->reachOf(speed, r, h);
   body.inIsland = true;
@@ -58,28 +57,25 @@ void IslandStepper::gatherOnSlope(std::size_t k, double h)
     return;
   }
   body.placed.placeVertices();
-  const auto find = [&]() -> const CandidatePairs&
+  const auto find = [&]
   {
-    const CandidatePairs& near = fall.ground.stepCandidates(body, fall.structures, rock.hull,
-      { body.state.velocity, spread, kFasterApproach * h,
-        world_.parameters.gravity * h * h + kSurelyOnSlope * r, reach });
-    findContacts(fall, near, reach, 0.0);
-    return near;
+    fall.ground.ensureCandidates(body, fall.structures, reach, true);
+    findContacts(fall, fall.ground.candidates(), reach, 0.0);
   };
-  const CandidatePairs* near = &find();
+  find();
   while (fall.structures.solid() && breakTrees(fall, h))
   {
-    near = &find();
+    find();
   }
   while (fall.soil.yields() && followScar(fall, h))
   {
-    near = &find();
+    find();
   }
   if (fall.structures.solid())
   {
     side.set(body); // what broke has taken speed
   }
-  guardPenetrations(fall, *near);
+  guardPenetrations(fall, fall.ground.candidates());
   stiffenPressed(rock.sim);
   setNewSprings(fall, h);
 }

@@ -184,9 +184,26 @@ double timeToClose(const PlacedBlock& rock, const BlockState& state, const Surfa
 namespace
 {
 
-/// The edges of the rock that can touch a ridge.
-void gatherEdges(const PlacedBlock& rock, const SurfacePatch& patch, int ridge, double distance,
-  double turn, CandidatePairs& candidates)
+std::uint64_t bitOf(int vertex)
+{
+  return std::uint64_t(1) << (vertex & 63);
+}
+
+/// Ends of each edge of a shape, as bits of vertices.
+const std::vector<std::uint64_t>& endsOfEdges(const Polyhedron& shape)
+{
+  thread_local std::vector<std::uint64_t> ends;
+  ends.clear();
+  for (const Polyhedron::Edge& e : shape.edges())
+  {
+    ends.push_back(bitOf(e.vertices[0]) | bitOf(e.vertices[1]));
+  }
+  return ends;
+}
+
+/// The edges of the rock that can touch a ridge; `ends`: those of each.
+void gatherEdges(const PlacedBlock& rock, const std::vector<std::uint64_t>& ends,
+  const SurfacePatch& patch, int ridge, double distance, double turn, CandidatePairs& candidates)
 {
   const SurfacePatch::Ridge& g = patch.ridges[ridge];
   // The rock, or an edge, all over one plane of the ridge cannot.
@@ -203,13 +220,11 @@ void gatherEdges(const PlacedBlock& rock, const SurfacePatch& patch, int ridge, 
   const std::vector<Polyhedron::Edge>& edges = rock.block().shape().edges();
   for (int e = 0; e < int(edges.size()); ++e)
   {
-    const std::array<int, 2>& v = edges[e].vertices;
-    const std::uint64_t ends =
-      (std::uint64_t(1) << (v[0] & 63)) | (std::uint64_t(1) << (v[1] & 63));
-    if ((ends & under[0]) == 0 || (ends & under[1]) == 0)
+    if ((ends[std::size_t(e)] & under[0]) == 0 || (ends[std::size_t(e)] & under[1]) == 0)
     {
       continue;
     }
+    const std::array<int, 2>& v = edges[e].vertices;
     const Vec3& p0 = rock.vertices()[v[0]];
     const Vec3& p1 = rock.vertices()[v[1]];
     if (!boxesMeet(least, most, p0, p1, distance))
@@ -246,11 +261,6 @@ struct CellBox
     row1 = index(patch.north - lower.y() + wide, cellRows - 1);
   }
 };
-
-std::uint64_t bitOf(int vertex)
-{
-  return std::uint64_t(1) << (vertex & 63);
-}
 
 /// Vertices over the triangles of the slope.
 void gatherVertices(const PlacedBlock& rock, const SurfacePatch& patch, const CellBox& cells,
@@ -377,6 +387,7 @@ void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const Su
   const CellBox cells(rock, patch, kBeyondConcave * distance);
   candidates.under.assign(patch.triangles.size(), 0);
   gatherVertices(rock, patch, cells, distance, turn, candidates);
+  const std::vector<std::uint64_t>& ends = endsOfEdges(rock.block().shape());
   for (int row = cells.row0; row <= cells.row1 + 1; ++row)
   {
     for (int column = cells.column0; column <= cells.column1 + 1; ++column)
@@ -394,7 +405,7 @@ void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const Su
       {
         if (ridge >= 0)
         {
-          gatherEdges(rock, patch, ridge, distance, turn, candidates);
+          gatherEdges(rock, ends, patch, ridge, distance, turn, candidates);
         }
       }
     }
@@ -406,7 +417,7 @@ void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const Su
   }
   for (int i = patch.slopeRidges; i < int(patch.ridges.size()); ++i)
   {
-    gatherEdges(rock, patch, i, distance, turn, candidates);
+    gatherEdges(rock, ends, patch, i, distance, turn, candidates);
   }
 }
 

@@ -65,32 +65,4 @@ struct CandidatePairs
 void gatherCandidates(const PlacedBlock& rock, const BlockState& state, const SurfacePatch& patch,
   double distance, CandidatePairs& candidates);
 
-class PairBody;
-
-/// Gaps between a rock and the slope that may close within a step.
-struct SlopeReach
-{
-  Vec3 velocity; ///< Of the rock's centroid, m/s.
-  double speed;  ///< Rotation and other rocks may add this to it in any direction, m/s.
-  double time;   ///< For which it goes on, s.
-  double least;  ///< Gaps that may close however it moves, m.
-  double most;   ///< No gap that is wider does, m.
-
-  /// The widest one along a normal of the slope, m.
-  double along(const Vec3& normal) const
-  {
-    return std::min(most, least + time * std::max(0.0, speed - normal.dot(velocity)));
-  }
-};
-
-/// Finds the pairs that can be contacts where the rock stands now and may close within a step, and
-/// few others: for one that goes on so far in a step that candidates would not serve the next. Only
-/// on a patch that is all slope.
-void gatherStepCandidates(const PlacedBlock& rock, const PairBody& body, const SurfacePatch& patch,
-  const SlopeReach& reach, CandidatePairs& candidates);
-/// The same of vertices that are straight under the slope, and peaks in the rock, by more than
-/// `allowed` (m).
-void gatherCandidatesUnder(const PlacedBlock& rock, const PairBody& body, const SurfacePatch& patch,
-  double allowed, CandidatePairs& candidates);
-
 } // namespace rockfall

@@ -3,7 +3,6 @@
 #include "block/cayley.h"
 #include "contact/ground/clearance.h"
 #include "contact/ground/timeToTouch.h"
-#include "contact/pairs.h"
 #include "law/settings.h"
 
 #include <algorithm>
@@ -13,12 +12,6 @@ namespace rockfall
 
 namespace
 {
-
-CandidatePairs& workSpace()
-{
-  thread_local CandidatePairs pairs;
-  return pairs;
-}
 
 /// State of the rock, as it goes now, when some point of it may have come `way` (m) far.
 BlockState onTheWay(const RockBody& body, double way)
@@ -135,7 +128,8 @@ void GroundNear::ensureCandidates(
     const double slack = among && candidates_.empty() ? kFarCandidateSlack : kCandidateSlack;
     // In a scar the ground moves under the rock as well.
     const double room = std::max(slack * body.block.radius(), depth_);
-    const double beyond = std::max(kCandidatesBeyond * reach, room);
+    const double share = among ? kCandidatesBeyondAmong : kCandidatesBeyond;
+    const double beyond = std::max(share * reach, room);
     const double distance = reach + beyond, ahead = kCandidatesAhead * beyond;
     this->ensurePatch(body, structures, distance + ahead);
     const BlockState state = onTheWay(body, ahead);
@@ -145,42 +139,9 @@ void GroundNear::ensureCandidates(
   }
 }
 
-const CandidatePairs& GroundNear::stepCandidates(const RockBody& body,
-  const StructuresOnWay& structures, const PairBody& hull, const SlopeReach& reach)
+const CandidatePairs& GroundNear::candidatesAt(
+  const RockBody& body, const StructuresOnWay& structures, const BlockState& end, double way)
 {
-  if (!structures.solid())
-  {
-    this->ensurePatch(body, structures, 2.0 * reach.most);
-    if (patch_.isSlopeOnly())
-    {
-      CandidatePairs& now = workSpace();
-      gatherStepCandidates(body.placed, hull, patch_, reach, now);
-      return now;
-    }
-  }
-  this->ensureCandidates(body, structures, reach.most, true);
-  return candidates_;
-}
-
-const CandidatePairs& GroundNear::candidatesAt(const RockBody& body,
-  const StructuresOnWay& structures, const BlockState& end, const PlacedBlock& placed,
-  const PairBody& hull, double way, double allowed)
-{
-  if (!structures.solid())
-  {
-    const double r = body.block.radius();
-    const Vec3& p = end.position;
-    if (!patch_.covers(p.x() - r, p.x() + r, p.y() - r, p.y() + r))
-    {
-      this->ensurePatch(body, structures, way);
-    }
-    if (patch_.isSlopeOnly())
-    {
-      CandidatePairs& now = workSpace();
-      gatherCandidatesUnder(placed, hull, patch_, allowed, now);
-      return now;
-    }
-  }
   if (candidates_.room(end, body.block.radius(), 0.0) < 0.0)
   {
     // Thrown further than anyone would have thought.

@@ -17,8 +17,6 @@
 namespace rockfall
 {
 
-class PairBody;
-
 class GroundNear
 {
 public:
@@ -62,18 +60,9 @@ public:
   void ensureCandidates(
     const RockBody& body, const StructuresOnWay& structures, double reach, bool among = false);
   void forgetCandidates() { candidates_.distance = -1.0; }
-
-  // In the step of an island. What is returned serves until this thread asks again.
-
-  /// Candidates for where the rock stands in this step only, if there is nothing but the slope near
-  /// it; `hull` stands there, too.
-  const CandidatePairs& stepCandidates(const RockBody& body, const StructuresOnWay& structures,
-    const PairBody& hull, const SlopeReach& reach);
-  /// Where a step would end, by a way (m), those that would overlap by more than `allowed` (m); in
-  /// doubt others, too.
-  const CandidatePairs& candidatesAt(const RockBody& body, const StructuresOnWay& structures,
-    const BlockState& end, const PlacedBlock& placed, const PairBody& hull, double way,
-    double allowed);
+  /// Candidates for where a step of an island would end, by a way (m).
+  const CandidatePairs& candidatesAt(
+    const RockBody& body, const StructuresOnWay& structures, const BlockState& end, double way);
 
 private:
   /// Least and most x and y (m) that a flight comes over.
