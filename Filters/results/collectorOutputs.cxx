@@ -121,6 +121,16 @@ void checkReleased(ReleasedRocks& rocks)
   }
 }
 
+bool isReleased(const ReleasedRocks& rocks, const Crossing& crossing)
+{
+  CollectedRock rock{};
+  rock.iteration = crossing.iteration;
+  rock.rock = crossing.rock;
+  rock.blockId = crossing.blockId;
+  return std::binary_search(rocks.begin(), rocks.end(), rock,
+    [](const CollectedRock& a, const CollectedRock& b) { return keyOf(a) < keyOf(b); });
+}
+
 std::vector<LostRocks> lostBefore(
   std::size_t lines, std::span<const Crossing> crossings, const ReleasedRocks& released)
 {

@@ -45,6 +45,8 @@ ReleasedRocks releasedIn(vtkPolyData* trajectories);
 
 /// Sorts them. Throws DataError if one is there twice.
 void checkReleased(ReleasedRocks& rocks);
+/// Whether the rock of a crossing is among them, as checkReleased has sorted them.
+bool isReleased(const ReleasedRocks& rocks, const Crossing& crossing);
 
 /// Of each line, rocks that were lost and had not passed it before.
 std::vector<LostRocks> lostBefore(

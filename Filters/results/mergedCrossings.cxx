@@ -154,8 +154,9 @@ void appendPlaces(vtkPolyData* data, std::size_t input, const std::vector<Collec
   }
 }
 
-void appendReleased(vtkFieldData* field, std::size_t input, ReleasedRocks& rocks)
+ReleasedRocks releasedOf(vtkFieldData* field, std::size_t input)
 {
+  ReleasedRocks rocks;
   vtkDataArray* released = crossingNumbers(field, "CollectorRocks", 2, input);
   vtkDataArray* blocks = crossingNumbers(field, "CollectorBlocks", 1, input);
   vtkDataArray* losses = crossingNumbers(field, "CollectorLosses", 1, input);
@@ -173,6 +174,26 @@ void appendReleased(vtkFieldData* field, std::size_t input, ReleasedRocks& rocks
   {
     rocks.push_back({ int(released->GetComponent(i, 0)), int(released->GetComponent(i, 1)),
       std::int64_t(blocks->GetTuple1(i)), Loss(int(losses->GetTuple1(i))), ends->GetTuple1(i) });
+  }
+  checkReleased(rocks);
+  return rocks;
+}
+
+/// ParaView's filters that put crossings together keep the rocks of only one collector: shares of
+/// those would be of too few.
+void requireReleased(
+  std::span<const Place> places, const ReleasedRocks& released, std::size_t input)
+{
+  for (const Place& place : places)
+  {
+    const Crossing& c = place.crossing;
+    if (!isReleased(released, c))
+    {
+      throw DataError(numbered(input) + " has a crossing of rock " + std::to_string(c.rock) +
+        " (block " + std::to_string(c.blockId) + ") of iteration " + std::to_string(c.iteration) +
+        ", which is not among the rocks of its collector: were crossings of several collectors "
+        "appended? Merge Collectors puts them together");
+    }
   }
 }
 
@@ -237,12 +258,15 @@ MergedCrossings mergeCrossings(std::span<vtkPolyData* const> inputs, vtkPolyData
       throw DataError(numbered(k) + " has another CRS than the first");
     }
     runs.push_back(originOf(inputs[k]));
-    appendReleased(field, k, rocks);
+    const ReleasedRocks released = releasedOf(field, k);
     if (inputs[k]->GetNumberOfPoints() > 0)
     {
+      const std::size_t first = places.size();
       appendPlaces(inputs[k], k, lines, places);
+      requireReleased(std::span(places).subspan(first), released, k);
       pattern = pattern ? pattern : inputs[k];
     }
+    rocks.insert(rocks.end(), released.begin(), released.end());
   }
   checkReleased(rocks);
   merged.notes = askAfterRuns(runs, [](std::size_t k) { return partName(k); });

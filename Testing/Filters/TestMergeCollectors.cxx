@@ -1,6 +1,7 @@
 #include "helpers.h"
 #include "trajectories.h"
 
+#include "vtkAppendPolyData.h"
 #include "vtkMergeCollectors.h"
 #include "vtkTable.h"
 #include "vtkTrajectoryCollector.h"
@@ -180,4 +181,17 @@ TEST_F(TestMergeCollectors, BadInput)
   vtkStringArray::SafeDownCast(appended->GetPointData()->GetAbstractArray("LineName"))
     ->SetValue(3, "its own road");
   expect(appended, { "part 2", "\"its own road\"", "collectors appended" });
+  // ParaView's Append Geometry and Group Datasets keep the rocks of one collector only.
+  vtkNew<vtkAppendPolyData> append;
+  append->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+  append->AddInputData(this->Collect(2, 0)->GetOutput());
+  append->AddInputData(this->Collect(2, 1)->GetOutput());
+  append->Update();
+  vtkNew<vtkPolyData> halved;
+  halved->ShallowCopy(append->GetOutput());
+  halved->SetFieldData(this->Collect(2, 0)->GetOutput()->GetFieldData());
+  vtkNew<vtkMergeCollectors> merge;
+  merge->AddInputDataObject(0, halved);
+  merge->Update();
+  this->ExpectOneError({ "part 1", "rock 1", "(block 101)", "iteration 0", "Merge Collectors" });
 }
