@@ -69,7 +69,9 @@ void showNotes(const std::vector<std::string>& notes, vtkFieldData* fieldData)
   {
     return;
   }
-  const auto kept = addArray<vtkStringArray>(fieldData, "Notes");
+  vtkSmartPointer<vtkStringArray> kept =
+    vtkStringArray::SafeDownCast(fieldData->GetAbstractArray("Notes"));
+  kept = kept ? kept : addArray<vtkStringArray>(fieldData, "Notes");
   for (const std::string& note : notes)
   {
     showNote(note);

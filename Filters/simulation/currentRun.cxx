@@ -123,7 +123,7 @@ void CurrentRun::follow()
   }
   if (made < kept_->ensemble->size() * kept_->ensemble->trajectoriesPerUnit())
   {
-    showNote("Rockfall Simulation was " + how);
+    showNotes({ "Rockfall Simulation was " + how }, kept_->summary->GetFieldData());
   }
 }
 

@@ -34,6 +34,8 @@ def stopped():
     paths = simple.FindSource("Paths").GetDataInformation().GetNumberOfCells()
     assert paths == rows, f"{paths} paths are drawn of {rows}"
     released = simple.FindSource("Line").FieldData
+    notes = fall.GetClientSideObject().GetOutputDataObject(3).GetFieldData().GetAbstractArray("Notes")
+    assert notes and any("was stopped" in notes.GetValue(k) for k in range(notes.GetNumberOfValues())), "nothing says so"
     # What was there when Stop was pressed, and the whole of it.
     made = len(simple.made_when_stopped)
     assert 0 < made <= 2, f"made {made} times after Stop"
