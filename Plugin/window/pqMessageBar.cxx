@@ -3,6 +3,8 @@
 #include "looks.h"
 
 #include "pqApplicationCore.h"
+#include "pqOutputPort.h"
+#include "pqPipelineFilter.h"
 #include "pqPipelineSource.h"
 #include "pqServerManagerModel.h"
 #include "vtkAlgorithm.h"
@@ -19,6 +21,7 @@
 #include <QAction>
 #include <QLabel>
 #include <QMainWindow>
+#include <QMultiHash>
 #include <QStringList>
 
 #include <algorithm>
@@ -75,6 +78,16 @@ QString withField(vtkSMSourceProxy* source, const QString& text)
   return text;
 }
 
+/// Whether what a source makes comes by its inputs from another one, or that is itself.
+bool comesFrom(pqPipelineSource* source, pqPipelineSource* other)
+{
+  auto* filter = qobject_cast<pqPipelineFilter*>(source);
+  const QList<pqOutputPort*> inputs = filter ? filter->getAllInputs() : QList<pqOutputPort*>();
+  return source == other ||
+    std::any_of(inputs.begin(), inputs.end(),
+      [other](pqOutputPort* input) { return comesFrom(input->getSource(), other); });
+}
+
 /// Structures that were drawn, and that no rocks fall on.
 QStringList toldOfStructures()
 {
@@ -119,7 +132,8 @@ pqMessageBar::pqMessageBar(QMainWindow* window)
 //-----------------------------------------------------------------------------
 void pqMessageBar::look()
 {
-  QStringList errors, notes, told;
+  QStringList errors, notes;
+  QMultiHash<QString, pqPipelineSource*> told;
   for (const char* array : { "Error", "Notes" })
   {
     for (pqPipelineSource* source :
@@ -134,9 +148,11 @@ void pqMessageBar::look()
       for (const QString& text : texts)
       {
         // Filters after a failed one have the same text: the first one says it.
-        if (!told.contains(text))
+        const QList<pqPipelineSource*> before = told.values(text);
+        if (std::none_of(before.begin(), before.end(),
+              [source](pqPipelineSource* one) { return comesFrom(source, one); }))
         {
-          told << text;
+          told.insert(text, source);
           fresh << (error ? withField(proxy, text) : text).toHtmlEscaped();
         }
       }
