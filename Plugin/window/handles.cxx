@@ -247,6 +247,10 @@ void layHandles(pqPipelineSource* source)
   if (moved)
   {
     panel.Set(points.data(), unsigned(points.size()));
+    if (pqView* view = pqActiveObjects::instance().activeView())
+    {
+      view->render(); // the handles go along only when it is drawn
+    }
   }
 }
 

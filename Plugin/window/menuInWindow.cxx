@@ -33,6 +33,7 @@
 #include <QMenuBar>
 #include <QScreen>
 #include <QStatusBar>
+#include <QTimer>
 
 #include <dlfcn.h>
 
@@ -221,14 +222,19 @@ void pqRockfallWindow::makeReport(const QString& manifest)
 //-----------------------------------------------------------------------------
 void pqRockfallWindow::pickTrajectory()
 {
-  if (auto* view = qobject_cast<pqRenderView*>(pqActiveObjects::instance().activeView()))
+  auto* view = qobject_cast<pqRenderView*>(pqActiveObjects::instance().activeView());
+  if (!view)
   {
-    this->Picker->begin(view);
-    this->tell(tr("Click a trajectory"));
+    this->tell(tr("Click into the view of the slope first"));
+  }
+  else if (!pqPathPicker::hasPaths(view))
+  {
+    this->tell(tr("This view shows no paths yet"));
   }
   else
   {
-    this->tell(tr("Click into the view of the slope first"));
+    this->Picker->begin(view);
+    this->tell(tr("Click a trajectory"));
   }
 }
 
@@ -321,6 +327,14 @@ void pqRockfallWindow::tell(const QString& message)
   if (QMainWindow* window = mainWindow())
   {
     window->statusBar()->showMessage(message, kReadNotes);
-    window->statusBar()->setStatusTip(message); // comes back under the mouse
+    window->statusBar()->setStatusTip(message); // comes back under the mouse, as long as it is news
+    QTimer::singleShot(kReadNotes, window->statusBar(),
+      [bar = window->statusBar(), message]
+      {
+        if (bar->statusTip() == message)
+        {
+          bar->setStatusTip(QString());
+        }
+      });
   }
 }

@@ -18,6 +18,7 @@
 #include <QMouseEvent>
 #include <QWidget>
 
+#include <algorithm>
 #include <cmath>
 
 namespace
@@ -72,6 +73,15 @@ void pqPathPicker::fade(vtkSMProxy* profile, bool faded)
     shown->UpdateVTKObjects();
     item->renderViewEventually();
   }
+}
+
+//-----------------------------------------------------------------------------
+bool pqPathPicker::hasPaths(const pqRenderView* view)
+{
+  const QList<pqRepresentation*> shown = view->getRepresentations();
+  return std::any_of(shown.begin(), shown.end(),
+    [](const pqRepresentation* one)
+    { return one->isVisible() && pathsOf(one->getProxy()).source; });
 }
 
 //-----------------------------------------------------------------------------

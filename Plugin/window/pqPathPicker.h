@@ -21,8 +21,11 @@ class pqPathPicker : public QObject
 public:
   using Superclass::Superclass;
 
+  /// Whether the view shows paths.
+  static bool hasPaths(const pqRenderView* view);
   /// Takes the view's next click with the left button; any other one ends the waiting.
   void begin(pqRenderView* view);
+  void end();
 
   /// Paths are pale while this profile shows one of them: as many as they are they would hide it.
   static void fade(vtkSMProxy* profile, bool faded);
@@ -36,7 +39,6 @@ protected:
   bool eventFilter(QObject* watched, QEvent* event) override;
 
 private:
-  void end();
   void pick(const QPoint& place);
 
   QPointer<pqRenderView> View;

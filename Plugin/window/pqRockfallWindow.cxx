@@ -27,6 +27,7 @@
 #include "vtkCommand.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
+#include "vtkSMSessionProxyManager.h"
 #include "vtkSMSettings.h"
 #include "vtkSMSourceProxy.h"
 
@@ -36,6 +37,7 @@
 #include <QMenuBar>
 #include <QPointer>
 
+#include <algorithm>
 #include <string>
 
 namespace
@@ -153,6 +155,8 @@ void pqRockfallWindow::begin()
   this->Clock.start(kLookAtPanel);
   this->Looks.start(kLookAtPanel);
   this->connect(this->Picker, &pqPathPicker::picked, this, &pqRockfallWindow::onPicked);
+  this->connect(
+    model, &pqServerManagerModel::aboutToRemoveServer, this->Picker, &pqPathPicker::end);
   this->connect(this->Picker, &pqPathPicker::missed, this,
     [this] { this->tell(tr("There is no trajectory where you clicked")); });
   if (pqUndoStack* undo = pqApplicationCore::instance()->getUndoStack())
@@ -245,23 +249,33 @@ void pqRockfallWindow::onMade(pqProxy* made)
 //-----------------------------------------------------------------------------
 void pqRockfallWindow::onPreset(vtkObject* property, unsigned long event)
 {
-  auto* preset = vtkSMProperty::SafeDownCast(property);
-  vtkSMProxy* slope = preset ? preset->GetParent() : nullptr;
+  auto* choice = vtkSMProperty::SafeDownCast(property);
+  vtkSMProxy* slope = choice ? choice->GetParent() : nullptr;
   if (!slope)
   {
     return;
   }
   // Numbers of the panel until Apply, those of the slope then or from a script.
   const bool panel = event == vtkCommand::UncheckedPropertyModifiedEvent;
-  vtkSMPropertyHelper chosen(preset);
+  vtkSMPropertyHelper chosen(choice);
   chosen.SetUseUnchecked(panel);
-  for (const auto& [name, value] : rockfall::presetValues(chosen.GetAsInt()))
+  const int preset = chosen.GetAsInt();
+  if (preset == 0 && !panel)
+  {
+    return; // of a script or a state, which have numbers of their own
+  }
+  // Without a preset the numbers are those that a slope begins with: bare rock.
+  vtkSMProxy* bare =
+    slope->GetSessionProxyManager()->GetPrototypeProxy(slope->GetXMLGroup(), slope->GetXMLName());
+  for (const auto& [name, value] : rockfall::presetValues(std::max(1, preset)))
   {
     vtkSMPropertyHelper number(slope, name.c_str());
+    const double wanted =
+      preset == 0 ? vtkSMPropertyHelper(bare, name.c_str()).GetAsDouble() : value;
     number.SetUseUnchecked(panel);
-    if (number.GetAsDouble() != value)
+    if (number.GetAsDouble() != wanted)
     {
-      number.Set(value);
+      number.Set(wanted);
     }
   }
 }

@@ -220,7 +220,7 @@ def sheet(view=None):
     display = simple.Show(letter, view)
     display.TextPropMode = "Billboard 3D Text"
     display.BillboardPosition = list(foot + size * np.array([0.0, 1.2, 0.0]))
-    display.FontSize, display.Shadow = 16, 1
+    display.FontSize, display.Bold, display.Color = 24, 1, ink
     date = simple.Text(registrationName="Date", Text=time.strftime("%Y-%m-%d"))
     display = simple.Show(date, view)
     display.WindowLocation = "Upper Center"
