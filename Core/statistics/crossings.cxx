@@ -275,14 +275,18 @@ void appendOf(const RockPath& path, const Segment& segment, const Terrain* terra
 {
   const auto sideOf = [&segment](const PathPoint& p)
   { return segment.side(p.position.x(), p.position.y()); };
-  double previous = sideOf(path.points.front()); // the last side that was not 0
+  double previous = 0.0; // the last side that was not 0
+  // A path that begins on the line has not crossed it: until it is off, rounding has no side.
+  const auto beyond = [&previous](double side)
+  { return previous == 0.0 && std::abs(side) < kOnLine ? 0.0 : side; };
+  previous = beyond(sideOf(path.points.front()));
   for (std::size_t k = 1; k < path.points.size(); ++k)
   {
     const PathPoint &a = path.points[k - 1], &b = path.points[k];
     // A path that ends on the line, caught by a net there, has not crossed it.
     const bool last = k + 1 == path.points.size();
     const double side = sideOf(b);
-    const double end = last && std::abs(side) < kOnLine ? 0.0 : side;
+    const double end = last && std::abs(side) < kOnLine ? 0.0 : beyond(side);
     if (!(b.time > a.time))
     {
       previous = end != 0.0 ? end : previous;
@@ -310,7 +314,7 @@ void appendOf(const RockPath& path, const Segment& segment, const Terrain* terra
     {
       const bool whole = t == turns.count;
       const double to = whole ? 1.0 : turns.at[std::size_t(t)];
-      const double value = whole ? end : distance(to);
+      const double value = whole ? end : beyond(distance(to));
       if (previous * value < 0.0)
       {
         // At its beginning if it came to the plane there and lay in it.

@@ -1,6 +1,7 @@
 #include "vtkHazardMapWriter.h"
 
 #include "base/errors.h"
+#include "base/text/numberText.h"
 #include "files/layerStyles.h"
 #include "gis/raster/rasterWriter.h"
 #include "shared/inputs.h"
@@ -10,6 +11,7 @@
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkErrorCode.h"
 #include "vtkFloatArray.h"
 #include "vtkImageData.h"
@@ -20,9 +22,11 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <string>
+#include <string_view>
 
 vtkStandardNewMacro(vtkHazardMapWriter);
 
@@ -47,6 +51,11 @@ rockfall::MapImage mapOf(vtkImageData* image)
   rockfall::MapImage map;
   map.columns = extent[1] - extent[0];
   map.rows = extent[3] - extent[2];
+  if (std::abs(spacing[1] - spacing[0]) > 1e-6 * spacing[0])
+  {
+    throw rockfall::DataError("The Input has cells of " + rockfall::numberText(spacing[0]) + " x " +
+      rockfall::numberText(spacing[1]) + " m; those of a map are square");
+  }
   map.cellSize = spacing[0];
   map.west = origin[0] + extent[0] * spacing[0];
   map.south = origin[1] + extent[2] * spacing[1];
@@ -57,7 +66,8 @@ rockfall::MapImage mapOf(vtkImageData* image)
   for (int k = 0; k < cells->GetNumberOfArrays(); ++k)
   {
     vtkDataArray* array = cells->GetArray(k);
-    if (!array || array->GetNumberOfComponents() != 1 || !array->GetName())
+    if (!array || array->GetNumberOfComponents() != 1 || !array->GetName() ||
+      vtkDataSetAttributes::GhostArrayName() == std::string_view(array->GetName()))
     {
       continue;
     }

@@ -98,6 +98,7 @@ void CurrentRun::tellBefore(const KeptRun& run) const
     tellIdleContacts(
       !run.contactFile.empty(), run.parameters.pushRocksApart, run.parameters.rockCohesion > 0.0);
   }
+  tellIdleImpulses(run.slope, run.parameters);
   tellOdd(run.slope, run.frame.rocks, run.frame.frequencies);
   tellAlike(run.slope, run.frame.rocks, run.parameters.iterations);
 }

@@ -84,6 +84,16 @@ void tellNewNets(const Terrain& terrain)
   }
 }
 
+void tellIdleImpulses(const Terrain& terrain, const SimulationParameters& parameters)
+{
+  if (parameters.impactResolution == ImpactResolution::Impulse && terrain.yields())
+  {
+    showNote("ImpactResolution Impulse has no effect: some of the ground yields, by scars, by "
+             "friction that hangs on slip or by rolling resistance, and springs resolve all "
+             "impacts on such a slope");
+  }
+}
+
 void tellAlike(const Terrain& terrain, std::span<const Rock> rocks, int iterations)
 {
   const bool drawn = terrain.draws() ||

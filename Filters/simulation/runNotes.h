@@ -31,6 +31,9 @@ void tellOdd(
 /// Note on nets that wear or fill up, of which each rock meets a new one.
 void tellNewNets(const Terrain& terrain);
 
+/// Note on impulses that are asked for on a slope on which there are none.
+void tellIdleImpulses(const Terrain& terrain, const SimulationParameters& parameters);
+
 /// Note on realisations that nothing makes differ.
 void tellAlike(const Terrain& terrain, std::span<const Rock> rocks, int iterations);
 

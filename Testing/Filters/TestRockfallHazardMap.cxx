@@ -430,6 +430,12 @@ TEST_F(TestRockfallHazardMap, WrittenAsGeoTiff)
   writer->SetInputDataObject(other);
   writer->Write();
   this->ExpectOneError({ "no hazard map" });
+  vtkNew<vtkImageData> resampled; // as ParaView's Resample To Image makes it
+  resampled->DeepCopy(this->Filter->GetOutput());
+  resampled->SetSpacing(5.0, 2.5, 1.0);
+  writer->SetInputDataObject(resampled);
+  writer->Write();
+  this->ExpectOneError({ "5 x 2.5 m", "square" });
   EXPECT_EQ(rockfall::readRaster(path, { .cellSize = 0.0, .band = 2 }).heights, rocks);
 }
 

@@ -140,6 +140,30 @@ TEST(Crossings, WhatEndsOnTheLineHasNotCrossedIt)
   }
 }
 
+TEST(Crossings, WhatBeginsOnTheLineHasNotCrossedIt)
+{
+  // A rock that is released on the line falls along it, on either side of it by rounding, then goes.
+  const CollectorLine line = lineOf({ { 10, -20 }, { 10, 20 } });
+  for (const double first : { -1e-12, 0.0, 1e-12 })
+  {
+    for (const double away : { -5.0, 5.0 })
+    {
+      std::vector<PathPoint> points(4);
+      const double xs[] = { first, -2.0 * first, first, away };
+      for (std::size_t k = 0; k < points.size(); ++k)
+      {
+        points[k].time = double(k);
+        points[k].position.x() = 10.0 + xs[k];
+      }
+      EXPECT_TRUE(crossingsOf(rockPathOf(points, 0, 0, 1.0), line).empty()) << first << " " << away;
+      points.push_back(points.back()); // and back over it
+      points.back().time = 5.0;
+      points.back().position.x() = 10.0 - away;
+      EXPECT_EQ(crossingsOf(rockPathOf(points, 0, 0, 1.0), line).size(), 1u);
+    }
+  }
+}
+
 TEST(Crossings, ThroughAVertex)
 {
   // Through a vertex of the line, or up to it and off elsewhere, with and without a knot there: one
