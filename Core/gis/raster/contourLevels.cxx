@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
-#include <set>
 
 namespace rockfall::gis
 {
@@ -18,7 +17,7 @@ namespace
 
 constexpr double largestStep = 5.0; // times the largest one between the other heights
 constexpr double leastStep = 10.0;  // m
-constexpr double frameStep = 1.5;   // times the largest one: of a frame
+constexpr double frameStep = 1.5;   // times the largest one: of a frame, and for a note
 
 bool isAt(const Contours& contours, const Line& line, double z)
 {
@@ -199,70 +198,15 @@ void refuseStrayZeros(const Contours& contours, const std::string& fileName)
   }
 }
 
-ZeroLines::ZeroLines(const Contours& contours)
+void noteZeros(const Contours& contours, std::vector<std::string>& notes)
 {
   const Steps steps(contours);
-  for (std::size_t k = 0; k < contours.lines.size() && steps.others > 0; ++k)
+  if (steps.ofZero > leastStep && steps.ofZero > frameStep * steps.largest)
   {
-    if (isAt(contours, contours.lines[k], 0.0))
-    {
-      lines_.emplace(k, Beside());
-    }
-  }
-  next_ = steps.ofZero;
-  largest_ = steps.largest;
-}
-
-void ZeroLines::own(std::size_t line, double x, double y)
-{
-  if (lines_.contains(line))
-  {
-    owners_.emplace(std::pair(x, y), line);
-  }
-}
-
-void ZeroLines::see(const std::array<Vec3, 3>& corners)
-{
-  if (owners_.empty())
-  {
-    return;
-  }
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const Vec3& corner : corners)
-  {
-    nearest = corner.z() != 0.0 ? std::min(nearest, std::abs(corner.z())) : nearest;
-  }
-  std::set<std::size_t> of;
-  for (const Vec3& corner : corners)
-  {
-    const auto owner = corner.z() == 0.0 && std::isfinite(nearest)
-      ? owners_.find({ corner.x(), corner.y() })
-      : owners_.end();
-    if (owner != owners_.end() && of.insert(owner->second).second)
-    {
-      Beside& beside = lines_.at(owner->second);
-      ++beside.all;
-      beside.farther += nearest > frameStep * next_;
-    }
-  }
-}
-
-void ZeroLines::tell(std::vector<std::string>& notes) const
-{
-  const bool low = next_ > leastStep && next_ > frameStep * largest_;
-  const auto count = std::count_if(lines_.begin(), lines_.end(),
-    [low](const auto& line) { return low || 2 * line.second.farther > line.second.all; });
-  if (count > 0)
-  {
-    const bool one = count == 1;
-    notes.push_back(
-      (std::size_t(count) < lines_.size()
-          ? std::to_string(count) + " of " + std::to_string(lines_.size()) +
-            " lines at exactly 0 m " + (one ? "lies " : "lie ")
-          : std::to_string(count) + (one ? " line lies" : " lines lie") + " at exactly 0 m, ") +
-      (low ? number(next_) + " m from the next height"
-           : "beside others than those of " + number(next_) + " m, the next height") +
-      ": has a contour no height?");
+    const auto count = linesAtZero(contours);
+    notes.push_back(std::to_string(count) + (count == 1 ? " line lies" : " lines lie") +
+      " at exactly 0 m, " + number(steps.ofZero) +
+      " m from the next height: has a contour no height?");
   }
 }
 

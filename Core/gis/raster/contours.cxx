@@ -19,7 +19,6 @@
 #include <ogrsf_frmts.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -103,7 +102,7 @@ void toMetric(Contours& contours, const LayerHeights& heights, RasterSurface& re
 
 /// All vertices, about (x0, y0), and points between those that are farther apart than `spacing`.
 TinPoints pointsOf(const Contours& contours, double x0, double y0, double spacing,
-  const ContourOptions& options, const std::string& fileName, ZeroLines& zeros)
+  const ContourOptions& options, const std::string& fileName)
 {
   if (const double most = lengthOf(contours) / spacing + double(contours.x.size());
       most > double(options.largestVertices))
@@ -118,9 +117,8 @@ TinPoints pointsOf(const Contours& contours, double x0, double y0, double spacin
     points.y.push_back(y);
     points.z.push_back(z);
   };
-  for (std::size_t number = 0; number < contours.lines.size(); ++number)
+  for (const Line& line : contours.lines)
   {
-    const Line& line = contours.lines[number];
     for (std::size_t i = line.first; i < line.first + line.count; ++i)
     {
       const double x = contours.x[i] - x0, y = contours.y[i] - y0, z = contours.z[i];
@@ -133,11 +131,9 @@ TinPoints pointsOf(const Contours& contours, double x0, double y0, double spacin
         {
           const double s = double(k) / parts;
           add(px + s * (x - px), py + s * (y - py), pz == z ? z : pz + s * (z - pz));
-          zeros.own(number, points.x.back(), points.y.back());
         }
       }
       add(x, y, z);
-      zeros.own(number, x, y);
     }
   }
   return points;
@@ -284,10 +280,9 @@ RasterSurface readContours(const std::string& fileName, const ContourOptions& op
   grid.rows = int(rows);
 
   const double x0 = 0.5 * (box.xMin + box.xMax), y0 = 0.5 * (box.yMin + box.yMax);
-  ZeroLines zeros(contours);
-  UnitedPoints united = detachedCall(
-    [points = pointsOf(contours, x0, y0, grid.cellSize, options, fileName, zeros), x0, y0]
-    { return unite(points, x0, y0); });
+  UnitedPoints united =
+    detachedCall([points = pointsOf(contours, x0, y0, grid.cellSize, options, fileName), x0, y0]
+      { return unite(points, x0, y0); });
   for (const std::string& note : { united.note, crossingsNote(contours) })
   {
     if (!note.empty())
@@ -296,9 +291,9 @@ RasterSurface readContours(const std::string& fileName, const ContourOptions& op
     }
   }
   const std::size_t pointCount = united.points.x.size();
-  TinNodes nodes = interpolateTin(std::move(united.points), grid, box.xMin - x0, box.yMin - y0,
-    fileName, [&zeros](const std::array<Vec3, 3>& corners) { zeros.see(corners); });
-  zeros.tell(result.notes);
+  TinNodes nodes =
+    interpolateTin(std::move(united.points), grid, box.xMin - x0, box.yMin - y0, fileName);
+  noteZeros(contours, result.notes);
   const auto flat = std::count(nodes.flat.begin(), nodes.flat.end(), 1);
   const std::vector<double> levels = levelsOf(contours);
   const std::int64_t relaxed =

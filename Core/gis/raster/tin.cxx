@@ -67,7 +67,7 @@ struct Freed
 } // namespace
 
 TinNodes interpolateTin(TinPoints given, const GridGeometry& target, double west, double south,
-  const std::string& fileName, const std::function<void(const std::array<Vec3, 3>&)>& see)
+  const std::string& fileName)
 {
   Messages messages;
   const auto held = std::make_shared<const TinPoints>(std::move(given));
@@ -98,8 +98,7 @@ TinNodes interpolateTin(TinPoints given, const GridGeometry& target, double west
   for (int k = 0; k < tin->nFacets; ++k)
   {
     stayWanted();
-    double x[3], y[3];
-    std::array<double, 3> z;
+    double x[3], y[3], z[3];
     for (int i = 0; i < 3; ++i)
     {
       const int vertex = tin->pasFacets[k].anVertexIdx[i];
@@ -115,7 +114,6 @@ TinNodes interpolateTin(TinPoints given, const GridGeometry& target, double west
     {
       continue; // no inside; its neighbours have what is on it
     }
-    see({ Vec3(x[0], y[0], z[0]), Vec3(x[1], y[1], z[1]), Vec3(x[2], y[2], z[2]) });
     const bool level = z[0] == z[1] && z[1] == z[2];
     bool flat = level;
     for (int i = 0; i < 3; ++i)

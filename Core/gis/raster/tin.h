@@ -5,9 +5,7 @@
 
 #include "terrain/Terrain.h"
 
-#include <array>
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -32,9 +30,8 @@ struct TinNodes
 /// The Delaunay triangulation of the points (GDAL's, by Qhull), linear within each triangle. Of the
 /// target `cellSize`, `columns` and `rows` are used; its lower left node stands at (west, south).
 /// Neighbours on a contour are taken to be a cell apart at most. No two points may stand at the
-/// same place. `see` is shown the heights of each triangle's corners. Throws DataError, beginning with
-/// `fileName`, if they have no triangulation.
+/// same place. Throws DataError, beginning with `fileName`, if they have no triangulation.
 TinNodes interpolateTin(TinPoints points, const GridGeometry& target, double west, double south,
-  const std::string& fileName, const std::function<void(const std::array<Vec3, 3>&)>& see);
+  const std::string& fileName);
 
 } // namespace rockfall::gis

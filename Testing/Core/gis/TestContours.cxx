@@ -459,10 +459,9 @@ TEST(Contours, ZeroAmongOthersIsNoted)
   };
   EXPECT_FALSE(noted(hill(0.0)));               // a shore
   EXPECT_FALSE(noted(with(hill(10.0), 200.0))); // the same
-  EXPECT_TRUE(noted(with(hill(10.0), 130.0)));  // between 30 and 40 m
   EXPECT_TRUE(noted(with(hill(30.0), 200.0)));  // three steps below the lowest
   EXPECT_FALSE(noted(hill(10.0)));
-  EXPECT_TRUE(noted(with(hill(0.0), 130.0))); // beside a shore
+  EXPECT_FALSE(noted(with(hill(15.0), 200.0))); // one and a half steps below the lowest
 }
 
 TEST(ContourErrors, EachNamesWhatIsWrong)
