@@ -102,18 +102,16 @@ void askAfterHeights(
     return;
   }
   const Columns columns(rocks);
-  Doubt high("Rocks start up to " + numberText(most) +
-    " m over the ground or other rocks: do their heights belong to this slope?");
+  Doubt high("heights of rocks over the ground",
+    "Rocks start up to " + numberText(most) +
+      " m over the ground or other rocks: do their heights belong to this slope?");
   for (const Rock& rock : rocks)
   {
-    high.look(!isHigh(rock) || columns.gapUnder(rock) <= most, std::string("block "),
-      [&]
-      {
-        return std::to_string(rock.blockId) + " at " + numberText(heightOver(surveyed, rock), 4) +
-          " m";
-      });
+    high.look(!isHigh(rock) || columns.gapUnder(rock) <= most,
+      "block " + std::to_string(rock.blockId),
+      [&] { return " at " + numberText(heightOver(surveyed, rock), 4) + " m"; });
   }
-  high.tell("heights of rocks over the ground", notes);
+  high.tell(notes);
 }
 
 } // namespace rockfall

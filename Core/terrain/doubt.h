@@ -18,38 +18,62 @@ namespace rockfall
 class Doubt
 {
 public:
-  explicit Doubt(std::string ask)
-    : ask_(std::move(ask))
+  /// `kind`: plural of what is looked at; `ask`: sentences behind how many and the first.
+  Doubt(std::string kind, std::string ask)
+    : kind_(std::move(kind))
+    , ask_(std::move(ask))
   {
   }
 
-  /// `name`: the number of a feature, or words. `words` is asked only if it is the first.
-  template <class Name, class Words>
-  void look(bool fits, const Name& name, Words&& words)
+  /// `name`: of the one that is looked at. `words` is asked only if it is the first.
+  template <class Words>
+  void look(bool fits, const std::string& name, Words&& words)
   {
     ++all_;
     if (!fits && ++count_ == 1)
     {
-      first_ = nameOf(name) + words();
+      first_ = name + words();
     }
   }
 
-  void tell(const char* kind, std::vector<std::string>& notes) const
+  /// The same of a number, told in `unit` (with the blank before it), which is `scale` of SI.
+  void look(
+    bool fits, const std::string& name, double value, const std::string& unit, double scale = 1.0)
+  {
+    this->look(fits, name, [&] { return " with " + numberText(value / scale, 6) + unit; });
+  }
+
+  void look(const PlausibleRange& range, const std::string& name, double value,
+    const std::string& unit, double scale = 1.0)
+  {
+    this->look(range.has(value), name, value, unit, scale);
+  }
+
+  void tell(std::vector<std::string>& notes) const
   {
     if (count_ > 0)
     {
-      notes.push_back(std::to_string(count_) + " of " + std::to_string(all_) + " " + kind +
+      notes.push_back(std::to_string(count_) + " of " + std::to_string(all_) + " " + kind_ +
         " look implausible, first " + first_ + ". " + ask_);
     }
   }
 
 private:
-  static std::string nameOf(std::int64_t feature) { return "feature " + std::to_string(feature); }
-  static std::string nameOf(const std::string& name) { return name; }
-
-  std::string ask_, first_;
+  std::string kind_, ask_, first_;
   std::int64_t all_ = 0, count_ = 0;
 };
+
+/// Tells of each, in their order.
+template <class... Doubts>
+void tellAll(std::vector<std::string>& notes, const Doubts&... doubts)
+{
+  (doubts.tell(notes), ...);
+}
+
+inline std::string featureText(std::int64_t feature)
+{
+  return "feature " + std::to_string(feature);
+}
 
 /// "2 to 200" in units of `unit`.
 inline std::string between(const PlausibleRange& range, double unit = 1.0)

@@ -133,23 +133,23 @@ Vec3 Obstacles::lyingCorner(const LyingStem& stem, int corner)
 
 void Obstacles::askAfterLying(std::vector<std::string>& notes) const
 {
-  Doubt hollow(
+  Doubt hollow("stems that lie",
     "Under a stem that bridges a hollow rocks pass; here it is a wall down to the ground: "
     "end the line where the stem leaves the ground");
-  Doubt buried("The stem is straight from end to end: give the line points where the ground rises");
+  Doubt buried("stems that lie",
+    "The stem is straight from end to end: give the line points where the ground rises");
   for (std::size_t k = 0; k < lyingNumbers_.size(); ++k)
   {
     if (const LyingStem* stem = this->lyingOf(int(k)))
     {
-      const std::int64_t feature = structures_.trees[k].feature;
-      hollow.look(stem->hollow <= 2.0 * stem->radius, feature,
+      const std::string name = featureText(structures_.trees[k].feature);
+      hollow.look(stem->hollow <= 2.0 * stem->radius, name,
         [&] { return ", up to " + numberText(stem->hollow, 2) + " m over the ground"; });
-      buried.look(stem->buried <= 0.0, feature,
+      buried.look(stem->buried <= 0.0, name,
         [&] { return ", up to " + numberText(stem->buried, 2) + " m under it"; });
     }
   }
-  hollow.tell("stems that lie", notes);
-  buried.tell("stems that lie", notes);
+  tellAll(notes, hollow, buried);
 }
 
 bool Obstacles::isIn(const LyingStem& stem, const Vec3& place)

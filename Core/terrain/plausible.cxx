@@ -26,149 +26,156 @@ std::string text(double value)
   return numberText(value, 6);
 }
 
+std::string highAndThick(double height, double diameter)
+{
+  return ": " + text(height) + " m high and " + text(100.0 * diameter) + " cm thick";
+}
+
 void lookAtTrees(const std::vector<Tree>& trees, std::vector<std::string>& notes)
 {
   using namespace plausible;
-  Doubt thick("Stems have " + between(kStemDiameter, 0.01) + " cm: are diameters in cm?");
-  Doubt slender("Trees are " + between(kSlenderness) +
-    " times as high as thick: are diameters in cm and heights in m?");
-  Doubt wrong("Lying stems are " + between(kLyingLength) + " m long: is the line one stem?");
-  Doubt strong("Stems hold " + between(kStemCapacity) +
-    " times what Dorren and Berger give their diameter: are capacities in kJ?");
+  Doubt thick("diameters of trees",
+    "Stems have " + between(kStemDiameter, 0.01) + " cm: are diameters in cm?");
+  Doubt slender("trees",
+    "Trees are " + between(kSlenderness) +
+      " times as high as thick: are diameters in cm and heights in m?");
+  Doubt wrong("lengths of lying stems",
+    "Lying stems are " + between(kLyingLength) + " m long: is the line one stem?");
+  Doubt strong("capacities of trees",
+    "Stems hold " + between(kStemCapacity) +
+      " times what Dorren and Berger give their diameter: are capacities in kJ?");
   for (const Tree& t : trees)
   {
+    const std::string name = featureText(t.feature);
     const bool fits = kStemDiameter.has(t.diameter);
-    thick.look(fits, t.feature, [&] { return " with " + text(100.0 * t.diameter) + " cm"; });
+    thick.look(fits, name, t.diameter, " cm", 0.01);
     if (t.lies())
     {
-      const double length = (t.end - t.position).norm();
-      wrong.look(
-        kLyingLength.has(length), t.feature, [&] { return " with " + text(length) + " m"; });
+      wrong.look(kLyingLength, name, (t.end - t.position).norm(), " m");
     }
     else
     {
       // A stem that is too thick is told once.
-      slender.look(!fits || kSlenderness.has(t.height / t.diameter), t.feature,
-        [&] {
-          return ": " + text(t.height) + " m high and " + text(100.0 * t.diameter) + " cm thick";
-        });
+      slender.look(!fits || kSlenderness.has(t.height / t.diameter), name,
+        [&] { return highAndThick(t.height, t.diameter); });
     }
     const double share = t.capacity / stemCapacity(t.diameter);
-    strong.look(!fits || std::isinf(share) || kStemCapacity.has(share), t.feature,
-      [&] { return " with " + text(t.capacity / 1000.0) + " kJ"; });
+    strong.look(
+      !fits || std::isinf(share) || kStemCapacity.has(share), name, t.capacity, " kJ", 1000.0);
   }
-  thick.tell("diameters of trees", notes);
-  slender.tell("trees", notes);
-  wrong.tell("lengths of lying stems", notes);
-  strong.tell("capacities of trees", notes);
+  tellAll(notes, thick, slender, wrong, strong);
 }
 
 void lookAtNets(const std::vector<Barrier>& barriers, std::vector<std::string>& notes)
 {
   using namespace plausible;
-  Doubt high("Nets stand " + between(kNetHeight) + " m high: is it in m?");
-  Doubt strong("Nets are sold for " + between(kNetCapacity, 1000.0) + " kJ: is it in kJ?");
-  Doubt endless("A barrier without a capacity stops every rock: is it a rock face?");
-  Doubt soft("Nets brake on " + between(kBraking) + " m: is it in m?");
-  Doubt worn("Nets keep " + between(kResidual, 0.01) +
-    " % of their height at their capacity: is it that height, in %?");
-  Doubt roomy("Nets are filled by " + between(kNetRoom) + " m³ per m: is it in m³/m?");
+  Doubt high("heights of barriers", "Nets stand " + between(kNetHeight) + " m high: is it in m?");
+  Doubt strong("capacities of barriers",
+    "Nets are sold for " + between(kNetCapacity, 1000.0) + " kJ: is it in kJ?");
+  Doubt endless("barriers", "A barrier without a capacity stops every rock: is it a rock face?");
+  Doubt soft("braking ways of barriers", "Nets brake on " + between(kBraking) + " m: is it in m?");
+  Doubt worn("residual heights of barriers",
+    "Nets keep " + between(kResidual, 0.01) +
+      " % of their height at their capacity: is it that height, in %?");
+  Doubt roomy("fillings of barriers",
+    "Nets are filled by " + between(kNetRoom) + " m³ per m: is it in m³/m?");
   for (const Barrier& b : barriers)
   {
     if (!b.records)
     {
-      endless.look(!std::isinf(b.capacity), b.feature, [] { return std::string(); });
-      soft.look(b.braking == 0.0 || kBraking.has(b.braking), b.feature,
-        [&] { return " with " + text(b.braking) + " m"; });
-      worn.look(std::isnan(b.residual) || b.residual == 0.0 || kResidual.has(b.residual), b.feature,
-        [&] { return " with " + text(100.0 * b.residual) + " %"; });
-      roomy.look(std::isinf(b.room) || kNetRoom.has(b.room), b.feature,
-        [&] { return " with " + text(b.room) + " m³/m"; });
-      high.look(
-        kNetHeight.has(b.height), b.feature, [&] { return " with " + text(b.height) + " m"; });
-      strong.look(std::isinf(b.capacity) || kNetCapacity.has(b.capacity), b.feature,
-        [&] { return " with " + text(b.capacity / 1000.0) + " kJ"; });
+      const std::string name = featureText(b.feature);
+      endless.look(!std::isinf(b.capacity), name, [] { return std::string(); });
+      soft.look(b.braking == 0.0 || kBraking.has(b.braking), name, b.braking, " m");
+      worn.look(std::isnan(b.residual) || b.residual == 0.0 || kResidual.has(b.residual), name,
+        b.residual, " %", 0.01);
+      roomy.look(std::isinf(b.room) || kNetRoom.has(b.room), name, b.room, " m³/m");
+      high.look(kNetHeight, name, b.height, " m");
+      strong.look(
+        std::isinf(b.capacity) || kNetCapacity.has(b.capacity), name, b.capacity, " kJ", 1000.0);
     }
   }
-  high.tell("heights of barriers", notes);
-  strong.tell("capacities of barriers", notes);
-  endless.tell("barriers", notes);
-  soft.tell("braking ways of barriers", notes);
-  worn.tell("residual heights of barriers", notes);
-  roomy.tell("fillings of barriers", notes);
+  tellAll(notes, high, strong, endless, soft, worn, roomy);
 }
 
 void lookAtEmbankments(const std::vector<Embankment>& dams, std::vector<std::string>& notes)
 {
   using namespace plausible;
-  Doubt high("Embankments are " + between(kDamHeight) + " m high: is it in m?");
-  Doubt wide("Crests are " + between(kCrestWidth) + " m wide: is it in m?");
-  Doubt flat(
+  Doubt high(
+    "heights of embankments", "Embankments are " + between(kDamHeight) + " m high: is it in m?");
+  Doubt wide("widths of crests", "Crests are " + between(kCrestWidth) + " m wide: is it in m?");
+  Doubt flat("sides of embankments",
     "Sides go " + between(kSideSlope) + " m across per m down: is it a number of degrees?");
   for (const Embankment& e : dams)
   {
-    high.look(std::isnan(e.height) || kDamHeight.has(e.height), e.feature,
-      [&] { return " with " + text(e.height) + " m"; });
-    wide.look(kCrestWidth.has(e.crestWidth), e.feature,
-      [&] { return " with " + text(e.crestWidth) + " m"; });
-    const double side = std::max(e.mountainSlope, e.valleySlope);
-    flat.look(kSideSlope.has(side), e.feature, [&] { return " with " + text(side); });
+    const std::string name = featureText(e.feature);
+    high.look(std::isnan(e.height) || kDamHeight.has(e.height), name, e.height, " m");
+    wide.look(kCrestWidth, name, e.crestWidth, " m");
+    flat.look(kSideSlope, name, std::max(e.mountainSlope, e.valleySlope), "");
   }
-  high.tell("heights of embankments", notes);
-  wide.tell("widths of crests", notes);
-  flat.tell("sides of embankments", notes);
+  tellAll(notes, high, wide, flat);
 }
 
 /// Numbers of any ground, of which the slope's own, a class or a structure is named.
 class GroundDoubts
 {
 public:
-  template <class Name>
-  void friction(const SurfaceMaterial& m, const Name& name)
+  explicit GroundDoubts(const std::string& of)
+    : steep_("friction angles" + of,
+        "Ground has " + between(plausible::kFrictionAngle) + " degrees: is it in degrees?")
+    , vague_("deviations of friction angles" + of,
+        "φ deviates by up to " + text(plausible::kFrictionDeviation.most) +
+          " degrees: is it a deviation?")
+    , sticky_("cohesions" + of,
+        "Contact points hold " + between(plausible::kCohesion) + " N: is it in N, not Pa?")
+    , swapped_("restitutions" + of, "Rt is at least Rn in all tables: is one in the other's place?")
+    , wide_("deviations of restitution" + of,
+        "Coefficients deviate by up to " + text(plausible::kRestitutionDeviation.most) +
+          ": is it a deviation of 0 to 1?")
+    , slow_("speeds of restitution" + of,
+        "Half of Rn is gone at " + between(plausible::kRestitutionSpeed) + " m/s: is it in m/s?")
   {
-    const double phi = degrees(m.frictionAngle);
-    steep_.look(phi == 0.0 || plausible::kFrictionAngle.has(phi), name,
-      [&] { return " with " + text(phi) + " degrees"; });
-    const double deviation = degrees(m.frictionAngleDeviation);
-    vague_.look(plausible::kFrictionDeviation.has(deviation), name,
-      [&] { return " with " + text(deviation) + " degrees"; });
-    sticky_.look(plausible::kCohesion.has(m.cohesion), name,
-      [&] { return " with " + text(m.cohesion) + " N"; });
+    static_assert(std::size(plausible::kYielding) == 13); // as many as yieldingFields()
+    for (const YieldingField& field : yieldingFields())
+    {
+      const PlausibleRange& range = plausible::kYielding[yields_.size()];
+      yields_.emplace_back(std::string("values of ") + field.property + of,
+        std::string(field.property) + " is " + between(range, field.scale) + unitOf(field) +
+          " on ground that yields: is it what was meant?");
+    }
   }
 
-  template <class Name>
-  void restitution(const SurfaceMaterial& m, const Name& name)
+  void friction(const SurfaceMaterial& m, const std::string& name)
+  {
+    const double phi = degrees(m.frictionAngle);
+    steep_.look(phi == 0.0 || plausible::kFrictionAngle.has(phi), name, phi, " degrees");
+    vague_.look(plausible::kFrictionDeviation, name, degrees(m.frictionAngleDeviation), " degrees");
+    sticky_.look(plausible::kCohesion, name, m.cohesion, " N");
+  }
+
+  void restitution(const SurfaceMaterial& m, const std::string& name)
   {
     const double rn = m.restitution, rt = m.tangentialRestitution;
     swapped_.look(m.restitutionModel == RestitutionModel::Velocity || rn <= rt, name,
       [&] { return " with Rn " + text(rn) + " and Rt " + text(rt); });
     slow_.look(m.restitutionModel != RestitutionModel::SpeedDependent ||
         plausible::kRestitutionSpeed.has(m.restitutionSpeed),
-      name, [&] { return " with " + text(m.restitutionSpeed) + " m/s"; });
-    wide_.look(plausible::kRestitutionDeviation.has(m.restitutionDeviation), name,
-      [&] { return " with " + text(m.restitutionDeviation); });
+      name, m.restitutionSpeed, " m/s");
+    wide_.look(plausible::kRestitutionDeviation, name, m.restitutionDeviation, "");
     for (std::size_t k = 0; k < yields_.size(); ++k)
     {
       const YieldingField& field = yieldingFields()[k];
       const double value = m.yielding.*field.member;
-      yields_[k].look(std::isinf(value) || plausible::kYielding[k].has(value), name,
-        [&] { return " with " + text(value / field.scale) + unitOf(field); });
+      yields_[k].look(std::isinf(value) || plausible::kYielding[k].has(value), name, value,
+        unitOf(field), field.scale);
     }
   }
 
-  void tell(const std::string& of, std::vector<std::string>& notes) const
+  void tell(std::vector<std::string>& notes) const
   {
-    const auto tell = [&](const Doubt& doubt, const std::string& what)
-    { doubt.tell((what + " of " + of).c_str(), notes); };
-    tell(steep_, "friction angles");
-    tell(vague_, "deviations of friction angles");
-    tell(sticky_, "cohesions");
-    tell(swapped_, "restitutions");
-    tell(wide_, "deviations of restitution");
-    tell(slow_, "speeds of restitution");
-    for (std::size_t k = 0; k < yields_.size(); ++k)
+    tellAll(notes, steep_, vague_, sticky_, swapped_, wide_, slow_);
+    for (const Doubt& doubt : yields_)
     {
-      tell(yields_[k], std::string("values of ") + yieldingFields()[k].property);
+      doubt.tell(notes);
     }
   }
 
@@ -178,48 +185,25 @@ private:
     return *field.unit ? " " + std::string(field.unit) : std::string();
   }
 
-  static std::vector<Doubt> yieldingDoubts()
-  {
-    static_assert(std::size(plausible::kYielding) == 13); // as many as yieldingFields()
-    std::vector<Doubt> doubts;
-    for (const YieldingField& field : yieldingFields())
-    {
-      const PlausibleRange& range = plausible::kYielding[doubts.size()];
-      doubts.emplace_back(std::string(field.property) + " is " + between(range, field.scale) +
-        unitOf(field) + " on ground that yields: is it what was meant?");
-    }
-    return doubts;
-  }
-
-  std::vector<Doubt> yields_ = yieldingDoubts();
-  Doubt steep_{ "Ground has " + between(plausible::kFrictionAngle) +
-    " degrees: is it in degrees?" };
-  Doubt sticky_{ "Contact points hold " + between(plausible::kCohesion) +
-    " N: is it in N, not Pa?" };
-  Doubt slow_{ "Half of Rn is gone at " + between(plausible::kRestitutionSpeed) +
-    " m/s: is it in m/s?" };
-  Doubt wide_{ "Coefficients deviate by up to " + text(plausible::kRestitutionDeviation.most) +
-    ": is it a deviation of 0 to 1?" };
-  Doubt vague_{ "φ deviates by up to " + text(plausible::kFrictionDeviation.most) +
-    " degrees: is it a deviation?" };
-  Doubt swapped_{ "Rt is at least Rn in all tables: is one in the other's place?" };
+  Doubt steep_, vague_, sticky_, swapped_, wide_, slow_;
+  std::vector<Doubt> yields_; ///< In the order of yieldingFields().
 };
 
 void lookAtMaterials(const Structures& structures, std::vector<std::string>& notes)
 {
-  GroundDoubts doubts;
+  GroundDoubts doubts(" of structures");
   const auto look = [&](const auto& item)
   {
     if (item.material > 0)
     {
       const SurfaceMaterial& material = structures.materials[std::size_t(item.material) - 1];
-      doubts.friction(material, item.feature);
-      doubts.restitution(material, item.feature);
+      doubts.friction(material, featureText(item.feature));
+      doubts.restitution(material, featureText(item.feature));
     }
   };
   std::for_each(structures.embankments.begin(), structures.embankments.end(), look);
   std::for_each(structures.trees.begin(), structures.trees.end(), look);
-  doubts.tell("structures", notes);
+  doubts.tell(notes);
 }
 
 /// Words for structures of a kind that are there twice.
@@ -228,11 +212,6 @@ struct TwinWords
   const char* kind;
   const char* effect; ///< Of both at one place.
 };
-
-std::string featureText(std::int64_t feature)
-{
-  return "feature " + std::to_string(feature);
-}
 
 /// Notes structures at the place of an earlier one.
 template <class Item>
@@ -330,15 +309,16 @@ void tellCrowds(const std::vector<Tree>& trees, std::vector<std::string>& notes)
     areas[{ std::floor(at.x()), std::floor(at.y()) }] +=
       0.25 * M_PI * tree.diameter * tree.diameter;
   }
-  Doubt dense("Stems have up to " + text(kBasalArea.most) +
-    " m² a hectare at breast height: was a forest given twice, or are its diameters others?");
+  Doubt dense("squares of 50 m with trees",
+    "Stems have up to " + text(kBasalArea.most) +
+      " m² a hectare at breast height: was a forest given twice, or are its diameters others?");
   for (const auto& [place, area] : areas)
   {
     const double ofHectare = area / hectares;
-    dense.look(ofHectare <= kBasalArea.most, std::string("one with "),
+    dense.look(ofHectare <= kBasalArea.most, "one with ",
       [&] { return numberText(ofHectare, 3) + " m² a hectare"; });
   }
-  dense.tell("squares of 50 m with trees", notes);
+  dense.tell(notes);
 }
 
 template <class Item>
@@ -393,10 +373,13 @@ void askAfterNumbers(const Structures& structures, std::vector<std::string>& not
 void askAfterGround(const Terrain& terrain, std::vector<std::string>& notes)
 {
   using namespace plausible;
-  GroundDoubts own;
-  Doubt rough("Roughness is " + between(kRoughness) + " m: is it in m?");
-  Doubt wave("Roughness is alike over 0, or " + between(kRoughnessLength) + " m: is it in m?");
-  Doubt high("Obstacles are " + between(kObstacle) + " m high: are they in m?");
+  GroundDoubts own(" of the ground");
+  Doubt rough(
+    "roughnesses of the ground", "Roughness is " + between(kRoughness) + " m: is it in m?");
+  Doubt wave("lengths of roughness",
+    "Roughness is alike over 0, or " + between(kRoughnessLength) + " m: is it in m?");
+  Doubt high(
+    "heights of obstacles", "Obstacles are " + between(kObstacle) + " m high: are they in m?");
   const auto surface = [&](const Roughness& r, const std::string& where)
   {
     const bool raised = !kRoughness.has(std::abs(r.mean));
@@ -406,13 +389,11 @@ void askAfterGround(const Terrain& terrain, std::vector<std::string>& notes)
         return raised ? " with a mean of " + text(r.mean) + " m"
                       : " with a deviation of " + text(r.deviation) + " m";
       });
-    wave.look(r.length == 0.0 || kRoughnessLength.has(r.length), where,
-      [&] { return " with " + text(r.length) + " m"; });
-    high.look(kObstacle.has(r.highestObstacle()), where,
-      [&] { return " with " + text(r.highestObstacle()) + " m"; });
+    wave.look(r.length == 0.0 || kRoughnessLength.has(r.length), where, r.length, " m");
+    high.look(kObstacle, where, r.highestObstacle(), " m");
   };
-  own.friction(terrain.material(), std::string("the slope's own"));
-  own.restitution(terrain.material(), std::string("the slope's own"));
+  own.friction(terrain.material(), "the slope's own");
+  own.restitution(terrain.material(), "the slope's own");
   surface(terrain.roughness(), "the slope's own");
   for (const MaterialClasses* classes : { &terrain.restitutionClasses(), &terrain.jointClasses() })
   {
@@ -427,10 +408,7 @@ void askAfterGround(const Terrain& terrain, std::vector<std::string>& notes)
       }
     }
   }
-  own.tell("the ground", notes);
-  rough.tell("roughnesses of the ground", notes);
-  wave.tell("lengths of roughness", notes);
-  high.tell("heights of obstacles", notes);
+  tellAll(notes, own, rough, wave, high);
 }
 
 void askAfterFrequency(double perYear, std::vector<std::string>& notes)
@@ -445,45 +423,44 @@ void askAfterFrequency(double perYear, std::vector<std::string>& notes)
 void askAfterStands(std::span<const Stand> stands, std::vector<std::string>& notes, bool cells)
 {
   using namespace plausible;
-  Doubt dense("Stems of a hectare have " + between(kBasalArea) +
-    " m² at breast height: are stems_ha per hectare and diameters in cm?");
-  Doubt mixed("Conifers are " + between(kConifers, 0.01) + " % of the stems: is it in %?");
-  Doubt thick("Stems have " + between(kStemDiameter, 0.01) + " cm: are diameters in cm?");
-  Doubt slender("Trees are " + between(kSlenderness) +
-    " times as high as thick: are diameters in cm and heights in m?");
-  Doubt strong("Factors of species are " + between(kStemCapacity) + ": are they of the capacity?");
+  Doubt dense("stands",
+    "Stems of a hectare have " + between(kBasalArea) +
+      " m² at breast height: are stems_ha per hectare and diameters in cm?");
+  Doubt mixed("shares of conifers",
+    "Conifers are " + between(kConifers, 0.01) + " % of the stems: is it in %?");
+  Doubt thick("mean diameters of stands",
+    "Stems have " + between(kStemDiameter, 0.01) + " cm: are diameters in cm?");
+  Doubt slender("stands",
+    "Trees are " + between(kSlenderness) +
+      " times as high as thick: are diameters in cm and heights in m?");
+  Doubt strong("stands by their factors",
+    "Factors of species are " + between(kStemCapacity) + ": are they of the capacity?");
   for (const Stand& s : stands)
   {
-    const double factor = kStemCapacity.has(s.coniferFactor) ? s.broadleafFactor : s.coniferFactor;
-    strong.look(kStemCapacity.has(factor), s.feature, [&] { return " with " + text(factor); });
+    const std::string name = featureText(s.feature);
+    strong.look(kStemCapacity, name,
+      kStemCapacity.has(s.coniferFactor) ? s.broadleafFactor : s.coniferFactor, "");
     const bool fits = kStemDiameter.has(s.diameterMean);
-    thick.look(fits, s.feature, [&] { return " with " + text(100.0 * s.diameterMean) + " cm"; });
-    slender.look(!fits || kSlenderness.has(s.height / s.diameterMean), s.feature,
-      [&] {
-        return ": " + text(s.height) + " m high and " + text(100.0 * s.diameterMean) + " cm thick";
-      });
-    mixed.look(s.conifers == 0.0 || kConifers.has(s.conifers), s.feature,
-      [&] { return " with " + text(100.0 * s.conifers) + " %"; });
+    thick.look(fits, name, s.diameterMean, " cm", 0.01);
+    slender.look(!fits || kSlenderness.has(s.height / s.diameterMean), name,
+      [&] { return highAndThick(s.height, s.diameterMean); });
+    mixed.look(s.conifers == 0.0 || kConifers.has(s.conifers), name, s.conifers, " %", 0.01);
     const double square =
       s.diameterMean * s.diameterMean + s.diameterDeviation * s.diameterDeviation;
     const double area = s.stemsPerHectare * 0.25 * M_PI * square;
-    dense.look(kBasalArea.has(area), s.feature,
+    dense.look(kBasalArea.has(area), name,
       [&]
       {
         return ": " + text(s.stemsPerHectare) + " stems of " + text(100.0 * s.diameterMean) +
           " cm, " + numberText(area, 3) + " m²";
       });
   }
-  thick.tell("mean diameters of stands", notes);
-  slender.tell("stands", notes);
-  strong.tell("stands by their factors", notes);
-  dense.tell("stands", notes);
-  mixed.tell("shares of conifers", notes);
+  tellAll(notes, thick, slender, strong, dense, mixed);
   if (cells)
   {
     return;
   }
-  Doubt twice("Their stems add up: was something given twice?");
+  Doubt twice("stands", "Their stems add up: was something given twice?");
   std::vector<PlanRings> grounds;
   for (const Stand& s : stands)
   {
@@ -492,14 +469,14 @@ void askAfterStands(std::span<const Stand> stands, std::vector<std::string>& not
   const std::vector<SharedGround> shared = sharedGround(grounds);
   for (std::size_t k = 0; k < stands.size(); ++k)
   {
-    twice.look(shared[k].earlier < 0, stands[k].feature,
+    twice.look(shared[k].earlier < 0, featureText(stands[k].feature),
       [&]
       {
         return ", which shares " + text(shared[k].area) + " m² with feature " +
           std::to_string(stands[std::size_t(shared[k].earlier)].feature);
       });
   }
-  twice.tell("stands", notes);
+  twice.tell(notes);
 }
 
 void askAfterTwins(
