@@ -3,15 +3,13 @@
 #include "base/errors.h"
 #include "base/text/columnName.h"
 #include "base/text/nameKey.h"
-#include "gis/base/gdal.h"
+#include "base/text/plainText.h"
 
 #include <cpl_csv.h>
-#include <cpl_json.h>
 #include <cpl_string.h>
 #include <ogrsf_frmts.h>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <numeric>
 #include <utility>
@@ -109,12 +107,6 @@ bool isShortFor(const std::string& column, const std::string& name)
 {
   return name.size() >= 5 && column.size() >= 3 && column.size() < name.size() &&
     name.starts_with(column) && name[column.size()] != '_';
-}
-
-bool isNumeric(const OGRFieldDefn& field)
-{
-  const OGRFieldType type = field.GetType();
-  return type == OFTReal || type == OFTInteger || type == OFTInteger64;
 }
 
 /// Whether `column` goes on after `name`, is short for it or a slip of it.
@@ -224,148 +216,6 @@ void refuseSurplusCells(GDALDataset& dataset, const std::string& fileName)
       }
     }
   }
-}
-
-Fields::Fields(
-  const std::string& fileName, const Columns& columns, const OGRFeature& feature, std::int64_t row)
-  : fileName_(fileName)
-  , columns_(columns)
-  , feature_(feature)
-  , row_(row)
-{
-}
-
-void Fields::fail(const std::string& what) const
-{
-  throw DataError(this->where() + ": " + what);
-}
-
-void Fields::refuseLostText(const Messages& messages) const
-{
-  if (!messages.lostText().empty())
-  {
-    this->fail(messages.lostText());
-  }
-}
-
-std::string Fields::nameOf(int column) const
-{
-  return feature_.GetFieldDefnRef(column)->GetNameRef();
-}
-
-bool Fields::isTruth(int column) const
-{
-  const OGRFieldDefn& field = *feature_.GetFieldDefnRef(column);
-  if (field.GetSubType() == OFSTBoolean)
-  {
-    return true;
-  }
-  const char* const json = isNumeric(field) ? feature_.GetNativeData() : nullptr;
-  const double value = json ? feature_.GetFieldAsDouble(column) : 0.0;
-  if (!json || (value != 0.0 && value != 1.0))
-  {
-    return false;
-  }
-  CPLJSONDocument document;
-  return document.LoadMemory(json) &&
-    document.GetRoot().GetObj("properties").GetObj(field.GetNameRef()).GetType() ==
-    CPLJSONObject::Type::Boolean;
-}
-
-std::optional<std::string> Fields::textAt(int column) const
-{
-  if (!feature_.IsFieldSetAndNotNull(column))
-  {
-    return std::nullopt;
-  }
-  if (this->isTruth(column))
-  {
-    return feature_.GetFieldAsInteger(column) ? "true" : "false";
-  }
-  const std::string value(trimmed(feature_.GetFieldAsString(column)));
-  if (!isUtf8(value))
-  {
-    this->fail("field \"" + this->nameOf(column) +
-      "\": its text is not UTF-8; save the file so, or name its encoding, as windows-1252, in a "
-      ".cpg file beside it");
-  }
-  return value.empty() ? std::nullopt : std::optional(value);
-}
-
-std::optional<double> Fields::numberAt(int column) const
-{
-  const auto written = this->textAt(column);
-  if (!written)
-  {
-    return std::nullopt;
-  }
-  // A field of numbers is taken as such: its text is rounded.
-  const auto value =
-    isNumeric(*feature_.GetFieldDefnRef(column)) && *written != "true" && *written != "false"
-    ? std::optional(feature_.GetFieldAsDouble(column))
-    : parsedNumber(*written);
-  if (!value)
-  {
-    const bool comma = written->find(',') != std::string::npos;
-    this->fail("field \"" + this->nameOf(column) + "\": \"" + *written + "\" is not a number" +
-      (comma ? " (the decimal sign is a point)" : ""));
-  }
-  if (!std::isfinite(*value))
-  {
-    this->fail("field \"" + this->nameOf(column) + "\" is " + *written + ", it must be finite");
-  }
-  return value;
-}
-
-std::optional<int> Fields::columnOf(std::initializer_list<const char*> names) const
-{
-  std::optional<int> taken;
-  for (const char* name : names)
-  {
-    const auto column = columns_.find(name);
-    const auto text = column != columns_.end() ? this->textAt(column->second) : std::nullopt;
-    if (!text)
-    {
-      continue;
-    }
-    if (taken && *text != *this->textAt(*taken))
-    {
-      this->fail("field \"" + this->nameOf(*taken) + "\" is " + *this->textAt(*taken) +
-        " and field \"" + this->nameOf(column->second) + "\", which is the same by another name, " +
-        *text + "; leave out one of them");
-    }
-    taken = taken ? taken : column->second;
-  }
-  return taken;
-}
-
-std::optional<std::string> Fields::text(std::initializer_list<const char*> names) const
-{
-  const auto column = this->columnOf(names);
-  return column ? this->textAt(*column) : std::nullopt;
-}
-
-std::optional<double> Fields::number(std::initializer_list<const char*> names) const
-{
-  const auto column = this->columnOf(names);
-  return column ? this->numberAt(*column) : std::nullopt;
-}
-
-std::optional<double> Fields::ranged(
-  std::initializer_list<const char*> names, double low, double high, const char* range) const
-{
-  const auto column = this->columnOf(names);
-  if (!column)
-  {
-    return std::nullopt;
-  }
-  const auto value = this->numberAt(*column);
-  if (!(*value >= low && *value <= high))
-  {
-    this->fail("field \"" + this->nameOf(*column) + "\" is " + gis::number(*value) +
-      ", it must be " + range);
-  }
-  return value;
 }
 
 } // namespace rockfall::gis

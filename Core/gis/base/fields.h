@@ -1,25 +1,17 @@
 #pragma once
 
 /// @file
-/// The fields of a layer's features as text and numbers, by names as nameKey has them.
+/// The columns of a layer, by names as nameKey has them.
 
-#include "base/text/plainText.h"
-
-#include <cstdint>
-#include <initializer_list>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
 class GDALDataset;
-class OGRFeature;
 class OGRFeatureDefn;
 
 namespace rockfall::gis
 {
-
-class Messages;
 
 /// Field indices by nameKey; of two with one key only the first (see refuseTwin).
 using Columns = std::map<std::string, int>;
@@ -50,41 +42,5 @@ void tellUnread(const OGRFeatureDefn& definition, const std::string& fileName,
 /// commas split every number in two would be read without a word. Throws DataError naming the row;
 /// does nothing for other formats.
 void refuseSurplusCells(GDALDataset& dataset, const std::string& fileName);
-
-/// A feature of a layer. Errors are DataError and name file, row (from 1), field and value.
-class Fields
-{
-public:
-  Fields(const std::string& fileName, const Columns& columns, const OGRFeature& feature,
-    std::int64_t row);
-
-  const std::string& fileName() const { return fileName_; }
-  /// File and row, as messages begin.
-  std::string where() const { return fileName_ + ", row " + std::to_string(row_); }
-  [[noreturn]] void fail(const std::string& what) const;
-  /// Fails with what was said when the row was read if a word was lost: OGR only warns where a
-  /// typed table (.csvt) holds text in a column of numbers, and gives 0.
-  void refuseLostText(const Messages& messages) const;
-  /// Of the first of these names that has a value; empty cells are as good as no column. Fails if
-  /// another one of them has another value.
-  std::optional<std::string> text(std::initializer_list<const char*> names) const;
-  std::optional<double> number(std::initializer_list<const char*> names) const;
-  /// From `low` to `high`, "it must be `range`".
-  std::optional<double> ranged(
-    std::initializer_list<const char*> names, double low, double high, const char* range) const;
-  std::optional<double> numberAt(int column) const;
-  std::optional<std::string> textAt(int column) const;
-
-private:
-  std::optional<int> columnOf(std::initializer_list<const char*> names) const;
-  std::string nameOf(int column) const;
-  /// Whether it is true or false, of which GDAL makes 1 and 0, in GeoJSON beside numbers as well.
-  bool isTruth(int column) const;
-
-  const std::string& fileName_;
-  const Columns& columns_;
-  const OGRFeature& feature_;
-  std::int64_t row_;
-};
 
 } // namespace rockfall::gis

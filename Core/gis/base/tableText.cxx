@@ -1,8 +1,8 @@
 #include "gis/base/tableText.h"
 
 #include "base/errors.h"
+#include "base/text/plainText.h"
 #include "base/text/tableText.h"
-#include "gis/base/fields.h"
 
 #include <cpl_csv.h>
 

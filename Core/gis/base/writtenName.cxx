@@ -1,7 +1,7 @@
 #include "gis/base/writtenName.h"
 
 #include "base/text/nameKey.h"
-#include "gis/base/fields.h"
+#include "base/text/plainText.h"
 
 #include <cpl_conv.h>
 #include <cpl_vsi.h>

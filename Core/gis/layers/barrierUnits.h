@@ -3,7 +3,7 @@
 /// @file
 /// Heights and capacities of barriers that only another unit explains.
 
-#include "gis/layers/FeatureRow.h"
+#include "gis/base/FeatureRow.h"
 
 #include <optional>
 

@@ -2,6 +2,7 @@
 #include "gis/layers/structureRows.h"
 
 #include "base/text/numberText.h"
+#include "base/text/plainText.h"
 #include "gis/base/gdal.h"
 
 #include <algorithm>

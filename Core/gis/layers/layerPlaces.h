@@ -4,8 +4,8 @@
 /// Places of a layer's features in the CRS of another one. Internal to gis/: needs GDAL's headers.
 
 #include "base/types.h"
+#include "gis/base/FeatureRow.h"
 #include "gis/base/crs.h"
-#include "gis/layers/FeatureRow.h"
 #include "gis/trust/heights.h"
 #include "gis/trust/unitDoubt.h"
 

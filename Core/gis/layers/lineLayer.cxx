@@ -1,8 +1,8 @@
 #include "gis/layers/lineLayer.h"
 
 #include "base/errors.h"
+#include "gis/base/FeatureRow.h"
 #include "gis/base/gdal.h"
-#include "gis/layers/FeatureRow.h"
 #include "gis/layers/LayerFile.h"
 #include "gis/layers/barrierUnits.h"
 #include "gis/layers/layerPlaces.h"

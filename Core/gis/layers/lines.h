@@ -3,7 +3,7 @@
 /// @file
 /// Lines and rings of features, for every reader of them alike. Internal to gis/: needs GDAL's headers.
 
-#include "gis/layers/FeatureRow.h"
+#include "gis/base/FeatureRow.h"
 
 #include <cstdint>
 #include <string>

@@ -2,7 +2,8 @@
 
 #include "base/errors.h"
 #include "base/text/nameKey.h"
-#include "gis/base/fields.h"
+#include "base/text/plainText.h"
+#include "gis/base/FeatureRow.h"
 #include "gis/base/gdal.h"
 #include "gis/layers/LayerFile.h"
 #include "terrain/material.h"
@@ -78,7 +79,7 @@ public:
     require({ "phi", "friction_angle", "frictionangle" });
   }
 
-  RockContactPair read(const Fields& row, int number, double usualCohesion)
+  RockContactPair read(const FeatureRow& row, int number, double usualCohesion)
   {
     RockContactPair pair;
     pair.first = this->material(row, "material_a");
@@ -114,24 +115,25 @@ public:
 
 private:
   template <typename Value>
-  static Value needed(const Fields& row, const char* column, const std::optional<Value>& value)
+  static Value needed(const FeatureRow& row, const char* column, const std::optional<Value>& value)
   {
     if (!value)
     {
-      row.fail(std::string("field \"") + column + "\" is empty");
+      row.failField(column, " is empty");
     }
     return *value;
   }
 
-  std::string material(const Fields& row, const char* column) const
+  std::string material(const FeatureRow& row, const char* column) const
   {
-    const std::string text = needed(row, column, row.text({ column }));
+    const std::string text = needed(row, column, row.text(column));
     const auto found = materials_.find(nameKey(text));
     if (found == materials_.end())
     {
-      row.fail(std::string("field \"") + column + "\" is \"" + text + "\", which no rock is of; " +
-        (materials_.empty() ? "the rocks have no Material"
-                            : "the rocks are of " + nameList(materials_)));
+      row.failField(column,
+        " is \"" + text + "\", which no rock is of; " +
+          (materials_.empty() ? "the rocks have no Material"
+                              : "the rocks are of " + nameList(materials_)));
     }
     return found->second;
   }
@@ -162,7 +164,7 @@ std::vector<RockContactPair> readRockContacts(const std::string& fileName, doubl
   std::vector<RockContactPair> pairs;
   while (const OGRFeatureUniquePtr feature = file.next())
   {
-    const Fields row(fileName, columns, *feature, file.number());
+    const FeatureRow row(fileName, columns, *feature, file.number());
     row.refuseLostText(messages);
     pairs.push_back(reader.read(row, int(file.number()), usualCohesion));
   }

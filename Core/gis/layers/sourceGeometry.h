@@ -3,8 +3,8 @@
 /// @file
 /// Where the sources of a layer are. Internal to gis/: needs GDAL's headers.
 
+#include "gis/base/FeatureRow.h"
 #include "gis/base/crs.h"
-#include "gis/layers/FeatureRow.h"
 #include "gis/layers/sources.h"
 #include "gis/trust/heightReference.h"
 #include "gis/trust/heights.h"

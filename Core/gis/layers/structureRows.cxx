@@ -175,9 +175,7 @@ double needed(const FeatureRow& row, const char* field, const char* what)
   const auto value = row.positive(field);
   if (!value)
   {
-    row.failField(field,
-      std::string(row.has(field) ? " is empty" : " is missing: the layer has no such column") +
-        "; it is " + what);
+    row.failAbsent(field, std::string("; it is ") + what);
   }
   return *value;
 }

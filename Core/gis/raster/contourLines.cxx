@@ -4,9 +4,8 @@
 #include "base/text/columnName.h"
 #include "base/text/nameKey.h"
 #include "geometry/twins.h"
+#include "gis/base/FeatureRow.h"
 #include "gis/base/crs.h"
-#include "gis/base/fields.h"
-#include "gis/layers/FeatureRow.h"
 #include "gis/layers/lines.h"
 #include "gis/trust/heightUnit.h"
 
@@ -32,7 +31,7 @@ constexpr const char* usualHeightNames[] = { "elev", "elevation", "contour", "z"
   "hoehe", "höhe", "kote", "cote", "quota", "cota" };
 
 void addLine(const OGRLineString& line, double height, double plane, const HeightField& field,
-  const Fields& fields, Contours& contours)
+  const FeatureRow& fields, Contours& contours)
 {
   if (field.column < 0 && !line.Is3D())
   {
@@ -169,7 +168,7 @@ Contours readLines(LayerFile& file, const LayerHeights& heights, const HeightFie
       const auto value = row.numberAt(field.column);
       if (!value)
       {
-        row.fail("field \"" + field.name + "\" is empty, it must be the contour's height");
+        row.failField(field.name, " is empty, it must be the contour's height");
       }
       height = field.heights.metres(*value);
     }

@@ -5,7 +5,7 @@
 #include "base/errors.h"
 #include "base/text/nameKey.h"
 #include "base/text/numberText.h"
-#include "gis/base/fields.h"
+#include "gis/base/FeatureRow.h"
 #include "gis/base/gdal.h"
 #include "gis/base/planAccuracy.h"
 #include "gis/base/progress.h"
@@ -307,7 +307,7 @@ std::vector<std::uint8_t> fromPolygons(GroundKind kind, const GroundFiles& files
   bool overlaps = false;
   while (const OGRFeatureUniquePtr feature = file.next())
   {
-    const Fields fields(files.layer, columns, *feature, file.number());
+    const FeatureRow fields(files.layer, columns, *feature, file.number());
     const OGRGeometry* written = feature->GetGeometryRef();
     if (!written || written->IsEmpty())
     {
@@ -341,7 +341,7 @@ std::vector<std::uint8_t> fromPolygons(GroundKind kind, const GroundFiles& files
     const auto text = fields.textAt(column);
     if (!text)
     {
-      fields.fail("field \"" + fieldName + "\" is empty, it must be the class");
+      fields.failField(fieldName, " is empty, it must be the class");
     }
     const int row = table.rowOf(*text);
     if (row == 0)

@@ -2,7 +2,8 @@
 
 #include "base/errors.h"
 #include "base/text/nameKey.h"
-#include "gis/base/fields.h"
+#include "base/text/plainText.h"
+#include "gis/base/FeatureRow.h"
 #include "gis/base/gdal.h"
 #include "gis/layers/LayerFile.h"
 #include "terrain/presets.h"
@@ -30,7 +31,7 @@ std::string keyOf(const std::string& text)
                                                                               : key;
 }
 
-RestitutionModel modelFrom(const Fields& row, const std::string& text)
+RestitutionModel modelFrom(const FeatureRow& row, const std::string& text)
 {
   std::string letters;
   for (const char c : nameKey(text))
@@ -49,15 +50,8 @@ RestitutionModel modelFrom(const Fields& row, const std::string& text)
   {
     return RestitutionModel::SpeedDependent;
   }
-  row.fail("field \"model\" is \"" + text +
-    "\", it must be 0 (Velocity), 1 (NormalTangential) or 2 (SpeedDependent)");
-}
-
-[[noreturn]] void failEmpty(const Fields& row, const char* name, const Columns& columns)
-{
-  row.fail(std::string("field \"") + name + "\" is " +
-    (columns.count(name) ? "empty" : "missing: the table has no such column") +
-    ", and the row has no preset");
+  row.failField("model",
+    " is \"" + text + "\", it must be 0 (Velocity), 1 (NormalTangential) or 2 (SpeedDependent)");
 }
 
 /// A message about properties, with the names of their columns.
@@ -78,7 +72,7 @@ std::string inColumns(std::string text)
   return text;
 }
 
-void readRestitution(const Fields& row, const Columns& columns, bool preset, SurfaceMaterial& m)
+void readRestitution(const FeatureRow& row, bool preset, SurfaceMaterial& m)
 {
   if (const auto model = row.text({ "model", "restitutionmodel" }))
   {
@@ -88,7 +82,7 @@ void readRestitution(const Fields& row, const Columns& columns, bool preset, Sur
     { "rv", "rn", "restitution", "rv_mean", "restitutioncoefficient" }, 0.0, 1.0, "0 to 1");
   if (!rv && !preset)
   {
-    failEmpty(row, "rv", columns);
+    row.failAbsent("rv", ", and the row has no preset", "table");
   }
   m.restitution = rv.value_or(m.restitution);
   m.restitutionDeviation =
@@ -120,13 +114,13 @@ void readRestitution(const Fields& row, const Columns& columns, bool preset, Sur
   }
 }
 
-void readJoint(const Fields& row, const Columns& columns, bool preset, SurfaceMaterial& m)
+void readJoint(const FeatureRow& row, bool preset, SurfaceMaterial& m)
 {
   const auto phi = row.ranged(
     { "phi", "phi_mean", "friction_angle", "frictionangle" }, 0.0, 89.0, "0 to 89 degrees");
   if (!phi && !preset)
   {
-    failEmpty(row, "phi", columns);
+    row.failAbsent("phi", ", and the row has no preset", "table");
   }
   m.frictionAngle = phi ? radians(*phi) : m.frictionAngle;
   const auto deviation = row.ranged(
@@ -139,7 +133,7 @@ void readJoint(const Fields& row, const Columns& columns, bool preset, SurfaceMa
                  .value_or(m.cohesion);
 }
 
-Roughness roughnessFrom(const Fields& row, const Roughness& usual)
+Roughness roughnessFrom(const FeatureRow& row, const Roughness& usual)
 {
   Roughness r = usual;
   const double most = std::numeric_limits<double>::max();
@@ -249,17 +243,17 @@ GroundTable readGroundTable(GroundKind kind, const GroundFiles& files, const Sur
   while (const OGRFeatureUniquePtr feature = file.next())
   {
     const int number = int(table.names.size()) + 1;
-    const Fields row(fileName, columns, *feature, number);
+    const FeatureRow row(fileName, columns, *feature, number);
     row.refuseLostText(messages);
     if (number > MaterialClasses::largest)
     {
       row.fail("is one too many: a table has at most " + std::to_string(MaterialClasses::largest) +
         " classes");
     }
-    const auto written = row.text({ "class" }), name = row.text({ "name" });
+    const auto written = row.text("class"), name = row.text("name");
     if (!written && !name)
     {
-      row.fail("field \"class\" is empty");
+      row.failField("class", " is empty");
     }
     const std::string key = keyOf(written.value_or(name.value_or("")));
     if (!table.rows.emplace(key, number).second)
@@ -270,7 +264,7 @@ GroundTable readGroundTable(GroundKind kind, const GroundFiles& files, const Sur
     SurfaceMaterial material = usual;
     Roughness roughness = usualRoughness;
     material.restitutionDeviation = material.frictionAngleDeviation = 0.0;
-    const auto preset = row.text({ "preset" });
+    const auto preset = row.text("preset");
     if (preset)
     {
       try
@@ -285,11 +279,11 @@ GroundTable readGroundTable(GroundKind kind, const GroundFiles& files, const Sur
       }
       catch (const Error& error)
       {
-        row.fail(std::string("field \"preset\": ") + error.what());
+        row.failField("preset", std::string(": ") + error.what());
       }
     }
-    restitution ? readRestitution(row, columns, bool(preset), material)
-                : readJoint(row, columns, bool(preset), material);
+    restitution ? readRestitution(row, bool(preset), material)
+                : readJoint(row, bool(preset), material);
     table.names.push_back(name.value_or(*(written ? written : name)));
     table.materials.push_back(material);
     table.roughness.push_back(roughnessFrom(row, roughness));

@@ -2,7 +2,7 @@
 
 #include "base/errors.h"
 #include "base/text/nameKey.h"
-#include "gis/base/fields.h"
+#include "base/text/plainText.h"
 #include "gis/base/gdal.h"
 #include "gis/trust/headers.h"
 #include "gis/trust/heightUnit.h"

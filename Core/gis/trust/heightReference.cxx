@@ -2,7 +2,6 @@
 
 #include "base/errors.h"
 #include "base/text/nameKey.h"
-#include "gis/base/fields.h"
 #include "gis/base/gdal.h"
 
 #include <ogr_spatialref.h>

@@ -2,7 +2,7 @@
 
 #include "base/text/lengthUnit.h"
 #include "base/text/nameKey.h"
-#include "gis/base/fields.h"
+#include "base/text/plainText.h"
 #include "gis/base/gdal.h"
 
 #include <algorithm>

@@ -3,6 +3,7 @@
 #include "base/errors.h"
 #include "base/text/columnName.h"
 #include "base/text/nameKey.h"
+#include "base/text/plainText.h"
 #include "gis/trust/bandScale.h"
 #include "gis/trust/headers.h"
 #include "gis/trust/heightReference.h"
@@ -385,7 +386,7 @@ LayerHeights heightsOf(GDALDataset& dataset, OGRLayer& layer, const std::string&
   return heights;
 }
 
-Altitude altitudeOf(const LayerHeights& heights, const Fields& row)
+Altitude altitudeOf(const LayerHeights& heights, const FeatureRow& row)
 {
   if (!heights.kml)
   {

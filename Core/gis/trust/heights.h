@@ -10,8 +10,8 @@
 /// Zunits, the unit of a drawing, the end of a column's name. Two declarations that contradict each
 /// other are an error. Nothing declared: metres, with a note if the coordinates are in feet.
 
+#include "gis/base/FeatureRow.h"
 #include "gis/base/crs.h"
-#include "gis/base/fields.h"
 #include "gis/base/gdal.h"
 
 #include <string>
@@ -68,6 +68,6 @@ enum class Altitude
   Ground, ///< Relative to the ground.
   None,   ///< Clamped to the ground, which is KML's default: it says nothing.
 };
-Altitude altitudeOf(const LayerHeights& heights, const Fields& row);
+Altitude altitudeOf(const LayerHeights& heights, const FeatureRow& row);
 
 } // namespace rockfall::gis

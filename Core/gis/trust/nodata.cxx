@@ -1,7 +1,7 @@
 #include "gis/trust/nodata.h"
 
 #include "base/abort.h"
-#include "gis/base/fields.h"
+#include "base/text/plainText.h"
 #include "gis/trust/headers.h"
 #include "gis/trust/heightUnit.h"
 

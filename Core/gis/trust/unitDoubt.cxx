@@ -26,7 +26,7 @@ UnitDoubt::UnitDoubt(const LayerHeights& layer, const FileUnits& slope)
   slope_.plan = layer.planeDeclared ? 1.0 : slope.plan;
 }
 
-void UnitDoubt::height(const Fields& row, const std::string& column, double number)
+void UnitDoubt::height(const FeatureRow& row, const std::string& column, double number)
 {
   if (slope_.heights == 1.0 || !height_.empty() || metresPer(ColumnName(column).unit))
   {

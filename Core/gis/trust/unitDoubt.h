@@ -4,7 +4,7 @@
 /// Numbers without a unit beside a slope whose file declares another one than the metre. Internal to
 /// gis/.
 
-#include "gis/base/fields.h"
+#include "gis/base/FeatureRow.h"
 #include "gis/trust/heights.h"
 #include "terrain/Terrain.h"
 
@@ -23,9 +23,9 @@ public:
   UnitDoubt(const LayerHeights& layer, const FileUnits& slope);
 
   /// A height of a column, or of the geometry if there is no name.
-  void height(const Fields& row, const std::string& column, double number);
+  void height(const FeatureRow& row, const std::string& column, double number);
   /// Coordinates of a geometry or of the columns x and y.
-  void place(const Fields& row, double x, double y) { this->place(row.where(), x, y); }
+  void place(const FeatureRow& row, double x, double y) { this->place(row.where(), x, y); }
   /// Of the raster, or whatever `where` names.
   void place(const std::string& where, double x, double y);
   void tell(std::vector<std::string>& notes) const;
