@@ -117,7 +117,7 @@ public:
 private:
   [[noreturn]] void fail(const TableLine& line, const std::string& what) const
   {
-    throw FileError(name_ + ", line " + std::to_string(line.number) + ": " + what);
+    throw FileError(lineName(name_, line.number) + ": " + what);
   }
 
   /// How many lines are no points.
@@ -140,7 +140,7 @@ private:
     }
     if (!isNumeric(first.text))
     {
-      const std::string place = name_ + ", line " + std::to_string(first.number);
+      const std::string place = lineName(name_, first.number);
       const auto columns = findAxes(cells, place);
       if (!columns)
       {

@@ -3,6 +3,7 @@
 #include "base/abort.h"
 #include "base/errors.h"
 #include "base/text/nameKey.h"
+#include "base/text/plainText.h"
 
 #include <unicode/ucnv.h>
 #include <unicode/unistr.h>
@@ -18,11 +19,6 @@ namespace
 {
 
 constexpr char western[] = "windows-1252";
-
-std::string lineName(const std::string& fileName, std::size_t line)
-{
-  return fileName + ", line " + std::to_string(line);
-}
 
 /// Number of the line of a byte, from 1.
 std::size_t lineAt(std::string_view text, std::size_t byte)
@@ -229,20 +225,17 @@ std::string decoded(std::string text, const std::string& declared, const std::st
   return result;
 }
 
-std::string bare(const std::string& text)
-{
-  const char* const blanks = " \t\r\n";
-  const auto first = text.find_first_not_of(blanks);
-  return first == std::string::npos ? std::string()
-                                    : text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
-
 } // namespace
+
+std::string lineName(const std::string& fileName, std::size_t line)
+{
+  return fileName + ", line " + std::to_string(line);
+}
 
 std::string asUtf8(std::string text, const std::string& declared, const std::string& fileName,
   std::vector<std::string>& notes)
 {
-  std::string result = decoded(std::move(text), bare(declared), fileName, notes);
+  std::string result = decoded(std::move(text), std::string(trimmed(declared)), fileName, notes);
   // Of UTF-16 as well.
   if (result.starts_with("\xef\xbb\xbf"))
   {
@@ -275,7 +268,8 @@ std::vector<std::string> quotedCells(std::string_view line, char separator)
       cells.back() += c;
     }
   }
-  std::transform(cells.begin(), cells.end(), cells.begin(), bare);
+  std::transform(cells.begin(), cells.end(), cells.begin(),
+    [](const std::string& cell) { return std::string(trimmed(cell)); });
   return cells;
 }
 

@@ -11,6 +11,9 @@
 namespace rockfall
 {
 
+/// File and line, from 1, as messages begin.
+std::string lineName(const std::string& fileName, std::size_t line);
+
 /// Text of any encoding as UTF-8. `declared`: a name such as "ISO-8859-2" or a code page such as
 /// "1250", of a .cpg file; empty: a byte order mark says it, else it is UTF-8 if all of it can be,
 /// UTF-16 if it is full of zeros, and else Windows-1252, which has Latin-1 in it.

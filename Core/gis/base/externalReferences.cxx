@@ -295,11 +295,9 @@ private:
   int depth_;
 };
 
-using XmlPtr = std::unique_ptr<CPLXMLNode, void (*)(CPLXMLNode*)>;
-
-XmlPtr xmlTree(const std::string& text)
+CPLXMLTreeCloser xmlTree(const std::string& text)
 {
-  return { text.empty() ? nullptr : CPLParseXMLString(text.c_str()), CPLDestroyXMLNode };
+  return CPLXMLTreeCloser(text.empty() ? nullptr : CPLParseXMLString(text.c_str()));
 }
 
 /// The file that GDAL keeps beside another one for what that cannot hold.
@@ -309,7 +307,7 @@ void refuseAuxiliary(const std::string& file, const std::string& whole, int dept
   const std::string name = file + ".aux.xml";
   if (!isXml(file) && VSIStatExL(name.c_str(), &status, VSI_STAT_EXISTS_FLAG) == 0)
   {
-    const XmlPtr root = xmlTree(xmlOf(name));
+    const CPLXMLTreeCloser root = xmlTree(xmlOf(name));
     NamedFiles(file, whole, depth).checkXml(root.get());
   }
 }
@@ -372,7 +370,7 @@ void refuseDriver(const std::string& fileName, const std::string& whole, unsigne
   {
     return;
   }
-  const XmlPtr root = xmlTree(isXml(fileName) ? fileName : xmlOf(fileName));
+  const CPLXMLTreeCloser root = xmlTree(isXml(fileName) ? fileName : xmlOf(fileName));
   if (!root)
   {
     // Other ways to say a virtual raster: vrt://file, which names any.

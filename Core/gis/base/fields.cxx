@@ -4,6 +4,7 @@
 #include "base/text/columnName.h"
 #include "base/text/nameKey.h"
 #include "base/text/plainText.h"
+#include "gis/base/gdal.h"
 
 #include <cpl_csv.h>
 #include <cpl_string.h>
@@ -188,7 +189,7 @@ void tellUnread(const OGRFeatureDefn& definition, const std::string& fileName,
 
 void refuseSurplusCells(GDALDataset& dataset, const std::string& fileName)
 {
-  if (!dataset.GetDriver() || !EQUAL(dataset.GetDriver()->GetDescription(), "CSV"))
+  if (!isOfDriver(dataset, "CSV"))
   {
     return;
   }

@@ -214,11 +214,11 @@ DatasetPtr openVector(
   }
 }
 
-std::string number(double value)
+bool isOfDriver(const GDALDataset& dataset, const char* name)
 {
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof(text), value, std::chars_format::general, 10);
-  return { text, end.ptr };
+  // GDAL's own functions are not const.
+  auto* driver = const_cast<GDALDataset&>(dataset).GetDriver();
+  return driver && EQUAL(driver->GetDescription(), name);
 }
 
 std::string exactly(double value)

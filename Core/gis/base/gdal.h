@@ -4,6 +4,7 @@
 /// Common parts of the readers of this folder. GDAL's own headers stay in the sources: whoever
 /// includes this header needs GDAL's library, not its headers.
 
+#include "base/text/numberText.h"
 #include "gis/base/externalReferences.h"
 #include "gis/base/stayLocal.h"
 
@@ -59,15 +60,21 @@ using DatasetPtr = std::unique_ptr<GDALDataset, CloseDataset>;
 
 /// Opens for reading. Throws FileError that says which of the usual mistakes it is: no name, no
 /// such file, a folder, the other kind of data, or nothing that GDAL knows; also where the file
-/// reaches out (see reach.h).
+/// reaches out (externalReferences.h).
 DatasetPtr openRaster(const std::string& fileName, Messages& messages);
 /// Tables are brought to UTF-8 first (tableFile.h) and spreadsheets have a header in any case.
 /// `notes`: what was done to the text. Throws DataError naming file and line for text that is none.
 DatasetPtr openVector(
   const std::string& fileName, Messages& messages, std::vector<std::string>* notes = nullptr);
 
+/// Whether GDAL opened the dataset by this driver.
+bool isOfDriver(const GDALDataset& dataset, const char* name);
+
 /// A number for a message, with a decimal point in every locale.
-std::string number(double value);
+inline std::string number(double value)
+{
+  return numberText(value, 10);
+}
 
 /// The shortest text that reads back as this very number.
 std::string exactly(double value);

@@ -2,7 +2,7 @@
 
 /// @file
 /// GDAL without network and without other files, whatever a file names: the last gate, behind the
-/// look into the file (reach.h), for all readers alike.
+/// look into the file (externalReferences.h), for all readers alike.
 
 #include <optional>
 #include <string>

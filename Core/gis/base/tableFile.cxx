@@ -3,6 +3,7 @@
 #include "base/text/nameKey.h"
 #include "base/text/tableText.h"
 #include "gis/base/tableText.h"
+#include "gis/base/writtenName.h"
 
 #include <cpl_conv.h>
 #include <cpl_minixml.h>
@@ -11,7 +12,6 @@
 #include <algorithm>
 #include <atomic>
 #include <iterator>
-#include <memory>
 #include <optional>
 #include <set>
 
@@ -22,18 +22,11 @@ namespace
 {
 
 /// A table of more bytes is left to GDAL: no reader takes as many rows.
-constexpr GIntBig largestTable = GIntBig(1) << 30;
+constexpr std::int64_t largestTable = std::int64_t(1) << 30;
 
 std::optional<std::string> wholeTable(const std::string& path)
 {
-  GByte* bytes = nullptr;
-  vsi_l_offset size = 0;
-  if (!VSIIngestFile(nullptr, path.c_str(), &bytes, &size, largestTable))
-  {
-    return std::nullopt;
-  }
-  const std::unique_ptr<GByte, void (*)(void*)> owner(bytes, VSIFree);
-  return std::string(reinterpret_cast<const char*>(bytes), std::size_t(size));
+  return wholeFile(path, largestTable);
 }
 
 void writeInMemory(const std::string& path, const std::string& content)

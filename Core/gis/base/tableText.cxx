@@ -15,11 +15,6 @@ namespace rockfall::gis
 namespace
 {
 
-std::string lineName(const std::string& fileName, std::size_t line)
-{
-  return fileName + ", line " + std::to_string(line);
-}
-
 /// Lines of a text, with quoted cells that go over several lines kept whole.
 struct TextLines
 {

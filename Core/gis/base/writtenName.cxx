@@ -10,6 +10,7 @@
 #include <cstring>
 #include <filesystem>
 #include <iterator>
+#include <memory>
 #include <system_error>
 
 namespace rockfall::gis
@@ -19,7 +20,7 @@ namespace
 {
 
 /// A virtual dataset is a page of text, or a mosaic of many thousand tiles.
-constexpr GIntBig largestXml = 256 << 20; // bytes
+constexpr std::int64_t largestXml = 256 << 20; // bytes
 
 /// GDAL's file systems that read one local file, or memory. Others are networks, standard input,
 /// or name further files (/vsisparse/).
@@ -54,17 +55,21 @@ bool isXml(const std::string& name)
   return trimmed(name).starts_with("<");
 }
 
-std::string xmlOf(const std::string& fileName)
+std::optional<std::string> wholeFile(const std::string& fileName, std::int64_t largest)
 {
   GByte* bytes = nullptr;
   vsi_l_offset size = 0;
-  if (!VSIIngestFile(nullptr, fileName.c_str(), &bytes, &size, largestXml))
+  if (!VSIIngestFile(nullptr, fileName.c_str(), &bytes, &size, largest))
   {
-    return {};
+    return std::nullopt;
   }
-  std::string content(reinterpret_cast<const char*>(bytes), std::size_t(size));
-  VSIFree(bytes);
-  return content;
+  const std::unique_ptr<GByte, void (*)(void*)> owner(bytes, VSIFree);
+  return std::string(reinterpret_cast<const char*>(bytes), std::size_t(size));
+}
+
+std::string xmlOf(const std::string& fileName)
+{
+  return wholeFile(fileName, largestXml).value_or("");
 }
 
 bool isWithin(const std::string& fileName, const std::string& folder)

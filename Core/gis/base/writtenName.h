@@ -3,6 +3,8 @@
 /// @file
 /// Names of files as files write them: paths, GDAL's file systems, drivers before a name, XML.
 
+#include <cstdint>
+#include <optional>
 #include <string>
 
 namespace rockfall::gis
@@ -17,7 +19,10 @@ bool isAddress(const std::string& name);
 /// Whether the name is itself the text of a virtual dataset.
 bool isXml(const std::string& name);
 
-/// All of a file; nothing if it is none, or too large for what it should be.
+/// All of a file; nothing if it is none, or of more bytes than `largest`.
+std::optional<std::string> wholeFile(const std::string& fileName, std::int64_t largest);
+
+/// The same of a virtual dataset's file; empty if it is none, or too large for one.
 std::string xmlOf(const std::string& fileName);
 
 /// Whether a file lies in a folder or below, after all its links.

@@ -170,7 +170,7 @@ LayerFile::LayerFile(const LayerWish& wish, Messages& messages)
   {
     throw DataError(wish_.fileName + ": has no " + wish_.what);
   }
-  drawing_ = isDrawing(*dataset_);
+  drawing_ = isOfDriver(*dataset_, "DXF");
   drawing_ ? this->chooseInDrawing() : this->choose();
   this->checkColumns();
   refuseSurplusCells(*dataset_, wish_.fileName);

@@ -39,11 +39,6 @@ std::string quotedList(const std::set<std::string>& names)
 
 } // namespace
 
-bool isDrawing(GDALDataset& dataset)
-{
-  return dataset.GetDriver() && EQUAL(dataset.GetDriver()->GetDescription(), "DXF");
-}
-
 std::string drawingLayerOf(const OGRFeature& entity)
 {
   return fieldText(entity, "Layer");

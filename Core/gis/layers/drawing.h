@@ -12,14 +12,11 @@
 #include <string>
 #include <vector>
 
-class GDALDataset;
-
 namespace rockfall::gis
 {
 
 struct LayerWish;
 
-bool isDrawing(GDALDataset& dataset);
 /// The drawing's layer that an entity is of.
 std::string drawingLayerOf(const OGRFeature& entity);
 bool isText(const OGRFeature& entity);  ///< A label.

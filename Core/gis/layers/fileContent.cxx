@@ -123,8 +123,7 @@ FileContent namedRaster(GDALDataset& dataset, const LayerWish& wish,
     return { false, wish.fileName };
   }
   const std::string name = "GPKG:" + wish.fileName + ":" + wish.layer;
-  if (EQUAL(dataset.GetDriver() ? dataset.GetDriver()->GetDescription() : "", "GPKG") &&
-    opened(name, messages, false))
+  if (isOfDriver(dataset, "GPKG") && opened(name, messages, false))
   {
     return { false, name };
   }

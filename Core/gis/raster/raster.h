@@ -22,7 +22,7 @@ struct RasterSurface
 {
   // `geometry.crs` is WKT2:2019: the horizontal CRS, with a vertical part, in metres upwards, if
   // the file says what its heights refer to; empty for local metres.
-  GridGeometry geometry;          ///< `crs`: see below.
+  GridGeometry geometry;          ///< `crs`: see above.
   std::vector<double> heights;    ///< NaN where the file has nodata.
   std::vector<std::string> notes; ///< One sentence per thing that was done to the data.
 };

@@ -4,7 +4,6 @@
 #include "base/errors.h"
 #include "base/text/plainText.h"
 #include "gis/base/progress.h"
-#include "gis/trust/headers.h"
 #include "gis/trust/heightUnit.h"
 #include "gis/trust/nodata.h"
 

@@ -6,7 +6,6 @@
 #include "gis/base/gdal.h"
 #include "gis/base/textWords.h"
 #include "gis/raster/xyzPoints.h"
-#include "gis/trust/headers.h"
 
 #include <cpl_conv.h>
 #include <cpl_vsi.h>

@@ -4,7 +4,6 @@
 #include "base/text/nameKey.h"
 #include "base/text/plainText.h"
 #include "gis/base/gdal.h"
-#include "gis/trust/headers.h"
 #include "gis/trust/heightUnit.h"
 
 #include <cpl_string.h>

@@ -3,6 +3,7 @@
 #include "base/errors.h"
 #include "base/text/nameKey.h"
 #include "base/text/plainText.h"
+#include "gis/base/gdal.h"
 #include "gis/trust/heightUnit.h"
 
 #include <cpl_conv.h>
@@ -78,13 +79,6 @@ std::string sagaHeaderFile(GDALDataset& dataset)
 }
 
 } // namespace
-
-bool isOfDriver(const GDALDataset& dataset, const char* name)
-{
-  // GDAL's own functions are not const.
-  auto* driver = const_cast<GDALDataset&>(dataset).GetDriver();
-  return driver && EQUAL(driver->GetDescription(), name);
-}
 
 Header sagaHeader(GDALDataset& dataset)
 {

@@ -40,11 +40,8 @@ struct DrawingUnit
 /// Nothing if the file is no drawing or says nothing.
 std::optional<DrawingUnit> drawingUnit(GDALDataset& dataset, const std::string& fileName);
 
-/// Whether GDAL opened the dataset by this driver.
 /// The one altitudeMode of all geometries of a KML file, for GDAL without libkml, whose driver gives
 /// none by feature. Throws DataError for several.
 std::string kmlMode(const std::string& fileName);
-
-bool isOfDriver(const GDALDataset& dataset, const char* name);
 
 } // namespace rockfall::gis

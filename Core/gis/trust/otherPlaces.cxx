@@ -2,7 +2,6 @@
 
 #include "base/errors.h"
 #include "gis/base/gdal.h"
-#include "gis/trust/headers.h"
 
 #include <cpl_conv.h>
 #include <cpl_string.h>

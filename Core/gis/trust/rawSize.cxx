@@ -108,15 +108,13 @@ void check(GDALDataset& dataset, const std::string& fileName, int depth)
     }
     return;
   }
-  if (depth == deepest || !dataset.GetDriver() ||
-    !EQUAL(dataset.GetDriver()->GetDescription(), "VRT"))
+  if (depth == deepest || !isOfDriver(dataset, "VRT"))
   {
     return;
   }
   if (const char* const* header = dataset.GetMetadata("xml:VRT"))
   {
-    const std::unique_ptr<CPLXMLNode, void (*)(CPLXMLNode*)> root(
-      CPLParseXMLString(*header), CPLDestroyXMLNode);
+    const CPLXMLTreeCloser root(CPLParseXMLString(*header));
     checkVrtBands(root.get(), dataset, fileName);
   }
   const CPLStringList files(dataset.GetFileList());
